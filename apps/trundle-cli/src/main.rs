@@ -1,0 +1,2 @@
+//! The program `trundle`.
+fn main() {}

@@ -1,0 +1,62 @@
+use crate::{GyroRate, Pose2, RgbdImage, Stamp, Twist2, WheelTicks};
+use serde::{Deserialize, Serialize};
+
+/// The bumper, by which the robot knows that it touched something.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Touch {
+    /// When the state changed.
+    pub stamp: Stamp,
+    /// Whether it is pressed.
+    pub pressed: bool,
+}
+
+/// What comes out of a robot's body, in the order of its stamps.
+#[derive(Debug, Clone, PartialEq)]
+pub enum SensorEvent {
+    /// Wheel encoders.
+    Wheels(WheelTicks),
+    /// Gyro.
+    Gyro(GyroRate),
+    /// Camera.
+    Rgbd(RgbdImage),
+    /// Bumper.
+    Touch(Touch),
+    /// Ground truth, `world_from_base`, for judges only: the robot's loop must not look at it.
+    Truth {
+        /// When it held.
+        stamp: Stamp,
+        /// `world_from_base`.
+        pose: Pose2,
+    },
+}
+
+impl SensorEvent {
+    /// When it happened.
+    pub fn stamp(&self) -> Stamp {
+        match self {
+            Self::Wheels(wheels) => wheels.stamp,
+            Self::Gyro(gyro) => gyro.stamp,
+            Self::Rgbd(image) => image.stamp(),
+            Self::Touch(touch) => touch.stamp,
+            Self::Truth { stamp, .. } => *stamp,
+        }
+    }
+}
+
+/// A body to live in: a simulator, a recording, or hardware.
+pub trait RobotBody {
+    /// What can go wrong with it.
+    type Error: std::error::Error;
+
+    /// The next thing that its sensors say; `None` when there will be nothing more.
+    ///
+    /// # Errors
+    /// When a sensor or the connection to it failed for good.
+    fn next_event(&mut self) -> Result<Option<SensorEvent>, Self::Error>;
+
+    /// Asks the base to move with `twist` from now on, until the next command.
+    ///
+    /// # Errors
+    /// When the base cannot be reached.
+    fn command(&mut self, twist: Twist2) -> Result<(), Self::Error>;
+}

@@ -1,0 +1,210 @@
+use crate::{Invalid, Vector2, Vector3, require_finite, require_positive};
+use serde::{Deserialize, Serialize};
+
+/// Lens distortion of Brown and Conrady, in the order of OpenCV.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct Distortion {
+    /// Radial, of r^2.
+    pub k1: f64,
+    /// Radial, of r^4.
+    pub k2: f64,
+    /// Tangential.
+    pub p1: f64,
+    /// Tangential.
+    pub p2: f64,
+    /// Radial, of r^6.
+    pub k3: f64,
+}
+
+/// A pinhole camera with Brown-Conrady distortion. Pixel (0, 0) is the centre of the top-left pixel.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct PinholeCamera {
+    width: usize,
+    height: usize,
+    fx: f64,
+    fy: f64,
+    cx: f64,
+    cy: f64,
+    distortion: Distortion,
+}
+
+impl PinholeCamera {
+    /// A camera of `width` x `height` px, focal lengths and principal point in px.
+    ///
+    /// # Errors
+    /// When a side is zero, a focal length is not positive, or any number is not finite.
+    pub fn new(
+        (width, height): (usize, usize),
+        (fx, fy): (f64, f64),
+        (cx, cy): (f64, f64),
+        distortion: Distortion,
+    ) -> Result<Self, Invalid> {
+        if width == 0 || height == 0 {
+            return Err(Invalid::new("camera size", format!("{width} x {height}"), "px", "at least 1 x 1"));
+        }
+        require_positive("fx", fx, "px")?;
+        require_positive("fy", fy, "px")?;
+        require_finite("cx", cx, "px")?;
+        require_finite("cy", cy, "px")?;
+        let Distortion { k1, k2, p1, p2, k3 } = distortion;
+        for (name, value) in [("k1", k1), ("k2", k2), ("p1", p1), ("p2", p2), ("k3", k3)] {
+            require_finite(name, value, "")?;
+        }
+        Ok(Self { width, height, fx, fy, cx, cy, distortion })
+    }
+
+    /// A camera without distortion from its fields of view (rad), principal point in the middle.
+    ///
+    /// # Errors
+    /// When a side is zero or a field of view is outside (0, pi).
+    pub fn from_field_of_view(
+        (width, height): (usize, usize),
+        (across, down): (f64, f64),
+    ) -> Result<Self, Invalid> {
+        let focal = |name: &str, size: usize, fov: f64| {
+            if fov > 0.0 && fov < std::f64::consts::PI {
+                Ok(size as f64 / 2.0 / (fov / 2.0).tan())
+            } else {
+                Err(Invalid::new(name, fov, "rad", "0 to pi, exclusive"))
+            }
+        };
+        let fx = focal("field of view across", width, across)?;
+        let fy = focal("field of view down", height, down)?;
+        let centre = ((width as f64 - 1.0) / 2.0, (height as f64 - 1.0) / 2.0);
+        Self::new((width, height), (fx, fy), centre, Distortion::default())
+    }
+
+    /// Kinect V2 depth camera with colour registered to it: 512 x 424, 70.6 x 60 deg \[Li18\], rectified.
+    pub fn kinect_v2() -> Self {
+        Self::from_field_of_view((512, 424), (70.6_f64.to_radians(), 60.0_f64.to_radians()))
+            .expect("invariant: the preset is valid")
+    }
+
+    /// Columns, px.
+    pub fn width(&self) -> usize {
+        self.width
+    }
+
+    /// Rows, px.
+    pub fn height(&self) -> usize {
+        self.height
+    }
+
+    /// Focal length across, px.
+    pub fn fx(&self) -> f64 {
+        self.fx
+    }
+
+    /// Focal length down, px.
+    pub fn fy(&self) -> f64 {
+        self.fy
+    }
+
+    /// Principal point, column, px.
+    pub fn cx(&self) -> f64 {
+        self.cx
+    }
+
+    /// Principal point, row, px.
+    pub fn cy(&self) -> f64 {
+        self.cy
+    }
+
+    /// Lens distortion.
+    pub fn distortion(&self) -> Distortion {
+        self.distortion
+    }
+
+    /// Where a point in the camera frame (m) appears in a rectified image, px; `None` behind the camera.
+    pub fn project(&self, p_camera: Vector3) -> Option<Vector2> {
+        (p_camera.z > 0.0).then(|| {
+            let inverse = 1.0 / p_camera.z;
+            Vector2::new(self.fx * p_camera.x * inverse + self.cx, self.fy * p_camera.y * inverse + self.cy)
+        })
+    }
+
+    /// The point (camera frame, m) seen at a rectified pixel with `depth` m along the optical axis.
+    pub fn unproject(&self, pixel: Vector2, depth: f64) -> Vector3 {
+        Vector3::new((pixel.x - self.cx) / self.fx * depth, (pixel.y - self.cy) / self.fy * depth, depth)
+    }
+
+    /// Whether a pixel position lies in the image (pixel centres at whole numbers).
+    pub fn contains(&self, pixel: Vector2) -> bool {
+        pixel.x >= -0.5
+            && pixel.y >= -0.5
+            && pixel.x < self.width as f64 - 0.5
+            && pixel.y < self.height as f64 - 0.5
+    }
+
+    /// Where a rectified pixel appears in the raw image.
+    pub fn distort(&self, pixel: Vector2) -> Vector2 {
+        let n = Vector2::new((pixel.x - self.cx) / self.fx, (pixel.y - self.cy) / self.fy);
+        let d = self.distort_normalized(n);
+        Vector2::new(d.x * self.fx + self.cx, d.y * self.fy + self.cy)
+    }
+
+    /// Where a raw pixel appears in a rectified image: the inverse of [`PinholeCamera::distort`] by 20 fixed-point
+    /// steps, good to 1e-6 px for lenses like the Kinect's within the image.
+    pub fn undistort(&self, pixel: Vector2) -> Vector2 {
+        if self.distortion == Distortion::default() {
+            return pixel;
+        }
+        let raw = Vector2::new((pixel.x - self.cx) / self.fx, (pixel.y - self.cy) / self.fy);
+        let mut n = raw;
+        for _ in 0..20 {
+            n += raw - self.distort_normalized(n);
+        }
+        Vector2::new(n.x * self.fx + self.cx, n.y * self.fy + self.cy)
+    }
+
+    fn distort_normalized(&self, n: Vector2) -> Vector2 {
+        let Distortion { k1, k2, p1, p2, k3 } = self.distortion;
+        let r2 = n.norm_squared();
+        let radial = 1.0 + r2 * (k1 + r2 * (k2 + r2 * k3));
+        Vector2::new(
+            n.x * radial + 2.0 * p1 * n.x * n.y + p2 * (r2 + 2.0 * n.x * n.x),
+            n.y * radial + p1 * (r2 + 2.0 * n.y * n.y) + 2.0 * p2 * n.x * n.y,
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn freiburg1() -> PinholeCamera {
+        let lens = Distortion { k1: 0.2624, k2: -0.9531, p1: -0.0054, p2: 0.0026, k3: 1.1633 };
+        PinholeCamera::new((640, 480), (517.3, 516.5), (318.6, 255.3), lens).unwrap()
+    }
+
+    proptest! {
+        #[test]
+        fn undistort_inverts_distort(x in 0.0..640.0, y in 0.0..480.0) {
+            let camera = freiburg1();
+            let raw = Vector2::new(x, y);
+            prop_assert!((camera.distort(camera.undistort(raw)) - raw).norm() < 1e-4);
+        }
+
+        #[test]
+        fn project_inverts_unproject(x in 0.0..640.0, y in 0.0..480.0, z in 0.3..8.0) {
+            let camera = freiburg1();
+            let pixel = Vector2::new(x, y);
+            prop_assert!((camera.project(camera.unproject(pixel, z)).unwrap() - pixel).norm() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn the_kinect_sees_its_field_of_view() {
+        let camera = PinholeCamera::kinect_v2();
+        let edge = camera.unproject(Vector2::new(-0.5, 211.5), 1.0);
+        assert!((edge.x.atan().to_degrees() + 35.3).abs() < 1e-9);
+    }
+
+    #[test]
+    fn broken_cameras_are_refused_by_name() {
+        let error =
+            PinholeCamera::new((640, 480), (-1.0, 500.0), (320.0, 240.0), Distortion::default()).unwrap_err();
+        assert_eq!(error.field, "fx");
+    }
+}

@@ -1,0 +1,114 @@
+use crate::{Invalid, Twist2, require_positive};
+use serde::{Deserialize, Serialize};
+
+/// The geometry of a two-wheeled base.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct DifferentialDrive {
+    /// Radius of the driven wheels, m.
+    pub wheel_radius: f64,
+    /// Distance between the driven wheels, m.
+    pub wheelbase: f64,
+    /// Encoder ticks a wheel turn.
+    pub ticks_per_turn: f64,
+}
+
+impl DifferentialDrive {
+    /// The Kobuki of \[Li18\]: wheel radius 0.035 m, wheelbase 0.230 m, 2578.33 ticks a turn.
+    pub const KOBUKI: Self = Self { wheel_radius: 0.035, wheelbase: 0.230, ticks_per_turn: 2578.33 };
+
+    /// Passes a valid drive through.
+    ///
+    /// # Errors
+    /// When a number is not finite and positive.
+    pub fn validated(self) -> Result<Self, Invalid> {
+        require_positive("wheel_radius", self.wheel_radius, "m")?;
+        require_positive("wheelbase", self.wheelbase, "m")?;
+        require_positive("ticks_per_turn", self.ticks_per_turn, "")?;
+        Ok(self)
+    }
+
+    /// Way of the wheel's rim a tick, m.
+    pub fn metres_per_tick(&self) -> f64 {
+        std::f64::consts::TAU * self.wheel_radius / self.ticks_per_turn
+    }
+
+    /// Rim speeds (left, right), m/s, for a twist of the base.
+    pub fn wheel_speeds(&self, twist: Twist2) -> (f64, f64) {
+        let turn = twist.omega * self.wheelbase / 2.0;
+        (twist.v - turn, twist.v + turn)
+    }
+
+    /// The base's twist for rim speeds (left, right), m/s.
+    pub fn twist(&self, left: f64, right: f64) -> Twist2 {
+        Twist2::new((left + right) / 2.0, (right - left) / self.wheelbase)
+    }
+}
+
+/// What the base may be asked for.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct DriveLimits {
+    /// Highest speed of either wheel's rim, m/s: |v| + wheelbase / 2 |omega| stays below it.
+    pub wheel_speed: f64,
+    /// Highest forward speed, m/s.
+    pub v: f64,
+    /// Highest turn rate, rad/s.
+    pub omega: f64,
+    /// Highest change of forward speed, m/s^2.
+    pub acceleration: f64,
+    /// Highest change of turn rate, rad/s^2.
+    pub angular_acceleration: f64,
+}
+
+impl DriveLimits {
+    /// The Kobuki of \[Li18\]: 0.70 m/s, 180 deg/s. The accelerations are ours: gentle enough for a 1 m high robot.
+    pub const KOBUKI: Self = Self {
+        wheel_speed: 0.70,
+        v: 0.70,
+        omega: std::f64::consts::PI,
+        acceleration: 0.5,
+        angular_acceleration: 3.0,
+    };
+
+    /// Passes valid limits through.
+    ///
+    /// # Errors
+    /// When a number is not finite and positive.
+    pub fn validated(self) -> Result<Self, Invalid> {
+        require_positive("limits.wheel_speed", self.wheel_speed, "m/s")?;
+        require_positive("limits.v", self.v, "m/s")?;
+        require_positive("limits.omega", self.omega, "rad/s")?;
+        require_positive("limits.acceleration", self.acceleration, "m/s^2")?;
+        require_positive("limits.angular_acceleration", self.angular_acceleration, "rad/s^2")?;
+        Ok(self)
+    }
+
+    /// The twist of the same curvature that keeps every speed limit, for a base of this `wheelbase` (m).
+    pub fn saturate(&self, twist: Twist2, wheelbase: f64) -> Twist2 {
+        let rim = twist.v.abs() + wheelbase / 2.0 * twist.omega.abs();
+        let excess = (rim / self.wheel_speed).max(twist.v.abs() / self.v).max(twist.omega.abs() / self.omega);
+        if excess > 1.0 { Twist2::new(twist.v / excess, twist.omega / excess) } else { twist }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn twist_and_wheel_speeds_invert_each_other() {
+        let twist = Twist2::new(0.4, -1.2);
+        let (left, right) = DifferentialDrive::KOBUKI.wheel_speeds(twist);
+        let back = DifferentialDrive::KOBUKI.twist(left, right);
+        assert!((back.v - twist.v).abs() < 1e-15 && (back.omega - twist.omega).abs() < 1e-14);
+    }
+
+    #[test]
+    fn saturation_keeps_the_curvature() {
+        let fast = Twist2::new(1.4, 2.0);
+        let slow = DriveLimits::KOBUKI.saturate(fast, 0.23);
+        assert!((slow.omega / slow.v - fast.omega / fast.v).abs() < 1e-12);
+        assert!((slow.v + 0.115 * slow.omega - 0.70).abs() < 1e-12);
+    }
+}

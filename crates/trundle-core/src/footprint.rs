@@ -1,0 +1,98 @@
+use crate::{Invalid, Vector2, require_positive};
+
+/// The robot's outline on the floor, base frame.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Footprint {
+    /// A disc about the base's origin.
+    Disc {
+        /// Metres.
+        radius: f64,
+    },
+    /// A convex polygon, counter-clockwise, base frame, m.
+    Polygon {
+        /// Three corners or more.
+        corners: Vec<Vector2>,
+    },
+}
+
+impl Footprint {
+    /// The Kobuki: a disc of 0.351 m across (its data sheet).
+    pub const KOBUKI: Self = Self::Disc { radius: 0.1755 };
+
+    /// A disc about the base's origin.
+    ///
+    /// # Errors
+    /// When the radius is not finite and positive.
+    pub fn disc(radius: f64) -> Result<Self, Invalid> {
+        require_positive("footprint radius", radius, "m")?;
+        Ok(Self::Disc { radius })
+    }
+
+    /// A convex polygon; corners may come in either order and are stored counter-clockwise.
+    ///
+    /// # Errors
+    /// When there are fewer than three corners, one is not finite, the area is zero, or it is not convex.
+    pub fn polygon(mut corners: Vec<Vector2>) -> Result<Self, Invalid> {
+        if corners.len() < 3 {
+            return Err(Invalid::new("footprint corners", corners.len(), "", "3 or more"));
+        }
+        if let Some(c) = corners.iter().find(|c| !(c.x.is_finite() && c.y.is_finite())) {
+            return Err(Invalid::new(
+                "footprint corner",
+                format!("({}, {})", c.x, c.y),
+                "m",
+                "finite numbers",
+            ));
+        }
+        let area = signed_area(&corners);
+        if area.abs() < 1e-12 {
+            return Err(Invalid::new("footprint area", area, "m^2", "more than 0"));
+        }
+        if area < 0.0 {
+            corners.reverse();
+        }
+        match (0..corners.len()).find(|&i| turn_at(&corners, i) < -1e-12) {
+            Some(i) => Err(Invalid::new("footprint", format!("turned inward at corner {i}"), "", "convex")),
+            None => Ok(Self::Polygon { corners }),
+        }
+    }
+
+    /// The greatest distance of any of its points from the base's origin, m.
+    pub fn circumscribed_radius(&self) -> f64 {
+        match self {
+            Self::Disc { radius } => *radius,
+            Self::Polygon { corners } => corners.iter().map(Vector2::norm).fold(0.0, f64::max),
+        }
+    }
+}
+
+fn signed_area(corners: &[Vector2]) -> f64 {
+    let next = corners.iter().cycle().skip(1);
+    corners.iter().zip(next).map(|(a, b)| a.perp(b)).sum::<f64>() / 2.0
+}
+
+fn turn_at(corners: &[Vector2], i: usize) -> f64 {
+    let n = corners.len();
+    let (a, b, c) = (corners[i], corners[(i + 1) % n], corners[(i + 2) % n]);
+    (b - a).perp(&(c - b))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn points(list: &[(f64, f64)]) -> Vec<Vector2> {
+        list.iter().map(|&(x, y)| Vector2::new(x, y)).collect()
+    }
+
+    #[test]
+    fn polygons_are_checked() {
+        let square = points(&[(0.3, 0.2), (0.3, -0.2), (-0.3, -0.2), (-0.3, 0.2)]);
+        let footprint = Footprint::polygon(square).unwrap();
+        assert!((footprint.circumscribed_radius() - 0.13_f64.sqrt()).abs() < 1e-12);
+        assert!(Footprint::polygon(points(&[(0., 0.), (1., 0.)])).is_err());
+        assert!(Footprint::polygon(points(&[(0., 0.), (1., 1.), (2., 2.)])).is_err());
+        assert!(Footprint::polygon(points(&[(0., 0.), (2., 0.), (0.5, 0.5), (0., 2.)])).is_err());
+        assert!(Footprint::disc(f64::NAN).is_err());
+    }
+}

@@ -1,0 +1,179 @@
+use crate::{Invalid, Vector2, require_finite, require_positive};
+use serde::{Deserialize, Serialize};
+
+/// What a cell of the map says.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Cell {
+    /// Never seen, or undecided.
+    Unknown,
+    /// Nothing stands there.
+    Free,
+    /// Something stands there.
+    Occupied,
+}
+
+/// A cell's column (from the left, +x) and row (from the bottom, +y).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct CellIndex {
+    /// Column, along x.
+    pub col: usize,
+    /// Row, along y: row 0 is the lowest y.
+    pub row: usize,
+}
+
+/// Where a grid's cells lie in the map frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct GridGeometry {
+    /// Side of a cell, m.
+    pub resolution: f64,
+    /// Lower-left corner of cell (0, 0), map frame, m.
+    pub origin: Vector2,
+    /// Columns.
+    pub width: usize,
+    /// Rows.
+    pub height: usize,
+}
+
+impl GridGeometry {
+    /// Checked geometry: resolution in m, origin in m, size in cells.
+    ///
+    /// # Errors
+    /// When the resolution is not positive, the origin not finite, a side zero, or there are more than 2^31 cells.
+    pub fn new(resolution: f64, origin: Vector2, width: usize, height: usize) -> Result<Self, Invalid> {
+        require_positive("resolution", resolution, "m")?;
+        require_finite("origin x", origin.x, "m")?;
+        require_finite("origin y", origin.y, "m")?;
+        let cells = width.checked_mul(height).filter(|n| (1..=1 << 31).contains(n));
+        if cells.is_none() {
+            return Err(Invalid::new("grid size", format!("{width} x {height}"), "cells", "1 to 2^31 cells"));
+        }
+        Ok(Self { resolution, origin, width, height })
+    }
+
+    /// The number of cells.
+    pub fn len(&self) -> usize {
+        self.width * self.height
+    }
+
+    /// Whether there is no cell.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// The cell that holds a point of the map frame, if the grid reaches there. NaN is nowhere.
+    pub fn cell_at(&self, point: Vector2) -> Option<CellIndex> {
+        let col = ((point.x - self.origin.x) / self.resolution).floor();
+        let row = ((point.y - self.origin.y) / self.resolution).floor();
+        let inside = col >= 0.0 && row >= 0.0 && col < self.width as f64 && row < self.height as f64;
+        inside.then_some(CellIndex { col: col as usize, row: row as usize })
+    }
+
+    /// The centre of a cell, map frame, m.
+    pub fn center(&self, cell: CellIndex) -> Vector2 {
+        self.origin + Vector2::new(cell.col as f64 + 0.5, cell.row as f64 + 0.5) * self.resolution
+    }
+
+    /// The place of a cell in row-major storage.
+    pub fn linear(&self, cell: CellIndex) -> usize {
+        debug_assert!(cell.col < self.width && cell.row < self.height, "cell {cell:?} outside");
+        cell.row * self.width + cell.col
+    }
+
+    /// The cell at a place of row-major storage.
+    pub fn cell(&self, linear: usize) -> CellIndex {
+        CellIndex { col: linear % self.width, row: linear / self.width }
+    }
+}
+
+/// A 2-D occupancy grid in THE map frame, row-major from the lowest y.
+#[derive(Debug, Clone, PartialEq)]
+pub struct OccupancyGrid {
+    geometry: GridGeometry,
+    cells: Vec<Cell>,
+}
+
+impl OccupancyGrid {
+    /// A grid over `cells`, row by row from the lowest y.
+    ///
+    /// # Errors
+    /// When the number of cells is not that of the geometry.
+    pub fn new(geometry: GridGeometry, cells: Vec<Cell>) -> Result<Self, Invalid> {
+        if cells.len() != geometry.len() {
+            return Err(Invalid::new("number of cells", cells.len(), "", geometry.len().to_string()));
+        }
+        Ok(Self { geometry, cells })
+    }
+
+    /// A grid of one value.
+    pub fn filled(geometry: GridGeometry, value: Cell) -> Self {
+        Self { geometry, cells: vec![value; geometry.len()] }
+    }
+
+    /// A grid from ASCII art for tests: `#` occupied, `.` free, anything else unknown; the first line is the highest y.
+    ///
+    /// # Errors
+    /// When the resolution is not positive, or there is no line, or lines differ in length.
+    pub fn from_ascii(resolution: f64, art: &str) -> Result<Self, Invalid> {
+        let lines: Vec<&str> = art.lines().map(str::trim).filter(|line| !line.is_empty()).collect();
+        let width = lines.first().map_or(0, |line| line.chars().count());
+        let geometry = GridGeometry::new(resolution, Vector2::zeros(), width, lines.len())?;
+        let cell = |c| match c {
+            '#' => Cell::Occupied,
+            '.' => Cell::Free,
+            _ => Cell::Unknown,
+        };
+        Self::new(geometry, lines.iter().rev().flat_map(|line| line.chars().map(cell)).collect())
+    }
+
+    /// Where the cells lie.
+    pub fn geometry(&self) -> &GridGeometry {
+        &self.geometry
+    }
+
+    /// All cells, row by row from the lowest y.
+    pub fn cells(&self) -> &[Cell] {
+        &self.cells
+    }
+
+    /// The cell's value. Panics outside.
+    pub fn get(&self, cell: CellIndex) -> Cell {
+        self.cells[self.geometry.linear(cell)]
+    }
+
+    /// Sets a cell. Panics outside.
+    pub fn set(&mut self, cell: CellIndex, value: Cell) {
+        let linear = self.geometry.linear(cell);
+        self.cells[linear] = value;
+    }
+
+    /// The value at a point of the map frame; [`Cell::Unknown`] outside the grid.
+    pub fn at(&self, point: Vector2) -> Cell {
+        self.geometry.cell_at(point).map_or(Cell::Unknown, |cell| self.get(cell))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ascii_puts_the_first_line_on_top() {
+        let grid = OccupancyGrid::from_ascii(0.5, "#.\n.?").unwrap();
+        assert_eq!(grid.at(Vector2::new(0.1, 0.9)), Cell::Occupied);
+        assert_eq!(grid.at(Vector2::new(0.1, 0.1)), Cell::Free);
+        assert_eq!(grid.at(Vector2::new(0.9, 0.1)), Cell::Unknown);
+        assert_eq!(grid.at(Vector2::new(f64::NAN, 0.1)), Cell::Unknown);
+        assert!(OccupancyGrid::from_ascii(0.5, "#.\n.").is_err());
+    }
+
+    #[test]
+    fn centers_lie_in_their_cells() {
+        let geometry = GridGeometry::new(0.05, Vector2::new(-1.0, 2.0), 40, 30).unwrap();
+        for linear in 0..geometry.len() {
+            let cell = geometry.cell(linear);
+            assert_eq!(geometry.cell_at(geometry.center(cell)), Some(cell));
+            assert_eq!(geometry.linear(cell), linear);
+        }
+    }
+}

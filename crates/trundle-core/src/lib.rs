@@ -1,0 +1,50 @@
+//! The vocabulary of trundle: what the rooms say to each other.
+//!
+//! Plain data only: no algorithm, no IO, no clock, no global random generator. Units are SI and radians; a suffix
+//! (`_px`, `_cells`, `_deg`, `_ms`) stands where they are not. Axes follow REP 103 (x forward, y left, z up) for the
+//! base and the map, and the optical convention (x right, y down, z forward) for cameras. See `docs/conventions.md`.
+
+mod angle;
+mod body;
+mod camera;
+mod drive;
+mod estimate;
+mod footprint;
+mod frame;
+mod grid;
+mod image;
+mod invalid;
+mod odometry;
+mod path;
+mod pose2;
+mod pose3;
+mod rgbd;
+mod scan;
+mod stamp;
+mod trajectory;
+mod twist;
+
+pub use angle::{difference_of_angles, wrap_angle};
+pub use body::{RobotBody, SensorEvent, Touch};
+pub use camera::{Distortion, PinholeCamera};
+pub use drive::{DifferentialDrive, DriveLimits};
+pub use estimate::PoseEstimate;
+pub use footprint::Footprint;
+pub use frame::FrameId;
+pub use grid::{Cell, CellIndex, GridGeometry, OccupancyGrid};
+pub use image::{ColorImage, DepthImage, GrayImage, Image, gray_from_color};
+pub use invalid::{Invalid, require_finite, require_in, require_positive};
+pub use odometry::{GyroRate, Odometry, WheelTicks};
+pub use path::Path;
+pub use pose2::Pose2;
+pub use pose3::Pose3;
+pub use rgbd::RgbdImage;
+pub use scan::{Beam, Scan};
+pub use stamp::Stamp;
+pub use trajectory::{Trajectory, TrajectoryPoint};
+pub use twist::Twist2;
+
+/// A point or vector in a plane, metres.
+pub type Vector2 = nalgebra::Vector2<f64>;
+/// A point or vector in space, metres.
+pub type Vector3 = nalgebra::Vector3<f64>;

@@ -1,0 +1,39 @@
+use crate::{ColorImage, DepthImage, Invalid, Stamp};
+
+/// One RGB-D frame: a colour image and the depth image registered to it, pixel for pixel.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RgbdImage {
+    stamp: Stamp,
+    color: ColorImage,
+    depth: DepthImage,
+}
+
+impl RgbdImage {
+    /// A frame taken at `stamp`.
+    ///
+    /// # Errors
+    /// When the two images differ in size.
+    pub fn new(stamp: Stamp, color: ColorImage, depth: DepthImage) -> Result<Self, Invalid> {
+        if !color.same_size(&depth) {
+            let value = format!("{} x {}", depth.width(), depth.height());
+            let expected = format!("{} x {} as the colour image", color.width(), color.height());
+            return Err(Invalid::new("depth image size", value, "px", expected));
+        }
+        Ok(Self { stamp, color, depth })
+    }
+
+    /// When it was taken.
+    pub fn stamp(&self) -> Stamp {
+        self.stamp
+    }
+
+    /// The colour image.
+    pub fn color(&self) -> &ColorImage {
+        &self.color
+    }
+
+    /// The depth image, metres along the optical axis, 0 where there is none.
+    pub fn depth(&self) -> &DepthImage {
+        &self.depth
+    }
+}

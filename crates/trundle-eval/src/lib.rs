@@ -1,0 +1,1 @@
+//! Trajectory and goal errors: pure functions from data to numbers.

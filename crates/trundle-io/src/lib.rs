@@ -1,0 +1,1 @@
+//! Data sets, maps, trajectories and recordings on disk.

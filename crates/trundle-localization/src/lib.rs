@@ -1,0 +1,1 @@
+//! From wheels, gyro and visual pose to one pose estimate.

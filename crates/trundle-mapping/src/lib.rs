@@ -1,0 +1,1 @@
+//! From depth images to scans, and from scans to an occupancy grid.

@@ -1,0 +1,1 @@
+//! Solvers for trundle: robust least squares on manifolds and Schur bundle adjustment.

@@ -1,0 +1,1 @@
+//! Worlds, robot dynamics and sensors with noise and ground truth.

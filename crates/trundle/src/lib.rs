@@ -1,0 +1,1 @@
+//! Autonomy for a two-wheeled indoor robot with one RGB-D camera.
