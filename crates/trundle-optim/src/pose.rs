@@ -1,0 +1,256 @@
+use crate::observation::{PointObservation, camera_point_by_pose, robust_cost};
+use nalgebra::{Matrix6, Vector6};
+use serde::{Deserialize, Serialize};
+use trundle_core::{Invalid, PinholeCamera, Pose3, Vector3, require_positive};
+
+/// How [`PoseProblem`] iterates.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct PoseConfig {
+    /// Rounds of optimising and re-classifying, 1 or more. Default 4 \[MurArtal17\].
+    pub rounds: usize,
+    /// Steps a round at most, 1 or more. Default 10 \[MurArtal17\].
+    pub steps: usize,
+    /// A step shorter than this (m and rad) ends the round. Default 1e-6: far below what pixels resolve.
+    pub converged: f64,
+}
+
+impl Default for PoseConfig {
+    fn default() -> Self {
+        Self { rounds: 4, steps: 10, converged: 1e-6 }
+    }
+}
+
+impl PoseConfig {
+    /// Passes a valid configuration through.
+    ///
+    /// # Errors
+    /// When a count is zero or `converged` is not positive.
+    pub fn validated(self) -> Result<Self, Invalid> {
+        for (name, value) in [("pose.rounds", self.rounds), ("pose.steps", self.steps)] {
+            if value == 0 {
+                return Err(Invalid::new(name, value, "", "1 or more"));
+            }
+        }
+        require_positive("pose.converged", self.converged, "")?;
+        Ok(self)
+    }
+}
+
+/// One camera pose against points that are taken as known: motion-only bundle adjustment \[MurArtal17\].
+///
+/// Levenberg-Marquardt on the Huber loss; after each round every observation is classed anew by its chi-square, and the
+/// next round runs over the inliers. Cost: linear in the observations, some microseconds each.
+#[derive(Debug, Clone, Copy)]
+pub struct PoseProblem<'a> {
+    /// The camera; its distortion is not used, pixels are rectified.
+    pub camera: &'a PinholeCamera,
+    /// Points (world, m) and what the image says of each.
+    pub observations: &'a [(Vector3, PointObservation)],
+}
+
+/// What [`PoseProblem::solve`] finds.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PoseSolution {
+    /// The refined pose.
+    pub world_from_camera: Pose3,
+    /// Whether observation i agrees with it at 95 %.
+    pub inliers: Vec<bool>,
+    /// How many do.
+    pub inlier_count: usize,
+    /// Sum of J'J over the inliers: the inverse covariance of a right perturbation (m, rad) if every sigma is true.
+    pub information: Matrix6<f64>,
+    /// Sum of the inliers' squared residuals over the degrees of freedom: 1 if every sigma is true.
+    pub variance_factor: f64,
+}
+
+impl PoseSolution {
+    /// Covariance of the pose as a right perturbation (m, rad), scaled up where the residuals are larger than their
+    /// sigmas promise; `None` when the inliers do not determine the pose.
+    pub fn covariance(&self) -> Option<Matrix6<f64>> {
+        let inverse = self.information.cholesky()?.inverse();
+        inverse.iter().all(|v| v.is_finite()).then(|| inverse * self.variance_factor.max(1.0))
+    }
+}
+
+impl PoseProblem<'_> {
+    /// Refines `world_from_camera`. With nothing to go by the pose comes back as it was.
+    pub fn solve(&self, world_from_camera: Pose3, config: &PoseConfig) -> PoseSolution {
+        let mut pose = world_from_camera;
+        let mut inliers = vec![true; self.observations.len()];
+        for _ in 0..config.rounds {
+            pose = self.optimise(pose, &inliers, config);
+            if !self.classify(pose, &mut inliers) {
+                break;
+            }
+        }
+        self.summarise(pose, inliers)
+    }
+
+    /// Levenberg-Marquardt over the inliers.
+    fn optimise(&self, start: Pose3, inliers: &[bool], config: &PoseConfig) -> Pose3 {
+        let mut pose = start;
+        let mut cost = self.cost(pose, inliers);
+        let mut damping = 1e-6;
+        for _ in 0..config.steps {
+            let (hessian, gradient) = self.normal_equations(pose, inliers);
+            let damped = hessian + Matrix6::from_diagonal(&(hessian.diagonal().add_scalar(1e-9) * damping));
+            let Some(cholesky) = damped.cholesky() else { break };
+            let step = -cholesky.solve(&gradient);
+            let candidate = (pose * Pose3::exp(step)).renormalized();
+            let candidate_cost = self.cost(candidate, inliers);
+            if candidate_cost < cost {
+                (pose, cost) = (candidate, candidate_cost);
+                damping = (damping * 0.1).max(1e-9);
+            } else {
+                damping = (damping * 100.0).max(1e-3);
+            }
+            if step.norm() < config.converged {
+                break;
+            }
+        }
+        pose
+    }
+
+    /// Classes every observation anew; whether any changed sides.
+    fn classify(&self, pose: Pose3, inliers: &mut [bool]) -> bool {
+        let camera_from_world = pose.inverse();
+        let mut changed = false;
+        for ((point, seen), inlier) in self.observations.iter().zip(inliers) {
+            let agrees = seen.chi2(self.camera, camera_from_world.transform(*point)) <= seen.chi2_bound();
+            changed |= agrees != *inlier;
+            *inlier = agrees;
+        }
+        changed
+    }
+
+    fn cost(&self, pose: Pose3, inliers: &[bool]) -> f64 {
+        let camera_from_world = pose.inverse();
+        self.chosen(inliers)
+            .map(|(point, seen)| robust_cost(self.camera, seen, camera_from_world.transform(*point)))
+            .sum()
+    }
+
+    fn chosen<'s>(&'s self, inliers: &'s [bool]) -> impl Iterator<Item = &'s (Vector3, PointObservation)> {
+        self.observations.iter().zip(inliers).filter_map(|(seen, inlier)| inlier.then_some(seen))
+    }
+
+    /// J'WJ and J'Wr at `pose`.
+    fn normal_equations(&self, pose: Pose3, inliers: &[bool]) -> (Matrix6<f64>, Vector6<f64>) {
+        let camera_from_world = pose.inverse();
+        let (mut hessian, mut gradient) = (Matrix6::zeros(), Vector6::zeros());
+        for (point, seen) in self.chosen(inliers) {
+            let p_camera = camera_from_world.transform(*point);
+            let Some(linear) = seen.linearize(self.camera, p_camera) else { continue };
+            let weight = seen.huber().weight(linear.residual.norm_squared());
+            let jacobian = linear.by_point * camera_point_by_pose(p_camera);
+            let weighted = jacobian.transpose() * weight;
+            hessian += weighted * jacobian;
+            gradient += weighted * linear.residual;
+        }
+        (hessian, gradient)
+    }
+
+    fn summarise(&self, pose: Pose3, inliers: Vec<bool>) -> PoseSolution {
+        let (information, _) = self.normal_equations(pose, &inliers);
+        let camera_from_world = pose.inverse();
+        let (mut chi2, mut freedoms, mut inlier_count) = (0.0, -6.0, 0);
+        for (point, seen) in self.chosen(&inliers) {
+            chi2 += seen.chi2(self.camera, camera_from_world.transform(*point));
+            freedoms += if seen.depth.is_some() { 3.0 } else { 2.0 };
+            inlier_count += 1;
+        }
+        let variance_factor = if freedoms > 0.0 { chi2 / freedoms } else { 1.0 };
+        PoseSolution { world_from_camera: pose, inliers, inlier_count, information, variance_factor }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::InverseDepth;
+    use rand::{RngExt, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
+    use trundle_core::{Distortion, Vector2};
+
+    fn camera() -> PinholeCamera {
+        PinholeCamera::new((640, 480), (517.3, 516.5), (318.6, 255.3), Distortion::default()).unwrap()
+    }
+
+    fn noise(rng: &mut ChaCha8Rng) -> f64 {
+        (0..12).map(|_| rng.random::<f64>()).sum::<f64>() - 6.0
+    }
+
+    /// Points as a camera at `truth` sees them, with `sigma` standard deviations of noise.
+    fn scene(truth: Pose3, count: usize, sigma: f64, seed: u64) -> Vec<(Vector3, PointObservation)> {
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        let camera = camera();
+        let see = |i: usize| {
+            let at = Vector2::new(rng.random_range(0.0..640.0), rng.random_range(0.0..480.0));
+            let z = rng.random_range(0.6..5.0);
+            let point = truth.transform(camera.unproject(at, z));
+            let pixel = at + Vector2::new(noise(&mut rng), noise(&mut rng)) * sigma;
+            let depth = InverseDepth { value: 1.0 / z + 0.003 * sigma * noise(&mut rng), sigma: 0.003 };
+            (point, PointObservation { pixel, pixel_sigma: 1.0, depth: (i % 3 > 0).then_some(depth) })
+        };
+        (0..count).map(see).collect()
+    }
+
+    fn truth() -> Pose3 {
+        Pose3::exp(Vector6::new(0.4, -0.2, 1.1, 0.3, -0.5, 0.2))
+    }
+
+    fn start() -> Pose3 {
+        truth() * Pose3::exp(Vector6::new(0.08, -0.05, 0.06, 0.05, -0.06, 0.04))
+    }
+
+    fn gap(a: Pose3, b: Pose3) -> f64 {
+        (a.inverse() * b).log().norm()
+    }
+
+    #[test]
+    fn a_perturbed_pose_comes_back_exactly() {
+        let observations = scene(truth(), 60, 0.0, 1);
+        let problem = PoseProblem { camera: &camera(), observations: &observations };
+        let solution = problem.solve(start(), &PoseConfig::default());
+        assert!(gap(solution.world_from_camera, truth()) < 1e-8);
+        assert_eq!(solution.inlier_count, 60);
+    }
+
+    #[test]
+    fn outliers_do_not_pull() {
+        let mut observations = scene(truth(), 200, 0.0, 2);
+        for (i, (_, seen)) in observations.iter_mut().enumerate().filter(|(i, _)| i % 3 == 0) {
+            seen.pixel += Vector2::new(15.0 + i as f64, -12.0);
+        }
+        let problem = PoseProblem { camera: &camera(), observations: &observations };
+        let solution = problem.solve(start(), &PoseConfig::default());
+        assert!(gap(solution.world_from_camera, truth()) < 1e-7);
+        for (i, inlier) in solution.inliers.iter().enumerate() {
+            assert_eq!(*inlier, i % 3 != 0, "observation {i}");
+        }
+    }
+
+    #[test]
+    fn the_covariance_is_honest() {
+        let (mut nees, runs) = (0.0, 60);
+        for seed in 0..runs {
+            let observations = scene(truth(), 150, 1.0, seed);
+            let problem = PoseProblem { camera: &camera(), observations: &observations };
+            let solution = problem.solve(start(), &PoseConfig::default());
+            let error = (truth().inverse() * solution.world_from_camera).log();
+            nees += (error.transpose() * solution.covariance().unwrap().try_inverse().unwrap() * error)[0];
+        }
+        let mean = nees / runs as f64;
+        assert!((4.5..9.0).contains(&mean), "normalised squared error {mean}, expected about 6");
+    }
+
+    #[test]
+    fn nothing_seen_changes_nothing() {
+        let solution =
+            PoseProblem { camera: &camera(), observations: &[] }.solve(start(), &PoseConfig::default());
+        assert_eq!(solution.world_from_camera, start());
+        assert_eq!(solution.covariance(), None);
+        assert!(PoseConfig { rounds: 0, ..PoseConfig::default() }.validated().is_err());
+    }
+}
