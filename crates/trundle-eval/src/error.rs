@@ -1,0 +1,100 @@
+use std::fmt;
+use thiserror::Error;
+use trundle_core::{Invalid, Stamp};
+
+/// Which of the two compared trajectories is meant.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Side {
+    /// The ground truth.
+    Reference,
+    /// What is judged.
+    Estimate,
+}
+
+impl fmt::Display for Side {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Reference => "reference",
+            Self::Estimate => "estimate",
+        })
+    }
+}
+
+/// Why two trajectories cannot be compared.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum EvalError {
+    /// A trajectory without a pose.
+    #[error("the {0} trajectory has no pose")]
+    Empty(Side),
+    /// Stamps may not go back.
+    #[error("stamp of {side} pose {index} is {stamp} s, expected at least the {before} s of the pose before")]
+    StampsGoBack {
+        /// Which trajectory.
+        side: Side,
+        /// Which pose, from 0.
+        index: usize,
+        /// Its stamp.
+        stamp: Stamp,
+        /// The stamp before it.
+        before: Stamp,
+    },
+    /// A pose holds NaN or infinity.
+    #[error("{side} pose {index} is not finite")]
+    NotFinite {
+        /// Which trajectory.
+        side: Side,
+        /// Which pose, from 0.
+        index: usize,
+    },
+    /// No pose of one is near in time to a pose of the other.
+    #[error(
+        "no pose of the estimate ({e0} s to {e1} s) lies within {max_difference} s of a pose of the reference \
+         ({r0} s to {r1} s)", e0 = estimate.0, e1 = estimate.1, r0 = reference.0, r1 = reference.1
+    )]
+    NoAssociation {
+        /// First and last stamp of the reference.
+        reference: (Stamp, Stamp),
+        /// First and last stamp of the estimate.
+        estimate: (Stamp, Stamp),
+        /// The limit, s.
+        max_difference: f64,
+    },
+    /// Too little to work on.
+    #[error("{found} associated poses, expected {needed} or more")]
+    TooFewPoses {
+        /// How many there are.
+        found: usize,
+        /// How many it takes.
+        needed: usize,
+    },
+    /// The two slices to align differ in length.
+    #[error("{reference} reference positions but {estimate} estimated ones")]
+    LengthsDiffer {
+        /// Reference positions.
+        reference: usize,
+        /// Estimated positions.
+        estimate: usize,
+    },
+    /// Positions in one point or on one line leave the rotation open.
+    #[error(
+        "{poses} associated positions lie on a line or in a point (spread across it {spread} of that along), \
+         so that no rotation aligns them better than others"
+    )]
+    Degenerate {
+        /// How many positions.
+        poses: usize,
+        /// Relative gap between the best rotation and the next, without unit.
+        spread: f64,
+    },
+    /// No pair of poses is `delta` apart.
+    #[error("no two of the {poses} associated poses are {delta} apart")]
+    NoPairs {
+        /// How many poses there are.
+        poses: usize,
+        /// The distance asked for.
+        delta: crate::Delta,
+    },
+    /// An option is out of range.
+    #[error(transparent)]
+    Invalid(#[from] Invalid),
+}
