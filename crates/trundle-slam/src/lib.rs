@@ -1,1 +1,49 @@
 //! From RGB-D frames to a camera trajectory and a landmark map.
+//!
+//! The problem: where was the camera when it took each image? The idea, that of ORB-SLAM2 \[MurArtal17\] on RGB-D: each
+//! frame is located against landmarks by reprojection; frames that see something new become keyframes, whose depths make
+//! new landmarks; after each keyframe, local bundle adjustment refines poses and landmarks around it. A place seen again
+//! is matched with the landmarks it already has, so a camera that looks around a room, or stands still, does not drift.
+//! Cost: a few ms a frame on one core besides the features, and some tens of ms a keyframe. See `docs/algorithms/slam.md`.
+//!
+//! | \[MurArtal17\] | here | unit |
+//! |---|---|---|
+//! | T_cw | inverse of `visual_from_camera` | m |
+//! | X, map point | landmark `position` | m |
+//! | x = (u_L, v_L, u_R) | pixel and inverse depth of a `PointObservation` | px, 1/m |
+//! | Sigma | `pixel_sigma` x scale of the octave, `DepthConfig` | px, 1/m |
+//! | K_L, K_F | free and fixed keyframes of the local bundle | |
+
+mod anchor;
+mod config;
+mod covisibility;
+mod depth;
+mod frame;
+mod ids;
+mod keyframe_policy;
+mod landmark;
+mod local_bundle;
+mod local_map;
+mod map;
+mod mapping;
+mod motion;
+mod refine;
+mod relocalisation;
+mod report;
+mod search;
+mod sensor;
+mod slam;
+#[cfg(test)]
+mod testing;
+mod tracker;
+mod trajectory;
+
+pub use config::SlamConfig;
+pub use depth::DepthConfig;
+pub use ids::{KeyframeId, LandmarkId};
+pub use keyframe_policy::KeyframeConfig;
+pub use mapping::MappingConfig;
+pub use motion::MotionConfig;
+pub use report::{SeenFeature, TrackReport, Tracking};
+pub use slam::RgbdSlam;
+pub use tracker::TrackingConfig;

@@ -1,0 +1,99 @@
+use crate::frame::Frame;
+use crate::ids::LandmarkId;
+use crate::map::{Keyframe, LandmarkMap};
+use crate::refine::PointMatch;
+use crate::search::{Likeness, Projection, search};
+use crate::sensor::Sensor;
+use trundle_core::{Pose3, Vector3};
+use trundle_vision::{RansacConfig, estimate_rigid_motion, match_mutual};
+
+/// A depth whose standard deviation is a larger part of it than this does not make a point.
+pub(crate) const MAX_RELATIVE_SIGMA: f64 = 0.1;
+
+/// A frame whose pose is known, from which another frame can be located: the last one, or a keyframe.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Anchor<'a> {
+    pub frame: &'a Frame,
+    /// Which landmark each feature is of.
+    pub landmarks: &'a [Option<LandmarkId>],
+    pub visual_from_camera: Pose3,
+}
+
+impl<'a> From<&'a Keyframe> for Anchor<'a> {
+    fn from(keyframe: &'a Keyframe) -> Self {
+        let Keyframe { frame, landmarks, visual_from_camera } = keyframe;
+        Self { frame, landmarks, visual_from_camera: *visual_from_camera }
+    }
+}
+
+impl Anchor<'_> {
+    /// The point of feature `i`: its landmark, else its own depth. `feature` of the match is still the anchor's.
+    fn point(&self, i: usize, map: &LandmarkMap, sensor: &Sensor) -> Option<PointMatch> {
+        if let Some((id, landmark)) = self.landmarks[i].and_then(|id| Some((id, map.landmark(id)?))) {
+            let (point, sigma_factor) = (landmark.position, landmark.sigma_factor());
+            return Some(PointMatch { feature: i, point, landmark: Some(id), sigma_factor });
+        }
+        let depth = self.frame.depths[i]?;
+        (depth.sigma <= MAX_RELATIVE_SIGMA * depth.value).then_some(())?;
+        let point = self.visual_from_camera.transform(sensor.point(self.frame, i)?);
+        Some(PointMatch { feature: i, point, landmark: None, sigma_factor: 2.0_f64.sqrt() })
+    }
+
+    /// Looks for the anchor's points in `frame` within `window` px (of octave 0) of where `predicted` puts them.
+    pub fn match_by_motion(
+        &self,
+        frame: &Frame,
+        predicted: Pose3,
+        window: f64,
+        likeness: Likeness,
+        (map, sensor): (&LandmarkMap, &Sensor),
+    ) -> Vec<PointMatch> {
+        let camera_from_visual = predicted.inverse();
+        let (mut points, mut projections) = (Vec::new(), Vec::new());
+        for point in (0..self.frame.len()).filter_map(|i| self.point(i, map, sensor)) {
+            let p_camera = camera_from_visual.transform(point.point);
+            let Some((pixel, _)) = sensor.project(p_camera) else { continue };
+            let octave = self.frame.octave(point.feature);
+            projections.push(Projection {
+                pixel,
+                depth: p_camera.z,
+                radius: window * sensor.scale(octave),
+                octaves: (octave.saturating_sub(1), octave + 1),
+                descriptor: *self.frame.descriptor(point.feature),
+            });
+            points.push(point);
+        }
+        let found = search(frame, &projections, likeness);
+        found.into_iter().map(|(feature, i)| PointMatch { feature, ..points[i] }).collect()
+    }
+
+    /// Locates `frame` without any prediction: mutual matches of all descriptors, RANSAC over the pairs with depth in
+    /// both frames. The pose, and every match of a known point.
+    pub fn match_by_likeness(
+        &self,
+        frame: &Frame,
+        likeness: Likeness,
+        seed: u64,
+        (map, sensor): (&LandmarkMap, &Sensor),
+    ) -> Option<(Pose3, Vec<PointMatch>)> {
+        let pairs = match_mutual(
+            &self.frame.features.descriptors,
+            &frame.features.descriptors,
+            likeness.max_distance,
+            likeness.ratio,
+        );
+        let camera_from_visual = self.visual_from_camera.inverse();
+        let (mut matches, mut here, mut there): (_, Vec<Vector3>, Vec<Vector3>) =
+            (Vec::new(), vec![], vec![]);
+        for pair in pairs {
+            let Some(point) = self.point(pair.a, map, sensor) else { continue };
+            if let Some(seen) = sensor.point(frame, pair.b) {
+                here.push(camera_from_visual.transform(point.point));
+                there.push(seen);
+            }
+            matches.push(PointMatch { feature: pair.b, ..point });
+        }
+        let motion = estimate_rigid_motion(&here, &there, &sensor.camera, &RansacConfig::default(), seed)?;
+        Some((self.visual_from_camera * motion.b_from_a.inverse(), matches))
+    }
+}

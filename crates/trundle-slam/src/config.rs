@@ -1,0 +1,46 @@
+use crate::depth::DepthConfig;
+use crate::keyframe_policy::KeyframeConfig;
+use crate::mapping::MappingConfig;
+use crate::motion::MotionConfig;
+use crate::tracker::TrackingConfig;
+use serde::{Deserialize, Serialize};
+use trundle_core::Invalid;
+use trundle_vision::OrbConfig;
+
+/// Everything that can be set about the RGB-D SLAM.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct SlamConfig {
+    /// Features.
+    pub orb: OrbConfig,
+    /// Depth camera.
+    pub depth: DepthConfig,
+    /// Finding the pose of a frame.
+    pub tracking: TrackingConfig,
+    /// Uncertainty of what is not seen.
+    pub motion: MotionConfig,
+    /// When a frame becomes a keyframe.
+    pub keyframes: KeyframeConfig,
+    /// The landmark map.
+    pub mapping: MappingConfig,
+    /// Seed of the random samples. Default 0.
+    pub seed: u64,
+}
+
+impl SlamConfig {
+    /// Passes a valid configuration through.
+    ///
+    /// # Errors
+    /// When a number is out of the range that its field names.
+    pub fn validated(self) -> Result<Self, Invalid> {
+        Ok(Self {
+            orb: self.orb.validated()?,
+            depth: self.depth.validated()?,
+            tracking: self.tracking.validated()?,
+            motion: self.motion.validated()?,
+            keyframes: self.keyframes.validated()?,
+            mapping: self.mapping.validated()?,
+            seed: self.seed,
+        })
+    }
+}

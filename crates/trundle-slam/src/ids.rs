@@ -1,0 +1,36 @@
+use serde::{Deserialize, Serialize};
+use std::fmt;
+
+/// A keyframe of the map. Ids rise in the order of making and are never used twice.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct KeyframeId(u32);
+
+/// A landmark of the map. Ids rise in the order of making and are never used twice.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct LandmarkId(u32);
+
+macro_rules! arena_id {
+    ($id:ident, $prefix:literal) => {
+        impl $id {
+            pub(crate) fn from_index(index: usize) -> Self {
+                Self(u32::try_from(index).expect("invariant: an arena holds less than 2^32 things"))
+            }
+
+            /// The place in the arena, from 0.
+            pub fn index(self) -> usize {
+                self.0 as usize
+            }
+        }
+
+        impl fmt::Display for $id {
+            fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                write!(f, concat!($prefix, "{}"), self.0)
+            }
+        }
+    };
+}
+
+arena_id!(KeyframeId, "K");
+arena_id!(LandmarkId, "L");

@@ -1,0 +1,75 @@
+use crate::depth::DepthConfig;
+use crate::ids::LandmarkId;
+use crate::landmark::Landmark;
+use crate::map::LandmarkMap;
+use crate::search::Projection;
+use crate::sensor::Sensor;
+use trundle_core::{DepthImage, Pose3, Vector2};
+
+/// The cosine of the steepest angle between the directions from which a landmark was seen and is looked for: 60 deg
+/// \[MurArtal17\].
+const MIN_DIRECTION_COSINE: f64 = 0.5;
+/// A landmark farther behind the measured surface than this (m, and part of the depth) is hidden by it.
+const HIDDEN: (f64, f64) = (0.1, 0.1);
+
+/// Decides which landmarks a camera should see.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct View<'a> {
+    pub sensor: &'a Sensor,
+    /// What the depth camera sees, to know what is hidden.
+    pub depth: (&'a DepthImage, &'a DepthConfig),
+    /// Half size of the search window at octave 0, px.
+    pub window: f64,
+    /// How many landmarks at most.
+    pub most: usize,
+}
+
+impl View<'_> {
+    /// The landmarks of the whole map that a camera at `visual_from_camera` should see, by rising id. When there are
+    /// more than `most`, those with the most observations.
+    pub fn landmarks(&self, map: &LandmarkMap, visual_from_camera: Pose3) -> Vec<(LandmarkId, Projection)> {
+        let camera_from_visual = visual_from_camera.inverse();
+        let mut seen: Vec<(LandmarkId, Projection)> = map
+            .landmarks()
+            .filter_map(|(id, l)| Some((id, self.project(l, camera_from_visual, visual_from_camera)?)))
+            .collect();
+        if seen.len() > self.most {
+            let support = |id: LandmarkId| map.landmark(id).map_or(0, |l| l.observations.len());
+            seen.sort_by_key(|(id, _)| (std::cmp::Reverse(support(*id)), *id));
+            seen.truncate(self.most);
+            seen.sort_by_key(|(id, _)| *id);
+        }
+        seen
+    }
+
+    fn project(&self, landmark: &Landmark, inverse: Pose3, pose: Pose3) -> Option<Projection> {
+        let p_camera = inverse.transform(landmark.position);
+        let (pixel, raw) = self.sensor.project(p_camera)?;
+        let ray = pose.translation - landmark.position;
+        let distance = ray.norm();
+        if landmark.toward_camera.dot(&ray) < MIN_DIRECTION_COSINE * distance || self.hides(raw, p_camera.z) {
+            return None;
+        }
+        // A landmark seen at octave 0 from d is seen at the octave of scale s from d / s. \[MurArtal17\]
+        let scale = landmark.distance_at_octave_0 / distance;
+        let finest = self.sensor.scale(0) / 1.5;
+        let coarsest = self.sensor.scale(u8::MAX) * 1.5;
+        if !(finest..=coarsest).contains(&scale) {
+            return None;
+        }
+        let octave = self.sensor.octave_of(scale);
+        Some(Projection {
+            pixel,
+            depth: p_camera.z,
+            radius: self.window * self.sensor.scale(octave),
+            octaves: (octave.saturating_sub(1), octave + 1),
+            descriptor: landmark.descriptor,
+        })
+    }
+
+    /// Whether a surface stands before a point at `depth` m behind the raw pixel.
+    fn hides(&self, raw: Vector2, depth: f64) -> bool {
+        let (image, config) = self.depth;
+        config.at(image, raw).is_some_and(|surface| depth > surface * (1.0 + HIDDEN.1) + HIDDEN.0)
+    }
+}

@@ -1,0 +1,186 @@
+use crate::frame::Frame;
+use crate::ids::{KeyframeId, LandmarkId};
+use crate::landmark::Landmark;
+use crate::sensor::Sensor;
+use trundle_core::{Pose3, Vector3};
+
+/// A frame that stays in the map.
+#[derive(Debug, Clone)]
+pub(crate) struct Keyframe {
+    pub frame: Frame,
+    pub visual_from_camera: Pose3,
+    /// Which landmark each feature is of.
+    pub landmarks: Vec<Option<LandmarkId>>,
+}
+
+/// Keyframes and landmarks in two arenas, and who saw what.
+///
+/// Invariant: feature `f` of keyframe `k` has landmark `l` exactly if `l` is alive and has the observation `(k, f)`.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct LandmarkMap {
+    keyframes: Vec<Keyframe>,
+    landmarks: Vec<Option<Landmark>>,
+    alive: usize,
+}
+
+impl LandmarkMap {
+    pub fn keyframe(&self, id: KeyframeId) -> &Keyframe {
+        &self.keyframes[id.index()]
+    }
+
+    pub fn keyframes(&self) -> impl DoubleEndedIterator<Item = (KeyframeId, &Keyframe)> {
+        self.keyframes.iter().enumerate().map(|(i, k)| (KeyframeId::from_index(i), k))
+    }
+
+    pub fn keyframe_count(&self) -> usize {
+        self.keyframes.len()
+    }
+
+    /// The landmark, unless it was forgotten.
+    pub fn landmark(&self, id: LandmarkId) -> Option<&Landmark> {
+        self.landmarks[id.index()].as_ref()
+    }
+
+    pub fn landmark_mut(&mut self, id: LandmarkId) -> Option<&mut Landmark> {
+        self.landmarks[id.index()].as_mut()
+    }
+
+    pub fn landmarks(&self) -> impl Iterator<Item = (LandmarkId, &Landmark)> {
+        self.landmarks.iter().enumerate().filter_map(|(i, l)| Some((LandmarkId::from_index(i), l.as_ref()?)))
+    }
+
+    pub fn landmark_count(&self) -> usize {
+        self.alive
+    }
+
+    /// A new keyframe that sees nothing yet.
+    pub fn add_keyframe(&mut self, frame: Frame, visual_from_camera: Pose3) -> KeyframeId {
+        let landmarks = vec![None; frame.len()];
+        self.keyframes.push(Keyframe { frame, visual_from_camera, landmarks });
+        KeyframeId::from_index(self.keyframes.len() - 1)
+    }
+
+    /// Moves a keyframe, not what it sees.
+    pub fn move_keyframe(&mut self, id: KeyframeId, visual_from_camera: Pose3) {
+        self.keyframes[id.index()].visual_from_camera = visual_from_camera;
+    }
+
+    /// A new landmark at `position` (visual frame, m), seen by nobody yet.
+    pub fn add_landmark(&mut self, position: Vector3) -> LandmarkId {
+        self.landmarks.push(Some(Landmark::new(position)));
+        self.alive += 1;
+        LandmarkId::from_index(self.landmarks.len() - 1)
+    }
+
+    /// Records that feature `feature` of `keyframe` is of `landmark`. A feature or a landmark that is already taken in
+    /// this keyframe stays as it is; whether anything was recorded.
+    pub fn observe(&mut self, landmark: LandmarkId, keyframe: KeyframeId, feature: usize) -> bool {
+        let slot = &mut self.keyframes[keyframe.index()].landmarks[feature];
+        let Some(seen) = self.landmarks[landmark.index()].as_mut() else { return false };
+        if slot.is_some() || seen.observation_in(keyframe).is_some() {
+            return false;
+        }
+        *slot = Some(landmark);
+        seen.observations.push((keyframe, feature));
+        true
+    }
+
+    /// Takes an observation back; a landmark that nobody sees any more is forgotten.
+    pub fn unobserve(&mut self, landmark: LandmarkId, keyframe: KeyframeId) {
+        let Some(seen) = self.landmarks[landmark.index()].as_mut() else { return };
+        let Some(at) = seen.observations.iter().position(|(k, _)| *k == keyframe) else { return };
+        let (_, feature) = seen.observations.remove(at);
+        self.keyframes[keyframe.index()].landmarks[feature] = None;
+        if seen.observations.is_empty() {
+            self.landmarks[landmark.index()] = None;
+            self.alive -= 1;
+        }
+    }
+
+    /// Removes a landmark and all its observations.
+    pub fn forget(&mut self, landmark: LandmarkId) {
+        let Some(gone) = self.landmarks[landmark.index()].take() else { return };
+        self.alive -= 1;
+        for (keyframe, feature) in gone.observations {
+            self.keyframes[keyframe.index()].landmarks[feature] = None;
+        }
+    }
+
+    /// Makes one landmark of two: `kept` takes over the observations of `gone` in keyframes where it has none.
+    pub fn merge(&mut self, kept: LandmarkId, gone: LandmarkId) {
+        if kept == gone || self.landmark(kept).is_none() {
+            return;
+        }
+        let Some(merged) = self.landmark(gone).cloned() else { return };
+        self.forget(gone);
+        for (keyframe, feature) in merged.observations {
+            self.observe(kept, keyframe, feature);
+        }
+        if let Some(kept) = self.landmark_mut(kept) {
+            kept.visible += merged.visible;
+            kept.found += merged.found;
+        }
+    }
+
+    /// Brings descriptor, direction and scale of a landmark up to date with its observations.
+    pub fn refresh(&mut self, id: LandmarkId, sensor: &Sensor) {
+        if let Some(landmark) = self.landmarks[id.index()].as_mut() {
+            landmark.refresh(&self.keyframes, sensor);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::blank_frame;
+
+    fn map_of(keyframes: usize) -> (LandmarkMap, Vec<KeyframeId>) {
+        let mut map = LandmarkMap::default();
+        let ids = (0..keyframes).map(|_| map.add_keyframe(blank_frame(5), Pose3::identity())).collect();
+        (map, ids)
+    }
+
+    fn assert_consistent(map: &LandmarkMap) {
+        for (id, landmark) in map.landmarks() {
+            assert!(!landmark.observations.is_empty());
+            for (keyframe, feature) in &landmark.observations {
+                assert_eq!(map.keyframe(*keyframe).landmarks[*feature], Some(id));
+            }
+        }
+        let slots = map.keyframes().flat_map(|(_, k)| &k.landmarks).flatten().count();
+        assert_eq!(slots, map.landmarks().map(|(_, l)| l.observations.len()).sum::<usize>());
+        assert_eq!(map.landmark_count(), map.landmarks().count());
+    }
+
+    #[test]
+    fn observations_are_kept_on_both_sides() {
+        let (mut map, k) = map_of(2);
+        let (a, b) = (map.add_landmark(Vector3::x()), map.add_landmark(Vector3::y()));
+        assert!(map.observe(a, k[0], 3) && map.observe(a, k[1], 0) && map.observe(b, k[1], 1));
+        assert!(!map.observe(b, k[0], 3), "the feature is taken");
+        assert!(!map.observe(a, k[0], 4), "the landmark is seen here already");
+        assert_consistent(&map);
+        map.unobserve(b, k[1]);
+        assert!(map.landmark(b).is_none());
+        assert_consistent(&map);
+        map.forget(a);
+        assert_eq!(map.landmark_count(), 0);
+        assert_consistent(&map);
+    }
+
+    #[test]
+    fn merging_keeps_every_observation_once() {
+        let (mut map, k) = map_of(3);
+        let (a, b) = (map.add_landmark(Vector3::x()), map.add_landmark(Vector3::x()));
+        map.observe(a, k[0], 0);
+        map.observe(a, k[1], 1);
+        map.observe(b, k[1], 2);
+        map.observe(b, k[2], 3);
+        map.merge(a, b);
+        map.merge(a, a);
+        assert!(map.landmark(b).is_none());
+        assert_eq!(map.landmark(a).unwrap().observations, vec![(k[0], 0), (k[1], 1), (k[2], 3)]);
+        assert_consistent(&map);
+    }
+}

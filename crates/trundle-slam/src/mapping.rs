@@ -1,0 +1,180 @@
+use crate::anchor::MAX_RELATIVE_SIGMA;
+use crate::frame::Frame;
+use crate::ids::{KeyframeId, LandmarkId};
+use crate::local_bundle::{BundleSize, refine_around};
+use crate::map::LandmarkMap;
+use crate::search::{Likeness, Projection, search};
+use crate::sensor::Sensor;
+use serde::{Deserialize, Serialize};
+use trundle_core::{Invalid, Pose3};
+use trundle_optim::BundleConfig;
+
+/// How the landmark map grows and is refined.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct MappingConfig {
+    /// Features with depth that a first keyframe needs, 10 or more. Default 50: fewer do not make a map.
+    pub min_points: usize,
+    /// Keyframes that a local bundle adjustment moves, 1 or more. Default 10: enough to see a landmark age.
+    pub local_keyframes: usize,
+    /// Keyframes that hold them in place. Default 10.
+    pub fixed_keyframes: usize,
+    /// Keyframes in which new landmarks are looked for at once. Default 10 \[MurArtal17\].
+    pub fused_keyframes: usize,
+    /// Frames in which a landmark should have been seen before it is judged. Default 10.
+    pub trial_frames: u32,
+    /// Part of these in which it must have been found, 0 to 1. Default 0.25 \[MurArtal17\].
+    pub found_ratio: f64,
+    /// The solver. Default 5 steps.
+    pub bundle: BundleConfig,
+}
+
+impl Default for MappingConfig {
+    fn default() -> Self {
+        Self {
+            min_points: 50,
+            local_keyframes: 10,
+            fixed_keyframes: 10,
+            fused_keyframes: 10,
+            trial_frames: 10,
+            found_ratio: 0.25,
+            bundle: BundleConfig { steps: 5, ..BundleConfig::default() },
+        }
+    }
+}
+
+impl MappingConfig {
+    /// Passes a valid configuration through.
+    ///
+    /// # Errors
+    /// When a number is out of the range that its field names.
+    pub fn validated(mut self) -> Result<Self, Invalid> {
+        if self.min_points < 10 {
+            return Err(Invalid::new("mapping.min_points", self.min_points, "", "10 or more"));
+        }
+        if self.local_keyframes == 0 {
+            return Err(Invalid::new("mapping.local_keyframes", 0, "", "1 or more"));
+        }
+        trundle_core::require_in("mapping.found_ratio", self.found_ratio, "", 0.0, 1.0)?;
+        self.bundle = self.bundle.validated()?;
+        Ok(self)
+    }
+}
+
+/// Adds keyframes to the map and keeps it in order.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Mapper<'a> {
+    pub sensor: &'a Sensor,
+    pub config: &'a MappingConfig,
+    /// For the search of new landmarks in other keyframes.
+    pub likeness: Likeness,
+    /// Half size of its window at octave 0, px.
+    pub window: f64,
+}
+
+impl Mapper<'_> {
+    /// Makes `frame` a keyframe that sees the landmarks it was tracked by, gives its other features with a good depth
+    /// landmarks of their own, looks for these in the keyframes around, and refines all of them together.
+    pub fn insert(
+        &self,
+        map: &mut LandmarkMap,
+        frame: Frame,
+        pose: Pose3,
+        tracked: &[Option<LandmarkId>],
+    ) -> KeyframeId {
+        let keyframe = map.add_keyframe(frame, pose);
+        for (feature, landmark) in tracked.iter().enumerate().filter_map(|(i, l)| Some((i, (*l)?))) {
+            map.observe(landmark, keyframe, feature);
+        }
+        let new = self.add_landmarks(map, keyframe);
+        self.fuse(map, keyframe, new);
+        for id in map.keyframe(keyframe).landmarks.clone().into_iter().flatten() {
+            map.refresh(id, self.sensor);
+        }
+        self.cull(map);
+        let size = BundleSize { local: self.config.local_keyframes, fixed: self.config.fixed_keyframes };
+        refine_around(map, keyframe, self.sensor, size, &self.config.bundle);
+        keyframe
+    }
+
+    /// A landmark for every feature that has a good depth and no landmark yet.
+    fn add_landmarks(&self, map: &mut LandmarkMap, id: KeyframeId) -> Vec<LandmarkId> {
+        let keyframe = map.keyframe(id);
+        let good = |i: &usize| {
+            let depth = keyframe.frame.depths[*i].filter(|d| d.sigma <= MAX_RELATIVE_SIGMA * d.value);
+            keyframe.landmarks[*i].is_none() && depth.is_some()
+        };
+        let place = |i: usize| {
+            let point = self.sensor.point(&keyframe.frame, i)?;
+            Some((i, keyframe.visual_from_camera.transform(point)))
+        };
+        let points: Vec<_> = (0..keyframe.frame.len()).filter(good).filter_map(place).collect();
+        let mut new = Vec::with_capacity(points.len());
+        for (feature, position) in points {
+            let landmark = map.add_landmark(position);
+            map.observe(landmark, id, feature);
+            map.refresh(landmark, self.sensor);
+            new.push(landmark);
+        }
+        new
+    }
+
+    /// Looks for the new landmarks in the keyframes around: one that is there already becomes the older landmark.
+    fn fuse(&self, map: &mut LandmarkMap, keyframe: KeyframeId, new: Vec<LandmarkId>) {
+        for (other, _) in map.covisible(keyframe, 15).into_iter().take(self.config.fused_keyframes) {
+            let found = self.find(map, other, &new);
+            for (feature, landmark) in found {
+                match map.keyframe(other).landmarks[feature] {
+                    Some(older) => map.merge(older, landmark),
+                    None => _ = map.observe(landmark, other, feature),
+                }
+            }
+        }
+    }
+
+    /// Which features of a keyframe are of these landmarks, by descriptor, window and reprojection at 95 %.
+    fn find(
+        &self,
+        map: &LandmarkMap,
+        other: KeyframeId,
+        landmarks: &[LandmarkId],
+    ) -> Vec<(usize, LandmarkId)> {
+        let other = map.keyframe(other);
+        let camera_from_visual = other.visual_from_camera.inverse();
+        let (mut sought, mut projections) = (Vec::new(), Vec::new());
+        for (id, landmark) in landmarks.iter().filter_map(|id| Some((*id, map.landmark(*id)?))) {
+            let p_camera = camera_from_visual.transform(landmark.position);
+            let Some((pixel, _)) = self.sensor.project(p_camera) else { continue };
+            let octave = self.sensor.octave_of(landmark.distance_at_octave_0 / p_camera.norm());
+            let radius = self.window * self.sensor.scale(octave);
+            let octaves = (octave.saturating_sub(1), octave + 1);
+            projections.push(Projection {
+                pixel,
+                depth: p_camera.z,
+                radius,
+                octaves,
+                descriptor: landmark.descriptor,
+            });
+            sought.push((id, p_camera));
+        }
+        let agrees = |(feature, i): (usize, usize)| {
+            let (id, p_camera) = sought[i];
+            let seen = self.sensor.observation(&other.frame, feature);
+            (seen.chi2(&self.sensor.camera, p_camera) <= seen.chi2_bound()).then_some((feature, id))
+        };
+        search(&other.frame, &projections, self.likeness).into_iter().filter_map(agrees).collect()
+    }
+
+    /// Forgets landmarks that were seldom found where they should have been seen.
+    fn cull(&self, map: &mut LandmarkMap) {
+        let MappingConfig { trial_frames, found_ratio, .. } = *self.config;
+        let seldom: Vec<LandmarkId> = map
+            .landmarks()
+            .filter(|(_, l)| {
+                l.visible >= trial_frames && f64::from(l.found) < found_ratio * f64::from(l.visible)
+            })
+            .map(|(id, _)| id)
+            .collect();
+        seldom.into_iter().for_each(|id| map.forget(id));
+    }
+}

@@ -1,0 +1,149 @@
+use nalgebra::{Matrix6, Vector6};
+use serde::{Deserialize, Serialize};
+use trundle_core::{Invalid, Pose3, Stamp, require_in};
+
+/// How uncertain a pose becomes while the image does not give it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct MotionConfig {
+    /// Standard deviation of a motion prior's translation and rotation as a part of them, 0 to 1. Default 0.1: wheels
+    /// that slip now and then.
+    pub prior_part: f64,
+    /// What is added to it for every second: m, and rad, 0 or more. Default 0.01.
+    pub prior_drift: f64,
+    /// Without a prior: how fast the camera may move unseen, m/s, and turn, rad/s, 0 or more. Default 1.
+    pub unseen: f64,
+}
+
+impl Default for MotionConfig {
+    fn default() -> Self {
+        Self { prior_part: 0.1, prior_drift: 0.01, unseen: 1.0 }
+    }
+}
+
+impl MotionConfig {
+    /// Passes a valid configuration through.
+    ///
+    /// # Errors
+    /// When a number is out of the range that its field names.
+    pub fn validated(self) -> Result<Self, Invalid> {
+        require_in("motion.prior_part", self.prior_part, "", 0.0, 1.0)?;
+        require_in("motion.prior_drift", self.prior_drift, "", 0.0, 1e3)?;
+        require_in("motion.unseen", self.unseen, "", 0.0, 1e3)?;
+        Ok(self)
+    }
+}
+
+/// Where the camera is believed to be, and how it moves.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Belief {
+    pub stamp: Option<Stamp>,
+    pub visual_from_camera: Pose3,
+    /// Of a right perturbation.
+    pub covariance: Matrix6<f64>,
+    /// Right tangent a second, while the last two frames were located.
+    velocity: Option<Vector6<f64>>,
+}
+
+impl Belief {
+    /// At a pose taken as known, standing still.
+    pub fn at(visual_from_camera: Pose3) -> Self {
+        Self { stamp: None, visual_from_camera, covariance: Matrix6::zeros(), velocity: None }
+    }
+
+    /// Where the camera should be at `stamp`: moved by the prior, else on at the same velocity, else where it was.
+    pub fn predict(&self, stamp: Stamp, prior: Option<Pose3>) -> Pose3 {
+        let elapsed = self.elapsed(stamp);
+        let motion = prior.or_else(|| self.velocity.map(|velocity| Pose3::exp(velocity * elapsed)));
+        (self.visual_from_camera * motion.unwrap_or_default()).renormalized()
+    }
+
+    /// The frame at `stamp` was located. `before` is where the last frame was, as the map has it now, if it was located.
+    pub fn located(&mut self, stamp: Stamp, pose: Pose3, covariance: Matrix6<f64>, before: Option<Pose3>) {
+        let elapsed = self.elapsed(stamp);
+        self.velocity = before.filter(|_| elapsed > 0.0).map(|b| (b.inverse() * pose).log() / elapsed);
+        (self.stamp, self.visual_from_camera, self.covariance) = (Some(stamp), pose, covariance);
+    }
+
+    /// The frame at `stamp` was not located: moves by the prior, or holds the pose, and grows uncertain.
+    pub fn missed(&mut self, stamp: Stamp, prior: Option<Pose3>, config: &MotionConfig) {
+        let elapsed = self.elapsed(stamp);
+        let motion = prior.unwrap_or_default();
+        let backward = adjoint(motion.inverse());
+        let (along, turned) = match prior {
+            Some(_) => {
+                let drift = config.prior_drift * elapsed.sqrt();
+                let part = config.prior_part;
+                ((part * motion.translation.norm()).hypot(drift), (part * motion.angle()).hypot(drift))
+            }
+            None => (config.unseen * elapsed, config.unseen * elapsed),
+        };
+        let (along, turned) = (along * along, turned * turned);
+        let noise = Vector6::new(along, along, along, turned, turned, turned);
+        self.covariance = backward * self.covariance * backward.transpose() + Matrix6::from_diagonal(&noise);
+        self.visual_from_camera = (self.visual_from_camera * motion).renormalized();
+        (self.stamp, self.velocity) = (Some(stamp), None);
+    }
+
+    /// Seconds since the last frame, 0 for the first or when stamps go back.
+    fn elapsed(&self, stamp: Stamp) -> f64 {
+        self.stamp.map_or(0.0, |last| (stamp - last).max(0.0))
+    }
+}
+
+/// The adjoint of SE(3), translation first (Sola et al. 2018, eq. 175).
+fn adjoint(pose: Pose3) -> Matrix6<f64> {
+    let rotation = pose.rotation_matrix();
+    let mut adjoint = Matrix6::zeros();
+    adjoint.fixed_view_mut::<3, 3>(0, 0).copy_from(&rotation);
+    adjoint.fixed_view_mut::<3, 3>(3, 3).copy_from(&rotation);
+    adjoint.fixed_view_mut::<3, 3>(0, 3).copy_from(&(pose.translation.cross_matrix() * rotation));
+    adjoint
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn the_adjoint_moves_a_perturbation_through_a_pose(
+            a in prop::array::uniform6(-1.0..1.0), b in prop::array::uniform6(-1e-4..1e-4),
+        ) {
+            let (pose, small) = (Pose3::exp(Vector6::from(a)), Vector6::from(b));
+            let through = (pose * Pose3::exp(small) * pose.inverse()).log();
+            prop_assert!((through - adjoint(pose) * small).norm() < 1e-10);
+        }
+    }
+
+    #[test]
+    fn velocity_carries_on_for_the_time_that_passed() {
+        let mut belief = Belief::at(Pose3::identity());
+        let at = |secs: f64| Stamp::from_secs(secs).unwrap();
+        let step = Pose3::exp(Vector6::new(0.1, 0.0, 0.0, 0.0, 0.05, 0.0));
+        belief.located(at(0.0), Pose3::identity(), Matrix6::zeros(), None);
+        belief.located(at(0.1), step, Matrix6::zeros(), Some(Pose3::identity()));
+        let predicted = belief.predict(at(0.3), None);
+        assert!((predicted.inverse() * (step * step * step)).log().norm() < 1e-9);
+        let prior = Pose3::exp(Vector6::new(0.0, 0.0, 1.0, 0.0, 0.0, 0.0));
+        assert_eq!(belief.predict(at(0.3), Some(prior)), (step * prior).renormalized());
+    }
+
+    #[test]
+    fn uncertainty_grows_while_nothing_is_seen() {
+        let mut belief = Belief::at(Pose3::identity());
+        let config = MotionConfig::default();
+        let mut last = 0.0;
+        for i in 0..5 {
+            let stamp = Stamp::from_secs(f64::from(i) * 0.1).unwrap();
+            let prior = Pose3::exp(Vector6::new(0.0, 0.0, 0.1, 0.0, 0.1, 0.0));
+            belief.missed(stamp, Some(prior), &config);
+            let trace = belief.covariance.trace();
+            assert!(trace > last);
+            last = trace;
+        }
+        belief.missed(Stamp::from_secs(2.0).unwrap(), None, &config);
+        assert!(belief.covariance.trace() > last + 5.0);
+    }
+}

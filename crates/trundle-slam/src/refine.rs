@@ -1,0 +1,61 @@
+use crate::frame::Frame;
+use crate::ids::LandmarkId;
+use crate::sensor::Sensor;
+use trundle_core::{Pose3, Vector3};
+use trundle_optim::{InverseDepth, PointObservation, PoseConfig, PoseProblem, PoseSolution};
+
+/// A feature of the frame, taken for a point of the visual frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct PointMatch {
+    pub feature: usize,
+    /// Visual frame, m.
+    pub point: Vector3,
+    /// Which landmark the point is, unless it is only a depth of an earlier frame.
+    pub landmark: Option<LandmarkId>,
+    /// How much larger the standard deviations are, because the point is not known exactly.
+    pub sigma_factor: f64,
+}
+
+/// The pose of a frame, and by which matches.
+#[derive(Debug, Clone)]
+pub(crate) struct Fix {
+    pub matches: Vec<PointMatch>,
+    pub solution: PoseSolution,
+}
+
+impl Fix {
+    /// Refines `start` on `matches`.
+    pub fn by(
+        matches: Vec<PointMatch>,
+        start: Pose3,
+        frame: &Frame,
+        sensor: &Sensor,
+        config: &PoseConfig,
+    ) -> Self {
+        let observe =
+            |m: &PointMatch| (m.point, widened(sensor.observation(frame, m.feature), m.sigma_factor));
+        let observations: Vec<(Vector3, PointObservation)> = matches.iter().map(observe).collect();
+        let problem = PoseProblem { camera: &sensor.camera, observations: &observations };
+        let solution = problem.solve(start, config);
+        Self { matches, solution }
+    }
+
+    /// The matches that agree with the pose.
+    pub fn inliers(&self) -> impl Iterator<Item = &PointMatch> {
+        self.matches.iter().zip(&self.solution.inliers).filter_map(|(m, inlier)| inlier.then_some(m))
+    }
+
+    pub fn visual_from_camera(&self) -> Pose3 {
+        self.solution.world_from_camera
+    }
+
+    /// Whether enough matches agree to believe it, and they determine the pose.
+    pub fn is_sound(&self, least_inliers: usize) -> bool {
+        self.solution.inlier_count >= least_inliers && self.solution.covariance().is_some()
+    }
+}
+
+fn widened(seen: PointObservation, factor: f64) -> PointObservation {
+    let depth = seen.depth.map(|d| InverseDepth { sigma: d.sigma * factor, ..d });
+    PointObservation { pixel_sigma: seen.pixel_sigma * factor, depth, ..seen }
+}

@@ -1,0 +1,70 @@
+use crate::frame::Frame;
+use trundle_core::Vector2;
+use trundle_vision::Descriptor;
+
+/// A point that should be seen, and where to look for it.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Projection {
+    /// Where it should be, rectified px.
+    pub pixel: Vector2,
+    /// Its depth along the optical axis, m.
+    pub depth: f64,
+    /// How far around to look, px.
+    pub radius: f64,
+    /// Lowest and highest octave to look on.
+    pub octaves: (u8, u8),
+    /// What it looks like.
+    pub descriptor: Descriptor,
+}
+
+/// How alike two descriptors must be.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Likeness {
+    /// Highest distance, bits.
+    pub max_distance: u32,
+    /// Highest quotient of the best distance and the next best on the same octave.
+    pub ratio: f32,
+}
+
+/// Part of the depth by which a match may be off, beyond three standard deviations.
+const DEPTH_TOLERANCE: f64 = 0.2;
+
+/// Finds each projection's feature in `frame`: (feature, projection), by rising feature. Each feature goes to the
+/// projection that it is most like, the earlier one where two are alike.
+pub(crate) fn search(frame: &Frame, projections: &[Projection], likeness: Likeness) -> Vec<(usize, usize)> {
+    let mut taken: Vec<Option<(u32, usize)>> = vec![None; frame.len()];
+    for (index, projection) in projections.iter().enumerate() {
+        let Some((feature, distance)) = best(frame, projection, likeness) else { continue };
+        if taken[feature].is_none_or(|(held, _)| distance < held) {
+            taken[feature] = Some((distance, index));
+        }
+    }
+    taken.iter().enumerate().filter_map(|(feature, t)| Some((feature, (*t)?.1))).collect()
+}
+
+/// The feature most like the projection within its window, unless a second one is nearly as like.
+fn best(frame: &Frame, projection: &Projection, likeness: Likeness) -> Option<(usize, u32)> {
+    let (mut first, mut second): (Option<(usize, u32)>, Option<(usize, u32)>) = (None, None);
+    for feature in frame.near(projection.pixel, projection.radius, projection.octaves) {
+        if !depth_agrees(frame, feature, projection.depth) {
+            continue;
+        }
+        let distance = projection.descriptor.distance(frame.descriptor(feature));
+        if first.is_none_or(|(_, d)| distance < d) {
+            (first, second) = (Some((feature, distance)), first);
+        } else if second.is_none_or(|(_, d)| distance < d) {
+            second = Some((feature, distance));
+        }
+    }
+    let (feature, distance) = first.filter(|(_, d)| *d <= likeness.max_distance)?;
+    let rival = second.filter(|(other, _)| frame.octave(*other) == frame.octave(feature));
+    let clear = rival.is_none_or(|(_, next)| distance as f32 <= likeness.ratio * next as f32);
+    clear.then_some((feature, distance))
+}
+
+/// Whether the feature's own depth, if it has one, can be that of the projection.
+fn depth_agrees(frame: &Frame, feature: usize, depth: f64) -> bool {
+    frame.depths[feature].is_none_or(|seen| {
+        (seen.value - 1.0 / depth).abs() <= DEPTH_TOLERANCE * seen.value.max(1.0 / depth) + 3.0 * seen.sigma
+    })
+}

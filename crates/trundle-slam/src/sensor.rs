@@ -1,0 +1,97 @@
+use crate::frame::Frame;
+use trundle_core::{PinholeCamera, Vector2, Vector3};
+use trundle_optim::PointObservation;
+
+/// The camera as the tracker uses it: projection into the rectified image, and how sure a keypoint is.
+#[derive(Debug, Clone)]
+pub(crate) struct Sensor {
+    pub camera: PinholeCamera,
+    /// Size of each octave's pixel, px of the full image.
+    pub scale_factors: Vec<f64>,
+    /// Standard deviation of a keypoint of octave 0, px.
+    pub pixel_sigma: f64,
+    /// Corners of the box around the rectified image, px.
+    low: Vector2,
+    high: Vector2,
+}
+
+impl Sensor {
+    pub fn new(camera: PinholeCamera, scale_factors: Vec<f64>, pixel_sigma: f64) -> Self {
+        let (right, bottom) = (camera.width() as f64 - 1.0, camera.height() as f64 - 1.0);
+        let (mut low, mut high) = (Vector2::repeat(f64::MAX), Vector2::repeat(f64::MIN));
+        for step in 0..=16 {
+            let part = f64::from(step) / 16.0;
+            let (x, y) = (part * right, part * bottom);
+            for raw in [(x, 0.0), (x, bottom), (0.0, y), (right, y)] {
+                let pixel = camera.undistort(Vector2::new(raw.0, raw.1));
+                (low, high) = (low.inf(&pixel), high.sup(&pixel));
+            }
+        }
+        Self { camera, scale_factors, pixel_sigma, low, high }
+    }
+
+    /// Where a camera-frame point (m) appears: rectified and raw pixel; `None` when it is out of view.
+    pub fn project(&self, p_camera: Vector3) -> Option<(Vector2, Vector2)> {
+        let pixel = self.camera.project(p_camera)?;
+        let boxed = pixel.x >= self.low.x
+            && pixel.y >= self.low.y
+            && pixel.x <= self.high.x
+            && pixel.y <= self.high.y;
+        let raw = boxed.then(|| self.camera.distort(pixel))?;
+        self.camera.contains(raw).then_some((pixel, raw))
+    }
+
+    /// What `frame` says of its feature `i`.
+    pub fn observation(&self, frame: &Frame, i: usize) -> PointObservation {
+        let pixel_sigma = self.pixel_sigma * self.scale(frame.octave(i));
+        PointObservation { pixel: frame.pixels[i], pixel_sigma, depth: frame.depths[i] }
+    }
+
+    /// Where feature `i` of `frame` is by its own depth, camera frame, m.
+    pub fn point(&self, frame: &Frame, i: usize) -> Option<Vector3> {
+        frame.depths[i].map(|depth| self.camera.unproject(frame.pixels[i], 1.0 / depth.value))
+    }
+
+    /// The size of a pixel of `octave`, px of the full image.
+    pub fn scale(&self, octave: u8) -> f64 {
+        self.scale_factors[usize::from(octave).min(self.scale_factors.len() - 1)]
+    }
+
+    /// The octave whose pixel comes nearest to `scale`, in ratio.
+    pub fn octave_of(&self, scale: f64) -> u8 {
+        let ratio = |octave: &usize| (self.scale_factors[*octave] / scale).ln().abs();
+        let best = (0..self.scale_factors.len()).min_by(|a, b| ratio(a).total_cmp(&ratio(b)));
+        best.unwrap_or(0) as u8
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use trundle_core::Distortion;
+
+    fn freiburg1() -> Sensor {
+        let lens = Distortion { k1: 0.2624, k2: -0.9531, p1: -0.0054, p2: 0.0026, k3: 1.1633 };
+        let camera = PinholeCamera::new((640, 480), (517.3, 516.5), (318.6, 255.3), lens).unwrap();
+        Sensor::new(camera, vec![1.0, 1.2, 1.44], 1.0)
+    }
+
+    #[test]
+    fn what_the_lens_shows_is_in_view_and_the_rest_is_not() {
+        let sensor = freiburg1();
+        for raw in [(0.0, 0.0), (639.0, 479.0), (320.0, 3.0)] {
+            let pixel = sensor.camera.undistort(Vector2::new(raw.0, raw.1));
+            let (found, back) = sensor.project(sensor.camera.unproject(pixel, 2.0)).unwrap();
+            assert!((found - pixel).norm() < 1e-9 && (back - Vector2::new(raw.0, raw.1)).norm() < 1e-3);
+        }
+        for off in [Vector3::new(5.0, 0.0, 1.0), Vector3::new(0.0, 0.0, -1.0), Vector3::new(0.0, -1.0, 1.0)] {
+            assert_eq!(sensor.project(off), None);
+        }
+    }
+
+    #[test]
+    fn the_nearest_octave_is_chosen() {
+        let sensor = freiburg1();
+        assert_eq!([0.1, 1.05, 1.25, 9.0].map(|s| sensor.octave_of(s)), [0, 0, 1, 2]);
+    }
+}

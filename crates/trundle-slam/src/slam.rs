@@ -1,0 +1,316 @@
+use crate::anchor::Anchor;
+use crate::config::SlamConfig;
+use crate::frame::Frame;
+use crate::ids::{KeyframeId, LandmarkId};
+use crate::keyframe_policy::with_depth;
+use crate::local_map::View;
+use crate::map::LandmarkMap;
+use crate::mapping::Mapper;
+use crate::motion::Belief;
+use crate::refine::Fix;
+use crate::relocalisation::candidates;
+use crate::report::{SeenFeature, TrackReport, Tracking};
+use crate::sensor::Sensor;
+use crate::tracker::Tracker;
+use crate::trajectory::Anchored;
+use nalgebra::Matrix6;
+use trundle_core::{Invalid, PinholeCamera, Pose3, RgbdImage, Stamp, Vector3, gray_from_color};
+use trundle_vision::{Features, OrbExtractor};
+
+/// RGB-D SLAM: one image in, the camera's pose out; keeps the landmark map. See the crate's documentation.
+///
+/// Synchronous and deterministic: the same images, priors and configuration give the same bits.
+#[derive(Debug)]
+pub struct RgbdSlam {
+    config: SlamConfig,
+    sensor: Sensor,
+    extractor: OrbExtractor,
+    map: LandmarkMap,
+    belief: Belief,
+    /// The last frame that was located.
+    last: Option<Located>,
+    /// Frames since then.
+    misses: usize,
+    history: Vec<(Anchored, Tracking)>,
+    seen: Vec<SeenFeature>,
+}
+
+/// A frame whose pose was found.
+#[derive(Debug)]
+struct Located {
+    frame: Frame,
+    landmarks: Vec<Option<LandmarkId>>,
+    anchored: Anchored,
+}
+
+/// How a frame was located.
+#[derive(Debug)]
+struct Found {
+    fix: Fix,
+    /// The landmarks that should have been seen.
+    visible: Vec<LandmarkId>,
+    /// Whether the landmark map itself agrees, not only the last frame.
+    by_map: bool,
+    relocalised: bool,
+}
+
+impl RgbdSlam {
+    /// An empty map for images of this camera. The first keyframe is at the identity.
+    ///
+    /// # Errors
+    /// When the configuration is invalid.
+    pub fn new(camera: PinholeCamera, config: SlamConfig) -> Result<Self, Invalid> {
+        let config = config.validated()?;
+        let extractor = OrbExtractor::new(config.orb.clone())?;
+        let scale_factors = extractor.scale_factors().iter().map(|s| f64::from(*s)).collect();
+        let sensor = Sensor::new(camera, scale_factors, config.tracking.pixel_sigma);
+        let belief = Belief::at(Pose3::identity());
+        let map = LandmarkMap::default();
+        Ok(Self {
+            config,
+            sensor,
+            extractor,
+            map,
+            belief,
+            last: None,
+            misses: 0,
+            history: vec![],
+            seen: vec![],
+        })
+    }
+
+    /// The same with the camera at `visual_from_camera` at the start; call it before the first image.
+    #[must_use]
+    pub fn starting_at(mut self, visual_from_camera: Pose3) -> Self {
+        self.belief = Belief::at(visual_from_camera);
+        self
+    }
+
+    /// Locates one image. `prior` is the motion since the last image given, `previous_camera_from_camera`, as wheels and
+    /// gyro know it; without it the camera is taken to go on as it went. An image of another size than the camera's, or
+    /// with nothing in it, is an image without features: the report says that it was not located.
+    pub fn step(&mut self, image: &RgbdImage, prior: Option<Pose3>) -> TrackReport {
+        let prior = prior.filter(Pose3::is_finite);
+        let frame = self.frame(image);
+        match self.locate(&frame, image, prior) {
+            Some(found) => self.accept(frame, found),
+            None => self.miss(frame, image, prior),
+        }
+    }
+
+    /// Pose of every frame that was not lost, in the order of `step`: `visual_from_camera` by the map as it is now.
+    pub fn trajectory(&self) -> Vec<(Stamp, Pose3)> {
+        let kept = self.history.iter().filter(|(_, tracking)| *tracking != Tracking::Lost);
+        kept.map(|(frame, _)| (frame.stamp, frame.visual_from_camera(&self.map))).collect()
+    }
+
+    /// All landmarks, visual frame, m, in the order of their making.
+    pub fn landmarks(&self) -> impl Iterator<Item = Vector3> + '_ {
+        self.map.landmarks().map(|(_, landmark)| landmark.position)
+    }
+
+    /// All keyframes: when, and `visual_from_camera`, in the order of their making.
+    pub fn keyframes(&self) -> impl Iterator<Item = (KeyframeId, Stamp, Pose3)> + '_ {
+        self.map.keyframes().map(|(id, k)| (id, k.frame.stamp, k.visual_from_camera))
+    }
+
+    /// The features of the last image.
+    pub fn last_features(&self) -> &[SeenFeature] {
+        &self.seen
+    }
+
+    fn frame(&mut self, image: &RgbdImage) -> Frame {
+        let camera = &self.sensor.camera;
+        let fits = image.color().width() == camera.width() && image.color().height() == camera.height();
+        let features =
+            if fits { self.extractor.extract(&gray_from_color(image.color())) } else { Features::default() };
+        Frame::new(image.stamp(), features, image.depth(), &self.sensor, &self.config.depth)
+    }
+
+    fn view<'a>(&'a self, image: &'a RgbdImage) -> View<'a> {
+        let tracking = &self.config.tracking;
+        View {
+            sensor: &self.sensor,
+            depth: (image.depth(), &self.config.depth),
+            window: tracking.map_window_px,
+            most: tracking.most_landmarks,
+        }
+    }
+
+    /// From the last frame to the map; else from keyframes that look alike.
+    fn locate(&self, frame: &Frame, image: &RgbdImage, prior: Option<Pose3>) -> Option<Found> {
+        let config = &self.config.tracking;
+        let tracker = Tracker {
+            map: &self.map,
+            sensor: &self.sensor,
+            view: self.view(image),
+            config,
+            frame,
+            seed: self.config.seed.wrapping_add(self.history.len() as u64),
+        };
+        if let Some(last) = &self.last {
+            let anchor = last.anchor(&self.map);
+            let predicted = self.belief.predict(frame.stamp, prior);
+            if let Some(rough) = tracker.by_motion(anchor, predicted).or_else(|| tracker.by_likeness(anchor))
+            {
+                let (fix, visible) = tracker.by_map(rough.visual_from_camera());
+                let by_map = fix.is_sound(config.min_inliers);
+                let fix = if by_map { fix } else { rough };
+                return Some(Found { fix, visible, by_map, relocalised: false });
+            }
+        }
+        let most = config.relocalisation_keyframes;
+        candidates(&self.map, self.belief.visual_from_camera, self.misses, most).into_iter().find_map(|id| {
+            let rough = tracker.by_likeness(self.map.keyframe(id).into())?;
+            let (fix, visible) = tracker.by_map(rough.visual_from_camera());
+            fix.is_sound(config.weak_inliers).then_some(Found {
+                fix,
+                visible,
+                by_map: true,
+                relocalised: true,
+            })
+        })
+    }
+
+    /// Takes a found pose over: counts landmarks, makes a keyframe where one is wanted.
+    fn accept(&mut self, frame: Frame, found: Found) -> TrackReport {
+        let mut landmarks = vec![None; frame.len()];
+        for inlier in found.fix.inliers() {
+            landmarks[inlier.feature] = inlier.landmark;
+        }
+        self.count(&found.visible, &landmarks);
+        let mut pose = found.fix.visual_from_camera();
+        let mut reference = self.reference(&landmarks);
+        let tracked = landmarks.iter().flatten().count();
+        let new_keyframe = self.config.keyframes.wants(&frame, pose, tracked, reference, &self.map);
+        self.show(&frame, &landmarks);
+        if new_keyframe {
+            reference = self.insert(frame.clone(), pose, &landmarks);
+            let keyframe = self.map.keyframe(reference);
+            (pose, landmarks) = (keyframe.visual_from_camera, keyframe.landmarks.clone());
+        }
+        let enough = found.by_map && found.fix.solution.inlier_count >= self.config.tracking.weak_inliers;
+        let tracking = if enough { Tracking::Ok } else { Tracking::Weak };
+        let covariance = found.fix.solution.covariance().unwrap_or_else(Matrix6::identity);
+        let before = self.last.as_ref().filter(|_| self.misses == 0);
+        let before = before.map(|last| last.anchored.visual_from_camera(&self.map));
+        self.belief.located(frame.stamp, pose, covariance, before);
+        self.misses = 0;
+        let anchored = self.remember(frame.stamp, Some(reference), tracking);
+        let matches = (found.fix.matches.len(), found.fix.solution.inlier_count);
+        let report = self.report(frame.len(), matches, new_keyframe, found.relocalised);
+        self.last = Some(Located { frame, landmarks, anchored });
+        report
+    }
+
+    /// Goes on without a found pose; begins a map at the believed pose where there is none to be found again.
+    fn miss(&mut self, frame: Frame, image: &RgbdImage, prior: Option<Pose3>) -> TrackReport {
+        self.belief.missed(frame.stamp, prior, &self.config.motion);
+        self.misses += 1;
+        let none = vec![None; frame.len()];
+        self.show(&frame, &none);
+        let first = self.map.keyframe_count() == 0;
+        let begins = with_depth(&frame) >= self.config.mapping.min_points
+            && (first || prior.is_some() && self.is_beyond_the_map(image));
+        let reference = begins.then(|| self.insert(frame.clone(), self.belief.visual_from_camera, &none));
+        let tracking = match prior {
+            _ if first && begins => Tracking::Ok,
+            Some(_) => Tracking::DeadReckoning,
+            None => Tracking::Lost,
+        };
+        if first && begins {
+            self.belief.covariance = Matrix6::zeros();
+        }
+        let features = frame.len();
+        let reference = reference.or_else(|| self.last.as_ref().and_then(|last| last.anchored.reference));
+        let anchored = self.remember(frame.stamp, reference, tracking);
+        if begins {
+            let landmarks = reference.map_or(none, |id| self.map.keyframe(id).landmarks.clone());
+            self.last = Some(Located { frame, landmarks, anchored });
+            self.misses = 0;
+        }
+        self.report(features, (0, 0), begins, false)
+    }
+
+    /// Whether there is no use in waiting to see a known landmark again: none should be in view, or none was found for
+    /// too long.
+    fn is_beyond_the_map(&self, image: &RgbdImage) -> bool {
+        let config = &self.config.tracking;
+        let expected = self.view(image).landmarks(&self.map, self.belief.visual_from_camera).len();
+        expected < config.min_inliers || self.misses >= config.patience
+    }
+
+    fn insert(&mut self, frame: Frame, pose: Pose3, tracked: &[Option<LandmarkId>]) -> KeyframeId {
+        let mapper = Mapper {
+            sensor: &self.sensor,
+            config: &self.config.mapping,
+            likeness: self.config.tracking.window_likeness(),
+            window: self.config.tracking.map_window_px,
+        };
+        mapper.insert(&mut self.map, frame, pose, tracked)
+    }
+
+    /// Counts which landmarks should have been seen, and which were.
+    fn count(&mut self, visible: &[LandmarkId], found: &[Option<LandmarkId>]) {
+        for id in visible {
+            if let Some(landmark) = self.map.landmark_mut(*id) {
+                landmark.visible += 1;
+            }
+        }
+        for id in found.iter().flatten() {
+            if let Some(landmark) = self.map.landmark_mut(*id) {
+                landmark.found += 1;
+            }
+        }
+    }
+
+    /// The keyframe that shares most landmarks with the frame; the last one's where none does.
+    fn reference(&self, landmarks: &[Option<LandmarkId>]) -> KeyframeId {
+        let seeing = self.map.keyframes_seeing(landmarks.iter().flatten().copied());
+        let last = || self.last.as_ref().and_then(|last| last.anchored.reference);
+        let newest = || KeyframeId::from_index(self.map.keyframe_count() - 1);
+        seeing.first().map(|(id, _)| *id).or_else(last).unwrap_or_else(newest)
+    }
+
+    fn show(&mut self, frame: &Frame, landmarks: &[Option<LandmarkId>]) {
+        self.seen.clear();
+        let keypoints = frame.features.keypoints.iter().zip(landmarks);
+        self.seen.extend(keypoints.map(|(k, l)| SeenFeature { keypoint: *k, tracked: l.is_some() }));
+    }
+
+    fn remember(&mut self, stamp: Stamp, reference: Option<KeyframeId>, tracking: Tracking) -> Anchored {
+        let anchored = Anchored::new(stamp, reference, self.belief.visual_from_camera, &self.map);
+        self.history.push((anchored, tracking));
+        anchored
+    }
+
+    fn report(
+        &self,
+        features: usize,
+        (matches, inliers): (usize, usize),
+        new_keyframe: bool,
+        relocalised: bool,
+    ) -> TrackReport {
+        let (frame, tracking) = self.history.last().expect("invariant: the frame was remembered");
+        TrackReport {
+            stamp: frame.stamp,
+            tracking: *tracking,
+            visual_from_camera: self.belief.visual_from_camera,
+            covariance: self.belief.covariance,
+            features,
+            matches,
+            inliers,
+            relocalised,
+            new_keyframe,
+            keyframes: self.map.keyframe_count(),
+            landmarks: self.map.landmark_count(),
+        }
+    }
+}
+
+impl Located {
+    fn anchor(&self, map: &LandmarkMap) -> Anchor<'_> {
+        let visual_from_camera = self.anchored.visual_from_camera(map);
+        Anchor { frame: &self.frame, landmarks: &self.landmarks, visual_from_camera }
+    }
+}

@@ -1,0 +1,156 @@
+use crate::anchor::Anchor;
+use crate::frame::Frame;
+use crate::ids::LandmarkId;
+use crate::local_map::View;
+use crate::map::LandmarkMap;
+use crate::refine::{Fix, PointMatch};
+use crate::search::{Likeness, search};
+use crate::sensor::Sensor;
+use serde::{Deserialize, Serialize};
+use trundle_core::{Invalid, Pose3, require_in, require_positive};
+use trundle_optim::PoseConfig;
+
+/// How the pose of a frame is found.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct TrackingConfig {
+    /// Standard deviation of a keypoint of the finest octave, px, above 0. Default 1 \[MurArtal17\].
+    pub pixel_sigma: f64,
+    /// How far around its prediction a point of the last frame is looked for, px of its octave, above 0; twice as far at
+    /// the second try. Default 15 \[MurArtal17\].
+    pub motion_window_px: f64,
+    /// The same for a landmark of the map, once the pose is known from the last frame. Default 6: three standard
+    /// deviations of a keypoint and as much for the map.
+    pub map_window_px: f64,
+    /// Highest distance of descriptors within a window, bits of 256. Default 80: unlike points differ by 128 on average.
+    pub window_distance: u32,
+    /// Highest quotient of the best and the next best distance within a window, above 0 to 1. Default 0.9.
+    pub window_ratio: f32,
+    /// Highest distance of descriptors without a window, bits. Default 64.
+    pub free_distance: u32,
+    /// Highest quotient of the best and the next best distance without a window, above 0 to 1. Default 0.8.
+    pub free_ratio: f32,
+    /// Landmarks of the map that are looked for in one frame. Default 4000.
+    pub most_landmarks: usize,
+    /// Fewer inliers than this and the frame is not located, 6 or more. Default 20.
+    pub min_inliers: usize,
+    /// Fewer inliers than this and it is located weakly; a relocalisation needs as many. Default 40.
+    pub weak_inliers: usize,
+    /// Keyframes that a lost camera is compared with in one frame, 1 or more. Default 5: some 30 ms.
+    pub relocalisation_keyframes: usize,
+    /// After so many frames without success, a map is begun at the dead-reckoned pose. Default 30: a second.
+    pub patience: usize,
+    /// The solver.
+    pub pose: PoseConfig,
+}
+
+impl Default for TrackingConfig {
+    fn default() -> Self {
+        Self {
+            pixel_sigma: 1.0,
+            motion_window_px: 15.0,
+            map_window_px: 6.0,
+            window_distance: 80,
+            window_ratio: 0.9,
+            free_distance: 64,
+            free_ratio: 0.8,
+            most_landmarks: 4000,
+            min_inliers: 20,
+            weak_inliers: 40,
+            relocalisation_keyframes: 5,
+            patience: 30,
+            pose: PoseConfig::default(),
+        }
+    }
+}
+
+impl TrackingConfig {
+    /// Passes a valid configuration through.
+    ///
+    /// # Errors
+    /// When a number is out of the range that its field names.
+    pub fn validated(mut self) -> Result<Self, Invalid> {
+        require_positive("tracking.pixel_sigma", self.pixel_sigma, "px")?;
+        require_positive("tracking.motion_window_px", self.motion_window_px, "px")?;
+        require_positive("tracking.map_window_px", self.map_window_px, "px")?;
+        require_in("tracking.window_ratio", f64::from(self.window_ratio), "", 0.01, 1.0)?;
+        require_in("tracking.free_ratio", f64::from(self.free_ratio), "", 0.01, 1.0)?;
+        let counts = [
+            ("tracking.min_inliers", self.min_inliers, 6),
+            ("tracking.weak_inliers", self.weak_inliers, self.min_inliers),
+            ("tracking.most_landmarks", self.most_landmarks, self.weak_inliers),
+            ("tracking.relocalisation_keyframes", self.relocalisation_keyframes, 1),
+        ];
+        for (name, value, least) in counts {
+            if value < least {
+                return Err(Invalid::new(name, value, "", format!("{least} or more")));
+            }
+        }
+        self.pose = self.pose.validated()?;
+        Ok(self)
+    }
+
+    pub(crate) fn window_likeness(&self) -> Likeness {
+        Likeness { max_distance: self.window_distance, ratio: self.window_ratio }
+    }
+
+    pub(crate) fn free_likeness(&self) -> Likeness {
+        Likeness { max_distance: self.free_distance, ratio: self.free_ratio }
+    }
+}
+
+/// Finds the pose of one frame in the map.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Tracker<'a> {
+    pub map: &'a LandmarkMap,
+    pub sensor: &'a Sensor,
+    pub view: View<'a>,
+    pub config: &'a TrackingConfig,
+    pub frame: &'a Frame,
+    pub seed: u64,
+}
+
+impl Tracker<'_> {
+    /// The pose from the points of `last`, looked for around where `predicted` puts them, wider if they are not there.
+    pub fn by_motion(&self, last: Anchor, predicted: Pose3) -> Option<Fix> {
+        let likeness = self.config.window_likeness();
+        [1.0, 2.0].into_iter().find_map(|wider| {
+            let window = wider * self.config.motion_window_px;
+            let matches =
+                last.match_by_motion(self.frame, predicted, window, likeness, (self.map, self.sensor));
+            self.refined(matches, predicted)
+        })
+    }
+
+    /// The pose from what looks alike in `anchor`, wherever it is in the image.
+    pub fn by_likeness(&self, anchor: Anchor) -> Option<Fix> {
+        let likeness = self.config.free_likeness();
+        let (pose, matches) =
+            anchor.match_by_likeness(self.frame, likeness, self.seed, (self.map, self.sensor))?;
+        self.refined(matches, pose)
+    }
+
+    /// The final pose: against all landmarks of the map that a camera near `pose` should see. Also which these were.
+    pub fn by_map(&self, pose: Pose3) -> (Fix, Vec<LandmarkId>) {
+        let visible = self.view.landmarks(self.map, pose);
+        let projections: Vec<_> = visible.iter().map(|(_, projection)| *projection).collect();
+        let point = |(feature, i): (usize, usize)| {
+            let landmark = visible[i].0;
+            let known = self.map.landmark(landmark)?;
+            let (point, sigma_factor) = (known.position, known.sigma_factor());
+            Some(PointMatch { feature, point, landmark: Some(landmark), sigma_factor })
+        };
+        let found = search(self.frame, &projections, self.config.window_likeness());
+        let matches = found.into_iter().filter_map(point).collect();
+        let fix = Fix::by(matches, pose, self.frame, self.sensor, &self.config.pose);
+        (fix, visible.into_iter().map(|(id, _)| id).collect())
+    }
+
+    fn refined(&self, matches: Vec<PointMatch>, start: Pose3) -> Option<Fix> {
+        if matches.len() < self.config.min_inliers {
+            return None;
+        }
+        let fix = Fix::by(matches, start, self.frame, self.sensor, &self.config.pose);
+        fix.is_sound(self.config.min_inliers).then_some(fix)
+    }
+}

@@ -1,0 +1,98 @@
+use crate::room::{camera, shoot, stamp};
+use nalgebra::Vector6;
+use trundle_core::{ColorImage, DepthImage, Pose3, RgbdImage};
+use trundle_slam::{RgbdSlam, SlamConfig, Tracking};
+
+fn slam() -> RgbdSlam {
+    RgbdSlam::new(camera(), SlamConfig::default()).unwrap()
+}
+
+fn forward(metres: f64) -> Pose3 {
+    Pose3::exp(Vector6::new(0.0, 0.0, metres, 0.0, 0.0, 0.0))
+}
+
+fn image(number: usize, size: (usize, usize), shade: u8, depth: f32) -> RgbdImage {
+    let color = ColorImage::filled(size.0, size.1, [shade; 3]);
+    RgbdImage::new(stamp(number), color, DepthImage::filled(size.0, size.1, depth)).unwrap()
+}
+
+#[test]
+fn images_with_nothing_in_them_are_reported_and_survived() {
+    let mut slam = slam();
+    let depthless = RgbdImage::new(
+        stamp(3),
+        shoot(3, Pose3::identity()).color().clone(),
+        DepthImage::filled(320, 240, 0.0),
+    );
+    let empty = [
+        image(0, (320, 240), 0, 0.0),
+        image(1, (320, 240), 255, 1.0),
+        image(2, (320, 240), 90, f32::NAN),
+        depthless.unwrap(),
+        image(4, (17, 5), 90, 1.0),
+    ];
+    for blank in &empty {
+        let report = slam.step(blank, None);
+        assert_eq!((report.tracking, report.keyframes), (Tracking::Lost, 0));
+        assert_eq!(report.visual_from_camera, Pose3::identity());
+    }
+    assert_eq!(slam.step(&shoot(5, Pose3::identity()), None).tracking, Tracking::Ok);
+    for (i, blank) in empty.iter().enumerate() {
+        let report = slam.step(blank, (i % 2 == 0).then(|| forward(0.01)));
+        let expected = if i % 2 == 0 { Tracking::DeadReckoning } else { Tracking::Lost };
+        // The depthless picture is still located, by the landmarks that it shows.
+        assert_eq!(report.tracking, if i == 3 { Tracking::Ok } else { expected }, "image {i}");
+    }
+    let report = slam.step(&shoot(11, Pose3::identity()), Some(Pose3::exp(Vector6::repeat(f64::NAN))));
+    assert!(report.tracking.is_located() && report.visual_from_camera.translation.norm() < 0.005);
+}
+
+#[test]
+fn a_carried_camera_finds_itself_again() {
+    let mut slam = slam();
+    for i in 0..40 {
+        let pose = Pose3::exp(Vector6::new(0.0, 0.0, 0.0, 0.0, i as f64 * 0.03, 0.0));
+        assert!(slam.step(&shoot(i, pose), None).tracking.is_located());
+    }
+    for i in 40..45 {
+        let report = slam.step(&image(i, (320, 240), 0, 0.0), None);
+        assert_eq!(report.tracking, Tracking::Lost);
+        assert!(report.covariance.trace() > 1e-3 * (i - 39) as f64, "uncertainty grows");
+    }
+    let set_down = Pose3::exp(Vector6::new(0.1, 0.0, 0.05, 0.0, 0.2, 0.0));
+    let located = (45..50).find_map(|i| {
+        let report = slam.step(&shoot(i, set_down), None);
+        report.relocalised.then_some(report)
+    });
+    let report = located.expect("found within five frames");
+    let error = set_down.inverse() * report.visual_from_camera;
+    assert!(error.translation.norm() < 0.02 && error.angle() < 0.01, "{error:?}");
+    assert_eq!(slam.trajectory().iter().filter(|(s, _)| *s >= stamp(40) && *s < stamp(45)).count(), 0);
+}
+
+#[test]
+fn dead_reckoning_bridges_a_blank_wall_and_begins_a_new_map_behind_it() {
+    let mut slam = slam();
+    let step = |i: usize| Pose3::exp(Vector6::new(0.0, 0.0, 0.0, 0.0, 0.1 * i as f64, 0.0));
+    for i in 0..3 {
+        slam.step(&shoot(i, step(i)), Some(step(1)));
+    }
+    for i in 3..20 {
+        let report = slam.step(&image(i, (320, 240), 128, 1.0), Some(step(1)));
+        assert_eq!(report.tracking, Tracking::DeadReckoning);
+    }
+    let report = slam.step(&shoot(20, step(20)), Some(step(1)));
+    assert!(report.new_keyframe && report.tracking == Tracking::DeadReckoning);
+    let report = slam.step(&shoot(21, step(21)), Some(step(1)));
+    assert_eq!(report.tracking, Tracking::Ok);
+    assert!((step(21).inverse() * report.visual_from_camera).log().norm() < 0.02);
+    assert_eq!(slam.trajectory().len(), 22);
+}
+
+#[test]
+fn a_wrong_configuration_is_refused_by_name() {
+    let mut config = SlamConfig::default();
+    config.depth.sigma = -1.0;
+    let error = RgbdSlam::new(camera(), config).unwrap_err();
+    assert_eq!(error.field, "depth.sigma");
+}

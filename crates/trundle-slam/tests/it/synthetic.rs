@@ -1,0 +1,80 @@
+use crate::room::{camera, shoot};
+use nalgebra::Vector6;
+use trundle_core::Pose3;
+use trundle_slam::{RgbdSlam, SlamConfig, Tracking};
+
+fn slam() -> RgbdSlam {
+    RgbdSlam::new(camera(), SlamConfig::default()).unwrap()
+}
+
+/// A walk that looks left and right and comes back.
+fn walk(frame: usize) -> Pose3 {
+    let t = frame as f64 / 90.0 * std::f64::consts::TAU;
+    Pose3::exp(Vector6::new(0.5 * t.sin(), 0.05 * (2.0 * t).sin(), 0.4 - 0.4 * t.cos(), 0.0, 0.0, 0.0))
+        * Pose3::exp(Vector6::new(0.0, 0.0, 0.0, 0.08 * (3.0 * t).sin(), 0.6 * t.sin(), 0.05 * t.sin()))
+}
+
+#[test]
+fn a_walk_through_a_room_is_followed_and_the_covariance_is_honest() {
+    let mut slam = slam().starting_at(walk(0));
+    let mut nees = 0.0;
+    for i in 0..=90 {
+        let report = slam.step(&shoot(i, walk(i)), None);
+        assert_eq!(report.tracking, Tracking::Ok, "frame {i}: {} inliers", report.inliers);
+        let error = (walk(i).inverse() * report.visual_from_camera).log();
+        let (off, turned) = (error.fixed_rows::<3>(0).norm(), error.fixed_rows::<3>(3).norm());
+        assert!(off < 0.012 && turned < 0.006, "frame {i}: {off:.4} m, {turned:.4} rad");
+        if i > 0 {
+            let information = report.covariance.try_inverse().expect("a covariance that can be inverted");
+            nees += (error.transpose() * information * error)[0] / 90.0;
+        }
+    }
+    println!("mean normalised squared error {nees:.1} of 6, {} keyframes", slam.keyframes().count());
+    assert!(nees < 36.0, "normalised squared error {nees}");
+    assert_eq!(slam.trajectory().len(), 91);
+    for (i, (_, pose)) in slam.trajectory().iter().enumerate() {
+        assert!((walk(i).inverse() * *pose).translation.norm() < 0.012);
+    }
+}
+
+#[test]
+fn standing_still_does_not_drift() {
+    let mut slam = slam();
+    let still = walk(10);
+    let mut farthest: f64 = 0.0;
+    for i in 0..100 {
+        let report = slam.step(&shoot(i, still), None);
+        assert_eq!((report.tracking, report.keyframes), (Tracking::Ok, 1), "frame {i}");
+        farthest = farthest.max(report.visual_from_camera.translation.norm());
+    }
+    println!("farthest from where it stands: {:.2} mm", farthest * 1e3);
+    assert!(farthest < 0.006, "{farthest} m");
+}
+
+#[test]
+fn a_full_turn_closes_on_itself() {
+    let mut slam = slam();
+    let turned = |i: usize| {
+        Pose3::exp(Vector6::new(0.0, 0.0, 0.0, 0.0, i as f64 / 120.0 * std::f64::consts::TAU, 0.0))
+    };
+    let mut keyframes = 0;
+    for i in 0..=135 {
+        let report = slam.step(&shoot(i, turned(i)), None);
+        assert!(report.tracking.is_located(), "frame {i}");
+        let error = turned(i).inverse() * report.visual_from_camera;
+        assert!(error.translation.norm() < 0.04 && error.angle() < 0.015, "frame {i}: {error:?}");
+        keyframes = report.keyframes;
+    }
+    println!("{keyframes} keyframes for a full turn and 45 deg");
+    assert!((10..=50).contains(&keyframes), "{keyframes} keyframes");
+}
+
+#[test]
+fn the_same_images_give_the_same_bits() {
+    let run = || {
+        let mut slam = slam();
+        let reports: Vec<_> = (0..12).map(|i| slam.step(&shoot(i, walk(3 * i)), None)).collect();
+        (reports, slam.trajectory(), slam.landmarks().collect::<Vec<_>>())
+    };
+    assert_eq!(run(), run());
+}
