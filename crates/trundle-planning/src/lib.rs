@@ -1,1 +1,38 @@
 //! From a grid, a pose and a goal to a path and a trajectory.
+//!
+//! [`Planner`] is the door: [`DistanceField`] says how much room there is, the potential ([`PotentialConfig`]) leads to
+//! way-points, a quadratic programme lays a [`Curve`] through them inside a convex free corridor, and timing turns it into
+//! a [`Trajectory`](trundle_core::Trajectory) within the drive's limits. METHODS.md A4 and A5; `docs/algorithms/planning.md`.
+
+mod area;
+mod bezier;
+mod buckets;
+mod config;
+mod corridor;
+mod curve;
+mod field;
+mod fit;
+mod geometry;
+mod plan;
+mod planner;
+mod potential;
+mod pull;
+mod room;
+mod route;
+mod space;
+mod timing;
+mod watch;
+mod wave;
+
+pub use bezier::BezierPiece;
+pub use config::PlannerConfig;
+pub use curve::{Curve, CurveSample};
+pub use field::{DistanceField, FAR, UnknownIs};
+pub use fit::CurveConfig;
+pub use plan::{Plan, PlanResult};
+pub use planner::Planner;
+pub use potential::{PotentialConfig, PotentialField, PotentialKind, PotentialOutcome};
+pub use room::RoomConfig;
+pub use route::Phase;
+pub use timing::TimingConfig;
+pub use watch::Obstruction;

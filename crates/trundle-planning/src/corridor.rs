@@ -1,0 +1,75 @@
+//! A convex free polygon around a straight piece of way.
+//!
+//! Idea: between the segment and each obstacle's square, both convex, the nearest pair of points spans a separating
+//! plane; moved off the obstacle by the room wanted, and never past the segment, it bounds a region whose every point
+//! keeps that room from that obstacle. Obstacles are taken nearest first; one that lies behind a plane already is done.
+//! With the control points of a Bezier piece inside, the whole piece keeps the room, by the convex hull.
+
+use crate::geometry::segment_to_square;
+use crate::space::Space;
+use trundle_core::Vector2;
+
+/// The half-plane normal . p <= offset.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct HalfPlane {
+    /// Unit normal, outward.
+    pub normal: Vector2,
+    /// Metres.
+    pub offset: f64,
+}
+
+/// The polygon around the free segment `a`-`b` within `reach` m of its bounding box: room of `want` m wherever the
+/// segment itself has that much, else as much as the segment has.
+pub(crate) fn corridor(space: &Space<'_>, a: Vector2, b: Vector2, reach: f64, want: f64) -> Vec<HalfPlane> {
+    let low = a.inf(&b) - Vector2::repeat(reach);
+    let high = a.sup(&b) + Vector2::repeat(reach);
+    let half = space.field.geometry().resolution / 2.0;
+    let mut planes = frame(space, a, b, (low, high), want);
+    let mut covered = Vec::new();
+    for (distance, centre) in obstacles(space, a, b, low, high, want) {
+        let nearest_corner = |normal: Vector2| normal.dot(&centre) - half * (normal.x.abs() + normal.y.abs());
+        if covered.iter().any(|(normal, face)| nearest_corner(*normal) >= *face - 1e-9) {
+            continue;
+        }
+        let (on_segment, on_square) = segment_to_square(a, b, centre, half);
+        let Some(normal) = (on_square - on_segment).try_normalize(1e-9) else { continue };
+        let face = normal.dot(&on_square);
+        covered.push((normal, face));
+        planes.push(HalfPlane { normal, offset: face - want.min(distance) });
+    }
+    planes
+}
+
+/// The sides of the window, cut to the grid.
+fn frame(space: &Space<'_>, a: Vector2, b: Vector2, (low, high): (Vector2, Vector2), want: f64) -> Vec<HalfPlane> {
+    let (grid_low, grid_high) = space.field.extent();
+    let inset = if space.field.is_walled() { want } else { 0.0 };
+    let low = low.sup(&(grid_low + Vector2::repeat(inset))).inf(&a.inf(&b));
+    let high = high.inf(&(grid_high - Vector2::repeat(inset))).sup(&a.sup(&b));
+    vec![
+        HalfPlane { normal: Vector2::new(1.0, 0.0), offset: high.x },
+        HalfPlane { normal: Vector2::new(-1.0, 0.0), offset: -low.x },
+        HalfPlane { normal: Vector2::new(0.0, 1.0), offset: high.y },
+        HalfPlane { normal: Vector2::new(0.0, -1.0), offset: -low.y },
+    ]
+}
+
+/// The outer squares of obstacles that could come within `want` of the window, nearest to the segment first.
+fn obstacles(
+    space: &Space<'_>,
+    a: Vector2,
+    b: Vector2,
+    low: Vector2,
+    high: Vector2,
+    want: f64,
+) -> Vec<(f64, Vector2)> {
+    let half = space.field.geometry().resolution / 2.0;
+    let wide = Vector2::repeat(want + half);
+    let mut found = Vec::new();
+    space.field.for_obstacle_rims_in(low - wide, high + wide, |centre| {
+        let (p, q) = segment_to_square(a, b, centre, half);
+        found.push(((p - q).norm(), centre));
+    });
+    found.sort_by(|(d, _), (e, _)| d.total_cmp(e));
+    found
+}

@@ -1,0 +1,229 @@
+//! How far it is to the nearest obstacle, exactly, everywhere.
+//!
+//! Problem: every step of planning asks for the room at a point, and for the direction in which it grows. Idea: the
+//! distance from each cell's centre to the nearest occupied square is computed exactly by \[Felzenszwalb12\]
+//! (Distance transforms of sampled functions, Theory of Computing 8, 2012); between centres it is interpolated
+//! bilinearly; where a promise hangs on it, the squares themselves are measured ([`DistanceField::clearance`]).
+//! Cost: O(cells) once a map, O(1) a look.
+
+mod exact;
+mod transform;
+
+use serde::{Deserialize, Serialize};
+use trundle_core::{Cell, CellIndex, GridGeometry, OccupancyGrid, Vector2};
+
+/// The distance given where a map has no obstacle at all, m.
+pub const FAR: f64 = 1e6;
+
+/// What unknown cells, and everything outside the grid, count as.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum UnknownIs {
+    /// Passable.
+    Free,
+    /// As good as a wall.
+    Obstacle,
+}
+
+/// Distance to the nearest obstacle over a grid, metres.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DistanceField {
+    geometry: GridGeometry,
+    unknown: UnknownIs,
+    /// From cell centres to squares; 0 marks an obstacle.
+    distance: Vec<f32>,
+}
+
+impl DistanceField {
+    /// The field of a grid. Outside the grid counts as unknown.
+    pub fn from_grid(grid: &OccupancyGrid, unknown: UnknownIs) -> Self {
+        Self::over(*grid.geometry(), grid, unknown, None)
+    }
+
+    /// The field of `grid` over another `geometry` of the same lattice (same resolution, origins whole cells apart);
+    /// cells that the grid does not reach are unknown. The memory of a `spent` field is used again.
+    pub(crate) fn over(
+        geometry: GridGeometry,
+        grid: &OccupancyGrid,
+        unknown: UnknownIs,
+        spent: Option<Self>,
+    ) -> Self {
+        let mut distance = spent.map_or_else(Vec::new, |field| field.distance);
+        let is_obstacle = |cell: Cell| match cell {
+            Cell::Occupied => true,
+            Cell::Unknown => unknown == UnknownIs::Obstacle,
+            Cell::Free => false,
+        };
+        let outside = unknown == UnknownIs::Obstacle;
+        if geometry == *grid.geometry() {
+            let cells = grid.cells();
+            transform::transform(&geometry, outside, |i| is_obstacle(cells[i]), &mut distance);
+        } else {
+            let at = |i| is_obstacle(grid.at(geometry.center(geometry.cell(i))));
+            transform::transform(&geometry, outside, at, &mut distance);
+        }
+        Self { geometry, unknown, distance }
+    }
+
+    /// Where the cells lie.
+    pub fn geometry(&self) -> &GridGeometry {
+        &self.geometry
+    }
+
+    /// The exact distance from a cell's centre to the nearest obstacle's square, m; 0 in obstacles. Panics outside.
+    pub fn at_cell(&self, cell: CellIndex) -> f64 {
+        f64::from(self.distance[self.geometry.linear(cell)])
+    }
+
+    /// [`DistanceField::at_cell`] by the place in row-major storage.
+    pub(crate) fn at_linear(&self, linear: usize) -> f64 {
+        f64::from(self.distance[linear])
+    }
+
+    /// The distance to the nearest obstacle at a point of the map frame, m, bilinear between cell centres.
+    ///
+    /// Never more than res^2 / 4d above the truth, d the distance. Outside the grid: the border's value where unknown
+    /// is free (a lower bound), 0 where unknown is an obstacle. NaN: 0.
+    pub fn distance(&self, point: Vector2) -> f64 {
+        let Some(stencil) = self.stencil(point) else { return 0.0 };
+        let [[a, b], [c, d]] = stencil.corners;
+        let (u, v) = (stencil.u, stencil.v);
+        let inside = (a * (1.0 - u) + b * u) * (1.0 - v) + (c * (1.0 - u) + d * u) * v;
+        match self.unknown {
+            UnknownIs::Free => inside,
+            UnknownIs::Obstacle => (inside - stencil.beyond.norm()).max(0.0),
+        }
+    }
+
+    /// The gradient of [`DistanceField::distance`]: the direction in which the room grows, about 1 long.
+    pub fn gradient(&self, point: Vector2) -> Vector2 {
+        let Some(stencil) = self.stencil(point) else { return Vector2::zeros() };
+        let [[a, b], [c, d]] = stencil.corners;
+        let (u, v) = (stencil.u, stencil.v);
+        let along_x = (b - a) * (1.0 - v) + (d - c) * v;
+        let along_y = (c - a) * (1.0 - u) + (d - b) * u;
+        let mut gradient = Vector2::new(along_x, along_y) / self.geometry.resolution;
+        for axis in 0..2 {
+            if stencil.beyond[axis] != 0.0 {
+                gradient[axis] = 0.0;
+            }
+        }
+        if self.unknown == UnknownIs::Obstacle && stencil.beyond != Vector2::zeros() {
+            gradient -= stencil.beyond.normalize();
+        }
+        gradient
+    }
+
+    fn stencil(&self, point: Vector2) -> Option<Stencil> {
+        if !(point.x.is_finite() && point.y.is_finite()) {
+            return None;
+        }
+        let GridGeometry { resolution, origin, width, height } = self.geometry;
+        let (low_x, u, beyond_x) = place((point.x - origin.x) / resolution - 0.5, width);
+        let (low_y, v, beyond_y) = place((point.y - origin.y) / resolution - 0.5, height);
+        let high_x = (low_x + 1).min(width - 1);
+        let high_y = (low_y + 1).min(height - 1);
+        let value = |col: usize, row: usize| f64::from(self.distance[row * width + col]);
+        let corners =
+            [[value(low_x, low_y), value(high_x, low_y)], [value(low_x, high_y), value(high_x, high_y)]];
+        Some(Stencil { corners, u, v, beyond: Vector2::new(beyond_x, beyond_y) * resolution })
+    }
+}
+
+/// The four cell centres around a point.
+struct Stencil {
+    /// Their distances, by row then column.
+    corners: [[f64; 2]; 2],
+    /// Fraction along x.
+    u: f64,
+    /// Fraction along y.
+    v: f64,
+    /// From the nearest point among the centres to the point, m; zero inside.
+    beyond: Vector2,
+}
+
+/// Along one axis: the lower centre, the fraction towards the next, and how far `at` (cells) lies beyond the outermost.
+fn place(at: f64, size: usize) -> (usize, f64, f64) {
+    let clamped = at.clamp(0.0, size as f64 - 1.0);
+    let low = (clamped.floor() as usize).min(size.saturating_sub(2));
+    (low, clamped - low as f64, at - clamped)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn brute_force(grid: &OccupancyGrid, unknown: UnknownIs, point: Vector2) -> f64 {
+        let geometry = grid.geometry();
+        let mut best = FAR;
+        for (i, cell) in grid.cells().iter().enumerate() {
+            if *cell == Cell::Occupied || (*cell == Cell::Unknown && unknown == UnknownIs::Obstacle) {
+                let off = (point - geometry.center(geometry.cell(i))).abs();
+                let gap = off.map(|d| (d - geometry.resolution / 2.0).max(0.0));
+                best = best.min(gap.norm());
+            }
+        }
+        if unknown == UnknownIs::Obstacle {
+            let p = (point - geometry.origin) / geometry.resolution;
+            let (w, h) = (geometry.width as f64, geometry.height as f64);
+            let border = p.x.min(p.y).min(w - p.x).min(h - p.y).max(0.0);
+            best = best.min(border * geometry.resolution);
+        }
+        best
+    }
+
+    prop_compose! {
+        fn any_grid()(w in 1usize..17, h in 1usize..17)
+            (w in Just(w), h in Just(h), cells in prop::collection::vec(0u8..12, w * h)) -> OccupancyGrid {
+            let geometry = GridGeometry::new(0.1, Vector2::new(-0.3, 0.7), w, h).unwrap();
+            let cell = |c: u8| match c { 0 => Cell::Occupied, 1 => Cell::Unknown, _ => Cell::Free };
+            OccupancyGrid::new(geometry, cells.into_iter().map(cell).collect()).unwrap()
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn centres_agree_with_brute_force(grid in any_grid(), obstacle in any::<bool>()) {
+            let unknown = if obstacle { UnknownIs::Obstacle } else { UnknownIs::Free };
+            let field = DistanceField::from_grid(&grid, unknown);
+            for i in 0..grid.geometry().len() {
+                let cell = grid.geometry().cell(i);
+                let truth = brute_force(&grid, unknown, grid.geometry().center(cell));
+                prop_assert!((field.at_cell(cell) - truth).abs() <= 1e-6 * truth.max(1.0));
+            }
+        }
+
+        #[test]
+        fn clearance_is_exact_anywhere(grid in any_grid(), x in -0.3..1.3, y in 0.7..2.3) {
+            let field = DistanceField::from_grid(&grid, UnknownIs::Free);
+            let point = Vector2::new(x, y);
+            let truth = brute_force(&grid, UnknownIs::Free, point).min(0.5);
+            prop_assert!((field.clearance(point, 0.5) - truth).abs() < 1e-9);
+        }
+
+        #[test]
+        fn gradient_agrees_with_differences(grid in any_grid(), x in -0.5..1.5, y in 0.5..2.5, obstacle in any::<bool>()) {
+            let unknown = if obstacle { UnknownIs::Obstacle } else { UnknownIs::Free };
+            let field = DistanceField::from_grid(&grid, unknown);
+            let at = |dx: f64, dy: f64| field.distance(Vector2::new(x + dx, y + dy));
+            prop_assume!(at(0.0, 0.0) < FAR / 2.0);
+            let h = 1e-6;
+            let numeric = Vector2::new(at(h, 0.0) - at(-h, 0.0), at(0.0, h) - at(0.0, -h)) / (2.0 * h);
+            let kink = |p: f64, o: f64| (((p - o) / 0.1 - 0.5).rem_euclid(1.0) - 0.5).abs() > 0.5 - 1e-3;
+            prop_assume!(!kink(x, -0.3) && !kink(y, 0.7) && (!obstacle || at(0.0, 0.0) > 1e-3));
+            prop_assert!((numeric - field.gradient(Vector2::new(x, y))).norm() < 1e-4);
+        }
+    }
+
+    #[test]
+    fn nowhere_and_outside_follow_the_policy() {
+        let grid = OccupancyGrid::from_ascii(0.5, "....\n....").unwrap();
+        let free = DistanceField::from_grid(&grid, UnknownIs::Free);
+        let walled = DistanceField::from_grid(&grid, UnknownIs::Obstacle);
+        assert_eq!(free.distance(Vector2::new(9.0, 9.0)), FAR);
+        assert_eq!(walled.distance(Vector2::new(9.0, 9.0)), 0.0);
+        assert_eq!(free.distance(Vector2::new(f64::NAN, 0.0)), 0.0);
+        assert!((walled.distance(Vector2::new(1.0, 0.2)) - 0.2).abs() < 1e-6);
+    }
+}

@@ -1,0 +1,60 @@
+use serde::{Deserialize, Serialize};
+use trundle_core::{Invalid, require_in, require_positive};
+
+/// The shape of the fitted curve.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct CurveConfig {
+    /// Degree of each piece, 5 to 12. Default 5: the least that can meet position, heading and curvature at both ends.
+    pub degree: usize,
+    /// Length below which the curve smooths the way instead of following it, m, above 0, at most 10. Default 0.5 (ours).
+    pub smoothing: f64,
+    /// Longest stretch of way that one piece stands for, m, 0.1 to 100. Default 1.5 (ours).
+    pub piece: f64,
+    /// How far beside a stretch its corridor may reach, m, 0.1 to 10. Default 0.8 (ours).
+    pub reach: f64,
+    /// eps of METHODS A5: the least tangent at the ends, as a share of unit speed, 0.01 to 1. Default 0.25 (ours).
+    pub least_tangent: f64,
+    /// Curvature above which a curve is refused and the way is split, 1/m, 0.1 to 1000. Default 8 (ours): there a Kobuki
+    /// still drives 0.36 m/s.
+    pub max_curvature: f64,
+    /// Turn on the spot first when the way starts this far off the heading, rad, 0 to pi. Default 60 deg (ours).
+    pub turn_first: f64,
+    /// Turn on the spot at the end when the way arrives this far off the goal's heading, rad, 0 to pi. Default 100 deg
+    /// (ours): up to there the curve bends into the heading where it has the room.
+    pub turn_last: f64,
+}
+
+impl Default for CurveConfig {
+    fn default() -> Self {
+        Self {
+            degree: 5,
+            smoothing: 0.5,
+            piece: 1.5,
+            reach: 0.8,
+            least_tangent: 0.25,
+            max_curvature: 8.0,
+            turn_first: 60f64.to_radians(),
+            turn_last: 100f64.to_radians(),
+        }
+    }
+}
+
+impl CurveConfig {
+    /// Passes a valid configuration through.
+    ///
+    /// # Errors
+    /// When a number is outside its range.
+    pub fn validated(self) -> Result<Self, Invalid> {
+        require_in("curve.degree", self.degree as f64, "", 5.0, 12.0)?;
+        require_positive("curve.smoothing", self.smoothing, "m")?;
+        require_in("curve.smoothing", self.smoothing, "m", 0.0, 10.0)?;
+        require_in("curve.piece", self.piece, "m", 0.1, 100.0)?;
+        require_in("curve.reach", self.reach, "m", 0.1, 10.0)?;
+        require_in("curve.least_tangent", self.least_tangent, "", 0.01, 1.0)?;
+        require_in("curve.max_curvature", self.max_curvature, "1/m", 0.1, 1000.0)?;
+        require_in("curve.turn_first", self.turn_first, "rad", 0.0, std::f64::consts::PI)?;
+        require_in("curve.turn_last", self.turn_last, "rad", 0.0, std::f64::consts::PI)?;
+        Ok(self)
+    }
+}

@@ -1,0 +1,99 @@
+//! What the curve is drawn to: the way, and smoothness.
+
+use super::Stretch;
+use crate::bezier::binomial;
+use clarabel::algebra::CscMatrix;
+use nalgebra::DMatrix;
+use trundle_core::Vector2;
+
+/// How much the second derivative counts beside the third, as a share of the smoothing length.
+const BENDING: f64 = 0.4;
+
+/// 1/2 x'Px + q'x of integral |p - way|^2 + (0.4 l)^4 |p''|^2 + l^6 |p'''|^2 ds, l the smoothing length.
+///
+/// The least squares over infinitely dense samples of the way, in closed form: Gram matrices of the Bernstein basis.
+/// Unknowns: x and y of each control point, piece by piece.
+pub(super) fn objective(stretches: &[Stretch], degree: usize, smoothing: f64) -> (CscMatrix<f64>, Vec<f64>) {
+    let unknowns = stretches.len() * (degree + 1) * 2;
+    let grams = Grams::new(degree);
+    let mut q = vec![0.0; unknowns];
+    let (mut rows, mut cols, mut values) = (Vec::new(), Vec::new(), Vec::new());
+    for (i, stretch) in stretches.iter().enumerate() {
+        let first = i * (degree + 1);
+        let hessian = grams.hessian(stretch.length(), smoothing);
+        let target = straight(stretch, degree);
+        for j in 0..=degree {
+            for k in 0..=degree {
+                let pull = grams.position[(j, k)] * stretch.length();
+                q[(first + j) * 2] -= pull * target[k].x;
+                q[(first + j) * 2 + 1] -= pull * target[k].y;
+                for axis in 0..2 {
+                    if j <= k {
+                        rows.push((first + j) * 2 + axis);
+                        cols.push((first + k) * 2 + axis);
+                        values.push(hessian[(j, k)]);
+                    }
+                }
+            }
+        }
+    }
+    (CscMatrix::new_from_triplets(unknowns, unknowns, rows, cols, values), q)
+}
+
+/// The control points of the straight stretch itself.
+fn straight(stretch: &Stretch, degree: usize) -> Vec<Vector2> {
+    let at = |k: usize| stretch.from + (stretch.to - stretch.from) * (k as f64 / degree as f64);
+    (0..=degree).map(at).collect()
+}
+
+/// Integrals over u in \[0, 1\] of products of the basis and of its derivatives.
+struct Grams {
+    position: DMatrix<f64>,
+    second: DMatrix<f64>,
+    third: DMatrix<f64>,
+}
+
+impl Grams {
+    fn new(degree: usize) -> Self {
+        Self {
+            position: derivative_gram(degree, 0),
+            second: derivative_gram(degree, 2),
+            third: derivative_gram(degree, 3),
+        }
+    }
+
+    /// For a piece of `span` m: d/ds = d/du / span.
+    fn hessian(&self, span: f64, smoothing: f64) -> DMatrix<f64> {
+        let bending = (BENDING * smoothing).powi(4) / span.powi(3);
+        let change = smoothing.powi(6) / span.powi(5);
+        &self.position * span + &self.second * bending + &self.third * change
+    }
+}
+
+/// The Gram matrix of the `order`-th derivatives of the Bernstein basis.
+fn derivative_gram(degree: usize, order: usize) -> DMatrix<f64> {
+    let m = degree - order;
+    let gram = DMatrix::from_fn(m + 1, m + 1, |i, j| {
+        binomial(m, i) * binomial(m, j) / (binomial(2 * m, i + j) * (2 * m + 1) as f64)
+    });
+    let mut differences = DMatrix::<f64>::identity(degree + 1, degree + 1);
+    for step in 0..order {
+        let left = degree - step;
+        differences = (differences.rows(1, left) - differences.rows(0, left)) * left as f64;
+    }
+    differences.transpose() * gram * differences
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn grams_integrate_polynomials() {
+        // p = u^2 has Bernstein coefficients i(i-1)/20 at degree 5: integrals of p^2, p''^2, p'''^2 are 1/5, 4, 0.
+        let p = nalgebra::DVector::from_fn(6, |i, _| (i as f64) * (i as f64 - 1.0) / 20.0);
+        for (order, integral) in [(0, 0.2), (2, 4.0), (3, 0.0)] {
+            assert!((p.dot(&(derivative_gram(5, order) * &p)) - integral).abs() < 1e-12);
+        }
+    }
+}

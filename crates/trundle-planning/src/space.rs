@@ -1,0 +1,147 @@
+//! Where the robot may be, and what it costs to be there: the one judge that search, field and curve share.
+
+use crate::{DistanceField, RoomConfig};
+use trundle_core::{Cell, OccupancyGrid, Vector2};
+
+/// Rounding that a comparison of clearances forgives, m.
+const ROUNDING: f64 = 1e-6;
+
+/// Step of a look along a straight line, cells. Between two looks the distance to a convex obstacle dips by at most
+/// step^2 / 8 radius: below 0.1 mm for 5 cm cells.
+const LOOK: f64 = 0.2;
+
+/// The robot as a disc in a distance field.
+pub(crate) struct Space<'a> {
+    pub(crate) field: &'a DistanceField,
+    pub(crate) room: RoomConfig,
+    /// Radius of the disc that must stay free, m.
+    pub(crate) radius: f64,
+    grid: &'a OccupancyGrid,
+    escape: Option<Escape>,
+    surely: f64,
+    /// Whole cells from the grid's origin to the field's.
+    shift: (i64, i64),
+}
+
+/// A robot that stands nearer to an obstacle than its radius may leave, without getting any nearer.
+struct Escape {
+    start: Vector2,
+    zone: f64,
+    radius: f64,
+}
+
+impl<'a> Space<'a> {
+    /// The space of a disc of `radius` m. When `start` has less room than that, its room is enough around it.
+    pub(crate) fn new(
+        field: &'a DistanceField,
+        grid: &'a OccupancyGrid,
+        room: RoomConfig,
+        radius: f64,
+        start: Vector2,
+    ) -> Self {
+        let at_start = field.clearance(start, radius);
+        let missing = radius - at_start;
+        let escape = (missing > ROUNDING).then(|| Escape {
+            start,
+            zone: radius + missing + 2.0 * field.geometry().resolution,
+            radius: at_start,
+        });
+        let offset = (field.geometry().origin - grid.geometry().origin) / grid.geometry().resolution;
+        let shift = (offset.x.round() as i64, offset.y.round() as i64);
+        Self { field, room, radius, grid, escape, surely: field.overestimate(radius), shift }
+    }
+
+    /// The distance that must be kept at a point, m: the radius, less only around a start that has less.
+    pub(crate) fn required(&self, point: Vector2) -> f64 {
+        match &self.escape {
+            Some(escape) if (point - escape.start).norm() <= escape.zone => escape.radius,
+            _ => self.radius,
+        }
+    }
+
+    /// Whether the robot may stand at a point.
+    pub(crate) fn is_free(&self, point: Vector2) -> bool {
+        self.field.keeps(point, self.required(point))
+    }
+
+    /// Whether the robot may stand at the centre of a cell.
+    pub(crate) fn is_free_cell(&self, linear: usize) -> bool {
+        let distance = self.field.at_linear(linear);
+        if distance >= self.radius - ROUNDING {
+            return true;
+        }
+        self.escape.is_some() && distance > 0.0 && distance >= self.required(self.center(linear)) - ROUNDING
+    }
+
+    /// Whether the straight move between neighbouring free cells `length` m apart stays free.
+    pub(crate) fn joins(&self, from: usize, to: usize, length: f64) -> bool {
+        let least = self.field.at_linear(from).min(self.field.at_linear(to));
+        if least * least >= self.radius * self.radius + length * length / 4.0 {
+            return true;
+        }
+        self.sees(self.center(from), self.center(to))
+    }
+
+    /// Whether the robot may drive straight from `a` to `b`.
+    pub(crate) fn sees(&self, a: Vector2, b: Vector2) -> bool {
+        let length = (b - a).norm();
+        let look = LOOK * self.field.geometry().resolution;
+        let mut at = 0.0;
+        while at < length {
+            let point = a + (b - a) * (at / length);
+            let required = self.required(point);
+            let room = self.field.distance(point) - self.surely - required;
+            if room < 0.0 && !self.field.keeps(point, required) {
+                return false;
+            }
+            let room = if self.escape.is_some() { room.min(0.0) } else { room };
+            at += room.max(look);
+        }
+        self.is_free(b)
+    }
+
+    /// The cost of a metre where the nearest obstacle is `distance` m away: 1 or more.
+    fn density(&self, distance: f64, is_unknown: bool) -> f64 {
+        let room = &self.room;
+        let clearance = (distance - self.radius).max(0.0);
+        let mut cost = 1.0;
+        if clearance < room.comfort {
+            cost += room.comfort_weight * (1.0 - clearance / room.comfort).powi(2);
+        }
+        if clearance < room.margin {
+            cost += room.margin_weight * (1.0 - clearance / room.margin);
+        }
+        if is_unknown { cost + room.unknown_weight } else { cost }
+    }
+
+    /// The cost of a metre around the centre of a cell.
+    pub(crate) fn cell_density(&self, linear: usize) -> f64 {
+        self.density(self.field.at_linear(linear), self.is_unknown(linear))
+    }
+
+    /// The cost of driving straight from `a` to `b`, sampled a cell apart.
+    pub(crate) fn cost(&self, a: Vector2, b: Vector2) -> f64 {
+        let length = (b - a).norm();
+        let steps = (length / self.field.geometry().resolution).ceil().max(1.0);
+        let sum: f64 = (0..steps as usize)
+            .map(|i| {
+                let point = a + (b - a) * ((i as f64 + 0.5) / steps);
+                self.density(self.field.distance(point), self.grid.at(point) == Cell::Unknown)
+            })
+            .sum();
+        sum / steps * length
+    }
+
+    pub(crate) fn center(&self, linear: usize) -> Vector2 {
+        self.field.geometry().center(self.field.geometry().cell(linear))
+    }
+
+    fn is_unknown(&self, linear: usize) -> bool {
+        let cell = self.field.geometry().cell(linear);
+        let (col, row) = (cell.col as i64 + self.shift.0, cell.row as i64 + self.shift.1);
+        let geometry = self.grid.geometry();
+        let inside =
+            col >= 0 && row >= 0 && col < geometry.width as i64 && row < geometry.height as i64;
+        !inside || self.grid.cells()[row as usize * geometry.width + col as usize] == Cell::Unknown
+    }
+}

@@ -1,0 +1,33 @@
+use serde::{Deserialize, Serialize};
+use trundle_core::{Invalid, require_in};
+
+/// How fast, beside the drive's own limits.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct TimingConfig {
+    /// Time between samples of the trajectory, s, 0.001 to 1. Default 0.02: the control loop's.
+    pub period: f64,
+    /// Highest speed without any clearance, m/s, 0.01 to 10. Default 0.15 (ours).
+    pub slow_speed: f64,
+    /// Clearance from which on the full speed is allowed, m, 0 to 10; linear below. Default 0.3 (ours).
+    pub full_speed_clearance: f64,
+}
+
+impl Default for TimingConfig {
+    fn default() -> Self {
+        Self { period: 0.02, slow_speed: 0.15, full_speed_clearance: 0.3 }
+    }
+}
+
+impl TimingConfig {
+    /// Passes a valid configuration through.
+    ///
+    /// # Errors
+    /// When a number is outside its range.
+    pub fn validated(self) -> Result<Self, Invalid> {
+        require_in("timing.period", self.period, "s", 0.001, 1.0)?;
+        require_in("timing.slow_speed", self.slow_speed, "m/s", 0.01, 10.0)?;
+        require_in("timing.full_speed_clearance", self.full_speed_clearance, "m", 0.0, 10.0)?;
+        Ok(self)
+    }
+}

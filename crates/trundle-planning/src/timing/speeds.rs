@@ -1,0 +1,96 @@
+//! The highest allowed speed along a curve.
+
+use super::TimingConfig;
+use crate::curve::CurveSample;
+use trundle_core::{DriveLimits, Vector2};
+
+/// What bounds speeds.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Drive {
+    pub(crate) limits: DriveLimits,
+    /// Half the distance between the wheels, m.
+    pub(crate) half_base: f64,
+    pub(crate) config: TimingConfig,
+}
+
+/// A speed that is none, m/s.
+const ROUNDING: f64 = 1e-6;
+
+/// The speed at each sample, m/s: `v_start` at the first, 0 at the last. Where `v_start` is above a ceiling, it is
+/// braked from as hard as allowed, and harder only where the curve is too short to stop on.
+pub(super) fn speeds(
+    samples: &[CurveSample],
+    v_start: f64,
+    drive: &Drive,
+    clearance: impl Fn(Vector2) -> f64,
+) -> Vec<f64> {
+    let mut v = ceilings(samples, drive, clearance);
+    let gain: Vec<f64> = samples.windows(2).map(|pair| 2.0 * way(pair) * acceleration(pair, drive)).collect();
+    let last = v.len() - 1;
+    v[last] = 0.0;
+    for i in (0..last).rev() {
+        v[i] = v[i].min((v[i + 1] * v[i + 1] + gain[i]).sqrt());
+    }
+    v[0] = v_start;
+    for i in 1..=last {
+        let squared = v[i - 1] * v[i - 1];
+        v[i] = v[i].min((squared + gain[i - 1]).sqrt()).max((squared - gain[i - 1]).max(0.0).sqrt());
+    }
+    if v[last] > ROUNDING {
+        stop_short(&mut v, samples);
+    }
+    v[last] = 0.0;
+    v
+}
+
+fn way(pair: &[CurveSample]) -> f64 {
+    pair[1].arc - pair[0].arc
+}
+
+/// The highest change of speed between two samples, m/s^2: half the angular acceleration is for it.
+fn acceleration(pair: &[CurveSample], drive: &Drive) -> f64 {
+    let curvature = pair[0].curvature.abs().max(pair[1].curvature.abs());
+    let turning = drive.limits.angular_acceleration / 2.0 / curvature.max(1e-9);
+    drive.limits.acceleration.min(turning)
+}
+
+fn ceilings(samples: &[CurveSample], drive: &Drive, clearance: impl Fn(Vector2) -> f64) -> Vec<f64> {
+    let mut v: Vec<f64> = samples
+        .iter()
+        .map(|sample| {
+            let curvature = sample.curvature.abs();
+            let limits = &drive.limits;
+            limits
+                .v
+                .min(limits.omega / curvature.max(1e-9))
+                .min(limits.wheel_speed / (1.0 + drive.half_base * curvature))
+                .min(near_obstacles(clearance(sample.pose.position()), drive))
+        })
+        .collect();
+    for (i, pair) in samples.windows(2).enumerate() {
+        let change = (pair[1].curvature - pair[0].curvature).abs() / way(pair);
+        let ceiling = (drive.limits.angular_acceleration / 2.0 / change.max(1e-9)).sqrt();
+        v[i] = v[i].min(ceiling);
+        v[i + 1] = v[i + 1].min(ceiling);
+    }
+    v
+}
+
+/// The speed allowed at a clearance, m/s.
+fn near_obstacles(clearance: f64, drive: &Drive) -> f64 {
+    let TimingConfig { slow_speed, full_speed_clearance, .. } = drive.config;
+    if clearance >= full_speed_clearance {
+        return f64::INFINITY;
+    }
+    let slow = slow_speed.min(drive.limits.v);
+    slow + (drive.limits.v - slow) * (clearance / full_speed_clearance).max(0.0)
+}
+
+/// Evenly from the first speed to rest at the end.
+fn stop_short(v: &mut [f64], samples: &[CurveSample]) {
+    let length = samples[samples.len() - 1].arc;
+    let first = v[0];
+    for (v, sample) in v.iter_mut().zip(samples) {
+        *v = v.min(first * (1.0 - sample.arc / length).max(0.0).sqrt());
+    }
+}

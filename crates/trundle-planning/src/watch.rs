@@ -1,0 +1,98 @@
+//! Whether a plan made on an older map still holds.
+
+use crate::UnknownIs;
+use crate::geometry::box_gap;
+use thiserror::Error;
+use trundle_core::{Cell, OccupancyGrid, Pose2, Trajectory, Vector2};
+
+/// Where a trajectory would first come too near to something.
+#[derive(Debug, Clone, Copy, PartialEq, Error)]
+#[error("blocked at {time:.2} s: {clearance:.3} m beside the footprint at ({x:.3}, {y:.3})", x = pose.x, y = pose.y)]
+pub struct Obstruction {
+    /// Seconds since the trajectory's start.
+    pub time: f64,
+    /// Where the robot would be.
+    pub pose: Pose2,
+    /// Room beside the footprint there, m, negative: so much is missing.
+    pub clearance: f64,
+}
+
+/// Distance between two looks, m.
+const SPACING: f64 = 0.01;
+
+/// Checks a trajectory from `from` seconds on for a disc of `radius` m. A robot that already has less room may go on as
+/// long as it gets no nearer.
+pub(crate) fn still_free(
+    grid: &OccupancyGrid,
+    unknown: UnknownIs,
+    trajectory: &Trajectory,
+    from: f64,
+    radius: f64,
+) -> Result<(), Obstruction> {
+    let mut last = trajectory.at(from);
+    let required = room(grid, unknown, last.pose.position(), radius) - 1e-6;
+    for point in trajectory.points().iter().filter(|point| point.time > from) {
+        let way = point.pose.distance(&last.pose);
+        if way == 0.0 {
+            last = *point;
+            continue;
+        }
+        let steps = (way / SPACING).ceil();
+        for k in 1..=steps as usize {
+            let share = k as f64 / steps;
+            let pose = last.pose.interpolate(&point.pose, share);
+            let distance = room(grid, unknown, pose.position(), radius);
+            if distance < required {
+                let time = last.time + (point.time - last.time) * share;
+                return Err(Obstruction { time, pose, clearance: distance - radius });
+            }
+        }
+        last = *point;
+    }
+    Ok(())
+}
+
+/// The distance to the nearest obstacle's square, at most `cap`, m.
+fn room(grid: &OccupancyGrid, unknown: UnknownIs, point: Vector2, cap: f64) -> f64 {
+    let geometry = grid.geometry();
+    let half = geometry.resolution / 2.0;
+    let reach = (cap / geometry.resolution).ceil() as i64 + 1;
+    let at = (point - geometry.origin) / geometry.resolution;
+    let (col, row) = (at.x.floor() as i64, at.y.floor() as i64);
+    let mut best = cap;
+    for r in row - reach..=row + reach {
+        for c in col - reach..=col + reach {
+            let inside = r >= 0 && c >= 0 && r < geometry.height as i64 && c < geometry.width as i64;
+            let cell = if inside { grid.cells()[r as usize * geometry.width + c as usize] } else { Cell::Unknown };
+            let blocks =
+                cell == Cell::Occupied || (cell == Cell::Unknown && unknown == UnknownIs::Obstacle);
+            if blocks {
+                let centre = geometry.origin + Vector2::new(c as f64 + 0.5, r as f64 + 0.5) * geometry.resolution;
+                best = best.min(box_gap(point, centre, half).norm());
+            }
+        }
+    }
+    best
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use trundle_core::{TrajectoryPoint, Twist2};
+
+    #[test]
+    fn a_new_obstacle_is_seen_ahead_and_not_behind() {
+        let mut grid = OccupancyGrid::from_ascii(0.1, &vec![".".repeat(40); 10].join("\n")).unwrap();
+        let at = |time: f64| TrajectoryPoint {
+            time,
+            pose: Pose2::new(0.5 + time, 0.5, 0.0),
+            twist: Twist2::new(1.0, 0.0),
+        };
+        let trajectory = Trajectory::new(vec![at(0.0), at(1.5), at(3.0)]).unwrap();
+        assert!(still_free(&grid, UnknownIs::Free, &trajectory, 0.0, 0.2).is_ok());
+        grid.set(trundle_core::CellIndex { col: 20, row: 5 }, Cell::Occupied);
+        let hit = still_free(&grid, UnknownIs::Free, &trajectory, 0.0, 0.2).unwrap_err();
+        assert!((hit.pose.x - 1.8).abs() < 0.02 && (hit.time - 1.3).abs() < 0.02, "{hit}");
+        assert!(still_free(&grid, UnknownIs::Free, &trajectory, 1.9, 0.2).is_ok());
+    }
+}

@@ -1,0 +1,8 @@
+//! The planner as its user sees it.
+
+mod ascii;
+mod bad_input;
+mod laws;
+mod maps;
+mod replanning;
+mod support;
