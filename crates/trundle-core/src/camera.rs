@@ -3,6 +3,7 @@ use serde::{Deserialize, Serialize};
 
 /// Lens distortion of Brown and Conrady, in the order of OpenCV.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
 pub struct Distortion {
     /// Radial, of r^2.
     pub k1: f64,
@@ -18,6 +19,7 @@ pub struct Distortion {
 
 /// A pinhole camera with Brown-Conrady distortion. Pixel (0, 0) is the centre of the top-left pixel.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "Unchecked")]
 pub struct PinholeCamera {
     width: usize,
     height: usize,
@@ -26,6 +28,28 @@ pub struct PinholeCamera {
     cx: f64,
     cy: f64,
     distortion: Distortion,
+}
+
+/// A camera as a file has it.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Unchecked {
+    width: usize,
+    height: usize,
+    fx: f64,
+    fy: f64,
+    cx: f64,
+    cy: f64,
+    #[serde(default)]
+    distortion: Distortion,
+}
+
+impl TryFrom<Unchecked> for PinholeCamera {
+    type Error = Invalid;
+
+    fn try_from(c: Unchecked) -> Result<Self, Invalid> {
+        Self::new((c.width, c.height), (c.fx, c.fy), (c.cx, c.cy), c.distortion)
+    }
 }
 
 impl PinholeCamera {
