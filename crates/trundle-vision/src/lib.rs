@@ -1,5 +1,23 @@
 //! From images to keypoints, descriptors, matches and relative pose.
+//!
+//! [`OrbExtractor`] finds ORB features in an image; [`match_mutual`] pairs the descriptors of two images,
+//! [`rotation_consistent`] drops pairs that turn unlike the rest, [`FeatureGrid`] answers where in an image to look;
+//! [`estimate_rigid_motion`] finds the motion between two RGB-D frames from such pairs in spite of wrong ones, and
+//! [`refine_pose_by_reprojection`] polishes a pose against pixels. Everything is deterministic: the same input and seed
+//! give the same bits on any number of threads. The method and its sources: `docs/algorithms/orb.md`.
 
+mod feature_grid;
 mod features;
+mod matching;
+mod motion;
+mod orb;
+mod rotation_consistency;
 
+pub use feature_grid::FeatureGrid;
 pub use features::{Descriptor, Features, Keypoint};
+pub use matching::{Match, match_mutual};
+pub use motion::{
+    RansacConfig, RansacResult, RefineConfig, estimate_rigid_motion, refine_pose_by_reprojection,
+};
+pub use orb::{OrbConfig, OrbExtractor};
+pub use rotation_consistency::rotation_consistent;

@@ -1,0 +1,334 @@
+use super::refine::gauss_newton;
+use super::residual::{Mover, Observation};
+use super::rigid::rigid_motion;
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use serde::{Deserialize, Serialize};
+use trundle_core::{Invalid, PinholeCamera, Pose3, Vector3, require_in, require_positive};
+
+/// Chi-square with three degrees of freedom at 95 %.
+const CHI2_95_3: f64 = 7.815;
+/// Rounds of polishing at most; the inliers have settled long before.
+const POLISHING: usize = 5;
+/// Gauss-Newton steps a round, and the step (m and rad) that ends it.
+const STEPS: (usize, f64) = (10, 1e-7);
+
+/// How [`estimate_rigid_motion`] tells right pairs from wrong ones.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct RansacConfig {
+    /// Chance to have drawn a sample of right pairs only at which the search ends, above 0, below 1. Default 0.999.
+    pub confidence: f64,
+    /// Samples at most, 1 or more. Default 1000: sure enough (0.999) down to one right pair in five.
+    pub max_iterations: usize,
+    /// Fewer right pairs than this are no motion, 3 or more. Default 12: that many do not agree by chance.
+    pub min_inliers: usize,
+    /// Standard deviation of a keypoint moved into the other image, px, positive. Default 1.5: a corner of the middle
+    /// octaves.
+    pub pixel_sigma: f64,
+    /// Standard deviation of a depth close by, m, positive. Default 0.004: an uneven surface under a corner.
+    pub depth_sigma: f64,
+    /// What the standard deviation of a depth grows by with the square of the depth, 1/m, 0 or more. Default 0.002:
+    /// 1.4e-3 \[Khoshelham12\] for the Kinect, and some for what else is wrong.
+    pub depth_sigma_per_m2: f64,
+}
+
+impl Default for RansacConfig {
+    fn default() -> Self {
+        Self {
+            confidence: 0.999,
+            max_iterations: 1000,
+            min_inliers: 12,
+            pixel_sigma: 1.5,
+            depth_sigma: 0.004,
+            depth_sigma_per_m2: 0.002,
+        }
+    }
+}
+
+impl RansacConfig {
+    /// Passes a valid configuration through.
+    ///
+    /// # Errors
+    /// When a number is outside the range that its field names.
+    pub fn validated(self) -> Result<Self, Invalid> {
+        if !(self.confidence > 0.0 && self.confidence < 1.0) {
+            return Err(Invalid::new("ransac.confidence", self.confidence, "", "above 0, below 1"));
+        }
+        require_in("ransac.max_iterations", self.max_iterations as f64, "", 1.0, 1e9)?;
+        require_in("ransac.min_inliers", self.min_inliers as f64, "", 3.0, 1e9)?;
+        require_positive("ransac.pixel_sigma", self.pixel_sigma, "px")?;
+        require_positive("ransac.depth_sigma", self.depth_sigma, "m")?;
+        require_in("ransac.depth_sigma_per_m2", self.depth_sigma_per_m2, "1/m", 0.0, 1.0)?;
+        Ok(self)
+    }
+
+    fn sigma_of_depth(&self, depth: f64) -> f64 {
+        self.depth_sigma + self.depth_sigma_per_m2 * depth * depth
+    }
+}
+
+/// What [`estimate_rigid_motion`] finds.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RansacResult {
+    /// The motion: maps points of camera frame a into camera frame b.
+    pub b_from_a: Pose3,
+    /// The pairs that agree with it, rising.
+    pub inliers: Vec<usize>,
+}
+
+/// The motion between two RGB-D frames from paired points (camera frames a and b, m), some of the pairs being wrong.
+///
+/// RANSAC \[Fischler81\]: three pairs give a motion by least squares \[Umeyama91\]; a pair agrees with it when its point of a
+/// reprojects to its point of b, in `camera` px and in depth, within 95 % of the noise, which for a depth grows with its
+/// square; the motion with the least truncated cost \[Torr00\] wins, and the search ends when a better one is unlikely. It
+/// is then polished on its inliers by Gauss-Newton on the reprojection and depth errors, robustly weighted (Huber).
+///
+/// Pairs with a point that is not finite or not in front of its camera never agree. The same input and `seed` give the same
+/// result. `None` when fewer than [`RansacConfig::min_inliers`] pairs agree. Panics when the slices differ in length.
+pub fn estimate_rigid_motion(
+    points_a: &[Vector3],
+    points_b: &[Vector3],
+    camera: &PinholeCamera,
+    config: &RansacConfig,
+    seed: u64,
+) -> Option<RansacResult> {
+    assert_eq!(points_a.len(), points_b.len(), "invariant: the points are paired");
+    let pairs: Vec<Pair> = points_a
+        .iter()
+        .zip(points_b)
+        .enumerate()
+        .filter_map(|(index, (&a, &b))| Pair::new(index, a, b, camera, config))
+        .collect();
+    let fewest = config.min_inliers.max(3);
+    (pairs.len() >= fewest).then_some(())?;
+    let search = Search { pairs: &pairs, camera, config };
+    let (b_from_a, inliers) = search.polish(search.best_of_samples(seed)?)?;
+    let inliers: Vec<usize> = inliers.iter().map(|pair| pair.index).collect();
+    (inliers.len() >= fewest).then_some(RansacResult { b_from_a, inliers })
+}
+
+/// A pair of points, as the search sees it.
+#[derive(Debug, Clone, Copy)]
+struct Pair {
+    index: usize,
+    a: Vector3,
+    b: Vector3,
+    /// How far the distance to another point may be wrong because of this one, m.
+    slack: f64,
+    observation: Observation,
+}
+
+impl Pair {
+    /// `None` when a point is not finite or not in front of its camera.
+    fn new(
+        index: usize,
+        a: Vector3,
+        b: Vector3,
+        camera: &PinholeCamera,
+        config: &RansacConfig,
+    ) -> Option<Self> {
+        let finite = a.iter().chain(b.iter()).all(|v| v.is_finite());
+        (finite && a.z > 0.0 && b.z > 0.0).then_some(())?;
+        let depth_sigma = config.sigma_of_depth(a.z).hypot(config.sigma_of_depth(b.z));
+        let observation = Observation {
+            point: a,
+            pixel: camera.project(b)?,
+            per_px: 1.0 / config.pixel_sigma,
+            depth: b.z,
+            per_m: 1.0 / depth_sigma,
+            bound: CHI2_95_3,
+        };
+        let slack = 3.0 * (depth_sigma + config.pixel_sigma * a.z.max(b.z) / camera.fx());
+        Some(Self { index, a, b, slack, observation })
+    }
+}
+
+struct Search<'a> {
+    pairs: &'a [Pair],
+    camera: &'a PinholeCamera,
+    config: &'a RansacConfig,
+}
+
+impl Search<'_> {
+    /// The sampled motion of least cost; of equal ones the first.
+    fn best_of_samples(&self, seed: u64) -> Option<Pose3> {
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        let mut best: Option<(f64, Pose3)> = None;
+        let (mut iteration, mut enough) = (0, self.config.max_iterations);
+        while iteration < enough {
+            iteration += 1;
+            let sample = self.sample(&mut rng);
+            if !keeps_distances(&sample) {
+                continue;
+            }
+            let Some(motion) = rigid_motion(&sample.map(|pair| (pair.a, pair.b))) else { continue };
+            let (cost, inliers) = self.judge(motion);
+            if best.is_none_or(|(least, _)| cost < least) {
+                best = Some((cost, motion));
+                enough = self.enough(inliers);
+            }
+        }
+        best.map(|(_, motion)| motion)
+    }
+
+    /// Three different pairs.
+    fn sample(&self, rng: &mut ChaCha8Rng) -> [&Pair; 3] {
+        let count = self.pairs.len() as u32;
+        let first = rng.random_range(0..count);
+        // Steps from the first that leave the others different without drawing again.
+        let second = rng.random_range(1..count);
+        let third = rng.random_range(1..count - 1);
+        let third = third + u32::from(third >= second);
+        [0, second, third].map(|step| &self.pairs[((first + step) % count) as usize])
+    }
+
+    /// Cost (squared residuals, at most the bound each) and number of inliers.
+    fn judge(&self, b_from_a: Pose3) -> (f64, usize) {
+        let mover = Mover::from(b_from_a);
+        self.pairs.iter().fold((0.0, 0), |(cost, inliers), pair| {
+            let chi2 = pair.observation.chi2(self.camera, mover.transform(pair.a));
+            (cost + chi2.min(CHI2_95_3), inliers + usize::from(chi2 <= CHI2_95_3))
+        })
+    }
+
+    /// Samples after which one of right pairs only was among them, if `inliers` are all the right ones \[Fischler81\].
+    fn enough(&self, inliers: usize) -> usize {
+        let all_right = (inliers as f64 / self.pairs.len() as f64).powi(3);
+        let samples = (1.0 - self.config.confidence).ln() / (1.0 - all_right).ln();
+        // Of 0 right pairs comes -infinity / -0, of all right ones 0: the cast and the minimum take care of both.
+        if all_right > 0.0 {
+            (samples.ceil() as usize).min(self.config.max_iterations)
+        } else {
+            self.config.max_iterations
+        }
+    }
+
+    fn inliers(&self, b_from_a: Pose3) -> Vec<&Pair> {
+        let mover = Mover::from(b_from_a);
+        let agrees = |pair: &&Pair| pair.observation.chi2(self.camera, mover.transform(pair.a)) <= CHI2_95_3;
+        self.pairs.iter().filter(agrees).collect()
+    }
+
+    /// Fits the motion to its inliers until they stay the same. `None` when they do not determine it.
+    fn polish(&self, b_from_a: Pose3) -> Option<(Pose3, Vec<&Pair>)> {
+        let mut motion = b_from_a;
+        let mut inliers = self.inliers(motion);
+        for _ in 0..POLISHING {
+            let observations: Vec<Observation> = inliers.iter().map(|pair| pair.observation).collect();
+            motion = gauss_newton(motion, &observations, self.camera, STEPS.0, STEPS.1)?;
+            let now = self.inliers(motion);
+            let settled = now.iter().map(|p| p.index).eq(inliers.iter().map(|p| p.index));
+            inliers = now;
+            if settled {
+                break;
+            }
+        }
+        Some((motion, inliers))
+    }
+}
+
+/// Whether the three distances are the same on both sides within the noise, as in any rigid motion: the cheap check that
+/// spares most wrong samples the rest.
+fn keeps_distances(sample: &[&Pair; 3]) -> bool {
+    [(0, 1), (1, 2), (2, 0)].into_iter().all(|(i, j)| {
+        let (p, q) = (sample[i], sample[j]);
+        ((p.a - q.a).norm() - (p.b - q.b).norm()).abs() <= p.slack + q.slack
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::Vector6;
+    use proptest::prelude::*;
+    use trundle_core::Vector2;
+
+    /// Points seen from a and b with noise of the pixel and the depth; every second pair is wrong.
+    fn half_wrong(truth: Pose3, count: usize, seed: u64) -> (Vec<Vector3>, Vec<Vector3>) {
+        let camera = PinholeCamera::kinect_v2();
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        let mut around = |middle: f64, reach: f64| middle + reach * (2.0 * rng.random::<f64>() - 1.0);
+        let mut pairs = Vec::new();
+        for i in 0..count {
+            let pixel = Vector2::new(around(255.0, 250.0), around(211.0, 200.0));
+            let a = camera.unproject(pixel, around(2.5, 1.5));
+            let b = truth.transform(a);
+            let seen = camera.project(b).unwrap() + Vector2::new(around(0.0, 0.8), around(0.0, 0.8));
+            let depth = b.z + 0.002 * b.z * b.z * around(0.0, 1.0);
+            let other = Vector2::new(around(255.0, 250.0), around(211.0, 200.0));
+            let wrong = camera.unproject(other, around(2.5, 1.5));
+            pairs.push((a, if i % 2 == 0 { camera.unproject(seen, depth) } else { wrong }));
+        }
+        pairs.into_iter().unzip()
+    }
+
+    fn estimated(points: &(Vec<Vector3>, Vec<Vector3>), seed: u64) -> Option<RansacResult> {
+        let camera = PinholeCamera::kinect_v2();
+        estimate_rigid_motion(&points.0, &points.1, &camera, &RansacConfig::default(), seed)
+    }
+
+    proptest! {
+        #[test]
+        fn half_of_the_pairs_may_be_wrong(
+            tangent in prop::array::uniform6(-0.25..0.25), scene in 0..1000u64, seed: u64,
+        ) {
+            let truth = Pose3::exp(Vector6::from(tangent));
+            let result = estimated(&half_wrong(truth, 200, scene), seed).unwrap();
+            let error = result.b_from_a.inverse() * truth;
+            prop_assert!(error.translation.norm() < 0.01, "{} m", error.translation.norm());
+            prop_assert!(error.angle().to_degrees() < 0.2, "{} deg", error.angle().to_degrees());
+            let right = result.inliers.iter().filter(|i| *i % 2 == 0).count();
+            prop_assert!(right >= 95 && result.inliers.len() - right <= 4, "{right} of {}", result.inliers.len());
+            prop_assert!(result.inliers.is_sorted());
+        }
+
+        #[test]
+        fn three_different_pairs_are_drawn(seed: u64, count in 3..9usize) {
+            let camera = PinholeCamera::kinect_v2();
+            let config = RansacConfig::default();
+            let pair = |i| Pair::new(i, Vector3::z(), Vector3::z(), &camera, &config).unwrap();
+            let pairs: Vec<Pair> = (0..count).map(pair).collect();
+            let search = Search { pairs: &pairs, camera: &camera, config: &config };
+            let [a, b, c] = search.sample(&mut ChaCha8Rng::seed_from_u64(seed)).map(|p| p.index);
+            prop_assert!(a != b && b != c && c != a);
+        }
+    }
+
+    #[test]
+    fn the_seed_decides_everything() {
+        let points = half_wrong(Pose3::exp(Vector6::repeat(0.05)), 120, 3);
+        assert_eq!(estimated(&points, 7), estimated(&points, 7));
+    }
+
+    #[test]
+    fn chance_is_not_a_motion() {
+        let (a, _) = half_wrong(Pose3::identity(), 100, 1);
+        let (b, _) = half_wrong(Pose3::identity(), 100, 2);
+        assert_eq!(estimated(&(a, b), 0), None);
+        assert_eq!(estimated(&(vec![], vec![]), 0), None);
+    }
+
+    #[test]
+    fn broken_points_never_agree() {
+        let (mut a, b) = half_wrong(Pose3::identity(), 100, 1);
+        a[0].x = f64::NAN;
+        a[2].z = -1.0;
+        a[4].z = f64::INFINITY;
+        let inliers = estimated(&(a, b), 0).unwrap().inliers;
+        assert!(inliers.len() >= 45 && inliers[0] > 4);
+    }
+
+    #[test]
+    fn broken_configurations_are_refused_by_name() {
+        let refused = |config: RansacConfig| config.validated().unwrap_err().field;
+        let good = RansacConfig::default;
+        assert_eq!(refused(RansacConfig { confidence: 1.0, ..good() }), "ransac.confidence");
+        assert_eq!(refused(RansacConfig { max_iterations: 0, ..good() }), "ransac.max_iterations");
+        assert_eq!(refused(RansacConfig { min_inliers: 2, ..good() }), "ransac.min_inliers");
+        assert_eq!(refused(RansacConfig { pixel_sigma: -1.0, ..good() }), "ransac.pixel_sigma");
+        assert_eq!(refused(RansacConfig { depth_sigma: f64::NAN, ..good() }), "ransac.depth_sigma");
+        assert_eq!(refused(RansacConfig { depth_sigma_per_m2: -1.0, ..good() }), "ransac.depth_sigma_per_m2");
+        assert!(good().validated().is_ok());
+    }
+}

@@ -1,0 +1,95 @@
+use serde::{Deserialize, Serialize};
+use trundle_core::{Invalid, require_in};
+
+/// How [`OrbExtractor`](crate::OrbExtractor) finds features.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct OrbConfig {
+    /// Features an image at most, 1 to 100000. Default 1000 \[MurArtal17\].
+    pub features: usize,
+    /// Levels of the image pyramid, 1 to 32. Default 8 \[Rublee11\].
+    pub levels: usize,
+    /// Ratio of the sizes of neighbouring levels, above 1, at most 2. Default 1.2 \[Rublee11\].
+    pub scale_factor: f64,
+    /// A corner's nine neighbours differ from it by more than this, grey values, 1 to 254. Default 20 \[Rublee11\].
+    pub fast_threshold: u8,
+    /// The same where a cell would stay empty, grey values, 1 to `fast_threshold`. Default 7 \[MurArtal17\].
+    pub fast_min_threshold: u8,
+    /// Side of the cells in which the lower threshold is resorted to, px of the level, 8 or more. Default 32: about
+    /// the size of what a descriptor sees.
+    pub cell_px: usize,
+}
+
+impl Default for OrbConfig {
+    fn default() -> Self {
+        Self {
+            features: 1000,
+            levels: 8,
+            scale_factor: 1.2,
+            fast_threshold: 20,
+            fast_min_threshold: 7,
+            cell_px: 32,
+        }
+    }
+}
+
+impl OrbConfig {
+    /// Passes a valid configuration through.
+    ///
+    /// # Errors
+    /// When a number is outside the range that its field names.
+    pub fn validated(self) -> Result<Self, Invalid> {
+        require_in("orb.features", self.features as f64, "", 1.0, 100_000.0)?;
+        require_in("orb.levels", self.levels as f64, "", 1.0, 32.0)?;
+        if !(self.scale_factor > 1.0 && self.scale_factor <= 2.0) {
+            return Err(Invalid::new("orb.scale_factor", self.scale_factor, "", "above 1, at most 2"));
+        }
+        let threshold = f64::from(self.fast_threshold);
+        require_in("orb.fast_threshold", threshold, "grey values", 1.0, 254.0)?;
+        let low = f64::from(self.fast_min_threshold);
+        require_in("orb.fast_min_threshold", low, "grey values", 1.0, threshold)?;
+        require_in("orb.cell_px", self.cell_px as f64, "px", 8.0, 65536.0)?;
+        Ok(self)
+    }
+
+    /// The size of a pixel of each level, px of the full image: 1, s, s^2, ... A keypoint's standard deviation grows so.
+    pub fn scale_factors(&self) -> Vec<f64> {
+        (0..self.levels).map(|level| self.scale_factor.powi(level as i32)).collect()
+    }
+
+    /// How many of the features each level should give: falling by the scale factor, adding up to `features`.
+    pub(crate) fn quotas(&self) -> Vec<usize> {
+        let share: Vec<f64> = self.scale_factors().iter().map(|scale| 1.0 / scale).collect();
+        let unit = self.features as f64 / share.iter().sum::<f64>();
+        let up_to = |level: usize| (unit * share[..level].iter().sum::<f64>()).round() as usize;
+        (0..self.levels).map(|level| up_to(level + 1) - up_to(level)).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_quotas_add_up_and_fall() {
+        for features in [1, 7, 1000, 1001] {
+            let quotas = OrbConfig { features, ..Default::default() }.quotas();
+            assert_eq!(quotas.iter().sum::<usize>(), features);
+        }
+        assert!(OrbConfig::default().quotas().is_sorted_by(|a, b| a > b));
+    }
+
+    #[test]
+    fn broken_configurations_are_refused_by_name() {
+        let refused = |config: OrbConfig| config.validated().unwrap_err().field;
+        let good = OrbConfig::default;
+        assert_eq!(refused(OrbConfig { features: 0, ..good() }), "orb.features");
+        assert_eq!(refused(OrbConfig { levels: 33, ..good() }), "orb.levels");
+        assert_eq!(refused(OrbConfig { scale_factor: f64::NAN, ..good() }), "orb.scale_factor");
+        assert_eq!(refused(OrbConfig { scale_factor: 1.0, ..good() }), "orb.scale_factor");
+        assert_eq!(refused(OrbConfig { fast_threshold: 0, ..good() }), "orb.fast_threshold");
+        assert_eq!(refused(OrbConfig { fast_min_threshold: 21, ..good() }), "orb.fast_min_threshold");
+        assert_eq!(refused(OrbConfig { cell_px: 2, ..good() }), "orb.cell_px");
+        assert!(good().validated().is_ok());
+    }
+}

@@ -1,0 +1,120 @@
+use super::fast::Corner;
+
+/// Appends to `chosen` `quota` of the `corners`, or all if there are fewer, spread evenly over an image of this size.
+///
+/// The image is halved again and again across its longer side, and the quota with it; what one half cannot use, the
+/// other may. Where the quota has come down to one, the strongest corner is taken. Cost: n log n. The order of the
+/// `corners` is lost; that of `chosen` is fixed.
+pub(crate) fn choose(
+    corners: &mut [Corner],
+    (width, height): (usize, usize),
+    quota: usize,
+    chosen: &mut Vec<Corner>,
+) {
+    let area = Area { left: 0, right: width as u32, top: 0, bottom: height as u32 };
+    choose_in(area, corners, quota, chosen);
+}
+
+/// A rectangle of pixels, right and bottom exclusive.
+#[derive(Clone, Copy)]
+struct Area {
+    left: u32,
+    right: u32,
+    top: u32,
+    bottom: u32,
+}
+
+impl Area {
+    fn halves(self) -> (Self, Self) {
+        if self.right - self.left >= self.bottom - self.top {
+            let middle = (self.left + self.right) / 2;
+            (Self { right: middle, ..self }, Self { left: middle, ..self })
+        } else {
+            let middle = (self.top + self.bottom) / 2;
+            (Self { bottom: middle, ..self }, Self { top: middle, ..self })
+        }
+    }
+
+    fn contains(self, corner: Corner) -> bool {
+        let (x, y) = (u32::from(corner.x), u32::from(corner.y));
+        (self.left..self.right).contains(&x) && (self.top..self.bottom).contains(&y)
+    }
+}
+
+fn choose_in(area: Area, corners: &mut [Corner], quota: usize, chosen: &mut Vec<Corner>) {
+    if corners.len() <= quota {
+        chosen.extend_from_slice(corners);
+    } else if quota == 1 {
+        chosen.extend(corners.iter().max_by_key(|c| (c.score, std::cmp::Reverse((c.y, c.x)))));
+    } else if quota > 1 {
+        let (area_a, area_b) = area.halves();
+        let (a, b) = partition(corners, |corner| area_a.contains(corner));
+        let (quota_a, quota_b) = share(quota, a.len(), b.len());
+        choose_in(area_a, a, quota_a, chosen);
+        choose_in(area_b, b, quota_b, chosen);
+    }
+}
+
+/// Half of the quota each, the odd one to the larger, and what one has too few for to the other.
+fn share(quota: usize, a: usize, b: usize) -> (usize, usize) {
+    let fair_a = if a >= b { quota.div_ceil(2) } else { quota / 2 };
+    let for_b = (quota - fair_a.min(a)).min(b);
+    (quota - for_b, for_b)
+}
+
+/// Those of which `is_first` holds, and the others.
+fn partition(corners: &mut [Corner], is_first: impl Fn(Corner) -> bool) -> (&mut [Corner], &mut [Corner]) {
+    let mut boundary = 0;
+    for i in 0..corners.len() {
+        if is_first(corners[i]) {
+            corners.swap(i, boundary);
+            boundary += 1;
+        }
+    }
+    corners.split_at_mut(boundary)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+    use std::collections::BTreeSet;
+
+    fn any_corners() -> impl Strategy<Value = Vec<Corner>> {
+        prop::collection::btree_map((0..64u16, 0..48u16), 0..=255u8, 0..200)
+            .prop_map(|corners| corners.into_iter().map(|((x, y), score)| Corner { x, y, score }).collect())
+    }
+
+    fn chosen(corners: &[Corner], quota: usize) -> Vec<Corner> {
+        let mut out = Vec::new();
+        choose(&mut corners.to_vec(), (64, 48), quota, &mut out);
+        out
+    }
+
+    proptest! {
+        #[test]
+        fn the_quota_is_met_without_repeats(corners in any_corners(), quota in 0..250usize) {
+            let out = chosen(&corners, quota);
+            prop_assert_eq!(out.len(), quota.min(corners.len()));
+            let distinct: BTreeSet<_> = out.iter().map(|c| (c.x, c.y)).collect();
+            prop_assert_eq!(distinct.len(), out.len());
+            prop_assert!(out.iter().all(|c| corners.contains(c)));
+        }
+
+        #[test]
+        fn the_strongest_one_is_taken(corners in any_corners()) {
+            let best = corners.iter().map(|c| c.score).max();
+            prop_assert_eq!(chosen(&corners, 1).first().map(|c| c.score), best);
+        }
+    }
+
+    #[test]
+    fn a_crowd_does_not_starve_a_lonely_corner() {
+        let crowd = (0..40).flat_map(|x| (0..20).map(move |y| Corner { x: x / 2, y, score: 200 }));
+        let mut corners: Vec<Corner> = crowd.filter(|c| c.x % 2 == 0).collect();
+        corners.dedup();
+        let lonely = Corner { x: 60, y: 40, score: 8 };
+        corners.push(lonely);
+        assert!(chosen(&corners, 4).contains(&lonely));
+    }
+}

@@ -1,0 +1,88 @@
+use super::{
+    Described, OrbConfig, blur::Blur, brief, distribute, fast, fast::Corner, orientation, patch,
+    resize::Resize,
+};
+use trundle_core::GrayImage;
+
+/// One level of the pyramid, with the buffers of every step.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Level {
+    image: GrayImage,
+    blurred: GrayImage,
+    resize: Resize,
+    blur: Blur,
+    detector: fast::Detector,
+    corners: Vec<Corner>,
+    chosen: Vec<Corner>,
+    features: Vec<Described>,
+}
+
+impl Level {
+    pub fn width(&self) -> usize {
+        self.image.width()
+    }
+
+    pub fn height(&self) -> usize {
+        self.image.height()
+    }
+
+    /// What was found, in the order of the distribution.
+    pub fn features(&self) -> &[Described] {
+        &self.features
+    }
+
+    /// Becomes level 0 of `image`.
+    pub fn load(&mut self, image: &GrayImage) {
+        self.fit(image.width(), image.height());
+        self.image.data_mut().copy_from_slice(image.data());
+    }
+
+    /// Becomes `finer` at another size.
+    pub fn shrink(&mut self, finer: &Self, width: usize, height: usize) {
+        self.fit(width, height);
+        self.resize.run(&finer.image, &mut self.image);
+    }
+
+    fn fit(&mut self, width: usize, height: usize) {
+        if (self.width(), self.height()) != (width, height) {
+            self.image = GrayImage::filled(width, height, 0);
+            self.blurred = self.image.clone();
+        }
+    }
+
+    /// Finds the corners that are far enough from the border to be described.
+    pub fn detect(&mut self, config: &OrbConfig) {
+        self.corners.clear();
+        if self.width().min(self.height()) > 2 * patch::BORDER && self.width().max(self.height()) <= 65536 {
+            self.detector.detect(&self.image, config, &mut self.corners);
+        }
+    }
+
+    /// Keeps `quota` of the corners, evenly spread, or all if there are fewer. How many were kept.
+    pub fn choose(&mut self, quota: usize) -> usize {
+        self.chosen.clear();
+        distribute::choose(
+            &mut self.corners,
+            (self.image.width(), self.image.height()),
+            quota,
+            &mut self.chosen,
+        );
+        self.chosen.len()
+    }
+
+    /// Orients and describes the chosen corners.
+    pub fn describe(&mut self) {
+        self.features.clear();
+        if self.chosen.is_empty() {
+            return;
+        }
+        self.blur.run(&self.image, &mut self.blurred);
+        let blurred = &self.blurred;
+        self.features.extend(self.chosen.iter().map(|&corner| {
+            let patch = patch::around(blurred, corner);
+            let direction = orientation::direction(&patch);
+            let descriptor = brief::describe(&patch, direction);
+            Described { corner, angle: direction.angle, descriptor }
+        }));
+    }
+}

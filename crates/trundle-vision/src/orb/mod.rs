@@ -1,0 +1,129 @@
+//! ORB: corners of FAST on an image pyramid, oriented by the intensity centroid, described by rotated BRIEF \[Rublee11\].
+//!
+//! The idea: a cheap corner test finds the same points in every image, their surroundings' centre of mass tells how the
+//! camera is rolled, and 256 brightness comparisons turned by that angle make a fingerprint compared by counting bits.
+//! Cost: linear in the pixels of the pyramid (3.3 images) plus about 1 us a feature.
+//!
+//! | paper | here | unit |
+//! |---|---|---|
+//! | n, N | `OrbConfig::features` | |
+//! | t (FAST) | `OrbConfig::fast_threshold` | grey values |
+//! | m_10, m_01 | `moments` | grey value px |
+//! | theta = atan2(m_01, m_10) | `Keypoint::angle` | rad |
+//! | S_theta = R_theta S | `PATTERN` turned in `describe` | px of the level |
+
+mod blur;
+mod brief;
+mod config;
+mod distribute;
+mod fast;
+mod level;
+mod orientation;
+mod patch;
+mod resize;
+
+pub use config::OrbConfig;
+
+use crate::{Descriptor, Features, Keypoint};
+use level::Level;
+use rayon::prelude::*;
+use trundle_core::{GrayImage, Invalid};
+
+/// Finds ORB features; keeps its pyramid and buffers from image to image.
+#[derive(Debug, Clone)]
+pub struct OrbExtractor {
+    config: OrbConfig,
+    scale_factors: Vec<f64>,
+    quotas: Vec<usize>,
+    levels: Vec<Level>,
+}
+
+impl OrbExtractor {
+    /// An extractor that works as `config` says.
+    ///
+    /// # Errors
+    /// When the configuration is not valid.
+    pub fn new(config: OrbConfig) -> Result<Self, Invalid> {
+        let config = config.validated()?;
+        let levels = vec![Level::default(); config.levels];
+        Ok(Self { scale_factors: config.scale_factors(), quotas: config.quotas(), levels, config })
+    }
+
+    /// How it works.
+    pub fn config(&self) -> &OrbConfig {
+        &self.config
+    }
+
+    /// The size of a pixel of each octave, px of the full image: 1, s, s^2, ...
+    pub fn scale_factors(&self) -> &[f64] {
+        &self.scale_factors
+    }
+
+    /// The features of `image`, octave by octave, at most [`OrbConfig::features`]; keypoints in px of `image`. None
+    /// within 16 px (of its own level) of the border: there is nothing to describe it by. An image of less than 33 px
+    /// a side has none.
+    pub fn extract(&mut self, image: &GrayImage) -> Features {
+        let mut features = Features::default();
+        self.extract_into(image, &mut features);
+        features
+    }
+
+    /// [`OrbExtractor::extract`] into a buffer, whose content is replaced.
+    pub fn extract_into(&mut self, image: &GrayImage, features: &mut Features) {
+        self.build_pyramid(image);
+        let config = &self.config;
+        self.levels.par_iter_mut().for_each(|level| level.detect(config));
+        self.choose();
+        self.levels.par_iter_mut().for_each(Level::describe);
+        self.collect(image, features);
+    }
+
+    /// Each level from the one below it.
+    fn build_pyramid(&mut self, image: &GrayImage) {
+        for (index, scale) in self.scale_factors.iter().enumerate() {
+            let size = |side: usize| (side as f64 / scale).round() as usize;
+            let (below, rest) = self.levels.split_at_mut(index);
+            match below.last() {
+                None => rest[0].load(image),
+                Some(finer) => rest[0].shrink(finer, size(image.width()), size(image.height())),
+            }
+        }
+    }
+
+    /// Takes each level's share of its corners; what a level lacks, the next ones may give.
+    fn choose(&mut self) {
+        let mut owed = 0;
+        for (level, quota) in self.levels.iter_mut().zip(&self.quotas) {
+            owed += quota;
+            owed -= level.choose(owed);
+        }
+    }
+
+    fn collect(&self, image: &GrayImage, features: &mut Features) {
+        features.keypoints.clear();
+        features.descriptors.clear();
+        for (octave, level) in self.levels.iter().enumerate() {
+            // Pixel centres are whole numbers on every level, so the corners of the images coincide at -0.5.
+            let across = image.width() as f32 / level.width().max(1) as f32;
+            let down = image.height() as f32 / level.height().max(1) as f32;
+            for described in level.features() {
+                features.keypoints.push(Keypoint {
+                    x: (f32::from(described.corner.x) + 0.5) * across - 0.5,
+                    y: (f32::from(described.corner.y) + 0.5) * down - 0.5,
+                    octave: octave as u8,
+                    angle: described.angle,
+                    response: f32::from(described.corner.score),
+                });
+                features.descriptors.push(described.descriptor);
+            }
+        }
+    }
+}
+
+/// A corner of a level with what its surroundings say.
+#[derive(Debug, Clone, Copy)]
+struct Described {
+    corner: fast::Corner,
+    angle: f32,
+    descriptor: Descriptor,
+}

@@ -1,0 +1,49 @@
+use crate::{Keypoint, Match};
+use std::f32::consts::TAU;
+
+/// Bins over the circle: 12 deg each.
+const BINS: usize = 30;
+
+/// The matches whose keypoints turn between the images as most others do: those in the three fullest bins of a
+/// histogram of the angle differences, 12 deg each, in their old order. Of equally full bins the lower counts. A camera
+/// turns all keypoints alike as long as it rolls about its own axis and moves little otherwise.
+///
+/// `a` and `b` are the keypoints that the matches' indices refer to. Panics when an index is out of range.
+pub fn rotation_consistent(matches: &[Match], a: &[Keypoint], b: &[Keypoint]) -> Vec<Match> {
+    let bin = |m: &Match| {
+        let turn = (b[m.b].angle - a[m.a].angle).rem_euclid(TAU) / TAU;
+        (turn * BINS as f32) as usize % BINS
+    };
+    let mut histogram = [0; BINS];
+    matches.iter().for_each(|m| histogram[bin(m)] += 1);
+    let mut by_size: [usize; BINS] = std::array::from_fn(|i| i);
+    by_size.sort_by_key(|&i| std::cmp::Reverse(histogram[i]));
+    matches.iter().filter(|m| by_size[..3].contains(&bin(m))).copied().collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn keypoint(angle: f32) -> Keypoint {
+        Keypoint { x: 0.0, y: 0.0, octave: 0, angle, response: 0.0 }
+    }
+
+    #[test]
+    fn what_turns_unlike_the_rest_is_dropped() {
+        let a: Vec<Keypoint> = (0..50).map(|i| keypoint(i as f32 * 0.12 - 3.0)).collect();
+        let mut b: Vec<Keypoint> = a.iter().map(|k| keypoint((k.angle + 0.6 + TAU) % TAU)).collect();
+        for i in [3, 17, 40] {
+            b[i].angle += 1.0 + i as f32 / 20.0;
+        }
+        let matches: Vec<Match> = (0..50).map(|i| Match { a: i, b: i, distance: 0 }).collect();
+        let kept: Vec<usize> = rotation_consistent(&matches, &a, &b).iter().map(|m| m.a).collect();
+        assert!((0..50).filter(|i| ![3, 17, 40].contains(i)).all(|i| kept.contains(&i)));
+        assert!(kept.len() <= 49, "at most the two fullest of three odd bins can be kept");
+    }
+
+    #[test]
+    fn nothing_in_nothing_out() {
+        assert_eq!(rotation_consistent(&[], &[], &[]), vec![]);
+    }
+}
