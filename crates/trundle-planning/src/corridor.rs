@@ -41,7 +41,13 @@ pub(crate) fn corridor(space: &Space<'_>, a: Vector2, b: Vector2, reach: f64, wa
 }
 
 /// The sides of the window, cut to the grid.
-fn frame(space: &Space<'_>, a: Vector2, b: Vector2, (low, high): (Vector2, Vector2), want: f64) -> Vec<HalfPlane> {
+fn frame(
+    space: &Space<'_>,
+    a: Vector2,
+    b: Vector2,
+    (low, high): (Vector2, Vector2),
+    want: f64,
+) -> Vec<HalfPlane> {
     let (grid_low, grid_high) = space.field.extent();
     let inset = if space.field.is_walled() { want } else { 0.0 };
     let low = low.sup(&(grid_low + Vector2::repeat(inset))).inf(&a.inf(&b));

@@ -10,8 +10,8 @@ use crate::watch::{Obstruction, still_free};
 use crate::wave::{Wave, WaveFront};
 use crate::{Curve, DistanceField, PlannerConfig, UnknownIs};
 use trundle_core::{
-    DifferentialDrive, DriveLimits, Footprint, GridGeometry, Invalid, OccupancyGrid, Path, Pose2, Trajectory, Twist2,
-    Vector2,
+    DifferentialDrive, DriveLimits, Footprint, GridGeometry, Invalid, OccupancyGrid, Path, Pose2, Trajectory,
+    Twist2, Vector2,
 };
 
 /// From a grid, a pose and a goal to way-points, a verified curve and a trajectory.
@@ -110,7 +110,8 @@ impl Planner {
             Err(plan) => return plan,
         };
         let field = DistanceField::over(geometry, grid, self.config.unknown, self.field.take());
-        let task = Task { config: &self.config, radius: self.radius, drive: &self.drive, field: &field, grid };
+        let task =
+            Task { config: &self.config, radius: self.radius, drive: &self.drive, field: &field, grid };
         let plan = task.plan(&mut self.wave, start, twist, goal);
         self.field = Some(field);
         plan
@@ -145,7 +146,9 @@ fn finite(start: Pose2, twist: Twist2, goal: Pose2) -> Result<(), Invalid> {
         ("goal y", goal.y, "m"),
         ("goal heading", goal.theta, "rad"),
     ];
-    numbers.into_iter().try_for_each(|(name, value, unit)| trundle_core::require_finite(name, value, unit).map(drop))
+    numbers
+        .into_iter()
+        .try_for_each(|(name, value, unit)| trundle_core::require_finite(name, value, unit).map(drop))
 }
 
 /// One question on one field.
@@ -167,11 +170,15 @@ struct Way {
 impl Task<'_> {
     fn plan(&self, wave: &mut WaveFront, start: Pose2, twist: Twist2, goal: Pose2) -> Plan {
         let space = Space::new(self.field, self.grid, self.config.room, self.radius, start.position());
-        if let Some(refusal) = self.ends(&space, start.position(), goal.position()) {
+        if let Some(refusal) = self.at_start(start.position()) {
             return refusal;
         }
         if start.distance(&goal) < SAME_PLACE {
             return self.turn_only(start, twist, goal);
+        }
+        if !self.field.keeps(goal.position(), self.radius) {
+            let clearance = self.field.clearance(goal.position(), self.radius) - self.radius;
+            return Plan::GoalInObstacle { clearance };
         }
         let way = match self.way(wave, &space, start.position(), goal.position()) {
             Ok(way) => way,
@@ -193,16 +200,10 @@ impl Task<'_> {
         self.timed(way, phases, start, 0.0, still)
     }
 
-    fn ends(&self, space: &Space<'_>, start: Vector2, goal: Vector2) -> Option<Plan> {
+    fn at_start(&self, start: Vector2) -> Option<Plan> {
         let room = self.field.clearance(start, self.radius);
-        if room <= 0.0 || room < self.radius - self.config.room.escape {
-            return Some(Plan::StartInObstacle { clearance: room - self.radius });
-        }
-        if !space.is_free(goal) {
-            let clearance = self.field.clearance(goal, self.radius) - self.radius;
-            return Some(Plan::GoalInObstacle { clearance });
-        }
-        None
+        let inside = room <= 0.0 || room < self.radius - self.config.room.escape;
+        inside.then(|| Plan::StartInObstacle { clearance: room - self.radius })
     }
 
     fn turn_only(&self, start: Pose2, twist: Twist2, goal: Pose2) -> Plan {
@@ -264,7 +265,8 @@ impl Task<'_> {
             points.insert(0, start.position());
             points
         };
-        let whole = Way { raw: with_start(rest.raw), points: with_start(rest.points), fell_back: rest.fell_back };
+        let whole =
+            Way { raw: with_start(rest.raw), points: with_start(rest.points), fell_back: rest.fell_back };
         Some(self.timed(whole, phases, start, twist.v, twist.omega.abs() <= STANDING))
     }
 

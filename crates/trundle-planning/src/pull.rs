@@ -6,7 +6,10 @@ use trundle_core::Vector2;
 /// Rounds of pulling; each halves what is left to gain.
 const ROUNDS: usize = 3;
 
-/// The few way-points that a dense free path stands for: same ends, straight pieces free, cost not above the path's.
+/// What a skipped point may cost more, as a share.
+const SLACK: f64 = 2e-3;
+
+/// The few way-points that a dense free path stands for: same ends, straight pieces free, hardly dearer than the path.
 pub(crate) fn pull_taut(space: &Space<'_>, path: &[Vector2]) -> Vec<Vector2> {
     let mut way = thin(space, path);
     for _ in 0..ROUNDS {
@@ -23,7 +26,7 @@ fn thin(space: &Space<'_>, path: &[Vector2]) -> Vec<Vector2> {
         so_far.push(so_far[so_far.len() - 1] + space.cost(pair[0], pair[1]));
     }
     let skips = |from: usize, to: usize| {
-        let allowed = so_far[to] - so_far[from] + 1e-9;
+        let allowed = (so_far[to] - so_far[from]) * (1.0 + SLACK);
         (path[to] - path[from]).norm() <= allowed
             && space.cost(path[from], path[to]) <= allowed
             && space.sees(path[from], path[to])

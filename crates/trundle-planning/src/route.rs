@@ -81,7 +81,8 @@ fn safe_curve(
 fn is_drivable(space: &Space<'_>, curve: &Curve, max_curvature: f64) -> bool {
     let samples = curve.samples(SPACING);
     let smooth = samples.windows(2).all(|pair| {
-        difference_of_angles(pair[1].pose.theta, pair[0].pose.theta).abs() < BREAK && pair[1].arc > pair[0].arc
+        difference_of_angles(pair[1].pose.theta, pair[0].pose.theta).abs() < BREAK
+            && pair[1].arc > pair[0].arc
     });
     smooth
         && samples.iter().all(|sample| {
@@ -113,7 +114,8 @@ fn part(space: &Space<'_>, way: &[Vector2], config: &CurveConfig) -> Vec<Curve> 
 
 /// The inner way-point where the way turns most.
 fn sharpest(way: &[Vector2]) -> usize {
-    let turn = |i: usize| difference_of_angles(bearing(way[i + 1] - way[i]), bearing(way[i] - way[i - 1])).abs();
+    let turn =
+        |i: usize| difference_of_angles(bearing(way[i + 1] - way[i]), bearing(way[i] - way[i - 1])).abs();
     (1..way.len() - 1).max_by(|i, j| turn(*i).total_cmp(&turn(*j))).expect("invariant: an inner way-point")
 }
 

@@ -43,7 +43,7 @@ impl<'a> Space<'a> {
         let missing = radius - at_start;
         let escape = (missing > ROUNDING).then(|| Escape {
             start,
-            zone: radius + missing + 2.0 * field.geometry().resolution,
+            zone: missing + 3.0 * field.geometry().resolution,
             radius: at_start,
         });
         let offset = (field.geometry().origin - grid.geometry().origin) / grid.geometry().resolution;
@@ -140,8 +140,7 @@ impl<'a> Space<'a> {
         let cell = self.field.geometry().cell(linear);
         let (col, row) = (cell.col as i64 + self.shift.0, cell.row as i64 + self.shift.1);
         let geometry = self.grid.geometry();
-        let inside =
-            col >= 0 && row >= 0 && col < geometry.width as i64 && row < geometry.height as i64;
+        let inside = col >= 0 && row >= 0 && col < geometry.width as i64 && row < geometry.height as i64;
         !inside || self.grid.cells()[row as usize * geometry.width + col as usize] == Cell::Unknown
     }
 }

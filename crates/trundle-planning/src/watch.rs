@@ -63,11 +63,12 @@ fn room(grid: &OccupancyGrid, unknown: UnknownIs, point: Vector2, cap: f64) -> f
     for r in row - reach..=row + reach {
         for c in col - reach..=col + reach {
             let inside = r >= 0 && c >= 0 && r < geometry.height as i64 && c < geometry.width as i64;
-            let cell = if inside { grid.cells()[r as usize * geometry.width + c as usize] } else { Cell::Unknown };
-            let blocks =
-                cell == Cell::Occupied || (cell == Cell::Unknown && unknown == UnknownIs::Obstacle);
+            let cell =
+                if inside { grid.cells()[r as usize * geometry.width + c as usize] } else { Cell::Unknown };
+            let blocks = cell == Cell::Occupied || (cell == Cell::Unknown && unknown == UnknownIs::Obstacle);
             if blocks {
-                let centre = geometry.origin + Vector2::new(c as f64 + 0.5, r as f64 + 0.5) * geometry.resolution;
+                let centre =
+                    geometry.origin + Vector2::new(c as f64 + 0.5, r as f64 + 0.5) * geometry.resolution;
                 best = best.min(box_gap(point, centre, half).norm());
             }
         }

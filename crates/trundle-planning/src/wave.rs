@@ -4,9 +4,10 @@
 //! geodesic one, and the repulsion by slowness of the wave near obstacles; such a potential has one minimum, and
 //! descending it is following the wave back. The wave runs towards the goal first (A*, \[Hart68\]) on the 8-neighbour
 //! lattice of cells where the robot fits, every step checked against the obstacles' squares. Complete: if the lattice
-//! connects, the way is found. Cost: O(cells reached), in buckets instead of a heap.
+//! connects, the way is found. Cost: O(cells reached), in buckets whose turn sorts them.
 
-use crate::{buckets::Buckets, space::Space};
+use crate::buckets::{Buckets, Entry};
+use crate::space::Space;
 use std::f64::consts::SQRT_2;
 use trundle_core::Vector2;
 
@@ -23,7 +24,7 @@ pub(crate) enum Wave {
 #[derive(Debug, Default)]
 pub(crate) struct WaveFront {
     cost: Vec<f32>,
-    /// Which of [`STEPS`] led here; [`SEED`] for the first ring.
+    /// Which of [`STEPS`] led here, [`SEED`] for the first ring.
     step: Vec<u8>,
     queue: Buckets,
 }
@@ -37,14 +38,19 @@ impl WaveFront {
     /// Runs the wave from `start` to `goal`, both free and inside the field.
     pub(crate) fn run(&mut self, space: &Space<'_>, start: Vector2, goal: Vector2) -> Wave {
         let resolution = space.field.geometry().resolution;
-        self.reset(space, octile(goal - start), resolution / 4.0);
+        self.reset(space, octile(goal - start), resolution);
         let mut nearest = start;
         for (cell, length) in ring(space, start) {
-            self.reach(cell, space.cost(start, space.center(cell)).max(length), SEED, octile_to(space, cell, goal));
+            self.reach(
+                cell,
+                space.cost(start, space.center(cell)).max(length),
+                SEED,
+                octile_to(space, cell, goal),
+            );
         }
         let ends = ring(space, goal);
         let mut best: Option<(f64, usize)> = None;
-        while let Some((key, cell, cost)) = self.queue.pop() {
+        while let Some(Entry { key, cell, cost }) = self.queue.pop() {
             if best.is_some_and(|(total, _)| key >= total) {
                 break;
             }
@@ -80,10 +86,11 @@ impl WaveFront {
 
     fn reach(&mut self, cell: usize, cost: f64, step: u8, ahead: f64) {
         let stored = cost as f32;
-        if stored < self.cost[cell] {
+        // Costs of the same length differ in their last bits by the order of their sums: no reason to start again.
+        if stored < self.cost[cell] * (1.0 - 1e-6) || self.cost[cell] == f32::INFINITY {
             self.cost[cell] = stored;
             self.step[cell] = step;
-            self.queue.push(cost + ahead, cell as u32, stored);
+            self.queue.push(Entry { key: cost + ahead, cost: stored, cell: cell as u32 });
         }
     }
 

@@ -32,8 +32,7 @@ impl DistanceField {
             return true;
         }
         let resolution = self.geometry.resolution;
-        quick + resolution >= radius
-            && self.clearance(point, radius + resolution) >= radius - ROUNDING
+        quick + resolution >= radius && self.clearance(point, radius + resolution) >= radius - ROUNDING
     }
 
     /// By how much [`DistanceField::distance`] may exceed the truth where that is near `radius`: a distance's second
@@ -41,11 +40,7 @@ impl DistanceField {
     pub(crate) fn overestimate(&self, radius: f64) -> f64 {
         let resolution = self.geometry.resolution;
         let diagonal = resolution * std::f64::consts::FRAC_1_SQRT_2;
-        if radius > 2.0 * diagonal {
-            resolution * resolution / (4.0 * (radius - diagonal))
-        } else {
-            diagonal
-        }
+        if radius > 2.0 * diagonal { resolution * resolution / (4.0 * (radius - diagonal)) } else { diagonal }
     }
 
     /// The lower and the upper corner of the grid, map frame, m.

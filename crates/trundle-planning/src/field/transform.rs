@@ -109,9 +109,5 @@ impl Envelope {
 
 /// The squared vertical gap, in cells, between a cell's centre and a square `count` rows away.
 fn squared_gap(count: f32) -> f64 {
-    if count >= NONE {
-        f64::INFINITY
-    } else {
-        (f64::from(count) - 0.5).max(0.0).powi(2)
-    }
+    if count >= NONE { f64::INFINITY } else { (f64::from(count) - 0.5).max(0.0).powi(2) }
 }

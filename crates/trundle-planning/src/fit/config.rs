@@ -9,11 +9,12 @@ pub struct CurveConfig {
     pub degree: usize,
     /// Length below which the curve smooths the way instead of following it, m, above 0, at most 10. Default 0.5 (ours).
     pub smoothing: f64,
-    /// Longest stretch of way that one piece stands for, m, 0.1 to 100. Default 1.5 (ours).
+    /// Longest stretch of way that one piece stands for, m, 0.1 to 100. Default 1 (ours).
     pub piece: f64,
     /// How far beside a stretch its corridor may reach, m, 0.1 to 10. Default 0.8 (ours).
     pub reach: f64,
-    /// eps of METHODS A5: the least tangent at the ends, as a share of unit speed, 0.01 to 1. Default 0.25 (ours).
+    /// eps of METHODS A5: the least tangent at the ends, as a share of unit speed, 0.01 to 1. Default 0.7 (ours):
+    /// a slower parameter bends sharply.
     pub least_tangent: f64,
     /// Curvature above which a curve is refused and the way is split, 1/m, 0.1 to 1000. Default 8 (ours): there a Kobuki
     /// still drives 0.36 m/s.
@@ -30,9 +31,9 @@ impl Default for CurveConfig {
         Self {
             degree: 5,
             smoothing: 0.5,
-            piece: 1.5,
+            piece: 1.0,
             reach: 0.8,
-            least_tangent: 0.25,
+            least_tangent: 0.7,
             max_curvature: 8.0,
             turn_first: 60f64.to_radians(),
             turn_last: 100f64.to_radians(),

@@ -13,6 +13,7 @@
 //! | eps of x' cos theta + y' sin theta >= eps | `least_tangent` | 1 |
 
 mod config;
+mod layout;
 mod objective;
 mod rows;
 
@@ -21,7 +22,7 @@ pub use config::CurveConfig;
 use crate::bezier::BezierPiece;
 use crate::corridor::{HalfPlane, corridor};
 use crate::space::Space;
-use crate::{curve::Curve, fit::rows::Rows};
+use crate::{curve::Curve, fit::layout::Layout, fit::rows::Rows};
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, SolverStatus, SupportedConeT};
 use trundle_core::Vector2;
@@ -73,20 +74,19 @@ pub(crate) fn fit(
     smoothing: f64,
     config: &CurveConfig,
 ) -> Option<Curve> {
-    let degree = config.degree;
-    let (p, q) = objective::objective(stretches, degree, smoothing);
-    let mut rows = Rows::new(degree, stretches);
-    rows.joints();
-    rows.start(start);
-    rows.end(end);
+    let layout = Layout { degree: config.degree, pieces: stretches.len() };
+    let (p, q) = objective::objective(stretches, layout, smoothing);
+    let mut rows = Rows::new(layout, stretches);
+    rows.ends(start, end);
     let equalities = rows.count();
     rows.forward(start, end, config.least_tangent);
     rows.corridors();
     let inequalities = rows.count() - equalities;
     let (a, b) = rows.finish();
     let cones = [SupportedConeT::ZeroConeT(equalities), SupportedConeT::NonnegativeConeT(inequalities)];
-    let x = solve(&p, &q, &a, &b, &cones)?;
-    Some(assemble(&x, stretches, degree))
+    let mut x = solve(&p, &q, &a, &b, &cones)?;
+    settle(&mut x, stretches, layout, (start, end));
+    Some(assemble(&x, stretches, layout))
 }
 
 fn solve(
@@ -96,24 +96,45 @@ fn solve(
     b: &[f64],
     cones: &[SupportedConeT<f64>],
 ) -> Option<Vec<f64>> {
-    let settings =
-        DefaultSettings { verbose: false, max_iter: 60, max_threads: 1, ..DefaultSettings::default() };
+    let settings = DefaultSettings {
+        verbose: false,
+        max_iter: 50,
+        max_threads: 1,
+        tol_gap_abs: 1e-7,
+        tol_gap_rel: 1e-5,
+        ..DefaultSettings::default()
+    };
     let mut solver = DefaultSolver::new(p, q, a, b, cones, settings).ok()?;
     solver.solve();
-    let solved = solver.solution.status == SolverStatus::Solved;
+    let solved = matches!(solver.solution.status, SolverStatus::Solved | SolverStatus::AlmostSolved);
     (solved && solver.solution.x.iter().all(|x| x.is_finite())).then_some(solver.solution.x)
 }
 
-/// Control points from the unknowns; ends exact, joints closed to the last bit.
-fn assemble(x: &[f64], stretches: &[Stretch], degree: usize) -> Curve {
-    let mut points: Vec<Vector2> = x.chunks_exact(2).map(|xy| Vector2::new(xy[0], xy[1])).collect();
-    let last = points.len() - 1;
-    points[0] = stretches[0].from;
-    points[last] = stretches[stretches.len() - 1].to;
-    for joint in 1..stretches.len() {
-        let first = joint * (degree + 1);
-        points[first - 1] = points[first];
+/// Takes the solver's rounding out of the ends: points exact, tangents exactly along their headings.
+fn settle(x: &mut [f64], stretches: &[Stretch], layout: Layout, (start, end): (Tangent, Tangent)) {
+    let last = layout.pieces;
+    let ends = [(0, stretches[0].from, start), (last, stretches[last - 1].to, end)];
+    for (knot, point, tangent) in ends {
+        let at = layout.knot(knot, 0) * 2;
+        x[at..at + 2].copy_from_slice(point.as_slice());
+        let along = match tangent {
+            Tangent::Free => continue,
+            Tangent::Heading(theta) | Tangent::Moving(theta, _) => Vector2::new(theta.cos(), theta.sin()),
+        };
+        let speed = along.dot(&Vector2::new(x[at + 2], x[at + 3]));
+        x[at + 2..at + 4].copy_from_slice((along * speed).as_slice());
     }
-    let pieces = points.chunks_exact(degree + 1).zip(stretches);
-    Curve::new(pieces.map(|(control, stretch)| BezierPiece::new(control.to_vec(), stretch.length())).collect())
+}
+
+fn assemble(x: &[f64], stretches: &[Stretch], layout: Layout) -> Curve {
+    let vector = |i: usize| Vector2::new(x[i * 2], x[i * 2 + 1]);
+    let pieces = stretches.iter().enumerate().map(|(i, stretch)| {
+        let span = stretch.length();
+        let control = |k| {
+            let (terms, count) = layout.control(i, k, span);
+            terms[..count].iter().map(|(v, share)| vector(*v) * *share).sum()
+        };
+        BezierPiece::new((0..=layout.degree).map(control).collect(), span)
+    });
+    Curve::new(pieces.collect())
 }

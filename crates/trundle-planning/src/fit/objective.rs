@@ -1,6 +1,7 @@
 //! What the curve is drawn to: the way, and smoothness.
 
 use super::Stretch;
+use super::layout::{Layout, Terms, Triplets};
 use crate::bezier::binomial;
 use clarabel::algebra::CscMatrix;
 use nalgebra::DMatrix;
@@ -12,32 +13,40 @@ const BENDING: f64 = 0.4;
 /// 1/2 x'Px + q'x of integral |p - way|^2 + (0.4 l)^4 |p''|^2 + l^6 |p'''|^2 ds, l the smoothing length.
 ///
 /// The least squares over infinitely dense samples of the way, in closed form: Gram matrices of the Bernstein basis.
-/// Unknowns: x and y of each control point, piece by piece.
-pub(super) fn objective(stretches: &[Stretch], degree: usize, smoothing: f64) -> (CscMatrix<f64>, Vec<f64>) {
-    let unknowns = stretches.len() * (degree + 1) * 2;
-    let grams = Grams::new(degree);
+/// Unknowns: x and y of each vector of the layout.
+pub(super) fn objective(stretches: &[Stretch], layout: Layout, smoothing: f64) -> (CscMatrix<f64>, Vec<f64>) {
+    let unknowns = layout.vectors() * 2;
+    let grams = Grams::new(layout.degree);
     let mut q = vec![0.0; unknowns];
-    let (mut rows, mut cols, mut values) = (Vec::new(), Vec::new(), Vec::new());
+    let mut p = Triplets::default();
     for (i, stretch) in stretches.iter().enumerate() {
-        let first = i * (degree + 1);
-        let hessian = grams.hessian(stretch.length(), smoothing);
-        let target = straight(stretch, degree);
-        for j in 0..=degree {
-            for k in 0..=degree {
-                let pull = grams.position[(j, k)] * stretch.length();
-                q[(first + j) * 2] -= pull * target[k].x;
-                q[(first + j) * 2 + 1] -= pull * target[k].y;
-                for axis in 0..2 {
-                    if j <= k {
-                        rows.push((first + j) * 2 + axis);
-                        cols.push((first + k) * 2 + axis);
-                        values.push(hessian[(j, k)]);
-                    }
-                }
+        let span = stretch.length();
+        let hessian = grams.hessian(span, smoothing);
+        let target = straight(stretch, layout.degree);
+        for j in 0..=layout.degree {
+            let pull: Vector2 =
+                (0..=layout.degree).map(|k| target[k] * (grams.position[(j, k)] * span)).sum();
+            let (left, count) = layout.control(i, j, span);
+            for (row, share) in &left[..count] {
+                q[row * 2] -= share * pull.x;
+                q[row * 2 + 1] -= share * pull.y;
+            }
+            for k in 0..=layout.degree {
+                add_products(&mut p, &left[..count], layout.control(i, k, span), hessian[(j, k)]);
             }
         }
     }
-    (CscMatrix::new_from_triplets(unknowns, unknowns, rows, cols, values), q)
+    (p.finish(unknowns, unknowns), q)
+}
+
+/// The upper triangle of factor * left' right, for both axes.
+fn add_products(p: &mut Triplets, left: &[(usize, f64)], (right, count): Terms, factor: f64) {
+    for (row, a) in left {
+        for (col, b) in right[..count].iter().filter(|(col, _)| row <= col) {
+            p.add(row * 2, col * 2, factor * a * b);
+            p.add(row * 2 + 1, col * 2 + 1, factor * a * b);
+        }
+    }
 }
 
 /// The control points of the straight stretch itself.

@@ -97,7 +97,11 @@ fn the_goals_of_the_paper_from_all_sides() {
         let result = found(planner(at_home(), 0.1755).plan(&grid, start, Twist2::ZERO, goal));
         judge(&grid, &result, start, goal, 0.1755);
         let straight = start.distance(&goal);
-        eprintln!("{dx} {dy}: {:.2} m for {straight:.2} in {:.1} s", result.length, result.trajectory.duration());
+        eprintln!(
+            "{dx} {dy}: {:.2} m for {straight:.2} in {:.1} s",
+            result.length,
+            result.trajectory.duration()
+        );
         assert!(result.length < 1.4 * straight);
     }
 }
@@ -120,7 +124,9 @@ fn a_goal_beyond_a_tiny_grid_is_planned_through_the_unknown() {
 
 #[test]
 fn a_robot_parked_at_a_wall_plans_its_way_out() {
-    let grid = OccupancyGrid::from_ascii(0.1, &["#".repeat(30), vec![".".repeat(30); 20].join("\n")].join("\n")).unwrap();
+    let grid =
+        OccupancyGrid::from_ascii(0.1, &["#".repeat(30), vec![".".repeat(30); 20].join("\n")].join("\n"))
+            .unwrap();
     for gap in [0.16, 0.1756, 0.19] {
         let start = Pose2::new(1.0, 2.0 - gap, 0.0);
         let goal = Pose2::new(2.5, 0.5, 0.0);
@@ -129,7 +135,10 @@ fn a_robot_parked_at_a_wall_plans_its_way_out() {
     }
     let start = Pose2::new(1.0, 1.95, 0.0);
     let refused = planner(at_home(), 0.1755).plan(&grid, start, Twist2::ZERO, Pose2::new(2.5, 0.5, 0.0));
-    assert!(matches!(refused, Plan::StartInObstacle { clearance } if (clearance + 0.1255).abs() < 1e-3), "{refused:?}");
+    assert!(
+        matches!(refused, Plan::StartInObstacle { clearance } if (clearance + 0.1255).abs() < 1e-3),
+        "{refused:?}"
+    );
 }
 
 #[test]
@@ -148,6 +157,7 @@ fn a_known_way_is_preferred_to_the_unknown() {
     let through = found(planner(at_home(), 0.17).plan(&grid, start, Twist2::ZERO, goal));
     assert!(through.length < 3.4, "{}", through.length);
     let room = trundle_planning::RoomConfig { unknown_weight: 3.0, ..Default::default() };
-    let around = found(planner(PlannerConfig { room, ..at_home() }, 0.17).plan(&grid, start, Twist2::ZERO, goal));
+    let around =
+        found(planner(PlannerConfig { room, ..at_home() }, 0.17).plan(&grid, start, Twist2::ZERO, goal));
     assert!(around.way_points.points().iter().any(|p| p.y > 1.0), "{:?}", around.way_points);
 }

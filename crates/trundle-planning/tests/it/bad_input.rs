@@ -23,15 +23,21 @@ fn ask(config: PlannerConfig, from: (f64, f64), to: (f64, f64)) -> Plan {
 #[test]
 fn walls_and_borders_have_names() {
     let inside = (1.0, 1.0);
-    assert!(matches!(ask(at_home(), (0.3, 0.3), inside), Plan::StartInObstacle { clearance } if clearance <= -0.17));
+    assert!(
+        matches!(ask(at_home(), (0.3, 0.3), inside), Plan::StartInObstacle { clearance } if clearance <= -0.17)
+    );
     assert!(matches!(ask(at_home(), inside, (0.3, 0.3)), Plan::GoalInObstacle { .. }));
-    assert!(matches!(ask(at_home(), inside, (0.6, 1.0)), Plan::GoalInObstacle { clearance } if (clearance + 0.07).abs() < 1e-6));
+    assert!(
+        matches!(ask(at_home(), inside, (0.6, 1.0)), Plan::GoalInObstacle { clearance } if (clearance + 0.07).abs() < 1e-6)
+    );
     assert!(matches!(ask(at_home(), inside, (9.0, 1.0)), Plan::GoalOutside));
     assert!(matches!(ask(at_home(), (9.0, 1.0), inside), Plan::StartOutside));
     let walled = PlannerConfig { unknown: UnknownIs::Obstacle, ..PlannerConfig::default() };
     assert!(matches!(ask(walled, inside, (9.0, 1.0)), Plan::GoalOutside));
     assert!(matches!(ask(walled, inside, (2.9, 1.0)), Plan::GoalInObstacle { .. }));
-    let Plan::Blocked { nearest } = ask(PlannerConfig::default(), inside, (5.0, 1.0)) else { panic!("no wall") };
+    let Plan::Blocked { nearest } = ask(PlannerConfig::default(), inside, (5.0, 1.0)) else {
+        panic!("no wall")
+    };
     assert!(nearest.x > 2.0 && nearest.x < 2.5, "{nearest}");
     assert!(matches!(ask(PlannerConfig::default(), inside, (1e9, 1.0)), Plan::Refused(_)));
 }

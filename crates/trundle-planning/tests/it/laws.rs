@@ -79,7 +79,7 @@ proptest! {
 
     #[test]
     fn an_open_floor_gives_one_curve_with_both_headings(
-        x in 1.5..4.0, y in -1.5..1.5, start in -0.9..0.9, end in -1.5..1.5,
+        x in 2.0..4.0, y in -1.5..1.5, start in -0.9..0.9, end in -1.2..1.2,
     ) {
         let grid = OccupancyGrid::from_ascii(0.1, &vec![".".repeat(80); 80].join("\n")).unwrap();
         let from = Pose2::new(2.0, 4.0, 0.0);
