@@ -1,5 +1,4 @@
 use crate::area::area;
-use crate::geometry::polyline_length;
 use crate::plan::{Plan, PlanResult};
 use crate::potential::{PotentialField, PotentialKind, PotentialOutcome};
 use crate::pull::pull_taut;
@@ -203,7 +202,7 @@ impl Task<'_> {
     fn at_start(&self, start: Vector2) -> Option<Plan> {
         let room = self.field.clearance(start, self.radius);
         let inside = room <= 0.0 || room < self.radius - self.config.room.escape;
-        inside.then(|| Plan::StartInObstacle { clearance: room - self.radius })
+        inside.then_some(Plan::StartInObstacle { clearance: room - self.radius })
     }
 
     fn turn_only(&self, start: Pose2, twist: Twist2, goal: Pose2) -> Plan {
@@ -273,14 +272,12 @@ impl Task<'_> {
     fn timed(&self, way: Way, phases: Vec<Phase>, start: Pose2, v: f64, is_continuous: bool) -> Plan {
         let room = |at: Vector2| self.field.distance(at) - self.radius;
         let trajectory = trajectory(start, &phases, v, self.drive, room);
-        let rooms = trajectory.points().iter().map(|p| self.field.clearance(p.pose.position(), ROOM_CAP));
-        let min_clearance = rooms.fold(ROOM_CAP, f64::min) - self.radius;
+        let min_clearance = self.least_room(&trajectory) - self.radius;
         let lengths = phases.iter().map(|phase| match phase {
             Phase::Drive(curve) => curve.length(),
             Phase::Turn { .. } => 0.0,
         });
         let length = lengths.sum();
-        debug_assert!(length + 1e-6 >= 0.0 && polyline_length(&way.points) >= 0.0, "length {length}");
         let path = |points| Path::new(points).expect("invariant: way-points are finite");
         Plan::Found(Box::new(PlanResult {
             way_points: path(way.points),
@@ -292,5 +289,14 @@ impl Task<'_> {
             fell_back: way.fell_back,
             is_continuous,
         }))
+    }
+    /// The least exact distance of the trajectory's positions from obstacles, m; squares are measured only where the
+    /// interpolated distance could make it less.
+    fn least_room(&self, trajectory: &Trajectory) -> f64 {
+        let surely = self.field.overestimate(self.radius);
+        trajectory.points().iter().fold(ROOM_CAP, |least, point| {
+            let at = point.pose.position();
+            if self.field.distance(at) - surely > least { least } else { self.field.clearance(at, least) }
+        })
     }
 }

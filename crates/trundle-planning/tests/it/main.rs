@@ -5,4 +5,5 @@ mod bad_input;
 mod laws;
 mod maps;
 mod replanning;
+mod size;
 mod support;

@@ -1,0 +1,42 @@
+//! Large and strange maps.
+
+use crate::support::{at_home, found, judge, planner};
+use trundle_core::{Cell, CellIndex, GridGeometry, OccupancyGrid, Pose2, Twist2, Vector2};
+
+/// Walls every 100 cells with a door at alternating ends: the way is long.
+fn meander(size: usize) -> OccupancyGrid {
+    let geometry = GridGeometry::new(0.05, Vector2::zeros(), size, size).unwrap();
+    let mut grid = OccupancyGrid::filled(geometry, Cell::Free);
+    for (i, col) in (100..size).step_by(100).enumerate() {
+        let rows = if i % 2 == 0 { 0..size - 20 } else { 20..size };
+        rows.for_each(|row| grid.set(CellIndex { col, row }, Cell::Occupied));
+    }
+    grid
+}
+
+fn across(size: usize) {
+    let grid = meander(size);
+    let side = size as f64 * 0.05;
+    let (start, goal) = (Pose2::new(1.0, 1.0, 0.0), Pose2::new(side - 1.0, side / 2.0, 1.0));
+    let mut planner = planner(at_home(), 0.1755);
+    let begin = crate::support::cpu_ms();
+    let result = found(planner.plan(&grid, start, Twist2::ZERO, goal));
+    let spent = crate::support::cpu_ms() - begin;
+    eprintln!(
+        "{size} x {size}: {spent:.0} ms CPU for {:.0} m, {} way-points",
+        result.length,
+        result.way_points.points().len()
+    );
+    judge(&grid, &result, start, goal, 0.1755);
+}
+
+#[test]
+fn a_thousand_cells_square() {
+    across(1000);
+}
+
+#[test]
+#[ignore = "takes 10 s: run it by hand after changes to the search"]
+fn four_thousand_cells_square() {
+    across(4000);
+}
