@@ -1,1 +1,33 @@
 //! Worlds, robot dynamics and sensors with noise and ground truth.
+//!
+//! [`Simulator`] is a Kobuki with a Kinect V2 in a [`Scene`], behind the trait that hardware is behind
+//! ([`trundle_core::RobotBody`]). It shares nothing but trundle-core with what it judges. Same scene, seed and commands,
+//! same bytes, on any number of threads. How each part works stands in `docs/algorithms/simulator.md`.
+//!
+//! ```
+//! use trundle_core::{RobotBody, SensorEvent, Twist2};
+//! use trundle_sim::{Scene, SimConfig, Simulator};
+//!
+//! let mut robot = Simulator::new(Scene::by_name("demo", 1)?, SimConfig::default(), 1)?;
+//! robot.command(Twist2::new(0.2, 0.0))?;
+//! let first = robot.next_event()?;
+//! assert!(matches!(first, Some(SensorEvent::Wheels(_))));
+//! # Ok::<(), trundle_sim::SimError>(())
+//! ```
+
+mod camera;
+mod chance;
+mod config;
+mod kobuki;
+mod paint;
+pub mod scenes;
+mod simulator;
+mod world;
+
+pub use camera::{ColorNoise, DepthNoise, Renderer, RgbdSensor, View};
+pub use config::{SimConfig, camera_mount};
+pub use kobuki::KobukiConfig;
+pub use paint::{Finish, Paint};
+pub use scenes::Scene;
+pub use simulator::{SimError, Simulator};
+pub use world::{Cuboid, Cylinder, HeightBand, Hit, Shape, Solid, World};

@@ -1,0 +1,47 @@
+//! Times the parts of an RGB-D frame in the built-in scenes and prints medians. Writes nothing.
+//!
+//! `cargo run --release -p trundle-sim --example render_timing`
+#![expect(clippy::print_stdout, reason = "this is what an example is for")]
+
+use std::time::Instant;
+use trundle_core::{PinholeCamera, Pose2, Pose3, Stamp};
+use trundle_sim::{ColorNoise, DepthNoise, Renderer, RgbdSensor, Scene, SimConfig};
+
+/// Poses round each scene's start and goal and between them.
+const FRAMES: usize = 120;
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    for name in Scene::NAMES {
+        let started = Instant::now();
+        let scene = Scene::by_name(name, 1)?;
+        scene.world.paint();
+        let painting = started.elapsed().as_secs_f64() * 1e3;
+        let renderer = Renderer::new(PinholeCamera::kinect_v2())?;
+        let sensor = RgbdSensor::new(DepthNoise::default(), ColorNoise::default(), 1)?;
+        let mount = SimConfig::default().base_from_camera;
+        let mut view = renderer.blank();
+        let (mut draw, mut expose) = (Vec::new(), Vec::new());
+        for i in 0..FRAMES {
+            let along = if i % 2 == 0 { scene.start } else { scene.goal };
+            let pose = Pose2::new(along.x, along.y, i as f64 * 0.11);
+            let begun = Instant::now();
+            renderer.render(&scene.world, &(Pose3::from_pose2(pose) * mount), &mut view);
+            draw.push(begun.elapsed().as_secs_f64() * 1e3);
+            let begun = Instant::now();
+            sensor.expose(&view, Stamp::default(), i as u64)?;
+            expose.push(begun.elapsed().as_secs_f64() * 1e3);
+        }
+        println!(
+            "{name}: {} solids, painting {painting:.0} ms; 512 x 424 frame: drawing {:.1} ms, noise {:.1} ms (medians of {FRAMES})",
+            scene.world.solids().len(),
+            median(&mut draw),
+            median(&mut expose),
+        );
+    }
+    Ok(())
+}
+
+fn median(times: &mut [f64]) -> f64 {
+    times.sort_by(f64::total_cmp);
+    times[times.len() / 2]
+}

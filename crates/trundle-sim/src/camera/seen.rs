@@ -1,0 +1,160 @@
+use super::lanes::{self, Lanes};
+use crate::paint::Texture;
+use crate::world::Shape;
+use trundle_core::{Pose3, Vector3};
+
+/// Directions of the two lamps, world frame, and their strengths; the rest is ambient.
+const LAMPS: [([f32; 3], f32); 2] = [([0.31, 0.45, 0.84], 0.30), ([-0.62, -0.52, 0.59], 0.16)];
+const AMBIENT: f32 = 0.64;
+
+/// Most samples along the long axis of a pixel's footprint on a surface seen at a slant.
+const MOST_TAPS: f32 = 4.0;
+
+/// A solid as the camera sees it in one image: everything in the solid's own frame, f32.
+#[derive(Debug)]
+pub(super) struct Seen<'w> {
+    form: Form,
+    /// The camera's centre, solid frame, m.
+    origin: [f32; 3],
+    /// `solid_from_camera`, rotation, by rows.
+    turn: [[f32; 3]; 3],
+    /// (sine, cosine) of the solid's yaw, to bring normals to the world.
+    yaw: (f32, f32),
+    paintings: &'w [Texture],
+}
+
+#[derive(Debug, Clone, Copy)]
+enum Form {
+    /// Half sides, origin in the middle.
+    Cuboid([f32; 3]),
+    /// Radius and height, origin in the middle of the lower disc.
+    Cylinder(f32, f32),
+}
+
+/// What a pixel sees.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Look {
+    /// 0 to 255, before the sensor's noise.
+    pub(super) color: [u8; 3],
+    /// Cosine of the angle between the ray and the surface's normal.
+    pub(super) cosine: f32,
+}
+
+/// A point of a painted face: which face, where (m), the normal, and how the ray runs along it.
+struct Spot {
+    face: usize,
+    uv: [f32; 2],
+    normal: [f32; 3],
+    along: [f32; 2],
+}
+
+impl<'w> Seen<'w> {
+    pub(super) fn new(shape: &Shape, paintings: &'w [Texture], world_from_camera: &Pose3) -> Self {
+        let (form, place, yaw) = match shape {
+            Shape::Cuboid(c) => (Form::Cuboid((c.size / 2.0).map(|x| x as f32).into()), c.center, c.yaw),
+            Shape::Cylinder(c) => (Form::Cylinder(c.radius as f32, c.height as f32), c.base, 0.0),
+        };
+        let solid_from_world = nalgebra::Rotation3::from_axis_angle(&Vector3::z_axis(), -yaw).into_inner();
+        let turn = (solid_from_world * world_from_camera.rotation_matrix()).map(|x| x as f32);
+        let origin = (solid_from_world * (world_from_camera.translation - place)).map(|x| x as f32);
+        let rows = [0, 1, 2].map(|i| [turn[(i, 0)], turn[(i, 1)], turn[(i, 2)]]);
+        Self { form, origin: origin.into(), turn: rows, yaw: (yaw.sin() as f32, yaw.cos() as f32), paintings }
+    }
+
+    /// The ray through normalised image coordinates (x, y), solid frame; its part along the optical axis is 1.
+    fn direction(&self, x: f32, y: f32) -> [f32; 3] {
+        self.turn.map(|row| row[0] * x + row[1] * y + row[2])
+    }
+
+    /// Meets a row of rays that start at (x, y) and step by `step` in x; keeps what is nearer than `lanes` has.
+    pub(super) fn meet(&self, (x, y): (f32, f32), step: f32, index: u32, lanes: &mut Lanes) {
+        let start = self.direction(x, y);
+        let step = self.turn.map(|row| row[0] * step);
+        match self.form {
+            Form::Cuboid(half) => lanes::meet_cuboid(self.origin, half, start, step, index, lanes),
+            Form::Cylinder(radius, height) => {
+                lanes::meet_cylinder(self.origin, (radius, height), start, step, index, lanes);
+            }
+        }
+    }
+
+    /// What the ray through (x, y) sees at `depth` m; `pixel` is a pixel's size at 1 m.
+    pub(super) fn look(&self, (x, y): (f32, f32), depth: f32, pixel: f32) -> Look {
+        let d = self.direction(x, y);
+        let p = [0, 1, 2].map(|k| self.origin[k] + depth * d[k]);
+        let spot = match self.form {
+            Form::Cuboid(half) => self.spot_on_cuboid(half, p, d),
+            Form::Cylinder(radius, height) => spot_on_cylinder(radius, height, p, d),
+        };
+        let length = (x * x + y * y + 1.0).sqrt();
+        let cosine = (dot(spot.normal, d).abs() / length).clamp(1e-3, 1.0);
+        let texel = self.filtered(&spot, depth * pixel, cosine);
+        let light = self.light(spot.normal);
+        Look { color: texel.map(|c| (c * light + 0.5) as u8), cosine }
+    }
+
+    fn spot_on_cuboid(&self, h: [f32; 3], p: [f32; 3], d: [f32; 3]) -> Spot {
+        // The face entered is the one whose plane the point lies on; at an edge the one that is nearest in sizes of f32.
+        let beyond = [0, 1, 2].map(|k| p[k].abs() - h[k]);
+        let facing = [0, 1, 2].map(|k| self.origin[k].abs() > h[k]);
+        let score = |k: usize| if facing[k] { beyond[k] } else { f32::NEG_INFINITY };
+        let axis =
+            if score(2) >= score(0) && score(2) >= score(1) { 2 } else { usize::from(score(1) > score(0)) };
+        let sign = self.origin[axis].signum();
+        let mut normal = [0.0; 3];
+        normal[axis] = sign;
+        // Seen from outside with z up, u runs to the right and v down; on the lids u is x, and v runs against y on top.
+        let (uv, along) = match axis {
+            0 => ([h[1] + sign * p[1], h[2] - p[2]], [sign * d[1], -d[2]]),
+            1 => ([h[0] - sign * p[0], h[2] - p[2]], [-sign * d[0], -d[2]]),
+            _ => ([h[0] + p[0], h[1] - sign * p[1]], [d[0], -sign * d[1]]),
+        };
+        Spot { face: 2 * axis + usize::from(sign < 0.0), uv, normal, along }
+    }
+
+    /// The mean colour of the pixel's footprint: several samples along its long axis, each as wide as its short one.
+    fn filtered(&self, spot: &Spot, footprint: f32, cosine: f32) -> [f32; 3] {
+        let texture = &self.paintings[spot.face.min(self.paintings.len() - 1)];
+        let long = footprint / cosine;
+        let taps = (1.0 / cosine - 0.25).ceil().clamp(1.0, MOST_TAPS);
+        let norm = (spot.along[0] * spot.along[0] + spot.along[1] * spot.along[1]).sqrt().max(1e-6);
+        let width = footprint.max(long / taps);
+        let mut sum = [0; 3];
+        for tap in 0..taps as usize {
+            let shift = ((tap as f32 + 0.5) / taps - 0.5) * long / norm;
+            let (u, v) = (spot.uv[0] + shift * spot.along[0], spot.uv[1] + shift * spot.along[1]);
+            let texel = texture.sample(u, v, width);
+            sum = [sum[0] + (texel & 0xFF), sum[1] + (texel >> 8 & 0xFF), sum[2] + (texel >> 16 & 0xFF)];
+        }
+        sum.map(|c| c as f32 / taps)
+    }
+
+    fn light(&self, n: [f32; 3]) -> f32 {
+        let (s, c) = self.yaw;
+        let n = [c * n[0] - s * n[1], s * n[0] + c * n[1], n[2]];
+        AMBIENT + LAMPS.iter().map(|(lamp, strength)| strength * dot(*lamp, n).max(0.0)).sum::<f32>()
+    }
+}
+
+fn spot_on_cylinder(radius: f32, height: f32, p: [f32; 3], d: [f32; 3]) -> Spot {
+    let out = (p[0] * p[0] + p[1] * p[1]).sqrt();
+    let over = (p[2] - height).max(-p[2]);
+    if out - radius > over {
+        let (x, y) = (p[0] / out, p[1] / out);
+        let u = (y.atan2(x) + std::f32::consts::PI) * radius;
+        Spot { face: 0, uv: [u, height - p[2]], normal: [x, y, 0.0], along: [x * d[1] - y * d[0], -d[2]] }
+    } else {
+        let sign = if p[2] > height / 2.0 { 1.0 } else { -1.0 };
+        let face = if sign > 0.0 { 1 } else { 2 };
+        Spot {
+            face,
+            uv: [p[0] + radius, radius - sign * p[1]],
+            normal: [0.0, 0.0, sign],
+            along: [d[0], -sign * d[1]],
+        }
+    }
+}
+
+fn dot(a: [f32; 3], b: [f32; 3]) -> f32 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}

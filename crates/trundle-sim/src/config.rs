@@ -1,0 +1,91 @@
+use crate::camera::{ColorNoise, DepthNoise};
+use crate::kobuki::KobukiConfig;
+use nalgebra::{Matrix3, Rotation3};
+use serde::{Deserialize, Serialize};
+use trundle_core::{Invalid, PinholeCamera, Pose3, Vector3, require_in};
+
+/// The simulated robot: body, camera and their noise.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct SimConfig {
+    /// The body.
+    pub kobuki: KobukiConfig,
+    /// The camera, rectified. Default Kinect V2.
+    pub camera: PinholeCamera,
+    /// Where the camera sits, in its optical frame (x right, y down, z forward). Default [`camera_mount`]`(0.05, 0.45, 8 deg)`.
+    pub base_from_camera: Pose3,
+    /// Images a second, Hz, 0.1 to 120. Default 15: half the Kinect V2's 30.
+    pub camera_rate_hz: f64,
+    /// Noise of depth.
+    pub depth_noise: DepthNoise,
+    /// Noise of colour.
+    pub color_noise: ColorNoise,
+}
+
+impl Default for SimConfig {
+    fn default() -> Self {
+        Self {
+            kobuki: KobukiConfig::default(),
+            camera: PinholeCamera::kinect_v2(),
+            base_from_camera: camera_mount(0.05, 0.45, 8_f64.to_radians()),
+            camera_rate_hz: 15.0,
+            depth_noise: DepthNoise::default(),
+            color_noise: ColorNoise::default(),
+        }
+    }
+}
+
+impl SimConfig {
+    /// The same robot without any noise; dynamics, range and rates stay.
+    pub fn without_noise(self) -> Self {
+        Self {
+            kobuki: self.kobuki.without_noise(),
+            depth_noise: DepthNoise::none(),
+            color_noise: ColorNoise::none(),
+            ..self
+        }
+    }
+
+    /// Passes a valid configuration through.
+    ///
+    /// # Errors
+    /// When a number is outside its range or not finite.
+    pub fn validated(self) -> Result<Self, Invalid> {
+        if !self.base_from_camera.is_finite() {
+            return Err(Invalid::new("base_from_camera", "not finite", "", "finite numbers"));
+        }
+        require_in("camera_rate_hz", self.camera_rate_hz, "Hz", 0.1, 120.0)?;
+        Ok(Self {
+            kobuki: self.kobuki.validated()?,
+            depth_noise: self.depth_noise.validated()?,
+            color_noise: self.color_noise.validated()?,
+            ..self
+        })
+    }
+}
+
+/// `base_from_camera` of a camera `forward` m before and `up` m above the base's origin, looking forward and `pitch` rad down.
+pub fn camera_mount(forward: f64, up: f64, pitch: f64) -> Pose3 {
+    let body_from_optical = Matrix3::new(0.0, 0.0, 1.0, -1.0, 0.0, 0.0, 0.0, -1.0, 0.0);
+    let tilt = Rotation3::from_axis_angle(&Vector3::y_axis(), pitch).into_inner();
+    Pose3::from_matrix(tilt * body_from_optical, Vector3::new(forward, 0.0, up))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_mount_looks_forward_and_down() {
+        let axis = camera_mount(0.1, 0.5, 30_f64.to_radians()).rotate(Vector3::z());
+        assert!((axis - Vector3::new(0.75_f64.sqrt(), 0.0, -0.5)).norm() < 1e-12);
+    }
+
+    #[test]
+    fn defaults_are_valid_and_nan_is_refused() {
+        assert!(SimConfig::default().validated().is_ok());
+        assert!(SimConfig::default().without_noise().validated().is_ok());
+        let bad = SimConfig { base_from_camera: camera_mount(f64::NAN, 0.4, 0.0), ..SimConfig::default() };
+        assert_eq!(bad.validated().unwrap_err().field, "base_from_camera");
+    }
+}

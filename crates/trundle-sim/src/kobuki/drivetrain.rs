@@ -1,0 +1,93 @@
+use super::{KobukiConfig, STEP, STEPS_PER_SECOND};
+use std::collections::VecDeque;
+use trundle_core::{DifferentialDrive, Twist2};
+
+/// From commanded twists to speeds of the wheels' rims: delay, saturation, ramp, lag.
+#[derive(Debug)]
+pub(super) struct Drivetrain {
+    drive: DifferentialDrive,
+    wheel_speed: f64,
+    /// Most change of a rim's set speed in a step, m/s.
+    ramp: f64,
+    /// Part of the gap to the set speed that the motor closes in a step.
+    closing: f64,
+    delay_steps: u64,
+    now: u64,
+    /// Commands on their way: (step at which they take effect, rim speeds).
+    pending: VecDeque<(u64, [f64; 2])>,
+    target: [f64; 2],
+    set: [f64; 2],
+    speed: [f64; 2],
+}
+
+impl Drivetrain {
+    pub(super) fn new(config: &KobukiConfig) -> Self {
+        Self {
+            drive: config.drive,
+            wheel_speed: config.wheel_speed,
+            ramp: config.wheel_acceleration * STEP,
+            closing: if config.motor_lag > 0.0 { 1.0 - (-STEP / config.motor_lag).exp() } else { 1.0 },
+            delay_steps: (config.command_delay * STEPS_PER_SECOND).round() as u64,
+            now: 0,
+            pending: VecDeque::new(),
+            target: [0.0; 2],
+            set: [0.0; 2],
+            speed: [0.0; 2],
+        }
+    }
+
+    /// Takes a finite command; it takes effect after the delay.
+    pub(super) fn command(&mut self, twist: Twist2) {
+        let (left, right) = self.drive.wheel_speeds(twist);
+        let excess = (left.abs().max(right.abs()) / self.wheel_speed).max(1.0);
+        self.pending.push_back((self.now + self.delay_steps, [left / excess, right / excess]));
+    }
+
+    /// Goes on by a step; rim speeds (left, right), m/s, of wheels of nominal radius.
+    pub(super) fn step(&mut self) -> (f64, f64) {
+        while self.pending.front().is_some_and(|(due, _)| *due <= self.now) {
+            if let Some((_, target)) = self.pending.pop_front() {
+                self.target = target;
+            }
+        }
+        self.now += 1;
+        for side in 0..2 {
+            self.set[side] += (self.target[side] - self.set[side]).clamp(-self.ramp, self.ramp);
+            self.speed[side] += (self.set[side] - self.speed[side]) * self.closing;
+            if self.set[side] == 0.0 && self.speed[side].abs() < 1e-6 {
+                self.speed[side] = 0.0;
+            }
+        }
+        (self.speed[0], self.speed[1])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn run(twist: Twist2, steps: usize) -> Vec<(f64, f64)> {
+        let mut drivetrain = Drivetrain::new(&KobukiConfig::default());
+        drivetrain.command(twist);
+        (0..steps).map(|_| drivetrain.step()).collect()
+    }
+
+    #[test]
+    fn a_command_waits_ramps_lags_and_arrives() {
+        let speeds = run(Twist2::new(0.3, 0.0), 2000);
+        assert_eq!(speeds[19], (0.0, 0.0));
+        assert!(speeds[21].0 > 0.0);
+        let steepest = speeds.windows(2).map(|w| w[1].0 - w[0].0).fold(0.0, f64::max);
+        assert!(steepest <= 1.2e-3 + 1e-12);
+        // On a ramp a first-order lag trails by its time constant.
+        assert!((speeds[19 + 200].0 - 1.2 * (0.2 - 0.05)).abs() < 0.01, "{}", speeds[219].0);
+        assert!((speeds[1999].0 - 0.3).abs() < 1e-9);
+    }
+
+    #[test]
+    fn too_fast_a_command_keeps_its_curve() {
+        let (left, right) = run(Twist2::new(2.0, 4.0), 3000)[2999];
+        let twist = DifferentialDrive::KOBUKI.twist(left, right);
+        assert!((right - 0.70).abs() < 1e-9 && (twist.omega / twist.v - 2.0).abs() < 1e-9);
+    }
+}

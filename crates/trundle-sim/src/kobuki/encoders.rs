@@ -1,0 +1,46 @@
+use trundle_core::DifferentialDrive;
+
+/// Counters of the wheels' turning, wrapping at 2^16 as the Kobuki's.
+#[derive(Debug)]
+pub(super) struct Encoders {
+    drive: DifferentialDrive,
+    start: (u16, u16),
+    /// Way of each rim since the start, m, of wheels of nominal radius.
+    way: (f64, f64),
+}
+
+impl Encoders {
+    /// Counters that stand at `start`.
+    pub(super) fn new(drive: DifferentialDrive, start: (u16, u16)) -> Self {
+        Self { drive, start, way: (0.0, 0.0) }
+    }
+
+    /// The wheels roll by this much, m, of wheels of nominal radius.
+    pub(super) fn roll(&mut self, left: f64, right: f64) {
+        self.way = (self.way.0 + left, self.way.1 + right);
+    }
+
+    /// What the counters say: whole ticks, the fraction not yet counted.
+    pub(super) fn read(&self) -> (u16, u16) {
+        let count = |start: u16, way: f64| {
+            let ticks = (way / self.drive.metres_per_tick()).floor() as i64;
+            start.wrapping_add(ticks as u16)
+        };
+        (count(self.start.0, self.way.0), count(self.start.1, self.way.1))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_turn_is_2578_ticks_and_counters_wrap_both_ways() {
+        let mut encoders = Encoders::new(DifferentialDrive::KOBUKI, (65_000, 100));
+        let turn = std::f64::consts::TAU * 0.035;
+        encoders.roll(turn, -turn);
+        assert_eq!(encoders.read(), (65_000u16.wrapping_add(2578), 100u16.wrapping_sub(2579)));
+        encoders.roll(-turn, turn);
+        assert_eq!(encoders.read(), (65_000, 100));
+    }
+}

@@ -1,0 +1,182 @@
+//! How things look: procedural paints, baked once a face into mip-mapped textures.
+//!
+//! Every face gets a painting of its own, drawn from (world seed, solid, face), so that no two places look alike and the
+//! result does not depend on the order or the number of threads. Colour is a pure function of metres on the face.
+
+mod color;
+mod furnishings;
+mod noise;
+mod poster;
+mod surfaces;
+mod texture;
+
+use crate::chance::hash;
+use crate::world::{Shape, Solid};
+use color::{Rgb, packed};
+use poster::Poster;
+use rayon::prelude::*;
+pub(crate) use texture::Texture;
+
+/// Sides of textures are multiples of this, so that five levels halve exactly.
+const TEXELS: usize = 16;
+
+/// Most texels of one face; larger faces get coarser texels.
+const MOST_TEXELS: f64 = 4e6;
+
+/// A kind of surface. Colours are sRGB.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Paint {
+    /// One colour: faces that nobody sees, and tests.
+    Flat {
+        /// The colour.
+        color: [u8; 3],
+    },
+    /// Blotchy plaster hung with prints.
+    Plaster {
+        /// The wall's colour.
+        color: [u8; 3],
+        /// Share of the wall's fields (0.9 x 0.8 m) that hold a print, 0 to 1.
+        prints: f32,
+    },
+    /// Wallpaper with a motif of its own every 0.16 m, hung with a few prints.
+    Wallpaper {
+        /// The ground colour.
+        color: [u8; 3],
+    },
+    /// A brick wall.
+    Bricks,
+    /// Floor boards.
+    Boards {
+        /// The wood's colour.
+        color: [u8; 3],
+    },
+    /// Floor tiles.
+    Tiles {
+        /// The tiles' colour.
+        color: [u8; 3],
+    },
+    /// Ceiling boards with lamps.
+    Ceiling,
+    /// Rows of books.
+    Books,
+    /// A printed carton.
+    Cardboard,
+    /// Woven cloth.
+    Fabric {
+        /// The cloth's colour.
+        color: [u8; 3],
+    },
+    /// Veneered furniture.
+    Veneer {
+        /// The wood's colour.
+        color: [u8; 3],
+    },
+    /// Painted metal.
+    Metal {
+        /// The metal's colour.
+        color: [u8; 3],
+    },
+}
+
+/// The paints of a solid.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Finish {
+    /// Of a box: its faces +x, -x, +y, -y, top, bottom in its own frame. Of a cylinder: its side is the first, top and
+    /// bottom the last two.
+    pub faces: [Paint; 6],
+}
+
+impl Finish {
+    /// The same paint all over (every face still gets a painting of its own).
+    pub fn all(paint: Paint) -> Self {
+        Self { faces: [paint; 6] }
+    }
+}
+
+/// The painted faces of a solid: six of a box, (side, top, bottom) of a cylinder.
+pub(crate) fn bake_solid(solid: &Solid, world_seed: u64, index: usize) -> Vec<Texture> {
+    let faces: Vec<(usize, f64, f64)> = match &solid.shape {
+        Shape::Cuboid(c) => {
+            let (x, y, z) = (c.size.x, c.size.y, c.size.z);
+            vec![(0, y, z), (1, y, z), (2, x, z), (3, x, z), (4, x, y), (5, x, y)]
+        }
+        Shape::Cylinder(c) => {
+            let d = 2.0 * c.radius;
+            vec![(0, std::f64::consts::PI * d, c.height), (4, d, d), (5, d, d)]
+        }
+    };
+    let bake = |&(face, width, height): &(usize, f64, f64)| {
+        let seed = hash(world_seed, (index * 8 + face) as u64) as u32;
+        bake_face(solid.finish.faces[face], seed, width, height)
+    };
+    faces.iter().map(bake).collect()
+}
+
+fn bake_face(paint: Paint, seed: u32, width: f64, height: f64) -> Texture {
+    let size = (width as f32, height as f32);
+    if let Paint::Flat { color } = paint {
+        return Texture::new(1, 1, vec![packed(color::rgb(color))], size);
+    }
+    let texel = texel_of(paint).max((width * height / MOST_TEXELS).sqrt());
+    let texels = |length: f64| ((length / texel / TEXELS as f64).ceil() as usize).max(1) * TEXELS;
+    let (columns, rows) = (texels(width), texels(height));
+    let prints = prints_on(paint, seed, size);
+    let (dx, dy) = (size.0 / columns as f32, size.1 / rows as f32);
+    let texel_at = |i: usize| {
+        let (x, y) = (((i % columns) as f32 + 0.5) * dx, ((i / columns) as f32 + 0.5) * dy);
+        let print = prints.iter().find_map(|poster| poster.at(x, y));
+        packed(print.unwrap_or_else(|| color_at(paint, seed, size, x, y)))
+    };
+    Texture::new(columns, rows, (0..columns * rows).into_par_iter().map(texel_at).collect(), size)
+}
+
+/// Side of a texel, m: walls are seen from farther away than furniture.
+fn texel_of(paint: Paint) -> f64 {
+    match paint {
+        Paint::Ceiling => 0.010,
+        Paint::Plaster { .. }
+        | Paint::Wallpaper { .. }
+        | Paint::Bricks
+        | Paint::Boards { .. }
+        | Paint::Tiles { .. } => 0.005,
+        _ => 0.004,
+    }
+}
+
+fn prints_on(paint: Paint, seed: u32, size: (f32, f32)) -> Vec<Poster> {
+    match paint {
+        Paint::Plaster { prints, .. } => poster::spread(seed, size, prints),
+        Paint::Wallpaper { .. } => poster::spread(seed, size, 0.25),
+        _ => Vec::new(),
+    }
+}
+
+fn color_at(paint: Paint, seed: u32, size: (f32, f32), x: f32, y: f32) -> Rgb {
+    match paint {
+        Paint::Flat { color } => color::rgb(color),
+        Paint::Plaster { color, .. } => surfaces::plaster(seed, color, x, y),
+        Paint::Wallpaper { color } => surfaces::wallpaper(seed, color, x, y),
+        Paint::Bricks => surfaces::bricks(seed, x, y),
+        Paint::Boards { color } => surfaces::boards(seed, color, x, y),
+        Paint::Tiles { color } => surfaces::tiles(seed, color, x, y),
+        Paint::Ceiling => surfaces::ceiling(seed, x, y),
+        Paint::Books => furnishings::books(seed, x, y),
+        Paint::Cardboard => furnishings::cardboard(seed, size, x, y),
+        Paint::Fabric { color } => furnishings::fabric(seed, color, x, y),
+        Paint::Veneer { color } => furnishings::veneer(seed, color, size, x, y),
+        Paint::Metal { color } => furnishings::metal(seed, color, x, y),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_face_has_its_own_painting_and_the_same_one_every_time() {
+        let paint = Paint::Veneer { color: [150, 110, 70] };
+        let face = |seed| bake_face(paint, seed, 0.5, 0.4);
+        assert_eq!(face(1), face(1));
+        assert_ne!(face(1), face(2));
+    }
+}

@@ -1,0 +1,108 @@
+//! What walls, floors and ceilings are made of: colour as a function of metres from the face's top left.
+
+use super::color::{Rgb, lifted, mixed, pick, rgb, scaled};
+use super::noise::{fractal, lattice, value};
+
+/// Grain of every size, so that corners are found from 1 m as from 6 m, in grey levels.
+fn grain(seed: u32, x: f32, y: f32, strength: f32) -> f32 {
+    strength * fractal(seed, x, y, 0.64, 7, 0.82) * 0.5
+}
+
+/// Painted plaster, blotchy, with spatters.
+pub(super) fn plaster(seed: u32, color: [u8; 3], x: f32, y: f32) -> Rgb {
+    let spatter = value(seed ^ 5, x / 0.045, y / 0.045);
+    let mark = if spatter > 0.72 { -34.0 } else { 0.0 };
+    lifted(rgb(color), grain(seed, x, y, 22.0) + mark)
+}
+
+/// Wallpaper: a motif of its own in every field.
+pub(super) fn wallpaper(seed: u32, color: [u8; 3], x: f32, y: f32) -> Rgb {
+    let side = 0.16;
+    let (column, row) = ((x / side).floor(), (y / side).floor());
+    let (dx, dy) = (x / side - column - 0.5, y / side - row - 0.5);
+    let draw = |k: u32| lattice(seed.wrapping_add(k * 131), column as i32, row as i32);
+    let (sx, sy) = (0.12 + 0.3 * draw(1), 0.12 + 0.3 * draw(2));
+    let (dx, dy) = (dx + 0.3 * (draw(3) - 0.5), dy + 0.3 * (draw(4) - 0.5));
+    let inside = match (draw(5) * 4.0) as u32 {
+        0 => dx.abs() < sx && dy.abs() < sy,
+        1 => dx * dx / (sx * sx) + dy * dy / (sy * sy) < 1.0,
+        2 => dx.abs() / sx + dy.abs() / sy < 1.0,
+        _ => dx.abs() < 0.07 && dy.abs() < sy || dy.abs() < 0.07 && dx.abs() < sx,
+    };
+    let base = lifted(rgb(color), grain(seed, x, y, 14.0));
+    if inside { mixed(base, pick(seed, (draw(6) * 1e4) as i32), 0.35 + 0.5 * draw(7)) } else { base }
+}
+
+/// Bricks in running bond, each of its own tone, joints of mortar.
+pub(super) fn bricks(seed: u32, x: f32, y: f32) -> Rgb {
+    let (length, height, joint) = (0.25, 0.085, 0.012);
+    let row = (y / height).floor();
+    let shift = length * 0.5 * (row % 2.0) + 0.03 * lattice(seed, row as i32, 5);
+    let column = ((x + shift) / length).floor();
+    let (bx, by) = (x + shift - column * length, y - row * height);
+    if bx < joint || by < joint {
+        return lifted([176.0, 168.0, 156.0], grain(seed ^ 9, x, y, 22.0));
+    }
+    let tone = lattice(seed, column as i32, row as i32);
+    let clay = mixed([112.0, 52.0, 40.0], [206.0, 128.0, 92.0], tone * tone);
+    lifted(clay, grain(seed, x, y, 30.0))
+}
+
+/// Floor boards along x, each of its own tone and length, with grain, gaps and knots.
+pub(super) fn boards(seed: u32, color: [u8; 3], x: f32, y: f32) -> Rgb {
+    let width = 0.13;
+    let row = (y / width).floor();
+    let length = 0.9 + 0.6 * lattice(seed, row as i32, 1);
+    let along = x + 3.0 * lattice(seed, row as i32, 2);
+    let column = (along / length).floor();
+    let gap = (y - row * width).min(along - column * length);
+    if gap < 0.006 {
+        return scaled(rgb(color), 0.3);
+    }
+    let tone = 0.62 + 0.6 * lattice(seed, column as i32, row as i32 + 7);
+    timber(seed ^ (row as u32).wrapping_mul(31), scaled(rgb(color), tone), along, y)
+}
+
+/// Sawn timber, grain along x, knots here and there.
+pub(super) fn timber(seed: u32, color: Rgb, x: f32, y: f32) -> Rgb {
+    let wave = 0.02 * value(seed ^ 3, x / 0.4, y / 0.2);
+    let fibre = fractal(seed, x / 9.0, y + wave, 0.03, 3, 0.75);
+    let knot = value(seed ^ 8, x / 0.11, y / 0.06);
+    let dark = if knot > 0.8 { 0.45 } else { 1.0 };
+    lifted(scaled(color, dark), 22.0 * fibre + 16.0 * fractal(seed ^ 4, x, y, 0.16, 4, 0.8))
+}
+
+/// Floor tiles, each of its own tone, some with an inlay.
+pub(super) fn tiles(seed: u32, color: [u8; 3], x: f32, y: f32) -> Rgb {
+    let side = 0.30;
+    let (column, row) = ((x / side).floor(), (y / side).floor());
+    let (dx, dy) = (x / side - column, y / side - row);
+    if dx.min(dy) < 0.03 {
+        return [92.0, 90.0, 88.0];
+    }
+    let draw = |k: u32| lattice(seed.wrapping_add(k * 173), column as i32, row as i32);
+    let base = scaled(rgb(color), 0.72 + 0.4 * draw(1));
+    let (px, py) = (dx - 0.3 - 0.4 * draw(2), dy - 0.3 - 0.4 * draw(3));
+    let reach = 0.1 + 0.16 * draw(4);
+    let inlaid = draw(5) < 0.45
+        && if draw(6) < 0.5 { px.abs() + py.abs() < reach } else { px.abs().max(py.abs()) < reach * 0.8 };
+    let base = if inlaid { mixed(base, pick(seed, (draw(7) * 1e4) as i32), 0.7) } else { base };
+    lifted(base, grain(seed, x, y, 26.0))
+}
+
+/// Ceiling boards of 0.6 m with holes and lamps.
+pub(super) fn ceiling(seed: u32, x: f32, y: f32) -> Rgb {
+    let side = 0.6;
+    let (column, row) = ((x / side).floor(), (y / side).floor());
+    let (dx, dy) = (x / side - column, y / side - row);
+    if dx.min(dy) < 0.03 {
+        return [120.0, 120.0, 124.0];
+    }
+    let draw = |k: u32| lattice(seed.wrapping_add(k * 37), column as i32, row as i32);
+    if draw(1) < 0.12 && (0.2..0.85).contains(&dx) && (0.2..0.85).contains(&dy) {
+        return [252.0, 250.0, 240.0];
+    }
+    let hole = value(seed, x / 0.05, y / 0.05) > 0.6;
+    let base = 176.0 + 24.0 * draw(2) - if hole { 50.0 } else { 0.0 };
+    lifted([base; 3], grain(seed, x, y, 16.0))
+}

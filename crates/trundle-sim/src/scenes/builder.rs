@@ -1,0 +1,105 @@
+use crate::paint::{Finish, Paint};
+use crate::world::{Cuboid, Cylinder, Shape, Solid};
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use trundle_core::{Pose2, Vector3};
+
+/// What hides behind walls and under floors.
+pub(super) const UNSEEN: Paint = Paint::Flat { color: [120, 118, 114] };
+
+/// Height of rooms, m.
+pub(super) const ROOM_HEIGHT: f64 = 2.5;
+
+/// Thickness of walls, m.
+pub(super) const WALL: f64 = 0.1;
+
+/// Sides of a box in the order of [`Finish::faces`].
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Side {
+    East = 0,
+    West = 1,
+    North = 2,
+    South = 3,
+    Top = 4,
+    Bottom = 5,
+}
+
+/// Collects solids; draws jitter from one seed in the order of the calls.
+#[derive(Debug)]
+pub(super) struct Builder {
+    pub(super) solids: Vec<Solid>,
+    rng: ChaCha8Rng,
+}
+
+impl Builder {
+    pub(super) fn new(seed: u64) -> Self {
+        Self { solids: Vec::new(), rng: ChaCha8Rng::seed_from_u64(seed) }
+    }
+
+    /// A number between `-reach` and `reach`.
+    pub(super) fn jitter(&mut self, reach: f64) -> f64 {
+        self.rng.random_range(-reach..=reach)
+    }
+
+    /// One of a list.
+    pub(super) fn choose<T: Copy>(&mut self, list: &[T]) -> T {
+        list[self.rng.random_range(0..list.len())]
+    }
+
+    /// `place` moved by up to `reach` m along x and y each and turned by up to `turn` rad.
+    pub(super) fn jittered(&mut self, place: Pose2, reach: f64, turn: f64) -> Pose2 {
+        let (dx, dy, dt) = (self.jitter(reach), self.jitter(reach), self.jitter(turn));
+        Pose2::new(place.x + dx, place.y + dy, place.theta + dt)
+    }
+
+    /// A box whose middle stands `offset` (x, y, m) from `place`, in its axes, from `bottom` up; `size` m.
+    pub(super) fn block(
+        &mut self,
+        place: Pose2,
+        offset: (f64, f64),
+        bottom: f64,
+        size: [f64; 3],
+        finish: Finish,
+    ) {
+        let middle = place.transform(trundle_core::Vector2::new(offset.0, offset.1));
+        let center = Vector3::new(middle.x, middle.y, bottom + size[2] / 2.0);
+        let cuboid = Cuboid { center, size: Vector3::from(size), yaw: place.theta };
+        self.solids.push(Solid { shape: Shape::Cuboid(cuboid), finish });
+    }
+
+    /// An upright cylinder, `offset` (x, y, m) from `place`, in its axes, from `bottom` up.
+    pub(super) fn pillar(
+        &mut self,
+        place: Pose2,
+        offset: (f64, f64),
+        bottom: f64,
+        (radius, height): (f64, f64),
+        paint: Paint,
+    ) {
+        let middle = place.transform(trundle_core::Vector2::new(offset.0, offset.1));
+        let cylinder = Cylinder { base: Vector3::new(middle.x, middle.y, bottom), radius, height };
+        self.solids.push(Solid { shape: Shape::Cylinder(cylinder), finish: Finish::all(paint) });
+    }
+
+    /// A slab between two corners (x, y, z, m), painted where it can be seen.
+    pub(super) fn slab(&mut self, low: [f64; 3], high: [f64; 3], seen: &[(Side, Paint)]) {
+        let mut finish = Finish::all(UNSEEN);
+        for (side, paint) in seen {
+            finish.faces[*side as usize] = *paint;
+        }
+        let size = [0, 1, 2].map(|k| high[k] - low[k]);
+        let place = Pose2::new((low[0] + high[0]) / 2.0, (low[1] + high[1]) / 2.0, 0.0);
+        self.block(place, (0.0, 0.0), low[2], size, finish);
+    }
+
+    /// Floor and ceiling over a rectangle (x0, y0, x1, y1, m).
+    pub(super) fn floor_and_ceiling(&mut self, [x0, y0, x1, y1]: [f64; 4], floor: Paint) {
+        self.slab([x0, y0, -0.05], [x1, y1, 0.0], &[(Side::Top, floor)]);
+        self.slab([x0, y0, ROOM_HEIGHT], [x1, y1, ROOM_HEIGHT + 0.05], &[(Side::Bottom, Paint::Ceiling)]);
+    }
+
+    /// A wall over a rectangle (x0, y0, x1, y1, m), from the floor to the ceiling.
+    pub(super) fn wall(&mut self, [x0, y0, x1, y1]: [f64; 4], seen: &[(Side, Paint)]) {
+        self.slab([x0, y0, 0.0], [x1, y1, ROOM_HEIGHT], seen);
+    }
+}

@@ -1,0 +1,95 @@
+//! The static scene: solids, what a ray meets, what a robot touches, and its true map.
+
+mod aabb;
+mod bvh;
+mod contact;
+mod grid;
+mod outline;
+mod ray;
+mod shape;
+
+use crate::paint::{Finish, Texture, bake_solid};
+pub(crate) use aabb::Aabb;
+pub(crate) use bvh::Bvh;
+pub use contact::HeightBand;
+pub(crate) use contact::Obstacles;
+use outline::Outline;
+pub use ray::Hit;
+use rayon::prelude::*;
+pub use shape::{Cuboid, Cylinder, Shape};
+use std::sync::OnceLock;
+use trundle_core::{Invalid, Vector3};
+
+/// A shape and how its faces look.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Solid {
+    /// Where it is.
+    pub shape: Shape,
+    /// What is painted on it.
+    pub finish: Finish,
+}
+
+/// A static scene: frame `world`, z up, the floor's top at z = 0, metres.
+///
+/// Textures are drawn from `seed` when first looked at; geometry alone costs nothing of them.
+#[derive(Debug)]
+pub struct World {
+    seed: u64,
+    solids: Vec<Solid>,
+    outlines: Vec<Outline>,
+    boxes: Vec<Aabb>,
+    bounds: Aabb,
+    bvh: Bvh,
+    paintings: OnceLock<Vec<Vec<Texture>>>,
+}
+
+impl World {
+    /// A world of `solids`, its textures drawn from `seed`.
+    ///
+    /// # Errors
+    /// When there is no solid, or a solid has a number that is not finite or a size that is not positive.
+    pub fn new(solids: Vec<Solid>, seed: u64) -> Result<Self, Invalid> {
+        for (i, solid) in solids.iter().enumerate() {
+            solid.shape.check(i)?;
+        }
+        let boxes: Vec<Aabb> = solids.iter().map(|solid| solid.shape.aabb()).collect();
+        let Some(bounds) = boxes.iter().copied().reduce(Aabb::union) else {
+            return Err(Invalid::new("solids of the world", 0, "", "1 or more"));
+        };
+        let outlines = solids.iter().map(|solid| solid.shape.outline()).collect();
+        let bvh = Bvh::new(&boxes);
+        Ok(Self { seed, solids, outlines, boxes, bounds, bvh, paintings: OnceLock::new() })
+    }
+
+    /// What stands in it.
+    pub fn solids(&self) -> &[Solid] {
+        &self.solids
+    }
+
+    /// The lowest and the highest corner of all solids, m.
+    pub fn bounds(&self) -> (Vector3, Vector3) {
+        (self.bounds.min, self.bounds.max)
+    }
+
+    /// The boxes around the solids.
+    pub(crate) fn boxes(&self) -> &[Aabb] {
+        &self.boxes
+    }
+
+    pub(crate) fn bvh(&self) -> &Bvh {
+        &self.bvh
+    }
+
+    /// Draws the textures now rather than at the first look: some tenths of a second.
+    pub fn paint(&self) {
+        self.paintings();
+    }
+
+    /// The painted faces of every solid, drawn at the first call.
+    pub(crate) fn paintings(&self) -> &[Vec<Texture>] {
+        self.paintings.get_or_init(|| {
+            let indices = 0..self.solids.len();
+            indices.into_par_iter().map(|i| bake_solid(&self.solids[i], self.seed, i)).collect()
+        })
+    }
+}
