@@ -6,10 +6,10 @@
 
 mod area;
 mod bezier;
-mod buckets;
 mod config;
 mod corridor;
 mod curve;
+mod dial;
 mod field;
 mod fit;
 mod geometry;

@@ -19,8 +19,8 @@ pub(crate) struct Space<'a> {
     grid: &'a OccupancyGrid,
     escape: Option<Escape>,
     surely: f64,
-    /// Whole cells from the grid's origin to the field's.
-    shift: (i64, i64),
+    /// Whole cells from the grid's origin to the field's; none where the two are the same.
+    shift: Option<(i64, i64)>,
 }
 
 /// A robot that stands nearer to an obstacle than its radius may leave, without getting any nearer.
@@ -47,7 +47,8 @@ impl<'a> Space<'a> {
             radius: at_start,
         });
         let offset = (field.geometry().origin - grid.geometry().origin) / grid.geometry().resolution;
-        let shift = (offset.x.round() as i64, offset.y.round() as i64);
+        let is_same = field.geometry() == grid.geometry();
+        let shift = (!is_same).then_some((offset.x.round() as i64, offset.y.round() as i64));
         Self { field, room, radius, grid, escape, surely: field.overestimate(radius), shift }
     }
 
@@ -114,6 +115,11 @@ impl<'a> Space<'a> {
         if is_unknown { cost + room.unknown_weight } else { cost }
     }
 
+    /// No metre costs more.
+    pub(crate) fn highest_density(&self) -> f64 {
+        1.0 + self.room.comfort_weight + self.room.margin_weight + self.room.unknown_weight
+    }
+
     /// The cost of a metre around the centre of a cell.
     pub(crate) fn cell_density(&self, linear: usize) -> f64 {
         self.density(self.field.at_linear(linear), self.is_unknown(linear))
@@ -137,8 +143,9 @@ impl<'a> Space<'a> {
     }
 
     fn is_unknown(&self, linear: usize) -> bool {
+        let Some(shift) = self.shift else { return self.grid.cells()[linear] == Cell::Unknown };
         let cell = self.field.geometry().cell(linear);
-        let (col, row) = (cell.col as i64 + self.shift.0, cell.row as i64 + self.shift.1);
+        let (col, row) = (cell.col as i64 + shift.0, cell.row as i64 + shift.1);
         let geometry = self.grid.geometry();
         let inside = col >= 0 && row >= 0 && col < geometry.width as i64 && row < geometry.height as i64;
         !inside || self.grid.cells()[row as usize * geometry.width + col as usize] == Cell::Unknown

@@ -2,13 +2,13 @@
 //!
 //! Problem: the printed potential has local minima. Idea: replace the straight distance in the attraction by the
 //! geodesic one, and the repulsion by slowness of the wave near obstacles; such a potential has one minimum, and
-//! descending it is following the wave back. The wave runs towards the goal first (A*, \[Hart68\]) on the 8-neighbour
-//! lattice of cells where the robot fits, every step checked against the obstacles' squares. Complete: if the lattice
-//! connects, the way is found. Cost: O(cells reached), in buckets whose turn sorts them.
+//! descending it is following the wave back. The wave runs towards the goal first (A*; Hart, Nilsson, Raphael, IEEE T-SSC
+//! 4(2), 1968) on the 8-neighbour lattice of cells where the robot fits, every step checked against the obstacles'
+//! squares. Complete: if the lattice connects, the way is found. Costs are whole numbers, so a list for each key makes
+//! a queue without comparisons (Dial, CACM 12(11), 1969). Cost: O(cells reached).
 
-use crate::buckets::{Buckets, Entry};
+use crate::dial::{Dial, Entry};
 use crate::space::Space;
-use std::f64::consts::SQRT_2;
 use trundle_core::Vector2;
 
 /// What the wave found.
@@ -23,34 +23,31 @@ pub(crate) enum Wave {
 /// The wave's memory, kept from plan to plan.
 #[derive(Debug, Default)]
 pub(crate) struct WaveFront {
-    cost: Vec<f32>,
+    /// Cheapest so far, in units; [`NEVER`] where the wave has not been.
+    cost: Vec<u32>,
     /// Which of [`STEPS`] led here, [`SEED`] for the first ring.
     step: Vec<u8>,
-    queue: Buckets,
+    queue: Dial,
 }
 
 const STEPS: [(i64, i64); 8] = [(1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (1, -1), (-1, 1), (-1, -1)];
 const SEED: u8 = 8;
+const NEVER: u32 = u32::MAX;
 /// How far around the start and the goal the lattice may be entered, cells.
 const RING: i64 = 2;
+/// The cost of a cell's side, and of its diagonal, where a metre costs 1.
+const SIDE: u32 = 256;
+const DIAGONAL: u32 = 362;
 
 impl WaveFront {
     /// Runs the wave from `start` to `goal`, both free and inside the field.
     pub(crate) fn run(&mut self, space: &Space<'_>, start: Vector2, goal: Vector2) -> Wave {
-        let resolution = space.field.geometry().resolution;
-        self.reset(space, octile(goal - start), resolution);
-        let mut nearest = start;
-        for (cell, length) in ring(space, start) {
-            self.reach(
-                cell,
-                space.cost(start, space.center(cell)).max(length),
-                SEED,
-                octile_to(space, cell, goal),
-            );
-        }
+        let Some(target) = cell_of(space, goal) else { return Wave::Stuck(start) };
+        let lattice = Lattice { width: space.field.geometry().width as i64, target };
+        self.seed(space, start, &lattice);
         let ends = ring(space, goal);
-        let mut best: Option<(f64, usize)> = None;
-        while let Some(Entry { key, cell, cost }) = self.queue.pop() {
+        let mut best: Option<(u32, usize)> = None;
+        while let Some((key, Entry { cell, cost })) = self.queue.pop() {
             if best.is_some_and(|(total, _)| key >= total) {
                 break;
             }
@@ -58,61 +55,61 @@ impl WaveFront {
             if cost > self.cost[cell] {
                 continue;
             }
-            if ends.iter().any(|end| end.0 == cell) {
-                let total = f64::from(cost) + octile_to(space, cell, goal);
+            if ends.contains(&cell) {
+                let total = cost + lattice.ahead(cell);
                 if best.is_none_or(|(least, _)| total < least) {
                     best = Some((total, cell));
                 }
             }
-            let center = space.center(cell);
-            if best.is_none() && (center - goal).norm_squared() < (nearest - goal).norm_squared() {
-                nearest = center;
-            }
-            self.spread(space, cell, goal);
+            self.spread(space, cell, &lattice);
         }
         match best {
             Some((_, cell)) => Wave::Met(self.follow_back(space, cell, start, goal)),
-            None => Wave::Stuck(nearest),
+            None => Wave::Stuck(self.nearest(space, start, goal)),
         }
     }
 
-    fn reset(&mut self, space: &Space<'_>, base: f64, step: f64) {
-        let cells = space.field.geometry().len();
+    fn seed(&mut self, space: &Space<'_>, start: Vector2, lattice: &Lattice) {
         self.cost.clear();
-        self.cost.resize(cells, f32::INFINITY);
-        self.step.resize(cells, SEED);
-        self.queue.reset(base, step);
-    }
-
-    fn reach(&mut self, cell: usize, cost: f64, step: u8, ahead: f64) {
-        let stored = cost as f32;
-        // Costs of the same length differ in their last bits by the order of their sums: no reason to start again.
-        if stored < self.cost[cell] * (1.0 - 1e-6) || self.cost[cell] == f32::INFINITY {
-            self.cost[cell] = stored;
-            self.step[cell] = step;
-            self.queue.push(Entry { key: cost + ahead, cost: stored, cell: cell as u32 });
+        self.cost.resize(space.field.geometry().len(), NEVER);
+        self.step.resize(self.cost.len(), SEED);
+        let resolution = space.field.geometry().resolution;
+        let price = |cell| (space.cost(start, space.center(cell)) / resolution * f64::from(SIDE)) as u32;
+        let seeds: Vec<_> = ring(space, start).into_iter().map(|cell| (cell, price(cell))).collect();
+        let first = seeds.iter().map(|(cell, cost)| cost + lattice.ahead(*cell)).min().unwrap_or(0);
+        let longest = f64::from(DIAGONAL) * (RING as f64 + 1.0) * 2.0;
+        self.queue.reset(first, (longest * (space.highest_density() + 1.0)).ceil() as u32);
+        for (cell, cost) in seeds {
+            self.reach(cell, cost, SEED, lattice);
         }
     }
 
-    fn spread(&mut self, space: &Space<'_>, from: usize, goal: Vector2) {
+    fn reach(&mut self, cell: usize, cost: u32, step: u8, lattice: &Lattice) {
+        self.cost[cell] = cost;
+        self.step[cell] = step;
+        self.queue.push(cost + lattice.ahead(cell), Entry { cell: cell as u32, cost });
+    }
+
+    fn spread(&mut self, space: &Space<'_>, from: usize, lattice: &Lattice) {
         let geometry = space.field.geometry();
         let (width, height) = (geometry.width as i64, geometry.height as i64);
-        let (col, row) = ((from % geometry.width) as i64, (from / geometry.width) as i64);
+        let (col, row) = lattice.place(from);
         let here = space.cell_density(from);
-        let so_far = f64::from(self.cost[from]);
+        let so_far = self.cost[from];
         for (step, (dx, dy)) in STEPS.into_iter().enumerate() {
             let (c, r) = (col + dx, row + dy);
             if c < 0 || r < 0 || c >= width || r >= height {
                 continue;
             }
             let to = (r * width + c) as usize;
-            let length = geometry.resolution * if step < 4 { 1.0 } else { SQRT_2 };
-            if f64::from(self.cost[to]) <= so_far + length || !space.is_free_cell(to) {
+            let length = if step < 4 { SIDE } else { DIAGONAL };
+            if self.cost[to] <= so_far + length || !space.is_free_cell(to) {
                 continue;
             }
-            let cost = so_far + length * (here + space.cell_density(to)) / 2.0;
-            if (cost as f32) < self.cost[to] && space.joins(from, to, length) {
-                self.reach(to, cost, step as u8, octile_to(space, to, goal));
+            let cost = so_far + (f64::from(length) * (here + space.cell_density(to)) * 0.5) as u32;
+            let metres = geometry.resolution * f64::from(length) / f64::from(SIDE);
+            if cost < self.cost[to] && space.joins(from, to, metres) {
+                self.reach(to, cost, step as u8, lattice);
             }
         }
     }
@@ -133,10 +130,42 @@ impl WaveFront {
         points.reverse();
         points
     }
+
+    /// Of all cells the wave has been to, the one nearest to the goal.
+    fn nearest(&self, space: &Space<'_>, start: Vector2, goal: Vector2) -> Vector2 {
+        let reached =
+            (0..self.cost.len()).filter(|cell| self.cost[*cell] != NEVER).map(|cell| space.center(cell));
+        let nearer =
+            |a: &Vector2, b: &Vector2| (a - goal).norm_squared().total_cmp(&(b - goal).norm_squared());
+        reached.min_by(nearer).unwrap_or(start)
+    }
 }
 
-/// The free cells around a point that it can reach straight, with the way there, m.
-fn ring(space: &Space<'_>, point: Vector2) -> Vec<(usize, f64)> {
+/// Rows and columns of cells, and the way that is at least ahead of them.
+struct Lattice {
+    width: i64,
+    target: usize,
+}
+
+impl Lattice {
+    fn place(&self, cell: usize) -> (i64, i64) {
+        (cell as i64 % self.width, cell as i64 / self.width)
+    }
+
+    /// The cost of the shortest way over the 8-neighbour lattice to the target, were it empty.
+    fn ahead(&self, cell: usize) -> u32 {
+        let ((a, b), (c, d)) = (self.place(cell), self.place(self.target));
+        let (x, y) = ((a - c).unsigned_abs() as u32, (b - d).unsigned_abs() as u32);
+        x.max(y) * SIDE + x.min(y) * (DIAGONAL - SIDE)
+    }
+}
+
+fn cell_of(space: &Space<'_>, point: Vector2) -> Option<usize> {
+    space.field.geometry().cell_at(point).map(|cell| space.field.geometry().linear(cell))
+}
+
+/// The free cells around a point that it can reach straight.
+fn ring(space: &Space<'_>, point: Vector2) -> Vec<usize> {
     let geometry = space.field.geometry();
     let Some(middle) = geometry.cell_at(point) else { return Vec::new() };
     let mut cells = Vec::new();
@@ -148,19 +177,36 @@ fn ring(space: &Space<'_>, point: Vector2) -> Vec<(usize, f64)> {
             }
             let cell = r as usize * geometry.width + c as usize;
             if space.is_free_cell(cell) && space.sees(point, space.center(cell)) {
-                cells.push((cell, (space.center(cell) - point).norm()));
+                cells.push(cell);
             }
         }
     }
     cells
 }
 
-/// The length of the shortest way over the 8-neighbour lattice, were it empty, m.
-fn octile(off: Vector2) -> f64 {
-    let (x, y) = (off.x.abs(), off.y.abs());
-    x.max(y) + (SQRT_2 - 1.0) * x.min(y)
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{DistanceField, RoomConfig, UnknownIs};
+    use trundle_core::OccupancyGrid;
 
-fn octile_to(space: &Space<'_>, cell: usize, goal: Vector2) -> f64 {
-    octile(goal - space.center(cell))
+    #[test]
+    fn the_wave_goes_round_and_stops_where_it_cannot() {
+        let art = "
+            ...........
+            .#########.
+            .........#.
+            .#######.##
+            ........#..";
+        let grid = OccupancyGrid::from_ascii(1.0, art).unwrap();
+        let field = DistanceField::from_grid(&grid, UnknownIs::Free);
+        let at = Vector2::new;
+        let space = Space::new(&field, &grid, RoomConfig::default(), 0.4, at(0.5, 4.5));
+        let mut wave = WaveFront::default();
+        let Wave::Met(path) = wave.run(&space, at(0.5, 4.5), at(8.5, 2.5)) else { panic!("stuck") };
+        assert_eq!((path[0], path[path.len() - 1]), (at(0.5, 4.5), at(8.5, 2.5)));
+        assert!(path.iter().all(|p| space.is_free(*p)));
+        let stuck = wave.run(&space, at(0.5, 4.5), at(9.5, 0.5));
+        assert_eq!(stuck, Wave::Stuck(at(8.5, 1.5)));
+    }
 }
