@@ -22,7 +22,14 @@ pub struct Planner {
     radius: f64,
     drive: Drive,
     wave: WaveFront,
-    field: Option<DistanceField>,
+    field: Option<Known>,
+}
+
+/// The field of the last plan, and the grid that it came from.
+#[derive(Debug)]
+struct Known {
+    grid: OccupancyGrid,
+    field: DistanceField,
 }
 
 /// Positions nearer than this are the same place, m.
@@ -89,7 +96,7 @@ impl Planner {
 
     /// The distance field of the last plan, for pictures.
     pub fn field(&self) -> Option<&DistanceField> {
-        self.field.as_ref()
+        self.field.as_ref().map(|known| &known.field)
     }
 
     fn may_leave(&self) -> bool {
@@ -108,12 +115,24 @@ impl Planner {
             Ok(geometry) => geometry,
             Err(plan) => return plan,
         };
-        let field = DistanceField::over(geometry, grid, self.config.unknown, self.field.take());
+        let known = self.known(geometry, grid);
         let task =
-            Task { config: &self.config, radius: self.radius, drive: &self.drive, field: &field, grid };
+            Task { config: &self.config, radius: self.radius, drive: &self.drive, field: &known.field, grid };
         let plan = task.plan(&mut self.wave, start, twist, goal);
-        self.field = Some(field);
+        self.field = Some(known);
         plan
+    }
+
+    /// The field over `geometry`: the last one where nothing changed, else a new one in its memory.
+    fn known(&mut self, geometry: GridGeometry, grid: &OccupancyGrid) -> Known {
+        match self.field.take() {
+            Some(known) if *known.field.geometry() == geometry && known.grid == *grid => known,
+            last => {
+                let spent = last.map(|known| known.field);
+                let field = DistanceField::over(geometry, grid, self.config.unknown, spent);
+                Known { grid: grid.clone(), field }
+            }
+        }
     }
 
     /// The area to plan in.

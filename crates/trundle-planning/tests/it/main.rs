@@ -1,5 +1,8 @@
 //! The planner as its user sees it.
 
+#![expect(clippy::unwrap_used, reason = "test helpers")]
+#![expect(clippy::print_stderr, reason = "measured numbers and skip lines")]
+
 mod ascii;
 mod bad_input;
 mod laws;

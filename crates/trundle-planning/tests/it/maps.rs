@@ -3,7 +3,7 @@
 use crate::support::{at_home, cpu_ms, judge, planner};
 use std::path::{Path, PathBuf};
 use trundle_core::{Cell, GridGeometry, OccupancyGrid, Pose2, Twist2, Vector2};
-use trundle_planning::{Plan, PlannerConfig, PotentialConfig, PotentialKind};
+use trundle_planning::{Plan, PlannerConfig, PotentialConfig, PotentialKind, RoomConfig};
 
 fn data() -> Option<PathBuf> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data/nav");
@@ -71,6 +71,8 @@ struct Tally {
     one_curve: usize,
     drives: usize,
     worst_stretch: f64,
+    lengths: Vec<f64>,
+    way_lengths: Vec<f64>,
     ms: Vec<f64>,
 }
 
@@ -91,6 +93,8 @@ fn run(
             Plan::Found(result) => {
                 judge(grid, &result, *start, *goal, radius);
                 tally.found += 1;
+                tally.lengths.push(result.length);
+                tally.way_lengths.push(result.way_points.length());
                 tally.fell_back += usize::from(result.fell_back);
                 tally.drives += result.curves().count();
                 tally.one_curve += usize::from(result.curves().count() == 1);
@@ -124,6 +128,14 @@ fn nav2_pairs_are_all_found() {
         let pairs = pairs(&data.join(format!("nav2/nav2_{map}.csv")), 1);
         let tally = run(&format!("{map} {radius}"), &grid, &pairs, at_home(), radius);
         assert_eq!(tally.found, pairs.len());
+        // Against the shortest way that the search finds when room costs nothing.
+        let room = RoomConfig { margin: 0.0, comfort: 0.0, ..RoomConfig::default() };
+        let tight = run("  without comfort", &grid, &pairs, PlannerConfig { room, ..at_home() }, radius);
+        let ratio = |i: usize| tally.lengths[i] / tight.way_lengths[i];
+        let worst = (0..pairs.len()).map(ratio).fold(0.0, f64::max);
+        let mean = (0..pairs.len()).map(ratio).sum::<f64>() / pairs.len() as f64;
+        eprintln!("  curve / shortest way-points: {mean:.3} on average, at most {worst:.3}");
+        assert!(mean < 1.05);
     }
 }
 

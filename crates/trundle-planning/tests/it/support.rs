@@ -69,7 +69,7 @@ pub fn judge(grid: &OccupancyGrid, result: &PlanResult, start: Pose2, goal: Pose
     assert!(least_room(grid, result) >= radius - 2e-4, "{} m of {radius}", least_room(grid, result));
     for point in points {
         let Twist2 { v, omega } = point.twist;
-        assert!(v >= 0.0 && v <= LIMITS.v + 1e-9, "{point:?}");
+        assert!((0.0..=LIMITS.v + 1e-9).contains(&v), "{point:?}");
         assert!(omega.abs() <= LIMITS.omega * 1.01, "{point:?}");
         assert!(v + HALF_BASE * omega.abs() <= LIMITS.wheel_speed * 1.01, "{point:?}");
     }
