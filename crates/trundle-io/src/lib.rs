@@ -1,1 +1,51 @@
-//! Data sets, maps, trajectories and recordings on disk.
+//! Data sets, maps, trajectories and recordings on disk: one file a format, described in `docs/formats.md`.
+//!
+//! What comes in: TUM RGB-D folders ([`TumSequence`]), TUM trajectories ([`read_trajectory`]), cameras
+//! ([`CameraModel`]), ROS maps ([`read_map`]) and recordings ([`RecordingReader`]). What goes out is collected in an
+//! [`OutputFolder`], which shows nothing half-written: maps, trajectories, tables, recordings ([`Recorder`]) and the
+//! numbers of a run ([`Summary`]). [`EncodedEvent`] is the wire between body and robot: a robot that is fed through
+//! it sees live exactly what a replay of its recording will show it.
+//!
+//! Every error is an [`IoError`], one sentence that names the file and the line or field. No input panics.
+//!
+//! ```
+//! use trundle_core::OccupancyGrid;
+//! use trundle_io::{OutputFolder, read_map, write_map};
+//!
+//! # let scratch = tempfile::tempdir().unwrap();
+//! # let dir = scratch.path().join("run");
+//! let grid = OccupancyGrid::from_ascii(0.05, "###\n#.#\n#??")?;
+//! let out = OutputFolder::create(&dir)?;
+//! write_map(&out, "map", &grid)?;
+//! let folder = out.commit()?; // until here, `dir` does not exist
+//! assert_eq!(read_map(&folder.join("map.yaml"))?, grid);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod camera;
+mod codec;
+mod csv;
+mod error;
+mod files;
+mod map;
+mod output;
+mod recording;
+mod stamp_text;
+mod summary;
+mod tum;
+
+pub use camera::{CameraModel, KINECT_V2_DEPTH_SCALE, TUM_DEPTH_SCALE};
+pub use codec::{
+    CodecError, EncodedEvent, EncodedRgbd, JPEG_QUALITY, decode_color, decode_depth, decode_raw_depth,
+    encode_color, encode_depth,
+};
+pub use csv::{curve_csv, table_csv, trajectory_csv, waypoints_csv};
+pub use error::{FrameError, IoError};
+pub use map::{map_pgm, map_yaml, read_map, write_map};
+pub use output::OutputFolder;
+pub use recording::{PoseInFrame, PosesInFrame, RecordedMessage, Recorder, RecordingReader};
+pub use stamp_text::parse_stamp;
+pub use summary::Summary;
+pub use tum::{
+    TumSequence, odometry_text, read_odometry, read_trajectory, trajectory_text, trajectory_text_from_planar,
+};

@@ -1,0 +1,131 @@
+use super::{CodecError, MAX_PIXELS};
+use png::{BitDepth, ColorType, Compression, Decoder, Encoder, Filter, Limits};
+use std::io::Cursor;
+use trundle_core::{DepthImage, Image};
+
+/// Depth in metres of a whole number of millimetres: the one place where the unit of the wire becomes ours.
+fn metres(millimetres: u16) -> f32 {
+    f32::from(millimetres) * 0.001
+}
+
+/// The nearest whole number of millimetres; 0, no reading, for what does not fit into 16 bits or is not a depth.
+fn millimetres(metres: f32) -> u16 {
+    let rounded = (f64::from(metres) * 1000.0).round();
+    if rounded > 0.0 && rounded <= f64::from(u16::MAX) { rounded as u16 } else { 0 }
+}
+
+/// A depth image (m, 0 where there is none) as 16-bit grey PNG in millimetres.
+///
+/// # Errors
+/// When a side is 0 or above 2^31 px.
+pub fn encode_depth(image: &DepthImage) -> Result<Vec<u8>, CodecError> {
+    let failed = |error: &dyn ToString| CodecError::encode("depth", error.to_string());
+    let side = |n: usize| u32::try_from(n).map_err(|error| failed(&error));
+    let (width, height) = (side(image.width())?, side(image.height())?);
+    let data: Vec<u8> = image.data().iter().flat_map(|&depth| millimetres(depth).to_be_bytes()).collect();
+    let mut bytes = Vec::with_capacity(data.len() / 2);
+    let mut encoder = Encoder::new(&mut bytes, width, height);
+    encoder.set_color(ColorType::Grayscale);
+    encoder.set_depth(BitDepth::Sixteen);
+    encoder.set_compression(Compression::Fast);
+    encoder.set_filter(Filter::Up);
+    let mut writer = encoder.write_header().map_err(|error| failed(&error))?;
+    writer.write_image_data(&data).map_err(|error| failed(&error))?;
+    writer.finish().map_err(|error| failed(&error))?;
+    Ok(bytes)
+}
+
+/// A depth image in metres from a 16-bit grey PNG in millimetres.
+///
+/// # Errors
+/// As [`decode_raw_depth`].
+pub fn decode_depth(bytes: &[u8]) -> Result<DepthImage, CodecError> {
+    let raw = decode_raw_depth(bytes)?;
+    let data = raw.data().iter().map(|&value| metres(value)).collect();
+    Ok(DepthImage::new(raw.width(), raw.height(), data)?)
+}
+
+/// The 16-bit numbers of a grey PNG, in whatever unit the camera had.
+///
+/// # Errors
+/// When the bytes are no PNG, end too early, have another pixel format, or hold more than 67 Mpx.
+pub fn decode_raw_depth(bytes: &[u8]) -> Result<Image<u16>, CodecError> {
+    let failed = |error: png::DecodingError| CodecError::decode("depth", error);
+    let limits = Limits { bytes: 4 * MAX_PIXELS };
+    let mut reader = Decoder::new_with_limits(Cursor::new(bytes), limits).read_info().map_err(failed)?;
+    let (info, (color, depth)) = (reader.info(), reader.output_color_type());
+    let (width, height) = (info.width as usize, info.height as usize);
+    if (color, depth) != (ColorType::Grayscale, BitDepth::Sixteen) {
+        return Err(CodecError::DepthFormat { found: format!("{}-bit {}", depth as u8, name(color)) });
+    }
+    if width.checked_mul(height).is_none_or(|pixels| pixels > MAX_PIXELS) {
+        return Err(CodecError::decode(
+            "depth",
+            format!("{width} x {height} px, expected at most {MAX_PIXELS} px"),
+        ));
+    }
+    let mut data = vec![0; width * height * 2];
+    reader.next_frame(&mut data).map_err(failed)?;
+    let values = data.as_chunks::<2>().0.iter().map(|&pair| u16::from_be_bytes(pair)).collect();
+    Ok(Image::new(width, height, values)?)
+}
+
+fn name(color: ColorType) -> &'static str {
+    match color {
+        ColorType::Grayscale => "grey",
+        ColorType::Rgb => "RGB",
+        ColorType::Indexed => "palette",
+        ColorType::GrayscaleAlpha => "grey and alpha",
+        ColorType::Rgba => "RGBA",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn every_millimetre_survives() {
+        let image = DepthImage::from_fn(256, 256, |x, y| metres((y * 256 + x) as u16));
+        let back = decode_depth(&encode_depth(&image).unwrap()).unwrap();
+        assert_eq!(back, image);
+    }
+
+    #[test]
+    fn what_is_no_depth_becomes_none() {
+        let depths = vec![f32::NAN, f32::INFINITY, -1.0, 65.536, 0.0004, 1.2344];
+        let image = DepthImage::new(6, 1, depths).unwrap();
+        let back = decode_depth(&encode_depth(&image).unwrap()).unwrap();
+        assert_eq!(back.data(), [0.0, 0.0, 0.0, 0.0, 0.0, metres(1234)]);
+    }
+
+    #[test]
+    fn eight_bits_are_refused_by_name() {
+        let mut bytes = Vec::new();
+        let mut encoder = Encoder::new(&mut bytes, 2, 2);
+        encoder.set_color(ColorType::Grayscale);
+        encoder.write_header().unwrap().write_image_data(&[0; 4]).unwrap();
+        let error = decode_raw_depth(&bytes).unwrap_err().to_string();
+        assert_eq!(error, "depth image has 8-bit grey pixels, expected 16-bit grey ones");
+    }
+
+    #[test]
+    fn every_truncated_png_and_an_empty_image_are_refused() {
+        let bytes = encode_depth(&DepthImage::from_fn(20, 10, |x, y| (x + y) as f32 * 0.1)).unwrap();
+        for len in 0..bytes.len() - 20 {
+            assert!(decode_raw_depth(&bytes[..len]).is_err(), "{len} of {}", bytes.len());
+        }
+        assert!(encode_depth(&DepthImage::default()).is_err());
+    }
+
+    proptest! {
+        #[test]
+        fn broken_pngs_do_not_panic(position in any::<prop::sample::Index>(), with in any::<[u8; 4]>()) {
+            let mut bytes = encode_depth(&DepthImage::filled(20, 10, 1.5)).unwrap();
+            let at = position.index(bytes.len() - 4);
+            bytes[at..at + 4].copy_from_slice(&with);
+            let _ = decode_depth(&bytes);
+        }
+    }
+}

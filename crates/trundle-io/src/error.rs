@@ -1,0 +1,127 @@
+use crate::CodecError;
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+use thiserror::Error;
+use trundle_core::{Invalid, Stamp};
+
+/// Why a file cannot be read, understood or written: one sentence that names the file.
+#[derive(Debug, Error)]
+pub enum IoError {
+    /// The operating system refused.
+    #[error("cannot {action} {path}: {reason}", path = path.display(), reason = reason(source))]
+    System {
+        /// The file or folder.
+        path: PathBuf,
+        /// `read`, `write`, ...
+        action: &'static str,
+        /// What it said.
+        source: std::io::Error,
+    },
+    /// A line of a text file is wrong.
+    #[error("{path}, line {line}: {problem}", path = path.display())]
+    Line {
+        /// The file.
+        path: PathBuf,
+        /// The line, from 1.
+        line: usize,
+        /// What is wrong, with the value and its unit.
+        problem: String,
+    },
+    /// A value of a file cannot be accepted.
+    #[error("{path}: {problem}", path = path.display())]
+    Field {
+        /// The file.
+        path: PathBuf,
+        /// Which value, and what would be accepted.
+        problem: Invalid,
+    },
+    /// An image cannot be read or made.
+    #[error("{path}: {problem}", path = path.display())]
+    Image {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        problem: CodecError,
+    },
+    /// The file as a whole is not what it should be.
+    #[error("{path}: {problem}", path = path.display())]
+    Malformed {
+        /// The file or folder.
+        path: PathBuf,
+        /// What is wrong.
+        problem: String,
+    },
+}
+
+impl IoError {
+    /// The file or folder it is about.
+    pub fn path(&self) -> &Path {
+        match self {
+            Self::System { path, .. }
+            | Self::Line { path, .. }
+            | Self::Field { path, .. }
+            | Self::Image { path, .. }
+            | Self::Malformed { path, .. } => path,
+        }
+    }
+
+    pub(crate) fn system(path: &Path, action: &'static str) -> impl FnOnce(std::io::Error) -> Self {
+        move |source| Self::System { path: path.to_owned(), action, source }
+    }
+
+    pub(crate) fn line(path: &Path, line: usize, problem: impl Into<String>) -> Self {
+        Self::Line { path: path.to_owned(), line, problem: problem.into() }
+    }
+
+    pub(crate) fn field(path: &Path) -> impl FnOnce(Invalid) -> Self {
+        move |problem| Self::Field { path: path.to_owned(), problem }
+    }
+
+    pub(crate) fn image(path: &Path) -> impl FnOnce(CodecError) -> Self {
+        move |problem| Self::Image { path: path.to_owned(), problem }
+    }
+
+    pub(crate) fn malformed(path: &Path, problem: impl Into<String>) -> Self {
+        Self::Malformed { path: path.to_owned(), problem: problem.into() }
+    }
+}
+
+/// The operating system's answer in a person's words.
+fn reason(error: &std::io::Error) -> String {
+    let plain = match error.kind() {
+        ErrorKind::NotFound => "it does not exist",
+        ErrorKind::PermissionDenied => "no permission",
+        ErrorKind::StorageFull => "the disk is full",
+        ErrorKind::QuotaExceeded => "the disk quota is used up",
+        ErrorKind::ReadOnlyFilesystem => "the file system is read-only",
+        ErrorKind::IsADirectory => "it is a folder",
+        ErrorKind::AlreadyExists => "a file is in the way",
+        ErrorKind::NotADirectory => "a part of its path is not a folder",
+        _ => return error.to_string(),
+    };
+    plain.to_owned()
+}
+
+/// A frame of a sequence that cannot be used; the next one may be.
+#[derive(Debug, Error)]
+#[error("frame {index} at {stamp} s: {source}")]
+pub struct FrameError {
+    /// Which frame, from 0.
+    pub index: usize,
+    /// Its stamp.
+    pub stamp: Stamp,
+    /// What is wrong with it.
+    pub source: IoError,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_full_disk_is_called_so() {
+        let error = IoError::system(Path::new("out/map.pgm"), "write")(ErrorKind::StorageFull.into());
+        assert_eq!(error.to_string(), "cannot write out/map.pgm: the disk is full");
+        assert_eq!(error.path(), Path::new("out/map.pgm"));
+    }
+}

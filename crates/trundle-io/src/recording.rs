@@ -1,0 +1,21 @@
+//! Recordings of a run: MCAP with JSON messages, which Foxglove Studio opens as it is.
+
+mod messages;
+mod reader;
+mod recorder;
+mod schemas;
+mod stream;
+
+pub use messages::{PoseInFrame, PosesInFrame};
+pub use reader::{RecordedMessage, RecordingReader};
+pub use recorder::Recorder;
+
+/// Where each kind of sensor event is recorded.
+mod topics {
+    pub const WHEELS: &str = "/wheels";
+    pub const GYRO: &str = "/gyro";
+    pub const TOUCH: &str = "/touch";
+    pub const TRUTH: &str = "/truth";
+    pub const COLOR: &str = "/camera/color";
+    pub const DEPTH: &str = "/camera/depth";
+}

@@ -1,0 +1,141 @@
+use super::messages::{self, CompressedImage, GyroRateMessage, PoseInFrame, TouchMessage, WheelTicksMessage};
+use super::stream::{MessageStream, RawMessage};
+use super::topics;
+use crate::{EncodedEvent, IoError};
+use serde::de::DeserializeOwned;
+use serde_json::Value;
+use std::path::Path;
+use trundle_core::{Invalid, Stamp};
+
+/// A message of a recording.
+#[derive(Debug, Clone, PartialEq)]
+pub enum RecordedMessage {
+    /// What a sensor said.
+    Event(EncodedEvent),
+    /// Anything else.
+    Json {
+        /// Where it was recorded.
+        topic: String,
+        /// The name of its schema.
+        schema: String,
+        /// When.
+        stamp: Stamp,
+        /// The message.
+        value: Value,
+    },
+}
+
+/// Reads a recording message by message, in the order in which it was written; a few messages are in memory at a time.
+pub struct RecordingReader {
+    stream: MessageStream,
+    config: Option<Value>,
+    /// A message read ahead while looking for the configuration.
+    ahead: Option<RawMessage>,
+}
+
+impl RecordingReader {
+    /// Opens a recording and reads the configuration of its run, where that is its first message.
+    ///
+    /// # Errors
+    /// When the file cannot be read or is no MCAP recording.
+    pub fn open(path: &Path) -> Result<Self, IoError> {
+        let mut stream = MessageStream::open(path)?;
+        let first = stream.next_message()?;
+        let (config, ahead) = match first {
+            Some(raw) if raw.schema == "trundle.Config" => (Some(json(stream.path(), &raw)?), None),
+            other => (None, other),
+        };
+        Ok(Self { stream, config, ahead })
+    }
+
+    /// The configuration of the run, as JSON.
+    pub fn config(&self) -> Option<&Value> {
+        self.config.as_ref()
+    }
+
+    /// How much of the file has been read, 0 to 1.
+    pub fn progress(&self) -> f64 {
+        self.stream.progress()
+    }
+
+    /// The next message that is not the configuration; `None` at the end.
+    ///
+    /// # Errors
+    /// When the file is truncated or broken here, or a message is not what its topic promises. Reading on makes no
+    /// sense then.
+    pub fn next_message(&mut self) -> Result<Option<RecordedMessage>, IoError> {
+        let Some(raw) = self.next_raw()? else { return Ok(None) };
+        let path = self.stream.path();
+        let event = match raw.topic.as_str() {
+            topics::WHEELS => sensor::<WheelTicksMessage>(path, &raw)?,
+            topics::GYRO => sensor::<GyroRateMessage>(path, &raw)?,
+            topics::TOUCH => sensor::<TouchMessage>(path, &raw)?,
+            topics::TRUTH => sensor::<PoseInFrame>(path, &raw)?,
+            topics::COLOR => return self.image(&raw).map(Some),
+            topics::DEPTH => {
+                return Err(wrong(path, &raw, "a depth image without its colour image before it"));
+            }
+            _ => {
+                let value = json(path, &raw)?;
+                let RawMessage { topic, schema, stamp, .. } = raw;
+                return Ok(Some(RecordedMessage::Json { topic, schema, stamp, value }));
+            }
+        };
+        Ok(Some(RecordedMessage::Event(event)))
+    }
+
+    /// The sensor events only, in the order in which the robot got them. Ends after the first error.
+    pub fn events(self) -> impl Iterator<Item = Result<EncodedEvent, IoError>> {
+        self.filter_map(|message| match message {
+            Ok(RecordedMessage::Event(event)) => Some(Ok(event)),
+            Ok(RecordedMessage::Json { .. }) => None,
+            Err(error) => Some(Err(error)),
+        })
+    }
+
+    fn next_raw(&mut self) -> Result<Option<RawMessage>, IoError> {
+        match self.ahead.take() {
+            Some(raw) => Ok(Some(raw)),
+            None => self.stream.next_message(),
+        }
+    }
+
+    fn image(&mut self, color: &RawMessage) -> Result<RecordedMessage, IoError> {
+        let depth = self.stream.next_message()?.filter(|raw| raw.topic == topics::DEPTH);
+        let path = self.stream.path();
+        let depth =
+            depth.ok_or_else(|| wrong(path, color, "a colour image without its depth image behind it"))?;
+        let (c, d): (CompressedImage, CompressedImage) = (json(path, color)?, json(path, &depth)?);
+        let image = messages::rgbd(&c, &d).map_err(|problem| wrong(path, color, &problem))?;
+        Ok(RecordedMessage::Event(image))
+    }
+}
+
+/// All messages but the configuration; ends after the first error.
+impl Iterator for RecordingReader {
+    type Item = Result<RecordedMessage, IoError>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        let next = self.next_message();
+        if next.is_err() {
+            self.stream.stop();
+        }
+        next.transpose()
+    }
+}
+
+fn sensor<M>(path: &Path, raw: &RawMessage) -> Result<EncodedEvent, IoError>
+where
+    M: DeserializeOwned,
+    EncodedEvent: TryFrom<M, Error = Invalid>,
+{
+    EncodedEvent::try_from(json::<M>(path, raw)?).map_err(|invalid| wrong(path, raw, &invalid.to_string()))
+}
+
+fn json<T: DeserializeOwned>(path: &Path, raw: &RawMessage) -> Result<T, IoError> {
+    serde_json::from_slice(&raw.data).map_err(|error| wrong(path, raw, &error.to_string()))
+}
+
+fn wrong(path: &Path, raw: &RawMessage, problem: &str) -> IoError {
+    IoError::malformed(path, format!("message on {} at {} s: {problem}", raw.topic, raw.stamp))
+}

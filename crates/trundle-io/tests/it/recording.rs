@@ -1,0 +1,194 @@
+use crate::frame;
+use proptest::prelude::*;
+use serde_json::json;
+use std::fs;
+use std::io::Cursor;
+use std::path::Path;
+use std::time::Instant;
+use trundle_core::*;
+use trundle_io::*;
+
+fn stamp(millis: i64) -> Stamp {
+    Stamp::from_nanos(1_305_031_229_528_748_001 + millis * 1_000_000)
+}
+
+fn events() -> Vec<EncodedEvent> {
+    let image = SensorEvent::Rgbd(frame(stamp(33), 64, 48));
+    vec![
+        EncodedEvent::Wheels(WheelTicks { stamp: stamp(0), left: 65_535, right: 3 }),
+        EncodedEvent::Gyro(GyroRate { stamp: stamp(1), omega: 0.1 + 0.2 }),
+        EncodedEvent::encode(&image).unwrap(),
+        EncodedEvent::Touch(Touch { stamp: stamp(40), pressed: true }),
+        EncodedEvent::Truth { stamp: stamp(50), pose: Pose2 { x: 1.0 / 3.0, y: -0.0, theta: -2.0 / 3.0 } },
+    ]
+}
+
+fn recording() -> Vec<u8> {
+    let mut recorder = Recorder::new(Cursor::new(Vec::new()), Path::new("a.mcap")).unwrap();
+    recorder.record_json("/config", "trundle.Config", stamp(0), &json!({"seed": 3, "rate": 0.1})).unwrap();
+    for event in events() {
+        recorder.record_event(&event).unwrap();
+        let pose = PoseInFrame::planar(event.stamp(), "map", Pose2::new(0.1, 0.2, 0.3));
+        recorder.record_json("/pose", PoseInFrame::SCHEMA, event.stamp(), &pose).unwrap();
+    }
+    recorder.finish().unwrap().into_inner()
+}
+
+fn on_disk(bytes: &[u8]) -> tempfile::NamedTempFile {
+    let file = tempfile::NamedTempFile::new().unwrap();
+    fs::write(file.path(), bytes).unwrap();
+    file
+}
+
+/// Everything in a file, or what is wrong with it, its path called FILE.
+fn read(bytes: &[u8]) -> Result<Vec<RecordedMessage>, String> {
+    let file = on_disk(bytes);
+    let all = RecordingReader::open(file.path()).and_then(Iterator::collect);
+    all.map_err(|error: IoError| error.to_string().replace(&file.path().display().to_string(), "FILE"))
+}
+
+#[test]
+fn a_recording_gives_back_every_bit_in_order() {
+    let file = on_disk(&recording());
+    let reader = RecordingReader::open(file.path()).unwrap();
+    assert_eq!(reader.config(), Some(&json!({"seed": 3, "rate": 0.1})));
+    let all: Vec<_> = reader.map(Result::unwrap).collect();
+    assert_eq!(all.len(), 10);
+    let back: Vec<_> = RecordingReader::open(file.path()).unwrap().events().map(Result::unwrap).collect();
+    assert_eq!(back, events());
+    assert!(matches!(back[4], EncodedEvent::Truth { pose, .. } if pose.y.is_sign_negative()));
+    let RecordedMessage::Json { topic, schema, stamp: at, value } = &all[1] else { panic!("{:?}", all[1]) };
+    assert_eq!((topic.as_str(), schema.as_str(), *at), ("/pose", PoseInFrame::SCHEMA, stamp(0)));
+    let pose: PoseInFrame = serde_json::from_value(value.clone()).unwrap();
+    assert_eq!(pose.pose2(), Some(Pose2::new(0.1, 0.2, 0.3)));
+}
+
+#[test]
+fn the_same_run_is_the_same_bytes() {
+    assert_eq!(recording(), recording());
+}
+
+#[test]
+fn the_mcap_library_s_own_index_finds_all() {
+    let bytes = recording();
+    let summary = mcap::Summary::read(&bytes).unwrap().unwrap();
+    let stats = summary.stats.unwrap();
+    assert_eq!((stats.message_count, stats.channel_count), (12, 8));
+    assert_eq!(stats.message_start_time, stamp(0).nanos as u64);
+    let schemas: Vec<_> = summary.schemas.values().map(|s| (s.name.clone(), s.encoding.clone())).collect();
+    assert!(schemas.contains(&("foxglove.CompressedImage".to_owned(), "jsonschema".to_owned())));
+    assert_eq!(mcap::MessageStream::new(&bytes).unwrap().count(), 12);
+}
+
+#[test]
+fn broken_files_are_named_and_told_apart() {
+    let bytes = recording();
+    assert_eq!(read(b"hello, this is not it").unwrap_err(), "FILE: not an MCAP recording");
+    let half = read(&bytes[..bytes.len() / 2]).unwrap_err();
+    assert!(half.starts_with("FILE: the recording is truncated: it ends after "), "{half}");
+    assert!(read(&[]).unwrap_err().contains("truncated: it ends after 0 bytes"));
+    let missing = RecordingReader::open(Path::new("no.mcap")).err().unwrap().to_string();
+    assert_eq!(missing, "cannot read no.mcap: it does not exist");
+    assert!(RecordingReader::open(Path::new("/")).err().unwrap().to_string().ends_with("it is a folder"));
+    for len in (0..bytes.len()).step_by(97) {
+        assert!(read(&bytes[..len]).is_err(), "cut at {len} of {}", bytes.len());
+    }
+}
+
+#[test]
+fn messages_that_lie_are_errors_with_topic_and_time() {
+    let with = |topic: &str, schema: &str, value: serde_json::Value| {
+        let mut recorder = Recorder::new(Cursor::new(Vec::new()), Path::new("a.mcap")).unwrap();
+        recorder.record_json(topic, schema, Stamp::from_nanos(5), &value).unwrap();
+        read(recorder.finish().unwrap().get_ref()).unwrap_err()
+    };
+    assert_eq!(
+        with("/gyro", "trundle.GyroRate", json!({"stamp": {"sec": 1, "nsec": 0}})),
+        "FILE: message on /gyro at 0.000000005 s: missing field `omega_rad_s` at line 1 column 30"
+    );
+    let time = json!({"stamp": {"sec": 1, "nsec": 1_000_000_000}, "omega_rad_s": 0.0});
+    assert!(with("/gyro", "trundle.GyroRate", time).ends_with("expected nsec below 1e9"));
+    assert!(with("/camera/depth", "x", json!({})).contains("a depth image without its colour image"));
+    assert!(with("/camera/color", "x", json!({})).contains("a colour image without its depth image"));
+}
+
+#[test]
+fn what_cannot_be_recorded_is_refused() {
+    let mut recorder = Recorder::new(Cursor::new(Vec::new()), Path::new("a.mcap")).unwrap();
+    let gyro = EncodedEvent::Gyro(GyroRate { stamp: stamp(0), omega: f64::NAN });
+    let error = recorder.record_event(&gyro).unwrap_err().to_string();
+    assert_eq!(error, "a.mcap: gyro omega is NaN rad/s, expected a finite number");
+    let early = EncodedEvent::Touch(Touch { stamp: Stamp::from_nanos(-1), pressed: true });
+    let error = recorder.record_event(&early).unwrap_err().to_string();
+    assert_eq!(error, "a.mcap: stamp on /touch is -0.000000001 s, expected 0 or later");
+    recorder.record_json("/a", "trundle.Status", stamp(0), &json!({})).unwrap();
+    let error = recorder.record_json("/a", "trundle.Goal", stamp(0), &json!({})).unwrap_err().to_string();
+    assert_eq!(error, "a.mcap: schema of /a is trundle.Goal, expected trundle.Status");
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn a_full_disk_is_said() {
+    let mut recorder = Recorder::create(Path::new("/dev/full")).unwrap();
+    let image = EncodedEvent::encode(&SensorEvent::Rgbd(frame(stamp(0), 64, 48))).unwrap();
+    let result =
+        (0..2000).try_for_each(|_| recorder.record_event(&image)).and_then(|()| recorder.finish().map(drop));
+    assert_eq!(result.unwrap_err().to_string(), "cannot write /dev/full: the disk is full");
+}
+
+#[test]
+fn a_recording_in_an_output_folder_appears_at_commit() {
+    let dir = tempfile::tempdir().unwrap();
+    let target = dir.path().join("run");
+    let out = OutputFolder::create(&target).unwrap();
+    let mut recorder = out.recorder("recording.mcap").unwrap();
+    events().iter().for_each(|event| recorder.record_event(event).unwrap());
+    recorder.finish().unwrap();
+    assert!(!target.exists());
+    let folder = out.commit().unwrap();
+    assert_eq!(RecordingReader::open(&folder.join("recording.mcap")).unwrap().events().count(), 5);
+}
+
+#[test]
+fn the_wire_costs_milliseconds() {
+    let image = frame(stamp(0), 512, 424);
+    let rounds = 10;
+    let start = Instant::now();
+    let encoded: Vec<_> = (0..rounds).map(|_| EncodedRgbd::encode(&image).unwrap()).collect();
+    let encoding = start.elapsed().as_secs_f64() * 1e3 / rounds as f64;
+    let start = Instant::now();
+    encoded.iter().for_each(|e| drop(e.decode().unwrap()));
+    let decoding = start.elapsed().as_secs_f64() * 1e3 / rounds as f64;
+    let (jpeg, png) = (encoded[0].color_jpeg.len() / 1024, encoded[0].depth_png.len() / 1024);
+    eprintln!("512 x 424: encode {encoding:.2} ms, decode {decoding:.2} ms, {jpeg} + {png} KiB");
+    assert!(encoding < 100.0 && decoding < 100.0, "an order of magnitude too slow");
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(200))]
+
+    #[test]
+    fn no_number_loses_a_bit(omega in prop::num::f64::NORMAL | prop::num::f64::SUBNORMAL | prop::num::f64::ZERO, nanos in 0..i64::MAX) {
+        let event = EncodedEvent::Gyro(GyroRate { stamp: Stamp::from_nanos(nanos), omega });
+        let mut recorder = Recorder::new(Cursor::new(Vec::new()), Path::new("a.mcap")).unwrap();
+        recorder.record_event(&event).unwrap();
+        let back = read(recorder.finish().unwrap().get_ref()).unwrap();
+        prop_assert_eq!(back, vec![RecordedMessage::Event(event)]);
+    }
+
+    #[test]
+    fn damaged_recordings_do_not_panic(at in any::<prop::sample::Index>(), with in any::<[u8; 8]>(), cut in any::<prop::sample::Index>()) {
+        let mut bytes = recording();
+        let at = at.index(bytes.len() - 8);
+        bytes[at..at + 8].copy_from_slice(&with);
+        let _ = read(&bytes);
+        bytes.truncate(cut.index(bytes.len()));
+        let _ = read(&bytes);
+    }
+
+    #[test]
+    fn random_bytes_do_not_panic(bytes in prop::collection::vec(any::<u8>(), 0..300)) {
+        let _ = read(&bytes);
+        let _ = read(&[&b"\x89MCAP0\r\n"[..], &bytes].concat());
+    }
+}

@@ -1,0 +1,197 @@
+use crate::frame;
+use std::fs;
+use std::path::{Path, PathBuf};
+use tempfile::TempDir;
+use trundle_core::{Pose2, Pose3, Stamp};
+use trundle_io::*;
+
+/// A folder of three frames, 100 ms apart, the depth images 3 ms later.
+fn folder() -> TempDir {
+    let dir = tempfile::tempdir().unwrap();
+    let (mut rgb, mut depth) = (String::from("# colour\n"), String::from("# depth\n"));
+    for i in 0..3 {
+        let stamp = Stamp::from_nanos(1_305_031_229_528_748_000 + i * 100_000_000);
+        let encoded = EncodedRgbd::encode(&frame(stamp, 40, 30)).unwrap();
+        fs::write(dir.path().join(format!("{i}.jpg")), &encoded.color_jpeg).unwrap();
+        fs::write(dir.path().join(format!("{i}.png")), &encoded.depth_png).unwrap();
+        rgb += &format!("{stamp} {i}.jpg\n");
+        depth += &format!("{} {i}.png\n", stamp.after(0.003));
+    }
+    fs::write(dir.path().join("rgb.txt"), rgb).unwrap();
+    fs::write(dir.path().join("depth.txt"), depth).unwrap();
+    dir
+}
+
+fn open(dir: &Path) -> Result<TumSequence, IoError> {
+    TumSequence::open(dir, 1000.0, TumSequence::MAX_DIFFERENCE)
+}
+
+/// What opening says, without the path of the temporary folder.
+fn problem(dir: &TempDir) -> String {
+    open(dir.path()).unwrap_err().to_string().replace(&dir.path().display().to_string(), "DIR")
+}
+
+fn load_problem(dir: &TempDir, sequence: &TumSequence, i: usize) -> String {
+    sequence.load(i).unwrap_err().to_string().replace(&dir.path().display().to_string(), "DIR")
+}
+
+#[test]
+fn reads_what_was_written() {
+    let dir = folder();
+    let poses = vec![(Stamp::from_nanos(5), Pose3::identity())];
+    fs::write(dir.path().join("groundtruth.txt"), trajectory_text(&poses)).unwrap();
+    let driven = vec![(Stamp::from_nanos(7), Pose2::new(1.0, 2.0, 0.3))];
+    fs::write(dir.path().join("odometry.txt"), odometry_text(&driven)).unwrap();
+    let sequence = open(dir.path()).unwrap().with_size(40, 30);
+    assert_eq!((sequence.len(), sequence.unpaired(), sequence.is_empty()), (3, 0, false));
+    assert_eq!(sequence.stamp(1).to_string(), "1305031229.628748000");
+    for (i, image) in sequence.frames().enumerate() {
+        let expected = EncodedRgbd::encode(&frame(sequence.stamp(i), 40, 30)).unwrap().decode().unwrap();
+        assert_eq!(image.unwrap(), expected);
+    }
+    assert_eq!(sequence.ground_truth(), Some(&poses[..]));
+    assert_eq!(sequence.odometry(), Some(&driven[..]));
+}
+
+#[test]
+fn wrong_folders_are_one_clear_sentence() {
+    let dir = tempfile::tempdir().unwrap();
+    assert_eq!(problem(&dir), "DIR: the folder is empty, expected rgb.txt and depth.txt");
+    fs::write(dir.path().join("rgb.txt"), "1.0 a.png").unwrap();
+    assert_eq!(
+        problem(&dir),
+        "DIR: depth.txt is missing, expected rgb.txt and depth.txt in a TUM RGB-D folder"
+    );
+    fs::write(dir.path().join("depth.txt"), "7.5 a.png\n8 b.png").unwrap();
+    assert_eq!(
+        problem(&dir),
+        "DIR: no colour image of rgb.txt (1.000000000 s) is within 0.02 s of a depth image of depth.txt \
+         (7.500000000 s to 8.000000000 s)"
+    );
+    fs::write(dir.path().join("depth.txt"), "1 a.png\n0.5 b.png").unwrap();
+    assert_eq!(
+        problem(&dir),
+        "DIR/depth.txt, line 2: timestamp goes back: 0.500000000 s after 1.000000000 s of line 1"
+    );
+    let error = open(&dir.path().join("nowhere")).unwrap_err().to_string();
+    assert!(error.starts_with("cannot read ") && error.ends_with("nowhere: it does not exist"), "{error}");
+    assert!(
+        open(&dir.path().join("rgb.txt"))
+            .unwrap_err()
+            .to_string()
+            .ends_with("a part of its path is not a folder")
+    );
+    let scale = TumSequence::open(dir.path(), 0.0, 0.02).unwrap_err().to_string();
+    assert!(scale.contains("depth_scale is 0 units a metre"), "{scale}");
+}
+
+#[test]
+fn a_wrong_ground_truth_or_odometry_is_not_ignored() {
+    let dir = folder();
+    fs::write(dir.path().join("groundtruth.txt"), "# t\n1 2 3\n").unwrap();
+    assert!(problem(&dir).starts_with("DIR/groundtruth.txt, line 2: 3 fields, expected 8"));
+    fs::remove_file(dir.path().join("groundtruth.txt")).unwrap();
+    fs::write(dir.path().join("odometry.txt"), "1 2 3 x\n").unwrap();
+    assert_eq!(problem(&dir), "DIR/odometry.txt, line 1: theta is 'x', expected a finite number");
+}
+
+#[test]
+fn a_broken_frame_is_named_and_the_next_one_is_read() {
+    let dir = folder();
+    let sequence = open(dir.path()).unwrap();
+    fs::remove_file(dir.path().join("0.jpg")).unwrap();
+    assert_eq!(
+        load_problem(&dir, &sequence, 0),
+        "frame 0 at 1305031229.528748000 s: cannot read DIR/0.jpg: it does not exist"
+    );
+    let whole = fs::read(dir.path().join("1.jpg")).unwrap();
+    fs::write(dir.path().join("1.jpg"), &whole[..whole.len() / 2]).unwrap();
+    assert!(
+        load_problem(&dir, &sequence, 1)
+            .ends_with("DIR/1.jpg: colour image cannot be decoded: the JPEG is truncated")
+    );
+    assert!(sequence.load(2).is_ok());
+    assert_eq!(sequence.frames().filter(Result::is_ok).count(), 1);
+}
+
+#[test]
+fn wrong_depth_images_are_named() {
+    let dir = folder();
+    let sequence = open(dir.path()).unwrap();
+    let whole = fs::read(dir.path().join("0.png")).unwrap();
+    fs::write(dir.path().join("0.png"), &whole[..whole.len() / 2]).unwrap();
+    assert!(load_problem(&dir, &sequence, 0).contains("DIR/0.png: depth image cannot be decoded: "));
+    let gray = vec![7u8; 40 * 30];
+    image::save_buffer(dir.path().join("1.png"), &gray, 40, 30, image::ColorType::L8).unwrap();
+    assert!(
+        load_problem(&dir, &sequence, 1)
+            .ends_with("DIR/1.png: depth image has 8-bit grey pixels, expected 16-bit grey ones")
+    );
+    let small = EncodedRgbd::encode(&frame(Stamp::default(), 20, 10)).unwrap();
+    fs::write(dir.path().join("2.png"), &small.depth_png).unwrap();
+    assert!(
+        load_problem(&dir, &sequence, 2)
+            .ends_with("DIR/2.png: depth image size is 20 x 10 px, expected 40 x 30 as the colour image")
+    );
+    let sized = sequence.with_size(640, 480);
+    assert!(
+        load_problem(&dir, &sized, 2)
+            .ends_with("DIR/2.jpg: colour image size is 40 x 30 px, expected 640 x 480 as the camera")
+    );
+}
+
+fn shared(name: &str) -> Option<PathBuf> {
+    let path = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data")).join(name);
+    if path.exists() {
+        return Some(path);
+    }
+    eprintln!("skipped: {} is not here", path.display());
+    None
+}
+
+#[test]
+fn pairs_and_reads_a_real_sequence() {
+    let Some(dir) = shared("tum_fr1_rpy_400") else { return };
+    let sequence = TumSequence::open(&dir, 5000.0, 0.02).unwrap().with_size(640, 480);
+    let expected: Vec<(Stamp, String)> = fs::read_to_string(dir.join("associations.txt"))
+        .unwrap()
+        .lines()
+        .map(|line| (parse_stamp(line.split(' ').next().unwrap()).unwrap(), line.to_owned()))
+        .collect();
+    assert_eq!(sequence.len(), expected.len());
+    assert!((0..sequence.len()).all(|i| sequence.stamp(i) == expected[i].0));
+    assert!(sequence.ground_truth().is_some_and(|poses| poses.len() > 1000));
+    let image = sequence.load(0).unwrap();
+    let depths: Vec<f32> = image.depth().data().iter().copied().filter(|&d| d > 0.0).collect();
+    assert!(depths.len() > 100_000 && depths.iter().all(|&d| (0.3..12.0).contains(&d)));
+}
+
+#[test]
+fn reads_every_shared_map_and_trajectory() {
+    let maps = [
+        "nav/nav2",
+        "nav/mrpb/maps/room02",
+        "nav/mrpb/maps/office01add",
+        "nav/mrpb/maps/empty_world",
+        "nav/mrpb/maps/track",
+        "nav/mrpb/maps/office02_partially_unknown",
+        "scenes",
+        "trajectories",
+    ];
+    for dir in maps.iter().filter_map(|name| shared(name)) {
+        for entry in fs::read_dir(&dir).unwrap() {
+            let path = entry.unwrap().path();
+            match path.extension().and_then(|e| e.to_str()) {
+                Some("yaml") => {
+                    let grid = read_map(&path).unwrap_or_else(|error| panic!("{error}"));
+                    assert!(grid.geometry().len() > 1000);
+                }
+                Some("txt") if !path.ends_with("README.txt") && !path.ends_with("config.txt") => {
+                    let poses = read_trajectory(&path).unwrap_or_else(|error| panic!("{error}"));
+                    assert!(poses.len() > 30);
+                }
+                _ => {}
+            }
+        }
+    }
+}
