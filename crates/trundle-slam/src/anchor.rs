@@ -63,7 +63,7 @@ impl Anchor<'_> {
             });
             points.push(point);
         }
-        let found = search(frame, &projections, likeness);
+        let found = search(frame, &vec![true; frame.len()], &projections, likeness);
         found.into_iter().map(|(feature, i)| PointMatch { feature, ..points[i] }).collect()
     }
 

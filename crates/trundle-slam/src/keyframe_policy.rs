@@ -1,9 +1,9 @@
 use crate::anchor::MAX_RELATIVE_SIGMA;
 use crate::frame::Frame;
-use crate::ids::KeyframeId;
 use crate::map::LandmarkMap;
 use serde::{Deserialize, Serialize};
-use trundle_core::{Invalid, Pose3, require_in, require_positive};
+use std::collections::BTreeSet;
+use trundle_core::{Invalid, Pose3, Vector2, require_in, require_positive};
 
 /// When a frame becomes a keyframe. Time has no part in it: a camera that stands still adds nothing, however long.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -17,12 +17,13 @@ pub struct KeyframeConfig {
     pub max_translation: f64,
     /// Or turned more than this against it, rad. Default 0.35 (20 deg): a third of the picture is new.
     pub max_rotation: f64,
-    /// When less than this part of the reference keyframe's landmarks is still seen, 0 to 1. Default 0.6, between the
-    /// 0.4 and 0.75 of \[MurArtal17\].
-    pub tracked_ratio: f64,
-    /// When less than this part of the features with depth is a landmark, 0 to 1. Default 0.25: the view is new, whatever
-    /// the reference sees.
-    pub known_ratio: f64,
+    /// When more than this part of the features with depth is where the map has no landmark to show, 0 to 1. Default 0.25.
+    /// Judged by where landmarks should be, not by which were found: a blurred frame finds few, and is the worst
+    /// keyframe there is.
+    pub new_ratio: f64,
+    /// When fewer landmarks than this are seen, though as many more features have a depth. Default 50: tracking is about
+    /// to fail.
+    pub min_tracked: usize,
 }
 
 impl Default for KeyframeConfig {
@@ -32,8 +33,8 @@ impl Default for KeyframeConfig {
             min_rotation: 0.05,
             max_translation: 0.3,
             max_rotation: 0.35,
-            tracked_ratio: 0.6,
-            known_ratio: 0.25,
+            new_ratio: 0.25,
+            min_tracked: 50,
         }
     }
 }
@@ -48,47 +49,51 @@ impl KeyframeConfig {
         require_positive("keyframes.min_rotation", self.min_rotation, "rad")?;
         require_in("keyframes.max_translation", self.max_translation, "m", self.min_translation, f64::MAX)?;
         require_in("keyframes.max_rotation", self.max_rotation, "rad", self.min_rotation, f64::MAX)?;
-        require_in("keyframes.tracked_ratio", self.tracked_ratio, "", 0.0, 1.0)?;
-        require_in("keyframes.known_ratio", self.known_ratio, "", 0.0, 1.0)?;
+        require_in("keyframes.new_ratio", self.new_ratio, "", 0.0, 1.0)?;
         Ok(self)
     }
 
-    /// Whether a frame at `pose` that sees `tracked` landmarks should become a keyframe. `reference` is the keyframe
-    /// with which it shares the most.
+    /// Whether a frame at `pose` that found `tracked` landmarks should become a keyframe. `shown` is where in the
+    /// rectified image the map has landmarks, px.
     pub(crate) fn wants(
         &self,
         frame: &Frame,
         pose: Pose3,
         tracked: usize,
-        reference: KeyframeId,
+        shown: impl Iterator<Item = Vector2>,
         map: &LandmarkMap,
     ) -> bool {
-        let everywhere = |translation: f64, rotation: f64| {
+        let beyond_all = |translation: f64, rotation: f64| {
             map.keyframes().rev().all(|(_, keyframe)| {
                 let offset = keyframe.visual_from_camera.inverse() * pose;
                 offset.translation.norm() > translation || offset.angle() > rotation
             })
         };
-        if !everywhere(self.min_translation, self.min_rotation) {
+        if !beyond_all(self.min_translation, self.min_rotation) {
             return false;
         }
-        let few = (tracked as f64) < self.tracked_ratio * confirmed(reference, map) as f64;
-        let unknown = (tracked as f64) < self.known_ratio * with_depth(frame) as f64;
-        few || unknown || everywhere(self.max_translation, self.max_rotation)
+        let all = with_depth(frame).count();
+        let thin = tracked < self.min_tracked && all >= 2 * tracked;
+        let new = new_features(frame, shown) as f64 > self.new_ratio * all as f64;
+        thin || new || beyond_all(self.max_translation, self.max_rotation)
     }
 }
 
-/// How many landmarks the keyframe shares with another; with the first keyframe alone, how many it has.
-fn confirmed(reference: KeyframeId, map: &LandmarkMap) -> usize {
-    let least = map.keyframe_count().min(2);
-    let landmarks = map.keyframe(reference).landmarks.iter().flatten().filter_map(|id| map.landmark(*id));
-    landmarks.filter(|l| l.observations.len() >= least).count()
+/// How many features with depth are in a part of the image where no landmark is shown.
+fn new_features(frame: &Frame, shown: impl Iterator<Item = Vector2>) -> usize {
+    let cell = |pixel: Vector2| ((pixel.x / CELL_PX).floor() as i32, (pixel.y / CELL_PX).floor() as i32);
+    let known: BTreeSet<(i32, i32)> = shown.map(cell).collect();
+    with_depth(frame).filter(|i| !known.contains(&cell(frame.pixels[*i]))).count()
 }
 
-/// How many features have a depth good enough to become landmarks.
-pub(crate) fn with_depth(frame: &Frame) -> usize {
-    frame.depths.iter().flatten().filter(|d| d.sigma <= MAX_RELATIVE_SIGMA * d.value).count()
+/// The features that have a depth good enough to become landmarks.
+pub(crate) fn with_depth(frame: &Frame) -> impl Iterator<Item = usize> + '_ {
+    let good = |i: &usize| frame.depths[*i].is_some_and(|d| d.sigma <= MAX_RELATIVE_SIGMA * d.value);
+    (0..frame.len()).filter(good)
 }
+
+/// Side of the parts of the image that are known or new, px: a few times the distance between features.
+const CELL_PX: f64 = 40.0;
 
 #[cfg(test)]
 mod tests {
@@ -99,22 +104,25 @@ mod tests {
     #[test]
     fn what_stands_still_adds_nothing_and_what_moves_does() {
         let config = KeyframeConfig::default();
-        let (map, reference) = map_of_one_view(100);
+        let (map, _) = map_of_one_view(100);
         let frame = frame_with_depth(100);
-        let wants = |x: f64, turn: f64, tracked: usize| {
+        let wants = |x: f64, turn: f64, tracked: usize, shown: usize| {
             let pose = Pose3::exp(Vector6::new(x, 0.0, 0.0, 0.0, turn, 0.0));
-            config.wants(&frame, pose, tracked, reference, &map)
+            let shown = frame.pixels[..shown].iter().copied();
+            config.wants(&frame, pose, tracked, shown, &map)
         };
-        assert!(!wants(0.02, 0.01, 5), "blind but still");
-        assert!(!wants(0.1, 0.1, 90), "moved, but the view is well known");
-        assert!(wants(0.1, 0.0, 55), "sees little of what the reference sees");
-        assert!(wants(0.0, 0.4, 100), "turned far");
-        assert!(wants(0.4, 0.0, 100), "moved far");
+        assert!(!wants(0.02, 0.01, 5, 5), "blind but still");
+        assert!(!wants(0.1, 0.1, 90, 100), "moved, but the view is well known");
+        assert!(!wants(0.1, 0.1, 60, 100), "blurred, but the view is well known");
+        assert!(wants(0.1, 0.0, 60, 60), "a part of the view is new");
+        assert!(wants(0.1, 0.0, 40, 100), "about to get lost");
+        assert!(wants(0.0, 0.4, 100, 100), "turned far");
+        assert!(wants(0.4, 0.0, 100, 100), "moved far");
     }
 
     #[test]
     fn bounds_are_checked() {
         assert!(KeyframeConfig { max_rotation: 0.01, ..Default::default() }.validated().is_err());
-        assert!(KeyframeConfig { tracked_ratio: f64::NAN, ..Default::default() }.validated().is_err());
+        assert!(KeyframeConfig { new_ratio: f64::NAN, ..Default::default() }.validated().is_err());
     }
 }

@@ -1,6 +1,7 @@
 use crate::anchor::MAX_RELATIVE_SIGMA;
 use crate::frame::Frame;
 use crate::ids::{KeyframeId, LandmarkId};
+use crate::landmark::Landmark;
 use crate::local_bundle::{BundleSize, refine_around};
 use crate::map::LandmarkMap;
 use crate::search::{Likeness, Projection, search};
@@ -21,6 +22,8 @@ pub struct MappingConfig {
     pub fixed_keyframes: usize,
     /// Keyframes in which new landmarks are looked for at once. Default 10 \[MurArtal17\].
     pub fused_keyframes: usize,
+    /// A landmark that only one keyframe sees is forgotten after so many more keyframes. Default 3 \[MurArtal17\].
+    pub trial_keyframes: usize,
     /// Frames in which a landmark should have been seen before it is judged. Default 10.
     pub trial_frames: u32,
     /// Part of these in which it must have been found, 0 to 1. Default 0.25 \[MurArtal17\].
@@ -36,6 +39,7 @@ impl Default for MappingConfig {
             local_keyframes: 10,
             fixed_keyframes: 10,
             fused_keyframes: 10,
+            trial_keyframes: 3,
             trial_frames: 10,
             found_ratio: 0.25,
             bundle: BundleConfig { steps: 5, ..BundleConfig::default() },
@@ -162,19 +166,20 @@ impl Mapper<'_> {
             let seen = self.sensor.observation(&other.frame, feature);
             (seen.chi2(&self.sensor.camera, p_camera) <= seen.chi2_bound()).then_some((feature, id))
         };
-        search(&other.frame, &projections, self.likeness).into_iter().filter_map(agrees).collect()
+        let all = vec![true; other.frame.len()];
+        search(&other.frame, &all, &projections, self.likeness).into_iter().filter_map(agrees).collect()
     }
 
-    /// Forgets landmarks that were seldom found where they should have been seen.
+    /// Forgets landmarks that no second keyframe saw in time, or that were seldom found where they should have been seen.
     fn cull(&self, map: &mut LandmarkMap) {
-        let MappingConfig { trial_frames, found_ratio, .. } = *self.config;
-        let seldom: Vec<LandmarkId> = map
-            .landmarks()
-            .filter(|(_, l)| {
-                l.visible >= trial_frames && f64::from(l.found) < found_ratio * f64::from(l.visible)
-            })
-            .map(|(id, _)| id)
-            .collect();
-        seldom.into_iter().for_each(|id| map.forget(id));
+        let MappingConfig { trial_keyframes, trial_frames, found_ratio, .. } = *self.config;
+        let oldest_on_trial = map.keyframe_count().saturating_sub(trial_keyframes + 1);
+        let alone = |l: &Landmark| l.observations.len() == 1 && l.observations[0].0.index() < oldest_on_trial;
+        let seldom = |l: &Landmark| {
+            l.visible >= trial_frames && f64::from(l.found) < found_ratio * f64::from(l.visible)
+        };
+        let gone: Vec<LandmarkId> =
+            map.landmarks().filter(|(_, l)| alone(l) || seldom(l)).map(|(id, _)| id).collect();
+        gone.into_iter().for_each(|id| map.forget(id));
     }
 }

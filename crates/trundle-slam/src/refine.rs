@@ -53,6 +53,11 @@ impl Fix {
     pub fn is_sound(&self, least_inliers: usize) -> bool {
         self.solution.inlier_count >= least_inliers && self.solution.covariance().is_some()
     }
+
+    /// Whether most matches agree: where the prediction is off, windows are full of wrong ones that agree by chance.
+    pub fn is_convincing(&self) -> bool {
+        2 * self.solution.inlier_count >= self.matches.len()
+    }
 }
 
 fn widened(seen: PointObservation, factor: f64) -> PointObservation {

@@ -29,12 +29,17 @@ pub(crate) struct Likeness {
 /// Part of the depth by which a match may be off, beyond three standard deviations.
 const DEPTH_TOLERANCE: f64 = 0.2;
 
-/// Finds each projection's feature in `frame`: (feature, projection), by rising feature. Each feature goes to the
+/// Finds each projection's feature among the `free` ones of `frame`: (feature, projection), by rising feature. Each feature goes to the
 /// projection that it is most like, the earlier one where two are alike.
-pub(crate) fn search(frame: &Frame, projections: &[Projection], likeness: Likeness) -> Vec<(usize, usize)> {
+pub(crate) fn search(
+    frame: &Frame,
+    free: &[bool],
+    projections: &[Projection],
+    likeness: Likeness,
+) -> Vec<(usize, usize)> {
     let mut taken: Vec<Option<(u32, usize)>> = vec![None; frame.len()];
     for (index, projection) in projections.iter().enumerate() {
-        let Some((feature, distance)) = best(frame, projection, likeness) else { continue };
+        let Some((feature, distance)) = best(frame, free, projection, likeness) else { continue };
         if taken[feature].is_none_or(|(held, _)| distance < held) {
             taken[feature] = Some((distance, index));
         }
@@ -43,10 +48,10 @@ pub(crate) fn search(frame: &Frame, projections: &[Projection], likeness: Likene
 }
 
 /// The feature most like the projection within its window, unless a second one is nearly as like.
-fn best(frame: &Frame, projection: &Projection, likeness: Likeness) -> Option<(usize, u32)> {
+fn best(frame: &Frame, free: &[bool], projection: &Projection, likeness: Likeness) -> Option<(usize, u32)> {
     let (mut first, mut second): (Option<(usize, u32)>, Option<(usize, u32)>) = (None, None);
     for feature in frame.near(projection.pixel, projection.radius, projection.octaves) {
-        if !depth_agrees(frame, feature, projection.depth) {
+        if !free[feature] || !depth_agrees(frame, feature, projection.depth) {
             continue;
         }
         let distance = projection.descriptor.distance(frame.descriptor(feature));

@@ -10,11 +10,12 @@ use crate::motion::Belief;
 use crate::refine::Fix;
 use crate::relocalisation::candidates;
 use crate::report::{SeenFeature, TrackReport, Tracking};
+use crate::search::Projection;
 use crate::sensor::Sensor;
 use crate::tracker::Tracker;
 use crate::trajectory::Anchored;
 use nalgebra::Matrix6;
-use trundle_core::{Invalid, PinholeCamera, Pose3, RgbdImage, Stamp, Vector3, gray_from_color};
+use trundle_core::{DepthImage, Invalid, PinholeCamera, Pose3, RgbdImage, Stamp, Vector3, gray_from_color};
 use trundle_vision::{Features, OrbExtractor};
 
 /// RGB-D SLAM: one image in, the camera's pose out; keeps the landmark map. See the crate's documentation.
@@ -48,7 +49,7 @@ struct Located {
 struct Found {
     fix: Fix,
     /// The landmarks that should have been seen.
-    visible: Vec<LandmarkId>,
+    visible: Vec<(LandmarkId, Projection)>,
     /// Whether the landmark map itself agrees, not only the last frame.
     by_map: bool,
     relocalised: bool,
@@ -90,11 +91,26 @@ impl RgbdSlam {
     /// gyro know it; without it the camera is taken to go on as it went. An image of another size than the camera's, or
     /// with nothing in it, is an image without features: the report says that it was not located.
     pub fn step(&mut self, image: &RgbdImage, prior: Option<Pose3>) -> TrackReport {
+        let camera = &self.sensor.camera;
+        let fits = image.color().width() == camera.width() && image.color().height() == camera.height();
+        let features =
+            if fits { self.extractor.extract(&gray_from_color(image.color())) } else { Features::default() };
+        self.step_with_features(image.stamp(), features, image.depth(), prior)
+    }
+
+    /// The same with features found elsewhere, by an extractor of the same configuration: in another thread, say.
+    pub fn step_with_features(
+        &mut self,
+        stamp: Stamp,
+        features: Features,
+        depth: &DepthImage,
+        prior: Option<Pose3>,
+    ) -> TrackReport {
         let prior = prior.filter(Pose3::is_finite);
-        let frame = self.frame(image);
-        match self.locate(&frame, image, prior) {
+        let frame = Frame::new(stamp, features, depth, &self.sensor, &self.config.depth);
+        match self.locate(&frame, depth, prior) {
             Some(found) => self.accept(frame, found),
-            None => self.miss(frame, image, prior),
+            None => self.miss(frame, depth, prior),
         }
     }
 
@@ -119,31 +135,23 @@ impl RgbdSlam {
         &self.seen
     }
 
-    fn frame(&mut self, image: &RgbdImage) -> Frame {
-        let camera = &self.sensor.camera;
-        let fits = image.color().width() == camera.width() && image.color().height() == camera.height();
-        let features =
-            if fits { self.extractor.extract(&gray_from_color(image.color())) } else { Features::default() };
-        Frame::new(image.stamp(), features, image.depth(), &self.sensor, &self.config.depth)
-    }
-
-    fn view<'a>(&'a self, image: &'a RgbdImage) -> View<'a> {
+    fn view<'a>(&'a self, depth: &'a DepthImage) -> View<'a> {
         let tracking = &self.config.tracking;
         View {
             sensor: &self.sensor,
-            depth: (image.depth(), &self.config.depth),
+            depth: (depth, &self.config.depth),
             window: tracking.map_window_px,
             most: tracking.most_landmarks,
         }
     }
 
     /// From the last frame to the map; else from keyframes that look alike.
-    fn locate(&self, frame: &Frame, image: &RgbdImage, prior: Option<Pose3>) -> Option<Found> {
+    fn locate(&self, frame: &Frame, depth: &DepthImage, prior: Option<Pose3>) -> Option<Found> {
         let config = &self.config.tracking;
         let tracker = Tracker {
             map: &self.map,
             sensor: &self.sensor,
-            view: self.view(image),
+            view: self.view(depth),
             config,
             frame,
             seed: self.config.seed.wrapping_add(self.history.len() as u64),
@@ -151,9 +159,8 @@ impl RgbdSlam {
         if let Some(last) = &self.last {
             let anchor = last.anchor(&self.map);
             let predicted = self.belief.predict(frame.stamp, prior);
-            if let Some(rough) = tracker.by_motion(anchor, predicted).or_else(|| tracker.by_likeness(anchor))
-            {
-                let (fix, visible) = tracker.by_map(rough.visual_from_camera());
+            if let Some(rough) = tracker.by_last(anchor, predicted) {
+                let (fix, visible) = tracker.by_map(&rough);
                 let by_map = fix.is_sound(config.min_inliers);
                 let fix = if by_map { fix } else { rough };
                 return Some(Found { fix, visible, by_map, relocalised: false });
@@ -162,7 +169,7 @@ impl RgbdSlam {
         let most = config.relocalisation_keyframes;
         candidates(&self.map, self.belief.visual_from_camera, self.misses, most).into_iter().find_map(|id| {
             let rough = tracker.by_likeness(self.map.keyframe(id).into())?;
-            let (fix, visible) = tracker.by_map(rough.visual_from_camera());
+            let (fix, visible) = tracker.by_map(&rough);
             fix.is_sound(config.weak_inliers).then_some(Found {
                 fix,
                 visible,
@@ -182,7 +189,8 @@ impl RgbdSlam {
         let mut pose = found.fix.visual_from_camera();
         let mut reference = self.reference(&landmarks);
         let tracked = landmarks.iter().flatten().count();
-        let new_keyframe = self.config.keyframes.wants(&frame, pose, tracked, reference, &self.map);
+        let shown = found.visible.iter().map(|(_, projection)| projection.pixel);
+        let new_keyframe = self.config.keyframes.wants(&frame, pose, tracked, shown, &self.map);
         self.show(&frame, &landmarks);
         if new_keyframe {
             reference = self.insert(frame.clone(), pose, &landmarks);
@@ -204,14 +212,14 @@ impl RgbdSlam {
     }
 
     /// Goes on without a found pose; begins a map at the believed pose where there is none to be found again.
-    fn miss(&mut self, frame: Frame, image: &RgbdImage, prior: Option<Pose3>) -> TrackReport {
+    fn miss(&mut self, frame: Frame, depth: &DepthImage, prior: Option<Pose3>) -> TrackReport {
         self.belief.missed(frame.stamp, prior, &self.config.motion);
         self.misses += 1;
         let none = vec![None; frame.len()];
         self.show(&frame, &none);
         let first = self.map.keyframe_count() == 0;
-        let begins = with_depth(&frame) >= self.config.mapping.min_points
-            && (first || prior.is_some() && self.is_beyond_the_map(image));
+        let begins = with_depth(&frame).count() >= self.config.mapping.min_points
+            && (first || prior.is_some() && self.is_beyond_the_map(depth));
         let reference = begins.then(|| self.insert(frame.clone(), self.belief.visual_from_camera, &none));
         let tracking = match prior {
             _ if first && begins => Tracking::Ok,
@@ -234,9 +242,9 @@ impl RgbdSlam {
 
     /// Whether there is no use in waiting to see a known landmark again: none should be in view, or none was found for
     /// too long.
-    fn is_beyond_the_map(&self, image: &RgbdImage) -> bool {
+    fn is_beyond_the_map(&self, depth: &DepthImage) -> bool {
         let config = &self.config.tracking;
-        let expected = self.view(image).landmarks(&self.map, self.belief.visual_from_camera).len();
+        let expected = self.view(depth).landmarks(&self.map, self.belief.visual_from_camera).len();
         expected < config.min_inliers || self.misses >= config.patience
     }
 
@@ -251,8 +259,8 @@ impl RgbdSlam {
     }
 
     /// Counts which landmarks should have been seen, and which were.
-    fn count(&mut self, visible: &[LandmarkId], found: &[Option<LandmarkId>]) {
-        for id in visible {
+    fn count(&mut self, visible: &[(LandmarkId, Projection)], found: &[Option<LandmarkId>]) {
+        for (id, _) in visible {
             if let Some(landmark) = self.map.landmark_mut(*id) {
                 landmark.visible += 1;
             }

@@ -4,7 +4,7 @@ use crate::ids::LandmarkId;
 use crate::local_map::View;
 use crate::map::LandmarkMap;
 use crate::refine::{Fix, PointMatch};
-use crate::search::{Likeness, search};
+use crate::search::{Likeness, Projection, search};
 use crate::sensor::Sensor;
 use serde::{Deserialize, Serialize};
 use trundle_core::{Invalid, Pose3, require_in, require_positive};
@@ -111,15 +111,31 @@ pub(crate) struct Tracker<'a> {
 }
 
 impl Tracker<'_> {
-    /// The pose from the points of `last`, looked for around where `predicted` puts them, wider if they are not there.
-    pub fn by_motion(&self, last: Anchor, predicted: Pose3) -> Option<Fix> {
+    /// The pose from the last frame: its points looked for around where `predicted` puts them, then wider, then anywhere
+    /// by likeness; the first of these by which most matches agree, else the one with the most agreeing.
+    pub fn by_last(&self, last: Anchor, predicted: Pose3) -> Option<Fix> {
+        let tries: [&dyn Fn() -> Option<Fix>; 3] =
+            [&|| self.by_motion(last, predicted, 1.0), &|| self.by_motion(last, predicted, 2.0), &|| {
+                self.by_likeness(last)
+            }];
+        let mut best: Option<Fix> = None;
+        for attempt in tries {
+            let Some(fix) = attempt() else { continue };
+            if fix.is_convincing() {
+                return Some(fix);
+            }
+            if best.as_ref().is_none_or(|b| fix.solution.inlier_count > b.solution.inlier_count) {
+                best = Some(fix);
+            }
+        }
+        best.filter(|fix| fix.is_sound(self.config.weak_inliers))
+    }
+
+    fn by_motion(&self, last: Anchor, predicted: Pose3, wider: f64) -> Option<Fix> {
         let likeness = self.config.window_likeness();
-        [1.0, 2.0].into_iter().find_map(|wider| {
-            let window = wider * self.config.motion_window_px;
-            let matches =
-                last.match_by_motion(self.frame, predicted, window, likeness, (self.map, self.sensor));
-            self.refined(matches, predicted)
-        })
+        let window = wider * self.config.motion_window_px;
+        let matches = last.match_by_motion(self.frame, predicted, window, likeness, (self.map, self.sensor));
+        self.refined(matches, predicted)
     }
 
     /// The pose from what looks alike in `anchor`, wherever it is in the image.
@@ -130,20 +146,29 @@ impl Tracker<'_> {
         self.refined(matches, pose)
     }
 
-    /// The final pose: against all landmarks of the map that a camera near `pose` should see. Also which these were.
-    pub fn by_map(&self, pose: Pose3) -> (Fix, Vec<LandmarkId>) {
+    /// The final pose: against all landmarks of the map that a camera at the pose of `rough` should see. What `rough` has
+    /// matched with a landmark stays matched. Also which landmarks should have been seen.
+    pub fn by_map(&self, rough: &Fix) -> (Fix, Vec<(LandmarkId, Projection)>) {
+        let pose = rough.visual_from_camera();
+        let mut matches: Vec<PointMatch> =
+            rough.inliers().filter(|m| m.landmark.is_some()).copied().collect();
+        let mut free = vec![true; self.frame.len()];
+        matches.iter().for_each(|m| free[m.feature] = false);
+        let mut matched: Vec<LandmarkId> = matches.iter().filter_map(|m| m.landmark).collect();
+        matched.sort_unstable();
         let visible = self.view.landmarks(self.map, pose);
-        let projections: Vec<_> = visible.iter().map(|(_, projection)| *projection).collect();
-        let point = |(feature, i): (usize, usize)| {
-            let landmark = visible[i].0;
-            let known = self.map.landmark(landmark)?;
-            let (point, sigma_factor) = (known.position, known.sigma_factor());
-            Some(PointMatch { feature, point, landmark: Some(landmark), sigma_factor })
-        };
-        let found = search(self.frame, &projections, self.config.window_likeness());
-        let matches = found.into_iter().filter_map(point).collect();
+        let sought: Vec<_> = visible.iter().filter(|(id, _)| matched.binary_search(id).is_err()).collect();
+        let projections: Vec<Projection> = sought.iter().map(|(_, projection)| *projection).collect();
+        let found = search(self.frame, &free, &projections, self.config.window_likeness());
+        matches.extend(found.into_iter().filter_map(|(feature, i)| self.point_match(feature, sought[i].0)));
         let fix = Fix::by(matches, pose, self.frame, self.sensor, &self.config.pose);
-        (fix, visible.into_iter().map(|(id, _)| id).collect())
+        (fix, visible)
+    }
+
+    fn point_match(&self, feature: usize, id: LandmarkId) -> Option<PointMatch> {
+        let landmark = self.map.landmark(id)?;
+        let (point, sigma_factor) = (landmark.position, landmark.sigma_factor());
+        Some(PointMatch { feature, point, landmark: Some(id), sigma_factor })
     }
 
     fn refined(&self, matches: Vec<PointMatch>, start: Pose3) -> Option<Fix> {
