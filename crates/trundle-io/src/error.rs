@@ -33,7 +33,7 @@ pub enum IoError {
         /// The file.
         path: PathBuf,
         /// Which value, and what would be accepted.
-        problem: Invalid,
+        problem: Box<Invalid>,
     },
     /// An image cannot be read or made.
     #[error("{path}: {problem}", path = path.display())]
@@ -41,7 +41,7 @@ pub enum IoError {
         /// The file.
         path: PathBuf,
         /// What is wrong with it.
-        problem: CodecError,
+        problem: Box<CodecError>,
     },
     /// The file as a whole is not what it should be.
     #[error("{path}: {problem}", path = path.display())]
@@ -74,11 +74,11 @@ impl IoError {
     }
 
     pub(crate) fn field(path: &Path) -> impl FnOnce(Invalid) -> Self {
-        move |problem| Self::Field { path: path.to_owned(), problem }
+        move |problem| Self::Field { path: path.to_owned(), problem: Box::new(problem) }
     }
 
     pub(crate) fn image(path: &Path) -> impl FnOnce(CodecError) -> Self {
-        move |problem| Self::Image { path: path.to_owned(), problem }
+        move |problem| Self::Image { path: path.to_owned(), problem: Box::new(problem) }
     }
 
     pub(crate) fn malformed(path: &Path, problem: impl Into<String>) -> Self {

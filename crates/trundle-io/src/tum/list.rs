@@ -13,12 +13,17 @@ pub(super) struct ListedImage {
     pub line: usize,
 }
 
-/// The images of a list: lines of `timestamp filename`, stamps rising, `#` for comments.
+/// The images of a list: lines of `timestamp filename`, stamps rising, `#` for comments. A line that repeats the one
+/// before is skipped: published sequences have such.
 pub(super) fn parse_list(path: &Path, text: &str) -> Result<Vec<ListedImage>, IoError> {
     let mut images: Vec<ListedImage> = Vec::new();
     for (line, content) in content_lines(text) {
         let image = parse_line(content, line).map_err(|problem| IoError::line(path, line, problem))?;
-        if let Some(before) = images.last().filter(|before| image.stamp <= before.stamp) {
+        let before = images.last();
+        if before.is_some_and(|before| (before.stamp, &before.file) == (image.stamp, &image.file)) {
+            continue;
+        }
+        if let Some(before) = before.filter(|before| image.stamp <= before.stamp) {
             let how = if image.stamp == before.stamp { "is the same" } else { "goes back" };
             let problem = format!(
                 "timestamp {how}: {} s after {} s of line {}",
@@ -68,6 +73,7 @@ mod tests {
             problem("2 a.png\n1.5 b.png"),
             "rgb.txt, line 2: timestamp goes back: 1.500000000 s after 2.000000000 s of line 1"
         );
+        assert_eq!(parse_list(Path::new("rgb.txt"), "2 a.png\n2.0 a.png\n3 b.png").unwrap().len(), 2);
         assert!(problem("2 a.png\n\n2.0 b.png").contains("line 3: timestamp is the same: 2.000000000 s"));
         assert_eq!(problem("1.5"), "rgb.txt, line 1: '1.5', expected: timestamp filename");
         assert!(problem("#\n").starts_with("rgb.txt: no image"));

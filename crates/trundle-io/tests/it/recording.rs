@@ -102,9 +102,10 @@ fn messages_that_lie_are_errors_with_topic_and_time() {
         recorder.record_json(topic, schema, Stamp::from_nanos(5), &value).unwrap();
         read(recorder.finish().unwrap().get_ref()).unwrap_err()
     };
-    assert_eq!(
-        with("/gyro", "trundle.GyroRate", json!({"stamp": {"sec": 1, "nsec": 0}})),
-        "FILE: message on /gyro at 0.000000005 s: missing field `omega_rad_s` at line 1 column 30"
+    let error = with("/gyro", "trundle.GyroRate", json!({"stamp": {"sec": 1, "nsec": 0}}));
+    assert!(
+        error.starts_with("FILE: message on /gyro at 0.000000005 s: missing field `omega_rad_s`"),
+        "{error}"
     );
     let time = json!({"stamp": {"sec": 1, "nsec": 1_000_000_000}, "omega_rad_s": 0.0});
     assert!(with("/gyro", "trundle.GyroRate", time).ends_with("expected nsec below 1e9"));
@@ -149,19 +150,30 @@ fn a_recording_in_an_output_folder_appears_at_commit() {
     assert_eq!(RecordingReader::open(&folder.join("recording.mcap")).unwrap().events().count(), 5);
 }
 
+/// The least of many times, ms: what the work costs when nobody disturbs.
+fn least_ms(mut work: impl FnMut()) -> f64 {
+    let times = (0..15).map(|_| {
+        let start = Instant::now();
+        work();
+        start.elapsed().as_secs_f64() * 1e3
+    });
+    times.fold(f64::INFINITY, f64::min)
+}
+
 #[test]
 fn the_wire_costs_milliseconds() {
     let image = frame(stamp(0), 512, 424);
-    let rounds = 10;
-    let start = Instant::now();
-    let encoded: Vec<_> = (0..rounds).map(|_| EncodedRgbd::encode(&image).unwrap()).collect();
-    let encoding = start.elapsed().as_secs_f64() * 1e3 / rounds as f64;
-    let start = Instant::now();
-    encoded.iter().for_each(|e| drop(e.decode().unwrap()));
-    let decoding = start.elapsed().as_secs_f64() * 1e3 / rounds as f64;
-    let (jpeg, png) = (encoded[0].color_jpeg.len() / 1024, encoded[0].depth_png.len() / 1024);
-    eprintln!("512 x 424: encode {encoding:.2} ms, decode {decoding:.2} ms, {jpeg} + {png} KiB");
-    assert!(encoding < 100.0 && decoding < 100.0, "an order of magnitude too slow");
+    let encoded = EncodedRgbd::encode(&image).unwrap();
+    let color_in = least_ms(|| drop(encode_color(image.color(), JPEG_QUALITY).unwrap()));
+    let depth_in = least_ms(|| drop(encode_depth(image.depth()).unwrap()));
+    let color_out = least_ms(|| drop(decode_color(&encoded.color_jpeg).unwrap()));
+    let depth_out = least_ms(|| drop(decode_depth(&encoded.depth_png).unwrap()));
+    let (jpeg, png) = (encoded.color_jpeg.len() / 1024, encoded.depth_png.len() / 1024);
+    eprintln!(
+        "512 x 424: colour encode {color_in:.2} ms, decode {color_out:.2} ms, {jpeg} KiB; \
+         depth encode {depth_in:.2} ms, decode {depth_out:.2} ms, {png} KiB"
+    );
+    assert!(color_in + depth_in < 60.0 && color_out + depth_out < 60.0, "an order of magnitude too slow");
 }
 
 proptest! {
