@@ -1,0 +1,106 @@
+use serde::{Deserialize, Serialize};
+use trundle_core::{Invalid, require_in};
+
+/// When to slow down and when to stop.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct SafetyConfig {
+    /// Deceleration to count on, m/s^2, 0.05 to 20. Default 0.5: \[`DriveLimits::KOBUKI`\]; the base can do more.
+    pub deceleration: f64,
+    /// From an image to the wheels obeying, s, 0 to 2. Default 0.2: an image period, processing, delay and lag.
+    pub latency: f64,
+    /// Room left before an obstacle ahead, m, 0 to 1. Default 0.04 (ours).
+    pub stop_margin: f64,
+    /// Room on either side within which an obstacle stops the robot, m, 0 to 0.5. Default 0.01: the noise of a scan point.
+    pub side_margin: f64,
+    /// Room on either side within which an obstacle slows the robot to `creep_speed`, m, at least `side_margin`, to 1.
+    /// Default 0.05 (ours).
+    pub slow_margin: f64,
+    /// Speed past obstacles within `slow_margin`, m/s, 0.02 to 1. Default 0.12 (ours).
+    pub creep_speed: f64,
+    /// Highest speed backward, where no camera looks, m/s, 0.02 to 2. Default 0.2 (ours).
+    pub reverse_speed: f64,
+    /// Speed of backing out while the bumper is pressed, m/s, 0.01 to 0.5. Default 0.05 (ours).
+    pub back_out_speed: f64,
+    /// A slower command than this is no motion but a stop, m/s, 0.001 to 0.1. Default 0.01 (ours).
+    pub least_speed: f64,
+    /// How far around the robot the map is looked at, m from its edge, 0 to 5. Default 0.8: the camera's blind zone, and what
+    /// lies beside its view.
+    pub memory_reach: f64,
+    /// An older image stops the robot, s, 0.05 to 60. Default 0.5: seven images missing (ours).
+    pub image_timeout: f64,
+    /// An older wheel reading stops the robot, s, 0.02 to 60. Default 0.2: ten readings missing (ours).
+    pub wheels_timeout: f64,
+}
+
+impl Default for SafetyConfig {
+    fn default() -> Self {
+        Self {
+            deceleration: 0.5,
+            latency: 0.2,
+            stop_margin: 0.04,
+            side_margin: 0.01,
+            slow_margin: 0.05,
+            creep_speed: 0.12,
+            reverse_speed: 0.2,
+            back_out_speed: 0.05,
+            least_speed: 0.01,
+            memory_reach: 0.8,
+            image_timeout: 0.5,
+            wheels_timeout: 0.2,
+        }
+    }
+}
+
+impl SafetyConfig {
+    /// Passes a valid configuration through.
+    ///
+    /// # Errors
+    /// When a number is outside its range.
+    pub fn validated(self) -> Result<Self, Invalid> {
+        let ranges = [
+            ("deceleration", self.deceleration, "m/s^2", 0.05, 20.0),
+            ("latency", self.latency, "s", 0.0, 2.0),
+            ("stop_margin", self.stop_margin, "m", 0.0, 1.0),
+            ("side_margin", self.side_margin, "m", 0.0, 0.5),
+            ("slow_margin", self.slow_margin, "m", self.side_margin, 1.0),
+            ("creep_speed", self.creep_speed, "m/s", 0.02, 1.0),
+            ("reverse_speed", self.reverse_speed, "m/s", 0.02, 2.0),
+            ("back_out_speed", self.back_out_speed, "m/s", 0.01, 0.5),
+            ("least_speed", self.least_speed, "m/s", 0.001, 0.1),
+            ("memory_reach", self.memory_reach, "m", 0.0, 5.0),
+            ("image_timeout", self.image_timeout, "s", 0.05, 60.0),
+            ("wheels_timeout", self.wheels_timeout, "s", 0.02, 60.0),
+        ];
+        for (name, value, unit, low, high) in ranges {
+            require_in(&format!("safety.{name}"), value, unit, low, high)?;
+        }
+        Ok(self)
+    }
+
+    /// The highest speed from which the robot stops within `way` metres.
+    pub(super) fn speed_for(&self, way: f64) -> f64 {
+        let reaction = self.deceleration * self.latency;
+        (reaction * reaction + 2.0 * self.deceleration * way.max(0.0)).sqrt() - reaction
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_way_is_just_used_up() {
+        let config = SafetyConfig::default().validated().unwrap();
+        let v = config.speed_for(0.8);
+        assert!((v * config.latency + v * v / (2.0 * config.deceleration) - 0.8).abs() < 1e-12);
+        assert_eq!(config.speed_for(0.0), 0.0);
+        assert_eq!(config.speed_for(-1.0), 0.0);
+    }
+
+    #[test]
+    fn bad_numbers_are_refused_by_name() {
+        let error = SafetyConfig { latency: -0.1, ..SafetyConfig::default() }.validated().unwrap_err();
+        assert_eq!(error.field, "safety.latency");
+    }
+}

@@ -1,0 +1,259 @@
+use super::{
+    SafetyConfig,
+    arc::way_to_contact,
+    obstacles::{SafetyMemory, SafetyScan, collect_memory, collect_scan},
+    reason::{SafetyAction, SlowReason, StopReason},
+};
+use trundle_core::{Footprint, Invalid, Stamp, Twist2, Vector2};
+
+/// Lets only twists through from which the robot can still stop.
+///
+/// A footprint that is no disc is taken as the disc about it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SafetyMonitor {
+    config: SafetyConfig,
+    radius: f64,
+    /// Reused from call to call: obstacles near by, base frame, m.
+    points: Vec<Vector2>,
+}
+
+/// What the monitor judges by.
+#[derive(Debug, Clone, Copy)]
+pub struct SafetyInput<'a> {
+    /// The moment of the command.
+    pub now: Stamp,
+    /// The command.
+    pub twist: Twist2,
+    /// The newest scan.
+    pub scan: Option<SafetyScan<'a>>,
+    /// The map near by: what the camera is too near to see, or no longer looks at.
+    pub memory: Option<SafetyMemory<'a>>,
+    /// Whether the bumper is pressed.
+    pub touched: bool,
+    /// Stamp of the newest image.
+    pub image: Option<Stamp>,
+    /// Stamp of the newest wheel reading.
+    pub wheels: Option<Stamp>,
+}
+
+/// What the monitor decided.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SafetyReport {
+    /// The twist to send: always safe, always finite.
+    pub twist: Twist2,
+    /// What was done to the command, and why.
+    pub action: SafetyAction,
+}
+
+/// The free way along the arc.
+struct FreeWay {
+    /// Until contact, m, and with what.
+    contact: Option<(f64, Vector2)>,
+    /// The first obstacle close beside the way: way until abreast, m, and what.
+    beside: Option<(f64, Vector2)>,
+}
+
+impl SafetyMonitor {
+    /// A monitor for a robot of this footprint.
+    ///
+    /// # Errors
+    /// When a number of the configuration is outside its range.
+    pub fn new(config: SafetyConfig, footprint: &Footprint) -> Result<Self, Invalid> {
+        let radius = footprint.circumscribed_radius();
+        Ok(Self { config: config.validated()?, radius, points: Vec::new() })
+    }
+
+    /// Judges a command.
+    pub fn check(&mut self, input: &SafetyInput<'_>) -> SafetyReport {
+        if let Some(reason) = self.blind(input) {
+            return stop(reason);
+        }
+        if input.touched {
+            return self.back_out(input.twist);
+        }
+        if input.twist.v == 0.0 {
+            return SafetyReport { twist: input.twist, action: SafetyAction::Pass };
+        }
+        self.gather(input);
+        self.within_the_free_way(input.twist)
+    }
+
+    /// Whether what the monitor sees by is missing.
+    fn blind(&self, input: &SafetyInput<'_>) -> Option<StopReason> {
+        let poses = input.scan.iter().flat_map(|s| [s.odom_at_scan, s.odom_now]);
+        let mut poses = poses.chain(input.memory.iter().map(|m| m.map_from_base));
+        if !input.twist.is_finite() || !poses.all(|pose| pose.is_finite()) {
+            return Some(StopReason::NotFinite);
+        }
+        let Some(wheels) = input.wheels else { return Some(StopReason::NoWheels) };
+        let Some(image) = input.image else { return Some(StopReason::NoImage) };
+        let (wheels, image) = (input.now - wheels, input.now - image);
+        if wheels > self.config.wheels_timeout {
+            Some(StopReason::StaleWheels { age: wheels })
+        } else if image > self.config.image_timeout {
+            Some(StopReason::StaleImage { age: image })
+        } else {
+            None
+        }
+    }
+
+    fn back_out(&self, twist: Twist2) -> SafetyReport {
+        if twist.v < 0.0 {
+            slow_to(twist, self.config.back_out_speed, SlowReason::BackingOut)
+        } else {
+            stop(StopReason::Touched)
+        }
+    }
+
+    fn gather(&mut self, input: &SafetyInput<'_>) {
+        self.points.clear();
+        let v = input.twist.v.abs();
+        let braking = v * self.config.latency + v * v / (2.0 * self.config.deceleration);
+        let body = self.radius + self.config.slow_margin.max(self.config.stop_margin);
+        if let Some(scan) = &input.scan {
+            collect_scan(scan, braking + self.config.stop_margin + body, &mut self.points);
+        }
+        if let Some(memory) = &input.memory {
+            let reach = (braking + self.config.stop_margin).min(self.config.memory_reach) + body;
+            collect_memory(memory, reach, &mut self.points);
+        }
+    }
+
+    fn free_way(&self, twist: Twist2) -> FreeWay {
+        let nearest = |radius: f64| {
+            let ways =
+                self.points.iter().filter_map(|&p| way_to_contact(twist, p, radius).map(|way| (way, p)));
+            ways.min_by(|a, b| a.0.total_cmp(&b.0))
+        };
+        FreeWay {
+            contact: nearest(self.radius + self.config.side_margin),
+            beside: nearest(self.radius + self.config.slow_margin),
+        }
+    }
+
+    fn within_the_free_way(&self, twist: Twist2) -> SafetyReport {
+        let free = self.free_way(twist);
+        let mut report = SafetyReport { twist, action: SafetyAction::Pass };
+        if twist.v < 0.0 {
+            report = slow_to(twist, self.config.reverse_speed, SlowReason::Reversing);
+        }
+        if let Some((way, at)) = free.beside {
+            let speed = self.config.speed_for(way).max(self.config.creep_speed);
+            report = slower(report, slow_to(twist, speed, SlowReason::NarrowGap { at }));
+        }
+        if let Some((way, at)) = free.contact {
+            let speed = self.config.speed_for(way - self.config.stop_margin);
+            if speed < self.config.least_speed.min(twist.v.abs()) {
+                // A disc may always turn on the spot.
+                let turn = Twist2::new(0.0, twist.omega);
+                let action = SafetyAction::Stop(StopReason::ObstacleAhead { way, at });
+                return SafetyReport { twist: turn, action };
+            }
+            report = slower(report, slow_to(twist, speed, SlowReason::ObstacleAhead { way, at }));
+        }
+        report
+    }
+}
+
+fn stop(reason: StopReason) -> SafetyReport {
+    SafetyReport { twist: Twist2::ZERO, action: SafetyAction::Stop(reason) }
+}
+
+/// The twist at most this fast, m/s, on its own curve.
+fn slow_to(twist: Twist2, speed: f64, reason: SlowReason) -> SafetyReport {
+    let part = speed / twist.v.abs();
+    if part >= 1.0 {
+        return SafetyReport { twist, action: SafetyAction::Pass };
+    }
+    let twist = Twist2::new(twist.v * part, twist.omega * part);
+    SafetyReport { twist, action: SafetyAction::Slow(reason) }
+}
+
+fn slower(a: SafetyReport, b: SafetyReport) -> SafetyReport {
+    if b.twist.v.abs() < a.twist.v.abs() { b } else { a }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+    use trundle_core::{Beam, Pose2, Scan};
+
+    fn monitor() -> SafetyMonitor {
+        SafetyMonitor::new(SafetyConfig::default(), &Footprint::KOBUKI).unwrap()
+    }
+
+    fn fresh(twist: Twist2) -> SafetyInput<'static> {
+        let now = Stamp::default();
+        SafetyInput {
+            now,
+            twist,
+            scan: None,
+            memory: None,
+            touched: false,
+            image: Some(now),
+            wheels: Some(now),
+        }
+    }
+
+    fn scan(angle_min: f64, increment: f64, ranges: &[f64]) -> Scan {
+        let beams = ranges.iter().map(|&range| Beam::Hit { range }).collect();
+        Scan::new(Stamp::default(), Vector2::zeros(), angle_min, increment, beams).unwrap()
+    }
+
+    fn seen(scan: &Scan) -> Option<SafetyScan<'_>> {
+        Some(SafetyScan { scan, odom_at_scan: Pose2::IDENTITY, odom_now: Pose2::IDENTITY })
+    }
+
+    #[test]
+    fn without_eyes_or_wheels_it_stops_and_says_so() {
+        let twist = Twist2::new(0.3, 0.1);
+        let now = Stamp::default().after(10.0);
+        let reason = |input: SafetyInput<'_>| match monitor().check(&input) {
+            SafetyReport { twist: Twist2::ZERO, action: SafetyAction::Stop(reason) } => reason,
+            report => panic!("{report:?}"),
+        };
+        let input = SafetyInput { now, image: Some(now), wheels: Some(now), ..fresh(twist) };
+        assert_eq!(monitor().check(&input).action, SafetyAction::Pass);
+        assert_eq!(reason(SafetyInput { image: None, ..input }), StopReason::NoImage);
+        assert_eq!(reason(SafetyInput { wheels: None, ..input }), StopReason::NoWheels);
+        let old = Some(now.after(-1.0));
+        assert_eq!(reason(SafetyInput { image: old, ..input }), StopReason::StaleImage { age: 1.0 });
+        assert_eq!(reason(SafetyInput { wheels: old, ..input }), StopReason::StaleWheels { age: 1.0 });
+        assert_eq!(reason(SafetyInput { twist: Twist2::new(f64::NAN, 0.0), ..input }), StopReason::NotFinite);
+        assert_eq!(reason(SafetyInput { touched: true, ..input }), StopReason::Touched);
+    }
+
+    #[test]
+    fn from_a_touch_it_backs_out_slowly() {
+        let report = monitor().check(&SafetyInput { touched: true, ..fresh(Twist2::new(-0.3, 0.3)) });
+        assert_eq!(report.action, SafetyAction::Slow(SlowReason::BackingOut));
+        assert!((report.twist.v + 0.05).abs() < 1e-12 && (report.twist.omega - 0.05).abs() < 1e-12);
+    }
+
+    #[test]
+    fn before_an_obstacle_it_still_turns() {
+        let wall = scan(-0.1, 0.01, &[0.2; 21]);
+        let report = monitor().check(&SafetyInput { scan: seen(&wall), ..fresh(Twist2::new(0.3, 0.7)) });
+        assert_eq!(report.twist, Twist2::new(0.0, 0.7));
+        assert!(report.action.to_string().starts_with("stop: an obstacle in the way"), "{}", report.action);
+        let away = monitor().check(&SafetyInput { scan: seen(&wall), ..fresh(Twist2::new(-0.1, 0.0)) });
+        assert_eq!(away.action, SafetyAction::Pass);
+    }
+
+    proptest! {
+        #[test]
+        fn a_command_is_never_made_faster_nor_bent(
+            (v, omega) in (-0.7..0.7, -3.0..3.0),
+            ranges in prop::collection::vec(0.1..4.0, 40),
+        ) {
+            let scan = scan(-0.6, 0.03, &ranges);
+            let twist = Twist2::new(v, omega);
+            let report = monitor().check(&SafetyInput { scan: seen(&scan), ..fresh(twist) });
+            let bent = report.twist.omega * twist.v - twist.omega * report.twist.v;
+            prop_assert!(report.twist.v.abs() <= v.abs() && report.twist.v * v >= 0.0);
+            prop_assert!(report.twist.v == 0.0 || bent.abs() < 1e-9);
+            prop_assert!(report.twist.omega.abs() <= omega.abs());
+        }
+    }
+}

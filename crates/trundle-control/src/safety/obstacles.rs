@@ -1,0 +1,88 @@
+use trundle_core::{Cell, OccupancyGrid, Pose2, Scan, Vector2};
+
+/// The newest scan, and how the robot moved since.
+#[derive(Debug, Clone, Copy)]
+pub struct SafetyScan<'a> {
+    /// The scan.
+    pub scan: &'a Scan,
+    /// `odom_from_base` when it was taken.
+    pub odom_at_scan: Pose2,
+    /// `odom_from_base` now.
+    pub odom_now: Pose2,
+}
+
+/// What the map remembers, and where the robot is on it.
+#[derive(Debug, Clone, Copy)]
+pub struct SafetyMemory<'a> {
+    /// The map.
+    pub grid: &'a OccupancyGrid,
+    /// `map_from_base` now.
+    pub map_from_base: Pose2,
+}
+
+/// Appends the scan's hits within `reach` of the base, base frame of now, m.
+pub(super) fn collect_scan(view: &SafetyScan<'_>, reach: f64, points: &mut Vec<Vector2>) {
+    let now_from_scan = view.odom_now.inverse() * view.odom_at_scan;
+    points.extend(view.scan.hits().map(|hit| now_from_scan.transform(hit)).filter(|p| p.norm() <= reach));
+}
+
+/// Appends the middles of the occupied cells within `reach` of the base, base frame, m.
+pub(super) fn collect_memory(memory: &SafetyMemory<'_>, reach: f64, points: &mut Vec<Vector2>) {
+    let geometry = memory.grid.geometry();
+    let base_from_map = memory.map_from_base.inverse();
+    let at = (memory.map_from_base.position() - geometry.origin) / geometry.resolution;
+    let cells = reach / geometry.resolution;
+    let range = |at: f64, size: usize| {
+        let (low, high) = ((at - cells).floor().max(0.0), (at + cells).ceil().min(size as f64));
+        low as usize..high.max(0.0) as usize
+    };
+    for row in range(at.y, geometry.height) {
+        for col in range(at.x, geometry.width) {
+            let cell = trundle_core::CellIndex { col, row };
+            if memory.grid.get(cell) == Cell::Occupied {
+                let p = base_from_map.transform(geometry.center(cell));
+                if p.norm() <= reach {
+                    points.push(p);
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::FRAC_PI_2;
+    use trundle_core::{Beam, Stamp};
+
+    #[test]
+    fn the_scan_is_carried_forward() {
+        let beams = vec![Beam::Hit { range: 1.0 }, Beam::Hit { range: 9.0 }];
+        let scan = Scan::new(Stamp::default(), Vector2::zeros(), 0.0, 0.1, beams).unwrap();
+        let view = SafetyScan {
+            scan: &scan,
+            odom_at_scan: Pose2::new(5.0, 5.0, FRAC_PI_2),
+            odom_now: Pose2::new(5.0, 5.4, FRAC_PI_2),
+        };
+        let mut points = Vec::new();
+        collect_scan(&view, 2.0, &mut points);
+        assert_eq!(points.len(), 1);
+        assert!((points[0] - Vector2::new(0.6, 0.0)).norm() < 1e-12);
+    }
+
+    #[test]
+    fn the_map_is_seen_from_the_base_and_off_it_is_nothing() {
+        let mut grid = OccupancyGrid::from_ascii(0.1, &vec![".".repeat(30); 30].join("\n")).unwrap();
+        grid.set(trundle_core::CellIndex { col: 14, row: 19 }, Cell::Occupied);
+        let mut points = Vec::new();
+        let memory = SafetyMemory { grid: &grid, map_from_base: Pose2::new(1.45, 1.45, FRAC_PI_2) };
+        collect_memory(&memory, 0.6, &mut points);
+        assert_eq!(points.len(), 1);
+        assert!((points[0] - Vector2::new(0.5, 0.0)).norm() < 1e-12);
+        points.clear();
+        collect_memory(&memory, 0.4, &mut points);
+        let far = SafetyMemory { grid: &grid, map_from_base: Pose2::new(-90.0, 1e9, 0.0) };
+        collect_memory(&far, 0.6, &mut points);
+        assert!(points.is_empty());
+    }
+}

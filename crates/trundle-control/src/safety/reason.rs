@@ -1,0 +1,118 @@
+use std::fmt;
+use trundle_core::Vector2;
+
+/// What the monitor did to a command.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum SafetyAction {
+    /// Let it pass.
+    Pass,
+    /// Slowed it along its own curve.
+    Slow(SlowReason),
+    /// Stopped it. Before an obstacle the robot may still turn on the spot.
+    Stop(StopReason),
+}
+
+/// Why the robot goes slower than it was told.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum SlowReason {
+    /// An obstacle on the way, still far enough.
+    ObstacleAhead {
+        /// Way until contact, m.
+        way: f64,
+        /// The obstacle, base frame, m.
+        at: Vector2,
+    },
+    /// An obstacle close beside the way.
+    NarrowGap {
+        /// The obstacle, base frame, m.
+        at: Vector2,
+    },
+    /// Backward is where no camera looks.
+    Reversing,
+    /// The bumper is pressed, and the robot backs out.
+    BackingOut,
+}
+
+/// Why the robot was stopped.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum StopReason {
+    /// An obstacle nearer than the braking distance.
+    ObstacleAhead {
+        /// Way until contact, m.
+        way: f64,
+        /// The obstacle, base frame, m.
+        at: Vector2,
+    },
+    /// The bumper is pressed.
+    Touched,
+    /// No image has come yet.
+    NoImage,
+    /// The newest image is too old.
+    StaleImage {
+        /// Its age, s.
+        age: f64,
+    },
+    /// No wheel reading has come yet.
+    NoWheels,
+    /// The newest wheel reading is too old.
+    StaleWheels {
+        /// Its age, s.
+        age: f64,
+    },
+    /// The command, or the odometry under the scan, is not a number.
+    NotFinite,
+}
+
+impl fmt::Display for SlowReason {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::ObstacleAhead { way, .. } => write!(f, "an obstacle {way:.2} m ahead"),
+            Self::NarrowGap { at } => write!(f, "a narrow gap, {side}", side = side(*at)),
+            Self::Reversing => f.write_str("backward without a view"),
+            Self::BackingOut => f.write_str("backing out of a contact"),
+        }
+    }
+}
+
+impl fmt::Display for StopReason {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::ObstacleAhead { way, at } => {
+                write!(f, "an obstacle in the way, {way:.2} m to contact, {side}", side = side(*at))
+            }
+            Self::Touched => f.write_str("the bumper is pressed"),
+            Self::NoImage => f.write_str("no image yet"),
+            Self::StaleImage { age } => write!(f, "the newest image is {age:.2} s old"),
+            Self::NoWheels => f.write_str("no wheel reading yet"),
+            Self::StaleWheels { age } => write!(f, "the newest wheel reading is {age:.2} s old"),
+            Self::NotFinite => f.write_str("the command is not a number"),
+        }
+    }
+}
+
+fn side(at: Vector2) -> String {
+    format!("at ({:.2}, {:.2}) m from the base", at.x, at.y)
+}
+
+impl fmt::Display for SafetyAction {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Pass => f.write_str("free"),
+            Self::Slow(reason) => write!(f, "slow: {reason}"),
+            Self::Stop(reason) => write!(f, "stop: {reason}"),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_reason_says_why_in_numbers() {
+        let stop = SafetyAction::Stop(StopReason::StaleImage { age: 0.712 });
+        assert_eq!(stop.to_string(), "stop: the newest image is 0.71 s old");
+        let slow = SafetyAction::Slow(SlowReason::ObstacleAhead { way: 0.5, at: Vector2::new(1.0, 0.0) });
+        assert_eq!(slow.to_string(), "slow: an obstacle 0.50 m ahead");
+    }
+}

@@ -1,0 +1,104 @@
+use serde::{Deserialize, Serialize};
+use trundle_core::{Invalid, require_in};
+
+/// How the robot settles on a goal pose.
+///
+/// The default gains give the linearised law one double root: the distance and both angles fall by 1/e a second, without
+/// overshoot, and slowly enough for a base that answers within 0.1 s.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct SettleConfig {
+    /// Speed by distance, 1/s, 0.05 to 10. Default 1 (ours).
+    pub k_rho: f64,
+    /// Turn rate by bearing, 1/s, above `k_rho`, to 20. Default 3 (ours).
+    pub k_alpha: f64,
+    /// Turn rate by approach angle, 1/s, -20 to -0.001. Default -1 (ours).
+    pub k_beta: f64,
+    /// Nearer than this the approach angle is left to the turn on the spot, fading, m, 0.001 to 10. Default 0.15 (ours).
+    pub shaping_distance: f64,
+    /// Most approach angle that is acted on, rad, 0 to 1.5: it bounds the detour. Default 0.8 (ours).
+    pub max_approach: f64,
+    /// Highest speed, m/s, 0.01 to 10. Default 0.25 (ours).
+    pub speed: f64,
+    /// Lowest speed while approaching, m/s, 0 to 0.1: motors stick below. Default 0.02 (ours).
+    pub creep_speed: f64,
+    /// Highest turn rate, rad/s, 0.05 to 20. Default 1.2 (ours).
+    pub turn_rate: f64,
+    /// Turn rate by heading error when turning on the spot, 1/s, 0.1 to 10. Default 2.5 (ours).
+    pub k_turn: f64,
+    /// Allowed distance from the goal, m, 0.001 to 1. Default 0.01. The robot goes for 0.4 of it, and goes again when it
+    /// ends up beyond the whole.
+    pub position_tolerance: f64,
+    /// Allowed heading error, rad, 0.001 to 1. Default 0.5 deg. The robot goes for half of it.
+    pub heading_tolerance: f64,
+    /// A settled robot moves again when an error grows beyond this many tolerances, 1 to 100. Default 2.5 (ours).
+    pub release: f64,
+    /// How often the robot goes again for one goal before it accepts `release` tolerances, 0 to 100. Default 4 (ours).
+    pub attempts: u32,
+}
+
+impl Default for SettleConfig {
+    fn default() -> Self {
+        Self {
+            k_rho: 1.0,
+            k_alpha: 3.0,
+            k_beta: -1.0,
+            shaping_distance: 0.15,
+            max_approach: 0.8,
+            speed: 0.25,
+            creep_speed: 0.02,
+            turn_rate: 1.2,
+            k_turn: 2.5,
+            position_tolerance: 0.01,
+            heading_tolerance: 0.5_f64.to_radians(),
+            release: 2.5,
+            attempts: 4,
+        }
+    }
+}
+
+impl SettleConfig {
+    /// Passes a valid configuration through.
+    ///
+    /// # Errors
+    /// When a number is outside its range.
+    pub fn validated(self) -> Result<Self, Invalid> {
+        let ranges = [
+            ("k_rho", self.k_rho, "1/s", 0.05, 10.0),
+            ("k_alpha", self.k_alpha, "1/s", self.k_rho, 20.0),
+            ("k_beta", self.k_beta, "1/s", -20.0, -0.001),
+            ("shaping_distance", self.shaping_distance, "m", 0.001, 10.0),
+            ("max_approach", self.max_approach, "rad", 0.0, 1.5),
+            ("speed", self.speed, "m/s", 0.01, 10.0),
+            ("creep_speed", self.creep_speed, "m/s", 0.0, 0.1),
+            ("turn_rate", self.turn_rate, "rad/s", 0.05, 20.0),
+            ("k_turn", self.k_turn, "1/s", 0.1, 10.0),
+            ("position_tolerance", self.position_tolerance, "m", 0.001, 1.0),
+            ("heading_tolerance", self.heading_tolerance, "rad", 0.001, 1.0),
+            ("release", self.release, "", 1.0, 100.0),
+            ("attempts", f64::from(self.attempts), "", 0.0, 100.0),
+        ];
+        for (name, value, unit, low, high) in ranges {
+            require_in(&format!("settling.{name}"), value, unit, low, high)?;
+        }
+        if self.k_alpha <= self.k_rho {
+            let expected = format!("more than k_rho, {}", self.k_rho);
+            return Err(Invalid::new("settling.k_alpha", self.k_alpha, "1/s", expected));
+        }
+        Ok(self)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bad_numbers_are_refused_by_name() {
+        assert!(SettleConfig::default().validated().is_ok());
+        let error = SettleConfig { k_alpha: 1.0, ..SettleConfig::default() }.validated().unwrap_err();
+        assert_eq!(error.field, "settling.k_alpha");
+        let error = SettleConfig { k_beta: 1.0, ..SettleConfig::default() }.validated().unwrap_err();
+        assert_eq!(error.field, "settling.k_beta");
+    }
+}

@@ -1,0 +1,98 @@
+use crate::plant::{DT, Plant};
+use proptest::prelude::*;
+use trundle_control::{Tracker, TrackingConfig, TrackingError};
+use trundle_core::{DifferentialDrive, DriveLimits, Pose2, TrajectoryPoint, Twist2};
+
+/// Runs after a reference that moves with `twist_at(time)` from the origin; the error at each step.
+fn chase(mut plant: Plant, seconds: f64, twist_at: impl Fn(f64) -> Twist2) -> Vec<TrackingError> {
+    let mut tracker =
+        Tracker::new(TrackingConfig::default(), DifferentialDrive::KOBUKI, DriveLimits::KOBUKI).unwrap();
+    tracker.sent(plant.twist());
+    let mut reference = Pose2::IDENTITY;
+    let steps = (seconds / DT) as usize;
+    (0..steps)
+        .map(|i| {
+            let time = i as f64 * DT;
+            let twist = twist_at(time);
+            let estimate = plant.estimate();
+            let report = tracker.step(&estimate, &TrajectoryPoint { time, pose: reference, twist }, DT);
+            plant.drive(report.twist);
+            reference = reference.advance(twist, DT);
+            report.error
+        })
+        .collect()
+}
+
+fn straight(_: f64) -> Twist2 {
+    Twist2::new(0.4, 0.0)
+}
+
+fn arc(_: f64) -> Twist2 {
+    Twist2::new(0.35, 0.6)
+}
+
+fn s_curve(time: f64) -> Twist2 {
+    Twist2::new(0.35, 0.7 * (0.8 * time).sin())
+}
+
+fn backward(_: f64) -> Twist2 {
+    Twist2::new(-0.2, 0.1)
+}
+
+fn on_the_spot(_: f64) -> Twist2 {
+    Twist2::new(0.0, 0.8)
+}
+
+fn last(errors: &[TrackingError]) -> TrackingError {
+    *errors.last().unwrap()
+}
+
+/// The largest of the last second: distance m, heading rad.
+fn tail(errors: &[TrackingError]) -> (f64, f64) {
+    let tail = &errors[errors.len() - (1.0 / DT) as usize..];
+    let most = |f: &dyn Fn(&TrackingError) -> f64| tail.iter().map(f).fold(0.0, f64::max);
+    (most(&|e| e.distance()), most(&|e| e.heading.abs()))
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(48))]
+
+    #[test]
+    fn it_comes_onto_moving_references(
+        (x, y, theta) in (-0.2..0.2, -0.2..0.2, -0.7..0.7),
+        delay in 0.02..0.04,
+    ) {
+        for (name, twist_at) in [("straight", straight as fn(f64) -> Twist2), ("arc", arc), ("S", s_curve), ("backward", backward)] {
+            let mut plant = Plant::at(Pose2::new(x, y, theta)).moving(Twist2::ZERO);
+            plant.delay = delay;
+            let (distance, heading) = tail(&chase(plant, 15.0, twist_at));
+            prop_assert!(distance < 0.02 && heading < 0.06, "{}: {} m, {} rad", name, distance, heading);
+        }
+    }
+}
+
+#[test]
+fn an_error_beside_the_path_goes_within_a_metre_of_way() {
+    let start = Pose2::new(0.0, 0.10, 0.0);
+    let errors = chase(Plant::at(start).moving(straight(0.0)), 3.0, straight);
+    let gone = errors.iter().position(|e| e.cross.abs() < 0.02).unwrap();
+    let way = gone as f64 * DT * 0.4;
+    let overshoot = errors.iter().map(|e| e.cross).fold(0.0, f64::max);
+    eprintln!("10 cm beside became 2 cm after {way:.2} m, overshoot {:.1} mm", overshoot * 1e3);
+    assert!(way < 1.0 && overshoot < 0.01, "{way} m, {overshoot} m");
+}
+
+#[test]
+fn steady_references_are_met_exactly() {
+    for twist_at in [straight as fn(f64) -> Twist2, arc, on_the_spot] {
+        let error = last(&chase(Plant::at(Pose2::IDENTITY), 12.0, twist_at));
+        assert!(error.distance() < 0.003 && error.heading.abs() < 0.01, "{error:?}");
+    }
+}
+
+#[test]
+fn a_turn_on_the_spot_stays_on_the_spot() {
+    let errors = chase(Plant::at(Pose2::new(0.01, -0.01, 0.0)), 5.0, on_the_spot);
+    assert!(errors.iter().all(|e| e.distance() < 0.02));
+    assert!(last(&errors).heading.abs() < 0.01);
+}
