@@ -1,1 +1,38 @@
-//! From depth images to scans, and from scans to an occupancy grid.
+//! From depth images to scans, from scans to an occupancy grid, and scans against that grid.
+//!
+//! - [`DepthScanner`]: one depth image in, one laser-like [`trundle_core::Scan`] out (the robot's height band, METHODS A2).
+//! - [`GridMapper`]: scans at known poses in, a log-odds occupancy grid out (METHODS A3 with one particle).
+//! - [`ScanMatcher`]: where a scan fits the grid best, how well, and in which directions nobody can tell.
+//!
+//! The parts a particle filter needs are parts of their own: the map of one particle is a [`LogOddsGrid`] (tiles shared
+//! until written, so a clone is cheap), and what a scan says about cells does not depend on who keeps them.
+//!
+//! ```
+//! use trundle_core::{Beam, Cell, Pose2, Scan, Stamp, Vector2};
+//! use trundle_mapping::{GridMapper, MapperConfig};
+//!
+//! let mut mapper = GridMapper::new(MapperConfig::default())?;
+//! let wall_ahead = vec![Beam::Hit { range: 2.0 }; 10];
+//! let scan = Scan::new(Stamp::default(), Vector2::zeros(), 0.0, 0.002, wall_ahead)?;
+//! for _ in 0..4 {
+//!     mapper.insert(Pose2::IDENTITY, &scan);
+//! }
+//! assert_eq!(mapper.grid().at(Vector2::new(2.01, 0.01)), Cell::Occupied);
+//! assert_eq!(mapper.grid().at(Vector2::new(1.51, 0.01)), Cell::Free);
+//! assert_eq!(mapper.grid().at(Vector2::new(2.51, 0.01)), Cell::Unknown);
+//! # Ok::<(), trundle_core::Invalid>(())
+//! ```
+
+mod depth_scan;
+mod evidence;
+mod live_grid;
+mod mapper;
+mod mapper_config;
+mod ray;
+mod scan_cells;
+
+pub use depth_scan::{DepthScanConfig, DepthScanner};
+pub use evidence::{Evidence, GridCell, LogOddsGrid};
+pub use mapper::{GridMapper, Insertion};
+pub use mapper_config::MapperConfig;
+pub use ray::{RayCells, ray_cells};

@@ -1,0 +1,181 @@
+use crate::{
+    Correction, LocalizerConfig, Prediction, VisualPose,
+    belief::{Belief, Measurement},
+    history::{History, Moment},
+    recovery::{Recovery, Verdict},
+    visual_frame::VisualFrame,
+};
+use nalgebra::Matrix3;
+use trundle_core::{Invalid, Odometry, Pose2, Pose3, PoseEstimate, Stamp, Twist2};
+
+/// The one pose estimate: odometry, corrected by visual poses and scan matches.
+///
+/// Problem: the base's pose in the map frame, at the wheels' rate, from a smooth drifting source and slower absolute ones
+/// that come late. An extended Kalman filter on SE(2) with right perturbations: its error lives in the base frame, a pose
+/// is measured as a whole (H = I), and odometry moves the covariance by the adjoint. Measurements are applied at the time
+/// they were taken and carried forward through the odometry since. Visual errors are strongly correlated in time, so
+/// corrections never bring a variance below a floor. Cost: one step a reading; a late correction costs the steps since.
+///
+/// | symbol | here | unit |
+/// |---|---|---|
+/// | P | `PoseEstimate::covariance` | m^2, rad^2 |
+/// | Q | growth of `Odometry::covariance` | m^2, rad^2 |
+/// | R | the measurement's covariance plus the configured noise | m^2, rad^2 |
+///
+/// The map frame is the base's frame at the first odometry: x forward, y left, z up.
+#[derive(Debug, Clone)]
+pub struct Localizer {
+    config: LocalizerConfig,
+    history: Option<History>,
+    visual: VisualFrame,
+    recovery: Recovery,
+}
+
+impl Localizer {
+    /// An estimate at the map's origin, for a camera mounted at `base_from_camera`.
+    ///
+    /// # Errors
+    /// When the configuration is out of range or the mount is not finite.
+    pub fn new(config: LocalizerConfig, base_from_camera: Pose3) -> Result<Self, Invalid> {
+        let config = config.validated()?;
+        if !base_from_camera.is_finite() {
+            return Err(Invalid::new("base_from_camera", "not finite", "", "finite numbers"));
+        }
+        let visual = VisualFrame::new(base_from_camera);
+        Ok(Self { config, history: None, visual, recovery: Recovery::default() })
+    }
+
+    /// Moves the estimate with the odometry.
+    pub fn predict(&mut self, odometry: &Odometry) -> Prediction {
+        if !(odometry.pose.is_finite() && is_finite(&odometry.covariance) && odometry.twist.is_finite()) {
+            return Prediction::NotFinite;
+        }
+        let Some(history) = &mut self.history else {
+            let start = Belief { pose: Pose2::IDENTITY, covariance: Matrix3::zeros() };
+            self.history = Some(History::new(odometry, start, self.config.least_variances()));
+            return Prediction::Started;
+        };
+        let later = odometry.stamp - history.newest_odometry().stamp;
+        if later < 0.0 {
+            return Prediction::TimeWentBack { by: -later };
+        }
+        if later == 0.0 {
+            return Prediction::NothingNew;
+        }
+        history.push(odometry, self.config.history);
+        Prediction::Moved
+    }
+
+    /// Corrects the estimate by a visual pose. The first one lays the visual frame into the map.
+    pub fn correct_visual(&mut self, visual: &VisualPose) -> Correction {
+        if !(visual.visual_from_camera.is_finite() && visual.covariance.iter().all(|v| v.is_finite())) {
+            return Correction::NotFinite;
+        }
+        let moment = match self.find(visual.stamp) {
+            Ok(moment) => moment,
+            Err(refusal) => return refusal,
+        };
+        let Some(measurement) = self.visual.measurement(visual, &self.config) else {
+            self.visual.anchor(moment.belief.pose, &visual.visual_from_camera);
+            return Correction::Anchored;
+        };
+        self.recovery.watch(&self.config, visual.stamp, measurement.pose, moment.odom_from_base());
+        let correction = self.apply(&moment, measurement);
+        let Correction::Gated { distance } = correction else {
+            self.recovery.believed();
+            return correction;
+        };
+        match self.recovery.refused(&self.config) {
+            Verdict::Wait => correction,
+            Verdict::Reanchor => {
+                self.visual.anchor(moment.belief.pose, &visual.visual_from_camera);
+                self.recovery = Recovery::default();
+                Correction::Reanchored
+            }
+            Verdict::Believe => {
+                self.believe(&moment, measurement);
+                Correction::Recovered { distance }
+            }
+        }
+    }
+
+    /// Corrects the estimate by a scan match: `map_from_base` with its covariance as a right perturbation.
+    pub fn correct_scan(
+        &mut self,
+        stamp: Stamp,
+        map_from_base: Pose2,
+        covariance: &Matrix3<f64>,
+    ) -> Correction {
+        if !(map_from_base.is_finite() && is_finite(covariance)) {
+            return Correction::NotFinite;
+        }
+        let noise = self.config.scan_noise() + covariance;
+        match self.find(stamp) {
+            Ok(moment) => {
+                self.apply(&moment, Measurement { pose: map_from_base, noise, doubt: Matrix3::zeros() })
+            }
+            Err(refusal) => refusal,
+        }
+    }
+
+    /// The estimate at the time of the newest odometry (or of a measurement that is newer still). Before any odometry:
+    /// the origin at time 0.
+    pub fn estimate(&self) -> PoseEstimate {
+        let Some(history) = &self.history else {
+            return PoseEstimate {
+                stamp: Stamp::default(),
+                pose: Pose2::IDENTITY,
+                twist: Twist2::ZERO,
+                covariance: Matrix3::zeros(),
+            };
+        };
+        let (stamp, belief) = history.newest();
+        let twist = history.newest_odometry().twist;
+        PoseEstimate { stamp, pose: belief.pose, twist, covariance: belief.covariance }
+    }
+
+    /// `map_from_base` at a moment of the last seconds.
+    ///
+    /// # Errors
+    /// [`Correction::TooOld`], [`Correction::TooNew`] or [`Correction::NoOdometry`].
+    pub fn pose_at(&self, stamp: Stamp) -> Result<Pose2, Correction> {
+        self.find(stamp).map(|moment| moment.belief.pose)
+    }
+
+    /// Where the visual frame lies in the map, once there was a visual pose.
+    pub fn map_from_visual(&self) -> Option<Pose3> {
+        self.visual.map_from_visual()
+    }
+
+    fn find(&self, stamp: Stamp) -> Result<Moment, Correction> {
+        let history = self.history.as_ref().ok_or(Correction::NoOdometry)?;
+        history.find(stamp, self.config.most_ahead)
+    }
+
+    fn apply(&mut self, moment: &Moment, measurement: Measurement) -> Correction {
+        let (_, distance) = moment.belief.innovation(&measurement);
+        if distance > self.config.gate || distance.is_nan() {
+            return Correction::Gated { distance };
+        }
+        self.insert(moment, measurement);
+        Correction::Applied { distance }
+    }
+
+    /// Takes in a measurement far from the belief by doubting the belief as much as the two are apart.
+    fn believe(&mut self, moment: &Moment, measurement: Measurement) {
+        let (innovation, _) = moment.belief.innovation(&measurement);
+        // Ten times: nine tenths of the way and more are gone at once.
+        let doubt = innovation * innovation.transpose() * 10.0;
+        self.insert(moment, Measurement { doubt, ..measurement });
+    }
+
+    fn insert(&mut self, moment: &Moment, measurement: Measurement) {
+        if let Some(history) = &mut self.history {
+            history.insert(moment, measurement);
+        }
+    }
+}
+
+fn is_finite(matrix: &Matrix3<f64>) -> bool {
+    matrix.iter().all(|v| v.is_finite())
+}

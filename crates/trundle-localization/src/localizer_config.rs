@@ -1,0 +1,98 @@
+use nalgebra::{Matrix3, Vector3};
+use serde::{Deserialize, Serialize};
+use trundle_core::{Invalid, require_in};
+
+/// How far each source of the pose is trusted.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct LocalizerConfig {
+    /// Noise of a visual position beyond its own covariance (one sigma), m, 0.001 to 1. Default 0.02.
+    pub visual_position_sigma: f64,
+    /// Noise of a visual heading beyond its own covariance (one sigma), deg, 0.01 to 30. Default 0.6.
+    pub visual_heading_sigma_deg: f64,
+    /// A weak visual pose has this many times the sigma, 1 to 100. Default 3.
+    pub weak_factor: f64,
+    /// Noise of a scan match's position beyond its own covariance (one sigma), m, 0.001 to 1. Default 0.02.
+    pub scan_position_sigma: f64,
+    /// Noise of a scan match's heading beyond its own covariance (one sigma), deg, 0.01 to 30. Default 0.5.
+    pub scan_heading_sigma_deg: f64,
+    /// No number of corrections makes the position surer than this (one sigma), m, 0 to 1. Default 0.01: neighbouring
+    /// images err alike, so that their mean is no better than one of them.
+    pub least_position_sigma: f64,
+    /// No number of corrections makes the heading surer than this (one sigma), deg, 0 to 30. Default 0.3.
+    pub least_heading_sigma_deg: f64,
+    /// Measurements farther off than this are not believed, in sigmas (Mahalanobis distance), 1 to 100. Default 4: one
+    /// good measurement in 1000.
+    pub gate: f64,
+    /// After so many unbelieved visual poses in a row something must have happened, 2 to 1000. Default 8: half a second.
+    pub recover_after: usize,
+    /// Between two visual poses: a motion that differs this much from the wheels' is a jump, m, 0.01 to 10. Default 0.1:
+    /// three times what slipping wheels make of 1/15 s at 0.5 m/s.
+    pub jump_distance: f64,
+    /// Between two visual poses: a turn that differs this much from the wheels' is a jump, deg, 0.1 to 180. Default 6.
+    pub jump_turn_deg: f64,
+    /// Measurements may be this late, s, 0.1 to 60. Default 2.
+    pub history: f64,
+    /// Measurements may be this far ahead of the newest odometry, s, 0 to 1. Default 0.1.
+    pub most_ahead: f64,
+}
+
+impl Default for LocalizerConfig {
+    fn default() -> Self {
+        Self {
+            visual_position_sigma: 0.02,
+            visual_heading_sigma_deg: 0.6,
+            weak_factor: 3.0,
+            scan_position_sigma: 0.02,
+            scan_heading_sigma_deg: 0.5,
+            least_position_sigma: 0.01,
+            least_heading_sigma_deg: 0.3,
+            gate: 4.0,
+            recover_after: 8,
+            jump_distance: 0.1,
+            jump_turn_deg: 6.0,
+            history: 2.0,
+            most_ahead: 0.1,
+        }
+    }
+}
+
+impl LocalizerConfig {
+    /// Passes a valid configuration through.
+    ///
+    /// # Errors
+    /// When a number is out of the range that its field names.
+    pub fn validated(self) -> Result<Self, Invalid> {
+        require_in("visual_position_sigma", self.visual_position_sigma, "m", 0.001, 1.0)?;
+        require_in("visual_heading_sigma_deg", self.visual_heading_sigma_deg, "deg", 0.01, 30.0)?;
+        require_in("weak_factor", self.weak_factor, "", 1.0, 100.0)?;
+        require_in("scan_position_sigma", self.scan_position_sigma, "m", 0.001, 1.0)?;
+        require_in("scan_heading_sigma_deg", self.scan_heading_sigma_deg, "deg", 0.01, 30.0)?;
+        require_in("least_position_sigma", self.least_position_sigma, "m", 0.0, 1.0)?;
+        require_in("least_heading_sigma_deg", self.least_heading_sigma_deg, "deg", 0.0, 30.0)?;
+        require_in("gate", self.gate, "", 1.0, 100.0)?;
+        require_in("recover_after", self.recover_after as f64, "", 2.0, 1000.0)?;
+        require_in("jump_distance", self.jump_distance, "m", 0.01, 10.0)?;
+        require_in("jump_turn_deg", self.jump_turn_deg, "deg", 0.1, 180.0)?;
+        require_in("history", self.history, "s", 0.1, 60.0)?;
+        require_in("most_ahead", self.most_ahead, "s", 0.0, 1.0)?;
+        Ok(self)
+    }
+
+    pub(crate) fn visual_noise(&self) -> Matrix3<f64> {
+        variances(self.visual_position_sigma, self.visual_heading_sigma_deg)
+    }
+
+    pub(crate) fn scan_noise(&self) -> Matrix3<f64> {
+        variances(self.scan_position_sigma, self.scan_heading_sigma_deg)
+    }
+
+    pub(crate) fn least_variances(&self) -> Vector3<f64> {
+        variances(self.least_position_sigma, self.least_heading_sigma_deg).diagonal()
+    }
+}
+
+fn variances(position: f64, heading_deg: f64) -> Matrix3<f64> {
+    let heading = heading_deg.to_radians();
+    Matrix3::from_diagonal(&Vector3::new(position * position, position * position, heading * heading))
+}

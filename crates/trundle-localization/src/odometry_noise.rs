@@ -1,0 +1,42 @@
+use crate::OdometryConfig;
+use nalgebra::Matrix3;
+
+/// One small motion of the base, and how it was measured.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Step {
+    /// Forward, m.
+    pub(crate) way: f64,
+    /// Counter-clockwise, rad.
+    pub(crate) turn: f64,
+    /// Seconds.
+    pub(crate) dt: f64,
+    /// Whether the turn is the gyro's.
+    pub(crate) by_gyro: bool,
+    /// Metres that the wheels' rims and the gyro disagree by, when they slip; else 0.
+    pub(crate) slip: f64,
+}
+
+/// The covariance of a step as a right perturbation.
+pub(crate) fn of_step(config: &OdometryConfig, step: &Step) -> Matrix3<f64> {
+    let (way, turn) = (step.way.abs(), step.turn.abs());
+    let slip = config.slip_length * step.slip;
+    let heading = if step.by_gyro {
+        config.gyro_turn_noise.powi(2) * turn + config.gyro_time_noise.powi(2) * step.dt
+    } else {
+        // A slip of the wheels that nobody checks is part of these two constants.
+        config.wheel_turn_noise.powi(2) * turn + config.wheel_way_noise.powi(2) * way
+    };
+    Matrix3::from_diagonal(&nalgebra::Vector3::new(
+        config.way_noise.powi(2) * way + slip,
+        config.sideways_noise.powi(2) * way + slip,
+        heading,
+    ))
+}
+
+/// The covariance of an unknown motion of `gap` s.
+pub(crate) fn of_gap(config: &OdometryConfig, gap: f64) -> Matrix3<f64> {
+    /// Turn for each metre that the robot may have gone, rad.
+    const TURN: f64 = 3.0;
+    let way = (config.gap_speed * gap).powi(2);
+    Matrix3::from_diagonal(&nalgebra::Vector3::new(way, way, TURN * TURN * way))
+}

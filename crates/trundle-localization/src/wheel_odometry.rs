@@ -1,0 +1,220 @@
+use crate::{
+    OdometryConfig, WheelCounts, WheelReport,
+    gyro_bias::GyroBias,
+    odometry_noise::{Step, of_gap, of_step},
+    planar::carried,
+    turn_integral::TurnIntegral,
+};
+use nalgebra::Matrix3;
+use trundle_core::{
+    DifferentialDrive, GyroRate, Invalid, Odometry, Pose2, Stamp, Twist2, Vector3, WheelTicks,
+};
+
+/// Where the wheels and the gyro believe the robot is.
+///
+/// Problem: integrate encoder ticks to a pose. Between two readings the base drives an arc whose length is the mean of
+/// the two rims' ways and whose angle is the gyro's, less its bias, or the rims' difference over the wheelbase where
+/// there is no gyro. The arc is integrated exactly by the exponential map of SE(2). Counters wrap at 2^16; a difference
+/// is read as the shorter way round. While the wheels rest, so does the robot, and the gyro shows its bias. Cost: O(1).
+///
+/// A reading from the past, after a gap, or implying an impossible speed never makes the pose jump: see [`WheelReport`].
+#[derive(Debug, Clone)]
+pub struct WheelOdometry {
+    drive: DifferentialDrive,
+    config: OdometryConfig,
+    gyro: TurnIntegral,
+    bias: GyroBias,
+    last_rate: Option<GyroRate>,
+    last: Option<WheelTicks>,
+    suspect: Option<WheelTicks>,
+    resting_since: Option<Stamp>,
+    odometry: Odometry,
+    report: WheelReport,
+    counts: WheelCounts,
+}
+
+/// What the wheels did between two readings.
+#[derive(Debug, Clone, Copy)]
+struct RimMotion {
+    left: f64,
+    right: f64,
+    dt: f64,
+}
+
+impl WheelOdometry {
+    /// Odometry that starts at the origin of the odom frame.
+    ///
+    /// # Errors
+    /// When the drive or the configuration is out of range.
+    pub fn new(drive: DifferentialDrive, config: OdometryConfig) -> Result<Self, Invalid> {
+        let (drive, config) = (drive.validated()?, config.validated()?);
+        Ok(Self {
+            bias: GyroBias::new(&config),
+            drive,
+            config,
+            gyro: TurnIntegral::default(),
+            last_rate: None,
+            last: None,
+            suspect: None,
+            resting_since: None,
+            odometry: Odometry {
+                stamp: Stamp::default(),
+                pose: Pose2::IDENTITY,
+                twist: Twist2::ZERO,
+                covariance: Matrix3::zeros(),
+            },
+            report: WheelReport::default(),
+            counts: WheelCounts::default(),
+        })
+    }
+
+    /// Takes in a reading of the gyro, any number of them between two readings of the wheels.
+    pub fn step_gyro(&mut self, rate: &GyroRate) {
+        if !self.gyro.push(*rate, self.config.gyro_timeout) {
+            self.counts.gyro_refused += 1;
+            return;
+        }
+        let dt = self.last_rate.map_or(0.0, |last| rate.stamp - last.stamp);
+        self.bias.wander(&self.config, dt);
+        if self.at_rest(rate.stamp) && self.bias.explains(&self.config, rate.omega) {
+            self.bias.measure(&self.config, rate.omega);
+        }
+        self.last_rate = Some(*rate);
+    }
+
+    /// Takes in a reading of the wheels and returns the odometry after it; [`WheelOdometry::report`] says what became of
+    /// the reading. A reading that was not taken in leaves the pose as it was.
+    pub fn step_wheels(&mut self, ticks: &WheelTicks) -> Odometry {
+        self.report = match self.last {
+            None => self.start(ticks),
+            Some(last) if ticks.stamp <= last.stamp => {
+                WheelReport::TimeWentBack { by: last.stamp - ticks.stamp }
+            }
+            Some(last) => self.advance(&last, ticks),
+        };
+        self.counts.note(&self.report);
+        self.odometry
+    }
+
+    /// The odometry after the newest reading.
+    pub fn odometry(&self) -> &Odometry {
+        &self.odometry
+    }
+
+    /// What became of the newest reading of the wheels.
+    pub fn report(&self) -> WheelReport {
+        self.report
+    }
+
+    /// How often each kind of reading was met.
+    pub fn counts(&self) -> WheelCounts {
+        self.counts
+    }
+
+    /// The gyro's bias, rad/s, once it was measured at rest.
+    pub fn gyro_bias(&self) -> Option<f64> {
+        self.bias.is_measured().then(|| self.bias.value())
+    }
+
+    fn start(&mut self, ticks: &WheelTicks) -> WheelReport {
+        self.last = Some(*ticks);
+        self.odometry.stamp = ticks.stamp;
+        self.resting_since = None;
+        self.gyro.turn_until(ticks.stamp, self.config.gyro_timeout);
+        WheelReport::Started
+    }
+
+    fn advance(&mut self, last: &WheelTicks, ticks: &WheelTicks) -> WheelReport {
+        let rims = self.rim_motion(last, ticks);
+        if rims.dt > self.config.max_gap {
+            self.jump_over(ticks, rims.dt);
+            return WheelReport::Gap { length: rims.dt };
+        }
+        let speed = rims.left.abs().max(rims.right.abs()) / rims.dt;
+        if speed > self.config.max_speed {
+            return self.refuse(ticks, rims.dt, speed);
+        }
+        self.suspect = None;
+        self.last = Some(*ticks);
+        self.integrate(ticks.stamp, &rims)
+    }
+
+    fn rim_motion(&self, last: &WheelTicks, ticks: &WheelTicks) -> RimMotion {
+        let metres = |from: u16, to: u16| {
+            f64::from(to.wrapping_sub(from).cast_signed()) * self.drive.metres_per_tick()
+        };
+        RimMotion {
+            left: metres(last.left, ticks.left),
+            right: metres(last.right, ticks.right),
+            dt: ticks.stamp - last.stamp,
+        }
+    }
+
+    fn integrate(&mut self, stamp: Stamp, rims: &RimMotion) -> WheelReport {
+        let rests = rims.left == 0.0 && rims.right == 0.0;
+        self.resting_since = if rests { self.resting_since.or(Some(stamp)) } else { None };
+
+        let turn_by_wheels = (rims.right - rims.left) / self.drive.wheelbase;
+        let turn_by_gyro = self.turn_by_gyro(stamp, rims.dt);
+        let turn = match turn_by_gyro {
+            // The gyro's noise does not turn a robot whose wheels rest.
+            Some(turn) if rests && self.is_noise(turn / rims.dt) => 0.0,
+            Some(turn) => turn,
+            None => turn_by_wheels,
+        };
+        let slip_rate = turn_by_gyro.map_or(0.0, |_| (turn_by_wheels - turn) / rims.dt);
+        let slips = slip_rate.abs() > self.config.slip_rate;
+        let way = (rims.left + rims.right) / 2.0;
+        let slip = if slips { slip_rate.abs() * rims.dt * self.drive.wheelbase / 2.0 } else { 0.0 };
+        self.move_by(stamp, &Step { way, turn, dt: rims.dt, by_gyro: turn_by_gyro.is_some(), slip });
+        if slips { WheelReport::Slipping { rate: slip_rate } } else { WheelReport::Used }
+    }
+
+    fn move_by(&mut self, stamp: Stamp, step: &Step) {
+        let motion = Pose2::exp(Vector3::new(step.way, 0.0, step.turn));
+        let odometry = &mut self.odometry;
+        odometry.stamp = stamp;
+        odometry.pose = odometry.pose * motion;
+        odometry.twist = Twist2::new(step.way / step.dt, step.turn / step.dt);
+        odometry.covariance = carried(&odometry.covariance, &motion) + of_step(&self.config, step);
+    }
+
+    /// The gyro's turn over the last `dt` s, less its bias, rad, if it covers them.
+    fn turn_by_gyro(&mut self, stamp: Stamp, dt: f64) -> Option<f64> {
+        let (turn, covered) = self.gyro.turn_until(stamp, self.config.gyro_timeout)?;
+        ((covered - dt).abs() < 1e-6).then(|| turn - self.bias.value() * dt)
+    }
+
+    fn is_noise(&self, rate_without_bias: f64) -> bool {
+        self.bias.explains(&self.config, rate_without_bias + self.bias.value())
+    }
+
+    fn at_rest(&self, now: Stamp) -> bool {
+        self.resting_since.is_some_and(|since| now - since >= self.config.still_time)
+    }
+
+    /// A first reading at impossible counts is a broken one; a second one near it, and the counters were reset.
+    fn refuse(&mut self, ticks: &WheelTicks, dt: f64, speed: f64) -> WheelReport {
+        let confirmed = self.suspect.is_some_and(|suspect| {
+            let rims = self.rim_motion(&suspect, ticks);
+            rims.dt > 0.0 && rims.left.abs().max(rims.right.abs()) / rims.dt <= self.config.max_speed
+        });
+        if confirmed {
+            self.jump_over(ticks, dt);
+            return WheelReport::Restarted;
+        }
+        self.suspect = Some(*ticks);
+        WheelReport::TooFast { speed }
+    }
+
+    /// Goes on from `ticks` without knowing what happened in the `dt` s before.
+    fn jump_over(&mut self, ticks: &WheelTicks, dt: f64) {
+        self.last = Some(*ticks);
+        self.suspect = None;
+        self.resting_since = None;
+        self.gyro.turn_until(ticks.stamp, self.config.gyro_timeout);
+        self.odometry.stamp = ticks.stamp;
+        self.odometry.twist = Twist2::ZERO;
+        self.odometry.covariance += of_gap(&self.config, dt);
+    }
+}

@@ -1,0 +1,234 @@
+use nalgebra::{Matrix3, Matrix6, UnitQuaternion};
+use proptest::prelude::*;
+use trundle_core::{Odometry, Pose2, Pose3, Stamp, Twist2, Vector3, wrap_angle};
+use trundle_localization::{
+    Correction, Localizer, LocalizerConfig, Prediction, VisualPose, VisualQuality, planar_covariance,
+};
+
+fn at(ms: i64) -> Stamp {
+    Stamp::from_nanos(ms * 1_000_000)
+}
+
+/// A camera that looks ahead and 8 deg down.
+fn base_from_camera() -> Pose3 {
+    let optical = Pose3::from_matrix(
+        Matrix3::new(0.0, 0.0, 1.0, -1.0, 0.0, 0.0, 0.0, -1.0, 0.0),
+        Vector3::new(0.05, 0.0, 0.45),
+    );
+    let tilt = UnitQuaternion::from_euler_angles(0.0, 8.0_f64.to_radians(), 0.0);
+    Pose3::new(tilt * optical.rotation, optical.translation)
+}
+
+const TWIST: Twist2 = Twist2::new(0.4, 0.3);
+
+/// Odometry on a circle; its covariance grows with time.
+fn odometry(ms: i64) -> Odometry {
+    let t = ms as f64 * 1e-3;
+    let covariance = Matrix3::from_diagonal(&Vector3::new(4e-4, 1e-4, 1e-4)) * t;
+    Odometry { stamp: at(ms), pose: Pose2::IDENTITY.advance(TWIST, t), twist: TWIST, covariance }
+}
+
+fn localizer() -> Localizer {
+    Localizer::new(LocalizerConfig::default(), base_from_camera()).unwrap()
+}
+
+fn driven(from: i64, to: i64, localizer: &mut Localizer) {
+    for ms in (from..=to).step_by(20) {
+        localizer.predict(&odometry(ms));
+    }
+}
+
+/// What a perfect visual tracker says of a base pose: in the frame of its first camera.
+fn visual(ms: i64, map_from_base: Pose2) -> VisualPose {
+    let visual_from_map = base_from_camera().inverse();
+    VisualPose {
+        stamp: at(ms),
+        visual_from_camera: visual_from_map * Pose3::from_pose2(map_from_base) * base_from_camera(),
+        covariance: Matrix6::zeros(),
+        quality: VisualQuality::Ok,
+    }
+}
+
+fn gap(a: Pose2, b: Pose2) -> f64 {
+    a.distance(&b) + wrap_angle(a.theta - b.theta).abs()
+}
+
+#[test]
+fn wheels_alone_are_enough() {
+    let mut localizer = localizer();
+    assert_eq!(localizer.estimate().pose, Pose2::IDENTITY);
+    driven(0, 4000, &mut localizer);
+    let estimate = localizer.estimate();
+    assert!(gap(estimate.pose, odometry(4000).pose) < 1e-9);
+    assert_eq!((estimate.stamp, estimate.twist), (at(4000), TWIST));
+    assert!((estimate.covariance - odometry(4000).covariance).norm() < 1e-6);
+    assert_eq!(localizer.map_from_visual(), None);
+}
+
+#[test]
+fn the_first_visual_pose_lays_the_visual_frame_and_changes_nothing() {
+    let mut localizer = localizer();
+    driven(0, 400, &mut localizer);
+    let before = localizer.estimate();
+    // The tracker started late: its first pose is the identity, though the base has moved.
+    let first = VisualPose { visual_from_camera: Pose3::identity(), ..visual(400, Pose2::IDENTITY) };
+    assert_eq!(localizer.correct_visual(&first), Correction::Anchored);
+    assert_eq!(localizer.estimate(), before);
+    let map_from_base = localizer.map_from_visual().unwrap() * base_from_camera().inverse();
+    assert!(gap(map_from_base.to_pose2(), before.pose) < 1e-9);
+    assert!(map_from_base.translation.z.abs() < 1e-12);
+}
+
+#[test]
+fn corrections_pull_towards_the_measurement_and_the_floor_holds() {
+    let mut localizer = localizer();
+    driven(0, 1000, &mut localizer);
+    localizer.correct_visual(&visual(0, Pose2::IDENTITY));
+    let truth = odometry(1000).pose * Pose2::new(0.03, -0.02, 0.01);
+    for _ in 0..60 {
+        assert!(localizer.correct_visual(&visual(1000, truth)).is_applied());
+    }
+    let estimate = localizer.estimate();
+    assert!(gap(estimate.pose, truth) < 2e-3, "{:?} {truth:?}", estimate.pose);
+    assert!(estimate.covariance[(0, 0)].sqrt() >= 0.01 - 1e-12, "sixty images are no better than one");
+    assert!(estimate.covariance[(2, 2)].sqrt() >= 0.3_f64.to_radians() - 1e-12);
+}
+
+#[test]
+fn a_weak_pose_pulls_less_and_so_does_one_that_floats() {
+    let pulled = |change: fn(&mut VisualPose)| {
+        let mut localizer = localizer();
+        driven(0, 1000, &mut localizer);
+        localizer.correct_visual(&visual(0, Pose2::IDENTITY));
+        let mut pose = visual(1000, odometry(1000).pose * Pose2::new(0.03, 0.0, 0.0));
+        change(&mut pose);
+        assert!(localizer.correct_visual(&pose).is_applied());
+        gap(localizer.estimate().pose, odometry(1000).pose)
+    };
+    let usual = pulled(|_| {});
+    let weak = pulled(|pose| pose.quality = VisualQuality::Weak);
+    let unsure = pulled(|pose| pose.covariance = Matrix6::identity() * 0.01);
+    let floating = pulled(|pose| pose.visual_from_camera.translation.y -= 0.2);
+    assert!(usual > 0.01 && weak < 0.5 * usual && unsure < 0.5 * usual && floating < 0.5 * usual);
+}
+
+#[test]
+fn what_cannot_be_is_refused_with_the_reason() {
+    let mut localizer = localizer();
+    let here = visual(0, Pose2::IDENTITY);
+    assert_eq!(localizer.correct_visual(&here), Correction::NoOdometry);
+    driven(0, 4000, &mut localizer);
+    assert!(matches!(localizer.correct_visual(&here), Correction::TooOld { by } if by > 1.5));
+    assert_eq!(localizer.correct_visual(&visual(4000, odometry(4000).pose)), Correction::Anchored);
+    assert!(matches!(localizer.correct_visual(&visual(4300, Pose2::IDENTITY)), Correction::TooNew { .. }));
+    let nowhere = VisualPose { covariance: Matrix6::repeat(f64::NAN), ..here };
+    assert_eq!(localizer.correct_visual(&nowhere), Correction::NotFinite);
+
+    let before = localizer.estimate();
+    let far = odometry(4000).pose * Pose2::new(0.0, 0.5, 0.0);
+    let refused = localizer.correct_scan(at(4000), far, &(Matrix3::identity() * 1e-4));
+    assert!(matches!(refused, Correction::Gated { distance } if distance > 4.0));
+    assert_eq!(localizer.estimate(), before);
+
+    assert!(matches!(localizer.predict(&odometry(3000)), Prediction::TimeWentBack { by } if by == 1.0));
+    assert_eq!(localizer.predict(&odometry(4000)), Prediction::NothingNew);
+    let broken = Odometry { covariance: Matrix3::repeat(f64::NAN), ..odometry(4020) };
+    assert_eq!(localizer.predict(&broken), Prediction::NotFinite);
+    assert_eq!(localizer.estimate(), before);
+}
+
+proptest! {
+    #[test]
+    fn late_is_as_good_as_in_time(
+        offsets in prop::collection::vec((-0.03..0.03, -0.03..0.03, -0.01..0.01), 6),
+        delays in prop::collection::vec(0..20_i64, 6),
+    ) {
+        let measurement = |i: usize| {
+            let (x, y, theta) = offsets[i];
+            let ms = 200 + 200 * i as i64;
+            (ms, odometry(ms).pose * Pose2::new(x, y, theta))
+        };
+        let noise = Matrix3::identity() * 1e-4;
+        let run = |delay: &dyn Fn(usize) -> i64| {
+            let mut localizer = localizer();
+            for step in 0..=100 {
+                localizer.predict(&odometry(step * 20));
+                for i in 0..6 {
+                    let (ms, pose) = measurement(i);
+                    if step * 20 == ms + delay(i) * 20 {
+                        assert!(localizer.correct_scan(at(ms), pose, &noise).is_applied());
+                    }
+                }
+            }
+            localizer.estimate()
+        };
+        let in_time = run(&|_| 0);
+        let late = run(&|i| delays[i]);
+        prop_assert!(gap(in_time.pose, late.pose) < 1e-9);
+        prop_assert!((in_time.covariance - late.covariance).norm() < 1e-12);
+    }
+
+    #[test]
+    fn a_measurement_between_two_readings_is_applied_where_it_belongs(ms in 1..999_i64) {
+        let truth = |ms: i64| odometry(ms).pose;
+        let mut localizer = localizer();
+        driven(0, 1000, &mut localizer);
+        prop_assert!(gap(localizer.pose_at(at(ms)).unwrap(), truth(ms)) < 1e-9);
+        localizer.correct_scan(at(ms), truth(ms), &(Matrix3::identity() * 1e-4));
+        prop_assert!(gap(localizer.estimate().pose, truth(1000)) < 1e-9);
+    }
+}
+
+#[test]
+fn a_measurement_may_be_ahead_of_the_odometry() {
+    let mut localizer = localizer();
+    driven(0, 1000, &mut localizer);
+    assert!(localizer.correct_scan(at(1013), odometry(1013).pose, &Matrix3::zeros()).is_applied());
+    assert_eq!(localizer.estimate().stamp, at(1013));
+    driven(1020, 2000, &mut localizer);
+    assert!(gap(localizer.estimate().pose, odometry(2000).pose) < 1e-9);
+}
+
+#[test]
+fn a_visual_frame_that_jumps_is_laid_anew_and_the_estimate_stays() {
+    let mut localizer = localizer();
+    let mut corrections = Vec::new();
+    for ms in (0..=4000).step_by(20) {
+        localizer.predict(&odometry(ms));
+        if ms % 60 == 0 {
+            let shift = if ms < 2000 { Pose2::IDENTITY } else { Pose2::new(0.4, 0.3, 0.1) };
+            corrections.push(localizer.correct_visual(&visual(ms, shift * odometry(ms).pose)));
+        }
+    }
+    assert_eq!(corrections.iter().filter(|c| matches!(c, Correction::Gated { .. })).count(), 7);
+    assert_eq!(corrections.iter().filter(|c| **c == Correction::Reanchored).count(), 1);
+    assert!(corrections.last().unwrap().is_applied());
+    assert!(gap(localizer.estimate().pose, odometry(4000).pose) < 1e-6);
+}
+
+#[test]
+fn wheels_that_spin_against_a_wall_do_not_carry_the_estimate_away() {
+    let mut localizer = localizer();
+    let stuck = odometry(2000).pose;
+    let mut recovered = 0;
+    for ms in (0..=8000).step_by(20) {
+        localizer.predict(&odometry(ms));
+        let truth = if ms < 2000 { odometry(ms).pose } else { stuck };
+        if ms % 60 == 0 {
+            let correction = localizer.correct_visual(&visual(ms, truth));
+            recovered += usize::from(matches!(correction, Correction::Recovered { .. }));
+            assert_ne!(correction, Correction::Reanchored);
+        }
+        let off = localizer.estimate().pose.distance(&truth);
+        assert!(off < 0.45, "{ms} ms: {off} m off");
+    }
+    assert!(localizer.estimate().pose.distance(&stuck) < 0.45, "{recovered} recoveries");
+}
+
+#[test]
+fn the_cameras_covariance_becomes_the_bases() {
+    let covariance = planar_covariance(&(Matrix6::identity() * 1e-4), &base_from_camera());
+    assert!((covariance[(2, 2)] - 1e-4).abs() < 1e-12);
+    // The lever of 0.45 m adds to the position what the camera's rotation is unsure of.
+    assert!(covariance[(0, 0)] > 1.15e-4 && covariance[(0, 0)] < 1.25e-4, "{covariance}");
+}

@@ -1,0 +1,5 @@
+//! One binary of tests on simulated drives.
+
+mod consistency;
+mod localizer;
+mod wheels;

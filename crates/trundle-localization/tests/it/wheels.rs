@@ -1,0 +1,216 @@
+use proptest::prelude::*;
+use std::f64::consts::{FRAC_PI_2, TAU};
+use trundle_core::{DifferentialDrive, GyroRate, Odometry, Stamp, Twist2, WheelTicks, wrap_angle};
+use trundle_localization::{OdometryConfig, WheelOdometry, WheelReport};
+
+const DT: f64 = 0.02;
+
+/// A Kobuki whose counters are rounded as the real ones are.
+struct Drive {
+    odometry: WheelOdometry,
+    nanos: i64,
+    left: f64,
+    right: f64,
+}
+
+impl Drive {
+    fn new() -> Self {
+        Self::from_ticks(0.0, 0.0)
+    }
+
+    fn from_ticks(left: f64, right: f64) -> Self {
+        let odometry = WheelOdometry::new(DifferentialDrive::KOBUKI, OdometryConfig::default()).unwrap();
+        let mut drive = Self { odometry, nanos: 1_000_000_000, left, right };
+        drive.read();
+        drive
+    }
+
+    fn stamp(&self) -> Stamp {
+        Stamp::from_nanos(self.nanos)
+    }
+
+    fn ticks(&self) -> WheelTicks {
+        let counter = |ticks: f64| (ticks.round() as i64).rem_euclid(65_536) as u16;
+        WheelTicks { stamp: self.stamp(), left: counter(self.left), right: counter(self.right) }
+    }
+
+    fn read(&mut self) -> Odometry {
+        let ticks = self.ticks();
+        self.odometry.step_wheels(&ticks)
+    }
+
+    fn roll(&mut self, twist: Twist2) {
+        let (left, right) = DifferentialDrive::KOBUKI.wheel_speeds(twist);
+        self.nanos += 20_000_000;
+        self.left += left * DT / DifferentialDrive::KOBUKI.metres_per_tick();
+        self.right += right * DT / DifferentialDrive::KOBUKI.metres_per_tick();
+    }
+
+    fn drive(&mut self, twist: Twist2, steps: usize) {
+        for _ in 0..steps {
+            self.roll(twist);
+            self.read();
+        }
+    }
+
+    fn drive_with_gyro(&mut self, twist: Twist2, gyro: f64, steps: usize) {
+        for _ in 0..steps {
+            self.roll(twist);
+            self.odometry.step_gyro(&GyroRate { stamp: self.stamp(), omega: gyro });
+            self.read();
+        }
+    }
+}
+
+#[test]
+fn a_circle_closes() {
+    let mut drive = Drive::new();
+    drive.drive(Twist2::new(0.5, 0.5 * TAU / 10.0), 1000);
+    let pose = drive.odometry.odometry().pose;
+    assert!(pose.position().norm() < 1e-3 && wrap_angle(pose.theta).abs() < 1e-3, "{pose:?}");
+    assert_eq!(drive.odometry.counts().used, 1000);
+}
+
+#[test]
+fn a_square_has_corners_where_they_are() {
+    let mut drive = Drive::new();
+    for corner in [(1.0, 0.0), (1.0, 1.0), (0.0, 1.0), (0.0, 0.0)] {
+        drive.drive(Twist2::new(0.5, 0.0), 100);
+        let pose = drive.odometry.odometry().pose;
+        assert!((pose.x - corner.0).abs() < 2e-3 && (pose.y - corner.1).abs() < 2e-3, "{pose:?} {corner:?}");
+        drive.drive(Twist2::new(0.0, FRAC_PI_2), 50);
+    }
+}
+
+proptest! {
+    #[test]
+    fn where_the_counters_start_does_not_matter(left: u16, right: u16, v in -0.7..0.7_f64, omega in -2.0..2.0_f64) {
+        let mut here = Drive::new();
+        let mut there = Drive::from_ticks(f64::from(left), f64::from(right));
+        here.drive(Twist2::new(v, omega), 300);
+        there.drive(Twist2::new(v, omega), 300);
+        prop_assert_eq!(here.odometry.odometry(), there.odometry.odometry());
+    }
+
+    #[test]
+    fn covariance_is_positive_and_grows(v in -0.7..0.7_f64, omega in -2.0..2.0_f64) {
+        let mut drive = Drive::new();
+        let mut before = 0.0;
+        for _ in 0..20 {
+            drive.drive(Twist2::new(v, omega), 10);
+            let covariance = drive.odometry.odometry().covariance;
+            let eigenvalues = covariance.symmetric_eigenvalues();
+            prop_assert!(eigenvalues.min() >= -1e-15, "{}", covariance);
+            prop_assert!(covariance.determinant() >= before);
+            before = covariance.determinant();
+        }
+    }
+}
+
+#[test]
+fn a_metre_costs_the_documented_sigmas() {
+    let mut drive = Drive::new();
+    drive.drive(Twist2::new(0.5, 0.0), 100);
+    let covariance = drive.odometry.odometry().covariance;
+    assert!((covariance[(0, 0)].sqrt() - 0.02).abs() < 1e-4, "{covariance}");
+    assert!((covariance[(2, 2)].sqrt() - 0.02).abs() < 1e-4, "{covariance}");
+    // Across: sliding, and the heading's random walk carried along: 0.005^2 + 0.02^2 / 3.
+    assert!((covariance[(1, 1)] - (0.005_f64.powi(2) + 0.02_f64.powi(2) / 3.0)).abs() < 4e-6, "{covariance}");
+}
+
+#[test]
+fn the_gyro_steers_less_its_bias_which_it_shows_at_rest() {
+    let mut drive = Drive::new();
+    drive.drive_with_gyro(Twist2::ZERO, 0.03, 200);
+    assert!((drive.odometry.gyro_bias().unwrap() - 0.03).abs() < 1e-3);
+    assert_eq!(drive.odometry.odometry().pose.theta, 0.0, "noise does not turn a robot at rest");
+    // Wheels that believe in 5 % more turn than there is.
+    drive.drive_with_gyro(Twist2::new(0.2, 1.05), 1.03, 100);
+    let theta = drive.odometry.odometry().pose.theta;
+    assert!((theta - 2.0).abs() < 0.03, "{theta}");
+    assert_eq!(drive.odometry.report(), WheelReport::Used);
+    assert!((drive.odometry.odometry().twist.omega - 1.0).abs() < 0.01);
+}
+
+#[test]
+fn without_a_gyro_for_a_while_the_wheels_steer() {
+    let mut drive = Drive::new();
+    drive.drive_with_gyro(Twist2::ZERO, 0.0, 50);
+    drive.drive(Twist2::new(0.0, 1.0), 50);
+    drive.drive_with_gyro(Twist2::new(0.0, 1.0), 1.0, 50);
+    let theta = drive.odometry.odometry().pose.theta;
+    assert!((theta - 2.0).abs() < 0.05, "{theta}");
+}
+
+#[test]
+fn slip_is_told_and_widens_the_covariance() {
+    let (mut gripping, mut slipping) = (Drive::new(), Drive::new());
+    gripping.drive_with_gyro(Twist2::new(0.3, 0.0), 0.0, 100);
+    slipping.drive_with_gyro(Twist2::new(0.3, 0.0), 0.0, 50);
+    // The right wheel spins on a cable: the wheels say turn, the gyro says straight.
+    slipping.drive_with_gyro(Twist2::new(0.3, 0.8), 0.0, 50);
+    assert!(
+        matches!(slipping.odometry.report(), WheelReport::Slipping { rate } if (rate - 0.8).abs() < 0.03)
+    );
+    assert_eq!(slipping.odometry.counts().slipping, 50);
+    assert_eq!(gripping.odometry.counts().slipping, 0);
+    assert!(slipping.odometry.odometry().pose.theta.abs() < 1e-3);
+    let sigma = |drive: &Drive| drive.odometry.odometry().covariance[(0, 0)].sqrt();
+    assert!(sigma(&slipping) > 4.0 * sigma(&gripping), "{} {}", sigma(&slipping), sigma(&gripping));
+}
+
+#[test]
+fn time_that_goes_back_is_told_and_changes_nothing() {
+    let mut drive = Drive::new();
+    drive.drive(Twist2::new(0.5, 0.1), 50);
+    let before = *drive.odometry.odometry();
+    let old = WheelTicks { stamp: before.stamp.after(-0.5), left: 1, right: 2 };
+    assert_eq!(drive.odometry.step_wheels(&old), before);
+    assert!(matches!(drive.odometry.report(), WheelReport::TimeWentBack { by } if (by - 0.5).abs() < 1e-9));
+    assert_eq!(drive.odometry.step_wheels(&drive.ticks()), before, "the same reading twice");
+    assert_eq!(drive.odometry.counts().time_went_back, 2);
+}
+
+#[test]
+fn a_gap_is_told_and_widens_the_covariance_but_never_jumps() {
+    let mut drive = Drive::new();
+    drive.drive(Twist2::new(0.5, 0.0), 50);
+    let before = *drive.odometry.odometry();
+    for _ in 0..100 {
+        drive.roll(Twist2::new(0.5, 0.0));
+    }
+    let after = drive.read();
+    assert!(matches!(drive.odometry.report(), WheelReport::Gap { length } if (length - 2.0).abs() < 1e-9));
+    assert_eq!((after.pose, after.twist), (before.pose, Twist2::ZERO));
+    assert!(after.covariance[(0, 0)].sqrt() > 0.5);
+    drive.drive(Twist2::new(0.5, 0.0), 50);
+    assert!((drive.odometry.odometry().pose.x - 1.0).abs() < 1e-3);
+}
+
+#[test]
+fn a_broken_reading_is_refused_and_a_reset_counter_is_found() {
+    let mut drive = Drive::new();
+    drive.drive(Twist2::new(0.5, 0.0), 50);
+    let before = *drive.odometry.odometry();
+
+    drive.roll(Twist2::new(0.5, 0.0));
+    let broken = WheelTicks { left: 30_000, ..drive.ticks() };
+    assert_eq!(drive.odometry.step_wheels(&broken), before);
+    assert!(matches!(drive.odometry.report(), WheelReport::TooFast { speed } if speed > 2.0));
+    drive.drive(Twist2::new(0.5, 0.0), 49);
+    assert!((drive.odometry.odometry().pose.x - 1.0).abs() < 1e-3, "one broken reading loses no way");
+    assert_eq!(drive.odometry.counts().too_fast, 1);
+
+    (drive.left, drive.right) = (20_000.0, 20_000.0);
+    drive.drive(Twist2::new(0.5, 0.0), 2);
+    assert_eq!(drive.odometry.report(), WheelReport::Restarted);
+    drive.drive(Twist2::new(0.5, 0.0), 50);
+    assert!((drive.odometry.odometry().pose.x - 1.5).abs() < 1e-3);
+    assert_eq!((drive.odometry.counts().too_fast, drive.odometry.counts().restarts), (2, 1));
+}
+
+#[test]
+fn bad_configurations_are_refused_by_name() {
+    let config = OdometryConfig { max_gap: f64::NAN, ..OdometryConfig::default() };
+    assert_eq!(WheelOdometry::new(DifferentialDrive::KOBUKI, config).unwrap_err().field, "max_gap");
+}

@@ -1,0 +1,73 @@
+use serde::{Deserialize, Serialize};
+use trundle_core::{Invalid, require_in};
+
+/// What of a depth image becomes an obstacle, and what proves that there is none.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct DepthScanConfig {
+    /// Lower edge of the height band, m above the floor, 0 to 1. What is lower can be driven over. Default 0.05.
+    pub band_low: f64,
+    /// Upper edge of the height band, m above the floor, above `band_low`, to 5. What is higher can be driven under.
+    /// Default 0.55: a Kobuki with its camera.
+    pub band_high: f64,
+    /// Least depth believed, m, 0.05 to 5. Default 0.3; the Kinect V2 itself says nothing below 0.5.
+    pub min_depth: f64,
+    /// Greatest depth believed, m, above `min_depth`, to 100. Default 8: the Kinect V2's \[Li18\].
+    pub max_depth: f64,
+    /// Greatest range of a beam over the floor, m, 0.5 to 100. Default 6: beyond it a pixel is wider than a chair leg.
+    pub max_range: f64,
+    /// Depth noise (one sigma) at the camera, m, 0 to 0.1. Default 0.003.
+    pub noise_base: f64,
+    /// Growth of the depth noise with depth squared, m / m^2, 0 to 0.1. Default 0.0015: about the Kinects' (0.0019
+    /// for the first, Khoshelham and Elberink 2012; less for the second).
+    pub noise_growth: f64,
+    /// How many sigmas of noise are kept between the floor and the lowest obstacle, 0 to 10. Default 3.
+    pub floor_sigmas: f64,
+    /// How wrong the camera's tilt may be before the floor becomes an obstacle, deg, 0 to 10. Default 1: a soft tyre,
+    /// a hard stop.
+    pub tilt_error_deg: f64,
+    /// Of a pixel's 8 neighbours, how many must be about as deep for it to be an obstacle, 0 to 8. Default 3: a line of
+    /// flying pixels along an edge, one pixel wide, has two.
+    pub hit_support_px: u8,
+    /// The same for a pixel to prove free space, 0 to 8. Default 2: of a grazing floor only the pixels of one row agree.
+    pub free_support_px: u8,
+}
+
+impl Default for DepthScanConfig {
+    fn default() -> Self {
+        Self {
+            band_low: 0.05,
+            band_high: 0.55,
+            min_depth: 0.3,
+            max_depth: 8.0,
+            max_range: 6.0,
+            noise_base: 0.003,
+            noise_growth: 0.0015,
+            floor_sigmas: 3.0,
+            tilt_error_deg: 1.0,
+            hit_support_px: 3,
+            free_support_px: 2,
+        }
+    }
+}
+
+impl DepthScanConfig {
+    /// Passes a valid configuration through.
+    ///
+    /// # Errors
+    /// When a number is out of the range that its field names.
+    pub fn validated(self) -> Result<Self, Invalid> {
+        require_in("band_low", self.band_low, "m", 0.0, 1.0)?;
+        require_in("band_high", self.band_high, "m", self.band_low + 0.01, 5.0)?;
+        require_in("min_depth", self.min_depth, "m", 0.05, 5.0)?;
+        require_in("max_depth", self.max_depth, "m", self.min_depth + 0.01, 100.0)?;
+        require_in("max_range", self.max_range, "m", 0.5, 100.0)?;
+        require_in("noise_base", self.noise_base, "m", 0.0, 0.1)?;
+        require_in("noise_growth", self.noise_growth, "m/m^2", 0.0, 0.1)?;
+        require_in("floor_sigmas", self.floor_sigmas, "", 0.0, 10.0)?;
+        require_in("tilt_error_deg", self.tilt_error_deg, "deg", 0.0, 10.0)?;
+        require_in("hit_support_px", f64::from(self.hit_support_px), "px", 0.0, 8.0)?;
+        require_in("free_support_px", f64::from(self.free_support_px), "px", 0.0, 8.0)?;
+        Ok(self)
+    }
+}

@@ -1,0 +1,68 @@
+use trundle_core::{PinholeCamera, Pose3, Vector2, Vector3, wrap_angle};
+
+/// Where a pixel's ray goes for each metre of depth.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct PixelRay {
+    /// Way over the floor, m for each m of depth.
+    pub(super) run: f32,
+    /// Climb, m for each m of depth.
+    pub(super) rise: f32,
+    /// The beam of the scan that it belongs to: its bearing does not depend on depth.
+    pub(super) beam: u32,
+}
+
+/// The rays of all pixels, row by row, and the fan of beams that they fall into.
+#[derive(Debug, Clone)]
+pub(super) struct PixelRays {
+    pub(super) rays: Vec<PixelRay>,
+    pub(super) beams: usize,
+    /// Bearing of the middle of beam 0, base frame, rad.
+    pub(super) angle_min: f64,
+    /// Between neighbouring beams, rad.
+    pub(super) angle_increment: f64,
+}
+
+/// Coarsest beam, rad: for a camera that looks straight down, whose pixels have no bearing of their own.
+const COARSEST_BEAM: f64 = 0.035;
+
+impl PixelRays {
+    /// The rays of `camera` (its lens distortion undone) at `base_from_camera`.
+    pub(super) fn new(camera: &PinholeCamera, base_from_camera: &Pose3) -> Self {
+        let forward = forward_bearing(base_from_camera);
+        let direction = |x: f64, y: f64| {
+            let pixel = camera.undistort(Vector2::new(x, y));
+            base_from_camera.rotate(camera.unproject(pixel, 1.0))
+        };
+        let bearing = |d: &Vector3| wrap_angle(d.y.atan2(d.x) - forward);
+
+        let (width, height) = (camera.width(), camera.height());
+        let directions: Vec<Vector3> =
+            (0..width * height).map(|i| direction((i % width) as f64, (i / width) as f64)).collect();
+        let fan = directions.iter().map(&bearing);
+        let (right, left) = fan.fold((f64::MAX, f64::MIN), |(lo, hi), b| (lo.min(b), hi.max(b)));
+
+        let (cx, cy) = (camera.cx(), camera.cy());
+        let centre = bearing(&direction(cx, cy));
+        let step = |d: Vector3| wrap_angle(bearing(&d) - centre).abs();
+        let widest =
+            step(direction(cx + 1.0, cy)).max(step(direction(cx, cy + 1.0))).clamp(1e-5, COARSEST_BEAM);
+        let beams = (((left - right) / widest).floor() as usize).max(1);
+        let angle_increment = ((left - right) / beams as f64).max(1e-5);
+
+        let ray = |d: &Vector3| PixelRay {
+            run: d.xy().norm() as f32,
+            rise: d.z as f32,
+            beam: (((bearing(d) - right) / angle_increment) as usize).min(beams - 1) as u32,
+        };
+        let rays = directions.iter().map(ray).collect();
+        Self { rays, beams, angle_min: forward + right + angle_increment / 2.0, angle_increment }
+    }
+}
+
+/// The bearing in which the camera looks, base frame, rad; when it looks straight up or down, that of the image's top.
+fn forward_bearing(base_from_camera: &Pose3) -> f64 {
+    let axis = base_from_camera.rotate(Vector3::z());
+    let top = base_from_camera.rotate(-Vector3::y());
+    let along = if axis.xy().norm() > 1e-3 { axis } else { top };
+    along.y.atan2(along.x)
+}

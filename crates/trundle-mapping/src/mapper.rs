@@ -1,0 +1,249 @@
+use crate::{
+    GridCell, LogOddsGrid, MapperConfig, live_grid::LiveGrid, mapper_config::probability,
+    scan_cells::ScanCells,
+};
+use trundle_core::{Cell, Invalid, OccupancyGrid, Pose2, Scan, Vector2};
+
+/// Draws scans taken at known poses into a log-odds occupancy grid.
+///
+/// Problem: which cells of the floor are occupied, given noisy scans and trusted poses? Each cell is a binary variable
+/// of its own, and every scan adds its log-odds (Moravec and Elfes 1985; Thrun, Probabilistic Robotics, ch. 9): a hit
+/// raises its cell, beams lower the cells that they pass, each cell at most once a scan. Cost: one step for each cell
+/// that a beam passes; no work grows with the length of the run, but for a re-layout of the published grid when the map
+/// outgrows it.
+///
+/// | symbol | here | unit |
+/// |---|---|---|
+/// | l(occupied given z) | `hit` | log-odds |
+/// | l(free given z) | `-free` | log-odds |
+/// | l_min, l_max | `-clamp_low`, `clamp_high` | log-odds |
+#[derive(Debug, Clone)]
+pub struct GridMapper {
+    config: MapperConfig,
+    evidence: LogOddsGrid,
+    live: LiveGrid,
+    cells: ScanCells,
+}
+
+/// What one scan did to the map.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Insertion {
+    /// Cells with hits.
+    pub hits: usize,
+    /// Cells passed freely.
+    pub frees: usize,
+    /// Beams that reach out of the map's greatest extent, or all of them when the pose is not finite.
+    pub ignored_beams: usize,
+}
+
+impl GridMapper {
+    /// An empty map about the map frame's origin.
+    ///
+    /// # Errors
+    /// When the configuration is out of range.
+    pub fn new(config: MapperConfig) -> Result<Self, Invalid> {
+        let config = config.validated()?;
+        let mut evidence = LogOddsGrid::default();
+        evidence.reach(GridCell { x: -1, y: -1 });
+        evidence.reach(GridCell { x: 0, y: 0 });
+        Ok(Self { live: LiveGrid::new(&config, &evidence), evidence, cells: ScanCells::default(), config })
+    }
+
+    /// Draws `scan`, taken with the base at `map_from_base`.
+    pub fn insert(&mut self, map_from_base: Pose2, scan: &Scan) -> Insertion {
+        let mut cells = std::mem::take(&mut self.cells);
+        cells.rasterise(&self.config, map_from_base, scan);
+        if let Some((low, high)) = cells.reach() {
+            self.grow(low, high);
+        }
+        self.draw(&cells);
+        let (hits, frees) = (cells.hits.len(), cells.frees.len());
+        let ignored_beams = cells.ignored_beams;
+        self.cells = cells;
+        Insertion { hits, frees, ignored_beams }
+    }
+
+    /// Marks a disc of `radius` m about a pose as free for certain: the robot stands there.
+    pub fn mark_free_disc(&mut self, map_from_base: Pose2, radius: f64) {
+        let limit = self.config.half_extent - radius;
+        if !(radius > 0.0 && map_from_base.x.abs() <= limit && map_from_base.y.abs() <= limit) {
+            return;
+        }
+        let center = map_from_base.position() / self.config.resolution;
+        let reach = Vector2::repeat(radius / self.config.resolution);
+        let (low, high) = (GridCell::containing(center - reach), GridCell::containing(center + reach));
+        self.grow(low, high);
+        for y in low.y..=high.y {
+            for x in low.x..=high.x {
+                let cell = GridCell { x, y };
+                if (cell.center_cells() - center).norm() <= reach.x {
+                    self.evidence.entry(cell).log_odds = -self.config.clamp_low as f32;
+                    self.live.show(cell, -self.config.clamp_low as f32);
+                }
+            }
+        }
+    }
+
+    /// The hook for corrections: forgets the map and draws it anew from scans at corrected poses.
+    pub fn redraw<'a>(&mut self, scans: impl IntoIterator<Item = (Pose2, &'a Scan)>) {
+        let (low, (cols, rows)) = self.evidence.bounds();
+        self.evidence = LogOddsGrid::default();
+        self.evidence.reach(low);
+        self.evidence.reach(GridCell { x: low.x + cols as i32 - 1, y: low.y + rows as i32 - 1 });
+        self.live = LiveGrid::new(&self.config, &self.evidence);
+        for (map_from_base, scan) in scans {
+            self.insert(map_from_base, scan);
+        }
+    }
+
+    /// The three-valued map. Its geometry grows with what is seen, in steps of 64 cells, and never shrinks.
+    pub fn grid(&self) -> &OccupancyGrid {
+        self.live.grid()
+    }
+
+    /// All evidence, cell by cell. Cloning it is cheap.
+    pub fn evidence(&self) -> &LogOddsGrid {
+        &self.evidence
+    }
+
+    /// The configuration.
+    pub fn config(&self) -> &MapperConfig {
+        &self.config
+    }
+
+    /// Log-odds of being occupied at a point of the map frame (m): 0 where nothing is known.
+    pub fn log_odds_at(&self, point: Vector2) -> f64 {
+        let cell = GridCell::containing(point / self.config.resolution);
+        f64::from(self.evidence.log_odds(cell))
+    }
+
+    /// Probability of being occupied at a point of the map frame (m): 0.5 where nothing is known.
+    pub fn probability_at(&self, point: Vector2) -> f64 {
+        probability(self.log_odds_at(point))
+    }
+
+    /// The probabilities of [`GridMapper::grid`]'s cells, in its order: for pictures.
+    pub fn probabilities(&self) -> Vec<f32> {
+        let (corner, (cols, rows)) = self.evidence.bounds();
+        let cell = |i: usize| GridCell { x: corner.x + (i % cols) as i32, y: corner.y + (i / cols) as i32 };
+        (0..cols * rows).map(|i| probability(f64::from(self.evidence.log_odds(cell(i)))) as f32).collect()
+    }
+
+    /// What the three-valued map says of a cell.
+    pub(crate) fn value(&self, log_odds: f32) -> Cell {
+        self.live.value(log_odds)
+    }
+
+    fn grow(&mut self, low: GridCell, high: GridCell) {
+        self.evidence.reach(low);
+        self.evidence.reach(high);
+        self.live.fit(&self.evidence);
+    }
+
+    fn draw(&mut self, cells: &ScanCells) {
+        let config = &self.config;
+        for hit in &cells.hits {
+            let evidence = self.evidence.entry(hit.cell);
+            evidence.log_odds = (evidence.log_odds + config.hit as f32).min(config.clamp_high as f32);
+            evidence.add_hit(hit.mean_within());
+            self.live.show(hit.cell, evidence.log_odds);
+        }
+        let blind_cells = config.blind_range / config.resolution;
+        for &cell in &cells.frees {
+            let evidence = self.evidence.entry(cell);
+            let hidden = evidence.log_odds > 0.0 && (cell.center_cells() - cells.origin).norm() < blind_cells;
+            if !hidden {
+                evidence.log_odds = (evidence.log_odds - config.free as f32).max(-config.clamp_low as f32);
+                self.live.show(cell, evidence.log_odds);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use trundle_core::{Beam, Stamp};
+
+    fn mapper() -> GridMapper {
+        GridMapper::new(MapperConfig::default()).unwrap()
+    }
+
+    fn ahead(beam: Beam) -> Scan {
+        Scan::new(Stamp::default(), Vector2::zeros(), 0.001, 0.001, vec![beam; 3]).unwrap()
+    }
+
+    #[test]
+    fn log_odds_are_clamped_so_that_what_moved_is_forgotten() {
+        let mut mapper = mapper();
+        let point = Vector2::new(2.01, 0.01);
+        for _ in 0..100 {
+            mapper.insert(Pose2::IDENTITY, &ahead(Beam::Hit { range: 2.01 }));
+        }
+        assert_eq!(mapper.log_odds_at(point), 3.5);
+        for _ in 0..13 {
+            mapper.insert(Pose2::IDENTITY, &ahead(Beam::Free { range: 3.0 }));
+        }
+        assert_eq!(mapper.grid().at(point), Cell::Free);
+        assert!(mapper.probability_at(point) < 0.196);
+    }
+
+    #[test]
+    fn a_beam_does_not_erase_what_hides_in_the_blind_range() {
+        let mut mapper = mapper();
+        let (low_box, beyond) = (Vector2::new(1.01, 0.01), Vector2::new(0.76, 0.01));
+        mapper.insert(Pose2::IDENTITY, &ahead(Beam::Hit { range: 1.01 }));
+        for _ in 0..20 {
+            mapper.insert(Pose2::new(0.5, 0.0, 0.0), &ahead(Beam::Free { range: 3.0 }));
+        }
+        assert_eq!(mapper.grid().at(low_box), Cell::Occupied);
+        assert_eq!(mapper.grid().at(beyond), Cell::Free);
+        for _ in 0..20 {
+            mapper.insert(Pose2::new(-0.5, 0.0, 0.0), &ahead(Beam::Free { range: 3.0 }));
+        }
+        assert_eq!(mapper.grid().at(low_box), Cell::Free);
+    }
+
+    #[test]
+    fn the_robot_stands_on_free_floor() {
+        let mut mapper = mapper();
+        mapper.mark_free_disc(Pose2::new(9.0, -7.0, 0.0), 0.1755);
+        assert_eq!(mapper.grid().at(Vector2::new(9.1, -7.1)), Cell::Free);
+        assert_eq!(mapper.grid().at(Vector2::new(9.2, -7.0)), Cell::Unknown);
+        let area = mapper.grid().cells().iter().filter(|&&c| c == Cell::Free).count() as f64 * 0.0025;
+        assert!((area / (std::f64::consts::PI * 0.1755 * 0.1755) - 1.0).abs() < 0.15);
+        mapper.mark_free_disc(Pose2::new(f64::NAN, 0.0, 0.0), 0.2);
+        mapper.mark_free_disc(Pose2::new(1e9, 0.0, 0.0), 0.2);
+    }
+
+    #[test]
+    fn growing_moves_no_cell_and_the_live_grid_is_the_evidence() {
+        let mut mapper = mapper();
+        for i in 0..60 {
+            let pose = Pose2::new(f64::from(i) * 0.3 - 9.0, f64::from(i) * 0.2, f64::from(i));
+            mapper.insert(pose, &ahead(Beam::Hit { range: 2.0 + f64::from(i % 7) }));
+        }
+        let geometry = *mapper.grid().geometry();
+        for (i, (&cell, &p)) in mapper.grid().cells().iter().zip(&mapper.probabilities()).enumerate() {
+            let log_odds = mapper.log_odds_at(geometry.center(geometry.cell(i)));
+            assert_eq!(cell, mapper.value(log_odds as f32));
+            assert!((probability(log_odds) as f32 - p).abs() < 1e-6);
+        }
+    }
+
+    #[test]
+    fn redrawing_from_the_same_poses_gives_the_same_map() {
+        let mut mapper = mapper();
+        let scan = ahead(Beam::Hit { range: 4.0 });
+        let poses: Vec<_> =
+            (0..20).map(|i| Pose2::new(0.2 * f64::from(i), 0.0, 0.1 * f64::from(i))).collect();
+        for &pose in &poses {
+            mapper.insert(pose, &scan);
+        }
+        let before = mapper.grid().clone();
+        mapper.redraw(poses.iter().map(|&pose| (pose, &scan)));
+        assert_eq!(*mapper.grid(), before);
+        mapper.redraw([]);
+        assert!(mapper.grid().cells().iter().all(|&c| c == Cell::Unknown));
+    }
+}

@@ -1,0 +1,185 @@
+use crate::boxes::{Solid, add_noise, depth_of, mount, mounted, rgbd};
+use proptest::prelude::*;
+use trundle_core::{Beam, DepthImage, Distortion, PinholeCamera, Pose3, Scan, Vector2};
+use trundle_mapping::{DepthScanConfig, DepthScanner};
+
+fn small_camera() -> PinholeCamera {
+    PinholeCamera::from_field_of_view((128, 106), (1.232, 1.047)).unwrap()
+}
+
+fn scan_of(camera: PinholeCamera, base_from_camera: Pose3, depth: DepthImage) -> Scan {
+    let mut scanner = DepthScanner::new(camera, base_from_camera, DepthScanConfig::default()).unwrap();
+    scanner.scan(&rgbd(depth))
+}
+
+fn scan(base_from_camera: Pose3, solids: &[Solid]) -> Scan {
+    let camera = small_camera();
+    scan_of(camera, base_from_camera, depth_of(&camera, &base_from_camera, solids, true))
+}
+
+fn ahead(scan: &Scan) -> Beam {
+    let i = (0..scan.beams().len()).min_by(|&a, &b| scan.angle(a).abs().total_cmp(&scan.angle(b).abs()));
+    scan.beams()[i.unwrap()]
+}
+
+fn share(scan: &Scan, kind: fn(&Beam) -> bool) -> f64 {
+    scan.beams().iter().filter(|b| kind(b)).count() as f64 / scan.beams().len() as f64
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(48))]
+
+    #[test]
+    fn a_wall_is_where_it_is(
+        distance in 1.0..5.0_f64, height in 0.2..1.0_f64, tilt in 0.0..20.0_f64, yaw in -30.0..30.0_f64,
+        roll in -15.0..15.0_f64, wall in 1.0..2.5_f64,
+    ) {
+        let base_from_camera = mounted([0.1, -0.05, height], yaw, tilt, roll);
+        let scan = scan(base_from_camera, &[Solid::wall(distance, wall)]);
+        prop_assert_eq!(scan.origin(), Vector2::new(0.1, -0.05));
+        let mut hits = 0;
+        for point in scan.hits() {
+            hits += 1;
+            // A beam is 0.6 deg wide here: across it the slanted wall's range changes by range * tan(slant) * width.
+            let slant = (point - scan.origin()).y.atan2((point - scan.origin()).x).tan().abs();
+            prop_assert!((point.x - distance).abs() < 0.002 + 0.006 * distance * slant, "{} {}", point, distance);
+        }
+        let seen_low_enough = height - distance * ((30.0 + tilt - roll.abs()).to_radians()).tan() < 0.5;
+        let seen_high_enough = height + distance * ((29.0 - tilt - roll.abs()).to_radians()).tan() > 0.3;
+        let near = distance / (35.0 + yaw.abs()).to_radians().cos() < 5.9;
+        if seen_low_enough && seen_high_enough && near {
+            prop_assert!(hits as f64 > 0.9 * scan.beams().len() as f64, "{} of {}", hits, scan.beams().len());
+        }
+    }
+
+    #[test]
+    fn the_floor_is_never_an_obstacle(
+        height in 0.2..1.0_f64, tilt in 0.0..20.0_f64, roll in -5.0..5.0_f64, tilt_error in -0.9..0.9_f64, seed: u64,
+    ) {
+        let camera = small_camera();
+        let truth = mounted([0.05, 0.0, height], 0.0, tilt + tilt_error, roll);
+        let mut depth = depth_of(&camera, &truth, &[], true);
+        add_noise(&mut depth, seed);
+        let believed = mounted([0.05, 0.0, height], 0.0, tilt, roll);
+        let scan = scan_of(camera, believed, depth);
+        prop_assert_eq!(scan.hits().count(), 0);
+        let free = share(&scan, |b| matches!(b, Beam::Free { .. }));
+        prop_assert!(free > 0.9, "{} free", free);
+    }
+}
+
+#[test]
+fn noise_does_not_pull_a_wall_nearer() {
+    let (camera, base_from_camera) = (small_camera(), mount(0.45, 8.0));
+    for distance in [1.0, 2.0, 4.0] {
+        let mut depth = depth_of(&camera, &base_from_camera, &[Solid::wall(distance, 2.0)], true);
+        add_noise(&mut depth, 5);
+        let scan = scan_of(camera, base_from_camera, depth);
+        let errors: Vec<f64> = scan.hits().map(|p| p.x - distance).collect();
+        let mean = errors.iter().sum::<f64>() / errors.len() as f64;
+        assert!(errors.len() > 90 && mean.abs() < 0.01, "{distance} m: {mean} m off");
+        assert!(errors.iter().all(|e| e.abs() < 0.06), "{distance} m: {errors:?}");
+    }
+}
+
+#[test]
+fn a_table_top_is_found_though_the_floor_goes_on_under_it() {
+    let top = Solid::new([2.0, -0.5, 0.40], [3.0, 0.5, 0.44]);
+    let scan = scan(mount(0.6, 10.0), &[top, Solid::wall(5.0, 2.0)]);
+    let Beam::Hit { range } = ahead(&scan) else { panic!("{:?}", ahead(&scan)) };
+    assert!((range - 1.95).abs() < 0.03, "{range}");
+}
+
+#[test]
+fn what_the_robot_passes_under_or_over_is_no_obstacle() {
+    let shelf = Solid::new([2.0, -9.0, 0.7], [3.0, 9.0, 0.8]);
+    let carpet = Solid::new([1.5, -9.0, 0.0], [2.5, 9.0, 0.02]);
+    let scan = scan(mount(0.45, 8.0), &[shelf, carpet, Solid::wall(4.0, 2.0)]);
+    let Beam::Hit { range } = ahead(&scan) else { panic!("{:?}", ahead(&scan)) };
+    assert!((range - 3.95).abs() < 0.01, "{range}");
+}
+
+#[test]
+fn without_depth_nothing_is_known() {
+    for black in [0.0, f32::NAN, f32::INFINITY, -1.0] {
+        let scan = scan_of(small_camera(), mount(0.45, 8.0), DepthImage::filled(128, 106, black));
+        assert!(scan.beams().iter().all(|b| *b == Beam::Unseen));
+    }
+    let wrong_size = scan_of(small_camera(), mount(0.45, 8.0), DepthImage::filled(10, 10, 2.0));
+    assert!(wrong_size.beams().len() > 90 && wrong_size.beams().iter().all(|b| *b == Beam::Unseen));
+}
+
+#[test]
+fn free_reaches_as_far_as_the_floor_was_seen_and_no_farther() {
+    let (camera, base_from_camera) = (small_camera(), mount(0.45, 8.0));
+    let mut depth = depth_of(&camera, &base_from_camera, &[], true);
+    for z in depth.data_mut().iter_mut().filter(|z| **z > 2.5) {
+        *z = 0.0;
+    }
+    let scan = scan_of(camera, base_from_camera, depth);
+    for (i, beam) in scan.beams().iter().enumerate() {
+        let Beam::Free { range } = *beam else { panic!("beam {i}: {beam:?}") };
+        // A row of floor is up to 0.15 m deep here.
+        let farthest = 2.5 / (scan.angle(i)).cos() / 8.0_f64.to_radians().cos();
+        assert!(range < farthest && range > 0.8 * farthest - 0.15, "beam {i}: {range} of {farthest}");
+    }
+}
+
+#[test]
+fn flying_pixels_are_no_obstacles() {
+    let (camera, base_from_camera) = (small_camera(), mount(0.45, 8.0));
+    let mut depth = depth_of(&camera, &base_from_camera, &[Solid::wall(4.0, 2.0)], true);
+    for i in (0..depth.data().len()).step_by(37) {
+        depth.data_mut()[i] = 1.0 + (i % 100) as f32 * 0.02;
+    }
+    let clean = scan(base_from_camera, &[Solid::wall(4.0, 2.0)]);
+    let speckled = scan_of(camera, base_from_camera, depth);
+    for (a, b) in clean.hits().zip(speckled.hits()) {
+        assert!((a - b).norm() < 0.02);
+    }
+    assert_eq!(clean.hits().count(), speckled.hits().count());
+}
+
+#[test]
+fn lens_distortion_is_undone() {
+    let lens = Distortion { k1: 0.2624, k2: -0.9531, p1: -0.0054, p2: 0.0026, k3: 1.1633 };
+    let camera = PinholeCamera::new((160, 120), (129.3, 129.1), (79.7, 63.8), lens).unwrap();
+    let base_from_camera = mount(0.45, 8.0);
+    let depth = depth_of(&camera, &base_from_camera, &[Solid::wall(3.0, 2.0)], true);
+    let scan = scan_of(camera, base_from_camera, depth);
+    assert!(share(&scan, |b| matches!(b, Beam::Hit { .. })) > 0.95);
+    assert!(scan.hits().all(|p| (p.x - 3.0).abs() < 0.02));
+}
+
+#[test]
+fn the_blind_range_is_where_the_view_begins() {
+    let at = |height: f64, tilt: f64| {
+        DepthScanner::new(PinholeCamera::kinect_v2(), mount(height, tilt), DepthScanConfig::default())
+            .unwrap()
+            .blind_range()
+    };
+    assert!((at(0.45, 8.0) - 0.65).abs() < 0.02, "{}", at(0.45, 8.0));
+    assert!(at(1.0, 0.0) > 1.6 && at(1.0, 0.0) < 2.1);
+    assert!(at(1.0, 30.0) < at(1.0, 10.0));
+    assert_eq!(at(0.45, -40.0), 6.0, "it never sees low enough");
+}
+
+#[test]
+fn a_camera_that_looks_straight_down_still_scans() {
+    let base_from_camera = mount(1.5, 90.0);
+    let post = Solid::new([0.45, -0.05, 0.0], [0.55, 0.05, 0.5]);
+    let scan = scan(base_from_camera, &[post]);
+    let nearest = scan.hits().map(|p| p.x).fold(f64::INFINITY, f64::min);
+    assert!((nearest - 0.45).abs() < 0.05, "{nearest}");
+    assert!(share(&scan, |b| matches!(b, Beam::Free { .. })) > 0.8);
+}
+
+#[test]
+fn bad_mounts_are_refused_by_name() {
+    let refuse =
+        |pose| DepthScanner::new(small_camera(), pose, DepthScanConfig::default()).unwrap_err().field;
+    assert_eq!(refuse(mount(0.0, 0.0)), "camera height above the floor");
+    assert_eq!(refuse(mount(f64::NAN, 0.0)), "base_from_camera");
+    let config = DepthScanConfig { band_high: 0.01, ..DepthScanConfig::default() };
+    assert_eq!(DepthScanner::new(small_camera(), mount(0.4, 0.0), config).unwrap_err().field, "band_high");
+}

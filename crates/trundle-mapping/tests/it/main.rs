@@ -1,0 +1,7 @@
+//! One binary of tests against worlds drawn here: the crate does not know the simulator, and must not.
+
+mod boxes;
+mod depth_scan;
+mod flat_room;
+mod maps;
+mod speed;
