@@ -20,6 +20,7 @@ mod pull;
 mod room;
 mod route;
 mod space;
+mod task;
 mod timing;
 mod watch;
 mod wave;

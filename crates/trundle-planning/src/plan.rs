@@ -1,5 +1,6 @@
 use crate::curve::Curve;
 use crate::route::Phase;
+use std::fmt;
 use trundle_core::{Invalid, Path, Trajectory, Vector2};
 
 /// What became of a question for a way.
@@ -22,12 +23,44 @@ pub enum Plan {
         /// Room beside the footprint, m, negative: so much is missing.
         clearance: f64,
     },
-    /// The start is off the map, or further than the map may be left.
+    /// The start is off the map, which may not be left.
     StartOutside,
-    /// The goal is off the map, or further than the map may be left.
+    /// The goal is off the map, which may not be left.
     GoalOutside,
     /// The question was no question: a number is not finite, or a map or distance is out of proportion.
     Refused(Invalid),
+}
+
+/// One sentence.
+impl fmt::Display for Plan {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Found(result) => {
+                let (length, time) = (result.length, result.trajectory.duration());
+                write!(
+                    f,
+                    "a way of {length:.2} m in {time:.1} s, {:.3} m beside obstacles",
+                    result.min_clearance
+                )
+            }
+            Self::Blocked { nearest } => {
+                write!(
+                    f,
+                    "no way to the goal; the nearest reachable point is ({:.2}, {:.2}) m",
+                    nearest.x, nearest.y
+                )
+            }
+            Self::StartInObstacle { clearance } => {
+                write!(f, "the robot does not fit at the start: {:.3} m are missing", -clearance)
+            }
+            Self::GoalInObstacle { clearance } => {
+                write!(f, "the robot does not fit at the goal: {:.3} m are missing", -clearance)
+            }
+            Self::StartOutside => write!(f, "the start is off the map"),
+            Self::GoalOutside => write!(f, "the goal is off the map"),
+            Self::Refused(invalid) => write!(f, "{invalid}"),
+        }
+    }
 }
 
 /// A way from start to goal.

@@ -26,8 +26,8 @@ pub enum Phase {
 
 /// Spacing of the looks along a curve, m: between two, an obstacle's distance dips by at most spacing^2 / 8 radius.
 const SPACING: f64 = 0.01;
-/// Turn between neighbouring looks above which a curve counts as broken, rad.
-const BREAK: f64 = 0.35;
+/// Parametric speed below which a curve counts as broken: a cusp is near.
+const CUSP: f64 = 0.1;
 /// A room smaller by this than required is rounding of the solver, m.
 const ROUNDING: f64 = 1e-4;
 
@@ -81,8 +81,10 @@ fn safe_curve(
 fn is_drivable(space: &Space<'_>, curve: &Curve, max_curvature: f64) -> bool {
     let samples = curve.samples(SPACING);
     let smooth = samples.windows(2).all(|pair| {
-        difference_of_angles(pair[1].pose.theta, pair[0].pose.theta).abs() < BREAK
-            && pair[1].arc > pair[0].arc
+        let way = pair[1].arc - pair[0].arc;
+        let turn = difference_of_angles(pair[1].pose.theta, pair[0].pose.theta).abs();
+        // Between two looks the curvature may overshoot, but not by half again.
+        way > CUSP * (pair[1].s - pair[0].s) && turn <= 1.5 * max_curvature * way
     });
     smooth
         && samples.iter().all(|sample| {

@@ -6,8 +6,10 @@ use trundle_core::{Cell, OccupancyGrid, Vector2};
 /// Rounding that a comparison of clearances forgives, m.
 const ROUNDING: f64 = 1e-6;
 
-/// Step of a look along a straight line, cells. Between two looks the distance to a convex obstacle dips by at most
-/// step^2 / 8 radius: below 0.1 mm for 5 cm cells.
+/// What the room may dip between two looks along a straight line, m: step^2 / 8 radius, for the distance to a convex
+/// obstacle bends by at most 1 / distance.
+const DIP: f64 = 1e-4;
+/// Longest step of a look, cells.
 const LOOK: f64 = 0.2;
 
 /// The robot as a disc in a distance field.
@@ -19,6 +21,8 @@ pub(crate) struct Space<'a> {
     grid: &'a OccupancyGrid,
     escape: Option<Escape>,
     surely: f64,
+    /// Step of a look along a straight line, m.
+    look: f64,
     /// Whole cells from the grid's origin to the field's; none where the two are the same.
     shift: Option<(i64, i64)>,
 }
@@ -47,9 +51,11 @@ impl<'a> Space<'a> {
             radius: at_start,
         });
         let offset = (field.geometry().origin - grid.geometry().origin) / grid.geometry().resolution;
+        let least = if missing > ROUNDING { at_start } else { radius };
+        let look = (8.0 * least * DIP).sqrt().max(1e-3).min(LOOK * field.geometry().resolution);
         let is_same = field.geometry() == grid.geometry();
         let shift = (!is_same).then_some((offset.x.round() as i64, offset.y.round() as i64));
-        Self { field, room, radius, grid, escape, surely: field.overestimate(radius), shift }
+        Self { field, room, radius, grid, escape, surely: field.overestimate(radius), look, shift }
     }
 
     /// The distance that must be kept at a point, m: the radius, less only around a start that has less.
@@ -86,7 +92,7 @@ impl<'a> Space<'a> {
     /// Whether the robot may drive straight from `a` to `b`.
     pub(crate) fn sees(&self, a: Vector2, b: Vector2) -> bool {
         let length = (b - a).norm();
-        let look = LOOK * self.field.geometry().resolution;
+        let look = self.look;
         let mut at = 0.0;
         while at < length {
             let point = a + (b - a) * (at / length);

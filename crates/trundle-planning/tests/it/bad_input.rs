@@ -56,6 +56,21 @@ fn numbers_that_are_none_are_refused_by_name() {
 }
 
 #[test]
+fn every_answer_is_a_sentence() {
+    let sentences = [(0.3, 0.3), (0.6, 1.0), (9.0, 1.0), (f64::NAN, 1.0)]
+        .map(|to| ask(at_home(), (1.0, 1.0), to).to_string());
+    assert_eq!(
+        sentences,
+        [
+            "the robot does not fit at the goal: 0.170 m are missing",
+            "the robot does not fit at the goal: 0.070 m are missing",
+            "the goal is off the map",
+            "goal x is NaN m, expected a finite number",
+        ]
+    );
+}
+
+#[test]
 fn staying_is_a_plan() {
     let grid = OccupancyGrid::from_ascii(0.25, MAP).unwrap();
     let here = Pose2::new(1.0, 1.0, 0.3);

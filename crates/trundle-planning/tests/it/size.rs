@@ -30,6 +30,31 @@ fn across(size: usize) {
     judge(&grid, &result, start, goal, 0.1755);
 }
 
+/// Boxes of a metre, two and a half metres apart, shifted from row to row.
+fn warehouse(size: usize) -> OccupancyGrid {
+    let geometry = GridGeometry::new(0.05, Vector2::zeros(), size, size).unwrap();
+    let cell = |i: usize| {
+        let (col, row) = (i % size, i / size);
+        let is_box = row % 50 >= 30 && (col + row / 50 * 17) % 50 >= 30;
+        if is_box { Cell::Occupied } else { Cell::Free }
+    };
+    OccupancyGrid::new(geometry, (0..geometry.len()).map(cell).collect()).unwrap()
+}
+
+#[test]
+fn a_warehouse_of_a_thousand_cells_square() {
+    let grid = warehouse(1000);
+    let (start, goal) = (Pose2::new(1.0, 1.0, 0.0), Pose2::new(48.0, 46.0, 1.0));
+    let mut planner = planner(at_home(), 0.1755);
+    for round in ["new field", "same field"] {
+        let begin = crate::support::cpu_ms();
+        let result = found(planner.plan(&grid, start, Twist2::ZERO, goal));
+        let spent = crate::support::cpu_ms() - begin;
+        eprintln!("warehouse, {round}: {spent:.0} ms CPU for {:.0} m", result.length);
+        judge(&grid, &result, start, goal, 0.1755);
+    }
+}
+
 #[test]
 fn a_thousand_cells_square() {
     across(1000);
