@@ -54,7 +54,7 @@ impl Belief {
     /// Where the camera should be at `stamp`: moved by the prior, else on at the same velocity, else where it was.
     pub fn predict(&self, stamp: Stamp, prior: Option<Pose3>) -> Pose3 {
         let elapsed = self.elapsed(stamp);
-        let motion = prior.or_else(|| self.velocity.map(|velocity| Pose3::exp(velocity * elapsed)));
+        let motion = self.since_last(prior).or_else(|| self.velocity.map(|velocity| Pose3::exp(velocity * elapsed)));
         (self.visual_from_camera * motion.unwrap_or_default()).renormalized()
     }
 
@@ -68,7 +68,7 @@ impl Belief {
     /// The frame at `stamp` was not located: moves by the prior, or holds the pose, and grows uncertain.
     pub fn missed(&mut self, stamp: Stamp, prior: Option<Pose3>, config: &MotionConfig) {
         let elapsed = self.elapsed(stamp);
-        let motion = prior.unwrap_or_default();
+        let motion = self.since_last(prior).unwrap_or_default();
         let backward = adjoint(motion.inverse());
         let (along, turned) = match prior {
             Some(_) => {
@@ -83,6 +83,11 @@ impl Belief {
         self.covariance = backward * self.covariance * backward.transpose() + Matrix6::from_diagonal(&noise);
         self.visual_from_camera = (self.visual_from_camera * motion).renormalized();
         (self.stamp, self.velocity) = (Some(stamp), None);
+    }
+
+    /// The prior, unless this is the first frame, before which there was nothing to move from.
+    fn since_last(&self, prior: Option<Pose3>) -> Option<Pose3> {
+        prior.filter(|_| self.stamp.is_some())
     }
 
     /// Seconds since the last frame, 0 for the first or when stamps go back.
@@ -135,6 +140,8 @@ mod tests {
         let mut belief = Belief::at(Pose3::identity());
         let config = MotionConfig::default();
         let mut last = 0.0;
+        belief.missed(Stamp::from_secs(-0.1).unwrap(), Some(Pose3::exp(Vector6::repeat(1.0))), &config);
+        assert_eq!(belief.visual_from_camera, Pose3::identity(), "nothing to move from");
         for i in 0..5 {
             let stamp = Stamp::from_secs(f64::from(i) * 0.1).unwrap();
             let prior = Pose3::exp(Vector6::new(0.0, 0.0, 0.1, 0.0, 0.1, 0.0));

@@ -49,7 +49,8 @@ pub(crate) fn search(
 
 /// The feature most like the projection within its window, unless a second one is nearly as like.
 fn best(frame: &Frame, free: &[bool], projection: &Projection, likeness: Likeness) -> Option<(usize, u32)> {
-    let (mut first, mut second): (Option<(usize, u32)>, Option<(usize, u32)>) = (None, None);
+    let mut first: Option<(usize, u32)> = None;
+    let mut second = first;
     for feature in frame.near(projection.pixel, projection.radius, projection.octaves) {
         if !free[feature] || !depth_agrees(frame, feature, projection.depth) {
             continue;

@@ -63,7 +63,7 @@ impl RgbdSlam {
     pub fn new(camera: PinholeCamera, config: SlamConfig) -> Result<Self, Invalid> {
         let config = config.validated()?;
         let extractor = OrbExtractor::new(config.orb.clone())?;
-        let scale_factors = extractor.scale_factors().iter().map(|s| f64::from(*s)).collect();
+        let scale_factors = extractor.scale_factors().to_vec();
         let sensor = Sensor::new(camera, scale_factors, config.tracking.pixel_sigma);
         let belief = Belief::at(Pose3::identity());
         let map = LandmarkMap::default();

@@ -1,6 +1,6 @@
 //! A box of textured walls, ray cast, with a little noise: shares only trundle-core with what it judges.
 
-use trundle_core::{ColorImage, DepthImage, PinholeCamera, Pose3, RgbdImage, Stamp, Vector2, Vector3};
+use trundle_core::{ColorImage, DepthImage, Image, PinholeCamera, Pose3, RgbdImage, Stamp, Vector2, Vector3};
 
 /// Half the size of the room along x, y, z, m.
 const HALF: Vector3 = Vector3::new(2.2, 1.4, 2.6);
@@ -12,21 +12,38 @@ pub fn camera() -> PinholeCamera {
 
 /// What the camera sees at `room_from_camera`, as frame `number` of a 30 Hz stream.
 pub fn shoot(number: usize, room_from_camera: Pose3) -> RgbdImage {
-    let camera = camera();
-    let (width, height) = (camera.width(), camera.height());
-    let noise =
-        |x: usize, y: usize, kind: u64| uniform(hash(&[number as u64, x as u64, y as u64, kind])) - 0.5;
-    let color = ColorImage::from_fn(width, height, |x, y| {
-        let samples = [(-0.25, -0.25), (0.25, -0.25), (-0.25, 0.25), (0.25, 0.25)];
-        let shade = |(dx, dy): &(f64, f64)| hit(&camera, room_from_camera, x as f64 + dx, y as f64 + dy).1;
-        let mean = samples.iter().map(shade).sum::<f64>() / 4.0;
-        [(mean + 8.0 * noise(x, y, 0)).clamp(0.0, 255.0) as u8; 3]
-    });
-    let depth = DepthImage::from_fn(width, height, |x, y| {
-        let z = hit(&camera, room_from_camera, x as f64, y as f64).0;
-        (z * (1.0 + 0.01 * noise(x, y, 1))) as f32
-    });
-    RgbdImage::new(stamp(number), color, depth).unwrap()
+    Clean::at(room_from_camera).shot(number)
+}
+
+/// A view without noise.
+pub struct Clean {
+    shade: Image<f64>,
+    depth: Image<f64>,
+}
+
+impl Clean {
+    pub fn at(room_from_camera: Pose3) -> Self {
+        let camera = camera();
+        let hit = |x: f64, y: f64| hit(&camera, room_from_camera, x, y);
+        let shade = |x: usize, y: usize| {
+            let samples = [(-0.25, -0.25), (0.25, -0.25), (-0.25, 0.25), (0.25, 0.25)];
+            samples.iter().map(|(dx, dy)| hit(x as f64 + dx, y as f64 + dy).1).sum::<f64>() / 4.0
+        };
+        let (width, height) = (camera.width(), camera.height());
+        let depth = Image::from_fn(width, height, |x, y| hit(x as f64, y as f64).0);
+        Self { shade: Image::from_fn(width, height, shade), depth }
+    }
+
+    /// With the noise of frame `number`.
+    pub fn shot(&self, number: usize) -> RgbdImage {
+        let (width, height) = (self.depth.width(), self.depth.height());
+        let noise =
+            |x: usize, y: usize, kind: u64| uniform(hash(&[number as u64, x as u64, y as u64, kind])) - 0.5;
+        let gray = |x: usize, y: usize| (self.shade[(x, y)] + 8.0 * noise(x, y, 0)).clamp(0.0, 255.0) as u8;
+        let depth = |x: usize, y: usize| (self.depth[(x, y)] * (1.0 + 0.01 * noise(x, y, 1))) as f32;
+        let color = ColorImage::from_fn(width, height, |x, y| [gray(x, y); 3]);
+        RgbdImage::new(stamp(number), color, DepthImage::from_fn(width, height, depth)).unwrap()
+    }
 }
 
 pub fn stamp(number: usize) -> Stamp {
