@@ -43,7 +43,7 @@ impl WaveFront {
     /// Runs the wave from `start` to `goal`, both free and inside the field.
     pub(crate) fn run(&mut self, space: &Space<'_>, start: Vector2, goal: Vector2) -> Wave {
         let Some(target) = cell_of(space, goal) else { return Wave::Stuck(start) };
-        let lattice = Lattice { width: space.field.geometry().width as i64, target };
+        let lattice = Lattice::new(space.field.geometry().width, target);
         self.seed(space, start, &lattice);
         let ends = ring(space, goal);
         let mut best: Option<(u32, usize)> = None;
@@ -56,7 +56,7 @@ impl WaveFront {
                 continue;
             }
             if ends.contains(&cell) {
-                let total = cost + lattice.ahead(cell);
+                let total = cost + lattice.ahead(lattice.place(cell));
                 if best.is_none_or(|(least, _)| total < least) {
                     best = Some((total, cell));
                 }
@@ -76,18 +76,19 @@ impl WaveFront {
         let resolution = space.field.geometry().resolution;
         let price = |cell| (space.cost(start, space.center(cell)) / resolution * f64::from(SIDE)) as u32;
         let seeds: Vec<_> = ring(space, start).into_iter().map(|cell| (cell, price(cell))).collect();
-        let first = seeds.iter().map(|(cell, cost)| cost + lattice.ahead(*cell)).min().unwrap_or(0);
+        let first =
+            seeds.iter().map(|(cell, cost)| cost + lattice.ahead(lattice.place(*cell))).min().unwrap_or(0);
         let longest = f64::from(DIAGONAL) * (RING as f64 + 1.0) * 2.0;
         self.queue.reset(first, (longest * (space.highest_density() + 1.0)).ceil() as u32);
         for (cell, cost) in seeds {
-            self.reach(cell, cost, SEED, lattice);
+            self.reach(cell, cost, SEED, lattice.ahead(lattice.place(cell)));
         }
     }
 
-    fn reach(&mut self, cell: usize, cost: u32, step: u8, lattice: &Lattice) {
+    fn reach(&mut self, cell: usize, cost: u32, step: u8, ahead: u32) {
         self.cost[cell] = cost;
         self.step[cell] = step;
-        self.queue.push(cost + lattice.ahead(cell), Entry { cell: cell as u32, cost });
+        self.queue.push(cost + ahead, Entry { cell: cell as u32, cost });
     }
 
     fn spread(&mut self, space: &Space<'_>, from: usize, lattice: &Lattice) {
@@ -109,7 +110,7 @@ impl WaveFront {
             let cost = so_far + (f64::from(length) * (here + space.cell_density(to)) * 0.5) as u32;
             let metres = geometry.resolution * f64::from(length) / f64::from(SIDE);
             if cost < self.cost[to] && space.joins(from, to, metres) {
-                self.reach(to, cost, step as u8, lattice);
+                self.reach(to, cost, step as u8, lattice.ahead((c, r)));
             }
         }
     }
@@ -141,21 +142,26 @@ impl WaveFront {
     }
 }
 
-/// Rows and columns of cells, and the way that is at least ahead of them.
+/// Columns and rows of cells, and the way that is at least ahead of them.
 struct Lattice {
     width: i64,
-    target: usize,
+    target: (i64, i64),
 }
 
 impl Lattice {
+    fn new(width: usize, target: usize) -> Self {
+        let lattice = Self { width: width as i64, target: (0, 0) };
+        Self { target: lattice.place(target), ..lattice }
+    }
+
+    /// Column and row.
     fn place(&self, cell: usize) -> (i64, i64) {
         (cell as i64 % self.width, cell as i64 / self.width)
     }
 
     /// The cost of the shortest way over the 8-neighbour lattice to the target, were it empty.
-    fn ahead(&self, cell: usize) -> u32 {
-        let ((a, b), (c, d)) = (self.place(cell), self.place(self.target));
-        let (x, y) = ((a - c).unsigned_abs() as u32, (b - d).unsigned_abs() as u32);
+    fn ahead(&self, (col, row): (i64, i64)) -> u32 {
+        let (x, y) = (col.abs_diff(self.target.0) as u32, row.abs_diff(self.target.1) as u32);
         x.max(y) * SIDE + x.min(y) * (DIAGONAL - SIDE)
     }
 }
