@@ -1,12 +1,14 @@
 //! Recordings of a run: MCAP with JSON messages, which Foxglove Studio opens as it is.
 
 mod messages;
+mod poses;
 mod reader;
 mod recorder;
 mod schemas;
 mod stream;
+mod time;
 
-pub use messages::{PoseInFrame, PosesInFrame};
+pub use poses::{PoseInFrame, PosesInFrame};
 pub use reader::{RecordedMessage, RecordingReader};
 pub use recorder::Recorder;
 

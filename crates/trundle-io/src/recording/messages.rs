@@ -1,34 +1,10 @@
+use super::poses::PoseInFrame;
+use super::time::Time;
 use crate::codec::{EncodedEvent, EncodedRgbd};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use serde::{Deserialize, Serialize};
-use trundle_core::{GyroRate, Invalid, Pose2, Pose3, Stamp, Touch, WheelTicks};
-
-/// A stamp as Foxglove writes it.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub(super) struct Time {
-    sec: i64,
-    nsec: u32,
-}
-
-impl From<Stamp> for Time {
-    fn from(stamp: Stamp) -> Self {
-        let nsec = stamp.nanos.rem_euclid(1_000_000_000) as u32; // below 1e9 by rem_euclid
-        Self { sec: stamp.nanos.div_euclid(1_000_000_000), nsec }
-    }
-}
-
-impl TryFrom<Time> for Stamp {
-    type Error = Invalid;
-
-    fn try_from(time: Time) -> Result<Self, Invalid> {
-        let nanos = time.sec.checked_mul(1_000_000_000).and_then(|n| n.checked_add(i64::from(time.nsec)));
-        let nanos = nanos.filter(|_| time.nsec < 1_000_000_000);
-        let invalid =
-            || Invalid::new("time", format!("{} s + {} ns", time.sec, time.nsec), "", "nsec below 1e9");
-        nanos.map(Self::from_nanos).ok_or_else(invalid)
-    }
-}
+use trundle_core::{GyroRate, Invalid, Stamp, Touch, WheelTicks};
 
 #[derive(Serialize, Deserialize)]
 pub(super) struct WheelTicksMessage {
@@ -56,85 +32,6 @@ pub(super) struct CompressedImage {
     frame_id: String,
     data: String,
     format: String,
-}
-
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-struct Xyz {
-    x: f64,
-    y: f64,
-    z: f64,
-}
-
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-struct Xyzw {
-    x: f64,
-    y: f64,
-    z: f64,
-    w: f64,
-}
-
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-struct PoseMessage {
-    position: Xyz,
-    orientation: Xyzw,
-}
-
-impl From<Pose3> for PoseMessage {
-    fn from(pose: Pose3) -> Self {
-        let [x, y, z, i, j, k, w] = pose.into();
-        Self { position: Xyz { x, y, z }, orientation: Xyzw { x: i, y: j, z: k, w } }
-    }
-}
-
-/// A message of the schema `foxglove.PoseInFrame`, with the heading beside it where the pose is planar, because a
-/// heading does not survive its quaternion to the last bit.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct PoseInFrame {
-    timestamp: Time,
-    frame_id: String,
-    pose: PoseMessage,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    theta: Option<f64>,
-}
-
-impl PoseInFrame {
-    /// The name of its schema.
-    pub const SCHEMA: &str = "foxglove.PoseInFrame";
-
-    /// A pose in space: `frame_from_body`, m.
-    pub fn new(stamp: Stamp, frame_id: &str, pose: Pose3) -> Self {
-        Self { timestamp: stamp.into(), frame_id: frame_id.to_owned(), pose: pose.into(), theta: None }
-    }
-
-    /// A pose in the plane: `frame_from_body`, m and rad.
-    pub fn planar(stamp: Stamp, frame_id: &str, pose: Pose2) -> Self {
-        Self { theta: Some(pose.theta), ..Self::new(stamp, frame_id, Pose3::from_pose2(pose)) }
-    }
-
-    /// The planar pose again, exact; `None` when it was made of a pose in space.
-    pub fn pose2(&self) -> Option<Pose2> {
-        let Xyz { x, y, .. } = self.pose.position;
-        self.theta.map(|theta| Pose2 { x, y, theta })
-    }
-}
-
-/// A message of the schema `foxglove.PosesInFrame`: a path or trajectory.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct PosesInFrame {
-    timestamp: Time,
-    frame_id: String,
-    poses: Vec<PoseMessage>,
-}
-
-impl PosesInFrame {
-    /// The name of its schema.
-    pub const SCHEMA: &str = "foxglove.PosesInFrame";
-
-    /// Poses in the plane: `frame_from_body` each.
-    pub fn planar(stamp: Stamp, frame_id: &str, poses: impl IntoIterator<Item = Pose2>) -> Self {
-        let poses = poses.into_iter().map(|pose| Pose3::from_pose2(pose).into()).collect();
-        Self { timestamp: stamp.into(), frame_id: frame_id.to_owned(), poses }
-    }
 }
 
 /// A sensor event as the messages that stand for it.
@@ -214,14 +111,5 @@ impl TryFrom<TouchMessage> for EncodedEvent {
 
     fn try_from(m: TouchMessage) -> Result<Self, Invalid> {
         Ok(Self::Touch(Touch { stamp: m.stamp.try_into()?, pressed: m.pressed }))
-    }
-}
-
-impl TryFrom<PoseInFrame> for EncodedEvent {
-    type Error = Invalid;
-
-    fn try_from(m: PoseInFrame) -> Result<Self, Invalid> {
-        let pose = m.pose2().ok_or_else(|| Invalid::new("theta", "absent", "", "a number"))?;
-        Ok(Self::Truth { stamp: m.timestamp.try_into()?, pose })
     }
 }

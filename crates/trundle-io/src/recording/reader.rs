@@ -1,4 +1,5 @@
-use super::messages::{self, CompressedImage, GyroRateMessage, PoseInFrame, TouchMessage, WheelTicksMessage};
+use super::messages::{self, CompressedImage, GyroRateMessage, TouchMessage, WheelTicksMessage};
+use super::poses::PoseInFrame;
 use super::stream::{MessageStream, RawMessage};
 use super::topics;
 use crate::{EncodedEvent, IoError};

@@ -1,4 +1,5 @@
-use super::messages::{EventMessages, PoseInFrame};
+use super::messages::EventMessages;
+use super::poses::PoseInFrame;
 use super::schemas::json_schema;
 use super::topics;
 use crate::{EncodedEvent, IoError};
