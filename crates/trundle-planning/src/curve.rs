@@ -1,6 +1,6 @@
 use crate::bezier::BezierPiece;
 use crate::geometry::bearing;
-use trundle_core::{Pose2, Vector2};
+use trundle_core::{Pose2, Twist2, Vector2};
 
 /// An analytic curve: polynomial pieces that meet in position, heading and curvature. Its parameter s is chord length
 /// along the way-points, m, from 0 to [`Curve::span`].
@@ -40,6 +40,20 @@ impl Curve {
     /// The straight line between two different points.
     pub(crate) fn line(from: Vector2, to: Vector2) -> Self {
         Self::new(vec![BezierPiece::new(vec![from, to], (to - from).norm())])
+    }
+
+    /// The arc of constant `curvature` (1/m) that leaves `start` and is `length` m long, as the quintic that agrees with
+    /// it at both ends in position, heading and curvature.
+    pub(crate) fn arc(start: Pose2, curvature: f64, length: f64) -> Self {
+        let end = start.advance(Twist2::new(length, curvature * length), 1.0);
+        let near = |pose: Pose2, side: f64| {
+            let (along, step) = (pose.direction(), side * length / 5.0);
+            let bend = Vector2::new(-along.y, along.x) * (curvature * length * length / 20.0);
+            let p = pose.position();
+            [p, p + along * step, p + along * (2.0 * step) + bend]
+        };
+        let ([a, b, c], [f, e, d]) = (near(start, 1.0), near(end, -1.0));
+        Self::new(vec![BezierPiece::new(vec![a, b, c, d, e, f], length)])
     }
 
     /// The pieces, whose coefficients are theirs to tell.
@@ -151,5 +165,15 @@ mod tests {
         assert!((curve.length() - arc.unwrap()).abs() < 1e-7);
         assert!((curve.curvature(0.7) - 1.0).abs() < 0.02);
         assert!((curve.pose(0.0).theta - std::f64::consts::FRAC_PI_2).abs() < 1e-12);
+    }
+
+    #[test]
+    fn arcs_start_end_and_bend_as_they_should() {
+        let start = Pose2::new(1.0, 2.0, 0.7);
+        let curve = Curve::arc(start, -2.0, 0.5);
+        let end = start.advance(Twist2::new(0.5, -1.0), 1.0);
+        assert!(curve.pose(0.5).distance(&end) < 1e-12 && (curve.pose(0.5).theta - end.theta).abs() < 1e-12);
+        assert!((curve.length() - 0.5).abs() < 1e-4);
+        assert!((0..=10).all(|i| (curve.curvature(f64::from(i) / 20.0) + 2.0).abs() < 0.05));
     }
 }

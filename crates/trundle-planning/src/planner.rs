@@ -52,8 +52,8 @@ impl Planner {
 
     /// Plans from `start`, moving with `start_twist`, to `goal` (map frame), where the robot is to stand.
     ///
-    /// A robot that moves forward gets a trajectory that continues its motion; where no curve can, it brakes straight on
-    /// first; where even that has no room, the plan starts from rest and says so.
+    /// A robot that moves forward gets a trajectory that continues its motion; where no curve can, it brakes on its
+    /// arc first; where even that has no room, the plan starts from rest and says so.
     pub fn plan(&mut self, grid: &OccupancyGrid, start: Pose2, start_twist: Twist2, goal: Pose2) -> Plan {
         if let Err(invalid) = finite(start, start_twist, goal) {
             return Plan::Refused(invalid);

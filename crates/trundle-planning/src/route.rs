@@ -78,7 +78,7 @@ fn safe_curve(
 }
 
 /// Whether the curve keeps the required room everywhere, and bends no more than allowed.
-fn is_drivable(space: &Space<'_>, curve: &Curve, max_curvature: f64) -> bool {
+pub(crate) fn is_drivable(space: &Space<'_>, curve: &Curve, max_curvature: f64) -> bool {
     let samples = curve.samples(SPACING);
     let smooth = samples.windows(2).all(|pair| {
         let way = pair[1].arc - pair[0].arc;

@@ -3,7 +3,7 @@
 use crate::plan::{Plan, PlanResult};
 use crate::potential::{PotentialField, PotentialKind, PotentialOutcome};
 use crate::pull::pull_taut;
-use crate::route::{Phase, route, turn};
+use crate::route::{Phase, is_drivable, route, turn};
 use crate::space::Space;
 use crate::timing::{Drive, trajectory};
 use crate::wave::{Wave, WaveFront};
@@ -102,7 +102,7 @@ impl Task<'_> {
         }
     }
 
-    /// Straight on until it stands, then a plan from there.
+    /// On along the present arc until it stands, then a plan from there.
     fn brake_first(
         &self,
         wave: &mut WaveFront,
@@ -111,18 +111,19 @@ impl Task<'_> {
         twist: Twist2,
         goal: Pose2,
     ) -> Option<Plan> {
-        let way = twist.v * twist.v / (2.0 * self.drive.limits.acceleration);
-        let stop = start.position() + start.direction() * way.max(2.0 * SAME_PLACE);
-        if self.field.geometry().cell_at(stop).is_none() || !space.sees(start.position(), stop) {
+        let brake = self.brake(start, twist);
+        let standing = brake.pose(brake.span());
+        let stop = standing.position();
+        let inside = self.field.geometry().cell_at(stop).is_some();
+        if !inside || !is_drivable(space, &brake, self.config.curve.max_curvature) {
             return None;
         }
-        let standing = Pose2::new(stop.x, stop.y, start.theta);
         let rest = if standing.distance(&goal) < SAME_PLACE {
             Way { raw: vec![stop], points: vec![stop], fell_back: false }
         } else {
             self.way(wave, space, stop, goal.position()).ok()?
         };
-        let mut phases = vec![Phase::Drive(Curve::line(start.position(), stop))];
+        let mut phases = vec![Phase::Drive(brake)];
         if rest.points.len() > 1 {
             phases.extend(route(space, &rest.points, standing, goal, None, &self.config.curve)?);
         } else {
@@ -134,7 +135,16 @@ impl Task<'_> {
         };
         let whole =
             Way { raw: with_start(rest.raw), points: with_start(rest.points), fell_back: rest.fell_back };
-        Some(self.timed(whole, phases, start, twist.v, twist.omega.abs() <= STANDING))
+        Some(self.timed(whole, phases, start, twist.v, true))
+    }
+
+    /// The arc on which the robot comes to rest as fast as timing allows.
+    fn brake(&self, start: Pose2, twist: Twist2) -> Curve {
+        let curvature = twist.omega / twist.v;
+        let deceleration = self.drive.acceleration(curvature);
+        let length = twist.v * twist.v / (2.0 * deceleration);
+        // A little longer than exact: the quintic is a little shorter than the arc.
+        Curve::arc(start, curvature, (length * 1.001).max(2.0 * SAME_PLACE))
     }
 
     fn timed(&self, way: Way, phases: Vec<Phase>, start: Pose2, v: f64, is_continuous: bool) -> Plan {

@@ -16,6 +16,14 @@ pub(crate) struct Drive {
 /// A speed that is none, m/s.
 const ROUNDING: f64 = 1e-6;
 
+impl Drive {
+    /// The highest change of speed at a curvature, m/s^2: half the angular acceleration is for it.
+    pub(crate) fn acceleration(&self, curvature: f64) -> f64 {
+        let turning = self.limits.angular_acceleration / 2.0 / curvature.abs().max(1e-9);
+        self.limits.acceleration.min(turning)
+    }
+}
+
 /// The speed at each sample, m/s: `v_start` at the first, 0 at the last. Where `v_start` is above a ceiling, it is
 /// braked from as hard as allowed, and harder only where the curve is too short to stop on.
 pub(super) fn speeds(
@@ -47,11 +55,8 @@ fn way(pair: &[CurveSample]) -> f64 {
     pair[1].arc - pair[0].arc
 }
 
-/// The highest change of speed between two samples, m/s^2: half the angular acceleration is for it.
 fn acceleration(pair: &[CurveSample], drive: &Drive) -> f64 {
-    let curvature = pair[0].curvature.abs().max(pair[1].curvature.abs());
-    let turning = drive.limits.angular_acceleration / 2.0 / curvature.max(1e-9);
-    drive.limits.acceleration.min(turning)
+    drive.acceleration(pair[0].curvature.abs().max(pair[1].curvature.abs()))
 }
 
 fn ceilings(samples: &[CurveSample], drive: &Drive, clearance: impl Fn(Vector2) -> f64) -> Vec<f64> {

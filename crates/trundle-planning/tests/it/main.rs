@@ -5,6 +5,7 @@
 
 mod ascii;
 mod bad_input;
+mod discovery;
 mod laws;
 mod maps;
 mod replanning;

@@ -37,6 +37,18 @@ fn a_goal_behind_is_reached_after_braking() {
 }
 
 #[test]
+fn a_turning_robot_brakes_on_its_arc() {
+    let grid = hall();
+    let start = Pose2::new(5.0, 3.0, 0.0);
+    let goal = Pose2::new(2.0, 2.0, 0.0);
+    let twist = Twist2::new(0.4, 1.0);
+    let result = found(planner(at_home(), 0.1755).plan(&grid, start, twist, goal));
+    assert!(result.is_continuous);
+    assert!((result.trajectory.points()[0].twist.omega - 1.0).abs() < 1e-9);
+    judge(&grid, &result, start, goal, 0.1755);
+}
+
+#[test]
 fn something_new_in_the_way_is_noticed_and_planned_around() {
     let mut grid = hall();
     let mut planner = planner(at_home(), 0.1755);
