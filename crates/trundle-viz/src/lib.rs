@@ -1,1 +1,34 @@
-//! Pictures and the report.
+//! Pictures and the report: what a run looks like to a person.
+//!
+//! A [`MapPicture`] is a map from above with paths, poses, landmarks and scans laid over it; [`plan_picture`] and
+//! [`trajectory_picture`] are the ready-made ones of `trundle plan` and `trundle slam`. [`feature_picture`] and
+//! [`depth_picture`] show what the camera saw. A [`Chart`] shows numbers over time. A [`Report`] puts all of it on one HTML
+//! page that needs nothing but a browser, and [`RunReport`] fills that page from the data of a run.
+//!
+//! Pictures are 8-bit RGB PNGs; colours are those of Okabe and Ito (2008), which readers with any colour vision can tell
+//! apart, and one colour keeps its meaning in every picture. The typeface is our own. There is no clock and no chance in
+//! here: same content, same bytes. Nothing here fails: numbers that are not finite are left out, an empty grid or image
+//! gives an empty picture, and what is too large is shrunk.
+
+mod camera;
+mod canvas;
+mod chart;
+mod clip;
+mod color;
+mod colormap;
+mod compose;
+mod font;
+mod html;
+mod legend;
+mod map;
+mod report;
+mod text;
+mod ticks;
+
+pub use camera::{FeatureMark, depth_picture, feature_picture};
+pub use chart::{BarChart, Chart};
+pub use color::Color;
+pub use compose::{CameraView, PlanScene, RunReport, plan_picture, trajectory_picture};
+pub use legend::{LegendItem, Mark};
+pub use map::{DotStyle, LineStyle, MapPicture, PoseStyle};
+pub use report::{Card, Figure, Report, Table, Verdict};

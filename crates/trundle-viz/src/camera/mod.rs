@@ -1,0 +1,6 @@
+mod depth;
+mod feature;
+mod photo;
+
+pub use depth::depth_picture;
+pub use feature::{FeatureMark, feature_picture};

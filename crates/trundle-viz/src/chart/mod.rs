@@ -1,0 +1,7 @@
+mod axes;
+mod bars;
+mod line;
+mod thin;
+
+pub use bars::BarChart;
+pub use line::Chart;

@@ -1,0 +1,30 @@
+//! One colour a meaning, in every picture of the project.
+
+use crate::color::Color;
+use crate::map::{DotStyle, LineStyle};
+
+pub(super) const ESTIMATE: Color = Color::BLUE;
+pub(super) const TRUTH: Color = Color::ORANGE;
+pub(super) const PLAN: Color = Color::rgb(0xb0_4f_88);
+pub(super) const START: Color = Color::GREEN;
+pub(super) const GOAL: Color = Color::VERMILLION;
+pub(super) const SWEPT: Color = Color::SKY.alpha(70);
+pub(super) const LANDMARKS: Color = Color::GREEN;
+pub(super) const SCAN: Color = Color::VERMILLION;
+
+/// Truth is a broad line: an estimate that agrees with it lies on it like a thread.
+pub(super) fn truth_line() -> LineStyle {
+    LineStyle::solid(TRUTH).width(3.4).plain()
+}
+
+pub(super) fn estimate_line() -> LineStyle {
+    LineStyle::solid(ESTIMATE).width(1.4).plain()
+}
+
+pub(super) fn plan_line() -> LineStyle {
+    LineStyle::dashed(PLAN).width(1.4)
+}
+
+pub(super) fn way_point_dots() -> DotStyle {
+    DotStyle::circles(PLAN)
+}

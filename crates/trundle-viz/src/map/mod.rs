@@ -1,0 +1,171 @@
+mod bounds;
+mod cells;
+mod frame;
+mod layer;
+mod style;
+mod view;
+
+pub use style::{DotStyle, LineStyle, PoseStyle};
+
+use crate::canvas::Canvas;
+use crate::color::Color;
+use crate::legend::{LegendItem, Mark, paint_legend};
+use bounds::Bounds;
+use cells::{CellBox, paint_cells};
+use frame::{paint_frame, paint_lattice};
+use layer::{Layer, Shape};
+use trundle_core::{Cell, Footprint, OccupancyGrid, Pose2, Scan, Vector2};
+use view::View;
+
+/// A picture of a map from above, with what the robot thinks and does laid over it.
+///
+/// Everything is given in the map frame, m: x to the right, y up. Layers are drawn in the order they are added. A number
+/// that is not finite leaves out the point, never the picture. The picture shows what the grid knows and what lines and
+/// poses touch; dots and scans never widen it. Each cell is a whole number of pixels; a map of more than 3000 cells a side
+/// is shrunk, walls kept. Ticks, a scale bar and a legend are drawn with a typeface of our own: no font file is needed.
+///
+/// ```
+/// use trundle_core::{OccupancyGrid, Pose2, Vector2};
+/// use trundle_viz::{Color, LineStyle, MapPicture, PoseStyle};
+/// let grid = OccupancyGrid::from_ascii(0.1, "#####\n#...#\n#...#\n#####")?;
+/// let path = [Vector2::new(0.15, 0.15), Vector2::new(0.35, 0.25)];
+/// let png = MapPicture::over(&grid)
+///     .polyline("path", &path, LineStyle::solid(Color::BLUE))
+///     .pose("start", Pose2::new(0.15, 0.15, 0.0), PoseStyle::named(Color::GREEN))
+///     .to_png();
+/// assert_eq!(&png[1..4], b"PNG");
+/// # Ok::<(), trundle_core::Invalid>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct MapPicture<'a> {
+    grid: Option<&'a OccupancyGrid>,
+    layers: Vec<Layer>,
+    window: Option<Bounds>,
+    axes: [String; 2],
+    legend: bool,
+}
+
+impl<'a> MapPicture<'a> {
+    /// A picture over an occupancy grid.
+    pub fn over(grid: &'a OccupancyGrid) -> Self {
+        Self { grid: Some(grid), ..Self::blank() }
+    }
+
+    /// A picture without a map: overlays on squared paper.
+    pub fn blank() -> Self {
+        let axes = ["x, m".to_owned(), "y, m".to_owned()];
+        Self { grid: None, layers: Vec::new(), window: None, axes, legend: true }
+    }
+
+    /// Adds straight pieces between points.
+    pub fn polyline(self, label: &str, points: &[Vector2], style: LineStyle) -> Self {
+        self.layer(label, Shape::Line { points: points.to_vec(), style })
+    }
+
+    /// Adds dots or circles.
+    pub fn dots(self, label: &str, points: &[Vector2], style: DotStyle) -> Self {
+        self.layer(label, Shape::Dots { points: points.to_vec(), style })
+    }
+
+    /// Adds the floor that a disc of `radius` m sweeps along `points`; give the colour some alpha.
+    pub fn band(self, label: &str, points: &[Vector2], radius: f64, color: Color) -> Self {
+        self.layer(label, Shape::Band { points: points.to_vec(), radius, color })
+    }
+
+    /// Adds a pose as a wedge along its heading.
+    pub fn pose(self, label: &str, pose: Pose2, style: PoseStyle) -> Self {
+        self.layer(label, Shape::Pose { pose, style })
+    }
+
+    /// Adds the robot's outline at each pose.
+    pub fn outlines(self, label: &str, poses: &[Pose2], footprint: &Footprint, color: Color) -> Self {
+        self.layer(label, Shape::Outlines { poses: poses.to_vec(), footprint: footprint.clone(), color })
+    }
+
+    /// Adds a scan taken at `map_from_base`: its hits as dots, the area it found free as a tint.
+    pub fn scan(self, label: &str, map_from_base: Pose2, scan: &Scan, color: Color) -> Self {
+        self.layer(label, Shape::scan(map_from_base, scan, color))
+    }
+
+    /// Shows the square of `half_side` m about `center` and nothing else. Ignored when not finite or empty.
+    pub fn window(self, center: Vector2, half_side: f64) -> Self {
+        Self { window: Bounds::square(center, half_side), ..self }
+    }
+
+    /// Names the axes, unit included.
+    pub fn axes(self, right: &str, up: &str) -> Self {
+        Self { axes: [right.to_owned(), up.to_owned()], ..self }
+    }
+
+    /// Leaves the legend out of the picture, for a page that shows [`MapPicture::legend`] itself.
+    pub fn without_legend(self) -> Self {
+        Self { legend: false, ..self }
+    }
+
+    /// What the colours mean: every visible layer once, then the kinds of cells.
+    pub fn legend(&self) -> Vec<LegendItem> {
+        let mut items: Vec<LegendItem> = Vec::new();
+        for item in self.layers.iter().filter_map(Layer::legend) {
+            if !items.iter().any(|known| known.label == item.label) {
+                items.push(item);
+            }
+        }
+        let kinds = [
+            (Cell::Free, "free", Color::FREE),
+            (Cell::Occupied, "occupied", Color::OCCUPIED),
+            (Cell::Unknown, "unknown", Color::UNKNOWN),
+        ];
+        let cells = self.grid.map_or(&[][..], OccupancyGrid::cells);
+        let present = kinds.into_iter().filter(|(kind, ..)| cells.contains(kind));
+        items.extend(present.map(|(_, label, color)| LegendItem::new(label, color, Mark::Cell)));
+        items
+    }
+
+    /// The picture as an 8-bit RGB PNG, at most about 3000 px a side. Same content, same bytes.
+    pub fn to_png(&self) -> Vec<u8> {
+        let view = self.view();
+        let mut plot = self.ground(&view);
+        self.layers.iter().for_each(|layer| layer.draw(&mut plot, &view));
+        let legend = self.legend.then(|| paint_legend(&self.legend(), view.width, view.unit()));
+        paint_frame(&plot, &view, &self.axes, legend.as_ref()).to_png()
+    }
+
+    fn layer(mut self, label: &str, shape: Shape) -> Self {
+        const LONGEST: usize = 60;
+        self.layers.push(Layer { label: label.chars().take(LONGEST).collect(), shape });
+        self
+    }
+
+    fn view(&self) -> View {
+        let content = Bounds::around(self.layers.iter().flat_map(Layer::anchors));
+        let content = content.or_else(|| Bounds::around(self.layers.iter().flat_map(Layer::strays)));
+        let Some(grid) = self.grid else {
+            let fallback = Bounds { min: Vector2::zeros(), max: Vector2::zeros() };
+            return View::of_bounds(self.window.or(content).unwrap_or(fallback), self.window.is_some());
+        };
+        let geometry = grid.geometry();
+        let content = content.map(|bounds| CellBox::touching(geometry, bounds));
+        let block = match (self.window, CellBox::known(grid), content) {
+            (Some(window), ..) => CellBox::touching(geometry, window),
+            (None, Some(known), Some(content)) => known.widened_to(&content).with_margin(),
+            (None, None, Some(content)) => content.with_margin(),
+            (None, Some(known), None) => known.with_margin(),
+            (None, None, None) => CellBox::whole(geometry),
+        };
+        View::of_cells(geometry, block)
+    }
+
+    fn ground(&self, view: &View) -> Canvas {
+        match (self.grid, view.cells) {
+            (Some(grid), Some((block, zoom))) => paint_cells(grid, block, zoom, view),
+            _ => {
+                let mut canvas = Canvas::new(view.width, view.height, Color::WHITE);
+                paint_lattice(&mut canvas, view);
+                canvas
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

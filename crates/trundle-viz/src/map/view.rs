@@ -1,0 +1,130 @@
+use super::bounds::Bounds;
+use super::cells::CellBox;
+use crate::clip::Px;
+use trundle_core::{GridGeometry, Vector2};
+
+/// The longer side of a plot is at least this, px, unless the grid says otherwise.
+const TARGET_PX: f64 = 1100.0;
+/// The longer side of a plot is at most this, px.
+const MAX_PX: i64 = 3000;
+
+/// How many pixels a cell gets, or how many cells a pixel.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Zoom {
+    /// Each cell is this many pixels wide.
+    PxPerCell(i64),
+    /// Each pixel is this many cells wide.
+    CellsPerPx(i64),
+}
+
+/// Which part of the map frame a plot shows, and how large.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct View {
+    /// Lower left corner, m.
+    corner: Vector2,
+    px_per_m: f64,
+    /// Size of the plot, px.
+    pub width: i64,
+    pub height: i64,
+    /// The cells shown, where there is a grid.
+    pub cells: Option<(CellBox, Zoom)>,
+}
+
+impl View {
+    /// A view of a block of cells, each a whole number of pixels (or the other way round for huge blocks).
+    pub(crate) fn of_cells(geometry: &GridGeometry, block: CellBox) -> Self {
+        let long = block.cols().max(block.rows()).max(1);
+        let zoom = match long {
+            n if n <= MAX_PX => Zoom::PxPerCell((TARGET_PX / n as f64).ceil().max(1.0) as i64),
+            n => Zoom::CellsPerPx((n + MAX_PX - 1) / MAX_PX),
+        };
+        let (px_per_cell, px) = match zoom {
+            Zoom::PxPerCell(n) => (n as f64, [block.cols() * n, block.rows() * n]),
+            Zoom::CellsPerPx(k) => (1.0 / k as f64, [block.cols() / k, block.rows() / k]),
+        };
+        let low = Vector2::new(block.low[0] as f64, block.low[1] as f64);
+        Self {
+            corner: geometry.origin + low * geometry.resolution,
+            px_per_m: px_per_cell / geometry.resolution,
+            width: px[0].max(1),
+            height: px[1].max(1),
+            cells: Some((block, zoom)),
+        }
+    }
+
+    /// A view of a rectangle without a grid; `exact` leaves out the margin around it.
+    pub(crate) fn of_bounds(bounds: Bounds, exact: bool) -> Self {
+        let extent = bounds.max - bounds.min;
+        let long = if extent.max() > 1e-9 { extent.max() } else { 1.0 };
+        let margin = if exact { 0.0 } else { 0.06 * long };
+        let sides = extent.map(|side| side.max(0.3 * long) + 2.0 * margin);
+        let px_per_m = TARGET_PX / sides.max();
+        Self {
+            corner: (bounds.min + bounds.max) / 2.0 - sides / 2.0,
+            px_per_m,
+            width: (sides.x * px_per_m).round() as i64,
+            height: (sides.y * px_per_m).round() as i64,
+            cells: None,
+        }
+    }
+
+    /// The place of a point of the map frame: x to the right, y up. Not finite for what cannot be drawn.
+    pub(crate) fn px(&self, point: Vector2) -> Px {
+        let offset = (point - self.corner) * self.px_per_m;
+        (offset.x, self.height as f64 - offset.y)
+    }
+
+    /// A length in the map frame, px.
+    pub(crate) fn length_px(&self, metres: f64) -> f64 {
+        metres * self.px_per_m
+    }
+
+    /// A length in the picture, m.
+    pub(crate) fn metres(&self, px: f64) -> f64 {
+        px / self.px_per_m
+    }
+
+    /// The coordinates shown: lower left and upper right corner, m.
+    pub(crate) fn extent(&self) -> (Vector2, Vector2) {
+        let size = Vector2::new(self.metres(self.width as f64), self.metres(self.height as f64));
+        (self.corner, self.corner + size)
+    }
+
+    /// The unit of all that does not scale with the map: text dots and line widths, px.
+    pub(crate) fn unit(&self) -> i64 {
+        ((self.width.max(self.height) as f64 / 550.0).round() as i64).clamp(1, 6)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn geometry() -> GridGeometry {
+        GridGeometry::new(0.05, Vector2::new(-1.0, -2.0), 100, 80).unwrap()
+    }
+
+    #[test]
+    fn cells_are_whole_pixels_and_y_points_up() {
+        let view = View::of_cells(&geometry(), CellBox { low: [0, 0], high: [100, 80] });
+        assert_eq!((view.width, view.height), (1100, 880));
+        assert_eq!(view.cells.unwrap().1, Zoom::PxPerCell(11));
+        let (x, y) = view.px(Vector2::new(-0.95, -1.95));
+        assert!((x - 11.0).abs() < 1e-9 && (y - 869.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn huge_blocks_shrink_to_the_limit() {
+        let view = View::of_cells(&geometry(), CellBox { low: [-40_000, 0], high: [50_000, 10] });
+        assert_eq!(view.cells.unwrap().1, Zoom::CellsPerPx(30));
+        assert_eq!((view.width, view.height), (3000, 1));
+    }
+
+    #[test]
+    fn bounds_without_extent_still_give_a_picture() {
+        let point = Vector2::new(3.0, 4.0);
+        let view = View::of_bounds(Bounds { min: point, max: point }, false);
+        assert!(view.width > 100 && view.height > 100);
+        assert!((view.px(point).0 - view.width as f64 / 2.0).abs() < 1.0);
+    }
+}

@@ -1,0 +1,71 @@
+use crate::html::escape;
+
+/// A table of texts. A column whose cells all begin as numbers do is set flush right.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Table {
+    title: String,
+    header: Vec<String>,
+    rows: Vec<Vec<String>>,
+    wide: bool,
+}
+
+impl Table {
+    /// A table without rows. It takes half the page's width up to four columns.
+    pub fn new<T: Into<String>>(title: &str, header: impl IntoIterator<Item = T>) -> Self {
+        let header: Vec<String> = header.into_iter().map(Into::into).collect();
+        let wide = header.len() > 4;
+        Self { title: title.to_owned(), header, rows: Vec::new(), wide }
+    }
+
+    /// Adds a row. Cells beyond the header are kept, missing ones stay empty.
+    pub fn row<T: Into<String>>(mut self, cells: impl IntoIterator<Item = T>) -> Self {
+        self.rows.push(cells.into_iter().map(Into::into).collect());
+        self
+    }
+
+    /// Makes the table as wide as the page.
+    pub fn wide(self) -> Self {
+        Self { wide: true, ..self }
+    }
+
+    pub(super) fn to_html(&self) -> String {
+        let columns = self.rows.iter().map(Vec::len).chain([self.header.len()]).max().unwrap_or(0);
+        let numeric: Vec<bool> = (0..columns).map(|column| self.is_numeric(column)).collect();
+        let line = |cells: &[String], tag: &str| {
+            let cell = |(column, right): (usize, &bool)| {
+                let class = if *right { " class=\"num\"" } else { "" };
+                format!("<{tag}{class}>{}</{tag}>", escape(cells.get(column).map_or("", String::as_str)))
+            };
+            format!("<tr>{}</tr>", numeric.iter().enumerate().map(cell).collect::<String>())
+        };
+        let body: String = self.rows.iter().map(|row| line(row, "td")).collect();
+        let wide = if self.wide { " wide" } else { "" };
+        format!(
+            "<div class=\"table{wide}\"><h3>{}</h3><table><thead>{}</thead><tbody>{body}</tbody></table></div>\n",
+            escape(&self.title),
+            line(&self.header, "th"),
+        )
+    }
+
+    fn is_numeric(&self, column: usize) -> bool {
+        let mut cells =
+            self.rows.iter().filter_map(|row| row.get(column)).filter(|cell| !cell.is_empty()).peekable();
+        let number =
+            |cell: &String| cell.split_whitespace().next().is_some_and(|word| word.parse::<f64>().is_ok());
+        cells.peek().is_some() && cells.all(number)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_stand_right_and_ragged_rows_are_filled() {
+        let html =
+            Table::new("t", ["name", "value"]).row(["a", "1.5 cm"]).row(["b", "-2"]).row(["c"]).to_html();
+        assert!(html.contains("<td>a</td><td class=\"num\">1.5 cm</td>"), "{html}");
+        assert!(html.contains("<td>c</td><td class=\"num\"></td>"));
+        assert!(Table::new::<String>("", []).to_html().contains("<tr></tr>"));
+    }
+}
