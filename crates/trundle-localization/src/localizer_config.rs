@@ -16,10 +16,10 @@ pub struct LocalizerConfig {
     pub scan_position_sigma: f64,
     /// Noise of a scan match's heading beyond its own covariance (one sigma), deg, 0.01 to 30. Default 0.5.
     pub scan_heading_sigma_deg: f64,
-    /// No number of corrections makes the position surer than this (one sigma), m, 0 to 1. Default 0.01: neighbouring
-    /// images err alike, so that their mean is no better than one of them.
+    /// No number of corrections makes the position surer than this (one sigma), m, 0 to 1. Default 0.015: neighbouring
+    /// images err alike, so that their mean is hardly better than one of them.
     pub least_position_sigma: f64,
-    /// No number of corrections makes the heading surer than this (one sigma), deg, 0 to 30. Default 0.3.
+    /// No number of corrections makes the heading surer than this (one sigma), deg, 0 to 30. Default 0.45.
     pub least_heading_sigma_deg: f64,
     /// Measurements farther off than this are not believed, in sigmas (Mahalanobis distance), 1 to 100. Default 4: one
     /// good measurement in 1000.
@@ -45,8 +45,8 @@ impl Default for LocalizerConfig {
             weak_factor: 3.0,
             scan_position_sigma: 0.02,
             scan_heading_sigma_deg: 0.5,
-            least_position_sigma: 0.01,
-            least_heading_sigma_deg: 0.3,
+            least_position_sigma: 0.015,
+            least_heading_sigma_deg: 0.45,
             gate: 4.0,
             recover_after: 8,
             jump_distance: 0.1,

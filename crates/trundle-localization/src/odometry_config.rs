@@ -30,7 +30,8 @@ pub struct OdometryConfig {
     pub gyro_bias_walk: f64,
     /// Wheels at rest for this long are a robot at rest, s, 0.05 to 10: then the bias is measured. Default 0.3.
     pub still_time: f64,
-    /// The gyro is missing when its last reading is older than this, s, 0.02 to 2. Default 0.1: five readings at 50 Hz.
+    /// The gyro is missing when its last reading is older than this, s, 0.02 to 2. Default 0.05: two readings at 50 Hz.
+    /// So long its rate is held.
     pub gyro_timeout: f64,
     /// Wheels and gyro whose turn rates differ by more than this slip, rad/s, 0.01 to 10. Default 0.2: above the tick's
     /// step (0.02 rad/s at 50 Hz) and a wheelbase wrong by 5 % at 180 deg/s.
@@ -59,7 +60,7 @@ impl Default for OdometryConfig {
             gyro_bias_sigma: 0.02,
             gyro_bias_walk: 0.0002,
             still_time: 0.3,
-            gyro_timeout: 0.1,
+            gyro_timeout: 0.05,
             slip_rate: 0.2,
             slip_length: 0.1,
             max_speed: 2.0,

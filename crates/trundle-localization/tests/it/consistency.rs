@@ -81,7 +81,7 @@ fn white_errors_give_the_error_that_the_covariance_promises() {
 #[test]
 fn errors_that_last_do_not_make_the_filter_too_sure() {
     let usual = LocalizerConfig::default();
-    // Errors last for 2 s.
+    // Errors last for 0.6 s: ten measurements.
     let error = mean_squared_error(&usual, 0.9, 20);
     assert!(error < 6.0, "{error}");
     let trusting = LocalizerConfig { least_position_sigma: 0.0, least_heading_sigma_deg: 0.0, ..usual };

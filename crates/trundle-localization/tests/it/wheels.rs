@@ -139,7 +139,8 @@ fn without_a_gyro_for_a_while_the_wheels_steer() {
     drive.drive(Twist2::new(0.0, 1.0), 50);
     drive.drive_with_gyro(Twist2::new(0.0, 1.0), 1.0, 50);
     let theta = drive.odometry.odometry().pose.theta;
-    assert!((theta - 2.0).abs() < 0.05, "{theta}");
+    // When it fell silent its last rate was held for 0.05 s.
+    assert!((theta - 2.0).abs() < 0.055, "{theta}");
 }
 
 #[test]
