@@ -147,8 +147,7 @@ impl DepthModel {
         if z <= 0.0 {
             return 0.0;
         }
-        let more = mix(bits);
-        let chance = |nth: u32| (more >> (nth * 20) & 0xF_FFFF) as f32 / (1 << 20) as f32;
+        let chance = |nth: u32| (mix(bits) >> (nth * 20) & 0xF_FFFF) as f32 / (1 << 20) as f32;
         let (slant, grazing_loss) = self.by_cosine[(truth.cosine * 255.0 + 0.5) as usize & 255];
         if truth.beyond > 0.0 {
             let fate = chance(0);
@@ -162,13 +161,13 @@ impl DepthModel {
         let weakest = noise.weakest_return as f32;
         let weak_loss =
             if weakest > 0.0 { 1.0 - truth.luminance * truth.cosine / (z * z * weakest) } else { 0.0 };
-        if chance(2) < grazing_loss.max(weak_loss) {
+        let loss = grazing_loss.max(weak_loss);
+        if loss > 0.0 && chance(2) < loss {
             return 0.0;
         }
         z += noise.axial_factor as f32 * axial_sigma(z, slant) * normals.pick(bits, 0);
         let quantum = noise.quantum as f32;
-        let steps = (z / quantum + 0.5).floor();
-        let z = steps * quantum;
+        let z = (z / quantum + 0.5) as u32 as f32 * quantum;
         if z >= noise.nearest as f32 && z <= noise.farthest as f32 { z } else { 0.0 }
     }
 }

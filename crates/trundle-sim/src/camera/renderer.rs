@@ -31,6 +31,9 @@ pub struct View {
 #[derive(Debug, Clone)]
 pub struct Renderer {
     camera: PinholeCamera,
+    /// Normalised image coordinate of every column and row.
+    columns: Vec<f32>,
+    rows: Vec<f32>,
 }
 
 impl Renderer {
@@ -47,7 +50,12 @@ impl Renderer {
                 "a rectified camera",
             ));
         }
-        Ok(Self { camera })
+        let normalized = |n: usize, center: f64, focal: f64| {
+            (0..n).map(|i| ((i as f64 - center) / focal) as f32).collect::<Vec<_>>()
+        };
+        let columns = normalized(camera.width(), camera.cx(), camera.fx());
+        let rows = normalized(camera.height(), camera.cy(), camera.fy());
+        Ok(Self { camera, columns, rows })
     }
 
     /// The camera.
@@ -70,7 +78,7 @@ impl Renderer {
         };
         let seen: Vec<Seen> =
             world.solids().iter().zip(paintings.iter().map(Vec::as_slice)).map(look).collect();
-        let scene = SeenWorld { world, camera: &self.camera, world_from_camera, seen: &seen };
+        let scene = SeenWorld { world, renderer: self, world_from_camera, seen: &seen };
         let band = TILE_ROWS * view.width;
         view.depth
             .par_chunks_mut(band)
@@ -86,7 +94,7 @@ impl Renderer {
 /// Everything that drawing a tile needs.
 struct SeenWorld<'a> {
     world: &'a World,
-    camera: &'a PinholeCamera,
+    renderer: &'a Renderer,
     world_from_camera: &'a Pose3,
     seen: &'a [Seen<'a>],
 }
@@ -100,13 +108,13 @@ struct Band<'a> {
 
 impl SeenWorld<'_> {
     fn draw_band(&self, top: usize, candidates: &mut Candidates, band: &mut Band) {
-        let width = self.camera.width();
+        let width = self.renderer.camera.width();
         let rows = band.depth.len() / width;
         for left in (0..width).step_by(LANES) {
             let right = (left + LANES).min(width) - 1;
             candidates.gather(
                 self.world,
-                self.camera,
+                &self.renderer.camera,
                 self.world_from_camera,
                 (left, top),
                 (right, top + rows - 1),
@@ -123,11 +131,11 @@ impl SeenWorld<'_> {
     fn meet_tile(&self, (left, top): (usize, usize), rows: usize, list: &[(f32, u32)]) -> [Lanes; TILE_ROWS] {
         let mut tile = [Lanes::empty(); TILE_ROWS];
         let mut reach = f32::INFINITY;
+        let step = (1.0 / self.renderer.camera.fx()) as f32;
         for &(least_depth, solid) in list {
             if least_depth > reach {
                 break;
             }
-            let step = (1.0 / self.camera.fx()) as f32;
             for (row, lanes) in tile.iter_mut().enumerate().take(rows) {
                 self.seen[solid as usize].meet(self.normalized(left, top + row), step, solid, lanes);
             }
@@ -142,13 +150,12 @@ impl SeenWorld<'_> {
             (band.depth[at], band.color[at], band.cosine[at]) = (0.0, [0; 3], 0.0);
             return;
         }
-        let pixel = (1.0 / self.camera.fx()) as f32;
+        let pixel = (1.0 / self.renderer.camera.fx()) as f32;
         let look = self.seen[solid as usize].look(self.normalized(x, y), depth, pixel);
         (band.depth[at], band.color[at], band.cosine[at]) = (depth, look.color, look.cosine);
     }
 
     fn normalized(&self, x: usize, y: usize) -> (f32, f32) {
-        let camera = self.camera;
-        (((x as f64 - camera.cx()) / camera.fx()) as f32, ((y as f64 - camera.cy()) / camera.fy()) as f32)
+        (self.renderer.columns[x], self.renderer.rows[y])
     }
 }

@@ -1,5 +1,5 @@
 use super::lanes::{self, Lanes};
-use crate::paint::Texture;
+use crate::paint::{Light, Texture};
 use crate::world::Shape;
 use trundle_core::{Pose3, Vector3};
 
@@ -7,8 +7,8 @@ use trundle_core::{Pose3, Vector3};
 const LAMPS: [([f32; 3], f32); 2] = [([0.31, 0.45, 0.84], 0.30), ([-0.62, -0.52, 0.59], 0.16)];
 const AMBIENT: f32 = 0.64;
 
-/// Most samples along the long axis of a pixel's footprint on a surface seen at a slant.
-const MOST_TAPS: f32 = 4.0;
+/// Surfaces seen at a slant beyond this cosine of incidence get two samples along the pixel's long footprint.
+const SLANT: f32 = 0.7;
 
 /// A solid as the camera sees it in one image: everything in the solid's own frame, f32.
 #[derive(Debug)]
@@ -18,8 +18,8 @@ pub(super) struct Seen<'w> {
     origin: [f32; 3],
     /// `solid_from_camera`, rotation, by rows.
     turn: [[f32; 3]; 3],
-    /// (sine, cosine) of the solid's yaw, to bring normals to the world.
-    yaw: (f32, f32),
+    /// Light on each face of a box.
+    light: [f32; 6],
     paintings: &'w [Texture],
 }
 
@@ -58,7 +58,7 @@ impl<'w> Seen<'w> {
         let turn = (solid_from_world * world_from_camera.rotation_matrix()).map(|x| x as f32);
         let origin = (solid_from_world * (world_from_camera.translation - place)).map(|x| x as f32);
         let rows = [0, 1, 2].map(|i| [turn[(i, 0)], turn[(i, 1)], turn[(i, 2)]]);
-        Self { form, origin: origin.into(), turn: rows, yaw: (yaw.sin() as f32, yaw.cos() as f32), paintings }
+        Self { form, origin: origin.into(), turn: rows, light: light_on_faces(yaw as f32), paintings }
     }
 
     /// The ray through normalised image coordinates (x, y), solid frame; its part along the optical axis is 1.
@@ -88,8 +88,11 @@ impl<'w> Seen<'w> {
         };
         let length = (x * x + y * y + 1.0).sqrt();
         let cosine = (dot(spot.normal, d).abs() / length).clamp(1e-3, 1.0);
-        let texel = self.filtered(&spot, depth * pixel, cosine);
-        let light = self.light(spot.normal);
+        let texel = self.filtered(&spot, depth * pixel, cosine).rgb();
+        let light = match self.form {
+            Form::Cuboid(_) => self.light[spot.face],
+            Form::Cylinder(..) => light_on(spot.normal),
+        };
         Look { color: texel.map(|c| (c * light + 0.5) as u8), cosine }
     }
 
@@ -112,28 +115,30 @@ impl<'w> Seen<'w> {
         Spot { face: 2 * axis + usize::from(sign < 0.0), uv, normal, along }
     }
 
-    /// The mean colour of the pixel's footprint: several samples along its long axis, each as wide as its short one.
-    fn filtered(&self, spot: &Spot, footprint: f32, cosine: f32) -> [f32; 3] {
-        let texture = &self.paintings[spot.face.min(self.paintings.len() - 1)];
-        let long = footprint / cosine;
-        let taps = (1.0 / cosine - 0.25).ceil().clamp(1.0, MOST_TAPS);
-        let norm = (spot.along[0] * spot.along[0] + spot.along[1] * spot.along[1]).sqrt().max(1e-6);
-        let width = footprint.max(long / taps);
-        let mut sum = [0; 3];
-        for tap in 0..taps as usize {
-            let shift = ((tap as f32 + 0.5) / taps - 0.5) * long / norm;
-            let (u, v) = (spot.uv[0] + shift * spot.along[0], spot.uv[1] + shift * spot.along[1]);
-            let texel = texture.sample(u, v, width);
-            sum = [sum[0] + (texel & 0xFF), sum[1] + (texel >> 8 & 0xFF), sum[2] + (texel >> 16 & 0xFF)];
+    /// The mean colour of the pixel's footprint: at a slant two samples along its long axis, each as wide as half of it.
+    fn filtered(&self, spot: &Spot, footprint: f32, cosine: f32) -> Light {
+        let texture = &self.paintings[spot.face];
+        let ([u, v], [du, dv]) = (spot.uv, spot.along);
+        if cosine > SLANT {
+            return texture.sample(u, v, footprint);
         }
-        sum.map(|c| c as f32 / taps)
+        let half = 0.5 * footprint / cosine;
+        let shift = 0.5 * half / (du * du + dv * dv).sqrt().max(1e-6);
+        let width = footprint.max(half);
+        let near = texture.sample(u - shift * du, v - shift * dv, width);
+        near.blend(texture.sample(u + shift * du, v + shift * dv, width), 128)
     }
+}
 
-    fn light(&self, n: [f32; 3]) -> f32 {
-        let (s, c) = self.yaw;
-        let n = [c * n[0] - s * n[1], s * n[0] + c * n[1], n[2]];
-        AMBIENT + LAMPS.iter().map(|(lamp, strength)| strength * dot(*lamp, n).max(0.0)).sum::<f32>()
-    }
+fn light_on_faces(yaw: f32) -> [f32; 6] {
+    let (s, c) = yaw.sin_cos();
+    let normals = [[c, s, 0.0], [-c, -s, 0.0], [-s, c, 0.0], [s, -c, 0.0], [0.0, 0.0, 1.0], [0.0, 0.0, -1.0]];
+    normals.map(light_on)
+}
+
+/// Light on a surface with this normal, world frame.
+fn light_on(normal: [f32; 3]) -> f32 {
+    AMBIENT + LAMPS.iter().map(|(lamp, strength)| strength * dot(*lamp, normal).max(0.0)).sum::<f32>()
 }
 
 fn spot_on_cylinder(radius: f32, height: f32, p: [f32; 3], d: [f32; 3]) -> Spot {

@@ -1,6 +1,6 @@
 use super::depth_noise::{DepthModel, DepthTruth};
 use super::{ColorNoise, DepthNoise, View};
-use crate::chance::{NormalTable, hash};
+use crate::chance::{GOLDEN, NormalTable, hash, mix};
 use rayon::prelude::*;
 use trundle_core::{ColorImage, DepthImage, Invalid, RgbdImage, Stamp};
 
@@ -45,7 +45,7 @@ impl RgbdSensor {
         let step = self.depth.edge_step();
         for x in 0..view.width {
             let at = y * view.width + x;
-            let bits = hash(key, at as u64);
+            let bits = mix(key.wrapping_add((at as u64).wrapping_mul(GOLDEN)));
             let truth = DepthTruth {
                 depth: view.depth[at],
                 beyond: beyond_edge(view, (x, y), step),
@@ -63,6 +63,9 @@ fn luminance([r, g, b]: [u8; 3]) -> f32 {
     (0.299 * f32::from(r) + 0.587 * f32::from(g) + 0.114 * f32::from(b)) / 255.0
 }
 
+/// Stands for the depth of "nothing there", m.
+const FAR: f32 = 1e6;
+
 /// The depth on the other side of an edge that the pixel lies at, m; 0 when there is no edge of at least `step` m.
 ///
 /// Inverse depth is an affine function of the pixel on any plane, so its second difference vanishes there, however steep
@@ -70,26 +73,29 @@ fn luminance([r, g, b]: [u8; 3]) -> f32 {
 fn beyond_edge(view: &View, (x, y): (usize, usize), step: f32) -> f32 {
     let at = y * view.width + x;
     let z = view.depth[at];
-    if z <= 0.0 {
-        return 0.0;
+    let mut beyond = 0.0;
+    if z > 0.0 && y > 0 && y + 1 < view.height {
+        beyond = step_to(view.depth[at - view.width], z, view.depth[at + view.width], step);
     }
-    let mut beyond = (0.0, step);
-    let mut look = |before: f32, after: f32| {
-        let bent = |other: f32| if other > 0.0 { z / other } else { 0.0 };
-        let (a, b) = (bent(before), bent(after));
-        let jump = z * (a + b - 2.0).abs();
-        if jump > beyond.1 {
-            let other = if (a - 1.0).abs() > (b - 1.0).abs() { before } else { after };
-            beyond = (other, jump);
-        }
-    };
-    if x > 0 && x + 1 < view.width {
-        look(view.depth[at - 1], view.depth[at + 1]);
+    if z > 0.0 && beyond == 0.0 && x > 0 && x + 1 < view.width {
+        beyond = step_to(view.depth[at - 1], z, view.depth[at + 1], step);
     }
-    if y > 0 && y + 1 < view.height {
-        look(view.depth[at - view.width], view.depth[at + view.width]);
+    beyond
+}
+
+/// Which of a pixel's two neighbours lies beyond an edge, its depth; 0 when neither does.
+fn step_to(before: f32, z: f32, after: f32, step: f32) -> f32 {
+    let a = if before > 0.0 { before } else { FAR };
+    let b = if after > 0.0 { after } else { FAR };
+    // z |z/a + z/b - 2| > step, without divisions.
+    let product = a * b;
+    if z * (z * (a + b) - 2.0 * product).abs() <= step * product {
+        0.0
+    } else if (z - a).abs() * b > (z - b).abs() * a {
+        a
+    } else {
+        b
     }
-    beyond.0
 }
 
 #[cfg(test)]

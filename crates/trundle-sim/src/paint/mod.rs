@@ -15,7 +15,7 @@ use crate::world::{Shape, Solid};
 use color::{Rgb, packed};
 use poster::Poster;
 use rayon::prelude::*;
-pub(crate) use texture::Texture;
+pub(crate) use texture::{Light, Texture};
 
 /// Sides of textures are multiples of this, so that five levels halve exactly.
 const TEXELS: usize = 16;

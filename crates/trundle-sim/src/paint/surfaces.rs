@@ -12,7 +12,7 @@ fn grain(seed: u32, x: f32, y: f32, strength: f32) -> f32 {
 pub(super) fn plaster(seed: u32, color: [u8; 3], x: f32, y: f32) -> Rgb {
     let spatter = value(seed ^ 5, x / 0.045, y / 0.045);
     let mark = if spatter > 0.72 { -34.0 } else { 0.0 };
-    lifted(rgb(color), grain(seed, x, y, 22.0) + mark)
+    lifted(rgb(color), grain(seed, x, y, 30.0) + mark)
 }
 
 /// Wallpaper: a motif of its own in every field.
@@ -104,5 +104,5 @@ pub(super) fn ceiling(seed: u32, x: f32, y: f32) -> Rgb {
     }
     let hole = value(seed, x / 0.05, y / 0.05) > 0.6;
     let base = 176.0 + 24.0 * draw(2) - if hole { 50.0 } else { 0.0 };
-    lifted([base; 3], grain(seed, x, y, 16.0))
+    lifted([base; 3], grain(seed, x, y, 28.0))
 }

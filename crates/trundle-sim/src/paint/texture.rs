@@ -41,7 +41,7 @@ impl Texture {
     }
 
     /// The colour at (u, v) m, averaged over about `footprint` m.
-    pub(crate) fn sample(&self, u: f32, v: f32, footprint: f32) -> u32 {
+    pub(crate) fn sample(&self, u: f32, v: f32, footprint: f32) -> Light {
         let level = fast_log2(footprint / self.texel).max(0.0);
         let last = self.levels.len() - 1;
         let lower = (level as usize).min(last);
@@ -50,19 +50,55 @@ impl Texture {
         if part == 0 || lower == last {
             return sharp;
         }
-        blend(sharp, self.bilinear(&self.levels[lower + 1], u, v), part)
+        sharp.blend(self.bilinear(&self.levels[lower + 1], u, v), part)
     }
 
-    fn bilinear(&self, level: &Level, u: f32, v: f32) -> u32 {
-        let x = ((u * level.across - 0.5) * 256.0) as i32;
-        let y = ((v * level.down - 0.5) * 256.0) as i32;
-        let (x, y) = (x.clamp(0, (level.width - 1) << 8), y.clamp(0, (level.height - 1) << 8));
-        let (x0, y0) = (x >> 8, y >> 8);
-        let (x1, y1) = ((x0 + 1).min(level.width - 1), (y0 + 1).min(level.height - 1));
-        let at = |x: i32, y: i32| self.texels[level.first + (y * level.width + x) as usize];
-        let (fx, fy) = ((x & 255) as u32, (y & 255) as u32);
-        blend(blend(at(x0, y0), at(x1, y0), fx), blend(at(x0, y1), at(x1, y1), fx), fy)
+    /// Between the four texels around a point, in sixteenths of a texel.
+    fn bilinear(&self, level: &Level, u: f32, v: f32) -> Light {
+        let x = ((u * level.across - 0.5) * 16.0) as i32;
+        let y = ((v * level.down - 0.5) * 16.0) as i32;
+        let (x, y) = (x.clamp(0, (level.width - 1) << 4), y.clamp(0, (level.height - 1) << 4));
+        let (x0, y0) = (x >> 4, y >> 4);
+        let right = usize::from(x0 < level.width - 1);
+        let below = if y0 < level.height - 1 { level.width as usize } else { 0 };
+        let at = level.first + (y0 * level.width + x0) as usize;
+        let (fx, fy) = ((x & 15) as u64, (y & 15) as u64);
+        let both = fx * fy;
+        let upper = spread(self.texels[at]) * (256 + both - 16 * (fx + fy))
+            + spread(self.texels[at + right]) * (16 * fx - both);
+        let lower = spread(self.texels[at + below]) * (16 * fy - both)
+            + spread(self.texels[at + below + right]) * both;
+        Light(upper + lower)
     }
+}
+
+/// A colour as three 8.8 fixed-point numbers in one word: red at bit 0, blue at 16, green at 32. Arithmetic works on all
+/// three at once.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Light(u64);
+
+impl Light {
+    /// Between two colours, `part` of 256 of the second.
+    pub(crate) fn blend(self, other: Self, part: u32) -> Self {
+        let part = u64::from(part);
+        Self(self.rounded() * (256 - part) + other.rounded() * part)
+    }
+
+    /// Red, green, blue, 0 to 255.
+    pub(crate) fn rgb(self) -> [f32; 3] {
+        [0, 32, 16].map(|shift| (self.0 >> shift & 0xFFFF) as i32 as f32 * (1.0 / 256.0))
+    }
+
+    /// Whole numbers in the three lanes.
+    fn rounded(self) -> u64 {
+        (self.0 + 0x80_0080_0080) >> 8 & 0xFF_00FF_00FF
+    }
+}
+
+/// The bytes of a texel in the lanes of [`Light`].
+fn spread(texel: u32) -> u64 {
+    let texel = u64::from(texel);
+    texel & 0xFF_00FF | (texel & 0xFF00) << 24
 }
 
 /// Appends the level of half the size of the one that starts at `first`.
@@ -78,14 +114,6 @@ fn halve(texels: &mut Vec<u32>, first: usize, (width, height): (usize, usize)) {
     }
 }
 
-/// Between two colours, `part` of 256 of the second, all three channels at once, rounded.
-fn blend(a: u32, b: u32, part: u32) -> u32 {
-    let keep = 256 - part;
-    let red_blue = ((a & 0xFF00FF) * keep + (b & 0xFF00FF) * part + 0x80_0080) >> 8 & 0xFF00FF;
-    let green = ((a & 0xFF00) * keep + (b & 0xFF00) * part + 0x8000) >> 8 & 0xFF00;
-    red_blue | green
-}
-
 /// log2 by the exponent and a straight line over the mantissa: at most 0.09 low. Smooth, which is what matters here.
 fn fast_log2(x: f32) -> f32 {
     x.to_bits() as f32 / (1 << 23) as f32 - 127.0
@@ -99,16 +127,18 @@ mod tests {
     fn a_wide_look_sees_the_mean_and_a_narrow_one_the_texel() {
         let checker = (0..64 * 32).map(|i| if (i / 64 + i) % 2 == 0 { 0xFF_FFFF } else { 0 }).collect();
         let texture = Texture::new(64, 32, checker, (0.64, 0.32));
-        assert_eq!(texture.sample(0.105, 0.105, 0.005), 0xFF_FFFF);
-        assert_eq!(texture.sample(0.115, 0.105, 0.005), 0);
-        assert_eq!(texture.sample(0.3, 0.2, 0.05), 0x80_8080);
-        assert_eq!(texture.sample(-5.0, 50.0, 1e9), 0x80_8080);
+        assert_eq!(texture.sample(0.105, 0.105, 0.005).rgb(), [255.0; 3]);
+        assert_eq!(texture.sample(0.115, 0.105, 0.005).rgb(), [0.0; 3]);
+        assert_eq!(texture.sample(0.3, 0.2, 0.05).rgb(), [128.0; 3]);
+        assert_eq!(texture.sample(-5.0, 50.0, 1e9).rgb(), [128.0; 3]);
     }
 
     #[test]
-    fn blending_is_linear_in_each_channel() {
-        assert_eq!(blend(0x00_00FF, 0xFF_0000, 64), 0x40_00BF);
-        assert_eq!(blend(0xFF_FFFF, 0xFF_FFFF, 100), 0xFF_FFFF);
+    fn between_texels_and_levels_colour_is_linear() {
+        let texture = Texture::new(2, 1, vec![0x00_00FF, 0xFF_8000], (2.0, 1.0));
+        assert_eq!(texture.sample(0.75, 0.5, 0.1).rgb(), [191.25, 32.0, 63.75]);
+        let (red, blue) = (Light(spread(0x00_00FF) << 8), Light(spread(0xFF_0000) << 8));
+        assert_eq!(red.blend(blue, 64).rgb(), [191.25, 0.0, 63.75]);
         for x in [0.3_f32, 1.0, 5.0, 1000.0] {
             assert!((fast_log2(x) - x.log2()).abs() < 0.09);
         }
