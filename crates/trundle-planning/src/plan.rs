@@ -66,7 +66,8 @@ impl fmt::Display for Plan {
 /// A way from start to goal.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PlanResult {
-    /// The few way-points, start and goal included: straight pieces between them are free.
+    /// The few way-points, start and goal included: straight pieces between them are free, except that the first one
+    /// stands for the braking arc where a moving robot has to stop first.
     pub way_points: Path,
     /// What the potential (or the wave) walked, a cell's side apart.
     pub raw: Path,

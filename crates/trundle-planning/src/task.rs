@@ -5,7 +5,7 @@ use crate::potential::{PotentialField, PotentialKind, PotentialOutcome};
 use crate::pull::pull_taut;
 use crate::route::{Phase, is_drivable, route, turn};
 use crate::space::Space;
-use crate::timing::{Drive, trajectory};
+use crate::timing::{Drive, can_follow, trajectory};
 use crate::wave::{Wave, WaveFront};
 use crate::{Curve, DistanceField, PlannerConfig};
 use trundle_core::{OccupancyGrid, Path, Pose2, Trajectory, Twist2, Vector2};
@@ -54,7 +54,8 @@ impl Task<'_> {
         let shape = &self.config.curve;
         if twist.v > STANDING {
             let curvature = twist.omega / twist.v;
-            if let Some(phases) = route(&space, &way.points, start, goal, Some(curvature), shape) {
+            let onward = route(&space, &way.points, start, goal, Some(curvature), shape);
+            if let Some(phases) = onward.filter(|phases| can_follow(phases, twist.v, self.drive)) {
                 return self.timed(way, phases, start, twist.v, true);
             }
             if let Some(plan) = self.brake_first(wave, &space, start, twist, goal) {

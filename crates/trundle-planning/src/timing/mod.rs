@@ -46,6 +46,14 @@ pub(crate) fn trajectory(
     Trajectory::new(points).expect("invariant: times rise from 0 and numbers are finite")
 }
 
+/// Whether a robot at `v` m/s can drive the first of `phases` within its limits, and come to rest on it.
+pub(crate) fn can_follow(phases: &[Phase], v: f64, drive: &Drive) -> bool {
+    match phases.first() {
+        Some(Phase::Drive(curve)) => speeds::can_follow(&curve.samples(SPACING), v, drive),
+        _ => false,
+    }
+}
+
 /// Appends samples a period apart; the last one exactly at the curve's end.
 fn time_curve(
     curve: &Curve,

@@ -15,6 +15,9 @@ pub(crate) struct Drive {
 
 /// A speed that is none, m/s.
 const ROUNDING: f64 = 1e-6;
+/// How far a motion under way may be above a ceiling: a reference on a curve of ours is never above, a measured twist
+/// may be by its noise.
+const SLACK: f64 = 1.05;
 
 impl Drive {
     /// The highest change of speed at a curvature, m/s^2: half the angular acceleration is for it.
@@ -33,7 +36,7 @@ pub(super) fn speeds(
     clearance: impl Fn(Vector2) -> f64,
 ) -> Vec<f64> {
     let mut v = ceilings(samples, drive, clearance);
-    let gain: Vec<f64> = samples.windows(2).map(|pair| 2.0 * way(pair) * acceleration(pair, drive)).collect();
+    let gain = gains(samples, drive);
     let last = v.len() - 1;
     v[last] = 0.0;
     for i in (0..last).rev() {
@@ -49,6 +52,24 @@ pub(super) fn speeds(
     }
     v[last] = 0.0;
     v
+}
+
+/// Whether braking as hard as allowed from `v_start` stays below every ceiling of the drive, and ends at rest.
+pub(super) fn can_follow(samples: &[CurveSample], v_start: f64, drive: &Drive) -> bool {
+    let ceilings = ceilings(samples, drive, |_| f64::INFINITY);
+    let mut squared = v_start * v_start;
+    for (gain, ceiling) in gains(samples, drive).iter().zip(&ceilings) {
+        if squared > (SLACK * ceiling).powi(2) {
+            return false;
+        }
+        squared = (squared - gain).max(0.0);
+    }
+    squared <= ROUNDING
+}
+
+/// What the squared speed may change between neighbouring samples, m^2/s^2.
+fn gains(samples: &[CurveSample], drive: &Drive) -> Vec<f64> {
+    samples.windows(2).map(|pair| 2.0 * way(pair) * acceleration(pair, drive)).collect()
 }
 
 fn way(pair: &[CurveSample]) -> f64 {

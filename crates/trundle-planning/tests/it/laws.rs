@@ -78,6 +78,23 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(200))]
 
     #[test]
+    fn a_moving_start_is_continued_or_says_that_it_is_not(
+        grid in any_room(), from in 0usize..900, to in 0usize..900, heading in -3.1..3.1, v in 0.02..0.5, turn in -1.0..1.0,
+    ) {
+        let geometry = *grid.geometry();
+        let (at, end) = (geometry.center(geometry.cell(from)), geometry.center(geometry.cell(to)));
+        prop_assume!(room(&grid, at) >= RADIUS && from != to);
+        let (start, goal) = (Pose2::new(at.x, at.y, heading), Pose2::new(end.x, end.y, 0.0));
+        let twist = Twist2::new(v, turn * v / 0.3);
+        if let Plan::Found(result) = planner(at_home(), RADIUS).plan(&grid, start, twist, goal) {
+            judge(&grid, &result, start, goal, RADIUS);
+            let first = result.trajectory.points()[0].twist;
+            let kept = (first.v - v).abs() < 1e-9 && (first.omega - twist.omega).abs() < 1e-4;
+            prop_assert!(if result.is_continuous { kept } else { first == Twist2::ZERO }, "{first:?} {twist:?}");
+        }
+    }
+
+    #[test]
     fn an_open_floor_gives_one_curve_with_both_headings(
         x in 2.0..4.0, y in -1.5..1.5, start in -0.9..0.9, end in -1.2..1.2,
     ) {
