@@ -18,6 +18,7 @@ mod anchor;
 mod config;
 mod covisibility;
 mod depth;
+mod found;
 mod frame;
 mod ids;
 mod keyframe_policy;

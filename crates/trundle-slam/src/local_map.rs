@@ -73,3 +73,32 @@ impl View<'_> {
         config.at(image, raw).is_some_and(|surface| depth > surface * (1.0 + HIDDEN.1) + HIDDEN.0)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::{map_of_one_view, sensor};
+    use nalgebra::Vector6;
+
+    #[test]
+    fn what_is_hidden_turned_away_or_out_of_sight_is_not_expected() {
+        let (mut map, _) = map_of_one_view(60);
+        let sensor = sensor();
+        let ids: Vec<_> = map.landmarks().map(|(id, _)| id).collect();
+        ids.iter().for_each(|id| map.refresh(*id, &sensor));
+        let config = DepthConfig::default();
+        let expected = |pose: Vector6<f64>, surface: f32, most: usize| {
+            let image = DepthImage::filled(320, 240, surface);
+            let view = View { sensor: &sensor, depth: (&image, &config), window: 5.0, most };
+            view.landmarks(&map, Pose3::exp(pose)).len()
+        };
+        let here = Vector6::zeros();
+        assert_eq!(expected(here, 2.0, 100), 60);
+        assert_eq!(expected(here, 0.0, 100), 60, "no depth hides nothing");
+        assert_eq!(expected(here, 1.0, 100), 0, "a wall in front");
+        assert_eq!(expected(here, 2.0, 7), 7);
+        assert_eq!(expected(Vector6::new(0.0, 0.0, 0.0, 0.0, 3.1, 0.0), 2.0, 100), 0, "behind the camera");
+        assert_eq!(expected(Vector6::new(0.0, 0.0, 4.0, 0.0, 3.1, 0.0), 2.0, 100), 0, "from behind");
+        assert_eq!(expected(Vector6::new(0.0, 0.0, -9.0, 0.0, 0.0, 0.0), 0.0, 100), 0, "too small");
+    }
+}

@@ -54,7 +54,8 @@ impl Belief {
     /// Where the camera should be at `stamp`: moved by the prior, else on at the same velocity, else where it was.
     pub fn predict(&self, stamp: Stamp, prior: Option<Pose3>) -> Pose3 {
         let elapsed = self.elapsed(stamp);
-        let motion = self.since_last(prior).or_else(|| self.velocity.map(|velocity| Pose3::exp(velocity * elapsed)));
+        let motion =
+            self.since_last(prior).or_else(|| self.velocity.map(|velocity| Pose3::exp(velocity * elapsed)));
         (self.visual_from_camera * motion.unwrap_or_default()).renormalized()
     }
 

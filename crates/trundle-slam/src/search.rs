@@ -74,3 +74,48 @@ fn depth_agrees(frame: &Frame, feature: usize, depth: f64) -> bool {
         (seen.value - 1.0 / depth).abs() <= DEPTH_TOLERANCE * seen.value.max(1.0 / depth) + 3.0 * seen.sigma
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::frame_with_depth;
+
+    const STRICT: Likeness = Likeness { max_distance: 30, ratio: 0.8 };
+
+    fn looking_for(frame: &Frame, feature: usize, radius: f64) -> Projection {
+        let (pixel, descriptor) = (frame.pixels[feature], *frame.descriptor(feature));
+        Projection { pixel, depth: 2.0, radius, octaves: (0, 1), descriptor }
+    }
+
+    #[test]
+    fn a_projection_finds_its_feature_among_its_neighbours() {
+        let frame = frame_with_depth(64);
+        let free = vec![true; 64];
+        let projections = [looking_for(&frame, 20, 25.0), looking_for(&frame, 3, 25.0)];
+        assert_eq!(search(&frame, &free, &projections, STRICT), vec![(3, 1), (20, 0)]);
+    }
+
+    #[test]
+    fn what_is_far_away_taken_or_at_another_depth_or_octave_is_not_found() {
+        let frame = frame_with_depth(64);
+        let sought = looking_for(&frame, 20, 5.0);
+        let mut free = vec![true; 64];
+        let found = |projection: Projection, free: &[bool]| search(&frame, free, &[projection], STRICT).len();
+        assert_eq!(found(sought, &free), 1);
+        let moved = sought.pixel + Vector2::new(6.0, 0.0);
+        assert_eq!(found(Projection { pixel: moved, ..sought }, &free), 0);
+        assert_eq!(found(Projection { depth: 3.0, ..sought }, &free), 0);
+        assert_eq!(found(Projection { octaves: (1, 2), ..sought }, &free), 0);
+        free[20] = false;
+        assert_eq!(found(sought, &free), 0);
+    }
+
+    #[test]
+    fn of_two_projections_the_more_alike_gets_the_feature() {
+        let frame = frame_with_depth(64);
+        let mut worse = looking_for(&frame, 20, 5.0);
+        worse.descriptor.0[0] ^= 1 << 40;
+        let projections = [worse, looking_for(&frame, 20, 5.0)];
+        assert_eq!(search(&frame, &[true; 64], &projections, STRICT), vec![(20, 1)]);
+    }
+}

@@ -1,5 +1,6 @@
 use crate::anchor::Anchor;
 use crate::config::SlamConfig;
+use crate::found::Found;
 use crate::frame::Frame;
 use crate::ids::{KeyframeId, LandmarkId};
 use crate::keyframe_policy::with_depth;
@@ -7,7 +8,6 @@ use crate::local_map::View;
 use crate::map::LandmarkMap;
 use crate::mapping::Mapper;
 use crate::motion::Belief;
-use crate::refine::Fix;
 use crate::relocalisation::candidates;
 use crate::report::{SeenFeature, TrackReport, Tracking};
 use crate::search::Projection;
@@ -42,17 +42,6 @@ struct Located {
     frame: Frame,
     landmarks: Vec<Option<LandmarkId>>,
     anchored: Anchored,
-}
-
-/// How a frame was located.
-#[derive(Debug)]
-struct Found {
-    fix: Fix,
-    /// The landmarks that should have been seen.
-    visible: Vec<(LandmarkId, Projection)>,
-    /// Whether the landmark map itself agrees, not only the last frame.
-    by_map: bool,
-    relocalised: bool,
 }
 
 impl RgbdSlam {
@@ -145,7 +134,7 @@ impl RgbdSlam {
         }
     }
 
-    /// From the last frame to the map; else from keyframes that look alike.
+    /// Where `frame` is, by the last frame and the map, or by keyframes that look alike.
     fn locate(&self, frame: &Frame, depth: &DepthImage, prior: Option<Pose3>) -> Option<Found> {
         let config = &self.config.tracking;
         let tracker = Tracker {
@@ -156,27 +145,12 @@ impl RgbdSlam {
             frame,
             seed: self.config.seed.wrapping_add(self.history.len() as u64),
         };
-        if let Some(last) = &self.last {
-            let anchor = last.anchor(&self.map);
-            let predicted = self.belief.predict(frame.stamp, prior);
-            if let Some(rough) = tracker.by_last(anchor, predicted) {
-                let (fix, visible) = tracker.by_map(&rough);
-                let by_map = fix.is_sound(config.min_inliers);
-                let fix = if by_map { fix } else { rough };
-                return Some(Found { fix, visible, by_map, relocalised: false });
-            }
-        }
+        let last = self.last.as_ref().map(|last| last.anchor(&self.map));
+        let by_last =
+            last.and_then(|last| Found::from_last(&tracker, last, self.belief.predict(frame.stamp, prior)));
         let most = config.relocalisation_keyframes;
-        candidates(&self.map, self.belief.visual_from_camera, self.misses, most).into_iter().find_map(|id| {
-            let rough = tracker.by_likeness(self.map.keyframe(id).into())?;
-            let (fix, visible) = tracker.by_map(&rough);
-            fix.is_sound(config.weak_inliers).then_some(Found {
-                fix,
-                visible,
-                by_map: true,
-                relocalised: true,
-            })
-        })
+        let alike = || candidates(&self.map, self.belief.visual_from_camera, self.misses, most);
+        by_last.or_else(|| alike().into_iter().find_map(|id| Found::from_keyframe(&tracker, id)))
     }
 
     /// Takes a found pose over: counts landmarks, makes a keyframe where one is wanted.

@@ -8,7 +8,8 @@ use crate::sensor::Sensor;
 use trundle_core::{DepthImage, PinholeCamera, Pose3, Stamp};
 use trundle_vision::{Descriptor, Features, Keypoint};
 
-fn sensor() -> Sensor {
+/// A small camera without distortion.
+pub(crate) fn sensor() -> Sensor {
     let camera = PinholeCamera::from_field_of_view((320, 240), (1.2, 0.9)).unwrap();
     Sensor::new(camera, vec![1.0, 1.2, 1.44], 1.0)
 }

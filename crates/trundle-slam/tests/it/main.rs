@@ -1,4 +1,5 @@
 //! The SLAM as a whole: on rendered rooms with known motion, and on a recorded sequence.
+#![allow(clippy::unwrap_used, clippy::print_stdout, clippy::print_stderr, reason = "tests, helpers included")]
 
 mod freiburg;
 mod robustness;

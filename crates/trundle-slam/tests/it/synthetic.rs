@@ -30,7 +30,7 @@ fn a_walk_through_a_room_is_followed_and_the_covariance_is_honest() {
         }
     }
     println!("mean normalised squared error {nees:.1} of 6, {} keyframes", slam.keyframes().count());
-    assert!(nees < 36.0, "normalised squared error {nees}");
+    assert!(nees < 15.0, "normalised squared error {nees}");
     assert_eq!(slam.trajectory().len(), 91);
     for (i, (_, pose)) in slam.trajectory().iter().enumerate() {
         assert!((walk(i).inverse() * *pose).translation.norm() < 0.012);
