@@ -30,9 +30,11 @@ mod mapper;
 mod mapper_config;
 mod ray;
 mod scan_cells;
+mod scan_match;
 
 pub use depth_scan::{DepthScanConfig, DepthScanner};
 pub use evidence::{Evidence, GridCell, LogOddsGrid};
 pub use mapper::{GridMapper, Insertion};
 pub use mapper_config::MapperConfig;
 pub use ray::{RayCells, ray_cells};
+pub use scan_match::{ScanMatch, ScanMatchConfig, ScanMatcher};

@@ -210,8 +210,11 @@ mod tests {
         mapper.mark_free_disc(Pose2::new(9.0, -7.0, 0.0), 0.1755);
         assert_eq!(mapper.grid().at(Vector2::new(9.1, -7.1)), Cell::Free);
         assert_eq!(mapper.grid().at(Vector2::new(9.2, -7.0)), Cell::Unknown);
-        let area = mapper.grid().cells().iter().filter(|&&c| c == Cell::Free).count() as f64 * 0.0025;
-        assert!((area / (std::f64::consts::PI * 0.1755 * 0.1755) - 1.0).abs() < 0.15);
+        let geometry = *mapper.grid().geometry();
+        for (i, &cell) in mapper.grid().cells().iter().enumerate() {
+            let distance = (geometry.center(geometry.cell(i)) - Vector2::new(9.0, -7.0)).norm();
+            assert_eq!(cell == Cell::Free, distance <= 0.1755, "{distance} m");
+        }
         mapper.mark_free_disc(Pose2::new(f64::NAN, 0.0, 0.0), 0.2);
         mapper.mark_free_disc(Pose2::new(1e9, 0.0, 0.0), 0.2);
     }

@@ -8,7 +8,7 @@ pub struct DepthScanConfig {
     /// Lower edge of the height band, m above the floor, 0 to 1. What is lower can be driven over. Default 0.05.
     pub band_low: f64,
     /// Upper edge of the height band, m above the floor, above `band_low`, to 5. What is higher can be driven under.
-    /// Default 0.55: a Kobuki with its camera.
+    /// Default 0.65: a Kobuki with its camera is 0.6 m high.
     pub band_high: f64,
     /// Least depth believed, m, 0.05 to 5. Default 0.3; the Kinect V2 itself says nothing below 0.5.
     pub min_depth: f64,
@@ -37,7 +37,7 @@ impl Default for DepthScanConfig {
     fn default() -> Self {
         Self {
             band_low: 0.05,
-            band_high: 0.55,
+            band_high: 0.65,
             min_depth: 0.3,
             max_depth: 8.0,
             max_range: 6.0,

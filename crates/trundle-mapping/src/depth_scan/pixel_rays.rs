@@ -41,11 +41,7 @@ impl PixelRays {
         let fan = directions.iter().map(&bearing);
         let (right, left) = fan.fold((f64::MAX, f64::MIN), |(lo, hi), b| (lo.min(b), hi.max(b)));
 
-        let (cx, cy) = (camera.cx(), camera.cy());
-        let centre = bearing(&direction(cx, cy));
-        let step = |d: Vector3| wrap_angle(bearing(&d) - centre).abs();
-        let widest =
-            step(direction(cx + 1.0, cy)).max(step(direction(cx, cy + 1.0))).clamp(1e-5, COARSEST_BEAM);
+        let widest = widest_pixel(camera, |x, y| bearing(&direction(x, y))).clamp(1e-5, COARSEST_BEAM);
         let beams = (((left - right) / widest).floor() as usize).max(1);
         let angle_increment = ((left - right) / beams as f64).max(1e-5);
 
@@ -57,6 +53,19 @@ impl PixelRays {
         let rays = directions.iter().map(ray).collect();
         Self { rays, beams, angle_min: forward + right + angle_increment / 2.0, angle_increment }
     }
+}
+
+/// The greatest difference of bearing between neighbouring pixels, rad, in the middle of the image and of its sides: a
+/// finer beam would fall between the columns.
+fn widest_pixel(camera: &PinholeCamera, bearing: impl Fn(f64, f64) -> f64) -> f64 {
+    let (right, bottom) = (camera.width() as f64 - 1.0, camera.height() as f64 - 1.0);
+    let (cx, cy) = (right / 2.0, bottom / 2.0);
+    let width_at = |(x, y): (f64, f64)| {
+        let here = bearing(x, y);
+        let step = |x, y| wrap_angle(bearing(x, y) - here).abs();
+        step(x + 1.0, y).max(step(x, y + 1.0))
+    };
+    [(cx, cy), (cx, 0.0), (cx, bottom), (0.0, cy), (right, cy)].into_iter().map(width_at).fold(0.0, f64::max)
 }
 
 /// The bearing in which the camera looks, base frame, rad; when it looks straight up or down, that of the image's top.

@@ -12,9 +12,8 @@ pub(super) fn supported(depth: &DepthImage, index: usize, window: f32, needed: u
     let data = depth.data();
     let here = data[index];
     let agrees = |i: usize| u8::from((data[i] - here).abs() <= window);
-    let row = |i: usize| agrees(i - 1) + agrees(i) + agrees(i + 1);
-    let itself = 1;
-    row(index - width) + row(index) + row(index + width) - itself >= needed
+    let across = |i: usize| agrees(i - 1) + agrees(i) + agrees(i + 1);
+    across(index - width) + agrees(index - 1) + agrees(index + 1) + across(index + width) >= needed
 }
 
 #[cfg(test)]

@@ -4,4 +4,5 @@ mod boxes;
 mod depth_scan;
 mod flat_room;
 mod maps;
+mod matching;
 mod speed;

@@ -1,6 +1,6 @@
 use crate::flat_room::FlatRoom;
 use std::f64::consts::TAU;
-use trundle_core::{Cell, CellIndex, OccupancyGrid, Pose2};
+use trundle_core::{Cell, CellIndex, OccupancyGrid, Pose2, Vector2};
 use trundle_mapping::{GridMapper, MapperConfig};
 
 /// The part of a grid that is known, as ASCII art, highest y first.
@@ -21,6 +21,9 @@ fn ascii(grid: &OccupancyGrid) -> String {
     (bottom..=top).rev().map(line).collect::<Vec<_>>().join("\n")
 }
 
+/// Moves the walls from the borders of cells into their middles.
+const INTO_CELLS: Pose2 = Pose2 { x: 0.1, y: 0.1, theta: 0.0 };
+
 fn coarse() -> GridMapper {
     let config = MapperConfig { resolution: 0.2, blind_range: 0.0, ..MapperConfig::default() };
     GridMapper::new(config).unwrap()
@@ -31,7 +34,7 @@ fn one_place_with_a_narrow_view() {
     let mut mapper = coarse();
     let pose = Pose2::new(-2.5, 0.1, 0.0);
     for _ in 0..5 {
-        mapper.insert(pose, &FlatRoom::furnished().scan(pose, 1.2, 400, 4.5, |_| 0.0));
+        mapper.insert(INTO_CELLS * pose, &FlatRoom::furnished().scan(pose, 1.2, 400, 4.5, |_| 0.0));
     }
     insta::assert_snapshot!(ascii(mapper.grid()), @"");
 }
@@ -41,8 +44,8 @@ fn the_whole_room_after_a_walk() {
     let mut mapper = coarse();
     for i in 0..40 {
         let t = f64::from(i) / 40.0 * TAU;
-        let pose = Pose2::new(2.2 * t.cos(), 1.3 * t.sin() + 0.1, t);
-        mapper.insert(pose, &FlatRoom::furnished().scan(pose, TAU, 720, 8.0, |_| 0.0));
+        let pose = Pose2::new(2.5 * t.cos(), 1.5 * t.sin(), t);
+        mapper.insert(INTO_CELLS * pose, &FlatRoom::furnished().scan(pose, TAU, 720, 8.0, |_| 0.0));
     }
     insta::assert_snapshot!(ascii(mapper.grid()), @"");
 }
@@ -51,23 +54,24 @@ fn the_whole_room_after_a_walk() {
 fn walls_lie_within_a_cell_of_the_truth_and_the_inside_is_free() {
     let room = FlatRoom::furnished();
     let mut mapper = GridMapper::new(MapperConfig::default()).unwrap();
+    let into_cells = Pose2::new(0.025, 0.025, 0.0);
     for i in 0..60 {
         let t = f64::from(i) / 60.0 * TAU;
-        let pose = Pose2::new(2.3 * t.cos(), 1.2 * t.sin() + 0.2, t);
+        let pose = Pose2::new(2.5 * t.cos(), 1.5 * t.sin(), t);
         let noise =
             |beam: usize| (crate::boxes::mix(beam as u64 ^ (i as u64) << 32) >> 11) as f64 / 2_f64.powi(53);
-        mapper.insert(pose, &room.scan(pose, TAU, 720, 8.0, |b| (noise(b) - 0.5) * 0.03));
+        mapper.insert(into_cells * pose, &room.scan(pose, TAU, 720, 8.0, |b| (noise(b) - 0.5) * 0.03));
     }
     let geometry = *mapper.grid().geometry();
-    let (mut occupied, mut free) = (0, 0);
+    let (mut occupied, mut free, mut shadow) = (0, 0, 0);
     for (i, cell) in mapper.grid().cells().iter().enumerate() {
-        let p = geometry.center(geometry.cell(i));
+        let p = into_cells.inverse().transform(geometry.center(geometry.cell(i)));
         let outside = (p.x.abs() - 3.0).max(p.y.abs() - 2.0);
         match cell {
             Cell::Occupied => {
                 occupied += 1;
                 let near = (0..64)
-                    .filter_map(|k| room.cast(p, f64::from(k) / 64.0 * TAU))
+                    .filter_map(|k| room.cast(p + Vector2::repeat(1e-6), f64::from(k) / 64.0 * TAU))
                     .fold(f64::INFINITY, f64::min);
                 assert!(near < 0.06, "an obstacle {near} m from any wall");
             }
@@ -75,15 +79,16 @@ fn walls_lie_within_a_cell_of_the_truth_and_the_inside_is_free() {
                 free += 1;
                 assert!(outside < 0.03, "free {outside} m outside");
             }
-            Cell::Unknown => assert!(outside > -0.03 || in_furniture(p), "unknown at {p}"),
+            Cell::Unknown => shadow += usize::from(outside < -0.03 && !in_furniture(p)),
         }
     }
+    assert!(shadow < 60, "{shadow} cells unseen: some of the corner behind the box is");
     assert!(occupied > 450 && free as f64 * 0.0025 > 22.5, "{occupied} occupied, {free} free");
 }
 
-fn in_furniture(p: trundle_core::Vector2) -> bool {
+fn in_furniture(p: Vector2) -> bool {
     let within = |x: (f64, f64), y: (f64, f64)| {
         p.x > x.0 - 0.04 && p.x < x.1 + 0.04 && p.y > y.0 - 0.04 && p.y < y.1 + 0.04
     };
-    within((1.0, 1.4), (0.5, 0.9)) || within((-2.0, -1.2), (-1.5, -0.9))
+    within((1.0, 1.4), (0.6, 1.0)) || within((-2.0, -1.2), (-0.6, -0.2))
 }

@@ -3,7 +3,9 @@
 use crate::boxes::{Solid, add_noise, depth_of, mount, rgbd};
 use std::time::Instant;
 use trundle_core::{PinholeCamera, Pose2};
-use trundle_mapping::{DepthScanConfig, DepthScanner, GridMapper, MapperConfig};
+use trundle_mapping::{
+    DepthScanConfig, DepthScanner, GridMapper, MapperConfig, ScanMatchConfig, ScanMatcher,
+};
 
 fn median_ms(mut work: impl FnMut()) -> f64 {
     let mut times: Vec<f64> = (0..101)
@@ -39,6 +41,16 @@ fn speed() {
         "insertion: {:.3} ms",
         median_ms(|| {
             mapper.insert(Pose2::IDENTITY, &scan);
+        })
+    );
+
+    let matcher = ScanMatcher::new(ScanMatchConfig::default()).unwrap();
+    let guess = Pose2::new(0.05, -0.04, 0.03);
+    println!("{:?}", matcher.refine(&mapper, &scan, guess));
+    println!(
+        "match: {:.3} ms",
+        median_ms(|| {
+            matcher.refine(&mapper, &scan, guess);
         })
     );
 }

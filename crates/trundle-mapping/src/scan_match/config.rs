@@ -1,0 +1,75 @@
+use serde::{Deserialize, Serialize};
+use trundle_core::{Invalid, require_in};
+
+/// How a scan is laid onto the map.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct ScanMatchConfig {
+    /// The guess may be off by this much along x and y each, m, 0 to 1. Default 0.15.
+    pub window: f64,
+    /// The guess may be turned by this much, deg, 0 to 45. Default 6.
+    pub window_deg: f64,
+    /// Step of the first search, m, 0.005 to 0.5. Default 0.05: the map's resolution.
+    pub step: f64,
+    /// Step of the first search, deg, 0.05 to 10. Default 2: 0.1 m at 3 m.
+    pub step_deg: f64,
+    /// Sigma of the likelihood field of the search, m, 0.01 to 1. Default 0.1: two steps.
+    pub search_sigma: f64,
+    /// Sigma of the kernels of the refinement, m, 0.01 to 1. Default 0.06: a little more than a cell, so that a row of
+    /// cells makes a smooth wall.
+    pub kernel_sigma: f64,
+    /// Hits nearer to each other than this count once, m, 0.001 to 1. Default 0.05.
+    pub spacing: f64,
+    /// Fewest hits on known ground, 3 to 10000. Default 30.
+    pub min_points: usize,
+    /// Least part of those hits that the map explains, 0 to 1. Default 0.6; a perfect fit has 0.9.
+    pub min_score: f64,
+    /// A direction is degenerate when it is held by less than this part of the hits, 0 to 1. Default 0.05.
+    pub degenerate_below: f64,
+    /// The covariance is that of independent hits with the kernel's sigma, times this squared, 1 to 100. Default 3: the
+    /// hits of one wall err alike.
+    pub inflation: f64,
+    /// Sigma of a degenerate direction, m, 0.1 to 100. Default 1: nothing is known of it.
+    pub unknown_sigma: f64,
+}
+
+impl Default for ScanMatchConfig {
+    fn default() -> Self {
+        Self {
+            window: 0.15,
+            window_deg: 6.0,
+            step: 0.05,
+            step_deg: 2.0,
+            search_sigma: 0.1,
+            kernel_sigma: 0.06,
+            spacing: 0.05,
+            min_points: 30,
+            min_score: 0.6,
+            degenerate_below: 0.05,
+            inflation: 3.0,
+            unknown_sigma: 1.0,
+        }
+    }
+}
+
+impl ScanMatchConfig {
+    /// Passes a valid configuration through.
+    ///
+    /// # Errors
+    /// When a number is out of the range that its field names.
+    pub fn validated(self) -> Result<Self, Invalid> {
+        require_in("window", self.window, "m", 0.0, 1.0)?;
+        require_in("window_deg", self.window_deg, "deg", 0.0, 45.0)?;
+        require_in("step", self.step, "m", 0.005, 0.5)?;
+        require_in("step_deg", self.step_deg, "deg", 0.05, 10.0)?;
+        require_in("search_sigma", self.search_sigma, "m", 0.01, 1.0)?;
+        require_in("kernel_sigma", self.kernel_sigma, "m", 0.01, 1.0)?;
+        require_in("spacing", self.spacing, "m", 0.001, 1.0)?;
+        require_in("min_points", self.min_points as f64, "", 3.0, 10_000.0)?;
+        require_in("min_score", self.min_score, "", 0.0, 1.0)?;
+        require_in("degenerate_below", self.degenerate_below, "", 0.0, 1.0)?;
+        require_in("inflation", self.inflation, "", 1.0, 100.0)?;
+        require_in("unknown_sigma", self.unknown_sigma, "m", 0.1, 100.0)?;
+        Ok(self)
+    }
+}

@@ -1,0 +1,101 @@
+use crate::flat_room::FlatRoom;
+use proptest::prelude::*;
+use std::f64::consts::TAU;
+use trundle_core::{Pose2, wrap_angle};
+use trundle_mapping::{GridMapper, MapperConfig, ScanMatch, ScanMatchConfig, ScanMatcher};
+
+/// A map drawn from true poses along `poses`, with 1 cm of noise on every range.
+fn map_of(room: &FlatRoom, poses: impl Iterator<Item = Pose2>) -> GridMapper {
+    let mut mapper = GridMapper::new(MapperConfig::default()).unwrap();
+    for (i, pose) in poses.enumerate() {
+        mapper.insert(pose, &room.scan(pose, TAU, 720, 8.0, |beam| noise(i * 720 + beam)));
+    }
+    mapper
+}
+
+fn noise(i: usize) -> f64 {
+    ((crate::boxes::mix(i as u64) >> 11) as f64 / 2_f64.powi(53) - 0.5) * 0.035
+}
+
+fn room_map() -> GridMapper {
+    let circle = (0..40).map(|i| f64::from(i) / 40.0 * TAU);
+    map_of(&FlatRoom::furnished(), circle.map(|t| Pose2::new(2.5 * t.cos(), 1.5 * t.sin(), t)))
+}
+
+fn refine(mapper: &GridMapper, room: &FlatRoom, truth: Pose2, guess: Pose2, view: f64) -> Option<ScanMatch> {
+    let beams = (view / TAU * 2000.0) as usize;
+    let scan = room.scan(truth, view, beams, 6.0, |beam| noise(beam + 7_000_000));
+    ScanMatcher::new(ScanMatchConfig::default()).unwrap().refine(mapper, &scan, guess)
+}
+
+#[test]
+fn a_wrong_guess_is_pulled_back() {
+    let (mapper, room) = (room_map(), FlatRoom::furnished());
+    let config = ProptestConfig::with_cases(100);
+    let poses = (-1.0..0.8, 0.0..1.4, -3.1..3.1, -0.13..0.13, -0.13..0.13, -0.09..0.09_f64);
+    proptest::test_runner::TestRunner::new(config)
+        .run(&poses, |(x, y, t, dx, dy, dt)| {
+            let truth = Pose2::new(x, y, t);
+            let found = refine(&mapper, &room, truth, truth * Pose2::new(dx, dy, dt), TAU).unwrap();
+            let turned = wrap_angle(found.pose.theta - t).abs();
+            prop_assert!(found.pose.distance(&truth) < 0.015 && turned < 0.006, "{:?} {:?}", found, truth);
+            prop_assert!(!found.degenerate && found.score > 0.8);
+            let off = (found.pose.inverse() * truth).log();
+            let squared = off.dot(&(found.covariance.try_inverse().unwrap() * off));
+            prop_assert!(squared < 16.0, "surer than right: {squared}");
+            Ok(())
+        })
+        .unwrap();
+}
+
+#[test]
+fn a_cameras_view_of_a_corner_is_enough() {
+    let (mapper, room) = (room_map(), FlatRoom::furnished());
+    let truth = Pose2::new(0.5, -0.6, -0.5);
+    let found = refine(&mapper, &room, truth, truth * Pose2::new(0.08, -0.06, 0.05), 1.23).unwrap();
+    assert!(!found.degenerate);
+    assert!(found.pose.distance(&truth) < 0.02 && (found.pose.theta - truth.theta).abs() < 0.01, "{found:?}");
+}
+
+#[test]
+fn along_a_bare_corridor_nobody_can_tell() {
+    let room = FlatRoom::corridor();
+    let mapper = map_of(&room, (0..60).map(|i| Pose2::new(f64::from(i) * 0.2 - 6.0, 0.0, 0.0)));
+    for heading in [0.0, 0.7, 2.0] {
+        let truth = Pose2::new(0.3, 0.1, heading);
+        let guess = Pose2::new(0.40, 0.05, heading + 0.05);
+        let found = refine(&mapper, &room, truth, guess, TAU).unwrap();
+        assert!(found.degenerate);
+        assert!(
+            (found.pose.y - 0.1).abs() < 0.015 && (found.pose.theta - heading).abs() < 0.006,
+            "{found:?}"
+        );
+        assert!((found.pose.x - 0.40).abs() < 0.03, "it stays where the guess was: {found:?}");
+        let along = found.pose.inverse().rotate(trundle_core::Vector2::x());
+        let across = found.pose.inverse().rotate(trundle_core::Vector2::y());
+        let sigma = |d: trundle_core::Vector2| {
+            (d.transpose() * found.covariance.fixed_view::<2, 2>(0, 0) * d)[(0, 0)].sqrt()
+        };
+        assert!(sigma(along) > 0.5 && sigma(across) < 0.05, "{} {}", sigma(along), sigma(across));
+    }
+}
+
+#[test]
+fn no_match_is_no_match() {
+    let (mapper, room) = (room_map(), FlatRoom::furnished());
+    let here = Pose2::new(0.0, 0.3, 0.4);
+    let empty = GridMapper::new(MapperConfig::default()).unwrap();
+    assert_eq!(refine(&empty, &room, here, here, TAU), None);
+    assert_eq!(refine(&mapper, &room, here, Pose2::new(100.0, 0.0, 0.0), TAU), None);
+    assert_eq!(refine(&mapper, &room, here, Pose2 { x: f64::NAN, ..here }, TAU), None);
+    assert_eq!(refine(&mapper, &room, here, Pose2::new(0.8, -0.5, 1.2), TAU), None, "far out of the window");
+}
+
+#[test]
+fn the_same_match_twice_is_the_same_to_the_bit() {
+    let (mapper, room) = (room_map(), FlatRoom::furnished());
+    let here = Pose2::new(0.0, 0.3, 0.4);
+    let once = refine(&mapper, &room, here, Pose2::new(0.05, 0.3, 0.42), 2.0);
+    assert!(once.is_some());
+    assert_eq!(once, refine(&mapper, &room, here, Pose2::new(0.05, 0.3, 0.42), 2.0));
+}
