@@ -1,2 +1,75 @@
-//! Chores of the workspace.
-fn main() {}
+//! Chores of the workspace: `cargo xtask ci | tidy | replay-check | demo-seeds`.
+#![expect(clippy::print_stdout, clippy::print_stderr, reason = "this is a program that talks")]
+
+mod ci;
+mod compare;
+mod program;
+mod replay_check;
+mod seeds;
+mod tidy;
+
+use clap::{Parser, Subcommand};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+/// Chores of the workspace.
+#[derive(Debug, Parser)]
+#[command(name = "cargo xtask", arg_required_else_help = true)]
+struct Cli {
+    #[command(subcommand)]
+    chore: Chore,
+}
+
+#[derive(Debug, Subcommand)]
+enum Chore {
+    /// Everything that must hold before a change is merged, in order, until the first failure.
+    Ci {
+        /// Leave out `cargo test --workspace`: it ran just before.
+        #[arg(long)]
+        tested: bool,
+    },
+    /// Check the design's invariants in the sources.
+    Tidy,
+    /// Demo on one thread, on two, and replayed: all three must write the same bytes.
+    ReplayCheck {
+        /// Seed of the demo.
+        #[arg(long, default_value_t = 1)]
+        seed: u64,
+    },
+    /// Run the demo on many seeds and print a table of their summaries.
+    DemoSeeds {
+        /// How many seeds, from the first on.
+        #[arg(long, default_value_t = 10)]
+        seeds: u64,
+        /// The first seed.
+        #[arg(long, default_value_t = 1)]
+        first: u64,
+    },
+}
+
+/// What a chore that ran says: whether all is well, or why it could not run.
+type Verdict = Result<bool, String>;
+
+fn main() -> ExitCode {
+    let root = root();
+    let verdict = match Cli::parse().chore {
+        Chore::Ci { tested } => ci::run(&root, tested),
+        Chore::Tidy => tidy::run(&root),
+        Chore::ReplayCheck { seed } => replay_check::run(&root, seed),
+        Chore::DemoSeeds { seeds, first } => seeds::run(&root, first..first.saturating_add(seeds)),
+    };
+    match verdict {
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::FAILURE,
+        Err(why) => {
+            eprintln!("xtask: {why}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// The workspace's folder.
+fn root() -> PathBuf {
+    let here = Path::new(env!("CARGO_MANIFEST_DIR"));
+    here.parent().expect("invariant: xtask lies in the workspace").to_path_buf()
+}

@@ -14,7 +14,7 @@ pub(super) fn way_to_contact(twist: Twist2, p: Vector2, radius: f64) -> Option<f
     if p.norm() <= radius {
         return (p.x > 0.0).then_some(0.0);
     }
-    let curvature = twist.omega / twist.v.abs();
+    let curvature = twist.omega / twist.v;
     if curvature.abs() < STRAIGHT { straight(p, radius) } else { circular(p, radius, curvature) }
 }
 

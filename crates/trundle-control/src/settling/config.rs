@@ -20,7 +20,8 @@ pub struct SettleConfig {
     pub max_approach: f64,
     /// Highest speed, m/s, 0.01 to 10. Default 0.25 (ours).
     pub speed: f64,
-    /// Lowest speed while approaching, m/s, 0 to 0.1: motors stick below. Default 0.02 (ours).
+    /// Lowest speed while approaching, m/s, 0 to 0.1: motors stick below, and the last
+    /// centimetres would take seconds. Default 0.035: at 0.1 s of delay and lag the robot rolls on for 3.5 mm.
     pub creep_speed: f64,
     /// Highest turn rate, rad/s, 0.05 to 20. Default 1.2 (ours).
     pub turn_rate: f64,
@@ -46,7 +47,7 @@ impl Default for SettleConfig {
             shaping_distance: 0.15,
             max_approach: 0.8,
             speed: 0.25,
-            creep_speed: 0.02,
+            creep_speed: 0.035,
             turn_rate: 1.2,
             k_turn: 2.5,
             position_tolerance: 0.01,

@@ -1,6 +1,6 @@
 //! Point stabilisation: to a pose, and to rest there (METHODS.md A7; \[Aicardi95\]).
 //!
-//! Problem: no smooth law of the pose alone brings a two-wheeled robot to rest at a pose (Brockett). Idea: in polar
+//! Problem: no smooth law of the pose alone brings a two-wheeled robot to rest at a pose \[Brockett83\]. Idea: in polar
 //! coordinates about the goal a linear law does; it is driven forward or backward, whichever the goal asks for. What is
 //! left of the heading within the position tolerance is turned on the spot, which is exact for such a base. Cost: O(1).
 //!

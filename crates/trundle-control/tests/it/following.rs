@@ -12,7 +12,7 @@ fn legs(legs: &[(f64, f64)]) -> Trajectory {
     let mut points = vec![TrajectoryPoint { time: 0.0, pose: Pose2::IDENTITY, twist: Twist2::ZERO }];
     for &(length, turn) in legs {
         let from = *points.last().unwrap();
-        let seconds = (length / 0.3).max(turn.abs() / 0.6) * 1.5 + 1.0;
+        let seconds = (length.abs() / 0.3).max(turn.abs() / 0.6) * 1.5 + 1.0;
         let steps = (seconds / DT).ceil() as usize;
         let duration = steps as f64 * DT;
         for i in 1..=steps {

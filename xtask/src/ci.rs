@@ -1,0 +1,66 @@
+//! Everything that must hold before a change is merged.
+
+use crate::{Verdict, program, replay_check, tidy};
+use std::path::Path;
+use std::time::Instant;
+
+/// One thing that must hold.
+struct Step {
+    name: &'static str,
+    check: fn(&Path) -> Verdict,
+}
+
+const TEST: Step = Step {
+    name: "cargo test --workspace",
+    check: |root| program::cargo(root, &["test", "--workspace"], &[]),
+};
+
+const REST: [Step; 6] = [
+    Step {
+        name: "cargo fmt --all --check",
+        check: |root| program::cargo(root, &["fmt", "--all", "--check"], &[]),
+    },
+    Step {
+        name: "cargo clippy --workspace --all-targets -- -D warnings",
+        check: |root| {
+            program::cargo(root, &["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"], &[])
+        },
+    },
+    Step { name: "cargo xtask tidy", check: tidy::run },
+    Step {
+        name: "RUSTDOCFLAGS=-Dwarnings cargo doc --workspace --no-deps",
+        check: |root| {
+            program::cargo(root, &["doc", "--workspace", "--no-deps"], &[("RUSTDOCFLAGS", "-Dwarnings")])
+        },
+    },
+    Step { name: "cargo build --release", check: |root| program::cargo(root, &["build", "--release"], &[]) },
+    Step { name: "cargo xtask replay-check", check: |root| replay_check::run(root, 1) },
+];
+
+/// Runs the steps in order and stops at the first that fails.
+pub fn run(root: &Path, tested: bool) -> Verdict {
+    let steps = if tested { None } else { Some(TEST) }.into_iter().chain(REST);
+    let mut times = Vec::new();
+    let begin = Instant::now();
+    for step in steps {
+        println!("\n==== {}", step.name);
+        let start = Instant::now();
+        let verdict = (step.check)(root);
+        let seconds = start.elapsed().as_secs_f64();
+        times.push((step.name, seconds));
+        match verdict {
+            Ok(true) => println!("==== ok, {seconds:.1} s"),
+            Ok(false) => {
+                println!("\n==== FAILED: {} (after {seconds:.1} s)", step.name);
+                return Ok(false);
+            }
+            Err(why) => return Err(format!("{}: {why}", step.name)),
+        }
+    }
+    println!("\n==== all passed");
+    for (name, seconds) in times {
+        println!("{seconds:8.1} s  {name}");
+    }
+    println!("{:8.1} s  in all", begin.elapsed().as_secs_f64());
+    Ok(true)
+}

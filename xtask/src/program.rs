@@ -1,0 +1,52 @@
+//! Running other programs.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+/// Runs `cargo` with `args` (and `env`) in the workspace, without standard input; whether it succeeded.
+pub fn cargo(root: &Path, args: &[&str], env: &[(&str, &str)]) -> Result<bool, String> {
+    let mut command = Command::new(cargo_path());
+    command.args(args).envs(env.iter().copied()).current_dir(root).stdin(Stdio::null());
+    let status = command.status().map_err(|e| format!("cannot start cargo {}: {e}", args.join(" ")))?;
+    Ok(status.success())
+}
+
+/// Builds the release program and says where it is.
+pub fn release_trundle(root: &Path) -> Result<PathBuf, String> {
+    if !cargo(root, &["build", "--release", "--package", "trundle-cli"], &[])? {
+        return Err("the release program does not build".into());
+    }
+    Ok(target(root)?.join("release").join(format!("trundle{}", std::env::consts::EXE_SUFFIX)))
+}
+
+/// Runs the program; its exit code (`None`: killed). What it prints goes through.
+pub fn run(program: &Path, args: &[&str]) -> Result<Option<i32>, String> {
+    println!("  trundle {}", args.join(" "));
+    let status = Command::new(program).args(args).stdin(Stdio::null()).status();
+    Ok(status.map_err(|e| format!("cannot start {}: {e}", program.display()))?.code())
+}
+
+/// The folder of build results.
+pub fn target(root: &Path) -> Result<PathBuf, String> {
+    let args = ["metadata", "--format-version=1", "--no-deps", "--offline"];
+    let output = Command::new(cargo_path()).args(args).current_dir(root).stdin(Stdio::null()).output();
+    let output = output.map_err(|e| format!("cannot start cargo metadata: {e}"))?;
+    let metadata: serde_json::Value =
+        serde_json::from_slice(&output.stdout).map_err(|e| format!("cargo metadata: {e}"))?;
+    let target = metadata["target_directory"].as_str().ok_or("cargo metadata names no target_directory")?;
+    Ok(PathBuf::from(target))
+}
+
+/// An empty folder below the build results.
+pub fn scratch(root: &Path, name: &str) -> Result<PathBuf, String> {
+    let folder = target(root)?.join(name);
+    if folder.exists() {
+        std::fs::remove_dir_all(&folder).map_err(|e| format!("cannot clear {}: {e}", folder.display()))?;
+    }
+    std::fs::create_dir_all(&folder).map_err(|e| format!("cannot make {}: {e}", folder.display()))?;
+    Ok(folder)
+}
+
+fn cargo_path() -> std::ffi::OsString {
+    std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into())
+}

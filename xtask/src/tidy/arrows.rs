@@ -1,0 +1,147 @@
+//! Who may depend on whom, and who may read TOML and command lines.
+
+use super::finding::Finding;
+use super::tree::{File, Package, Tree};
+
+/// The rooms of the middle: they know nothing of each other.
+pub const ROOMS: [&str; 7] = [
+    "trundle-vision",
+    "trundle-slam",
+    "trundle-mapping",
+    "trundle-localization",
+    "trundle-planning",
+    "trundle-control",
+    "trundle-docking",
+];
+/// The edges: they know only core.
+pub const EDGES: [&str; 6] =
+    ["trundle-sim", "trundle-io", "trundle-drivers", "trundle-ros2", "trundle-viz", "trundle-eval"];
+/// Who may know TOML or command lines.
+const KNOW_FILES_OF_SETTINGS: [&str; 4] = ["trundle-runtime", "trundle-cli", "trundle-io", "xtask"];
+
+/// Checks every arrow between packages.
+pub fn check(tree: &Tree) -> Vec<Finding> {
+    tree.packages.iter().flat_map(|package| check_package(tree, package)).collect()
+}
+
+fn check_package(tree: &Tree, package: &Package) -> Vec<Finding> {
+    let path = format!("{}/Cargo.toml", package.folder);
+    let Some(file) = tree.file(&path) else { return Vec::new() };
+    let mut findings = Vec::new();
+    let Package { name, .. } = package;
+    if !is_known(name) {
+        findings.push(Finding::error(
+            &path,
+            line_of(file, "name", 1),
+            format!("{name} is in no room of the design"),
+        ));
+    }
+    for kind in ["dependencies", "dev-dependencies", "build-dependencies"] {
+        let Some(dependencies) = package.manifest.get(kind).and_then(toml::Value::as_table) else { continue };
+        let header =
+            file.text.lines().position(|line| line.trim() == format!("[{kind}]")).map_or(1, |i| i + 1);
+        for dependency in dependencies.keys() {
+            let line = line_of(file, dependency, header);
+            if is_ours(dependency) && !may_know(name, dependency) {
+                let message =
+                    format!("{name} must not depend on {dependency} ({kind}): no such arrow in the design");
+                findings.push(Finding::error(&path, line, message));
+            }
+            if ["toml", "clap"].contains(&dependency.as_str())
+                && !KNOW_FILES_OF_SETTINGS.contains(&name.as_str())
+            {
+                let message =
+                    format!("{name} must not know {dependency}: only runtime, cli, io and xtask do");
+                findings.push(Finding::error(&path, line, message));
+            }
+        }
+    }
+    findings
+}
+
+fn is_ours(name: &str) -> bool {
+    name == "trundle" || name.starts_with("trundle-")
+}
+
+fn is_known(name: &str) -> bool {
+    ROOMS.contains(&name)
+        || EDGES.contains(&name)
+        || [
+            "trundle-core",
+            "trundle-optim",
+            "trundle-runtime",
+            "trundle",
+            "trundle-cli",
+            "xtask",
+            "trundle-bench",
+        ]
+        .contains(&name)
+}
+
+/// The arrows of the design.
+fn may_know(from: &str, to: &str) -> bool {
+    let base = ["trundle-core", "trundle-optim"].contains(&to);
+    match from {
+        "trundle-core" | "xtask" => false,
+        "trundle-optim" => to == "trundle-core",
+        "trundle-slam" => base || to == "trundle-vision",
+        "trundle-runtime" => base || ROOMS.contains(&to),
+        "trundle" => !["trundle", "trundle-cli"].contains(&to),
+        "trundle-cli" => to == "trundle",
+        "trundle-bench" => to != "trundle-cli",
+        room if ROOMS.contains(&room) => base,
+        edge if EDGES.contains(&edge) => to == "trundle-core",
+        _ => false,
+    }
+}
+
+/// The line, from `header` on, that sets `key`.
+fn line_of(file: &File, key: &str, header: usize) -> usize {
+    let sets = |line: &str| {
+        let rest = line.trim_start().strip_prefix(key);
+        rest.is_some_and(|rest| rest.trim_start().starts_with(['=', '.']))
+    };
+    file.text.lines().enumerate().skip(header - 1).find(|(_, line)| sets(line)).map_or(header, |(i, _)| i + 1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tidy::tree::tests::tree;
+
+    fn messages(name: &str, dependencies: &str) -> Vec<String> {
+        let manifest = format!("[package]\nname = \"{name}\"\n\n[dependencies]\n{dependencies}");
+        check(&tree(&[("crates/x/Cargo.toml", &manifest)])).iter().map(Finding::to_string).collect()
+    }
+
+    #[test]
+    fn only_the_designs_arrows_pass() {
+        let slam =
+            "trundle-core.workspace = true\ntrundle-optim.workspace = true\ntrundle-vision.workspace = true";
+        assert!(messages("trundle-slam", slam).is_empty());
+        let found =
+            messages("trundle-mapping", "trundle-core.workspace = true\ntrundle-vision = { path = \"\" }");
+        assert!(
+            found[0].starts_with("crates/x/Cargo.toml:6: trundle-mapping must not depend on trundle-vision"),
+            "{found:?}"
+        );
+        assert_eq!(messages("trundle-sim", "trundle-optim.workspace = true").len(), 1);
+        assert_eq!(messages("trundle-runtime", "trundle-sim.workspace = true").len(), 1);
+        assert_eq!(messages("trundle-cli", "trundle-core.workspace = true").len(), 1);
+        assert!(
+            messages("trundle", "trundle-sim.workspace = true\ntrundle-runtime.workspace = true").is_empty()
+        );
+    }
+
+    #[test]
+    fn settings_files_are_for_the_outer_rooms() {
+        assert_eq!(messages("trundle-planning", "toml.workspace = true").len(), 1);
+        assert_eq!(messages("trundle-viz", "clap.workspace = true").len(), 1);
+        assert!(messages("trundle-io", "toml.workspace = true").is_empty());
+    }
+
+    #[test]
+    fn a_package_must_be_in_the_design() {
+        assert!(messages("trundle-kitchen", "")[0].contains("in no room of the design"));
+    }
+}

@@ -1,0 +1,47 @@
+//! One nalgebra, and no C or C++ anywhere in the graph.
+
+use super::finding::Finding;
+use super::tree::Tree;
+
+/// Packages that compile or look for foreign code.
+const FOREIGN: [&str; 7] = ["cc", "cmake", "bindgen", "pkg-config", "vcpkg", "nasm-rs", "cxx"];
+/// Packages of which there must be one version: their types cross crates.
+const SINGLE: [&str; 1] = ["nalgebra"];
+
+/// Checks `Cargo.lock`.
+pub fn check(tree: &Tree) -> Vec<Finding> {
+    let Some(lock) = tree.file("Cargo.lock") else { return Vec::new() };
+    let names: Vec<(usize, &str)> = lock
+        .text
+        .lines()
+        .enumerate()
+        .filter_map(|(i, line)| Some((i + 1, line.strip_prefix("name = \"")?.strip_suffix('"')?)))
+        .collect();
+    let mut findings = Vec::new();
+    for (line, name) in &names {
+        if FOREIGN.contains(name) {
+            let message = format!("{name} is in the graph: trundle builds with a Rust toolchain alone");
+            findings.push(Finding::error(&lock.path, *line, message));
+        }
+    }
+    for single in SINGLE {
+        for (line, _) in names.iter().filter(|(_, name)| *name == single).skip(1) {
+            findings.push(Finding::error(&lock.path, *line, format!("a second version of {single}")));
+        }
+    }
+    findings
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tidy::tree::tests::tree;
+
+    #[test]
+    fn foreign_code_and_second_versions_are_found() {
+        let lock = "[[package]]\nname = \"nalgebra\"\n[[package]]\nname = \"cc\"\n[[package]]\nname = \"nalgebra\"\n";
+        let found = check(&tree(&[("Cargo.lock", lock)]));
+        assert_eq!(found.iter().map(|f| f.line).collect::<Vec<_>>(), [4, 6]);
+        assert!(check(&tree(&[("Cargo.lock", "name = \"linux-raw-sys\"")])).is_empty());
+    }
+}
