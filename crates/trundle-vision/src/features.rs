@@ -19,6 +19,7 @@ pub struct Descriptor(pub [u64; 4]);
 
 impl Descriptor {
     /// The number of bits in which two descriptors differ, 0 to 256.
+    #[inline]
     pub fn distance(&self, other: &Self) -> u32 {
         self.0.iter().zip(&other.0).map(|(a, b)| (a ^ b).count_ones()).sum()
     }

@@ -1,3 +1,4 @@
+use std::num::Wrapping;
 use trundle_core::GrayImage;
 
 /// Weights of a Gaussian of standard deviation 2 px over 7 px, in 1/256: middle first. BRIEF compares single pixels, so
@@ -28,16 +29,18 @@ impl Blur {
     }
 }
 
-/// The weighted mean of seven slices, element by element.
+/// The weighted mean of seven slices, element by element. No sum exceeds 16 bits: it says so (`Wrapping`) because a check
+/// for each would keep the compiler from doing many at once.
 fn smooth(from: [&[u8]; 2 * RADIUS + 1], to: &mut [u8]) {
     let [a, b, c, d, e, f, g] = from.map(|slice| &slice[..to.len()]);
+    let weights = KERNEL.map(Wrapping);
     for i in 0..to.len() {
-        let sum = |first: &[u8], last: &[u8]| u16::from(first[i]) + u16::from(last[i]);
-        let weighted = KERNEL[0] * u16::from(d[i])
-            + KERNEL[1] * sum(c, e)
-            + KERNEL[2] * sum(b, f)
-            + KERNEL[3] * sum(a, g);
-        to[i] = ((u32::from(weighted) + 128) >> 8) as u8;
+        let value = |slice: &[u8]| Wrapping(u16::from(slice[i]));
+        let sum = value(d) * weights[0]
+            + (value(c) + value(e)) * weights[1]
+            + (value(b) + value(f)) * weights[2]
+            + (value(a) + value(g)) * weights[3];
+        to[i] = ((sum + Wrapping(128)).0 >> 8) as u8;
     }
 }
 

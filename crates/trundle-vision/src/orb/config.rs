@@ -15,7 +15,7 @@ pub struct OrbConfig {
     pub fast_threshold: u8,
     /// The same where a cell would stay empty, grey values, 1 to `fast_threshold`. Default 7 \[MurArtal17\].
     pub fast_min_threshold: u8,
-    /// Side of the cells in which the lower threshold is resorted to, px of the level, 8 or more. Default 32: about
+    /// Side of the cells in which the lower threshold is resorted to, px of the level, 8 to 65535. Default 32: about
     /// the size of what a descriptor sees.
     pub cell_px: usize,
 }
@@ -48,7 +48,7 @@ impl OrbConfig {
         require_in("orb.fast_threshold", threshold, "grey values", 1.0, 254.0)?;
         let low = f64::from(self.fast_min_threshold);
         require_in("orb.fast_min_threshold", low, "grey values", 1.0, threshold)?;
-        require_in("orb.cell_px", self.cell_px as f64, "px", 8.0, 65536.0)?;
+        require_in("orb.cell_px", self.cell_px as f64, "px", 8.0, 65535.0)?;
         Ok(self)
     }
 

@@ -35,9 +35,9 @@ impl Area {
         }
     }
 
-    fn contains(self, corner: Corner) -> bool {
-        let (x, y) = (u32::from(corner.x), u32::from(corner.y));
-        (self.left..self.right).contains(&x) && (self.top..self.bottom).contains(&y)
+    /// Whether a corner of the whole lies in this first half of it.
+    fn is_before_end(self, corner: Corner) -> bool {
+        u32::from(corner.x) < self.right && u32::from(corner.y) < self.bottom
     }
 }
 
@@ -48,7 +48,7 @@ fn choose_in(area: Area, corners: &mut [Corner], quota: usize, chosen: &mut Vec<
         chosen.extend(corners.iter().max_by_key(|c| (c.score, std::cmp::Reverse((c.y, c.x)))));
     } else if quota > 1 {
         let (area_a, area_b) = area.halves();
-        let (a, b) = partition(corners, |corner| area_a.contains(corner));
+        let (a, b) = partition(corners, |corner| area_a.is_before_end(corner));
         let (quota_a, quota_b) = share(quota, a.len(), b.len());
         choose_in(area_a, a, quota_a, chosen);
         choose_in(area_b, b, quota_b, chosen);

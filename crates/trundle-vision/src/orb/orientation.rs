@@ -1,4 +1,5 @@
 use super::patch::{Patch, RADIUS, STRIDE};
+use std::num::Wrapping;
 
 /// Which way a patch points: from its middle to its centre of mass \[Rosin99\].
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -20,33 +21,38 @@ pub(crate) fn direction(patch: &Patch) -> Direction {
     Direction { angle: y.atan2(x), cos: x / length, sin: y / length }
 }
 
-/// m_10 and m_01: sums of x I(x, y) and y I(x, y) over the disc, from its middle \[Rublee11, eq. 1\].
+/// m_10 and m_01: sums of x I(x, y) and y I(x, y) over the disc, from its middle \[Rublee11, eq. 1\]. Column by column, in
+/// 16 bits: a column's sum is at most 31 * 255, and its sum of y I is at most (1 + ... + 15) * 255 either way. No
+/// sum can overflow: it says so (`Wrapping`) because checks would keep the compiler from doing many at once.
 fn moments(patch: &Patch) -> (i32, i32) {
-    let (mut m10, mut m01) = (0, 0);
-    for ((value, x), y) in patch.iter().zip(&WEIGHTS.0).zip(&WEIGHTS.1) {
-        m10 += i32::from(*value) * i32::from(*x);
-        m01 += i32::from(*value) * i32::from(*y);
+    let (mut sums, mut downs) = ([Wrapping(0i16); STRIDE], [Wrapping(0i16); STRIDE]);
+    for ((row, disc), y) in
+        patch.as_chunks::<STRIDE>().0.iter().zip(&DISC).zip(-(RADIUS as i16)..=RADIUS as i16)
+    {
+        for x in 0..STRIDE {
+            let value = Wrapping(i16::from(row[x] & disc[x]));
+            sums[x] += value;
+            downs[x] += value * Wrapping(y);
+        }
     }
-    (m10, m01)
+    let m10 = sums.iter().zip(-(RADIUS as i32)..).map(|(sum, x)| x * i32::from(sum.0)).sum();
+    (m10, downs.iter().map(|down| i32::from(down.0)).sum())
 }
 
-type Weights = [i16; STRIDE * STRIDE];
+/// All bits set within the disc, none outside.
+static DISC: [[u8; STRIDE]; STRIDE] = disc();
 
-/// x and y of each pixel from the middle, zero outside the disc.
-static WEIGHTS: (Weights, Weights) = weights();
-
-const fn weights() -> (Weights, Weights) {
-    let (mut across, mut down) = ([0; STRIDE * STRIDE], [0; STRIDE * STRIDE]);
-    let radius = RADIUS as i16;
+const fn disc() -> [[u8; STRIDE]; STRIDE] {
+    let mut disc = [[0; STRIDE]; STRIDE];
     let mut i = 0;
     while i < STRIDE * STRIDE {
-        let (x, y) = ((i % STRIDE) as i16 - radius, (i / STRIDE) as i16 - radius);
-        if x * x + y * y <= radius * radius {
-            (across[i], down[i]) = (x, y);
+        let (x, y) = ((i % STRIDE).abs_diff(RADIUS), (i / STRIDE).abs_diff(RADIUS));
+        if x * x + y * y <= RADIUS * RADIUS {
+            disc[i / STRIDE][i % STRIDE] = u8::MAX;
         }
         i += 1;
     }
-    (across, down)
+    disc
 }
 
 #[cfg(test)]
@@ -67,6 +73,19 @@ mod tests {
             let found = direction(&patch(|x, y| 128.0 + 5.0 * (x * cos + y * sin)));
             assert!((found.angle.to_degrees() - degrees as f32).abs() < 0.5, "{degrees}: {found:?}");
             assert!((found.cos - cos).abs() < 0.01 && (found.sin - sin).abs() < 0.01);
+        }
+    }
+
+    #[test]
+    fn the_moments_are_the_sums_that_define_them() {
+        for image in [patch(|x, y| x * y + 90.0), patch(|_, y| if y > 0.0 { 255.0 } else { 0.0 })] {
+            let disc = || {
+                let at = |i: usize| (i32::from(image[i]), i % STRIDE, i / STRIDE);
+                let centred = |(v, x, y)| (v, x as i32 - RADIUS as i32, y as i32 - RADIUS as i32);
+                (0..image.len()).map(at).map(centred).filter(|(_, x, y)| x * x + y * y <= 225)
+            };
+            let expected = (disc().map(|(v, x, _)| v * x).sum(), disc().map(|(v, _, y)| v * y).sum());
+            assert_eq!(moments(&image), expected);
         }
     }
 

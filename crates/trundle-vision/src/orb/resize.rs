@@ -1,3 +1,4 @@
+use std::num::Wrapping;
 use trundle_core::GrayImage;
 
 /// Bilinear shrinking in fixed point, pixel areas aligned: the corners of both images coincide.
@@ -5,7 +6,7 @@ use trundle_core::GrayImage;
 pub(crate) struct Resize {
     sizes: [usize; 4],
     columns: Vec<Tap>,
-    /// A row of the larger image, interpolated downwards, in 1/256.
+    /// A row of the larger image, interpolated downwards, in 1/256; the last sample twice.
     row: Vec<u16>,
 }
 
@@ -24,25 +25,38 @@ impl Resize {
         if self.sizes != sizes {
             self.sizes = sizes;
             self.columns = (0..to.width()).map(|x| tap(x, from.width(), to.width())).collect();
-            self.row = vec![0; from.width()];
+            self.row = vec![0; from.width() + 1];
         }
         if to.data().is_empty() {
             return;
         }
         for y in 0..to.height() {
             let Tap { first, weight } = tap(y, from.height(), to.height());
-            let upper = from.row(first as usize);
-            let lower = from.row((first as usize + 1).min(from.height() - 1));
-            for ((mixed, a), b) in self.row.iter_mut().zip(upper).zip(lower) {
-                *mixed = u16::from(*a) * (256 - weight) + u16::from(*b) * weight;
-            }
-            for (out, tap) in to.row_mut(y).iter_mut().zip(&self.columns) {
-                let first = tap.first as usize;
-                let (a, b) = (self.row[first], self.row[(first + 1).min(self.row.len() - 1)]);
-                let weight = u32::from(tap.weight);
-                *out = ((u32::from(a) * (256 - weight) + u32::from(b) * weight + (1 << 15)) >> 16) as u8;
-            }
+            let lower = (first as usize + 1).min(from.height() - 1);
+            mix_rows(from.row(first as usize), from.row(lower), weight, &mut self.row);
+            self.row[from.width()] = self.row[from.width() - 1];
+            shrink_row(&self.row, &self.columns, to.row_mut(y));
         }
+    }
+}
+
+// No sum below exceeds its bits. It says so (`Wrapping`) because a check for each would cost more than the sum.
+
+/// Interpolates between two rows, in 1/256.
+fn mix_rows(upper: &[u8], lower: &[u8], weight: u16, row: &mut [u16]) {
+    let (of_upper, of_lower) = (Wrapping(256 - weight), Wrapping(weight));
+    for ((mixed, a), b) in row.iter_mut().zip(upper).zip(lower) {
+        *mixed = (Wrapping(u16::from(*a)) * of_upper + Wrapping(u16::from(*b)) * of_lower).0;
+    }
+}
+
+/// Interpolates within a row and leaves the 1/256.
+fn shrink_row(row: &[u16], columns: &[Tap], to: &mut [u8]) {
+    for (out, tap) in to.iter_mut().zip(columns) {
+        let [a, b] = [0, 1].map(|k| Wrapping(u32::from(row[tap.first as usize..][..2][k])));
+        let weight = Wrapping(u32::from(tap.weight));
+        let mixed = a * (Wrapping(256) - weight) + b * weight;
+        *out = ((mixed + Wrapping(1 << 15)).0 >> 16) as u8;
     }
 }
 
