@@ -25,6 +25,9 @@ pub struct MapperConfig {
     /// obstacle hides under the field of view, and the map alone remembers it. Default 0.65: a Kinect V2, 0.45 m high,
     /// 8 deg down; take `DepthScanner::blind_range`. 0 for a laser.
     pub blind_range: f64,
+    /// Neighbouring hits at most so far apart are one surface, and what lies between them on it is not cleared by beams that
+    /// graze it, m, 0 (off) to 2. Default 0.3.
+    pub surface_gap: f64,
     /// The map reaches this far from its origin along x and y, m, 1 to 2000 and at most 23000 cells; what is farther is
     /// ignored. Default 500.
     pub half_extent: f64,
@@ -42,6 +45,7 @@ impl Default for MapperConfig {
             free_below: 0.196,
             max_range: 12.0,
             blind_range: 0.65,
+            surface_gap: 0.3,
             half_extent: 500.0,
         }
     }
@@ -62,6 +66,7 @@ impl MapperConfig {
         require_in("free_below", self.free_below, "", probability(-self.clamp_low), 0.5)?;
         require_in("max_range", self.max_range, "m", 0.1, 200.0)?;
         require_in("blind_range", self.blind_range, "m", 0.0, 10.0)?;
+        require_in("surface_gap", self.surface_gap, "m", 0.0, 2.0)?;
         let most_cells = MOST_CELLS_ACROSS / 2.0 * self.resolution;
         require_in("half_extent", self.half_extent, "m", 1.0, most_cells.min(2000.0))?;
         Ok(self)

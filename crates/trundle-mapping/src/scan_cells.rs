@@ -35,11 +35,12 @@ impl HitCell {
 
 #[derive(Debug, Clone, Copy)]
 struct Segment {
+    beam: usize,
     end: Vector2,
     hit: bool,
 }
 
-/// Marks over the cells that the scan reaches: 0 untouched, 1 free, n + 2 the n-th hit.
+/// Marks over the cells that the scan reaches: 0 untouched, 1 free, 2 surface, n + 3 the n-th hit.
 #[derive(Debug, Clone, Default)]
 struct Window {
     corner: (i32, i32),
@@ -49,7 +50,8 @@ struct Window {
 
 const UNTOUCHED: u32 = 0;
 const FREE: u32 = 1;
-const FIRST_HIT: u32 = 2;
+const SURFACE: u32 = 2;
+const FIRST_HIT: u32 = 3;
 
 impl ScanCells {
     /// Finds the cells of `scan` taken at `map_from_base`.
@@ -63,6 +65,7 @@ impl ScanCells {
                 self.mark_hit(self.segments[i].end);
             }
         }
+        self.mark_surfaces(config.surface_gap / config.resolution);
         for i in 0..self.segments.len() {
             self.mark_free(self.segments[i].end);
         }
@@ -93,7 +96,7 @@ impl ScanCells {
             };
             let end = map_from_base.transform(scan.point(i, range)) * cells_from_metres;
             if origin_counts && within(end) {
-                self.segments.push(Segment { end, hit });
+                self.segments.push(Segment { beam: i, end, hit });
             } else {
                 self.ignored_beams += 1;
             }
@@ -110,6 +113,22 @@ impl ScanCells {
             let hit = &mut self.hits[(*mark - FIRST_HIT) as usize];
             hit.sum += end;
             hit.count += 1;
+        }
+    }
+
+    /// Between two neighbouring hits that lie near each other goes a surface: beams that graze it do not clear it.
+    fn mark_surfaces(&mut self, gap_cells: f64) {
+        for pair in self.segments.windows(2) {
+            let (a, b) = (pair[0], pair[1]);
+            let neighbours = a.hit && b.hit && b.beam == a.beam + 1;
+            if neighbours && (b.end - a.end).norm() <= gap_cells {
+                for cell in ray_cells(a.end, b.end) {
+                    let mark = self.window.at(cell);
+                    if *mark == UNTOUCHED {
+                        *mark = SURFACE;
+                    }
+                }
+            }
         }
     }
 
@@ -166,7 +185,8 @@ mod tests {
             beams in prop::collection::vec(any_beam(), 1..80),
             x in -3.0..3.0, y in -3.0..3.0, theta in -3.0..3.0,
         ) {
-            let config = MapperConfig { resolution: 0.1, max_range: 5.0, ..MapperConfig::default() };
+            let config =
+                MapperConfig { resolution: 0.1, max_range: 5.0, surface_gap: 0.0, ..MapperConfig::default() };
             let pose = Pose2::new(x, y, theta);
             let scan = Scan::new(Stamp::default(), Vector2::new(0.1, 0.0), -0.6, 0.02, beams).unwrap();
             let mut cells = ScanCells::default();
@@ -188,6 +208,22 @@ mod tests {
             prop_assert_eq!(cells.hits.iter().map(|h| h.cell).collect::<BTreeSet<_>>(), hits);
             prop_assert_eq!(cells.frees.iter().copied().collect::<BTreeSet<_>>(), frees);
         }
+    }
+
+    #[test]
+    fn beams_that_graze_a_wall_do_not_clear_it() {
+        // A wall 0.1 m to the left, along x: hits lie up to 0.3 m apart.
+        let beam = |angle: f64| Beam::Hit { range: 0.1 / angle.sin() };
+        let beams = (0..300).map(|i| beam(0.03 + 0.002 * f64::from(i))).collect();
+        let scan = Scan::new(Stamp::default(), Vector2::zeros(), 0.03, 0.002, beams).unwrap();
+        let cleared = |surface_gap: f64| {
+            let mut cells = ScanCells::default();
+            let config = MapperConfig { surface_gap, ..MapperConfig::default() };
+            cells.rasterise(&config, Pose2::new(0.02, 0.02, 0.0), &scan);
+            cells.frees.iter().filter(|cell| cell.y == 2 && cell.x > 4).count()
+        };
+        assert!(cleared(0.0) > 5);
+        assert_eq!(cleared(0.3), 0);
     }
 
     #[test]

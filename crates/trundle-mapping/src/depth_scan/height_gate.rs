@@ -68,15 +68,23 @@ impl HeightGate {
 
     /// A ray that ended above the band or beyond the greatest range: how far it travelled inside the band.
     fn beyond(&self, ray: &PixelRay, range: f32) -> Finding {
-        let end = range.min(self.max_range);
-        let depth = end / ray.run;
+        if range <= self.max_range {
+            return self.left_upward(ray, range);
+        }
+        let depth = self.max_range / ray.run;
         let height = self.camera_height + ray.rise * depth;
         if height > self.high {
-            let leaves_band = ray.rise > 0.0 && self.camera_height < self.high;
-            let exit = (self.high - self.camera_height) * ray.run / ray.rise;
-            return if leaves_band { Finding::Clear(exit.min(end)) } else { Finding::Nothing };
+            self.left_upward(ray, self.max_range)
+        } else if height >= -self.floor_edge(ray, depth, self.max_range) {
+            Finding::Clear(self.max_range)
+        } else {
+            Finding::Nothing
         }
-        if height >= -self.floor_edge(ray, depth, end) { Finding::Clear(end) } else { Finding::Nothing }
+    }
+
+    /// A ray that is above the band at `range`: it may have begun in it.
+    fn left_upward(&self, ray: &PixelRay, range: f32) -> Finding {
+        if ray.exit > 0.0 { Finding::Clear(ray.exit.min(range)) } else { Finding::Nothing }
     }
 }
 
@@ -89,7 +97,7 @@ mod tests {
     }
 
     fn ray(rise: f32) -> PixelRay {
-        PixelRay { run: 1.0, rise, beam: 0 }
+        PixelRay::new(1.0, rise, 0, 0.65 - 0.4)
     }
 
     #[test]
@@ -108,12 +116,13 @@ mod tests {
     #[test]
     fn a_ray_that_leaves_the_band_upward_clears_what_it_crossed() {
         let Finding::Clear(range) = gate(0.4).judge(&ray(0.1), 4.0) else { panic!("not clear") };
-        assert!((range - 1.5).abs() < 1e-5);
+        assert!((range - 2.5).abs() < 1e-5);
         assert_eq!(gate(0.4).judge(&ray(0.1), 1.0), Finding::Obstacle(1.0));
     }
 
     #[test]
     fn a_ray_over_the_band_clears_nothing() {
+        let ray = |rise| PixelRay::new(1.0, rise, 0, 0.65 - 1.0);
         assert_eq!(gate(1.0).judge(&ray(0.1), 4.0), Finding::Nothing);
         assert_eq!(gate(1.0).judge(&ray(-0.1), 3.0), Finding::Nothing, "a table top higher than the robot");
     }

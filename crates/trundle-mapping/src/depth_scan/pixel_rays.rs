@@ -9,6 +9,16 @@ pub(super) struct PixelRay {
     pub(super) rise: f32,
     /// The beam of the scan that it belongs to: its bearing does not depend on depth.
     pub(super) beam: u32,
+    /// Where the ray leaves the height band upward, m over the floor; 0 when it does not.
+    pub(super) exit: f32,
+}
+
+impl PixelRay {
+    /// A ray of a camera that is `headroom` m below the band's upper edge.
+    pub(super) fn new(run: f32, rise: f32, beam: u32, headroom: f32) -> Self {
+        let exit = if rise > 0.0 && headroom > 0.0 { headroom * run / rise } else { 0.0 };
+        Self { run, rise, beam, exit }
+    }
 }
 
 /// The rays of all pixels, row by row, and the fan of beams that they fall into.
@@ -26,8 +36,8 @@ pub(super) struct PixelRays {
 const COARSEST_BEAM: f64 = 0.035;
 
 impl PixelRays {
-    /// The rays of `camera` (its lens distortion undone) at `base_from_camera`.
-    pub(super) fn new(camera: &PinholeCamera, base_from_camera: &Pose3) -> Self {
+    /// The rays of `camera` (its lens distortion undone) at `base_from_camera`, for a band up to `band_high` m.
+    pub(super) fn new(camera: &PinholeCamera, base_from_camera: &Pose3, band_high: f64) -> Self {
         let forward = forward_bearing(base_from_camera);
         let direction = |x: f64, y: f64| {
             let pixel = camera.undistort(Vector2::new(x, y));
@@ -45,11 +55,9 @@ impl PixelRays {
         let beams = (((left - right) / widest).floor() as usize).max(1);
         let angle_increment = ((left - right) / beams as f64).max(1e-5);
 
-        let ray = |d: &Vector3| PixelRay {
-            run: d.xy().norm() as f32,
-            rise: d.z as f32,
-            beam: (((bearing(d) - right) / angle_increment) as usize).min(beams - 1) as u32,
-        };
+        let headroom = (band_high - base_from_camera.translation.z) as f32;
+        let beam = |d: &Vector3| (((bearing(d) - right) / angle_increment) as usize).min(beams - 1) as u32;
+        let ray = |d: &Vector3| PixelRay::new(d.xy().norm() as f32, d.z as f32, beam(d), headroom);
         let rays = directions.iter().map(ray).collect();
         Self { rays, beams, angle_min: forward + right + angle_increment / 2.0, angle_increment }
     }

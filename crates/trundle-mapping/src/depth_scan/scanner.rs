@@ -52,6 +52,8 @@ impl Bearing {
     }
 }
 
+/// Free space is not followed more finely than this, m.
+const CLEAR_STEP: f32 = 0.02;
 /// Points count as one surface when their depths differ by fewer noises than this.
 const SURFACE_SIGMAS: f32 = 4.0;
 /// Or by less than this, m.
@@ -73,7 +75,7 @@ impl DepthScanner {
         }
         let position = base_from_camera.translation;
         trundle_core::require_positive("camera height above the floor", position.z, "m")?;
-        let fan = PixelRays::new(&camera, &base_from_camera);
+        let fan = PixelRays::new(&camera, &base_from_camera, config.band_high);
         Ok(Self {
             gate: HeightGate::new(&config, position.z),
             blind_range: blind_range(&fan, &config, position.z),
@@ -119,14 +121,16 @@ impl DepthScanner {
             match self.gate.judge(ray, z) {
                 Finding::Obstacle(range) => {
                     self.obstacles.push((ray.beam, range));
-                    let window = surface_window(&self.gate, z);
-                    if range < bearing.nearest && supported(depth, i, window, self.config.hit_support_px) {
+                    let window = || surface_window(&self.gate, z);
+                    if range < bearing.nearest && supported(depth, i, window(), self.config.hit_support_px) {
                         bearing.nearest = range;
                     }
                 }
                 Finding::Clear(range) => {
-                    let window = surface_window(&self.gate, z);
-                    if range > bearing.clear && supported(depth, i, window, self.config.free_support_px) {
+                    let window = || surface_window(&self.gate, z);
+                    if range > bearing.clear + CLEAR_STEP
+                        && supported(depth, i, window(), self.config.free_support_px)
+                    {
                         bearing.clear = range;
                     }
                 }
