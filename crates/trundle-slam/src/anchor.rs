@@ -21,7 +21,7 @@ pub(crate) struct Anchor<'a> {
 
 impl<'a> From<&'a Keyframe> for Anchor<'a> {
     fn from(keyframe: &'a Keyframe) -> Self {
-        let Keyframe { frame, landmarks, visual_from_camera } = keyframe;
+        let Keyframe { frame, landmarks, visual_from_camera, .. } = keyframe;
         Self { frame, landmarks, visual_from_camera: *visual_from_camera }
     }
 }

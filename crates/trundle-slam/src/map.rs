@@ -2,6 +2,7 @@ use crate::frame::Frame;
 use crate::ids::{KeyframeId, LandmarkId};
 use crate::landmark::Landmark;
 use crate::sensor::Sensor;
+use nalgebra::Matrix6;
 use trundle_core::{Pose3, Vector3};
 
 /// A frame that stays in the map.
@@ -9,6 +10,8 @@ use trundle_core::{Pose3, Vector3};
 pub(crate) struct Keyframe {
     pub frame: Frame,
     pub visual_from_camera: Pose3,
+    /// Of that pose as a right perturbation, against the first keyframe: grows along the chain of references.
+    pub covariance: Matrix6<f64>,
     /// Which landmark each feature is of.
     pub landmarks: Vec<Option<LandmarkId>>,
 }
@@ -56,13 +59,18 @@ impl LandmarkMap {
     /// A new keyframe that sees nothing yet.
     pub fn add_keyframe(&mut self, frame: Frame, visual_from_camera: Pose3) -> KeyframeId {
         let landmarks = vec![None; frame.len()];
-        self.keyframes.push(Keyframe { frame, visual_from_camera, landmarks });
+        self.keyframes.push(Keyframe { frame, visual_from_camera, covariance: Matrix6::zeros(), landmarks });
         KeyframeId::from_index(self.keyframes.len() - 1)
     }
 
     /// Moves a keyframe, not what it sees.
     pub fn move_keyframe(&mut self, id: KeyframeId, visual_from_camera: Pose3) {
         self.keyframes[id.index()].visual_from_camera = visual_from_camera;
+    }
+
+    /// Says how uncertain a keyframe's pose is.
+    pub fn set_covariance(&mut self, id: KeyframeId, covariance: Matrix6<f64>) {
+        self.keyframes[id.index()].covariance = covariance;
     }
 
     /// A new landmark at `position` (visual frame, m), seen by nobody yet.

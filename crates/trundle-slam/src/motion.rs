@@ -70,7 +70,6 @@ impl Belief {
     pub fn missed(&mut self, stamp: Stamp, prior: Option<Pose3>, config: &MotionConfig) {
         let elapsed = self.elapsed(stamp);
         let motion = self.since_last(prior).unwrap_or_default();
-        let backward = adjoint(motion.inverse());
         let (along, turned) = match prior {
             Some(_) => {
                 let drift = config.prior_drift * elapsed.sqrt();
@@ -81,7 +80,7 @@ impl Belief {
         };
         let (along, turned) = (along * along, turned * turned);
         let noise = Vector6::new(along, along, along, turned, turned, turned);
-        self.covariance = backward * self.covariance * backward.transpose() + Matrix6::from_diagonal(&noise);
+        self.covariance = carried(&self.covariance, motion) + Matrix6::from_diagonal(&noise);
         self.visual_from_camera = (self.visual_from_camera * motion).renormalized();
         (self.stamp, self.velocity) = (Some(stamp), None);
     }
@@ -95,6 +94,13 @@ impl Belief {
     fn elapsed(&self, stamp: Stamp) -> f64 {
         self.stamp.map_or(0.0, |last| (stamp - last).max(0.0))
     }
+}
+
+/// The covariance of `a_from_b * motion` when that of `a_from_b` is `covariance` and the motion is exact; both as right
+/// perturbations.
+pub(crate) fn carried(covariance: &Matrix6<f64>, motion: Pose3) -> Matrix6<f64> {
+    let backward = adjoint(motion.inverse());
+    backward * covariance * backward.transpose()
 }
 
 /// The adjoint of SE(3), translation first (Sola et al. 2018, eq. 175).

@@ -33,8 +33,8 @@ pub struct TrackReport {
     pub tracking: Tracking,
     /// The camera's pose in the visual frame, which is the first camera's unless another was given.
     pub visual_from_camera: Pose3,
-    /// Covariance of that pose as a right perturbation (m, m, m, rad, rad, rad), relative to the local map: the drift
-    /// of the map against the world is not in it. Grows while not located.
+    /// Covariance of that pose as a right perturbation (m, m, m, rad, rad, rad), against the first keyframe: of the pose
+    /// on the map, and of the map along the chain of keyframes that leads here. Grows while not located.
     pub covariance: Matrix6<f64>,
     /// Features found in the image.
     pub features: usize,

@@ -7,7 +7,7 @@ use crate::keyframe_policy::with_depth;
 use crate::local_map::View;
 use crate::map::LandmarkMap;
 use crate::mapping::Mapper;
-use crate::motion::Belief;
+use crate::motion::{Belief, carried};
 use crate::relocalisation::candidates;
 use crate::report::{SeenFeature, TrackReport, Tracking};
 use crate::search::Projection;
@@ -166,14 +166,15 @@ impl RgbdSlam {
         let shown = found.visible.iter().map(|(_, projection)| projection.pixel);
         let new_keyframe = self.config.keyframes.wants(&frame, pose, tracked, shown, &self.map);
         self.show(&frame, &landmarks);
+        let covariance = self.covariance(&found, reference);
         if new_keyframe {
             reference = self.insert(frame.clone(), pose, &landmarks);
+            self.map.set_covariance(reference, covariance);
             let keyframe = self.map.keyframe(reference);
             (pose, landmarks) = (keyframe.visual_from_camera, keyframe.landmarks.clone());
         }
         let enough = found.by_map && found.fix.solution.inlier_count >= self.config.tracking.weak_inliers;
         let tracking = if enough { Tracking::Ok } else { Tracking::Weak };
-        let covariance = found.fix.solution.covariance().unwrap_or_else(Matrix6::identity);
         let before = self.last.as_ref().filter(|_| self.misses == 0);
         let before = before.map(|last| last.anchored.visual_from_camera(&self.map));
         self.belief.located(frame.stamp, pose, covariance, before);
@@ -202,6 +203,9 @@ impl RgbdSlam {
         };
         if first && begins {
             self.belief.covariance = Matrix6::zeros();
+        }
+        if let Some(id) = reference {
+            self.map.set_covariance(id, self.belief.covariance);
         }
         let features = frame.len();
         let reference = reference.or_else(|| self.last.as_ref().and_then(|last| last.anchored.reference));
@@ -244,6 +248,14 @@ impl RgbdSlam {
                 landmark.found += 1;
             }
         }
+    }
+
+    /// Of a found pose: that against the map, and that of the keyframe which holds this part of the map.
+    fn covariance(&self, found: &Found, reference: KeyframeId) -> Matrix6<f64> {
+        let keyframe = self.map.keyframe(reference);
+        let offset = keyframe.visual_from_camera.inverse() * found.fix.visual_from_camera();
+        let local = found.fix.solution.covariance().unwrap_or_else(Matrix6::identity);
+        carried(&keyframe.covariance, offset) + local
     }
 
     /// The keyframe that shares most landmarks with the frame; the last one's where none does.
