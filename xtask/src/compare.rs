@@ -79,7 +79,7 @@ fn first_difference(at: &str, a: &Value, b: &Value) -> Option<String> {
                 first_difference(&format!("{at}.{key}"), &of(a), &of(b))
             })
         }
-        _ if a.to_string() == b.to_string() => None,
+        _ if a == b => None,
         _ => Some(format!("{at} is {a} and {b}")),
     }
 }

@@ -50,3 +50,15 @@ pub fn scratch(root: &Path, name: &str) -> Result<PathBuf, String> {
 fn cargo_path() -> std::ffi::OsString {
     std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_build_results_are_found_and_scratch_is_empty() {
+        let scratch = scratch(&crate::root(), "xtask-test").unwrap();
+        assert!(scratch.is_dir() && std::fs::read_dir(&scratch).unwrap().next().is_none());
+        std::fs::remove_dir(scratch).unwrap();
+    }
+}

@@ -33,8 +33,15 @@ pub fn run(root: &Path) -> Verdict {
 /// All findings, by file and line.
 fn check(root: &Path) -> Result<Vec<Finding>, String> {
     let tree = Tree::read(root)?;
-    let rules =
-        [arrows::check, purity::check, shape::check, leftovers::check, lockfile::check, markdown::check];
+    let rules = [
+        arrows::check,
+        citations::check,
+        purity::check,
+        shape::check,
+        leftovers::check,
+        lockfile::check,
+        markdown::check,
+    ];
     let mut findings: Vec<Finding> = rules.iter().flat_map(|rule| rule(&tree)).collect();
     findings.sort();
     Ok(findings)

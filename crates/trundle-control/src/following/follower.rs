@@ -98,6 +98,7 @@ impl Follower {
     /// Takes up a trajectory (map frame), from its beginning, and the goal to settle at: the trajectory's end, or where
     /// the map has moved it since, some centimetres away. The way between the two is not checked for obstacles.
     pub fn follow(&mut self, trajectory: Trajectory, goal: Pose2) {
+        self.stabilizer.restart();
         self.task = Some(Task { clock: ReferenceClock::new(trajectory), goal, settling: false });
     }
 

@@ -5,13 +5,14 @@ use trundle_core::{Invalid, require_in};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct SafetyConfig {
-    /// Deceleration to count on, m/s^2, 0.05 to 20. Default 0.5: \[`DriveLimits::KOBUKI`\]; the base can do more.
+    /// Deceleration to count on, m/s^2, 0.05 to 20. Default 0.5: [`DriveLimits::KOBUKI`](trundle_core::DriveLimits::KOBUKI); the base can do more.
     pub deceleration: f64,
     /// From an image to the wheels obeying, s, 0 to 2. Default 0.2: an image period, processing, delay and lag.
     pub latency: f64,
     /// Room left before an obstacle ahead, m, 0 to 1. Default 0.04 (ours).
     pub stop_margin: f64,
     /// Room on either side within which an obstacle stops the robot, m, 0 to 0.5. Default 0.01: the noise of a scan point.
+    /// A cell of the map counts as round.
     pub side_margin: f64,
     /// Room on either side within which an obstacle slows the robot to `creep_speed`, m, at least `side_margin`, to 1.
     /// Default 0.05 (ours).

@@ -1,7 +1,7 @@
 use super::{
     SafetyConfig,
     arc::way_to_contact,
-    obstacles::{SafetyMemory, SafetyScan, collect_memory, collect_scan},
+    obstacles::{Obstacle, SafetyMemory, SafetyScan, collect_memory, collect_scan},
     reason::{SafetyAction, SlowReason, StopReason},
 };
 use trundle_core::{Footprint, Invalid, Stamp, Twist2, Vector2};
@@ -13,8 +13,8 @@ use trundle_core::{Footprint, Invalid, Stamp, Twist2, Vector2};
 pub struct SafetyMonitor {
     config: SafetyConfig,
     radius: f64,
-    /// Reused from call to call: obstacles near by, base frame, m.
-    points: Vec<Vector2>,
+    /// Reused from call to call: what stands near by.
+    obstacles: Vec<Obstacle>,
 }
 
 /// What the monitor judges by.
@@ -45,6 +45,9 @@ pub struct SafetyReport {
     pub action: SafetyAction,
 }
 
+/// Distances that differ by less are the same, m.
+const ROUNDING: f64 = 1e-3;
+
 /// The free way along the arc.
 struct FreeWay {
     /// Until contact, m, and with what.
@@ -60,7 +63,7 @@ impl SafetyMonitor {
     /// When a number of the configuration is outside its range.
     pub fn new(config: SafetyConfig, footprint: &Footprint) -> Result<Self, Invalid> {
         let radius = footprint.circumscribed_radius();
-        Ok(Self { config: config.validated()?, radius, points: Vec::new() })
+        Ok(Self { config: config.validated()?, radius, obstacles: Vec::new() })
     }
 
     /// Judges a command.
@@ -106,29 +109,35 @@ impl SafetyMonitor {
     }
 
     fn gather(&mut self, input: &SafetyInput<'_>) {
-        self.points.clear();
+        self.obstacles.clear();
         let v = input.twist.v.abs();
         let braking = v * self.config.latency + v * v / (2.0 * self.config.deceleration);
         let body = self.radius + self.config.slow_margin.max(self.config.stop_margin);
         if let Some(scan) = &input.scan {
-            collect_scan(scan, braking + self.config.stop_margin + body, &mut self.points);
+            collect_scan(scan, braking + self.config.stop_margin + body, &mut self.obstacles);
         }
         if let Some(memory) = &input.memory {
             let reach = (braking + self.config.stop_margin).min(self.config.memory_reach) + body;
-            collect_memory(memory, reach, &mut self.points);
+            collect_memory(memory, reach, &mut self.obstacles);
         }
     }
 
     fn free_way(&self, twist: Twist2) -> FreeWay {
-        let nearest = |radius: f64| {
-            let ways =
-                self.points.iter().filter_map(|&p| way_to_contact(twist, p, radius).map(|way| (way, p)));
-            ways.min_by(|a, b| a.0.total_cmp(&b.0))
+        let first = |radius: f64| {
+            let way = |o: &Obstacle| Some((way_to_contact(twist, o.at, radius + o.extent)?, o.at));
+            self.obstacles.iter().filter_map(way).min_by(|a, b| a.0.total_cmp(&b.0))
         };
         FreeWay {
-            contact: nearest(self.radius + self.config.side_margin),
-            beside: nearest(self.radius + self.config.slow_margin),
+            contact: first(self.contact_radius()),
+            beside: first(self.radius + self.config.slow_margin),
         }
+    }
+
+    /// The disc that nothing may enter, m. A robot that is already nearer to something than the margin asks may go on as
+    /// long as it comes no nearer: else it could never leave a wall.
+    fn contact_radius(&self) -> f64 {
+        let nearest = self.obstacles.iter().map(|o| o.at.norm() - o.extent).fold(f64::INFINITY, f64::min);
+        (nearest - ROUNDING).clamp(self.radius, self.radius + self.config.side_margin)
     }
 
     fn within_the_free_way(&self, twist: Twist2) -> SafetyReport {
@@ -239,6 +248,20 @@ mod tests {
         assert!(report.action.to_string().starts_with("stop: an obstacle in the way"), "{}", report.action);
         let away = monitor().check(&SafetyInput { scan: seen(&wall), ..fresh(Twist2::new(-0.1, 0.0)) });
         assert_eq!(away.action, SafetyAction::Pass);
+    }
+
+    #[test]
+    fn it_leaves_a_wall_that_it_stands_too_near_to() {
+        // A wall along x, 5 mm beside the disc.
+        let distance: f64 = 0.1755 + 0.005;
+        let bearing = |i: i32| (10.0 + 2.0 * f64::from(i)).to_radians();
+        let ranges: Vec<f64> = (0..80).map(|i| distance / bearing(i).sin()).collect();
+        let wall = scan(bearing(0), 2.0_f64.to_radians(), &ranges);
+        let check =
+            |v, omega| monitor().check(&SafetyInput { scan: seen(&wall), ..fresh(Twist2::new(v, omega)) });
+        assert!(check(0.1, 0.0).twist.v > 0.0, "along it: {}", check(0.1, 0.0).action);
+        assert!(check(0.1, -0.1).twist.v > 0.0, "away from it: {}", check(0.1, -0.1).action);
+        assert_eq!(check(0.1, 0.3).twist.v, 0.0, "into it: {}", check(0.1, 0.3).action);
     }
 
     proptest! {

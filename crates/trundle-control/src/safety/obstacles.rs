@@ -20,18 +20,29 @@ pub struct SafetyMemory<'a> {
     pub map_from_base: Pose2,
 }
 
-/// Appends the scan's hits within `reach` of the base, base frame of now, m.
-pub(super) fn collect_scan(view: &SafetyScan<'_>, reach: f64, points: &mut Vec<Vector2>) {
-    let now_from_scan = view.odom_now.inverse() * view.odom_at_scan;
-    points.extend(view.scan.hits().map(|hit| now_from_scan.transform(hit)).filter(|p| p.norm() <= reach));
+/// Something round that stands near the robot.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Obstacle {
+    /// Its middle, base frame, m.
+    pub(super) at: Vector2,
+    /// Its radius, m: 0 for what a beam hit, half a side for a cell.
+    pub(super) extent: f64,
 }
 
-/// Appends the middles of the occupied cells within `reach` of the base, base frame, m.
-pub(super) fn collect_memory(memory: &SafetyMemory<'_>, reach: f64, points: &mut Vec<Vector2>) {
+/// Appends the scan's hits within `reach` of the base, base frame of now, m.
+pub(super) fn collect_scan(view: &SafetyScan<'_>, reach: f64, found: &mut Vec<Obstacle>) {
+    let now_from_scan = view.odom_now.inverse() * view.odom_at_scan;
+    let hits = view.scan.hits().map(|hit| now_from_scan.transform(hit));
+    found.extend(hits.filter(|p| p.norm() <= reach).map(|at| Obstacle { at, extent: 0.0 }));
+}
+
+/// Appends the occupied cells within `reach` of the base, base frame, m.
+pub(super) fn collect_memory(memory: &SafetyMemory<'_>, reach: f64, found: &mut Vec<Obstacle>) {
     let geometry = memory.grid.geometry();
     let base_from_map = memory.map_from_base.inverse();
     let at = (memory.map_from_base.position() - geometry.origin) / geometry.resolution;
-    let cells = reach / geometry.resolution;
+    let extent = geometry.resolution / 2.0;
+    let cells = reach / geometry.resolution + 0.5;
     let range = |at: f64, size: usize| {
         let (low, high) = ((at - cells).floor().max(0.0), (at + cells).ceil().min(size as f64));
         low as usize..high.max(0.0) as usize
@@ -40,9 +51,9 @@ pub(super) fn collect_memory(memory: &SafetyMemory<'_>, reach: f64, points: &mut
         for col in range(at.x, geometry.width) {
             let cell = trundle_core::CellIndex { col, row };
             if memory.grid.get(cell) == Cell::Occupied {
-                let p = base_from_map.transform(geometry.center(cell));
-                if p.norm() <= reach {
-                    points.push(p);
+                let at = base_from_map.transform(geometry.center(cell));
+                if at.norm() <= reach + extent {
+                    found.push(Obstacle { at, extent });
                 }
             }
         }
@@ -67,7 +78,7 @@ mod tests {
         let mut points = Vec::new();
         collect_scan(&view, 2.0, &mut points);
         assert_eq!(points.len(), 1);
-        assert!((points[0] - Vector2::new(0.6, 0.0)).norm() < 1e-12);
+        assert!((points[0].at - Vector2::new(0.6, 0.0)).norm() < 1e-12);
     }
 
     #[test]
@@ -78,7 +89,7 @@ mod tests {
         let memory = SafetyMemory { grid: &grid, map_from_base: Pose2::new(1.45, 1.45, FRAC_PI_2) };
         collect_memory(&memory, 0.6, &mut points);
         assert_eq!(points.len(), 1);
-        assert!((points[0] - Vector2::new(0.5, 0.0)).norm() < 1e-12);
+        assert!((points[0].at - Vector2::new(0.5, 0.0)).norm() < 1e-12);
         points.clear();
         collect_memory(&memory, 0.4, &mut points);
         let far = SafetyMemory { grid: &grid, map_from_base: Pose2::new(-90.0, 1e9, 0.0) };

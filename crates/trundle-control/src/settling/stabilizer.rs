@@ -69,6 +69,11 @@ impl Stabilizer {
         self.limiter.sent(twist);
     }
 
+    /// Forgets what was tried so far: the next step begins anew, even for the same goal.
+    pub fn restart(&mut self) {
+        self.goal = None;
+    }
+
     /// The command for now, `dt` seconds after the last one; `goal` in the frame of the estimate.
     pub fn step(&mut self, estimate: &PoseEstimate, goal: Pose2, dt: f64) -> SettleReport {
         self.take_goal(goal);

@@ -1,4 +1,5 @@
 //! Closed loops: the controllers of trundle-control against a small model of the base.
+#![expect(clippy::unwrap_used, reason = "these are tests")]
 
 mod following;
 mod plant;

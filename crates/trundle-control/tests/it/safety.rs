@@ -162,7 +162,7 @@ fn what_the_camera_is_too_near_to_see_the_map_remembers() {
 fn behind_it_only_the_map_warns() {
     let wall = empty().segment((-0.8, -1.0), (-0.8, 1.0));
     let drive = drive(&wall, Plant::at(Pose2::IDENTITY), Twist2::new(-0.4, 0.2), 8.0, true);
-    assert!(drive.least_clearance > 0.0 && drive.last.twist.v == 0.0, "{}", drive.last.action);
+    assert!(drive.least_clearance > 0.0 && drive.last.twist.v > -0.02, "{}", drive.last.action);
 }
 
 #[test]
