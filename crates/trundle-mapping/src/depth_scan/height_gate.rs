@@ -44,6 +44,7 @@ impl HeightGate {
     }
 
     /// What a point at `depth` m along `ray` says.
+    #[inline]
     pub(super) fn judge(&self, ray: &PixelRay, depth: f32) -> Finding {
         let range = ray.run * depth;
         let height = self.camera_height + ray.rise * depth;

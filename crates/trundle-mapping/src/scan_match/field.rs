@@ -6,12 +6,19 @@ use trundle_core::Vector2;
 #[derive(Debug, Clone)]
 pub(super) struct LikelihoodField<'a> {
     sites: &'a Sites,
+    corner: Vector2,
+    cells_per_metre: f64,
     values: Vec<f32>,
 }
 
 impl<'a> LikelihoodField<'a> {
     pub(super) fn new(sites: &'a Sites, sigma: f64) -> Self {
-        let mut field = Self { sites, values: vec![0.0; sites.width * sites.height] };
+        let mut field = Self {
+            sites,
+            corner: sites.center(0, 0) - Vector2::repeat(sites.resolution / 2.0),
+            cells_per_metre: 1.0 / sites.resolution,
+            values: vec![0.0; sites.width * sites.height],
+        };
         let reach = (3.0 * sigma / sites.resolution).ceil() as i32;
         for site in sites.iter() {
             field.splat(site, sigma, reach);
@@ -21,8 +28,11 @@ impl<'a> LikelihoodField<'a> {
 
     /// The value at a point of the map frame (m).
     pub(super) fn at(&self, point: Vector2) -> f32 {
-        let (col, row) = self.sites.column_and_row(point);
-        self.index(col, row).map_or(0.0, |i| self.values[i])
+        let within = (point - self.corner) * self.cells_per_metre;
+        // Cutting off the fraction is rounding down where it matters: in the field.
+        let inside = within.x >= 0.0 && within.y >= 0.0;
+        let index = if inside { self.index(within.x as i32, within.y as i32) } else { None };
+        index.map_or(0.0, |i| self.values[i])
     }
 
     fn splat(&mut self, site: Vector2, sigma: f64, reach: i32) {

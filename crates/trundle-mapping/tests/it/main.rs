@@ -1,5 +1,7 @@
 //! One binary of tests against worlds drawn here: the crate does not know the simulator, and must not.
 
+#![allow(clippy::unwrap_used, reason = "tests")]
+
 mod boxes;
 mod depth_scan;
 mod flat_room;
