@@ -3,21 +3,25 @@
 /// Rays in a row of a tile.
 pub(super) const LANES: usize = 16;
 
-/// "No solid" among the indices of [`Lanes`].
+/// "Nothing" among the [`Lanes`]' parts.
 pub(super) const NOTHING: u32 = u32::MAX;
+
+/// Parts of a cylinder in [`Lanes`].
+pub(super) const SIDE: u32 = 0;
+pub(super) const LID: u32 = 1;
 
 /// The nearest solid of each ray so far.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Lanes {
     /// Depth along the optical axis, m.
     pub(super) depth: [f32; LANES],
-    /// Which solid, or [`NOTHING`].
-    pub(super) solid: [u32; LANES],
+    /// 4 times the index of the solid, plus its part: the axis of a box's face, or [`SIDE`] or [`LID`]; or [`NOTHING`].
+    pub(super) part: [u32; LANES],
 }
 
 impl Lanes {
     pub(super) fn empty() -> Self {
-        Self { depth: [f32::INFINITY; LANES], solid: [NOTHING; LANES] }
+        Self { depth: [f32::INFINITY; LANES], part: [NOTHING; LANES] }
     }
 
     /// Depth of the farthest ray.
@@ -25,10 +29,10 @@ impl Lanes {
         self.depth.iter().fold(0.0, |reach, &depth| larger(reach, depth))
     }
 
-    fn keep(&mut self, lane: usize, depth: f32, is_met: bool, solid: u32) {
+    fn keep(&mut self, lane: usize, depth: f32, is_met: bool, part: u32) {
         let is_nearer = is_met & (depth > 0.0) & (depth < self.depth[lane]);
         self.depth[lane] = if is_nearer { depth } else { self.depth[lane] };
-        self.solid[lane] = if is_nearer { solid } else { self.solid[lane] };
+        self.part[lane] = if is_nearer { part } else { self.part[lane] };
     }
 }
 
@@ -44,14 +48,16 @@ pub(super) fn meet_cuboid(
     let low = [0, 1, 2].map(|k| -half[k] - origin[k]);
     let high = [0, 1, 2].map(|k| half[k] - origin[k]);
     for lane in 0..LANES {
-        let (mut near, mut far) = (f32::NEG_INFINITY, f32::INFINITY);
+        let (mut near, mut far, mut axis) = (f32::NEG_INFINITY, f32::INFINITY, 0);
         for k in 0..3 {
             let inverse = 1.0 / (start[k] + lane as f32 * step[k]);
             let (a, b) = (low[k] * inverse, high[k] * inverse);
-            near = larger(near, smaller(a, b));
+            let entry = smaller(a, b);
+            axis = if entry > near { k as u32 } else { axis };
+            near = larger(near, entry);
             far = smaller(far, larger(a, b));
         }
-        lanes.keep(lane, near, near <= far, solid);
+        lanes.keep(lane, near, near <= far, 4 * solid + axis);
     }
 }
 
@@ -71,10 +77,10 @@ pub(super) fn meet_cylinder(
         let root2 = a * radius * radius - across * across;
         let side = (-(o[0] * d[0] + o[1] * d[1]) - larger(root2, 0.0).sqrt()) / a;
         let z = o[2] + side * d[2];
-        lanes.keep(lane, side, (root2 >= 0.0) & (z >= 0.0) & (z <= height), solid);
+        lanes.keep(lane, side, (root2 >= 0.0) & (z >= 0.0) & (z <= height), 4 * solid + SIDE);
         let lid = ((if d[2] < 0.0 { height } else { 0.0 }) - o[2]) / d[2];
         let (x, y) = (o[0] + lid * d[0], o[1] + lid * d[1]);
-        lanes.keep(lane, lid, x * x + y * y <= radius * radius, solid);
+        lanes.keep(lane, lid, x * x + y * y <= radius * radius, 4 * solid + LID);
     }
 }
 

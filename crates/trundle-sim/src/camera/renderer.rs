@@ -145,13 +145,13 @@ impl SeenWorld<'_> {
     }
 
     fn shade(&self, (x, y): (usize, usize), lanes: &Lanes, lane: usize, at: usize, band: &mut Band) {
-        let (depth, solid) = (lanes.depth[lane], lanes.solid[lane]);
-        if solid == NOTHING {
+        let (depth, part) = (lanes.depth[lane], lanes.part[lane]);
+        if part == NOTHING {
             (band.depth[at], band.color[at], band.cosine[at]) = (0.0, [0; 3], 0.0);
             return;
         }
         let pixel = (1.0 / self.renderer.camera.fx()) as f32;
-        let look = self.seen[solid as usize].look(self.normalized(x, y), depth, pixel);
+        let look = self.seen[part as usize / 4].look(part % 4, self.normalized(x, y), depth, pixel);
         (band.depth[at], band.color[at], band.cosine[at]) = (depth, look.color, look.cosine);
     }
 

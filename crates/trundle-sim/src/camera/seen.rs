@@ -1,4 +1,4 @@
-use super::lanes::{self, Lanes};
+use super::lanes::{self, LID, Lanes};
 use crate::paint::{Light, Texture};
 use crate::world::Shape;
 use trundle_core::{Pose3, Vector3};
@@ -7,8 +7,8 @@ use trundle_core::{Pose3, Vector3};
 const LAMPS: [([f32; 3], f32); 2] = [([0.31, 0.45, 0.84], 0.30), ([-0.62, -0.52, 0.59], 0.16)];
 const AMBIENT: f32 = 0.64;
 
-/// Surfaces seen at a slant beyond this cosine of incidence get two samples along the pixel's long footprint.
-const SLANT: f32 = 0.7;
+/// Below this cosine of incidence a pixel gets two samples along its long footprint.
+const SLANT: f32 = 0.5;
 
 /// A solid as the camera sees it in one image: everything in the solid's own frame, f32.
 #[derive(Debug)]
@@ -78,13 +78,13 @@ impl<'w> Seen<'w> {
         }
     }
 
-    /// What the ray through (x, y) sees at `depth` m; `pixel` is a pixel's size at 1 m.
-    pub(super) fn look(&self, (x, y): (f32, f32), depth: f32, pixel: f32) -> Look {
+    /// What the ray through (x, y) sees at `depth` m on the solid's `part` (see [`Lanes`]); `pixel` is a pixel's size at 1 m.
+    pub(super) fn look(&self, part: u32, (x, y): (f32, f32), depth: f32, pixel: f32) -> Look {
         let d = self.direction(x, y);
         let p = [0, 1, 2].map(|k| self.origin[k] + depth * d[k]);
         let spot = match self.form {
-            Form::Cuboid(half) => self.spot_on_cuboid(half, p, d),
-            Form::Cylinder(radius, height) => spot_on_cylinder(radius, height, p, d),
+            Form::Cuboid(half) => self.spot_on_cuboid(part, half, p, d),
+            Form::Cylinder(radius, height) => spot_on_cylinder(part, radius, height, p, d),
         };
         let length = (x * x + y * y + 1.0).sqrt();
         let cosine = (dot(spot.normal, d).abs() / length).clamp(1e-3, 1.0);
@@ -96,13 +96,8 @@ impl<'w> Seen<'w> {
         Look { color: texel.map(|c| (c * light + 0.5) as u8), cosine }
     }
 
-    fn spot_on_cuboid(&self, h: [f32; 3], p: [f32; 3], d: [f32; 3]) -> Spot {
-        // The face entered is the one whose plane the point lies on; at an edge the one that is nearest in sizes of f32.
-        let beyond = [0, 1, 2].map(|k| p[k].abs() - h[k]);
-        let facing = [0, 1, 2].map(|k| self.origin[k].abs() > h[k]);
-        let score = |k: usize| if facing[k] { beyond[k] } else { f32::NEG_INFINITY };
-        let axis =
-            if score(2) >= score(0) && score(2) >= score(1) { 2 } else { usize::from(score(1) > score(0)) };
+    fn spot_on_cuboid(&self, axis: u32, h: [f32; 3], p: [f32; 3], d: [f32; 3]) -> Spot {
+        let axis = axis as usize;
         let sign = self.origin[axis].signum();
         let mut normal = [0.0; 3];
         normal[axis] = sign;
@@ -115,12 +110,13 @@ impl<'w> Seen<'w> {
         Spot { face: 2 * axis + usize::from(sign < 0.0), uv, normal, along }
     }
 
-    /// The mean colour of the pixel's footprint: at a slant two samples along its long axis, each as wide as half of it.
+    /// The mean colour of the pixel's footprint; at a slant two samples along its long axis, each as wide as half of it.
     fn filtered(&self, spot: &Spot, footprint: f32, cosine: f32) -> Light {
         let texture = &self.paintings[spot.face];
         let ([u, v], [du, dv]) = (spot.uv, spot.along);
         if cosine > SLANT {
-            return texture.sample(u, v, footprint);
+            // One sample as wide as the footprint's mean side.
+            return texture.sample(u, v, footprint / cosine.sqrt());
         }
         let half = 0.5 * footprint / cosine;
         let shift = 0.5 * half / (du * du + dv * dv).sqrt().max(1e-6);
@@ -141,11 +137,9 @@ fn light_on(normal: [f32; 3]) -> f32 {
     AMBIENT + LAMPS.iter().map(|(lamp, strength)| strength * dot(*lamp, normal).max(0.0)).sum::<f32>()
 }
 
-fn spot_on_cylinder(radius: f32, height: f32, p: [f32; 3], d: [f32; 3]) -> Spot {
-    let out = (p[0] * p[0] + p[1] * p[1]).sqrt();
-    let over = (p[2] - height).max(-p[2]);
-    if out - radius > over {
-        let (x, y) = (p[0] / out, p[1] / out);
+fn spot_on_cylinder(part: u32, radius: f32, height: f32, p: [f32; 3], d: [f32; 3]) -> Spot {
+    if part != LID {
+        let (x, y) = (p[0] / radius, p[1] / radius);
         let u = (y.atan2(x) + std::f32::consts::PI) * radius;
         Spot { face: 0, uv: [u, height - p[2]], normal: [x, y, 0.0], along: [x * d[1] - y * d[0], -d[2]] }
     } else {

@@ -31,29 +31,37 @@ impl RgbdSensor {
         let key = hash(self.seed, frame);
         let mut depth = vec![0.0; width * height];
         let mut color = vec![[0; 3]; width * height];
-        depth.par_chunks_mut(width).zip(color.par_chunks_mut(width)).enumerate().for_each(
-            |(y, (depth, color))| {
-                self.expose_row(view, y, key, depth, color);
+        let rows = depth.par_chunks_mut(width).zip(color.par_chunks_mut(width)).enumerate();
+        rows.for_each_init(
+            || vec![0.0; width],
+            |beyond, (y, (depth, color))| {
+                find_edges(view, y, self.depth.edge_step(), beyond);
+                self.expose_row(view, y, key, beyond, depth, color);
             },
         );
         let color = ColorImage::new(width, height, color)?;
         RgbdImage::new(stamp, color, DepthImage::new(width, height, depth)?)
     }
 
-    fn expose_row(&self, view: &View, y: usize, key: u64, depth: &mut [f32], color: &mut [[u8; 3]]) {
+    fn expose_row(
+        &self,
+        view: &View,
+        y: usize,
+        key: u64,
+        beyond: &[f32],
+        depth: &mut [f32],
+        color: &mut [[u8; 3]],
+    ) {
         let normals = NormalTable::shared();
-        let step = self.depth.edge_step();
-        for x in 0..view.width {
-            let at = y * view.width + x;
-            let bits = mix(key.wrapping_add((at as u64).wrapping_mul(GOLDEN)));
-            let truth = DepthTruth {
-                depth: view.depth[at],
-                beyond: beyond_edge(view, (x, y), step),
-                cosine: view.cosine[at],
-                luminance: luminance(view.color[at]),
-            };
-            depth[x] = self.depth.measure(truth, bits, normals);
-            color[x] = self.color.measure(view.color[at], bits, normals);
+        let row = y * view.width..(y + 1) * view.width;
+        let seen =
+            view.depth[row.clone()].iter().zip(&view.color[row.clone()]).zip(&view.cosine[row.clone()]);
+        let said = depth.iter_mut().zip(color);
+        for (((((&z, &c), &cosine), &beyond), (depth, color)), pixel) in seen.zip(beyond).zip(said).zip(row) {
+            let bits = mix(key.wrapping_add((pixel as u64).wrapping_mul(GOLDEN)));
+            let truth = DepthTruth { depth: z, beyond, cosine, luminance: luminance(c) };
+            *depth = self.depth.measure(truth, bits, normals);
+            *color = self.color.measure(c, bits, normals);
         }
     }
 }
@@ -66,36 +74,36 @@ fn luminance([r, g, b]: [u8; 3]) -> f32 {
 /// Stands for the depth of "nothing there", m.
 const FAR: f32 = 1e6;
 
-/// The depth on the other side of an edge that the pixel lies at, m; 0 when there is no edge of at least `step` m.
+/// For every pixel of row `y` the depth on the other side of the edge it lies at, m; 0 where there is no edge of at
+/// least `step` m.
 ///
 /// Inverse depth is an affine function of the pixel on any plane, so its second difference vanishes there, however steep
 /// the plane; what is left is the step.
-fn beyond_edge(view: &View, (x, y): (usize, usize), step: f32) -> f32 {
-    let at = y * view.width + x;
-    let z = view.depth[at];
-    let mut beyond = 0.0;
-    if z > 0.0 && y > 0 && y + 1 < view.height {
-        beyond = step_to(view.depth[at - view.width], z, view.depth[at + view.width], step);
+fn find_edges(view: &View, y: usize, step: f32, beyond: &mut [f32]) {
+    let row = |y: usize| &view.depth[y * view.width..(y + 1) * view.width];
+    let here = row(y);
+    beyond.fill(0.0);
+    if y > 0 && y + 1 < view.height {
+        for (((beyond, &above), &z), &below) in beyond.iter_mut().zip(row(y - 1)).zip(here).zip(row(y + 1)) {
+            *beyond = step_to(above, z, below, step);
+        }
     }
-    if z > 0.0 && beyond == 0.0 && x > 0 && x + 1 < view.width {
-        beyond = step_to(view.depth[at - 1], z, view.depth[at + 1], step);
+    for (beyond, near) in beyond[1..].iter_mut().zip(here.windows(3)) {
+        let aside = step_to(near[0], near[1], near[2], step);
+        *beyond = if *beyond == 0.0 { aside } else { *beyond };
     }
-    beyond
 }
 
-/// Which of a pixel's two neighbours lies beyond an edge, its depth; 0 when neither does.
+/// Which of a pixel's two neighbours lies beyond an edge, its depth; 0 when neither does. No branch, no division: a
+/// row of them is SIMD.
 fn step_to(before: f32, z: f32, after: f32, step: f32) -> f32 {
     let a = if before > 0.0 { before } else { FAR };
     let b = if after > 0.0 { after } else { FAR };
-    // z |z/a + z/b - 2| > step, without divisions.
+    // z |z/a + z/b - 2| > step
     let product = a * b;
-    if z * (z * (a + b) - 2.0 * product).abs() <= step * product {
-        0.0
-    } else if (z - a).abs() * b > (z - b).abs() * a {
-        a
-    } else {
-        b
-    }
+    let is_edge = (z > 0.0) & (z * (z * (a + b) - 2.0 * product).abs() > step * product);
+    let other = if (z - a).abs() * b > (z - b).abs() * a { a } else { b };
+    if is_edge { other } else { 0.0 }
 }
 
 #[cfg(test)]
@@ -118,14 +126,12 @@ mod tests {
     fn a_slanted_plane_has_no_edge_and_a_step_has_two_columns_of_it() {
         let floor = view(|x, y| 1.0 / (0.05 + 0.01 * x as f32 + 0.03 * y as f32));
         let step = view(|x, _| if x < 7 { 2.0 } else { 3.0 });
-        for (x, y) in (0..8).flat_map(|y| (0..16).map(move |x| (x, y))) {
-            assert_eq!(beyond_edge(&floor, (x, y), 0.05), 0.0);
-            let expected = match x {
-                6 => 3.0,
-                7 => 2.0,
-                _ => 0.0,
-            };
-            assert_eq!(beyond_edge(&step, (x, y), 0.05), expected, "{x} {y}");
+        let mut beyond = [0.0; 16];
+        for y in 0..8 {
+            find_edges(&floor, y, 0.05, &mut beyond);
+            assert_eq!(beyond, [0.0; 16]);
+            find_edges(&step, y, 0.05, &mut beyond);
+            assert_eq!((beyond[5], beyond[6], beyond[7], beyond[8]), (0.0, 3.0, 2.0, 0.0));
         }
     }
 

@@ -13,12 +13,16 @@ mod texture;
 use crate::chance::hash;
 use crate::world::{Shape, Solid};
 use color::{Rgb, packed};
+use noise::Fractal;
 use poster::Poster;
 use rayon::prelude::*;
 pub(crate) use texture::{Light, Texture};
 
 /// Sides of textures are multiples of this, so that five levels halve exactly.
 const TEXELS: usize = 16;
+
+/// Grain of every size, so that corners are found from 1 m as from 6 m.
+const GRAIN: Fractal = Fractal { wavelength: 0.64, octaves: 7, gain: 0.82 };
 
 /// Most texels of one face; larger faces get coarser texels.
 const MOST_TEXELS: f64 = 4e6;
@@ -122,12 +126,20 @@ fn bake_face(paint: Paint, seed: u32, width: f64, height: f64) -> Texture {
     let (columns, rows) = (texels(width), texels(height));
     let prints = prints_on(paint, seed, size);
     let (dx, dy) = (size.0 / columns as f32, size.1 / rows as f32);
-    let texel_at = |i: usize| {
-        let (x, y) = (((i % columns) as f32 + 0.5) * dx, ((i / columns) as f32 + 0.5) * dy);
-        let print = prints.iter().find_map(|poster| poster.at(x, y));
-        packed(print.unwrap_or_else(|| color_at(paint, seed, size, x, y)))
-    };
-    Texture::new(columns, rows, (0..columns * rows).into_par_iter().map(texel_at).collect(), size)
+    let mut texels = vec![0; columns * rows];
+    texels.par_chunks_mut(columns).enumerate().for_each_init(
+        || vec![0.0; columns],
+        |grain, (row, texels)| {
+            let y = (row as f32 + 0.5) * dy;
+            GRAIN.fill_row(seed, y, dx, grain);
+            for (column, texel) in texels.iter_mut().enumerate() {
+                let x = (column as f32 + 0.5) * dx;
+                let print = prints.iter().find_map(|poster| poster.at(x, y));
+                *texel = packed(print.unwrap_or_else(|| color_at(paint, seed, size, x, y, grain[column])));
+            }
+        },
+    );
+    Texture::new(columns, rows, texels, size)
 }
 
 /// Side of a texel, m: walls are seen from farther away than furniture.
@@ -151,20 +163,20 @@ fn prints_on(paint: Paint, seed: u32, size: (f32, f32)) -> Vec<Poster> {
     }
 }
 
-fn color_at(paint: Paint, seed: u32, size: (f32, f32), x: f32, y: f32) -> Rgb {
+fn color_at(paint: Paint, seed: u32, size: (f32, f32), x: f32, y: f32, grain: f32) -> Rgb {
     match paint {
         Paint::Flat { color } => color::rgb(color),
-        Paint::Plaster { color, .. } => surfaces::plaster(seed, color, x, y),
-        Paint::Wallpaper { color } => surfaces::wallpaper(seed, color, x, y),
-        Paint::Bricks => surfaces::bricks(seed, x, y),
-        Paint::Boards { color } => surfaces::boards(seed, color, x, y),
-        Paint::Tiles { color } => surfaces::tiles(seed, color, x, y),
-        Paint::Ceiling => surfaces::ceiling(seed, x, y),
-        Paint::Books => furnishings::books(seed, x, y),
-        Paint::Cardboard => furnishings::cardboard(seed, size, x, y),
-        Paint::Fabric { color } => furnishings::fabric(seed, color, x, y),
-        Paint::Veneer { color } => furnishings::veneer(seed, color, size, x, y),
-        Paint::Metal { color } => furnishings::metal(seed, color, x, y),
+        Paint::Plaster { color, .. } => surfaces::plaster(seed, color, x, y, grain),
+        Paint::Wallpaper { color } => surfaces::wallpaper(seed, color, x, y, grain),
+        Paint::Bricks => surfaces::bricks(seed, x, y, grain),
+        Paint::Boards { color } => surfaces::boards(seed, color, x, y, grain),
+        Paint::Tiles { color } => surfaces::tiles(seed, color, x, y, grain),
+        Paint::Ceiling => surfaces::ceiling(seed, x, y, grain),
+        Paint::Books => furnishings::books(seed, x, y, grain),
+        Paint::Cardboard => furnishings::cardboard(seed, size, x, y, grain),
+        Paint::Fabric { color } => furnishings::fabric(seed, color, x, y, grain),
+        Paint::Veneer { color } => furnishings::veneer(seed, color, size, x, y, grain),
+        Paint::Metal { color } => furnishings::metal(seed, color, x, y, grain),
     }
 }
 

@@ -1,5 +1,5 @@
 use super::color::{Rgb, lifted, mixed, pick, scaled};
-use super::noise::{fractal, lattice};
+use super::noise::{Fractal, lattice};
 
 /// A print on a wall, a door or a carton: a rectangle in metres from the face's top left, and what is on it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -52,8 +52,8 @@ impl Poster {
 
     /// Clouds of two colours with hard edges here and there.
     fn photograph(&self, x: f32, y: f32) -> Rgb {
-        let coarse = fractal(self.seed, x, y, 0.22, 5, 0.65);
-        let fine = fractal(self.seed ^ 77, x, y, 0.09, 4, 0.7);
+        let coarse = Fractal { wavelength: 0.22, octaves: 5, gain: 0.65 }.at(self.seed, x, y);
+        let fine = Fractal { wavelength: 0.09, octaves: 4, gain: 0.7 }.at(self.seed ^ 77, x, y);
         let base = if coarse > 0.15 { pick(self.seed, 3) } else { pick(self.seed, 4) };
         lifted(mixed(base, pick(self.seed, 5), (fine * 0.5 + 0.4).clamp(0.0, 1.0)), 40.0 * fine)
     }

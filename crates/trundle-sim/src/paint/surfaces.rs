@@ -1,22 +1,18 @@
-//! What walls, floors and ceilings are made of: colour as a function of metres from the face's top left.
+//! What walls, floors and ceilings are made of: colour as a function of metres from the face's top left and of `grain`,
+//! fractal noise of about unit strength.
 
 use super::color::{Rgb, lifted, mixed, pick, rgb, scaled};
-use super::noise::{fractal, lattice, value};
-
-/// Grain of every size, so that corners are found from 1 m as from 6 m, in grey levels.
-fn grain(seed: u32, x: f32, y: f32, strength: f32) -> f32 {
-    strength * fractal(seed, x, y, 0.64, 7, 0.82) * 0.5
-}
+use super::noise::{Fractal, lattice, value};
 
 /// Painted plaster, blotchy, with spatters.
-pub(super) fn plaster(seed: u32, color: [u8; 3], x: f32, y: f32) -> Rgb {
+pub(super) fn plaster(seed: u32, color: [u8; 3], x: f32, y: f32, grain: f32) -> Rgb {
     let spatter = value(seed ^ 5, x / 0.045, y / 0.045);
     let mark = if spatter > 0.72 { -34.0 } else { 0.0 };
-    lifted(rgb(color), grain(seed, x, y, 30.0) + mark)
+    lifted(rgb(color), 15.0 * grain + mark)
 }
 
 /// Wallpaper: a motif of its own in every field.
-pub(super) fn wallpaper(seed: u32, color: [u8; 3], x: f32, y: f32) -> Rgb {
+pub(super) fn wallpaper(seed: u32, color: [u8; 3], x: f32, y: f32, grain: f32) -> Rgb {
     let side = 0.16;
     let (column, row) = ((x / side).floor(), (y / side).floor());
     let (dx, dy) = (x / side - column - 0.5, y / side - row - 0.5);
@@ -29,27 +25,27 @@ pub(super) fn wallpaper(seed: u32, color: [u8; 3], x: f32, y: f32) -> Rgb {
         2 => dx.abs() / sx + dy.abs() / sy < 1.0,
         _ => dx.abs() < 0.07 && dy.abs() < sy || dy.abs() < 0.07 && dx.abs() < sx,
     };
-    let base = lifted(rgb(color), grain(seed, x, y, 14.0));
+    let base = lifted(rgb(color), 7.0 * grain);
     if inside { mixed(base, pick(seed, (draw(6) * 1e4) as i32), 0.35 + 0.5 * draw(7)) } else { base }
 }
 
 /// Bricks in running bond, each of its own tone, joints of mortar.
-pub(super) fn bricks(seed: u32, x: f32, y: f32) -> Rgb {
+pub(super) fn bricks(seed: u32, x: f32, y: f32, grain: f32) -> Rgb {
     let (length, height, joint) = (0.25, 0.085, 0.012);
     let row = (y / height).floor();
     let shift = length * 0.5 * (row % 2.0) + 0.03 * lattice(seed, row as i32, 5);
     let column = ((x + shift) / length).floor();
     let (bx, by) = (x + shift - column * length, y - row * height);
     if bx < joint || by < joint {
-        return lifted([176.0, 168.0, 156.0], grain(seed ^ 9, x, y, 22.0));
+        return lifted([176.0, 168.0, 156.0], 11.0 * grain);
     }
     let tone = lattice(seed, column as i32, row as i32);
     let clay = mixed([112.0, 52.0, 40.0], [206.0, 128.0, 92.0], tone * tone);
-    lifted(clay, grain(seed, x, y, 30.0))
+    lifted(clay, 15.0 * grain)
 }
 
 /// Floor boards along x, each of its own tone and length, with grain, gaps and knots.
-pub(super) fn boards(seed: u32, color: [u8; 3], x: f32, y: f32) -> Rgb {
+pub(super) fn boards(seed: u32, color: [u8; 3], x: f32, y: f32, grain: f32) -> Rgb {
     let width = 0.13;
     let row = (y / width).floor();
     let length = 0.9 + 0.6 * lattice(seed, row as i32, 1);
@@ -60,20 +56,23 @@ pub(super) fn boards(seed: u32, color: [u8; 3], x: f32, y: f32) -> Rgb {
         return scaled(rgb(color), 0.3);
     }
     let tone = 0.62 + 0.6 * lattice(seed, column as i32, row as i32 + 7);
-    timber(seed ^ (row as u32).wrapping_mul(31), scaled(rgb(color), tone), along, y)
+    timber(seed ^ (row as u32).wrapping_mul(31), scaled(rgb(color), tone), along, y, grain)
 }
 
-/// Sawn timber, grain along x, knots here and there.
-pub(super) fn timber(seed: u32, color: Rgb, x: f32, y: f32) -> Rgb {
+/// Fibres of wood, across them; along they are nine times as long.
+const FIBRE: Fractal = Fractal { wavelength: 0.03, octaves: 2, gain: 0.75 };
+
+/// Sawn timber, fibres along x, knots here and there.
+pub(super) fn timber(seed: u32, color: Rgb, x: f32, y: f32, grain: f32) -> Rgb {
     let wave = 0.02 * value(seed ^ 3, x / 0.4, y / 0.2);
-    let fibre = fractal(seed, x / 9.0, y + wave, 0.03, 3, 0.75);
+    let fibre = FIBRE.at(seed, x / 9.0, y + wave);
     let knot = value(seed ^ 8, x / 0.11, y / 0.06);
     let dark = if knot > 0.8 { 0.45 } else { 1.0 };
-    lifted(scaled(color, dark), 22.0 * fibre + 16.0 * fractal(seed ^ 4, x, y, 0.16, 4, 0.8))
+    lifted(scaled(color, dark), 22.0 * fibre + 11.0 * grain)
 }
 
 /// Floor tiles, each of its own tone, some with an inlay.
-pub(super) fn tiles(seed: u32, color: [u8; 3], x: f32, y: f32) -> Rgb {
+pub(super) fn tiles(seed: u32, color: [u8; 3], x: f32, y: f32, grain: f32) -> Rgb {
     let side = 0.30;
     let (column, row) = ((x / side).floor(), (y / side).floor());
     let (dx, dy) = (x / side - column, y / side - row);
@@ -87,11 +86,11 @@ pub(super) fn tiles(seed: u32, color: [u8; 3], x: f32, y: f32) -> Rgb {
     let inlaid = draw(5) < 0.45
         && if draw(6) < 0.5 { px.abs() + py.abs() < reach } else { px.abs().max(py.abs()) < reach * 0.8 };
     let base = if inlaid { mixed(base, pick(seed, (draw(7) * 1e4) as i32), 0.7) } else { base };
-    lifted(base, grain(seed, x, y, 26.0))
+    lifted(base, 13.0 * grain)
 }
 
 /// Ceiling boards of 0.6 m with holes and lamps.
-pub(super) fn ceiling(seed: u32, x: f32, y: f32) -> Rgb {
+pub(super) fn ceiling(seed: u32, x: f32, y: f32, grain: f32) -> Rgb {
     let side = 0.6;
     let (column, row) = ((x / side).floor(), (y / side).floor());
     let (dx, dy) = (x / side - column, y / side - row);
@@ -104,5 +103,5 @@ pub(super) fn ceiling(seed: u32, x: f32, y: f32) -> Rgb {
     }
     let hole = value(seed, x / 0.05, y / 0.05) > 0.6;
     let base = 176.0 + 24.0 * draw(2) - if hole { 50.0 } else { 0.0 };
-    lifted([base; 3], grain(seed, x, y, 28.0))
+    lifted([base; 3], 14.0 * grain)
 }

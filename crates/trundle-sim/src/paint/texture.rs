@@ -12,32 +12,48 @@ pub(crate) struct Texture {
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Level {
+    /// Place of the first texel. Every row has one more at its end, a copy of its last, and so has the whole: a texel
+    /// always has neighbours to the right and below.
     first: usize,
-    width: i32,
-    height: i32,
-    /// Texels a metre.
+    stride: usize,
+    /// Highest coordinates, in sixteenths of a texel.
+    most: (i32, i32),
+    /// Sixteenths of a texel a metre.
     across: f32,
     down: f32,
 }
 
 impl Texture {
     /// A texture of `width` x `height` texels, row by row from the top left, over `size` metres.
-    pub(crate) fn new(width: usize, height: usize, mut texels: Vec<u32>, size: (f32, f32)) -> Self {
+    pub(crate) fn new(width: usize, height: usize, texels: Vec<u32>, size: (f32, f32)) -> Self {
         assert!(texels.len() == width * height && !texels.is_empty(), "invariant: a texel for every place");
         let texel = (size.0 / width as f32).min(size.1 / height as f32);
-        let mut levels = Vec::new();
-        let (mut w, mut h, mut first) = (width, height, 0);
+        let mut texture = Self { levels: Vec::new(), texels: Vec::new(), texel };
+        let (mut plain, mut w, mut h) = (texels, width, height);
         loop {
-            let (across, down) = (w as f32 / size.0, h as f32 / size.1);
-            levels.push(Level { first, width: w as i32, height: h as i32, across, down });
+            texture.push_level(&plain, (w, h), size);
             if w % 2 != 0 || h % 2 != 0 {
-                break;
+                return texture;
             }
-            halve(&mut texels, first, (w, h));
-            first += w * h;
+            plain = halved(&plain, (w, h));
             (w, h) = (w / 2, h / 2);
         }
-        Self { levels, texels, texel }
+    }
+
+    fn push_level(&mut self, plain: &[u32], (width, height): (usize, usize), size: (f32, f32)) {
+        self.levels.push(Level {
+            first: self.texels.len(),
+            stride: width + 1,
+            most: ((width as i32 - 1) << 4, (height as i32 - 1) << 4),
+            across: 16.0 * width as f32 / size.0,
+            down: 16.0 * height as f32 / size.1,
+        });
+        self.texels.reserve((width + 1) * (height + 1));
+        let last = &plain[(height - 1) * width..];
+        for row in plain.chunks_exact(width).chain([last]) {
+            self.texels.extend_from_slice(row);
+            self.texels.push(row[width - 1]);
+        }
     }
 
     /// The colour at (u, v) m, averaged over about `footprint` m.
@@ -55,19 +71,15 @@ impl Texture {
 
     /// Between the four texels around a point, in sixteenths of a texel.
     fn bilinear(&self, level: &Level, u: f32, v: f32) -> Light {
-        let x = ((u * level.across - 0.5) * 16.0) as i32;
-        let y = ((v * level.down - 0.5) * 16.0) as i32;
-        let (x, y) = (x.clamp(0, (level.width - 1) << 4), y.clamp(0, (level.height - 1) << 4));
-        let (x0, y0) = (x >> 4, y >> 4);
-        let right = usize::from(x0 < level.width - 1);
-        let below = if y0 < level.height - 1 { level.width as usize } else { 0 };
-        let at = level.first + (y0 * level.width + x0) as usize;
+        let x = ((u * level.across - 8.0) as i32).max(0).min(level.most.0);
+        let y = ((v * level.down - 8.0) as i32).max(0).min(level.most.1);
+        let at = level.first + (y >> 4) as usize * level.stride + (x >> 4) as usize;
         let (fx, fy) = ((x & 15) as u64, (y & 15) as u64);
         let both = fx * fy;
-        let upper = spread(self.texels[at]) * (256 + both - 16 * (fx + fy))
-            + spread(self.texels[at + right]) * (16 * fx - both);
-        let lower = spread(self.texels[at + below]) * (16 * fy - both)
-            + spread(self.texels[at + below + right]) * both;
+        let (upper, lower) =
+            (&self.texels[at..at + 2], &self.texels[at + level.stride..at + level.stride + 2]);
+        let upper = spread(upper[0]) * (256 + both - 16 * (fx + fy)) + spread(upper[1]) * (16 * fx - both);
+        let lower = spread(lower[0]) * (16 * fy - both) + spread(lower[1]) * both;
         Light(upper + lower)
     }
 }
@@ -101,17 +113,15 @@ fn spread(texel: u32) -> u64 {
     texel & 0xFF_00FF | (texel & 0xFF00) << 24
 }
 
-/// Appends the level of half the size of the one that starts at `first`.
-fn halve(texels: &mut Vec<u32>, first: usize, (width, height): (usize, usize)) {
-    texels.reserve(width * height / 4);
-    for y in 0..height / 2 {
-        for x in 0..width / 2 {
-            let at = first + 2 * y * width + 2 * x;
-            let four = [texels[at], texels[at + 1], texels[at + width], texels[at + width + 1]];
-            let mean = |shift: u32| (four.iter().map(|t| t >> shift & 0xFF).sum::<u32>() + 2) / 4 << shift;
-            texels.push(mean(0) | mean(8) | mean(16));
-        }
-    }
+/// Means of 2 x 2 texels.
+fn halved(texels: &[u32], (width, height): (usize, usize)) -> Vec<u32> {
+    let mean_at = |x: usize, y: usize| {
+        let at = 2 * y * width + 2 * x;
+        let sum = [at, at + 1, at + width, at + width + 1].iter().map(|&i| spread(texels[i])).sum::<u64>();
+        let mean = (sum + 0x02_0002_0002) >> 2 & 0xFF_00FF_00FF;
+        (mean & 0xFF_00FF) as u32 | (mean >> 24 & 0xFF00) as u32
+    };
+    (0..height / 2).flat_map(|y| (0..width / 2).map(move |x| mean_at(x, y))).collect()
 }
 
 /// log2 by the exponent and a straight line over the mantissa: at most 0.09 low. Smooth, which is what matters here.

@@ -1,4 +1,5 @@
 //! The simulator against closed forms, and its promises.
+#![expect(clippy::unwrap_used, reason = "helpers of tests")]
 
 mod depth;
 mod drive;
