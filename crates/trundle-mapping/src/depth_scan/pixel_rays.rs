@@ -21,6 +21,30 @@ impl PixelRay {
     }
 }
 
+/// The rays of a camera's pixels in its own frame, row by row, one m deep, its lens distortion undone.
+#[derive(Debug, Clone)]
+pub(super) struct LensRays {
+    camera: PinholeCamera,
+    rays: Vec<Vector3>,
+}
+
+impl LensRays {
+    pub(super) fn new(camera: PinholeCamera) -> Self {
+        let width = camera.width();
+        let pixel = |i: usize| ray_through(&camera, (i % width) as f64, (i / width) as f64);
+        Self { rays: (0..width * camera.height()).map(pixel).collect(), camera }
+    }
+
+    /// Columns and rows of the image.
+    pub(super) fn image_size(&self) -> (usize, usize) {
+        (self.camera.width(), self.camera.height())
+    }
+}
+
+fn ray_through(camera: &PinholeCamera, x: f64, y: f64) -> Vector3 {
+    camera.unproject(camera.undistort(Vector2::new(x, y)), 1.0)
+}
+
 /// The rays of all pixels, row by row, and the fan of beams that they fall into.
 #[derive(Debug, Clone)]
 pub(super) struct PixelRays {
@@ -36,28 +60,26 @@ pub(super) struct PixelRays {
 const COARSEST_BEAM: f64 = 0.035;
 
 impl PixelRays {
-    /// The rays of `camera` (its lens distortion undone) at `base_from_camera`, for a band up to `band_high` m.
-    pub(super) fn new(camera: &PinholeCamera, base_from_camera: &Pose3, band_high: f64) -> Self {
+    /// The rays of a camera at `base_from_camera`, for a band up to `band_high` m.
+    pub(super) fn new(lens: &LensRays, base_from_camera: &Pose3, band_high: f64) -> Self {
         let forward = forward_bearing(base_from_camera);
-        let direction = |x: f64, y: f64| {
-            let pixel = camera.undistort(Vector2::new(x, y));
-            base_from_camera.rotate(camera.unproject(pixel, 1.0))
-        };
+        let base_from_lens = base_from_camera.rotation_matrix();
         let bearing = |d: &Vector3| wrap_angle(d.y.atan2(d.x) - forward);
-
-        let (width, height) = (camera.width(), camera.height());
-        let directions: Vec<Vector3> =
-            (0..width * height).map(|i| direction((i % width) as f64, (i / width) as f64)).collect();
-        let fan = directions.iter().map(&bearing);
+        let directions: Vec<(Vector3, f64)> =
+            lens.rays.iter().map(|ray| base_from_lens * ray).map(|d| (d, bearing(&d))).collect();
+        let fan = directions.iter().map(|(_, bearing)| *bearing);
         let (right, left) = fan.fold((f64::MAX, f64::MIN), |(lo, hi), b| (lo.min(b), hi.max(b)));
 
-        let widest = widest_pixel(camera, |x, y| bearing(&direction(x, y))).clamp(1e-5, COARSEST_BEAM);
+        let bearing_at = |x: f64, y: f64| bearing(&(base_from_lens * ray_through(&lens.camera, x, y)));
+        let widest = widest_pixel(&lens.camera, bearing_at).clamp(1e-5, COARSEST_BEAM);
         let beams = (((left - right) / widest).floor() as usize).max(1);
         let angle_increment = ((left - right) / beams as f64).max(1e-5);
 
         let headroom = (band_high - base_from_camera.translation.z) as f32;
-        let beam = |d: &Vector3| (((bearing(d) - right) / angle_increment) as usize).min(beams - 1) as u32;
-        let ray = |d: &Vector3| PixelRay::new(d.xy().norm() as f32, d.z as f32, beam(d), headroom);
+        let beam = |bearing: f64| (((bearing - right) / angle_increment) as usize).min(beams - 1) as u32;
+        let ray = |(d, bearing): &(Vector3, f64)| {
+            PixelRay::new(d.xy().norm() as f32, d.z as f32, beam(*bearing), headroom)
+        };
         let rays = directions.iter().map(ray).collect();
         Self { rays, beams, angle_min: forward + right + angle_increment / 2.0, angle_increment }
     }

@@ -1,7 +1,7 @@
 use super::{
     DepthScanConfig,
     height_gate::{Finding, HeightGate},
-    pixel_rays::PixelRays,
+    pixel_rays::{LensRays, PixelRays},
     support::supported,
 };
 use trundle_core::{Beam, DepthImage, Invalid, PinholeCamera, Pose3, RgbdImage, Scan, Stamp, Vector2};
@@ -20,13 +20,19 @@ use trundle_core::{Beam, DepthImage, Invalid, PinholeCamera, Pose3, RgbdImage, S
 #[derive(Debug, Clone)]
 pub struct DepthScanner {
     config: DepthScanConfig,
-    image_size: (usize, usize),
+    lens: LensRays,
+    mount: Mount,
+    obstacles: Vec<(u32, f32)>,
+    bearings: Vec<Bearing>,
+}
+
+/// What follows from where the camera sits.
+#[derive(Debug, Clone)]
+struct Mount {
     origin: Vector2,
     fan: PixelRays,
     gate: HeightGate,
     blind_range: f64,
-    obstacles: Vec<(u32, f32)>,
-    bearings: Vec<Bearing>,
 }
 
 /// What has been found along one bearing.
@@ -70,22 +76,19 @@ impl DepthScanner {
         config: DepthScanConfig,
     ) -> Result<Self, Invalid> {
         let config = config.validated()?;
-        if !base_from_camera.is_finite() {
-            return Err(Invalid::new("base_from_camera", "not finite", "", "finite numbers"));
-        }
-        let position = base_from_camera.translation;
-        trundle_core::require_positive("camera height above the floor", position.z, "m")?;
-        let fan = PixelRays::new(&camera, &base_from_camera, config.band_high);
-        Ok(Self {
-            gate: HeightGate::new(&config, position.z),
-            blind_range: blind_range(&fan, &config, position.z),
-            image_size: (camera.width(), camera.height()),
-            origin: position.xy(),
-            obstacles: Vec::with_capacity(fan.rays.len()),
-            bearings: vec![Bearing::EMPTY; fan.beams],
-            fan,
-            config,
-        })
+        let lens = LensRays::new(camera);
+        let mount = Mount::new(&lens, &base_from_camera, &config)?;
+        let (width, height) = lens.image_size();
+        Ok(Self { obstacles: Vec::with_capacity(width * height), bearings: Vec::new(), config, lens, mount })
+    }
+
+    /// Moves the camera to `base_from_camera`: for a hand-held one, or a mount that was measured anew.
+    ///
+    /// # Errors
+    /// When the mount is not finite or the camera is not above the floor; then it stays where it was.
+    pub fn remount(&mut self, base_from_camera: Pose3) -> Result<(), Invalid> {
+        self.mount = Mount::new(&self.lens, &base_from_camera, &self.config)?;
+        Ok(())
     }
 
     /// The scan of an image: base frame, from the camera's place on the floor, beams at equal angles across the field
@@ -95,10 +98,11 @@ impl DepthScanner {
     /// behind the band, was truly seen through it; else unseen: a missing depth is never free space. An image of
     /// another size than the camera's is unseen altogether.
     pub fn scan(&mut self, image: &RgbdImage) -> Scan {
-        self.bearings.fill(Bearing::EMPTY);
+        self.bearings.clear();
+        self.bearings.resize(self.mount.fan.beams, Bearing::EMPTY);
         self.obstacles.clear();
         let depth = image.depth();
-        if (depth.width(), depth.height()) == self.image_size {
+        if (depth.width(), depth.height()) == self.lens.image_size() {
             self.sort_pixels(depth);
             self.average_surfaces();
         }
@@ -108,26 +112,26 @@ impl DepthScanner {
     /// Over the floor from the camera, m: what is nearer may be too near for the depth camera, or so low that it hides
     /// under the field of view; a beam that passes over it proves nothing. For `MapperConfig::blind_range`.
     pub fn blind_range(&self) -> f64 {
-        self.blind_range
+        self.mount.blind_range
     }
 
     fn sort_pixels(&mut self, depth: &DepthImage) {
         let (nearest_depth, farthest_depth) = (self.config.min_depth as f32, self.config.max_depth as f32);
-        for (i, (&z, ray)) in depth.data().iter().zip(&self.fan.rays).enumerate() {
+        for (i, (&z, ray)) in depth.data().iter().zip(&self.mount.fan.rays).enumerate() {
             if !(z >= nearest_depth && z <= farthest_depth) {
                 continue;
             }
             let bearing = &mut self.bearings[ray.beam as usize];
-            match self.gate.judge(ray, z) {
+            match self.mount.gate.judge(ray, z) {
                 Finding::Obstacle(range) => {
                     self.obstacles.push((ray.beam, range));
-                    let window = || surface_window(&self.gate, z);
+                    let window = || surface_window(&self.mount.gate, z);
                     if range < bearing.nearest && supported(depth, i, window(), self.config.hit_support_px) {
                         bearing.nearest = range;
                     }
                 }
                 Finding::Clear(range) => {
-                    let window = || surface_window(&self.gate, z);
+                    let window = || surface_window(&self.mount.gate, z);
                     if range > bearing.clear + CLEAR_STEP
                         && supported(depth, i, window(), self.config.free_support_px)
                     {
@@ -144,7 +148,7 @@ impl DepthScanner {
         for &(beam, range) in &self.obstacles {
             let bearing = &mut self.bearings[beam as usize];
             if range >= bearing.nearest
-                && range <= bearing.nearest + surface_window(&self.gate, bearing.nearest)
+                && range <= bearing.nearest + surface_window(&self.mount.gate, bearing.nearest)
             {
                 bearing.sum += f64::from(range);
                 bearing.count += 1;
@@ -154,8 +158,25 @@ impl DepthScanner {
 
     fn to_scan(&self, stamp: Stamp) -> Scan {
         let beams = self.bearings.iter().map(Bearing::beam).collect();
-        Scan::new(stamp, self.origin, self.fan.angle_min, self.fan.angle_increment, beams)
+        Scan::new(stamp, self.mount.origin, self.mount.fan.angle_min, self.mount.fan.angle_increment, beams)
             .expect("invariant: ranges come from finite depths and rays")
+    }
+}
+
+impl Mount {
+    fn new(lens: &LensRays, base_from_camera: &Pose3, config: &DepthScanConfig) -> Result<Self, Invalid> {
+        if !base_from_camera.is_finite() {
+            return Err(Invalid::new("base_from_camera", "not finite", "", "finite numbers"));
+        }
+        let position = base_from_camera.translation;
+        trundle_core::require_positive("camera height above the floor", position.z, "m")?;
+        let fan = PixelRays::new(lens, base_from_camera, config.band_high);
+        Ok(Self {
+            origin: position.xy(),
+            gate: HeightGate::new(config, position.z),
+            blind_range: blind_range(&fan, config, position.z),
+            fan,
+        })
     }
 }
 

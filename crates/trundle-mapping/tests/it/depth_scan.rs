@@ -185,3 +185,14 @@ fn bad_mounts_are_refused_by_name() {
     let config = DepthScanConfig { band_high: 0.01, ..DepthScanConfig::default() };
     assert_eq!(DepthScanner::new(small_camera(), mount(0.4, 0.0), config).unwrap_err().field, "band_high");
 }
+
+#[test]
+fn a_remounted_scanner_is_a_new_one() {
+    let mut scanner =
+        DepthScanner::new(small_camera(), mount(0.45, 8.0), DepthScanConfig::default()).unwrap();
+    let there = mounted([0.2, 0.1, 0.9], 20.0, 25.0, 3.0);
+    assert!(scanner.remount(mount(-1.0, 0.0)).is_err());
+    scanner.remount(there).unwrap();
+    let depth = depth_of(&small_camera(), &there, &[Solid::wall(2.5, 2.0)], true);
+    assert_eq!(scanner.scan(&rgbd(depth.clone())), scan_of(small_camera(), there, depth));
+}

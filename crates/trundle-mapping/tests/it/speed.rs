@@ -39,6 +39,8 @@ fn speed() {
     let mut scan = scanner.scan(&image);
     println!("scan of 512 x 424: {:.3} ms", mean_ms(|| scan = scanner.scan(&image)));
 
+    println!("remount: {:.3} ms", mean_ms(|| scanner.remount(base_from_camera).unwrap()));
+
     let mut mapper = GridMapper::new(MapperConfig::default()).unwrap();
     println!("{} beams", scan.beams().len());
     println!(
