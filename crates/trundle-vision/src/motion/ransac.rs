@@ -194,14 +194,11 @@ impl Search<'_> {
 
     /// Samples after which one of right pairs only was among them, if `inliers` are all the right ones \[Fischler81\].
     fn enough(&self, inliers: usize) -> usize {
+        let most = self.config.max_iterations;
         let all_right = (inliers as f64 / self.pairs.len() as f64).powi(3);
         let samples = (1.0 - self.config.confidence).ln() / (1.0 - all_right).ln();
-        // Of 0 right pairs comes -infinity / -0, of all right ones 0: the cast and the minimum take care of both.
-        if all_right > 0.0 {
-            (samples.ceil() as usize).min(self.config.max_iterations)
-        } else {
-            self.config.max_iterations
-        }
+        // With no right pairs the quotient is infinite, of either sign; if all are right it is 0.
+        if all_right > 0.0 { (samples.ceil() as usize).min(most) } else { most }
     }
 
     fn inliers(&self, b_from_a: Pose3) -> Vec<&Pair> {

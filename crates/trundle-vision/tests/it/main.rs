@@ -1,5 +1,7 @@
 //! The features and the motion as a user of the crate meets them: drawn textures and real recordings.
 
+#![allow(clippy::unwrap_used, clippy::print_stdout, clippy::print_stderr, reason = "tests")]
+
 mod determinism;
 mod invariance;
 mod real_frames;
