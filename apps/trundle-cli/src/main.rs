@@ -1,2 +1,62 @@
-//! The program `trundle`.
-fn main() {}
+//! The program `trundle`: a thin door to the crates. Exit codes: 0 done, 1 the run missed its aim, 2 bad input.
+
+mod args;
+mod body;
+mod console;
+mod demo;
+mod failure;
+mod logbook;
+mod picture;
+mod plan;
+mod replay;
+mod robot_file;
+mod run;
+mod run_output;
+mod run_table;
+mod slam;
+mod slam_output;
+mod view;
+
+use args::{Cli, Command, Common};
+use clap::Parser;
+use failure::Failure;
+use std::process::ExitCode;
+
+/// What a command that ran to its end says of its aim.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Outcome {
+    Reached,
+    Missed,
+}
+
+fn main() -> ExitCode {
+    match run(Cli::parse()) {
+        Ok(Outcome::Reached) => ExitCode::SUCCESS,
+        Ok(Outcome::Missed) => ExitCode::from(1),
+        Err(failure) => {
+            console::complain(&failure);
+            ExitCode::from(failure.exit_code())
+        }
+    }
+}
+
+fn run(cli: Cli) -> Result<Outcome, Failure> {
+    match cli.command {
+        Command::Demo(args) => with_threads(&args.common, || demo::run(&args)),
+        Command::Replay(args) => with_threads(&args.common, || replay::run(&args)),
+        Command::Slam(args) => with_threads(&args.common, || slam::run(&args)),
+        Command::Plan(args) => with_threads(&args.common, || plan::run(&args)),
+        Command::Config(args) => robot_file::print(args.file.as_deref()),
+    }
+}
+
+/// Runs `work` on a pool of the asked number of threads.
+fn with_threads<T: Send>(
+    common: &Common,
+    work: impl FnOnce() -> Result<T, Failure> + Send,
+) -> Result<T, Failure> {
+    let Some(threads) = common.threads else { return work() };
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(usize::from(threads)).build();
+    pool.map_err(|error| Failure::Environment(format!("cannot start {threads} threads: {error}")))?
+        .install(work)
+}

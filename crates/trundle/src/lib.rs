@@ -1,1 +1,42 @@
-//! Autonomy for a two-wheeled indoor robot with one RGB-D camera.
+//! Autonomy for a two-wheeled indoor robot with one RGB-D camera: it finds out where it is, draws the map, plans a
+//! smooth path, drives it, and settles on its goal pose. No ROS needed.
+//!
+//! The whole robot is [`runtime::Robot`]: sensor events in, pose, map, plan and twist out.
+//!
+//! ```no_run
+//! use trundle::core::{Pose2, RobotBody};
+//! use trundle::runtime::{Robot, RobotConfig};
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! # let mut body = trundle::sim_body_for_docs()?;
+//! let mut robot = Robot::new(RobotConfig::default())?;
+//! robot.drive_to(Pose2::new(3.0, 1.0, 0.0));
+//! while let Some(event) = body.next_event()? {
+//!     let report = robot.step(&event);
+//!     if let Some(twist) = report.twist {
+//!         body.command(twist)?;
+//!     }
+//!     if report.finished() {
+//!         break;
+//!     }
+//! }
+//! # Ok(()) }
+//! ```
+//!
+//! Every room can be used alone: [`vision`] finds and matches features, [`slam`] tracks a camera, [`mapping`] turns
+//! depth into scans and scans into a grid, [`localization`] fuses, [`planning`] plans, [`control`] drives, [`sim`]
+//! plays the world, [`eval`] judges, [`io`] reads and writes, [`viz`] draws.
+
+pub use trundle_control as control;
+pub use trundle_core as core;
+pub use trundle_eval as eval;
+pub use trundle_io as io;
+pub use trundle_localization as localization;
+pub use trundle_mapping as mapping;
+pub use trundle_optim as optim;
+pub use trundle_planning as planning;
+pub use trundle_runtime as runtime;
+pub use trundle_sim as sim;
+pub use trundle_slam as slam;
+pub use trundle_vision as vision;
+pub use trundle_viz as viz;

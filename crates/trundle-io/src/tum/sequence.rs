@@ -27,8 +27,8 @@ impl TumSequence {
     /// How far apart in time a colour and a depth image of one frame may be, s: 0.02, as in TUM's tools.
     pub const MAX_DIFFERENCE: f64 = 0.02;
 
-    /// Opens a folder: reads its lists and pairs colour with depth images at most `max_difference` s apart, the nearest
-    /// first, each used once. `depth_scale` is what a depth of 1 m is in the depth images (5000 for TUM).
+    /// Opens a folder: reads its lists and pairs each colour image with the depth image nearest in time, at most
+    /// `max_difference` s apart. `depth_scale` is what a depth of 1 m is in the depth images (5000 for TUM).
     ///
     /// # Errors
     /// When the folder or a list is missing, a line is wrong, stamps do not rise, or no images can be paired.

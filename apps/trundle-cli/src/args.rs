@@ -1,0 +1,200 @@
+use clap::{Args, Parser, Subcommand};
+use std::path::PathBuf;
+use std::str::FromStr;
+use trundle::core::Pose2;
+
+/// Autonomy for a two-wheeled indoor robot with one RGB-D camera.
+#[derive(Debug, Parser)]
+#[command(name = "trundle", version, about, arg_required_else_help = true)]
+pub struct Cli {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// The commands.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Drive through a simulated room on camera, wheels and gyro alone.
+    Demo(DemoArgs),
+    /// Run the robot again on a recording: same recording, same bytes.
+    Replay(ReplayArgs),
+    /// Track a recorded RGB-D sequence and draw its map.
+    Slam(SlamArgs),
+    /// Plan on a map: way-points, curve and trajectory.
+    Plan(PlanArgs),
+    /// Print the whole robot file with its defaults, or check one.
+    Config(ConfigArgs),
+}
+
+/// What every command takes.
+#[derive(Debug, Clone, Args)]
+pub struct Common {
+    /// Show no progress.
+    #[arg(long, short)]
+    pub quiet: bool,
+    /// Threads to use; the results are the same for any number [default: one a core]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=256))]
+    pub threads: Option<u16>,
+}
+
+/// `trundle demo`
+#[derive(Debug, Args)]
+#[command(after_help = "Example: trundle demo --seed 3 --out out/demo3\n\n\
+    Exit code: 0 goal reached and nothing touched, 1 otherwise, 2 bad input.")]
+pub struct DemoArgs {
+    /// Seed of the room's furniture and textures and of all noise.
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub seed: u64,
+    /// The room: demo or obstacles.
+    #[arg(long, value_name = "NAME", default_value = "demo")]
+    pub scene: String,
+    /// Goal in the map frame, which starts at the robot: m, m, deg [default: the room's own]
+    #[arg(long, value_name = "X,Y,DEG", allow_hyphen_values = true)]
+    pub goal: Option<PoseArg>,
+    /// Robot file (see `trundle config`).
+    #[arg(long, value_name = "FILE")]
+    pub config: Option<PathBuf>,
+    /// Folder for the results.
+    #[arg(long, value_name = "DIR", default_value = "out/demo")]
+    pub out: PathBuf,
+    /// What every command takes.
+    #[command(flatten)]
+    pub common: Common,
+}
+
+/// `trundle replay`
+#[derive(Debug, Args)]
+#[command(after_help = "Example: trundle replay out/demo/recording.mcap --out out/replay")]
+pub struct ReplayArgs {
+    /// A recording made by trundle.
+    pub recording: PathBuf,
+    /// Folder for the results.
+    #[arg(long, value_name = "DIR", default_value = "out/replay")]
+    pub out: PathBuf,
+    /// What every command takes.
+    #[command(flatten)]
+    pub common: Common,
+}
+
+/// `trundle slam`
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Example: trundle slam ../shared/data/tum_fr1_rpy_400 --camera freiburg1 --out out/rpy"
+)]
+pub struct SlamArgs {
+    /// A TUM RGB-D folder: rgb.txt, depth.txt, optional groundtruth.txt and odometry.txt.
+    pub dir: PathBuf,
+    /// Preset freiburg1, freiburg2, freiburg3, kinect_v2, or a TOML file.
+    #[arg(long, value_name = "PRESET|FILE", default_value = "freiburg1")]
+    pub camera: String,
+    /// Depth units a metre [default: the camera's]
+    #[arg(long, value_name = "N")]
+    pub depth_scale: Option<f64>,
+    /// Stop after this many frames.
+    #[arg(long, value_name = "N")]
+    pub frames: Option<usize>,
+    /// Height of the first camera above the floor, m, for the map.
+    #[arg(long, value_name = "M", default_value_t = 1.0)]
+    pub height: f64,
+    /// Downward tilt of the first camera, deg, for the map.
+    #[arg(long, value_name = "DEG", default_value_t = 0.0, allow_hyphen_values = true)]
+    pub tilt: f64,
+    /// Seed of the random sampling.
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub seed: u64,
+    /// Folder for the results.
+    #[arg(long, value_name = "DIR", default_value = "out/slam")]
+    pub out: PathBuf,
+    /// What every command takes.
+    #[command(flatten)]
+    pub common: Common,
+}
+
+/// `trundle plan`
+#[derive(Debug, Args)]
+#[command(after_help = "Example: trundle plan ../shared/data/nav/nav2/depot.yaml --from=0,-4,0 --to=5,3,90")]
+pub struct PlanArgs {
+    /// A map in map_server's form.
+    pub map: PathBuf,
+    /// Start pose in the map frame: m, m, deg.
+    #[arg(long, value_name = "X,Y,DEG", allow_hyphen_values = true)]
+    pub from: PoseArg,
+    /// Goal pose in the map frame: m, m, deg.
+    #[arg(long, value_name = "X,Y,DEG", allow_hyphen_values = true)]
+    pub to: PoseArg,
+    /// Robot file (see `trundle config`).
+    #[arg(long, value_name = "FILE")]
+    pub config: Option<PathBuf>,
+    /// Folder for the results.
+    #[arg(long, value_name = "DIR", default_value = "out/plan")]
+    pub out: PathBuf,
+    /// What every command takes.
+    #[command(flatten)]
+    pub common: Common,
+}
+
+/// `trundle config`
+#[derive(Debug, Args)]
+#[command(after_help = "Example: trundle config > robot.toml && trundle demo --config robot.toml")]
+pub struct ConfigArgs {
+    /// Check this robot file and print it whole, its gaps filled with the defaults.
+    pub file: Option<PathBuf>,
+}
+
+/// A pose on the command line: `X,Y,DEG`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PoseArg(pub Pose2);
+
+impl FromStr for PoseArg {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let parts: Vec<&str> = text.split(',').collect();
+        let [x, y, degrees] = parts[..] else {
+            return Err(format!("{} numbers, expected 3: X,Y,DEG (m, m, deg)", parts.len()));
+        };
+        let x = coordinate("X", x, "m", 1e6)?;
+        let y = coordinate("Y", y, "m", 1e6)?;
+        let degrees = coordinate("DEG", degrees, "deg", 1e6)?;
+        Ok(Self(Pose2::new(x, y, degrees.to_radians())))
+    }
+}
+
+fn coordinate(name: &str, text: &str, unit: &str, limit: f64) -> Result<f64, String> {
+    let value: f64 =
+        text.trim().parse().map_err(|_| format!("{name} is '{text}', expected a number in {unit}"))?;
+    if value.abs() <= limit {
+        Ok(value)
+    } else {
+        Err(format!("{name} is {value} {unit}, expected a number between -{limit} and {limit}"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_command_line_is_consistent() {
+        Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn poses_are_three_finite_numbers() {
+        let pose: PoseArg = "1.5,-2,90".parse().unwrap();
+        assert_eq!(pose.0, Pose2::new(1.5, -2.0, std::f64::consts::FRAC_PI_2));
+        assert!("1,2".parse::<PoseArg>().unwrap_err().contains("expected 3"));
+        assert!("NaN,2,3".parse::<PoseArg>().unwrap_err().contains("X is NaN m"));
+        assert!("1,2,east".parse::<PoseArg>().unwrap_err().contains("DEG is 'east'"));
+    }
+
+    #[test]
+    fn every_help_fits_a_screen() {
+        for command in Cli::command().get_subcommands_mut() {
+            let lines = command.render_help().to_string().lines().count();
+            assert!(lines <= 40, "{} has {lines} lines of help", command.get_name());
+        }
+    }
+}

@@ -1,0 +1,101 @@
+use trundle::core::{Pose2, SensorEvent, Stamp, Twist2};
+use trundle::runtime::{DriveState, StepReport};
+use trundle::slam::Tracking;
+
+/// What a run leaves for judges and pictures, all of it from the data: no wall clock.
+#[derive(Debug, Default)]
+pub struct Logbook {
+    /// First stamp of the run.
+    pub start: Option<Stamp>,
+    /// Newest stamp of the run.
+    pub now: Stamp,
+    /// `map_from_base` as the robot believed, at every image.
+    pub estimates: Vec<(Stamp, Pose2)>,
+    /// `map_from_base` in truth, at every truth event.
+    pub truths: Vec<(Stamp, Pose2)>,
+    /// Commands by time.
+    pub twists: Vec<(Stamp, Twist2)>,
+    /// Times the bumper was pressed.
+    pub contacts: usize,
+    /// Plans made.
+    pub plans: usize,
+    /// Images by what tracking said of them.
+    pub tracked: TrackCounts,
+    /// What the robot was doing last.
+    pub state: DriveState,
+}
+
+/// Images by what tracking said of them.
+#[derive(Debug, Default, Clone, Copy)]
+pub struct TrackCounts {
+    /// Well tracked.
+    pub ok: usize,
+    /// Tracked on few features.
+    pub weak: usize,
+    /// Carried on by wheels and gyro, or by constant velocity.
+    pub dead_reckoned: usize,
+    /// Without a pose.
+    pub lost: usize,
+}
+
+impl TrackCounts {
+    /// Counts one image.
+    pub fn count(&mut self, tracking: Tracking) {
+        match tracking {
+            Tracking::Ok => self.ok += 1,
+            Tracking::Weak => self.weak += 1,
+            Tracking::DeadReckoning => self.dead_reckoned += 1,
+            Tracking::Lost => self.lost += 1,
+        }
+    }
+}
+
+impl Logbook {
+    /// Takes down what a step said.
+    pub fn note(&mut self, now: Stamp, report: &StepReport) {
+        self.start.get_or_insert(now);
+        self.now = now;
+        self.state = report.state.clone();
+        self.plans += usize::from(report.replanned);
+        if let Some(track) = &report.track {
+            self.tracked.count(track.tracking);
+            self.estimates.extend(report.estimate.map(|estimate| (now, estimate.pose)));
+        }
+        self.twists.extend(report.twist.map(|twist| (now, twist)));
+    }
+
+    /// Seconds since the first event.
+    pub fn elapsed(&self) -> f64 {
+        self.start.map_or(0.0, |start| self.now - start)
+    }
+
+    /// The length of the true way, or of the believed one where truth is not known, m.
+    pub fn path_length(&self) -> f64 {
+        let way = if self.truths.is_empty() { &self.estimates } else { &self.truths };
+        way.windows(2).map(|pair| pair[1].1.distance(&pair[0].1)).sum()
+    }
+
+    /// Truth at the newest truth event up to `stamp`, map frame.
+    pub fn truth_at(&self, stamp: Stamp) -> Option<Pose2> {
+        let after = self.truths.partition_point(|(at, _)| *at <= stamp);
+        self.truths.get(after.checked_sub(1)?).map(|(_, pose)| *pose)
+    }
+
+    /// Distance of the estimate from truth: root of the mean square, m.
+    pub fn estimate_rmse(&self) -> Option<f64> {
+        let squares = self.estimates.iter().filter_map(|(stamp, pose)| {
+            Some((pose.position() - self.truth_at(*stamp)?.position()).norm_squared())
+        });
+        let squares: Vec<f64> = squares.collect();
+        (!squares.is_empty()).then(|| (squares.iter().sum::<f64>() / squares.len() as f64).sqrt())
+    }
+
+    /// Takes down what only judges may know: truth (moved into the map frame) and contacts.
+    pub fn judge(&mut self, event: &SensorEvent, map_from_world: Pose2) {
+        match event {
+            SensorEvent::Truth { stamp, pose } => self.truths.push((*stamp, map_from_world * *pose)),
+            SensorEvent::Touch(touch) => self.contacts += usize::from(touch.pressed),
+            _ => {}
+        }
+    }
+}

@@ -1,0 +1,19 @@
+use crate::run::{RunSetup, drive};
+use crate::{Outcome, args::ReplayArgs, failure::Failure, run_output};
+use trundle::io::{OutputFolder, RecordingReader};
+
+/// `trundle replay RECORDING`.
+pub fn run(args: &ReplayArgs) -> Result<Outcome, Failure> {
+    let name = args.recording.display();
+    let mut body = RecordingReader::open(&args.recording)?;
+    let config = body.config().ok_or_else(|| {
+        Failure::Input(format!(
+            "{name}: no trundle.Config message comes first, so this is no recording of a trundle run"
+        ))
+    })?;
+    let setup: RunSetup = serde_json::from_value(config.clone())
+        .map_err(|error| Failure::Input(format!("{name}: the configuration cannot be used: {error}")))?;
+    let folder = OutputFolder::create(&args.out)?;
+    let run = drive(&setup, &mut body, &folder, args.common.quiet)?;
+    run_output::write("replay", &setup, &run, folder, args.common.quiet)
+}

@@ -1,0 +1,105 @@
+use crate::{Outcome, console, failure::Failure, picture, run::Run, run::RunSetup, run_table::RunNumbers};
+use trundle::core::{Footprint, Pose2};
+use trundle::io::{OutputFolder, trajectory_text_from_planar, write_map};
+use trundle::viz::{Card, Chart, Color, Figure, RunReport, Table, Verdict};
+
+/// Writes the folder of a run, prints its table, and says whether the goal was reached.
+pub fn write(
+    command: &str,
+    setup: &RunSetup,
+    run: &Run,
+    folder: OutputFolder,
+    quiet: bool,
+) -> Result<Outcome, Failure> {
+    let numbers = RunNumbers::of(setup, run);
+    write_map(&folder, "map", run.robot.grid())?;
+    folder.write("trajectory.txt", trajectory_text_from_planar(&run.log.estimates).as_bytes())?;
+    folder.write("groundtruth.txt", trajectory_text_from_planar(&run.log.truths).as_bytes())?;
+    let report = report(setup, run, &numbers);
+    folder.write("map.png", &report.map_png())?;
+    folder.write("report.html", report.to_html().as_bytes())?;
+    folder.write("summary.json", numbers.summary(command, setup, run).to_json().as_bytes())?;
+    let place = folder.commit()?;
+    if !quiet {
+        console::table(&numbers.rows(run));
+        console::say(&format!("\n{}\nSee {}", numbers.verdict(), place.join("report.html").display()));
+    }
+    Ok(if numbers.is_success() { Outcome::Reached } else { Outcome::Missed })
+}
+
+fn report(setup: &RunSetup, run: &Run, numbers: &RunNumbers) -> RunReport {
+    let robot = &run.robot;
+    let verdict = numbers.verdict();
+    let plan = robot.plan();
+    let curve = plan.map(|plan| plan.trajectory.points().iter().map(|p| p.pose.position()).collect());
+    let pose = robot.estimate().pose;
+    RunReport {
+        title: format!("trundle in the room '{}'", setup.scene),
+        subtitle: format!(
+            "Seed {}. A simulated Kobuki with a Kinect V2 started with an empty map and drove to ({:.2} m, {:.2} m, \
+             {:.0} deg) on its camera, wheels and gyro alone.",
+            setup.seed,
+            setup.goal.x,
+            setup.goal.y,
+            setup.goal.theta.to_degrees()
+        ),
+        verdict: Some(if numbers.is_success() { Verdict::Ok(verdict) } else { Verdict::Failed(verdict) }),
+        cards: cards(numbers),
+        grid: Some(robot.grid().clone()),
+        landmarks: picture::landmarks_in_map(robot),
+        way_points: plan.map(|plan| plan.way_points.points().to_vec()).unwrap_or_default(),
+        curve: curve.unwrap_or_default(),
+        estimated_path: run.log.estimates.iter().map(|(_, pose)| *pose).collect(),
+        true_path: run.log.truths.iter().map(|(_, pose)| *pose).collect(),
+        start: Some(Pose2::IDENTITY),
+        goal: Some(setup.goal),
+        footprint: Footprint::disc(setup.robot.footprint_radius).ok(),
+        scan: robot.scan().map(|scan| (pose, scan.clone())),
+        camera: run.view.image.as_ref().map(|image| picture::camera_view(image, &run.view.features)),
+        depth: run.view.image.as_ref().map(|image| image.depth().clone()),
+        charts: vec![error_chart(run), speed_chart(run)],
+        figures: Vec::new(),
+        tables: vec![table(numbers)],
+    }
+}
+
+fn cards(numbers: &RunNumbers) -> Vec<Card> {
+    let mut cards = Vec::new();
+    if let Some(error) = numbers.goal_error {
+        let (cm, deg) = (error.distance * 100.0, error.dtheta.abs().to_degrees());
+        cards.push(Card::new("from the goal", &format!("{cm:.1}")).unit("cm").good(numbers.is_near()));
+        cards.push(Card::new("off its heading", &format!("{deg:.2}")).unit("deg").good(numbers.is_aligned()));
+    }
+    let contacts = numbers.contacts.to_string();
+    cards.push(Card::new("contacts", &contacts).good(numbers.contacts == 0));
+    cards.push(Card::new("driven", &format!("{:.1}", numbers.path_length)).unit("m"));
+    cards.push(Card::new("time", &format!("{:.0}", numbers.duration)).unit("s"));
+    cards
+}
+
+fn table(numbers: &RunNumbers) -> Table {
+    let empty = Table::new("The run", ["what", "value"]);
+    numbers.run_rows().into_iter().fold(empty, Table::row)
+}
+
+/// Position error of the estimate against truth, over time.
+fn error_chart(run: &Run) -> Figure {
+    let start = run.log.start.unwrap_or_default();
+    let errors = run.log.estimates.iter().filter_map(|(stamp, pose)| {
+        let truth = run.log.truth_at(*stamp)?;
+        Some((*stamp - start, pose.distance(&truth) * 100.0))
+    });
+    let chart = Chart::new("How well the robot knew its place", "time, s", "error, cm");
+    Figure::chart(&chart.line("position error", Color::BLUE, errors.collect()))
+}
+
+fn speed_chart(run: &Run) -> Figure {
+    let start = run.log.start.unwrap_or_default();
+    let series = |value: fn(&trundle::core::Twist2) -> f64| {
+        run.log.twists.iter().map(|(stamp, twist)| (*stamp - start, value(twist))).collect::<Vec<_>>()
+    };
+    let chart = Chart::new("What the wheels were asked for", "time, s", "m/s, rad/s")
+        .line("speed", Color::BLUE, series(|twist| twist.v))
+        .line("turn rate", Color::VERMILLION, series(|twist| twist.omega));
+    Figure::chart(&chart)
+}

@@ -1,0 +1,177 @@
+use crate::{logbook::TrackCounts, run::Run, run::RunSetup};
+use serde_json::{Map, Value, json};
+use trundle::eval::{GoalError, goal_error};
+use trundle::io::Summary;
+use trundle::runtime::{DriveState, Stage, StageTimes};
+
+/// The numbers of a run, all but the wall clock's.
+pub struct RunNumbers {
+    /// Where the robot stands in truth, against the goal; `None` without truth.
+    pub goal_error: Option<GoalError>,
+    /// Where it believes to stand, against the goal.
+    pub believed_error: Option<GoalError>,
+    /// The estimate's distance from truth over the run: root of the mean square, m.
+    pub estimate_rmse: Option<f64>,
+    /// Times the bumper was pressed.
+    pub contacts: usize,
+    /// The way driven, m.
+    pub path_length: f64,
+    /// Time of the robot, s.
+    pub duration: f64,
+    /// Plans made.
+    pub plans: usize,
+    /// Images by what tracking said.
+    pub tracked: TrackCounts,
+    /// Landmarks and keyframes in the visual map.
+    pub landmarks: usize,
+    /// Keyframes in the visual map.
+    pub keyframes: usize,
+    /// How it ended.
+    pub state: DriveState,
+}
+
+/// The goal counts as reached within this, m.
+const NEAR: f64 = 0.05;
+/// And within this, deg.
+const ALIGNED_DEG: f64 = 3.0;
+
+impl RunNumbers {
+    /// The numbers of a run that has ended.
+    pub fn of(setup: &RunSetup, run: &Run) -> Self {
+        let log = &run.log;
+        let against_goal = |pose| goal_error(setup.goal, pose).ok();
+        Self {
+            goal_error: log.truths.last().and_then(|(_, truth)| against_goal(*truth)),
+            believed_error: against_goal(run.robot.estimate().pose),
+            estimate_rmse: log.estimate_rmse(),
+            contacts: log.contacts,
+            path_length: log.path_length(),
+            duration: log.elapsed(),
+            plans: log.plans,
+            tracked: log.tracked,
+            landmarks: run.robot.slam().landmarks().count(),
+            keyframes: run.robot.slam().keyframes().count(),
+            state: log.state.clone(),
+        }
+    }
+
+    /// Whether the end is near enough to the goal.
+    pub fn is_near(&self) -> bool {
+        self.goal_error.is_some_and(|error| error.distance < NEAR)
+    }
+
+    /// Whether the heading is near enough to the goal's.
+    pub fn is_aligned(&self) -> bool {
+        self.goal_error.is_some_and(|error| error.dtheta.abs().to_degrees() < ALIGNED_DEG)
+    }
+
+    /// Arrived, in truth, without touching anything.
+    pub fn is_success(&self) -> bool {
+        self.state == DriveState::Arrived && self.is_near() && self.is_aligned() && self.contacts == 0
+    }
+
+    /// How it went, in a sentence.
+    pub fn verdict(&self) -> String {
+        if self.is_success() {
+            return "Goal reached, nothing touched.".to_owned();
+        }
+        let mut faults = Vec::new();
+        if self.state != DriveState::Arrived {
+            faults.push(format!("the robot did not arrive ({})", self.state));
+        }
+        if let Some(error) = self.goal_error.filter(|_| !(self.is_near() && self.is_aligned())) {
+            let (cm, deg) = (error.distance * 100.0, error.dtheta.to_degrees());
+            faults.push(format!("it stands {cm:.1} cm and {deg:.1} deg off the goal"));
+        }
+        if self.contacts > 0 {
+            faults.push(format!("it touched something {} times", self.contacts));
+        }
+        format!("Failed: {}.", faults.join("; "))
+    }
+
+    /// The table without the wall clock's part.
+    pub fn run_rows(&self) -> Vec<Vec<String>> {
+        let row = |name: &str, value: String| vec![name.to_owned(), value];
+        let error = |e: &GoalError| format!("{:.1} cm, {:.2} deg", e.distance * 100.0, e.dtheta.to_degrees());
+        let mut rows = Vec::new();
+        rows.extend(self.goal_error.as_ref().map(|e| row("goal error against truth", error(e))));
+        rows.extend(self.believed_error.as_ref().map(|e| row("goal error as believed", error(e))));
+        rows.extend(
+            self.estimate_rmse.map(|e| row("estimate against truth, rmse", format!("{:.1} cm", e * 100.0))),
+        );
+        rows.push(row("path length", format!("{:.2} m", self.path_length)));
+        rows.push(row("contacts", self.contacts.to_string()));
+        rows.push(row("time", format!("{:.1} s", self.duration)));
+        rows.push(row("plans", self.plans.to_string()));
+        let TrackCounts { ok, weak, dead_reckoned, lost } = self.tracked;
+        rows.push(row(
+            "images ok / weak / dead reckoned / lost",
+            format!("{ok} / {weak} / {dead_reckoned} / {lost}"),
+        ));
+        rows.push(row("keyframes, landmarks", format!("{}, {}", self.keyframes, self.landmarks)));
+        rows
+    }
+
+    /// The whole table for the terminal.
+    pub fn rows(&self, run: &Run) -> Vec<Vec<String>> {
+        let mut rows = self.run_rows();
+        rows.push(vec!["wall clock".to_owned(), format!("{:.1} s", run.seconds)]);
+        rows.push(["stage, ms", "median", "p99", "runs"].map(str::to_owned).to_vec());
+        rows.extend(stage_rows(run.robot.times()));
+        rows
+    }
+
+    /// `summary.json`: the numbers of the table; the wall clock's under `wall_clock`.
+    pub fn summary(&self, command: &str, setup: &RunSetup, run: &Run) -> Summary {
+        // A replay's summary is the run's, byte for byte, so it bears the run's name.
+        let command = if command == "replay" { "demo" } else { command };
+        let mut summary = Summary::new(command);
+        summary
+            .set("scene", &setup.scene)
+            .set("seed", setup.seed)
+            .set("success", self.is_success())
+            .set("state", self.state.to_string())
+            .set("goal_error_m", self.goal_error.map(|e| e.distance))
+            .set("goal_error_dx_m", self.goal_error.map(|e| e.dx))
+            .set("goal_error_dy_m", self.goal_error.map(|e| e.dy))
+            .set("goal_error_heading_rad", self.goal_error.map(|e| e.dtheta))
+            .set("believed_error_m", self.believed_error.map(|e| e.distance))
+            .set("believed_error_heading_rad", self.believed_error.map(|e| e.dtheta))
+            .set("estimate_rmse_m", self.estimate_rmse)
+            .set("path_length_m", self.path_length)
+            .set("contacts", self.contacts)
+            .set("duration_s", self.duration)
+            .set("plans", self.plans)
+            .set("images_ok", self.tracked.ok)
+            .set("images_weak", self.tracked.weak)
+            .set("images_dead_reckoned", self.tracked.dead_reckoned)
+            .set("images_lost", self.tracked.lost)
+            .set("keyframes", self.keyframes)
+            .set("landmarks", self.landmarks)
+            .set("wall_clock", wall_clock(run.seconds, run.robot.times()));
+        summary
+    }
+}
+
+/// What the clock on the wall said: the only part of any output that differs between two equal runs.
+pub fn wall_clock(seconds: f64, times: &StageTimes) -> Value {
+    let mut stages = Map::new();
+    for stage in Stage::ALL {
+        if let Some(cost) = times.cost(stage) {
+            stages.insert(stage.name().to_owned(), json!(cost));
+        }
+    }
+    json!({ "total_s": seconds, "stages": stages })
+}
+
+/// A row a stage: name, median, 99th percentile, runs.
+pub fn stage_rows(times: &StageTimes) -> Vec<Vec<String>> {
+    let costs = Stage::ALL.into_iter().filter_map(|stage| Some((stage, times.cost(stage)?)));
+    costs
+        .map(|(stage, cost)| {
+            let numbers =
+                [format!("{:.3}", cost.median_ms), format!("{:.3}", cost.p99_ms), cost.runs.to_string()];
+            std::iter::once(stage.name().to_owned()).chain(numbers).collect()
+        })
+        .collect()
+}

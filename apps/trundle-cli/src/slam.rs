@@ -1,0 +1,127 @@
+use crate::{Outcome, args::SlamArgs, console, failure::Failure, slam_output};
+use indicatif::ProgressBar;
+use std::time::Instant;
+use trundle::core::{Pose3, RgbdImage, Stamp};
+use trundle::io::{CameraModel, EncodedEvent, EncodedRgbd, OutputFolder, TumSequence};
+use trundle::localization::camera_motion;
+use trundle::runtime::{LevelMap, RobotConfig, Stage, StageTimes, level_from_first_camera};
+use trundle::slam::{RgbdSlam, SlamConfig};
+
+/// What tracking a sequence left.
+pub struct SlamRun {
+    /// The tracker with its map.
+    pub slam: RgbdSlam,
+    /// The floor map's scans.
+    pub map: LevelMap,
+    /// What tracking said of the frames.
+    pub counts: crate::logbook::TrackCounts,
+    /// The last frame that could be read.
+    pub last_image: Option<RgbdImage>,
+    /// Frames that could not be read, in words.
+    pub unreadable: Vec<String>,
+    /// Wall-clock time of the stages.
+    pub times: StageTimes,
+    /// Wall-clock time of the whole, s.
+    pub seconds: f64,
+}
+
+/// `trundle slam DIR`.
+pub fn run(args: &SlamArgs) -> Result<Outcome, Failure> {
+    let camera = CameraModel::named(&args.camera)?;
+    let scale = args.depth_scale.unwrap_or(camera.depth_scale);
+    let sequence = TumSequence::open(&args.dir, scale, TumSequence::MAX_DIFFERENCE)?
+        .with_size(camera.camera.width(), camera.camera.height());
+    let folder = OutputFolder::create(&args.out)?;
+    let run = track(args, &camera, &sequence, &folder)?;
+    slam_output::write(args, &sequence, &run, folder)
+}
+
+fn track(
+    args: &SlamArgs,
+    camera: &CameraModel,
+    sequence: &TumSequence,
+    folder: &OutputFolder,
+) -> Result<SlamRun, Failure> {
+    let level_from_camera = level_from_first_camera(args.height, args.tilt)?;
+    let config = SlamConfig { seed: args.seed, ..SlamConfig::default() };
+    let mut run = SlamRun {
+        slam: RgbdSlam::new(camera.camera, config)?.starting_at(level_from_camera),
+        map: LevelMap::new(camera.camera, RobotConfig::default().scan),
+        counts: Default::default(),
+        last_image: None,
+        unreadable: Vec::new(),
+        times: StageTimes::default(),
+        seconds: 0.0,
+    };
+    let mut recorder = folder.recorder("recording.mcap")?;
+    let odometry = OdometryPrior::new(sequence);
+    let frames = args.frames.unwrap_or(usize::MAX).min(sequence.len());
+    let bar = console::bar(args.common.quiet, frames);
+    let start = Instant::now();
+    for i in 0..frames {
+        match sequence.load(i) {
+            Ok(image) => {
+                recorder.record_event(&EncodedEvent::Rgbd(encoded(&image)?))?;
+                run.step(image, &odometry)?;
+            }
+            Err(error) => run.unreadable.push(report(&bar, args.common.quiet, &error.to_string())),
+        }
+        bar.inc(1);
+    }
+    bar.finish_and_clear();
+    recorder.finish()?;
+    run.seconds = start.elapsed().as_secs_f64();
+    Ok(run)
+}
+
+fn encoded(image: &RgbdImage) -> Result<EncodedRgbd, Failure> {
+    EncodedRgbd::encode(image).map_err(|error| Failure::Input(error.to_string()))
+}
+
+fn report(bar: &ProgressBar, quiet: bool, message: &str) -> String {
+    if !quiet {
+        bar.suspend(|| console::warn(&format!("{message}; skipped")));
+    }
+    message.to_owned()
+}
+
+impl SlamRun {
+    fn step(&mut self, image: RgbdImage, odometry: &OdometryPrior) -> Result<(), Failure> {
+        let since = self.last_image.as_ref().map(RgbdImage::stamp);
+        let prior = since.and_then(|since| odometry.motion(since, image.stamp()));
+        let report = self.times.measure(Stage::Slam, || self.slam.step(&image, prior));
+        self.counts.count(report.tracking);
+        if report.tracking.is_located() {
+            let map = &mut self.map;
+            self.times.measure(Stage::Scan, || map.note(&image, report.visual_from_camera))?;
+        }
+        self.last_image = Some(image);
+        Ok(())
+    }
+}
+
+/// The camera's motion by the sequence's odometry, where it has one.
+struct OdometryPrior<'a> {
+    poses: &'a [(Stamp, trundle::core::Pose2)],
+    base_from_camera: Pose3,
+}
+
+impl<'a> OdometryPrior<'a> {
+    fn new(sequence: &'a TumSequence) -> Self {
+        let base_from_camera = RobotConfig::default().mount.base_from_camera();
+        Self { poses: sequence.odometry().unwrap_or(&[]), base_from_camera }
+    }
+
+    /// `earlier_camera_from_later_camera`.
+    fn motion(&self, earlier: Stamp, later: Stamp) -> Option<Pose3> {
+        let base_motion = self.at(earlier)?.inverse() * self.at(later)?;
+        Some(camera_motion(base_motion, self.base_from_camera))
+    }
+
+    fn at(&self, stamp: Stamp) -> Option<trundle::core::Pose2> {
+        let after = self.poses.partition_point(|(at, _)| *at <= stamp);
+        let (t0, a) = self.poses.get(after.checked_sub(1)?)?;
+        let (t1, b) = self.poses.get(after)?;
+        Some(a.interpolate(b, (stamp - *t0) / (*t1 - *t0)))
+    }
+}

@@ -1,0 +1,68 @@
+use nalgebra::Matrix3;
+use serde::{Deserialize, Serialize};
+use trundle_core::{Invalid, Pose3, Vector3, require_in};
+
+/// Where the camera sits on the base: in a robot file, angles in degrees.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct CameraMount {
+    /// Forward of the base's origin, m, -2 to 2. Default 0.05: over the Kobuki's front deck.
+    pub x: f64,
+    /// Left of the base's origin, m, -2 to 2. Default 0.
+    pub y: f64,
+    /// Above the floor, m, 0 to 3. Default 0.45.
+    pub z: f64,
+    /// Turn to the left, deg, -180 to 180. Default 0.
+    pub yaw_deg: f64,
+    /// Tilt downward, deg, -80 to 80. Default 8: the floor is seen from 0.6 m on.
+    pub pitch_deg: f64,
+    /// Roll about the optical axis, deg, -180 to 180. Default 0.
+    pub roll_deg: f64,
+}
+
+impl Default for CameraMount {
+    fn default() -> Self {
+        Self { x: 0.05, y: 0.0, z: 0.45, yaw_deg: 0.0, pitch_deg: 8.0, roll_deg: 0.0 }
+    }
+}
+
+impl CameraMount {
+    /// Passes a valid mount through.
+    ///
+    /// # Errors
+    /// When a number is outside its range.
+    pub fn validated(self) -> Result<Self, Invalid> {
+        require_in("mount.x", self.x, "m", -2.0, 2.0)?;
+        require_in("mount.y", self.y, "m", -2.0, 2.0)?;
+        require_in("mount.z", self.z, "m", 0.0, 3.0)?;
+        require_in("mount.yaw_deg", self.yaw_deg, "deg", -180.0, 180.0)?;
+        require_in("mount.pitch_deg", self.pitch_deg, "deg", -80.0, 80.0)?;
+        require_in("mount.roll_deg", self.roll_deg, "deg", -180.0, 180.0)?;
+        Ok(self)
+    }
+
+    /// `base_from_camera`, the camera in its optical frame.
+    pub fn base_from_camera(&self) -> Pose3 {
+        let body_from_optical = Matrix3::new(0.0, 0.0, 1.0, -1.0, 0.0, 0.0, 0.0, -1.0, 0.0);
+        let turn = nalgebra::Rotation3::from_euler_angles(
+            self.roll_deg.to_radians(),
+            self.pitch_deg.to_radians(),
+            self.yaw_deg.to_radians(),
+        );
+        Pose3::from_matrix(turn.into_inner() * body_from_optical, Vector3::new(self.x, self.y, self.z))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_tilted_camera_looks_forward_and_down() {
+        let mount = CameraMount { pitch_deg: 30.0, ..CameraMount::default() };
+        let optical_axis = mount.base_from_camera().rotate(Vector3::z());
+        assert!((optical_axis - Vector3::new(0.75_f64.sqrt(), 0.0, -0.5)).norm() < 1e-12);
+        let right = mount.base_from_camera().rotate(Vector3::x());
+        assert!((right + Vector3::y()).norm() < 1e-12);
+    }
+}

@@ -1,0 +1,95 @@
+use crate::{camera_mount::CameraMount, schedule::Schedule};
+use serde::{Deserialize, Serialize};
+use trundle_control::{FollowerConfig, SafetyConfig};
+use trundle_core::{DifferentialDrive, DriveLimits, Footprint, Invalid, PinholeCamera};
+use trundle_localization::{LocalizerConfig, OdometryConfig};
+use trundle_mapping::{DepthScanConfig, MapperConfig, ScanMatchConfig};
+use trundle_planning::PlannerConfig;
+use trundle_slam::SlamConfig;
+
+/// Everything that can be set about the robot: one `robot.toml`. Unknown keys are errors.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct RobotConfig {
+    /// Radius of the disc about the base that the robot stays within, m, above 0. Default 0.1755: the Kobuki.
+    pub footprint_radius: f64,
+    /// Geometry of the base. Default: the Kobuki.
+    pub drive: DifferentialDrive,
+    /// What the base may be asked for. Default: the Kobuki.
+    pub limits: DriveLimits,
+    /// The camera's image. Default: Kinect V2.
+    pub camera: PinholeCamera,
+    /// Where the camera sits.
+    pub mount: CameraMount,
+    /// Rates of the stages.
+    pub schedule: Schedule,
+    /// Wheels and gyro.
+    pub odometry: OdometryConfig,
+    /// Visual tracking and mapping.
+    pub slam: SlamConfig,
+    /// Depth image to scan.
+    pub scan: DepthScanConfig,
+    /// Scan against map.
+    pub scan_match: ScanMatchConfig,
+    /// Fusion.
+    pub localization: LocalizerConfig,
+    /// Occupancy grid.
+    pub mapping: MapperConfig,
+    /// Planning.
+    pub planning: PlannerConfig,
+    /// Following trajectories and settling.
+    pub control: FollowerConfig,
+    /// Safety.
+    pub safety: SafetyConfig,
+}
+
+impl Default for RobotConfig {
+    fn default() -> Self {
+        Self {
+            footprint_radius: Footprint::KOBUKI.circumscribed_radius(),
+            drive: DifferentialDrive::KOBUKI,
+            limits: DriveLimits::KOBUKI,
+            camera: PinholeCamera::kinect_v2(),
+            mount: CameraMount::default(),
+            schedule: Schedule::default(),
+            odometry: OdometryConfig::default(),
+            slam: SlamConfig::default(),
+            scan: DepthScanConfig::default(),
+            scan_match: ScanMatchConfig::default(),
+            localization: LocalizerConfig::default(),
+            mapping: MapperConfig::default(),
+            planning: PlannerConfig::default(),
+            control: FollowerConfig::default(),
+            safety: SafetyConfig::default(),
+        }
+    }
+}
+
+impl RobotConfig {
+    /// Reads a robot file: TOML, gaps filled with the defaults.
+    ///
+    /// # Errors
+    /// One sentence with line and key when the text is not TOML, a key is unknown, or a value is of the wrong kind.
+    pub fn from_toml(text: &str) -> Result<Self, toml::de::Error> {
+        toml::from_str(text)
+    }
+
+    /// The whole robot file.
+    pub fn to_toml(&self) -> String {
+        toml::to_string(self).expect("invariant: the configuration is plain data")
+    }
+
+    /// The same robot with every seed of its random sampling drawn from `seed`.
+    pub fn with_seed(mut self, seed: u64) -> Self {
+        self.slam.seed = seed;
+        self
+    }
+
+    /// The robot's outline.
+    ///
+    /// # Errors
+    /// When the radius is not positive.
+    pub fn footprint(&self) -> Result<Footprint, Invalid> {
+        Footprint::disc(self.footprint_radius)
+    }
+}

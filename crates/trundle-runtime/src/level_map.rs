@@ -1,0 +1,83 @@
+use crate::camera_mount::CameraMount;
+use std::collections::BTreeMap;
+use trundle_core::{Invalid, OccupancyGrid, PinholeCamera, Pose2, Pose3, RgbdImage, Scan, Stamp, Vector3};
+use trundle_mapping::{DepthScanConfig, DepthScanner, GridMapper, MapperConfig};
+
+/// A floor map of a camera that moves freely, hand-held or on a robot.
+///
+/// The visual frame must be level: z up, z = 0 the floor. Each image is cut to the height band under the tilt and height
+/// that its pose says; the scans are kept, and drawn when the poses are final.
+#[derive(Debug)]
+pub struct LevelMap {
+    camera: PinholeCamera,
+    scan: DepthScanConfig,
+    scans: BTreeMap<Stamp, Scan>,
+}
+
+impl LevelMap {
+    /// A map still empty.
+    pub fn new(camera: PinholeCamera, scan: DepthScanConfig) -> Self {
+        Self { camera, scan, scans: BTreeMap::new() }
+    }
+
+    /// Keeps the scan of an image taken at `level_from_camera`; false when the camera looks too steeply up or down for
+    /// a scan to mean anything.
+    ///
+    /// # Errors
+    /// When the scan's configuration is not valid.
+    pub fn note(&mut self, image: &RgbdImage, level_from_camera: Pose3) -> Result<bool, Invalid> {
+        let Some(base) = base_below(&level_from_camera) else { return Ok(false) };
+        let base_from_camera = Pose3::from_pose2(base).inverse() * level_from_camera;
+        let mut scanner = DepthScanner::new(self.camera, base_from_camera, self.scan.clone())?;
+        self.scans.insert(image.stamp(), scanner.scan(image));
+        Ok(true)
+    }
+
+    /// The grid of all scans, each at the pose that `trajectory` (level_from_camera) has for its stamp.
+    ///
+    /// # Errors
+    /// When the map's configuration is not valid.
+    pub fn draw(
+        &self,
+        trajectory: &[(Stamp, Pose3)],
+        config: MapperConfig,
+    ) -> Result<OccupancyGrid, Invalid> {
+        let mut mapper = GridMapper::new(config)?;
+        for (stamp, pose) in trajectory {
+            if let (Some(scan), Some(base)) = (self.scans.get(stamp), base_below(pose)) {
+                mapper.insert(base, scan);
+            }
+        }
+        Ok(mapper.grid().clone())
+    }
+}
+
+/// The level pose of a first camera at `height` m above the floor, tilted down by `tilt_deg`.
+///
+/// # Errors
+/// When a number is outside the range of [`CameraMount`].
+pub fn level_from_first_camera(height: f64, tilt_deg: f64) -> Result<Pose3, Invalid> {
+    let mount = CameraMount { x: 0.0, y: 0.0, z: height, pitch_deg: tilt_deg, ..CameraMount::default() };
+    Ok(mount.validated()?.base_from_camera())
+}
+
+/// A base under the camera, heading where the camera looks; none when it looks within 20 degrees of straight up or down.
+fn base_below(level_from_camera: &Pose3) -> Option<Pose2> {
+    let axis = level_from_camera.rotate(Vector3::z());
+    let flat = axis.x.hypot(axis.y);
+    let at = level_from_camera.translation;
+    (flat > 20_f64.to_radians().sin()).then(|| Pose2::new(at.x, at.y, axis.y.atan2(axis.x)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_base_stands_under_the_camera() {
+        let pose = level_from_first_camera(1.2, 30.0).unwrap();
+        assert_eq!(base_below(&pose), Some(Pose2::IDENTITY));
+        assert_eq!(base_below(&level_from_first_camera(1.2, 75.0).unwrap()), None);
+        assert!(level_from_first_camera(f64::NAN, 0.0).is_err());
+    }
+}

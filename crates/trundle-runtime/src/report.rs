@@ -1,0 +1,25 @@
+use crate::state::DriveState;
+use trundle_core::{PoseEstimate, Twist2};
+use trundle_slam::TrackReport;
+
+/// What one step of the robot tells the outside.
+#[derive(Debug, Clone, Default)]
+pub struct StepReport {
+    /// The command for the base, on control steps.
+    pub twist: Option<Twist2>,
+    /// The pose estimate after the step.
+    pub estimate: Option<PoseEstimate>,
+    /// What the visual tracker said, on images.
+    pub track: Option<TrackReport>,
+    /// What the robot is doing.
+    pub state: DriveState,
+    /// Whether the step made a new plan.
+    pub replanned: bool,
+}
+
+impl StepReport {
+    /// Whether the robot has arrived or given up.
+    pub fn finished(&self) -> bool {
+        matches!(self.state, DriveState::Arrived | DriveState::Stopped { .. })
+    }
+}

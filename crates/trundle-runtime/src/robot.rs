@@ -1,0 +1,214 @@
+use crate::{
+    config::RobotConfig,
+    navigator::{Navigator, Surroundings},
+    report::StepReport,
+    schedule::Ticker,
+    stage::{Stage, StageTimes},
+};
+use trundle_control::SafetyScan;
+use trundle_core::{
+    GyroRate, Invalid, OccupancyGrid, Odometry, Pose2, Pose3, PoseEstimate, RgbdImage, Scan, SensorEvent,
+    WheelTicks,
+};
+use trundle_localization::{Localizer, VisualPose, VisualQuality, WheelOdometry, camera_motion};
+use trundle_mapping::{DepthScanner, GridMapper, ScanMatcher};
+use trundle_planning::PlanResult;
+use trundle_slam::{RgbdSlam, TrackReport, Tracking};
+
+/// The whole robot: sensor events in; pose, map, plan and twist out.
+///
+/// It reads no clock and no file, and draws no chance but from the seeds of its configuration: the same events give the
+/// same reports. (Wall-clock times are noted beside it in [`StageTimes`], which only reports read.)
+#[derive(Debug)]
+pub struct Robot {
+    base_from_camera: Pose3,
+    footprint_radius: f64,
+    odometry: WheelOdometry,
+    slam: RgbdSlam,
+    scanner: DepthScanner,
+    matcher: ScanMatcher,
+    localizer: Localizer,
+    mapper: GridMapper,
+    map_due: Ticker,
+    navigator: Navigator,
+    latest: Latest,
+    times: StageTimes,
+}
+
+/// What later steps need of earlier ones.
+#[derive(Debug, Default)]
+struct Latest {
+    odometry: Option<Odometry>,
+    /// `odom_from_base` at the last image.
+    image_odometry: Option<Pose2>,
+    /// The scan of the last image.
+    scan: Option<Scan>,
+}
+
+impl Robot {
+    /// A robot that has just been switched on: where it stands is the map's origin.
+    ///
+    /// # Errors
+    /// When a number of the configuration is outside its range.
+    pub fn new(config: RobotConfig) -> Result<Self, Invalid> {
+        let base_from_camera = config.mount.validated()?.base_from_camera();
+        let footprint = config.footprint()?;
+        let mapper = GridMapper::new(config.mapping.clone())?;
+        Ok(Self {
+            base_from_camera,
+            footprint_radius: config.footprint_radius,
+            odometry: WheelOdometry::new(config.drive, config.odometry.clone())?,
+            slam: RgbdSlam::new(config.camera, config.slam.clone())?,
+            scanner: DepthScanner::new(config.camera, base_from_camera, config.scan.clone())?,
+            matcher: ScanMatcher::new(config.scan_match.clone())?,
+            localizer: Localizer::new(config.localization.clone(), base_from_camera)?,
+            map_due: Ticker::new(config.schedule.validated()?.map_hz),
+            mapper,
+            navigator: Navigator::new(&config, &footprint)?,
+            latest: Latest::default(),
+            times: StageTimes::default(),
+        })
+    }
+
+    /// Gives the robot a goal pose, map frame.
+    pub fn drive_to(&mut self, goal: Pose2) {
+        self.navigator.drive_to(goal);
+    }
+
+    /// One sensor event through the whole robot.
+    pub fn step(&mut self, event: &SensorEvent) -> StepReport {
+        let mut report = StepReport::default();
+        match event {
+            SensorEvent::Gyro(gyro) => self.feel(gyro),
+            SensorEvent::Wheels(wheels) => self.roll(wheels, &mut report),
+            SensorEvent::Rgbd(image) => self.look(image, &mut report),
+            SensorEvent::Touch(touch) => self.navigator.touch(*touch),
+            SensorEvent::Truth { .. } => {}
+        }
+        report.estimate = Some(self.localizer.estimate());
+        report.state = self.navigator.state().clone();
+        report
+    }
+
+    /// A gyro reading: into the odometry.
+    fn feel(&mut self, gyro: &GyroRate) {
+        self.times.measure(Stage::Odometry, || self.odometry.step_gyro(gyro));
+    }
+
+    /// A wheel reading: odometry, prediction, then navigation: a twist leaves.
+    fn roll(&mut self, wheels: &WheelTicks, report: &mut StepReport) {
+        let odometry = self.times.measure(Stage::Odometry, || self.odometry.step_wheels(wheels));
+        self.times.measure(Stage::Localization, || self.localizer.predict(&odometry));
+        self.latest.odometry = Some(odometry);
+        let surroundings = Surroundings {
+            now: wheels.stamp,
+            estimate: self.localizer.estimate(),
+            grid: self.mapper.grid(),
+            scan: self.latest.carried_scan(),
+        };
+        let decision = self.navigator.step(&surroundings, &mut self.times);
+        report.twist = Some(decision.twist);
+        report.replanned = decision.replanned;
+    }
+
+    /// An image: the visual pose corrects the estimate; at the map's rate the scan does too, and enters the map.
+    fn look(&mut self, image: &RgbdImage, report: &mut StepReport) {
+        let prior = self.camera_motion_since_last_image();
+        let track = self.times.measure(Stage::Slam, || self.slam.step(image, prior));
+        self.times.measure(Stage::Localization, || correct_by_sight(&mut self.localizer, &track));
+        let scan = self.times.measure(Stage::Scan, || self.scanner.scan(image));
+        if self.map_due.due(image.stamp()) {
+            self.fit(&scan);
+            self.draw(&scan);
+        }
+        self.latest.scan = Some(scan);
+        report.track = Some(track);
+    }
+
+    /// Corrects the estimate by where the scan fits the map.
+    fn fit(&mut self, scan: &Scan) {
+        let guess = self.localizer.estimate().pose;
+        let found = self.times.measure(Stage::ScanMatch, || self.matcher.refine(&self.mapper, scan, guess));
+        if let Some(found) = found {
+            self.localizer.correct_scan(scan.stamp(), found.pose, &found.covariance);
+        }
+    }
+
+    /// Draws the scan, and the floor that the robot stands on, into the map.
+    fn draw(&mut self, scan: &Scan) {
+        let pose = self.localizer.estimate().pose;
+        let (mapper, radius) = (&mut self.mapper, self.footprint_radius);
+        self.times.measure(Stage::Mapping, || {
+            mapper.insert(pose, scan);
+            mapper.mark_free_disc(pose, radius);
+        });
+    }
+
+    /// `previous_camera_from_camera` by wheels and gyro.
+    fn camera_motion_since_last_image(&mut self) -> Option<Pose3> {
+        let odom_from_base = self.latest.odometry?.pose;
+        let previous = self.latest.image_odometry.replace(odom_from_base)?;
+        Some(camera_motion(previous.inverse() * odom_from_base, self.base_from_camera))
+    }
+
+    /// The pose estimate.
+    pub fn estimate(&self) -> PoseEstimate {
+        self.localizer.estimate()
+    }
+
+    /// The map.
+    pub fn grid(&self) -> &OccupancyGrid {
+        self.mapper.grid()
+    }
+
+    /// The visual tracker with its landmark map.
+    pub fn slam(&self) -> &RgbdSlam {
+        &self.slam
+    }
+
+    /// The visual tracker's frame in the map.
+    pub fn map_from_visual(&self) -> Option<Pose3> {
+        self.localizer.map_from_visual()
+    }
+
+    /// The newest plan.
+    pub fn plan(&self) -> Option<&PlanResult> {
+        self.navigator.plan()
+    }
+
+    /// The newest scan.
+    pub fn scan(&self) -> Option<&Scan> {
+        self.latest.scan.as_ref()
+    }
+
+    /// What the stages cost.
+    pub fn times(&self) -> &StageTimes {
+        &self.times
+    }
+}
+
+impl Latest {
+    /// The last scan with the odometry that carries it to now.
+    fn carried_scan(&self) -> Option<SafetyScan<'_>> {
+        Some(SafetyScan {
+            scan: self.scan.as_ref()?,
+            odom_at_scan: self.image_odometry?,
+            odom_now: self.odometry?.pose,
+        })
+    }
+}
+
+/// The visual pose, where there is one, to the localizer.
+fn correct_by_sight(localizer: &mut Localizer, track: &TrackReport) {
+    let quality = match track.tracking {
+        Tracking::Ok => VisualQuality::Ok,
+        Tracking::Weak => VisualQuality::Weak,
+        Tracking::DeadReckoning | Tracking::Lost => return,
+    };
+    localizer.correct_visual(&VisualPose {
+        stamp: track.stamp,
+        visual_from_camera: track.visual_from_camera,
+        covariance: track.covariance,
+        quality,
+    });
+}

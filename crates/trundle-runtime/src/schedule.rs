@@ -1,0 +1,70 @@
+use serde::{Deserialize, Serialize};
+use trundle_core::{Invalid, Stamp, require_in};
+
+/// How often the stages run that do not run with every reading of their sensor.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Schedule {
+    /// Scans put into the map, 1/s, 0.5 to 30. Default 5: the rate of \[Li18\].
+    pub map_hz: f64,
+    /// Checks of the remaining trajectory against the map, 1/s, 0.5 to 30. Default 5: with every new map.
+    pub check_hz: f64,
+}
+
+impl Default for Schedule {
+    fn default() -> Self {
+        Self { map_hz: 5.0, check_hz: 5.0 }
+    }
+}
+
+impl Schedule {
+    /// Passes a valid schedule through.
+    ///
+    /// # Errors
+    /// When a rate is outside its range.
+    pub fn validated(self) -> Result<Self, Invalid> {
+        require_in("schedule.map_hz", self.map_hz, "1/s", 0.5, 30.0)?;
+        require_in("schedule.check_hz", self.check_hz, "1/s", 0.5, 30.0)?;
+        Ok(self)
+    }
+}
+
+/// Says when a stage is due, by the data's time.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Ticker {
+    period: f64,
+    last: Option<Stamp>,
+}
+
+impl Ticker {
+    /// Due `hz` times a second.
+    pub(crate) fn new(hz: f64) -> Self {
+        Self { period: 1.0 / hz, last: None }
+    }
+
+    /// Whether the stage is due at `now`; if so, the next time is counted from now. A millisecond early is on time.
+    pub(crate) fn due(&mut self, now: Stamp) -> bool {
+        let due = self.last.is_none_or(|last| now - last >= self.period - 1e-3);
+        if due {
+            self.last = Some(now);
+        }
+        due
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn five_a_second_of_thirty() {
+        let mut ticker = Ticker::new(5.0);
+        let stamps = (0..300).map(|i| Stamp::default().after(f64::from(i) / 30.0));
+        assert_eq!(stamps.filter(|&stamp| ticker.due(stamp)).count(), 50);
+    }
+
+    #[test]
+    fn rates_are_checked() {
+        assert!(Schedule { map_hz: f64::NAN, ..Schedule::default() }.validated().is_err());
+    }
+}
