@@ -65,9 +65,12 @@ fn clip(a: Px, b: Px, size: (f64, f64), margin: f64) -> Option<(Px, Px)> {
             leave = leave.min(room / along);
         }
     }
+    // Rounding may leave an end far outside where the other end is astronomically far away: hold both.
+    let held = |v: f64, side: f64| v.clamp(-margin, side + margin);
+    let hold = |p: Px| (held(p.0, size.0), held(p.1, size.1));
     let at = |t: f64| (a.0 + dx * t, a.1 + dy * t);
-    (enter <= leave)
-        .then(|| (if enter > 0.0 { at(enter) } else { a }, if leave < 1.0 { at(leave) } else { b }))
+    let ends = (if enter > 0.0 { at(enter) } else { a }, if leave < 1.0 { at(leave) } else { b });
+    (enter <= leave).then(|| (hold(ends.0), hold(ends.1)))
 }
 
 #[cfg(test)]
@@ -92,6 +95,17 @@ mod tests {
         let out_and_back = [(1.0, 1.0), (1.0, 50.0), (2.0, 50.0), (2.0, 1.0)];
         assert_eq!(visible_runs(out_and_back, SIZE, 0.0).len(), 2);
         assert!(visible_runs([(20.0, 20.0), (30.0, 20.0)], SIZE, 1.0).is_empty());
+    }
+
+    #[test]
+    fn rounding_of_far_ends_stays_in_the_picture() {
+        for far in [1e18, 1e34, 2.8e265] {
+            for run in
+                visible_runs([(-far, 3.0), (far, 5.0), (2.0, -far), (2.0, -1e9), (far, far)], SIZE, 1.0)
+            {
+                assert!(run.iter().all(|p| p.0.abs() <= 11.0 && p.1.abs() <= 11.0), "{run:?}");
+            }
+        }
     }
 
     #[test]

@@ -13,7 +13,8 @@ const ANCHORS: [[f64; 3]; 7] = [
 
 /// The colour of `t` in 0 (near, light) to 1 (far, dark); outside is held at the ends, NaN counts as 0.
 pub(crate) fn color_at(t: f64) -> [u8; 3] {
-    let place = t.clamp(0.0, 1.0) * (ANCHORS.len() - 1) as f64;
+    let held = if t > 0.0 { t.min(1.0) } else { 0.0 };
+    let place = held * (ANCHORS.len() - 1) as f64;
     let lower = (place as usize).min(ANCHORS.len() - 2);
     let fraction = place - lower as f64;
     let mix = |channel: usize| {

@@ -86,7 +86,7 @@ fn paint_mark(canvas: &mut Canvas, item: &LegendItem, (x, y): (i64, i64), scale:
         }
         Mark::Dot => canvas.dot(center, 2.5 * s, color.alpha(color.a.max(200))),
         Mark::Ring => canvas.ring(center, 3.5 * s, 1.5 * s, color),
-        Mark::Wedge => canvas.polygon(&wedge(center, 4.5 * s, 0.0), color),
+        Mark::Wedge => canvas.polygon(&wedge(center, 6.0 * s, 0.0), color),
         Mark::Band => canvas.fill_rect(x, y, width, height, color),
         Mark::Cell => {
             canvas.fill_rect(x + 3 * scale, y, 8 * scale, height, color);

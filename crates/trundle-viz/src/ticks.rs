@@ -17,8 +17,8 @@ impl Ticks {
         let step = round_step(span / count.max(1) as f64);
         let (first, last) = ((low / step - 1e-9).ceil(), (high / step + 1e-9).floor());
         let sensible = first.abs() < 1e12 && last - first < 1000.0;
-        let steps = if sensible { first as i64..=last as i64 } else { 1..=0 };
-        Self { values: steps.map(|i| i as f64 * step).collect(), step }
+        let count = if sensible { (last - first) as i64 + 1 } else { 0 };
+        Self { values: (0..count).map(|i| (first + i as f64) * step).collect(), step }
     }
 
     /// A tick as text, with as many digits as tell it from the next.

@@ -46,8 +46,8 @@ fn feature(noise: &mut Noise, i: usize) -> FeatureMark {
         x: 512.0 * noise.next(),
         y: 424.0 * noise.next(),
         size: 31.0 * scale,
-        angle: 6.28 * noise.next(),
-        tracked: i % 3 != 0,
+        angle: std::f64::consts::TAU * noise.next(),
+        tracked: !i.is_multiple_of(3),
     }
 }
 

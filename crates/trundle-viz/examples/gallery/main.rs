@@ -56,6 +56,7 @@ fn run_report() -> RunReport {
         scan: Some((end, room::scan(end))),
         camera: Some(CameraView { ..camera::view() }),
         depth: Some(camera::depth()),
+        figures: Vec::new(),
         charts: charts::all(&estimate, &truth),
         tables: tables(),
         estimated_path: estimate,

@@ -11,7 +11,7 @@ pub struct FeatureMark {
     pub x: f64,
     /// Row, px of the image.
     pub y: f64,
-    /// Diameter of the patch it describes, px of the image (for ORB: 31 times the scale of its octave). Drawn at a third,
+    /// Diameter of the patch it describes, px of the image (for ORB: 31 times the scale of its octave). Drawn at a quarter,
     /// so that a crowd of features does not hide the picture.
     pub size: f64,
     /// Orientation, rad, image axes (x right, y down).
@@ -34,8 +34,8 @@ pub fn feature_picture(color: &ColorImage, features: &[FeatureMark]) -> Vec<u8> 
     }
     let count = |tracked: bool| features.iter().filter(|f| f.tracked == tracked).count();
     let legend = [
-        LegendItem::new(format!("{} tracked", count(true)), TRACKED, Mark::Ring),
-        LegendItem::new(format!("{} only seen", count(false)), Color::rgb(0xc9_b8_00), Mark::Ring),
+        LegendItem::new(format!("{} matched with landmarks", count(true)), TRACKED, Mark::Ring),
+        LegendItem::new(format!("{} not matched", count(false)), Color::rgb(0xc9_b8_00), Mark::Ring),
     ];
     let strip = with_padding(&paint_legend(&legend, 0, photo.unit()), photo.unit());
     photo.with_strip(&strip)
@@ -48,7 +48,7 @@ fn draw_mark(photo: &mut Photo, feature: &FeatureMark) {
     }
     let unit = (photo.canvas.width() as f64 / 900.0).max(0.8);
     let size = if feature.size.is_finite() { feature.size } else { 0.0 };
-    let radius = (size / 6.0 * photo.zoom).clamp(3.5 * unit, 40.0 * unit);
+    let radius = (size / 8.0 * photo.zoom).clamp(3.5 * unit, 40.0 * unit);
     let center = ((feature.x + 0.5) * photo.zoom, (feature.y + 0.5) * photo.zoom);
     let (color, line) = if feature.tracked { (TRACKED, 2.2 * unit) } else { (UNTRACKED, 1.3 * unit) };
     let (sin, cos) = feature.angle.sin_cos();

@@ -1,10 +1,10 @@
 use crate::ticks::Ticks;
 
 /// Size of a chart's own coordinates; the page scales it.
-pub(crate) const WIDTH: f64 = 720.0;
-pub(crate) const HEIGHT: f64 = 320.0;
+pub(crate) const WIDTH: f64 = 540.0;
+pub(crate) const HEIGHT: f64 = 280.0;
 /// The plotted rectangle: left, top, right, bottom.
-pub(crate) const PLOT: [f64; 4] = [62.0, 40.0, WIDTH - 14.0, HEIGHT - 44.0];
+pub(crate) const PLOT: [f64; 4] = [52.0, 38.0, WIDTH - 12.0, HEIGHT - 42.0];
 
 /// An axis: numbers to places.
 #[derive(Debug, Clone, PartialEq)]
@@ -48,7 +48,7 @@ impl Axis {
         let value = if self.logarithmic { value.log10() } else { value };
         let fraction = (value - self.low) / (self.high - self.low);
         (fraction.is_finite() && (-1e-6..=1.0 + 1e-6).contains(&fraction))
-            .then(|| self.ends.0 + fraction * (self.ends.1 - self.ends.0))
+            .then_some(self.ends.0 + fraction * (self.ends.1 - self.ends.0))
     }
 
     /// Ticks: place and label.

@@ -13,7 +13,7 @@ pub struct BarChart {
     rows: Vec<(String, f64, f64)>,
 }
 
-const WIDTH: f64 = 720.0;
+const WIDTH: f64 = 540.0;
 const PITCH: f64 = 28.0;
 const TOP: f64 = 40.0;
 
@@ -35,7 +35,7 @@ impl BarChart {
     pub fn to_svg(&self) -> String {
         let height = TOP + PITCH * self.rows.len() as f64 + 34.0;
         let widest = self.rows.iter().map(|row| text_width(&row.0)).fold(40.0, f64::max).min(WIDTH / 3.0);
-        let (left, right) = (widest + 12.0, WIDTH - 110.0);
+        let (left, right) = (widest + 12.0, WIDTH - 104.0);
         let values = self.rows.iter().flat_map(|row| [row.1, row.2]).chain([0.0]);
         let axis = Axis::over(values, false, 0.0, (left, right));
         let mut svg = open_svg(&self.title, WIDTH, height);
@@ -79,7 +79,7 @@ impl BarChart {
 fn draw_row(svg: &mut String, axis: &Axis, left: f64, top: f64, (label, bar, whisker): &(String, f64, f64)) {
     let place = |value: f64| axis.place(value).unwrap_or(left);
     let (middle, bar_end, end) = (top + PITCH / 2.0, place(*bar), place(*whisker));
-    let text = |value: f64| number(value, (value / 20.0).clamp(1e-3, 1.0));
+    let text = |value: f64| number(value, if value < 1.0 { 0.01 } else { 0.1 });
     put(
         svg,
         format_args!(
@@ -110,7 +110,10 @@ mod tests {
             .row("track", 12.0, 30.5)
             .row("<map>", f64::NAN, -1.0)
             .to_svg();
-        assert!(svg.contains(">track<") && svg.contains("&lt;map&gt;") && svg.contains("12 / 31"), "{svg}");
+        assert!(
+            svg.contains(">track<") && svg.contains("&lt;map&gt;") && svg.contains("12.0 / 30.5"),
+            "{svg}"
+        );
         assert!(!svg.contains("NaN"));
         assert!(BarChart::new("", "", "", "").to_svg().ends_with("</svg>"));
     }

@@ -125,7 +125,7 @@ fn stroke(color: Color, dashed: bool) -> String {
 }
 
 fn draw_axes(svg: &mut String, x: &Axis, y: &Axis, x_name: &str, y_name: &str) {
-    let [left, top, right, bottom] = PLOT;
+    let [left, _, right, bottom] = PLOT;
     for (at, label) in y.ticks(5) {
         put(
             svg,
@@ -137,7 +137,7 @@ fn draw_axes(svg: &mut String, x: &Axis, y: &Axis, x_name: &str, y_name: &str) {
             ),
         );
     }
-    for (at, label) in x.ticks(8) {
+    for (at, label) in x.ticks(7) {
         put(
             svg,
             format_args!(
@@ -159,7 +159,6 @@ fn draw_axes(svg: &mut String, x: &Axis, y: &Axis, x_name: &str, y_name: &str) {
             escape(x_name),
         ),
     );
-    let _ = top;
 }
 
 fn draw_limit(svg: &mut String, y: &Axis, label: &str, level: f64) {

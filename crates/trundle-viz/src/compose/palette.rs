@@ -10,19 +10,19 @@ pub(super) const START: Color = Color::GREEN;
 pub(super) const GOAL: Color = Color::VERMILLION;
 pub(super) const SWEPT: Color = Color::SKY.alpha(70);
 pub(super) const LANDMARKS: Color = Color::GREEN;
-pub(super) const SCAN: Color = Color::VERMILLION;
+pub(super) const SCAN: Color = Color::SKY;
 
-/// Truth is a broad line: an estimate that agrees with it lies on it like a thread.
+/// Plan, truth and estimate are ever thinner lines: where they agree, each lies on the one before and all are seen.
+pub(super) fn plan_line() -> LineStyle {
+    LineStyle::solid(PLAN.alpha(95)).width(7.0).plain()
+}
+
 pub(super) fn truth_line() -> LineStyle {
     LineStyle::solid(TRUTH).width(3.4).plain()
 }
 
 pub(super) fn estimate_line() -> LineStyle {
     LineStyle::solid(ESTIMATE).width(1.4).plain()
-}
-
-pub(super) fn plan_line() -> LineStyle {
-    LineStyle::dashed(PLAN).width(1.4)
 }
 
 pub(super) fn way_point_dots() -> DotStyle {

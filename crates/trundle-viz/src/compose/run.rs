@@ -1,6 +1,7 @@
 use super::palette::*;
 use crate::camera::{FeatureMark, depth_picture, feature_picture};
 use crate::color::Color;
+use crate::legend::Mark;
 use crate::map::{DotStyle, MapPicture, PoseStyle};
 use crate::report::{Card, Figure, Report, Table, Verdict};
 use trundle_core::{ColorImage, DepthImage, Footprint, OccupancyGrid, Pose2, Scan, Vector2, Vector3};
@@ -50,6 +51,8 @@ pub struct RunReport {
     pub camera: Option<CameraView>,
     /// The depth image of the same moment.
     pub depth: Option<DepthImage>,
+    /// More pictures, shown after the map.
+    pub figures: Vec<Figure>,
     /// Charts, half a page wide each unless made wide.
     pub charts: Vec<Figure>,
     /// Tables.
@@ -57,24 +60,23 @@ pub struct RunReport {
 }
 
 impl RunReport {
-    /// The page: verdict and key numbers, the map, the goal from near, the camera's view, charts, tables.
+    /// The page: verdict and key numbers, the map, the camera's view, charts, the goal from near and tables.
     pub fn to_html(&self) -> String {
         let mut report = Report::new(&self.title).subtitle(&self.subtitle);
         if let Some(verdict) = &self.verdict {
             report = report.verdict(verdict.clone());
         }
         report = self.cards.iter().cloned().fold(report, Report::card);
-        report = self.add_map(report);
-        report = self.add_views(report);
-        if !self.charts.is_empty() {
-            report = report.section("Over time", "");
-            report = self.charts.iter().cloned().fold(report, Report::figure);
-        }
-        if !self.tables.is_empty() {
+        let pictures = self.map_figure().into_iter().chain(self.figures.iter().cloned());
+        let goal: Vec<Figure> = self.goal_figure().into_iter().collect();
+        report = add_figures(report, "Map and motion", pictures.collect());
+        report = add_figures(report, "What the camera saw", self.camera_figures());
+        report = add_figures(report, "Over time", self.charts.clone());
+        if !(goal.is_empty() && self.tables.is_empty()) {
             report = report.section("Numbers", "");
-            report = self.tables.iter().cloned().fold(report, Report::table);
         }
-        report.to_html()
+        report = goal.into_iter().fold(report, Report::figure);
+        self.tables.iter().cloned().fold(report, Report::table).to_html()
     }
 
     /// The map with everything on it, as PNG with its legend inside.
@@ -82,55 +84,42 @@ impl RunReport {
         self.map_picture().to_png()
     }
 
-    fn add_map(&self, report: Report) -> Report {
+    fn map_figure(&self) -> Option<Figure> {
         if self.grid.is_none() && self.estimated_path.is_empty() && self.true_path.is_empty() {
-            return report;
+            return None;
         }
         let picture = self.map_picture();
-        let figure = Figure::png("The map from above", &picture.clone().without_legend().to_png())
-            .legend(picture.legend())
-            .caption(
-                "White floor was seen to be free, black is what stands in the way, grey was never seen. Coordinates are \
-                 those of the map the robot made; x points right, y up.",
-            )
-            .wide();
-        report.section("The map and the drive", "").figure(figure)
+        let figure = Figure::png("The map from above", &picture.clone().without_legend().to_png());
+        let caption = "White floor was seen to be free, black is what stands in the way, grey was never seen. The \
+                       coordinates are those of the map the robot made: x to the right, y up.";
+        Some(figure.legend(picture.legend()).caption(caption).wide())
     }
 
-    fn add_views(&self, report: Report) -> Report {
-        let mut figures: Vec<Figure> = self.goal_figure().into_iter().collect();
-        if let Some(view) = &self.camera {
-            let picture = feature_picture(&view.color, &view.features);
-            figures.push(Figure::png("What the camera saw", &picture).caption(
-                "Circles are corners the robot recognises; the stroke is their orientation. Green ones were matched with \
+    fn camera_figures(&self) -> Vec<Figure> {
+        let camera = self.camera.as_ref().map(|view| {
+            Figure::png("Colour image and its features", &feature_picture(&view.color, &view.features)).caption(
+                "Circles are corners the robot recognises, a stroke shows their orientation. Green ones were matched with \
                  landmarks and tell where the robot is.",
-            ));
-        }
-        if let Some(depth) = &self.depth {
-            figures.push(Figure::png("How far it was", &depth_picture(depth)).caption(
-                "Depth of the same view: light is near, dark is far, black is where nothing was measured.",
-            ));
-        }
-        if figures.is_empty() {
-            return report;
-        }
-        figures.into_iter().fold(report.section("A closer look", ""), Report::figure)
+            )
+        });
+        let depth = self.depth.as_ref().map(|depth| {
+            Figure::png("Depth image", &depth_picture(depth)).caption(
+                "How far everything was: light is near, dark is far, black is where nothing was measured.",
+            )
+        });
+        camera.into_iter().chain(depth).collect()
     }
 
     fn map_picture(&self) -> MapPicture<'_> {
         let landmarks: Vec<Vector2> = self.landmarks.iter().map(|p| p.xy()).collect();
-        let mut picture = match &self.grid {
-            Some(grid) => MapPicture::over(grid),
-            None => MapPicture::blank(),
-        };
-        picture = picture.dots("landmarks", &landmarks, DotStyle::crowd(LANDMARKS));
+        let mut picture = self.ground().dots("landmarks", &landmarks, DotStyle::crowd(LANDMARKS));
         if let Some((pose, scan)) = &self.scan {
             picture = picture.scan("last scan", *pose, scan, SCAN);
         }
         picture = picture
+            .polyline("planned curve", &self.curve, plan_line())
             .polyline("true path", &positions(&self.true_path), truth_line())
             .polyline("estimated path", &positions(&self.estimated_path), estimate_line())
-            .polyline("planned curve", &self.curve, plan_line())
             .dots("way-points", &self.way_points, way_point_dots());
         for (label, pose, color) in [("start", self.start, START), ("goal", self.goal, GOAL)] {
             if let Some(pose) = pose {
@@ -140,35 +129,42 @@ impl RunReport {
         picture
     }
 
-    /// The last metre, where centimetres can be seen.
+    /// The last half metre, where centimetres can be seen.
     fn goal_figure(&self) -> Option<Figure> {
         let goal = self.goal.filter(Pose2::is_finite)?;
-        let radius = self.footprint.as_ref().map_or(0.2, Footprint::circumscribed_radius);
-        let mut picture = match &self.grid {
-            Some(grid) => MapPicture::over(grid),
-            None => MapPicture::blank(),
-        };
-        picture = picture
+        let footprint = self.footprint.clone().unwrap_or(Footprint::KOBUKI);
+        let end = |path: &[Pose2]| path.iter().rev().find(|pose| pose.is_finite()).copied();
+        let ends = |path: &[Pose2]| end(path).into_iter().collect::<Vec<_>>();
+        let picture = self
+            .ground()
             .polyline("true path", &positions(&self.true_path), truth_line())
             .polyline("estimated path", &positions(&self.estimated_path), estimate_line())
-            .pose("goal", goal, self.pose_style(GOAL).nameless());
-        let ends = [("believed end", &self.estimated_path, ESTIMATE), ("true end", &self.true_path, TRUTH)];
-        for (label, path, color) in ends {
-            if let Some(end) = path.iter().rev().find(|pose| pose.is_finite()) {
-                picture = picture.pose(label, *end, self.pose_style(color).nameless());
-            }
-        }
-        let picture = picture.window(goal.position(), 3.0 * radius);
+            .pose("goal", goal, self.pose_style(GOAL).nameless())
+            .outlines("where it stood", &ends(&self.true_path), &footprint, TRUTH)
+            .outlines("where it believed to stand", &ends(&self.estimated_path), &footprint, ESTIMATE)
+            .window(goal.position(), 1.7 * footprint.circumscribed_radius())
+            .lettering(1.75);
         let png = picture.clone().without_legend().to_png();
-        let figure = Figure::png("The goal from near", &png).legend(picture.legend());
-        Some(figure.caption(
-            "The robot's outline where it was to stand, where it believed to stand, and where it stood.",
-        ))
+        let legend = picture.legend().into_iter().filter(|item| item.mark != Mark::Cell).collect();
+        let caption = "The robot's outline where it was to stand and where it came to stand; a stroke shows its heading.";
+        Some(Figure::png("The goal from near", &png).legend(legend).caption(caption))
+    }
+
+    fn ground(&self) -> MapPicture<'_> {
+        self.grid.as_ref().map_or_else(MapPicture::blank, MapPicture::over)
     }
 
     fn pose_style(&self, color: Color) -> PoseStyle {
         PoseStyle { footprint: self.footprint.clone(), ..PoseStyle::named(color) }
     }
+}
+
+/// A section of figures; none when there is no figure.
+fn add_figures(report: Report, title: &str, figures: Vec<Figure>) -> Report {
+    if figures.is_empty() {
+        return report;
+    }
+    figures.into_iter().fold(report.section(title, ""), Report::figure)
 }
 
 fn positions(poses: &[Pose2]) -> Vec<Vector2> {

@@ -8,7 +8,7 @@ use crate::ticks::{Ticks, round_step};
 pub(crate) fn paint_lattice(canvas: &mut Canvas, view: &View) {
     let (x_ticks, y_ticks) = axis_ticks(view);
     let (corner, _) = view.extent();
-    let line = (view.unit() / 2).max(1);
+    let line = (view.unit / 2).max(1);
     for &x in &x_ticks.values {
         let at = view.length_px(x - corner.x).round() as i64;
         canvas.fill_rect(at, 0, line, view.height, Color::HAIRLINE);
@@ -21,7 +21,7 @@ pub(crate) fn paint_lattice(canvas: &mut Canvas, view: &View) {
 
 /// The plot in its frame: ticks and axis names around it, a scale bar above, a legend below.
 pub(crate) fn paint_frame(plot: &Canvas, view: &View, axes: &[String; 2], legend: Option<&Canvas>) -> Canvas {
-    let unit = view.unit();
+    let unit = view.unit;
     let (x_ticks, y_ticks) = axis_ticks(view);
     let widest = y_ticks.values.iter().map(|&v| text_width(&y_ticks.label(v), unit)).max().unwrap_or(0);
     let (left, top) = (widest + 8 * unit, line_height(unit) + 8 * unit);
@@ -47,12 +47,12 @@ pub(crate) fn paint_frame(plot: &Canvas, view: &View, axes: &[String; 2], legend
 
 fn axis_ticks(view: &View) -> (Ticks, Ticks) {
     let (low, high) = view.extent();
-    let count = |side: i64| (side / (70 * view.unit())).clamp(2, 12) as usize;
-    (Ticks::new(low.x, high.x, count(view.width)), Ticks::new(low.y, high.y, count(view.height)))
+    let count = |side: i64, room: i64| (side / (room * view.unit)).clamp(2, 12) as usize;
+    (Ticks::new(low.x, high.x, count(view.width, 60)), Ticks::new(low.y, high.y, count(view.height, 40)))
 }
 
 fn label_x(canvas: &mut Canvas, view: &View, ticks: &Ticks, (left, top): (i64, i64), end: i64) {
-    let (unit, (corner, _)) = (view.unit(), view.extent());
+    let (unit, (corner, _)) = (view.unit, view.extent());
     for &value in &ticks.values {
         let x = left + view.length_px(value - corner.x).round() as i64;
         let y = top + view.height;
@@ -66,7 +66,7 @@ fn label_x(canvas: &mut Canvas, view: &View, ticks: &Ticks, (left, top): (i64, i
 }
 
 fn label_y(canvas: &mut Canvas, view: &View, ticks: &Ticks, (left, top): (i64, i64)) {
-    let (unit, (corner, _)) = (view.unit(), view.extent());
+    let (unit, (corner, _)) = (view.unit, view.extent());
     for &value in &ticks.values {
         let y = top + view.height - view.length_px(value - corner.y).round() as i64;
         let label = ticks.label(value);
@@ -79,7 +79,7 @@ fn label_y(canvas: &mut Canvas, view: &View, ticks: &Ticks, (left, top): (i64, i
 /// A bar of a round length, its right end at `right`. Left out where it would meet the axis name, `taken` px wide.
 fn paint_scale_bar(canvas: &mut Canvas, view: &View, right: i64, top: i64, taken: i64) {
     let metres = round_step(view.metres(view.width as f64 / 5.0) / 2.5);
-    let (unit, label) = (view.unit(), length_label(metres));
+    let (unit, label) = (view.unit, length_label(metres));
     let length = view.length_px(metres).round() as i64;
     let text = text_width(&label, unit);
     if !metres.is_finite() || length + text + taken + 12 * unit > view.width {

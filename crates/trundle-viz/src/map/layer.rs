@@ -1,10 +1,10 @@
+use super::draw::{draw_dot, draw_line, draw_outline, draw_pose};
 use super::style::{DotStyle, LineStyle, PoseStyle};
 use super::view::View;
 use crate::canvas::{Canvas, Pen};
 use crate::clip::Px;
 use crate::color::Color;
-use crate::legend::{LegendItem, Mark, wedge};
-use crate::text::{TextStyle, cap_height, text_width};
+use crate::legend::{LegendItem, Mark};
 use trundle_core::{Beam, Footprint, Pose2, Scan, Vector2};
 
 /// Something laid over the map.
@@ -92,7 +92,7 @@ impl Layer {
     }
 
     pub(crate) fn draw(&self, canvas: &mut Canvas, view: &View) {
-        let unit = view.unit() as f64;
+        let unit = view.unit as f64;
         match &self.shape {
             Shape::Line { points, style } => draw_line(canvas, view, points, style),
             Shape::Dots { points, style } => {
@@ -104,9 +104,7 @@ impl Layer {
             }
             Shape::Pose { pose, style } => draw_pose(canvas, view, *pose, style, &self.label),
             Shape::Outlines { poses, footprint, color } => {
-                for pose in poses {
-                    canvas.polyline(outline(view, *pose, footprint), Pen::solid(*color, unit.max(1.0)));
-                }
+                poses.iter().for_each(|pose| draw_outline(canvas, view, *pose, footprint, *color));
             }
             Shape::Scan { seen, hits, color } => {
                 let area: Vec<Px> = seen.iter().map(|p| view.px(*p)).collect();
@@ -115,71 +113,4 @@ impl Layer {
             }
         }
     }
-}
-
-fn draw_line(canvas: &mut Canvas, view: &View, points: &[Vector2], style: &LineStyle) {
-    let unit = view.unit() as f64;
-    let line = || points.iter().map(|p| view.px(*p));
-    if style.rimmed {
-        canvas.polyline(line(), Pen::solid(Color::WHITE.alpha(190), (style.width + 1.4) * unit));
-    }
-    let dash = style.dashed.then_some(3.0 * style.width * unit);
-    canvas.polyline(line(), Pen { color: style.color, width: style.width * unit, dash });
-}
-
-fn draw_dot(canvas: &mut Canvas, center: Px, style: &DotStyle, unit: f64) {
-    let radius = style.radius * unit;
-    if style.hollow {
-        canvas.dot(center, radius, Color::WHITE.alpha(style.color.a));
-        canvas.ring(center, radius, 1.1 * unit, style.color);
-    } else {
-        canvas.dot(center, radius, style.color);
-    }
-}
-
-/// A wedge along the heading, as large as the robot but never too small to see.
-fn draw_pose(canvas: &mut Canvas, view: &View, pose: Pose2, style: &PoseStyle, label: &str) {
-    if !pose.is_finite() {
-        return;
-    }
-    let (unit, center) = (view.unit() as f64, view.px(pose.position()));
-    let body = style.footprint.as_ref().map_or(0.0, |f| view.length_px(f.circumscribed_radius()));
-    let tip = (0.8 * body).clamp(7.0 * unit, 16.0 * unit);
-    if let Some(footprint) = &style.footprint {
-        let edge = outline(view, pose, footprint);
-        canvas.polygon(&edge, style.color.alpha(45));
-        canvas.polyline(edge, Pen::solid(style.color, unit));
-    }
-    canvas.polygon(&wedge(center, tip + 1.8 * unit, -pose.theta), Color::WHITE);
-    canvas.polygon(&wedge(center, tip, -pose.theta), style.color);
-    if style.named {
-        draw_name(canvas, view.unit(), center, tip.max(body) + 3.0 * unit, label, style.color);
-    }
-}
-
-/// A name beside a place: to its right, or to its left where the picture ends.
-fn draw_name(canvas: &mut Canvas, unit: i64, center: Px, distance: f64, label: &str, color: Color) {
-    let far = 4.0 * canvas.width().max(canvas.height()) as f64;
-    if !(center.0.abs() < far && center.1.abs() < far && distance < far) {
-        return;
-    }
-    let (x, reach, width) = (center.0 as i64, distance as i64, text_width(label, unit));
-    let left = if x + reach + width < canvas.width() { x + reach } else { x - reach - width };
-    let top = center.1 as i64 - cap_height(unit) / 2;
-    let style = TextStyle { scale: unit, color, halo: Some(Color::WHITE) };
-    canvas.text(left, top, label, style);
-}
-
-/// The robot's outline at a pose, closed.
-fn outline(view: &View, pose: Pose2, footprint: &Footprint) -> Vec<Px> {
-    const SIDES: usize = 72;
-    let mut corners: Vec<Vector2> = match footprint {
-        Footprint::Disc { radius } => (0..SIDES)
-            .map(|i| std::f64::consts::TAU * i as f64 / SIDES as f64)
-            .map(|angle| Vector2::new(angle.cos(), angle.sin()) * *radius)
-            .collect(),
-        Footprint::Polygon { corners } => corners.clone(),
-    };
-    corners.extend(corners.first().copied());
-    corners.into_iter().map(|corner| view.px(pose.transform(corner))).collect()
 }

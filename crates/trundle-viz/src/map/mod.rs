@@ -1,5 +1,6 @@
 mod bounds;
 mod cells;
+mod draw;
 mod frame;
 mod layer;
 mod style;
@@ -43,6 +44,7 @@ pub struct MapPicture<'a> {
     window: Option<Bounds>,
     axes: [String; 2],
     legend: bool,
+    lettering: f64,
 }
 
 impl<'a> MapPicture<'a> {
@@ -54,7 +56,7 @@ impl<'a> MapPicture<'a> {
     /// A picture without a map: overlays on squared paper.
     pub fn blank() -> Self {
         let axes = ["x, m".to_owned(), "y, m".to_owned()];
-        Self { grid: None, layers: Vec::new(), window: None, axes, legend: true }
+        Self { grid: None, layers: Vec::new(), window: None, axes, legend: true, lettering: 1.0 }
     }
 
     /// Adds straight pieces between points.
@@ -77,7 +79,7 @@ impl<'a> MapPicture<'a> {
         self.layer(label, Shape::Pose { pose, style })
     }
 
-    /// Adds the robot's outline at each pose.
+    /// Adds the robot's outline at each pose, with a stroke along the heading.
     pub fn outlines(self, label: &str, poses: &[Pose2], footprint: &Footprint, color: Color) -> Self {
         self.layer(label, Shape::Outlines { poses: poses.to_vec(), footprint: footprint.clone(), color })
     }
@@ -95,6 +97,11 @@ impl<'a> MapPicture<'a> {
     /// Names the axes, unit included.
     pub fn axes(self, right: &str, up: &str) -> Self {
         Self { axes: [right.to_owned(), up.to_owned()], ..self }
+    }
+
+    /// Makes text and lines `factor` times as large as usual, for a picture that will be shown small.
+    pub fn lettering(self, factor: f64) -> Self {
+        Self { lettering: factor, ..self }
     }
 
     /// Leaves the legend out of the picture, for a page that shows [`MapPicture::legend`] itself.
@@ -123,10 +130,10 @@ impl<'a> MapPicture<'a> {
 
     /// The picture as an 8-bit RGB PNG, at most about 3000 px a side. Same content, same bytes.
     pub fn to_png(&self) -> Vec<u8> {
-        let view = self.view();
+        let view = self.view().with_lettering(self.lettering);
         let mut plot = self.ground(&view);
         self.layers.iter().for_each(|layer| layer.draw(&mut plot, &view));
-        let legend = self.legend.then(|| paint_legend(&self.legend(), view.width, view.unit()));
+        let legend = self.legend.then(|| paint_legend(&self.legend(), view.width, view.unit));
         paint_frame(&plot, &view, &self.axes, legend.as_ref()).to_png()
     }
 

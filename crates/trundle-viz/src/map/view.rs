@@ -28,6 +28,8 @@ pub(crate) struct View {
     pub height: i64,
     /// The cells shown, where there is a grid.
     pub cells: Option<(CellBox, Zoom)>,
+    /// The unit of all that does not scale with the map: text dots and line widths, px.
+    pub unit: i64,
 }
 
 impl View {
@@ -43,13 +45,9 @@ impl View {
             Zoom::CellsPerPx(k) => (1.0 / k as f64, [block.cols() / k, block.rows() / k]),
         };
         let low = Vector2::new(block.low[0] as f64, block.low[1] as f64);
-        Self {
-            corner: geometry.origin + low * geometry.resolution,
-            px_per_m: px_per_cell / geometry.resolution,
-            width: px[0].max(1),
-            height: px[1].max(1),
-            cells: Some((block, zoom)),
-        }
+        let corner = geometry.origin + low * geometry.resolution;
+        let view = Self::new(corner, px_per_cell / geometry.resolution, px[0].max(1), px[1].max(1));
+        Self { cells: Some((block, zoom)), ..view }
     }
 
     /// A view of a rectangle without a grid; `exact` leaves out the margin around it.
@@ -59,13 +57,20 @@ impl View {
         let margin = if exact { 0.0 } else { 0.06 * long };
         let sides = extent.map(|side| side.max(0.3 * long) + 2.0 * margin);
         let px_per_m = TARGET_PX / sides.max();
-        Self {
-            corner: (bounds.min + bounds.max) / 2.0 - sides / 2.0,
-            px_per_m,
-            width: (sides.x * px_per_m).round() as i64,
-            height: (sides.y * px_per_m).round() as i64,
-            cells: None,
-        }
+        let corner = (bounds.min + bounds.max) / 2.0 - sides / 2.0;
+        let [width, height] = [sides.x, sides.y].map(|side| (side * px_per_m).round() as i64);
+        Self::new(corner, px_per_m, width, height)
+    }
+
+    fn new(corner: Vector2, px_per_m: f64, width: i64, height: i64) -> Self {
+        let unit = ((width.max(height) as f64 / 550.0).round() as i64).clamp(1, 6);
+        Self { corner, px_per_m, width, height, cells: None, unit }
+    }
+
+    /// The same view with its lettering `factor` times as large.
+    pub(crate) fn with_lettering(self, factor: f64) -> Self {
+        let unit = ((self.unit as f64 * factor).round() as i64).clamp(1, 12);
+        Self { unit, ..self }
     }
 
     /// The place of a point of the map frame: x to the right, y up. Not finite for what cannot be drawn.
@@ -88,11 +93,6 @@ impl View {
     pub(crate) fn extent(&self) -> (Vector2, Vector2) {
         let size = Vector2::new(self.metres(self.width as f64), self.metres(self.height as f64));
         (self.corner, self.corner + size)
-    }
-
-    /// The unit of all that does not scale with the map: text dots and line widths, px.
-    pub(crate) fn unit(&self) -> i64 {
-        ((self.width.max(self.height) as f64 / 550.0).round() as i64).clamp(1, 6)
     }
 }
 

@@ -65,21 +65,22 @@ impl Report {
 
     /// Adds a figure to the open section.
     pub fn figure(self, figure: Figure) -> Self {
-        self.block(figure.to_html())
+        self.block(figure.to_html(), false)
     }
 
-    /// Adds a table to the open section.
+    /// Adds a table to the open section, whose blocks then fill two columns one after the other.
     pub fn table(self, table: Table) -> Self {
-        self.block(table.to_html())
+        self.block(table.to_html(), true)
     }
 
     /// Adds a block to the open section, or to one without a title.
-    fn block(mut self, html: String) -> Self {
+    fn block(mut self, html: String, table: bool) -> Self {
         if self.sections.is_empty() {
             self.sections.push(Section::new("", ""));
         }
         if let Some(section) = self.sections.last_mut() {
             section.blocks.push(html);
+            section.columns |= table;
         }
         self
     }
