@@ -110,7 +110,7 @@ proptest! {
         slant in -0.7..0.7,
         delay in 0.02..0.05,
     ) {
-        let (v, slant): (f64, f64) = (v, slant);
+        let (v, share, slant): (f64, f64, f64) = (v, share, slant);
         let omega = share * 0.3 * v;
         let (c, s) = (slant.cos(), slant.sin());
         let wall = empty().segment((1.6 + 2.0 * s, -2.0 * c), (1.6 - 2.0 * s, 2.0 * c));
@@ -119,14 +119,15 @@ proptest! {
         plant.delay = delay;
         let drive = drive(&wall, plant, command, 3.0 + 2.0 / v, true);
         prop_assert!(drive.least_clearance > 0.0, "{} m", drive.least_clearance);
-        prop_assert!(drive.last.twist.v < 0.02, "{:?}", drive.last);
+        // One that bends away from the wall may go on along it.
+        prop_assert!(drive.last.twist.v < if share.abs() < 0.2 { 0.02 } else { 0.15 }, "{:?}", drive.last);
     }
 
     #[test]
     fn walls_beside_a_corridor_never_stop_it(v in 0.1..0.70, width in 0.7..1.2, offset in -1.0..1.0) {
         let (v, width): (f64, f64) = (v, width);
-        // Anywhere in the corridor where 3 cm are left on either side.
-        let y = offset * (width / 2.0 - RADIUS - 0.03 - 0.025);
+        // Anywhere in the corridor where 1.5 cm are left on either side of what the map may draw, a cell too near.
+        let y = offset * (width / 2.0 - RADIUS - 0.05 - 0.015);
         let corridor = empty().segment((-3.9, -width / 2.0), (5.9, -width / 2.0));
         let corridor = corridor.segment((-3.9, width / 2.0), (5.9, width / 2.0));
         let command = Twist2::new(v, 0.0);
