@@ -2,9 +2,11 @@
 //! reprojection.
 
 mod ransac;
+mod ransac_config;
 mod refine;
 mod residual;
 mod rigid;
 
-pub use ransac::{RansacConfig, RansacResult, estimate_rigid_motion};
+pub use ransac::{RansacResult, estimate_rigid_motion};
+pub use ransac_config::RansacConfig;
 pub use refine::{RefineConfig, refine_pose_by_reprojection};
