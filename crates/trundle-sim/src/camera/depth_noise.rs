@@ -115,60 +115,74 @@ pub(super) struct DepthTruth {
     pub(super) luminance: f32,
 }
 
-/// [`DepthNoise`] made ready for millions of pixels.
+/// [`DepthNoise`] made ready for millions of pixels: f32, angles looked up.
 #[derive(Debug, Clone)]
 pub(super) struct DepthModel {
-    noise: DepthNoise,
+    nearest: f32,
+    farthest: f32,
+    axial_factor: f32,
+    weakest_return: f32,
+    edge_step: f32,
+    flying: f32,
+    edge_loss: f32,
+    quantum: f32,
     /// Slant term of sigma and probability of a grazing loss, by cosine of incidence in 255 steps.
-    by_cosine: Vec<(f32, f32)>,
+    by_cosine: [(f32, f32); 256],
 }
 
 impl DepthModel {
-    pub(super) fn new(noise: DepthNoise) -> Self {
+    pub(super) fn new(noise: &DepthNoise) -> Self {
         let steepest = noise.steepest_deg.to_radians() as f32;
         let grazing = (noise.grazing_from_deg as f32).to_radians();
-        let entry = |i: u8| {
-            let theta = (f32::from(i) / 255.0).acos();
+        let entry = |i: usize| {
+            let theta = (i as f32 / 255.0).acos();
             let loss = (theta - grazing) / (FRAC_PI_2 - grazing).max(1e-6);
             (slant_term(theta.min(steepest)), loss.clamp(0.0, 1.0))
         };
-        Self { by_cosine: (0..=255).map(entry).collect(), noise }
+        Self {
+            nearest: noise.nearest as f32,
+            farthest: noise.farthest as f32,
+            axial_factor: noise.axial_factor as f32,
+            weakest_return: noise.weakest_return as f32,
+            edge_step: noise.edge_step as f32,
+            flying: noise.flying as f32,
+            edge_loss: noise.edge_loss as f32,
+            quantum: noise.quantum as f32,
+            by_cosine: std::array::from_fn(entry),
+        }
     }
 
     /// The smallest depth step that counts as an edge, m.
     pub(super) fn edge_step(&self) -> f32 {
-        self.noise.edge_step as f32
+        self.edge_step
     }
 
     /// What the camera says for a pixel, m, 0 for nothing; `bits` is the pixel's hash.
     pub(super) fn measure(&self, truth: DepthTruth, bits: u64, normals: &NormalTable) -> f32 {
-        let noise = &self.noise;
         let mut z = truth.depth;
         if z <= 0.0 {
             return 0.0;
         }
-        let chance = |nth: u32| (mix(bits) >> (nth * 20) & 0xF_FFFF) as f32 / (1 << 20) as f32;
-        let (slant, grazing_loss) = self.by_cosine[(truth.cosine * 255.0 + 0.5) as usize & 255];
+        let chance = |nth: u32| (mix(bits) >> (nth * 20) & 0xF_FFFF) as i32 as f32 * (1.0 / (1 << 20) as f32);
         if truth.beyond > 0.0 {
             let fate = chance(0);
-            if fate < noise.edge_loss as f32 {
+            if fate < self.edge_loss {
                 return 0.0;
             }
-            if fate < (noise.edge_loss + noise.flying) as f32 {
+            if fate < self.edge_loss + self.flying {
                 z += chance(1) * (truth.beyond - z);
             }
         }
-        let weakest = noise.weakest_return as f32;
-        let weak_loss =
-            if weakest > 0.0 { 1.0 - truth.luminance * truth.cosine / (z * z * weakest) } else { 0.0 };
-        let loss = grazing_loss.max(weak_loss);
-        if loss > 0.0 && chance(2) < loss {
+        let (slant, grazing_loss) = self.by_cosine[(truth.cosine * 255.0 + 0.5) as i32 as usize & 255];
+        let strength = truth.luminance * truth.cosine;
+        let enough = self.weakest_return * z * z;
+        if (grazing_loss > 0.0 || strength < enough) && chance(2) < grazing_loss.max(1.0 - strength / enough)
+        {
             return 0.0;
         }
-        z += noise.axial_factor as f32 * axial_sigma(z, slant) * normals.pick(bits, 0);
-        let quantum = noise.quantum as f32;
-        let z = (z / quantum + 0.5) as u32 as f32 * quantum;
-        if z >= noise.nearest as f32 && z <= noise.farthest as f32 { z } else { 0.0 }
+        z += self.axial_factor * axial_sigma(z, slant) * normals.pick(bits, 0);
+        let z = (z / self.quantum + 0.5) as i32 as f32 * self.quantum;
+        if z >= self.nearest && z <= self.farthest { z } else { 0.0 }
     }
 }
 
@@ -178,7 +192,7 @@ mod tests {
     use crate::chance::hash;
 
     fn measured(noise: DepthNoise, truth: DepthTruth) -> Vec<f64> {
-        let model = DepthModel::new(noise);
+        let model = DepthModel::new(&noise);
         let normals = NormalTable::shared();
         (0..40_000).map(|i| f64::from(model.measure(truth, hash(5, i), normals))).collect()
     }

@@ -4,7 +4,7 @@ use crate::world::Shape;
 use trundle_core::{Pose3, Vector3};
 
 /// Directions of the two lamps, world frame, and their strengths; the rest is ambient.
-const LAMPS: [([f32; 3], f32); 2] = [([0.31, 0.45, 0.84], 0.30), ([-0.62, -0.52, 0.59], 0.16)];
+const LAMPS: [([f32; 3], f32); 2] = [([0.31, 0.45, 0.84], 0.24), ([-0.62, -0.52, 0.59], 0.12)];
 const AMBIENT: f32 = 0.64;
 
 /// Below this cosine of incidence a pixel gets two samples along its long footprint.
@@ -18,8 +18,8 @@ pub(super) struct Seen<'w> {
     origin: [f32; 3],
     /// `solid_from_camera`, rotation, by rows.
     turn: [[f32; 3]; 3],
-    /// Light on each face of a box.
-    light: [f32; 6],
+    /// Light on each face of a box, of 256.
+    light: [u32; 6],
     paintings: &'w [Texture],
 }
 
@@ -88,12 +88,11 @@ impl<'w> Seen<'w> {
         };
         let length = (x * x + y * y + 1.0).sqrt();
         let cosine = (dot(spot.normal, d).abs() / length).clamp(1e-3, 1.0);
-        let texel = self.filtered(&spot, depth * pixel, cosine).rgb();
         let light = match self.form {
             Form::Cuboid(_) => self.light[spot.face],
             Form::Cylinder(..) => light_on(spot.normal),
         };
-        Look { color: texel.map(|c| (c * light + 0.5) as u8), cosine }
+        Look { color: self.filtered(&spot, depth * pixel, cosine).dimmed(light), cosine }
     }
 
     fn spot_on_cuboid(&self, axis: u32, h: [f32; 3], p: [f32; 3], d: [f32; 3]) -> Spot {
@@ -126,15 +125,16 @@ impl<'w> Seen<'w> {
     }
 }
 
-fn light_on_faces(yaw: f32) -> [f32; 6] {
+fn light_on_faces(yaw: f32) -> [u32; 6] {
     let (s, c) = yaw.sin_cos();
     let normals = [[c, s, 0.0], [-c, -s, 0.0], [-s, c, 0.0], [s, -c, 0.0], [0.0, 0.0, 1.0], [0.0, 0.0, -1.0]];
     normals.map(light_on)
 }
 
-/// Light on a surface with this normal, world frame.
-fn light_on(normal: [f32; 3]) -> f32 {
-    AMBIENT + LAMPS.iter().map(|(lamp, strength)| strength * dot(*lamp, normal).max(0.0)).sum::<f32>()
+/// Light on a surface with this normal, world frame, of 256.
+fn light_on(normal: [f32; 3]) -> u32 {
+    let lamps = LAMPS.iter().map(|(lamp, strength)| strength * dot(*lamp, normal).max(0.0)).sum::<f32>();
+    ((AMBIENT + lamps) * 256.0) as i32 as u32
 }
 
 fn spot_on_cylinder(part: u32, radius: f32, height: f32, p: [f32; 3], d: [f32; 3]) -> Spot {

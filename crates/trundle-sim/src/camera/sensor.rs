@@ -19,7 +19,7 @@ impl RgbdSensor {
     /// # Errors
     /// When a parameter is outside its range.
     pub fn new(depth: DepthNoise, color: ColorNoise, seed: u64) -> Result<Self, Invalid> {
-        Ok(Self { depth: DepthModel::new(depth.validated()?), color: color.validated()?, seed })
+        Ok(Self { depth: DepthModel::new(&depth.validated()?), color: color.validated()?, seed })
     }
 
     /// What the camera delivers at `stamp` as its image number `frame` when `view` is before it.

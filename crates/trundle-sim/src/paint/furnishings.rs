@@ -54,7 +54,7 @@ pub(super) fn cardboard(seed: u32, size: (f32, f32), x: f32, y: f32, grain: f32)
     let taped = (x - size.0 * (0.3 + 0.4 * draw(6))).abs() < 0.03;
     let color = if taped { mixed(brown, [222.0, 202.0, 160.0], 0.7) } else { brown };
     let stain = if value(seed ^ 2, x / 0.07, y / 0.05) > 0.65 { -38.0 } else { 0.0 };
-    lifted(color, stain + 15.0 * grain)
+    lifted(color, stain + 20.0 * grain)
 }
 
 /// Woven cloth with patches.

@@ -8,7 +8,7 @@ use super::noise::{Fractal, lattice, value};
 pub(super) fn plaster(seed: u32, color: [u8; 3], x: f32, y: f32, grain: f32) -> Rgb {
     let spatter = value(seed ^ 5, x / 0.045, y / 0.045);
     let mark = if spatter > 0.72 { -34.0 } else { 0.0 };
-    lifted(rgb(color), 15.0 * grain + mark)
+    lifted(rgb(color), 20.0 * grain + mark)
 }
 
 /// Wallpaper: a motif of its own in every field.
@@ -86,7 +86,7 @@ pub(super) fn tiles(seed: u32, color: [u8; 3], x: f32, y: f32, grain: f32) -> Rg
     let inlaid = draw(5) < 0.45
         && if draw(6) < 0.5 { px.abs() + py.abs() < reach } else { px.abs().max(py.abs()) < reach * 0.8 };
     let base = if inlaid { mixed(base, pick(seed, (draw(7) * 1e4) as i32), 0.7) } else { base };
-    lifted(base, 13.0 * grain)
+    lifted(base, 18.0 * grain)
 }
 
 /// Ceiling boards of 0.6 m with holes and lamps.

@@ -37,7 +37,8 @@ fn textures_do_not_flicker() {
     }
 }
 
-/// Wherever the robot looks there is something to see: nearly every patch of 32 x 32 pixels has contrast.
+/// Wherever the robot looks there is something to see: all but a twentieth of the patches of 32 x 32 pixels
+/// spread by more than twice the sensor's noise.
 #[test]
 fn the_demo_is_rich_in_texture() {
     let renderer = Renderer::new(PinholeCamera::kinect_v2()).unwrap();
@@ -53,7 +54,7 @@ fn the_demo_is_rich_in_texture() {
             let rows =
                 (top..top + 32).flat_map(|y| image[y * width + left..y * width + left + 32].iter().copied());
             patches += 1;
-            poor += usize::from(spread(&rows.collect::<Vec<_>>()) < 5.0);
+            poor += usize::from(spread(&rows.collect::<Vec<_>>()) < 4.0);
         }
     }
     assert!(poor * 20 < patches, "{poor} of {patches} patches are flat");
