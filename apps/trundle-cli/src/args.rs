@@ -113,7 +113,9 @@ pub struct SlamArgs {
 
 /// `trundle plan`
 #[derive(Debug, Args)]
-#[command(after_help = "Example: trundle plan ../shared/data/nav/nav2/depot.yaml --from=0,-4,0 --to=5,3,90")]
+#[command(
+    after_help = "Example: trundle plan ../shared/data/nav/nav2/depot.yaml --from=9.3,10.7,114 --to=17.1,9.2,-80"
+)]
 pub struct PlanArgs {
     /// A map in map_server's form.
     pub map: PathBuf,

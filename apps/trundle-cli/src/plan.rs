@@ -2,7 +2,7 @@ use crate::{Outcome, args::PlanArgs, console, failure::Failure, robot_file};
 use std::time::Instant;
 use trundle::core::{Footprint, Twist2, Vector2};
 use trundle::io::{OutputFolder, Summary, read_map, table_csv, trajectory_csv, waypoints_csv};
-use trundle::planning::{Curve, Plan, PlanResult, Planner};
+use trundle::planning::{Curve, Plan, PlanResult, Planner, PlannerConfig};
 use trundle::viz::{PlanScene, plan_picture};
 
 /// Distance of two points of the curve in `curve.csv` and in the picture, m.
@@ -13,7 +13,9 @@ pub fn run(args: &PlanArgs) -> Result<Outcome, Failure> {
     let robot = robot_file::load(args.config.as_deref())?;
     let grid = read_map(&args.map)?;
     let footprint = robot.footprint()?;
-    let mut planner = Planner::new(robot.planning.clone(), &footprint, robot.limits, robot.drive)?;
+    // A map is given: what lies beyond it is no way.
+    let config = PlannerConfig { beyond: 0.0, ..robot.planning.clone() };
+    let mut planner = Planner::new(config, &footprint, robot.limits, robot.drive)?;
     let start = Instant::now();
     let plan = planner.plan(&grid, args.from.0, Twist2::ZERO, args.to.0);
     let seconds = start.elapsed().as_secs_f64();

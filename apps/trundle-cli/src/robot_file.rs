@@ -7,7 +7,8 @@ pub fn load(file: Option<&Path>) -> Result<RobotConfig, Failure> {
     let Some(file) = file else { return Ok(RobotConfig::default()) };
     let name = file.display();
     let text = std::fs::read_to_string(file).map_err(|error| Failure::Input(format!("{name}: {error}")))?;
-    RobotConfig::from_toml(&text).map_err(|error| Failure::Input(format!("{name}: {error}")))
+    let config = RobotConfig::from_toml(&text).map_err(|error| Failure::Input(format!("{name}: {error}")))?;
+    config.validated().map_err(|error| Failure::Input(format!("{name}: {error}")))
 }
 
 /// `trundle config [FILE]`: the whole robot file.

@@ -43,10 +43,11 @@ fn track(
     folder: &OutputFolder,
 ) -> Result<SlamRun, Failure> {
     let level_from_camera = level_from_first_camera(args.height, args.tilt)?;
+    let robot = RobotConfig::default();
     let config = SlamConfig { seed: args.seed, ..SlamConfig::default() };
     let mut run = SlamRun {
         slam: RgbdSlam::new(camera.camera, config)?.starting_at(level_from_camera),
-        map: LevelMap::new(camera.camera, RobotConfig::default().scan),
+        map: LevelMap::new(camera.camera, robot.scan, robot.schedule.map_hz)?,
         counts: Default::default(),
         last_image: None,
         unreadable: Vec::new(),

@@ -191,7 +191,10 @@ mod tests {
             let point = truth.transform(camera.unproject(at, z));
             let pixel = at + Vector2::new(noise(&mut rng), noise(&mut rng)) * sigma;
             let depth = InverseDepth { value: 1.0 / z + 0.003 * sigma * noise(&mut rng), sigma: 0.003 };
-            (point, PointObservation { pixel, pixel_sigma: 1.0, depth: (!i.is_multiple_of(3)).then_some(depth) })
+            (
+                point,
+                PointObservation { pixel, pixel_sigma: 1.0, depth: (!i.is_multiple_of(3)).then_some(depth) },
+            )
         };
         (0..count).map(see).collect()
     }

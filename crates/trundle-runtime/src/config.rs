@@ -1,4 +1,4 @@
-use crate::{camera_mount::CameraMount, schedule::Schedule};
+use crate::{camera_mount::CameraMount, robot::Robot, schedule::Schedule};
 use serde::{Deserialize, Serialize};
 use trundle_control::{FollowerConfig, SafetyConfig};
 use trundle_core::{DifferentialDrive, DriveLimits, Footprint, Invalid, PinholeCamera};
@@ -72,6 +72,14 @@ impl RobotConfig {
     /// One sentence with line and key when the text is not TOML, a key is unknown, or a value is of the wrong kind.
     pub fn from_toml(text: &str) -> Result<Self, toml::de::Error> {
         toml::from_str(text)
+    }
+
+    /// Passes a valid configuration through.
+    ///
+    /// # Errors
+    /// Names the first number that is outside its range.
+    pub fn validated(self) -> Result<Self, Invalid> {
+        Robot::new(self.clone()).map(|_| self)
     }
 
     /// The whole robot file.

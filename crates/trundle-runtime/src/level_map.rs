@@ -1,4 +1,4 @@
-use crate::camera_mount::CameraMount;
+use crate::{camera_mount::CameraMount, schedule::Ticker};
 use std::collections::BTreeMap;
 use trundle_core::{Invalid, OccupancyGrid, PinholeCamera, Pose2, Pose3, RgbdImage, Scan, Stamp, Vector3};
 use trundle_mapping::{DepthScanConfig, DepthScanner, GridMapper, MapperConfig};
@@ -9,28 +9,33 @@ use trundle_mapping::{DepthScanConfig, DepthScanner, GridMapper, MapperConfig};
 /// that its pose says; the scans are kept, and drawn when the poses are final.
 #[derive(Debug)]
 pub struct LevelMap {
-    camera: PinholeCamera,
-    scan: DepthScanConfig,
+    scanner: DepthScanner,
+    due: Ticker,
     scans: BTreeMap<Stamp, Scan>,
 }
 
 impl LevelMap {
-    /// A map still empty.
-    pub fn new(camera: PinholeCamera, scan: DepthScanConfig) -> Self {
-        Self { camera, scan, scans: BTreeMap::new() }
-    }
-
-    /// Keeps the scan of an image taken at `level_from_camera`; false when the camera looks too steeply up or down for
-    /// a scan to mean anything.
+    /// A map still empty, of at most `map_hz` scans a second.
     ///
     /// # Errors
     /// When the scan's configuration is not valid.
-    pub fn note(&mut self, image: &RgbdImage, level_from_camera: Pose3) -> Result<bool, Invalid> {
-        let Some(base) = base_below(&level_from_camera) else { return Ok(false) };
-        let base_from_camera = Pose3::from_pose2(base).inverse() * level_from_camera;
-        let mut scanner = DepthScanner::new(self.camera, base_from_camera, self.scan.clone())?;
-        self.scans.insert(image.stamp(), scanner.scan(image));
-        Ok(true)
+    pub fn new(camera: PinholeCamera, scan: DepthScanConfig, map_hz: f64) -> Result<Self, Invalid> {
+        let scanner = DepthScanner::new(camera, Pose3::identity(), scan)?;
+        Ok(Self { scanner, due: Ticker::new(map_hz), scans: BTreeMap::new() })
+    }
+
+    /// Keeps the scan of an image taken at `level_from_camera`, unless the last one was a moment ago, or the camera looks
+    /// too steeply up or down for a scan to mean anything.
+    ///
+    /// # Errors
+    /// When the pose is not finite.
+    pub fn note(&mut self, image: &RgbdImage, level_from_camera: Pose3) -> Result<(), Invalid> {
+        let Some(base) = base_below(&level_from_camera) else { return Ok(()) };
+        if self.due.due(image.stamp()) {
+            self.scanner.remount(Pose3::from_pose2(base).inverse() * level_from_camera)?;
+            self.scans.insert(image.stamp(), self.scanner.scan(image));
+        }
+        Ok(())
     }
 
     /// The grid of all scans, each at the pose that `trajectory` (level_from_camera) has for its stamp.

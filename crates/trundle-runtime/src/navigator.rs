@@ -58,7 +58,7 @@ impl Navigator {
             planner: Planner::new(config.planning.clone(), footprint, config.limits, config.drive)?,
             follower: Follower::new(config.control.clone(), config.drive, config.limits)?,
             safety: SafetyMonitor::new(config.safety.clone(), footprint)?,
-            check_due: Ticker::new(config.schedule.check_hz),
+            check_due: Ticker::new(config.schedule.validated()?.check_hz),
             goal: None,
             plan: None,
             state: DriveState::Idle,

@@ -11,7 +11,7 @@ use trundle_core::{
     WheelTicks,
 };
 use trundle_localization::{Localizer, VisualPose, VisualQuality, WheelOdometry, camera_motion};
-use trundle_mapping::{DepthScanner, GridMapper, ScanMatcher};
+use trundle_mapping::{DepthScanner, GridMapper, MapperConfig, ScanMatcher};
 use trundle_planning::PlanResult;
 use trundle_slam::{RgbdSlam, TrackReport, Tracking};
 
@@ -53,13 +53,15 @@ impl Robot {
     pub fn new(config: RobotConfig) -> Result<Self, Invalid> {
         let base_from_camera = config.mount.validated()?.base_from_camera();
         let footprint = config.footprint()?;
-        let mapper = GridMapper::new(config.mapping.clone())?;
+        let scanner = DepthScanner::new(config.camera, base_from_camera, config.scan.clone())?;
+        let mapper =
+            GridMapper::new(MapperConfig { blind_range: scanner.blind_range(), ..config.mapping.clone() })?;
         Ok(Self {
             base_from_camera,
             footprint_radius: config.footprint_radius,
             odometry: WheelOdometry::new(config.drive, config.odometry.clone())?,
             slam: RgbdSlam::new(config.camera, config.slam.clone())?,
-            scanner: DepthScanner::new(config.camera, base_from_camera, config.scan.clone())?,
+            scanner,
             matcher: ScanMatcher::new(config.scan_match.clone())?,
             localizer: Localizer::new(config.localization.clone(), base_from_camera)?,
             map_due: Ticker::new(config.schedule.validated()?.map_hz),
@@ -127,16 +129,16 @@ impl Robot {
 
     /// Corrects the estimate by where the scan fits the map.
     fn fit(&mut self, scan: &Scan) {
-        let guess = self.localizer.estimate().pose;
+        let Ok(guess) = self.localizer.pose_at(scan.stamp()) else { return };
         let found = self.times.measure(Stage::ScanMatch, || self.matcher.refine(&self.mapper, scan, guess));
         if let Some(found) = found {
             self.localizer.correct_scan(scan.stamp(), found.pose, &found.covariance);
         }
     }
 
-    /// Draws the scan, and the floor that the robot stands on, into the map.
+    /// Draws the scan, and the floor that the robot stands on, into the map; not when no pose is known for its time.
     fn draw(&mut self, scan: &Scan) {
-        let pose = self.localizer.estimate().pose;
+        let Ok(pose) = self.localizer.pose_at(scan.stamp()) else { return };
         let (mapper, radius) = (&mut self.mapper, self.footprint_radius);
         self.times.measure(Stage::Mapping, || {
             mapper.insert(pose, scan);

@@ -7,4 +7,3 @@ mod depth_scan;
 mod flat_room;
 mod maps;
 mod matching;
-mod speed;

@@ -59,9 +59,3 @@ fn a_warehouse_of_a_thousand_cells_square() {
 fn a_thousand_cells_square() {
     across(1000);
 }
-
-#[test]
-#[ignore = "takes 10 s: run it by hand after changes to the search"]
-fn four_thousand_cells_square() {
-    across(4000);
-}

@@ -1,6 +1,11 @@
-//! `cargo test -p trundle-mapping --test it -- --ignored --nocapture speed`
+//! What the steps of mapping cost: `cargo run --release -p trundle-mapping --example mapping_timing`
+#![allow(clippy::print_stdout, clippy::unwrap_used, reason = "a measurement for the terminal")]
 
-use crate::boxes::{Solid, add_noise, depth_of, mount, rgbd};
+#[path = "../tests/it/boxes.rs"]
+#[allow(dead_code, reason = "the tests use more of it")]
+mod boxes;
+
+use boxes::{Solid, add_noise, depth_of, mount, rgbd};
 use trundle_core::{PinholeCamera, Pose2};
 use trundle_mapping::{
     DepthScanConfig, DepthScanner, GridMapper, MapperConfig, ScanMatchConfig, ScanMatcher,
@@ -23,9 +28,7 @@ fn mean_ms(mut work: impl FnMut()) -> f64 {
     (processor_ms() - start) / f64::from(runs)
 }
 
-#[test]
-#[ignore = "a measurement, not a test"]
-fn speed() {
+fn main() {
     let (camera, base_from_camera) = (PinholeCamera::kinect_v2(), mount(0.45, 8.0));
     let furniture = [
         Solid::wall(5.0, 2.5),

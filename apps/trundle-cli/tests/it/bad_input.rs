@@ -1,0 +1,83 @@
+use crate::{
+    plan::write_room,
+    program::{refusal, text},
+};
+use std::fs;
+
+#[test]
+fn numbers_on_the_command_line() {
+    let map = "map.yaml";
+    assert!(refusal(&["plan", map, "--from=NaN,0,0", "--to=1,1,0"]).contains("X is NaN m"));
+    assert!(refusal(&["plan", map, "--from=0,0", "--to=1,1,0"]).contains("2 numbers, expected 3"));
+    assert!(refusal(&["plan", map, "--from=0,0,0", "--to=1,inf,0"]).contains("Y is inf m"));
+    assert!(refusal(&["demo", "--goal=1,2,x"]).contains("DEG is 'x'"));
+    assert!(refusal(&["demo", "--threads=0"]).contains("0"));
+    assert!(refusal(&["demo", "--scene=moon"]).contains("scene is moon, expected one of demo"));
+}
+
+#[test]
+fn ends_of_a_plan_in_a_wall_and_off_the_map() {
+    let scratch = tempfile::tempdir().unwrap();
+    let map = write_room(scratch.path());
+    let out = scratch.path().join("out");
+    let plan = |from: &str, to: &str| {
+        refusal(&["plan", text(&map), &format!("--from={from}"), &format!("--to={to}"), "--out", text(&out)])
+    };
+    for (from, to, words) in [
+        ("0.02,1,0", "5,1,0", "start"),
+        ("1,1,0", "3.02,1,0", "goal"),
+        ("1,1,0", "50,1,0", "goal"),
+        ("-9,1,0", "5,1,0", "start"),
+    ] {
+        let sentence = plan(from, to);
+        assert!(sentence.contains(words) && sentence.contains("room.yaml"), "{sentence}");
+    }
+    assert!(!out.exists());
+}
+
+#[test]
+fn maps_that_are_none() {
+    let scratch = tempfile::tempdir().unwrap();
+    let map = write_room(scratch.path());
+    let yaml = fs::read_to_string(&map).unwrap();
+    let plan = || refusal(&["plan", text(&map), "--from=1,1,0", "--to=5,1,0"]);
+    fs::write(&map, yaml.replace("resolution: 0.05\n", "")).unwrap();
+    assert!(plan().contains("resolution"));
+    fs::write(&map, yaml.replace("room.pgm", "gone.pgm")).unwrap();
+    assert!(plan().contains("gone.pgm"));
+    fs::write(&map, yaml).unwrap();
+    let picture = fs::read(scratch.path().join("room.pgm")).unwrap();
+    fs::write(scratch.path().join("room.pgm"), &picture[..picture.len() / 2]).unwrap();
+    assert!(plan().contains("room.pgm"));
+    assert!(refusal(&["plan", "nowhere.yaml", "--from=1,1,0", "--to=5,1,0"]).contains("nowhere.yaml"));
+}
+
+#[test]
+fn robot_files_with_wrong_keys_and_values() {
+    let scratch = tempfile::tempdir().unwrap();
+    let file = scratch.path().join("robot.toml");
+    let config = |content: &str| {
+        fs::write(&file, content).unwrap();
+        refusal(&["config", text(&file)])
+    };
+    let sentence = config("footprint = 0.2\n");
+    assert!(sentence.contains("robot.toml") && sentence.contains("footprint"), "{sentence}");
+    assert!(config("footprint_radius = -1.0\n").contains("footprint radius is -1 m"));
+    assert!(config("[schedule]\nmap_hz = 0.0\n").contains("schedule.map_hz is 0 1/s"));
+    assert!(config("[mount]\nz = nan\n").contains("mount.z is NaN m"));
+    assert!(config("footprint_radius = \"wide\"\n").contains("robot.toml"));
+}
+
+#[test]
+fn folders_and_recordings_that_are_none() {
+    let scratch = tempfile::tempdir().unwrap();
+    let empty = scratch.path().join("empty");
+    fs::create_dir(&empty).unwrap();
+    assert!(refusal(&["slam", text(&empty)]).contains("rgb.txt"));
+    assert!(refusal(&["slam", text(&empty), "--camera", "freiburg9"]).contains("freiburg9"));
+    let file = scratch.path().join("garbage.mcap");
+    fs::write(&file, b"this is no recording").unwrap();
+    assert!(refusal(&["replay", text(&file)]).contains("garbage.mcap"));
+    assert!(refusal(&["replay", text(&scratch.path().join("gone.mcap"))]).contains("gone.mcap"));
+    assert!(refusal(&["demo", "--out", text(&file)]).contains("garbage.mcap"));
+}
