@@ -63,7 +63,7 @@ fn track(
         match sequence.load(i) {
             Ok(image) => {
                 recorder.record_event(&EncodedEvent::Rgbd(encoded(&image)?))?;
-                run.step(image, &odometry)?;
+                run.step(image, &odometry);
             }
             Err(error) => run.unreadable.push(report(&bar, args.common.quiet, &error.to_string())),
         }
@@ -87,17 +87,16 @@ fn report(bar: &ProgressBar, quiet: bool, message: &str) -> String {
 }
 
 impl SlamRun {
-    fn step(&mut self, image: RgbdImage, odometry: &OdometryPrior) -> Result<(), Failure> {
+    fn step(&mut self, image: RgbdImage, odometry: &OdometryPrior) {
         let since = self.last_image.as_ref().map(RgbdImage::stamp);
         let prior = since.and_then(|since| odometry.motion(since, image.stamp()));
         let report = self.times.measure(Stage::Slam, || self.slam.step(&image, prior));
         self.counts.count(report.tracking);
         if report.tracking.is_located() {
             let map = &mut self.map;
-            self.times.measure(Stage::Scan, || map.note(&image, report.visual_from_camera))?;
+            self.times.measure(Stage::Scan, || map.note(&image, report.visual_from_camera));
         }
         self.last_image = Some(image);
-        Ok(())
     }
 }
 

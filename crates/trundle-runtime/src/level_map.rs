@@ -20,22 +20,19 @@ impl LevelMap {
     /// # Errors
     /// When the scan's configuration is not valid.
     pub fn new(camera: PinholeCamera, scan: DepthScanConfig, map_hz: f64) -> Result<Self, Invalid> {
-        let scanner = DepthScanner::new(camera, Pose3::identity(), scan)?;
+        // The mount is each image's own: this one only stands in until the first.
+        let scanner = DepthScanner::new(camera, CameraMount::default().base_from_camera(), scan)?;
         Ok(Self { scanner, due: Ticker::new(map_hz), scans: BTreeMap::new() })
     }
 
-    /// Keeps the scan of an image taken at `level_from_camera`, unless the last one was a moment ago, or the camera looks
-    /// too steeply up or down for a scan to mean anything.
-    ///
-    /// # Errors
-    /// When the pose is not finite.
-    pub fn note(&mut self, image: &RgbdImage, level_from_camera: Pose3) -> Result<(), Invalid> {
-        let Some(base) = base_below(&level_from_camera) else { return Ok(()) };
-        if self.due.due(image.stamp()) {
-            self.scanner.remount(Pose3::from_pose2(base).inverse() * level_from_camera)?;
+    /// Keeps the scan of an image taken at `level_from_camera`, unless the last one was a moment ago, or no scan can be
+    /// made of it: the camera looks too steeply up or down, or is not above the floor.
+    pub fn note(&mut self, image: &RgbdImage, level_from_camera: Pose3) {
+        let Some(base) = base_below(&level_from_camera) else { return };
+        let base_from_camera = Pose3::from_pose2(base).inverse() * level_from_camera;
+        if self.due.due(image.stamp()) && self.scanner.remount(base_from_camera).is_ok() {
             self.scans.insert(image.stamp(), self.scanner.scan(image));
         }
-        Ok(())
     }
 
     /// The grid of all scans, each at the pose that `trajectory` (level_from_camera) has for its stamp.
