@@ -80,7 +80,7 @@ pub struct ReplayArgs {
 /// `trundle slam`
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Example: trundle slam ../shared/data/tum_fr1_rpy_400 --camera freiburg1 --out out/rpy"
+    after_help = "Example: trundle slam ../shared/data/tum_fr1_rpy_400 --height 1.57 --tilt 33 --roll=-37"
 )]
 pub struct SlamArgs {
     /// A TUM RGB-D folder: rgb.txt, depth.txt, optional groundtruth.txt and odometry.txt.
@@ -100,6 +100,9 @@ pub struct SlamArgs {
     /// Downward tilt of the first camera, deg, for the map.
     #[arg(long, value_name = "DEG", default_value_t = 0.0, allow_hyphen_values = true)]
     pub tilt: f64,
+    /// Roll of the first camera to its right, deg, for the map.
+    #[arg(long, value_name = "DEG", default_value_t = 0.0, allow_hyphen_values = true)]
+    pub roll: f64,
     /// Seed of the random sampling.
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,

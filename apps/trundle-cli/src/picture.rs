@@ -15,7 +15,7 @@ pub fn camera_view(image: &RgbdImage, features: &[SeenFeature]) -> CameraView {
 }
 
 /// The side of a feature's patch on the full-size level, px, and what each level of the pyramid multiplies it by.
-const PATCH_PX: f64 = 10.0;
+const PATCH_PX: f64 = 31.0;
 const LEVEL: f64 = 1.2;
 
 fn mark(feature: &SeenFeature) -> FeatureMark {

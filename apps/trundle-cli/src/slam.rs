@@ -42,7 +42,7 @@ fn track(
     sequence: &TumSequence,
     folder: &OutputFolder,
 ) -> Result<SlamRun, Failure> {
-    let level_from_camera = level_from_first_camera(args.height, args.tilt)?;
+    let level_from_camera = level_from_first_camera(args.height, args.tilt, args.roll)?;
     let robot = RobotConfig::default();
     let config = SlamConfig { seed: args.seed, ..SlamConfig::default() };
     let mut run = SlamRun {

@@ -54,12 +54,13 @@ impl LevelMap {
     }
 }
 
-/// The level pose of a first camera at `height` m above the floor, tilted down by `tilt_deg`.
+/// The level pose of a first camera at `height` m above the floor, tilted down by `tilt_deg` and rolled to its right
+/// about the optical axis by `roll_deg`.
 ///
 /// # Errors
 /// When a number is outside the range of [`CameraMount`].
-pub fn level_from_first_camera(height: f64, tilt_deg: f64) -> Result<Pose3, Invalid> {
-    let mount = CameraMount { x: 0.0, y: 0.0, z: height, pitch_deg: tilt_deg, ..CameraMount::default() };
+pub fn level_from_first_camera(height: f64, tilt_deg: f64, roll_deg: f64) -> Result<Pose3, Invalid> {
+    let mount = CameraMount { x: 0.0, y: 0.0, z: height, yaw_deg: 0.0, pitch_deg: tilt_deg, roll_deg };
     Ok(mount.validated()?.base_from_camera())
 }
 
@@ -77,9 +78,9 @@ mod tests {
 
     #[test]
     fn the_base_stands_under_the_camera() {
-        let pose = level_from_first_camera(1.2, 30.0).unwrap();
+        let pose = level_from_first_camera(1.2, 30.0, 10.0).unwrap();
         assert_eq!(base_below(&pose), Some(Pose2::IDENTITY));
-        assert_eq!(base_below(&level_from_first_camera(1.2, 75.0).unwrap()), None);
-        assert!(level_from_first_camera(f64::NAN, 0.0).is_err());
+        assert_eq!(base_below(&level_from_first_camera(1.2, 75.0, 0.0).unwrap()), None);
+        assert!(level_from_first_camera(f64::NAN, 0.0, 0.0).is_err());
     }
 }
