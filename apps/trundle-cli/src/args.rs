@@ -145,6 +145,12 @@ pub struct PlanArgs {
 pub struct ConfigArgs {
     /// Check this robot file and print it whole, its gaps filled with the defaults.
     pub file: Option<PathBuf>,
+    /// Write robot.toml and summary.json into this folder too.
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Print nothing.
+    #[arg(long, short)]
+    pub quiet: bool,
 }
 
 /// A pose on the command line: `X,Y,DEG`.

@@ -46,7 +46,7 @@ fn run(cli: Cli) -> Result<Outcome, Failure> {
         Command::Replay(args) => with_threads(&args.common, || replay::run(&args)),
         Command::Slam(args) => with_threads(&args.common, || slam::run(&args)),
         Command::Plan(args) => with_threads(&args.common, || plan::run(&args)),
-        Command::Config(args) => robot_file::print(args.file.as_deref()),
+        Command::Config(args) => robot_file::print(&args),
     }
 }
 

@@ -4,13 +4,16 @@
 //! The whole robot is [`runtime::Robot`]: sensor events in, pose, map, plan and twist out.
 //!
 //! ```no_run
-//! use trundle::core::{Pose2, RobotBody};
+//! use trundle::core::RobotBody;
 //! use trundle::runtime::{Robot, RobotConfig};
+//! use trundle::sim::{Scene, SimConfig, Simulator};
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
-//! # let mut body = trundle::sim_body_for_docs()?;
+//! let scene = Scene::by_name("demo", 1)?;
+//! let goal = scene.start_from_goal();
+//! let mut body = Simulator::new(scene, SimConfig::default(), 1)?; // or a driver of yours
 //! let mut robot = Robot::new(RobotConfig::default())?;
-//! robot.drive_to(Pose2::new(3.0, 1.0, 0.0));
+//! robot.drive_to(goal);
 //! while let Some(event) = body.next_event()? {
 //!     let report = robot.step(&event);
 //!     if let Some(twist) = report.twist {

@@ -1,0 +1,16 @@
+use trundle_runtime::{RobotConfig, Schedule};
+
+#[test]
+fn the_printed_file_reads_back_the_same() {
+    let mut config = RobotConfig { footprint_radius: 0.2, ..RobotConfig::default() };
+    config.schedule = Schedule { map_hz: 3.0, ..Schedule::default() };
+    assert_eq!(RobotConfig::from_toml(&config.to_toml()).unwrap(), config);
+    assert_eq!(RobotConfig::from_toml("").unwrap(), RobotConfig::default());
+}
+
+#[test]
+fn the_defaults_are_valid_and_wrong_keys_are_named() {
+    RobotConfig::default().validated().unwrap();
+    let error = RobotConfig::from_toml("[schedule]\nmap_rate = 5.0\n").unwrap_err().to_string();
+    assert!(error.contains("map_rate") && error.contains("line 2"), "{error}");
+}

@@ -1,0 +1,85 @@
+use trundle_core::{
+    DepthImage, GyroRate, Image, PinholeCamera, Pose2, RgbdImage, SensorEvent, Stamp, Touch, Twist2,
+    WheelTicks,
+};
+use trundle_runtime::{DriveState, Robot, RobotConfig, StepReport};
+
+/// A wall of one colour across the view, `distance` m ahead.
+fn wall(stamp: Stamp, distance: f32) -> SensorEvent {
+    let camera = PinholeCamera::kinect_v2();
+    let (width, height) = (camera.width(), camera.height());
+    let color = Image::filled(width, height, [90; 3]);
+    let depth = DepthImage::filled(width, height, distance);
+    SensorEvent::Rgbd(RgbdImage::new(stamp, color, depth).unwrap())
+}
+
+/// Feeds a robot that stands still for `seconds`: wheels and gyro at 50 Hz, and at 10 Hz what `image` gives.
+fn stand(robot: &mut Robot, seconds: f64, image: impl Fn(Stamp) -> Option<SensorEvent>) -> Vec<StepReport> {
+    let mut reports = Vec::new();
+    for i in 0..(seconds * 50.0) as i64 {
+        let stamp = Stamp::from_nanos(i * 20_000_000);
+        robot.step(&SensorEvent::Gyro(GyroRate { stamp, omega: 0.0 }));
+        reports.push(robot.step(&SensorEvent::Wheels(WheelTicks { stamp, left: 0, right: 0 })));
+        if i % 5 == 0
+            && let Some(event) = image(stamp)
+        {
+            robot.step(&event);
+        }
+    }
+    reports
+}
+
+fn robot(goal: Pose2) -> Robot {
+    let mut robot = Robot::new(RobotConfig::default()).unwrap();
+    robot.drive_to(goal);
+    robot
+}
+
+#[test]
+fn a_blind_robot_does_not_move() {
+    let reports = stand(&mut robot(Pose2::new(1.0, 0.0, 0.0)), 5.0, |_| None);
+    assert!(reports.iter().all(|report| report.twist == Some(Twist2::ZERO)));
+    assert!(reports.iter().all(|report| report.state == DriveState::Opening));
+}
+
+#[test]
+fn it_sets_out_when_the_way_is_seen_and_stops_when_the_images_stop() {
+    let mut robot = robot(Pose2::new(1.0, 0.0, 0.0));
+    let until = Stamp::from_nanos(3_000_000_000);
+    let reports = stand(&mut robot, 5.0, |stamp| (stamp < until).then(|| wall(stamp, 3.0)));
+    assert!(reports[120..150].iter().any(|report| report.twist.unwrap().v > 0.05));
+    let last = reports.last().unwrap();
+    assert_eq!(last.twist, Some(Twist2::ZERO));
+    let DriveState::Held { reason } = &last.state else { panic!("{:?}", last.state) };
+    assert!(reason.contains("image"), "{reason}");
+}
+
+#[test]
+fn a_goal_in_a_wall_makes_it_look_around_not_drive() {
+    let mut robot = robot(Pose2::new(3.0, 0.0, 0.0));
+    let reports = stand(&mut robot, 4.0, |stamp| Some(wall(stamp, 3.0)));
+    assert!(reports.iter().all(|report| report.twist.unwrap().v == 0.0));
+    let last = reports.last().unwrap();
+    assert!(
+        matches!(&last.state, DriveState::Looking { reason } if reason.contains("goal")),
+        "{:?}",
+        last.state
+    );
+    assert!(last.twist.unwrap().omega > 0.1);
+}
+
+#[test]
+fn a_pressed_bumper_stops_it() {
+    let mut robot = robot(Pose2::new(1.0, 0.0, 0.0));
+    robot.step(&SensorEvent::Touch(Touch { stamp: Stamp::default(), pressed: true }));
+    let reports = stand(&mut robot, 4.0, |stamp| Some(wall(stamp, 3.0)));
+    assert!(reports.iter().all(|report| report.twist.unwrap().v <= 0.0));
+}
+
+#[test]
+fn the_same_events_give_the_same_reports() {
+    let run = || stand(&mut robot(Pose2::new(1.0, 0.5, 1.0)), 3.0, |stamp| Some(wall(stamp, 3.0)));
+    let twists =
+        |reports: Vec<StepReport>| reports.into_iter().map(|report| report.twist).collect::<Vec<_>>();
+    assert_eq!(twists(run()), twists(run()));
+}
