@@ -14,7 +14,7 @@ pub fn run(args: &PlanArgs) -> Result<Outcome, Failure> {
     let grid = read_map(&args.map)?;
     let footprint = robot.footprint()?;
     // A map is given: what lies beyond it is no way.
-    let config = PlannerConfig { beyond: 0.0, ..robot.planning.clone() };
+    let config = PlannerConfig { beyond: 0.0, ..robot.planning };
     let mut planner = Planner::new(config, &footprint, robot.limits, robot.drive)?;
     let start = Instant::now();
     let plan = planner.plan(&grid, args.from.0, Twist2::ZERO, args.to.0);

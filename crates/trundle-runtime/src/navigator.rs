@@ -55,7 +55,7 @@ const STANDING: f64 = 0.02;
 impl Navigator {
     pub(crate) fn new(config: &RobotConfig, footprint: &Footprint) -> Result<Self, Invalid> {
         Ok(Self {
-            planner: Planner::new(config.planning.clone(), footprint, config.limits, config.drive)?,
+            planner: Planner::new(config.planning, footprint, config.limits, config.drive)?,
             follower: Follower::new(config.control.clone(), config.drive, config.limits)?,
             safety: SafetyMonitor::new(config.safety.clone(), footprint)?,
             check_due: Ticker::new(config.schedule.validated()?.check_hz),

@@ -1,4 +1,5 @@
 //! The program as its users meet it: arguments in, files, sentences and exit codes out.
+#![allow(clippy::unwrap_used, clippy::print_stderr, reason = "helpers of tests")]
 
 mod bad_input;
 mod demo;

@@ -1,4 +1,5 @@
 //! The robot as a whole, fed by hand: no simulator here.
+#![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
 mod config;
 mod robot;
