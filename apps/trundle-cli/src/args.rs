@@ -30,7 +30,7 @@ pub enum Command {
 /// What every command takes.
 #[derive(Debug, Clone, Args)]
 pub struct Common {
-    /// Show no progress.
+    /// Print nothing but warnings and errors: no progress, no table.
     #[arg(long, short)]
     pub quiet: bool,
     /// Threads to use; the results are the same for any number [default: one a core]
@@ -92,8 +92,8 @@ pub struct SlamArgs {
     #[arg(long, value_name = "N")]
     pub depth_scale: Option<f64>,
     /// Stop after this many frames.
-    #[arg(long, value_name = "N")]
-    pub frames: Option<usize>,
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub frames: Option<u32>,
     /// Height of the first camera above the floor, m, for the map.
     #[arg(long, value_name = "M", default_value_t = 1.0)]
     pub height: f64,

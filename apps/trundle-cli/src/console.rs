@@ -1,7 +1,9 @@
 //! What the user sees in the terminal. The only place of the program that prints.
-#![expect(clippy::print_stdout, clippy::print_stderr, reason = "this is the program's voice")]
+#![expect(clippy::print_stderr, reason = "this is the program's voice")]
 
 use crate::failure::Failure;
+use std::io::Write;
+
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 /// Says why the command ended, on standard error.
@@ -16,7 +18,8 @@ pub fn warn(message: &str) {
 
 /// Prints a result on standard output.
 pub fn say(text: &str) {
-    println!("{text}");
+    // A reader that has gone away is no failure of the run.
+    let _ = writeln!(std::io::stdout(), "{text}");
 }
 
 /// Prints a table of two columns or more on standard output, columns aligned.
@@ -31,7 +34,7 @@ pub fn table(rows: &[Vec<String>]) {
         let line: Vec<String> = cells
             .map(|(c, (cell, &w))| if c == 0 { format!("{cell:<w$}") } else { format!("{cell:>w$}") })
             .collect();
-        println!("  {}", line.join("  ").trim_end());
+        say(format!("  {}", line.join("  ")).trim_end());
     }
 }
 

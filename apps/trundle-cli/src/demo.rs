@@ -1,9 +1,9 @@
 use crate::run::{RunSetup, drive};
 use crate::{Outcome, args::DemoArgs, console, failure::Failure, robot_file, run_output};
-use trundle::core::Invalid;
+use trundle::core::{Invalid, Pose2};
 use trundle::io::OutputFolder;
 use trundle::runtime::RobotConfig;
-use trundle::sim::{Scene, SimConfig, Simulator};
+use trundle::sim::{HeightBand, Scene, SimConfig, Simulator};
 
 /// Seconds of the robot's time after which a demo is given up.
 const TIME_LIMIT: f64 = 180.0;
@@ -20,6 +20,7 @@ pub fn run(args: &DemoArgs) -> Result<Outcome, Failure> {
         time_limit: TIME_LIMIT,
         robot: robot.with_seed(args.seed),
     };
+    require_free(&scene, scene.start * setup.goal, &setup.robot)?;
     let mut body = Simulator::new(scene, simulated(&setup.robot)?, args.seed)
         .map_err(|error| Failure::Input(error.to_string()))?;
     let folder = OutputFolder::create(&args.out)?;
@@ -37,6 +38,28 @@ pub fn run(args: &DemoArgs) -> Result<Outcome, Failure> {
     }
     let run = drive(&setup, &mut body, &folder, args.common.quiet)?;
     run_output::write("demo", &setup, &run, folder, args.common.quiet)
+}
+
+/// Refuses a goal that no robot could reach: outside the room, or where something stands.
+fn require_free(scene: &Scene, world_from_goal: Pose2, robot: &RobotConfig) -> Result<(), Failure> {
+    let (low, high) = scene.world.bounds();
+    let Pose2 { x, y, .. } = world_from_goal;
+    if !(low.x..=high.x).contains(&x) || !(low.y..=high.y).contains(&y) {
+        return Err(Failure::Input(format!(
+            "goal is outside the room '{}': at ({x:.2}, {y:.2}) m of its frame",
+            scene.name
+        )));
+    }
+    let body = SimConfig::default().kobuki;
+    let band = HeightBand::new(body.step_over, body.height)?;
+    let clearance = scene.world.clearance(&robot.footprint()?, world_from_goal, band)?;
+    if clearance <= 0.0 {
+        return Err(Failure::Input(format!(
+            "goal is in an obstacle of the room '{}': {:.3} m too little room",
+            scene.name, -clearance
+        )));
+    }
+    Ok(())
 }
 
 /// The simulated body of a robot file: the same base and camera, with the simulator's noise.

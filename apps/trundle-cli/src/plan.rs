@@ -31,7 +31,7 @@ pub fn run(args: &PlanArgs) -> Result<Outcome, Failure> {
     folder.write("coefficients.csv", coefficients_csv(&found).as_bytes())?;
     folder.write("trajectory.csv", trajectory_csv(&found.trajectory).as_bytes())?;
     folder.write("plan.png", &picture(args, &grid, &found, &curve, &footprint))?;
-    folder.write("summary.json", summary(&found, seconds).to_json().as_bytes())?;
+    folder.write("summary.json", summary(args, &found, seconds).to_json().as_bytes())?;
     let place = folder.commit()?;
     if !args.common.quiet {
         console::table(&rows(&found, seconds));
@@ -108,9 +108,13 @@ fn rows(found: &PlanResult, seconds: f64) -> Vec<Vec<String>> {
     ]
 }
 
-fn summary(found: &PlanResult, seconds: f64) -> Summary {
+fn summary(args: &PlanArgs, found: &PlanResult, seconds: f64) -> Summary {
     let mut summary = Summary::new("plan");
     summary
+        .set("success", true)
+        .set("map", args.map.display().to_string())
+        .set("from", args.from.0)
+        .set("to", args.to.0)
         .set("length_m", found.length)
         .set("duration_s", found.trajectory.duration())
         .set("way_points", found.way_points.points().len())

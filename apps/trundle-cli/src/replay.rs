@@ -13,6 +13,7 @@ pub fn run(args: &ReplayArgs) -> Result<Outcome, Failure> {
     })?;
     let setup: RunSetup = serde_json::from_value(config.clone())
         .map_err(|error| Failure::Input(format!("{name}: the configuration cannot be used: {error}")))?;
+    setup.robot.clone().validated().map_err(|error| Failure::Input(format!("{name}: {error}")))?;
     let folder = OutputFolder::create(&args.out)?;
     let run = drive(&setup, &mut body, &folder, args.common.quiet)?;
     run_output::write("replay", &setup, &run, folder, args.common.quiet)

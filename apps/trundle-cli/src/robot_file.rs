@@ -8,7 +8,10 @@ pub fn load(file: Option<&Path>) -> Result<RobotConfig, Failure> {
     let Some(file) = file else { return Ok(RobotConfig::default()) };
     let name = file.display();
     let text = std::fs::read_to_string(file).map_err(|error| Failure::Input(format!("{name}: {error}")))?;
-    let config = RobotConfig::from_toml(&text).map_err(|error| Failure::Input(format!("{name}: {error}")))?;
+    let config = RobotConfig::from_toml(&text).map_err(|error| {
+        let line = error.span().map_or(1, |span| 1 + text[..span.start].matches('\n').count());
+        Failure::Input(format!("{name}, line {line}: {}", error.message().replace('\n', " ")))
+    })?;
     config.validated().map_err(|error| Failure::Input(format!("{name}: {error}")))
 }
 

@@ -56,7 +56,7 @@ fn track(
     };
     let mut recorder = folder.recorder("recording.mcap")?;
     let odometry = OdometryPrior::new(sequence);
-    let frames = args.frames.unwrap_or(usize::MAX).min(sequence.len());
+    let frames = args.frames.map_or(sequence.len(), |frames| sequence.len().min(frames as usize));
     let bar = console::bar(args.common.quiet, frames);
     let start = Instant::now();
     for i in 0..frames {
@@ -65,12 +65,15 @@ fn track(
                 recorder.record_event(&EncodedEvent::Rgbd(encoded(&image)?))?;
                 run.step(image, &odometry);
             }
-            Err(error) => run.unreadable.push(report(&bar, args.common.quiet, &error.to_string())),
+            Err(error) => run.unreadable.push(report(&bar, &error.to_string())),
         }
         bar.inc(1);
     }
     bar.finish_and_clear();
     recorder.finish()?;
+    if let (None, Some(first)) = (&run.last_image, run.unreadable.first()) {
+        return Err(Failure::Input(format!("{}: no frame can be read; {first}", args.dir.display())));
+    }
     run.seconds = start.elapsed().as_secs_f64();
     Ok(run)
 }
@@ -79,14 +82,17 @@ fn encoded(image: &RgbdImage) -> Result<EncodedRgbd, Failure> {
     EncodedRgbd::encode(image).map_err(|error| Failure::Input(error.to_string()))
 }
 
-fn report(bar: &ProgressBar, quiet: bool, message: &str) -> String {
-    if !quiet {
-        bar.suspend(|| console::warn(&format!("{message}; skipped")));
-    }
+fn report(bar: &ProgressBar, message: &str) -> String {
+    bar.suspend(|| console::warn(&format!("{message}; skipped")));
     message.to_owned()
 }
 
 impl SlamRun {
+    /// Whether any frame but the first, which only lays the frame, was located by sight.
+    pub fn is_located(&self) -> bool {
+        self.counts.ok + self.counts.weak > 0 && self.slam.landmarks().next().is_some()
+    }
+
     fn step(&mut self, image: RgbdImage, odometry: &OdometryPrior) {
         let since = self.last_image.as_ref().map(RgbdImage::stamp);
         let prior = since.and_then(|since| odometry.motion(since, image.stamp()));

@@ -46,7 +46,7 @@ pub fn write(
         console::table(&stage_rows(&run.times));
         console::say(&format!("See {}", place.join("report.html").display()));
     }
-    Ok(Outcome::Reached)
+    Ok(if run.is_located() { Outcome::Reached } else { Outcome::Missed })
 }
 
 /// ATE and RPE; where they cannot be taken (nothing overlaps in time), a warning says why.
@@ -99,6 +99,7 @@ fn summary(args: &SlamArgs, sequence: &TumSequence, run: &SlamRun, judged: Optio
     let mut summary = Summary::new("slam");
     let c = run.counts;
     summary
+        .set("success", run.is_located())
         .set("camera", &args.camera)
         .set("seed", args.seed)
         .set("frames", c.ok + c.weak + c.dead_reckoned + c.lost)
@@ -135,7 +136,7 @@ fn report(
     RunReport {
         title: "trundle slam".to_owned(),
         subtitle: format!("{}, camera {}.", args.dir.display(), args.camera),
-        verdict: Some(Verdict::Note(verdict)),
+        verdict: Some(if run.is_located() { Verdict::Note(verdict) } else { Verdict::Failed(verdict) }),
         cards: cards(run, judged),
         grid: Some(grid),
         landmarks: run.slam.landmarks().collect(),

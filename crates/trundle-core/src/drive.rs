@@ -3,7 +3,7 @@ use serde::{Deserialize, Serialize};
 
 /// The geometry of a two-wheeled base.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(default, deny_unknown_fields)]
 pub struct DifferentialDrive {
     /// Radius of the driven wheels, m.
     pub wheel_radius: f64,
@@ -11,6 +11,12 @@ pub struct DifferentialDrive {
     pub wheelbase: f64,
     /// Encoder ticks a wheel turn.
     pub ticks_per_turn: f64,
+}
+
+impl Default for DifferentialDrive {
+    fn default() -> Self {
+        Self::KOBUKI
+    }
 }
 
 impl DifferentialDrive {
@@ -47,7 +53,7 @@ impl DifferentialDrive {
 
 /// What the base may be asked for.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(default, deny_unknown_fields)]
 pub struct DriveLimits {
     /// Highest speed of either wheel's rim, m/s: |v| + wheelbase / 2 |omega| stays below it.
     pub wheel_speed: f64,
@@ -59,6 +65,12 @@ pub struct DriveLimits {
     pub acceleration: f64,
     /// Highest change of turn rate, rad/s^2.
     pub angular_acceleration: f64,
+}
+
+impl Default for DriveLimits {
+    fn default() -> Self {
+        Self::KOBUKI
+    }
 }
 
 impl DriveLimits {

@@ -11,6 +11,8 @@ fn numbers_on_the_command_line() {
     assert!(refusal(&["plan", map, "--from=0,0", "--to=1,1,0"]).contains("2 numbers, expected 3"));
     assert!(refusal(&["plan", map, "--from=0,0,0", "--to=1,inf,0"]).contains("Y is inf m"));
     assert!(refusal(&["demo", "--goal=1,2,x"]).contains("DEG is 'x'"));
+    assert!(refusal(&["demo", "--goal=1000,0,0"]).contains("outside the room"));
+    assert!(refusal(&["slam", ".", "--frames=0"]).contains("0"));
     assert!(refusal(&["demo", "--threads=0"]).contains("0"));
     assert!(refusal(&["demo", "--scene=moon"]).contains("scene is moon, expected one of demo"));
 }
@@ -60,8 +62,9 @@ fn robot_files_with_wrong_keys_and_values() {
         fs::write(&file, content).unwrap();
         refusal(&["config", text(&file)])
     };
-    let sentence = config("footprint = 0.2\n");
-    assert!(sentence.contains("robot.toml") && sentence.contains("footprint"), "{sentence}");
+    let sentence = config("\nfootprint = 0.2\n");
+    assert!(sentence.contains("robot.toml, line 2") && sentence.contains("footprint"), "{sentence}");
+    assert_eq!(sentence.lines().count(), 1, "{sentence}");
     assert!(config("footprint_radius = -1.0\n").contains("footprint radius is -1 m"));
     assert!(config("[schedule]\nmap_hz = 0.0\n").contains("schedule.map_hz is 0 1/s"));
     assert!(config("[mount]\nz = nan\n").contains("mount.z is NaN m"));

@@ -38,3 +38,26 @@ fn a_real_sequence_is_tracked_and_a_broken_frame_is_named_and_skipped() {
         assert!(fs::metadata(out.join(name)).unwrap().len() > 20, "{name}");
     }
 }
+
+#[test]
+fn a_sequence_that_cannot_be_read_is_refused_and_a_black_one_is_no_success() {
+    let Some(data) = shared("tum_fr1_rpy_400") else { return };
+    let scratch = tempfile::tempdir().unwrap();
+    let (sequence, out) = (scratch.path().join("short"), scratch.path().join("out"));
+    fs::create_dir(&sequence).unwrap();
+    short_sequence(&data, &sequence, 3);
+    let list = fs::read_to_string(sequence.join("rgb.txt")).unwrap();
+    let black = image::RgbImage::new(640, 480);
+    for line in list.lines() {
+        black.save(sequence.join(line.split(' ').nth(1).unwrap())).unwrap();
+    }
+    let output = trundle(&["slam", text(&sequence), "--quiet", "--out", text(&out)]);
+    assert_eq!(output.status.code(), Some(1));
+    assert_eq!(summary(&out)["success"], false);
+    for line in list.lines() {
+        fs::write(sequence.join(line.split(' ').nth(1).unwrap()), b"no image").unwrap();
+    }
+    let output = trundle(&["slam", text(&sequence), "--quiet", "--out", text(&out)]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(String::from_utf8(output.stderr).unwrap().contains("no frame can be read"));
+}

@@ -79,7 +79,7 @@ impl MapYaml {
         }
         Ok(Self {
             image: file.image,
-            resolution: require_positive("resolution", file.resolution, "m")?,
+            resolution: coarse_enough(file.resolution)?,
             origin: Vector2::new(require_finite("origin x", x, "m")?, require_finite("origin y", y, "m")?),
             negate,
             occupied,
@@ -117,6 +117,12 @@ fn located(path: &Path, error: &serde_saphyr::Error) -> IoError {
         }
         _ => IoError::malformed(path, message),
     }
+}
+
+/// A cell larger than a house is a wrong unit, and would make any plan endless.
+fn coarse_enough(resolution: f64) -> Result<f64, Invalid> {
+    require_positive("resolution", resolution, "m")?;
+    require_in("resolution", resolution, "m", 0.0, 10.0)
 }
 
 #[cfg(test)]
