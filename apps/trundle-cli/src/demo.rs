@@ -37,7 +37,7 @@ pub fn run(args: &DemoArgs) -> Result<Outcome, Failure> {
         ));
     }
     let run = drive(&setup, &mut body, &folder, args.common.quiet)?;
-    run_output::write("demo", &setup, &run, folder, args.common.quiet)
+    run_output::write(&setup, &run, folder, args.common.quiet)
 }
 
 /// Refuses a goal that no robot could reach: outside the room, or where something stands.

@@ -4,13 +4,7 @@ use trundle::io::{OutputFolder, trajectory_text_from_planar, write_map};
 use trundle::viz::{Card, Chart, Color, Figure, RunReport, Table, Verdict};
 
 /// Writes the folder of a run, prints its table, and says whether the goal was reached.
-pub fn write(
-    command: &str,
-    setup: &RunSetup,
-    run: &Run,
-    folder: OutputFolder,
-    quiet: bool,
-) -> Result<Outcome, Failure> {
+pub fn write(setup: &RunSetup, run: &Run, folder: OutputFolder, quiet: bool) -> Result<Outcome, Failure> {
     let numbers = RunNumbers::of(setup, run);
     write_map(&folder, "map", run.robot.grid())?;
     folder.write("trajectory.txt", trajectory_text_from_planar(&run.log.estimates).as_bytes())?;
@@ -18,7 +12,7 @@ pub fn write(
     let report = report(setup, run, &numbers);
     folder.write("map.png", &report.map_png())?;
     folder.write("report.html", report.to_html().as_bytes())?;
-    folder.write("summary.json", numbers.summary(command, setup, run).to_json().as_bytes())?;
+    folder.write("summary.json", numbers.summary(setup, run).to_json().as_bytes())?;
     let place = folder.commit()?;
     if !quiet {
         console::table(&numbers.rows(run));

@@ -122,10 +122,9 @@ impl RunNumbers {
     }
 
     /// `summary.json`: the numbers of the table; the wall clock's under `wall_clock`.
-    pub fn summary(&self, command: &str, setup: &RunSetup, run: &Run) -> Summary {
+    pub fn summary(&self, setup: &RunSetup, run: &Run) -> Summary {
         // A replay's summary is the run's, byte for byte, so it bears the run's name.
-        let command = if command == "replay" { "demo" } else { command };
-        let mut summary = Summary::new(command);
+        let mut summary = Summary::new("demo");
         summary
             .set("scene", &setup.scene)
             .set("seed", setup.seed)
