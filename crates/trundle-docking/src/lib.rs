@@ -1,0 +1,1 @@
+//! Fine positioning in narrow spaces: rotations and straight moves, footprint-exact.
