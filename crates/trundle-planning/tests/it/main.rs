@@ -8,6 +8,7 @@ mod bad_input;
 mod discovery;
 mod laws;
 mod maps;
+mod nav_data;
 mod replanning;
 mod size;
 mod support;

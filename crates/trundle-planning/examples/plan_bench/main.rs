@@ -1,0 +1,185 @@
+//! Way-points, curve and timing on the maps of ../shared/data/nav, in numbers:
+//! `cargo run --release -p trundle-planning --example plan_bench [-- --csv PAIRS.csv]`.
+//!
+//! Each map has the questions that come with it and random ones between connected places. Each is asked five times with
+//! the distance field up to date, and the median counts. Every trajectory is judged by the tests' independent checker.
+
+#![expect(clippy::print_stdout, clippy::unwrap_used, reason = "a program for the terminal")]
+
+#[path = "../../tests/it/nav_data.rs"]
+mod nav_data;
+mod shortest;
+#[path = "../../tests/it/support.rs"]
+#[expect(dead_code, reason = "shared with the tests")]
+mod support;
+
+use std::fmt::Write as _;
+use std::time::Instant;
+use trundle_core::{Cell, CellIndex, OccupancyGrid, Pose2, Twist2};
+use trundle_planning::{DistanceField, Plan, UnknownIs};
+
+/// The robot of the comparison with Nav2's planners, m.
+const RADIUS: f64 = 0.26;
+/// Questions a map.
+const QUESTIONS: usize = 60;
+const ROUNDS: usize = 5;
+
+struct Row {
+    start: Pose2,
+    goal: Pose2,
+    ms: f64,
+    length: f64,
+    shortest: f64,
+    curves: usize,
+}
+
+fn main() {
+    let Some(data) = nav_data::data() else { return };
+    let csv = std::env::args().skip_while(|word| word != "--csv").nth(1);
+    let mut lines = String::from("map,sx,sy,sa,gx,gy,ga,ms,length_m,shortest_m\n");
+    println!(
+        "disc of {RADIUS} m; ms with the field up to date, each question's median of {ROUNDS}; length over Theta*'s"
+    );
+    println!("| map | cells | found | in one curve | ms median | p99 | worst | length mean | worst |");
+    println!("|---|---|---|---|---|---|---|---|---|");
+    for (name, file) in [
+        ("depot", "nav2/depot.yaml"),
+        ("tb3_sandbox", "nav2/tb3_sandbox.yaml"),
+        ("office01add", "mrpb/maps/office01add/map.yaml"),
+        ("room02", "mrpb/maps/room02/map.yaml"),
+    ] {
+        let grid = nav_data::read_map(&data.join(file));
+        let mut pairs = match file.strip_prefix("nav2/") {
+            Some(_) => nav_data::pairs(&data.join(format!("nav2/nav2_{name}.csv")), 1),
+            None => nav_data::mrpb_pairs(&data, name),
+        };
+        pairs.extend(random_pairs(&grid, QUESTIONS - pairs.len()));
+        let rows = measure(&grid, &pairs);
+        print_row(name, &grid, pairs.len(), &rows);
+        for row in rows {
+            let (a, b) = (row.start, row.goal);
+            let _ = writeln!(
+                lines,
+                "{name},{},{},{},{},{},{},{},{},{}",
+                a.x, a.y, a.theta, b.x, b.y, b.theta, row.ms, row.length, row.shortest
+            );
+        }
+    }
+    updates(&nav_data::read_map(&data.join("nav2/depot.yaml")));
+    if let Some(path) = csv {
+        std::fs::write(path, lines).unwrap();
+    }
+}
+
+fn measure(grid: &OccupancyGrid, pairs: &[(Pose2, Pose2)]) -> Vec<Row> {
+    let field = DistanceField::from_grid(grid, UnknownIs::Free);
+    let mut planner = support::planner(support::at_home(), RADIUS);
+    planner.plan(grid, pairs[0].0, Twist2::ZERO, pairs[0].1);
+    let ask = |(start, goal): &(Pose2, Pose2)| {
+        let mut times: Vec<f64> = Vec::new();
+        let mut last = None;
+        for _ in 0..ROUNDS {
+            let begin = Instant::now();
+            let plan = planner.plan(grid, *start, Twist2::ZERO, *goal);
+            times.push(begin.elapsed().as_secs_f64() * 1e3);
+            last = Some(plan);
+        }
+        times.sort_by(f64::total_cmp);
+        let Some(Plan::Found(result)) = last else {
+            println!("{start:?} {goal:?}: {}", last.unwrap());
+            return None;
+        };
+        support::judge(grid, &result, *start, *goal, RADIUS);
+        let shortest = shortest::shortest(&field, RADIUS, start.position(), goal.position());
+        let curves = result.curves().count();
+        Some(Row {
+            start: *start,
+            goal: *goal,
+            ms: times[ROUNDS / 2],
+            length: result.length,
+            shortest,
+            curves,
+        })
+    };
+    pairs.iter().filter_map(ask).collect()
+}
+
+fn print_row(name: &str, grid: &OccupancyGrid, asked: usize, rows: &[Row]) {
+    let sorted = |of: fn(&Row) -> f64| {
+        let mut values: Vec<f64> = rows.iter().map(of).collect();
+        values.sort_by(f64::total_cmp);
+        values
+    };
+    let ms = sorted(|row| row.ms);
+    let ratio = sorted(|row| row.length / row.shortest);
+    let at = |values: &[f64], share: f64| values[((values.len() - 1) as f64 * share).round() as usize];
+    let one = rows.iter().filter(|row| row.curves == 1).count();
+    println!(
+        "| {name} | {} x {} | {} of {asked} | {one} | {:.2} | {:.2} | {:.2} | {:.3} | {:.3} |",
+        grid.geometry().width,
+        grid.geometry().height,
+        rows.len(),
+        at(&ms, 0.5),
+        at(&ms, 0.99),
+        at(&ms, 1.0),
+        ratio.iter().sum::<f64>() / ratio.len() as f64,
+        at(&ratio, 1.0)
+    );
+}
+
+/// Questions between places that 4-neighbour moves between free centres connect.
+fn random_pairs(grid: &OccupancyGrid, count: usize) -> Vec<(Pose2, Pose2)> {
+    let field = DistanceField::from_grid(grid, UnknownIs::Free);
+    let geometry = *grid.geometry();
+    let sure = RADIUS + geometry.resolution / 2.0;
+    let open = |cell: CellIndex| field.at_cell(cell) >= sure && grid.get(cell) == Cell::Free;
+    let mut seed = 1_u64;
+    let mut next = move || {
+        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (seed >> 33) as f64 / f64::from(1_u32 << 31)
+    };
+    let mut pairs = Vec::new();
+    while pairs.len() < count {
+        let mut cell = || geometry.cell((next() * geometry.len() as f64) as usize);
+        let (from, to) = (cell(), cell());
+        let reached = open(from) && open(to) && flood(&geometry, from, open)[geometry.linear(to)];
+        let mut pose = |cell| {
+            let at = geometry.center(cell);
+            Pose2::new(at.x, at.y, next() * std::f64::consts::TAU)
+        };
+        if reached {
+            pairs.push((pose(from), pose(to)));
+        }
+    }
+    pairs
+}
+
+fn flood(
+    geometry: &trundle_core::GridGeometry,
+    from: CellIndex,
+    open: impl Fn(CellIndex) -> bool,
+) -> Vec<bool> {
+    let mut reached = vec![false; geometry.len()];
+    let mut stack = vec![from];
+    while let Some(cell) = stack.pop() {
+        if std::mem::replace(&mut reached[geometry.linear(cell)], true) {
+            continue;
+        }
+        let CellIndex { col, row } = cell;
+        let near = [(col + 1, row), (col, row + 1), (col.wrapping_sub(1), row), (col, row.wrapping_sub(1))];
+        let inside = near.into_iter().filter(|(c, r)| *c < geometry.width && *r < geometry.height);
+        stack.extend(inside.map(|(col, row)| CellIndex { col, row }).filter(|cell| open(*cell)));
+    }
+    reached
+}
+
+/// What a change of 6 x 6 m costs.
+fn updates(grid: &OccupancyGrid) {
+    let begin = Instant::now();
+    let field = DistanceField::from_grid(grid, UnknownIs::Free);
+    println!(
+        "\nfield of {} cells, new: {:.2} ms",
+        field.geometry().len(),
+        begin.elapsed().as_secs_f64() * 1e3
+    );
+}
