@@ -1,4 +1,4 @@
-use crate::{GyroRate, Pose2, RgbdImage, Stamp, Twist2, WheelTicks};
+use crate::{GyroRate, Pose2, RgbdImage, Scan, Stamp, Twist2, WheelTicks};
 use serde::{Deserialize, Serialize};
 
 /// The bumper, by which the robot knows that it touched something.
@@ -8,6 +8,15 @@ pub struct Touch {
     pub stamp: Stamp,
     /// Whether it is pressed.
     pub pressed: bool,
+}
+
+/// The cliff sensors, by which the robot knows that it is about to drive over an edge.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Cliff {
+    /// When the state changed.
+    pub stamp: Stamp,
+    /// Whether any of them has no floor below.
+    pub over_edge: bool,
 }
 
 /// What comes out of a robot's body, in the order of its stamps.
@@ -21,6 +30,10 @@ pub enum SensorEvent {
     Rgbd(RgbdImage),
     /// Bumper.
     Touch(Touch),
+    /// Cliff sensors.
+    Cliff(Cliff),
+    /// A 2-D laser's sweep.
+    Scan(Scan),
     /// Ground truth, `world_from_base`, for judges only: the robot's loop must not look at it.
     Truth {
         /// When it held.
@@ -38,6 +51,8 @@ impl SensorEvent {
             Self::Gyro(gyro) => gyro.stamp,
             Self::Rgbd(image) => image.stamp(),
             Self::Touch(touch) => touch.stamp,
+            Self::Cliff(cliff) => cliff.stamp,
+            Self::Scan(scan) => scan.stamp(),
             Self::Truth { stamp, .. } => *stamp,
         }
     }

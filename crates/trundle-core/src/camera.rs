@@ -104,6 +104,13 @@ impl PinholeCamera {
             .expect("invariant: the preset is valid")
     }
 
+    /// Kinect v1 with the intrinsics that the TUM RGB-D benchmark recommends for registered depth: 640 x 480,
+    /// focal length 525 px, principal point (319.5, 239.5) \[Sturm12\].
+    pub fn kinect_v1() -> Self {
+        Self::new((640, 480), (525.0, 525.0), (319.5, 239.5), Distortion::default())
+            .expect("invariant: the preset is valid")
+    }
+
     /// Columns, px.
     pub fn width(&self) -> usize {
         self.width

@@ -25,7 +25,7 @@ mod trajectory;
 mod twist;
 
 pub use angle::{difference_of_angles, wrap_angle};
-pub use body::{RobotBody, SensorEvent, Touch};
+pub use body::{Cliff, RobotBody, SensorEvent, Touch};
 pub use camera::{Distortion, PinholeCamera};
 pub use drive::{DifferentialDrive, DriveLimits};
 pub use estimate::PoseEstimate;

@@ -80,6 +80,11 @@ impl Scan {
         self.angle_min + i as f64 * self.angle_increment
     }
 
+    /// The bearing of the first beam, rad, base frame.
+    pub fn angle_min(&self) -> f64 {
+        self.angle_min
+    }
+
     /// The angle between neighbouring beams, rad.
     pub fn angle_increment(&self) -> f64 {
         self.angle_increment

@@ -17,6 +17,8 @@ mod topics {
     pub const WHEELS: &str = "/wheels";
     pub const GYRO: &str = "/gyro";
     pub const TOUCH: &str = "/touch";
+    pub const CLIFF: &str = "/cliff";
+    pub const SCAN: &str = "/scan";
     pub const TRUTH: &str = "/truth";
     pub const COLOR: &str = "/camera/color";
     pub const DEPTH: &str = "/camera/depth";

@@ -8,7 +8,7 @@ use crate::{
 use trundle_control::{
     FollowPhase, FollowReport, Follower, SafetyAction, SafetyInput, SafetyMemory, SafetyMonitor, SafetyScan,
 };
-use trundle_core::{Footprint, Invalid, OccupancyGrid, Pose2, PoseEstimate, Stamp, Touch, Twist2};
+use trundle_core::{Footprint, Invalid, OccupancyGrid, Pose2, PoseEstimate, Stamp, Twist2};
 use trundle_planning::{Plan, PlanResult, Planner};
 
 /// What the robot knows of its surroundings when it decides.
@@ -40,6 +40,7 @@ pub(crate) struct Navigator {
     plan: Option<Box<PlanResult>>,
     state: DriveState,
     touched: bool,
+    over_edge: bool,
     started: Option<Stamp>,
     held_since: Option<Stamp>,
     look: LookAround,
@@ -63,6 +64,7 @@ impl Navigator {
             plan: None,
             state: DriveState::Idle,
             touched: false,
+            over_edge: false,
             started: None,
             held_since: None,
             look: LookAround::default(),
@@ -76,8 +78,14 @@ impl Navigator {
         self.look = LookAround::default();
     }
 
-    pub(crate) fn touch(&mut self, touch: Touch) {
-        self.touched = touch.pressed;
+    /// What the bumper says.
+    pub(crate) fn touch(&mut self, pressed: bool) {
+        self.touched = pressed;
+    }
+
+    /// What the cliff sensors say.
+    pub(crate) fn cliff(&mut self, over_edge: bool) {
+        self.over_edge = over_edge;
     }
 
     pub(crate) fn state(&self) -> &DriveState {
@@ -178,6 +186,7 @@ impl Navigator {
             scan: s.scan,
             memory: Some(SafetyMemory { grid: s.grid, map_from_base: s.estimate.pose }),
             touched: self.touched,
+            over_edge: self.over_edge,
             image: s.scan.map(|scan| scan.scan.stamp()),
             wheels: Some(s.now),
         });

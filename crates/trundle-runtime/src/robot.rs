@@ -84,8 +84,10 @@ impl Robot {
             SensorEvent::Gyro(gyro) => self.feel(gyro),
             SensorEvent::Wheels(wheels) => self.roll(wheels, &mut report),
             SensorEvent::Rgbd(image) => self.look(image, &mut report),
-            SensorEvent::Touch(touch) => self.navigator.touch(*touch),
-            SensorEvent::Truth { .. } => {}
+            SensorEvent::Touch(touch) => self.navigator.touch(touch.pressed),
+            SensorEvent::Cliff(cliff) => self.navigator.cliff(cliff.over_edge),
+            // The map is drawn from the depth image alone; a laser is for other programs.
+            SensorEvent::Scan(_) | SensorEvent::Truth { .. } => {}
         }
         report.estimate = Some(self.localizer.estimate());
         report.state = self.navigator.state().clone();

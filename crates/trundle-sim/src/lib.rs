@@ -20,6 +20,7 @@ mod chance;
 mod config;
 mod kobuki;
 mod paint;
+mod people;
 pub mod scenes;
 mod simulator;
 mod world;
@@ -28,6 +29,10 @@ pub use camera::{ColorNoise, DepthNoise, Renderer, RgbdSensor, View};
 pub use config::{SimConfig, camera_mount};
 pub use kobuki::KobukiConfig;
 pub use paint::{Finish, Paint};
+pub use people::Person;
 pub use scenes::Scene;
 pub use simulator::{SimError, Simulator};
-pub use world::{Cuboid, Cylinder, HeightBand, Hit, Shape, Solid, World};
+pub use world::{
+    Cuboid, Cylinder, HeightBand, Hit, Lamp, Lights, Material, Mesh, Mover, Shape, Solid, Stage, Triangle,
+    World,
+};

@@ -181,7 +181,7 @@ impl Simulator {
 
     fn take_image(&mut self, stamp: Stamp) -> Result<RgbdImage, SimError> {
         let world_from_camera = Pose3::from_pose2(self.body.pose()) * self.config.base_from_camera;
-        self.renderer.render(&self.scene.world, &world_from_camera, &mut self.view);
+        self.renderer.render(&self.scene.stage(), &world_from_camera, &mut self.view);
         Ok(self.sensor.expose(&self.view, stamp, self.camera_clock.ticks() - 1)?)
     }
 }

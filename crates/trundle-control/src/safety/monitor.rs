@@ -30,6 +30,8 @@ pub struct SafetyInput<'a> {
     pub memory: Option<SafetyMemory<'a>>,
     /// Whether the bumper is pressed.
     pub touched: bool,
+    /// Whether a cliff sensor has no floor below it.
+    pub over_edge: bool,
     /// Stamp of the newest image.
     pub image: Option<Stamp>,
     /// Stamp of the newest wheel reading.
@@ -71,8 +73,8 @@ impl SafetyMonitor {
         if let Some(reason) = self.blind(input) {
             return stop(reason);
         }
-        if input.touched {
-            return self.back_out(input.twist);
+        if input.touched || input.over_edge {
+            return self.back_out(input);
         }
         if input.twist.v == 0.0 {
             return SafetyReport { twist: input.twist, action: SafetyAction::Pass };
@@ -100,11 +102,11 @@ impl SafetyMonitor {
         }
     }
 
-    fn back_out(&self, twist: Twist2) -> SafetyReport {
-        if twist.v < 0.0 {
-            slow_to(twist, self.config.back_out_speed, SlowReason::BackingOut)
+    fn back_out(&self, input: &SafetyInput<'_>) -> SafetyReport {
+        if input.twist.v < 0.0 {
+            slow_to(input.twist, self.config.back_out_speed, SlowReason::BackingOut)
         } else {
-            stop(StopReason::Touched)
+            stop(if input.touched { StopReason::Touched } else { StopReason::Cliff })
         }
     }
 
@@ -200,6 +202,7 @@ mod tests {
             scan: None,
             memory: None,
             touched: false,
+            over_edge: false,
             image: Some(now),
             wheels: Some(now),
         }
@@ -231,6 +234,7 @@ mod tests {
         assert_eq!(reason(SafetyInput { wheels: old, ..input }), StopReason::StaleWheels { age: 1.0 });
         assert_eq!(reason(SafetyInput { twist: Twist2::new(f64::NAN, 0.0), ..input }), StopReason::NotFinite);
         assert_eq!(reason(SafetyInput { touched: true, ..input }), StopReason::Touched);
+        assert_eq!(reason(SafetyInput { over_edge: true, ..input }), StopReason::Cliff);
     }
 
     #[test]

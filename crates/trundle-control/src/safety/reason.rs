@@ -29,7 +29,7 @@ pub enum SlowReason {
     },
     /// Backward is where no camera looks.
     Reversing,
-    /// The bumper is pressed, and the robot backs out.
+    /// The bumper is pressed or an edge is below, and the robot backs out.
     BackingOut,
 }
 
@@ -45,6 +45,8 @@ pub enum StopReason {
     },
     /// The bumper is pressed.
     Touched,
+    /// A cliff sensor has no floor below it.
+    Cliff,
     /// No image has come yet.
     NoImage,
     /// The newest image is too old.
@@ -69,7 +71,7 @@ impl fmt::Display for SlowReason {
             Self::ObstacleAhead { way, .. } => write!(f, "an obstacle {way:.2} m ahead"),
             Self::NarrowGap { at } => write!(f, "a narrow gap, {side}", side = side(*at)),
             Self::Reversing => f.write_str("backward without a view"),
-            Self::BackingOut => f.write_str("backing out of a contact"),
+            Self::BackingOut => f.write_str("backing out of a contact or off an edge"),
         }
     }
 }
@@ -81,6 +83,7 @@ impl fmt::Display for StopReason {
                 write!(f, "an obstacle in the way, {way:.2} m to contact, {side}", side = side(*at))
             }
             Self::Touched => f.write_str("the bumper is pressed"),
+            Self::Cliff => f.write_str("there is no floor ahead"),
             Self::NoImage => f.write_str("no image yet"),
             Self::StaleImage { age } => write!(f, "the newest image is {age:.2} s old"),
             Self::NoWheels => f.write_str("no wheel reading yet"),

@@ -90,6 +90,7 @@ fn drive(world: &World, mut plant: Plant, command: Twist2, seconds: f64, with_ma
             scan: Some(SafetyScan { scan, odom_at_scan: *odom_at_scan, odom_now: plant.pose }),
             memory: with_map.then_some(memory),
             touched: false,
+            over_edge: false,
             image: Some(scan.stamp()),
             wheels: Some(plant.now),
         });

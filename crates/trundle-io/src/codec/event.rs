@@ -1,5 +1,5 @@
 use super::{CodecError, JPEG_QUALITY, decode_color, decode_depth, encode_color, encode_depth};
-use trundle_core::{GyroRate, Pose2, RgbdImage, SensorEvent, Stamp, Touch, WheelTicks};
+use trundle_core::{Cliff, GyroRate, Pose2, RgbdImage, Scan, SensorEvent, Stamp, Touch, WheelTicks};
 
 /// An RGB-D image as it travels: colour as JPEG, depth as 16-bit PNG in millimetres.
 #[derive(Debug, Clone, PartialEq)]
@@ -47,6 +47,10 @@ pub enum EncodedEvent {
     Rgbd(EncodedRgbd),
     /// Bumper.
     Touch(Touch),
+    /// Cliff sensors.
+    Cliff(Cliff),
+    /// A 2-D laser's sweep.
+    Scan(Scan),
     /// Ground truth, `world_from_base`, for judges only.
     Truth {
         /// When it held.
@@ -67,6 +71,8 @@ impl EncodedEvent {
             SensorEvent::Gyro(rate) => Self::Gyro(*rate),
             SensorEvent::Rgbd(image) => Self::Rgbd(EncodedRgbd::encode(image)?),
             SensorEvent::Touch(touch) => Self::Touch(*touch),
+            SensorEvent::Cliff(cliff) => Self::Cliff(*cliff),
+            SensorEvent::Scan(scan) => Self::Scan(scan.clone()),
             SensorEvent::Truth { stamp, pose } => Self::Truth { stamp: *stamp, pose: *pose },
         })
     }
@@ -81,6 +87,8 @@ impl EncodedEvent {
             Self::Gyro(rate) => SensorEvent::Gyro(*rate),
             Self::Rgbd(encoded) => SensorEvent::Rgbd(encoded.decode()?),
             Self::Touch(touch) => SensorEvent::Touch(*touch),
+            Self::Cliff(cliff) => SensorEvent::Cliff(*cliff),
+            Self::Scan(scan) => SensorEvent::Scan(scan.clone()),
             Self::Truth { stamp, pose } => SensorEvent::Truth { stamp: *stamp, pose: *pose },
         })
     }
@@ -92,6 +100,8 @@ impl EncodedEvent {
             Self::Gyro(rate) => rate.stamp,
             Self::Rgbd(image) => image.stamp,
             Self::Touch(touch) => touch.stamp,
+            Self::Cliff(cliff) => cliff.stamp,
+            Self::Scan(scan) => scan.stamp(),
             Self::Truth { stamp, .. } => *stamp,
         }
     }

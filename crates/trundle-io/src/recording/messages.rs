@@ -4,7 +4,7 @@ use crate::codec::{EncodedEvent, EncodedRgbd};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use serde::{Deserialize, Serialize};
-use trundle_core::{GyroRate, Invalid, Stamp, Touch, WheelTicks};
+use trundle_core::{Beam, Cliff, GyroRate, Invalid, Scan, Stamp, Touch, Vector2, WheelTicks};
 
 #[derive(Serialize, Deserialize)]
 pub(super) struct WheelTicksMessage {
@@ -25,6 +25,25 @@ pub(super) struct TouchMessage {
     pressed: bool,
 }
 
+#[derive(Serialize, Deserialize)]
+pub(super) struct CliffMessage {
+    stamp: Time,
+    over_edge: bool,
+}
+
+/// A 2-D laser's sweep: beam i looks along `angle_min_rad + i * angle_increment_rad` from `origin_m`, base frame.
+#[derive(Serialize, Deserialize)]
+pub(super) struct ScanMessage {
+    stamp: Time,
+    origin_m: [f64; 2],
+    angle_min_rad: f64,
+    angle_increment_rad: f64,
+    /// `null` where nothing is known.
+    ranges_m: Vec<Option<f64>>,
+    /// Whether something stands at the range, rather than all being free up to it.
+    hits: Vec<bool>,
+}
+
 /// `foxglove.CompressedImage`.
 #[derive(Serialize, Deserialize)]
 pub(super) struct CompressedImage {
@@ -39,6 +58,8 @@ pub(super) enum EventMessages {
     Wheels(WheelTicksMessage),
     Gyro(GyroRateMessage),
     Touch(TouchMessage),
+    Cliff(CliffMessage),
+    Scan(ScanMessage),
     Truth(PoseInFrame),
     Rgbd { color: CompressedImage, depth: CompressedImage },
 }
@@ -52,12 +73,44 @@ impl From<&EncodedEvent> for EventMessages {
             }
             EncodedEvent::Gyro(rate) => Self::Gyro(GyroRateMessage { stamp, omega_rad_s: rate.omega }),
             EncodedEvent::Touch(touch) => Self::Touch(TouchMessage { stamp, pressed: touch.pressed }),
+            EncodedEvent::Cliff(cliff) => Self::Cliff(CliffMessage { stamp, over_edge: cliff.over_edge }),
+            EncodedEvent::Scan(scan) => Self::Scan(ScanMessage::new(stamp, scan)),
             EncodedEvent::Truth { stamp, pose } => Self::Truth(PoseInFrame::planar(*stamp, "world", *pose)),
             EncodedEvent::Rgbd(image) => Self::Rgbd {
                 color: CompressedImage::new(stamp, &image.color_jpeg),
                 depth: CompressedImage::new(stamp, &image.depth_png),
             },
         }
+    }
+}
+
+impl ScanMessage {
+    fn new(stamp: Time, scan: &Scan) -> Self {
+        let range = |beam: &Beam| match beam {
+            Beam::Hit { range } | Beam::Free { range } => Some(*range),
+            Beam::Unseen => None,
+        };
+        Self {
+            stamp,
+            origin_m: scan.origin().into(),
+            angle_min_rad: scan.angle_min(),
+            angle_increment_rad: scan.angle_increment(),
+            ranges_m: scan.beams().iter().map(range).collect(),
+            hits: scan.beams().iter().map(|beam| matches!(beam, Beam::Hit { .. })).collect(),
+        }
+    }
+
+    fn beams(&self) -> Result<Vec<Beam>, Invalid> {
+        if self.ranges_m.len() != self.hits.len() {
+            let expected = format!("{} as ranges", self.ranges_m.len());
+            return Err(Invalid::new("number of hits of a scan", self.hits.len(), "", expected));
+        }
+        let beam = |(range, is_hit): (&Option<f64>, &bool)| match (*range, is_hit) {
+            (Some(range), true) => Beam::Hit { range },
+            (Some(range), false) => Beam::Free { range },
+            (None, _) => Beam::Unseen,
+        };
+        Ok(self.ranges_m.iter().zip(&self.hits).map(beam).collect())
     }
 }
 
@@ -111,5 +164,22 @@ impl TryFrom<TouchMessage> for EncodedEvent {
 
     fn try_from(m: TouchMessage) -> Result<Self, Invalid> {
         Ok(Self::Touch(Touch { stamp: m.stamp.try_into()?, pressed: m.pressed }))
+    }
+}
+
+impl TryFrom<CliffMessage> for EncodedEvent {
+    type Error = Invalid;
+
+    fn try_from(m: CliffMessage) -> Result<Self, Invalid> {
+        Ok(Self::Cliff(Cliff { stamp: m.stamp.try_into()?, over_edge: m.over_edge }))
+    }
+}
+
+impl TryFrom<ScanMessage> for EncodedEvent {
+    type Error = Invalid;
+
+    fn try_from(m: ScanMessage) -> Result<Self, Invalid> {
+        let (beams, origin) = (m.beams()?, Vector2::from(m.origin_m));
+        Ok(Self::Scan(Scan::new(m.stamp.try_into()?, origin, m.angle_min_rad, m.angle_increment_rad, beams)?))
     }
 }

@@ -1,4 +1,6 @@
-use super::messages::{self, CompressedImage, GyroRateMessage, TouchMessage, WheelTicksMessage};
+use super::messages::{
+    self, CliffMessage, CompressedImage, GyroRateMessage, ScanMessage, TouchMessage, WheelTicksMessage,
+};
 use super::poses::PoseInFrame;
 use super::stream::{MessageStream, RawMessage};
 use super::topics;
@@ -71,6 +73,8 @@ impl RecordingReader {
             topics::WHEELS => sensor::<WheelTicksMessage>(path, &raw)?,
             topics::GYRO => sensor::<GyroRateMessage>(path, &raw)?,
             topics::TOUCH => sensor::<TouchMessage>(path, &raw)?,
+            topics::CLIFF => sensor::<CliffMessage>(path, &raw)?,
+            topics::SCAN => sensor::<ScanMessage>(path, &raw)?,
             topics::TRUTH => sensor::<PoseInFrame>(path, &raw)?,
             topics::COLOR => return self.image(&raw).map(Some),
             topics::DEPTH => {

@@ -61,6 +61,8 @@ impl<W: Write + Seek> Recorder<W> {
             EventMessages::Wheels(m) => self.record_json(topics::WHEELS, "trundle.WheelTicks", stamp, &m),
             EventMessages::Gyro(m) => self.record_json(topics::GYRO, "trundle.GyroRate", stamp, &m),
             EventMessages::Touch(m) => self.record_json(topics::TOUCH, "trundle.Touch", stamp, &m),
+            EventMessages::Cliff(m) => self.record_json(topics::CLIFF, "trundle.Cliff", stamp, &m),
+            EventMessages::Scan(m) => self.record_json(topics::SCAN, "trundle.Scan", stamp, &m),
             EventMessages::Truth(m) => self.record_json(topics::TRUTH, PoseInFrame::SCHEMA, stamp, &m),
             EventMessages::Rgbd { color, depth } => {
                 self.record_json(topics::COLOR, "foxglove.CompressedImage", stamp, &color)?;

@@ -12,6 +12,15 @@ pub(super) fn json_schema(name: &str) -> String {
         "trundle.WheelTicks" => fields(&[STAMP, ("left", COUNTER), ("right", COUNTER)]),
         "trundle.GyroRate" => fields(&[STAMP, ("omega_rad_s", NUMBER)]),
         "trundle.Touch" => fields(&[STAMP, ("pressed", r#"{"type":"boolean"}"#)]),
+        "trundle.Cliff" => fields(&[STAMP, ("over_edge", r#"{"type":"boolean"}"#)]),
+        "trundle.Scan" => fields(&[
+            STAMP,
+            ("origin_m", NUMBERS),
+            ("angle_min_rad", NUMBER),
+            ("angle_increment_rad", NUMBER),
+            ("ranges_m", r#"{"type":"array","items":{"type":["number","null"]}}"#),
+            ("hits", r#"{"type":"array","items":{"type":"boolean"}}"#),
+        ]),
         "trundle.Twist" => fields(&[("v", NUMBER), ("omega", NUMBER)]),
         "trundle.Goal" => fields(&[("x", NUMBER), ("y", NUMBER), ("theta", NUMBER)]),
         _ => fields(&[]),
@@ -25,6 +34,7 @@ const FRAME_ID: (&str, &str) = ("frame_id", STRING);
 
 const STRING: &str = r#"{"type":"string"}"#;
 const NUMBER: &str = r#"{"type":"number"}"#;
+const NUMBERS: &str = r#"{"type":"array","items":{"type":"number"}}"#;
 const COUNTER: &str = r#"{"type":"integer","minimum":0,"maximum":65535}"#;
 const BYTES: &str = r#"{"type":"string","contentEncoding":"base64"}"#;
 const TIME: &str = r#"{"type":"object","title":"time","properties":{"sec":{"type":"integer","minimum":0},"nsec":{"type":"integer","minimum":0,"maximum":999999999}}}"#;
@@ -48,6 +58,8 @@ mod tests {
             "trundle.WheelTicks",
             "trundle.GyroRate",
             "trundle.Touch",
+            "trundle.Cliff",
+            "trundle.Scan",
             "trundle.Twist",
             "trundle.Goal",
             "trundle.Config",

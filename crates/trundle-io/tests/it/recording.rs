@@ -19,8 +19,15 @@ fn events() -> Vec<EncodedEvent> {
         EncodedEvent::Gyro(GyroRate { stamp: stamp(1), omega: 0.1 + 0.2 }),
         EncodedEvent::encode(&image).unwrap(),
         EncodedEvent::Touch(Touch { stamp: stamp(40), pressed: true }),
+        EncodedEvent::Cliff(Cliff { stamp: stamp(41), over_edge: true }),
+        EncodedEvent::Scan(scan(stamp(45))),
         EncodedEvent::Truth { stamp: stamp(50), pose: Pose2 { x: 1.0 / 3.0, y: -0.0, theta: -2.0 / 3.0 } },
     ]
+}
+
+fn scan(stamp: Stamp) -> Scan {
+    let beams = vec![Beam::Hit { range: 1.0 / 3.0 }, Beam::Free { range: 5.6 }, Beam::Unseen];
+    Scan::new(stamp, Vector2::new(0.1, 0.0), -1.0 / 7.0, 0.1, beams).unwrap()
 }
 
 fn recording() -> Vec<u8> {
@@ -53,10 +60,10 @@ fn a_recording_gives_back_every_bit_in_order() {
     let reader = RecordingReader::open(file.path()).unwrap();
     assert_eq!(reader.config(), Some(&json!({"seed": 3, "rate": 0.1})));
     let all: Vec<_> = reader.map(Result::unwrap).collect();
-    assert_eq!(all.len(), 10);
+    assert_eq!(all.len(), 14);
     let back: Vec<_> = RecordingReader::open(file.path()).unwrap().events().map(Result::unwrap).collect();
     assert_eq!(back, events());
-    assert!(matches!(back[4], EncodedEvent::Truth { pose, .. } if pose.y.is_sign_negative()));
+    assert!(matches!(back[6], EncodedEvent::Truth { pose, .. } if pose.y.is_sign_negative()));
     let RecordedMessage::Json { topic, schema, stamp: at, value } = &all[1] else { panic!("{:?}", all[1]) };
     assert_eq!((topic.as_str(), schema.as_str(), *at), ("/pose", PoseInFrame::SCHEMA, stamp(0)));
     let pose: PoseInFrame = serde_json::from_value(value.clone()).unwrap();
@@ -73,7 +80,7 @@ fn the_mcap_library_s_own_index_finds_all() {
     let bytes = recording();
     let summary = mcap::Summary::read(&bytes).unwrap().unwrap();
     let stats = summary.stats.unwrap();
-    assert_eq!((stats.message_count, stats.channel_count), (12, 8));
+    assert_eq!((stats.message_count, stats.channel_count), (16, 10));
     assert_eq!(stats.message_start_time, stamp(0).nanos as u64);
     let schemas: Vec<_> = summary.schemas.values().map(|s| (s.name.clone(), s.encoding.clone())).collect();
     assert!(schemas.contains(&("foxglove.CompressedImage".to_owned(), "jsonschema".to_owned())));
@@ -147,7 +154,7 @@ fn a_recording_in_an_output_folder_appears_at_commit() {
     recorder.finish().unwrap();
     assert!(!target.exists());
     let folder = out.commit().unwrap();
-    assert_eq!(RecordingReader::open(&folder.join("recording.mcap")).unwrap().events().count(), 5);
+    assert_eq!(RecordingReader::open(&folder.join("recording.mcap")).unwrap().events().count(), 7);
 }
 
 /// The least of many times, ms: what the work costs when nobody disturbs.

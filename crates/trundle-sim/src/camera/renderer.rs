@@ -1,7 +1,7 @@
 use super::candidates::Candidates;
 use super::lanes::{LANES, Lanes, NOTHING};
 use super::seen::Seen;
-use crate::world::World;
+use crate::world::{Stage, World};
 use rayon::prelude::*;
 use trundle_core::{Distortion, Invalid, PinholeCamera, Pose3};
 
@@ -70,8 +70,9 @@ impl Renderer {
         View { width, height, depth: vec![0.0; n], color: vec![[0; 3]; n], cosine: vec![0.0; n] }
     }
 
-    /// Draws `world` as seen from `world_from_camera` into `view`, an image of [`Renderer::blank`].
-    pub fn render(&self, world: &World, world_from_camera: &Pose3, view: &mut View) {
+    /// Draws the stage as seen from `world_from_camera` into `view`, an image of [`Renderer::blank`].
+    pub fn render(&self, stage: &Stage<'_>, world_from_camera: &Pose3, view: &mut View) {
+        let world = stage.world;
         let paintings = world.paintings();
         let look = |(solid, textures): (&crate::world::Solid, _)| {
             Seen::new(&solid.shape, textures, world_from_camera)

@@ -1,7 +1,7 @@
 use super::Scene;
 use super::builder::{Builder, ROOM_HEIGHT, Side, UNSEEN, WALL};
 use crate::paint::{Finish, Paint};
-use crate::world::World;
+use crate::world::{Lights, World};
 use std::f64::consts::{FRAC_PI_2, PI};
 use trundle_core::{Invalid, Pose2};
 
@@ -40,6 +40,8 @@ pub fn demo_room(seed: u64) -> Result<Scene, Invalid> {
     Ok(Scene {
         name: "demo".into(),
         world: World::new(build.solids, seed)?,
+        lights: Lights::default(),
+        people: Vec::new(),
         start: Pose2::new(0.9, 1.1, 0.35),
         goal: Pose2::new(6.9, 1.5, -FRAC_PI_2),
     })

@@ -5,7 +5,8 @@ mod demo_room;
 mod furniture;
 mod obstacles;
 
-use crate::world::World;
+use crate::people::Person;
+use crate::world::{Lights, Stage, World};
 pub use demo_room::demo_room;
 pub use obstacles::obstacles;
 use trundle_core::{Invalid, Pose2};
@@ -17,6 +18,10 @@ pub struct Scene {
     pub name: String,
     /// What stands there.
     pub world: World,
+    /// How it is lit.
+    pub lights: Lights,
+    /// Who walks about.
+    pub people: Vec<Person>,
     /// Where the robot starts, `world_from_base`.
     pub start: Pose2,
     /// Where the robot shall go, `world_from_base`.
@@ -37,6 +42,11 @@ impl Scene {
             "obstacles" => obstacles(seed),
             _ => Err(Invalid::new("scene", name, "", format!("one of {}", Self::NAMES.join(", ")))),
         }
+    }
+
+    /// What a camera sees of it while nothing moves.
+    pub fn stage(&self) -> Stage<'_> {
+        Stage { world: &self.world, movers: &[], lights: &self.lights }
     }
 
     /// The goal as the robot is given it, in a frame that starts at the robot: `start_from_goal`.

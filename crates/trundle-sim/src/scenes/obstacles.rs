@@ -1,7 +1,7 @@
 use super::Scene;
 use super::builder::{Builder, Side, WALL};
 use crate::paint::Paint;
-use crate::world::World;
+use crate::world::{Lights, World};
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 use trundle_core::{Invalid, Pose2};
 
@@ -34,6 +34,8 @@ pub fn obstacles(seed: u64) -> Result<Scene, Invalid> {
     Ok(Scene {
         name: "obstacles".into(),
         world: World::new(build.solids, seed)?,
+        lights: Lights::default(),
+        people: Vec::new(),
         start: Pose2::new(0.7, 0.7, FRAC_PI_4),
         goal: Pose2::new(5.3, 5.2, FRAC_PI_2),
     })

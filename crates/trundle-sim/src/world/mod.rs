@@ -4,19 +4,27 @@ mod aabb;
 mod bvh;
 mod contact;
 mod grid;
+mod lights;
+mod mesh;
+mod mover;
 mod outline;
 mod ray;
 mod shape;
+mod stage;
 
 use crate::paint::{Finish, Texture, bake_solid};
 pub(crate) use aabb::Aabb;
 pub(crate) use bvh::Bvh;
 pub use contact::HeightBand;
 pub(crate) use contact::Obstacles;
+pub use lights::{Lamp, Lights};
+pub use mesh::{Material, Mesh, Triangle};
+pub use mover::Mover;
 use outline::Outline;
 pub use ray::Hit;
 use rayon::prelude::*;
 pub use shape::{Cuboid, Cylinder, Shape};
+pub use stage::Stage;
 use std::sync::OnceLock;
 use trundle_core::{Invalid, Vector3};
 
@@ -36,6 +44,7 @@ pub struct Solid {
 pub struct World {
     seed: u64,
     solids: Vec<Solid>,
+    meshes: Vec<Mesh>,
     outlines: Vec<Outline>,
     boxes: Vec<Aabb>,
     bounds: Aabb,
@@ -49,6 +58,14 @@ impl World {
     /// # Errors
     /// When there is no solid, or a solid has a number that is not finite or a size that is not positive.
     pub fn new(solids: Vec<Solid>, seed: u64) -> Result<Self, Invalid> {
+        Self::with_meshes(solids, Vec::new(), seed)
+    }
+
+    /// A world of `solids` and `meshes`, the textures of the solids drawn from `seed`.
+    ///
+    /// # Errors
+    /// When there is neither solid nor mesh, or a solid has a number that is not finite or a size that is not positive.
+    pub fn with_meshes(solids: Vec<Solid>, meshes: Vec<Mesh>, seed: u64) -> Result<Self, Invalid> {
         for (i, solid) in solids.iter().enumerate() {
             solid.shape.check(i)?;
         }
@@ -58,12 +75,17 @@ impl World {
         };
         let outlines = solids.iter().map(|solid| solid.shape.outline()).collect();
         let bvh = Bvh::new(&boxes);
-        Ok(Self { seed, solids, outlines, boxes, bounds, bvh, paintings: OnceLock::new() })
+        Ok(Self { seed, solids, meshes, outlines, boxes, bounds, bvh, paintings: OnceLock::new() })
     }
 
     /// What stands in it.
     pub fn solids(&self) -> &[Solid] {
         &self.solids
+    }
+
+    /// What stands in it made of triangles.
+    pub fn meshes(&self) -> &[Mesh] {
+        &self.meshes
     }
 
     /// The lowest and the highest corner of all solids, m.

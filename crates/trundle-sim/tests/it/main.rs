@@ -8,7 +8,7 @@ mod scenes;
 mod textures;
 
 use trundle_core::{Pose2, Vector3};
-use trundle_sim::{Cuboid, Finish, Paint, Scene, Shape, SimConfig, Solid, World};
+use trundle_sim::{Cuboid, Finish, Lights, Paint, Scene, Shape, SimConfig, Solid, World};
 
 /// A plain grey box from its middle and full size, m, turned by `yaw` rad.
 fn block(center: [f64; 3], size: [f64; 3], yaw: f64) -> Solid {
@@ -22,7 +22,14 @@ fn hall(start: Pose2) -> Scene {
     let walls = [(3.1, 0.0, 0.2, 6.4), (-3.1, 0.0, 0.2, 6.4), (0.0, 3.1, 6.4, 0.2), (0.0, -3.1, 6.4, 0.2)]
         .map(|(x, y, sx, sy)| block([x, y, 1.0], [sx, sy, 2.0], 0.0));
     let solids = walls.into_iter().chain([floor]).collect();
-    Scene { name: "hall".into(), world: World::new(solids, 1).unwrap(), start, goal: Pose2::IDENTITY }
+    Scene {
+        name: "hall".into(),
+        world: World::new(solids, 1).unwrap(),
+        lights: Lights::default(),
+        people: Vec::new(),
+        start,
+        goal: Pose2::IDENTITY,
+    }
 }
 
 /// A robot with a slow camera of few pixels: for tests that look at the wheels.

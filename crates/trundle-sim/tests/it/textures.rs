@@ -8,7 +8,7 @@ fn gray(view: &View) -> Vec<f64> {
 fn look(renderer: &Renderer, scene: &Scene, pose: Pose2, pitch: f64) -> Vec<f64> {
     let mut view = renderer.blank();
     let camera = Pose3::from_pose2(pose) * camera_mount(0.0, 1.0, pitch);
-    renderer.render(&scene.world, &camera, &mut view);
+    renderer.render(&scene.stage(), &camera, &mut view);
     gray(&view)
 }
 

@@ -1,0 +1,5 @@
+//! People who walk given way-points.
+
+mod person;
+
+pub use person::Person;

@@ -1,0 +1,45 @@
+use serde::{Deserialize, Serialize};
+use trundle_core::{Invalid, require_finite, require_in};
+
+/// A person who walks from way-point to way-point, turning into each leg, and waits while the robot is in the way.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Person {
+    /// The way, world frame, m; one point is a person who stands.
+    pub waypoints: Vec<[f64; 2]>,
+    /// Walking speed, m/s, 0.05 to 3. Default 1.2, a calm walk.
+    pub speed: f64,
+    /// Stands at every way-point for, s, 0 to 3600. Default 0.
+    pub pause: f64,
+    /// Waits before the first step for, s, 0 to 3600. Default 0.
+    pub delay: f64,
+    /// Whether the way goes on from its last point to its first, rather than back the same way. Default false.
+    pub around: bool,
+    /// Whether the person stays at the last way-point. Default false.
+    pub once: bool,
+}
+
+impl Default for Person {
+    fn default() -> Self {
+        Self { waypoints: Vec::new(), speed: 1.2, pause: 0.0, delay: 0.0, around: false, once: false }
+    }
+}
+
+impl Person {
+    /// Passes a valid person through.
+    ///
+    /// # Errors
+    /// When there is no way-point, or a number is outside its range or not finite.
+    pub fn validated(self) -> Result<Self, Invalid> {
+        if self.waypoints.is_empty() {
+            return Err(Invalid::new("way-points of a person", 0, "", "1 or more"));
+        }
+        for (i, point) in self.waypoints.iter().enumerate() {
+            require_finite(&format!("way-point {i} of a person"), point[0] + point[1], "m")?;
+        }
+        require_in("speed of a person", self.speed, "m/s", 0.05, 3.0)?;
+        require_in("pause of a person", self.pause, "s", 0.0, 3600.0)?;
+        require_in("delay of a person", self.delay, "s", 0.0, 3600.0)?;
+        Ok(self)
+    }
+}

@@ -1,0 +1,12 @@
+use super::{Lights, Mover, World};
+
+/// All that a camera or a laser may see at one moment.
+#[derive(Debug, Clone, Copy)]
+pub struct Stage<'w> {
+    /// What stands still.
+    pub world: &'w World,
+    /// What moves, where it is now.
+    pub movers: &'w [Mover<'w>],
+    /// How it is lit.
+    pub lights: &'w Lights,
+}
