@@ -18,6 +18,7 @@
 mod camera;
 mod chance;
 mod config;
+mod drive;
 mod kobuki;
 mod paint;
 mod people;
@@ -27,6 +28,7 @@ mod world;
 
 pub use camera::{ColorNoise, DepthNoise, Renderer, RgbdSensor, View};
 pub use config::{SimConfig, camera_mount};
+pub use drive::{CommandScript, FollowerConfig, Following, TimedCommand, WaypointFollower};
 pub use kobuki::KobukiConfig;
 pub use paint::{Finish, Paint};
 pub use people::Person;

@@ -1,0 +1,10 @@
+//! Ways to drive a simulated robot without autonomy: commands by the clock, and way-points by the true pose.
+
+mod follower;
+mod follower_config;
+mod rows;
+mod script;
+
+pub use follower::{Following, WaypointFollower};
+pub use follower_config::FollowerConfig;
+pub use script::{CommandScript, TimedCommand};
