@@ -1,11 +1,13 @@
 //! How things look: procedural paints, baked once a face into mip-mapped textures.
 //!
 //! Every face gets a painting of its own, drawn from (world seed, solid, face), so that no two places look alike and the
-//! result does not depend on the order or the number of threads. Colour is a pure function of metres on the face.
+//! result does not depend on the order or the number of threads; where a finish brings a seed, from that, so that places
+//! can look alike. Colour is a pure function of metres on the face.
 
 mod color;
 mod furnishings;
 mod noise;
+mod paintings;
 mod poster;
 mod surfaces;
 mod texture;
@@ -14,6 +16,7 @@ use crate::chance::hash;
 use crate::world::{Shape, Solid};
 use color::{Rgb, packed};
 use noise::Fractal;
+pub(crate) use paintings::Paintings;
 use poster::Poster;
 use rayon::prelude::*;
 pub(crate) use texture::{Light, Texture};
@@ -88,17 +91,25 @@ pub struct Finish {
     /// Of a box: its faces +x, -x, +y, -y, top, bottom in its own frame. Of a cylinder: its side is the first, top and
     /// bottom the last two.
     pub faces: [Paint; 6],
+    /// What the paintings are drawn from. `None`: from the solid's place in the world's list, so that no two solids look
+    /// alike. Solids of one world with the same seed, size and paints look exactly the same.
+    pub seed: Option<u64>,
 }
 
 impl Finish {
     /// The same paint all over (every face still gets a painting of its own).
     pub fn all(paint: Paint) -> Self {
-        Self { faces: [paint; 6] }
+        Self { faces: [paint; 6], seed: None }
+    }
+
+    /// The same paints, drawn from `seed`.
+    pub fn seeded(self, seed: u64) -> Self {
+        Self { seed: Some(seed), ..self }
     }
 }
 
 /// The painted faces of a solid: six of a box, (side, top, bottom) of a cylinder.
-pub(crate) fn bake_solid(solid: &Solid, world_seed: u64, index: usize) -> Vec<Texture> {
+fn bake_solid(solid: &Solid, world_seed: u64, index: usize) -> Vec<Texture> {
     let faces: Vec<(usize, f64, f64)> = match &solid.shape {
         Shape::Cuboid(c) => {
             let (x, y, z) = (c.size.x, c.size.y, c.size.z);
@@ -109,8 +120,13 @@ pub(crate) fn bake_solid(solid: &Solid, world_seed: u64, index: usize) -> Vec<Te
             vec![(0, std::f64::consts::PI * d, c.height), (4, d, d), (5, d, d)]
         }
     };
+    // Seeds that are given must not meet those of places in the list.
+    let (world_seed, nth) = match solid.finish.seed {
+        Some(seed) => (hash(world_seed, u64::MAX), hash(seed, 0)),
+        None => (world_seed, index as u64),
+    };
     let bake = |&(face, width, height): &(usize, f64, f64)| {
-        let seed = hash(world_seed, (index * 8 + face) as u64) as u32;
+        let seed = hash(world_seed, nth.wrapping_mul(8).wrapping_add(face as u64)) as u32;
         bake_face(solid.finish.faces[face], seed, width, height)
     };
     faces.iter().map(bake).collect()

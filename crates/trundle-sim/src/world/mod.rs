@@ -12,7 +12,7 @@ mod ray;
 mod shape;
 mod stage;
 
-use crate::paint::{Finish, Texture, bake_solid};
+use crate::paint::{Finish, Paintings};
 pub(crate) use aabb::Aabb;
 pub(crate) use bvh::Bvh;
 pub use contact::HeightBand;
@@ -22,7 +22,6 @@ pub use mesh::{Material, Mesh, Triangle};
 pub use mover::Mover;
 use outline::Outline;
 pub use ray::Hit;
-use rayon::prelude::*;
 pub use shape::{Cuboid, Cylinder, Shape};
 pub use stage::Stage;
 use std::sync::OnceLock;
@@ -49,7 +48,7 @@ pub struct World {
     boxes: Vec<Aabb>,
     bounds: Aabb,
     bvh: Bvh,
-    paintings: OnceLock<Vec<Vec<Texture>>>,
+    paintings: OnceLock<Paintings>,
 }
 
 impl World {
@@ -108,10 +107,7 @@ impl World {
     }
 
     /// The painted faces of every solid, drawn at the first call.
-    pub(crate) fn paintings(&self) -> &[Vec<Texture>] {
-        self.paintings.get_or_init(|| {
-            let indices = 0..self.solids.len();
-            indices.into_par_iter().map(|i| bake_solid(&self.solids[i], self.seed, i)).collect()
-        })
+    pub(crate) fn paintings(&self) -> &Paintings {
+        self.paintings.get_or_init(|| Paintings::new(&self.solids, self.seed))
     }
 }
