@@ -1,1 +1,18 @@
 //! Fine positioning in narrow spaces: rotations and straight moves, footprint-exact.
+
+mod config;
+pub mod geometry;
+mod limits;
+mod manoeuvre;
+pub mod optimal;
+pub mod paper;
+mod planner;
+pub mod scene;
+mod space;
+
+pub use config::{DockingConfig, Method};
+pub use limits::MotionLimits;
+pub use manoeuvre::{Manoeuvre, Motion, Step};
+pub use planner::{Docker, Impossible, Plan, Refusal, Solution};
+pub use scene::{Blocker, Obstacle, Scene};
+pub use space::{FreeDrive, FreeTurn, Space};

@@ -1,0 +1,100 @@
+use crate::limits::MotionLimits;
+use crate::paper::PaperConfig;
+use serde::{Deserialize, Serialize};
+use trundle_core::{Invalid, require_in};
+
+/// Which method plans.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Method {
+    /// Least time over all sequences of turns and straight moves, with a proven bound.
+    #[default]
+    Optimal,
+    /// The greedy method of \[Hong24\].
+    Paper,
+}
+
+/// How a robot settles on its goal in tight spaces.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct DockingConfig {
+    /// Which method plans. Default: the optimal one.
+    pub method: Method,
+    /// Speeds, and the pause between two motions.
+    pub limits: MotionLimits,
+    /// Kept from every obstacle, m, 0 to 0.5. Default 0.01 (ours: the position tolerance). Where start or goal are
+    /// nearer than that, the margin is what they have.
+    pub margin: f64,
+    /// How far beyond the line from start to goal a manoeuvre may go, m, 0.1 to 10. Default 1.5 (ours).
+    pub reach: f64,
+    /// Farthest goal, m, 0.1 to 20: beyond, plan a path there first. Default 5 (ours).
+    pub max_distance: f64,
+    /// An error of position that counts as none, m, 0.001 to 0.1; the cells of the certificate have this side. Default 0.01.
+    pub position_tolerance: f64,
+    /// An error of heading that counts as none, rad, 0.001 to 0.2. Default 1 deg.
+    pub heading_tolerance: f64,
+    /// Nodes of the search for manoeuvres of three and more straight moves, 0 to 10^7. Default 6000 (ours: about 100 ms
+    /// at most; hard problems only).
+    pub search_nodes: usize,
+    /// Boxes of the search for a better bound on the time, 0 to 10^8. Default 400 (ours: a few ms).
+    pub bound_boxes: usize,
+    /// The search ends when the time is proven to be within this part of the least, 0 to 1. Default 0.01.
+    pub gap: f64,
+    /// The settings of \[Hong24\], for [`Method::Paper`].
+    pub paper: PaperConfig,
+}
+
+impl Default for DockingConfig {
+    fn default() -> Self {
+        Self {
+            method: Method::Optimal,
+            limits: MotionLimits::default(),
+            margin: 0.01,
+            reach: 1.5,
+            max_distance: 5.0,
+            position_tolerance: 0.01,
+            heading_tolerance: 1_f64.to_radians(),
+            search_nodes: 6000,
+            bound_boxes: 400,
+            gap: 0.01,
+            paper: PaperConfig::default(),
+        }
+    }
+}
+
+impl DockingConfig {
+    /// Passes a valid configuration through.
+    ///
+    /// # Errors
+    /// When a number is outside its range.
+    pub fn validated(mut self) -> Result<Self, Invalid> {
+        self.limits = self.limits.validated()?;
+        self.paper = self.paper.validated()?;
+        let ranges = [
+            ("margin", self.margin, "m", 0.0, 0.5),
+            ("reach", self.reach, "m", 0.1, 10.0),
+            ("max_distance", self.max_distance, "m", 0.1, 20.0),
+            ("position_tolerance", self.position_tolerance, "m", 0.001, 0.1),
+            ("heading_tolerance", self.heading_tolerance, "rad", 0.001, 0.2),
+            ("search_nodes", self.search_nodes as f64, "", 0.0, 1e7),
+            ("bound_boxes", self.bound_boxes as f64, "", 0.0, 1e8),
+            ("gap", self.gap, "", 0.0, 1.0),
+        ];
+        for (name, value, unit, low, high) in ranges {
+            require_in(&format!("docking.{name}"), value, unit, low, high)?;
+        }
+        Ok(self)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bad_numbers_are_refused_by_name() {
+        assert!(DockingConfig::default().validated().is_ok());
+        let error = DockingConfig { reach: f64::NAN, ..DockingConfig::default() }.validated().unwrap_err();
+        assert_eq!(error.field, "docking.reach");
+    }
+}

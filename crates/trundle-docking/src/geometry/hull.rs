@@ -1,0 +1,195 @@
+use super::segment::Segment;
+use trundle_core::{Footprint, Pose2, Vector2};
+
+/// Hulls are at least this round, m: a corner of no radius has no inside that a closed form could count.
+pub const LEAST_RADIUS: f64 = 1e-4;
+
+/// A footprint grown by a margin: a convex core and everything within `radius` of it, base frame, m.
+///
+/// A disc is a core of one point. What lies at exactly `radius` touches and does not overlap.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Hull {
+    pub(super) core: Vec<Corner>,
+    pub(super) edges: Vec<Edge>,
+    pub(super) radius: f64,
+    /// Farthest point from the base's origin.
+    pub(super) outer: f64,
+    /// Everything nearer to the base's origin is inside; 0 when the origin is outside.
+    pub(super) inner: f64,
+}
+
+/// A corner of the core.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Corner {
+    pub at: Vector2,
+    /// Distance from the base's origin, m.
+    pub distance: f64,
+    /// Bearing from the base's origin, rad.
+    pub bearing: f64,
+}
+
+/// A side of the core, counter-clockwise.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Edge {
+    pub side: Segment,
+    /// Unit, outward.
+    pub normal: Vector2,
+    pub normal_bearing: f64,
+    /// The core lies where `normal . x <= offset`.
+    pub offset: f64,
+}
+
+impl Hull {
+    /// A footprint grown by `margin` (m, taken as at least 0.1 mm).
+    pub fn new(footprint: &Footprint, margin: f64) -> Self {
+        let margin = margin.max(LEAST_RADIUS);
+        match footprint {
+            Footprint::Disc { radius } => Self::from_core(&[Vector2::zeros()], radius + margin),
+            Footprint::Polygon { corners } => Self::from_core(&without_doubles(corners), margin),
+        }
+    }
+
+    /// A part of this hull no point of which is nearer than `depth` (m) to the outside; `None` when none is left.
+    ///
+    /// The part is exact on the sides and leaves 0.1 mm at the corners: it never holds a point too many.
+    pub fn shrunk(&self, depth: f64) -> Option<Self> {
+        let core: Vec<Vector2> = self.core.iter().map(|c| c.at).collect();
+        if self.radius - depth >= LEAST_RADIUS {
+            return Some(Self::from_core(&core, self.radius - depth));
+        }
+        let inset = depth - self.radius + LEAST_RADIUS;
+        let left = self.edges.iter().fold(core, |core, edge| cut(&core, edge.normal, edge.offset - inset));
+        (left.len() >= 3).then(|| Self::from_core(&without_doubles(&left), LEAST_RADIUS))
+    }
+
+    fn from_core(corners: &[Vector2], radius: f64) -> Self {
+        let core: Vec<Corner> =
+            corners.iter().map(|&at| Corner { at, distance: at.norm(), bearing: at.y.atan2(at.x) }).collect();
+        let next = corners.iter().cycle().skip(1);
+        let sides = corners.iter().zip(next).filter(|_| corners.len() > 1);
+        let edges: Vec<Edge> = sides.map(|(&a, &b)| edge(a, b)).collect();
+        let outer = core.iter().map(|c| c.distance).fold(0.0, f64::max) + radius;
+        let inner = edges.iter().map(|e| e.offset + radius).fold(f64::INFINITY, f64::min);
+        let inner = if edges.is_empty() { radius } else { inner.max(0.0) };
+        Self { core, edges, radius, outer, inner }
+    }
+
+    /// The farthest of its points from the base's origin, m.
+    pub fn outer_radius(&self) -> f64 {
+        self.outer
+    }
+
+    /// Whether a piece, given in the base frame, overlaps the hull.
+    pub fn overlaps(&self, piece: &Segment) -> bool {
+        let mut gap = f64::NEG_INFINITY;
+        for edge in &self.edges {
+            gap = gap.max(edge.normal.dot(&piece.a).min(edge.normal.dot(&piece.b)) - edge.offset);
+        }
+        if gap >= self.radius {
+            return false;
+        }
+        let along = piece.b - piece.a;
+        if along.norm_squared() > 0.0 {
+            let normal = Vector2::new(-along.y, along.x).normalize();
+            let (low, high) = self.core_extent(normal);
+            let at = normal.dot(&piece.a);
+            gap = gap.max(low - at).max(at - high);
+        }
+        if gap >= self.radius {
+            return false;
+        }
+        // Separating axes are complete for a polygon and a piece: no gap, so they meet.
+        (gap < 0.0 && !self.edges.is_empty()) || self.core_distance(piece) < self.radius
+    }
+
+    /// The distance from the hull of a piece given in the base frame, m; 0 when they overlap.
+    pub fn distance(&self, piece: &Segment) -> f64 {
+        (self.core_distance(piece) - self.radius).max(0.0)
+    }
+
+    /// Whether a point of the base frame lies within the hull's core.
+    pub fn core_holds(&self, p: Vector2) -> bool {
+        !self.edges.is_empty() && self.edges.iter().all(|e| e.normal.dot(&p) <= e.offset)
+    }
+
+    /// The core's corners at a pose of the base, map frame.
+    pub fn corners_at(&self, pose: &Pose2) -> impl Iterator<Item = Vector2> + '_ {
+        let pose = *pose;
+        self.core.iter().map(move |c| pose.transform(c.at))
+    }
+
+    /// The distance of a piece from the core, m.
+    pub fn core_distance(&self, piece: &Segment) -> f64 {
+        if self.edges.is_empty() {
+            return piece.distance(self.core[0].at);
+        }
+        if self.core_holds(piece.a) || self.core_holds(piece.b) {
+            return 0.0;
+        }
+        self.edges.iter().map(|e| e.side.distance_to(piece)).fold(f64::INFINITY, f64::min)
+    }
+
+    /// The least and the greatest of `normal . x` over the core.
+    pub(super) fn core_extent(&self, normal: Vector2) -> (f64, f64) {
+        let along = self.core.iter().map(|c| normal.dot(&c.at));
+        along.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)))
+    }
+}
+
+fn edge(a: Vector2, b: Vector2) -> Edge {
+    let along = (b - a).normalize();
+    let normal = Vector2::new(along.y, -along.x);
+    Edge { side: Segment { a, b }, normal, normal_bearing: normal.y.atan2(normal.x), offset: normal.dot(&a) }
+}
+
+/// What of a convex polygon lies where `normal . x <= offset`.
+fn cut(corners: &[Vector2], normal: Vector2, offset: f64) -> Vec<Vector2> {
+    let mut kept = Vec::with_capacity(corners.len() + 1);
+    for (i, &a) in corners.iter().enumerate() {
+        let b = corners[(i + 1) % corners.len()];
+        let (over_a, over_b) = (normal.dot(&a) - offset, normal.dot(&b) - offset);
+        if over_a <= 0.0 {
+            kept.push(a);
+        }
+        if (over_a < 0.0) != (over_b < 0.0) && over_a != 0.0 && over_b != 0.0 {
+            kept.push(a + (b - a) * (over_a / (over_a - over_b)));
+        }
+    }
+    kept
+}
+
+fn without_doubles(corners: &[Vector2]) -> Vec<Vector2> {
+    let n = corners.len();
+    (0..n).filter(|&i| (corners[i] - corners[(i + 1) % n]).norm() > 1e-9).map(|i| corners[i]).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn box_hull(margin: f64) -> Hull {
+        let corners = [(0.3, 0.2), (-0.3, 0.2), (-0.3, -0.2), (0.3, -0.2)];
+        let corners = corners.map(|(x, y)| Vector2::new(x, y)).to_vec();
+        Hull::new(&Footprint::polygon(corners).unwrap(), margin)
+    }
+
+    #[test]
+    fn corners_are_round_and_sides_are_straight() {
+        let hull = box_hull(0.1);
+        let touches = |x, y| hull.overlaps(&Segment::point(Vector2::new(x, y)));
+        assert!(touches(0.399, 0.0) && !touches(0.401, 0.0));
+        assert!(touches(0.37, 0.27) && !touches(0.372, 0.272));
+        let through = Segment { a: Vector2::new(-5.0, 0.0), b: Vector2::new(5.0, 0.1) };
+        assert!(hull.overlaps(&through));
+        assert!((hull.distance(&Segment::point(Vector2::new(0.6, 0.6))) - 0.4).abs() < 1e-12);
+    }
+
+    #[test]
+    fn shrinking_takes_from_margin_and_then_from_the_core() {
+        assert!((box_hull(0.1).shrunk(0.05).unwrap().outer - (0.13_f64.sqrt() + 0.05)).abs() < 1e-12);
+        let small = box_hull(0.01).shrunk(0.05).unwrap();
+        let touches = |x, y| small.overlaps(&Segment::point(Vector2::new(x, y)));
+        assert!(touches(0.2599, 0.0) && !touches(0.2601, 0.0) && touches(0.0, 0.1599));
+        assert!(box_hull(0.01).shrunk(0.3).is_none());
+    }
+}

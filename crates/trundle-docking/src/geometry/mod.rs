@@ -1,0 +1,11 @@
+//! Exact contact of a rounded convex hull with straight pieces: standing, turning on the spot, driving straight.
+
+mod driving;
+mod hull;
+mod segment;
+mod turning;
+
+pub use driving::InTheWay;
+pub use hull::{Hull, LEAST_RADIUS};
+pub use segment::Segment;
+pub use turning::Arc;

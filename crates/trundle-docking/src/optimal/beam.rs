@@ -1,0 +1,118 @@
+use super::rays::{Ray, rays};
+use super::search::Search;
+use std::collections::BTreeMap;
+use trundle_core::{Pose2, wrap_angle};
+
+/// A base at rest after some legs.
+#[derive(Debug, Clone, Copy)]
+struct Node {
+    pose: Pose2,
+    /// Time so far, with the pause after the last motion, s.
+    spent: f64,
+    /// With the estimate of the rest, s.
+    total: f64,
+    /// Index of the node before; its own index for the start.
+    parent: usize,
+    /// The leg that led here.
+    leg: (f64, f64),
+}
+
+/// Parts of a free way at which a leg may end.
+const PARTS: [f64; 7] = [1.0, 0.8, 0.6, 0.42, 0.26, 0.13, 0.05];
+/// Headings tried at a node.
+const HEADINGS: usize = 20;
+/// Most legs of a manoeuvre.
+const MOST_LEGS: usize = 16;
+
+/// How a beam ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct BeamEnd {
+    /// Nodes that were expanded.
+    pub expanded: usize,
+    /// Whether nothing was left out for lack of width.
+    pub whole: bool,
+}
+
+/// Layer by layer, one more leg each, the most promising `width` nodes are carried on; from each the search is completed by
+/// one or two exact legs. `cell` (m) and `sector` (rad) say which poses count as the same.
+pub fn beam(search: &mut Search<'_, '_>, width: usize, cell: f64, sector: f64) -> BeamEnd {
+    let start = search.task.start;
+    let mut nodes = vec![Node { pose: start, spent: 0.0, total: 0.0, parent: 0, leg: (0.0, 0.0) }];
+    let mut seen: BTreeMap<(i32, i32, i32), f64> = BTreeMap::new();
+    let (mut layer, mut fan, mut end) = (vec![0], Vec::new(), BeamEnd { expanded: 0, whole: true });
+    for _ in 1..MOST_LEGS {
+        let mut children: Vec<Node> = Vec::new();
+        for &index in &layer {
+            let node = nodes[index];
+            if node.total >= search.time_to_beat() {
+                continue;
+            }
+            end.expanded += 1;
+            rays(&search.task, search.space, &node.pose, HEADINGS, 0.02, &mut fan);
+            if index > 0 {
+                search.complete(&node.pose, &fan, &legs_to(&nodes, index), node.spent);
+            }
+            spread(search, &node, index, &fan, &mut children);
+        }
+        children.sort_by(|a, b| a.total.total_cmp(&b.total));
+        layer.clear();
+        for child in children {
+            if child.total >= search.time_to_beat() {
+                break;
+            }
+            let key = key_of(&child.pose, cell, sector);
+            if seen.get(&key).is_some_and(|&spent| spent <= child.spent + 1e-9) {
+                continue;
+            }
+            if layer.len() >= width {
+                end.whole = false;
+                break;
+            }
+            seen.insert(key, child.spent);
+            layer.push(nodes.len());
+            nodes.push(child);
+        }
+        if layer.is_empty() {
+            break;
+        }
+    }
+    end
+}
+
+/// The nodes one leg beyond a node.
+fn spread(search: &Search<'_, '_>, node: &Node, index: usize, fan: &[Ray], children: &mut Vec<Node>) {
+    let task = &search.task;
+    for ray in fan {
+        // The first ray is the heading it came on: going on along it is no new leg.
+        if index > 0 && ray.cost == 0.0 {
+            continue;
+        }
+        for limit in [ray.ahead, -ray.behind] {
+            for way in PARTS.map(|part| part * limit).into_iter().filter(|way| way.abs() > 0.004) {
+                let p = node.pose.position() + ray.direction * way;
+                let spent = node.spent + ray.cost + task.drive_cost(way);
+                if !task.in_region(p) || spent >= search.time_to_beat() {
+                    continue;
+                }
+                let pose = Pose2 { x: p.x, y: p.y, theta: ray.heading };
+                let total = spent + search.estimate(&pose) - task.limits.switch_time;
+                children.push(Node { pose, spent, total, parent: index, leg: (ray.heading, way) });
+            }
+        }
+    }
+}
+
+fn legs_to(nodes: &[Node], mut index: usize) -> Vec<(f64, f64)> {
+    let mut legs = Vec::new();
+    while index > 0 {
+        legs.push(nodes[index].leg);
+        index = nodes[index].parent;
+    }
+    legs.reverse();
+    legs
+}
+
+fn key_of(pose: &Pose2, cell: f64, sector: f64) -> (i32, i32, i32) {
+    let round = |x: f64, by: f64| (x / by).round() as i32;
+    (round(pose.x, cell), round(pose.y, cell), round(wrap_angle(pose.theta), sector))
+}

@@ -1,0 +1,72 @@
+use super::task::Task;
+use crate::manoeuvre::Motion;
+use crate::space::Space;
+use trundle_core::{Pose2, Vector2, wrap_angle};
+
+/// Straight moves one after the other: the heading of each (rad, map frame) and its way (m, backward negative).
+///
+/// The turns are what lies between the headings, before the first and after the last.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Legs(pub Vec<(f64, f64)>);
+
+impl Legs {
+    /// The least time these legs could take, were every shorter turn free, s.
+    pub fn least_time(&self, task: &Task) -> f64 {
+        let (mut time, mut heading) = (-task.limits.switch_time, task.start.theta);
+        for &(next, way) in &self.0 {
+            time += task.turn_cost(wrap_angle(next - heading)) + task.drive_cost(way);
+            heading = next;
+        }
+        (time + task.turn_cost(wrap_angle(task.goal.theta - heading))).max(0.0)
+    }
+
+    /// The motions and their time (s), pauses included, when all of them are free.
+    pub fn motions(&self, task: &Task, space: &mut Space<'_>) -> Option<(f64, Vec<Motion>)> {
+        let (mut motions, mut pose) = (Vec::with_capacity(2 * self.0.len() + 1), task.start);
+        let mut time = -task.limits.switch_time;
+        for (i, &(heading, way)) in self.0.iter().enumerate() {
+            let turn = free_turn(space, &pose, heading)?;
+            pose = Pose2::new(pose.x, pose.y, heading);
+            if !space.drive(&pose, way.abs() + 0.01).allows(way) {
+                return None;
+            }
+            time += task.turn_cost(turn) + task.drive_cost(way);
+            motions.extend([Motion::Turn(turn), Motion::Drive(way)]);
+            let p = pose.position() + pose.direction() * way;
+            pose = if i + 1 < self.0.len() {
+                Pose2 { x: p.x, y: p.y, ..pose }
+            } else {
+                Pose2 { theta: heading, ..task.goal }
+            };
+            if !task.in_region(pose.position()) {
+                return None;
+            }
+        }
+        let turn = free_turn(space, &pose, task.goal.theta)?;
+        time += task.turn_cost(turn);
+        motions.push(Motion::Turn(turn));
+        Some((time.max(0.0), motions))
+    }
+
+    /// The same headings and first ways, with the last two ways such that the legs end at the goal; `None` when the last
+    /// two headings are parallel.
+    pub fn closed(&self, task: &Task) -> Option<Self> {
+        let n = self.0.len();
+        let direction = |(heading, _): (f64, f64)| Vector2::new(heading.cos(), heading.sin());
+        let free = self.0[..n - 2].iter().fold(task.start.position(), |p, &leg| p + direction(leg) * leg.1);
+        let (u, v) = (direction(self.0[n - 2]), direction(self.0[n - 1]));
+        let (rest, cross) = (task.goal.position() - free, u.perp(&v));
+        if cross.abs() < 1e-4 {
+            return None;
+        }
+        let mut legs = self.clone();
+        legs.0[n - 2].1 = rest.perp(&v) / cross;
+        legs.0[n - 1].1 = u.perp(&rest) / cross;
+        Some(legs)
+    }
+}
+
+fn free_turn(space: &mut Space<'_>, pose: &Pose2, heading: f64) -> Option<f64> {
+    let turn = wrap_angle(heading - pose.theta);
+    if turn.abs() < 1e-9 { Some(0.0) } else { space.turn(pose).way(turn) }
+}

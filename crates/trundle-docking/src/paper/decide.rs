@@ -1,0 +1,145 @@
+use super::config::PaperConfig;
+use crate::limits::MotionLimits;
+use crate::manoeuvre::Motion;
+use crate::space::Space;
+use trundle_core::{Pose2, wrap_angle};
+
+/// What the method does next.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Decision {
+    /// All three deviations are below their thresholds.
+    Settled,
+    /// These motions.
+    Move(Vec<Motion>),
+    /// Nothing was found: move out of the way, and start again.
+    Recover(Motion),
+    /// Nothing was found, and there is no way out.
+    Stuck,
+}
+
+/// The method among its obstacles.
+#[derive(Debug, Clone, Copy)]
+pub struct PaperMethod<'a> {
+    /// Footprint and obstacles.
+    pub space: &'a Space<'a>,
+    /// For the times of candidates.
+    pub limits: MotionLimits,
+    /// Weights, steps and thresholds.
+    pub config: &'a PaperConfig,
+}
+
+impl PaperMethod<'_> {
+    /// The next motions for a base at `pose`: lateral deviation first, then longitudinal, then angular. `recoveries`
+    /// counts the recovery moves so far: they alternate between back and forward.
+    pub fn decide(&self, pose: &Pose2, goal: &Pose2, recoveries: usize) -> Decision {
+        let error = goal.inverse() * *pose;
+        let found = if error.y.abs() > self.config.lateral_threshold {
+            self.lateral(pose, goal)
+        } else if error.x.abs() > self.config.longitudinal_threshold {
+            self.longitudinal(pose, goal)
+        } else if error.theta.abs() > self.config.angle_threshold {
+            self.turn_to(pose, goal.theta).map(|turn| vec![Motion::Turn(turn)])
+        } else {
+            return Decision::Settled;
+        };
+        found.map_or_else(|| self.recover(pose, recoveries), Decision::Move)
+    }
+
+    /// The turn and the straight of least cost.
+    fn lateral(&self, pose: &Pose2, goal: &Pose2) -> Option<Vec<Motion>> {
+        let deviation = (goal.inverse() * *pose).y.abs();
+        let mut best: Option<(f64, f64, f64)> = None;
+        for turn in self.turns(pose) {
+            let turned = Pose2::new(pose.x, pose.y, pose.theta + turn);
+            for sign in [1.0, -1.0] {
+                let (way, left) = self.least_lateral(&turned, goal, sign);
+                if left >= deviation - self.config.lateral_threshold / 2.0 {
+                    continue;
+                }
+                let time = self.limits.turn_time(turn) + self.limits.drive_time(way);
+                let cost = self.config.time_weight * time + self.config.lateral_weight * left;
+                if best.is_none_or(|(least, _, _)| cost < least) {
+                    best = Some((cost, turn, way));
+                }
+            }
+        }
+        best.map(|(_, turn, way)| vec![Motion::Turn(turn), Motion::Drive(way)])
+    }
+
+    /// Every sampled turn that is free, each way up to the first contact.
+    fn turns(&self, pose: &Pose2) -> Vec<f64> {
+        let step = self.config.angle_step;
+        let most = (std::f64::consts::PI / step).floor() as usize;
+        let mut turns = vec![0.0];
+        for sign in [-1.0, 1.0] {
+            let samples = (1..=most).map(|i| sign * i as f64 * step);
+            turns.extend(
+                samples.take_while(|turn| self.is_free(&Pose2::new(pose.x, pose.y, pose.theta + turn))),
+            );
+        }
+        turns
+    }
+
+    /// Point D of the straight AC: the way to it (negative backward, m) and the lateral deviation left there, m.
+    fn least_lateral(&self, from: &Pose2, goal: &Pose2, sign: f64) -> (f64, f64) {
+        let samples = (self.config.reach / self.config.distance_step).floor() as usize;
+        let mut best = (0.0, f64::INFINITY);
+        for i in 1..=samples {
+            let way = sign * i as f64 * self.config.distance_step;
+            let pose = Motion::Drive(way).after(*from, way);
+            if !self.is_free(&pose) {
+                break;
+            }
+            let left = (goal.inverse() * pose).y.abs();
+            if left >= best.1 {
+                break;
+            }
+            best = (way, left);
+        }
+        best
+    }
+
+    /// Takes up the goal's heading and drives what is left along it, as far as it is free.
+    fn longitudinal(&self, pose: &Pose2, goal: &Pose2) -> Option<Vec<Motion>> {
+        let turn = self.turn_to(pose, goal.theta)?;
+        let turned = Pose2::new(pose.x, pose.y, goal.theta);
+        let way = -(goal.inverse() * *pose).x;
+        let step = self.config.distance_step;
+        let samples = (way.abs() / step).ceil().max(1.0);
+        let at = |i: f64| way * i / samples;
+        let free = (1..=samples as usize)
+            .take_while(|&i| self.is_free(&Motion::Drive(way).after(turned, at(i as f64))));
+        let free = at(free.count() as f64);
+        (free.abs() > self.config.longitudinal_threshold / 2.0)
+            .then(|| vec![Motion::Turn(turn), Motion::Drive(free)])
+    }
+
+    /// The shorter turn to a heading, when every sample of it is free.
+    fn turn_to(&self, pose: &Pose2, heading: f64) -> Option<f64> {
+        let turn = wrap_angle(heading - pose.theta);
+        let samples = (turn.abs() / self.config.angle_step).ceil().max(1.0) as usize;
+        let free =
+            |i| self.is_free(&Pose2::new(pose.x, pose.y, pose.theta + turn * f64::from(i) / samples as f64));
+        (1..=samples as u32).all(free).then_some(turn)
+    }
+
+    /// Back, then forward, by turns.
+    fn recover(&self, pose: &Pose2, recoveries: usize) -> Decision {
+        let first = if recoveries.is_multiple_of(2) { -1.0 } else { 1.0 };
+        for sign in [first, -first] {
+            let samples = (self.config.recovery / self.config.distance_step).floor().max(1.0) as usize;
+            let at = |i: usize| sign * self.config.recovery * i as f64 / samples as f64;
+            let free = (1..=samples)
+                .take_while(|&i| self.is_free(&Motion::Drive(at(i)).after(*pose, at(i))))
+                .count();
+            if free > 0 {
+                return Decision::Recover(Motion::Drive(at(free)));
+            }
+        }
+        Decision::Stuck
+    }
+
+    fn is_free(&self, pose: &Pose2) -> bool {
+        self.space.contact(pose).is_none()
+    }
+}

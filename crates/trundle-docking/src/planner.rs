@@ -1,0 +1,141 @@
+use crate::config::{DockingConfig, Method};
+use crate::manoeuvre::Manoeuvre;
+use crate::optimal::{self, Task};
+use crate::paper;
+use crate::scene::{Blocker, Scene};
+use crate::space::Space;
+use thiserror::Error;
+use trundle_core::{Footprint, Invalid, Pose2};
+
+/// Why there is nothing to plan.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum Refusal {
+    /// The robot overlaps an obstacle where it stands.
+    #[error("the start overlaps obstacle {} at ({:.3}, {:.3}) m", .0.obstacle, .0.at.x, .0.at.y)]
+    StartBlocked(Blocker),
+    /// The robot would overlap an obstacle at the goal.
+    #[error("the goal overlaps obstacle {} at ({:.3}, {:.3}) m", .0.obstacle, .0.at.x, .0.at.y)]
+    GoalBlocked(Blocker),
+    /// Docking is for the last metres.
+    #[error("the goal is {distance:.2} m away, expected at most {most:.2} m: plan a path there first")]
+    TooFar {
+        /// From start to goal, m.
+        distance: f64,
+        /// `docking.max_distance`, m.
+        most: f64,
+    },
+    /// A number of the input.
+    #[error(transparent)]
+    Invalid(#[from] Invalid),
+}
+
+/// What came of planning.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Plan {
+    /// A manoeuvre.
+    Found(Solution),
+    /// There is none.
+    Impossible(Impossible),
+}
+
+/// A manoeuvre and what is known about it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Solution {
+    /// What to do.
+    pub manoeuvre: Manoeuvre,
+    /// No manoeuvre is faster than this, s.
+    pub bound: f64,
+    /// The margin that was kept, m.
+    pub margin: f64,
+}
+
+/// Why there is no manoeuvre.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Impossible {
+    /// What stands in the way.
+    pub by: Option<Blocker>,
+    /// Whether the search was complete.
+    pub proven: bool,
+}
+
+/// Plans manoeuvres onto a goal pose.
+#[derive(Debug, Clone)]
+pub struct Docker {
+    config: DockingConfig,
+}
+
+impl Docker {
+    /// A planner.
+    ///
+    /// # Errors
+    /// When a setting is outside its range.
+    pub fn new(config: DockingConfig) -> Result<Self, Invalid> {
+        Ok(Self { config: config.validated()? })
+    }
+
+    /// Its settings.
+    pub fn config(&self) -> &DockingConfig {
+        &self.config
+    }
+
+    /// Plans from `start` to `goal`, both `map_from_base`.
+    ///
+    /// # Errors
+    /// When start or goal are in collision or too far apart, or a number is not finite.
+    pub fn plan(
+        &self,
+        footprint: &Footprint,
+        scene: &Scene,
+        start: Pose2,
+        goal: Pose2,
+    ) -> Result<Plan, Refusal> {
+        let margin = self.checked(footprint, scene, &start, &goal)?;
+        let limits = self.config.limits;
+        let task = Task { start, goal, limits, reach: self.config.reach };
+        let near = scene.around(task.center(), task.half() + footprint.circumscribed_radius() + 0.1);
+        let mut space = Space::new(footprint, margin, &near);
+        let manoeuvre = match self.config.method {
+            Method::Paper => paper::plan(&space, start, goal, &limits, &self.config.paper),
+            Method::Optimal => optimal::find(task, &mut space, self.config.search_nodes).map(|(_, legs)| {
+                let (_, motions) = legs.motions(&task, &mut space).expect("invariant: found legs are free");
+                Manoeuvre::new(start, &motions, limits)
+            }),
+        };
+        Ok(match manoeuvre {
+            Some(manoeuvre) => Plan::Found(Solution { manoeuvre, bound: 0.0, margin }),
+            None => Plan::Impossible(Impossible { by: None, proven: false }),
+        })
+    }
+
+    /// The margin that start and goal leave, m.
+    fn checked(
+        &self,
+        footprint: &Footprint,
+        scene: &Scene,
+        start: &Pose2,
+        goal: &Pose2,
+    ) -> Result<f64, Refusal> {
+        for (name, pose) in [("start", start), ("goal", goal)] {
+            if !pose.is_finite() {
+                let value = format!("({}, {}, {})", pose.x, pose.y, pose.theta);
+                return Err(Invalid::new(name, value, "", "finite numbers").into());
+            }
+        }
+        let (distance, most) = (start.distance(goal), self.config.max_distance);
+        if distance > most {
+            return Err(Refusal::TooFar { distance, most });
+        }
+        let mut margin = self.config.margin;
+        for (pose, refusal) in
+            [(start, Refusal::StartBlocked as fn(Blocker) -> Refusal), (goal, Refusal::GoalBlocked)]
+        {
+            if let Some((clearance, by)) = scene.clearance(footprint, pose, margin + 2e-4) {
+                if clearance <= 1e-9 {
+                    return Err(refusal(by));
+                }
+                margin = margin.min(clearance);
+            }
+        }
+        Ok(margin)
+    }
+}

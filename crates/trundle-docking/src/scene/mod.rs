@@ -1,0 +1,229 @@
+//! What stands around the robot, as straight pieces that a hull may not overlap.
+
+mod outline;
+mod points;
+
+use crate::geometry::{Hull, Segment};
+use points::PointIndex;
+use trundle_core::{Cell, CellIndex, Footprint, Invalid, OccupancyGrid, Pose2, Vector2};
+
+/// Something that stands in the way, map frame, m.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Obstacle {
+    /// A single point, as of a scan.
+    Point(Vector2),
+    /// A thin wall.
+    Segment(Vector2, Vector2),
+    /// A convex polygon, corners in either order.
+    Polygon(Vec<Vector2>),
+}
+
+/// What a motion or a pose meets.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Blocker {
+    /// Which of the obstacles, by its place in the list; of a grid, which piece of an outline.
+    pub obstacle: usize,
+    /// Its nearest point, map frame, m.
+    pub at: Vector2,
+}
+
+/// A straight piece of an obstacle.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Piece {
+    /// Map frame, m.
+    pub segment: Segment,
+    /// Which obstacle it belongs to.
+    pub obstacle: u32,
+}
+
+/// All obstacles around, prepared for looking up.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Scene {
+    pieces: Vec<Piece>,
+    points: PointIndex,
+    /// Convex and counter-clockwise: what is inside of them is in collision though no side is near.
+    solids: Vec<(Vec<Vector2>, u32)>,
+}
+
+impl Scene {
+    /// A scene of obstacles in the map frame.
+    ///
+    /// # Errors
+    /// When a coordinate is not finite or a polygon is not convex or has no area; names the obstacle by its place.
+    pub fn new(obstacles: &[Obstacle]) -> Result<Self, Invalid> {
+        let (mut pieces, mut points, mut solids) = (Vec::new(), Vec::new(), Vec::new());
+        for (i, obstacle) in obstacles.iter().enumerate() {
+            let number = i as u32;
+            match obstacle {
+                Obstacle::Point(p) => points.push((finite(i, *p)?, number)),
+                Obstacle::Segment(a, b) => {
+                    let segment = Segment { a: finite(i, *a)?, b: finite(i, *b)? };
+                    pieces.push(Piece { segment, obstacle: number });
+                }
+                Obstacle::Polygon(corners) => {
+                    let corners = convex(i, corners)?;
+                    let next = corners.iter().cycle().skip(1);
+                    let sides = corners.iter().zip(next).map(|(&a, &b)| Segment { a, b });
+                    pieces.extend(sides.map(|segment| Piece { segment, obstacle: number }));
+                    solids.push((corners, number));
+                }
+            }
+        }
+        Ok(Self { pieces, points: PointIndex::new(&points), solids })
+    }
+
+    /// The occupied cells of a grid within a box of half side `half` (m) about `center`, and the unknown ones where
+    /// `unknown_blocks`.
+    pub fn from_grid(grid: &OccupancyGrid, center: Vector2, half: f64, unknown_blocks: bool) -> Self {
+        let geometry = *grid.geometry();
+        let blocks = |cell: CellIndex| {
+            let value = grid.get(cell);
+            (value == Cell::Occupied || (unknown_blocks && value == Cell::Unknown))
+                && (geometry.center(cell) - center).amax() <= half
+        };
+        let outlines = outline::outlines(&geometry, blocks);
+        let number = |(i, segment): (usize, Segment)| Piece { segment, obstacle: i as u32 };
+        let pieces: Vec<Piece> = outlines.into_iter().enumerate().map(number).collect();
+        let side = geometry.resolution;
+        let cells = (0..geometry.len()).map(|i| geometry.cell(i)).filter(|&cell| blocks(cell));
+        let solids = cells.map(|cell| {
+            let low = geometry.center(cell) - Vector2::repeat(side / 2.0);
+            let corners = [(0.0, 0.0), (side, 0.0), (side, side), (0.0, side)];
+            (corners.iter().map(|&(x, y)| low + Vector2::new(x, y)).collect(), pieces.len() as u32)
+        });
+        Self { solids: solids.collect(), pieces, points: PointIndex::new(&[]) }
+    }
+
+    /// The part of the scene within a box of half side `half` (m) about `center`.
+    pub fn around(&self, center: Vector2, half: f64) -> Self {
+        let pieces = self
+            .pieces
+            .iter()
+            .filter(|p| touches_box(&p.segment, center, Vector2::repeat(half)))
+            .copied()
+            .collect();
+        let mut points = Vec::new();
+        self.points.visit(center, Vector2::repeat(half), |p, number| {
+            if (p - center).amax() <= half {
+                points.push((p, number));
+            }
+        });
+        let near = |corners: &[Vector2]| corners.iter().any(|c| (c - center).amax() <= 2.0 * half);
+        let solids = self.solids.iter().filter(|(corners, _)| near(corners) || holds(corners, center));
+        Self { pieces, points: PointIndex::new(&points), solids: solids.cloned().collect() }
+    }
+
+    /// Calls `visit` with every piece that reaches into a box about `center`.
+    pub fn visit(&self, center: Vector2, half: f64, visit: impl FnMut(&Segment, u32)) {
+        self.visit_box(center, Vector2::repeat(half), visit);
+    }
+
+    /// Calls `visit` with every piece that reaches into a box of these half sides about `center`.
+    pub fn visit_box(&self, center: Vector2, half: Vector2, mut visit: impl FnMut(&Segment, u32)) {
+        for piece in &self.pieces {
+            if touches_box(&piece.segment, center, half) {
+                visit(&piece.segment, piece.obstacle);
+            }
+        }
+        self.points.visit(center, half, |p, number| visit(&Segment::point(p), number));
+    }
+
+    /// How far a footprint at a pose is from the nearest obstacle, m, 0 when it overlaps one, and from which;
+    /// `None` when nothing is within `reach` (m).
+    pub fn clearance(&self, footprint: &Footprint, pose: &Pose2, reach: f64) -> Option<(f64, Blocker)> {
+        self.clearance_of(&Hull::new(footprint, 0.0), pose, reach)
+    }
+
+    pub(crate) fn clearance_of(&self, hull: &Hull, pose: &Pose2, reach: f64) -> Option<(f64, Blocker)> {
+        let (sin, cos) = pose.theta.sin_cos();
+        let mut best: Option<(f64, Blocker)> = None;
+        let mut offer = |distance: f64, blocker: Blocker| {
+            if distance < reach && best.is_none_or(|(least, _)| distance < least) {
+                best = Some((distance, blocker));
+            }
+        };
+        self.visit(pose.position(), hull.outer_radius() + reach, |segment, number| {
+            let distance = hull.distance(&segment.seen_from(pose.position(), cos, sin));
+            offer(distance, Blocker { obstacle: number as usize, at: segment.nearest(pose.position()) });
+        });
+        let corner = hull.corners_at(pose).next().expect("invariant: a hull has a corner");
+        for (corners, number) in self.solids.iter().filter(|(corners, _)| holds(corners, corner)) {
+            offer(0.0, Blocker { obstacle: *number as usize, at: corners[0] });
+        }
+        best
+    }
+
+    /// The number of points and straight pieces.
+    pub fn len(&self) -> usize {
+        self.pieces.len() + self.points.all().len()
+    }
+
+    /// Whether nothing stands around.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// The straight pieces, for drawing.
+    pub fn pieces(&self) -> &[Piece] {
+        &self.pieces
+    }
+
+    /// The points, for drawing, map frame, m.
+    pub fn points(&self) -> impl Iterator<Item = Vector2> + '_ {
+        self.points.all().iter().map(|(p, _)| *p)
+    }
+}
+
+fn finite(i: usize, p: Vector2) -> Result<Vector2, Invalid> {
+    if p.x.is_finite() && p.y.is_finite() {
+        return Ok(p);
+    }
+    Err(Invalid::new(format!("obstacle {i}"), format!("({}, {})", p.x, p.y), "m", "finite coordinates"))
+}
+
+/// The corners counter-clockwise; refuses what is not convex by the footprint's own rule.
+fn convex(i: usize, corners: &[Vector2]) -> Result<Vec<Vector2>, Invalid> {
+    let named = |e: Invalid| Invalid {
+        field: format!("obstacle {i}: {}", e.field.replace("footprint", "polygon")),
+        ..e
+    };
+    match Footprint::polygon(corners.to_vec()).map_err(named)? {
+        Footprint::Polygon { corners } => Ok(corners),
+        Footprint::Disc { .. } => Ok(Vec::new()),
+    }
+}
+
+fn holds(corners: &[Vector2], p: Vector2) -> bool {
+    let next = corners.iter().cycle().skip(1);
+    corners.iter().zip(next).all(|(a, b)| (b - a).perp(&(p - a)) >= 0.0)
+}
+
+fn touches_box(segment: &Segment, center: Vector2, half: Vector2) -> bool {
+    let (a, b) = (segment.a - center, segment.b - center);
+    a.x.min(b.x) <= half.x && a.x.max(b.x) >= -half.x && a.y.min(b.y) <= half.y && a.y.max(b.y) >= -half.y
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nan_and_dents_are_refused_by_name() {
+        let error = Scene::new(&[Obstacle::Point(Vector2::new(f64::NAN, 0.0))]).unwrap_err();
+        assert_eq!(error.field, "obstacle 0");
+        let corners = [(0., 0.), (2., 0.), (0.5, 0.5), (0., 2.)].map(|(x, y)| Vector2::new(x, y)).to_vec();
+        let error = Scene::new(&[Obstacle::Polygon(corners)]).unwrap_err();
+        assert!(error.to_string().contains("obstacle 0: polygon"), "{error}");
+    }
+
+    #[test]
+    fn inside_a_block_is_in_collision() {
+        let corners = [(-5., -5.), (5., -5.), (5., 5.), (-5., 5.)].map(|(x, y)| Vector2::new(x, y)).to_vec();
+        let scene = Scene::new(&[Obstacle::Polygon(corners)]).unwrap();
+        let (distance, blocker) = scene.clearance(&Footprint::KOBUKI, &Pose2::IDENTITY, 1.0).unwrap();
+        assert_eq!((distance, blocker.obstacle), (0.0, 0));
+        let grid = OccupancyGrid::from_ascii(1.0, "####\n####\n####\n####").unwrap();
+        let scene = Scene::from_grid(&grid, Vector2::new(2.0, 2.0), 3.0, false);
+        assert_eq!(scene.clearance(&Footprint::KOBUKI, &Pose2::new(1.5, 1.5, 0.0), 1.0).unwrap().0, 0.0);
+    }
+}
