@@ -1,6 +1,6 @@
 use crate::IoError;
 use crate::files::read_text;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 use std::path::Path;
 use trundle_core::{Distortion, Invalid, PinholeCamera, require_positive};
 
@@ -69,6 +69,17 @@ impl CameraModel {
         Self::parse(path, &read_text(path)?)
     }
 
+    /// The text of [`CameraModel::read`]; every number reads back as the same f64.
+    pub fn to_toml(&self) -> String {
+        let camera = &self.camera;
+        let Distortion { k1, k2, p1, p2, k3 } = camera.distortion();
+        let (width, height) = (camera.width(), camera.height());
+        let (fx, fy, cx, cy) = (camera.fx(), camera.fy(), camera.cx(), camera.cy());
+        let depth_scale = self.depth_scale;
+        let file = CameraFile { width, height, fx, fy, cx, cy, depth_scale, k1, k2, p1, p2, k3 };
+        toml::to_string(&file).expect("invariant: a camera is plain data")
+    }
+
     fn parse(path: &Path, text: &str) -> Result<Self, IoError> {
         let file: CameraFile = toml::from_str(text).map_err(|error| located(path, text, &error))?;
         file.model().map_err(|invalid| match line_of_key(text, &invalid.field) {
@@ -78,7 +89,7 @@ impl CameraModel {
     }
 }
 
-#[derive(Deserialize)]
+#[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct CameraFile {
     width: usize,
@@ -147,7 +158,8 @@ mod tests {
         let file = CameraModel::parse(Path::new("cam.toml"), GOOD).unwrap();
         assert_eq!(Some(file), CameraModel::preset("freiburg1"));
         for name in PRESETS.split(", ") {
-            assert!(CameraModel::named(name).is_ok(), "{name}");
+            let model = CameraModel::named(name).unwrap();
+            assert_eq!(CameraModel::parse(Path::new("cam.toml"), &model.to_toml()).unwrap(), model);
         }
         assert_eq!(CameraModel::named("kinect_v2").unwrap().camera.width(), 512);
     }

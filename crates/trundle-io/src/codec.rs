@@ -1,7 +1,11 @@
 mod event;
+mod png_color;
 mod png_depth;
+mod png_writer;
 
 pub use event::{EncodedEvent, EncodedRgbd};
+pub use png_color::encode_color_png;
+pub(crate) use png_depth::encode_grey16;
 pub use png_depth::{decode_depth, decode_raw_depth, encode_depth};
 
 use image::{ImageFormat, ImageReader, Limits};

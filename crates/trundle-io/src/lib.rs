@@ -2,7 +2,7 @@
 //!
 //! What comes in: TUM RGB-D folders ([`TumSequence`]), TUM trajectories ([`read_trajectory`]), cameras
 //! ([`CameraModel`]), ROS maps ([`read_map`]) and recordings ([`RecordingReader`]). What goes out is collected in an
-//! [`OutputFolder`], which shows nothing half-written: maps, trajectories, tables, recordings ([`Recorder`]) and the
+//! [`OutputFolder`], which shows nothing half-written: maps, trajectories, tables, TUM folders ([`TumWriter`]), recordings ([`Recorder`]) and the
 //! numbers of a run ([`Summary`]). [`EncodedEvent`] is the wire between body and robot: a robot that is fed through
 //! it sees live exactly what a replay of its recording will show it.
 //!
@@ -37,7 +37,7 @@ mod tum;
 pub use camera::{CameraModel, KINECT_V2_DEPTH_SCALE, TUM_DEPTH_SCALE};
 pub use codec::{
     CodecError, EncodedEvent, EncodedRgbd, JPEG_QUALITY, decode_color, decode_depth, decode_raw_depth,
-    encode_color, encode_depth,
+    encode_color, encode_color_png, encode_depth,
 };
 pub use csv::{curve_csv, table_csv, trajectory_csv, waypoints_csv};
 pub use error::{FrameError, IoError};
@@ -47,5 +47,6 @@ pub use recording::{PoseInFrame, PosesInFrame, RecordedMessage, Recorder, Record
 pub use stamp_text::parse_stamp;
 pub use summary::Summary;
 pub use tum::{
-    TumSequence, odometry_text, read_odometry, read_trajectory, trajectory_text, trajectory_text_from_planar,
+    TumFrame, TumSequence, TumWriter, odometry_text, read_odometry, read_trajectory, trajectory_text,
+    trajectory_text_from_planar,
 };

@@ -1,5 +1,6 @@
+use super::png_writer::{PngFormat, encode_png};
 use super::{CodecError, MAX_PIXELS};
-use png::{BitDepth, ColorType, Compression, Decoder, Encoder, Filter, Limits};
+use png::{BitDepth, ColorType, Decoder, Filter, Limits};
 use std::io::Cursor;
 use trundle_core::{DepthImage, Image};
 
@@ -19,20 +20,15 @@ fn millimetres(metres: f32) -> u16 {
 /// # Errors
 /// When a side is 0 or above 2^31 px.
 pub fn encode_depth(image: &DepthImage) -> Result<Vec<u8>, CodecError> {
-    let failed = |error: &dyn ToString| CodecError::encode("depth", error.to_string());
-    let side = |n: usize| u32::try_from(n).map_err(|error| failed(&error));
-    let (width, height) = (side(image.width())?, side(image.height())?);
-    let data: Vec<u8> = image.data().iter().flat_map(|&depth| millimetres(depth).to_be_bytes()).collect();
-    let mut bytes = Vec::with_capacity(data.len() / 2);
-    let mut encoder = Encoder::new(&mut bytes, width, height);
-    encoder.set_color(ColorType::Grayscale);
-    encoder.set_depth(BitDepth::Sixteen);
-    encoder.set_compression(Compression::Fast);
-    encoder.set_filter(Filter::Sub); // on a real depth image a sixth smaller than Up, and no slower
-    let mut writer = encoder.write_header().map_err(|error| failed(&error))?;
-    writer.write_image_data(&data).map_err(|error| failed(&error))?;
-    writer.finish().map_err(|error| failed(&error))?;
-    Ok(bytes)
+    encode_grey16(image, millimetres)
+}
+
+/// A depth image (m) as 16-bit grey PNG of the numbers that `unit` makes of it.
+pub(crate) fn encode_grey16(image: &DepthImage, unit: impl Fn(f32) -> u16) -> Result<Vec<u8>, CodecError> {
+    let data: Vec<u8> = image.data().iter().flat_map(|&depth| unit(depth).to_be_bytes()).collect();
+    // Sub: on a real depth image a sixth smaller than Up, and no slower.
+    let format = PngFormat { color: ColorType::Grayscale, depth: BitDepth::Sixteen, filter: Filter::Sub };
+    encode_png("depth", (image.width(), image.height()), &format, &data)
 }
 
 /// A depth image in metres from a 16-bit grey PNG in millimetres.
@@ -83,6 +79,7 @@ fn name(color: ColorType) -> &'static str {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use png::Encoder;
     use proptest::prelude::*;
 
     #[test]

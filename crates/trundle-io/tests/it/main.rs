@@ -3,6 +3,7 @@
 
 mod recording;
 mod sequence;
+mod tum_writer;
 
 use trundle_core::{ColorImage, DepthImage, RgbdImage, Stamp};
 

@@ -84,7 +84,7 @@ fn the_mcap_library_s_own_index_finds_all() {
     assert_eq!(stats.message_start_time, stamp(0).nanos as u64);
     let schemas: Vec<_> = summary.schemas.values().map(|s| (s.name.clone(), s.encoding.clone())).collect();
     assert!(schemas.contains(&("foxglove.CompressedImage".to_owned(), "jsonschema".to_owned())));
-    assert_eq!(mcap::MessageStream::new(&bytes).unwrap().count(), 12);
+    assert_eq!(mcap::MessageStream::new(&bytes).unwrap().count(), 16);
 }
 
 #[test]

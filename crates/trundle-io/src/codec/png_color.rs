@@ -1,0 +1,27 @@
+use super::CodecError;
+use super::png_writer::{PngFormat, encode_png};
+use png::{BitDepth, ColorType, Filter};
+use trundle_core::ColorImage;
+
+/// A colour image as 8-bit RGB PNG: every pixel comes back as it was.
+///
+/// # Errors
+/// When a side is 0 or above 2^31 px.
+pub fn encode_color_png(image: &ColorImage) -> Result<Vec<u8>, CodecError> {
+    // Up: on rendered rooms with sensor noise as small as any, and the fastest with SIMD.
+    let format = PngFormat { color: ColorType::Rgb, depth: BitDepth::Eight, filter: Filter::Up };
+    encode_png("colour", (image.width(), image.height()), &format, image.data().as_flattened())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::decode_color;
+
+    #[test]
+    fn every_pixel_survives_and_an_empty_image_is_refused() {
+        let image = crate::codec::tests::test_image(53, 31);
+        assert_eq!(decode_color(&encode_color_png(&image).unwrap()).unwrap(), image);
+        assert!(encode_color_png(&ColorImage::default()).is_err());
+    }
+}

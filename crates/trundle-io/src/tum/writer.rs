@@ -1,0 +1,106 @@
+use super::{TumFrame, odometry_text, orb_slam_yaml, trajectory_text};
+use crate::{CameraModel, IoError, OutputFolder, TUM_DEPTH_SCALE};
+use std::fmt::Write;
+use trundle_core::{PinholeCamera, Pose2, Pose3, Stamp};
+
+/// Writes a TUM RGB-D folder that [`crate::TumSequence`], evo and ORB-SLAM programs read as it is.
+///
+/// Images go to disk as they come; the lists, ground truth, odometry and calibration at [`TumWriter::finish`], each by
+/// rising stamp in whatever order it came. Names of images sort as their stamps do.
+#[derive(Debug)]
+pub struct TumWriter<'f> {
+    folder: &'f OutputFolder,
+    camera: PinholeCamera,
+    rate_hz: f64,
+    frames: Vec<Stamp>,
+    ground_truth: Vec<(Stamp, Pose3)>,
+    odometry: Vec<(Stamp, Pose2)>,
+}
+
+impl<'f> TumWriter<'f> {
+    /// Writes into `folder` what `camera` sees, nominally at `rate_hz`, which ORB-SLAM wants to know.
+    pub fn new(folder: &'f OutputFolder, camera: PinholeCamera, rate_hz: f64) -> Self {
+        let (frames, ground_truth, odometry) = Default::default();
+        Self { folder, camera, rate_hz, frames, ground_truth, odometry }
+    }
+
+    /// Writes an image, `rgb/STAMP.png` and `depth/STAMP.png`.
+    ///
+    /// # Errors
+    /// When its size is not the camera's, an image of the same stamp is there already, or a file cannot be written.
+    pub fn frame(&mut self, frame: &TumFrame) -> Result<(), IoError> {
+        let name = file_name("rgb", frame.stamp);
+        let expected = (self.camera.width(), self.camera.height());
+        let problem = if frame.size != expected {
+            let ((w, h), (cw, ch)) = (frame.size, expected);
+            Some(format!("image is {w} x {h} px, expected {cw} x {ch} as the camera"))
+        } else {
+            let twice = self.frames.contains(&frame.stamp);
+            twice.then(|| format!("a second image at {} s, expected stamps that differ", frame.stamp))
+        };
+        if let Some(problem) = problem {
+            return Err(IoError::malformed(&self.folder.target().join(name), problem));
+        }
+        self.folder.write(&name, &frame.color_png)?;
+        self.folder.write(&file_name("depth", frame.stamp), &frame.depth_png)?;
+        self.frames.push(frame.stamp);
+        Ok(())
+    }
+
+    /// Notes where the camera truly was, `world_from_camera`, the camera in its optical frame (x right, y down, z ahead).
+    pub fn ground_truth(&mut self, stamp: Stamp, world_from_camera: Pose3) {
+        self.ground_truth.push((stamp, world_from_camera));
+    }
+
+    /// Notes where the wheels believe the base to be, `odom_from_base`.
+    pub fn odometry(&mut self, stamp: Stamp, odom_from_base: Pose2) {
+        self.odometry.push((stamp, odom_from_base));
+    }
+
+    /// Writes the lists, `groundtruth.txt` and `odometry.txt` (where there is any), `camera.toml` and `orb_slam.yaml`.
+    ///
+    /// # Errors
+    /// When there was no image, or a file cannot be written.
+    pub fn finish(mut self) -> Result<(), IoError> {
+        if self.frames.is_empty() {
+            return Err(IoError::malformed(self.folder.target(), "no image to write, expected 1 or more"));
+        }
+        self.frames.sort_unstable();
+        let write = |name: &str, text: String| self.folder.write(name, text.as_bytes());
+        write("rgb.txt", list("colour images", "timestamp filename", &self.frames, &["rgb"]))?;
+        write("depth.txt", list("depth images", "timestamp filename", &self.frames, &["depth"]))?;
+        let pairs = "timestamp filename timestamp filename";
+        write("associations.txt", list("pairs of images", pairs, &self.frames, &["rgb", "depth"]))?;
+        if !self.ground_truth.is_empty() {
+            write("groundtruth.txt", trajectory_text(&by_stamp(self.ground_truth)))?;
+        }
+        if !self.odometry.is_empty() {
+            write("odometry.txt", odometry_text(&by_stamp(self.odometry)))?;
+        }
+        let model = CameraModel { camera: self.camera, depth_scale: TUM_DEPTH_SCALE };
+        write("camera.toml", model.to_toml())?;
+        write("orb_slam.yaml", orb_slam_yaml(&model, self.rate_hz))
+    }
+}
+
+/// By rising stamp, of equal stamps the first that came.
+fn by_stamp<T>(mut poses: Vec<(Stamp, T)>) -> Vec<(Stamp, T)> {
+    poses.sort_by_key(|(stamp, _)| *stamp);
+    poses.dedup_by_key(|(stamp, _)| *stamp);
+    poses
+}
+
+/// Seconds are padded, so that names sort as stamps do for any program that lists the folder.
+fn file_name(folder: &str, stamp: Stamp) -> String {
+    format!("{folder}/{:0>20}.png", stamp.to_string())
+}
+
+fn list(title: &str, columns: &str, frames: &[Stamp], folders: &[&str]) -> String {
+    let mut text = format!("# {title}\n# {columns}\n");
+    for &stamp in frames {
+        let columns: Vec<String> =
+            folders.iter().map(|folder| format!("{stamp} {}", file_name(folder, stamp))).collect();
+        writeln!(text, "{}", columns.join(" ")).expect("invariant: a String takes any text");
+    }
+    text
+}

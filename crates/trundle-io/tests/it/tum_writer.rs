@@ -1,0 +1,103 @@
+use crate::frame;
+use std::fs;
+use tempfile::TempDir;
+use trundle_core::{Distortion, PinholeCamera, Pose2, Pose3, RgbdImage, Stamp};
+use trundle_io::*;
+
+const SIZE: (usize, usize) = (40, 30);
+
+fn camera() -> PinholeCamera {
+    PinholeCamera::new(SIZE, (35.0, 36.5), (19.5, 14.25), Distortion::default()).unwrap()
+}
+
+/// Four images, 10 s apart, the last at 1000 s: more digits than the first.
+fn images() -> Vec<RgbdImage> {
+    [0, 10, 20, 1000]
+        .map(|s| frame(Stamp::from_nanos(s * 1_000_000_000 + 66_000_000), SIZE.0, SIZE.1))
+        .to_vec()
+}
+
+fn poses() -> Vec<(Stamp, Pose3)> {
+    let pose = |i: i64| Pose3::from_pose2(Pose2::new(i as f64 * 0.1, -0.25, 0.5));
+    (0..5).map(|i| (Stamp::from_nanos(i * 20_000_000), pose(i))).collect()
+}
+
+/// The folder as it is written, its parts handed over in an order that is not that of time.
+fn written() -> TempDir {
+    let dir = tempfile::tempdir().unwrap();
+    let folder = OutputFolder::create(&dir.path().join("run")).unwrap();
+    let mut writer = TumWriter::new(&folder, camera(), 15.0);
+    for image in images().iter().rev() {
+        writer.frame(&TumFrame::encode(image).unwrap()).unwrap();
+    }
+    for (i, (stamp, pose)) in poses().into_iter().rev().enumerate() {
+        writer.ground_truth(stamp, pose);
+        writer.ground_truth(stamp, Pose3::identity()); // a second one of the same moment is left out
+        writer.odometry(stamp, Pose2::new(i as f64, 1.0 / 3.0, -0.1));
+    }
+    writer.finish().unwrap();
+    folder.commit().unwrap();
+    dir
+}
+
+#[test]
+fn what_is_written_is_read_again() {
+    let dir = written();
+    let run = dir.path().join("run");
+    let model = CameraModel::read(&run.join("camera.toml")).unwrap();
+    assert_eq!(model, CameraModel { camera: camera(), depth_scale: TUM_DEPTH_SCALE });
+    let sequence = TumSequence::open(&run, model.depth_scale, 0.0).unwrap().with_size(SIZE.0, SIZE.1);
+    assert_eq!((sequence.len(), sequence.unpaired()), (4, 0));
+    for (image, read) in images().iter().zip(sequence.frames()) {
+        let read = read.unwrap();
+        assert!(read.stamp() == image.stamp() && read.color() == image.color());
+        let depths = image.depth().data().iter().zip(read.depth().data());
+        assert!(depths.into_iter().all(|(a, b)| (a - b).abs() <= 0.1001e-3), "half a unit of 0.2 mm");
+    }
+    let (truth, expected) = (sequence.ground_truth().unwrap(), poses());
+    assert_eq!(truth.len(), expected.len());
+    for ((stamp, pose), (other, known)) in truth.iter().zip(&expected) {
+        assert!(stamp == other && (pose.inverse() * *known).log().norm() < 1e-8);
+    }
+    let odometry = sequence.odometry().unwrap();
+    assert_eq!((odometry.len(), odometry[0]), (5, (Stamp::default(), Pose2::new(4.0, 1.0 / 3.0, -0.1))));
+}
+
+#[test]
+fn names_of_images_sort_as_their_stamps() {
+    let dir = written();
+    let run = dir.path().join("run");
+    for (list, folder) in [("rgb.txt", "rgb"), ("depth.txt", "depth")] {
+        let text = fs::read_to_string(run.join(list)).unwrap();
+        let listed: Vec<&str> =
+            text.lines().filter(|l| !l.starts_with('#')).map(|l| l.split(' ').nth(1).unwrap()).collect();
+        let entries = fs::read_dir(run.join(folder)).unwrap();
+        let mut found: Vec<String> =
+            entries.map(|e| format!("{folder}/{}", e.unwrap().file_name().display())).collect();
+        found.sort();
+        assert_eq!(listed, found);
+    }
+    let pairs = fs::read_to_string(run.join("associations.txt")).unwrap();
+    let last = "1000.066000000 rgb/0000001000.066000000.png 1000.066000000 depth/0000001000.066000000.png";
+    assert_eq!(pairs.lines().last(), Some(last));
+}
+
+#[test]
+fn wrong_frames_and_empty_folders_are_refused() {
+    let dir = tempfile::tempdir().unwrap();
+    let folder = OutputFolder::create(&dir.path().join("run")).unwrap();
+    let mut writer = TumWriter::new(&folder, camera(), 15.0);
+    let problem = |error: IoError| error.to_string().replace(&dir.path().display().to_string(), "DIR");
+    let frame_of = |w, h| TumFrame::encode(&frame(Stamp::from_nanos(5), w, h)).unwrap();
+    assert_eq!(
+        problem(writer.frame(&frame_of(20, 30)).unwrap_err()),
+        "DIR/run/rgb/0000000000.000000005.png: image is 20 x 30 px, expected 40 x 30 as the camera"
+    );
+    writer.frame(&frame_of(40, 30)).unwrap();
+    assert_eq!(
+        problem(writer.frame(&frame_of(40, 30)).unwrap_err()),
+        "DIR/run/rgb/0000000000.000000005.png: a second image at 0.000000005 s, expected stamps that differ"
+    );
+    let empty = TumWriter::new(&folder, camera(), 15.0);
+    assert_eq!(problem(empty.finish().unwrap_err()), "DIR/run: no image to write, expected 1 or more");
+}
