@@ -3,7 +3,8 @@
 //! [`OrbExtractor`] finds ORB features in an image; [`match_mutual`] pairs the descriptors of two images,
 //! [`rotation_consistent`] drops pairs that turn unlike the rest, [`FeatureGrid`] answers where in an image to look;
 //! [`estimate_rigid_motion`] finds the motion between two RGB-D frames from such pairs in spite of wrong ones, and
-//! [`refine_pose_by_reprojection`] polishes a pose against pixels. Everything is deterministic: the same input and seed
+//! [`refine_pose_by_reprojection`] polishes a pose against pixels. A [`Vocabulary`] turns descriptors into words, by which
+//! [`PlaceIndex`] finds places seen before. Everything is deterministic: the same input and seed
 //! give the same bits on any number of threads. The method and its sources: `docs/algorithms/orb.md`.
 
 mod feature_grid;
@@ -12,6 +13,7 @@ mod matching;
 mod motion;
 mod orb;
 mod rotation_consistency;
+mod vocabulary;
 
 pub use feature_grid::FeatureGrid;
 pub use features::{Descriptor, Features, Keypoint};
@@ -21,3 +23,4 @@ pub use motion::{
 };
 pub use orb::{OrbConfig, OrbExtractor};
 pub use rotation_consistency::rotation_consistent;
+pub use vocabulary::{BagOfWords, NodeId, PlaceIndex, Vocabulary, VocabularyConfig, VocabularyError};

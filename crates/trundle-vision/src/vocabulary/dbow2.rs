@@ -1,0 +1,107 @@
+use super::Vocabulary;
+use super::compact::VocabularyError;
+use super::tree::ListedNode;
+use crate::Descriptor;
+use std::fmt::Write;
+
+impl Vocabulary {
+    /// The text form of DBoW2 that ORB-SLAM programs read: a line `branching depth 0 0` (L1 score, tf-idf weights), then a
+    /// line a node, in the order of their numbers from 1: `parent is_leaf 32 bytes weight`.
+    pub fn to_dbow2_text(&self) -> String {
+        let mut text = format!("{} {} 0 0\n", self.branching(), self.depth());
+        for node in &self.nodes()[1..] {
+            write!(text, "{} {}", node.parent, u8::from(node.children == 0))
+                .expect("invariant: strings grow");
+            for byte in node.descriptor.0.iter().flat_map(|word| word.to_le_bytes()) {
+                write!(text, " {byte}").expect("invariant: strings grow");
+            }
+            writeln!(text, " {}", node.weight).expect("invariant: strings grow");
+        }
+        text
+    }
+
+    /// Reads the text form of DBoW2 (see [`Vocabulary::to_dbow2_text`]). Nodes get new numbers, level by level; scores
+    /// and weights other than L1 and tf-idf are taken as these.
+    ///
+    /// # Errors
+    /// When a line is not as it should be, with its number, or the nodes are no tree.
+    pub fn from_dbow2_text(text: &str) -> Result<Self, VocabularyError> {
+        let mut lines = (1..).zip(text.lines());
+        let (_, head) = lines.next().ok_or_else(|| bad_line(1, "the file is empty"))?;
+        let shape = numbers::<usize>(head, 1)?;
+        let [branching, depth, ..] = shape[..] else {
+            return Err(bad_line(1, "expected 'branching depth scoring weighting'"));
+        };
+        let rest = lines.filter(|(_, line)| !line.trim().is_empty());
+        let list: Vec<ListedNode> =
+            rest.map(|(number, line)| node(line, number)).collect::<Result<_, _>>()?;
+        Ok(Self::from_list(branching, depth, &list)?)
+    }
+}
+
+fn node(line: &str, number: usize) -> Result<ListedNode, VocabularyError> {
+    let fields: Vec<&str> = line.split_whitespace().collect();
+    let [parent, is_leaf, bytes @ .., weight] = &fields[..] else {
+        return Err(bad_line(number, "expected 'parent is_leaf 32 bytes weight'"));
+    };
+    if bytes.len() != 32 {
+        return Err(bad_line(number, &format!("{} bytes of descriptor, expected 32", bytes.len())));
+    }
+    let bytes = numbers::<u8>(&bytes.join(" "), number)?;
+    let word = |chunk: &[u8]| chunk.iter().rev().fold(0, |word, byte| word << 8 | u64::from(*byte));
+    let words: Vec<u64> = bytes.chunks_exact(8).map(word).collect();
+    Ok(ListedNode {
+        parent: one(parent, number)?,
+        is_leaf: one::<u8>(is_leaf, number)? != 0,
+        descriptor: Descriptor([words[0], words[1], words[2], words[3]]),
+        weight: one(weight, number)?,
+    })
+}
+
+fn numbers<T: std::str::FromStr>(line: &str, number: usize) -> Result<Vec<T>, VocabularyError> {
+    line.split_whitespace().map(|field| one(field, number)).collect()
+}
+
+fn one<T: std::str::FromStr>(field: &str, number: usize) -> Result<T, VocabularyError> {
+    field.parse().map_err(|_| bad_line(number, &format!("'{field}' is no number of its kind")))
+}
+
+fn bad_line(number: usize, problem: &str) -> VocabularyError {
+    VocabularyError::Line { number, problem: problem.to_owned() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::vocabulary::VocabularyConfig;
+
+    pub(crate) fn trained() -> Vocabulary {
+        let feature =
+            |i: u64| Descriptor(std::array::from_fn(|k| (i + k as u64).wrapping_mul(0x9E37_79B9_7F4A_7C15)));
+        let images: Vec<Vec<Descriptor>> =
+            (0..8).map(|n| (n * 40..n * 40 + 90).map(feature).collect()).collect();
+        let config = VocabularyConfig { branching: 4, depth: 3, ..VocabularyConfig::default() };
+        Vocabulary::train(&images, &config, 5).unwrap()
+    }
+
+    #[test]
+    fn what_is_written_reads_back_to_the_last_bit() {
+        let text = trained().to_dbow2_text();
+        assert!(text.starts_with("4 3 0 0\n0 0 "));
+        assert_eq!(Vocabulary::from_dbow2_text(&text).unwrap(), trained());
+    }
+
+    #[test]
+    fn broken_lines_are_named() {
+        let text = trained().to_dbow2_text();
+        let refused = |text: &str| Vocabulary::from_dbow2_text(text).unwrap_err().to_string();
+        assert_eq!(refused(""), "line 1: the file is empty");
+        assert_eq!(refused("4 x"), "line 1: 'x' is no number of its kind");
+        assert_eq!(refused("4"), "line 1: expected 'branching depth scoring weighting'");
+        assert_eq!(refused("4 3 0 0\n0 1 7 0.5"), "line 2: 1 bytes of descriptor, expected 32");
+        let cut = &text[..text.len() - 40];
+        assert!(refused(cut).contains("bytes of descriptor, expected 32"), "{}", refused(cut));
+        let odd = text.replacen("\n0 0 ", "\n7 0 ", 1);
+        assert_eq!(refused(&odd), "parent of vocabulary node 1 is 7, expected an inner node before it");
+    }
+}
