@@ -1,3 +1,4 @@
+use crate::sim::SimArgs;
 use clap::{Args, Parser, Subcommand};
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -23,6 +24,8 @@ pub enum Command {
     Slam(SlamArgs),
     /// Plan on a map: way-points, curve and trajectory.
     Plan(PlanArgs),
+    /// Drive a simulated robot through a scene and record what it sees.
+    Sim(SimArgs),
     /// Print the whole robot file with its defaults, or check one.
     Config(ConfigArgs),
 }

@@ -13,6 +13,7 @@ mod robot_file;
 mod run;
 mod run_output;
 mod run_table;
+mod sim;
 mod slam;
 mod slam_output;
 mod view;
@@ -46,6 +47,7 @@ fn run(cli: Cli) -> Result<Outcome, Failure> {
         Command::Replay(args) => with_threads(&args.common, || replay::run(&args)),
         Command::Slam(args) => with_threads(&args.common, || slam::run(&args)),
         Command::Plan(args) => with_threads(&args.common, || plan::run(&args)),
+        Command::Sim(args) => with_threads(&args.common, || sim::run(&args)),
         Command::Config(args) => robot_file::print(&args),
     }
 }

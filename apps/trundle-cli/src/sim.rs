@@ -1,0 +1,67 @@
+//! `trundle sim`: drives through a simulated scene and records what the robot saw.
+
+mod args;
+mod data_set;
+mod driver;
+mod journey;
+mod map;
+mod scene;
+mod table;
+
+pub use args::SimArgs;
+
+use crate::{Outcome, console, failure::Failure};
+use data_set::DataSet;
+use driver::Driver;
+use journey::Journey;
+use trundle::io::OutputFolder;
+use trundle::sim::{HeightBand, SimConfig, SimError, Simulator};
+
+impl From<SimError> for Failure {
+    fn from(error: SimError) -> Self {
+        Self::Input(error.to_string())
+    }
+}
+
+/// `trundle sim`.
+pub fn run(args: &SimArgs) -> Result<Outcome, Failure> {
+    let Some(name) = args.scene.as_deref().filter(|_| !args.list) else {
+        console::table(&scene::list());
+        return Ok(Outcome::Reached);
+    };
+    let config = configured(args)?;
+    let band = match args.band.as_deref() {
+        Some(&[low, high]) => HeightBand::new(low, high)?,
+        _ => HeightBand::new(config.kobuki.step_over, config.kobuki.height)?,
+    };
+    let mut driver = Driver::read(args)?;
+    let scene = scene::load(name, args.seed)?;
+    if let Some(file) = &args.map {
+        map::write(file, &scene, args.resolution, band)?;
+    }
+    if args.wants_only_map() {
+        return Ok(Outcome::Reached);
+    }
+    let mut robot = Simulator::new(scene, config, args.seed)?;
+    let folder = args.record.as_deref().map(OutputFolder::create).transpose()?;
+    let mut data = folder.as_ref().map(|folder| DataSet::new(folder, &robot)).transpose()?;
+    let journey = Journey::drive(args, &mut robot, &mut driver, data.as_mut())?;
+    if let Some(data) = data {
+        data.finish(&robot, args.resolution, band, &journey.summary(args, name))?;
+    }
+    let place = folder.map(OutputFolder::commit).transpose()?;
+    if !args.common.quiet {
+        journey.say(name, place.as_deref(), &robot);
+    }
+    Ok(if journey.is_complete { Outcome::Reached } else { Outcome::Missed })
+}
+
+/// The simulated robot that the arguments ask for.
+fn configured(args: &SimArgs) -> Result<SimConfig, Failure> {
+    let mut config = SimConfig { camera: args.camera.camera(), ..SimConfig::default() };
+    if let Some(rate) = args.rate {
+        config.camera_rate_hz = rate;
+    }
+    let config = if args.no_noise { config.without_noise() } else { config };
+    Ok(config.validated()?)
+}

@@ -1,0 +1,102 @@
+use crate::args::Common;
+use clap::{Args, ValueEnum};
+use std::path::PathBuf;
+use trundle::core::PinholeCamera;
+
+/// `trundle sim`
+#[derive(Debug, Args)]
+#[command(after_help = "Example: trundle sim office --follow waypoints.txt --record out/office\n\n\
+    Exit code: 0 done, 1 a way-point was not reached, 2 bad input.")]
+pub struct SimArgs {
+    /// A built-in scene (--list), a scene file (.toml), a .glb or .gltf, or a map (.yaml) raised to walls.
+    #[arg(required_unless_present = "list")]
+    pub scene: Option<String>,
+    /// Show the built-in scenes.
+    #[arg(long)]
+    pub list: bool,
+    /// Seed of the scene's furniture and textures and of all noise.
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub seed: u64,
+    /// Drive by commands, a line each: t v omega (s, m/s, rad/s).
+    #[arg(long, value_name = "FILE", group = "driver")]
+    pub drive: Option<PathBuf>,
+    /// Drive to way-points, a line each: x y heading_deg (m, m, deg, world frame).
+    #[arg(long, value_name = "FILE", group = "driver")]
+    pub follow: Option<PathBuf>,
+    /// Drive by hand: arrows or WASD, space to stop, q to quit; shows a page with what the robot sees.
+    #[arg(long, group = "driver")]
+    pub keys: bool,
+    /// Stop after so many seconds of the robot's time [default: when the drive is over, 5 where there is none]
+    #[arg(long, value_name = "S", value_parser = seconds, allow_negative_numbers = true)]
+    pub duration: Option<f64>,
+    /// Write a TUM RGB-D folder: images, ground truth, odometry, calibration, the true map.
+    #[arg(long, value_name = "DIR")]
+    pub record: Option<PathBuf>,
+    /// Write the true occupancy grid; without a drive, duration or recording, do nothing else.
+    #[arg(long, value_name = "FILE.yaml")]
+    pub map: Option<PathBuf>,
+    /// Side of the map's cells, m.
+    #[arg(long, value_name = "M", default_value_t = 0.05, value_parser = positive, allow_negative_numbers = true)]
+    pub resolution: f64,
+    /// Heights between which something is in the way, m, for the map [default: the robot's]
+    #[arg(long, num_args = 2, value_names = ["LOW", "HIGH"], value_parser = number, allow_negative_numbers = true)]
+    pub band: Option<Vec<f64>>,
+    /// The camera.
+    #[arg(long, value_enum, default_value_t = CameraArg::KinectV2)]
+    pub camera: CameraArg,
+    /// Images a second.
+    #[arg(long, value_name = "HZ", value_parser = positive, allow_negative_numbers = true)]
+    pub rate: Option<f64>,
+    /// No noise in camera, wheels and gyro.
+    #[arg(long)]
+    pub no_noise: bool,
+    /// What every command takes.
+    #[command(flatten)]
+    pub common: Common,
+}
+
+/// A camera that can be simulated.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum CameraArg {
+    /// Kinect V2: 512 x 424.
+    KinectV2,
+    /// Kinect v1, as of TUM's sequences: 640 x 480.
+    KinectV1,
+}
+
+impl CameraArg {
+    /// Its intrinsics.
+    pub fn camera(self) -> PinholeCamera {
+        match self {
+            Self::KinectV2 => PinholeCamera::kinect_v2(),
+            Self::KinectV1 => PinholeCamera::kinect_v1(),
+        }
+    }
+}
+
+impl SimArgs {
+    /// Whether the map is all that is asked for.
+    pub fn wants_only_map(&self) -> bool {
+        let drives = self.drive.is_some() || self.follow.is_some() || self.keys;
+        self.map.is_some() && !drives && self.duration.is_none() && self.record.is_none()
+    }
+}
+
+fn seconds(text: &str) -> Result<f64, String> {
+    let seconds = number(text)?;
+    if seconds > 0.0 && seconds <= 1e6 {
+        Ok(seconds)
+    } else {
+        Err(format!("{seconds} s, expected more than 0 and at most 1e6"))
+    }
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    let value = number(text)?;
+    if value > 0.0 { Ok(value) } else { Err(format!("{value}, expected a number above 0")) }
+}
+
+fn number(text: &str) -> Result<f64, String> {
+    let value = text.trim().parse::<f64>().ok().filter(|value| value.is_finite());
+    value.ok_or_else(|| format!("'{text}', expected a finite number"))
+}

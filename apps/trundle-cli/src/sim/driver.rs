@@ -1,0 +1,82 @@
+use super::SimArgs;
+use crate::failure::Failure;
+use std::path::Path;
+use trundle::core::{Invalid, Pose2, Stamp, Twist2};
+use trundle::io::IoError;
+use trundle::sim::{CommandScript, Following, WaypointFollower};
+
+/// A robot that nobody drives is watched for so long, s.
+const STANDING: f64 = 5.0;
+
+/// A robot that has arrived is watched for so long, s: what still rolls counts.
+const AFTERMATH: f64 = 0.5;
+
+/// Who drives.
+pub enum Driver {
+    /// Nobody.
+    Nobody,
+    /// Commands by the clock.
+    Script(CommandScript),
+    /// Way-points by the true pose; when it came to its end.
+    Waypoints(Box<WaypointFollower>, Option<Stamp>),
+}
+
+impl Driver {
+    /// The driver that the arguments ask for.
+    ///
+    /// # Errors
+    /// When its file cannot be read, or a line of it is wrong.
+    pub fn read(args: &SimArgs) -> Result<Self, Failure> {
+        if let Some(file) = &args.drive {
+            return Ok(Self::Script(parsed(file, CommandScript::parse)?));
+        }
+        if let Some(file) = &args.follow {
+            return Ok(Self::Waypoints(Box::new(parsed(file, WaypointFollower::parse)?), None));
+        }
+        Ok(Self::Nobody)
+    }
+
+    /// What to drive now that the robot truly stands at `pose`.
+    pub fn twist(&mut self, stamp: Stamp, pose: Pose2) -> Twist2 {
+        match self {
+            Self::Nobody => Twist2::ZERO,
+            Self::Script(script) => script.at(stamp.as_secs()),
+            Self::Waypoints(follower, ended) => {
+                let twist = follower.step(stamp, pose);
+                if ended.is_none() && !matches!(follower.state(), Following::Driving { .. }) {
+                    *ended = Some(stamp);
+                }
+                twist
+            }
+        }
+    }
+
+    /// When the drive is over, s, where that is known.
+    pub fn end(&self) -> Option<f64> {
+        match self {
+            Self::Nobody => Some(STANDING),
+            Self::Script(script) => Some(script.duration().max(1e-3)),
+            Self::Waypoints(_, ended) => ended.map(|stamp| stamp.as_secs() + AFTERMATH),
+        }
+    }
+
+    /// Way-points reached and way-points in all, where there are any.
+    pub fn waypoints(&self) -> Option<(usize, usize)> {
+        let Self::Waypoints(follower, _) = self else { return None };
+        let count = follower.waypoints().len();
+        Some(match follower.state() {
+            Following::Arrived => (count, count),
+            Following::Driving { waypoint } | Following::Blocked { waypoint } => (waypoint, count),
+        })
+    }
+}
+
+fn parsed<T>(file: &Path, parse: impl Fn(&str) -> Result<T, Invalid>) -> Result<T, Failure> {
+    let text = std::fs::read_to_string(file).map_err(|error| unreadable(file, error))?;
+    parse(&text).map_err(|invalid| Failure::Input(format!("{}: {invalid}", file.display())))
+}
+
+/// A file that cannot be read, in the words of every other such error.
+pub fn unreadable(file: &Path, source: std::io::Error) -> Failure {
+    Failure::Io(IoError::System { path: file.to_owned(), action: "read", source })
+}
