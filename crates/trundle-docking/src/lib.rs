@@ -1,6 +1,7 @@
 //! Fine positioning in narrow spaces: rotations and straight moves, footprint-exact.
 
 mod config;
+pub mod corridor;
 pub mod geometry;
 mod limits;
 mod manoeuvre;

@@ -1,0 +1,52 @@
+//! Corridor problems by seed, solved and judged: prints a table.
+//!
+//! `cargo run --release -p trundle-docking --example corridor_bench -- --problems 5000`
+
+mod judge;
+
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+use std::time::Instant;
+use trundle_docking::corridor::{Problem, generate};
+use trundle_docking::{Docker, DockingConfig, Method, Plan};
+
+fn main() {
+    let count = argument("--problems", 5000);
+    let seed = argument("--seed", 1) as u64;
+    let mut rng = ChaCha8Rng::seed_from_u64(seed);
+    let problems: Vec<Problem> = (0..count).map(|i| generate(format!("{seed}-{i}"), &mut rng)).collect();
+    for method in [Method::Optimal, Method::Paper] {
+        let docker =
+            Docker::new(DockingConfig { method, margin: 0.0, ..DockingConfig::default() }).expect("valid");
+        let (mut solved, mut times, mut failed) = (0, Vec::new(), Vec::new());
+        let mut legs = [0; 40];
+        for problem in &problems {
+            let scene = problem.scene().expect("valid");
+            let clock = Instant::now();
+            let plan =
+                docker.plan(&problem.footprint, &scene, problem.start, problem.goal).expect("free ends");
+            times.push(clock.elapsed().as_secs_f64() * 1e3);
+            match plan {
+                Plan::Found(solution) if judge::is_good(problem, &solution.manoeuvre) => {
+                    solved += 1;
+                    legs[solution.manoeuvre.steps().len()] += 1;
+                }
+                Plan::Found(_) => println!("{method:?} {}: not good", problem.name),
+                Plan::Impossible(_) => failed.push(problem.name.clone()),
+            }
+        }
+        times.sort_by(f64::total_cmp);
+        println!(
+            "{method:?}: solved {solved} of {count}; planning median {:.2} ms, p99 {:.2} ms, max {:.2} ms; steps {legs:?}",
+            times[times.len() / 2],
+            times[times.len() * 99 / 100],
+            times[times.len() - 1]
+        );
+        println!("failed: {:?}", &failed[..failed.len().min(30)]);
+    }
+}
+
+fn argument(name: &str, default: usize) -> usize {
+    let mut arguments = std::env::args().skip_while(|a| a != name).skip(1);
+    arguments.next().map_or(default, |value| value.parse().expect("a number"))
+}
