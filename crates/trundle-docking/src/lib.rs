@@ -2,6 +2,7 @@
 
 mod config;
 pub mod corridor;
+mod flood;
 pub mod geometry;
 mod limits;
 mod manoeuvre;

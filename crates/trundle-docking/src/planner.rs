@@ -1,6 +1,6 @@
 use crate::config::{DockingConfig, Method};
 use crate::manoeuvre::Manoeuvre;
-use crate::optimal::{self, Task};
+use crate::optimal::{self, Outcome, Task};
 use crate::paper;
 use crate::scene::{Blocker, Scene};
 use crate::space::Space;
@@ -94,17 +94,31 @@ impl Docker {
         let task = Task { start, goal, limits, reach: self.config.reach };
         let near = scene.around(task.center(), task.half() + footprint.circumscribed_radius() + 0.1);
         let mut space = Space::new(footprint, margin, &near);
-        let manoeuvre = match self.config.method {
-            Method::Paper => paper::plan(&space, start, goal, &limits, &self.config.paper),
-            Method::Optimal => optimal::find(task, &mut space, self.config.search_nodes).map(|(_, legs)| {
-                let (_, motions) = legs.motions(&task, &mut space).expect("invariant: found legs are free");
-                Manoeuvre::new(start, &motions, limits)
-            }),
+        let outcome = match self.config.method {
+            Method::Paper => return Ok(self.by_paper(&space, start, goal, margin)),
+            Method::Optimal => {
+                optimal::find(task, &mut space, self.config.search_nodes, self.config.position_tolerance)
+            }
         };
-        Ok(match manoeuvre {
+        Ok(match outcome {
+            Outcome::Found((_, legs)) => {
+                let (_, motions) = legs.motions(&task, &mut space).expect("invariant: found legs are free");
+                Plan::Found(Solution {
+                    manoeuvre: Manoeuvre::new(start, &motions, limits),
+                    bound: 0.0,
+                    margin,
+                })
+            }
+            Outcome::Apart(by) => Plan::Impossible(Impossible { by, proven: true }),
+            Outcome::Nothing => Plan::Impossible(Impossible { by: None, proven: false }),
+        })
+    }
+
+    fn by_paper(&self, space: &Space<'_>, start: Pose2, goal: Pose2, margin: f64) -> Plan {
+        match paper::plan(space, start, goal, &self.config.limits, &self.config.paper) {
             Some(manoeuvre) => Plan::Found(Solution { manoeuvre, bound: 0.0, margin }),
             None => Plan::Impossible(Impossible { by: None, proven: false }),
-        })
+        }
     }
 
     /// The margin that start and goal leave, m.

@@ -20,6 +20,7 @@ fn main() {
             Docker::new(DockingConfig { method, margin: 0.0, ..DockingConfig::default() }).expect("valid");
         let (mut solved, mut times, mut failed) = (0, Vec::new(), Vec::new());
         let mut legs = [0; 40];
+        let mut proven = 0;
         for problem in &problems {
             let scene = problem.scene().expect("valid");
             let clock = Instant::now();
@@ -32,12 +33,13 @@ fn main() {
                     legs[solution.manoeuvre.steps().len()] += 1;
                 }
                 Plan::Found(_) => println!("{method:?} {}: not good", problem.name),
+                Plan::Impossible(impossible) if impossible.proven => proven += 1,
                 Plan::Impossible(_) => failed.push(problem.name.clone()),
             }
         }
         times.sort_by(f64::total_cmp);
         println!(
-            "{method:?}: solved {solved} of {count}; planning median {:.2} ms, p99 {:.2} ms, max {:.2} ms; steps {legs:?}",
+            "{method:?}: solved {solved} of {count}, {proven} proven impossible; planning median {:.2} ms, p99 {:.2} ms, max {:.2} ms; steps {legs:?}",
             times[times.len() / 2],
             times[times.len() * 99 / 100],
             times[times.len() - 1]

@@ -80,8 +80,8 @@ pub fn beam(search: &mut Search<'_, '_>, width: usize, cell: f64, sector: f64) -
 }
 
 /// The nodes one leg beyond a node.
-fn spread(search: &Search<'_, '_>, node: &Node, index: usize, fan: &[Ray], children: &mut Vec<Node>) {
-    let task = &search.task;
+fn spread(search: &mut Search<'_, '_>, node: &Node, index: usize, fan: &[Ray], children: &mut Vec<Node>) {
+    let task = search.task;
     for ray in fan {
         // The first ray is the heading it came on: going on along it is no new leg.
         if index > 0 && ray.cost == 0.0 {

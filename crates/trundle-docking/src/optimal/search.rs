@@ -1,6 +1,7 @@
 use super::legs::Legs;
 use super::rays::{Ray, rays};
 use super::task::Task;
+use crate::flood::Guide;
 use crate::space::Space;
 use trundle_core::{Pose2, Vector2, wrap_angle};
 
@@ -15,6 +16,8 @@ pub struct Search<'s, 'a> {
     pub goal_rays: Vec<Ray>,
     /// The best legs so far and their time, s.
     pub best: Option<(f64, Legs)>,
+    /// What leads the search instead of [`Search::estimate`]'s pairs of legs, where these lead astray.
+    pub guide: Option<Guide<'s, 'a>>,
     tails: Vec<Tail>,
     prefix: Legs,
 }
@@ -35,7 +38,7 @@ impl<'s, 'a> Search<'s, 'a> {
     pub fn new(task: Task, space: &'s mut Space<'a>, count: usize, finest: f64) -> Self {
         let mut goal_rays = Vec::new();
         rays(&task, space, &task.goal, count, finest, &mut goal_rays);
-        Self { task, space, goal_rays, best: None, tails: Vec::new(), prefix: Legs::default() }
+        Self { task, space, goal_rays, best: None, guide: None, tails: Vec::new(), prefix: Legs::default() }
     }
 
     /// The time to beat, s.
@@ -119,7 +122,10 @@ impl<'s, 'a> Search<'s, 'a> {
 
     /// An estimate of the time from a base at rest at `pose` to the goal, s: the best of a few pairs of legs, no contact
     /// considered but of the last leg.
-    pub fn estimate(&self, pose: &Pose2) -> f64 {
+    pub fn estimate(&mut self, pose: &Pose2) -> f64 {
+        if let Some(guide) = &mut self.guide {
+            return guide.seconds(pose);
+        }
         let rest = self.task.goal.position() - pose.position();
         let task = &self.task;
         let step = (self.goal_rays.len() / 8).max(1);

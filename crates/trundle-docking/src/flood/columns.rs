@@ -1,0 +1,123 @@
+use crate::geometry::Arc;
+use crate::space::Space;
+use std::f64::consts::TAU;
+use trundle_core::{Pose2, Vector2};
+
+/// A free gap of headings over a cell: the cell's place and the gap's in the store.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Node {
+    /// The cell, row by row.
+    pub cell: u32,
+    /// The gap, in [`Columns::gap`].
+    pub gap: u32,
+}
+
+/// Free headings over the cells of a square, found as they are asked for.
+#[derive(Debug)]
+pub struct Columns<'s, 'a> {
+    space: &'s mut Space<'a>,
+    low: Vector2,
+    /// Side of a cell, m.
+    pub side: f64,
+    count: usize,
+    /// Where a cell's gaps begin, and how many; `u32::MAX` when not yet asked for.
+    ranges: Vec<(u32, u32)>,
+    gaps: Vec<Arc>,
+    blocked: Vec<Arc>,
+}
+
+impl<'s, 'a> Columns<'s, 'a> {
+    /// Cells of `side` (m) over the square of half side `half` (m) about `center`.
+    pub fn new(space: &'s mut Space<'a>, center: Vector2, half: f64, side: f64) -> Self {
+        let count = (2.0 * half / side).ceil() as usize + 1;
+        let low = center - Vector2::repeat(count as f64 * side / 2.0);
+        let ranges = vec![(u32::MAX, 0); count * count];
+        Self { space, low, side, count, ranges, gaps: Vec::new(), blocked: Vec::new() }
+    }
+
+    /// The number of gaps found so far.
+    pub fn gaps_found(&self) -> usize {
+        self.gaps.len()
+    }
+
+    /// Footprint and obstacles.
+    pub fn space(&mut self) -> &mut Space<'a> {
+        self.space
+    }
+
+    /// The headings of a gap.
+    pub fn gap(&self, node: Node) -> Arc {
+        self.gaps[node.gap as usize]
+    }
+
+    /// The middle of a cell, m.
+    pub fn center(&self, cell: u32) -> Vector2 {
+        let (row, column) = (cell as usize / self.count, cell as usize % self.count);
+        self.low + Vector2::new(column as f64 + 0.5, row as f64 + 0.5) * self.side
+    }
+
+    /// The node that holds a pose, if it is free there.
+    pub fn node_at(&mut self, pose: &Pose2) -> Option<Node> {
+        let at = (pose.position() - self.low) / self.side;
+        let inside = at.min() >= 0.0 && at.max() < self.count as f64;
+        let cell = inside.then(|| (at.y as usize * self.count + at.x as usize) as u32)?;
+        let (first, many) = self.gaps_of(cell);
+        (first..first + many)
+            .map(|gap| Node { cell, gap })
+            .find(|&node| meets(&self.gap(node), pose.theta, 0.0))
+    }
+
+    /// Adds the nodes of the four neighbouring cells whose headings meet a node's.
+    pub fn neighbours(&mut self, node: Node, found: &mut Vec<Node>) {
+        found.clear();
+        let (row, column) = (node.cell as usize / self.count, node.cell as usize % self.count);
+        let (mine, last) = (self.gap(node), self.count - 1);
+        let sides = [
+            (row > 0, -(self.count as i64)),
+            (row < last, self.count as i64),
+            (column > 0, -1),
+            (column < last, 1),
+        ];
+        for (_, step) in sides.into_iter().filter(|(inside, _)| *inside) {
+            let cell = (i64::from(node.cell) + step) as u32;
+            let (first, many) = self.gaps_of(cell);
+            let nodes = (first..first + many).map(|gap| Node { cell, gap });
+            found.extend(nodes.filter(|&other| {
+                let gap = self.gap(other);
+                meets(&mine, gap.start, gap.length)
+            }));
+        }
+    }
+
+    fn gaps_of(&mut self, cell: u32) -> (u32, u32) {
+        let known = self.ranges[cell as usize];
+        if known.0 != u32::MAX {
+            return known;
+        }
+        self.blocked.clear();
+        let center = self.center(cell);
+        self.space.blocked_headings(center, &mut self.blocked);
+        let first = self.gaps.len();
+        for (i, arc) in self.blocked.iter().enumerate() {
+            let next = if i + 1 < self.blocked.len() {
+                self.blocked[i + 1].start
+            } else {
+                self.blocked[0].start + TAU
+            };
+            let start = arc.start + arc.length;
+            if next - start > 1e-9 {
+                self.gaps.push(Arc { start: start.rem_euclid(TAU), length: next - start });
+            }
+        }
+        if self.blocked.is_empty() {
+            self.gaps.push(Arc::FULL);
+        }
+        self.ranges[cell as usize] = (first as u32, (self.gaps.len() - first) as u32);
+        self.ranges[cell as usize]
+    }
+}
+
+/// Whether headings from `start` on over `length` share one with `gap`.
+fn meets(gap: &Arc, start: f64, length: f64) -> bool {
+    (start - gap.start).rem_euclid(TAU) <= gap.length || (gap.start - start).rem_euclid(TAU) <= length
+}
