@@ -6,14 +6,25 @@ use trundle_core::Vector2;
 #[derive(Debug, Clone, PartialEq)]
 pub struct BezierPiece {
     control: Vec<Vector2>,
+    /// Of u^k.
+    powers: Vec<Vector2>,
     span: f64,
+}
+
+/// Position, and first and second derivative by chord length.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Jet {
+    pub(crate) position: Vector2,
+    pub(crate) derivative: Vector2,
+    pub(crate) second: Vector2,
 }
 
 impl BezierPiece {
     /// A piece from its control points (two or more) and its chord length, m, above 0.
     pub(crate) fn new(control: Vec<Vector2>, span: f64) -> Self {
         debug_assert!(control.len() >= 2 && span > 0.0, "{} control points over {span} m", control.len());
-        Self { control, span }
+        let powers = monomials(&control);
+        Self { control, powers, span }
     }
 
     /// The control points, map frame, m.
@@ -27,15 +38,20 @@ impl BezierPiece {
     }
 
     /// The coefficients (a_i, b_i) of x = sum a_i u^i, y = sum b_i u^i: the form of \[Li18\], of the same polynomial.
-    pub fn monomials(&self) -> Vec<Vector2> {
-        let n = self.degree();
-        let mut differences = self.control.clone();
-        let mut coefficients = Vec::with_capacity(n + 1);
-        for i in 0..=n {
-            coefficients.push(differences[0] * binomial(n, i));
-            differences = differences.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    pub fn monomials(&self) -> &[Vector2] {
+        &self.powers
+    }
+
+    /// Position and derivatives at `u` by Horner's rule: quicker than one by one, and as good to 1e-12 m.
+    pub(crate) fn jet(&self, u: f64) -> Jet {
+        let (mut p, mut d, mut h) = (Vector2::zeros(), Vector2::zeros(), Vector2::zeros());
+        for coefficient in self.powers.iter().rev() {
+            h = h * u + d;
+            d = d * u + p;
+            p = p * u + coefficient;
         }
-        coefficients
+        let per_metre = 1.0 / self.span;
+        Jet { position: p, derivative: d * per_metre, second: h * (2.0 * per_metre * per_metre) }
     }
 
     /// The position at `u`, map frame, m.
@@ -60,6 +76,19 @@ impl BezierPiece {
     fn degree(&self) -> usize {
         self.control.len() - 1
     }
+}
+
+fn monomials(control: &[Vector2]) -> Vec<Vector2> {
+    let n = control.len() - 1;
+    let mut differences = control.to_vec();
+    let mut coefficient = |i: usize| {
+        let first = differences[0] * binomial(n, i);
+        for k in 0..n - i {
+            differences[k] = differences[k + 1] - differences[k];
+        }
+        first
+    };
+    (0..=n).map(&mut coefficient).collect()
 }
 
 /// Degrees that are evaluated without an allocation.
@@ -108,6 +137,10 @@ mod tests {
             assert!((d - piece.derivative(u)).norm() < 1e-8);
             let dd = (piece.derivative(u + h) - piece.derivative(u - h)) / (2.0 * h * 2.0);
             assert!((dd - piece.second_derivative(u)).norm() < 1e-7);
+            let jet = piece.jet(u);
+            assert!((jet.position - piece.position(u)).norm() < 1e-12);
+            assert!((jet.derivative - piece.derivative(u)).norm() < 1e-12);
+            assert!((jet.second - piece.second_derivative(u)).norm() < 1e-12);
         }
     }
 }

@@ -5,7 +5,7 @@
 //! keeps that room from that obstacle. Obstacles are taken nearest first; one that lies behind a plane already is done.
 //! With the control points of a Bezier piece inside, the whole piece keeps the room, by the convex hull.
 
-use crate::geometry::segment_to_square;
+use crate::geometry::{nearest_on_segment, segment_to_square};
 use crate::space::Space;
 use trundle_core::Vector2;
 
@@ -25,17 +25,18 @@ pub(crate) fn corridor(space: &Space<'_>, a: Vector2, b: Vector2, reach: f64, wa
     let high = a.sup(&b) + Vector2::repeat(reach);
     let half = space.field.geometry().resolution / 2.0;
     let mut planes = frame(space, a, b, (low, high), want);
-    let mut covered = Vec::new();
-    for (distance, centre) in obstacles(space, a, b, low, high, want) {
-        let nearest_corner = |normal: Vector2| normal.dot(&centre) - half * (normal.x.abs() + normal.y.abs());
-        if covered.iter().any(|(normal, face)| nearest_corner(*normal) >= *face - 1e-9) {
-            continue;
-        }
+    let mut left = obstacles(space, a, b, low, high, want);
+    while let Some((_, centre)) = left.iter().min_by(|(d, _), (e, _)| d.total_cmp(e)).copied() {
         let (on_segment, on_square) = segment_to_square(a, b, centre, half);
-        let Some(normal) = (on_square - on_segment).try_normalize(1e-9) else { continue };
+        let gap = on_square - on_segment;
+        let Some(normal) = gap.try_normalize(1e-9) else {
+            left.retain(|(_, other)| *other != centre);
+            continue;
+        };
         let face = normal.dot(&on_square);
-        covered.push((normal, face));
-        planes.push(HalfPlane { normal, offset: face - want.min(distance) });
+        planes.push(HalfPlane { normal, offset: face - want.min(gap.norm()) });
+        let reach = half * (normal.x.abs() + normal.y.abs());
+        left.retain(|(_, other)| normal.dot(other) - reach < face - 1e-9);
     }
     planes
 }
@@ -60,7 +61,8 @@ fn frame(
     ]
 }
 
-/// The outer squares of obstacles that could come within `want` of the window, nearest to the segment first.
+/// The outer squares of obstacles that could come within `want` of the window, and how far their middles are from the
+/// segment, squared.
 fn obstacles(
     space: &Space<'_>,
     a: Vector2,
@@ -73,9 +75,7 @@ fn obstacles(
     let wide = Vector2::repeat(want + half);
     let mut found = Vec::new();
     space.field.for_obstacle_rims_in(low - wide, high + wide, |centre| {
-        let (p, q) = segment_to_square(a, b, centre, half);
-        found.push(((p - q).norm(), centre));
+        found.push(((centre - nearest_on_segment(centre, a, b)).norm_squared(), centre));
     });
-    found.sort_by(|(d, _), (e, _)| d.total_cmp(e));
     found
 }

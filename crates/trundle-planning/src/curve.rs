@@ -1,4 +1,5 @@
-use crate::bezier::BezierPiece;
+use crate::bezier::{BezierPiece, Jet};
+use crate::corridor::HalfPlane;
 use crate::geometry::bearing;
 use trundle_core::{Pose2, Twist2, Vector2};
 
@@ -9,6 +10,22 @@ pub struct Curve {
     pieces: Vec<BezierPiece>,
     /// Where each piece begins, m; one more than pieces.
     begins: Vec<f64>,
+    /// Of each piece; empty for curves that were not fitted.
+    corridors: Vec<Vec<HalfPlane>>,
+    active: Vec<ActiveRow>,
+}
+
+/// A corridor's side that a control point leans on: without it the curve would be another.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ActiveRow {
+    /// Which piece.
+    pub piece: usize,
+    /// Which of its control points.
+    pub control: usize,
+    /// Which side of the piece's corridor.
+    pub plane: usize,
+    /// The Lagrange multiplier: by how much the objective falls for a metre of room.
+    pub multiplier: f64,
 }
 
 /// A curve's point with everything that timing asks for.
@@ -34,7 +51,12 @@ impl Curve {
         for piece in &pieces {
             begins.push(begins[begins.len() - 1] + piece.span());
         }
-        Self { pieces, begins }
+        Self { pieces, begins, corridors: vec![], active: vec![] }
+    }
+
+    /// The same, with the corridors that it was fitted into and the sides that it leans on.
+    pub(crate) fn within(self, corridors: Vec<Vec<HalfPlane>>, active: Vec<ActiveRow>) -> Self {
+        Self { corridors, active, ..self }
     }
 
     /// The straight line between two different points.
@@ -61,6 +83,17 @@ impl Curve {
         &self.pieces
     }
 
+    /// The convex free polygon of each piece: its control points, and so the piece, lie inside. Empty for straight lines
+    /// and braking arcs, which were measured instead.
+    pub fn corridors(&self) -> &[Vec<HalfPlane>] {
+        &self.corridors
+    }
+
+    /// The constraints that shape the curve.
+    pub fn active(&self) -> &[ActiveRow] {
+        &self.active
+    }
+
     /// The end of the parameter, m of chord.
     pub fn span(&self) -> f64 {
         self.begins[self.pieces.len()]
@@ -80,15 +113,19 @@ impl Curve {
 
     /// Position and tangent direction at `s`, map frame.
     pub fn pose(&self, s: f64) -> Pose2 {
-        let (piece, u) = self.locate(s);
-        let position = piece.position(u);
-        Pose2::new(position.x, position.y, bearing(piece.derivative(u)))
+        self.pose_and_curvature(s).0
     }
 
     /// The signed curvature at `s`, counter-clockwise, 1/m; 0 where the tangent vanishes.
     pub fn curvature(&self, s: f64) -> f64 {
+        self.pose_and_curvature(s).1
+    }
+
+    /// [`Curve::pose`] and [`Curve::curvature`] at once.
+    pub(crate) fn pose_and_curvature(&self, s: f64) -> (Pose2, f64) {
         let (piece, u) = self.locate(s);
-        bend(piece.derivative(u), piece.second_derivative(u))
+        let jet = piece.jet(u);
+        (pose(&jet), bend(jet.derivative, jet.second))
     }
 
     /// The length along the curve, m, by Gauss's rule over eighths of each piece.
@@ -103,18 +140,16 @@ impl Curve {
         for (piece, begin) in self.pieces.iter().zip(&self.begins) {
             let count = (crate::geometry::polyline_length(piece.control()) / spacing).ceil().clamp(4.0, 1e5);
             let step = 1.0 / count;
-            let (first, mut speed) = sample(piece, *begin, 0.0, arc);
+            let mut last = piece.jet(0.0);
             if samples.is_empty() {
-                samples.push(first);
+                samples.push(sample(&last, *begin, arc));
             }
             for k in 1..=count as usize {
                 let u = k as f64 * step;
-                let middle = piece.derivative(u - step / 2.0).norm();
-                let (mut next, next_speed) = sample(piece, *begin, u, arc);
-                arc += (speed + 4.0 * middle + next_speed) * step * piece.span() / 6.0;
-                next.arc = arc;
-                samples.push(next);
-                speed = next_speed;
+                let next = piece.jet(u);
+                arc += way_between(&last, &next, step * piece.span());
+                samples.push(sample(&next, begin + u * piece.span(), arc));
+                last = next;
             }
         }
         samples
@@ -127,12 +162,20 @@ impl Curve {
     }
 }
 
-/// A sample and the length of the derivative there.
-fn sample(piece: &BezierPiece, begin: f64, u: f64, arc: f64) -> (CurveSample, f64) {
-    let (position, derivative) = (piece.position(u), piece.derivative(u));
-    let pose = Pose2::new(position.x, position.y, bearing(derivative));
-    let curvature = bend(derivative, piece.second_derivative(u));
-    (CurveSample { s: begin + u * piece.span(), arc, pose, curvature }, derivative.norm())
+fn sample(jet: &Jet, s: f64, arc: f64) -> CurveSample {
+    CurveSample { s, arc, pose: pose(jet), curvature: bend(jet.derivative, jet.second) }
+}
+
+fn pose(jet: &Jet) -> Pose2 {
+    Pose2::new(jet.position.x, jet.position.y, bearing(jet.derivative))
+}
+
+/// The length of the curve over `span` m of chord, by the trapezoid rule with its correction at the ends.
+fn way_between(a: &Jet, b: &Jet, span: f64) -> f64 {
+    let speeds = (a.derivative.norm(), b.derivative.norm());
+    let change = |jet: &Jet, speed: f64| jet.derivative.dot(&jet.second) / speed.max(LEAST_SPEED);
+    let correction = (change(a, speeds.0) - change(b, speeds.1)) * span / 6.0;
+    (speeds.0 + speeds.1 + correction).max(0.0) * span / 2.0
 }
 
 /// Three-point Gauss over each eighth.

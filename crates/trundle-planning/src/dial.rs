@@ -34,6 +34,15 @@ impl Dial {
         self.left += 1;
     }
 
+    /// Like [`Dial::push`], but keys may fall, to half the reach below the key taken last; keys outside come as early, or
+    /// as late, as the reach allows.
+    pub(crate) fn push_near(&mut self, key: u32, entry: Entry) {
+        let half = self.lists.len() as u32 / 2;
+        let key = key.clamp(self.now.saturating_sub(half), self.now + half - 1);
+        self.now = self.now.min(key);
+        self.push(key, entry);
+    }
+
     /// Takes an entry with the lowest key.
     pub(crate) fn pop(&mut self) -> Option<(u32, Entry)> {
         if self.left == 0 {

@@ -13,6 +13,8 @@ mod dial;
 mod field;
 mod fit;
 mod geometry;
+mod guide;
+mod lattice;
 mod plan;
 mod planner;
 mod potential;
@@ -27,7 +29,8 @@ mod wave;
 
 pub use bezier::BezierPiece;
 pub use config::PlannerConfig;
-pub use curve::{Curve, CurveSample};
+pub use corridor::HalfPlane;
+pub use curve::{ActiveRow, Curve, CurveSample};
 pub use field::{DistanceField, FAR, UnknownIs};
 pub use fit::CurveConfig;
 pub use plan::{Plan, PlanResult};

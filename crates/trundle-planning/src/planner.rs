@@ -19,14 +19,8 @@ pub struct Planner {
     radius: f64,
     drive: Drive,
     wave: WaveFront,
-    field: Option<Known>,
-}
-
-/// The field of the last plan, and the grid that it came from.
-#[derive(Debug)]
-struct Known {
-    grid: OccupancyGrid,
-    field: DistanceField,
+    /// Of the last plan.
+    field: Option<DistanceField>,
 }
 
 impl Planner {
@@ -86,7 +80,7 @@ impl Planner {
 
     /// The distance field of the last plan, for pictures.
     pub fn field(&self) -> Option<&DistanceField> {
-        self.field.as_ref().map(|known| &known.field)
+        self.field.as_ref()
     }
 
     fn may_leave(&self) -> bool {
@@ -105,23 +99,22 @@ impl Planner {
             Ok(geometry) => geometry,
             Err(plan) => return plan,
         };
-        let known = self.known(geometry, grid);
+        let field = self.known(geometry, grid);
         let task =
-            Task { config: &self.config, radius: self.radius, drive: &self.drive, field: &known.field, grid };
+            Task { config: &self.config, radius: self.radius, drive: &self.drive, field: &field, grid };
         let plan = task.plan(&mut self.wave, start, twist, goal);
-        self.field = Some(known);
+        self.field = Some(field);
         plan
     }
 
-    /// The field over `geometry`: the last one where nothing changed, else a new one in its memory.
-    fn known(&mut self, geometry: GridGeometry, grid: &OccupancyGrid) -> Known {
+    /// The field over `geometry`: the last one, brought up to date, where it lies there.
+    fn known(&mut self, geometry: GridGeometry, grid: &OccupancyGrid) -> DistanceField {
         match self.field.take() {
-            Some(known) if *known.field.geometry() == geometry && known.grid == *grid => known,
-            last => {
-                let spent = last.map(|known| known.field);
-                let field = DistanceField::over(geometry, grid, self.config.unknown, spent);
-                Known { grid: grid.clone(), field }
+            Some(mut field) if *field.geometry() == geometry => {
+                field.update(grid);
+                field
             }
+            _ => DistanceField::over(geometry, grid, self.config.unknown),
         }
     }
 

@@ -11,13 +11,13 @@ pub struct RoomConfig {
     /// Clearance that is given up only where there is no other way, m, 0 to 1. Default 0.05: a cell and the tracking
     /// error of a Kobuki (ours).
     pub margin: f64,
-    /// Price of a metre without any clearance, on top of 1; falls to 0 at `margin`. 0 to 1000, default 4 (ours).
+    /// Price of a metre without any clearance, on top of 1; falls to 0 at `margin`. 0 to 100, default 4 (ours).
     pub margin_weight: f64,
     /// Clearance beyond which there is no need for more, m, 0 to 5. Default 0.25 (ours).
     pub comfort: f64,
     /// Price of a metre without any clearance, on top of 1; falls to 0 at `comfort`, squared. 0 to 10, default 0.2 (ours).
     pub comfort_weight: f64,
-    /// Price of a metre in unknown space, on top of 1. 0 to 1000, default 0.5 (ours): a known way that is half as long
+    /// Price of a metre in unknown space, on top of 1. 0 to 100, default 0.5 (ours): a known way that is half as long
     /// again is preferred.
     pub unknown_weight: f64,
     /// How far a start may stand inside the footprint's clearance and still be planned out of it, m, 0 to 1.
@@ -39,16 +39,29 @@ impl Default for RoomConfig {
 }
 
 impl RoomConfig {
+    /// The cost of a known metre with this clearance beside the footprint, m: 1 or more.
+    pub(crate) fn density(&self, clearance: f64) -> f64 {
+        let clearance = clearance.max(0.0);
+        let mut cost = 1.0;
+        if clearance < self.comfort {
+            cost += self.comfort_weight * (1.0 - clearance / self.comfort).powi(2);
+        }
+        if clearance < self.margin {
+            cost += self.margin_weight * (1.0 - clearance / self.margin);
+        }
+        cost
+    }
+
     /// Passes a valid configuration through.
     ///
     /// # Errors
     /// When a number is outside its range.
     pub fn validated(self) -> Result<Self, Invalid> {
         require_in("room.margin", self.margin, "m", 0.0, 1.0)?;
-        require_in("room.margin_weight", self.margin_weight, "", 0.0, 1000.0)?;
+        require_in("room.margin_weight", self.margin_weight, "", 0.0, 100.0)?;
         require_in("room.comfort", self.comfort, "m", 0.0, 5.0)?;
         require_in("room.comfort_weight", self.comfort_weight, "", 0.0, 10.0)?;
-        require_in("room.unknown_weight", self.unknown_weight, "", 0.0, 1000.0)?;
+        require_in("room.unknown_weight", self.unknown_weight, "", 0.0, 100.0)?;
         require_in("room.escape", self.escape, "m", 0.0, 1.0)?;
         Ok(self)
     }

@@ -9,6 +9,8 @@ const ROUNDING: f64 = 1e-6;
 /// What the room may dip between two looks along a straight line, m: step^2 / 8 radius, for the distance to a convex
 /// obstacle bends by at most 1 / distance.
 const DIP: f64 = 1e-4;
+/// How finely prices follow the clearance.
+const PRICES_A_CELL: f64 = 8.0;
 /// Longest step of a look, cells.
 const LOOK: f64 = 0.2;
 
@@ -21,6 +23,11 @@ pub(crate) struct Space<'a> {
     grid: &'a OccupancyGrid,
     escape: Option<Escape>,
     surely: f64,
+    /// Prices of a unit of way by clearance, in 1/256, falling; each is that of the least clearance it stands for.
+    prices: Vec<u16>,
+    /// Prices a metre of clearance.
+    per_price: f64,
+    unknown_price: u16,
     /// Step of a look along a straight line, m.
     look: f64,
     /// Whole cells from the grid's origin to the field's; none where the two are the same.
@@ -55,7 +62,22 @@ impl<'a> Space<'a> {
         let look = (8.0 * least * DIP).sqrt().max(1e-3).min(LOOK * field.geometry().resolution);
         let is_same = field.geometry() == grid.geometry();
         let shift = (!is_same).then_some((offset.x.round() as i64, offset.y.round() as i64));
-        Self { field, room, radius, grid, escape, surely: field.overestimate(radius), look, shift }
+        let per_price = PRICES_A_CELL / field.geometry().resolution;
+        let limit = (room.comfort.max(room.margin) * per_price).ceil() as usize;
+        let price = |density: f64| (density * 256.0) as u16;
+        Self {
+            field,
+            room,
+            radius,
+            grid,
+            escape,
+            surely: field.overestimate(radius),
+            prices: (0..=limit).map(|i| price(room.density(i as f64 / per_price))).collect(),
+            per_price,
+            unknown_price: price(room.unknown_weight),
+            look,
+            shift,
+        }
     }
 
     /// The distance that must be kept at a point, m: the radius, less only around a start that has less.
@@ -109,26 +131,35 @@ impl<'a> Space<'a> {
 
     /// The cost of a metre where the nearest obstacle is `distance` m away: 1 or more.
     fn density(&self, distance: f64, is_unknown: bool) -> f64 {
-        let room = &self.room;
-        let clearance = (distance - self.radius).max(0.0);
-        let mut cost = 1.0;
-        if clearance < room.comfort {
-            cost += room.comfort_weight * (1.0 - clearance / room.comfort).powi(2);
-        }
-        if clearance < room.margin {
-            cost += room.margin_weight * (1.0 - clearance / room.margin);
-        }
-        if is_unknown { cost + room.unknown_weight } else { cost }
+        let cost = self.room.density(distance - self.radius);
+        if is_unknown { cost + self.room.unknown_weight } else { cost }
     }
 
-    /// No metre costs more.
-    pub(crate) fn highest_density(&self) -> f64 {
-        1.0 + self.room.comfort_weight + self.room.margin_weight + self.room.unknown_weight
+    /// No cell has a higher price.
+    pub(crate) fn highest_price(&self) -> u16 {
+        self.prices[0] + self.unknown_price
     }
 
-    /// The cost of a metre around the centre of a cell.
-    pub(crate) fn cell_density(&self, linear: usize) -> f64 {
-        self.density(self.field.at_linear(linear), self.is_unknown(linear))
+    /// The cost of a unit of way around the centre of a cell, in 1/256.
+    pub(crate) fn cell_price(&self, linear: usize) -> u16 {
+        let price = self.price_at(self.field.at_linear(linear));
+        if self.unknown_price > 0 && self.is_unknown(linear) { price + self.unknown_price } else { price }
+    }
+
+    /// The price at a distance from obstacles, whatever is known; 0 where the robot does not fit.
+    pub(crate) fn price_of_room(&self, distance: f32) -> u16 {
+        if f64::from(distance) < self.radius - ROUNDING { 0 } else { self.price_at(f64::from(distance)) }
+    }
+
+    fn price_at(&self, distance: f64) -> u16 {
+        let place = ((distance - self.radius) * self.per_price).max(0.0) as usize;
+        self.prices[place.min(self.prices.len() - 1)]
+    }
+
+    /// Column and row of a cell.
+    pub(crate) fn place(&self, linear: usize) -> (u32, u32) {
+        let (at, width) = (linear as u32, self.field.geometry().width as u32);
+        (at % width, at / width)
     }
 
     /// The cost of driving straight from `a` to `b`, sampled a cell apart.

@@ -3,11 +3,13 @@
 //! Problem: the printed potential has local minima. Idea: replace the straight distance in the attraction by the
 //! geodesic one, and the repulsion by slowness of the wave near obstacles; such a potential has one minimum, and
 //! descending it is following the wave back. The wave runs towards the goal first (A*; Hart, Nilsson, Raphael, IEEE T-SSC
-//! 4(2), 1968) on the 8-neighbour lattice of cells where the robot fits, every step checked against the obstacles'
-//! squares. Complete: if the lattice connects, the way is found. Costs are whole numbers, so a list for each key makes
-//! a queue without comparisons (Dial, CACM 12(11), 1969). Cost: O(cells reached).
+//! 4(2), 1968), led by the [`Guide`], on the 16-neighbour lattice of cells where the robot fits, every step checked
+//! against the obstacles' squares. Complete: if the lattice connects, the way is found. Costs are whole numbers, so a list
+//! for each key makes a queue without comparisons (Dial, CACM 12(11), 1969). Cost: O(cells reached).
 
 use crate::dial::{Dial, Entry};
+use crate::guide::Guide;
+use crate::lattice::{LONGEST, SIDE, STEPS, length};
 use crate::space::Space;
 use trundle_core::Vector2;
 
@@ -28,89 +30,94 @@ pub(crate) struct WaveFront {
     /// Which of [`STEPS`] led here, [`SEED`] for the first ring.
     step: Vec<u8>,
     queue: Dial,
+    guide: Guide,
 }
 
-const STEPS: [(i64, i64); 8] = [(1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (1, -1), (-1, 1), (-1, -1)];
-const SEED: u8 = 8;
+const SEED: u8 = 16;
+/// Marks a cell in [`WaveFront::step`] that has been spread from: it is not entered again.
+const CLOSED: u8 = 128;
+/// The way ahead counts for 1 / this more than the guide says, so that of equal ways one is followed to its end. A way costs
+/// at most so much more than the cheapest.
+const EAGERNESS: u32 = 32;
 const NEVER: u32 = u32::MAX;
 /// How far around the start and the goal the lattice may be entered, cells.
 const RING: i64 = 2;
-/// The cost of a cell's side, and of its diagonal, where a metre costs 1.
-const SIDE: u32 = 256;
-const DIAGONAL: u32 = 362;
 
 impl WaveFront {
     /// Runs the wave from `start` to `goal`, both free and inside the field.
     pub(crate) fn run(&mut self, space: &Space<'_>, start: Vector2, goal: Vector2) -> Wave {
-        let Some(target) = cell_of(space, goal) else { return Wave::Stuck(start) };
-        let lattice = Lattice::new(space.field.geometry().width, target);
-        self.seed(space, start, &lattice);
+        let (Some(from), Some(target)) = (place_of(space, start), place_of(space, goal)) else {
+            return Wave::Stuck(start);
+        };
+        self.guide.prepare(space, from, target);
+        self.seed(space, start);
         let ends = ring(space, goal);
-        let mut best: Option<(u32, usize)> = None;
-        while let Some((key, Entry { cell, cost })) = self.queue.pop() {
-            if best.is_some_and(|(total, _)| key >= total) {
-                break;
-            }
+        while let Some((_, Entry { cell, cost })) = self.queue.pop() {
             let cell = cell as usize;
-            if cost > self.cost[cell] {
+            if cost > self.cost[cell] || self.step[cell] & CLOSED != 0 {
                 continue;
             }
+            self.step[cell] |= CLOSED;
             if ends.contains(&cell) {
-                let total = cost + lattice.ahead(lattice.place(cell));
-                if best.is_none_or(|(least, _)| total < least) {
-                    best = Some((total, cell));
-                }
+                return Wave::Met(self.follow_back(space, cell, start, goal));
             }
-            self.spread(space, cell, &lattice);
+            self.spread(space, cell);
         }
-        match best {
-            Some((_, cell)) => Wave::Met(self.follow_back(space, cell, start, goal)),
-            None => Wave::Stuck(self.nearest(space, start, goal)),
-        }
+        Wave::Stuck(self.nearest(space, start, goal))
     }
 
-    fn seed(&mut self, space: &Space<'_>, start: Vector2, lattice: &Lattice) {
+    fn seed(&mut self, space: &Space<'_>, start: Vector2) {
         self.cost.clear();
         self.cost.resize(space.field.geometry().len(), NEVER);
+        self.step.clear();
         self.step.resize(self.cost.len(), SEED);
-        let resolution = space.field.geometry().resolution;
-        let price = |cell| (space.cost(start, space.center(cell)) / resolution * f64::from(SIDE)) as u32;
-        let seeds: Vec<_> = ring(space, start).into_iter().map(|cell| (cell, price(cell))).collect();
-        let first =
-            seeds.iter().map(|(cell, cost)| cost + lattice.ahead(lattice.place(*cell))).min().unwrap_or(0);
-        let longest = f64::from(DIAGONAL) * (RING as f64 + 1.0) * 2.0;
-        self.queue.reset(first, (longest * (space.highest_density() + 1.0)).ceil() as u32);
-        for (cell, cost) in seeds {
-            self.reach(cell, cost, SEED, lattice.ahead(lattice.place(cell)));
+        let seeds: Vec<_> = ring(space, start)
+            .into_iter()
+            .map(|cell| (cell, entry_cost(space, start, cell)))
+            .map(|(cell, cost)| (cell, cost, self.key(cost, space.place(cell))))
+            .collect();
+        let first = seeds.iter().map(|seed| seed.2).min().unwrap_or(0);
+        // The guide is smooth: a step changes it by little more than the step's own cost.
+        let reach = (16 * ((LONGEST * u32::from(space.highest_price())) >> 8)).min(1 << 18);
+        self.queue.reset(first, reach);
+        for (cell, cost, key) in seeds {
+            self.reach(cell, cost, SEED, key);
         }
     }
 
-    fn reach(&mut self, cell: usize, cost: u32, step: u8, ahead: u32) {
-        self.cost[cell] = cost;
-        self.step[cell] = step;
-        self.queue.push(cost + ahead, Entry { cell: cell as u32, cost });
+    fn key(&self, cost: u32, place: (u32, u32)) -> u32 {
+        let ahead = self.guide.ahead(place);
+        cost.saturating_add(ahead).saturating_add(ahead / EAGERNESS)
     }
 
-    fn spread(&mut self, space: &Space<'_>, from: usize, lattice: &Lattice) {
+    fn reach(&mut self, cell: usize, cost: u32, step: u8, key: u32) {
+        self.cost[cell] = cost;
+        self.step[cell] = step;
+        self.queue.push_near(key, Entry { cell: cell as u32, cost });
+    }
+
+    fn spread(&mut self, space: &Space<'_>, from: usize) {
         let geometry = space.field.geometry();
-        let (width, height) = (geometry.width as i64, geometry.height as i64);
-        let (col, row) = lattice.place(from);
-        let here = space.cell_density(from);
+        let (width, height) = (geometry.width as i32, geometry.height as i32);
+        let (col, row) = space.place(from);
+        let here = u32::from(space.cell_price(from));
         let so_far = self.cost[from];
         for (step, (dx, dy)) in STEPS.into_iter().enumerate() {
-            let (c, r) = (col + dx, row + dy);
+            let (c, r) = (col as i32 + dx, row as i32 + dy);
             if c < 0 || r < 0 || c >= width || r >= height {
                 continue;
             }
-            let to = (r * width + c) as usize;
-            let length = if step < 4 { SIDE } else { DIAGONAL };
-            if self.cost[to] <= so_far + length || !space.is_free_cell(to) {
+            let to = r as usize * width as usize + c as usize;
+            if self.cost[to] <= so_far.saturating_add(length(step))
+                || self.step[to] & CLOSED != 0
+                || !space.is_free_cell(to)
+            {
                 continue;
             }
-            let cost = so_far + (f64::from(length) * (here + space.cell_density(to)) * 0.5) as u32;
-            let metres = geometry.resolution * f64::from(length) / f64::from(SIDE);
+            let cost = so_far.saturating_add((length(step) * (here + u32::from(space.cell_price(to)))) >> 9);
+            let metres = geometry.resolution * f64::from(length(step)) / f64::from(SIDE);
             if cost < self.cost[to] && space.joins(from, to, metres) {
-                self.reach(to, cost, step as u8, lattice.ahead((c, r)));
+                self.reach(to, cost, step as u8, self.key(cost, (c as u32, r as u32)));
             }
         }
     }
@@ -121,11 +128,12 @@ impl WaveFront {
         let mut cell = last;
         loop {
             points.push(space.center(cell));
-            if self.step[cell] == SEED {
+            let step = self.step[cell] & !CLOSED;
+            if step == SEED {
                 break;
             }
-            let (dx, dy) = STEPS[usize::from(self.step[cell])];
-            cell = (cell as i64 - dy * width - dx) as usize;
+            let (dx, dy) = STEPS[usize::from(step)];
+            cell = (cell as i64 - i64::from(dy) * width - i64::from(dx)) as usize;
         }
         points.push(start);
         points.reverse();
@@ -142,32 +150,15 @@ impl WaveFront {
     }
 }
 
-/// Columns and rows of cells, and the way that is at least ahead of them.
-struct Lattice {
-    width: i64,
-    target: (i64, i64),
+/// Column and row of the cell that holds a point.
+fn place_of(space: &Space<'_>, point: Vector2) -> Option<(u32, u32)> {
+    space.field.geometry().cell_at(point).map(|cell| (cell.col as u32, cell.row as u32))
 }
 
-impl Lattice {
-    fn new(width: usize, target: usize) -> Self {
-        let lattice = Self { width: width as i64, target: (0, 0) };
-        Self { target: lattice.place(target), ..lattice }
-    }
-
-    /// Column and row.
-    fn place(&self, cell: usize) -> (i64, i64) {
-        (cell as i64 % self.width, cell as i64 / self.width)
-    }
-
-    /// The cost of the shortest way over the 8-neighbour lattice to the target, were it empty.
-    fn ahead(&self, (col, row): (i64, i64)) -> u32 {
-        let (x, y) = (col.abs_diff(self.target.0) as u32, row.abs_diff(self.target.1) as u32);
-        x.max(y) * SIDE + x.min(y) * (DIAGONAL - SIDE)
-    }
-}
-
-fn cell_of(space: &Space<'_>, point: Vector2) -> Option<usize> {
-    space.field.geometry().cell_at(point).map(|cell| space.field.geometry().linear(cell))
+/// The cost of the straight move between a point and the centre of a cell.
+fn entry_cost(space: &Space<'_>, point: Vector2, cell: usize) -> u32 {
+    let resolution = space.field.geometry().resolution;
+    (space.cost(point, space.center(cell)) / resolution * f64::from(SIDE)) as u32
 }
 
 /// The free cells around a point that it can reach straight.

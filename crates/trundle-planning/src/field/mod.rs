@@ -4,13 +4,20 @@
 //! distance from each cell's centre to the nearest occupied square is computed exactly by \[Felzenszwalb12\]
 //! (Distance transforms of sampled functions, Theory of Computing 8, 2012); between centres it is interpolated
 //! bilinearly; where a promise hangs on it, the squares themselves are measured ([`DistanceField::clearance`]).
-//! Cost: O(cells) once a map, O(1) a look.
+//! Cost: O(cells) once a map, O(cells near the change) after a change, O(1) a look.
 
+mod blocks;
 mod exact;
 mod transform;
+mod window;
+
+pub(crate) use blocks::{Blocks, SIDE as BLOCK};
 
 use serde::{Deserialize, Serialize};
+use std::ops::Range;
+use transform::Transform;
 use trundle_core::{Cell, CellIndex, GridGeometry, OccupancyGrid, Vector2};
+use window::Window;
 
 /// The distance given where a map has no obstacle at all, m.
 pub const FAR: f64 = 1e6;
@@ -25,6 +32,24 @@ pub enum UnknownIs {
     Obstacle,
 }
 
+impl UnknownIs {
+    /// Whether a cell of this value is an obstacle.
+    pub(crate) fn blocks(self, cell: Cell) -> bool {
+        match cell {
+            Cell::Occupied => true,
+            Cell::Unknown => self == Self::Obstacle,
+            Cell::Free => false,
+        }
+    }
+}
+
+/// From the first to the last column where `changed`.
+fn outermost(mut cols: Range<usize>, changed: impl Fn(usize) -> bool) -> Option<Range<usize>> {
+    let first = cols.clone().find(|col| changed(*col))?;
+    let last = cols.rfind(|col| changed(*col))?;
+    Some(first..last + 1)
+}
+
 /// Distance to the nearest obstacle over a grid, metres.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DistanceField {
@@ -32,37 +57,78 @@ pub struct DistanceField {
     unknown: UnknownIs,
     /// From cell centres to squares; 0 marks an obstacle.
     distance: Vec<f32>,
+    /// Rows to the nearest obstacle of the same column.
+    gap: Vec<u16>,
+    blocks: Blocks,
 }
 
 impl DistanceField {
     /// The field of a grid. Outside the grid counts as unknown.
     pub fn from_grid(grid: &OccupancyGrid, unknown: UnknownIs) -> Self {
-        Self::over(*grid.geometry(), grid, unknown, None)
+        Self::over(*grid.geometry(), grid, unknown)
     }
 
     /// The field of `grid` over another `geometry` of the same lattice (same resolution, origins whole cells apart);
-    /// cells that the grid does not reach are unknown. The memory of a `spent` field is used again.
-    pub(crate) fn over(
-        geometry: GridGeometry,
-        grid: &OccupancyGrid,
-        unknown: UnknownIs,
-        spent: Option<Self>,
-    ) -> Self {
-        let mut distance = spent.map_or_else(Vec::new, |field| field.distance);
-        let is_obstacle = |cell: Cell| match cell {
-            Cell::Occupied => true,
-            Cell::Unknown => unknown == UnknownIs::Obstacle,
-            Cell::Free => false,
-        };
+    /// cells that the grid does not reach are unknown.
+    pub(crate) fn over(geometry: GridGeometry, grid: &OccupancyGrid, unknown: UnknownIs) -> Self {
+        let (distance, gap) = (vec![0.0; geometry.len()], vec![0; geometry.len()]);
+        let mut field = Self { geometry, unknown, distance, gap, blocks: Blocks::default() };
+        field.blocks.resize(&geometry);
+        field.refresh(grid, &Window::whole(&geometry));
+        field
+    }
+
+    /// Brings the field up to date with a grid on the same lattice, exactly, at a cost that goes with the changed area.
+    /// Returns the number of cells in the box around all changes, 0 when there were none.
+    pub fn update(&mut self, grid: &OccupancyGrid) -> usize {
+        let Some(dirty) = self.changed(grid) else { return 0 };
+        self.refresh(grid, &dirty);
+        dirty.cols.len() * dirty.rows.len()
+    }
+
+    fn refresh(&mut self, grid: &OccupancyGrid, dirty: &Window) {
+        let geometry = self.geometry;
+        let unknown = self.unknown;
         let outside = unknown == UnknownIs::Obstacle;
-        if geometry == *grid.geometry() {
+        let mut transform =
+            Transform { geometry: &geometry, outside, gap: &mut self.gap, distance: &mut self.distance };
+        let touched = if geometry == *grid.geometry() {
             let cells = grid.cells();
-            transform::transform(&geometry, outside, |i| is_obstacle(cells[i]), &mut distance);
+            transform.update(dirty, |i| unknown.blocks(cells[i]))
         } else {
-            let at = |i| is_obstacle(grid.at(geometry.center(geometry.cell(i))));
-            transform::transform(&geometry, outside, at, &mut distance);
-        }
-        Self { geometry, unknown, distance }
+            let at = |i| unknown.blocks(grid.at(geometry.center(geometry.cell(i))));
+            transform.update(dirty, at)
+        };
+        self.blocks.update(&geometry, &self.distance, &touched);
+    }
+
+    /// The box around all cells that became obstacles, or ceased to be.
+    fn changed(&self, grid: &OccupancyGrid) -> Option<Window> {
+        let (geometry, unknown) = (self.geometry, self.unknown);
+        let same = geometry == *grid.geometry();
+        Window::around(&geometry, |row, cols| {
+            let at = row * geometry.width;
+            let gaps = &self.gap[at..at + geometry.width];
+            if same {
+                let cells = &grid.cells()[at..at + geometry.width];
+                let differs = |gap: u16, cell: Cell| unknown.blocks(cell) != (gap == 0);
+                if !gaps.iter().zip(cells).fold(false, |any, (gap, cell)| any | differs(*gap, *cell)) {
+                    return None;
+                }
+                return outermost(cols, |col| differs(gaps[col], cells[col]));
+            }
+            let now = |col| unknown.blocks(grid.at(geometry.center(CellIndex { col, row })));
+            outermost(cols, |col| now(col) != (gaps[col] == 0))
+        })
+    }
+
+    pub(crate) fn blocks(&self) -> &Blocks {
+        &self.blocks
+    }
+
+    /// What unknown cells count as.
+    pub(crate) fn unknown(&self) -> UnknownIs {
+        self.unknown
     }
 
     /// Where the cells lie.
@@ -145,7 +211,7 @@ struct Stencil {
 /// Along one axis: the lower centre, the fraction towards the next, and how far `at` (cells) lies beyond the outermost.
 fn place(at: f64, size: usize) -> (usize, f64, f64) {
     let clamped = at.clamp(0.0, size as f64 - 1.0);
-    let low = (clamped.floor() as usize).min(size.saturating_sub(2));
+    let low = (clamped as usize).min(size.saturating_sub(2));
     (low, clamped - low as f64, at - clamped)
 }
 
@@ -191,6 +257,24 @@ mod tests {
                 let cell = grid.geometry().cell(i);
                 let truth = brute_force(&grid, unknown, grid.geometry().center(cell));
                 prop_assert!((field.at_cell(cell) - truth).abs() <= 1e-6 * truth.max(1.0));
+            }
+        }
+
+        #[test]
+        fn an_update_is_what_a_new_field_would_be(
+            grid in any_grid(), obstacle in any::<bool>(),
+            changes in prop::collection::vec((0usize..17, 0usize..17, 0u8..3), 1..9),
+        ) {
+            let unknown = if obstacle { UnknownIs::Obstacle } else { UnknownIs::Free };
+            let mut field = DistanceField::from_grid(&grid, unknown);
+            let mut grid = grid;
+            for part in changes.chunks(3) {
+                for (col, row, value) in part {
+                    let cell = CellIndex { col: col % grid.geometry().width, row: row % grid.geometry().height };
+                    grid.set(cell, [Cell::Occupied, Cell::Unknown, Cell::Free][usize::from(*value)]);
+                }
+                field.update(&grid);
+                prop_assert_eq!(&field, &DistanceField::from_grid(&grid, unknown));
             }
         }
 

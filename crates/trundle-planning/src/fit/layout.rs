@@ -47,6 +47,11 @@ impl Layout {
         }
     }
 
+    /// The first unknown vector of a piece: its control points follow from this one and the `degree` next.
+    pub(super) fn first(self, piece: usize) -> usize {
+        piece * self.stride()
+    }
+
     fn stride(self) -> usize {
         KNOT + self.degree + 1 - 2 * KNOT
     }

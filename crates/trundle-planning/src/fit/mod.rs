@@ -21,8 +21,9 @@ pub use config::CurveConfig;
 
 use crate::bezier::BezierPiece;
 use crate::corridor::{HalfPlane, corridor};
+use crate::curve::{ActiveRow, Curve};
+use crate::fit::{layout::Layout, rows::Rows, rows::Side};
 use crate::space::Space;
-use crate::{curve::Curve, fit::layout::Layout, fit::rows::Rows};
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, SolverStatus, SupportedConeT};
 use trundle_core::Vector2;
@@ -68,46 +69,112 @@ pub(crate) fn stretches(space: &Space<'_>, way: &[Vector2], config: &CurveConfig
 }
 
 /// The curve along `stretches` with these end tangents; `smoothing` is a length, m. `None` when there is none.
+///
+/// Few of the corridors' sides matter: the programme is solved without them first, then again with those that the last
+/// curve comes near, until it keeps all (cutting planes). The result is that of the whole programme.
 pub(crate) fn fit(
     stretches: &[Stretch],
-    (start, end): (Tangent, Tangent),
+    tangents: (Tangent, Tangent),
     smoothing: f64,
     config: &CurveConfig,
 ) -> Option<Curve> {
     let layout = Layout { degree: config.degree, pieces: stretches.len() };
     let (p, q) = objective::objective(stretches, layout, smoothing);
-    let mut rows = Rows::new(layout, stretches);
-    rows.ends(start, end);
-    let equalities = rows.count();
-    rows.forward(start, end, config.least_tangent);
-    rows.corridors();
-    let inequalities = rows.count() - equalities;
-    let (a, b) = rows.finish();
-    let cones = [SupportedConeT::ZeroConeT(equalities), SupportedConeT::NonnegativeConeT(inequalities)];
-    let mut x = solve(&p, &q, &a, &b, &cones)?;
-    settle(&mut x, stretches, layout, (start, end));
-    Some(assemble(&x, stretches, layout))
+    let mut sides: Vec<Side> = Vec::new();
+    for _ in 0..ROUNDS {
+        let mut rows = Rows::new(layout, stretches);
+        rows.ends(tangents.0, tangents.1);
+        let equalities = rows.count();
+        rows.forward(tangents.0, tangents.1, config.least_tangent);
+        let before = rows.count();
+        rows.sides(&sides);
+        let cones = [
+            SupportedConeT::ZeroConeT(equalities),
+            SupportedConeT::NonnegativeConeT(rows.count() - equalities),
+        ];
+        let (a, b) = rows.finish();
+        let (mut x, multipliers) = solve(&p, &q, &a, &b, &cones)?;
+        settle(&mut x, stretches, layout, tangents);
+        let curve = assemble(&x, stretches, layout);
+        let crossed = crossed(&curve, stretches, &sides);
+        if crossed.is_empty() {
+            let corridors = stretches.iter().map(|stretch| stretch.planes.clone()).collect();
+            return Some(curve.within(corridors, active(&sides, &multipliers[before..])));
+        }
+        sides.extend(crossed);
+    }
+    None
 }
 
+/// Rounds of adding sides.
+const ROUNDS: usize = 12;
+/// A control point so far beyond a side is rounding, m.
+const BEYOND: f64 = 2e-5;
+/// Sides nearer than this to a control point may be crossed next, m.
+const NEAR: f64 = 0.01;
+/// A multiplier below this is none.
+const NO_MULTIPLIER: f64 = 1e-7;
+
+/// The sides near control points, where any side is crossed, that are not in `known`. The two ends are inside.
+fn crossed(curve: &Curve, stretches: &[Stretch], known: &[Side]) -> Vec<Side> {
+    let (mut near, mut is_crossed) = (Vec::new(), false);
+    let last = stretches.len() - 1;
+    for (piece, (bezier, stretch)) in curve.pieces().iter().zip(stretches).enumerate() {
+        let controls = bezier.control();
+        let inner = usize::from(piece == 0)..controls.len() - usize::from(piece == last);
+        for control in inner {
+            for (plane, half) in stretch.planes.iter().enumerate() {
+                let beyond = half.normal.dot(&controls[control]) - half.offset;
+                let side = Side { piece, control, plane };
+                if beyond > -NEAR && !known.contains(&side) {
+                    is_crossed |= beyond > BEYOND;
+                    near.push(side);
+                }
+            }
+        }
+    }
+    if is_crossed { near } else { Vec::new() }
+}
+
+fn active(sides: &[Side], multipliers: &[f64]) -> Vec<ActiveRow> {
+    let pairs = sides.iter().zip(multipliers).filter(|(_, multiplier)| **multiplier > NO_MULTIPLIER);
+    let mut rows: Vec<_> = pairs
+        .map(|(side, multiplier)| ActiveRow {
+            piece: side.piece,
+            control: side.control,
+            plane: side.plane,
+            multiplier: *multiplier,
+        })
+        .collect();
+    rows.sort_by_key(|row| (row.piece, row.control, row.plane));
+    rows
+}
+
+/// The unknowns and the rows' multipliers.
 fn solve(
     p: &CscMatrix<f64>,
     q: &[f64],
     a: &CscMatrix<f64>,
     b: &[f64],
     cones: &[SupportedConeT<f64>],
-) -> Option<Vec<f64>> {
+) -> Option<(Vec<f64>, Vec<f64>)> {
     let settings = DefaultSettings {
         verbose: false,
         max_iter: 50,
         max_threads: 1,
         tol_gap_abs: 1e-7,
         tol_gap_rel: 1e-5,
+        presolve_enable: false,
+        // The basis is well conditioned: refining to the last digit costs more than factoring.
+        iterative_refinement_reltol: 1e-8,
+        iterative_refinement_abstol: 1e-9,
         ..DefaultSettings::default()
     };
     let mut solver = DefaultSolver::new(p, q, a, b, cones, settings).ok()?;
     solver.solve();
-    let solved = matches!(solver.solution.status, SolverStatus::Solved | SolverStatus::AlmostSolved);
-    (solved && solver.solution.x.iter().all(|x| x.is_finite())).then_some(solver.solution.x)
+    let solution = solver.solution;
+    let solved = matches!(solution.status, SolverStatus::Solved | SolverStatus::AlmostSolved);
+    (solved && solution.x.iter().all(|x| x.is_finite())).then_some((solution.x, solution.z))
 }
 
 /// Takes the solver's rounding out of the ends: points exact, tangents exactly along their headings.

@@ -1,11 +1,10 @@
 //! What the curve is drawn to: the way, and smoothness.
 
 use super::Stretch;
-use super::layout::{Layout, Terms, Triplets};
+use super::layout::{Layout, Triplets};
 use crate::bezier::binomial;
 use clarabel::algebra::CscMatrix;
 use nalgebra::DMatrix;
-use trundle_core::Vector2;
 
 /// How much the second derivative counts beside the third, as a share of the smoothing length.
 const BENDING: f64 = 0.4;
@@ -21,38 +20,39 @@ pub(super) fn objective(stretches: &[Stretch], layout: Layout, smoothing: f64) -
     let mut p = Triplets::default();
     for (i, stretch) in stretches.iter().enumerate() {
         let span = stretch.length();
-        let hessian = grams.hessian(span, smoothing);
-        let target = straight(stretch, layout.degree);
-        for j in 0..=layout.degree {
-            let pull: Vector2 =
-                (0..=layout.degree).map(|k| target[k] * (grams.position[(j, k)] * span)).sum();
-            let (left, count) = layout.control(i, j, span);
-            for (row, share) in &left[..count] {
-                q[row * 2] -= share * pull.x;
-                q[row * 2 + 1] -= share * pull.y;
-            }
-            for k in 0..=layout.degree {
-                add_products(&mut p, &left[..count], layout.control(i, k, span), hessian[(j, k)]);
+        let from_unknowns = control_from_unknowns(layout, span);
+        let hessian = from_unknowns.tr_mul(&(grams.hessian(span, smoothing) * &from_unknowns));
+        let pull = from_unknowns.tr_mul(&(&grams.position * span * straight(stretch, layout.degree)));
+        let first = layout.first(i);
+        for row in 0..=layout.degree {
+            q[(first + row) * 2] -= pull[(row, 0)];
+            q[(first + row) * 2 + 1] -= pull[(row, 1)];
+            for col in row..=layout.degree {
+                for axis in 0..2 {
+                    p.add((first + row) * 2 + axis, (first + col) * 2 + axis, hessian[(row, col)]);
+                }
             }
         }
     }
     (p.finish(unknowns, unknowns), q)
 }
 
-/// The upper triangle of factor * left' right, for both axes.
-fn add_products(p: &mut Triplets, left: &[(usize, f64)], (right, count): Terms, factor: f64) {
-    for (row, a) in left {
-        for (col, b) in right[..count].iter().filter(|(col, _)| row <= col) {
-            p.add(row * 2, col * 2, factor * a * b);
-            p.add(row * 2 + 1, col * 2 + 1, factor * a * b);
+/// The matrix from a piece's own unknown vectors to its control points.
+fn control_from_unknowns(layout: Layout, span: f64) -> DMatrix<f64> {
+    let mut matrix = DMatrix::zeros(layout.degree + 1, layout.degree + 1);
+    for k in 0..=layout.degree {
+        let (terms, count) = layout.control(0, k, span);
+        for (vector, share) in &terms[..count] {
+            matrix[(k, *vector)] += share;
         }
     }
+    matrix
 }
 
-/// The control points of the straight stretch itself.
-fn straight(stretch: &Stretch, degree: usize) -> Vec<Vector2> {
+/// The control points of the straight stretch itself, a row each.
+fn straight(stretch: &Stretch, degree: usize) -> DMatrix<f64> {
     let at = |k: usize| stretch.from + (stretch.to - stretch.from) * (k as f64 / degree as f64);
-    (0..=degree).map(at).collect()
+    DMatrix::from_fn(degree + 1, 2, |k, axis| at(k)[axis])
 }
 
 /// Integrals over u in \[0, 1\] of products of the basis and of its derivatives.

@@ -5,6 +5,14 @@ use super::{Stretch, Tangent};
 use clarabel::algebra::CscMatrix;
 use trundle_core::Vector2;
 
+/// A control point and a side of its stretch's corridor.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct Side {
+    pub(super) piece: usize,
+    pub(super) control: usize,
+    pub(super) plane: usize,
+}
+
 pub(super) struct Rows<'a> {
     layout: Layout,
     stretches: &'a [Stretch],
@@ -62,22 +70,16 @@ impl<'a> Rows<'a> {
         }
     }
 
-    /// Every control point in its stretch's corridor; the two ends are fixed, and inside by construction.
-    pub(super) fn corridors(&mut self) {
-        let Layout { degree, pieces } = self.layout;
-        let stretches = self.stretches;
-        for (i, stretch) in stretches.iter().enumerate() {
-            let first = usize::from(i == 0);
-            let last = if i + 1 == pieces { degree - 1 } else { degree };
-            for k in first..=last {
-                let (terms, count) = self.layout.control(i, k, stretch.length());
-                for plane in &stretch.planes {
-                    for (vector, share) in &terms[..count] {
-                        self.put(*vector, plane.normal * *share);
-                    }
-                    self.right.push(plane.offset);
-                }
+    /// Control points on the inner side of corridor sides.
+    pub(super) fn sides(&mut self, sides: &[Side]) {
+        for side in sides {
+            let stretch = &self.stretches[side.piece];
+            let plane = stretch.planes[side.plane];
+            let (terms, count) = self.layout.control(side.piece, side.control, stretch.length());
+            for (vector, share) in &terms[..count] {
+                self.put(*vector, plane.normal * *share);
             }
+            self.right.push(plane.offset);
         }
     }
 

@@ -64,8 +64,8 @@ fn time_curve(
 ) {
     let begin = points.last().map_or(0.0, |point| point.time);
     let at = |s: f64, v: f64, time: f64| {
-        let twist = Twist2::new(v, curve.curvature(s) * v);
-        TrajectoryPoint { time: begin + time, pose: curve.pose(s), twist }
+        let (pose, curvature) = curve.pose_and_curvature(s);
+        TrajectoryPoint { time: begin + time, pose, twist: Twist2::new(v, curvature * v) }
     };
     points.pop();
     points.push(at(0.0, speeds[0], 0.0));
