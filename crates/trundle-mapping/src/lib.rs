@@ -25,15 +25,20 @@
 
 mod depth_scan;
 mod evidence;
+mod filter;
 mod live_grid;
 mod mapper;
 mod mapper_config;
 mod ray;
 mod scan_cells;
 mod scan_match;
+mod tiles;
 
 pub use depth_scan::{DepthScanConfig, DepthScanner};
 pub use evidence::{Evidence, GridCell, LogOddsGrid};
+pub use filter::{
+    MotionConfig, ParticleConfig, ParticleMapper, Processed, Refusal, ScanUpdate, carry_trajectory,
+};
 pub use mapper::{GridMapper, Insertion};
 pub use mapper_config::MapperConfig;
 pub use ray::{RayCells, ray_cells};

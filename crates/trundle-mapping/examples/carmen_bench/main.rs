@@ -1,0 +1,111 @@
+//! How well a laser log is mapped, over several seeds:
+//! `cargo run --release -p trundle-mapping --example carmen_bench -- LOG [--seeds N] [--particles N] [--laser-x M] [--pgm FILE]`
+//!
+//! Beside `X.log` a `X.ref.traj` (`t x y theta` lines) is taken as the reference.
+#![allow(clippy::print_stdout, clippy::unwrap_used, missing_docs, reason = "a measurement for the terminal")]
+
+mod log;
+mod relations;
+
+use relations::{Relation, relations, report};
+use trundle_core::{Cell, OccupancyGrid, Pose2, Stamp};
+use trundle_mapping::{ParticleConfig, ParticleMapper, ScanUpdate, carry_trajectory};
+
+/// Time on the processor, ms: others may be at work too.
+fn processor_ms() -> f64 {
+    let text = std::fs::read_to_string("/proc/thread-self/schedstat").unwrap();
+    text.split(' ').next().unwrap().parse::<f64>().unwrap() * 1e-6
+}
+
+fn option<T: std::str::FromStr>(name: &str) -> Option<T> {
+    let mut args = std::env::args().skip_while(|arg| arg != name);
+    args.nth(1).map(|value| value.parse().ok().unwrap_or_else(|| panic!("{name} {value}")))
+}
+
+struct Run {
+    trajectory: Vec<(Stamp, Pose2)>,
+    scans_ms: Vec<f64>,
+    resamplings: usize,
+    degenerate: usize,
+    megabytes: f64,
+    grid: OccupancyGrid,
+}
+
+fn run(log: &log::Log, config: &ParticleConfig, seed: u64) -> Run {
+    let mut mapper = ParticleMapper::new(config.clone(), seed).unwrap();
+    let (mut scans_ms, mut resamplings, mut degenerate) = (Vec::new(), 0, 0);
+    let mut odometry = Vec::new();
+    for (i, (odom, scan)) in log.scans.iter().enumerate() {
+        let start = processor_ms();
+        let update = mapper.update(*odom, scan);
+        let ms = processor_ms() - start;
+        odometry.push((scan.stamp(), *odom));
+        if let ScanUpdate::Processed(p) = update {
+            scans_ms.push(ms);
+            resamplings += usize::from(p.resampled);
+            degenerate += usize::from(p.degenerate > 0);
+            if std::env::var("TRACE").is_ok() {
+                println!(
+                    "{i} {:.2} {} {:.1} {} {:?}",
+                    p.explained,
+                    p.degenerate,
+                    p.effective,
+                    p.resampled,
+                    mapper.pose()
+                );
+            }
+        }
+    }
+    let trajectory = carry_trajectory(&mapper.trajectory(), &odometry);
+    let megabytes = mapper.bytes() as f64 / 1e6;
+    let grid = mapper.grid().clone();
+    Run { trajectory, scans_ms, resamplings, degenerate, megabytes, grid }
+}
+
+fn main() {
+    let path = std::env::args().nth(1).expect("a log");
+    let laser_x = option("--laser-x").unwrap_or(0.0);
+    let log = log::Log::read(&path, laser_x);
+    let config =
+        ParticleConfig { particles: option("--particles").unwrap_or(30), ..ParticleConfig::default() };
+    let first: u64 = option("--first").unwrap_or(1);
+    let seeds: u64 = option("--seeds").unwrap_or(1);
+    let reference = log::read_trajectory(&path.replace(".log", ".ref.traj"));
+    let relations: Vec<Relation> = reference.as_deref().map(relations).unwrap_or_default();
+    println!("{} scans, {} relations", log.scans.len(), relations.len());
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+    for seed in first..first + seeds {
+        let mut run = pool.install(|| run(&log, &config, seed));
+        run.scans_ms.sort_by(f64::total_cmp);
+        let (n, mean) = (run.scans_ms.len(), run.scans_ms.iter().sum::<f64>() / run.scans_ms.len() as f64);
+        print!(
+            "seed {seed}: {n} processed, median {:.2} mean {mean:.2} 99% {:.2} ms, {:.0} MB, {} resamplings, {} degenerate; ",
+            run.scans_ms[n / 2],
+            run.scans_ms[n * 99 / 100],
+            run.megabytes,
+            run.resamplings,
+            run.degenerate
+        );
+        println!("{}", report(&relations, reference.as_deref().unwrap_or_default(), &run.trajectory));
+        if let Some(pgm) = option::<String>("--pgm") {
+            std::fs::write(&pgm, picture(&run.grid)).unwrap();
+        }
+        if let Some(file) = option::<String>("--traj") {
+            let line = |(s, p): &(Stamp, Pose2)| format!("{s} {} {} {}\n", p.x, p.y, p.theta);
+            std::fs::write(&file, run.trajectory.iter().map(line).collect::<String>()).unwrap();
+        }
+    }
+}
+
+fn picture(grid: &OccupancyGrid) -> Vec<u8> {
+    let g = grid.geometry();
+    let mut bytes = format!("P5\n{} {}\n255\n", g.width, g.height).into_bytes();
+    for row in grid.cells().chunks(g.width).rev() {
+        bytes.extend(row.iter().map(|cell| match cell {
+            Cell::Free => 254,
+            Cell::Occupied => 0,
+            Cell::Unknown => 205_u8,
+        }));
+    }
+    bytes
+}

@@ -1,0 +1,115 @@
+//! The relations of \[Kuemmerle09\]: errors of relative poses against the reference's, so that one wrong turn does not
+//! spoil all that follows.
+
+use trundle_core::{Pose2, Stamp, Vector2, wrap_angle};
+
+#[derive(Clone, Copy, PartialEq)]
+pub enum Kind {
+    /// About 1 m of way apart.
+    Near,
+    /// About 10 m of way apart.
+    Far,
+    /// At the same place, at different times.
+    Loop,
+}
+
+pub struct Relation {
+    kind: Kind,
+    from: Stamp,
+    to: Stamp,
+    relative: Pose2,
+}
+
+/// Those that a reference trajectory has.
+pub fn relations(reference: &[(Stamp, Pose2)]) -> Vec<Relation> {
+    let mut found = Vec::new();
+    let relation = |kind, i: usize, j: usize| {
+        let ((from, a), (to, b)) = (reference[i], reference[j]);
+        Relation { kind, from, to, relative: a.inverse() * b }
+    };
+    for i in 0..reference.len() {
+        let mut way = 0.0;
+        let mut next = [(1.0, Kind::Near), (10.0, Kind::Far)].into_iter().peekable();
+        for j in i + 1..reference.len() {
+            way += reference[j].1.distance(&reference[j - 1].1);
+            while next
+                .next_if(|(length, kind)| {
+                    way >= *length && {
+                        found.push(relation(*kind, i, j));
+                        true
+                    }
+                })
+                .is_some()
+            {}
+            if next.peek().is_none() {
+                break;
+            }
+        }
+        // Of each visit to this place more than 40 m of way later, the pose that comes nearest.
+        let mut way = 0.0;
+        let mut nearest: Option<(f64, usize)> = None;
+        for j in i + 1..reference.len() {
+            way += reference[j].1.distance(&reference[j - 1].1);
+            let distance = reference[i].1.distance(&reference[j].1);
+            if way > 40.0 && distance < 2.0 {
+                if nearest.is_none_or(|(least, _)| distance < least) {
+                    nearest = Some((distance, j));
+                }
+            } else if let Some((_, j)) = nearest.take() {
+                found.push(relation(Kind::Loop, i, j));
+            }
+        }
+    }
+    found
+}
+
+/// Mean and standard deviation of the errors, by kind; then the error of the whole trajectory.
+pub fn report(relations: &[Relation], reference: &[(Stamp, Pose2)], estimate: &[(Stamp, Pose2)]) -> String {
+    if relations.is_empty() {
+        return String::new();
+    }
+    let at = |stamp: Stamp| {
+        let i = estimate.partition_point(|(s, _)| *s < stamp.after(-1e-4));
+        estimate.get(i).filter(|(s, _)| (*s - stamp).abs() < 1e-3).map(|(_, pose)| *pose)
+    };
+    let mut text = String::new();
+    let mut all = Vec::new();
+    for (name, kind) in [("1 m", Kind::Near), ("10 m", Kind::Far), ("loops", Kind::Loop)] {
+        let errors: Vec<(f64, f64)> = relations
+            .iter()
+            .filter(|r| r.kind == kind)
+            .filter_map(|r| {
+                let error = r.relative.inverse() * (at(r.from)?.inverse() * at(r.to)?);
+                Some((error.position().norm(), wrap_angle(error.theta).abs().to_degrees()))
+            })
+            .collect();
+        text += &format!("{name} ({}) {}; ", errors.len(), summary(&errors));
+        all.extend(errors);
+    }
+    let pairs: Vec<(Vector2, Vector2)> =
+        reference.iter().filter_map(|(s, p)| Some((p.position(), at(*s)?.position()))).collect();
+    format!("{text}all {}; ATE {:.3} m", summary(&all), absolute(&pairs))
+}
+
+fn summary(errors: &[(f64, f64)]) -> String {
+    let n = errors.len().max(1) as f64;
+    let mean = |f: fn(&(f64, f64)) -> f64| errors.iter().map(f).sum::<f64>() / n;
+    let spread = |f: fn(&(f64, f64)) -> f64| {
+        let m = mean(f);
+        (errors.iter().map(|e| (f(e) - m).powi(2)).sum::<f64>() / n).sqrt()
+    };
+    format!("{:.3}+-{:.3} m {:.2}+-{:.2} deg", mean(|e| e.0), spread(|e| e.0), mean(|e| e.1), spread(|e| e.1))
+}
+
+/// RMSE after the best rigid alignment.
+fn absolute(pairs: &[(Vector2, Vector2)]) -> f64 {
+    let n = pairs.len() as f64;
+    let (a, b) = pairs.iter().fold((Vector2::zeros(), Vector2::zeros()), |(a, b), (p, q)| (a + p, b + q));
+    let (a, b) = (a / n, b / n);
+    let (dot, cross) = pairs.iter().fold((0.0, 0.0), |(d, c), (p, q)| {
+        let (p, q) = (p - a, q - b);
+        (d + q.dot(&p), c + q.perp(&p))
+    });
+    let turn = Pose2::new(0.0, 0.0, cross.atan2(dot));
+    (pairs.iter().map(|(p, q)| (turn.rotate(q - b) + a - p).norm_squared()).sum::<f64>() / n).sqrt()
+}

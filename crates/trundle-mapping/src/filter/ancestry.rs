@@ -1,0 +1,77 @@
+use trundle_core::{Pose2, Stamp};
+
+/// The poses of all particles through time, with who descends from whom.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Ancestry {
+    /// Poses that all particles share: up to their last common ancestor.
+    shared: Vec<(Stamp, Pose2)>,
+    /// Those since.
+    columns: Vec<Column>,
+}
+
+#[derive(Debug, Clone)]
+struct Column {
+    stamp: Stamp,
+    poses: Vec<Pose2>,
+    /// Which particle of the column before each descends from.
+    parents: Vec<u16>,
+}
+
+/// Columns between two looks for a common ancestor.
+const SETTLE_EVERY: usize = 64;
+
+impl Ancestry {
+    /// Notes the poses of all particles; `parents` as of the resampling before.
+    pub(crate) fn push(&mut self, stamp: Stamp, poses: impl Iterator<Item = Pose2>, parents: &[u16]) {
+        self.columns.push(Column { stamp, poses: poses.collect(), parents: parents.to_vec() });
+        if self.columns.len().is_multiple_of(SETTLE_EVERY) {
+            self.settle();
+        }
+    }
+
+    /// The trajectory of a particle of the last column.
+    pub(crate) fn trajectory(&self, particle: usize) -> Vec<(Stamp, Pose2)> {
+        let mut own = Vec::with_capacity(self.columns.len());
+        let mut at = particle;
+        for column in self.columns.iter().rev() {
+            own.push((column.stamp, column.poses[at]));
+            at = usize::from(column.parents[at]);
+        }
+        self.shared.iter().copied().chain(own.into_iter().rev()).collect()
+    }
+
+    /// Bytes in use.
+    pub(crate) fn bytes(&self) -> usize {
+        let column = |c: &Column| c.poses.capacity() * size_of::<Pose2>() + c.parents.capacity() * 2;
+        self.shared.capacity() * size_of::<(Stamp, Pose2)>() + self.columns.iter().map(column).sum::<usize>()
+    }
+
+    /// Keeps one pose a column up to the last common ancestor.
+    fn settle(&mut self) {
+        let Some(last) = self.columns.last() else { return };
+        let mut alive: Vec<usize> = (0..last.poses.len()).collect();
+        let mut common = None;
+        for (i, column) in self.columns.iter().enumerate().rev() {
+            if alive.len() == 1 {
+                common = Some((i, alive[0]));
+                break;
+            }
+            for particle in &mut alive {
+                *particle = usize::from(column.parents[*particle]);
+            }
+            alive.sort_unstable();
+            alive.dedup();
+        }
+        let Some((end, mut at)) = common else { return };
+        let mut settled = Vec::with_capacity(end + 1);
+        for column in self.columns[..=end].iter().rev() {
+            settled.push((column.stamp, column.poses[at]));
+            at = usize::from(column.parents[at]);
+        }
+        self.shared.extend(settled.into_iter().rev());
+        self.columns.drain(..=end);
+        if let Some(first) = self.columns.first_mut() {
+            first.parents.iter_mut().for_each(|parent| *parent = 0);
+        }
+    }
+}

@@ -1,0 +1,143 @@
+use super::ParticleConfig;
+use trundle_core::{Beam, Scan, Vector2};
+
+/// A scan made ready for many particles: in cells, in the base frame, with surfaces and their normals.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct ScanShape {
+    /// Where the beams begin.
+    pub(crate) origin: (f32, f32),
+    /// The beams, for drawing.
+    pub(crate) rays: Vec<ScanRay>,
+    /// The hits, thinned, for matching.
+    pub(crate) points: Vec<ScanPoint>,
+    /// Mean of the points, cells.
+    pub(crate) centroid: (f64, f64),
+    /// Their root mean square distance from it, cells.
+    pub(crate) lever: f64,
+    hits: Vec<(usize, Vector2)>,
+}
+
+/// Where a beam ends.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct ScanRay {
+    pub(crate) x: f32,
+    pub(crate) y: f32,
+    pub(crate) hit: bool,
+    /// Whether it lies on one surface with the beam before.
+    pub(crate) joined: bool,
+}
+
+/// A hit to be matched.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct ScanPoint {
+    pub(crate) x: f32,
+    pub(crate) y: f32,
+    /// The normal of its surface; zero where there is none.
+    pub(crate) normal: (f32, f32),
+    /// 1 / sigma^2, 1 / cells^2.
+    pub(crate) information: f32,
+}
+
+/// Points of one surface are looked for as far as this, m: a wall's normal from less is noise.
+const BASELINE: f64 = 0.2;
+/// Deviation from a line, in sigmas, above which points are no wall.
+const STRAIGHT: f64 = 3.0;
+
+impl ScanShape {
+    /// Takes over a scan.
+    pub(crate) fn set(&mut self, config: &ParticleConfig, scan: &Scan) {
+        let cells = 1.0 / config.map.resolution;
+        self.rays.clear();
+        self.points.clear();
+        self.hits.clear();
+        self.origin = ((scan.origin().x * cells) as f32, (scan.origin().y * cells) as f32);
+        let mut last: Option<(usize, Vector2)> = None;
+        for (i, beam) in scan.beams().iter().enumerate() {
+            let (range, hit) = match *beam {
+                Beam::Hit { range } => (range.min(config.map.max_range), range <= config.map.max_range),
+                Beam::Free { range } => (range.min(config.map.max_range), false),
+                Beam::Unseen => continue,
+            };
+            let end = scan.point(i, range);
+            let joined =
+                hit && last.is_some_and(|(j, p)| j + 1 == i && (p - end).norm() <= config.map.surface_gap);
+            self.rays.push(ScanRay { x: (end.x * cells) as f32, y: (end.y * cells) as f32, hit, joined });
+            last = hit.then_some((i, end));
+            if hit {
+                self.hits.push((i, end));
+            }
+        }
+        self.find_points(config, scan, cells);
+    }
+
+    fn find_points(&mut self, config: &ParticleConfig, scan: &Scan, cells: f64) {
+        let spacing = config.map.resolution;
+        let mut kept: Option<Vector2> = None;
+        for k in 0..self.hits.len() {
+            let hit = self.hits[k].1;
+            if kept.is_some_and(|kept| (kept - hit).norm() < spacing) {
+                continue;
+            }
+            kept = Some(hit);
+            let range = (hit - scan.origin()).norm();
+            let range_sigma = config.range_noise + config.range_noise_growth * range * range;
+            // A cell's obstacle is known to about a fifth of the cell.
+            let sigma = range_sigma.hypot(0.3 * config.map.resolution);
+            let normal = self.normal(k, sigma).map_or((0.0, 0.0), |n| (n.x as f32, n.y as f32));
+            self.points.push(ScanPoint {
+                x: (hit.x * cells) as f32,
+                y: (hit.y * cells) as f32,
+                normal,
+                information: (1.0 / (sigma * cells).powi(2)) as f32,
+            });
+        }
+        self.measure_spread();
+    }
+
+    /// The normal of the straight surface about hit `k`, if there is one.
+    fn normal(&self, k: usize, sigma: f64) -> Option<Vector2> {
+        let (_, here) = self.hits[k];
+        let reach = |step: isize| {
+            let mut at = k;
+            loop {
+                let next = at.checked_add_signed(step).filter(|&next| next < self.hits.len())?;
+                let gap = (self.hits[next].1 - self.hits[at].1).norm();
+                let neighbours = self.hits[next].0.abs_diff(self.hits[at].0) <= 2;
+                let span = (self.hits[next].1 - here).norm();
+                if !neighbours || gap > 1.5 {
+                    return None;
+                }
+                at = next;
+                if span >= BASELINE {
+                    return Some(at);
+                }
+            }
+        };
+        let (first, last) = (reach(-1)?, reach(1)?);
+        let points = self.hits[first..=last].iter().map(|(_, p)| *p);
+        let count = (last - first + 1) as f64;
+        let mean = points.clone().sum::<Vector2>() / count;
+        let (mut xx, mut xy, mut yy) = (0.0, 0.0, 0.0);
+        for d in points.map(|p| p - mean) {
+            xx += d.x * d.x;
+            xy += d.x * d.y;
+            yy += d.y * d.y;
+        }
+        // Direction of the larger eigenvector of the 2 x 2 scatter.
+        let angle = 0.5 * (2.0 * xy).atan2(xx - yy);
+        let across = Vector2::new(-angle.sin(), angle.cos());
+        let off =
+            (across.x * across.x * xx + 2.0 * across.x * across.y * xy + across.y * across.y * yy) / count;
+        (off.sqrt() <= STRAIGHT * sigma).then_some(across)
+    }
+
+    fn measure_spread(&mut self) {
+        let count = self.points.len().max(1) as f64;
+        let (x, y) =
+            self.points.iter().fold((0.0, 0.0), |(x, y), p| (x + f64::from(p.x), y + f64::from(p.y)));
+        let (x, y) = (x / count, y / count);
+        let square = |p: &ScanPoint| (f64::from(p.x) - x).powi(2) + (f64::from(p.y) - y).powi(2);
+        self.centroid = (x, y);
+        self.lever = (self.points.iter().map(square).sum::<f64>() / count).sqrt().max(2.0);
+    }
+}

@@ -1,0 +1,12 @@
+//! The map of one particle: log-odds and nearest obstacles in small tiles, shared between particles until one writes.
+
+mod draw;
+mod field;
+mod map;
+mod mask;
+mod tile;
+
+pub(crate) use draw::{Brush, DrawScratch};
+pub(crate) use field::FieldModel;
+pub(crate) use map::{TileMap, TileWindow, tile_bytes};
+pub(crate) use tile::{LOG_ODDS_UNIT, Nearest, TILE_BITS, TILE_SIDE, Tile};

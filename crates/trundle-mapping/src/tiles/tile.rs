@@ -1,0 +1,81 @@
+/// log2 of the side of a tile, cells.
+pub(crate) const TILE_BITS: i32 = 5;
+/// Side of a tile, cells: 1.6 m at 5 cm.
+pub(crate) const TILE_SIDE: usize = 1 << TILE_BITS;
+/// Cells of a tile.
+pub(crate) const TILE_CELLS: usize = TILE_SIDE * TILE_SIDE;
+/// Side of a tile in the coarse field, whose samples are two cells apart.
+pub(crate) const COARSE_SIDE: usize = TILE_SIDE / 2;
+
+/// Log-odds are kept in units of 1 / 32: -4 to 3.97 in a byte.
+pub(crate) const LOG_ODDS_UNIT: f64 = 1.0 / 32.0;
+
+/// From the middle of a cell to the nearest obstacle point, in 1/16 cells.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Nearest {
+    pub(crate) x: i8,
+    pub(crate) y: i8,
+}
+
+impl Nearest {
+    /// No obstacle within reach.
+    pub(crate) const NONE: Self = Self { x: i8::MIN, y: i8::MIN };
+    /// Units a cell.
+    pub(crate) const PER_CELL: i32 = 16;
+    /// An obstacle point stays at most this far from the middle of its own cell, so that no neighbour's looks like it.
+    const OWN: i32 = 7;
+
+    pub(crate) fn is_none(self) -> bool {
+        self.x == i8::MIN
+    }
+
+    /// Whether the obstacle is in the cell itself.
+    pub(crate) fn is_own(self) -> bool {
+        i32::from(self.x).abs() <= Self::OWN && i32::from(self.y).abs() <= Self::OWN
+    }
+
+    /// The point of the cell itself at these 1/16 cells from its middle.
+    pub(crate) fn own(x: i32, y: i32) -> Self {
+        Self { x: x.clamp(-Self::OWN, Self::OWN) as i8, y: y.clamp(-Self::OWN, Self::OWN) as i8 }
+    }
+
+    /// Squared distance, 1/256 cells squared.
+    pub(crate) fn squared(self) -> i32 {
+        let (x, y) = (i32::from(self.x), i32::from(self.y));
+        x * x + y * y
+    }
+}
+
+/// 32 x 32 cells: 3.3 kB.
+#[derive(Debug, Clone)]
+pub(crate) struct Tile {
+    /// In [`LOG_ODDS_UNIT`]s; 0 is "don't know".
+    pub(crate) log_odds: [i8; TILE_CELLS],
+    /// The nearest obstacle of each cell.
+    pub(crate) nearest: [Nearest; TILE_CELLS],
+    /// Likelihood of an obstacle at the middle of every second cell of every second row, 0 to 255.
+    pub(crate) coarse: [u8; COARSE_SIDE * COARSE_SIDE],
+}
+
+impl Tile {
+    /// Nothing known.
+    pub(crate) const EMPTY: Self = Self {
+        log_odds: [0; TILE_CELLS],
+        nearest: [Nearest::NONE; TILE_CELLS],
+        coarse: [0; COARSE_SIDE * COARSE_SIDE],
+    };
+
+    /// The place of a cell, from its coordinates in the whole map or in the tile.
+    #[inline]
+    pub(crate) fn place(x: i32, y: i32) -> usize {
+        const MASK: i32 = TILE_SIDE as i32 - 1;
+        (((y & MASK) << TILE_BITS) | (x & MASK)) as usize
+    }
+
+    /// The place of a cell in the coarse field, if it has one.
+    #[inline]
+    pub(crate) fn coarse_place(x: i32, y: i32) -> Option<usize> {
+        const MASK: i32 = COARSE_SIDE as i32 - 1;
+        ((x | y) & 1 == 0).then(|| ((((y >> 1) & MASK) << (TILE_BITS - 1)) | ((x >> 1) & MASK)) as usize)
+    }
+}
