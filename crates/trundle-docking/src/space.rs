@@ -5,6 +5,8 @@ use trundle_core::{Footprint, Pose2, Vector2};
 
 /// Motions stop this much before a contact, m or rad, so that the next one begins where nothing touches.
 pub const BACK_OFF: f64 = 1e-5;
+/// What sums of headings and ways may be off by; far less than what motions back off by.
+const ROUNDING: f64 = 1e-9;
 
 /// How far a robot may turn on the spot.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -23,11 +25,11 @@ impl FreeTurn {
     /// The turn that takes the heading by `angle` (in (-pi, pi], rad): the shorter way where it is free, or the longer.
     pub fn way(&self, angle: f64) -> Option<f64> {
         let (with, against) = if angle >= 0.0 { (self.left, self.right) } else { (self.right, self.left) };
-        if angle.abs() <= with {
+        if angle.abs() <= with + ROUNDING {
             return Some(angle);
         }
         let longer = TAU - angle.abs();
-        (longer <= against).then(|| -longer.copysign(angle))
+        (longer <= against + ROUNDING).then(|| -longer.copysign(angle))
     }
 }
 
@@ -47,7 +49,7 @@ pub struct FreeDrive {
 impl FreeDrive {
     /// Whether a straight move of `way` (m, backward negative) is free.
     pub fn allows(&self, way: f64) -> bool {
-        way <= self.ahead && -way <= self.behind
+        way <= self.ahead + ROUNDING && -way <= self.behind + ROUNDING
     }
 }
 

@@ -15,11 +15,11 @@ fn main() {
     let seed = argument("--seed", 1) as u64;
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let problems: Vec<Problem> = (0..count).map(|i| generate(format!("{seed}-{i}"), &mut rng)).collect();
-    for method in [Method::Optimal, Method::Paper] {
+    for method in [Method::Optimal] {
         let docker =
             Docker::new(DockingConfig { method, margin: 0.0, ..DockingConfig::default() }).expect("valid");
         let (mut solved, mut times, mut failed) = (0, Vec::new(), Vec::new());
-        let mut legs = [0; 40];
+        let mut legs = [0; 99];
         let mut proven = 0;
         for problem in &problems {
             let scene = problem.scene().expect("valid");
@@ -27,6 +27,10 @@ fn main() {
             let plan =
                 docker.plan(&problem.footprint, &scene, problem.start, problem.goal).expect("free ends");
             times.push(clock.elapsed().as_secs_f64() * 1e3);
+            if times[times.len() - 1] > 60.0 && method == Method::Optimal {
+                let n = match &plan { Plan::Found(s) => s.manoeuvre.steps().len() as i32, Plan::Impossible(i) => if i.proven { -1 } else { -2 } };
+                println!("slow {} {:.0} ms {n} steps", problem.name, times[times.len() - 1]);
+            }
             match plan {
                 Plan::Found(solution) if judge::is_good(problem, &solution.manoeuvre) => {
                     solved += 1;

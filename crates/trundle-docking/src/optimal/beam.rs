@@ -22,7 +22,9 @@ const PARTS: [f64; 7] = [1.0, 0.8, 0.6, 0.42, 0.26, 0.13, 0.05];
 /// Headings tried at a node.
 const HEADINGS: usize = 20;
 /// Most legs of a manoeuvre.
-const MOST_LEGS: usize = 16;
+const MOST_LEGS: usize = 6;
+/// The same where a guide says that it is worth while.
+const MOST_LEGS_GUIDED: usize = 60;
 
 /// How a beam ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -36,11 +38,12 @@ pub struct BeamEnd {
 /// Layer by layer, one more leg each, the most promising `width` nodes are carried on; from each the search is completed by
 /// one or two exact legs. `cell` (m) and `sector` (rad) say which poses count as the same.
 pub fn beam(search: &mut Search<'_, '_>, width: usize, cell: f64, sector: f64) -> BeamEnd {
+    let most_legs = if search.guide.is_some() { MOST_LEGS_GUIDED } else { MOST_LEGS };
     let start = search.task.start;
     let mut nodes = vec![Node { pose: start, spent: 0.0, total: 0.0, parent: 0, leg: (0.0, 0.0) }];
     let mut seen: BTreeMap<(i32, i32, i32), f64> = BTreeMap::new();
     let (mut layer, mut fan, mut end) = (vec![0], Vec::new(), BeamEnd { expanded: 0, whole: true });
-    for _ in 1..MOST_LEGS {
+    for _ in 1..most_legs {
         let mut children: Vec<Node> = Vec::new();
         for &index in &layer {
             let node = nodes[index];

@@ -51,7 +51,8 @@ pub fn find(task: Task, space: &mut Space<'_>, nodes: usize, cell: f64) -> Outco
             return Outcome::Apart(by);
         }
     }
-    let mut spent = beam(&mut search, 48, 0.02, 0.06).expanded;
+    let mut width = 48;
+    let mut spent = beam(&mut search, width, 0.02, 0.06).expanded;
     if search.best.is_none() {
         for side in &CELLS[1..] {
             if let Proof::Apart { by } =
@@ -60,9 +61,9 @@ pub fn find(task: Task, space: &mut Space<'_>, nodes: usize, cell: f64) -> Outco
                 return Outcome::Apart(by);
             }
         }
+        width = 24;
         search.guide = Some(Guide::new(&mut second, &task.goal, center, half, 2.0 * cell, task.limits.speed));
     }
-    let mut width = 48;
     while search.best.is_none() && spent < nodes {
         let end = beam(&mut search, width, 0.02, 0.06);
         spent += end.expanded;

@@ -18,6 +18,9 @@ pub struct Ray {
     pub cost: f64,
 }
 
+/// Kept from every contact, m and rad: rays are joined from both ends, and what is free from one must be from the other.
+const SLACK: f64 = 2e-4;
+
 /// Rays about `pose`: its own heading first, then headings all over the turns that are free: `count` steps over all of
 /// them, at least `finest` (rad) each, and both ends.
 pub fn rays(
@@ -40,8 +43,8 @@ pub fn rays(
         let ray = Ray {
             heading,
             direction: turned.direction(),
-            ahead: way.ahead,
-            behind: way.behind,
+            ahead: way.ahead - SLACK,
+            behind: way.behind - SLACK,
             cost: task.turn_cost(turn),
         };
         found.push(ray);
@@ -49,12 +52,12 @@ pub fn rays(
     add(0.0);
     for (room, sign) in [(left, 1.0), (right, -1.0)] {
         let mut turn = step;
-        while turn < room - 1e-3 {
+        while turn < room - 5.0 * SLACK {
             add(sign * turn);
             turn += step;
         }
-        if room > 1e-3 {
-            add(sign * room);
+        if room > 5.0 * SLACK {
+            add(sign * (room - SLACK));
         }
     }
 }

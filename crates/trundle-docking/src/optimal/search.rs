@@ -2,6 +2,7 @@ use super::legs::Legs;
 use super::rays::{Ray, rays};
 use super::task::Task;
 use crate::flood::Guide;
+use crate::manoeuvre::Motion;
 use crate::space::Space;
 use trundle_core::{Pose2, Vector2, wrap_angle};
 
@@ -19,26 +20,29 @@ pub struct Search<'s, 'a> {
     /// What leads the search instead of [`Search::estimate`]'s pairs of legs, where these lead astray.
     pub guide: Option<Guide<'s, 'a>>,
     tails: Vec<Tail>,
-    prefix: Legs,
 }
 
 /// One or two legs from a node to the goal.
 #[derive(Debug, Clone, Copy)]
 struct Tail {
+    /// Of the legs before, with all pauses, s.
+    spent: f64,
     time: f64,
     first: (f64, f64),
     second: Option<(f64, f64)>,
 }
 
 /// Tails of one node that are tested for contact at most.
-const MOST_TESTS: usize = 60;
+const MOST_TESTS: usize = 40;
+/// The same for the start, where all manoeuvres of two legs come from.
+const MOST_TESTS_AT_START: usize = 2000;
 
 impl<'s, 'a> Search<'s, 'a> {
     /// A search that samples the goal's headings `count` times, not finer than `finest` (rad).
     pub fn new(task: Task, space: &'s mut Space<'a>, count: usize, finest: f64) -> Self {
         let mut goal_rays = Vec::new();
         rays(&task, space, &task.goal, count, finest, &mut goal_rays);
-        Self { task, space, goal_rays, best: None, guide: None, tails: Vec::new(), prefix: Legs::default() }
+        Self { task, space, goal_rays, best: None, guide: None, tails: Vec::new() }
     }
 
     /// The time to beat, s.
@@ -54,22 +58,37 @@ impl<'s, 'a> Search<'s, 'a> {
         self.collect_pairs(pose, rays, spent);
         self.tails.sort_unstable_by(|a, b| a.time.total_cmp(&b.time));
         let before = self.time_to_beat();
-        for i in 0..self.tails.len().min(MOST_TESTS) {
+        let most = if prefix.is_empty() { MOST_TESTS_AT_START } else { MOST_TESTS };
+        for i in 0..self.tails.len().min(most) {
             let tail = self.tails[i];
             if tail.time >= self.time_to_beat() {
                 break;
             }
-            self.prefix.0.clear();
-            self.prefix.0.extend(prefix);
-            self.prefix.0.push(tail.first);
-            self.prefix.0.extend(tail.second);
-            if let Some((time, _)) = self.prefix.motions(&self.task, self.space)
+            if self.tested(pose, &tail).is_none_or(|time| time >= self.time_to_beat()) {
+                continue;
+            }
+            let legs = Legs(prefix.iter().copied().chain([tail.first]).chain(tail.second).collect());
+            if let Some((time, _)) = legs.motions(&self.task, self.space)
                 && time < self.time_to_beat()
             {
-                self.best = Some((time, self.prefix.clone()));
+                self.best = Some((time, legs));
             }
         }
         self.time_to_beat() < before
+    }
+
+    /// The true time of a tail, when it is free. Of a pair only the turn between is still unknown.
+    fn tested(&mut self, pose: &Pose2, tail: &Tail) -> Option<f64> {
+        let (heading, way) = tail.first;
+        let Some((next, _)) = tail.second else {
+            let task = Task { start: *pose, ..self.task };
+            let (time, _) = Legs(vec![tail.first]).motions(&task, self.space)?;
+            return Some(time + tail.spent);
+        };
+        let corner = Motion::Drive(way).after(Pose2 { theta: heading, ..*pose }, way);
+        let turn = wrap_angle(next - heading);
+        let taken = self.space.turn(&corner).way(turn)?;
+        Some(tail.time + self.task.turn_cost(taken) - self.task.turn_cost(turn))
     }
 
     /// Straight to the goal, forward or backward.
@@ -81,7 +100,7 @@ impl<'s, 'a> Search<'s, 'a> {
             let turns = self.task.turn_cost(wrap_angle(heading - pose.theta))
                 + self.task.turn_cost(wrap_angle(self.task.goal.theta - heading));
             let time = spent + turns + self.task.drive_cost(way) - self.task.limits.switch_time;
-            self.tails.push(Tail { time, first: (heading, way), second: None });
+            self.tails.push(Tail { spent, time, first: (heading, way), second: None });
         }
     }
 
@@ -114,7 +133,7 @@ impl<'s, 'a> Search<'s, 'a> {
                 let corner = pose.position() + ray.direction * first;
                 if time < to_beat && task.in_region(corner) {
                     let second = Some((goal_ray.heading, second));
-                    self.tails.push(Tail { time, first: (ray.heading, first), second });
+                    self.tails.push(Tail { spent, time, first: (ray.heading, first), second });
                 }
             }
         }
