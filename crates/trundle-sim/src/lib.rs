@@ -19,6 +19,7 @@ mod camera;
 mod chance;
 mod config;
 mod drive;
+pub mod import;
 mod kobuki;
 mod paint;
 mod people;
@@ -35,6 +36,6 @@ pub use people::Person;
 pub use scenes::Scene;
 pub use simulator::{SimError, Simulator};
 pub use world::{
-    Cuboid, Cylinder, HeightBand, Hit, Lamp, Lights, Material, Mesh, Mover, Shape, Solid, Stage, Triangle,
+    Cuboid, Cylinder, HeightBand, Hit, Lamp, Lights, Material, Mesh, Mover, Obstacles, Shape, Solid, Stage, Triangle,
     World,
 };

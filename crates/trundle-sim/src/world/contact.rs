@@ -1,68 +1,60 @@
-use super::{Outline, World};
+use super::outline::Outline;
+use super::outline_index::OutlineIndex;
+use super::region::Region;
+use super::{HeightBand, Stage, World};
 use trundle_core::{Footprint, Invalid, Pose2, require_finite, require_in};
 
-/// The heights between which something is in the way.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct HeightBand {
-    low: f64,
-    high: f64,
-}
-
-impl HeightBand {
-    /// Above `low` and below `high`, m above the floor.
-    ///
-    /// # Errors
-    /// When a bound is not finite or `high` is not above `low`.
-    pub fn new(low: f64, high: f64) -> Result<Self, Invalid> {
-        require_finite("low end of the height band", low, "m")?;
-        require_finite("high end of the height band", high, "m")?;
-        if high > low {
-            Ok(Self { low, high })
-        } else {
-            Err(Invalid::new("high end of the height band", high, "m", format!("more than {low}")))
-        }
-    }
-}
-
-/// The outlines of everything in a height band: what a robot of that height can touch.
+/// What of a world a robot of some height can touch, seen from above: made once, asked often.
+///
+/// Of solids the whole outline counts, of meshes the surface: a robot may stand in a ring of walls, and a closed shell
+/// touches it from within as from without. A query is exact and costs microseconds in a house of 100,000 triangles.
 #[derive(Debug, Clone)]
-pub(crate) struct Obstacles {
-    outlines: Vec<Outline>,
+pub struct Obstacles {
+    index: OutlineIndex,
 }
 
 impl Obstacles {
-    /// Metres between a footprint standing at `pose` and the nearest of them, 0 or less in contact; infinite when
-    /// there is none.
-    pub(crate) fn clearance(&self, footprint: &Footprint, pose: Pose2) -> f64 {
-        let robot = Outline::of_footprint(footprint, pose);
-        self.outlines.iter().map(|outline| outline.clearance(&robot)).fold(f64::INFINITY, f64::min)
+    /// Metres between a footprint standing at `pose` (in the frame of the obstacles) and the nearest of them; 0 or less
+    /// in contact, infinite when there is none.
+    ///
+    /// A disc that holds a point of an obstacle is that much below zero; overlapping polygons are at 0.
+    pub fn clearance(&self, footprint: &Footprint, pose: Pose2) -> f64 {
+        match footprint {
+            Footprint::Disc { radius } => {
+                self.index.clearance(Region { corners: &[pose.position()], radius: *radius })
+            }
+            Footprint::Polygon { .. } => {
+                self.index.clearance(Outline::of_footprint(footprint, pose).region())
+            }
+        }
     }
 
-    pub(super) fn outlines(&self) -> &[Outline] {
-        &self.outlines
+    /// The same for obstacles that stand at `world_from_obstacles`: a person, a door.
+    pub fn clearance_at(
+        &self,
+        world_from_obstacles: Pose2,
+        footprint: &Footprint,
+        world_from_base: Pose2,
+    ) -> f64 {
+        self.clearance(footprint, world_from_obstacles.inverse() * world_from_base)
     }
 }
 
 impl World {
     /// Everything that reaches into a height band.
-    pub(crate) fn obstacles(&self, band: HeightBand) -> Obstacles {
-        let reaches = |shape: &super::Shape| {
-            let bounds = shape.aabb();
-            bounds.max.z > band.low && bounds.min.z < band.high
-        };
-        let outlines = self.solids.iter().zip(&self.outlines).filter(|(solid, _)| reaches(&solid.shape));
-        Obstacles { outlines: outlines.map(|(_, outline)| outline.clone()).collect() }
+    pub fn obstacles(&self, band: HeightBand) -> Obstacles {
+        let lists = self.outlines_in(band);
+        let outlines: Vec<Region<'_>> = lists.iter().flat_map(|list| list.iter()).collect();
+        Obstacles { index: OutlineIndex::new(&outlines) }
     }
 
-    /// Metres between a footprint standing at `pose` (`world_from_base`) and the nearest solid of the height band;
-    /// 0 or less in contact, infinite when there is none.
+    /// Metres between a footprint standing at `pose` (`world_from_base`) and the nearest thing in the height band; 0 or
+    /// less in contact, infinite when there is none. For one question; to ask often, keep [`World::obstacles`].
     ///
     /// # Errors
     /// When the pose is not finite.
     pub fn clearance(&self, footprint: &Footprint, pose: Pose2, band: HeightBand) -> Result<f64, Invalid> {
-        require_in("pose x", pose.x, "m", -1e9, 1e9)?;
-        require_in("pose y", pose.y, "m", -1e9, 1e9)?;
-        require_finite("pose theta", pose.theta, "rad")?;
+        check(pose)?;
         Ok(self.obstacles(band).clearance(footprint, pose))
     }
 
@@ -73,4 +65,25 @@ impl World {
     pub fn collides(&self, footprint: &Footprint, pose: Pose2, band: HeightBand) -> Result<bool, Invalid> {
         Ok(self.clearance(footprint, pose, band)? <= 0.0)
     }
+}
+
+impl Stage<'_> {
+    /// As [`World::clearance`], of what stands and of what moves.
+    ///
+    /// # Errors
+    /// When the pose is not finite.
+    pub fn clearance(&self, footprint: &Footprint, pose: Pose2, band: HeightBand) -> Result<f64, Invalid> {
+        let still = self.world.clearance(footprint, pose, band)?;
+        let moving = self
+            .movers
+            .iter()
+            .map(|mover| mover.body.obstacles(band).clearance_at(mover.pose, footprint, pose));
+        Ok(moving.fold(still, f64::min))
+    }
+}
+
+fn check(pose: Pose2) -> Result<(), Invalid> {
+    require_in("pose x", pose.x, "m", -1e9, 1e9)?;
+    require_in("pose y", pose.y, "m", -1e9, 1e9)?;
+    require_finite("pose theta", pose.theta, "rad").map(|_| ())
 }

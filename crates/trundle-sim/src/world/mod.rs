@@ -1,6 +1,7 @@
 //! The static scene: solids, what a ray meets, what a robot touches, and its true map.
 
 mod aabb;
+mod band;
 mod bvh;
 mod contact;
 mod grid;
@@ -8,15 +9,17 @@ mod lights;
 mod mesh;
 mod mover;
 mod outline;
+mod outline_index;
 mod ray;
+mod region;
 mod shape;
 mod stage;
 
 use crate::paint::{Finish, Paintings};
 pub(crate) use aabb::Aabb;
 pub(crate) use bvh::Bvh;
-pub use contact::HeightBand;
-pub(crate) use contact::Obstacles;
+pub use band::HeightBand;
+pub use contact::Obstacles;
 pub use lights::{Lamp, Lights};
 pub use mesh::{Material, Mesh, Triangle};
 pub use mover::Mover;
@@ -69,8 +72,9 @@ impl World {
             solid.shape.check(i)?;
         }
         let boxes: Vec<Aabb> = solids.iter().map(|solid| solid.shape.aabb()).collect();
-        let Some(bounds) = boxes.iter().copied().reduce(Aabb::union) else {
-            return Err(Invalid::new("solids of the world", 0, "", "1 or more"));
+        let all = boxes.iter().copied().chain(meshes.iter().map(around_mesh));
+        let Some(bounds) = all.reduce(Aabb::union) else {
+            return Err(Invalid::new("solids and meshes of the world", 0, "", "1 or more"));
         };
         let outlines = solids.iter().map(|solid| solid.shape.outline()).collect();
         let bvh = Bvh::new(&boxes);
@@ -87,7 +91,7 @@ impl World {
         &self.meshes
     }
 
-    /// The lowest and the highest corner of all solids, m.
+    /// The lowest and the highest corner of all solids and meshes, m.
     pub fn bounds(&self) -> (Vector3, Vector3) {
         (self.bounds.min, self.bounds.max)
     }
@@ -110,4 +114,11 @@ impl World {
     pub(crate) fn paintings(&self) -> &Paintings {
         self.paintings.get_or_init(|| Paintings::new(&self.solids, self.seed))
     }
+}
+
+fn around_mesh(mesh: &Mesh) -> Aabb {
+    let corners = mesh.triangles().iter().flat_map(|triangle| triangle.corners);
+    let points = corners.map(|corner| Vector3::from(mesh.positions()[corner as usize].map(f64::from)));
+    let boxes = points.map(|point| Aabb { min: point, max: point });
+    boxes.reduce(Aabb::union).expect("invariant: a mesh has a triangle")
 }

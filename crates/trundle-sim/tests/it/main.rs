@@ -1,9 +1,11 @@
 //! The simulator against closed forms, and its promises.
-#![expect(clippy::unwrap_used, reason = "helpers of tests")]
+#![expect(clippy::unwrap_used, clippy::print_stderr, reason = "helpers of tests")]
 
+mod contact;
 mod depth;
 mod drive;
 mod events;
+mod import;
 mod scenes;
 mod textures;
 
@@ -36,4 +38,14 @@ fn hall(start: Pose2) -> Scene {
 fn almost_blind() -> SimConfig {
     let camera = trundle_core::PinholeCamera::from_field_of_view((16, 8), (1.2, 0.8)).unwrap();
     SimConfig { camera, camera_rate_hz: 1.0, ..SimConfig::default() }
+}
+
+/// A file of the shared data; `None`, and says so, where it is absent.
+fn shared_data(name: &str) -> Option<std::path::PathBuf> {
+    let path = std::path::Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data")).join(name);
+    if path.exists() {
+        return Some(path);
+    }
+    eprintln!("skipped: {} is absent", path.display());
+    None
 }

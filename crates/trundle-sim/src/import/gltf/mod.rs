@@ -1,0 +1,65 @@
+//! glTF 2.0: JSON or GLB, buffers and textures inside or beside it.
+
+mod accessor;
+mod buffers;
+mod builder;
+mod container;
+mod nodes;
+mod options;
+mod primitive;
+mod schema;
+mod textures;
+
+use super::{ImportError, ImportFault};
+use crate::world::Mesh;
+use buffers::{Buffers, Resolve};
+use builder::Builder;
+use container::Container;
+pub use options::{GltfOptions, UpAxis};
+use std::path::Path;
+
+/// Reads a glTF 2.0 file, `.gltf` or `.glb`, as one mesh in the world frame, m, z up.
+///
+/// What it reads: the default scene with its nodes' transforms; triangle lists, strips and fans, indexed or not, sparse or
+/// quantised; of materials the base colour and its texture (PNG or JPEG; alpha is ignored, everything is opaque and seen
+/// from both sides); KHR_texture_transform. Textures repeat. Triangles without area are left out. What it ignores: skins,
+/// morph targets, animations, vertex colours, other maps of the material, cameras and lights.
+///
+/// The up axis is the standard's, +y, unless `options` says otherwise: a z-up file that claims nothing lies on its side.
+///
+/// # Errors
+/// When a file or a texture is missing, cut short or broken, a number is not finite, an index is out of range, the file
+/// needs an extension such as Draco compression, or there is no triangle. The error names the file and the item.
+pub fn gltf(path: &Path, options: &GltfOptions) -> Result<Mesh, ImportError> {
+    let file = path.display().to_string();
+    let bytes =
+        std::fs::read(path).map_err(|e| ImportFault::Unreadable { reason: e.to_string() }.of(&file))?;
+    let folder = path.parent().unwrap_or(Path::new(""));
+    gltf_from_bytes(&file, &bytes, options, &|name| std::fs::read(folder.join(name)))
+}
+
+/// As [`gltf`], from the bytes of a file called `file` in messages; `resolve` fetches what the file names.
+///
+/// # Errors
+/// As [`gltf`].
+pub fn gltf_from_bytes(
+    file: &str,
+    bytes: &[u8],
+    options: &GltfOptions,
+    resolve: &(dyn Fn(&str) -> std::io::Result<Vec<u8>> + Sync),
+) -> Result<Mesh, ImportError> {
+    read(bytes, options, resolve).map_err(|fault| fault.of(file))
+}
+
+fn read(bytes: &[u8], options: &GltfOptions, resolve: Resolve<'_>) -> Result<Mesh, ImportFault> {
+    let options = options.clone().validated()?;
+    let container = Container::open(bytes)?;
+    let root = schema::parse(container.json)?;
+    let buffers = Buffers::load(&root, &container, resolve)?;
+    let world_from_file = options.world_from_file();
+    let mut builder = Builder::new(&buffers);
+    for instance in nodes::instances(&root)? {
+        builder.add(instance.mesh, &(world_from_file * instance.transform))?;
+    }
+    builder.build()
+}
