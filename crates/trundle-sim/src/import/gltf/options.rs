@@ -1,0 +1,60 @@
+use nalgebra::{Matrix4, Rotation3};
+use serde::{Deserialize, Serialize};
+use trundle_core::{Invalid, Pose3, Vector3, require_in};
+
+/// Which axis of a file points up.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum UpAxis {
+    /// +y, as glTF 2.0 prescribes and Blender writes. The file's x stays x; its -z becomes y.
+    #[default]
+    Y,
+    /// +z, as in files that robotics tools wrote without turning the axes. All axes stay.
+    Z,
+}
+
+/// How a glTF file is placed in the world.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct GltfOptions {
+    /// The file's up axis. Default +y, as the standard says.
+    pub up: UpAxis,
+    /// Metres a unit of the file, 1e-6 to 1e6. Default 1, as the standard says.
+    pub scale: f64,
+    /// `world_from_model`, applied after the two above. Default identity.
+    pub pose: Pose3,
+}
+
+impl Default for GltfOptions {
+    fn default() -> Self {
+        Self { up: UpAxis::Y, scale: 1.0, pose: Pose3::identity() }
+    }
+}
+
+impl GltfOptions {
+    /// A file with z up, in metres, at the world's origin.
+    pub fn z_up() -> Self {
+        Self { up: UpAxis::Z, ..Self::default() }
+    }
+
+    /// Passes valid options through.
+    ///
+    /// # Errors
+    /// When the scale is outside its range or the pose is not finite.
+    pub fn validated(self) -> Result<Self, Invalid> {
+        require_in("scale", self.scale, "m a unit", 1e-6, 1e6)?;
+        if !self.pose.is_finite() {
+            return Err(Invalid::new("pose", "not finite", "", "finite numbers"));
+        }
+        Ok(self)
+    }
+
+    pub(super) fn world_from_file(&self) -> Matrix4<f64> {
+        let turn = match self.up {
+            UpAxis::Y => Rotation3::from_axis_angle(&Vector3::x_axis(), std::f64::consts::FRAC_PI_2),
+            UpAxis::Z => Rotation3::identity(),
+        };
+        let pose: nalgebra::Isometry3<f64> = self.pose.into();
+        pose.to_homogeneous() * turn.to_homogeneous() * Matrix4::new_scaling(self.scale)
+    }
+}

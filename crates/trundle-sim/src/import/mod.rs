@@ -1,0 +1,7 @@
+//! Worlds from files: glTF scenes, and maps raised to walls.
+
+mod error;
+mod gltf;
+
+pub use error::{ImportError, ImportFault};
+pub use gltf::{GltfOptions, UpAxis, gltf, gltf_from_bytes};
