@@ -88,9 +88,9 @@ pub struct ReplayArgs {
 pub struct SlamArgs {
     /// A TUM RGB-D folder: rgb.txt, depth.txt, optional groundtruth.txt and odometry.txt.
     pub dir: PathBuf,
-    /// Preset freiburg1, freiburg2, freiburg3, kinect_v2, or a TOML file.
-    #[arg(long, value_name = "PRESET|FILE", default_value = "freiburg1")]
-    pub camera: String,
+    /// Preset freiburg1, freiburg2, freiburg3, kinect_v2, or a TOML file [default: DIR/camera.toml, else freiburg1]
+    #[arg(long, value_name = "PRESET|FILE")]
+    pub camera: Option<String>,
     /// Depth units a metre [default: the camera's]
     #[arg(long, value_name = "N")]
     pub depth_scale: Option<f64>,
@@ -115,6 +115,15 @@ pub struct SlamArgs {
     /// What every command takes.
     #[command(flatten)]
     pub common: Common,
+}
+
+impl SlamArgs {
+    /// The camera that was asked for, else that which the sequence brings along, else the benchmark's first.
+    pub fn camera(&self) -> String {
+        let own = self.dir.join("camera.toml");
+        let brought = || own.exists().then(|| own.display().to_string());
+        self.camera.clone().or_else(brought).unwrap_or_else(|| "freiburg1".to_owned())
+    }
 }
 
 /// `trundle plan`

@@ -13,6 +13,7 @@ mod robot_file;
 mod run;
 mod run_output;
 mod run_table;
+mod settings;
 mod sim;
 mod slam;
 mod slam_output;

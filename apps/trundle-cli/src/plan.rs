@@ -86,7 +86,8 @@ fn curve_csv(found: &PlanResult) -> String {
 
 /// The polynomials: of each piece, the coefficients of u^k, u from 0 to 1 along the piece.
 fn coefficients_csv(found: &PlanResult) -> String {
-    let pieces = |curve: &Curve| curve.pieces().iter().map(|piece| piece.monomials()).collect::<Vec<_>>();
+    let pieces =
+        |curve: &Curve| curve.pieces().iter().map(|piece| piece.monomials().to_vec()).collect::<Vec<_>>();
     let rows = found.curves().enumerate().flat_map(|(i, curve)| {
         pieces(curve).into_iter().enumerate().flat_map(move |(j, monomials)| {
             let row = move |(k, c): (usize, Vector2)| [i as f64, j as f64, k as f64, c.x, c.y];

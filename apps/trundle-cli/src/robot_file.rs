@@ -1,4 +1,4 @@
-use crate::{Outcome, args::ConfigArgs, console, failure::Failure};
+use crate::{Outcome, args::ConfigArgs, console, failure::Failure, settings};
 use std::path::Path;
 use trundle::io::{OutputFolder, Summary};
 use trundle::runtime::RobotConfig;
@@ -6,13 +6,8 @@ use trundle::runtime::RobotConfig;
 /// Reads a robot file; without one, the defaults.
 pub fn load(file: Option<&Path>) -> Result<RobotConfig, Failure> {
     let Some(file) = file else { return Ok(RobotConfig::default()) };
-    let name = file.display();
-    let text = std::fs::read_to_string(file).map_err(|error| Failure::Input(format!("{name}: {error}")))?;
-    let config = RobotConfig::from_toml(&text).map_err(|error| {
-        let line = error.span().map_or(1, |span| 1 + text[..span.start].matches('\n').count());
-        Failure::Input(format!("{name}, line {line}: {}", error.message().replace('\n', " ")))
-    })?;
-    config.validated().map_err(|error| Failure::Input(format!("{name}: {error}")))
+    let config = settings::read(file, RobotConfig::from_toml)?;
+    config.validated().map_err(|error| Failure::Input(format!("{}: {error}", file.display())))
 }
 
 /// `trundle config [FILE]`: the whole robot file.

@@ -3,9 +3,11 @@
 mod args;
 mod data_set;
 mod driver;
+mod hand;
 mod journey;
 mod map;
 mod scene;
+mod start;
 mod table;
 
 pub use args::SimArgs;
@@ -13,6 +15,7 @@ pub use args::SimArgs;
 use crate::{Outcome, console, failure::Failure};
 use data_set::DataSet;
 use driver::Driver;
+use hand::Hand;
 use journey::Journey;
 use trundle::io::OutputFolder;
 use trundle::sim::{HeightBand, SimConfig, SimError, Simulator};
@@ -35,15 +38,19 @@ pub fn run(args: &SimArgs) -> Result<Outcome, Failure> {
         _ => HeightBand::new(config.kobuki.step_over, config.kobuki.height)?,
     };
     let mut driver = Driver::read(args)?;
-    let scene = scene::load(name, args.seed)?;
+    let folder = args.record.as_deref().map(OutputFolder::create).transpose()?;
+    let scene = scene::load(args, name)?;
     if let Some(file) = &args.map {
         map::write(file, &scene, args.resolution, band)?;
     }
     if args.wants_only_map() {
         return Ok(Outcome::Reached);
     }
-    let mut robot = Simulator::new(scene, config, args.seed)?;
-    let folder = args.record.as_deref().map(OutputFolder::create).transpose()?;
+    let mut robot = Simulator::new(scene, config, args.seed)
+        .map_err(|error| Failure::Input(format!("{name}: {error}")))?;
+    if let Driver::Hand(hand) = &mut driver {
+        hand.begin(map::truth(robot.scene(), args.resolution, band)?, args.common.quiet)?;
+    }
     let mut data = folder.as_ref().map(|folder| DataSet::new(folder, &robot)).transpose()?;
     let journey = Journey::drive(args, &mut robot, &mut driver, data.as_mut())?;
     if let Some(data) = data {

@@ -27,7 +27,7 @@ pub struct SlamRun {
 
 /// `trundle slam DIR`.
 pub fn run(args: &SlamArgs) -> Result<Outcome, Failure> {
-    let camera = CameraModel::named(&args.camera)?;
+    let camera = CameraModel::named(&args.camera())?;
     let scale = args.depth_scale.unwrap_or(camera.depth_scale);
     let sequence = TumSequence::open(&args.dir, scale, TumSequence::MAX_DIFFERENCE)?
         .with_size(camera.camera.width(), camera.camera.height());

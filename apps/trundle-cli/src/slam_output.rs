@@ -100,7 +100,7 @@ fn summary(args: &SlamArgs, sequence: &TumSequence, run: &SlamRun, judged: Optio
     let c = run.counts;
     summary
         .set("success", run.is_located())
-        .set("camera", &args.camera)
+        .set("camera", args.camera())
         .set("seed", args.seed)
         .set("frames", c.ok + c.weak + c.dead_reckoned + c.lost)
         .set("frames_unreadable", &run.unreadable)
@@ -135,7 +135,7 @@ fn report(
     charts.extend(judged.map(|judged| error_chart(trajectory, judged)));
     RunReport {
         title: "trundle slam".to_owned(),
-        subtitle: format!("{}, camera {}.", args.dir.display(), args.camera),
+        subtitle: format!("{}, camera {}.", args.dir.display(), args.camera()),
         verdict: Some(if run.is_located() { Verdict::Note(verdict) } else { Verdict::Failed(verdict) }),
         cards: cards(run, judged),
         grid: Some(grid),

@@ -2,7 +2,7 @@
 //!
 //! What comes in: TUM RGB-D folders ([`TumSequence`]), TUM trajectories ([`read_trajectory`]), cameras
 //! ([`CameraModel`]), ROS maps ([`read_map`]) and recordings ([`RecordingReader`]). What goes out is collected in an
-//! [`OutputFolder`], which shows nothing half-written: maps, trajectories, tables, TUM folders ([`TumWriter`]), recordings ([`Recorder`]) and the
+//! [`OutputFolder`], which shows nothing half-written: maps, trajectories, tables, TUM folders ([`TumWriter`]), laser logs ([`CarmenLog`]), recordings ([`Recorder`]) and the
 //! numbers of a run ([`Summary`]). [`EncodedEvent`] is the wire between body and robot: a robot that is fed through
 //! it sees live exactly what a replay of its recording will show it.
 //!
@@ -23,6 +23,7 @@
 //! ```
 
 mod camera;
+mod carmen;
 mod codec;
 mod csv;
 mod error;
@@ -35,6 +36,7 @@ mod summary;
 mod tum;
 
 pub use camera::{CameraModel, KINECT_V2_DEPTH_SCALE, TUM_DEPTH_SCALE};
+pub use carmen::CarmenLog;
 pub use codec::{
     CodecError, EncodedEvent, EncodedRgbd, JPEG_QUALITY, decode_color, decode_depth, decode_raw_depth,
     encode_color, encode_color_png, encode_depth,

@@ -1,7 +1,8 @@
-use crate::args::Common;
+use crate::args::{Common, PoseArg};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 use trundle::core::PinholeCamera;
+use trundle::sim::import::UpAxis;
 
 /// `trundle sim`
 #[derive(Debug, Args)]
@@ -17,6 +18,12 @@ pub struct SimArgs {
     /// Seed of the scene's furniture and textures and of all noise.
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,
+    /// Where the robot starts, world frame: m, m, deg [default: the scene's, or where there is room]
+    #[arg(long, value_name = "X,Y,DEG", allow_hyphen_values = true)]
+    pub start: Option<PoseArg>,
+    /// The axis that points up in a .glb or .gltf.
+    #[arg(long, value_enum, value_name = "AXIS", default_value_t = UpArg::Y)]
+    pub up: UpArg,
     /// Drive by commands, a line each: t v omega (s, m/s, rad/s).
     #[arg(long, value_name = "FILE", group = "driver")]
     pub drive: Option<PathBuf>,
@@ -70,6 +77,25 @@ impl CameraArg {
         match self {
             Self::KinectV2 => PinholeCamera::kinect_v2(),
             Self::KinectV1 => PinholeCamera::kinect_v1(),
+        }
+    }
+}
+
+/// The axis of a file that points up.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum UpArg {
+    /// As glTF has it.
+    Y,
+    /// As robots have it.
+    Z,
+}
+
+impl UpArg {
+    /// The axis.
+    pub fn axis(self) -> UpAxis {
+        match self {
+            Self::Y => UpAxis::Y,
+            Self::Z => UpAxis::Z,
         }
     }
 }

@@ -1,8 +1,7 @@
-use super::SimArgs;
-use crate::failure::Failure;
+use super::{Hand, SimArgs};
+use crate::{failure::Failure, settings};
 use std::path::Path;
 use trundle::core::{Invalid, Pose2, Stamp, Twist2};
-use trundle::io::IoError;
 use trundle::sim::{CommandScript, Following, WaypointFollower};
 
 /// A robot that nobody drives is watched for so long, s.
@@ -19,13 +18,15 @@ pub enum Driver {
     Script(CommandScript),
     /// Way-points by the true pose; when it came to its end.
     Waypoints(Box<WaypointFollower>, Option<Stamp>),
+    /// Somebody at the keys.
+    Hand(Box<Hand>),
 }
 
 impl Driver {
     /// The driver that the arguments ask for.
     ///
     /// # Errors
-    /// When its file cannot be read, or a line of it is wrong.
+    /// When its file cannot be read, a line of it is wrong, or there is no keyboard.
     pub fn read(args: &SimArgs) -> Result<Self, Failure> {
         if let Some(file) = &args.drive {
             return Ok(Self::Script(parsed(file, CommandScript::parse)?));
@@ -33,12 +34,15 @@ impl Driver {
         if let Some(file) = &args.follow {
             return Ok(Self::Waypoints(Box::new(parsed(file, WaypointFollower::parse)?), None));
         }
-        Ok(Self::Nobody)
+        Ok(if args.keys { Self::Hand(Box::new(Hand::ready()?)) } else { Self::Nobody })
     }
 
     /// What to drive now that the robot truly stands at `pose`.
-    pub fn twist(&mut self, stamp: Stamp, pose: Pose2) -> Twist2 {
-        match self {
+    ///
+    /// # Errors
+    /// When there is no keyboard any more.
+    pub fn twist(&mut self, stamp: Stamp, pose: Pose2) -> Result<Twist2, Failure> {
+        Ok(match self {
             Self::Nobody => Twist2::ZERO,
             Self::Script(script) => script.at(stamp.as_secs()),
             Self::Waypoints(follower, ended) => {
@@ -48,7 +52,8 @@ impl Driver {
                 }
                 twist
             }
-        }
+            Self::Hand(hand) => hand.twist(stamp)?,
+        })
     }
 
     /// When the drive is over, s, where that is known.
@@ -57,6 +62,7 @@ impl Driver {
             Self::Nobody => Some(STANDING),
             Self::Script(script) => Some(script.duration().max(1e-3)),
             Self::Waypoints(_, ended) => ended.map(|stamp| stamp.as_secs() + AFTERMATH),
+            Self::Hand(hand) => hand.has_quit().then_some(0.0),
         }
     }
 
@@ -72,11 +78,6 @@ impl Driver {
 }
 
 fn parsed<T>(file: &Path, parse: impl Fn(&str) -> Result<T, Invalid>) -> Result<T, Failure> {
-    let text = std::fs::read_to_string(file).map_err(|error| unreadable(file, error))?;
+    let text = settings::text_of(file)?;
     parse(&text).map_err(|invalid| Failure::Input(format!("{}: {invalid}", file.display())))
-}
-
-/// A file that cannot be read, in the words of every other such error.
-pub fn unreadable(file: &Path, source: std::io::Error) -> Failure {
-    Failure::Io(IoError::System { path: file.to_owned(), action: "read", source })
 }

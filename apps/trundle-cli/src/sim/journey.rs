@@ -45,11 +45,14 @@ impl Journey {
             now = stamp.as_secs().max(now);
             match &event {
                 SensorEvent::Wheels(_) => {
-                    let twist = driver.twist(stamp, robot.true_pose());
+                    let twist = driver.twist(stamp, robot.true_pose())?;
                     robot.command(twist)?;
                 }
-                SensorEvent::Rgbd(_) => {
+                SensorEvent::Rgbd(image) => {
                     images += 1;
+                    if let Driver::Hand(hand) = driver {
+                        hand.show(image, robot);
+                    }
                     show(&bar, robot, now, begun);
                 }
                 SensorEvent::Scan(_) => scans += 1,

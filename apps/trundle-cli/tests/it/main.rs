@@ -5,4 +5,5 @@ mod bad_input;
 mod demo;
 mod plan;
 mod program;
+mod sim;
 mod slam;

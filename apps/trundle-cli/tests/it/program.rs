@@ -1,9 +1,13 @@
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
 
 /// Runs `trundle` with `args`.
 pub fn trundle(args: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_trundle")).args(args).output().expect("the program starts")
+    Command::new(env!("CARGO_BIN_EXE_trundle"))
+        .args(args)
+        .stdin(Stdio::null())
+        .output()
+        .expect("the program starts")
 }
 
 /// The sentence with which `trundle args` refuses its input: exit code 2, nothing on standard output.

@@ -67,10 +67,10 @@ impl<'f> TumWriter<'f> {
         }
         self.frames.sort_unstable();
         let write = |name: &str, text: String| self.folder.write(name, text.as_bytes());
-        write("rgb.txt", list("colour images", "timestamp filename", &self.frames, &["rgb"]))?;
-        write("depth.txt", list("depth images", "timestamp filename", &self.frames, &["depth"]))?;
-        let pairs = "timestamp filename timestamp filename";
-        write("associations.txt", list("pairs of images", pairs, &self.frames, &["rgb", "depth"]))?;
+        let titled = |folder| format!("# timestamp filename\n{}", list(&self.frames, &[folder]));
+        write("rgb.txt", titled("rgb"))?;
+        write("depth.txt", titled("depth"))?;
+        write("associations.txt", list(&self.frames, &["rgb", "depth"]))?; // ORB-SLAM knows no comments there
         if !self.ground_truth.is_empty() {
             write("groundtruth.txt", trajectory_text(&by_stamp(self.ground_truth)))?;
         }
@@ -95,12 +95,12 @@ fn file_name(folder: &str, stamp: Stamp) -> String {
     format!("{folder}/{:0>20}.png", stamp.to_string())
 }
 
-fn list(title: &str, columns: &str, frames: &[Stamp], folders: &[&str]) -> String {
-    let mut text = format!("# {title}\n# {columns}\n");
+fn list(frames: &[Stamp], folders: &[&str]) -> String {
+    let mut text = String::new();
     for &stamp in frames {
-        let columns: Vec<String> =
-            folders.iter().map(|folder| format!("{stamp} {}", file_name(folder, stamp))).collect();
-        writeln!(text, "{}", columns.join(" ")).expect("invariant: a String takes any text");
+        let columns = folders.iter().map(|folder| format!("{stamp} {}", file_name(folder, stamp)));
+        writeln!(text, "{}", columns.collect::<Vec<_>>().join(" "))
+            .expect("invariant: a String takes any text");
     }
     text
 }

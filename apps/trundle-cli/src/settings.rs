@@ -1,0 +1,24 @@
+use crate::failure::Failure;
+use std::path::Path;
+use trundle::io::IoError;
+
+/// Reads a TOML file by `parse`.
+///
+/// # Errors
+/// Names the file and the line, where the file cannot be read or `parse` refuses it.
+pub fn read<T>(file: &Path, parse: impl FnOnce(&str) -> Result<T, toml::de::Error>) -> Result<T, Failure> {
+    let text = text_of(file)?;
+    parse(&text).map_err(|error| {
+        let line = error.span().map_or(1, |span| 1 + text[..span.start].matches('\n').count());
+        Failure::Input(format!("{}, line {line}: {}", file.display(), error.message().replace('\n', " ")))
+    })
+}
+
+/// The text of a file.
+///
+/// # Errors
+/// Names the file and why it cannot be read.
+pub fn text_of(file: &Path) -> Result<String, Failure> {
+    std::fs::read_to_string(file)
+        .map_err(|source| Failure::Io(IoError::System { path: file.to_owned(), action: "read", source }))
+}

@@ -1,0 +1,46 @@
+use std::time::{Duration, Instant};
+
+/// A simulation that has fallen behind by more than this does not hurry to catch up, s.
+const PATIENCE: f64 = 0.25;
+
+/// Holds simulated time back to the clock on the wall.
+#[derive(Debug)]
+pub struct Pace {
+    /// When the simulated time was, or would have been, 0.
+    origin: Instant,
+}
+
+impl Pace {
+    /// From simulated time 0 on.
+    pub fn start() -> Self {
+        Self { origin: Instant::now() }
+    }
+
+    /// Waits until `time` s have passed since the start.
+    pub fn wait_for(&mut self, time: f64) {
+        let ahead = time - self.origin.elapsed().as_secs_f64();
+        if ahead > 0.0 {
+            std::thread::sleep(Duration::from_secs_f64(ahead));
+        } else if ahead < -PATIENCE {
+            self.origin += Duration::from_secs_f64(-ahead);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn it_waits_when_ahead_and_forgets_when_behind() {
+        let begun = Instant::now();
+        let mut pace = Pace::start();
+        pace.wait_for(0.05);
+        assert!(begun.elapsed().as_secs_f64() >= 0.05);
+        std::thread::sleep(Duration::from_secs_f64(PATIENCE + 0.06));
+        pace.wait_for(0.05); // 0.31 s late: simulated time goes on from here
+        let again = Instant::now();
+        pace.wait_for(0.08);
+        assert!(again.elapsed().as_secs_f64() > 0.02);
+    }
+}
