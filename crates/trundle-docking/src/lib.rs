@@ -1,5 +1,6 @@
 //! Fine positioning in narrow spaces: rotations and straight moves, footprint-exact.
 
+mod bound;
 mod config;
 pub mod corridor;
 mod flood;

@@ -1,6 +1,6 @@
 use crate::config::{DockingConfig, Method};
 use crate::manoeuvre::Manoeuvre;
-use crate::optimal::{self, Outcome, Task};
+use crate::optimal::{self, Effort, Outcome, Task};
 use crate::paper;
 use crate::scene::{Blocker, Scene};
 use crate::space::Space;
@@ -97,15 +97,21 @@ impl Docker {
         let outcome = match self.config.method {
             Method::Paper => return Ok(self.by_paper(&space, start, goal, margin)),
             Method::Optimal => {
-                optimal::find(task, &mut space, self.config.search_nodes, self.config.position_tolerance)
+                let effort = Effort {
+                    nodes: self.config.search_nodes,
+                    boxes: self.config.bound_boxes,
+                    gap: self.config.gap,
+                    cell: self.config.position_tolerance,
+                };
+                optimal::find(task, &mut space, effort)
             }
         };
         Ok(match outcome {
-            Outcome::Found((_, legs)) => {
+            Outcome::Found((_, legs), bound) => {
                 let (_, motions) = legs.motions(&task, &mut space).expect("invariant: found legs are free");
                 Plan::Found(Solution {
                     manoeuvre: Manoeuvre::new(start, &motions, limits),
-                    bound: 0.0,
+                    bound,
                     margin,
                 })
             }

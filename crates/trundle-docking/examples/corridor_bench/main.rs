@@ -17,9 +17,10 @@ fn main() {
     let problems: Vec<Problem> = (0..count).map(|i| generate(format!("{seed}-{i}"), &mut rng)).collect();
     for method in [Method::Optimal] {
         let docker =
-            Docker::new(DockingConfig { method, margin: 0.0, ..DockingConfig::default() }).expect("valid");
+            Docker::new(DockingConfig { method, margin: 0.0, bound_boxes: argument("--boxes", 400), ..DockingConfig::default() }).expect("valid");
         let (mut solved, mut times, mut failed) = (0, Vec::new(), Vec::new());
         let mut legs = [0; 99];
+        let mut ratios = Vec::new();
         let mut proven = 0;
         for problem in &problems {
             let scene = problem.scene().expect("valid");
@@ -34,6 +35,7 @@ fn main() {
             match plan {
                 Plan::Found(solution) if judge::is_good(problem, &solution.manoeuvre) => {
                     solved += 1;
+                    ratios.push(solution.manoeuvre.duration() / solution.bound.max(1e-9));
                     legs[solution.manoeuvre.steps().len()] += 1;
                 }
                 Plan::Found(_) => println!("{method:?} {}: not good", problem.name),
@@ -48,6 +50,9 @@ fn main() {
             times[times.len() * 99 / 100],
             times[times.len() - 1]
         );
+        ratios.sort_by(f64::total_cmp);
+        let at = |q: usize| ratios[(ratios.len() - 1) * q / 100];
+        println!("time/bound: median {:.4}, p75 {:.4}, p90 {:.4}, p95 {:.4}, p99 {:.4}", at(50), at(75), at(90), at(95), at(99));
         println!("failed: {:?}", &failed[..failed.len().min(30)]);
     }
 }

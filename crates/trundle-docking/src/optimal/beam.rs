@@ -1,5 +1,6 @@
 use super::rays::{Ray, rays};
 use super::search::Search;
+use crate::flood::Guide;
 use std::collections::BTreeMap;
 use trundle_core::{Pose2, wrap_angle};
 
@@ -38,7 +39,21 @@ pub struct BeamEnd {
 /// Layer by layer, one more leg each, the most promising `width` nodes are carried on; from each the search is completed by
 /// one or two exact legs. `cell` (m) and `sector` (rad) say which poses count as the same.
 pub fn beam(search: &mut Search<'_, '_>, width: usize, cell: f64, sector: f64) -> BeamEnd {
-    let most_legs = if search.guide.is_some() { MOST_LEGS_GUIDED } else { MOST_LEGS };
+    layers(search, width, MOST_LEGS, (cell, sector), |search, pose| search.estimate(pose))
+}
+
+/// The same with many legs, led by a guide that knows how the free poses hang together.
+pub fn guided_beam(search: &mut Search<'_, '_>, guide: &mut Guide<'_, '_>, width: usize) -> BeamEnd {
+    layers(search, width, MOST_LEGS_GUIDED, (0.02, 0.06), |_, pose| guide.seconds(pose))
+}
+
+fn layers(
+    search: &mut Search<'_, '_>,
+    width: usize,
+    most_legs: usize,
+    (cell, sector): (f64, f64),
+    mut estimate: impl FnMut(&Search<'_, '_>, &Pose2) -> f64,
+) -> BeamEnd {
     let start = search.task.start;
     let mut nodes = vec![Node { pose: start, spent: 0.0, total: 0.0, parent: 0, leg: (0.0, 0.0) }];
     let mut seen: BTreeMap<(i32, i32, i32), f64> = BTreeMap::new();
@@ -55,7 +70,7 @@ pub fn beam(search: &mut Search<'_, '_>, width: usize, cell: f64, sector: f64) -
             if index > 0 {
                 search.complete(&node.pose, &fan, &legs_to(&nodes, index), node.spent);
             }
-            spread(search, &node, index, &fan, &mut children);
+            spread(search, &node, index, &fan, &mut children, &mut estimate);
         }
         children.sort_by(|a, b| a.total.total_cmp(&b.total));
         layer.clear();
@@ -83,7 +98,14 @@ pub fn beam(search: &mut Search<'_, '_>, width: usize, cell: f64, sector: f64) -
 }
 
 /// The nodes one leg beyond a node.
-fn spread(search: &mut Search<'_, '_>, node: &Node, index: usize, fan: &[Ray], children: &mut Vec<Node>) {
+fn spread(
+    search: &Search<'_, '_>,
+    node: &Node,
+    index: usize,
+    fan: &[Ray],
+    children: &mut Vec<Node>,
+    estimate: &mut impl FnMut(&Search<'_, '_>, &Pose2) -> f64,
+) {
     let task = search.task;
     for ray in fan {
         // The first ray is the heading it came on: going on along it is no new leg.
@@ -98,7 +120,7 @@ fn spread(search: &mut Search<'_, '_>, node: &Node, index: usize, fan: &[Ray], c
                     continue;
                 }
                 let pose = Pose2 { x: p.x, y: p.y, theta: ray.heading };
-                let total = spent + search.estimate(&pose) - task.limits.switch_time;
+                let total = spent + estimate(search, &pose) - task.limits.switch_time;
                 children.push(Node { pose, spent, total, parent: index, leg: (ray.heading, way) });
             }
         }

@@ -1,7 +1,6 @@
 use super::legs::Legs;
 use super::rays::{Ray, rays};
 use super::task::Task;
-use crate::flood::Guide;
 use crate::manoeuvre::Motion;
 use crate::space::Space;
 use trundle_core::{Pose2, Vector2, wrap_angle};
@@ -17,8 +16,6 @@ pub struct Search<'s, 'a> {
     pub goal_rays: Vec<Ray>,
     /// The best legs so far and their time, s.
     pub best: Option<(f64, Legs)>,
-    /// What leads the search instead of [`Search::estimate`]'s pairs of legs, where these lead astray.
-    pub guide: Option<Guide<'s, 'a>>,
     tails: Vec<Tail>,
 }
 
@@ -42,7 +39,7 @@ impl<'s, 'a> Search<'s, 'a> {
     pub fn new(task: Task, space: &'s mut Space<'a>, count: usize, finest: f64) -> Self {
         let mut goal_rays = Vec::new();
         rays(&task, space, &task.goal, count, finest, &mut goal_rays);
-        Self { task, space, goal_rays, best: None, guide: None, tails: Vec::new() }
+        Self { task, space, goal_rays, best: None, tails: Vec::new() }
     }
 
     /// The time to beat, s.
@@ -141,10 +138,7 @@ impl<'s, 'a> Search<'s, 'a> {
 
     /// An estimate of the time from a base at rest at `pose` to the goal, s: the best of a few pairs of legs, no contact
     /// considered but of the last leg.
-    pub fn estimate(&mut self, pose: &Pose2) -> f64 {
-        if let Some(guide) = &mut self.guide {
-            return guide.seconds(pose);
-        }
+    pub fn estimate(&self, pose: &Pose2) -> f64 {
         let rest = self.task.goal.position() - pose.position();
         let task = &self.task;
         let step = (self.goal_rays.len() / 8).max(1);

@@ -1,0 +1,241 @@
+use super::boxes::{Place, Region, Square};
+use super::chain::{Chain, Ends, MOST_LEGS};
+use super::ranges::LegRange;
+use super::tests_of_legs::Shrunk;
+use crate::geometry::Arc;
+use crate::optimal::{Legs, Task};
+use crate::space::{BACK_OFF, FreeTurn, Space};
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+use trundle_core::wrap_angle;
+
+/// Squares of this level are not split: 2 mm of a region of 4 m.
+const FINEST_LEVEL: u8 = 11;
+/// From this level on the middles of the squares are tried as a manoeuvre.
+const TRY_LEVEL: u8 = 6;
+
+/// What the boxes show.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Bounded {
+    /// No manoeuvre takes less time, s.
+    pub bound: f64,
+    /// The best legs now known, and their time, s.
+    pub best: Option<(f64, Legs)>,
+    /// Boxes looked at.
+    pub boxes: usize,
+}
+
+/// A family of manoeuvres.
+#[derive(Debug, Clone, Copy)]
+struct Family {
+    bound: f64,
+    /// Turning places in use.
+    turns: usize,
+    squares: [Square; MOST_LEGS - 1],
+    /// Whether contacts have been asked for.
+    tested: bool,
+}
+
+impl PartialEq for Family {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other) == Ordering::Equal
+    }
+}
+impl Eq for Family {}
+impl PartialOrd for Family {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+impl Ord for Family {
+    /// The least bound is the greatest; ties by place, so that the order is one.
+    fn cmp(&self, other: &Self) -> Ordering {
+        let key = |f: &Self| (f.turns, f.squares);
+        other.bound.total_cmp(&self.bound).then_with(|| key(other).cmp(&key(self)))
+    }
+}
+
+/// Raises the bound, and improves the legs where a box holds better ones, until they are within `gap` (a part) of each
+/// other or `most` boxes have been looked at.
+pub fn improve(task: &Task, space: &mut Space<'_>, best: Option<(f64, Legs)>, gap: f64, most: usize) -> Bounded {
+    let free = Bounding { task, region: region(task), start: FULL_TURN, goal: FULL_TURN, shrunk: None };
+    let (spare, used) = free.least_free_time(most / 4);
+    let shrunk = Shrunk::new(space.hull(), space.scene());
+    let (start, goal) = (space.turn(&task.start), space.turn(&task.goal));
+    let mut bounding = Bounding { task, region: region(task), start, goal, shrunk: Some(shrunk) };
+    let pauses = |legs: usize| (2 * legs - 2) as f64 * task.limits.switch_time;
+    let mut queue = BinaryHeap::new();
+    for turns in 1..MOST_LEGS {
+        let bound = spare + pauses(turns + 1);
+        queue.push(Family { bound, turns, squares: [Square::ALL; MOST_LEGS - 1], tested: false });
+    }
+    let straight = bounding.straight(space);
+    let more = spare + pauses(MOST_LEGS + 1);
+    let mut known = Bounded { bound: 0.0, best, boxes: used };
+    loop {
+        let time = known.best.as_ref().map_or(f64::INFINITY, |(time, _)| *time);
+        let open = queue.peek().map_or(f64::INFINITY, |family: &Family| family.bound);
+        known.bound = open.min(more).min(straight).min(time);
+        let done = known.bound >= time * (1.0 - gap) || known.bound < open;
+        if done || known.boxes >= most {
+            return known;
+        }
+        let Some(family) = queue.pop() else { return known };
+        known.boxes += 1;
+        if !family.tested {
+            if let Some(bound) = bounding.tested_bound(&family)
+                && bound < time
+            {
+                queue.push(Family { bound: bound.max(family.bound), tested: true, ..family });
+            }
+            continue;
+        }
+        bounding.try_middles(&family, space, &mut known);
+        let widest = (0..family.turns).min_by_key(|&i| family.squares[i].level).expect("invariant: a family turns");
+        if family.squares[widest].level >= FINEST_LEVEL {
+            // As fine as it gets: its bound stands.
+            known.bound = family.bound;
+            return known;
+        }
+        for quarter in family.squares[widest].quarters() {
+            let mut squares = family.squares;
+            squares[widest] = quarter;
+            let child = Family { squares, tested: false, ..family };
+            let bound = bounding.bound(&child).max(family.bound);
+            if bound < time {
+                queue.push(Family { bound, ..child });
+            }
+        }
+    }
+}
+
+const FULL_TURN: FreeTurn =
+    FreeTurn { left: f64::INFINITY, right: f64::INFINITY, left_by: None, right_by: None };
+
+fn region(task: &Task) -> Region {
+    Region { center: task.center(), half: task.half() }
+}
+
+struct Bounding<'t, 'a> {
+    task: &'t Task,
+    region: Region,
+    start: FreeTurn,
+    goal: FreeTurn,
+    shrunk: Option<Shrunk<'a>>,
+}
+
+impl Bounding<'_, '_> {
+    /// The time of driving straight to the goal, infinite when that is not free: manoeuvres of one leg or none.
+    fn straight(&self, space: &mut Space<'_>) -> f64 {
+        let rest = self.task.goal.position() - self.task.start.position();
+        let toward = if rest.norm() > 1e-9 { rest.y.atan2(rest.x) } else { self.task.start.theta };
+        let back = wrap_angle(toward + std::f64::consts::PI);
+        let time = |leg| Legs(vec![leg]).motions(self.task, space).map_or(f64::INFINITY, |(time, _)| time);
+        [(toward, rest.norm()), (back, -rest.norm())].map(time).into_iter().fold(f64::INFINITY, f64::min)
+    }
+
+    /// A lower bound of the motions' time alone (no pauses) over all manoeuvres of up to two legs were nothing in the way,
+    /// and the boxes it took.
+    fn least_free_time(&self, most: usize) -> (f64, usize) {
+        let calm = Task { limits: crate::MotionLimits { switch_time: 0.0, ..self.task.limits }, ..*self.task };
+        let calm = Bounding { task: &calm, region: self.region, start: self.start, goal: self.goal, shrunk: None };
+        let rest = calm.task.goal.position() - calm.task.start.position();
+        let toward = if rest.norm() > 1e-9 { rest.y.atan2(rest.x) } else { calm.task.start.theta };
+        let legs = |heading, way| Legs(vec![(heading, way)]).least_time(calm.task);
+        let mut time = legs(toward, rest.norm()).min(legs(wrap_angle(toward + std::f64::consts::PI), -rest.norm()));
+        let mut queue = BinaryHeap::new();
+        queue.push(Family { bound: 0.0, turns: 1, squares: [Square::ALL; MOST_LEGS - 1], tested: false });
+        let mut boxes = 0;
+        while let Some(family) = queue.pop() {
+            boxes += 1;
+            if family.bound >= 0.98 * time || boxes >= most.max(50) || family.squares[0].level >= FINEST_LEVEL {
+                return (family.bound.min(time), boxes);
+            }
+            time = time.min(calm.free_time_of_middle(&family));
+            for quarter in family.squares[0].quarters() {
+                let child = Family { squares: [quarter; MOST_LEGS - 1], ..family };
+                let bound = calm.bound(&child).max(family.bound);
+                if bound < time {
+                    queue.push(Family { bound, ..child });
+                }
+            }
+        }
+        (time, boxes)
+    }
+
+    fn free_time_of_middle(&self, family: &Family) -> f64 {
+        self.legs_of_middles(family, 0b00).into_iter().chain([0b01, 0b10, 0b11].into_iter().flat_map(|gears| self.legs_of_middles(family, gears)))
+            .map(|legs| legs.least_time(self.task))
+            .fold(f64::INFINITY, f64::min)
+    }
+
+    /// Start, turning places, goal.
+    fn places(&self, family: &Family) -> [Place; MOST_LEGS + 1] {
+        let mut places = [Place::exactly(self.task.goal.position()); MOST_LEGS + 1];
+        places[0] = Place::exactly(self.task.start.position());
+        for i in 0..family.turns {
+            places[i + 1] = self.region.place(family.squares[i]);
+        }
+        places
+    }
+
+    /// A lower bound of the time of every manoeuvre of a family, s; contacts only of the first and the last turn.
+    fn bound(&self, family: &Family) -> f64 {
+        let open: &[Arc] = &[Arc::FULL];
+        let ends = Ends { task: self.task, start: &self.start, goal: &self.goal };
+        let chain = Chain { places: &self.places(family)[..], legs: family.turns + 1, free: [[true; 2]; MOST_LEGS] };
+        chain.least_time(&ends, [open; MOST_LEGS - 1]).unwrap_or(f64::INFINITY)
+    }
+
+    /// The same with contacts; `None` when every manoeuvre of the family touches something.
+    fn tested_bound(&mut self, family: &Family) -> Option<f64> {
+        let places = self.places(family);
+        let shrunk = self.shrunk.as_mut().expect("invariant: contacts are asked for among obstacles");
+        let mut free = [[true; 2]; MOST_LEGS];
+        for i in 0..=family.turns {
+            let leg = LegRange::between(&places[i], &places[i + 1]);
+            free[i] = [false, true].map(|backward| shrunk.may_drive(&places[i], &places[i + 1], &leg, backward));
+        }
+        for square in &family.squares[..family.turns] {
+            shrunk.find_gaps(&self.region, *square);
+        }
+        let mut gaps: [&[Arc]; MOST_LEGS - 1] = [&[]; MOST_LEGS - 1];
+        for (gaps, square) in gaps.iter_mut().zip(&family.squares[..family.turns]) {
+            *gaps = shrunk.gaps(*square);
+        }
+        let ends = Ends { task: self.task, start: &self.start, goal: &self.goal };
+        Chain { places: &places[..], legs: family.turns + 1, free }.least_time(&ends, gaps)
+    }
+
+    /// Tries the middles of small squares as a manoeuvre.
+    fn try_middles(&self, family: &Family, space: &mut Space<'_>, known: &mut Bounded) {
+        if family.squares[..family.turns].iter().any(|square| square.level < TRY_LEVEL) {
+            return;
+        }
+        for gears in 0..1_u32 << (family.turns + 1) {
+            let Some(legs) = self.legs_of_middles(family, gears) else { continue };
+            let time = known.best.as_ref().map_or(f64::INFINITY, |(time, _)| *time);
+            if legs.least_time(self.task) >= time {
+                continue;
+            }
+            if let Some((found, _)) = legs.motions(self.task, space)
+                && found < time
+            {
+                known.best = Some((found, legs));
+            }
+        }
+    }
+
+    /// The legs through the middles; bit i of `gears` says that leg i is driven backward.
+    fn legs_of_middles(&self, family: &Family, gears: u32) -> Option<Legs> {
+        let places = self.places(family);
+        let leg = |i: usize| {
+            let d = places[i + 1].center - places[i].center;
+            let back = gears >> i & 1 == 1;
+            let turn = if back { std::f64::consts::PI } else { 0.0 };
+            let way = if back { -d.norm() } else { d.norm() };
+            (way != 0.0).then(|| (wrap_angle(d.y.atan2(d.x) + turn), way))
+        };
+        (0..=family.turns).map(leg).collect::<Option<Vec<_>>>().map(Legs)
+    }
+}

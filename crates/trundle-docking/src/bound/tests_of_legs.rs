@@ -1,0 +1,79 @@
+use super::boxes::{Place, Region, Square};
+use super::ranges::LegRange;
+use crate::geometry::{Arc, Hull};
+use crate::scene::Scene;
+use crate::space::Space;
+use std::collections::BTreeMap;
+use std::f64::consts::TAU;
+use trundle_core::Pose2;
+
+/// Shrunk hulls, each a root of two smaller than the next: for places that are known to within so much.
+#[derive(Debug)]
+pub struct Shrunk<'a> {
+    spaces: Vec<Option<Space<'a>>>,
+    gaps: BTreeMap<Square, Vec<Arc>>,
+    blocked: Vec<Arc>,
+}
+
+/// The least shrinking, m.
+const FINEST: f64 = 5e-4;
+/// How many steps of root two there are.
+const STEPS: usize = 20;
+
+impl<'a> Shrunk<'a> {
+    /// Prepares the hulls.
+    pub fn new(hull: &Hull, scene: &'a Scene) -> Self {
+        let depth = |i: usize| FINEST * 2_f64.powf(i as f64 / 2.0);
+        let spaces = (0..STEPS).map(|i| hull.shrunk(depth(i)).map(|hull| Space::of_hull(hull, scene))).collect();
+        Self { spaces, gaps: BTreeMap::new(), blocked: Vec::new() }
+    }
+
+    /// The hull for what is known to within `depth` (m), if anything of it is left.
+    fn space(&mut self, depth: f64) -> Option<&mut Space<'a>> {
+        let step = (2.0 * (depth / FINEST).log2()).ceil().max(0.0) as usize;
+        self.spaces.get_mut(step)?.as_mut()
+    }
+
+    /// Finds the headings that may be free somewhere in a square, unless they are known.
+    pub fn find_gaps(&mut self, region: &Region, square: Square) {
+        if !self.gaps.contains_key(&square) {
+            let gaps = self.gaps_at(&region.place(square));
+            self.gaps.insert(square, gaps);
+        }
+    }
+
+    /// What [`Shrunk::find_gaps`] found.
+    pub fn gaps(&self, square: Square) -> &[Arc] {
+        self.gaps.get(&square).map_or(&[], Vec::as_slice)
+    }
+
+    fn gaps_at(&mut self, place: &Place) -> Vec<Arc> {
+        let mut blocked = std::mem::take(&mut self.blocked);
+        blocked.clear();
+        if let Some(space) = self.space(place.radius()) {
+            space.blocked_headings(place.center, &mut blocked);
+        }
+        let after = |i: usize| if i + 1 < blocked.len() { blocked[i + 1].start } else { blocked[0].start + TAU };
+        let gap = |(i, arc): (usize, &Arc)| {
+            let start = arc.start + arc.length;
+            Arc { start: start.rem_euclid(TAU), length: after(i) - start }
+        };
+        let gaps: Vec<Arc> = blocked.iter().enumerate().map(gap).filter(|gap| gap.length > 0.0).collect();
+        let gaps = if blocked.is_empty() { vec![Arc::FULL] } else { gaps };
+        self.blocked = blocked;
+        gaps
+    }
+
+    /// Whether a leg between two places may be free, driving forward or backward.
+    pub fn may_drive(&mut self, from: &Place, to: &Place, leg: &LegRange, backward: bool) -> bool {
+        let rest = to.center - from.center;
+        let Some(arm) = self.spaces[0].as_ref().map(|space| space.hull().outer_radius()) else { return true };
+        let depth = from.radius().max(to.radius()) + arm * leg.spread;
+        let Some(space) = self.space(depth) else { return true };
+        let heading = leg.headings(backward).middle;
+        let pose = Pose2::new(from.center.x, from.center.y, heading);
+        let way = if backward { -rest.norm() } else { rest.norm() };
+        // Drives back off before a contact; a bound must not.
+        space.drive(&pose, way.abs() + 0.01).allows(way - (2.0 * crate::space::BACK_OFF).copysign(way))
+    }
+}
