@@ -6,6 +6,9 @@
 
 mod color;
 mod furnishings;
+mod industry;
+mod joinery;
+mod kind;
 mod noise;
 mod paintings;
 mod poster;
@@ -15,6 +18,7 @@ mod texture;
 use crate::chance::hash;
 use crate::world::{Shape, Solid};
 use color::{Rgb, packed};
+pub use kind::Paint;
 use noise::Fractal;
 pub(crate) use paintings::Paintings;
 use poster::Poster;
@@ -29,61 +33,6 @@ const GRAIN: Fractal = Fractal { wavelength: 0.64, octaves: 7, gain: 0.82 };
 
 /// Most texels of one face; larger faces get coarser texels.
 const MOST_TEXELS: f64 = 4e6;
-
-/// A kind of surface. Colours are sRGB.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Paint {
-    /// One colour: faces that nobody sees, and tests.
-    Flat {
-        /// The colour.
-        color: [u8; 3],
-    },
-    /// Blotchy plaster hung with prints.
-    Plaster {
-        /// The wall's colour.
-        color: [u8; 3],
-        /// Share of the wall's fields (0.9 x 0.8 m) that hold a print, 0 to 1.
-        prints: f32,
-    },
-    /// Wallpaper with a motif of its own every 0.16 m, hung with a few prints.
-    Wallpaper {
-        /// The ground colour.
-        color: [u8; 3],
-    },
-    /// A brick wall.
-    Bricks,
-    /// Floor boards.
-    Boards {
-        /// The wood's colour.
-        color: [u8; 3],
-    },
-    /// Floor tiles.
-    Tiles {
-        /// The tiles' colour.
-        color: [u8; 3],
-    },
-    /// Ceiling boards with lamps.
-    Ceiling,
-    /// Rows of books.
-    Books,
-    /// A printed carton.
-    Cardboard,
-    /// Woven cloth.
-    Fabric {
-        /// The cloth's colour.
-        color: [u8; 3],
-    },
-    /// Veneered furniture.
-    Veneer {
-        /// The wood's colour.
-        color: [u8; 3],
-    },
-    /// Painted metal.
-    Metal {
-        /// The metal's colour.
-        color: [u8; 3],
-    },
-}
 
 /// The paints of a solid.
 #[derive(Debug, Clone, PartialEq)]
@@ -108,9 +57,9 @@ impl Finish {
     }
 }
 
-/// The painted faces of a solid: six of a box, (side, top, bottom) of a cylinder.
-fn bake_solid(solid: &Solid, world_seed: u64, index: usize) -> Vec<Texture> {
-    let faces: Vec<(usize, f64, f64)> = match &solid.shape {
+/// Faces of a solid: which of [`Finish::faces`], width and height, m.
+fn faces(shape: &Shape) -> Vec<(usize, f64, f64)> {
+    match shape {
         Shape::Cuboid(c) => {
             let (x, y, z) = (c.size.x, c.size.y, c.size.z);
             vec![(0, y, z), (1, y, z), (2, x, z), (3, x, z), (4, x, y), (5, x, y)]
@@ -119,27 +68,49 @@ fn bake_solid(solid: &Solid, world_seed: u64, index: usize) -> Vec<Texture> {
             let d = 2.0 * c.radius;
             vec![(0, std::f64::consts::PI * d, c.height), (4, d, d), (5, d, d)]
         }
-    };
+    }
+}
+
+/// The painted faces of a solid, six of a box, (side, top, bottom) of a cylinder, with texels `coarse` times as wide as
+/// their paints have them.
+fn bake_solid(solid: &Solid, world_seed: u64, index: usize, coarse: f64) -> Vec<Texture> {
     // Seeds that are given must not meet those of places in the list.
     let (world_seed, nth) = match solid.finish.seed {
         Some(seed) => (hash(world_seed, u64::MAX), hash(seed, 0)),
         None => (world_seed, index as u64),
     };
-    let bake = |&(face, width, height): &(usize, f64, f64)| {
+    let bake = |(face, width, height): (usize, f64, f64)| {
         let seed = hash(world_seed, nth.wrapping_mul(8).wrapping_add(face as u64)) as u32;
-        bake_face(solid.finish.faces[face], seed, width, height)
+        bake_face(solid.finish.faces[face], seed, (width, height), coarse)
     };
-    faces.iter().map(bake).collect()
+    faces(&solid.shape).into_iter().map(bake).collect()
 }
 
-fn bake_face(paint: Paint, seed: u32, width: f64, height: f64) -> Texture {
-    let size = (width as f32, height as f32);
-    if let Paint::Flat { color } = paint {
-        return Texture::new(1, 1, vec![packed(color::rgb(color))], size);
+/// Texels that the faces of a solid need.
+fn texels_of_solid(solid: &Solid) -> usize {
+    let texels = |(face, width, height): (usize, f64, f64)| {
+        let (columns, rows) = texels_of_face(solid.finish.faces[face], (width, height), 1.0);
+        columns * rows
+    };
+    faces(&solid.shape).into_iter().map(texels).sum()
+}
+
+/// Columns and rows of a face's texture.
+fn texels_of_face(paint: Paint, (width, height): (f64, f64), coarse: f64) -> (usize, usize) {
+    if let Paint::Flat { .. } = paint {
+        return (1, 1);
     }
-    let texel = texel_of(paint).max((width * height / MOST_TEXELS).sqrt());
+    let texel = (texel_of(paint) * coarse).max((width * height / MOST_TEXELS).sqrt());
     let texels = |length: f64| ((length / texel / TEXELS as f64).ceil() as usize).max(1) * TEXELS;
-    let (columns, rows) = (texels(width), texels(height));
+    (texels(width), texels(height))
+}
+
+fn bake_face(paint: Paint, seed: u32, (width, height): (f64, f64), coarse: f64) -> Texture {
+    let size = (width as f32, height as f32);
+    let (columns, rows) = texels_of_face(paint, (width, height), coarse);
+    if let Paint::Flat { color } = paint {
+        return Texture::new(columns, rows, vec![packed(color::rgb(color))], size);
+    }
     let prints = prints_on(paint, seed, size);
     let (dx, dy) = (size.0 / columns as f32, size.1 / rows as f32);
     let mut texels = vec![0; columns * rows];
@@ -167,6 +138,10 @@ fn texel_of(paint: Paint) -> f64 {
         | Paint::Bricks
         | Paint::Boards { .. }
         | Paint::Tiles { .. } => 0.005,
+        Paint::Carpet { .. } | Paint::Goods { .. } => 0.006,
+        Paint::Plain { .. } => 0.008,
+        Paint::Concrete { .. } | Paint::Corrugated { .. } | Paint::Marking { .. } => 0.010,
+        Paint::Print | Paint::Sign { .. } | Paint::Screen => 0.003,
         _ => 0.004,
     }
 }
@@ -175,6 +150,7 @@ fn prints_on(paint: Paint, seed: u32, size: (f32, f32)) -> Vec<Poster> {
     match paint {
         Paint::Plaster { prints, .. } => poster::spread(seed, size, prints),
         Paint::Wallpaper { .. } => poster::spread(seed, size, 0.25),
+        Paint::Print => vec![Poster { left: 0.0, top: 0.0, width: size.0, height: size.1, seed }],
         _ => Vec::new(),
     }
 }
@@ -193,6 +169,20 @@ fn color_at(paint: Paint, seed: u32, size: (f32, f32), x: f32, y: f32, grain: f3
         Paint::Fabric { color } => furnishings::fabric(seed, color, x, y, grain),
         Paint::Veneer { color } => furnishings::veneer(seed, color, size, x, y, grain),
         Paint::Metal { color } => furnishings::metal(seed, color, x, y, grain),
+        Paint::Plain { color } => industry::plain(color, grain),
+        Paint::Carpet { color } => industry::carpet(seed, color, x, y, grain),
+        Paint::Concrete { color } => industry::concrete(seed, color, x, y, grain),
+        Paint::Corrugated { color } => industry::corrugated(seed, color, x, y, grain),
+        Paint::Marking { color } => industry::marking(seed, color, x, y, grain),
+        Paint::Slotted { color } => industry::slotted(seed, color, size, x, y, grain),
+        Paint::Goods { color } => industry::goods(seed, color, x, y, grain),
+        Paint::Door { color } => joinery::door(seed, color, size, x, y, grain),
+        Paint::Window => joinery::window(seed, size, x, y, grain),
+        // All of it lies under its print.
+        Paint::Print => [0.0; 3],
+        Paint::Sign { color } => joinery::sign(seed, color, size, x, y),
+        Paint::Fronts { color } => joinery::fronts(seed, color, size, x, y, grain),
+        Paint::Screen => joinery::screen(seed, size, x, y),
     }
 }
 
@@ -203,7 +193,7 @@ mod tests {
     #[test]
     fn every_face_has_its_own_painting_and_the_same_one_every_time() {
         let paint = Paint::Veneer { color: [150, 110, 70] };
-        let face = |seed| bake_face(paint, seed, 0.5, 0.4);
+        let face = |seed| bake_face(paint, seed, (0.5, 0.4), 1.0);
         assert_eq!(face(1), face(1));
         assert_ne!(face(1), face(2));
     }

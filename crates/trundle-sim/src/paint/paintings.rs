@@ -1,8 +1,11 @@
-use super::{Finish, Texture, bake_solid};
+use super::{Finish, Texture, bake_solid, texels_of_solid};
 use crate::world::{Shape, Solid};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::ops::Index;
+
+/// Texels of a world, about 5.4 bytes each with their mip levels; beyond, all texels get coarser.
+const MOST_TEXELS: usize = 40_000_000;
 
 /// The painted faces of every solid of a world. Solids that must look the same (equal sizes, equal finishes with a seed)
 /// share one set, so that repeated furniture costs nothing.
@@ -17,7 +20,9 @@ impl Paintings {
     /// Paints `solids`; chance comes from `world_seed`.
     pub(crate) fn new(solids: &[Solid], world_seed: u64) -> Self {
         let (firsts, of_solid) = share(solids);
-        let bake = |&first: &usize| bake_solid(&solids[first], world_seed, first);
+        let texels: usize = firsts.iter().map(|&first| texels_of_solid(&solids[first])).sum();
+        let coarse = (texels as f64 / MOST_TEXELS as f64).sqrt().max(1.0);
+        let bake = |&first: &usize| bake_solid(&solids[first], world_seed, first, coarse);
         Self { distinct: firsts.par_iter().map(bake).collect(), of_solid }
     }
 

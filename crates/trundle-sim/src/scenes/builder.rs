@@ -1,3 +1,4 @@
+use crate::chance::hash;
 use crate::paint::{Finish, Paint};
 use crate::world::{Cuboid, Cylinder, Shape, Solid};
 use rand::{RngExt, SeedableRng};
@@ -28,12 +29,33 @@ pub(super) enum Side {
 #[derive(Debug)]
 pub(super) struct Builder {
     pub(super) solids: Vec<Solid>,
+    /// Colour of furniture in place of one drawn by chance.
+    pub(super) tint: Option<[u8; 3]>,
+    /// What is placed on the floor stands so much higher, m.
+    pub(super) lift: f64,
     rng: ChaCha8Rng,
+    /// Inside [`Builder::alike`]: what paintings are drawn from, and how many solids have one.
+    look: Option<(u64, u64)>,
 }
 
 impl Builder {
     pub(super) fn new(seed: u64) -> Self {
-        Self { solids: Vec::new(), rng: ChaCha8Rng::seed_from_u64(seed) }
+        let rng = ChaCha8Rng::seed_from_u64(seed);
+        Self { solids: Vec::new(), tint: None, lift: 0.0, rng, look: None }
+    }
+
+    /// What `place` places, drawn and painted from `seed` alone: the same again wherever it is called so, and nothing else
+    /// changes by it.
+    pub(super) fn alike(&mut self, seed: u64, place: impl FnOnce(&mut Self)) {
+        let rng = std::mem::replace(&mut self.rng, ChaCha8Rng::seed_from_u64(seed));
+        let look = self.look.replace((seed, 0));
+        place(self);
+        (self.rng, self.look) = (rng, look);
+    }
+
+    /// Whether something of this probability happens.
+    pub(super) fn happens(&mut self, probability: f64) -> bool {
+        self.rng.random_bool(probability)
     }
 
     /// A number between `-reach` and `reach`.
@@ -62,9 +84,9 @@ impl Builder {
         finish: Finish,
     ) {
         let middle = place.transform(trundle_core::Vector2::new(offset.0, offset.1));
-        let center = Vector3::new(middle.x, middle.y, bottom + size[2] / 2.0);
+        let center = Vector3::new(middle.x, middle.y, self.lift + bottom + size[2] / 2.0);
         let cuboid = Cuboid { center, size: Vector3::from(size), yaw: place.theta };
-        self.solids.push(Solid { shape: Shape::Cuboid(cuboid), finish });
+        self.add(Shape::Cuboid(cuboid), finish);
     }
 
     /// An upright cylinder, `offset` (x, y, m) from `place`, in its axes, from `bottom` up.
@@ -77,8 +99,16 @@ impl Builder {
         paint: Paint,
     ) {
         let middle = place.transform(trundle_core::Vector2::new(offset.0, offset.1));
-        let cylinder = Cylinder { base: Vector3::new(middle.x, middle.y, bottom), radius, height };
-        self.solids.push(Solid { shape: Shape::Cylinder(cylinder), finish: Finish::all(paint) });
+        let base = Vector3::new(middle.x, middle.y, self.lift + bottom);
+        self.add(Shape::Cylinder(Cylinder { base, radius, height }), Finish::all(paint));
+    }
+
+    fn add(&mut self, shape: Shape, mut finish: Finish) {
+        if let Some((seed, count)) = &mut self.look {
+            finish.seed = finish.seed.or(Some(hash(*seed, *count)));
+            *count += 1;
+        }
+        self.solids.push(Solid { shape, finish });
     }
 
     /// A slab between two corners (x, y, z, m), painted where it can be seen.

@@ -88,7 +88,7 @@ fn west_room(build: &mut Builder) {
     let along = build.jitter(0.12);
     build.bookcase(Pose2::new(1.5 + along, WIDTH - 0.17, 0.0), [1.8, 0.32, 1.9]);
     let along = build.jitter(0.1);
-    build.sofa(Pose2::new(0.45, 3.7 + along, 0.0), (0.85, 1.7));
+    build.sofa(Pose2::new(0.45, 3.7 + along, 0.0), [0.85, 1.7, 0.82]);
     let place = build.jittered(Pose2::new(2.3, 2.75, 0.0), 0.05, 0.08);
     build.table(place, [1.0, 0.6, LOW_TABLE]);
     let place = build.jittered(Pose2::new(3.2, 5.3, 0.0), 0.05, 0.06);
@@ -112,7 +112,7 @@ fn east_room(build: &mut Builder) {
     build.bookcase(Pose2::new(6.3 + along, 0.17, PI), [1.5, 0.32, 1.8]);
     build.cabinet(Pose2::new(PARTITION + WALL + 0.24, 0.8, 0.0), [0.46, 0.9, 1.15]);
     let along = build.jitter(0.1);
-    build.sofa(Pose2::new(6.4 + along, WIDTH - 0.43, -FRAC_PI_2), (0.8, 1.5));
+    build.sofa(Pose2::new(6.4 + along, WIDTH - 0.43, -FRAC_PI_2), [0.8, 1.5, 0.82]);
     let place = build.jittered(Pose2::new(7.6, 0.42, 0.2), 0.05, 0.1);
     build.cartons(place, [0.5, 0.42, 0.45]);
     let place = build.jittered(Pose2::new(4.95, 5.55, -0.1), 0.05, 0.1);

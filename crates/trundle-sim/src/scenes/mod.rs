@@ -1,15 +1,30 @@
 //! Built-in scenes, drawn by code from a seed.
 
 mod builder;
+mod corridors;
 mod demo_room;
+pub mod file;
+mod fixtures;
 mod furniture;
+mod home;
+mod house;
 mod obstacles;
+mod office;
+mod partition;
+mod room;
+mod storage;
+mod warehouse;
 
 use crate::people::Person;
 use crate::world::{Lights, Stage, World};
+pub use corridors::{Corridor, corridor};
 pub use demo_room::demo_room;
+pub use house::house;
 pub use obstacles::obstacles;
+pub use office::{OFFICE_RING, OFFICE_TWINS, office};
+pub use room::room;
 use trundle_core::{Invalid, Pose2};
+pub use warehouse::warehouse;
 
 /// A world with a task in it.
 #[derive(Debug)]
@@ -30,16 +45,35 @@ pub struct Scene {
 
 impl Scene {
     /// The built-in scenes.
-    pub const NAMES: [&str; 2] = ["demo", "obstacles"];
+    pub const NAMES: [&str; 10] = [
+        "demo",
+        "room",
+        "obstacles",
+        "corridor-a",
+        "corridor-b",
+        "corridor-c",
+        "corridor-d",
+        "office",
+        "house",
+        "warehouse",
+    ];
 
-    /// A built-in scene by its name; `room` is another name of `demo`.
+    /// A built-in scene by its name.
     ///
     /// # Errors
     /// When there is no scene of that name.
     pub fn by_name(name: &str, seed: u64) -> Result<Self, Invalid> {
         match name {
-            "demo" | "room" => demo_room(seed),
+            "demo" => demo_room(seed),
+            "room" => room(seed),
             "obstacles" => obstacles(seed),
+            "corridor-a" => corridor(Corridor::Free, seed),
+            "corridor-b" => corridor(Corridor::FrontBlocked, seed),
+            "corridor-c" => corridor(Corridor::LeftFrontBlocked, seed),
+            "corridor-d" => corridor(Corridor::RightFrontBlocked, seed),
+            "office" => office(seed),
+            "house" => house(seed),
+            "warehouse" => warehouse(seed),
             _ => Err(Invalid::new("scene", name, "", format!("one of {}", Self::NAMES.join(", ")))),
         }
     }

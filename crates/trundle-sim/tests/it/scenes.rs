@@ -1,4 +1,9 @@
-use trundle_core::{Cell, CellIndex, Footprint, GridGeometry, OccupancyGrid, Pose2, Vector2};
+mod files;
+mod flood;
+mod office;
+
+use flood::Flood;
+use trundle_core::{Cell, Footprint, Pose2, Vector2};
 use trundle_sim::{HeightBand, Scene};
 
 /// What is in a Kobuki's way.
@@ -6,84 +11,159 @@ fn band() -> HeightBand {
     HeightBand::new(0.012, 0.6).unwrap()
 }
 
-/// Cells whose middle is farther than `radius` m from every occupied cell's square.
-fn free_for(grid: &OccupancyGrid, radius: f64) -> Vec<bool> {
-    let geometry = grid.geometry();
-    let reach = (radius / geometry.resolution + 0.5).ceil() as i64;
-    let is_near = |dc: i64, dr: i64| {
-        let gap = |d: i64| ((d.abs() as f64 - 0.5) * geometry.resolution).max(0.0);
-        gap(dc).hypot(gap(dr)) <= radius
-    };
-    let offsets: Vec<(i64, i64)> = (-reach..=reach)
-        .flat_map(|dr| (-reach..=reach).map(move |dc| (dc, dr)))
-        .filter(|&(dc, dr)| is_near(dc, dr))
-        .collect();
-    let mut free = vec![true; geometry.len()];
-    for (at, _) in grid.cells().iter().enumerate().filter(|(_, cell)| **cell == Cell::Occupied) {
-        let CellIndex { col, row } = geometry.cell(at);
-        for (dc, dr) in &offsets {
-            let (col, row) = (col as i64 + dc, row as i64 + dr);
-            if (0..geometry.width as i64).contains(&col) && (0..geometry.height as i64).contains(&row) {
-                free[row as usize * geometry.width + col as usize] = false;
-            }
-        }
-    }
-    free
+fn clearance(scene: &Scene, robot: &Footprint, pose: Pose2) -> f64 {
+    scene.world.clearance(robot, pose, band()).unwrap()
 }
 
-fn are_connected(geometry: &GridGeometry, mut free: Vec<bool>, from: Vector2, to: Vector2) -> bool {
-    let place = |p| geometry.linear(geometry.cell_at(p).unwrap());
-    let (start, end) = (place(from), place(to));
-    let mut front = vec![start];
-    while let Some(at) = front.pop() {
-        if !std::mem::replace(&mut free[at], false) {
-            continue;
-        }
-        if at == end {
-            return true;
-        }
-        // The scenes' walls enclose the free cells: a neighbour is never past an edge.
-        front.extend([at - 1, at + 1, at - geometry.width, at + geometry.width]);
+/// What every seed of a scene keeps.
+struct Promise {
+    name: &'static str,
+    seeds: u64,
+    /// Free around a Kobuki at start and goal, m.
+    clearance: f64,
+    /// Half of the width of the narrowest way, m.
+    way: f64,
+    /// Of the true grid, m.
+    resolution: f64,
+    /// What can be reached beside the goal.
+    places: &'static [[f64; 2]],
+}
+
+const PROMISES: [Promise; 10] = [
+    Promise { name: "demo", seeds: 30, clearance: 0.35, way: 0.40, resolution: 0.02, places: &[] },
+    Promise { name: "obstacles", seeds: 30, clearance: 0.35, way: 0.40, resolution: 0.02, places: &[] },
+    Promise { name: "room", seeds: 10, clearance: 0.40, way: 0.55, resolution: 0.02, places: &STABILISATION },
+    Promise { name: "corridor-a", seeds: 10, clearance: 0.12, way: 0.18, resolution: 0.02, places: &[] },
+    Promise { name: "corridor-b", seeds: 10, clearance: 0.12, way: 0.18, resolution: 0.02, places: &[] },
+    Promise { name: "corridor-c", seeds: 10, clearance: 0.12, way: 0.18, resolution: 0.02, places: &[] },
+    Promise { name: "corridor-d", seeds: 10, clearance: 0.12, way: 0.18, resolution: 0.02, places: &[] },
+    Promise {
+        name: "office",
+        seeds: 12,
+        clearance: 0.3,
+        way: 0.40,
+        resolution: 0.04,
+        // Inside of each of the six rooms.
+        places: &[[3.5, 2.4], [8.7, 3.0], [13.5, 2.4], [3.75, 15.0], [8.75, 15.0], [13.6, 15.6]],
+    },
+    Promise {
+        name: "house",
+        seeds: 12,
+        clearance: 0.3,
+        way: 0.40,
+        resolution: 0.025,
+        // Bedroom, bath, study, hall, living room, kitchen.
+        places: &[[4.2, 1.9], [1.3, 6.0], [4.3, 5.8], [4.0, 4.3], [8.4, 1.0], [7.6, 6.6]],
+    },
+    Promise {
+        name: "warehouse",
+        seeds: 12,
+        clearance: 0.35,
+        way: 0.40,
+        resolution: 0.06,
+        // Every aisle, the open area.
+        places: &[[1.6, 15.0], [7.3, 15.0], [12.7, 15.0], [18.1, 15.0], [26.5, 14.5]],
+    },
+];
+
+/// The start poses of \[Li18\], section 5.
+const STABILISATION: [[f64; 2]; 8] =
+    [[0.0, 2.4], [2.4, 2.4], [2.4, 0.0], [2.4, -2.4], [0.0, -2.4], [-2.4, -2.4], [-2.4, 0.0], [-2.4, 2.4]];
+
+fn check(promise: &Promise, seed: u64) {
+    let name = promise.name;
+    let scene = Scene::by_name(name, seed).unwrap();
+    for pose in [scene.start, scene.goal] {
+        let free = clearance(&scene, &Footprint::KOBUKI, pose);
+        assert!(free >= promise.clearance, "{name} {seed}: {free} m at {pose:?}");
     }
-    false
+    let grid = scene.world.true_grid(promise.resolution, band()).unwrap();
+    let flood = Flood::new(&grid, promise.way, scene.start.position());
+    let places = promise.places.iter().map(|[x, y]| Vector2::new(*x, *y));
+    for place in places.chain([scene.goal.position()]) {
+        assert!(flood.reaches(place), "{name} {seed}: {place} on ways of {} m", 2.0 * promise.way);
+    }
+}
+
+#[test]
+fn every_seeds_goal_and_every_room_is_free_and_reachable() {
+    for promise in PROMISES {
+        for seed in 0..promise.seeds {
+            check(&promise, seed);
+        }
+    }
+    let promised = PROMISES.map(|promise| promise.name);
+    assert!(Scene::NAMES.iter().all(|name| promised.contains(name)));
 }
 
 fn is_straight_way_blocked(scene: &Scene) -> bool {
-    let (from, to) = (scene.start, scene.goal);
     let robot = Footprint::disc(0.05).unwrap();
     (0..=200).any(|i| {
-        let pose = from.interpolate(&to, f64::from(i) / 200.0);
-        scene.world.collides(&robot, pose, band()).unwrap()
+        let pose = scene.start.interpolate(&scene.goal, f64::from(i) / 200.0);
+        clearance(scene, &robot, pose) <= 0.0
     })
 }
 
 #[test]
-fn every_seeds_goal_is_far_hidden_free_and_reachable() {
-    for (name, seed) in Scene::NAMES.into_iter().flat_map(|name| (0..30).map(move |seed| (name, seed))) {
+fn goals_to_drive_to_are_far_and_hidden() {
+    for (name, seed) in ["demo", "obstacles", "office", "house", "warehouse"]
+        .into_iter()
+        .flat_map(|name| (0..30).map(move |seed| (name, seed)))
+    {
         let scene = Scene::by_name(name, seed).unwrap();
         assert!(scene.start.distance(&scene.goal) >= 5.0, "{name} {seed}");
         assert!(is_straight_way_blocked(&scene), "{name} {seed}");
-        for pose in [scene.start, scene.goal] {
-            let clearance = scene.world.clearance(&Footprint::KOBUKI, pose, band()).unwrap();
-            assert!(clearance >= 0.35, "{name} {seed}: {clearance}");
-        }
-        let grid = scene.world.true_grid(0.02, band()).unwrap();
-        let (from, to) = (scene.start.position(), scene.goal.position());
-        // 0.40 m: the way is nowhere narrower than 0.8 m.
-        for radius in [0.20, 0.40] {
-            let free = free_for(&grid, radius);
-            assert!(are_connected(grid.geometry(), free, from, to), "{name} {seed} at {radius} m");
+    }
+}
+
+#[test]
+fn the_room_is_the_stage_of_the_papers_stabilisation() {
+    let scene = Scene::by_name("room", 3).unwrap();
+    assert_eq!(scene.start, Pose2::new(2.4, 2.4, 0.0));
+    assert_eq!(scene.goal, Pose2::new(0.0, 0.0, std::f64::consts::FRAC_PI_2));
+    for [x, y] in STABILISATION {
+        assert!(clearance(&scene, &Footprint::KOBUKI, Pose2::new(x, y, 0.0)) > 0.42);
+    }
+    let (low, high) = scene.world.bounds();
+    assert!((low + high).xy().norm() < 1e-12, "its middle is the origin");
+}
+
+/// The corridors are those of [Hong24]: where the goal lies, and what is free before the paper's robot.
+#[test]
+fn the_corridors_are_free_and_blocked_where_the_paper_says() {
+    let corner = |x: f64, y: f64| Vector2::new(x, y);
+    let robot =
+        Footprint::polygon(vec![corner(0.3, 0.2), corner(-0.3, 0.2), corner(-0.3, -0.2), corner(0.3, -0.2)])
+            .unwrap();
+    // Whether 0.3 m ahead is free on the left, where the robot stands, and on the right, where the goal is.
+    for (name, left, right, behind) in [
+        ("corridor-a", true, true, 0.0),
+        ("corridor-b", false, false, 0.0),
+        ("corridor-c", false, true, 0.0),
+        ("corridor-d", true, false, 0.5),
+    ] {
+        for seed in 0..10 {
+            let scene = Scene::by_name(name, seed).unwrap();
+            let goal = scene.start_from_goal();
+            assert!((goal.x + behind).abs() < 1e-9 && goal.y < -0.3 && goal.theta == 0.0, "{name}: {goal:?}");
+            for pose in [scene.start, scene.goal] {
+                assert!(clearance(&scene, &robot, pose) > 0.08, "{name} {seed}");
+            }
+            let ahead = |aside: f64| scene.start * Pose2::new(0.3, aside, 0.0);
+            assert_eq!(clearance(&scene, &robot, ahead(0.0)) > 0.0, left, "{name} {seed}");
+            assert_eq!(clearance(&scene, &robot, ahead(goal.y)) > 0.0, right, "{name} {seed}");
         }
     }
 }
 
 #[test]
-fn seeds_move_furniture_and_stay_themselves() {
+fn seeds_vary_scenes_and_scenes_stay_themselves() {
     for name in Scene::NAMES {
         let solids = |seed| Scene::by_name(name, seed).unwrap().world.solids().to_vec();
-        assert_eq!(solids(4), solids(4));
-        assert_ne!(solids(4), solids(5));
+        assert_eq!(solids(4), solids(4), "{name}");
+        assert!((5..9).any(|seed| solids(4) != solids(seed)), "{name}");
     }
+    assert!(Scene::by_name("moon", 1).unwrap_err().to_string().contains("warehouse"));
 }
 
 #[test]

@@ -1,0 +1,91 @@
+use super::Scene;
+use super::builder::{Builder, Side, WALL};
+use crate::paint::{Finish, Paint};
+use crate::world::{Lights, World};
+use std::f64::consts::FRAC_PI_2;
+use trundle_core::{Invalid, Pose2};
+
+/// Clear width, m: the paper's robot (0.6 x 0.4 m, 0.72 m across its corners) can turn round in the middle, and away from
+/// it only so far; a Kobuki (0.351 m) can anywhere.
+const WIDTH: f64 = 1.0;
+
+/// Half of the corridor's length, m.
+const REACH: f64 = 3.0;
+
+/// How far to the left of the goal the robot starts, m.
+const ASIDE: f64 = 0.38;
+
+/// The corridors of \[Hong24\], section 4.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Corridor {
+    /// (a) Free, the goal to the right.
+    Free,
+    /// (b) Blocked in front, the goal to the right.
+    FrontBlocked,
+    /// (c) Blocked in front on the left, the goal to the right.
+    LeftFrontBlocked,
+    /// (d) Blocked in front on the right, the goal to the right and behind.
+    RightFrontBlocked,
+}
+
+/// A corridor 1.0 m wide and 6 m long to settle in, closed at both ends (world frame: origin in its middle, y along it).
+///
+/// The goal looks up the corridor; the robot stands beside it, 0.38 m to the left, with the same heading; what blocks its
+/// way is a crate 1.1 m high. Both poses are free for a Kobuki and for a robot of 0.6 x 0.4 m. `seed` varies textures and,
+/// by 2 cm, the crate.
+///
+/// # Errors
+/// Never for any seed; the type is that of every scene.
+pub fn corridor(kind: Corridor, seed: u64) -> Result<Scene, Invalid> {
+    let mut build = Builder::new(seed);
+    shell(&mut build);
+    let ahead = 0.44 + build.jitter(0.02);
+    let half = WIDTH / 2.0;
+    match kind {
+        Corridor::Free => {}
+        Corridor::FrontBlocked => crate_over(&mut build, [-half, half], ahead),
+        Corridor::LeftFrontBlocked => crate_over(&mut build, [-half, -0.05], ahead),
+        Corridor::RightFrontBlocked => crate_over(&mut build, [0.05, half], ahead),
+    }
+    let back = if kind == Corridor::RightFrontBlocked { 0.5 } else { 0.0 };
+    let (name, x) = (kind.name(), ASIDE / 2.0);
+    Ok(Scene {
+        name: name.into(),
+        world: World::new(build.solids, seed)?,
+        lights: Lights::default(),
+        people: Vec::new(),
+        start: Pose2::new(-x, 0.0, FRAC_PI_2),
+        goal: Pose2::new(x, -back, FRAC_PI_2),
+    })
+}
+
+impl Corridor {
+    /// The scene's name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Free => "corridor-a",
+            Self::FrontBlocked => "corridor-b",
+            Self::LeftFrontBlocked => "corridor-c",
+            Self::RightFrontBlocked => "corridor-d",
+        }
+    }
+}
+
+fn shell(build: &mut Builder) {
+    let half = WIDTH / 2.0;
+    let (out, end) = (half + WALL, REACH + WALL);
+    build.floor_and_ceiling([-out, -end, out, end], Paint::Tiles { color: [176, 170, 158] });
+    let left = Paint::Plaster { color: build.choose(&[[196, 188, 170], [176, 186, 180]]), prints: 0.7 };
+    let right = Paint::Wallpaper { color: build.choose(&[[188, 180, 160], [170, 176, 190]]) };
+    build.wall([-out, -end, -half, end], &[(Side::East, left)]);
+    build.wall([half, -end, out, end], &[(Side::West, right)]);
+    build.wall([-half, REACH, half, end], &[(Side::South, Paint::Bricks)]);
+    build.wall([-half, -end, half, -REACH], &[(Side::North, Paint::Bricks)]);
+}
+
+/// A crate over `across` (x, m), its near side `ahead` of the origin.
+fn crate_over(build: &mut Builder, [low, high]: [f64; 2], ahead: f64) {
+    let size = [high - low, 0.5, 1.1];
+    let place = Pose2::new((low + high) / 2.0, ahead + size[1] / 2.0, 0.0);
+    build.block(place, (0.0, 0.0), 0.0, size, Finish::all(Paint::Cardboard));
+}

@@ -1,0 +1,134 @@
+use super::SceneError;
+use crate::people::Person;
+use crate::scenes::Scene;
+use crate::world::{Lights, Mesh, Solid};
+use serde::{Deserialize, Serialize};
+use std::error::Error;
+use std::path::{Path, PathBuf};
+use trundle_core::{Invalid, Pose2, require_in};
+
+/// What a scene is built on: exactly one of `scene`, `gltf` and `map`.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Base {
+    /// A built-in scene, one of [`Scene::NAMES`].
+    pub scene: Option<String>,
+    /// What varies it, and draws the looks of all solids. Default: the seed of the run.
+    pub seed: Option<u64>,
+    /// A glTF or GLB file, relative to the scene file.
+    pub gltf: Option<PathBuf>,
+    /// The glTF's axis that points up. Default `y`, as glTF 2.0 has it.
+    pub up: Option<UpAxis>,
+    /// Metres a unit of the glTF, 0.0001 to 1000. Default 1.
+    pub scale: Option<f64>,
+    /// A map's YAML file, relative to the scene file.
+    pub map: Option<PathBuf>,
+    /// Height that occupied cells of the map are raised to, m, 0.05 to 20. Default 2.5.
+    pub wall_height: Option<f64>,
+}
+
+/// An axis that points up.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum UpAxis {
+    /// As glTF 2.0 has it.
+    #[default]
+    Y,
+    /// As robots have it.
+    Z,
+}
+
+/// What stands in a loaded base, floor included.
+#[derive(Debug, Default)]
+pub struct BaseParts {
+    /// Boxes and cylinders.
+    pub solids: Vec<Solid>,
+    /// Surfaces of triangles.
+    pub meshes: Vec<Mesh>,
+}
+
+/// Reads the files that a scene file names: this crate reads none.
+pub trait BaseLoader {
+    /// A glTF or GLB file with `up` turned to z and `scale` m a unit.
+    ///
+    /// # Errors
+    /// What the reader says, for people.
+    fn gltf(&self, path: &Path, up: UpAxis, scale: f64) -> Result<BaseParts, Box<dyn Error + Send + Sync>>;
+
+    /// A map (YAML and PGM), its occupied cells raised to `wall_height` m.
+    ///
+    /// # Errors
+    /// What the reader says, for people.
+    fn map(&self, path: &Path, wall_height: f64) -> Result<BaseParts, Box<dyn Error + Send + Sync>>;
+}
+
+/// A base as loaded.
+pub(super) struct LoadedBase {
+    pub(super) name: String,
+    pub(super) parts: BaseParts,
+    pub(super) lights: Lights,
+    pub(super) people: Vec<Person>,
+    pub(super) start: Option<Pose2>,
+    pub(super) goal: Option<Pose2>,
+}
+
+impl Base {
+    pub(super) fn load(&self, loader: &dyn BaseLoader, seed: u64) -> Result<LoadedBase, SceneError> {
+        self.refuse_strays()?;
+        match (&self.scene, &self.gltf, &self.map) {
+            (Some(name), None, None) => built_in(name, seed),
+            (None, Some(path), None) => {
+                let scale = require_in("base.scale", self.scale.unwrap_or(1.0), "m a unit", 1e-4, 1e3)?;
+                let parts = loader.gltf(path, self.up.unwrap_or_default(), scale);
+                from_file("base.gltf", path, parts)
+            }
+            (None, None, Some(path)) => {
+                let height =
+                    require_in("base.wall_height", self.wall_height.unwrap_or(2.5), "m", 0.05, 20.0)?;
+                from_file("base.map", path, loader.map(path, height))
+            }
+            _ => {
+                let given = [self.scene.is_some(), self.gltf.is_some(), self.map.is_some()];
+                let count = given.into_iter().filter(|&given| given).count();
+                Err(Invalid::new("base", count, "of scene, gltf, map", "exactly one").into())
+            }
+        }
+    }
+
+    /// Settings of another kind of base than this one.
+    fn refuse_strays(&self) -> Result<(), Invalid> {
+        let strays = [
+            ("base.up", self.up.is_some(), self.gltf.is_some(), "only beside base.gltf"),
+            ("base.scale", self.scale.is_some(), self.gltf.is_some(), "only beside base.gltf"),
+            ("base.wall_height", self.wall_height.is_some(), self.map.is_some(), "only beside base.map"),
+        ];
+        match strays.into_iter().find(|(_, given, fits, _)| *given && !fits) {
+            Some((field, _, _, expected)) => Err(Invalid::new(field, "given", "", expected)),
+            None => Ok(()),
+        }
+    }
+}
+
+fn built_in(name: &str, seed: u64) -> Result<LoadedBase, SceneError> {
+    let scene =
+        Scene::by_name(name, seed).map_err(|error| Invalid { field: "base.scene".into(), ..error })?;
+    Ok(LoadedBase {
+        parts: BaseParts { solids: scene.world.solids().to_vec(), meshes: scene.world.meshes().to_vec() },
+        name: scene.name,
+        lights: scene.lights,
+        people: scene.people,
+        start: Some(scene.start),
+        goal: Some(scene.goal),
+    })
+}
+
+fn from_file(
+    field: &'static str,
+    path: &Path,
+    parts: Result<BaseParts, Box<dyn Error + Send + Sync>>,
+) -> Result<LoadedBase, SceneError> {
+    let parts =
+        parts.map_err(|source| SceneError::Load { field, path: path.display().to_string(), source })?;
+    let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    Ok(LoadedBase { name, parts, lights: Lights::default(), people: Vec::new(), start: None, goal: None })
+}

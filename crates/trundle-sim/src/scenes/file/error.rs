@@ -1,0 +1,31 @@
+use std::error::Error;
+use trundle_core::Invalid;
+
+/// What can be wrong with a scene file.
+#[derive(Debug, thiserror::Error)]
+pub enum SceneError {
+    /// An item, named as in the file (`props[3].size`).
+    #[error(transparent)]
+    Invalid(#[from] Invalid),
+    /// A file that the base names.
+    #[error("{field} '{path}': {source}")]
+    Load {
+        /// The item that names it.
+        field: &'static str,
+        /// The file, as the item names it.
+        path: String,
+        /// What its reader says.
+        source: Box<dyn Error + Send + Sync>,
+    },
+}
+
+impl SceneError {
+    pub(super) fn missing(field: &str, expected: &str) -> Self {
+        Invalid::new(field, "missing", "", expected).into()
+    }
+}
+
+/// `error` about something of `item`.
+pub(super) fn within(item: &str, error: Invalid) -> SceneError {
+    Invalid { field: format!("{item}: {}", error.field), ..error }.into()
+}

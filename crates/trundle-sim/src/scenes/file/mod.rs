@@ -1,0 +1,107 @@
+//! Scenes from files: what stands where, as a value that serde reads. Text and folders are the caller's business.
+
+mod base;
+mod error;
+mod prop;
+mod prop_kind;
+
+pub use base::{Base, BaseLoader, BaseParts, UpAxis};
+pub use error::SceneError;
+pub use prop::Prop;
+pub use prop_kind::{PaintName, PropKind};
+
+use super::Scene;
+use crate::people::Person;
+use crate::world::{Lights, World};
+use error::within;
+use serde::{Deserialize, Serialize};
+use trundle_core::{Pose2, require_finite, require_in};
+
+/// Farthest from the origin that anything may be placed, m.
+const REACH: f64 = 1000.0;
+
+/// A scene as a file describes it: a base, and what is added to it. The format stands in `docs/formats.md`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SceneFile {
+    /// The scene's name. Default: the base's.
+    pub name: Option<String>,
+    /// What it is built on.
+    pub base: Base,
+    /// Where the robot starts and shall go.
+    #[serde(default)]
+    pub robot: RobotPlaces,
+    /// What stands there beside the base.
+    #[serde(default)]
+    pub props: Vec<Prop>,
+    /// Who walks about, beside the base's people.
+    #[serde(default)]
+    pub people: Vec<Person>,
+    /// How it is lit. Default: as the base is.
+    pub lights: Option<Lights>,
+}
+
+/// Where the robot starts and shall go.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct RobotPlaces {
+    /// Default: the built-in scene's; needed for a base from a file.
+    pub start: Option<Place>,
+    /// Default: the built-in scene's, or the start.
+    pub goal: Option<Place>,
+}
+
+/// A pose in the world frame.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Place {
+    /// Metres.
+    pub x: f64,
+    /// Metres.
+    pub y: f64,
+    /// Degrees from x, counter-clockwise. Default 0.
+    #[serde(default)]
+    pub heading_deg: f64,
+}
+
+impl SceneFile {
+    /// The scene. `loader` reads the files that the base names; `seed` is for a base that brings none, and for the
+    /// looks of props.
+    ///
+    /// # Errors
+    /// Names the item that is wrong (`props[3].size`), or the file and what its reader says.
+    pub fn build(&self, loader: &dyn BaseLoader, seed: u64) -> Result<Scene, SceneError> {
+        let seed = self.base.seed.unwrap_or(seed);
+        let mut stage = self.base.load(loader, seed)?;
+        for (i, prop) in self.props.iter().enumerate() {
+            stage.parts.solids.extend(prop.solids(&format!("props[{i}]"), seed, i)?);
+        }
+        for (i, person) in self.people.iter().enumerate() {
+            let person =
+                person.clone().validated().map_err(|error| within(&format!("people[{i}]"), error))?;
+            stage.people.push(person);
+        }
+        let lights = self.lights.clone().map_or(Ok(stage.lights), Lights::validated)?;
+        let place = |field: &str, place: Option<Place>| place.map(|place| place.pose(field)).transpose();
+        let start = place("robot.start", self.robot.start)?.or(stage.start);
+        let start = start.ok_or_else(|| SceneError::missing("robot.start", "x, y and heading_deg"))?;
+        let goal = place("robot.goal", self.robot.goal)?.or(stage.goal).unwrap_or(start);
+        Ok(Scene {
+            name: self.name.clone().unwrap_or(stage.name),
+            world: World::with_meshes(stage.parts.solids, stage.parts.meshes, seed)?,
+            lights,
+            people: stage.people,
+            start,
+            goal,
+        })
+    }
+}
+
+impl Place {
+    fn pose(self, field: &str) -> Result<Pose2, SceneError> {
+        require_in(&format!("{field}.x"), self.x, "m", -REACH, REACH)?;
+        require_in(&format!("{field}.y"), self.y, "m", -REACH, REACH)?;
+        require_finite(&format!("{field}.heading_deg"), self.heading_deg, "deg")?;
+        Ok(Pose2::new(self.x, self.y, self.heading_deg.to_radians()))
+    }
+}

@@ -1,0 +1,95 @@
+use super::{PaintName, PropKind, REACH, SceneError};
+use crate::chance::hash;
+use crate::paint::Finish;
+use crate::scenes::builder::Builder;
+use crate::world::Solid;
+use serde::{Deserialize, Serialize};
+use trundle_core::{Invalid, Pose2, require_finite, require_in};
+
+/// Colour of what has none given.
+const WOOD: [u8; 3] = [176, 128, 80];
+
+/// A thing in a scene file.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Prop {
+    /// What it is.
+    pub kind: PropKind,
+    /// Its middle, world frame, m.
+    pub x: f64,
+    /// Its middle, world frame, m.
+    pub y: f64,
+    /// Its own x axis, degrees from the world's, counter-clockwise. Default 0.
+    #[serde(default)]
+    pub heading_deg: f64,
+    /// Height of its lower side above the floor, m, 0 to 20. Default 0.
+    #[serde(default)]
+    pub bottom: f64,
+    /// Along its own x, y and z, m, 0.005 to 50 each; x and y of what is round must be equal. Default:
+    /// [`PropKind::default_size`].
+    pub size: Option<[f64; 3]>,
+    /// Of its main paint, sRGB. Default: by seed, or wood.
+    pub color: Option<[u8; 3]>,
+    /// Of a box or cylinder. Default veneer.
+    pub paint: Option<PaintName>,
+    /// Props of one kind, size and seed look exactly alike. Default: no two do.
+    pub seed: Option<u64>,
+}
+
+impl Prop {
+    /// Its solids; `item` is its name in messages, `index` its place in the list.
+    pub(super) fn solids(&self, item: &str, seed: u64, index: usize) -> Result<Vec<Solid>, SceneError> {
+        self.check(item)?;
+        let size = self.checked_size(item)?;
+        let mut build = Builder::new(0);
+        build.tint = self.color;
+        build.lift = self.bottom;
+        let place = Pose2::new(self.x, self.y, self.heading_deg.to_radians());
+        let looks = self.seed.unwrap_or_else(|| hash(hash(seed, 0x9120_9120), index as u64));
+        build.alike(looks, |build| self.place(build, place, size));
+        Ok(build.solids)
+    }
+
+    fn check(&self, item: &str) -> Result<(), Invalid> {
+        require_in(&format!("{item}.x"), self.x, "m", -REACH, REACH)?;
+        require_in(&format!("{item}.y"), self.y, "m", -REACH, REACH)?;
+        require_finite(&format!("{item}.heading_deg"), self.heading_deg, "deg")?;
+        require_in(&format!("{item}.bottom"), self.bottom, "m", 0.0, 20.0)?;
+        if self.paint.is_some() && !self.kind.takes_paint() {
+            return Err(Invalid::new(format!("{item}.paint"), "given", "", "only on a box or a cylinder"));
+        }
+        Ok(())
+    }
+
+    fn checked_size(&self, item: &str) -> Result<[f64; 3], Invalid> {
+        let size = self.size.unwrap_or_else(|| self.kind.default_size());
+        for length in size {
+            require_in(&format!("{item}.size"), length, "m", 0.005, 50.0)?;
+        }
+        if self.kind.is_round() && size[0] != size[1] {
+            let expected = "x and y equal: it is round";
+            return Err(Invalid::new(format!("{item}.size"), format!("{size:?}"), "m", expected));
+        }
+        Ok(size)
+    }
+
+    fn place(&self, build: &mut Builder, place: Pose2, size: [f64; 3]) {
+        let paint = self.paint.unwrap_or_default().paint(self.color.unwrap_or(WOOD));
+        let [x, _, height] = size;
+        match self.kind {
+            PropKind::Box => build.block(place, (0.0, 0.0), 0.0, size, Finish::all(paint)),
+            PropKind::Cylinder => build.pillar(place, (0.0, 0.0), 0.0, (x / 2.0, height), paint),
+            PropKind::Table => build.table(place, size),
+            PropKind::Chair => build.chair(place, size),
+            PropKind::Stool => build.sized_stool(place, (x / 2.0, height)),
+            PropKind::Sofa => build.sofa(place, size),
+            PropKind::Bed => build.bed(place, size),
+            PropKind::Shelf => build.bookcase(place, size),
+            PropKind::Cabinet => build.cabinet(place, size),
+            PropKind::Carton => build.carton(place, size),
+            PropKind::Bin => build.sized_bin(place, (x / 2.0, height)),
+            PropKind::Plant => build.sized_plant(place, (x / 2.0, height)),
+            PropKind::Pallet => build.loaded_pallet(place, size),
+        }
+    }
+}
