@@ -1,15 +1,19 @@
 use crate::camera::{ColorNoise, DepthNoise};
+use crate::faults::FaultSchedule;
 use crate::kobuki::KobukiConfig;
+use crate::laser::LaserConfig;
 use nalgebra::{Matrix3, Rotation3};
 use serde::{Deserialize, Serialize};
 use trundle_core::{Invalid, PinholeCamera, Pose3, Vector3, require_in};
 
-/// The simulated robot: body, camera and their noise.
+/// The simulated robot: body, sensors and their noise, and what breaks.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct SimConfig {
     /// The body.
     pub kobuki: KobukiConfig,
+    /// Whether there is a camera. Default true.
+    pub has_camera: bool,
     /// The camera, rectified. Default Kinect V2.
     pub camera: PinholeCamera,
     /// Where the camera sits, in its optical frame (x right, y down, z forward). Default [`camera_mount`]`(0.05, 0.45, 8 deg)`.
@@ -20,28 +24,46 @@ pub struct SimConfig {
     pub depth_noise: DepthNoise,
     /// Noise of colour.
     pub color_noise: ColorNoise,
+    /// A 2-D laser. Default none.
+    pub laser: Option<LaserConfig>,
+    /// What breaks, and when. Default nothing.
+    pub faults: FaultSchedule,
 }
 
 impl Default for SimConfig {
     fn default() -> Self {
         Self {
             kobuki: KobukiConfig::default(),
+            has_camera: true,
             camera: PinholeCamera::kinect_v2(),
             base_from_camera: camera_mount(0.05, 0.45, 8_f64.to_radians()),
             camera_rate_hz: 15.0,
             depth_noise: DepthNoise::default(),
             color_noise: ColorNoise::default(),
+            laser: None,
+            faults: FaultSchedule::default(),
         }
     }
 }
 
 impl SimConfig {
-    /// The same robot without any noise; dynamics, range and rates stay.
+    /// A robot with a Kinect V2, 512 x 424 at 15 Hz: the default.
+    pub fn kinect_v2() -> Self {
+        Self::default()
+    }
+
+    /// A robot with a Kinect v1, 640 x 480 at 30 Hz, as of the TUM RGB-D benchmark \[Sturm12\].
+    pub fn kinect_v1() -> Self {
+        Self { camera: PinholeCamera::kinect_v1(), camera_rate_hz: 30.0, ..Self::default() }
+    }
+
+    /// The same robot without any noise; dynamics, range, rates and faults stay.
     pub fn without_noise(self) -> Self {
         Self {
             kobuki: self.kobuki.without_noise(),
             depth_noise: DepthNoise::none(),
             color_noise: ColorNoise::none(),
+            laser: self.laser.map(LaserConfig::without_noise),
             ..self
         }
     }
@@ -59,8 +81,15 @@ impl SimConfig {
             kobuki: self.kobuki.validated()?,
             depth_noise: self.depth_noise.validated()?,
             color_noise: self.color_noise.validated()?,
+            laser: self.laser.map(LaserConfig::validated).transpose()?,
+            faults: self.faults.validated()?,
             ..self
         })
+    }
+
+    /// How long the base's poses must be remembered, s: a turn of the laser.
+    pub(crate) fn memory(&self) -> f64 {
+        self.laser.as_ref().map_or(0.0, |laser| 1.0 / laser.rate_hz)
     }
 }
 

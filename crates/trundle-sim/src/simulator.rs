@@ -1,103 +1,116 @@
-use crate::camera::{Renderer, RgbdSensor, View};
+mod clock;
+mod error;
+mod eye;
+mod late;
+mod track;
+
 use crate::config::SimConfig;
-use crate::kobuki::{Kobuki, STEPS_PER_SECOND};
+use crate::faults::Faults;
+use crate::kobuki::{Kobuki, STEP, Surroundings, TrueWheels};
+use crate::laser::Laser;
+use crate::people::Crowd;
 use crate::scenes::Scene;
-use crate::world::{HeightBand, Obstacles};
+use crate::world::{HeightBand, Obstacles, Stage};
+use clock::Clock;
+pub use error::SimError;
+use eye::Eye;
+use late::Late;
 use std::collections::VecDeque;
+use track::Track;
 use trundle_core::{
-    Footprint, Invalid, PinholeCamera, Pose2, Pose3, RgbdImage, RobotBody, SensorEvent, Stamp, Touch, Twist2,
+    Cliff, PinholeCamera, Pose2, RobotBody, SensorEvent, Stamp, Touch, Twist2, require_finite,
 };
 
-/// What can go wrong with a simulated robot.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum SimError {
-    /// A number of the configuration or the scene.
-    #[error(transparent)]
-    Invalid(#[from] Invalid),
-    /// The robot would stand in something.
-    #[error(
-        "start of scene '{scene}' at ({x:.3}, {y:.3}) m is {penetration:.3} m inside an obstacle, expected a free place"
-    )]
-    StartInObstacle {
-        /// The scene's name.
-        scene: String,
-        /// Metres, world frame.
-        x: f64,
-        /// Metres, world frame.
-        y: f64,
-        /// Metres.
-        penetration: f64,
-    },
-    /// A command that is not a number; the robot was told to stop instead.
-    #[error(
-        "command at {stamp} s is v = {v} m/s, omega = {omega} rad/s, expected finite numbers; the robot stops"
-    )]
-    CommandNotFinite {
-        /// When it came.
-        stamp: Stamp,
-        /// Forward speed asked for, m/s.
-        v: f64,
-        /// Turn rate asked for, rad/s.
-        omega: f64,
-    },
-}
+/// Between these heights, m, people need room to walk.
+const PEOPLE: (f64, f64) = (0.05, 1.75);
 
-/// A Kobuki with an RGB-D camera in a scene, behind the trait that hardware is behind.
+/// A Kobuki with an RGB-D camera and, if wished, a laser in a scene, behind the trait that hardware is behind.
 ///
-/// Events come in the order of their stamps, at equal stamps wheels, gyro, touch, truth, image. The first set is of time
-/// 0. Truth comes with every wheel reading and every image. It never ends by itself. The same scene, seed and commands
+/// Events come in the order of their stamps, at equal stamps wheels, gyro, touch, cliff, truth, scan, image; only an image
+/// that a fault makes late comes after things that happened after it. The first set is of time 0. Truth comes with every
+/// wheel reading, scan and image, dropped ones too. It never ends by itself. The same scene, configuration, seed and commands
 /// give the same bytes on any number of threads.
 #[derive(Debug)]
 pub struct Simulator {
     scene: Scene,
     config: SimConfig,
     obstacles: Obstacles,
+    crowd: Crowd,
     body: Kobuki,
-    renderer: Renderer,
-    sensor: RgbdSensor,
-    view: View,
+    eye: Eye,
+    laser: Option<Laser>,
+    faults: Faults,
+    track: Track,
     /// Steps of 1 ms since the start.
     now: u64,
-    wheel_clock: Clock,
-    gyro_clock: Clock,
-    camera_clock: Clock,
-    touch: Option<bool>,
+    clocks: Clocks,
+    said: Said,
     queue: VecDeque<SensorEvent>,
+    late: Late,
     refused_commands: u32,
+}
+
+/// When each sensor is due.
+#[derive(Debug)]
+struct Clocks {
+    wheels: Clock,
+    gyro: Clock,
+    camera: Clock,
+    laser: Clock,
+}
+
+/// What sensors said last, where that matters.
+#[derive(Debug, Default)]
+struct Said {
+    /// Whether the bumper truly is pressed.
+    is_touching: bool,
+    is_pressed: bool,
+    turn_rate: Option<f64>,
 }
 
 impl Simulator {
     /// A robot at the scene's start; `seed` is that of all noise.
     ///
     /// # Errors
-    /// When a number is outside its range or not finite, or the robot would stand in an obstacle.
+    /// When a number is outside its range or not finite, the robot would start or be put in an obstacle, or a person would
+    /// walk through one.
     pub fn new(scene: Scene, config: SimConfig, seed: u64) -> Result<Self, SimError> {
         let config = config.validated()?;
-        let footprint = Footprint::disc(config.kobuki.footprint_radius)?;
         let band = HeightBand::new(config.kobuki.step_over, config.kobuki.height)?;
-        let clearance = scene.world.clearance(&footprint, scene.start, band)?;
-        if clearance <= 0.0 {
-            let Pose2 { x, y, .. } = scene.start;
-            return Err(SimError::StartInObstacle { scene: scene.name, x, y, penetration: -clearance });
+        let crowd = Crowd::new(&scene.people, band)?;
+        if !scene.people.is_empty() {
+            crowd.check_ways(&scene.world.obstacles(HeightBand::new(PEOPLE.0, PEOPLE.1)?))?;
         }
-        let renderer = Renderer::new(config.camera)?;
-        scene.world.paint();
+        let obstacles = scene.world.obstacles(band);
+        require_free(&scene, &config, &obstacles, &crowd)?;
+        if config.has_camera {
+            scene.world.paint();
+            crowd.paint();
+        }
+        let clocks = Clocks {
+            wheels: Clock::new(config.kobuki.wheel_rate_hz),
+            gyro: Clock::new(config.kobuki.gyro_rate_hz),
+            camera: if config.has_camera { Clock::new(config.camera_rate_hz) } else { Clock::never() },
+            laser: config.laser.as_ref().map_or(Clock::never(), |laser| Clock::new(laser.rate_hz)),
+        };
         let mut simulator = Self {
-            obstacles: scene.world.obstacles(band),
-            body: Kobuki::new(&config.kobuki, scene.start, seed),
-            sensor: RgbdSensor::new(config.depth_noise.clone(), config.color_noise.clone(), seed)?,
-            view: renderer.blank(),
-            renderer,
+            obstacles,
+            crowd,
+            body: Kobuki::new(&config.kobuki, scene.start, seed)?,
+            eye: Eye::new(&config, seed)?,
+            laser: config.laser.clone().map(|laser| Laser::new(laser, seed)),
+            faults: Faults::new(config.faults.clone(), seed),
+            track: Track::new(scene.start, config.memory()),
             now: 0,
-            wheel_clock: Clock::new(config.kobuki.wheel_rate_hz),
-            gyro_clock: Clock::new(config.kobuki.gyro_rate_hz),
-            camera_clock: Clock::new(config.camera_rate_hz),
-            touch: None,
+            clocks,
+            said: Said::default(),
             queue: VecDeque::new(),
+            late: Late::default(),
             refused_commands: 0,
             scene,
             config,
         };
+        simulator.break_things();
         simulator.read_sensors()?;
         Ok(simulator)
     }
@@ -114,7 +127,7 @@ impl Simulator {
 
     /// The camera.
     pub fn camera(&self) -> &PinholeCamera {
-        self.renderer.camera()
+        self.eye.camera()
     }
 
     /// The moment that the dynamics have reached: that of the newest event made.
@@ -132,15 +145,25 @@ impl Simulator {
         self.body.pose()
     }
 
+    /// The base's true geometry.
+    pub fn true_wheels(&self) -> TrueWheels {
+        self.body.wheels()
+    }
+
+    /// Where everybody is, in the scene's order: `world_from_person`, x forward, for judges.
+    pub fn people(&self) -> Vec<Pose2> {
+        self.crowd.poses()
+    }
+
     /// Metres driven.
     pub fn path_length(&self) -> f64 {
         self.body.path_length()
     }
 
-    /// Metres between the robot and the nearest thing it could touch.
+    /// Metres between the robot and the nearest thing or person it could touch.
     pub fn clearance(&self) -> f64 {
-        self.obstacles
-            .clearance(&Footprint::Disc { radius: self.config.kobuki.footprint_radius }, self.true_pose())
+        let (footprint, pose) = (self.body.footprint(), self.true_pose());
+        self.obstacles.clearance(footprint, pose).min(self.crowd.clearance(footprint, pose))
     }
 
     /// Commands that were not finite.
@@ -150,40 +173,127 @@ impl Simulator {
 
     fn step(&mut self) {
         self.now += 1;
-        if let Some(is_pressed) = self.body.step(&self.obstacles) {
-            self.touch = Some(is_pressed);
+        self.break_things();
+        self.crowd.step(STEP, self.body.footprint(), self.body.pose());
+        let around = Surroundings { fixed: &self.obstacles, moving: &self.crowd };
+        if let Some(is_touching) = self.body.step(&around) {
+            self.said.is_touching = is_touching;
+        }
+        self.track.add(self.body.pose());
+    }
+
+    /// Lets the schedule act on the body.
+    fn break_things(&mut self) {
+        if self.config.faults.faults.is_empty() {
+            return;
+        }
+        self.faults.at(self.stamp().as_secs());
+        self.body.set_grip(self.faults.grip());
+        if let Some((left, right)) = self.faults.jump() {
+            self.body.jump_ticks(left, right);
+        }
+        let is_free = |pose| self.crowd.clearance(self.body.footprint(), pose) > 0.0;
+        if let Some(pose) = self.faults.kidnapping(is_free) {
+            self.body.put(pose);
+            self.track.restart(pose);
         }
     }
 
     /// Queues what is due now, in the fixed order.
     fn read_sensors(&mut self) -> Result<(), SimError> {
         let stamp = self.stamp();
-        let wheels_due = self.wheel_clock.is_due(self.now);
-        let image_due = self.camera_clock.is_due(self.now);
-        if wheels_due {
+        let (wheels, gyro) = (self.clocks.wheels.due(self.now), self.clocks.gyro.due(self.now));
+        let (scan, image) = (self.clocks.laser.due(self.now), self.clocks.camera.due(self.now));
+        if wheels.is_some() {
             self.queue.push_back(SensorEvent::Wheels(self.body.read_wheels(stamp)));
         }
-        if self.gyro_clock.is_due(self.now) {
-            self.queue.push_back(SensorEvent::Gyro(self.body.read_gyro(stamp)));
+        if gyro.is_some() {
+            self.read_gyro(stamp);
         }
-        if let Some(pressed) = self.touch.take() {
-            self.queue.push_back(SensorEvent::Touch(Touch { stamp, pressed }));
+        self.read_bumper(stamp);
+        if wheels.is_some()
+            && let Some(over_edge) = self.body.look_for_cliffs(&self.scene.world)
+        {
+            self.queue.push_back(SensorEvent::Cliff(Cliff { stamp, over_edge }));
         }
-        if wheels_due || image_due {
+        if wheels.or(scan).or(image).is_some() {
             self.queue.push_back(SensorEvent::Truth { stamp, pose: self.body.pose() });
         }
-        if image_due {
-            let image = self.take_image(stamp)?;
-            self.queue.push_back(SensorEvent::Rgbd(image));
+        if let Some(scan) = scan {
+            self.read_laser(stamp, scan)?;
         }
+        if let Some(frame) = image {
+            self.read_camera(stamp, frame)?;
+        }
+        self.late.arrive(self.now, &mut self.queue);
         Ok(())
     }
 
-    fn take_image(&mut self, stamp: Stamp) -> Result<RgbdImage, SimError> {
-        let world_from_camera = Pose3::from_pose2(self.body.pose()) * self.config.base_from_camera;
-        self.renderer.render(&self.scene.stage(), &world_from_camera, &mut self.view);
-        Ok(self.sensor.expose(&self.view, stamp, self.camera_clock.ticks() - 1)?)
+    fn read_gyro(&mut self, stamp: Stamp) {
+        let mut rate = self.body.read_gyro(stamp);
+        if self.faults.is_gyro_stuck() {
+            rate.omega = self.said.turn_rate.unwrap_or(rate.omega);
+        }
+        self.said.turn_rate = Some(rate.omega);
+        self.queue.push_back(SensorEvent::Gyro(rate));
     }
+
+    fn read_bumper(&mut self, stamp: Stamp) {
+        let pressed = self.faults.bumper().unwrap_or(self.said.is_touching);
+        if pressed != self.said.is_pressed {
+            self.said.is_pressed = pressed;
+            self.queue.push_back(SensorEvent::Touch(Touch { stamp, pressed }));
+        }
+    }
+
+    fn read_laser(&mut self, stamp: Stamp, scan: u64) -> Result<(), SimError> {
+        let Some(laser) = self.laser.as_ref().filter(|_| !self.faults.is_laser_gone()) else { return Ok(()) };
+        let movers = self.crowd.movers();
+        let stage = Stage { world: &self.scene.world, movers: &movers, lights: &self.scene.lights };
+        let scan = laser.measure(&stage, |age| self.track.back(age), stamp, scan)?;
+        self.queue.push_back(SensorEvent::Scan(scan));
+        Ok(())
+    }
+
+    fn read_camera(&mut self, stamp: Stamp, frame: u64) -> Result<(), SimError> {
+        let fault = self.faults.camera(frame);
+        if fault.is_dropped {
+            return Ok(());
+        }
+        let movers = self.crowd.movers();
+        let stage = Stage { world: &self.scene.world, movers: &movers, lights: &self.scene.lights };
+        let image = self.eye.take(&stage, &self.track, stamp, frame, fault)?;
+        self.late.send(SensorEvent::Rgbd(image), self.now, fault.delay, &mut self.queue);
+        Ok(())
+    }
+}
+
+/// Refuses a start and kidnappings into things, and a start into people.
+fn require_free(
+    scene: &Scene,
+    config: &SimConfig,
+    obstacles: &Obstacles,
+    crowd: &Crowd,
+) -> Result<(), SimError> {
+    let footprint = config.kobuki.outline()?;
+    let name = || scene.name.clone();
+    let Pose2 { x, y, theta } = scene.start;
+    for (field, value, unit) in [("pose x", x, "m"), ("pose y", y, "m"), ("pose theta", theta, "rad")] {
+        require_finite(field, value, unit)?;
+    }
+    let clearance = obstacles.clearance(&footprint, scene.start);
+    let clearance = clearance.min(crowd.clearance(&footprint, scene.start));
+    if clearance <= 0.0 {
+        return Err(SimError::StartInObstacle { scene: name(), x, y, penetration: -clearance });
+    }
+    for (time, pose) in config.faults.kidnappings() {
+        let penetration = -obstacles.clearance(&footprint, pose);
+        if penetration >= 0.0 {
+            let Pose2 { x, y, .. } = pose;
+            return Err(SimError::KidnappedIntoObstacle { scene: name(), time, x, y, penetration });
+        }
+    }
+    Ok(())
 }
 
 impl RobotBody for Simulator {
@@ -210,28 +320,5 @@ impl RobotBody for Simulator {
         self.refused_commands += 1;
         self.body.command(Twist2::ZERO);
         Err(SimError::CommandNotFinite { stamp: self.stamp(), v: twist.v, omega: twist.omega })
-    }
-}
-
-/// When a sensor is due: the n-th reading at the step nearest to n / rate.
-#[derive(Debug)]
-struct Clock {
-    steps: f64,
-    ticks: u64,
-}
-
-impl Clock {
-    fn new(rate_hz: f64) -> Self {
-        Self { steps: STEPS_PER_SECOND / rate_hz, ticks: 0 }
-    }
-
-    fn is_due(&mut self, now: u64) -> bool {
-        let due = now >= (self.ticks as f64 * self.steps).round() as u64;
-        self.ticks += u64::from(due);
-        due
-    }
-
-    fn ticks(&self) -> u64 {
-        self.ticks
     }
 }

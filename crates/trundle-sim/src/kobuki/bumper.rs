@@ -1,52 +1,73 @@
-use crate::world::Obstacles;
+use super::Surroundings;
 use trundle_core::{Footprint, Pose2};
 
 /// A touch ends when the gap is wider than this, m.
 const RELEASE: f64 = 2e-3;
 
-/// Keeps the body out of walls, and notes when it touches one.
+/// Keeps the body out of what stands and walks around it, and notes when it touches something.
 #[derive(Debug)]
 pub(super) struct Bumper {
     footprint: Footprint,
-    /// The body can move this far, m, before anything can be touched: saves measuring at every step.
+    /// Metres from the origin to the farthest point of the body.
+    reach: f64,
+    /// The body can move this far, m, before anything that stands can be touched: saves measuring at every step.
     free_way: f64,
     is_pressed: bool,
     contacts: u32,
 }
 
 impl Bumper {
-    /// Of a round body of this radius, m.
-    pub(super) fn new(radius: f64) -> Self {
-        Self { footprint: Footprint::Disc { radius }, free_way: 0.0, is_pressed: false, contacts: 0 }
+    pub(super) fn new(footprint: Footprint) -> Self {
+        let reach = footprint.circumscribed_radius();
+        Self { footprint, reach, free_way: 0.0, is_pressed: false, contacts: 0 }
     }
 
     /// Where the body ends that wants to go from `from` to `to`, and the bumper's state when it changed.
     ///
-    /// A move into a wall does not happen (the wheels slip); the turn in it does when there is room for it.
-    pub(super) fn resolve(&mut self, from: Pose2, to: Pose2, obstacles: &Obstacles) -> (Pose2, Option<bool>) {
+    /// A move into something does not happen (the wheels slip); the turn in it does when there is room for it.
+    pub(super) fn resolve(
+        &mut self,
+        from: Pose2,
+        to: Pose2,
+        around: &Surroundings<'_>,
+    ) -> (Pose2, Option<bool>) {
         let turn = trundle_core::difference_of_angles(to.theta, from.theta).abs();
-        let moved = from.distance(&to) + turn * self.footprint.circumscribed_radius();
-        if !self.is_pressed && self.free_way > moved + RELEASE {
-            self.free_way -= moved;
-            return (to, None);
-        }
-        self.free_way = obstacles.clearance(&self.footprint, to);
-        if self.free_way > 0.0 {
-            let released = self.is_pressed && self.free_way > RELEASE;
-            self.is_pressed &= !released;
-            return (to, released.then_some(false));
+        self.free_way -= from.distance(&to) + turn * self.reach;
+        let gap = self.gap(to, around);
+        if gap > 0.0 {
+            let is_released = self.is_pressed && gap > RELEASE;
+            self.is_pressed &= !is_released;
+            return (to, is_released.then_some(false));
         }
         self.free_way = 0.0;
         let turned = Pose2::new(from.x, from.y, to.theta);
-        let stays = if obstacles.clearance(&self.footprint, turned) > 0.0 { turned } else { from };
+        let stays = if self.gap(turned, around) > 0.0 { turned } else { from };
+        self.free_way = 0.0;
         let is_new = !self.is_pressed;
         self.is_pressed = true;
         self.contacts += u32::from(is_new);
         (stays, is_new.then_some(true))
     }
 
+    /// Forgets what it knew of the place: the body was put somewhere else.
+    pub(super) fn lift(&mut self) {
+        self.free_way = 0.0;
+    }
+
     /// How often a touch began.
     pub(super) fn contacts(&self) -> u32 {
         self.contacts
+    }
+
+    pub(super) fn footprint(&self) -> &Footprint {
+        &self.footprint
+    }
+
+    /// Metres to the nearest thing at `pose`, at least while that is near; measures what stands only where it might be near.
+    fn gap(&mut self, pose: Pose2, around: &Surroundings<'_>) -> f64 {
+        if self.free_way <= RELEASE {
+            self.free_way = around.fixed.clearance(&self.footprint, pose);
+        }
+        self.free_way.min(around.moving.clearance(&self.footprint, pose))
     }
 }

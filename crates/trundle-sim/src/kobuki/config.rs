@@ -1,5 +1,5 @@
 use serde::{Deserialize, Serialize};
-use trundle_core::{DifferentialDrive, DriveLimits, Invalid, require_in};
+use trundle_core::{DifferentialDrive, DriveLimits, Footprint, Invalid, Vector2, require_in};
 
 /// The true robot: what its data sheet says, and how this one differs from it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -15,6 +15,9 @@ pub struct KobukiConfig {
     pub motor_lag: f64,
     /// From a command to its effect, s, 0 to 2. Default 0.02: one cycle of the Kobuki's 50 Hz serial protocol.
     pub command_delay: f64,
+    /// The base stops when it had no command for this long, s, 0 to 60; 0 is never. Default 0: the Kobuki keeps its last
+    /// command; it is the driver kobuki_node that stops it, by default after 0.6 s (`cmd_vel_timeout`).
+    pub command_timeout: f64,
     /// Standard deviation of each wheel's radius over the nominal one, 0 to 0.1. Default 0.003: the unequal diameters
     /// of \[Borenstein96\] are of this size.
     pub wheel_radius_error: f64,
@@ -39,6 +42,13 @@ pub struct KobukiConfig {
     pub gyro_scale_error: f64,
     /// Radius of the round base, m, 0.01 to 2. Default 0.1755: 0.351 m across (its data sheet).
     pub footprint_radius: f64,
+    /// Corners of a convex outline instead of the round one, base frame, m. Default none.
+    pub footprint: Option<Vec<[f64; 2]>>,
+    /// Places of the cliff sensors, base frame, m; without any there is no cliff event. Default the Kobuki's three, as its
+    /// robot description (kobuki_description, URDF) has them.
+    pub cliff_sensors: Vec<[f64; 2]>,
+    /// A floor lower than this under a cliff sensor is a cliff, m, 0.01 to 1. Default 0.05, the Kobuki's.
+    pub cliff_depth: f64,
     /// Height of the robot with its camera, m, 0.05 to 3. Default 0.6: it passes under a table of 0.72 m, not under one of 0.45 m.
     pub height: f64,
     /// Ridges up to this height are rolled over, m, 0.001 to 0.04. Default 0.012, the Kobuki's step climbing.
@@ -53,6 +63,7 @@ impl Default for KobukiConfig {
             wheel_acceleration: 1.2,
             motor_lag: 0.05,
             command_delay: 0.02,
+            command_timeout: 0.0,
             wheel_radius_error: 0.003,
             wheelbase_error: 0.003,
             slip: 0.005,
@@ -64,6 +75,9 @@ impl Default for KobukiConfig {
             gyro_bias_walk: 0.0002,
             gyro_scale_error: 0.003,
             footprint_radius: 0.1755,
+            footprint: None,
+            cliff_sensors: vec![[0.156, 0.0], [0.087, 0.136], [0.085, -0.136]],
+            cliff_depth: 0.05,
             height: 0.6,
             step_over: 0.012,
         }
@@ -96,6 +110,7 @@ impl KobukiConfig {
             ("wheel_acceleration", self.wheel_acceleration, "m/s^2", 0.01, 100.0),
             ("motor_lag", self.motor_lag, "s", 0.0, 2.0),
             ("command_delay", self.command_delay, "s", 0.0, 2.0),
+            ("command_timeout", self.command_timeout, "s", 0.0, 60.0),
             ("wheel_radius_error", self.wheel_radius_error, "", 0.0, 0.1),
             ("wheelbase_error", self.wheelbase_error, "", 0.0, 0.1),
             ("slip", self.slip, "", 0.0, 0.5),
@@ -107,13 +122,31 @@ impl KobukiConfig {
             ("gyro_bias_walk", self.gyro_bias_walk, "rad/s/sqrt(s)", 0.0, 1.0),
             ("gyro_scale_error", self.gyro_scale_error, "", 0.0, 0.1),
             ("footprint_radius", self.footprint_radius, "m", 0.01, 2.0),
+            ("cliff_depth", self.cliff_depth, "m", 0.01, 1.0),
             ("height", self.height, "m", 0.05, 3.0),
             ("step_over", self.step_over, "m", 0.001, 0.04),
         ];
         for (name, value, unit, low, high) in ranges {
             require_in(&format!("kobuki.{name}"), value, unit, low, high)?;
         }
+        for (i, place) in self.cliff_sensors.iter().enumerate() {
+            for x in place {
+                require_in(&format!("kobuki.cliff_sensors[{i}]"), *x, "m", -5.0, 5.0)?;
+            }
+        }
+        self.outline()?;
         Ok(self)
+    }
+
+    /// The outline of the base: the polygon where there is one, else the disc.
+    ///
+    /// # Errors
+    /// When the polygon is not one: fewer than three corners, not convex, not finite; or the radius is not positive.
+    pub fn outline(&self) -> Result<Footprint, Invalid> {
+        match &self.footprint {
+            Some(corners) => Footprint::polygon(corners.iter().map(|c| Vector2::new(c[0], c[1])).collect()),
+            None => Footprint::disc(self.footprint_radius),
+        }
     }
 }
 
@@ -127,5 +160,9 @@ mod tests {
         assert_eq!(error.field, "kobuki.slip");
         assert!(KobukiConfig::default().validated().is_ok());
         assert!(KobukiConfig::default().without_noise().validated().is_ok());
+        let flat = KobukiConfig { footprint: Some(vec![[0.0, 0.0], [1.0, 1.0]]), ..KobukiConfig::default() };
+        assert_eq!(flat.validated().unwrap_err().field, "footprint corners");
+        let far = KobukiConfig { cliff_sensors: vec![[0.1, f64::NAN]], ..KobukiConfig::default() };
+        assert_eq!(far.validated().unwrap_err().field, "kobuki.cliff_sensors[0]");
     }
 }

@@ -12,6 +12,10 @@ pub(super) struct Drivetrain {
     /// Part of the gap to the set speed that the motor closes in a step.
     closing: f64,
     delay_steps: u64,
+    /// Steps without a command after which the base stops; `None` is never.
+    timeout_steps: Option<u64>,
+    /// When the last command took effect.
+    heard: u64,
     now: u64,
     /// Commands on their way: (step at which they take effect, rim speeds).
     pending: VecDeque<(u64, [f64; 2])>,
@@ -27,7 +31,9 @@ impl Drivetrain {
             wheel_speed: config.wheel_speed,
             ramp: config.wheel_acceleration * STEP,
             closing: if config.motor_lag > 0.0 { 1.0 - (-STEP / config.motor_lag).exp() } else { 1.0 },
-            delay_steps: (config.command_delay * STEPS_PER_SECOND).round() as u64,
+            delay_steps: steps(config.command_delay),
+            timeout_steps: (config.command_timeout > 0.0).then(|| steps(config.command_timeout)),
+            heard: 0,
             now: 0,
             pending: VecDeque::new(),
             target: [0.0; 2],
@@ -46,9 +52,12 @@ impl Drivetrain {
     /// Goes on by a step; rim speeds (left, right), m/s, of wheels of nominal radius.
     pub(super) fn step(&mut self) -> (f64, f64) {
         while self.pending.front().is_some_and(|(due, _)| *due <= self.now) {
-            if let Some((_, target)) = self.pending.pop_front() {
-                self.target = target;
+            if let Some((due, target)) = self.pending.pop_front() {
+                (self.heard, self.target) = (due, target);
             }
+        }
+        if self.timeout_steps.is_some_and(|most| self.now - self.heard >= most) {
+            self.target = [0.0; 2];
         }
         self.now += 1;
         for side in 0..2 {
@@ -62,12 +71,20 @@ impl Drivetrain {
     }
 }
 
+fn steps(seconds: f64) -> u64 {
+    (seconds * STEPS_PER_SECOND).round() as u64
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     fn run(twist: Twist2, steps: usize) -> Vec<(f64, f64)> {
-        let mut drivetrain = Drivetrain::new(&KobukiConfig::default());
+        run_as(&KobukiConfig::default(), twist, steps)
+    }
+
+    fn run_as(config: &KobukiConfig, twist: Twist2, steps: usize) -> Vec<(f64, f64)> {
+        let mut drivetrain = Drivetrain::new(config);
         drivetrain.command(twist);
         (0..steps).map(|_| drivetrain.step()).collect()
     }
@@ -89,5 +106,59 @@ mod tests {
         let (left, right) = run(Twist2::new(2.0, 4.0), 3000)[2999];
         let twist = DifferentialDrive::KOBUKI.twist(left, right);
         assert!((right - 0.70).abs() < 1e-9 && (twist.omega / twist.v - 2.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn the_lags_step_response_is_an_exponential() {
+        let lag = 0.08;
+        let config = KobukiConfig {
+            motor_lag: lag,
+            command_delay: 0.037,
+            wheel_acceleration: 100.0,
+            ..KobukiConfig::default()
+        };
+        // 0.1 m/s is one step's ramp: from then on the lag alone acts.
+        let speeds = run_as(&config, Twist2::new(0.1, 0.0), 600);
+        for (i, (left, right)) in speeds.iter().enumerate() {
+            let since = (i as f64 + 1.0) * STEP - 0.037;
+            let expected = if since > 0.0 { 0.1 * (1.0 - (-since / lag).exp()) } else { 0.0 };
+            assert!((left - expected).abs() < 1e-12 && left == right, "{left} {expected} at {i}");
+        }
+    }
+
+    #[test]
+    fn a_delay_is_kept_to_the_millisecond() {
+        for delay in [0, 1, 20, 137] {
+            let config = KobukiConfig {
+                motor_lag: 0.0,
+                command_delay: f64::from(delay) * 1e-3,
+                ..KobukiConfig::default()
+            };
+            let speeds = run_as(&config, Twist2::new(0.2, 0.0), 200);
+            assert_eq!(speeds.iter().position(|s| s.0 > 0.0), Some(delay as usize));
+        }
+    }
+
+    #[test]
+    fn without_lag_speed_is_a_ramp_of_the_configured_slope() {
+        let config = KobukiConfig {
+            motor_lag: 0.0,
+            command_delay: 0.0,
+            wheel_acceleration: 0.8,
+            ..KobukiConfig::default()
+        };
+        for (i, (left, _)) in run_as(&config, Twist2::new(0.5, 0.0), 1000).into_iter().enumerate() {
+            assert!((left - (0.8 * (i as f64 + 1.0) * STEP).min(0.5)).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn without_commands_it_stops_when_it_shall() {
+        let config = KobukiConfig { command_timeout: 0.6, motor_lag: 0.0, ..KobukiConfig::default() };
+        let speeds = run_as(&config, Twist2::new(0.3, 0.0), 2000);
+        // Heard at 20 ms, times out at 620 ms, ramps down within 250 ms.
+        assert_eq!((speeds[619].0, speeds[870].0), (0.3, 0.0));
+        assert!(speeds[620].0 < 0.3);
+        assert!(run(Twist2::new(0.3, 0.0), 3000)[2999].0 > 0.299, "by default it never does");
     }
 }

@@ -20,6 +20,12 @@ impl Encoders {
         self.way = (self.way.0 + left, self.way.1 + right);
     }
 
+    /// The counters jump by this many ticks, for no reason.
+    pub(super) fn jump(&mut self, left: i32, right: i32) {
+        let jumped = |start: u16, ticks: i32| start.wrapping_add(ticks as u16);
+        self.start = (jumped(self.start.0, left), jumped(self.start.1, right));
+    }
+
     /// What the counters say: whole ticks, the fraction not yet counted.
     pub(super) fn read(&self) -> (u16, u16) {
         let count = |start: u16, way: f64| {
@@ -42,5 +48,7 @@ mod tests {
         assert_eq!(encoders.read(), (65_000u16.wrapping_add(2578), 100u16.wrapping_sub(2579)));
         encoders.roll(-turn, turn);
         assert_eq!(encoders.read(), (65_000, 100));
+        encoders.jump(1000, -101);
+        assert_eq!(encoders.read(), (464, 65_535));
     }
 }

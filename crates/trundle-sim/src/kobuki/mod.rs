@@ -1,6 +1,7 @@
-//! The robot's body: wheels, dynamics, contact, encoders, gyro.
+//! The robot's body: wheels, dynamics, contact, encoders, gyro, cliff sensors.
 
 mod bumper;
+mod cliff;
 mod config;
 mod drivetrain;
 mod encoders;
@@ -10,15 +11,17 @@ mod slip;
 pub use config::KobukiConfig;
 
 use crate::chance::normal;
-use crate::world::Obstacles;
+use crate::people::Crowd;
+use crate::world::{Obstacles, World};
 use bumper::Bumper;
+use cliff::CliffSensors;
 use drivetrain::Drivetrain;
 use encoders::Encoders;
 use gyro::Gyro;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use slip::Slip;
-use trundle_core::{GyroRate, Pose2, Stamp, Twist2, WheelTicks};
+use trundle_core::{Footprint, GyroRate, Invalid, Pose2, Stamp, Twist2, WheelTicks};
 
 /// Length of a step of the dynamics, s.
 pub(crate) const STEP: f64 = 1e-3;
@@ -45,6 +48,26 @@ fn tolerance(rng: &mut ChaCha8Rng) -> f64 {
     normal(rng.next_u64()).clamp(-2.5, 2.5)
 }
 
+/// What the base can run into.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Surroundings<'a> {
+    /// What stands.
+    pub(crate) fixed: &'a Obstacles,
+    /// Who walks.
+    pub(crate) moving: &'a Crowd,
+}
+
+/// The true geometry of a base, which a calibration looks for: only judges know it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TrueWheels {
+    /// Radius of the left wheel, m.
+    pub left_radius: f64,
+    /// Radius of the right wheel, m.
+    pub right_radius: f64,
+    /// Distance between the wheels, m.
+    pub wheelbase: f64,
+}
+
 /// A two-wheeled base in a world, stepped at 1 kHz.
 #[derive(Debug)]
 pub(crate) struct Kobuki {
@@ -53,10 +76,12 @@ pub(crate) struct Kobuki {
     encoders: Encoders,
     gyro: Gyro,
     bumper: Bumper,
+    cliff: CliffSensors,
+    wheels: TrueWheels,
     /// True over nominal radius, left and right.
     radius_ratio: (f64, f64),
-    /// True distance between the wheels, m.
-    wheelbase: f64,
+    /// Part of its way that a wheel drives the body, left and right: 1 unless something is broken.
+    grip: (f64, f64),
     pose: Pose2,
     /// Turned so far, rad, not wrapped.
     turned: f64,
@@ -65,23 +90,32 @@ pub(crate) struct Kobuki {
 
 impl Kobuki {
     /// A base standing at `pose`, `world_from_base`; the configuration is valid.
-    pub(crate) fn new(config: &KobukiConfig, pose: Pose2, seed: u64) -> Self {
+    ///
+    /// # Errors
+    /// When its outline is not valid.
+    pub(crate) fn new(config: &KobukiConfig, pose: Pose2, seed: u64) -> Result<Self, Invalid> {
         let mut rng = generator(seed, Stream::Build);
         let mut ratio = |sigma: f64| 1.0 + sigma * tolerance(&mut rng);
         let radius_ratio = (ratio(config.wheel_radius_error), ratio(config.wheel_radius_error));
-        let wheelbase = config.drive.wheelbase * ratio(config.wheelbase_error);
-        Self {
+        let wheels = TrueWheels {
+            left_radius: config.drive.wheel_radius * radius_ratio.0,
+            right_radius: config.drive.wheel_radius * radius_ratio.1,
+            wheelbase: config.drive.wheelbase * ratio(config.wheelbase_error),
+        };
+        Ok(Self {
             drivetrain: Drivetrain::new(config),
             slip: Slip::new(config, generator(seed, Stream::Slip)),
             encoders: Encoders::new(config.drive, (rng.next_u32() as u16, rng.next_u32() as u16)),
             gyro: Gyro::new(config, generator(seed, Stream::Gyro)),
-            bumper: Bumper::new(config.footprint_radius),
+            bumper: Bumper::new(config.outline()?),
+            cliff: CliffSensors::new(&config.cliff_sensors, config.step_over, config.cliff_depth),
+            wheels,
             radius_ratio,
-            wheelbase,
+            grip: (1.0, 1.0),
             pose,
             turned: 0.0,
             path_length: 0.0,
-        }
+        })
     }
 
     pub(crate) fn command(&mut self, twist: Twist2) {
@@ -89,15 +123,15 @@ impl Kobuki {
     }
 
     /// Goes on by [`STEP`]; returns the bumper's state when it changed.
-    pub(crate) fn step(&mut self, obstacles: &Obstacles) -> Option<bool> {
+    pub(crate) fn step(&mut self, around: &Surroundings<'_>) -> Option<bool> {
         let (left, right) = self.drivetrain.step();
         let (left, right) = (left * STEP, right * STEP);
         self.encoders.roll(left, right);
         let (slip_left, slip_right) = self.slip.step();
-        let left = left * self.radius_ratio.0 * (1.0 + slip_left);
-        let right = right * self.radius_ratio.1 * (1.0 + slip_right);
-        let motion = Twist2::new((left + right) / 2.0, (right - left) / self.wheelbase);
-        let (pose, touch) = self.bumper.resolve(self.pose, self.pose.advance(motion, 1.0), obstacles);
+        let left = left * self.radius_ratio.0 * self.grip.0 * (1.0 + slip_left);
+        let right = right * self.radius_ratio.1 * self.grip.1 * (1.0 + slip_right);
+        let motion = Twist2::new((left + right) / 2.0, (right - left) / self.wheels.wheelbase);
+        let (pose, touch) = self.bumper.resolve(self.pose, self.pose.advance(motion, 1.0), around);
         self.turned += trundle_core::difference_of_angles(pose.theta, self.pose.theta);
         self.path_length += pose.distance(&self.pose);
         self.pose = pose;
@@ -111,6 +145,35 @@ impl Kobuki {
 
     pub(crate) fn read_gyro(&mut self, stamp: Stamp) -> GyroRate {
         GyroRate { stamp, omega: self.gyro.read(stamp, self.turned) }
+    }
+
+    /// Whether any cliff sensor has no floor below, when that changed.
+    pub(crate) fn look_for_cliffs(&mut self, world: &World) -> Option<bool> {
+        self.cliff.look(self.pose, world)
+    }
+
+    /// From now on the wheels drive the body by this part of their way, left and right.
+    pub(crate) fn set_grip(&mut self, grip: (f64, f64)) {
+        self.grip = grip;
+    }
+
+    /// The encoders' counters jump by this many ticks, left and right.
+    pub(crate) fn jump_ticks(&mut self, left: i32, right: i32) {
+        self.encoders.jump(left, right);
+    }
+
+    /// Puts the body at `pose`, `world_from_base`, which must be free; no sensor of the body notices.
+    pub(crate) fn put(&mut self, pose: Pose2) {
+        self.pose = pose;
+        self.bumper.lift();
+    }
+
+    pub(crate) fn wheels(&self) -> TrueWheels {
+        self.wheels
+    }
+
+    pub(crate) fn footprint(&self) -> &Footprint {
+        self.bumper.footprint()
     }
 
     pub(crate) fn pose(&self) -> Pose2 {

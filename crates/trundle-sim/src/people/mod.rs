@@ -1,5 +1,10 @@
-//! People who walk given way-points.
+//! People who walk given way-points, two legs each, and wait while the robot is in the way.
 
+mod body;
+mod crowd;
+mod gait;
 mod person;
+mod walker;
 
+pub(crate) use crowd::Crowd;
 pub use person::Person;

@@ -26,6 +26,16 @@ impl Default for Person {
 }
 
 impl Person {
+    /// The legs of the way, as indices of way-points.
+    pub(crate) fn legs(&self) -> Vec<(usize, usize)> {
+        let n = self.waypoints.len();
+        let mut legs: Vec<_> = (1..n).map(|i| (i - 1, i)).collect();
+        if legs.is_empty() || (self.around && !self.once) {
+            legs.push((n - 1, 0));
+        }
+        legs
+    }
+
     /// Passes a valid person through.
     ///
     /// # Errors

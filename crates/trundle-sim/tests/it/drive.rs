@@ -1,6 +1,8 @@
 use super::{almost_blind, block, hall};
 use trundle_core::{DifferentialDrive, Pose2, RobotBody, SensorEvent, Twist2, WheelTicks};
-use trundle_sim::{Scene, SimConfig, SimError, Simulator, World};
+use trundle_sim::{
+    CommandScript, Following, KobukiConfig, Scene, SimConfig, SimError, Simulator, WaypointFollower, World,
+};
 
 /// Wheels and gyro, integrated as an odometry would.
 #[derive(Default)]
@@ -9,6 +11,7 @@ struct Listener {
     odom: Pose2,
     gyro_turn: f64,
     touches: Vec<bool>,
+    cliffs: Vec<bool>,
 }
 
 impl Listener {
@@ -21,6 +24,7 @@ impl Listener {
                 SensorEvent::Wheels(ticks) => self.roll(ticks),
                 SensorEvent::Gyro(gyro) => self.gyro_turn += gyro.omega * 0.02,
                 SensorEvent::Touch(touch) => self.touches.push(touch.pressed),
+                SensorEvent::Cliff(cliff) => self.cliffs.push(cliff.over_edge),
                 _ => {}
             }
             assert!(robot.clearance() >= 0.0, "{} m", robot.clearance());
@@ -59,8 +63,48 @@ fn without_noise_a_square_closes_and_odometry_agrees() {
     assert!(end.position().norm() < 1e-3 && end.theta.abs() < 1e-3, "{end:?}");
     assert!((robot.path_length() - 4.0).abs() < 1e-3, "{}", robot.path_length());
     let gap = listener.odom.inverse() * end;
-    assert!(gap.position().norm() < 2e-3 && gap.theta.abs() < 2e-3, "{gap:?}");
+    assert!(gap.position().norm() < 1e-3 && gap.theta.abs() < 1e-3, "{gap:?}");
     assert!((listener.gyro_turn - std::f64::consts::TAU).abs() < 1e-3, "{}", listener.gyro_turn);
+}
+
+#[test]
+fn unequal_wheels_drive_the_arcs_of_their_radii() {
+    let mut kobuki = KobukiConfig::default().without_noise();
+    (kobuki.wheel_radius_error, kobuki.wheelbase_error) = (0.02, 0.02);
+    let start = Pose2::new(-0.5, -0.5, 0.3);
+    for seed in 0..3 {
+        let config = SimConfig { kobuki: kobuki.clone(), ..almost_blind().without_noise() };
+        let mut robot = Simulator::new(hall(start), config, seed).unwrap();
+        let wheels = robot.true_wheels();
+        let listener = drive_square(&mut robot);
+        // Both rims ramp and lag alike, so that each leg is one arc, whatever the speeds on it.
+        let arc = |left: f64, right: f64| {
+            let (left, right) = (left * wheels.left_radius / 0.035, right * wheels.right_radius / 0.035);
+            Twist2::new((left + right) / 2.0, (right - left) / wheels.wheelbase)
+        };
+        let quarter = std::f64::consts::FRAC_PI_2 * 0.230 / 2.0;
+        let leg = |pose: Pose2| pose.advance(arc(1.0, 1.0), 1.0).advance(arc(-quarter, quarter), 1.0);
+        let closed_form = leg(leg(leg(leg(start))));
+        let gap = closed_form.inverse() * robot.true_pose();
+        assert!(gap.position().norm() < 1e-3 && gap.theta.abs() < 1e-3, "{gap:?}");
+        let drift = start.inverse() * robot.true_pose();
+        assert!(drift.position().norm() > 0.01, "{drift:?}");
+        assert!(listener.odom.position().norm() < 1e-3 && listener.odom.theta.abs() < 1e-3);
+        assert!((wheels.left_radius - 0.035).abs() > 1e-5 && (wheels.wheelbase - 0.230).abs() > 1e-5);
+    }
+}
+
+#[test]
+fn saturation_keeps_the_curve() {
+    let mut robot = Simulator::new(hall(Pose2::IDENTITY), almost_blind().without_noise(), 1).unwrap();
+    let mut listener = Listener::default();
+    listener.drive(&mut robot, Twist2::new(4.0, 8.0), 2.0);
+    let before = robot.true_pose();
+    listener.drive(&mut robot, Twist2::new(4.0, 8.0), 0.1);
+    let tangent = (before.inverse() * robot.true_pose()).log();
+    assert!((tangent.z / tangent.x - 2.0).abs() < 1e-6, "{tangent}");
+    let right = tangent.x + tangent.z * 0.115;
+    assert!((right / 0.1 - 0.70).abs() < 1e-6, "{right}");
 }
 
 #[test]
@@ -105,6 +149,106 @@ fn no_way_of_driving_gets_into_a_box() {
         listener.drive(&mut robot, Twist2::new(v, f64::from(i % 7) - 3.0), 1.0);
     }
     assert!(robot.contacts() > 2);
+}
+
+#[test]
+fn a_long_body_off_its_wheels_touches_with_its_nose_and_its_tail() {
+    let kobuki = KobukiConfig {
+        footprint: Some(vec![[0.5, 0.1], [0.5, -0.1], [-0.1, -0.15], [-0.1, 0.15]]),
+        ..KobukiConfig::default()
+    };
+    let config = SimConfig { kobuki, ..almost_blind() };
+    let mut robot = Simulator::new(hall(Pose2::new(2.0, 0.0, 0.0)), config, 1).unwrap();
+    let mut listener = Listener::default();
+    listener.drive(&mut robot, Twist2::new(0.5, 0.0), 3.0);
+    assert!((robot.true_pose().x - 2.5).abs() < 2e-3, "{:?}", robot.true_pose());
+    // It cannot turn with its nose at the wall, but back off and turn, until the tail is at it.
+    listener.drive(&mut robot, Twist2::new(0.0, 1.0), 1.0);
+    assert!(robot.true_pose().theta.abs() < 0.05, "{:?}", robot.true_pose());
+    listener.drive(&mut robot, Twist2::new(-0.3, 0.0), 1.0);
+    listener.drive(&mut robot, Twist2::new(0.0, 1.0), 3.3);
+    listener.drive(&mut robot, Twist2::new(-0.5, 0.0), 3.0);
+    assert!((robot.true_pose().x - 2.87).abs() < 0.05, "{:?}", robot.true_pose());
+    assert_eq!(listener.touches, [true, false, true]);
+}
+
+#[test]
+fn an_edge_and_a_hole_in_the_floor_are_cliffs() {
+    let mut scene = hall(Pose2::new(-2.0, 0.0, 0.0));
+    // Floor up to x = 0, 3 cm lower up to x = 1, then a pit.
+    let floors =
+        [block([-2.0, 0.0, -0.05], [4.0, 8.0, 0.1], 0.0), block([0.5, 0.0, -0.08], [1.0, 8.0, 0.1], 0.0)];
+    scene.world = World::new(floors.to_vec(), 1).unwrap();
+    let mut robot = Simulator::new(scene, almost_blind().without_noise(), 1).unwrap();
+    let mut listener = Listener::default();
+    listener.drive(&mut robot, Twist2::new(0.5, 0.0), 5.0);
+    assert!(robot.true_pose().x > 0.3 && listener.cliffs.is_empty(), "3 cm are no cliff");
+    listener.drive(&mut robot, Twist2::new(0.2, 0.0), 1.5);
+    let front = robot.true_pose().x + 0.156;
+    assert!(front < 1.0 || listener.cliffs == [true], "{front}");
+    listener.drive(&mut robot, Twist2::new(0.2, 0.0), 1.5);
+    assert_eq!(listener.cliffs, [true]);
+    listener.drive(&mut robot, Twist2::new(-0.4, 0.0), 2.0);
+    assert_eq!(listener.cliffs, [true, false]);
+}
+
+#[test]
+fn a_base_that_times_out_stops_without_commands() {
+    let kobuki = KobukiConfig { command_timeout: 0.6, ..KobukiConfig::default().without_noise() };
+    let config = SimConfig { kobuki, ..almost_blind() };
+    let mut robot = Simulator::new(hall(Pose2::IDENTITY), config, 1).unwrap();
+    let mut listener = Listener::default();
+    listener.drive(&mut robot, Twist2::new(0.3, 0.0), 2.0);
+    // The ramps up and down are alike: speed times the time from command to time-out.
+    assert!((robot.true_pose().x - 0.3 * 0.6).abs() < 1e-3, "{:?}", robot.true_pose());
+}
+
+#[test]
+fn a_script_drives_by_the_clock() {
+    let script = CommandScript::parse("0 0.4 0\n2.5 0 0\n4 0 0\n").unwrap();
+    let mut robot = Simulator::new(hall(Pose2::IDENTITY), almost_blind().without_noise(), 1).unwrap();
+    while robot.stamp().as_secs() < script.duration() {
+        robot.command(script.at(robot.stamp().as_secs())).unwrap();
+        robot.next_event().unwrap();
+    }
+    assert!((robot.true_pose().x - 1.0).abs() < 1e-3, "{:?}", robot.true_pose());
+}
+
+/// Drives until the follower is done; seconds.
+fn follow(robot: &mut Simulator, follower: &mut WaypointFollower) -> f64 {
+    while matches!(follower.state(), Following::Driving { .. }) {
+        if let Some(SensorEvent::Truth { stamp, pose }) = robot.next_event().unwrap() {
+            robot.command(follower.step(stamp, pose)).unwrap();
+            assert!(stamp.as_secs() < 120.0, "{pose:?}");
+        }
+    }
+    robot.stamp().as_secs()
+}
+
+#[test]
+fn a_follower_gets_to_its_waypoints_on_wheels_that_slip() {
+    let text = "1 0.5 90\n1 2 -135\n-1.5 -1.5 10\n-1.5 -1.4 100 # a small move\n";
+    for seed in 0..4 {
+        let mut robot = Simulator::new(hall(Pose2::new(-1.0, 0.0, 2.5)), almost_blind(), seed).unwrap();
+        let mut follower = WaypointFollower::parse(text).unwrap();
+        let seconds = follow(&mut robot, &mut follower);
+        assert_eq!(follower.state(), Following::Arrived);
+        robot.command(Twist2::ZERO).unwrap();
+        while robot.stamp().as_secs() < seconds + 1.0 {
+            robot.next_event().unwrap();
+        }
+        let gap = follower.waypoints()[3].inverse() * robot.true_pose();
+        assert!(gap.position().norm() < 0.01 && gap.theta.abs() < 1_f64.to_radians(), "{gap:?}");
+        assert_eq!(robot.contacts(), 0);
+    }
+}
+
+#[test]
+fn a_follower_says_that_it_is_blocked() {
+    let mut robot = Simulator::new(hall(Pose2::new(2.0, 0.0, 0.0)), almost_blind(), 1).unwrap();
+    let mut follower = WaypointFollower::parse("2.5 0 0\n3.5 0 0").unwrap();
+    follow(&mut robot, &mut follower);
+    assert_eq!(follower.state(), Following::Blocked { waypoint: 1 });
 }
 
 #[test]

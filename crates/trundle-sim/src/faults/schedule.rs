@@ -1,0 +1,172 @@
+use serde::{Deserialize, Serialize};
+use trundle_core::{Invalid, Pose2, require_finite, require_in};
+
+/// A thing that breaks.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+pub enum FaultKind {
+    /// The lens is covered: images come, black and without depth.
+    CameraBlack,
+    /// Images come with new stamps, but all are the last one before (the first one, when there is none before).
+    CameraFrozen,
+    /// Images do not come.
+    CameraDropped {
+        /// The share of them that does not, 0 to 1.
+        probability: f64,
+    },
+    /// Images come late, with the stamp of when they were taken: out of the order of stamps.
+    CameraLate {
+        /// Seconds, 0 to 60.
+        delay_s: f64,
+    },
+    /// Images come without depth.
+    DepthGone,
+    /// A wheel turns, is counted, and drives the body by only a part of its way.
+    WheelSlips {
+        /// Which.
+        side: WheelSide,
+        /// The part of its way, 0 (it spins) to 2.
+        factor: f64,
+    },
+    /// The gyro says again and again what it said last.
+    GyroStuck,
+    /// At `from_s` the encoders' counters jump, for good; `to_s` does not matter.
+    OdometryJumps {
+        /// Ticks of the left wheel.
+        left_ticks: i32,
+        /// Ticks of the right wheel.
+        right_ticks: i32,
+    },
+    /// At `from_s` the robot is put somewhere else, as soon as nobody stands there; no sensor of the base notices, and `to_s`
+    /// does not matter.
+    Kidnapped {
+        /// World frame, m.
+        x: f64,
+        /// World frame, m.
+        y: f64,
+        /// World frame, deg.
+        heading_deg: f64,
+    },
+    /// The bumper says the same whatever is touched.
+    BumperStuck {
+        /// What it says.
+        pressed: bool,
+    },
+    /// Scans do not come.
+    LaserGone,
+}
+
+/// A wheel of the base.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum WheelSide {
+    /// The left one.
+    Left,
+    /// The right one.
+    Right,
+}
+
+/// A thing that breaks, and when: at `from_s <= t < to_s`.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Fault {
+    /// Seconds since the start, 0 or more.
+    pub from_s: f64,
+    /// Seconds since the start, more than `from_s`. Default infinite: it stays broken.
+    #[serde(default = "forever")]
+    pub to_s: f64,
+    /// What breaks.
+    pub kind: FaultKind,
+}
+
+fn forever() -> f64 {
+    f64::INFINITY
+}
+
+impl Fault {
+    /// Whether it is so `time` seconds after the start.
+    pub fn holds_at(&self, time: f64) -> bool {
+        time >= self.from_s && time < self.to_s
+    }
+}
+
+/// Everything that breaks in a run, in any order; where two faults set the same thing, the later one in the list counts.
+///
+/// In TOML a list of `{ from_s, to_s, kind }`, where `kind` is a name (`"camera-black"`) or a table
+/// (`{ camera-late = { delay_s = 0.3 } }`).
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct FaultSchedule {
+    /// The faults.
+    pub faults: Vec<Fault>,
+}
+
+impl FaultSchedule {
+    /// Passes a valid schedule through.
+    ///
+    /// # Errors
+    /// When a number is outside its range or not finite; names the fault by its place in the list.
+    pub fn validated(self) -> Result<Self, Invalid> {
+        for (i, fault) in self.faults.iter().enumerate() {
+            let name = |field: &str| format!("faults[{i}].{field}");
+            require_in(&name("from_s"), fault.from_s, "s", 0.0, 1e9)?;
+            if fault.to_s.partial_cmp(&fault.from_s) != Some(std::cmp::Ordering::Greater) {
+                let expected = format!("more than {}", fault.from_s);
+                return Err(Invalid::new(name("to_s"), fault.to_s, "s", expected));
+            }
+            match fault.kind {
+                FaultKind::CameraDropped { probability } => {
+                    require_in(&name("probability"), probability, "", 0.0, 1.0)?;
+                }
+                FaultKind::CameraLate { delay_s } => {
+                    require_in(&name("delay_s"), delay_s, "s", 0.0, 60.0)?;
+                }
+                FaultKind::WheelSlips { factor, .. } => {
+                    require_in(&name("factor"), factor, "", 0.0, 2.0)?;
+                }
+                FaultKind::Kidnapped { x, y, heading_deg } => {
+                    require_in(&name("x"), x, "m", -1e6, 1e6)?;
+                    require_in(&name("y"), y, "m", -1e6, 1e6)?;
+                    require_finite(&name("heading_deg"), heading_deg, "deg")?;
+                }
+                _ => {}
+            }
+        }
+        Ok(self)
+    }
+
+    /// Whether the camera ever freezes.
+    pub(crate) fn freezes_camera(&self) -> bool {
+        self.faults.iter().any(|fault| fault.kind == FaultKind::CameraFrozen)
+    }
+
+    /// When and where the robot is put, `world_from_base`, in the order of the list.
+    pub fn kidnappings(&self) -> impl Iterator<Item = (f64, Pose2)> + '_ {
+        self.faults.iter().filter_map(|fault| match fault.kind {
+            FaultKind::Kidnapped { x, y, heading_deg } => {
+                Some((fault.from_s, Pose2::new(x, y, heading_deg.to_radians())))
+            }
+            _ => None,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn refused(from_s: f64, to_s: f64, kind: FaultKind) -> String {
+        let schedule = FaultSchedule { faults: vec![Fault { from_s, to_s, kind }] };
+        schedule.validated().unwrap_err().to_string()
+    }
+
+    #[test]
+    fn bad_faults_are_refused_by_name() {
+        assert_eq!(refused(2.0, 1.0, FaultKind::GyroStuck), "faults[0].to_s is 1 s, expected more than 2");
+        assert!(refused(f64::NAN, 1.0, FaultKind::GyroStuck).contains("faults[0].from_s"));
+        let slips = FaultKind::WheelSlips { side: WheelSide::Left, factor: f64::NAN };
+        assert!(refused(0.0, 1.0, slips).contains("faults[0].factor"));
+        let put = FaultKind::Kidnapped { x: f64::INFINITY, y: 0.0, heading_deg: 0.0 };
+        assert!(refused(0.0, 1.0, put).contains("faults[0].x is inf m"));
+    }
+}

@@ -1,0 +1,79 @@
+use crate::paint::{Finish, Paint};
+use crate::world::{Cylinder, HeightBand, Obstacles, Shape, Solid, World};
+use trundle_core::{Invalid, Vector3};
+
+/// Height of the knee and of the hip, m: those of a person of 1.75 m (Drillis and Contini 1966: 0.285 and 0.53 of it).
+const KNEE: f64 = 0.50;
+const HIP: f64 = 0.92;
+
+/// Radii of shin, thigh, trunk and head, m.
+const SHIN: f64 = 0.055;
+const THIGH: f64 = 0.08;
+const TRUNK: f64 = 0.16;
+const HEAD: f64 = 0.095;
+
+/// Top of trunk and head, m.
+const SHOULDER: f64 = 1.48;
+const CROWN: f64 = 1.75;
+
+/// What people wear: trousers and jumper, sRGB.
+const CLOTHES: [([u8; 3], [u8; 3]); 4] = [
+    ([52, 62, 92], [168, 64, 56]),
+    ([70, 66, 60], [72, 120, 156]),
+    ([44, 46, 50], [196, 170, 92]),
+    ([98, 88, 72], [92, 128, 84]),
+];
+
+const SKIN: [u8; 3] = [206, 164, 134];
+
+/// The parts of a person, upright cylinders about their own origin; shins and thighs are one part for both legs.
+#[derive(Debug)]
+pub(super) struct Body {
+    pub(super) shin: Part,
+    pub(super) thigh: Part,
+    pub(super) trunk: Part,
+}
+
+/// A part that moves as one.
+#[derive(Debug)]
+pub(super) struct Part {
+    pub(super) world: World,
+    /// What of it the robot can run into.
+    pub(super) obstacles: Obstacles,
+}
+
+impl Body {
+    /// The body of person number `index` as a robot of this height band meets it.
+    ///
+    /// # Errors
+    /// Never: the sizes are constants.
+    pub(super) fn new(index: usize, band: HeightBand) -> Result<Self, Invalid> {
+        let (trousers, jumper) = CLOTHES[index % CLOTHES.len()];
+        let cloth = |color| Paint::Fabric { color };
+        let seed = index as u64 + 1;
+        let part = |cylinders: Vec<Solid>| {
+            let world = World::new(cylinders, seed)?;
+            Ok::<_, Invalid>(Part { obstacles: world.obstacles(band), world })
+        };
+        Ok(Self {
+            shin: part(vec![upright(0.0, KNEE, SHIN, cloth(trousers))])?,
+            thigh: part(vec![upright(KNEE, HIP, THIGH, cloth(trousers))])?,
+            trunk: part(vec![
+                upright(HIP, SHOULDER, TRUNK, cloth(jumper)),
+                upright(SHOULDER, CROWN, HEAD, Paint::Flat { color: SKIN }),
+            ])?,
+        })
+    }
+
+    /// Draws how it looks.
+    pub(super) fn paint(&self) {
+        for part in [&self.shin, &self.thigh, &self.trunk] {
+            part.world.paint();
+        }
+    }
+}
+
+fn upright(bottom: f64, top: f64, radius: f64, paint: Paint) -> Solid {
+    let cylinder = Cylinder { base: Vector3::new(0.0, 0.0, bottom), radius, height: top - bottom };
+    Solid { shape: Shape::Cylinder(cylinder), finish: Finish::all(paint) }
+}

@@ -1,0 +1,129 @@
+use super::body::{Body, Part};
+use super::person::Person;
+use super::walker::Walker;
+use crate::world::{HeightBand, Mover, Obstacles};
+use trundle_core::{Footprint, Invalid, Pose2};
+
+/// A person waits while the robot reaches into a disc this far ahead, of this radius, m.
+const AHEAD: f64 = 0.5;
+const ELBOW_ROOM: f64 = 0.3;
+
+/// Nobody sets a foot nearer to the robot than this, m.
+const KEEP_OFF: f64 = 0.03;
+
+/// Farther from a person's middle than this, m, nothing of the person can be.
+const SPREAD: f64 = 0.85;
+
+/// How much room a person needs to walk, radius, m.
+const SHOULDERS: f64 = 0.2;
+
+/// Everybody who walks about.
+#[derive(Debug)]
+pub(crate) struct Crowd {
+    people: Vec<Person>,
+    walkers: Vec<Walker>,
+    bodies: Vec<Body>,
+}
+
+impl Crowd {
+    /// People at the start of their ways; `band` is what a robot of this height meets of them.
+    ///
+    /// # Errors
+    /// When a number of a person is outside its range; names the person.
+    pub(crate) fn new(people: &[Person], band: HeightBand) -> Result<Self, Invalid> {
+        let named =
+            |i: usize| move |error: Invalid| Invalid { field: format!("{} {i}", error.field), ..error };
+        let check = |(i, person): (usize, &Person)| person.clone().validated().map_err(named(i));
+        let people = people.iter().enumerate().map(check).collect::<Result<Vec<_>, _>>()?;
+        let walkers = people.iter().map(Walker::new).collect();
+        let bodies = (0..people.len()).map(|i| Body::new(i, band)).collect::<Result<_, _>>()?;
+        Ok(Self { people, walkers, bodies })
+    }
+
+    /// Refuses ways that lead through what stands, looked at every 5 cm.
+    ///
+    /// # Errors
+    /// Names the person and the leg.
+    pub(crate) fn check_ways(&self, fixed: &Obstacles) -> Result<(), Invalid> {
+        let shoulders = Footprint::Disc { radius: SHOULDERS };
+        for (i, person) in self.people.iter().enumerate() {
+            for (from, to) in person.legs() {
+                let (a, b) = (person.waypoints[from], person.waypoints[to]);
+                let length = (b[0] - a[0]).hypot(b[1] - a[1]);
+                let pieces = (length / 0.05).ceil().max(1.0);
+                for k in 0..=pieces as usize {
+                    let t = k as f64 / pieces;
+                    let place = Pose2::new(a[0] + (b[0] - a[0]) * t, a[1] + (b[1] - a[1]) * t, 0.0);
+                    if fixed.clearance(&shoulders, place) <= 0.0 {
+                        let value = format!("through something at ({:.2}, {:.2})", place.x, place.y);
+                        let field = format!("way of person {i} from way-point {from} to {to}");
+                        return Err(Invalid::new(field, value, "m", "0.2 m of room on either side"));
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Goes on by `elapsed` s while the robot stands at `robot`.
+    ///
+    /// Nobody moves into the robot: a step that would bring a leg too near is not made.
+    pub(crate) fn step(&mut self, elapsed: f64, footprint: &Footprint, robot: Pose2) {
+        let reach = footprint.circumscribed_radius();
+        for ((person, walker), body) in self.people.iter().zip(&mut self.walkers).zip(&self.bodies) {
+            if walker.pose.distance(&robot) > reach + SPREAD + AHEAD {
+                *walker = walker.after(person, elapsed, true);
+                continue;
+            }
+            let to_robot = (walker.before(AHEAD) - robot.position()).norm();
+            let next = walker.after(person, elapsed, to_robot > reach + ELBOW_ROOM);
+            let room = clearance(body, &next, footprint, robot);
+            if room > KEEP_OFF || room >= clearance(body, walker, footprint, robot) {
+                *walker = next;
+            }
+        }
+    }
+
+    /// Metres between a footprint standing at `pose` and the nearest person, infinite when all are farther than
+    /// [`SPREAD`] from it.
+    pub(crate) fn clearance(&self, footprint: &Footprint, pose: Pose2) -> f64 {
+        let reach = footprint.circumscribed_radius() + SPREAD;
+        let near = self.walkers.iter().zip(&self.bodies).filter(|(w, _)| w.pose.distance(&pose) < reach);
+        near.map(|(walker, body)| clearance(body, walker, footprint, pose)).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Where everybody is, `world_from_body`.
+    pub(crate) fn poses(&self) -> Vec<Pose2> {
+        self.walkers.iter().map(|walker| walker.pose).collect()
+    }
+
+    /// Everybody's parts where they are now.
+    pub(crate) fn movers(&self) -> Vec<Mover<'_>> {
+        let parts = self.walkers.iter().zip(&self.bodies).flat_map(|(walker, body)| parts(body, walker));
+        parts.map(|(part, pose)| Mover { body: &part.world, pose }).collect()
+    }
+
+    /// Draws how everybody looks.
+    pub(crate) fn paint(&self) {
+        self.bodies.iter().for_each(Body::paint);
+    }
+}
+
+/// The parts of a person and where they stand, `world_from_part`.
+fn parts<'b>(body: &'b Body, walker: &Walker) -> [(&'b Part, Pose2); 5] {
+    let [left_shin, right_shin] = walker.gait.shins();
+    let [left_thigh, right_thigh] = walker.gait.thighs();
+    [
+        (&body.shin, walker.pose * left_shin),
+        (&body.shin, walker.pose * right_shin),
+        (&body.thigh, walker.pose * left_thigh),
+        (&body.thigh, walker.pose * right_thigh),
+        (&body.trunk, walker.pose),
+    ]
+}
+
+/// Metres between a person and the robot.
+fn clearance(body: &Body, walker: &Walker, footprint: &Footprint, robot: Pose2) -> f64 {
+    let gap = |(part, pose): (&Part, Pose2)| part.obstacles.clearance_at(pose, footprint, robot);
+    parts(body, walker).into_iter().map(gap).fold(f64::INFINITY, f64::min)
+}

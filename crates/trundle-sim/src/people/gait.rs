@@ -1,0 +1,95 @@
+use trundle_core::Pose2;
+
+/// Step length over cadence, m s: the walk ratio, 0.0064 m/(step/min), is the same at all speeds \[Sekiya98\].
+const WALK_RATIO: f64 = 0.384;
+
+/// Half the distance between the feet, m.
+const HALF_TRACK: f64 = 0.1;
+
+/// How far a thigh follows its shin.
+const THIGH_SHARE: f64 = 0.45;
+
+/// Seconds in which a walk begins and ends.
+const EASE: f64 = 0.35;
+
+/// How legs swing: the foot on the floor stays where it is, the other overtakes it.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Gait {
+    /// Length of a step, m.
+    step: f64,
+    /// Place in the cycle of two steps, 0 to 1.
+    phase: f64,
+    /// 0 standing, 1 walking.
+    swing: f64,
+}
+
+impl Gait {
+    /// Of somebody who walks at `speed` m/s.
+    pub(super) fn new(speed: f64) -> Self {
+        Self { step: (WALK_RATIO * speed).sqrt(), phase: 0.0, swing: 0.0 }
+    }
+
+    /// How much of the full speed is walked now, 0 to 1.
+    pub(super) fn swing(&self) -> f64 {
+        self.swing
+    }
+
+    /// A moment later: `elapsed` s in which `way` m were walked, wanting to walk on or not.
+    pub(super) fn after(self, elapsed: f64, way: f64, is_walking: bool) -> Self {
+        let change = if is_walking { elapsed / EASE } else { -elapsed / EASE };
+        Self {
+            phase: (self.phase + way / (2.0 * self.step)).fract(),
+            swing: (self.swing + change).clamp(0.0, 1.0),
+            ..self
+        }
+    }
+
+    /// Where the shins stand, `body_from_shin`, left and right.
+    pub(super) fn shins(&self) -> [Pose2; 2] {
+        [(HALF_TRACK, 0.0), (-HALF_TRACK, 0.5)]
+            .map(|(side, shift)| Pose2::new(self.swing * self.reach(shift), side, 0.0))
+    }
+
+    /// Where the thighs stand, `body_from_thigh`, left and right.
+    pub(super) fn thighs(&self) -> [Pose2; 2] {
+        self.shins().map(|shin| Pose2::new(THIGH_SHARE * shin.x, shin.y, 0.0))
+    }
+
+    /// How far before the body a foot is, m: backward as fast as the body goes forward while it stands; forward while it
+    /// swings, in the cubic that leaves the floor and comes down on it without a jolt.
+    fn reach(&self, shift: f64) -> f64 {
+        let phase = 2.0 * (self.phase + shift).fract();
+        let u = phase.fract();
+        let part = if phase < 1.0 { 0.5 - u } else { -0.5 - u + u * u * (6.0 - 4.0 * u) };
+        part * self.step
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_standing_foot_stays_and_the_other_overtakes_it() {
+        let mut gait = Gait { swing: 1.0, ..Gait::new(1.2) };
+        assert!((gait.step - 0.679).abs() < 1e-3);
+        let (mut way, mut longest) = (0.0, 0.0_f64);
+        for _ in 0..4000 {
+            let before = gait.shins().map(|shin| way + shin.x);
+            gait = gait.after(1e-3, 1.2e-3, true);
+            way += 1.2e-3;
+            let after = gait.shins().map(|shin| way + shin.x);
+            let moved = [0, 1].map(|k| after[k] - before[k]);
+            assert!(moved[0].abs().min(moved[1].abs()) < 3e-5, "{moved:?} at {}", gait.phase);
+            assert!(moved.iter().all(|m| *m > -1e-9 && *m < 3.7e-3), "{moved:?}");
+            longest = longest.max((after[0] - after[1]).abs());
+        }
+        assert!((longest - gait.step).abs() < 5e-3, "{longest}");
+    }
+
+    #[test]
+    fn who_stands_has_feet_side_by_side() {
+        let [left, right] = Gait::new(1.0).shins();
+        assert_eq!((left.x, right.x, left.y, right.y), (0.0, 0.0, 0.1, -0.1));
+    }
+}

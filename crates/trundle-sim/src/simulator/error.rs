@@ -1,0 +1,51 @@
+use trundle_core::{Invalid, Stamp};
+
+/// What can go wrong with a simulated robot.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum SimError {
+    /// A number of the configuration or the scene.
+    #[error(transparent)]
+    Invalid(#[from] Invalid),
+    /// The robot would stand in something.
+    #[error(
+        "start of scene '{scene}' at ({x:.3}, {y:.3}) m is {penetration:.3} m inside an obstacle, expected a free place"
+    )]
+    StartInObstacle {
+        /// The scene's name.
+        scene: String,
+        /// Metres, world frame.
+        x: f64,
+        /// Metres, world frame.
+        y: f64,
+        /// Metres.
+        penetration: f64,
+    },
+    /// A fault would put the robot into something.
+    #[error(
+        "kidnapping at {time} s to ({x:.3}, {y:.3}) m of scene '{scene}' is {penetration:.3} m inside an obstacle, expected a free place"
+    )]
+    KidnappedIntoObstacle {
+        /// The scene's name.
+        scene: String,
+        /// Seconds since the start.
+        time: f64,
+        /// Metres, world frame.
+        x: f64,
+        /// Metres, world frame.
+        y: f64,
+        /// Metres.
+        penetration: f64,
+    },
+    /// A command that is not a number; the robot was told to stop instead.
+    #[error(
+        "command at {stamp} s is v = {v} m/s, omega = {omega} rad/s, expected finite numbers; the robot stops"
+    )]
+    CommandNotFinite {
+        /// When it came.
+        stamp: Stamp,
+        /// Forward speed asked for, m/s.
+        v: f64,
+        /// Turn rate asked for, rad/s.
+        omega: f64,
+    },
+}

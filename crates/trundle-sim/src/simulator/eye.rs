@@ -1,0 +1,90 @@
+use super::track::Track;
+use crate::camera::{Renderer, RgbdSensor, View};
+use crate::config::SimConfig;
+use crate::faults::CameraFault;
+use crate::world::Stage;
+use trundle_core::{ColorImage, DepthImage, Invalid, PinholeCamera, Pose3, RgbdImage, Stamp};
+
+/// The camera on the robot, with what may be wrong with it.
+#[derive(Debug)]
+pub(super) struct Eye {
+    renderer: Renderer,
+    sensor: RgbdSensor,
+    view: View,
+    base_from_camera: Pose3,
+    /// The last image, where a camera that freezes needs it.
+    last: Option<RgbdImage>,
+    may_freeze: bool,
+}
+
+impl Eye {
+    /// The camera of a valid configuration.
+    ///
+    /// # Errors
+    /// When the camera has lens distortion.
+    pub(super) fn new(config: &SimConfig, seed: u64) -> Result<Self, Invalid> {
+        let renderer = Renderer::new(config.camera)?;
+        Ok(Self {
+            sensor: RgbdSensor::new(config.depth_noise.clone(), config.color_noise.clone(), seed)?,
+            view: renderer.blank(),
+            renderer,
+            base_from_camera: config.base_from_camera,
+            last: None,
+            may_freeze: config.faults.freezes_camera(),
+        })
+    }
+
+    pub(super) fn camera(&self) -> &PinholeCamera {
+        self.renderer.camera()
+    }
+
+    /// Image number `frame`, taken at `stamp`.
+    ///
+    /// # Errors
+    /// Never for a valid configuration; the type is that of an image's constructor.
+    pub(super) fn take(
+        &mut self,
+        stage: &Stage<'_>,
+        track: &Track,
+        stamp: Stamp,
+        frame: u64,
+        fault: CameraFault,
+    ) -> Result<RgbdImage, Invalid> {
+        if fault.is_black {
+            return self.black(stamp);
+        }
+        let image = match self.last.take().filter(|_| fault.is_frozen) {
+            Some(frozen) => RgbdImage::new(stamp, frozen.color().clone(), frozen.depth().clone())?,
+            None => self.look(stage, track, stamp, frame)?,
+        };
+        self.last = self.may_freeze.then(|| image.clone());
+        if fault.has_no_depth { without_depth(&image) } else { Ok(image) }
+    }
+
+    fn look(
+        &mut self,
+        stage: &Stage<'_>,
+        track: &Track,
+        stamp: Stamp,
+        frame: u64,
+    ) -> Result<RgbdImage, Invalid> {
+        let world_from_camera = Pose3::from_pose2(track.back(0.0)) * self.base_from_camera;
+        self.renderer.render(stage, &world_from_camera, &mut self.view);
+        self.sensor.expose(&self.view, stamp, frame)
+    }
+
+    fn black(&self, stamp: Stamp) -> Result<RgbdImage, Invalid> {
+        let (width, height) = (self.camera().width(), self.camera().height());
+        let color = ColorImage::new(width, height, vec![[0; 3]; width * height])?;
+        RgbdImage::new(stamp, color, no_depth(width, height)?)
+    }
+}
+
+fn without_depth(image: &RgbdImage) -> Result<RgbdImage, Invalid> {
+    let color = image.color();
+    RgbdImage::new(image.stamp(), color.clone(), no_depth(color.width(), color.height())?)
+}
+
+fn no_depth(width: usize, height: usize) -> Result<DepthImage, Invalid> {
+    DepthImage::new(width, height, vec![0.0; width * height])
+}

@@ -1,0 +1,40 @@
+use crate::kobuki::STEPS_PER_SECOND;
+use std::collections::VecDeque;
+use trundle_core::SensorEvent;
+
+/// Events that are under way longer than they should be.
+#[derive(Debug, Default)]
+pub(super) struct Late {
+    /// The step at which each arrives, in the order of sending.
+    waiting: Vec<(u64, SensorEvent)>,
+}
+
+impl Late {
+    /// Puts an event into the queue, or lets it wait for `delay` s.
+    pub(super) fn send(
+        &mut self,
+        event: SensorEvent,
+        now: u64,
+        delay: f64,
+        queue: &mut VecDeque<SensorEvent>,
+    ) {
+        let steps = (delay * STEPS_PER_SECOND).round() as u64;
+        if steps == 0 {
+            queue.push_back(event);
+        } else {
+            self.waiting.push((now + steps, event));
+        }
+    }
+
+    /// Puts what arrives now into the queue, after what is there.
+    pub(super) fn arrive(&mut self, now: u64, queue: &mut VecDeque<SensorEvent>) {
+        if self.waiting.is_empty() {
+            return;
+        }
+        let (arrived, waiting) =
+            std::mem::take(&mut self.waiting).into_iter().partition(|(at, _)| *at <= now);
+        self.waiting = waiting;
+        let arrived: Vec<(u64, SensorEvent)> = arrived;
+        queue.extend(arrived.into_iter().map(|(_, event)| event));
+    }
+}

@@ -1,0 +1,58 @@
+use crate::kobuki::STEPS_PER_SECOND;
+use std::collections::VecDeque;
+use trundle_core::Pose2;
+
+/// Where the base was in the last moments: a pose a step.
+#[derive(Debug)]
+pub(super) struct Track {
+    /// The newest first.
+    poses: VecDeque<Pose2>,
+    most: usize,
+}
+
+impl Track {
+    /// Reaches `seconds` back from `start` on, before which the base stood there.
+    pub(super) fn new(start: Pose2, seconds: f64) -> Self {
+        let most = (seconds * STEPS_PER_SECOND).ceil() as usize + 2;
+        Self { poses: VecDeque::from([start]), most }
+    }
+
+    /// A step later it is at `pose`.
+    pub(super) fn add(&mut self, pose: Pose2) {
+        self.poses.push_front(pose);
+        self.poses.truncate(self.most);
+    }
+
+    /// Forgets what was before: the base was put to `pose`.
+    pub(super) fn restart(&mut self, pose: Pose2) {
+        self.poses.clear();
+        self.poses.push_front(pose);
+    }
+
+    /// Where the base was `age` s ago, between steps on a straight line.
+    pub(super) fn back(&self, age: f64) -> Pose2 {
+        let steps = (age * STEPS_PER_SECOND).max(0.0);
+        let last = self.poses.len() - 1;
+        let newer = (steps.floor() as usize).min(last);
+        let older = (newer + 1).min(last);
+        self.poses[newer].interpolate(&self.poses[older], steps.fract())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn it_remembers_as_long_as_it_shall_and_interpolates() {
+        let mut track = Track::new(Pose2::IDENTITY, 0.01);
+        for i in 1..=100 {
+            track.add(Pose2::new(f64::from(i), 0.0, 0.0));
+        }
+        assert_eq!(track.back(0.0).x, 100.0);
+        assert!((track.back(0.0025).x - 97.5).abs() < 1e-9);
+        assert_eq!((track.back(0.01).x, track.back(5.0).x), (90.0, 89.0));
+        track.restart(Pose2::new(7.0, 0.0, 0.0));
+        assert_eq!(track.back(0.01).x, 7.0);
+    }
+}
