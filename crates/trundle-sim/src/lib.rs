@@ -29,7 +29,7 @@ pub mod scenes;
 mod simulator;
 mod world;
 
-pub use camera::{ColorNoise, DepthNoise, Renderer, RgbdSensor, View};
+pub use camera::{ColorNoise, DepthNoise, Exposure, Renderer, RgbdSensor, View, blend};
 pub use config::{SimConfig, camera_mount};
 pub use drive::{CommandScript, FollowerConfig, Following, TimedCommand, WaypointFollower};
 pub use faults::{Fault, FaultKind, FaultSchedule, WheelSide};
@@ -40,6 +40,6 @@ pub use people::Person;
 pub use scenes::Scene;
 pub use simulator::{SimError, Simulator};
 pub use world::{
-    Cuboid, Cylinder, HeightBand, Hit, Lamp, Lights, Material, Mesh, Mover, Obstacles, Shape, Solid, Stage, Triangle,
-    World,
+    Cuboid, Cylinder, HeightBand, Hit, Lamp, Lights, Material, Mesh, Mover, Obstacles, Shape, Solid, Stage,
+    Triangle, World,
 };

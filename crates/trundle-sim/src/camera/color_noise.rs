@@ -1,60 +1,70 @@
-use crate::chance::NormalTable;
+use super::Exposure;
 use serde::{Deserialize, Serialize};
 use trundle_core::{Invalid, require_in};
 
-/// How a camera's colour differs from the ideal one.
+/// How a camera's colour differs from the ideal one: exposure, then photon noise and read noise \[Emva16\].
+///
+/// Light collects mu electrons in a pixel, sigma^2 = mu + read noise^2 of them by chance; a well that is full clips. Gain
+/// above 1 amplifies electrons and noise alike, below 1 the exposure is shorter. What is read is coded as sRGB, so noise in
+/// grey levels is largest in the dark. Channels and pixels are independent.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ColorNoise {
-    /// Standard deviation of each channel, grey levels, 0 to 64. Default 1.8: what a small sensor has indoors.
-    pub sigma: f64,
+    /// Electrons at white, 0 to 1e6. Default 5000, what a small pixel holds; with the next it makes 1.9 grey levels of noise
+    /// at mid grey. 0 turns noise off.
+    pub full_well: f64,
+    /// Standard deviation of reading, electrons, 0 to 1000. Default 8.
+    pub read_noise: f64,
+    /// Exposure.
+    pub exposure: Exposure,
 }
 
 impl Default for ColorNoise {
     fn default() -> Self {
-        Self { sigma: 1.8 }
+        Self { full_well: 5000.0, read_noise: 8.0, exposure: Exposure::default() }
     }
 }
 
 impl ColorNoise {
-    /// No noise.
+    /// No noise, and the exposure that the scene's colours are meant for.
     pub fn none() -> Self {
-        Self { sigma: 0.0 }
+        Self { full_well: 0.0, read_noise: 0.0, exposure: Exposure::fixed(1.0) }
     }
 
     /// Passes valid noise through.
     ///
     /// # Errors
-    /// When the spread is outside its range.
+    /// When a number is outside its range.
     pub fn validated(self) -> Result<Self, Invalid> {
-        require_in("color_noise.sigma", self.sigma, "grey levels", 0.0, 64.0)?;
-        Ok(self)
+        require_in("color_noise.full_well", self.full_well, "electrons", 0.0, 1e6)?;
+        require_in("color_noise.read_noise", self.read_noise, "electrons", 0.0, 1000.0)?;
+        Ok(Self { exposure: self.exposure.validated()?, ..self })
     }
 
-    /// What the camera says for a colour; `bits` is the pixel's hash, of which depth takes the first deviate.
-    pub(super) fn measure(&self, color: [u8; 3], bits: u64, normals: &NormalTable) -> [u8; 3] {
-        let sigma = self.sigma as f32;
-        let channel = |i: usize| (f32::from(color[i]) + sigma * normals.pick(bits, i as u32 + 1) + 0.5) as u8;
-        [channel(0), channel(1), channel(2)]
+    /// The standard deviation of a channel in linear light (white = 1) when `light` (linear, white = 1) falls on it.
+    pub fn sigma(&self, light: f64, gain: f64) -> f64 {
+        if self.full_well == 0.0 {
+            return 0.0;
+        }
+        let (exposure, amplification) = (gain.min(1.0), gain.max(1.0));
+        let electrons = (light * exposure).min(1.0) * self.full_well;
+        amplification * (electrons + self.read_noise * self.read_noise).sqrt() / self.full_well
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::chance::hash;
 
     #[test]
-    fn spread_is_as_configured_and_channels_are_independent() {
-        let (noise, normals) = (ColorNoise { sigma: 2.0 }, NormalTable::shared());
-        let n = 20_000;
-        let deviations: Vec<[f64; 3]> = (0..n)
-            .map(|i| noise.measure([100; 3], hash(3, i), normals).map(|c| f64::from(c) - 100.0))
-            .collect();
-        let mean_of = |f: &dyn Fn(&[f64; 3]) -> f64| deviations.iter().map(f).sum::<f64>() / n as f64;
-        assert!(mean_of(&|d| d[0]).abs() < 0.05);
-        assert!((mean_of(&|d| d[1] * d[1]).sqrt() - 2.02).abs() < 0.05);
-        assert!(mean_of(&|d| d[0] * d[2]).abs() < 0.1);
-        assert_eq!(ColorNoise::none().measure([0, 128, 255], 12345, normals), [0, 128, 255]);
+    fn noise_grows_with_light_and_gain_as_emva_1288_says() {
+        let noise = ColorNoise::default();
+        assert!((noise.sigma(0.0, 1.0) - 8.0 / 5000.0).abs() < 1e-12);
+        assert!((noise.sigma(0.5, 1.0) - (2500.0_f64 + 64.0).sqrt() / 5000.0).abs() < 1e-12);
+        assert_eq!(noise.sigma(3.0, 1.0), noise.sigma(1.0, 1.0), "a full well");
+        assert!((noise.sigma(0.1, 4.0) / noise.sigma(0.1, 1.0) - 4.0).abs() < 1e-12);
+        assert_eq!(ColorNoise::none().sigma(0.5, 8.0), 0.0);
+        let error = ColorNoise { full_well: f64::NAN, ..noise }.validated().unwrap_err();
+        assert_eq!(error.field, "color_noise.full_well");
     }
 }

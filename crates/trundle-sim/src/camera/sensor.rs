@@ -1,5 +1,7 @@
-use super::depth_noise::{DepthModel, DepthTruth};
-use super::{ColorNoise, DepthNoise, View};
+use super::depth_model::{DepthModel, DepthTruth};
+use super::exposure::Meter;
+use super::tone::Tone;
+use super::{ColorNoise, DepthNoise, View, multi_path, shadow};
 use crate::chance::{GOLDEN, NormalTable, hash, mix};
 use rayon::prelude::*;
 use trundle_core::{ColorImage, DepthImage, Invalid, RgbdImage, Stamp};
@@ -10,7 +12,18 @@ use trundle_core::{ColorImage, DepthImage, Invalid, RgbdImage, Stamp};
 pub struct RgbdSensor {
     depth: DepthModel,
     color: ColorNoise,
+    meter: Meter,
+    tone: Tone,
     seed: u64,
+}
+
+/// What a thread needs for a row.
+#[derive(Debug, Default)]
+struct Scratch {
+    /// Depths beyond edges.
+    beyond: Vec<f32>,
+    /// Depths with multi-path.
+    lengthened: Vec<f32>,
 }
 
 impl RgbdSensor {
@@ -19,7 +32,25 @@ impl RgbdSensor {
     /// # Errors
     /// When a parameter is outside its range.
     pub fn new(depth: DepthNoise, color: ColorNoise, seed: u64) -> Result<Self, Invalid> {
-        Ok(Self { depth: DepthModel::new(&depth.validated()?), color: color.validated()?, seed })
+        let color = color.validated()?;
+        let meter = Meter::new(color.exposure.clone());
+        let tone = Tone::new(&color, meter.gain());
+        Ok(Self { depth: DepthModel::new(&depth.validated()?), color, meter, tone, seed })
+    }
+
+    /// Lets auto exposure look at what is before the camera at `stamp`; the images after it have its gain. With a fixed
+    /// gain it does nothing.
+    pub fn adapt(&mut self, view: &View, stamp: Stamp) {
+        let before = self.meter.gain();
+        self.meter.look(view, stamp);
+        if self.meter.gain() != before {
+            self.tone = Tone::new(&self.color, self.meter.gain());
+        }
+    }
+
+    /// The gain on linear light.
+    pub fn gain(&self) -> f64 {
+        self.meter.gain()
     }
 
     /// What the camera delivers at `stamp` as its image number `frame` when `view` is before it.
@@ -32,13 +63,11 @@ impl RgbdSensor {
         let mut depth = vec![0.0; width * height];
         let mut color = vec![[0; 3]; width * height];
         let rows = depth.par_chunks_mut(width).zip(color.par_chunks_mut(width)).enumerate();
-        rows.for_each_init(
-            || vec![0.0; width],
-            |beyond, (y, (depth, color))| {
-                find_edges(view, y, self.depth.edge_step(), beyond);
-                self.expose_row(view, y, key, beyond, depth, color);
-            },
-        );
+        rows.for_each_init(Scratch::default, |scratch, (y, (depth, color))| {
+            scratch.beyond.resize(width, 0.0);
+            find_edges(view, y, self.depth.edge_step(), &mut scratch.beyond);
+            self.expose_row(view, y, key, scratch, depth, color);
+        });
         let color = ColorImage::new(width, height, color)?;
         RgbdImage::new(stamp, color, DepthImage::new(width, height, depth)?)
     }
@@ -48,20 +77,29 @@ impl RgbdSensor {
         view: &View,
         y: usize,
         key: u64,
-        beyond: &[f32],
+        scratch: &mut Scratch,
         depth: &mut [f32],
         color: &mut [[u8; 3]],
     ) {
         let normals = NormalTable::shared();
         let row = y * view.width..(y + 1) * view.width;
-        let seen =
-            view.depth[row.clone()].iter().zip(&view.color[row.clone()]).zip(&view.cosine[row.clone()]);
+        let mut truth = &view.depth[row.clone()];
+        if self.depth.multi_path() > 0.0 {
+            multi_path::lengthen(view, y, self.depth.multi_path(), &mut scratch.lengthened);
+            truth = &scratch.lengthened;
+        }
+        let seen = truth.iter().zip(&view.color[row.clone()]).zip(&view.cosine[row.clone()]);
         let said = depth.iter_mut().zip(color);
-        for (((((&z, &c), &cosine), &beyond), (depth, color)), pixel) in seen.zip(beyond).zip(said).zip(row) {
+        for (((((&z, &c), &cosine), &beyond), (depth, color)), pixel) in
+            seen.zip(&scratch.beyond).zip(said).zip(row.clone())
+        {
             let bits = mix(key.wrapping_add((pixel as u64).wrapping_mul(GOLDEN)));
             let truth = DepthTruth { depth: z, beyond, cosine, luminance: luminance(c) };
             *depth = self.depth.measure(truth, bits, normals);
-            *color = self.color.measure(c, bits, normals);
+            *color = self.tone.measure(c, bits, normals);
+        }
+        if self.depth.shadow_px_m() != 0.0 {
+            shadow::cast_shadow(&view.depth[row], self.depth.shadow_px_m(), depth);
         }
     }
 }

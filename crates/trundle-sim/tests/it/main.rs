@@ -6,9 +6,10 @@ mod depth;
 mod drive;
 mod events;
 mod faults;
-mod laser;
-mod people;
 mod import;
+mod laser;
+mod noise;
+mod people;
 mod scenes;
 mod textures;
 

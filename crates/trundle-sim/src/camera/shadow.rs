@@ -1,0 +1,59 @@
+/// Takes away the depths of a row that a projector to the right of the camera does not light; `px_m` is focal length times
+/// their distance, px m (negative: to the left).
+///
+/// Seen from the projector, column u at depth z lies at u - px_m / z; a surface is lit when nothing to its right (in the
+/// camera's image) lies further left there.
+pub(super) fn cast_shadow(truth: &[f32], px_m: f32, said: &mut [f32]) {
+    let mut nearest = f32::INFINITY;
+    let mut look = |column: usize, said: &mut f32| {
+        if truth[column] <= 0.0 {
+            return;
+        }
+        let place = if px_m > 0.0 { column as f32 } else { -(column as f32) } - px_m.abs() / truth[column];
+        // Half a pixel of tolerance: steep surfaces are lit.
+        if place > nearest + 0.5 {
+            *said = 0.0;
+        }
+        nearest = nearest.min(place);
+    };
+    let columns = said.iter_mut().enumerate();
+    if px_m > 0.0 {
+        columns.rev().for_each(|(column, said)| look(column, said));
+    } else {
+        columns.for_each(|(column, said)| look(column, said));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A post at 1 m over columns 50 to 59 before a wall at 4 m.
+    fn post() -> Vec<f32> {
+        (0..100).map(|x| if (50..60).contains(&x) { 1.0 } else { 4.0 }).collect()
+    }
+
+    #[test]
+    fn the_shadow_is_as_wide_as_the_difference_of_disparities() {
+        let truth = post();
+        let mut said = truth.clone();
+        cast_shadow(&truth, 40.0, &mut said);
+        // 40 (1/1 - 1/4) = 30 px to the left of the post.
+        let dark: Vec<usize> = (0..100).filter(|&x| said[x] == 0.0).collect();
+        assert_eq!((dark[0], dark[dark.len() - 1], dark.len()), (21, 49, 29));
+        let mut said = truth.clone();
+        cast_shadow(&truth, -40.0, &mut said);
+        let dark: Vec<usize> = (0..100).filter(|&x| said[x] == 0.0).collect();
+        assert_eq!((dark[0], dark.len()), (60, 29));
+    }
+
+    #[test]
+    fn planes_are_lit() {
+        let truth: Vec<f32> = (0..100).map(|x| 1.0 / (0.2 + 0.004 * x as f32)).collect();
+        for px_m in [40.0, -40.0] {
+            let mut said = truth.clone();
+            cast_shadow(&truth, px_m, &mut said);
+            assert_eq!(said, truth);
+        }
+    }
+}

@@ -1,0 +1,100 @@
+use super::ColorNoise;
+use crate::chance::NormalTable;
+use std::sync::LazyLock;
+
+/// From the level of a channel (sRGB) to the mean and the standard deviation of what the camera says: a table an image.
+#[derive(Debug, Clone)]
+pub(super) struct Tone(Box<[(f32, f32); 256]>);
+
+impl Tone {
+    pub(super) fn new(noise: &ColorNoise, gain: f64) -> Self {
+        Self(Box::new(std::array::from_fn(|level| {
+            let light = f64::from(linear_from_srgb(level as u8));
+            let sigma = noise.sigma(light, gain);
+            let said = light * gain;
+            // The curve of sRGB carries noise over: half of what one sigma up and down make.
+            let spread = (srgb(said + sigma) - srgb(said - sigma)) / 2.0;
+            (srgb(said) as f32, spread as f32)
+        })))
+    }
+
+    /// What the camera says for a colour; `bits` is the pixel's hash, of which depth takes the first deviate.
+    #[inline]
+    pub(super) fn measure(&self, color: [u8; 3], bits: u64, normals: &NormalTable) -> [u8; 3] {
+        let channel = |i: usize| {
+            let (mean, sigma) = self.0[usize::from(color[i])];
+            (mean + sigma * normals.pick(bits, i as u32 + 1) + 0.5) as u8
+        };
+        [channel(0), channel(1), channel(2)]
+    }
+}
+
+/// A level of sRGB (IEC 61966-2-1) as linear light, white = 1.
+pub(super) fn linear_from_srgb(level: u8) -> f32 {
+    static TABLE: LazyLock<[f32; 256]> = LazyLock::new(|| {
+        std::array::from_fn(|level| {
+            let x = level as f64 / 255.0;
+            let light = if x <= 0.040_45 { x / 12.92 } else { ((x + 0.055) / 1.055).powf(2.4) };
+            light as f32
+        })
+    });
+    TABLE[usize::from(level)]
+}
+
+/// Linear light as a level of sRGB, 0 to 255, clipped, not rounded.
+pub(super) fn srgb(light: f64) -> f64 {
+    let x = light.clamp(0.0, 1.0);
+    255.0 * if x <= 0.003_130_8 { 12.92 * x } else { 1.055 * x.powf(1.0 / 2.4) - 0.055 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::camera::Exposure;
+    use crate::chance::hash;
+
+    fn said(noise: &ColorNoise, gain: f64, color: [u8; 3]) -> Vec<[f64; 3]> {
+        let (tone, normals) = (Tone::new(noise, gain), NormalTable::shared());
+        (0..20_000).map(|i| tone.measure(color, hash(3, i), normals).map(f64::from)).collect()
+    }
+
+    fn mean(values: impl Iterator<Item = f64>) -> f64 {
+        values.sum::<f64>() / 20_000.0
+    }
+
+    #[test]
+    fn without_noise_every_level_is_itself() {
+        let tone = Tone::new(&ColorNoise::none(), 1.0);
+        for level in 0..=255 {
+            assert_eq!(tone.measure([level; 3], 12345, NormalTable::shared()), [level; 3]);
+        }
+    }
+
+    #[test]
+    fn spread_is_that_of_photons_and_reading_through_the_curve_and_channels_are_independent() {
+        let noise = ColorNoise { exposure: Exposure::fixed(1.0), ..ColorNoise::default() };
+        for level in [40, 128, 200] {
+            let values = said(&noise, 1.0, [level; 3]);
+            let center = mean(values.iter().map(|v| v[1]));
+            let variance = mean(values.iter().map(|v| (v[1] - center).powi(2)));
+            let light = f64::from(linear_from_srgb(level));
+            // d level / d light, and the variance of rounding.
+            let slope = 255.0 * 1.055 / 2.4 * light.powf(1.0 / 2.4 - 1.0);
+            let stated = (slope * noise.sigma(light, 1.0)).powi(2) + 1.0 / 12.0;
+            assert!((center - f64::from(level)).abs() < 0.06, "mean {center} of {level}");
+            assert!((variance / stated - 1.0).abs() < 0.05, "variance {variance} of {stated} at {level}");
+            let covariance = mean(values.iter().map(|v| (v[0] - center) * (v[2] - center)));
+            assert!(covariance.abs() < 0.03 * variance, "{covariance}");
+        }
+        assert!((said(&noise, 1.0, [128; 3]).len() as f64 - 20_000.0).abs() < 1.0);
+    }
+
+    #[test]
+    fn gain_brightens_and_clips() {
+        let noise = ColorNoise::default();
+        let dark = mean(said(&noise, 4.0, [60; 3]).iter().map(|v| v[0]));
+        let light = f64::from(linear_from_srgb(60));
+        assert!((dark - srgb(4.0 * light)).abs() < 0.3, "{dark}");
+        assert!(said(&noise, 4.0, [220; 3]).iter().all(|v| v[0] == 255.0));
+    }
+}
