@@ -120,6 +120,26 @@ impl Docker {
         })
     }
 
+    /// A time (s) that no manoeuvre from `start` to `goal` beats, sought with the effort of the configuration; at most
+    /// `known`, the time of a manoeuvre.
+    ///
+    /// # Errors
+    /// As [`Docker::plan`].
+    pub fn bound(
+        &self,
+        footprint: &Footprint,
+        scene: &Scene,
+        start: Pose2,
+        goal: Pose2,
+        known: f64,
+    ) -> Result<f64, Refusal> {
+        let margin = self.checked(footprint, scene, &start, &goal)?;
+        let task = Task { start, goal, limits: self.config.limits, reach: self.config.reach };
+        let near = scene.around(task.center(), task.half() + footprint.circumscribed_radius() + 0.1);
+        let mut space = Space::new(footprint, margin, &near);
+        Ok(optimal::bound(&task, &mut space, known, self.config.gap, self.config.bound_boxes))
+    }
+
     fn by_paper(&self, space: &Space<'_>, start: Pose2, goal: Pose2, margin: f64) -> Plan {
         match paper::plan(space, start, goal, &self.config.limits, &self.config.paper) {
             Some(manoeuvre) => Plan::Found(Solution { manoeuvre, bound: 0.0, margin }),

@@ -74,11 +74,17 @@ pub fn find(task: Task, space: &mut Space<'_>, effort: Effort) -> Outcome {
     search.best.map_or(Outcome::Nothing, |best| Outcome::Found(best, bounded.bound.min(time)))
 }
 
+/// A time that no legs beat, s, at most `known`: boxes are split until it is within `gap` of that, at most `boxes` of them.
+pub fn bound(task: &Task, space: &mut Space<'_>, known: f64, gap: f64, boxes: usize) -> f64 {
+    improve(task, space, Some((known, Legs::default())), gap, boxes).bound
+}
+
 /// A gap at which it is worth while to look for more legs.
 const LOOSE: f64 = 0.05;
 
 /// Looks for legs where one or two do not do; `Some` when it is proven that there are none.
 fn hard<'a>(search: &mut Search<'_, 'a>, second: &mut Space<'a>, effort: Effort) -> Option<Option<Blocker>> {
+    // Beams are for what one or two legs do not do: cells first, they are cheap and often enough.
     let (task, center, half) = (search.task, search.task.center(), search.task.half());
     let apart = |search: &Search<'_, '_>, side: f64| {
         match disprove(search.space, &task.start, &task.goal, center, half, side * effort.cell) {
@@ -86,19 +92,11 @@ fn hard<'a>(search: &mut Search<'_, 'a>, second: &mut Space<'a>, effort: Effort)
             Proof::Together => None,
         }
     };
-    if let Some(by) = apart(search, CELLS[0]) {
-        return Some(by);
-    }
-    let mut spent = beam(search, 48, 0.02, 0.06).expanded;
-    polish_best(search);
-    if search.best.is_some() {
-        return None;
-    }
-    if let Some(by) = CELLS[1..].iter().find_map(|side| apart(search, *side)) {
+    if let Some(by) = CELLS.iter().find_map(|side| apart(search, *side)) {
         return Some(by);
     }
     let mut guide = Guide::new(second, &task.goal, center, half, 2.0 * effort.cell, task.limits.speed);
-    let mut width = 24;
+    let (mut width, mut spent) = (12, 0);
     while search.best.is_none() && spent < effort.nodes {
         let end = guided_beam(search, &mut guide, width);
         spent += end.expanded;

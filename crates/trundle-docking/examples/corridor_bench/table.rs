@@ -1,0 +1,81 @@
+//! The table of the benchmark.
+
+/// What one method did with all problems.
+pub struct Row {
+    /// Its name.
+    pub name: &'static str,
+    /// Time of the manoeuvre on each problem, s; `None` where it was not settled.
+    pub times: Vec<Option<f64>>,
+    /// Proven impossible.
+    pub proven: usize,
+    /// Problems without an answer.
+    pub unsolved: Vec<String>,
+    /// Problems with contact or a missed goal.
+    pub bad: Vec<String>,
+    /// Of planning, or of all control steps of a run, ms on one core.
+    pub planning_ms: Vec<f64>,
+    /// Time over a proven bound.
+    pub ratios: Vec<f64>,
+}
+
+impl Row {
+    /// An empty row.
+    pub fn new(name: &'static str) -> Self {
+        Self {
+            name,
+            times: Vec::new(),
+            proven: 0,
+            unsolved: Vec::new(),
+            bad: Vec::new(),
+            planning_ms: Vec::new(),
+            ratios: Vec::new(),
+        }
+    }
+}
+
+/// Prints the rows; times are compared with those of the first row, problem by problem.
+pub fn print(rows: &[Row], count: usize) {
+    println!("{count} problems\n");
+    println!("| method | settled | proven impossible | no answer | contact or missed | time / first row's, median (p95) | planning ms, median (p99, most) |");
+    println!("|---|---|---|---|---|---|---|");
+    for row in rows {
+        let pairs = row.times.iter().zip(&rows[0].times);
+        let ratios: Vec<f64> = pairs.filter_map(|(a, b)| Some((*a)? / (*b)?)).collect();
+        let settled = row.times.iter().flatten().count();
+        println!(
+            "| {} | {settled} ({:.2} %) | {} | {} | {} | {:.3} ({:.3}) | {:.2} ({:.1}, {:.0}) |",
+            row.name,
+            100.0 * settled as f64 / count as f64,
+            row.proven,
+            row.unsolved.len(),
+            row.bad.len(),
+            part(&ratios, 0.5),
+            part(&ratios, 0.95),
+            part(&row.planning_ms, 0.5),
+            part(&row.planning_ms, 0.99),
+            part(&row.planning_ms, 1.0),
+        );
+    }
+    for row in rows {
+        if !row.ratios.is_empty() {
+            let at = |q| part(&row.ratios, q);
+            println!("\n{}: time over the proven bound: median {:.4}, p90 {:.4}, p95 {:.4}, p99 {:.4}", row.name, at(0.5), at(0.9), at(0.95), at(0.99));
+        }
+        if !row.unsolved.is_empty() || !row.bad.is_empty() {
+            println!("{}: no answer {:?}; bad {:?}", row.name, first(&row.unsolved), first(&row.bad));
+        }
+    }
+    let sum: f64 = rows[0].times.iter().flatten().sum();
+    println!("\n{}: {:.3} s on average", rows[0].name, sum / rows[0].times.iter().flatten().count().max(1) as f64);
+}
+
+fn first(list: &[String]) -> &[String] {
+    &list[..list.len().min(20)]
+}
+
+/// The `q`-quantile.
+fn part(values: &[f64], q: f64) -> f64 {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    sorted.get(((sorted.len().max(1) - 1) as f64 * q).round() as usize).copied().unwrap_or(f64::NAN)
+}
