@@ -1,3 +1,4 @@
+use crate::closing::LoopConfig;
 use crate::depth::DepthConfig;
 use crate::keyframe_policy::KeyframeConfig;
 use crate::mapping::MappingConfig;
@@ -23,6 +24,8 @@ pub struct SlamConfig {
     pub keyframes: KeyframeConfig,
     /// The landmark map.
     pub mapping: MappingConfig,
+    /// Places seen again.
+    pub loops: LoopConfig,
     /// Seed of the random samples. Default 0.
     pub seed: u64,
 }
@@ -40,6 +43,7 @@ impl SlamConfig {
             motion: self.motion.validated()?,
             keyframes: self.keyframes.validated()?,
             mapping: self.mapping.validated()?,
+            loops: self.loops.validated()?,
             seed: self.seed,
         })
     }

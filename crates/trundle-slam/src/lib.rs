@@ -15,6 +15,7 @@
 //! | K_L, K_F | free and fixed keyframes of the local bundle | |
 
 mod anchor;
+mod closing;
 mod config;
 mod covisibility;
 mod depth;
@@ -39,6 +40,7 @@ mod testing;
 mod tracker;
 mod trajectory;
 
+pub use closing::{LoopClosure, LoopConfig};
 pub use config::SlamConfig;
 pub use depth::DepthConfig;
 pub use ids::{KeyframeId, LandmarkId};

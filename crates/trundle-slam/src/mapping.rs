@@ -126,12 +126,16 @@ impl Mapper<'_> {
     /// Looks for the new landmarks in the keyframes around: one that is there already becomes the older landmark.
     fn fuse(&self, map: &mut LandmarkMap, keyframe: KeyframeId, new: Vec<LandmarkId>) {
         for (other, _) in map.covisible(keyframe, 15).into_iter().take(self.config.fused_keyframes) {
-            let found = self.find(map, other, &new);
-            for (feature, landmark) in found {
-                match map.keyframe(other).landmarks[feature] {
-                    Some(older) => map.merge(older, landmark),
-                    None => _ = map.observe(landmark, other, feature),
-                }
+            self.fuse_into(map, other, &new);
+        }
+    }
+
+    /// Looks for landmarks in a keyframe: where one is there already, the older of the two stays.
+    pub fn fuse_into(&self, map: &mut LandmarkMap, keyframe: KeyframeId, landmarks: &[LandmarkId]) {
+        for (feature, landmark) in self.find(map, keyframe, landmarks) {
+            match map.keyframe(keyframe).landmarks[feature] {
+                Some(other) => map.merge(other.min(landmark), other.max(landmark)),
+                None => _ = map.observe(landmark, keyframe, feature),
             }
         }
     }

@@ -1,3 +1,4 @@
+use crate::closing::LoopClosure;
 use nalgebra::Matrix6;
 use serde::{Deserialize, Serialize};
 use trundle_core::{Pose3, Stamp};
@@ -46,6 +47,8 @@ pub struct TrackReport {
     pub relocalised: bool,
     /// Whether the frame became a keyframe.
     pub new_keyframe: bool,
+    /// The place seen again by it, and how that moved the camera.
+    pub closed_loop: Option<LoopClosure>,
     /// Keyframes in the map, after this frame.
     pub keyframes: usize,
     /// Landmarks in the map, after this frame.

@@ -1,4 +1,5 @@
 use crate::anchor::Anchor;
+use crate::closing::{LoopCloser, LoopClosure};
 use crate::config::SlamConfig;
 use crate::found::Found;
 use crate::frame::Frame;
@@ -166,10 +167,13 @@ impl RgbdSlam {
         let shown = found.visible.iter().map(|(_, projection)| projection.pixel);
         let new_keyframe = self.config.keyframes.wants(&frame, pose, tracked, shown, &self.map);
         self.show(&frame, &landmarks);
-        let covariance = self.covariance(&found, reference);
+        let mut covariance = self.covariance(&found, reference);
+        let mut closed_loop = None;
         if new_keyframe {
             reference = self.insert(frame.clone(), pose, &landmarks);
             self.map.set_covariance(reference, covariance);
+            closed_loop = self.close_loop(reference);
+            covariance = self.map.keyframe(reference).covariance;
             let keyframe = self.map.keyframe(reference);
             (pose, landmarks) = (keyframe.visual_from_camera, keyframe.landmarks.clone());
         }
@@ -182,6 +186,7 @@ impl RgbdSlam {
         let anchored = self.remember(frame.stamp, Some(reference), tracking);
         let matches = (found.fix.matches.len(), found.fix.solution.inlier_count);
         let report = self.report(frame.len(), matches, new_keyframe, found.relocalised);
+        let report = TrackReport { closed_loop, ..report };
         self.last = Some(Located { frame, landmarks, anchored });
         report
     }
@@ -234,6 +239,17 @@ impl RgbdSlam {
             window: self.config.tracking.map_window_px,
         };
         mapper.insert(&mut self.map, frame, pose, tracked)
+    }
+
+    fn close_loop(&mut self, keyframe: KeyframeId) -> Option<LoopClosure> {
+        let closer = LoopCloser {
+            sensor: &self.sensor,
+            config: &self.config.loops,
+            tracking: &self.config.tracking,
+            mapping: &self.config.mapping,
+            seed: self.config.seed.wrapping_add(self.history.len() as u64),
+        };
+        closer.close(&mut self.map, keyframe)
     }
 
     /// Counts which landmarks should have been seen, and which were.
@@ -296,6 +312,7 @@ impl RgbdSlam {
             inliers,
             relocalised,
             new_keyframe,
+            closed_loop: None,
             keyframes: self.map.keyframe_count(),
             landmarks: self.map.landmark_count(),
         }

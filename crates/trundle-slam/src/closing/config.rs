@@ -1,0 +1,99 @@
+use serde::{Deserialize, Serialize};
+use trundle_core::{Invalid, require_in, require_positive};
+use trundle_optim::PoseGraphConfig;
+
+/// When a place counts as seen again, and how the map is then mended.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct LoopConfig {
+    /// Old keyframes that a new one is compared with, 0 (no loop is closed) or more. Default 3 \[MurArtal17\].
+    pub candidates: usize,
+    /// Keyframes newer than this many before are no loop, 1 or more. Default 10: as many as a local bundle moves.
+    pub least_age: usize,
+    /// How far apart two keyframes may be that see the same, m, above 0. Default 1.5: half a room.
+    pub reach: f64,
+    /// How much they may be turned, rad, above 0. Default 0.9 (50 deg): a quarter of a Kinect's picture is then common.
+    pub turn: f64,
+    /// Points of the old place that must be found under one pose, 10 or more. Default 40 \[MurArtal17\].
+    pub min_points: usize,
+    /// Part of the matches that must agree, 0 to 1. Default 0.5: chance does not reach it.
+    pub min_agreement: f64,
+    /// How many standard deviations of the drift a correction may be, above 0. Default 5: covariances along a chain are
+    /// somewhat small. What is farther off is a look-alike.
+    pub most_sigmas: f64,
+    /// Drift that may be there whatever the covariance says: part of the way between, 0 to 1. Default 0.02: twice what RGB-D
+    /// odometry drifts by.
+    pub drift_part: f64,
+    /// Standard deviations of what ties neighbouring keyframes: m, above 0. Default 0.01.
+    pub tie_sigma: f64,
+    /// And rad, above 0. Default 0.005.
+    pub tie_sigma_turn: f64,
+    /// Landmarks that two keyframes share to be tied in the pose graph, 1 or more. Default 100 \[MurArtal17\].
+    pub tied_by: usize,
+    /// The pose graph.
+    pub graph: PoseGraphConfig,
+}
+
+impl Default for LoopConfig {
+    fn default() -> Self {
+        Self {
+            candidates: 3,
+            least_age: 10,
+            reach: 1.5,
+            turn: 0.9,
+            min_points: 40,
+            min_agreement: 0.5,
+            most_sigmas: 5.0,
+            drift_part: 0.02,
+            tie_sigma: 0.01,
+            tie_sigma_turn: 0.005,
+            tied_by: 100,
+            graph: PoseGraphConfig::default(),
+        }
+    }
+}
+
+impl LoopConfig {
+    /// Passes a valid configuration through.
+    ///
+    /// # Errors
+    /// When a number is out of the range that its field names.
+    pub fn validated(mut self) -> Result<Self, Invalid> {
+        let counts = [
+            ("loops.least_age", self.least_age, 1),
+            ("loops.min_points", self.min_points, 10),
+            ("loops.tied_by", self.tied_by, 1),
+        ];
+        for (name, value, least) in counts {
+            if value < least {
+                return Err(Invalid::new(name, value, "", format!("{least} or more")));
+            }
+        }
+        for (name, value, unit) in [
+            ("loops.reach", self.reach, "m"),
+            ("loops.turn", self.turn, "rad"),
+            ("loops.most_sigmas", self.most_sigmas, ""),
+            ("loops.tie_sigma", self.tie_sigma, "m"),
+            ("loops.tie_sigma_turn", self.tie_sigma_turn, "rad"),
+        ] {
+            require_positive(name, value, unit)?;
+        }
+        require_in("loops.min_agreement", self.min_agreement, "", 0.0, 1.0)?;
+        require_in("loops.drift_part", self.drift_part, "", 0.0, 1.0)?;
+        self.graph = self.graph.validated()?;
+        Ok(self)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bounds_are_checked() {
+        assert!(LoopConfig::default().validated().is_ok());
+        let error = LoopConfig { min_points: 3, ..Default::default() }.validated().unwrap_err();
+        assert_eq!(error.to_string(), "loops.min_points is 3, expected 10 or more");
+        assert!(LoopConfig { reach: f64::NAN, ..Default::default() }.validated().is_err());
+    }
+}

@@ -1,0 +1,100 @@
+use super::LoopConfig;
+use super::verify::Recognised;
+use crate::ids::KeyframeId;
+use crate::local_bundle::{BundleSize, refine_around};
+use crate::map::LandmarkMap;
+use crate::mapping::MappingConfig;
+use crate::search::Likeness;
+use crate::sensor::Sensor;
+use nalgebra::Matrix6;
+use std::collections::BTreeSet;
+use trundle_core::{Pose3, Vector3};
+use trundle_optim::{PoseConstraint, PoseGraph};
+
+/// Keyframes that the bundle adjustment behind a closed loop moves.
+const REFINED: usize = 40;
+
+/// Mends the map once a place is recognised.
+#[derive(Debug, Clone)]
+pub(super) struct Correction<'a> {
+    pub sensor: &'a Sensor,
+    pub config: &'a LoopConfig,
+    pub mapping: &'a MappingConfig,
+    pub likeness: Likeness,
+    pub window: f64,
+    pub found: Recognised,
+}
+
+impl Correction<'_> {
+    /// Spreads the drift over the keyframes, lets each landmark go with the keyframe that saw it first, makes one of
+    /// those that are there twice, and refines what is around.
+    pub fn apply(&self, map: &mut LandmarkMap, keyframe: KeyframeId) {
+        let before: Vec<Pose3> = map.keyframes().map(|(_, k)| k.visual_from_camera).collect();
+        let after = self.graph(map, keyframe, &before).solve(&self.config.graph).poses;
+        carry_landmarks(map, &before, &after);
+        for (i, pose) in after.into_iter().enumerate() {
+            map.move_keyframe(KeyframeId::from_index(i), pose);
+        }
+        self.fuse(map, keyframe);
+        map.set_covariance(keyframe, map.keyframe(self.found.candidate).covariance);
+        let size = BundleSize { local: REFINED, fixed: REFINED };
+        refine_around(map, keyframe, self.sensor, size, &self.mapping.bundle);
+    }
+
+    /// Every keyframe tied to the one before it and to those it shares many landmarks with, as they stand to each other
+    /// now, and the newest to the place it recognised.
+    fn graph(&self, map: &LandmarkMap, keyframe: KeyframeId, poses: &[Pose3]) -> PoseGraph {
+        let mut pairs: BTreeSet<(usize, usize)> = (1..poses.len()).map(|i| (i - 1, i)).collect();
+        for (id, _) in map.keyframes() {
+            let shared = map.covisible(id, self.config.tied_by).into_iter().map(|(other, _)| other.index());
+            pairs.extend(shared.filter(|other| *other < id.index()).map(|other| (other, id.index())));
+        }
+        let tie = |(from, to): (usize, usize)| self.tie(from, to, poses[from].inverse() * poses[to]);
+        let mut ties: Vec<PoseConstraint> = pairs.into_iter().map(tie).collect();
+        let candidate = self.found.candidate.index();
+        let seen = poses[candidate].inverse() * self.found.visual_from_camera;
+        ties.push(self.tie(candidate, keyframe.index(), seen));
+        let fixed: Vec<bool> = (0..poses.len()).map(|i| i == 0).collect();
+        PoseGraph::new(poses.to_vec(), &fixed, ties).expect("invariant: every index was counted here")
+    }
+
+    fn tie(&self, from: usize, to: usize, from_to: Pose3) -> PoseConstraint {
+        let (off, turned) = (self.config.tie_sigma.powi(-2), self.config.tie_sigma_turn.powi(-2));
+        let information =
+            Matrix6::from_diagonal(&nalgebra::Vector6::new(off, off, off, turned, turned, turned));
+        PoseConstraint { from, to, from_to, information }
+    }
+
+    /// Looks for the old place's landmarks in the newest keyframe and those around it.
+    fn fuse(&self, map: &mut LandmarkMap, keyframe: KeyframeId) {
+        let around = map.covisible(keyframe, 15).into_iter().map(|(id, _)| id);
+        let targets: Vec<KeyframeId> =
+            [keyframe].into_iter().chain(around.take(self.mapping.fused_keyframes)).collect();
+        let mapper = crate::mapping::Mapper {
+            sensor: self.sensor,
+            config: self.mapping,
+            likeness: self.likeness,
+            window: self.window,
+        };
+        for target in targets {
+            mapper.fuse_into(map, target, &self.found.landmarks);
+        }
+    }
+}
+
+/// Moves each landmark with the keyframe that saw it first.
+fn carry_landmarks(map: &mut LandmarkMap, before: &[Pose3], after: &[Pose3]) {
+    let moved: Vec<(_, Vector3)> = map
+        .landmarks()
+        .filter_map(|(id, landmark)| {
+            let (first, _) = landmark.observations.iter().min()?;
+            let correction = after[first.index()] * before[first.index()].inverse();
+            Some((id, correction.transform(landmark.position)))
+        })
+        .collect();
+    for (id, position) in moved {
+        if let Some(landmark) = map.landmark_mut(id) {
+            landmark.position = position;
+        }
+    }
+}
