@@ -41,5 +41,5 @@ pub use scenes::Scene;
 pub use simulator::{SimError, Simulator};
 pub use world::{
     Cuboid, Cylinder, HeightBand, Hit, Lamp, Lights, Material, Mesh, Mover, Obstacles, Shape, Solid, Stage,
-    Triangle, World,
+    Target, Triangle, World,
 };

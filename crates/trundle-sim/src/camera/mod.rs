@@ -1,17 +1,26 @@
 //! The RGB-D camera: an exact renderer, then the sensor's noise.
 
+mod band;
 mod blur;
-mod candidates;
 mod color_noise;
 mod depth_model;
 mod depth_noise;
 mod exposure;
-mod lanes;
+mod eye;
+mod footprint;
+mod lamps;
+mod meet_cuboid;
+mod meet_cylinder;
+mod meet_triangle;
 mod multi_path;
+mod patch;
+mod pyramid;
+mod rays;
 mod renderer;
-mod seen;
 mod sensor;
 mod shadow;
+mod surface;
+mod tile;
 mod tone;
 
 pub use blur::blend;

@@ -23,7 +23,7 @@ use noise::Fractal;
 pub(crate) use paintings::Paintings;
 use poster::Poster;
 use rayon::prelude::*;
-pub(crate) use texture::{Light, Texture};
+pub(crate) use texture::Texture;
 
 /// Sides of textures are multiples of this, so that five levels halve exactly.
 const TEXELS: usize = 16;

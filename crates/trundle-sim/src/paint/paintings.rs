@@ -27,7 +27,8 @@ impl Paintings {
     }
 
     /// The faces of every solid, in the order of the solids.
-    pub(crate) fn iter(&self) -> impl ExactSizeIterator<Item = &Vec<Texture>> {
+    #[cfg(test)]
+    fn iter(&self) -> impl ExactSizeIterator<Item = &Vec<Texture>> {
         self.of_solid.iter().map(|&which| &self.distinct[which as usize])
     }
 }

@@ -4,30 +4,38 @@ mod aabb;
 mod band;
 mod bvh;
 mod contact;
+mod form;
 mod grid;
 mod lights;
+mod meet_solid;
+mod meet_triangle;
 mod mesh;
 mod mover;
 mod outline;
 mod outline_index;
+mod probe;
 mod ray;
 mod region;
 mod shape;
 mod stage;
+mod triangles;
 
-use crate::paint::{Finish, Paintings};
+use crate::paint::{Finish, Paintings, Texture};
 pub(crate) use aabb::Aabb;
-pub(crate) use bvh::Bvh;
+pub(crate) use bvh::{Bvh, Node, Probe, WIDTH};
 pub use band::HeightBand;
 pub use contact::Obstacles;
+pub(crate) use form::{Form, Kind};
 pub use lights::{Lamp, Lights};
 pub use mesh::{Material, Mesh, Triangle};
 pub use mover::Mover;
 use outline::Outline;
-pub use ray::Hit;
+pub use ray::{Hit, Target};
+use rayon::prelude::*;
 pub use shape::{Cuboid, Cylinder, Shape};
 pub use stage::Stage;
 use std::sync::OnceLock;
+pub(crate) use triangles::{BLOCK, Block, Triangles};
 use trundle_core::{Invalid, Vector3};
 
 /// A shape and how its faces look.
@@ -48,10 +56,13 @@ pub struct World {
     solids: Vec<Solid>,
     meshes: Vec<Mesh>,
     outlines: Vec<Outline>,
-    boxes: Vec<Aabb>,
     bounds: Aabb,
+    /// Over the solids, one a leaf.
     bvh: Bvh,
+    forms: Vec<Form>,
+    triangles: Triangles,
     paintings: OnceLock<Paintings>,
+    pictures: OnceLock<Vec<Texture>>,
 }
 
 impl World {
@@ -77,8 +88,10 @@ impl World {
             return Err(Invalid::new("solids and meshes of the world", 0, "", "1 or more"));
         };
         let outlines = solids.iter().map(|solid| solid.shape.outline()).collect();
-        let bvh = Bvh::new(&boxes);
-        Ok(Self { seed, solids, meshes, outlines, boxes, bounds, bvh, paintings: OnceLock::new() })
+        let forms = solids.iter().map(|solid| Form::new(&solid.shape)).collect();
+        let (bvh, triangles) = (Bvh::new(&boxes, 1), Triangles::new(&meshes));
+        let (paintings, pictures) = (OnceLock::new(), OnceLock::new());
+        Ok(Self { seed, solids, meshes, outlines, bounds, bvh, forms, triangles, paintings, pictures })
     }
 
     /// What stands in it.
@@ -96,23 +109,38 @@ impl World {
         (self.bounds.min, self.bounds.max)
     }
 
-    /// The boxes around the solids.
-    pub(crate) fn boxes(&self) -> &[Aabb] {
-        &self.boxes
-    }
-
+    /// The hierarchy over the solids, one a leaf.
     pub(crate) fn bvh(&self) -> &Bvh {
         &self.bvh
+    }
+
+    /// The solids, as the camera meets them.
+    pub(crate) fn forms(&self) -> &[Form] {
+        &self.forms
+    }
+
+    /// The triangles of the meshes, as rays meet them.
+    pub(crate) fn triangles(&self) -> &Triangles {
+        &self.triangles
     }
 
     /// Draws the textures now rather than at the first look: some tenths of a second.
     pub fn paint(&self) {
         self.paintings();
+        self.pictures();
     }
 
     /// The painted faces of every solid, drawn at the first call.
     pub(crate) fn paintings(&self) -> &Paintings {
         self.paintings.get_or_init(|| Paintings::new(&self.solids, self.seed))
+    }
+
+    /// The textures of the materials of all meshes, mesh after mesh, made at the first call.
+    pub(crate) fn pictures(&self) -> &[Texture] {
+        self.pictures.get_or_init(|| {
+            let materials: Vec<&Material> = self.meshes.iter().flat_map(Mesh::materials).collect();
+            materials.par_iter().map(|m| Texture::of_picture(m.color, m.texture.as_ref())).collect()
+        })
     }
 }
 

@@ -1,5 +1,7 @@
-use super::{Cuboid, Cylinder, Shape, World};
-use trundle_core::{Vector2, Vector3};
+use super::meet_triangle::{meet_block, normal_towards};
+use super::probe::RayProbe;
+use super::{Mover, Stage, World};
+use trundle_core::Vector3;
 
 /// What a ray meets first.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -7,141 +9,138 @@ pub struct Hit {
     /// How far, in lengths of the ray's direction: metres when that is a unit vector, depth when its part along the
     /// optical axis is 1.
     pub distance: f64,
-    /// Which solid.
-    pub solid: usize,
-    /// The outward normal there, world frame, unit length.
+    /// What.
+    pub target: Target,
+    /// Which of a stage's movers; `None` of what stands still.
+    pub mover: Option<usize>,
+    /// The normal there on the side that the ray comes from, unit length, frame of the world or stage.
     pub normal: Vector3,
 }
 
-impl World {
-    /// The first solid along a ray from `origin` (world frame, m), nearer than `limit` lengths of `direction`.
-    ///
-    /// Solids that hold the origin are not seen. This is the reference the renderer is tested against, and what
-    /// lasers look along.
+/// A thing in a [`World`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Target {
+    /// One of its solids.
+    Solid(usize),
+    /// A triangle of one of its meshes.
+    Triangle {
+        /// Which mesh.
+        mesh: usize,
+        /// Which triangle of the mesh.
+        triangle: usize,
+    },
+}
+
+impl Stage<'_> {
+    /// The first thing along a ray from `origin` (world frame, m), nearer than `limit` lengths of `direction`; movers included.
     pub fn cast(&self, origin: Vector3, direction: Vector3, limit: f64) -> Option<Hit> {
-        let inverse = direction.map(f64::recip);
-        let mut nearest: (f64, Option<Hit>) = (limit, None);
-        self.bvh.walk(
-            &mut nearest,
-            |(reach, _), bounds| bounds.is_met(origin, inverse, *reach),
-            |(reach, hit), solid| {
-                if let Some((distance, normal)) = self.solids[solid].shape.meet(origin, direction)
-                    && distance < *reach
-                {
-                    *reach = distance;
-                    *hit = Some(Hit { distance, solid, normal });
-                }
-            },
-        );
-        nearest.1
+        let mut nearest = self.world.cast(origin, direction, limit);
+        for (i, mover) in self.movers.iter().enumerate() {
+            let limit = nearest.map_or(limit, |hit| hit.distance);
+            if let Some(hit) = mover.cast(origin, direction, limit) {
+                nearest = Some(Hit { mover: Some(i), ..hit });
+            }
+        }
+        nearest
     }
 }
 
-impl Shape {
-    /// Where a ray enters: distance in lengths of `direction`, and the outward normal.
-    fn meet(&self, origin: Vector3, direction: Vector3) -> Option<(f64, Vector3)> {
-        match self {
-            Self::Cuboid(cuboid) => cuboid.meet(origin, direction),
-            Self::Cylinder(cylinder) => cylinder.meet(origin, direction),
-        }
+impl Mover<'_> {
+    fn cast(&self, origin: Vector3, direction: Vector3, limit: f64) -> Option<Hit> {
+        let (s, c) = self.pose.theta.sin_cos();
+        let from_pose = Vector3::new(origin.x - self.pose.x, origin.y - self.pose.y, origin.z);
+        let hit = self.body.cast(turned(from_pose, (-s, c)), turned(direction, (-s, c)), limit)?;
+        Some(Hit { normal: turned(hit.normal, (s, c)), ..hit })
     }
+}
+
+impl World {
+    /// The first thing along a ray from `origin` (world frame, m), nearer than `limit` lengths of `direction`.
+    ///
+    /// Solids that hold the origin are not seen; triangles are seen from both sides, and no ray passes between two that
+    /// share an edge. f64 throughout: this is the reference the renderer is tested against, and what lasers look along.
+    pub fn cast(&self, origin: Vector3, direction: Vector3, limit: f64) -> Option<Hit> {
+        #[cfg(target_arch = "x86_64")]
+        if std::arch::is_x86_feature_detected!("avx2") {
+            // SAFETY: the processor has the one feature that the function is compiled for.
+            return unsafe { self.cast_by_avx2(origin, direction, limit) };
+        }
+        self.cast_plainly(origin, direction, limit)
+    }
+
+    /// The same as [`World::cast_plainly`], more numbers an instruction.
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx2")]
+    fn cast_by_avx2(&self, origin: Vector3, direction: Vector3, limit: f64) -> Option<Hit> {
+        self.cast_plainly(origin, direction, limit)
+    }
+
+    #[inline(always)]
+    fn cast_plainly(&self, origin: Vector3, direction: Vector3, limit: f64) -> Option<Hit> {
+        let probe = RayProbe::new(origin, direction);
+        let solid = self.cast_at_solids(&probe, origin, direction, limit);
+        let limit = solid.map_or(limit, |hit| hit.distance);
+        self.cast_at_triangles(&probe, origin, direction, limit).or(solid)
+    }
+
+    #[inline(always)]
+    fn cast_at_solids(
+        &self,
+        probe: &RayProbe,
+        origin: Vector3,
+        direction: Vector3,
+        limit: f64,
+    ) -> Option<Hit> {
+        let (mut reach, mut nearest) = (limit, None);
+        self.bvh.walk(probe, wide(limit), |leaf| {
+            let (first, end) = self.bvh.leaf(leaf);
+            for &solid in &self.bvh.items()[first..end] {
+                if let Some((distance, normal)) = self.solids[solid as usize].shape.meet(origin, direction)
+                    && distance < reach
+                {
+                    reach = distance;
+                    nearest =
+                        Some(Hit { distance, target: Target::Solid(solid as usize), mover: None, normal });
+                }
+            }
+            wide(reach)
+        });
+        nearest
+    }
+
+    #[inline(always)]
+    fn cast_at_triangles(
+        &self,
+        probe: &RayProbe,
+        origin: Vector3,
+        direction: Vector3,
+        limit: f64,
+    ) -> Option<Hit> {
+        let (mut reach, mut nearest) = (limit, None);
+        self.triangles.bvh().walk(probe, wide(limit), |leaf| {
+            let distances = meet_block(self.triangles.block(leaf), origin, direction);
+            for (lane, &distance) in distances.iter().enumerate() {
+                if distance < reach {
+                    reach = distance;
+                    nearest = Some((leaf, lane));
+                }
+            }
+            wide(reach)
+        });
+        let (leaf, lane) = nearest?;
+        let block = self.triangles.block(leaf);
+        let (mesh, triangle) = self.triangles.source(block.first as usize + lane);
+        let normal = normal_towards(block, lane, direction);
+        Some(Hit { distance: reach, target: Target::Triangle { mesh, triangle }, mover: None, normal })
+    }
+}
+
+/// Not less than `reach`.
+fn wide(reach: f64) -> f32 {
+    (reach as f32).next_up()
 }
 
 /// `v` turned about z by the angle with this sine and cosine.
-fn turned(v: Vector3, (s, c): (f64, f64)) -> Vector3 {
+pub(super) fn turned(v: Vector3, (s, c): (f64, f64)) -> Vector3 {
     Vector3::new(c * v.x - s * v.y, s * v.x + c * v.y, v.z)
-}
-
-impl Cuboid {
-    /// The slab method (Kay and Kajiya 1986) in the box's own frame.
-    fn meet(&self, origin: Vector3, direction: Vector3) -> Option<(f64, Vector3)> {
-        let (s, c) = self.yaw.sin_cos();
-        let (o, d) = (turned(origin - self.center, (-s, c)), turned(direction, (-s, c)));
-        let (mut near, mut far, mut axis) = (f64::NEG_INFINITY, f64::INFINITY, 0);
-        for k in 0..3 {
-            let half = self.size[k] / 2.0;
-            if d[k] == 0.0 {
-                if o[k].abs() > half {
-                    return None;
-                }
-                continue;
-            }
-            let entry = (-half * d[k].signum() - o[k]) / d[k];
-            if entry > near {
-                (near, axis) = (entry, k);
-            }
-            far = far.min((half * d[k].signum() - o[k]) / d[k]);
-        }
-        let mut normal = Vector3::zeros();
-        normal[axis] = -d[axis].signum();
-        (near <= far && near > 0.0).then(|| (near, turned(normal, (s, c))))
-    }
-}
-
-impl Cylinder {
-    fn meet(&self, origin: Vector3, direction: Vector3) -> Option<(f64, Vector3)> {
-        let o = origin - self.base;
-        self.meet_side(o, direction).or_else(|| self.meet_lid(o, direction))
-    }
-
-    /// The ray's plan meets the circle where its distance to the axis, q / |d|, is below the radius.
-    fn meet_side(&self, o: Vector3, d: Vector3) -> Option<(f64, Vector3)> {
-        let a = d.xy().norm_squared();
-        let q = o.xy().perp(&d.xy());
-        let root2 = a * self.radius * self.radius - q * q;
-        if a == 0.0 || root2 < 0.0 {
-            return None;
-        }
-        let t = (-o.xy().dot(&d.xy()) - root2.sqrt()) / a;
-        let p = o + d * t;
-        let inside = t > 0.0 && (0.0..=self.height).contains(&p.z);
-        inside.then(|| (t, Vector3::new(p.x / self.radius, p.y / self.radius, 0.0)))
-    }
-
-    fn meet_lid(&self, o: Vector3, d: Vector3) -> Option<(f64, Vector3)> {
-        let lid = if d.z < 0.0 { self.height } else { 0.0 };
-        let t = (lid - o.z) / d.z;
-        let p: Vector2 = o.xy() + d.xy() * t;
-        let inside = t > 0.0 && p.norm_squared() <= self.radius * self.radius;
-        inside.then(|| (t, Vector3::new(0.0, 0.0, -d.z.signum())))
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::paint::{Finish, Paint};
-    use crate::world::Solid;
-
-    fn world(shape: Shape) -> World {
-        World::new(vec![Solid { shape, finish: Finish::all(Paint::Flat { color: [128; 3] }) }], 1).unwrap()
-    }
-
-    #[test]
-    fn a_turned_box_is_met_at_its_corner() {
-        let cuboid = Cuboid {
-            center: Vector3::new(5.0, 0.0, 0.5),
-            size: Vector3::new(2.0, 2.0, 1.0),
-            yaw: std::f64::consts::FRAC_PI_4,
-        };
-        let world = world(Shape::Cuboid(cuboid));
-        let hit = world.cast(Vector3::new(0.0, 1e-9, 0.5), Vector3::x(), 100.0).unwrap();
-        assert!((hit.distance - (5.0 - 2.0_f64.sqrt())).abs() < 1e-8);
-        let slanted = Vector3::new(-0.5_f64.sqrt(), 0.5_f64.sqrt(), 0.0);
-        assert!((hit.normal - slanted).norm() < 1e-9, "{}", hit.normal);
-        assert_eq!(world.cast(Vector3::new(0.0, 0.0, 1.1), Vector3::x(), 100.0), None);
-        assert_eq!(world.cast(Vector3::new(5.0, 0.0, 0.5), Vector3::x(), 100.0), None, "from inside");
-    }
-
-    #[test]
-    fn a_cylinder_is_met_at_its_side_and_its_lid() {
-        let cylinder = Cylinder { base: Vector3::new(3.0, 0.0, 0.0), radius: 0.5, height: 1.0 };
-        let world = world(Shape::Cylinder(cylinder));
-        let side = world.cast(Vector3::new(0.0, 0.3, 0.5), Vector3::x(), 100.0).unwrap();
-        assert!((side.distance - 2.6).abs() < 1e-12);
-        assert!((side.normal - Vector3::new(-0.8, 0.6, 0.0)).norm() < 1e-12);
-        let lid = world.cast(Vector3::new(3.2, 0.1, 5.0), -Vector3::z(), 100.0).unwrap();
-        assert_eq!((lid.distance, lid.normal), (4.0, Vector3::z()));
-        assert_eq!(world.cast(Vector3::new(0.0, 0.51, 0.5), Vector3::x(), 100.0), None);
-    }
 }

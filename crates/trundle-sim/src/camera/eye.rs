@@ -1,0 +1,144 @@
+use super::meet_cuboid::meet_cuboid;
+use super::meet_cylinder::meet_cylinder;
+use super::meet_triangle::meet_block;
+use super::pyramid::Pyramid;
+use super::rays::Rays;
+use super::tile::{COLUMNS, ROWS, Tile};
+use crate::paint::{Paintings, Texture};
+use crate::world::{Kind, World};
+use trundle_core::{PinholeCamera, Pose2, Pose3, Vector3};
+
+/// A world as the camera sees it in one image: everything in the frame of that world.
+///
+/// What it draws has numbers: from `first_id` on, four a solid (the axis of a box's face, or a part of a cylinder), then one a
+/// triangle.
+pub(super) struct Eye<'w> {
+    pub(super) world: &'w World,
+    pub(super) paintings: &'w Paintings,
+    pub(super) pictures: &'w [Texture],
+    /// The camera's centre, m.
+    pub(super) apex: [f64; 3],
+    /// Axes of the camera: right, down, forward.
+    axes: [[f64; 3]; 3],
+    /// How the world is turned in the stage: sine and cosine.
+    pub(super) heading: (f32, f32),
+    pub(super) first_id: u32,
+    /// No coordinate is larger, m.
+    extent: f32,
+    /// Least and greatest column and row that it may be seen in.
+    window: [[f64; 2]; 2],
+}
+
+impl<'w> Eye<'w> {
+    /// The view of a world that stands at `pose` in the stage.
+    pub(super) fn new(
+        world: &'w World,
+        pose: Pose2,
+        camera: &PinholeCamera,
+        world_from_camera: &Pose3,
+        first_id: u32,
+    ) -> Self {
+        let own_from_camera = Pose3::from_pose2(pose).inverse() * *world_from_camera;
+        let (low, high) = world.bounds();
+        let (s, c) = pose.theta.sin_cos();
+        Self {
+            world,
+            paintings: world.paintings(),
+            pictures: world.pictures(),
+            apex: own_from_camera.translation.into(),
+            axes: [Vector3::x(), Vector3::y(), Vector3::z()].map(|axis| own_from_camera.rotate(axis).into()),
+            heading: (s as f32, c as f32),
+            first_id,
+            extent: low.amax().max(high.amax()) as f32,
+            window: window(&own_from_camera.inverse(), camera, low, high),
+        }
+    }
+
+    /// The first number that is not its own.
+    pub(super) fn end_id(&self) -> u32 {
+        self.first_id + 4 * self.world.solids().len() as u32 + self.world.triangles().len() as u32
+    }
+
+    /// The rays of the tile whose upper left pixel is (left, top).
+    #[inline(always)]
+    pub(super) fn rays(&self, camera: &PinholeCamera, left: usize, top: usize) -> Rays {
+        let (x, y) = ((left as f64 - camera.cx()) / camera.fx(), (top as f64 - camera.cy()) / camera.fy());
+        let [right, down, forward] = self.axes;
+        Rays {
+            start: [0, 1, 2].map(|k| (x * right[k] + y * down[k] + forward[k]) as f32),
+            right: right.map(|r| (r / camera.fx()) as f32),
+            down: down.map(|d| (d / camera.fy()) as f32),
+        }
+    }
+
+    /// Keeps in the tile what of the world is nearest.
+    #[inline(always)]
+    pub(super) fn draw(&self, camera: &PinholeCamera, (left, top): (usize, usize), tile: &mut Tile) {
+        if !self.may_be_in(left, top) {
+            return;
+        }
+        let rays = self.rays(camera, left, top);
+        let forward = self.axes[2].map(|x| x as f32);
+        let pyramid = Pyramid::new(&rays, self.apex.map(|x| x as f32), forward, self.extent);
+        self.draw_solids(&rays, &pyramid, tile);
+        self.draw_triangles(&rays, &pyramid, tile);
+    }
+
+    #[inline(always)]
+    fn may_be_in(&self, left: usize, top: usize) -> bool {
+        let [[x0, x1], [y0, y1]] = self.window;
+        let (left, top) = (left as f64, top as f64);
+        x0 <= left + COLUMNS as f64 && left <= x1 && y0 <= top + ROWS as f64 && top <= y1
+    }
+
+    #[inline(always)]
+    fn draw_solids(&self, rays: &Rays, pyramid: &Pyramid, tile: &mut Tile) {
+        let bvh = self.world.bvh();
+        bvh.walk(pyramid, tile.reach(), |leaf| {
+            let (first, end) = bvh.leaf(leaf);
+            for &solid in &bvh.items()[first..end] {
+                let form = &self.world.forms()[solid as usize];
+                let (origin, id) = (form.own(self.apex), self.first_id + 4 * solid);
+                match form.kind {
+                    Kind::Cuboid(half) => meet_cuboid(rays, form.axes, origin, half, id, tile),
+                    Kind::Cylinder(radius, height) => meet_cylinder(rays, origin, (radius, height), id, tile),
+                }
+            }
+            tile.reach()
+        });
+    }
+
+    #[inline(always)]
+    fn draw_triangles(&self, rays: &Rays, pyramid: &Pyramid, tile: &mut Tile) {
+        let triangles = self.world.triangles();
+        let first_id = self.first_id + 4 * self.world.solids().len() as u32;
+        let mut reach = tile.reach();
+        triangles.bvh().walk(pyramid, reach, |leaf| {
+            let block = triangles.block(leaf);
+            if meet_block(rays, self.apex, block, first_id + block.first, 1.0 / reach, tile) {
+                reach = tile.reach();
+            }
+            reach
+        });
+    }
+}
+
+/// The columns and rows between which a box appears: all when it reaches behind the camera.
+fn window(camera_from_own: &Pose3, camera: &PinholeCamera, low: Vector3, high: Vector3) -> [[f64; 2]; 2] {
+    let mut window = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
+    for i in 0..8 {
+        let pick = |k: usize| if i >> k & 1 == 0 { low[k] } else { high[k] };
+        let corner = camera_from_own.transform(Vector3::new(pick(0), pick(1), pick(2)));
+        if corner.z < 1e-3 {
+            return [[f64::NEG_INFINITY, f64::INFINITY]; 2];
+        }
+        let pixel = [
+            corner.x / corner.z * camera.fx() + camera.cx(),
+            corner.y / corner.z * camera.fy() + camera.cy(),
+        ];
+        for (range, x) in window.iter_mut().zip(pixel) {
+            *range = [range[0].min(x - 1.0), range[1].max(x + 1.0)];
+        }
+    }
+    window
+}

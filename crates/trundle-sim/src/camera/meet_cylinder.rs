@@ -1,0 +1,50 @@
+use super::rays::{Linear, Rays};
+use super::tile::{COLUMNS, ROWS, Tile};
+
+/// Parts of a cylinder in the last two bits of an id.
+pub(super) const SIDE: u32 = 0;
+pub(super) const LID: u32 = 1;
+
+/// Keeps the side and the lids of an upright cylinder where they are nearest; `o` is the camera's centre from the middle of
+/// the lower disc.
+///
+/// With w = 1 / depth the ray is at (o w + d) / w. The side is where its plan has the length of the radius; the discriminant
+/// comes from the plan's distance to the axis, a cross product, so that nothing cancels.
+#[inline(always)]
+pub(super) fn meet_cylinder(
+    rays: &Rays,
+    o: [f64; 3],
+    (radius, height): (f64, f64),
+    id: u32,
+    tile: &mut Tile,
+) {
+    let outside = o[0] * o[0] + o[1] * o[1] - radius * radius;
+    let inverse = if outside > 0.0 { (1.0 / outside.max(1e-12)) as f32 } else { 0.0 };
+    let [x, y, z] = o.map(|x| x as f32);
+    let (radius, height) = (radius as f32, height as f32);
+    // From between its lids neither is seen.
+    let lid_factor = match z {
+        z if z > height => 1.0 / (height - z),
+        z if z < 0.0 => 1.0 / -z,
+        _ => 0.0,
+    };
+    let axes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|axis| rays.along(axis));
+    let across = Linear {
+        start: x * axes[1].start - y * axes[0].start,
+        right: x * axes[1].right - y * axes[0].right,
+        down: x * axes[1].down - y * axes[0].down,
+    };
+    for row in 0..ROWS {
+        let ([dx, dy, dz], across) = (axes.map(|d| d.row(row)), across.row(row));
+        for i in 0..COLUMNS {
+            let root2 = (dx[i] * dx[i] + dy[i] * dy[i]) * radius * radius - across[i] * across[i];
+            let root = (if root2 > 0.0 { root2 } else { 0.0 }).sqrt();
+            let side = (root - (x * dx[i] + y * dy[i])) * inverse;
+            let rise = z * side + dz[i];
+            tile.keep(row, i, side, (root2 >= 0.0) & (rise >= 0.0) & (rise <= height * side), id + SIDE);
+            let lid = dz[i] * lid_factor;
+            let (u, v) = (x * lid + dx[i], y * lid + dy[i]);
+            tile.keep(row, i, lid, u * u + v * v <= radius * radius * lid * lid, id + LID);
+        }
+    }
+}

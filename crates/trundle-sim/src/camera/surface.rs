@@ -1,0 +1,105 @@
+use super::eye::Eye;
+use super::lamps::Lamps;
+use super::meet_cylinder::LID;
+use super::patch::{Patch, Plane};
+use super::rays::{Rays, dot};
+use crate::world::{Form, Kind};
+
+impl<'w> Eye<'w> {
+    /// What is painted where the tile's pixel (row, column) sees the surface `id` at `depth` m.
+    #[inline(always)]
+    pub(super) fn patch(
+        &self,
+        rays: &Rays,
+        lamps: &Lamps,
+        id: u32,
+        (row, column, depth): (usize, usize, f32),
+    ) -> Patch<'w> {
+        let number = (id - self.first_id) as usize;
+        let solids = self.world.solids().len();
+        if number >= 4 * solids {
+            return self.patch_of_triangle(rays, lamps, number - 4 * solids);
+        }
+        let form = &self.world.forms()[number / 4];
+        let (face, plane) = match form.kind {
+            Kind::Cuboid(half) => face_of_cuboid(form, self.apex, half, number % 4),
+            Kind::Cylinder(radius, height) => {
+                let ray = rays.at(row, column);
+                face_of_cylinder(form.own(self.apex), (radius, height), number % 4, ray, depth)
+            }
+        };
+        let light = lamps.on(self.in_stage(plane.normal));
+        Patch::new(rays, &plane, &self.paintings[number / 4][face], light)
+    }
+
+    /// Whether the patch of this surface differs from pixel to pixel.
+    #[inline(always)]
+    pub(super) fn is_curved(&self, id: u32) -> bool {
+        let number = (id - self.first_id) as usize;
+        let form = self.world.forms().get(number / 4);
+        number % 4 != LID as usize && form.is_some_and(|form| matches!(form.kind, Kind::Cylinder(..)))
+    }
+
+    #[inline(always)]
+    fn patch_of_triangle(&self, rays: &Rays, lamps: &Lamps, triangle: usize) -> Patch<'w> {
+        let surface = self.world.triangles().surface(triangle);
+        let to_apex = [0, 1, 2].map(|k| self.apex[k] as f32 - surface.corner[k]);
+        let start =
+            [surface.uv[0] + dot(surface.across, to_apex), surface.uv[1] + dot(surface.down, to_apex)];
+        let sign = if dot(surface.normal, to_apex) < 0.0 { -1.0 } else { 1.0 };
+        let light = lamps.on(self.in_stage(surface.normal.map(|n| sign * n)));
+        let plane = Plane { normal: surface.normal, across: surface.across, down: surface.down, start };
+        Patch::new(rays, &plane, &self.pictures[surface.material as usize], light)
+    }
+
+    /// A direction of this world in the stage.
+    #[inline(always)]
+    fn in_stage(&self, v: [f32; 3]) -> [f32; 3] {
+        let (s, c) = self.heading;
+        [c * v[0] - s * v[1], s * v[0] + c * v[1], v[2]]
+    }
+}
+
+/// Which face of a box is seen along an axis, and how it is painted: seen from outside with z up, u runs to the right and v
+/// down; on the lids u is x, and v runs against y on top.
+#[inline(always)]
+fn face_of_cuboid(form: &Form, apex: [f64; 3], half: [f64; 3], axis: usize) -> (usize, Plane) {
+    let own = form.own(apex).map(|x| x as f32);
+    let half = half.map(|x| x as f32);
+    let sign = own[axis].signum();
+    let (u, v) = match axis {
+        0 => ((1, sign), (2, -1.0)),
+        1 => ((0, -sign), (2, -1.0)),
+        _ => ((0, 1.0), (1, -sign)),
+    };
+    let along = |(k, sign): (usize, f32)| form.axes[k].map(|x| sign * x as f32);
+    let start = [u, v].map(|(k, sign)| half[k] + sign * own[k]);
+    let plane = Plane { normal: along((axis, sign)), across: along(u), down: along(v), start };
+    (2 * axis + usize::from(sign < 0.0), plane)
+}
+
+#[inline(always)]
+fn face_of_cylinder(
+    own: [f64; 3],
+    (radius, height): (f64, f64),
+    part: usize,
+    ray: [f32; 3],
+    depth: f32,
+) -> (usize, Plane) {
+    let own = own.map(|x| x as f32);
+    let (radius, height) = (radius as f32, height as f32);
+    if part == LID as usize {
+        let sign = if own[2] > height / 2.0 { 1.0 } else { -1.0 };
+        let plane = Plane {
+            normal: [0.0, 0.0, sign],
+            across: [1.0, 0.0, 0.0],
+            down: [0.0, -sign, 0.0],
+            start: [radius + own[0], radius - sign * own[1]],
+        };
+        return (if sign > 0.0 { 1 } else { 2 }, plane);
+    }
+    let [x, y, z] = [0, 1, 2].map(|k| own[k] + depth * ray[k]);
+    let (x, y) = (x / radius, y / radius);
+    let uv = [(y.atan2(x) + std::f32::consts::PI) * radius, height - z];
+    (0, Plane::through(uv, ray, depth, [x, y, 0.0], [-y, x, 0.0], [0.0, 0.0, -1.0]))
+}

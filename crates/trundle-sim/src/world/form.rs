@@ -1,0 +1,38 @@
+use super::Shape;
+
+/// A solid as the camera meets it: its sine and cosine taken once.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Form {
+    /// The middle of a box, or of a cylinder's lower disc, world frame, m.
+    pub(crate) place: [f64; 3],
+    /// Its own axes in the world frame, unit length.
+    pub(crate) axes: [[f64; 3]; 3],
+    pub(crate) kind: Kind,
+}
+
+/// Sizes of a [`Form`], m.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Kind {
+    /// Half sides.
+    Cuboid([f64; 3]),
+    /// Radius and height.
+    Cylinder(f64, f64),
+}
+
+impl Form {
+    pub(super) fn new(shape: &Shape) -> Self {
+        let (place, yaw, kind) = match shape {
+            Shape::Cuboid(c) => (c.center, c.yaw, Kind::Cuboid((c.size / 2.0).into())),
+            Shape::Cylinder(c) => (c.base, 0.0, Kind::Cylinder(c.radius, c.height)),
+        };
+        let (s, c) = yaw.sin_cos();
+        Self { place: place.into(), axes: [[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]], kind }
+    }
+
+    /// A point of the world in its own frame.
+    #[inline(always)]
+    pub(crate) fn own(&self, point: [f64; 3]) -> [f64; 3] {
+        let out = [0, 1, 2].map(|k| point[k] - self.place[k]);
+        self.axes.map(|axis| axis[0] * out[0] + axis[1] * out[1] + axis[2] * out[2])
+    }
+}
