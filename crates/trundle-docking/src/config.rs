@@ -23,8 +23,10 @@ pub struct DockingConfig {
     /// Speeds, and the pause between two motions.
     pub limits: MotionLimits,
     /// Kept from every obstacle, m, 0 to 0.5. Default 0.01 (ours: the position tolerance). Where start or goal are
-    /// nearer than that, the margin is what they have.
+    /// nearer than that, or there is no manoeuvre that keeps it, less will do.
     pub margin: f64,
+    /// Overlap of start or goal with an obstacle that is taken for an error of the pose, m, 0 to 0.02. Default 0.
+    pub overlap: f64,
     /// How far beyond the line from start to goal a manoeuvre may go, m, 0.1 to 10. Default 1.5 (ours).
     pub reach: f64,
     /// Farthest goal, m, 0.1 to 20: beyond, plan a path there first. Default 5 (ours).
@@ -50,6 +52,7 @@ impl Default for DockingConfig {
             method: Method::Optimal,
             limits: MotionLimits::default(),
             margin: 0.01,
+            overlap: 0.0,
             reach: 1.5,
             max_distance: 5.0,
             position_tolerance: 0.01,
@@ -72,6 +75,7 @@ impl DockingConfig {
         self.paper = self.paper.validated()?;
         let ranges = [
             ("margin", self.margin, "m", 0.0, 0.5),
+            ("overlap", self.overlap, "m", 0.0, 0.02),
             ("reach", self.reach, "m", 0.1, 10.0),
             ("max_distance", self.max_distance, "m", 0.1, 20.0),
             ("position_tolerance", self.position_tolerance, "m", 0.001, 0.1),

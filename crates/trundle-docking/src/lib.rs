@@ -10,6 +10,7 @@ mod manoeuvre;
 pub mod optimal;
 pub mod paper;
 mod planner;
+mod positioner;
 pub mod scene;
 mod space;
 
@@ -17,5 +18,6 @@ pub use config::{DockingConfig, Method};
 pub use limits::MotionLimits;
 pub use manoeuvre::{Manoeuvre, Motion, Step};
 pub use planner::{Docker, Impossible, Plan, Refusal, Solution};
+pub use positioner::{Positioner, PositionerConfig, PositionerInput, PositionerReport, Reason};
 pub use scene::{Blocker, Obstacle, Scene};
 pub use space::{FreeDrive, FreeTurn, Space};

@@ -1,4 +1,5 @@
 use crate::config::{DockingConfig, Method};
+use crate::geometry::Hull;
 use crate::manoeuvre::Manoeuvre;
 use crate::optimal::{self, Effort, Outcome, Task};
 use crate::paper;
@@ -89,35 +90,51 @@ impl Docker {
         start: Pose2,
         goal: Pose2,
     ) -> Result<Plan, Refusal> {
-        let margin = self.checked(footprint, scene, &start, &goal)?;
-        let limits = self.config.limits;
-        let task = Task { start, goal, limits, reach: self.config.reach };
+        let most = self.checked(footprint, scene, &start, &goal)?;
+        let task = self.task(start, goal);
         let near = scene.around(task.center(), task.half() + footprint.circumscribed_radius() + 0.1);
-        let mut space = Space::new(footprint, margin, &near);
-        let outcome = match self.config.method {
-            Method::Paper => return Ok(self.by_paper(&space, start, goal, margin)),
-            Method::Optimal => {
-                let effort = Effort {
-                    nodes: self.config.search_nodes,
-                    boxes: self.config.bound_boxes,
-                    gap: self.config.gap,
-                    cell: self.config.position_tolerance,
-                };
-                optimal::find(task, &mut space, effort)
+        let least = most.min(0.0);
+        let mut plan = self.plan_with(footprint, &near, &task, most);
+        for margin in [most / 3.0, least] {
+            if matches!(plan, Plan::Impossible(_)) && most > least {
+                plan = self.plan_with(footprint, &near, &task, margin);
             }
+        }
+        Ok(plan)
+    }
+
+    fn task(&self, start: Pose2, goal: Pose2) -> Task {
+        Task { start, goal, limits: self.config.limits, reach: self.config.reach }
+    }
+
+    fn plan_with(&self, footprint: &Footprint, scene: &Scene, task: &Task, margin: f64) -> Plan {
+        let (config, limits) = (&self.config, self.config.limits);
+        let mut space = Space::new(footprint, margin, scene);
+        let effort = Effort {
+            nodes: config.search_nodes,
+            boxes: config.bound_boxes,
+            gap: config.gap,
+            cell: config.position_tolerance,
         };
-        Ok(match outcome {
+        let nothing = |by, proven| Plan::Impossible(Impossible { by, proven });
+        if config.method == Method::Paper {
+            let found = paper::plan(&space, task.start, task.goal, &limits, &config.paper);
+            return found.map_or(nothing(None, false), |manoeuvre| {
+                Plan::Found(Solution { manoeuvre, bound: 0.0, margin })
+            });
+        }
+        match optimal::find(*task, &mut space, effort) {
             Outcome::Found((_, legs), bound) => {
-                let (_, motions) = legs.motions(&task, &mut space).expect("invariant: found legs are free");
+                let (_, motions) = legs.motions(task, &mut space).expect("invariant: found legs are free");
                 Plan::Found(Solution {
-                    manoeuvre: Manoeuvre::new(start, &motions, limits),
+                    manoeuvre: Manoeuvre::new(task.start, &motions, limits),
                     bound,
                     margin,
                 })
             }
-            Outcome::Apart(by) => Plan::Impossible(Impossible { by, proven: true }),
-            Outcome::Nothing => Plan::Impossible(Impossible { by: None, proven: false }),
-        })
+            Outcome::Apart(by) => nothing(by, true),
+            Outcome::Nothing => nothing(None, false),
+        }
     }
 
     /// A time (s) that no manoeuvre from `start` to `goal` beats, sought with the effort of the configuration; at most
@@ -134,17 +151,10 @@ impl Docker {
         known: f64,
     ) -> Result<f64, Refusal> {
         let margin = self.checked(footprint, scene, &start, &goal)?;
-        let task = Task { start, goal, limits: self.config.limits, reach: self.config.reach };
+        let task = self.task(start, goal);
         let near = scene.around(task.center(), task.half() + footprint.circumscribed_radius() + 0.1);
         let mut space = Space::new(footprint, margin, &near);
         Ok(optimal::bound(&task, &mut space, known, self.config.gap, self.config.bound_boxes))
-    }
-
-    fn by_paper(&self, space: &Space<'_>, start: Pose2, goal: Pose2, margin: f64) -> Plan {
-        match paper::plan(space, start, goal, &self.config.limits, &self.config.paper) {
-            Some(manoeuvre) => Plan::Found(Solution { manoeuvre, bound: 0.0, margin }),
-            None => Plan::Impossible(Impossible { by: None, proven: false }),
-        }
     }
 
     /// The margin that start and goal leave, m.
@@ -165,15 +175,15 @@ impl Docker {
         if distance > most {
             return Err(Refusal::TooFar { distance, most });
         }
-        let mut margin = self.config.margin;
-        for (pose, refusal) in
-            [(start, Refusal::StartBlocked as fn(Blocker) -> Refusal), (goal, Refusal::GoalBlocked)]
-        {
-            if let Some((clearance, by)) = scene.clearance(footprint, pose, margin + 2e-4) {
+        let (mut margin, overlap) = (self.config.margin, self.config.overlap);
+        let least = Hull::new(footprint, -overlap);
+        let ends = [(start, Refusal::StartBlocked as fn(Blocker) -> Refusal), (goal, Refusal::GoalBlocked)];
+        for (pose, refusal) in ends {
+            if let Some((clearance, by)) = scene.clearance_of(&least, pose, margin + overlap + 2e-4) {
                 if clearance <= 1e-9 {
                     return Err(refusal(by));
                 }
-                margin = margin.min(clearance);
+                margin = margin.min(clearance - overlap);
             }
         }
         Ok(margin)

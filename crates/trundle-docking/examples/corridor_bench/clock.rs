@@ -1,29 +1,22 @@
-//! Time that the processor spent on this thread, where the system tells it; a busy machine does not count.
+//! Time on a machine that may be busy with other things: the least of several runs.
 
 use std::time::Instant;
 
-/// A moment.
-pub struct Clock {
-    wall: Instant,
-    run_ns: Option<f64>,
-}
+/// Runs are repeated while one takes less than this, ms.
+const SHORT: f64 = 300.0;
 
-/// Now.
-pub fn start() -> Clock {
-    Clock { wall: Instant::now(), run_ns: run_ns() }
-}
-
-impl Clock {
-    /// Milliseconds since.
-    pub fn ms(&self) -> f64 {
-        match (self.run_ns, run_ns()) {
-            (Some(before), Some(now)) => (now - before) * 1e-6,
-            _ => self.wall.elapsed().as_secs_f64() * 1e3,
+/// The result of `work` and the least time of up to three runs, ms.
+pub fn timed<T>(mut work: impl FnMut() -> T) -> (T, f64) {
+    let mut run = || {
+        let start = Instant::now();
+        let result = work();
+        (result, start.elapsed().as_secs_f64() * 1e3)
+    };
+    let (result, mut least) = run();
+    for _ in 0..2 {
+        if least < SHORT {
+            least = least.min(run().1);
         }
     }
-}
-
-/// Linux: nanoseconds on the processor.
-fn run_ns() -> Option<f64> {
-    std::fs::read_to_string("/proc/thread-self/schedstat").ok()?.split_whitespace().next()?.parse().ok()
+    (result, least)
 }

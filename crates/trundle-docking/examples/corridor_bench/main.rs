@@ -23,7 +23,8 @@ fn main() {
 
 fn problems() -> Vec<Problem> {
     if let Some(path) = argument("--file") {
-        return parse(&std::fs::read_to_string(path).expect("a file that can be read")).expect("the format of the page");
+        return parse(&std::fs::read_to_string(path).expect("a file that can be read"))
+            .expect("the format of the page");
     }
     let (count, seed) = (number("--problems", 5000), number("--seed", 1) as u64);
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
@@ -37,12 +38,14 @@ fn problems() -> Vec<Problem> {
 /// The default method; its times against a bound that is sought with `boxes`.
 fn optimal(problems: &[Problem], boxes: usize) -> Row {
     let base = DockingConfig { margin: 0.0, ..DockingConfig::default() };
-    let judge = Docker::new(DockingConfig { bound_boxes: boxes, search_nodes: 0, ..base.clone() }).expect("valid");
+    let judge =
+        Docker::new(DockingConfig { bound_boxes: boxes, search_nodes: 0, ..base.clone() }).expect("valid");
     let mut row = plan_all("trundle, optimal", problems, &Docker::new(base).expect("valid"));
     for (problem, time) in problems.iter().zip(&row.times) {
         let Some(time) = time else { continue };
         let scene = problem.scene().expect("valid");
-        let bound = judge.bound(&problem.footprint, &scene, problem.start, problem.goal, *time).expect("free ends");
+        let bound =
+            judge.bound(&problem.footprint, &scene, problem.start, problem.goal, *time).expect("free ends");
         row.ratios.push(time / bound);
     }
     row
@@ -57,12 +60,13 @@ fn plan_all(name: &'static str, problems: &[Problem], docker: &Docker) -> Row {
     let mut row = Row::new(name);
     for problem in problems {
         let scene = problem.scene().expect("valid");
-        let clock = clock::start();
-        let plan = docker.plan(&problem.footprint, &scene, problem.start, problem.goal).expect("free ends");
-        row.planning_ms.push(clock.ms());
-        if std::env::args().any(|a| a == "--slow") && clock.ms() > 30.0 {
+        let plan =
+            || docker.plan(&problem.footprint, &scene, problem.start, problem.goal).expect("free ends");
+        let (plan, ms) = clock::timed(plan);
+        row.planning_ms.push(ms);
+        if std::env::args().any(|a| a == "--slow") && ms > 30.0 {
             let steps = if let Plan::Found(solution) = &plan { solution.manoeuvre.steps().len() } else { 0 };
-            println!("{} {:.0} ms {steps} steps", problem.name, clock.ms());
+            println!("{} {:.0} ms {steps} steps", problem.name, ms);
         }
         let mut time = None;
         match plan {

@@ -36,7 +36,9 @@ impl Row {
 /// Prints the rows; times are compared with those of the first row, problem by problem.
 pub fn print(rows: &[Row], count: usize) {
     println!("{count} problems\n");
-    println!("| method | settled | proven impossible | no answer | contact or missed | time / first row's, median (p95) | planning ms, median (p99, most) |");
+    println!(
+        "| method | settled | proven impossible | no answer | contact or missed | time / first row's, median (p95) | planning ms, median (p99, most) |"
+    );
     println!("|---|---|---|---|---|---|---|");
     for row in rows {
         let pairs = row.times.iter().zip(&rows[0].times);
@@ -59,14 +61,25 @@ pub fn print(rows: &[Row], count: usize) {
     for row in rows {
         if !row.ratios.is_empty() {
             let at = |q| part(&row.ratios, q);
-            println!("\n{}: time over the proven bound: median {:.4}, p90 {:.4}, p95 {:.4}, p99 {:.4}", row.name, at(0.5), at(0.9), at(0.95), at(0.99));
+            println!(
+                "\n{}: time over the proven bound: median {:.4}, p90 {:.4}, p95 {:.4}, p99 {:.4}",
+                row.name,
+                at(0.5),
+                at(0.9),
+                at(0.95),
+                at(0.99)
+            );
         }
         if !row.unsolved.is_empty() || !row.bad.is_empty() {
             println!("{}: no answer {:?}; bad {:?}", row.name, first(&row.unsolved), first(&row.bad));
         }
     }
     let sum: f64 = rows[0].times.iter().flatten().sum();
-    println!("\n{}: {:.3} s on average", rows[0].name, sum / rows[0].times.iter().flatten().count().max(1) as f64);
+    println!(
+        "\n{}: {:.3} s on average",
+        rows[0].name,
+        sum / rows[0].times.iter().flatten().count().max(1) as f64
+    );
 }
 
 fn first(list: &[String]) -> &[String] {

@@ -57,13 +57,21 @@ impl Chain<'_> {
                 let arrived = if i == 0 {
                     let (left, right) = (ends.start.left + BACK_OFF, ends.start.right + BACK_OFF);
                     let turn = sector.heading.least_turn_from(ends.task.start.theta, left, right);
-                    turn.map_or(f64::INFINITY, |turn| if turn > 0.0 { limits.turn_time(turn) + pause } else { 0.0 })
+                    turn.map_or(
+                        f64::INFINITY,
+                        |turn| if turn > 0.0 { limits.turn_time(turn) + pause } else { 0.0 },
+                    )
                 } else {
                     let from = |last: &Sector| {
                         let turn = last.heading.least_turn_to(&sector.heading, gaps[i - 1]);
                         turn.map_or(f64::INFINITY, |turn| last.sum + limits.turn_time(turn) + pause)
                     };
-                    before.used().iter().filter(|last| last.sum.is_finite()).map(from).fold(f64::INFINITY, f64::min)
+                    before
+                        .used()
+                        .iter()
+                        .filter(|last| last.sum.is_finite())
+                        .map(from)
+                        .fold(f64::INFINITY, f64::min)
                 };
                 sector.sum = arrived + drive;
             }
@@ -73,7 +81,9 @@ impl Chain<'_> {
         let end = |last: &Sector| {
             // The turn at the goal runs the other way round, from this heading to the goal's.
             let turn = last.heading.least_turn_from(ends.task.goal.theta, left, right);
-            turn.map_or(f64::INFINITY, |turn| last.sum + if turn > 0.0 { limits.turn_time(turn) } else { -pause })
+            turn.map_or(f64::INFINITY, |turn| {
+                last.sum + if turn > 0.0 { limits.turn_time(turn) } else { -pause }
+            })
         };
         let least = before.used().iter().map(end).fold(f64::INFINITY, f64::min);
         least.is_finite().then_some(least)

@@ -4,7 +4,7 @@ use super::ranges::LegRange;
 use super::tests_of_legs::Shrunk;
 use crate::geometry::Arc;
 use crate::optimal::{Legs, Task};
-use crate::space::{BACK_OFF, FreeTurn, Space};
+use crate::space::{FreeTurn, Space};
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 use trundle_core::wrap_angle;
@@ -57,7 +57,13 @@ impl Ord for Family {
 
 /// Raises the bound, and improves the legs where a box holds better ones, until they are within `gap` (a part) of each
 /// other or `most` boxes have been looked at.
-pub fn improve(task: &Task, space: &mut Space<'_>, best: Option<(f64, Legs)>, gap: f64, most: usize) -> Bounded {
+pub fn improve(
+    task: &Task,
+    space: &mut Space<'_>,
+    best: Option<(f64, Legs)>,
+    gap: f64,
+    most: usize,
+) -> Bounded {
     let free = Bounding { task, region: region(task), start: FULL_TURN, goal: FULL_TURN, shrunk: None };
     let (spare, used) = free.least_free_time(most / 4);
     let shrunk = Shrunk::new(space.hull(), space.scene());
@@ -91,7 +97,8 @@ pub fn improve(task: &Task, space: &mut Space<'_>, best: Option<(f64, Legs)>, ga
             continue;
         }
         bounding.try_middles(&family, space, &mut known);
-        let widest = (0..family.turns).min_by_key(|&i| family.squares[i].level).expect("invariant: a family turns");
+        let widest =
+            (0..family.turns).min_by_key(|&i| family.squares[i].level).expect("invariant: a family turns");
         if family.squares[widest].level >= FINEST_LEVEL {
             // As fine as it gets: its bound stands.
             known.bound = family.bound;
@@ -137,18 +144,22 @@ impl Bounding<'_, '_> {
     /// A lower bound of the motions' time alone (no pauses) over all manoeuvres of up to two legs were nothing in the way,
     /// and the boxes it took.
     fn least_free_time(&self, most: usize) -> (f64, usize) {
-        let calm = Task { limits: crate::MotionLimits { switch_time: 0.0, ..self.task.limits }, ..*self.task };
-        let calm = Bounding { task: &calm, region: self.region, start: self.start, goal: self.goal, shrunk: None };
+        let calm =
+            Task { limits: crate::MotionLimits { switch_time: 0.0, ..self.task.limits }, ..*self.task };
+        let calm =
+            Bounding { task: &calm, region: self.region, start: self.start, goal: self.goal, shrunk: None };
         let rest = calm.task.goal.position() - calm.task.start.position();
         let toward = if rest.norm() > 1e-9 { rest.y.atan2(rest.x) } else { calm.task.start.theta };
         let legs = |heading, way| Legs(vec![(heading, way)]).least_time(calm.task);
-        let mut time = legs(toward, rest.norm()).min(legs(wrap_angle(toward + std::f64::consts::PI), -rest.norm()));
+        let mut time =
+            legs(toward, rest.norm()).min(legs(wrap_angle(toward + std::f64::consts::PI), -rest.norm()));
         let mut queue = BinaryHeap::new();
         queue.push(Family { bound: 0.0, turns: 1, squares: [Square::ALL; MOST_LEGS - 1], tested: false });
         let mut boxes = 0;
         while let Some(family) = queue.pop() {
             boxes += 1;
-            if family.bound >= 0.98 * time || boxes >= most.max(50) || family.squares[0].level >= FINEST_LEVEL {
+            if family.bound >= 0.98 * time || boxes >= most.max(50) || family.squares[0].level >= FINEST_LEVEL
+            {
                 return (family.bound.min(time), boxes);
             }
             time = time.min(calm.free_time_of_middle(&family));
@@ -164,7 +175,9 @@ impl Bounding<'_, '_> {
     }
 
     fn free_time_of_middle(&self, family: &Family) -> f64 {
-        self.legs_of_middles(family, 0b00).into_iter().chain([0b01, 0b10, 0b11].into_iter().flat_map(|gears| self.legs_of_middles(family, gears)))
+        self.legs_of_middles(family, 0b00)
+            .into_iter()
+            .chain([0b01, 0b10, 0b11].into_iter().flat_map(|gears| self.legs_of_middles(family, gears)))
             .map(|legs| legs.least_time(self.task))
             .fold(f64::INFINITY, f64::min)
     }
@@ -183,7 +196,8 @@ impl Bounding<'_, '_> {
     fn bound(&self, family: &Family) -> f64 {
         let open: &[Arc] = &[Arc::FULL];
         let ends = Ends { task: self.task, start: &self.start, goal: &self.goal };
-        let chain = Chain { places: &self.places(family)[..], legs: family.turns + 1, free: [[true; 2]; MOST_LEGS] };
+        let chain =
+            Chain { places: &self.places(family)[..], legs: family.turns + 1, free: [[true; 2]; MOST_LEGS] };
         chain.least_time(&ends, [open; MOST_LEGS - 1]).unwrap_or(f64::INFINITY)
     }
 
@@ -194,7 +208,8 @@ impl Bounding<'_, '_> {
         let mut free = [[true; 2]; MOST_LEGS];
         for i in 0..=family.turns {
             let leg = LegRange::between(&places[i], &places[i + 1]);
-            free[i] = [false, true].map(|backward| shrunk.may_drive(&places[i], &places[i + 1], &leg, backward));
+            free[i] =
+                [false, true].map(|backward| shrunk.may_drive(&places[i], &places[i + 1], &leg, backward));
         }
         for square in &family.squares[..family.turns] {
             shrunk.find_gaps(&self.region, *square);

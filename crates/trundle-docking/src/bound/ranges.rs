@@ -68,7 +68,8 @@ impl Heading {
             }
             let (mine, theirs) = (self.within(gap), other.within(gap));
             let apart = |(a, b): (f64, f64), (c, d): (f64, f64)| (c - b).max(a - d).max(0.0);
-            let pairs = mine.iter().flatten().flat_map(|&m| theirs.iter().flatten().map(move |&t| apart(m, t)));
+            let pairs =
+                mine.iter().flatten().flat_map(|&m| theirs.iter().flatten().map(move |&t| apart(m, t)));
             pairs.min_by(f64::total_cmp)
         };
         gaps.iter().filter_map(within).min_by(f64::total_cmp)

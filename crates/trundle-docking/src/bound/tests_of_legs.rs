@@ -24,7 +24,8 @@ impl<'a> Shrunk<'a> {
     /// Prepares the hulls.
     pub fn new(hull: &Hull, scene: &'a Scene) -> Self {
         let depth = |i: usize| FINEST * 2_f64.powf(i as f64 / 2.0);
-        let spaces = (0..STEPS).map(|i| hull.shrunk(depth(i)).map(|hull| Space::of_hull(hull, scene))).collect();
+        let spaces =
+            (0..STEPS).map(|i| hull.shrunk(depth(i)).map(|hull| Space::of_hull(hull, scene))).collect();
         Self { spaces, gaps: BTreeMap::new(), blocked: Vec::new() }
     }
 
@@ -53,7 +54,8 @@ impl<'a> Shrunk<'a> {
         if let Some(space) = self.space(place.radius()) {
             space.blocked_headings(place.center, &mut blocked);
         }
-        let after = |i: usize| if i + 1 < blocked.len() { blocked[i + 1].start } else { blocked[0].start + TAU };
+        let after =
+            |i: usize| if i + 1 < blocked.len() { blocked[i + 1].start } else { blocked[0].start + TAU };
         let gap = |(i, arc): (usize, &Arc)| {
             let start = arc.start + arc.length;
             Arc { start: start.rem_euclid(TAU), length: after(i) - start }

@@ -40,8 +40,15 @@ pub(super) struct Edge {
 }
 
 impl Hull {
-    /// A footprint grown by `margin` (m, taken as at least 0.1 mm).
+    /// A footprint grown by `margin` (m, taken as at least 0.1 mm), or shrunk when it is negative; what shrinks to nothing
+    /// is a point at the axle.
     pub fn new(footprint: &Footprint, margin: f64) -> Self {
+        if margin < 0.0 {
+            let whole = Self::new(footprint, 0.0);
+            return whole
+                .shrunk(-margin)
+                .unwrap_or_else(|| Self::from_core(&[Vector2::zeros()], LEAST_RADIUS));
+        }
         let margin = margin.max(LEAST_RADIUS);
         match footprint {
             Footprint::Disc { radius } => Self::from_core(&[Vector2::zeros()], radius + margin),

@@ -86,11 +86,16 @@ const LOOSE: f64 = 0.05;
 fn hard<'a>(search: &mut Search<'_, 'a>, second: &mut Space<'a>, effort: Effort) -> Option<Option<Blocker>> {
     // Beams are for what one or two legs do not do: cells first, they are cheap and often enough.
     let (task, center, half) = (search.task, search.task.center(), search.task.half());
-    let apart = |search: &Search<'_, '_>, side: f64| {
-        match disprove(search.space, &task.start, &task.goal, center, half, side * effort.cell) {
-            Proof::Apart { by } => Some(by),
-            Proof::Together => None,
-        }
+    let apart = |search: &Search<'_, '_>, side: f64| match disprove(
+        search.space,
+        &task.start,
+        &task.goal,
+        center,
+        half,
+        side * effort.cell,
+    ) {
+        Proof::Apart { by } => Some(by),
+        Proof::Together => None,
     };
     if let Some(by) = CELLS.iter().find_map(|side| apart(search, *side)) {
         return Some(by);

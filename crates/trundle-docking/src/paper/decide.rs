@@ -17,6 +17,9 @@ pub enum Decision {
     Stuck,
 }
 
+/// Costs as close as this are one: then clockwise goes before counter-clockwise, and forward before back.
+const TIE: f64 = 1e-9;
+
 /// The method among its obstacles.
 #[derive(Debug, Clone, Copy)]
 pub struct PaperMethod<'a> {
@@ -58,7 +61,7 @@ impl PaperMethod<'_> {
                 }
                 let time = self.limits.turn_time(turn) + self.limits.drive_time(way);
                 let cost = self.config.time_weight * time + self.config.lateral_weight * left;
-                if best.is_none_or(|(least, _, _)| cost < least) {
+                if best.is_none_or(|(least, _, _)| cost < least - TIE) {
                     best = Some((cost, turn, way));
                 }
             }

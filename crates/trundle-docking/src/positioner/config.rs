@@ -1,0 +1,78 @@
+use serde::{Deserialize, Serialize};
+use trundle_core::{Invalid, require_in};
+
+/// How motions are carried out on measured poses.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct PositionerConfig {
+    /// Standing still before every decision while the pose is averaged, s, 0.02 to 10. Default 0.4, which with coming to
+    /// rest is the planner's `switch_time`.
+    pub measure_time: f64,
+    /// Part of the tolerances that motions aim to stay within, 0.05 to 1. Default 0.7: what is measured at rest as settled
+    /// is settled.
+    pub aim: f64,
+    /// A settled robot moves again when an error grows beyond this many tolerances, 1 to 100. Default 2.
+    pub release: f64,
+    /// Decisions to move again after the goal was first met within `release` tolerances, 0 to 100; then it is accepted.
+    /// Default 6.
+    pub attempts: u32,
+    /// Slowest straight command, m/s, 0.001 to 0.2: motors stick below. Default 0.02.
+    pub creep_speed: f64,
+    /// Slowest turn command, rad/s, 0.001 to 1. Default 0.06.
+    pub creep_rate: f64,
+    /// From command to motion, s, 0 to 1: braking begins that much earlier. Default 0.08.
+    pub delay: f64,
+    /// Part of the acceleration that braking counts on, 0.1 to 1. Default 0.7.
+    pub braking: f64,
+    /// Turn rate by heading error while driving straight, 1/s, 0 to 10. Default 1.5.
+    pub heading_gain: f64,
+    /// Overlap with an obstacle that is taken for an error of the pose, m, 0 to 0.02. Default 0.005: twice a
+    /// localisation of 2 mm, and more.
+    pub overlap: f64,
+    /// Waiting before planning again when there is no way, s, 0.1 to 100. Default 1.
+    pub patience: f64,
+}
+
+impl Default for PositionerConfig {
+    fn default() -> Self {
+        Self {
+            measure_time: 0.4,
+            aim: 0.7,
+            release: 2.0,
+            attempts: 6,
+            creep_speed: 0.02,
+            creep_rate: 0.06,
+            delay: 0.08,
+            braking: 0.7,
+            heading_gain: 1.5,
+            overlap: 0.005,
+            patience: 1.0,
+        }
+    }
+}
+
+impl PositionerConfig {
+    /// Passes a valid configuration through.
+    ///
+    /// # Errors
+    /// When a number is outside its range.
+    pub fn validated(self) -> Result<Self, Invalid> {
+        let ranges = [
+            ("measure_time", self.measure_time, "s", 0.02, 10.0),
+            ("aim", self.aim, "", 0.05, 1.0),
+            ("release", self.release, "", 1.0, 100.0),
+            ("attempts", f64::from(self.attempts), "", 0.0, 100.0),
+            ("creep_speed", self.creep_speed, "m/s", 0.001, 0.2),
+            ("creep_rate", self.creep_rate, "rad/s", 0.001, 1.0),
+            ("delay", self.delay, "s", 0.0, 1.0),
+            ("braking", self.braking, "", 0.1, 1.0),
+            ("heading_gain", self.heading_gain, "1/s", 0.0, 10.0),
+            ("overlap", self.overlap, "m", 0.0, 0.02),
+            ("patience", self.patience, "s", 0.1, 100.0),
+        ];
+        for (name, value, unit, low, high) in ranges {
+            require_in(&format!("positioner.{name}"), value, unit, low, high)?;
+        }
+        Ok(self)
+    }
+}

@@ -1,0 +1,228 @@
+//! Closed loop: plan, carry out one motion, stand still and measure, decide again.
+//!
+//! Problem: poses are measured with noise and wheels lag, so that a manoeuvre carried out blindly ends beside its goal, and
+//! one corrected without end hunts. Idea: after every motion the pose is averaged at rest and the rest is planned anew; where
+//! one or two motions end within the tolerance, these are taken instead of an exact manoeuvre; what is settled stays settled
+//! until an error exceeds the tolerance by far. Every step looks along the motion for the stopping way; when something is
+//! there, the command is zero at once. Cost: one plan a motion, one closed-form query a step.
+
+mod average;
+mod config;
+mod follow;
+mod nearly;
+
+pub use config::PositionerConfig;
+
+use crate::config::DockingConfig;
+use crate::manoeuvre::{Manoeuvre, Motion};
+use crate::planner::{Docker, Plan, Refusal};
+use crate::scene::{Blocker, Scene};
+use crate::space::Space;
+use average::PoseAverage;
+use follow::{Command, Following};
+use nearly::{Tolerance, nearly};
+use trundle_core::{Footprint, Invalid, Pose2, Stamp, Twist2};
+
+/// What the positioner is told at every step.
+#[derive(Debug, Clone, Copy)]
+pub struct PositionerInput<'a> {
+    /// Now.
+    pub stamp: Stamp,
+    /// The measured `map_from_base`.
+    pub pose: Pose2,
+    /// What stands around now, map frame.
+    pub scene: &'a Scene,
+}
+
+/// Why the twist is what it is.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Reason {
+    /// At rest, averaging the pose.
+    Measuring,
+    /// Carrying out a motion.
+    Moving(Motion),
+    /// On the goal, within tolerance.
+    Settled,
+    /// Something is in the way of the motion: stopped, and planning anew from here.
+    Obstacle(Option<Blocker>),
+    /// There is no manoeuvre; trying again after a while.
+    NoWay(Option<Blocker>),
+    /// Nothing can be planned; trying again after a while.
+    Refused(Refusal),
+    /// The pose is not a number.
+    BadPose,
+}
+
+/// What a step says.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PositionerReport {
+    /// For the base, now.
+    pub twist: Twist2,
+    /// Why.
+    pub reason: Reason,
+    /// `goal_from_base`: the error, of the averaged pose while at rest.
+    pub error: Pose2,
+}
+
+#[derive(Debug, Clone)]
+enum Phase {
+    Measure { since: Stamp, average: PoseAverage },
+    Follow(Following),
+    Wait { until: Stamp, reason: Reason },
+    Settled,
+}
+
+/// Brings a robot onto a goal and keeps it there.
+#[derive(Debug, Clone)]
+pub struct Positioner {
+    docker: Docker,
+    config: PositionerConfig,
+    footprint: Footprint,
+    goal: Pose2,
+    phase: Option<Phase>,
+    last: Option<Stamp>,
+    attempts: u32,
+    plan: Option<Manoeuvre>,
+}
+
+impl Positioner {
+    /// For one goal (`map_from_base`).
+    ///
+    /// # Errors
+    /// When a setting is outside its range.
+    pub fn new(
+        docking: DockingConfig,
+        config: PositionerConfig,
+        footprint: Footprint,
+        goal: Pose2,
+    ) -> Result<Self, Invalid> {
+        let config = config.validated()?;
+        let docker = Docker::new(DockingConfig { overlap: config.overlap, ..docking })?;
+        Ok(Self { docker, config, footprint, goal, phase: None, last: None, attempts: 0, plan: None })
+    }
+
+    /// The goal, `map_from_base`.
+    pub fn goal(&self) -> Pose2 {
+        self.goal
+    }
+
+    /// What was planned last.
+    pub fn manoeuvre(&self) -> Option<&Manoeuvre> {
+        self.plan.as_ref()
+    }
+
+    /// Whether it stands on its goal.
+    pub fn is_settled(&self) -> bool {
+        matches!(self.phase, Some(Phase::Settled))
+    }
+
+    /// One control step, at 10 Hz or more.
+    pub fn step(&mut self, input: &PositionerInput<'_>) -> PositionerReport {
+        if !input.pose.is_finite() {
+            return PositionerReport { twist: Twist2::ZERO, reason: Reason::BadPose, error: Pose2::IDENTITY };
+        }
+        let dt = self.last.map_or(0.0, |last| (input.stamp - last).clamp(0.0, 0.2));
+        self.last = Some(input.stamp);
+        let phase = self.phase.take().unwrap_or_else(|| measure(input.stamp));
+        let (phase, twist, reason, pose) = match phase {
+            Phase::Measure { since, average } => self.measure(input, since, average),
+            Phase::Follow(following) => self.follow(input, following, dt),
+            Phase::Wait { until, reason } if input.stamp < until => {
+                (Phase::Wait { until, reason: reason.clone() }, Twist2::ZERO, reason, input.pose)
+            }
+            Phase::Wait { .. } => (measure(input.stamp), Twist2::ZERO, Reason::Measuring, input.pose),
+            Phase::Settled => self.settled(input),
+        };
+        self.phase = Some(phase);
+        PositionerReport { twist, reason, error: self.goal.inverse() * pose }
+    }
+
+    fn tolerance(&self) -> Tolerance {
+        let config = self.docker.config();
+        Tolerance { position: config.position_tolerance, heading: config.heading_tolerance }
+    }
+
+    fn measure(
+        &mut self,
+        input: &PositionerInput<'_>,
+        since: Stamp,
+        mut average: PoseAverage,
+    ) -> (Phase, Twist2, Reason, Pose2) {
+        // The first fifth is for coming to rest.
+        if input.stamp - since >= 0.2 * self.config.measure_time {
+            average.add(&input.pose);
+        }
+        if input.stamp - since < self.config.measure_time {
+            return (Phase::Measure { since, average }, Twist2::ZERO, Reason::Measuring, input.pose);
+        }
+        let pose = average.mean();
+        let (phase, reason) = self.decide(input, &pose);
+        (phase, Twist2::ZERO, reason, pose)
+    }
+
+    /// What to do from a pose measured at rest.
+    fn decide(&mut self, input: &PositionerInput<'_>, pose: &Pose2) -> (Phase, Reason) {
+        let error = self.goal.inverse() * *pose;
+        let accepted = if self.attempts > self.config.attempts { self.config.release } else { 1.0 };
+        if self.tolerance().holds(&error, accepted * 0.9) {
+            return (Phase::Settled, Reason::Settled);
+        }
+        self.attempts += u32::from(self.tolerance().holds(&error, self.config.release));
+        match self.next_motion(input.scene, pose) {
+            Ok(motion) => (Phase::Follow(Following::new(motion, *pose)), Reason::Moving(motion)),
+            Err(reason) => (
+                Phase::Wait { until: input.stamp.after(self.config.patience), reason: reason.clone() },
+                reason,
+            ),
+        }
+    }
+
+    fn next_motion(&mut self, scene: &Scene, pose: &Pose2) -> Result<Motion, Reason> {
+        let limits = self.docker.config().limits;
+        let mut space = Space::new(&self.footprint, -self.config.overlap / 2.0, scene);
+        let (tolerance, part) = (self.tolerance(), self.config.aim);
+        let motions = match nearly(&mut space, &limits, pose, &self.goal, &tolerance, part) {
+            Some(motions) => Manoeuvre::new(*pose, &motions, limits),
+            None => {
+                match self.docker.plan(&self.footprint, scene, *pose, self.goal).map_err(Reason::Refused)? {
+                    Plan::Found(solution) => solution.manoeuvre,
+                    Plan::Impossible(impossible) => return Err(Reason::NoWay(impossible.by)),
+                }
+            }
+        };
+        let first = motions.steps().first().map(|step| step.motion);
+        self.plan = Some(motions);
+        // Nothing to do is a motion of nothing: it ends at once, and the pose is measured again.
+        Ok(first.unwrap_or(Motion::Turn(0.0)))
+    }
+
+    fn follow(
+        &mut self,
+        input: &PositionerInput<'_>,
+        mut following: Following,
+        dt: f64,
+    ) -> (Phase, Twist2, Reason, Pose2) {
+        let mut space = Space::new(&self.footprint, -self.config.overlap, input.scene);
+        let limits = self.docker.config().limits;
+        let (phase, twist, reason) = match following.step(&input.pose, dt, &mut space, &limits, &self.config)
+        {
+            Command::Go(twist) => (Phase::Follow(following), twist, Reason::Moving(following.motion())),
+            Command::Done => (measure(input.stamp), Twist2::ZERO, Reason::Measuring),
+            Command::Blocked(by) => (measure(input.stamp), Twist2::ZERO, Reason::Obstacle(by)),
+        };
+        (phase, twist, reason, input.pose)
+    }
+
+    fn settled(&mut self, input: &PositionerInput<'_>) -> (Phase, Twist2, Reason, Pose2) {
+        let error = self.goal.inverse() * input.pose;
+        if self.tolerance().holds(&error, self.config.release) {
+            return (Phase::Settled, Twist2::ZERO, Reason::Settled, input.pose);
+        }
+        self.attempts = 0;
+        (measure(input.stamp), Twist2::ZERO, Reason::Measuring, input.pose)
+    }
+}
+
+fn measure(since: Stamp) -> Phase {
+    Phase::Measure { since, average: PoseAverage::default() }
+}

@@ -1,0 +1,135 @@
+//! The closed forms against brute force: never unsafe, and not more than a millimetre too careful.
+
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use std::f64::consts::{PI, TAU};
+use trundle_core::{Footprint, Pose2, Vector2};
+use trundle_docking::{Blocker, Motion, Obstacle, Scene, Space};
+
+const CASES: usize = 100_000;
+
+/// A convex footprint, often with the axle off its middle, sometimes with the axle outside; or a disc.
+fn footprint(rng: &mut ChaCha8Rng) -> Footprint {
+    if rng.random_bool(0.1) {
+        return Footprint::disc(rng.random_range(0.05..0.5)).unwrap();
+    }
+    let (a, b) = (rng.random_range(0.1..0.5), rng.random_range(0.1..0.4));
+    let shift = Vector2::new(rng.random_range(-0.4..0.4), rng.random_range(-0.2..0.2));
+    let count = rng.random_range(3..8);
+    let first = rng.random_range(0.0..TAU);
+    let mut angles: Vec<f64> =
+        (0..count).map(|i| first + (i as f64 + rng.random_range(0.0..0.8)) * TAU / count as f64).collect();
+    angles.sort_by(f64::total_cmp);
+    Footprint::polygon(angles.iter().map(|t| shift + Vector2::new(a * t.cos(), b * t.sin())).collect())
+        .unwrap()
+}
+
+fn obstacle(rng: &mut ChaCha8Rng) -> Obstacle {
+    let mut point = || Vector2::new(rng.random_range(-1.2..1.2), rng.random_range(-1.2..1.2));
+    let (p, q) = (point(), point());
+    match rng.random_range(0..4) {
+        0 => Obstacle::Point(p),
+        1 => Obstacle::Segment(p, q),
+        2 => Obstacle::Segment(p, p + (q - p) * 0.1),
+        _ => {
+            let pose =
+                Pose2::new(p.x, p.y, if rng.random_bool(0.5) { 0.0 } else { rng.random_range(-PI..PI) });
+            let (w, h) = (rng.random_range(0.02..0.5), rng.random_range(0.02..0.5));
+            Obstacle::Polygon(
+                [(0., 0.), (w, 0.), (w, h), (0., h)]
+                    .map(|(x, y)| pose.transform(Vector2::new(x, y)))
+                    .to_vec(),
+            )
+        }
+    }
+}
+
+/// Brute force, on its own: the least distance of the footprint from any side; 0 where they cross or one holds the other.
+fn distance(footprint: &Footprint, pose: &Pose2, pieces: &[(Vector2, Vector2)]) -> f64 {
+    let (outline, radius) = match footprint {
+        Footprint::Disc { radius } => (vec![pose.position()], *radius),
+        Footprint::Polygon { corners } => (corners.iter().map(|c| pose.transform(*c)).collect(), 0.0),
+    };
+    let mut least = f64::INFINITY;
+    for (i, &p) in outline.iter().enumerate() {
+        let q = outline[(i + 1) % outline.len()];
+        for &(a, b) in pieces {
+            let side = |a: Vector2, b: Vector2, p: Vector2| (b - a).perp(&(p - a));
+            if side(a, b, p) * side(a, b, q) < 0.0 && side(p, q, a) * side(p, q, b) < 0.0 {
+                return 0.0;
+            }
+            let near = [to_piece(a, p, q), to_piece(b, p, q), to_piece(p, a, b), to_piece(q, a, b)];
+            least = near.into_iter().fold(least, f64::min);
+        }
+    }
+    let holds = |p: Vector2| {
+        outline.len() > 2 && (0..outline.len()).all(|i| (outline[(i + 1) % outline.len()] - outline[i]).perp(&(p - outline[i])) > 0.0)
+    };
+    if pieces.iter().any(|(a, _)| holds(*a)) { 0.0 } else { (least - radius).max(0.0) }
+}
+
+fn to_piece(p: Vector2, a: Vector2, b: Vector2) -> f64 {
+    let along = b - a;
+    let part = if along.norm() == 0.0 { 0.0 } else { ((p - a).dot(&along) / along.norm_squared()).clamp(0.0, 1.0) };
+    (a + along * part - p).norm()
+}
+
+fn sides(obstacles: &[Obstacle]) -> Vec<(Vector2, Vector2)> {
+    let of = |obstacle: &Obstacle| match obstacle {
+        Obstacle::Point(p) => vec![(*p, *p)],
+        Obstacle::Segment(a, b) => vec![(*a, *b)],
+        Obstacle::Polygon(corners) => (0..corners.len()).map(|i| (corners[i], corners[(i + 1) % corners.len()])).collect(),
+    };
+    obstacles.iter().flat_map(of).collect()
+}
+
+/// One motion of a free start each: its sampled poses are free, and where it ends by contact, a millimetre is left at most.
+#[test]
+fn motions_are_safe_and_not_too_careful() {
+    let mut rng = ChaCha8Rng::seed_from_u64(8);
+    let (mut cases, mut stopped) = (0, 0);
+    while cases < CASES {
+        let footprint = footprint(&mut rng);
+        let margin: f64 = if rng.random_bool(0.5) { 0.0 } else { rng.random_range(0.0..0.1) };
+        let obstacles: Vec<Obstacle> = (0..rng.random_range(1..4)).map(|_| obstacle(&mut rng)).collect();
+        let scene = Scene::new(&obstacles).unwrap();
+        let start =
+            Pose2::new(rng.random_range(-0.5..0.5), rng.random_range(-0.5..0.5), rng.random_range(-PI..PI));
+        let pieces = sides(&obstacles);
+        let distance = |pose: &Pose2| distance(&footprint, pose, &pieces);
+        let kept = margin.max(1e-4);
+        if distance(&start) <= kept + 1e-4 {
+            continue;
+        }
+        let mut space = Space::new(&footprint, margin, &scene);
+        let (turn, drive) = (space.turn(&start), space.drive(&start, 1.0));
+        let bound = |room: f64| room.min(TAU);
+        let motions: [(Motion, Option<Blocker>); 4] = [
+            (Motion::Turn(bound(turn.left)), turn.left_by),
+            (Motion::Turn(-bound(turn.right)), turn.right_by),
+            (Motion::Drive(drive.ahead), drive.ahead_by),
+            (Motion::Drive(-drive.behind), drive.behind_by),
+        ];
+        for (motion, by) in motions {
+            cases += 1;
+            for i in 0..=40 {
+                let pose = motion.after(start, motion.amount() * f64::from(i) / 40.0);
+                assert!(
+                    distance(&pose) >= kept - 1e-9,
+                    "{footprint:?} {obstacles:?} {start:?} {motion:?} margin {margin} at {i}/40: {}",
+                    distance(&pose)
+                );
+            }
+            if by.is_some() {
+                stopped += 1;
+                let end = motion.after(start, motion.amount());
+                assert!(
+                    distance(&end) <= kept + 1e-3,
+                    "{footprint:?} {obstacles:?} {start:?} {motion:?} margin {margin}: {} left",
+                    distance(&end)
+                );
+            }
+        }
+    }
+    assert!(stopped > cases / 5, "only {stopped} of {cases} motions met something");
+}

@@ -1,0 +1,4 @@
+//! Laws and closed loops of trundle-docking.
+
+mod closed_loop;
+mod contact;
