@@ -20,6 +20,11 @@ pub struct SimConfig {
     pub base_from_camera: Pose3,
     /// Images a second, Hz, 0.1 to 120. Default 15: half the Kinect V2's 30.
     pub camera_rate_hz: f64,
+    /// How long the colour camera's shutter is open, about an image's stamp, s, 0 to 0.1. Default 0: no motion blur.
+    pub shutter_s: f64,
+    /// Moments of an exposure that are drawn and averaged while the shutter is open, an odd number from 1 to 63. Default 7.
+    /// Each costs as much as an image.
+    pub sub_exposures: usize,
     /// Noise of depth.
     pub depth_noise: DepthNoise,
     /// Noise of colour.
@@ -38,6 +43,8 @@ impl Default for SimConfig {
             camera: PinholeCamera::kinect_v2(),
             base_from_camera: camera_mount(0.05, 0.45, 8_f64.to_radians()),
             camera_rate_hz: 15.0,
+            shutter_s: 0.0,
+            sub_exposures: 7,
             depth_noise: DepthNoise::default(),
             color_noise: ColorNoise::default(),
             laser: None,
@@ -54,7 +61,12 @@ impl SimConfig {
 
     /// A robot with a Kinect v1, 640 x 480 at 30 Hz, as of the TUM RGB-D benchmark \[Sturm12\].
     pub fn kinect_v1() -> Self {
-        Self { camera: PinholeCamera::kinect_v1(), camera_rate_hz: 30.0, ..Self::default() }
+        Self {
+            camera: PinholeCamera::kinect_v1(),
+            camera_rate_hz: 30.0,
+            depth_noise: DepthNoise::kinect_v1(),
+            ..Self::default()
+        }
     }
 
     /// The same robot without any noise; dynamics, range, rates and faults stay.
@@ -77,6 +89,10 @@ impl SimConfig {
             return Err(Invalid::new("base_from_camera", "not finite", "", "finite numbers"));
         }
         require_in("camera_rate_hz", self.camera_rate_hz, "Hz", 0.1, 120.0)?;
+        require_in("shutter_s", self.shutter_s, "s", 0.0, 0.1)?;
+        if self.sub_exposures.is_multiple_of(2) || self.sub_exposures > 63 {
+            return Err(Invalid::new("sub_exposures", self.sub_exposures, "", "an odd number from 1 to 63"));
+        }
         Ok(Self {
             kobuki: self.kobuki.validated()?,
             depth_noise: self.depth_noise.validated()?,
@@ -87,9 +103,10 @@ impl SimConfig {
         })
     }
 
-    /// How long the base's poses must be remembered, s: a turn of the laser.
+    /// How long the base's poses must be remembered, s: a turn of the laser, half an exposure.
     pub(crate) fn memory(&self) -> f64 {
-        self.laser.as_ref().map_or(0.0, |laser| 1.0 / laser.rate_hz)
+        let turn = self.laser.as_ref().map_or(0.0, |laser| 1.0 / laser.rate_hz);
+        turn.max(self.shutter_s / 2.0)
     }
 }
 
@@ -108,6 +125,15 @@ mod tests {
     fn the_mount_looks_forward_and_down() {
         let axis = camera_mount(0.1, 0.5, 30_f64.to_radians()).rotate(Vector3::z());
         assert!((axis - Vector3::new(0.75_f64.sqrt(), 0.0, -0.5)).norm() < 1e-12);
+    }
+
+    #[test]
+    fn presets_are_valid() {
+        for config in [SimConfig::kinect_v2(), SimConfig::kinect_v1()] {
+            assert!(config.validated().is_ok());
+        }
+        let even = SimConfig { sub_exposures: 4, ..SimConfig::default() };
+        assert_eq!(even.validated().unwrap_err().field, "sub_exposures");
     }
 
     #[test]

@@ -1,5 +1,5 @@
 use super::track::Track;
-use crate::camera::{Renderer, RgbdSensor, View};
+use crate::camera::{Renderer, RgbdSensor, View, blend};
 use crate::config::SimConfig;
 use crate::faults::CameraFault;
 use crate::world::Stage;
@@ -11,6 +11,10 @@ pub(super) struct Eye {
     renderer: Renderer,
     sensor: RgbdSensor,
     view: View,
+    /// What is seen at the moments of an exposure, where that takes time.
+    moments: Vec<View>,
+    /// Seconds.
+    shutter: f64,
     base_from_camera: Pose3,
     /// The last image, where a camera that freezes needs it.
     last: Option<RgbdImage>,
@@ -24,9 +28,12 @@ impl Eye {
     /// When the camera has lens distortion.
     pub(super) fn new(config: &SimConfig, seed: u64) -> Result<Self, Invalid> {
         let renderer = Renderer::new(config.camera)?;
+        let moments = if config.shutter_s > 0.0 { config.sub_exposures } else { 0 };
         Ok(Self {
             sensor: RgbdSensor::new(config.depth_noise.clone(), config.color_noise.clone(), seed)?,
             view: renderer.blank(),
+            moments: vec![renderer.blank(); moments],
+            shutter: config.shutter_s,
             renderer,
             base_from_camera: config.base_from_camera,
             last: None,
@@ -68,8 +75,18 @@ impl Eye {
         stamp: Stamp,
         frame: u64,
     ) -> Result<RgbdImage, Invalid> {
-        let world_from_camera = Pose3::from_pose2(track.back(0.0)) * self.base_from_camera;
-        self.renderer.render(stage, &world_from_camera, &mut self.view);
+        let world_from_camera = |age| Pose3::from_pose2(track.back(age)) * self.base_from_camera;
+        if self.moments.is_empty() {
+            self.renderer.render(stage, &world_from_camera(0.0), &mut self.view);
+        } else {
+            let n = self.moments.len() as f64;
+            for (i, moment) in self.moments.iter_mut().enumerate() {
+                let age = ((n - 1.0) / 2.0 - i as f64) / n * self.shutter;
+                self.renderer.render(stage, &world_from_camera(age), moment);
+            }
+            blend(&self.moments, &mut self.view)?;
+        }
+        self.sensor.adapt(&self.view, stamp);
         self.sensor.expose(&self.view, stamp, frame)
     }
 

@@ -29,13 +29,23 @@ impl Track {
         self.poses.push_front(pose);
     }
 
-    /// Where the base was `age` s ago, between steps on a straight line.
+    /// Where the base was `age` s ago, between steps on a straight line; for a negative age where it will be if it goes on
+    /// as in the last step.
     pub(super) fn back(&self, age: f64) -> Pose2 {
-        let steps = (age * STEPS_PER_SECOND).max(0.0);
+        let steps = age * STEPS_PER_SECOND;
+        if steps < 0.0 {
+            return self.ahead(-steps);
+        }
         let last = self.poses.len() - 1;
         let newer = (steps.floor() as usize).min(last);
         let older = (newer + 1).min(last);
         self.poses[newer].interpolate(&self.poses[older], steps.fract())
+    }
+
+    fn ahead(&self, steps: f64) -> Pose2 {
+        let now = self.poses[0];
+        let before = self.poses.get(1).copied().unwrap_or(now);
+        now * Pose2::exp((before.inverse() * now).log() * steps)
     }
 }
 
@@ -52,7 +62,8 @@ mod tests {
         assert_eq!(track.back(0.0).x, 100.0);
         assert!((track.back(0.0025).x - 97.5).abs() < 1e-9);
         assert_eq!((track.back(0.01).x, track.back(5.0).x), (90.0, 89.0));
+        assert!((track.back(-0.0015).x - 101.5).abs() < 1e-9);
         track.restart(Pose2::new(7.0, 0.0, 0.0));
-        assert_eq!(track.back(0.01).x, 7.0);
+        assert_eq!((track.back(0.01).x, track.back(-0.01).x), (7.0, 7.0));
     }
 }

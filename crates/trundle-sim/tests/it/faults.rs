@@ -32,11 +32,11 @@ fn events(mut robot: Simulator) -> (Vec<SensorEvent>, Simulator) {
 }
 
 fn images(events: &[SensorEvent]) -> Vec<&RgbdImage> {
-    let image = |event| match event {
-        &SensorEvent::Rgbd(ref image) => Some(image),
+    let images = events.iter().filter_map(|event| match event {
+        SensorEvent::Rgbd(image) => Some(image),
         _ => None,
-    };
-    events.iter().filter_map(image).collect()
+    });
+    images.collect()
 }
 
 fn is_during(stamp: Stamp) -> bool {

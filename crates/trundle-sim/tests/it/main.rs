@@ -1,6 +1,7 @@
 //! The simulator against closed forms, and its promises.
 #![expect(clippy::unwrap_used, clippy::print_stderr, reason = "helpers of tests")]
 
+mod blur;
 mod contact;
 mod depth;
 mod drive;
