@@ -11,6 +11,8 @@ pub struct PlannerConfig {
     /// How far beyond the grid, the start and the goal a way may lead where unknown is free, m, 0 to 100. 0: never off
     /// the grid. Default 5 (ours). It is tried only when there is no way within.
     pub beyond: f64,
+    /// How far from a goal that is blocked the robot may stop instead, m, 0 to 100. Default 0: nowhere else.
+    pub goal_tolerance: f64,
     /// Room around the footprint.
     pub room: RoomConfig,
     /// Way-points.
@@ -26,6 +28,7 @@ impl Default for PlannerConfig {
         Self {
             unknown: UnknownIs::Free,
             beyond: 5.0,
+            goal_tolerance: 0.0,
             room: RoomConfig::default(),
             potential: PotentialConfig::default(),
             curve: CurveConfig::default(),
@@ -41,6 +44,7 @@ impl PlannerConfig {
     /// When a number is outside its range.
     pub fn validated(self) -> Result<Self, Invalid> {
         require_in("beyond", self.beyond, "m", 0.0, 100.0)?;
+        require_in("goal_tolerance", self.goal_tolerance, "m", 0.0, 100.0)?;
         self.room.validated()?;
         self.potential.validated()?;
         self.curve.validated()?;

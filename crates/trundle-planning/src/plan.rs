@@ -83,6 +83,8 @@ pub struct PlanResult {
     pub fell_back: bool,
     /// Whether the trajectory continues the twist given: false when it starts from rest although the robot moves.
     pub is_continuous: bool,
+    /// How long the robot stands at the start to let something pass, s; part of the trajectory.
+    pub wait: f64,
 }
 
 impl PlanResult {

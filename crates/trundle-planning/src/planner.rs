@@ -1,10 +1,13 @@
 use crate::area::area;
-use crate::plan::Plan;
-use crate::task::Task;
+use crate::body::Body;
+use crate::masks::kept_out;
+use crate::movers::{Mover, conflict, delayed, rest_of, stamp};
+use crate::plan::{Plan, PlanResult};
+use crate::task::{Memory, Task};
 use crate::timing::Drive;
+use crate::tour::{Replan, Tour};
 use crate::watch::{Obstruction, still_free};
-use crate::wave::WaveFront;
-use crate::{DistanceField, PlannerConfig, UnknownIs};
+use crate::{DistanceField, PlannerConfig, SpeedMask, UnknownIs, WayPointGraph};
 use trundle_core::{
     DifferentialDrive, DriveLimits, Footprint, GridGeometry, Invalid, OccupancyGrid, Pose2, Trajectory,
     Twist2, Vector2,
@@ -12,15 +15,18 @@ use trundle_core::{
 
 /// From a grid, a pose and a goal to way-points, a verified curve and a trajectory.
 ///
-/// The robot is the disc about its footprint. Deterministic: the same question gives the same bytes.
+/// The robot is the disc about its footprint where that fits, else its outline. Deterministic: the same question gives the
+/// same bytes.
 #[derive(Debug)]
 pub struct Planner {
     config: PlannerConfig,
-    radius: f64,
+    body: Body,
     drive: Drive,
-    wave: WaveFront,
+    memory: Memory,
     /// Of the last plan.
     field: Option<DistanceField>,
+    keep_out: Option<OccupancyGrid>,
+    speeds: Option<SpeedMask>,
 }
 
 impl Planner {
@@ -40,8 +46,18 @@ impl Planner {
             half_base: drive.validated()?.wheelbase / 2.0,
             config: config.timing,
         };
-        let radius = footprint.circumscribed_radius();
-        Ok(Self { config, radius, drive, wave: WaveFront::default(), field: None })
+        let (body, memory) = (Body::new(footprint), Memory::default());
+        Ok(Self { config, body, drive, memory, field: None, keep_out: None, speeds: None })
+    }
+
+    /// From now on, what `mask` has occupied is an obstacle too. The mask may have a resolution and an extent of its own.
+    pub fn set_keep_out(&mut self, mask: Option<OccupancyGrid>) {
+        self.keep_out = mask;
+    }
+
+    /// From now on, no trajectory is faster than this allows.
+    pub fn set_speed_mask(&mut self, mask: Option<SpeedMask>) {
+        self.speeds = mask;
     }
 
     /// Plans from `start`, moving with `start_twist`, to `goal` (map frame), where the robot is to stand.
@@ -49,38 +65,165 @@ impl Planner {
     /// A robot that moves forward gets a trajectory that continues its motion; where no curve can, it brakes on its
     /// arc first; where even that has no room, the plan starts from rest and says so.
     pub fn plan(&mut self, grid: &OccupancyGrid, start: Pose2, start_twist: Twist2, goal: Pose2) -> Plan {
-        if let Err(invalid) = finite(start, start_twist, goal) {
-            return Plan::Refused(invalid);
-        }
-        let start = Pose2::new(start.x, start.y, start.theta);
-        let goal = Pose2::new(goal.x, goal.y, goal.theta);
-        let mut plan = self.plan_within(grid, start, start_twist, goal, 0.0);
-        if matches!(plan, Plan::Blocked { .. }) && self.may_leave() {
-            let wider = self.plan_within(grid, start, start_twist, goal, self.config.beyond);
-            if !matches!(wider, Plan::Refused(_)) {
-                plan = wider;
+        self.plan_on(grid, None, start, start_twist, goal)
+    }
+
+    /// Like [`Planner::plan`], along the lanes of a way-point graph: to a node, over free lanes, and from a node to the goal.
+    pub fn plan_on_graph(
+        &mut self,
+        grid: &OccupancyGrid,
+        graph: &WayPointGraph,
+        start: Pose2,
+        start_twist: Twist2,
+        goal: Pose2,
+    ) -> Plan {
+        self.plan_on(grid, Some(graph), start, start_twist, goal)
+    }
+
+    /// Plans through `goals` in a row, at rest at each.
+    ///
+    /// # Errors
+    /// Which goal cannot be reached from the one before, and why; goal 0 and a refusal when there is none.
+    pub fn plan_tour(
+        &mut self,
+        grid: &OccupancyGrid,
+        start: Pose2,
+        start_twist: Twist2,
+        goals: &[Pose2],
+    ) -> Result<Tour, (usize, Plan)> {
+        let mut legs: Vec<PlanResult> = Vec::new();
+        let (mut from, mut twist) = (start, start_twist);
+        for (i, goal) in goals.iter().enumerate() {
+            match self.plan(grid, from, twist, *goal) {
+                Plan::Found(leg) => legs.push(*leg),
+                other => return Err((i, other)),
             }
+            (from, twist) = (legs[i].trajectory.end(), Twist2::ZERO);
         }
-        plan
+        if legs.is_empty() {
+            return Err((0, Plan::Refused(Invalid::new("goals of a tour", 0, "", "1 or more"))));
+        }
+        Ok(Tour::new(legs))
+    }
+
+    /// Like [`Planner::plan`], among things that move, each believed to go on as it does for 2 s: past them, or, from rest,
+    /// after a wait, whichever arrives earlier. Where both fail, [`Plan::Blocked`] where the robot stands: it should stop.
+    pub fn plan_among(
+        &mut self,
+        grid: &OccupancyGrid,
+        movers: &[Mover],
+        start: Pose2,
+        start_twist: Twist2,
+        goal: Pose2,
+    ) -> Plan {
+        let radius = self.body.radius;
+        let direct = self.plan(grid, start, start_twist, goal);
+        let Plan::Found(direct) = direct else { return direct };
+        if conflict(&direct.trajectory, movers, radius).is_none() {
+            return Plan::Found(direct);
+        }
+        let around = self.plan_around(grid, movers, &direct, start_twist, goal);
+        let rests = direct.trajectory.points()[0].twist == Twist2::ZERO;
+        let late = rests.then(|| delayed(&direct.trajectory, movers, radius)).flatten();
+        let late = late.map(|(trajectory, wait)| Box::new(PlanResult { trajectory, wait, ..*direct }));
+        let earlier = |plan: &PlanResult| plan.trajectory.duration();
+        match (around, late) {
+            (Some(around), Some(late)) if earlier(&around) <= earlier(&late) => Plan::Found(around),
+            (_, Some(late)) => Plan::Found(late),
+            (Some(around), None) => Plan::Found(around),
+            (None, None) => Plan::Blocked { nearest: start.position() },
+        }
+    }
+
+    /// What to do `time` seconds into the plan `current` now that the map, the goal or the movers may have changed: its rest
+    /// is kept while it leads to `goal` and stays free; else the new plan starts from its reference, with the reference's
+    /// twist, so continuous in position, heading, curvature and speed (see [`PlanResult::is_continuous`]).
+    pub fn replan(
+        &mut self,
+        grid: &OccupancyGrid,
+        movers: &[Mover],
+        current: &PlanResult,
+        time: f64,
+        goal: Pose2,
+    ) -> Replan {
+        let end = current.trajectory.end();
+        let same = end.distance(&goal) <= self.config.goal_tolerance.max(1e-2)
+            && trundle_core::difference_of_angles(end.theta, goal.theta).abs() < 1e-2;
+        let rest = rest_of(&current.trajectory, time);
+        let clear = conflict(&rest, movers, self.body.radius).is_none();
+        if same && clear && self.still_free(grid, &current.trajectory, time).is_ok() {
+            return Replan::Keep;
+        }
+        let now = current.trajectory.at(time);
+        Replan::New(self.plan_among(grid, movers, now.pose, now.twist, goal))
     }
 
     /// Whether the rest of `trajectory`, from `from` seconds on, is still free on a newer grid.
     ///
     /// # Errors
-    /// The first moment at which the footprint's disc would touch something, unless it touches it already and gets no
-    /// nearer.
+    /// The first moment at which the footprint would touch something. A disc that touches something already may go on as
+    /// long as it gets no nearer.
     pub fn still_free(
         &self,
         grid: &OccupancyGrid,
         trajectory: &Trajectory,
         from: f64,
     ) -> Result<(), Obstruction> {
-        still_free(grid, self.config.unknown, trajectory, from, self.radius)
+        still_free(grid, self.config.unknown, trajectory, from, &self.body)
     }
 
     /// The distance field of the last plan, for pictures.
     pub fn field(&self) -> Option<&DistanceField> {
         self.field.as_ref()
+    }
+
+    /// Past the movers: the places of each encounter are closed for a while about its time, until there is none.
+    fn plan_around(
+        &mut self,
+        grid: &OccupancyGrid,
+        movers: &[Mover],
+        direct: &PlanResult,
+        twist: Twist2,
+        goal: Pose2,
+    ) -> Option<Box<PlanResult>> {
+        const ENCOUNTERS: usize = 4;
+        let start = direct.trajectory.points()[0].pose;
+        let mut closed = grid.clone();
+        let mut time = conflict(&direct.trajectory, movers, self.body.radius)?;
+        for _ in 0..ENCOUNTERS {
+            stamp(&mut closed, movers, time);
+            let Plan::Found(around) = self.plan(&closed, start, twist, goal) else { return None };
+            match conflict(&around.trajectory, movers, self.body.radius) {
+                Some(next) => time = next,
+                None => return Some(around),
+            }
+        }
+        None
+    }
+
+    fn plan_on(
+        &mut self,
+        grid: &OccupancyGrid,
+        graph: Option<&WayPointGraph>,
+        start: Pose2,
+        twist: Twist2,
+        goal: Pose2,
+    ) -> Plan {
+        if let Err(invalid) = finite(start, twist, goal) {
+            return Plan::Refused(invalid);
+        }
+        let merged = self.keep_out.as_ref().map(|mask| kept_out(grid, mask));
+        let grid = merged.as_ref().unwrap_or(grid);
+        let start = Pose2::new(start.x, start.y, start.theta);
+        let goal = Pose2::new(goal.x, goal.y, goal.theta);
+        let mut plan = self.plan_within(grid, graph, (start, twist), goal, 0.0);
+        if matches!(plan, Plan::Blocked { .. }) && self.may_leave() {
+            let wider = self.plan_within(grid, graph, (start, twist), goal, self.config.beyond);
+            if !matches!(wider, Plan::Refused(_)) {
+                plan = wider;
+            }
+        }
+        plan
     }
 
     fn may_leave(&self) -> bool {
@@ -90,8 +233,8 @@ impl Planner {
     fn plan_within(
         &mut self,
         grid: &OccupancyGrid,
-        start: Pose2,
-        twist: Twist2,
+        graph: Option<&WayPointGraph>,
+        (start, twist): (Pose2, Twist2),
         goal: Pose2,
         beyond: f64,
     ) -> Plan {
@@ -100,9 +243,16 @@ impl Planner {
             Err(plan) => return plan,
         };
         let field = self.known(geometry, grid);
-        let task =
-            Task { config: &self.config, radius: self.radius, drive: &self.drive, field: &field, grid };
-        let plan = task.plan(&mut self.wave, start, twist, goal);
+        let task = Task {
+            config: &self.config,
+            body: &self.body,
+            drive: &self.drive,
+            field: &field,
+            grid,
+            speeds: self.speeds.as_ref(),
+            graph,
+        };
+        let plan = task.plan(&mut self.memory, start, twist, goal);
         self.field = Some(field);
         plan
     }

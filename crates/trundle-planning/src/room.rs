@@ -15,7 +15,7 @@ pub struct RoomConfig {
     pub margin_weight: f64,
     /// Clearance beyond which there is no need for more, m, 0 to 5. Default 0.25 (ours).
     pub comfort: f64,
-    /// Price of a metre without any clearance, on top of 1; falls to 0 at `comfort`, squared. 0 to 10, default 0.2 (ours).
+    /// Price of a metre without any clearance, on top of 1; falls to 0 at `comfort`, squared. 0 to 10, default 0.1 (ours).
     pub comfort_weight: f64,
     /// Price of a metre in unknown space, on top of 1. 0 to 100, default 0.5 (ours): a known way that is half as long
     /// again is preferred.
@@ -31,7 +31,7 @@ impl Default for RoomConfig {
             margin: 0.05,
             margin_weight: 4.0,
             comfort: 0.25,
-            comfort_weight: 0.2,
+            comfort_weight: 0.1,
             unknown_weight: 0.5,
             escape: 0.06,
         }

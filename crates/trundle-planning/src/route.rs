@@ -4,10 +4,11 @@
 //! at the start, or at both; where even that fails, the way is split at its sharpest corner. A stretch between two
 //! way-points is a straight line, which is free already: so there always is a route.
 
+use crate::body::Body;
+use crate::curve::{Curve, CurveSample};
 use crate::fit::{CurveConfig, Stretch, Tangent, fit, stretches};
-use crate::geometry::bearing;
-use crate::{curve::Curve, space::Space};
-use std::f64::consts::PI;
+use crate::geometry::{bearing, polyline_length};
+use crate::space::Space;
 use trundle_core::{Pose2, Vector2, difference_of_angles};
 
 /// One thing that the robot does without stopping in between.
@@ -17,7 +18,7 @@ pub enum Phase {
     Turn {
         /// Where, map frame; its heading is the one before.
         from: Pose2,
-        /// By how much, counter-clockwise, rad, in (-pi, pi].
+        /// By how much, counter-clockwise, rad; beyond +-pi where the shorter way round is blocked.
         angle: f64,
     },
     /// Drives along a curve, forward.
@@ -31,17 +32,27 @@ const CUSP: f64 = 0.1;
 /// A room smaller by this than required is rounding of the solver, m.
 const ROUNDING: f64 = 1e-4;
 
+/// Everything that a curve is measured against.
+pub(crate) struct Course<'a> {
+    pub(crate) space: &'a Space<'a>,
+    /// Swept as well where it is more than the space's disc.
+    pub(crate) body: Option<&'a Body>,
+    pub(crate) config: &'a CurveConfig,
+}
+
 /// The phases that lead from `start` to `goal` along the free `way`. `moving`: the curvature of a motion under way at
-/// `start`; then `None` when no curve continues it. Always a route otherwise.
+/// `start`; then `None` when no curve continues it. From rest always a route for a disc; for an outline, `None` when it
+/// touches something.
 pub(crate) fn route(
-    space: &Space<'_>,
+    course: &Course<'_>,
     way: &[Vector2],
     start: Pose2,
     goal: Pose2,
     moving: Option<f64>,
-    config: &CurveConfig,
 ) -> Option<Vec<Phase>> {
-    let stretches = stretches(space, way, config);
+    let config = course.config;
+    let stretches = stretches(course.space, way, config);
+    let longest = polyline_length(way) * config.detour;
     let first = bearing(way[1] - way[0]);
     let last = bearing(way[way.len() - 1] - way[way.len() - 2]);
     let ahead = difference_of_angles(first, start.theta).abs() <= config.turn_first;
@@ -56,29 +67,45 @@ pub(crate) fn route(
         if arriving { &[Tangent::Heading(goal.theta), Tangent::Free] } else { &[Tangent::Free] };
     for start_tangent in starts {
         for end_tangent in ends {
-            if let Some(curve) = safe_curve(space, &stretches, (*start_tangent, *end_tangent), config) {
-                return Some(with_turns(vec![curve], start.theta, goal));
+            // Into headings only where that is hardly longer; else the robot turns on the spot.
+            let into =
+                matches!(start_tangent, Tangent::Heading(_)) || matches!(end_tangent, Tangent::Heading(_));
+            let most = if into { longest } else { f64::INFINITY };
+            let curve = safe_curve(course, &stretches, (*start_tangent, *end_tangent), most);
+            let phases = curve.and_then(|curve| with_turns(course, vec![curve], start.theta, goal));
+            if phases.is_some() {
+                return phases;
             }
         }
     }
-    moving.is_none().then(|| with_turns(split(space, way, config), start.theta, goal))
+    if moving.is_some() {
+        return None;
+    }
+    with_turns(course, split(course, way)?, start.theta, goal)
 }
 
-/// A curve that was measured and found free, at one of two smoothings.
+/// A curve no longer than `longest` m that was measured and found free, at one of two smoothings.
 fn safe_curve(
-    space: &Space<'_>,
+    course: &Course<'_>,
     stretches: &[Stretch],
     tangents: (Tangent, Tangent),
-    config: &CurveConfig,
+    longest: f64,
 ) -> Option<Curve> {
-    [1.0, 2.0].into_iter().find_map(|factor| {
-        fit(stretches, tangents, config.smoothing * factor, config)
-            .filter(|curve| is_drivable(space, curve, config.max_curvature))
-    })
+    for factor in [1.0, 2.0] {
+        let curve = fit(stretches, tangents, course.config.smoothing * factor, course.config)?;
+        if curve.length() > longest {
+            return None;
+        }
+        if is_drivable(course, &curve) {
+            return Some(curve);
+        }
+    }
+    None
 }
 
 /// Whether the curve keeps the required room everywhere, and bends no more than allowed.
-pub(crate) fn is_drivable(space: &Space<'_>, curve: &Curve, max_curvature: f64) -> bool {
+pub(crate) fn is_drivable(course: &Course<'_>, curve: &Curve) -> bool {
+    let (space, max_curvature) = (course.space, course.config.max_curvature);
     let samples = curve.samples(SPACING);
     let smooth = samples.windows(2).all(|pair| {
         let way = pair[1].arc - pair[0].arc;
@@ -91,27 +118,39 @@ pub(crate) fn is_drivable(space: &Space<'_>, curve: &Curve, max_curvature: f64) 
             let at = sample.pose.position();
             sample.curvature.abs() <= max_curvature && space.field.keeps(at, space.required(at) - ROUNDING)
         })
+        && course.body.is_none_or(|body| sweeps(space, body, &samples))
+}
+
+/// Whether the outline touches nothing along the samples.
+fn sweeps(space: &Space<'_>, body: &Body, samples: &[CurveSample]) -> bool {
+    samples.windows(2).all(|pair| {
+        let (from, to) = (pair[0].pose, pair[1].pose);
+        let turn = difference_of_angles(to.theta, from.theta);
+        body.may_move(space.field, from, to.position() - from.position(), turn)
+    })
 }
 
 /// Curves with stops between them: the way, split at sharp corners until each part has a curve.
-fn split(space: &Space<'_>, way: &[Vector2], config: &CurveConfig) -> Vec<Curve> {
+fn split(course: &Course<'_>, way: &[Vector2]) -> Option<Vec<Curve>> {
     if let [a, b] = way {
-        return vec![Curve::line(*a, *b)];
+        let line = Curve::line(*a, *b);
+        let free = course.body.is_none_or(|body| sweeps(course.space, body, &line.samples(SPACING)));
+        return free.then(|| vec![line]);
     }
     let corner = sharpest(way);
-    let mut curves = part(space, &way[..=corner], config);
-    curves.extend(part(space, &way[corner..], config));
-    curves
+    let mut curves = part(course, &way[..=corner])?;
+    curves.extend(part(course, &way[corner..])?);
+    Some(curves)
 }
 
-fn part(space: &Space<'_>, way: &[Vector2], config: &CurveConfig) -> Vec<Curve> {
+fn part(course: &Course<'_>, way: &[Vector2]) -> Option<Vec<Curve>> {
     if way.len() > 2 {
-        let stretches = stretches(space, way, config);
-        if let Some(curve) = safe_curve(space, &stretches, (Tangent::Free, Tangent::Free), config) {
-            return vec![curve];
+        let stretches = stretches(course.space, way, course.config);
+        if let Some(curve) = safe_curve(course, &stretches, (Tangent::Free, Tangent::Free), f64::INFINITY) {
+            return Some(vec![curve]);
         }
     }
-    split(space, way, config)
+    split(course, way)
 }
 
 /// The inner way-point where the way turns most.
@@ -122,23 +161,44 @@ fn sharpest(way: &[Vector2]) -> usize {
 }
 
 /// The curves, with turns wherever one's end heading is not the next one's start heading.
-fn with_turns(curves: Vec<Curve>, heading: f64, goal: Pose2) -> Vec<Phase> {
+fn with_turns(course: &Course<'_>, curves: Vec<Curve>, heading: f64, goal: Pose2) -> Option<Vec<Phase>> {
     let mut phases = Vec::new();
     let mut heading = heading;
     for curve in curves {
         let (start, end) = (curve.pose(0.0), curve.pose(curve.span()));
-        phases.extend(turn(start, heading, start.theta));
+        phases.extend(turn(course, start, heading, start.theta)?);
         heading = end.theta;
         phases.push(Phase::Drive(curve));
     }
-    phases.extend(turn(goal, heading, goal.theta));
-    phases
+    phases.extend(turn(course, goal, heading, goal.theta)?);
+    Some(phases)
 }
 
-/// A turn at a place, unless there is nothing to turn.
-pub(crate) fn turn(at: Pose2, from: f64, to: f64) -> Option<Phase> {
+/// A turn at a place, nothing where there is nothing to turn; `None` where the outline has not the room.
+pub(crate) fn turn(course: &Course<'_>, at: Pose2, from: f64, to: f64) -> Option<Option<Phase>> {
     const NOTHING: f64 = 1e-6;
-    let angle = difference_of_angles(to, from);
-    debug_assert!(angle.abs() <= PI, "turn of {angle} rad");
-    (angle.abs() > NOTHING).then(|| Phase::Turn { from: Pose2::new(at.x, at.y, from), angle })
+    let from = Pose2::new(at.x, at.y, from);
+    let short = difference_of_angles(to, from.theta);
+    if short.abs() <= NOTHING {
+        return Some(None);
+    }
+    let angle = match course.body {
+        Some(body) => body.turn(course.space.field, from, to)?,
+        None => short,
+    };
+    Some(Some(Phase::Turn { from, angle }))
+}
+
+/// The phases through poses of which each is reached from the one before by a turn or straight ahead.
+pub(crate) fn straight(course: &Course<'_>, poses: &[Pose2]) -> Option<Vec<Phase>> {
+    let mut phases = Vec::new();
+    for pair in poses.windows(2) {
+        let by = pair[1].position() - pair[0].position();
+        if by.norm() > 1e-6 {
+            phases.push(Phase::Drive(Curve::line(pair[0].position(), pair[1].position())));
+        } else {
+            phases.extend(turn(course, pair[0], pair[0].theta, pair[1].theta)?);
+        }
+    }
+    Some(phases)
 }

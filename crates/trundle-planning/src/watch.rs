@@ -1,6 +1,7 @@
 //! Whether a plan made on an older map still holds.
 
 use crate::UnknownIs;
+use crate::body::{Body, outline_to_square};
 use crate::geometry::box_gap;
 use thiserror::Error;
 use trundle_core::{Cell, OccupancyGrid, Pose2, Trajectory, Vector2};
@@ -20,19 +21,20 @@ pub struct Obstruction {
 /// Distance between two looks, m.
 const SPACING: f64 = 0.01;
 
-/// Checks a trajectory from `from` seconds on for a disc of `radius` m. A robot that already has less room may go on as
-/// long as it gets no nearer.
+/// Checks a trajectory from `from` seconds on. A robot that already has less room may go on as long as it gets no nearer.
 pub(crate) fn still_free(
     grid: &OccupancyGrid,
     unknown: UnknownIs,
     trajectory: &Trajectory,
     from: f64,
-    radius: f64,
+    body: &Body,
 ) -> Result<(), Obstruction> {
     let mut last = trajectory.at(from);
-    let required = room(grid, unknown, last.pose.position(), radius) - 1e-6;
+    let required = room(grid, unknown, last.pose, body) - 1e-6;
     for point in trajectory.points().iter().filter(|point| point.time > from) {
-        let way = point.pose.distance(&last.pose);
+        let turn = trundle_core::difference_of_angles(point.pose.theta, last.pose.theta);
+        let turned = if body.is_disc() { 0.0 } else { body.radius * turn.abs() };
+        let way = point.pose.distance(&last.pose) + turned;
         if way == 0.0 {
             last = *point;
             continue;
@@ -41,10 +43,10 @@ pub(crate) fn still_free(
         for k in 1..=steps as usize {
             let share = k as f64 / steps;
             let pose = last.pose.interpolate(&point.pose, share);
-            let distance = room(grid, unknown, pose.position(), radius);
+            let distance = room(grid, unknown, pose, body);
             if distance < required {
                 let time = last.time + (point.time - last.time) * share;
-                return Err(Obstruction { time, pose, clearance: distance - radius });
+                return Err(Obstruction { time, pose, clearance: distance - body.needs() });
             }
         }
         last = *point;
@@ -52,11 +54,13 @@ pub(crate) fn still_free(
     Ok(())
 }
 
-/// The distance to the nearest obstacle's square, at most `cap`, m.
-fn room(grid: &OccupancyGrid, unknown: UnknownIs, point: Vector2, cap: f64) -> f64 {
+/// How much room there is for what the body needs ([`Body::needs`]), at most that, m: from the axle for a disc, beside the
+/// outline for a polygon.
+fn room(grid: &OccupancyGrid, unknown: UnknownIs, pose: Pose2, body: &Body) -> f64 {
+    let (point, cap, outline) = (pose.position(), body.needs(), body.outline(pose));
     let geometry = grid.geometry();
     let half = geometry.resolution / 2.0;
-    let reach = (cap / geometry.resolution).ceil() as i64 + 1;
+    let reach = (body.radius / geometry.resolution).ceil() as i64 + 1;
     let at = (point - geometry.origin) / geometry.resolution;
     let (col, row) = (at.x.floor() as i64, at.y.floor() as i64);
     let mut best = cap;
@@ -69,7 +73,11 @@ fn room(grid: &OccupancyGrid, unknown: UnknownIs, point: Vector2, cap: f64) -> f
             if blocks {
                 let centre =
                     geometry.origin + Vector2::new(c as f64 + 0.5, r as f64 + 0.5) * geometry.resolution;
-                best = best.min(box_gap(point, centre, half).norm());
+                let gap = match outline[..] {
+                    [] => box_gap(point, centre, half).norm(),
+                    _ => outline_to_square(&outline, centre, half, cap),
+                };
+                best = best.min(gap);
             }
         }
     }
@@ -79,21 +87,22 @@ fn room(grid: &OccupancyGrid, unknown: UnknownIs, point: Vector2, cap: f64) -> f
 #[cfg(test)]
 mod tests {
     use super::*;
-    use trundle_core::{TrajectoryPoint, Twist2};
+    use trundle_core::{Footprint, TrajectoryPoint, Twist2};
 
     #[test]
     fn a_new_obstacle_is_seen_ahead_and_not_behind() {
         let mut grid = OccupancyGrid::from_ascii(0.1, &vec![".".repeat(40); 10].join("\n")).unwrap();
+        let disc = Body::new(&Footprint::Disc { radius: 0.2 });
         let at = |time: f64| TrajectoryPoint {
             time,
             pose: Pose2::new(0.5 + time, 0.5, 0.0),
             twist: Twist2::new(1.0, 0.0),
         };
         let trajectory = Trajectory::new(vec![at(0.0), at(1.5), at(3.0)]).unwrap();
-        assert!(still_free(&grid, UnknownIs::Free, &trajectory, 0.0, 0.2).is_ok());
+        assert!(still_free(&grid, UnknownIs::Free, &trajectory, 0.0, &disc).is_ok());
         grid.set(trundle_core::CellIndex { col: 20, row: 5 }, Cell::Occupied);
-        let hit = still_free(&grid, UnknownIs::Free, &trajectory, 0.0, 0.2).unwrap_err();
+        let hit = still_free(&grid, UnknownIs::Free, &trajectory, 0.0, &disc).unwrap_err();
         assert!((hit.pose.x - 1.8).abs() < 0.02 && (hit.time - 1.3).abs() < 0.02, "{hit}");
-        assert!(still_free(&grid, UnknownIs::Free, &trajectory, 1.9, 0.2).is_ok());
+        assert!(still_free(&grid, UnknownIs::Free, &trajectory, 1.9, &disc).is_ok());
     }
 }

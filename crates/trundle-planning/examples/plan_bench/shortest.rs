@@ -30,7 +30,9 @@ impl PartialOrd for Entry {
 /// there is none. An upper bound of the shortest length, in practice within a few per mille of it.
 pub fn shortest(field: &DistanceField, radius: f64, from: Vector2, to: Vector2) -> f64 {
     let geometry = *field.geometry();
-    let (Some(first), Some(last)) = (geometry.cell_at(from), geometry.cell_at(to)) else { return f64::INFINITY };
+    let (Some(first), Some(last)) = (geometry.cell_at(from), geometry.cell_at(to)) else {
+        return f64::INFINITY;
+    };
     let (first, last) = (geometry.linear(first), geometry.linear(last));
     let place = |cell: usize| match cell {
         _ if cell == first => from,
@@ -80,7 +82,8 @@ fn taut(field: &DistanceField, radius: f64, mut way: Vec<Vector2>) -> f64 {
         for i in 1..way.len().saturating_sub(1) {
             let middle = (way[i - 1] + way[i + 1]) / 2.0;
             let moved = [0.5, 0.1, 0.02].map(|share| way[i] + (middle - way[i]) * share);
-            let free = |p: &Vector2| sees(field, radius, way[i - 1], *p) && sees(field, radius, *p, way[i + 1]);
+            let free =
+                |p: &Vector2| sees(field, radius, way[i - 1], *p) && sees(field, radius, *p, way[i + 1]);
             if let Some(better) = moved.into_iter().find(free) {
                 way[i] = better;
             }

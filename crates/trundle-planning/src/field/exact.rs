@@ -96,7 +96,7 @@ impl DistanceField {
     }
 
     /// How far the point is inside the grid where outside counts as an obstacle, m.
-    fn border_gap(&self, point: Vector2) -> f64 {
+    pub(crate) fn border_gap(&self, point: Vector2) -> f64 {
         if self.unknown == UnknownIs::Free {
             return f64::INFINITY;
         }

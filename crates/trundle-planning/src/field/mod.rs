@@ -126,11 +126,6 @@ impl DistanceField {
         &self.blocks
     }
 
-    /// What unknown cells count as.
-    pub(crate) fn unknown(&self) -> UnknownIs {
-        self.unknown
-    }
-
     /// Where the cells lie.
     pub fn geometry(&self) -> &GridGeometry {
         &self.geometry

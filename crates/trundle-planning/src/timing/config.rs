@@ -11,11 +11,16 @@ pub struct TimingConfig {
     pub slow_speed: f64,
     /// Clearance from which on the full speed is allowed, m, 0 to 10; linear below. Default 0.3 (ours).
     pub full_speed_clearance: f64,
+    /// Highest speed where the robot's front comes to what was never seen, m/s, 0.01 to 10. Default 0.35 (ours): a Kobuki
+    /// stops from it within 0.13 m.
+    pub unknown_speed: f64,
+    /// Highest change of acceleration, m/s^3, 0.01 to 1000. Default none.
+    pub jerk: Option<f64>,
 }
 
 impl Default for TimingConfig {
     fn default() -> Self {
-        Self { period: 0.02, slow_speed: 0.15, full_speed_clearance: 0.3 }
+        Self { period: 0.02, slow_speed: 0.15, full_speed_clearance: 0.3, unknown_speed: 0.35, jerk: None }
     }
 }
 
@@ -28,6 +33,10 @@ impl TimingConfig {
         require_in("timing.period", self.period, "s", 0.001, 1.0)?;
         require_in("timing.slow_speed", self.slow_speed, "m/s", 0.01, 10.0)?;
         require_in("timing.full_speed_clearance", self.full_speed_clearance, "m", 0.0, 10.0)?;
+        require_in("timing.unknown_speed", self.unknown_speed, "m/s", 0.01, 10.0)?;
+        if let Some(jerk) = self.jerk {
+            require_in("timing.jerk", jerk, "m/s^3", 0.01, 1000.0)?;
+        }
         Ok(self)
     }
 }

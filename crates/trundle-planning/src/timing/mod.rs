@@ -6,6 +6,7 @@
 //! acceleration is set aside for the change of curvature, half for the change of speed. Cost: O(samples).
 
 mod config;
+mod profile;
 mod speeds;
 mod turn;
 
@@ -14,22 +15,22 @@ pub(crate) use speeds::Drive;
 
 use crate::curve::{Curve, CurveSample};
 use crate::route::Phase;
-use crate::timing::speeds::speeds;
-use trundle_core::{Pose2, Trajectory, TrajectoryPoint, Twist2, Vector2};
+use crate::timing::profile::Profile;
+use trundle_core::{Pose2, Trajectory, TrajectoryPoint, Twist2};
 
 /// Spacing of the points that get a speed, m.
 const SPACING: f64 = 0.01;
 /// Two samples are never nearer than this, s.
 const LEAST_GAP: f64 = 1e-4;
 
-/// The trajectory through `phases`: at `v_start` m/s first, at rest between phases and at the end. `clearance` says the
-/// room at a point, m. A trajectory of one point where there is nothing to do.
+/// The trajectory through `phases`: at `v_start` m/s first, at rest between phases and at the end. `ceiling` says the
+/// highest speed at a pose for what surrounds it, m/s. A trajectory of one point where there is nothing to do.
 pub(crate) fn trajectory(
     start: Pose2,
     phases: &[Phase],
     v_start: f64,
     drive: &Drive,
-    clearance: impl Fn(Vector2) -> f64,
+    ceiling: impl Fn(Pose2) -> f64,
 ) -> Trajectory {
     let mut points = vec![TrajectoryPoint { time: 0.0, pose: start, twist: Twist2::ZERO }];
     for (i, phase) in phases.iter().enumerate() {
@@ -38,8 +39,8 @@ pub(crate) fn trajectory(
             Phase::Turn { from, angle } => turn::time_turn(*from, *angle, drive, &mut points),
             Phase::Drive(curve) => {
                 let samples = curve.samples(SPACING);
-                let speeds = speeds(&samples, v, drive, &clearance);
-                time_curve(curve, &samples, &speeds, drive.config.period, &mut points);
+                let profile = Profile::new(&samples, v, drive, &ceiling);
+                time_curve(curve, &samples, &profile, drive.config.period, &mut points);
             }
         }
     }
@@ -58,7 +59,7 @@ pub(crate) fn can_follow(phases: &[Phase], v: f64, drive: &Drive) -> bool {
 fn time_curve(
     curve: &Curve,
     samples: &[CurveSample],
-    speeds: &[f64],
+    profile: &Profile,
     period: f64,
     points: &mut Vec<TrajectoryPoint>,
 ) {
@@ -68,29 +69,19 @@ fn time_curve(
         TrajectoryPoint { time: begin + time, pose, twist: Twist2::new(v, curvature * v) }
     };
     points.pop();
-    points.push(at(0.0, speeds[0], 0.0));
-    let mut next = period;
-    let mut now = 0.0;
-    for (pair, v) in samples.windows(2).zip(speeds.windows(2)) {
-        let way = pair[1].arc - pair[0].arc;
-        let duration = 2.0 * way / (v[0] + v[1]);
-        let acceleration = (v[1] - v[0]) / duration;
-        while next < now + duration {
-            let t = next - now;
-            let share = (v[0] * t + acceleration * t * t / 2.0) / way;
-            let s = pair[0].s + (pair[1].s - pair[0].s) * share.clamp(0.0, 1.0);
-            points.push(at(s, v[0] + acceleration * t, next));
-            next += period;
+    points.push(at(0.0, profile.at(0.0).1, 0.0));
+    let duration = profile.duration();
+    let mut after = 1;
+    let count = ((duration - LEAST_GAP) / period).floor().max(0.0) as usize;
+    for k in 1..=count {
+        let time = k as f64 * period;
+        let (arc, v) = profile.at(time);
+        while after + 1 < samples.len() && samples[after].arc < arc {
+            after += 1;
         }
-        now += duration;
+        let (low, high) = (samples[after - 1], samples[after]);
+        let share = ((arc - low.arc) / (high.arc - low.arc).max(1e-12)).clamp(0.0, 1.0);
+        points.push(at(low.s + (high.s - low.s) * share, v, time));
     }
-    finish(points, at(curve.span(), speeds[speeds.len() - 1], now), begin);
-}
-
-/// Puts the last sample, in place of one that is hardly earlier.
-fn finish(points: &mut Vec<TrajectoryPoint>, last: TrajectoryPoint, begin: f64) {
-    if points.last().is_some_and(|point| point.time > begin && last.time - point.time < LEAST_GAP) {
-        points.pop();
-    }
-    points.push(last);
+    points.push(at(curve.span(), 0.0, duration));
 }

@@ -2,7 +2,7 @@
 
 use super::TimingConfig;
 use crate::curve::CurveSample;
-use trundle_core::{DriveLimits, Vector2};
+use trundle_core::{DriveLimits, Pose2};
 
 /// What bounds speeds.
 #[derive(Debug, Clone, Copy)]
@@ -25,18 +25,36 @@ impl Drive {
         let turning = self.limits.angular_acceleration / 2.0 / curvature.abs().max(1e-9);
         self.limits.acceleration.min(turning)
     }
+
+    /// The speed allowed at a clearance, m/s.
+    pub(crate) fn near_obstacles(&self, clearance: f64) -> f64 {
+        let TimingConfig { slow_speed, full_speed_clearance, .. } = self.config;
+        if clearance >= full_speed_clearance {
+            return f64::INFINITY;
+        }
+        let slow = slow_speed.min(self.limits.v);
+        slow + (self.limits.v - slow) * (clearance / full_speed_clearance).max(0.0)
+    }
 }
 
 /// The speed at each sample, m/s: `v_start` at the first, 0 at the last. Where `v_start` is above a ceiling, it is
-/// braked from as hard as allowed, and harder only where the curve is too short to stop on.
+/// braked from as hard as allowed, and harder only where the curve is too short to stop on. Limits hold for `window` m
+/// around where they apply.
 pub(super) fn speeds(
     samples: &[CurveSample],
     v_start: f64,
     drive: &Drive,
-    clearance: impl Fn(Vector2) -> f64,
+    ceiling: impl Fn(Pose2) -> f64,
+    window: f64,
 ) -> Vec<f64> {
-    let mut v = ceilings(samples, drive, clearance);
-    let gain = gains(samples, drive);
+    let mut v = ceilings(samples, drive, ceiling);
+    let mut gain = gains(samples, drive);
+    if window > 0.0 {
+        v = least_around(samples, &v, window);
+        let accelerations: Vec<f64> = samples.windows(2).map(|pair| acceleration(pair, drive)).collect();
+        let least = least_around(&samples[1..], &accelerations, window);
+        gain = samples.windows(2).zip(least).map(|(pair, a)| 2.0 * way(pair) * a).collect();
+    }
     let last = v.len() - 1;
     v[last] = 0.0;
     for i in (0..last).rev() {
@@ -52,6 +70,20 @@ pub(super) fn speeds(
     }
     v[last] = 0.0;
     v
+}
+
+/// Of each value, the least of those within `window` m.
+fn least_around(samples: &[CurveSample], values: &[f64], window: f64) -> Vec<f64> {
+    let mut first = 0;
+    let least = |i: usize| {
+        while samples[first].arc < samples[i].arc - window {
+            first += 1;
+        }
+        let near = samples[first..].iter().zip(&values[first..]);
+        near.take_while(|(sample, _)| sample.arc <= samples[i].arc + window)
+            .fold(f64::INFINITY, |least, (_, value)| least.min(*value))
+    };
+    (0..values.len()).map(least).collect()
 }
 
 /// Whether braking as hard as allowed from `v_start` stays below every ceiling of the drive, and ends at rest.
@@ -80,17 +112,20 @@ fn acceleration(pair: &[CurveSample], drive: &Drive) -> f64 {
     drive.acceleration(pair[0].curvature.abs().max(pair[1].curvature.abs()))
 }
 
-fn ceilings(samples: &[CurveSample], drive: &Drive, clearance: impl Fn(Vector2) -> f64) -> Vec<f64> {
+fn ceilings(samples: &[CurveSample], drive: &Drive, ceiling: impl Fn(Pose2) -> f64) -> Vec<f64> {
+    let around: Vec<f64> = samples.iter().map(|sample| ceiling(sample.pose)).collect();
     let mut v: Vec<f64> = samples
         .iter()
-        .map(|sample| {
+        .enumerate()
+        .map(|(i, sample)| {
+            let beside = &around[i.saturating_sub(1)..(i + 2).min(around.len())];
             let curvature = sample.curvature.abs();
             let limits = &drive.limits;
             limits
                 .v
                 .min(limits.omega / curvature.max(1e-9))
                 .min(limits.wheel_speed / (1.0 + drive.half_base * curvature))
-                .min(near_obstacles(clearance(sample.pose.position()), drive))
+                .min(beside.iter().fold(f64::INFINITY, |least, v| least.min(*v)))
         })
         .collect();
     for (i, pair) in samples.windows(2).enumerate() {
@@ -100,16 +135,6 @@ fn ceilings(samples: &[CurveSample], drive: &Drive, clearance: impl Fn(Vector2) 
         v[i + 1] = v[i + 1].min(ceiling);
     }
     v
-}
-
-/// The speed allowed at a clearance, m/s.
-fn near_obstacles(clearance: f64, drive: &Drive) -> f64 {
-    let TimingConfig { slow_speed, full_speed_clearance, .. } = drive.config;
-    if clearance >= full_speed_clearance {
-        return f64::INFINITY;
-    }
-    let slow = slow_speed.min(drive.limits.v);
-    slow + (drive.limits.v - slow) * (clearance / full_speed_clearance).max(0.0)
 }
 
 /// Evenly from the first speed to rest at the end.

@@ -6,9 +6,13 @@
 mod ascii;
 mod bad_input;
 mod discovery;
+mod errands;
+mod footprints;
 mod laws;
 mod maps;
+mod moving;
 mod nav_data;
 mod replanning;
 mod size;
 mod support;
+mod timing;

@@ -1,0 +1,231 @@
+//! A way for an outline that is no disc: straight moves and turns on the spot, each swept free of contact.
+//!
+//! Problem: the disc about a long robot does not fit where the robot does, if it points the right way. Idea: search over
+//! cell and heading at once: a step along the heading, or a turn to the next of 16 headings, each motion checked exactly;
+//! led by the [`Guide`] of the disc inside the outline. Complete on its lattice. Cost: O(16 cells reached).
+
+use crate::body::Body;
+use crate::dial::{Dial, Entry};
+use crate::geometry::bearing;
+use crate::guide::Guide;
+use crate::lattice::{SIDE, STEPS, length};
+use crate::space::Space;
+use trundle_core::{Pose2, Vector2};
+
+/// Headings.
+const HEADINGS: usize = 16;
+/// The steps of the lattice by rising direction, counter-clockwise from +x.
+const BY_HEADING: [usize; HEADINGS] = [0, 8, 4, 12, 2, 14, 6, 10, 1, 11, 7, 15, 3, 13, 5, 9];
+/// What a turn to the next heading costs, beside the way.
+const TURN: u32 = 2 * SIDE;
+const NEVER: u32 = u32::MAX;
+/// How the start was left: not by a step or turn.
+const SEED: u8 = 3;
+
+/// The search's memory, kept from plan to plan.
+#[derive(Debug, Default)]
+pub(crate) struct Maneuver {
+    cost: Vec<u32>,
+    /// 0: a step; 1, 2: a turn to the left, to the right; [`SEED`].
+    came: Vec<u8>,
+    queue: Dial,
+    guide: Guide,
+}
+
+impl Maneuver {
+    /// Poses from `start` to `goal`, each next reached by a turn on the spot or a straight move along its heading; or the
+    /// reachable point nearest to the goal. Both ends must fit.
+    pub(crate) fn run(
+        &mut self,
+        space: &Space<'_>,
+        body: &Body,
+        start: Pose2,
+        goal: Pose2,
+    ) -> Result<Vec<Pose2>, Vector2> {
+        let (Some(first), Some(last)) = (near(space, start.position()), near(space, goal.position())) else {
+            return Err(start.position());
+        };
+        self.guide.prepare(space, first[0], last[0]);
+        self.cost.clear();
+        self.cost.resize(space.field.geometry().len() * HEADINGS, NEVER);
+        self.came.clear();
+        self.came.resize(self.cost.len(), SEED);
+        self.queue.reset(self.guide.ahead(first[0]), 1 << 16);
+        for place in first {
+            self.seed(space, body, start, place);
+        }
+        let (mut nearest, mut least) = (start.position(), f64::INFINITY);
+        while let Some((_, Entry { cell: state, cost })) = self.queue.pop() {
+            let state = state as usize;
+            if cost > self.cost[state] {
+                continue;
+            }
+            let pose = pose_of(space, state);
+            let off = (pose.position() - goal.position()).norm();
+            if off < least {
+                (least, nearest) = (off, pose.position());
+            }
+            if last.contains(&space.place(state / HEADINGS)) {
+                if let Some(arrival) = link(space, body, pose, goal) {
+                    let mut poses = self.follow_back(space, state);
+                    poses.insert(0, start);
+                    poses.extend(arrival);
+                    return Ok(poses);
+                }
+            }
+            self.spread(space, body, state, pose);
+        }
+        Err(nearest)
+    }
+
+    /// From the start to a cell's centre, and to the heading nearest to the way there.
+    fn seed(&mut self, space: &Space<'_>, body: &Body, start: Pose2, place: (u32, u32)) {
+        let cell = place.1 as usize * space.field.geometry().width + place.0 as usize;
+        for heading in 0..HEADINGS {
+            let state = cell * HEADINGS + heading;
+            if link(space, body, start, pose_of(space, state)).is_some() {
+                let way = (space.center(cell) - start.position()).norm() / space.field.geometry().resolution;
+                self.reach(space, state, (way * f64::from(SIDE)) as u32, SEED);
+            }
+        }
+    }
+
+    fn reach(&mut self, space: &Space<'_>, state: usize, cost: u32, came: u8) {
+        (self.cost[state], self.came[state]) = (cost, came);
+        let key = cost.saturating_add(self.guide.ahead(space.place(state / HEADINGS)));
+        self.queue.push_near(key, Entry { cell: state as u32, cost });
+    }
+
+    fn spread(&mut self, space: &Space<'_>, body: &Body, state: usize, pose: Pose2) {
+        let (cell, heading) = (state / HEADINGS, state % HEADINGS);
+        let so_far = self.cost[state];
+        let step = BY_HEADING[heading];
+        if let Some(to) = stepped(space, cell, STEPS[step]) {
+            let price = u32::from(space.cell_price(cell)) + u32::from(space.cell_price(to));
+            let cost = so_far.saturating_add((length(step) * price) >> 9);
+            let target = to * HEADINGS + heading;
+            let by = space.center(to) - space.center(cell);
+            if cost < self.cost[target] && body.may_move(space.field, pose, by, 0.0) {
+                self.reach(space, target, cost, 0);
+            }
+        }
+        for (came, next) in [(1, (heading + 1) % HEADINGS), (2, (heading + HEADINGS - 1) % HEADINGS)] {
+            let target = cell * HEADINGS + next;
+            let cost = so_far.saturating_add(TURN);
+            let turn = trundle_core::difference_of_angles(angle(next), angle(heading));
+            if cost < self.cost[target] && body.may_move(space.field, pose, Vector2::zeros(), turn) {
+                self.reach(space, target, cost, came);
+            }
+        }
+    }
+
+    fn follow_back(&self, space: &Space<'_>, last: usize) -> Vec<Pose2> {
+        let width = space.field.geometry().width as i64;
+        let mut poses = vec![pose_of(space, last)];
+        let mut state = last;
+        while self.came[state] != SEED {
+            let (cell, heading) = (state / HEADINGS, state % HEADINGS);
+            state = match self.came[state] {
+                1 => cell * HEADINGS + (heading + HEADINGS - 1) % HEADINGS,
+                2 => cell * HEADINGS + (heading + 1) % HEADINGS,
+                _ => {
+                    let (dx, dy) = STEPS[BY_HEADING[heading]];
+                    (cell as i64 - i64::from(dy) * width - i64::from(dx)) as usize * HEADINGS + heading
+                }
+            };
+            poses.push(pose_of(space, state));
+        }
+        poses.reverse();
+        poses
+    }
+}
+
+/// Fewer poses: from each, the furthest later one that a turn, a straight move and a turn reach free of contact.
+pub(crate) fn shortened(space: &Space<'_>, body: &Body, poses: &[Pose2]) -> Vec<Pose2> {
+    let mut kept = vec![poses[0]];
+    let mut from = 0;
+    while from + 1 < poses.len() {
+        let here = kept[kept.len() - 1];
+        let mut reach = poses.len() - 1 - from;
+        loop {
+            // A single step is free as it was found.
+            let next = poses[from + reach];
+            if let Some(linked) = link(space, body, here, next) {
+                kept.extend(linked);
+                break;
+            }
+            if reach == 1 {
+                kept.push(next);
+                break;
+            }
+            reach /= 2;
+        }
+        from += reach;
+    }
+    kept
+}
+
+/// The poses after `from` on the way to `to` by a turn, a straight move and a turn, where that is free.
+pub(crate) fn link(space: &Space<'_>, body: &Body, from: Pose2, to: Pose2) -> Option<Vec<Pose2>> {
+    const SAME_PLACE: f64 = 1e-6;
+    let by = to.position() - from.position();
+    let mut poses = Vec::new();
+    let mut heading = from.theta;
+    if by.norm() > SAME_PLACE {
+        heading = bearing(by);
+        body.turn(space.field, from, heading)?;
+        let turned = Pose2::new(from.x, from.y, heading);
+        if !body.may_move(space.field, turned, by, 0.0) {
+            return None;
+        }
+        poses.extend([turned, Pose2::new(to.x, to.y, heading)]);
+    }
+    body.turn(space.field, Pose2::new(to.x, to.y, heading), to.theta)?;
+    poses.push(to);
+    Some(poses)
+}
+
+/// The places of the cells around a point.
+fn near(space: &Space<'_>, point: Vector2) -> Option<Vec<(u32, u32)>> {
+    let geometry = space.field.geometry();
+    let middle = geometry.cell_at(point)?;
+    let mut places = vec![(middle.col as u32, middle.row as u32)];
+    for (dx, dy) in &STEPS[..8] {
+        let (c, r) = (middle.col as i64 + i64::from(*dx), middle.row as i64 + i64::from(*dy));
+        if c >= 0 && r >= 0 && c < geometry.width as i64 && r < geometry.height as i64 {
+            places.push((c as u32, r as u32));
+        }
+    }
+    Some(places)
+}
+
+fn stepped(space: &Space<'_>, cell: usize, (dx, dy): (i32, i32)) -> Option<usize> {
+    let geometry = space.field.geometry();
+    let (col, row) = space.place(cell);
+    let (c, r) = (col as i32 + dx, row as i32 + dy);
+    let inside = c >= 0 && r >= 0 && c < geometry.width as i32 && r < geometry.height as i32;
+    inside.then(|| r as usize * geometry.width + c as usize)
+}
+
+fn angle(heading: usize) -> f64 {
+    let (dx, dy) = STEPS[BY_HEADING[heading]];
+    f64::from(dy).atan2(f64::from(dx))
+}
+
+fn pose_of(space: &Space<'_>, state: usize) -> Pose2 {
+    let at = space.center(state / HEADINGS);
+    Pose2::new(at.x, at.y, angle(state % HEADINGS))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn headings_rise_all_around() {
+        for heading in 0..HEADINGS {
+            let turn = trundle_core::difference_of_angles(angle((heading + 1) % HEADINGS), angle(heading));
+            assert!(turn > 0.3 && turn < 0.5, "{heading}: {turn}");
+        }
+    }
+}

@@ -1,0 +1,106 @@
+//! Things that move: where they will be within two seconds, and what that means for a trajectory.
+
+use trundle_core::{
+    Cell, Invalid, OccupancyGrid, Trajectory, TrajectoryPoint, Twist2, Vector2, require_finite,
+};
+
+/// How far ahead a steady motion is believed, s.
+pub(crate) const HORIZON: f64 = 2.0;
+/// Time between two looks, s.
+const LOOK: f64 = 0.02;
+/// Longest waits are tried in steps of this, s.
+const WAIT: f64 = 0.1;
+
+/// A disc that moves steadily: a person, another robot.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Mover {
+    position: Vector2,
+    velocity: Vector2,
+    radius: f64,
+}
+
+impl Mover {
+    /// A disc of `radius` m about `position` (map frame, m) that moves with `velocity` (m/s).
+    ///
+    /// # Errors
+    /// When a number is not finite, or the radius is negative.
+    pub fn new(position: Vector2, velocity: Vector2, radius: f64) -> Result<Self, Invalid> {
+        let numbers = [("x", position.x), ("y", position.y), ("vx", velocity.x), ("vy", velocity.y)];
+        for (name, value) in numbers {
+            require_finite(&format!("mover {name}"), value, "m, m/s")?;
+        }
+        trundle_core::require_in("mover radius", radius, "m", 0.0, 100.0)?;
+        Ok(Self { position, velocity, radius })
+    }
+
+    /// Where its centre will be, map frame, m.
+    pub fn at(&self, time: f64) -> Vector2 {
+        self.position + self.velocity * time
+    }
+}
+
+/// When a disc of `radius` m that follows the trajectory first comes nearer to a mover than both allow, within the horizon,
+/// s. A mover that is too near already counts only while it comes nearer.
+pub(crate) fn conflict(trajectory: &Trajectory, movers: &[Mover], radius: f64) -> Option<f64> {
+    let gap = |mover: &Mover, time: f64| {
+        (trajectory.at(time).pose.position() - mover.at(time)).norm() - mover.radius - radius
+    };
+    let steps = (HORIZON / LOOK) as usize;
+    (0..=steps).map(|k| k as f64 * LOOK).find(|time| {
+        movers.iter().any(|mover| {
+            let now = gap(mover, *time);
+            now < 0.0 && (gap(mover, 0.0) >= 0.0 || now < gap(mover, 0.0) - 1e-3)
+        })
+    })
+}
+
+/// Half the time about an encounter during which a mover's place is closed, s.
+const CLOSED: f64 = 0.4;
+
+/// Occupies the places that the movers come through about `time`, within the horizon.
+pub(crate) fn stamp(stamped: &mut OccupancyGrid, movers: &[Mover], time: f64) {
+    let geometry = *stamped.geometry();
+    for mover in movers {
+        let (a, b) = (mover.at((time - CLOSED).max(0.0)), mover.at((time + CLOSED).min(HORIZON)));
+        let wide = Vector2::repeat(mover.radius + geometry.resolution);
+        let index =
+            |at: f64, size: usize| (at / geometry.resolution).floor().clamp(0.0, size as f64 - 1.0) as usize;
+        let (low, high) = (a.inf(&b) - wide - geometry.origin, a.sup(&b) + wide - geometry.origin);
+        for row in index(low.y, geometry.height)..=index(high.y, geometry.height) {
+            for col in index(low.x, geometry.width)..=index(high.x, geometry.width) {
+                let cell = trundle_core::CellIndex { col, row };
+                let centre = geometry.center(cell);
+                let off = (centre - crate::geometry::nearest_on_segment(centre, a, b)).norm();
+                if off < mover.radius + geometry.resolution * std::f64::consts::FRAC_1_SQRT_2 {
+                    stamped.set(cell, Cell::Occupied);
+                }
+            }
+        }
+    }
+}
+
+/// The trajectory from rest, begun as late as it takes to meet no mover within the horizon, and by how much later, s.
+pub(crate) fn delayed(trajectory: &Trajectory, movers: &[Mover], radius: f64) -> Option<(Trajectory, f64)> {
+    let waits = (1..=(HORIZON / WAIT) as usize).map(|k| k as f64 * WAIT);
+    waits
+        .map(|wait| (later(trajectory, wait), wait))
+        .find(|(late, _)| conflict(late, movers, radius).is_none())
+}
+
+/// What is left of a trajectory after `time` s.
+pub(crate) fn rest_of(trajectory: &Trajectory, time: f64) -> Trajectory {
+    let now = TrajectoryPoint { time: 0.0, ..trajectory.at(time) };
+    let later = trajectory.points().iter().filter(|point| point.time > time);
+    let points = std::iter::once(now).chain(later.map(|p| TrajectoryPoint { time: p.time - time, ..*p }));
+    Trajectory::new(points.collect()).expect("invariant: times still rise")
+}
+
+/// The same, after standing at its start for `wait` s.
+fn later(trajectory: &Trajectory, wait: f64) -> Trajectory {
+    let first = TrajectoryPoint { twist: Twist2::ZERO, ..trajectory.points()[0] };
+    let steps = (wait / LOOK).round() as usize;
+    let stand = |k: usize| TrajectoryPoint { time: k as f64 * wait / steps as f64, ..first };
+    let mut points: Vec<_> = (0..steps).map(stand).collect();
+    points.extend(trajectory.points().iter().map(|p| TrajectoryPoint { time: p.time + wait, ..*p }));
+    Trajectory::new(points).expect("invariant: times still rise")
+}

@@ -1,0 +1,123 @@
+//! Speed over time along one curve, with bounded jerk where that is asked for.
+//!
+//! Problem: the fastest speeds change their acceleration at once. Idea: average the motion over a window of T = 2 a / jerk
+//! seconds. The mean of motions whose acceleration is at most a changes its acceleration by at most 2 a / T; it is never
+//! faster than the fastest in its window, so limits that hold for as far as the robot comes in T hold for the mean; and it
+//! ends in the same place, T later. Cost: O(samples).
+
+use super::speeds::{Drive, speeds};
+use crate::curve::CurveSample;
+use trundle_core::Pose2;
+
+/// Where the robot is on a curve, and how fast, at any time.
+#[derive(Debug)]
+pub(super) struct Profile {
+    knots: Vec<Knot>,
+    /// Length of the averaging window, s; 0: none.
+    window: f64,
+    /// Where the window begins, before the time asked for, s.
+    lead: f64,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Knot {
+    time: f64,
+    arc: f64,
+    v: f64,
+    /// Acceleration from here on, m/s^2.
+    a: f64,
+    /// The integral of `arc` over time.
+    area: f64,
+}
+
+impl Profile {
+    /// From `v_start` m/s to rest. A motion under way that has not the room to go on as it is for half a window is timed
+    /// without regard to the jerk.
+    pub(super) fn new(
+        samples: &[CurveSample],
+        v_start: f64,
+        drive: &Drive,
+        ceiling: impl Fn(Pose2) -> f64,
+    ) -> Self {
+        let Some(jerk) = drive.config.jerk else {
+            return Self::steep(samples, &speeds(samples, v_start, drive, ceiling, 0.0));
+        };
+        let window = 2.0 * drive.limits.acceleration / jerk;
+        let reach = drive.limits.v.max(v_start) * window;
+        if v_start == 0.0 {
+            let steep = Self::steep(samples, &speeds(samples, 0.0, drive, ceiling, reach));
+            return Self { window, lead: window, ..steep };
+        }
+        let hold = v_start * window / 2.0;
+        let from = samples.partition_point(|sample| sample.arc < hold);
+        if from + 1 < samples.len() {
+            let after = speeds(&samples[from..], v_start, drive, &ceiling, reach);
+            let free = speeds(samples, v_start, drive, &ceiling, reach);
+            // Held for the first stretch, if nothing slows there.
+            if free[..=from].iter().all(|v| *v >= v_start - 1e-9) {
+                let held = std::iter::repeat_n(v_start, from).chain(after).collect::<Vec<_>>();
+                return Self { window, lead: window / 2.0, ..Self::steep(samples, &held) };
+            }
+        }
+        Self::steep(samples, &speeds(samples, v_start, drive, ceiling, 0.0))
+    }
+
+    /// Evenly accelerated from sample to sample.
+    fn steep(samples: &[CurveSample], speeds: &[f64]) -> Self {
+        let mut knots = vec![Knot { time: 0.0, arc: 0.0, v: speeds[0], a: 0.0, area: 0.0 }];
+        for (pair, v) in samples.windows(2).zip(speeds.windows(2)) {
+            let way = pair[1].arc - pair[0].arc;
+            if way <= 0.0 || v[0] + v[1] <= 0.0 {
+                continue;
+            }
+            let duration = 2.0 * way / (v[0] + v[1]);
+            let last = knots.last_mut().expect("invariant: there is a first knot");
+            last.a = (v[1] - v[0]) / duration;
+            let area = last.area_after(duration);
+            let next = Knot { time: last.time + duration, arc: pair[1].arc, v: v[1], a: 0.0, area };
+            knots.push(next);
+        }
+        Self { knots, window: 0.0, lead: 0.0 }
+    }
+
+    /// When it is at rest, s.
+    pub(super) fn duration(&self) -> f64 {
+        self.knots[self.knots.len() - 1].time + self.lead
+    }
+
+    /// The way done, m, and the speed, m/s.
+    pub(super) fn at(&self, time: f64) -> (f64, f64) {
+        if self.window == 0.0 {
+            let (knot, t) = self.knot(time);
+            return (knot.arc_after(t), knot.v + knot.a * t);
+        }
+        let (begin, end) = (time - self.lead, time - self.lead + self.window);
+        let ((a, s), (b, t)) = (self.knot(begin), self.knot(end));
+        let arc = (b.area_after(t) - a.area_after(s)) / self.window;
+        (arc, ((b.arc_after(t) - a.arc_after(s)) / self.window).max(0.0))
+    }
+
+    /// The knot before a time, and the time since: steady motion before the first, rest after the last.
+    fn knot(&self, time: f64) -> (Knot, f64) {
+        let after = self.knots.partition_point(|knot| knot.time <= time);
+        if after == 0 {
+            let first = self.knots[0];
+            return (Knot { a: 0.0, ..first }, time);
+        }
+        let mut knot = self.knots[after - 1];
+        if after == self.knots.len() {
+            (knot.v, knot.a) = (0.0, 0.0);
+        }
+        (knot, time - knot.time)
+    }
+}
+
+impl Knot {
+    fn arc_after(&self, t: f64) -> f64 {
+        self.arc + self.v * t + self.a * t * t / 2.0
+    }
+
+    fn area_after(&self, t: f64) -> f64 {
+        self.area + self.arc * t + self.v * t * t / 2.0 + self.a * t * t * t / 6.0
+    }
+}

@@ -1,0 +1,113 @@
+//! Masks, several goals, lanes, goals nearby.
+
+use crate::support::{at_home, found, judge, least_room, planner};
+use trundle_core::{Cell, GridGeometry, OccupancyGrid, Pose2, Twist2, Vector2};
+use trundle_planning::{Plan, PlannerConfig, SpeedMask, WayPointGraph};
+
+const RADIUS: f64 = 0.1755;
+
+fn hall() -> OccupancyGrid {
+    OccupancyGrid::from_ascii(0.1, &vec![".".repeat(100); 60].join("\n")).unwrap()
+}
+
+#[test]
+fn what_is_kept_out_is_kept_out() {
+    let grid = hall();
+    let (start, goal) = (Pose2::new(1.0, 3.0, 0.0), Pose2::new(9.0, 3.0, 0.0));
+    // Another resolution, and only a part of the hall.
+    let geometry = GridGeometry::new(0.25, Vector2::new(4.0, 2.0), 8, 8).unwrap();
+    let mask = OccupancyGrid::filled(geometry, Cell::Occupied);
+    let mut planner = planner(at_home(), RADIUS);
+    planner.set_keep_out(Some(mask));
+    let around = found(planner.plan(&grid, start, Twist2::ZERO, goal));
+    assert!(around.length > 8.2);
+    let outside = |p: Vector2| (p - p.sup(&Vector2::new(4.0, 2.0)).inf(&Vector2::new(6.0, 4.0))).norm();
+    let nearest = around.trajectory.points().iter().map(|p| outside(p.pose.position())).fold(9.0, f64::min);
+    assert!(nearest >= RADIUS - 1e-3, "{nearest}");
+    let within = planner.plan(&grid, start, Twist2::ZERO, Pose2::new(5.0, 3.0, 0.0));
+    assert!(matches!(within, Plan::GoalInObstacle { .. }), "{within}");
+    planner.set_keep_out(None);
+    let straight = found(planner.plan(&grid, start, Twist2::ZERO, goal));
+    assert!((straight.length - 8.0).abs() < 1e-3);
+}
+
+#[test]
+fn the_speed_mask_is_obeyed() {
+    let geometry = GridGeometry::new(0.5, Vector2::new(4.0, 0.0), 4, 12).unwrap();
+    let mask = SpeedMask::new(geometry, vec![0.2; geometry.len()]).unwrap();
+    let (start, goal) = (Pose2::new(1.0, 3.0, 0.0), Pose2::new(9.0, 3.0, 0.0));
+    let mut planner = planner(at_home(), RADIUS);
+    planner.set_speed_mask(Some(mask));
+    let result = found(planner.plan(&hall(), start, Twist2::ZERO, goal));
+    for point in result.trajectory.points() {
+        let slow = (4.0..6.0).contains(&point.pose.x);
+        assert!(!slow || point.twist.v <= 0.2 + 1e-6, "{point:?}");
+    }
+    assert!(result.trajectory.points().iter().any(|p| p.pose.x > 6.5 && p.twist.v > 0.6));
+    judge(&hall(), &result, start, goal, RADIUS);
+}
+
+#[test]
+fn a_tour_rests_at_each_goal() {
+    let goals = [
+        Pose2::new(4.0, 1.0, 1.5),
+        Pose2::new(4.0, 5.0, 3.0),
+        Pose2::new(4.0, 5.0, 0.0),
+        Pose2::new(8.0, 3.0, 0.0),
+    ];
+    let start = Pose2::new(1.0, 1.0, 0.0);
+    let mut planner = planner(at_home(), RADIUS);
+    let tour = planner.plan_tour(&hall(), start, Twist2::ZERO, &goals).unwrap();
+    assert_eq!(tour.legs.len(), 4);
+    let mut from = start;
+    let mut time = 0.0;
+    for (leg, goal) in tour.legs.iter().zip(goals) {
+        judge(&hall(), leg, from, goal, RADIUS);
+        (from, time) = (leg.trajectory.end(), time + leg.trajectory.duration());
+        let there = tour.trajectory.at(time);
+        assert!(there.pose.distance(&goal) < 1.1e-3 && there.twist.v.abs() < 1e-6, "{there:?}");
+    }
+    assert!((tour.trajectory.duration() - time).abs() < 1e-9);
+    let (at, why) =
+        planner.plan_tour(&hall(), start, Twist2::ZERO, &[goals[0], Pose2::new(99.0, 0.0, 0.0)]).unwrap_err();
+    assert!(at == 1 && why == Plan::GoalOutside, "{at} {why}");
+    assert!(planner.plan_tour(&hall(), start, Twist2::ZERO, &[]).is_err());
+}
+
+#[test]
+fn lanes_are_kept_to_and_blocked_ones_avoided() {
+    let at = |x: f64, y: f64| Vector2::new(x, y);
+    let nodes = vec![at(2.0, 1.0), at(8.0, 1.0), at(2.0, 5.0), at(8.0, 5.0)];
+    let graph = WayPointGraph::new(nodes, vec![(0, 1), (0, 2), (2, 3), (3, 1)]).unwrap();
+    let (start, goal) = (Pose2::new(1.0, 1.2, 0.0), Pose2::new(9.0, 1.2, 0.0));
+    let mut grid = hall();
+    let mut planner = planner(at_home(), RADIUS);
+    let direct = found(planner.plan_on_graph(&grid, &graph, start, Twist2::ZERO, goal));
+    judge(&grid, &direct, start, goal, RADIUS);
+    assert!(direct.way_points.points().contains(&at(2.0, 1.0)) && direct.length < 8.3);
+    (0..30).for_each(|row| grid.set(trundle_core::CellIndex { col: 50, row }, Cell::Occupied));
+    let around = found(planner.plan_on_graph(&grid, &graph, start, Twist2::ZERO, goal));
+    judge(&grid, &around, start, goal, RADIUS);
+    assert!(around.way_points.points().contains(&at(8.0, 5.0)));
+    (0..60).for_each(|row| grid.set(trundle_core::CellIndex { col: 50, row }, Cell::Occupied));
+    let blocked = planner.plan_on_graph(&grid, &graph, start, Twist2::ZERO, goal);
+    assert!(matches!(blocked, Plan::Blocked { .. }), "{blocked}");
+}
+
+#[test]
+fn a_blocked_goal_is_approached_as_far_as_allowed() {
+    let mut grid = hall();
+    for col in 70..80 {
+        (25..35).for_each(|row| grid.set(trundle_core::CellIndex { col, row }, Cell::Occupied));
+    }
+    let (start, goal) = (Pose2::new(1.0, 3.0, 0.0), Pose2::new(7.5, 3.0, 0.5));
+    let refused = planner(at_home(), RADIUS).plan(&grid, start, Twist2::ZERO, goal);
+    assert!(matches!(refused, Plan::GoalInObstacle { .. }));
+    let near = |goal_tolerance| PlannerConfig { goal_tolerance, ..at_home() };
+    let short = planner(near(0.3), RADIUS).plan(&grid, start, Twist2::ZERO, goal);
+    assert!(matches!(short, Plan::Blocked { .. }), "{short}");
+    let result = found(planner(near(1.0), RADIUS).plan(&grid, start, Twist2::ZERO, goal));
+    let end = result.trajectory.end();
+    assert!(end.distance(&goal) < 0.8 && (end.theta - 0.5).abs() < 1e-9, "{end:?}");
+    assert!(least_room(&grid, &result) >= RADIUS - 2e-4);
+}

@@ -1,0 +1,139 @@
+//! Robots that are no discs: long ones, whose axle is not in the middle.
+
+use crate::support::{HALF_BASE, LIMITS, at_home, found};
+use trundle_core::{
+    Cell, DifferentialDrive, Footprint, OccupancyGrid, Pose2, Twist2, Vector2, difference_of_angles,
+    wrap_angle,
+};
+use trundle_planning::{Phase, Plan, PlanResult, Planner, PlannerConfig};
+
+/// 0.6 x 0.4 m, the axle 0.2 m behind the middle.
+fn cart() -> Vec<Vector2> {
+    [(0.5, 0.2), (-0.1, 0.2), (-0.1, -0.2), (0.5, -0.2)].map(|(x, y)| Vector2::new(x, y)).to_vec()
+}
+
+fn cart_planner(config: PlannerConfig) -> Planner {
+    let footprint = Footprint::polygon(cart()).unwrap();
+    Planner::new(config, &footprint, LIMITS, DifferentialDrive::KOBUKI).unwrap()
+}
+
+/// Whether the outline, half a millimetre smaller, meets an occupied square: points of the outline 5 mm apart, and
+/// the squares' corners. Shares nothing with the planner.
+fn touches(grid: &OccupancyGrid, outline: &[Vector2], pose: Pose2) -> bool {
+    let at = |p: Vector2| {
+        let (s, c) = pose.theta.sin_cos();
+        Vector2::new(pose.x + c * p.x - s * p.y, pose.y + s * p.x + c * p.y)
+    };
+    let middle = outline.iter().sum::<Vector2>() / outline.len() as f64;
+    let inner: Vec<Vector2> =
+        outline.iter().map(|c| middle + (c - middle) * (1.0 - 1e-3 / (c - middle).norm())).collect();
+    let occupied = |p: Vector2| grid.at(at(p)) == Cell::Occupied;
+    let edges = || inner.iter().zip(inner.iter().cycle().skip(1));
+    let crosses = edges().any(|(a, b)| {
+        let steps = ((b - a).norm() / 0.005).ceil();
+        (0..steps as usize).any(|k| occupied(a + (b - a) * (k as f64 / steps)))
+    });
+    let resolution = grid.geometry().resolution;
+    let corner_inside = || {
+        (-12..=12).any(|i| {
+            (-12..=12).any(|j| {
+                let lattice = (pose.position() - grid.geometry().origin) / resolution;
+                let corner = grid.geometry().origin
+                    + Vector2::new(lattice.x.round() + f64::from(i), lattice.y.round() + f64::from(j))
+                        * resolution;
+                let (off, (s, c)) = (corner - pose.position(), pose.theta.sin_cos());
+                let local = Vector2::new(c * off.x + s * off.y, c * off.y - s * off.x);
+                let inside = edges().all(|(a, b)| (b - a).perp(&(local - a)) > 0.0);
+                let around = [(0.1, 0.1), (-0.1, 0.1), (0.1, -0.1), (-0.1, -0.1)]
+                    .map(|(x, y)| corner + Vector2::new(x, y) * resolution);
+                inside && around.into_iter().any(|p| grid.at(p) == Cell::Occupied)
+            })
+        })
+    };
+    crosses || corner_inside()
+}
+
+/// Ends, limits, and no contact, each 2 mm and half a degree.
+fn judge_cart(grid: &OccupancyGrid, result: &PlanResult, start: Pose2, goal: Pose2) {
+    let points = result.trajectory.points();
+    assert!(points[0].pose.distance(&start) < 1e-6 && result.trajectory.end().distance(&goal) < 1.1e-3);
+    assert!(wrap_angle(result.trajectory.end().theta - goal.theta).abs() < 1e-5);
+    for pair in points.windows(2) {
+        let turn = difference_of_angles(pair[1].pose.theta, pair[0].pose.theta).abs();
+        let steps = (pair[1].pose.distance(&pair[0].pose) / 0.002).max(turn / 0.01).ceil().max(1.0);
+        for k in 0..steps as usize {
+            let pose = pair[0].pose.interpolate(&pair[1].pose, k as f64 / steps);
+            assert!(!touches(grid, &cart(), pose), "{pose:?}");
+        }
+        assert!(pair[1].twist.v + HALF_BASE * pair[1].twist.omega.abs() <= LIMITS.wheel_speed * 1.01);
+    }
+}
+
+/// Two rooms of 1.5 x 1.7 m and a corridor between them, so many cells of 0.1 m wide.
+fn two_rooms(corridor: usize) -> OccupancyGrid {
+    let row = |r: usize| {
+        let open = r > 0 && r < 18;
+        let between = if open && r.abs_diff(9) * 2 < corridor { "." } else { "#" };
+        let room = if open { "." } else { "#" };
+        format!("#{}{}{}#", room.repeat(15), between.repeat(14), room.repeat(15))
+    };
+    OccupancyGrid::from_ascii(0.1, &(0..19).map(row).collect::<Vec<_>>().join("\n")).unwrap()
+}
+
+#[test]
+fn a_long_robot_passes_a_corridor_narrower_than_its_circle() {
+    // The circle about the axle is 1.08 m across, the robot 0.4 m.
+    let (start, goal) = (Pose2::new(0.7, 0.7, 1.3), Pose2::new(3.7, 1.1, -2.0));
+    let result = found(cart_planner(at_home()).plan(&two_rooms(5), start, Twist2::ZERO, goal));
+    judge_cart(&two_rooms(5), &result, start, goal);
+    assert!(result.length < 4.0, "{}", result.length);
+    let plan = cart_planner(at_home()).plan(&two_rooms(3), start, Twist2::ZERO, goal);
+    assert!(matches!(plan, Plan::Blocked { nearest } if nearest.x < 2.0), "{plan}");
+}
+
+#[test]
+fn in_the_open_the_circle_is_the_fast_path_and_the_curve_is_one() {
+    let grid = OccupancyGrid::from_ascii(0.1, &vec![".".repeat(60); 60].join("\n")).unwrap();
+    let (start, goal) = (Pose2::new(1.0, 1.0, 0.6), Pose2::new(5.0, 4.0, 0.7));
+    let result = found(cart_planner(at_home()).plan(&grid, start, Twist2::ZERO, goal));
+    assert_eq!(result.phases.len(), 1);
+    judge_cart(&grid, &result, start, goal);
+}
+
+#[test]
+fn where_the_short_way_round_is_blocked_it_turns_the_long_way() {
+    // A wall close to the right of the robot's nose: it can only turn left.
+    let art = "
+        ....................
+        ....................
+        ....................
+        ....................
+        ....................
+        ....................
+        ....................
+        ....................
+        ..########..........
+        ..########..........";
+    let grid = OccupancyGrid::from_ascii(0.1, art).unwrap();
+    let at = |theta: f64| Pose2::new(0.6, 0.45, theta);
+    let (start, goal) = (at(0.0), at(-3.1));
+    let result = found(cart_planner(at_home()).plan(&grid, start, Twist2::ZERO, goal));
+    let Phase::Turn { angle, .. } = result.phases[0] else { panic!("{:?}", result.phases) };
+    assert!(angle > 3.15, "{angle}");
+    judge_cart(&grid, &result, start, goal);
+}
+
+#[test]
+fn an_outline_in_a_wall_is_refused_with_reasons() {
+    let grid =
+        OccupancyGrid::from_ascii(0.1, &["#".repeat(30), vec![".".repeat(30); 29].join("\n")].join("\n"))
+            .unwrap();
+    let inside = Pose2::new(1.5, 2.6, std::f64::consts::FRAC_PI_2);
+    let free = Pose2::new(1.5, 1.0, 0.0);
+    let plan = |a, b| cart_planner(at_home()).plan(&grid, a, Twist2::ZERO, b);
+    assert!(matches!(plan(inside, free), Plan::StartInObstacle { .. }));
+    assert!(matches!(plan(free, inside), Plan::GoalInObstacle { .. }));
+    let beside = Pose2::new(1.5, 2.6, 0.0);
+    let result = found(plan(beside, free));
+    judge_cart(&grid, &result, beside, free);
+}
