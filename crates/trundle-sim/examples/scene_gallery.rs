@@ -31,7 +31,7 @@ fn main() -> Result<(), Failure> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let out = Path::new(arguments.first().ok_or("expected OUT_DIR [SEED [HEIGHT_PX [SCENE]]]")?);
     let number = |i: usize, default: u64| arguments.get(i).map_or(Ok(default), |text| text.parse());
-    let (seed, height) = (number(1, 1)?, number(2, 180)? as u32);
+    let (seed, height) = (number(1, 1)?, number(2, 170)? as u32);
     let wanted = |name: &str| arguments.get(3).is_none_or(|only| only == name);
     std::fs::create_dir_all(out)?;
     for (name, views) in VIEWS.into_iter().filter(|(name, _)| wanted(name)) {

@@ -27,7 +27,7 @@ pub(super) fn concrete(seed: u32, color: [u8; 3], x: f32, y: f32, grain: f32) ->
         return scaled(rgb(color), 0.55);
     }
     let crack =
-        (value(seed ^ 31, x / 0.9, y / 0.9) + 0.35 * value(seed ^ 32, x / 0.17, y / 0.17)).abs() < 0.008;
+        (value(seed ^ 31, x / 0.9, y / 0.9) + 0.35 * value(seed ^ 32, x / 0.17, y / 0.17)).abs() < 0.016;
     let stain = value(seed ^ 33, x / 0.6, y / 0.6) + 0.2 * grain;
     let dark = if crack { 0.6 } else { 1.0 - 0.35 * ((stain - 0.72) * 6.0).clamp(0.0, 1.0) };
     lifted(scaled(rgb(color), dark), 7.0 * grain)

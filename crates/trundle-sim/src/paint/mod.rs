@@ -115,13 +115,15 @@ fn bake_face(paint: Paint, seed: u32, (width, height): (f64, f64), coarse: f64) 
     let (dx, dy) = (size.0 / columns as f32, size.1 / rows as f32);
     let mut texels = vec![0; columns * rows];
     texels.par_chunks_mut(columns).enumerate().for_each_init(
-        || vec![0.0; columns],
-        |grain, (row, texels)| {
+        || (vec![0.0; columns], Vec::<Poster>::new()),
+        |(grain, across), (row, texels)| {
             let y = (row as f32 + 0.5) * dy;
             GRAIN.fill_row(seed, y, dx, grain);
+            across.clear();
+            across.extend(prints.iter().copied().filter(|poster| poster.crosses(y)));
             for (column, texel) in texels.iter_mut().enumerate() {
                 let x = (column as f32 + 0.5) * dx;
-                let print = prints.iter().find_map(|poster| poster.at(x, y));
+                let print = across.iter().find_map(|poster| poster.at(x, y));
                 *texel = packed(print.unwrap_or_else(|| color_at(paint, seed, size, x, y, grain[column])));
             }
         },

@@ -41,11 +41,14 @@ impl Index<usize> for Paintings {
     }
 }
 
+/// Seed and size, exactly: what looks have in common that are compared.
+type LookKey = (u64, [u64; 3]);
+
 /// The first solid of every look, and which look each solid has.
 fn share(solids: &[Solid]) -> (Vec<usize>, Vec<u32>) {
     let mut firsts = Vec::new();
     let mut of_solid = Vec::with_capacity(solids.len());
-    let mut looks: BTreeMap<(u64, [u64; 3]), Vec<(&Finish, u32)>> = BTreeMap::new();
+    let mut looks: BTreeMap<LookKey, Vec<(&Finish, u32)>> = BTreeMap::new();
     for (i, solid) in solids.iter().enumerate() {
         let fresh = firsts.len() as u32;
         let which = match solid.finish.seed {

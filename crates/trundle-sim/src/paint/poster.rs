@@ -12,6 +12,11 @@ pub(super) struct Poster {
 }
 
 impl Poster {
+    /// Whether the row at `y` may run over the print.
+    pub(super) fn crosses(&self, y: f32) -> bool {
+        (-1e-3..=self.height + 1e-3).contains(&(y - self.top))
+    }
+
     /// The print's colour at a point of the face; `None` beside it.
     pub(super) fn at(&self, x: f32, y: f32) -> Option<Rgb> {
         let (x, y) = (x - self.left, y - self.top);

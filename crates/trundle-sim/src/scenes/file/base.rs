@@ -1,4 +1,5 @@
 use super::SceneError;
+use crate::import::{GltfOptions, UpAxis};
 use crate::people::Person;
 use crate::scenes::Scene;
 use crate::world::{Lights, Mesh, Solid};
@@ -23,49 +24,33 @@ pub struct Base {
     pub scale: Option<f64>,
     /// A map's YAML file, relative to the scene file.
     pub map: Option<PathBuf>,
-    /// Height that occupied cells of the map are raised to, m, 0.05 to 20. Default 2.5.
+    /// Height that occupied cells of the map are raised to, m, 0.1 to 20. Default 2.5.
     pub wall_height: Option<f64>,
 }
 
-/// An axis that points up.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum UpAxis {
-    /// As glTF 2.0 has it.
-    #[default]
-    Y,
-    /// As robots have it.
-    Z,
-}
+/// Why a file that a scene file names could not be loaded, for people.
+pub type LoadError = Box<dyn Error + Send + Sync>;
 
-/// What stands in a loaded base, floor included.
-#[derive(Debug, Default)]
-pub struct BaseParts {
-    /// Boxes and cylinders.
-    pub solids: Vec<Solid>,
-    /// Surfaces of triangles.
-    pub meshes: Vec<Mesh>,
-}
-
-/// Reads the files that a scene file names: this crate reads none.
+/// Reads the files that a scene file names, relative to it: where that lies is the caller's to know.
 pub trait BaseLoader {
-    /// A glTF or GLB file with `up` turned to z and `scale` m a unit.
+    /// A glTF or GLB file ([`crate::import::gltf()`]).
     ///
     /// # Errors
-    /// What the reader says, for people.
-    fn gltf(&self, path: &Path, up: UpAxis, scale: f64) -> Result<BaseParts, Box<dyn Error + Send + Sync>>;
+    /// What the reader says.
+    fn gltf(&self, path: &Path, options: &GltfOptions) -> Result<Mesh, LoadError>;
 
-    /// A map (YAML and PGM), its occupied cells raised to `wall_height` m.
+    /// A map (YAML and PGM), its occupied cells raised to `wall_height` m, and its floor.
     ///
     /// # Errors
-    /// What the reader says, for people.
-    fn map(&self, path: &Path, wall_height: f64) -> Result<BaseParts, Box<dyn Error + Send + Sync>>;
+    /// What the reader says.
+    fn map(&self, path: &Path, wall_height: f64) -> Result<Vec<Solid>, LoadError>;
 }
 
 /// A base as loaded.
 pub(super) struct LoadedBase {
     pub(super) name: String,
-    pub(super) parts: BaseParts,
+    pub(super) solids: Vec<Solid>,
+    pub(super) meshes: Vec<Mesh>,
     pub(super) lights: Lights,
     pub(super) people: Vec<Person>,
     pub(super) start: Option<Pose2>,
@@ -79,13 +64,16 @@ impl Base {
             (Some(name), None, None) => built_in(name, seed),
             (None, Some(path), None) => {
                 let scale = require_in("base.scale", self.scale.unwrap_or(1.0), "m a unit", 1e-4, 1e3)?;
-                let parts = loader.gltf(path, self.up.unwrap_or_default(), scale);
-                from_file("base.gltf", path, parts)
+                let options =
+                    GltfOptions { up: self.up.unwrap_or_default(), scale, ..GltfOptions::default() };
+                let mesh = loader.gltf(path, &options).map_err(|e| SceneError::load("base.gltf", path, e))?;
+                Ok(from_file(path, Vec::new(), vec![mesh]))
             }
             (None, None, Some(path)) => {
                 let height =
-                    require_in("base.wall_height", self.wall_height.unwrap_or(2.5), "m", 0.05, 20.0)?;
-                from_file("base.map", path, loader.map(path, height))
+                    require_in("base.wall_height", self.wall_height.unwrap_or(2.5), "m", 0.1, 20.0)?;
+                let solids = loader.map(path, height).map_err(|e| SceneError::load("base.map", path, e))?;
+                Ok(from_file(path, solids, Vec::new()))
             }
             _ => {
                 let given = [self.scene.is_some(), self.gltf.is_some(), self.map.is_some()];
@@ -113,7 +101,8 @@ fn built_in(name: &str, seed: u64) -> Result<LoadedBase, SceneError> {
     let scene =
         Scene::by_name(name, seed).map_err(|error| Invalid { field: "base.scene".into(), ..error })?;
     Ok(LoadedBase {
-        parts: BaseParts { solids: scene.world.solids().to_vec(), meshes: scene.world.meshes().to_vec() },
+        solids: scene.world.solids().to_vec(),
+        meshes: scene.world.meshes().to_vec(),
         name: scene.name,
         lights: scene.lights,
         people: scene.people,
@@ -122,13 +111,8 @@ fn built_in(name: &str, seed: u64) -> Result<LoadedBase, SceneError> {
     })
 }
 
-fn from_file(
-    field: &'static str,
-    path: &Path,
-    parts: Result<BaseParts, Box<dyn Error + Send + Sync>>,
-) -> Result<LoadedBase, SceneError> {
-    let parts =
-        parts.map_err(|source| SceneError::Load { field, path: path.display().to_string(), source })?;
+fn from_file(path: &Path, solids: Vec<Solid>, meshes: Vec<Mesh>) -> LoadedBase {
     let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-    Ok(LoadedBase { name, parts, lights: Lights::default(), people: Vec::new(), start: None, goal: None })
+    let (lights, people) = (Lights::default(), Vec::new());
+    LoadedBase { name, solids, meshes, lights, people, start: None, goal: None }
 }

@@ -1,4 +1,5 @@
-use std::error::Error;
+use super::LoadError;
+use std::path::Path;
 use trundle_core::Invalid;
 
 /// What can be wrong with a scene file.
@@ -15,13 +16,17 @@ pub enum SceneError {
         /// The file, as the item names it.
         path: String,
         /// What its reader says.
-        source: Box<dyn Error + Send + Sync>,
+        source: LoadError,
     },
 }
 
 impl SceneError {
     pub(super) fn missing(field: &str, expected: &str) -> Self {
         Invalid::new(field, "missing", "", expected).into()
+    }
+
+    pub(super) fn load(field: &'static str, path: &Path, source: LoadError) -> Self {
+        Self::Load { field, path: path.display().to_string(), source }
     }
 }
 

@@ -5,7 +5,7 @@ mod error;
 mod prop;
 mod prop_kind;
 
-pub use base::{Base, BaseLoader, BaseParts, UpAxis};
+pub use base::{Base, BaseLoader, LoadError};
 pub use error::SceneError;
 pub use prop::Prop;
 pub use prop_kind::{PaintName, PropKind};
@@ -74,7 +74,7 @@ impl SceneFile {
         let seed = self.base.seed.unwrap_or(seed);
         let mut stage = self.base.load(loader, seed)?;
         for (i, prop) in self.props.iter().enumerate() {
-            stage.parts.solids.extend(prop.solids(&format!("props[{i}]"), seed, i)?);
+            stage.solids.extend(prop.solids(&format!("props[{i}]"), seed, i)?);
         }
         for (i, person) in self.people.iter().enumerate() {
             let person =
@@ -88,7 +88,7 @@ impl SceneFile {
         let goal = place("robot.goal", self.robot.goal)?.or(stage.goal).unwrap_or(start);
         Ok(Scene {
             name: self.name.clone().unwrap_or(stage.name),
-            world: World::with_meshes(stage.parts.solids, stage.parts.meshes, seed)?,
+            world: World::with_meshes(stage.solids, stage.meshes, seed)?,
             lights,
             people: stage.people,
             start,

@@ -1,22 +1,26 @@
-use std::error::Error;
 use std::path::Path;
 use trundle_core::Pose2;
-use trundle_sim::scenes::file::{BaseLoader, BaseParts, SceneFile, UpAxis};
-use trundle_sim::{Scene, SimConfig, Simulator};
+use trundle_sim::import::{GltfOptions, UpAxis};
+use trundle_sim::scenes::file::{BaseLoader, LoadError, SceneFile};
+use trundle_sim::{Material, Mesh, Scene, SimConfig, Simulator, Solid, Triangle};
 
 /// Files of this loader: `floor.glb` and `floor.yaml` hold the test hall, all others nothing.
 struct Shelf;
 
 impl BaseLoader for Shelf {
-    fn gltf(&self, path: &Path, up: UpAxis, scale: f64) -> Result<BaseParts, Box<dyn Error + Send + Sync>> {
-        assert_eq!((up, scale), (UpAxis::Z, 0.5));
-        self.map(path, 2.0)
+    fn gltf(&self, path: &Path, options: &GltfOptions) -> Result<Mesh, LoadError> {
+        assert_eq!((options.up, options.scale), (UpAxis::Z, 0.5));
+        self.map(path, 2.0)?;
+        let material = Material { name: "floor".into(), color: [120; 3], texture: None };
+        let corners = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+        let triangle = Triangle { corners: [0, 1, 2], material: 0 };
+        Ok(Mesh::new(corners, vec![[0.0; 2]; 3], vec![triangle], vec![material])?)
     }
 
-    fn map(&self, path: &Path, _wall_height: f64) -> Result<BaseParts, Box<dyn Error + Send + Sync>> {
+    fn map(&self, path: &Path, wall_height: f64) -> Result<Vec<Solid>, LoadError> {
+        assert_eq!(wall_height, 2.0);
         if path.file_stem().is_some_and(|stem| stem == "floor") {
-            let solids = crate::hall(Pose2::IDENTITY).world.solids().to_vec();
-            Ok(BaseParts { solids, meshes: Vec::new() })
+            Ok(crate::hall(Pose2::IDENTITY).world.solids().to_vec())
         } else {
             Err("no such file".into())
         }
@@ -64,7 +68,11 @@ fn files_are_loaded_by_the_caller_and_need_a_start() {
     let scene = build(&format!(r#"{{{base}, "robot": {{"start": {{"x": 0, "y": 1}}}}}}"#)).unwrap();
     assert_eq!((scene.name.as_str(), scene.start, scene.goal.position().y), ("floor", scene.goal, 1.0));
     assert!(refusal(&format!("{{{base}}}")).contains("robot.start is missing"));
-    let lost = refusal(r#"{"base": {"map": "lost.yaml"}, "robot": {"start": {"x": 0, "y": 0}}}"#);
+    let raised =
+        r#"{"base": {"map": "maps/floor.yaml", "wall_height": 2}, "robot": {"start": {"x": 0, "y": 0}}}"#;
+    assert_eq!(build(raised).unwrap().world.solids(), crate::hall(Pose2::IDENTITY).world.solids());
+    let lost =
+        refusal(r#"{"base": {"map": "lost.yaml", "wall_height": 2}, "robot": {"start": {"x": 0, "y": 0}}}"#);
     assert_eq!(lost, "base.map 'lost.yaml': no such file");
 }
 
