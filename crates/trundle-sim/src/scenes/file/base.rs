@@ -70,8 +70,7 @@ impl Base {
                 Ok(from_file(path, Vec::new(), vec![mesh]))
             }
             (None, None, Some(path)) => {
-                let height =
-                    require_in("base.wall_height", self.wall_height.unwrap_or(2.5), "m", 0.1, 20.0)?;
+                let height = require_in("base.wall_height", self.wall_height.unwrap_or(2.5), "m", 0.1, 20.0)?;
                 let solids = loader.map(path, height).map_err(|e| SceneError::load("base.map", path, e))?;
                 Ok(from_file(path, solids, Vec::new()))
             }
