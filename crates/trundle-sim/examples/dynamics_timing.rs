@@ -1,11 +1,12 @@
 //! How many seconds of the robot's time a second of the clock simulates, without camera.
 //!
-//! `cargo run --release -p trundle-sim --example dynamics_timing [SCENE...]`: built-in scenes or scene files.
+//! `cargo run --release -p trundle-sim --example dynamics_timing [SCENE...]`: built-in scenes or glTF files, z up.
 #![allow(clippy::print_stdout, reason = "an example talks to its user")]
 
 use std::time::Instant;
-use trundle_core::{RobotBody, SensorEvent, Twist2};
-use trundle_sim::{LaserConfig, Scene, SimConfig, Simulator};
+use trundle_core::{Footprint, Pose2, RobotBody, SensorEvent, Twist2};
+use trundle_sim::import::{GltfOptions, gltf};
+use trundle_sim::{HeightBand, LaserConfig, Scene, SimConfig, Simulator, World};
 
 /// Seconds of the robot's time a run.
 const SPAN: f64 = 60.0;
@@ -22,7 +23,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             let mut speeds = Vec::new();
             let mut contacts = 0;
             for seed in 0..RUNS {
-                let scene = Scene::by_name(&name, 1)?;
+                let scene = scene(&name)?;
                 let config = SimConfig { has_camera: false, laser: laser.clone(), ..SimConfig::default() };
                 let mut robot = Simulator::new(scene, config, seed)?;
                 let start = Instant::now();
@@ -36,6 +37,20 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         }
     }
     Ok(())
+}
+
+/// A built-in scene, or a file with the robot in the first free place of a coarse grid.
+fn scene(name: &str) -> Result<Scene, Box<dyn std::error::Error>> {
+    if !name.ends_with(".glb") {
+        return Ok(Scene::by_name(name, 1)?);
+    }
+    let world = World::with_meshes(Vec::new(), vec![gltf(name.as_ref(), &GltfOptions::z_up())?], 1)?;
+    let obstacles = world.obstacles(HeightBand::new(0.012, 0.6)?);
+    let (low, _) = world.bounds();
+    let place = |i: u32| Pose2::new(low.x + f64::from(i % 100) * 0.3, low.y + f64::from(i / 100) * 0.3, 0.0);
+    let is_free = |place: &Pose2| obstacles.clearance(&Footprint::KOBUKI, *place) > 0.3;
+    let start = (1500..10_000).map(place).find(is_free).ok_or("no free place")?;
+    Ok(Scene { name: name.into(), world, start, ..Scene::by_name("room", 1)? })
 }
 
 /// Drives about, and back and aside when it touches something.

@@ -1,6 +1,5 @@
 //! A laser that looks around in a horizontal plane.
 
-mod cast;
 mod config;
 mod presets;
 mod sweep;

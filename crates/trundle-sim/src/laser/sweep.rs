@@ -1,5 +1,4 @@
 use super::LaserConfig;
-use super::cast::first_hit;
 use crate::chance::{GOLDEN, hash, mix, normal, unit};
 use crate::world::Stage;
 use rayon::prelude::*;
@@ -55,9 +54,9 @@ impl Laser {
         let origin = world_from_base.transform(Vector2::new(c.x, c.y));
         let direction = world_from_base.rotate(Vector2::new(angle.cos(), angle.sin()));
         let direction = Vector3::new(direction.x, direction.y, 0.0);
-        let hit = first_hit(stage, Vector3::new(origin.x, origin.y, c.z), direction, c.range_max);
-        let seen = hit.filter(|(_, normal)| normal.dot(&direction).abs() >= c.most_incidence.cos());
-        self.reading(seen.map(|(range, _)| range), bits)
+        let hit = stage.cast(Vector3::new(origin.x, origin.y, c.z), direction, c.range_max);
+        let seen = hit.filter(|hit| hit.normal.dot(&direction).abs() >= c.most_incidence.cos());
+        self.reading(seen.map(|hit| hit.distance), bits)
     }
 
     /// What the device makes of a return from `range` m, or of none.

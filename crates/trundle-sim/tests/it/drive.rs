@@ -1,7 +1,9 @@
-use super::{almost_blind, block, hall};
-use trundle_core::{DifferentialDrive, Pose2, RobotBody, SensorEvent, Twist2, WheelTicks};
+use super::{almost_blind, block, hall, shared_data};
+use trundle_core::{DifferentialDrive, Footprint, Pose2, RobotBody, SensorEvent, Twist2, WheelTicks};
+use trundle_sim::import::{GltfOptions, gltf};
 use trundle_sim::{
-    CommandScript, Following, KobukiConfig, Scene, SimConfig, SimError, Simulator, WaypointFollower, World,
+    CommandScript, Following, HeightBand, KobukiConfig, Scene, SimConfig, SimError, Simulator,
+    WaypointFollower, World,
 };
 
 /// Wheels and gyro, integrated as an odometry would.
@@ -249,6 +251,36 @@ fn a_follower_says_that_it_is_blocked() {
     let mut follower = WaypointFollower::parse("2.5 0 0\n3.5 0 0").unwrap();
     follow(&mut robot, &mut follower);
     assert_eq!(follower.state(), Following::Blocked { waypoint: 1 });
+}
+
+/// A scene from the shared house, the robot in the first free place of a coarse grid; `None` where the file is absent.
+fn small_house() -> Option<Scene> {
+    let mesh = gltf(&shared_data("scenes/small_house.glb")?, &GltfOptions::z_up()).unwrap();
+    let world = World::with_meshes(Vec::new(), vec![mesh], 1).unwrap();
+    let obstacles = world.obstacles(HeightBand::new(0.012, 0.6).unwrap());
+    let places =
+        (0..400).map(|i| Pose2::new(f64::from(i % 20) * 0.5 - 5.0, f64::from(i / 20) * 0.5 - 5.0, 0.0));
+    let start = places.into_iter().find(|place| obstacles.clearance(&Footprint::KOBUKI, *place) > 0.3)?;
+    Some(Scene { name: "small_house".into(), world, ..hall(start) })
+}
+
+#[test]
+fn in_a_house_of_triangles_no_way_of_driving_gets_into_anything() {
+    let Some(scene) = small_house() else { return };
+    let config = SimConfig { has_camera: false, ..SimConfig::default() };
+    let mut robot = Simulator::new(scene, config, 3).unwrap();
+    let mut listener = Listener::default();
+    for i in 0..60 {
+        let v = if i % 5 == 4 { -0.4 } else { 0.6 };
+        listener.drive(&mut robot, Twist2::new(v, f64::from(i % 7) - 3.0), 1.0);
+    }
+    assert!(
+        robot.contacts() > 2 && robot.path_length() > 5.0,
+        "{} {}",
+        robot.contacts(),
+        robot.path_length()
+    );
+    assert!(listener.cliffs.is_empty(), "its floor is a floor");
 }
 
 #[test]
