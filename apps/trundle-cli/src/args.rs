@@ -1,3 +1,5 @@
+use crate::dock::DockArgs;
+use crate::experiment::ExperimentArgs;
 use crate::sim::SimArgs;
 use clap::{Args, Parser, Subcommand};
 use std::path::PathBuf;
@@ -22,10 +24,16 @@ pub enum Command {
     Replay(ReplayArgs),
     /// Track a recorded RGB-D sequence and draw its map.
     Slam(SlamArgs),
+    /// Draw the map of a laser log.
+    Map(crate::map::MapArgs),
     /// Plan on a map: way-points, curve and trajectory.
     Plan(PlanArgs),
     /// Drive a simulated robot through a scene and record what it sees.
     Sim(SimArgs),
+    /// Settle on a goal in a tight place: the manoeuvre of turns and straight moves.
+    Dock(DockArgs),
+    /// The papers' experiments, each with its table and pictures.
+    Experiment(ExperimentArgs),
     /// Print the whole robot file with its defaults, or check one.
     Config(ConfigArgs),
 }

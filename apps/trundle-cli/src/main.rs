@@ -4,8 +4,11 @@ mod args;
 mod body;
 mod console;
 mod demo;
+mod dock;
+mod experiment;
 mod failure;
 mod logbook;
+mod map;
 mod picture;
 mod plan;
 mod replay;
@@ -47,8 +50,11 @@ fn run(cli: Cli) -> Result<Outcome, Failure> {
         Command::Demo(args) => with_threads(&args.common, || demo::run(&args)),
         Command::Replay(args) => with_threads(&args.common, || replay::run(&args)),
         Command::Slam(args) => with_threads(&args.common, || slam::run(&args)),
+        Command::Map(args) => with_threads(&args.common, || map::run(&args)),
         Command::Plan(args) => with_threads(&args.common, || plan::run(&args)),
         Command::Sim(args) => with_threads(&args.common, || sim::run(&args)),
+        Command::Dock(args) => with_threads(&args.common, || dock::run(&args)),
+        Command::Experiment(args) => with_threads(args.common(), || experiment::run(&args)),
         Command::Config(args) => robot_file::print(&args),
     }
 }

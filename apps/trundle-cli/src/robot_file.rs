@@ -6,7 +6,7 @@ use trundle::runtime::RobotConfig;
 /// Reads a robot file; without one, the defaults.
 pub fn load(file: Option<&Path>) -> Result<RobotConfig, Failure> {
     let Some(file) = file else { return Ok(RobotConfig::default()) };
-    let config = settings::read(file, RobotConfig::from_toml)?;
+    let config: RobotConfig = settings::read(file)?;
     config.validated().map_err(|error| Failure::Input(format!("{}: {error}", file.display())))
 }
 

@@ -1,14 +1,15 @@
 use crate::failure::Failure;
+use serde::de::DeserializeOwned;
 use std::path::Path;
 use trundle::io::IoError;
 
-/// Reads a TOML file by `parse`.
+/// Reads a TOML file.
 ///
 /// # Errors
-/// Names the file and the line, where the file cannot be read or `parse` refuses it.
-pub fn read<T>(file: &Path, parse: impl FnOnce(&str) -> Result<T, toml::de::Error>) -> Result<T, Failure> {
+/// Names the file and why it cannot be read, or the line and what is wrong there.
+pub fn read<T: DeserializeOwned>(file: &Path) -> Result<T, Failure> {
     let text = text_of(file)?;
-    parse(&text).map_err(|error| {
+    toml::from_str(&text).map_err(|error| {
         let line = error.span().map_or(1, |span| 1 + text[..span.start].matches('\n').count());
         Failure::Input(format!("{}, line {line}: {}", file.display(), error.message().replace('\n', " ")))
     })

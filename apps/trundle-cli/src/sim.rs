@@ -3,6 +3,8 @@
 mod args;
 mod data_set;
 mod driver;
+mod faults;
+mod files;
 mod hand;
 mod journey;
 mod map;
@@ -13,6 +15,7 @@ mod table;
 pub use args::SimArgs;
 
 use crate::{Outcome, console, failure::Failure};
+use args::LaserArg;
 use data_set::DataSet;
 use driver::Driver;
 use hand::Hand;
@@ -29,7 +32,7 @@ impl From<SimError> for Failure {
 /// `trundle sim`.
 pub fn run(args: &SimArgs) -> Result<Outcome, Failure> {
     let Some(name) = args.scene.as_deref().filter(|_| !args.list) else {
-        console::table(&scene::list());
+        console::table(&scene::list()?);
         return Ok(Outcome::Reached);
     };
     let config = configured(args)?;
@@ -40,21 +43,23 @@ pub fn run(args: &SimArgs) -> Result<Outcome, Failure> {
     let mut driver = Driver::read(args)?;
     let folder = args.record.as_deref().map(OutputFolder::create).transpose()?;
     let scene = scene::load(args, name)?;
-    if let Some(file) = &args.map {
-        map::write(file, &scene, args.resolution, band)?;
+    let grid = args.needs_map().then(|| map::truth(&scene, args.resolution, band)).transpose()?;
+    if let (Some(file), Some(grid)) = (&args.map, &grid) {
+        map::write(file, grid)?;
     }
     if args.wants_only_map() {
         return Ok(Outcome::Reached);
     }
     let mut robot = Simulator::new(scene, config, args.seed)
         .map_err(|error| Failure::Input(format!("{name}: {error}")))?;
-    if let Driver::Hand(hand) = &mut driver {
-        hand.begin(map::truth(robot.scene(), args.resolution, band)?, args.common.quiet)?;
+    if let (Driver::Hand(hand), Some(grid)) = (&mut driver, &grid) {
+        hand.begin(grid.clone(), args.common.quiet)?;
     }
     let mut data = folder.as_ref().map(|folder| DataSet::new(folder, &robot)).transpose()?;
     let journey = Journey::drive(args, &mut robot, &mut driver, data.as_mut())?;
-    if let Some(data) = data {
-        data.finish(&robot, args.resolution, band, &journey.summary(args, name))?;
+    drop(driver); // whoever was at the keys gives the terminal back
+    if let (Some(data), Some(grid)) = (data, &grid) {
+        data.finish(grid, robot.scene().start, &journey.summary(args, name))?;
     }
     let place = folder.map(OutputFolder::commit).transpose()?;
     if !args.common.quiet {
@@ -65,9 +70,11 @@ pub fn run(args: &SimArgs) -> Result<Outcome, Failure> {
 
 /// The simulated robot that the arguments ask for.
 fn configured(args: &SimArgs) -> Result<SimConfig, Failure> {
-    let mut config = SimConfig { camera: args.camera.camera(), ..SimConfig::default() };
-    if let Some(rate) = args.rate {
-        config.camera_rate_hz = rate;
+    let mut config = args.camera.robot();
+    config.camera_rate_hz = args.rate.unwrap_or(config.camera_rate_hz);
+    config.laser = args.laser.map(LaserArg::laser);
+    if let Some(file) = &args.faults {
+        config.faults = faults::read(file)?;
     }
     let config = if args.no_noise { config.without_noise() } else { config };
     Ok(config.validated()?)

@@ -1,3 +1,8 @@
+mod line;
+mod log;
+
+pub use log::{LaserLog, LaserLogOptions, LaserLogScan, LaserLogSkip, read_carmen};
+
 use std::fmt::Write;
 use trundle_core::{Beam, Pose2, Scan, Stamp, Twist2};
 

@@ -1,6 +1,6 @@
 //! Data sets, maps, trajectories and recordings on disk: one file a format, described in `docs/formats.md`.
 //!
-//! What comes in: TUM RGB-D folders ([`TumSequence`]), TUM trajectories ([`read_trajectory`]), cameras
+//! What comes in: TUM RGB-D folders ([`TumSequence`]), CARMEN logs ([`read_carmen`]), TUM trajectories ([`read_trajectory`]), cameras
 //! ([`CameraModel`]), ROS maps ([`read_map`]) and recordings ([`RecordingReader`]). What goes out is collected in an
 //! [`OutputFolder`], which shows nothing half-written: maps, trajectories, tables, TUM folders ([`TumWriter`]), laser logs ([`CarmenLog`]), recordings ([`Recorder`]) and the
 //! numbers of a run ([`Summary`]). [`EncodedEvent`] is the wire between body and robot: a robot that is fed through
@@ -36,7 +36,7 @@ mod summary;
 mod tum;
 
 pub use camera::{CameraModel, KINECT_V2_DEPTH_SCALE, TUM_DEPTH_SCALE};
-pub use carmen::CarmenLog;
+pub use carmen::{CarmenLog, LaserLog, LaserLogOptions, LaserLogScan, LaserLogSkip, read_carmen};
 pub use codec::{
     CodecError, EncodedEvent, EncodedRgbd, JPEG_QUALITY, decode_color, decode_depth, decode_raw_depth,
     encode_color, encode_color_png, encode_depth,

@@ -1,8 +1,8 @@
 use crate::args::{Common, PoseArg};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
-use trundle::core::PinholeCamera;
 use trundle::sim::import::UpAxis;
+use trundle::sim::{LaserConfig, SimConfig};
 
 /// `trundle sim`
 #[derive(Debug, Args)]
@@ -54,7 +54,13 @@ pub struct SimArgs {
     /// Images a second.
     #[arg(long, value_name = "HZ", value_parser = positive, allow_negative_numbers = true)]
     pub rate: Option<f64>,
-    /// No noise in camera, wheels and gyro.
+    /// A 2-D laser on the robot.
+    #[arg(long, value_enum, value_name = "PRESET")]
+    pub laser: Option<LaserArg>,
+    /// What breaks, and when: a TOML file of [[faults]].
+    #[arg(long, value_name = "FILE")]
+    pub faults: Option<PathBuf>,
+    /// No noise in the sensors, perfect wheels.
     #[arg(long)]
     pub no_noise: bool,
     /// What every command takes.
@@ -72,11 +78,39 @@ pub enum CameraArg {
 }
 
 impl CameraArg {
-    /// Its intrinsics.
-    pub fn camera(self) -> PinholeCamera {
+    /// The robot with it.
+    pub fn robot(self) -> SimConfig {
         match self {
-            Self::KinectV2 => PinholeCamera::kinect_v2(),
-            Self::KinectV1 => PinholeCamera::kinect_v1(),
+            Self::KinectV2 => SimConfig::kinect_v2(),
+            Self::KinectV1 => SimConfig::kinect_v1(),
+        }
+    }
+}
+
+/// A laser that can be simulated.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum LaserArg {
+    /// Slamtec RPLIDAR A1: all around, 12 m.
+    RplidarA1,
+    /// Hokuyo URG-04LX: 240 deg, 5.6 m.
+    #[value(name = "urg-04lx")]
+    Urg04lx,
+    /// Hokuyo UST-10LX: 270 deg, 10 m.
+    #[value(name = "ust-10lx")]
+    Ust10lx,
+    /// LDS-01 of the TurtleBot3: all around, 3.5 m.
+    #[value(name = "lds-01")]
+    Lds01,
+}
+
+impl LaserArg {
+    /// Its configuration.
+    pub fn laser(self) -> LaserConfig {
+        match self {
+            Self::RplidarA1 => LaserConfig::rplidar_a1(),
+            Self::Urg04lx => LaserConfig::urg_04lx(),
+            Self::Ust10lx => LaserConfig::ust_10lx(),
+            Self::Lds01 => LaserConfig::lds_01(),
         }
     }
 }
@@ -101,6 +135,11 @@ impl UpArg {
 }
 
 impl SimArgs {
+    /// Whether the true map is written or shown.
+    pub fn needs_map(&self) -> bool {
+        self.map.is_some() || self.record.is_some() || self.keys
+    }
+
     /// Whether the map is all that is asked for.
     pub fn wants_only_map(&self) -> bool {
         let drives = self.drive.is_some() || self.follow.is_some() || self.keys;

@@ -1,10 +1,9 @@
-use super::map;
 use crate::failure::Failure;
 use rayon::prelude::*;
 use trundle::core::{OccupancyGrid, Pose2, Pose3, RgbdImage, SensorEvent, Stamp, Vector2};
-use trundle::io::{OutputFolder, Summary, TumFrame, TumWriter, write_map};
+use trundle::io::{CarmenLog, OutputFolder, Summary, TumFrame, TumWriter, write_map};
 use trundle::localization::{OdometryConfig, WheelOdometry};
-use trundle::sim::{HeightBand, Simulator};
+use trundle::sim::Simulator;
 use trundle::viz::{Color, LineStyle, MapPicture, PoseStyle};
 
 /// So many images wait until they are encoded together, on all cores.
@@ -15,6 +14,7 @@ pub struct DataSet<'f> {
     folder: &'f OutputFolder,
     tum: TumWriter<'f>,
     wheels: WheelOdometry,
+    laser: Option<CarmenLog>,
     base_from_camera: Pose3,
     waiting: Vec<RgbdImage>,
     /// `world_from_base`.
@@ -31,6 +31,7 @@ impl<'f> DataSet<'f> {
             folder,
             tum: TumWriter::new(folder, *robot.camera(), config.camera_rate_hz),
             wheels: WheelOdometry::new(config.kobuki.drive, OdometryConfig::default())?,
+            laser: config.laser.as_ref().map(|laser| CarmenLog::new(laser.range_max)),
             base_from_camera: config.base_from_camera,
             waiting: Vec::with_capacity(BATCH),
             truth: Vec::new(),
@@ -45,6 +46,9 @@ impl<'f> DataSet<'f> {
                 let odometry = self.wheels.step_wheels(&ticks);
                 self.tum.odometry(ticks.stamp, odometry.pose);
                 self.odometry.push((ticks.stamp, odometry.pose));
+                if let Some(log) = &mut self.laser {
+                    log.odometry(ticks.stamp, odometry.pose, odometry.twist);
+                }
             }
             SensorEvent::Gyro(rate) => self.wheels.step_gyro(&rate),
             SensorEvent::Rgbd(image) => {
@@ -57,23 +61,20 @@ impl<'f> DataSet<'f> {
                 self.tum.ground_truth(stamp, Pose3::from_pose2(pose) * self.base_from_camera);
                 self.truth.push((stamp, pose));
             }
-            SensorEvent::Touch(_) | SensorEvent::Cliff(_) | SensorEvent::Scan(_) => {}
+            SensorEvent::Scan(scan) => self.laser.iter_mut().for_each(|log| log.scan(&scan)),
+            SensorEvent::Touch(_) | SensorEvent::Cliff(_) => {}
         }
         Ok(())
     }
 
-    /// Writes all that is still to be written; the folder is yet to be committed.
-    pub fn finish(
-        mut self,
-        robot: &Simulator,
-        resolution: f64,
-        band: HeightBand,
-        summary: &Summary,
-    ) -> Result<(), Failure> {
+    /// Writes all that is still to be written, with the true map; the folder is yet to be committed.
+    pub fn finish(mut self, grid: &OccupancyGrid, start: Pose2, summary: &Summary) -> Result<(), Failure> {
         self.flush()?;
-        let grid = map::truth(robot.scene(), resolution, band)?;
-        write_map(self.folder, "map", &grid)?;
-        self.folder.write("overview.png", &self.overview(&grid, robot.scene().start))?;
+        write_map(self.folder, "map", grid)?;
+        self.folder.write("overview.png", &self.overview(grid, start))?;
+        if let Some(log) = self.laser.take() {
+            self.folder.write("laser.log", log.into_text().as_bytes())?;
+        }
         self.folder.write("summary.json", summary.to_json().as_bytes())?;
         Ok(self.tum.finish()?)
     }

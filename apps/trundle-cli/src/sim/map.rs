@@ -21,8 +21,8 @@ pub fn truth(scene: &Scene, resolution: f64, band: HeightBand) -> Result<Occupan
     Ok(scene.world.true_grid(resolution, band)?)
 }
 
-/// Writes the true occupancy grid as `file` (map_server's YAML) and a PGM beside it.
-pub fn write(file: &Path, scene: &Scene, resolution: f64, band: HeightBand) -> Result<(), Failure> {
+/// Writes a map as `file` (map_server's YAML) and a PGM beside it.
+pub fn write(file: &Path, grid: &OccupancyGrid) -> Result<(), Failure> {
     let is_yaml = file.extension().is_some_and(|extension| extension == "yaml");
     let Some(name) = file.file_stem().and_then(|stem| stem.to_str()).filter(|_| is_yaml) else {
         return Err(Failure::Input(format!(
@@ -30,10 +30,9 @@ pub fn write(file: &Path, scene: &Scene, resolution: f64, band: HeightBand) -> R
             file.display()
         )));
     };
-    let grid = truth(scene, resolution, band)?;
     let parent = file.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let folder = OutputFolder::create(parent)?;
-    write_map(&folder, name, &grid)?;
+    write_map(&folder, name, grid)?;
     folder.commit()?;
     Ok(())
 }

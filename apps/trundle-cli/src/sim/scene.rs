@@ -1,8 +1,12 @@
-use super::{SimArgs, start};
-use crate::failure::Failure;
-use std::path::Path;
-use trundle::sim::import::{self, GltfOptions};
+use super::{SimArgs, files::Files, start};
+use crate::{failure::Failure, settings};
+use std::path::{Path, PathBuf};
+use trundle::sim::import::{GltfOptions, RaisedMap};
+use trundle::sim::scenes::file::{BaseLoader, SceneFile};
 use trundle::sim::{Lights, Scene, World};
+
+/// Files that the command line names are relative to where the program runs.
+const HERE: Files = Files { folder: PathBuf::new() };
 
 /// The scene that the arguments name: built in, or from a file.
 ///
@@ -12,7 +16,17 @@ pub fn load(args: &SimArgs, name: &str) -> Result<Scene, Failure> {
     let file = Path::new(name);
     let kind = file.extension().and_then(|extension| extension.to_str()).map(str::to_ascii_lowercase);
     let mut scene = match kind.as_deref() {
-        Some("glb" | "gltf") => bare(args, file, gltf(args, file)?)?,
+        Some("toml") => described(file, args.seed)?,
+        Some("glb" | "gltf") => {
+            let options = GltfOptions { up: args.up.axis(), ..GltfOptions::default() };
+            let mesh = HERE.gltf(file, &options).map_err(|error| Failure::Input(error.to_string()))?;
+            bare(args, file, World::with_meshes(Vec::new(), vec![mesh], args.seed)?)?
+        }
+        Some("yaml" | "yml") => {
+            let walls = HERE.map(file, RaisedMap::default().wall_height);
+            let walls = walls.map_err(|error| Failure::Input(error.to_string()))?;
+            bare(args, file, World::new(walls, args.seed)?)?
+        }
         _ => Scene::by_name(name, args.seed)?,
     };
     if let Some(start) = args.start {
@@ -21,15 +35,21 @@ pub fn load(args: &SimArgs, name: &str) -> Result<Scene, Failure> {
     Ok(scene)
 }
 
-/// The built-in scenes, a row each.
-pub fn list() -> Vec<Vec<String>> {
-    Scene::NAMES.iter().map(|name| vec![(*name).to_owned()]).collect()
+/// The built-in scenes, a row each: name and size.
+pub fn list() -> Result<Vec<Vec<String>>, Failure> {
+    let row = |name: &&str| {
+        let (low, high) = Scene::by_name(name, 1)?.world.bounds();
+        let size = high - low;
+        Ok(vec![(*name).to_owned(), format!("{:.1} x {:.1} m", size.x, size.y)])
+    };
+    Scene::NAMES.iter().map(row).collect()
 }
 
-fn gltf(args: &SimArgs, file: &Path) -> Result<World, Failure> {
-    let options = GltfOptions { up: args.up.axis(), ..GltfOptions::default() };
-    let mesh = import::gltf(file, &options).map_err(|error| Failure::Input(error.to_string()))?;
-    Ok(World::with_meshes(Vec::new(), vec![mesh], args.seed)?)
+/// A scene file's scene.
+fn described(file: &Path, seed: u64) -> Result<Scene, Failure> {
+    let description: SceneFile = settings::read(file)?;
+    let files = Files { folder: file.parent().unwrap_or(Path::new("")).to_owned() };
+    description.build(&files, seed).map_err(|error| Failure::Input(format!("{}: {error}", file.display())))
 }
 
 /// The scene of a file that says nothing of the robot: where the arguments say no start, it starts where there is room.

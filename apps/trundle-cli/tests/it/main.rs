@@ -3,7 +3,9 @@
 
 mod bad_input;
 mod demo;
+mod map;
 mod plan;
 mod program;
 mod sim;
+mod sim_files;
 mod slam;

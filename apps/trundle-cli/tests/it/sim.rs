@@ -115,13 +115,15 @@ fn the_true_map_is_written_alone_and_read_again() {
 #[test]
 fn the_scenes_are_listed() {
     let said = String::from_utf8(trundle(&["sim", "--list"]).stdout).unwrap();
-    assert!(said.contains("demo") && said.contains("obstacles"), "{said}");
+    for name in ["room", "obstacles", "corridor-d", "office", "house", "warehouse"] {
+        assert!(said.lines().any(|line| line.trim().starts_with(name) && line.ends_with(" m")), "{said}");
+    }
 }
 
 #[test]
 fn scenes_that_are_none() {
     let sentence = refusal(&["sim", "moon"]);
-    assert!(sentence.contains("scene is moon, expected one of demo, obstacles"), "{sentence}");
+    assert!(sentence.contains("scene is moon, expected one of demo, room, obstacles"), "{sentence}");
     let sentence = refusal(&["sim"]);
     assert!(sentence.contains("[SCENE]") || sentence.contains("<SCENE>"), "{sentence}");
 }

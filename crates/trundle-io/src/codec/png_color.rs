@@ -8,8 +8,8 @@ use trundle_core::ColorImage;
 /// # Errors
 /// When a side is 0 or above 2^31 px.
 pub fn encode_color_png(image: &ColorImage) -> Result<Vec<u8>, CodecError> {
-    // Up: on rendered rooms with sensor noise as small as any, and the fastest with SIMD.
-    let format = PngFormat { color: ColorType::Rgb, depth: BitDepth::Eight, filter: Filter::Up };
+    // Paeth: on a rendered room with sensor noise a sixth smaller than Up and no slower (1.7 ms); trying all takes 10 ms.
+    let format = PngFormat { color: ColorType::Rgb, depth: BitDepth::Eight, filter: Filter::Paeth };
     encode_png("colour", (image.width(), image.height()), &format, image.data().as_flattened())
 }
 

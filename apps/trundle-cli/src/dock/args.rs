@@ -1,0 +1,104 @@
+use crate::args::{Common, PoseArg};
+use clap::{Args, ValueEnum};
+use std::path::PathBuf;
+use std::str::FromStr;
+use trundle::core::{Footprint, Vector2};
+use trundle::docking::Method;
+
+/// `trundle dock`
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Examples:\n  trundle dock map.yaml --from 1.0,2.0,90 --to 1.2,2.0,90 --footprint '0.3,0.2 -0.3,0.2 -0.3,-0.2 0.3,-0.2'\n  \
+    trundle dock corridor.txt --problem hong24-a --method paper\n\n\
+    Exit code: 0 a manoeuvre was found, 1 there is none, 2 bad input."
+)]
+pub struct DockArgs {
+    /// A map in map_server's form (*.yaml), or a file of corridor problems (docs/algorithms/docking.md).
+    pub place: PathBuf,
+    /// Start pose in the map frame: m, m, deg [default: the problem's]
+    #[arg(long, value_name = "X,Y,DEG", allow_hyphen_values = true)]
+    pub from: Option<PoseArg>,
+    /// Goal pose in the map frame: m, m, deg [default: the problem's]
+    #[arg(long, value_name = "X,Y,DEG", allow_hyphen_values = true)]
+    pub to: Option<PoseArg>,
+    /// The robot's outline: a radius, or the corners of a convex polygon, base frame, m [default: the problem's or the robot file's]
+    #[arg(long, value_name = "R|'X,Y X,Y X,Y...'", allow_hyphen_values = true)]
+    pub footprint: Option<FootprintArg>,
+    /// Which problem of the file [default: the first]
+    #[arg(long, value_name = "NAME")]
+    pub problem: Option<String>,
+    /// Which method plans.
+    #[arg(long, value_enum, default_value_t = MethodArg::Optimal)]
+    pub method: MethodArg,
+    /// Take unknown cells of the map for free rather than blocked.
+    #[arg(long)]
+    pub through_unknown: bool,
+    /// Robot file (see `trundle config`).
+    #[arg(long, value_name = "FILE")]
+    pub config: Option<PathBuf>,
+    /// Folder for the results.
+    #[arg(long, value_name = "DIR", default_value = "out/dock")]
+    pub out: PathBuf,
+    /// What every command takes.
+    #[command(flatten)]
+    pub common: Common,
+}
+
+/// Which method plans.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum MethodArg {
+    /// Least time, with a proven bound.
+    Optimal,
+    /// The greedy method of Hong (2024).
+    Paper,
+}
+
+impl From<MethodArg> for Method {
+    fn from(method: MethodArg) -> Self {
+        match method {
+            MethodArg::Optimal => Self::Optimal,
+            MethodArg::Paper => Self::Paper,
+        }
+    }
+}
+
+/// A footprint on the command line: a radius, or corners `X,Y X,Y X,Y`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FootprintArg(pub Footprint);
+
+impl FromStr for FootprintArg {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let number = |word: &str| {
+            word.trim()
+                .parse::<f64>()
+                .map_err(|_| format!("'{word}' in the footprint is no number, expected m"))
+        };
+        if !text.contains(',') {
+            return Footprint::disc(number(text)?).map(Self).map_err(|invalid| invalid.to_string());
+        }
+        let corner = |pair: &str| {
+            let (x, y) = pair.split_once(',').ok_or_else(|| format!("corner '{pair}', expected X,Y"))?;
+            Ok::<_, String>(Vector2::new(number(x)?, number(y)?))
+        };
+        let corners = text.split_whitespace().map(corner).collect::<Result<_, _>>()?;
+        Footprint::polygon(corners).map(Self).map_err(|invalid| invalid.to_string())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn footprints_are_radii_or_convex_corners() {
+        assert_eq!("0.2".parse(), Ok(FootprintArg(Footprint::Disc { radius: 0.2 })));
+        assert!("0.3,0.2 -0.3,0.2 -0.3,-0.2 0.3,-0.2".parse::<FootprintArg>().is_ok());
+        let refused = |text: &str| text.parse::<FootprintArg>().unwrap_err();
+        assert_eq!(refused("wide"), "'wide' in the footprint is no number, expected m");
+        assert_eq!(refused("0.3,0.2 0.1"), "corner '0.1', expected X,Y");
+        assert_eq!(refused("0,0 1,0 0.2,0.2 0,1"), "footprint is turned inward at corner 2, expected convex");
+        assert!(refused("0,0 1,0 2,0").contains("footprint area is 0 m^2"));
+    }
+}

@@ -1,0 +1,146 @@
+use super::CorridorArgs;
+use crate::dock::{Surroundings, manoeuvre_picture, motions, steps_csv};
+use crate::{Outcome, console, failure::Failure};
+use trundle::core::difference_of_angles;
+use trundle::docking::corridor::{Problem, Scenario};
+use trundle::docking::{Docker, DockingConfig, Method, Plan, Solution};
+use trundle::io::{OutputFolder, Summary, table_csv};
+use trundle::viz::{Figure, Report, Table, Verdict};
+
+/// A scenario solved by a method.
+struct Trial {
+    scenario: Scenario,
+    method: &'static str,
+    problem: Problem,
+    plan: Plan,
+}
+
+/// The four scenarios by both methods.
+pub fn run(args: &CorridorArgs) -> Result<Outcome, Failure> {
+    let trials = trials()?;
+    let success = trials.iter().all(Trial::is_good);
+    let folder = OutputFolder::create(&args.out)?;
+    let mut report = report(&trials, success);
+    for trial in &trials {
+        let (name, png) = (trial.name(), trial.picture());
+        folder.write(&format!("{name}.png"), &png)?;
+        if let Some(found) = trial.found() {
+            folder.write(&format!("{name}.csv"), steps_csv(&found.manoeuvre).as_bytes())?;
+        }
+        report = report.figure(Figure::png(&name, &png).caption(&trial.told()));
+    }
+    folder.write("corridor.csv", csv(&trials).as_bytes())?;
+    folder.write("report.html", report.to_html().as_bytes())?;
+    folder.write("summary.json", summary(&trials, success).to_json().as_bytes())?;
+    let place = folder.commit()?;
+    if !args.common.quiet {
+        let header = HEADER.map(str::to_owned).to_vec();
+        console::table(&std::iter::once(header).chain(trials.iter().map(Trial::row)).collect::<Vec<_>>());
+        console::say(&format!("\n{}\nSee {}", verdict(success), place.join("report.html").display()));
+    }
+    Ok(if success { Outcome::Reached } else { Outcome::Missed })
+}
+
+const HEADER: [&str; 5] = ["scenario", "method", "time", "bound", "motions"];
+
+fn trials() -> Result<Vec<Trial>, Failure> {
+    let mut trials = Vec::new();
+    for scenario in Scenario::ALL {
+        for (method, name) in [(Method::Paper, "paper"), (Method::Optimal, "optimal")] {
+            let docker = Docker::new(DockingConfig { method, ..DockingConfig::default() })?;
+            let problem = scenario.problem();
+            let plan = docker
+                .plan(&problem.footprint, &problem.scene()?, problem.start, problem.goal)
+                .map_err(|refusal| Failure::Input(format!("{}: {refusal}", problem.name)))?;
+            trials.push(Trial { scenario, method: name, problem, plan });
+        }
+    }
+    Ok(trials)
+}
+
+impl Trial {
+    fn found(&self) -> Option<&Solution> {
+        match &self.plan {
+            Plan::Found(found) => Some(found),
+            Plan::Impossible(_) => None,
+        }
+    }
+
+    /// Whether it ends on the goal within 1 cm and 1 deg; by the paper's method, with the motions that the paper reports.
+    fn is_good(&self) -> bool {
+        self.found().is_some_and(|found| {
+            let (end, goal) = (found.manoeuvre.end(), self.problem.goal);
+            let is_there = end.distance(&goal) <= 0.01
+                && difference_of_angles(end.theta, goal.theta).abs() <= 1_f64.to_radians();
+            is_there && (self.method != "paper" || motions(&found.manoeuvre) == self.scenario.reported())
+        })
+    }
+
+    fn name(&self) -> String {
+        format!("{}-{}", self.scenario.letter(), self.method)
+    }
+
+    fn picture(&self) -> Vec<u8> {
+        let around = Surroundings { grid: None, problem: Some(&self.problem) };
+        manoeuvre_picture(
+            around,
+            &self.problem.footprint,
+            (self.problem.start, self.problem.goal),
+            self.found(),
+        )
+    }
+
+    fn told(&self) -> String {
+        self.found().map_or("no manoeuvre".to_owned(), |found| {
+            format!("{:.2} s: {}", found.manoeuvre.duration(), motions(&found.manoeuvre).join(", "))
+        })
+    }
+
+    fn row(&self) -> Vec<String> {
+        let seconds = |s: f64| if s > 0.0 { format!("{s:.2} s") } else { "-".to_owned() };
+        let (time, bound) =
+            self.found().map_or((0.0, 0.0), |found| (found.manoeuvre.duration(), found.bound));
+        let words = self.found().map_or("none".to_owned(), |found| motions(&found.manoeuvre).join(", "));
+        vec![self.scenario.letter().to_string(), self.method.to_owned(), seconds(time), seconds(bound), words]
+    }
+}
+
+fn report(trials: &[Trial], success: bool) -> Report {
+    let told = if success { Verdict::Ok(verdict(true)) } else { Verdict::Failed(verdict(false)) };
+    let table = trials.iter().fold(Table::new("Scenarios", HEADER), |table, trial| table.row(trial.row()));
+    Report::new("Fine positioning in a corridor")
+        .subtitle(
+            "The four corridor scenarios of Hong (2024): a robot of 0.6 x 0.4 m in a corridor of 1.0 m.",
+        )
+        .verdict(told)
+        .table(table)
+        .section("Manoeuvres", "Green: start. Red: goal. Blue: the robot's outlines on its way.")
+}
+
+fn verdict(success: bool) -> String {
+    if success {
+        "All four scenarios solved by both methods, the paper's with the motions it reports.".to_owned()
+    } else {
+        "A scenario was not solved, or not with the motions that the paper reports.".to_owned()
+    }
+}
+
+fn csv(trials: &[Trial]) -> String {
+    let row = |trial: &Trial| {
+        let (time, bound) = trial.found().map_or((f64::NAN, f64::NAN), |f| (f.manoeuvre.duration(), f.bound));
+        let number = Scenario::ALL.iter().position(|s| *s == trial.scenario).unwrap_or(0) + 1;
+        [number as f64, f64::from(u8::from(trial.method == "optimal")), time, bound]
+    };
+    table_csv(["scenario", "optimal", "time_s", "bound_s"], trials.iter().map(row))
+}
+
+fn summary(trials: &[Trial], success: bool) -> Summary {
+    let mut summary = Summary::new("experiment corridor");
+    summary.set("success", success);
+    for trial in trials {
+        let words = trial.found().map(|found| motions(&found.manoeuvre));
+        let time = trial.found().map_or(f64::NAN, |found| found.manoeuvre.duration());
+        summary.set(&trial.name(), serde_json::json!({ "time_s": time, "motions": words }));
+    }
+    summary
+}

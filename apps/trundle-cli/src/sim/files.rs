@@ -1,0 +1,23 @@
+use std::path::{Path, PathBuf};
+use trundle::io::read_map;
+use trundle::sim::import::{GltfOptions, RaisedMap, gltf, raise_map};
+use trundle::sim::scenes::file::{BaseLoader, LoadError};
+use trundle::sim::{Mesh, Solid};
+
+/// Reads the files that a scene is made of.
+pub struct Files {
+    /// What their names are relative to.
+    pub folder: PathBuf,
+}
+
+impl BaseLoader for Files {
+    fn gltf(&self, path: &Path, options: &GltfOptions) -> Result<Mesh, LoadError> {
+        Ok(gltf(&self.folder.join(path), options)?)
+    }
+
+    fn map(&self, path: &Path, wall_height: f64) -> Result<Vec<Solid>, LoadError> {
+        let file = self.folder.join(path);
+        let options = RaisedMap { wall_height, ..RaisedMap::default() };
+        Ok(raise_map(&file.display().to_string(), &read_map(&file)?, &options)?)
+    }
+}
