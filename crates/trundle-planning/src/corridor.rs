@@ -19,7 +19,7 @@ pub struct HalfPlane {
 }
 
 /// The polygon around the free segment `a`-`b` within `reach` m of its bounding box: room of `want` m wherever the
-/// segment itself has that much, else as much as the segment has.
+/// segment itself has more, else most of what the segment has.
 pub(crate) fn corridor(space: &Space<'_>, a: Vector2, b: Vector2, reach: f64, want: f64) -> Vec<HalfPlane> {
     let low = a.inf(&b) - Vector2::repeat(reach);
     let high = a.sup(&b) + Vector2::repeat(reach);
@@ -34,11 +34,19 @@ pub(crate) fn corridor(space: &Space<'_>, a: Vector2, b: Vector2, reach: f64, wa
             continue;
         };
         let face = normal.dot(&on_square);
-        planes.push(HalfPlane { normal, offset: face - want.min(gap.norm()) });
+        planes.push(HalfPlane { normal, offset: face - kept(space, gap.norm(), want) });
         let reach = half * (normal.x.abs() + normal.y.abs());
         left.retain(|(_, other)| normal.dot(other) - reach < face - 1e-9);
     }
     planes
+}
+
+/// The room that a side keeps where the segment has `distance`: `want`, or less where the segment itself has hardly more;
+/// a corridor that the segment leans on would force every corner of the way on the curve.
+fn kept(space: &Space<'_>, distance: f64, want: f64) -> f64 {
+    const SHARE: f64 = 0.6;
+    let spare = (distance - space.radius).max(0.0);
+    want.min(distance - spare * (1.0 - SHARE))
 }
 
 /// The sides of the window, cut to the grid.

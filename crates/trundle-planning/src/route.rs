@@ -25,6 +25,9 @@ pub enum Phase {
     Drive(Curve),
 }
 
+/// Shares of the smoothing length that are tried where the whole is not right.
+const CLOSER: f64 = 0.4;
+const SMOOTHER: f64 = 2.0;
 /// Spacing of the looks along a curve, m: between two, an obstacle's distance dips by at most spacing^2 / 8 radius.
 const SPACING: f64 = 0.01;
 /// Parametric speed below which a curve counts as broken: a cusp is near.
@@ -70,8 +73,11 @@ pub(crate) fn route(
             // Into headings only where that is hardly longer; else the robot turns on the spot.
             let into =
                 matches!(start_tangent, Tangent::Heading(_)) || matches!(end_tangent, Tangent::Heading(_));
-            let most = if into { longest } else { f64::INFINITY };
-            let curve = safe_curve(course, &stretches, (*start_tangent, *end_tangent), most);
+            let tangents = (*start_tangent, *end_tangent);
+            let mut curve = safe_curve(course, &stretches, tangents, longest);
+            if curve.is_none() && !into {
+                curve = safe_curve(course, &stretches, tangents, f64::INFINITY);
+            }
             let phases = curve.and_then(|curve| with_turns(course, vec![curve], start.theta, goal));
             if phases.is_some() {
                 return phases;
@@ -84,23 +90,24 @@ pub(crate) fn route(
     with_turns(course, split(course, way)?, start.theta, goal)
 }
 
-/// A curve no longer than `longest` m that was measured and found free, at one of two smoothings.
+/// A curve no longer than `longest` m that was measured and found free: smoother where the first one bends too much, nearer
+/// to the way where it swings too far.
 fn safe_curve(
     course: &Course<'_>,
     stretches: &[Stretch],
     tangents: (Tangent, Tangent),
     longest: f64,
 ) -> Option<Curve> {
-    for factor in [1.0, 2.0] {
-        let curve = fit(stretches, tangents, course.config.smoothing * factor, course.config)?;
-        if curve.length() > longest {
-            return None;
-        }
-        if is_drivable(course, &curve) {
-            return Some(curve);
-        }
-    }
-    None
+    let fitted = |factor: f64| fit(stretches, tangents, course.config.smoothing * factor, course.config);
+    let first = fitted(1.0)?;
+    let other = if first.length() > longest {
+        fitted(CLOSER)?
+    } else if is_drivable(course, &first) {
+        return Some(first);
+    } else {
+        fitted(SMOOTHER)?
+    };
+    (other.length() <= longest && is_drivable(course, &other)).then_some(other)
 }
 
 /// Whether the curve keeps the required room everywhere, and bends no more than allowed.
