@@ -17,6 +17,7 @@ mod space;
 pub use config::{DockingConfig, Method};
 pub use limits::MotionLimits;
 pub use manoeuvre::{Manoeuvre, Motion, Step};
+pub use optimal::Certificate;
 pub use planner::{Docker, Impossible, Plan, Refusal, Solution};
 pub use positioner::{Positioner, PositionerConfig, PositionerInput, PositionerReport, Reason};
 pub use scene::{Blocker, Obstacle, Scene};

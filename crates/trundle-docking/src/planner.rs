@@ -1,7 +1,7 @@
 use crate::config::{DockingConfig, Method};
 use crate::geometry::Hull;
 use crate::manoeuvre::Manoeuvre;
-use crate::optimal::{self, Effort, Outcome, Task};
+use crate::optimal::{self, Certificate, Effort, Outcome, Task};
 use crate::paper;
 use crate::scene::{Blocker, Scene};
 use crate::space::Space;
@@ -55,8 +55,8 @@ pub struct Solution {
 pub struct Impossible {
     /// What stands in the way.
     pub by: Option<Blocker>,
-    /// Whether the search was complete.
-    pub proven: bool,
+    /// What was shown; always [`Certificate::None`] by the paper's method.
+    pub certificate: Certificate,
 }
 
 /// Plans manoeuvres onto a goal pose.
@@ -116,10 +116,10 @@ impl Docker {
             gap: config.gap,
             cell: config.position_tolerance,
         };
-        let nothing = |by, proven| Plan::Impossible(Impossible { by, proven });
+        let nothing = |by, certificate| Plan::Impossible(Impossible { by, certificate });
         if config.method == Method::Paper {
             let found = paper::plan(&space, task.start, task.goal, &limits, &config.paper);
-            return found.map_or(nothing(None, false), |manoeuvre| {
+            return found.map_or(nothing(None, Certificate::None), |manoeuvre| {
                 Plan::Found(Solution { manoeuvre, bound: 0.0, margin })
             });
         }
@@ -132,8 +132,8 @@ impl Docker {
                     margin,
                 })
             }
-            Outcome::Apart(by) => nothing(by, true),
-            Outcome::Nothing => nothing(None, false),
+            Outcome::Apart(certificate, by) => nothing(by, certificate),
+            Outcome::Nothing => nothing(None, Certificate::None),
         }
     }
 

@@ -5,20 +5,27 @@
 //! `--seed N`, `--file PATH` instead of a seed, `--write PATH` to keep the problems, `--boxes N` of the bound that judges.
 
 mod clock;
+mod dynamic_window;
+mod hybrid;
 mod judge;
 mod table;
+#[path = "../../tests/it/world.rs"]
+mod world;
 
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use table::Row;
 use trundle_docking::corridor::{Problem, generate, parse, write};
-use trundle_docking::{Docker, DockingConfig, Method, Plan};
+use trundle_docking::{Certificate, Docker, DockingConfig, Method, MotionLimits, Plan};
 
 fn main() {
     let problems = problems();
     let mut rows = vec![optimal(&problems, number("--boxes", 20_000))];
     rows.push(by_paper(&problems));
+    rows.push(by_window(&problems));
+    rows.push(by_hybrid(&problems));
     table::print(&rows, problems.len());
+    closed_loop(&problems, &rows[0], number("--loops", 500));
 }
 
 fn problems() -> Vec<Problem> {
@@ -56,6 +63,64 @@ fn by_paper(problems: &[Problem]) -> Row {
     plan_all("[Hong24]", problems, &Docker::new(config).expect("valid"))
 }
 
+/// Driven step by step, so that its "planning" is a whole run.
+fn by_window(problems: &[Problem]) -> Row {
+    let mut row = Row::new("dynamic window");
+    for problem in problems {
+        let scene = problem.scene().expect("valid");
+        let ((time, contact), ms) =
+            clock::timed(|| dynamic_window::drive(problem, &scene, &MotionLimits::default()));
+        row.planning_ms.push(ms);
+        if contact {
+            row.bad.push(problem.name.clone());
+        } else if time.is_none() {
+            row.unsolved.push(problem.name.clone());
+        }
+        row.times.push(time.filter(|_| !contact));
+    }
+    row
+}
+
+fn by_hybrid(problems: &[Problem]) -> Row {
+    let mut row = Row::new("hybrid A*, Reeds-Shepp");
+    for problem in problems {
+        let scene = problem.scene().expect("valid");
+        let (time, ms) = clock::timed(|| hybrid::plan(problem, &scene, &MotionLimits::default()));
+        row.planning_ms.push(ms);
+        if time.is_none() {
+            row.unsolved.push(problem.name.clone());
+        }
+        row.times.push(time);
+    }
+    row
+}
+
+/// The first `most` solvable problems with noise and lag.
+fn closed_loop(problems: &[Problem], row: &Row, most: usize) {
+    let solvable: Vec<_> =
+        problems.iter().zip(&row.times).filter(|(_, time)| time.is_some()).take(most).collect();
+    let (mut good, mut contacts, mut motions, mut ratios) = (0, 0, 0, Vec::new());
+    for (i, (problem, time)) in solvable.iter().enumerate() {
+        let run = world::run(problem, i as u64);
+        good += usize::from(run.settled && run.within && !run.contact);
+        contacts += usize::from(run.contact);
+        motions += run.motions;
+        ratios.push(run.time / time.unwrap_or(f64::NAN));
+        if !(run.settled && run.within && !run.contact) {
+            println!(
+                "closed loop {}: settled {}, within {}, contact {}",
+                problem.name, run.settled, run.within, run.contact
+            );
+        }
+    }
+    println!(
+        "closed loop with noise: {good} of {} within 1 cm and 1 deg, {contacts} with contact; {:.2} motions each, {:.2} times the planned time in the median",
+        solvable.len(),
+        motions as f64 / solvable.len().max(1) as f64,
+        table::part(&ratios, 0.5)
+    );
+}
+
 fn plan_all(name: &'static str, problems: &[Problem], docker: &Docker) -> Row {
     let mut row = Row::new(name);
     for problem in problems {
@@ -74,8 +139,11 @@ fn plan_all(name: &'static str, problems: &[Problem], docker: &Docker) -> Row {
                 time = Some(solution.manoeuvre.duration());
             }
             Plan::Found(_) => row.bad.push(problem.name.clone()),
-            Plan::Impossible(impossible) if impossible.proven => row.proven += 1,
-            Plan::Impossible(_) => row.unsolved.push(problem.name.clone()),
+            Plan::Impossible(impossible) => match impossible.certificate {
+                Certificate::Never => row.never += 1,
+                Certificate::AtResolution => row.at_resolution += 1,
+                Certificate::None => row.unsolved.push(problem.name.clone()),
+            },
         }
         row.times.push(time);
     }

@@ -6,8 +6,10 @@ pub struct Row {
     pub name: &'static str,
     /// Time of the manoeuvre on each problem, s; `None` where it was not settled.
     pub times: Vec<Option<f64>>,
-    /// Proven impossible.
-    pub proven: usize,
+    /// Proven impossible by any motion.
+    pub never: usize,
+    /// Certified impossible at 1 cm.
+    pub at_resolution: usize,
     /// Problems without an answer.
     pub unsolved: Vec<String>,
     /// Problems with contact or a missed goal.
@@ -24,7 +26,8 @@ impl Row {
         Self {
             name,
             times: Vec::new(),
-            proven: 0,
+            never: 0,
+            at_resolution: 0,
             unsolved: Vec::new(),
             bad: Vec::new(),
             planning_ms: Vec::new(),
@@ -37,7 +40,7 @@ impl Row {
 pub fn print(rows: &[Row], count: usize) {
     println!("{count} problems\n");
     println!(
-        "| method | settled | proven impossible | no answer | contact or missed | time / first row's, median (p95) | planning ms, median (p99, most) |"
+        "| method | settled | never (at 1 cm) | no answer | contact or missed | time / first row's, median (p95) | planning ms, median (p99, most) |"
     );
     println!("|---|---|---|---|---|---|---|");
     for row in rows {
@@ -45,10 +48,11 @@ pub fn print(rows: &[Row], count: usize) {
         let ratios: Vec<f64> = pairs.filter_map(|(a, b)| Some((*a)? / (*b)?)).collect();
         let settled = row.times.iter().flatten().count();
         println!(
-            "| {} | {settled} ({:.2} %) | {} | {} | {} | {:.3} ({:.3}) | {:.2} ({:.1}, {:.0}) |",
+            "| {} | {settled} ({:.2} %) | {} ({}) | {} | {} | {:.3} ({:.3}) | {:.2} ({:.1}, {:.0}) |",
             row.name,
             100.0 * settled as f64 / count as f64,
-            row.proven,
+            row.never,
+            row.at_resolution,
             row.unsolved.len(),
             row.bad.len(),
             part(&ratios, 0.5),
@@ -87,7 +91,7 @@ fn first(list: &[String]) -> &[String] {
 }
 
 /// The `q`-quantile.
-fn part(values: &[f64], q: f64) -> f64 {
+pub fn part(values: &[f64], q: f64) -> f64 {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
     sorted.get(((sorted.len().max(1) - 1) as f64 * q).round() as usize).copied().unwrap_or(f64::NAN)

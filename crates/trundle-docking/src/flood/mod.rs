@@ -10,4 +10,4 @@ mod guide;
 mod proof;
 
 pub use guide::Guide;
-pub use proof::{Proof, disprove};
+pub use proof::{Ground, Proof, disprove};

@@ -15,18 +15,25 @@ pub enum Proof {
     Together,
 }
 
-/// Floods from both ends over cells of `side` (m) within a square; the smaller flood goes on.
-pub fn disprove(
-    space: &Space<'_>,
-    start: &Pose2,
-    goal: &Pose2,
-    center: Vector2,
-    half: f64,
-    side: f64,
-) -> Proof {
-    let Some(shrunk) = space.hull().shrunk(side * std::f64::consts::FRAC_1_SQRT_2) else {
-        return Proof::Together;
-    };
+/// Where to flood.
+#[derive(Debug, Clone, Copy)]
+pub struct Ground {
+    /// Middle of the square.
+    pub center: Vector2,
+    /// Half its side, m.
+    pub half: f64,
+    /// Side of a cell, m.
+    pub side: f64,
+    /// Whether the hull is shrunk by a cell's half diagonal, for a proof; or taken as it is at the cells' middles, for what
+    /// can be done at this resolution.
+    pub shrunk: bool,
+}
+
+/// Floods from both ends; the smaller flood goes on.
+pub fn disprove(space: &Space<'_>, start: &Pose2, goal: &Pose2, ground: Ground) -> Proof {
+    let Ground { center, half, side, shrunk } = ground;
+    let depth = if shrunk { side * std::f64::consts::FRAC_1_SQRT_2 } else { 0.0 };
+    let Some(shrunk) = space.hull().shrunk(depth) else { return Proof::Together };
     let mut shrunk = Space::of_hull(shrunk, space.scene());
     let mut columns = Columns::new(&mut shrunk, center, half, side);
     let (Some(first), Some(last)) = (columns.node_at(start), columns.node_at(goal)) else {

@@ -11,7 +11,7 @@ pub use legs::Legs;
 pub use task::Task;
 
 use crate::bound::improve;
-use crate::flood::{Guide, Proof, disprove};
+use crate::flood::{Ground, Guide, Proof, disprove};
 use crate::scene::Blocker;
 use crate::space::Space;
 use beam::{beam, guided_beam};
@@ -27,10 +27,21 @@ pub type Timed = (f64, Legs);
 pub enum Outcome {
     /// These legs, their time and a time that none beat, s.
     Found(Timed, f64),
-    /// There is no motion of any kind; this forbids it.
-    Apart(Option<Blocker>),
+    /// There is no motion of any kind, or none at the resolution asked for; this forbids it.
+    Apart(Certificate, Option<Blocker>),
     /// Nothing was found with the effort allowed, though start and goal hang together as far as the cells tell.
     Nothing,
+}
+
+/// What was shown when there is no manoeuvre.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Certificate {
+    /// No motion of any kind leads from start to goal: a proof over all poses.
+    Never,
+    /// None does through the middles of cells of the asked side, with headings exact: complete at that resolution.
+    AtResolution,
+    /// None was found with the effort allowed: no certificate.
+    None,
 }
 
 /// How much to search.
@@ -58,9 +69,9 @@ pub fn find(task: Task, space: &mut Space<'_>, effort: Effort) -> Outcome {
     search.complete(&task.start, &fan, &[], 0.0);
     polish_best(&mut search);
     if search.best.is_none()
-        && let Some(by) = hard(&mut search, &mut second, effort)
+        && let Some(outcome) = hard(&mut search, &mut second, effort)
     {
-        return Outcome::Apart(by);
+        return outcome;
     }
     let Some(best) = search.best.take() else { return Outcome::Nothing };
     let bounded = improve(&task, search.space, Some(best), effort.gap, effort.boxes);
@@ -83,32 +94,43 @@ pub fn bound(task: &Task, space: &mut Space<'_>, known: f64, gap: f64, boxes: us
 const LOOSE: f64 = 0.05;
 
 /// Looks for legs where one or two do not do; `Some` when it is proven that there are none.
-fn hard<'a>(search: &mut Search<'_, 'a>, second: &mut Space<'a>, effort: Effort) -> Option<Option<Blocker>> {
+fn hard<'a>(search: &mut Search<'_, 'a>, second: &mut Space<'a>, effort: Effort) -> Option<Outcome> {
     // Beams are for what one or two legs do not do: cells first, they are cheap and often enough.
     let (task, center, half) = (search.task, search.task.center(), search.task.half());
-    let apart = |search: &Search<'_, '_>, side: f64| match disprove(
-        search.space,
-        &task.start,
-        &task.goal,
-        center,
-        half,
-        side * effort.cell,
-    ) {
-        Proof::Apart { by } => Some(by),
-        Proof::Together => None,
+    let apart = |space: &Space<'_>, side: f64, shrunk: bool| {
+        let ground = Ground { center, half, side: side * effort.cell, shrunk };
+        match disprove(space, &task.start, &task.goal, ground) {
+            Proof::Apart { by } => {
+                let certificate = if shrunk { Certificate::Never } else { Certificate::AtResolution };
+                Some(Outcome::Apart(certificate, by))
+            }
+            Proof::Together => None,
+        }
     };
-    if let Some(by) = CELLS.iter().find_map(|side| apart(search, *side)) {
-        return Some(by);
+    if let Some(never) = CELLS.iter().find_map(|side| apart(search.space, *side, true)) {
+        return Some(never);
     }
-    let mut guide = Guide::new(second, &task.goal, center, half, 2.0 * effort.cell, task.limits.speed);
-    let (mut width, mut spent) = (12, 0);
-    while search.best.is_none() && spent < effort.nodes {
-        let end = guided_beam(search, &mut guide, width);
-        spent += end.expanded;
-        if end.whole {
+    let coarse = second.clone();
+    let mut width = 12;
+    let mut spent = 0;
+    for side in [2.0, 1.0] {
+        let mut guide = Guide::new(second, &task.goal, center, half, side * effort.cell, task.limits.speed);
+        while guide.seconds(&task.start).is_finite() && search.best.is_none() && spent < effort.nodes {
+            let end = guided_beam(search, &mut guide, width);
+            spent += end.expanded;
+            if end.whole {
+                break;
+            }
+            width *= 4;
+        }
+        if search.best.is_some() {
             break;
         }
-        width *= 4;
+        if side > 1.0
+            && let Some(outcome) = apart(&coarse, 1.0, false)
+        {
+            return Some(outcome);
+        }
     }
     polish_best(search);
     None

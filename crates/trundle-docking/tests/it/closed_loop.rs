@@ -1,97 +1,21 @@
-//! The positioner in a small kinematic world: noise on the pose, wheels that lag.
+//! The positioner in the small world.
 
-use rand::{Rng, RngExt, SeedableRng};
+use crate::world::{DT, World, run};
+use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
-use trundle_core::{Pose2, Stamp, Twist2, Vector2, wrap_angle};
-use trundle_docking::corridor::{Problem, generate};
+use trundle_core::{Pose2, Stamp, Twist2, Vector2};
+use trundle_docking::corridor::generate;
 use trundle_docking::{
     Docker, DockingConfig, Obstacle, Plan, Positioner, PositionerConfig, PositionerInput, Reason, Scene,
 };
 
-const DT: f64 = 0.05;
-
-/// A base whose speeds follow the command with a lag of 80 ms, and a pose sensor with noise of 2 mm and 0.15 deg.
-struct World {
-    pose: Pose2,
-    twist: Twist2,
-    rng: ChaCha8Rng,
-}
-
-impl World {
-    fn new(pose: Pose2, seed: u64) -> Self {
-        Self { pose, twist: Twist2::ZERO, rng: ChaCha8Rng::seed_from_u64(seed) }
-    }
-
-    fn advance(&mut self, command: Twist2) {
-        for _ in 0..5 {
-            let part = 1.0 - (-DT / 5.0 / 0.08_f64).exp();
-            self.twist.v += (command.v - self.twist.v) * part;
-            self.twist.omega += (command.omega - self.twist.omega) * part;
-            self.pose = self.pose.advance(self.twist, DT / 5.0);
-        }
-    }
-
-    fn measured(&mut self) -> Pose2 {
-        let (x, y, t) = (normal(&mut self.rng), normal(&mut self.rng), normal(&mut self.rng));
-        Pose2::new(
-            self.pose.x + 0.002 * x,
-            self.pose.y + 0.002 * y,
-            self.pose.theta + 0.15_f64.to_radians() * t,
-        )
-    }
-}
-
-/// The sum of twelve uniform numbers, less six.
-fn normal(rng: &mut impl Rng) -> f64 {
-    (0..12).map(|_| rng.random_range(0.0..1.0)).sum::<f64>() - 6.0
-}
-
-/// How a run ended.
-struct Run {
-    settled: bool,
-    within: bool,
-    contact: bool,
-    motions: usize,
-}
-
-fn run(problem: &Problem, seed: u64) -> Run {
-    let scene = problem.scene().unwrap();
-    let mut positioner = Positioner::new(
-        DockingConfig::default(),
-        PositionerConfig::default(),
-        problem.footprint.clone(),
-        problem.goal,
-    )
-    .unwrap();
-    let mut world = World::new(problem.start, seed);
-    let (mut contact, mut motions, mut moving) = (false, 0, false);
-    for i in 0..(240.0 / DT) as usize {
-        let input = PositionerInput {
-            stamp: Stamp::default().after(i as f64 * DT),
-            pose: world.measured(),
-            scene: &scene,
-        };
-        let report = positioner.step(&input);
-        motions += usize::from(matches!(report.reason, Reason::Moving(_)) && !moving);
-        moving = matches!(report.reason, Reason::Moving(_));
-        world.advance(report.twist);
-        contact |= scene.clearance(&problem.footprint, &world.pose, 1e-3).is_some_and(|(d, _)| d == 0.0);
-        if positioner.is_settled() {
-            break;
-        }
-    }
-    let error = problem.goal.inverse() * world.pose;
-    let within = error.position().norm() <= 0.01 && wrap_angle(error.theta).abs() <= 1_f64.to_radians();
-    Run { settled: positioner.is_settled(), within, contact, motions }
-}
-
-/// Of solvable problems, 99 % settle within 1 cm and 1 deg, and none touches anything.
+/// Solvable problems settle within 1 cm and 1 deg, and none touches anything; the benchmark does 500 of them.
 #[test]
 fn settles_under_noise() {
     let mut rng = ChaCha8Rng::seed_from_u64(77);
     let docker = Docker::new(DockingConfig { bound_boxes: 0, ..DockingConfig::default() }).unwrap();
     let (mut count, mut good, mut contacts, mut motions) = (0_u64, 0, 0, 0);
-    while count < 500 {
+    while count < 40 {
         let problem = generate("closed", &mut rng);
         let scene = problem.scene().unwrap();
         let plan = docker.plan(&problem.footprint, &scene, problem.start, problem.goal).unwrap();
@@ -114,7 +38,7 @@ fn settles_under_noise() {
         "{good} of {count} settled within 1 cm and 1 deg, {contacts} with contact, {:.2} motions each",
         motions as f64 / count as f64
     );
-    assert!(good >= 495, "{good} of 500");
+    assert!(good == 40, "{good} of 40");
     assert_eq!(contacts, 0);
 }
 

@@ -63,14 +63,17 @@ fn distance(footprint: &Footprint, pose: &Pose2, pieces: &[(Vector2, Vector2)]) 
         }
     }
     let holds = |p: Vector2| {
-        outline.len() > 2 && (0..outline.len()).all(|i| (outline[(i + 1) % outline.len()] - outline[i]).perp(&(p - outline[i])) > 0.0)
+        outline.len() > 2
+            && (0..outline.len())
+                .all(|i| (outline[(i + 1) % outline.len()] - outline[i]).perp(&(p - outline[i])) > 0.0)
     };
     if pieces.iter().any(|(a, _)| holds(*a)) { 0.0 } else { (least - radius).max(0.0) }
 }
 
 fn to_piece(p: Vector2, a: Vector2, b: Vector2) -> f64 {
     let along = b - a;
-    let part = if along.norm() == 0.0 { 0.0 } else { ((p - a).dot(&along) / along.norm_squared()).clamp(0.0, 1.0) };
+    let part =
+        if along.norm() == 0.0 { 0.0 } else { ((p - a).dot(&along) / along.norm_squared()).clamp(0.0, 1.0) };
     (a + along * part - p).norm()
 }
 
@@ -78,7 +81,9 @@ fn sides(obstacles: &[Obstacle]) -> Vec<(Vector2, Vector2)> {
     let of = |obstacle: &Obstacle| match obstacle {
         Obstacle::Point(p) => vec![(*p, *p)],
         Obstacle::Segment(a, b) => vec![(*a, *b)],
-        Obstacle::Polygon(corners) => (0..corners.len()).map(|i| (corners[i], corners[(i + 1) % corners.len()])).collect(),
+        Obstacle::Polygon(corners) => {
+            (0..corners.len()).map(|i| (corners[i], corners[(i + 1) % corners.len()])).collect()
+        }
     };
     obstacles.iter().flat_map(of).collect()
 }

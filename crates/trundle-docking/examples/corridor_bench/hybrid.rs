@@ -1,0 +1,167 @@
+//! Hybrid A* [Dolgov10] with Reeds-Shepp arcs [Reeds90], written plainly: a baseline for the table.
+//!
+//! Poses are expanded by arcs of least radius and straights, forward and backward, in cells of 4 cm and 6 deg. Pieces are
+//! driven from rest to rest where the direction changes, with the same pause as between the motions of docking. Close to
+//! the goal a Reeds-Shepp word is tried: all words of the form curve-straight-curve and curve-curve-curve.
+
+use std::cmp::Reverse;
+use std::collections::{BTreeMap, BinaryHeap};
+use std::f64::consts::{PI, TAU};
+use trundle_core::{Pose2, Vector2, wrap_angle};
+use trundle_docking::corridor::Problem;
+use trundle_docking::{MotionLimits, Scene};
+
+/// Least radius, m: what a base that prefers to roll takes in a corridor.
+const RADIUS: f64 = 0.25;
+const STEP: f64 = 0.05;
+const MOST_NODES: usize = 20_000;
+
+/// An arc: curvature (1/m) and signed way (m).
+type Piece = (f64, f64);
+
+/// The time of a path to the goal, s, and whether it touches anything; `None` when none was found.
+pub fn plan(problem: &Problem, scene: &Scene, limits: &MotionLimits) -> Option<f64> {
+    let free = |pose: &Pose2| {
+        scene.clearance(&problem.footprint, pose, 1e-3).is_none_or(|(distance, _)| distance > 0.0)
+    };
+    let mut nodes: Vec<(Pose2, f64, usize, Piece)> = vec![(problem.start, 0.0, 0, (0.0, 0.0))];
+    let mut seen: BTreeMap<(i32, i32, i32), f64> = BTreeMap::new();
+    let mut queue = BinaryHeap::from([(Reverse(0_u64), 0_usize)]);
+    let mut expanded = 0;
+    while let Some((_, index)) = queue.pop() {
+        let (pose, cost, ..) = nodes[index];
+        if seen.get(&key(&pose)).is_some_and(|&best| best < cost) {
+            continue;
+        }
+        expanded += 1;
+        if expanded > MOST_NODES {
+            return None;
+        }
+        if let Some(word) = reeds_shepp(&pose, &problem.goal, &free) {
+            let mut pieces = pieces_to(&nodes, index);
+            pieces.extend(word);
+            return Some(time_of(&pieces, limits));
+        }
+        for curvature in [-1.0 / RADIUS, 0.0, 1.0 / RADIUS] {
+            for way in [STEP, -STEP] {
+                let middle = roll(&pose, curvature, way / 2.0);
+                let next = roll(&pose, curvature, way);
+                if (next.position() - problem.goal.position()).norm() > 2.5 || !free(&middle) || !free(&next)
+                {
+                    continue;
+                }
+                let last = nodes[index].3;
+                let turned = last.1 * way < 0.0;
+                let total = cost + STEP / limits.speed + if turned { limits.switch_time + 0.5 } else { 0.0 };
+                if seen.get(&key(&next)).is_some_and(|&best| best <= total) {
+                    continue;
+                }
+                seen.insert(key(&next), total);
+                let rest = next
+                    .distance(&problem.goal)
+                    .max(RADIUS * wrap_angle(next.theta - problem.goal.theta).abs());
+                queue.push((Reverse(((total + rest / limits.speed) * 1e6) as u64), nodes.len()));
+                nodes.push((next, total, index, (curvature, way)));
+            }
+        }
+    }
+    None
+}
+
+fn key(pose: &Pose2) -> (i32, i32, i32) {
+    ((pose.x / 0.04).round() as i32, (pose.y / 0.04).round() as i32, (pose.theta / 0.105).round() as i32)
+}
+
+fn roll(pose: &Pose2, curvature: f64, way: f64) -> Pose2 {
+    pose.advance(trundle_core::Twist2::new(way, way * curvature), 1.0)
+}
+
+fn pieces_to(nodes: &[(Pose2, f64, usize, Piece)], mut index: usize) -> Vec<Piece> {
+    let mut pieces = Vec::new();
+    while index > 0 {
+        pieces.push(nodes[index].3);
+        index = nodes[index].2;
+    }
+    pieces.reverse();
+    pieces
+}
+
+/// Rest to rest between changes of direction; a curve no faster than the turn rate allows.
+fn time_of(pieces: &[Piece], limits: &MotionLimits) -> f64 {
+    let mut time = -limits.switch_time;
+    let mut i = 0;
+    while i < pieces.len() {
+        let sign = pieces[i].1.signum();
+        let run = pieces[i..].iter().take_while(|piece| piece.1.signum() == sign).count();
+        let slow = |piece: &Piece| (limits.turn_rate / piece.0.abs().max(1e-9)).min(limits.speed);
+        let cruise: f64 = pieces[i..i + run].iter().map(|piece| piece.1.abs() / slow(piece)).sum();
+        let way: f64 = pieces[i..i + run].iter().map(|piece| piece.1.abs()).sum();
+        time += (cruise + limits.speed / limits.acceleration).min(cruise + limits.drive_time(way))
+            + limits.switch_time;
+        i += run;
+    }
+    time.max(0.0)
+}
+
+/// The shortest free word of three pieces, each a curve of least radius or a straight, all ways round.
+fn reeds_shepp(from: &Pose2, to: &Pose2, free: &impl Fn(&Pose2) -> bool) -> Option<Vec<Piece>> {
+    let mut words: Vec<Vec<Piece>> = Vec::new();
+    let local = from.inverse() * *to;
+    let goal = Pose2 { x: local.x / RADIUS, y: local.y / RADIUS, theta: local.theta };
+    for mirrored in [false, true] {
+        let seen = if mirrored { Pose2::new(goal.x, -goal.y, -goal.theta) } else { goal };
+        let side = if mirrored { -1.0 } else { 1.0 };
+        for backward in [false, true] {
+            let seen = if backward { Pose2::new(-seen.x, seen.y, -seen.theta) } else { seen };
+            let sense = if backward { -1.0 } else { 1.0 };
+            for (curves, ways) in base_words(&seen) {
+                let piece = |i: usize| (side * curves[i] / RADIUS, sense * ways[i] * RADIUS);
+                words.push((0..3).map(piece).filter(|piece| piece.1.abs() > 1e-6).collect());
+            }
+        }
+    }
+    let length = |word: &[Piece]| word.iter().map(|piece| piece.1.abs()).sum::<f64>();
+    words.retain(|word| length(word) < 2.0 && ends(from, word).distance(to) < 1e-3);
+    words.sort_by(|a, b| length(a).total_cmp(&length(b)));
+    words.into_iter().find(|word| is_free(from, word, free))
+}
+
+fn ends(from: &Pose2, word: &[Piece]) -> Pose2 {
+    word.iter().fold(*from, |pose, &(curvature, way)| roll(&pose, curvature, way))
+}
+
+fn is_free(from: &Pose2, word: &[Piece], free: &impl Fn(&Pose2) -> bool) -> bool {
+    let mut pose = *from;
+    word.iter().all(|&(curvature, way)| {
+        let samples = (way.abs() / 0.01).ceil().max(1.0) as usize;
+        let good = (1..=samples).all(|i| free(&roll(&pose, curvature, way * i as f64 / samples as f64)));
+        pose = roll(&pose, curvature, way);
+        good
+    })
+}
+
+/// Left-straight-left, left-straight-right and left-right-left on circles of radius one: curvatures and ways.
+fn base_words(goal: &Pose2) -> Vec<([f64; 3], [f64; 3])> {
+    let (sin, cos) = goal.theta.sin_cos();
+    let mut words = Vec::new();
+    let turn = |angle: f64| wrap_angle(angle);
+    // Left, straight, left.
+    let v = Vector2::new(goal.x - sin, goal.y - 1.0 + cos);
+    let t = v.y.atan2(v.x);
+    words.push(([1.0, 0.0, 1.0], [turn(t), v.norm(), turn(goal.theta - t)]));
+    // Left, straight, right.
+    let v = Vector2::new(goal.x + sin, goal.y - 1.0 - cos);
+    if v.norm() >= 2.0 {
+        let u = (v.norm_squared() - 4.0).sqrt();
+        let t = v.y.atan2(v.x) + 2.0_f64.atan2(u);
+        words.push(([1.0, 0.0, -1.0], [turn(t), u, turn(t - goal.theta)]));
+    }
+    // Left, right backward, left.
+    let v = Vector2::new(goal.x - sin, goal.y - 1.0 + cos);
+    if v.norm() <= 4.0 {
+        let u = -2.0 * (v.norm() / 4.0).asin();
+        let t = turn(v.y.atan2(v.x) + u / 2.0 + PI);
+        words.push(([1.0, -1.0, 1.0], [t, u, turn(goal.theta - t + u)]));
+    }
+    words.into_iter().filter(|(_, ways)| ways.iter().all(|way| way.abs() < TAU + 10.0)).collect()
+}
