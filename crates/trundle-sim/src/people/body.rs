@@ -2,12 +2,15 @@ use crate::paint::{Finish, Paint};
 use crate::world::{Cylinder, HeightBand, Obstacles, Shape, Solid, World};
 use trundle_core::{Invalid, Vector3};
 
-/// Height of the knee and of the hip, m: those of a person of 1.75 m (Drillis and Contini 1966: 0.285 and 0.53 of it).
-const KNEE: f64 = 0.50;
+/// Heights of the joints of a leg of three upright pieces, m: below and above the knee of a person of 1.75 m (Drillis and
+/// Contini 1966: knee at 0.285, hip at 0.53 of the height).
+const CALF: f64 = 0.32;
+const LAP: f64 = 0.62;
 const HIP: f64 = 0.92;
 
-/// Radii of shin, thigh, trunk and head, m.
+/// Radii of shin, knee, thigh, trunk and head, m.
 const SHIN: f64 = 0.055;
+const KNEE: f64 = 0.065;
 const THIGH: f64 = 0.08;
 const TRUNK: f64 = 0.16;
 const HEAD: f64 = 0.095;
@@ -26,10 +29,11 @@ const CLOTHES: [([u8; 3], [u8; 3]); 4] = [
 
 const SKIN: [u8; 3] = [206, 164, 134];
 
-/// The parts of a person, upright cylinders about their own origin; shins and thighs are one part for both legs.
+/// The parts of a person, upright cylinders about their own origin; the pieces of a leg are one part for both legs.
 #[derive(Debug)]
 pub(super) struct Body {
     pub(super) shin: Part,
+    pub(super) knee: Part,
     pub(super) thigh: Part,
     pub(super) trunk: Part,
 }
@@ -56,8 +60,9 @@ impl Body {
             Ok::<_, Invalid>(Part { obstacles: world.obstacles(band), world })
         };
         Ok(Self {
-            shin: part(vec![upright(0.0, KNEE, SHIN, cloth(trousers))])?,
-            thigh: part(vec![upright(KNEE, HIP, THIGH, cloth(trousers))])?,
+            shin: part(vec![upright(0.0, CALF, SHIN, cloth(trousers))])?,
+            knee: part(vec![upright(CALF, LAP, KNEE, cloth(trousers))])?,
+            thigh: part(vec![upright(LAP, HIP, THIGH, cloth(trousers))])?,
             trunk: part(vec![
                 upright(HIP, SHOULDER, TRUNK, cloth(jumper)),
                 upright(SHOULDER, CROWN, HEAD, Paint::Flat { color: SKIN }),
@@ -67,7 +72,7 @@ impl Body {
 
     /// Draws how it looks.
     pub(super) fn paint(&self) {
-        for part in [&self.shin, &self.thigh, &self.trunk] {
+        for part in [&self.shin, &self.knee, &self.thigh, &self.trunk] {
             part.world.paint();
         }
     }

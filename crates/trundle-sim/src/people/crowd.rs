@@ -1,4 +1,5 @@
 use super::body::{Body, Part};
+use super::gait::{KNEE_SHARE, THIGH_SHARE};
 use super::person::Person;
 use super::walker::Walker;
 use crate::world::{HeightBand, Mover, Obstacles};
@@ -110,16 +111,12 @@ impl Crowd {
 }
 
 /// The parts of a person and where they stand, `world_from_part`.
-fn parts<'b>(body: &'b Body, walker: &Walker) -> [(&'b Part, Pose2); 5] {
-    let [left_shin, right_shin] = walker.gait.shins();
-    let [left_thigh, right_thigh] = walker.gait.thighs();
-    [
-        (&body.shin, walker.pose * left_shin),
-        (&body.shin, walker.pose * right_shin),
-        (&body.thigh, walker.pose * left_thigh),
-        (&body.thigh, walker.pose * right_thigh),
-        (&body.trunk, walker.pose),
-    ]
+fn parts<'b>(body: &'b Body, walker: &Walker) -> [(&'b Part, Pose2); 7] {
+    let legs = |part, share| walker.gait.legs(share).map(|leg| (part, walker.pose * leg));
+    let [left_shin, right_shin] = legs(&body.shin, 1.0);
+    let [left_knee, right_knee] = legs(&body.knee, KNEE_SHARE);
+    let [left_thigh, right_thigh] = legs(&body.thigh, THIGH_SHARE);
+    [left_shin, right_shin, left_knee, right_knee, left_thigh, right_thigh, (&body.trunk, walker.pose)]
 }
 
 /// Metres between a person and the robot.

@@ -6,8 +6,9 @@ const WALK_RATIO: f64 = 0.384;
 /// Half the distance between the feet, m.
 const HALF_TRACK: f64 = 0.1;
 
-/// How far a thigh follows its shin.
-const THIGH_SHARE: f64 = 0.45;
+/// How far knee and thigh follow their shin.
+pub(super) const KNEE_SHARE: f64 = 0.65;
+pub(super) const THIGH_SHARE: f64 = 0.3;
 
 /// Seconds in which a walk begins and ends.
 const EASE: f64 = 0.35;
@@ -44,15 +45,11 @@ impl Gait {
         }
     }
 
-    /// Where the shins stand, `body_from_shin`, left and right.
-    pub(super) fn shins(&self) -> [Pose2; 2] {
+    /// Where the pieces of the legs stand that follow their shin by `share`, 1 for the shins: `body_from_piece`, left and
+    /// right.
+    pub(super) fn legs(&self, share: f64) -> [Pose2; 2] {
         [(HALF_TRACK, 0.0), (-HALF_TRACK, 0.5)]
-            .map(|(side, shift)| Pose2::new(self.swing * self.reach(shift), side, 0.0))
-    }
-
-    /// Where the thighs stand, `body_from_thigh`, left and right.
-    pub(super) fn thighs(&self) -> [Pose2; 2] {
-        self.shins().map(|shin| Pose2::new(THIGH_SHARE * shin.x, shin.y, 0.0))
+            .map(|(side, shift)| Pose2::new(share * self.swing * self.reach(shift), side, 0.0))
     }
 
     /// How far before the body a foot is, m: backward as fast as the body goes forward while it stands; forward while it
@@ -75,10 +72,10 @@ mod tests {
         assert!((gait.step - 0.679).abs() < 1e-3);
         let (mut way, mut longest) = (0.0, 0.0_f64);
         for _ in 0..4000 {
-            let before = gait.shins().map(|shin| way + shin.x);
+            let before = gait.legs(1.0).map(|shin| way + shin.x);
             gait = gait.after(1e-3, 1.2e-3, true);
             way += 1.2e-3;
-            let after = gait.shins().map(|shin| way + shin.x);
+            let after = gait.legs(1.0).map(|shin| way + shin.x);
             let moved = [0, 1].map(|k| after[k] - before[k]);
             assert!(moved[0].abs().min(moved[1].abs()) < 3e-5, "{moved:?} at {}", gait.phase);
             assert!(moved.iter().all(|m| *m > -1e-9 && *m < 3.7e-3), "{moved:?}");
@@ -89,7 +86,7 @@ mod tests {
 
     #[test]
     fn who_stands_has_feet_side_by_side() {
-        let [left, right] = Gait::new(1.0).shins();
+        let [left, right] = Gait::new(1.0).legs(1.0);
         assert_eq!((left.x, right.x, left.y, right.y), (0.0, 0.0, 0.1, -0.1));
     }
 }

@@ -48,7 +48,7 @@ fn a_robot_that_drives_into_a_person_is_stopped_by_the_legs() {
     assert_eq!(robot.contacts(), 1);
     // The person looks along x, so a leg (5.5 cm) stands 0.1 m beside (1.5, 0.1): at (1.5, 0).
     let reach = robot.true_pose().distance(&Pose2::new(1.5, 0.0, 0.0));
-    assert!((reach - 0.1755 - 0.08).abs() < 2e-3, "the thigh is the thicker part: {reach}");
+    assert!((reach - 0.1755 - 0.065).abs() < 2e-3, "the knee is the thickest part below 0.6 m: {reach}");
 }
 
 #[test]
