@@ -46,8 +46,9 @@ fn run(log: &log::Log, config: &ParticleConfig, seed: u64) -> Run {
             degenerate += usize::from(p.degenerate > 0);
             if std::env::var("TRACE").is_ok() {
                 println!(
-                    "{i} {:.2} {} {:.1} {} {:?}",
+                    "{i} {:.2} {:.2} {} {:.1} {} {:?}",
                     p.explained,
+                    p.contradicted,
                     p.degenerate,
                     p.effective,
                     p.resampled,

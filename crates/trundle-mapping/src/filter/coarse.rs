@@ -1,4 +1,7 @@
-use super::{ScanShape, likelihood::Placed};
+use super::{
+    ScanShape,
+    likelihood::{Placed, floor},
+};
 use crate::tiles::{TILE_SIDE, TileWindow};
 use nalgebra::{Matrix3, Vector3};
 use trundle_core::Pose2;
@@ -49,7 +52,8 @@ impl CoarseSearch {
         self.best.clear();
         let reach = ((3.0 * prior.sigma / STEP).ceil() as usize).clamp(2, MOST_REACH);
         let turn_step = (STEP / shape.lever).clamp(0.004, 0.05);
-        let turns = ((3.0 * prior.sigma_turn / turn_step).ceil() as i32).clamp(1, 30);
+        let turns = ((3.0 * prior.sigma_turn / turn_step).ceil() as i32)
+            .clamp(1, (std::f64::consts::PI / turn_step) as i32);
         let every = shape.points.len().div_ceil(MOST_POINTS).max(1);
         let gain = prior.gain * every as f64 / 255.0;
         for turn in -turns..=turns {
@@ -95,7 +99,7 @@ impl CoarseSearch {
         for point in shape.points.iter().step_by(every) {
             let (rx, ry) = place.rotate(point.x, point.y);
             // Samples are at the middles of even cells: 0.5, 2.5 and so on.
-            let sample = |v: f32| ((v - 0.5) * 0.5 + 0.5).floor() as i64 + LANES as i64 - reach as i64;
+            let sample = |v: f32| i64::from(floor((v + 0.5) * 0.5)) + LANES as i64 - reach as i64;
             let (col, row) = (sample(rx + place.x), sample(ry + place.y));
             let rows = (self.field.len() / self.stride) as i64;
             let inside = col >= 0

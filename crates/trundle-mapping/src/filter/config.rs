@@ -16,6 +16,8 @@ pub struct ParticleConfig {
     pub move_gate: f64,
     /// Or turned this far, deg, 0 to 180. Default 10.
     pub turn_gate_deg: f64,
+    /// Or this long ago, s, 0 to 3600. Default 2: wheels may turn unseen, and stand while the robot is pushed.
+    pub wait_gate: f64,
     /// Odometry that jumps farther than this between two scans is not motion, m, 0.5 to 1000. Default 5.
     pub jump: f64,
     /// One sigma of a range, m, 0.001 to 0.5. Default 0.02 (SICK LMS 200: 0.01 to 0.02).
@@ -33,6 +35,10 @@ pub struct ParticleConfig {
     /// Resample when the effective number of particles falls below this part of their number, 0 to 1. Default 0.5
     /// \[Grisetti07\].
     pub resample_below: f64,
+    /// Where the scan contradicts the map, the odometry may have slipped by so much (one sigma), m, 0.01 to 2. Default 0.3.
+    pub slip_shift: f64,
+    /// And so much, rad, 0.01 to 1. Default 0.3.
+    pub slip_turn: f64,
     /// A direction is degenerate when it is held by less than this part of the hits, 0 to 1. Default 0.05.
     pub degenerate_below: f64,
 }
@@ -45,6 +51,7 @@ impl Default for ParticleConfig {
             motion: MotionConfig::default(),
             move_gate: 0.3,
             turn_gate_deg: 10.0,
+            wait_gate: 2.0,
             jump: 5.0,
             range_noise: 0.02,
             range_noise_growth: 0.0,
@@ -53,6 +60,8 @@ impl Default for ParticleConfig {
             weight_correlation: 4.0,
             samples: 30,
             resample_below: 0.5,
+            slip_shift: 0.3,
+            slip_turn: 0.3,
             degenerate_below: 0.05,
         }
     }
@@ -67,6 +76,7 @@ impl ParticleConfig {
         require_in("particles", self.particles as f64, "", 1.0, 1000.0)?;
         require_in("move_gate", self.move_gate, "m", 0.0, 5.0)?;
         require_in("turn_gate_deg", self.turn_gate_deg, "deg", 0.0, 180.0)?;
+        require_in("wait_gate", self.wait_gate, "s", 0.0, 3600.0)?;
         require_in("jump", self.jump, "m", 0.5, 1000.0)?;
         require_in("range_noise", self.range_noise, "m", 0.001, 0.5)?;
         require_in("range_noise_growth", self.range_noise_growth, "m/m^2", 0.0, 0.1)?;
@@ -75,38 +85,41 @@ impl ParticleConfig {
         require_in("weight_correlation", self.weight_correlation, "", 1.0, 100.0)?;
         require_in("samples", self.samples as f64, "", 8.0, 500.0)?;
         require_in("resample_below", self.resample_below, "", 0.0, 1.0)?;
+        require_in("slip_shift", self.slip_shift, "m", 0.01, 2.0)?;
+        require_in("slip_turn", self.slip_turn, "rad", 0.01, 1.0)?;
         require_in("degenerate_below", self.degenerate_below, "", 0.0, 1.0)?;
         Ok(Self { map: self.map.validated()?, motion: self.motion.validated()?, ..self })
     }
 }
 
-/// One sigma of the odometry's error over a motion, by what was driven and turned (\[Thrun05\], sec. 5.4).
+/// One sigma of the odometry's error over a motion, by what was driven and turned (\[Thrun05\], sec. 5.4). The defaults
+/// are the customary ones of grid mapping: cheap wheels on tiles and carpets.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct MotionConfig {
-    /// Way, m for each m driven, 0 to 2. Default 0.1.
+    /// Way, m for each m driven, 0 to 2. Default 0.2.
     pub shift_per_metre: f64,
-    /// Way, m for each rad turned, 0 to 2. Default 0.05.
+    /// Way, m for each rad turned, 0 to 2. Default 0.1.
     pub shift_per_radian: f64,
-    /// Heading, rad for each m driven, 0 to 2. Default 0.05.
+    /// Heading, rad for each m driven, 0 to 2. Default 0.1.
     pub turn_per_metre: f64,
-    /// Heading, rad for each rad turned, 0 to 2. Default 0.1.
+    /// Heading, rad for each rad turned, 0 to 2. Default 0.2.
     pub turn_per_radian: f64,
-    /// Way even when nothing moved, m, 0.0001 to 1. Default 0.01.
+    /// Way even when nothing moved, m, 0.0001 to 1. Default 0.02.
     pub least_shift: f64,
-    /// Heading even when nothing moved, rad, 0.0001 to 1. Default 0.005.
+    /// Heading even when nothing moved, rad, 0.0001 to 1. Default 0.01.
     pub least_turn: f64,
 }
 
 impl Default for MotionConfig {
     fn default() -> Self {
         Self {
-            shift_per_metre: 0.1,
-            shift_per_radian: 0.05,
-            turn_per_metre: 0.05,
-            turn_per_radian: 0.1,
-            least_shift: 0.01,
-            least_turn: 0.005,
+            shift_per_metre: 0.2,
+            shift_per_radian: 0.1,
+            turn_per_metre: 0.1,
+            turn_per_radian: 0.2,
+            least_shift: 0.02,
+            least_turn: 0.01,
         }
     }
 }

@@ -4,7 +4,7 @@ use super::{
     chance::Chance,
     coarse::CoarseSearch,
     likelihood::Likelihood,
-    motion::motion_covariance,
+    motion::{motion_covariance, unknown_motion_covariance},
     proposal::{Proposal, Proposer},
     publish::Publisher,
     resample::{effective, low_variance},
@@ -86,8 +86,12 @@ pub enum Refusal {
 pub struct Processed {
     /// Part of the hits that the best particle's map explains, 0 to 1.
     pub explained: f64,
+    /// Part of them that lies on free ground of it with no obstacle near, 0 to 1.
+    pub contradicted: f64,
     /// Directions that the best particle left to the odometry, 0 to 3: 3 is no overlap with the map.
     pub degenerate: usize,
+    /// Covariance of the Gaussian that the best particle's pose was drawn from: m, m, rad, map frame.
+    pub covariance: Matrix3<f64>,
     /// Effective number of particles before resampling.
     pub effective: f64,
     /// Whether particles were resampled.
@@ -133,7 +137,9 @@ impl ParticleMapper {
             None => Pose2::IDENTITY,
         };
         let jumped = motion.position().norm() > self.config.jump;
-        let still = motion.position().norm() < self.config.move_gate
+        let waited = self.last.map_or(0.0, |last| scan.stamp() - last.stamp);
+        let still = waited < self.config.wait_gate
+            && motion.position().norm() < self.config.move_gate
             && motion.theta.abs() < self.config.turn_gate_deg.to_radians();
         if self.last.is_some() && still {
             return ScanUpdate::Still;
@@ -141,8 +147,12 @@ impl ParticleMapper {
         self.shape.set(&self.config, scan);
         let first = self.last.is_none();
         self.last = Some(Last { stamp: scan.stamp(), odom_from_base });
-        let motion = if jumped { Pose2::IDENTITY } else { motion };
-        self.move_and_draw(motion, first);
+        let (motion, covariance) = if jumped {
+            (Pose2::IDENTITY, unknown_motion_covariance())
+        } else {
+            (motion, motion_covariance(&self.config.motion, motion))
+        };
+        self.move_and_draw(motion, covariance, first);
         let (effective, resampled) = self.weigh();
         self.ancestry.push(
             scan.stamp(),
@@ -159,7 +169,10 @@ impl ParticleMapper {
         self.updates += 1;
         ScanUpdate::Processed(Processed {
             explained: proposal.map_or(0.0, |p| p.explained),
+            contradicted: proposal.map_or(0.0, |p| p.contradicted),
             degenerate: proposal.map_or(0, |p| p.degenerate),
+            covariance: proposal
+                .map_or(Matrix3::zeros(), |p| scaled(p.covariance, self.config.map.resolution)),
             effective,
             resampled,
             jumped,
@@ -202,14 +215,13 @@ impl ParticleMapper {
     }
 
     /// Moves every particle by the proposal, and draws the scan into its map.
-    fn move_and_draw(&mut self, motion: Pose2, first: bool) {
+    fn move_and_draw(&mut self, motion: Pose2, covariance: Matrix3<f64>, first: bool) {
         let per_metre = 1.0 / self.config.map.resolution;
-        let scale = Matrix3::from_diagonal(&Vector3::new(per_metre, per_metre, 1.0));
         let proposer = Proposer {
             config: &self.config,
             likelihood: &self.likelihood,
             shape: &self.shape,
-            motion_covariance: scale * motion_covariance(&self.config.motion, motion) * scale,
+            motion_covariance: scaled(covariance, per_metre),
         };
         let motion = Pose2 { x: motion.x * per_metre, y: motion.y * per_metre, ..motion };
         let (seed, updates, brush, shape) = (self.seed, self.updates, &self.brush, &self.shape);
@@ -281,4 +293,10 @@ const COARSE_SIGMA_CELLS: f64 = 2.0;
 
 fn metres(config: &ParticleConfig, pose: Pose2) -> Pose2 {
     Pose2 { x: pose.x * config.map.resolution, y: pose.y * config.map.resolution, ..pose }
+}
+
+/// A covariance of a pose whose lengths are given in units of `unit` m: m, m, rad.
+fn scaled(covariance: Matrix3<f64>, unit: f64) -> Matrix3<f64> {
+    let scale = Matrix3::from_diagonal(&Vector3::new(unit, unit, 1.0));
+    scale * covariance * scale
 }

@@ -9,6 +9,7 @@ mod directions;
 mod likelihood;
 mod mapper;
 mod motion;
+mod prior;
 mod proposal;
 mod publish;
 mod resample;

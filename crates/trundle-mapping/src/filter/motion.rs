@@ -12,3 +12,8 @@ pub(crate) fn motion_covariance(config: &MotionConfig, motion: Pose2) -> Matrix3
     let aside = 0.5 * shift + 0.5 * way * heading;
     Matrix3::from_diagonal(&nalgebra::Vector3::new(shift * shift, aside * aside, heading * heading))
 }
+
+/// The covariance of a motion of which the odometry says nothing, as when it jumped: m, rad.
+pub(crate) fn unknown_motion_covariance() -> Matrix3<f64> {
+    Matrix3::from_diagonal(&nalgebra::Vector3::new(0.16, 0.16, 0.04))
+}

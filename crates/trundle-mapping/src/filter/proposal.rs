@@ -4,6 +4,7 @@ use super::{
     coarse::{CoarseSearch, SearchPrior},
     directions::Directions,
     likelihood::{Likelihood, Vote},
+    prior::Prior,
 };
 use crate::tiles::{TileMap, TileWindow};
 use nalgebra::{Cholesky, Matrix3, Vector3};
@@ -33,21 +34,68 @@ pub(crate) struct Proposal {
     pub(crate) log_weight: f64,
     /// Part of the points that the map explains, 0 to 1.
     pub(crate) explained: f64,
+    /// Part of the points on free ground with no obstacle near, 0 to 1.
+    pub(crate) contradicted: f64,
     /// Directions left to the odometry, 0 to 3.
     pub(crate) degenerate: usize,
     /// Covariance of the drawn Gaussian (cells, cells, rad), map frame.
     pub(crate) covariance: Matrix3<f64>,
 }
 
-const MOST_STEPS: usize = 12;
+const MOST_STEPS: usize = 10;
 /// Steps shorter than this are none, cells.
-const STILL: f64 = 0.003;
-/// Candidates of the coarse search that are refined.
-const CANDIDATES: usize = 3;
+const STILL: f64 = 0.01;
+/// A start of the climb is another one when it is this far from the best, cells.
+const ELSEWHERE: f64 = 5.0;
+/// And is worth it when it is less than this much worse, nats.
+const RIVAL: f64 = 2.0;
 /// Radius of the ellipsoid of samples, sigmas.
 const SPREAD: f64 = 2.5;
+/// More than this part of the points on free ground: the odometry may have slipped.
+const CONTRADICTED: f64 = 0.1;
+/// More than this: it may have failed.
+const LOST: f64 = 0.3;
+/// So long a way between two scans may be the wheels' fancy, m.
+const LONG_WAY: f64 = 1.5;
+/// Where so much is explained, a lost robot is found.
+const FOUND: f64 = 0.6;
+/// The same for a robot that may look anywhere: corridors look alike both ways.
+const FOUND_AROUND: f64 = 0.7;
+/// And by how much it must then be better.
+const FAR_BETTER: f64 = 0.4;
+/// By how much (a part of the points) a search that goes farther must be better.
+const CLEARLY: f64 = 0.15;
 /// Less than this part of the points on known obstacles: there is nothing to match.
 const LEAST_EXPLAINED: f64 = 0.1;
+
+/// How a scan agrees with the map at a pose.
+#[derive(Debug, Clone, Copy)]
+struct Fit {
+    /// Part of the points at obstacles.
+    explained: f64,
+    /// Part of the points on free ground, with no obstacle near.
+    contradicted: f64,
+}
+
+impl Fit {
+    fn value(&self) -> f64 {
+        self.explained - self.contradicted
+    }
+
+    fn is_better_than(&self, other: &Self) -> bool {
+        self.value() > other.value() + CLEARLY
+    }
+}
+
+/// An optimum with the tiles in which it was looked for.
+struct Attempt<'m> {
+    window: TileWindow<'m>,
+    /// The window's corner, cells of the map.
+    corner: (f64, f64),
+    prior: Prior,
+    optimum: Optimum,
+    fit: Fit,
+}
 
 /// An optimum of the posterior.
 struct Optimum {
@@ -72,28 +120,87 @@ impl Proposer<'_> {
         guess: Pose2,
         chance: &mut Chance,
     ) -> Proposal {
-        let window = self.window(map, guess);
-        let corner = (f64::from(window.corner.0), f64::from(window.corner.1));
-        let local = Pose2 { x: guess.x - corner.0, y: guess.y - corner.1, ..guess };
-        let prior = self.prior(before.theta);
-        let optimum = self.optimum(&window, search, local, &prior);
-        let mut proposal = self.sample(&window, local, &prior, &optimum, chance);
-        proposal.pose =
-            Pose2::new(proposal.pose.x + corner.0, proposal.pose.y + corner.1, proposal.pose.theta);
-        proposal
+        let prior = Prior::new(guess, before.theta, &self.motion_covariance);
+        let near = self.attempt(map, search, prior);
+        let Fit { contradicted, .. } = near.fit;
+        if contradicted > CONTRADICTED {
+            let wide =
+                prior.widened(self.config.slip_shift / self.config.map.resolution, self.config.slip_turn);
+            let far = self.attempt(map, search, wide);
+            if far.fit.is_better_than(&near.fit) {
+                return self.sample(&far, chance);
+            }
+        }
+        let way = (guess.position() - before.position()).norm() * self.config.map.resolution;
+        if contradicted > LOST || way > LONG_WAY {
+            if let Some(found) = self.slipped(map, search, before, guess, &near) {
+                return self.sample(&found, chance);
+            }
+        }
+        self.sample(&near, chance)
     }
 
-    /// The tiles that the scan can reach near `guess`.
-    fn window<'m>(&self, map: &'m TileMap, guess: Pose2) -> TileWindow<'m> {
-        let (s, c) = guess.theta.sin_cos();
+    /// The best pose anywhere on the way that the odometry tells of, where that is clearly better than `near`.
+    fn slipped<'m>(
+        &self,
+        map: &'m TileMap,
+        search: &mut CoarseSearch,
+        before: Pose2,
+        guess: Pose2,
+        near: &Attempt<'_>,
+    ) -> Option<Attempt<'m>> {
+        let resolution = self.config.map.resolution;
+        let along = |part: f64, heading: f64| {
+            let place = before.interpolate(&guess, part);
+            Prior::slipped(Pose2 { theta: heading, ..place }, resolution)
+        };
+        let turned = [0.0, 0.5, 1.0].map(|part| along(part, guess.theta));
+        let unturned = [0.0, 0.5, 1.0].map(|part| along(part, before.theta));
+        let around = [Prior::turned(before, resolution)];
+        // Each kind of slip is rarer than the one before: it must be better by more.
+        let kinds: [(&[Prior], f64, f64); 3] =
+            [(&turned, CLEARLY, FOUND), (&unturned, CLEARLY, FOUND), (&around, FAR_BETTER, FOUND_AROUND)];
+        for (priors, better, explained) in kinds {
+            let best = priors
+                .iter()
+                .map(|prior| self.attempt(map, search, *prior))
+                .reduce(|best, next| if next.fit.value() > best.fit.value() { next } else { best })?;
+            if best.fit.value() > near.fit.value() + better && best.fit.explained > explained {
+                return Some(best);
+            }
+        }
+        None
+    }
+
+    /// The best pose under a prior (cells of the map).
+    fn attempt<'m>(&self, map: &'m TileMap, search: &mut CoarseSearch, prior: Prior) -> Attempt<'m> {
+        let window = self.window(map, &prior);
+        let corner = (f64::from(window.corner.0), f64::from(window.corner.1));
+        let guess = Pose2 { x: prior.guess.x - corner.0, y: prior.guess.y - corner.1, ..prior.guess };
+        let prior = Prior { guess, ..prior };
+        let optimum = self.optimum(&window, search, &prior);
+        let all = self.shape.points.len().max(1) as f64;
+        let vote = &optimum.vote;
+        let fit = Fit { explained: vote.explained / all, contradicted: vote.contradicted / all };
+        Attempt { window, corner, prior, optimum, fit }
+    }
+
+    /// The tiles that the scan can reach under a prior.
+    fn window<'m>(&self, map: &'m TileMap, prior: &Prior) -> TileWindow<'m> {
+        let guess = prior.guess;
         let (mut low, mut high) = ((guess.x, guess.y), (guess.x, guess.y));
+        let turns = prior.covariance[(2, 2)] > 0.1;
+        let (s, c) = guess.theta.sin_cos();
         for p in &self.shape.points {
             let (px, py) = (f64::from(p.x), f64::from(p.y));
-            let (x, y) = (guess.x + c * px - s * py, guess.y + s * px + c * py);
-            low = (low.0.min(x), low.1.min(y));
-            high = (high.0.max(x), high.1.max(y));
+            let (dx, dy) = (c * px - s * py, s * px + c * py);
+            let far = px.hypot(py);
+            let (right, up) = if turns { (far, far) } else { (dx, dy) };
+            let (left, down) = if turns { (-far, -far) } else { (dx, dy) };
+            low = (low.0.min(guess.x + left), low.1.min(guess.y + down));
+            high = (high.0.max(guess.x + right), high.1.max(guess.y + up));
         }
-        const MARGIN: f64 = 12.0;
+        const MARGIN: f64 = 16.0;
         let cell = |v: f64| v.floor() as i32;
         TileWindow::new(
             map,
@@ -102,48 +209,38 @@ impl Proposer<'_> {
         )
     }
 
-    /// The inverse covariance of the odometry's guess, map frame, for a motion that began at heading `theta`.
-    fn prior(&self, theta: f64) -> Matrix3<f64> {
-        let (s, c) = theta.sin_cos();
-        let turn = Matrix3::new(c, -s, 0.0, s, c, 0.0, 0.0, 0.0, 1.0);
-        let covariance = turn * self.motion_covariance * turn.transpose();
-        covariance.try_inverse().expect("invariant: the least sigmas of the odometry are positive")
-    }
-
-    fn optimum(
-        &self,
-        window: &TileWindow<'_>,
-        search: &mut CoarseSearch,
-        guess: Pose2,
-        prior: &Matrix3<f64>,
-    ) -> Optimum {
-        let covariance = &self.motion_covariance;
+    fn optimum(&self, window: &TileWindow<'_>, search: &mut CoarseSearch, prior: &Prior) -> Optimum {
         let about = SearchPrior {
-            information: *prior,
-            sigma: covariance[(0, 0)].max(covariance[(1, 1)]).sqrt(),
-            sigma_turn: covariance[(2, 2)].sqrt(),
+            information: prior.information,
+            sigma: prior.covariance[(0, 0)].max(prior.covariance[(1, 1)]).sqrt(),
+            sigma_turn: prior.covariance[(2, 2)].sqrt(),
             gain: -self.config.outliers.ln() / self.config.correlation,
         };
-        let starts = search.search(window, self.shape, guess, &about);
-        let mut best: Option<Optimum> = None;
-        for &(_, start) in starts.iter().take(CANDIDATES) {
-            let found = self.climb(window, guess, prior, start);
-            if best.as_ref().is_none_or(|best| found.log_posterior > best.log_posterior) {
-                best = Some(found);
-            }
+        let starts = search.search(window, self.shape, prior.guess, &about);
+        let (first, top) = starts[0];
+        // Another start is worth climbing from when it is nearly as good and somewhere else.
+        let elsewhere = |p: &Pose2| {
+            let off = difference(*p, top);
+            off.xy().amax() > ELSEWHERE || off.z.abs() * self.shape.lever > ELSEWHERE
+        };
+        let second = starts.iter().find(|(score, p)| first - score < RIVAL && elsewhere(p)).map(|s| s.1);
+        let best = self.climb(window, prior, top);
+        let rival = second.map(|start| self.climb(window, prior, start));
+        match rival {
+            Some(rival) if rival.log_posterior > best.log_posterior => rival,
+            _ => best,
         }
-        best.expect("invariant: the search returns a pose for each heading")
     }
 
     /// Gauss-Newton on hits and odometry together.
-    fn climb(&self, window: &TileWindow<'_>, guess: Pose2, prior: &Matrix3<f64>, start: Pose2) -> Optimum {
+    fn climb(&self, window: &TileWindow<'_>, prior: &Prior, start: Pose2) -> Optimum {
         let mut pose = start;
         let mut vote = self.likelihood.vote(window, self.shape, pose);
         let directions = Directions::new(self.shape, pose, &vote, self.config.degenerate_below);
         for _ in 0..MOST_STEPS {
             let scale = 1.0 / self.config.correlation;
-            let information = directions.information(&vote) * scale + directions.to_y(prior);
-            let back = prior * difference(guess, pose);
+            let information = directions.information(&vote) * scale + directions.to_y(&prior.information);
+            let back = prior.information * difference(prior.guess, pose);
             let pull = directions.pull(&vote) * scale + directions.pose_from_y.transpose() * back;
             let Some(factor) = Cholesky::new(information) else { break };
             let step = factor.solve(&pull);
@@ -155,30 +252,25 @@ impl Proposer<'_> {
             }
         }
         let directions = Directions::new(self.shape, pose, &vote, self.config.degenerate_below);
-        Optimum { log_posterior: self.log_posterior(window, guess, prior, pose), pose, vote, directions }
+        Optimum { log_posterior: self.log_posterior(window, prior, pose), pose, vote, directions }
     }
 
     /// ln p(z | m, x) p(x | x', u), but for a constant.
-    fn log_posterior(&self, window: &TileWindow<'_>, guess: Pose2, prior: &Matrix3<f64>, pose: Pose2) -> f64 {
-        let off = difference(pose, guess);
+    fn log_posterior(&self, window: &TileWindow<'_>, prior: &Prior, pose: Pose2) -> f64 {
+        let off = difference(pose, prior.guess);
         self.likelihood.log_likelihood(window, self.shape, pose) / self.config.correlation
-            - 0.5 * off.dot(&(prior * off))
+            - 0.5 * off.dot(&(prior.information * off))
+            + 0.5 * prior.log_determinant
     }
 
-    fn sample(
-        &self,
-        window: &TileWindow<'_>,
-        guess: Pose2,
-        prior: &Matrix3<f64>,
-        optimum: &Optimum,
-        chance: &mut Chance,
-    ) -> Proposal {
+    fn sample(&self, attempt: &Attempt<'_>, chance: &mut Chance) -> Proposal {
+        let Attempt { window, corner, prior, optimum, .. } = attempt;
         let Optimum { pose: top, vote, directions, .. } = optimum;
         let explained = vote.explained / self.shape.points.len().max(1) as f64;
         let lost = explained < LEAST_EXPLAINED;
         let held = if lost { Matrix3::zeros() } else { directions.held };
-        let centre = if lost { guess } else { *top };
-        let odometry = directions.to_y(prior);
+        let centre = if lost { prior.guess } else { *top };
+        let odometry = directions.to_y(&prior.information);
         let hits =
             if lost { Matrix3::zeros() } else { directions.information(vote) / self.config.correlation };
         let shape =
@@ -196,7 +288,7 @@ impl Proposer<'_> {
         for pair in samples[..count].chunks_mut(2) {
             let y = spread * chance.in_ball() * SPREAD;
             for (sample, y) in pair.iter_mut().zip([y, -y]) {
-                *sample = (self.log_posterior(window, guess, prior, moved(y)), y);
+                *sample = (self.log_posterior(window, prior, moved(y)), y);
                 greatest = greatest.max(sample.0);
             }
         }
@@ -223,10 +315,12 @@ impl Proposer<'_> {
         let covariance = covariance + least;
         let draw = Cholesky::new(covariance).expect("invariant: a sum with a positive matrix").l();
         let to_pose = directions.pose_from_y;
+        let pose = moved(mean + draw * chance.normal3());
         Proposal {
-            pose: moved(mean + draw * chance.normal3()),
+            pose: Pose2::new(pose.x + corner.0, pose.y + corner.1, pose.theta),
             log_weight: greatest + (sum / count as f64).ln() + spread.determinant().ln(),
             explained,
+            contradicted: attempt.fit.contradicted,
             degenerate: if lost { 3 } else { directions.degenerate },
             covariance: to_pose * covariance * to_pose.transpose(),
         }

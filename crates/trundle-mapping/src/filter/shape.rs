@@ -10,6 +10,8 @@ pub(crate) struct ScanShape {
     pub(crate) rays: Vec<ScanRay>,
     /// The hits, thinned, for matching.
     pub(crate) points: Vec<ScanPoint>,
+    /// The same, in groups for vector code; the last is filled up.
+    pub(crate) groups: Vec<PointGroup>,
     /// Mean of the points, cells.
     pub(crate) centroid: (f64, f64),
     /// Their root mean square distance from it, cells.
@@ -38,8 +40,44 @@ pub(crate) struct ScanPoint {
     pub(crate) information: f32,
 }
 
+/// Points whose arithmetic is done together.
+pub(crate) const LANES: usize = 8;
+
+/// Eight points of a scan.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct PointGroup {
+    pub(crate) x: [f32; LANES],
+    pub(crate) y: [f32; LANES],
+    pub(crate) normal_x: [f32; LANES],
+    pub(crate) normal_y: [f32; LANES],
+    /// 1 where there is a normal, else 0.
+    pub(crate) wall: [f32; LANES],
+    pub(crate) information: [f32; LANES],
+    /// How many of them are points.
+    pub(crate) count: usize,
+}
+
+impl PointGroup {
+    fn new(points: &[ScanPoint]) -> Self {
+        // What fills up repeats the last point.
+        let at = |k: usize| points[k.min(points.len() - 1)];
+        let lanes = |f: fn(ScanPoint) -> f32| std::array::from_fn(|k| f(at(k)));
+        Self {
+            x: lanes(|p| p.x),
+            y: lanes(|p| p.y),
+            normal_x: lanes(|p| p.normal.0),
+            normal_y: lanes(|p| p.normal.1),
+            wall: lanes(|p| if p.normal == (0.0, 0.0) { 0.0 } else { 1.0 }),
+            information: lanes(|p| p.information),
+            count: points.len(),
+        }
+    }
+}
+
 /// Points of one surface are looked for as far as this, m: a wall's normal from less is noise.
 const BASELINE: f64 = 0.2;
+/// Hits nearer to each other than this count once, cells.
+const SPACING_CELLS: f64 = 1.5;
 /// Deviation from a line, in sigmas, above which points are no wall.
 const STRAIGHT: f64 = 3.0;
 
@@ -71,7 +109,7 @@ impl ScanShape {
     }
 
     fn find_points(&mut self, config: &ParticleConfig, scan: &Scan, cells: f64) {
-        let spacing = config.map.resolution;
+        let spacing = SPACING_CELLS * config.map.resolution;
         let mut kept: Option<Vector2> = None;
         for k in 0..self.hits.len() {
             let hit = self.hits[k].1;
@@ -92,6 +130,8 @@ impl ScanShape {
             });
         }
         self.measure_spread();
+        self.groups.clear();
+        self.groups.extend(self.points.chunks(LANES).map(PointGroup::new));
     }
 
     /// The normal of the straight surface about hit `k`, if there is one.

@@ -1,8 +1,8 @@
 use super::{
     field::FieldModel,
     map::TileMap,
-    mask::Mask,
-    tile::{LOG_ODDS_UNIT, Nearest, TILE_BITS, Tile},
+    mask::{self, Mask},
+    tile::{LOG_ODDS_UNIT, Nearest, TILE_BITS, TILE_SIDE, Tile},
 };
 use crate::{MapperConfig, filter::ScanShape};
 use trundle_core::Pose2;
@@ -14,6 +14,8 @@ pub(crate) struct Brush {
     free: i8,
     high: i8,
     low: i8,
+    /// An obstacle is forgotten at these log-odds.
+    gone: i8,
     pub(crate) field: FieldModel,
 }
 
@@ -53,6 +55,13 @@ struct HitCell {
     count: f64,
 }
 
+/// What the rays of a scan did on their way.
+struct Cleared<'a> {
+    mask: &'a mut Mask,
+    removed: &'a mut Vec<(i32, i32)>,
+    frees: usize,
+}
+
 /// A beam that meets a cell of two hits more than this many cells before its end passes through a wall.
 const WALL_MARGIN: i64 = 4;
 
@@ -64,6 +73,7 @@ impl Brush {
             free: units(config.free),
             high: units(config.clamp_high),
             low: -units(config.clamp_low),
+            gone: (-2 * i16::from(units(config.free))).max(-i16::from(units(config.clamp_low)) + 1) as i8,
             field,
         }
     }
@@ -85,11 +95,12 @@ impl Brush {
         let mut drawn = Drawn { hits: scratch.hits.len(), ..Drawn::default() };
         let DrawScratch { mask, ends, hits, removed } = scratch;
         removed.clear();
+        let mut cleared = Cleared { mask, removed, frees: 0 };
         for end in ends.iter() {
-            let ray = Ray::new(origin, (end.x, end.y));
-            let solid = self.clear(map, mask, removed, ray, &mut drawn.frees);
+            let solid = self.clear(map, &mut cleared, Ray::new(origin, (end.x, end.y)));
             drawn.contradictions += usize::from(solid);
         }
+        drawn.frees = cleared.frees;
         if !removed.is_empty() {
             self.field.remove(map, removed);
         }
@@ -100,36 +111,53 @@ impl Brush {
     }
 
     /// Lowers the cells of a ray; whether it passed through a wall.
-    fn clear(
+    fn clear(&self, map: &mut TileMap, scratch: &mut Cleared<'_>, ray: Ray) -> bool {
+        if ray.steep {
+            self.clear_along::<true>(map, scratch, ray)
+        } else {
+            self.clear_along::<false>(map, scratch, ray)
+        }
+    }
+
+    fn clear_along<const STEEP: bool>(
         &self,
         map: &mut TileMap,
-        mask: &mut Mask,
-        removed: &mut Vec<(i32, i32)>,
+        cleared: &mut Cleared<'_>,
         mut ray: Ray,
-        frees: &mut usize,
     ) -> bool {
-        let wall = self.hit.saturating_mul(2);
+        let (free, low, wall) = (i16::from(self.free), i16::from(self.low), self.hit.saturating_mul(2));
         let mut solid = false;
         while ray.left > 0 {
             let tile_at = ray.tile();
             let tile = map.tile_mut(tile_at);
-            while ray.left > 0 && ray.tile() == tile_at {
-                let (x, y) = ray.cell();
-                if mask.set(x, y) {
-                    let place = Tile::place(x, y);
-                    let old = tile.log_odds[place];
-                    let new = old.saturating_sub(self.free).max(self.low);
-                    tile.log_odds[place] = new;
-                    *frees += 1;
-                    if old > 0 {
-                        solid |= old >= wall && ray.left > WALL_MARGIN;
-                        if new <= 0 && tile.nearest[place].is_own() {
-                            removed.push((x, y));
-                        }
+            let mask = cleared.mask.tile(tile_at);
+            let minor_tile = (ray.minor >> 32) as i32 >> TILE_BITS;
+            let (mut major, mut minor, mut steps) = (ray.major, ray.minor, 0);
+            for _ in 0..ray.steps_in_tile() {
+                let at = (minor >> 32) as i32;
+                if at >> TILE_BITS != minor_tile {
+                    break;
+                }
+                let (x, y) = if STEEP { (at, major) } else { (major, at) };
+                major += ray.step;
+                minor += ray.slope;
+                steps += 1;
+                if !mask::set(mask, x, y) {
+                    continue;
+                }
+                let place = Tile::place(x, y);
+                let old = tile.log_odds[place];
+                let new = (i16::from(old) - free).max(low) as i8;
+                tile.log_odds[place] = new;
+                cleared.frees += 1;
+                if old > self.gone {
+                    solid |= old >= wall && ray.left - steps > WALL_MARGIN;
+                    if new <= self.gone && tile.nearest[place].is_own() {
+                        cleared.removed.push((x, y));
                     }
                 }
-                ray.advance();
             }
+            (ray.major, ray.minor, ray.left) = (major, minor, ray.left - steps);
         }
         solid
     }
@@ -150,7 +178,8 @@ impl Brush {
             ((sum / hit.count - f64::from(cell) - 0.5) * f64::from(Nearest::PER_CELL)).round() as i32
         };
         let there = (offset(hit.sum.0, x), offset(hit.sum.1, y));
-        let own = if !before.is_none() && before.is_own() {
+        let was_own = before.is_own();
+        let own = if was_own {
             let visits = f64::from(old.max(0)) / f64::from(self.hit);
             let rate = (1.0 / (1.0 + visits)).max(MEAN_RATE);
             let mean =
@@ -159,7 +188,10 @@ impl Brush {
         } else {
             Nearest::own(there.0, there.1)
         };
-        if own != before {
+        tile.nearest[place] = own;
+        // Cells about it follow when it has moved by an eighth of a cell.
+        let eighths = |n: Nearest| (n.x >> 1, n.y >> 1);
+        if !was_own || eighths(own) != eighths(before) {
             self.field.place(map, hit.cell, own);
         }
     }
@@ -258,6 +290,14 @@ impl Ray {
     fn cell(&self) -> (i32, i32) {
         let minor = (self.minor >> 32) as i32;
         if self.steep { (minor, self.major) } else { (self.major, minor) }
+    }
+
+    /// How many steps there are until the longer axis leaves its tile, or the ray ends.
+    #[inline]
+    fn steps_in_tile(&self) -> i64 {
+        const MASK: i32 = TILE_SIDE as i32 - 1;
+        let within = self.major & MASK;
+        self.left.min(i64::from(if self.step > 0 { MASK - within + 1 } else { within + 1 }))
     }
 
     #[inline]

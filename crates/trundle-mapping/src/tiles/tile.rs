@@ -23,7 +23,7 @@ impl Nearest {
     /// Units a cell.
     pub(crate) const PER_CELL: i32 = 16;
     /// An obstacle point stays at most this far from the middle of its own cell, so that no neighbour's looks like it.
-    const OWN: i32 = 7;
+    pub(crate) const OWN: i32 = 7;
 
     pub(crate) fn is_none(self) -> bool {
         self.x == i8::MIN
