@@ -21,7 +21,7 @@ impl Paintings {
     pub(crate) fn new(solids: &[Solid], world_seed: u64) -> Self {
         let (firsts, of_solid) = share(solids);
         let texels: usize = firsts.iter().map(|&first| texels_of_solid(&solids[first])).sum();
-        let coarse = (texels as f64 / MOST_TEXELS as f64).sqrt().max(1.0);
+        let coarse = coarseness(texels);
         let bake = |&first: &usize| bake_solid(&solids[first], world_seed, first, coarse);
         Self { distinct: firsts.par_iter().map(bake).collect(), of_solid }
     }
@@ -39,6 +39,11 @@ impl Index<usize> for Paintings {
     fn index(&self, solid: usize) -> &Vec<Texture> {
         &self.distinct[self.of_solid[solid] as usize]
     }
+}
+
+/// How much wider texels must be so that there are at most [`MOST_TEXELS`].
+fn coarseness(texels: usize) -> f64 {
+    (texels as f64 / MOST_TEXELS as f64).sqrt().max(1.0)
 }
 
 /// Seed and size, exactly: what looks have in common that are compared.
@@ -82,7 +87,7 @@ fn size_bits(shape: &Shape) -> [u64; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::paint::Paint;
+    use crate::paint::{Paint, texels_of_face};
     use crate::world::Cuboid;
     use trundle_core::Vector3;
 
@@ -112,5 +117,18 @@ mod tests {
         }
         assert_ne!(paintings[5], paintings[6]);
         assert_ne!(paintings[0], Paintings::new(&solids, 2)[0], "another world");
+    }
+
+    #[test]
+    fn worlds_of_too_many_texels_get_coarser_ones() {
+        let texels = |coarse| {
+            let (columns, rows) = texels_of_face(Paint::Bricks, (8.0, 4.0), coarse);
+            columns * rows
+        };
+        assert_eq!(coarseness(1_000_000), 1.0);
+        // 100 walls, 8 x 4 m each, at 5 mm would be 128 million.
+        let coarse = coarseness(100 * texels(1.0));
+        let all = 100 * texels(coarse);
+        assert!((0.9..1.1).contains(&(all as f64 / MOST_TEXELS as f64)), "{all} texels");
     }
 }
