@@ -27,11 +27,13 @@
 //! ```
 //!
 //! Every room can be used alone: [`vision`] finds and matches features, [`slam`] tracks a camera, [`mapping`] turns
-//! depth into scans and scans into a grid, [`localization`] fuses, [`planning`] plans, [`control`] drives, [`sim`]
+//! depth into scans and scans into a grid, [`localization`] fuses, [`planning`] plans, [`control`] drives, [`docking`] settles in
+//! tight places, [`sim`]
 //! plays the world, [`eval`] judges, [`io`] reads and writes, [`viz`] draws.
 
 pub use trundle_control as control;
 pub use trundle_core as core;
+pub use trundle_docking as docking;
 pub use trundle_eval as eval;
 pub use trundle_io as io;
 pub use trundle_localization as localization;
