@@ -1,8 +1,9 @@
 use super::DepthNoise;
+use super::round::{nearest, nearest_f32};
 use crate::chance::{NormalTable, mix};
 use std::f64::consts::FRAC_PI_2;
 
-/// Entries of the tables over depth.
+/// Entries of the tables over depth, a power of two.
 const STEPS: usize = 1024;
 
 /// What a pixel's depth is measured from.
@@ -30,14 +31,15 @@ pub(super) struct DepthModel {
     lateral_px: f32,
     multi_path: f32,
     shadow_px_m: f32,
-    inverse_quantum: f32,
+    /// Disparity steps in a metre's inverse; 0 for time of flight.
+    disparities: f32,
     quantum: f32,
     /// Quanta a metre.
     quanta: f32,
     /// Table entries a metre.
     steps_a_metre: f32,
     /// Sigma without slant, m, and z^p, by depth.
-    by_depth: Box<[(f32, f32)]>,
+    by_depth: Box<[(f32, f32); STEPS]>,
     /// Slant term of sigma and probability of a grazing loss, by cosine of incidence in 255 steps.
     by_cosine: Box<[(f32, f32); 256]>,
 }
@@ -69,11 +71,11 @@ impl DepthModel {
             lateral_px: noise.lateral_px as f32,
             multi_path: noise.multi_path as f32,
             shadow_px_m: noise.shadow_px_m as f32,
-            inverse_quantum: noise.inverse_quantum as f32,
+            disparities: if noise.inverse_quantum > 0.0 { (1.0 / noise.inverse_quantum) as f32 } else { 0.0 },
             quantum: noise.quantum as f32,
             quanta: (1.0 / noise.quantum) as f32,
             steps_a_metre: steps_a_metre as f32,
-            by_depth: (0..STEPS).map(depth).collect(),
+            by_depth: Box::new(std::array::from_fn(depth)),
             by_cosine: Box::new(std::array::from_fn(cosine)),
         }
     }
@@ -106,7 +108,7 @@ impl DepthModel {
                 return 0.0;
             }
         }
-        let (slant, grazing_loss) = self.by_cosine[(truth.cosine * 255.0 + 0.5) as i32 as usize & 255];
+        let (slant, grazing_loss) = self.by_cosine[nearest(truth.cosine * 255.0) as usize & 255];
         let strength = truth.luminance * truth.cosine;
         let enough = self.weakest_return * z * z;
         if (grazing_loss > 0.0 || strength < enough)
@@ -114,13 +116,13 @@ impl DepthModel {
         {
             return 0.0;
         }
-        let step = ((z * self.steps_a_metre) as i32 as usize).min(STEPS - 1);
-        let (head_on, power) = self.by_depth[step];
+        let within = if z < self.farthest { z } else { self.farthest };
+        let (head_on, power) = self.by_depth[nearest(within * self.steps_a_metre) as usize & (STEPS - 1)];
         z += (head_on + slant * power) * normals.pick(bits, 0);
-        if self.inverse_quantum > 0.0 {
-            z = 1.0 / (((1.0 / z.max(1e-3)) / self.inverse_quantum).round().max(1.0) * self.inverse_quantum);
+        if self.disparities > 0.0 {
+            z = self.disparities / nearest_f32(self.disparities / z.max(1e-3)).max(1.0);
         }
-        let z = (z * self.quanta + 0.5) as i32 as f32 * self.quantum;
+        let z = nearest_f32(z * self.quanta) * self.quantum;
         if z >= self.nearest && z <= self.farthest { z } else { 0.0 }
     }
 

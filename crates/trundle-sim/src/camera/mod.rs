@@ -17,6 +17,7 @@ mod patch;
 mod pyramid;
 mod rays;
 mod renderer;
+mod round;
 mod sensor;
 mod shadow;
 mod surface;

@@ -88,15 +88,17 @@ impl RgbdSensor {
             multi_path::lengthen(view, y, self.depth.multi_path(), &mut scratch.lengthened);
             truth = &scratch.lengthened;
         }
-        let seen = truth.iter().zip(&view.color[row.clone()]).zip(&view.cosine[row.clone()]);
-        let said = depth.iter_mut().zip(color);
-        for (((((&z, &c), &cosine), &beyond), (depth, color)), pixel) in
-            seen.zip(&scratch.beyond).zip(said).zip(row.clone())
-        {
-            let bits = mix(key.wrapping_add((pixel as u64).wrapping_mul(GOLDEN)));
-            let truth = DepthTruth { depth: z, beyond, cosine, luminance: luminance(c) };
-            *depth = self.depth.measure(truth, bits, normals);
-            *color = self.tone.measure(c, bits, normals);
+        // Slices of one length: no bounds are checked within the loop.
+        let n = view.width;
+        let (truth, beyond) = (&truth[..n], &scratch.beyond[..n]);
+        let (colors, cosines) = (&view.color[row.clone()][..n], &view.cosine[row.clone()][..n]);
+        let (depth, color) = (&mut depth[..n], &mut color[..n]);
+        for x in 0..n {
+            let bits = mix(key.wrapping_add(((row.start + x) as u64).wrapping_mul(GOLDEN)));
+            let luminance = luminance(colors[x]);
+            let truth = DepthTruth { depth: truth[x], beyond: beyond[x], cosine: cosines[x], luminance };
+            depth[x] = self.depth.measure(truth, bits, normals);
+            color[x] = self.tone.measure(colors[x], bits, normals);
         }
         if self.depth.shadow_px_m() != 0.0 {
             shadow::cast_shadow(&view.depth[row], self.depth.shadow_px_m(), depth);
@@ -106,7 +108,8 @@ impl RgbdSensor {
 
 /// 0 to 1.
 fn luminance([r, g, b]: [u8; 3]) -> f32 {
-    (0.299 * f32::from(r) + 0.587 * f32::from(g) + 0.114 * f32::from(b)) / 255.0
+    // 0.299, 0.587 and 0.114 of 1024.
+    (i32::from(r) * 306 + i32::from(g) * 601 + i32::from(b) * 117) as f32 * (1.0 / (255.0 * 1024.0))
 }
 
 /// Stands for the depth of "nothing there", m.

@@ -1,4 +1,5 @@
 use super::ColorNoise;
+use super::round::nearest;
 use crate::chance::NormalTable;
 use std::sync::LazyLock;
 
@@ -23,7 +24,9 @@ impl Tone {
     pub(super) fn measure(&self, color: [u8; 3], bits: u64, normals: &NormalTable) -> [u8; 3] {
         let channel = |i: usize| {
             let (mean, sigma) = self.0[usize::from(color[i])];
-            (mean + sigma * normals.pick(bits, i as u32 + 1) + 0.5) as u8
+            let level = mean + sigma * normals.pick(bits, i as u32 + 1);
+            let level = if level > 0.0 { level } else { 0.0 };
+            nearest(if level < 255.0 { level } else { 255.0 }) as u8
         };
         [channel(0), channel(1), channel(2)]
     }

@@ -1,5 +1,6 @@
 //! Worlds from files: glTF scenes, and maps raised to walls.
 
+mod blocks;
 mod error;
 mod gltf;
 mod raised_map;

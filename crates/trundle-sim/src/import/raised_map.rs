@@ -1,3 +1,4 @@
+use super::blocks::{Block, blocks};
 use super::{ImportError, ImportFault};
 use crate::paint::{Finish, Paint};
 use crate::world::{Cuboid, Shape, Solid};
@@ -65,8 +66,7 @@ impl RaisedMap {
 
 /// The solids of a map: occupied cells as walls, floor (and ceiling) where the map knows anything, frame that of the map.
 ///
-/// Cells are merged into boxes greedily: the widest run of a row, then as many rows as it fits, O(cells). The true grid of
-/// the result is the map. `file` is for messages.
+/// Cells are merged into few boxes. The true grid of the result is the map. `file` is for messages.
 ///
 /// # Errors
 /// When an option is outside its range, the map knows no cell, or its textures would not fit in the memory allowed; the
@@ -103,35 +103,6 @@ fn raise(grid: &OccupancyGrid, options: &RaisedMap) -> Result<Vec<Solid>, Invali
         }
     }
     Ok(solids)
-}
-
-/// A rectangle of cells: first and one past the last.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Block {
-    cols: (usize, usize),
-    rows: (usize, usize),
-}
-
-fn blocks(grid: &OccupancyGrid) -> Vec<Block> {
-    let GridGeometry { width, height, .. } = *grid.geometry();
-    let mut open: Vec<bool> = grid.cells().iter().map(|&cell| cell == Cell::Occupied).collect();
-    let mut blocks = Vec::new();
-    for row in 0..height {
-        for col in 0..width {
-            if !open[row * width + col] {
-                continue;
-            }
-            let run = open[row * width + col..(row + 1) * width].iter().take_while(|&&open| open).count();
-            let is_open =
-                |row: usize| open[row * width + col..row * width + col + run].iter().all(|&open| open);
-            let end = (row..height).find(|&row| !is_open(row)).unwrap_or(height);
-            for row in row..end {
-                open[row * width + col..row * width + col + run].fill(false);
-            }
-            blocks.push(Block { cols: (col, col + run), rows: (row, end) });
-        }
-    }
-    blocks
 }
 
 /// Squares of the plane that hold a known cell, cut to the map.

@@ -65,18 +65,14 @@ impl OutlineIndex {
 
     /// The clearance of the nearest outline; infinite when there is none.
     pub(super) fn clearance(&self, robot: Region<'_>) -> f64 {
-        let (low, high) = robot.box_of_corners();
-        // No outline below a node can be nearer than the boxes are.
-        let bound = |node: &Node| {
-            let gap = (node.low - high).sup(&(low - node.high)).sup(&Vector2::zeros());
-            gap.norm() - node.radius - robot.radius
+        let walls = Walls::new(robot);
+        let bound = |at: u32| {
+            let node = &self.nodes[at as usize];
+            walls.gap_of_box(node.low, node.high) - node.radius - robot.radius
         };
         let mut best = f64::INFINITY;
-        let mut stack = [(0_u32, 0.0_f64); 64];
-        let mut depth = 0;
-        if let Some(root) = self.nodes.first() {
-            (stack[0], depth) = ((0, bound(root)), 1);
-        }
+        let mut stack = [(0_u32, f64::NEG_INFINITY); 64];
+        let mut depth = usize::from(!self.nodes.is_empty());
         while depth > 0 {
             depth -= 1;
             let (at, nearest) = stack[depth];
@@ -86,11 +82,13 @@ impl OutlineIndex {
             let node = &self.nodes[at as usize];
             if node.count > 0 {
                 for outline in (node.first..node.first + node.count).map(|i| self.outline(i as usize)) {
-                    best = best.min(outline.clearance(&robot));
+                    if walls.gap_of_corners(outline.corners) - outline.radius - robot.radius < best {
+                        best = best.min(outline.clearance(&robot));
+                    }
                 }
                 continue;
             }
-            let children = [at + 1, node.first].map(|child| (child, bound(&self.nodes[child as usize])));
+            let children = [at + 1, node.first].map(|child| (child, bound(child)));
             let [near, far] =
                 if children[0].1 <= children[1].1 { children } else { [children[1], children[0]] };
             (stack[depth], stack[depth + 1]) = (far, near);
@@ -105,6 +103,58 @@ impl OutlineIndex {
     }
 }
 
+/// Most sides of a robot that serve as bounds; any are right, more are tighter.
+const MOST_SIDES: usize = 8;
+
+/// Bounds stay this far, m, below what they bound, so that rounding does not matter.
+const SLACK: f64 = 1e-9;
+
+/// The box and the sides of a robot: lower bounds of the distance of whatever lies beyond one of them.
+struct Walls {
+    low: Vector2,
+    high: Vector2,
+    /// Outward normal of a side and its distance from the origin along it.
+    sides: [(Vector2, f64); MOST_SIDES],
+    count: usize,
+}
+
+impl Walls {
+    fn new(robot: Region<'_>) -> Self {
+        let (low, high) = robot.box_of_corners();
+        let mut walls = Self { low, high, sides: [(Vector2::zeros(), 0.0); MOST_SIDES], count: 0 };
+        if robot.corners.len() > 2 {
+            let next = robot.corners.iter().cycle().skip(1);
+            for (a, b) in robot.corners.iter().zip(next).take(MOST_SIDES) {
+                if let Some(out) = Vector2::new(b.y - a.y, a.x - b.x).try_normalize(0.0) {
+                    walls.sides[walls.count] = (out, out.dot(a));
+                    walls.count += 1;
+                }
+            }
+        }
+        walls
+    }
+
+    /// No point of a box is nearer than this, m.
+    fn gap_of_box(&self, low: Vector2, high: Vector2) -> f64 {
+        let (center, half) = ((low + high) / 2.0, (high - low) / 2.0);
+        self.beyond(low, high, |out| out.dot(&center) - out.abs().dot(&half))
+    }
+
+    /// No point of the hull of some corners is nearer than this, m.
+    fn gap_of_corners(&self, corners: &[Vector2]) -> f64 {
+        let (low, high) = Region { corners, radius: 0.0 }.box_of_corners();
+        let least = |out: &Vector2| corners.iter().map(|c| out.dot(c)).fold(f64::INFINITY, f64::min);
+        self.beyond(low, high, least)
+    }
+
+    /// The largest of the gap of the boxes and of how far beyond each side something begins: `least` of it along a normal.
+    fn beyond(&self, low: Vector2, high: Vector2, least: impl Fn(&Vector2) -> f64) -> f64 {
+        let gap = (low - self.high).sup(&(self.low - high)).sup(&Vector2::zeros()).norm();
+        let sides = self.sides[..self.count].iter().map(|(out, offset)| least(out) - offset);
+        (sides.fold(gap, f64::max) - SLACK).max(0.0)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -112,12 +162,12 @@ mod tests {
 
     type Raw = (Vec<(f64, f64)>, f64);
 
-    /// Points, segments and triangles; only points have a radius.
+    /// Points, segments and polygons; only points have a radius.
     fn any_outline() -> impl Strategy<Value = Raw> {
         let point = (-5.0..5.0, -5.0..5.0);
         prop_oneof![
             (point.clone(), 0.0..1.0).prop_map(|(p, r)| (vec![p], r)),
-            prop::collection::vec(point, 2..=3).prop_map(|corners| (corners, 0.0)),
+            prop::collection::vec(point, 2..=5).prop_map(|corners| (corners, 0.0)),
         ]
     }
 

@@ -13,7 +13,7 @@ impl Region<'_> {
     /// Metres between two regions; 0 when polygons overlap, less when it is their radii that overlap.
     pub(crate) fn clearance(&self, other: &Region<'_>) -> f64 {
         let overlap = holds(self.corners, other.corners[0]) || holds(other.corners, self.corners[0]);
-        let gap = if overlap { 0.0 } else { polygon_gap(self.corners, other.corners) };
+        let gap = if overlap { 0.0 } else { polygon_gap2(self.corners, other.corners).sqrt() };
         gap - self.radius - other.radius
     }
 
@@ -60,14 +60,19 @@ fn span_of_edge((a, b): Segment, low: f64, high: f64) -> Option<(f64, f64)> {
     Some((x0.min(x1), x0.max(x1)))
 }
 
-fn polygon_gap(a: &[Vector2], b: &[Vector2]) -> f64 {
-    let mut least = f64::INFINITY;
-    for a in edges(a) {
-        for b in edges(b) {
-            least = least.min(segment_gap(a, b));
-        }
+/// The squared gap of two convex polygons neither of which holds the other's first corner: that of a corner and a side, or 0
+/// where sides cross.
+fn polygon_gap2(a: &[Vector2], b: &[Vector2]) -> f64 {
+    if a.len() > 1 && b.len() > 1 && edges(a).any(|a| edges(b).any(|b| cross(a, b))) {
+        return 0.0;
     }
-    least
+    corner_gap2(a, b).min(corner_gap2(b, a))
+}
+
+/// The least squared distance of a corner of `a` from a side of `b`.
+fn corner_gap2(a: &[Vector2], b: &[Vector2]) -> f64 {
+    let to_sides = |corner: Vector2| edges(b).map(move |side| point_gap2(corner, side));
+    a.iter().flat_map(|&corner| to_sides(corner)).fold(f64::INFINITY, f64::min)
 }
 
 type Segment = (Vector2, Vector2);
@@ -83,23 +88,16 @@ fn holds(corners: &[Vector2], point: Vector2) -> bool {
     corners.len() > 2 && edges(corners).all(|(a, b)| (b - a).perp(&(point - a)) >= 0.0)
 }
 
-fn segment_gap(a: Segment, b: Segment) -> f64 {
-    if b.0 == b.1 {
-        return point_gap(b.0, a);
-    }
+fn cross(a: Segment, b: Segment) -> bool {
     let side = |s: Segment, p: Vector2| (s.1 - s.0).perp(&(p - s.0));
-    let crosses = |s: Segment, t: Segment| side(s, t.0) * side(s, t.1) < 0.0;
-    if crosses(a, b) && crosses(b, a) {
-        return 0.0;
-    }
-    point_gap(a.0, b).min(point_gap(a.1, b)).min(point_gap(b.0, a)).min(point_gap(b.1, a))
+    side(a, b.0) * side(a, b.1) < 0.0 && side(b, a.0) * side(b, a.1) < 0.0
 }
 
-fn point_gap(p: Vector2, (a, b): Segment) -> f64 {
+fn point_gap2(p: Vector2, (a, b): Segment) -> f64 {
     let along = b - a;
     let length2 = along.norm_squared();
     let t = if length2 > 0.0 { ((p - a).dot(&along) / length2).clamp(0.0, 1.0) } else { 0.0 };
-    (p - a - along * t).norm()
+    (p - a - along * t).norm_squared()
 }
 
 #[cfg(test)]

@@ -81,6 +81,7 @@ fn movers_are_met_where_they_stand() {
 }
 
 proptest! {
+    #![proptest_config(ProptestConfig { cases: 40, ..ProptestConfig::default() })]
     #[test]
     fn the_true_grid_and_clearance_agree(
         boxes in prop::collection::vec((-2.0..2.0_f64, -2.0..2.0_f64, 0.1..1.5_f64, 0.1..1.5_f64, -3.0..3.0_f64), 1..6),
