@@ -35,7 +35,7 @@ pub struct DockingConfig {
     pub position_tolerance: f64,
     /// An error of heading that counts as none, rad, 0.001 to 0.2. Default 1 deg.
     pub heading_tolerance: f64,
-    /// Nodes of the search for manoeuvres of three and more straight moves, 0 to 10^7. Default 6000 (ours: about 100 ms
+    /// Nodes of the search for manoeuvres of three and more straight moves, 0 to 10^7. Default 2500 (ours: a second
     /// at most; hard problems only).
     pub search_nodes: usize,
     /// Boxes of the search for a better bound on the time, 0 to 10^8. Default 400 (ours: a few ms).
@@ -57,7 +57,7 @@ impl Default for DockingConfig {
             max_distance: 5.0,
             position_tolerance: 0.01,
             heading_tolerance: 1_f64.to_radians(),
-            search_nodes: 6000,
+            search_nodes: 2500,
             bound_boxes: 400,
             gap: 0.01,
             paper: PaperConfig::default(),

@@ -2,7 +2,8 @@
 //!
 //! `cargo run --release -p trundle-docking --example corridor_bench -- --problems 5000`
 //!
-//! `--seed N`, `--file PATH` instead of a seed, `--write PATH` to keep the problems, `--boxes N` of the bound that judges.
+//! `--seed N`, `--file PATH` instead of a seed, `--write PATH` to keep the problems, `--boxes N` of the bound that judges,
+//! `--baselines N` problems for the slow ones, `--loops N` problems in closed loop with noise, `--slow` names slow ones.
 
 mod clock;
 mod dynamic_window;
@@ -20,11 +21,12 @@ use trundle_docking::{Certificate, Docker, DockingConfig, Method, MotionLimits, 
 
 fn main() {
     let problems = problems();
-    let mut rows = vec![optimal(&problems, number("--boxes", 20_000))];
+    let mut rows = vec![optimal(&problems, number("--boxes", 5000))];
     rows.push(by_paper(&problems));
-    rows.push(by_window(&problems));
-    rows.push(by_hybrid(&problems));
-    table::print(&rows, problems.len());
+    let few = &problems[..number("--baselines", 200).min(problems.len())];
+    rows.push(by_window(few));
+    rows.push(by_hybrid(few));
+    table::print(&rows);
     closed_loop(&problems, &rows[0], number("--loops", 500));
 }
 

@@ -37,18 +37,18 @@ impl Row {
 }
 
 /// Prints the rows; times are compared with those of the first row, problem by problem.
-pub fn print(rows: &[Row], count: usize) {
-    println!("{count} problems\n");
+pub fn print(rows: &[Row]) {
     println!(
-        "| method | settled | never (at 1 cm) | no answer | contact or missed | time / first row's, median (p95) | planning ms, median (p99, most) |"
+        "| method | problems | settled | never (at 1 cm) | no answer | contact or missed | time / first row's, median (p95) | planning ms, median (p99, most) |"
     );
-    println!("|---|---|---|---|---|---|---|");
+    println!("|---|---|---|---|---|---|---|---|");
     for row in rows {
         let pairs = row.times.iter().zip(&rows[0].times);
         let ratios: Vec<f64> = pairs.filter_map(|(a, b)| Some((*a)? / (*b)?)).collect();
+        let count = row.times.len();
         let settled = row.times.iter().flatten().count();
         println!(
-            "| {} | {settled} ({:.2} %) | {} ({}) | {} | {} | {:.3} ({:.3}) | {:.2} ({:.1}, {:.0}) |",
+            "| {} | {count} | {settled} ({:.2} %) | {} ({}) | {} | {} | {:.3} ({:.3}) | {:.2} ({:.1}, {:.0}) |",
             row.name,
             100.0 * settled as f64 / count as f64,
             row.never,

@@ -2,4 +2,5 @@
 
 mod closed_loop;
 mod contact;
+mod inputs;
 mod world;

@@ -1,0 +1,132 @@
+//! Bad input, hard input, and verdicts.
+
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use trundle_core::{Footprint, OccupancyGrid, Pose2, Vector2};
+use trundle_docking::corridor::{Problem, Scenario, generate};
+use trundle_docking::{Certificate, Docker, DockingConfig, Motion, Obstacle, Plan, Refusal, Scene, Space};
+
+fn at(x: f64, y: f64) -> Vector2 {
+    Vector2::new(x, y)
+}
+
+fn robot() -> Footprint {
+    Footprint::polygon([(0.3, 0.2), (-0.3, 0.2), (-0.3, -0.2), (0.3, -0.2)].map(|(x, y)| at(x, y)).to_vec())
+        .unwrap()
+}
+
+fn docker() -> Docker {
+    Docker::new(DockingConfig::default()).unwrap()
+}
+
+#[test]
+fn bad_input_is_refused_with_a_reason() {
+    let wall = Scene::new(&[Obstacle::Segment(at(0.25, -1.0), at(0.25, 1.0))]).unwrap();
+    let plan = |start, goal| docker().plan(&robot(), &wall, start, goal).unwrap_err();
+    let (here, there) = (Pose2::IDENTITY, Pose2::new(-0.5, 0.0, 0.0));
+    assert!(matches!(plan(here, there), Refusal::StartBlocked(by) if by.obstacle == 0));
+    assert!(matches!(plan(there, here), Refusal::GoalBlocked(_)));
+    let far = plan(there, Pose2::new(-50.0, 0.0, 0.0));
+    assert!(far.to_string().contains("plan a path there first"), "{far}");
+    assert!(matches!(plan(there, Pose2 { x: f64::NAN, ..there }), Refusal::Invalid(_)));
+}
+
+#[test]
+fn a_closed_wall_is_named_as_what_forbids_it() {
+    let wall = Obstacle::Segment(at(0.0, -3.0), at(0.0, 3.0));
+    let ends =
+        [(-3.0, -3.0, 3.0, -3.0), (3.0, -3.0, 3.0, 3.0), (3.0, 3.0, -3.0, 3.0), (-3.0, 3.0, -3.0, -3.0)];
+    let mut obstacles: Vec<Obstacle> =
+        ends.map(|(a, b, c, d)| Obstacle::Segment(at(a, b), at(c, d))).to_vec();
+    obstacles.push(wall);
+    let scene = Scene::new(&obstacles).unwrap();
+    let plan =
+        docker().plan(&robot(), &scene, Pose2::new(-0.6, 0.0, 0.0), Pose2::new(0.6, 0.0, 0.0)).unwrap();
+    let Plan::Impossible(impossible) = plan else { panic!("{plan:?}") };
+    assert_eq!((impossible.certificate, impossible.by.unwrap().obstacle), (Certificate::Never, 4));
+}
+
+/// A goal the other way round in a corridor too narrow to turn: impossible; where it widens far off, out of reach.
+#[test]
+fn a_corridor_too_narrow_to_turn_is_certified() {
+    let walls = [(-0.3, 0.3), (0.3, 0.3)].map(|(y, _)| Obstacle::Segment(at(-9.0, y), at(9.0, y)));
+    let scene = Scene::new(&walls).unwrap();
+    let plan = docker().plan(&robot(), &scene, Pose2::IDENTITY, Pose2::new(0.1, 0.0, 3.1415)).unwrap();
+    assert!(matches!(plan, Plan::Impossible(i) if i.certificate == Certificate::Never && i.by.is_some()));
+}
+
+#[test]
+fn the_default_method_solves_the_papers_scenarios_and_knows_how_well() {
+    for scenario in Scenario::ALL {
+        let Problem { footprint, start, goal, .. } = scenario.problem();
+        let plan = docker().plan(&footprint, &scenario.problem().scene().unwrap(), start, goal).unwrap();
+        let Plan::Found(solution) = plan else { panic!("{scenario:?}: {plan:?}") };
+        assert_eq!(
+            solution.manoeuvre.end().distance(&goal),
+            0.0_f64.max(solution.manoeuvre.end().distance(&goal).min(1e-9))
+        );
+        assert!(
+            solution.bound <= solution.manoeuvre.duration()
+                && solution.bound > 0.3 * solution.manoeuvre.duration()
+        );
+    }
+}
+
+/// Every manoeuvre ends exactly, keeps clear of everything, and is not slower than its bound allows.
+#[test]
+fn manoeuvres_are_free_and_end_exactly() {
+    let mut rng = ChaCha8Rng::seed_from_u64(4);
+    for i in 0..60 {
+        let problem = generate(format!("{i}"), &mut rng);
+        let scene = problem.scene().unwrap();
+        let Plan::Found(solution) =
+            docker().plan(&problem.footprint, &scene, problem.start, problem.goal).unwrap()
+        else {
+            continue;
+        };
+        let manoeuvre = &solution.manoeuvre;
+        assert!(
+            manoeuvre.end().distance(&problem.goal) < 1e-9
+                && (manoeuvre.end().theta - problem.goal.theta).abs() < 1e-9
+        );
+        assert!(solution.bound <= manoeuvre.duration() + 1e-9);
+        let mut space = Space::new(&problem.footprint, solution.margin, &scene);
+        for step in manoeuvre.steps() {
+            let free = match step.motion {
+                Motion::Turn(angle) => {
+                    let free = space.turn(&step.from);
+                    if angle > 0.0 { angle <= free.left + 1e-6 } else { -angle <= free.right + 1e-6 }
+                }
+                Motion::Drive(way) => {
+                    let free = space.drive(&step.from, way.abs() + 0.1);
+                    way <= free.ahead + 1e-6 && -way <= free.behind + 1e-6
+                }
+            };
+            assert!(free, "problem {i}: {step:?}");
+        }
+    }
+}
+
+#[test]
+fn a_grid_is_a_scene() {
+    let grid = OccupancyGrid::from_ascii(0.1, &"####################\n....................\n....................\n....................\n....................\n....................\n....................\n....................\n####################".replace('.', ".")).unwrap();
+    let scene = Scene::from_grid(&grid, at(1.0, 0.45), 3.0, false);
+    let plan = docker().plan(&robot(), &scene, Pose2::new(0.7, 0.4, 0.0), Pose2::new(0.9, 0.5, 0.0)).unwrap();
+    assert!(matches!(plan, Plan::Found(_)));
+}
+
+/// A hundred thousand points on two noisy walls.
+#[test]
+fn a_hundred_thousand_points_are_planned() {
+    let mut rng = ChaCha8Rng::seed_from_u64(6);
+    let mut point = |side: f64| {
+        Obstacle::Point(at(rng.random_range(-1.6..1.6), side * (0.42 + rng.random_range(0.0..0.02))))
+    };
+    let points: Vec<Obstacle> = (0..100_000).map(|i| point(if i % 2 == 0 { 1.0 } else { -1.0 })).collect();
+    let scene = Scene::new(&points).unwrap();
+    let began = std::time::Instant::now();
+    let plan =
+        docker().plan(&robot(), &scene, Pose2::new(0.0, -0.1, 0.1), Pose2::new(0.1, 0.12, 0.0)).unwrap();
+    eprintln!("100,000 points: {:.0} ms", began.elapsed().as_secs_f64() * 1e3);
+    assert!(matches!(plan, Plan::Found(_)));
+}
