@@ -100,7 +100,7 @@ fn measure(grid: &OccupancyGrid, pairs: &[(Pose2, Pose2)]) -> Vec<Row> {
         let by = |room: f64| shortest::shortest(&field, RADIUS + room, start.position(), goal.position());
         let (shortest, roomy) = (by(0.0), by(result.min_clearance.clamp(0.0, MARGIN)));
         let curves = result.curves().count();
-        Some(Row { start: *start, goal: *goal, ms: times[0], length: result.length, shortest, roomy, curves })
+        Some(Row { start: *start, goal: *goal, ms, length: result.length, shortest, roomy, curves })
     };
     pairs.iter().filter_map(ask).collect()
 }
