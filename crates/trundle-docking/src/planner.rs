@@ -92,7 +92,11 @@ impl Docker {
     ) -> Result<Plan, Refusal> {
         let most = self.checked(footprint, scene, &start, &goal)?;
         let task = self.task(start, goal);
-        let near = scene.around(task.center(), task.half() + footprint.circumscribed_radius() + 0.1);
+        let near = scene.around(
+            task.center(),
+            task.half() + footprint.circumscribed_radius() + 0.1,
+            &Hull::new(footprint, 0.0),
+        );
         let least = most.min(0.0);
         let mut plan = self.plan_with(footprint, &near, &task, most);
         for margin in [most / 3.0, least] {
@@ -152,7 +156,11 @@ impl Docker {
     ) -> Result<f64, Refusal> {
         let margin = self.checked(footprint, scene, &start, &goal)?;
         let task = self.task(start, goal);
-        let near = scene.around(task.center(), task.half() + footprint.circumscribed_radius() + 0.1);
+        let near = scene.around(
+            task.center(),
+            task.half() + footprint.circumscribed_radius() + 0.1,
+            &Hull::new(footprint, 0.0),
+        );
         let mut space = Space::new(footprint, margin, &near);
         Ok(optimal::bound(&task, &mut space, known, self.config.gap, self.config.bound_boxes))
     }

@@ -86,6 +86,22 @@ impl Hull {
         self.outer
     }
 
+    /// Whether it holds a right angle of more than a centimetre's reach about every point of its boundary: no corner is
+    /// sharp, and it is not slim.
+    pub fn is_blunt(&self) -> bool {
+        let n = self.edges.len();
+        let right = (0..n).all(|i| self.edges[i].normal.dot(&self.edges[(i + 1) % n].normal) >= -1e-9);
+        // Half of what a corner has before it meets a side that is not its own.
+        let reach = |corner: &Corner| {
+            let others = self.edges.iter().filter(|e| e.side.a != corner.at && e.side.b != corner.at);
+            others
+                .map(|e| e.side.distance(corner.at))
+                .chain(self.edges.iter().map(|e| (e.side.b - e.side.a).norm()))
+                .fold(f64::INFINITY, f64::min)
+        };
+        if n == 0 { self.radius > 0.03 } else { right && self.core.iter().all(|corner| reach(corner) > 0.03) }
+    }
+
     /// Whether a piece, given in the base frame, overlaps the hull.
     pub fn overlaps(&self, piece: &Segment) -> bool {
         let mut gap = f64::NEG_INFINITY;

@@ -41,6 +41,9 @@ impl Hull {
     /// Adds the headings at which a piece overlaps the hull. The piece is given relative to the base's origin, in the
     /// axes that headings count from. `angles` is scratch space.
     pub fn blocked_headings(&self, piece: &Segment, angles: &mut Vec<f64>, blocked: &mut Vec<Arc>) {
+        if piece.is_point() && piece.a.norm_squared() >= self.outer * self.outer {
+            return;
+        }
         let nearest = piece.distance(Vector2::zeros());
         if nearest >= self.outer {
             return;

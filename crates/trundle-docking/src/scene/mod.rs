@@ -2,6 +2,7 @@
 
 mod outline;
 mod points;
+mod thin;
 
 use crate::geometry::{Hull, Segment};
 use points::PointIndex;
@@ -94,8 +95,9 @@ impl Scene {
         Self { solids: solids.collect(), pieces, points: PointIndex::new(&[]) }
     }
 
-    /// The part of the scene within a box of half side `half` (m) about `center`.
-    pub fn around(&self, center: Vector2, half: f64) -> Self {
+    /// The part of the scene within a box of half side `half` (m) about `center`, without the points that no motion of
+    /// `hull` can touch first.
+    pub(crate) fn around(&self, center: Vector2, half: f64, hull: &Hull) -> Self {
         let pieces = self
             .pieces
             .iter()
@@ -110,7 +112,8 @@ impl Scene {
         });
         let near = |corners: &[Vector2]| corners.iter().any(|c| (c - center).amax() <= 2.0 * half);
         let solids = self.solids.iter().filter(|(corners, _)| near(corners) || holds(corners, center));
-        Self { pieces, points: PointIndex::new(&points), solids: solids.cloned().collect() }
+        let points = PointIndex::new(&thin::thin(points, hull));
+        Self { pieces, points, solids: solids.cloned().collect() }
     }
 
     /// Calls `visit` with every piece that reaches into a box about `center`.

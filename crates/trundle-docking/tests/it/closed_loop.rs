@@ -29,8 +29,8 @@ fn settles_under_noise() {
         motions += run.motions;
         if !run.settled || !run.within || run.contact {
             eprintln!(
-                "problem {count}: settled {} within {} contact {} motions {}",
-                run.settled, run.within, run.contact, run.motions
+                "problem {count}: {:.1} s, settled {} within {} contact {} motions {}",
+                run.time, run.settled, run.within, run.contact, run.motions
             );
         }
     }
