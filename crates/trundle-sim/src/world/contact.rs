@@ -7,7 +7,8 @@ use trundle_core::{Footprint, Invalid, Pose2, require_finite, require_in};
 /// What of a world a robot of some height can touch, seen from above: made once, asked often.
 ///
 /// Of solids the whole outline counts, of meshes the surface: a robot may stand in a ring of walls, and a closed shell
-/// touches it from within as from without. A query is exact and costs microseconds in a house of 100,000 triangles.
+/// touches it from within as from without. A query is exact and costs some ten microseconds in a house of
+/// 100,000 triangles.
 #[derive(Debug, Clone)]
 pub struct Obstacles {
     index: OutlineIndex,
