@@ -38,10 +38,10 @@ pub fn gltf(path: &Path, options: &GltfOptions) -> Result<Mesh, ImportError> {
     gltf_from_bytes(&file, &bytes, options, &|name| std::fs::read(folder.join(name)))
 }
 
-/// As [`gltf`], from the bytes of a file called `file` in messages; `resolve` fetches what the file names.
+/// As [`gltf()`], from the bytes of a file called `file` in messages; `resolve` fetches what the file names.
 ///
 /// # Errors
-/// As [`gltf`].
+/// As [`gltf()`].
 pub fn gltf_from_bytes(
     file: &str,
     bytes: &[u8],
