@@ -2,6 +2,7 @@ use super::eye::Eye;
 use super::footprint::Footprints;
 use super::lamps::Lamps;
 use super::patch::Patch;
+use super::rays::Rays;
 use super::tile::{COLUMNS, NOTHING, Row, Tile};
 use trundle_core::PinholeCamera;
 
@@ -51,6 +52,7 @@ impl Picture<'_> {
             for eye in self.eyes.iter().rev() {
                 eye.draw(self.camera, (left, top), &mut tile);
             }
+            let rays = self.eyes[0].rays(self.camera, left, top);
             for row in 0..rows {
                 let at = row * width + left;
                 let mut line = Band {
@@ -58,14 +60,14 @@ impl Picture<'_> {
                     color: &mut band.color[at..at + columns],
                     cosine: &mut band.cosine[at..at + columns],
                 };
-                self.shade(&tile, (left, top), row, &mut line);
+                self.shade(&tile, &rays, (left, top), row, &mut line);
             }
         }
     }
 
-    /// Fills in the row of a tile.
+    /// Fills in the row of a tile; `still` are the rays among what stands still.
     #[inline(always)]
-    fn shade(&self, tile: &Tile, (left, top): (usize, usize), row: usize, line: &mut Band) {
+    fn shade(&self, tile: &Tile, still: &Rays, (left, top): (usize, usize), row: usize, line: &mut Band) {
         let (inverse_depth, ids) = (&tile.inverse_depth[row], &tile.ids[row]);
         let length = self.lengths(left, top + row);
         let mut at = 0;
@@ -80,7 +82,7 @@ impl Picture<'_> {
             let is_alone = eye.is_curved(id);
             let end =
                 (at + 1..line.depth.len()).find(|&i| is_alone || ids[i] != id).unwrap_or(line.depth.len());
-            let rays = eye.rays(self.camera, left, top);
+            let rays = if eye.first_id == 0 { *still } else { eye.rays(self.camera, left, top) };
             let patch = eye.patch(&rays, self.lamps, id, (row, at, 1.0 / inverse_depth[at]));
             let seen = Footprints::new(&patch, inverse_depth, row, &length);
             for i in at..end {
@@ -125,4 +127,55 @@ fn color(patch: &Patch, seen: &Footprints, i: usize) -> [u8; 3] {
     }
     let near = patch.texture.sample([x - dx, y - dy], level);
     near.blend(patch.texture.sample([x + dx, y + dy], level), 128).dimmed(patch.light)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::paint::{Finish, Paint};
+    use crate::world::{Cuboid, Cylinder, Lights, Material, Mesh, Shape, Solid, Triangle, World};
+    use trundle_core::{ColorImage, Pose2, Pose3, Vector3};
+
+    fn world() -> World {
+        let cuboid =
+            Cuboid { center: Vector3::new(3.0, 0.5, 0.0), size: Vector3::new(1.0, 1.5, 1.0), yaw: 0.4 };
+        let cylinder = Cylinder { base: Vector3::new(2.5, -1.0, -1.0), radius: 0.4, height: 1.3 };
+        let finish = Finish::all(Paint::Bricks);
+        let solids = [Shape::Cuboid(cuboid), Shape::Cylinder(cylinder)]
+            .map(|shape| Solid { shape, finish: finish.clone() });
+        let positions =
+            (0..60).map(|i| [4.0 + (i % 7) as f32, (i % 5) as f32 - 2.0, (i % 3) as f32 - 1.0]).collect();
+        let uvs = (0..60).map(|i| [0.37 * i as f32, (i % 4) as f32]).collect();
+        let triangles = (0..58).map(|i| Triangle { corners: [i, i + 1, i + 2], material: 0 }).collect();
+        let picture = ColorImage::from_fn(37, 20, |x, y| [(x * 6) as u8, (y * 12) as u8, 77]);
+        let materials =
+            vec![Material { name: "picture".into(), color: [255, 200, 180], texture: Some(picture) }];
+        World::with_meshes(solids.to_vec(), vec![Mesh::new(positions, uvs, triangles, materials).unwrap()], 1)
+            .unwrap()
+    }
+
+    #[test]
+    fn the_wide_way_and_the_plain_way_give_the_same_bits() {
+        let camera = PinholeCamera::from_field_of_view((75, 8), (1.2, 0.3)).unwrap();
+        let (world, lamps) = (world(), Lamps::new(&Lights::default()));
+        // Looking along x: right is -y, down is -z.
+        let turn = nalgebra::Matrix3::new(0.0, 0.0, 1.0, -1.0, 0.0, 0.0, 0.0, -1.0, 0.0);
+        let pose = Pose3::from_matrix(turn, Vector3::new(0.1, 0.2, 0.3));
+        let eyes = [Eye::new(&world, Pose2::IDENTITY, &camera, &pose, 0)];
+        let picture = Picture { camera: &camera, eyes: &eyes, lamps: &lamps };
+        let drawn = |is_plain: bool| {
+            let (mut depth, mut color, mut cosine) = (vec![0.0; 600], vec![[0; 3]; 600], vec![0.0; 600]);
+            let mut band = Band { depth: &mut depth, color: &mut color, cosine: &mut cosine };
+            if is_plain {
+                picture.draw_plainly(0, &mut band)
+            } else {
+                picture.draw(0, &mut band)
+            }
+            let bits = |row: &[f32]| row.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
+            (bits(&depth), color, bits(&cosine))
+        };
+        let (wide, plain) = (drawn(false), drawn(true));
+        assert!(wide == plain);
+        assert!(wide.0.iter().filter(|&&depth| depth > 0).count() > 300);
+    }
 }

@@ -64,10 +64,12 @@ impl<'w> Eye<'w> {
     pub(super) fn rays(&self, camera: &PinholeCamera, left: usize, top: usize) -> Rays {
         let (x, y) = ((left as f64 - camera.cx()) / camera.fx(), (top as f64 - camera.cy()) / camera.fy());
         let [right, down, forward] = self.axes;
+        let start = |k: usize| (x * right[k] + y * down[k] + forward[k]) as f32;
+        let (per_column, per_row) = (1.0 / camera.fx(), 1.0 / camera.fy());
         Rays {
-            start: [0, 1, 2].map(|k| (x * right[k] + y * down[k] + forward[k]) as f32),
-            right: right.map(|r| (r / camera.fx()) as f32),
-            down: down.map(|d| (d / camera.fy()) as f32),
+            start: [start(0), start(1), start(2)],
+            right: single([right[0] * per_column, right[1] * per_column, right[2] * per_column]),
+            down: single([down[0] * per_row, down[1] * per_row, down[2] * per_row]),
         }
     }
 
@@ -78,8 +80,7 @@ impl<'w> Eye<'w> {
             return;
         }
         let rays = self.rays(camera, left, top);
-        let forward = self.axes[2].map(|x| x as f32);
-        let pyramid = Pyramid::new(&rays, self.apex.map(|x| x as f32), forward, self.extent);
+        let pyramid = Pyramid::new(&rays, single(self.apex), single(self.axes[2]), self.extent);
         self.draw_solids(&rays, &pyramid, tile);
         self.draw_triangles(&rays, &pyramid, tile);
     }
@@ -93,19 +94,18 @@ impl<'w> Eye<'w> {
 
     #[inline(always)]
     fn draw_solids(&self, rays: &Rays, pyramid: &Pyramid, tile: &mut Tile) {
-        let bvh = self.world.bvh();
-        bvh.walk(pyramid, tile.reach(), |leaf| {
-            let (first, end) = bvh.leaf(leaf);
-            for &solid in &bvh.items()[first..end] {
-                let form = &self.world.forms()[solid as usize];
-                let (origin, id) = (form.own(self.apex), self.first_id + 4 * solid);
-                match form.kind {
-                    Kind::Cuboid(half) => meet_cuboid(rays, form.axes, origin, half, id, tile),
-                    Kind::Cylinder(radius, height) => meet_cylinder(rays, origin, (radius, height), id, tile),
-                }
+        let (bvh, mut reach) = (self.world.bvh(), tile.reach());
+        let mut walk = bvh.walk();
+        while let Some(leaf) = walk.next(pyramid, reach) {
+            let solid = bvh.items()[bvh.leaf(leaf).0];
+            let form = &self.world.forms()[solid as usize];
+            let (origin, id) = (form.own(self.apex), self.first_id + 4 * solid);
+            match form.kind {
+                Kind::Cuboid(half) => meet_cuboid(rays, form.axes, origin, half, id, tile),
+                Kind::Cylinder(radius, height) => meet_cylinder(rays, origin, (radius, height), id, tile),
             }
-            tile.reach()
-        });
+            reach = tile.reach();
+        }
     }
 
     #[inline(always)]
@@ -113,13 +113,13 @@ impl<'w> Eye<'w> {
         let triangles = self.world.triangles();
         let first_id = self.first_id + 4 * self.world.solids().len() as u32;
         let mut reach = tile.reach();
-        triangles.bvh().walk(pyramid, reach, |leaf| {
+        let mut walk = triangles.bvh().walk();
+        while let Some(leaf) = walk.next(pyramid, reach) {
             let block = triangles.block(leaf);
             if meet_block(rays, self.apex, block, first_id + block.first, 1.0 / reach, tile) {
                 reach = tile.reach();
             }
-            reach
-        });
+        }
     }
 }
 
@@ -141,4 +141,9 @@ fn window(camera_from_own: &Pose3, camera: &PinholeCamera, low: Vector3, high: V
         }
     }
     window
+}
+
+#[inline(always)]
+pub(super) fn single(v: [f64; 3]) -> [f32; 3] {
+    [v[0] as f32, v[1] as f32, v[2] as f32]
 }

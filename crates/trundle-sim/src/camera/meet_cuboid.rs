@@ -1,5 +1,5 @@
 use super::rays::{Linear, Rays};
-use super::tile::{COLUMNS, ROWS, Tile};
+use super::tile::{COLUMNS, ROWS, Tile, larger, mask, smaller};
 
 /// Keeps the faces of a box where they are nearest; `origin` is the camera's centre in the box's frame, `rays` are in the frame
 /// in which `axes` are the box's. Of the id the last two bits become the axis of the face.
@@ -18,7 +18,8 @@ pub(super) fn meet_cuboid(
     let mut near = [Linear::constant(f32::INFINITY); 3];
     let mut far = [Linear::constant(f32::NEG_INFINITY); 6];
     for k in 0..3 {
-        let along = rays.along(axes[k].map(|x| x as f32));
+        let axis = [axes[k][0] as f32, axes[k][1] as f32, axes[k][2] as f32];
+        let along = rays.along(axis);
         let (high, low) =
             (along.times(inverse(half[k] - origin[k])), along.times(inverse(-half[k] - origin[k])));
         (far[k], far[k + 3]) = (high, low);
@@ -28,23 +29,27 @@ pub(super) fn meet_cuboid(
             (near[k], far[k + 3]) = (low, high);
         }
     }
+    let [x, y, z] = near;
+    let [f0, f1, f2, f3, f4, f5] = far;
     for row in 0..ROWS {
-        let (near, far) = (near.map(|n| n.row(row)), far.map(|f| f.row(row)));
+        let (x, y, z) = (x.row(row), y.row(row), z.row(row));
+        let (f0, f1, f2) = (f0.row(row), f1.row(row), f2.row(row));
+        let (f3, f4, f5) = (f3.row(row), f4.row(row), f5.row(row));
+        let (mut entries, mut is_met, mut ids) = ([0.0; COLUMNS], [0; COLUMNS], [0; COLUMNS]);
         for i in 0..COLUMNS {
-            let (mut entry, mut axis) = (near[0][i], 0);
-            for k in 1..3 {
-                axis = if near[k][i] < entry { k as u32 } else { axis };
-                entry = if near[k][i] < entry { near[k][i] } else { entry };
-            }
-            let exit =
-                far.iter().fold(f32::NEG_INFINITY, |exit, far| if far[i] > exit { far[i] } else { exit });
-            // From inside there is no entry: infinite.
-            tile.keep(row, i, entry, (entry >= exit) & (entry < f32::INFINITY), id + axis);
+            let entry = smaller(smaller(x[i], y[i]), z[i]);
+            let exit = larger(larger(larger(f0[i], f1[i]), larger(f2[i], f3[i])), larger(f4[i], f5[i]));
+            // Of equal axes the first. From inside there is no entry: infinite.
+            ids[i] = id + (mask(x[i] > entry) & (1 + (mask(y[i] > entry) & 1)));
+            is_met[i] = mask(entry >= exit) & mask(entry < f32::INFINITY);
+            entries[i] = entry;
         }
+        tile.keep(row, &entries, &is_met, &ids);
     }
 }
 
 /// 1 / x, finite.
+#[inline(always)]
 fn inverse(x: f64) -> f32 {
     (1.0 / x.abs().max(1e-9).copysign(x)) as f32
 }

@@ -1,5 +1,5 @@
 use super::rays::{Linear, Rays};
-use super::tile::{COLUMNS, ROWS, Tile};
+use super::tile::{COLUMNS, ROWS, Tile, larger, mask};
 
 /// Parts of a cylinder in the last two bits of an id.
 pub(super) const SIDE: u32 = 0;
@@ -20,7 +20,7 @@ pub(super) fn meet_cylinder(
 ) {
     let outside = o[0] * o[0] + o[1] * o[1] - radius * radius;
     let inverse = if outside > 0.0 { (1.0 / outside.max(1e-12)) as f32 } else { 0.0 };
-    let [x, y, z] = o.map(|x| x as f32);
+    let (x, y, z) = (o[0] as f32, o[1] as f32, o[2] as f32);
     let (radius, height) = (radius as f32, height as f32);
     // From between its lids neither is seen.
     let lid_factor = match z {
@@ -28,23 +28,28 @@ pub(super) fn meet_cylinder(
         z if z < 0.0 => 1.0 / -z,
         _ => 0.0,
     };
-    let axes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|axis| rays.along(axis));
+    let axes = [rays.along([1.0, 0.0, 0.0]), rays.along([0.0, 1.0, 0.0]), rays.along([0.0, 0.0, 1.0])];
     let across = Linear {
         start: x * axes[1].start - y * axes[0].start,
         right: x * axes[1].right - y * axes[0].right,
         down: x * axes[1].down - y * axes[0].down,
     };
     for row in 0..ROWS {
-        let ([dx, dy, dz], across) = (axes.map(|d| d.row(row)), across.row(row));
+        let (dx, dy, dz, across) = (axes[0].row(row), axes[1].row(row), axes[2].row(row), across.row(row));
+        let (mut sides, mut is_side) = ([0.0; COLUMNS], [0; COLUMNS]);
+        let (mut lids, mut is_lid) = ([0.0; COLUMNS], [0; COLUMNS]);
         for i in 0..COLUMNS {
             let root2 = (dx[i] * dx[i] + dy[i] * dy[i]) * radius * radius - across[i] * across[i];
-            let root = (if root2 > 0.0 { root2 } else { 0.0 }).sqrt();
-            let side = (root - (x * dx[i] + y * dy[i])) * inverse;
+            let side = (larger(root2, 0.0).sqrt() - (x * dx[i] + y * dy[i])) * inverse;
             let rise = z * side + dz[i];
-            tile.keep(row, i, side, (root2 >= 0.0) & (rise >= 0.0) & (rise <= height * side), id + SIDE);
+            is_side[i] = mask(root2 >= 0.0) & mask(rise >= 0.0) & mask(rise <= height * side);
+            sides[i] = side;
             let lid = dz[i] * lid_factor;
             let (u, v) = (x * lid + dx[i], y * lid + dy[i]);
-            tile.keep(row, i, lid, u * u + v * v <= radius * radius * lid * lid, id + LID);
+            is_lid[i] = mask(u * u + v * v <= radius * radius * lid * lid);
+            lids[i] = lid;
         }
+        tile.keep(row, &sides, &is_side, &[id + SIDE; COLUMNS]);
+        tile.keep(row, &lids, &is_lid, &[id + LID; COLUMNS]);
     }
 }

@@ -1,5 +1,5 @@
 use super::rays::{Linear, Rays};
-use super::tile::{COLUMNS, ROWS, Tile};
+use super::tile::{COLUMNS, ROWS, Tile, mask, smaller};
 use crate::world::{BLOCK, Block};
 
 /// Keeps the triangles of a block where they are nearest; `apex` is the camera's centre in their frame, ids are `id` and what
@@ -21,25 +21,32 @@ pub(super) fn meet_block(
     let setups = Setups::new(rays, apex, block, floor);
     let mut is_changed = false;
     for lane in 0..BLOCK {
-        if setups.is_seen[lane] {
+        if setups.is_seen[lane] != 0 {
             is_changed = true;
-            meet_one(setups.functions.map(|f| f.lane(lane)), id + lane as u32, tile);
+            let [a, b, c, inverse_depth] = &setups.functions;
+            meet_one(a.of(lane), b.of(lane), c.of(lane), inverse_depth.of(lane), id + lane as u32, tile);
         }
     }
     is_changed
 }
 
 #[inline(always)]
-fn meet_one([a, b, c, inverse_depth]: [Linear; 4], id: u32, tile: &mut Tile) {
-    let mut is_empty = [false; ROWS];
-    for (row, is_empty) in is_empty.iter_mut().enumerate() {
-        *is_empty = (a.most_in_row(row) < 0.0) | (b.most_in_row(row) < 0.0) | (c.most_in_row(row) < 0.0);
+fn meet_one(a: Linear, b: Linear, c: Linear, inverse_depth: Linear, id: u32, tile: &mut Tile) {
+    let mut is_empty = [0; ROWS];
+    for row in 0..ROWS {
+        is_empty[row] =
+            mask(a.most_in_row(row) < 0.0) | mask(b.most_in_row(row) < 0.0) | mask(c.most_in_row(row) < 0.0);
     }
-    for row in (0..ROWS).filter(|&row| !is_empty[row]) {
-        let (a, b, c, w) = (a.row(row), b.row(row), c.row(row), inverse_depth.row(row));
-        for i in 0..COLUMNS {
-            tile.keep(row, i, w[i], (a[i] >= 0.0) & (b[i] >= 0.0) & (c[i] >= 0.0), id);
+    for row in 0..ROWS {
+        if is_empty[row] != 0 {
+            continue;
         }
+        let (a, b, c, w) = (a.row(row), b.row(row), c.row(row), inverse_depth.row(row));
+        let mut is_met = [0; COLUMNS];
+        for i in 0..COLUMNS {
+            is_met[i] = mask(smaller(smaller(a[i], b[i]), c[i]) >= 0.0);
+        }
+        tile.keep(row, &w, &is_met, &[id; COLUMNS]);
     }
 }
 
@@ -55,7 +62,7 @@ impl Functions {
     const ZERO: Self = Self { start: [0.0; BLOCK], right: [0.0; BLOCK], down: [0.0; BLOCK] };
 
     #[inline(always)]
-    fn lane(&self, lane: usize) -> Linear {
+    fn of(&self, lane: usize) -> Linear {
         Linear { start: self.start[lane], right: self.right[lane], down: self.down[lane] }
     }
 
@@ -70,32 +77,43 @@ impl Functions {
 /// Of each triangle the three edges' functions, positive inside, and the inverse depth.
 struct Setups {
     functions: [Functions; 4],
-    is_seen: [bool; BLOCK],
+    /// All bits set where a triangle may be seen in the tile.
+    is_seen: [u32; BLOCK],
 }
 
 impl Setups {
     #[inline(always)]
-    fn new(rays: &Rays, apex: [f64; 3], block: &Block, floor: f32) -> Self {
-        let mut setups = Self { functions: [Functions::ZERO; 4], is_seen: [false; BLOCK] };
-        for lane in 0..BLOCK {
-            let corner = |i: usize| [0, 1, 2].map(|k| f64::from(block.corners[i][k][lane]) - apex[k]);
-            let (a, b, c) = (corner(0), corner(1), corner(2));
-            let normals = [cross(b, c), cross(c, a), cross(a, b)];
-            let volume = a[0] * normals[0][0] + a[1] * normals[0][1] + a[2] * normals[0][2];
+    fn new(rays: &Rays, o: [f64; 3], block: &Block, floor: f32) -> Self {
+        let [mut edge_bc, mut edge_ca, mut edge_ab, mut inverse_depth] = [Functions::ZERO; 4];
+        let mut is_seen = [0; BLOCK];
+        let [a, b, c] = &block.corners;
+        for i in 0..BLOCK {
+            let a = [f64::from(a[0][i]) - o[0], f64::from(a[1][i]) - o[1], f64::from(a[2][i]) - o[2]];
+            let b = [f64::from(b[0][i]) - o[0], f64::from(b[1][i]) - o[1], f64::from(b[2][i]) - o[2]];
+            let c = [f64::from(c[0][i]) - o[0], f64::from(c[1][i]) - o[1], f64::from(c[2][i]) - o[2]];
+            let (bc, ca, ab) = (cross(b, c), cross(c, a), cross(a, b));
+            let volume = a[0] * bc[0] + a[1] * bc[1] + a[2] * bc[2];
             let sign = if volume < 0.0 { -1.0 } else { 1.0 };
-            let plane = [0, 1, 2].map(|k| (normals[0][k] + normals[1][k] + normals[2][k]) / volume);
-            let mut is_seen = volume != 0.0;
-            for (i, normal) in normals.iter().enumerate() {
-                let edge = rays.along([0, 1, 2].map(|k| (sign * normal[k]) as f32));
-                is_seen &= edge.most() >= 0.0;
-                setups.functions[i].set(lane, edge);
-            }
-            let inverse_depth = rays.along(plane.map(|x| x as f32));
-            is_seen &= inverse_depth.most() > floor;
-            setups.functions[3].set(lane, inverse_depth);
-            setups.is_seen[lane] = is_seen;
+            let inverse = 1.0 / volume;
+            let bc_along = rays.along([(sign * bc[0]) as f32, (sign * bc[1]) as f32, (sign * bc[2]) as f32]);
+            let ca_along = rays.along([(sign * ca[0]) as f32, (sign * ca[1]) as f32, (sign * ca[2]) as f32]);
+            let ab_along = rays.along([(sign * ab[0]) as f32, (sign * ab[1]) as f32, (sign * ab[2]) as f32]);
+            let plane = rays.along([
+                ((bc[0] + ca[0] + ab[0]) * inverse) as f32,
+                ((bc[1] + ca[1] + ab[1]) * inverse) as f32,
+                ((bc[2] + ca[2] + ab[2]) * inverse) as f32,
+            ]);
+            is_seen[i] = mask(bc_along.most() >= 0.0)
+                & mask(ca_along.most() >= 0.0)
+                & mask(ab_along.most() >= 0.0)
+                & mask(plane.most() > floor)
+                & mask(volume != 0.0);
+            edge_bc.set(i, bc_along);
+            edge_ca.set(i, ca_along);
+            edge_ab.set(i, ab_along);
+            inverse_depth.set(i, plane);
         }
-        setups
+        Self { functions: [edge_bc, edge_ca, edge_ab, inverse_depth], is_seen }
     }
 }
 

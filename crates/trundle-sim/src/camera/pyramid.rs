@@ -40,39 +40,31 @@ impl Probe for Pyramid {
     /// Depths along the optical axis.
     #[inline(always)]
     fn distances(&self, node: &Node) -> [f32; WIDTH] {
-        let from_apex = |bounds: &[[f32; WIDTH]; 3]| {
-            let mut from_apex = [[0.0; WIDTH]; 3];
-            for k in 0..3 {
-                for i in 0..WIDTH {
-                    from_apex[k][i] = bounds[k][i] - self.apex[k];
-                }
-            }
-            from_apex
-        };
-        let (low, high) = (from_apex(&node.low), from_apex(&node.high));
-        // Most of a plane's function over each box.
-        let most = |normal: [f32; 3]| {
-            let corner = [0, 1, 2].map(|k| if normal[k] > 0.0 { &high[k] } else { &low[k] });
-            let mut most = [0.0; WIDTH];
-            for i in 0..WIDTH {
-                most[i] = normal[0] * corner[0][i] + normal[1] * corner[1][i] + normal[2] * corner[2][i];
-            }
-            most
-        };
-        let nearest = most(self.axis.map(|x| -x));
-        let farthest = most(self.axis);
+        let (apex, axis, slack) = (self.apex, self.axis, self.slack);
+        let [(left, left_slack), (right, right_slack), (top, top_slack), (bottom, bottom_slack)] = self.sides;
         let mut distances = [0.0; WIDTH];
         for i in 0..WIDTH {
-            let depth = -nearest[i] - self.slack;
+            let low = [node.low[0][i] - apex[0], node.low[1][i] - apex[1], node.low[2][i] - apex[2]];
+            let high = [node.high[0][i] - apex[0], node.high[1][i] - apex[1], node.high[2][i] - apex[2]];
+            let depth = -most([-axis[0], -axis[1], -axis[2]], low, high) - slack;
+            let is_met = (most(axis, low, high) + slack > 0.0)
+                & (most(left, low, high) + left_slack >= 0.0)
+                & (most(right, low, high) + right_slack >= 0.0)
+                & (most(top, low, high) + top_slack >= 0.0)
+                & (most(bottom, low, high) + bottom_slack >= 0.0);
             let depth = if depth > 0.0 { depth } else { 0.0 };
-            distances[i] = if farthest[i] + self.slack > 0.0 { depth } else { f32::INFINITY };
-        }
-        for (normal, slack) in &self.sides {
-            let most = most(*normal);
-            for i in 0..WIDTH {
-                distances[i] = if most[i] + slack >= 0.0 { distances[i] } else { f32::INFINITY };
-            }
+            distances[i] = if is_met { depth } else { f32::INFINITY };
         }
         distances
     }
+}
+
+/// The most of `normal . place` over a box.
+#[inline(always)]
+fn most(normal: [f32; 3], low: [f32; 3], high: [f32; 3]) -> f32 {
+    let part = |k: usize| {
+        let (a, b) = (normal[k] * low[k], normal[k] * high[k]);
+        if a > b { a } else { b }
+    };
+    part(0) + part(1) + part(2)
 }

@@ -30,7 +30,8 @@ impl Rays {
 
     #[inline(always)]
     pub(super) fn at(&self, row: usize, column: usize) -> [f32; 3] {
-        [0, 1, 2].map(|k| self.start[k] + row as f32 * self.down[k] + column as f32 * self.right[k])
+        let part = |k: usize| self.start[k] + row as f32 * self.down[k] + column as f32 * self.right[k];
+        [part(0), part(1), part(2)]
     }
 }
 
@@ -55,8 +56,8 @@ impl Linear {
     pub(super) fn row(&self, row: usize) -> Row<f32> {
         let left = self.left(row);
         let mut values = [0.0; COLUMNS];
-        for (column, value) in values.iter_mut().enumerate() {
-            *value = left + column as f32 * self.right;
+        for column in 0..COLUMNS {
+            values[column] = left + column as f32 * self.right;
         }
         values
     }

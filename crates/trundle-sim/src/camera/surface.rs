@@ -1,4 +1,4 @@
-use super::eye::Eye;
+use super::eye::{Eye, single};
 use super::lamps::Lamps;
 use super::meet_cylinder::LID;
 use super::patch::{Patch, Plane};
@@ -43,11 +43,16 @@ impl<'w> Eye<'w> {
     #[inline(always)]
     fn patch_of_triangle(&self, rays: &Rays, lamps: &Lamps, triangle: usize) -> Patch<'w> {
         let surface = self.world.triangles().surface(triangle);
-        let to_apex = [0, 1, 2].map(|k| self.apex[k] as f32 - surface.corner[k]);
+        let ([x, y, z], corner) = (single(self.apex), surface.corner);
+        let to_apex = [x - corner[0], y - corner[1], z - corner[2]];
         let start =
             [surface.uv[0] + dot(surface.across, to_apex), surface.uv[1] + dot(surface.down, to_apex)];
         let sign = if dot(surface.normal, to_apex) < 0.0 { -1.0 } else { 1.0 };
-        let light = lamps.on(self.in_stage(surface.normal.map(|n| sign * n)));
+        let light = lamps.on(self.in_stage([
+            sign * surface.normal[0],
+            sign * surface.normal[1],
+            sign * surface.normal[2],
+        ]));
         let plane = Plane { normal: surface.normal, across: surface.across, down: surface.down, start };
         Patch::new(rays, &plane, &self.pictures[surface.material as usize], light)
     }
@@ -64,16 +69,18 @@ impl<'w> Eye<'w> {
 /// down; on the lids u is x, and v runs against y on top.
 #[inline(always)]
 fn face_of_cuboid(form: &Form, apex: [f64; 3], half: [f64; 3], axis: usize) -> (usize, Plane) {
-    let own = form.own(apex).map(|x| x as f32);
-    let half = half.map(|x| x as f32);
+    let (own, half) = (single(form.own(apex)), single(half));
     let sign = own[axis].signum();
     let (u, v) = match axis {
         0 => ((1, sign), (2, -1.0)),
         1 => ((0, -sign), (2, -1.0)),
         _ => ((0, 1.0), (1, -sign)),
     };
-    let along = |(k, sign): (usize, f32)| form.axes[k].map(|x| sign * x as f32);
-    let start = [u, v].map(|(k, sign)| half[k] + sign * own[k]);
+    let along = |(k, sign): (usize, f32)| {
+        let axis = single(form.axes[k]);
+        [sign * axis[0], sign * axis[1], sign * axis[2]]
+    };
+    let start = [half[u.0] + u.1 * own[u.0], half[v.0] + v.1 * own[v.0]];
     let plane = Plane { normal: along((axis, sign)), across: along(u), down: along(v), start };
     (2 * axis + usize::from(sign < 0.0), plane)
 }
@@ -86,7 +93,7 @@ fn face_of_cylinder(
     ray: [f32; 3],
     depth: f32,
 ) -> (usize, Plane) {
-    let own = own.map(|x| x as f32);
+    let own = single(own);
     let (radius, height) = (radius as f32, height as f32);
     if part == LID as usize {
         let sign = if own[2] > height / 2.0 { 1.0 } else { -1.0 };
@@ -98,7 +105,7 @@ fn face_of_cylinder(
         };
         return (if sign > 0.0 { 1 } else { 2 }, plane);
     }
-    let [x, y, z] = [0, 1, 2].map(|k| own[k] + depth * ray[k]);
+    let (x, y, z) = (own[0] + depth * ray[0], own[1] + depth * ray[1], own[2] + depth * ray[2]);
     let (x, y) = (x / radius, y / radius);
     let uv = [(y.atan2(x) + std::f32::consts::PI) * radius, height - z];
     (0, Plane::through(uv, ray, depth, [x, y, 0.0], [-y, x, 0.0], [0.0, 0.0, -1.0]))

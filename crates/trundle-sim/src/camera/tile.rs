@@ -36,21 +36,51 @@ impl Tile {
     /// Depth of the farthest pixel, m; infinite while one sees nothing.
     #[inline(always)]
     pub(super) fn reach(&self) -> f32 {
-        let mut least = [f32::INFINITY; COLUMNS];
-        for row in &self.inverse_depth {
-            for (least, &w) in least.iter_mut().zip(row) {
-                *least = if w < *least { w } else { *least };
+        let mut least = self.inverse_depth[0];
+        for row in 1..ROWS {
+            for i in 0..COLUMNS {
+                let w = self.inverse_depth[row][i];
+                least[i] = if w < least[i] { w } else { least[i] };
             }
         }
-        1.0 / least.iter().fold(f32::INFINITY, |a, &b| if b < a { b } else { a })
+        // Halves, so that this is SIMD too.
+        let mut width = COLUMNS / 2;
+        while width > 0 {
+            for i in 0..width {
+                least[i] = if least[i + width] < least[i] { least[i + width] } else { least[i] };
+            }
+            width /= 2;
+        }
+        1.0 / least[0]
     }
 
-    /// Keeps what a pixel meets if it is nearer than what it sees.
+    /// Keeps in a row what is nearer than what is known: where `is_met` has all bits set.
     #[inline(always)]
-    pub(super) fn keep(&mut self, row: usize, column: usize, inverse_depth: f32, is_met: bool, id: u32) {
-        let (w, known) = (&mut self.inverse_depth[row][column], &mut self.ids[row][column]);
-        let is_nearer = is_met & (inverse_depth > *w);
-        *w = if is_nearer { inverse_depth } else { *w };
-        *known = if is_nearer { id } else { *known };
+    pub(super) fn keep(&mut self, row: usize, inverse_depth: &Row<f32>, is_met: &Row<u32>, id: &Row<u32>) {
+        let (known, ids) = (&mut self.inverse_depth[row], &mut self.ids[row]);
+        for i in 0..COLUMNS {
+            let nearer = f32::from_bits(inverse_depth[i].to_bits() & is_met[i]);
+            // Written so that it becomes a plain store: masked ones are slow.
+            ids[i] ^= (ids[i] ^ id[i]) & mask(nearer > known[i]);
+            known[i] = larger(nearer, known[i]);
+        }
     }
+}
+
+/// All bits of a truth: with these, no compiler makes branches of what shall be SIMD.
+#[inline(always)]
+pub(super) fn mask(is_true: bool) -> u32 {
+    u32::from(is_true).wrapping_neg()
+}
+
+/// `f32::min` without its care for NaN, which costs instructions.
+#[inline(always)]
+pub(super) fn smaller(a: f32, b: f32) -> f32 {
+    if a < b { a } else { b }
+}
+
+/// `f32::max` without its care for NaN, which costs instructions.
+#[inline(always)]
+pub(super) fn larger(a: f32, b: f32) -> f32 {
+    if a > b { a } else { b }
 }

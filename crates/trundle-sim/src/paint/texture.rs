@@ -121,7 +121,8 @@ impl Texture {
     /// The same place in the rectangle itself.
     #[inline(always)]
     fn wrapped(&self, place: [f32; 2]) -> [f32; 2] {
-        [0, 1].map(|k| place[k] - (place[k] / self.size[k]).floor() * self.size[k])
+        let inside = |k: usize| place[k] - (place[k] / self.size[k]).floor() * self.size[k];
+        [inside(0), inside(1)]
     }
 
     /// Between the four texels around a point, in sixteenths of a texel.

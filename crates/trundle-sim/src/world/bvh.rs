@@ -63,32 +63,44 @@ impl Bvh {
         &self.items
     }
 
-    /// Calls `visit` with every leaf that `probe` meets nearer than `reach`, roughly the nearest first. `visit` says how
-    /// far to look from then on.
+    /// Begins to look for leaves.
     #[inline(always)]
-    pub(crate) fn walk(&self, probe: &impl Probe, mut reach: f32, mut visit: impl FnMut(usize) -> f32) {
-        if self.nodes.is_empty() {
-            return;
-        }
+    pub(crate) fn walk(&self) -> Walk<'_> {
         let mut stack = Stack::new();
-        stack.push((0.0, 0));
-        while let Some((distance, link)) = stack.pop() {
+        if !self.nodes.is_empty() {
+            stack.push((0.0, 0));
+        }
+        Walk { bvh: self, stack }
+    }
+}
+
+/// A search among the leaves of a [`Bvh`], roughly the nearest first.
+pub(crate) struct Walk<'a> {
+    bvh: &'a Bvh,
+    stack: Stack,
+}
+
+impl Walk<'_> {
+    /// The next leaf that `probe` meets nearer than `reach`.
+    #[inline(always)]
+    pub(crate) fn next(&mut self, probe: &impl Probe, reach: f32) -> Option<usize> {
+        while let Some((distance, link)) = self.stack.pop() {
             if distance >= reach {
                 continue;
             }
             if link & LEAF != 0 {
-                reach = visit((link & !LEAF) as usize);
-                continue;
+                return Some((link & !LEAF) as usize);
             }
-            let node = &self.nodes[link as usize];
+            let node = &self.bvh.nodes[link as usize];
             let distances = probe.distances(node);
-            let bottom = stack.len();
-            for (&distance, &link) in distances.iter().zip(&node.links).take(node.count as usize) {
-                if distance < reach {
-                    stack.push_sorted(bottom, (distance, link));
+            let bottom = self.stack.len();
+            for i in 0..WIDTH {
+                if distances[i] < reach && i < node.count as usize {
+                    self.stack.push_sorted(bottom, (distances[i], node.links[i]));
                 }
             }
         }
+        None
     }
 }
 
@@ -127,12 +139,12 @@ mod tests {
             let point = Point([x, 7.3, 1.6]);
             let holds = |b: &Aabb| (0..3).all(|k| b.min[k] <= f64::from(point.0[k]) && f64::from(point.0[k]) <= b.max[k]);
             let mut found = Vec::new();
-            bvh.walk(&point, f32::INFINITY, |leaf| {
+            let mut walk = bvh.walk();
+            while let Some(leaf) = walk.next(&point, f32::INFINITY) {
                 let (first, end) = bvh.leaf(leaf);
                 assert!(end - first <= most);
                 found.extend(bvh.items()[first..end].iter().map(|&i| i as usize).filter(|&i| holds(&boxes[i])));
-                f32::INFINITY
-            });
+            }
             found.sort_unstable();
             let expected: Vec<usize> = (0..boxes.len()).filter(|&i| holds(&boxes[i])).collect();
             prop_assert_eq!(found, expected);
@@ -148,11 +160,11 @@ mod tests {
                 node.low[0]
             }
         }
-        let mut visited = Vec::new();
-        bvh.walk(&All, f32::INFINITY, |leaf| {
+        let (mut visited, mut walk, mut reach) = (Vec::new(), bvh.walk(), f32::INFINITY);
+        while let Some(leaf) = walk.next(&All, reach) {
             visited.push(bvh.items()[bvh.leaf(leaf).0]);
-            9.5
-        });
+            reach = 9.5;
+        }
         assert_eq!(visited, [0, 1, 2]);
     }
 

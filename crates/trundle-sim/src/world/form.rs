@@ -32,7 +32,8 @@ impl Form {
     /// A point of the world in its own frame.
     #[inline(always)]
     pub(crate) fn own(&self, point: [f64; 3]) -> [f64; 3] {
-        let out = [0, 1, 2].map(|k| point[k] - self.place[k]);
-        self.axes.map(|axis| axis[0] * out[0] + axis[1] * out[1] + axis[2] * out[2])
+        let (x, y, z) = (point[0] - self.place[0], point[1] - self.place[1], point[2] - self.place[2]);
+        let along = |axis: &[f64; 3]| axis[0] * x + axis[1] * y + axis[2] * z;
+        [along(&self.axes[0]), along(&self.axes[1]), along(&self.axes[2])]
     }
 }

@@ -8,17 +8,22 @@ use trundle_core::Vector3;
 #[inline(always)]
 pub(super) fn meet_block(block: &Block, origin: Vector3, direction: Vector3) -> [f64; BLOCK] {
     let mut distances = [0.0; BLOCK];
-    for (lane, distance) in distances.iter_mut().enumerate() {
-        let corner = |i: usize| [0, 1, 2].map(|k| f64::from(block.corners[i][k][lane]) - origin[k]);
-        let (a, b, c) = (corner(0), corner(1), corner(2));
-        let (bc, ca, ab) = (cross(b, c), cross(c, a), cross(a, b));
-        let d = [direction.x, direction.y, direction.z];
-        let (u, v, w) = (dot(bc, d), dot(ca, d), dot(ab, d));
-        let volume = dot(a, bc);
+    let ([a, b, c], o, d) = (&block.corners, origin, direction);
+    for i in 0..BLOCK {
+        let (ax, ay, az) = (f64::from(a[0][i]) - o.x, f64::from(a[1][i]) - o.y, f64::from(a[2][i]) - o.z);
+        let (bx, by, bz) = (f64::from(b[0][i]) - o.x, f64::from(b[1][i]) - o.y, f64::from(b[2][i]) - o.z);
+        let (cx, cy, cz) = (f64::from(c[0][i]) - o.x, f64::from(c[1][i]) - o.y, f64::from(c[2][i]) - o.z);
+        let (bc_x, bc_y, bc_z) = (by * cz - bz * cy, bz * cx - bx * cz, bx * cy - by * cx);
+        let (ca_x, ca_y, ca_z) = (cy * az - cz * ay, cz * ax - cx * az, cx * ay - cy * ax);
+        let (ab_x, ab_y, ab_z) = (ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx);
+        let u = bc_x * d.x + bc_y * d.y + bc_z * d.z;
+        let v = ca_x * d.x + ca_y * d.y + ca_z * d.z;
+        let w = ab_x * d.x + ab_y * d.y + ab_z * d.z;
+        let volume = ax * bc_x + ay * bc_y + az * bc_z;
         let t = volume / (u + v + w);
         let is_inside = ((u >= 0.0) & (v >= 0.0) & (w >= 0.0)) | ((u <= 0.0) & (v <= 0.0) & (w <= 0.0));
         // A triangle seen edge on, and one that is a point, give 0 / 0.
-        *distance = if is_inside & (t > 0.0) { t } else { f64::INFINITY };
+        distances[i] = if is_inside & (t > 0.0) { t } else { f64::INFINITY };
     }
     distances
 }
@@ -28,14 +33,4 @@ pub(super) fn normal_towards(block: &Block, lane: usize, direction: Vector3) -> 
     let corner = |i: usize| Vector3::from([0, 1, 2].map(|k| f64::from(block.corners[i][k][lane])));
     let normal = (corner(1) - corner(0)).cross(&(corner(2) - corner(0))).normalize();
     if normal.dot(&direction) > 0.0 { -normal } else { normal }
-}
-
-#[inline(always)]
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-}
-
-#[inline(always)]
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }

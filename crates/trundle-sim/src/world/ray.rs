@@ -92,19 +92,19 @@ impl World {
         limit: f64,
     ) -> Option<Hit> {
         let (mut reach, mut nearest) = (limit, None);
-        self.bvh.walk(probe, wide(limit), |leaf| {
+        let mut walk = self.bvh.walk();
+        while let Some(leaf) = walk.next(probe, wide(reach)) {
             let (first, end) = self.bvh.leaf(leaf);
             for &solid in &self.bvh.items()[first..end] {
                 if let Some((distance, normal)) = self.solids[solid as usize].shape.meet(origin, direction)
                     && distance < reach
                 {
                     reach = distance;
-                    nearest =
-                        Some(Hit { distance, target: Target::Solid(solid as usize), mover: None, normal });
+                    let target = Target::Solid(solid as usize);
+                    nearest = Some(Hit { distance, target, mover: None, normal });
                 }
             }
-            wide(reach)
-        });
+        }
         nearest
     }
 
@@ -117,7 +117,8 @@ impl World {
         limit: f64,
     ) -> Option<Hit> {
         let (mut reach, mut nearest) = (limit, None);
-        self.triangles.bvh().walk(probe, wide(limit), |leaf| {
+        let mut walk = self.triangles.bvh().walk();
+        while let Some(leaf) = walk.next(probe, wide(reach)) {
             let distances = meet_block(self.triangles.block(leaf), origin, direction);
             for (lane, &distance) in distances.iter().enumerate() {
                 if distance < reach {
@@ -125,8 +126,7 @@ impl World {
                     nearest = Some((leaf, lane));
                 }
             }
-            wide(reach)
-        });
+        }
         let (leaf, lane) = nearest?;
         let block = self.triangles.block(leaf);
         let (mesh, triangle) = self.triangles.source(block.first as usize + lane);
