@@ -65,13 +65,13 @@ impl Maneuver {
             if off < least {
                 (least, nearest) = (off, pose.position());
             }
-            if last.contains(&space.place(state / HEADINGS)) {
-                if let Some(arrival) = link(space, body, pose, goal) {
-                    let mut poses = self.follow_back(space, state);
-                    poses.insert(0, start);
-                    poses.extend(arrival);
-                    return Ok(poses);
-                }
+            if last.contains(&space.place(state / HEADINGS))
+                && let Some(arrival) = link(space, body, pose, goal)
+            {
+                let mut poses = self.follow_back(space, state);
+                poses.insert(0, start);
+                poses.extend(arrival);
+                return Ok(poses);
             }
             self.spread(space, body, state, pose);
         }

@@ -4,7 +4,12 @@
 //! Each map has the questions that come with it and random ones between connected places. Each is asked 20 times
 //! with the distance field up to date, and the thread's CPU time counts: it says something on a busy machine too. Every trajectory is judged by the tests' independent checker.
 
-#![expect(clippy::print_stdout, clippy::unwrap_used, reason = "a program for the terminal")]
+#![expect(
+    clippy::print_stdout,
+    clippy::print_stderr,
+    clippy::unwrap_used,
+    reason = "a program for the terminal"
+)]
 
 #[path = "../../tests/it/nav_data.rs"]
 mod nav_data;
