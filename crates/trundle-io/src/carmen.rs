@@ -8,8 +8,8 @@ use trundle_core::{Beam, Pose2, Scan, Stamp, Twist2};
 
 /// The log of a laser and odometry in CARMEN's form, which most 2-D mapping programs read.
 ///
-/// A sweep is a line `ROBOTLASER1`, a pose by the wheels a line `ODOM`; both stand in the odometry's frame. A beam that met
-/// nothing has the maximum range, one that knows nothing a range beyond it.
+/// A sweep is a line `ROBOTLASER1`, a pose by the wheels a line `ODOM`; both stand in the odometry's frame. A beam without a
+/// return has the maximum range, whether it met nothing or failed: the format knows no difference.
 #[derive(Debug, Clone)]
 pub struct CarmenLog {
     text: String,
@@ -18,9 +18,6 @@ pub struct CarmenLog {
     pose: Pose2,
     twist: Twist2,
 }
-
-/// What is added to the maximum range for "nothing is known", m.
-const BEYOND: f64 = 1.0;
 
 impl CarmenLog {
     /// An empty log of a laser that reaches `max_range` m.
@@ -49,8 +46,7 @@ impl CarmenLog {
         for beam in scan.beams() {
             let range = match beam {
                 Beam::Hit { range } => *range,
-                Beam::Free { .. } => self.max_range,
-                Beam::Unseen => self.max_range + BEYOND,
+                Beam::Free { .. } | Beam::Unseen => self.max_range,
             };
             write!(text, " {range:.3}").expect("invariant: a String takes any text");
         }
@@ -95,7 +91,7 @@ mod tests {
         );
         let fields: Vec<&str> = lines[1].split(' ').collect();
         assert_eq!(fields[..5], ["ROBOTLASER1", "0", "-0.500000000", "1.000000000", "0.500000000"]);
-        assert_eq!(fields[8..13], ["3", "1.250", "5.600", "6.600", "0"]);
+        assert_eq!(fields[8..13], ["3", "1.250", "5.600", "5.600", "0"]);
         assert_eq!(fields[13..16], ["1.087758", "2.047943", "0.500000"]); // the laser's place
         assert_eq!(fields[16..19], ["1.000000", "2.000000", "0.500000"]); // the robot's
         assert_eq!(fields[24..], ["1.500000000", "trundle", "1.500000000"]);

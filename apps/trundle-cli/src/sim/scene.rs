@@ -1,5 +1,5 @@
 use super::{SimArgs, files::Files, start};
-use crate::{failure::Failure, settings};
+use crate::{console, failure::Failure, settings};
 use std::path::{Path, PathBuf};
 use trundle::sim::import::{GltfOptions, RaisedMap};
 use trundle::sim::scenes::file::{BaseLoader, SceneFile};
@@ -20,7 +20,9 @@ pub fn load(args: &SimArgs, name: &str) -> Result<Scene, Failure> {
         Some("glb" | "gltf") => {
             let options = GltfOptions { up: args.up.axis(), ..GltfOptions::default() };
             let mesh = HERE.gltf(file, &options).map_err(|error| Failure::Input(error.to_string()))?;
-            bare(args, file, World::with_meshes(Vec::new(), vec![mesh], args.seed)?)?
+            let world = World::with_meshes(Vec::new(), vec![mesh], args.seed)?;
+            warn_of_a_fallen_house(file, &world);
+            bare(args, file, world)?
         }
         Some("yaml" | "yml") => {
             let walls = HERE.map(file, RaisedMap::default().wall_height);
@@ -50,6 +52,18 @@ fn described(file: &Path, seed: u64) -> Result<Scene, Failure> {
     let description: SceneFile = settings::read(file)?;
     let files = Files { folder: file.parent().unwrap_or(Path::new("")).to_owned() };
     description.build(&files, seed).map_err(|error| Failure::Input(format!("{}: {error}", file.display())))
+}
+
+/// A place for people is wider than it is high; what is not has probably been turned on its side.
+fn warn_of_a_fallen_house(file: &Path, world: &World) {
+    let (low, high) = world.bounds();
+    let size = high - low;
+    if size.z > size.x.min(size.y) {
+        let (name, x, y, z) = (file.display(), size.x, size.y, size.z);
+        console::warn(&format!(
+            "{name} is {x:.1} x {y:.1} m and {z:.1} m high; if it lies on its side, say --up"
+        ));
+    }
 }
 
 /// The scene of a file that says nothing of the robot: where the arguments say no start, it starts where there is room.

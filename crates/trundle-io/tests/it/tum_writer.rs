@@ -1,7 +1,7 @@
 use crate::frame;
 use std::fs;
 use tempfile::TempDir;
-use trundle_core::{Distortion, PinholeCamera, Pose2, Pose3, RgbdImage, Stamp};
+use trundle_core::{Beam, Distortion, PinholeCamera, Pose2, Pose3, RgbdImage, Scan, Stamp, Twist2, Vector2};
 use trundle_io::*;
 
 const SIZE: (usize, usize) = (40, 30);
@@ -100,4 +100,37 @@ fn wrong_frames_and_empty_folders_are_refused() {
     );
     let empty = TumWriter::new(&folder, camera(), 15.0);
     assert_eq!(problem(empty.finish().unwrap_err()), "DIR/run: no image to write, expected 1 or more");
+}
+
+#[test]
+fn a_laser_log_is_read_again() {
+    let mut log = CarmenLog::new(5.6);
+    let pose = |i: i64| Pose2::new(0.25 * i as f64, -0.5, 0.125);
+    for i in 0..40 {
+        let stamp = Stamp::from_nanos(i * 100_000_000);
+        log.odometry(stamp, pose(i), Twist2::new(0.25, 0.0));
+        let beam = |k: i64| match (k + i) % 10 {
+            0 => Beam::Free { range: 5.6 },
+            1 => Beam::Unseen,
+            _ => Beam::Hit { range: 1.0 + k as f64 * 0.125 },
+        };
+        let beams = (0..30).map(beam).collect();
+        log.scan(&Scan::new(stamp, Vector2::new(0.125, 0.0), -0.5, 0.03125, beams).unwrap());
+    }
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("laser.log");
+    fs::write(&path, log.into_text()).unwrap();
+    let read = read_carmen(&path, &LaserLogOptions::default()).unwrap();
+    assert_eq!((read.scans.len(), read.odometry.len(), read.skipped.len()), (40, 40, 0));
+    let LaserLogScan { odom_from_base, scan } = &read.scans[7];
+    assert!(odom_from_base.distance(&pose(7)) < 1e-6 && (scan.origin().x - 0.125).abs() < 1e-6);
+    assert!((scan.angle_min() + 0.5).abs() < 1e-6 && (scan.angle_increment() - 0.03125).abs() < 1e-6);
+    for (k, beam) in scan.beams().iter().enumerate() {
+        match (k + 7) % 10 {
+            0 | 1 => assert!(!matches!(beam, Beam::Hit { .. }), "beam {k}: {beam:?}"),
+            _ => {
+                assert!(matches!(beam, Beam::Hit { range } if (range - 1.0 - k as f64 * 0.125).abs() < 1e-3))
+            }
+        }
+    }
 }
