@@ -105,7 +105,7 @@ impl CoarseSearch {
             let inside = col >= 0
                 && row >= 0
                 && col + LANES as i64 <= self.stride as i64
-                && row + (2 * reach) as i64 + 1 <= rows;
+                && row + (2 * reach as i64) < rows;
             if inside {
                 let first = row as usize * self.stride + col as usize;
                 for (j, sums) in sums.iter_mut().enumerate().take(2 * reach + 1) {

@@ -49,7 +49,7 @@ impl Directions {
     }
 
     /// An information about poses, in y.
-    pub(crate) fn to_y(&self, information: &Matrix3<f64>) -> Matrix3<f64> {
+    pub(crate) fn in_y(&self, information: &Matrix3<f64>) -> Matrix3<f64> {
         self.pose_from_y.transpose() * information * self.pose_from_y
     }
 }

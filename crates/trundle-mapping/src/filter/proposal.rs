@@ -53,7 +53,11 @@ const RIVAL: f64 = 2.0;
 const SPREAD: f64 = 2.5;
 /// More than this part of the points on free ground: the odometry may have slipped.
 const CONTRADICTED: f64 = 0.1;
-/// More than this: it may have failed.
+/// Or less than this part of them explained: scans overlap by more.
+const DOUBTFUL: f64 = 0.5;
+/// Less than this: the odometry may have failed.
+const STRANGE: f64 = 0.4;
+/// Or more than this part on free ground.
 const LOST: f64 = 0.3;
 /// So long a way between two scans may be the wheels' fancy, m.
 const LONG_WAY: f64 = 1.5;
@@ -122,8 +126,8 @@ impl Proposer<'_> {
     ) -> Proposal {
         let prior = Prior::new(guess, before.theta, &self.motion_covariance);
         let near = self.attempt(map, search, prior);
-        let Fit { contradicted, .. } = near.fit;
-        if contradicted > CONTRADICTED {
+        let Fit { explained, contradicted } = near.fit;
+        if contradicted > CONTRADICTED || explained < DOUBTFUL {
             let wide =
                 prior.widened(self.config.slip_shift / self.config.map.resolution, self.config.slip_turn);
             let far = self.attempt(map, search, wide);
@@ -132,10 +136,9 @@ impl Proposer<'_> {
             }
         }
         let way = (guess.position() - before.position()).norm() * self.config.map.resolution;
-        if contradicted > LOST || way > LONG_WAY {
-            if let Some(found) = self.slipped(map, search, before, guess, &near) {
-                return self.sample(&found, chance);
-            }
+        let suspicious = contradicted > LOST || explained < STRANGE || way > LONG_WAY;
+        if suspicious && let Some(found) = self.slipped(map, search, before, guess, &near) {
+            return self.sample(&found, chance);
         }
         self.sample(&near, chance)
     }
@@ -154,8 +157,12 @@ impl Proposer<'_> {
             let place = before.interpolate(&guess, part);
             Prior::slipped(Pose2 { theta: heading, ..place }, resolution)
         };
-        let turned = [0.0, 0.5, 1.0].map(|part| along(part, guess.theta));
-        let unturned = [0.0, 0.5, 1.0].map(|part| along(part, before.theta));
+        // The search about each place reaches 0.7 m.
+        let way = (guess.position() - before.position()).norm() * resolution;
+        let steps = (way.ceil() as usize).clamp(1, 6);
+        let parts = || (0..=steps).map(|k| k as f64 / steps as f64);
+        let turned: Vec<_> = parts().map(|part| along(part, guess.theta)).collect();
+        let unturned: Vec<_> = parts().map(|part| along(part, before.theta)).collect();
         let around = [Prior::turned(before, resolution)];
         // Each kind of slip is rarer than the one before: it must be better by more.
         let kinds: [(&[Prior], f64, f64); 3] =
@@ -239,7 +246,7 @@ impl Proposer<'_> {
         let directions = Directions::new(self.shape, pose, &vote, self.config.degenerate_below);
         for _ in 0..MOST_STEPS {
             let scale = 1.0 / self.config.correlation;
-            let information = directions.information(&vote) * scale + directions.to_y(&prior.information);
+            let information = directions.information(&vote) * scale + directions.in_y(&prior.information);
             let back = prior.information * difference(prior.guess, pose);
             let pull = directions.pull(&vote) * scale + directions.pose_from_y.transpose() * back;
             let Some(factor) = Cholesky::new(information) else { break };
@@ -270,7 +277,7 @@ impl Proposer<'_> {
         let lost = explained < LEAST_EXPLAINED;
         let held = if lost { Matrix3::zeros() } else { directions.held };
         let centre = if lost { prior.guess } else { *top };
-        let odometry = directions.to_y(&prior.information);
+        let odometry = directions.in_y(&prior.information);
         let hits =
             if lost { Matrix3::zeros() } else { directions.information(vote) / self.config.correlation };
         let shape =

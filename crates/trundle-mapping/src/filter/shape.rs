@@ -153,7 +153,11 @@ impl ScanShape {
                 }
             }
         };
-        let (first, last) = (reach(-1)?, reach(1)?);
+        // At the end of a surface its one side says how it lies.
+        let (first, last) = match (reach(-1), reach(1)) {
+            (None, None) => return None,
+            (first, last) => (first.unwrap_or(k), last.unwrap_or(k)),
+        };
         let points = self.hits[first..=last].iter().map(|(_, p)| *p);
         let count = (last - first + 1) as f64;
         let mean = points.clone().sum::<Vector2>() / count;

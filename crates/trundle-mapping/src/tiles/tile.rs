@@ -76,6 +76,6 @@ impl Tile {
     #[inline]
     pub(crate) fn coarse_place(x: i32, y: i32) -> Option<usize> {
         const MASK: i32 = COARSE_SIDE as i32 - 1;
-        ((x | y) & 1 == 0).then(|| ((((y >> 1) & MASK) << (TILE_BITS - 1)) | ((x >> 1) & MASK)) as usize)
+        ((x | y) & 1 == 0).then_some(((((y >> 1) & MASK) << (TILE_BITS - 1)) | ((x >> 1) & MASK)) as usize)
     }
 }

@@ -4,6 +4,7 @@
 
 mod boxes;
 mod depth_scan;
+mod filter;
 mod flat_room;
 mod maps;
 mod matching;
