@@ -8,6 +8,9 @@ use crate::space::Space;
 use thiserror::Error;
 use trundle_core::{Footprint, Invalid, Pose2};
 
+/// Pieces of a scene above which the bound is sought with fewer boxes.
+const MANY_PIECES: usize = 1000;
+
 /// Why there is nothing to plan.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum Refusal {
@@ -116,7 +119,8 @@ impl Docker {
         let mut space = Space::new(footprint, margin, scene);
         let effort = Effort {
             nodes: config.search_nodes,
-            boxes: config.bound_boxes,
+            // A box costs as many looks as there are pieces; what is left of them in thick clouds must not cost more.
+            boxes: config.bound_boxes.min(config.bound_boxes * MANY_PIECES / scene.len().max(1)),
             gap: config.gap,
             cell: config.position_tolerance,
         };
