@@ -1,7 +1,7 @@
 //! The robot's outline among the obstacles' squares: exact distances, and motions that touch nothing.
 //!
 //! Problem: is a motion free of contact, between the looks too? Idea: where the outline has a gap g, it may move until some
-//! point of it has moved by g (conservative advancement; Mirtich, PhD thesis, UC Berkeley, 1996). Steps below [`LEAST_STEP`]
+//! point of it has moved by g (conservative advancement, \[Mirtich96\]). Steps below [`LEAST_STEP`]
 //! are not taken, so an overlap deeper than half of it is never missed. Cost: O(squares near the outline) a look.
 
 use crate::DistanceField;

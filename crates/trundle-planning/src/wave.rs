@@ -2,10 +2,9 @@
 //!
 //! Problem: the printed potential has local minima. Idea: replace the straight distance in the attraction by the
 //! geodesic one, and the repulsion by slowness of the wave near obstacles; such a potential has one minimum, and
-//! descending it is following the wave back. The wave runs towards the goal first (A*; Hart, Nilsson, Raphael, IEEE T-SSC
-//! 4(2), 1968), led by the [`Guide`], on the 16-neighbour lattice of cells where the robot fits, every step checked
-//! against the obstacles' squares. Complete: if the lattice connects, the way is found. Costs are whole numbers, so a list
-//! for each key makes a queue without comparisons (Dial, CACM 12(11), 1969). Cost: O(cells reached).
+//! descending it is following the wave back. The wave runs towards the goal first (A*, \[Hart68\]), led by the [`Guide`],
+//! on the 16-neighbour lattice of cells where the robot fits, every step checked against the obstacles' squares. Complete: if the lattice connects, the way is found. Costs are whole numbers, so a list
+//! for each key makes a queue without comparisons (\[Dial69\]). Cost: O(cells reached).
 
 use crate::dial::{Dial, Entry};
 use crate::guide::Guide;
@@ -37,7 +36,7 @@ const SEED: u8 = 16;
 /// Marks a cell in [`WaveFront::step`] that has been spread from: it is not entered again.
 const CLOSED: u8 = 128;
 /// The way ahead counts for 1 / this more than the guide says, so that of equal ways one is followed to its end. A way costs
-/// at most so much more than the cheapest.
+/// about so much more than the cheapest, at most.
 const EAGERNESS: u32 = 32;
 const NEVER: u32 = u32::MAX;
 /// How far around the start and the goal the lattice may be entered, cells.

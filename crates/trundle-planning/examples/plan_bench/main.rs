@@ -20,7 +20,7 @@ mod support;
 
 use std::fmt::Write as _;
 use std::time::Instant;
-use trundle_core::{Cell, CellIndex, GridGeometry, OccupancyGrid, Pose2, Twist2};
+use trundle_core::{Cell, CellIndex, GridGeometry, OccupancyGrid, Pose2, Twist2, Vector2};
 use trundle_planning::{DistanceField, Plan, PlannerConfig, PotentialConfig, PotentialKind, UnknownIs};
 
 /// The robot of the comparison with Nav2's planners, m.
@@ -80,6 +80,7 @@ fn main() {
     println!();
     updates("depot", &nav_data::read_map(&data.join("nav2/depot.yaml")));
     updates("office02", &nav_data::read_map(&data.join("mrpb/maps/office02_partially_unknown/map.yaml")));
+    large();
     printed(&data);
     if let Some(path) = csv {
         std::fs::write(path, lines).unwrap();
@@ -211,6 +212,26 @@ fn updates(name: &str, grid: &OccupancyGrid) {
         times[40],
         times[79]
     );
+}
+
+/// A warehouse of 200 x 200 m: boxes of a metre, shifted from row to row; across it from nothing.
+fn large() {
+    const SIZE: usize = 4000;
+    let geometry = GridGeometry::new(0.05, Vector2::zeros(), SIZE, SIZE).unwrap();
+    let cell = |i: usize| {
+        let (col, row) = (i % SIZE, i / SIZE);
+        let is_box = row % 50 >= 30 && (col + row / 50 * 17) % 50 >= 30;
+        if is_box { Cell::Occupied } else { Cell::Free }
+    };
+    let grid = OccupancyGrid::new(geometry, (0..geometry.len()).map(cell).collect()).unwrap();
+    let mut planner = support::planner(support::at_home(), RADIUS);
+    let (start, goal) = (Pose2::new(1.0, 1.0, 0.0), Pose2::new(195.0, 195.0, 1.0));
+    let begin = support::cpu_ms();
+    let plan = planner.plan(&grid, start, Twist2::ZERO, goal);
+    let ms = support::cpu_ms() - begin;
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let peak = status.lines().find_map(|line| line.strip_prefix("VmHWM:")).unwrap_or("?").trim();
+    println!("\n{SIZE} x {SIZE} cells, field and plan: {ms:.0} ms CPU, {peak} at most resident; {plan}");
 }
 
 /// How often the printed potential is trapped, over all questions of all maps.

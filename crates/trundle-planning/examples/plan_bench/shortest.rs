@@ -26,7 +26,7 @@ impl PartialOrd for Entry {
     }
 }
 
-/// The length of a Theta* path (Nash et al., AAAI 2007) of a disc's centre that was then pulled taut, m; infinite where
+/// The length of a Theta* path \[Nash07\] of a disc's centre that was then pulled taut, m; infinite where
 /// there is none. An upper bound of the shortest length, in practice within a few per mille of it.
 pub fn shortest(field: &DistanceField, radius: f64, from: Vector2, to: Vector2) -> f64 {
     let geometry = *field.geometry();
