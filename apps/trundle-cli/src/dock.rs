@@ -12,7 +12,7 @@ use std::time::Instant;
 pub(crate) use table::{motions, steps_csv};
 use trundle::core::{Footprint, OccupancyGrid, Pose2};
 use trundle::docking::corridor::{Problem, parse};
-use trundle::docking::{Docker, DockingConfig, Impossible, Plan, Scene, Solution};
+use trundle::docking::{Certificate, Docker, DockingConfig, Impossible, Plan, Scene, Solution};
 use trundle::io::{OutputFolder, Summary, read_map};
 
 /// What is to be planned, and what stands around.
@@ -126,7 +126,11 @@ fn reason(impossible: &Impossible) -> String {
     let by = impossible.by.as_ref().map_or_else(String::new, |by| {
         format!(": obstacle {} at ({:.3}, {:.3}) m is in the way", by.obstacle, by.at.x, by.at.y)
     });
-    let proof = if impossible.proven { "proven by a complete search" } else { "none was found; not proven" };
+    let proof = match impossible.certificate {
+        Certificate::Never => "proven for motions of any kind",
+        Certificate::AtResolution => "proven at the search's resolution",
+        Certificate::None => "none was found; not proven",
+    };
     format!("No manoeuvre{by} ({proof}).")
 }
 
@@ -141,7 +145,8 @@ fn summary(task: &Task, plan: &Plan, seconds: f64) -> Summary {
             .set("bound_s", *bound)
             .set("margin_m", *margin),
         Plan::Impossible(impossible) => {
-            summary.set("success", false).set("proven", impossible.proven).set("reason", reason(impossible))
+            let proven = impossible.certificate != Certificate::None;
+            summary.set("success", false).set("proven", proven).set("reason", reason(impossible))
         }
     };
     summary.set("wall_clock", serde_json::json!({ "planning_s": seconds }));
