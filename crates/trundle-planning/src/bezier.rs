@@ -38,8 +38,8 @@ impl BezierPiece {
     }
 
     /// The coefficients (a_i, b_i) of x = sum a_i u^i, y = sum b_i u^i: the form of \[Li18\], of the same polynomial.
-    pub fn monomials(&self) -> &[Vector2] {
-        &self.powers
+    pub fn monomials(&self) -> Vec<Vector2> {
+        self.powers.clone()
     }
 
     /// Position and derivatives at `u` by Horner's rule: quicker than one by one, and as good to 1e-12 m.
