@@ -1,6 +1,8 @@
 //! Draws the four corridor scenarios of [Hong24], above by the paper's method, below by the optimal one:
 //! `cargo run --release -p trundle-docking --example corridor_picture -- docs/pictures/docking-scenarios.png`
 
+#![expect(clippy::print_stdout, reason = "an example prints its result")]
+
 use tiny_skia::{Color, Paint, Path, PathBuilder, Pixmap, Stroke, Transform};
 use trundle_core::{Footprint, Pose2, Vector2};
 use trundle_docking::corridor::{Problem, Scenario};

@@ -5,6 +5,8 @@
 //! `--seed N`, `--file PATH` instead of a seed, `--write PATH` to keep the problems, `--boxes N` of the bound that judges,
 //! `--baselines N` problems for the slow ones, `--loops N` problems in closed loop with noise, `--slow` names slow ones.
 
+#![expect(clippy::print_stdout, reason = "an example prints its result")]
+
 mod clock;
 mod dynamic_window;
 mod hybrid;

@@ -11,7 +11,7 @@ const CASES: usize = 100_000;
 /// A convex footprint, often with the axle off its middle, sometimes with the axle outside; or a disc.
 fn footprint(rng: &mut ChaCha8Rng) -> Footprint {
     if rng.random_bool(0.1) {
-        return Footprint::disc(rng.random_range(0.05..0.5)).unwrap();
+        return Footprint::disc(rng.random_range(0.05..0.5)).expect("a radius");
     }
     let (a, b) = (rng.random_range(0.1..0.5), rng.random_range(0.1..0.4));
     let shift = Vector2::new(rng.random_range(-0.4..0.4), rng.random_range(-0.2..0.2));
@@ -21,7 +21,7 @@ fn footprint(rng: &mut ChaCha8Rng) -> Footprint {
         (0..count).map(|i| first + (i as f64 + rng.random_range(0.0..0.8)) * TAU / count as f64).collect();
     angles.sort_by(f64::total_cmp);
     Footprint::polygon(angles.iter().map(|t| shift + Vector2::new(a * t.cos(), b * t.sin())).collect())
-        .unwrap()
+        .expect("convex")
 }
 
 fn obstacle(rng: &mut ChaCha8Rng) -> Obstacle {
