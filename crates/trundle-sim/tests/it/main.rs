@@ -9,6 +9,7 @@ mod events;
 mod faults;
 mod import;
 mod laser;
+mod meshes;
 mod noise;
 mod people;
 mod scenes;
