@@ -98,7 +98,7 @@ mod tests {
         let refused = |text: &str| text.parse::<FootprintArg>().unwrap_err();
         assert_eq!(refused("wide"), "'wide' in the footprint is no number, expected m");
         assert_eq!(refused("0.3,0.2 0.1"), "corner '0.1', expected X,Y");
-        assert_eq!(refused("0,0 1,0 0.2,0.2 0,1"), "footprint is turned inward at corner 2, expected convex");
+        assert_eq!(refused("0,0 1,0 0.2,0.2 0,1"), "footprint is turned inward at corner 1, expected convex");
         assert!(refused("0,0 1,0 2,0").contains("footprint area is 0 m^2"));
     }
 }

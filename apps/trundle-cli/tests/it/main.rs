@@ -3,6 +3,7 @@
 
 mod bad_input;
 mod demo;
+mod dock;
 mod map;
 mod plan;
 mod program;

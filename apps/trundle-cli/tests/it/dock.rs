@@ -1,0 +1,83 @@
+use crate::plan::write_room;
+use crate::program::{refusal, summary, text, trundle};
+use std::fs;
+
+/// A robot of 0.6 x 0.4 m in a corridor of 1 m, 10 cm beside its goal.
+const PROBLEM: &str = "trundle-corridors 1
+problem beside
+footprint 0.3 0.2 -0.3 0.2 -0.3 -0.2 0.3 -0.2
+start -0.1 0 90
+goal 0.1 0 90
+wall -0.5 -1.5 -0.5 1.5
+wall 0.5 -1.5 0.5 1.5
+";
+
+#[test]
+fn a_robot_beside_its_goal_gets_there_step_by_step() {
+    let scratch = tempfile::tempdir().unwrap();
+    let (file, out) = (scratch.path().join("beside.txt"), scratch.path().join("out"));
+    fs::write(&file, PROBLEM).unwrap();
+    let output = trundle(&["dock", text(&file), "--out", text(&out)]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let said = String::from_utf8(output.stdout).unwrap();
+    assert!(said.contains("step") && said.contains("planned in"), "{said}");
+    let found = summary(&out);
+    let (time, bound) = (found["duration_s"].as_f64().unwrap(), found["bound_s"].as_f64().unwrap());
+    assert!(bound > 0.0 && bound <= time + 1e-9, "{bound} {time}");
+    let steps = fs::read_to_string(out.join("steps.csv")).unwrap();
+    let last: Vec<f64> = steps.lines().last().unwrap().split(',').map(|v| v.parse().unwrap()).collect();
+    assert!((last[4] - 0.1).hypot(last[5]) < 1e-6, "{last:?}");
+    assert!(fs::metadata(out.join("dock.png")).unwrap().len() > 1000);
+}
+
+#[test]
+fn on_a_map_too_and_a_wall_between_is_a_reason() {
+    let scratch = tempfile::tempdir().unwrap();
+    let (map, out) = (write_room(scratch.path()), scratch.path().join("out"));
+    let dock = |from: &str, to: &str| {
+        trundle(&[
+            "dock",
+            text(&map),
+            from,
+            to,
+            "--footprint=0.3,0.2 -0.3,0.2 -0.3,-0.2 0.3,-0.2",
+            "--out",
+            text(&out),
+        ])
+    };
+    assert_eq!(dock("--from=1,1,0", "--to=1.2,1.15,0").status.code(), Some(0));
+    let apart = dock("--from=2.6,0.6,90", "--to=3.5,0.6,90");
+    assert_eq!(apart.status.code(), Some(1), "{}", String::from_utf8_lossy(&apart.stderr));
+    assert!(String::from_utf8_lossy(&apart.stdout).contains("No manoeuvre"));
+}
+
+#[test]
+fn bad_tasks_are_refused_with_their_reason() {
+    let scratch = tempfile::tempdir().unwrap();
+    let map = write_room(scratch.path());
+    let file = scratch.path().join("beside.txt");
+    fs::write(&file, PROBLEM).unwrap();
+    let said = |extra: &[&str]| refusal(&[&["dock"], extra].concat());
+    assert!(said(&[text(&map)]).contains("a map needs --from and --to"));
+    assert!(said(&[text(&map), "--from=0.1,1,0", "--to=1,1,0"]).contains("the start overlaps obstacle"));
+    assert!(said(&[text(&map), "--from=1,1,0", "--to=3.02,0.5,0"]).contains("the goal overlaps obstacle"));
+    assert!(said(&[text(&file), "--to=40,30,0"]).contains("plan a path there first"));
+    assert!(said(&[text(&file), "--problem=x"]).contains("it has no problem 'x'"));
+    assert!(said(&["nowhere.txt"]).contains("nowhere.txt: cannot read it"));
+    fs::write(&file, PROBLEM.replace("start -0.1 0 90", "start NaN 0 90")).unwrap();
+    assert!(said(&[text(&file)]).contains("line 4"));
+}
+
+#[test]
+fn the_papers_corridor_experiment_holds() {
+    let scratch = tempfile::tempdir().unwrap();
+    let out = scratch.path().join("out");
+    let output = trundle(&["experiment", "corridor", "--quiet", "--out", text(&out)]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    for name in ["a-paper.png", "d-optimal.png", "b-paper.csv", "corridor.csv", "report.html", "summary.json"]
+    {
+        assert!(out.join(name).exists(), "{name}");
+    }
+    let (paper, optimal) = (&summary(&out)["a-paper"]["time_s"], &summary(&out)["a-optimal"]["time_s"]);
+    assert!(optimal.as_f64().unwrap() <= paper.as_f64().unwrap() + 1e-9);
+}
