@@ -85,8 +85,8 @@ impl Picture<'_> {
             let rays = if eye.first_id == 0 { *still } else { eye.rays(self.camera, left, top) };
             let patch = eye.patch(&rays, self.lamps, id, (row, at, 1.0 / inverse_depth[at]));
             let seen = Footprints::new(&patch, inverse_depth, row, &length);
-            for i in at..end {
-                line.depth[i] = 1.0 / inverse_depth[i];
+            for (i, w) in inverse_depth.iter().enumerate().take(end).skip(at) {
+                line.depth[i] = 1.0 / w;
                 line.cosine[i] = seen.cosine[i].clamp(LEAST_COSINE, 1.0);
                 line.color[i] = color(&patch, &seen, i);
             }

@@ -1,3 +1,5 @@
+#![expect(clippy::needless_range_loop, reason = "loops over lanes by number become SIMD")]
+
 use super::rays::{Linear, Rays};
 use super::tile::{COLUMNS, ROWS, Tile, mask, smaller};
 use crate::world::{BLOCK, Block};

@@ -1,3 +1,5 @@
+#![expect(clippy::needless_range_loop, reason = "loops over lanes by number become SIMD")]
+
 use super::rays::{Rays, cross};
 use super::tile::{COLUMNS, ROWS};
 use crate::world::{Node, Probe, WIDTH};

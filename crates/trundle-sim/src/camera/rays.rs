@@ -1,3 +1,5 @@
+#![expect(clippy::needless_range_loop, reason = "loops over lanes by number become SIMD")]
+
 use super::tile::{COLUMNS, ROWS, Row};
 
 /// The rays through the pixels of a tile in some frame: start + column * right + row * down. Their part along the optical

@@ -1,3 +1,5 @@
+#![expect(clippy::needless_range_loop, reason = "loops over lanes by number become SIMD")]
+
 /// Columns of a tile.
 pub(super) const COLUMNS: usize = 16;
 /// Rows of a tile.

@@ -45,7 +45,7 @@ impl Texture {
     /// picture, which repeats.
     pub(crate) fn of_picture(color: [u8; 3], picture: Option<&ColorImage>) -> Self {
         let tinted = |texel: [u8; 3]| {
-            let channel = |k: usize| (u32::from(texel[k]) * u32::from(color[k]) + 127) / 255 << (8 * k);
+            let channel = |k: usize| ((u32::from(texel[k]) * u32::from(color[k]) + 127) / 255) << (8 * k);
             channel(0) | channel(1) | channel(2)
         };
         let Some(picture) = picture else {

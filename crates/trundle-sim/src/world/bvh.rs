@@ -1,3 +1,5 @@
+#![expect(clippy::needless_range_loop, reason = "loops over lanes by number become SIMD")]
+
 mod build;
 mod stack;
 

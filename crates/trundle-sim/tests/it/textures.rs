@@ -62,7 +62,7 @@ fn the_demo_is_rich_in_texture() {
 
 /// A wall at x = 0 with a picture of fine checks and broad stripes, 96 x 80 texels, every 0.5 m.
 fn pictured_wall() -> World {
-    let check = |x: usize, y: usize| if (x / 3 + y / 2) % 2 == 0 { 225 } else { 40 };
+    let check = |x: usize, y: usize| if (x / 3 + y / 2).is_multiple_of(2) { 225 } else { 40 };
     let picture = ColorImage::from_fn(96, 80, |x, y| [check(x, y), if x < 40 { 30 } else { 200 }, 90]);
     let corner = |y: f32, z: f32| ([0.0, y, z], [2.0 * y, -2.0 * z]);
     let corners = [corner(-9.0, -1.0), corner(9.0, -1.0), corner(9.0, 4.0), corner(-9.0, 4.0)];

@@ -17,7 +17,7 @@ impl Light {
         let rounded = self.rounded();
         if strength > 256 {
             let channel =
-                |shift: u32| ((rounded >> shift & 0xFF) * u64::from(strength) + 0x80 >> 8).min(255) as u8;
+                |shift: u32| (((rounded >> shift & 0xFF) * u64::from(strength) + 0x80) >> 8).min(255) as u8;
             return [channel(0), channel(32), channel(16)];
         }
         let dimmed = rounded * u64::from(strength) + 0x80_0080_0080;
