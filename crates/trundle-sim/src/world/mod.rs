@@ -22,8 +22,8 @@ mod triangles;
 
 use crate::paint::{Finish, Paintings, Texture};
 pub(crate) use aabb::Aabb;
-pub(crate) use bvh::{Bvh, Node, Probe, WIDTH};
 pub use band::HeightBand;
+pub(crate) use bvh::{Bvh, Node, Probe, WIDTH};
 pub use contact::Obstacles;
 pub(crate) use form::{Form, Kind};
 pub use lights::{Lamp, Lights};
