@@ -20,6 +20,7 @@ use data_set::DataSet;
 use driver::Driver;
 use hand::Hand;
 use journey::Journey;
+use std::path::Path;
 use trundle::io::OutputFolder;
 use trundle::sim::{HeightBand, SimConfig, SimError, Simulator};
 
@@ -41,7 +42,7 @@ pub fn run(args: &SimArgs) -> Result<Outcome, Failure> {
         _ => HeightBand::new(config.kobuki.step_over, config.kobuki.height)?,
     };
     let mut driver = Driver::read(args)?;
-    let folder = args.record.as_deref().map(OutputFolder::create).transpose()?;
+    let folder = args.record.as_deref().map(new_recording).transpose()?;
     let scene = scene::load(args, name)?;
     let grid = args.needs_map().then(|| map::truth(&scene, args.resolution, band)).transpose()?;
     if let (Some(file), Some(grid)) = (&args.map, &grid) {
@@ -59,13 +60,22 @@ pub fn run(args: &SimArgs) -> Result<Outcome, Failure> {
     let journey = Journey::drive(args, &mut robot, &mut driver, data.as_mut())?;
     drop(driver); // whoever was at the keys gives the terminal back
     if let (Some(data), Some(grid)) = (data, &grid) {
-        data.finish(grid, robot.scene().start, &journey.summary(args, name))?;
+        data.finish(grid, robot.scene().start, &journey.summary(args, &robot.scene().name))?;
     }
     let place = folder.map(OutputFolder::commit).transpose()?;
     if !args.common.quiet {
-        journey.say(name, place.as_deref(), &robot);
+        journey.say(&robot.scene().name, place.as_deref(), &robot);
     }
     Ok(if journey.is_complete { Outcome::Reached } else { Outcome::Missed })
+}
+
+/// The folder of a recording; one that holds a recording already is refused: two in one folder could not be told apart.
+fn new_recording(place: &Path) -> Result<OutputFolder, Failure> {
+    if place.join("rgb.txt").exists() {
+        let problem = "a recording is there already (rgb.txt), choose another folder or remove it";
+        return Err(Failure::Input(format!("{}: {problem}", place.display())));
+    }
+    Ok(OutputFolder::create(place)?)
 }
 
 /// The simulated robot that the arguments ask for.

@@ -281,12 +281,14 @@ fn require_free(
     for (field, value, unit) in [("pose x", x, "m"), ("pose y", y, "m"), ("pose theta", theta, "rad")] {
         require_finite(field, value, unit)?;
     }
+    require_inside(scene, "start", scene.start)?;
     let clearance = obstacles.clearance(&footprint, scene.start);
     let clearance = clearance.min(crowd.clearance(&footprint, scene.start));
     if clearance <= 0.0 {
         return Err(SimError::StartInObstacle { scene: name(), x, y, penetration: -clearance });
     }
     for (time, pose) in config.faults.kidnappings() {
+        require_inside(scene, &format!("kidnapping at {time} s"), pose)?;
         let penetration = -obstacles.clearance(&footprint, pose);
         if penetration >= 0.0 {
             let Pose2 { x, y, .. } = pose;
@@ -294,6 +296,16 @@ fn require_free(
         }
     }
     Ok(())
+}
+
+/// Refuses a pose beyond everything that the scene has.
+fn require_inside(scene: &Scene, what: &str, Pose2 { x, y, .. }: Pose2) -> Result<(), SimError> {
+    let (low, high) = scene.world.bounds();
+    if (low.x..=high.x).contains(&x) && (low.y..=high.y).contains(&y) {
+        return Ok(());
+    }
+    let (what, name) = (what.to_owned(), scene.name.clone());
+    Err(SimError::OutsideScene { what, scene: name, x, y, low: [low.x, low.y], high: [high.x, high.y] })
 }
 
 impl RobotBody for Simulator {

@@ -33,7 +33,7 @@ pub struct SimArgs {
     /// Drive by hand: arrows or WASD, space to stop, q to quit; shows a page with what the robot sees.
     #[arg(long, group = "driver")]
     pub keys: bool,
-    /// Stop after so many seconds of the robot's time [default: when the drive is over, 5 where there is none]
+    /// Stop after so many seconds of the robot's time, or when the drive is over [default: 5 where there is no drive]
     #[arg(long, value_name = "S", value_parser = seconds, allow_negative_numbers = true)]
     pub duration: Option<f64>,
     /// Write a TUM RGB-D folder: images, ground truth, odometry, calibration, the true map.

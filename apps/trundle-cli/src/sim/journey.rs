@@ -78,12 +78,20 @@ impl Journey {
 }
 
 fn is_over(time: f64, args: &SimArgs, driver: &Driver) -> bool {
-    let limit = args.duration.into_iter().chain(driver.end());
-    limit.fold(f64::INFINITY, f64::min) <= time
+    end(args, driver).is_some_and(|end| end <= time)
+}
+
+/// When it is over, s, where that is known: with nobody at the wheel after the time asked for, else when the drive is, or
+/// that time if it is sooner.
+fn end(args: &SimArgs, driver: &Driver) -> Option<f64> {
+    match (driver, args.duration) {
+        (Driver::Nobody, Some(duration)) => Some(duration),
+        (driver, duration) => duration.into_iter().chain(driver.end()).reduce(f64::min),
+    }
 }
 
 fn progress(args: &SimArgs, robot: &Simulator, driver: &Driver) -> ProgressBar {
-    match driver.end().into_iter().chain(args.duration).reduce(f64::min) {
+    match end(args, driver) {
         Some(end) => console::bar(args.common.quiet, (end * robot.config().camera_rate_hz).ceil() as usize),
         None => console::live_line(args.common.quiet),
     }

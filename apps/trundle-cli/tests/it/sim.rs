@@ -174,6 +174,30 @@ fn numbers_and_places_that_cannot_be() {
     let sentence = refusal(&["sim", "demo", "--record", text(&taken)]);
     assert!(sentence.contains("taken: this is a file, expected a folder"), "{sentence}");
     assert_eq!(fs::read_to_string(taken).unwrap(), "mine");
+    file(scratch.path(), "rgb.txt", "# timestamp filename");
+    let sentence = refusal(&["sim", "demo", "--record", text(scratch.path())]);
+    assert!(sentence.contains("a recording is there already"), "{sentence}");
+    let sentence = refusal(&["sim", "room", "--start=100,0,0", "--duration", "0.1"]);
+    assert!(
+        sentence.contains("start at (100.000, 0.000) m is outside scene 'room', which reaches from (-3."),
+        "{sentence}"
+    );
+}
+
+/// The example of the scene file's documentation, as it is printed there.
+#[test]
+fn the_documented_scene_file_runs_for_as_long_as_asked() {
+    let scratch = tempfile::tempdir().unwrap();
+    let formats = include_str!("../../../../docs/formats.md");
+    let (_, rest) = formats.split_once("## Scene files").unwrap();
+    let (example, _) = rest.split_once("```toml").unwrap().1.split_once("```").unwrap();
+    let scene = file(scratch.path(), "office.toml", example);
+    let out = scratch.path().join("out");
+    let output = trundle(&["sim", text(&scene), "--rate", "0.5", "--duration", "6", "--record", text(&out)]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let found = summary(&out);
+    assert_eq!(found["scene"], "crowded office");
+    assert!(found["duration_s"].as_f64().unwrap() > 5.9, "{found}");
 }
 
 #[test]

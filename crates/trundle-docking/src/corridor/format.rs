@@ -3,6 +3,9 @@ use crate::scene::Obstacle;
 use std::fmt::Write;
 use trundle_core::{Footprint, Invalid, Pose2, Vector2};
 
+/// So many characters of a wrong line are shown.
+const SHOWN: usize = 60;
+
 /// The first line of a file.
 const HEADER: &str = "trundle-corridors 1";
 
@@ -116,7 +119,11 @@ fn floats(number: usize, text: &str, count: usize) -> Result<Vec<f64>, Invalid> 
 }
 
 fn refused(number: usize, value: &str, expected: &str) -> Invalid {
-    Invalid::new(format!("line {number}"), format!("`{value}`"), "", expected)
+    let mut shown: String = value.chars().take(SHOWN).collect();
+    if shown.len() < value.len() {
+        shown.push_str("...");
+    }
+    Invalid::new(format!("line {number}"), format!("`{shown}`"), "", expected)
 }
 
 #[cfg(test)]

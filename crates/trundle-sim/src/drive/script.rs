@@ -10,6 +10,9 @@ pub struct TimedCommand {
     pub twist: Twist2,
 }
 
+/// No drive takes longer than this, s: eleven days.
+const LONGEST: f64 = 1e6;
+
 /// Commands by the clock: each holds until the next one, nothing moves before the first, and the last one's time is the
 /// script's end (so a script ends with a line `t 0 0`).
 #[derive(Debug, Clone, PartialEq)]
@@ -26,6 +29,14 @@ impl CommandScript {
         let mut commands: Vec<TimedCommand> = Vec::new();
         for (line, [time, v, omega]) in rows(text, ["t", "v", "omega"])? {
             let before = commands.last().map(|command| command.time);
+            if time > LONGEST {
+                return Err(Invalid::new(
+                    format!("t in line {line}"),
+                    time,
+                    "s",
+                    format!("at most {LONGEST}"),
+                ));
+            }
             if time < 0.0 || before.is_some_and(|before| time <= before) {
                 let expected = before.map_or("0 or more".to_owned(), |before| format!("more than {before}"));
                 return Err(Invalid::new(format!("t in line {line}"), time, "s", expected));
@@ -73,6 +84,7 @@ mod tests {
         let error = |text: &str| CommandScript::parse(text).unwrap_err().to_string();
         assert_eq!(error("0 0.1 0\n0 0 0"), "t in line 2 is 0 s, expected more than 0");
         assert_eq!(error("-1 0.1 0"), "t in line 1 is -1 s, expected 0 or more");
+        assert_eq!(error("0 1 0\n1e12 0 0"), "t in line 2 is 1000000000000 s, expected at most 1000000");
         assert_eq!(error("1 inf 0"), "v in line 1 is inf, expected a finite number");
         assert_eq!(error("# nothing"), "lines of commands is 0, expected 1 or more");
     }

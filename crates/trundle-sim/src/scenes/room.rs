@@ -10,8 +10,8 @@ const HALF: f64 = 3.0;
 
 /// An empty room, 6 x 6 m, its middle the origin of the world frame: the stage of the point stabilisation of \[Li18\].
 ///
-/// The goal is theirs, (0, 0, 90 deg), the start one of their eight, (2.4, 2.4, 0); at the others, too, a Kobuki stands
-/// 0.42 m from the wall. The walls are rich in texture. `seed` varies textures and colours.
+/// The goal is theirs, (0, 0, 90 deg), the start that of their eight which looks across the room, (-2.4, 2.4, 0); at
+/// the others, too, a Kobuki stands 0.42 m from the wall. The walls are rich in texture. `seed` varies textures and colours.
 ///
 /// # Errors
 /// Never for any seed; the type is that of every scene.
@@ -33,7 +33,7 @@ pub fn room(seed: u64) -> Result<Scene, Invalid> {
         world: World::new(build.solids, seed)?,
         lights: Lights::default(),
         people: Vec::new(),
-        start: Pose2::new(2.4, 2.4, 0.0),
+        start: Pose2::new(-2.4, 2.4, 0.0),
         goal: Pose2::new(0.0, 0.0, FRAC_PI_2),
     })
 }

@@ -20,6 +20,25 @@ pub enum SimError {
         /// Metres.
         penetration: f64,
     },
+    /// The robot would stand where the scene has nothing, not even a floor.
+    #[error(
+        "{what} at ({x:.3}, {y:.3}) m is outside scene '{scene}', which reaches from ({:.3}, {:.3}) to ({:.3}, {:.3}) m",
+        low[0], low[1], high[0], high[1]
+    )]
+    OutsideScene {
+        /// The start, or a kidnapping and when.
+        what: String,
+        /// The scene's name.
+        scene: String,
+        /// Metres, world frame.
+        x: f64,
+        /// Metres, world frame.
+        y: f64,
+        /// The scene's lowest x and y, m.
+        low: [f64; 2],
+        /// The scene's highest x and y, m.
+        high: [f64; 2],
+    },
     /// A fault would put the robot into something.
     #[error(
         "kidnapping at {time} s to ({x:.3}, {y:.3}) m of scene '{scene}' is {penetration:.3} m inside an obstacle, expected a free place"
