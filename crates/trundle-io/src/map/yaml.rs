@@ -1,7 +1,7 @@
 use crate::IoError;
 use serde::Deserialize;
 use std::path::Path;
-use trundle_core::{Cell, Invalid, Vector2, require_in, require_positive};
+use trundle_core::{Cell, Invalid, Vector2, require_finite, require_in, require_positive};
 
 /// The checked content of a map's YAML file.
 #[derive(Debug, Clone, PartialEq)]
@@ -80,10 +80,7 @@ impl MapYaml {
         Ok(Self {
             image: file.image,
             resolution: coarse_enough(file.resolution)?,
-            origin: Vector2::new(
-                require_in("origin x", x, "m", -FARTHEST, FARTHEST)?,
-                require_in("origin y", y, "m", -FARTHEST, FARTHEST)?,
-            ),
+            origin: Vector2::new(require_finite("origin x", x, "m")?, require_finite("origin y", y, "m")?),
             negate,
             occupied,
             free,
@@ -121,9 +118,6 @@ fn located(path: &Path, error: &serde_saphyr::Error) -> IoError {
         _ => IoError::malformed(path, message),
     }
 }
-
-/// Farther from its frame's origin a map's cells are no longer told apart to the micrometre, m.
-const FARTHEST: f64 = 1e9;
 
 /// A cell larger than a house is a wrong unit, and would make any plan endless.
 fn coarse_enough(resolution: f64) -> Result<f64, Invalid> {

@@ -75,8 +75,16 @@ pub fn raise_map(file: &str, grid: &OccupancyGrid, options: &RaisedMap) -> Resul
     raise(grid, options).map_err(|fault| ImportFault::Invalid(fault).of(file))
 }
 
+/// Farther from the world's origin nothing is told apart to the tenth of a millimetre, m.
+const FARTHEST: f64 = 1e5;
+
 fn raise(grid: &OccupancyGrid, options: &RaisedMap) -> Result<Vec<Solid>, Invalid> {
     let options = options.clone().validated()?;
+    for (name, value) in
+        [("origin x of the map", grid.geometry().origin.x), ("origin y of the map", grid.geometry().origin.y)]
+    {
+        require_in(name, value, "m", -FARTHEST, FARTHEST)?;
+    }
     let slabs = slabs(grid);
     if slabs.is_empty() {
         return Err(Invalid::new("known cells of the map", 0, "", "1 or more"));
@@ -224,5 +232,9 @@ mod tests {
         let empty = OccupancyGrid::filled(geometry, Cell::Unknown);
         let error = raise_map("sea.yaml", &empty, &RaisedMap::default()).unwrap_err().to_string();
         assert_eq!(error, "sea.yaml: known cells of the map is 0, expected 1 or more");
+        let geometry = GridGeometry::new(0.05, Vector2::new(1e300, 0.0), 4, 4).unwrap();
+        let far = OccupancyGrid::filled(geometry, Cell::Occupied);
+        let error = raise_map("far.yaml", &far, &RaisedMap::default()).unwrap_err().to_string();
+        assert!(error.starts_with("far.yaml: origin x of the map is 1"), "{error}");
     }
 }
