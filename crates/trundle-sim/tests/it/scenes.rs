@@ -119,7 +119,8 @@ fn goals_to_drive_to_are_far_and_hidden() {
 #[test]
 fn the_room_is_the_stage_of_the_papers_stabilisation() {
     let scene = Scene::by_name("room", 3).unwrap();
-    assert_eq!(scene.start, Pose2::new(2.4, 2.4, 0.0));
+    assert_eq!(scene.start.theta, 0.0);
+    assert!(STABILISATION.contains(&[scene.start.x, scene.start.y]), "one of the eight");
     assert_eq!(scene.goal, Pose2::new(0.0, 0.0, std::f64::consts::FRAC_PI_2));
     for [x, y] in STABILISATION {
         assert!(clearance(&scene, &Footprint::KOBUKI, Pose2::new(x, y, 0.0)) > 0.42);
