@@ -19,4 +19,4 @@ pub use bundle::{BundleConfig, BundleObservation, BundlePose, BundleProblem, Bun
 pub use huber::Huber;
 pub use observation::{CHI2_95_2, CHI2_95_3, InverseDepth, Linearized, PointObservation};
 pub use pose::{PoseConfig, PoseProblem, PoseSolution};
-pub use pose_graph::{PoseConstraint, PoseGraph, PoseGraphConfig, PoseGraphSolution};
+pub use pose_graph::{PoseConstraint, PoseGraph, PoseGraphConfig, PoseGraphSolution, adjoint};

@@ -209,8 +209,9 @@ impl PoseConstraint {
     }
 }
 
-/// How a right perturbation before a pose appears behind it: pose exp(x) = exp(Ad x) pose.
-fn adjoint(pose: Pose3) -> Matrix6<f64> {
+/// The adjoint of SE(3), translation first (Sola et al. 2018, eq. 175): how a right perturbation before a pose appears behind
+/// it, pose exp(x) = exp(Ad x) pose.
+pub fn adjoint(pose: Pose3) -> Matrix6<f64> {
     let rotation = pose.rotation_matrix();
     blocks(rotation, pose.translation.cross_matrix() * rotation, rotation)
 }

@@ -29,9 +29,9 @@ impl<'a> From<&'a Keyframe> for Anchor<'a> {
 impl Anchor<'_> {
     /// The point of feature `i`: its landmark, else its own depth. `feature` of the match is still the anchor's.
     fn point(&self, i: usize, map: &LandmarkMap, sensor: &Sensor) -> Option<PointMatch> {
-        if let Some((id, landmark)) = self.landmarks[i].and_then(|id| Some((id, map.landmark(id)?))) {
-            let (point, sigma_factor) = (landmark.position, landmark.sigma_factor());
-            return Some(PointMatch { feature: i, point, landmark: Some(id), sigma_factor });
+        let landmark = self.landmarks[i].and_then(|id| PointMatch::of_landmark(i, id, map));
+        if landmark.is_some() {
+            return landmark;
         }
         let depth = self.frame.depths[i]?;
         (depth.sigma <= MAX_RELATIVE_SIGMA * depth.value).then_some(())?;

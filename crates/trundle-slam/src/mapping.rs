@@ -151,18 +151,9 @@ impl Mapper<'_> {
         let camera_from_visual = other.visual_from_camera.inverse();
         let (mut sought, mut projections) = (Vec::new(), Vec::new());
         for (id, landmark) in landmarks.iter().filter_map(|id| Some((*id, map.landmark(*id)?))) {
-            let p_camera = camera_from_visual.transform(landmark.position);
-            let Some((pixel, _)) = self.sensor.project(p_camera) else { continue };
-            let octave = self.sensor.octave_of(landmark.distance_at_octave_0 / p_camera.norm());
-            let radius = self.window * self.sensor.scale(octave);
-            let octaves = (octave.saturating_sub(1), octave + 1);
-            projections.push(Projection {
-                pixel,
-                depth: p_camera.z,
-                radius,
-                octaves,
-                descriptor: landmark.descriptor,
-            });
+            let seen = Projection::of(landmark, camera_from_visual, self.sensor, self.window);
+            let Some((projection, p_camera)) = seen else { continue };
+            projections.push(projection);
             sought.push((id, p_camera));
         }
         let agrees = |(feature, i): (usize, usize)| {

@@ -1,6 +1,7 @@
 use nalgebra::{Matrix6, Vector6};
 use serde::{Deserialize, Serialize};
 use trundle_core::{Invalid, Pose3, Stamp, require_in};
+use trundle_optim::adjoint;
 
 /// How uncertain a pose becomes while the image does not give it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -101,16 +102,6 @@ impl Belief {
 pub(crate) fn carried(covariance: &Matrix6<f64>, motion: Pose3) -> Matrix6<f64> {
     let backward = adjoint(motion.inverse());
     backward * covariance * backward.transpose()
-}
-
-/// The adjoint of SE(3), translation first (Sola et al. 2018, eq. 175).
-fn adjoint(pose: Pose3) -> Matrix6<f64> {
-    let rotation = pose.rotation_matrix();
-    let mut adjoint = Matrix6::zeros();
-    adjoint.fixed_view_mut::<3, 3>(0, 0).copy_from(&rotation);
-    adjoint.fixed_view_mut::<3, 3>(3, 3).copy_from(&rotation);
-    adjoint.fixed_view_mut::<3, 3>(0, 3).copy_from(&(pose.translation.cross_matrix() * rotation));
-    adjoint
 }
 
 #[cfg(test)]

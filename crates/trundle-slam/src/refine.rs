@@ -1,5 +1,6 @@
 use crate::frame::Frame;
 use crate::ids::LandmarkId;
+use crate::map::LandmarkMap;
 use crate::sensor::Sensor;
 use trundle_core::{Pose3, Vector3};
 use trundle_optim::{InverseDepth, PointObservation, PoseConfig, PoseProblem, PoseSolution};
@@ -14,6 +15,15 @@ pub(crate) struct PointMatch {
     pub landmark: Option<LandmarkId>,
     /// How much larger the standard deviations are, because the point is not known exactly.
     pub sigma_factor: f64,
+}
+
+impl PointMatch {
+    /// A feature taken for a landmark, as well known as that is; `None` when the landmark is forgotten.
+    pub fn of_landmark(feature: usize, id: LandmarkId, map: &LandmarkMap) -> Option<Self> {
+        let landmark = map.landmark(id)?;
+        let (point, sigma_factor) = (landmark.position, landmark.sigma_factor());
+        Some(Self { feature, point, landmark: Some(id), sigma_factor })
+    }
 }
 
 /// The pose of a frame, and by which matches.

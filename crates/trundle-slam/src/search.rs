@@ -1,5 +1,7 @@
 use crate::frame::Frame;
-use trundle_core::Vector2;
+use crate::landmark::Landmark;
+use crate::sensor::Sensor;
+use trundle_core::{Pose3, Vector2, Vector3};
 use trundle_vision::Descriptor;
 
 /// A point that should be seen, and where to look for it.
@@ -15,6 +17,25 @@ pub(crate) struct Projection {
     pub octaves: (u8, u8),
     /// What it looks like.
     pub descriptor: Descriptor,
+}
+
+impl Projection {
+    /// Where a camera sees a landmark, looked for within `window` px at octave 0, and the landmark in the camera's frame;
+    /// `None` outside the image.
+    pub fn of(
+        landmark: &Landmark,
+        camera_from_visual: Pose3,
+        sensor: &Sensor,
+        window: f64,
+    ) -> Option<(Self, Vector3)> {
+        let p_camera = camera_from_visual.transform(landmark.position);
+        let (pixel, _) = sensor.project(p_camera)?;
+        let octave = sensor.octave_of(landmark.distance_at_octave_0 / p_camera.norm());
+        let radius = window * sensor.scale(octave);
+        let octaves = (octave.saturating_sub(1), octave + 1);
+        let projection = Self { pixel, depth: p_camera.z, radius, octaves, descriptor: landmark.descriptor };
+        Some((projection, p_camera))
+    }
 }
 
 /// How alike two descriptors must be.

@@ -160,15 +160,10 @@ impl Tracker<'_> {
         let sought: Vec<_> = visible.iter().filter(|(id, _)| matched.binary_search(id).is_err()).collect();
         let projections: Vec<Projection> = sought.iter().map(|(_, projection)| *projection).collect();
         let found = search(self.frame, &free, &projections, self.config.window_likeness());
-        matches.extend(found.into_iter().filter_map(|(feature, i)| self.point_match(feature, sought[i].0)));
+        let taken = |(feature, i): (usize, usize)| PointMatch::of_landmark(feature, sought[i].0, self.map);
+        matches.extend(found.into_iter().filter_map(taken));
         let fix = Fix::by(matches, pose, self.frame, self.sensor, &self.config.pose);
         (fix, visible)
-    }
-
-    fn point_match(&self, feature: usize, id: LandmarkId) -> Option<PointMatch> {
-        let landmark = self.map.landmark(id)?;
-        let (point, sigma_factor) = (landmark.position, landmark.sigma_factor());
-        Some(PointMatch { feature, point, landmark: Some(id), sigma_factor })
     }
 
     fn refined(&self, matches: Vec<PointMatch>, start: Pose3) -> Option<Fix> {

@@ -14,15 +14,16 @@ pub(super) fn candidates(map: &LandmarkMap, keyframe: KeyframeId, config: &LoopC
     let tied = tied(map, keyframe);
     let oldest_kept_out = keyframe.index().saturating_sub(config.least_age);
     let here = map.keyframe(keyframe);
-    let mut near: Vec<(f64, KeyframeId)> = map
-        .keyframes()
-        .filter(|(id, _)| id.index() < oldest_kept_out && !tied.contains(id))
-        .filter_map(|(id, other)| {
-            let offset = here.visual_from_camera.inverse() * other.visual_from_camera;
-            let drift = Drift::between(map, id, keyframe, config);
-            Some((drift.nearness(offset, config)?, id))
-        })
-        .collect();
+    let mut near: Vec<(f64, KeyframeId)> = Vec::new();
+    let mut way = Way::default();
+    for id in (0..keyframe.index()).rev().map(KeyframeId::from_index) {
+        way.back_to(map, id);
+        if id.index() < oldest_kept_out && !tied.contains(&id) {
+            let offset = here.visual_from_camera.inverse() * map.keyframe(id).visual_from_camera;
+            let drift = Drift::along(map, way, id, keyframe, config);
+            near.extend(drift.nearness(offset, config).map(|nearness| (nearness, id)));
+        }
+    }
     near.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
     near.into_iter().take(config.candidates).map(|(_, id)| id).collect()
 }
@@ -32,6 +33,23 @@ fn tied(map: &LandmarkMap, keyframe: KeyframeId) -> BTreeSet<KeyframeId> {
     let around = |id: KeyframeId| map.covisible(id, SHARED).into_iter().map(|(id, _)| id);
     let near: Vec<KeyframeId> = around(keyframe).collect();
     near.iter().copied().flat_map(around).chain(near.iter().copied()).chain([keyframe]).collect()
+}
+
+/// How far the camera went and turned between two keyframes, keyframe by keyframe: m and rad.
+#[derive(Debug, Clone, Copy, Default)]
+struct Way {
+    length: f64,
+    turn: f64,
+}
+
+impl Way {
+    /// From keyframe `id` to the one after it, added.
+    fn back_to(&mut self, map: &LandmarkMap, id: KeyframeId) {
+        let next = map.keyframe(KeyframeId::from_index(id.index() + 1));
+        let step = map.keyframe(id).visual_from_camera.inverse() * next.visual_from_camera;
+        self.length += step.translation.norm();
+        self.turn += step.angle();
+    }
 }
 
 /// How far two keyframes may be off against each other.
@@ -44,15 +62,15 @@ pub(super) struct Drift {
 impl Drift {
     /// Of `new` against `old`: the covariance that grew between, and a part of the way.
     pub(super) fn between(map: &LandmarkMap, old: KeyframeId, new: KeyframeId, config: &LoopConfig) -> Self {
-        let at = |i: usize| map.keyframe(KeyframeId::from_index(i)).visual_from_camera;
-        let steps = (old.index() + 1..=new.index()).map(|i| at(i - 1).inverse() * at(i));
-        let (mut way, mut turn) = (0.0, 0.0);
-        for step in steps {
-            way += step.translation.norm();
-            turn += step.angle();
-        }
-        let off = (config.drift_part * way).hypot(config.tie_sigma).powi(2);
-        let turned = (config.drift_part * turn).hypot(config.tie_sigma_turn).powi(2);
+        let mut way = Way::default();
+        (old.index()..new.index()).rev().for_each(|i| way.back_to(map, KeyframeId::from_index(i)));
+        Self::along(map, way, old, new, config)
+    }
+
+    /// The same where the way between is known.
+    fn along(map: &LandmarkMap, way: Way, old: KeyframeId, new: KeyframeId, config: &LoopConfig) -> Self {
+        let off = (config.drift_part * way.length).hypot(config.tie_sigma).powi(2);
+        let turned = (config.drift_part * way.turn).hypot(config.tie_sigma_turn).powi(2);
         let least = nalgebra::Vector6::new(off, off, off, turned, turned, turned);
         let grown = map.keyframe(new).covariance + map.keyframe(old).covariance;
         Self { covariance: grown + Matrix6::from_diagonal(&least), most_sigmas: config.most_sigmas }

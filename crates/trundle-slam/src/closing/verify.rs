@@ -67,9 +67,10 @@ impl Verifier<'_> {
         sought.retain(|id| !matched.contains(id));
         let window = self.tracking.motion_window_px;
         let (mut ids, mut projections) = (Vec::new(), Vec::new());
-        for (id, projection) in
-            sought.into_iter().filter_map(|id| Some((id, self.project(id, pose, window)?)))
-        {
+        let camera_from_visual = pose.inverse();
+        for (id, landmark) in sought.into_iter().filter_map(|id| Some((id, self.map.landmark(id)?))) {
+            let seen = Projection::of(landmark, camera_from_visual, self.sensor, window);
+            let Some((projection, _)) = seen else { continue };
             ids.push(id);
             projections.push(projection);
         }
@@ -77,12 +78,8 @@ impl Verifier<'_> {
         let mut free = vec![true; frame.len()];
         matches.iter().for_each(|m| free[m.feature] = false);
         let found = search(frame, &free, &projections, self.tracking.window_likeness());
-        let point_match = |(feature, i): (usize, usize)| {
-            let landmark = self.map.landmark(ids[i])?;
-            let (point, sigma_factor) = (landmark.position, landmark.sigma_factor());
-            Some(PointMatch { feature, point, landmark: Some(ids[i]), sigma_factor })
-        };
-        matches.extend(found.into_iter().filter_map(point_match));
+        let taken = |(feature, i): (usize, usize)| PointMatch::of_landmark(feature, ids[i], self.map);
+        matches.extend(found.into_iter().filter_map(taken));
         Fix::by(matches, pose, frame, self.sensor, &self.tracking.pose)
     }
 
@@ -95,19 +92,5 @@ impl Verifier<'_> {
         ids.sort_unstable();
         ids.dedup();
         ids
-    }
-
-    fn project(&self, id: LandmarkId, visual_from_camera: Pose3, window: f64) -> Option<Projection> {
-        let landmark = self.map.landmark(id)?;
-        let p_camera = visual_from_camera.inverse().transform(landmark.position);
-        let (pixel, _) = self.sensor.project(p_camera)?;
-        let octave = self.sensor.octave_of(landmark.distance_at_octave_0 / p_camera.norm());
-        Some(Projection {
-            pixel,
-            depth: p_camera.z,
-            radius: window * self.sensor.scale(octave),
-            octaves: (octave.saturating_sub(1), octave + 1),
-            descriptor: landmark.descriptor,
-        })
     }
 }
