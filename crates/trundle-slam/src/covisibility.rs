@@ -4,7 +4,7 @@ use crate::map::LandmarkMap;
 impl LandmarkMap {
     /// The keyframes that see any of these landmarks, and how many each; most first, then newest first.
     pub fn keyframes_seeing(&self, landmarks: impl Iterator<Item = LandmarkId>) -> Vec<(KeyframeId, usize)> {
-        let mut counts = vec![0; self.keyframe_count()];
+        let mut counts = vec![0; self.keyframe_bound()];
         for landmark in landmarks.filter_map(|id| self.landmark(id)) {
             for (keyframe, _) in &landmark.observations {
                 counts[keyframe.index()] += 1;

@@ -1,3 +1,4 @@
+use crate::arena::Arena;
 use crate::ids::KeyframeId;
 use crate::map::Keyframe;
 use crate::sensor::Sensor;
@@ -50,20 +51,24 @@ impl Landmark {
         (1.0 + 1.0 / self.observations.len().max(1) as f64).sqrt()
     }
 
-    pub fn refresh(&mut self, keyframes: &[Keyframe], sensor: &Sensor) {
+    /// Brings descriptor, direction and scale up to date with the observations.
+    pub fn refresh(&mut self, keyframes: &Arena<Keyframe>, sensor: &Sensor) {
+        let keyframe = |id: &KeyframeId| {
+            keyframes.get(id.index()).expect("invariant: keyframes that see a landmark are alive")
+        };
         let newest = &self.observations[self.observations.len().saturating_sub(DESCRIPTORS)..];
         let descriptors: Vec<&Descriptor> =
-            newest.iter().map(|(k, f)| keyframes[k.index()].frame.descriptor(*f)).collect();
+            newest.iter().map(|(k, f)| keyframe(k).frame.descriptor(*f)).collect();
         let apart = |d: &&&Descriptor| descriptors.iter().map(|o| d.distance(o)).sum::<u32>();
         if let Some(central) = descriptors.iter().min_by_key(apart) {
             self.descriptor = **central;
         }
-        let ray = |k: &KeyframeId| keyframes[k.index()].visual_from_camera.translation - self.position;
+        let ray = |k: &KeyframeId| keyframe(k).visual_from_camera.translation - self.position;
         let sum: Vector3 = self.observations.iter().filter_map(|(k, _)| ray(k).try_normalize(1e-9)).sum();
         self.toward_camera = sum.try_normalize(1e-9).unwrap_or_else(Vector3::zeros);
-        if let Some((keyframe, feature)) = self.observations.last() {
-            let octave = keyframes[keyframe.index()].frame.octave(*feature);
-            self.distance_at_octave_0 = ray(keyframe).norm() / sensor.scale(octave);
+        if let Some((newest, feature)) = self.observations.last() {
+            let octave = keyframe(newest).frame.octave(*feature);
+            self.distance_at_octave_0 = ray(newest).norm() / sensor.scale(octave);
         }
     }
 }

@@ -15,6 +15,7 @@
 //! | K_L, K_F | free and fixed keyframes of the local bundle | |
 
 mod anchor;
+mod arena;
 mod closing;
 mod config;
 mod covisibility;
@@ -35,6 +36,7 @@ mod report;
 mod search;
 mod sensor;
 mod slam;
+mod spanning_tree;
 #[cfg(test)]
 mod testing;
 mod tracker;

@@ -72,13 +72,14 @@ fn problem(
     window: &Window,
     sensor: &Sensor,
 ) -> (BundleProblem, Vec<(LandmarkId, KeyframeId, f64)>) {
-    let mut slots = vec![None; map.keyframe_count()];
+    let mut slots = vec![None; map.keyframe_bound()];
     for (slot, id) in window.keyframes.iter().enumerate() {
         slots[id.index()] = Some(slot);
     }
+    let first = map.first_keyframe();
     let pose = |(slot, id): (usize, &KeyframeId)| BundlePose {
         world_from_camera: map.keyframe(*id).visual_from_camera,
-        fixed: slot >= window.free || id.index() == 0,
+        fixed: slot >= window.free || Some(*id) == first,
     };
     let poses = window.keyframes.iter().enumerate().map(pose).collect();
     let (mut points, mut observations, mut sources) = (Vec::new(), Vec::new(), Vec::new());

@@ -1,7 +1,9 @@
+use crate::arena::Arena;
 use crate::frame::Frame;
 use crate::ids::{KeyframeId, LandmarkId};
 use crate::landmark::Landmark;
 use crate::sensor::Sensor;
+use crate::spanning_tree::Place;
 use nalgebra::Matrix6;
 use trundle_core::{Pose3, Vector3};
 
@@ -14,77 +16,112 @@ pub(crate) struct Keyframe {
     pub covariance: Matrix6<f64>,
     /// Which landmark each feature is of.
     pub landmarks: Vec<Option<LandmarkId>>,
+    /// Where it stands in the spanning tree.
+    pub(crate) tree: Place,
 }
 
 /// Keyframes and landmarks in two arenas, and who saw what.
 ///
-/// Invariant: feature `f` of keyframe `k` has landmark `l` exactly if `l` is alive and has the observation `(k, f)`.
+/// Invariant: feature `f` of keyframe `k` has landmark `l` exactly if both are alive and `l` has the observation `(k, f)`.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct LandmarkMap {
-    keyframes: Vec<Keyframe>,
-    landmarks: Vec<Option<Landmark>>,
-    alive: usize,
+    pub(crate) keyframes: Arena<Keyframe>,
+    landmarks: Arena<Landmark>,
+    /// Where forgotten keyframes stand to the one that took them over, by id.
+    pub(crate) forgotten: std::collections::BTreeMap<KeyframeId, (KeyframeId, Pose3)>,
 }
 
 impl LandmarkMap {
+    /// The keyframe, which must not have been forgotten.
     pub fn keyframe(&self, id: KeyframeId) -> &Keyframe {
-        &self.keyframes[id.index()]
+        self.keyframes.get(id.index()).expect("invariant: the keyframe is alive")
     }
 
+    /// The keyframe, unless it was forgotten.
+    pub fn live_keyframe(&self, id: KeyframeId) -> Option<&Keyframe> {
+        self.keyframes.get(id.index())
+    }
+
+    /// What is left of the keyframes, by rising id, which is the order of their making.
     pub fn keyframes(&self) -> impl DoubleEndedIterator<Item = (KeyframeId, &Keyframe)> {
-        self.keyframes.iter().enumerate().map(|(i, k)| (KeyframeId::from_index(i), k))
+        self.keyframes.iter().map(|(i, k)| (KeyframeId::from_index(i), k))
     }
 
+    /// Their ids.
+    pub fn keyframe_ids(&self) -> impl DoubleEndedIterator<Item = KeyframeId> + '_ {
+        self.keyframes().map(|(id, _)| id)
+    }
+
+    /// How many there are.
     pub fn keyframe_count(&self) -> usize {
         self.keyframes.len()
     }
 
+    /// Higher than the index of every keyframe ever made.
+    pub fn keyframe_bound(&self) -> usize {
+        self.keyframes.bound()
+    }
+
+    /// The oldest keyframe, which holds the map in place; `None` of an empty map.
+    pub fn first_keyframe(&self) -> Option<KeyframeId> {
+        self.keyframe_ids().next()
+    }
+
+    /// The newest keyframe; `None` of an empty map.
+    pub fn newest_keyframe(&self) -> Option<KeyframeId> {
+        self.keyframe_ids().next_back()
+    }
+
     /// The landmark, unless it was forgotten.
     pub fn landmark(&self, id: LandmarkId) -> Option<&Landmark> {
-        self.landmarks[id.index()].as_ref()
+        self.landmarks.get(id.index())
     }
 
     pub fn landmark_mut(&mut self, id: LandmarkId) -> Option<&mut Landmark> {
-        self.landmarks[id.index()].as_mut()
+        self.landmarks.get_mut(id.index())
     }
 
     pub fn landmarks(&self) -> impl Iterator<Item = (LandmarkId, &Landmark)> {
-        self.landmarks.iter().enumerate().filter_map(|(i, l)| Some((LandmarkId::from_index(i), l.as_ref()?)))
+        self.landmarks.iter().map(|(i, l)| (LandmarkId::from_index(i), l))
     }
 
     pub fn landmark_count(&self) -> usize {
-        self.alive
+        self.landmarks.len()
     }
 
     /// A new keyframe that sees nothing yet.
     pub fn add_keyframe(&mut self, frame: Frame, visual_from_camera: Pose3) -> KeyframeId {
         let landmarks = vec![None; frame.len()];
-        self.keyframes.push(Keyframe { frame, visual_from_camera, covariance: Matrix6::zeros(), landmarks });
-        KeyframeId::from_index(self.keyframes.len() - 1)
+        let (covariance, tree) = (Matrix6::zeros(), Place::default());
+        let keyframe = Keyframe { frame, visual_from_camera, covariance, landmarks, tree };
+        KeyframeId::from_index(self.keyframes.insert(keyframe))
     }
 
     /// Moves a keyframe, not what it sees.
     pub fn move_keyframe(&mut self, id: KeyframeId, visual_from_camera: Pose3) {
-        self.keyframes[id.index()].visual_from_camera = visual_from_camera;
+        self.keyframe_mut(id).visual_from_camera = visual_from_camera;
     }
 
     /// Says how uncertain a keyframe's pose is.
     pub fn set_covariance(&mut self, id: KeyframeId, covariance: Matrix6<f64>) {
-        self.keyframes[id.index()].covariance = covariance;
+        self.keyframe_mut(id).covariance = covariance;
+    }
+
+    pub(crate) fn keyframe_mut(&mut self, id: KeyframeId) -> &mut Keyframe {
+        self.keyframes.get_mut(id.index()).expect("invariant: the keyframe is alive")
     }
 
     /// A new landmark at `position` (visual frame, m), seen by nobody yet.
     pub fn add_landmark(&mut self, position: Vector3) -> LandmarkId {
-        self.landmarks.push(Some(Landmark::new(position)));
-        self.alive += 1;
-        LandmarkId::from_index(self.landmarks.len() - 1)
+        LandmarkId::from_index(self.landmarks.insert(Landmark::new(position)))
     }
 
     /// Records that feature `feature` of `keyframe` is of `landmark`. A feature or a landmark that is already taken in
     /// this keyframe stays as it is; whether anything was recorded.
     pub fn observe(&mut self, landmark: LandmarkId, keyframe: KeyframeId, feature: usize) -> bool {
-        let slot = &mut self.keyframes[keyframe.index()].landmarks[feature];
-        let Some(seen) = self.landmarks[landmark.index()].as_mut() else { return false };
+        let Some(seer) = self.keyframes.get_mut(keyframe.index()) else { return false };
+        let Some(seen) = self.landmarks.get_mut(landmark.index()) else { return false };
+        let slot = &mut seer.landmarks[feature];
         if slot.is_some() || seen.observation_in(keyframe).is_some() {
             return false;
         }
@@ -95,22 +132,20 @@ impl LandmarkMap {
 
     /// Takes an observation back; a landmark that nobody sees any more is forgotten.
     pub fn unobserve(&mut self, landmark: LandmarkId, keyframe: KeyframeId) {
-        let Some(seen) = self.landmarks[landmark.index()].as_mut() else { return };
+        let Some(seen) = self.landmarks.get_mut(landmark.index()) else { return };
         let Some(at) = seen.observations.iter().position(|(k, _)| *k == keyframe) else { return };
         let (_, feature) = seen.observations.remove(at);
-        self.keyframes[keyframe.index()].landmarks[feature] = None;
         if seen.observations.is_empty() {
-            self.landmarks[landmark.index()] = None;
-            self.alive -= 1;
+            self.landmarks.remove(landmark.index());
         }
+        self.keyframe_mut(keyframe).landmarks[feature] = None;
     }
 
     /// Removes a landmark and all its observations.
     pub fn forget(&mut self, landmark: LandmarkId) {
-        let Some(gone) = self.landmarks[landmark.index()].take() else { return };
-        self.alive -= 1;
+        let Some(gone) = self.landmarks.remove(landmark.index()) else { return };
         for (keyframe, feature) in gone.observations {
-            self.keyframes[keyframe.index()].landmarks[feature] = None;
+            self.keyframe_mut(keyframe).landmarks[feature] = None;
         }
     }
 
@@ -132,14 +167,14 @@ impl LandmarkMap {
 
     /// Brings descriptor, direction and scale of a landmark up to date with its observations.
     pub fn refresh(&mut self, id: LandmarkId, sensor: &Sensor) {
-        if let Some(landmark) = self.landmarks[id.index()].as_mut() {
+        if let Some(landmark) = self.landmarks.get_mut(id.index()) {
             landmark.refresh(&self.keyframes, sensor);
         }
     }
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
     use crate::testing::blank_frame;
 
@@ -149,7 +184,7 @@ mod tests {
         (map, ids)
     }
 
-    fn assert_consistent(map: &LandmarkMap) {
+    pub(crate) fn assert_consistent(map: &LandmarkMap) {
         for (id, landmark) in map.landmarks() {
             assert!(!landmark.observations.is_empty());
             for (keyframe, feature) in &landmark.observations {

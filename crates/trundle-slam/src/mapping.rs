@@ -90,6 +90,7 @@ impl Mapper<'_> {
         for (feature, landmark) in tracked.iter().enumerate().filter_map(|(i, l)| Some((i, (*l)?))) {
             map.observe(landmark, keyframe, feature);
         }
+        map.enter_tree(keyframe);
         let new = self.add_landmarks(map, keyframe);
         self.fuse(map, keyframe, new);
         for id in map.keyframe(keyframe).landmarks.clone().into_iter().flatten() {
@@ -168,8 +169,8 @@ impl Mapper<'_> {
     /// Forgets landmarks that no second keyframe saw in time, or that were seldom found where they should have been seen.
     fn cull(&self, map: &mut LandmarkMap) {
         let MappingConfig { trial_keyframes, trial_frames, found_ratio, .. } = *self.config;
-        let oldest_on_trial = map.keyframe_count().saturating_sub(trial_keyframes + 1);
-        let alone = |l: &Landmark| l.observations.len() == 1 && l.observations[0].0.index() < oldest_on_trial;
+        let Some(oldest_on_trial) = map.keyframe_ids().rev().nth(trial_keyframes) else { return };
+        let alone = |l: &Landmark| l.observations.len() == 1 && l.observations[0].0 < oldest_on_trial;
         let seldom = |l: &Landmark| {
             l.visible >= trial_frames && f64::from(l.found) < found_ratio * f64::from(l.visible)
         };

@@ -277,8 +277,8 @@ impl RgbdSlam {
     /// The keyframe that shares most landmarks with the frame; the last one's where none does.
     fn reference(&self, landmarks: &[Option<LandmarkId>]) -> KeyframeId {
         let seeing = self.map.keyframes_seeing(landmarks.iter().flatten().copied());
-        let last = || self.last.as_ref().and_then(|last| last.anchored.reference);
-        let newest = || KeyframeId::from_index(self.map.keyframe_count() - 1);
+        let last = || Some(self.map.resolve(self.last.as_ref()?.anchored.reference?).0);
+        let newest = || self.map.newest_keyframe().expect("invariant: what is tracked was mapped");
         seeing.first().map(|(id, _)| *id).or_else(last).unwrap_or_else(newest)
     }
 

@@ -19,14 +19,14 @@ impl Anchored {
         visual_from_camera: Pose3,
         map: &LandmarkMap,
     ) -> Self {
-        let reference_from_visual = reference.map(|id| map.keyframe(id).visual_from_camera.inverse());
+        let reference_from_visual = reference.map(|id| map.visual_from_keyframe(id).inverse());
         let reference_from_camera = reference_from_visual.unwrap_or_default() * visual_from_camera;
         Self { stamp, reference, reference_from_camera }
     }
 
-    /// Where it is by the map as it is now.
+    /// Where it is by the map as it is now. A reference that was forgotten goes on as its heir holds it.
     pub fn visual_from_camera(&self, map: &LandmarkMap) -> Pose3 {
-        let visual_from_reference = self.reference.map(|id| map.keyframe(id).visual_from_camera);
+        let visual_from_reference = self.reference.map(|id| map.visual_from_keyframe(id));
         (visual_from_reference.unwrap_or_default() * self.reference_from_camera).renormalized()
     }
 }

@@ -12,13 +12,14 @@ const SHARED: usize = 15;
 /// allowed for.
 pub(super) fn candidates(map: &LandmarkMap, keyframe: KeyframeId, config: &LoopConfig) -> Vec<KeyframeId> {
     let tied = tied(map, keyframe);
-    let oldest_kept_out = keyframe.index().saturating_sub(config.least_age);
+    let oldest_kept_out = map.keyframe_ids().rev().nth(config.least_age).or(map.first_keyframe());
     let here = map.keyframe(keyframe);
     let mut near: Vec<(f64, KeyframeId)> = Vec::new();
     let mut way = Way::default();
-    for id in (0..keyframe.index()).rev().map(KeyframeId::from_index) {
-        way.back_to(map, id);
-        if id.index() < oldest_kept_out && !tied.contains(&id) {
+    let ids: Vec<KeyframeId> = map.keyframe_ids().take_while(|id| *id <= keyframe).collect();
+    for (id, next) in ids.iter().copied().zip(ids.iter().copied().skip(1)).rev() {
+        way.add(map, id, next);
+        if Some(id) < oldest_kept_out && !tied.contains(&id) {
             let offset = here.visual_from_camera.inverse() * map.keyframe(id).visual_from_camera;
             let drift = Drift::along(map, way, id, keyframe, config);
             near.extend(drift.nearness(offset, config).map(|nearness| (nearness, id)));
@@ -43,10 +44,9 @@ struct Way {
 }
 
 impl Way {
-    /// From keyframe `id` to the one after it, added.
-    fn back_to(&mut self, map: &LandmarkMap, id: KeyframeId) {
-        let next = map.keyframe(KeyframeId::from_index(id.index() + 1));
-        let step = map.keyframe(id).visual_from_camera.inverse() * next.visual_from_camera;
+    /// From one keyframe to the next one, added.
+    fn add(&mut self, map: &LandmarkMap, from: KeyframeId, to: KeyframeId) {
+        let step = map.keyframe(from).visual_from_camera.inverse() * map.keyframe(to).visual_from_camera;
         self.length += step.translation.norm();
         self.turn += step.angle();
     }
@@ -63,7 +63,8 @@ impl Drift {
     /// Of `new` against `old`: the covariance that grew between, and a part of the way.
     pub(super) fn between(map: &LandmarkMap, old: KeyframeId, new: KeyframeId, config: &LoopConfig) -> Self {
         let mut way = Way::default();
-        (old.index()..new.index()).rev().for_each(|i| way.back_to(map, KeyframeId::from_index(i)));
+        let between: Vec<KeyframeId> = map.keyframe_ids().filter(|id| (old..=new).contains(id)).collect();
+        between.windows(2).for_each(|pair| way.add(map, pair[0], pair[1]));
         Self::along(map, way, old, new, config)
     }
 

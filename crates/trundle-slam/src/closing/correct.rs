@@ -29,11 +29,11 @@ impl Correction<'_> {
     /// Spreads the drift over the keyframes, lets each landmark go with the keyframe that saw it first, makes one of
     /// those that are there twice, and refines what is around.
     pub fn apply(&self, map: &mut LandmarkMap, keyframe: KeyframeId) {
-        let before: Vec<Pose3> = map.keyframes().map(|(_, k)| k.visual_from_camera).collect();
-        let after = self.graph(map, keyframe, &before).solve(&self.config.graph).poses;
-        carry_landmarks(map, &before, &after);
-        for (i, pose) in after.into_iter().enumerate() {
-            map.move_keyframe(KeyframeId::from_index(i), pose);
+        let ids: Vec<KeyframeId> = map.keyframe_ids().collect();
+        let after = self.graph(map, keyframe, &ids).solve(&self.config.graph).poses;
+        carry_landmarks(map, &ids, &after);
+        for (id, pose) in ids.into_iter().zip(after) {
+            map.move_keyframe(id, pose);
         }
         self.fuse(map, keyframe);
         map.set_covariance(keyframe, map.keyframe(self.found.candidate).covariance);
@@ -43,19 +43,21 @@ impl Correction<'_> {
 
     /// Every keyframe tied to the one before it and to those it shares many landmarks with, as they stand to each other
     /// now, and the newest to the place it recognised.
-    fn graph(&self, map: &LandmarkMap, keyframe: KeyframeId, poses: &[Pose3]) -> PoseGraph {
+    fn graph(&self, map: &LandmarkMap, keyframe: KeyframeId, ids: &[KeyframeId]) -> PoseGraph {
+        let node = |id: KeyframeId| ids.binary_search(&id).expect("invariant: the keyframe is alive");
+        let poses: Vec<Pose3> = ids.iter().map(|id| map.keyframe(*id).visual_from_camera).collect();
         let mut pairs: BTreeSet<(usize, usize)> = (1..poses.len()).map(|i| (i - 1, i)).collect();
-        for (id, _) in map.keyframes() {
-            let shared = map.covisible(id, self.config.tied_by).into_iter().map(|(other, _)| other.index());
-            pairs.extend(shared.filter(|other| *other < id.index()).map(|other| (other, id.index())));
+        for (i, id) in ids.iter().enumerate() {
+            let shared = map.covisible(*id, self.config.tied_by).into_iter().map(|(other, _)| node(other));
+            pairs.extend(shared.filter(|other| *other < i).map(|other| (other, i)));
         }
         let tie = |(from, to): (usize, usize)| self.tie(from, to, poses[from].inverse() * poses[to]);
         let mut ties: Vec<PoseConstraint> = pairs.into_iter().map(tie).collect();
-        let candidate = self.found.candidate.index();
+        let candidate = node(self.found.candidate);
         let seen = poses[candidate].inverse() * self.found.visual_from_camera;
-        ties.push(self.tie(candidate, keyframe.index(), seen));
+        ties.push(self.tie(candidate, node(keyframe), seen));
         let fixed: Vec<bool> = (0..poses.len()).map(|i| i == 0).collect();
-        PoseGraph::new(poses.to_vec(), &fixed, ties).expect("invariant: every index was counted here")
+        PoseGraph::new(poses, &fixed, ties).expect("invariant: every index was counted here")
     }
 
     fn tie(&self, from: usize, to: usize, from_to: Pose3) -> PoseConstraint {
@@ -82,13 +84,16 @@ impl Correction<'_> {
     }
 }
 
-/// Moves each landmark with the keyframe that saw it first.
-fn carry_landmarks(map: &mut LandmarkMap, before: &[Pose3], after: &[Pose3]) {
+/// Moves each landmark with the keyframe that saw it first; `after` is where the keyframes `ids` go.
+fn carry_landmarks(map: &mut LandmarkMap, ids: &[KeyframeId], after: &[Pose3]) {
+    let correction =
+        |(id, after): (&KeyframeId, &Pose3)| *after * map.keyframe(*id).visual_from_camera.inverse();
+    let corrections: Vec<Pose3> = ids.iter().zip(after).map(correction).collect();
     let moved: Vec<(_, Vector3)> = map
         .landmarks()
         .filter_map(|(id, landmark)| {
             let (first, _) = landmark.observations.iter().min()?;
-            let correction = after[first.index()] * before[first.index()].inverse();
+            let correction = corrections[ids.binary_search(first).ok()?];
             Some((id, correction.transform(landmark.position)))
         })
         .collect();

@@ -1,0 +1,85 @@
+/// Things found by a number that rises with each one made and is never used twice.
+///
+/// What is removed gives its place to the next one made: memory is that of the most things alive at once, and four bytes
+/// for each one ever made.
+#[derive(Debug, Clone)]
+pub(crate) struct Arena<T> {
+    /// Where each thing ever made stands, [`GONE`] once it is removed.
+    places: Vec<u32>,
+    things: Vec<Option<T>>,
+    free: Vec<u32>,
+}
+
+/// The place of what is removed.
+const GONE: u32 = u32::MAX;
+
+impl<T> Default for Arena<T> {
+    fn default() -> Self {
+        Self { places: Vec::new(), things: Vec::new(), free: Vec::new() }
+    }
+}
+
+impl<T> Arena<T> {
+    /// Takes a thing in; its number.
+    pub fn insert(&mut self, thing: T) -> usize {
+        let place = self.free.pop().unwrap_or_else(|| {
+            self.things.push(None);
+            u32::try_from(self.things.len() - 1).expect("invariant: an arena holds less than 2^32 things")
+        });
+        self.things[place as usize] = Some(thing);
+        self.places.push(place);
+        self.places.len() - 1
+    }
+
+    /// Takes a thing out; `None` when it is gone already.
+    pub fn remove(&mut self, number: usize) -> Option<T> {
+        let place = std::mem::replace(self.places.get_mut(number)?, GONE);
+        let thing = self.things.get_mut(place as usize)?.take();
+        self.free.push(place);
+        thing
+    }
+
+    /// The thing, unless it is gone.
+    pub fn get(&self, number: usize) -> Option<&T> {
+        self.things.get(*self.places.get(number)? as usize)?.as_ref()
+    }
+
+    /// The thing, unless it is gone.
+    pub fn get_mut(&mut self, number: usize) -> Option<&mut T> {
+        self.things.get_mut(*self.places.get(number)? as usize)?.as_mut()
+    }
+
+    /// What is there, by rising number.
+    pub fn iter(&self) -> impl DoubleEndedIterator<Item = (usize, &T)> {
+        let thing = |place: u32| self.things.get(place as usize)?.as_ref();
+        self.places.iter().enumerate().filter_map(move |(number, place)| Some((number, thing(*place)?)))
+    }
+
+    /// How many there are.
+    pub fn len(&self) -> usize {
+        self.things.len() - self.free.len()
+    }
+
+    /// The number that the next thing will have: higher than that of every thing ever made.
+    pub fn bound(&self) -> usize {
+        self.places.len()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_never_used_twice_and_places_are() {
+        let mut arena = Arena::default();
+        let numbers: Vec<usize> = ["a", "b", "c"].into_iter().map(|thing| arena.insert(thing)).collect();
+        assert_eq!((arena.remove(numbers[1]), arena.remove(numbers[1])), (Some("b"), None));
+        assert_eq!(arena.insert("d"), 3);
+        assert_eq!(arena.iter().collect::<Vec<_>>(), vec![(0, &"a"), (2, &"c"), (3, &"d")]);
+        assert_eq!(arena.iter().next_back(), Some((3, &"d")));
+        assert_eq!((arena.len(), arena.bound(), arena.things.len()), (3, 4, 3));
+        assert_eq!((arena.get(1), arena.get(9), arena.get(3)), (None, None, Some(&"d")));
+        assert_eq!((arena.get_mut(1), arena.remove(9)), (None, None));
+    }
+}

@@ -1,0 +1,113 @@
+use crate::ids::KeyframeId;
+use crate::map::LandmarkMap;
+use trundle_core::Pose3;
+
+/// Where a keyframe stands in the spanning tree: its parent is the keyframe it shared most landmarks with when it was
+/// made \[MurArtal17\]. The first keyframe is the root.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Place {
+    pub parent: Option<KeyframeId>,
+    pub children: Vec<KeyframeId>,
+    /// Forgotten keyframes whose heir it is.
+    heir_of: Vec<KeyframeId>,
+}
+
+impl LandmarkMap {
+    /// Hangs a new keyframe into the tree, once it is known what it sees: under the keyframe that sees most of it, or the
+    /// one before it.
+    pub fn enter_tree(&mut self, id: KeyframeId) {
+        let before = || self.keyframe_ids().take_while(|other| *other < id).last();
+        let nearest = self.covisible(id, 1).into_iter().map(|(other, _)| other).find(|other| *other < id);
+        if let Some(parent) = nearest.or_else(before) {
+            self.hang(id, parent);
+        }
+    }
+
+    /// Removes a keyframe and all that it saw. Its children go to its parent, and so do the frames that were kept relative
+    /// to it. The root stays: whether it was removed.
+    pub fn forget_keyframe(&mut self, id: KeyframeId) -> bool {
+        let Some(parent) = self.live_keyframe(id).and_then(|k| k.tree.parent) else { return false };
+        let seen: Vec<_> = self.keyframe(id).landmarks.iter().flatten().copied().collect();
+        seen.into_iter().for_each(|landmark| self.unobserve(landmark, id));
+        let Some(gone) = self.keyframes.remove(id.index()) else { return false };
+        let parent_from_gone = self.keyframe(parent).visual_from_camera.inverse() * gone.visual_from_camera;
+        self.forgotten.insert(id, (parent, parent_from_gone));
+        for ward in &gone.tree.heir_of {
+            if let Some((heir, heir_from_ward)) = self.forgotten.get_mut(ward) {
+                (*heir, *heir_from_ward) = (parent, (parent_from_gone * *heir_from_ward).renormalized());
+            }
+        }
+        let tree = &mut self.keyframe_mut(parent).tree;
+        tree.children.retain(|child| *child != id);
+        tree.heir_of.push(id);
+        tree.heir_of.extend(gone.tree.heir_of);
+        gone.tree.children.into_iter().for_each(|child| self.hang(child, parent));
+        true
+    }
+
+    /// Where a keyframe is, or would be now if it had not been forgotten.
+    pub fn visual_from_keyframe(&self, id: KeyframeId) -> Pose3 {
+        let (heir, heir_from_keyframe) = self.resolve(id);
+        self.keyframe(heir).visual_from_camera * heir_from_keyframe
+    }
+
+    /// The keyframe itself, or the one that took a forgotten one over; and where it stands to that.
+    pub fn resolve(&self, id: KeyframeId) -> (KeyframeId, Pose3) {
+        self.forgotten.get(&id).copied().unwrap_or((id, Pose3::identity()))
+    }
+
+    fn hang(&mut self, child: KeyframeId, parent: KeyframeId) {
+        self.keyframe_mut(child).tree.parent = Some(parent);
+        self.keyframe_mut(parent).tree.children.push(child);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::map::tests::assert_consistent;
+    use crate::testing::blank_frame;
+    use nalgebra::Vector6;
+    use trundle_core::Vector3;
+
+    fn along(x: f64) -> Pose3 {
+        Pose3::exp(Vector6::new(x, 0.0, 0.1 * x, 0.0, 0.2 * x, 0.0))
+    }
+
+    /// Four keyframes in a row, each of which shares a landmark with the one before.
+    fn chain() -> (LandmarkMap, Vec<KeyframeId>) {
+        let mut map = LandmarkMap::default();
+        let mut ids: Vec<KeyframeId> = Vec::new();
+        for i in 0..4 {
+            let id = map.add_keyframe(blank_frame(4), along(f64::from(i)));
+            let landmark = map.add_landmark(Vector3::z());
+            map.observe(landmark, id, 0);
+            if let Some(last) = ids.last() {
+                map.observe(landmark, *last, 1);
+            }
+            map.enter_tree(id);
+            ids.push(id);
+        }
+        (map, ids)
+    }
+
+    #[test]
+    fn a_forgotten_keyframe_leaves_children_and_frames_to_its_parent() {
+        let (mut map, k) = chain();
+        assert_eq!(map.keyframe(k[3]).tree.parent, Some(k[2]));
+        assert!(map.forget_keyframe(k[2]) && map.forget_keyframe(k[1]));
+        assert!(!map.forget_keyframe(k[1]), "gone already");
+        assert!(!map.forget_keyframe(k[0]), "the root stays");
+        assert_consistent(&map);
+        assert_eq!(map.keyframe_ids().collect::<Vec<_>>(), vec![k[0], k[3]]);
+        assert_eq!(map.keyframe(k[0]).tree.children, vec![k[3]]);
+        assert_eq!(map.keyframe(k[3]).tree.parent, Some(k[0]));
+        let moved = along(-0.7);
+        map.move_keyframe(k[0], moved);
+        for (i, id) in k.iter().enumerate().take(3) {
+            let gap = (moved * along(i as f64)).inverse() * map.visual_from_keyframe(*id);
+            assert!(gap.log().norm() < 1e-12, "{id}");
+        }
+        assert_eq!(map.add_keyframe(blank_frame(1), along(9.0)).index(), 4);
+    }
+}
