@@ -3,7 +3,8 @@
 //! `cargo run --release -p trundle-docking --example corridor_bench -- --problems 5000`
 //!
 //! `--seed N`, `--file PATH` instead of a seed, `--write PATH` to keep the problems, `--boxes N` of the bound that judges,
-//! `--baselines N` problems for the slow ones, `--loops N` problems in closed loop with noise, `--slow` names slow ones.
+//! `--baselines N` problems for the slow ones, `--loops N` problems in closed loop with noise, `--list PATH` keeps what
+//! became of each problem as CSV.
 
 #![expect(clippy::print_stdout, reason = "an example prints its result")]
 
@@ -12,7 +13,7 @@ mod dynamic_window;
 mod hybrid;
 mod judge;
 mod table;
-#[path = "../../tests/it/world.rs"]
+#[path = "../../crates/trundle-docking/tests/it/world.rs"]
 mod world;
 
 use rand::SeedableRng;
@@ -29,6 +30,9 @@ fn main() {
     rows.push(by_window(few));
     rows.push(by_hybrid(few));
     table::print(&rows);
+    if let Some(path) = argument("--list") {
+        std::fs::write(path, table::list(&problems, &rows[0])).expect("a file that can be written");
+    }
     closed_loop(&problems, &rows[0], number("--loops", 500));
 }
 
@@ -53,11 +57,13 @@ fn optimal(problems: &[Problem], boxes: usize) -> Row {
         Docker::new(DockingConfig { bound_boxes: boxes, search_nodes: 0, ..base.clone() }).expect("valid");
     let mut row = plan_all("trundle, optimal", problems, &Docker::new(base).expect("valid"));
     for (problem, time) in problems.iter().zip(&row.times) {
-        let Some(time) = time else { continue };
+        let Some(time) = time else {
+            row.bounds.push(None);
+            continue;
+        };
         let scene = problem.scene().expect("valid");
-        let bound =
-            judge.bound(&problem.footprint, &scene, problem.start, problem.goal, *time).expect("free ends");
-        row.ratios.push(time / bound);
+        let bound = judge.bound(&problem.footprint, &scene, problem.start, problem.goal, *time);
+        row.bounds.push(Some(bound.expect("free ends")));
     }
     row
 }
@@ -133,10 +139,7 @@ fn plan_all(name: &'static str, problems: &[Problem], docker: &Docker) -> Row {
             || docker.plan(&problem.footprint, &scene, problem.start, problem.goal).expect("free ends");
         let (plan, ms) = clock::timed(plan);
         row.planning_ms.push(ms);
-        if std::env::args().any(|a| a == "--slow") && ms > 30.0 {
-            let steps = if let Plan::Found(solution) = &plan { solution.manoeuvre.steps().len() } else { 0 };
-            println!("{} {:.0} ms {steps} steps", problem.name, ms);
-        }
+        row.steps.push(if let Plan::Found(solution) = &plan { solution.manoeuvre.steps().len() } else { 0 });
         let mut time = None;
         match plan {
             Plan::Found(solution) if judge::is_good(problem, &solution.manoeuvre) => {

@@ -1,4 +1,7 @@
-//! The table of the benchmark.
+//! The table of the benchmark, and the list behind it.
+
+use std::fmt::Write;
+use trundle_docking::corridor::Problem;
 
 /// What one method did with all problems.
 pub struct Row {
@@ -16,8 +19,10 @@ pub struct Row {
     pub bad: Vec<String>,
     /// Of planning, or of all control steps of a run, ms on one core.
     pub planning_ms: Vec<f64>,
-    /// Time over a proven bound.
-    pub ratios: Vec<f64>,
+    /// Motions of each manoeuvre; 0 where there is none.
+    pub steps: Vec<usize>,
+    /// A time that no manoeuvre beats, s, where one was settled.
+    pub bounds: Vec<Option<f64>>,
 }
 
 impl Row {
@@ -31,7 +36,8 @@ impl Row {
             unsolved: Vec::new(),
             bad: Vec::new(),
             planning_ms: Vec::new(),
-            ratios: Vec::new(),
+            steps: Vec::new(),
+            bounds: Vec::new(),
         }
     }
 }
@@ -63,8 +69,10 @@ pub fn print(rows: &[Row]) {
         );
     }
     for row in rows {
-        if !row.ratios.is_empty() {
-            let at = |q| part(&row.ratios, q);
+        let over: Vec<f64> =
+            row.times.iter().zip(&row.bounds).filter_map(|(time, bound)| Some((*time)? / (*bound)?)).collect();
+        if !over.is_empty() {
+            let at = |q| part(&over, q);
             println!(
                 "\n{}: time over the proven bound: median {:.4}, p90 {:.4}, p95 {:.4}, p99 {:.4}",
                 row.name,
@@ -84,6 +92,19 @@ pub fn print(rows: &[Row]) {
         rows[0].name,
         sum / rows[0].times.iter().flatten().count().max(1) as f64
     );
+}
+
+/// What became of each problem, as CSV.
+pub fn list(problems: &[Problem], row: &Row) -> String {
+    let mut text = "problem,time_s,bound_s,motions,planning_ms\n".to_owned();
+    let shown = |x: Option<f64>| x.map_or(String::new(), |x| format!("{x:.4}"));
+    for (i, problem) in problems.iter().enumerate() {
+        let bound = row.bounds.get(i).copied().flatten();
+        let (time, bound) = (shown(row.times[i]), shown(bound));
+        writeln!(text, "{},{time},{bound},{},{:.2}", problem.name, row.steps[i], row.planning_ms[i])
+            .expect("invariant: a string takes all that is written");
+    }
+    text
 }
 
 fn first(list: &[String]) -> &[String] {
