@@ -2,8 +2,9 @@
 //!
 //! [`OrbExtractor`] finds ORB features in an image; [`match_mutual`] pairs the descriptors of two images,
 //! [`rotation_consistent`] drops pairs that turn unlike the rest, [`FeatureGrid`] answers where in an image to look;
-//! [`estimate_rigid_motion`] finds the motion between two RGB-D frames from such pairs in spite of wrong ones, and
-//! [`refine_pose_by_reprojection`] polishes a pose against pixels. A [`Vocabulary`] turns descriptors into words, by which
+//! [`estimate_rigid_motion`] finds the motion between two RGB-D frames from such pairs in spite of wrong ones,
+//! [`estimate_pose_pnp`] does it from points and pixels alone, and [`refine_pose_by_reprojection`] polishes a pose against
+//! pixels. A [`Vocabulary`] turns descriptors into words, by which
 //! [`PlaceIndex`] finds places seen before. Everything is deterministic: the same input and seed
 //! give the same bits on any number of threads. The method and its sources: `docs/algorithms/orb.md`.
 
@@ -19,7 +20,8 @@ pub use feature_grid::FeatureGrid;
 pub use features::{Descriptor, Features, Keypoint};
 pub use matching::{Match, match_mutual};
 pub use motion::{
-    RansacConfig, RansacResult, RefineConfig, estimate_rigid_motion, refine_pose_by_reprojection,
+    RansacConfig, RansacResult, RefineConfig, estimate_pose_pnp, estimate_rigid_motion,
+    refine_pose_by_reprojection,
 };
 pub use orb::{OrbConfig, OrbExtractor};
 pub use rotation_consistency::rotation_consistent;

@@ -1,12 +1,16 @@
-//! The motion between two RGB-D frames from paired points (METHODS A1): RANSAC over three-point motions, polished by
-//! reprojection.
+//! Motion from paired features (METHODS A1): RANSAC over three-point motions between two RGB-D frames, or over the poses that
+//! three points and their pixels allow where there is no depth; polished by reprojection.
 
+mod consensus;
+mod p3p;
+mod pnp;
 mod ransac;
 mod ransac_config;
 mod refine;
 mod residual;
 mod rigid;
 
+pub use pnp::estimate_pose_pnp;
 pub use ransac::{RansacResult, estimate_rigid_motion};
 pub use ransac_config::RansacConfig;
 pub use refine::{RefineConfig, refine_pose_by_reprojection};

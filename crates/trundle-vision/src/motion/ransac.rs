@@ -1,22 +1,16 @@
+use super::consensus::Consensus;
 use super::ransac_config::RansacConfig;
-use super::refine::gauss_newton;
-use super::residual::{Mover, Observation};
+use super::residual::Observation;
 use super::rigid::rigid_motion;
-use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
 use trundle_core::{PinholeCamera, Pose3, Vector3};
 
 /// Chi-square with three degrees of freedom at 95 %.
 const CHI2_95_3: f64 = 7.815;
-/// Rounds of polishing at most; the inliers have settled long before.
-const POLISHING: usize = 5;
-/// Gauss-Newton steps a round, and the step (m and rad) that ends it.
-const STEPS: (usize, f64) = (10, 1e-7);
 
-/// What [`estimate_rigid_motion`] finds.
+/// What [`estimate_rigid_motion`] and [`estimate_pose_pnp`](crate::estimate_pose_pnp) find.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RansacResult {
-    /// The motion: maps points of camera frame a into camera frame b.
+    /// The motion: maps points of frame a into camera frame b.
     pub b_from_a: Pose3,
     /// The pairs that agree with it, rising.
     pub inliers: Vec<usize>,
@@ -45,12 +39,14 @@ pub fn estimate_rigid_motion(
         .enumerate()
         .filter_map(|(index, (&a, &b))| Pair::new(index, a, b, camera, config))
         .collect();
-    let fewest = config.min_inliers.max(3);
-    (pairs.len() >= fewest).then_some(())?;
-    let search = Search { pairs: &pairs, camera, config };
-    let (b_from_a, inliers) = search.polish(search.best_of_samples(seed)?)?;
-    let inliers: Vec<usize> = inliers.iter().map(|pair| pair.index).collect();
-    (inliers.len() >= fewest).then_some(RansacResult { b_from_a, inliers })
+    let observations: Vec<Observation> = pairs.iter().map(|pair| pair.observation).collect();
+    let consensus = Consensus { observations: &observations, camera, config };
+    let propose = |sample: [usize; 3]| {
+        let sample = sample.map(|i| &pairs[i]);
+        keeps_distances(&sample).then(|| rigid_motion(&sample.map(|pair| (pair.a, pair.b)))).flatten()
+    };
+    let (b_from_a, inliers) = consensus.find(seed, propose)?;
+    Some(RansacResult { b_from_a, inliers: inliers.into_iter().map(|i| pairs[i].index).collect() })
 }
 
 /// A pair of points, as the search sees it.
@@ -89,87 +85,6 @@ impl Pair {
     }
 }
 
-struct Search<'a> {
-    pairs: &'a [Pair],
-    camera: &'a PinholeCamera,
-    config: &'a RansacConfig,
-}
-
-impl Search<'_> {
-    /// The sampled motion of least cost; of equal ones the first.
-    fn best_of_samples(&self, seed: u64) -> Option<Pose3> {
-        let mut rng = ChaCha8Rng::seed_from_u64(seed);
-        let mut best: Option<(f64, Pose3)> = None;
-        let (mut iteration, mut enough) = (0, self.config.max_iterations);
-        while iteration < enough {
-            iteration += 1;
-            let sample = self.sample(&mut rng);
-            if !keeps_distances(&sample) {
-                continue;
-            }
-            let Some(motion) = rigid_motion(&sample.map(|pair| (pair.a, pair.b))) else { continue };
-            let (cost, inliers) = self.judge(motion);
-            if best.is_none_or(|(least, _)| cost < least) {
-                best = Some((cost, motion));
-                enough = self.enough(inliers);
-            }
-        }
-        best.map(|(_, motion)| motion)
-    }
-
-    /// Three different pairs.
-    fn sample(&self, rng: &mut ChaCha8Rng) -> [&Pair; 3] {
-        let count = self.pairs.len() as u32;
-        let first = rng.random_range(0..count);
-        // Steps from the first that leave the others different without drawing again.
-        let second = rng.random_range(1..count);
-        let third = rng.random_range(1..count - 1);
-        let third = third + u32::from(third >= second);
-        [0, second, third].map(|step| &self.pairs[((first + step) % count) as usize])
-    }
-
-    /// Cost (squared residuals, at most the bound each) and number of inliers.
-    fn judge(&self, b_from_a: Pose3) -> (f64, usize) {
-        let mover = Mover::from(b_from_a);
-        self.pairs.iter().fold((0.0, 0), |(cost, inliers), pair| {
-            let chi2 = pair.observation.chi2(self.camera, mover.transform(pair.a));
-            (cost + chi2.min(CHI2_95_3), inliers + usize::from(chi2 <= CHI2_95_3))
-        })
-    }
-
-    /// Samples after which one of right pairs only was among them, if `inliers` are all the right ones \[Fischler81\].
-    fn enough(&self, inliers: usize) -> usize {
-        let most = self.config.max_iterations;
-        let all_right = (inliers as f64 / self.pairs.len() as f64).powi(3);
-        let samples = (1.0 - self.config.confidence).ln() / (1.0 - all_right).ln();
-        // With no right pairs the quotient is infinite, of either sign; if all are right it is 0.
-        if all_right > 0.0 { (samples.ceil() as usize).min(most) } else { most }
-    }
-
-    fn inliers(&self, b_from_a: Pose3) -> Vec<&Pair> {
-        let mover = Mover::from(b_from_a);
-        let agrees = |pair: &&Pair| pair.observation.chi2(self.camera, mover.transform(pair.a)) <= CHI2_95_3;
-        self.pairs.iter().filter(agrees).collect()
-    }
-
-    /// Fits the motion to its inliers until they stay the same. `None` when they do not determine it.
-    fn polish(&self, b_from_a: Pose3) -> Option<(Pose3, Vec<&Pair>)> {
-        let mut motion = b_from_a;
-        let mut inliers = self.inliers(motion);
-        for _ in 0..POLISHING {
-            let observations: Vec<Observation> = inliers.iter().map(|pair| pair.observation).collect();
-            motion = gauss_newton(motion, &observations, self.camera, STEPS.0, STEPS.1)?;
-            let now = self.inliers(motion);
-            let settled = now.iter().map(|p| p.index).eq(inliers.iter().map(|p| p.index));
-            inliers = now;
-            if settled {
-                break;
-            }
-        }
-        Some((motion, inliers))
-    }
-}
-
 /// Whether the three distances are the same on both sides within the noise, as in any rigid motion: the cheap check that
 /// spares most wrong samples the rest.
 fn keeps_distances(sample: &[&Pair; 3]) -> bool {
@@ -184,6 +99,8 @@ mod tests {
     use super::*;
     use nalgebra::Vector6;
     use proptest::prelude::*;
+    use rand::{RngExt, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
     use trundle_core::Vector2;
 
     /// Points seen from a and b with noise of the pixel and the depth; every second pair is wrong.
@@ -223,17 +140,6 @@ mod tests {
             let right = result.inliers.iter().filter(|i| *i % 2 == 0).count();
             prop_assert!(right >= 95 && result.inliers.len() - right <= 4, "{right} of {}", result.inliers.len());
             prop_assert!(result.inliers.is_sorted());
-        }
-
-        #[test]
-        fn three_different_pairs_are_drawn(seed: u64, count in 3..9usize) {
-            let camera = PinholeCamera::kinect_v2();
-            let config = RansacConfig::default();
-            let pair = |i| Pair::new(i, Vector3::z(), Vector3::z(), &camera, &config).unwrap();
-            let pairs: Vec<Pair> = (0..count).map(pair).collect();
-            let search = Search { pairs: &pairs, camera: &camera, config: &config };
-            let [a, b, c] = search.sample(&mut ChaCha8Rng::seed_from_u64(seed)).map(|p| p.index);
-            prop_assert!(a != b && b != c && c != a);
         }
     }
 
