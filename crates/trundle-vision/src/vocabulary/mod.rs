@@ -14,6 +14,7 @@
 //! | direct index | [`Vocabulary::node_of`] | |
 
 mod bag;
+mod builtin;
 mod clusters;
 mod compact;
 mod dbow2;
