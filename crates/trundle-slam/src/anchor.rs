@@ -5,7 +5,7 @@ use crate::refine::PointMatch;
 use crate::search::{Likeness, Projection, search};
 use crate::sensor::Sensor;
 use trundle_core::{Pose3, Vector3};
-use trundle_vision::{RansacConfig, estimate_rigid_motion, match_mutual};
+use trundle_vision::{Match, RansacConfig, estimate_rigid_motion};
 
 /// A depth whose standard deviation is a larger part of it than this does not make a point.
 pub(crate) const MAX_RELATIVE_SIGMA: f64 = 0.1;
@@ -67,32 +67,21 @@ impl Anchor<'_> {
         found.into_iter().map(|(feature, i)| PointMatch { feature, ..points[i] }).collect()
     }
 
-    /// Locates `frame` without any prediction: mutual matches of all descriptors, RANSAC over the pairs with depth in
-    /// both frames. The pose, and every match of a known point.
-    pub fn match_by_likeness(
+    /// Locates `frame` without any prediction, by pairs of features that look alike (`a` of the anchor, `b` of the frame):
+    /// RANSAC over the pairs with depth in both frames. The pose, and every match of a known point.
+    pub fn locate(
         &self,
         frame: &Frame,
-        likeness: Likeness,
+        pairs: &[Match],
         seed: u64,
         (map, sensor): (&LandmarkMap, &Sensor),
     ) -> Option<(Pose3, Vec<PointMatch>)> {
-        let pairs = match_mutual(
-            &self.frame.features.descriptors,
-            &frame.features.descriptors,
-            likeness.max_distance,
-            likeness.ratio,
-        );
+        let known = |pair: &Match| Some(PointMatch { feature: pair.b, ..self.point(pair.a, map, sensor)? });
+        let matches: Vec<PointMatch> = pairs.iter().filter_map(known).collect();
         let camera_from_visual = self.visual_from_camera.inverse();
-        let (mut matches, mut here, mut there): (_, Vec<Vector3>, Vec<Vector3>) =
-            (Vec::new(), vec![], vec![]);
-        for pair in pairs {
-            let Some(point) = self.point(pair.a, map, sensor) else { continue };
-            if let Some(seen) = sensor.point(frame, pair.b) {
-                here.push(camera_from_visual.transform(point.point));
-                there.push(seen);
-            }
-            matches.push(PointMatch { feature: pair.b, ..point });
-        }
+        let both =
+            |m: &PointMatch| Some((camera_from_visual.transform(m.point), sensor.point(frame, m.feature)?));
+        let (here, there): (Vec<Vector3>, Vec<Vector3>) = matches.iter().filter_map(both).unzip();
         let motion = estimate_rigid_motion(&here, &there, &sensor.camera, &RansacConfig::default(), seed)?;
         Some((self.visual_from_camera * motion.b_from_a.inverse(), matches))
     }

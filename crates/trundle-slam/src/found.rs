@@ -18,21 +18,31 @@ pub(crate) struct Found {
 }
 
 impl Found {
-    /// From the last frame to the map. Where the map has too little to say, in a blurred or quite new view, the last
-    /// frame alone must do: a little drift is better than getting lost.
-    pub fn from_last(tracker: &Tracker, last: Anchor, predicted: Pose3) -> Option<Self> {
-        let rough = tracker.by_last(last, predicted)?;
+    /// From the last frame, whose reference keyframe is `reference`, to the map. Where the map has too little to say, in
+    /// a blurred or quite new view, the last frame alone must do: a little drift is better than getting lost.
+    pub fn from_last(
+        tracker: &Tracker,
+        last: Anchor,
+        reference: Option<KeyframeId>,
+        predicted: Pose3,
+    ) -> Option<Self> {
+        let rough = tracker.by_last(last, reference, predicted)?;
         let (fix, visible) = tracker.by_map(&rough);
         let by_map = fix.is_sound(tracker.config.min_inliers);
         let fix = if by_map { fix } else { rough };
         Some(Self { fix, visible, by_map, relocalised: false })
     }
 
-    /// From a keyframe to the map; to be believed, it takes more landmarks that agree.
+    /// From a keyframe to the map; to be believed, it takes more landmarks that agree, and most of those matched.
     pub fn from_keyframe(tracker: &Tracker, keyframe: KeyframeId) -> Option<Self> {
-        let rough = tracker.by_likeness(tracker.map.keyframe(keyframe).into())?;
+        let rough = tracker.by_words(keyframe)?;
         let (fix, visible) = tracker.by_map(&rough);
-        let sound = fix.is_sound(tracker.config.weak_inliers);
+        let sound = fix.is_sound(tracker.config.weak_inliers) && fix.is_convincing();
         sound.then_some(Self { fix, visible, by_map: true, relocalised: true })
+    }
+
+    /// Points that agree.
+    pub fn inliers(&self) -> usize {
+        self.fix.solution.inlier_count
     }
 }

@@ -30,6 +30,7 @@ mod local_map;
 mod map;
 mod mapping;
 mod motion;
+mod places;
 mod refine;
 mod relocalisation;
 mod report;

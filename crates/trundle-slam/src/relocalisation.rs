@@ -1,45 +1,38 @@
+use crate::found::Found;
 use crate::ids::KeyframeId;
-use crate::map::LandmarkMap;
+use crate::tracker::Tracker;
 use trundle_core::Pose3;
 
-/// The keyframes that a lost camera should be compared with at its `attempt`-th frame (from 0), best first, at most
-/// `most`: those near where it is believed to be, and each time others of the rest, so that all have their turn.
-///
-/// This is the seam for place recognition: with a bag of words \[GalvezLopez12\] the candidates come by likeness instead.
-pub(crate) fn candidates(map: &LandmarkMap, believed: Pose3, attempt: usize, most: usize) -> Vec<KeyframeId> {
-    let mut ranked: Vec<(f64, KeyframeId)> = map
-        .keyframes()
-        .map(|(id, keyframe)| {
-            let offset = keyframe.visual_from_camera.inverse() * believed;
-            (offset.translation.norm() + offset.angle(), id)
-        })
-        .collect();
-    ranked.sort_by(|a, b| a.0.total_cmp(&b.0).then(b.1.cmp(&a.1)));
-    let near = most.div_ceil(2).min(ranked.len());
-    let rest = ranked.split_off(near);
-    let turn = attempt * (most - most.div_ceil(2)) % rest.len().max(1);
-    let others = rest.iter().cycle().skip(turn).take((most - near).min(rest.len()));
-    ranked.iter().chain(others).map(|(_, id)| *id).collect()
+/// Two poses nearer to each other than this are one place: m, and rad.
+const SAME_PLACE: (f64, f64) = (0.3, 0.3);
+/// A second place with more than this part of the first one's points makes both doubtful: that of a second match which
+/// is nearly as near \[Lowe04\].
+const RIVAL: f64 = 0.7;
+
+/// Where a camera is that nothing is known of: the keyframes that look alike, each tried in full. Believed is the place
+/// with the most points that agree, unless a second one elsewhere has nearly as many, as rooms that look the same do.
+pub(crate) fn relocalise(tracker: &Tracker, is_asked_for: impl Fn(KeyframeId) -> bool) -> Option<Found> {
+    let most = tracker.config.relocalisation_keyframes;
+    let candidates = tracker.places.alike(tracker.map, tracker.words(), is_asked_for, most);
+    let found = candidates.into_iter().filter_map(|id| Found::from_keyframe(tracker, id)).collect();
+    unrivalled(found)
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::testing::blank_frame;
-    use trundle_core::Vector3;
+/// The place with the most points, of equal ones the first; `None` when there is none, or a rival.
+fn unrivalled(mut found: Vec<Found>) -> Option<Found> {
+    found.sort_by_key(|found| std::cmp::Reverse(found.inliers()));
+    let mut found = found.into_iter();
+    let best = found.next()?;
+    let pose = best.fix.visual_from_camera();
+    let is_rival = |other: &Found| {
+        other.inliers() as f64 > RIVAL * best.inliers() as f64
+            && !is_same_place(pose, other.fix.visual_from_camera())
+    };
+    (!found.any(|other| is_rival(&other))).then_some(best)
+}
 
-    #[test]
-    fn the_nearest_come_first_and_all_have_their_turn() {
-        let mut map = LandmarkMap::default();
-        let along = |i: usize| Pose3::new(nalgebra::UnitQuaternion::identity(), Vector3::x() * i as f64);
-        let ids: Vec<_> = (0..9).map(|i| map.add_keyframe(blank_frame(1), along(i))).collect();
-        let mut seen = std::collections::BTreeSet::new();
-        for attempt in 0..4 {
-            let chosen = candidates(&map, along(4), attempt, 5);
-            assert_eq!((chosen.len(), chosen[0]), (5, ids[4]));
-            seen.extend(chosen);
-        }
-        assert_eq!(seen.len(), 9);
-        assert_eq!(candidates(&LandmarkMap::default(), along(0), 3, 5), vec![]);
-    }
+/// Whether two poses are of one place.
+pub(crate) fn is_same_place(a: Pose3, b: Pose3) -> bool {
+    let offset = a.inverse() * b;
+    offset.translation.norm() < SAME_PLACE.0 && offset.angle() < SAME_PLACE.1
 }

@@ -9,15 +9,18 @@ use crate::local_map::View;
 use crate::map::LandmarkMap;
 use crate::mapping::Mapper;
 use crate::motion::{Belief, carried};
-use crate::relocalisation::candidates;
+use crate::places::Places;
+use crate::relocalisation::relocalise;
 use crate::report::{SeenFeature, TrackReport, Tracking};
 use crate::search::Projection;
 use crate::sensor::Sensor;
 use crate::tracker::Tracker;
 use crate::trajectory::Anchored;
 use nalgebra::Matrix6;
+use std::cell::OnceCell;
+use std::sync::Arc;
 use trundle_core::{DepthImage, Invalid, PinholeCamera, Pose3, RgbdImage, Stamp, Vector3, gray_from_color};
-use trundle_vision::{Features, OrbExtractor};
+use trundle_vision::{Features, OrbExtractor, Vocabulary};
 
 /// RGB-D SLAM: one image in, the camera's pose out; keeps the landmark map. See the crate's documentation.
 ///
@@ -28,6 +31,7 @@ pub struct RgbdSlam {
     sensor: Sensor,
     extractor: OrbExtractor,
     map: LandmarkMap,
+    places: Places,
     belief: Belief,
     /// The last frame that was located.
     last: Option<Located>,
@@ -55,19 +59,26 @@ impl RgbdSlam {
         let extractor = OrbExtractor::new(config.orb.clone())?;
         let scale_factors = extractor.scale_factors().to_vec();
         let sensor = Sensor::new(camera, scale_factors, config.tracking.pixel_sigma);
-        let belief = Belief::at(Pose3::identity());
-        let map = LandmarkMap::default();
         Ok(Self {
             config,
             sensor,
             extractor,
-            map,
-            belief,
+            map: LandmarkMap::default(),
+            places: Places::new(Vocabulary::builtin()),
+            belief: Belief::at(Pose3::identity()),
             last: None,
             misses: 0,
             history: vec![],
             seen: vec![],
         })
+    }
+
+    /// The same with another vocabulary; call it before the first image.
+    #[must_use]
+    pub fn with_vocabulary(mut self, vocabulary: Arc<Vocabulary>) -> Self {
+        self.places = Places::new(vocabulary);
+        self.places.follow(&self.map);
+        self
     }
 
     /// The same with the camera at `visual_from_camera` at the start; call it before the first image.
@@ -137,21 +148,23 @@ impl RgbdSlam {
 
     /// Where `frame` is, by the last frame and the map, or by keyframes that look alike.
     fn locate(&self, frame: &Frame, depth: &DepthImage, prior: Option<Pose3>) -> Option<Found> {
-        let config = &self.config.tracking;
+        let words = OnceCell::new();
         let tracker = Tracker {
             map: &self.map,
+            places: &self.places,
             sensor: &self.sensor,
             view: self.view(depth),
-            config,
+            config: &self.config.tracking,
             frame,
+            words: &words,
             seed: self.config.seed.wrapping_add(self.history.len() as u64),
         };
-        let last = self.last.as_ref().map(|last| last.anchor(&self.map));
-        let by_last =
-            last.and_then(|last| Found::from_last(&tracker, last, self.belief.predict(frame.stamp, prior)));
-        let most = config.relocalisation_keyframes;
-        let alike = || candidates(&self.map, self.belief.visual_from_camera, self.misses, most);
-        by_last.or_else(|| alike().into_iter().find_map(|id| Found::from_keyframe(&tracker, id)))
+        let by_last = self.last.as_ref().and_then(|last| {
+            let reference = last.anchored.reference.map(|id| self.map.resolve(id).0);
+            let predicted = self.belief.predict(frame.stamp, prior);
+            Found::from_last(&tracker, last.anchor(&self.map), reference, predicted)
+        });
+        by_last.or_else(|| relocalise(&tracker, |_| true))
     }
 
     /// Takes a found pose over: counts landmarks, makes a keyframe where one is wanted.
@@ -238,11 +251,14 @@ impl RgbdSlam {
             likeness: self.config.tracking.window_likeness(),
             window: self.config.tracking.map_window_px,
         };
-        mapper.insert(&mut self.map, frame, pose, tracked)
+        let keyframe = mapper.insert(&mut self.map, frame, pose, tracked);
+        self.places.follow(&self.map);
+        keyframe
     }
 
     fn close_loop(&mut self, keyframe: KeyframeId) -> Option<LoopClosure> {
         let closer = LoopCloser {
+            places: &self.places,
             sensor: &self.sensor,
             config: &self.config.loops,
             tracking: &self.config.tracking,

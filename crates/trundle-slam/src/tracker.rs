@@ -1,14 +1,17 @@
 use crate::anchor::Anchor;
 use crate::frame::Frame;
-use crate::ids::LandmarkId;
+use crate::ids::{KeyframeId, LandmarkId};
 use crate::local_map::View;
 use crate::map::LandmarkMap;
+use crate::places::{Places, Worded, Words};
 use crate::refine::{Fix, PointMatch};
 use crate::search::{Likeness, Projection, search};
 use crate::sensor::Sensor;
 use serde::{Deserialize, Serialize};
+use std::cell::OnceCell;
 use trundle_core::{Invalid, Pose3, require_in, require_positive};
 use trundle_optim::PoseConfig;
+use trundle_vision::{Match, match_mutual};
 
 /// How the pose of a frame is found.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -103,21 +106,27 @@ impl TrackingConfig {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Tracker<'a> {
     pub map: &'a LandmarkMap,
+    pub places: &'a Places,
     pub sensor: &'a Sensor,
     pub view: View<'a>,
     pub config: &'a TrackingConfig,
     pub frame: &'a Frame,
+    /// The frame's words, once somebody asked for them.
+    pub words: &'a OnceCell<Words>,
     pub seed: u64,
 }
 
 impl Tracker<'_> {
-    /// The pose from the last frame: its points looked for around where `predicted` puts them, then wider, then anywhere
-    /// by likeness; the first of these by which most matches agree, else the one with the most agreeing.
-    pub fn by_last(&self, last: Anchor, predicted: Pose3) -> Option<Fix> {
-        let tries: [&dyn Fn() -> Option<Fix>; 3] =
-            [&|| self.by_motion(last, predicted, 1.0), &|| self.by_motion(last, predicted, 2.0), &|| {
-                self.by_likeness(last)
-            }];
+    /// The pose from the last frame: its points looked for around where `predicted` puts them, then wider; then by what
+    /// looks like its reference keyframe, and like itself, anywhere. The first of these by which most matches agree, else
+    /// the one with the most agreeing.
+    pub fn by_last(&self, last: Anchor, reference: Option<KeyframeId>, predicted: Pose3) -> Option<Fix> {
+        let tries: [&dyn Fn() -> Option<Fix>; 4] = [
+            &|| self.by_motion(last, predicted, 1.0),
+            &|| self.by_motion(last, predicted, 2.0),
+            &|| self.by_words(reference?),
+            &|| self.by_likeness(last),
+        ];
         let mut best: Option<Fix> = None;
         for attempt in tries {
             let Some(fix) = attempt() else { continue };
@@ -131,6 +140,11 @@ impl Tracker<'_> {
         best.filter(|fix| fix.is_sound(self.config.weak_inliers))
     }
 
+    /// The frame's words.
+    pub fn words(&self) -> &Words {
+        self.words.get_or_init(|| Words::of(self.frame, self.places.vocabulary()))
+    }
+
     fn by_motion(&self, last: Anchor, predicted: Pose3, wider: f64) -> Option<Fix> {
         let likeness = self.config.window_likeness();
         let window = wider * self.config.motion_window_px;
@@ -138,11 +152,23 @@ impl Tracker<'_> {
         self.refined(matches, predicted)
     }
 
-    /// The pose from what looks alike in `anchor`, wherever it is in the image.
-    pub fn by_likeness(&self, anchor: Anchor) -> Option<Fix> {
-        let likeness = self.config.free_likeness();
-        let (pose, matches) =
-            anchor.match_by_likeness(self.frame, likeness, self.seed, (self.map, self.sensor))?;
+    /// The pose from what looks alike in a keyframe, feature by feature under the same node of the vocabulary.
+    pub fn by_words(&self, keyframe: KeyframeId) -> Option<Fix> {
+        let own = Worded { frame: self.frame, words: self.words() };
+        let pairs = self.places.worded(self.map, keyframe)?.matches(own, self.config.free_likeness());
+        self.located(self.map.keyframe(keyframe).into(), &pairs)
+    }
+
+    /// The pose from what looks alike in `last`, wherever it is in the image.
+    fn by_likeness(&self, last: Anchor) -> Option<Fix> {
+        let Likeness { max_distance, ratio } = self.config.free_likeness();
+        let (there, here) = (&last.frame.features.descriptors, &self.frame.features.descriptors);
+        let pairs = match_mutual(there, here, max_distance, ratio);
+        self.located(last, &pairs)
+    }
+
+    fn located(&self, anchor: Anchor, pairs: &[Match]) -> Option<Fix> {
+        let (pose, matches) = anchor.locate(self.frame, pairs, self.seed, (self.map, self.sensor))?;
         self.refined(matches, pose)
     }
 

@@ -15,6 +15,7 @@ mod verify;
 use crate::ids::KeyframeId;
 use crate::map::LandmarkMap;
 use crate::mapping::MappingConfig;
+use crate::places::Places;
 use crate::sensor::Sensor;
 use crate::tracker::TrackingConfig;
 pub use config::LoopConfig;
@@ -25,6 +26,7 @@ use verify::Verifier;
 /// Closes loops as keyframes come.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct LoopCloser<'a> {
+    pub places: &'a Places,
     pub sensor: &'a Sensor,
     pub config: &'a LoopConfig,
     pub tracking: &'a TrackingConfig,
@@ -50,6 +52,7 @@ impl LoopCloser<'_> {
     pub fn close(&self, map: &mut LandmarkMap, keyframe: KeyframeId) -> Option<LoopClosure> {
         let verifier = Verifier {
             map,
+            places: self.places,
             sensor: self.sensor,
             tracking: self.tracking,
             config: self.config,

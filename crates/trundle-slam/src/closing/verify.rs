@@ -3,6 +3,7 @@ use super::candidates::Drift;
 use crate::anchor::Anchor;
 use crate::ids::{KeyframeId, LandmarkId};
 use crate::map::LandmarkMap;
+use crate::places::Places;
 use crate::refine::{Fix, PointMatch};
 use crate::search::{Projection, search};
 use crate::sensor::Sensor;
@@ -14,6 +15,7 @@ use trundle_core::Pose3;
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Verifier<'a> {
     pub map: &'a LandmarkMap,
+    pub places: &'a Places,
     pub sensor: &'a Sensor,
     pub tracking: &'a TrackingConfig,
     pub config: &'a LoopConfig,
@@ -49,12 +51,11 @@ impl Verifier<'_> {
 
     /// The pose by what looks alike in both keyframes.
     fn by_likeness(&self, keyframe: KeyframeId, candidate: KeyframeId) -> Option<Fix> {
-        let frame = &self.map.keyframe(keyframe).frame;
+        let own = self.places.worded(self.map, keyframe)?;
+        let pairs = self.places.worded(self.map, candidate)?.matches(own, self.tracking.free_likeness());
         let anchor: Anchor = self.map.keyframe(candidate).into();
-        let likeness = self.tracking.free_likeness();
-        let (pose, matches) =
-            anchor.match_by_likeness(frame, likeness, self.seed, (self.map, self.sensor))?;
-        let fix = Fix::by(matches, pose, frame, self.sensor, &self.tracking.pose);
+        let (pose, matches) = anchor.locate(own.frame, &pairs, self.seed, (self.map, self.sensor))?;
+        let fix = Fix::by(matches, pose, own.frame, self.sensor, &self.tracking.pose);
         fix.is_sound(self.tracking.min_inliers).then_some(fix)
     }
 
