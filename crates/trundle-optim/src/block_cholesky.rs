@@ -1,5 +1,11 @@
+use crate::block::{
+    Block, Column, divide_by_transposed, factorise, solve_lower, solve_upper, subtract_outer,
+    subtract_product, subtract_transposed_product,
+};
+use crate::narrow_order::narrow_order;
 use nalgebra::{Matrix6, Vector6};
-use std::collections::VecDeque;
+
+const ZERO: Block = [[0.0; 6]; 6];
 
 /// A symmetric positive definite matrix of 6 x 6 blocks in profile storage, and its Cholesky factor in place.
 ///
@@ -13,142 +19,172 @@ pub(crate) struct BlockMatrix {
     first: Vec<usize>,
     /// Where each row's first block stands.
     start: Vec<usize>,
-    blocks: Vec<Matrix6<f64>>,
+    blocks: Vec<Block>,
+    /// The unknowns while solving, by row.
+    unknowns: Vec<Column>,
 }
 
 impl BlockMatrix {
     /// Zeros for `count` nodes that are coupled by `pairs`.
     pub(crate) fn new(count: usize, pairs: &[(usize, usize)]) -> Self {
-        let row_of = narrow_order(count, pairs);
-        let mut first: Vec<usize> = (0..count).collect();
+        let mut matrix = Self::default();
+        matrix.shape(count, pairs);
+        matrix
+    }
+
+    /// The same in place.
+    pub(crate) fn shape(&mut self, count: usize, pairs: &[(usize, usize)]) {
+        self.row_of = narrow_order(count, pairs);
+        self.first.clear();
+        self.first.extend(0..count);
         for &(a, b) in pairs {
-            let (low, high) = ordered(row_of[a], row_of[b]);
-            first[high] = first[high].min(low);
+            let (low, high) = ordered(self.row_of[a], self.row_of[b]);
+            self.first[high] = self.first[high].min(low);
         }
-        let mut start = Vec::with_capacity(count);
+        self.allot();
+    }
+
+    /// Zeros for `count` nodes each of which may be coupled with each, in place and in their own order.
+    pub(crate) fn shape_full(&mut self, count: usize) {
+        self.row_of.clear();
+        self.row_of.extend(0..count);
+        self.first.clear();
+        self.first.resize(count, 0);
+        self.allot();
+    }
+
+    fn allot(&mut self) {
+        self.start.clear();
         let mut size = 0;
-        for (row, first) in first.iter().enumerate() {
-            start.push(size);
+        for (row, first) in self.first.iter().enumerate() {
+            self.start.push(size);
             size += row - first + 1;
         }
-        Self { row_of, first, start, blocks: vec![Matrix6::zeros(); size] }
+        self.blocks.clear();
+        self.blocks.resize(size, ZERO);
+    }
+
+    /// How many nodes there are.
+    pub(crate) fn count(&self) -> usize {
+        self.first.len()
+    }
+
+    /// The row of a node.
+    pub(crate) fn row(&self, node: usize) -> usize {
+        self.row_of[node]
     }
 
     pub(crate) fn clear(&mut self) {
-        self.blocks.fill(Matrix6::zeros());
+        self.blocks.fill(ZERO);
     }
 
     /// Adds a block at (a, b), and its transpose at (b, a) where these differ.
     pub(crate) fn add(&mut self, a: usize, b: usize, block: &Matrix6<f64>) {
         let (i, j) = (self.row_of[a], self.row_of[b]);
-        let at = self.at(i.max(j), i.min(j));
-        self.blocks[at] += if i >= j { *block } else { block.transpose() };
+        let sum = self.block_mut(i.max(j), i.min(j));
+        for (column, sum) in sum.iter_mut().enumerate() {
+            for (row, sum) in sum.iter_mut().enumerate() {
+                *sum += if i >= j { block[(row, column)] } else { block[(column, row)] };
+            }
+        }
+    }
+
+    /// The block at a row and a column up to it, which is within the profile.
+    #[inline(always)]
+    pub(crate) fn block_mut(&mut self, row: usize, column: usize) -> &mut Block {
+        &mut self.blocks[self.start[row] + column - self.first[row]]
     }
 
     /// Multiplies the diagonal by 1 + `factor`, and adds a little where it is zero.
     pub(crate) fn damp(&mut self, factor: f64) {
         for row in 0..self.first.len() {
-            let at = self.at(row, row);
-            for k in 0..6 {
-                self.blocks[at][(k, k)] += factor * (self.blocks[at][(k, k)] + 1e-9);
+            let block = self.block_mut(row, row);
+            for (k, column) in block.iter_mut().enumerate() {
+                column[k] += factor * (column[k] + 1e-9);
             }
         }
     }
 
-    /// Turns the matrix into its Cholesky factor; `None` when it is not positive definite.
-    pub(crate) fn factorise(mut self) -> Option<BlockFactor> {
-        for i in 0..self.first.len() {
-            for j in self.first[i]..=i {
-                let mut sum = self.blocks[self.at(i, j)];
-                for k in self.first[i].max(self.first[j])..j {
-                    sum -= self.blocks[self.at(i, k)] * self.blocks[self.at(j, k)].transpose();
-                }
-                let at = self.at(i, j);
-                self.blocks[at] = if i == j {
-                    sum.cholesky()?.l()
-                } else {
-                    let diagonal = self.blocks[self.at(j, j)];
-                    // X L' = S, row by row: L X' = S'.
-                    diagonal.solve_lower_triangular(&sum.transpose())?.transpose()
-                };
-            }
+    /// How many products of blocks the factor of a row takes.
+    pub(crate) fn row_work(&self, row: usize) -> usize {
+        let width = row - self.first[row] + 1;
+        width * width / 2 + 1
+    }
+
+    /// Turns one row into that of the Cholesky factor, once all rows above are; `false` when the matrix is not positive
+    /// definite.
+    pub(crate) fn factorise_row(&mut self, row: usize) -> bool {
+        #[cfg(target_arch = "x86_64")]
+        if std::arch::is_x86_feature_detected!("avx") {
+            // SAFETY: the processor has the one feature that the function is compiled for.
+            return unsafe { self.factorise_row_by_avx(row) };
         }
-        Some(BlockFactor(self))
+        self.factorise_row_plainly(row)
     }
 
-    fn at(&self, row: usize, column: usize) -> usize {
-        self.start[row] + column - self.first[row]
+    /// The same as [`BlockMatrix::factorise_row_plainly`] with four numbers to an operation.
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx")]
+    fn factorise_row_by_avx(&mut self, row: usize) -> bool {
+        self.factorise_row_plainly(row)
     }
-}
 
-/// The Cholesky factor of a [`BlockMatrix`].
-#[derive(Debug, Clone)]
-pub(crate) struct BlockFactor(BlockMatrix);
+    #[inline(always)]
+    fn factorise_row_plainly(&mut self, i: usize) -> bool {
+        let (above, own) = self.blocks.split_at_mut(self.start[i]);
+        let own_first = self.first[i];
+        for j in own_first..i {
+            let (known, rest) = own.split_at_mut(j - own_first);
+            let (first, start) = (self.first[j], self.start[j]);
+            let from = own_first.max(first);
+            let others = &above[start + from - first..start + j - first];
+            for (left, right) in known[from - own_first..].iter().zip(others) {
+                subtract_outer(&mut rest[0], left, right);
+            }
+            divide_by_transposed(&mut rest[0], &above[start + j - first]);
+        }
+        let (known, diagonal) = own.split_at_mut(i - own_first);
+        for left in known.iter() {
+            subtract_outer(&mut diagonal[0], left, left);
+        }
+        factorise(&mut diagonal[0])
+    }
 
-impl BlockFactor {
-    /// The solution for a right-hand side of one block a node; `None` when it is not finite.
-    pub(crate) fn solve(&self, rhs: &[Vector6<f64>]) -> Option<Vec<Vector6<f64>>> {
-        let m = &self.0;
-        let mut x = vec![Vector6::zeros(); rhs.len()];
-        m.row_of.iter().zip(rhs).for_each(|(&row, b)| x[row] = *b);
+    /// Turns the whole matrix into its Cholesky factor; `false` when it is not positive definite.
+    pub(crate) fn factorise(&mut self) -> bool {
+        (0..self.count()).all(|row| self.factorise_row(row))
+    }
+
+    /// Solves in place for a right-hand side of one block a node, once every row is factorised; whether the solution is
+    /// finite.
+    pub(crate) fn solve(&mut self, rhs: &mut [Vector6<f64>]) -> bool {
+        self.unknowns.clear();
+        self.unknowns.resize(rhs.len(), [0.0; 6]);
+        self.row_of.iter().zip(rhs.iter()).for_each(|(&row, b)| self.unknowns[row] = b.data.0[0]);
+        let x = &mut self.unknowns;
         for i in 0..x.len() {
-            for k in m.first[i]..i {
-                let known = m.blocks[m.at(i, k)] * x[k];
-                x[i] -= known;
+            let (known, rest) = x.split_at_mut(i);
+            let row = &self.blocks[self.start[i]..];
+            for (block, x) in row.iter().zip(&known[self.first[i]..]) {
+                subtract_product(&mut rest[0], block, x);
             }
-            x[i] = m.blocks[m.at(i, i)].solve_lower_triangular(&x[i])?;
+            solve_lower(&row[i - self.first[i]], &mut rest[0]);
         }
         for i in (0..x.len()).rev() {
-            x[i] = m.blocks[m.at(i, i)].tr_solve_lower_triangular(&x[i])?;
-            for k in m.first[i]..i {
-                let known = m.blocks[m.at(i, k)].transpose() * x[i];
-                x[k] -= known;
+            let (above, rest) = x.split_at_mut(i);
+            let row = &self.blocks[self.start[i]..];
+            solve_upper(&row[i - self.first[i]], &mut rest[0]);
+            for (block, above) in row.iter().zip(&mut above[self.first[i]..]) {
+                subtract_transposed_product(above, block, &rest[0]);
             }
         }
-        let solution: Vec<Vector6<f64>> = m.row_of.iter().map(|&row| x[row]).collect();
-        solution.iter().all(|v| v.iter().all(|c| c.is_finite())).then_some(solution)
+        self.row_of.iter().zip(rhs.iter_mut()).for_each(|(&row, b)| *b = Vector6::from(self.unknowns[row]));
+        rhs.iter().all(|b| b.iter().all(|value| value.is_finite()))
     }
 }
 
 fn ordered(a: usize, b: usize) -> (usize, usize) {
     (a.min(b), a.max(b))
-}
-
-/// The row of each node by reverse Cuthill-McKee (Cuthill, McKee 1969; George 1971): breadth first from a node of least
-/// degree, neighbours by rising degree, then backwards. Ties go to the lower number.
-fn narrow_order(count: usize, pairs: &[(usize, usize)]) -> Vec<usize> {
-    let mut neighbours = vec![Vec::new(); count];
-    for &(a, b) in pairs.iter().filter(|(a, b)| a != b) {
-        neighbours[a].push(b);
-        neighbours[b].push(a);
-    }
-    for own in &mut neighbours {
-        own.sort_unstable();
-        own.dedup();
-    }
-    let degree: Vec<usize> = neighbours.iter().map(Vec::len).collect();
-    neighbours.iter_mut().for_each(|own| own.sort_by_key(|&n| (degree[n], n)));
-    let mut starts: Vec<usize> = (0..count).collect();
-    starts.sort_by_key(|&n| (degree[n], n));
-    let mut order = Vec::with_capacity(count);
-    let mut is_met = vec![false; count];
-    for start in starts {
-        if std::mem::replace(&mut is_met[start], true) {
-            continue;
-        }
-        let mut queue = VecDeque::from([start]);
-        while let Some(node) = queue.pop_front() {
-            order.push(node);
-            for &next in &neighbours[node] {
-                if !std::mem::replace(&mut is_met[next], true) {
-                    queue.push_back(next);
-                }
-            }
-        }
-    }
-    let mut row_of = vec![0; count];
-    order.iter().rev().enumerate().for_each(|(row, &node)| row_of[node] = row);
-    row_of
 }
 
 #[cfg(test)]
@@ -190,17 +226,36 @@ mod tests {
             (0..count).map(|_| Vector6::from_fn(|_, _| rng.random_range(-1.0..1.0))).collect();
         let flat = DVector::from_iterator(6 * count, rhs.iter().flat_map(|v| v.iter().copied()));
         let expected = dense.cholesky().unwrap().solve(&flat);
-        let found = blocks.factorise().unwrap().solve(&rhs).unwrap();
+        let mut found = rhs.clone();
+        assert!(blocks.factorise() && blocks.solve(&mut found));
         for (i, v) in found.iter().enumerate() {
             assert!((v - expected.fixed_rows::<6>(6 * i)).norm() < 1e-10);
         }
     }
 
     #[test]
+    fn four_numbers_to_an_operation_change_nothing() {
+        let mut rng = ChaCha8Rng::seed_from_u64(5);
+        let mut plain = BlockMatrix::default();
+        plain.shape_full(6);
+        for i in 0..6 {
+            for j in 0..=i {
+                let block = Matrix6::from_fn(|_, _| rng.random_range(-1.0..1.0));
+                plain.add(i, j, &(block + Matrix6::identity() * if i == j { 40.0 } else { 0.0 }));
+            }
+        }
+        let mut fast = plain.clone();
+        for row in 0..6 {
+            assert!(plain.factorise_row_plainly(row) && fast.factorise_row(row));
+        }
+        assert_eq!(plain.blocks, fast.blocks);
+    }
+
+    #[test]
     fn a_ring_is_stored_narrowly_and_what_is_not_definite_is_refused() {
         let ring: Vec<(usize, usize)> = (0..100).map(|i| (i, (i + 1) % 100)).collect();
-        let blocks = BlockMatrix::new(100, &ring);
+        let mut blocks = BlockMatrix::new(100, &ring);
         assert!(blocks.blocks.len() < 310, "{}", blocks.blocks.len());
-        assert!(blocks.factorise().is_none());
+        assert!(!blocks.factorise());
     }
 }

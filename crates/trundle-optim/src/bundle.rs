@@ -1,5 +1,5 @@
-use crate::bundle_system::{Normal, Step};
-use crate::observation::{PointObservation, robust_cost};
+use crate::bundle_solver::BundleSolver;
+use crate::observation::PointObservation;
 use serde::{Deserialize, Serialize};
 use trundle_core::{Invalid, PinholeCamera, Pose3, Vector3, require_positive};
 
@@ -56,19 +56,13 @@ pub struct BundleObservation {
     pub seen: PointObservation,
 }
 
-/// Poses and points refined together: bundle adjustment by the Schur complement (Triggs et al. 2000).
-///
-/// Levenberg-Marquardt on the Huber loss. The points are eliminated, 3 x 3 each; the reduced camera system is dense, so
-/// a step costs O(poses^3 + sum over points of (poses that see it)^2): meant for some tens of free poses.
+/// Poses and points to be refined together; [`BundleSolver`] does it.
 #[derive(Debug, Clone)]
 pub struct BundleProblem {
-    camera: PinholeCamera,
+    pub(crate) camera: PinholeCamera,
     pub(crate) poses: Vec<BundlePose>,
     pub(crate) points: Vec<Vector3>,
-    /// By rising point; equal points in the order given.
     pub(crate) observations: Vec<BundleObservation>,
-    /// Where sorted observation i stood.
-    order: Vec<usize>,
 }
 
 /// What [`BundleProblem::solve`] finds.
@@ -106,75 +100,22 @@ impl BundleProblem {
                 return Err(Invalid::new("observation", value, "", expected));
             }
         }
-        let mut order: Vec<usize> = (0..observations.len()).collect();
-        order.sort_by_key(|&i| observations[i].point);
-        let observations = order.iter().map(|&i| observations[i]).collect();
-        Ok(Self { camera, poses, points, observations, order })
+        Ok(Self { camera, poses, points, observations })
     }
 
-    /// Refines the free poses and all points.
-    pub fn solve(mut self, config: &BundleConfig) -> BundleSolution {
-        let initial_cost = self.cost(&self.poses, &self.points);
-        let (mut cost, mut damping, mut steps) = (initial_cost, config.damping, 0);
-        let mut normal = Normal::default();
-        let mut fresh = false;
-        while steps < config.steps {
-            steps += 1;
-            if !fresh {
-                normal.build(&self, &self.camera);
-                fresh = true;
-            }
-            let Some(step) = normal.solve(damping) else {
-                damping *= 10.0;
-                continue;
-            };
-            let (poses, points) = self.moved(&step);
-            let moved_cost = self.cost(&poses, &points);
-            if moved_cost > cost {
-                damping *= 10.0;
-                continue;
-            }
-            let gain = cost - moved_cost;
-            (self.poses, self.points, cost) = (poses, points, moved_cost);
-            (damping, fresh) = ((damping * 0.1).max(1e-9), false);
-            if gain <= config.converged * cost {
-                break;
-            }
+    /// Refines the free poses and all points, at once and with buffers of its own.
+    pub fn solve(&self, config: &BundleConfig) -> BundleSolution {
+        let mut solver = BundleSolver::default();
+        solver.begin(self, config);
+        solver.finish();
+        BundleSolution {
+            poses: solver.poses().to_vec(),
+            points: solver.points().to_vec(),
+            chi2: solver.chi2().to_vec(),
+            initial_cost: solver.initial_cost(),
+            final_cost: solver.cost(),
+            steps: solver.steps(),
         }
-        let chi2 = self.chi2();
-        let poses = self.poses.iter().map(|p| p.world_from_camera).collect();
-        BundleSolution { poses, points: self.points, chi2, initial_cost, final_cost: cost, steps }
-    }
-
-    fn moved(&self, step: &Step) -> (Vec<BundlePose>, Vec<Vector3>) {
-        let mut free = step.poses.iter();
-        let pose = |pose: &BundlePose| match pose.fixed {
-            true => *pose,
-            false => {
-                let xi = free.next().expect("invariant: one step for each free pose");
-                let world_from_camera = (pose.world_from_camera * Pose3::exp(*xi)).renormalized();
-                BundlePose { world_from_camera, fixed: false }
-            }
-        };
-        let poses = self.poses.iter().map(pose).collect();
-        (poses, self.points.iter().zip(&step.points).map(|(p, d)| p + d).collect())
-    }
-
-    fn cost(&self, poses: &[BundlePose], points: &[Vector3]) -> f64 {
-        let inverses: Vec<Pose3> = poses.iter().map(|p| p.world_from_camera.inverse()).collect();
-        let cost = |o: &BundleObservation| {
-            robust_cost(&self.camera, &o.seen, inverses[o.pose].transform(points[o.point]))
-        };
-        self.observations.iter().map(cost).sum()
-    }
-
-    fn chi2(&self) -> Vec<f64> {
-        let mut chi2 = vec![0.0; self.observations.len()];
-        for (o, &given) in self.observations.iter().zip(&self.order) {
-            let p_camera = self.poses[o.pose].world_from_camera.inverse().transform(self.points[o.point]);
-            chi2[given] = o.seen.chi2(&self.camera, p_camera);
-        }
-        chi2
     }
 }
 
@@ -256,9 +197,60 @@ mod tests {
     fn fixed_poses_do_not_move_and_the_same_input_gives_the_same_bits() {
         let scene = scene();
         let problem = perturbed(&scene, 2);
-        let solution = problem.clone().solve(&BundleConfig::default());
+        let solution = problem.solve(&BundleConfig::default());
         assert_eq!(solution.poses[..2], scene.poses[..2]);
         assert_eq!(solution, problem.solve(&BundleConfig::default()));
+    }
+
+    #[test]
+    fn slices_and_used_buffers_change_no_bit() {
+        let scene = scene();
+        let (problem, config) = (perturbed(&scene, 2), BundleConfig::default());
+        let whole = problem.solve(&config);
+        let mut solver = BundleSolver::default();
+        for work in [1, 700, 7, usize::MAX >> 1] {
+            // Something else in between, of another size.
+            solver.begin(&perturbed(&scene, 5), &config);
+            solver.advance(2 * work);
+            solver.begin(&problem, &config);
+            while !solver.advance(work) {}
+            assert_eq!((solver.poses(), solver.points()), (&whole.poses[..], &whole.points[..]));
+            assert_eq!((solver.chi2(), solver.cost()), (&whole.chi2[..], whole.final_cost));
+        }
+    }
+
+    /// A long row of cameras, in which few share points: the reduced system is sparse.
+    #[test]
+    fn many_poses_are_refined_as_few_are() {
+        let camera = scene().camera;
+        let count = 100;
+        let truth =
+            |i: usize| Pose3::exp(Vector6::new(0.2 * i as f64, 0.0, 0.0, 0.0, 0.02 * (i % 7) as f64, 0.0));
+        let point = |j: usize| {
+            Vector3::new(0.05 * j as f64, 0.5 - 0.1 * (j % 11) as f64, 2.0 + 0.1 * (j % 13) as f64)
+        };
+        let mut observations = Vec::new();
+        for i in 0..count {
+            for j in 0..400 {
+                let p = truth(i).inverse().transform(point(j));
+                let Some(pixel) = camera.project(p).filter(|px| camera.contains(*px)) else { continue };
+                let depth = Some(InverseDepth { value: 1.0 / p.z, sigma: 0.003 });
+                let seen = PointObservation { pixel, pixel_sigma: 1.0, depth };
+                observations.push(BundleObservation { pose: i, point: j, seen });
+            }
+        }
+        let off = |i: usize| Pose3::exp(Vector6::from_fn(|r, _| 0.01 * ((i * 7 + r * 5) % 11) as f64 - 0.05));
+        let poses = (0..count)
+            .map(|i| BundlePose {
+                world_from_camera: if i == 0 { truth(0) } else { truth(i) * off(i) },
+                fixed: i == 0,
+            })
+            .collect();
+        let problem = BundleProblem::new(camera, poses, (0..400).map(point).collect(), observations).unwrap();
+        let solution = problem.solve(&EXACT);
+        for (i, pose) in solution.poses.iter().enumerate() {
+            assert!((pose.inverse() * truth(i)).log().norm() < 1e-5, "pose {i}");
+        }
     }
 
     #[test]

@@ -1,142 +1,426 @@
-use crate::bundle::BundleProblem;
-use crate::observation::camera_point_by_pose;
-use nalgebra::{DMatrix, DVector, Matrix3, Matrix6, Matrix6x3, SVector, Vector6};
-use std::ops::Range;
+use crate::block::{Block, Column, subtract_outer};
+use crate::block_cholesky::BlockMatrix;
+use crate::bundle_layout::{Layout, Measurement};
+use crate::observation::{COST_BEHIND, NEAREST};
+use nalgebra::Vector6;
 use trundle_core::{PinholeCamera, Pose3, Vector3};
 
-/// The normal equations of a bundle problem, kept in blocks: free poses, points, and their couplings.
-#[derive(Debug, Default)]
+/// A camera pose as the residuals need it.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct View {
+    /// Of `camera_from_world`, by rows.
+    rotation: [[f64; 3]; 3],
+    translation: [f64; 3],
+    /// Row of the reduced system, [`FIXED`] where the pose does not move.
+    pub row: u32,
+}
+
+/// The row of a pose that does not move.
+pub(crate) const FIXED: u32 = u32::MAX;
+
+impl View {
+    pub fn of(world_from_camera: &Pose3, row: u32) -> Self {
+        let inverse = world_from_camera.inverse();
+        let r = inverse.rotation_matrix();
+        let rotation = std::array::from_fn(|i| std::array::from_fn(|j| r[(i, j)]));
+        Self { rotation, translation: inverse.translation.into(), row }
+    }
+
+    #[inline(always)]
+    fn see(&self, p: &[f64; 3]) -> [f64; 3] {
+        std::array::from_fn(|i| dot(&self.rotation[i], p) + self.translation[i])
+    }
+}
+
+/// Focal lengths, px.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Lens {
+    fx: f64,
+    fy: f64,
+}
+
+impl Lens {
+    pub fn of(camera: &PinholeCamera) -> Self {
+        Self { fx: camera.fx(), fy: camera.fy() }
+    }
+
+    /// The squared residual of a point as a camera sees it; infinite behind the lens.
+    #[inline(always)]
+    pub fn chi2(&self, view: &View, seen: &Measurement, point: &[f64; 3]) -> f64 {
+        let p = view.see(point);
+        if p[2] < NEAREST {
+            return f64::INFINITY;
+        }
+        let r = self.residual(seen, &p, 1.0 / p[2]);
+        dot(&r, &r)
+    }
+
+    #[inline(always)]
+    fn residual(&self, seen: &Measurement, p: &[f64; 3], inverse: f64) -> [f64; 3] {
+        [
+            (self.fx * p[0] * inverse - seen.pixel[0]) * seen.per_px,
+            (self.fy * p[1] * inverse - seen.pixel[1]) * seen.per_px,
+            (inverse - seen.inverse_depth) * seen.per_depth,
+        ]
+    }
+}
+
+/// The Huber loss of a squared residual, and its derivative.
+#[inline(always)]
+pub(crate) fn robust(chi2: f64, bound: f64) -> (f64, f64) {
+    if chi2 <= bound {
+        return (chi2, 1.0);
+    }
+    if chi2 == f64::INFINITY {
+        return (COST_BEHIND, 0.0);
+    }
+    let (residual, threshold) = (chi2.sqrt(), bound.sqrt());
+    ((threshold * (2.0 * residual - threshold)).min(COST_BEHIND), threshold / residual)
+}
+
+/// What couples an observation's pose and point: with M = [-I | p^], the derivative of p by the pose, the block between
+/// them is M' `coupling`.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Coupling {
+    /// The point in the camera's frame, m.
+    p: [f64; 3],
+    /// Its information, by camera frame and world frame, by columns.
+    coupling: [[f64; 3]; 3],
+}
+
+const UNCOUPLED: Coupling = Coupling { p: [0.0; 3], coupling: [[0.0; 3]; 3] };
+
+/// A point's own block (upper half by rows) and gradient.
+#[derive(Debug, Clone, Copy, Default)]
+struct PointBlock {
+    hessian: [f64; 6],
+    gradient: [f64; 3],
+    /// Of the damped block, upper half by rows; zero where it cannot be inverted.
+    inverse: [f64; 6],
+}
+
+/// The normal equations of a bundle problem J'WJ and J'Wr, in blocks, and the reduced system of the poses.
+#[derive(Debug, Clone, Default)]
 pub(crate) struct Normal {
-    poses: Vec<(Matrix6<f64>, Vector6<f64>)>,
+    /// By row.
+    poses: Vec<(Block, Column)>,
     points: Vec<PointBlock>,
     couplings: Vec<Coupling>,
-}
-
-/// A point's own block, its gradient, and where its couplings are.
-#[derive(Debug)]
-struct PointBlock {
-    hessian: Matrix3<f64>,
-    gradient: Vector3,
-    couplings: Range<usize>,
-}
-
-/// The block between free pose `pose` and a point.
-#[derive(Debug)]
-struct Coupling {
-    pose: usize,
-    block: Matrix6x3<f64>,
-}
-
-/// How far everything moves.
-#[derive(Debug)]
-pub(crate) struct Step {
-    /// One right perturbation for each free pose.
-    pub poses: Vec<Vector6<f64>>,
-    /// One displacement for each point, m.
-    pub points: Vec<Vector3>,
+    /// S = U - W V^-1 W' \[Triggs et al. 2000\].
+    pub reduced: BlockMatrix,
+    /// Its right-hand side by node, then the step.
+    pub step: Vec<Vector6<f64>>,
+    /// Node of each row.
+    node_of: Vec<usize>,
+    /// Blocks of the point at hand between pose and point, and these times the inverse of the point's own.
+    wide: Vec<(u32, [Column; 3], [Column; 3])>,
 }
 
 impl Normal {
-    /// J'WJ and J'Wr at the problem's poses and points.
-    pub fn build(&mut self, problem: &BundleProblem, camera: &PinholeCamera) {
-        let slots = free_slots(problem);
-        self.poses.clear();
-        self.poses.resize(slots.iter().flatten().count(), (Matrix6::zeros(), Vector6::zeros()));
-        self.points.clear();
-        self.couplings.clear();
-        let views: Vec<(Pose3, Matrix3<f64>)> = problem
-            .poses
-            .iter()
-            .map(|p| p.world_from_camera.inverse())
-            .map(|i| (i, i.rotation_matrix()))
-            .collect();
-        let mut next = 0;
-        for (index, point) in problem.points.iter().enumerate() {
-            let start = self.couplings.len();
-            let (mut hessian, mut gradient) = (Matrix3::zeros(), Vector3::zeros());
-            while let Some(o) = problem.observations.get(next).filter(|o| o.point == index) {
-                next += 1;
-                let (camera_from_world, rotation) = &views[o.pose];
-                let p_camera = camera_from_world.transform(*point);
-                let Some(linear) = o.seen.linearize(camera, p_camera) else { continue };
-                let weight = o.seen.huber().weight(linear.residual.norm_squared());
-                let by_world = linear.by_point * rotation;
-                let weighted = by_world.transpose() * weight;
-                hessian += weighted * by_world;
-                gradient += weighted * linear.residual;
-                let Some(pose) = slots[o.pose] else { continue };
-                let by_pose = linear.by_point * camera_point_by_pose(p_camera);
-                let weighted = by_pose.transpose() * weight;
-                self.poses[pose].0 += weighted * by_pose;
-                self.poses[pose].1 += weighted * linear.residual;
-                self.couplings.push(Coupling { pose, block: weighted * by_world });
+    /// Makes room for a problem whose reduced system has the right shape already.
+    pub fn fit(&mut self, layout: &Layout, points: usize) {
+        let free = self.reduced.count();
+        self.node_of.clear();
+        self.node_of.resize(free, 0);
+        (0..free).for_each(|node| self.node_of[self.reduced.row(node)] = node);
+        self.poses.resize(free, ([[0.0; 6]; 6], [0.0; 6]));
+        self.points.resize(points, PointBlock::default());
+        self.couplings.resize(layout.seen.len(), UNCOUPLED);
+        self.step.resize(free, Vector6::zeros());
+    }
+
+    /// Starts anew at other poses and points.
+    pub fn clear(&mut self) {
+        self.poses.fill(([[0.0; 6]; 6], [0.0; 6]));
+    }
+
+    /// Adds what was seen of a point; its robust cost.
+    #[inline(always)]
+    pub fn linearise(
+        &mut self,
+        index: usize,
+        point: &[f64; 3],
+        layout: &Layout,
+        views: &[View],
+        lens: &Lens,
+    ) -> f64 {
+        let range = layout.of_point(index);
+        let mut block = PointBlock::default();
+        let mut cost = 0.0;
+        for (seen, kept) in layout.seen[range.clone()].iter().zip(&mut self.couplings[range]) {
+            let view = &views[seen.pose as usize];
+            *kept = UNCOUPLED;
+            let p = view.see(point);
+            if p[2] < NEAREST {
+                cost += COST_BEHIND;
+                continue;
             }
-            self.points.push(PointBlock { hessian, gradient, couplings: start..self.couplings.len() });
+            let inverse = 1.0 / p[2];
+            let r = lens.residual(seen, &p, inverse);
+            let (loss, weight) = robust(dot(&r, &r), seen.bound);
+            cost += loss;
+            // Derivative of the residual by p: rows (a, 0, -a x), (0, b, -b y), (0, 0, c).
+            let (x, y) = (p[0] * inverse, p[1] * inverse);
+            let (a, b) = (lens.fx * inverse * seen.per_px, lens.fy * inverse * seen.per_px);
+            let c = -inverse * inverse * seen.per_depth;
+            let (aa, bb) = (weight * a * a, weight * b * b);
+            let info = [
+                [aa, 0.0, -aa * x],
+                [0.0, bb, -bb * y],
+                [-aa * x, -bb * y, aa * x * x + bb * y * y + weight * c * c],
+            ];
+            let g = [weight * a * r[0], weight * b * r[1], weight * (c * r[2] - a * x * r[0] - b * y * r[1])];
+            let rotation = &view.rotation;
+            // Columns of info * rotation.
+            let coupling: [[f64; 3]; 3] = std::array::from_fn(|j| {
+                let column = [rotation[0][j], rotation[1][j], rotation[2][j]];
+                [
+                    info[0][0] * column[0] + info[0][2] * column[2],
+                    info[1][1] * column[1] + info[1][2] * column[2],
+                    dot(&info[2], &column),
+                ]
+            });
+            let mut entry = 0;
+            for i in 0..3 {
+                let column = [rotation[0][i], rotation[1][i], rotation[2][i]];
+                for other in &coupling[i..] {
+                    block.hessian[entry] += dot(&column, other);
+                    entry += 1;
+                }
+                block.gradient[i] += dot(&column, &g);
+            }
+            if view.row != FIXED {
+                *kept = Coupling { p, coupling };
+                add_pose(&mut self.poses[view.row as usize], &info, &g, &p);
+            }
+        }
+        self.points[index] = block;
+        cost
+    }
+
+    /// How the pose of a row moves, once the reduced system is solved.
+    pub fn step_of(&self, row: u32) -> Vector6<f64> {
+        self.step[self.node_of[row as usize]]
+    }
+
+    /// Starts the reduced system at this damping: the poses' own blocks.
+    pub fn begin_reduced(&mut self, damping: f64) {
+        self.reduced.clear();
+        for (row, (hessian, gradient)) in self.poses.iter().enumerate() {
+            let block = self.reduced.block_mut(row, row);
+            *block = *hessian;
+            (0..6).for_each(|k| block[k][k] += block[k][k] * damping);
+            self.step[self.node_of[row]] = -Vector6::from(*gradient);
         }
     }
 
-    /// The damped step: points eliminated, reduced camera system by Cholesky, points back-substituted.
-    /// `None` when the system is not positive definite at this damping.
-    pub fn solve(&self, damping: f64) -> Option<Step> {
-        let inverses: Vec<Option<Matrix3<f64>>> =
-            self.points.iter().map(|p| damped(p.hessian, damping).cholesky().map(|c| c.inverse())).collect();
-        let poses = self.reduced_step(&inverses, damping)?;
-        let point = |(block, inverse): (&PointBlock, &Option<Matrix3<f64>>)| {
-            let Some(inverse) = inverse else { return Vector3::zeros() };
-            let moved = self.couplings[block.couplings.clone()]
-                .iter()
-                .fold(block.gradient, |sum, c| sum + c.block.transpose() * poses[c.pose]);
-            -(inverse * moved)
-        };
-        let points = self.points.iter().zip(&inverses).map(point).collect();
-        Some(Step { poses, points })
+    /// Eliminates a range of points from it.
+    pub fn eliminate(
+        &mut self,
+        points: std::ops::Range<usize>,
+        damping: f64,
+        layout: &Layout,
+        views: &[View],
+    ) {
+        #[cfg(target_arch = "x86_64")]
+        if std::arch::is_x86_feature_detected!("avx") {
+            // SAFETY: the processor has the one feature that the function is compiled for.
+            return unsafe { self.eliminate_by_avx(points, damping, layout, views) };
+        }
+        self.eliminate_plainly(points, damping, layout, views);
     }
 
-    /// S = U - W V^-1 W', solved for the poses.
-    fn reduced_step(&self, inverses: &[Option<Matrix3<f64>>], damping: f64) -> Option<Vec<Vector6<f64>>> {
-        if self.poses.is_empty() {
-            return Some(Vec::new());
-        }
-        let size = self.poses.len() * 6;
-        let (mut reduced, mut right) = (DMatrix::zeros(size, size), DVector::zeros(size));
-        for (i, (hessian, gradient)) in self.poses.iter().enumerate() {
-            reduced.fixed_view_mut::<6, 6>(i * 6, i * 6).copy_from(&damped(*hessian, damping));
-            right.fixed_rows_mut::<6>(i * 6).copy_from(&-gradient);
-        }
-        for (block, inverse) in self.points.iter().zip(inverses) {
-            let Some(inverse) = inverse else { continue };
-            let couplings = &self.couplings[block.couplings.clone()];
-            for a in couplings {
-                let eliminated = a.block * inverse;
-                let mut rows = right.fixed_rows_mut::<6>(a.pose * 6);
-                rows += eliminated * block.gradient;
-                for b in couplings.iter().filter(|b| b.pose <= a.pose) {
-                    let mut view = reduced.fixed_view_mut::<6, 6>(a.pose * 6, b.pose * 6);
-                    view -= eliminated * b.block.transpose();
+    /// The same as [`Normal::eliminate_plainly`] with four numbers to an operation.
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx")]
+    fn eliminate_by_avx(
+        &mut self,
+        points: std::ops::Range<usize>,
+        damping: f64,
+        layout: &Layout,
+        views: &[View],
+    ) {
+        self.eliminate_plainly(points, damping, layout, views);
+    }
+
+    #[inline(always)]
+    fn eliminate_plainly(
+        &mut self,
+        points: std::ops::Range<usize>,
+        damping: f64,
+        layout: &Layout,
+        views: &[View],
+    ) {
+        for index in points {
+            let block = &mut self.points[index];
+            block.inverse = inverse(&block.hessian, damping);
+            let (inverse, gradient) = (full(&block.inverse), block.gradient);
+            self.wide.clear();
+            let range = layout.of_point(index);
+            for (seen, kept) in layout.seen[range.clone()].iter().zip(&self.couplings[range]) {
+                let row = views[seen.pose as usize].row;
+                if row == FIXED {
+                    break;
+                }
+                let wide = kept.wide();
+                let eliminated: [Column; 3] = std::array::from_fn(|j| {
+                    std::array::from_fn(|row| {
+                        wide[0][row] * inverse[0][j]
+                            + wide[1][row] * inverse[1][j]
+                            + wide[2][row] * inverse[2][j]
+                    })
+                });
+                let right = &mut self.step[self.node_of[row as usize]];
+                for (row, sum) in right.iter_mut().enumerate() {
+                    *sum += eliminated[0][row] * gradient[0]
+                        + eliminated[1][row] * gradient[1]
+                        + eliminated[2][row] * gradient[2];
+                }
+                self.wide.push((row, wide, eliminated));
+                let last = self.wide.len() - 1;
+                for (i, (other, wide, other_eliminated)) in self.wide.iter().enumerate() {
+                    let block = self.reduced.block_mut(row as usize, *other as usize);
+                    subtract_outer(block, &eliminated, wide);
+                    if *other == row && i < last {
+                        // A pose that sees a point twice.
+                        subtract_outer(block, other_eliminated, &self.wide[last].1);
+                    }
                 }
             }
         }
-        let step = reduced.cholesky()?.solve(&right);
-        let poses: Vec<Vector6<f64>> =
-            (0..self.poses.len()).map(|i| step.fixed_rows::<6>(i * 6).into_owned()).collect();
-        poses.iter().all(|p| p.iter().all(|v| v.is_finite())).then_some(poses)
+    }
+
+    /// How a point moves once the poses' step is known, m.
+    #[inline(always)]
+    pub fn point_step(&self, index: usize, layout: &Layout, views: &[View]) -> [f64; 3] {
+        let block = &self.points[index];
+        let mut sum = block.gradient;
+        let range = layout.of_point(index);
+        for (seen, kept) in layout.seen[range.clone()].iter().zip(&self.couplings[range]) {
+            let row = views[seen.pose as usize].row;
+            if row == FIXED {
+                break;
+            }
+            let step = &self.step[self.node_of[row as usize]];
+            let turned = cross(&kept.p, &[step[3], step[4], step[5]]);
+            let moved = [turned[0] - step[0], turned[1] - step[1], turned[2] - step[2]];
+            (0..3).for_each(|j| sum[j] += dot(&kept.coupling[j], &moved));
+        }
+        let inverse = full(&block.inverse);
+        std::array::from_fn(|i| -dot(&inverse[i], &sum))
     }
 }
 
-/// Which free pose each pose is.
-fn free_slots(problem: &BundleProblem) -> Vec<Option<usize>> {
-    let mut free = 0..;
-    problem.poses.iter().map(|pose| if pose.fixed { None } else { free.next() }).collect()
+impl Coupling {
+    /// M' coupling, by columns: (-c, -p x c) for each column c.
+    #[inline(always)]
+    fn wide(&self) -> [Column; 3] {
+        std::array::from_fn(|j| {
+            let c = &self.coupling[j];
+            let turned = cross(c, &self.p);
+            [-c[0], -c[1], -c[2], turned[0], turned[1], turned[2]]
+        })
+    }
 }
 
-/// Marquardt's damping: the diagonal grows by the given part of itself.
-fn damped<const N: usize>(
-    mut hessian: nalgebra::SMatrix<f64, N, N>,
-    damping: f64,
-) -> nalgebra::SMatrix<f64, N, N> {
-    let diagonal: SVector<f64, N> = hessian.diagonal();
-    for i in 0..N {
-        hessian[(i, i)] += diagonal[i] * damping;
+/// Adds M' info M and M' g to a pose's block and gradient.
+#[inline(always)]
+fn add_pose((block, gradient): &mut (Block, Column), info: &[[f64; 3]; 3], g: &[f64; 3], p: &[f64; 3]) {
+    // Rows of info p^, which are cross products.
+    let turned: [[f64; 3]; 3] = std::array::from_fn(|i| cross(&info[i], p));
+    for j in 0..3 {
+        // Column j of info, and of -info p^ with p^ info p^ ... below it.
+        let column = [turned[0][j], turned[1][j], turned[2][j]];
+        let below = cross(&column, p);
+        for i in 0..3 {
+            block[j][i] += info[i][j];
+            block[j + 3][i] -= turned[i][j];
+            block[j][i + 3] -= turned[j][i];
+            block[j + 3][i + 3] += below[i];
+        }
+        gradient[j] -= g[j];
     }
-    hessian
+    let turned = cross(g, p);
+    (0..3).for_each(|i| gradient[i + 3] += turned[i]);
+}
+
+/// The inverse of a symmetric block (upper halves by rows) whose diagonal grows by a part of itself; zero where it has none.
+#[inline(always)]
+fn inverse(hessian: &[f64; 6], damping: f64) -> [f64; 6] {
+    let [a, b, c, d, e, f] = *hessian;
+    let (a, d, f) = (a + a * damping, d + d * damping, f + f * damping);
+    let (ca, cb, cc) = (d * f - e * e, c * e - b * f, b * e - c * d);
+    let determinant = a * ca + b * cb + c * cc;
+    let positive = a > 0.0 && a * d - b * b > 0.0 && determinant > 0.0;
+    let s = 1.0 / determinant;
+    if !(positive && s.is_finite()) {
+        return [0.0; 6];
+    }
+    [ca * s, cb * s, cc * s, (a * f - c * c) * s, (b * c - a * e) * s, (a * d - b * b) * s]
+}
+
+#[inline(always)]
+fn full(half: &[f64; 6]) -> [[f64; 3]; 3] {
+    let [a, b, c, d, e, f] = *half;
+    [[a, b, c], [b, d, e], [c, e, f]]
+}
+
+#[inline(always)]
+fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+#[inline(always)]
+fn cross(a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+/// A point moved by a step.
+#[inline(always)]
+pub(crate) fn moved(point: &Vector3, step: &[f64; 3]) -> Vector3 {
+    Vector3::new(point.x + step[0], point.y + step[1], point.z + step[2])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{BundleObservation, BundlePose, BundleProblem, PointObservation};
+    use trundle_core::Vector2;
+
+    #[test]
+    fn four_numbers_to_an_operation_change_nothing() {
+        let camera = PinholeCamera::kinect_v1();
+        let pose = |i: usize| Pose3::exp(Vector6::new(0.1 * i as f64, 0.02, 0.0, 0.1, 0.05 * i as f64, 0.0));
+        let points: Vec<Vector3> = (0..9).map(|i| Vector3::new(0.1 * f64::from(i), 0.3, 2.0)).collect();
+        let mut observations = Vec::new();
+        for i in 0..4 {
+            for point in 0..points.len() {
+                let pixel = Vector2::new(300.0 + 7.0 * i as f64, 200.0 + 9.0 * point as f64);
+                let seen = PointObservation { pixel, pixel_sigma: 1.0, depth: None };
+                observations.push(BundleObservation { pose: i, point, seen });
+            }
+        }
+        let poses = (0..4).map(|i| BundlePose { world_from_camera: pose(i), fixed: false }).collect();
+        let problem = BundleProblem::new(camera, poses, points.clone(), observations).unwrap();
+        let views: Vec<View> = (0..4).map(|i| View::of(&pose(i), i as u32)).collect();
+        let mut layout = Layout::default();
+        layout.fill(&problem, |pose| pose as u32);
+        let mut plain = Normal::default();
+        plain.reduced.shape_full(4);
+        plain.fit(&layout, points.len());
+        for (i, point) in points.iter().enumerate() {
+            plain.linearise(i, &(*point).into(), &layout, &views, &Lens::of(&camera));
+        }
+        plain.begin_reduced(1e-4);
+        let mut fast = plain.clone();
+        plain.eliminate_plainly(0..9, 1e-4, &layout, &views);
+        fast.eliminate(0..9, 1e-4, &layout, &views);
+        for i in 0..4 {
+            for j in 0..=i {
+                assert_eq!(plain.reduced.block_mut(i, j), fast.reduced.block_mut(i, j));
+            }
+        }
+        assert_eq!(plain.step, fast.step);
+        assert!(plain.step.iter().all(|step| step.norm() > 0.0));
+    }
 }

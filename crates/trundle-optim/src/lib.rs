@@ -7,15 +7,20 @@
 //! perturbation: poses are `world_from_camera`, moved on the right, translation first, so that a covariance is that of
 //! the camera in its own frame. Everything runs on one thread in a fixed order: the same input gives the same bits.
 
+mod block;
 mod block_cholesky;
 mod bundle;
+mod bundle_layout;
+mod bundle_solver;
 mod bundle_system;
 mod huber;
+mod narrow_order;
 mod observation;
 mod pose;
 mod pose_graph;
 
 pub use bundle::{BundleConfig, BundleObservation, BundlePose, BundleProblem, BundleSolution};
+pub use bundle_solver::BundleSolver;
 pub use huber::Huber;
 pub use observation::{CHI2_95_2, CHI2_95_3, InverseDepth, Linearized, PointObservation};
 pub use pose::{PoseConfig, PoseProblem, PoseSolution};

@@ -7,7 +7,7 @@ pub const CHI2_95_2: f64 = 5.991;
 /// The 95th percentile of the chi-square distribution with 3 degrees of freedom.
 pub const CHI2_95_3: f64 = 7.815;
 /// Points nearer than this along the optical axis (m) have no usable projection.
-const NEAREST: f64 = 0.02;
+pub(crate) const NEAREST: f64 = 0.02;
 
 /// A measured inverse depth. Sensors that measure a disparity (Kinect v1, stereo) have the same `sigma` at every range.
 #[derive(Debug, Clone, Copy, PartialEq)]

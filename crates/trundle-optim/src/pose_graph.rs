@@ -170,7 +170,8 @@ impl PoseGraph {
     fn stepped(&self, matrix: &BlockMatrix, gradient: &[Vector6<f64>], damping: f64) -> Option<Vec<Pose3>> {
         let mut damped = matrix.clone();
         damped.damp(damping);
-        let step = damped.factorise()?.solve(gradient)?;
+        let mut step = gradient.to_vec();
+        (damped.factorise() && damped.solve(&mut step)).then_some(())?;
         let moved = |(pose, free): (&Pose3, &Option<usize>)| {
             free.map_or(*pose, |i| (*pose * Pose3::exp(-step[i])).renormalized())
         };

@@ -1,0 +1,147 @@
+//! 6 x 6 blocks and the few operations on them that take the time of a bundle adjustment.
+//!
+//! All of them are written column by column, so that each line is one vector operation, and are inlined into callers that
+//! are compiled twice: plainly and for AVX. Neither compilation reorders or fuses what is written: the bits are the same.
+
+/// Six rows.
+pub(crate) type Column = [f64; 6];
+/// By columns.
+pub(crate) type Block = [Column; 6];
+
+/// `block -= left right'`, both of K columns.
+#[inline(always)]
+pub(crate) fn subtract_outer<const K: usize>(block: &mut Block, left: &[Column; K], right: &[Column; K]) {
+    for (column, sum) in block.iter_mut().enumerate() {
+        for k in 0..K {
+            let factor = right[k][column];
+            for (sum, value) in sum.iter_mut().zip(&left[k]) {
+                *sum -= value * factor;
+            }
+        }
+    }
+}
+
+/// `vector -= block x`.
+#[inline(always)]
+pub(crate) fn subtract_product(vector: &mut Column, block: &Block, x: &Column) {
+    for (column, factor) in block.iter().zip(x) {
+        for (sum, value) in vector.iter_mut().zip(column) {
+            *sum -= value * factor;
+        }
+    }
+}
+
+/// `vector -= block' x`.
+#[inline(always)]
+pub(crate) fn subtract_transposed_product(vector: &mut Column, block: &Block, x: &Column) {
+    for (sum, column) in vector.iter_mut().zip(block) {
+        *sum -= column.iter().zip(x).map(|(a, b)| a * b).sum::<f64>();
+    }
+}
+
+/// Turns a symmetric block, of which the lower half counts, into its lower Cholesky factor; whether it is positive definite.
+#[inline(always)]
+pub(crate) fn factorise(block: &mut Block) -> bool {
+    for j in 0..6 {
+        for k in 0..j {
+            let factor = block[k][j];
+            for row in j..6 {
+                block[j][row] -= block[k][row] * factor;
+            }
+        }
+        let pivot = block[j][j];
+        if !(pivot > 0.0 && pivot.is_finite()) {
+            return false;
+        }
+        let inverse = 1.0 / pivot.sqrt();
+        block[j].iter_mut().skip(j).for_each(|value| *value *= inverse);
+        block[j].iter_mut().take(j).for_each(|value| *value = 0.0);
+    }
+    true
+}
+
+/// `block L'^-1` in place, for a lower factor L.
+#[inline(always)]
+pub(crate) fn divide_by_transposed(block: &mut Block, lower: &Block) {
+    for j in 0..6 {
+        for k in 0..j {
+            let (known, factor) = (block[k], lower[k][j]);
+            for (sum, value) in block[j].iter_mut().zip(&known) {
+                *sum -= value * factor;
+            }
+        }
+        let inverse = 1.0 / lower[j][j];
+        block[j].iter_mut().for_each(|value| *value *= inverse);
+    }
+}
+
+/// `L^-1 x` in place.
+#[inline(always)]
+pub(crate) fn solve_lower(lower: &Block, x: &mut Column) {
+    for j in 0..6 {
+        x[j] /= lower[j][j];
+        for row in j + 1..6 {
+            x[row] -= lower[j][row] * x[j];
+        }
+    }
+}
+
+/// `L'^-1 x` in place.
+#[inline(always)]
+pub(crate) fn solve_upper(lower: &Block, x: &mut Column) {
+    for j in (0..6).rev() {
+        for row in j + 1..6 {
+            x[j] -= lower[j][row] * x[row];
+        }
+        x[j] /= lower[j][j];
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::{Matrix6, Matrix6x3, Vector6};
+    use proptest::prelude::*;
+
+    fn any_block() -> impl Strategy<Value = Block> {
+        prop::array::uniform6(prop::array::uniform6(-1.0..1.0))
+    }
+
+    fn matrix(block: &Block) -> Matrix6<f64> {
+        Matrix6::from_fn(|row, column| block[column][row])
+    }
+
+    proptest! {
+        #[test]
+        fn they_do_what_matrices_do(a in any_block(), b in any_block(), x in prop::array::uniform6(-1.0..1.0)) {
+            let (ma, mb, vx) = (matrix(&a), matrix(&b), Vector6::from(x));
+            let (mut out, three) = (a, |m: &Block| [m[0], m[1], m[2]]);
+            subtract_outer(&mut out, &three(&a), &three(&b));
+            let thin = |m: Matrix6<f64>| -> Matrix6x3<f64> { m.fixed_columns::<3>(0).into_owned() };
+            prop_assert!((matrix(&out) - (ma - thin(ma) * thin(mb).transpose())).norm() < 1e-12);
+            let mut definite = matrix(&b);
+            definite = definite * definite.transpose() + Matrix6::identity();
+            let mut lower: Block = definite.data.0;
+            prop_assert!(factorise(&mut lower));
+            prop_assert!((matrix(&lower) * matrix(&lower).transpose() - definite).norm() < 1e-10);
+            let mut quotient = a;
+            divide_by_transposed(&mut quotient, &lower);
+            prop_assert!((matrix(&quotient) * matrix(&lower).transpose() - ma).norm() < 1e-10);
+            let mut solved = x;
+            solve_lower(&lower, &mut solved);
+            solve_upper(&lower, &mut solved);
+            prop_assert!((definite * Vector6::from(solved) - vx).norm() < 1e-9);
+            let (mut plain, mut transposed) = (x, x);
+            subtract_product(&mut plain, &a, &x);
+            subtract_transposed_product(&mut transposed, &a, &x);
+            prop_assert!((Vector6::from(plain) - (vx - ma * vx)).norm() < 1e-12);
+            prop_assert!((Vector6::from(transposed) - (vx - ma.transpose() * vx)).norm() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn what_is_not_definite_is_refused() {
+        assert!(!factorise(&mut [[0.0; 6]; 6]));
+        assert!(!factorise(&mut [[f64::NAN; 6]; 6]));
+    }
+}

@@ -1,0 +1,73 @@
+use crate::bundle::{BundleObservation, BundleProblem};
+
+/// The observations of a bundle problem as the solver walks over them: by rising point, within a point by rising row of the
+/// pose, those of fixed poses last.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Layout {
+    /// The sorted observations.
+    pub seen: Vec<Measurement>,
+    /// Where each point's begin; one more at the end.
+    starts: Vec<u32>,
+    /// Where sorted observation i stood.
+    pub order: Vec<u32>,
+}
+
+/// An observation in the numbers that its residual takes.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Measurement {
+    /// Index of the pose.
+    pub pose: u32,
+    /// From the principal point, px.
+    pub pixel: [f64; 2],
+    /// 1 / sigma, 1/px.
+    pub per_px: f64,
+    /// 1/m.
+    pub inverse_depth: f64,
+    /// 1 / sigma, m; 0 without a depth.
+    pub per_depth: f64,
+    /// Squared residual where the loss turns linear.
+    pub bound: f64,
+}
+
+impl Layout {
+    /// Sorts a problem's observations; `row_of` is the row of each pose, higher than that of all others for fixed ones.
+    pub fn fill(&mut self, problem: &BundleProblem, row_of: impl Fn(usize) -> u32) {
+        let observations = &problem.observations;
+        self.order.clear();
+        self.order.extend(0..observations.len() as u32);
+        let key = |i: u32| {
+            let seen = &observations[i as usize];
+            (seen.point, row_of(seen.pose), i)
+        };
+        self.order.sort_unstable_by_key(|i| key(*i));
+        let centre = [problem.camera.cx(), problem.camera.cy()];
+        self.seen.clear();
+        self.seen.extend(self.order.iter().map(|i| Measurement::of(&observations[*i as usize], centre)));
+        self.starts.clear();
+        self.starts.resize(problem.points.len() + 1, 0);
+        observations.iter().for_each(|seen| self.starts[seen.point + 1] += 1);
+        for i in 1..self.starts.len() {
+            self.starts[i] += self.starts[i - 1];
+        }
+    }
+
+    /// Where the observations of a point stand.
+    #[inline(always)]
+    pub fn of_point(&self, point: usize) -> std::ops::Range<usize> {
+        self.starts[point] as usize..self.starts[point + 1] as usize
+    }
+}
+
+impl Measurement {
+    fn of(given: &BundleObservation, centre: [f64; 2]) -> Self {
+        let seen = &given.seen;
+        Self {
+            pose: given.pose as u32,
+            pixel: [seen.pixel.x - centre[0], seen.pixel.y - centre[1]],
+            per_px: 1.0 / seen.pixel_sigma,
+            inverse_depth: seen.depth.map_or(0.0, |d| d.value),
+            per_depth: seen.depth.map_or(0.0, |d| 1.0 / d.sigma),
+            bound: seen.chi2_bound(),
+        }
+    }
+}

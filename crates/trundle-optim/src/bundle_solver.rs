@@ -1,0 +1,331 @@
+use crate::bundle::{BundleConfig, BundleProblem};
+use crate::bundle_layout::Layout;
+use crate::bundle_system::{FIXED, Lens, Normal, View, moved, robust};
+use trundle_core::{Pose3, Vector3};
+
+/// With more free poses than this, those that share no point are left uncoupled: sorting them out is then worth its time.
+const DENSE_POSES: usize = 64;
+/// Units of work of [`BundleSolver::advance`], measured: one is some 20 ns.
+const WORK_LINEARISE: usize = 4;
+const WORK_PRODUCT: usize = 3;
+
+/// Bundle adjustment by the Schur complement (Triggs et al. 2000), under way.
+///
+/// Levenberg-Marquardt on the Huber loss. The points are eliminated, 3 x 3 each; the reduced system of the poses is solved by
+/// a block Cholesky factor. A step costs O(sum over points of (poses that see it)^2 + poses x profile^2). Buffers are kept
+/// from one problem to the next: once they have grown, nothing is allocated. The work can be cut into slices; how it is cut
+/// changes no bit of the result.
+///
+/// ```
+/// # use trundle_optim::{BundleConfig, BundleProblem, BundleSolver};
+/// # fn refine(problem: &BundleProblem) {
+/// let mut solver = BundleSolver::default();
+/// solver.begin(problem, &BundleConfig::default());
+/// while !solver.advance(100_000) { /* something more urgent */ }
+/// let refined = solver.points();
+/// # }
+/// ```
+#[derive(Debug, Clone, Default)]
+pub struct BundleSolver {
+    config: BundleConfig,
+    lens: Lens,
+    layout: Layout,
+    normal: Normal,
+    here: State,
+    /// Where the step at hand leads.
+    there: State,
+    rows: Vec<u32>,
+    pairs: Vec<(usize, usize)>,
+    phase: Phase,
+    /// How far the phase has come: a point, or a row.
+    cursor: usize,
+    damping: f64,
+    cost: f64,
+    initial_cost: f64,
+    /// Of the points so far, in the phase at hand.
+    partial_cost: f64,
+    steps: usize,
+    chi2: Vec<f64>,
+}
+
+#[derive(Debug, Clone, Default)]
+struct State {
+    poses: Vec<Pose3>,
+    views: Vec<View>,
+    points: Vec<Vector3>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+enum Phase {
+    /// Residuals and derivatives of every point.
+    Linearise,
+    /// Every point taken out of the system of the poses.
+    Eliminate,
+    /// Its factor, row by row.
+    Factorise,
+    /// The points moved after the poses, and the cost there.
+    Move,
+    /// What is left of every residual.
+    Judge,
+    #[default]
+    Done,
+}
+
+impl BundleSolver {
+    /// Takes a problem up; what was under way is dropped.
+    pub fn begin(&mut self, problem: &BundleProblem, config: &BundleConfig) {
+        self.config = config.clone();
+        self.lens = Lens::of(&problem.camera);
+        self.number_rows(problem);
+        let Self { layout, rows, here, .. } = self;
+        layout.fill(problem, |pose| rows[pose]);
+        here.poses.clear();
+        here.poses.extend(problem.poses.iter().map(|p| p.world_from_camera));
+        here.points.clone_from(&problem.points);
+        here.look(rows);
+        self.there.poses.clone_from(&here.poses);
+        self.there.points.clone_from(&here.points);
+        self.normal.fit(&self.layout, problem.points.len());
+        self.chi2.clear();
+        self.chi2.resize(problem.observations.len(), f64::INFINITY);
+        (self.damping, self.steps, self.cost) = (config.damping, 0, f64::INFINITY);
+        self.enter(Phase::Linearise);
+    }
+
+    /// Goes on for about `work` units, some 20 ns each; `true` once it is done.
+    pub fn advance(&mut self, work: usize) -> bool {
+        let mut left = work as isize;
+        while self.phase != Phase::Done && left > 0 {
+            left -= self.work_on() as isize;
+        }
+        self.phase == Phase::Done
+    }
+
+    /// Goes on to the end.
+    pub fn finish(&mut self) {
+        while !self.advance(usize::MAX >> 1) {}
+    }
+
+    /// `world_from_camera` of every pose as far as it is refined.
+    pub fn poses(&self) -> &[Pose3] {
+        &self.here.poses
+    }
+
+    /// Every point as far as it is refined, world frame, m.
+    pub fn points(&self) -> &[Vector3] {
+        &self.here.points
+    }
+
+    /// Squared residual of every observation in the order given, once it is done; infinite behind a camera.
+    pub fn chi2(&self) -> &[f64] {
+        &self.chi2
+    }
+
+    /// Robust cost of the problem as given.
+    pub fn initial_cost(&self) -> f64 {
+        self.initial_cost
+    }
+
+    /// Robust cost as far as it is refined.
+    pub fn cost(&self) -> f64 {
+        self.cost
+    }
+
+    /// Steps tried.
+    pub fn steps(&self) -> usize {
+        self.steps
+    }
+
+    /// Gives every free pose a row of the reduced system.
+    fn number_rows(&mut self, problem: &BundleProblem) {
+        let free = problem.poses.iter().filter(|pose| !pose.fixed).count();
+        let mut node = 0..;
+        self.rows.clear();
+        let numbers =
+            problem.poses.iter().map(|pose| if pose.fixed { FIXED } else { node.next().unwrap_or(FIXED) });
+        self.rows.extend(numbers);
+        let reduced = &mut self.normal.reduced;
+        if free <= DENSE_POSES {
+            reduced.shape_full(free);
+        } else {
+            coupled(problem, &self.rows, free, &mut self.pairs);
+            reduced.shape(free, &self.pairs);
+        }
+        for row in self.rows.iter_mut().filter(|row| **row != FIXED) {
+            *row = reduced.row(*row as usize) as u32;
+        }
+    }
+
+    fn enter(&mut self, phase: Phase) {
+        (self.phase, self.cursor, self.partial_cost) = (phase, 0, 0.0);
+        match phase {
+            Phase::Linearise => self.normal.clear(),
+            Phase::Eliminate => self.normal.begin_reduced(self.damping),
+            _ => {}
+        }
+    }
+
+    /// A bit of work; how many units it was.
+    fn work_on(&mut self) -> usize {
+        match self.phase {
+            Phase::Linearise => self.linearise(),
+            Phase::Eliminate => self.eliminate(),
+            Phase::Factorise => self.factorise(),
+            Phase::Move => self.move_points(),
+            Phase::Judge => self.judge(),
+            Phase::Done => 0,
+        }
+    }
+
+    /// The next points, and whether they are the last.
+    fn chunk(&mut self) -> (std::ops::Range<usize>, bool) {
+        const POINTS: usize = 32;
+        let count = self.here.points.len();
+        let range = self.cursor..(self.cursor + POINTS).min(count);
+        self.cursor = range.end;
+        (range.clone(), range.end == count)
+    }
+
+    fn observations(&self, points: &std::ops::Range<usize>) -> usize {
+        points.clone().map(|point| self.layout.of_point(point).len()).sum()
+    }
+
+    fn linearise(&mut self) -> usize {
+        let (points, last) = self.chunk();
+        for index in points.clone() {
+            let point = self.here.points[index].into();
+            self.partial_cost +=
+                self.normal.linearise(index, &point, &self.layout, &self.here.views, &self.lens);
+        }
+        if last {
+            if self.steps == 0 {
+                (self.cost, self.initial_cost) = (self.partial_cost, self.partial_cost);
+            }
+            self.enter(Phase::Eliminate);
+        }
+        WORK_LINEARISE * self.observations(&points)
+    }
+
+    fn eliminate(&mut self) -> usize {
+        let (points, last) = self.chunk();
+        self.normal.eliminate(points.clone(), self.damping, &self.layout, &self.here.views);
+        if last {
+            self.steps += 1;
+            self.enter(Phase::Factorise);
+        }
+        let pairs = |point: usize| self.layout.of_point(point).len().pow(2) / 2 + 1;
+        points.map(pairs).sum()
+    }
+
+    fn factorise(&mut self) -> usize {
+        let row = self.cursor;
+        self.cursor += 1;
+        let reduced = &mut self.normal.reduced;
+        if row < reduced.count() {
+            let work = reduced.row_work(row) * WORK_PRODUCT;
+            if !reduced.factorise_row(row) {
+                self.refuse();
+            }
+            return work;
+        }
+        if !self.normal.reduced.solve(&mut self.normal.step) {
+            self.refuse();
+            return 1;
+        }
+        for (i, row) in self.rows.iter().enumerate().filter(|(_, row)| **row != FIXED) {
+            let step = self.normal.step_of(*row);
+            self.there.poses[i] = (self.here.poses[i] * Pose3::exp(step)).renormalized();
+        }
+        self.there.look(&self.rows);
+        self.enter(Phase::Move);
+        reduced_work(self.rows.len())
+    }
+
+    fn move_points(&mut self) -> usize {
+        let (points, last) = self.chunk();
+        for index in points.clone() {
+            let step = self.normal.point_step(index, &self.layout, &self.here.views);
+            let point = moved(&self.here.points[index], &step);
+            self.there.points[index] = point;
+            for seen in &self.layout.seen[self.layout.of_point(index)] {
+                let chi2 = self.lens.chi2(&self.there.views[seen.pose as usize], seen, &point.into());
+                self.partial_cost += robust(chi2, seen.bound).0;
+            }
+        }
+        let work = self.observations(&points);
+        if last {
+            self.decide();
+        }
+        work
+    }
+
+    /// Takes the step or refuses it.
+    fn decide(&mut self) {
+        if self.partial_cost > self.cost {
+            return self.refuse();
+        }
+        let gain = self.cost - self.partial_cost;
+        self.cost = self.partial_cost;
+        std::mem::swap(&mut self.here, &mut self.there);
+        self.damping = (self.damping * 0.1).max(1e-9);
+        let converged = gain <= self.config.converged * self.cost;
+        self.enter(if converged || self.steps >= self.config.steps {
+            Phase::Judge
+        } else {
+            Phase::Linearise
+        });
+    }
+
+    /// Tries a shorter step.
+    fn refuse(&mut self) {
+        self.damping *= 10.0;
+        self.enter(if self.steps >= self.config.steps { Phase::Judge } else { Phase::Eliminate });
+    }
+
+    fn judge(&mut self) -> usize {
+        let (points, last) = self.chunk();
+        for index in points.clone() {
+            let point = self.here.points[index].into();
+            for i in self.layout.of_point(index) {
+                let seen = &self.layout.seen[i];
+                let chi2 = self.lens.chi2(&self.here.views[seen.pose as usize], seen, &point);
+                self.chi2[self.layout.order[i] as usize] = chi2;
+            }
+        }
+        if last {
+            self.enter(Phase::Done);
+        }
+        self.observations(&points)
+    }
+}
+
+impl State {
+    /// Brings the views up to date with the poses.
+    fn look(&mut self, rows: &[u32]) {
+        self.views.clear();
+        self.views.extend(self.poses.iter().zip(rows).map(|(pose, row)| View::of(pose, *row)));
+    }
+}
+
+/// Units of work of moving that many poses.
+fn reduced_work(poses: usize) -> usize {
+    20 * poses + 1
+}
+
+/// The pairs of free poses that see a point in common, by node.
+fn coupled(problem: &BundleProblem, nodes: &[u32], free: usize, pairs: &mut Vec<(usize, usize)>) {
+    let mut seers: Vec<Vec<u32>> = vec![Vec::new(); problem.points.len()];
+    for seen in problem.observations.iter().filter(|seen| nodes[seen.pose] != FIXED) {
+        seers[seen.point].push(nodes[seen.pose]);
+    }
+    let mut is_coupled = vec![false; free * free];
+    for seers in &mut seers {
+        seers.sort_unstable();
+        for (i, a) in seers.iter().enumerate() {
+            seers[i + 1..].iter().for_each(|b| is_coupled[*a as usize * free + *b as usize] = true);
+        }
+    }
+    pairs.clear();
+    let coupled = is_coupled.iter().enumerate().filter(|(_, is)| **is);
+    pairs.extend(coupled.map(|(i, _)| (i / free, i % free)).filter(|(a, b)| a < b));
+}
