@@ -1,7 +1,7 @@
 /// A corner found in an image.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Keypoint {
-    /// Column in the full-size raw image, px, sub-pixel where the level is coarse.
+    /// Column in the full-size raw image, px, 0 being the centre of the first one; good to a fraction of a pixel.
     pub x: f32,
     /// Row in the full-size raw image, px.
     pub y: f32,

@@ -60,14 +60,14 @@ mod tests {
         let camera = PinholeCamera::kinect_v2();
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         let mut around = |middle: f64, reach: f64| middle + reach * (2.0 * rng.random::<f64>() - 1.0);
-        let mut pair = |i: usize| {
+        let pair = |i: usize| {
             let seen = Vector2::new(around(255.0, 250.0), around(211.0, 200.0));
             let point = truth.inverse().transform(camera.unproject(seen, around(2.5, 1.5)));
             let noisy = seen + Vector2::new(around(0.0, noise), around(0.0, noise));
             let wrong = Vector2::new(around(255.0, 250.0), around(211.0, 200.0));
             (point, if i % nth == nth - 1 { wrong } else { noisy })
         };
-        (0..count).map(|i| pair(i)).unzip()
+        (0..count).map(pair).unzip()
     }
 
     fn estimated(scene: &(Vec<Vector3>, Vec<Vector2>), seed: u64) -> Option<RansacResult> {

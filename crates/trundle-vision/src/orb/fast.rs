@@ -69,6 +69,11 @@ impl Detector {
         corners.retain(|c| c.score > config.fast_threshold || !self.cells[cell(c)]);
     }
 
+    /// The scores of the last image, row by row: of every pixel that can be kept, and its neighbours.
+    pub fn scores(&self) -> &[u8] {
+        &self.scores
+    }
+
     /// Scores every pixel that can be kept or is a neighbour of one, and some beside them to fill the blocks.
     fn score(&mut self, image: &GrayImage) {
         let (width, height) = (image.width(), image.height());

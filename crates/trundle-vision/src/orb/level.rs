@@ -1,6 +1,6 @@
 use super::{
     Described, OrbConfig, blur::Blur, brief, distribute, fast, fast::Corner, orientation, patch,
-    resize::Resize,
+    resize::Resize, subpixel,
 };
 use trundle_core::GrayImage;
 
@@ -82,7 +82,14 @@ impl Level {
             let patch = patch::around(blurred, corner);
             let direction = orientation::direction(&patch);
             let descriptor = brief::describe(&patch, direction);
-            Described { corner, angle: direction.angle, descriptor }
+            let (dx, dy) = subpixel::offset(self.detector.scores(), self.image.width(), corner);
+            Described {
+                x: f32::from(corner.x) + dx,
+                y: f32::from(corner.y) + dy,
+                score: corner.score,
+                angle: direction.angle,
+                descriptor,
+            }
         }));
     }
 }

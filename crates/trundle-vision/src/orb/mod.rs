@@ -21,6 +21,7 @@ mod level;
 mod orientation;
 mod patch;
 mod resize;
+mod subpixel;
 
 pub use config::OrbConfig;
 
@@ -59,9 +60,9 @@ impl OrbExtractor {
         &self.scale_factors
     }
 
-    /// The features of `image`, octave by octave, at most [`OrbConfig::features`]; keypoints in px of `image`. None
-    /// within 16 px (of its own level) of the border: there is nothing to describe it by. An image of less than 33 px
-    /// a side has none.
+    /// The features of `image`, octave by octave, at most [`OrbConfig::features`]; keypoints in px of `image`, to a fraction
+    /// of a pixel. None on a pixel within 16 px (of its own level) of the border: there is nothing to describe it by. An
+    /// image of less than 33 px a side has none.
     pub fn extract(&mut self, image: &GrayImage) -> Features {
         let mut features = Features::default();
         self.extract_into(image, &mut features);
@@ -108,11 +109,11 @@ impl OrbExtractor {
             let down = image.height() as f32 / level.height().max(1) as f32;
             for described in level.features() {
                 features.keypoints.push(Keypoint {
-                    x: (f32::from(described.corner.x) + 0.5) * across - 0.5,
-                    y: (f32::from(described.corner.y) + 0.5) * down - 0.5,
+                    x: (described.x + 0.5) * across - 0.5,
+                    y: (described.y + 0.5) * down - 0.5,
                     octave: octave as u8,
                     angle: described.angle,
-                    response: f32::from(described.corner.score),
+                    response: f32::from(described.score),
                 });
                 features.descriptors.push(described.descriptor);
             }
@@ -120,10 +121,12 @@ impl OrbExtractor {
     }
 }
 
-/// A corner of a level with what its surroundings say.
+/// A corner with what its surroundings say; its place in px of its level.
 #[derive(Debug, Clone, Copy)]
 struct Described {
-    corner: fast::Corner,
+    x: f32,
+    y: f32,
+    score: u8,
     angle: f32,
     descriptor: Descriptor,
 }

@@ -1,4 +1,4 @@
-use crate::texture::{noisy, picture};
+use crate::texture::{about, noisy, picture};
 use trundle_core::{GrayImage, Vector2};
 use trundle_vision::{Features, Keypoint, OrbConfig, OrbExtractor, match_mutual, rotation_consistent};
 
@@ -23,11 +23,8 @@ fn matched(a: &Features, b: &Features, b_from_a: impl Fn(Vector2) -> Vector2) ->
     (matches.len(), right.count() as f64 / matches.len() as f64)
 }
 
-/// Turns by `degrees` and magnifies about the middle of the picture.
 fn about_the_middle(degrees: f64, magnification: f64) -> impl Fn(Vector2) -> Vector2 {
-    let middle = Vector2::new(SIZE.0 as f64, SIZE.1 as f64) / 2.0;
-    let turn = nalgebra::Rotation2::new(degrees.to_radians());
-    move |p| turn * (p - middle) * magnification + middle
+    about(SIZE, degrees, magnification)
 }
 
 #[test]

@@ -4,6 +4,7 @@
 
 mod determinism;
 mod invariance;
+mod localisation;
 mod real_frames;
 mod spread;
 mod texture;

@@ -35,7 +35,7 @@ fn as_many_as_asked_for_and_all_within_the_image() {
         let features = extracted(&image, asked);
         assert_eq!((features.keypoints.len(), features.descriptors.len()), (asked, asked));
         assert!(features.keypoints.is_sorted_by_key(|k| k.octave));
-        assert!(features.keypoints.iter().all(|k| k.x >= 16.0 && k.x < 304.0 && k.y >= 16.0 && k.y < 224.0));
+        assert!(features.keypoints.iter().all(|k| k.x >= 15.5 && k.x < 304.5 && k.y >= 15.5 && k.y < 224.5));
     }
 }
 
