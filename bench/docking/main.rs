@@ -3,7 +3,7 @@
 //! `cargo run --release -p trundle-docking --example corridor_bench -- --problems 5000`
 //!
 //! `--seed N`, `--file PATH` instead of a seed, `--write PATH` to keep the problems, `--boxes N` of the bound that judges,
-//! `--baselines N` problems for the slow ones, `--loops N` problems in closed loop with noise, `--list PATH` keeps what
+//! `--baselines N` problems for the slow ones, `--loops N` problems in closed loop with noise, `--nodes N` of the search, `--list PATH` keeps what
 //! became of each problem as CSV.
 
 #![expect(clippy::print_stdout, reason = "an example prints its result")]
@@ -52,7 +52,8 @@ fn problems() -> Vec<Problem> {
 
 /// The default method; its times against a bound that is sought with `boxes`.
 fn optimal(problems: &[Problem], boxes: usize) -> Row {
-    let base = DockingConfig { margin: 0.0, ..DockingConfig::default() };
+    let nodes = number("--nodes", DockingConfig::default().search_nodes);
+    let base = DockingConfig { margin: 0.0, search_nodes: nodes, ..DockingConfig::default() };
     let judge =
         Docker::new(DockingConfig { bound_boxes: boxes, search_nodes: 0, ..base.clone() }).expect("valid");
     let mut row = plan_all("trundle, optimal", problems, &Docker::new(base).expect("valid"));

@@ -69,8 +69,12 @@ pub fn print(rows: &[Row]) {
         );
     }
     for row in rows {
-        let over: Vec<f64> =
-            row.times.iter().zip(&row.bounds).filter_map(|(time, bound)| Some((*time)? / (*bound)?)).collect();
+        let over: Vec<f64> = row
+            .times
+            .iter()
+            .zip(&row.bounds)
+            .filter_map(|(time, bound)| Some((*time)? / (*bound)?))
+            .collect();
         if !over.is_empty() {
             let at = |q| part(&over, q);
             println!(

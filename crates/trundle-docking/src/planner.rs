@@ -11,6 +11,9 @@ use trundle_core::{Footprint, Invalid, Pose2};
 /// Pieces of a scene above which the bound is sought with fewer boxes.
 const MANY_PIECES: usize = 1000;
 
+/// Where nothing is found and nothing disproved, manoeuvres may reach this much farther.
+const WIDER: f64 = 2.0;
+
 /// Why there is nothing to plan.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum Refusal {
@@ -95,17 +98,18 @@ impl Docker {
     ) -> Result<Plan, Refusal> {
         let most = self.checked(footprint, scene, &start, &goal)?;
         let task = self.task(start, goal);
-        let near = scene.around(
-            task.center(),
-            task.half() + footprint.circumscribed_radius() + 0.1,
-            &Hull::new(footprint, 0.0),
-        );
+        let near = around(footprint, scene, &task);
         let least = most.min(0.0);
         let mut plan = self.plan_with(footprint, &near, &task, most);
         for margin in [most / 3.0, least] {
             if matches!(plan, Plan::Impossible(_)) && most > least {
                 plan = self.plan_with(footprint, &near, &task, margin);
             }
+        }
+        let open = matches!(plan, Plan::Impossible(Impossible { certificate: Certificate::None, .. }));
+        if open && self.config.method == Method::Optimal {
+            let wider = Task { reach: WIDER * task.reach, ..task };
+            plan = self.plan_with(footprint, &around(footprint, scene, &wider), &wider, least);
         }
         Ok(plan)
     }
@@ -160,11 +164,7 @@ impl Docker {
     ) -> Result<f64, Refusal> {
         let margin = self.checked(footprint, scene, &start, &goal)?;
         let task = self.task(start, goal);
-        let near = scene.around(
-            task.center(),
-            task.half() + footprint.circumscribed_radius() + 0.1,
-            &Hull::new(footprint, 0.0),
-        );
+        let near = around(footprint, scene, &task);
         let mut space = Space::new(footprint, margin, &near);
         Ok(optimal::bound(&task, &mut space, known, self.config.gap, self.config.bound_boxes))
     }
@@ -200,4 +200,10 @@ impl Docker {
         }
         Ok(margin)
     }
+}
+
+/// The part of a scene that a manoeuvre may meet.
+fn around(footprint: &Footprint, scene: &Scene, task: &Task) -> Scene {
+    let half = task.half() + footprint.circumscribed_radius() + 0.1;
+    scene.around(task.center(), half, &Hull::new(footprint, 0.0))
 }

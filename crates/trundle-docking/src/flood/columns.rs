@@ -3,6 +3,9 @@ use crate::space::Space;
 use std::f64::consts::TAU;
 use trundle_core::{Pose2, Vector2};
 
+/// A heading that is nearly the same, rad.
+const NEAR_HEADING: f64 = 0.03;
+
 /// A free gap of headings over a cell: the cell's place and the gap's in the store.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Node {
@@ -65,6 +68,30 @@ impl<'s, 'a> Columns<'s, 'a> {
         (first..first + many)
             .map(|gap| Node { cell, gap })
             .find(|&node| meets(&self.gap(node), pose.theta, 0.0))
+    }
+
+    /// The node that holds a pose; where its own cell's middle is not free there, the nearest of the cells about it whose
+    /// middle is free at its heading, or at one a little off.
+    pub fn node_near(&mut self, pose: &Pose2) -> Option<Node> {
+        if let Some(node) = self.node_at(pose) {
+            return Some(node);
+        }
+        let mut best: Option<(f64, Node)> = None;
+        for (right, up) in
+            (-1..=1).flat_map(|right| (-1..=1).map(move |up| (f64::from(right), f64::from(up))))
+        {
+            let place = pose.position() + Vector2::new(right, up) * self.side;
+            for turn in [0.0, NEAR_HEADING, -NEAR_HEADING] {
+                let Some(node) = self.node_at(&Pose2::new(place.x, place.y, pose.theta + turn)) else {
+                    continue;
+                };
+                let distance = (self.center(node.cell) - pose.position()).norm() + self.side * turn.abs();
+                if best.is_none_or(|(least, _)| distance < least) {
+                    best = Some((distance, node));
+                }
+            }
+        }
+        best.map(|(_, node)| node)
     }
 
     /// Adds the nodes of the four neighbouring cells whose headings meet a node's.

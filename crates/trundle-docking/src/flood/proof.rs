@@ -31,12 +31,14 @@ pub struct Ground {
 
 /// Floods from both ends; the smaller flood goes on.
 pub fn disprove(space: &Space<'_>, start: &Pose2, goal: &Pose2, ground: Ground) -> Proof {
-    let Ground { center, half, side, shrunk } = ground;
-    let depth = if shrunk { side * std::f64::consts::FRAC_1_SQRT_2 } else { 0.0 };
+    let Ground { center, half, side, .. } = ground;
+    let depth = if ground.shrunk { side * std::f64::consts::FRAC_1_SQRT_2 } else { 0.0 };
     let Some(shrunk) = space.hull().shrunk(depth) else { return Proof::Together };
     let mut shrunk = Space::of_hull(shrunk, space.scene());
     let mut columns = Columns::new(&mut shrunk, center, half, side);
-    let (Some(first), Some(last)) = (columns.node_at(start), columns.node_at(goal)) else {
+    // A proof needs the very cells of the ends; there the shrunk hull is free because the true one is.
+    let mut node = |pose| if ground.shrunk { columns.node_at(pose) } else { columns.node_near(pose) };
+    let (Some(first), Some(last)) = (node(start), node(goal)) else {
         return Proof::Together;
     };
     let mut floods = [Flood::new(first), Flood::new(last)];

@@ -20,6 +20,10 @@ struct Node {
 
 /// Parts of a free way at which a leg may end.
 const PARTS: [f64; 7] = [1.0, 0.8, 0.6, 0.42, 0.26, 0.13, 0.05];
+/// Poses count as the same within a cell of this side, m, ...
+const CELL: f64 = 0.02;
+/// ... and this sector, rad.
+const SECTOR: f64 = 0.06;
 /// Headings tried at a node.
 const HEADINGS: usize = 20;
 /// Most legs of a manoeuvre.
@@ -27,45 +31,36 @@ const MOST_LEGS: usize = 6;
 /// The same where a guide says that it is worth while.
 const MOST_LEGS_GUIDED: usize = 60;
 
-/// How a beam ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct BeamEnd {
-    /// Nodes that were expanded.
-    pub expanded: usize,
-    /// Whether nothing was left out for lack of width.
-    pub whole: bool,
-}
-
 /// Layer by layer, one more leg each, the most promising `width` nodes are carried on; from each the search is completed by
-/// one or two exact legs. `cell` (m) and `sector` (rad) say which poses count as the same.
-pub fn beam(search: &mut Search<'_, '_>, width: usize, cell: f64, sector: f64) -> BeamEnd {
-    layers(search, width, MOST_LEGS, (cell, sector), |search, pose| search.estimate(pose))
+/// one or two exact legs. No more than `nodes` are expanded.
+pub fn beam(search: &mut Search<'_, '_>, width: usize, nodes: usize) {
+    layers(search, width, MOST_LEGS, nodes, |search, pose| search.estimate(pose));
 }
 
 /// The same with many legs, led by a guide that knows how the free poses hang together.
-pub fn guided_beam(search: &mut Search<'_, '_>, guide: &mut Guide<'_, '_>, width: usize) -> BeamEnd {
-    layers(search, width, MOST_LEGS_GUIDED, (0.02, 0.06), |_, pose| guide.seconds(pose))
+pub fn guided_beam(search: &mut Search<'_, '_>, guide: &mut Guide<'_, '_>, width: usize, nodes: usize) {
+    layers(search, width, MOST_LEGS_GUIDED, nodes, |_, pose| guide.seconds(pose));
 }
 
 fn layers(
     search: &mut Search<'_, '_>,
     width: usize,
     most_legs: usize,
-    (cell, sector): (f64, f64),
+    most_nodes: usize,
     mut estimate: impl FnMut(&Search<'_, '_>, &Pose2) -> f64,
-) -> BeamEnd {
+) {
     let start = search.task.start;
     let mut nodes = vec![Node { pose: start, spent: 0.0, total: 0.0, parent: 0, leg: (0.0, 0.0) }];
     let mut seen: BTreeMap<(i32, i32, i32), f64> = BTreeMap::new();
-    let (mut layer, mut fan, mut end) = (vec![0], Vec::new(), BeamEnd { expanded: 0, whole: true });
+    let (mut layer, mut fan, mut expanded) = (vec![0], Vec::new(), 0);
     for _ in 1..most_legs {
         let mut children: Vec<Node> = Vec::new();
         for &index in &layer {
             let node = nodes[index];
-            if node.total >= search.time_to_beat() {
+            if node.total >= search.time_to_beat() || expanded >= most_nodes {
                 continue;
             }
-            end.expanded += 1;
+            expanded += 1;
             rays(&search.task, search.space, &node.pose, HEADINGS, 0.02, &mut fan);
             if index > 0 {
                 search.complete(&node.pose, &fan, &legs_to(&nodes, index), node.spent);
@@ -78,12 +73,11 @@ fn layers(
             if child.total >= search.time_to_beat() {
                 break;
             }
-            let key = key_of(&child.pose, cell, sector);
+            let key = key_of(&child.pose);
             if seen.get(&key).is_some_and(|&spent| spent <= child.spent + 1e-9) {
                 continue;
             }
             if layer.len() >= width {
-                end.whole = false;
                 break;
             }
             seen.insert(key, child.spent);
@@ -94,7 +88,6 @@ fn layers(
             break;
         }
     }
-    end
 }
 
 /// The nodes one leg beyond a node.
@@ -137,7 +130,7 @@ fn legs_to(nodes: &[Node], mut index: usize) -> Vec<(f64, f64)> {
     legs
 }
 
-fn key_of(pose: &Pose2, cell: f64, sector: f64) -> (i32, i32, i32) {
+fn key_of(pose: &Pose2) -> (i32, i32, i32) {
     let round = |x: f64, by: f64| (x / by).round() as i32;
-    (round(pose.x, cell), round(pose.y, cell), round(wrap_angle(pose.theta), sector))
+    (round(pose.x, CELL), round(pose.y, CELL), round(wrap_angle(pose.theta), SECTOR))
 }

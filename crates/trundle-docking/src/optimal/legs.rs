@@ -48,6 +48,20 @@ impl Legs {
         Some((time.max(0.0), motions))
     }
 
+    /// Where a base stands after each leg, from `start` on, still with the leg's heading.
+    pub fn poses(&self, start: &Pose2) -> impl Iterator<Item = Pose2> + '_ {
+        let mut at = start.position();
+        self.0.iter().map(move |&(heading, way)| {
+            at += Vector2::new(heading.cos(), heading.sin()) * way;
+            Pose2::new(at.x, at.y, heading)
+        })
+    }
+
+    /// The places where the legs end, from `start` on, m.
+    pub fn corners(&self, start: &Pose2) -> impl Iterator<Item = Vector2> + '_ {
+        self.poses(start).map(|pose| pose.position())
+    }
+
     /// The same headings and first ways, with the last two ways such that the legs end at the goal; `None` when the last
     /// two headings are parallel.
     pub fn closed(&self, task: &Task) -> Option<Self> {

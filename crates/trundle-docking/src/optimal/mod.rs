@@ -1,11 +1,14 @@
 //! Least time over all sequences of turns on the spot and straight moves.
 
 mod beam;
+mod connect;
 mod legs;
 mod polish;
 mod rays;
 mod search;
+mod shorten;
 mod task;
+mod trace;
 
 pub use legs::Legs;
 pub use task::Task;
@@ -18,6 +21,8 @@ use beam::{beam, guided_beam};
 use polish::polish;
 use rays::rays;
 use search::Search;
+use shorten::shorten;
+use trace::trace;
 
 /// Legs and their time, s.
 pub type Timed = (f64, Legs);
@@ -78,7 +83,7 @@ pub fn find(task: Task, space: &mut Space<'_>, effort: Effort) -> Outcome {
     search.best = bounded.best;
     polish_best(&mut search);
     if bounded.bound < search.time_to_beat() * (1.0 - LOOSE.max(effort.gap)) && effort.nodes > 0 {
-        beam(&mut search, 24, 0.02, 0.06);
+        beam(&mut search, BEAM, effort.nodes);
         polish_best(&mut search);
     }
     let time = search.time_to_beat();
@@ -90,6 +95,10 @@ pub fn bound(task: &Task, space: &mut Space<'_>, known: f64, gap: f64, boxes: us
     improve(task, space, Some((known, Legs::default())), gap, boxes).bound
 }
 
+/// Width of the beam that looks for better legs.
+const BEAM: usize = 24;
+/// Width of the beam where the guide knows the way.
+const GUIDED_BEAM: usize = 12;
 /// A gap at which it is worth while to look for more legs.
 const LOOSE: f64 = 0.05;
 
@@ -111,17 +120,15 @@ fn hard<'a>(search: &mut Search<'_, 'a>, second: &mut Space<'a>, effort: Effort)
         return Some(never);
     }
     let coarse = second.clone();
-    let mut width = 12;
-    let mut spent = 0;
     for side in [2.0, 1.0] {
         let mut guide = Guide::new(second, &task.goal, center, half, side * effort.cell, task.limits.speed);
-        while guide.seconds(&task.start).is_finite() && search.best.is_none() && spent < effort.nodes {
-            let end = guided_beam(search, &mut guide, width);
-            spent += end.expanded;
-            if end.whole {
-                break;
+        if guide.seconds(&task.start).is_finite() && effort.nodes > 0 {
+            guided_beam(search, &mut guide, GUIDED_BEAM, effort.nodes);
+            if search.best.is_none() {
+                let mut poses = guide.path(&task.start);
+                poses.push(task.goal);
+                search.best = trace(&task, search.space, &poses);
             }
-            width *= 4;
         }
         if search.best.is_some() {
             break;
@@ -131,6 +138,9 @@ fn hard<'a>(search: &mut Search<'_, 'a>, second: &mut Space<'a>, effort: Effort)
         {
             return Some(outcome);
         }
+    }
+    if let Some(best) = search.best.take() {
+        search.best = Some(shorten(&task, search.space, best));
     }
     polish_best(search);
     None
