@@ -4,8 +4,8 @@ use crate::map::{Keyframe, LandmarkMap};
 use crate::refine::PointMatch;
 use crate::search::{Likeness, Projection, search};
 use crate::sensor::Sensor;
-use trundle_core::{Pose3, Vector3};
-use trundle_vision::{Match, RansacConfig, estimate_rigid_motion};
+use trundle_core::{Pose3, Vector2, Vector3};
+use trundle_vision::{Match, RansacConfig, estimate_pose_pnp, estimate_rigid_motion};
 
 /// A depth whose standard deviation is a larger part of it than this does not make a point.
 pub(crate) const MAX_RELATIVE_SIGMA: f64 = 0.1;
@@ -68,7 +68,8 @@ impl Anchor<'_> {
     }
 
     /// Locates `frame` without any prediction, by pairs of features that look alike (`a` of the anchor, `b` of the frame):
-    /// RANSAC over the pairs with depth in both frames. The pose, and every match of a known point.
+    /// RANSAC over the pairs with depth in both frames, else over the pixels of all. The pose, and every match of a known
+    /// point.
     pub fn locate(
         &self,
         frame: &Frame,
@@ -82,7 +83,14 @@ impl Anchor<'_> {
         let both =
             |m: &PointMatch| Some((camera_from_visual.transform(m.point), sensor.point(frame, m.feature)?));
         let (here, there): (Vec<Vector3>, Vec<Vector3>) = matches.iter().filter_map(both).unzip();
-        let motion = estimate_rigid_motion(&here, &there, &sensor.camera, &RansacConfig::default(), seed)?;
+        let (camera, config) = (&sensor.camera, RansacConfig::default());
+        let by_pixels = || {
+            let points: Vec<Vector3> =
+                matches.iter().map(|m| camera_from_visual.transform(m.point)).collect();
+            let pixels: Vec<Vector2> = matches.iter().map(|m| frame.pixels[m.feature]).collect();
+            estimate_pose_pnp(&points, &pixels, camera, &config, seed)
+        };
+        let motion = estimate_rigid_motion(&here, &there, camera, &config, seed).or_else(by_pixels)?;
         Some((self.visual_from_camera * motion.b_from_a.inverse(), matches))
     }
 }

@@ -24,10 +24,14 @@ impl Frame {
         sensor: &Sensor,
         depth: &DepthConfig,
     ) -> Self {
-        let raw = |k: &Keypoint| Vector2::new(f64::from(k.x), f64::from(k.y));
+        let depths = features.keypoints.iter().map(|k| depth.measure(image, raw(k))).collect();
+        Self::of(stamp, features, depths, sensor)
+    }
+
+    /// Of features with their inverse depths.
+    pub fn of(stamp: Stamp, features: Features, depths: Vec<Option<InverseDepth>>, sensor: &Sensor) -> Self {
         let pixels: Vec<Vector2> =
             features.keypoints.iter().map(|k| sensor.camera.undistort(raw(k))).collect();
-        let depths = features.keypoints.iter().map(|k| depth.measure(image, raw(k))).collect();
         let rectified = |(k, p): (&Keypoint, &Vector2)| Keypoint { x: p.x as f32, y: p.y as f32, ..*k };
         let rectified: Vec<Keypoint> = features.keypoints.iter().zip(&pixels).map(rectified).collect();
         let grid = FeatureGrid::new(&rectified, sensor.camera.width(), sensor.camera.height());
@@ -51,4 +55,8 @@ impl Frame {
     pub fn near(&self, pixel: Vector2, radius: f64, octaves: (u8, u8)) -> impl Iterator<Item = usize> + '_ {
         self.grid.near(pixel.x as f32, pixel.y as f32, radius as f32, octaves.0..=octaves.1)
     }
+}
+
+fn raw(keypoint: &Keypoint) -> Vector2 {
+    Vector2::new(f64::from(keypoint.x), f64::from(keypoint.y))
 }

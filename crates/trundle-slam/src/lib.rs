@@ -16,7 +16,9 @@
 
 mod anchor;
 mod arena;
+mod claim;
 mod closing;
+mod component;
 mod config;
 mod covisibility;
 mod depth;
@@ -30,6 +32,7 @@ mod local_map;
 mod map;
 mod mapping;
 mod motion;
+mod persist;
 mod places;
 mod refine;
 mod relocalisation;
@@ -50,6 +53,7 @@ pub use ids::{KeyframeId, LandmarkId};
 pub use keyframe_policy::KeyframeConfig;
 pub use mapping::MappingConfig;
 pub use motion::MotionConfig;
-pub use report::{SeenFeature, TrackReport, Tracking};
+pub use persist::MapFileError;
+pub use report::{MapId, MapMerge, Mode, SeenFeature, TrackReport, Tracking};
 pub use slam::RgbdSlam;
 pub use tracker::TrackingConfig;

@@ -43,13 +43,19 @@ pub(crate) struct Belief {
     /// Of a right perturbation.
     pub covariance: Matrix6<f64>,
     /// Right tangent a second, while the last two frames were located.
-    velocity: Option<Vector6<f64>>,
+    pub(crate) velocity: Option<Vector6<f64>>,
 }
 
 impl Belief {
     /// At a pose taken as known, standing still.
     pub fn at(visual_from_camera: Pose3) -> Self {
         Self { stamp: None, visual_from_camera, covariance: Matrix6::zeros(), velocity: None }
+    }
+
+    /// At a pose that says nothing: as far off as any map reaches, and turned anyhow.
+    pub fn anywhere() -> Self {
+        let covariance = Matrix6::from_diagonal(&Vector6::new(1e6, 1e6, 1e6, 10.0, 10.0, 10.0));
+        Self { covariance, ..Self::at(Pose3::identity()) }
     }
 
     /// Where the camera should be at `stamp`: moved by the prior, else on at the same velocity, else where it was.

@@ -13,7 +13,7 @@ use trundle_vision::{BagOfWords, Match, NodeId, PlaceIndex, Vocabulary, match_mu
 const COMPARED_LEVEL: usize = 1;
 
 /// Landmarks that tie two keyframes to one place \[MurArtal17\].
-const SHARED: usize = 15;
+pub(crate) const SHARED: usize = 15;
 
 /// The words of a frame.
 #[derive(Debug, Clone)]
@@ -108,12 +108,6 @@ impl Places {
         Some(Worded { frame: &map.live_keyframe(id)?.frame, words: self.words.get(&id)? })
     }
 
-    /// How much two keyframes look alike, 0 to 1.
-    pub fn similarity(&self, a: KeyframeId, b: KeyframeId) -> f32 {
-        let bags = self.words.get(&a).zip(self.words.get(&b));
-        bags.map_or(0.0, |(a, b)| a.bag.similarity(&b.bag))
-    }
-
     /// The keyframes asked for that look most like `words`, at most `most`: the best of each place before the second best
     /// of any, and places by the similarity of all their keyframes together \[GalvezLopez12, sec. V-C\].
     pub fn alike(
@@ -124,9 +118,10 @@ impl Places {
         most: usize,
     ) -> Vec<KeyframeId> {
         let id = |place: u32| KeyframeId::from_index(place as usize);
-        let found = self.index.query(&words.bag, |place| is_asked_for(id(place)));
+        let found = self.index.query(&words.bag, |_| true);
+        let asked = found.into_iter().filter(|(place, _)| is_asked_for(id(*place)));
         let mut places: Vec<Place> = Vec::new();
-        for (place, similarity) in found.into_iter().take(4 * most) {
+        for (place, similarity) in asked.take(4 * most) {
             let id = id(place);
             match places.iter().position(|p| p.around.contains(&id)) {
                 Some(known) => places[known].join(id, similarity),

@@ -1,5 +1,4 @@
 use crate::found::Found;
-use crate::ids::KeyframeId;
 use crate::tracker::Tracker;
 use trundle_core::Pose3;
 
@@ -9,26 +8,38 @@ const SAME_PLACE: (f64, f64) = (0.3, 0.3);
 /// is nearly as near \[Lowe04\].
 const RIVAL: f64 = 0.7;
 
-/// Where a camera is that nothing is known of: the keyframes that look alike, each tried in full. Believed is the place
-/// with the most points that agree, unless a second one elsewhere has nearly as many, as rooms that look the same do.
-pub(crate) fn relocalise(tracker: &Tracker, is_asked_for: impl Fn(KeyframeId) -> bool) -> Option<Found> {
+/// Where a camera may be that was not followed: the keyframes that look alike, each tried in full.
+pub(crate) fn relocalise(tracker: &Tracker) -> Vec<Found> {
     let most = tracker.config.relocalisation_keyframes;
-    let candidates = tracker.places.alike(tracker.map, tracker.words(), is_asked_for, most);
-    let found = candidates.into_iter().filter_map(|id| Found::from_keyframe(tracker, id)).collect();
-    unrivalled(found)
+    let candidates = tracker.places.alike(tracker.map, tracker.words(), |_| true, most);
+    candidates.into_iter().filter_map(|id| Found::from_keyframe(tracker, id)).collect()
 }
 
-/// The place with the most points, of equal ones the first; `None` when there is none, or a rival.
-fn unrivalled(mut found: Vec<Found>) -> Option<Found> {
-    found.sort_by_key(|found| std::cmp::Reverse(found.inliers()));
+/// Where a camera may be, and how many points say so.
+pub(crate) trait Placed {
+    fn pose(&self) -> Pose3;
+    fn points(&self) -> usize;
+}
+
+impl Placed for Found {
+    fn pose(&self) -> Pose3 {
+        self.fix.visual_from_camera()
+    }
+
+    fn points(&self) -> usize {
+        self.inliers()
+    }
+}
+
+/// The place with the most points, of equal ones the first; `None` when there is none, or when a second one elsewhere has
+/// nearly as many, as rooms that look the same do.
+pub(crate) fn unrivalled<T: Placed>(mut found: Vec<T>) -> Option<T> {
+    found.sort_by_key(|found| std::cmp::Reverse(found.points()));
     let mut found = found.into_iter();
     let best = found.next()?;
-    let pose = best.fix.visual_from_camera();
-    let is_rival = |other: &Found| {
-        other.inliers() as f64 > RIVAL * best.inliers() as f64
-            && !is_same_place(pose, other.fix.visual_from_camera())
-    };
-    (!found.any(|other| is_rival(&other))).then_some(best)
+    let is_near = |other: &T| other.points() as f64 > RIVAL * best.points() as f64;
+    let is_rival = |other: T| is_near(&other) && !is_same_place(best.pose(), other.pose());
+    (!found.any(is_rival)).then_some(best)
 }
 
 /// Whether two poses are of one place.

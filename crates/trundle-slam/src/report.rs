@@ -1,6 +1,8 @@
 use crate::closing::LoopClosure;
+use crate::ids::KeyframeId;
 use nalgebra::Matrix6;
 use serde::{Deserialize, Serialize};
+use std::fmt;
 use trundle_core::{Pose3, Stamp};
 use trundle_vision::Keypoint;
 
@@ -25,6 +27,43 @@ impl Tracking {
     }
 }
 
+/// Whether maps are made or only used.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Mode {
+    /// Maps grow and get better.
+    #[default]
+    Mapping,
+    /// Maps stay as they are, to the bit.
+    Localisation,
+}
+
+/// A map with a frame of its own. Numbers rise in the order of beginning and are never used twice.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct MapId(pub(crate) u32);
+
+impl fmt::Display for MapId {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "M{}", self.0)
+    }
+}
+
+/// Two maps that became one.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MapMerge {
+    /// The newer map, which is no more.
+    pub from: MapId,
+    /// The older one, whose frame counts from now on.
+    pub into: MapId,
+    /// The keyframe that showed both, by its number in the older map.
+    pub keyframe: KeyframeId,
+    /// Points of the other map found in it.
+    pub points: usize,
+    /// How the camera's pose changed: `new_from_old`.
+    pub correction: Pose3,
+}
+
 /// What became of one frame.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TrackReport {
@@ -32,7 +71,9 @@ pub struct TrackReport {
     pub stamp: Stamp,
     /// How well it was located.
     pub tracking: Tracking,
-    /// The camera's pose in the visual frame, which is the first camera's unless another was given.
+    /// The map that the camera is in, or was last.
+    pub map: MapId,
+    /// The camera's pose in the visual frame of that map, which is the first camera's unless another was given.
     pub visual_from_camera: Pose3,
     /// Covariance of that pose as a right perturbation (m, m, m, rad, rad, rad), against the first keyframe: of the pose
     /// on the map, and of the map along the chain of keyframes that leads here. Grows while not located.
@@ -49,6 +90,8 @@ pub struct TrackReport {
     pub new_keyframe: bool,
     /// The place seen again by it, and how that moved the camera.
     pub closed_loop: Option<LoopClosure>,
+    /// The map recognised by it, and how that moved the camera.
+    pub merged: Option<MapMerge>,
     /// Keyframes in the map, after this frame.
     pub keyframes: usize,
     /// Landmarks in the map, after this frame.

@@ -16,13 +16,21 @@ pub struct LoopConfig {
     pub turn: f64,
     /// Points of the old place that must be found under one pose, 10 or more. Default 40 \[MurArtal17\].
     pub min_points: usize,
+    /// Keyframes in a row that must show the same before a correction is believed that the drift does not explain, or another
+    /// map is taken for this place, 1 or more. Default 3 \[MurArtal17\].
+    pub consistency: usize,
+    /// The largest such correction, m, above 0. Default 1: wheels may slip so far unseen, and rooms that look the same are
+    /// farther apart.
+    pub surprise: f64,
+    /// And rad, above 0. Default 0.5.
+    pub surprise_turn: f64,
     /// Part of the matches that must agree, 0 to 1. Default 0.5: chance does not reach it.
     pub min_agreement: f64,
     /// How many standard deviations of the drift a correction may be, above 0. Default 5: covariances along a chain are
     /// somewhat small. What is farther off is a look-alike.
     pub most_sigmas: f64,
-    /// Drift that may be there whatever the covariance says: part of the way between, 0 to 1. Default 0.02: twice what RGB-D
-    /// odometry drifts by.
+    /// Standard deviation of the drift whatever the covariance says: part of the way between, 0 to 1. Default 0.01: what
+    /// RGB-D odometry drifts by.
     pub drift_part: f64,
     /// Standard deviations of what ties neighbouring keyframes: m, above 0. Default 0.01.
     pub tie_sigma: f64,
@@ -42,9 +50,12 @@ impl Default for LoopConfig {
             reach: 1.5,
             turn: 0.9,
             min_points: 40,
+            consistency: 3,
+            surprise: 1.0,
+            surprise_turn: 0.5,
             min_agreement: 0.5,
             most_sigmas: 5.0,
-            drift_part: 0.02,
+            drift_part: 0.01,
             tie_sigma: 0.01,
             tie_sigma_turn: 0.005,
             tied_by: 100,
@@ -62,6 +73,7 @@ impl LoopConfig {
         let counts = [
             ("loops.least_age", self.least_age, 1),
             ("loops.min_points", self.min_points, 10),
+            ("loops.consistency", self.consistency, 1),
             ("loops.tied_by", self.tied_by, 1),
         ];
         for (name, value, least) in counts {
@@ -72,6 +84,8 @@ impl LoopConfig {
         for (name, value, unit) in [
             ("loops.reach", self.reach, "m"),
             ("loops.turn", self.turn, "rad"),
+            ("loops.surprise", self.surprise, "m"),
+            ("loops.surprise_turn", self.surprise_turn, "rad"),
             ("loops.most_sigmas", self.most_sigmas, ""),
             ("loops.tie_sigma", self.tie_sigma, "m"),
             ("loops.tie_sigma_turn", self.tie_sigma_turn, "rad"),

@@ -1,32 +1,38 @@
 //! Loop closing: a place seen again takes the drift out of everything since.
 //!
 //! Problem: along a corridor the map drifts, and a place reached again stands beside its first image. Idea: a new
-//! keyframe is compared with old ones that it is not yet tied to but that its uncertainty lets be near; where enough of
-//! the old points are found in it under one pose, and that pose is no farther off than the drift allows, the
-//! keyframes between are moved by a pose graph, and landmarks that are there twice become one (\[MurArtal17\], there with
-//! a bag of words in place of the uncertainty). A look-alike elsewhere is refused by the uncertainty. Cost: nothing where
-//! no old keyframe is near, else a matching of descriptors for each candidate, a few ms.
+//! keyframe is compared with the old ones that look alike by their words, that it is not yet tied to, and that its drift
+//! lets be near; where enough of the old points are found in it under one pose, and under no other nearly as many, the
+//! keyframes between are moved by a pose graph, and landmarks that are there twice become one \[MurArtal17\]. A correction
+//! larger than the drift explains must be asked for by several keyframes in a row, and be smaller than what parts two
+//! rooms: a look-alike elsewhere is refused. Cost: a question to the index, and for each of at most three candidates a
+//! matching under the words, about a ms each.
 
 mod candidates;
 mod config;
 mod correct;
+mod odometer;
 mod verify;
 
+use crate::claim::Claim;
 use crate::ids::KeyframeId;
 use crate::map::LandmarkMap;
 use crate::mapping::MappingConfig;
 use crate::places::Places;
 use crate::sensor::Sensor;
 use crate::tracker::TrackingConfig;
+use candidates::Drift;
 pub use config::LoopConfig;
 use correct::Correction;
+pub(crate) use odometer::Odometer;
 use trundle_core::Pose3;
-use verify::Verifier;
+pub(crate) use verify::{Recognised, Verifier};
 
 /// Closes loops as keyframes come.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct LoopCloser<'a> {
     pub places: &'a Places,
+    pub odometer: &'a Odometer,
     pub sensor: &'a Sensor,
     pub config: &'a LoopConfig,
     pub tracking: &'a TrackingConfig,
@@ -48,18 +54,15 @@ pub struct LoopClosure {
 }
 
 impl LoopCloser<'_> {
-    /// Ties `keyframe`, the newest, to a place seen before, if it shows one.
-    pub fn close(&self, map: &mut LandmarkMap, keyframe: KeyframeId) -> Option<LoopClosure> {
-        let verifier = Verifier {
-            map,
-            places: self.places,
-            sensor: self.sensor,
-            tracking: self.tracking,
-            config: self.config,
-            seed: self.seed,
-        };
-        let candidates = candidates::candidates(map, keyframe, self.config);
-        let found = candidates.into_iter().find_map(|candidate| verifier.verify(keyframe, candidate))?;
+    /// Ties `keyframe`, the newest, to a place seen before, if it shows one. `surprise` is what the keyframes before it said
+    /// against all expectation.
+    pub fn close(
+        &self,
+        map: &mut LandmarkMap,
+        keyframe: KeyframeId,
+        surprise: &mut Option<Claim<()>>,
+    ) -> Option<LoopClosure> {
+        let found = self.recognise(map, keyframe, surprise)?;
         let before = map.keyframe(keyframe).visual_from_camera;
         let (seen_before, points) = (found.candidate, found.points);
         let correction = Correction {
@@ -73,5 +76,32 @@ impl LoopCloser<'_> {
         correction.apply(map, keyframe);
         let correction = map.keyframe(keyframe).visual_from_camera * before.inverse();
         Some(LoopClosure { keyframe, seen_before, points, correction })
+    }
+
+    /// The place that the keyframe shows, if that can be believed.
+    fn recognise(
+        &self,
+        map: &LandmarkMap,
+        keyframe: KeyframeId,
+        surprise: &mut Option<Claim<()>>,
+    ) -> Option<Recognised> {
+        let said_before = surprise.take();
+        let own = self.places.worded(map, keyframe)?;
+        let Self { places, odometer, sensor, config, tracking, seed, .. } = *self;
+        let candidates = candidates::candidates(map, (places, odometer), (keyframe, own), config);
+        let verifier = Verifier { map, places, sensor, tracking, config, seed };
+        let found = verifier.recognise(own, &candidates)?;
+        let here = map.keyframe(keyframe).visual_from_camera;
+        let correction = here.inverse() * found.visual_from_camera;
+        let drift = Drift::between(map, odometer, (found.candidate, keyframe), config);
+        if drift.allows(correction) {
+            return Some(found);
+        }
+        if !drift.may_be_surprised_by(correction) {
+            return None;
+        }
+        *surprise = said_before;
+        let times = Claim::note(surprise, (), found.visual_from_camera * here.inverse());
+        (times >= config.consistency).then_some(found)
     }
 }

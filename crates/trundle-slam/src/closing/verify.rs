@@ -1,19 +1,22 @@
 use super::LoopConfig;
-use super::candidates::Drift;
 use crate::anchor::Anchor;
 use crate::ids::{KeyframeId, LandmarkId};
 use crate::map::LandmarkMap;
-use crate::places::Places;
+use crate::places::{Places, SHARED, Worded};
 use crate::refine::{Fix, PointMatch};
+use crate::relocalisation::{Placed, unrivalled};
 use crate::search::{Projection, search};
 use crate::sensor::Sensor;
 use crate::tracker::TrackingConfig;
 use std::collections::BTreeSet;
 use trundle_core::Pose3;
 
-/// Tells whether a keyframe shows what an old one saw.
+/// Keyframes around a candidate whose landmarks are looked for \[MurArtal17\].
+const AROUND: usize = 10;
+
+/// Tells whether a frame shows what a keyframe of `map` saw.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Verifier<'a> {
+pub(crate) struct Verifier<'a> {
     pub map: &'a LandmarkMap,
     pub places: &'a Places,
     pub sensor: &'a Sensor,
@@ -22,11 +25,11 @@ pub(super) struct Verifier<'a> {
     pub seed: u64,
 }
 
-/// An old place that a keyframe shows.
+/// A place of the map that a frame shows.
 #[derive(Debug, Clone)]
-pub(super) struct Recognised {
+pub(crate) struct Recognised {
     pub candidate: KeyframeId,
-    /// Where the keyframe is by the old landmarks.
+    /// Where the frame's camera is by the old landmarks.
     pub visual_from_camera: Pose3,
     /// Points of the old place found in it, landmarks or depths.
     pub points: usize,
@@ -34,24 +37,36 @@ pub(super) struct Recognised {
     pub landmarks: Vec<LandmarkId>,
 }
 
+impl Placed for Recognised {
+    fn pose(&self) -> Pose3 {
+        self.visual_from_camera
+    }
+
+    fn points(&self) -> usize {
+        self.points
+    }
+}
+
 impl Verifier<'_> {
-    pub fn verify(&self, keyframe: KeyframeId, candidate: KeyframeId) -> Option<Recognised> {
-        let rough = self.by_likeness(keyframe, candidate)?;
-        let fix = self.by_old_landmarks(keyframe, candidate, &rough);
+    /// The one of these places that the frame shows; `None` when two that are apart look right.
+    pub fn recognise(&self, own: Worded, candidates: &[KeyframeId]) -> Option<Recognised> {
+        unrivalled(candidates.iter().filter_map(|id| self.verify(own, *id)).collect())
+    }
+
+    fn verify(&self, own: Worded, candidate: KeyframeId) -> Option<Recognised> {
+        let rough = self.by_words(own, candidate)?;
+        let fix = self.by_old_landmarks(own, candidate, &rough);
         let points = fix.solution.inlier_count;
         let agreement = points as f64 / fix.matches.len().max(1) as f64;
         let enough = points >= self.config.min_points && agreement >= self.config.min_agreement;
-        let pose = fix.visual_from_camera();
-        let correction = self.map.keyframe(keyframe).visual_from_camera.inverse() * pose;
-        let drift = Drift::between(self.map, candidate, keyframe, self.config);
-        let believed = enough && fix.solution.covariance().is_some() && drift.allows(correction);
+        let believed = enough && fix.solution.covariance().is_some();
         let landmarks = fix.inliers().filter_map(|m| m.landmark).collect();
-        believed.then_some(Recognised { candidate, visual_from_camera: pose, points, landmarks })
+        let visual_from_camera = fix.visual_from_camera();
+        believed.then_some(Recognised { candidate, visual_from_camera, points, landmarks })
     }
 
-    /// The pose by what looks alike in both keyframes.
-    fn by_likeness(&self, keyframe: KeyframeId, candidate: KeyframeId) -> Option<Fix> {
-        let own = self.places.worded(self.map, keyframe)?;
+    /// The pose by what looks alike in both.
+    fn by_words(&self, own: Worded, candidate: KeyframeId) -> Option<Fix> {
         let pairs = self.places.worded(self.map, candidate)?.matches(own, self.tracking.free_likeness());
         let anchor: Anchor = self.map.keyframe(candidate).into();
         let (pose, matches) = anchor.locate(own.frame, &pairs, self.seed, (self.map, self.sensor))?;
@@ -60,8 +75,8 @@ impl Verifier<'_> {
     }
 
     /// The pose by these and all other landmarks of the old place.
-    fn by_old_landmarks(&self, keyframe: KeyframeId, candidate: KeyframeId, rough: &Fix) -> Fix {
-        let frame = &self.map.keyframe(keyframe).frame;
+    fn by_old_landmarks(&self, own: Worded, candidate: KeyframeId, rough: &Fix) -> Fix {
+        let frame = own.frame;
         let pose = rough.visual_from_camera();
         let matched: BTreeSet<LandmarkId> = rough.inliers().filter_map(|m| m.landmark).collect();
         let mut sought = self.landmarks_around(candidate);
@@ -86,8 +101,8 @@ impl Verifier<'_> {
 
     /// What the candidate and those around it see, by rising id.
     fn landmarks_around(&self, candidate: KeyframeId) -> Vec<LandmarkId> {
-        let around =
-            self.map.covisible(candidate, 15).into_iter().map(|(id, _)| id).take(10).chain([candidate]);
+        let around = self.map.covisible(candidate, SHARED).into_iter().map(|(id, _)| id);
+        let around = around.take(AROUND).chain([candidate]);
         let mut ids: Vec<LandmarkId> =
             around.flat_map(|id| self.map.keyframe(id).landmarks.iter().flatten().copied()).collect();
         ids.sort_unstable();

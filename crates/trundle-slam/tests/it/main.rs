@@ -2,7 +2,10 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout, clippy::print_stderr, reason = "tests, helpers included")]
 
 mod freiburg;
+mod maps;
 mod robustness;
 mod room;
+mod saving;
 mod synthetic;
 mod umeyama;
+mod walks;

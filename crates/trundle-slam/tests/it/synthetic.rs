@@ -1,6 +1,7 @@
 use crate::room::{Clean, camera, shoot};
+use crate::walks::{dark, turned};
 use nalgebra::Vector6;
-use trundle_core::{ColorImage, DepthImage, Pose3, RgbdImage};
+use trundle_core::Pose3;
 use trundle_slam::{RgbdSlam, SlamConfig, Tracking};
 
 fn slam() -> RgbdSlam {
@@ -54,9 +55,6 @@ fn standing_still_does_not_drift() {
 #[test]
 fn a_full_turn_closes_on_itself() {
     let mut slam = slam();
-    let turned = |i: usize| {
-        Pose3::exp(Vector6::new(0.0, 0.0, 0.0, 0.0, i as f64 / 100.0 * std::f64::consts::TAU, 0.0))
-    };
     let (mut farthest, mut last): (f64, f64) = (0.0, 0.0);
     for i in 0..=108 {
         let report = slam.step(&shoot(i, turned(i)), None);
@@ -87,9 +85,6 @@ fn the_same_images_give_the_same_bits() {
 #[test]
 fn a_place_seen_again_takes_the_drift_out() {
     let mut slam = slam();
-    let turned = |i: usize| {
-        Pose3::exp(Vector6::new(0.0, 0.0, 0.0, 0.0, i as f64 / 100.0 * std::f64::consts::TAU, 0.0))
-    };
     let slip = Pose3::exp(Vector6::new(0.12, 0.0, 0.09, 0.0, 0.05, 0.0));
     let error = |i: usize, pose: Pose3| (turned(i).inverse() * pose).log().norm();
     let (mut closed, mut before) = (None, 0.0);
@@ -110,15 +105,4 @@ fn a_place_seen_again_takes_the_drift_out() {
     assert!(before > 0.1, "the wheels were wrong: {before}");
     assert!(error(112, last) < 0.03, "{}", error(112, last));
     assert!(closed.correction.log().norm() > 0.04, "{:?}", closed.correction);
-}
-
-fn dark(number: usize) -> RgbdImage {
-    let camera = camera();
-    let color = ColorImage::filled(camera.width(), camera.height(), [0; 3]);
-    RgbdImage::new(
-        crate::room::stamp(number),
-        color,
-        DepthImage::filled(camera.width(), camera.height(), 0.0),
-    )
-    .unwrap()
 }

@@ -1,0 +1,199 @@
+//! Kidnapped into a saved map: is the camera recognised, and never somewhere else?
+//!
+//! Maps one recorded drive (a TUM RGB-D folder with `camera.toml` and `groundtruth.txt`), saves and loads the map, then
+//! takes random views of another drive through the same scene and lets the camera see each and up to 1 s of what follows,
+//! until it is located. Printed are how many were, how many of them wrongly, and what a frame cost meanwhile.
+//!
+//! `cargo run --release -p trundle-slam --example kidnap -- MAPPED OTHER [VIEWS] [MAP_FILE]`; a MAP_FILE that exists is
+//! used, else written.
+#![allow(clippy::print_stdout, clippy::unwrap_used, reason = "a program for the terminal")]
+
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+use trundle_core::{ColorImage, DepthImage, Distortion, PinholeCamera, Pose3, RgbdImage, Stamp, Vector3};
+use trundle_slam::{Mode, RgbdSlam, SlamConfig};
+
+/// A view farther from all that was mapped is none of a mapped place: m, and rad.
+const MAPPED: (f64, f64) = (0.5, 0.5);
+/// A pose farther off than this is wrong: m, and rad.
+const WRONG: (f64, f64) = (0.10, 0.0873);
+/// How long the camera may look, s.
+const PATIENCE: f64 = 1.0;
+
+fn main() {
+    let args: Vec<String> = std::env::args().skip(1).collect();
+    let [mapped, other, rest @ ..] = &args[..] else {
+        println!("kidnap MAPPED OTHER [VIEWS] [MAP_FILE]");
+        return;
+    };
+    let views = rest.first().map_or(100, |views| views.parse().unwrap());
+    let (mapped, other) = (Drive::open(mapped), Drive::open(other));
+    let bytes = match rest.get(1) {
+        Some(file) if Path::new(file).exists() => std::fs::read(file).unwrap(),
+        file => {
+            let bytes = map(&mapped);
+            file.iter().for_each(|file| std::fs::write(file, &bytes).unwrap());
+            bytes
+        }
+    };
+    let start = Instant::now();
+    let mut slam = RgbdSlam::load(&bytes, mapped.camera, SlamConfig::default()).unwrap();
+    let loading = start.elapsed().as_secs_f64();
+    println!(
+        "{} keyframes, {:.1} MB, loaded in {loading:.2} s",
+        slam.keyframes().count(),
+        bytes.len() as f64 / 1e6
+    );
+    slam.set_mode(Mode::Localisation);
+    kidnap(&mut slam, &mapped, &other, views);
+    assert!(slam.save() == bytes, "localisation changed the map");
+}
+
+/// The map of a whole drive, in the frame of its truth.
+fn map(drive: &Drive) -> Vec<u8> {
+    let mut slam = RgbdSlam::new(drive.camera, SlamConfig::default()).unwrap().starting_at(drive.truth(0));
+    let (mut located, mut worst) = (0, 0.0_f64);
+    for i in 0..drive.frames.len() {
+        let report = slam.step(&drive.image(i), None);
+        located += usize::from(report.tracking.is_located());
+        let off = (drive.truth(i).inverse() * report.visual_from_camera).translation.norm();
+        worst = worst.max(off);
+        if report.closed_loop.is_some() || report.merged.is_some() {
+            println!("frame {i}: loop or merge, off by {off:.3} m");
+        }
+    }
+    println!("mapped: {located} of {} frames located, off by {worst:.3} m at most", drive.frames.len());
+    slam.save()
+}
+
+fn kidnap(slam: &mut RgbdSlam, mapped: &Drive, other: &Drive, views: usize) {
+    let (mut recognised, mut wrong, mut delay, mut draw) = (0, 0, 0, 12345_u64);
+    let mut costs: Vec<f64> = Vec::new();
+    let mut seen = 0;
+    while seen < views {
+        draw = draw.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        let first = (draw >> 33) as usize % other.frames.len();
+        if !mapped.has_been_at(other.truth(first)) {
+            continue;
+        }
+        seen += 1;
+        slam.kidnapped();
+        let until = other.frames[first].stamp.after(PATIENCE);
+        let following = (first..other.frames.len()).take_while(|i| other.frames[*i].stamp <= until);
+        let found = following.clone().find_map(|i| {
+            let image = other.image(i);
+            let start = Instant::now();
+            let report = slam.step(&image, None);
+            costs.push(start.elapsed().as_secs_f64() * 1e3);
+            report.tracking.is_located().then_some((i, report))
+        });
+        let Some((i, report)) = found else {
+            println!("view {first}: not recognised");
+            continue;
+        };
+        let off = other.truth(i).inverse() * report.visual_from_camera;
+        let is_wrong = off.translation.norm() > WRONG.0 || off.angle() > WRONG.1;
+        if is_wrong {
+            println!(
+                "view {first}: WRONG by {:.3} m, {:.3} rad, {} of {}",
+                off.translation.norm(),
+                off.angle(),
+                report.inliers,
+                report.matches
+            );
+        }
+        (recognised, wrong, delay) = (recognised + 1, wrong + usize::from(is_wrong), delay + i - first);
+    }
+    costs.sort_by(f64::total_cmp);
+    println!(
+        "{recognised} of {views} views recognised, {wrong} wrongly; {} at once or {:.2} frames later on average; a frame \
+         {:.1} ms (median, features included), {:.1} ms at most",
+        recognised,
+        delay as f64 / f64::from(recognised.max(1)),
+        costs[costs.len() / 2],
+        costs[costs.len() - 1],
+    );
+}
+
+/// A recorded drive.
+struct Drive {
+    folder: PathBuf,
+    camera: PinholeCamera,
+    depth_scale: f32,
+    frames: Vec<Frame>,
+}
+
+struct Frame {
+    stamp: Stamp,
+    color: String,
+    depth: String,
+    truth: Pose3,
+}
+
+impl Drive {
+    fn open(folder: &str) -> Self {
+        let folder = PathBuf::from(folder);
+        let read = |name: &str| std::fs::read_to_string(folder.join(name)).unwrap();
+        let settings = read("camera.toml");
+        let setting = |name: &str| -> f64 {
+            let line =
+                settings.lines().find_map(|line| line.split_once('=').filter(|(k, _)| k.trim() == name));
+            line.map_or(0.0, |(_, value)| value.trim().parse().unwrap())
+        };
+        let lens = Distortion {
+            k1: setting("k1"),
+            k2: setting("k2"),
+            p1: setting("p1"),
+            p2: setting("p2"),
+            k3: setting("k3"),
+        };
+        let size = (setting("width") as usize, setting("height") as usize);
+        let (focal, centre) = ((setting("fx"), setting("fy")), (setting("cx"), setting("cy")));
+        let camera = PinholeCamera::new(size, focal, centre, lens).unwrap();
+        let truth = truth(&read("groundtruth.txt"));
+        let lines: Vec<String> = read("associations.txt").lines().map(str::to_owned).collect();
+        let frame = |line: &String| {
+            let fields: Vec<&str> = line.split_whitespace().collect();
+            let seconds: f64 = fields[0].parse().unwrap();
+            let at = truth.partition_point(|(t, _)| *t < seconds - 1e-6).min(truth.len() - 1);
+            let stamp = Stamp::from_secs(seconds).unwrap();
+            Frame { stamp, color: fields[1].to_owned(), depth: fields[3].to_owned(), truth: truth[at].1 }
+        };
+        let frames = lines.iter().filter(|line| !line.starts_with('#')).map(frame).collect();
+        Self { folder, camera, depth_scale: setting("depth_scale") as f32, frames }
+    }
+
+    fn truth(&self, i: usize) -> Pose3 {
+        self.frames[i].truth
+    }
+
+    fn has_been_at(&self, pose: Pose3) -> bool {
+        self.frames.iter().any(|frame| {
+            let offset = frame.truth.inverse() * pose;
+            offset.translation.norm() < MAPPED.0 && offset.angle() < MAPPED.1
+        })
+    }
+
+    fn image(&self, i: usize) -> RgbdImage {
+        let frame = &self.frames[i];
+        let color = image::open(self.folder.join(&frame.color)).unwrap().to_rgb8();
+        let depth = image::open(self.folder.join(&frame.depth)).unwrap().to_luma16();
+        let (width, height) = (color.width() as usize, color.height() as usize);
+        let color = ColorImage::new(width, height, color.pixels().map(|p| p.0).collect()).unwrap();
+        let depth = depth.into_raw().into_iter().map(|v| f32::from(v) / self.depth_scale).collect();
+        RgbdImage::new(frame.stamp, color, DepthImage::new(width, height, depth).unwrap()).unwrap()
+    }
+}
+
+/// Time (s) and pose of each line.
+fn truth(text: &str) -> Vec<(f64, Pose3)> {
+    let pose = |line: &str| {
+        let v: Vec<f64> = line.split_whitespace().map(|v| v.parse().unwrap()).collect();
+        let rotation = nalgebra::Quaternion::new(v[7], v[4], v[5], v[6]);
+        (
+            v[0],
+            Pose3::new(nalgebra::UnitQuaternion::from_quaternion(rotation), Vector3::new(v[1], v[2], v[3])),
+        )
+    };
+    text.lines().filter(|line| !line.starts_with('#')).map(pose).collect()
+}

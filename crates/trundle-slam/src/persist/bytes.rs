@@ -1,0 +1,166 @@
+//! Numbers as bytes, little endian, and back.
+
+use super::error::MapFileError;
+use trundle_core::{Invalid, Pose3, Vector3};
+use trundle_vision::Descriptor;
+
+/// Farther off than this (m), or worse known (m^2, rad^2), nothing on Earth is.
+const FARTHEST: f64 = 1e9;
+
+/// Bytes in the making.
+#[derive(Debug, Default)]
+pub(super) struct Writer(pub Vec<u8>);
+
+impl Writer {
+    pub fn u8(&mut self, value: u8) {
+        self.0.push(value);
+    }
+
+    pub fn u32(&mut self, value: u32) {
+        self.0.extend(value.to_le_bytes());
+    }
+
+    pub fn u64(&mut self, value: u64) {
+        self.0.extend(value.to_le_bytes());
+    }
+
+    pub fn f32(&mut self, value: f32) {
+        self.u32(value.to_bits());
+    }
+
+    pub fn f64(&mut self, value: f64) {
+        self.u64(value.to_bits());
+    }
+
+    /// A number of things, or the number of a thing.
+    pub fn count(&mut self, value: usize) {
+        self.u32(u32::try_from(value).expect("invariant: an arena holds less than 2^32 things"));
+    }
+
+    pub fn f64s(&mut self, values: impl IntoIterator<Item = f64>) {
+        values.into_iter().for_each(|value| self.f64(value));
+    }
+
+    pub fn descriptor(&mut self, descriptor: &Descriptor) {
+        descriptor.0.iter().for_each(|word| self.u64(*word));
+    }
+
+    pub fn pose(&mut self, pose: &Pose3) {
+        self.f64s(pose.rotation.coords.iter().copied());
+        self.f64s(pose.translation.iter().copied());
+    }
+}
+
+/// Bytes to be read: checks all that it hands out.
+#[derive(Debug)]
+pub(super) struct Reader<'a> {
+    rest: &'a [u8],
+    /// What is being read, for errors.
+    pub within: &'static str,
+}
+
+type Read<T> = Result<T, MapFileError>;
+
+impl<'a> Reader<'a> {
+    pub fn new(bytes: &'a [u8], within: &'static str) -> Self {
+        Self { rest: bytes, within }
+    }
+
+    fn take<const N: usize>(&mut self) -> Read<[u8; N]> {
+        let (taken, rest) =
+            self.rest.split_first_chunk::<N>().ok_or(MapFileError::Cut { within: self.within })?;
+        self.rest = rest;
+        Ok(*taken)
+    }
+
+    pub fn u8(&mut self) -> Read<u8> {
+        Ok(self.take::<1>()?[0])
+    }
+
+    pub fn u32(&mut self) -> Read<u32> {
+        self.take().map(u32::from_le_bytes)
+    }
+
+    pub fn u64(&mut self) -> Read<u64> {
+        self.take().map(u64::from_le_bytes)
+    }
+
+    /// An f32 as it is.
+    pub fn f32(&mut self) -> Read<f32> {
+        self.u32().map(f32::from_bits)
+    }
+
+    /// An f64 as it is.
+    pub fn f64(&mut self) -> Read<f64> {
+        self.u64().map(f64::from_bits)
+    }
+
+    /// A number of things of `least` bytes or more each, which the rest of the bytes must be able to hold.
+    pub fn count(&mut self, least: usize) -> Read<usize> {
+        let count = self.u32()? as usize;
+        if count.saturating_mul(least) > self.rest.len() {
+            return Err(MapFileError::Cut { within: self.within });
+        }
+        Ok(count)
+    }
+
+    /// The number of one of `bound` things.
+    pub fn index(&mut self, name: &str, bound: usize) -> Read<usize> {
+        let index = self.u32()? as usize;
+        self.require(index < bound, name, index, || format!("less than {bound}"))?;
+        Ok(index)
+    }
+
+    /// A number in `low..=high`.
+    pub fn f64_in(&mut self, name: &str, low: f64, high: f64) -> Read<f64> {
+        let value = self.f64()?;
+        self.require((low..=high).contains(&value), name, value, || format!("{low} to {high}"))?;
+        Ok(value)
+    }
+
+    /// A coordinate, or a covariance of coordinates.
+    pub fn length(&mut self, name: &str) -> Read<f64> {
+        self.f64_in(name, -FARTHEST, FARTHEST)
+    }
+
+    pub fn vector(&mut self, name: &str) -> Read<Vector3> {
+        Ok(Vector3::new(self.length(name)?, self.length(name)?, self.length(name)?))
+    }
+
+    pub fn descriptor(&mut self) -> Read<Descriptor> {
+        Ok(Descriptor([self.u64()?, self.u64()?, self.u64()?, self.u64()?]))
+    }
+
+    pub fn pose(&mut self, name: &str) -> Read<Pose3> {
+        let [x, y, z, w] = [self.f64()?, self.f64()?, self.f64()?, self.f64()?];
+        let rotation = nalgebra::Quaternion::new(w, x, y, z);
+        let norm = rotation.norm();
+        self.require((norm - 1.0).abs() < 1e-6, name, norm, || "a quaternion of norm 1".to_owned())?;
+        Ok(Pose3::new(nalgebra::UnitQuaternion::new_unchecked(rotation), self.vector(name)?))
+    }
+
+    /// That nothing is left.
+    pub fn end(&self) -> Read<()> {
+        self.require(self.rest.is_empty(), "bytes behind the map", self.rest.len(), || "0".to_owned())
+    }
+
+    /// Refuses a value that cannot be.
+    pub fn require(
+        &self,
+        holds: bool,
+        name: &str,
+        value: impl ToString,
+        expected: impl FnOnce() -> String,
+    ) -> Read<()> {
+        let refuse = || MapFileError::Content(Invalid::new(name, value, "", expected()));
+        if holds { Ok(()) } else { Err(refuse()) }
+    }
+}
+
+/// FNV-1a over 8 bytes at a time, the last ones filled with zeros, and the length: any change of one word changes it.
+pub(super) fn checksum(bytes: &[u8]) -> u64 {
+    bytes.chunks(8).fold(0xCBF2_9CE4_8422_2325 ^ bytes.len() as u64, |sum, chunk| {
+        let word = chunk.iter().rev().fold(0, |word, byte| word << 8 | u64::from(*byte));
+        (sum ^ word).wrapping_mul(0x0100_0000_01B3)
+    })
+}

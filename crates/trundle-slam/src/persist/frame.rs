@@ -1,0 +1,64 @@
+//! What a map keeps of an image, as bytes.
+
+use super::bytes::{Reader, Writer};
+use super::error::MapFileError;
+use crate::frame::Frame;
+use crate::sensor::Sensor;
+use trundle_core::Stamp;
+use trundle_optim::InverseDepth;
+use trundle_vision::{Features, Keypoint};
+
+/// The least bytes of a feature.
+const LEAST: usize = 17 + 32 + 1;
+
+pub(super) fn write(out: &mut Writer, frame: &Frame) {
+    out.u64(frame.stamp.nanos.cast_unsigned());
+    out.count(frame.len());
+    for (i, keypoint) in frame.features.keypoints.iter().enumerate() {
+        [keypoint.x, keypoint.y, keypoint.angle, keypoint.response].into_iter().for_each(|v| out.f32(v));
+        out.u8(keypoint.octave);
+        out.descriptor(frame.descriptor(i));
+        out.u8(u8::from(frame.depths[i].is_some()));
+        out.f64s(frame.depths[i].into_iter().flat_map(|depth| [depth.value, depth.sigma]));
+    }
+}
+
+pub(super) fn read(bytes: &mut Reader, sensor: &Sensor) -> Result<Frame, MapFileError> {
+    let stamp = Stamp::from_nanos(bytes.u64()?.cast_signed());
+    let (mut features, mut depths) = (Features::default(), Vec::new());
+    for _ in 0..bytes.count(LEAST)? {
+        features.keypoints.push(read_keypoint(bytes, sensor)?);
+        features.descriptors.push(bytes.descriptor()?);
+        depths.push(read_depth(bytes)?);
+    }
+    Ok(Frame::of(stamp, features, depths, sensor))
+}
+
+fn read_keypoint(bytes: &mut Reader, sensor: &Sensor) -> Result<Keypoint, MapFileError> {
+    let [x, y, angle, response] = [bytes.f32()?, bytes.f32()?, bytes.f32()?, bytes.f32()?];
+    let octave = bytes.u8()?;
+    let pixel = trundle_core::Vector2::new(f64::from(x), f64::from(y));
+    bytes.require(sensor.camera.contains(pixel), "place of a keypoint", format!("({x}, {y})"), || {
+        "a pixel of the image".to_owned()
+    })?;
+    let plain = angle.is_finite() && response.is_finite();
+    bytes.require(plain, "angle or response of a keypoint", angle + response, || "finite".to_owned())?;
+    let levels = sensor.scale_factors.len();
+    bytes.require(usize::from(octave) < levels, "octave of a keypoint", octave, || {
+        format!("less than {levels}")
+    })?;
+    Ok(Keypoint { x, y, octave, angle, response })
+}
+
+fn read_depth(bytes: &mut Reader) -> Result<Option<InverseDepth>, MapFileError> {
+    let is_there = bytes.u8()?;
+    bytes.require(is_there < 2, "mark of a depth", is_there, || "0 or 1".to_owned())?;
+    if is_there == 0 {
+        return Ok(None);
+    }
+    let mut positive = |name: &str| bytes.f64_in(name, 1e-9, 1e9);
+    Ok(Some(InverseDepth {
+        value: positive("inverse depth")?,
+        sigma: positive("sigma of an inverse depth")?,
+    }))
+}

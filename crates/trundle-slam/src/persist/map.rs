@@ -1,0 +1,115 @@
+//! One landmark map as bytes. Keyframes and landmarks are numbered anew, without gaps, in the order of their making.
+
+use super::bytes::{Reader, Writer};
+use super::error::MapFileError;
+use super::frame;
+use crate::ids::{KeyframeId, LandmarkId};
+use crate::landmark::Landmark;
+use crate::map::{Keyframe, LandmarkMap};
+use crate::sensor::Sensor;
+use nalgebra::Matrix6;
+use std::collections::BTreeMap;
+
+/// The least bytes of a keyframe, a landmark and an observation.
+const LEAST: (usize, usize, usize) = (8 + 4 + 7 * 8 + 36 * 8, 24 + 32 + 24 + 8 + 4 * 3 + 8, 8);
+
+pub(super) fn write(out: &mut Writer, map: &LandmarkMap) {
+    let numbers: BTreeMap<KeyframeId, usize> = map.keyframes().map(|(id, _)| id).zip(0..).collect();
+    out.count(numbers.len());
+    for (_, keyframe) in map.keyframes() {
+        write_keyframe(out, keyframe);
+    }
+    out.count(map.landmark_count());
+    for (_, landmark) in map.landmarks() {
+        write_landmark(out, landmark, |id| numbers[&id]);
+    }
+}
+
+pub(super) fn read(bytes: &mut Reader, sensor: &Sensor) -> Result<LandmarkMap, MapFileError> {
+    let mut map = LandmarkMap::default();
+    bytes.within = "keyframes";
+    let count = bytes.count(LEAST.0)?;
+    bytes.require(count > 0, "keyframes of a map", count, || "1 or more".to_owned())?;
+    let ids = (0..count).map(|_| read_keyframe(bytes, &mut map, sensor)).collect::<Result<Vec<_>, _>>()?;
+    bytes.within = "landmarks";
+    for _ in 0..bytes.count(LEAST.1)? {
+        read_landmark(bytes, &mut map, &ids)?;
+    }
+    ids.into_iter().for_each(|id| map.enter_tree(id));
+    Ok(map)
+}
+
+fn write_keyframe(out: &mut Writer, keyframe: &Keyframe) {
+    frame::write(out, &keyframe.frame);
+    out.pose(&keyframe.visual_from_camera);
+    out.f64s(keyframe.covariance.iter().copied());
+}
+
+fn read_keyframe(
+    bytes: &mut Reader,
+    map: &mut LandmarkMap,
+    sensor: &Sensor,
+) -> Result<KeyframeId, MapFileError> {
+    let frame = frame::read(bytes, sensor)?;
+    let pose = bytes.pose("pose of a keyframe")?;
+    let mut covariance = Matrix6::zeros();
+    for entry in covariance.iter_mut() {
+        *entry = bytes.length("covariance of a keyframe")?;
+    }
+    let id = map.add_keyframe(frame, pose);
+    map.set_covariance(id, covariance);
+    Ok(id)
+}
+
+fn write_landmark(out: &mut Writer, landmark: &Landmark, number: impl Fn(KeyframeId) -> usize) {
+    out.f64s(landmark.position.iter().copied());
+    out.descriptor(&landmark.descriptor);
+    out.f64s(landmark.toward_camera.iter().copied());
+    out.f64(landmark.distance_at_octave_0);
+    out.u32(landmark.visible);
+    out.u32(landmark.found);
+    out.count(landmark.observations.len());
+    for (keyframe, feature) in &landmark.observations {
+        out.count(number(*keyframe));
+        out.count(*feature);
+    }
+}
+
+fn read_landmark(bytes: &mut Reader, map: &mut LandmarkMap, ids: &[KeyframeId]) -> Result<(), MapFileError> {
+    let id = map.add_landmark(bytes.vector("position of a landmark")?);
+    let descriptor = bytes.descriptor()?;
+    let toward_camera = bytes.vector("direction of a landmark")?;
+    let distance_at_octave_0 = bytes.f64_in("distance of a landmark at octave 0", 0.0, 1e9)?;
+    let (visible, found) = (bytes.u32()?, bytes.u32()?);
+    let observations = bytes.count(LEAST.2)?;
+    bytes.require(observations > 0, "observations of a landmark", 0, || "1 or more".to_owned())?;
+    for _ in 0..observations {
+        read_observation(bytes, map, ids, id)?;
+    }
+    if let Some(landmark) = map.landmark_mut(id) {
+        *landmark = Landmark {
+            descriptor,
+            toward_camera,
+            distance_at_octave_0,
+            visible,
+            found,
+            ..std::mem::replace(landmark, Landmark::new(landmark.position))
+        };
+    }
+    Ok(())
+}
+
+fn read_observation(
+    bytes: &mut Reader,
+    map: &mut LandmarkMap,
+    ids: &[KeyframeId],
+    landmark: LandmarkId,
+) -> Result<(), MapFileError> {
+    let keyframe = ids[bytes.index("keyframe of an observation", ids.len())?];
+    let features = map.keyframe(keyframe).frame.len();
+    let feature = bytes.index("feature of an observation", features)?;
+    let is_new = map.observe(landmark, keyframe, feature);
+    bytes.require(is_new, "feature of an observation", feature, || {
+        "one landmark a feature, one feature a landmark".to_owned()
+    })
+}

@@ -1,0 +1,148 @@
+use super::locate::Sighting;
+use super::{Located, RgbdSlam};
+use crate::closing::{LoopCloser, LoopClosure};
+use crate::found::Found;
+use crate::frame::Frame;
+use crate::ids::{KeyframeId, LandmarkId};
+use crate::motion::carried;
+use crate::report::{MapId, MapMerge, Mode, TrackReport, Tracking};
+use crate::search::Projection;
+use nalgebra::Matrix6;
+use trundle_core::Pose3;
+
+/// A frame that became a keyframe, and what came of it.
+struct Kept {
+    reference: KeyframeId,
+    closed_loop: Option<LoopClosure>,
+    merged: Option<MapMerge>,
+}
+
+impl RgbdSlam {
+    /// Takes a found pose over: counts landmarks, makes a keyframe where one is wanted.
+    pub(super) fn accept(&mut self, frame: Frame, Sighting { map, found }: Sighting) -> TrackReport {
+        let before = self.last.as_ref().filter(|_| self.misses == 0 && map == self.active.id);
+        let before = before.map(|last| last.anchored.visual_from_camera(&self.active.map));
+        self.enter(map);
+        let mut landmarks = vec![None; frame.len()];
+        for inlier in found.fix.inliers() {
+            landmarks[inlier.feature] = inlier.landmark;
+        }
+        self.show(&frame, &landmarks);
+        let mut pose = found.fix.visual_from_camera();
+        let mut reference = self.reference(&landmarks);
+        let mut covariance = self.covariance(&found, reference);
+        let kept = self.map_by(&frame, &found, &landmarks, covariance);
+        if let Some(kept) = &kept {
+            reference = kept.reference;
+            let keyframe = self.active.map.keyframe(reference);
+            covariance = keyframe.covariance;
+            (pose, landmarks) = (keyframe.visual_from_camera, keyframe.landmarks.clone());
+        }
+        let enough = found.by_map && found.inliers() >= self.config.tracking.weak_inliers;
+        let tracking = if enough { Tracking::Ok } else { Tracking::Weak };
+        let is_one_frame = kept.as_ref().is_none_or(|kept| kept.merged.is_none());
+        self.belief.located(frame.stamp, pose, covariance, before.filter(|_| is_one_frame));
+        (self.misses, self.placed, self.blind, self.doubt) = (0, true, false, None);
+        let anchored = self.remember(frame.stamp, Some(reference), tracking);
+        let report = TrackReport {
+            matches: found.fix.matches.len(),
+            inliers: found.inliers(),
+            relocalised: found.relocalised,
+            new_keyframe: kept.is_some(),
+            closed_loop: kept.as_ref().and_then(|kept| kept.closed_loop),
+            merged: kept.and_then(|kept| kept.merged),
+            ..self.report(frame.len())
+        };
+        self.last = Some(Located { frame, landmarks, anchored });
+        report
+    }
+
+    /// Makes `map` the active one.
+    fn enter(&mut self, map: MapId) {
+        if let Some(entered) = self.resting.iter_mut().find(|resting| resting.id == map) {
+            std::mem::swap(entered, &mut self.active);
+            self.resting.sort_by_key(|resting| resting.id);
+            (self.last, self.recognition, self.surprise) = (None, None, None);
+        }
+    }
+
+    /// Lets the map learn from a located frame, unless it is to stay as it is.
+    fn map_by(
+        &mut self,
+        frame: &Frame,
+        found: &Found,
+        landmarks: &[Option<LandmarkId>],
+        covariance: Matrix6<f64>,
+    ) -> Option<Kept> {
+        if self.mode == Mode::Localisation {
+            return None;
+        }
+        self.count(&found.visible, landmarks);
+        let pose = found.fix.visual_from_camera();
+        let tracked = landmarks.iter().flatten().count();
+        let shown = found.visible.iter().map(|(_, projection)| projection.pixel);
+        let wanted = self.config.keyframes.wants(frame, pose, tracked, shown, &self.active.map);
+        wanted.then(|| self.keep(frame, pose, landmarks, covariance))
+    }
+
+    fn keep(
+        &mut self,
+        frame: &Frame,
+        pose: Pose3,
+        landmarks: &[Option<LandmarkId>],
+        covariance: Matrix6<f64>,
+    ) -> Kept {
+        let reference = self.insert(frame.clone(), pose, landmarks);
+        self.active.map.set_covariance(reference, covariance);
+        let closed_loop = self.close_loop(reference);
+        let merged = self.merge_maps(reference);
+        let reference = merged.map_or(reference, |merged| merged.keyframe);
+        Kept { reference, closed_loop, merged }
+    }
+
+    fn close_loop(&mut self, keyframe: KeyframeId) -> Option<LoopClosure> {
+        let closer = LoopCloser {
+            places: &self.active.places,
+            odometer: &self.active.odometer,
+            sensor: &self.sensor,
+            config: &self.config.loops,
+            tracking: &self.config.tracking,
+            mapping: &self.config.mapping,
+            seed: self.seed(),
+        };
+        let closed = closer.close(&mut self.active.map, keyframe, &mut self.surprise);
+        self.active.follow();
+        closed
+    }
+
+    /// Counts which landmarks should have been seen, and which were.
+    fn count(&mut self, visible: &[(LandmarkId, Projection)], found: &[Option<LandmarkId>]) {
+        for (id, _) in visible {
+            if let Some(landmark) = self.active.map.landmark_mut(*id) {
+                landmark.visible += 1;
+            }
+        }
+        for id in found.iter().flatten() {
+            if let Some(landmark) = self.active.map.landmark_mut(*id) {
+                landmark.found += 1;
+            }
+        }
+    }
+
+    /// Of a found pose: that against the map, and that of the keyframe which holds this part of the map.
+    fn covariance(&self, found: &Found, reference: KeyframeId) -> Matrix6<f64> {
+        let keyframe = self.active.map.keyframe(reference);
+        let offset = keyframe.visual_from_camera.inverse() * found.fix.visual_from_camera();
+        let local = found.fix.solution.covariance().unwrap_or_else(Matrix6::identity);
+        carried(&keyframe.covariance, offset) + local
+    }
+
+    /// The keyframe that shares most landmarks with the frame; the last one's where none does.
+    fn reference(&self, landmarks: &[Option<LandmarkId>]) -> KeyframeId {
+        let map = &self.active.map;
+        let seeing = map.keyframes_seeing(landmarks.iter().flatten().copied());
+        let last = || Some(map.resolve(self.last.as_ref()?.anchored.reference?).0);
+        let newest = || map.newest_keyframe().expect("invariant: what is tracked was mapped");
+        seeing.first().map(|(id, _)| *id).or_else(last).unwrap_or_else(newest)
+    }
+}

@@ -1,0 +1,100 @@
+use super::{Located, RgbdSlam};
+use crate::component::Component;
+use crate::frame::Frame;
+use crate::ids::KeyframeId;
+use crate::keyframe_policy::with_depth;
+use crate::map::LandmarkMap;
+use crate::motion::Belief;
+use crate::report::{MapId, Mode, TrackReport, Tracking};
+use nalgebra::Matrix6;
+use std::sync::Arc;
+use trundle_core::{DepthImage, Pose3};
+
+/// What a frame that was not located can begin.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Beginning {
+    /// Nothing: better wait to see a known landmark again.
+    None,
+    /// The first keyframe of the map.
+    First,
+    /// A keyframe where the camera is believed to be.
+    Onward,
+    /// Another map, since nobody knows where in this one the camera is.
+    Another,
+}
+
+impl RgbdSlam {
+    /// Goes on without a found pose; begins a map at the believed pose where there is none to be found again.
+    pub(super) fn miss(&mut self, frame: Frame, depth: &DepthImage, prior: Option<Pose3>) -> TrackReport {
+        self.belief.missed(frame.stamp, prior, &self.config.motion);
+        self.misses += 1;
+        self.blind |= prior.is_none();
+        self.show(&frame, &vec![None; frame.len()]);
+        let begins = self.beginning(&frame, depth, prior);
+        if begins == Beginning::Another {
+            self.begin_map();
+        }
+        let reference = (begins != Beginning::None).then(|| self.begin(&frame, begins));
+        let tracking = match begins {
+            Beginning::First | Beginning::Another => Tracking::Ok,
+            _ if prior.is_some() && self.placed => Tracking::DeadReckoning,
+            _ => Tracking::Lost,
+        };
+        let known = || self.last.as_ref().and_then(|last| last.anchored.reference);
+        let anchored = self.remember(frame.stamp, reference.or_else(known), tracking);
+        let report = TrackReport { new_keyframe: reference.is_some(), ..self.report(frame.len()) };
+        if let Some(id) = reference {
+            let landmarks = self.active.map.keyframe(id).landmarks.clone();
+            self.last = Some(Located { frame, landmarks, anchored });
+            (self.misses, self.blind, self.doubt) = (0, false, None);
+        }
+        report
+    }
+
+    fn beginning(&self, frame: &Frame, depth: &DepthImage, prior: Option<Pose3>) -> Beginning {
+        let is_able = with_depth(frame).count() >= self.config.mapping.min_points;
+        let is_lost = self.blind || !self.placed;
+        if !is_able || self.mode == Mode::Localisation {
+            Beginning::None
+        } else if self.active.map.keyframe_count() == 0 {
+            Beginning::First
+        } else if is_lost && self.misses >= self.config.tracking.patience {
+            Beginning::Another
+        } else if !is_lost && prior.is_some() && self.is_beyond_the_map(depth) {
+            Beginning::Onward
+        } else {
+            Beginning::None
+        }
+    }
+
+    /// Whether there is no use in waiting to see a known landmark again: none should be in view, or none was found for
+    /// too long.
+    fn is_beyond_the_map(&self, depth: &DepthImage) -> bool {
+        let config = &self.config.tracking;
+        let expected = self.view(depth).landmarks(&self.active.map, self.belief.visual_from_camera).len();
+        expected < config.min_inliers || self.misses >= config.patience
+    }
+
+    /// The first keyframe of the active map, or one that goes on from it.
+    fn begin(&mut self, frame: &Frame, begins: Beginning) -> KeyframeId {
+        if begins != Beginning::Onward {
+            self.belief.covariance = Matrix6::zeros();
+        }
+        let id = self.insert(frame.clone(), self.belief.visual_from_camera, &vec![None; frame.len()]);
+        self.active.map.set_covariance(id, self.belief.covariance);
+        id
+    }
+
+    /// Leaves the active map for an empty one, at its origin.
+    fn begin_map(&mut self) {
+        let newest = self.resting.iter().map(|map| map.id).max().max(Some(self.active.id));
+        let id = MapId(newest.map_or(0, |id| id.0 + 1));
+        let vocabulary = Arc::clone(self.active.places.vocabulary());
+        let empty = Component::new(id, LandmarkMap::default(), &vocabulary);
+        self.resting.push(std::mem::replace(&mut self.active, empty));
+        self.resting.sort_by_key(|map| map.id);
+        self.belief = Belief { stamp: self.belief.stamp, ..Belief::at(Pose3::identity()) };
+        self.placed = true;
+        (self.last, self.recognition, self.surprise) = (None, None, None);
+    }
+}

@@ -1,0 +1,80 @@
+//! Several maps, and places that are not what they look like.
+
+use crate::room::{camera, shoot};
+use crate::walks::{dark, turned};
+use nalgebra::Vector6;
+use trundle_core::{Pose3, RgbdImage};
+use trundle_slam::{RgbdSlam, SlamConfig, TrackReport, Tracking};
+
+/// Where the camera is: maps one side of the room, is carried to the other in the dark (`None`), where it is lost and begins
+/// a second map, and turns on until it sees the first.
+fn carried() -> Vec<Option<Pose3>> {
+    let first = (0..20).step_by(2).map(|i| Some(turned(i)));
+    let second = (0..12).map(|_| Some(turned(50)));
+    let back = (50..130).step_by(2).map(|i| Some(turned(i)));
+    first.chain([None; 3]).chain(second).chain(back).collect()
+}
+
+/// Lets a hasty camera see all of them.
+fn run(images: &[RgbdImage]) -> (RgbdSlam, Vec<TrackReport>) {
+    let mut config = SlamConfig::default();
+    config.tracking.patience = 8;
+    let mut slam = RgbdSlam::new(camera(), config).unwrap();
+    let reports = images.iter().map(|image| slam.step(image, None)).collect();
+    (slam, reports)
+}
+
+#[test]
+fn a_second_map_begins_when_lost_and_becomes_one_with_the_first_when_that_is_recognised() {
+    let way = carried();
+    let shot = |(i, pose): (usize, &Option<Pose3>)| pose.map_or_else(|| dark(i), |pose| shoot(i, pose));
+    let images: Vec<RgbdImage> = way.iter().enumerate().map(shot).collect();
+    let (slam, reports) = run(&images);
+    let begun = reports.iter().position(|r| r.map != reports[0].map).expect("a second map");
+    assert_eq!(begun, 17, "after 8 frames of patience");
+    assert!(reports[10..begun].iter().all(|r| r.tracking == Tracking::Lost));
+    assert_eq!(reports[begun].visual_from_camera, Pose3::identity(), "in a frame of its own");
+    assert!(reports[begun..].iter().all(|r| r.tracking.is_located()), "and never lost again");
+    let at = reports.iter().position(|r| r.merged.is_some()).expect("they became one");
+    let merged = reports[at].merged.unwrap();
+    assert_eq!((merged.into, merged.from), (reports[0].map, reports[begun].map));
+    assert_eq!((slam.maps(), reports[at].map), (vec![merged.into], merged.into));
+    let jump = reports[at].visual_from_camera * reports[at - 1].visual_from_camera.inverse();
+    assert!((merged.correction.inverse() * jump).log().norm() < 0.2, "reported as a correction: {jump:?}");
+
+    let located =
+        reports.iter().zip(&way).filter(|(r, _)| r.tracking.is_located()).map(|(_, pose)| pose.unwrap());
+    let trajectory = slam.trajectory();
+    let errors = located.zip(&trajectory).map(|(truth, (_, pose))| (truth.inverse() * *pose).log().norm());
+    let errors: Vec<f64> = errors.collect();
+    let worst = errors.iter().copied().fold(0.0, f64::max);
+    println!("merged at {at} by {} points, worst error {worst:.3} (m and rad)", merged.points);
+    assert_eq!((errors.len(), trajectory.len()), (way.len() - 7, way.len() - 7));
+    assert!(worst < 0.06, "{worst}");
+
+    let (again, the_same) = run(&images);
+    assert!(reports == the_same && trajectory == again.trajectory(), "every time the same");
+    assert!(slam.save() == again.save(), "to the byte");
+}
+
+/// Drives on in the dark into a second room that looks the same to the pixel.
+#[test]
+fn a_room_that_looks_the_same_elsewhere_is_another_room() {
+    let mut slam = RgbdSlam::new(camera(), SlamConfig::default()).unwrap();
+    let step = Pose3::exp(Vector6::new(0.0, 0.0, 0.4, 0.0, 0.0, 0.0));
+    for i in 0..20 {
+        assert!(slam.step(&shoot(i, turned(2 * i)), Some(turned(2))).tracking.is_located());
+    }
+    let mut truth = turned(38);
+    for i in 20..30 {
+        truth = truth * step;
+        assert_eq!(slam.step(&dark(i), Some(step)).tracking, Tracking::DeadReckoning);
+    }
+    for i in 30..60 {
+        truth = truth * turned(2);
+        let report = slam.step(&shoot(i, turned(2 * i - 20)), Some(turned(2)));
+        assert!(!report.relocalised && report.closed_loop.is_none() && report.merged.is_none(), "frame {i}");
+        let error = (truth.inverse() * report.visual_from_camera).log().norm();
+        assert!(error < 0.1, "frame {i} is off by {error:.3}");
+    }
+}
