@@ -1,18 +1,14 @@
 use super::Vocabulary;
-use super::tree::ListedNode;
+use super::listed::{check_shape, check_weight};
+use super::tree::Tree;
 use crate::Descriptor;
 use trundle_core::Invalid;
 
 /// What a vocabulary's file begins with; the last byte is the version.
-const MAGIC: &[u8; 8] = b"trundlV\x01";
+const MAGIC: &[u8; 8] = b"trundlV\x02";
 
-/// Bytes of the head: magic, branching, depth, number of nodes, checksum.
-const HEAD: usize = 8 + 4 + 4 + 4 + 8;
-
-/// Bytes of a node: parent with the leaf's mark in its highest bit, descriptor, weight.
-const NODE: usize = 4 + 32 + 4;
-
-const LEAF: u32 = 1 << 31;
+/// Bytes of the head: magic, branching, depth, nodes, words, checksum of all but magic and checksum.
+const HEAD: usize = 8 + 4 * 4 + 8;
 
 /// Why a vocabulary could not be read.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -34,22 +30,23 @@ pub enum VocabularyError {
 }
 
 impl Vocabulary {
-    /// The vocabulary as bytes, versioned and with a checksum: 40 a node, little endian.
+    /// The vocabulary as bytes, versioned and with a checksum, little endian: the head, the descriptors of all nodes level
+    /// by level (32 bytes each), how many children the root and each node have (a byte each), the weights of the words (4
+    /// bytes each).
     pub fn to_bytes(&self) -> Vec<u8> {
-        let body: Vec<u8> = self.nodes()[1..]
-            .iter()
-            .flat_map(|node| {
-                let leaf = if node.children == 0 { LEAF } else { 0 };
-                let words = node.descriptor.0.into_iter().flat_map(u64::to_le_bytes);
-                (node.parent | leaf).to_le_bytes().into_iter().chain(words).chain(node.weight.to_le_bytes())
-            })
-            .collect();
+        let words = self.nodes().filter(|node| self.is_word(*node));
+        let weights: Vec<f32> = words.map(|word| self.weight(word)).collect();
+        let shape = [self.branching(), self.depth(), self.nodes().len(), weights.len()];
         let mut bytes = MAGIC.to_vec();
-        for number in [self.branching(), self.depth(), self.nodes().len() - 1] {
-            bytes.extend((number as u32).to_le_bytes());
-        }
-        bytes.extend(checksum(&body).to_le_bytes());
-        bytes.extend(body);
+        bytes.extend(shape.into_iter().flat_map(|number| (number as u32).to_le_bytes()));
+        bytes.extend([0; 8]);
+        let longs = self.nodes().flat_map(|node| self.descriptor(node).0);
+        bytes.extend(longs.flat_map(u64::to_le_bytes));
+        bytes.push(self.children(0) as u8);
+        bytes.extend(self.nodes().map(|node| self.children(node) as u8));
+        bytes.extend(weights.into_iter().flat_map(f32::to_le_bytes));
+        let sum = checksum(&bytes);
+        bytes[HEAD - 8..HEAD].copy_from_slice(&sum.to_le_bytes());
         bytes
     }
 
@@ -65,47 +62,61 @@ impl Vocabulary {
         if bytes[7] != MAGIC[7] {
             return bad(format!("vocabulary of version {}, expected {}", bytes[7], MAGIC[7]));
         }
-        let (branching, depth, count) = (word(bytes, 8), word(bytes, 12), word(bytes, 16) as usize);
-        let body = &bytes[HEAD..];
-        if body.len() != count.saturating_mul(NODE) {
+        let [branching, depth, nodes, words] = std::array::from_fn(|i| number(&bytes[8 + 4 * i..]) as usize);
+        let expected =
+            (HEAD + 1).saturating_add(nodes.saturating_mul(33)).saturating_add(words.saturating_mul(4));
+        if bytes.len() != expected {
             return bad(format!(
-                "vocabulary of {} bytes, expected {} for {count} nodes",
-                bytes.len(),
-                HEAD + count.saturating_mul(NODE)
+                "vocabulary of {} bytes, expected {expected} for {nodes} nodes",
+                bytes.len()
             ));
         }
-        if checksum(body) != long(bytes, 20) {
+        if checksum(bytes).to_le_bytes() != bytes[HEAD - 8..HEAD] {
             return bad("the vocabulary is damaged: its checksum is wrong".to_owned());
         }
-        let list: Vec<ListedNode> = body.chunks_exact(NODE).map(node).collect();
-        Ok(Self::from_list(branching as usize, depth as usize, &list)?)
+        check_shape(branching, depth)?;
+        Ok(Self::from_tree(branching, depth, tree(&bytes[HEAD..], nodes, branching)?)?)
     }
 }
 
-fn node(bytes: &[u8]) -> ListedNode {
-    let head = word(bytes, 0);
-    ListedNode {
-        parent: head & !LEAF,
-        is_leaf: head & LEAF != 0,
-        descriptor: Descriptor(std::array::from_fn(|i| long(bytes, 4 + 8 * i))),
-        weight: f32::from_bits(word(bytes, 36)),
+/// The nodes of a file without its head.
+fn tree(body: &[u8], nodes: usize, branching: usize) -> Result<Tree, Invalid> {
+    let (descriptors, rest) = body.split_at(32 * nodes);
+    let (counts, weights) = rest.split_at(nodes + 1);
+    if let Some((node, count)) = counts.iter().enumerate().find(|(_, count)| usize::from(**count) > branching)
+    {
+        let name = format!("children of vocabulary node {node}");
+        return Err(Invalid::new(name, count, "", format!("{branching} or fewer")));
     }
+    let mut weights = weights.chunks_exact(4).map(|bytes| f32::from_bits(number(bytes)));
+    let mut weight = |(node, count): (usize, &u8)| {
+        let weight = if *count == 0 { weights.next().unwrap_or(f32::NAN) } else { 0.0 };
+        check_weight(weight, node).map(|()| weight)
+    };
+    let weights = counts.iter().enumerate().skip(1).map(&mut weight).collect::<Result<_, _>>()?;
+    let descriptor = |bytes: &[u8]| Descriptor(std::array::from_fn(|i| long(&bytes[8 * i..])));
+    let descriptors = descriptors.chunks_exact(32).map(descriptor).collect();
+    Ok(Tree { descriptors, weights, counts: counts.to_vec() })
 }
 
-fn word(bytes: &[u8], at: usize) -> u32 {
-    bytes[at..at + 4].iter().rev().fold(0, |word, byte| word << 8 | u32::from(*byte))
+/// The number in the first four bytes.
+fn number(bytes: &[u8]) -> u32 {
+    u32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]])
 }
 
-fn long(bytes: &[u8], at: usize) -> u64 {
-    bytes[at..at + 8].iter().rev().fold(0, |word, byte| word << 8 | u64::from(*byte))
+/// The number in the first eight bytes.
+fn long(bytes: &[u8]) -> u64 {
+    u64::from(number(bytes)) | u64::from(number(&bytes[4..])) << 32
 }
 
-/// FNV-1a over 8 bytes at a time, the last ones filled with zeros.
+/// FNV-1a, 8 bytes at a time, over the numbers of the head and all that follows it; the last bytes are filled with zeros.
 fn checksum(bytes: &[u8]) -> u64 {
-    bytes.chunks(8).fold(0xCBF2_9CE4_8422_2325, |sum, chunk| {
-        let word = chunk.iter().rev().fold(0, |word, byte| word << 8 | u64::from(*byte));
-        (sum ^ word).wrapping_mul(0x0100_0000_01B3)
-    })
+    let (head, body) = (&bytes[8..HEAD - 8], &bytes[HEAD..]);
+    let whole = body.chunks_exact(8);
+    let mut last = [0; 8];
+    last[..whole.remainder().len()].copy_from_slice(whole.remainder());
+    let longs = head.chunks_exact(8).chain(whole).chain([&last[..]]).map(long);
+    longs.fold(0xCBF2_9CE4_8422_2325, |sum, long| (sum ^ long).wrapping_mul(0x0100_0000_01B3))
 }
 
 #[cfg(test)]
@@ -121,11 +132,14 @@ mod tests {
             .unwrap()
     }
 
+    fn refused(bytes: &[u8]) -> String {
+        Vocabulary::from_bytes(bytes).unwrap_err().to_string()
+    }
+
     #[test]
     fn bytes_read_back_and_damage_is_told() {
         let bytes = trained().to_bytes();
         assert_eq!(Vocabulary::from_bytes(&bytes).unwrap(), trained());
-        let refused = |bytes: &[u8]| Vocabulary::from_bytes(bytes).unwrap_err().to_string();
         assert_eq!(refused(b"ORBvoc"), "no trundle vocabulary");
         assert!(refused(&bytes[..bytes.len() - 1]).contains("bytes, expected"));
         let changed = |at: usize| {
@@ -133,9 +147,27 @@ mod tests {
             bytes[at] ^= 4;
             refused(&bytes)
         };
-        assert_eq!(changed(7), "vocabulary of version 5, expected 1");
-        for at in (HEAD..bytes.len()).step_by(13) {
-            assert_eq!(changed(at), "the vocabulary is damaged: its checksum is wrong");
+        assert_eq!(changed(7), "vocabulary of version 6, expected 2");
+        for at in (8..16).chain(HEAD - 8..bytes.len()) {
+            assert_eq!(changed(at), "the vocabulary is damaged: its checksum is wrong", "byte {at}");
         }
+    }
+
+    #[test]
+    fn what_is_no_tree_is_refused_even_with_a_right_checksum() {
+        let forged = |at: usize, value: u8| {
+            let mut bytes = trained().to_bytes();
+            bytes[at] = value;
+            let sum = checksum(&bytes);
+            bytes[HEAD - 8..HEAD].copy_from_slice(&sum.to_le_bytes());
+            refused(&bytes)
+        };
+        let counts = HEAD + 32 * trained().nodes().len();
+        assert_eq!(forged(8, 200), "branching of the vocabulary is 200, expected 2 to 64");
+        assert_eq!(forged(12, 0), "depth of the vocabulary is 0, expected 1 to 10");
+        assert_eq!(forged(counts + 2, 9), "children of vocabulary node 2 is 9, expected 3 or fewer");
+        assert!(forged(counts, 1).starts_with("children of all vocabulary nodes"), "{}", forged(counts, 1));
+        let last = trained().to_bytes().len() - 1;
+        assert!(forged(last, 0xFF).starts_with("weight of vocabulary node"), "{}", forged(last, 0xFF));
     }
 }

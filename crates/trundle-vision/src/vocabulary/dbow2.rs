@@ -1,21 +1,22 @@
 use super::Vocabulary;
 use super::compact::VocabularyError;
-use super::tree::ListedNode;
+use super::listed::ListedNode;
 use crate::Descriptor;
 use std::fmt::Write;
 
 impl Vocabulary {
     /// The text form of DBoW2 that ORB-SLAM programs read: a line `branching depth 0 0` (L1 score, tf-idf weights), then a
-    /// line a node, in the order of their numbers from 1: `parent is_leaf 32 bytes weight`.
+    /// line a node, in the order of their numbers from 1: `parent is_leaf 32 bytes weight`. Without a newline at its end:
+    /// some readers take what follows one for a node.
     pub fn to_dbow2_text(&self) -> String {
-        let mut text = format!("{} {} 0 0\n", self.branching(), self.depth());
-        for node in &self.nodes()[1..] {
-            write!(text, "{} {}", node.parent, u8::from(node.children == 0))
+        let mut text = format!("{} {} 0 0", self.branching(), self.depth());
+        for node in self.nodes() {
+            write!(text, "\n{} {}", self.parent(node), u8::from(self.is_word(node)))
                 .expect("invariant: strings grow");
-            for byte in node.descriptor.0.iter().flat_map(|word| word.to_le_bytes()) {
+            for byte in self.descriptor(node).0.iter().flat_map(|word| word.to_le_bytes()) {
                 write!(text, " {byte}").expect("invariant: strings grow");
             }
-            writeln!(text, " {}", node.weight).expect("invariant: strings grow");
+            write!(text, " {}", self.weight(node)).expect("invariant: strings grow");
         }
         text
     }
@@ -40,22 +41,19 @@ impl Vocabulary {
 }
 
 fn node(line: &str, number: usize) -> Result<ListedNode, VocabularyError> {
-    let fields: Vec<&str> = line.split_whitespace().collect();
-    let [parent, is_leaf, bytes @ .., weight] = &fields[..] else {
-        return Err(bad_line(number, "expected 'parent is_leaf 32 bytes weight'"));
-    };
-    if bytes.len() != 32 {
-        return Err(bad_line(number, &format!("{} bytes of descriptor, expected 32", bytes.len())));
+    let mut fields = line.split_whitespace();
+    let mut field =
+        || fields.next().ok_or_else(|| bad_line(number, "expected 'parent is_leaf 32 bytes weight'"));
+    let (parent, is_leaf) = (one(field()?, number)?, one::<u8>(field()?, number)? != 0);
+    let mut words = [0; 4];
+    for i in 0..32 {
+        words[i / 8] |= u64::from(one::<u8>(field()?, number)?) << (8 * (i % 8));
     }
-    let bytes = numbers::<u8>(&bytes.join(" "), number)?;
-    let word = |chunk: &[u8]| chunk.iter().rev().fold(0, |word, byte| word << 8 | u64::from(*byte));
-    let words: Vec<u64> = bytes.chunks_exact(8).map(word).collect();
-    Ok(ListedNode {
-        parent: one(parent, number)?,
-        is_leaf: one::<u8>(is_leaf, number)? != 0,
-        descriptor: Descriptor([words[0], words[1], words[2], words[3]]),
-        weight: one(weight, number)?,
-    })
+    let weight = one(field()?, number)?;
+    match fields.next() {
+        Some(more) => Err(bad_line(number, &format!("'{more}' after 'parent is_leaf 32 bytes weight'"))),
+        None => Ok(ListedNode { parent, is_leaf, descriptor: Descriptor(words), weight }),
+    }
 }
 
 fn numbers<T: std::str::FromStr>(line: &str, number: usize) -> Result<Vec<T>, VocabularyError> {
@@ -88,7 +86,9 @@ mod tests {
     fn what_is_written_reads_back_to_the_last_bit() {
         let text = trained().to_dbow2_text();
         assert!(text.starts_with("4 3 0 0\n0 0 "));
+        assert!(!text.ends_with('\n'));
         assert_eq!(Vocabulary::from_dbow2_text(&text).unwrap(), trained());
+        assert_eq!(Vocabulary::from_dbow2_text(&(text + "\n\n")).unwrap(), trained());
     }
 
     #[test]
@@ -98,9 +98,11 @@ mod tests {
         assert_eq!(refused(""), "line 1: the file is empty");
         assert_eq!(refused("4 x"), "line 1: 'x' is no number of its kind");
         assert_eq!(refused("4"), "line 1: expected 'branching depth scoring weighting'");
-        assert_eq!(refused("4 3 0 0\n0 1 7 0.5"), "line 2: 1 bytes of descriptor, expected 32");
+        assert_eq!(refused("4 3 0 0\n0 1 7 5"), "line 2: expected 'parent is_leaf 32 bytes weight'");
         let cut = &text[..text.len() - 40];
-        assert!(refused(cut).contains("bytes of descriptor, expected 32"), "{}", refused(cut));
+        assert!(refused(cut).contains("expected 'parent is_leaf 32 bytes weight'"), "{}", refused(cut));
+        let long = text.replacen("\n", " 0 0\n", 2);
+        assert_eq!(refused(&long), "line 2: '0' after 'parent is_leaf 32 bytes weight'");
         let odd = text.replacen("\n0 0 ", "\n7 0 ", 1);
         assert_eq!(refused(&odd), "parent of vocabulary node 1 is 7, expected an inner node before it");
     }

@@ -2,67 +2,165 @@ use super::{BagOfWords, NodeId};
 use std::collections::BTreeMap;
 
 /// The inverse index of \[GalvezLopez12\]: for each word the places that show it.
+///
+/// A question costs the entries of the words asked for, and memory for a number a place.
 #[derive(Debug, Clone, Default)]
 pub struct PlaceIndex {
-    places_of: BTreeMap<NodeId, Vec<(u32, f32)>>,
+    /// By word, as far as any place has shown one.
+    shown: Vec<Vec<Entry>>,
+    /// The slot of each place.
+    slots: BTreeMap<u32, u32>,
+    /// The place of each slot; of one that is free that which left it.
+    places: Vec<u32>,
+    free: Vec<u32>,
+}
+
+/// A place that shows a word. Places have slots, numbered without gaps, so that sums over them are an array.
+#[derive(Debug, Clone, Copy)]
+struct Entry {
+    slot: u32,
+    weight: f32,
+}
+
+/// What a place has in common with what is asked for.
+#[derive(Debug, Clone, Copy, Default)]
+struct Common {
+    words: u32,
+    similarity: f32,
 }
 
 impl PlaceIndex {
-    /// Adds what `place` shows.
+    /// The number of places.
+    pub fn len(&self) -> usize {
+        self.slots.len()
+    }
+
+    /// Whether there is no place.
+    pub fn is_empty(&self) -> bool {
+        self.slots.is_empty()
+    }
+
+    /// Adds what `place` shows, which must be unknown yet.
     pub fn add(&mut self, place: u32, bag: &BagOfWords) {
+        let slot = self.free.pop().unwrap_or(self.places.len() as u32);
+        assert!(self.slots.insert(place, slot).is_none(), "invariant: place {place} is added once");
+        if slot as usize == self.places.len() {
+            self.places.push(place);
+        }
+        self.places[slot as usize] = place;
+        let most = bag.entries().last().map_or(0, |(word, _)| *word as usize + 1);
+        if self.shown.len() < most {
+            self.shown.resize_with(most, Vec::new);
+        }
         for &(word, weight) in bag.entries() {
-            self.places_of.entry(word).or_default().push((place, weight));
+            self.shown[word as usize].push(Entry { slot, weight });
         }
     }
 
-    /// Forgets `place`, which showed `bag`.
+    /// Forgets `place`, which showed `bag`; nothing happens when it is unknown.
     pub fn remove(&mut self, place: u32, bag: &BagOfWords) {
+        let Some(slot) = self.slots.remove(&place) else { return };
         for (word, _) in bag.entries() {
-            if let Some(places) = self.places_of.get_mut(word) {
-                places.retain(|(other, _)| *other != place);
-                if places.is_empty() {
-                    self.places_of.remove(word);
-                }
+            if let Some(entries) = self.shown.get_mut(*word as usize) {
+                entries.retain(|entry| entry.slot != slot);
             }
         }
+        self.free.push(slot);
     }
 
     /// The places that share a word with `bag` and that `is_asked_for`, with their similarities, the most similar
     /// first, of equal ones the lower number.
     pub fn query(&self, bag: &BagOfWords, is_asked_for: impl Fn(u32) -> bool) -> Vec<(u32, f32)> {
-        let mut similarity: BTreeMap<u32, f32> = BTreeMap::new();
-        for (word, weight) in bag.entries() {
-            for (place, other) in self.places_of.get(word).into_iter().flatten() {
-                if is_asked_for(*place) {
-                    *similarity.entry(*place).or_default() += weight.min(*other);
-                }
+        self.query_sharing(bag, 0.0, is_asked_for)
+    }
+
+    /// [`PlaceIndex::query`] without the places that share fewer than `least_share` (0 to 1) of the words that the one
+    /// with the most has in common with `bag`; 0.8 in \[MurArtal17\].
+    pub fn query_sharing(
+        &self,
+        bag: &BagOfWords,
+        least_share: f32,
+        is_asked_for: impl Fn(u32) -> bool,
+    ) -> Vec<(u32, f32)> {
+        let common = self.common(bag);
+        let shares = self.places.iter().zip(common).filter(|(_, common)| common.words > 0);
+        let asked: Vec<(u32, Common)> = shares
+            .map(|(place, common)| (*place, common))
+            .filter(|(place, _)| is_asked_for(*place))
+            .collect();
+        let most = asked.iter().map(|(_, common)| common.words).max().unwrap_or(0);
+        let enough = asked.iter().filter(|(_, common)| common.words as f32 >= least_share * most as f32);
+        let mut found: Vec<(u32, f32)> = enough.map(|(place, common)| (*place, common.similarity)).collect();
+        found.sort_unstable_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
+        found
+    }
+
+    /// For each slot what its place has in common with `bag`, added up by rising word.
+    fn common(&self, bag: &BagOfWords) -> Vec<Common> {
+        let mut common = vec![Common::default(); self.places.len()];
+        for &(word, weight) in bag.entries() {
+            for entry in self.entries(word) {
+                let common = &mut common[entry.slot as usize];
+                common.words += 1;
+                common.similarity += weight.min(entry.weight);
             }
         }
-        let mut found: Vec<(u32, f32)> = similarity.into_iter().collect();
-        found.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
-        found
+        common
+    }
+
+    fn entries(&self, word: NodeId) -> &[Entry] {
+        self.shown.get(word as usize).map_or(&[], Vec::as_slice)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use proptest::prelude::*;
+
+    fn bag(words: &[NodeId]) -> BagOfWords {
+        BagOfWords::new(words, |word| 1.0 + word as f32)
+    }
 
     #[test]
-    fn the_index_says_what_comparing_all_says() {
-        let bag = |words: &[NodeId]| BagOfWords::new(words, |word| 1.0 + word as f32);
-        let bags = [bag(&[1, 2, 3]), bag(&[3, 4]), bag(&[7]), bag(&[2, 2, 3])];
+    fn places_with_too_few_common_words_are_left_out() {
         let mut index = PlaceIndex::default();
-        (0..).zip(&bags).for_each(|(place, bag)| index.add(place, bag));
-        let asked = bag(&[2, 3, 3]);
-        let found = index.query(&asked, |place| place != 1);
-        let places: Vec<u32> = found.iter().map(|(place, _)| *place).collect();
-        assert_eq!(places, [0, 3]);
-        for (place, similarity) in found {
-            assert_eq!(similarity, asked.similarity(&bags[place as usize]));
+        let bags = [bag(&[1, 2, 3, 4, 5]), bag(&[1, 2, 3, 4]), bag(&[3, 4, 5]), bag(&[9])];
+        (10..).zip(&bags).for_each(|(place, bag)| index.add(place, bag));
+        let asked = bag(&[1, 2, 3, 4, 5]);
+        let places = |least, allowed: fn(u32) -> bool| -> Vec<u32> {
+            index.query_sharing(&asked, least, allowed).into_iter().map(|(place, _)| place).collect()
+        };
+        assert_eq!(places(0.0, |_| true), [10, 12, 11]);
+        assert_eq!(places(0.8, |_| true), [10, 11]);
+        assert_eq!(places(0.8, |place| place != 10), [11], "three of four are less than 0.8");
+        assert_eq!((places(1.0, |place| place > 12), index.len()), (vec![], 4));
+    }
+
+    proptest! {
+        /// However places come and go, and in whatever slots they are.
+        #[test]
+        fn the_index_says_what_comparing_all_says(
+            steps in prop::collection::vec((0..12_u32, prop::collection::vec(1..30_u32, 0..12)), 1..60),
+            asked in prop::collection::vec(1..30_u32, 0..12),
+            left_out in 0..12_u32,
+        ) {
+            let (mut index, mut there) = (PlaceIndex::default(), BTreeMap::new());
+            for (place, words) in steps {
+                match there.remove(&place) {
+                    Some(bag) => index.remove(place, &bag),
+                    None => {
+                        index.add(place, &bag(&words));
+                        there.insert(place, bag(&words));
+                    }
+                }
+            }
+            let asked = bag(&asked);
+            let compared = there.iter().map(|(place, bag)| (*place, asked.similarity(bag)));
+            let mut expected: Vec<(u32, f32)> = compared.filter(|(p, s)| *s > 0.0 && *p != left_out).collect();
+            expected.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
+            prop_assert_eq!(index.query(&asked, |place| place != left_out), expected);
+            prop_assert_eq!(index.len(), there.len());
         }
-        index.remove(0, &bags[0]);
-        assert_eq!(index.query(&asked, |_| true)[0].0, 3);
-        assert_eq!(index.query(&bag(&[7]), |_| true), [(2, 1.0)]);
     }
 }

@@ -1,5 +1,6 @@
-use super::clusters::clusters;
-use super::tree::{ListedNode, MOST_BRANCHING, MOST_DEPTH};
+use super::clusters::{Cluster, clusters};
+use super::listed::ListedNode;
+use super::tree::{MOST_BRANCHING, MOST_DEPTH};
 use super::{NodeId, Vocabulary};
 use crate::Descriptor;
 use rand::SeedableRng;
@@ -42,18 +43,18 @@ impl VocabularyConfig {
 
 impl Vocabulary {
     /// Trains a vocabulary on the descriptors of many images: hierarchical k-medians, words weighted by ln(images /
-    /// images that show them). The same images and seed give the same tree on any number of threads.
+    /// images that show them). A word that none shows (each was nearer to another median in the end) weighs as much as one
+    /// that a single image shows. The same images and seed give the same tree on any number of threads.
     ///
     /// # Errors
     /// When the configuration is invalid or there is no descriptor.
     pub fn train(images: &[Vec<Descriptor>], config: &VocabularyConfig, seed: u64) -> Result<Self, Invalid> {
         let config = config.clone().validated()?;
         let descriptors: Vec<Descriptor> = images.iter().flatten().copied().collect();
-        let all: Vec<u32> = (0..descriptors.len() as u32).collect();
-        if all.is_empty() {
+        if descriptors.is_empty() {
             return Err(Invalid::new("descriptors to train on", 0, "", "1 or more"));
         }
-        let root = divide(&descriptors, &all, &config, 0, seed);
+        let root = divide(&descriptors, &config, 0, seed);
         let mut list = Vec::new();
         list_below(&root, 0, &mut list);
         let mut vocabulary = Self::from_list(config.branching, config.depth, &list)?;
@@ -69,12 +70,12 @@ impl Vocabulary {
             words
         };
         let words: Vec<Vec<NodeId>> = images.par_iter().map(words_of).collect();
-        let mut images_with = vec![0_u32; self.nodes().len()];
+        let mut images_with = vec![0_u32; self.nodes().len() + 1];
         words.iter().flatten().for_each(|&word| images_with[word as usize] += 1);
-        for (word, &count) in (0..).zip(&images_with) {
-            if count > 0 {
-                self.set_weight(word, (images.len() as f32 / count as f32).ln());
-            }
+        let is_word: Vec<bool> = self.nodes().map(|node| self.is_word(node)).collect();
+        for (word, _) in (1..).zip(is_word).filter(|(_, is_word)| *is_word) {
+            let count = images_with[word as usize].max(1);
+            self.set_weight(word, (images.len() as f32 / count as f32).ln());
         }
     }
 }
@@ -86,26 +87,20 @@ struct Branch {
 }
 
 /// The children of a node at `level` that has these members; each child draws from a seed of its own.
-fn divide(
-    descriptors: &[Descriptor],
-    members: &[u32],
-    config: &VocabularyConfig,
-    level: usize,
-    seed: u64,
-) -> Vec<Branch> {
-    let is_done = level == config.depth || (level > 0 && members.len() < config.least_to_divide);
+fn divide(descriptors: &[Descriptor], config: &VocabularyConfig, level: usize, seed: u64) -> Vec<Branch> {
+    let is_done = level == config.depth || (level > 0 && descriptors.len() < config.least_to_divide);
     if is_done {
         return Vec::new();
     }
-    let groups = clusters(descriptors, members, config.branching, &mut ChaCha8Rng::seed_from_u64(seed));
-    if level > 0 && groups.len() < 2 {
+    let found = clusters(descriptors, config.branching, &mut ChaCha8Rng::seed_from_u64(seed));
+    if level > 0 && found.len() < 2 {
         return Vec::new();
     }
-    let branch = |(i, (median, own)): (usize, &(Descriptor, Vec<u32>))| {
+    let branch = |(i, cluster): (usize, Cluster)| {
         let seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(i as u64 + 1);
-        Branch { median: *median, below: divide(descriptors, own, config, level + 1, seed) }
+        Branch { median: cluster.median, below: divide(&cluster.members, config, level + 1, seed) }
     };
-    groups.par_iter().enumerate().map(branch).collect()
+    found.into_par_iter().enumerate().map(branch).collect()
 }
 
 fn list_below(branches: &[Branch], parent: NodeId, list: &mut Vec<ListedNode>) {
@@ -148,6 +143,17 @@ mod tests {
             let similar = |other: &usize| asked.similarity(&bag(*other, 3));
             let best = (0..20).max_by(|a, b| similar(a).total_cmp(&similar(b)));
             assert_eq!(best, Some(place));
+        }
+    }
+
+    #[test]
+    fn words_weigh_what_their_images_say_and_are_never_infinite() {
+        let images = images(12, 2);
+        let vocabulary = Vocabulary::train(&images, &VocabularyConfig::default(), 3).unwrap();
+        for word in vocabulary.nodes().filter(|node| vocabulary.is_word(*node)) {
+            let shows = |image: &&Vec<Descriptor>| image.iter().any(|d| vocabulary.word(d) == word);
+            let showing = images.iter().filter(shows).count().max(1);
+            assert_eq!(vocabulary.weight(word), (24.0 / showing as f32).ln());
         }
     }
 

@@ -1,4 +1,5 @@
 use super::BagOfWords;
+use super::hamming::nearest;
 use crate::Descriptor;
 use trundle_core::Invalid;
 
@@ -6,32 +7,44 @@ use trundle_core::Invalid;
 pub type NodeId = u32;
 
 /// A tree of binary words: each node holds the bitwise median of the descriptors below it.
+///
+/// Nodes stand level by level, so that the children of each lie side by side in memory.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Vocabulary {
     branching: usize,
     depth: usize,
-    nodes: Vec<Node>,
+    /// Of node i + 1: the root has none.
+    descriptors: Vec<Descriptor>,
+    /// The children of node i are `first_child[i]..first_child[i + 1]`.
+    first_child: Vec<NodeId>,
+    /// The root is its own.
+    parent: Vec<NodeId>,
+    /// Of a leaf its inverse document frequency, ln(images / images with the word); 0 of an inner node.
+    weight: Vec<f32>,
+    /// Where each level ends, the root's first.
+    level_end: Vec<NodeId>,
 }
 
-/// Children of a node follow one another.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Node {
-    pub(super) descriptor: Descriptor,
-    pub(super) parent: NodeId,
-    pub(super) first_child: NodeId,
-    /// 0: a leaf.
-    pub(super) children: u32,
-    /// Inverse document frequency of a leaf, ln(images / images with the word); 0 of an inner node.
-    pub(super) weight: f32,
+/// The nodes of a tree level by level.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Tree {
+    /// Of all nodes but the root.
+    pub descriptors: Vec<Descriptor>,
+    /// Of all nodes but the root.
+    pub weights: Vec<f32>,
+    /// Children of each node and of the root, which is the first.
+    pub counts: Vec<u8>,
 }
 
-/// A node as files list them: its parent, whether it is a leaf, its descriptor and its weight.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct ListedNode {
-    pub(super) parent: NodeId,
-    pub(super) is_leaf: bool,
-    pub(super) descriptor: Descriptor,
-    pub(super) weight: f32,
+impl Tree {
+    /// Room for so many nodes besides the root.
+    pub fn with_capacity(nodes: usize) -> Self {
+        Self {
+            descriptors: Vec::with_capacity(nodes),
+            weights: Vec::with_capacity(nodes),
+            counts: Vec::with_capacity(nodes + 1),
+        }
+    }
 }
 
 /// Most children of a node, and most levels below the root.
@@ -39,29 +52,28 @@ pub(super) const MOST_BRANCHING: usize = 64;
 pub(super) const MOST_DEPTH: usize = 10;
 
 impl Vocabulary {
-    /// A tree from its nodes but the root, which may stand in any order with parents before children.
+    /// The vocabulary of a tree of this shape.
     ///
     /// # Errors
-    /// When the shape is out of range, there is no node, a parent does not come before its child or is a leaf, a node
-    /// has too many children or lies too deep, an inner node has none, or a weight is negative or not finite; the
-    /// message names the node.
-    pub(super) fn from_list(branching: usize, depth: usize, list: &[ListedNode]) -> Result<Self, Invalid> {
-        trundle_core::require_in(
-            "branching of the vocabulary",
-            branching as f64,
-            "",
-            2.0,
-            MOST_BRANCHING as f64,
-        )?;
-        trundle_core::require_in("depth of the vocabulary", depth as f64, "", 1.0, MOST_DEPTH as f64)?;
-        if list.is_empty() {
-            return Err(Invalid::new("nodes of the vocabulary", 0, "", "1 or more"));
+    /// When the counts are not those of a tree with as many nodes, or the tree is deeper than `depth`.
+    pub(super) fn from_tree(branching: usize, depth: usize, tree: Tree) -> Result<Self, Invalid> {
+        let nodes = tree.descriptors.len() + 1;
+        let first_child = first_children(&tree.counts, nodes)?;
+        let mut parent = vec![0; nodes];
+        for (i, children) in first_child.windows(2).enumerate() {
+            parent[children[0] as usize..children[1] as usize].fill(i as NodeId);
         }
-        let children = children_of(list, branching)?;
-        let nodes = in_breadth(list, &children);
-        let vocabulary = Self { branching, depth, nodes };
-        vocabulary.check_depth()?;
-        Ok(vocabulary)
+        let mut level_end = vec![1];
+        while let Some(&end) = level_end.last().filter(|end| (**end as usize) < nodes) {
+            level_end.push(first_child[end as usize]);
+        }
+        let levels = level_end.len() - 1;
+        if levels > depth {
+            return Err(Invalid::new("levels of the vocabulary", levels, "", format!("{depth} or fewer")));
+        }
+        let mut weight = vec![0.0];
+        weight.extend(tree.weights);
+        Ok(Self { branching, depth, descriptors: tree.descriptors, first_child, parent, weight, level_end })
     }
 
     /// Most children of a node.
@@ -76,25 +88,29 @@ impl Vocabulary {
 
     /// Leaves.
     pub fn word_count(&self) -> usize {
-        self.nodes.iter().skip(1).filter(|node| node.children == 0).count()
+        self.nodes().filter(|node| self.is_word(*node)).count()
     }
 
     /// The word of a descriptor: from the root to the child of the nearest median, the first of equally near ones.
     pub fn word(&self, descriptor: &Descriptor) -> NodeId {
         let mut at = 0;
-        while self.nodes[at as usize].children > 0 {
-            at = self.nearest_child(at, descriptor);
+        loop {
+            let (first, end) = (self.first_child[at as usize], self.first_child[at as usize + 1]);
+            let medians = &self.descriptors[first as usize - 1..end as usize - 1];
+            match nearest(medians, descriptor) {
+                Some((child, _)) => at = first + child as NodeId,
+                None => return at,
+            }
         }
-        at
     }
 
     /// The node of a word's path at `level` below the root, the word itself where the path is shorter: features of two
     /// images that fall under one node are worth comparing.
     pub fn node_of(&self, word: NodeId, level: usize) -> NodeId {
-        let (mut at, mut up) = (word, self.level(word).saturating_sub(level));
-        while up > 0 {
-            at = self.nodes[at as usize].parent;
-            up -= 1;
+        let Some(&end) = self.level_end.get(level) else { return word };
+        let mut at = word;
+        while at >= end {
+            at = self.parent[at as usize];
         }
         at
     }
@@ -102,143 +118,114 @@ impl Vocabulary {
     /// The words of an image, and the word of each of its features.
     pub fn describe(&self, descriptors: &[Descriptor]) -> (BagOfWords, Vec<NodeId>) {
         let words: Vec<NodeId> = descriptors.iter().map(|descriptor| self.word(descriptor)).collect();
-        (BagOfWords::new(&words, |word| self.nodes[word as usize].weight), words)
+        (BagOfWords::new(&words, |word| self.weight(word)), words)
     }
 
-    pub(super) fn nodes(&self) -> &[Node] {
-        &self.nodes
+    /// All nodes but the root, parents before children.
+    pub(super) fn nodes(&self) -> impl ExactSizeIterator<Item = NodeId> + '_ {
+        1..self.parent.len() as NodeId
+    }
+
+    pub(super) fn is_word(&self, node: NodeId) -> bool {
+        self.children(node) == 0
+    }
+
+    pub(super) fn children(&self, node: NodeId) -> u32 {
+        self.first_child[node as usize + 1] - self.first_child[node as usize]
+    }
+
+    pub(super) fn parent(&self, node: NodeId) -> NodeId {
+        self.parent[node as usize]
+    }
+
+    /// Of any node but the root.
+    pub(super) fn descriptor(&self, node: NodeId) -> &Descriptor {
+        &self.descriptors[node as usize - 1]
+    }
+
+    pub(super) fn weight(&self, node: NodeId) -> f32 {
+        self.weight[node as usize]
     }
 
     pub(super) fn set_weight(&mut self, word: NodeId, weight: f32) {
-        self.nodes[word as usize].weight = weight;
-    }
-
-    fn nearest_child(&self, node: NodeId, descriptor: &Descriptor) -> NodeId {
-        let node = self.nodes[node as usize];
-        let (first, end) = (node.first_child, node.first_child + node.children);
-        let distance = |i: NodeId| self.nodes[i as usize].descriptor.distance(descriptor);
-        (first..end).min_by_key(|&i| distance(i)).expect("invariant: asked of a node with children")
-    }
-
-    fn level(&self, node: NodeId) -> usize {
-        let (mut at, mut level) = (node, 0);
-        while at != 0 {
-            at = self.nodes[at as usize].parent;
-            level += 1;
-        }
-        level
-    }
-
-    fn check_depth(&self) -> Result<(), Invalid> {
-        let mut levels = vec![0; self.nodes.len()];
-        for (i, node) in self.nodes.iter().enumerate().skip(1) {
-            levels[i] = levels[node.parent as usize] + 1;
-        }
-        match levels.iter().max() {
-            Some(&deepest) if deepest > self.depth => {
-                let expected = format!("{} or fewer", self.depth);
-                Err(Invalid::new("levels of the vocabulary", deepest, "", expected))
-            }
-            _ => Ok(()),
-        }
+        self.weight[word as usize] = weight;
     }
 }
 
-/// For the root (0) and each listed node (i + 1) its children.
-fn children_of(list: &[ListedNode], branching: usize) -> Result<Vec<Vec<NodeId>>, Invalid> {
-    let mut children = vec![Vec::new(); list.len() + 1];
-    for (i, node) in list.iter().enumerate() {
-        let name = |what: &str| format!("{what} of vocabulary node {}", i + 1);
-        let parent = node.parent as usize;
-        if parent > i || (parent > 0 && list[parent - 1].is_leaf) {
-            return Err(Invalid::new(name("parent"), parent, "", "an inner node before it"));
+/// Where the children of each of `nodes` nodes begin, and of the last end.
+fn first_children(counts: &[u8], nodes: usize) -> Result<Vec<NodeId>, Invalid> {
+    let wrong = |found: usize| {
+        Err(Invalid::new("children of all vocabulary nodes", found, "", format!("{} in all", nodes - 1)))
+    };
+    let mut first_child: Vec<NodeId> = Vec::with_capacity(counts.len() + 1);
+    let mut next = 1;
+    for (i, count) in counts.iter().enumerate() {
+        // A node that is no child of one before it.
+        if i >= next {
+            return wrong(next - 1);
         }
-        if !(node.weight.is_finite() && node.weight >= 0.0) {
-            return Err(Invalid::new(name("weight"), node.weight, "", "a finite number, 0 or more"));
-        }
-        children[parent].push(i as NodeId + 1);
-        if children[parent].len() > branching {
-            return Err(Invalid::new(
-                name("place"),
-                children[parent].len(),
-                "",
-                format!("{branching} children or fewer"),
-            ));
-        }
+        first_child.push(next as NodeId);
+        next += usize::from(*count);
     }
-    match list.iter().enumerate().find(|(i, node)| !node.is_leaf && children[i + 1].is_empty()) {
-        Some((i, _)) => {
-            Err(Invalid::new(format!("children of vocabulary node {}", i + 1), 0, "", "1 or more, or a leaf"))
-        }
-        None => Ok(children),
+    if next != nodes || counts.len() != nodes {
+        return wrong(next - 1);
     }
+    first_child.push(next as NodeId);
+    Ok(first_child)
 }
 
-/// The nodes level by level, so that the children of each follow one another.
-fn in_breadth(list: &[ListedNode], children: &[Vec<NodeId>]) -> Vec<Node> {
-    let blank =
-        Node { descriptor: Descriptor::default(), parent: 0, first_child: 0, children: 0, weight: 0.0 };
-    let mut nodes = vec![blank];
-    let mut listed: Vec<NodeId> = vec![0];
-    for at in 0..=list.len() {
-        let own = &children[listed[at] as usize];
-        nodes[at].first_child = nodes.len() as NodeId;
-        nodes[at].children = own.len() as u32;
-        for &child in own {
-            let ListedNode { descriptor, weight, .. } = list[child as usize - 1];
-            nodes.push(Node { descriptor, parent: at as NodeId, weight, ..blank });
-            listed.push(child);
-        }
-    }
-    nodes
+/// Root with two inner nodes of two leaves each.
+#[cfg(test)]
+pub(super) fn small() -> Vec<super::listed::ListedNode> {
+    let listed = |parent, is_leaf, bits| super::listed::ListedNode {
+        parent,
+        is_leaf,
+        descriptor: Descriptor([bits, 0, 0, 0]),
+        weight: 1.0,
+    };
+    vec![
+        listed(0, false, 0x0F),
+        listed(0, false, 0xF0),
+        listed(1, true, 0x03),
+        listed(2, true, 0x30),
+        listed(1, true, 0x0C),
+        listed(2, true, 0xC0),
+    ]
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn listed(parent: NodeId, is_leaf: bool, bits: u64) -> ListedNode {
-        ListedNode { parent, is_leaf, descriptor: Descriptor([bits, 0, 0, 0]), weight: 1.0 }
-    }
-
-    /// Root with two inner nodes of two leaves each.
-    fn small() -> Vec<ListedNode> {
-        vec![
-            listed(0, false, 0x0F),
-            listed(0, false, 0xF0),
-            listed(1, true, 0x03),
-            listed(2, true, 0x30),
-            listed(1, true, 0x0C),
-            listed(2, true, 0xC0),
-        ]
-    }
-
     #[test]
     fn a_descriptor_goes_down_to_the_nearest_leaf() {
         let tree = Vocabulary::from_list(2, 2, &small()).unwrap();
-        assert_eq!(tree.word_count(), 4);
+        assert_eq!((tree.word_count(), tree.nodes().len()), (4, 6));
         let word = tree.word(&Descriptor([0x3C, 0, 0, 0]));
-        assert_eq!(tree.nodes()[word as usize].descriptor.0[0], 0x0C, "below the first of equally near ones");
+        assert_eq!(tree.descriptor(word).0[0], 0x0C, "below the first of equally near ones");
         let word = tree.word(&Descriptor([0xC0, 0, 0, 0]));
         let node = tree.node_of(word, 1);
-        assert_eq!(tree.nodes()[node as usize].descriptor.0[0], 0xF0);
-        assert_eq!((tree.node_of(word, 0), tree.node_of(word, 9)), (0, word));
+        assert_eq!(tree.descriptor(node).0[0], 0xF0);
+        assert_eq!((tree.node_of(word, 0), tree.node_of(word, 2), tree.node_of(word, 9)), (0, word, word));
     }
 
     #[test]
-    fn broken_trees_are_refused_by_node() {
-        let refused = |change: &dyn Fn(&mut Vec<ListedNode>)| {
-            let mut list = small();
-            change(&mut list);
-            Vocabulary::from_list(2, 2, &list).unwrap_err().field
+    fn counts_that_are_no_tree_are_refused() {
+        let tree = |counts: &[u8]| Tree {
+            descriptors: vec![Descriptor::default(); 4],
+            weights: vec![0.0; 4],
+            counts: counts.to_vec(),
         };
-        assert_eq!(refused(&|list| list[2].parent = 5), "parent of vocabulary node 3");
-        assert_eq!(refused(&|list| list[4].parent = 3), "parent of vocabulary node 5");
-        assert_eq!(refused(&|list| list[0].is_leaf = true), "parent of vocabulary node 3");
-        assert_eq!(refused(&|list| list[5].weight = f32::NAN), "weight of vocabulary node 6");
-        assert_eq!(refused(&|list| list[5].parent = 1), "place of vocabulary node 6");
-        assert_eq!(refused(&|list| list[3].is_leaf = false), "children of vocabulary node 4");
-        assert_eq!(refused(&|list| list.clear()), "nodes of the vocabulary");
-        assert_eq!(Vocabulary::from_list(2, 1, &small()).unwrap_err().field, "levels of the vocabulary");
+        assert!(Vocabulary::from_tree(2, 3, tree(&[2, 2, 0, 0, 0])).is_ok());
+        for counts in
+            [&[2, 2, 0, 0][..], &[2, 2, 0, 0, 1], &[0, 2, 2, 0, 0], &[2, 1, 0, 0, 1], &[2, 0, 0, 2, 0]]
+        {
+            let error = Vocabulary::from_tree(2, 3, tree(counts)).unwrap_err();
+            assert_eq!(error.field, "children of all vocabulary nodes", "{counts:?}");
+        }
+        assert_eq!(
+            Vocabulary::from_tree(2, 1, tree(&[2, 2, 0, 0, 0])).unwrap_err().field,
+            "levels of the vocabulary"
+        );
     }
 }
