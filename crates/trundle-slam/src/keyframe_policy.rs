@@ -1,5 +1,6 @@
 use crate::anchor::MAX_RELATIVE_SIGMA;
 use crate::frame::Frame;
+use crate::ids::KeyframeId;
 use crate::map::LandmarkMap;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
@@ -63,12 +64,8 @@ impl KeyframeConfig {
         shown: impl Iterator<Item = Vector2>,
         map: &LandmarkMap,
     ) -> bool {
-        let beyond_all = |translation: f64, rotation: f64| {
-            map.keyframes().rev().all(|(_, keyframe)| {
-                let offset = keyframe.visual_from_camera.inverse() * pose;
-                offset.translation.norm() > translation || offset.angle() > rotation
-            })
-        };
+        let beyond_all =
+            |translation: f64, rotation: f64| !is_near_one(map, pose, (translation, rotation), None);
         if !beyond_all(self.min_translation, self.min_rotation) {
             return false;
         }
@@ -77,6 +74,28 @@ impl KeyframeConfig {
         let new = new_features(frame, shown) as f64 > self.new_ratio * all as f64;
         thin || new || beyond_all(self.max_translation, self.max_rotation)
     }
+}
+
+impl KeyframeConfig {
+    /// Whether the place of a keyframe would not ask for another one if it were forgotten.
+    pub(crate) fn is_covered_without(&self, map: &LandmarkMap, id: KeyframeId) -> bool {
+        let pose = map.keyframe(id).visual_from_camera;
+        is_near_one(map, pose, (self.max_translation, self.max_rotation), Some(id))
+    }
+}
+
+/// Whether a keyframe other than `except` is within so many m and rad of a pose.
+fn is_near_one(
+    map: &LandmarkMap,
+    pose: Pose3,
+    (translation, rotation): (f64, f64),
+    except: Option<KeyframeId>,
+) -> bool {
+    let near = map.keyframes_near(pose.translation, translation);
+    near.into_iter().filter(|id| Some(*id) != except).any(|id| {
+        let offset = map.keyframe(id).visual_from_camera.inverse() * pose;
+        offset.translation.norm() <= translation && offset.angle() <= rotation
+    })
 }
 
 /// How many features with depth are in a part of the image where no landmark is shown.

@@ -25,6 +25,8 @@ mod depth;
 mod found;
 mod frame;
 mod ids;
+mod keyframe_culling;
+mod keyframe_grid;
 mod keyframe_policy;
 mod landmark;
 mod local_bundle;

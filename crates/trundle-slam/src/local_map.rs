@@ -25,14 +25,15 @@ pub(crate) struct View<'a> {
 }
 
 impl View<'_> {
-    /// The landmarks of the whole map that a camera at `visual_from_camera` should see, by rising id. When there are
+    /// The landmarks of the keyframes around that a camera at `visual_from_camera` should see, by rising id. When there are
     /// more than `most`, those with the most observations.
     pub fn landmarks(&self, map: &LandmarkMap, visual_from_camera: Pose3) -> Vec<(LandmarkId, Projection)> {
         let camera_from_visual = visual_from_camera.inverse();
-        let mut seen: Vec<(LandmarkId, Projection)> = map
-            .landmarks()
-            .filter_map(|(id, l)| Some((id, self.project(l, camera_from_visual, visual_from_camera)?)))
-            .collect();
+        let project = |id: LandmarkId| {
+            Some((id, self.project(map.landmark(id)?, camera_from_visual, visual_from_camera)?))
+        };
+        let mut seen: Vec<(LandmarkId, Projection)> =
+            landmarks_around(map, visual_from_camera).into_iter().filter_map(project).collect();
         if seen.len() > self.most {
             let support = |id: LandmarkId| map.landmark(id).map_or(0, |l| l.observations.len());
             seen.sort_by_key(|(id, _)| (std::cmp::Reverse(support(*id)), *id));
@@ -72,6 +73,24 @@ impl View<'_> {
         let (image, config) = self.depth;
         config.at(image, raw).is_some_and(|surface| depth > surface * (1.0 + HIDDEN.1) + HIDDEN.0)
     }
+}
+
+/// What the keyframes around a pose see, by rising id.
+fn landmarks_around(map: &LandmarkMap, visual_from_camera: Pose3) -> Vec<LandmarkId> {
+    let mut is_seen = vec![0_u64; map.landmark_bound() / 64 + 1];
+    for keyframe in map.around(visual_from_camera) {
+        for id in map.keyframe(keyframe).landmarks.iter().flatten() {
+            is_seen[id.index() / 64] |= 1 << (id.index() % 64);
+        }
+    }
+    let mut ids = Vec::new();
+    for (word, mut bits) in is_seen.into_iter().enumerate() {
+        while bits != 0 {
+            ids.push(LandmarkId::from_index(64 * word + bits.trailing_zeros() as usize));
+            bits &= bits - 1;
+        }
+    }
+    ids
 }
 
 #[cfg(test)]

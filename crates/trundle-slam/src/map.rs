@@ -1,6 +1,7 @@
 use crate::arena::Arena;
 use crate::frame::Frame;
 use crate::ids::{KeyframeId, LandmarkId};
+use crate::keyframe_grid::KeyframeGrid;
 use crate::landmark::Landmark;
 use crate::sensor::Sensor;
 use crate::spanning_tree::Place;
@@ -27,6 +28,8 @@ pub(crate) struct Keyframe {
 pub(crate) struct LandmarkMap {
     pub(crate) keyframes: Arena<Keyframe>,
     landmarks: Arena<Landmark>,
+    /// Where the keyframes are.
+    pub(crate) grid: KeyframeGrid,
     /// Where forgotten keyframes stand to the one that took them over, by id.
     pub(crate) forgotten: std::collections::BTreeMap<KeyframeId, (KeyframeId, Pose3)>,
 }
@@ -89,16 +92,31 @@ impl LandmarkMap {
         self.landmarks.len()
     }
 
+    /// Higher than the index of every landmark ever made.
+    pub fn landmark_bound(&self) -> usize {
+        self.landmarks.bound()
+    }
+
+    /// The keyframes within a cube of about twice `reach` (m) around a position, by rising id.
+    pub fn keyframes_near(&self, position: Vector3, reach: f64) -> Vec<KeyframeId> {
+        self.grid.near(position, reach)
+    }
+
     /// A new keyframe that sees nothing yet.
     pub fn add_keyframe(&mut self, frame: Frame, visual_from_camera: Pose3) -> KeyframeId {
         let landmarks = vec![None; frame.len()];
         let (covariance, tree) = (Matrix6::zeros(), Place::default());
         let keyframe = Keyframe { frame, visual_from_camera, covariance, landmarks, tree };
-        KeyframeId::from_index(self.keyframes.insert(keyframe))
+        let id = KeyframeId::from_index(self.keyframes.insert(keyframe));
+        self.grid.insert(id, visual_from_camera.translation);
+        id
     }
 
     /// Moves a keyframe, not what it sees.
     pub fn move_keyframe(&mut self, id: KeyframeId, visual_from_camera: Pose3) {
+        let before = self.keyframe(id).visual_from_camera.translation;
+        self.grid.remove(id, before);
+        self.grid.insert(id, visual_from_camera.translation);
         self.keyframe_mut(id).visual_from_camera = visual_from_camera;
     }
 

@@ -96,7 +96,7 @@ impl Mapper<'_> {
         for id in map.keyframe(keyframe).landmarks.clone().into_iter().flatten() {
             map.refresh(id, self.sensor);
         }
-        self.cull(map);
+        self.cull(map, keyframe);
         let size = BundleSize { local: self.config.local_keyframes, fixed: self.config.fixed_keyframes };
         refine_around(map, keyframe, self.sensor, size, &self.config.bundle);
         keyframe
@@ -167,15 +167,21 @@ impl Mapper<'_> {
     }
 
     /// Forgets landmarks that no second keyframe saw in time, or that were seldom found where they should have been seen.
-    fn cull(&self, map: &mut LandmarkMap) {
+    /// Looks at what the keyframes around the new one see, and at the one whose landmarks have now been on trial for long
+    /// enough.
+    fn cull(&self, map: &mut LandmarkMap, new: KeyframeId) {
         let MappingConfig { trial_keyframes, trial_frames, found_ratio, .. } = *self.config;
         let Some(oldest_on_trial) = map.keyframe_ids().rev().nth(trial_keyframes) else { return };
+        let judged = map.keyframe_ids().rev().nth(trial_keyframes + 1);
         let alone = |l: &Landmark| l.observations.len() == 1 && l.observations[0].0 < oldest_on_trial;
         let seldom = |l: &Landmark| {
             l.visible >= trial_frames && f64::from(l.found) < found_ratio * f64::from(l.visible)
         };
+        let is_gone = |id: LandmarkId| map.landmark(id).is_some_and(|l| alone(l) || seldom(l));
+        let near = map.around(map.keyframe(new).visual_from_camera);
+        let seen = |id: KeyframeId| map.keyframe(id).landmarks.iter().flatten().copied();
         let gone: Vec<LandmarkId> =
-            map.landmarks().filter(|(_, l)| alone(l) || seldom(l)).map(|(id, _)| id).collect();
+            near.into_iter().chain(judged).flat_map(seen).filter(|id| is_gone(*id)).collect();
         gone.into_iter().for_each(|id| map.forget(id));
     }
 }

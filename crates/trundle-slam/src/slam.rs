@@ -10,6 +10,7 @@ use crate::component::Component;
 use crate::config::SlamConfig;
 use crate::frame::Frame;
 use crate::ids::{KeyframeId, LandmarkId};
+use crate::keyframe_culling::cull_keyframes;
 use crate::local_map::View;
 use crate::map::LandmarkMap;
 use crate::mapping::Mapper;
@@ -214,6 +215,7 @@ impl RgbdSlam {
     fn insert(&mut self, frame: Frame, pose: Pose3, tracked: &[Option<LandmarkId>]) -> KeyframeId {
         let mapper = Self::mapper(&self.sensor, &self.config);
         let keyframe = mapper.insert(&mut self.active.map, frame, pose, tracked);
+        cull_keyframes(&mut self.active.map, keyframe, &self.config.keyframes);
         self.active.follow();
         keyframe
     }

@@ -8,6 +8,8 @@ use trundle_core::Pose3;
 pub(crate) struct Place {
     pub parent: Option<KeyframeId>,
     pub children: Vec<KeyframeId>,
+    /// Keyframes in which it found its place again, or which found theirs in it: the loops it closes.
+    pub loops: Vec<KeyframeId>,
     /// Forgotten keyframes whose heir it is.
     heir_of: Vec<KeyframeId>,
 }
@@ -23,6 +25,12 @@ impl LandmarkMap {
         }
     }
 
+    /// Records that two keyframes close a loop: neither is forgotten from now on.
+    pub fn tie(&mut self, a: KeyframeId, b: KeyframeId) {
+        self.keyframe_mut(a).tree.loops.push(b);
+        self.keyframe_mut(b).tree.loops.push(a);
+    }
+
     /// Removes a keyframe and all that it saw. Its children go to its parent, and so do the frames that were kept relative
     /// to it. The root stays: whether it was removed.
     pub fn forget_keyframe(&mut self, id: KeyframeId) -> bool {
@@ -30,6 +38,7 @@ impl LandmarkMap {
         let seen: Vec<_> = self.keyframe(id).landmarks.iter().flatten().copied().collect();
         seen.into_iter().for_each(|landmark| self.unobserve(landmark, id));
         let Some(gone) = self.keyframes.remove(id.index()) else { return false };
+        self.grid.remove(id, gone.visual_from_camera.translation);
         let parent_from_gone = self.keyframe(parent).visual_from_camera.inverse() * gone.visual_from_camera;
         self.forgotten.insert(id, (parent, parent_from_gone));
         for ward in &gone.tree.heir_of {

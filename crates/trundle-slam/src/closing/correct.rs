@@ -36,6 +36,7 @@ impl Correction<'_> {
             map.move_keyframe(id, pose);
         }
         self.fuse(map, keyframe);
+        map.tie(self.found.candidate, keyframe);
         map.set_covariance(keyframe, map.keyframe(self.found.candidate).covariance);
         let size = BundleSize { local: REFINED, fixed: REFINED };
         refine_around(map, keyframe, self.sensor, size, &self.mapping.bundle);
