@@ -67,6 +67,9 @@ impl Component {
             renamed.landmarks.insert(old, new);
         }
         renamed.keyframes.values().for_each(|id| self.map.enter_tree(*id));
+        for (old, new) in other.loops() {
+            self.map.tie(renamed.keyframes[&old], renamed.keyframes[&new]);
+        }
         self.follow();
         renamed
     }

@@ -118,8 +118,7 @@ impl Places {
         most: usize,
     ) -> Vec<KeyframeId> {
         let id = |place: u32| KeyframeId::from_index(place as usize);
-        let found = self.index.query(&words.bag, |_| true);
-        let asked = found.into_iter().filter(|(place, _)| is_asked_for(id(*place)));
+        let asked = self.index.query(&words.bag, |place| is_asked_for(id(place))).into_iter();
         let mut places: Vec<Place> = Vec::new();
         for (place, similarity) in asked.take(4 * most) {
             let id = id(place);
@@ -151,5 +150,74 @@ impl Place {
     fn join(&mut self, id: KeyframeId, similarity: f32) {
         self.similarity += similarity;
         self.members.push(id);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::sensor;
+    use trundle_core::{Pose3, Stamp};
+    use trundle_vision::{Descriptor, Features, Keypoint};
+
+    /// What is seen at a place: features of its own, each with up to `noise` bits turned.
+    fn seen(place: u64, noise: u64, view: u64) -> Frame {
+        let mut state = place.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1;
+        let mut turns = view.wrapping_mul(0xBF58_476D_1CE4_E5B9) | 1;
+        let next = |state: &mut u64| {
+            *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            *state >> 32
+        };
+        let mut features = Features::default();
+        for i in 0..200_u16 {
+            let mut words = [0; 4].map(|_: u64| next(&mut state) << 32 | next(&mut state));
+            for _ in 0..noise {
+                words[next(&mut turns) as usize % 4] ^= 1 << (next(&mut turns) % 64);
+            }
+            let (x, y) = (f32::from(i % 20) * 15.0, f32::from(i / 20) * 20.0);
+            features.keypoints.push(Keypoint { x, y, octave: 0, angle: 0.0, response: 1.0 });
+            features.descriptors.push(Descriptor(words));
+        }
+        Frame::of(Stamp::default(), features, vec![None; 200], &sensor())
+    }
+
+    /// Four views each of six places.
+    fn mapped() -> (LandmarkMap, Places) {
+        let mut map = LandmarkMap::default();
+        for view in 0..24 {
+            let id = map.add_keyframe(seen(view / 4, 6, view), Pose3::identity());
+            map.enter_tree(id);
+        }
+        let mut places = Places::new(Vocabulary::builtin());
+        places.follow(&map);
+        (map, places)
+    }
+
+    #[test]
+    fn a_place_is_found_by_its_words_and_not_when_it_is_forgotten() {
+        let (mut map, mut places) = mapped();
+        let words = Words::of(&seen(3, 6, 99), places.vocabulary());
+        let alike = |map: &LandmarkMap, places: &Places| places.alike(map, &words, |_| true, 4);
+        let mut found = alike(&map, &places);
+        found.sort_unstable();
+        assert_eq!(found.iter().map(|id| id.index()).collect::<Vec<_>>(), vec![12, 13, 14, 15]);
+        let old = |id: KeyframeId| id.index() < 14;
+        assert_eq!(places.alike(&map, &words, old, 2).iter().filter(|id| id.index() / 4 == 3).count(), 2);
+        assert!(map.forget_keyframe(found[1]));
+        places.follow(&map);
+        assert!(!alike(&map, &places).contains(&found[1]));
+    }
+
+    #[test]
+    fn what_looks_alike_is_paired_under_the_nodes_it_shares() {
+        let vocabulary = Vocabulary::builtin();
+        let (a, b, c) = (seen(1, 6, 1), seen(1, 6, 2), seen(2, 6, 3));
+        let words = [&a, &b, &c].map(|frame| Words::of(frame, &vocabulary));
+        let worded = |frame, i: usize| Worded { frame, words: &words[i] };
+        let likeness = Likeness { max_distance: 64, ratio: 0.8 };
+        let pairs = worded(&a, 0).matches(worded(&b, 1), likeness);
+        assert!(pairs.len() > 120, "{} of 200", pairs.len());
+        assert!(pairs.iter().all(|pair| pair.a == pair.b) && pairs.is_sorted_by_key(|pair| pair.a));
+        assert!(worded(&a, 0).matches(worded(&c, 2), likeness).len() < 5);
     }
 }

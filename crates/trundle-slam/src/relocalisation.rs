@@ -47,3 +47,27 @@ pub(crate) fn is_same_place(a: Pose3, b: Pose3) -> bool {
     let offset = a.inverse() * b;
     offset.translation.norm() < SAME_PLACE.0 && offset.angle() < SAME_PLACE.1
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use trundle_core::Vector3;
+
+    impl Placed for (f64, usize) {
+        fn pose(&self) -> Pose3 {
+            Pose3::new(nalgebra::UnitQuaternion::identity(), Vector3::x() * self.0)
+        }
+
+        fn points(&self) -> usize {
+            self.1
+        }
+    }
+
+    #[test]
+    fn the_most_points_win_unless_another_place_has_nearly_as_many() {
+        assert_eq!(unrivalled::<(f64, usize)>(vec![]), None);
+        assert_eq!(unrivalled(vec![(0.0, 50), (0.1, 60), (4.0, 40)]), Some((0.1, 60)));
+        assert_eq!(unrivalled(vec![(0.0, 50), (4.0, 60)]), None);
+        assert_eq!(unrivalled(vec![(0.0, 60), (0.2, 59)]), Some((0.0, 60)));
+    }
+}

@@ -1,5 +1,5 @@
 use crate::ids::KeyframeId;
-use crate::map::LandmarkMap;
+use crate::map::{Keyframe, LandmarkMap};
 use trundle_core::Pose3;
 
 /// Where a keyframe stands in the spanning tree: its parent is the keyframe it shared most landmarks with when it was
@@ -29,6 +29,15 @@ impl LandmarkMap {
     pub fn tie(&mut self, a: KeyframeId, b: KeyframeId) {
         self.keyframe_mut(a).tree.loops.push(b);
         self.keyframe_mut(b).tree.loops.push(a);
+    }
+
+    /// The pairs of keyframes that close a loop, the older first, by rising newer one.
+    pub fn loops(&self) -> impl Iterator<Item = (KeyframeId, KeyframeId)> + '_ {
+        let older = |(id, keyframe): (KeyframeId, &'_ Keyframe)| {
+            let pairs = keyframe.tree.loops.iter().filter(move |other| **other < id);
+            pairs.map(|other| (*other, id)).collect::<Vec<_>>()
+        };
+        self.keyframes().flat_map(older)
     }
 
     /// Removes a keyframe and all that it saw. Its children go to its parent, and so do the frames that were kept relative

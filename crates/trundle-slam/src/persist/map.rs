@@ -23,6 +23,12 @@ pub(super) fn write(out: &mut Writer, map: &LandmarkMap) {
     for (_, landmark) in map.landmarks() {
         write_landmark(out, landmark, |id| numbers[&id]);
     }
+    let loops: Vec<(KeyframeId, KeyframeId)> = map.loops().collect();
+    out.count(loops.len());
+    for (old, new) in loops {
+        out.count(numbers[&old]);
+        out.count(numbers[&new]);
+    }
 }
 
 pub(super) fn read(bytes: &mut Reader, sensor: &Sensor) -> Result<LandmarkMap, MapFileError> {
@@ -35,7 +41,14 @@ pub(super) fn read(bytes: &mut Reader, sensor: &Sensor) -> Result<LandmarkMap, M
     for _ in 0..bytes.count(LEAST.1)? {
         read_landmark(bytes, &mut map, &ids)?;
     }
-    ids.into_iter().for_each(|id| map.enter_tree(id));
+    ids.iter().for_each(|id| map.enter_tree(*id));
+    bytes.within = "loops";
+    for _ in 0..bytes.count(8)? {
+        let (old, new) =
+            (bytes.index("keyframe of a loop", ids.len())?, bytes.index("keyframe of a loop", ids.len())?);
+        bytes.require(old < new, "keyframe of a loop", old, || format!("less than {new}"))?;
+        map.tie(ids[old], ids[new]);
+    }
     Ok(map)
 }
 

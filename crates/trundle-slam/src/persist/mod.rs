@@ -6,7 +6,7 @@
 //! | 1 | version |
 //! | 8 | checksum of the rest (FNV-1a by words of 8 bytes) |
 //! | 17 x 8 | camera and ORB settings, f64 |
-//! | 4, then each | number of maps; a map: its number, keyframes, landmarks with their observations |
+//! | 4, then each | number of maps; a map: its number, keyframes, landmarks with their observations, loops |
 //!
 //! All little endian. What follows from the rest is not saved: rectified pixels, words, spanning tree. The trajectory is
 //! no part of a map.

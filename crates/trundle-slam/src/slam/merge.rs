@@ -66,8 +66,10 @@ impl RgbdSlam {
         self.rename_history(&absorbed, &renamed, moved);
         let keyframe = if is_older { renamed.keyframes[&keyframe] } else { keyframe };
         if !is_older {
+            found.candidate = renamed.keyframes[&found.candidate];
             found.landmarks.iter_mut().for_each(|id| *id = renamed.landmarks[id]);
         }
+        self.active.map.tie(found.candidate, keyframe);
         self.fuse(keyframe, &found);
         let (from, into) = (absorbed.id, self.active.id);
         MapMerge { from, into, keyframe, points: found.points, correction: Pose3::identity() }
