@@ -8,6 +8,7 @@ use crate::anchor::Anchor;
 use crate::claim::Claim;
 use crate::component::Component;
 use crate::config::SlamConfig;
+use crate::diagnosis::{SettingsCheck, Suspicion};
 use crate::frame::Frame;
 use crate::ids::{KeyframeId, LandmarkId};
 use crate::keyframe_culling::cull_keyframes;
@@ -52,6 +53,7 @@ pub struct RgbdSlam {
     surprise: Option<Claim<()>>,
     history: Vec<Past>,
     seen: Vec<SeenFeature>,
+    check: SettingsCheck,
 }
 
 /// A frame whose pose was found.
@@ -97,6 +99,7 @@ impl RgbdSlam {
             surprise: None,
             history: vec![],
             seen: vec![],
+            check: SettingsCheck::default(),
         })
     }
 
@@ -142,6 +145,7 @@ impl RgbdSlam {
         let fits = image.color().width() == camera.width() && image.color().height() == camera.height();
         let features =
             if fits { self.extractor.extract(&gray_from_color(image.color())) } else { Features::default() };
+        self.check.note_image(image);
         self.step_with_features(image.stamp(), features, image.depth(), prior)
     }
 
@@ -155,6 +159,7 @@ impl RgbdSlam {
     ) -> TrackReport {
         let prior = prior.filter(Pose3::is_finite);
         let frame = Frame::new(stamp, features, depth, &self.sensor, &self.config.depth);
+        self.check.note_frame(&frame, depth, prior, &self.sensor, &self.config.depth);
         match self.locate(&frame, depth, prior) {
             Some(sighting) => self.accept(frame, sighting),
             None => self.miss(frame, depth, prior),
@@ -189,6 +194,11 @@ impl RgbdSlam {
     /// The features of the last image.
     pub fn last_features(&self) -> &[SeenFeature] {
         &self.seen
+    }
+
+    /// Settings that are probably wrong, as the first images tell; empty where nothing speaks against them.
+    pub fn suspicions(&self) -> &[Suspicion] {
+        self.check.suspicions()
     }
 
     fn view<'a>(&'a self, depth: &'a DepthImage) -> View<'a> {

@@ -10,7 +10,7 @@ use trundle_slam::{RgbdSlam, SlamConfig, Tracking};
 
 const SEQUENCE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data/tum_fr1_rpy_400");
 
-fn freiburg1() -> PinholeCamera {
+pub fn camera() -> PinholeCamera {
     let lens = Distortion { k1: 0.2624, k2: -0.9531, p1: -0.0054, p2: 0.0026, k3: 1.1633 };
     PinholeCamera::new((640, 480), (517.3, 516.5), (318.6, 255.3), lens).unwrap()
 }
@@ -43,6 +43,17 @@ fn position_at(truth: &[(f64, Vector3)], time: f64) -> Option<Vector3> {
     (b - a < 0.1).then(|| p.lerp(&q, (time - a) / (b - a)))
 }
 
+/// The first frames; `None`, and a line about it, where the sequence is not at hand.
+pub fn frames(most: usize) -> Option<Vec<RgbdImage>> {
+    let folder = PathBuf::from(SEQUENCE);
+    let Ok(list) = std::fs::read_to_string(folder.join("associations.txt")) else {
+        eprintln!("SKIPPED: no {SEQUENCE}");
+        return None;
+    };
+    let lines = list.lines().filter(|line| !line.starts_with('#')).take(most);
+    Some(lines.map(|line| load(&folder, line)).collect())
+}
+
 #[test]
 fn freiburg1_rpy_is_tracked_within_5_cm() {
     let folder = PathBuf::from(SEQUENCE);
@@ -51,7 +62,7 @@ fn freiburg1_rpy_is_tracked_within_5_cm() {
         return;
     };
     let truth = truth(&folder);
-    let mut slam = RgbdSlam::new(freiburg1(), SlamConfig::default()).unwrap();
+    let mut slam = RgbdSlam::new(camera(), SlamConfig::default()).unwrap();
     let mut extractor = trundle_vision::OrbExtractor::new(SlamConfig::default().orb).unwrap();
     let (mut located, mut total, mut features, mut slowest) = (0, 0.0, 0.0, 0.0_f64);
     let lines: Vec<&str> = list.lines().filter(|line| !line.starts_with('#')).collect();
