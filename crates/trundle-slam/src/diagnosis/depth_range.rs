@@ -3,7 +3,7 @@ use crate::depth::DepthConfig;
 use trundle_core::DepthImage;
 
 /// Images that are looked at.
-const IMAGES: usize = 4;
+const IMAGES: usize = 16;
 /// Every so many pixels along both sides.
 const STRIDE: usize = 8;
 /// More than this part of the depths where the camera cannot measure is suspicious.

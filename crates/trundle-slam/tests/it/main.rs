@@ -5,11 +5,8 @@ mod freiburg;
 mod maps;
 mod robustness;
 mod room;
-<<<<<<< HEAD
 mod saving;
-=======
 mod settings;
->>>>>>> c5c83a5 (Wrong settings are noticed from the images: depth range, travel, focal lengths, lens, registration)
 mod synthetic;
 mod umeyama;
 mod walks;
