@@ -77,12 +77,14 @@ impl RgbdSlam {
     /// uncertainty lets it be, or one said by as many frames in a row as it takes to be at a loss. Wheels that know where
     /// they went outweigh a room that looks like another one, not a robot that was carried.
     fn believable(&mut self, recognised: Vec<Found>, predicted: Pose3, is_blind: bool) -> Option<Found> {
+        let said_before = self.doubt.take();
         let is_near = |found: &Found| is_blind || self.may_be_at(predicted, found.pose());
         let (near, far): (Vec<Found>, Vec<Found>) = recognised.into_iter().partition(is_near);
         if !near.is_empty() {
             return unrivalled(near);
         }
         let found = unrivalled(far)?;
+        self.doubt = said_before;
         let times = Claim::note(&mut self.doubt, (), found.pose() * predicted.inverse());
         (times >= self.config.tracking.patience).then_some(found)
     }

@@ -107,7 +107,7 @@ fn what_is_no_map_is_refused_with_the_reason() {
     let mut newer = SAVED.clone();
     newer[7] = 9;
     assert_eq!(refused(&newer), "map of version 9, expected 1");
-    assert_eq!(refused(&sealed(&SAVED[..SAVED.len() - 1])), "the map is cut off in its landmarks");
+    assert_eq!(refused(&sealed(&SAVED[..SAVED.len() - 1])), "the map is cut off in its loops");
     let mut longer = SAVED.clone();
     longer.push(0);
     assert_eq!(
