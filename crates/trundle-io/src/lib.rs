@@ -45,7 +45,10 @@ pub use csv::{curve_csv, table_csv, trajectory_csv, waypoints_csv};
 pub use error::{FrameError, IoError};
 pub use map::{map_pgm, map_yaml, read_map, write_map};
 pub use output::OutputFolder;
-pub use recording::{PoseInFrame, PosesInFrame, RecordedMessage, Recorder, RecordingReader};
+pub use recording::{
+    FeatureMarks, KeyframeGraph, LandmarkCloud, PoseInFrame, PosesInFrame, RecordedMessage, Recorder,
+    RecordingReader,
+};
 pub use stamp_text::parse_stamp;
 pub use summary::Summary;
 pub use tum::{

@@ -7,10 +7,12 @@ mod recorder;
 mod schemas;
 mod stream;
 mod time;
+mod visual_map;
 
 pub use poses::{PoseInFrame, PosesInFrame};
 pub use reader::{RecordedMessage, RecordingReader};
 pub use recorder::Recorder;
+pub use visual_map::{FeatureMarks, KeyframeGraph, LandmarkCloud};
 
 /// Where each kind of sensor event is recorded.
 mod topics {

@@ -28,7 +28,9 @@ mod ticks;
 pub use camera::{FeatureMark, depth_picture, feature_picture};
 pub use chart::{BarChart, Chart};
 pub use color::Color;
-pub use compose::{CameraView, PlanScene, RunReport, plan_picture, trajectory_picture};
+pub use compose::{
+    CameraView, PlanScene, RunReport, VisualMapScene, plan_picture, trajectory_picture, visual_map_picture,
+};
 pub use legend::{LegendItem, Mark};
 pub use map::{DotStyle, LineStyle, MapPicture, PoseStyle};
 pub use report::{Card, Figure, Report, Table, Verdict};

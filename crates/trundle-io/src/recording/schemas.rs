@@ -9,6 +9,16 @@ pub(super) fn json_schema(name: &str) -> String {
         "foxglove.PosesInFrame" => {
             fields(&[TIMESTAMP, FRAME_ID, ("poses", &format!(r#"{{"type":"array","items":{POSE}}}"#))])
         }
+        "foxglove.PointCloud" => fields(&[
+            TIMESTAMP,
+            FRAME_ID,
+            ("pose", POSE),
+            ("point_stride", r#"{"type":"integer","minimum":0}"#),
+            ("fields", OBJECTS),
+            ("data", BYTES),
+        ]),
+        "foxglove.ImageAnnotations" => fields(&[("circles", OBJECTS), ("points", OBJECTS), ("texts", OBJECTS)]),
+        "foxglove.SceneUpdate" => fields(&[("deletions", OBJECTS), ("entities", OBJECTS)]),
         "trundle.WheelTicks" => fields(&[STAMP, ("left", COUNTER), ("right", COUNTER)]),
         "trundle.GyroRate" => fields(&[STAMP, ("omega_rad_s", NUMBER)]),
         "trundle.Touch" => fields(&[STAMP, ("pressed", r#"{"type":"boolean"}"#)]),
@@ -34,6 +44,7 @@ const FRAME_ID: (&str, &str) = ("frame_id", STRING);
 
 const STRING: &str = r#"{"type":"string"}"#;
 const NUMBER: &str = r#"{"type":"number"}"#;
+const OBJECTS: &str = r#"{"type":"array","items":{"type":"object"}}"#;
 const NUMBERS: &str = r#"{"type":"array","items":{"type":"number"}}"#;
 const COUNTER: &str = r#"{"type":"integer","minimum":0,"maximum":65535}"#;
 const BYTES: &str = r#"{"type":"string","contentEncoding":"base64"}"#;
@@ -55,6 +66,9 @@ mod tests {
             "foxglove.CompressedImage",
             "foxglove.PoseInFrame",
             "foxglove.PosesInFrame",
+            "foxglove.PointCloud",
+            "foxglove.ImageAnnotations",
+            "foxglove.SceneUpdate",
             "trundle.WheelTicks",
             "trundle.GyroRate",
             "trundle.Touch",

@@ -34,7 +34,7 @@ pub fn trajectory_picture(estimate: &[Vector3], truth: Option<&[Vector3]>) -> Ve
 }
 
 /// The two axes along which the points spread most, in the order x, y, z. Standing still is seen from above.
-fn principal_axes(points: &[Vector3]) -> (usize, usize) {
+pub(super) fn principal_axes(points: &[Vector3]) -> (usize, usize) {
     let spread = |axis: usize| {
         let finite = || points.iter().map(|p| p[axis]).filter(|v| v.is_finite());
         finite().fold(f64::MIN, f64::max) - finite().fold(f64::MAX, f64::min)

@@ -1,0 +1,77 @@
+use super::palette::{ESTIMATE, GOAL, LANDMARKS, estimate_line};
+use super::trajectory::principal_axes;
+use crate::color::Color;
+use crate::legend::LegendItem;
+use crate::map::{DotStyle, LineStyle, MapPicture};
+use trundle_core::{Vector2, Vector3};
+
+/// A visual map: what was seen, from where, and what ties the views together. All in one frame, m.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct VisualMapScene<'a> {
+    /// The landmarks.
+    pub landmarks: &'a [Vector3],
+    /// The camera's way.
+    pub way: &'a [Vector3],
+    /// Where the keyframes are.
+    pub keyframes: &'a [Vector3],
+    /// Pairs of keyframes that see the same landmarks: the covisibility graph.
+    pub covisible: &'a [(Vector3, Vector3)],
+    /// Pairs of keyframes that closed a loop.
+    pub loops: &'a [(Vector3, Vector3)],
+}
+
+/// The picture of a visual map, an 8-bit RGB PNG, and its legend.
+///
+/// It is seen along the axis in which the camera moved least; the axes are named. Points that are not finite are left out.
+pub fn visual_map_picture(scene: &VisualMapScene) -> (Vec<u8>, Vec<LegendItem>) {
+    let (right, up) = principal_axes(if scene.way.len() > 1 { scene.way } else { scene.landmarks });
+    let flat = |p: &Vector3| Vector2::new(p[right], p[up]);
+    let points = |points: &[Vector3]| -> Vec<Vector2> { points.iter().map(flat).filter(is_finite).collect() };
+    let name = |axis: usize| ["x, m", "y, m", "z, m"][axis];
+    let picture = MapPicture::blank()
+        .axes(name(right), name(up))
+        .dots("landmarks", &points(scene.landmarks), DotStyle::crowd(LANDMARKS))
+        .polyline(
+            "covisible keyframes",
+            &links(scene.covisible, flat),
+            LineStyle::solid(Color::SKY.alpha(120)).width(0.5).plain(),
+        )
+        .polyline("the camera's way", &scene.way.iter().map(flat).collect::<Vec<_>>(), estimate_line())
+        .dots("keyframes", &points(scene.keyframes), DotStyle::circles(ESTIMATE).radius(1.6))
+        .polyline("closed loops", &links(scene.loops, flat), LineStyle::solid(GOAL).width(1.8).plain());
+    (picture.clone().without_legend().to_png(), picture.legend())
+}
+
+/// Lines between pairs of points, with gaps between them.
+fn links(pairs: &[(Vector3, Vector3)], flat: impl Fn(&Vector3) -> Vector2) -> Vec<Vector2> {
+    let gap = Vector2::new(f64::NAN, f64::NAN);
+    pairs.iter().flat_map(|(a, b)| [flat(a), flat(b), gap]).collect()
+}
+
+fn is_finite(p: &Vector2) -> bool {
+    p.x.is_finite() && p.y.is_finite()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn any_map_gives_a_picture_and_names_what_is_in_it() {
+        let (png, _) = visual_map_picture(&VisualMapScene::default());
+        assert_eq!(&png[1..4], b"PNG");
+        let (a, b, nan) =
+            (Vector3::new(0.0, 0.0, 0.4), Vector3::new(3.0, 1.0, 0.4), Vector3::repeat(f64::NAN));
+        let scene = VisualMapScene {
+            landmarks: &[a, b, nan],
+            way: &[a, b],
+            keyframes: &[a, b],
+            covisible: &[(a, b)],
+            loops: &[(a, b)],
+        };
+        let (png, legend) = visual_map_picture(&scene);
+        assert_eq!(&png[1..4], b"PNG");
+        let labels: Vec<&str> = legend.iter().map(|item| item.label.as_str()).collect();
+        assert!(labels.contains(&"closed loops") && labels.contains(&"landmarks"), "{labels:?}");
+    }
+}
