@@ -96,7 +96,23 @@ impl Docker {
         start: Pose2,
         goal: Pose2,
     ) -> Result<Plan, Refusal> {
-        let most = self.checked(footprint, scene, &start, &goal)?;
+        self.plan_keeping(self.config.margin, footprint, scene, start, goal)
+    }
+
+    /// As [`Docker::plan`], with another margin (m) than the configuration's: of a pose that is known so well (see
+    /// [`crate::margin_of`]).
+    ///
+    /// # Errors
+    /// As [`Docker::plan`].
+    pub fn plan_keeping(
+        &self,
+        margin: f64,
+        footprint: &Footprint,
+        scene: &Scene,
+        start: Pose2,
+        goal: Pose2,
+    ) -> Result<Plan, Refusal> {
+        let most = self.checked(margin, footprint, scene, &start, &goal)?;
         let task = self.task(start, goal);
         let near = around(footprint, scene, &task);
         let least = most.min(0.0);
@@ -162,7 +178,7 @@ impl Docker {
         goal: Pose2,
         known: f64,
     ) -> Result<f64, Refusal> {
-        let margin = self.checked(footprint, scene, &start, &goal)?;
+        let margin = self.checked(self.config.margin, footprint, scene, &start, &goal)?;
         let task = self.task(start, goal);
         let near = around(footprint, scene, &task);
         let mut space = Space::new(footprint, margin, &near);
@@ -170,8 +186,9 @@ impl Docker {
     }
 
     /// The margin that start and goal leave, m.
-    fn checked(
+    pub(crate) fn checked(
         &self,
+        margin: f64,
         footprint: &Footprint,
         scene: &Scene,
         start: &Pose2,
@@ -187,7 +204,7 @@ impl Docker {
         if distance > most {
             return Err(Refusal::TooFar { distance, most });
         }
-        let (mut margin, overlap) = (self.config.margin, self.config.overlap);
+        let (mut margin, overlap) = (margin, self.config.overlap);
         let least = Hull::new(footprint, -overlap);
         let ends = [(start, Refusal::StartBlocked as fn(Blocker) -> Refusal), (goal, Refusal::GoalBlocked)];
         for (pose, refusal) in ends {

@@ -29,6 +29,11 @@ pub struct PositionerConfig {
     /// Overlap with an obstacle that is taken for an error of the pose, m, 0 to 0.02. Default 0.005: twice a
     /// localisation of 2 mm, and more.
     pub overlap: f64,
+    /// Standard deviations of the pose that the margin covers, 0 to 10: it is what [`crate::margin_of`] says, at least the
+    /// planner's own, at most `most_margin`. Default 3.
+    pub sigmas: f64,
+    /// The margin that a pose known badly may ask for, m, 0 to 0.5. Default 0.05 (ours).
+    pub most_margin: f64,
     /// Waiting before planning again when there is no way, s, 0.1 to 100. Default 1.
     pub patience: f64,
 }
@@ -46,6 +51,8 @@ impl Default for PositionerConfig {
             braking: 0.7,
             heading_gain: 1.5,
             overlap: 0.005,
+            sigmas: 3.0,
+            most_margin: 0.05,
             patience: 1.0,
         }
     }
@@ -68,6 +75,8 @@ impl PositionerConfig {
             ("braking", self.braking, "", 0.1, 1.0),
             ("heading_gain", self.heading_gain, "1/s", 0.0, 10.0),
             ("overlap", self.overlap, "m", 0.0, 0.02),
+            ("sigmas", self.sigmas, "", 0.0, 10.0),
+            ("most_margin", self.most_margin, "m", 0.0, 0.5),
             ("patience", self.patience, "s", 0.1, 100.0),
         ];
         for (name, value, unit, low, high) in ranges {

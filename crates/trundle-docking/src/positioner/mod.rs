@@ -3,24 +3,27 @@
 //! Problem: poses are measured with noise and wheels lag, so that a manoeuvre carried out blindly ends beside its goal, and
 //! one corrected without end hunts. Idea: after every motion the pose is averaged at rest and the rest is planned anew; where
 //! one or two motions end within the tolerance, these are taken instead of an exact manoeuvre; what is settled stays settled
-//! until an error exceeds the tolerance by far. Every step looks along the motion for the stopping way; when something is
+//! until an error exceeds the tolerance by far. By the paper's method the pair that it decided on is carried out, a turn and
+//! a straight, before it decides again. Every step looks along the motion for the stopping way; when something is
 //! there, the command is zero at once. Cost: one plan a motion, one closed-form query a step.
 
 mod average;
 mod config;
 mod follow;
 mod nearly;
+mod next;
 
 pub use config::PositionerConfig;
 
 use crate::config::DockingConfig;
 use crate::manoeuvre::{Manoeuvre, Motion};
-use crate::planner::{Docker, Plan, Refusal};
+use crate::planner::{Docker, Refusal};
 use crate::scene::{Blocker, Scene};
 use crate::space::Space;
 use average::PoseAverage;
 use follow::{Command, Following};
-use nearly::{Tolerance, nearly};
+use nalgebra::Matrix3;
+use nearly::Tolerance;
 use trundle_core::{Footprint, Invalid, Pose2, Stamp, Twist2};
 
 /// What the positioner is told at every step.
@@ -30,6 +33,8 @@ pub struct PositionerInput<'a> {
     pub stamp: Stamp,
     /// The measured `map_from_base`.
     pub pose: Pose2,
+    /// Its covariance, (x m, y m, heading rad), right perturbation: the margin follows from it.
+    pub covariance: Matrix3<f64>,
     /// What stands around now, map frame.
     pub scene: &'a Scene,
 }
@@ -83,6 +88,9 @@ pub struct Positioner {
     last: Option<Stamp>,
     attempts: u32,
     plan: Option<Manoeuvre>,
+    /// The paper's method: the straight that follows the turn, and its recovery moves so far.
+    pending: Option<Motion>,
+    recoveries: usize,
 }
 
 impl Positioner {
@@ -98,7 +106,18 @@ impl Positioner {
     ) -> Result<Self, Invalid> {
         let config = config.validated()?;
         let docker = Docker::new(DockingConfig { overlap: config.overlap, ..docking })?;
-        Ok(Self { docker, config, footprint, goal, phase: None, last: None, attempts: 0, plan: None })
+        Ok(Self {
+            docker,
+            config,
+            footprint,
+            goal,
+            phase: None,
+            last: None,
+            attempts: 0,
+            plan: None,
+            pending: None,
+            recoveries: 0,
+        })
     }
 
     /// The goal, `map_from_base`.
@@ -168,32 +187,14 @@ impl Positioner {
             return (Phase::Settled, Reason::Settled);
         }
         self.attempts += u32::from(self.tolerance().holds(&error, self.config.release));
-        match self.next_motion(input.scene, pose) {
-            Ok(motion) => (Phase::Follow(Following::new(motion, *pose)), Reason::Moving(motion)),
+        match self.next_motion(input, pose) {
+            Ok(Some(motion)) => (Phase::Follow(Following::new(motion, *pose)), Reason::Moving(motion)),
+            Ok(None) => (Phase::Settled, Reason::Settled),
             Err(reason) => (
                 Phase::Wait { until: input.stamp.after(self.config.patience), reason: reason.clone() },
                 reason,
             ),
         }
-    }
-
-    fn next_motion(&mut self, scene: &Scene, pose: &Pose2) -> Result<Motion, Reason> {
-        let limits = self.docker.config().limits;
-        let mut space = Space::new(&self.footprint, -self.config.overlap / 2.0, scene);
-        let (tolerance, part) = (self.tolerance(), self.config.aim);
-        let motions = match nearly(&mut space, &limits, pose, &self.goal, &tolerance, part) {
-            Some(motions) => Manoeuvre::new(*pose, &motions, limits),
-            None => {
-                match self.docker.plan(&self.footprint, scene, *pose, self.goal).map_err(Reason::Refused)? {
-                    Plan::Found(solution) => solution.manoeuvre,
-                    Plan::Impossible(impossible) => return Err(Reason::NoWay(impossible.by)),
-                }
-            }
-        };
-        let first = motions.steps().first().map(|step| step.motion);
-        self.plan = Some(motions);
-        // Nothing to do is a motion of nothing: it ends at once, and the pose is measured again.
-        Ok(first.unwrap_or(Motion::Turn(0.0)))
     }
 
     fn follow(
@@ -208,7 +209,10 @@ impl Positioner {
         {
             Command::Go(twist) => (Phase::Follow(following), twist, Reason::Moving(following.motion())),
             Command::Done => (measure(input.stamp), Twist2::ZERO, Reason::Measuring),
-            Command::Blocked(by) => (measure(input.stamp), Twist2::ZERO, Reason::Obstacle(by)),
+            Command::Blocked(by) => {
+                self.pending = None;
+                (measure(input.stamp), Twist2::ZERO, Reason::Obstacle(by))
+            }
         };
         (phase, twist, reason, input.pose)
     }

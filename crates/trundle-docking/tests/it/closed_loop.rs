@@ -1,12 +1,13 @@
 //! The positioner in the small world.
 
-use crate::world::{DT, World, run};
+use crate::world::{DT, World, covariance, run};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use trundle_core::{Pose2, Stamp, Twist2, Vector2};
-use trundle_docking::corridor::generate;
+use trundle_docking::corridor::{Scenario, generate};
 use trundle_docking::{
-    Docker, DockingConfig, Obstacle, Plan, Positioner, PositionerConfig, PositionerInput, Reason, Scene,
+    Docker, DockingConfig, Method, Obstacle, Plan, Positioner, PositionerConfig, PositionerInput, Reason,
+    Scene,
 };
 
 /// Solvable problems settle within 1 cm and 1 deg, and none touches anything; the benchmark does 500 of them.
@@ -23,7 +24,7 @@ fn settles_under_noise() {
             continue;
         }
         count += 1;
-        let run = run(&problem, count);
+        let run = run(&problem, &DockingConfig::default(), count);
         good += u32::from(run.settled && run.within);
         contacts += u32::from(run.contact);
         motions += run.motions;
@@ -42,49 +43,104 @@ fn settles_under_noise() {
     assert_eq!(contacts, 0);
 }
 
-/// A box that appears in the way stops the robot in the next step; when it is gone, the robot goes on.
-#[test]
-fn stops_for_what_comes_in_the_way_and_starts_again() {
+/// A box that appears in the way: the command is zero within 0.1 s; when it is gone, the robot goes on from where it stands.
+fn stops_and_starts_again(method: Method) {
     let footprint = trundle_core::Footprint::KOBUKI;
     let goal = Pose2::new(1.0, 0.0, 0.0);
     let at = |x: f64, y: f64| Vector2::new(x, y);
     let walls = vec![
-        Obstacle::Segment(at(-1.0, 0.3), at(2.0, 0.3)),
-        Obstacle::Segment(at(-1.0, -0.3), at(2.0, -0.3)),
+        Obstacle::Segment(at(-6.0, 0.3), at(7.0, 0.3)),
+        Obstacle::Segment(at(-6.0, -0.3), at(7.0, -0.3)),
     ];
     let mut blocked = walls.clone();
-    blocked.push(Obstacle::Polygon(vec![at(0.62, -0.2), at(0.7, -0.2), at(0.7, 0.2), at(0.62, 0.2)]));
+    blocked.push(Obstacle::Polygon(vec![at(0.48, -0.2), at(0.56, -0.2), at(0.56, 0.2), at(0.48, 0.2)]));
     let (open, blocked) = (Scene::new(&walls).unwrap(), Scene::new(&blocked).unwrap());
+    let docking = DockingConfig { method, ..DockingConfig::default() };
     let mut positioner =
-        Positioner::new(DockingConfig::default(), PositionerConfig::default(), footprint.clone(), goal)
-            .unwrap();
+        Positioner::new(docking, PositionerConfig::default(), footprint.clone(), goal).unwrap();
     let mut world = World::new(Pose2::IDENTITY, 5);
-    let mut stopped_after = None;
-    let mut appeared = None;
-    for i in 0..1200 {
+    let (mut appeared, mut stopped, mut stood, mut went_on) = (None, None, None, None);
+    for i in 0..2400 {
         let time = i as f64 * DT;
         if appeared.is_none() && world.pose.x > 0.2 {
             appeared = Some(time);
         }
         let there = appeared.is_some_and(|since| time - since < 10.0);
         let scene = if there { &blocked } else { &open };
-        let report = positioner.step(&PositionerInput {
-            stamp: Stamp::default().after(time),
-            pose: world.measured(),
-            scene,
-        });
-        if there && stopped_after.is_none() && matches!(report.reason, Reason::Obstacle(_)) {
+        let stamp = Stamp::default().after(time);
+        let input = PositionerInput { stamp, pose: world.measured(), covariance: covariance(), scene };
+        let report = positioner.step(&input);
+        if there && stopped.is_none() && matches!(report.reason, Reason::Obstacle(_)) {
             assert_eq!(report.twist, Twist2::ZERO);
-            stopped_after = Some(time);
+            stopped = Some(time);
+        }
+        if stopped.is_some() && there {
+            stood = Some(world.pose);
+        }
+        if appeared.is_some() && !there && went_on.is_none() && report.twist != Twist2::ZERO {
+            went_on = Some(world.pose);
         }
         world.advance(report.twist);
         assert!(
             !there || scene.clearance(&footprint, &world.pose, 1.0).unwrap().0 > 0.0,
-            "touched at {time} s"
+            "{method:?} touched at {time} s"
         );
         if positioner.is_settled() {
             break;
         }
     }
-    assert!(stopped_after.is_some() && positioner.is_settled());
+    let (appeared, stopped) = (appeared.unwrap(), stopped.expect("stopped"));
+    assert!(stopped - appeared <= 0.1 + 1e-9, "{method:?}: stopped {:.2} s after", stopped - appeared);
+    assert!(
+        went_on.expect("went on").distance(&stood.expect("stood")) < 0.01,
+        "{method:?} went on elsewhere"
+    );
+    assert!(positioner.is_settled(), "{method:?}");
+    let error = goal.inverse() * world.pose;
+    assert!(error.position().norm() < 0.015 && error.theta.abs() < 0.0175, "{method:?}: {error:?}");
+}
+
+#[test]
+fn stops_for_what_comes_in_the_way_and_starts_again() {
+    stops_and_starts_again(Method::Optimal);
+}
+
+#[test]
+fn the_papers_method_stops_and_starts_again_too() {
+    stops_and_starts_again(Method::Paper);
+}
+
+/// The paper's four scenarios in closed loop, by its own method: settled within its thresholds, nothing touched.
+#[test]
+fn the_papers_method_settles_its_scenarios_under_noise() {
+    let docking = DockingConfig { method: Method::Paper, ..DockingConfig::default() };
+    for scenario in Scenario::ALL {
+        let run = run(&scenario.problem(), &docking, 3);
+        assert!(run.settled && !run.contact, "{scenario:?}: settled {} contact {}", run.settled, run.contact);
+    }
+}
+
+/// A pose known badly keeps farther from the wall than one known well.
+#[test]
+fn the_margin_follows_the_covariance() {
+    let wall = Scene::new(&[Obstacle::Segment(Vector2::new(-2.0, 0.36), Vector2::new(2.0, 0.36))]).unwrap();
+    let footprint = trundle_core::Footprint::KOBUKI;
+    let (start, goal) = (Pose2::IDENTITY, Pose2::new(0.1, 0.08, 0.0));
+    let nearest = |sigma: f64| {
+        let mut positioner =
+            Positioner::new(DockingConfig::default(), PositionerConfig::default(), footprint.clone(), goal)
+                .unwrap();
+        let covariance = nalgebra::Matrix3::from_diagonal_element(sigma * sigma);
+        for i in 0..20 {
+            let stamp = Stamp::default().after(i as f64 * DT);
+            positioner.step(&PositionerInput { stamp, pose: start, covariance, scene: &wall });
+        }
+        let manoeuvre = positioner.manoeuvre().expect("planned").clone();
+        (0..=200)
+            .map(|i| manoeuvre.at(manoeuvre.duration() * f64::from(i) / 200.0).0)
+            .map(|pose| wall.clearance(&footprint, &pose, 1.0).unwrap().0)
+            .fold(f64::INFINITY, f64::min)
+    };
+    let (well, badly) = (nearest(0.001), nearest(0.01));
+    assert!(well >= 0.01 - 1e-6 && badly >= 0.035 - 1e-6, "{well} {badly}");
 }

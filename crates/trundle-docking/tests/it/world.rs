@@ -1,5 +1,6 @@
 //! A small kinematic world: noise on the pose, wheels that lag. Also included by the corridor benchmark.
 
+use nalgebra::{Matrix3, Vector3};
 use rand::{Rng, RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use trundle_core::{Pose2, Stamp, Twist2, wrap_angle};
@@ -63,11 +64,16 @@ pub struct Run {
     pub time: f64,
 }
 
+/// What the pose sensor says of its own noise.
+pub fn covariance() -> Matrix3<f64> {
+    Matrix3::from_diagonal(&Vector3::new(0.002, 0.002, 0.15_f64.to_radians()).map(|sigma| sigma * sigma))
+}
+
 /// Settles on the goal of a problem, four minutes at most.
-pub fn run(problem: &Problem, seed: u64) -> Run {
+pub fn run(problem: &Problem, docking: &DockingConfig, seed: u64) -> Run {
     let scene = problem.scene().expect("valid");
     let mut positioner = Positioner::new(
-        DockingConfig::default(),
+        docking.clone(),
         PositionerConfig::default(),
         problem.footprint.clone(),
         problem.goal,
@@ -80,6 +86,7 @@ pub fn run(problem: &Problem, seed: u64) -> Run {
         let input = PositionerInput {
             stamp: Stamp::default().after(i as f64 * DT),
             pose: world.measured(),
+            covariance: covariance(),
             scene: &scene,
         };
         let report = positioner.step(&input);
