@@ -1,9 +1,10 @@
-use std::num::Wrapping;
+#[cfg(target_arch = "x86_64")]
+use super::wide::{BLOCK, avx2, block, block_mut, starts};
 use trundle_core::GrayImage;
 
 /// Weights of a Gaussian of standard deviation 2 px over 7 px, in 1/256: middle first. BRIEF compares single pixels, so
 /// that it needs a smoothed image \[Calonder10, sec. 3.1\].
-const KERNEL: [u16; 4] = [56, 49, 34, 17];
+const KERNEL: [u32; 4] = [56, 49, 34, 17];
 const RADIUS: usize = KERNEL.len() - 1;
 
 /// Gaussian smoothing, rounded to whole grey values after each of the two passes; the border is continued.
@@ -29,24 +30,73 @@ impl Blur {
     }
 }
 
-/// The weighted mean of seven slices, element by element. No sum exceeds 16 bits: it says so (`Wrapping`) because a check
-/// for each would keep the compiler from doing many at once.
+/// The weighted mean of seven slices, element by element.
 fn smooth(from: [&[u8]; 2 * RADIUS + 1], to: &mut [u8]) {
-    let [a, b, c, d, e, f, g] = from.map(|slice| &slice[..to.len()]);
-    let weights = KERNEL.map(Wrapping);
-    for i in 0..to.len() {
-        let value = |slice: &[u8]| Wrapping(u16::from(slice[i]));
-        let sum = value(d) * weights[0]
-            + (value(c) + value(e)) * weights[1]
-            + (value(b) + value(f)) * weights[2]
-            + (value(a) + value(g)) * weights[3];
-        to[i] = ((sum + Wrapping(128)).0 >> 8) as u8;
+    #[cfg(target_arch = "x86_64")]
+    if to.len() >= 2 * BLOCK && std::arch::is_x86_feature_detected!("avx2") {
+        // SAFETY: the processor has the one feature that the function is compiled for.
+        return unsafe { smooth_by_avx2(from, to) };
+    }
+    smooth_plainly(from, to);
+}
+
+fn smooth_plainly([a, b, c, d, e, f, g]: [&[u8]; 2 * RADIUS + 1], to: &mut [u8]) {
+    for (i, out) in to.iter_mut().enumerate() {
+        let value = |slice: &[u8]| u32::from(slice[i]);
+        let sum = value(d) * KERNEL[0]
+            + (value(c) + value(e)) * KERNEL[1]
+            + (value(b) + value(f)) * KERNEL[2]
+            + (value(a) + value(g)) * KERNEL[3];
+        *out = ((sum + 128) >> 8) as u8;
+    }
+}
+
+/// [`smooth_plainly`] of two [`BLOCK`]s of pixels or more. No sum of two products exceeds 15 bits, nor that of all 16.
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2")]
+fn smooth_by_avx2(from: [&[u8]; 2 * RADIUS + 1], to: &mut [u8]) {
+    use std::arch::x86_64::*;
+    let both = |weight: u32| _mm256_set1_epi8(weight as i8);
+    let (next, second, third) = (both(KERNEL[1]), both(KERNEL[2]), both(KERNEL[3]));
+    // The middle is paired with twos: 64 of these make the half that rounds.
+    let (twos, middle) = (both(2), _mm256_set1_epi16(64 << 8 | KERNEL[0] as i16));
+    for x in starts(to.len(), 2 * BLOCK) {
+        let mut windows = [&[0; 2 * BLOCK]; 2 * RADIUS + 1];
+        for (window, slice) in windows.iter_mut().zip(from) {
+            *window = block(slice, x);
+        }
+        let out: &mut [u8; 2 * BLOCK] = block_mut(to, x);
+        for part in [0, BLOCK] {
+            let at = |k: usize| avx2::load(block(windows[k], part));
+            let pairs =
+                [(at(3), twos, middle), (at(2), at(4), next), (at(1), at(5), second), (at(0), at(6), third)];
+            let (mut low, mut high) = (_mm256_setzero_si256(), _mm256_setzero_si256());
+            for (p, q, weights) in pairs {
+                low = _mm256_add_epi16(low, _mm256_maddubs_epi16(_mm256_unpacklo_epi8(p, q), weights));
+                high = _mm256_add_epi16(high, _mm256_maddubs_epi16(_mm256_unpackhi_epi8(p, q), weights));
+            }
+            let means = _mm256_packus_epi16(_mm256_srli_epi16::<8>(low), _mm256_srli_epi16::<8>(high));
+            avx2::store(block_mut(out, part), means);
+        }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn many_pixels_at_once_change_nothing(pixels in prop::collection::vec(any::<[u8; 7]>(), 1..200)) {
+            let row = |k: usize| pixels.iter().map(|p| p[k]).collect::<Vec<u8>>();
+            let rows: [Vec<u8>; 7] = std::array::from_fn(row);
+            let (mut means, mut plainly) = (vec![0; pixels.len()], vec![0; pixels.len()]);
+            smooth(rows.each_ref().map(Vec::as_slice), &mut means);
+            smooth_plainly(rows.each_ref().map(Vec::as_slice), &mut plainly);
+            prop_assert_eq!(means, plainly);
+        }
+    }
 
     fn blurred(image: &GrayImage) -> GrayImage {
         let mut out = image.clone();

@@ -8,23 +8,49 @@ const TESTS: usize = 256;
 /// Rotated BRIEF: bit i says whether the first point of test i is darker than the second, the tests being turned by the
 /// patch's direction \[Rublee11, sec. 4.1\]. The patch is smoothed already.
 pub(crate) fn describe(patch: &Patch, direction: Direction) -> Descriptor {
-    let [first, second] = PATTERN.each_ref().map(|points| {
-        let mut at = [0; TESTS];
-        for ((at, x), y) in at.iter_mut().zip(&points.x).zip(&points.y) {
+    let [first, second] = turned(direction);
+    let value = |at: u32| patch[at as usize % (STRIDE * STRIDE)];
+    let mut words = [0; 4];
+    let (first, second) = (first.as_chunks::<64>().0, second.as_chunks::<64>().0);
+    for (word, (first, second)) in words.iter_mut().zip(first.iter().zip(second)) {
+        // From the last to the first, each pushing the others up: the cheapest way to bring bits together.
+        for (a, b) in first.iter().zip(second).rev() {
+            *word = *word << 1 | u64::from(value(*a) < value(*b));
+        }
+    }
+    Descriptor(words)
+}
+
+/// Where in a patch the ends of every test are when turned.
+type Places = [[u32; TESTS]; 2];
+
+fn turned(direction: Direction) -> Places {
+    #[cfg(target_arch = "x86_64")]
+    if std::arch::is_x86_feature_detected!("avx2") {
+        // SAFETY: the processor has the one feature that the function is compiled for.
+        return unsafe { turned_by_avx2(direction) };
+    }
+    turned_plainly(direction)
+}
+
+/// The same as [`turned_plainly`], more numbers an instruction. No product and sum are fused, so that the bits are the same.
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2")]
+fn turned_by_avx2(direction: Direction) -> Places {
+    turned_plainly(direction)
+}
+
+#[inline(always)]
+fn turned_plainly(direction: Direction) -> Places {
+    let mut places = [[0; TESTS]; 2];
+    for (places, points) in places.iter_mut().zip(&PATTERN) {
+        for ((at, x), y) in places.iter_mut().zip(&points.x).zip(&points.y) {
             let across = rounded_bits(direction.cos * x - direction.sin * y);
             let down = rounded_bits(direction.sin * x + direction.cos * y);
             *at = (down.wrapping_mul(STRIDE as u32)).wrapping_add(across).wrapping_add(MIDDLE);
         }
-        at
-    });
-    let value = |at: u32| patch[at as usize % (STRIDE * STRIDE)];
-    let mut words = [0; 4];
-    for (word, (first, second)) in words.iter_mut().zip(first.chunks_exact(64).zip(second.chunks_exact(64))) {
-        for (bit, (a, b)) in first.iter().zip(second).enumerate() {
-            *word |= u64::from(value(*a) < value(*b)) << bit;
-        }
     }
-    Descriptor(words)
+    places
 }
 
 /// Index of the patch's middle, less what [`rounded_bits`] adds.
@@ -94,7 +120,7 @@ const fn split_mix(state: u64) -> (u64, u64) {
 mod tests {
     use super::*;
 
-    fn turned(degrees: f32) -> Direction {
+    fn turned_by(degrees: f32) -> Direction {
         let angle = degrees.to_radians();
         Direction { angle, cos: angle.cos(), sin: angle.sin() }
     }
@@ -115,7 +141,7 @@ mod tests {
     fn every_test_reads_the_pixel_that_it_says() {
         let patch: Patch = std::array::from_fn(|i| (i * 37 % 251) as u8);
         for degrees in [0.0, 33.0, -120.0] {
-            let direction = turned(degrees);
+            let direction = turned_by(degrees);
             let descriptor = describe(&patch, direction);
             for test in 0..TESTS {
                 let [a, b] = [0, 1].map(|end| {
@@ -134,9 +160,17 @@ mod tests {
     }
 
     #[test]
+    fn many_points_at_once_change_nothing() {
+        for tenths in -1800..1800 {
+            let direction = turned_by(tenths as f32 / 10.0);
+            assert_eq!(turned(direction), turned_plainly(direction), "{tenths}");
+        }
+    }
+
+    #[test]
     fn brightness_and_contrast_do_not_matter() {
         let patch: Patch = std::array::from_fn(|i| (i * 53 % 101) as u8);
         let brighter = patch.map(|v| v * 2 + 40);
-        assert_eq!(describe(&patch, turned(20.0)), describe(&brighter, turned(20.0)));
+        assert_eq!(describe(&patch, turned_by(20.0)), describe(&brighter, turned_by(20.0)));
     }
 }

@@ -3,7 +3,10 @@
 //! below which that holds. It comes from minima and maxima alone, so that sixteen and more pixels are done at a time, and
 //! serves both thresholds and the suppression of non-maxima.
 
-use super::{OrbConfig, patch::BORDER};
+use super::OrbConfig;
+use super::patch::BORDER;
+#[cfg(target_arch = "x86_64")]
+use super::wide::{BLOCK, avx2, block, block_mut, starts};
 use trundle_core::GrayImage;
 
 /// A corner of a level.
@@ -38,10 +41,6 @@ const CIRCLE: [(usize, usize); 16] = [
     (2, 0),
 ];
 
-/// Rows are worked on in blocks of so many pixels: what the compiler makes of the loops takes 16 at once, and single
-/// pixels at the end of a row cost as much as a block each.
-const BLOCK: usize = 16;
-
 /// Finds corners; keeps its buffers from image to image.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Detector {
@@ -56,8 +55,8 @@ impl Detector {
     /// score above the threshold, and in cells that have none, above the lower one. The image is larger than two borders.
     pub fn detect(&mut self, image: &GrayImage, config: &OrbConfig, corners: &mut Vec<Corner>) {
         let size = (image.width(), image.height());
-        self.score(image);
-        self.find_maxima(size, config.fast_min_threshold, corners);
+        self.score(image, config.fast_min_threshold);
+        self.find_maxima(size, corners);
         let side = config.cell_px as u16;
         let across = size.0.div_ceil(config.cell_px);
         let cell = |c: &Corner| usize::from(c.y / side) * across + usize::from(c.x / side);
@@ -74,87 +73,166 @@ impl Detector {
         &self.scores
     }
 
-    /// Scores every pixel that can be kept or is a neighbour of one, and some beside them to fill the blocks.
-    fn score(&mut self, image: &GrayImage) {
+    /// Scores every pixel that can be kept or is a neighbour of one.
+    fn score(&mut self, image: &GrayImage, threshold: u8) {
         let (width, height) = (image.width(), image.height());
         self.scores.resize(width * height, 0);
-        let needed = width - 2 * (BORDER - 1);
-        let length = needed.next_multiple_of(BLOCK);
-        // The surplus goes to the left as far as the circle lets it, the rest to the right: there is room for it all.
-        let start = BORDER - 1 - (length - needed).min(BORDER - 1 - RADIUS);
+        let around = BORDER - 1 - RADIUS..width - (BORDER - 1 - RADIUS);
         for y in BORDER - 1..=height - BORDER {
-            let around = start - RADIUS..start + length + RADIUS;
             let rows = std::array::from_fn(|k| &image.row(y + k - RADIUS)[around.clone()]);
-            score_row(rows, &mut self.scores[y * width + start..][..length]);
+            score_row(rows, threshold, &mut self.scores[y * width..][BORDER - 1..=width - BORDER]);
         }
     }
 
-    fn find_maxima(&mut self, (width, height): (usize, usize), threshold: u8, corners: &mut Vec<Corner>) {
-        let right = (width - BORDER) as u16;
-        let length = (width - 2 * BORDER).next_multiple_of(BLOCK);
-        self.maxima.resize(length, 0);
+    fn find_maxima(&mut self, (width, height): (usize, usize), corners: &mut Vec<Corner>) {
+        self.maxima.resize((width - 2 * BORDER).next_multiple_of(WORD), 0);
         for y in BORDER..height - BORDER {
-            let row = |y: usize| &self.scores[y * width + BORDER - 1..][..length + 2];
-            suppress_row([row(y - 1), row(y), row(y + 1)], threshold, &mut self.maxima);
-            for (block, scores) in self.maxima.as_chunks().0.iter().enumerate() {
-                // Most blocks are empty, and the others nearly.
-                let mut left = u128::from_le_bytes(*scores);
+            let row = |y: usize| &self.scores[y * width..][BORDER - 1..=width - BORDER];
+            let maxima = &mut self.maxima[..width - 2 * BORDER];
+            suppress_row([row(y - 1), row(y), row(y + 1)], maxima);
+            for (word, scores) in self.maxima.as_chunks::<WORD>().0.iter().enumerate() {
+                // Most words are empty, and the others nearly.
+                let mut left = u64::from_le_bytes(*scores);
                 while left != 0 {
                     let i = left.trailing_zeros() as usize / 8;
                     left &= !(0xff << (8 * i));
-                    let x = (BORDER + BLOCK * block + i) as u16;
-                    if x < right {
-                        corners.push(Corner { x, y: y as u16, score: scores[i] });
-                    }
+                    corners.push(Corner {
+                        x: (BORDER + WORD * word + i) as u16,
+                        y: y as u16,
+                        score: scores[i],
+                    });
                 }
             }
         }
     }
 }
 
-/// Scores a row of pixels, from the seven rows around it, each 2 * [`RADIUS`] longer than `scores`. Written out, slice by
-/// slice, because the compiler vectorises it only so, and that makes it 200 times as fast.
-fn score_row(rows: [&[u8]; 2 * RADIUS + 1], scores: &mut [u8]) {
-    let length = scores.len();
-    let [a, b, c, d, e, f, g, h, j, k, l, m, n, o, p, q] = CIRCLE.map(|(x, y)| &rows[y][x..x + length]);
-    let middle = &rows[RADIUS][RADIUS..RADIUS + length];
-    for i in 0..length {
-        let circle =
-            [a[i], b[i], c[i], d[i], e[i], f[i], g[i], h[i], j[i], k[i], l[i], m[i], n[i], o[i], p[i], q[i]];
-        scores[i] = score(circle, middle[i]);
+/// Pixels that are looked through at once for maxima.
+const WORD: usize = 8;
+
+/// The `$best` over all arcs of nine of `$circle` of the `$worst` of its pixels, be these one each or many. Two arcs of nine
+/// share eight; the eight halve twice.
+macro_rules! best_arc {
+    ($circle:expr, $worst:expr, $best:expr) => {{
+        let (circle, worst, best) = ($circle, $worst, $best);
+        let mut nine = [circle[0]; 8];
+        let (mut two, mut four) = (nine, nine);
+        for i in 0..8 {
+            two[i] = worst(circle[2 * i + 1], circle[(2 * i + 2) % 16]);
+        }
+        for i in 0..8 {
+            four[i] = worst(two[i], two[(i + 1) % 8]);
+        }
+        for i in 0..8 {
+            let eight = worst(four[i], four[(i + 2) % 8]);
+            nine[i] = worst(eight, best(circle[2 * i], circle[(2 * i + 9) % 16]));
+        }
+        let [a, b, c, d, e, f, g, h] = nine;
+        best(best(best(a, b), best(c, d)), best(best(e, f), best(g, h)))
+    }};
+}
+
+/// Scores a row of pixels, from the seven rows around it, each 2 * [`RADIUS`] longer than `scores`. What does not exceed
+/// `threshold` becomes 0.
+fn score_row(rows: [&[u8]; 2 * RADIUS + 1], threshold: u8, scores: &mut [u8]) {
+    #[cfg(target_arch = "x86_64")]
+    if scores.len() >= BLOCK && std::arch::is_x86_feature_detected!("avx2") {
+        // SAFETY: the processor has the one feature that the function is compiled for.
+        return unsafe { score_row_by_avx2(rows, threshold, scores) };
+    }
+    score_row_plainly(rows, threshold, scores);
+}
+
+fn score_row_plainly(rows: [&[u8]; 2 * RADIUS + 1], threshold: u8, scores: &mut [u8]) {
+    for (x, out) in scores.iter_mut().enumerate() {
+        let score = score(CIRCLE.map(|(dx, dy)| rows[dy][x + dx]), rows[RADIUS][x + RADIUS]);
+        *out = if score > threshold { score } else { 0 };
+    }
+}
+
+/// [`score_row_plainly`] of [`BLOCK`] pixels or more, a block at a time.
+///
+/// An arc of nine holds one of the topmost and the lowest pixel of the circle, and one of the leftmost and the rightmost. Where
+/// these four alone show that a block has no corner, as in most of an image, that is all that is looked at.
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2")]
+fn score_row_by_avx2(rows: [&[u8]; 2 * RADIUS + 1], threshold: u8, scores: &mut [u8]) {
+    use std::arch::x86_64::*;
+    let least = _mm256_set1_epi8(threshold.saturating_add(1) as i8);
+    for x in starts(scores.len(), BLOCK) {
+        let mut windows = [&[0; BLOCK + 2 * RADIUS]; 2 * RADIUS + 1];
+        for (window, row) in windows.iter_mut().zip(rows) {
+            *window = block(row, x);
+        }
+        let at = |(dx, dy): (usize, usize)| avx2::load(block(windows[dy], dx));
+        let middle = at((RADIUS, RADIUS));
+        let beyond = |bright, dark| {
+            let difference =
+                _mm256_max_epu8(_mm256_subs_epu8(bright, middle), _mm256_subs_epu8(middle, dark));
+            let keep = _mm256_cmpeq_epi8(_mm256_max_epu8(difference, least), difference);
+            _mm256_and_si256(difference, keep)
+        };
+        let [top, right, low, left] = [at(CIRCLE[0]), at(CIRCLE[4]), at(CIRCLE[8]), at(CIRCLE[12])];
+        let bright = _mm256_min_epu8(_mm256_max_epu8(top, low), _mm256_max_epu8(left, right));
+        let dark = _mm256_max_epu8(_mm256_min_epu8(top, low), _mm256_min_epu8(left, right));
+        let mut score = beyond(bright, dark);
+        if _mm256_testz_si256(score, score) == 0 {
+            let mut circle = [middle; CIRCLE.len()];
+            for (pixels, offset) in circle.iter_mut().zip(CIRCLE) {
+                *pixels = at(offset);
+            }
+            let bright = best_arc!(circle, |a, b| _mm256_min_epu8(a, b), |a, b| _mm256_max_epu8(a, b));
+            let dark = best_arc!(circle, |a, b| _mm256_max_epu8(a, b), |a, b| _mm256_min_epu8(a, b));
+            score = beyond(bright, dark);
+        }
+        avx2::store(block_mut(scores, x), score);
     }
 }
 
 /// The highest over all arcs of nine of the least difference between the arc and the middle; 0 if none is on one side.
-#[inline(always)]
 fn score(circle: [u8; 16], middle: u8) -> u8 {
-    let brightest = best_arc(circle, u8::min, u8::max);
-    let darkest = best_arc(circle, u8::max, u8::min);
+    let brightest = best_arc!(circle, u8::min, u8::max);
+    let darkest = best_arc!(circle, u8::max, u8::min);
     brightest.saturating_sub(middle).max(middle.saturating_sub(darkest))
 }
 
-/// The `best` over all arcs of nine of the `worst` of its pixels. Two arcs of nine share eight; the eight halve twice.
-#[inline(always)]
-fn best_arc(circle: [u8; 16], worst: impl Fn(u8, u8) -> u8, best: impl Fn(u8, u8) -> u8) -> u8 {
-    let two = |i: usize| worst(circle[2 * i + 1], circle[(2 * i + 2) % 16]);
-    let four = |i: usize| worst(two(i), two((i + 1) % 8));
-    let eight = |i: usize| worst(four(i), four((i + 2) % 8));
-    let nine = |i: usize| worst(eight(i), best(circle[2 * i], circle[(2 * i + 9) % 16]));
-    let best_of_four = |i: usize| best(best(nine(i), nine(i + 1)), best(nine(i + 2), nine(i + 3)));
-    best(best_of_four(0), best_of_four(4))
+/// Keeps the scores that none of the eight neighbours exceeds, and of equal neighbours the first; the others become 0. The
+/// rows are those above, of and below `maxima`, each one longer at either end.
+fn suppress_row(rows: [&[u8]; 3], maxima: &mut [u8]) {
+    #[cfg(target_arch = "x86_64")]
+    if maxima.len() >= BLOCK && std::arch::is_x86_feature_detected!("avx2") {
+        // SAFETY: the processor has the one feature that the function is compiled for.
+        return unsafe { suppress_row_by_avx2(rows, maxima) };
+    }
+    suppress_row_plainly(rows, maxima);
 }
 
-/// Keeps the scores above `threshold` that none of the eight neighbours exceeds, and of equal neighbours the first; the
-/// others become 0. The rows are those above, of and below `maxima`, each one longer at either end.
-fn suppress_row(rows: [&[u8]; 3], threshold: u8, maxima: &mut [u8]) {
-    let length = maxima.len();
-    let [[a, b, c], [d, e, f], [g, h, j]] =
-        rows.map(|row| [&row[..length], &row[1..length + 1], &row[2..length + 2]]);
-    for i in 0..length {
-        let before = a[i].max(b[i]).max(c[i]).max(d[i]);
-        let after = f[i].max(g[i]).max(h[i]).max(j[i]);
-        let keep = (e[i] > threshold) & (e[i] > before) & (e[i] >= after);
-        maxima[i] = if keep { e[i] } else { 0 };
+fn suppress_row_plainly([above, own, below]: [&[u8]; 3], maxima: &mut [u8]) {
+    for (x, out) in maxima.iter_mut().enumerate() {
+        let before = above[x].max(above[x + 1]).max(above[x + 2]).max(own[x]);
+        let after = own[x + 2].max(below[x]).max(below[x + 1]).max(below[x + 2]);
+        *out = if own[x + 1] > before && own[x + 1] >= after { own[x + 1] } else { 0 };
+    }
+}
+
+/// [`suppress_row_plainly`] of [`BLOCK`] pixels or more, a block at a time.
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2")]
+fn suppress_row_by_avx2(rows: [&[u8]; 3], maxima: &mut [u8]) {
+    use std::arch::x86_64::*;
+    let max = |a, b| _mm256_max_epu8(a, b);
+    for x in starts(maxima.len(), BLOCK) {
+        let at = |row: usize, dx: usize| avx2::load(block(rows[row], x + dx));
+        let own = at(1, 1);
+        let mut kept = own;
+        if _mm256_testz_si256(own, own) == 0 {
+            let before = max(max(at(0, 0), at(0, 1)), max(at(0, 2), at(1, 0)));
+            let after = max(max(at(1, 2), at(2, 0)), max(at(2, 1), at(2, 2)));
+            let beaten = _mm256_cmpeq_epi8(max(before, own), before);
+            let level = _mm256_cmpeq_epi8(max(after, own), own);
+            kept = _mm256_and_si256(own, _mm256_andnot_si256(beaten, level));
+        }
+        avx2::store(block_mut(maxima, x), kept);
     }
 }
 
@@ -187,6 +265,27 @@ mod tests {
             });
             prop_assert_eq!(score(arc(9), dark), bright - dark);
             prop_assert_eq!(score(arc(8), dark), 0);
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn many_pixels_at_once_change_nothing(
+            rows in prop::collection::vec(any::<[u8; 7]>(), 7..150), contrast in 0..8u32, threshold in 1..60u8,
+        ) {
+            let row = |k: usize| rows.iter().map(|pixels| pixels[k] >> contrast).collect::<Vec<u8>>();
+            let rows: [Vec<u8>; 7] = std::array::from_fn(row);
+            let mut scores = vec![1; rows[0].len() - 6];
+            let mut plainly = scores.clone();
+            score_row(rows.each_ref().map(Vec::as_slice), threshold, &mut scores);
+            score_row_plainly(rows.each_ref().map(Vec::as_slice), threshold, &mut plainly);
+            prop_assert_eq!(&scores, &plainly);
+            let three = [&rows[0][..], &rows[1], &rows[2]];
+            let mut maxima = vec![1; rows[0].len() - 2];
+            let mut plainly = maxima.clone();
+            suppress_row(three, &mut maxima);
+            suppress_row_plainly(three, &mut plainly);
+            prop_assert_eq!(maxima, plainly);
         }
     }
 

@@ -22,6 +22,7 @@ mod orientation;
 mod patch;
 mod resize;
 mod subpixel;
+mod wide;
 
 pub use config::OrbConfig;
 

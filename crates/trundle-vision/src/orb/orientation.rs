@@ -21,10 +21,27 @@ pub(crate) fn direction(patch: &Patch) -> Direction {
     Direction { angle: y.atan2(x), cos: x / length, sin: y / length }
 }
 
+fn moments(patch: &Patch) -> (i32, i32) {
+    #[cfg(target_arch = "x86_64")]
+    if std::arch::is_x86_feature_detected!("avx2") {
+        // SAFETY: the processor has the one feature that the function is compiled for.
+        return unsafe { moments_by_avx2(patch) };
+    }
+    moments_plainly(patch)
+}
+
+/// The same as [`moments_plainly`], more numbers an instruction.
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2")]
+fn moments_by_avx2(patch: &Patch) -> (i32, i32) {
+    moments_plainly(patch)
+}
+
 /// m_10 and m_01: sums of x I(x, y) and y I(x, y) over the disc, from its middle \[Rublee11, eq. 1\]. Column by column, in
 /// 16 bits: a column's sum is at most 31 * 255, and its sum of y I is at most (1 + ... + 15) * 255 either way. No
 /// sum can overflow: it says so (`Wrapping`) because checks would keep the compiler from doing many at once.
-fn moments(patch: &Patch) -> (i32, i32) {
+#[inline(always)]
+fn moments_plainly(patch: &Patch) -> (i32, i32) {
     let (mut sums, mut downs) = ([Wrapping(0i16); STRIDE], [Wrapping(0i16); STRIDE]);
     for ((row, disc), y) in
         patch.as_chunks::<STRIDE>().0.iter().zip(&DISC).zip(-(RADIUS as i16)..=RADIUS as i16)
@@ -86,6 +103,7 @@ mod tests {
             };
             let expected = (disc().map(|(v, x, _)| v * x).sum(), disc().map(|(v, _, y)| v * y).sum());
             assert_eq!(moments(&image), expected);
+            assert_eq!(moments_plainly(&image), expected);
         }
     }
 

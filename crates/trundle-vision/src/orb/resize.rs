@@ -1,4 +1,5 @@
-use std::num::Wrapping;
+#[cfg(target_arch = "x86_64")]
+use super::wide::{avx2, block, block_mut, starts};
 use trundle_core::GrayImage;
 
 /// Bilinear shrinking in fixed point, pixel areas aligned: the corners of both images coincide.
@@ -6,8 +7,10 @@ use trundle_core::GrayImage;
 pub(crate) struct Resize {
     sizes: [usize; 4],
     columns: Vec<Tap>,
-    /// A row of the larger image, interpolated downwards, in 1/256; the last sample twice.
-    row: Vec<u16>,
+    /// The same columns, four at a time; empty where four need more samples than a register has.
+    quads: Vec<Quad>,
+    /// A row of the larger image, interpolated downwards, in 1/128, with [`SAMPLES`] more after its end.
+    row: Vec<i16>,
 }
 
 /// Between which two samples to interpolate.
@@ -18,45 +21,45 @@ struct Tap {
     weight: u16,
 }
 
+/// Samples of 16 bits in half a register of AVX2.
+const SAMPLES: usize = 8;
+
+/// Four neighbouring columns: from [`SAMPLES`] samples on from `first`, which bytes make the pairs of samples between which each
+/// is interpolated, and their weights.
+#[derive(Debug, Clone, Copy)]
+struct Quad {
+    first: u32,
+    bytes: [u8; 16],
+    weights: [u8; 16],
+}
+
 impl Resize {
     /// Fills `to` with `from` at its size, which may be empty. `from` must have pixels if `to` has.
     pub fn run(&mut self, from: &GrayImage, to: &mut GrayImage) {
-        let sizes = [from.width(), from.height(), to.width(), to.height()];
-        if self.sizes != sizes {
-            self.sizes = sizes;
-            self.columns = (0..to.width()).map(|x| tap(x, from.width(), to.width())).collect();
-            self.row = vec![0; from.width() + 1];
-        }
+        self.fit([from.width(), from.height(), to.width(), to.height()]);
         if to.data().is_empty() {
             return;
         }
         for y in 0..to.height() {
             let Tap { first, weight } = tap(y, from.height(), to.height());
             let lower = (first as usize + 1).min(from.height() - 1);
-            mix_rows(from.row(first as usize), from.row(lower), weight, &mut self.row);
+            mix_rows(from.row(first as usize), from.row(lower), weight, &mut self.row[..from.width()]);
             self.row[from.width()] = self.row[from.width() - 1];
-            shrink_row(&self.row, &self.columns, to.row_mut(y));
+            shrink_row(&self.row, &self.columns, &self.quads, to.row_mut(y));
         }
     }
-}
 
-// No sum below exceeds its bits. It says so (`Wrapping`) because a check for each would cost more than the sum.
-
-/// Interpolates between two rows, in 1/256.
-fn mix_rows(upper: &[u8], lower: &[u8], weight: u16, row: &mut [u16]) {
-    let (of_upper, of_lower) = (Wrapping(256 - weight), Wrapping(weight));
-    for ((mixed, a), b) in row.iter_mut().zip(upper).zip(lower) {
-        *mixed = (Wrapping(u16::from(*a)) * of_upper + Wrapping(u16::from(*b)) * of_lower).0;
-    }
-}
-
-/// Interpolates within a row and leaves the 1/256.
-fn shrink_row(row: &[u16], columns: &[Tap], to: &mut [u8]) {
-    for (out, tap) in to.iter_mut().zip(columns) {
-        let [a, b] = [0, 1].map(|k| Wrapping(u32::from(row[tap.first as usize..][..2][k])));
-        let weight = Wrapping(u32::from(tap.weight));
-        let mixed = a * (Wrapping(256) - weight) + b * weight;
-        *out = ((mixed + Wrapping(1 << 15)).0 >> 16) as u8;
+    /// Prepares for images of these sizes.
+    fn fit(&mut self, sizes: [usize; 4]) {
+        if self.sizes == sizes {
+            return;
+        }
+        self.sizes = sizes;
+        let [width, _, to_width, _] = sizes;
+        self.columns = (0..to_width).map(|x| tap(x, width, to_width)).collect();
+        self.row = vec![0; width + SAMPLES];
+        let quads: Option<Vec<Quad>> = self.columns.as_chunks().0.iter().map(quad).collect();
+        self.quads = quads.unwrap_or_default();
     }
 }
 
@@ -67,9 +70,97 @@ fn tap(i: usize, from: usize, to: usize) -> Tap {
     Tap { first: (in_256ths / 256) as u32, weight: (in_256ths % 256) as u16 }
 }
 
+/// `None` when the columns span too many samples.
+fn quad(columns: &[Tap; 4]) -> Option<Quad> {
+    let first = columns[0].first;
+    (columns[3].first + 2 - first <= SAMPLES as u32).then_some(())?;
+    let (mut bytes, mut weights) = ([0; 16], [0; 16]);
+    for (tap, (bytes, weights)) in
+        columns.iter().zip(bytes.as_chunks_mut::<4>().0.iter_mut().zip(weights.as_chunks_mut::<4>().0))
+    {
+        let byte = 2 * (tap.first - first) as u8;
+        *bytes = [byte, byte + 1, byte + 2, byte + 3];
+        weights[..2].copy_from_slice(&(256 - tap.weight).to_le_bytes());
+        weights[2..].copy_from_slice(&tap.weight.to_le_bytes());
+    }
+    Some(Quad { first, bytes, weights })
+}
+
+/// Interpolates between two rows, in 1/128.
+fn mix_rows(upper: &[u8], lower: &[u8], weight: u16, row: &mut [i16]) {
+    #[cfg(target_arch = "x86_64")]
+    if row.len() >= 16 && std::arch::is_x86_feature_detected!("avx2") {
+        // SAFETY: the processor has the one feature that the function is compiled for.
+        return unsafe { mix_rows_by_avx2(upper, lower, weight, row) };
+    }
+    mix_rows_plainly(upper, lower, weight, row);
+}
+
+fn mix_rows_plainly(upper: &[u8], lower: &[u8], weight: u16, row: &mut [i16]) {
+    let weight = u32::from(weight);
+    for ((mixed, a), b) in row.iter_mut().zip(upper).zip(lower) {
+        *mixed = ((u32::from(*a) * (256 - weight) + u32::from(*b) * weight) >> 1) as i16;
+    }
+}
+
+/// [`mix_rows_plainly`] of 16 pixels or more.
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2")]
+fn mix_rows_by_avx2(upper: &[u8], lower: &[u8], weight: u16, row: &mut [i16]) {
+    use std::arch::x86_64::*;
+    let (of_upper, of_lower) = (_mm256_set1_epi16((256 - weight) as i16), _mm256_set1_epi16(weight as i16));
+    for x in starts(row.len(), 16) {
+        let a = _mm256_cvtepu8_epi16(avx2::load_half(block(upper, x)));
+        let b = _mm256_cvtepu8_epi16(avx2::load_half(block(lower, x)));
+        let sum = _mm256_add_epi16(_mm256_mullo_epi16(a, of_upper), _mm256_mullo_epi16(b, of_lower));
+        avx2::store_words(block_mut(row, x), _mm256_srli_epi16::<1>(sum));
+    }
+}
+
+/// Interpolates within a row and leaves the fractions.
+fn shrink_row(row: &[i16], columns: &[Tap], quads: &[Quad], to: &mut [u8]) {
+    #[cfg(target_arch = "x86_64")]
+    if std::arch::is_x86_feature_detected!("avx2") {
+        // SAFETY: the processor has the one feature that the function is compiled for.
+        unsafe { shrink_quads_by_avx2(row, quads, to) };
+        let done = quads.len() / 2 * 8;
+        return shrink_row_plainly(row, &columns[done..], &mut to[done..]);
+    }
+    shrink_row_plainly(row, columns, to);
+}
+
+fn shrink_row_plainly(row: &[i16], columns: &[Tap], to: &mut [u8]) {
+    for (out, tap) in to.iter_mut().zip(columns) {
+        let [a, b] = [0, 1].map(|k| u32::from(row[tap.first as usize + k] as u16));
+        let weight = u32::from(tap.weight);
+        *out = ((a * (256 - weight) + b * weight + (1 << 14)) >> 15) as u8;
+    }
+}
+
+/// [`shrink_row_plainly`] of the first columns, two quads of them at a time.
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2")]
+fn shrink_quads_by_avx2(row: &[i16], quads: &[Quad], to: &mut [u8]) {
+    use std::arch::x86_64::*;
+    let half = _mm256_set1_epi32(1 << 14);
+    // The lowest byte of each sum, four to either half.
+    let lowest = _mm256_set1_epi32(0x0c08_0400);
+    for ([p, q], out) in quads.as_chunks().0.iter().zip(to.as_chunks_mut().0) {
+        let samples = |quad: &Quad| avx2::load_half_words(block(row, quad.first as usize));
+        let bytes = _mm256_set_m128i(avx2::load_half(&q.bytes), avx2::load_half(&p.bytes));
+        let weights = _mm256_set_m128i(avx2::load_half(&q.weights), avx2::load_half(&p.weights));
+        let pairs = _mm256_shuffle_epi8(_mm256_set_m128i(samples(q), samples(p)), bytes);
+        let sums = _mm256_srli_epi32::<15>(_mm256_add_epi32(_mm256_madd_epi16(pairs, weights), half));
+        let packed = _mm256_shuffle_epi8(sums, lowest);
+        let [low, high] = [_mm256_extract_epi32::<0>(packed), _mm256_extract_epi32::<4>(packed)];
+        *out = (low as u32 as u64 | (high as u32 as u64) << 32).to_le_bytes();
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use proptest::prelude::*;
 
     fn resized(from: &GrayImage, width: usize, height: usize) -> GrayImage {
         let mut to = GrayImage::filled(width, height, 0);
@@ -91,7 +182,27 @@ mod tests {
     fn the_same_size_is_the_same_image_and_white_stays_white() {
         let noise = GrayImage::from_fn(31, 17, |x, y| (x * 89 + y * 57) as u8);
         assert_eq!(resized(&noise, 31, 17), noise);
-        assert_eq!(resized(&GrayImage::filled(7, 5, 255), 6, 4), GrayImage::filled(6, 4, 255));
+        assert_eq!(resized(&GrayImage::filled(47, 5, 255), 39, 4), GrayImage::filled(39, 4, 255));
         assert_eq!(resized(&noise, 0, 3).data(), &[]);
+    }
+
+    proptest! {
+        #[test]
+        fn many_pixels_at_once_change_nothing(
+            rows in prop::collection::vec(any::<[u8; 2]>(), 1..150), shrink in 1.0..4.0_f64, weight in 0..256u16,
+        ) {
+            let (upper, lower): (Vec<u8>, Vec<u8>) = rows.iter().map(|[a, b]| (*a, *b)).unzip();
+            let mut resize = Resize::default();
+            resize.fit([rows.len(), 1, (rows.len() as f64 / shrink) as usize, 1]);
+            let (mut mixed, mut plainly) = (resize.row.clone(), resize.row.clone());
+            mix_rows(&upper, &lower, weight, &mut mixed[..rows.len()]);
+            mix_rows_plainly(&upper, &lower, weight, &mut plainly[..rows.len()]);
+            prop_assert_eq!(&mixed, &plainly);
+            mixed[rows.len()] = mixed[rows.len() - 1];
+            let (mut out, mut out_plainly) = (vec![0; resize.columns.len()], vec![0; resize.columns.len()]);
+            shrink_row(&mixed, &resize.columns, &resize.quads, &mut out);
+            shrink_row_plainly(&mixed, &resize.columns, &mut out_plainly);
+            prop_assert_eq!(out, out_plainly);
+        }
     }
 }

@@ -1,4 +1,5 @@
-use crate::texture::{about, noisy, picture};
+use crate::texture::{noisy, picture};
+use crate::view::about;
 use trundle_core::{GrayImage, Vector2};
 use trundle_vision::{Features, Keypoint, OrbConfig, OrbExtractor, match_mutual, rotation_consistent};
 

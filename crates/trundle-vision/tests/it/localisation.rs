@@ -1,7 +1,8 @@
 //! How exactly a corner is placed: the errors of right matches between two views whose relation is known, by octave.
 
-use crate::texture::{about, noisy, picture, view};
+use crate::texture::{noisy, picture};
 use crate::tum::Recording;
+use crate::view::{about, view};
 use trundle_core::{GrayImage, Vector2, Vector3};
 use trundle_vision::{
     Features, Keypoint, OrbConfig, OrbExtractor, RansacConfig, estimate_rigid_motion, match_mutual,

@@ -9,3 +9,4 @@ mod real_frames;
 mod spread;
 mod texture;
 mod tum;
+mod view;
