@@ -3,7 +3,7 @@ use crate::block::{
     subtract_product, subtract_transposed_product,
 };
 use crate::narrow_order::narrow_order;
-use nalgebra::{Matrix6, Vector6};
+use nalgebra::{ArrayStorage, Matrix6, Vector6};
 
 const ZERO: Block = [[0.0; 6]; 6];
 
@@ -22,6 +22,8 @@ pub(crate) struct BlockMatrix {
     blocks: Vec<Block>,
     /// The unknowns while solving, by row.
     unknowns: Vec<Column>,
+    /// The inverse within the profile, as far as it was asked for.
+    inverse: Vec<Block>,
 }
 
 impl BlockMatrix {
@@ -155,6 +157,48 @@ impl BlockMatrix {
         (0..self.count()).all(|row| self.factorise_row(row))
     }
 
+    /// Starts the inverse, once every row is factorised.
+    pub(crate) fn begin_inverse(&mut self) {
+        self.inverse.clear();
+        self.inverse.resize(self.blocks.len(), ZERO);
+    }
+
+    /// One column of the inverse within the profile, once all columns behind it are there (Takahashi et al. 1973): with
+    /// Z L = L'^-1 read column by column from the last, Z_ij = -sum Z_ik L_kj L_jj^-1.
+    pub(crate) fn invert_column(&mut self, j: usize) {
+        let block = |blocks: &[Block], row: usize, column: usize| {
+            Matrix6::from_data(ArrayStorage(blocks[self.start[row] + column - self.first[row]]))
+        };
+        let symmetric = |inverse: &[Block], i: usize, k: usize| {
+            if i >= k { block(inverse, i, k) } else { block(inverse, k, i).transpose() }
+        };
+        let own = block(&self.blocks, j, j).try_inverse().unwrap_or_else(Matrix6::zeros);
+        let below: Vec<usize> = (j + 1..self.count()).filter(|row| self.first[*row] <= j).collect();
+        let factors: Vec<Matrix6<f64>> = below.iter().map(|k| block(&self.blocks, *k, j) * own).collect();
+        let mut diagonal = own.transpose() * own;
+        for (&i, factor) in below.iter().zip(&factors) {
+            let mut sum = Matrix6::zeros();
+            for (&k, factor) in below.iter().zip(&factors) {
+                sum -= symmetric(&self.inverse, i, k) * factor;
+            }
+            diagonal -= sum.transpose() * factor;
+            self.inverse[self.start[i] + j - self.first[i]] = sum.data.0;
+        }
+        self.inverse[self.start[j] + j - self.first[j]] = diagonal.data.0;
+    }
+
+    /// How many products of blocks a column of the inverse takes.
+    pub(crate) fn column_work(&self, j: usize) -> usize {
+        let below = self.first[j + 1..].iter().filter(|first| **first <= j).count();
+        below * below + below + 1
+    }
+
+    /// The diagonal block of the inverse of a node, once its column is there.
+    pub(crate) fn inverse_of(&self, node: usize) -> Matrix6<f64> {
+        let row = self.row_of[node];
+        Matrix6::from_data(ArrayStorage(self.inverse[self.start[row] + row - self.first[row]]))
+    }
+
     /// Solves in place for a right-hand side of one block a node, once every row is factorised; whether the solution is
     /// finite.
     pub(crate) fn solve(&mut self, rhs: &mut [Vector6<f64>]) -> bool {
@@ -225,11 +269,17 @@ mod tests {
         let rhs: Vec<Vector6<f64>> =
             (0..count).map(|_| Vector6::from_fn(|_, _| rng.random_range(-1.0..1.0))).collect();
         let flat = DVector::from_iterator(6 * count, rhs.iter().flat_map(|v| v.iter().copied()));
-        let expected = dense.cholesky().unwrap().solve(&flat);
+        let expected = dense.clone().cholesky().unwrap().solve(&flat);
         let mut found = rhs.clone();
         assert!(blocks.factorise() && blocks.solve(&mut found));
         for (i, v) in found.iter().enumerate() {
             assert!((v - expected.fixed_rows::<6>(6 * i)).norm() < 1e-10);
+        }
+        blocks.begin_inverse();
+        (0..count).rev().for_each(|column| blocks.invert_column(column));
+        let inverse = dense.try_inverse().unwrap();
+        for i in 0..count {
+            assert!((blocks.inverse_of(i) - inverse.fixed_view::<6, 6>(6 * i, 6 * i)).norm() < 1e-10);
         }
     }
 

@@ -13,11 +13,13 @@ pub struct BundleConfig {
     pub converged: f64,
     /// Levenberg-Marquardt damping at the start, relative to the diagonal, above 0. Default 1e-4.
     pub damping: f64,
+    /// Whether the covariances of the poses are worked out at the end; as much work again as a step or two. Default no.
+    pub covariances: bool,
 }
 
 impl Default for BundleConfig {
     fn default() -> Self {
-        Self { steps: 10, converged: 1e-4, damping: 1e-4 }
+        Self { steps: 10, converged: 1e-4, damping: 1e-4, covariances: false }
     }
 }
 
@@ -128,8 +130,10 @@ mod tests {
     use rand_chacha::ChaCha8Rng;
     use trundle_core::{Distortion, Vector2};
 
-    const EXACT: BundleConfig = BundleConfig { steps: 30, converged: 1e-12, damping: 1e-4 };
+    const EXACT: BundleConfig =
+        BundleConfig { steps: 30, converged: 1e-12, damping: 1e-4, covariances: false };
 
+    #[derive(Clone)]
     struct Scene {
         camera: PinholeCamera,
         poses: Vec<Pose3>,
@@ -251,6 +255,35 @@ mod tests {
         for (i, pose) in solution.poses.iter().enumerate() {
             assert!((pose.inverse() * truth(i)).log().norm() < 1e-5, "pose {i}");
         }
+    }
+
+    /// The error of a pose over many noisy scenes, by the covariance that the solver gives it: six on average.
+    #[test]
+    fn covariances_are_true() {
+        let scene = scene();
+        let (mut sum, runs) = (0.0, 100);
+        for seed in 0..runs {
+            let mut rng = ChaCha8Rng::seed_from_u64(100 + seed);
+            let mut noise = || (0..12).map(|_| rng.random::<f64>()).sum::<f64>() - 6.0;
+            let mut noisy = scene.clone();
+            for o in &mut noisy.observations {
+                o.seen.pixel += Vector2::new(noise(), noise());
+                o.seen.depth = o.seen.depth.map(|d| InverseDepth { value: d.value + d.sigma * noise(), ..d });
+            }
+            let mut solver = BundleSolver::default();
+            solver.begin(&perturbed(&noisy, 1), &BundleConfig { covariances: true, converged: 1e-6, ..EXACT });
+            solver.finish();
+            let error = (scene.poses[5].inverse() * solver.poses()[5]).log();
+            let covariance = solver.covariance(5).expect("a covariance");
+            sum += error.dot(&(covariance.try_inverse().unwrap() * error));
+            assert!(solver.covariance(0).is_none(), "it is fixed");
+            // The points are not known exactly: the pose is known less well than they would let it.
+            let own = solver.information(5).unwrap().try_inverse().unwrap();
+            assert!((covariance - own).symmetric_eigenvalues().min() > -1e-12);
+        }
+        // The chi-square of 600 degrees of freedom is within 534 and 670 at 95 %.
+        let mean = sum / runs as f64;
+        assert!((5.34..6.70).contains(&mean), "normalised squared error {mean}");
     }
 
     #[test]

@@ -35,20 +35,23 @@ impl Layout {
         let observations = &problem.observations;
         self.order.clear();
         self.order.extend(0..observations.len() as u32);
-        let key = |i: u32| {
-            let seen = &observations[i as usize];
-            (seen.point, row_of(seen.pose), i)
-        };
-        self.order.sort_unstable_by_key(|i| key(*i));
-        let centre = [problem.camera.cx(), problem.camera.cy()];
-        self.seen.clear();
-        self.seen.extend(self.order.iter().map(|i| Measurement::of(&observations[*i as usize], centre)));
+        let point = |i: &u32| observations[*i as usize].point;
+        if !self.order.is_sorted_by_key(point) {
+            self.order.sort_unstable_by_key(|i| (point(i), *i));
+        }
         self.starts.clear();
         self.starts.resize(problem.points.len() + 1, 0);
         observations.iter().for_each(|seen| self.starts[seen.point + 1] += 1);
         for i in 1..self.starts.len() {
             self.starts[i] += self.starts[i - 1];
         }
+        for bounds in self.starts.windows(2) {
+            let own = &mut self.order[bounds[0] as usize..bounds[1] as usize];
+            own.sort_unstable_by_key(|i| (row_of(observations[*i as usize].pose), *i));
+        }
+        let centre = [problem.camera.cx(), problem.camera.cy()];
+        self.seen.clear();
+        self.seen.extend(self.order.iter().map(|i| Measurement::of(&observations[*i as usize], centre)));
     }
 
     /// Where the observations of a point stand.

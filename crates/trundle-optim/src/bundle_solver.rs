@@ -1,6 +1,7 @@
 use crate::bundle::{BundleConfig, BundleProblem};
 use crate::bundle_layout::Layout;
 use crate::bundle_system::{FIXED, Lens, Normal, View, moved, robust};
+use nalgebra::Matrix6;
 use trundle_core::{Pose3, Vector3};
 
 /// With more free poses than this, those that share no point are left uncoupled: sorting them out is then worth its time.
@@ -46,7 +47,20 @@ pub struct BundleSolver {
     partial_cost: f64,
     steps: usize,
     chi2: Vec<f64>,
+    /// Where the poses' covariances are on the way, or there.
+    ending: Ending,
 }
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+enum Ending {
+    #[default]
+    Refining,
+    WorkingOut,
+    WorkedOut,
+}
+
+/// Damping of the system that the covariances are read from: no more than keeps it definite.
+const LEAST_DAMPING: f64 = 1e-9;
 
 #[derive(Debug, Clone, Default)]
 struct State {
@@ -67,6 +81,8 @@ enum Phase {
     Move,
     /// What is left of every residual.
     Judge,
+    /// The inverse of the factor, column by column.
+    Invert,
     #[default]
     Done,
 }
@@ -89,12 +105,13 @@ impl BundleSolver {
         self.chi2.clear();
         self.chi2.resize(problem.observations.len(), f64::INFINITY);
         (self.damping, self.steps, self.cost) = (config.damping, 0, f64::INFINITY);
+        self.ending = Ending::Refining;
         self.enter(Phase::Linearise);
     }
 
     /// Goes on for about `work` units, some 20 ns each; `true` once it is done.
     pub fn advance(&mut self, work: usize) -> bool {
-        let mut left = work as isize;
+        let mut left = isize::try_from(work).unwrap_or(isize::MAX);
         while self.phase != Phase::Done && left > 0 {
             left -= self.work_on() as isize;
         }
@@ -103,7 +120,7 @@ impl BundleSolver {
 
     /// Goes on to the end.
     pub fn finish(&mut self) {
-        while !self.advance(usize::MAX >> 1) {}
+        while !self.advance(usize::MAX) {}
     }
 
     /// `world_from_camera` of every pose as far as it is refined.
@@ -119,6 +136,19 @@ impl BundleSolver {
     /// Squared residual of every observation in the order given, once it is done; infinite behind a camera.
     pub fn chi2(&self) -> &[f64] {
         &self.chi2
+    }
+
+    /// Covariance of a pose as a right perturbation (m, rad), taking every fixed pose and every sigma as true; once it is
+    /// done, if the configuration asked for it and the pose is free and determined.
+    pub fn covariance(&self, pose: usize) -> Option<Matrix6<f64>> {
+        let row = self.rows.get(pose).filter(|row| **row != FIXED && self.ending == Ending::WorkedOut)?;
+        Some(self.normal.covariance_of(*row)).filter(|c| c.iter().all(|value| value.is_finite()))
+    }
+
+    /// Inverse of the covariance that a free pose would have if all points were known, on the same conditions.
+    pub fn information(&self, pose: usize) -> Option<Matrix6<f64>> {
+        let row = self.rows.get(pose).filter(|row| **row != FIXED && self.ending == Ending::WorkedOut)?;
+        Some(self.normal.information_of(*row))
     }
 
     /// Robust cost of the problem as given.
@@ -161,6 +191,7 @@ impl BundleSolver {
         match phase {
             Phase::Linearise => self.normal.clear(),
             Phase::Eliminate => self.normal.begin_reduced(self.damping),
+            Phase::Invert => self.normal.reduced.begin_inverse(),
             _ => {}
         }
     }
@@ -173,6 +204,7 @@ impl BundleSolver {
             Phase::Factorise => self.factorise(),
             Phase::Move => self.move_points(),
             Phase::Judge => self.judge(),
+            Phase::Invert => self.invert(),
             Phase::Done => 0,
         }
     }
@@ -210,7 +242,7 @@ impl BundleSolver {
         let (points, last) = self.chunk();
         self.normal.eliminate(points.clone(), self.damping, &self.layout, &self.here.views);
         if last {
-            self.steps += 1;
+            self.steps += usize::from(self.ending == Ending::Refining);
             self.enter(Phase::Factorise);
         }
         let pairs = |point: usize| self.layout.of_point(point).len().pow(2) / 2 + 1;
@@ -227,6 +259,10 @@ impl BundleSolver {
                 self.refuse();
             }
             return work;
+        }
+        if self.ending == Ending::WorkingOut {
+            self.enter(Phase::Invert);
+            return 1;
         }
         if !self.normal.reduced.solve(&mut self.normal.step) {
             self.refuse();
@@ -278,6 +314,11 @@ impl BundleSolver {
 
     /// Tries a shorter step.
     fn refuse(&mut self) {
+        if self.ending == Ending::WorkingOut {
+            // Not determined.
+            self.ending = Ending::Refining;
+            return self.enter(Phase::Done);
+        }
         self.damping *= 10.0;
         self.enter(if self.steps >= self.config.steps { Phase::Judge } else { Phase::Eliminate });
     }
@@ -292,10 +333,25 @@ impl BundleSolver {
                 self.chi2[self.layout.order[i] as usize] = chi2;
             }
         }
-        if last {
+        if last && self.config.covariances {
+            (self.ending, self.damping) = (Ending::WorkingOut, LEAST_DAMPING);
+            self.enter(Phase::Linearise);
+        } else if last {
             self.enter(Phase::Done);
         }
         self.observations(&points)
+    }
+
+    fn invert(&mut self) -> usize {
+        let reduced = &mut self.normal.reduced;
+        let Some(column) = reduced.count().checked_sub(self.cursor + 1) else {
+            self.ending = Ending::WorkedOut;
+            self.enter(Phase::Done);
+            return 1;
+        };
+        reduced.invert_column(column);
+        self.cursor += 1;
+        2 * WORK_PRODUCT * reduced.column_work(column)
     }
 }
 

@@ -2,7 +2,7 @@ use crate::block::{Block, Column, subtract_outer};
 use crate::block_cholesky::BlockMatrix;
 use crate::bundle_layout::{Layout, Measurement};
 use crate::observation::{COST_BEHIND, NEAREST};
-use nalgebra::Vector6;
+use nalgebra::{Matrix6, Vector6};
 use trundle_core::{PinholeCamera, Pose3, Vector3};
 
 /// A camera pose as the residuals need it.
@@ -196,6 +196,16 @@ impl Normal {
         }
         self.points[index] = block;
         cost
+    }
+
+    /// Covariance of the pose of a row, once the reduced system is inverted.
+    pub fn covariance_of(&self, row: u32) -> Matrix6<f64> {
+        self.reduced.inverse_of(self.node_of[row as usize])
+    }
+
+    /// What is known of the pose of a row if every point is taken as known.
+    pub fn information_of(&self, row: u32) -> Matrix6<f64> {
+        Matrix6::from_data(nalgebra::ArrayStorage(self.poses[row as usize].0))
     }
 
     /// How the pose of a row moves, once the reduced system is solved.

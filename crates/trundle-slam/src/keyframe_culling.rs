@@ -84,7 +84,7 @@ mod tests {
         let gone = cull_keyframes(&mut map, ids[11], &config);
         let left: Vec<usize> = map.keyframe_ids().map(KeyframeId::index).collect();
         // First, tied, needed, and the newest five before the last.
-        assert_eq!((gone, left), (3, vec![0, 2, 3, 7, 8, 9, 10, 11]));
+        assert_eq!((gone, left), (4, vec![0, 2, 3, 7, 8, 9, 10, 11]));
         assert_consistent(&map);
         assert_eq!(cull_keyframes(&mut map, ids[11], &config), 0);
     }

@@ -1,8 +1,9 @@
 use crate::ids::{KeyframeId, LandmarkId};
 use crate::map::LandmarkMap;
+use crate::map_bundle::MapBundle;
 use crate::sensor::Sensor;
-use trundle_core::{Pose3, Vector3};
-use trundle_optim::{BundleConfig, BundleObservation, BundlePose, BundleProblem, BundleSolution};
+use trundle_core::Vector3;
+use trundle_optim::BundleConfig;
 
 /// How much of the map is refined at once.
 #[derive(Debug, Clone, Copy)]
@@ -11,15 +12,6 @@ pub(crate) struct BundleSize {
     pub local: usize,
     /// Keyframes that hold them in place.
     pub fixed: usize,
-}
-
-/// The part of the map around a keyframe.
-#[derive(Debug)]
-struct Window {
-    keyframes: Vec<KeyframeId>,
-    /// How many of them, from the first, move.
-    free: usize,
-    landmarks: Vec<LandmarkId>,
 }
 
 /// Refines the keyframes covisible with `centre` and the landmarks that two or more keyframes see; the other keyframes
@@ -31,21 +23,62 @@ pub(crate) fn refine_around(
     size: BundleSize,
     config: &BundleConfig,
 ) {
-    let window = window_around(map, centre, size);
-    let (problem, sources) = problem(map, &window, sensor);
-    let solution = problem.solve(config);
-    apply(map, &window, &solution);
-    for ((landmark, keyframe, bound), chi2) in sources.into_iter().zip(&solution.chi2) {
-        if *chi2 > bound {
-            map.unobserve(landmark, keyframe);
-        }
-    }
-    for id in window.landmarks {
-        map.refresh(id, sensor);
-    }
+    let mut bundle = bundle_around(map, centre, sensor, size);
+    bundle.begin(sensor, config);
+    while !bundle.advance(usize::MAX) {}
+    apply(map, &bundle, sensor);
 }
 
-fn window_around(map: &LandmarkMap, centre: KeyframeId, size: BundleSize) -> Window {
+/// The bundle adjustment of what is around a keyframe, ready to begin.
+pub(crate) fn bundle_around(
+    map: &LandmarkMap,
+    centre: KeyframeId,
+    sensor: &Sensor,
+    size: BundleSize,
+) -> MapBundle {
+    let (keyframes, landmarks) = window_around(map, centre, size);
+    let first = map.first_keyframe();
+    let mut bundle =
+        MapBundle::of(map, keyframes.into_iter().map(|(id, fixed)| (id, fixed || Some(id) == first)));
+    for id in landmarks {
+        bundle.add(map, id, sensor);
+    }
+    bundle
+}
+
+/// Takes a bundle's result over, as far as it has come. A landmark that only one keyframe sees moves along with it.
+pub(crate) fn apply(map: &mut LandmarkMap, bundle: &MapBundle, sensor: &Sensor) {
+    let carried = alone(map, bundle);
+    bundle.move_keyframes(map);
+    bundle.move_landmarks(map);
+    for (id, position) in carried {
+        if let Some(landmark) = map.landmark_mut(id) {
+            landmark.position = position;
+        }
+    }
+    bundle.take_back(map);
+    bundle.landmarks().for_each(|id| map.refresh(id, sensor));
+}
+
+/// Where the landmarks go that only one of the moved keyframes sees.
+fn alone(map: &LandmarkMap, bundle: &MapBundle) -> Vec<(LandmarkId, Vector3)> {
+    let mut carried = Vec::new();
+    for (id, pose) in bundle.keyframes() {
+        let (Some(keyframe), Some(moved)) = (map.live_keyframe(id), bundle.correction(id)) else { continue };
+        for landmark in keyframe.landmarks.iter().flatten().filter(|_| !pose.fixed) {
+            let alone = map.landmark(*landmark).filter(|l| l.observations.len() == 1);
+            carried.extend(alone.map(|l| (*landmark, moved.transform(l.position))));
+        }
+    }
+    carried
+}
+
+/// The keyframes around one, each with whether it holds still, and the landmarks that the moved ones share.
+fn window_around(
+    map: &LandmarkMap,
+    centre: KeyframeId,
+    size: BundleSize,
+) -> (Vec<(KeyframeId, bool)>, Vec<LandmarkId>) {
     let mut local: Vec<KeyframeId> = std::iter::once(centre)
         .chain(map.covisible(centre, 15).into_iter().map(|(id, _)| id))
         .take(size.local)
@@ -61,57 +94,6 @@ fn window_around(map: &LandmarkMap, centre: KeyframeId, size: BundleSize) -> Win
         let oldest = local.iter().enumerate().min_by_key(|(_, id)| **id).map_or(0, |(i, _)| i);
         fixed.push(local.remove(oldest));
     }
-    let free = local.len();
-    local.extend(fixed);
-    Window { keyframes: local, free, landmarks }
-}
-
-/// The problem, and of each observation its landmark, keyframe and bound.
-fn problem(
-    map: &LandmarkMap,
-    window: &Window,
-    sensor: &Sensor,
-) -> (BundleProblem, Vec<(LandmarkId, KeyframeId, f64)>) {
-    let mut slots = vec![None; map.keyframe_bound()];
-    for (slot, id) in window.keyframes.iter().enumerate() {
-        slots[id.index()] = Some(slot);
-    }
-    let first = map.first_keyframe();
-    let pose = |(slot, id): (usize, &KeyframeId)| BundlePose {
-        world_from_camera: map.keyframe(*id).visual_from_camera,
-        fixed: slot >= window.free || Some(*id) == first,
-    };
-    let poses = window.keyframes.iter().enumerate().map(pose).collect();
-    let (mut points, mut observations, mut sources) = (Vec::new(), Vec::new(), Vec::new());
-    for (id, landmark) in window.landmarks.iter().filter_map(|id| Some((*id, map.landmark(*id)?))) {
-        for (keyframe, feature) in &landmark.observations {
-            let Some(pose) = slots[keyframe.index()] else { continue };
-            let seen = sensor.observation(&map.keyframe(*keyframe).frame, *feature);
-            observations.push(BundleObservation { pose, point: points.len(), seen });
-            sources.push((id, *keyframe, seen.chi2_bound()));
-        }
-        points.push(landmark.position);
-    }
-    let problem = BundleProblem::new(sensor.camera, poses, points, observations);
-    (problem.expect("invariant: every index was counted here"), sources)
-}
-
-/// Moves keyframes and landmarks; a landmark that only one moved keyframe sees moves along with it.
-fn apply(map: &mut LandmarkMap, window: &Window, solution: &BundleSolution) {
-    let mut carried: Vec<(LandmarkId, Vector3)> = Vec::new();
-    for (id, pose) in window.keyframes.iter().zip(&solution.poses).take(window.free) {
-        let keyframe = map.keyframe(*id);
-        let correction: Pose3 = *pose * keyframe.visual_from_camera.inverse();
-        for landmark in keyframe.landmarks.iter().flatten() {
-            let alone = map.landmark(*landmark).filter(|l| l.observations.len() == 1);
-            carried.extend(alone.map(|l| (*landmark, correction.transform(l.position))));
-        }
-        map.move_keyframe(*id, *pose);
-    }
-    let refined = window.landmarks.iter().copied().zip(solution.points.iter().copied());
-    for (id, position) in refined.chain(carried) {
-        if let Some(landmark) = map.landmark_mut(id) {
-            landmark.position = position;
-        }
-    }
+    let keyframes = local.into_iter().map(|id| (id, false)).chain(fixed.into_iter().map(|id| (id, true)));
+    (keyframes.collect(), landmarks)
 }

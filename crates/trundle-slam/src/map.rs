@@ -3,6 +3,7 @@ use crate::frame::Frame;
 use crate::ids::{KeyframeId, LandmarkId};
 use crate::keyframe_grid::KeyframeGrid;
 use crate::landmark::Landmark;
+use crate::refinement::Refinement;
 use crate::sensor::Sensor;
 use crate::spanning_tree::Place;
 use nalgebra::Matrix6;
@@ -13,8 +14,11 @@ use trundle_core::{Pose3, Vector3};
 pub(crate) struct Keyframe {
     pub frame: Frame,
     pub visual_from_camera: Pose3,
-    /// Of that pose as a right perturbation, against the first keyframe: grows along the chain of references.
+    /// Of that pose as a right perturbation, against the first keyframe.
     pub covariance: Matrix6<f64>,
+    /// The part of it that is not the keyframe's own but that of the points it sees, as of one body: what a frame located
+    /// by these points inherits.
+    pub ground: Matrix6<f64>,
     /// Which landmark each feature is of.
     pub landmarks: Vec<Option<LandmarkId>>,
     /// Where it stands in the spanning tree.
@@ -30,6 +34,8 @@ pub(crate) struct LandmarkMap {
     landmarks: Arena<Landmark>,
     /// Where the keyframes are.
     pub(crate) grid: KeyframeGrid,
+    /// What makes it better, and is not done yet.
+    pub(crate) refinement: Refinement,
     /// Where forgotten keyframes stand to the one that took them over, by id.
     pub(crate) forgotten: std::collections::BTreeMap<KeyframeId, (KeyframeId, Pose3)>,
 }
@@ -105,8 +111,8 @@ impl LandmarkMap {
     /// A new keyframe that sees nothing yet.
     pub fn add_keyframe(&mut self, frame: Frame, visual_from_camera: Pose3) -> KeyframeId {
         let landmarks = vec![None; frame.len()];
-        let (covariance, tree) = (Matrix6::zeros(), Place::default());
-        let keyframe = Keyframe { frame, visual_from_camera, covariance, landmarks, tree };
+        let (covariance, ground, tree) = (Matrix6::zeros(), Matrix6::zeros(), Place::default());
+        let keyframe = Keyframe { frame, visual_from_camera, covariance, ground, landmarks, tree };
         let id = KeyframeId::from_index(self.keyframes.insert(keyframe));
         self.grid.insert(id, visual_from_camera.translation);
         id
@@ -120,9 +126,15 @@ impl LandmarkMap {
         self.keyframe_mut(id).visual_from_camera = visual_from_camera;
     }
 
-    /// Says how uncertain a keyframe's pose is.
+    /// Says how uncertain a keyframe's pose is, and with it all that it sees.
     pub fn set_covariance(&mut self, id: KeyframeId, covariance: Matrix6<f64>) {
-        self.keyframe_mut(id).covariance = covariance;
+        self.set_covariances(id, covariance, covariance);
+    }
+
+    /// Says how uncertain a keyframe's pose is, and what it sees.
+    pub fn set_covariances(&mut self, id: KeyframeId, covariance: Matrix6<f64>, ground: Matrix6<f64>) {
+        let keyframe = self.keyframe_mut(id);
+        (keyframe.covariance, keyframe.ground) = (covariance, ground);
     }
 
     pub(crate) fn keyframe_mut(&mut self, id: KeyframeId) -> &mut Keyframe {

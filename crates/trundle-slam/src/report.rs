@@ -92,6 +92,8 @@ pub struct TrackReport {
     pub closed_loop: Option<LoopClosure>,
     /// The map recognised by it, and how that moved the camera.
     pub merged: Option<MapMerge>,
+    /// How refining the map moved the camera since the last frame: `new_from_old`, a correction, not a motion.
+    pub refined: Option<Pose3>,
     /// Keyframes in the map, after this frame.
     pub keyframes: usize,
     /// Landmarks in the map, after this frame.

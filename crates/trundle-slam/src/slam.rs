@@ -52,6 +52,8 @@ pub struct RgbdSlam {
     /// A place of the active map that it recognised farther off than it should be.
     surprise: Option<Claim<()>>,
     history: Vec<Past>,
+    /// How refining the map moved the camera, before the frame at hand.
+    refined: Option<Pose3>,
     seen: Vec<SeenFeature>,
     check: SettingsCheck,
 }
@@ -98,6 +100,7 @@ impl RgbdSlam {
             recognition: None,
             surprise: None,
             history: vec![],
+            refined: None,
             seen: vec![],
             check: SettingsCheck::default(),
         })
@@ -160,10 +163,32 @@ impl RgbdSlam {
         let prior = prior.filter(Pose3::is_finite);
         let frame = Frame::new(stamp, features, depth, &self.sensor, &self.config.depth);
         self.check.note_frame(&frame, depth, prior, &self.sensor, &self.config.depth);
+        self.refine(self.config.mapping.work_per_frame);
         match self.locate(&frame, depth, prior) {
             Some(sighting) => self.accept(frame, sighting),
             None => self.miss(frame, depth, prior),
         }
+    }
+
+    /// Does all that is left of refining the map, which `step` does in slices between frames: before it is saved, say, or
+    /// when the camera stands still for long.
+    pub fn finish_refining(&mut self) {
+        while self.mode == Mode::Mapping && self.active.map.is_being_refined() {
+            self.refine(usize::MAX);
+        }
+    }
+
+    /// Goes on refining the map; the camera moves along with it.
+    fn refine(&mut self, work: usize) {
+        self.refined = None;
+        let map = &mut self.active.map;
+        if self.mode == Mode::Localisation || !map.refine(&self.sensor, &self.config.mapping, work) {
+            return;
+        }
+        let Some(past) = self.history.last().filter(|past| past.map == self.active.id) else { return };
+        let pose = past.anchored.visual_from_camera(map);
+        self.refined = Some(pose * self.belief.visual_from_camera.inverse());
+        self.belief.visual_from_camera = pose;
     }
 
     /// Pose of every frame that was not lost, in the order of `step`: `visual_from_camera` by the map as it is now. Of
@@ -260,6 +285,7 @@ impl RgbdSlam {
             new_keyframe: false,
             closed_loop: None,
             merged: None,
+            refined: self.refined,
             keyframes: self.active.map.keyframe_count(),
             landmarks: self.active.map.landmark_count(),
         }

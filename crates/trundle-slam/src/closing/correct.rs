@@ -1,7 +1,6 @@
 use super::LoopConfig;
 use super::verify::Recognised;
 use crate::ids::KeyframeId;
-use crate::local_bundle::{BundleSize, refine_around};
 use crate::map::LandmarkMap;
 use crate::mapping::MappingConfig;
 use crate::search::Likeness;
@@ -10,9 +9,6 @@ use nalgebra::Matrix6;
 use std::collections::BTreeSet;
 use trundle_core::{Pose3, Vector3};
 use trundle_optim::{PoseConstraint, PoseGraph};
-
-/// Keyframes that the bundle adjustment behind a closed loop moves.
-const REFINED: usize = 40;
 
 /// Mends the map once a place is recognised.
 #[derive(Debug, Clone)]
@@ -27,7 +23,7 @@ pub(super) struct Correction<'a> {
 
 impl Correction<'_> {
     /// Spreads the drift over the keyframes, lets each landmark go with the keyframe that saw it first, makes one of
-    /// those that are there twice, and refines what is around.
+    /// those that are there twice, and begins to refine the whole map.
     pub fn apply(&self, map: &mut LandmarkMap, keyframe: KeyframeId) {
         let ids: Vec<KeyframeId> = map.keyframe_ids().collect();
         let after = self.graph(map, keyframe, &ids).solve(&self.config.graph).poses;
@@ -38,8 +34,7 @@ impl Correction<'_> {
         self.fuse(map, keyframe);
         map.tie(self.found.candidate, keyframe);
         map.set_covariance(keyframe, map.keyframe(self.found.candidate).covariance);
-        let size = BundleSize { local: REFINED, fixed: REFINED };
-        refine_around(map, keyframe, self.sensor, size, &self.mapping.bundle);
+        map.begin_refining_all();
     }
 
     /// Every keyframe tied to the one before it and to those it shares many landmarks with, as they stand to each other

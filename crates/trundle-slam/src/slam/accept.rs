@@ -129,12 +129,12 @@ impl RgbdSlam {
         }
     }
 
-    /// Of a found pose: that against the map, and that of the keyframe which holds this part of the map.
+    /// Of a found pose: that against the points, and that of the points around the keyframe that sees most of them.
     fn covariance(&self, found: &Found, reference: KeyframeId) -> Matrix6<f64> {
         let keyframe = self.active.map.keyframe(reference);
         let offset = keyframe.visual_from_camera.inverse() * found.fix.visual_from_camera();
         let local = found.fix.solution.covariance().unwrap_or_else(Matrix6::identity);
-        carried(&keyframe.covariance, offset) + local
+        carried(&keyframe.ground, offset) + local
     }
 
     /// The keyframe that shares most landmarks with the frame; the last one's where none does.

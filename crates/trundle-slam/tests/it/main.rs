@@ -2,7 +2,10 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout, clippy::print_stderr, reason = "tests, helpers included")]
 
 mod freiburg;
+mod honesty;
 mod maps;
+mod memory;
+mod points;
 mod robustness;
 mod room;
 mod saving;

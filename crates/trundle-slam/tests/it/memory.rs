@@ -1,0 +1,39 @@
+//! Ten laps of one room take no more memory than three.
+
+use crate::points::{Dice, Room, camera, stamp};
+use nalgebra::Vector6;
+use std::f64::consts::TAU;
+use trundle_core::Pose3;
+use trundle_slam::{RgbdSlam, SlamConfig, Tracking};
+
+/// Frames of a lap.
+const LAP: usize = 72;
+
+/// Round the room, never twice on quite the same way.
+fn lap(frame: usize, dice: &mut Dice) -> Pose3 {
+    let t = frame as f64 / LAP as f64 * TAU;
+    let (dx, dz) = (0.05 * (dice.uniform() - 0.5), 0.05 * (dice.uniform() - 0.5));
+    Pose3::exp(Vector6::new(0.7 * t.cos() + dx, 0.0, 0.7 * t.sin() + dz, 0.0, 0.0, 0.0))
+        * Pose3::exp(Vector6::new(0.0, 0.0, 0.0, 0.0, -t + 0.05 * (dice.uniform() - 0.5), 0.0))
+}
+
+#[test]
+fn ten_laps_of_a_room_take_no_more_than_three() {
+    let (room, mut dice) = (Room::new(), Dice(5));
+    let mut slam = RgbdSlam::new(camera(), SlamConfig::default()).unwrap();
+    let (mut at, mut after) = (lap(0, &mut dice), Vec::new());
+    for i in 0..10 * LAP {
+        let to = if i == 0 { at } else { lap(i, &mut dice) };
+        let (features, depth) = room.seen_from(to, &mut dice);
+        let report = slam.step_with_features(stamp(i), features, &depth, Some(at.inverse() * to));
+        assert_eq!(report.tracking, Tracking::Ok, "frame {i}");
+        at = to;
+        if (i + 1) % LAP == 0 {
+            after.push((report.keyframes, report.landmarks, slam.save().len()));
+        }
+    }
+    println!("keyframes, landmarks, bytes after each lap: {after:?}");
+    let within = |ten: usize, three: usize| ten as f64 <= 1.1 * three as f64;
+    let (three, ten) = (after[2], after[9]);
+    assert!(within(ten.0, three.0) && within(ten.1, three.1) && within(ten.2, three.2));
+}
