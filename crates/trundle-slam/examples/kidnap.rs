@@ -1,13 +1,14 @@
 //! Kidnapped into a saved map: is the camera recognised, and never somewhere else?
 //!
-//! Maps one recorded drive (a TUM RGB-D folder with `camera.toml` and `groundtruth.txt`), saves and loads the map, then
-//! takes random views of another drive through the same scene and lets the camera see each and up to 1 s of what follows,
+//! Maps one recorded drive (a TUM RGB-D folder of the simulator, with its wheels where it has `odometry.txt`), saves and
+//! loads the map, then takes random views of another drive through the same scene and lets the camera see each and up to 1 s of what follows,
 //! until it is located. Printed are how many were, how many of them wrongly, and what a frame cost meanwhile.
 //!
 //! `cargo run --release -p trundle-slam --example kidnap -- MAPPED OTHER [VIEWS] [MAP_FILE]`; a MAP_FILE that exists is
 //! used, else written.
 #![allow(clippy::print_stdout, clippy::unwrap_used, reason = "a program for the terminal")]
 
+use nalgebra::Matrix3;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 use trundle_core::{ColorImage, DepthImage, Distortion, PinholeCamera, Pose3, RgbdImage, Stamp, Vector3};
@@ -52,14 +53,27 @@ fn main() {
 /// The map of a whole drive, in the frame of its truth.
 fn map(drive: &Drive) -> Vec<u8> {
     let mut slam = RgbdSlam::new(drive.camera, SlamConfig::default()).unwrap().starting_at(drive.truth(0));
-    let (mut located, mut worst) = (0, 0.0_f64);
+    let (mut located, mut worst, mut id) = (0, 0.0_f64, None);
     for i in 0..drive.frames.len() {
-        let report = slam.step(&drive.image(i), None);
+        let report = slam.step(&drive.image(i), drive.wheels(i));
         located += usize::from(report.tracking.is_located());
         let off = (drive.truth(i).inverse() * report.visual_from_camera).translation.norm();
         worst = worst.max(off);
-        if report.closed_loop.is_some() || report.merged.is_some() {
-            println!("frame {i}: loop or merge, off by {off:.3} m");
+        if id.replace(report.map) != Some(report.map) || !report.tracking.is_located() {
+            println!("frame {i}: {:?} in {}, off by {off:.3} m", report.tracking, report.map);
+        }
+        if let Some(closed) = report.closed_loop {
+            let moved = closed.correction.translation.norm();
+            println!(
+                "frame {i}: loop of {} points moved by {moved:.3} m, now off by {off:.3} m",
+                closed.points
+            );
+        }
+        if let Some(merged) = report.merged {
+            println!(
+                "frame {i}: {} is {} by {} points, off by {off:.3} m",
+                merged.from, merged.into, merged.points
+            );
         }
     }
     println!("mapped: {located} of {} frames located, off by {worst:.3} m at most", drive.frames.len());
@@ -127,6 +141,8 @@ struct Frame {
     color: String,
     depth: String,
     truth: Pose3,
+    /// Of the base, by the wheels.
+    wheels: Option<Pose3>,
 }
 
 impl Drive {
@@ -150,13 +166,23 @@ impl Drive {
         let (focal, centre) = ((setting("fx"), setting("fy")), (setting("cx"), setting("cy")));
         let camera = PinholeCamera::new(size, focal, centre, lens).unwrap();
         let truth = truth(&read("groundtruth.txt"));
+        let wheels =
+            std::fs::read_to_string(folder.join("odometry.txt")).map_or(vec![], |text| wheels(&text));
         let lines: Vec<String> = read("associations.txt").lines().map(str::to_owned).collect();
         let frame = |line: &String| {
             let fields: Vec<&str> = line.split_whitespace().collect();
             let seconds: f64 = fields[0].parse().unwrap();
             let at = truth.partition_point(|(t, _)| *t < seconds - 1e-6).min(truth.len() - 1);
             let stamp = Stamp::from_secs(seconds).unwrap();
-            Frame { stamp, color: fields[1].to_owned(), depth: fields[3].to_owned(), truth: truth[at].1 }
+            let rolled = wheels.partition_point(|(t, _)| *t < seconds - 1e-6);
+            let wheels = wheels.get(rolled).map(|(_, pose)| *pose);
+            Frame {
+                stamp,
+                color: fields[1].to_owned(),
+                depth: fields[3].to_owned(),
+                truth: truth[at].1,
+                wheels,
+            }
         };
         let frames = lines.iter().filter(|line| !line.starts_with('#')).map(frame).collect();
         Self { folder, camera, depth_scale: setting("depth_scale") as f32, frames }
@@ -164,6 +190,15 @@ impl Drive {
 
     fn truth(&self, i: usize) -> Pose3 {
         self.frames[i].truth
+    }
+
+    /// `previous_camera_from_camera` by the wheels, for the camera as the simulator mounts it: 5 cm forward, tilted by 8 deg.
+    fn wheels(&self, i: usize) -> Option<Pose3> {
+        let motion = self.frames[i.checked_sub(1)?].wheels?.inverse() * self.frames[i].wheels?;
+        let axes = Matrix3::new(0.0, 0.0, 1.0, -1.0, 0.0, 0.0, 0.0, -1.0, 0.0);
+        let tilt = nalgebra::Rotation3::from_euler_angles(0.0, 8_f64.to_radians(), 0.0);
+        let base_from_camera = Pose3::from_matrix(tilt.into_inner() * axes, Vector3::new(0.05, 0.0, 0.45));
+        Some(base_from_camera.inverse() * motion * base_from_camera)
     }
 
     fn has_been_at(&self, pose: Pose3) -> bool {
@@ -182,6 +217,15 @@ impl Drive {
         let depth = depth.into_raw().into_iter().map(|v| f32::from(v) / self.depth_scale).collect();
         RgbdImage::new(frame.stamp, color, DepthImage::new(width, height, depth).unwrap()).unwrap()
     }
+}
+
+/// Time (s) and planar pose of each line.
+fn wheels(text: &str) -> Vec<(f64, Pose3)> {
+    let pose = |line: &str| {
+        let v: Vec<f64> = line.split_whitespace().map(|v| v.parse().unwrap()).collect();
+        (v[0], Pose3::from_pose2(trundle_core::Pose2::new(v[1], v[2], v[3])))
+    };
+    text.lines().filter(|line| !line.starts_with('#')).map(pose).collect()
 }
 
 /// Time (s) and pose of each line.

@@ -3,6 +3,7 @@ use crate::ids::{KeyframeId, LandmarkId};
 use crate::map::LandmarkMap;
 use crate::places::Places;
 use crate::report::MapId;
+use nalgebra::Matrix6;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use trundle_core::Pose3;
@@ -44,13 +45,13 @@ impl Component {
         self.odometer.follow(&self.map);
     }
 
-    /// Takes over another map that stands at `own_from_other`.
-    pub fn absorb(&mut self, other: &LandmarkMap, own_from_other: Pose3) -> Renamed {
+    /// Takes over another map that stands at `own_from_other`, known by a keyframe that is as uncertain as `seam`.
+    pub fn absorb(&mut self, other: &LandmarkMap, own_from_other: Pose3, seam: Matrix6<f64>) -> Renamed {
         let mut renamed = Renamed::default();
         for (old, keyframe) in other.keyframes() {
             let pose = (own_from_other * keyframe.visual_from_camera).renormalized();
             let new = self.map.add_keyframe(keyframe.frame.clone(), pose);
-            self.map.set_covariance(new, keyframe.covariance);
+            self.map.set_covariances(new, keyframe.covariance + seam, keyframe.ground + seam);
             renamed.keyframes.insert(old, new);
         }
         for (old, landmark) in other.landmarks() {
@@ -67,6 +68,11 @@ impl Component {
             renamed.landmarks.insert(old, new);
         }
         renamed.keyframes.values().for_each(|id| self.map.enter_tree(*id));
+        for (old, keyframe) in other.keyframes() {
+            for with in keyframe.tree.loops.iter().filter(|with| **with < old) {
+                self.map.tie(renamed.keyframes[with], renamed.keyframes[&old]);
+            }
+        }
         for (old, new) in other.loops() {
             self.map.tie(renamed.keyframes[&old], renamed.keyframes[&new]);
         }
@@ -88,11 +94,12 @@ mod tests {
         let (other, seen) = map_of_one_view(30);
         let mut component = Component::new(MapId(0), map, &Vocabulary::builtin());
         let moved = Pose3::exp(Vector6::new(1.0, 2.0, 0.5, 0.1, 0.4, 0.0));
-        let renamed = component.absorb(&other, moved);
+        let renamed = component.absorb(&other, moved, Matrix6::identity());
         assert_consistent(&component.map);
         assert_eq!((component.map.keyframe_count(), component.map.landmark_count()), (2, 50));
         let taken = component.map.keyframe(renamed.keyframes[&seen]);
         assert!((taken.visual_from_camera.inverse() * moved).log().norm() < 1e-12);
+        assert_eq!(taken.covariance, Matrix6::identity(), "as uncertain as the seam");
         for (old, landmark) in other.landmarks() {
             let new = component.map.landmark(renamed.landmarks[&old]).unwrap();
             assert!((new.position - moved.transform(landmark.position)).norm() < 1e-12);

@@ -11,7 +11,7 @@ use nalgebra::Matrix6;
 use std::collections::BTreeMap;
 
 /// The least bytes of a keyframe, a landmark and an observation.
-const LEAST: (usize, usize, usize) = (8 + 4 + 7 * 8 + 36 * 8, 24 + 32 + 24 + 8 + 4 * 3 + 8, 8);
+const LEAST: (usize, usize, usize) = (8 + 4 + 7 * 8 + 72 * 8, 24 + 32 + 24 + 8 + 4 * 3 + 8, 8);
 
 pub(super) fn write(out: &mut Writer, map: &LandmarkMap) {
     let numbers: BTreeMap<KeyframeId, usize> = map.keyframes().map(|(id, _)| id).zip(0..).collect();
@@ -55,7 +55,7 @@ pub(super) fn read(bytes: &mut Reader, sensor: &Sensor) -> Result<LandmarkMap, M
 fn write_keyframe(out: &mut Writer, keyframe: &Keyframe) {
     frame::write(out, &keyframe.frame);
     out.pose(&keyframe.visual_from_camera);
-    out.f64s(keyframe.covariance.iter().copied());
+    out.f64s(keyframe.covariance.iter().chain(keyframe.ground.iter()).copied());
 }
 
 fn read_keyframe(
@@ -65,12 +65,12 @@ fn read_keyframe(
 ) -> Result<KeyframeId, MapFileError> {
     let frame = frame::read(bytes, sensor)?;
     let pose = bytes.pose("pose of a keyframe")?;
-    let mut covariance = Matrix6::zeros();
-    for entry in covariance.iter_mut() {
+    let (mut covariance, mut ground) = (Matrix6::zeros(), Matrix6::zeros());
+    for entry in covariance.iter_mut().chain(ground.iter_mut()) {
         *entry = bytes.length("covariance of a keyframe")?;
     }
     let id = map.add_keyframe(frame, pose);
-    map.set_covariance(id, covariance);
+    map.set_covariances(id, covariance, ground);
     Ok(id)
 }
 

@@ -4,6 +4,7 @@ use crate::closing::{Recognised, Verifier};
 use crate::component::{Component, Renamed};
 use crate::ids::KeyframeId;
 use crate::local_bundle::{BundleSize, refine_around};
+use crate::map::LandmarkMap;
 use crate::places::SHARED;
 use crate::report::{MapId, MapMerge};
 use crate::trajectory::Anchored;
@@ -57,12 +58,14 @@ impl RgbdSlam {
     ) -> MapMerge {
         let other = self.resting.remove(other);
         let is_older = other.id < self.active.id;
+        let seam = |map: &LandmarkMap, id: KeyframeId| map.keyframe(id).covariance;
+        let seam = seam(&other.map, found.candidate) + seam(&self.active.map, keyframe);
         let (absorbed, moved) = if is_older {
             (std::mem::replace(&mut self.active, other), other_from_active)
         } else {
             (other, other_from_active.inverse())
         };
-        let renamed = self.active.absorb(&absorbed.map, moved);
+        let renamed = self.active.absorb(&absorbed.map, moved, seam);
         self.rename_history(&absorbed, &renamed, moved);
         let keyframe = if is_older { renamed.keyframes[&keyframe] } else { keyframe };
         if !is_older {
