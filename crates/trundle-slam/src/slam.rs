@@ -1,4 +1,5 @@
 mod accept;
+mod graph;
 mod locate;
 mod merge;
 mod miss;
