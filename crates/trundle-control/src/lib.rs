@@ -34,5 +34,5 @@ pub use safety::{
     SafetyAction, SafetyConfig, SafetyInput, SafetyMemory, SafetyMonitor, SafetyReport, SafetyScan,
     SlowReason, StopReason,
 };
-pub use settling::{SettleConfig, SettleReport, SettleState, Stabilizer};
+pub use settling::{SettleConfig, SettlePreview, SettleReport, SettleState, Stabilizer};
 pub use tracking::{ControlReport, Tracker, TrackingConfig, TrackingError};

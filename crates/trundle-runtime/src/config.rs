@@ -1,4 +1,4 @@
-use crate::{camera_mount::CameraMount, robot::Robot, schedule::Schedule};
+use crate::{camera_mount::CameraMount, last_stage::LastStageConfig, robot::Robot, schedule::Schedule};
 use serde::{Deserialize, Serialize};
 use trundle_control::{FollowerConfig, SafetyConfig};
 use trundle_core::{DifferentialDrive, DriveLimits, Footprint, Invalid, PinholeCamera};
@@ -39,6 +39,8 @@ pub struct RobotConfig {
     pub planning: PlannerConfig,
     /// Following trajectories and settling.
     pub control: FollowerConfig,
+    /// Turns and straight moves onto the goal where it is tight.
+    pub docking: LastStageConfig,
     /// Safety.
     pub safety: SafetyConfig,
 }
@@ -60,6 +62,7 @@ impl Default for RobotConfig {
             mapping: MapperConfig::default(),
             planning: PlannerConfig::default(),
             control: FollowerConfig::default(),
+            docking: LastStageConfig::default(),
             safety: SafetyConfig::default(),
         }
     }

@@ -1,11 +1,12 @@
 //! The whole robot: the loop, its schedule, its states, its configuration.
 //!
 //! [`Robot`] is one value with one `step`: a sensor event in, a [`StepReport`] out. It is the only place where the rooms
-//! (SLAM, mapping, localization, planning, control) meet, as core types. It runs on the data's time: which stage runs
+//! (SLAM, mapping, localization, planning, control, docking) meet, as core types. It runs on the data's time: which stage runs
 //! when follows from the stamps and the [`Schedule`], so a recording fed again gives the same reports.
 
 mod camera_mount;
 mod config;
+mod last_stage;
 mod level_map;
 mod look;
 mod navigator;
@@ -17,6 +18,7 @@ mod state;
 
 pub use camera_mount::CameraMount;
 pub use config::RobotConfig;
+pub use last_stage::LastStageConfig;
 pub use level_map::{LevelMap, level_from_first_camera};
 pub use report::StepReport;
 pub use robot::Robot;

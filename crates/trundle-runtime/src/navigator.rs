@@ -1,5 +1,6 @@
 use crate::{
     config::RobotConfig,
+    last_stage::{LastStage, Progress},
     look::LookAround,
     schedule::Ticker,
     stage::{Stage, StageTimes},
@@ -29,11 +30,12 @@ pub(crate) struct Decision {
 }
 
 /// From a goal and the surroundings to a safe twist: plans when it must, follows, settles, looks around when no way is
-/// known, and asks the safety monitor last.
+/// known, and asks the safety monitor last. Where it is tight, turns and straight moves settle instead.
 #[derive(Debug)]
 pub(crate) struct Navigator {
     planner: Planner,
     follower: Follower,
+    last_stage: LastStage,
     safety: SafetyMonitor,
     check_due: Ticker,
     goal: Option<Pose2>,
@@ -58,6 +60,7 @@ impl Navigator {
         Ok(Self {
             planner: Planner::new(config.planning, footprint, config.limits, config.drive)?,
             follower: Follower::new(config.control.clone(), config.drive, config.limits)?,
+            last_stage: LastStage::new(&config.docking, footprint)?,
             safety: SafetyMonitor::new(config.safety.clone(), footprint)?,
             check_due: Ticker::new(config.schedule.validated()?.check_hz),
             goal: None,
@@ -75,6 +78,7 @@ impl Navigator {
         self.goal = Some(goal);
         self.state = DriveState::Opening;
         self.follower.halt();
+        self.last_stage.reset();
         self.look = LookAround::default();
     }
 
@@ -101,13 +105,14 @@ impl Navigator {
         let goal = self.goal.filter(|_| self.wants_plan(s));
         let replanned = goal.is_some_and(|goal| times.measure(Stage::Planning, || self.replan(goal, s)));
         let follow = times.measure(Stage::Control, || self.follower.step(&s.estimate, s.now));
+        self.note_progress(&follow, s, times);
         let wanted = match &self.state {
             DriveState::Looking { .. } => self.look.twist(s.estimate.pose),
+            DriveState::Docking => times.measure(Stage::Control, || self.dock(s)),
             _ => follow.twist,
         };
         let twist = times.measure(Stage::Safety, || self.guard(wanted, s));
         self.follower.sent(twist);
-        self.note_progress(&follow);
         Decision { twist, replanned }
     }
 
@@ -115,9 +120,8 @@ impl Navigator {
     fn wants_plan(&mut self, s: &Surroundings<'_>) -> bool {
         let started = *self.started.get_or_insert(s.now);
         match &self.state {
-            DriveState::Idle | DriveState::Arrived | DriveState::Stopped { .. } | DriveState::Settling => {
-                false
-            }
+            DriveState::Idle | DriveState::Arrived | DriveState::Stopped { .. } => false,
+            DriveState::Settling | DriveState::Docking => false,
             DriveState::Opening => s.scan.is_some() && s.now - started >= OPENING,
             DriveState::Looking { .. } => self.check_due.due(s.now),
             DriveState::Held { .. } if self.held_since.is_some_and(|since| s.now - since < PATIENCE) => false,
@@ -139,6 +143,9 @@ impl Navigator {
 
     /// Plans from the reference where the robot is on it, else from where it stands; true when there is a new plan.
     fn replan(&mut self, goal: Pose2, s: &Surroundings<'_>) -> bool {
+        if matches!(self.state, DriveState::Held { .. }) && self.turned_to_docking(goal, s) {
+            return false;
+        }
         let from = match (&self.state, self.follower.reference()) {
             (DriveState::Driving, Some(reference)) => (reference.pose, reference.twist),
             _ => (s.estimate.pose, Twist2::ZERO),
@@ -156,7 +163,9 @@ impl Navigator {
                 false
             }
             refused => {
-                self.look_around(why(&refused), s);
+                if !self.turned_to_docking(goal, s) {
+                    self.look_around(why(&refused), s);
+                }
                 false
             }
         }
@@ -170,6 +179,32 @@ impl Navigator {
         } else {
             DriveState::Looking { reason }
         };
+    }
+
+    /// Near the goal, where no path is found or safety holds the robot: by turns and straight moves, if there are such.
+    fn turned_to_docking(&mut self, goal: Pose2, s: &Surroundings<'_>) -> bool {
+        let stands = s.estimate.twist.v.abs() < STANDING;
+        let turned = stands && self.last_stage.begin_if_possible(s, goal);
+        if turned {
+            self.start_docking();
+        }
+        turned
+    }
+
+    fn start_docking(&mut self) {
+        self.follower.halt();
+        self.held_since = None;
+        self.state = DriveState::Docking;
+    }
+
+    /// One step of turns and straight moves.
+    fn dock(&mut self, s: &Surroundings<'_>) -> Twist2 {
+        match self.last_stage.step(s) {
+            Progress::Moving(twist) => return twist,
+            Progress::Settled => self.state = DriveState::Arrived,
+            Progress::GivenUp(reason) => self.state = DriveState::Stopped { reason },
+        }
+        Twist2::ZERO
     }
 
     fn hold(&mut self, reason: &str, now: Stamp) {
@@ -198,6 +233,9 @@ impl Navigator {
                 self.held_since.get_or_insert(s.now);
                 self.state = DriveState::Held { reason: reason.to_string() };
             }
+            (SafetyAction::Stop(_), DriveState::Docking) if twist != Twist2::ZERO => {
+                self.last_stage.interrupted(s);
+            }
             (SafetyAction::Pass | SafetyAction::Slow(_), DriveState::Held { .. })
                 if self.follower.end().is_some() =>
             {
@@ -209,12 +247,25 @@ impl Navigator {
         report.twist
     }
 
+    /// At the end of the trajectory: an arc, or turns and straight moves.
+    fn begin_to_settle(&mut self, s: &Surroundings<'_>) {
+        self.state = DriveState::Settling;
+        let Some(goal) = self.goal else { return };
+        let preview = self.follower.preview_settling(s.estimate.pose, goal);
+        if self.last_stage.takes_over(s, goal, &preview) {
+            self.start_docking();
+        }
+    }
+
     /// What the follower's phase means for the state.
-    fn note_progress(&mut self, follow: &FollowReport) {
+    fn note_progress(&mut self, follow: &FollowReport, s: &Surroundings<'_>, times: &mut StageTimes) {
         let moving = matches!(self.state, DriveState::Driving | DriveState::Settling);
         match follow.phase {
             _ if !moving => {}
             FollowPhase::Settled => self.state = DriveState::Arrived,
+            FollowPhase::Approaching | FollowPhase::Turning if self.state == DriveState::Driving => {
+                times.measure(Stage::Planning, || self.begin_to_settle(s));
+            }
             FollowPhase::Approaching | FollowPhase::Turning => self.state = DriveState::Settling,
             FollowPhase::Tracking if follow.off_track => self.plan = None,
             FollowPhase::Tracking | FollowPhase::Idle => {}

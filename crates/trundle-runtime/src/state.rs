@@ -12,6 +12,8 @@ pub enum DriveState {
     Driving,
     /// Near the goal: taking up the exact pose.
     Settling,
+    /// Near the goal where it is tight: taking up the exact pose by turns on the spot and straight moves.
+    Docking,
     /// No free way is known: turning to see more.
     Looking {
         /// What the planner said.
@@ -39,6 +41,7 @@ impl DriveState {
             Self::Opening => "opening",
             Self::Driving => "driving",
             Self::Settling => "settling",
+            Self::Docking => "docking",
             Self::Looking { .. } => "looking",
             Self::Held { .. } => "held",
             Self::Arrived => "arrived",

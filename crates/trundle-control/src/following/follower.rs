@@ -1,5 +1,5 @@
 use super::{FollowerConfig, clock::ReferenceClock};
-use crate::{Limiter, SettleState, Stabilizer, Tracker, TrackingError};
+use crate::{Limiter, SettlePreview, SettleState, Stabilizer, Tracker, TrackingError};
 use std::fmt;
 use trundle_core::{
     DifferentialDrive, DriveLimits, Invalid, Pose2, PoseEstimate, Stamp, Trajectory, TrajectoryPoint, Twist2,
@@ -122,6 +122,11 @@ impl Follower {
     /// The last pose of the trajectory being followed.
     pub fn end(&self) -> Option<Pose2> {
         self.task.as_ref().map(|task| task.clock.end())
+    }
+
+    /// How settling from `from` at `goal` would go.
+    pub fn preview_settling(&self, from: Pose2, goal: Pose2) -> SettlePreview {
+        self.stabilizer.preview(from, goal)
     }
 
     /// The command for `now`. An estimate that is older is carried forward by its own twist.

@@ -13,7 +13,9 @@
 
 mod config;
 mod polar;
+mod preview;
 mod stabilizer;
 
 pub use config::SettleConfig;
+pub use preview::SettlePreview;
 pub use stabilizer::{SettleReport, SettleState, Stabilizer};

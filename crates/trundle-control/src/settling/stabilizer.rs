@@ -7,7 +7,7 @@ use trundle_core::{DifferentialDrive, DriveLimits, Invalid, Pose2, PoseEstimate,
 #[derive(Debug, Clone, PartialEq)]
 pub struct Stabilizer {
     config: SettleConfig,
-    limiter: Limiter,
+    pub(super) limiter: Limiter,
     state: SettleState,
     gear: Option<Gear>,
     goal: Option<Pose2>,

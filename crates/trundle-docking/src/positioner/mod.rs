@@ -135,6 +135,18 @@ impl Positioner {
         matches!(self.phase, Some(Phase::Settled))
     }
 
+    /// Whether it waits because nothing can be planned.
+    pub fn is_waiting(&self) -> bool {
+        matches!(self.phase, Some(Phase::Wait { .. }))
+    }
+
+    /// Says that the last command was not carried out (a safety stop, say): it measures and decides again from where it
+    /// stands.
+    pub fn interrupted(&mut self, now: Stamp) {
+        self.pending = None;
+        self.phase = Some(measure(now));
+    }
+
     /// One control step, at 10 Hz or more.
     pub fn step(&mut self, input: &PositionerInput<'_>) -> PositionerReport {
         if !input.pose.is_finite() {
