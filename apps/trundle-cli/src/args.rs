@@ -34,6 +34,8 @@ pub enum Command {
     Dock(DockArgs),
     /// The papers' experiments, each with its table and pictures.
     Experiment(ExperimentArgs),
+    /// Train, look at and exchange the words by which places are recognised.
+    Vocabulary(crate::vocabulary::VocabularyArgs),
     /// Print the whole robot file with its defaults, or check one.
     Config(ConfigArgs),
 }

@@ -21,6 +21,7 @@ mod sim;
 mod slam;
 mod slam_output;
 mod view;
+mod vocabulary;
 
 use args::{Cli, Command, Common};
 use clap::Parser;
@@ -55,6 +56,10 @@ fn run(cli: Cli) -> Result<Outcome, Failure> {
         Command::Sim(args) => with_threads(&args.common, || sim::run(&args)),
         Command::Dock(args) => with_threads(&args.common, || dock::run(&args)),
         Command::Experiment(args) => with_threads(args.common(), || experiment::run(&args)),
+        Command::Vocabulary(args) => match args.common() {
+            Some(common) => with_threads(common, || vocabulary::run(&args)),
+            None => vocabulary::run(&args),
+        },
         Command::Config(args) => robot_file::print(&args),
     }
 }

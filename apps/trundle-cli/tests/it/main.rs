@@ -10,3 +10,4 @@ mod program;
 mod sim;
 mod sim_files;
 mod slam;
+mod vocabulary;

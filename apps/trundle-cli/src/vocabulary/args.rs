@@ -1,0 +1,174 @@
+use crate::args::Common;
+use clap::{Args, Subcommand};
+use std::path::PathBuf;
+use std::str::FromStr;
+
+/// `trundle vocabulary`
+#[derive(Debug, Args)]
+#[command(arg_required_else_help = true)]
+pub struct VocabularyArgs {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: VocabularyCommand,
+}
+
+/// What can be done with a vocabulary.
+#[derive(Debug, Subcommand)]
+pub enum VocabularyCommand {
+    /// Train one on recorded images and on views of simulated scenes.
+    Train(TrainArgs),
+    /// Say how large one is.
+    Info(InfoArgs),
+    /// Write one in the text form of DBoW2, which ORB-SLAM programs read.
+    Export(ExportArgs),
+    /// Read one in the text form of DBoW2.
+    Import(ImportArgs),
+    /// Measure how often places are recognised by one or more.
+    Recall(RecallArgs),
+}
+
+impl VocabularyArgs {
+    /// What every command takes, where this one does.
+    pub fn common(&self) -> Option<&Common> {
+        match &self.command {
+            VocabularyCommand::Train(args) => Some(&args.common),
+            VocabularyCommand::Recall(args) => Some(&args.common),
+            _ => None,
+        }
+    }
+}
+
+/// Where images come from.
+#[derive(Debug, Args)]
+pub struct Sources {
+    /// TUM RGB-D folders.
+    pub folders: Vec<PathBuf>,
+    /// Frames of each folder: FIRST-LAST, from 0 [default: all]
+    #[arg(long, value_name = "A-B")]
+    pub frames: Option<Span>,
+    /// A scene to draw views of, built in or a glTF file; may be given again.
+    #[arg(long = "scene", value_name = "NAME|FILE")]
+    pub scenes: Vec<String>,
+    /// Seeds of the furniture and textures of built-in scenes, and of the places: FIRST-LAST.
+    #[arg(long, value_name = "A-B", default_value = "1-1")]
+    pub seeds: Span,
+    /// Views of each scene and seed, at chance places with room, by Kinect V2 and v1 in turn.
+    #[arg(long, value_name = "N", default_value_t = 200, value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    pub views: u32,
+    /// glTF files have z up, not y.
+    #[arg(long)]
+    pub z_up: bool,
+    /// ORB features of an image, at most.
+    #[arg(long, value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    pub features_per_image: u32,
+}
+
+/// `trundle vocabulary train`
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Example: trundle vocabulary train --scene room --scene house --seeds 1-4 --out own.voc"
+)]
+pub struct TrainArgs {
+    /// Where images come from.
+    #[command(flatten)]
+    pub sources: Sources,
+    /// A folder of descriptors that another program made: a file an image, 32 bytes a descriptor.
+    #[arg(long, value_name = "DIR")]
+    pub descriptors: Option<PathBuf>,
+    /// Children of a node.
+    #[arg(long, value_name = "N", default_value_t = 10)]
+    pub branching: usize,
+    /// Levels below the root.
+    #[arg(long, value_name = "N", default_value_t = 5)]
+    pub depth: usize,
+    /// Seed of the clustering.
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub seed: u64,
+    /// The file to write.
+    #[arg(long, value_name = "FILE")]
+    pub out: PathBuf,
+    /// What every command takes.
+    #[command(flatten)]
+    pub common: Common,
+}
+
+/// `trundle vocabulary info`
+#[derive(Debug, Args)]
+pub struct InfoArgs {
+    /// A vocabulary [default: the program's own]
+    pub file: Option<PathBuf>,
+}
+
+/// `trundle vocabulary export`
+#[derive(Debug, Args)]
+#[command(after_help = "Example: trundle vocabulary export --dbow2 trundle_voc.txt")]
+pub struct ExportArgs {
+    /// A vocabulary [default: the program's own]
+    pub file: Option<PathBuf>,
+    /// The text file to write.
+    #[arg(long, value_name = "FILE")]
+    pub dbow2: PathBuf,
+}
+
+/// `trundle vocabulary import`
+#[derive(Debug, Args)]
+#[command(after_help = "Example: trundle vocabulary import ORBvoc.txt --out orb.voc")]
+pub struct ImportArgs {
+    /// A vocabulary in the text form of DBoW2.
+    pub text: PathBuf,
+    /// The file to write.
+    #[arg(long, value_name = "FILE")]
+    pub out: PathBuf,
+}
+
+/// `trundle vocabulary recall`
+#[derive(Debug, Args)]
+#[command(after_help = "Example: trundle vocabulary recall --scene office --seeds 91-93\n\n\
+    A place is recognised when the view most like a second look at it was taken within 0.5 m and 20 deg of it.")]
+pub struct RecallArgs {
+    /// A vocabulary to measure; may be given again [default: the program's own]
+    #[arg(long = "vocabulary", value_name = "FILE")]
+    pub vocabularies: Vec<PathBuf>,
+    /// Where images come from.
+    #[command(flatten)]
+    pub sources: Sources,
+    /// What every command takes.
+    #[command(flatten)]
+    pub common: Common,
+}
+
+/// Numbers from a first to a last one: `FIRST-LAST`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Span {
+    /// The first.
+    pub first: u64,
+    /// The last, which is one of them.
+    pub last: u64,
+}
+
+impl FromStr for Span {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let number = |text: &str| text.trim().parse::<u64>().ok();
+        let (first, last) = text.split_once('-').unwrap_or((text, text));
+        match (number(first), number(last)) {
+            (Some(first), Some(last)) if first <= last => Ok(Self { first, last }),
+            _ => Err(format!("'{text}', expected FIRST-LAST, whole numbers, the last not below the first")),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn spans_are_two_rising_numbers_or_one() {
+        assert_eq!("3-7".parse(), Ok(Span { first: 3, last: 7 }));
+        assert_eq!("5".parse(), Ok(Span { first: 5, last: 5 }));
+        for wrong in ["7-3", "a-3", "", "-1", "1-2-3"] {
+            assert!(wrong.parse::<Span>().unwrap_err().contains("expected FIRST-LAST"), "{wrong}");
+        }
+    }
+}

@@ -1,0 +1,38 @@
+use crate::failure::Failure;
+use std::path::Path;
+use trundle::sim::import::{GltfOptions, gltf};
+use trundle::sim::{Lights, Scene, Stage, World};
+
+/// A world to take pictures of.
+pub struct Scenery {
+    /// Its name, with its seed where it has one.
+    pub name: String,
+    /// What stands there.
+    pub world: World,
+    lights: Lights,
+}
+
+impl Scenery {
+    /// A built-in scene by its name and seed, or a glTF file.
+    ///
+    /// # Errors
+    /// When there is no such scene, or the file is none.
+    pub fn open(name: &str, seed: u64, z_up: bool) -> Result<Self, Failure> {
+        let file = Path::new(name);
+        let extension = file.extension();
+        if extension.is_some_and(|e| e.eq_ignore_ascii_case("glb") || e.eq_ignore_ascii_case("gltf")) {
+            let options = if z_up { GltfOptions::z_up() } else { GltfOptions::default() };
+            let mesh = gltf(file, &options).map_err(|error| Failure::Input(error.to_string()))?;
+            let world = World::with_meshes(Vec::new(), vec![mesh], seed)?;
+            let name = file.file_stem().unwrap_or_default().to_string_lossy();
+            return Ok(Self { name: format!("{name} {seed}"), world, lights: Lights::default() });
+        }
+        let Scene { world, lights, .. } = Scene::by_name(name, seed)?;
+        Ok(Self { name: format!("{name} {seed}"), world, lights })
+    }
+
+    /// What a camera sees of it.
+    pub fn stage(&self) -> Stage<'_> {
+        Stage { world: &self.world, movers: &[], lights: &self.lights }
+    }
+}
