@@ -1,6 +1,7 @@
 use crate::depth::DepthConfig;
 use crate::sensor::Sensor;
-use trundle_core::{DepthImage, Stamp, Vector2};
+use nalgebra::UnitQuaternion;
+use trundle_core::{DepthImage, Stamp, Vector2, Vector3};
 use trundle_optim::InverseDepth;
 use trundle_vision::{Descriptor, FeatureGrid, Features, Keypoint};
 
@@ -17,14 +18,19 @@ pub(crate) struct Frame {
 }
 
 impl Frame {
+    /// Of an image during which the camera turned by `turn` (rad, camera frame) from its first row to its last: features
+    /// are kept where they would be had all rows been taken with the middle one.
     pub fn new(
         stamp: Stamp,
-        features: Features,
+        mut features: Features,
         image: &DepthImage,
-        sensor: &Sensor,
-        depth: &DepthConfig,
+        turn: Vector3,
+        (sensor, depth): (&Sensor, &DepthConfig),
     ) -> Self {
         let depths = features.keypoints.iter().map(|k| depth.measure(image, raw(k))).collect();
+        if turn != Vector3::zeros() {
+            features.keypoints.iter_mut().for_each(|k| unroll(k, turn, sensor));
+        }
         Self::of(stamp, features, depths, sensor)
     }
 
@@ -57,6 +63,52 @@ impl Frame {
     }
 }
 
+/// Moves a feature to where the middle row's camera would have seen it, as a direction: what is not far is off by the way
+/// the camera went meanwhile, which is little.
+fn unroll(keypoint: &mut Keypoint, turn: Vector3, sensor: &Sensor) {
+    let camera = &sensor.camera;
+    let late = f64::from(keypoint.y) / (camera.height() as f64 - 1.0) - 0.5;
+    let ray = camera.unproject(camera.undistort(raw(keypoint)), 1.0);
+    let turned = UnitQuaternion::from_scaled_axis(turn * late) * ray;
+    if let Some(pixel) = camera.project(turned) {
+        let moved = camera.distort(pixel);
+        (keypoint.x, keypoint.y) = (moved.x as f32, moved.y as f32);
+    }
+}
+
 fn raw(keypoint: &Keypoint) -> Vector2 {
     Vector2::new(f64::from(keypoint.x), f64::from(keypoint.y))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::sensor;
+
+    #[test]
+    fn a_rolling_shutter_is_taken_out() {
+        let (sensor, turn) = (sensor(), Vector3::new(0.01, 0.04, -0.02));
+        let image = DepthImage::filled(320, 240, 2.0);
+        let mut features = Features::default();
+        let mut still = Vec::new();
+        for (x, y) in [(-0.4, -0.3), (0.0, 0.0), (0.3, 0.25), (0.1, -0.28)] {
+            let ray = Vector3::new(x, y, 1.0);
+            let mut row = 120.0;
+            // Where the row is read at which the point appears.
+            let mut pixel = Vector2::zeros();
+            for _ in 0..9 {
+                let turned = UnitQuaternion::from_scaled_axis(turn * (row / 239.0 - 0.5)).inverse() * ray;
+                pixel = sensor.camera.project(turned).unwrap();
+                row = pixel.y;
+            }
+            let (x, y) = (pixel.x as f32, pixel.y as f32);
+            features.keypoints.push(Keypoint { x, y, octave: 0, angle: 0.0, response: 1.0 });
+            features.descriptors.push(Descriptor::default());
+            still.push(sensor.camera.project(ray).unwrap());
+        }
+        let frame = Frame::new(Stamp::default(), features, &image, turn, (&sensor, &DepthConfig::default()));
+        for (found, truth) in frame.pixels.iter().zip(&still) {
+            assert!((found - truth).norm() < 1e-3, "{found} is not {truth}");
+        }
+    }
 }

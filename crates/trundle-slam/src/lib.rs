@@ -51,6 +51,7 @@ mod spanning_tree;
 mod testing;
 mod tracker;
 mod trajectory;
+mod triangulation;
 
 pub use closing::{LoopClosure, LoopConfig};
 pub use config::SlamConfig;

@@ -5,6 +5,7 @@ use crate::landmark::Landmark;
 use crate::map::LandmarkMap;
 use crate::search::{Likeness, Projection, search};
 use crate::sensor::Sensor;
+use crate::triangulation::triangulate_new;
 use serde::{Deserialize, Serialize};
 use trundle_core::{Invalid, Pose3};
 use trundle_optim::BundleConfig;
@@ -84,8 +85,8 @@ pub(crate) struct Mapper<'a> {
 }
 
 impl Mapper<'_> {
-    /// Makes `frame` a keyframe that sees the landmarks it was tracked by, gives its other features with a good depth
-    /// landmarks of their own, looks for these in the keyframes around, and begins to refine all of them together.
+    /// Makes `frame` a keyframe that sees the landmarks it was tracked by, gives its other features with a good depth, or
+    /// seen from two sides, landmarks of their own, looks for these in the keyframes around, and begins to refine all of them together.
     pub fn insert(
         &self,
         map: &mut LandmarkMap,
@@ -98,7 +99,8 @@ impl Mapper<'_> {
             map.observe(landmark, keyframe, feature);
         }
         map.enter_tree(keyframe);
-        let new = self.add_landmarks(map, keyframe);
+        let mut new = self.add_landmarks(map, keyframe);
+        new.extend(triangulate_new(map, keyframe, self.sensor, self.likeness));
         self.fuse(map, keyframe, new);
         for id in map.keyframe(keyframe).landmarks.clone().into_iter().flatten() {
             map.refresh(id, self.sensor);

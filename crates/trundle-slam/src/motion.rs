@@ -1,6 +1,6 @@
 use nalgebra::{Matrix6, Vector6};
 use serde::{Deserialize, Serialize};
-use trundle_core::{Invalid, Pose3, Stamp, require_in};
+use trundle_core::{Invalid, Pose3, Stamp, Vector3, require_in};
 use trundle_optim::adjoint;
 
 /// How uncertain a pose becomes while the image does not give it.
@@ -15,11 +15,14 @@ pub struct MotionConfig {
     pub prior_drift: f64,
     /// Without a prior: how fast the camera may move unseen, m/s, and turn, rad/s, 0 or more. Default 1.
     pub unseen: f64,
+    /// Time from the first to the last row of a colour image, s, 0 to 1: a rolling shutter, whose lines lean while the camera
+    /// turns. Default 0, all rows at once; a Kinect v1 takes 0.026 \[Ringaby11\].
+    pub readout: f64,
 }
 
 impl Default for MotionConfig {
     fn default() -> Self {
-        Self { prior_part: 0.05, prior_drift: 0.01, unseen: 1.0 }
+        Self { prior_part: 0.05, prior_drift: 0.01, unseen: 1.0, readout: 0.0 }
     }
 }
 
@@ -39,6 +42,7 @@ impl MotionConfig {
         require_in("motion.prior_part", self.prior_part, "", 0.0, 1.0)?;
         require_in("motion.prior_drift", self.prior_drift, "", 0.0, 1e3)?;
         require_in("motion.unseen", self.unseen, "", 0.0, 1e3)?;
+        require_in("motion.readout", self.readout, "s", 0.0, 1.0)?;
         Ok(self)
     }
 }
@@ -68,10 +72,24 @@ impl Belief {
 
     /// Where the camera should be at `stamp`: moved by the prior, else on at the same velocity, else where it was.
     pub fn predict(&self, stamp: Stamp, prior: Option<Pose3>) -> Pose3 {
+        (self.visual_from_camera * self.motion(stamp, prior)).renormalized()
+    }
+
+    /// How fast the camera should be turning at `stamp`, rad/s, camera frame.
+    pub fn turn_rate(&self, stamp: Stamp, prior: Option<Pose3>) -> Vector3 {
         let elapsed = self.elapsed(stamp);
-        let motion =
-            self.since_last(prior).or_else(|| self.velocity.map(|velocity| Pose3::exp(velocity * elapsed)));
-        (self.visual_from_camera * motion.unwrap_or_default()).renormalized()
+        if elapsed > 0.0 {
+            self.motion(stamp, prior).rotation.scaled_axis() / elapsed
+        } else {
+            Vector3::zeros()
+        }
+    }
+
+    /// The motion since the last frame.
+    fn motion(&self, stamp: Stamp, prior: Option<Pose3>) -> Pose3 {
+        let elapsed = self.elapsed(stamp);
+        let going_on = || self.velocity.map(|velocity| Pose3::exp(velocity * elapsed));
+        self.since_last(prior).or_else(going_on).unwrap_or_default()
     }
 
     /// The frame at `stamp` was located. `before` is where the last frame was, as the map has it now, if it was located.

@@ -59,9 +59,8 @@ impl Sensor {
 
     /// The octave whose pixel comes nearest to `scale`, in ratio.
     pub fn octave_of(&self, scale: f64) -> u8 {
-        let ratio = |octave: &usize| (self.scale_factors[*octave] / scale).ln().abs();
-        let best = (0..self.scale_factors.len()).min_by(|a, b| ratio(a).total_cmp(&ratio(b)));
-        best.unwrap_or(0) as u8
+        // Nearer to the coarser one when above their geometric mean.
+        self.scale_factors.windows(2).take_while(|pair| scale * scale > pair[0] * pair[1]).count() as u8
     }
 }
 

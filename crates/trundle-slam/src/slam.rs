@@ -162,7 +162,8 @@ impl RgbdSlam {
         prior: Option<Pose3>,
     ) -> TrackReport {
         let prior = prior.filter(Pose3::is_finite);
-        let frame = Frame::new(stamp, features, depth, &self.sensor, &self.config.depth);
+        let turn = self.belief.turn_rate(stamp, prior) * self.config.motion.readout;
+        let frame = Frame::new(stamp, features, depth, turn, (&self.sensor, &self.config.depth));
         self.check.note_frame(&frame, depth, prior, &self.sensor, &self.config.depth);
         self.refine(self.config.mapping.work_per_frame);
         match self.locate(&frame, depth, prior) {

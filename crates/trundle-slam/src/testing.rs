@@ -5,7 +5,7 @@ use crate::frame::Frame;
 use crate::ids::KeyframeId;
 use crate::map::LandmarkMap;
 use crate::sensor::Sensor;
-use trundle_core::{DepthImage, PinholeCamera, Pose3, Stamp};
+use trundle_core::{DepthImage, PinholeCamera, Pose3, Stamp, Vector3};
 use trundle_vision::{Descriptor, Features, Keypoint};
 
 /// A small camera without distortion.
@@ -26,7 +26,8 @@ fn frame_over(depth: f32, features: usize) -> Frame {
     let descriptors = (0..features).map(|i| Descriptor([i as u64; 4])).collect();
     let image = DepthImage::filled(320, 240, depth);
     let features = Features { keypoints, descriptors };
-    Frame::new(Stamp::default(), features, &image, &sensor(), &DepthConfig::default())
+    let (sensor, turn) = (sensor(), Vector3::zeros());
+    Frame::new(Stamp::default(), features, &image, turn, (&sensor, &DepthConfig::default()))
 }
 
 /// A frame without depth.
