@@ -116,6 +116,12 @@ pub struct SlamArgs {
     /// Roll of the first camera to its right, deg, for the map.
     #[arg(long, value_name = "DEG", default_value_t = 0.0, allow_hyphen_values = true)]
     pub roll: f64,
+    /// Begin with the visual map that an earlier run wrote (its visual.map): where the camera is in it is found out
+    #[arg(long, value_name = "FILE")]
+    pub map: Option<PathBuf>,
+    /// Only locate the camera in the map given: it stays as it is
+    #[arg(long, requires = "map")]
+    pub localise: bool,
     /// Seed of the random sampling.
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,

@@ -20,6 +20,7 @@ mod settings;
 mod sim;
 mod slam;
 mod slam_output;
+mod slam_recorder;
 mod view;
 mod vocabulary;
 

@@ -1,11 +1,12 @@
+use crate::slam_recorder::SlamRecorder;
 use crate::{Outcome, args::SlamArgs, console, failure::Failure, slam_output};
 use indicatif::ProgressBar;
 use std::time::Instant;
-use trundle::core::{Pose3, RgbdImage, Stamp};
-use trundle::io::{CameraModel, EncodedEvent, EncodedRgbd, OutputFolder, TumSequence};
+use trundle::core::{PinholeCamera, Pose3, RgbdImage, Stamp};
+use trundle::io::{CameraModel, EncodedRgbd, OutputFolder, TumSequence};
 use trundle::localization::camera_motion;
 use trundle::runtime::{LevelMap, RobotConfig, Stage, StageTimes, level_from_first_camera};
-use trundle::slam::{RgbdSlam, SlamConfig};
+use trundle::slam::{Mode, RgbdSlam, SlamConfig, TrackReport};
 
 /// What tracking a sequence left.
 pub struct SlamRun {
@@ -17,6 +18,8 @@ pub struct SlamRun {
     pub counts: crate::logbook::TrackCounts,
     /// The last frame that could be read.
     pub last_image: Option<RgbdImage>,
+    /// How many suspicions about the settings were told.
+    warned: usize,
     /// Frames that could not be read, in words.
     pub unreadable: Vec<String>,
     /// Wall-clock time of the stages.
@@ -42,19 +45,18 @@ fn track(
     sequence: &TumSequence,
     folder: &OutputFolder,
 ) -> Result<SlamRun, Failure> {
-    let level_from_camera = level_from_first_camera(args.height, args.tilt, args.roll)?;
     let robot = RobotConfig::default();
-    let config = SlamConfig { seed: args.seed, ..SlamConfig::default() };
     let mut run = SlamRun {
-        slam: RgbdSlam::new(camera.camera, config)?.starting_at(level_from_camera),
+        slam: begin(args, camera.camera)?,
         map: LevelMap::new(camera.camera, robot.scan, robot.schedule.map_hz)?,
         counts: Default::default(),
         last_image: None,
+        warned: 0,
         unreadable: Vec::new(),
         times: StageTimes::default(),
         seconds: 0.0,
     };
-    let mut recorder = folder.recorder("recording.mcap")?;
+    let mut recorder = SlamRecorder::new(folder.recorder("recording.mcap")?);
     let odometry = OdometryPrior::new(sequence);
     let frames = args.frames.map_or(sequence.len(), |frames| sequence.len().min(frames as usize));
     let bar = console::bar(args.common.quiet, frames);
@@ -62,20 +64,37 @@ fn track(
     for i in 0..frames {
         match sequence.load(i) {
             Ok(image) => {
-                recorder.record_event(&EncodedEvent::Rgbd(encoded(&image)?))?;
-                run.step(image, &odometry);
+                let encoded = encoded(&image)?;
+                let report = run.step(image, &odometry);
+                recorder.note(encoded, &report, &run.slam)?;
+                bar.suspend(|| run.warn_of_settings());
             }
             Err(error) => run.unreadable.push(report(&bar, &error.to_string())),
         }
         bar.inc(1);
     }
     bar.finish_and_clear();
-    recorder.finish()?;
+    run.slam.finish_refining();
+    recorder.finish(&run.slam)?;
     if let (None, Some(first)) = (&run.last_image, run.unreadable.first()) {
         return Err(Failure::Input(format!("{}: no frame can be read; {first}", args.dir.display())));
     }
     run.seconds = start.elapsed().as_secs_f64();
     Ok(run)
+}
+
+/// An empty map, or the one that was asked for.
+fn begin(args: &SlamArgs, camera: PinholeCamera) -> Result<RgbdSlam, Failure> {
+    let config = SlamConfig { seed: args.seed, ..SlamConfig::default() };
+    let Some(file) = &args.map else {
+        let level_from_camera = level_from_first_camera(args.height, args.tilt, args.roll)?;
+        return Ok(RgbdSlam::new(camera, config)?.starting_at(level_from_camera));
+    };
+    let bytes = std::fs::read(file).map_err(|e| Failure::Input(format!("{}: {e}", file.display())))?;
+    let slam = RgbdSlam::load(&bytes, camera, config);
+    let mut slam = slam.map_err(|e| Failure::Input(format!("{}: {e}", file.display())))?;
+    slam.set_mode(if args.localise { Mode::Localisation } else { Mode::Mapping });
+    Ok(slam)
 }
 
 fn encoded(image: &RgbdImage) -> Result<EncodedRgbd, Failure> {
@@ -93,7 +112,15 @@ impl SlamRun {
         self.counts.ok + self.counts.weak > 0 && self.slam.landmarks().next().is_some()
     }
 
-    fn step(&mut self, image: RgbdImage, odometry: &OdometryPrior) {
+    /// Says of each setting that is newly suspected why.
+    fn warn_of_settings(&mut self) {
+        for suspicion in &self.slam.suspicions()[self.warned..] {
+            console::warn(&suspicion.to_string());
+        }
+        self.warned = self.slam.suspicions().len();
+    }
+
+    fn step(&mut self, image: RgbdImage, odometry: &OdometryPrior) -> TrackReport {
         let since = self.last_image.as_ref().map(RgbdImage::stamp);
         let prior = since.and_then(|since| odometry.motion(since, image.stamp()));
         let report = self.times.measure(Stage::Slam, || self.slam.step(&image, prior));
@@ -103,6 +130,7 @@ impl SlamRun {
             self.times.measure(Stage::Scan, || map.note(&image, report.visual_from_camera));
         }
         self.last_image = Some(image);
+        report
     }
 }
 

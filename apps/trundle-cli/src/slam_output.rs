@@ -1,4 +1,5 @@
 use crate::run_table::{stage_rows, wall_clock};
+use crate::slam_recorder::Links;
 use crate::{Outcome, args::SlamArgs, console, failure::Failure, picture, slam::SlamRun};
 use trundle::core::{OccupancyGrid, Pose3, Stamp, Vector3};
 use trundle::eval::{
@@ -7,7 +8,10 @@ use trundle::eval::{
 };
 use trundle::io::{OutputFolder, Summary, TumSequence, trajectory_text, write_map};
 use trundle::runtime::RobotConfig;
-use trundle::viz::{Card, Chart, Color, Figure, RunReport, Table, Verdict, trajectory_picture};
+use trundle::viz::{
+    Card, Chart, Color, Figure, RunReport, Table, Verdict, VisualMapScene, trajectory_picture,
+    visual_map_picture,
+};
 
 /// How the trajectory compares with ground truth.
 struct Judged {
@@ -30,6 +34,7 @@ pub fn write(
     let grid = run.map.draw(&trajectory, RobotConfig::default().mapping)?;
     write_map(&folder, "map", &grid)?;
     folder.write("trajectory.txt", trajectory_text(&trajectory).as_bytes())?;
+    folder.write("visual.map", &run.slam.save())?;
     if let Some(truth) = sequence.ground_truth() {
         folder.write("groundtruth.txt", trajectory_text(truth).as_bytes())?;
     }
@@ -82,6 +87,7 @@ fn rows(sequence: &TumSequence, run: &SlamRun, judged: Option<&Judged>) -> Vec<V
         ),
         row("keyframes", run.slam.keyframes().count().to_string()),
         row("landmarks", run.slam.landmarks().count().to_string()),
+        row("loops closed", run.slam.loops().len().to_string()),
     ];
     if let Some(Judged { absolute, relative, .. }) = judged {
         let s = &absolute.statistics;
@@ -111,6 +117,8 @@ fn summary(args: &SlamArgs, sequence: &TumSequence, run: &SlamRun, judged: Optio
         .set("frames_lost", c.lost)
         .set("keyframes", run.slam.keyframes().count())
         .set("landmarks", run.slam.landmarks().count())
+        .set("loops_closed", run.slam.loops().len())
+        .set("warnings", run.slam.suspicions().iter().map(ToString::to_string).collect::<Vec<_>>())
         .set("ate_rmse_m", judged.map(|j| j.absolute.statistics.rmse))
         .set("ate_max_m", judged.map(|j| j.absolute.statistics.max))
         .set("ate_pairs", judged.map(|j| j.absolute.pairs.len()))
@@ -143,10 +151,29 @@ fn report(
         estimated_path: trajectory.iter().map(|(_, pose)| pose.to_pose2()).collect(),
         camera: run.last_image.as_ref().map(|image| picture::camera_view(image, run.slam.last_features())),
         depth: run.last_image.as_ref().map(|image| image.depth().clone()),
+        figures: vec![visual_map(run, trajectory)],
         charts,
         tables: vec![rows.iter().cloned().fold(Table::new("The sequence", ["what", "value"]), Table::row)],
         ..RunReport::default()
     }
+}
+
+/// Landmarks, keyframes and what ties them.
+fn visual_map(run: &SlamRun, trajectory: &[(Stamp, Pose3)]) -> Figure {
+    let Links { covisible, loops } = Links::of(&run.slam);
+    let landmarks: Vec<Vector3> = run.slam.landmarks().collect();
+    let keyframes: Vec<Vector3> = run.slam.keyframes().map(|(_, _, pose)| pose.translation).collect();
+    let way: Vec<Vector3> = trajectory.iter().map(|(_, pose)| pose.translation).collect();
+    let (png, legend) = visual_map_picture(&VisualMapScene {
+        landmarks: &landmarks,
+        way: &way,
+        keyframes: &keyframes,
+        covisible: &covisible,
+        loops: &loops,
+    });
+    let caption = "Points the camera recognises, the keyframes from which they were seen, and what ties these: a thin line \
+                   where two see the same points, a thick one where a place was recognised after a long way.";
+    Figure::png("The visual map", &png).legend(legend).caption(caption).wide()
 }
 
 fn cards(run: &SlamRun, judged: Option<&Judged>) -> Vec<Card> {
