@@ -33,11 +33,14 @@ impl Found {
         Some(Self { fix, visible, by_map, relocalised: false })
     }
 
-    /// From a keyframe to the map; to be believed, it takes more landmarks that agree, and most of those matched.
+    /// From a keyframe to the map; to be believed, it takes more landmarks that agree, most of those matched, and a good
+    /// part of those that should be in view: a picture that hangs in two rooms is not the room.
     pub fn from_keyframe(tracker: &Tracker, keyframe: KeyframeId) -> Option<Self> {
         let rough = tracker.by_words(keyframe)?;
         let (fix, visible) = tracker.by_map(&rough);
-        let sound = fix.is_sound(tracker.config.weak_inliers) && fix.is_convincing();
+        let expected = tracker.config.recognised_part * visible.len() as f64;
+        let is_seen = fix.solution.inlier_count as f64 >= expected;
+        let sound = fix.is_sound(tracker.config.weak_inliers) && fix.is_convincing() && is_seen;
         sound.then_some(Self { fix, visible, by_map: true, relocalised: true })
     }
 

@@ -9,18 +9,33 @@ use crate::report::MapId;
 use crate::tracker::Tracker;
 use nalgebra::Matrix6;
 use std::cell::OnceCell;
-use trundle_core::{DepthImage, Pose3};
+use trundle_core::{DepthImage, Pose3, Stamp};
 
 /// How far off a belief may be: the chi-square of six at the chance of five standard deviations.
 const MOST_CHI2: f64 = 37.0;
 /// Standard deviation of a belief whatever it says: m and rad.
 const LEAST_SIGMA: f64 = 0.1;
+/// Faster than this no camera moves that nobody tells about: m/s, a brisk walk, and rad/s, 200 deg.
+const FASTEST: (f64, f64) = (2.0, 3.5);
+/// What it may be off besides: m and rad.
+const LEAST_REACH: f64 = 0.3;
 
 /// A frame found in a map.
 #[derive(Debug)]
 pub(super) struct Sighting {
     pub map: MapId,
     pub found: Found,
+}
+
+/// How far a camera can be from where it is believed to be.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Reach {
+    /// Nothing is known of where it is.
+    Anywhere,
+    /// Told how it moved: as far as that is uncertain.
+    Told,
+    /// As far as it gets in so many seconds.
+    For(f64),
 }
 
 impl RgbdSlam {
@@ -34,22 +49,22 @@ impl RgbdSlam {
     ) -> Option<Sighting> {
         let words = OnceCell::new();
         let predicted = self.belief.predict(frame.stamp, prior);
-        let is_first = self.belief.stamp.is_none();
-        let is_blind = self.blind || !self.placed || (prior.is_none() && !is_first);
+        let reach = self.reach(frame.stamp, prior);
         let here = self.tracker(&self.active, frame, depth, &words);
         let tracked = self.last.as_ref().and_then(|last| {
             let reference = last.anchored.reference.map(|id| here.map.resolve(id).0);
             Found::from_last(&here, last.anchor(here.map), reference, predicted)
         });
-        let is_believed = |found: &Found| is_blind || self.may_be_at(predicted, found.pose());
+        let is_believed = |found: &Found| self.may_be(reach, predicted, found.pose());
         if let Some(found) = tracked.filter(is_believed) {
             return Some(Sighting { map: self.active.id, found });
         }
         let recognised = relocalise(&here);
-        if let Some(found) = self.believable(recognised, predicted, is_blind) {
+        if let Some(found) = self.believable(recognised, predicted, reach) {
             return Some(Sighting { map: self.active.id, found });
         }
-        let other = self.resting.get(self.misses % self.resting.len().max(1)).filter(|_| is_blind)?;
+        let other =
+            self.resting.get(self.misses % self.resting.len().max(1)).filter(|_| reach != Reach::Told)?;
         let found = unrivalled(relocalise(&self.tracker(other, frame, depth, &words)))?;
         Some(Sighting { map: other.id, found })
     }
@@ -73,12 +88,24 @@ impl RgbdSlam {
         }
     }
 
-    /// Which of the places that look right to believe, for a camera that should be at `predicted`: one as near as the
-    /// uncertainty lets it be, or one said by as many frames in a row as it takes to be at a loss. Wheels that know where
-    /// they went outweigh a room that looks like another one, not a robot that was carried.
-    fn believable(&mut self, recognised: Vec<Found>, predicted: Pose3, is_blind: bool) -> Option<Found> {
+    /// What the camera can have moved by since it was last located.
+    fn reach(&self, now: Stamp, prior: Option<Pose3>) -> Reach {
+        let is_first = self.belief.stamp.is_none();
+        let elapsed = self.last.as_ref().map_or(f64::INFINITY, |last| (now - last.anchored.stamp).max(0.0));
+        match prior {
+            _ if !self.placed => Reach::Anywhere,
+            None if is_first => Reach::Told,
+            Some(_) if !self.blind => Reach::Told,
+            _ => Reach::For(elapsed),
+        }
+    }
+
+    /// Which of the places that look right to believe, for a camera that should be at `predicted`: one in reach, or one
+    /// said by as many frames in a row as it takes to be at a loss. Wheels that know where they went outweigh a room that
+    /// looks like another one, not a robot that was carried.
+    fn believable(&mut self, recognised: Vec<Found>, predicted: Pose3, reach: Reach) -> Option<Found> {
         let said_before = self.doubt.take();
-        let is_near = |found: &Found| is_blind || self.may_be_at(predicted, found.pose());
+        let is_near = |found: &Found| self.may_be(reach, predicted, found.pose());
         let (near, far): (Vec<Found>, Vec<Found>) = recognised.into_iter().partition(is_near);
         if !near.is_empty() {
             return unrivalled(near);
@@ -89,9 +116,22 @@ impl RgbdSlam {
         (times >= self.config.tracking.patience).then_some(found)
     }
 
-    /// Whether the uncertainty of the belief lets the camera be at `pose`, by its chi-square.
-    fn may_be_at(&self, predicted: Pose3, pose: Pose3) -> bool {
-        let off = (predicted.inverse() * pose).log();
+    /// Whether a camera that should be at `predicted` can be at `pose`.
+    fn may_be(&self, reach: Reach, predicted: Pose3, pose: Pose3) -> bool {
+        let offset = predicted.inverse() * pose;
+        match reach {
+            Reach::Anywhere => true,
+            Reach::Told => self.is_uncertain_by(offset),
+            Reach::For(elapsed) => {
+                offset.translation.norm() <= LEAST_REACH + FASTEST.0 * elapsed
+                    && offset.angle() <= LEAST_REACH + FASTEST.1 * elapsed
+            }
+        }
+    }
+
+    /// Whether the uncertainty of the belief lets the camera be off by so much, by its chi-square.
+    fn is_uncertain_by(&self, offset: Pose3) -> bool {
+        let off = offset.log();
         let covariance = self.belief.covariance + Matrix6::identity() * LEAST_SIGMA.powi(2);
         let information = covariance.try_inverse();
         information.is_some_and(|information| off.dot(&(information * off)) <= MOST_CHI2)
