@@ -1,5 +1,5 @@
 #[cfg(target_arch = "x86_64")]
-use super::wide::{BLOCK, avx2, block, block_mut, starts};
+use super::avx2::{self, BLOCK, block, block_mut, starts};
 use trundle_core::GrayImage;
 
 /// Weights of a Gaussian of standard deviation 2 px over 7 px, in 1/256: middle first. BRIEF compares single pixels, so

@@ -1,12 +1,12 @@
 //! FAST-9 by exact scores: a pixel is a corner if nine contiguous ones of the sixteen on a circle of radius 3 around it
 //! are all brighter, or all darker, than it by more than a threshold \[Rosten06\]. The score is the highest threshold
-//! below which that holds. It comes from minima and maxima alone, so that sixteen and more pixels are done at a time, and
+//! below which that holds. It comes from minima and maxima alone, so that 32 pixels are done at a time, and
 //! serves both thresholds and the suppression of non-maxima.
 
 use super::OrbConfig;
-use super::patch::BORDER;
 #[cfg(target_arch = "x86_64")]
-use super::wide::{BLOCK, avx2, block, block_mut, starts};
+use super::avx2::{self, BLOCK, block, block_mut, starts};
+use super::patch::BORDER;
 use trundle_core::GrayImage;
 
 /// A corner of a level.

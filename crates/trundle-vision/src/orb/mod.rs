@@ -12,6 +12,8 @@
 //! | theta = atan2(m_01, m_10) | `Keypoint::angle` | rad |
 //! | S_theta = R_theta S | `PATTERN` turned in `describe` | px of the level |
 
+#[cfg(target_arch = "x86_64")]
+mod avx2;
 mod blur;
 mod brief;
 mod config;
@@ -22,7 +24,6 @@ mod orientation;
 mod patch;
 mod resize;
 mod subpixel;
-mod wide;
 
 pub use config::OrbConfig;
 

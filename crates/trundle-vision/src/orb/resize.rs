@@ -1,5 +1,5 @@
 #[cfg(target_arch = "x86_64")]
-use super::wide::{avx2, block, block_mut, starts};
+use super::avx2::{self, block, block_mut, starts};
 use trundle_core::GrayImage;
 
 /// Bilinear shrinking in fixed point, pixel areas aligned: the corners of both images coincide.
@@ -27,6 +27,7 @@ const SAMPLES: usize = 8;
 /// Four neighbouring columns: from [`SAMPLES`] samples on from `first`, which bytes make the pairs of samples between which each
 /// is interpolated, and their weights.
 #[derive(Debug, Clone, Copy)]
+#[cfg_attr(not(target_arch = "x86_64"), expect(dead_code, reason = "only AVX2 takes four at a time"))]
 struct Quad {
     first: u32,
     bytes: [u8; 16],
@@ -119,6 +120,8 @@ fn mix_rows_by_avx2(upper: &[u8], lower: &[u8], weight: u16, row: &mut [i16]) {
 
 /// Interpolates within a row and leaves the fractions.
 fn shrink_row(row: &[i16], columns: &[Tap], quads: &[Quad], to: &mut [u8]) {
+    #[cfg(not(target_arch = "x86_64"))]
+    let _ = quads;
     #[cfg(target_arch = "x86_64")]
     if std::arch::is_x86_feature_detected!("avx2") {
         // SAFETY: the processor has the one feature that the function is compiled for.
