@@ -1,9 +1,11 @@
 //! Hybrid A* [Dolgov10] with Reeds-Shepp arcs [Reeds90], written plainly: a baseline for the table.
 //!
-//! Poses are expanded by arcs of least radius and straights, forward and backward, in cells of 4 cm and 6 deg. Pieces are
-//! driven from rest to rest where the direction changes, with the same pause as between the motions of docking. Close to
-//! the goal a Reeds-Shepp word is tried: all words of the form curve-straight-curve and curve-curve-curve.
+//! Poses are expanded by arcs of least radius and straights, forward and backward, in cells of 4 cm and 6 deg. From every pose
+//! a Reeds-Shepp word to the goal is tried: all words of the form curve-straight-curve and curve-curve-curve. A base whose
+//! turn rate cannot leap stops where the curvature does, so that every piece runs from rest to rest; where the direction
+//! changes there is the same pause as between the motions of docking.
 
+use crate::dynamic_window::is_near;
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BinaryHeap};
 use std::f64::consts::{PI, TAU};
@@ -17,13 +19,11 @@ const STEP: f64 = 0.05;
 const MOST_NODES: usize = 20_000;
 
 /// An arc: curvature (1/m) and signed way (m).
-type Piece = (f64, f64);
+pub type Piece = (f64, f64);
 
-/// The time of a path to the goal, s, and whether it touches anything; `None` when none was found.
-pub fn plan(problem: &Problem, scene: &Scene, limits: &MotionLimits) -> Option<f64> {
-    let free = |pose: &Pose2| {
-        scene.clearance(&problem.footprint, pose, 1e-3).is_none_or(|(distance, _)| distance > 0.0)
-    };
+/// A path to the goal that keeps `kept` (m) from everything; `None` when none was found.
+pub fn plan(problem: &Problem, scene: &Scene, limits: &MotionLimits, kept: f64) -> Option<Vec<Piece>> {
+    let free = |pose: &Pose2| !is_near(&problem.footprint, scene, pose, kept);
     let mut nodes: Vec<(Pose2, f64, usize, Piece)> = vec![(problem.start, 0.0, 0, (0.0, 0.0))];
     let mut seen: BTreeMap<(i32, i32, i32), f64> = BTreeMap::new();
     let mut queue = BinaryHeap::from([(Reverse(0_u64), 0_usize)]);
@@ -40,7 +40,7 @@ pub fn plan(problem: &Problem, scene: &Scene, limits: &MotionLimits) -> Option<f
         if let Some(word) = reeds_shepp(&pose, &problem.goal, &free) {
             let mut pieces = pieces_to(&nodes, index);
             pieces.extend(word);
-            return Some(time_of(&pieces, limits));
+            return Some(joined(&pieces));
         }
         for curvature in [-1.0 / RADIUS, 0.0, 1.0 / RADIUS] {
             for way in [STEP, -STEP] {
@@ -72,7 +72,8 @@ fn key(pose: &Pose2) -> (i32, i32, i32) {
     ((pose.x / 0.04).round() as i32, (pose.y / 0.04).round() as i32, (pose.theta / 0.105).round() as i32)
 }
 
-fn roll(pose: &Pose2, curvature: f64, way: f64) -> Pose2 {
+/// Where a base at `pose` stands after `way` metres of an arc.
+pub fn roll(pose: &Pose2, curvature: f64, way: f64) -> Pose2 {
     pose.advance(trundle_core::Twist2::new(way, way * curvature), 1.0)
 }
 
@@ -86,21 +87,22 @@ fn pieces_to(nodes: &[(Pose2, f64, usize, Piece)], mut index: usize) -> Vec<Piec
     pieces
 }
 
-/// Rest to rest between changes of direction; a curve no faster than the turn rate allows.
-fn time_of(pieces: &[Piece], limits: &MotionLimits) -> f64 {
-    let mut time = -limits.switch_time;
-    let mut i = 0;
-    while i < pieces.len() {
-        let sign = pieces[i].1.signum();
-        let run = pieces[i..].iter().take_while(|piece| piece.1.signum() == sign).count();
-        let slow = |piece: &Piece| (limits.turn_rate / piece.0.abs().max(1e-9)).min(limits.speed);
-        let cruise: f64 = pieces[i..i + run].iter().map(|piece| piece.1.abs() / slow(piece)).sum();
-        let way: f64 = pieces[i..i + run].iter().map(|piece| piece.1.abs()).sum();
-        time += (cruise + limits.speed / limits.acceleration).min(cruise + limits.drive_time(way))
-            + limits.switch_time;
-        i += run;
+/// Neighbours of one arc as one piece.
+fn joined(pieces: &[Piece]) -> Vec<Piece> {
+    let mut list: Vec<Piece> = Vec::new();
+    for &(curvature, way) in pieces {
+        match list.last_mut() {
+            Some(last) if last.0 == curvature && last.1 * way > 0.0 => last.1 += way,
+            _ => list.push((curvature, way)),
+        }
     }
-    time.max(0.0)
+    list
+}
+
+/// The time of a path, s: every piece from rest to rest, a pause where the direction changes.
+pub fn time_of(pieces: &[Piece], limits: &MotionLimits) -> f64 {
+    let turns = pieces.windows(2).filter(|pair| pair[0].1 * pair[1].1 < 0.0).count();
+    pieces.iter().map(|piece| limits.drive_time(piece.1)).sum::<f64>() + turns as f64 * limits.switch_time
 }
 
 /// The shortest free word of three pieces, each a curve of least radius or a straight, all ways round.

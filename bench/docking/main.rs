@@ -12,13 +12,14 @@ mod clock;
 mod dynamic_window;
 mod hybrid;
 mod judge;
+mod race;
 mod table;
 #[path = "../../crates/trundle-docking/tests/it/world.rs"]
 mod world;
 
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
-use table::Row;
+use table::{Row, Track};
 use trundle_docking::corridor::{Problem, generate, parse, write};
 use trundle_docking::{Certificate, Docker, DockingConfig, Method, MotionLimits, Plan};
 
@@ -27,13 +28,14 @@ fn main() {
     let mut rows = vec![optimal(&problems, number("--boxes", 50_000))];
     rows.push(by_paper(&problems));
     let few = &problems[..number("--baselines", 200).min(problems.len())];
-    rows.push(by_window(few));
     rows.push(by_hybrid(few));
     table::print(&rows);
     if let Some(path) = argument("--list") {
         std::fs::write(path, table::list(&problems, &rows[0])).expect("a file that can be written");
     }
-    closed_loop(&problems, &rows[0], number("--loops", 500));
+    let solvable: Vec<&Problem> =
+        problems.iter().zip(&rows[0].times).filter(|(_, time)| time.is_some()).map(|(p, _)| p).collect();
+    closed_loop(&solvable, number("--loops", 500), number("--baselines", 200));
 }
 
 fn problems() -> Vec<Problem> {
@@ -80,29 +82,13 @@ fn by_paper(problems: &[Problem]) -> Row {
     plan_all("[Hong24]", problems, &Docker::new(config).expect("valid"))
 }
 
-/// Driven step by step, so that its "planning" is a whole run.
-fn by_window(problems: &[Problem]) -> Row {
-    let mut row = Row::new("dynamic window");
-    for problem in problems {
-        let scene = problem.scene().expect("valid");
-        let ((time, contact), ms) =
-            clock::timed(|| dynamic_window::drive(problem, &scene, &MotionLimits::default()));
-        row.planning_ms.push(ms);
-        if contact {
-            row.bad.push(problem.name.clone());
-        } else if time.is_none() {
-            row.unsolved.push(problem.name.clone());
-        }
-        row.times.push(time.filter(|_| !contact));
-    }
-    row
-}
-
 fn by_hybrid(problems: &[Problem]) -> Row {
     let mut row = Row::new("hybrid A*, Reeds-Shepp");
     for problem in problems {
         let scene = problem.scene().expect("valid");
-        let (time, ms) = clock::timed(|| hybrid::plan(problem, &scene, &MotionLimits::default()));
+        let limits = MotionLimits::default();
+        let (path, ms) = clock::timed(|| hybrid::plan(problem, &scene, &limits, 0.0));
+        let time = path.map(|path| hybrid::time_of(&path, &limits));
         row.planning_ms.push(ms);
         if time.is_none() {
             row.unsolved.push(problem.name.clone());
@@ -112,30 +98,22 @@ fn by_hybrid(problems: &[Problem]) -> Row {
     row
 }
 
-/// The first `most` solvable problems with noise and lag.
-fn closed_loop(problems: &[Problem], row: &Row, most: usize) {
-    let solvable: Vec<_> =
-        problems.iter().zip(&row.times).filter(|(_, time)| time.is_some()).take(most).collect();
-    let (mut good, mut contacts, mut motions, mut ratios) = (0, 0, 0, Vec::new());
-    for (i, (problem, time)) in solvable.iter().enumerate() {
-        let run = world::run(problem, &DockingConfig::default(), i as u64);
-        good += usize::from(run.settled && run.within && !run.contact);
-        contacts += usize::from(run.contact);
-        motions += run.motions;
-        ratios.push(run.time / time.unwrap_or(f64::NAN));
-        if !(run.settled && run.within && !run.contact) {
-            println!(
-                "closed loop {}: settled {}, within {}, contact {}",
-                problem.name, run.settled, run.within, run.contact
-            );
+/// Solvable problems with noise and lag: the first `most` by the positioner, the first `few` by the others.
+fn closed_loop(problems: &[&Problem], most: usize, few: usize) {
+    let paper = DockingConfig { method: Method::Paper, ..DockingConfig::default() };
+    let run = |docking: &DockingConfig, problem: &Problem, i: usize| world::run(problem, docking, i as u64);
+    let scene = |problem: &Problem| problem.scene().expect("valid");
+    let mut tracks = vec![Track::new("trundle, optimal"), Track::new("[Hong24]")];
+    tracks.extend([Track::new("dynamic window"), Track::new("hybrid A*, Reeds-Shepp")]);
+    for (i, &problem) in problems.iter().enumerate().take(most) {
+        tracks[0].note(problem, run(&DockingConfig::default(), problem, i));
+        if i < few {
+            tracks[1].note(problem, run(&paper, problem, i));
+            tracks[2].note(problem, race::by_window(problem, &scene(problem), i as u64));
+            tracks[3].note(problem, race::by_hybrid(problem, &scene(problem), i as u64));
         }
     }
-    println!(
-        "closed loop with noise: {good} of {} within 1 cm and 1 deg, {contacts} with contact; {:.2} motions each, {:.2} times the planned time in the median",
-        solvable.len(),
-        motions as f64 / solvable.len().max(1) as f64,
-        table::part(&ratios, 0.5)
-    );
+    table::print_closed_loop(&tracks);
 }
 
 fn plan_all(name: &'static str, problems: &[Problem], docker: &Docker) -> Row {

@@ -1,5 +1,6 @@
 //! The table of the benchmark, and the list behind it.
 
+use crate::world::Run;
 use std::fmt::Write;
 use trundle_docking::corridor::Problem;
 
@@ -40,6 +41,55 @@ impl Row {
             bounds: Vec::new(),
         }
     }
+}
+
+/// What one method did in closed loop.
+pub struct Track {
+    name: &'static str,
+    runs: Vec<(String, Run)>,
+}
+
+impl Track {
+    /// An empty track.
+    pub fn new(name: &'static str) -> Self {
+        Self { name, runs: Vec::new() }
+    }
+
+    /// Notes a run.
+    pub fn note(&mut self, problem: &Problem, run: Run) {
+        self.runs.push((problem.name.clone(), run));
+    }
+}
+
+/// Prints the closed loops; times are compared with the first track's, where both settled.
+pub fn print_closed_loop(tracks: &[Track]) {
+    let good = |run: &Run| run.settled && run.within && !run.contact;
+    println!(
+        "\n| closed loop | problems | within 1 cm and 1 deg | with contact | time / first row's, median (p95) |"
+    );
+    println!("|---|---|---|---|---|");
+    for track in tracks {
+        let count = track.runs.len();
+        let settled = track.runs.iter().filter(|(_, run)| good(run)).count();
+        let contacts = track.runs.iter().filter(|(_, run)| run.contact).count();
+        let pairs = track.runs.iter().zip(&tracks[0].runs).filter(|((_, a), (_, b))| good(a) && good(b));
+        let ratios: Vec<f64> = pairs.map(|((_, a), (_, b))| a.time / b.time).collect();
+        println!(
+            "| {} | {count} | {settled} ({:.1} %) | {contacts} | {:.2} ({:.2}) |",
+            track.name,
+            100.0 * settled as f64 / count.max(1) as f64,
+            part(&ratios, 0.5),
+            part(&ratios, 0.95)
+        );
+    }
+    for (name, run) in tracks[0].runs.iter().filter(|(_, run)| !good(run)) {
+        println!(
+            "{} {name}: settled {}, within {}, contact {}, {:.1} s, {} motions",
+            tracks[0].name, run.settled, run.within, run.contact, run.time, run.motions
+        );
+    }
+    let motions: usize = tracks[0].runs.iter().map(|(_, run)| run.motions).sum();
+    println!("{}: {:.2} motions each", tracks[0].name, motions as f64 / tracks[0].runs.len().max(1) as f64);
 }
 
 /// Prints the rows; times are compared with those of the first row, problem by problem.
