@@ -86,7 +86,7 @@ def ate(truth, estimate, limit=0.02):
 def run(core, command):
     """Seconds of CPU that a pinned command took, user and system."""
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    subprocess.run(["taskset", "-c", str(core), *map(str, command)], check=True, stdout=subprocess.DEVNULL)
+    subprocess.run(["taskset", "-c", str(core), *map(str, command)], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     return after.ru_utime - before.ru_utime + after.ru_stime - before.ru_stime
 
