@@ -23,8 +23,8 @@ pub(crate) struct GlobalBundle {
     bundle: MapBundle,
     /// The next landmark to take up, by index; `None` once the solver runs.
     next: Option<usize>,
-    /// Landmarks that each two keyframes share, by their places.
-    shared: BTreeMap<(usize, usize), u16>,
+    /// Landmarks that each two keyframes share: of places a < b at b (b - 1) / 2 + a.
+    shared: Vec<u16>,
     /// The place of the keyframe that holds each one's part of the map in place.
     holds: Vec<usize>,
 }
@@ -32,7 +32,13 @@ pub(crate) struct GlobalBundle {
 impl GlobalBundle {
     pub fn of(map: &LandmarkMap) -> Self {
         let bundle = MapBundle::of(map, map.keyframe_ids().map(|id| (id, true)));
-        Self { bundle, next: Some(0), ..Self::default() }
+        let count = bundle.keyframes().count();
+        Self {
+            bundle,
+            next: Some(0),
+            shared: vec![0; count * count.saturating_sub(1) / 2],
+            holds: Vec::new(),
+        }
     }
 
     /// Goes on for about `work` units; whether it is done.
@@ -50,7 +56,7 @@ impl GlobalBundle {
             if seen > 0 {
                 self.count_shared();
             }
-            left = left.saturating_sub(WORK_GATHER * seen + 1);
+            left = left.saturating_sub((WORK_GATHER + seen) * seen + 1);
             index += 1;
         }
         self.next = Some(index).filter(|index| *index < bound);
@@ -65,7 +71,9 @@ impl GlobalBundle {
         let seers: Vec<usize> = self.bundle.newest_seers().collect();
         for (i, a) in seers.iter().enumerate() {
             for b in &seers[i + 1..] {
-                *self.shared.entry((*a.min(b), *a.max(b))).or_insert(0) += 1;
+                let (low, high) = (*a.min(b), *a.max(b));
+                let count = &mut self.shared[high * (high - 1) / 2 + low];
+                *count = count.saturating_add(1);
             }
         }
     }
@@ -79,8 +87,9 @@ impl GlobalBundle {
             }
             i
         };
-        for ((a, b), _) in self.shared.iter().filter(|(_, count)| **count >= SHARED) {
-            let (a, b) = (find(&self.holds, *a), find(&self.holds, *b));
+        let pairs = (0..self.holds.len()).flat_map(|b| (0..b).map(move |a| (a, b)));
+        for ((a, b), _) in pairs.zip(&self.shared).filter(|(_, count)| **count >= SHARED) {
+            let (a, b) = (find(&self.holds, a), find(&self.holds, b));
             self.holds[a.max(b)] = a.min(b);
         }
         self.holds = (0..self.holds.len()).map(|i| find(&self.holds, i)).collect();
@@ -151,6 +160,98 @@ impl GlobalBundle {
             let offset = holding.visual_from_camera.inverse() * keyframe.visual_from_camera;
             let held = carried(&holding.covariance, offset);
             map.set_covariances(*id, held + whole * factor, held + ground * factor);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::frame::Frame;
+    use crate::testing::sensor;
+    use nalgebra::Vector6;
+    use trundle_core::Stamp;
+    use trundle_optim::InverseDepth;
+    use trundle_vision::{Descriptor, Features, Keypoint};
+
+    fn along(x: f64) -> Pose3 {
+        Pose3::exp(Vector6::new(x, 0.0, 0.0, 0.0, -0.1 * x, 0.0))
+    }
+
+    fn points() -> Vec<Vector3> {
+        (0..30)
+            .map(|i| Vector3::new(f64::from(i % 6) * 0.2 - 0.5, f64::from(i / 6) * 0.2 - 0.4, 2.0))
+            .collect()
+    }
+
+    /// What a camera sees of the points, exactly.
+    fn view(pose: Pose3) -> Frame {
+        let (sensor, mut features, mut depths) = (sensor(), Features::default(), Vec::new());
+        for point in points() {
+            let p = pose.inverse().transform(point);
+            let pixel = sensor.camera.project(p).unwrap();
+            let (x, y) = (pixel.x as f32, pixel.y as f32);
+            features.keypoints.push(Keypoint { x, y, octave: 0, angle: 0.0, response: 1.0 });
+            features.descriptors.push(Descriptor::default());
+            depths.push(Some(InverseDepth { value: 1.0 / p.z, sigma: 0.003 }));
+        }
+        Frame::of(Stamp::default(), features, depths, &sensor)
+    }
+
+    /// Five keyframes in a row, the third off, and two that hang together with nothing else.
+    fn bent() -> (LandmarkMap, Vec<KeyframeId>, Pose3) {
+        let (mut map, off) =
+            (LandmarkMap::default(), Pose3::exp(Vector6::new(0.03, -0.02, 0.01, 0.0, 0.02, 0.01)));
+        let mut ids = Vec::new();
+        for i in 0..7 {
+            let truth = along(0.1 * f64::from(i));
+            ids.push(map.add_keyframe(view(truth), if i == 2 { truth * off } else { truth }));
+        }
+        for group in [&ids[..5], &ids[5..]] {
+            for (feature, point) in points().into_iter().enumerate() {
+                let landmark = map.add_landmark(point);
+                group.iter().for_each(|id| assert!(map.observe(landmark, *id, feature)));
+            }
+            group.iter().for_each(|id| map.enter_tree(*id));
+        }
+        (map, ids, off)
+    }
+
+    #[test]
+    fn what_comes_meanwhile_goes_along_and_slices_change_nothing() {
+        let run = |work: usize| {
+            let (mut map, ids, off) = bent();
+            let (sensor, config) = (sensor(), BundleConfig { covariances: true, ..BundleConfig::default() });
+            map.set_covariance(ids[5], nalgebra::Matrix6::identity() * 0.04);
+            let mut global = GlobalBundle::of(&map);
+            global.advance(&map, &sensor, &config, 1);
+            // A keyframe that saw its place by the bent one, and a point that only it sees.
+            let child =
+                map.add_keyframe(view(along(0.25)), along(0.2) * off * along(0.2).inverse() * along(0.25));
+            let own = map.add_landmark(
+                (along(0.2) * off * along(0.2).inverse()).transform(Vector3::new(0.1, 0.2, 2.5)),
+            );
+            map.observe(own, child, 3);
+            map.hang(child, ids[2]);
+            while !global.advance(&map, &sensor, &config, work) {}
+            global.apply(&mut map);
+            (map, ids, child, own)
+        };
+        let (map, ids, child, own) = run(usize::MAX);
+        for (i, id) in ids.iter().enumerate() {
+            let gap = along(0.1 * i as f64).inverse() * map.keyframe(*id).visual_from_camera;
+            assert!(gap.log().norm() < 1e-4, "{id}: {gap:?}");
+        }
+        let gap = along(0.25).inverse() * map.keyframe(child).visual_from_camera;
+        assert!(gap.log().norm() < 1e-4, "the child is off: {gap:?}");
+        assert!((map.landmark(own).unwrap().position - Vector3::new(0.1, 0.2, 2.5)).norm() < 1e-4);
+        let variance = |id: KeyframeId| map.keyframe(id).covariance.trace();
+        assert!(variance(ids[0]) == 0.0 && variance(ids[4]) > 0.0 && variance(ids[4]) < 1e-2);
+        assert!(variance(ids[6]) > 0.2, "it is as uncertain as what it hangs on: {}", variance(ids[6]));
+        let (sliced, ..) = run(500);
+        for (id, keyframe) in map.keyframes() {
+            assert_eq!(keyframe.visual_from_camera, sliced.keyframe(id).visual_from_camera);
+            assert_eq!(keyframe.covariance, sliced.keyframe(id).covariance);
         }
     }
 }

@@ -14,9 +14,10 @@ pub struct KeyframeConfig {
     pub min_translation: f64,
     /// Nor turned less than this against it, rad, above 0. Default 0.05 (3 deg): a tenth of the picture at most.
     pub min_rotation: f64,
-    /// Always when farther than this from every keyframe, m. Default 0.3: the smaller detail then looks different.
+    /// When farther than this from every keyframe, m, and half of `new_ratio` is new; always when twice as far. Default 0.3:
+    /// the smaller detail then looks different.
     pub max_translation: f64,
-    /// Or turned more than this against it, rad. Default 0.35 (20 deg): a third of the picture is new.
+    /// The same for what it is turned against it, rad. Default 0.35 (20 deg): a third of the picture is new.
     pub max_rotation: f64,
     /// When more than this part of the features with depth is where the map has no landmark to show, 0 to 1. Default 0.25.
     /// Judged by where landmarks should be, not by which were found: a blurred frame finds few, and is the worst
@@ -71,8 +72,11 @@ impl KeyframeConfig {
         }
         let all = with_depth(frame).count();
         let thin = tracked < self.min_tracked && all >= 2 * tracked;
-        let new = new_features(frame, shown) as f64 > self.new_ratio * all as f64;
-        thin || new || beyond_all(self.max_translation, self.max_rotation)
+        let new = new_features(frame, shown) as f64 / all.max(1) as f64;
+        let (far, turned) = (self.max_translation, self.max_rotation);
+        thin || new > self.new_ratio
+            || (new > 0.5 * self.new_ratio && beyond_all(far, turned))
+            || beyond_all(2.0 * far, 2.0 * turned)
     }
 }
 
@@ -135,8 +139,11 @@ mod tests {
         assert!(!wants(0.1, 0.1, 60, 100), "blurred, but the view is well known");
         assert!(wants(0.1, 0.0, 60, 60), "a part of the view is new");
         assert!(wants(0.1, 0.0, 40, 100), "about to get lost");
-        assert!(wants(0.0, 0.4, 100, 100), "turned far");
-        assert!(wants(0.4, 0.0, 100, 100), "moved far");
+        assert!(!wants(0.4, 0.4, 100, 100), "farther, but the view is well known");
+        assert!(wants(0.0, 0.4, 100, 70), "turned far");
+        assert!(wants(0.4, 0.0, 100, 70), "moved far");
+        assert!(wants(0.0, 0.8, 100, 100), "turned very far");
+        assert!(wants(0.7, 0.0, 100, 100), "moved very far");
     }
 
     #[test]

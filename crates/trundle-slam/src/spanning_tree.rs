@@ -74,7 +74,8 @@ impl LandmarkMap {
         self.forgotten.get(&id).copied().unwrap_or((id, Pose3::identity()))
     }
 
-    fn hang(&mut self, child: KeyframeId, parent: KeyframeId) {
+    /// Makes a keyframe the child of another one.
+    pub fn hang(&mut self, child: KeyframeId, parent: KeyframeId) {
         self.keyframe_mut(child).tree.parent = Some(parent);
         self.keyframe_mut(parent).tree.children.push(child);
     }

@@ -3,6 +3,7 @@ use super::verify::Recognised;
 use crate::ids::KeyframeId;
 use crate::map::LandmarkMap;
 use crate::mapping::MappingConfig;
+use crate::motion::carried;
 use crate::search::Likeness;
 use crate::sensor::Sensor;
 use nalgebra::Matrix6;
@@ -33,8 +34,16 @@ impl Correction<'_> {
         }
         self.fuse(map, keyframe);
         map.tie(self.found.candidate, keyframe);
-        map.set_covariance(keyframe, map.keyframe(self.found.candidate).covariance);
+        self.trust(map, keyframe);
         map.begin_refining_all();
+    }
+
+    /// The keyframe is known as well as the place that it recognised, and as it was found there.
+    fn trust(&self, map: &mut LandmarkMap, keyframe: KeyframeId) {
+        let (place, own) = (map.keyframe(self.found.candidate), map.keyframe(keyframe));
+        let offset = place.visual_from_camera.inverse() * own.visual_from_camera;
+        let ground = carried(&place.ground, offset);
+        map.set_covariances(keyframe, ground + self.found.covariance, ground);
     }
 
     /// Every keyframe tied to the one before it and to those it shares many landmarks with, as they stand to each other

@@ -8,6 +8,7 @@ use crate::relocalisation::{Placed, unrivalled};
 use crate::search::{Projection, search};
 use crate::sensor::Sensor;
 use crate::tracker::TrackingConfig;
+use nalgebra::Matrix6;
 use std::collections::BTreeSet;
 use trundle_core::Pose3;
 
@@ -31,6 +32,8 @@ pub(crate) struct Recognised {
     pub candidate: KeyframeId,
     /// Where the frame's camera is by the old landmarks.
     pub visual_from_camera: Pose3,
+    /// Of that, as far as the old landmarks are right.
+    pub covariance: Matrix6<f64>,
     /// Points of the old place found in it, landmarks or depths.
     pub points: usize,
     /// The landmarks among them.
@@ -59,10 +62,10 @@ impl Verifier<'_> {
         let points = fix.solution.inlier_count;
         let agreement = points as f64 / fix.matches.len().max(1) as f64;
         let enough = points >= self.config.min_points && agreement >= self.config.min_agreement;
-        let believed = enough && fix.solution.covariance().is_some();
+        let covariance = fix.solution.covariance().filter(|_| enough)?;
         let landmarks = fix.inliers().filter_map(|m| m.landmark).collect();
         let visual_from_camera = fix.visual_from_camera();
-        believed.then_some(Recognised { candidate, visual_from_camera, points, landmarks })
+        Some(Recognised { candidate, visual_from_camera, covariance, points, landmarks })
     }
 
     /// The pose by what looks alike in both.
