@@ -3,7 +3,8 @@ use crate::ids::{KeyframeId, LandmarkId};
 use crate::refine::Fix;
 use crate::search::Projection;
 use crate::tracker::Tracker;
-use trundle_core::Pose3;
+use std::collections::{BTreeMap, BTreeSet};
+use trundle_core::{Pose3, Vector2};
 
 /// How a frame was located.
 #[derive(Debug)]
@@ -33,13 +34,14 @@ impl Found {
         Some(Self { fix, visible, by_map, relocalised: false })
     }
 
-    /// From a keyframe to the map; to be believed, it takes more landmarks that agree, most of those matched, and a good
-    /// part of those that should be in view: a picture that hangs in two rooms is not the room.
+    /// From a keyframe to the map; to be believed, it takes more landmarks that agree, most of those matched, and some in a
+    /// good part of the view: a picture that hangs in two rooms is not the room.
     pub fn from_keyframe(tracker: &Tracker, keyframe: KeyframeId) -> Option<Self> {
         let rough = tracker.by_words(keyframe)?;
         let (fix, visible) = tracker.by_map(&rough);
-        let expected = tracker.config.recognised_part * visible.len() as f64;
-        let is_seen = fix.solution.inlier_count as f64 >= expected;
+        let found = fix.inliers().map(|m| tracker.frame.pixels[m.feature]);
+        let is_seen =
+            seen_part(visible.iter().map(|(_, seen)| seen.pixel), found) >= tracker.config.recognised_part;
         let sound = fix.is_sound(tracker.config.weak_inliers) && fix.is_convincing() && is_seen;
         sound.then_some(Self { fix, visible, by_map: true, relocalised: true })
     }
@@ -47,5 +49,37 @@ impl Found {
     /// Points that agree.
     pub fn inliers(&self) -> usize {
         self.fix.solution.inlier_count
+    }
+}
+
+/// Side of the parts of the image that are looked at one by one, px.
+const CELL_PX: f64 = 40.0;
+/// Landmarks that should be in a part before it is missed that none is found.
+const EXPECTED: usize = 3;
+
+/// In which part of the image's parts that should show landmarks there are some, 0 to 1. How many of them are found depends
+/// on how many features an image has, where they are does not.
+fn seen_part(expected: impl Iterator<Item = Vector2>, found: impl Iterator<Item = Vector2>) -> f64 {
+    let cell = |pixel: Vector2| ((pixel.x / CELL_PX).floor() as i32, (pixel.y / CELL_PX).floor() as i32);
+    let mut counts: BTreeMap<(i32, i32), usize> = BTreeMap::new();
+    expected.for_each(|pixel| *counts.entry(cell(pixel)).or_default() += 1);
+    counts.retain(|_, count| *count >= EXPECTED);
+    let seen: BTreeSet<(i32, i32)> = found.map(cell).filter(|cell| counts.contains_key(cell)).collect();
+    seen.len() as f64 / counts.len().max(1) as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_seen_in_one_corner_is_not_the_view() {
+        let grid = |columns: usize| {
+            (0..columns * 100).map(|i| Vector2::new((i / 10) as f64, (i % 10) as f64 * 20.0))
+        };
+        assert_eq!(seen_part(grid(40), grid(40)), 1.0);
+        assert_eq!(seen_part(grid(40), grid(12)), 0.3);
+        assert_eq!(seen_part(grid(12), grid(40)), 1.0, "what is not expected does not count");
+        assert_eq!(seen_part(grid(0), grid(40)), 0.0);
     }
 }

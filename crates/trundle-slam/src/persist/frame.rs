@@ -31,15 +31,20 @@ pub(super) fn read(bytes: &mut Reader, sensor: &Sensor) -> Result<Frame, MapFile
         features.descriptors.push(bytes.descriptor()?);
         depths.push(read_depth(bytes)?);
     }
-    Ok(Frame::of(stamp, features, depths, sensor))
+    let frame = Frame::of(stamp, features, depths, sensor);
+    let is_rectified = frame.pixels.iter().all(|pixel| pixel.iter().all(|v| v.is_finite()));
+    bytes.require(is_rectified, "rectified place of a keypoint", "infinite", || "finite".to_owned())?;
+    Ok(frame)
 }
 
 fn read_keypoint(bytes: &mut Reader, sensor: &Sensor) -> Result<Keypoint, MapFileError> {
     let [x, y, angle, response] = [bytes.f32()?, bytes.f32()?, bytes.f32()?, bytes.f32()?];
     let octave = bytes.u8()?;
-    let pixel = trundle_core::Vector2::new(f64::from(x), f64::from(y));
-    bytes.require(sensor.camera.contains(pixel), "place of a keypoint", format!("({x}, {y})"), || {
-        "a pixel of the image".to_owned()
+    // What a rolling shutter saw at the rim may be kept beyond it.
+    let (width, height) = (sensor.camera.width() as f32, sensor.camera.height() as f32);
+    let is_near = (-width..=2.0 * width).contains(&x) && (-height..=2.0 * height).contains(&y);
+    bytes.require(is_near, "place of a keypoint", format!("({x}, {y})"), || {
+        "in or near the image".to_owned()
     })?;
     let plain = angle.is_finite() && response.is_finite();
     bytes.require(plain, "angle or response of a keypoint", angle + response, || "finite".to_owned())?;
