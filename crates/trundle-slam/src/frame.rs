@@ -49,11 +49,6 @@ impl Frame {
         self.pixels.len()
     }
 
-    /// When feature `i` was read: from -0.5, the first row, to 0.5, the last one.
-    pub fn lateness(&self, i: usize, sensor: &Sensor) -> f64 {
-        lateness(&self.features.keypoints[i], sensor)
-    }
-
     pub fn octave(&self, i: usize) -> u8 {
         self.features.keypoints[i].octave
     }
@@ -72,18 +67,13 @@ impl Frame {
 /// the camera went meanwhile, which is little.
 fn unroll(keypoint: &mut Keypoint, turn: Vector3, sensor: &Sensor) {
     let camera = &sensor.camera;
-    let late = lateness(keypoint, sensor);
+    let late = f64::from(keypoint.y) / (camera.height() as f64 - 1.0) - 0.5;
     let ray = camera.unproject(camera.undistort(raw(keypoint)), 1.0);
     let turned = UnitQuaternion::from_scaled_axis(turn * late) * ray;
     if let Some(pixel) = camera.project(turned) {
         let moved = camera.distort(pixel);
         (keypoint.x, keypoint.y) = (moved.x as f32, moved.y as f32);
     }
-}
-
-/// When a feature's row was read: from -0.5, the first, to 0.5, the last.
-fn lateness(keypoint: &Keypoint, sensor: &Sensor) -> f64 {
-    f64::from(keypoint.y) / (sensor.camera.height() as f64 - 1.0) - 0.5
 }
 
 fn raw(keypoint: &Keypoint) -> Vector2 {

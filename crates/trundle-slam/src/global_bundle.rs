@@ -151,7 +151,7 @@ impl GlobalBundle {
     }
 
     fn set_covariances(&self, map: &mut LandmarkMap) {
-        let factor = self.bundle.variance_factor();
+        let factor = self.bundle.variance_factor().max(1.0);
         let keyframes: Vec<KeyframeId> = self.bundle.keyframes().map(|(id, _)| id).collect();
         for (place, id) in keyframes.iter().enumerate().filter(|(place, _)| self.holds[*place] != *place) {
             let Some((whole, ground)) = self.bundle.covariances(place) else { continue };

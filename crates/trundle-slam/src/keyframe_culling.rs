@@ -91,7 +91,7 @@ mod tests {
 
     #[test]
     fn a_place_keeps_a_keyframe() {
-        let config = KeyframeConfig { min_translation: 0.01, max_translation: 0.02, ..Default::default() };
+        let config = KeyframeConfig { min_translation: 0.01, max_translation: 0.015, ..Default::default() };
         let (mut map, ids) = crowd(&[]);
         assert_eq!(cull_keyframes(&mut map, ids[11], &config), 0);
     }

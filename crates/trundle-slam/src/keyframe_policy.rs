@@ -84,7 +84,7 @@ impl KeyframeConfig {
     /// Whether the place of a keyframe would not ask for another one if it were forgotten.
     pub(crate) fn is_covered_without(&self, map: &LandmarkMap, id: KeyframeId) -> bool {
         let pose = map.keyframe(id).visual_from_camera;
-        is_near_one(map, pose, (self.max_translation, self.max_rotation), Some(id))
+        is_near_one(map, pose, (2.0 * self.max_translation, 2.0 * self.max_rotation), Some(id))
     }
 }
 

@@ -43,7 +43,6 @@ mod refine;
 mod refinement;
 mod relocalisation;
 mod report;
-mod rolling_shutter;
 mod search;
 mod sensor;
 mod slam;

@@ -18,7 +18,6 @@ use crate::map::LandmarkMap;
 use crate::mapping::Mapper;
 use crate::motion::Belief;
 use crate::report::{MapId, Mode, SeenFeature, TrackReport, Tracking};
-use crate::rolling_shutter::RollingShutter;
 use crate::sensor::Sensor;
 use crate::trajectory::Anchored;
 use std::sync::Arc;
@@ -54,8 +53,6 @@ pub struct RgbdSlam {
     /// A place of the active map that it recognised farther off than it should be.
     surprise: Option<Claim<()>>,
     history: Vec<Past>,
-    /// What the images say of the camera's rolling shutter.
-    shutter: RollingShutter,
     /// How refining the map moved the camera, before the frame at hand.
     refined: Option<Pose3>,
     seen: Vec<SeenFeature>,
@@ -104,7 +101,6 @@ impl RgbdSlam {
             recognition: None,
             surprise: None,
             history: vec![],
-            shutter: RollingShutter::default(),
             refined: None,
             seen: vec![],
             check: SettingsCheck::default(),
@@ -166,7 +162,7 @@ impl RgbdSlam {
         prior: Option<Pose3>,
     ) -> TrackReport {
         let prior = prior.filter(Pose3::is_finite);
-        let turn = self.belief.turn_rate(stamp, prior) * self.readout();
+        let turn = self.belief.turn_rate(stamp, prior) * self.config.motion.readout;
         let frame = Frame::new(stamp, features, depth, turn, (&self.sensor, &self.config.depth));
         self.check.note_frame(&frame, depth, prior, &self.sensor, &self.config.depth);
         self.refine(self.config.mapping.work_per_frame);
@@ -174,12 +170,6 @@ impl RgbdSlam {
             Some(sighting) => self.accept(frame, sighting),
             None => self.miss(frame, depth, prior),
         }
-    }
-
-    /// How long the camera takes from the first to the last row of an image, s: as configured, else as far as it has been found
-    /// out.
-    pub fn readout(&self) -> f64 {
-        self.config.motion.readout.unwrap_or_else(|| self.shutter.readout())
     }
 
     /// Does all that is left of refining the map, which `step` does in slices between frames: before it is saved, say, or

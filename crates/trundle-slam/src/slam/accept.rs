@@ -29,9 +29,6 @@ impl RgbdSlam {
         }
         self.show(&frame, &landmarks);
         let mut pose = found.fix.visual_from_camera();
-        if let Some(rate) = self.belief.turned_at(frame.stamp, pose, before) {
-            self.shutter.note(self.readout(), rate, &frame, &found.fix, &self.sensor);
-        }
         let mut reference = self.reference(&landmarks);
         let mut covariance = self.covariance(&found, reference);
         let kept = self.map_by(&frame, &found, &landmarks, covariance);
