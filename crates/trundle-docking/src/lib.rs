@@ -1,6 +1,7 @@
 //! Fine positioning in narrow spaces: rotations and straight moves, footprint-exact.
 
 mod bound;
+mod cloud;
 mod config;
 pub mod corridor;
 mod flood;

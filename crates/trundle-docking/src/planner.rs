@@ -1,3 +1,4 @@
+use crate::cloud::{MANY_POINTS, plan_in_cloud};
 use crate::config::{DockingConfig, Method};
 use crate::geometry::Hull;
 use crate::manoeuvre::Manoeuvre;
@@ -9,7 +10,7 @@ use thiserror::Error;
 use trundle_core::{Footprint, Invalid, Pose2};
 
 /// Pieces of a scene above which the bound is sought with fewer boxes.
-const MANY_PIECES: usize = 1000;
+const MANY_PIECES: usize = 200;
 
 /// Where nothing is found and nothing disproved, manoeuvres may reach this much farther.
 const WIDER: f64 = 2.0;
@@ -134,7 +135,15 @@ impl Docker {
         Task { start, goal, limits: self.config.limits, reach: self.config.reach }
     }
 
+    /// Among all points, or among a few of them first where there are many.
     fn plan_with(&self, footprint: &Footprint, scene: &Scene, task: &Task, margin: f64) -> Plan {
+        if scene.points().len() <= MANY_POINTS || self.config.method == Method::Paper {
+            return self.plan_among(footprint, scene, task, margin);
+        }
+        plan_in_cloud(footprint, scene, margin, |few| self.plan_among(footprint, few, task, margin))
+    }
+
+    fn plan_among(&self, footprint: &Footprint, scene: &Scene, task: &Task, margin: f64) -> Plan {
         let (config, limits) = (&self.config, self.config.limits);
         let mut space = Space::new(footprint, margin, scene);
         let effort = Effort {
@@ -222,5 +231,5 @@ impl Docker {
 /// The part of a scene that a manoeuvre may meet.
 fn around(footprint: &Footprint, scene: &Scene, task: &Task) -> Scene {
     let half = task.half() + footprint.circumscribed_radius() + 0.1;
-    scene.around(task.center(), half, &Hull::new(footprint, 0.0))
+    scene.around(task.center(), half)
 }

@@ -130,7 +130,10 @@ impl LastStage {
     fn manoeuvre_time(&self, s: &Surroundings<'_>, goal: Pose2) -> Option<f64> {
         let scene = self.drawn(s, &goal);
         match self.docker.plan(&self.footprint, &scene, s.estimate.pose, goal) {
-            Ok(Plan::Found(solution)) => Some(solution.manoeuvre.duration()),
+            // The pose is measured before the first motion and after the last one too.
+            Ok(Plan::Found(solution)) => {
+                Some(solution.manoeuvre.duration() + 2.0 * self.config.positioner.measure_time)
+            }
             Ok(Plan::Impossible(_)) | Err(_) => None,
         }
     }

@@ -63,9 +63,14 @@ fn bad_tasks_are_refused_with_their_reason() {
     assert!(said(&[text(&map), "--from=1,1,0", "--to=3.02,0.5,0"]).contains("the goal overlaps obstacle"));
     assert!(said(&[text(&file), "--to=40,30,0"]).contains("plan a path there first"));
     assert!(said(&[text(&file), "--problem=x"]).contains("it has no problem 'x'"));
+    let shaped = |corners: &str| said(&[text(&file), "--footprint", corners]);
+    assert!(shaped("0.3,0.2 -0.3,0.2 0,0.1 -0.3,-0.2 0.3,-0.2").contains("expected convex"));
+    assert!(shaped("0,0 1,0 2,0").contains("area is 0 m^2"));
     assert!(said(&["nowhere.txt"]).contains("nowhere.txt: cannot read it"));
     fs::write(&file, PROBLEM.replace("start -0.1 0 90", "start NaN 0 90")).unwrap();
     assert!(said(&[text(&file)]).contains("line 4"));
+    fs::write(&file, format!("{PROBLEM}\nwall 0 0 1 NaN\n")).unwrap();
+    assert!(said(&[text(&file)]).contains("finite numbers"));
 }
 
 #[test]

@@ -149,6 +149,9 @@ impl Hull {
         if self.core_holds(piece.a) || self.core_holds(piece.b) {
             return 0.0;
         }
+        if piece.is_point() {
+            return self.edges.iter().map(|e| e.side.distance(piece.a)).fold(f64::INFINITY, f64::min);
+        }
         self.edges.iter().map(|e| e.side.distance_to(piece)).fold(f64::INFINITY, f64::min)
     }
 

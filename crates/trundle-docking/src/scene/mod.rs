@@ -2,6 +2,7 @@
 
 mod outline;
 mod points;
+mod sparse;
 mod thin;
 
 use crate::geometry::{Hull, Segment};
@@ -95,9 +96,8 @@ impl Scene {
         Self { solids: solids.collect(), pieces, points: PointIndex::new(&[]) }
     }
 
-    /// The part of the scene within a box of half side `half` (m) about `center`, without the points that no motion of
-    /// `hull` can touch first.
-    pub(crate) fn around(&self, center: Vector2, half: f64, hull: &Hull) -> Self {
+    /// The part of the scene within a box of half side `half` (m) about `center`.
+    pub(crate) fn around(&self, center: Vector2, half: f64) -> Self {
         let pieces = self
             .pieces
             .iter()
@@ -112,8 +112,49 @@ impl Scene {
         });
         let near = |corners: &[Vector2]| corners.iter().any(|c| (c - center).amax() <= 2.0 * half);
         let solids = self.solids.iter().filter(|(corners, _)| near(corners) || holds(corners, center));
-        let points = PointIndex::new(&thin::thin(points, hull));
-        Self { pieces, points, solids: solids.cloned().collect() }
+        Self { pieces, points: PointIndex::new(&points), solids: solids.cloned().collect() }
+    }
+
+    /// The same without the points that no motion of `hull` can touch first.
+    pub(crate) fn thinned(&self, hull: &Hull) -> Self {
+        let points = thin::thin(self.points.all().to_vec(), hull);
+        Self { points: PointIndex::new(&points), ..self.clone_without_points() }
+    }
+
+    /// The same with fewer points: in each square of `side` (m) those that stand out farthest.
+    pub(crate) fn sparse(&self, side: f64) -> Self {
+        Self {
+            points: PointIndex::new(&sparse::sparse(self.points.all(), side)),
+            ..self.clone_without_points()
+        }
+    }
+
+    /// The same with more points; those that it has are not added twice.
+    pub(crate) fn with_points(&self, more: Vec<(Vector2, u32)>) -> Self {
+        let mut points: Vec<(Vector2, u32)> = self.points.all().iter().copied().chain(more).collect();
+        points.sort_unstable_by_key(|(_, number)| *number);
+        points.dedup_by_key(|(_, number)| *number);
+        Self { points: PointIndex::new(&points), ..self.clone_without_points() }
+    }
+
+    /// Each blocker, and of the points near it those that stand out farthest in each square of `side` (m).
+    pub(crate) fn points_near(&self, blockers: &[Blocker], reach: f64, side: f64) -> Vec<(Vector2, u32)> {
+        let mut found = Vec::new();
+        for blocker in blockers {
+            found.push((blocker.at, blocker.obstacle as u32));
+            let mut near = Vec::new();
+            self.points.visit(blocker.at, Vector2::repeat(reach), |p, number| {
+                if (p - blocker.at).amax() <= reach {
+                    near.push((p, number));
+                }
+            });
+            found.extend(sparse::sparse(&near, side));
+        }
+        found
+    }
+
+    fn clone_without_points(&self) -> Self {
+        Self { pieces: self.pieces.clone(), points: PointIndex::new(&[]), solids: self.solids.clone() }
     }
 
     /// Calls `visit` with every piece that reaches into a box about `center`.
@@ -172,7 +213,7 @@ impl Scene {
     }
 
     /// The points, for drawing, map frame, m.
-    pub fn points(&self) -> impl Iterator<Item = Vector2> + '_ {
+    pub fn points(&self) -> impl ExactSizeIterator<Item = Vector2> + '_ {
         self.points.all().iter().map(|(p, _)| *p)
     }
 }

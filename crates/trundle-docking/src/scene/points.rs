@@ -33,7 +33,7 @@ impl PointIndex {
         };
         index
             .points
-            .sort_by_key(|(p, number)| (index_of(&index.low, index.columns, index.rows, *p), *number));
+            .sort_by_cached_key(|(p, number)| (index_of(&index.low, index.columns, index.rows, *p), *number));
         index.starts = vec![0; index.columns * index.rows + 1];
         for (p, _) in points {
             index.starts[index_of(&low, index.columns, index.rows, *p) + 1] += 1;
