@@ -10,4 +10,5 @@ mod program;
 mod sim;
 mod sim_files;
 mod slam;
+mod slam_bad_days;
 mod vocabulary;
