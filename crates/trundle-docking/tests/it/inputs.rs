@@ -4,7 +4,7 @@ use crate::clock::timed;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use trundle_core::{Footprint, OccupancyGrid, Pose2, Vector2};
-use trundle_docking::corridor::{Problem, Scenario, generate};
+use trundle_docking::corridor::{Problem, Scenario, generate, parse};
 use trundle_docking::{Certificate, Docker, DockingConfig, Motion, Obstacle, Plan, Refusal, Scene, Space};
 
 fn at(x: f64, y: f64) -> Vector2 {
@@ -102,6 +102,25 @@ fn manoeuvres_are_free_and_end_exactly() {
                 }
             };
             assert!(free, "problem {i}: {step:?}");
+        }
+    }
+}
+
+/// Problems that no beam gets through: a motion of any kind first, then legs along it.
+#[test]
+fn hardly_any_room_takes_many_motions_and_is_solved() {
+    let problems = parse(include_str!("../data/hard.txt")).unwrap();
+    let docker = Docker::new(DockingConfig { margin: 0.0, ..DockingConfig::default() }).unwrap();
+    for problem in problems.iter().filter(|p| p.name == "1-297" || p.name == "1-1385") {
+        let scene = problem.scene().unwrap();
+        let plan = docker.plan(&problem.footprint, &scene, problem.start, problem.goal).unwrap();
+        let Plan::Found(solution) = plan else { panic!("{}: {plan:?}", problem.name) };
+        let manoeuvre = &solution.manoeuvre;
+        assert!(manoeuvre.end().distance(&problem.goal) < 1e-9 && manoeuvre.steps().len() > 6);
+        for i in 0..=2000 {
+            let (pose, _) = manoeuvre.at(manoeuvre.duration() * f64::from(i) / 2000.0);
+            let clearance = scene.clearance(&problem.footprint, &pose, 1e-3);
+            assert!(clearance.is_none_or(|(distance, _)| distance > 0.0), "{} touches", problem.name);
         }
     }
 }

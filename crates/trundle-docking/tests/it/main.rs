@@ -1,4 +1,5 @@
 //! Laws and closed loops of trundle-docking.
+#![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
 #[path = "../../../../bench/docking/clock.rs"]
 mod clock;
