@@ -124,7 +124,7 @@ pub struct ImportArgs {
 /// `trundle vocabulary recall`
 #[derive(Debug, Args)]
 #[command(after_help = "Example: trundle vocabulary recall --scene office --seeds 91-93\n\n\
-    A place is recognised when the view most like a second look at it was taken within 0.5 m and 20 deg of it.")]
+    A place is recognised when the view most like a second look at it was taken within 0.75 m and 25 deg of it.")]
 pub struct RecallArgs {
     /// A vocabulary to measure; may be given again [default: the program's own]
     #[arg(long = "vocabulary", value_name = "FILE")]

@@ -8,7 +8,7 @@ use trundle::core::Pose3;
 use trundle::vision::{PlaceIndex, Vocabulary};
 
 /// How far the view most like a second look may have been taken from it, m and rad.
-const SAME_PLACE: (f64, f64) = (0.5, 20.0 / 180.0 * std::f64::consts::PI);
+const SAME_PLACE: (f64, f64) = (0.75, 25.0 / 180.0 * std::f64::consts::PI);
 
 /// Of a recorded sequence each so manieth frame is a place, and the frame amid two is a second look.
 const STRIDE: usize = 10;
