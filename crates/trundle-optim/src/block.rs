@@ -44,9 +44,9 @@ pub(crate) fn subtract_transposed_product(vector: &mut Column, block: &Block, x:
 pub(crate) fn factorise(block: &mut Block) -> bool {
     for j in 0..6 {
         for k in 0..j {
-            let factor = block[k][j];
-            for row in j..6 {
-                block[j][row] -= block[k][row] * factor;
+            let (known, factor) = (block[k], block[k][j]);
+            for (sum, value) in block[j][j..].iter_mut().zip(&known[j..]) {
+                *sum -= value * factor;
             }
         }
         let pivot = block[j][j];
