@@ -59,7 +59,7 @@ impl Room {
         let mut dice = Dice(77);
         let point = |i: u64| {
             let axis = (i % 3) as usize;
-            let side = if i % 2 == 0 { 1.0 } else { -1.0 };
+            let side = if i.is_multiple_of(2) { 1.0 } else { -1.0 };
             let mut position = HALF.map(|half| half * (2.0 * dice.uniform() - 1.0));
             position[axis] = side * HALF[axis];
             let inward = Vector3::ith(axis, -side);
