@@ -15,7 +15,8 @@ const SPREAD: [u64; 256] = {
     let mut table = [0; 256];
     let mut at = 0;
     while at < 256 * 8 {
-        table[at / 8] |= ((at / 8 >> (at % 8) & 1) as u64) << (8 * (at % 8));
+        let (byte, bit) = (at / 8, at % 8);
+        table[byte] |= (((byte >> bit) & 1) as u64) << (8 * bit);
         at += 1;
     }
     table
