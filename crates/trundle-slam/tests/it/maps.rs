@@ -1,6 +1,6 @@
 //! Several maps, and places that are not what they look like.
 
-use crate::room::{camera, shoot};
+use crate::room::{Clean, camera, shoot};
 use crate::walks::{dark, turned};
 use nalgebra::Vector6;
 use trundle_core::{Pose3, RgbdImage};
@@ -77,4 +77,22 @@ fn a_room_that_looks_the_same_elsewhere_is_another_room() {
         let error = (truth.inverse() * report.visual_from_camera).log().norm();
         assert!(error < 0.1, "frame {i} is off by {error:.3}");
     }
+}
+
+#[test]
+fn a_camera_that_nobody_tells_about_is_only_where_it_can_have_got_to() {
+    let mut slam = RgbdSlam::new(camera(), SlamConfig::default()).unwrap();
+    for i in 0..20 {
+        assert!(slam.step(&shoot(i, turned(2 * i)), None).tracking.is_located());
+    }
+    // Back at the first view, 2.4 rad away, one frame later: at 3.5 rad/s that takes 18.
+    let back = Clean::at(turned(0));
+    let tracking: Vec<Tracking> = (20..50).map(|i| slam.step(&back.shot(i), None).tracking).collect();
+    let found = tracking.iter().position(|t| t.is_located()).expect("it is a place of the map");
+    assert!((15..20).contains(&found), "found after {found} frames");
+    assert!(
+        tracking[..found].iter().all(|t| *t == Tracking::Lost)
+            && tracking[found..].iter().all(|t| t.is_located())
+    );
+    assert_eq!(slam.maps().len(), 1);
 }
