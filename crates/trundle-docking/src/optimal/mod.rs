@@ -105,36 +105,18 @@ const LOOSE: f64 = 0.05;
 /// Looks for legs where one or two do not do; `Some` when it is proven that there are none.
 fn hard<'a>(search: &mut Search<'_, 'a>, second: &mut Space<'a>, effort: Effort) -> Option<Outcome> {
     // Beams are for what one or two legs do not do: cells first, they are cheap and often enough.
-    let (task, center, half) = (search.task, search.task.center(), search.task.half());
-    let apart = |space: &Space<'_>, side: f64, shrunk: bool| {
-        let ground = Ground { center, half, side: side * effort.cell, shrunk };
-        match disprove(space, &task.start, &task.goal, ground) {
-            Proof::Apart { by } => {
-                let certificate = if shrunk { Certificate::Never } else { Certificate::AtResolution };
-                Some(Outcome::Apart(certificate, by))
-            }
-            Proof::Together => None,
-        }
-    };
-    if let Some(never) = CELLS.iter().find_map(|side| apart(search.space, *side, true)) {
+    let task = search.task;
+    if let Some(never) = CELLS.iter().find_map(|side| apart(&task, search.space, side * effort.cell, true)) {
         return Some(never);
     }
     let coarse = second.clone();
     for side in [2.0, 1.0] {
-        let mut guide = Guide::new(second, &task.goal, center, half, side * effort.cell, task.limits.speed);
-        if guide.seconds(&task.start).is_finite() && effort.nodes > 0 {
-            guided_beam(search, &mut guide, GUIDED_BEAM, effort.nodes);
-            if search.best.is_none() {
-                let mut poses = guide.path(&task.start);
-                poses.push(task.goal);
-                search.best = trace(&task, search.space, &poses);
-            }
-        }
+        led_by_cells(search, second, side * effort.cell, effort.nodes);
         if search.best.is_some() {
             break;
         }
         if side > 1.0
-            && let Some(outcome) = apart(&coarse, 1.0, false)
+            && let Some(outcome) = apart(&task, &coarse, effort.cell, false)
         {
             return Some(outcome);
         }
@@ -144,6 +126,33 @@ fn hard<'a>(search: &mut Search<'_, 'a>, second: &mut Space<'a>, effort: Effort)
     }
     polish_best(search);
     None
+}
+
+/// What cells of `side` (m) say against any motion, with the hull shrunk for a proof or as it is.
+fn apart(task: &Task, space: &Space<'_>, side: f64, shrunk: bool) -> Option<Outcome> {
+    let ground = Ground { center: task.center(), half: task.half(), side, shrunk };
+    match disprove(space, &task.start, &task.goal, ground) {
+        Proof::Apart { by } => {
+            let certificate = if shrunk { Certificate::Never } else { Certificate::AtResolution };
+            Some(Outcome::Apart(certificate, by))
+        }
+        Proof::Together => None,
+    }
+}
+
+/// A beam led by how cells of `side` (m) hang together; where that does not get through, legs along the cells' own path.
+fn led_by_cells<'a>(search: &mut Search<'_, 'a>, second: &mut Space<'a>, side: f64, nodes: usize) {
+    let task = search.task;
+    let mut guide = Guide::new(second, &task.goal, task.center(), task.half(), side, task.limits.speed);
+    if nodes == 0 || guide.seconds(&task.start).is_infinite() {
+        return;
+    }
+    guided_beam(search, &mut guide, GUIDED_BEAM, nodes);
+    if search.best.is_none() {
+        let mut poses = guide.path(&task.start);
+        poses.push(task.goal);
+        search.best = trace(&task, search.space, &poses);
+    }
 }
 
 fn polish_best(search: &mut Search<'_, '_>) {
