@@ -2,7 +2,7 @@ use crate::slam_recorder::SlamRecorder;
 use crate::{Outcome, args::SlamArgs, console, failure::Failure, slam_output};
 use indicatif::ProgressBar;
 use std::time::Instant;
-use trundle::core::{PinholeCamera, Pose3, RgbdImage, Stamp};
+use trundle::core::{Pose3, RgbdImage, Stamp};
 use trundle::io::{CameraModel, EncodedRgbd, OutputFolder, TumSequence};
 use trundle::localization::camera_motion;
 use trundle::runtime::{LevelMap, RobotConfig, Stage, StageTimes, level_from_first_camera};
@@ -47,7 +47,7 @@ fn track(
 ) -> Result<SlamRun, Failure> {
     let robot = RobotConfig::default();
     let mut run = SlamRun {
-        slam: begin(args, camera.camera)?,
+        slam: begin(args, camera)?,
         map: LevelMap::new(camera.camera, robot.scan, robot.schedule.map_hz)?,
         counts: Default::default(),
         last_image: None,
@@ -84,8 +84,10 @@ fn track(
 }
 
 /// An empty map, or the one that was asked for.
-fn begin(args: &SlamArgs, camera: PinholeCamera) -> Result<RgbdSlam, Failure> {
-    let config = SlamConfig { seed: args.seed, ..SlamConfig::default() };
+fn begin(args: &SlamArgs, model: &CameraModel) -> Result<RgbdSlam, Failure> {
+    let mut config = SlamConfig { seed: args.seed, ..SlamConfig::default() };
+    config.motion.readout = model.readout;
+    let camera = model.camera;
     let Some(file) = &args.map else {
         let level_from_camera = level_from_first_camera(args.height, args.tilt, args.roll)?;
         return Ok(RgbdSlam::new(camera, config)?.starting_at(level_from_camera));

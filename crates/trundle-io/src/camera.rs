@@ -2,7 +2,7 @@ use crate::IoError;
 use crate::files::read_text;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
-use trundle_core::{Distortion, Invalid, PinholeCamera, require_positive};
+use trundle_core::{Distortion, Invalid, PinholeCamera, require_in, require_positive};
 
 /// What 1 m is in TUM's depth images.
 pub const TUM_DEPTH_SCALE: f64 = 5000.0;
@@ -19,7 +19,14 @@ pub struct CameraModel {
     pub camera: PinholeCamera,
     /// What 1 m is in its depth images.
     pub depth_scale: f64,
+    /// Time from the first to the last row of a colour image, s: a rolling shutter; 0 where all rows are taken at once.
+    pub readout: f64,
 }
+
+/// No colour camera of a robot takes longer to read out, s.
+const LONGEST_READOUT: f64 = 0.05;
+/// A Kinect v1's readout, s \[Ringaby11\].
+const KINECT_V1_READOUT: f64 = 0.026;
 
 impl CameraModel {
     /// The camera of a preset (`freiburg1`, `freiburg2`, `freiburg3`, `kinect_v2`) or else of a TOML file.
@@ -42,26 +49,32 @@ impl CameraModel {
     /// which depth is registered (`vision.in.tum.de/data/datasets/rgbd-dataset/file_formats`).
     pub fn preset(name: &str) -> Option<Self> {
         let lens = |k1, k2, p1, p2, k3| Distortion { k1, k2, p1, p2, k3 };
-        let tum = |focal, centre, distortion| {
+        let tum = |focal, centre, distortion, readout| {
             let camera = PinholeCamera::new((640, 480), focal, centre, distortion)
                 .expect("invariant: the preset is valid");
-            Self { camera, depth_scale: TUM_DEPTH_SCALE }
+            Self { camera, depth_scale: TUM_DEPTH_SCALE, readout }
         };
         Some(match name {
             "freiburg1" => {
-                tum((517.3, 516.5), (318.6, 255.3), lens(0.2624, -0.9531, -0.0054, 0.0026, 1.1633))
+                let lens = lens(0.2624, -0.9531, -0.0054, 0.0026, 1.1633);
+                tum((517.3, 516.5), (318.6, 255.3), lens, KINECT_V1_READOUT)
             }
             "freiburg2" => {
-                tum((520.9, 521.0), (325.1, 249.7), lens(0.2312, -0.7849, -0.0033, -0.0001, 0.9172))
+                let lens = lens(0.2312, -0.7849, -0.0033, -0.0001, 0.9172);
+                tum((520.9, 521.0), (325.1, 249.7), lens, KINECT_V1_READOUT)
             }
-            "freiburg3" => tum((535.4, 539.2), (320.1, 247.6), Distortion::default()),
-            "kinect_v2" => Self { camera: PinholeCamera::kinect_v2(), depth_scale: KINECT_V2_DEPTH_SCALE },
+            // An Xtion, whose readout is not known to us.
+            "freiburg3" => tum((535.4, 539.2), (320.1, 247.6), Distortion::default(), 0.0),
+            "kinect_v2" => {
+                let camera = PinholeCamera::kinect_v2();
+                Self { camera, depth_scale: KINECT_V2_DEPTH_SCALE, readout: 0.0 }
+            }
             _ => return None,
         })
     }
 
     /// The camera of a TOML file: `width`, `height`, `fx`, `fy`, `cx`, `cy` (px) and `depth_scale` (units a metre),
-    /// and, 0 where left out, the lens `k1`, `k2`, `p1`, `p2`, `k3` in the order of OpenCV.
+    /// and, 0 where left out, the lens `k1`, `k2`, `p1`, `p2`, `k3` in the order of OpenCV, and `readout` (s).
     ///
     /// # Errors
     /// With the line and key, when the file is no TOML, a key is wrong or missing, or a value is not accepted.
@@ -75,8 +88,8 @@ impl CameraModel {
         let Distortion { k1, k2, p1, p2, k3 } = camera.distortion();
         let (width, height) = (camera.width(), camera.height());
         let (fx, fy, cx, cy) = (camera.fx(), camera.fy(), camera.cx(), camera.cy());
-        let depth_scale = self.depth_scale;
-        let file = CameraFile { width, height, fx, fy, cx, cy, depth_scale, k1, k2, p1, p2, k3 };
+        let Self { depth_scale, readout, .. } = *self;
+        let file = CameraFile { width, height, fx, fy, cx, cy, depth_scale, k1, k2, p1, p2, k3, readout };
         toml::to_string(&file).expect("invariant: a camera is plain data")
     }
 
@@ -109,15 +122,18 @@ struct CameraFile {
     p2: f64,
     #[serde(default)]
     k3: f64,
+    #[serde(default)]
+    readout: f64,
 }
 
 impl CameraFile {
     fn model(self) -> Result<CameraModel, Invalid> {
-        let Self { width, height, fx, fy, cx, cy, depth_scale, k1, k2, p1, p2, k3 } = self;
+        let Self { width, height, fx, fy, cx, cy, depth_scale, k1, k2, p1, p2, k3, readout } = self;
         let lens = Distortion { k1, k2, p1, p2, k3 };
         let camera = PinholeCamera::new((width, height), (fx, fy), (cx, cy), lens)?;
         require_positive("depth_scale", depth_scale, "units a metre")?;
-        Ok(CameraModel { camera, depth_scale })
+        require_in("readout", readout, "s", 0.0, LONGEST_READOUT)?;
+        Ok(CameraModel { camera, depth_scale, readout })
     }
 }
 
