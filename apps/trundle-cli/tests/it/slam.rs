@@ -1,4 +1,4 @@
-use crate::program::{shared, summary, text, trundle};
+use crate::program::{refusal, shared, summary, text, trundle};
 use std::{fs, path::Path};
 
 /// A folder with the first `count` frames of the real sequence.
@@ -60,4 +60,39 @@ fn a_sequence_that_cannot_be_read_is_refused_and_a_black_one_is_no_success() {
     let output = trundle(&["slam", text(&sequence), "--quiet", "--out", text(&out)]);
     assert_eq!(output.status.code(), Some(2));
     assert!(String::from_utf8(output.stderr).unwrap().contains("no frame can be read"));
+}
+
+/// What tracking a sequence says, with more arguments.
+fn track(sequence: &Path, out: &Path, extra: &[&str]) -> serde_json::Value {
+    let mut args = vec!["slam", text(sequence), "--quiet", "--out", text(out)];
+    args.extend(extra);
+    let output = trundle(&args);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    summary(out)
+}
+
+#[test]
+fn a_saved_map_is_the_same_on_any_threads_and_is_begun_with() {
+    let Some(data) = shared("tum_fr1_rpy_400") else { return };
+    let scratch = tempfile::tempdir().unwrap();
+    let [sequence, one, two, again] = ["short", "one", "two", "again"].map(|name| scratch.path().join(name));
+    fs::create_dir(&sequence).unwrap();
+    short_sequence(&data, &sequence, 40);
+    track(&sequence, &one, &["--threads", "1"]);
+    track(&sequence, &two, &["--threads", "2"]);
+    for name in ["visual.map", "trajectory.txt", "recording.mcap"] {
+        assert!(fs::read(one.join(name)).unwrap() == fs::read(two.join(name)).unwrap(), "{name}");
+    }
+    let map = one.join("visual.map");
+    let numbers = track(&sequence, &again, &["--map", text(&map), "--localise"]);
+    let located = numbers["frames_ok"].as_u64().unwrap() + numbers["frames_weak"].as_u64().unwrap();
+    assert!(located >= 38, "{numbers}");
+    assert!(fs::read(again.join("visual.map")).unwrap() == fs::read(&map).unwrap(), "it was only to locate");
+    let mut damaged = fs::read(&map).unwrap();
+    let middle = damaged.len() / 2;
+    damaged[middle] ^= 4;
+    let broken = scratch.path().join("broken.map");
+    fs::write(&broken, damaged).unwrap();
+    let complaint = refusal(&["slam", text(&sequence), "--map", text(&broken), "--out", text(&again)]);
+    assert!(complaint.contains("broken.map") && complaint.contains("checksum"), "{complaint}");
 }
