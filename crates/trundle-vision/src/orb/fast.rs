@@ -86,6 +86,8 @@ impl Detector {
 
     fn find_maxima(&mut self, (width, height): (usize, usize), corners: &mut Vec<Corner>) {
         self.maxima.resize((width - 2 * BORDER).next_multiple_of(WORD), 0);
+        // The last word is longer than the row: what an image of another size left there is no maximum.
+        self.maxima[width - 2 * BORDER..].fill(0);
         for y in BORDER..height - BORDER {
             let row = |y: usize| &self.scores[y * width..][BORDER - 1..=width - BORDER];
             let maxima = &mut self.maxima[..width - 2 * BORDER];

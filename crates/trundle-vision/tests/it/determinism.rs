@@ -1,4 +1,5 @@
 use crate::texture::{noisy, picture};
+use trundle_core::GrayImage;
 use trundle_vision::{Features, OrbConfig, OrbExtractor};
 
 fn with_threads(threads: usize) -> Features {
@@ -15,9 +16,15 @@ fn the_number_of_threads_changes_no_bit() {
 #[test]
 fn what_was_extracted_before_does_not_matter() {
     let (one, other) = (picture((320, 240), |p| p), picture((200, 180), |p| p * 1.3));
-    let fresh = |image| OrbExtractor::new(OrbConfig::default()).unwrap().extract(image);
+    let fresh = |image: &GrayImage| OrbExtractor::new(OrbConfig::default()).unwrap().extract(image);
     let mut used = OrbExtractor::new(OrbConfig::default()).unwrap();
     for image in [&one, &other, &one, &one] {
         assert_eq!(used.extract(image), fresh(image));
+    }
+    // Widths whose levels leave something of every length in the last word of a row.
+    let wall = noisy(&picture((400, 150), |p| p * 0.7), 9.0, 3);
+    for width in [400, 256, 397, 301, 400, 233, 398] {
+        let cut = GrayImage::from_fn(width, 150, |x, y| wall[(x, y)]);
+        assert_eq!(used.extract(&cut), fresh(&cut), "{width} px wide");
     }
 }
