@@ -7,13 +7,12 @@ mod table;
 use crate::{Outcome, console, failure::Failure, robot_file};
 pub use args::DockArgs;
 pub(crate) use picture::{Surroundings, manoeuvre_picture};
-use std::path::Path;
 use std::time::Instant;
 pub(crate) use table::{motions, steps_csv};
 use trundle::core::{Footprint, OccupancyGrid, Pose2};
 use trundle::docking::corridor::{Problem, parse};
-use trundle::docking::{Certificate, Docker, DockingConfig, Impossible, Plan, Scene, Solution};
-use trundle::io::{OutputFolder, Summary, read_map};
+use trundle::docking::{Certificate, Docker, DockingConfig, Impossible, Obstacle, Plan, Scene, Solution};
+use trundle::io::{LaserLogOptions, OutputFolder, Summary, read_carmen, read_map};
 
 /// What is to be planned, and what stands around.
 struct Task {
@@ -26,9 +25,19 @@ struct Task {
     problem: Option<Problem>,
 }
 
-/// `trundle dock MAP.yaml --from --to`, or `trundle dock PROBLEM.txt`.
+/// `trundle dock MAP.yaml --from --to`, `trundle dock SCANS.log --to`, or `trundle dock PROBLEM.txt`.
 pub fn run(args: &DockArgs) -> Result<Outcome, Failure> {
-    let task = if is_map(&args.place) { on_map(args)? } else { of_problem(args)? };
+    let is_a = |endings: &[&str]| {
+        let ending = args.place.extension().unwrap_or_default();
+        endings.iter().any(|known| ending.eq_ignore_ascii_case(known))
+    };
+    let task = if is_a(&["yaml", "yml"]) {
+        on_map(args)?
+    } else if is_a(&["log"]) {
+        task_of(args, in_scan(args)?)?
+    } else {
+        task_of(args, of_file(args)?)?
+    };
     let docker = Docker::new(DockingConfig { method: args.method.into(), ..DockingConfig::default() })?;
     let clock = Instant::now();
     let plan = docker
@@ -55,20 +64,13 @@ pub fn run(args: &DockArgs) -> Result<Outcome, Failure> {
     Ok(if found.is_some() { Outcome::Reached } else { Outcome::Missed })
 }
 
-fn is_map(place: &Path) -> bool {
-    place.extension().is_some_and(|e| e.eq_ignore_ascii_case("yaml") || e.eq_ignore_ascii_case("yml"))
-}
-
 fn on_map(args: &DockArgs) -> Result<Task, Failure> {
     let grid = read_map(&args.place)?;
     let (Some(start), Some(goal)) = (args.from, args.to) else {
         return Err(Failure::Input(format!("{}: a map needs --from and --to", args.place.display())));
     };
     let (start, goal) = (start.0, goal.0);
-    let footprint = match &args.footprint {
-        Some(footprint) => footprint.0.clone(),
-        None => robot_file::load(args.config.as_deref())?.footprint()?,
-    };
+    let footprint = footprint(args)?;
     let config = DockingConfig::default();
     let half = start.distance(&goal) / 2.0 + config.reach + 2.0 * footprint.circumscribed_radius();
     let center = (start.position() + goal.position()) / 2.0;
@@ -84,9 +86,37 @@ fn on_map(args: &DockArgs) -> Result<Task, Failure> {
     })
 }
 
-fn of_problem(args: &DockArgs) -> Result<Task, Failure> {
-    let named =
-        |problem: &dyn std::fmt::Display| Failure::Input(format!("{}: {problem}", args.place.display()));
+/// The outline that was asked for, else the robot file's.
+fn footprint(args: &DockArgs) -> Result<Footprint, Failure> {
+    match &args.footprint {
+        Some(footprint) => Ok(footprint.0.clone()),
+        None => Ok(robot_file::load(args.config.as_deref())?.footprint()?),
+    }
+}
+
+fn named(args: &DockArgs, problem: &dyn std::fmt::Display) -> Failure {
+    Failure::Input(format!("{}: {problem}", args.place.display()))
+}
+
+/// Among the points of a scan, in the frame of the robot that made it.
+fn in_scan(args: &DockArgs) -> Result<Problem, Failure> {
+    let log = read_carmen(&args.place, &LaserLogOptions::default())?;
+    let count = log.scans.len();
+    let number = args.scan.map_or(count, |number| number as usize);
+    let scan = number.checked_sub(1).and_then(|i| log.scans.get(i));
+    let scan = scan.ok_or_else(|| named(args, &format!("it has no scan {number}, only 1 to {count}")))?;
+    let goal = args.to.ok_or_else(|| named(args, &"a scan needs --to"))?.0;
+    Ok(Problem {
+        name: format!("scan-{number}"),
+        footprint: footprint(args)?,
+        start: Pose2::default(),
+        goal,
+        obstacles: scan.scan.hits().map(Obstacle::Point).collect(),
+    })
+}
+
+fn of_file(args: &DockArgs) -> Result<Problem, Failure> {
+    let named = |problem: &dyn std::fmt::Display| named(args, problem);
     let text =
         std::fs::read_to_string(&args.place).map_err(|error| named(&format!("cannot read it: {error}")))?;
     let problems = parse(&text).map_err(|invalid| named(&invalid))?;
@@ -94,10 +124,13 @@ fn of_problem(args: &DockArgs) -> Result<Task, Failure> {
         Some(name) => problems.into_iter().find(|problem| problem.name == *name),
         None => problems.into_iter().next(),
     };
-    let problem = chosen.ok_or_else(|| match &args.problem {
+    chosen.ok_or_else(|| match &args.problem {
         Some(name) => named(&format!("it has no problem '{name}'")),
         None => named(&"it has no problem"),
-    })?;
+    })
+}
+
+fn task_of(args: &DockArgs, problem: Problem) -> Result<Task, Failure> {
     let footprint =
         args.footprint.as_ref().map_or_else(|| problem.footprint.clone(), |given| given.0.clone());
     Ok(Task {
@@ -105,7 +138,7 @@ fn of_problem(args: &DockArgs) -> Result<Task, Failure> {
         footprint,
         start: args.from.map_or(problem.start, |pose| pose.0),
         goal: args.to.map_or(problem.goal, |pose| pose.0),
-        scene: problem.scene().map_err(|invalid| named(&invalid))?,
+        scene: problem.scene().map_err(|invalid| named(args, &invalid))?,
         grid: None,
         problem: Some(problem),
     })

@@ -9,13 +9,14 @@ use trundle::docking::Method;
 #[derive(Debug, Args)]
 #[command(
     after_help = "Examples:\n  trundle dock map.yaml --from 1.0,2.0,90 --to 1.2,2.0,90 --footprint '0.3,0.2 -0.3,0.2 -0.3,-0.2 0.3,-0.2'\n  \
-    trundle dock corridor.txt --problem hong24-a --method paper\n\n\
+    trundle dock corridor.txt --problem hong24-a --method paper\n  \
+    trundle dock robot.log --scan 12 --to 0.4,0.1,0\n\n\
     Exit code: 0 a manoeuvre was found, 1 there is none, 2 bad input."
 )]
 pub struct DockArgs {
-    /// A map in map_server's form (*.yaml), or a file of corridor problems (docs/algorithms/docking.md).
+    /// A map in map_server's form (*.yaml), a laser log (*.log, one scan of it), or a file of corridor problems (docs/corridor-benchmark.md).
     pub place: PathBuf,
-    /// Start pose in the map frame: m, m, deg [default: the problem's]
+    /// Start pose in the map frame: m, m, deg [default: the problem's; in a scan, where it was made: 0,0,0]
     #[arg(long, value_name = "X,Y,DEG", allow_hyphen_values = true)]
     pub from: Option<PoseArg>,
     /// Goal pose in the map frame: m, m, deg [default: the problem's]
@@ -24,6 +25,9 @@ pub struct DockArgs {
     /// The robot's outline: a radius, or the corners of a convex polygon, base frame, m [default: the problem's or the robot file's]
     #[arg(long, value_name = "R|'X,Y X,Y X,Y...'", allow_hyphen_values = true)]
     pub footprint: Option<FootprintArg>,
+    /// Which scan of the log, from 1; poses are in the frame of the robot that made it [default: the last]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub scan: Option<u32>,
     /// Which problem of the file [default: the first]
     #[arg(long, value_name = "NAME")]
     pub problem: Option<String>,

@@ -86,3 +86,20 @@ fn the_papers_corridor_experiment_holds() {
     let (paper, optimal) = (&summary(&out)["a-paper"]["time_s"], &summary(&out)["a-optimal"]["time_s"]);
     assert!(optimal.as_f64().unwrap() <= paper.as_f64().unwrap() + 1e-9);
 }
+
+/// A laser 0.5 m from a wall to its left and to its right.
+#[test]
+fn among_the_points_of_a_scan_too() {
+    let scratch = tempfile::tempdir().unwrap();
+    let (log, out) = (scratch.path().join("robot.log"), scratch.path().join("out"));
+    let range = |i: usize| 0.5 / (i as f64 - 89.5).to_radians().sin().abs();
+    let ranges: Vec<String> = (0..180).map(|i| format!("{:.3}", range(i).min(8.0))).collect();
+    let line = format!("FLASER 180 {} 0 0 0 0 0 0 1.0 host 1.0\n", ranges.join(" "));
+    fs::write(&log, line).unwrap();
+    let dock = ["dock", text(&log), "--to=0.3,0.05,0", "--footprint=0.2", "--out", text(&out)];
+    let output = trundle(&dock);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    assert!(summary(&out)["duration_s"].as_f64().unwrap() > 1.0);
+    assert!(refusal(&[&dock[..], &["--scan", "9"]].concat()).contains("it has no scan 9, only 1 to 1"));
+    assert!(refusal(&["dock", text(&log), "--footprint=0.2"]).contains("a scan needs --to"));
+}
