@@ -163,7 +163,7 @@ mod tests {
     use proptest::prelude::*;
 
     const GOOD: &str = "width = 640\nheight = 480\nfx = 517.3\nfy = 516.5\ncx = 318.6\ncy = 255.3\n\
-                        depth_scale = 5000.0\nk1 = 0.2624\nk2 = -0.9531\np1 = -0.0054\np2 = 0.0026\nk3 = 1.1633\n";
+                        depth_scale = 5000.0\nk1 = 0.2624\nk2 = -0.9531\np1 = -0.0054\np2 = 0.0026\nk3 = 1.1633\nreadout = 0.026\n";
 
     fn problem(text: &str) -> String {
         CameraModel::parse(Path::new("cam.toml"), text).unwrap_err().to_string()
@@ -195,6 +195,7 @@ mod tests {
             problem(&GOOD.replace("5000.0", "nan")),
             "cam.toml, line 7: depth_scale is NaN units a metre, expected a finite number above 0"
         );
+        assert!(problem(&GOOD.replace("0.026", "2.6")).starts_with("cam.toml, line 13: readout is 2.6 s"));
         assert!(problem("width = = 3").starts_with("cam.toml, line 1: "));
         assert!(problem(&GOOD.replace("640", "-640")).starts_with("cam.toml, line 1: "));
         assert_eq!(
