@@ -72,8 +72,7 @@ fn on_map(args: &DockArgs) -> Result<Task, Failure> {
     let (start, goal) = (start.0, goal.0);
     let footprint = footprint(args)?;
     let config = DockingConfig::default();
-    let half = start.distance(&goal) / 2.0 + config.reach + 2.0 * footprint.circumscribed_radius();
-    let center = (start.position() + goal.position()) / 2.0;
+    let (center, half) = config.view(&footprint, &start, &goal);
     let scene = Scene::from_grid(&grid, center, half, !args.through_unknown);
     Ok(Task {
         name: args.place.display().to_string(),
@@ -161,10 +160,10 @@ fn reason(impossible: &Impossible) -> String {
     });
     let proof = match impossible.certificate {
         Certificate::Never => "proven for motions of any kind",
-        Certificate::AtResolution => "proven at the search's resolution",
+        Certificate::AtResolution => "none through the middles of the search's cells",
         Certificate::None => "none was found; not proven",
     };
-    format!("No manoeuvre{by} ({proof}).")
+    format!("No manoeuvre within {:.1} m{by} ({proof}).", impossible.within)
 }
 
 fn summary(task: &Task, plan: &Plan, seconds: f64) -> Summary {

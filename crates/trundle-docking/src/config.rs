@@ -1,7 +1,7 @@
 use crate::limits::MotionLimits;
 use crate::paper::PaperConfig;
 use serde::{Deserialize, Serialize};
-use trundle_core::{Invalid, require_in};
+use trundle_core::{Footprint, Invalid, Pose2, Vector2, require_in};
 
 /// Which method plans.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -65,7 +65,21 @@ impl Default for DockingConfig {
     }
 }
 
+/// Where no manoeuvre is found within reach, one may go so much farther.
+pub(crate) const WIDER: f64 = 2.0;
+
+/// What a robot may touch beyond where its base goes, besides its own radius, m.
+pub(crate) const BESIDE: f64 = 0.1;
+
 impl DockingConfig {
+    /// Middle and half side (m) of the square, map frame, within which a plan from `start` to `goal` may meet obstacles: a
+    /// scene must hold all there are in it.
+    pub fn view(&self, footprint: &Footprint, start: &Pose2, goal: &Pose2) -> (Vector2, f64) {
+        let middle = (start.position() + goal.position()) / 2.0;
+        let way = WIDER * self.reach + start.distance(goal) / 2.0;
+        (middle, way + footprint.circumscribed_radius() + BESIDE)
+    }
+
     /// Passes a valid configuration through.
     ///
     /// # Errors

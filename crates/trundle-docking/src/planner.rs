@@ -1,5 +1,5 @@
 use crate::cloud::{MANY_POINTS, plan_in_cloud};
-use crate::config::{DockingConfig, Method};
+use crate::config::{BESIDE, DockingConfig, Method, WIDER};
 use crate::geometry::Hull;
 use crate::manoeuvre::Manoeuvre;
 use crate::optimal::{self, Certificate, Effort, Outcome, Task};
@@ -11,9 +11,6 @@ use trundle_core::{Footprint, Invalid, Pose2};
 
 /// Pieces of a scene above which the bound is sought with fewer boxes.
 const MANY_PIECES: usize = 200;
-
-/// Where nothing is found and nothing disproved, manoeuvres may reach this much farther.
-const WIDER: f64 = 2.0;
 
 /// Why there is nothing to plan.
 #[derive(Debug, Clone, PartialEq, Error)]
@@ -51,7 +48,7 @@ pub enum Plan {
 pub struct Solution {
     /// What to do.
     pub manoeuvre: Manoeuvre,
-    /// No manoeuvre is faster than this, s.
+    /// No manoeuvre that keeps the margin is faster than this, s.
     pub bound: f64,
     /// The margin that was kept, m.
     pub margin: f64,
@@ -64,6 +61,8 @@ pub struct Impossible {
     pub by: Option<Blocker>,
     /// What was shown; always [`Certificate::None`] by the paper's method.
     pub certificate: Certificate,
+    /// How far from the line between start and goal motions were thought of, m.
+    pub within: f64,
 }
 
 /// Plans manoeuvres onto a goal pose.
@@ -123,8 +122,7 @@ impl Docker {
                 plan = self.plan_with(footprint, &near, &task, margin);
             }
         }
-        let open = matches!(plan, Plan::Impossible(Impossible { certificate: Certificate::None, .. }));
-        if open && self.config.method == Method::Optimal {
+        if matches!(plan, Plan::Impossible(_)) && self.config.method == Method::Optimal {
             let wider = Task { reach: WIDER * task.reach, ..task };
             plan = self.plan_with(footprint, &around(footprint, scene, &wider), &wider, least);
         }
@@ -153,7 +151,7 @@ impl Docker {
             gap: config.gap,
             cell: config.position_tolerance,
         };
-        let nothing = |by, certificate| Plan::Impossible(Impossible { by, certificate });
+        let nothing = |by, certificate| Plan::Impossible(Impossible { by, certificate, within: task.reach });
         if config.method == Method::Paper {
             let found = paper::plan(&space, task.start, task.goal, &limits, &config.paper);
             return found.map_or(nothing(None, Certificate::None), |manoeuvre| {
@@ -230,6 +228,6 @@ impl Docker {
 
 /// The part of a scene that a manoeuvre may meet.
 fn around(footprint: &Footprint, scene: &Scene, task: &Task) -> Scene {
-    let half = task.half() + footprint.circumscribed_radius() + 0.1;
+    let half = task.half() + footprint.circumscribed_radius() + BESIDE;
     scene.around(task.center(), half)
 }

@@ -140,10 +140,7 @@ impl LastStage {
 
     /// What stands around, and what is unknown: no camera looks where a manoeuvre backs up.
     fn drawn(&self, s: &Surroundings<'_>, goal: &Pose2) -> Scene {
-        let center = (s.estimate.pose.position() + goal.position()) / 2.0;
-        let half = s.estimate.pose.distance(goal) / 2.0
-            + self.config.planner.reach
-            + 2.0 * self.footprint.circumscribed_radius();
+        let (center, half) = self.config.planner.view(&self.footprint, &s.estimate.pose, goal);
         Scene::from_grid(s.grid, center, half, true)
     }
 

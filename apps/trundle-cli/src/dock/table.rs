@@ -30,7 +30,7 @@ pub(super) fn verdict(found: &Solution) -> String {
     let duration = found.manoeuvre.duration();
     let proven = if found.bound > 0.0 {
         format!(
-            ", at most {:.1} % over the least that is possible",
+            ", at most {:.1} % over the least that is possible at this margin",
             (duration / found.bound - 1.0).max(0.0) * 100.0
         )
     } else {

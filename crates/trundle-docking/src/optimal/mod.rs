@@ -41,7 +41,7 @@ pub enum Outcome {
 /// What was shown when there is no manoeuvre.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Certificate {
-    /// No motion of any kind leads from start to goal: a proof over all poses.
+    /// No motion of any kind leads from start to goal: a proof over all poses within reach.
     Never,
     /// None does through the middles of cells of the asked side, with headings exact: complete at that resolution.
     AtResolution,

@@ -7,7 +7,7 @@ mod thin;
 
 use crate::geometry::{Hull, Segment};
 use points::PointIndex;
-use trundle_core::{Cell, CellIndex, Footprint, Invalid, OccupancyGrid, Pose2, Vector2};
+use trundle_core::{Cell, CellIndex, Footprint, GridGeometry, Invalid, OccupancyGrid, Pose2, Vector2};
 
 /// Something that stands in the way, map frame, m.
 #[derive(Debug, Clone, PartialEq)]
@@ -74,18 +74,19 @@ impl Scene {
         Ok(Self { pieces, points: PointIndex::new(&points), solids })
     }
 
-    /// The occupied cells of a grid within a box of half side `half` (m) about `center`, and the unknown ones where
-    /// `unknown_blocks`.
+    /// The occupied cells of a grid within a box of half side `half` (m) about `center`, and where `unknown_blocks` the
+    /// unknown ones and the rim of the grid.
     pub fn from_grid(grid: &OccupancyGrid, center: Vector2, half: f64, unknown_blocks: bool) -> Self {
         let geometry = *grid.geometry();
         let blocks = |cell: CellIndex| {
             let value = grid.get(cell);
             (value == Cell::Occupied || (unknown_blocks && value == Cell::Unknown))
-                && (geometry.center(cell) - center).amax() <= half
+                && (geometry.center(cell) - center).amax() <= half + geometry.resolution
         };
         let outlines = outline::outlines(&geometry, blocks);
         let number = |(i, segment): (usize, Segment)| Piece { segment, obstacle: i as u32 };
-        let pieces: Vec<Piece> = outlines.into_iter().enumerate().map(number).collect();
+        let rim = unknown_blocks.then(|| rim_of(&geometry)).into_iter().flatten();
+        let pieces: Vec<Piece> = outlines.into_iter().chain(rim).enumerate().map(number).collect();
         let side = geometry.resolution;
         let cells = (0..geometry.len()).map(|i| geometry.cell(i)).filter(|&cell| blocks(cell));
         let solids = cells.map(|cell| {
@@ -245,6 +246,14 @@ fn holds(corners: &[Vector2], p: Vector2) -> bool {
 fn touches_box(segment: &Segment, center: Vector2, half: Vector2) -> bool {
     let (a, b) = (segment.a - center, segment.b - center);
     a.x.min(b.x) <= half.x && a.x.max(b.x) >= -half.x && a.y.min(b.y) <= half.y && a.y.max(b.y) >= -half.y
+}
+
+/// The four sides of a grid.
+fn rim_of(geometry: &GridGeometry) -> [Segment; 4] {
+    let low = geometry.origin;
+    let high = low + Vector2::new(geometry.width as f64, geometry.height as f64) * geometry.resolution;
+    let corners = [low, Vector2::new(high.x, low.y), high, Vector2::new(low.x, high.y)];
+    std::array::from_fn(|i| Segment { a: corners[i], b: corners[(i + 1) % 4] })
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 use crate::clock::timed;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use trundle_core::{Footprint, OccupancyGrid, Pose2, Vector2};
+use trundle_core::{Cell, Footprint, GridGeometry, OccupancyGrid, Pose2, Vector2};
 use trundle_docking::corridor::{Problem, Scenario, generate, parse};
 use trundle_docking::{Certificate, Docker, DockingConfig, Motion, Obstacle, Plan, Refusal, Scene, Space};
 
@@ -55,6 +55,38 @@ fn a_corridor_too_narrow_to_turn_is_certified() {
     let plan =
         docker().plan(&robot(), &scene, Pose2::IDENTITY, Pose2::new(0.1, 0.0, std::f64::consts::PI)).unwrap();
     assert!(matches!(plan, Plan::Impossible(i) if i.certificate == Certificate::Never && i.by.is_some()));
+}
+
+/// A wall with ends: no way round within the first reach, one in the wider look.
+#[test]
+fn a_way_round_a_wall_is_found_farther_off() {
+    let wall = Scene::new(&[Obstacle::Polygon(
+        [(-0.05, -2.2), (0.05, -2.2), (0.05, 2.2), (-0.05, 2.2)].map(|(x, y)| at(x, y)).to_vec(),
+    )])
+    .unwrap();
+    let (start, goal) = (Pose2::new(-0.4, 0.0, 1.57), Pose2::new(0.4, 0.0, 1.57));
+    let plan = docker().plan(&robot(), &wall, start, goal).unwrap();
+    let Plan::Found(solution) = plan else { panic!("{plan:?}") };
+    assert!(solution.manoeuvre.end().distance(&goal) < 1e-9);
+}
+
+/// A corridor of a map, too narrow to turn in and longer than any look: none of it may be left out.
+#[test]
+fn no_turn_leads_through_the_walls_of_a_map() {
+    let free = |y: usize| (4..40).contains(&y);
+    let cell = |i: usize| if free(i / 800) { Cell::Free } else { Cell::Occupied };
+    let geometry = GridGeometry::new(0.02, at(0.0, 0.0), 800, 44).unwrap();
+    let grid = OccupancyGrid::new(geometry, (0..800 * 44).map(cell).collect()).unwrap();
+    let (config, y) = (DockingConfig::default(), 0.44);
+    for turned in [120.0_f64, 150.0, 180.0] {
+        let (start, goal) = (Pose2::new(7.0, y, 0.0), Pose2::new(9.0, y, turned.to_radians().min(3.14)));
+        let (center, half) = config.view(&robot(), &start, &goal);
+        let scene = Scene::from_grid(&grid, center, half, true);
+        match docker().plan(&robot(), &scene, start, goal) {
+            Ok(Plan::Impossible(_)) | Err(Refusal::GoalBlocked(_)) => {}
+            other => panic!("{turned}: {other:?}"),
+        }
+    }
 }
 
 #[test]
