@@ -271,7 +271,8 @@ mod tests {
                 o.seen.depth = o.seen.depth.map(|d| InverseDepth { value: d.value + d.sigma * noise(), ..d });
             }
             let mut solver = BundleSolver::default();
-            solver.begin(&perturbed(&noisy, 1), &BundleConfig { covariances: true, converged: 1e-6, ..EXACT });
+            solver
+                .begin(&perturbed(&noisy, 1), &BundleConfig { covariances: true, converged: 1e-6, ..EXACT });
             solver.finish();
             let error = (scene.poses[5].inverse() * solver.poses()[5]).log();
             let covariance = solver.covariance(5).expect("a covariance");

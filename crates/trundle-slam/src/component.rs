@@ -68,11 +68,6 @@ impl Component {
             renamed.landmarks.insert(old, new);
         }
         renamed.keyframes.values().for_each(|id| self.map.enter_tree(*id));
-        for (old, keyframe) in other.keyframes() {
-            for with in keyframe.tree.loops.iter().filter(|with| **with < old) {
-                self.map.tie(renamed.keyframes[with], renamed.keyframes[&old]);
-            }
-        }
         for (old, new) in other.loops() {
             self.map.tie(renamed.keyframes[&old], renamed.keyframes[&new]);
         }

@@ -123,14 +123,14 @@ impl GlobalBundle {
             let by_parent = || {
                 let mut parent = keyframe.tree.parent;
                 while let Some(id) = parent {
-                    if let Some(known) = self.bundle.correction(id) {
+                    if let Some(known) = self.bundle.correction(map, id) {
                         return known;
                     }
                     parent = map.keyframe(id).tree.parent;
                 }
                 Pose3::identity()
             };
-            moved.insert(id, self.bundle.correction(id).unwrap_or_else(by_parent));
+            moved.insert(id, self.bundle.correction(map, id).unwrap_or_else(by_parent));
         }
         moved
     }

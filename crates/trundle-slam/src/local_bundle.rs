@@ -64,7 +64,9 @@ pub(crate) fn apply(map: &mut LandmarkMap, bundle: &MapBundle, sensor: &Sensor) 
 fn alone(map: &LandmarkMap, bundle: &MapBundle) -> Vec<(LandmarkId, Vector3)> {
     let mut carried = Vec::new();
     for (id, pose) in bundle.keyframes() {
-        let (Some(keyframe), Some(moved)) = (map.live_keyframe(id), bundle.correction(id)) else { continue };
+        let (Some(keyframe), Some(moved)) = (map.live_keyframe(id), bundle.correction(map, id)) else {
+            continue;
+        };
         for landmark in keyframe.landmarks.iter().flatten().filter(|_| !pose.fixed) {
             let alone = map.landmark(*landmark).filter(|l| l.observations.len() == 1);
             carried.extend(alone.map(|l| (*landmark, moved.transform(l.position))));

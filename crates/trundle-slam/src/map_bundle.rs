@@ -7,11 +7,11 @@ use trundle_optim::{BundleConfig, BundleObservation, BundlePose, BundleProblem, 
 
 /// A bundle adjustment of some keyframes and landmarks, under way while the map goes on changing.
 ///
-/// What comes out is told as corrections: how the bundle moved a keyframe or landmark from where it was when it was taken
-/// up. They fit whatever became of it since.
+/// What comes out counts, also for what something else moved meanwhile: poses and points of one bundle fit each other. What
+/// is not in it goes along by corrections, from where a keyframe is now to where the bundle puts it.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct MapBundle {
-    /// By rising id, where they were, and whether they hold still.
+    /// By rising id, where they were when they were taken up, and whether they hold still.
     keyframes: Vec<(KeyframeId, BundlePose)>,
     /// By rising id, and where they were.
     landmarks: Vec<(LandmarkId, Vector3)>,
@@ -91,28 +91,27 @@ impl MapBundle {
         self.is_done
     }
 
-    /// How the bundle moved a keyframe, `new_from_old` in the visual frame; `None` of one that it does not have.
-    pub fn correction(&self, id: KeyframeId) -> Option<Pose3> {
-        let place = self.place_of(id)?;
-        let (_, before) = self.keyframes[place];
-        Some(self.solver.poses()[place] * before.world_from_camera.inverse())
+    /// How the bundle moves a keyframe from where it is now, `new_from_old` in the visual frame; `None` of one that it does
+    /// not have, or that is forgotten.
+    pub fn correction(&self, map: &LandmarkMap, id: KeyframeId) -> Option<Pose3> {
+        let now = map.live_keyframe(id)?.visual_from_camera;
+        Some(self.solver.poses()[self.place_of(id)?] * now.inverse())
     }
 
     /// Moves the keyframes that were free and are still there.
     pub fn move_keyframes(&self, map: &mut LandmarkMap) {
-        for (id, _) in self.keyframes.iter().filter(|(_, pose)| !pose.fixed) {
-            let (Some(keyframe), Some(moved)) = (map.live_keyframe(*id), self.correction(*id)) else {
-                continue;
-            };
-            map.move_keyframe(*id, (moved * keyframe.visual_from_camera).renormalized());
+        for ((id, _), pose) in self.keyframes.iter().zip(self.solver.poses()).filter(|((_, k), _)| !k.fixed) {
+            if map.live_keyframe(*id).is_some() {
+                map.move_keyframe(*id, pose.renormalized());
+            }
         }
     }
 
     /// Moves the landmarks that are still there.
     pub fn move_landmarks(&self, map: &mut LandmarkMap) {
-        for ((id, before), after) in self.landmarks.iter().zip(self.solver.points()) {
+        for ((id, _), position) in self.landmarks.iter().zip(self.solver.points()) {
             if let Some(landmark) = map.landmark_mut(*id) {
-                landmark.position += after - before;
+                landmark.position = *position;
             }
         }
     }

@@ -17,7 +17,9 @@ pub(super) fn json_schema(name: &str) -> String {
             ("fields", OBJECTS),
             ("data", BYTES),
         ]),
-        "foxglove.ImageAnnotations" => fields(&[("circles", OBJECTS), ("points", OBJECTS), ("texts", OBJECTS)]),
+        "foxglove.ImageAnnotations" => {
+            fields(&[("circles", OBJECTS), ("points", OBJECTS), ("texts", OBJECTS)])
+        }
         "foxglove.SceneUpdate" => fields(&[("deletions", OBJECTS), ("entities", OBJECTS)]),
         "trundle.WheelTicks" => fields(&[STAMP, ("left", COUNTER), ("right", COUNTER)]),
         "trundle.GyroRate" => fields(&[STAMP, ("omega_rad_s", NUMBER)]),

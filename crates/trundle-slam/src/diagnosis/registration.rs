@@ -2,7 +2,7 @@ use super::Suspicion;
 use trundle_core::{DepthImage, GrayImage};
 
 /// Images that are looked at.
-const IMAGES: usize = 8;
+const IMAGES: usize = 16;
 /// Side of the blocks of pixels that are compared, px.
 const BLOCK: usize = 4;
 /// How far the depth image may be shifted, blocks to each side.
@@ -15,6 +15,11 @@ const SHADOW: usize = 12;
 const LEAST_CONTRAST: f64 = 0.1;
 /// How many times as much stronger than without a shift.
 const CLEAR: f64 = 1.5;
+/// How far apart the shifts may be that both halves of the images ask for, blocks: what is near needs another one than what
+/// is far.
+const SAME: i64 = 5;
+/// Farther shifts than this, blocks, no pair of cameras in one housing asks for.
+const MOST: (i64, i64) = (8, 6);
 /// Fewer edge blocks than this in an image say nothing.
 const LEAST: usize = 50;
 
@@ -22,8 +27,9 @@ const LEAST: usize = 50;
 #[derive(Debug, Clone, Default)]
 pub(super) struct Registration {
     images: usize,
-    /// By shift: how strong the picture's edges are under the shifted edges of depth, each image's mean being 1.
-    scores: Vec<f64>,
+    /// By shift: how strong the picture's edges are under the shifted edges of depth, each image's mean being 1; of every
+    /// second image, and of the others.
+    scores: [Vec<f64>; 2],
 }
 
 impl Registration {
@@ -43,10 +49,11 @@ impl Registration {
         if edges.len() < LEAST || mean <= 0.0 {
             return None;
         }
-        self.images += 1;
         let shifts = (2 * REACH.0 + 1) * (2 * REACH.1 + 1);
-        self.scores.resize(shifts as usize, 0.0);
-        for (score, (dx, dy)) in self.scores.iter_mut().zip(shifts_of()) {
+        let scores = &mut self.scores[self.images % 2];
+        scores.resize(shifts as usize, 0.0);
+        self.images += 1;
+        for (score, (dx, dy)) in scores.iter_mut().zip(shifts_of()) {
             let under = edges.iter().filter_map(|(x, y)| picture.at(x + dx, y + dy));
             let (sum, count) = under.fold((0.0, 0), |(sum, count), value| (sum + value, count + 1));
             *score += sum / f64::from(count.max(1)) / mean;
@@ -54,18 +61,29 @@ impl Registration {
         if self.is_open() { None } else { self.judge() }
     }
 
+    /// Both halves of the images must ask for about the same shift, and not for one out of all reason: where there is nothing
+    /// to find, they do not.
     fn judge(&self) -> Option<Suspicion> {
-        let near = |(dx, dy): (i64, i64)| dx.abs() <= 1 && dy.abs() <= 1;
-        let of = |wanted: bool| {
-            let all = self.scores.iter().zip(shifts_of()).filter(move |(_, shift)| near(*shift) == wanted);
-            all.max_by(|a, b| a.0.total_cmp(b.0)).map(|(score, shift)| (*score, shift))
-        };
-        let ((here, _), (there, shift)) = (of(true)?, of(false)?);
-        let mean = self.scores.iter().sum::<f64>() / self.scores.len() as f64;
-        let clear = there - mean > LEAST_CONTRAST * mean && there - mean > CLEAR * (here - mean);
-        let px = |blocks: i64| (blocks * BLOCK as i64) as f64;
-        clear.then_some(Suspicion::Registration { offset: (px(shift.0), px(shift.1)) })
+        let [a, b] = [shift_of(&self.scores[0])?, shift_of(&self.scores[1])?];
+        let same = (a.0 - b.0).abs() <= SAME && (a.1 - b.1).abs() <= SAME;
+        let inside = |(dx, dy): (i64, i64)| dx.abs() <= MOST.0 && dy.abs() <= MOST.1;
+        let px = |blocks: i64| (blocks * BLOCK as i64) as f64 / 2.0;
+        let offset = (px(a.0 + b.0), px(a.1 + b.1));
+        (same && inside(a) && inside(b)).then_some(Suspicion::Registration { offset })
     }
+}
+
+/// The shift, in blocks, that puts the edges of depth clearly better onto those of the picture than none does.
+fn shift_of(scores: &[f64]) -> Option<(i64, i64)> {
+    let near = |(dx, dy): (i64, i64)| dx.abs() <= 1 && dy.abs() <= 1;
+    let of = |wanted: bool| {
+        let all = scores.iter().zip(shifts_of()).filter(move |(_, shift)| near(*shift) == wanted);
+        all.max_by(|a, b| a.0.total_cmp(b.0)).map(|(score, shift)| (*score, shift))
+    };
+    let ((here, _), (there, shift)) = (of(true)?, of(false)?);
+    let mean = scores.iter().sum::<f64>() / scores.len() as f64;
+    let clear = there - mean > LEAST_CONTRAST * mean && there - mean > CLEAR * (here - mean);
+    clear.then_some(shift)
 }
 
 fn shifts_of() -> impl Iterator<Item = (i64, i64)> {

@@ -21,6 +21,8 @@ const LEAST_PAIRS: usize = 6;
 const MOST_PAIRS: usize = 18;
 /// Standard deviations that an offset must be from zero.
 const CLEAR: f64 = 4.0;
+/// Standard deviations that the best focal lengths may be from the exchanged ones.
+const EXCHANGED: f64 = 3.0;
 /// Part of the cost that may be left once the wrong setting is put right.
 const MENDED: f64 = 0.9;
 /// Offsets below this, px at three quarters of the way to a corner, are no wrong setting.
@@ -144,7 +146,8 @@ fn suspicion_of(pairs: &[Pair], camera: &PinholeCamera) -> Option<Suspicion> {
     let as_set = fit(pairs, Offset::zeros(), [false; 6])?;
     let fits = MODELS.iter().filter_map(|model| Some((*model, fit(pairs, Offset::zeros(), *model)?)));
     let (model, best) = fits.min_by(|a, b| a.1.cost.total_cmp(&b.1.cost))?;
-    let clear = best.offset.iter().zip(spread(pairs, model)?.iter()).any(|(o, s)| o.abs() > CLEAR * s);
+    let sigmas = spread(pairs, model)?;
+    let clear = best.offset.iter().zip(sigmas.iter()).any(|(o, s)| o.abs() > CLEAR * s);
     if !clear || best.cost > MENDED * as_set.cost || rim(&best, camera).abs() < HARMLESS_PX {
         return None;
     }
@@ -152,7 +155,11 @@ fn suspicion_of(pairs: &[Pair], camera: &PinholeCamera) -> Option<Suspicion> {
     let (fx, fy) = (camera.fx(), camera.fy());
     Some(if model[0] {
         let found = (fx / (1.0 + offset[0]), fy / (1.0 + offset[1]));
-        Suspicion::FocalLengths { given: (fx, fy), found, swapped: is_swapped(pairs, camera, &as_set, &best) }
+        Suspicion::FocalLengths {
+            given: (fx, fy),
+            found,
+            swapped: is_swapped(pairs, camera, &as_set, (&best, &sigmas)),
+        }
     } else if model[2] {
         Suspicion::PrincipalPoint { offset: (-fx * offset[2], -fy * offset[3]) }
     } else {
@@ -160,10 +167,18 @@ fn suspicion_of(pairs: &[Pair], camera: &PinholeCamera) -> Option<Suspicion> {
     })
 }
 
-/// Whether exchanging the focal lengths mends most of what the best ones mend.
-fn is_swapped(pairs: &[Pair], camera: &PinholeCamera, as_set: &Fitted, best: &Fitted) -> bool {
+/// Whether exchanging the focal lengths mends most of what the best ones mend, and neither of the best speaks against it.
+fn is_swapped(
+    pairs: &[Pair],
+    camera: &PinholeCamera,
+    as_set: &Fitted,
+    (best, sigmas): (&Fitted, &Offset),
+) -> bool {
     let ratio = camera.fx() / camera.fy();
     let exchange = Offset::new(ratio - 1.0, ratio.recip() - 1.0, 0.0, 0.0, 0.0, 0.0);
+    if (0..2).any(|i| (best.offset[i] - exchange[i]).abs() > EXCHANGED * sigmas[i]) {
+        return false;
+    }
     let exchanged = fit(pairs, exchange, [false; 6]);
     exchanged.is_some_and(|exchanged| exchanged.cost - best.cost < 0.5 * (as_set.cost - best.cost))
 }

@@ -63,8 +63,10 @@ impl RgbdSlam {
         if let Some(found) = self.believable(recognised, predicted, reach) {
             return Some(Sighting { map: self.active.id, found });
         }
-        let other =
-            self.resting.get(self.misses % self.resting.len().max(1)).filter(|_| reach != Reach::Told)?;
+        let other = self
+            .resting
+            .get(self.history.len() % self.resting.len().max(1))
+            .filter(|_| reach != Reach::Told)?;
         let found = unrivalled(relocalise(&self.tracker(other, frame, depth, &words)))?;
         Some(Sighting { map: other.id, found })
     }

@@ -10,6 +10,9 @@ use nalgebra::Matrix6;
 use std::sync::Arc;
 use trundle_core::{DepthImage, Pose3};
 
+/// Keyframes of a map that is worth keeping when the camera is lost in it.
+const LEAST_KEYFRAMES: usize = 4;
+
 /// What a frame that was not located can begin.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Beginning {
@@ -68,6 +71,7 @@ impl RgbdSlam {
     }
 
     /// Whether there is no use in waiting to see a known landmark again: none should be in view, or none was found for
+
     /// too long.
     fn is_beyond_the_map(&self, depth: &DepthImage) -> bool {
         let config = &self.config.tracking;
@@ -85,13 +89,17 @@ impl RgbdSlam {
         id
     }
 
-    /// Leaves the active map for an empty one, at its origin.
+    /// Leaves the active map for an empty one, at its origin. One that is hardly begun is forgotten: a camera that finds
+    /// nothing begins such maps for ever, and nobody would know one again.
     fn begin_map(&mut self) {
         let newest = self.resting.iter().map(|map| map.id).max().max(Some(self.active.id));
         let id = MapId(newest.map_or(0, |id| id.0 + 1));
         let vocabulary = Arc::clone(self.active.places.vocabulary());
         let empty = Component::new(id, LandmarkMap::default(), &vocabulary);
-        self.resting.push(std::mem::replace(&mut self.active, empty));
+        let left = std::mem::replace(&mut self.active, empty);
+        if left.map.keyframe_count() >= LEAST_KEYFRAMES {
+            self.resting.push(left);
+        }
         self.resting.sort_by_key(|map| map.id);
         self.belief = Belief { stamp: self.belief.stamp, ..Belief::at(Pose3::identity()) };
         self.placed = true;

@@ -24,11 +24,13 @@ pub struct VisualMapScene<'a> {
 ///
 /// It is seen along the axis in which the camera moved least; the axes are named. Points that are not finite are left out.
 pub fn visual_map_picture(scene: &VisualMapScene) -> (Vec<u8>, Vec<LegendItem>) {
-    let (right, up) = principal_axes(if scene.way.len() > 1 { scene.way } else { scene.landmarks });
+    let (right, up) = principal_axes(if is_way(scene.way) { scene.way } else { scene.landmarks });
     let flat = |p: &Vector3| Vector2::new(p[right], p[up]);
     let points = |points: &[Vector3]| -> Vec<Vector2> { points.iter().map(flat).filter(is_finite).collect() };
     let name = |axis: usize| ["x, m", "y, m", "z, m"][axis];
+    let (middle, half) = middle_of([scene.landmarks, scene.way, scene.keyframes].map(points));
     let picture = MapPicture::blank()
+        .window(middle, half)
         .axes(name(right), name(up))
         .dots("landmarks", &points(scene.landmarks), DotStyle::crowd(LANDMARKS))
         .polyline(
@@ -40,6 +42,32 @@ pub fn visual_map_picture(scene: &VisualMapScene) -> (Vec<u8>, Vec<LegendItem>) 
         .dots("keyframes", &points(scene.keyframes), DotStyle::circles(ESTIMATE).radius(1.6))
         .polyline("closed loops", &links(scene.loops, flat), LineStyle::solid(GOAL).width(1.8).plain());
     (picture.clone().without_legend().to_png(), picture.legend())
+}
+
+/// Whether a camera went far enough, 1 m, to tell which way is up.
+fn is_way(way: &[Vector3]) -> bool {
+    let from = |a: &Vector3| way.iter().any(|b| (b - a).amax() > 1.0);
+    way.iter().find(|a| a.iter().all(|v| v.is_finite())).is_some_and(from)
+}
+
+/// Part of the points at either end of each axis that the picture need not show.
+const STRAY: f64 = 0.02;
+
+/// Middle and half side of the square that shows nearly all points.
+fn middle_of(points: [Vec<Vector2>; 3]) -> (Vector2, f64) {
+    let ends = |axis: usize| {
+        let part = |points: &Vec<Vector2>| {
+            let mut values: Vec<f64> = points.iter().map(|p| p[axis]).collect();
+            values.sort_unstable_by(f64::total_cmp);
+            let skipped = (values.len() as f64 * STRAY) as usize;
+            Some((*values.get(skipped)?, *values.get(values.len() - 1 - skipped)?))
+        };
+        let parts = points.iter().filter_map(part);
+        parts.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1))).unwrap_or((0.0, 0.0))
+    };
+    let (x, y) = (ends(0), ends(1));
+    let half = (x.1 - x.0).max(y.1 - y.0) / 2.0;
+    (Vector2::new(x.0 + x.1, y.0 + y.1) / 2.0, 1.05 * half)
 }
 
 /// Lines between pairs of points, with gaps between them.
