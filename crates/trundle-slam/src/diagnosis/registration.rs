@@ -140,7 +140,7 @@ fn edges_of(depth: &DepthImage, like: &Blocks) -> Vec<(i64, i64)> {
         }
     }
     let place = |i: usize| ((i % like.width) as i64, (i / like.width) as i64);
-    marked.iter().enumerate().filter_map(|(i, edge)| edge.then(|| place(i))).collect()
+    marked.iter().enumerate().filter(|(_, edge)| **edge).map(|(i, _)| place(i)).collect()
 }
 
 #[cfg(test)]

@@ -71,7 +71,6 @@ impl RgbdSlam {
     }
 
     /// Whether there is no use in waiting to see a known landmark again: none should be in view, or none was found for
-
     /// too long.
     fn is_beyond_the_map(&self, depth: &DepthImage) -> bool {
         let config = &self.config.tracking;
