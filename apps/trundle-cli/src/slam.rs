@@ -67,7 +67,7 @@ fn track(
                 let encoded = encoded(&image)?;
                 let report = run.step(image, &odometry);
                 recorder.note(encoded, &report, &run.slam)?;
-                bar.suspend(|| run.warn_of_settings());
+                run.warn_of_settings(&bar);
             }
             Err(error) => run.unreadable.push(report(&bar, &error.to_string())),
         }
@@ -92,9 +92,9 @@ fn begin(args: &SlamArgs, model: &CameraModel) -> Result<RgbdSlam, Failure> {
         let level_from_camera = level_from_first_camera(args.height, args.tilt, args.roll)?;
         return Ok(RgbdSlam::new(camera, config)?.starting_at(level_from_camera));
     };
-    let bytes = std::fs::read(file).map_err(|e| Failure::Input(format!("{}: {e}", file.display())))?;
-    let slam = RgbdSlam::load(&bytes, camera, config);
-    let mut slam = slam.map_err(|e| Failure::Input(format!("{}: {e}", file.display())))?;
+    let refused = |problem: &dyn std::fmt::Display| Failure::Input(format!("{}: {problem}", file.display()));
+    let bytes = std::fs::read(file).map_err(|error| refused(&error))?;
+    let mut slam = RgbdSlam::load(&bytes, camera, config).map_err(|error| refused(&error))?;
     slam.set_mode(if args.localise { Mode::Localisation } else { Mode::Mapping });
     Ok(slam)
 }
@@ -115,9 +115,9 @@ impl SlamRun {
     }
 
     /// Says of each setting that is newly suspected why.
-    fn warn_of_settings(&mut self) {
+    fn warn_of_settings(&mut self, bar: &ProgressBar) {
         for suspicion in &self.slam.suspicions()[self.warned..] {
-            console::warn(&suspicion.to_string());
+            bar.suspend(|| console::warn(&suspicion.to_string()));
         }
         self.warned = self.slam.suspicions().len();
     }

@@ -147,9 +147,9 @@ impl RgbdSlam {
     pub fn step(&mut self, image: &RgbdImage, prior: Option<Pose3>) -> TrackReport {
         let camera = &self.sensor.camera;
         let fits = image.color().width() == camera.width() && image.color().height() == camera.height();
-        let features =
-            if fits { self.extractor.extract(&gray_from_color(image.color())) } else { Features::default() };
-        self.check.note_image(image);
+        let gray = gray_from_color(image.color());
+        let features = if fits { self.extractor.extract(&gray) } else { Features::default() };
+        self.check.note_image(&gray, image.depth());
         self.step_with_features(image.stamp(), features, image.depth(), prior)
     }
 

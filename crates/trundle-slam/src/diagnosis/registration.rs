@@ -34,7 +34,7 @@ pub(super) struct Registration {
 
 impl Registration {
     /// Whether it still wants images.
-    pub fn is_open(&self) -> bool {
+    fn is_open(&self) -> bool {
         self.images < IMAGES
     }
 

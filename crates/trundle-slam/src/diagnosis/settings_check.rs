@@ -6,7 +6,7 @@ use super::travel::Travel;
 use crate::depth::DepthConfig;
 use crate::frame::Frame;
 use crate::sensor::Sensor;
-use trundle_core::{DepthImage, PinholeCamera, Pose3, RgbdImage, Vector2, Vector3, gray_from_color};
+use trundle_core::{DepthImage, GrayImage, PinholeCamera, Pose3, Vector2, Vector3};
 use trundle_vision::{RansacConfig, estimate_rigid_motion, match_mutual};
 
 /// Every so many frames one is looked at.
@@ -54,10 +54,9 @@ impl SettingsCheck {
     }
 
     /// Looks at picture and depth.
-    pub fn note_image(&mut self, image: &RgbdImage) {
-        if self.frames.is_multiple_of(EVERY) && self.registration.is_open() {
-            let gray = gray_from_color(image.color());
-            self.suspicions.extend(self.registration.note(&gray, image.depth()));
+    pub fn note_image(&mut self, gray: &GrayImage, depth: &DepthImage) {
+        if self.frames.is_multiple_of(EVERY) {
+            self.suspicions.extend(self.registration.note(gray, depth));
         }
     }
 
