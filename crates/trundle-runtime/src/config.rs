@@ -1,4 +1,7 @@
-use crate::{camera_mount::CameraMount, last_stage::LastStageConfig, robot::Robot, schedule::Schedule};
+use crate::{
+    camera_mount::CameraMount, last_stage::LastStageConfig, robot::Robot, schedule::Schedule,
+    supervisor_config::SupervisorConfig,
+};
 use serde::{Deserialize, Serialize};
 use trundle_control::{FollowerConfig, SafetyConfig};
 use trundle_core::{DifferentialDrive, DriveLimits, Footprint, Invalid, PinholeCamera};
@@ -43,6 +46,8 @@ pub struct RobotConfig {
     pub docking: LastStageConfig,
     /// Safety.
     pub safety: SafetyConfig,
+    /// Missions, exploration, patience.
+    pub supervisor: SupervisorConfig,
 }
 
 impl Default for RobotConfig {
@@ -64,6 +69,7 @@ impl Default for RobotConfig {
             control: FollowerConfig::default(),
             docking: LastStageConfig::default(),
             safety: SafetyConfig::default(),
+            supervisor: SupervisorConfig::default(),
         }
     }
 }

@@ -1,5 +1,5 @@
 use std::f64::consts::TAU;
-use trundle_core::{Pose2, Twist2, wrap_angle};
+use trundle_core::{Pose2, Twist2, Vector2, wrap_angle};
 
 /// Turning on the spot to see what is around.
 #[derive(Debug, Clone, Copy, Default)]
@@ -10,8 +10,8 @@ pub(crate) struct LookAround {
 
 /// Turn rate, rad/s: slow enough for features to be tracked.
 const RATE: f64 = 0.6;
-/// So many turns see everything twice.
-const TURNS: f64 = 2.0;
+/// Turning to something, it is near enough to the middle of the view, rad.
+const FACED: f64 = 0.05;
 
 impl LookAround {
     /// The command, and a note of how far it has turned.
@@ -21,14 +21,18 @@ impl LookAround {
         Twist2::new(0.0, RATE)
     }
 
-    /// Whether everything around has been seen; the next look begins anew.
-    pub(crate) fn is_over(&mut self, pose: Pose2) -> bool {
-        let over = self.turned > TURNS * TAU;
-        if over {
-            *self = Self { last: Some(pose.theta), turned: 0.0 };
-        }
-        over
+    /// Whether it has turned so many times.
+    pub(crate) fn has_turned(&self, turns: f64) -> bool {
+        self.turned > turns * TAU
     }
+}
+
+/// The turn on the spot that brings `at` (map frame, m) into the middle of the view.
+pub(crate) fn face(pose: Pose2, at: Vector2) -> Twist2 {
+    let ahead = at - pose.position();
+    let off = wrap_angle(ahead.y.atan2(ahead.x) - pose.theta);
+    let is_faced = ahead.norm() < 1e-3 || off.abs() < FACED;
+    Twist2::new(0.0, if is_faced { 0.0 } else { (2.0 * off).clamp(-RATE, RATE) })
 }
 
 #[cfg(test)]
@@ -36,13 +40,20 @@ mod tests {
     use super::*;
 
     #[test]
-    fn two_turns_are_enough() {
+    fn two_turns_are_two_turns() {
         let mut look = LookAround::default();
         let mut steps = 0;
-        while !look.is_over(Pose2::IDENTITY) {
+        while !look.has_turned(2.0) {
             assert_eq!(look.twist(Pose2::new(0.0, 0.0, 0.1 * f64::from(steps))).v, 0.0);
             steps += 1;
         }
         assert!((f64::from(steps) * 0.1 - 2.0 * TAU).abs() < 0.3, "{steps} steps");
+    }
+
+    #[test]
+    fn it_turns_the_shorter_way_to_what_it_faces() {
+        let right = Vector2::new(0.0, -1.0);
+        assert!(face(Pose2::IDENTITY, right).omega < 0.0);
+        assert_eq!(face(Pose2::new(0.0, 0.0, -std::f64::consts::FRAC_PI_2), right), Twist2::ZERO);
     }
 }

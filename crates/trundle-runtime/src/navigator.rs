@@ -1,15 +1,17 @@
 use crate::{
     config::RobotConfig,
     last_stage::{LastStage, Progress},
-    look::LookAround,
+    look::{LookAround, face},
+    progress::ProgressWatch,
     schedule::Ticker,
     stage::{Stage, StageTimes},
     state::DriveState,
+    supervisor_config::SupervisorConfig,
 };
 use trundle_control::{
     FollowPhase, FollowReport, Follower, SafetyAction, SafetyInput, SafetyMemory, SafetyMonitor, SafetyScan,
 };
-use trundle_core::{Footprint, Invalid, OccupancyGrid, Pose2, PoseEstimate, Stamp, Twist2};
+use trundle_core::{Footprint, Invalid, OccupancyGrid, Pose2, PoseEstimate, Stamp, Twist2, Vector2};
 use trundle_planning::{Plan, PlanResult, Planner};
 
 /// What the robot knows of its surroundings when it decides.
@@ -29,16 +31,39 @@ pub(crate) struct Decision {
     pub(crate) replanned: bool,
 }
 
+/// What the robot is asked for, map frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Goal {
+    /// Stand exactly here.
+    Exact(Pose2),
+    /// Come here to see something: a hand's breadth off is as good, and what is blocked is not waited for.
+    View(Pose2),
+    /// Turn on the spot once.
+    Look,
+    /// Stand where you are.
+    Stay,
+}
+
+impl Goal {
+    fn pose(self) -> Option<Pose2> {
+        match self {
+            Self::Exact(pose) | Self::View(pose) => Some(pose),
+            Self::Look | Self::Stay => None,
+        }
+    }
+}
+
 /// From a goal and the surroundings to a safe twist: plans when it must, follows, settles, looks around when no way is
-/// known, and asks the safety monitor last. Where it is tight, turns and straight moves settle instead.
+/// known, waits, and asks the safety monitor last. Where it is tight, turns and straight moves settle instead.
 #[derive(Debug)]
 pub(crate) struct Navigator {
+    config: SupervisorConfig,
     planner: Planner,
     follower: Follower,
     last_stage: LastStage,
     safety: SafetyMonitor,
     check_due: Ticker,
-    goal: Option<Pose2>,
+    goal: Goal,
     plan: Option<Box<PlanResult>>,
     state: DriveState,
     touched: bool,
@@ -46,24 +71,30 @@ pub(crate) struct Navigator {
     started: Option<Stamp>,
     held_since: Option<Stamp>,
     look: LookAround,
+    /// Where the way to the goal ends, when there is none.
+    blocked_at: Option<Vector2>,
+    progress: ProgressWatch,
 }
 
-/// The robot stands so long before its first plan: the gyro's bias is measured and the first map drawn, s.
-const OPENING: f64 = 1.5;
 /// Held by safety for so long, it plans anew from where it stands, s.
-const PATIENCE: f64 = 1.0;
+const PAUSE: f64 = 1.0;
 /// Slower than this the robot stands, m/s.
 const STANDING: f64 = 0.02;
+/// So many turns see everything around twice.
+const TURNS: f64 = 2.0;
+/// One turn, and a little more, sees it once.
+const ONE_TURN: f64 = 1.02;
 
 impl Navigator {
     pub(crate) fn new(config: &RobotConfig, footprint: &Footprint) -> Result<Self, Invalid> {
         Ok(Self {
+            config: config.supervisor.validated()?,
             planner: Planner::new(config.planning, footprint, config.limits, config.drive)?,
             follower: Follower::new(config.control.clone(), config.drive, config.limits)?,
             last_stage: LastStage::new(&config.docking, footprint)?,
             safety: SafetyMonitor::new(config.safety.clone(), footprint)?,
             check_due: Ticker::new(config.schedule.validated()?.check_hz),
-            goal: None,
+            goal: Goal::Stay,
             plan: None,
             state: DriveState::Idle,
             touched: false,
@@ -71,15 +102,30 @@ impl Navigator {
             started: None,
             held_since: None,
             look: LookAround::default(),
+            blocked_at: None,
+            progress: ProgressWatch::default(),
         })
     }
 
-    pub(crate) fn drive_to(&mut self, goal: Pose2) {
-        self.goal = Some(goal);
-        self.state = DriveState::Opening;
-        self.follower.halt();
-        self.last_stage.reset();
+    /// Takes up a goal. From a trajectory that is being driven it goes over to the next one without a stop.
+    pub(crate) fn take_up(&mut self, goal: Goal) {
+        let rolls_on = self.state == DriveState::Driving && goal.pose().is_some();
+        self.goal = goal;
+        self.plan = None;
+        self.held_since = None;
+        self.blocked_at = None;
         self.look = LookAround::default();
+        self.last_stage.reset();
+        self.progress.restart();
+        self.check_due.hurry();
+        if !rolls_on {
+            self.follower.halt();
+        }
+        self.state = match goal {
+            Goal::Stay => DriveState::Idle,
+            Goal::Exact(_) | Goal::View(_) if rolls_on => DriveState::Driving,
+            _ => DriveState::Mapping,
+        };
     }
 
     /// What the bumper says.
@@ -102,30 +148,69 @@ impl Navigator {
 
     /// One control step: maybe a new plan, then a command, then safety's word on it.
     pub(crate) fn step(&mut self, s: &Surroundings<'_>, times: &mut StageTimes) -> Decision {
-        let goal = self.goal.filter(|_| self.wants_plan(s));
+        self.open(s);
+        self.watch(s);
+        let goal = self.goal.pose().filter(|_| self.wants_plan(s));
         let replanned = goal.is_some_and(|goal| times.measure(Stage::Planning, || self.replan(goal, s)));
         let follow = times.measure(Stage::Control, || self.follower.step(&s.estimate, s.now));
         self.note_progress(&follow, s, times);
-        let wanted = match &self.state {
-            DriveState::Looking { .. } => self.look.twist(s.estimate.pose),
-            DriveState::Docking => times.measure(Stage::Control, || self.dock(s)),
-            _ => follow.twist,
-        };
+        let wanted = self.wanted(&follow, s, times);
         let twist = times.measure(Stage::Safety, || self.guard(wanted, s));
         self.follower.sent(twist);
         Decision { twist, replanned }
     }
 
-    /// Whether it is time to plan: at the end of the opening, or when a check finds the old plan wanting.
-    fn wants_plan(&mut self, s: &Surroundings<'_>) -> bool {
+    /// The opening: nothing moves before there is a first view.
+    fn open(&mut self, s: &Surroundings<'_>) {
         let started = *self.started.get_or_insert(s.now);
+        let is_open = s.scan.is_some() && s.now - started >= self.config.opening;
+        if self.state == DriveState::Mapping && is_open && self.goal.pose().is_some() {
+            self.state = DriveState::Planning;
+        }
+    }
+
+    /// Whether the robot knows where it is, and whether it gets on.
+    fn watch(&mut self, s: &Surroundings<'_>) {
+        if self.state.is_over() {
+            return;
+        }
+        let sigma = position_sigma(&s.estimate);
+        let is_lost = matches!(self.state, DriveState::Lost { .. });
+        if sigma > self.config.lost_sigma && !is_lost {
+            self.follower.halt();
+            self.last_stage.reset();
+            self.plan = None;
+            let reason = format!("the position is only known to {sigma:.2} m");
+            self.state = DriveState::Lost { reason };
+        } else if is_lost && sigma < 0.5 * self.config.lost_sigma {
+            self.state = DriveState::Mapping;
+        }
+        let turns_count = matches!(self.state, DriveState::Settling | DriveState::Docking)
+            || self.state == DriveState::Driving
+            || self.goal == Goal::Look && self.state == DriveState::Mapping;
+        let stood = self.progress.standing_for(s.now, s.estimate.pose, turns_count);
+        if stood > self.config.patience {
+            self.give_up(stood);
+        }
+    }
+
+    fn give_up(&mut self, stood: f64) {
+        let why = self.state.reason().map_or_else(|| self.state.name().to_owned(), str::to_owned);
+        self.follower.halt();
+        self.last_stage.reset();
+        self.state = DriveState::Stopped { reason: format!("no progress for {stood:.0} s: {why}") };
+    }
+
+    /// Whether it is time to plan: at the beginning, or when a check finds the old plan wanting.
+    fn wants_plan(&mut self, s: &Surroundings<'_>) -> bool {
         match &self.state {
             DriveState::Idle | DriveState::Arrived | DriveState::Stopped { .. } => false,
-            DriveState::Settling | DriveState::Docking => false,
-            DriveState::Opening => s.scan.is_some() && s.now - started >= OPENING,
-            DriveState::Looking { .. } => self.check_due.due(s.now),
-            DriveState::Held { .. } if self.held_since.is_some_and(|since| s.now - since < PATIENCE) => false,
-            DriveState::Held { .. } => self.check_due.due(s.now),
+            DriveState::Mapping | DriveState::Settling | DriveState::Docking | DriveState::Lost { .. } => {
+                false
+            }
+            DriveState::Planning | DriveState::Recovering { .. } => self.check_due.due(s.now),
+            DriveState::Waiting { .. } if self.held_since.is_some_and(|since| s.now - since < PAUSE) => false,
+            DriveState::Waiting { .. } => self.check_due.due(s.now),
             DriveState::Driving => self.check_due.due(s.now) && !self.plan_holds(s.grid),
         }
     }
@@ -143,7 +228,7 @@ impl Navigator {
 
     /// Plans from the reference where the robot is on it, else from where it stands; true when there is a new plan.
     fn replan(&mut self, goal: Pose2, s: &Surroundings<'_>) -> bool {
-        if matches!(self.state, DriveState::Held { .. }) && self.turned_to_docking(goal, s) {
+        if matches!(self.state, DriveState::Waiting { .. }) && self.turned_to_docking(goal, s) {
             return false;
         }
         let from = match (&self.state, self.follower.reference()) {
@@ -156,6 +241,8 @@ impl Navigator {
                 self.plan = Some(plan);
                 self.state = DriveState::Driving;
                 self.held_since = None;
+                self.blocked_at = None;
+                self.look = LookAround::default();
                 true
             }
             Plan::Found(_) => {
@@ -164,27 +251,34 @@ impl Navigator {
             }
             refused => {
                 if !self.turned_to_docking(goal, s) {
-                    self.look_around(why(&refused), s);
+                    self.no_way(&refused);
                 }
                 false
             }
         }
     }
 
-    /// No way is known: stop, then turn on the spot until one is, or everything around has been seen.
-    fn look_around(&mut self, reason: String, s: &Surroundings<'_>) {
+    /// No way is known: stop, turn on the spot until everything around has been seen, then wait, looking at where it ends.
+    fn no_way(&mut self, refused: &Plan) {
+        let reason = why(refused);
         self.follower.halt();
-        self.state = if self.look.is_over(s.estimate.pose) {
-            DriveState::Stopped { reason }
-        } else {
-            DriveState::Looking { reason }
+        self.plan = None;
+        self.blocked_at = match refused {
+            Plan::Blocked { nearest } => Some(*nearest),
+            _ => self.goal.pose().map(|goal| goal.position()),
+        };
+        self.state = match self.goal {
+            Goal::View(_) => DriveState::Stopped { reason },
+            _ if self.look.has_turned(TURNS) => DriveState::Waiting { reason },
+            _ => DriveState::Recovering { reason },
         };
     }
 
     /// Near the goal, where no path is found or safety holds the robot: by turns and straight moves, if there are such.
     fn turned_to_docking(&mut self, goal: Pose2, s: &Surroundings<'_>) -> bool {
         let stands = s.estimate.twist.v.abs() < STANDING;
-        let turned = stands && self.last_stage.begin_if_possible(s, goal);
+        let is_exact = matches!(self.goal, Goal::Exact(_));
+        let turned = is_exact && stands && self.last_stage.begin_if_possible(s, goal);
         if turned {
             self.start_docking();
         }
@@ -195,6 +289,34 @@ impl Navigator {
         self.follower.halt();
         self.held_since = None;
         self.state = DriveState::Docking;
+    }
+
+    /// The command before safety's word on it.
+    fn wanted(&mut self, follow: &FollowReport, s: &Surroundings<'_>, times: &mut StageTimes) -> Twist2 {
+        let pose = s.estimate.pose;
+        match &self.state {
+            DriveState::Mapping if self.goal == Goal::Look => self.look_once(s),
+            DriveState::Recovering { .. } | DriveState::Lost { .. } => self.look.twist(pose),
+            DriveState::Waiting { .. } => match self.blocked_at.filter(|_| self.plan.is_none()) {
+                Some(at) => face(pose, at),
+                None => follow.twist,
+            },
+            DriveState::Docking => times.measure(Stage::Control, || self.dock(s)),
+            _ => follow.twist,
+        }
+    }
+
+    /// A turn on the spot, and what is around has been seen.
+    fn look_once(&mut self, s: &Surroundings<'_>) -> Twist2 {
+        let is_open = self.started.is_some_and(|started| s.now - started >= self.config.opening);
+        if !is_open || s.scan.is_none() {
+            return Twist2::ZERO;
+        }
+        if self.look.has_turned(ONE_TURN) {
+            self.state = DriveState::Arrived;
+            return Twist2::ZERO;
+        }
+        self.look.twist(s.estimate.pose)
     }
 
     /// One step of turns and straight moves.
@@ -210,7 +332,7 @@ impl Navigator {
     fn hold(&mut self, reason: &str, now: Stamp) {
         self.follower.halt();
         self.held_since.get_or_insert(now);
-        self.state = DriveState::Held { reason: reason.to_owned() };
+        self.state = DriveState::Waiting { reason: reason.to_owned() };
     }
 
     /// Safety's word on a command.
@@ -228,15 +350,15 @@ impl Navigator {
         match (report.action, &self.state) {
             (
                 SafetyAction::Stop(reason),
-                DriveState::Driving | DriveState::Settling | DriveState::Held { .. },
+                DriveState::Driving | DriveState::Settling | DriveState::Waiting { .. },
             ) => {
                 self.held_since.get_or_insert(s.now);
-                self.state = DriveState::Held { reason: reason.to_string() };
+                self.state = DriveState::Waiting { reason: reason.to_string() };
             }
             (SafetyAction::Stop(_), DriveState::Docking) if twist != Twist2::ZERO => {
                 self.last_stage.interrupted(s);
             }
-            (SafetyAction::Pass | SafetyAction::Slow(_), DriveState::Held { .. })
+            (SafetyAction::Pass | SafetyAction::Slow(_), DriveState::Waiting { .. })
                 if self.follower.end().is_some() =>
             {
                 self.held_since = None;
@@ -247,10 +369,14 @@ impl Navigator {
         report.twist
     }
 
-    /// At the end of the trajectory: an arc, or turns and straight moves.
+    /// At the end of the trajectory: an arc, or turns and straight moves; or it is near enough.
     fn begin_to_settle(&mut self, s: &Surroundings<'_>) {
+        let Goal::Exact(goal) = self.goal else {
+            self.follower.halt();
+            self.state = DriveState::Arrived;
+            return;
+        };
         self.state = DriveState::Settling;
-        let Some(goal) = self.goal else { return };
         let preview = self.follower.preview_settling(s.estimate.pose, goal);
         if self.last_stage.takes_over(s, goal, &preview) {
             self.start_docking();
@@ -271,6 +397,13 @@ impl Navigator {
             FollowPhase::Tracking | FollowPhase::Idle => {}
         }
     }
+}
+
+/// The larger standard deviation of the position, m.
+fn position_sigma(estimate: &PoseEstimate) -> f64 {
+    let block = estimate.covariance.fixed_view::<2, 2>(0, 0);
+    let (mean, half) = ((block[(0, 0)] + block[(1, 1)]) / 2.0, (block[(0, 0)] - block[(1, 1)]) / 2.0);
+    (mean + half.hypot(block[(0, 1)])).max(0.0).sqrt()
 }
 
 /// Why there is no plan, for a person.

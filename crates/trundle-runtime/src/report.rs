@@ -15,11 +15,6 @@ pub struct StepReport {
     pub state: DriveState,
     /// Whether the step made a new plan.
     pub replanned: bool,
-}
-
-impl StepReport {
-    /// Whether the robot has arrived or given up.
-    pub fn finished(&self) -> bool {
-        matches!(self.state, DriveState::Arrived | DriveState::Stopped { .. })
-    }
+    /// Whether the mission is over: then `state` says how it ended.
+    pub finished: bool,
 }

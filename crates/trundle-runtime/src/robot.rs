@@ -1,9 +1,12 @@
 use crate::{
     config::RobotConfig,
+    mission::{Mission, Task, TaskRecord},
     navigator::{Navigator, Surroundings},
     report::StepReport,
     schedule::Ticker,
     stage::{Stage, StageTimes},
+    state::DriveState,
+    supervisor::Supervisor,
 };
 use trundle_control::SafetyScan;
 use trundle_core::{
@@ -31,6 +34,7 @@ pub struct Robot {
     mapper: GridMapper,
     map_due: Ticker,
     navigator: Navigator,
+    supervisor: Supervisor,
     latest: Latest,
     times: StageTimes,
 }
@@ -44,6 +48,9 @@ struct Latest {
     /// The scan of the last image.
     scan: Option<Scan>,
 }
+
+/// Exploring, the robot keeps so much more from things than its footprint needs, m: a view is not worth a squeeze.
+const EXPLORING: f64 = 0.03;
 
 impl Robot {
     /// A robot that has just been switched on: where it stands is the map's origin.
@@ -67,14 +74,24 @@ impl Robot {
             map_due: Ticker::new(config.schedule.validated()?.map_hz),
             mapper,
             navigator: Navigator::new(&config, &footprint)?,
+            supervisor: Supervisor::new(&config.supervisor, footprint.circumscribed_radius() + EXPLORING)?,
             latest: Latest::default(),
             times: StageTimes::default(),
         })
     }
 
-    /// Gives the robot a goal pose, map frame.
-    pub fn drive_to(&mut self, goal: Pose2) {
-        self.navigator.drive_to(goal);
+    /// Gives the robot a mission in place of what is left of its old one. It begins with the next reading of the wheels.
+    pub fn begin(&mut self, mission: &Mission) {
+        self.supervisor.begin(mission);
+    }
+
+    /// Gives the robot one goal pose, map frame.
+    ///
+    /// # Errors
+    /// When the goal is not finite.
+    pub fn drive_to(&mut self, goal: Pose2) -> Result<(), Invalid> {
+        self.begin(&Mission::new(vec![Task::Go(goal)])?);
+        Ok(())
     }
 
     /// One sensor event through the whole robot.
@@ -90,8 +107,19 @@ impl Robot {
             SensorEvent::Scan(_) | SensorEvent::Truth { .. } => {}
         }
         report.estimate = Some(self.localizer.estimate());
-        report.state = self.navigator.state().clone();
+        (report.state, report.finished) = self.state();
         report
+    }
+
+    /// What the robot is doing, and whether its mission is over: then the state is that of the whole mission.
+    fn state(&self) -> (DriveState, bool) {
+        let finished = self.supervisor.is_idle() && !self.supervisor.records().is_empty();
+        let state = match self.supervisor.failure() {
+            Some(reason) if finished => DriveState::Stopped { reason },
+            None if finished => DriveState::Arrived,
+            _ => self.navigator.state().clone(),
+        };
+        (state, finished)
     }
 
     /// A gyro reading: into the odometry.
@@ -110,7 +138,13 @@ impl Robot {
             grid: self.mapper.grid(),
             scan: self.latest.carried_scan(),
         };
-        let decision = self.navigator.step(&surroundings, &mut self.times);
+        let (supervisor, navigator) = (&mut self.supervisor, &mut self.navigator);
+        let order =
+            self.times.measure(Stage::Supervision, || supervisor.step(&surroundings, navigator.state()));
+        if let Some(goal) = order {
+            navigator.take_up(goal);
+        }
+        let decision = navigator.step(&surroundings, &mut self.times);
         report.twist = Some(decision.twist);
         report.replanned = decision.replanned;
     }
@@ -173,6 +207,16 @@ impl Robot {
     /// The visual tracker's frame in the map.
     pub fn map_from_visual(&self) -> Option<Pose3> {
         self.localizer.map_from_visual()
+    }
+
+    /// The tasks of the mission that have ended.
+    pub fn tasks_ended(&self) -> &[TaskRecord] {
+        self.supervisor.records()
+    }
+
+    /// The task at hand.
+    pub fn task(&self) -> Option<Task> {
+        self.supervisor.task()
     }
 
     /// The newest plan.

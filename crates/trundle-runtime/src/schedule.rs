@@ -42,6 +42,11 @@ impl Ticker {
         Self { period: 1.0 / hz, last: None }
     }
 
+    /// The stage is due the next time.
+    pub(crate) fn hurry(&mut self) {
+        self.last = None;
+    }
+
     /// Whether the stage is due at `now`; if so, the next time is counted from now. A millisecond early is on time.
     pub(crate) fn due(&mut self, now: Stamp) -> bool {
         let due = self.last.is_none_or(|last| now - last >= self.period - 1e-3);

@@ -17,6 +17,8 @@ pub enum Stage {
     Localization,
     /// Scan into the grid.
     Mapping,
+    /// Mission to goal: where to go or to look next.
+    Supervision,
     /// Grid to path, curve and trajectory.
     Planning,
     /// Trajectory and pose to twist.
@@ -27,13 +29,14 @@ pub enum Stage {
 
 impl Stage {
     /// Every stage, in the order of the data.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Odometry,
         Self::Slam,
         Self::Scan,
         Self::ScanMatch,
         Self::Localization,
         Self::Mapping,
+        Self::Supervision,
         Self::Planning,
         Self::Control,
         Self::Safety,
@@ -48,6 +51,7 @@ impl Stage {
             Self::ScanMatch => "scan_match",
             Self::Localization => "localization",
             Self::Mapping => "mapping",
+            Self::Supervision => "supervision",
             Self::Planning => "planning",
             Self::Control => "control",
             Self::Safety => "safety",

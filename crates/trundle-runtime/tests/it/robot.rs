@@ -31,7 +31,7 @@ fn stand(robot: &mut Robot, seconds: f64, image: impl Fn(Stamp) -> Option<Sensor
 
 fn robot(goal: Pose2) -> Robot {
     let mut robot = Robot::new(RobotConfig::default()).unwrap();
-    robot.drive_to(goal);
+    robot.drive_to(goal).unwrap();
     robot
 }
 
@@ -39,7 +39,7 @@ fn robot(goal: Pose2) -> Robot {
 fn a_blind_robot_does_not_move() {
     let reports = stand(&mut robot(Pose2::new(1.0, 0.0, 0.0)), 5.0, |_| None);
     assert!(reports.iter().all(|report| report.twist == Some(Twist2::ZERO)));
-    assert!(reports.iter().all(|report| report.state == DriveState::Opening));
+    assert!(reports.iter().all(|report| report.state == DriveState::Mapping));
 }
 
 #[test]
@@ -50,7 +50,7 @@ fn it_sets_out_when_the_way_is_seen_and_stops_when_the_images_stop() {
     assert!(reports[120..150].iter().any(|report| report.twist.unwrap().v > 0.05));
     let last = reports.last().unwrap();
     assert_eq!(last.twist, Some(Twist2::ZERO));
-    let DriveState::Held { reason } = &last.state else { panic!("{:?}", last.state) };
+    let DriveState::Waiting { reason } = &last.state else { panic!("{:?}", last.state) };
     assert!(reason.contains("image"), "{reason}");
 }
 
@@ -61,7 +61,7 @@ fn a_goal_in_a_wall_makes_it_look_around_not_drive() {
     assert!(reports.iter().all(|report| report.twist.unwrap().v == 0.0));
     let last = reports.last().unwrap();
     assert!(
-        matches!(&last.state, DriveState::Looking { reason } if reason.contains("goal")),
+        matches!(&last.state, DriveState::Recovering { reason } if reason.contains("goal")),
         "{:?}",
         last.state
     );

@@ -1,0 +1,113 @@
+use serde::{Deserialize, Serialize};
+use std::fmt;
+use trundle_core::{Invalid, Pose2, Stamp};
+
+/// One thing to do.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Task {
+    /// Drive to a pose (map frame) and settle on it.
+    Go(Pose2),
+    /// Look behind every frontier that can be reached, until the map is complete.
+    Explore,
+    /// Drive back to where the robot was switched on, and settle there.
+    Return,
+}
+
+impl fmt::Display for Task {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Go(pose) => {
+                write!(f, "go to ({:.2} m, {:.2} m, {:.0} deg)", pose.x, pose.y, pose.theta.to_degrees())
+            }
+            Self::Explore => f.write_str("explore"),
+            Self::Return => f.write_str("return to the start"),
+        }
+    }
+}
+
+/// Tasks in a row. One that cannot be done is put off to the end and tried once more.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct Mission {
+    tasks: Vec<Task>,
+}
+
+impl Mission {
+    /// The tasks, to be done in this order.
+    ///
+    /// # Errors
+    /// When a goal is not finite; names it by its place.
+    pub fn new(tasks: Vec<Task>) -> Result<Self, Invalid> {
+        for (i, task) in tasks.iter().enumerate() {
+            if let Task::Go(pose) = task
+                && !pose.is_finite()
+            {
+                let value = format!("({}, {}, {})", pose.x, pose.y, pose.theta);
+                return Err(Invalid::new(format!("goal of task {i}"), value, "m, m, rad", "finite numbers"));
+            }
+        }
+        Ok(Self { tasks })
+    }
+
+    /// The tasks.
+    pub fn tasks(&self) -> &[Task] {
+        &self.tasks
+    }
+}
+
+/// How a task ended.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum TaskEnd {
+    /// As it should.
+    Done,
+    /// Not done, for now: it comes once more at the end of the mission.
+    PutOff {
+        /// Why.
+        reason: String,
+    },
+    /// Not done.
+    GivenUp {
+        /// Why.
+        reason: String,
+    },
+}
+
+impl fmt::Display for TaskEnd {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Done => f.write_str("done"),
+            Self::PutOff { reason } => write!(f, "put off: {reason}"),
+            Self::GivenUp { reason } => write!(f, "given up: {reason}"),
+        }
+    }
+}
+
+/// A task that has ended.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct TaskRecord {
+    /// Its place in the mission.
+    pub index: usize,
+    /// What was to be done.
+    pub task: Task,
+    /// How it ended.
+    pub end: TaskEnd,
+    /// When it began.
+    pub from: Stamp,
+    /// When it ended.
+    pub to: Stamp,
+    /// Where the robot believed to stand then, map frame.
+    pub pose: Pose2,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_goal_that_is_no_number_is_refused_by_its_place() {
+        let error = Mission::new(vec![Task::Explore, Task::Go(Pose2::new(f64::NAN, 0.0, 0.0))]).unwrap_err();
+        assert_eq!(error.field, "goal of task 1");
+    }
+}

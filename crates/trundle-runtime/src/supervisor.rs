@@ -1,0 +1,265 @@
+use crate::{
+    mission::{Mission, Task, TaskEnd, TaskRecord},
+    navigator::{Goal, Surroundings},
+    schedule::Ticker,
+    state::DriveState,
+    supervisor_config::SupervisorConfig,
+};
+use std::collections::VecDeque;
+use trundle_core::{Invalid, Pose2, Stamp};
+use trundle_planning::{Exploration, Explorer, Frontier};
+
+/// Works through a mission: gives the navigator its goals, and notes what became of them.
+///
+/// | task | what it gives the navigator | ends when |
+/// |---|---|---|
+/// | go, return | the goal | it has arrived, or given up |
+/// | explore | a turn on the spot, then viewpoint after viewpoint | no frontier is left to look at |
+#[derive(Debug)]
+pub(crate) struct Supervisor {
+    explore: trundle_planning::ExploreConfig,
+    radius: f64,
+    queue: VecDeque<Entry>,
+    current: Option<Current>,
+    records: Vec<TaskRecord>,
+    look_due: Ticker,
+}
+
+/// A task that waits.
+#[derive(Debug, Clone, Copy)]
+struct Entry {
+    index: usize,
+    task: Task,
+    is_second_try: bool,
+}
+
+/// The task at hand.
+#[derive(Debug)]
+struct Current {
+    entry: Entry,
+    from: Stamp,
+    work: Work,
+}
+
+/// What is being done for it.
+#[derive(Debug)]
+enum Work {
+    /// Driving to its goal.
+    Going,
+    /// Looking around, or on the way to a viewpoint.
+    Exploring { explorer: Box<Explorer>, frontier: Option<Frontier> },
+}
+
+/// So often an explorer asks whether what it drives to is still unknown, 1/s.
+const LOOK_HZ: f64 = 1.0;
+
+impl Supervisor {
+    /// A supervisor without a mission; the robot explores keeping `radius` m from things.
+    pub(crate) fn new(config: &SupervisorConfig, radius: f64) -> Result<Self, Invalid> {
+        // Its settings are checked here, once.
+        Explorer::new(config.explore, radius)?;
+        Ok(Self {
+            explore: config.explore,
+            radius,
+            queue: VecDeque::new(),
+            current: None,
+            records: Vec::new(),
+            look_due: Ticker::new(LOOK_HZ),
+        })
+    }
+
+    /// Takes up a mission in place of what is left of the old one.
+    pub(crate) fn begin(&mut self, mission: &Mission) {
+        let entry = |(index, &task)| Entry { index, task, is_second_try: false };
+        self.queue = mission.tasks().iter().enumerate().map(entry).collect();
+        self.current = None;
+        self.records.clear();
+    }
+
+    /// The tasks that have ended.
+    pub(crate) fn records(&self) -> &[TaskRecord] {
+        &self.records
+    }
+
+    /// The task at hand.
+    pub(crate) fn task(&self) -> Option<Task> {
+        self.current.as_ref().map(|current| current.entry.task)
+    }
+
+    /// Whether there is nothing left to do.
+    pub(crate) fn is_idle(&self) -> bool {
+        self.current.is_none() && self.queue.is_empty()
+    }
+
+    /// Why the mission is not done as a whole, once it is over.
+    pub(crate) fn failure(&self) -> Option<String> {
+        let lost: Vec<String> = self.records.iter().filter_map(told).collect();
+        (!lost.is_empty()).then(|| lost.join("; "))
+    }
+
+    /// What the navigator, which is in `state`, shall do next; `None` to go on.
+    pub(crate) fn step(&mut self, s: &Surroundings<'_>, state: &DriveState) -> Option<Goal> {
+        match state {
+            DriveState::Arrived => self.reached(s),
+            DriveState::Stopped { reason } => self.failed(reason, s),
+            _ => {}
+        }
+        if self.current.is_none() {
+            return self.take_up(s);
+        }
+        self.look_on(s, state)
+    }
+
+    /// Begins the next task.
+    fn take_up(&mut self, s: &Surroundings<'_>) -> Option<Goal> {
+        let entry = self.queue.pop_front()?;
+        let (work, goal) = match entry.task {
+            Task::Go(pose) => (Work::Going, Goal::Exact(pose)),
+            Task::Return => (Work::Going, Goal::Exact(Pose2::IDENTITY)),
+            Task::Explore => {
+                let explorer = Explorer::new(self.explore, self.radius)
+                    .expect("invariant: the same settings were checked when the supervisor was made");
+                (Work::Exploring { explorer: Box::new(explorer), frontier: None }, Goal::Look)
+            }
+        };
+        self.current = Some(Current { entry, from: s.now, work });
+        Some(goal)
+    }
+
+    /// While it explores: where to look next, when what it drives to has been seen or has come to an end.
+    fn look_on(&mut self, s: &Surroundings<'_>, state: &DriveState) -> Option<Goal> {
+        let over = matches!(state, DriveState::Arrived | DriveState::Stopped { .. });
+        let driving = matches!(state, DriveState::Driving | DriveState::Waiting { .. });
+        let Some(Current { work: Work::Exploring { explorer, frontier }, .. }) = &mut self.current else {
+            return None;
+        };
+        if !(over || driving && self.look_due.due(s.now)) {
+            return None;
+        }
+        match explorer.next(s.grid, s.estimate.pose) {
+            Exploration::Look(view) => {
+                let is_same =
+                    !over && frontier.as_ref().is_some_and(|old| old.middle == view.frontier.middle);
+                let was_moved = frontier
+                    .as_ref()
+                    .is_some_and(|old| !over && (old.middle - view.frontier.middle).norm() < SMALL_MOVE);
+                if is_same || was_moved {
+                    return None;
+                }
+                *frontier = Some(view.frontier);
+                Some(Goal::View(view.pose))
+            }
+            Exploration::Complete { .. } => {
+                self.end(TaskEnd::Done, s);
+                self.take_up(s).or(Some(Goal::Stay))
+            }
+        }
+    }
+
+    /// The navigator has arrived.
+    fn reached(&mut self, s: &Surroundings<'_>) {
+        match &mut self.current {
+            Some(Current { work: Work::Exploring { explorer, frontier }, .. }) => {
+                if let Some(frontier) = frontier.take() {
+                    explorer.looked_at(&frontier);
+                }
+            }
+            Some(_) => self.end(TaskEnd::Done, s),
+            None => {}
+        }
+    }
+
+    /// The navigator has given up.
+    fn failed(&mut self, reason: &str, s: &Surroundings<'_>) {
+        let Some(current) = &mut self.current else { return };
+        if let Work::Exploring { explorer, frontier } = &mut current.work {
+            // What cannot be driven to now may be later, but not without end.
+            if let Some(frontier) = frontier.take() {
+                explorer.looked_at(&frontier);
+            }
+            return;
+        }
+        let (entry, reason) = (current.entry, reason.to_owned());
+        if entry.is_second_try || self.queue.is_empty() {
+            return self.end(TaskEnd::GivenUp { reason }, s);
+        }
+        let returns = matches!(self.queue.back(), Some(Entry { task: Task::Return, .. }));
+        let place = self.queue.len() - usize::from(returns);
+        self.queue.insert(place, Entry { is_second_try: true, ..entry });
+        self.end(TaskEnd::PutOff { reason }, s);
+    }
+
+    fn end(&mut self, end: TaskEnd, s: &Surroundings<'_>) {
+        if let Some(Current { entry, from, .. }) = self.current.take() {
+            let Entry { index, task, .. } = entry;
+            self.records.push(TaskRecord { index, task, end, from, to: s.now, pose: s.estimate.pose });
+        }
+    }
+}
+
+/// A frontier whose middle moved by less is the one that is being driven to, m.
+const SMALL_MOVE: f64 = 0.3;
+
+fn told(record: &TaskRecord) -> Option<String> {
+    match &record.end {
+        TaskEnd::GivenUp { reason } => Some(format!("task {} ({}): {reason}", record.index + 1, record.task)),
+        TaskEnd::Done | TaskEnd::PutOff { .. } => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use trundle_core::{OccupancyGrid, PoseEstimate, Twist2};
+
+    fn surroundings(grid: &OccupancyGrid) -> Surroundings<'_> {
+        let (stamp, covariance) = (Stamp::default(), nalgebra::Matrix3::zeros());
+        let estimate =
+            PoseEstimate { stamp, pose: Pose2::new(0.35, 0.35, 0.0), twist: Twist2::ZERO, covariance };
+        Surroundings { now: stamp, estimate, grid, scan: None }
+    }
+
+    fn room() -> OccupancyGrid {
+        OccupancyGrid::from_ascii(
+            0.1,
+            "########\n#......#\n#......#\n#......#\n#......#\n#......#\n########\n",
+        )
+        .unwrap()
+    }
+
+    fn supervisor(tasks: &[Task]) -> Supervisor {
+        let mut supervisor = Supervisor::new(&SupervisorConfig::default(), 0.17).unwrap();
+        supervisor.begin(&Mission::new(tasks.to_vec()).unwrap());
+        supervisor
+    }
+
+    #[test]
+    fn goals_come_one_after_the_other_and_what_fails_comes_again_before_the_return() {
+        let (grid, [a, b]) = (room(), [1.0, 2.0].map(|x| Pose2::new(x, 0.0, 0.0)));
+        let mut supervisor = supervisor(&[Task::Go(a), Task::Go(b), Task::Return]);
+        let s = surroundings(&grid);
+        let stopped = DriveState::Stopped { reason: "a closed door".to_owned() };
+        assert_eq!(supervisor.step(&s, &DriveState::Idle), Some(Goal::Exact(a)));
+        assert_eq!(supervisor.step(&s, &DriveState::Driving), None);
+        assert_eq!(supervisor.step(&s, &stopped), Some(Goal::Exact(b)));
+        assert_eq!(supervisor.step(&s, &DriveState::Arrived), Some(Goal::Exact(a)), "once more");
+        assert_eq!(supervisor.step(&s, &stopped), Some(Goal::Exact(Pose2::IDENTITY)));
+        assert_eq!(supervisor.step(&s, &DriveState::Arrived), None);
+        assert!(supervisor.is_idle());
+        assert_eq!(supervisor.records().len(), 4);
+        assert!(
+            supervisor.failure().unwrap().contains("task 1 (go to (1.00 m, 0.00 m, 0 deg)): a closed door")
+        );
+    }
+
+    #[test]
+    fn a_room_that_is_all_known_is_explored_with_one_turn() {
+        let grid = room();
+        let mut supervisor = supervisor(&[Task::Explore]);
+        let s = surroundings(&grid);
+        assert_eq!(supervisor.step(&s, &DriveState::Idle), Some(Goal::Look));
+        assert_eq!(supervisor.step(&s, &DriveState::Mapping), None);
+        assert_eq!(supervisor.step(&s, &DriveState::Arrived), Some(Goal::Stay));
+        assert!(supervisor.is_idle() && supervisor.failure().is_none());
+    }
+}
