@@ -1,6 +1,7 @@
 use crate::dock::DockArgs;
 use crate::experiment::ExperimentArgs;
 use crate::sim::SimArgs;
+use crate::sim::args::UpArg;
 use clap::{Args, Parser, Subcommand};
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -53,18 +54,30 @@ pub struct Common {
 
 /// `trundle demo`
 #[derive(Debug, Args)]
-#[command(after_help = "Example: trundle demo --seed 3 --out out/demo3\n\n\
+#[command(after_help = "Example: trundle demo --seed 3 --direct --out out/demo3\n\n\
     Exit code: 0 goal reached and nothing touched, 1 otherwise, 2 bad input.")]
 pub struct DemoArgs {
     /// Seed of the room's furniture and textures and of all noise.
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,
-    /// The room: demo or obstacles.
-    #[arg(long, value_name = "NAME", default_value = "demo")]
+    /// The room: a built-in scene (`trundle sim --list`), a scene file, a .glb or .gltf, or a map (.yaml) raised to walls.
+    #[arg(long, value_name = "SCENE", default_value = "demo")]
     pub scene: String,
-    /// Goal in the map frame, which starts at the robot: m, m, deg [default: the room's own]
+    /// Where the robot starts in the room: m, m, deg [default: the room's own]
     #[arg(long, value_name = "X,Y,DEG", allow_hyphen_values = true)]
-    pub goal: Option<PoseArg>,
+    pub start: Option<PoseArg>,
+    /// The axis that points up in a .glb or .gltf.
+    #[arg(long, value_enum, value_name = "AXIS", default_value_t = UpArg::Y)]
+    pub up: UpArg,
+    /// Goal in the map frame, which starts at the robot: m, m, deg; may be said again for the next one [default: the room's own]
+    #[arg(long, value_name = "X,Y,DEG", allow_hyphen_values = true)]
+    pub goal: Vec<PoseArg>,
+    /// Drive straight to the goal: the map is drawn on the way [default: explore until the map is complete, do the goals, come back]
+    #[arg(long)]
+    pub direct: bool,
+    /// What breaks, and when: a TOML file as for `trundle sim --faults`.
+    #[arg(long, value_name = "FILE")]
+    pub faults: Option<PathBuf>,
     /// Robot file (see `trundle config`).
     #[arg(long, value_name = "FILE")]
     pub config: Option<PathBuf>,

@@ -1,47 +1,67 @@
 use crate::run::{RunSetup, drive};
-use crate::{Outcome, args::DemoArgs, console, failure::Failure, robot_file, run_output};
+use crate::sim::scene::SceneOptions;
+use crate::{Outcome, args::DemoArgs, console, failure::Failure, robot_file, run_output, sim};
 use trundle::core::{Invalid, Pose2};
 use trundle::io::OutputFolder;
-use trundle::runtime::RobotConfig;
-use trundle::sim::{HeightBand, Scene, SimConfig, Simulator};
+use trundle::runtime::{Mission, RobotConfig, Task};
+use trundle::sim::{FaultSchedule, HeightBand, Scene, SimConfig, Simulator};
 
-/// Seconds of the robot's time after which a demo is given up.
-const TIME_LIMIT: f64 = 180.0;
+/// Seconds of the robot's time after which a task is given up by whoever watches.
+const TASK_LIMIT: f64 = 180.0;
+/// And an exploration.
+const EXPLORE_LIMIT: f64 = 1800.0;
 
 /// `trundle demo`.
 pub fn run(args: &DemoArgs) -> Result<Outcome, Failure> {
     let robot = robot_file::load(args.config.as_deref())?;
-    let scene = Scene::by_name(&args.scene, args.seed)?;
+    let options =
+        SceneOptions { seed: args.seed, up: args.up.axis(), start: args.start.map(|start| start.0) };
+    let scene = sim::scene::load(&args.scene, options)?;
+    let faults = args.faults.as_deref().map(sim::faults::read).transpose()?.unwrap_or_default();
+    let mission = mission(args, &scene)?;
     let setup = RunSetup {
         scene: scene.name.clone(),
         seed: args.seed,
-        goal: args.goal.map_or_else(|| scene.start_from_goal(), |goal| goal.0),
         map_from_world: scene.start.inverse(),
-        time_limit: TIME_LIMIT,
+        time_limit: time_limit(&mission),
+        mission,
         robot: robot.with_seed(args.seed),
     };
-    require_free(&scene, scene.start * setup.goal, &setup.robot)?;
-    let mut body = Simulator::new(scene, simulated(&setup.robot)?, args.seed)
+    for goal in setup.mission.tasks().iter().filter_map(RunSetup::goal_of) {
+        require_free(&scene, scene.start * goal, &setup.robot)?;
+    }
+    let mut body = Simulator::new(scene, simulated(&setup.robot, faults)?, args.seed)
         .map_err(|error| Failure::Input(error.to_string()))?;
     let folder = OutputFolder::create(&args.out)?;
     if !args.common.quiet {
-        let goal = setup.goal;
-        console::say(&format!(
-            "Room '{}', seed {}: to ({:.2} m, {:.2} m, {:.0} deg), {:.1} m away, on camera, wheels and gyro alone.",
-            setup.scene,
-            setup.seed,
-            goal.x,
-            goal.y,
-            goal.theta.to_degrees(),
-            goal.position().norm()
-        ));
+        let (scene, seed) = (&setup.scene, setup.seed);
+        let mission = run_output::told(&setup.mission);
+        console::say(&format!("Room '{scene}', seed {seed}, on camera, wheels and gyro alone: {mission}."));
     }
     let run = drive(&setup, &mut body, &folder, args.common.quiet)?;
     run_output::write(&setup, &run, folder, args.common.quiet)
 }
 
+/// The goals asked for, or the room's own; before them exploration and after them the way back, unless it is to be direct.
+fn mission(args: &DemoArgs, scene: &Scene) -> Result<Mission, Invalid> {
+    let mut goals: Vec<Task> = args.goal.iter().map(|goal| Task::Go(goal.0)).collect();
+    if goals.is_empty() {
+        goals.push(Task::Go(scene.start_from_goal()));
+    }
+    if args.direct {
+        return Mission::new(goals);
+    }
+    Mission::new([vec![Task::Explore], goals, vec![Task::Return]].concat())
+}
+
+/// After so many seconds of the robot's time whoever watches loses patience.
+pub fn time_limit(mission: &Mission) -> f64 {
+    let limit = |task: &Task| if *task == Task::Explore { EXPLORE_LIMIT } else { TASK_LIMIT };
+    mission.tasks().iter().map(limit).sum()
+}
+
 /// Refuses a goal that no robot could reach: outside the room, or where something stands.
-fn require_free(scene: &Scene, world_from_goal: Pose2, robot: &RobotConfig) -> Result<(), Failure> {
+pub fn require_free(scene: &Scene, world_from_goal: Pose2, robot: &RobotConfig) -> Result<(), Failure> {
     let (low, high) = scene.world.bounds();
     let Pose2 { x, y, .. } = world_from_goal;
     if !(low.x..=high.x).contains(&x) || !(low.y..=high.y).contains(&y) {
@@ -63,9 +83,10 @@ fn require_free(scene: &Scene, world_from_goal: Pose2, robot: &RobotConfig) -> R
 }
 
 /// The simulated body of a robot file: the same base and camera, with the simulator's noise.
-fn simulated(robot: &RobotConfig) -> Result<SimConfig, Invalid> {
+pub fn simulated(robot: &RobotConfig, faults: FaultSchedule) -> Result<SimConfig, Invalid> {
     let mut config = SimConfig {
         camera: robot.camera,
+        faults,
         base_from_camera: robot.mount.validated()?.base_from_camera(),
         ..SimConfig::default()
     };

@@ -7,6 +7,7 @@ mod demo;
 mod dock;
 mod experiment;
 mod failure;
+mod goals;
 mod logbook;
 mod map;
 mod picture;

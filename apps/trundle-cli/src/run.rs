@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 use std::time::Instant;
 use trundle::core::{FrameId, Pose2, SensorEvent, Stamp};
 use trundle::io::{EncodedEvent, OutputFolder, PoseInFrame, PosesInFrame, Recorder};
-use trundle::runtime::{Robot, RobotConfig, Stage, StepReport};
+use trundle::runtime::{Mission, Robot, RobotConfig, Stage, StepReport, Task};
 
 /// What a run is: recorded first, and all that a replay needs besides the events.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -14,14 +14,30 @@ pub struct RunSetup {
     pub scene: String,
     /// The seed of room and noise.
     pub seed: u64,
-    /// Where to, map frame.
-    pub goal: Pose2,
+    /// What the robot shall do, map frame.
+    pub mission: Mission,
     /// Moves truth into the map frame; for judges only.
     pub map_from_world: Pose2,
     /// Seconds of the robot's time after which the run is given up.
     pub time_limit: f64,
     /// The robot.
     pub robot: RobotConfig,
+}
+
+impl RunSetup {
+    /// The goal of a task, map frame; `None` for one that has none.
+    pub fn goal_of(task: &Task) -> Option<Pose2> {
+        match task {
+            Task::Go(goal) => Some(*goal),
+            Task::Return => Some(Pose2::IDENTITY),
+            Task::Explore => None,
+        }
+    }
+
+    /// The last goal of the mission.
+    pub fn last_goal(&self) -> Option<Pose2> {
+        self.mission.tasks().iter().rev().find_map(Self::goal_of)
+    }
 }
 
 /// A run that has ended.
@@ -48,7 +64,7 @@ pub fn drive(
 ) -> Result<Run, Failure> {
     let start = Instant::now();
     let mut robot = Robot::new(setup.robot.clone())?;
-    robot.drive_to(setup.goal);
+    robot.begin(&setup.mission);
     let mut recorder = folder.recorder("recording.mcap")?;
     recorder.record_json("/config", "trundle.Config", Stamp::default(), setup)?;
     let mut log = Logbook::default();
@@ -69,7 +85,7 @@ pub fn drive(
             show(&line, &log, &robot, start);
             view.offer(image, &robot, &report);
         }
-        if report.finished() && log.now - *finished.get_or_insert(log.now) >= AFTERMATH {
+        if report.finished && log.now - *finished.get_or_insert(log.now) >= AFTERMATH {
             break;
         }
         if log.elapsed() > setup.time_limit {

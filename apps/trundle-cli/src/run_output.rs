@@ -1,6 +1,7 @@
 use crate::{Outcome, console, failure::Failure, picture, run::Run, run::RunSetup, run_table::RunNumbers};
 use trundle::core::{Footprint, Pose2};
 use trundle::io::{OutputFolder, trajectory_text_from_planar, write_map};
+use trundle::runtime::Mission;
 use trundle::viz::{Card, Chart, Color, Figure, RunReport, Table, Verdict};
 
 /// Writes the folder of a run, prints its table, and says whether the goal was reached.
@@ -30,12 +31,10 @@ fn report(setup: &RunSetup, run: &Run, numbers: &RunNumbers) -> RunReport {
     RunReport {
         title: format!("trundle in the room '{}'", setup.scene),
         subtitle: format!(
-            "Seed {}. A simulated Kobuki with a Kinect V2 started with an empty map and drove to ({:.2} m, {:.2} m, \
-             {:.0} deg) on its camera, wheels and gyro alone.",
+            "Seed {}. A simulated Kobuki with a Kinect V2 started with an empty map and did its mission ({}) on its \
+             camera, wheels and gyro alone.",
             setup.seed,
-            setup.goal.x,
-            setup.goal.y,
-            setup.goal.theta.to_degrees()
+            told(&setup.mission)
         ),
         verdict: Some(if numbers.is_success() { Verdict::Ok(verdict) } else { Verdict::Failed(verdict) }),
         cards: cards(numbers),
@@ -46,7 +45,7 @@ fn report(setup: &RunSetup, run: &Run, numbers: &RunNumbers) -> RunReport {
         estimated_path: run.log.estimates.iter().map(|(_, pose)| *pose).collect(),
         true_path: run.log.truths.iter().map(|(_, pose)| *pose).collect(),
         start: Some(Pose2::IDENTITY),
-        goal: Some(setup.goal),
+        goal: setup.last_goal(),
         footprint: Footprint::disc(setup.robot.footprint_radius).ok(),
         scan: robot.scan().map(|scan| (pose, scan.clone())),
         camera: run.view.image.as_ref().map(|image| picture::camera_view(image, &run.view.features)),
@@ -55,6 +54,11 @@ fn report(setup: &RunSetup, run: &Run, numbers: &RunNumbers) -> RunReport {
         figures: Vec::new(),
         tables: vec![table(numbers)],
     }
+}
+
+/// A mission in words.
+pub fn told(mission: &Mission) -> String {
+    mission.tasks().iter().map(ToString::to_string).collect::<Vec<_>>().join(", ")
 }
 
 fn cards(numbers: &RunNumbers) -> Vec<Card> {

@@ -1,14 +1,16 @@
-use crate::{logbook::TrackCounts, run::Run, run::RunSetup};
+use crate::{goals::GoalOutcome, logbook::TrackCounts, run::Run, run::RunSetup};
 use serde_json::{Map, Value, json};
 use trundle::eval::{GoalError, goal_error};
 use trundle::io::Summary;
-use trundle::runtime::{DriveState, Stage, StageTimes};
+use trundle::runtime::{DriveState, Stage, StageTimes, TaskEnd};
 
 /// The numbers of a run, all but the wall clock's.
 pub struct RunNumbers {
-    /// Where the robot stands in truth, against the goal; `None` without truth.
+    /// The goals of the mission, as they came.
+    pub goals: Vec<GoalOutcome>,
+    /// Where the robot stands in truth at the end, against the last goal; `None` without truth.
     pub goal_error: Option<GoalError>,
-    /// Where it believes to stand, against the goal.
+    /// Where it believes to stand, against the last goal.
     pub believed_error: Option<GoalError>,
     /// The estimate's distance from truth over the run: root of the mean square, m.
     pub estimate_rmse: Option<f64>,
@@ -39,8 +41,9 @@ impl RunNumbers {
     /// The numbers of a run that has ended.
     pub fn of(setup: &RunSetup, run: &Run) -> Self {
         let log = &run.log;
-        let against_goal = |pose| goal_error(setup.goal, pose).ok();
+        let against_goal = |pose| goal_error(setup.last_goal()?, pose).ok();
         Self {
+            goals: GoalOutcome::all(run),
             goal_error: log.truths.last().and_then(|(_, truth)| against_goal(*truth)),
             believed_error: against_goal(run.robot.estimate().pose),
             estimate_rmse: log.estimate_rmse(),
@@ -55,25 +58,36 @@ impl RunNumbers {
         }
     }
 
-    /// Whether the end is near enough to the goal.
+    /// Whether the end is near enough to the last goal, if there is one.
     pub fn is_near(&self) -> bool {
-        self.goal_error.is_some_and(|error| error.distance < NEAR)
+        self.goal_error.is_none_or(|error| error.distance < NEAR)
     }
 
-    /// Whether the heading is near enough to the goal's.
+    /// Whether the heading is near enough to the last goal's, if there is one.
     pub fn is_aligned(&self) -> bool {
-        self.goal_error.is_some_and(|error| error.dtheta.abs().to_degrees() < ALIGNED_DEG)
+        self.goal_error.is_none_or(|error| error.dtheta.abs().to_degrees() < ALIGNED_DEG)
     }
 
-    /// Arrived, in truth, without touching anything.
+    /// Arrived at every goal, in truth, without touching anything.
     pub fn is_success(&self) -> bool {
-        self.state == DriveState::Arrived && self.is_near() && self.is_aligned() && self.contacts == 0
+        let all = self.goals_missed() == 0;
+        self.state == DriveState::Arrived && all && self.is_near() && self.is_aligned() && self.contacts == 0
+    }
+
+    /// Goals that were not reached in truth, though the robot believes so.
+    fn goals_missed(&self) -> usize {
+        let believed = self.goals.iter().filter(|goal| goal.end == TaskEnd::Done);
+        believed.filter(|goal| !goal.is_reached(NEAR, ALIGNED_DEG.to_radians())).count()
     }
 
     /// How it went, in a sentence.
     pub fn verdict(&self) -> String {
         if self.is_success() {
-            return "Goal reached, nothing touched.".to_owned();
+            return match self.goals.len() {
+                0 => "Mission done, nothing touched.".to_owned(),
+                1 => "Goal reached, nothing touched.".to_owned(),
+                n => format!("All {n} goals reached, nothing touched."),
+            };
         }
         let mut faults = Vec::new();
         if self.state != DriveState::Arrived {
@@ -82,6 +96,9 @@ impl RunNumbers {
         if let Some(error) = self.goal_error.filter(|_| !(self.is_near() && self.is_aligned())) {
             let (cm, deg) = (error.distance * 100.0, error.dtheta.to_degrees());
             faults.push(format!("it stands {cm:.1} cm and {deg:.1} deg off the goal"));
+        }
+        if self.goals_missed() > 0 && self.is_near() && self.is_aligned() {
+            faults.push(format!("at {} goals it stood too far off", self.goals_missed()));
         }
         if self.contacts > 0 {
             faults.push(format!("it touched something {} times", self.contacts));
@@ -94,6 +111,9 @@ impl RunNumbers {
         let row = |name: &str, value: String| vec![name.to_owned(), value];
         let error = |e: &GoalError| format!("{:.1} cm, {:.2} deg", e.distance * 100.0, e.dtheta.to_degrees());
         let mut rows = Vec::new();
+        if self.goals.len() > 1 {
+            rows.extend(self.goals.iter().map(GoalOutcome::row));
+        }
         rows.extend(self.goal_error.as_ref().map(|e| row("goal error against truth", error(e))));
         rows.extend(self.believed_error.as_ref().map(|e| row("goal error as believed", error(e))));
         rows.extend(
@@ -130,6 +150,7 @@ impl RunNumbers {
             .set("seed", setup.seed)
             .set("success", self.is_success())
             .set("state", self.state.to_string())
+            .set("goals", &self.goals)
             .set("goal_error_m", self.goal_error.map(|e| e.distance))
             .set("goal_error_dx_m", self.goal_error.map(|e| e.dx))
             .set("goal_error_dy_m", self.goal_error.map(|e| e.dy))

@@ -1,14 +1,14 @@
 //! `trundle sim`: drives through a simulated scene and records what the robot saw.
 
-mod args;
+pub mod args;
 mod data_set;
 mod driver;
-mod faults;
+pub mod faults;
 mod files;
 mod hand;
 mod journey;
-mod map;
-mod scene;
+pub mod map;
+pub mod scene;
 mod start;
 mod table;
 
@@ -43,7 +43,7 @@ pub fn run(args: &SimArgs) -> Result<Outcome, Failure> {
     };
     let mut driver = Driver::read(args)?;
     let folder = args.record.as_deref().map(new_recording).transpose()?;
-    let scene = scene::load(args, name)?;
+    let scene = scene::load(name, args.scene_options())?;
     let grid = args.needs_map().then(|| map::truth(&scene, args.resolution, band)).transpose()?;
     if let (Some(file), Some(grid)) = (&args.map, &grid) {
         map::write(file, grid)?;

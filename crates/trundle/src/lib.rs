@@ -13,13 +13,13 @@
 //! let goal = scene.start_from_goal();
 //! let mut body = Simulator::new(scene, SimConfig::default(), 1)?; // or a driver of yours
 //! let mut robot = Robot::new(RobotConfig::default())?;
-//! robot.drive_to(goal);
+//! robot.drive_to(goal)?;
 //! while let Some(event) = body.next_event()? {
 //!     let report = robot.step(&event);
 //!     if let Some(twist) = report.twist {
 //!         body.command(twist)?;
 //!     }
-//!     if report.finished() {
+//!     if report.finished {
 //!         break;
 //!     }
 //! }

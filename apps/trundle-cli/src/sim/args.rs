@@ -1,3 +1,4 @@
+use super::scene::SceneOptions;
 use crate::args::{Common, PoseArg};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
@@ -122,6 +123,13 @@ pub enum UpArg {
     Y,
     /// As robots have it.
     Z,
+}
+
+impl SimArgs {
+    /// How the scene is made.
+    pub fn scene_options(&self) -> SceneOptions {
+        SceneOptions { seed: self.seed, up: self.up.axis(), start: self.start.map(|start| start.0) }
+    }
 }
 
 impl UpArg {

@@ -1,24 +1,36 @@
-use super::{SimArgs, files::Files, start};
+use super::{files::Files, start};
 use crate::{console, failure::Failure, settings};
 use std::path::{Path, PathBuf};
-use trundle::sim::import::{GltfOptions, RaisedMap};
+use trundle::core::Pose2;
+use trundle::sim::import::{GltfOptions, RaisedMap, UpAxis};
 use trundle::sim::scenes::file::{BaseLoader, SceneFile};
 use trundle::sim::{Lights, Scene, World};
 
 /// Files that the command line names are relative to where the program runs.
 const HERE: Files = Files { folder: PathBuf::new() };
 
-/// The scene that the arguments name: built in, or from a file.
+/// How a scene is made of its name.
+#[derive(Debug, Clone, Copy)]
+pub struct SceneOptions {
+    /// Of everything that is drawn by chance.
+    pub seed: u64,
+    /// The axis of a mesh that points up.
+    pub up: UpAxis,
+    /// Where the robot starts, world frame, if not where the scene says.
+    pub start: Option<Pose2>,
+}
+
+/// The scene of a name: built in, or from a file.
 ///
 /// # Errors
 /// When there is none of that name, or a file is not what it should be; names the file and the item.
-pub fn load(args: &SimArgs, name: &str) -> Result<Scene, Failure> {
+pub fn load(name: &str, args: SceneOptions) -> Result<Scene, Failure> {
     let file = Path::new(name);
     let kind = file.extension().and_then(|extension| extension.to_str()).map(str::to_ascii_lowercase);
     let mut scene = match kind.as_deref() {
         Some("toml") => described(file, args.seed)?,
         Some("glb" | "gltf") => {
-            let options = GltfOptions { up: args.up.axis(), ..GltfOptions::default() };
+            let options = GltfOptions { up: args.up, ..GltfOptions::default() };
             let mesh = HERE.gltf(file, &options).map_err(|error| Failure::Input(error.to_string()))?;
             let world = World::with_meshes(Vec::new(), vec![mesh], args.seed)?;
             warn_of_a_fallen_house(file, &world);
@@ -32,7 +44,7 @@ pub fn load(args: &SimArgs, name: &str) -> Result<Scene, Failure> {
         _ => Scene::by_name(name, args.seed)?,
     };
     if let Some(start) = args.start {
-        scene.start = start.0;
+        scene.start = start;
     }
     Ok(scene)
 }
@@ -67,9 +79,9 @@ fn warn_of_a_fallen_house(file: &Path, world: &World) {
 }
 
 /// The scene of a file that says nothing of the robot: where the arguments say no start, it starts where there is room.
-fn bare(args: &SimArgs, file: &Path, world: World) -> Result<Scene, Failure> {
+fn bare(args: SceneOptions, file: &Path, world: World) -> Result<Scene, Failure> {
     let start = match args.start {
-        Some(start) => start.0,
+        Some(start) => start,
         None => start::roomy_place(&world)?.ok_or_else(|| {
             let problem =
                 "no place with room for the robot was found, say where it starts with --start X,Y,DEG";
