@@ -2,9 +2,10 @@ use crate::{body::WiredBody, console, failure::Failure, logbook::Logbook, view::
 use indicatif::ProgressBar;
 use serde::{Deserialize, Serialize};
 use std::time::Instant;
-use trundle::core::{FrameId, Pose2, SensorEvent, Stamp};
+use trundle::core::{FrameId, Pose2, RobotBody, SensorEvent, Stamp};
 use trundle::io::{EncodedEvent, OutputFolder, PoseInFrame, PosesInFrame, Recorder};
 use trundle::runtime::{Mission, Robot, RobotConfig, Stage, StepReport, Task};
+use trundle::sim::Simulator;
 
 /// What a run is: recorded first, and all that a replay needs besides the events.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -95,6 +96,28 @@ pub fn drive(
     line.finish_and_clear();
     recorder.finish()?;
     Ok(Run { robot, log, view, seconds: start.elapsed().as_secs_f64() })
+}
+
+/// Lets the robot of `setup` live in the simulator without recording: what the simulator says reaches it as it is.
+pub fn live(setup: &RunSetup, body: &mut Simulator) -> Result<Run, Failure> {
+    let start = Instant::now();
+    let mut robot = Robot::new(setup.robot.clone())?;
+    robot.begin(&setup.mission);
+    let mut log = Logbook::default();
+    let mut finished = None;
+    while let Some(event) = RobotBody::next_event(body)? {
+        log.judge(&event, setup.map_from_world);
+        let report = robot.step(&event);
+        if let Some(twist) = report.twist {
+            RobotBody::command(body, twist)?;
+        }
+        log.note(event.stamp(), &report);
+        let is_over = report.finished && log.now - *finished.get_or_insert(log.now) >= AFTERMATH;
+        if is_over || log.elapsed() > setup.time_limit {
+            break;
+        }
+    }
+    Ok(Run { robot, log, view: BestView::default(), seconds: start.elapsed().as_secs_f64() })
 }
 
 fn record<W: std::io::Write + std::io::Seek>(

@@ -1,0 +1,200 @@
+//! Missions through unknown places: a room with obstacles crossed while it is mapped, and a house with ten goals.
+
+use super::{RunsArgs, trial, trial::Trial, trial::TrialPlan};
+use crate::{Outcome, console, demo, failure::Failure, goals::GoalOutcome, robot_file, sim};
+use std::path::Path;
+use trundle::core::{Pose2, Vector2};
+use trundle::io::{OutputFolder, Summary, table_csv, write_map};
+use trundle::runtime::{Mission, Task};
+use trundle::sim::Scene;
+use trundle::sim::import::UpAxis;
+use trundle::viz::{Color, Figure, LineStyle, MapPicture, PoseStyle, Report, Table, Verdict};
+
+/// An experiment of this kind.
+pub struct Story {
+    /// Its name on the command line.
+    pub name: &'static str,
+    /// What the report is called.
+    pub title: &'static str,
+    /// What is asked for, in a sentence.
+    pub told: &'static str,
+}
+
+/// The room of [Li18] with obstacles: to the other end of it, mapping on the way.
+pub const OBSTACLES: Story = Story {
+    name: "obstacles",
+    title: "An unknown room with obstacles",
+    told: "The second experiment of Li, Wang, Yu: a room with obstacles is crossed while it is mapped.",
+};
+
+/// The furnished house of AWS RoboMaker: ten goals in six rooms.
+pub const HOUSE: Story = Story {
+    name: "house",
+    title: "Ten goals in a furnished house",
+    told: "From an empty map to ten goals in six rooms of small_house (AWS RoboMaker).",
+};
+
+/// Crosses the room of obstacles, so many seeds.
+pub fn obstacles(args: &RunsArgs) -> Result<Outcome, Failure> {
+    let robot = robot_file::load(args.config.as_deref())?;
+    let plan = |seed| -> Result<TrialPlan, Failure> {
+        let scene = Scene::by_name("obstacles", seed)?;
+        let mission = Mission::new(vec![Task::Go(scene.start_from_goal())])?;
+        Ok(TrialPlan { name: format!("seed {seed}"), seed, scene, mission, robot: robot.clone() })
+    };
+    let plans = (1..=u64::from(args.seeds)).map(plan).collect::<Result<Vec<_>, _>>()?;
+    finish(&OBSTACLES, args, trial::all(plans, args.common.quiet)?)
+}
+
+/// The robot's start in the house, world frame: m, m, deg.
+const HOUSE_START: (f64, f64, f64) = (0.0, 0.0, 0.0);
+/// The goals, world frame: m, m, deg; by rooms.
+const HOUSE_GOALS: [(f64, f64, f64); 10] = [
+    (3.0, -1.0, 0.0),
+    (6.2, -2.6, -90.0),
+    (6.8, 2.5, 90.0),
+    (3.0, 1.3, 180.0),
+    (0.5, 2.6, 90.0),
+    (-3.2, 0.0, 180.0),
+    (-7.6, -0.6, 180.0),
+    (-6.6, -2.8, -90.0),
+    (-4.2, -4.0, 0.0),
+    (1.0, -4.1, 0.0),
+];
+
+/// Drives to the ten goals of the house, so many seeds.
+pub fn house(args: &RunsArgs, mesh: &Path) -> Result<Outcome, Failure> {
+    let robot = robot_file::load(args.config.as_deref())?;
+    let pose = |(x, y, degrees): (f64, f64, f64)| Pose2::new(x, y, degrees.to_radians());
+    let start = pose(HOUSE_START);
+    let plan = |seed| -> Result<TrialPlan, Failure> {
+        let options = sim::scene::SceneOptions { seed, up: UpAxis::Z, start: Some(start) };
+        let scene = sim::scene::load(&mesh.display().to_string(), options)?;
+        for goal in HOUSE_GOALS {
+            demo::require_free(&scene, pose(goal), &robot)?;
+        }
+        let goals = HOUSE_GOALS.map(|goal| Task::Go(start.inverse() * pose(goal)));
+        let mission = Mission::new(goals.to_vec())?;
+        Ok(TrialPlan { name: format!("seed {seed}"), seed, scene, mission, robot: robot.clone() })
+    };
+    let plans = (1..=u64::from(args.seeds)).map(plan).collect::<Result<Vec<_>, _>>()?;
+    finish(&HOUSE, args, trial::all(plans, args.common.quiet)?)
+}
+
+fn finish(story: &Story, args: &RunsArgs, trials: Vec<Trial>) -> Result<Outcome, Failure> {
+    let folder = OutputFolder::create(&args.out)?;
+    let success = trials.iter().all(|trial| trial.numbers.is_success());
+    let told = verdict(&trials);
+    let verdict = if success { Verdict::Ok(told.clone()) } else { Verdict::Failed(told.clone()) };
+    let table = trials.iter().map(row).fold(Table::new("Runs", HEADER), Table::row);
+    let mut report = Report::new(story.title).subtitle(story.told).verdict(verdict).table(table);
+    for trial in &trials {
+        let png = picture(trial);
+        folder.write(&format!("seed-{}.png", trial.seed), &png)?;
+        write_map(&folder, &format!("seed-{}", trial.seed), &trial.grid)?;
+        report = report.figure(Figure::png(&trial.name, &png).caption(&trial.numbers.verdict()));
+    }
+    folder.write(&format!("{}.csv", story.name), csv(&trials).as_bytes())?;
+    folder.write("report.html", report.to_html().as_bytes())?;
+    folder.write("summary.json", summary(story, &trials, success).to_json().as_bytes())?;
+    let place = folder.commit()?;
+    if !args.common.quiet {
+        let header = HEADER.map(str::to_owned).to_vec();
+        console::table(&std::iter::once(header).chain(trials.iter().map(row)).collect::<Vec<_>>());
+        console::say(&format!("\n{told}\nSee {}", place.join("report.html").display()));
+    }
+    Ok(if success { Outcome::Reached } else { Outcome::Missed })
+}
+
+const HEADER: [&str; 7] =
+    ["run", "goals reached", "worst goal, cm", "contacts", "driven, m", "time, s", "estimate rmse, cm"];
+
+/// The goals that the robot came to, of all.
+fn reached(trial: &Trial) -> (usize, usize) {
+    let goals = &trial.numbers.goals;
+    let mut tasks: Vec<usize> = goals.iter().map(|goal| goal.task).collect();
+    tasks.dedup();
+    tasks.sort_unstable();
+    tasks.dedup();
+    (goals.iter().filter(|goal| goal.is_reached(0.05, 3_f64.to_radians())).count(), tasks.len())
+}
+
+fn worst(trial: &Trial) -> f64 {
+    let errors = trial.numbers.goals.iter().filter_map(|goal: &GoalOutcome| Some(goal.error?.distance));
+    errors.fold(0.0, f64::max)
+}
+
+fn row(trial: &Trial) -> Vec<String> {
+    let (good, all) = reached(trial);
+    let numbers = &trial.numbers;
+    vec![
+        trial.name.clone(),
+        format!("{good} of {all}"),
+        format!("{:.1}", worst(trial) * 100.0),
+        numbers.contacts.to_string(),
+        format!("{:.1}", numbers.path_length),
+        format!("{:.1}", numbers.duration),
+        numbers.estimate_rmse.map_or_else(String::new, |e| format!("{:.1}", e * 100.0)),
+    ]
+}
+
+fn verdict(trials: &[Trial]) -> String {
+    let good = trials.iter().filter(|trial| trial.numbers.is_success()).count();
+    let failed: Vec<String> = trials
+        .iter()
+        .filter(|trial| !trial.numbers.is_success())
+        .map(|trial| format!("{}: {}", trial.name, trial.numbers.verdict()))
+        .collect();
+    let head = format!("{good} of {} runs reached every goal and touched nothing.", trials.len());
+    std::iter::once(head).chain(failed).collect::<Vec<_>>().join("\n")
+}
+
+/// The map with the way driven and the goals.
+fn picture(trial: &Trial) -> Vec<u8> {
+    let map_from_world = trial.world_from_map.inverse();
+    let line = |points: &[Vector2]| points.iter().map(|&p| map_from_world.transform(p)).collect::<Vec<_>>();
+    let mut picture = MapPicture::over(&trial.grid)
+        .axes("x, m", "y, m")
+        .polyline("planned last", &line(&trial.planned), LineStyle::dashed(Color::VERMILLION))
+        .polyline("driven", &line(&trial.driven), LineStyle::solid(Color::BLUE))
+        .pose("start", Pose2::IDENTITY, PoseStyle::named(Color::GREEN));
+    for goal in &trial.numbers.goals {
+        picture = picture.pose(&format!("{}", goal.task + 1), goal.goal, PoseStyle::named(Color::VERMILLION));
+    }
+    picture.to_png()
+}
+
+fn csv(trials: &[Trial]) -> String {
+    let header =
+        ["seed", "goal", "done", "dx_m", "dy_m", "distance_m", "dtheta_rad", "at_s", "contacts_of_run"];
+    let rows = trials.iter().flat_map(|trial| {
+        trial.numbers.goals.iter().map(move |goal| {
+            let number =
+                |value: fn(&trundle::eval::GoalError) -> f64| goal.error.as_ref().map_or(f64::NAN, value);
+            [
+                trial.seed as f64,
+                (goal.task + 1) as f64,
+                f64::from(u8::from(goal.end == trundle::runtime::TaskEnd::Done)),
+                number(|e| e.dx),
+                number(|e| e.dy),
+                number(|e| e.distance),
+                number(|e| e.dtheta),
+                goal.at_s,
+                trial.numbers.contacts as f64,
+            ]
+        })
+    });
+    table_csv(header, rows)
+}
+
+fn summary(story: &Story, trials: &[Trial], success: bool) -> Summary {
+    let mut summary = Summary::new(&format!("experiment {}", story.name));
+    let good = trials.iter().filter(|trial| trial.numbers.is_success()).count();
+    summary
+        .set("success", success)
+        .set("runs", trials.len())
+        .set("runs_without_fault", good)
+        .set("contacts", trials.iter().map(|trial| trial.numbers.contacts).sum::<usize>())
+        .set("worst_goal_m", trials.iter().map(worst).fold(0.0, f64::max));
+    summary
+}

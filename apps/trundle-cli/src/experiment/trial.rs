@@ -1,0 +1,90 @@
+use crate::demo::{simulated, time_limit};
+use crate::run::{Run, RunSetup, live};
+use crate::run_table::RunNumbers;
+use crate::{console, failure::Failure};
+use rayon::prelude::*;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use trundle::core::{OccupancyGrid, Pose2, Vector2};
+use trundle::runtime::{Mission, RobotConfig};
+use trundle::sim::{FaultSchedule, Scene, Simulator};
+
+/// A closed-loop run to be made: robot and simulator, with noise, and no truth in the loop.
+pub struct TrialPlan {
+    /// What it is called in tables.
+    pub name: String,
+    /// The seed of all noise and of the scene.
+    pub seed: u64,
+    /// The room, with the robot's start.
+    pub scene: Scene,
+    /// What the robot shall do, in its map frame.
+    pub mission: Mission,
+    /// The robot.
+    pub robot: RobotConfig,
+}
+
+/// What it came to.
+pub struct Trial {
+    /// What it is called in tables.
+    pub name: String,
+    /// The seed.
+    pub seed: u64,
+    /// Moves the map frame into the world's.
+    pub world_from_map: Pose2,
+    /// The numbers.
+    pub numbers: RunNumbers,
+    /// The way driven in truth, world frame.
+    pub driven: Vec<Vector2>,
+    /// The trajectory planned last, world frame.
+    pub planned: Vec<Vector2>,
+    /// The map, map frame.
+    pub grid: OccupancyGrid,
+}
+
+/// Makes the runs, as many at once as there are threads; the results are in the order of the plans.
+///
+/// # Errors
+/// The first plan that cannot be carried out.
+pub fn all(plans: Vec<TrialPlan>, quiet: bool) -> Result<Vec<Trial>, Failure> {
+    let (line, done, total) = (console::live_line(quiet), AtomicUsize::new(0), plans.len());
+    let trials = plans.into_par_iter().map(|plan| {
+        let trial = one(plan)?;
+        let done = 1 + done.fetch_add(1, Ordering::Relaxed);
+        line.set_message(format!("{done} of {total} runs"));
+        line.tick();
+        Ok(trial)
+    });
+    let trials = trials.collect();
+    line.finish_and_clear();
+    trials
+}
+
+fn one(plan: TrialPlan) -> Result<Trial, Failure> {
+    let TrialPlan { name, seed, scene, mission, robot } = plan;
+    let world_from_map = scene.start;
+    let setup = RunSetup {
+        scene: scene.name.clone(),
+        seed,
+        map_from_world: world_from_map.inverse(),
+        time_limit: time_limit(&mission),
+        mission,
+        robot: robot.with_seed(seed),
+    };
+    let config = simulated(&setup.robot, FaultSchedule::default())?;
+    let mut body = Simulator::new(scene, config, seed).map_err(|error| Failure::Input(error.to_string()))?;
+    let run = live(&setup, &mut body)?;
+    let planned = planned(&run);
+    Ok(Trial {
+        name,
+        seed,
+        world_from_map,
+        numbers: RunNumbers::of(&setup, &run),
+        driven: run.log.truths.iter().map(|(_, pose)| world_from_map.transform(pose.position())).collect(),
+        planned: planned.into_iter().map(|point| world_from_map.transform(point)).collect(),
+        grid: run.robot.grid().clone(),
+    })
+}
+
+fn planned(run: &Run) -> Vec<Vector2> {
+    let points = run.robot.plan().map(|plan| plan.trajectory.points());
+    points.unwrap_or_default().iter().map(|point| point.pose.position()).collect()
+}
