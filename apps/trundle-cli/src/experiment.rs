@@ -1,6 +1,7 @@
 //! `trundle experiment`: the papers' experiments as commands; exit code 1 where a limit is missed.
 
 mod corridor;
+mod faults;
 mod missions;
 mod poses;
 mod trial;
@@ -26,6 +27,8 @@ pub enum Which {
     Obstacles(RunsArgs),
     /// Ten goals in six rooms of a furnished house, from an empty map.
     House(HouseArgs),
+    /// Sensors that break, wheels that slip, people in the way: nothing touched, and on when it can be.
+    Faults(RunsArgs),
     /// The four corridor scenarios of Hong (2024), by the paper's method and by the optimal one.
     Corridor(CorridorArgs),
 }
@@ -37,6 +40,9 @@ pub struct RunsArgs {
     /// Seeds of noise and room: 1 to N.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=10_000))]
     pub seeds: u32,
+    /// Only runs whose name holds this.
+    #[arg(long, value_name = "WORD")]
+    pub only: Option<String>,
     /// Robot file (see `trundle config`).
     #[arg(long, value_name = "FILE")]
     pub config: Option<PathBuf>,
@@ -77,7 +83,7 @@ impl ExperimentArgs {
     /// What every command takes.
     pub fn common(&self) -> &Common {
         match &self.which {
-            Which::Poses(args) | Which::Obstacles(args) => &args.common,
+            Which::Poses(args) | Which::Obstacles(args) | Which::Faults(args) => &args.common,
             Which::House(args) => &args.runs.common,
             Which::Corridor(args) => &args.common,
         }
@@ -90,6 +96,7 @@ pub fn run(args: &ExperimentArgs) -> Result<Outcome, Failure> {
         Which::Poses(args) => poses::run(args),
         Which::Obstacles(args) => missions::obstacles(args),
         Which::House(args) => missions::house(&args.runs, &args.mesh),
+        Which::Faults(args) => faults::run(args),
         Which::Corridor(args) => corridor::run(args),
     }
 }

@@ -215,7 +215,13 @@ mod tests {
     fn surroundings(grid: &OccupancyGrid, pose: Pose2, time: f64) -> Surroundings<'_> {
         let (now, twist) = (Stamp::default().after(time), Twist2::ZERO);
         let covariance = nalgebra::Matrix3::from_diagonal_element(1e-6);
-        Surroundings { now, estimate: PoseEstimate { stamp: now, pose, twist, covariance }, grid, scan: None }
+        Surroundings {
+            now,
+            estimate: PoseEstimate { stamp: now, pose, twist, covariance },
+            grid,
+            scan: None,
+            seen: None,
+        }
     }
 
     fn stage() -> LastStage {

@@ -6,6 +6,7 @@
 
 mod camera_mount;
 mod config;
+mod eye;
 mod last_stage;
 mod level_map;
 mod look;

@@ -1,5 +1,6 @@
 use crate::{
     config::RobotConfig,
+    eye::EyeWatch,
     mission::{Mission, Task, TaskRecord},
     navigator::{Navigator, Surroundings},
     report::StepReport,
@@ -11,7 +12,7 @@ use crate::{
 use trundle_control::SafetyScan;
 use trundle_core::{
     GyroRate, Invalid, OccupancyGrid, Odometry, Pose2, Pose3, PoseEstimate, RgbdImage, Scan, SensorEvent,
-    WheelTicks,
+    Stamp, WheelTicks,
 };
 use trundle_localization::{Localizer, VisualPose, VisualQuality, WheelOdometry, camera_motion};
 use trundle_mapping::{DepthScanner, GridMapper, MapperConfig, ScanMatcher};
@@ -47,6 +48,7 @@ struct Latest {
     image_odometry: Option<Pose2>,
     /// The scan of the last image.
     scan: Option<Scan>,
+    eye: EyeWatch,
 }
 
 /// Exploring, the robot keeps so much more from things than its footprint needs, m: a view is not worth a squeeze.
@@ -137,6 +139,7 @@ impl Robot {
             estimate: self.localizer.estimate(),
             grid: self.mapper.grid(),
             scan: self.latest.carried_scan(),
+            seen: self.latest.eye.seen(),
         };
         let (supervisor, navigator) = (&mut self.supervisor, &mut self.navigator);
         let order =
@@ -151,7 +154,11 @@ impl Robot {
 
     /// An image: the visual pose corrects the estimate; at the map's rate the scan does too, and enters the map.
     fn look(&mut self, image: &RgbdImage, report: &mut StepReport) {
-        let prior = self.camera_motion_since_last_image();
+        let Some(odom_from_base) = self.odometry_at(image.stamp()) else { return };
+        if self.latest.eye.is_frozen(image, odom_from_base) {
+            return;
+        }
+        let prior = self.camera_motion_since_last_image(odom_from_base);
         let track = self.times.measure(Stage::Slam, || self.slam.step(image, prior));
         self.times.measure(Stage::Localization, || correct_by_sight(&mut self.localizer, &track));
         let scan = self.times.measure(Stage::Scan, || self.scanner.scan(image));
@@ -159,6 +166,7 @@ impl Robot {
             self.fit(&scan);
             self.draw(&scan);
         }
+        self.latest.eye.note(&scan);
         self.latest.scan = Some(scan);
         report.track = Some(track);
     }
@@ -182,9 +190,14 @@ impl Robot {
         });
     }
 
+    /// `odom_from_base` when an image was taken, which may be a while ago.
+    fn odometry_at(&self, stamp: Stamp) -> Option<Pose2> {
+        let newest = self.latest.odometry.map(|odometry| odometry.pose);
+        self.localizer.odometry_at(stamp).ok().or(newest)
+    }
+
     /// `previous_camera_from_camera` by wheels and gyro.
-    fn camera_motion_since_last_image(&mut self) -> Option<Pose3> {
-        let odom_from_base = self.latest.odometry?.pose;
+    fn camera_motion_since_last_image(&mut self, odom_from_base: Pose2) -> Option<Pose3> {
         let previous = self.latest.image_odometry.replace(odom_from_base)?;
         Some(camera_motion(previous.inverse() * odom_from_base, self.base_from_camera))
     }
@@ -229,6 +242,11 @@ impl Robot {
         self.latest.scan.as_ref()
     }
 
+    /// Images that were left out because they were the last one again though the robot had moved.
+    pub fn frozen_images(&self) -> usize {
+        self.latest.eye.frozen()
+    }
+
     /// What the stages cost.
     pub fn times(&self) -> &StageTimes {
         &self.times
@@ -258,5 +276,7 @@ fn correct_by_sight(localizer: &mut Localizer, track: &TrackReport) {
         visual_from_camera: track.visual_from_camera,
         covariance: track.covariance,
         quality,
+        map: track.map.number(),
+        recognised: track.relocalised || track.closed_loop.is_some() || track.merged.is_some(),
     });
 }
