@@ -40,6 +40,12 @@ impl Ancestry {
         self.shared.iter().copied().chain(own.into_iter().rev()).collect()
     }
 
+    /// One trajectory for all particles from here on.
+    pub(crate) fn replace(&mut self, trajectory: Vec<(Stamp, Pose2)>) {
+        self.shared = trajectory;
+        self.columns.clear();
+    }
+
     /// Bytes in use.
     pub(crate) fn bytes(&self) -> usize {
         let column = |c: &Column| c.poses.capacity() * size_of::<Pose2>() + c.parents.capacity() * 2;

@@ -2,12 +2,15 @@ use super::{
     ParticleConfig, ScanShape,
     ancestry::Ancestry,
     chance::Chance,
+    closing::{Closer, Tools},
     coarse::CoarseSearch,
+    history::History,
     likelihood::Likelihood,
     motion::{motion_covariance, unknown_motion_covariance},
     proposal::{Proposal, Proposer},
     publish::Publisher,
     resample::{effective, low_variance},
+    store::StoredScan,
 };
 use crate::tiles::{Brush, DrawScratch, FieldModel, TileMap, tile_bytes};
 use nalgebra::{Matrix3, Vector3};
@@ -35,7 +38,11 @@ pub struct ParticleMapper {
     ancestry: Ancestry,
     scratch: Vec<Scratch>,
     publisher: Publisher,
+    history: History,
+    closer: Closer,
     last: Option<Last>,
+    /// Mean ln p(z | m, x) of a point in the last scans.
+    usual: f64,
 }
 
 #[derive(Debug, Clone)]
@@ -98,6 +105,10 @@ pub struct Processed {
     pub resampled: bool,
     /// Whether the odometry jumped farther than `jump`: the pose is then held where it was.
     pub jumped: bool,
+    /// Whether the scan said that the odometry told nothing true: slipping wheels, lost messages.
+    pub slipped: bool,
+    /// When a loop was closed and the way bent: how far the pose went that went farthest, m.
+    pub bent: Option<f64>,
 }
 
 impl ParticleMapper {
@@ -121,7 +132,10 @@ impl ParticleMapper {
             ancestry: Ancestry::default(),
             scratch: Vec::new(),
             publisher: Publisher::new(&config.map),
+            history: History::default(),
+            closer: Closer::default(),
             last: None,
+            usual: USUAL,
             config,
         })
     }
@@ -161,11 +175,16 @@ impl ParticleMapper {
         );
         let best = self.best();
         let proposal = self.particles[best].proposal;
+        if let Some(proposal) = proposal.filter(|p| p.degenerate < 3) {
+            self.usual += USUAL_RATE * (proposal.per_point - self.usual);
+        }
+        self.history.push(StoredScan::new(&self.shape), self.step_covariance(proposal.as_ref()));
         if resampled {
             self.resample();
         } else {
             self.parents = (0..self.particles.len() as u16).collect();
         }
+        let bent = self.close_loops();
         self.updates += 1;
         ScanUpdate::Processed(Processed {
             explained: proposal.map_or(0.0, |p| p.explained),
@@ -176,6 +195,8 @@ impl ParticleMapper {
             effective,
             resampled,
             jumped,
+            slipped: proposal.is_some_and(|p| p.slipped),
+            bent,
         })
     }
 
@@ -201,7 +222,7 @@ impl ParticleMapper {
     /// Bytes that maps, ancestry and buffers hold; tiles that particles share count once.
     pub fn bytes(&self) -> usize {
         let maps = tile_bytes(self.particles.iter().map(|p| &p.map));
-        maps + self.ancestry.bytes()
+        maps + self.ancestry.bytes() + self.history.bytes()
     }
 
     /// Counts the changes that [`ParticleMapper::grid`] has shown.
@@ -222,6 +243,7 @@ impl ParticleMapper {
             likelihood: &self.likelihood,
             shape: &self.shape,
             motion_covariance: scaled(covariance, per_metre),
+            usual: self.usual,
         };
         let motion = Pose2 { x: motion.x * per_metre, y: motion.y * per_metre, ..motion };
         let (seed, updates, brush, shape) = (self.seed, self.updates, &self.brush, &self.shape);
@@ -248,6 +270,44 @@ impl ParticleMapper {
                 brush.draw(&mut particle.map, &mut scratch.draw, particle.pose, shape);
             }
         });
+    }
+
+    /// Covariance of the step to the last pose in its frame: m, m, rad.
+    fn step_covariance(&self, proposal: Option<&Proposal>) -> Matrix3<f64> {
+        let least = Matrix3::from_diagonal(&Vector3::new(1e-4, 1e-4, 2e-5));
+        let Some(proposal) = proposal else { return least };
+        let (s, c) = proposal.pose.theta.sin_cos();
+        let turn = Matrix3::new(c, s, 0.0, -s, c, 0.0, 0.0, 0.0, 1.0);
+        least + turn * scaled(proposal.covariance, self.config.map.resolution) * turn.transpose()
+    }
+
+    /// Looks for loops; where one is closed, the best particle's way and map are bent, and all go on from there.
+    fn close_loops(&mut self) -> Option<f64> {
+        let trajectory = self.trajectory();
+        let poses: Vec<Pose2> = trajectory.iter().map(|(_, pose)| *pose).collect();
+        let tools = Tools { config: &self.config, brush: &self.brush, likelihood: &self.likelihood };
+        let closing = self.closer.look(&tools, &mut self.history, &poses)?;
+        if closing.farthest < self.config.map.resolution {
+            return None;
+        }
+        let mut map = TileMap::default();
+        let mut draw = DrawScratch::default();
+        let per_metre = 1.0 / self.config.map.resolution;
+        let cells = |pose: Pose2| Pose2 { x: pose.x * per_metre, y: pose.y * per_metre, ..pose };
+        for (scan, pose) in self.history.scans.iter().zip(&closing.poses) {
+            self.shape.set_stored(&self.config, scan);
+            self.brush.draw(&mut map, &mut draw, cells(*pose), &self.shape);
+        }
+        let stamps = trajectory.iter().map(|(stamp, _)| *stamp);
+        self.ancestry.replace(stamps.zip(closing.poses.iter().copied()).collect());
+        let last = *closing.poses.last().expect("invariant: loops are closed of some poses");
+        for particle in &mut self.particles {
+            particle.pose = cells(last);
+            particle.log_weight = 0.0;
+            particle.map = map.clone();
+        }
+        self.parents = vec![0; self.particles.len()];
+        Some(closing.farthest)
     }
 
     /// Normalises the weights; the effective number of particles, and whether it is too low.
@@ -286,6 +346,10 @@ impl ParticleMapper {
     }
 }
 
+/// What a point of a scan is like before any was seen, nats: half of the points at obstacles, half on unknown ground.
+const USUAL: f64 = -1.0;
+/// Weight of a new scan in what is usual: about the last twenty count.
+const USUAL_RATE: f64 = 0.05;
 /// How far the field of nearest obstacles reaches, m.
 const FIELD_REACH: f64 = 0.3;
 /// Sigma of the coarse search, cells: one step of it.

@@ -3,9 +3,13 @@
 mod ancestry;
 mod carry;
 mod chance;
+mod closing;
 mod coarse;
 mod config;
 mod directions;
+mod find;
+mod graph;
+mod history;
 mod likelihood;
 mod mapper;
 mod motion;
@@ -14,6 +18,7 @@ mod proposal;
 mod publish;
 mod resample;
 mod shape;
+mod store;
 
 pub use carry::carry_trajectory;
 pub use config::{MotionConfig, ParticleConfig};

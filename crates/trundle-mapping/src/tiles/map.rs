@@ -73,6 +73,22 @@ impl TileMap {
         }
     }
 
+    /// The lowest and the highest coordinates of tiles that hold something.
+    pub(crate) fn extent(&self) -> Option<((i32, i32), (i32, i32))> {
+        let tiles = self.chunks().flat_map(|(corner, chunk)| Self::tiles_of(corner, chunk));
+        tiles.fold(None, |bounds, (at, _)| {
+            let (low, high): ((i32, i32), (i32, i32)) = bounds.unwrap_or((at, at));
+            Some(((low.0.min(at.0), low.1.min(at.1)), (high.0.max(at.0), high.1.max(at.1))))
+        })
+    }
+
+    /// All tiles that hold something, with their coordinates.
+    pub(crate) fn tiles(&self) -> impl Iterator<Item = ((i32, i32), &Tile)> {
+        self.chunks()
+            .flat_map(|(corner, chunk)| Self::tiles_of(corner, chunk))
+            .map(|(at, tile)| (at, &**tile))
+    }
+
     fn get(&self, tile: (i32, i32)) -> Option<&Arc<Tile>> {
         self.chunk(tile)?.tiles[Chunk::place(tile)].as_ref()
     }
