@@ -1,5 +1,5 @@
 //! Way-points, curve and timing on the maps of ../shared/data/nav, in numbers:
-//! `cargo run --release -p trundle-planning --example plan_bench [-- --csv PAIRS.csv]`.
+//! `cargo run --release -p trundle-planning --example plan_bench [-- --csv PAIRS.csv] [--seed N]`.
 //!
 //! Each map has the questions that come with it and random ones between connected places. Each is asked 20 times
 //! with the distance field up to date, and the best CPU time of the thread counts: it says something on a busy machine too.
@@ -40,6 +40,8 @@ struct Row {
     goal: Pose2,
     ms: f64,
     length: f64,
+    /// Of the way-points.
+    way: f64,
     /// The shortest any-angle length for the footprint.
     shortest: f64,
     /// The same for the room that the plan keeps, up to the margin.
@@ -50,16 +52,16 @@ struct Row {
 
 fn main() {
     let Some(data) = nav_data::data() else { return };
-    let csv = std::env::args().skip_while(|word| word != "--csv").nth(1);
+    let csv = argument("--csv");
     let mut shares = Vec::new();
     let mut lines = String::from("map,sx,sy,sa,gx,gy,ga,ms,length_m,shortest_m\n");
     println!(
         "disc of {RADIUS} m; CPU ms with the field up to date, each question's best of {ROUNDS}; length over Theta*'s of the same clearance, of the footprint"
     );
     println!(
-        "| map | cells | found | in one curve | ms median | p99 | worst | length mean | worst | footprint mean | worst |"
+        "| map | cells | found | in one curve | ms median | p99 | worst | length mean | worst | way-points worst | footprint mean | worst |"
     );
-    println!("|---|---|---|---|---|---|---|---|---|---|---|");
+    println!("|---|---|---|---|---|---|---|---|---|---|---|---|");
     for (name, file) in [
         ("depot", "nav2/depot.yaml"),
         ("tb3_sandbox", "nav2/tb3_sandbox.yaml"),
@@ -120,8 +122,18 @@ fn measure(grid: &OccupancyGrid, pairs: &[(Pose2, Pose2)]) -> Vec<Row> {
         support::judge(grid, &result, *start, *goal, RADIUS);
         let by = |room: f64| shortest::shortest(&field, RADIUS + room, start.position(), goal.position());
         let (shortest, roomy) = (by(0.0), by(result.min_clearance.clamp(0.0, MARGIN)));
-        let curves = result.curves().count();
-        Some(Row { start: *start, goal: *goal, ms, length: result.length, shortest, roomy, curves, stages })
+        let (curves, way) = (result.curves().count(), result.way_points.length());
+        Some(Row {
+            start: *start,
+            goal: *goal,
+            ms,
+            length: result.length,
+            way,
+            shortest,
+            roomy,
+            curves,
+            stages,
+        })
     };
     pairs.iter().filter_map(ask).collect()
 }
@@ -156,11 +168,12 @@ fn print_row(name: &str, grid: &OccupancyGrid, asked: usize, rows: &[Row]) {
     let ms = sorted(|row| row.ms);
     let ratio = sorted(|row| row.length / row.roomy);
     let bare = sorted(|row| row.length / row.shortest);
+    let way = sorted(|row| row.way / row.roomy);
     let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
     let at = |values: &[f64], share: f64| values[((values.len() - 1) as f64 * share).round() as usize];
     let one = rows.iter().filter(|row| row.curves == 1).count();
     println!(
-        "| {name} | {} x {} | {} of {asked} | {one} | {:.2} | {:.2} | {:.2} | {:.3} | {:.3} | {:.3} | {:.3} |",
+        "| {name} | {} x {} | {} of {asked} | {one} | {:.2} | {:.2} | {:.2} | {:.3} | {:.3} | {:.3} | {:.3} | {:.3} |",
         grid.geometry().width,
         grid.geometry().height,
         rows.len(),
@@ -169,9 +182,15 @@ fn print_row(name: &str, grid: &OccupancyGrid, asked: usize, rows: &[Row]) {
         at(&ms, 1.0),
         mean(&ratio),
         at(&ratio, 1.0),
+        at(&way, 1.0),
         mean(&bare),
         at(&bare, 1.0)
     );
+}
+
+/// The word after an option.
+fn argument(option: &str) -> Option<String> {
+    std::env::args().skip_while(|word| word != option).nth(1)
 }
 
 /// Questions between places that 4-neighbour moves between free centres connect.
@@ -180,7 +199,7 @@ fn random_pairs(grid: &OccupancyGrid, count: usize) -> Vec<(Pose2, Pose2)> {
     let geometry = *grid.geometry();
     let sure = RADIUS + geometry.resolution / 2.0;
     let open = |cell: CellIndex| field.at_cell(cell) >= sure && grid.get(cell) == Cell::Free;
-    let mut seed = 1_u64;
+    let mut seed = argument("--seed").map_or(1_u64, |seed| seed.parse().unwrap());
     let mut next = move || {
         seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (seed >> 33) as f64 / f64::from(1_u32 << 31)
