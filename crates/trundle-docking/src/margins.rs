@@ -12,7 +12,7 @@ use crate::space::Space;
 use trundle_core::Footprint;
 
 /// Less margin is taken where it saves this part of the time.
-const SAVING: f64 = 0.5;
+const SAVING: f64 = 0.25;
 /// A manoeuvre of more than so many times the bound is compared with those of less margin.
 const LONG: f64 = 3.0;
 /// Boxes for that bound.
@@ -50,7 +50,7 @@ impl<'a> Margins<'a> {
         let quick = self.one_or_two(self.most / 3.0).or_else(|| self.one_or_two(self.least));
         let Some(quick) = quick else { return self.told(self.of_many()) };
         match self.many(self.most, PART) {
-            Ok(slow) if SAVING * slow.legs.0 <= quick.legs.0 => self.solution(slow),
+            Ok(slow) if (1.0 - SAVING) * slow.legs.0 <= quick.legs.0 => self.solution(slow),
             _ => self.solution(quick),
         }
     }
@@ -64,12 +64,12 @@ impl<'a> Margins<'a> {
             return whole;
         }
         let least = match (whole, self.many(self.least, 1)) {
-            (Ok(whole), Ok(least)) if SAVING * whole.legs.0 <= least.legs.0 => return Ok(whole),
+            (Ok(whole), Ok(least)) if (1.0 - SAVING) * whole.legs.0 <= least.legs.0 => return Ok(whole),
             (Ok(whole), Err(_)) => return Ok(whole),
             (_, least) => least?,
         };
         match self.many(self.most / 3.0, 1) {
-            Ok(between) if SAVING * between.legs.0 <= least.legs.0 => Ok(between),
+            Ok(between) if (1.0 - SAVING) * between.legs.0 <= least.legs.0 => Ok(between),
             _ => Ok(least),
         }
     }

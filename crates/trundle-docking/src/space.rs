@@ -145,7 +145,8 @@ impl<'a> Space<'a> {
         self.work.get()
     }
 
-    fn spend(&self, work: u64) {
+    /// Counts work done elsewhere on behalf of this space.
+    pub(crate) fn spend(&self, work: u64) {
         self.work.set(self.work.get() + work);
     }
 

@@ -20,6 +20,8 @@ struct Node {
 
 /// Parts of a free way at which a leg may end.
 const PARTS: [f64; 7] = [1.0, 0.8, 0.6, 0.42, 0.26, 0.13, 0.05];
+/// What two estimates cost, in units of [`crate::Space::work`].
+const ESTIMATE: u64 = 60;
 /// Poses count as the same within a cell of this side, m, ...
 const CELL: f64 = 0.02;
 /// ... and this sector, rad.
@@ -109,6 +111,7 @@ fn spread(
     estimate: &mut impl FnMut(&Search<'_, '_>, &Pose2) -> f64,
 ) {
     let task = search.task;
+    search.space.spend(fan.len() as u64 * PARTS.len() as u64 * ESTIMATE);
     for ray in fan {
         // The first ray is the heading it came on: going on along it is no new leg.
         if index > 0 && ray.cost == 0.0 {

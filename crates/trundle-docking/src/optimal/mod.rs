@@ -134,14 +134,12 @@ pub fn many(task: Task, space: &mut Space<'_>, effort: Effort) -> Outcome {
         if side < CELLS[0] || wide {
             led_by_cells(&mut search, &mut second, size, effort.nodes);
         }
-        if search.best.is_some() {
-            break;
+        if search.best.is_none() {
+            continue;
         }
+        shorten_best(&mut search);
+        break;
     }
-    if let Some(best) = search.best.take() {
-        search.best = Some(shorten(&task, search.space, best, limit));
-    }
-    polish_best(&mut search);
     search.best.map_or(Outcome::Nothing, Outcome::Found)
 }
 
@@ -174,8 +172,16 @@ fn led_by_cells<'a>(search: &mut Search<'_, 'a>, second: &mut Space<'a>, side: f
     }
 }
 
+fn shorten_best(search: &mut Search<'_, '_>) {
+    if let Some(best) = search.best.take() {
+        search.best = Some(shorten(&search.task, search.space, best, search.limit));
+    }
+    polish_best(search);
+}
+
 fn polish_best(search: &mut Search<'_, '_>) {
+    let limit = search.limit.max(search.space.work() + LITTLE);
     if let Some((time, legs)) = &search.best {
-        search.best = Some(polish(&search.task, search.space, legs, *time));
+        search.best = Some(polish(&search.task, search.space, legs, *time, limit));
     }
 }

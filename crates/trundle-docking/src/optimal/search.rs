@@ -111,6 +111,7 @@ impl<'s, 'a> Search<'s, 'a> {
 
     /// Every pair of a heading here and a heading at the goal whose legs meet, when both legs are free.
     fn collect_pairs(&mut self, pose: &Pose2, rays: &[Ray], spent: f64) {
+        self.space.spend(rays.len() as u64 * self.goal_rays.len() as u64);
         let rest = self.task.goal.position() - pose.position();
         let to_beat = self.time_to_beat();
         let task = self.task;
