@@ -24,8 +24,8 @@ pub(crate) struct Tools<'a> {
 #[derive(Debug, Default)]
 pub(crate) struct Closer {
     /// The way at the last look, m.
-    looked_at: f64,
-    pending: Vec<Tie>,
+    pub(crate) looked_at: f64,
+    pub(crate) pending: Vec<Tie>,
     submaps: Submaps,
 }
 
@@ -50,7 +50,7 @@ const MOST_REFERENCE: usize = 48;
 const MOST_CANDIDATES: usize = 2;
 
 /// By so much a place must be better than every other one, and than none, nats: 1 in 3000.
-const PROOF: f64 = 16.0;
+pub(crate) const PROOF: f64 = 16.0;
 
 impl Closer {
     /// Looks whether the end of `poses` (m) has come back to an earlier part of them.

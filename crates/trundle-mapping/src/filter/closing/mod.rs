@@ -5,5 +5,5 @@ mod closer;
 mod submap;
 mod verify;
 
-pub(crate) use closer::{Closer, Tools};
+pub(crate) use closer::{Closer, PROOF, Tools};
 pub(crate) use verify::{Finder, Found};

@@ -54,7 +54,7 @@ const HELD: f64 = 1e9;
 mod tests {
     use super::*;
 
-    /// Eight poses around a square, each step off by a degree: the loop closes and the error is spread.
+    /// Eight poses around a square, each step off by some degrees: the loop closes and the error is spread.
     #[test]
     fn a_loop_spreads_its_error_evenly() {
         let truth: Vec<Pose2> = (0..9)
@@ -65,7 +65,7 @@ mod tests {
             })
             .collect();
         let covariance = Matrix3::from_diagonal(&Vector3::new(1e-3, 1e-3, 1e-4));
-        let wrong = Pose2::new(0.01, 0.0, 0.0175);
+        let wrong = Pose2::new(0.01, 0.0, 0.06);
         let mut ties: Vec<Tie> = (0..8)
             .map(|i| Tie {
                 from: i as u32,
@@ -82,7 +82,7 @@ mod tests {
         ties.push(Tie { from: 0, to: 8, from_to: truth[8], covariance: covariance * 1e-3 });
         let solved = solve(poses, &ties).unwrap();
         for (found, truth) in solved.iter().zip(&truth) {
-            assert!(found.distance(truth) < 0.15, "{found:?} {truth:?}");
+            assert!(found.distance(truth) < 0.25, "{found:?} {truth:?}");
         }
         assert!(solved[8].distance(&truth[8]) < 0.01);
         // What nothing holds is not solved.
