@@ -100,7 +100,8 @@ impl SortedRow {
             // Where the ray crossed the floor.
             let fall = m.camera_height - height;
             let crossing = range * m.camera_height / fall;
-            let drop = valid & (height < -greater(edge, m.drop_depth)) & (crossing <= m.max_range) & hit;
+            // No pixel flies below the floor: what is down there was seen.
+            let drop = valid & (height < -greater(edge, m.drop_depth)) & (crossing <= m.max_range) & seen;
 
             let mut mark = pick(in_band, pick(hit, kind::OBSTACLE, kind::DOUBTFUL), kind::NOTHING);
             let (from, to) = (range * m.floor_share(), range);
