@@ -16,21 +16,26 @@ const LOOKS: usize = 16;
 /// The share of the bound that is asked for, so that what lies between two looks keeps it too.
 const SHARE: f64 = 0.97;
 
-/// The places where the curve bends more than `most`, 1/m.
-pub(super) fn bent(curve: &Curve, most: f64) -> Vec<Place> {
+/// Parametric speed below which a curve is near a cusp, where no small change helps.
+const CUSP: f64 = 0.3;
+
+/// The places where the curve bends more than `most`, 1/m; `None` when it is near a cusp at one of them.
+pub(super) fn bent(curve: &Curve, most: f64) -> Option<Vec<Place>> {
     let mut places = Vec::new();
     for (piece, bezier) in curve.pieces().iter().enumerate() {
         for k in 0..=LOOKS {
             let u = k as f64 / LOOKS as f64;
             let jet = bezier.jet(u);
             let speed = jet.derivative.norm();
-            let bends = jet.derivative.perp(&jet.second).abs() > most * speed * speed * speed;
-            if bends {
+            if jet.derivative.perp(&jet.second).abs() > most * speed * speed * speed {
+                if speed < CUSP {
+                    return None;
+                }
                 places.push((piece, u));
             }
         }
     }
-    places
+    Some(places)
 }
 
 impl Rows<'_> {

@@ -83,7 +83,7 @@ pub(crate) fn fit(
     let layout = Layout { degree: config.degree, pieces: stretches.len() };
     let (p, q) = objective::objective(stretches, layout, smoothing);
     let (mut sides, mut places): (Vec<Side>, Vec<Place>) = (nearby(stretches, config.degree), Vec::new());
-    let mut bent: Option<Curve> = None;
+    let (mut bent, mut bends) = (None, 0);
     for _ in 0..ROUNDS {
         let mut rows = Rows::new(layout, stretches);
         rows.ends(tangents.0, tangents.1);
@@ -106,12 +106,15 @@ pub(crate) fn fit(
         if crossed.is_empty() {
             let corridors = stretches.iter().map(|stretch| stretch.planes.clone()).collect();
             let curve = curve.within(corridors, active(&sides, &multipliers[before..]));
-            let more = bend::bent(&curve, config.max_curvature);
-            if more.is_empty() {
-                return Some(curve);
+            bends += 1;
+            match bend::bent(&curve, config.max_curvature) {
+                Some(more) if !more.is_empty() && bends <= BENDS => {
+                    places
+                        .extend(more.into_iter().filter(|place| !places.contains(place)).collect::<Vec<_>>());
+                    bent = Some(curve);
+                }
+                _ => return Some(curve),
             }
-            places.extend(more.into_iter().filter(|place| !places.contains(place)).collect::<Vec<_>>());
-            bent = Some(curve);
         }
         sides.extend(crossed);
     }
@@ -141,6 +144,8 @@ fn nearby(stretches: &[Stretch], degree: usize) -> Vec<Side> {
 const NEAR_WAY: f64 = 0.03;
 /// Rounds of adding sides and bends.
 const ROUNDS: usize = 16;
+/// Times that the curvature's bound is linearised.
+const BENDS: usize = 5;
 /// A control point so far beyond a side is rounding, m.
 const BEYOND: f64 = 2e-5;
 /// Sides nearer than this to a control point may be crossed next, m.

@@ -55,7 +55,7 @@ fn where_no_curve_is_gentle_enough_it_turns_on_the_spot() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(60))]
+    #![proptest_config(ProptestConfig::with_cases(24))]
 
     /// Two arcs and a line between these headings have the room; so has a curve.
     #[test]
