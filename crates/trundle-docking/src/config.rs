@@ -38,6 +38,9 @@ pub struct DockingConfig {
     /// Nodes of the search for manoeuvres of three and more straight moves, 0 to 10^7. Default 2500 (ours: a second
     /// at most; hard problems only).
     pub search_nodes: usize,
+    /// What the search for many motions may cost for each margin, in counted steps of some 10 ns ([`crate::Space::work`]), 10^5
+    /// to 10^11. Default 5 * 10^7 (ours: half a second; the hardest of 5,000 corridor problems takes a third of it).
+    pub most_work: u64,
     /// Boxes of the search for a better bound on the time, 0 to 10^8. Default 400 (ours: a few ms).
     pub bound_boxes: usize,
     /// The search ends when the time is proven to be within this part of the least, 0 to 1. Default 0.01.
@@ -58,6 +61,7 @@ impl Default for DockingConfig {
             position_tolerance: 0.01,
             heading_tolerance: 1_f64.to_radians(),
             search_nodes: 2500,
+            most_work: 50_000_000,
             bound_boxes: 400,
             gap: 0.01,
             paper: PaperConfig::default(),
@@ -95,6 +99,7 @@ impl DockingConfig {
             ("position_tolerance", self.position_tolerance, "m", 0.001, 0.1),
             ("heading_tolerance", self.heading_tolerance, "rad", 0.001, 0.2),
             ("search_nodes", self.search_nodes as f64, "", 0.0, 1e7),
+            ("most_work", self.most_work as f64, "", 1e5, 1e11),
             ("bound_boxes", self.bound_boxes as f64, "", 0.0, 1e8),
             ("gap", self.gap, "", 0.0, 1.0),
         ];

@@ -34,10 +34,11 @@ mod scan_cells;
 mod scan_match;
 mod tiles;
 
-pub use depth_scan::{DepthScanConfig, DepthScanner};
+pub use depth_scan::{DepthScanConfig, DepthScanner, FloorFit, ScanFusion, ScanFusionConfig};
 pub use evidence::{Evidence, GridCell, LogOddsGrid};
 pub use filter::{
-    MotionConfig, ParticleConfig, ParticleMapper, Processed, Refusal, ScanUpdate, carry_trajectory,
+    FilterFileError, Localized, Lost, MapLocalizer, MotionConfig, ParticleConfig, ParticleMapper, Processed,
+    Refusal, ScanUpdate, carry_trajectory,
 };
 pub use mapper::{GridMapper, Insertion};
 pub use mapper_config::MapperConfig;

@@ -1,5 +1,6 @@
-use super::ParticleConfig;
-use trundle_core::{Beam, Scan, Vector2};
+use super::{ParticleConfig, store::StoredScan};
+use std::collections::BTreeSet;
+use trundle_core::{Beam, Pose2, Scan, Vector2};
 
 /// A scan made ready for many particles: in cells, in the base frame, with surfaces and their normals.
 #[derive(Debug, Clone, Default)]
@@ -17,6 +18,8 @@ pub(crate) struct ScanShape {
     /// Their root mean square distance from it, cells.
     pub(crate) lever: f64,
     hits: Vec<(usize, Vector2)>,
+    /// The numbers of the rays' beams.
+    pub(crate) beams: Vec<usize>,
 }
 
 /// Where a beam ends.
@@ -85,9 +88,8 @@ impl ScanShape {
     /// Takes over a scan.
     pub(crate) fn set(&mut self, config: &ParticleConfig, scan: &Scan) {
         let cells = 1.0 / config.map.resolution;
-        self.rays.clear();
-        self.points.clear();
-        self.hits.clear();
+        self.clear();
+        self.beams.clear();
         self.origin = ((scan.origin().x * cells) as f32, (scan.origin().y * cells) as f32);
         let mut last: Option<(usize, Vector2)> = None;
         for (i, beam) in scan.beams().iter().enumerate() {
@@ -100,15 +102,72 @@ impl ScanShape {
             let joined =
                 hit && last.is_some_and(|(j, p)| j + 1 == i && (p - end).norm() <= config.map.surface_gap);
             self.rays.push(ScanRay { x: (end.x * cells) as f32, y: (end.y * cells) as f32, hit, joined });
+            self.beams.push(i);
             last = hit.then_some((i, end));
             if hit {
                 self.hits.push((i, end));
             }
         }
-        self.find_points(config, scan, cells);
+        self.find_points(config, scan.origin());
     }
 
-    fn find_points(&mut self, config: &ParticleConfig, scan: &Scan, cells: f64) {
+    /// Takes over a scan from the store.
+    pub(crate) fn set_stored(&mut self, config: &ParticleConfig, stored: &StoredScan) {
+        self.clear();
+        self.origin = stored.origin;
+        let metres = config.map.resolution;
+        let origin = Vector2::new(f64::from(stored.origin.0), f64::from(stored.origin.1)) * metres;
+        for ray in stored.rays() {
+            if ray.ray.hit {
+                let end = Vector2::new(f64::from(ray.ray.x), f64::from(ray.ray.y)) * metres;
+                self.hits.push((ray.beam, end));
+            }
+            self.rays.push(ray.ray);
+        }
+        self.find_points(config, origin);
+    }
+
+    /// Takes over the hits of several scans, each moved by its pose (cells), of which at most one counts in each square of
+    /// `spacing` cells.
+    pub(crate) fn gather<'a>(
+        &mut self,
+        parts: impl Iterator<Item = (&'a Self, Pose2)>,
+        spacing: f64,
+        taken: &mut BTreeSet<(i32, i32)>,
+    ) {
+        for (part, pose) in parts {
+            let (s, c) = pose.theta.sin_cos();
+            let turn = |x: f64, y: f64| (c * x - s * y, s * x + c * y);
+            for point in &part.points {
+                let (x, y) = turn(f64::from(point.x), f64::from(point.y));
+                let (x, y) = (x + pose.x, y + pose.y);
+                if taken.insert(((x / spacing).floor() as i32, (y / spacing).floor() as i32)) {
+                    let (nx, ny) = turn(f64::from(point.normal.0), f64::from(point.normal.1));
+                    let normal = (nx as f32, ny as f32);
+                    self.points.push(ScanPoint { x: x as f32, y: y as f32, normal, ..*point });
+                }
+            }
+        }
+    }
+
+    /// Forgets everything.
+    pub(crate) fn clear(&mut self) {
+        self.origin = (0.0, 0.0);
+        self.rays.clear();
+        self.points.clear();
+        self.groups.clear();
+        self.hits.clear();
+    }
+
+    /// Makes gathered points ready for matching.
+    pub(crate) fn finish(&mut self) {
+        self.measure_spread();
+        self.groups.clear();
+        self.groups.extend(self.points.chunks(LANES).map(PointGroup::new));
+    }
+
+    fn find_points(&mut self, config: &ParticleConfig, origin: Vector2) {
+        let cells = 1.0 / config.map.resolution;
         let spacing = SPACING_CELLS * config.map.resolution;
         let mut kept: Option<Vector2> = None;
         for k in 0..self.hits.len() {
@@ -117,7 +176,7 @@ impl ScanShape {
                 continue;
             }
             kept = Some(hit);
-            let range = (hit - scan.origin()).norm();
+            let range = (hit - origin).norm();
             let range_sigma = config.range_noise + config.range_noise_growth * range * range;
             // A cell's obstacle is known to about a fifth of the cell.
             let sigma = range_sigma.hypot(0.3 * config.map.resolution);
@@ -129,9 +188,7 @@ impl ScanShape {
                 information: (1.0 / (sigma * cells).powi(2)) as f32,
             });
         }
-        self.measure_spread();
-        self.groups.clear();
-        self.groups.extend(self.points.chunks(LANES).map(PointGroup::new));
+        self.finish();
     }
 
     /// The normal of the straight surface about hit `k`, if there is one.

@@ -6,5 +6,6 @@ mod boxes;
 mod depth_scan;
 mod filter;
 mod flat_room;
+mod lasting;
 mod maps;
 mod matching;
