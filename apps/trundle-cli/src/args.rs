@@ -25,8 +25,10 @@ pub enum Command {
     Replay(ReplayArgs),
     /// Track a recorded RGB-D sequence and draw its map.
     Slam(SlamArgs),
-    /// Draw the map of a laser log.
+    /// Draw the map of a laser log, a ROS 2 bag or an RGB-D folder.
     Map(crate::map::MapArgs),
+    /// Judge a trajectory or a map against the truth.
+    Eval(crate::eval::EvalArgs),
     /// Plan on a map: way-points, curve and trajectory.
     Plan(crate::plan::PlanArgs),
     /// Drive a simulated robot through a scene and record what it sees.

@@ -25,6 +25,9 @@ pub struct DockingConfig {
     /// Kept from every obstacle, m, 0 to 0.5. Default 0.01 (ours: the position tolerance). Where start or goal are
     /// nearer than that, or there is no manoeuvre that keeps it, less will do.
     pub margin: f64,
+    /// Less than the margin is kept where that saves this part of the time, 0 to 1. Default 0.25 (ours); 1 keeps the margin
+    /// wherever there is a manoeuvre that does, as [`crate::Positioner`] does always: its poses are measured with noise.
+    pub margin_saving: f64,
     /// Overlap of start or goal with an obstacle that is taken for an error of the pose, m, 0 to 0.02. Default 0.
     pub overlap: f64,
     /// How far beyond the line from start to goal a manoeuvre may go, m, 0.1 to 10. Default 1.5 (ours).
@@ -55,6 +58,7 @@ impl Default for DockingConfig {
             method: Method::Optimal,
             limits: MotionLimits::default(),
             margin: 0.01,
+            margin_saving: 0.25,
             overlap: 0.0,
             reach: 1.5,
             max_distance: 5.0,
@@ -93,6 +97,7 @@ impl DockingConfig {
         self.paper = self.paper.validated()?;
         let ranges = [
             ("margin", self.margin, "m", 0.0, 0.5),
+            ("margin_saving", self.margin_saving, "", 0.0, 1.0),
             ("overlap", self.overlap, "m", 0.0, 0.02),
             ("reach", self.reach, "m", 0.1, 10.0),
             ("max_distance", self.max_distance, "m", 0.1, 20.0),

@@ -11,8 +11,6 @@ use crate::scene::{Blocker, Scene};
 use crate::space::Space;
 use trundle_core::Footprint;
 
-/// Less margin is taken where it saves this part of the time.
-const SAVING: f64 = 0.25;
 /// A manoeuvre of more than so many times the bound is compared with those of less margin.
 const LONG: f64 = 3.0;
 /// Boxes for that bound.
@@ -29,6 +27,8 @@ pub struct Margins<'a> {
     pub most: f64,
     pub least: f64,
     pub effort: Effort,
+    /// Less margin is taken where it saves this part of the time; 1 never takes less than it can.
+    pub saving: f64,
 }
 
 /// Legs among obstacles at a distance.
@@ -49,8 +49,8 @@ impl<'a> Margins<'a> {
         }
         let quick = self.one_or_two(self.most / 3.0).or_else(|| self.one_or_two(self.least));
         let Some(quick) = quick else { return self.told(self.of_many()) };
-        match self.many(self.most, PART) {
-            Ok(slow) if (1.0 - SAVING) * slow.legs.0 <= quick.legs.0 => self.solution(slow),
+        match self.many(self.most, if self.saving < 1.0 { PART } else { 1 }) {
+            Ok(slow) if (1.0 - self.saving) * slow.legs.0 <= quick.legs.0 => self.solution(slow),
             _ => self.solution(quick),
         }
     }
@@ -59,17 +59,17 @@ impl<'a> Margins<'a> {
     fn of_many(&self) -> Result<Found<'a>, Apart> {
         let whole = self.many(self.most, 1);
         if let Ok(found) = &whole
-            && !self.is_long(found)
+            && (self.saving >= 1.0 || !self.is_long(found))
         {
             return whole;
         }
         let least = match (whole, self.many(self.least, 1)) {
-            (Ok(whole), Ok(least)) if (1.0 - SAVING) * whole.legs.0 <= least.legs.0 => return Ok(whole),
+            (Ok(whole), Ok(least)) if (1.0 - self.saving) * whole.legs.0 <= least.legs.0 => return Ok(whole),
             (Ok(whole), Err(_)) => return Ok(whole),
             (_, least) => least?,
         };
         match self.many(self.most / 3.0, 1) {
-            Ok(between) if (1.0 - SAVING) * between.legs.0 <= least.legs.0 => Ok(between),
+            Ok(between) if (1.0 - self.saving) * between.legs.0 <= least.legs.0 => Ok(between),
             _ => Ok(least),
         }
     }

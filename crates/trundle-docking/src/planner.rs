@@ -119,7 +119,16 @@ impl Docker {
             Method::Optimal => {
                 let within = |task: Task, most| {
                     let near = around(footprint, scene, &task);
-                    Margins { footprint, scene: &near, task, most, least, effort: self.effort(&near) }.plan()
+                    Margins {
+                        footprint,
+                        scene: &near,
+                        task,
+                        most,
+                        least,
+                        effort: self.effort(&near),
+                        saving: self.config.margin_saving,
+                    }
+                    .plan()
                 };
                 match within(task, most) {
                     Plan::Impossible(_) => within(Task { reach: WIDER * task.reach, ..task }, least),

@@ -27,6 +27,7 @@ mod depth_scan;
 mod evidence;
 mod filter;
 mod live_grid;
+mod live_mapper;
 mod mapper;
 mod mapper_config;
 mod ray;
@@ -40,6 +41,7 @@ pub use filter::{
     FilterFileError, Localized, Lost, MapLocalizer, MotionConfig, ParticleConfig, ParticleMapper, Processed,
     Refusal, ScanUpdate, carry_trajectory,
 };
+pub use live_mapper::{LiveMapper, Redrawn};
 pub use mapper::{GridMapper, Insertion};
 pub use mapper_config::MapperConfig;
 pub use ray::{RayCells, ray_cells};

@@ -10,12 +10,13 @@ use trundle::io::{OutputFolder, Summary, read_odometry, read_trajectory};
 
 /// `trundle eval relations`.
 pub fn run(args: &RelationsArgs) -> Result<Outcome, Failure> {
+    let sets = sets(args)?;
     let estimate = trajectory(&args.estimate)?;
     let config = RelationConfig { max_difference: args.max_difference }.validated()?;
     let wrong =
         |error: trundle::eval::EvalError| Failure::Input(format!("{}: {error}", args.estimate.display()));
     let mut judged = Vec::new();
-    for (name, relations) in sets(args)? {
+    for (name, relations) in sets {
         if !relations.is_empty() {
             judged.push((name, relation_error(&relations, &estimate, &config).map_err(wrong)?));
         }
@@ -39,10 +40,11 @@ pub fn run(args: &RelationsArgs) -> Result<Outcome, Failure> {
 fn sets(args: &RelationsArgs) -> Result<Vec<(&'static str, Vec<Relation>)>, Failure> {
     let path = &args.reference;
     if args.file {
-        let refused =
-            |problem: &dyn std::fmt::Display| Failure::Input(format!("{}: {problem}", path.display()));
-        let text = std::fs::read_to_string(path).map_err(|error| refused(&error))?;
-        return Ok(vec![("all", relations_from_text(&text).map_err(|error| refused(&error))?)]);
+        let text = std::fs::read_to_string(path)
+            .map_err(|error| Failure::Input(format!("{}: {error}", path.display())))?;
+        let relations = relations_from_text(&text)
+            .map_err(|error| Failure::Input(format!("{}, {error}", path.display())))?;
+        return Ok(vec![("all", relations)]);
     }
     let sets = RelationSets::of(&trajectory(path)?, &RelationSetsConfig::default())?;
     let all = sets.all();

@@ -10,11 +10,11 @@ const PERIOD: f64 = 0.19;
 /// Between poses that are farther apart in time nothing is known, s.
 const LONGEST_GAP: f64 = 1.0;
 
-/// The scans of a TUM RGB-D folder at 5 Hz, and the range under the camera's view, m.
+/// The scans of a TUM RGB-D folder at 5 Hz.
 ///
 /// The motion is `odometry.txt`, with the camera mounted as on the default robot; else `groundtruth.txt`, whose frame must be
 /// level with the floor at z = 0, and each image is cut under the tilt and height that its pose says.
-pub fn read(dir: &Path, quiet: bool) -> Result<(LaserLog, f64), Failure> {
+pub fn read(dir: &Path, quiet: bool) -> Result<LaserLog, Failure> {
     let own = dir.join("camera.toml");
     let model = if own.exists() { CameraModel::read(&own)? } else { CameraModel::named("freiburg1")? };
     let camera = model.camera;
@@ -46,7 +46,7 @@ pub fn read(dir: &Path, quiet: bool) -> Result<(LaserLog, f64), Failure> {
         Some(first) if log.scans.is_empty() => {
             Err(Failure::Input(format!("{}: no frame can be used; {}", dir.display(), first.problem)))
         }
-        _ => Ok((log, scanner.blind_range())),
+        _ => Ok(log),
     }
 }
 

@@ -4,6 +4,7 @@
 mod bad_input;
 mod demo;
 mod dock;
+mod inputs;
 mod map;
 mod plan;
 mod program;

@@ -91,9 +91,16 @@ impl Hull {
         let sides = corners.iter().zip(next).filter(|_| corners.len() > 1);
         let edges: Vec<Edge> = sides.map(|(&a, &b)| edge(a, b)).collect();
         let outer = core.iter().map(|c| c.distance).fold(0.0, f64::max) + radius;
-        let inner = edges.iter().map(|e| e.offset + radius).fold(f64::INFINITY, f64::min);
-        let inner = if edges.is_empty() { radius } else { inner.max(0.0) };
-        Self { core, edges, radius, outer, inner }
+        let mut hull = Self { core, edges, radius, outer, inner: 0.0 };
+        hull.inner = if hull.edges.is_empty() {
+            radius
+        } else if hull.core_holds(Vector2::zeros()) {
+            hull.edges.iter().map(|e| e.offset + radius).fold(f64::INFINITY, f64::min)
+        } else {
+            // An axle outside the core lies in its rim, or outside of all.
+            (radius - hull.core_distance(&Segment::point(Vector2::zeros()))).max(0.0)
+        };
+        hull
     }
 
     /// The farthest of its points from the base's origin, m.

@@ -178,6 +178,7 @@ impl ParticleMapper {
             self.parents = (0..self.particles.len() as u16).collect();
         }
         let bent = self.close_loops();
+        self.thin_history();
         self.updates += 1;
         ScanUpdate::Processed(Processed {
             explained: proposal.map_or(0.0, |p| p.explained),
@@ -340,6 +341,18 @@ impl ParticleMapper {
         }
         self.parents = vec![0; self.particles.len()];
         Some(closing.farthest)
+    }
+
+    /// Keeps the store of scans within its bounds.
+    fn thin_history(&mut self) {
+        if self.history.scans.len() > self.config.most_scans {
+            let count = (self.config.most_scans / 2).min(self.ancestry.shared.len());
+            let before = self.history.scans.len();
+            self.history.thin(&mut self.ancestry.shared, count);
+            let gone = before - self.history.scans.len();
+            self.session = if self.session < count { self.session.div_ceil(2) } else { self.session - gone };
+            self.closer.pending.clear();
+        }
     }
 
     fn cells(&self, pose: Pose2) -> Pose2 {

@@ -106,8 +106,10 @@ impl Proposer<'_> {
         let slip = Prior::slipped(before, guess, config.slip_shift / config.map.resolution, config.slip_turn);
         let rate = config.slip_rate.ln();
         let usual = self.usual * self.shape.points.len() as f64 / config.correlation;
-        let hopeful = rate + usual + 0.5 * slip.log_determinant > near.optimum.log_posterior;
-        if hopeful && let Some(far) = self.search_far(map, slip) {
+        let needed = near.optimum.log_posterior - rate - 0.5 * slip.log_determinant;
+        if usual > needed
+            && let Some(far) = self.search_far(map, slip, needed)
+        {
             let gain = far.optimum.log_posterior + rate - near.optimum.log_posterior;
             if gain > 0.0 {
                 return self.sample(&far, rate, chance);
@@ -116,8 +118,9 @@ impl Proposer<'_> {
         self.sample(&near, 0.0, chance)
     }
 
-    /// The best pose under a wide prior, by branch and bound.
-    fn search_far<'m>(&self, map: &'m TileMap, prior: Prior) -> Option<Attempt<'m>> {
+    /// The best pose under a wide prior, by branch and bound; `None` where none can have the log-posterior `needed` (but for the
+    /// prior's normalisation).
+    fn search_far<'m>(&self, map: &'m TileMap, prior: Prior, needed: f64) -> Option<Attempt<'m>> {
         let window = self.window(map, &prior);
         let (cols, rows) = window.size();
         let low = (window.corner.0 >> TILE_BITS, window.corner.1 >> TILE_BITS);
@@ -134,9 +137,13 @@ impl Proposer<'_> {
             sigma: (sigma(0), sigma(1), sigma(2)),
             gain: -self.config.outliers.ln() / self.config.correlation * every as f64,
         };
+        // A point that fits nothing is no better than one on unknown ground.
+        let unseen =
+            0.5 * self.config.outliers.ln() * self.shape.points.len() as f64 / self.config.correlation;
+        let least = (needed - unseen).max(0.0);
         let mut places = Vec::new();
-        while places.len() < 3
-            && let Some(place) = pyramid.search(&query, &places, (2.0 * ELSEWHERE, 0.2), 0.0)
+        while places.len() < 2
+            && let Some(place) = pyramid.search(&query, &places, (2.0 * ELSEWHERE, 0.2), least)
         {
             places.push(place);
         }

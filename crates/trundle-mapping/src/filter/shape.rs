@@ -17,7 +17,8 @@ pub(crate) struct ScanShape {
     pub(crate) centroid: (f64, f64),
     /// Their root mean square distance from it, cells.
     pub(crate) lever: f64,
-    hits: Vec<(usize, Vector2)>,
+    /// Number of the beam, end, and one sigma of the range where the sensor says it (else 0).
+    hits: Vec<(usize, Vector2, f64)>,
     /// The numbers of the rays' beams.
     pub(crate) beams: Vec<usize>,
 }
@@ -105,7 +106,7 @@ impl ScanShape {
             self.beams.push(i);
             last = hit.then_some((i, end));
             if hit {
-                self.hits.push((i, end));
+                self.hits.push((i, end, scan.sigma(i).unwrap_or(0.0)));
             }
         }
         self.find_points(config, scan.origin());
@@ -120,7 +121,7 @@ impl ScanShape {
         for ray in stored.rays() {
             if ray.ray.hit {
                 let end = Vector2::new(f64::from(ray.ray.x), f64::from(ray.ray.y)) * metres;
-                self.hits.push((ray.beam, end));
+                self.hits.push((ray.beam, end, 0.0));
             }
             self.rays.push(ray.ray);
         }
@@ -177,7 +178,9 @@ impl ScanShape {
             }
             kept = Some(hit);
             let range = (hit - origin).norm();
-            let range_sigma = config.range_noise + config.range_noise_growth * range * range;
+            let told = self.hits[k].2;
+            let usual = config.range_noise + config.range_noise_growth * range * range;
+            let range_sigma = if told > 0.0 { told } else { usual };
             // A cell's obstacle is known to about a fifth of the cell.
             let sigma = range_sigma.hypot(0.3 * config.map.resolution);
             let normal = self.normal(k, sigma).map_or((0.0, 0.0), |n| (n.x as f32, n.y as f32));
@@ -193,7 +196,7 @@ impl ScanShape {
 
     /// The normal of the straight surface about hit `k`, if there is one.
     fn normal(&self, k: usize, sigma: f64) -> Option<Vector2> {
-        let (_, here) = self.hits[k];
+        let (_, here, _) = self.hits[k];
         let reach = |step: isize| {
             let mut at = k;
             loop {
@@ -215,7 +218,7 @@ impl ScanShape {
             (None, None) => return None,
             (first, last) => (first.unwrap_or(k), last.unwrap_or(k)),
         };
-        let points = self.hits[first..=last].iter().map(|(_, p)| *p);
+        let points = self.hits[first..=last].iter().map(|(_, p, _)| *p);
         let count = (last - first + 1) as f64;
         let mean = points.clone().sum::<Vector2>() / count;
         let (mut xx, mut xy, mut yy) = (0.0, 0.0, 0.0);

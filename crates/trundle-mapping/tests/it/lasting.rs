@@ -195,3 +195,19 @@ fn another_run_goes_on_with_an_old_map() {
         first[0].0
     });
 }
+
+#[test]
+fn the_store_of_scans_stays_within_its_bounds() {
+    let (room, poses) = (ring(), lap());
+    let odom = odometry(&poses);
+    let small = ParticleConfig { most_scans: 100, ..config(4) };
+    let mut mapper = ParticleMapper::new(small, 1).unwrap();
+    for i in 0..poses.len() {
+        mapper.update(odom[i], &laser(&room, poses[i], i));
+    }
+    let way = mapper.trajectory();
+    assert!(way.len() <= 101, "{}", way.len());
+    assert!(way.windows(2).all(|pair| pair[0].0 < pair[1].0));
+    let end = mapper.pose().distance(&(poses[0].inverse() * *poses.last().unwrap()));
+    assert!(end < 0.3, "{end} m off");
+}

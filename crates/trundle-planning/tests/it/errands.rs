@@ -59,8 +59,9 @@ fn a_plan_is_no_longer_free_where_a_mask_forbids_it_since() {
 
 #[test]
 fn a_mask_holds_beside_the_map_too() {
-    let art =
-        format!("{0}\n{0}\n{1}\n{0}\n{0}", ".".repeat(40), format!("{}#{}", ".".repeat(20), ".".repeat(19)));
+    let open = ".".repeat(40);
+    let barred = format!("{}#{}", ".".repeat(20), ".".repeat(19));
+    let art = format!("{open}\n{open}\n{barred}\n{open}\n{open}");
     let mut grid = OccupancyGrid::from_ascii(0.1, &art).unwrap();
     (0..5).for_each(|row| grid.set(trundle_core::CellIndex { col: 20, row }, Cell::Occupied));
     let (start, goal) = (Pose2::new(0.5, 0.25, 0.0), Pose2::new(3.5, 0.25, 0.0));

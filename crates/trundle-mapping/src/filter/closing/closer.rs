@@ -120,7 +120,7 @@ impl Closer {
         let turn = (3.0 * covariance[(2, 2)].sqrt()).clamp(0.05, 0.8);
         let finder = Finder { config, likelihood: tools.likelihood, cloud: own_cloud };
         let found =
-            finder.find(&map, cells(config, poses[last]), &covariance, ((reach(0), reach(1)), turn), 3);
+            finder.find(&map, cells(config, poses[last]), &covariance, ((reach(0), reach(1)), turn), 2);
         let best = *found.first()?;
         let rival = found.get(1).map_or(f64::NEG_INFINITY, |rival| rival.log_likelihood);
         let back = Finder { config, likelihood: tools.likelihood, cloud: &cloud };
