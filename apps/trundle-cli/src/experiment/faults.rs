@@ -40,7 +40,7 @@ fn days() -> Vec<Day> {
     };
     let slips = FaultKind::WheelSlips { side: WheelSide::Left, factor: 0.5 };
     let jump = FaultKind::OdometryJumps { left_ticks: 11_724, right_ticks: 11_724 };
-    let carried = FaultKind::Kidnapped { x: 2.0, y: 1.2, heading_deg: 30.0 };
+    let carried = FaultKind::Kidnapped { x: 0.6, y: 0.3, heading_deg: 20.0 };
     vec![
         broken("camera black for 10 s", 8.0, 18.0, FaultKind::CameraBlack, End::Arrived),
         broken("camera frozen for 10 s", 8.0, 18.0, FaultKind::CameraFrozen, End::Arrived),
