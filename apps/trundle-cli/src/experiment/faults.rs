@@ -3,7 +3,7 @@
 
 use super::{RunsArgs, trial, trial::Trial, trial::TrialPlan};
 use crate::{Outcome, console, failure::Failure, robot_file};
-use trundle::core::Pose2;
+use trundle::core::{Pose2, Vector2};
 use trundle::io::{OutputFolder, Summary};
 use trundle::runtime::{DriveState, Mission, Task};
 use trundle::sim::{Fault, FaultKind, FaultSchedule, Person, Scene, WheelSide};
@@ -75,9 +75,11 @@ fn days() -> Vec<Day> {
     ]
 }
 
-/// Somebody who comes from behind the door of the house's bedroom, stands in it for so long, s, and goes back.
+/// Somebody who comes from behind the door of the house's bedroom, stands in it for so long, s, and goes back; frame of the
+/// robot's start.
 fn in_the_door(pause: f64) -> Person {
-    Person { waypoints: vec![[8.6, 4.6], [8.55, 2.6], [8.6, 4.6]], pause, once: true, ..Person::default() }
+    let (inside, door) = ([6.67, 1.6], [6.67, 0.6]);
+    Person { waypoints: vec![door, inside, inside], pause, once: true, ..Person::default() }
 }
 
 /// Lives through every day, so many seeds.
@@ -87,7 +89,7 @@ pub fn run(args: &RunsArgs) -> Result<Outcome, Failure> {
     for day in days() {
         for seed in 1..=u64::from(args.seeds) {
             let mut scene = Scene::by_name(day.scene, seed)?;
-            scene.people.extend(day.person.clone());
+            scene.people.extend(day.person.clone().map(|person| placed(person, &scene)));
             let mission = Mission::new(vec![Task::Go(scene.start_from_goal())])?;
             let fault =
                 day.fault.map(|(from_s, to_s, kind)| Fault { from_s, to_s, kind: in_world(kind, &scene) });
@@ -108,6 +110,12 @@ pub fn run(args: &RunsArgs) -> Result<Outcome, Failure> {
         console::say(&format!("\n{}\nSee {}", told(&trials), place.join("report.html").display()));
     }
     Ok(if success { Outcome::Reached } else { Outcome::Missed })
+}
+
+/// A person written in the frame of the robot's start, in the world's.
+fn placed(person: Person, scene: &Scene) -> Person {
+    let world = |point: &[f64; 2]| scene.start.transform(Vector2::new(point[0], point[1])).into();
+    Person { waypoints: person.waypoints.iter().map(world).collect(), ..person }
 }
 
 /// Kidnappings are written in the frame of the robot's start; the simulator wants them in the world's.

@@ -6,6 +6,7 @@ mod demo;
 mod dock;
 mod inputs;
 mod map;
+mod missions;
 mod plan;
 mod program;
 mod sim;
