@@ -11,7 +11,7 @@ pub enum ScanUpdate {
     Refused(Refusal),
     /// The scan moved the particles and is in their maps.
     Processed(Processed),
-    /// Where the robot is in the map is not known yet, after [`ParticleMapper::kidnapped`]: the map does not change.
+    /// Where the robot is in the map is not known yet, after [`crate::ParticleMapper::kidnapped`]: the map does not change.
     Lost(Lost),
     /// It is known from now on.
     Found(Pose2),
