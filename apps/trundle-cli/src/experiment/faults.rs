@@ -75,11 +75,10 @@ fn days() -> Vec<Day> {
     ]
 }
 
-/// Somebody who comes from behind the door of the house's bedroom, stands in it for so long, s, and goes back; frame of the
+/// Somebody who stands in the door of the house's bedroom for so long, s, and goes inside, out of the way; frame of the
 /// robot's start.
-fn in_the_door(pause: f64) -> Person {
-    let (inside, door) = ([6.67, 1.6], [6.67, 0.6]);
-    Person { waypoints: vec![door, inside, inside], pause, once: true, ..Person::default() }
+fn in_the_door(delay: f64) -> Person {
+    Person { waypoints: vec![[6.67, 0.6], [6.67, 1.4], [8.4, 1.4]], delay, once: true, ..Person::default() }
 }
 
 /// Lives through every day, so many seeds.
