@@ -59,7 +59,7 @@ impl Logbook {
         self.plans += usize::from(report.replanned);
         if let Some(track) = &report.track {
             self.tracked.count(track.tracking);
-            self.estimates.extend(report.estimate.map(|estimate| (now, estimate.pose)));
+            self.estimates.extend(report.estimate.map(|estimate| (estimate.stamp, estimate.pose)));
         }
         self.twists.extend(report.twist.map(|twist| (now, twist)));
     }

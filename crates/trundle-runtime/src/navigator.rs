@@ -11,7 +11,7 @@ use crate::{
 use trundle_control::{
     FollowPhase, FollowReport, Follower, SafetyAction, SafetyInput, SafetyMemory, SafetyMonitor, SafetyScan,
 };
-use trundle_core::{Footprint, Invalid, OccupancyGrid, Pose2, PoseEstimate, Stamp, Twist2, Vector2};
+use trundle_core::{Cell, CellIndex, Footprint, Invalid, OccupancyGrid, Pose2, PoseEstimate, Stamp, Twist2, Vector2};
 use trundle_planning::{Plan, PlanResult, Planner};
 
 /// What the robot knows of its surroundings when it decides.
@@ -78,10 +78,15 @@ pub(crate) struct Navigator {
     progress: ProgressWatch,
     /// Of the safety monitor, s.
     image_timeout: f64,
+    /// Of the disc about the robot, m.
+    radius: f64,
 }
 
 /// Held by safety for so long, it plans anew from where it stands, s.
 const PAUSE: f64 = 1.0;
+/// Speed of leaving what presses on the bumper, m/s, and how far behind must be free, m.
+const BACK_OUT: f64 = 0.05;
+const BACK_OUT_WAY: f64 = 0.15;
 /// Without sight for so long, it turns to find some, s.
 const BLIND_PAUSE: f64 = 3.0;
 /// Slower than this the robot stands, m/s.
@@ -111,6 +116,7 @@ impl Navigator {
             blocked_at: None,
             progress: ProgressWatch::default(),
             image_timeout: config.safety.image_timeout,
+            radius: footprint.circumscribed_radius(),
         })
     }
 
@@ -216,6 +222,7 @@ impl Navigator {
                 false
             }
             DriveState::Planning | DriveState::Recovering { .. } => self.check_due.due(s.now),
+            DriveState::Waiting { .. } if self.touched || self.over_edge => false,
             DriveState::Waiting { .. } if self.held_since.is_some_and(|since| s.now - since < PAUSE) => false,
             DriveState::Waiting { .. } => self.check_due.due(s.now),
             DriveState::Driving => self.check_due.due(s.now) && !self.plan_holds(s.grid),
@@ -304,6 +311,7 @@ impl Navigator {
         match &self.state {
             DriveState::Mapping if self.goal == Goal::Look => self.look_once(s),
             DriveState::Recovering { .. } | DriveState::Lost { .. } => self.look.twist(pose),
+            DriveState::Waiting { .. } if self.backs_out(s) => Twist2::new(-BACK_OUT, 0.0),
             DriveState::Waiting { .. } if self.is_blind(s) => self.look_for_sight(s),
             DriveState::Waiting { .. } => match self.blocked_at.filter(|_| self.plan.is_none()) {
                 Some(at) => face(pose, at),
@@ -312,6 +320,12 @@ impl Navigator {
             DriveState::Docking => times.measure(Stage::Control, || self.dock(s)),
             _ => follow.twist,
         }
+    }
+
+    /// Whether it is time to leave what presses on the bumper, or an edge, backward, and the map has nothing there.
+    fn backs_out(&self, s: &Surroundings<'_>) -> bool {
+        let waited = self.held_since.is_some_and(|since| s.now - since > PAUSE);
+        (self.touched || self.over_edge) && waited && is_free_behind(s, self.radius)
     }
 
     /// Whether no image has shown anything for a while.
@@ -381,7 +395,7 @@ impl Navigator {
                 self.last_stage.interrupted(s);
             }
             (SafetyAction::Pass | SafetyAction::Slow(_), DriveState::Waiting { .. })
-                if self.follower.end().is_some() =>
+                if self.follower.end().is_some() && !(self.touched || self.over_edge) =>
             {
                 self.held_since = None;
                 self.state = DriveState::Driving;
@@ -419,6 +433,23 @@ impl Navigator {
             FollowPhase::Tracking | FollowPhase::Idle => {}
         }
     }
+}
+
+/// Whether the map has nothing occupied where a disc of `radius` goes that backs out.
+fn is_free_behind(s: &Surroundings<'_>, radius: f64) -> bool {
+    let geometry = s.grid.geometry();
+    let ahead = s.estimate.pose.inverse();
+    let is_in_the_way = |at: Vector2| {
+        let at = ahead.transform(at);
+        // What is beside or before the robot it has come past, or touches.
+        at.x < -0.5 * radius && (at - Vector2::new(at.x.max(-BACK_OUT_WAY), 0.0)).norm() < radius
+    };
+    let reach = ((radius + BACK_OUT_WAY) / geometry.resolution).ceil() as usize;
+    let Some(CellIndex { col, row }) = geometry.cell_at(s.estimate.pose.position()) else { return false };
+    let around = |at: usize, size: usize| at.saturating_sub(reach)..(at + reach + 1).min(size);
+    let mut cells = around(row, geometry.height)
+        .flat_map(|row| around(col, geometry.width).map(move |col| CellIndex { col, row }));
+    !cells.any(|cell| s.grid.get(cell) == Cell::Occupied && is_in_the_way(geometry.center(cell)))
 }
 
 /// The larger standard deviation of the position, m.

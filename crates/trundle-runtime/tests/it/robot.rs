@@ -1,15 +1,22 @@
 use trundle_core::{
     DepthImage, GyroRate, Image, PinholeCamera, Pose2, RgbdImage, SensorEvent, Stamp, Touch, Twist2,
-    WheelTicks,
+    Vector2, WheelTicks,
 };
 use trundle_runtime::{DriveState, Robot, RobotConfig, StepReport};
 
-/// A wall of one colour across the view, `distance` m ahead.
-fn wall(stamp: Stamp, distance: f32) -> SensorEvent {
+/// A wall of one colour across the view, `distance` m ahead of the base, and the floor before it, as the default mount sees them.
+fn wall(stamp: Stamp, distance: f64) -> SensorEvent {
     let camera = PinholeCamera::kinect_v2();
+    let base_from_camera = RobotConfig::default().mount.base_from_camera();
     let (width, height) = (camera.width(), camera.height());
     let color = Image::filled(width, height, [90; 3]);
-    let depth = DepthImage::filled(width, height, distance);
+    let depth = DepthImage::from_fn(width, height, |x, y| {
+        let ray = base_from_camera.rotate(camera.unproject(Vector2::new(x as f64, y as f64), 1.0));
+        let to_wall = (distance - base_from_camera.translation.x) / ray.x;
+        let to_floor = if ray.z < 0.0 { -base_from_camera.translation.z / ray.z } else { f64::INFINITY };
+        let depth = to_wall.min(to_floor);
+        if depth > 0.5 && depth < 8.0 { depth as f32 } else { 0.0 }
+    });
     SensorEvent::Rgbd(RgbdImage::new(stamp, color, depth).unwrap())
 }
 
@@ -74,6 +81,25 @@ fn a_pressed_bumper_stops_it() {
     robot.step(&SensorEvent::Touch(Touch { stamp: Stamp::default(), pressed: true }));
     let reports = stand(&mut robot, 4.0, |stamp| Some(wall(stamp, 3.0)));
     assert!(reports.iter().all(|report| report.twist.unwrap().v <= 0.0));
+}
+
+#[test]
+fn from_a_pressed_bumper_it_backs_out_slowly() {
+    let mut robot = robot(Pose2::new(1.0, 0.0, 0.0));
+    stand(&mut robot, 3.0, |stamp| Some(wall(stamp, 3.0)));
+    robot.step(&SensorEvent::Touch(Touch { stamp: Stamp::from_nanos(3_000_000_000), pressed: true }));
+    let twists: Vec<Twist2> = (150..250)
+        .map(|i| {
+            let stamp = Stamp::from_nanos(i * 20_000_000);
+            robot.step(&SensorEvent::Gyro(GyroRate { stamp, omega: 0.0 }));
+            if i % 5 == 0 {
+                robot.step(&wall(stamp, 3.0));
+            }
+            robot.step(&SensorEvent::Wheels(WheelTicks { stamp, left: 0, right: 0 })).twist.unwrap()
+        })
+        .collect();
+    assert!(twists[..45].iter().all(|twist| *twist == Twist2::ZERO), "first it stands");
+    assert!(twists[60..].iter().all(|twist| *twist == Twist2::new(-0.05, 0.0)), "{:?}", twists.last());
 }
 
 #[test]
