@@ -1,10 +1,10 @@
 use crate::{
-    camera_mount::CameraMount, last_stage::LastStageConfig, robot::Robot, schedule::Schedule,
+    camera_mount::CameraMount, last_stage::LastStageConfig, robot::Robot, schedule::Schedule, sight::Sight,
     supervisor_config::SupervisorConfig,
 };
 use serde::{Deserialize, Serialize};
 use trundle_control::{FollowerConfig, SafetyConfig};
-use trundle_core::{DifferentialDrive, DriveLimits, Footprint, Invalid, PinholeCamera};
+use trundle_core::{DifferentialDrive, DriveLimits, Footprint, Invalid, PinholeCamera, Vector2};
 use trundle_localization::{LocalizerConfig, OdometryConfig};
 use trundle_mapping::{DepthScanConfig, MapperConfig, ScanMatchConfig};
 use trundle_planning::PlannerConfig;
@@ -16,6 +16,10 @@ use trundle_slam::SlamConfig;
 pub struct RobotConfig {
     /// Radius of the disc about the base that the robot stays within, m, above 0. Default 0.1755: the Kobuki.
     pub footprint_radius: f64,
+    /// Corners of a convex outline in place of the disc, base frame, m. Default none.
+    pub footprint: Option<Vec<[f64; 2]>>,
+    /// What the map is drawn from and what safety watches. Default the depth camera.
+    pub sight: Sight,
     /// Geometry of the base. Default: the Kobuki.
     pub drive: DifferentialDrive,
     /// What the base may be asked for. Default: the Kobuki.
@@ -54,6 +58,8 @@ impl Default for RobotConfig {
     fn default() -> Self {
         Self {
             footprint_radius: Footprint::KOBUKI.circumscribed_radius(),
+            footprint: None,
+            sight: Sight::DepthCamera,
             drive: DifferentialDrive::KOBUKI,
             limits: DriveLimits::KOBUKI,
             camera: PinholeCamera::kinect_v2(),
@@ -102,11 +108,14 @@ impl RobotConfig {
         self
     }
 
-    /// The robot's outline.
+    /// The robot's outline: the polygon where there is one, else the disc.
     ///
     /// # Errors
-    /// When the radius is not positive.
+    /// When the radius is not positive, or the polygon is none that is convex.
     pub fn footprint(&self) -> Result<Footprint, Invalid> {
-        Footprint::disc(self.footprint_radius)
+        match &self.footprint {
+            Some(corners) => Footprint::polygon(corners.iter().map(|c| Vector2::new(c[0], c[1])).collect()),
+            None => Footprint::disc(self.footprint_radius),
+        }
     }
 }

@@ -63,6 +63,7 @@ pub(crate) struct Navigator {
     last_stage: LastStage,
     safety: SafetyMonitor,
     check_due: Ticker,
+    improve_due: Ticker,
     goal: Goal,
     plan: Option<Box<PlanResult>>,
     state: DriveState,
@@ -78,6 +79,10 @@ pub(crate) struct Navigator {
 
 /// Held by safety for so long, it plans anew from where it stands, s.
 const PAUSE: f64 = 1.0;
+/// What is left of a way is driven as planned when it takes less, s.
+const WORTH_IMPROVING: f64 = 0.5;
+/// A new way replaces a good one when it arrives so much sooner, s.
+const SOONER: f64 = 0.05;
 /// Slower than this the robot stands, m/s.
 const STANDING: f64 = 0.02;
 /// So many turns see everything around twice.
@@ -94,6 +99,7 @@ impl Navigator {
             last_stage: LastStage::new(&config.docking, footprint)?,
             safety: SafetyMonitor::new(config.safety.clone(), footprint)?,
             check_due: Ticker::new(config.schedule.validated()?.check_hz),
+            improve_due: Ticker::new(config.schedule.improve_hz),
             goal: Goal::Stay,
             plan: None,
             state: DriveState::Idle,
@@ -152,6 +158,7 @@ impl Navigator {
         self.watch(s);
         let goal = self.goal.pose().filter(|_| self.wants_plan(s));
         let replanned = goal.is_some_and(|goal| times.measure(Stage::Planning, || self.replan(goal, s)));
+        let replanned = replanned || self.improved(s, times);
         let follow = times.measure(Stage::Control, || self.follower.step(&s.estimate, s.now));
         self.note_progress(&follow, s, times);
         let wanted = self.wanted(&follow, s, times);
@@ -255,6 +262,27 @@ impl Navigator {
                 }
                 false
             }
+        }
+    }
+
+    /// While it drives: a new plan that goes on from the reference and arrives sooner replaces the old one.
+    fn improved(&mut self, s: &Surroundings<'_>, times: &mut StageTimes) -> bool {
+        let (Some(goal), DriveState::Driving) = (self.goal.pose(), &self.state) else { return false };
+        let (Some(old), Some(reference)) = (&self.plan, self.follower.reference()) else { return false };
+        let left = old.trajectory.duration() - reference.time;
+        if left < WORTH_IMPROVING || !self.improve_due.due(s.now) {
+            return false;
+        }
+        let planner = &mut self.planner;
+        let plan = times
+            .measure(Stage::Planning, || planner.plan(s.grid, reference.pose, reference.twist, goal));
+        match plan {
+            Plan::Found(plan) if plan.is_continuous && plan.trajectory.duration() < left - SOONER => {
+                self.follower.follow(plan.trajectory.clone(), goal);
+                self.plan = Some(plan);
+                true
+            }
+            _ => false,
         }
     }
 

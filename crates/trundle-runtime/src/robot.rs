@@ -2,16 +2,18 @@ use crate::{
     config::RobotConfig,
     mission::{Mission, Task, TaskRecord},
     navigator::{Navigator, Surroundings},
+    odometry_track::OdometryTrack,
     report::StepReport,
     schedule::Ticker,
+    sight::Sight,
     stage::{Stage, StageTimes},
     state::DriveState,
     supervisor::Supervisor,
 };
 use trundle_control::SafetyScan;
 use trundle_core::{
-    GyroRate, Invalid, OccupancyGrid, Odometry, Pose2, Pose3, PoseEstimate, RgbdImage, Scan, SensorEvent,
-    WheelTicks,
+    Footprint, GyroRate, Invalid, OccupancyGrid, Odometry, Pose2, Pose3, PoseEstimate, RgbdImage, Scan,
+    SensorEvent, Vector2, WheelTicks,
 };
 use trundle_localization::{Localizer, VisualPose, VisualQuality, WheelOdometry, camera_motion};
 use trundle_mapping::{DepthScanner, GridMapper, MapperConfig, ScanMatcher};
@@ -24,8 +26,10 @@ use trundle_slam::{RgbdSlam, TrackReport, Tracking};
 /// same reports. (Wall-clock times are noted beside it in [`StageTimes`], which only reports read.)
 #[derive(Debug)]
 pub struct Robot {
+    sight: Sight,
     base_from_camera: Pose3,
-    footprint_radius: f64,
+    /// Of the disc that the robot stands on for certain, m.
+    inscribed_radius: f64,
     odometry: WheelOdometry,
     slam: RgbdSlam,
     scanner: DepthScanner,
@@ -45,8 +49,10 @@ struct Latest {
     odometry: Option<Odometry>,
     /// `odom_from_base` at the last image.
     image_odometry: Option<Pose2>,
-    /// The scan of the last image.
+    /// The newest scan.
     scan: Option<Scan>,
+    /// `odom_from_base` over the last moments.
+    track: OdometryTrack,
 }
 
 /// Exploring, the robot keeps so much more from things than its footprint needs, m: a view is not worth a squeeze.
@@ -61,11 +67,15 @@ impl Robot {
         let base_from_camera = config.mount.validated()?.base_from_camera();
         let footprint = config.footprint()?;
         let scanner = DepthScanner::new(config.camera, base_from_camera, config.scan.clone())?;
-        let mapper =
-            GridMapper::new(MapperConfig { blind_range: scanner.blind_range(), ..config.mapping.clone() })?;
+        let blind_range = match config.sight {
+            Sight::DepthCamera => scanner.blind_range(),
+            Sight::Laser => 0.0,
+        };
+        let mapper = GridMapper::new(MapperConfig { blind_range, ..config.mapping.clone() })?;
         Ok(Self {
+            sight: config.sight,
             base_from_camera,
-            footprint_radius: config.footprint_radius,
+            inscribed_radius: inscribed_radius(&footprint),
             odometry: WheelOdometry::new(config.drive, config.odometry.clone())?,
             slam: RgbdSlam::new(config.camera, config.slam.clone())?,
             scanner,
@@ -103,7 +113,8 @@ impl Robot {
             SensorEvent::Rgbd(image) => self.look(image, &mut report),
             SensorEvent::Touch(touch) => self.navigator.touch(touch.pressed),
             SensorEvent::Cliff(cliff) => self.navigator.cliff(cliff.over_edge),
-            // The map is drawn from the depth image alone; a laser is for other programs.
+            SensorEvent::Scan(scan) if self.sight == Sight::Laser => self.see(scan.clone()),
+            // The map is drawn from the depth image alone; a laser beside it is for other programs.
             SensorEvent::Scan(_) | SensorEvent::Truth { .. } => {}
         }
         report.estimate = Some(self.localizer.estimate());
@@ -131,6 +142,7 @@ impl Robot {
     fn roll(&mut self, wheels: &WheelTicks, report: &mut StepReport) {
         let odometry = self.times.measure(Stage::Odometry, || self.odometry.step_wheels(wheels));
         self.times.measure(Stage::Localization, || self.localizer.predict(&odometry));
+        self.latest.track.note(&odometry);
         self.latest.odometry = Some(odometry);
         let surroundings = Surroundings {
             now: wheels.stamp,
@@ -154,13 +166,20 @@ impl Robot {
         let prior = self.camera_motion_since_last_image();
         let track = self.times.measure(Stage::Slam, || self.slam.step(image, prior));
         self.times.measure(Stage::Localization, || correct_by_sight(&mut self.localizer, &track));
-        let scan = self.times.measure(Stage::Scan, || self.scanner.scan(image));
-        if self.map_due.due(image.stamp()) {
+        if self.sight == Sight::DepthCamera {
+            let scan = self.times.measure(Stage::Scan, || self.scanner.scan(image));
+            self.see(scan);
+        }
+        report.track = Some(track);
+    }
+
+    /// A scan: at the map's rate it corrects the estimate and enters the map; safety watches each.
+    fn see(&mut self, scan: Scan) {
+        if self.map_due.due(scan.stamp()) {
             self.fit(&scan);
             self.draw(&scan);
         }
         self.latest.scan = Some(scan);
-        report.track = Some(track);
     }
 
     /// Corrects the estimate by where the scan fits the map.
@@ -175,7 +194,7 @@ impl Robot {
     /// Draws the scan, and the floor that the robot stands on, into the map; not when no pose is known for its time.
     fn draw(&mut self, scan: &Scan) {
         let Ok(pose) = self.localizer.pose_at(scan.stamp()) else { return };
-        let (mapper, radius) = (&mut self.mapper, self.footprint_radius);
+        let (mapper, radius) = (&mut self.mapper, self.inscribed_radius);
         self.times.measure(Stage::Mapping, || {
             mapper.insert(pose, scan);
             mapper.mark_free_disc(pose, radius);
@@ -240,9 +259,21 @@ impl Latest {
     fn carried_scan(&self) -> Option<SafetyScan<'_>> {
         Some(SafetyScan {
             scan: self.scan.as_ref()?,
-            odom_at_scan: self.image_odometry?,
+            odom_at_scan: self.track.at(self.scan.as_ref()?.stamp())?,
             odom_now: self.odometry?.pose,
         })
+    }
+}
+
+/// Of the largest disc about the base's origin that is inside the footprint, m; 0 where the origin is outside.
+fn inscribed_radius(footprint: &Footprint) -> f64 {
+    match footprint {
+        Footprint::Disc { radius } => *radius,
+        Footprint::Polygon { corners } => {
+            let sides = corners.iter().zip(corners.iter().cycle().skip(1));
+            let from_side = |(a, b): (&Vector2, &Vector2)| (b - a).perp(&-a) / (b - a).norm();
+            sides.map(from_side).fold(f64::INFINITY, f64::min).max(0.0)
+        }
     }
 }
 

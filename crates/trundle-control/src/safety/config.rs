@@ -7,6 +7,8 @@ use trundle_core::{Invalid, require_in};
 pub struct SafetyConfig {
     /// Deceleration to count on, m/s^2, 0.05 to 20. Default 0.5: [`DriveLimits::KOBUKI`](trundle_core::DriveLimits::KOBUKI); the base can do more.
     pub deceleration: f64,
+    /// Angular deceleration to count on when a polygon turns on the spot, rad/s^2, 0.1 to 100. Default 3, as above.
+    pub angular_deceleration: f64,
     /// From an image to the wheels obeying, s, 0 to 2. Default 0.2: an image period, processing, delay and lag.
     pub latency: f64,
     /// Room left before an obstacle ahead, m, 0 to 1. Default 0.04 (ours).
@@ -38,6 +40,7 @@ impl Default for SafetyConfig {
     fn default() -> Self {
         Self {
             deceleration: 0.5,
+            angular_deceleration: 3.0,
             latency: 0.2,
             stop_margin: 0.04,
             side_margin: 0.01,
@@ -61,6 +64,7 @@ impl SafetyConfig {
     pub fn validated(self) -> Result<Self, Invalid> {
         let ranges = [
             ("deceleration", self.deceleration, "m/s^2", 0.05, 20.0),
+            ("angular_deceleration", self.angular_deceleration, "rad/s^2", 0.1, 100.0),
             ("latency", self.latency, "s", 0.0, 2.0),
             ("stop_margin", self.stop_margin, "m", 0.0, 1.0),
             ("side_margin", self.side_margin, "m", 0.0, 0.5),
@@ -81,9 +85,18 @@ impl SafetyConfig {
 
     /// The highest speed from which the robot stops within `way` metres.
     pub(super) fn speed_for(&self, way: f64) -> f64 {
-        let reaction = self.deceleration * self.latency;
-        (reaction * reaction + 2.0 * self.deceleration * way.max(0.0)).sqrt() - reaction
+        braked(self.deceleration, self.latency, way)
     }
+
+    /// The highest turn rate from which it stops within `angle` rad.
+    pub(super) fn turn_rate_for(&self, angle: f64) -> f64 {
+        braked(self.angular_deceleration, self.latency, angle)
+    }
+}
+
+fn braked(deceleration: f64, latency: f64, way: f64) -> f64 {
+    let reaction = deceleration * latency;
+    (reaction * reaction + 2.0 * deceleration * way.max(0.0)).sqrt() - reaction
 }
 
 #[cfg(test)]

@@ -22,6 +22,13 @@ pub enum SlowReason {
         /// The obstacle, base frame, m.
         at: Vector2,
     },
+    /// An obstacle in the way of a turn on the spot, still far enough.
+    ObstacleBeside {
+        /// Angle until contact, rad.
+        angle: f64,
+        /// The obstacle, base frame, m.
+        at: Vector2,
+    },
     /// An obstacle close beside the way.
     NarrowGap {
         /// The obstacle, base frame, m.
@@ -40,6 +47,13 @@ pub enum StopReason {
     ObstacleAhead {
         /// Way until contact, m.
         way: f64,
+        /// The obstacle, base frame, m.
+        at: Vector2,
+    },
+    /// An obstacle that a turn on the spot would swing into.
+    ObstacleBeside {
+        /// Angle until contact, rad.
+        angle: f64,
         /// The obstacle, base frame, m.
         at: Vector2,
     },
@@ -69,6 +83,7 @@ impl fmt::Display for SlowReason {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::ObstacleAhead { way, .. } => write!(f, "an obstacle {way:.2} m ahead"),
+            Self::ObstacleBeside { angle, .. } => write!(f, "an obstacle after {:.0} deg", angle.to_degrees()),
             Self::NarrowGap { at } => write!(f, "a narrow gap, {side}", side = side(*at)),
             Self::Reversing => f.write_str("backward without a view"),
             Self::BackingOut => f.write_str("backing out of a contact or off an edge"),
@@ -82,6 +97,7 @@ impl fmt::Display for StopReason {
             Self::ObstacleAhead { way, at } => {
                 write!(f, "an obstacle in the way, {way:.2} m to contact, {side}", side = side(*at))
             }
+            Self::ObstacleBeside { at, .. } => write!(f, "no room to turn, an obstacle {}", side(*at)),
             Self::Touched => f.write_str("the bumper is pressed"),
             Self::Cliff => f.write_str("there is no floor ahead"),
             Self::NoImage => f.write_str("no image yet"),
