@@ -4,6 +4,7 @@ mod barn;
 mod corridor;
 mod laser_run;
 mod missions;
+mod mrpb;
 mod poses;
 mod rows;
 mod trial;
@@ -32,6 +33,8 @@ pub enum Which {
     House(HouseArgs),
     /// The worlds of the BARN challenge, crossed at up to 2 m/s with a 2-D laser.
     Barn(BarnArgs),
+    /// The courses of the local-planning benchmark MRPB 1.0, with and without people, with a 2-D laser.
+    Mrpb(MrpbArgs),
     /// The four corridor scenarios of Hong (2024), by the paper's method and by the optimal one.
     Corridor(CorridorArgs),
 }
@@ -78,8 +81,37 @@ pub struct BarnArgs {
     /// Folder with worlds.csv and obstacles.csv.
     #[arg(long, value_name = "DIR", default_value = "../shared/data/nav/barn")]
     pub data: PathBuf,
+    /// Robot file in place of the experiment's own robot.
+    #[arg(long, value_name = "FILE")]
+    pub config: Option<PathBuf>,
     /// Folder for the results.
     #[arg(long, value_name = "DIR", default_value = "out/barn")]
+    pub out: PathBuf,
+    /// What every command takes.
+    #[command(flatten)]
+    pub common: Common,
+}
+
+/// `trundle experiment mrpb`
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Exit code: 0 every goal reached, nothing touched, control cycle within 2 ms on average; 1 otherwise, 2 bad input."
+)]
+pub struct MrpbArgs {
+    /// Only the courses whose name contains this.
+    #[arg(long, value_name = "TEXT")]
+    pub only: Option<String>,
+    /// Seeds of noise for each course: 1 to N.
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub seeds: u32,
+    /// Folder with start_goal.csv, actors.csv and maps.
+    #[arg(long, value_name = "DIR", default_value = "../shared/data/nav/mrpb")]
+    pub data: PathBuf,
+    /// Robot file in place of the experiment's own robot.
+    #[arg(long, value_name = "FILE")]
+    pub config: Option<PathBuf>,
+    /// Folder for the results.
+    #[arg(long, value_name = "DIR", default_value = "out/mrpb")]
     pub out: PathBuf,
     /// What every command takes.
     #[command(flatten)]
@@ -130,6 +162,7 @@ impl ExperimentArgs {
             Which::Poses(args) | Which::Obstacles(args) => &args.common,
             Which::House(args) => &args.runs.common,
             Which::Barn(args) => &args.common,
+            Which::Mrpb(args) => &args.common,
             Which::Corridor(args) => &args.common,
         }
     }
@@ -142,6 +175,7 @@ pub fn run(args: &ExperimentArgs) -> Result<Outcome, Failure> {
         Which::Obstacles(args) => missions::obstacles(args),
         Which::House(args) => missions::house(&args.runs, &args.mesh),
         Which::Barn(args) => barn::run(args),
+        Which::Mrpb(args) => mrpb::run(args),
         Which::Corridor(args) => corridor::run(args),
     }
 }

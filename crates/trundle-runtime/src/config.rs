@@ -97,6 +97,16 @@ impl RobotConfig {
         Robot::new(self.clone()).map(|_| self)
     }
 
+    /// Refuses a base that may be faster than its odometry believes: it would lose its way at full speed.
+    pub(crate) fn require_believable_speeds(&self) -> Result<(), Invalid> {
+        let least = self.limits.wheel_speed;
+        if self.odometry.max_speed < least {
+            let expected = format!("limits.wheel_speed or more, {least} m/s");
+            return Err(Invalid::new("odometry.max_speed", self.odometry.max_speed, "m/s", expected));
+        }
+        Ok(())
+    }
+
     /// The whole robot file.
     pub fn to_toml(&self) -> String {
         toml::to_string(self).expect("invariant: the configuration is plain data")

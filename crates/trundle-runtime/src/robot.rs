@@ -66,6 +66,7 @@ impl Robot {
     pub fn new(config: RobotConfig) -> Result<Self, Invalid> {
         let base_from_camera = config.mount.validated()?.base_from_camera();
         let footprint = config.footprint()?;
+        config.require_believable_speeds()?;
         let scanner = DepthScanner::new(config.camera, base_from_camera, config.scan.clone())?;
         let blind_range = match config.sight {
             Sight::DepthCamera => scanner.blind_range(),

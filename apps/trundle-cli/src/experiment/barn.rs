@@ -6,12 +6,12 @@ mod worlds;
 
 use super::laser_run::{LaserPlan, LaserRun, Moment, drive};
 use super::{BarnArgs, WorldRange};
-use crate::{Outcome, console, failure::Failure};
+use crate::{Outcome, console, failure::Failure, robot_file};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use trundle::core::{OccupancyGrid, Vector2};
 use trundle::io::{OutputFolder, write_map};
-use trundle::runtime::{DriveState, Mission, Task};
+use trundle::runtime::{DriveState, Mission, RobotConfig, Task};
 use worlds::BarnWorld;
 
 /// The challenge's time limit, s.
@@ -35,6 +35,8 @@ struct Trial {
     contacts: u32,
     length: f64,
     least_clearance: f64,
+    /// The estimate's greatest distance from truth, m.
+    worst_estimate: f64,
     plans: usize,
     /// Control cycle: median and most, ms.
     cycle_ms: (f64, f64),
@@ -57,14 +59,15 @@ pub fn run(args: &BarnArgs) -> Result<Outcome, Failure> {
     let plans: Vec<(BarnWorld, u64)> = chosen
         .flat_map(|(_, world)| (1..=u64::from(args.seeds)).map(move |seed| (world.clone(), seed)))
         .collect();
-    let trials = all(plans, args.common.quiet)?;
+    let robot = args.config.as_deref().map_or_else(|| Ok(jackal::robot()), |file| robot_file::load(Some(file)))?;
+    let trials = all(&robot, plans, args.common.quiet)?;
     finish(args, &trials)
 }
 
-fn all(plans: Vec<(BarnWorld, u64)>, quiet: bool) -> Result<Vec<Trial>, Failure> {
+fn all(robot: &RobotConfig, plans: Vec<(BarnWorld, u64)>, quiet: bool) -> Result<Vec<Trial>, Failure> {
     let (line, done, total) = (console::live_line(quiet), AtomicUsize::new(0), plans.len());
     let trials = plans.into_par_iter().map(|(world, seed)| {
-        let trial = one(world, seed)?;
+        let trial = one(robot, world, seed)?;
         let done = 1 + done.fetch_add(1, Ordering::Relaxed);
         line.set_message(format!("{done} of {total} worlds"));
         line.tick();
@@ -79,8 +82,8 @@ fn is_at_goal(moment: &Moment) -> bool {
     moment.pose.distance(&BarnWorld::goal()) < NEAR
 }
 
-fn one(world: BarnWorld, seed: u64) -> Result<Trial, Failure> {
-    let robot = jackal::robot();
+fn one(robot: &RobotConfig, world: BarnWorld, seed: u64) -> Result<Trial, Failure> {
+    let robot = robot.clone();
     let plan = LaserPlan {
         body: jackal::body(&robot)?,
         robot,
@@ -109,6 +112,7 @@ impl Trial {
             contacts: end.contacts,
             length: run.path_length(),
             least_clearance: run.moments.iter().map(|m| m.clearance).fold(f64::INFINITY, f64::min),
+            worst_estimate: run.worst_estimate(),
             plans: run.plans,
             cycle_ms: (cycles[cycles.len() / 2], cycles[cycles.len() - 1]),
             driven: run.moments.iter().map(|m| m.pose.position()).collect(),

@@ -27,6 +27,8 @@ pub struct Moment {
     pub time: f64,
     /// In truth, world frame.
     pub pose: Pose2,
+    /// How far the estimate is from that, m.
+    pub estimate_error: f64,
     /// The command.
     pub twist: Twist2,
     /// Beside the outline, in truth, m.
@@ -71,6 +73,7 @@ pub fn hokuyo(forward: f64) -> LaserConfig {
 pub fn drive(plan: LaserPlan, is_over: impl Fn(&Moment) -> bool) -> Result<LaserRun, Failure> {
     let mut robot = Robot::new(plan.robot.with_seed(plan.seed))?;
     robot.begin(&plan.mission);
+    let map_from_world = plan.scene.start.inverse();
     let mut body = Simulator::new(plan.scene, plan.body, plan.seed)?;
     let (mut moments, mut cycles_ms, mut plans) = (Vec::new(), Vec::new(), 0);
     let mut state = DriveState::Idle;
@@ -84,7 +87,9 @@ pub fn drive(plan: LaserPlan, is_over: impl Fn(&Moment) -> bool) -> Result<Laser
         cycles_ms.push(elapsed);
         RobotBody::command(&mut body, twist)?;
         let (time, pose) = (body.stamp().as_secs(), body.true_pose());
-        let moment = Moment { time, pose, twist, clearance: body.clearance(), contacts: body.contacts() };
+        let (clearance, contacts) = (body.clearance(), body.contacts());
+        let estimate_error = robot.estimate().pose.distance(&(map_from_world * pose));
+        let moment = Moment { time, pose, estimate_error, twist, clearance, contacts };
         moments.push(moment);
         if report.finished || is_over(&moment) || time > plan.time_limit {
             break;
@@ -97,6 +102,11 @@ impl LaserRun {
     /// The last moment.
     pub fn end(&self) -> &Moment {
         self.moments.last().expect("invariant: a run begins with a reading of the wheels")
+    }
+
+    /// The estimate's greatest distance from truth, m.
+    pub fn worst_estimate(&self) -> f64 {
+        self.moments.iter().map(|moment| moment.estimate_error).fold(0.0, f64::max)
     }
 
     /// The way driven in truth, m.

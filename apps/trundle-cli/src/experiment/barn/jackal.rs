@@ -2,6 +2,7 @@ use crate::demo;
 use crate::experiment::laser_run::hokuyo;
 use trundle::control::{FollowerConfig, SafetyConfig};
 use trundle::core::{DifferentialDrive, DriveLimits, Invalid};
+use trundle::localization::OdometryConfig;
 use trundle::mapping::MapperConfig;
 use trundle::planning::{PlannerConfig, RoomConfig, TimingConfig};
 use trundle::runtime::{RobotConfig, Schedule, Sight, SupervisorConfig};
@@ -28,6 +29,7 @@ pub fn robot() -> RobotConfig {
             angular_acceleration: 10.0,
         },
         schedule: Schedule { map_hz: 20.0, check_hz: 20.0, improve_hz: 4.0 },
+        odometry: OdometryConfig { max_speed: 5.0, ..OdometryConfig::default() },
         mapping: MapperConfig { max_range: 10.0, ..MapperConfig::default() },
         planning: PlannerConfig {
             // A laser sees what it comes to: it stops from this within 0.2 m.
@@ -44,8 +46,8 @@ pub fn robot() -> RobotConfig {
             creep_speed: 0.4,
             ..SafetyConfig::default()
         },
-        // The laser's first scan is a first view.
-        supervisor: SupervisorConfig { opening: 0.1, ..SupervisorConfig::default() },
+        // Long enough to measure the gyro's bias; the laser's first scan is a first view.
+        supervisor: SupervisorConfig { opening: 0.6, ..SupervisorConfig::default() },
         ..RobotConfig::default()
     }
 }

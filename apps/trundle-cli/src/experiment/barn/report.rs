@@ -70,8 +70,17 @@ fn worst_first(trials: &[Trial]) -> Vec<&Trial> {
     sorted
 }
 
-const HEADER: [&str; 8] =
-    ["world", "seed", "what", "time, s", "optimal, s", "score", "way, m", "least room, cm"];
+const HEADER: [&str; 9] = [
+    "world",
+    "seed",
+    "what",
+    "time, s",
+    "optimal, s",
+    "score",
+    "way, m",
+    "least room, cm",
+    "estimate off, cm",
+];
 
 fn row(trial: &Trial) -> Vec<String> {
     vec![
@@ -83,6 +92,7 @@ fn row(trial: &Trial) -> Vec<String> {
         format!("{:.3}", trial.score),
         format!("{:.1}", trial.length),
         format!("{:.1}", trial.least_clearance * 100.0),
+        format!("{:.1}", trial.worst_estimate * 100.0),
     ]
 }
 
@@ -92,7 +102,7 @@ pub(super) fn rows(trials: &[Trial], means: &Means) -> Vec<Vec<String>> {
     rows.extend(worst_first(trials).into_iter().take(SHOWN).map(row));
     let mean = ["mean", "", &format!("{:.1} % reached", means.success * 100.0)].map(str::to_owned);
     let numbers = [format!("{:.1}", means.time), String::new(), format!("{:.4}", means.score)];
-    rows.push(mean.into_iter().chain(numbers).chain([String::new(), String::new()]).collect());
+    rows.push(mean.into_iter().chain(numbers).chain(vec![String::new(); 3]).collect());
     rows
 }
 
@@ -176,6 +186,7 @@ pub(super) fn csv(trials: &[Trial]) -> String {
         "score",
         "way_m",
         "least_clearance_m",
+        "worst_estimate_m",
         "plans",
     ];
     let row = |trial: &Trial| {
@@ -189,6 +200,7 @@ pub(super) fn csv(trials: &[Trial]) -> String {
             trial.score,
             trial.length,
             trial.least_clearance,
+            trial.worst_estimate,
             trial.plans as f64,
         ]
     };
