@@ -4,6 +4,7 @@
 mod bad_input;
 mod demo;
 mod dock;
+mod experiments;
 mod map;
 mod plan;
 mod program;
