@@ -130,7 +130,7 @@ impl SafetyMonitor {
 
     fn free_way(&self, twist: Twist2) -> FreeWay {
         FreeWay {
-            contact: self.first(twist, self.contact_margin()),
+            contact: self.first(twist, self.contact_margin(SAME_DISTANCE)),
             beside: self.first(twist, self.config.slow_margin),
         }
     }
@@ -142,10 +142,10 @@ impl SafetyMonitor {
     }
 
     /// The rim about the outline that nothing may enter, m. A robot that is already nearer to something than the margin asks
-    /// may go on as long as it comes no nearer: else it could never leave a wall.
-    fn contact_margin(&self) -> f64 {
+    /// may go on as long as it comes no nearer, give or take `slack`: else it could never leave a wall.
+    fn contact_margin(&self, slack: f64) -> f64 {
         let gaps = self.obstacles.iter().map(|o| self.outline.gap(o.at) - o.extent);
-        (gaps.fold(f64::INFINITY, f64::min) - SAME_DISTANCE).clamp(0.0, self.config.side_margin)
+        (gaps.fold(f64::INFINITY, f64::min) - slack).clamp(0.0, self.config.side_margin)
     }
 
     /// Whether a turn on the spot need not be looked at.
@@ -154,7 +154,8 @@ impl SafetyMonitor {
     }
 
     fn within_the_free_turn(&self, turn: Twist2) -> SafetyReport {
-        let contact = if self.may_turn(turn) { None } else { self.first(turn, self.contact_margin()) };
+        // No slack: a turn keeps no stop margin, so slack would be used up again with every step.
+        let contact = if self.may_turn(turn) { None } else { self.first(turn, self.contact_margin(0.0)) };
         let Some((angle, at)) = contact else {
             return SafetyReport { twist: turn, action: SafetyAction::Pass };
         };
