@@ -16,6 +16,8 @@ use trundle_docking::{MotionLimits, Scene};
 /// Least radius, m: what a base that prefers to roll takes in a corridor.
 const RADIUS: f64 = 0.25;
 const STEP: f64 = 0.05;
+/// Between two looks for contact, m.
+const SAMPLE: f64 = 0.005;
 const MOST_NODES: usize = 20_000;
 
 /// An arc: curvature (1/m) and signed way (m).
@@ -44,9 +46,9 @@ pub fn plan(problem: &Problem, scene: &Scene, limits: &MotionLimits, kept: f64) 
         }
         for curvature in [-1.0 / RADIUS, 0.0, 1.0 / RADIUS] {
             for way in [STEP, -STEP] {
-                let middle = roll(&pose, curvature, way / 2.0);
                 let next = roll(&pose, curvature, way);
-                if (next.position() - problem.goal.position()).norm() > 2.5 || !free(&middle) || !free(&next)
+                if (next.position() - problem.goal.position()).norm() > 2.5
+                    || !is_free(&pose, &[(curvature, way)], &free)
                 {
                     continue;
                 }
@@ -99,12 +101,6 @@ fn joined(pieces: &[Piece]) -> Vec<Piece> {
     list
 }
 
-/// The time of a path, s: every piece from rest to rest, a pause where the direction changes.
-pub fn time_of(pieces: &[Piece], limits: &MotionLimits) -> f64 {
-    let turns = pieces.windows(2).filter(|pair| pair[0].1 * pair[1].1 < 0.0).count();
-    pieces.iter().map(|piece| limits.drive_time(piece.1)).sum::<f64>() + turns as f64 * limits.switch_time
-}
-
 /// The shortest free word of three pieces, each a curve of least radius or a straight, all ways round.
 fn reeds_shepp(from: &Pose2, to: &Pose2, free: &impl Fn(&Pose2) -> bool) -> Option<Vec<Piece>> {
     let mut words: Vec<Vec<Piece>> = Vec::new();
@@ -135,7 +131,7 @@ fn ends(from: &Pose2, word: &[Piece]) -> Pose2 {
 fn is_free(from: &Pose2, word: &[Piece], free: &impl Fn(&Pose2) -> bool) -> bool {
     let mut pose = *from;
     word.iter().all(|&(curvature, way)| {
-        let samples = (way.abs() / 0.01).ceil().max(1.0) as usize;
+        let samples = (way.abs() / SAMPLE).ceil().max(1.0) as usize;
         let good = (1..=samples).all(|i| free(&roll(&pose, curvature, way * i as f64 / samples as f64)));
         pose = roll(&pose, curvature, way);
         good

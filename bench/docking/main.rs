@@ -2,8 +2,9 @@
 //!
 //! `cargo run --release -p trundle-docking --example corridor_bench -- --problems 5000`
 //!
-//! `--seed N`, `--file PATH` instead of a seed, `--write PATH` to keep the problems, `--boxes N` of the bound that judges,
-//! `--baselines N` problems for the slow ones, `--loops N` problems in closed loop with noise, `--nodes N` of the search, `--list PATH` keeps what
+//! `--seed N`, `--file PATH` instead of a seed, `--write PATH` writes the problems and ends, `--answers PATH` judges the answers of
+//! another program and ends, `--write-answers PATH` keeps the default method's, `--boxes N` of the bound that judges,
+//! `--baselines N` problems for the slow ones, `--loops N` problems in closed loop with noise, `--nodes N` of the search, `--margin M` asked for (0 unless told), `--list PATH` keeps what
 //! became of each problem as CSV.
 
 #![expect(clippy::print_stdout, reason = "an example prints its result")]
@@ -20,16 +21,29 @@ mod world;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use table::{Row, Track};
-use trundle_docking::corridor::{Problem, generate, parse, write};
+use trundle_docking::corridor::{
+    Answer, Piece, Problem, generate, parse, parse_answers, write, write_answers,
+};
+use trundle_docking::paper::PaperConfig;
 use trundle_docking::{Certificate, Docker, DockingConfig, Method, MotionLimits, Plan};
 
 fn main() {
     let problems = problems();
+    if let Some(path) = argument("--write") {
+        return std::fs::write(path, write(&problems)).expect("a file that can be written");
+    }
+    if let Some(path) = argument("--answers") {
+        let text = std::fs::read_to_string(path).expect("a file that can be read");
+        return judge::print(&problems, &parse_answers(&text).expect("the format of the page"));
+    }
     let mut rows = vec![optimal(&problems, number("--boxes", 50_000))];
     rows.push(by_paper(&problems));
     let few = &problems[..number("--baselines", 200).min(problems.len())];
     rows.push(by_hybrid(few));
     table::print(&rows);
+    if let Some(path) = argument("--write-answers") {
+        std::fs::write(path, write_answers(&rows[0].answers)).expect("a file that can be written");
+    }
     if let Some(path) = argument("--list") {
         std::fs::write(path, table::list(&problems, &rows[0])).expect("a file that can be written");
     }
@@ -46,16 +60,14 @@ fn problems() -> Vec<Problem> {
     let (count, seed) = (number("--problems", 5000), number("--seed", 1) as u64);
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let problems: Vec<Problem> = (0..count).map(|i| generate(format!("{seed}-{i}"), &mut rng)).collect();
-    if let Some(path) = argument("--write") {
-        std::fs::write(path, write(&problems)).expect("a file that can be written");
-    }
     problems
 }
 
 /// The default method, its times against a proven bound.
 fn optimal(problems: &[Problem], boxes: usize) -> Row {
     let nodes = number("--nodes", DockingConfig::default().search_nodes);
-    let base = DockingConfig { margin: 0.0, search_nodes: nodes, ..DockingConfig::default() };
+    let margin = argument("--margin").map_or(0.0, |value| value.parse().expect("metres"));
+    let base = DockingConfig { margin, search_nodes: nodes, ..DockingConfig::default() };
     let mut row = plan_all("trundle, optimal", problems, &Docker::new(base.clone()).expect("valid"));
     // Many boxes only where a few leave more than 15 %, and only until they do not.
     let judge = |bound_boxes, gap| {
@@ -78,22 +90,27 @@ fn optimal(problems: &[Problem], boxes: usize) -> Row {
 }
 
 fn by_paper(problems: &[Problem]) -> Row {
-    let config = DockingConfig { method: Method::Paper, margin: 0.0, ..DockingConfig::default() };
+    // A distance of 1 cm is asked for: each axis gets its part of it.
+    let part = number("--paper-mm", 7) as f64 * 1e-3;
+    let paper =
+        PaperConfig { lateral_threshold: part, longitudinal_threshold: part, ..PaperConfig::default() };
+    let config = DockingConfig { method: Method::Paper, margin: 0.0, paper, ..DockingConfig::default() };
     plan_all("[Hong24]", problems, &Docker::new(config).expect("valid"))
 }
+
+/// What the path planner keeps from obstacles, m: a millimetre for what lies between its samples.
+const KEPT: f64 = 0.001;
 
 fn by_hybrid(problems: &[Problem]) -> Row {
     let mut row = Row::new("hybrid A*, Reeds-Shepp");
     for problem in problems {
         let scene = problem.scene().expect("valid");
         let limits = MotionLimits::default();
-        let (path, ms) = clock::timed(|| hybrid::plan(problem, &scene, &limits, 0.0));
-        let time = path.map(|path| hybrid::time_of(&path, &limits));
+        let (path, ms) = clock::timed(|| hybrid::plan(problem, &scene, &limits, KEPT));
+        let path = path
+            .map(|path| path.iter().map(|&(curvature, way)| Piece { way, turn: curvature * way }).collect());
         row.planning_ms.push(ms);
-        if time.is_none() {
-            row.unsolved.push(problem.name.clone());
-        }
-        row.times.push(time);
+        row.note(problem, path);
     }
     row
 }
@@ -125,19 +142,18 @@ fn plan_all(name: &'static str, problems: &[Problem], docker: &Docker) -> Row {
         let (plan, ms) = clock::timed(plan);
         row.planning_ms.push(ms);
         row.steps.push(if let Plan::Found(solution) = &plan { solution.manoeuvre.steps().len() } else { 0 });
-        let mut time = None;
         match plan {
-            Plan::Found(solution) if judge::is_good(problem, &solution.manoeuvre) => {
-                time = Some(solution.manoeuvre.duration());
+            Plan::Found(solution) => row.note(problem, Some(Piece::all_of(&solution.manoeuvre))),
+            Plan::Impossible(impossible) => {
+                match impossible.certificate {
+                    Certificate::Never => row.never += 1,
+                    Certificate::AtResolution => row.at_resolution += 1,
+                    Certificate::None => row.unsolved.push(problem.name.clone()),
+                }
+                row.times.push(None);
+                row.answers.push(Answer { problem: problem.name.clone(), path: None });
             }
-            Plan::Found(_) => row.bad.push(problem.name.clone()),
-            Plan::Impossible(impossible) => match impossible.certificate {
-                Certificate::Never => row.never += 1,
-                Certificate::AtResolution => row.at_resolution += 1,
-                Certificate::None => row.unsolved.push(problem.name.clone()),
-            },
         }
-        row.times.push(time);
     }
     row
 }

@@ -1,8 +1,9 @@
 //! The table of the benchmark, and the list behind it.
 
+use crate::judge;
 use crate::world::Run;
 use std::fmt::Write;
-use trundle_docking::corridor::Problem;
+use trundle_docking::corridor::{Answer, Piece, Problem};
 
 /// What one method did with all problems.
 pub struct Row {
@@ -24,6 +25,8 @@ pub struct Row {
     pub steps: Vec<usize>,
     /// A time that no manoeuvre beats, s, where one was settled.
     pub bounds: Vec<Option<f64>>,
+    /// What it says of each problem.
+    pub answers: Vec<Answer>,
 }
 
 impl Row {
@@ -39,7 +42,20 @@ impl Row {
             planning_ms: Vec::new(),
             steps: Vec::new(),
             bounds: Vec::new(),
+            answers: Vec::new(),
         }
+    }
+
+    /// Has a path judged; none is no answer.
+    pub fn note(&mut self, problem: &Problem, path: Option<Vec<Piece>>) {
+        let judged = path.as_ref().map(|path| judge::time(problem, path));
+        match &judged {
+            None => self.unsolved.push(problem.name.clone()),
+            Some(Err(_)) => self.bad.push(problem.name.clone()),
+            Some(Ok(_)) => {}
+        }
+        self.times.push(judged.and_then(Result::ok));
+        self.answers.push(Answer { problem: problem.name.clone(), path });
     }
 }
 

@@ -25,10 +25,12 @@ pub enum Command {
     Replay(ReplayArgs),
     /// Track a recorded RGB-D sequence and draw its map.
     Slam(SlamArgs),
-    /// Draw the map of a laser log.
+    /// Draw the map of a laser log, a ROS 2 bag or an RGB-D folder.
     Map(crate::map::MapArgs),
+    /// Judge a trajectory or a map against the truth.
+    Eval(crate::eval::EvalArgs),
     /// Plan on a map: way-points, curve and trajectory.
-    Plan(PlanArgs),
+    Plan(crate::plan::PlanArgs),
     /// Drive a simulated robot through a scene and record what it sees.
     Sim(SimArgs),
     /// Settle on a goal in a tight place: the manoeuvre of turns and straight moves.
@@ -153,31 +155,6 @@ impl SlamArgs {
         let brought = || own.exists().then(|| own.display().to_string());
         self.camera.clone().or_else(brought).unwrap_or_else(|| "freiburg1".to_owned())
     }
-}
-
-/// `trundle plan`
-#[derive(Debug, Args)]
-#[command(
-    after_help = "Example: trundle plan ../shared/data/nav/nav2/depot.yaml --from=9.3,10.7,114 --to=17.1,9.2,-80"
-)]
-pub struct PlanArgs {
-    /// A map in map_server's form.
-    pub map: PathBuf,
-    /// Start pose in the map frame: m, m, deg.
-    #[arg(long, value_name = "X,Y,DEG", allow_hyphen_values = true)]
-    pub from: PoseArg,
-    /// Goal pose in the map frame: m, m, deg.
-    #[arg(long, value_name = "X,Y,DEG", allow_hyphen_values = true)]
-    pub to: PoseArg,
-    /// Robot file (see `trundle config`).
-    #[arg(long, value_name = "FILE")]
-    pub config: Option<PathBuf>,
-    /// Folder for the results.
-    #[arg(long, value_name = "DIR", default_value = "out/plan")]
-    pub out: PathBuf,
-    /// What every command takes.
-    #[command(flatten)]
-    pub common: Common,
 }
 
 /// `trundle config`

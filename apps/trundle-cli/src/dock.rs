@@ -7,10 +7,11 @@ mod table;
 use crate::{Outcome, console, failure::Failure, robot_file};
 pub use args::DockArgs;
 pub(crate) use picture::{Surroundings, manoeuvre_picture};
+use std::path::Path;
 use std::time::Instant;
 pub(crate) use table::{motions, steps_csv};
 use trundle::core::{Footprint, OccupancyGrid, Pose2};
-use trundle::docking::corridor::{Problem, parse};
+use trundle::docking::corridor::{Problem, Scenario, parse, write};
 use trundle::docking::{Certificate, Docker, DockingConfig, Impossible, Obstacle, Plan, Scene, Solution};
 use trundle::io::{LaserLogOptions, OutputFolder, Summary, read_carmen, read_map};
 
@@ -25,8 +26,11 @@ struct Task {
     problem: Option<Problem>,
 }
 
-/// `trundle dock MAP.yaml --from --to`, `trundle dock SCANS.log --to`, or `trundle dock PROBLEM.txt`.
+/// `trundle dock MAP.yaml --from --to`, `trundle dock SCANS.log --to`, `trundle dock PROBLEM.txt`, or a built-in problem by name.
 pub fn run(args: &DockArgs) -> Result<Outcome, Failure> {
+    if let Some(file) = &args.write_problem {
+        return write_problem(args, file);
+    }
     let is_a = |endings: &[&str]| {
         let ending = args.place.extension().unwrap_or_default();
         endings.iter().any(|known| ending.eq_ignore_ascii_case(known))
@@ -38,7 +42,7 @@ pub fn run(args: &DockArgs) -> Result<Outcome, Failure> {
     } else {
         task_of(args, of_file(args)?)?
     };
-    let docker = Docker::new(DockingConfig { method: args.method.into(), ..DockingConfig::default() })?;
+    let docker = Docker::new(planner(args)?)?;
     let clock = Instant::now();
     let plan = docker
         .plan(&task.footprint, &task.scene, task.start, task.goal)
@@ -53,7 +57,12 @@ pub fn run(args: &DockArgs) -> Result<Outcome, Failure> {
     if let Some(found) = found {
         folder.write("steps.csv", steps_csv(&found.manoeuvre).as_bytes())?;
     }
-    let picture = manoeuvre_picture(surroundings, &task.footprint, (task.start, task.goal), found);
+    let in_the_way = match &plan {
+        Plan::Impossible(impossible) => impossible.by.map(|by| by.at),
+        Plan::Found(_) => None,
+    };
+    let ends = (task.start, task.goal);
+    let picture = manoeuvre_picture(surroundings, &task.footprint, ends, found, in_the_way);
     folder.write("dock.png", &picture)?;
     folder.write("summary.json", summary(&task, &plan, seconds).to_json().as_bytes())?;
     let place = folder.commit()?;
@@ -64,6 +73,27 @@ pub fn run(args: &DockArgs) -> Result<Outcome, Failure> {
     Ok(if found.is_some() { Outcome::Reached } else { Outcome::Missed })
 }
 
+/// The robot file's `[docking.planner]`, where one is given.
+fn planner(args: &DockArgs) -> Result<DockingConfig, Failure> {
+    let config = match &args.config {
+        Some(file) => robot_file::load(Some(file))?.docking.planner,
+        None => DockingConfig::default(),
+    };
+    let method = args.method.map_or(config.method, Into::into);
+    Ok(DockingConfig { method, ..config })
+}
+
+/// Writes the chosen problem to a file of its own.
+fn write_problem(args: &DockArgs, file: &Path) -> Result<Outcome, Failure> {
+    let text = write(&[of_file(args)?]);
+    std::fs::write(file, text)
+        .map_err(|error| Failure::Input(format!("{}: cannot write it: {error}", file.display())))?;
+    if !args.common.quiet {
+        console::say(&format!("See {}", file.display()));
+    }
+    Ok(Outcome::Reached)
+}
+
 fn on_map(args: &DockArgs) -> Result<Task, Failure> {
     let grid = read_map(&args.place)?;
     let (Some(start), Some(goal)) = (args.from, args.to) else {
@@ -71,7 +101,7 @@ fn on_map(args: &DockArgs) -> Result<Task, Failure> {
     };
     let (start, goal) = (start.0, goal.0);
     let footprint = footprint(args)?;
-    let config = DockingConfig::default();
+    let config = planner(args)?;
     let (center, half) = config.view(&footprint, &start, &goal);
     let scene = Scene::from_grid(&grid, center, half, !args.through_unknown);
     Ok(Task {
@@ -116,6 +146,11 @@ fn in_scan(args: &DockArgs) -> Result<Problem, Failure> {
 
 fn of_file(args: &DockArgs) -> Result<Problem, Failure> {
     let named = |problem: &dyn std::fmt::Display| named(args, problem);
+    let built_in =
+        Scenario::ALL.map(Scenario::problem).into_iter().find(|p| args.place == Path::new(&p.name));
+    if let Some(problem) = built_in.filter(|_| !args.place.exists()) {
+        return Ok(problem);
+    }
     let text =
         std::fs::read_to_string(&args.place).map_err(|error| named(&format!("cannot read it: {error}")))?;
     let problems = parse(&text).map_err(|invalid| named(&invalid))?;
@@ -145,6 +180,9 @@ fn task_of(args: &DockArgs, problem: Problem) -> Result<Task, Failure> {
 
 fn tell(plan: &Plan, seconds: f64) {
     match plan {
+        Plan::Found(found) if found.manoeuvre.steps().is_empty() => {
+            console::say("Already there: nothing to do.");
+        }
         Plan::Found(found) => {
             console::table(&table::rows(&found.manoeuvre));
             console::say(&format!("\n{}; planned in {:.1} ms.", table::verdict(found), seconds * 1e3));
@@ -160,8 +198,11 @@ fn reason(impossible: &Impossible) -> String {
     });
     let proof = match impossible.certificate {
         Certificate::Never => "proven for motions of any kind",
-        Certificate::AtResolution => "none through the middles of the search's cells",
-        Certificate::None => "none was found; not proven",
+        Certificate::AtResolution => {
+            "a complete search in steps of docking.position_tolerance found no way through; a way that is narrower than such a step is \
+             not ruled out"
+        }
+        Certificate::None => "none was found, which is no proof; more docking.most_work searches longer",
     };
     format!("No manoeuvre within {:.1} m{by} ({proof}).", impossible.within)
 }

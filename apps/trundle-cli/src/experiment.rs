@@ -2,6 +2,8 @@
 
 mod barn;
 mod corridor;
+mod cpu_clock;
+mod faults;
 mod laser_run;
 mod missions;
 mod mrpb;
@@ -31,6 +33,8 @@ pub enum Which {
     Obstacles(RunsArgs),
     /// Ten goals in six rooms of a furnished house, from an empty map.
     House(HouseArgs),
+    /// Sensors that break, wheels that slip, people in the way: nothing touched, and on when it can be.
+    Faults(RunsArgs),
     /// The worlds of the BARN challenge, crossed at up to 2 m/s with a 2-D laser.
     Barn(BarnArgs),
     /// The courses of the local-planning benchmark MRPB 1.0, with and without people, with a 2-D laser.
@@ -46,6 +50,9 @@ pub struct RunsArgs {
     /// Seeds of noise and room: 1 to N.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=10_000))]
     pub seeds: u32,
+    /// Only runs whose name holds this.
+    #[arg(long, value_name = "WORD")]
+    pub only: Option<String>,
     /// Robot file (see `trundle config`).
     #[arg(long, value_name = "FILE")]
     pub config: Option<PathBuf>,
@@ -159,7 +166,7 @@ impl ExperimentArgs {
     /// What every command takes.
     pub fn common(&self) -> &Common {
         match &self.which {
-            Which::Poses(args) | Which::Obstacles(args) => &args.common,
+            Which::Poses(args) | Which::Obstacles(args) | Which::Faults(args) => &args.common,
             Which::House(args) => &args.runs.common,
             Which::Barn(args) => &args.common,
             Which::Mrpb(args) => &args.common,
@@ -176,6 +183,7 @@ pub fn run(args: &ExperimentArgs) -> Result<Outcome, Failure> {
         Which::House(args) => missions::house(&args.runs, &args.mesh),
         Which::Barn(args) => barn::run(args),
         Which::Mrpb(args) => mrpb::run(args),
+        Which::Faults(args) => faults::run(args),
         Which::Corridor(args) => corridor::run(args),
     }
 }

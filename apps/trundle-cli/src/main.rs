@@ -5,11 +5,14 @@ mod body;
 mod console;
 mod demo;
 mod dock;
+mod eval;
 mod experiment;
 mod failure;
 mod goals;
 mod logbook;
 mod map;
+mod map_input;
+mod map_output;
 mod picture;
 mod plan;
 mod replay;
@@ -54,6 +57,7 @@ fn run(cli: Cli) -> Result<Outcome, Failure> {
         Command::Replay(args) => with_threads(&args.common, || replay::run(&args)),
         Command::Slam(args) => with_threads(&args.common, || slam::run(&args)),
         Command::Map(args) => with_threads(&args.common, || map::run(&args)),
+        Command::Eval(args) => with_threads(args.common(), || eval::run(&args)),
         Command::Plan(args) => with_threads(&args.common, || plan::run(&args)),
         Command::Sim(args) => with_threads(&args.common, || sim::run(&args)),
         Command::Dock(args) => with_threads(&args.common, || dock::run(&args)),

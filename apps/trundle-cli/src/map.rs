@@ -1,20 +1,22 @@
-use crate::{Outcome, args::Common, console, failure::Failure};
+use crate::map_output::{Counts, rows, summary, trajectory_text};
+use crate::{Outcome, args::Common, console, failure::Failure, map_input};
 use clap::Args;
-use std::fmt::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 use trundle::core::{Pose2, Stamp};
-use trundle::io::{LaserLog, LaserLogOptions, OutputFolder, Summary, read_carmen, write_map};
-use trundle::mapping::{MapperConfig, ParticleConfig, ParticleMapper, ScanUpdate, carry_trajectory};
+use trundle::io::{LaserLog, LaserLogOptions, OutputFolder, read_map, write_map};
+use trundle::mapping::{
+    Localized, MapLocalizer, MapperConfig, ParticleConfig, ParticleMapper, carry_trajectory,
+};
 
 /// `trundle map`
 #[derive(Debug, Args)]
 #[command(
     after_help = "Example: trundle map ../shared/data/laser/sena.log --laser-x 0.78 --out out/sena\n\n\
-    Writes trajectory.txt (t x y theta: s, m, m, rad), map.pgm, map.yaml and summary.json."
+    Writes trajectory.txt (t x y theta: s, m, m, rad), map.pgm, map.yaml, filter.map (to go on with by --map) and summary.json."
 )]
 pub struct MapArgs {
-    /// A CARMEN log: FLASER or ROBOTLASER1 lines, whose odometry is the motion.
+    /// A CARMEN log, a ROS 2 bag (folder, .mcap, .db3) or a TUM RGB-D folder, whose odometry is the motion.
     pub log: PathBuf,
     /// Particles of the filter.
     #[arg(long, value_name = "N", default_value_t = 30, value_parser = clap::value_parser!(u16).range(1..=1000))]
@@ -37,6 +39,12 @@ pub struct MapArgs {
     /// Ranges from here on are no returns, m [default: the reading at which many end]
     #[arg(long, value_name = "M")]
     pub max_range: Option<f64>,
+    /// Go on with the map of an earlier run, its filter.map: the robot is looked for in it first.
+    #[arg(long, value_name = "FILE")]
+    pub map: Option<PathBuf>,
+    /// Only find the robot in that map, a filter.map or a map.yaml, and follow it: the map does not change.
+    #[arg(long, requires = "map")]
+    pub localise: bool,
     /// Folder for the results.
     #[arg(long, value_name = "DIR", default_value = "out/map")]
     pub out: PathBuf,
@@ -45,44 +53,43 @@ pub struct MapArgs {
     pub common: Common,
 }
 
-/// What became of the scans.
-#[derive(Debug, Default)]
-struct Counts {
-    processed: usize,
-    refused: usize,
-    jumps: usize,
-    resamplings: usize,
-    without_overlap: usize,
-    degenerate: usize,
-}
-
 /// `trundle map LOG`.
 pub fn run(args: &MapArgs) -> Result<Outcome, Failure> {
-    let log = read_carmen(&args.log, &args.log_options())?;
+    let log = map_input::read(&args.log, &args.log_options(), args.common.quiet)?;
     let folder = OutputFolder::create(&args.out)?;
-    let mut mapper = ParticleMapper::new(args.config(), args.seed)?;
-    let start = Instant::now();
-    let counts = map(args, &log, &mut mapper);
-    let seconds = start.elapsed().as_secs_f64();
-
     let odometry: Vec<(Stamp, Pose2)> =
         log.scans.iter().map(|s| (s.scan.stamp(), s.odom_from_base)).collect();
-    let trajectory = carry_trajectory(&mapper.trajectory(), &odometry);
+    let start = Instant::now();
+    let (counts, poses, megabytes) = match (&args.map, args.localise) {
+        (Some(file), true) => {
+            let mut localizer = localizer(args, file)?;
+            let (counts, poses) = localise(args, &log, &mut localizer);
+            (counts, poses, 0.0)
+        }
+        _ => {
+            let mut mapper = begin(args)?;
+            let counts = map(args, &log, &mut mapper);
+            write_map(&folder, "map", mapper.grid())?;
+            folder.write("filter.map", &mapper.save())?;
+            (counts, mapper.trajectory(), mapper.bytes() as f64 / 1e6)
+        }
+    };
+    let seconds = start.elapsed().as_secs_f64();
+    let trajectory = carry_trajectory(&poses, &odometry);
     folder.write("trajectory.txt", trajectory_text(&trajectory).as_bytes())?;
-    let megabytes = mapper.bytes() as f64 / 1e6;
-    write_map(&folder, "map", mapper.grid())?;
     folder.write("summary.json", summary(args, &log, &counts, megabytes, seconds).to_json().as_bytes())?;
     let place = folder.commit()?;
     if let Some(first) = log.skipped.first() {
         let (count, file) = (log.skipped.len(), args.log.display());
         console::warn(&format!(
-            "{file}: {count} lines skipped, the first line {}: {}",
+            "{file}: {count} entries skipped, the first {}: {}",
             first.line, first.problem
         ));
     }
     if !args.common.quiet {
         console::table(&rows(&log, &counts, megabytes, seconds));
-        console::say(&format!("See {}", place.join("map.pgm").display()));
+        let shown = if args.localise { "trajectory.txt" } else { "map.pgm" };
+        console::say(&format!("See {}", place.join(shown).display()));
     }
     Ok(Outcome::Reached)
 }
@@ -100,81 +107,64 @@ impl MapArgs {
 
     fn config(&self) -> ParticleConfig {
         let default = ParticleConfig::default();
-        ParticleConfig {
+        let config = ParticleConfig {
             particles: usize::from(self.particles),
             map: MapperConfig { resolution: self.resolution, ..default.map },
             ..default
-        }
+        };
+        map_input::tuned(&self.log, config)
     }
+}
+
+/// The filter that was asked for: a new one, or one that goes on with a saved map.
+fn begin(args: &MapArgs) -> Result<ParticleMapper, Failure> {
+    let Some(file) = &args.map else { return Ok(ParticleMapper::new(args.config(), args.seed)?) };
+    let bytes = std::fs::read(file).map_err(|error| refused(file, &error))?;
+    let mut mapper = ParticleMapper::load(&bytes, args.config()).map_err(|error| refused(file, &error))?;
+    mapper.kidnapped();
+    Ok(mapper)
+}
+
+fn refused(file: &Path, problem: &dyn std::fmt::Display) -> Failure {
+    Failure::Input(format!("{}: {problem}", file.display()))
 }
 
 fn map(args: &MapArgs, log: &LaserLog, mapper: &mut ParticleMapper) -> Counts {
     let mut counts = Counts::default();
     let bar = console::bar(args.common.quiet, log.scans.len());
     for entry in &log.scans {
-        match mapper.update(entry.odom_from_base, &entry.scan) {
-            ScanUpdate::Processed(done) => {
-                counts.processed += 1;
-                counts.jumps += usize::from(done.jumped);
-                counts.resamplings += usize::from(done.resampled);
-                counts.without_overlap += usize::from(done.degenerate == 3);
-                counts.degenerate += usize::from(done.degenerate > 0);
-            }
-            ScanUpdate::Refused(_) => counts.refused += 1,
-            ScanUpdate::Still => {}
-        }
+        counts.count(&mapper.update(entry.odom_from_base, &entry.scan));
         bar.inc(1);
     }
     bar.finish_and_clear();
     counts
 }
 
-/// `t x y theta` lines.
-fn trajectory_text(trajectory: &[(Stamp, Pose2)]) -> String {
-    let mut text = String::new();
-    for (stamp, pose) in trajectory {
-        writeln!(text, "{stamp} {:.6} {:.6} {:.6}", pose.x, pose.y, pose.theta).expect("invariant: a String");
+/// The trajectory of the log in a map that does not change.
+fn localise(args: &MapArgs, log: &LaserLog, localizer: &mut MapLocalizer) -> (Counts, Vec<(Stamp, Pose2)>) {
+    let (mut counts, mut known) = (Counts::default(), Vec::new());
+    let bar = console::bar(args.common.quiet, log.scans.len());
+    for entry in &log.scans {
+        let localized = localizer.update(entry.odom_from_base, &entry.scan);
+        counts.count_localized(&localized);
+        if let Localized::Known { map_from_base, .. } = localized {
+            known.push((entry.scan.stamp(), map_from_base));
+        }
+        bar.inc(1);
     }
-    text
+    bar.finish_and_clear();
+    (counts, known)
 }
 
-fn rows(log: &LaserLog, counts: &Counts, megabytes: f64, seconds: f64) -> Vec<Vec<String>> {
-    let row = |name: &str, value: String| vec![name.to_owned(), value];
-    vec![
-        row("scans", log.scans.len().to_string()),
-        row("processed", counts.processed.to_string()),
-        row("odometry jumps", counts.jumps.to_string()),
-        row("scans without overlap with the map", counts.without_overlap.to_string()),
-        row("scans with a direction left to the odometry", counts.degenerate.to_string()),
-        row("resamplings", counts.resamplings.to_string()),
-        row("memory of maps and trajectories", format!("{megabytes:.1} MB")),
-        row("time for a processed scan", format!("{:.2} ms", milliseconds(counts, seconds))),
-    ]
-}
-
-fn milliseconds(counts: &Counts, seconds: f64) -> f64 {
-    seconds * 1e3 / counts.processed.max(1) as f64
-}
-
-fn summary(args: &MapArgs, log: &LaserLog, counts: &Counts, megabytes: f64, seconds: f64) -> Summary {
-    let mut summary = Summary::new("map");
-    let milliseconds = milliseconds(counts, seconds);
-    summary
-        .set("success", true)
-        .set("log", args.log.display().to_string())
-        .set("particles", args.particles)
-        .set("seed", args.seed)
-        .set("scans", log.scans.len())
-        .set("processed", counts.processed)
-        .set("refused_scans", counts.refused)
-        .set("skipped_lines", log.skipped.len())
-        .set("bad_ranges", log.bad_ranges)
-        .set("max_range_m", log.max_range)
-        .set("odometry_jumps", counts.jumps)
-        .set("scans_without_overlap", counts.without_overlap)
-        .set("degenerate_scans", counts.degenerate)
-        .set("resamplings", counts.resamplings)
-        .set("memory_mb", megabytes)
-        .set("wall_clock", serde_json::json!({ "total_s": seconds, "processed_scan_ms": milliseconds }));
-    summary
+/// The map to be localised in: a saved filter, or a grid by its YAML.
+fn localizer(args: &MapArgs, file: &Path) -> Result<MapLocalizer, Failure> {
+    if file.extension().is_some_and(|ext| ext == "yaml") {
+        let grid = read_map(file)?;
+        let resolution = grid.geometry().resolution;
+        let config = args.config();
+        let config = ParticleConfig { map: MapperConfig { resolution, ..config.map }, ..config };
+        return Ok(MapLocalizer::from_grid(&grid, config, args.seed)?);
+    }
+    let bytes = std::fs::read(file).map_err(|error| refused(file, &error))?;
+    MapLocalizer::load(&bytes, args.config(), args.seed).map_err(|error| refused(file, &error))
 }

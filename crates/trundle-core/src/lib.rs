@@ -39,7 +39,7 @@ pub use path::Path;
 pub use pose2::Pose2;
 pub use pose3::Pose3;
 pub use rgbd::RgbdImage;
-pub use scan::{Beam, Scan};
+pub use scan::{Beam, FreeSpan, ObstacleKind, Scan, ScanParts};
 pub use stamp::Stamp;
 pub use trajectory::{Trajectory, TrajectoryPoint};
 pub use twist::Twist2;

@@ -25,6 +25,9 @@ pub struct DockingConfig {
     /// Kept from every obstacle, m, 0 to 0.5. Default 0.01 (ours: the position tolerance). Where start or goal are
     /// nearer than that, or there is no manoeuvre that keeps it, less will do.
     pub margin: f64,
+    /// Less than the margin is kept where that saves this part of the time, 0 to 1. Default 0.25 (ours); 1 keeps the margin
+    /// wherever there is a manoeuvre that does, as [`crate::Positioner`] does always: its poses are measured with noise.
+    pub margin_saving: f64,
     /// Overlap of start or goal with an obstacle that is taken for an error of the pose, m, 0 to 0.02. Default 0.
     pub overlap: f64,
     /// How far beyond the line from start to goal a manoeuvre may go, m, 0.1 to 10. Default 1.5 (ours).
@@ -38,6 +41,9 @@ pub struct DockingConfig {
     /// Nodes of the search for manoeuvres of three and more straight moves, 0 to 10^7. Default 2500 (ours: a second
     /// at most; hard problems only).
     pub search_nodes: usize,
+    /// What the search for many motions may cost for each margin, in counted steps of some 10 ns ([`crate::Space::work`]), 10^5
+    /// to 10^11. Default 5 * 10^7 (ours: half a second; the hardest of 5,000 corridor problems takes a third of it).
+    pub most_work: u64,
     /// Boxes of the search for a better bound on the time, 0 to 10^8. Default 400 (ours: a few ms).
     pub bound_boxes: usize,
     /// The search ends when the time is proven to be within this part of the least, 0 to 1. Default 0.01.
@@ -52,12 +58,14 @@ impl Default for DockingConfig {
             method: Method::Optimal,
             limits: MotionLimits::default(),
             margin: 0.01,
+            margin_saving: 0.25,
             overlap: 0.0,
             reach: 1.5,
             max_distance: 5.0,
             position_tolerance: 0.01,
             heading_tolerance: 1_f64.to_radians(),
             search_nodes: 2500,
+            most_work: 50_000_000,
             bound_boxes: 400,
             gap: 0.01,
             paper: PaperConfig::default(),
@@ -89,12 +97,14 @@ impl DockingConfig {
         self.paper = self.paper.validated()?;
         let ranges = [
             ("margin", self.margin, "m", 0.0, 0.5),
+            ("margin_saving", self.margin_saving, "", 0.0, 1.0),
             ("overlap", self.overlap, "m", 0.0, 0.02),
             ("reach", self.reach, "m", 0.1, 10.0),
             ("max_distance", self.max_distance, "m", 0.1, 20.0),
             ("position_tolerance", self.position_tolerance, "m", 0.001, 0.1),
             ("heading_tolerance", self.heading_tolerance, "rad", 0.001, 0.2),
             ("search_nodes", self.search_nodes as f64, "", 0.0, 1e7),
+            ("most_work", self.most_work as f64, "", 1e5, 1e11),
             ("bound_boxes", self.bound_boxes as f64, "", 0.0, 1e8),
             ("gap", self.gap, "", 0.0, 1.0),
         ];

@@ -9,6 +9,7 @@ pub mod geometry;
 mod limits;
 mod manoeuvre;
 mod margin;
+mod margins;
 pub mod optimal;
 pub mod paper;
 mod planner;

@@ -1,8 +1,8 @@
-use crate::cloud::{MANY_POINTS, plan_in_cloud};
 use crate::config::{BESIDE, DockingConfig, Method, WIDER};
 use crate::geometry::Hull;
 use crate::manoeuvre::Manoeuvre;
-use crate::optimal::{self, Certificate, Effort, Outcome, Task};
+use crate::margins::Margins;
+use crate::optimal::{self, Certificate, Effort, Task};
 use crate::paper;
 use crate::scene::{Blocker, Scene};
 use crate::space::Space;
@@ -114,62 +114,56 @@ impl Docker {
     ) -> Result<Plan, Refusal> {
         let most = self.checked(margin, footprint, scene, &start, &goal)?;
         let task = self.task(start, goal);
-        let near = around(footprint, scene, &task);
         let least = most.min(0.0);
-        let mut plan = self.plan_with(footprint, &near, &task, most);
-        for margin in [most / 3.0, least] {
-            if matches!(plan, Plan::Impossible(_)) && most > least {
-                plan = self.plan_with(footprint, &near, &task, margin);
+        Ok(match self.config.method {
+            Method::Optimal => {
+                let within = |task: Task, most| {
+                    let near = around(footprint, scene, &task);
+                    Margins {
+                        footprint,
+                        scene: &near,
+                        task,
+                        most,
+                        least,
+                        effort: self.effort(&near),
+                        saving: self.config.margin_saving,
+                    }
+                    .plan()
+                };
+                match within(task, most) {
+                    Plan::Impossible(_) => within(Task { reach: WIDER * task.reach, ..task }, least),
+                    found => found,
+                }
             }
+            Method::Paper => {
+                let near = around(footprint, scene, &task);
+                let plan = |margin| self.by_paper(&Space::new(footprint, margin, &near), &task, margin);
+                let margins = if most > least { vec![most, most / 3.0, least] } else { vec![least] };
+                let none = Impossible { by: None, certificate: Certificate::None, within: task.reach };
+                margins.into_iter().find_map(plan).map_or(Plan::Impossible(none), Plan::Found)
+            }
+        })
+    }
+
+    fn effort(&self, scene: &Scene) -> Effort {
+        let config = &self.config;
+        Effort {
+            nodes: config.search_nodes,
+            // A box costs as many looks as there are pieces.
+            boxes: config.bound_boxes.min(config.bound_boxes * MANY_PIECES / scene.pieces().len().max(1)),
+            gap: config.gap,
+            cell: config.position_tolerance,
+            work: config.most_work,
         }
-        if matches!(plan, Plan::Impossible(_)) && self.config.method == Method::Optimal {
-            let wider = Task { reach: WIDER * task.reach, ..task };
-            plan = self.plan_with(footprint, &around(footprint, scene, &wider), &wider, least);
-        }
-        Ok(plan)
+    }
+
+    fn by_paper(&self, space: &Space<'_>, task: &Task, margin: f64) -> Option<Solution> {
+        let found = paper::plan(space, task.start, task.goal, &self.config.limits, &self.config.paper);
+        found.map(|manoeuvre| Solution { manoeuvre, bound: 0.0, margin })
     }
 
     fn task(&self, start: Pose2, goal: Pose2) -> Task {
         Task { start, goal, limits: self.config.limits, reach: self.config.reach }
-    }
-
-    /// Among all points, or among a few of them first where there are many.
-    fn plan_with(&self, footprint: &Footprint, scene: &Scene, task: &Task, margin: f64) -> Plan {
-        if scene.points().len() <= MANY_POINTS || self.config.method == Method::Paper {
-            return self.plan_among(footprint, scene, task, margin);
-        }
-        plan_in_cloud(footprint, scene, margin, |few| self.plan_among(footprint, few, task, margin))
-    }
-
-    fn plan_among(&self, footprint: &Footprint, scene: &Scene, task: &Task, margin: f64) -> Plan {
-        let (config, limits) = (&self.config, self.config.limits);
-        let mut space = Space::new(footprint, margin, scene);
-        let effort = Effort {
-            nodes: config.search_nodes,
-            // A box costs as many looks as there are pieces; what is left of them in thick clouds must not cost more.
-            boxes: config.bound_boxes.min(config.bound_boxes * MANY_PIECES / scene.len().max(1)),
-            gap: config.gap,
-            cell: config.position_tolerance,
-        };
-        let nothing = |by, certificate| Plan::Impossible(Impossible { by, certificate, within: task.reach });
-        if config.method == Method::Paper {
-            let found = paper::plan(&space, task.start, task.goal, &limits, &config.paper);
-            return found.map_or(nothing(None, Certificate::None), |manoeuvre| {
-                Plan::Found(Solution { manoeuvre, bound: 0.0, margin })
-            });
-        }
-        match optimal::find(*task, &mut space, effort) {
-            Outcome::Found((_, legs), bound) => {
-                let (_, motions) = legs.motions(task, &mut space).expect("invariant: found legs are free");
-                Plan::Found(Solution {
-                    manoeuvre: Manoeuvre::new(task.start, &motions, limits),
-                    bound,
-                    margin,
-                })
-            }
-            Outcome::Apart(certificate, by) => nothing(by, certificate),
-            Outcome::Nothing => nothing(None, Certificate::None),
-        }
     }
 
     /// A time (s) that no manoeuvre from `start` to `goal` beats, sought with the effort of the configuration; at most

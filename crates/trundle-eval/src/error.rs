@@ -2,7 +2,7 @@ use std::fmt;
 use thiserror::Error;
 use trundle_core::{Invalid, Stamp};
 
-/// Which of the two compared trajectories is meant.
+/// Which of the two that are compared is meant.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Side {
     /// The ground truth.
@@ -20,7 +20,7 @@ impl fmt::Display for Side {
     }
 }
 
-/// Why two trajectories cannot be compared.
+/// Why two trajectories or maps cannot be compared.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum EvalError {
     /// A trajectory without a pose.
@@ -93,6 +93,18 @@ pub enum EvalError {
         poses: usize,
         /// The distance asked for.
         delta: crate::Delta,
+    },
+    /// No relation has poses at both its times.
+    #[error("the estimate has poses for none of the {relations} relations")]
+    NoRelation {
+        /// How many relations there are.
+        relations: usize,
+    },
+    /// A map in which nothing can be compared.
+    #[error("the {side} map has no obstacle to compare")]
+    NoObstacle {
+        /// Which map.
+        side: Side,
     },
     /// An option is out of range.
     #[error(transparent)]

@@ -1,8 +1,11 @@
-//! Trajectory and goal errors: pure functions from data to numbers.
+//! Trajectory, map and goal errors: pure functions from data to numbers.
 //!
 //! The definitions are those of the TUM RGB-D benchmark \[Sturm12\] as the PyPI tool `evo` computes them, and agree
 //! with it to 1e-6 (`tests/it` holds the proof, `data/evo` its numbers): absolute trajectory error after alignment
 //! \[Horn87, Umeyama91\], relative pose error over frames, seconds or metres, and the error at the goal.
+//!
+//! Of laser logs, whose reference is often known only in pieces: the relations metric of \[Kuemmerle09\] ([`relation_error`],
+//! [`RelationSets`]). Of maps: how far occupied cells are from the true ones, precision and recall ([`map_agreement`]).
 //!
 //! A trajectory is a slice of `(Stamp, Pose3)` whose stamps do not go back, each pose `world_from_body`.
 //!
@@ -26,7 +29,13 @@ mod align;
 mod associate;
 mod error;
 mod goal;
+mod map_agreement;
+mod map_alignment;
+mod occupied_cells;
 mod pairs;
+mod relation_sets;
+mod relation_text;
+mod relations;
 mod relative;
 mod statistics;
 
@@ -35,6 +44,11 @@ pub use align::{Alignment, Similarity, align};
 pub use associate::associate;
 pub use error::{EvalError, Side};
 pub use goal::{GoalError, goal_error};
+pub use map_agreement::{MapAgreement, MapAgreementConfig, map_agreement};
+pub use map_alignment::align_maps;
 pub use pairs::Delta;
+pub use relation_sets::{RelationSets, RelationSetsConfig};
+pub use relation_text::{RelationTextError, relations_from_text, relations_text};
+pub use relations::{Relation, RelationConfig, RelationError, relation_error};
 pub use relative::{RelativeConfig, RelativeError, relative_pose_error};
 pub use statistics::ErrorStatistics;

@@ -1,6 +1,7 @@
 //! Data sets, maps, trajectories and recordings on disk: one file a format, described in `docs/formats.md`.
 //!
-//! What comes in: TUM RGB-D folders ([`TumSequence`]), CARMEN logs ([`read_carmen`]), TUM trajectories ([`read_trajectory`]), cameras
+//! What comes in: TUM RGB-D folders ([`TumSequence`]), CARMEN logs ([`read_carmen`]), ROS 2 bags
+//! ([`read_ros_bag`]), TUM trajectories ([`read_trajectory`]), cameras
 //! ([`CameraModel`]), ROS maps ([`read_map`]) and recordings ([`RecordingReader`]). What goes out is collected in an
 //! [`OutputFolder`], which shows nothing half-written: maps, trajectories, tables, TUM folders ([`TumWriter`]), laser logs ([`CarmenLog`]), recordings ([`Recorder`]) and the
 //! numbers of a run ([`Summary`]). [`EncodedEvent`] is the wire between body and robot: a robot that is fed through
@@ -31,6 +32,7 @@ mod files;
 mod map;
 mod output;
 mod recording;
+mod ros;
 mod stamp_text;
 mod summary;
 mod tum;
@@ -43,12 +45,16 @@ pub use codec::{
 };
 pub use csv::{curve_csv, table_csv, trajectory_csv, waypoints_csv};
 pub use error::{FrameError, IoError};
-pub use map::{map_pgm, map_yaml, read_map, write_map};
+pub use map::{
+    GraphFile, map_pgm, map_yaml, read_graph, read_keep_out_mask, read_map, read_places, read_speed_mask,
+    write_map,
+};
 pub use output::OutputFolder;
 pub use recording::{
     FeatureMarks, KeyframeGraph, LandmarkCloud, PoseInFrame, PosesInFrame, RecordedMessage, Recorder,
     RecordingReader,
 };
+pub use ros::{RosBagOptions, read_laser_log, read_ros_bag};
 pub use stamp_text::parse_stamp;
 pub use summary::Summary;
 pub use tum::{

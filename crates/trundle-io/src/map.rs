@@ -1,13 +1,20 @@
 //! Maps in the form of the ROS `map_server`: a PGM picture and a YAML file beside it.
 
+mod graph;
+mod mask;
 mod pgm;
+mod places;
 mod yaml;
+
+pub use graph::{GraphFile, read_graph};
+pub use mask::{read_keep_out_mask, read_speed_mask};
+pub use places::read_places;
 
 use crate::files::{read_bytes, read_text};
 use crate::{IoError, OutputFolder};
 use pgm::Pgm;
 use std::fmt::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use trundle_core::{Cell, CellIndex, GridGeometry, OccupancyGrid};
 use yaml::MapYaml;
 
@@ -28,17 +35,23 @@ const UNKNOWN: u8 = 205;
 /// thresholds are out of order, or the picture is larger than 2^28 cells.
 pub fn read_map(yaml_path: &Path) -> Result<OccupancyGrid, IoError> {
     let yaml = MapYaml::parse(yaml_path, &read_text(yaml_path)?)?;
+    let (pgm_path, pgm) = picture_of(yaml_path, &yaml)?;
+    let geometry = GridGeometry::new(yaml.resolution, yaml.origin, pgm.width, pgm.height)
+        .map_err(IoError::field(yaml_path))?;
+    let rows = pgm.values.chunks_exact(pgm.width).rev(); // the picture's first row is the highest y
+    let cells = rows.flatten().map(|&value| yaml.cell(value, pgm.maxval)).collect();
+    OccupancyGrid::new(geometry, cells).map_err(IoError::field(&pgm_path))
+}
+
+/// The picture that a map's YAML names, and where it is.
+fn picture_of(yaml_path: &Path, yaml: &MapYaml) -> Result<(PathBuf, Pgm), IoError> {
     let pgm_path = yaml_path.parent().unwrap_or(Path::new("")).join(&yaml.image);
     if !pgm_path.exists() {
         let problem = format!("image is '{}', but there is no such file", pgm_path.display());
         return Err(IoError::malformed(yaml_path, problem));
     }
     let pgm = Pgm::parse(&pgm_path, &read_bytes(&pgm_path)?)?;
-    let geometry = GridGeometry::new(yaml.resolution, yaml.origin, pgm.width, pgm.height)
-        .map_err(IoError::field(yaml_path))?;
-    let rows = pgm.values.chunks_exact(pgm.width).rev(); // the picture's first row is the highest y
-    let cells = rows.flatten().map(|&value| yaml.cell(value, pgm.maxval)).collect();
-    OccupancyGrid::new(geometry, cells).map_err(IoError::field(&pgm_path))
+    Ok((pgm_path, pgm))
 }
 
 /// Writes `NAME.pgm` and `NAME.yaml` into the folder, as `map_saver` does: free 254, occupied 0, unknown 205.

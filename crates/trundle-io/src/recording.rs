@@ -1,5 +1,6 @@
 //! Recordings of a run: MCAP with JSON messages, which Foxglove Studio opens as it is.
 
+mod chunk_decoder;
 mod messages;
 mod poses;
 mod reader;
@@ -12,6 +13,7 @@ mod visual_map;
 pub use poses::{PoseInFrame, PosesInFrame};
 pub use reader::{RecordedMessage, RecordingReader};
 pub use recorder::Recorder;
+pub(crate) use stream::{Encoding, MessageStream, RawMessage};
 pub use visual_map::{FeatureMarks, KeyframeGraph, LandmarkCloud};
 
 /// Where each kind of sensor event is recorded.

@@ -12,6 +12,11 @@ pub struct VisualPose {
     pub covariance: Matrix6<f64>,
     /// How well it was found.
     pub quality: VisualQuality,
+    /// The visual map that it is in: each has a frame of its own.
+    pub map: u32,
+    /// Whether a place was recognised in this image (a loop, a relocalisation, two maps that became one). Then the pose is
+    /// believed however far off it is: the odometry knows no better.
+    pub recognised: bool,
 }
 
 /// How well a visual pose was found.
@@ -26,7 +31,7 @@ pub enum VisualQuality {
 /// What became of a measurement of the pose.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Correction {
-    /// The first visual pose: it only says where the visual frame lies in the map.
+    /// The first visual pose of a visual map: it only says where the visual frame lies in the map.
     Anchored,
     /// Taken in.
     Applied {
@@ -41,8 +46,8 @@ pub enum Correction {
     /// Many visual poses in a row were too far off, and they began to be with a jump that the wheels know nothing of: the
     /// visual frame moved (a loop closure, a new map). `map_from_visual` was set anew; the estimate stays.
     Reanchored,
-    /// Many visual poses in a row were too far off without ever having jumped: the wheels went astray. The estimate
-    /// moved to the visual pose.
+    /// A place was recognised far from the prediction, or many visual poses in a row were too far off without ever having
+    /// jumped: the wheels went astray, or the robot was carried. The estimate moved to the visual pose.
     Recovered {
         /// Mahalanobis distance from the prediction.
         distance: f64,

@@ -34,6 +34,7 @@ mod odometry_config;
 mod odometry_noise;
 mod planar;
 mod recovery;
+mod stuck_gyro;
 mod turn_integral;
 mod visual_frame;
 mod wheel_odometry;

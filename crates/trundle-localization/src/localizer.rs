@@ -76,7 +76,7 @@ impl Localizer {
             Err(refusal) => return refusal,
         };
         let Some(measurement) = self.visual.measurement(visual, &self.config) else {
-            self.visual.anchor(moment.belief.pose, &visual.visual_from_camera);
+            self.visual.anchor(moment.belief.pose, visual);
             return Correction::Anchored;
         };
         self.recovery.watch(&self.config, visual.stamp, measurement.pose, moment.odom_from_base());
@@ -85,10 +85,15 @@ impl Localizer {
             self.recovery.believed();
             return correction;
         };
+        if visual.recognised {
+            self.believe(&moment, measurement);
+            self.recovery = Recovery::default();
+            return Correction::Recovered { distance };
+        }
         match self.recovery.refused(&self.config) {
             Verdict::Wait => correction,
             Verdict::Reanchor => {
-                self.visual.anchor(moment.belief.pose, &visual.visual_from_camera);
+                self.visual.anchor(moment.belief.pose, visual);
                 self.recovery = Recovery::default();
                 Correction::Reanchored
             }
@@ -142,7 +147,15 @@ impl Localizer {
         self.find(stamp).map(|moment| moment.belief.pose)
     }
 
-    /// Where the visual frame lies in the map, once there was a visual pose.
+    /// `odom_from_base` at a moment of the last seconds, between two readings on the arc between them.
+    ///
+    /// # Errors
+    /// [`Correction::TooOld`], [`Correction::TooNew`] or [`Correction::NoOdometry`].
+    pub fn odometry_at(&self, stamp: Stamp) -> Result<Pose2, Correction> {
+        self.find(stamp).map(|moment| moment.odom_from_base())
+    }
+
+    /// Where the current visual map's frame lies in the map, once there was a visual pose.
     pub fn map_from_visual(&self) -> Option<Pose3> {
         self.visual.map_from_visual()
     }

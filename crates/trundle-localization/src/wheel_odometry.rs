@@ -3,6 +3,7 @@ use crate::{
     gyro_bias::GyroBias,
     odometry_noise::{Step, of_gap, of_step},
     planar::carried,
+    stuck_gyro::StuckGyro,
     turn_integral::TurnIntegral,
 };
 use nalgebra::Matrix3;
@@ -24,6 +25,7 @@ pub struct WheelOdometry {
     config: OdometryConfig,
     gyro: TurnIntegral,
     bias: GyroBias,
+    stuck: StuckGyro,
     last_rate: Option<GyroRate>,
     last: Option<WheelTicks>,
     suspect: Option<WheelTicks>,
@@ -53,6 +55,7 @@ impl WheelOdometry {
             drive,
             config,
             gyro: TurnIntegral::default(),
+            stuck: StuckGyro::default(),
             last_rate: None,
             last: None,
             suspect: None,
@@ -74,6 +77,7 @@ impl WheelOdometry {
             self.counts.gyro_refused += 1;
             return;
         }
+        self.stuck.note(rate);
         let dt = self.last_rate.map_or(0.0, |last| rate.stamp - last.stamp);
         self.bias.wander(&self.config, dt);
         if self.at_rest(rate.stamp) && self.bias.explains(&self.config, rate.omega) {
@@ -155,7 +159,8 @@ impl WheelOdometry {
         self.resting_since = if rests { self.resting_since.or(Some(stamp)) } else { None };
 
         let turn_by_wheels = (rims.right - rims.left) / self.drive.wheelbase;
-        let turn_by_gyro = self.turn_by_gyro(stamp, rims.dt);
+        let is_stuck = self.stuck.contradicts(turn_by_wheels / rims.dt, self.bias.value());
+        let turn_by_gyro = self.turn_by_gyro(stamp, rims.dt).filter(|_| !is_stuck);
         let turn = match turn_by_gyro {
             // The gyro's noise does not turn a robot whose wheels rest.
             Some(turn) if rests && self.is_noise(turn / rims.dt) => 0.0,

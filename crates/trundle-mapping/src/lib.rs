@@ -27,6 +27,7 @@ mod depth_scan;
 mod evidence;
 mod filter;
 mod live_grid;
+mod live_mapper;
 mod mapper;
 mod mapper_config;
 mod ray;
@@ -34,11 +35,13 @@ mod scan_cells;
 mod scan_match;
 mod tiles;
 
-pub use depth_scan::{DepthScanConfig, DepthScanner};
+pub use depth_scan::{DepthScanConfig, DepthScanner, FloorFit, ScanFusion, ScanFusionConfig};
 pub use evidence::{Evidence, GridCell, LogOddsGrid};
 pub use filter::{
-    MotionConfig, ParticleConfig, ParticleMapper, Processed, Refusal, ScanUpdate, carry_trajectory,
+    FilterFileError, Localized, Lost, MapLocalizer, MotionConfig, ParticleConfig, ParticleMapper, Processed,
+    Refusal, ScanUpdate, carry_trajectory,
 };
+pub use live_mapper::{LiveMapper, Redrawn};
 pub use mapper::{GridMapper, Insertion};
 pub use mapper_config::MapperConfig;
 pub use ray::{RayCells, ray_cells};

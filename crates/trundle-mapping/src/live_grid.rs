@@ -9,6 +9,9 @@ pub(crate) struct LiveGrid {
     resolution: f64,
     occupied_above: f32,
     free_below: f32,
+    revision: u64,
+    /// At which revision a cell of each tile changed last, row by row.
+    changed: Vec<u64>,
 }
 
 impl LiveGrid {
@@ -21,6 +24,8 @@ impl LiveGrid {
             resolution: config.resolution,
             occupied_above: log_odds(config.occupied_above) as f32,
             free_below: log_odds(config.free_below) as f32,
+            revision: 0,
+            changed: vec![0; size.0 / TILE_CELLS * (size.1 / TILE_CELLS)],
         }
     }
 
@@ -42,14 +47,54 @@ impl LiveGrid {
             let cell = old.cell(i);
             grid.set(CellIndex { col: cell.col + shift.col, row: cell.row + shift.row }, value);
         }
-        (self.grid, self.corner) = (grid, corner);
+        let (cols, old_cols) = (size.0 / TILE_CELLS, old.width / TILE_CELLS);
+        let mut changed = vec![0; cols * (size.1 / TILE_CELLS)];
+        for (i, &revision) in self.changed.iter().enumerate() {
+            let (col, row) = (i % old_cols + shift.col / TILE_CELLS, i / old_cols + shift.row / TILE_CELLS);
+            changed[row * cols + col] = revision;
+        }
+        (self.grid, self.corner, self.changed) = (grid, corner, changed);
+    }
+
+    /// From here on changes are of a new revision.
+    pub(crate) fn begin(&mut self) {
+        self.revision += 1;
+    }
+
+    pub(crate) fn revision(&self) -> u64 {
+        self.revision
+    }
+
+    /// The lowest cell and the size (columns, rows) of the tiles that changed after `revision`, row by row.
+    pub(crate) fn changes_since(&self, revision: u64) -> impl Iterator<Item = (CellIndex, (usize, usize))> {
+        let cols = self.grid.geometry().width / TILE_CELLS;
+        let corner = move |i: usize| CellIndex { col: i % cols * TILE_CELLS, row: i / cols * TILE_CELLS };
+        let fresh = self.changed.iter().enumerate().filter(move |(_, changed)| **changed > revision);
+        fresh.map(move |(i, _)| (corner(i), (TILE_CELLS, TILE_CELLS)))
+    }
+
+    /// Shows all cells of `evidence`, whose bounds are the grid's.
+    pub(crate) fn show_all(&mut self, evidence: &LogOddsGrid) {
+        let (corner, (cols, rows)) = evidence.bounds();
+        for row in 0..rows as i32 {
+            for col in 0..cols as i32 {
+                let cell = GridCell { x: corner.x + col, y: corner.y + row };
+                self.show(cell, evidence.log_odds(cell));
+            }
+        }
     }
 
     /// Shows a cell whose evidence changed.
     pub(crate) fn show(&mut self, cell: GridCell, log_odds: f32) {
         let index =
             CellIndex { col: (cell.x - self.corner.x) as usize, row: (cell.y - self.corner.y) as usize };
-        self.grid.set(index, self.value(log_odds));
+        let value = self.value(log_odds);
+        if self.grid.get(index) != value {
+            self.grid.set(index, value);
+            let tile =
+                index.row / TILE_CELLS * (self.grid.geometry().width / TILE_CELLS) + index.col / TILE_CELLS;
+            self.changed[tile] = self.revision;
+        }
     }
 
     /// What a cell of these log-odds is called.

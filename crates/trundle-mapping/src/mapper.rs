@@ -2,7 +2,7 @@ use crate::{
     GridCell, LogOddsGrid, MapperConfig, live_grid::LiveGrid, mapper_config::probability,
     scan_cells::ScanCells,
 };
-use trundle_core::{Cell, Invalid, OccupancyGrid, Pose2, Scan, Vector2};
+use trundle_core::{Cell, CellIndex, Invalid, OccupancyGrid, Pose2, Scan, Vector2};
 
 /// Draws scans taken at known poses into a log-odds occupancy grid.
 ///
@@ -51,6 +51,7 @@ impl GridMapper {
 
     /// Draws `scan`, taken with the base at `map_from_base`.
     pub fn insert(&mut self, map_from_base: Pose2, scan: &Scan) -> Insertion {
+        self.live.begin();
         let mut cells = std::mem::take(&mut self.cells);
         cells.rasterise(&self.config, map_from_base, scan);
         if let Some((low, high)) = cells.reach() {
@@ -69,6 +70,7 @@ impl GridMapper {
         if !(radius > 0.0 && map_from_base.x.abs() <= limit && map_from_base.y.abs() <= limit) {
             return;
         }
+        self.live.begin();
         let center = map_from_base.position() / self.config.resolution;
         let reach = Vector2::repeat(radius / self.config.resolution);
         let (low, high) = (GridCell::containing(center - reach), GridCell::containing(center + reach));
@@ -90,7 +92,10 @@ impl GridMapper {
         self.evidence = LogOddsGrid::default();
         self.evidence.reach(low);
         self.evidence.reach(GridCell { x: low.x + cols as i32 - 1, y: low.y + rows as i32 - 1 });
-        self.live = LiveGrid::new(&self.config, &self.evidence);
+        let blank = self.evidence.clone();
+        self.live.begin();
+        self.live.fit(&blank);
+        self.live.show_all(&blank);
         for (map_from_base, scan) in scans {
             self.insert(map_from_base, scan);
         }
@@ -99,6 +104,37 @@ impl GridMapper {
     /// The three-valued map. Its geometry grows with what is seen, in steps of 64 cells, and never shrinks.
     pub fn grid(&self) -> &OccupancyGrid {
         self.live.grid()
+    }
+
+    /// Counts the scans, discs and redrawings that may have changed [`GridMapper::grid`].
+    pub fn revision(&self) -> u64 {
+        self.live.revision()
+    }
+
+    /// The tiles of 64 x 64 cells of [`GridMapper::grid`] in which a cell changed after `revision`: lowest cell and (columns,
+    /// rows) of each.
+    pub fn changes_since(&self, revision: u64) -> impl Iterator<Item = (CellIndex, (usize, usize))> {
+        self.live.changes_since(revision)
+    }
+
+    /// Another map with this one's settings and bounds, of other evidence within them.
+    pub(crate) fn with_evidence(&self, mut evidence: LogOddsGrid) -> Self {
+        let (low, (cols, rows)) = self.evidence.bounds();
+        evidence.reach(low);
+        evidence.reach(GridCell { x: low.x + cols as i32 - 1, y: low.y + rows as i32 - 1 });
+        let mut live = LiveGrid::new(&self.config, &evidence);
+        live.show_all(&evidence);
+        Self { live, evidence, cells: ScanCells::default(), config: self.config.clone() }
+    }
+
+    /// Takes over another map, telling what differs.
+    pub(crate) fn replace_with(&mut self, mut other: Self) {
+        let (low, (cols, rows)) = self.evidence.bounds();
+        other.grow(low, GridCell { x: low.x + cols as i32 - 1, y: low.y + rows as i32 - 1 });
+        self.live.fit(&other.evidence);
+        self.live.begin();
+        self.live.show_all(&other.evidence);
+        self.evidence = other.evidence;
     }
 
     /// All evidence, cell by cell. Cloning it is cheap.

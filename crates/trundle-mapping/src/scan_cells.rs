@@ -15,6 +15,8 @@ pub(crate) struct ScanCells {
     /// Beams that reach out of the map, or whose pose is not finite.
     pub(crate) ignored_beams: usize,
     segments: Vec<Segment>,
+    /// What was seen to be free: from where to where, in cells.
+    ways: Vec<(Vector2, Vector2)>,
     window: Window,
 }
 
@@ -66,8 +68,8 @@ impl ScanCells {
             }
         }
         self.mark_surfaces(config.surface_gap / config.resolution);
-        for i in 0..self.segments.len() {
-            self.mark_free(self.segments[i].end);
+        for i in 0..self.ways.len() {
+            self.mark_free(self.ways[i]);
         }
     }
 
@@ -85,6 +87,7 @@ impl ScanCells {
         // NaN is not within either.
         let within = |p: Vector2| p.x.abs() <= limit && p.y.abs() <= limit;
         self.segments.clear();
+        self.ways.clear();
         self.ignored_beams = 0;
         self.origin = map_from_base.transform(scan.origin()) * cells_from_metres;
         let origin_counts = within(self.origin) && map_from_base.theta.is_finite();
@@ -94,9 +97,16 @@ impl ScanCells {
                 Beam::Free { range } => (range.min(config.max_range), false),
                 Beam::Unseen => continue,
             };
-            let end = map_from_base.transform(scan.point(i, range)) * cells_from_metres;
+            let at = |range: f64| map_from_base.transform(scan.point(i, range)) * cells_from_metres;
+            let end = at(range);
             if origin_counts && within(end) {
                 self.segments.push(Segment { beam: i, end, hit });
+                let spans = scan.free_spans(i).filter(|(from, _)| *from < range);
+                let way = |(from, to): (f64, f64)| {
+                    let start = if from == 0.0 { self.origin } else { at(from) };
+                    (start, if to < range { at(to) } else { end })
+                };
+                self.ways.extend(spans.map(way));
             } else {
                 self.ignored_beams += 1;
             }
@@ -132,8 +142,8 @@ impl ScanCells {
         }
     }
 
-    fn mark_free(&mut self, end: Vector2) {
-        for cell in ray_cells(self.origin, end) {
+    fn mark_free(&mut self, (start, end): (Vector2, Vector2)) {
+        for cell in ray_cells(start, end) {
             let mark = self.window.at(cell);
             if *mark == UNTOUCHED {
                 *mark = FREE;
@@ -169,7 +179,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
     use std::collections::BTreeSet;
-    use trundle_core::Stamp;
+    use trundle_core::{FreeSpan, ScanParts, Stamp};
 
     fn any_beam() -> impl Strategy<Value = Beam> {
         prop_oneof![
@@ -224,6 +234,23 @@ mod tests {
         };
         assert!(cleared(0.0) > 5);
         assert_eq!(cleared(0.3), 0);
+    }
+
+    #[test]
+    fn only_what_was_seen_is_cleared() {
+        let span = |from, to| FreeSpan { beam: 0, from, to };
+        let parts = ScanParts {
+            beams: vec![Beam::Hit { range: 2.03 }],
+            free: Some(vec![span(0.0, 0.52), span(1.02, 1.52), span(1.7, 9.0)]),
+            ..ScanParts::default()
+        };
+        let scan = Scan::from_parts(Stamp::default(), Vector2::zeros(), (0.0, 0.1), parts).unwrap();
+        let mut cells = ScanCells::default();
+        cells.rasterise(&MapperConfig { resolution: 0.1, ..MapperConfig::default() }, Pose2::IDENTITY, &scan);
+        let columns: Vec<i32> = cells.frees.iter().map(|cell| cell.x).collect();
+        // The cell in which a stretch ends counts as the whole beam's does; the hit's own does not.
+        assert_eq!(columns, [0, 1, 2, 3, 4, 5, 10, 11, 12, 13, 14, 15, 17, 18, 19]);
+        assert_eq!(cells.hits.len(), 1);
     }
 
     #[test]

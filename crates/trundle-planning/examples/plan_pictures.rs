@@ -156,7 +156,7 @@ fn way(grid: &OccupancyGrid, plan: &PlanResult) {
     for curve in plan.curves() {
         for planes in curve.corridors() {
             picture.polygon(
-                &clipped(planes),
+                &HalfPlane::outline(planes),
                 "fill='#edae49' fill-opacity='0.10' stroke='#edae49' stroke-width='1'",
             );
         }
@@ -177,27 +177,6 @@ fn way(grid: &OccupancyGrid, plan: &PlanResult) {
 
 fn along(curve: &Curve) -> Vec<Vector2> {
     curve.samples(0.02).iter().map(|sample| sample.pose.position()).collect()
-}
-
-/// The polygon that half-planes bound, cut out of a large square.
-fn clipped(planes: &[HalfPlane]) -> Vec<Vector2> {
-    let mut polygon = [(-99.0, -99.0), (99.0, -99.0), (99.0, 99.0), (-99.0, 99.0)]
-        .map(|(x, y)| Vector2::new(x, y))
-        .to_vec();
-    for plane in planes {
-        let beyond = |p: &Vector2| plane.normal.dot(p) - plane.offset;
-        let mut cut = Vec::new();
-        for (a, b) in polygon.iter().zip(polygon.iter().cycle().skip(1)) {
-            if beyond(a) <= 0.0 {
-                cut.push(*a);
-            }
-            if beyond(a) * beyond(b) < 0.0 {
-                cut.push(a + (b - a) * (beyond(a) / (beyond(a) - beyond(b))));
-            }
-        }
-        polygon = cut;
-    }
-    polygon
 }
 
 /// Speed and turn rate over time, with and without a limit of the jerk.

@@ -18,6 +18,33 @@ pub struct HalfPlane {
     pub offset: f64,
 }
 
+impl HalfPlane {
+    /// The corners of the polygon that half-planes bound, in order; empty where they have nothing in common. What they leave
+    /// open ends 10 km off.
+    pub fn outline(planes: &[Self]) -> Vec<Vector2> {
+        const OPEN: f64 = 1e4;
+        let square = [(-OPEN, -OPEN), (OPEN, -OPEN), (OPEN, OPEN), (-OPEN, OPEN)];
+        let whole = square.map(|(x, y)| Vector2::new(x, y)).to_vec();
+        planes.iter().fold(whole, |corners, plane| plane.cut(&corners))
+    }
+
+    /// What of a convex polygon lies within.
+    fn cut(&self, corners: &[Vector2]) -> Vec<Vector2> {
+        let beyond = |p: &Vector2| self.normal.dot(p) - self.offset;
+        let mut kept = Vec::with_capacity(corners.len() + 1);
+        for (a, b) in corners.iter().zip(corners.iter().cycle().skip(1)) {
+            let (from, to) = (beyond(a), beyond(b));
+            if from <= 0.0 {
+                kept.push(*a);
+            }
+            if from * to < 0.0 {
+                kept.push(a + (b - a) * (from / (from - to)));
+            }
+        }
+        kept
+    }
+}
+
 /// The polygon around the free segment `a`-`b` within `reach` m of its bounding box: room of `want` m wherever the
 /// segment itself has more, else most of what the segment has.
 pub(crate) fn corridor(space: &Space<'_>, a: Vector2, b: Vector2, reach: f64, want: f64) -> Vec<HalfPlane> {
@@ -86,4 +113,27 @@ fn obstacles(
         found.push(((centre - nearest_on_segment(centre, a, b)).norm_squared(), centre));
     });
     found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn half_planes_bound_a_polygon() {
+        let plane = |x: f64, y: f64, offset| HalfPlane { normal: Vector2::new(x, y), offset };
+        let slope = std::f64::consts::FRAC_1_SQRT_2;
+        let triangle = [plane(-1.0, 0.0, 0.0), plane(0.0, -1.0, 0.0), plane(slope, slope, slope)];
+        let mut corners = HalfPlane::outline(&triangle);
+        corners.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
+        let expected = [(0.0, 0.0), (0.0, 1.0), (1.0, 0.0)];
+        assert!(
+            corners.iter().zip(expected).all(|(c, (x, y))| (c - Vector2::new(x, y)).norm() < 1e-9),
+            "{corners:?}"
+        );
+        assert!(
+            corners.len() == 3
+                && HalfPlane::outline(&[plane(1.0, 0.0, -1.0), plane(-1.0, 0.0, -1.0)]).is_empty()
+        );
+    }
 }

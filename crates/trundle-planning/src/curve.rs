@@ -148,7 +148,8 @@ impl Curve {
                 let u = k as f64 * step;
                 let next = piece.jet(u);
                 arc += way_between(&last, &next, step * piece.span());
-                samples.push(sample(&next, begin + u * piece.span(), arc));
+                let s = if k == count as usize { begin + piece.span() } else { begin + u * piece.span() };
+                samples.push(sample(&next, s, arc));
                 last = next;
             }
         }

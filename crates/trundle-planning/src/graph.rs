@@ -4,8 +4,10 @@ use trundle_core::{Invalid, Vector2};
 #[derive(Debug, Clone, PartialEq)]
 pub struct WayPointGraph {
     nodes: Vec<Vector2>,
-    /// Both ways; each end's number.
+    /// Each end's number.
     lanes: Vec<(usize, usize)>,
+    /// Lanes are driven from the first end to the second only.
+    one_way: bool,
 }
 
 impl WayPointGraph {
@@ -30,8 +32,16 @@ impl WayPointGraph {
                 let value = format!("{:?}", lanes[i]);
                 Err(Invalid::new(format!("lane {i} of the way-point graph"), value, "", "numbers of nodes"))
             }
-            None => Ok(Self { nodes, lanes }),
+            None => Ok(Self { nodes, lanes, one_way: false }),
         }
+    }
+
+    /// A graph whose lanes are driven from their first node to their second only; a lane each way is driven both ways.
+    ///
+    /// # Errors
+    /// As [`WayPointGraph::new`].
+    pub fn one_way(nodes: Vec<Vector2>, lanes: Vec<(usize, usize)>) -> Result<Self, Invalid> {
+        Ok(Self { one_way: true, ..Self::new(nodes, lanes)? })
     }
 
     /// The way-points, map frame, m.
@@ -66,7 +76,7 @@ impl WayPointGraph {
             for (a, b) in &self.lanes {
                 let next = if *a == here {
                     *b
-                } else if *b == here {
+                } else if *b == here && !self.one_way {
                     *a
                 } else {
                     continue;
@@ -89,6 +99,15 @@ impl WayPointGraph {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn one_way_lanes_are_driven_one_way() {
+        let nodes = [0.0, 1.0, 2.0].map(|x| Vector2::new(x, 0.0)).to_vec();
+        let graph = WayPointGraph::one_way(nodes, vec![(0, 1), (1, 2), (2, 1)]).unwrap();
+        assert_eq!(graph.way(0, 2, |_, _| true), Some(vec![0, 1, 2]));
+        assert_eq!(graph.way(2, 1, |_, _| true), Some(vec![2, 1]));
+        assert_eq!(graph.way(2, 0, |_, _| true), None);
+    }
 
     #[test]
     fn the_shortest_free_lanes_are_taken() {

@@ -2,7 +2,8 @@
 //!
 //! Problem: a search that only knows the straight distance floods every room on the way. Idea: first search over blocks
 //! of cells, each as free, and as cheap, as its best cell; such a search is small, and its costs are (but for a block's
-//! side) a lower bound of the true ones, a bound that knows walls and dead ends. Cost: O(blocks).
+//! side) a lower bound of the true ones, a bound that knows walls and dead ends. It runs towards the start (A*) and a little
+//! further, so that it knows all blocks that the wave may want. Cost: O(blocks between start and goal).
 
 use crate::dial::{Dial, Entry};
 use crate::field::{BLOCK, Blocks};
@@ -22,9 +23,11 @@ pub(crate) struct Guide {
     queue: Dial,
     width: usize,
     height: usize,
-    /// No block without a cost has a lower one; [`NEVER`] when those with one are all that can be reached.
+    /// No way over a block without a cost is cheaper in all; [`NEVER`] when those with one are all that can be reached.
     frontier: u32,
     target: (u32, u32),
+    /// The block that the search runs towards, column and row.
+    towards: (u32, u32),
     found: bool,
 }
 
@@ -37,19 +40,28 @@ impl Guide {
         self.price.extend(room.iter().map(|room| space.price_of_room(*room)));
         self.cost.clear();
         self.cost.resize(room.len(), NEVER);
-        self.queue.reset(0, (LONGEST * BLOCK_LENGTH * u32::from(space.highest_price())) >> 8);
         let block =
             |(col, row): (u32, u32)| (row / BLOCK_LENGTH) as usize * width + (col / BLOCK_LENGTH) as usize;
+        self.towards = (start.0 / BLOCK_LENGTH, start.1 / BLOCK_LENGTH);
+        // A step's own cost, and as much again for what it may lead away.
+        let reach = LONGEST * BLOCK_LENGTH * (u32::from(space.highest_price()) + 256);
+        self.queue.reset(self.to_go(block(target)), reach >> 8);
         self.reach(block(target), 0);
         self.spread(block(start));
     }
 
     fn reach(&mut self, block: usize, cost: u32) {
         self.cost[block] = cost;
-        self.queue.push(cost, Entry { cell: block as u32, cost });
+        self.queue.push(cost + self.to_go(block), Entry { cell: block as u32, cost });
     }
 
-    /// Runs until the block `last` and all that are hardly further have their costs.
+    /// What a way from a block to the start costs at least.
+    fn to_go(&self, block: usize) -> u32 {
+        let (col, row) = ((block % self.width) as u32, (block / self.width) as u32);
+        BLOCK_LENGTH * lattice::between((col.abs_diff(self.towards.0), row.abs_diff(self.towards.1)))
+    }
+
+    /// Runs until all blocks have their costs over which a way to the block `last` is hardly dearer than the cheapest.
     fn spread(&mut self, last: usize) {
         let beyond = 4 * LONGEST * BLOCK_LENGTH;
         let mut enough = NEVER;
@@ -122,8 +134,13 @@ impl Guide {
         let (left, right, u) = place(col, self.width);
         let (low, high, v) = place(row, self.height);
         let corners = [(left, low), (right, low), (left, high), (right, high)];
-        let costs = corners.map(|(c, r)| self.cost[r * self.width + c]);
-        let least = costs.into_iter().fold(self.frontier, u32::min);
+        let blocks = corners.map(|(c, r)| r * self.width + c);
+        let costs = blocks.map(|block| self.cost[block]);
+        let mut least = costs.into_iter().fold(NEVER, u32::min);
+        if self.frontier < NEVER && costs.contains(&NEVER) {
+            let bound = |block: usize| self.frontier.saturating_sub(self.to_go(block));
+            least = blocks.into_iter().map(bound).fold(least, u32::min);
+        }
         if least == NEVER {
             return 0;
         }

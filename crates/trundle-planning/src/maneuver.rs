@@ -42,9 +42,15 @@ impl Maneuver {
         start: Pose2,
         goal: Pose2,
     ) -> Result<Vec<Pose2>, Vector2> {
-        let (Some(first), Some(last)) = (near(space, start.position()), near(space, goal.position())) else {
+        let inside = |pose: Pose2| space.field.geometry().cell_at(pose.position()).is_some();
+        if !inside(start) || !inside(goal) {
             return Err(start.position());
-        };
+        }
+        // Between two walls hardly a turn is free: then the lattice is entered further on, and left for the goal as far before.
+        let (away, first) =
+            door(space, body, start, 1.0, |pose, state| link(space, body, pose, state).is_some());
+        let (before, last) =
+            door(space, body, goal, -1.0, |pose, state| link(space, body, state, pose).is_some());
         self.guide.prepare(space, first[0], last[0]);
         self.cost.clear();
         self.cost.resize(space.field.geometry().len() * HEADINGS, NEVER);
@@ -52,7 +58,7 @@ impl Maneuver {
         self.came.resize(self.cost.len(), SEED);
         self.queue.reset(self.guide.ahead(first[0]), 1 << 16);
         for place in first {
-            self.seed(space, body, start, place);
+            self.seed(space, body, away, place);
         }
         let (mut nearest, mut least) = (start.position(), f64::INFINITY);
         while let Some((_, Entry { cell: state, cost })) = self.queue.pop() {
@@ -66,11 +72,13 @@ impl Maneuver {
                 (least, nearest) = (off, pose.position());
             }
             if last.contains(&space.place(state / HEADINGS))
-                && let Some(arrival) = link(space, body, pose, goal)
+                && let Some(arrival) = link(space, body, pose, before)
             {
-                let mut poses = self.follow_back(space, state);
-                poses.insert(0, start);
+                let mut poses = vec![start, away];
+                poses.extend(self.follow_back(space, state));
                 poses.extend(arrival);
+                poses.push(goal);
+                poses.dedup();
                 return Ok(poses);
             }
             self.spread(space, body, state, pose);
@@ -183,6 +191,43 @@ pub(crate) fn link(space: &Space<'_>, body: &Body, from: Pose2, to: Pose2) -> Op
     body.turn(space.field, Pose2::new(to.x, to.y, heading), to.theta)?;
     poses.push(to);
     Some(poses)
+}
+
+/// How far ahead of a pose the lattice is looked for, m, and in which steps.
+const AHEAD: f64 = 1.5;
+const AHEAD_STEP: f64 = 0.05;
+
+/// Where the lattice is entered from `pose`, or left for it (`side` -1: behind it): cells as near as possible that `links`
+/// reaches from it, or from a pose straight on; that pose, and the places of the cells.
+fn door(
+    space: &Space<'_>,
+    body: &Body,
+    pose: Pose2,
+    side: f64,
+    links: impl Fn(Pose2, Pose2) -> bool,
+) -> (Pose2, Vec<(u32, u32)>) {
+    let width = space.field.geometry().width;
+    let states = |place: &(u32, u32)| {
+        let cell = place.1 as usize * width + place.0 as usize;
+        (0..HEADINGS).map(move |heading| cell * HEADINGS + heading)
+    };
+    let opens = |from: Pose2, places: &[(u32, u32)]| {
+        places.iter().flat_map(states).any(|state| links(from, pose_of(space, state)))
+    };
+    let mut is_free = true;
+    for k in 0..=(AHEAD / AHEAD_STEP) as usize {
+        let by = pose.direction() * (side * k as f64 * AHEAD_STEP);
+        let there = Pose2::new(pose.x + by.x, pose.y + by.y, pose.theta);
+        let Some(places) = near(space, there.position()) else { break };
+        if opens(pose, &places) {
+            return (pose, places);
+        }
+        is_free = is_free && body.may_move(space.field, pose, by, 0.0);
+        if is_free && opens(there, &places) {
+            return (there, places);
+        }
+    }
+    (pose, near(space, pose.position()).unwrap_or_default())
 }
 
 /// The places of the cells around a point.

@@ -1,4 +1,5 @@
-use trundle_core::{GridGeometry, Invalid, OccupancyGrid, Pose2, Vector2};
+use crate::area::area;
+use trundle_core::{Cell, CellIndex, GridGeometry, Invalid, OccupancyGrid, Pose2, Vector2};
 
 /// Speed limits over an area, as Nav2's speed masks give them: a limit a cell.
 #[derive(Debug, Clone, PartialEq)]
@@ -34,22 +35,70 @@ impl SpeedMask {
     }
 }
 
-/// The grid with everything occupied that a keep-out mask occupies. The mask may lie anywhere.
-pub(crate) fn kept_out(grid: &OccupancyGrid, mask: &OccupancyGrid) -> OccupancyGrid {
-    let geometry = *grid.geometry();
+/// The grid with everything occupied that a keep-out mask touches; the mask may have a lattice of its own. With `grow`, the
+/// grid grows to hold what the mask forbids beside it.
+///
+/// # Errors
+/// When it would grow out of proportion.
+pub(crate) fn kept_out(
+    grid: &OccupancyGrid,
+    mask: &OccupancyGrid,
+    grow: bool,
+) -> Result<OccupancyGrid, Invalid> {
+    let forbidden = || mask.cells().iter().enumerate().filter(|(_, cell)| **cell == Cell::Occupied);
+    let square = |linear: usize| {
+        let (centre, half) =
+            (mask.geometry().center(mask.geometry().cell(linear)), mask.geometry().resolution / 2.0);
+        (centre - Vector2::repeat(half), centre + Vector2::repeat(half))
+    };
     let mut merged = grid.clone();
-    for linear in 0..geometry.len() {
-        let cell = geometry.cell(linear);
-        if mask.at(geometry.center(cell)) == trundle_core::Cell::Occupied {
-            merged.set(cell, trundle_core::Cell::Occupied);
+    if grow && let Some((first, _)) = forbidden().next() {
+        let whole = forbidden().fold(square(first), |(low, high), (linear, _)| {
+            let (a, b) = square(linear);
+            (low.inf(&a), high.sup(&b))
+        });
+        merged = grown(grid, area(grid.geometry(), whole.0, whole.1, 0.0)?);
+    }
+    forbidden().for_each(|(linear, _)| occupy(&mut merged, square(linear)));
+    Ok(merged)
+}
+
+/// The grid over a larger geometry of its lattice; what it does not hold is unknown.
+fn grown(grid: &OccupancyGrid, geometry: GridGeometry) -> OccupancyGrid {
+    if geometry == *grid.geometry() {
+        return grid.clone();
+    }
+    let mut whole = OccupancyGrid::filled(geometry, Cell::Unknown);
+    for (linear, cell) in grid.cells().iter().enumerate() {
+        let centre = grid.geometry().center(grid.geometry().cell(linear));
+        if let Some(place) = geometry.cell_at(centre) {
+            whole.set(place, *cell);
         }
     }
-    merged
+    whole
+}
+
+/// Occupies the cells that a box overlaps.
+fn occupy(grid: &mut OccupancyGrid, (low, high): (Vector2, Vector2)) {
+    /// Overlaps thinner than this, as a share of a cell, are rounding.
+    const TOUCH: f64 = 1e-6;
+    let GridGeometry { resolution, origin, width, height } = *grid.geometry();
+    let span = |low: f64, high: f64, size: usize| {
+        let first = (low / resolution + TOUCH).floor().clamp(0.0, size as f64);
+        let end = (high / resolution - TOUCH).ceil().clamp(0.0, size as f64);
+        first as usize..end as usize
+    };
+    let (low, high) = (low - origin, high - origin);
+    for row in span(low.y, high.y, height) {
+        for col in span(low.x, high.x, width) {
+            grid.set(CellIndex { col, row }, Cell::Occupied);
+        }
+    }
 }
 
 /// Whether what the robot's front comes to at a pose was ever seen.
 pub(crate) fn is_unseen(grid: &OccupancyGrid, pose: Pose2, radius: f64) -> bool {
-    grid.at(pose.position() + pose.direction() * radius) == trundle_core::Cell::Unknown
+    grid.at(pose.position() + pose.direction() * radius) == Cell::Unknown
 }
 
 #[cfg(test)]
@@ -65,5 +114,33 @@ mod tests {
         assert_eq!(mask.limit(Vector2::new(9.0, 0.1)), f64::INFINITY);
         assert!(SpeedMask::new(geometry, vec![0.0, 1.0]).is_err());
         assert!(SpeedMask::new(geometry, vec![1.0]).is_err());
+    }
+
+    #[test]
+    fn a_finer_mask_forbids_every_cell_that_it_touches() {
+        let grid = OccupancyGrid::from_ascii(0.1, "....\n....\n....").unwrap();
+        let geometry = GridGeometry::new(0.02, Vector2::new(0.12, 0.0), 1, 20).unwrap();
+        let thin = OccupancyGrid::filled(geometry, Cell::Occupied);
+        let merged = kept_out(&grid, &thin, false).unwrap();
+        assert_eq!(merged, OccupancyGrid::from_ascii(0.1, ".#..\n.#..\n.#..").unwrap());
+        let wider = kept_out(&grid, &thin, true).unwrap();
+        assert!(wider.geometry().height > 3 && wider.at(Vector2::new(0.13, 0.39)) == Cell::Occupied);
+        assert_eq!(
+            (wider.at(Vector2::new(0.05, 0.39)), wider.at(Vector2::new(0.05, 0.05))),
+            (Cell::Unknown, Cell::Free)
+        );
+    }
+
+    #[test]
+    fn a_mask_on_the_same_lattice_forbids_its_own_cells() {
+        let grid = OccupancyGrid::filled(
+            GridGeometry::new(0.05, Vector2::new(-3.1, 2.7), 70, 40).unwrap(),
+            Cell::Free,
+        );
+        let mut mask = grid.clone();
+        for (col, row) in [(0, 0), (69, 39), (33, 17), (34, 17)] {
+            mask.set(CellIndex { col, row }, Cell::Occupied);
+        }
+        assert_eq!(kept_out(&grid, &mask, false).unwrap(), mask);
     }
 }

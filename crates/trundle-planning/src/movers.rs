@@ -81,9 +81,20 @@ pub(crate) fn stamp(stamped: &mut OccupancyGrid, movers: &[Mover], time: f64) {
 
 /// The trajectory from rest, begun as late as it takes to meet no mover within the horizon, and by how much later, s.
 pub(crate) fn delayed(trajectory: &Trajectory, movers: &[Mover], radius: f64) -> Option<(Trajectory, f64)> {
-    let waits = (1..=(HORIZON / WAIT) as usize).map(|k| k as f64 * WAIT);
+    paused(trajectory, 0.0, movers, radius)
+}
+
+/// The trajectory with the shortest wait at `stop` s, where it is at rest, after which it meets no mover within the horizon;
+/// and the wait, s.
+pub(crate) fn paused(
+    trajectory: &Trajectory,
+    stop: f64,
+    movers: &[Mover],
+    radius: f64,
+) -> Option<(Trajectory, f64)> {
+    let waits = (0..=(HORIZON / WAIT) as usize).map(|k| k as f64 * WAIT);
     waits
-        .map(|wait| (later(trajectory, wait), wait))
+        .map(|wait| (with_pause(trajectory, stop, wait), wait))
         .find(|(late, _)| conflict(late, movers, radius).is_none())
 }
 
@@ -95,12 +106,14 @@ pub(crate) fn rest_of(trajectory: &Trajectory, time: f64) -> Trajectory {
     Trajectory::new(points.collect()).expect("invariant: times still rise")
 }
 
-/// The same, after standing at its start for `wait` s.
-fn later(trajectory: &Trajectory, wait: f64) -> Trajectory {
-    let first = TrajectoryPoint { twist: Twist2::ZERO, ..trajectory.points()[0] };
+/// The same, standing for `wait` s from its sample at `stop` s on.
+fn with_pause(trajectory: &Trajectory, stop: f64, wait: f64) -> Trajectory {
+    let points = trajectory.points();
+    let at = points.partition_point(|point| point.time < stop).min(points.len() - 1);
+    let still = TrajectoryPoint { twist: Twist2::ZERO, ..points[at] };
     let steps = (wait / LOOK).round() as usize;
-    let stand = |k: usize| TrajectoryPoint { time: k as f64 * wait / steps as f64, ..first };
-    let mut points: Vec<_> = (0..steps).map(stand).collect();
-    points.extend(trajectory.points().iter().map(|p| TrajectoryPoint { time: p.time + wait, ..*p }));
-    Trajectory::new(points).expect("invariant: times still rise")
+    let stand = |k: usize| TrajectoryPoint { time: still.time + k as f64 * wait / steps as f64, ..still };
+    let late = points[at..].iter().map(|p| TrajectoryPoint { time: p.time + wait, ..*p });
+    let all = points[..at].iter().copied().chain((0..steps).map(stand)).chain(late);
+    Trajectory::new(all.collect()).expect("invariant: times still rise")
 }

@@ -83,7 +83,7 @@ pub struct PlanResult {
     pub fell_back: bool,
     /// Whether the trajectory continues the twist given: false when it starts from rest although the robot moves.
     pub is_continuous: bool,
-    /// How long the robot stands at the start to let something pass, s; part of the trajectory.
+    /// How long the robot stands, at the start or at a stop on the way, to let something pass, s; part of the trajectory.
     pub wait: f64,
 }
 

@@ -3,6 +3,7 @@ use crate::body::Body;
 use crate::masks::kept_out;
 use crate::movers::{Mover, conflict, delayed, rest_of, stamp};
 use crate::plan::{Plan, PlanResult};
+use crate::stopwatch::{StageTimes, Stopwatch};
 use crate::task::{Memory, Task};
 use crate::timing::Drive;
 use crate::tour::{Replan, Tour};
@@ -27,6 +28,8 @@ pub struct Planner {
     field: Option<DistanceField>,
     keep_out: Option<OccupancyGrid>,
     speeds: Option<SpeedMask>,
+    clock: Option<fn() -> f64>,
+    times: StageTimes,
 }
 
 impl Planner {
@@ -47,10 +50,31 @@ impl Planner {
             config: config.timing,
         };
         let (body, memory) = (Body::new(footprint), Memory::default());
-        Ok(Self { config, body, drive, memory, field: None, keep_out: None, speeds: None })
+        Ok(Self {
+            config,
+            body,
+            drive,
+            memory,
+            field: None,
+            keep_out: None,
+            speeds: None,
+            clock: None,
+            times: StageTimes::default(),
+        })
     }
 
-    /// From now on, what `mask` has occupied is an obstacle too. The mask may have a resolution and an extent of its own.
+    /// From now on, [`Planner::stage_times`] tells how long plans take, by a clock that counts seconds. Plans do not depend on it.
+    pub fn set_clock(&mut self, clock: Option<fn() -> f64>) {
+        self.clock = clock;
+    }
+
+    /// How long the stages of the last plan took.
+    pub fn stage_times(&self) -> StageTimes {
+        self.times
+    }
+
+    /// From now on, what `mask` has occupied is an obstacle too. The mask may have a resolution and an extent of its own: every
+    /// cell of the grid that it touches is forbidden, and beside the grid its cells are.
     pub fn set_keep_out(&mut self, mask: Option<OccupancyGrid>) {
         self.keep_out = mask;
     }
@@ -91,23 +115,27 @@ impl Planner {
         start_twist: Twist2,
         goals: &[Pose2],
     ) -> Result<Tour, (usize, Plan)> {
-        let mut legs: Vec<PlanResult> = Vec::new();
-        let (mut from, mut twist) = (start, start_twist);
-        for (i, goal) in goals.iter().enumerate() {
-            match self.plan(grid, from, twist, *goal) {
-                Plan::Found(leg) => legs.push(*leg),
-                other => return Err((i, other)),
-            }
-            (from, twist) = (legs[i].trajectory.end(), Twist2::ZERO);
-        }
-        if legs.is_empty() {
-            return Err((0, Plan::Refused(Invalid::new("goals of a tour", 0, "", "1 or more"))));
-        }
-        Ok(Tour::new(legs))
+        self.tour(grid, None, (start, start_twist), goals)
     }
 
-    /// Like [`Planner::plan`], among things that move, each believed to go on as it does for 2 s: past them, or, from rest,
-    /// after a wait, whichever arrives earlier. Where both fail, [`Plan::Blocked`] where the robot stands: it should stop.
+    /// [`Planner::plan_tour`], each leg along the lanes of a way-point graph.
+    ///
+    /// # Errors
+    /// As [`Planner::plan_tour`].
+    pub fn plan_tour_on_graph(
+        &mut self,
+        grid: &OccupancyGrid,
+        graph: &WayPointGraph,
+        start: Pose2,
+        start_twist: Twist2,
+        goals: &[Pose2],
+    ) -> Result<Tour, (usize, Plan)> {
+        self.tour(grid, Some(graph), (start, start_twist), goals)
+    }
+
+    /// Like [`Planner::plan`], among things that move, each believed to go on as it does for 2 s: past them, or after a wait,
+    /// at the start or, for a robot that moves, at a stop on its way, whichever arrives earlier. Where both fail,
+    /// [`Plan::Blocked`] where the robot stands: it should stop.
     pub fn plan_among(
         &mut self,
         grid: &OccupancyGrid,
@@ -122,9 +150,12 @@ impl Planner {
         if conflict(&direct.trajectory, movers, radius).is_none() {
             return Plan::Found(direct);
         }
+        let late = if direct.trajectory.points()[0].twist == Twist2::ZERO {
+            delayed(&direct.trajectory, movers, radius)
+        } else {
+            self.halted(grid, &direct, movers)
+        };
         let around = self.plan_around(grid, movers, &direct, start_twist, goal);
-        let rests = direct.trajectory.points()[0].twist == Twist2::ZERO;
-        let late = rests.then(|| delayed(&direct.trajectory, movers, radius)).flatten();
         let late = late.map(|(trajectory, wait)| Box::new(PlanResult { trajectory, wait, ..*direct }));
         let earlier = |plan: &PlanResult| plan.trajectory.duration();
         match (around, late) {
@@ -158,7 +189,7 @@ impl Planner {
         Replan::New(self.plan_among(grid, movers, now.pose, now.twist, goal))
     }
 
-    /// Whether the rest of `trajectory`, from `from` seconds on, is still free on a newer grid.
+    /// Whether the rest of `trajectory`, from `from` seconds on, is still free on a newer grid, and of the keep-out mask.
     ///
     /// # Errors
     /// The first moment at which the footprint would touch something. A disc that touches something already may go on as
@@ -169,12 +200,75 @@ impl Planner {
         trajectory: &Trajectory,
         from: f64,
     ) -> Result<(), Obstruction> {
-        still_free(grid, self.config.unknown, trajectory, from, &self.body)
+        let mask = self.keep_out.as_ref().map(|mask| (mask, UnknownIs::Free));
+        let layers: Vec<_> = std::iter::once((grid, self.config.unknown)).chain(mask).collect();
+        still_free(&layers, trajectory, from, &self.body)
     }
 
     /// The distance field of the last plan, for pictures.
     pub fn field(&self) -> Option<&DistanceField> {
         self.field.as_ref()
+    }
+
+    fn tour(
+        &mut self,
+        grid: &OccupancyGrid,
+        graph: Option<&WayPointGraph>,
+        (mut from, mut twist): (Pose2, Twist2),
+        goals: &[Pose2],
+    ) -> Result<Tour, (usize, Plan)> {
+        let mut legs: Vec<PlanResult> = Vec::new();
+        let mut times = StageTimes::default();
+        for (i, goal) in goals.iter().enumerate() {
+            match self.plan_on(grid, graph, from, twist, *goal) {
+                Plan::Found(leg) => legs.push(*leg),
+                other => return Err((i, other)),
+            }
+            times = times.plus(self.times);
+            (from, twist) = (legs[i].trajectory.end(), Twist2::ZERO);
+        }
+        if legs.is_empty() {
+            return Err((0, Plan::Refused(Invalid::new("goals of a tour", 0, "", "1 or more"))));
+        }
+        self.times = times;
+        Ok(Tour::new(legs))
+    }
+
+    /// The direct plan with a stop on its first curve, and a wait there, that lets the movers pass; and the wait, s.
+    fn halted(
+        &self,
+        grid: &OccupancyGrid,
+        direct: &PlanResult,
+        movers: &[Mover],
+    ) -> Option<(Trajectory, f64)> {
+        let (merged, field) = (self.merged(grid).ok()?, self.field.as_ref()?);
+        let watch = Stopwatch::default();
+        let task = self.task(merged.as_ref().unwrap_or(grid), field, None, &watch);
+        task.halted(direct, movers)
+    }
+
+    /// The grid with what is kept out; `None` where that is the grid itself.
+    fn merged(&self, grid: &OccupancyGrid) -> Result<Option<OccupancyGrid>, Invalid> {
+        self.keep_out.as_ref().map(|mask| kept_out(grid, mask, self.may_leave())).transpose()
+    }
+
+    fn task<'a>(
+        &'a self,
+        grid: &'a OccupancyGrid,
+        field: &'a DistanceField,
+        graph: Option<&'a WayPointGraph>,
+        watch: &'a Stopwatch,
+    ) -> Task<'a> {
+        Task {
+            config: &self.config,
+            body: &self.body,
+            drive: &self.drive,
+            field,
+            grid,
+            speeds: self.speeds.as_ref(),
+            graph,
+            watch,
+        }
     }
 
     /// Past the movers: the places of each encounter are closed for a while about its time, until there is none.
@@ -212,8 +306,12 @@ impl Planner {
         if let Err(invalid) = finite(start, twist, goal) {
             return Plan::Refused(invalid);
         }
-        let merged = self.keep_out.as_ref().map(|mask| kept_out(grid, mask));
+        let merged = match self.merged(grid) {
+            Ok(merged) => merged,
+            Err(invalid) => return Plan::Refused(invalid),
+        };
         let grid = merged.as_ref().unwrap_or(grid);
+        self.times = StageTimes::default();
         let start = Pose2::new(start.x, start.y, start.theta);
         let goal = Pose2::new(goal.x, goal.y, goal.theta);
         let mut plan = self.plan_within(grid, graph, (start, twist), goal, 0.0);
@@ -242,18 +340,13 @@ impl Planner {
             Ok(geometry) => geometry,
             Err(plan) => return plan,
         };
-        let field = self.known(geometry, grid);
-        let task = Task {
-            config: &self.config,
-            body: &self.body,
-            drive: &self.drive,
-            field: &field,
-            grid,
-            speeds: self.speeds.as_ref(),
-            graph,
-        };
-        let plan = task.plan(&mut self.memory, start, twist, goal);
+        let watch = Stopwatch::new(self.clock);
+        let field = watch.time(|times| &mut times.field, || self.known(geometry, grid));
+        let mut memory = std::mem::take(&mut self.memory);
+        let plan = self.task(grid, &field, graph, &watch).plan(&mut memory, start, twist, goal);
+        self.memory = memory;
         self.field = Some(field);
+        self.times = self.times.plus(watch.times());
         plan
     }
 

@@ -21,16 +21,20 @@ pub struct Obstruction {
 /// Distance between two looks, m.
 const SPACING: f64 = 0.01;
 
-/// Checks a trajectory from `from` seconds on. A robot that already has less room may go on as long as it gets no nearer.
+/// A grid, and what its unknown cells count as.
+pub(crate) type Layer<'a> = (&'a OccupancyGrid, UnknownIs);
+
+/// Checks a trajectory from `from` seconds on, against every layer. A robot that already has less room may go on as long as it
+/// gets no nearer.
 pub(crate) fn still_free(
-    grid: &OccupancyGrid,
-    unknown: UnknownIs,
+    layers: &[Layer<'_>],
     trajectory: &Trajectory,
     from: f64,
     body: &Body,
 ) -> Result<(), Obstruction> {
     let mut last = trajectory.at(from);
-    let required = room(grid, unknown, last.pose, body) - 1e-6;
+    let room = |pose| layers.iter().map(|layer| room(*layer, pose, body)).fold(body.needs(), f64::min);
+    let required = room(last.pose) - 1e-6;
     for point in trajectory.points().iter().filter(|point| point.time > from) {
         let turn = trundle_core::difference_of_angles(point.pose.theta, last.pose.theta);
         let turned = if body.is_disc() { 0.0 } else { body.radius * turn.abs() };
@@ -43,7 +47,7 @@ pub(crate) fn still_free(
         for k in 1..=steps as usize {
             let share = k as f64 / steps;
             let pose = last.pose.interpolate(&point.pose, share);
-            let distance = room(grid, unknown, pose, body);
+            let distance = room(pose);
             if distance < required {
                 let time = last.time + (point.time - last.time) * share;
                 return Err(Obstruction { time, pose, clearance: distance - body.needs() });
@@ -56,7 +60,7 @@ pub(crate) fn still_free(
 
 /// How much room there is for what the body needs ([`Body::needs`]), at most that, m: from the axle for a disc, beside the
 /// outline for a polygon.
-fn room(grid: &OccupancyGrid, unknown: UnknownIs, pose: Pose2, body: &Body) -> f64 {
+fn room((grid, unknown): Layer<'_>, pose: Pose2, body: &Body) -> f64 {
     let (point, cap, outline) = (pose.position(), body.needs(), body.outline(pose));
     let geometry = grid.geometry();
     let half = geometry.resolution / 2.0;
@@ -99,10 +103,10 @@ mod tests {
             twist: Twist2::new(1.0, 0.0),
         };
         let trajectory = Trajectory::new(vec![at(0.0), at(1.5), at(3.0)]).unwrap();
-        assert!(still_free(&grid, UnknownIs::Free, &trajectory, 0.0, &disc).is_ok());
+        assert!(still_free(&[(&grid, UnknownIs::Free)], &trajectory, 0.0, &disc).is_ok());
         grid.set(trundle_core::CellIndex { col: 20, row: 5 }, Cell::Occupied);
-        let hit = still_free(&grid, UnknownIs::Free, &trajectory, 0.0, &disc).unwrap_err();
+        let hit = still_free(&[(&grid, UnknownIs::Free)], &trajectory, 0.0, &disc).unwrap_err();
         assert!((hit.pose.x - 1.8).abs() < 0.02 && (hit.time - 1.3).abs() < 0.02, "{hit}");
-        assert!(still_free(&grid, UnknownIs::Free, &trajectory, 1.9, &disc).is_ok());
+        assert!(still_free(&[(&grid, UnknownIs::Free)], &trajectory, 1.9, &disc).is_ok());
     }
 }

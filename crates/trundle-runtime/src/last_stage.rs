@@ -6,9 +6,10 @@
 use crate::{navigator::Surroundings, schedule::Ticker};
 use serde::{Deserialize, Serialize};
 use trundle_control::SettlePreview;
-use trundle_core::{Footprint, Invalid, Pose2, Twist2, require_in};
+use trundle_core::{Footprint, Invalid, Pose2, Stamp, Twist2, require_in};
 use trundle_docking::{
-    Docker, DockingConfig, Plan, Positioner, PositionerConfig, PositionerInput, Reason, Scene,
+    Docker, DockingConfig, Plan, Positioner, PositionerConfig, PositionerInput, PositionerReport, Reason,
+    Scene,
 };
 
 /// How the robot settles on its goal.
@@ -22,8 +23,15 @@ pub struct LastStageConfig {
     pub near: f64,
     /// What an arc must keep from obstacles of the map, m, 0 to 0.5. Default 0.02 (ours).
     pub arc_margin: f64,
+    /// Turns and straight moves end, with a reason, when they have taken this, s, 1 to 3600. Default 120 (ours: the longest of
+    /// 500 corridor problems took half of it).
+    pub time_limit: f64,
+    /// They end after so many stops and waits for a way without a motion between that came to its end, 1 to 1000. Default 10
+    /// (ours: at a second each, somebody who passes by has passed).
+    pub most_stops: u32,
     /// Planning of turns and straight moves. Default: as it comes, but a margin of 0.05, so that the safety monitor, which
-    /// stops 0.04 m before an obstacle, does not hold what was planned.
+    /// stops 0.04 m before an obstacle, does not hold what was planned; and a tenth of the work, because it plans within a
+    /// control step.
     pub planner: DockingConfig,
     /// Carrying them out.
     pub positioner: PositionerConfig,
@@ -35,7 +43,9 @@ impl Default for LastStageConfig {
             enabled: true,
             near: 0.6,
             arc_margin: 0.02,
-            planner: DockingConfig { margin: 0.05, ..DockingConfig::default() },
+            time_limit: 120.0,
+            most_stops: 10,
+            planner: DockingConfig { margin: 0.05, most_work: 5_000_000, ..DockingConfig::default() },
             positioner: PositionerConfig::default(),
         }
     }
@@ -43,8 +53,27 @@ impl Default for LastStageConfig {
 
 /// The scene is drawn anew so often, 1/s.
 const SCENE_HZ: f64 = 10.0;
-/// It gives up after so many stops by the safety monitor, or waits for a way, in a row.
-const MOST_STOPS: u32 = 20;
+/// Slower than this the robot stands, m/s and rad/s.
+const STANDING: (f64, f64) = (0.02, 0.05);
+
+/// What turns and straight moves came to at the end of a mission.
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+pub struct LastStageReport {
+    /// How often a manoeuvre was planned, the looks beforehand included.
+    pub plans: u32,
+    /// Motions begun.
+    pub motions: u32,
+    /// Motions broken off: by an obstacle, or by the safety monitor.
+    pub restarts: u32,
+    /// Waits because no way was known, or the pose was no number.
+    pub waits: u32,
+    /// Since they took over, s.
+    pub time: f64,
+    /// `goal_from_base` when last looked at: longitudinal and lateral deviation (m), and of heading (rad).
+    pub deviation: Option<Pose2>,
+    /// How it ended; `None` while it goes on.
+    pub ended: Option<String>,
+}
 
 /// Chooses between an arc and a manoeuvre, and carries the manoeuvre out.
 #[derive(Debug)]
@@ -55,7 +84,20 @@ pub(crate) struct LastStage {
     positioner: Option<Positioner>,
     scene: Option<Scene>,
     scene_due: Ticker,
+    /// In a row: none of these motions came to its end.
     stops: u32,
+    began: Option<Stamp>,
+    last: Doing,
+    report: LastStageReport,
+}
+
+/// What the positioner did in the last step.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+enum Doing {
+    #[default]
+    Standing,
+    Moving,
+    Waiting,
 }
 
 /// What a step of the manoeuvre came to.
@@ -70,6 +112,8 @@ impl LastStage {
     pub(crate) fn new(config: &LastStageConfig, footprint: &Footprint) -> Result<Self, Invalid> {
         require_in("docking.near", config.near, "m", 0.05, 5.0)?;
         require_in("docking.arc_margin", config.arc_margin, "m", 0.0, 0.5)?;
+        require_in("docking.time_limit", config.time_limit, "s", 1.0, 3600.0)?;
+        require_in("docking.most_stops", f64::from(config.most_stops), "", 1.0, 1000.0)?;
         // Its settings are checked here, once; later positioners are of the same.
         Positioner::new(config.planner.clone(), config.positioner, footprint.clone(), Pose2::IDENTITY)?;
         let docker =
@@ -82,13 +126,22 @@ impl LastStage {
             scene: None,
             scene_due: Ticker::new(SCENE_HZ),
             stops: 0,
+            began: None,
+            last: Doing::Standing,
+            report: LastStageReport::default(),
         })
+    }
+
+    /// What turns and straight moves have done for the goal of now.
+    #[allow(dead_code, reason = "for the reports of a mission")]
+    pub(crate) fn report(&self) -> &LastStageReport {
+        &self.report
     }
 
     /// Forgets the goal.
     pub(crate) fn reset(&mut self) {
         self.positioner = None;
-        self.stops = 0;
+        self.report = LastStageReport::default();
     }
 
     /// Whether a goal is so near that turns and straight moves may replace a path.
@@ -96,7 +149,8 @@ impl LastStage {
         self.config.enabled && pose.distance(goal) <= self.config.near
     }
 
-    /// At the end of the trajectory: whether turns and straight moves take over from the arc that `preview` shows.
+    /// At the end of the trajectory: whether turns and straight moves take over from the arc that `preview` shows. A robot that
+    /// still rolls is brought to a stand first, by [`LastStage::step`], and measured there.
     pub(crate) fn takes_over(&mut self, s: &Surroundings<'_>, goal: Pose2, preview: &SettlePreview) -> bool {
         if !self.config.enabled {
             return false;
@@ -114,7 +168,8 @@ impl LastStage {
     fn begin(&mut self, goal: Pose2) -> bool {
         let (planner, config) = (self.config.planner.clone(), self.config.positioner);
         self.positioner = Positioner::new(planner, config, self.footprint.clone(), goal).ok();
-        self.stops = 0;
+        (self.stops, self.began, self.last, self.scene) = (0, None, Doing::Standing, None);
+        self.report = LastStageReport { plans: self.report.plans, ..LastStageReport::default() };
         self.positioner.is_some()
     }
 
@@ -127,8 +182,9 @@ impl LastStage {
         preview.poses.iter().all(clear)
     }
 
-    fn manoeuvre_time(&self, s: &Surroundings<'_>, goal: Pose2) -> Option<f64> {
+    fn manoeuvre_time(&mut self, s: &Surroundings<'_>, goal: Pose2) -> Option<f64> {
         let scene = self.drawn(s, &goal);
+        self.report.plans += 1;
         match self.docker.plan(&self.footprint, &scene, s.estimate.pose, goal) {
             // The pose is measured before the first motion and after the last one too.
             Ok(Plan::Found(solution)) => {
@@ -149,23 +205,66 @@ impl LastStage {
         let Some(goal) = self.positioner.as_ref().map(Positioner::goal) else {
             return Progress::GivenUp("no goal to settle on".to_owned());
         };
+        let began = *self.began.get_or_insert(s.now);
+        self.report.time = s.now - began;
+        if self.report.time > self.config.time_limit {
+            return self.given_up(format!("not settled within {:.0} s", self.config.time_limit));
+        }
+        if self.report.motions == 0 && !stands(s.estimate.twist) {
+            return Progress::Moving(Twist2::ZERO);
+        }
         if self.scene_due.due(s.now) || self.scene.is_none() {
             self.scene = Some(self.drawn(s, &goal));
         }
         let (Some(positioner), Some(scene)) = (&mut self.positioner, &self.scene) else {
             return Progress::Moving(Twist2::ZERO);
         };
-        let was_waiting = positioner.is_waiting();
         let (pose, covariance) = (s.estimate.pose, s.estimate.covariance);
         let report = positioner.step(&PositionerInput { stamp: s.now, pose, covariance, scene });
         if positioner.is_settled() {
+            self.report.deviation = Some(report.error);
+            self.report.ended = Some("settled".to_owned());
             return Progress::Settled;
         }
-        self.stops += u32::from(positioner.is_waiting() && !was_waiting);
-        match report.reason {
-            reason if self.stops > MOST_STOPS => Progress::GivenUp(told(&reason)),
-            _ => Progress::Moving(report.twist),
+        self.note(&report);
+        if self.stops > self.config.most_stops {
+            return self.given_up(told(&report.reason));
         }
+        Progress::Moving(report.twist)
+    }
+
+    /// Counts what a step did.
+    fn note(&mut self, step: &PositionerReport) {
+        let doing = match step.reason {
+            Reason::Moving(_) => Doing::Moving,
+            Reason::NoWay(_) | Reason::Refused(_) | Reason::BadPose => Doing::Waiting,
+            Reason::Measuring | Reason::Obstacle(_) | Reason::Settled => Doing::Standing,
+        };
+        let began = |what| doing == what && self.last != what;
+        let (moves, waits) = (began(Doing::Moving), began(Doing::Waiting));
+        self.report.plans += u32::from(moves || (waits && step.reason != Reason::BadPose));
+        self.report.motions += u32::from(moves);
+        self.report.waits += u32::from(waits);
+        self.stops += u32::from(waits);
+        match (&step.reason, self.last) {
+            (Reason::Obstacle(_), _) => {
+                self.report.restarts += 1;
+                self.stops += 1;
+            }
+            // It came to its end.
+            (Reason::Measuring, Doing::Moving) => self.stops = 0,
+            _ => {}
+        }
+        self.last = doing;
+        if step.reason != Reason::BadPose {
+            self.report.deviation = Some(step.error);
+        }
+    }
+
+    fn given_up(&mut self, reason: String) -> Progress {
+        self.positioner = None;
+        self.report.ended = Some(reason.clone());
+        Progress::GivenUp(reason)
     }
 
     /// The safety monitor stopped the robot.
@@ -173,6 +272,8 @@ impl LastStage {
         if let Some(positioner) = &mut self.positioner {
             positioner.interrupted(s.now);
             self.stops += 1;
+            self.report.restarts += 1;
+            self.last = Doing::Standing;
         }
     }
 }
@@ -185,6 +286,10 @@ fn arc_wins(arc: Option<f64>, manoeuvre: Option<f64>) -> bool {
         (_, None) => true,
         (None, Some(_)) => false,
     }
+}
+
+fn stands(twist: Twist2) -> bool {
+    twist.v.abs() < STANDING.0 && twist.omega.abs() < STANDING.1
 }
 
 /// Why it stands, for a person.
@@ -204,7 +309,7 @@ fn told(reason: &Reason) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use trundle_core::{OccupancyGrid, PoseEstimate, Stamp};
+    use trundle_core::{OccupancyGrid, PoseEstimate};
 
     /// A corridor of 0.6 m.
     fn corridor() -> OccupancyGrid {
@@ -215,7 +320,13 @@ mod tests {
     fn surroundings(grid: &OccupancyGrid, pose: Pose2, time: f64) -> Surroundings<'_> {
         let (now, twist) = (Stamp::default().after(time), Twist2::ZERO);
         let covariance = nalgebra::Matrix3::from_diagonal_element(1e-6);
-        Surroundings { now, estimate: PoseEstimate { stamp: now, pose, twist, covariance }, grid, scan: None }
+        Surroundings {
+            now,
+            estimate: PoseEstimate { stamp: now, pose, twist, covariance },
+            grid,
+            scan: None,
+            seen: None,
+        }
     }
 
     fn stage() -> LastStage {
@@ -242,6 +353,63 @@ mod tests {
         }
         assert_eq!(settled, Some(Progress::Settled));
         assert!(pose.distance(&goal) < 0.01 && (pose.theta - goal.theta).abs() < 0.0175, "{pose:?}");
+        let report = stage.report();
+        assert!(report.motions > 0 && report.plans > 0 && report.restarts == 0, "{report:?}");
+        assert_eq!(report.ended.as_deref(), Some("settled"));
+        assert!(report.deviation.unwrap().position().norm() < 0.01);
+    }
+
+    /// Runs steps of 20 ms on an ideal base until it gives up: when (s), and why.
+    fn until_given_up(
+        stage: &mut LastStage,
+        grid: &OccupancyGrid,
+        mut pose: Pose2,
+        held: bool,
+    ) -> (f64, String) {
+        for i in 1..20_000 {
+            let now = surroundings(grid, pose, 0.02 * f64::from(i));
+            match stage.step(&now) {
+                Progress::Moving(_) if held => stage.interrupted(&now),
+                Progress::Moving(twist) => pose = pose.advance(twist, 0.02),
+                Progress::GivenUp(reason) => return (0.02 * f64::from(i), reason),
+                Progress::Settled => return (f64::NAN, "settled".to_owned()),
+            }
+        }
+        (f64::INFINITY, "never".to_owned())
+    }
+
+    #[test]
+    fn what_never_moves_ends_with_a_reason() {
+        let (grid, start, goal) = (corridor(), Pose2::new(1.2, 0.32, 0.0), Pose2::new(1.5, 0.38, 0.0));
+        // The safety monitor stops every command.
+        let mut held = stage();
+        held.begin(goal);
+        let (time, reason) = until_given_up(&mut held, &grid, start, true);
+        assert!(time < 30.0 && !reason.is_empty(), "{time} {reason}");
+        // No way: the goal is in the wall.
+        let mut walled = stage();
+        walled.begin(Pose2::new(1.5, 0.1, 0.0));
+        let (time, reason) = until_given_up(&mut walled, &grid, start, false);
+        assert!(time < 30.0 && reason.contains("goal"), "{time} {reason}");
+        assert!(walled.report().waits > 5 && walled.report().ended.is_some());
+        // The pose is no number: nothing else ends it but the time.
+        let mut lost = stage();
+        lost.begin(goal);
+        let (time, reason) = until_given_up(&mut lost, &grid, Pose2 { x: f64::NAN, ..start }, false);
+        assert!((119.0..122.0).contains(&time) && reason.contains("120 s"), "{time} {reason}");
+    }
+
+    #[test]
+    fn a_robot_that_rolls_is_stopped_first() {
+        let (grid, mut stage) = (corridor(), stage());
+        let (start, goal) = (Pose2::new(1.2, 0.32, 0.0), Pose2::new(1.5, 0.38, 0.0));
+        stage.begin(goal);
+        for i in 1..100 {
+            let mut now = surroundings(&grid, start, 0.02 * f64::from(i));
+            now.estimate.twist = Twist2::new(0.2, 0.0);
+            assert_eq!(stage.step(&now), Progress::Moving(Twist2::ZERO));
+        }
+        assert_eq!(stage.report().motions, 0);
     }
 
     #[test]

@@ -6,12 +6,12 @@
 
 mod camera_mount;
 mod config;
+mod eye;
 mod last_stage;
 mod level_map;
 mod look;
 mod mission;
 mod navigator;
-mod odometry_track;
 mod progress;
 mod report;
 mod robot;

@@ -22,6 +22,8 @@ pub(crate) struct Surroundings<'a> {
     pub(crate) grid: &'a OccupancyGrid,
     /// The newest scan, carried by odometry.
     pub(crate) scan: Option<SafetyScan<'a>>,
+    /// Stamp of the newest scan that shows something.
+    pub(crate) seen: Option<Stamp>,
 }
 
 /// What it decides.
@@ -75,6 +77,8 @@ pub(crate) struct Navigator {
     /// Where the way to the goal ends, when there is none.
     blocked_at: Option<Vector2>,
     progress: ProgressWatch,
+    /// Of the safety monitor, s.
+    image_timeout: f64,
 }
 
 /// Held by safety for so long, it plans anew from where it stands, s.
@@ -83,6 +87,8 @@ const PAUSE: f64 = 1.0;
 const WORTH_IMPROVING: f64 = 0.5;
 /// A new way replaces a good one when it arrives so much sooner, s.
 const SOONER: f64 = 0.05;
+/// Without sight for so long, it turns to find some, s.
+const BLIND_PAUSE: f64 = 3.0;
 /// Slower than this the robot stands, m/s.
 const STANDING: f64 = 0.02;
 /// So many turns see everything around twice.
@@ -110,6 +116,7 @@ impl Navigator {
             look: LookAround::default(),
             blocked_at: None,
             progress: ProgressWatch::default(),
+            image_timeout: config.safety.image_timeout,
         })
     }
 
@@ -325,6 +332,7 @@ impl Navigator {
         match &self.state {
             DriveState::Mapping if self.goal == Goal::Look => self.look_once(s),
             DriveState::Recovering { .. } | DriveState::Lost { .. } => self.look.twist(pose),
+            DriveState::Waiting { .. } if self.is_blind(s) => self.look_for_sight(s),
             DriveState::Waiting { .. } => match self.blocked_at.filter(|_| self.plan.is_none()) {
                 Some(at) => face(pose, at),
                 None => follow.twist,
@@ -332,6 +340,20 @@ impl Navigator {
             DriveState::Docking => times.measure(Stage::Control, || self.dock(s)),
             _ => follow.twist,
         }
+    }
+
+    /// Whether no image has shown anything for a while.
+    fn is_blind(&self, s: &Surroundings<'_>) -> bool {
+        s.seen.is_none_or(|seen| s.now - seen > self.image_timeout)
+    }
+
+    /// A camera too near to a wall sees nothing: after a while one turn on the spot shows whether that is it.
+    fn look_for_sight(&mut self, s: &Surroundings<'_>) -> Twist2 {
+        let waited = self.held_since.map_or(0.0, |since| s.now - since);
+        if waited < BLIND_PAUSE || self.look.has_turned(ONE_TURN) {
+            return Twist2::ZERO;
+        }
+        self.look.twist(s.estimate.pose)
     }
 
     /// A turn on the spot, and what is around has been seen.
@@ -372,7 +394,7 @@ impl Navigator {
             memory: Some(SafetyMemory { grid: s.grid, map_from_base: s.estimate.pose }),
             touched: self.touched,
             over_edge: self.over_edge,
-            image: s.scan.map(|scan| scan.scan.stamp()),
+            image: s.seen,
             wheels: Some(s.now),
         });
         match (report.action, &self.state) {

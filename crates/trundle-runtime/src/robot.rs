@@ -1,8 +1,8 @@
 use crate::{
     config::RobotConfig,
+    eye::EyeWatch,
     mission::{Mission, Task, TaskRecord},
     navigator::{Navigator, Surroundings},
-    odometry_track::OdometryTrack,
     report::StepReport,
     schedule::Ticker,
     sight::Sight,
@@ -13,7 +13,7 @@ use crate::{
 use trundle_control::SafetyScan;
 use trundle_core::{
     Footprint, GyroRate, Invalid, OccupancyGrid, Odometry, Pose2, Pose3, PoseEstimate, RgbdImage, Scan,
-    SensorEvent, Vector2, WheelTicks,
+    SensorEvent, Stamp, Vector2, WheelTicks,
 };
 use trundle_localization::{Localizer, VisualPose, VisualQuality, WheelOdometry, camera_motion};
 use trundle_mapping::{DepthScanner, GridMapper, MapperConfig, ScanMatcher};
@@ -51,8 +51,9 @@ struct Latest {
     image_odometry: Option<Pose2>,
     /// The newest scan.
     scan: Option<Scan>,
-    /// `odom_from_base` over the last moments.
-    track: OdometryTrack,
+    /// `odom_from_base` when it was taken.
+    scan_odometry: Option<Pose2>,
+    eye: EyeWatch,
 }
 
 /// Exploring, the robot keeps so much more from things than its footprint needs, m: a view is not worth a squeeze.
@@ -143,13 +144,13 @@ impl Robot {
     fn roll(&mut self, wheels: &WheelTicks, report: &mut StepReport) {
         let odometry = self.times.measure(Stage::Odometry, || self.odometry.step_wheels(wheels));
         self.times.measure(Stage::Localization, || self.localizer.predict(&odometry));
-        self.latest.track.note(&odometry);
         self.latest.odometry = Some(odometry);
         let surroundings = Surroundings {
             now: wheels.stamp,
             estimate: self.localizer.estimate(),
             grid: self.mapper.grid(),
             scan: self.latest.carried_scan(),
+            seen: self.latest.eye.seen(),
         };
         let (supervisor, navigator) = (&mut self.supervisor, &mut self.navigator);
         let order =
@@ -164,7 +165,11 @@ impl Robot {
 
     /// An image: the visual pose corrects the estimate; at the map's rate the scan does too, and enters the map.
     fn look(&mut self, image: &RgbdImage, report: &mut StepReport) {
-        let prior = self.camera_motion_since_last_image();
+        let Some(odom_from_base) = self.odometry_at(image.stamp()) else { return };
+        if self.latest.eye.is_frozen(image, odom_from_base) {
+            return;
+        }
+        let prior = self.camera_motion_since_last_image(odom_from_base);
         let track = self.times.measure(Stage::Slam, || self.slam.step(image, prior));
         self.times.measure(Stage::Localization, || correct_by_sight(&mut self.localizer, &track));
         if self.sight == Sight::DepthCamera {
@@ -180,6 +185,8 @@ impl Robot {
             self.fit(&scan);
             self.draw(&scan);
         }
+        self.latest.scan_odometry = self.odometry_at(scan.stamp());
+        self.latest.eye.note(&scan);
         self.latest.scan = Some(scan);
     }
 
@@ -202,9 +209,14 @@ impl Robot {
         });
     }
 
+    /// `odom_from_base` when an image was taken, which may be a while ago.
+    fn odometry_at(&self, stamp: Stamp) -> Option<Pose2> {
+        let newest = self.latest.odometry.map(|odometry| odometry.pose);
+        self.localizer.odometry_at(stamp).ok().or(newest)
+    }
+
     /// `previous_camera_from_camera` by wheels and gyro.
-    fn camera_motion_since_last_image(&mut self) -> Option<Pose3> {
-        let odom_from_base = self.latest.odometry?.pose;
+    fn camera_motion_since_last_image(&mut self, odom_from_base: Pose2) -> Option<Pose3> {
         let previous = self.latest.image_odometry.replace(odom_from_base)?;
         Some(camera_motion(previous.inverse() * odom_from_base, self.base_from_camera))
     }
@@ -249,6 +261,11 @@ impl Robot {
         self.latest.scan.as_ref()
     }
 
+    /// Images that were left out because they were the last one again though the robot had moved.
+    pub fn frozen_images(&self) -> usize {
+        self.latest.eye.frozen()
+    }
+
     /// What the stages cost.
     pub fn times(&self) -> &StageTimes {
         &self.times
@@ -260,7 +277,7 @@ impl Latest {
     fn carried_scan(&self) -> Option<SafetyScan<'_>> {
         Some(SafetyScan {
             scan: self.scan.as_ref()?,
-            odom_at_scan: self.track.at(self.scan.as_ref()?.stamp())?,
+            odom_at_scan: self.scan_odometry?,
             odom_now: self.odometry?.pose,
         })
     }
@@ -290,5 +307,7 @@ fn correct_by_sight(localizer: &mut Localizer, track: &TrackReport) {
         visual_from_camera: track.visual_from_camera,
         covariance: track.covariance,
         quality,
+        map: track.map.number(),
+        recognised: track.relocalised || track.closed_loop.is_some() || track.merged.is_some(),
     });
 }

@@ -43,6 +43,13 @@ pub enum Mode {
 #[serde(transparent)]
 pub struct MapId(pub(crate) u32);
 
+impl MapId {
+    /// Its number.
+    pub fn number(self) -> u32 {
+        self.0
+    }
+}
+
 impl fmt::Display for MapId {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "M{}", self.0)

@@ -9,12 +9,14 @@ use trundle::docking::Method;
 #[derive(Debug, Args)]
 #[command(
     after_help = "Examples:\n  trundle dock map.yaml --from 1.0,2.0,90 --to 1.2,2.0,90 --footprint '0.3,0.2 -0.3,0.2 -0.3,-0.2 0.3,-0.2'\n  \
-    trundle dock corridor.txt --problem hong24-a --method paper\n  \
+    trundle dock hong24-a --method paper\n  \
+    trundle dock hong24-a --write-problem corridor.txt\n  \
+    trundle dock corridor.txt --problem hong24-a\n  \
     trundle dock robot.log --scan 12 --to 0.4,0.1,0\n\n\
     Exit code: 0 a manoeuvre was found, 1 there is none, 2 bad input."
 )]
 pub struct DockArgs {
-    /// A map in map_server's form (*.yaml), a laser log (*.log, one scan of it), or a file of corridor problems (docs/corridor-benchmark.md).
+    /// A map in map_server's form (*.yaml), a laser log (*.log, one scan of it), a file of corridor problems (docs/corridor-benchmark.md), or one of hong24-a, -b, -c, -d, which are built in.
     pub place: PathBuf,
     /// Start pose in the map frame: m, m, deg [default: the problem's; in a scan, where it was made: 0,0,0]
     #[arg(long, value_name = "X,Y,DEG", allow_hyphen_values = true)]
@@ -31,13 +33,16 @@ pub struct DockArgs {
     /// Which problem of the file [default: the first]
     #[arg(long, value_name = "NAME")]
     pub problem: Option<String>,
-    /// Which method plans.
-    #[arg(long, value_enum, default_value_t = MethodArg::Optimal)]
-    pub method: MethodArg,
+    /// Which method plans [default: the robot file's, or optimal]
+    #[arg(long, value_enum)]
+    pub method: Option<MethodArg>,
+    /// Only write the problem to a file, as text to change.
+    #[arg(long, value_name = "FILE")]
+    pub write_problem: Option<PathBuf>,
     /// Take unknown cells of the map for free rather than blocked.
     #[arg(long)]
     pub through_unknown: bool,
-    /// Robot file (see `trundle config`).
+    /// Robot file (see `trundle config`): footprint, and the settings of [docking.planner].
     #[arg(long, value_name = "FILE")]
     pub config: Option<PathBuf>,
     /// Folder for the results.

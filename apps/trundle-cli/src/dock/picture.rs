@@ -13,12 +13,13 @@ pub(crate) struct Surroundings<'a> {
     pub(crate) problem: Option<&'a Problem>,
 }
 
-/// Start, goal, what stands around, and the robot's outlines along the manoeuvre. A PNG.
+/// Start, goal, what stands around, the robot's outlines along the manoeuvre, and what forbids one. A PNG.
 pub(crate) fn manoeuvre_picture(
     around: Surroundings<'_>,
     footprint: &Footprint,
     (start, goal): (Pose2, Pose2),
     found: Option<&Solution>,
+    in_the_way: Option<Vector2>,
 ) -> Vec<u8> {
     let blank = around.grid.map_or_else(MapPicture::blank, MapPicture::over);
     let mut picture = around.problem.map_or(blank, |problem| with_obstacles(MapPicture::blank(), problem));
@@ -29,6 +30,9 @@ pub(crate) fn manoeuvre_picture(
             &way,
             LineStyle::solid(Color::BLUE),
         );
+    }
+    if let Some(at) = in_the_way {
+        picture = picture.dots("in the way", &[at], DotStyle::crowd(Color::VERMILLION).radius(7.0));
     }
     let half = start.distance(&goal) / 2.0 + 2.0 * footprint.circumscribed_radius() + 0.3;
     let pose = |color: Color| PoseStyle::named(color).with_footprint(footprint.clone());
@@ -50,7 +54,7 @@ fn with_obstacles<'a>(picture: MapPicture<'a>, problem: &Problem) -> MapPicture<
     let line = LineStyle::solid(Color::BLACK).width(2.5).plain();
     problem.obstacles.iter().fold(picture, |picture, obstacle| match obstacle {
         Obstacle::Point(point) => {
-            picture.dots("obstacles", &[*point], DotStyle::crowd(Color::BLACK).radius(1.5))
+            picture.dots("obstacles", &[*point], DotStyle::crowd(Color::BLACK).radius(2.5))
         }
         Obstacle::Segment(a, b) => picture.polyline("obstacles", &[*a, *b], line),
         Obstacle::Polygon(corners) => {

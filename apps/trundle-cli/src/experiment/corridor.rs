@@ -87,6 +87,7 @@ impl Trial {
             &self.problem.footprint,
             (self.problem.start, self.problem.goal),
             self.found(),
+            None,
         )
     }
 

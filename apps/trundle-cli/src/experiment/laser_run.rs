@@ -1,5 +1,5 @@
+use super::cpu_clock;
 use crate::failure::Failure;
-use std::time::Instant;
 use trundle::core::{Pose2, RobotBody, SensorEvent, Twist2};
 use trundle::runtime::{DriveState, Mission, Robot, RobotConfig};
 use trundle::sim::{LaserConfig, Scene, SimConfig, Simulator};
@@ -47,7 +47,7 @@ pub struct LaserRun {
     pub state: DriveState,
     /// Plans made.
     pub plans: usize,
-    /// What each control cycle took (supervision, planning, control and safety), wall clock, ms.
+    /// What each control cycle took (odometry, supervision, planning, control and safety), processor time, ms.
     pub cycles_ms: Vec<f64>,
 }
 
@@ -78,9 +78,9 @@ pub fn drive(plan: LaserPlan, is_over: impl Fn(&Moment) -> bool) -> Result<Laser
     let (mut moments, mut cycles_ms, mut plans) = (Vec::new(), Vec::new(), 0);
     let mut state = DriveState::Idle;
     while let Some(event) = RobotBody::next_event(&mut body)? {
-        let before = Instant::now();
+        let before = cpu_clock::now();
         let report = robot.step(&event);
-        let elapsed = before.elapsed().as_secs_f64() * 1e3;
+        let elapsed = (cpu_clock::now() - before).as_secs_f64() * 1e3;
         plans += usize::from(report.replanned);
         state = report.state;
         let (SensorEvent::Wheels(_), Some(twist)) = (&event, report.twist) else { continue };

@@ -6,8 +6,8 @@ use std::path::Path;
 use trundle::core::{Pose2, Vector2};
 use trundle::io::{OutputFolder, Summary, table_csv, write_map};
 use trundle::runtime::{Mission, Task};
-use trundle::sim::Scene;
 use trundle::sim::import::UpAxis;
+use trundle::sim::{FaultSchedule, Scene};
 use trundle::viz::{Color, Figure, LineStyle, MapPicture, PoseStyle, Report, Table, Verdict};
 
 /// An experiment of this kind.
@@ -40,10 +40,17 @@ pub fn obstacles(args: &RunsArgs) -> Result<Outcome, Failure> {
     let plan = |seed| -> Result<TrialPlan, Failure> {
         let scene = Scene::by_name("obstacles", seed)?;
         let mission = Mission::new(vec![Task::Go(scene.start_from_goal())])?;
-        Ok(TrialPlan { name: format!("seed {seed}"), seed, scene, mission, robot: robot.clone() })
+        Ok(TrialPlan {
+            name: format!("seed {seed}"),
+            seed,
+            scene,
+            mission,
+            robot: robot.clone(),
+            faults: FaultSchedule::default(),
+        })
     };
     let plans = (1..=u64::from(args.seeds)).map(plan).collect::<Result<Vec<_>, _>>()?;
-    finish(&OBSTACLES, args, trial::all(plans, args.common.quiet)?)
+    finish(&OBSTACLES, args, trial::all(plans, args)?)
 }
 
 /// The robot's start in the house, world frame: m, m, deg.
@@ -75,10 +82,17 @@ pub fn house(args: &RunsArgs, mesh: &Path) -> Result<Outcome, Failure> {
         }
         let goals = HOUSE_GOALS.map(|goal| Task::Go(start.inverse() * pose(goal)));
         let mission = Mission::new(goals.to_vec())?;
-        Ok(TrialPlan { name: format!("seed {seed}"), seed, scene, mission, robot: robot.clone() })
+        Ok(TrialPlan {
+            name: format!("seed {seed}"),
+            seed,
+            scene,
+            mission,
+            robot: robot.clone(),
+            faults: FaultSchedule::default(),
+        })
     };
     let plans = (1..=u64::from(args.seeds)).map(plan).collect::<Result<Vec<_>, _>>()?;
-    finish(&HOUSE, args, trial::all(plans, args.common.quiet)?)
+    finish(&HOUSE, args, trial::all(plans, args)?)
 }
 
 fn finish(story: &Story, args: &RunsArgs, trials: Vec<Trial>) -> Result<Outcome, Failure> {

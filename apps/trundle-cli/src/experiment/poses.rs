@@ -5,7 +5,7 @@ use crate::{Outcome, console, failure::Failure, robot_file};
 use trundle::core::{Footprint, Pose2, Vector2};
 use trundle::io::{OutputFolder, Summary, table_csv};
 use trundle::runtime::{Mission, Task};
-use trundle::sim::Scene;
+use trundle::sim::{FaultSchedule, Scene};
 use trundle::viz::{BarChart, Color, Figure, LineStyle, MapPicture, PoseStyle, Report, Table, Verdict};
 
 /// Their start poses, m; each with heading 0.
@@ -37,11 +37,18 @@ pub fn run(args: &RunsArgs) -> Result<Outcome, Failure> {
             let mut scene = Scene::by_name("room", seed)?;
             scene.start = Pose2::new(x, y, 0.0);
             let mission = Mission::new(vec![Task::Go(scene.start_from_goal())])?;
-            plans.push(TrialPlan { name: format!("{}", i + 1), seed, scene, mission, robot: robot.clone() });
+            plans.push(TrialPlan {
+                name: format!("{}", i + 1),
+                seed,
+                scene,
+                mission,
+                robot: robot.clone(),
+                faults: FaultSchedule::default(),
+            });
         }
     }
     let folder = OutputFolder::create(&args.out)?;
-    let trials = trial::all(plans, args.common.quiet)?;
+    let trials = trial::all(plans, args)?;
     let whole = Means::of(&trials);
     let success = whole.within();
     let pictures = [("paths.png", paths(&trials))];

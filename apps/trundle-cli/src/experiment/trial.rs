@@ -1,3 +1,4 @@
+use super::RunsArgs;
 use crate::demo::{simulated, time_limit};
 use crate::run::{Run, RunSetup, live};
 use crate::run_table::RunNumbers;
@@ -20,6 +21,8 @@ pub struct TrialPlan {
     pub mission: Mission,
     /// The robot.
     pub robot: RobotConfig,
+    /// What breaks.
+    pub faults: FaultSchedule,
 }
 
 /// What it came to.
@@ -44,7 +47,15 @@ pub struct Trial {
 ///
 /// # Errors
 /// The first plan that cannot be carried out.
-pub fn all(plans: Vec<TrialPlan>, quiet: bool) -> Result<Vec<Trial>, Failure> {
+pub fn all(mut plans: Vec<TrialPlan>, args: &RunsArgs) -> Result<Vec<Trial>, Failure> {
+    let quiet = args.common.quiet;
+    if let Some(word) = &args.only {
+        plans.retain(|plan| plan.name.contains(word.as_str()));
+    }
+    if plans.is_empty() {
+        let word = args.only.as_deref().unwrap_or_default();
+        return Err(Failure::Input(format!("--only {word}: no run has a name that holds this")));
+    }
     let (line, done, total) = (console::live_line(quiet), AtomicUsize::new(0), plans.len());
     let trials = plans.into_par_iter().map(|plan| {
         let trial = one(plan)?;
@@ -59,7 +70,7 @@ pub fn all(plans: Vec<TrialPlan>, quiet: bool) -> Result<Vec<Trial>, Failure> {
 }
 
 fn one(plan: TrialPlan) -> Result<Trial, Failure> {
-    let TrialPlan { name, seed, scene, mission, robot } = plan;
+    let TrialPlan { name, seed, scene, mission, robot, faults } = plan;
     let world_from_map = scene.start;
     let setup = RunSetup {
         scene: scene.name.clone(),
@@ -69,7 +80,7 @@ fn one(plan: TrialPlan) -> Result<Trial, Failure> {
         mission,
         robot: robot.with_seed(seed),
     };
-    let config = simulated(&setup.robot, FaultSchedule::default())?;
+    let config = simulated(&setup.robot, faults)?;
     let mut body = Simulator::new(scene, config, seed).map_err(|error| Failure::Input(error.to_string()))?;
     let run = live(&setup, &mut body)?;
     let planned = planned(&run);

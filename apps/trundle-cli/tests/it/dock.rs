@@ -110,3 +110,29 @@ fn among_the_points_of_a_scan_too() {
     assert!(refusal(&[&dock[..], &["--scan", "9"]].concat()).contains("it has no scan 9, only 1 to 1"));
     assert!(refusal(&["dock", text(&log), "--footprint=0.2"]).contains("a scan needs --to"));
 }
+
+#[test]
+fn built_in_problems_are_written_and_read() {
+    let scratch = tempfile::tempdir().unwrap();
+    let (file, out) = (scratch.path().join("corridor.txt"), scratch.path().join("out"));
+    assert!(trundle(&["dock", "hong24-a", "--write-problem", text(&file)]).status.success());
+    let output =
+        trundle(&["dock", text(&file), "--problem", "hong24-a", "--method=paper", "--out", text(&out)]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    assert_eq!(summary(&out)["motions"].as_array().unwrap().len(), 4);
+    let there = trundle(&["dock", "hong24-a", "--to=-0.1,0,90", "--out", text(&out)]);
+    assert!(String::from_utf8_lossy(&there.stdout).contains("Already there"));
+    fs::write(&file, PROBLEM.replace("goal 0.1 0 90\n", "")).unwrap();
+    let said = refusal(&["dock", text(&file)]);
+    assert!(said.contains("`goal`"), "{said}");
+}
+
+#[test]
+fn the_robot_files_planner_counts() {
+    let scratch = tempfile::tempdir().unwrap();
+    let (robot, out) = (scratch.path().join("robot.toml"), scratch.path().join("out"));
+    fs::write(&robot, "[docking.planner]\nmargin = 0.03\n").unwrap();
+    let output = trundle(&["dock", "hong24-a", "--config", text(&robot), "--out", text(&out)]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    assert!((summary(&out)["margin_m"].as_f64().unwrap() - 0.03).abs() < 1e-9);
+}

@@ -5,6 +5,7 @@ mod bad_input;
 mod demo;
 mod dock;
 mod experiments;
+mod inputs;
 mod map;
 mod plan;
 mod program;

@@ -1,5 +1,6 @@
 use crate::program::{summary, text, trundle};
 use std::fs;
+use std::path::{Path, PathBuf};
 
 /// A room of 6 x 4 m with a wall across, open at the top.
 pub fn write_room(folder: &std::path::Path) -> std::path::PathBuf {
@@ -32,4 +33,168 @@ fn a_plan_leads_around_the_wall() {
     let last: Vec<f64> = trajectory.lines().last().unwrap().split(',').map(|v| v.parse().unwrap()).collect();
     assert!((last[1] - 5.0).hypot(last[2] - 1.0) < 2e-3, "{last:?}");
     assert!((last[3] + std::f64::consts::FRAC_PI_2).abs() < 1e-3, "{last:?}");
+}
+
+/// A picture of one grey with a box of another, as a mask of the room.
+fn write_mask(folder: &Path, name: &str, (clear, dark): (u8, u8), more: &str) -> PathBuf {
+    let (width, height) = (120, 80);
+    let cell = |x: usize, y: usize| if (62..90).contains(&x) && y < 25 { dark } else { clear };
+    let mut pgm = format!("P5\n{width} {height}\n255\n").into_bytes();
+    pgm.extend((0..height).flat_map(|y| (0..width).map(move |x| cell(x, y))));
+    fs::write(folder.join(format!("{name}.pgm")), pgm).unwrap();
+    let yaml = format!("image: {name}.pgm\nresolution: 0.05\norigin: [0.0, 0.0, 0.0]\nnegate: 0\n{more}");
+    fs::write(folder.join(format!("{name}.yaml")), yaml).unwrap();
+    folder.join(format!("{name}.yaml"))
+}
+
+const TRINARY: &str = "occupied_thresh: 0.65\nfree_thresh: 0.196\n";
+const SCALE: &str = "mode: scale\noccupied_thresh: 1.0\nfree_thresh: 0.0\n";
+const PLACES: &str =
+    "[desk]\nx = 1.0\ny = 1.0\nheading_deg = 0\n[\"far door\"]\nx = 5.0\ny = 1.0\nheading_deg = -90\n";
+
+struct Room {
+    scratch: tempfile::TempDir,
+    map: PathBuf,
+    places: PathBuf,
+}
+
+impl Room {
+    fn new() -> Self {
+        let scratch = tempfile::tempdir().unwrap();
+        let (map, places) = (write_room(scratch.path()), scratch.path().join("places.toml"));
+        fs::write(&places, PLACES).unwrap();
+        Self { scratch, map, places }
+    }
+
+    fn out(&self) -> PathBuf {
+        self.scratch.path().join("out")
+    }
+
+    /// Runs `trundle plan` with the places; its standard output, or what it complains of.
+    fn plan(&self, more: &[&str]) -> Result<String, String> {
+        let out = self.out();
+        let base = ["plan", text(&self.map), "--places", text(&self.places), "--out", text(&out)];
+        let output = trundle(&[&base, more].concat());
+        let (said, complaint) =
+            (String::from_utf8(output.stdout).unwrap(), String::from_utf8(output.stderr).unwrap());
+        if output.status.success() { Ok(said) } else { Err(complaint) }
+    }
+
+    fn summary(&self) -> serde_json::Value {
+        summary(&self.out())
+    }
+}
+
+/// Rows of `trajectory.csv`: time, x, y, heading, v, omega.
+fn trajectory(out: &Path) -> Vec<Vec<f64>> {
+    let csv = fs::read_to_string(out.join("trajectory.csv")).unwrap();
+    csv.lines().skip(1).map(|line| line.split(',').map(|v| v.parse().unwrap()).collect()).collect()
+}
+
+#[test]
+fn named_goals_are_driven_to_in_a_row_and_stages_are_timed() {
+    let room = Room::new();
+    let said =
+        room.plan(&["--from", "desk", "--goal", "far door", "--goal=2,3,180", "--coefficients"]).unwrap();
+    for word in ["distance field", "way-points", "curve", "timing", "x(u) = ", "u^5", "active constraints"] {
+        assert!(said.contains(word), "{word}: {said}");
+    }
+    let summary = room.summary();
+    assert_eq!(summary["goals"].as_array().unwrap().len(), 2);
+    assert!(summary["wall_clock"]["curve_s"].as_f64().unwrap() > 0.0);
+    for name in ["plan.png", "field.png", "corridors.png", "plan.html", "constraints.csv", "coefficients.csv"]
+    {
+        assert!(fs::metadata(room.out().join(name)).unwrap().len() > 20, "{name}");
+    }
+    let rows = trajectory(&room.out());
+    let rests = rows.iter().any(|row| (row[1] - 5.0).hypot(row[2] - 1.0) < 2e-3 && row[4] == 0.0);
+    assert!(rests, "no rest at the far door");
+    let last = &rows[rows.len() - 1];
+    assert!((last[1] - 2.0).hypot(last[2] - 3.0) < 2e-3, "{last:?}");
+}
+
+#[test]
+fn masks_forbid_and_slow_down() {
+    let room = Room::new();
+    let forbidden = write_mask(room.scratch.path(), "keepout", (254, 0), TRINARY);
+    // The only way leads through the mask's box above the wall.
+    let complaint =
+        room.plan(&["--from=desk", "--goal=far door", "--keepout", text(&forbidden)]).unwrap_err();
+    assert!(
+        complaint.contains("from 'desk' at (1, 1) m to 'far door' at (5, 1) m: no way to the goal"),
+        "{complaint}"
+    );
+    let within = room.plan(&["--from=desk", "--goal=4,3.5,0", "--keepout", text(&forbidden)]).unwrap_err();
+    assert!(within.contains("does not fit at the goal"), "{within}");
+    let near = room.plan(&["--from=desk", "--goal=4,3.5,0", "--near=2", "--keepout", text(&forbidden)]);
+    near.unwrap();
+    let reached = &room.summary()["reached"][0];
+    assert!(reached["x"].as_f64().unwrap() < 3.4, "{reached}");
+    let slow = write_mask(room.scratch.path(), "slow", (255, 26), SCALE);
+    room.plan(&["--from=desk", "--goal=far door", "--speed-mask", text(&slow)]).unwrap();
+    let rows = trajectory(&room.out());
+    // Grey 26 of 255 is a value of 90: a tenth of the Kobuki's 0.7 m/s.
+    let inside = |row: &&Vec<f64>| (3.11..4.49).contains(&row[1]) && row[2] > 2.76;
+    let fastest = rows.iter().filter(inside).map(|row| row[4]).fold(0.0, f64::max);
+    assert!(fastest > 0.05 && fastest <= 0.0701, "{fastest}");
+}
+
+#[test]
+fn lanes_of_a_graph_file_are_kept_to() {
+    let room = Room::new();
+    let node = |id: u32, x: f64, y: f64| {
+        format!(
+            r#"{{"properties": {{"id": {id}, "frame": "map"}}, "geometry": {{"type": "Point", "coordinates": [{x}, {y}]}}}}"#
+        )
+    };
+    let lane = |id: u32, a: u32, b: u32| {
+        format!(
+            r#"{{"properties": {{"id": {id}, "startid": {a}, "endid": {b}}}, "geometry": {{"type": "MultiLineString", "coordinates": []}}}}"#
+        )
+    };
+    let features = [node(1, 1.0, 3.5), node(2, 3.0, 3.5), node(3, 5.0, 3.5), lane(4, 1, 2), lane(5, 2, 3)];
+    let graph = room.scratch.path().join("lanes.geojson");
+    fs::write(&graph, format!("{{\"type\": \"FeatureCollection\", \"features\": [{}]}}", features.join(",")))
+        .unwrap();
+    room.plan(&["--from=desk", "--goal=far door", "--graph", text(&graph)]).unwrap();
+    let points = fs::read_to_string(room.out().join("waypoints.csv")).unwrap();
+    assert!(points.contains("3.5"), "{points}");
+    let back = room.plan(&["--from=far door", "--goal=desk", "--graph", text(&graph)]);
+    assert!(back.is_err() || room.summary()["length_m"].as_f64().unwrap() > 5.0);
+}
+
+#[test]
+fn what_is_wrong_is_said_clearly() {
+    let room = Room::new();
+    let elsewhere = write_mask(room.scratch.path(), "beside", (254, 0), TRINARY);
+    let yaml = fs::read_to_string(&elsewhere).unwrap().replace("[0.0, 0.0", "[50.0, 0.0");
+    fs::write(&elsewhere, yaml).unwrap();
+    for (arguments, message) in [
+        (vec!["--from=desk", "--goal=kitchen"], "places.toml: no place 'kitchen'; there are: desk, far door"),
+        (vec!["--from=desk", "--goal=1,2"], "2 numbers, expected 3: X,Y,DEG"),
+        (vec!["--from=0.05,0.05,0", "--goal=desk"], "the robot does not fit at the start"),
+        (vec!["--from=desk", "--goal=9,9,0"], "the goal is off the map"),
+        (vec!["--from=-3,1,0", "--goal=desk"], "the start is off the map"),
+        (
+            vec!["--from=desk", "--goal=far door", "--goal=3.02,1,0"],
+            "goal 2, from 'far door' at (5, 1) m to (3.02, 1) m: the robot does not fit at the goal",
+        ),
+        (
+            vec!["--from=desk", "--goal=far door", "--keepout", text(&elsewhere)],
+            "beside.yaml: the mask lies beside the map",
+        ),
+        (
+            vec!["--from=desk", "--goal=desk", "--graph", "nowhere.geojson"],
+            "cannot read nowhere.geojson: it does not exist",
+        ),
+        (vec!["--from=desk"], "--goal"),
+    ] {
+        let complaint = room.plan(&arguments).unwrap_err();
+        assert!(complaint.contains(message), "{arguments:?}: {complaint}");
+    }
+    let bare = trundle(&["plan", text(&room.map), "--from=desk", "--goal=1,1,0", "--out", text(&room.out())]);
+    assert!(
+        String::from_utf8_lossy(&bare.stderr)
+            .contains("'desk' is no pose X,Y,DEG; to name a place, give its file with --places")
+    );
 }

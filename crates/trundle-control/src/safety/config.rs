@@ -9,7 +9,7 @@ pub struct SafetyConfig {
     pub deceleration: f64,
     /// Angular deceleration to count on when a polygon turns on the spot, rad/s^2, 0.1 to 100. Default 3, as above.
     pub angular_deceleration: f64,
-    /// From an image to the wheels obeying, s, 0 to 2. Default 0.2: an image period, processing, delay and lag.
+    /// From an image to the wheels obeying, s, 0 to 2, at least. Default 0.2: an image period, processing, delay and lag.
     pub latency: f64,
     /// Room left before an obstacle ahead, m, 0 to 1. Default 0.04 (ours).
     pub stop_margin: f64,
@@ -30,11 +30,15 @@ pub struct SafetyConfig {
     /// How far around the robot the map is looked at, m from its edge, 0 to 5. Default 0.8: the camera's blind zone, and what
     /// lies beside its view.
     pub memory_reach: f64,
-    /// An older image stops the robot, s, 0.05 to 60. Default 0.5: seven images missing (ours).
+    /// An older image stops the robot, s, 0.05 to 60. Default 0.8: twelve images missing (ours). Until then the older it is
+    /// the slower the robot goes.
     pub image_timeout: f64,
     /// An older wheel reading stops the robot, s, 0.02 to 60. Default 0.2: ten readings missing (ours).
     pub wheels_timeout: f64,
 }
+
+/// From a command to the wheels obeying, s: delay and lag of the motors, and a control period.
+const OBEYING: f64 = 0.12;
 
 impl Default for SafetyConfig {
     fn default() -> Self {
@@ -50,7 +54,7 @@ impl Default for SafetyConfig {
             back_out_speed: 0.05,
             least_speed: 0.01,
             memory_reach: 0.8,
-            image_timeout: 0.5,
+            image_timeout: 0.8,
             wheels_timeout: 0.2,
         }
     }
@@ -83,14 +87,19 @@ impl SafetyConfig {
         Ok(self)
     }
 
-    /// The highest speed from which the robot stops within `way` metres.
-    pub(super) fn speed_for(&self, way: f64) -> f64 {
-        braked(self.deceleration, self.latency, way)
+    /// From an image of this age to the wheels obeying, s: late images cost speed, not safety.
+    pub(super) fn latency_for(&self, age: f64) -> f64 {
+        self.latency.max(age + OBEYING)
     }
 
-    /// The highest turn rate from which it stops within `angle` rad.
-    pub(super) fn turn_rate_for(&self, angle: f64) -> f64 {
-        braked(self.angular_deceleration, self.latency, angle)
+    /// The highest speed from which the robot stops within `way` metres, `latency` s after what it sees.
+    pub(super) fn speed_for(&self, way: f64, latency: f64) -> f64 {
+        braked(self.deceleration, latency, way)
+    }
+
+    /// The highest turn rate from which it stops within `angle` rad, `latency` s after what it sees.
+    pub(super) fn turn_rate_for(&self, angle: f64, latency: f64) -> f64 {
+        braked(self.angular_deceleration, latency, angle)
     }
 }
 
@@ -106,10 +115,12 @@ mod tests {
     #[test]
     fn the_way_is_just_used_up() {
         let config = SafetyConfig::default().validated().unwrap();
-        let v = config.speed_for(0.8);
+        let v = config.speed_for(0.8, config.latency);
         assert!((v * config.latency + v * v / (2.0 * config.deceleration) - 0.8).abs() < 1e-12);
-        assert_eq!(config.speed_for(0.0), 0.0);
-        assert_eq!(config.speed_for(-1.0), 0.0);
+        assert_eq!(config.speed_for(0.0, 0.2), 0.0);
+        assert_eq!(config.speed_for(-1.0, 0.2), 0.0);
+        assert_eq!(config.latency_for(0.05), 0.2, "a fresh image");
+        assert!(config.speed_for(0.8, config.latency_for(0.5)) < v, "a late one");
     }
 
     #[test]

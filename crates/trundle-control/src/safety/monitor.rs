@@ -11,6 +11,8 @@ use trundle_core::{Footprint, Invalid, Stamp, Twist2, Vector2};
 pub struct SafetyMonitor {
     config: SafetyConfig,
     outline: Outline,
+    /// From the newest image to the wheels obeying, s.
+    latency: f64,
     /// Reused from call to call: what stands near by.
     obstacles: Vec<Obstacle>,
 }
@@ -30,7 +32,7 @@ pub struct SafetyInput<'a> {
     pub touched: bool,
     /// Whether a cliff sensor has no floor below it.
     pub over_edge: bool,
-    /// Stamp of the newest image.
+    /// Stamp of the newest image that shows something.
     pub image: Option<Stamp>,
     /// Stamp of the newest wheel reading.
     pub wheels: Option<Stamp>,
@@ -65,14 +67,20 @@ impl SafetyMonitor {
     /// # Errors
     /// When a number of the configuration is outside its range.
     pub fn new(config: SafetyConfig, footprint: &Footprint) -> Result<Self, Invalid> {
-        let outline = Outline::new(footprint);
-        Ok(Self { config: config.validated()?, outline, obstacles: Vec::new() })
+        let (config, outline) = (config.validated()?, Outline::new(footprint));
+        Ok(Self { latency: config.latency, config, outline, obstacles: Vec::new() })
     }
 
     /// Judges a command.
     pub fn check(&mut self, input: &SafetyInput<'_>) -> SafetyReport {
-        if let Some(reason) = self.blind(input) {
+        if let Some(reason) = self.broken(input) {
             return stop(reason);
+        }
+        if let Some(reason) = self.blind(input) {
+            // A disc may always turn on the spot, where that is what was asked for: so it comes to see again.
+            let turns = input.twist.v == 0.0 && reason != StopReason::NoImage;
+            let omega = if turns { input.twist.omega } else { 0.0 };
+            return SafetyReport { twist: Twist2::new(0.0, omega), action: SafetyAction::Stop(reason) };
         }
         if input.touched || input.over_edge {
             return self.back_out(input);
@@ -80,6 +88,7 @@ impl SafetyMonitor {
         if input.twist.v == 0.0 && self.may_turn(input.twist) {
             return SafetyReport { twist: input.twist, action: SafetyAction::Pass };
         }
+        self.latency = self.config.latency_for(input.image.map_or(0.0, |image| input.now - image));
         self.gather(input);
         if input.twist.v == 0.0 {
             return self.within_the_free_turn(input.twist);
@@ -87,23 +96,25 @@ impl SafetyMonitor {
         self.within_the_free_way(input.twist)
     }
 
-    /// Whether what the monitor sees by is missing.
-    fn blind(&self, input: &SafetyInput<'_>) -> Option<StopReason> {
+    /// Whether a number or the wheels are missing: then nothing may move.
+    fn broken(&self, input: &SafetyInput<'_>) -> Option<StopReason> {
         let poses = input.scan.iter().flat_map(|s| [s.odom_at_scan, s.odom_now]);
         let mut poses = poses.chain(input.memory.iter().map(|m| m.map_from_base));
         if !input.twist.is_finite() || !poses.all(|pose| pose.is_finite()) {
             return Some(StopReason::NotFinite);
         }
         let Some(wheels) = input.wheels else { return Some(StopReason::NoWheels) };
-        let Some(image) = input.image else { return Some(StopReason::NoImage) };
-        let (wheels, image) = (input.now - wheels, input.now - image);
-        if wheels > self.config.wheels_timeout {
-            Some(StopReason::StaleWheels { age: wheels })
-        } else if image > self.config.image_timeout {
-            Some(StopReason::StaleImage { age: image })
-        } else {
-            None
-        }
+        let age = input.now - wheels;
+        (age > self.config.wheels_timeout).then_some(StopReason::StaleWheels { age })
+    }
+
+    /// Whether what the monitor sees by is missing.
+    fn blind(&self, input: &SafetyInput<'_>) -> Option<StopReason> {
+        let Some(image) = input.image else {
+            return Some(if input.scan.is_some() { StopReason::NothingSeen } else { StopReason::NoImage });
+        };
+        let age = input.now - image;
+        (age > self.config.image_timeout).then_some(StopReason::StaleImage { age })
     }
 
     fn back_out(&self, input: &SafetyInput<'_>) -> SafetyReport {
@@ -117,7 +128,7 @@ impl SafetyMonitor {
     fn gather(&mut self, input: &SafetyInput<'_>) {
         self.obstacles.clear();
         let v = input.twist.v.abs();
-        let braking = v * self.config.latency + v * v / (2.0 * self.config.deceleration);
+        let braking = v * self.latency + v * v / (2.0 * self.config.deceleration);
         let body = self.outline.reach() + self.config.slow_margin.max(self.config.stop_margin);
         if let Some(scan) = &input.scan {
             collect_scan(scan, braking + self.config.stop_margin + body, &mut self.obstacles);
@@ -159,7 +170,7 @@ impl SafetyMonitor {
         let Some((angle, at)) = contact else {
             return SafetyReport { twist: turn, action: SafetyAction::Pass };
         };
-        let rate = self.config.turn_rate_for(angle);
+        let rate = self.config.turn_rate_for(angle, self.latency);
         if rate >= turn.omega.abs() {
             SafetyReport { twist: turn, action: SafetyAction::Pass }
         } else if rate < LEAST_TURN_RATE {
@@ -177,11 +188,11 @@ impl SafetyMonitor {
             report = slow_to(twist, self.config.reverse_speed, SlowReason::Reversing);
         }
         if let Some((way, at)) = free.beside {
-            let speed = self.config.speed_for(way).max(self.config.creep_speed);
+            let speed = self.config.speed_for(way, self.latency).max(self.config.creep_speed);
             report = slower(report, slow_to(twist, speed, SlowReason::NarrowGap { at }));
         }
         if let Some((way, at)) = free.contact {
-            let speed = self.config.speed_for(way - self.config.stop_margin);
+            let speed = self.config.speed_for(way - self.config.stop_margin, self.latency);
             if speed < self.config.least_speed.min(twist.v.abs()) {
                 let turn = self.within_the_free_turn(Twist2::new(0.0, twist.omega)).twist;
                 let action = SafetyAction::Stop(StopReason::ObstacleAhead { way, at });
@@ -258,6 +269,8 @@ mod tests {
         assert_eq!(reason(SafetyInput { wheels: None, ..input }), StopReason::NoWheels);
         let old = Some(now.after(-1.0));
         assert_eq!(reason(SafetyInput { image: old, ..input }), StopReason::StaleImage { age: 1.0 });
+        let turn = SafetyInput { image: old, twist: Twist2::new(0.0, 0.1), ..input };
+        assert_eq!(monitor().check(&turn).twist, turn.twist, "a turn on the spot is no risk");
         assert_eq!(reason(SafetyInput { wheels: old, ..input }), StopReason::StaleWheels { age: 1.0 });
         assert_eq!(reason(SafetyInput { twist: Twist2::new(f64::NAN, 0.0), ..input }), StopReason::NotFinite);
         assert_eq!(reason(SafetyInput { touched: true, ..input }), StopReason::Touched);

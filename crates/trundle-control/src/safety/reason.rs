@@ -63,7 +63,9 @@ pub enum StopReason {
     Cliff,
     /// No image, or scan of a laser, has come yet.
     NoImage,
-    /// The newest image, or scan of a laser, is too old.
+    /// Images or scans come, but none has shown anything yet.
+    NothingSeen,
+    /// The newest image, or scan of a laser, that shows something is too old.
     StaleImage {
         /// Its age, s.
         age: f64,
@@ -101,7 +103,10 @@ impl fmt::Display for StopReason {
             Self::Touched => f.write_str("the bumper is pressed"),
             Self::Cliff => f.write_str("there is no floor ahead"),
             Self::NoImage => f.write_str("no image or scan yet"),
-            Self::StaleImage { age } => write!(f, "the newest image or scan is {age:.2} s old"),
+            Self::NothingSeen => f.write_str("no image has shown anything yet"),
+            Self::StaleImage { age } => {
+                write!(f, "the newest image or scan that shows something is {age:.2} s old")
+            }
             Self::NoWheels => f.write_str("no wheel reading yet"),
             Self::StaleWheels { age } => write!(f, "the newest wheel reading is {age:.2} s old"),
             Self::NotFinite => f.write_str("the command is not a number"),
@@ -130,7 +135,7 @@ mod tests {
     #[test]
     fn every_reason_says_why_in_numbers() {
         let stop = SafetyAction::Stop(StopReason::StaleImage { age: 0.712 });
-        assert_eq!(stop.to_string(), "stop: the newest image or scan is 0.71 s old");
+        assert_eq!(stop.to_string(), "stop: the newest image or scan that shows something is 0.71 s old");
         let slow = SafetyAction::Slow(SlowReason::ObstacleAhead { way: 0.5, at: Vector2::new(1.0, 0.0) });
         assert_eq!(slow.to_string(), "slow: an obstacle 0.50 m ahead");
     }

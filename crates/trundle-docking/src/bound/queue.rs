@@ -56,17 +56,17 @@ impl Ord for Family {
 }
 
 /// Raises the bound, and improves the legs where a box holds better ones, until they are within `gap` (a part) of each
-/// other or `most` boxes have been looked at.
+/// other or `most` boxes have been looked at, or [`Space::work`] comes to `limit`.
 pub fn improve(
     task: &Task,
     space: &mut Space<'_>,
     best: Option<(f64, Legs)>,
     gap: f64,
-    most: usize,
+    (most, limit): (usize, u64),
 ) -> Bounded {
     let free = Bounding { task, region: region(task), start: FULL_TURN, goal: FULL_TURN, shrunk: None };
     let (spare, used) = free.least_free_time(most / 4);
-    let shrunk = Shrunk::new(space.hull(), space.scene());
+    let shrunk = Shrunk::new(space);
     let (start, goal) = (space.turn(&task.start), space.turn(&task.goal));
     let mut bounding = Bounding { task, region: region(task), start, goal, shrunk: Some(shrunk) };
     let pauses = |legs: usize| (2 * legs - 2) as f64 * task.limits.switch_time;
@@ -83,7 +83,7 @@ pub fn improve(
         let open = queue.peek().map_or(f64::INFINITY, |family: &Family| family.bound);
         known.bound = open.min(more).min(straight).min(time);
         let done = known.bound >= time * (1.0 - gap) || known.bound < open;
-        if done || known.boxes >= most {
+        if done || known.boxes >= most || space.work() >= limit {
             return known;
         }
         let Some(family) = queue.pop() else { return known };

@@ -1,7 +1,6 @@
 use super::boxes::{Place, Region, Square};
 use super::ranges::LegRange;
-use crate::geometry::{Arc, Hull};
-use crate::scene::Scene;
+use crate::geometry::Arc;
 use crate::space::Space;
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
@@ -10,7 +9,9 @@ use trundle_core::Pose2;
 /// Shrunk hulls, each a root of two smaller than the next: for places that are known to within so much.
 #[derive(Debug)]
 pub struct Shrunk<'a> {
-    spaces: Vec<Option<Space<'a>>>,
+    whole: Space<'a>,
+    /// Made when they are asked for; `None` of what nothing is left.
+    spaces: [Option<Option<Space<'a>>>; STEPS],
     gaps: BTreeMap<Square, Vec<Arc>>,
     blocked: Vec<Arc>,
 }
@@ -22,17 +23,18 @@ const STEPS: usize = 20;
 
 impl<'a> Shrunk<'a> {
     /// Prepares the hulls.
-    pub fn new(hull: &Hull, scene: &'a Scene) -> Self {
-        let depth = |i: usize| FINEST * 2_f64.powf(i as f64 / 2.0);
-        let spaces =
-            (0..STEPS).map(|i| hull.shrunk(depth(i)).map(|hull| Space::of_hull(hull, scene))).collect();
-        Self { spaces, gaps: BTreeMap::new(), blocked: Vec::new() }
+    pub fn new(whole: &Space<'a>) -> Self {
+        let spaces = std::array::from_fn(|_| None);
+        Self { whole: whole.clone(), spaces, gaps: BTreeMap::new(), blocked: Vec::new() }
     }
 
     /// The hull for what is known to within `depth` (m), if anything of it is left.
     fn space(&mut self, depth: f64) -> Option<&mut Space<'a>> {
         let step = (2.0 * (depth / FINEST).log2()).ceil().max(0.0) as usize;
-        self.spaces.get_mut(step)?.as_mut()
+        let whole = &self.whole;
+        let depth = FINEST * 2_f64.powf(step as f64 / 2.0);
+        let make = || whole.hull().shrunk(depth).map(|hull| whole.with_hull(hull));
+        self.spaces.get_mut(step)?.get_or_insert_with(make).as_mut()
     }
 
     /// Finds the headings that may be free somewhere in a square, unless they are known.
@@ -69,7 +71,7 @@ impl<'a> Shrunk<'a> {
     /// Whether a leg between two places may be free, driving forward or backward.
     pub fn may_drive(&mut self, from: &Place, to: &Place, leg: &LegRange, backward: bool) -> bool {
         let rest = to.center - from.center;
-        let Some(arm) = self.spaces[0].as_ref().map(|space| space.hull().outer_radius()) else { return true };
+        let arm = self.whole.hull().outer_radius();
         let depth = from.radius().max(to.radius()) + arm * leg.spread;
         let Some(space) = self.space(depth) else { return true };
         let heading = leg.headings(backward).middle;

@@ -54,14 +54,20 @@ pub fn parse(text: &str) -> Result<Vec<Problem>, Invalid> {
         other => return Err(refused(1, other.map_or("", |(_, line)| line), HEADER)),
     }
     let mut problems: Vec<Problem> = Vec::new();
+    let (mut given, mut began) = (Given::default(), 1);
     for (number, line) in lines {
         let (word, rest) = line.split_once(' ').unwrap_or((line, ""));
         if word == "problem" {
+            if let Some(last) = problems.last() {
+                given.checked(began, &last.name)?;
+            }
+            (given, began) = (Given::default(), number);
             problems.push(empty(rest));
             continue;
         }
         let problem = problems.last_mut().ok_or_else(|| refused(number, word, "`problem NAME` first"))?;
         let points = || points_of(number, rest);
+        given.note(word);
         match word {
             "disc" => problem.footprint = Footprint::disc(floats(number, rest, 1)?[0])?,
             "footprint" => problem.footprint = Footprint::polygon(points()?)?,
@@ -82,7 +88,35 @@ pub fn parse(text: &str) -> Result<Vec<Problem>, Invalid> {
             }
         }
     }
+    if let Some(last) = problems.last() {
+        given.checked(began, &last.name)?;
+    }
     Ok(problems)
+}
+
+/// What has been said of a problem so far.
+#[derive(Debug, Clone, Copy, Default)]
+struct Given {
+    footprint: bool,
+    start: bool,
+    goal: bool,
+}
+
+impl Given {
+    fn note(&mut self, word: &str) {
+        self.footprint |= word == "footprint" || word == "disc";
+        self.start |= word == "start";
+        self.goal |= word == "goal";
+    }
+
+    /// Refuses a problem, which began on a line, without one of its three parts.
+    fn checked(&self, began: usize, name: &str) -> Result<(), Invalid> {
+        let parts = [(self.footprint, "footprint or disc"), (self.start, "start"), (self.goal, "goal")];
+        match parts.into_iter().find(|(is_given, _)| !is_given) {
+            Some((_, part)) => Err(refused(began, name, &format!("a problem with a line `{part}`"))),
+            None => Ok(()),
+        }
+    }
 }
 
 fn empty(name: &str) -> Problem {
@@ -109,7 +143,7 @@ fn points_of(number: usize, text: &str) -> Result<Vec<Vector2>, Invalid> {
 }
 
 /// The finite numbers of a line; exactly `count` unless that is 0.
-fn floats(number: usize, text: &str, count: usize) -> Result<Vec<f64>, Invalid> {
+pub(super) fn floats(number: usize, text: &str, count: usize) -> Result<Vec<f64>, Invalid> {
     let parsed: Option<Vec<f64>> =
         text.split_whitespace().map(|word| word.parse().ok().filter(|x: &f64| x.is_finite())).collect();
     match parsed {
@@ -118,7 +152,7 @@ fn floats(number: usize, text: &str, count: usize) -> Result<Vec<f64>, Invalid> 
     }
 }
 
-fn refused(number: usize, value: &str, expected: &str) -> Invalid {
+pub(super) fn refused(number: usize, value: &str, expected: &str) -> Invalid {
     let mut shown: String = value.chars().take(SHOWN).collect();
     if shown.len() < value.len() {
         shown.push_str("...");
@@ -151,5 +185,12 @@ mod tests {
         assert!(message("trundle-corridors 1\nwall 0 0 1 1").starts_with("line 2"));
         assert!(message("trundle-corridors 1\nproblem a\nwall 0 0 1 NaN").starts_with("line 3"));
         assert!(message("trundle-corridors 1\nproblem a\nhole 0 0").contains("line 3 is `hole`"));
+        let whole = "trundle-corridors 1\nproblem a\ndisc 0.2\nstart 0 0 0\ngoal 1 0 0\n";
+        assert!(parse(whole).is_ok());
+        for part in ["disc 0.2\n", "start 0 0 0\n", "goal 1 0 0\n"] {
+            let said = message(&whole.replace(part, ""));
+            let word = part.split(' ').next().unwrap();
+            assert!(said.starts_with("line 2 is `a`") && said.contains(word), "{said}");
+        }
     }
 }

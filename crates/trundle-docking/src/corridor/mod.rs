@@ -1,9 +1,11 @@
 //! Corridor problems: a generator, the four scenarios of \[Hong24\], and a text format. See `docs/algorithms/docking.md`.
 
+mod answers;
 mod format;
 mod generate;
 mod scenarios;
 
+pub use answers::{Answer, Piece, parse_answers, time_of, write_answers};
 pub use format::{parse, write};
 pub use generate::generate;
 pub use scenarios::Scenario;

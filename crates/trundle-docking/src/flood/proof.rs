@@ -1,6 +1,8 @@
 use super::columns::{Columns, Node};
 use crate::scene::Blocker;
 use crate::space::Space;
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
 use trundle_core::{Pose2, Vector2, wrap_angle};
 
 /// What a flood over cells shows.
@@ -11,7 +13,7 @@ pub enum Proof {
         /// What stands in the way where the reachable poses come nearest to the other end.
         by: Option<Blocker>,
     },
-    /// They hang together, as far as cells of this side can tell.
+    /// They hang together, as far as cells of this side, or the work allowed, can tell.
     Together,
 }
 
@@ -27,6 +29,8 @@ pub struct Ground {
     /// Whether the hull is shrunk by a cell's half diagonal, for a proof; or taken as it is at the cells' middles, for what
     /// can be done at this resolution.
     pub shrunk: bool,
+    /// It ends without a proof when [`Space::work`] comes to this.
+    pub limit: u64,
 }
 
 /// Floods from both ends; the smaller flood goes on.
@@ -34,14 +38,15 @@ pub fn disprove(space: &Space<'_>, start: &Pose2, goal: &Pose2, ground: Ground) 
     let Ground { center, half, side, .. } = ground;
     let depth = if ground.shrunk { side * std::f64::consts::FRAC_1_SQRT_2 } else { 0.0 };
     let Some(shrunk) = space.hull().shrunk(depth) else { return Proof::Together };
-    let mut shrunk = Space::of_hull(shrunk, space.scene());
+    let mut shrunk = space.with_hull(shrunk);
     let mut columns = Columns::new(&mut shrunk, center, half, side);
     // A proof needs the very cells of the ends; there the shrunk hull is free because the true one is.
     let mut node = |pose| if ground.shrunk { columns.node_at(pose) } else { columns.node_near(pose) };
     let (Some(first), Some(last)) = (node(start), node(goal)) else {
         return Proof::Together;
     };
-    let mut floods = [Flood::new(first), Flood::new(last)];
+    let mut floods =
+        [Flood::new(first, columns.center(last.cell)), Flood::new(last, columns.center(first.cell))];
     let mut seen: Vec<u8> = Vec::new();
     let mut found = Vec::new();
     mark(&mut seen, first, 1);
@@ -54,13 +59,16 @@ pub fn disprove(space: &Space<'_>, start: &Pose2, goal: &Pose2, ground: Ground) 
             let (flood, to) = (&floods[side], if side == 0 { goal } else { start });
             return Proof::Apart { by: nearest_blocker(&mut columns, &flood.visited, to) };
         };
+        if columns.space().work() >= ground.limit {
+            return Proof::Together;
+        }
         columns.neighbours(node, &mut found);
         for &neighbour in &found {
             let mine = 1 + side as u8;
             match seen.get(neighbour.gap as usize).copied().unwrap_or(0) {
                 0 => {
                     mark(&mut seen, neighbour, mine);
-                    floods[side].visited.push(neighbour);
+                    floods[side].add(neighbour, columns.center(neighbour.cell));
                 }
                 other if other != mine => return Proof::Together,
                 _ => {}
@@ -69,20 +77,27 @@ pub fn disprove(space: &Space<'_>, start: &Pose2, goal: &Pose2, ground: Ground) 
     }
 }
 
-/// Nodes in the order they were met; those before `done` have been expanded.
+/// Nodes in the order they were met, and those to go on from: the nearest to the other end first, so that floods that meet
+/// meet soon.
 struct Flood {
     visited: Vec<Node>,
-    done: usize,
+    open: BinaryHeap<Reverse<(u64, Node)>>,
+    to: Vector2,
 }
 
 impl Flood {
-    fn new(from: Node) -> Self {
-        Self { visited: vec![from], done: 0 }
+    fn new(from: Node, to: Vector2) -> Self {
+        Self { visited: vec![from], open: BinaryHeap::from([Reverse((0, from))]), to }
+    }
+
+    fn add(&mut self, node: Node, center: Vector2) {
+        let micrometres = (center - self.to).norm() * 1e6;
+        self.visited.push(node);
+        self.open.push(Reverse((micrometres as u64, node)));
     }
 
     fn next(&mut self) -> Option<Node> {
-        self.done += 1;
-        self.visited.get(self.done - 1).copied()
+        self.open.pop().map(|Reverse((_, node))| node)
     }
 }
 

@@ -69,6 +69,21 @@ impl Hull {
         (left.len() >= 3).then(|| Self::from_core(&without_doubles(&left), LEAST_RADIUS))
     }
 
+    /// The least of its kind that holds this hull and the axle.
+    pub(super) fn with_axle(&self) -> Self {
+        if self.edges.is_empty() || self.edges.iter().all(|edge| edge.offset >= 0.0) {
+            return self.clone();
+        }
+        // Sides that face the axle give way to two that end on it.
+        let n = self.edges.len();
+        let faces = |i: usize| self.edges[i % n].offset < 0.0;
+        let first = (0..n).find(|&i| faces(i) && !faces(i + n - 1)).unwrap_or(0);
+        let count = (0..n).take_while(|k| faces(first + k)).count();
+        let mut corners = vec![Vector2::zeros()];
+        corners.extend((count..=n).map(|k| self.core[(first + k) % n].at));
+        Self::from_core(&corners, self.radius)
+    }
+
     fn from_core(corners: &[Vector2], radius: f64) -> Self {
         let core: Vec<Corner> =
             corners.iter().map(|&at| Corner { at, distance: at.norm(), bearing: at.y.atan2(at.x) }).collect();
@@ -76,30 +91,21 @@ impl Hull {
         let sides = corners.iter().zip(next).filter(|_| corners.len() > 1);
         let edges: Vec<Edge> = sides.map(|(&a, &b)| edge(a, b)).collect();
         let outer = core.iter().map(|c| c.distance).fold(0.0, f64::max) + radius;
-        let inner = edges.iter().map(|e| e.offset + radius).fold(f64::INFINITY, f64::min);
-        let inner = if edges.is_empty() { radius } else { inner.max(0.0) };
-        Self { core, edges, radius, outer, inner }
+        let mut hull = Self { core, edges, radius, outer, inner: 0.0 };
+        hull.inner = if hull.edges.is_empty() {
+            radius
+        } else if hull.core_holds(Vector2::zeros()) {
+            hull.edges.iter().map(|e| e.offset + radius).fold(f64::INFINITY, f64::min)
+        } else {
+            // An axle outside the core lies in its rim, or outside of all.
+            (radius - hull.core_distance(&Segment::point(Vector2::zeros()))).max(0.0)
+        };
+        hull
     }
 
     /// The farthest of its points from the base's origin, m.
     pub fn outer_radius(&self) -> f64 {
         self.outer
-    }
-
-    /// Whether it holds a right angle of more than a centimetre's reach about every point of its boundary: no corner is
-    /// sharp, and it is not slim.
-    pub fn is_blunt(&self) -> bool {
-        let n = self.edges.len();
-        let right = (0..n).all(|i| self.edges[i].normal.dot(&self.edges[(i + 1) % n].normal) >= -1e-9);
-        // Half of what a corner has before it meets a side that is not its own.
-        let reach = |corner: &Corner| {
-            let others = self.edges.iter().filter(|e| e.side.a != corner.at && e.side.b != corner.at);
-            others
-                .map(|e| e.side.distance(corner.at))
-                .chain(self.edges.iter().map(|e| (e.side.b - e.side.a).norm()))
-                .fold(f64::INFINITY, f64::min)
-        };
-        if n == 0 { self.radius > 0.03 } else { right && self.core.iter().all(|corner| reach(corner) > 0.03) }
     }
 
     /// Whether a piece, given in the base frame, overlaps the hull.

@@ -2,10 +2,12 @@
 
 mod driving;
 mod hull;
+mod profile;
 mod segment;
 mod turning;
 
 pub use driving::InTheWay;
 pub use hull::{Hull, LEAST_RADIUS};
+pub use profile::{Profile, once_round};
 pub use segment::Segment;
 pub use turning::Arc;

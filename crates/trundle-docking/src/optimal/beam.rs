@@ -20,6 +20,8 @@ struct Node {
 
 /// Parts of a free way at which a leg may end.
 const PARTS: [f64; 7] = [1.0, 0.8, 0.6, 0.42, 0.26, 0.13, 0.05];
+/// What two estimates cost, in units of [`crate::Space::work`].
+const ESTIMATE: u64 = 60;
 /// Poses count as the same within a cell of this side, m, ...
 const CELL: f64 = 0.02;
 /// ... and this sector, rad.
@@ -31,22 +33,25 @@ const MOST_LEGS: usize = 6;
 /// The same where a guide says that it is worth while.
 const MOST_LEGS_GUIDED: usize = 60;
 
+/// A guided beam goes on for so many layers once it has got through: what is found is shortened anyway.
+const LAYERS_MORE: usize = 2;
+
 /// Layer by layer, one more leg each, the most promising `width` nodes are carried on; from each the search is completed by
 /// one or two exact legs. No more than `nodes` are expanded.
 pub fn beam(search: &mut Search<'_, '_>, width: usize, nodes: usize) {
-    layers(search, width, MOST_LEGS, nodes, |search, pose| search.estimate(pose));
+    layers(search, width, MOST_LEGS, (nodes, usize::MAX), |search, pose| search.estimate(pose));
 }
 
 /// The same with many legs, led by a guide that knows how the free poses hang together.
 pub fn guided_beam(search: &mut Search<'_, '_>, guide: &mut Guide<'_, '_>, width: usize, nodes: usize) {
-    layers(search, width, MOST_LEGS_GUIDED, nodes, |_, pose| guide.seconds(pose));
+    layers(search, width, MOST_LEGS_GUIDED, (nodes, LAYERS_MORE), |_, pose| guide.seconds(pose));
 }
 
 fn layers(
     search: &mut Search<'_, '_>,
     width: usize,
     most_legs: usize,
-    most_nodes: usize,
+    (most_nodes, mut layers_more): (usize, usize),
     mut estimate: impl FnMut(&Search<'_, '_>, &Pose2) -> f64,
 ) {
     let start = search.task.start;
@@ -57,7 +62,7 @@ fn layers(
         let mut children: Vec<Node> = Vec::new();
         for &index in &layer {
             let node = nodes[index];
-            if node.total >= search.time_to_beat() || expanded >= most_nodes {
+            if node.total >= search.time_to_beat() || expanded >= most_nodes || search.is_spent() {
                 continue;
             }
             expanded += 1;
@@ -66,6 +71,12 @@ fn layers(
                 search.complete(&node.pose, &fan, &legs_to(&nodes, index), node.spent);
             }
             spread(search, &node, index, &fan, &mut children, &mut estimate);
+        }
+        if search.best.is_some() {
+            if layers_more == 0 {
+                break;
+            }
+            layers_more -= 1;
         }
         children.sort_by(|a, b| a.total.total_cmp(&b.total));
         layer.clear();
@@ -100,6 +111,7 @@ fn spread(
     estimate: &mut impl FnMut(&Search<'_, '_>, &Pose2) -> f64,
 ) {
     let task = search.task;
+    search.space.spend(fan.len() as u64 * PARTS.len() as u64 * ESTIMATE);
     for ray in fan {
         // The first ray is the heading it came on: going on along it is no new leg.
         if index > 0 && ray.cost == 0.0 {

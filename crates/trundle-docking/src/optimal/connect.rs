@@ -20,7 +20,7 @@ pub fn connect(task: &Task, space: &mut Space<'_>, from: &Pose2, to: &Pose2) -> 
     }
     let mut fan = Vec::new();
     rays(&part, space, from, HEADINGS, FINEST, &mut fan);
-    let mut search = Search::new(part, space, HEADINGS, FINEST);
+    let mut search = Search::new(part, space, (HEADINGS, FINEST), u64::MAX);
     search.complete(from, &fan, &[], 0.0);
     search.best.filter(|(_, legs)| legs.corners(from).all(|p| task.in_region(p)))
 }

@@ -30,8 +30,8 @@ pub type Timed = (f64, Legs);
 /// What a search came to.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Outcome {
-    /// These legs, their time and a time that none beat, s.
-    Found(Timed, f64),
+    /// These legs, and their time, s.
+    Found(Timed),
     /// There is no motion of any kind, or none at the resolution asked for; this forbids it.
     Apart(Certificate, Option<Blocker>),
     /// Nothing was found with the effort allowed, though start and goal hang together as far as the cells tell.
@@ -60,39 +60,50 @@ pub struct Effort {
     pub gap: f64,
     /// Side of the certificate's finest cells, m.
     pub cell: f64,
+    /// What the search for many legs may cost, in units of [`Space::work`].
+    pub work: u64,
 }
 
 /// Sides of the cells of the certificate, in units of the finest: coarse ones often do.
 const CELLS: [f64; 3] = [4.0, 2.0, 1.0];
+/// Half a square of more cells than this is searched by cells twice as large.
+const WIDE: f64 = 220.0;
+/// Headings tried at start and goal, and how close they may be, rad.
+const FAN: (usize, f64) = (120, 0.3 * std::f64::consts::PI / 180.0);
+/// What one or two legs may cost, and what it may cost to better legs that are known.
+const LITTLE: u64 = 2_000_000;
 
-/// The best legs found, or why there are none.
-pub fn find(task: Task, space: &mut Space<'_>, effort: Effort) -> Outcome {
-    let mut second = space.clone();
-    let mut search = Search::new(task, space, 120, 0.3_f64.to_radians());
+/// The best of the sampled one or two legs, polished.
+pub fn one_or_two(task: Task, space: &mut Space<'_>) -> Option<Timed> {
+    let limit = space.work() + LITTLE;
+    let mut search = Search::new(task, space, FAN, limit);
     let mut fan = Vec::new();
-    rays(&task, search.space, &task.start, 120, 0.3_f64.to_radians(), &mut fan);
+    rays(&task, search.space, &task.start, FAN.0, FAN.1, &mut fan);
     search.complete(&task.start, &fan, &[], 0.0);
     polish_best(&mut search);
-    if search.best.is_none()
-        && let Some(outcome) = hard(&mut search, &mut second, effort)
-    {
-        return outcome;
-    }
-    let Some(best) = search.best.take() else { return Outcome::Nothing };
-    let bounded = improve(&task, search.space, Some(best), effort.gap, effort.boxes);
+    search.best
+}
+
+/// Betters legs, and finds a time that none beat (s).
+pub fn better(task: Task, space: &mut Space<'_>, best: Timed, effort: Effort) -> (Timed, f64) {
+    let limit = space.work() + LITTLE;
+    let bounded = improve(&task, space, Some(best.clone()), effort.gap, (effort.boxes, limit));
+    let mut search = Search::new(task, space, FAN, 0);
+    search.limit = search.space.work() + LITTLE;
     search.best = bounded.best;
     polish_best(&mut search);
     if bounded.bound < search.time_to_beat() * (1.0 - LOOSE.max(effort.gap)) && effort.nodes > 0 {
         beam(&mut search, BEAM, effort.nodes);
         polish_best(&mut search);
     }
-    let time = search.time_to_beat();
-    search.best.map_or(Outcome::Nothing, |best| Outcome::Found(best, bounded.bound.min(time)))
+    let best = search.best.unwrap_or(best);
+    let bound = bounded.bound.min(best.0);
+    (best, bound)
 }
 
 /// A time that no legs beat, s, at most `known`: boxes are split until it is within `gap` of that, at most `boxes` of them.
 pub fn bound(task: &Task, space: &mut Space<'_>, known: f64, gap: f64, boxes: usize) -> f64 {
-    improve(task, space, Some((known, Legs::default())), gap, boxes).bound
+    improve(task, space, Some((known, Legs::default())), gap, (boxes, u64::MAX)).bound
 }
 
 /// Width of the beam that looks for better legs.
@@ -102,35 +113,39 @@ const GUIDED_BEAM: usize = 12;
 /// A gap at which it is worth while to look for more legs.
 const LOOSE: f64 = 0.05;
 
-/// Looks for legs where one or two do not do; `Some` when it is proven that there are none.
-fn hard<'a>(search: &mut Search<'_, 'a>, second: &mut Space<'a>, effort: Effort) -> Option<Outcome> {
-    // Beams are for what one or two legs do not do: cells first, they are cheap and often enough.
-    let task = search.task;
-    if let Some(never) = CELLS.iter().find_map(|side| apart(&task, search.space, side * effort.cell, true)) {
-        return Some(never);
-    }
-    let coarse = second.clone();
-    for side in [2.0, 1.0] {
-        led_by_cells(search, second, side * effort.cell, effort.nodes);
-        if search.best.is_some() {
-            break;
+/// Looks for legs where one or two do not do, or shows that there are none. With less effort than is needed for either:
+/// nothing.
+pub fn many(task: Task, space: &mut Space<'_>, effort: Effort) -> Outcome {
+    let limit = space.work().saturating_add(effort.work);
+    let mut second = space.clone();
+    let mut search = Search::new(task, space, FAN, limit);
+    // A flood that shows that there is no way is as cheap as one that shows where it leads: coarse cells first, for both.
+    let wide = task.half() > WIDE * effort.cell;
+    for side in CELLS {
+        let size = side * effort.cell;
+        if let Some(never) = apart(&task, &second, size, true, limit) {
+            return never;
         }
-        if side > 1.0
-            && let Some(outcome) = apart(&task, &coarse, effort.cell, false)
+        if side == CELLS[2]
+            && let Some(outcome) = apart(&task, &second, size, false, limit)
         {
-            return Some(outcome);
+            return outcome;
         }
+        if side < CELLS[0] || wide {
+            led_by_cells(&mut search, &mut second, size, effort.nodes);
+        }
+        if search.best.is_none() {
+            continue;
+        }
+        shorten_best(&mut search);
+        break;
     }
-    if let Some(best) = search.best.take() {
-        search.best = Some(shorten(&task, search.space, best));
-    }
-    polish_best(search);
-    None
+    search.best.map_or(Outcome::Nothing, Outcome::Found)
 }
 
 /// What cells of `side` (m) say against any motion, with the hull shrunk for a proof or as it is.
-fn apart(task: &Task, space: &Space<'_>, side: f64, shrunk: bool) -> Option<Outcome> {
-    let ground = Ground { center: task.center(), half: task.half(), side, shrunk };
+fn apart(task: &Task, space: &Space<'_>, side: f64, shrunk: bool, limit: u64) -> Option<Outcome> {
+    let ground = Ground { center: task.center(), half: task.half(), side, shrunk, limit };
     match disprove(space, &task.start, &task.goal, ground) {
         Proof::Apart { by } => {
             let certificate = if shrunk { Certificate::Never } else { Certificate::AtResolution };
@@ -143,7 +158,9 @@ fn apart(task: &Task, space: &Space<'_>, side: f64, shrunk: bool) -> Option<Outc
 /// A beam led by how cells of `side` (m) hang together; where that does not get through, legs along the cells' own path.
 fn led_by_cells<'a>(search: &mut Search<'_, 'a>, second: &mut Space<'a>, side: f64, nodes: usize) {
     let task = search.task;
-    let mut guide = Guide::new(second, &task.goal, task.center(), task.half(), side, task.limits.speed);
+    let (center, half, speed) = (task.center(), task.half(), task.limits.speed);
+    let until = (&task.start, search.limit);
+    let mut guide = Guide::new(second, &task.goal, center, half, side, speed, until);
     if nodes == 0 || guide.seconds(&task.start).is_infinite() {
         return;
     }
@@ -151,12 +168,20 @@ fn led_by_cells<'a>(search: &mut Search<'_, 'a>, second: &mut Space<'a>, side: f
     if search.best.is_none() {
         let mut poses = guide.path(&task.start);
         poses.push(task.goal);
-        search.best = trace(&task, search.space, &poses);
+        search.best = trace(&task, search.space, &poses, search.limit);
     }
 }
 
+fn shorten_best(search: &mut Search<'_, '_>) {
+    if let Some(best) = search.best.take() {
+        search.best = Some(shorten(&search.task, search.space, best, search.limit));
+    }
+    polish_best(search);
+}
+
 fn polish_best(search: &mut Search<'_, '_>) {
+    let limit = search.limit.max(search.space.work() + LITTLE);
     if let Some((time, legs)) = &search.best {
-        search.best = Some(polish(&search.task, search.space, legs, *time));
+        search.best = Some(polish(&search.task, search.space, legs, *time, limit));
     }
 }

@@ -4,11 +4,12 @@ use crate::space::Space;
 use trundle_core::wrap_angle;
 
 /// Improves legs by small changes of headings and ways, one at a time, the last two ways following so that the end stays
-/// exact; returns the legs and their time (s), never worse than before.
+/// exact; returns the legs and their time (s), never worse than before; as far as [`Space::work`]
+/// comes to `limit`.
 ///
 /// Coordinate search with halving steps: the time has kinks where a turn vanishes or a speed limit is met, and the free
 /// set has corners, so no derivative is asked for.
-pub fn polish(task: &Task, space: &mut Space<'_>, legs: &Legs, time: f64) -> (f64, Legs) {
+pub fn polish(task: &Task, space: &mut Space<'_>, legs: &Legs, time: f64, limit: u64) -> (f64, Legs) {
     let mut best = (time, legs.clone());
     let n = legs.0.len();
     if n < 2 {
@@ -19,6 +20,9 @@ pub fn polish(task: &Task, space: &mut Space<'_>, legs: &Legs, time: f64) -> (f6
         for _ in 0..6 {
             let mut improved = false;
             for i in 0..n {
+                if space.work() >= limit {
+                    return best;
+                }
                 improved |= try_heading(task, space, &mut best, i, angle);
                 if i + 2 < n {
                     improved |= try_change(task, space, &mut best, |legs, sign| legs.0[i].1 += sign * way);

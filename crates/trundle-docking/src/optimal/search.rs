@@ -16,6 +16,8 @@ pub struct Search<'s, 'a> {
     pub goal_rays: Vec<Ray>,
     /// The best legs so far and their time, s.
     pub best: Option<(f64, Legs)>,
+    /// It ends when [`Space::work`] comes to this.
+    pub limit: u64,
     tails: Vec<Tail>,
 }
 
@@ -35,11 +37,17 @@ const MOST_TESTS: usize = 40;
 const MOST_TESTS_AT_START: usize = 2000;
 
 impl<'s, 'a> Search<'s, 'a> {
-    /// A search that samples the goal's headings `count` times, not finer than `finest` (rad).
-    pub fn new(task: Task, space: &'s mut Space<'a>, count: usize, finest: f64) -> Self {
+    /// A search that samples the goal's headings `count` times, not finer than `finest` (rad), until [`Space::work`] comes to
+    /// `limit`.
+    pub fn new(task: Task, space: &'s mut Space<'a>, (count, finest): (usize, f64), limit: u64) -> Self {
         let mut goal_rays = Vec::new();
         rays(&task, space, &task.goal, count, finest, &mut goal_rays);
-        Self { task, space, goal_rays, best: None, tails: Vec::new() }
+        Self { task, space, goal_rays, best: None, limit, tails: Vec::new() }
+    }
+
+    /// Whether it has cost as much as it may.
+    pub fn is_spent(&self) -> bool {
+        self.space.work() >= self.limit
     }
 
     /// The time to beat, s.
@@ -58,7 +66,7 @@ impl<'s, 'a> Search<'s, 'a> {
         let most = if prefix.is_empty() { MOST_TESTS_AT_START } else { MOST_TESTS };
         for i in 0..self.tails.len().min(most) {
             let tail = self.tails[i];
-            if tail.time >= self.time_to_beat() {
+            if tail.time >= self.time_to_beat() || self.is_spent() {
                 break;
             }
             if self.tested(pose, &tail).is_none_or(|time| time >= self.time_to_beat()) {
@@ -103,6 +111,7 @@ impl<'s, 'a> Search<'s, 'a> {
 
     /// Every pair of a heading here and a heading at the goal whose legs meet, when both legs are free.
     fn collect_pairs(&mut self, pose: &Pose2, rays: &[Ray], spent: f64) {
+        self.space.spend(rays.len() as u64 * self.goal_rays.len() as u64);
         let rest = self.task.goal.position() - pose.position();
         let to_beat = self.time_to_beat();
         let task = self.task;

@@ -7,14 +7,15 @@ use trundle_core::Pose2;
 /// More poses than this are not compared all with all.
 const MOST: usize = 90;
 
-/// Replaces runs of legs by one or two, wherever that is free and saves time; never slower than before.
-pub fn shorten(task: &Task, space: &mut Space<'_>, mut best: (f64, Legs)) -> (f64, Legs) {
+/// Replaces runs of legs by one or two, wherever that is free and saves time, until [`Space::work`] comes to `limit`; never
+/// slower than before.
+pub fn shorten(task: &Task, space: &mut Space<'_>, mut best: (f64, Legs), limit: u64) -> (f64, Legs) {
     while best.1.0.len() > 2 {
         let mut poses = vec![task.start];
         poses.extend(best.1.poses(&task.start));
         let last = poses.len() - 1;
         poses[last] = task.goal;
-        match through(task, space, &poses) {
+        match through(task, space, &poses, limit) {
             Some((time, legs)) if time < best.0 - 1e-3 => best = (time, legs),
             _ => break,
         }
@@ -22,8 +23,9 @@ pub fn shorten(task: &Task, space: &mut Space<'_>, mut best: (f64, Legs)) -> (f6
     best
 }
 
-/// The fastest way along a list of poses, each of which may be passed over: legs and time (s), when there is one.
-pub fn through(task: &Task, space: &mut Space<'_>, poses: &[Pose2]) -> Option<(f64, Legs)> {
+/// The fastest way along a list of poses, each of which may be passed over: legs and time (s), when there is one. Once
+/// [`Space::work`] comes to `limit`, only neighbours are joined.
+pub fn through(task: &Task, space: &mut Space<'_>, poses: &[Pose2], limit: u64) -> Option<(f64, Legs)> {
     let count = poses.len();
     // The time to each pose with the pause after it, the pose before, and the legs between.
     let mut best: Vec<(f64, usize, Legs)> = vec![(f64::INFINITY, 0, Legs::default()); count];
@@ -33,6 +35,9 @@ pub fn through(task: &Task, space: &mut Space<'_>, poses: &[Pose2]) -> Option<(f
         let so_far = best[i].0;
         for j in (i + 1..count.min(i + 1 + span)).rev() {
             let least = task.drive_cost(poses[i].distance(&poses[j]));
+            if j > i + 1 && space.work() >= limit {
+                continue;
+            }
             if so_far + least >= best[j].0 {
                 continue;
             }

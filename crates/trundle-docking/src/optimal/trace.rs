@@ -15,15 +15,25 @@ use trundle_core::{Pose2, wrap_angle};
 /// How often the way between two neighbouring poses is halved.
 const HALVINGS: u32 = 5;
 
-/// Legs along `poses`, which lead from start to goal, and their time (s); `None` when some part is not free.
-pub fn trace(task: &Task, space: &mut Space<'_>, poses: &[Pose2]) -> Option<(f64, Legs)> {
+/// Legs along `poses`, which lead from start to goal, and their time (s); `None` when some part is not
+/// free, or when [`Space::work`] comes to `limit` before.
+pub fn trace(task: &Task, space: &mut Space<'_>, poses: &[Pose2], limit: u64) -> Option<(f64, Legs)> {
     let mut chain = vec![task.start];
-    link(task, space, poses, &mut chain)?;
-    through(task, space, &chain)
+    link(task, space, poses, &mut chain, limit)?;
+    through(task, space, &chain, limit)
 }
 
 /// Adds poses to the chain that lead from the first of `poses` (already there) to the last, neighbours joined by legs.
-fn link(task: &Task, space: &mut Space<'_>, poses: &[Pose2], chain: &mut Vec<Pose2>) -> Option<()> {
+fn link(
+    task: &Task,
+    space: &mut Space<'_>,
+    poses: &[Pose2],
+    chain: &mut Vec<Pose2>,
+    limit: u64,
+) -> Option<()> {
+    if space.work() >= limit {
+        return None;
+    }
     let (first, last) = (poses.first()?, poses.last()?);
     if connect(task, space, first, last).is_some() {
         chain.push(*last);
@@ -33,8 +43,8 @@ fn link(task: &Task, space: &mut Space<'_>, poses: &[Pose2], chain: &mut Vec<Pos
         return halve(task, space, first, last, HALVINGS, chain);
     }
     let middle = poses.len() / 2;
-    link(task, space, &poses[..=middle], chain)?;
-    link(task, space, &poses[middle..], chain)
+    link(task, space, &poses[..=middle], chain, limit)?;
+    link(task, space, &poses[middle..], chain, limit)
 }
 
 fn halve(

@@ -105,7 +105,7 @@ impl Positioner {
         goal: Pose2,
     ) -> Result<Self, Invalid> {
         let config = config.validated()?;
-        let docker = Docker::new(DockingConfig { overlap: config.overlap, ..docking })?;
+        let docker = Docker::new(DockingConfig { overlap: config.overlap, margin_saving: 1.0, ..docking })?;
         Ok(Self {
             docker,
             config,

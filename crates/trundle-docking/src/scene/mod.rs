@@ -2,11 +2,11 @@
 
 mod outline;
 mod points;
-mod sparse;
-mod thin;
 
+use crate::cloud::StandQuestion;
 use crate::geometry::{Hull, Segment};
 use points::PointIndex;
+pub(crate) use points::Question;
 use trundle_core::{Cell, CellIndex, Footprint, GridGeometry, Invalid, OccupancyGrid, Pose2, Vector2};
 
 /// Something that stands in the way, map frame, m.
@@ -71,7 +71,7 @@ impl Scene {
                 }
             }
         }
-        Ok(Self { pieces, points: PointIndex::new(&points), solids })
+        Ok(Self { pieces, points: PointIndex::new(points), solids })
     }
 
     /// The occupied cells of a grid within a box of half side `half` (m) about `center`, and where `unknown_blocks` the
@@ -94,7 +94,7 @@ impl Scene {
             let corners = [(0.0, 0.0), (side, 0.0), (side, side), (0.0, side)];
             (corners.iter().map(|&(x, y)| low + Vector2::new(x, y)).collect(), pieces.len() as u32)
         });
-        Self { solids: solids.collect(), pieces, points: PointIndex::new(&[]) }
+        Self { solids: solids.collect(), pieces, points: PointIndex::new(Vec::new()) }
     }
 
     /// The part of the scene within a box of half side `half` (m) about `center`.
@@ -113,49 +113,7 @@ impl Scene {
         });
         let near = |corners: &[Vector2]| corners.iter().any(|c| (c - center).amax() <= 2.0 * half);
         let solids = self.solids.iter().filter(|(corners, _)| near(corners) || holds(corners, center));
-        Self { pieces, points: PointIndex::new(&points), solids: solids.cloned().collect() }
-    }
-
-    /// The same without the points that no motion of `hull` can touch first.
-    pub(crate) fn thinned(&self, hull: &Hull) -> Self {
-        let points = thin::thin(self.points.all().to_vec(), hull);
-        Self { points: PointIndex::new(&points), ..self.clone_without_points() }
-    }
-
-    /// The same with fewer points: in each square of `side` (m) those that stand out farthest.
-    pub(crate) fn sparse(&self, side: f64) -> Self {
-        Self {
-            points: PointIndex::new(&sparse::sparse(self.points.all(), side)),
-            ..self.clone_without_points()
-        }
-    }
-
-    /// The same with more points; those that it has are not added twice.
-    pub(crate) fn with_points(&self, more: Vec<(Vector2, u32)>) -> Self {
-        let mut points: Vec<(Vector2, u32)> = self.points.all().iter().copied().chain(more).collect();
-        points.sort_unstable_by_key(|(_, number)| *number);
-        points.dedup_by_key(|(_, number)| *number);
-        Self { points: PointIndex::new(&points), ..self.clone_without_points() }
-    }
-
-    /// Each blocker, and of the points near it those that stand out farthest in each square of `side` (m).
-    pub(crate) fn points_near(&self, blockers: &[Blocker], reach: f64, side: f64) -> Vec<(Vector2, u32)> {
-        let mut found = Vec::new();
-        for blocker in blockers {
-            found.push((blocker.at, blocker.obstacle as u32));
-            let mut near = Vec::new();
-            self.points.visit(blocker.at, Vector2::repeat(reach), |p, number| {
-                if (p - blocker.at).amax() <= reach {
-                    near.push((p, number));
-                }
-            });
-            found.extend(sparse::sparse(&near, side));
-        }
-        found
-    }
-
-    fn clone_without_points(&self) -> Self {
-        Self { pieces: self.pieces.clone(), points: PointIndex::new(&[]), solids: self.solids.clone() }
+        Self { pieces, points: PointIndex::new(points), solids: solids.cloned().collect() }
     }
 
     /// Calls `visit` with every piece that reaches into a box about `center`.
@@ -163,14 +121,25 @@ impl Scene {
         self.visit_box(center, Vector2::repeat(half), visit);
     }
 
-    /// Calls `visit` with every piece that reaches into a box of these half sides about `center`.
+    /// Calls `visit` with every piece and point that reaches into a box of these half sides about `center`.
     pub fn visit_box(&self, center: Vector2, half: Vector2, mut visit: impl FnMut(&Segment, u32)) {
-        for piece in &self.pieces {
-            if touches_box(&piece.segment, center, half) {
-                visit(&piece.segment, piece.obstacle);
-            }
+        self.visit_pieces(center, half, &mut visit);
+        self.visit_points(center, half, |p, number| visit(&Segment::point(p), number));
+    }
+
+    pub(crate) fn visit_pieces(&self, center: Vector2, half: Vector2, mut visit: impl FnMut(&Segment, u32)) {
+        for piece in self.pieces.iter().filter(|piece| touches_box(&piece.segment, center, half)) {
+            visit(&piece.segment, piece.obstacle);
         }
-        self.points.visit(center, half, |p, number| visit(&Segment::point(p), number));
+    }
+
+    pub(crate) fn visit_points(&self, center: Vector2, half: Vector2, visit: impl FnMut(Vector2, u32)) {
+        self.points.visit(center, half, visit);
+    }
+
+    /// Asks about all points; returns what it cost.
+    pub(crate) fn ask(&self, question: &mut impl Question) -> u64 {
+        self.points.ask(question)
     }
 
     /// How far a footprint at a pose is from the nearest obstacle, m, 0 when it overlaps one, and from which;
@@ -187,10 +156,17 @@ impl Scene {
                 best = Some((distance, blocker));
             }
         };
-        self.visit(pose.position(), hull.outer_radius() + reach, |segment, number| {
+        let half = Vector2::repeat(hull.outer_radius() + reach);
+        self.visit_pieces(pose.position(), half, |segment, number| {
             let distance = hull.distance(&segment.seen_from(pose.position(), cos, sin));
             offer(distance, Blocker { obstacle: number as usize, at: segment.nearest(pose.position()) });
         });
+        self.points.ask(&mut StandQuestion::new(hull, pose, reach, &mut best));
+        let mut offer = |distance: f64, blocker: Blocker| {
+            if distance < reach && best.is_none_or(|(least, _)| distance < least) {
+                best = Some((distance, blocker));
+            }
+        };
         let corner = hull.corners_at(pose).next().expect("invariant: a hull has a corner");
         for (corners, number) in self.solids.iter().filter(|(corners, _)| holds(corners, corner)) {
             offer(0.0, Blocker { obstacle: *number as usize, at: corners[0] });

@@ -1,47 +1,65 @@
 use trundle_core::Vector2;
 
-/// Points in square buckets, so that those near a place are found without looking at all.
+/// Points in a tree of discs, so that what matters to a question is found without looking at all.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PointIndex {
-    low: Vector2,
-    columns: usize,
-    rows: usize,
-    /// Where each bucket begins in `points`; one more at the end.
-    starts: Vec<u32>,
     points: Vec<(Vector2, u32)>,
+    /// The first holds all; a node's two halves lie side by side.
+    nodes: Vec<Node>,
 }
 
-/// Side of a bucket, m: a third of a usual footprint.
-const BUCKET: f64 = 0.1;
-/// Buckets a side at most; points of a greater area share the outermost ones.
-const MOST: f64 = 2000.0;
+/// Points within a disc.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Node {
+    center: Vector2,
+    radius: f64,
+    from: u32,
+    to: u32,
+    /// The first of its halves; 0 for none.
+    halves: u32,
+}
+
+/// Points of a node that is not halved.
+const LEAF: usize = 8;
+/// What it costs to see what a disc promises.
+const PROMISE: u64 = 8;
+/// Nodes that can wait at once: halves are halves, so that this is deep enough for 2^31 points.
+const DEEPEST: usize = 64;
+
+/// A question to all points.
+pub trait Question {
+    /// Whether a point of every disc is looked at before its halves are, and then once more.
+    const SAMPLES: bool = true;
+    /// What a look costs, in [`crate::space::Space::work`]'s units.
+    const COST: u64 = 1;
+
+    /// Whether points within `radius` (m) of `center` may matter: those that promise most, by the least number, are looked at
+    /// first. `None` when they cannot matter, by what is known so far.
+    fn promise(&self, center: Vector2, radius: f64) -> Option<f64>;
+
+    /// Looks at a point, whose number is given.
+    fn look(&mut self, p: Vector2, number: u32);
+}
 
 impl PointIndex {
-    /// Sorts finite points, each with a number of its own, into buckets.
-    pub fn new(points: &[(Vector2, u32)]) -> Self {
-        let bound = |f: fn(f64, f64) -> f64, from: f64| {
-            points.iter().fold(Vector2::repeat(from), |b, (p, _)| Vector2::new(f(b.x, p.x), f(b.y, p.y)))
-        };
-        let (low, high) = (bound(f64::min, f64::INFINITY), bound(f64::max, f64::NEG_INFINITY));
-        let side = |low: f64, high: f64| ((high - low) / BUCKET).clamp(0.0, MOST) as usize + 1;
-        let mut index = Self {
-            low,
-            columns: side(low.x, high.x),
-            rows: side(low.y, high.y),
-            starts: Vec::new(),
-            points: points.to_vec(),
-        };
-        index
-            .points
-            .sort_by_cached_key(|(p, number)| (index_of(&index.low, index.columns, index.rows, *p), *number));
-        index.starts = vec![0; index.columns * index.rows + 1];
-        for (p, _) in points {
-            index.starts[index_of(&low, index.columns, index.rows, *p) + 1] += 1;
+    /// Puts finite points, each with a number of its own, in a tree.
+    pub fn new(mut points: Vec<(Vector2, u32)>) -> Self {
+        let mut nodes = Vec::with_capacity(points.len() / LEAF * 4);
+        if !points.is_empty() {
+            nodes.push(node(&points, 0, points.len()));
         }
-        for i in 1..index.starts.len() {
-            index.starts[i] += index.starts[i - 1];
+        let mut next = 0;
+        while next < nodes.len() {
+            let Node { from, to, .. } = nodes[next];
+            let (from, to) = (from as usize, to as usize);
+            if to - from > LEAF {
+                let middle = halve(&mut points[from..to]) + from;
+                nodes[next].halves = nodes.len() as u32;
+                nodes.extend([node(&points, from, middle), node(&points, middle, to)]);
+            }
+            next += 1;
         }
-        index
+        Self { points, nodes }
     }
 
     /// All points.
@@ -49,39 +67,95 @@ impl PointIndex {
         &self.points
     }
 
-    /// Calls `visit` with every point of the buckets that a box about `center` touches.
-    pub fn visit(&self, center: Vector2, half: Vector2, mut visit: impl FnMut(Vector2, u32)) {
-        if self.points.is_empty() {
-            return;
-        }
-        let (left, right) = span(center.x - self.low.x, half.x, self.columns);
-        let (bottom, top) = span(center.y - self.low.y, half.y, self.rows);
-        for row in bottom..top {
-            let (from, to) = (row * self.columns + left, row * self.columns + right);
-            if from < to {
-                let range = self.starts[from] as usize..self.starts[to] as usize;
-                self.points[range].iter().for_each(|&(p, number)| visit(p, number));
+    /// Calls `visit` with every point in a box about `center`, and maybe some beside it.
+    pub fn visit(&self, center: Vector2, half: Vector2, visit: impl FnMut(Vector2, u32)) {
+        self.ask(&mut InBox { center, half, visit });
+    }
+
+    /// Asks about the points, those that promise most first; returns what it cost.
+    pub fn ask<Q: Question>(&self, question: &mut Q) -> u64 {
+        let mut waiting = [0_u32; DEEPEST];
+        let mut count = usize::from(!self.nodes.is_empty());
+        let mut work = 0;
+        while count > 0 {
+            (count, work) = (count - 1, work + 2 * PROMISE);
+            let node = &self.nodes[waiting[count] as usize];
+            if question.promise(node.center, node.radius).is_none() {
+                continue;
+            }
+            if node.halves == 0 {
+                for &(p, number) in &self.points[node.from as usize..node.to as usize] {
+                    work += PROMISE;
+                    if question.promise(p, 0.0).is_some() {
+                        question.look(p, number);
+                        work += Q::COST;
+                    }
+                }
+                continue;
+            }
+            let (p, number) = self.points[(node.from + node.to) as usize / 2];
+            if Q::SAMPLES && question.promise(p, 0.0).is_some() {
+                question.look(p, number);
+                work += Q::COST;
+            }
+            let halves = [node.halves, node.halves + 1];
+            let [a, b] = halves.map(|i| {
+                let half = &self.nodes[i as usize];
+                question.promise(half.center, half.radius)
+            });
+            let first = usize::from(b.unwrap_or(f64::INFINITY) < a.unwrap_or(f64::INFINITY));
+            for half in [1 - first, first] {
+                if [a, b][half].is_some() {
+                    waiting[count] = halves[half];
+                    count += 1;
+                }
             }
         }
+        work
     }
 }
 
-/// Buckets along one axis, from and to.
-fn span(offset: f64, half: f64, count: usize) -> (usize, usize) {
-    let low = ((offset - half) / BUCKET).floor();
-    let high = ((offset + half) / BUCKET).floor() + 1.0;
-    let last = count as f64;
-    if high <= 0.0 {
-        return (0, 0);
-    }
-    // The outermost bucket also holds what lies beyond.
-    let from = if low >= last { last - 1.0 } else { low.max(0.0) };
-    (from as usize, high.clamp(from + 1.0, last.max(from + 1.0)) as usize)
+/// The disc about the box of some points.
+fn node(points: &[(Vector2, u32)], from: usize, to: usize) -> Node {
+    let (low, high) = bounds(&points[from..to]);
+    let center = (low + high) / 2.0;
+    let farthest = points[from..to].iter().map(|(p, _)| (p - center).norm_squared()).fold(0.0, f64::max);
+    // Rounding must not leave a point outside.
+    let radius = farthest.sqrt() * (1.0 + 1e-12);
+    Node { center, radius, from: from as u32, to: to as u32, halves: 0 }
 }
 
-fn index_of(low: &Vector2, columns: usize, rows: usize, p: Vector2) -> usize {
-    let along = |offset: f64, count: usize| ((offset / BUCKET).floor().max(0.0) as usize).min(count - 1);
-    along(p.y - low.y, rows) * columns + along(p.x - low.x, columns)
+fn bounds(points: &[(Vector2, u32)]) -> (Vector2, Vector2) {
+    let start = (Vector2::repeat(f64::INFINITY), Vector2::repeat(f64::NEG_INFINITY));
+    points.iter().fold(start, |(low, high), (p, _)| (low.inf(p), high.sup(p)))
+}
+
+/// Sorts points so far that the first half lies on one side, along the longer side of their box; where the second begins.
+fn halve(points: &mut [(Vector2, u32)]) -> usize {
+    let (low, high) = bounds(points);
+    let axis = usize::from(high.y - low.y > high.x - low.x);
+    let middle = points.len() / 2;
+    points.select_nth_unstable_by(middle, |a, b| a.0[axis].total_cmp(&b.0[axis]).then(a.1.cmp(&b.1)));
+    middle
+}
+
+struct InBox<F> {
+    center: Vector2,
+    half: Vector2,
+    visit: F,
+}
+
+impl<F: FnMut(Vector2, u32)> Question for InBox<F> {
+    const SAMPLES: bool = false;
+
+    fn promise(&self, center: Vector2, radius: f64) -> Option<f64> {
+        let off = (center - self.center).abs();
+        (off.x - radius <= self.half.x && off.y - radius <= self.half.y).then_some(0.0)
+    }
+
+    fn look(&mut self, p: Vector2, number: u32) {
+        (self.visit)(p, number);
+    }
 }
 
 #[cfg(test)]
@@ -89,11 +163,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_box_finds_all_that_lie_in_it() {
+    fn a_box_finds_all_that_lie_in_it_once() {
         let points: Vec<_> = (0..500u32)
             .map(|i| (Vector2::new(f64::from(i * 37 % 101) * 0.031, f64::from(i * 53 % 97) * 0.027), i))
             .collect();
-        let index = PointIndex::new(&points);
+        let index = PointIndex::new(points.clone());
         let (center, half) = (Vector2::new(1.3, 1.1), 0.42);
         let mut found = Vec::new();
         index.visit(center, Vector2::repeat(half), |p, i| {
@@ -105,5 +179,13 @@ mod tests {
         let expected: Vec<u32> =
             points.iter().filter(|(p, _)| (p - center).amax() <= half).map(|(_, i)| *i).collect();
         assert_eq!(found, expected);
+    }
+
+    #[test]
+    fn points_in_one_place_are_points() {
+        let index = PointIndex::new((0..1000).map(|i| (Vector2::new(1.0, 2.0), i)).collect());
+        let mut count = 0;
+        index.visit(Vector2::new(1.0, 2.0), Vector2::zeros(), |_, _| count += 1);
+        assert_eq!(count, 1000);
     }
 }

@@ -3,10 +3,15 @@
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::f64::consts::{PI, TAU};
-use trundle_core::{Footprint, Pose2, Vector2};
+use trundle_core::{Cell, Footprint, GridGeometry, OccupancyGrid, Pose2, Vector2};
 use trundle_docking::{Blocker, Motion, Obstacle, Scene, Space};
 
 const CASES: usize = 100_000;
+/// Part of the cases among the cells of a grid.
+const AMONG_CELLS: f64 = 0.2;
+/// Samples of a motion: every point of a robot moves some 3 cm at most from one to the next, and a contact between two would
+/// have to begin and end there.
+const SAMPLES: u32 = 60;
 
 /// A convex footprint, often with the axle off its middle, sometimes with the axle outside; or a disc.
 fn footprint(rng: &mut ChaCha8Rng) -> Footprint {
@@ -42,6 +47,27 @@ fn obstacle(rng: &mut ChaCha8Rng) -> Obstacle {
             )
         }
     }
+}
+
+/// A few occupied cells of a grid, as a scene and as squares.
+fn cells(rng: &mut ChaCha8Rng) -> (Scene, Vec<Obstacle>) {
+    let (side, count) = (rng.random_range(0.02..0.1), 24_usize);
+    let origin = Vector2::repeat(-0.5 * side * count as f64);
+    let geometry = GridGeometry::new(side, origin, count, count).expect("a geometry");
+    let mut grid = vec![Cell::Free; count * count];
+    for _ in 0..rng.random_range(1..5) {
+        let (col, row) = (rng.random_range(0..count - 3), rng.random_range(0..count - 3));
+        let (wide, high) = (rng.random_range(1..4), rng.random_range(1..4));
+        (0..wide * high).for_each(|i| grid[(row + i / wide) * count + col + i % wide] = Cell::Occupied);
+    }
+    let square = |i: usize| {
+        let low = origin + Vector2::new((i % count) as f64, (i / count) as f64) * side;
+        let corners = [(0.0, 0.0), (side, 0.0), (side, side), (0.0, side)];
+        Obstacle::Polygon(corners.map(|(x, y)| low + Vector2::new(x, y)).to_vec())
+    };
+    let squares = (0..grid.len()).filter(|&i| grid[i] == Cell::Occupied).map(square).collect();
+    let grid = OccupancyGrid::new(geometry, grid).expect("a grid");
+    (Scene::from_grid(&grid, Vector2::zeros(), 5.0, false), squares)
 }
 
 /// Brute force, on its own: the least distance of the footprint from any side; 0 where they cross or one holds the other.
@@ -96,8 +122,12 @@ fn motions_are_safe_and_not_too_careful() {
     while cases < CASES {
         let footprint = footprint(&mut rng);
         let margin: f64 = if rng.random_bool(0.5) { 0.0 } else { rng.random_range(0.0..0.1) };
-        let obstacles: Vec<Obstacle> = (0..rng.random_range(1..4)).map(|_| obstacle(&mut rng)).collect();
-        let scene = Scene::new(&obstacles).unwrap();
+        let (scene, obstacles) = if rng.random_bool(AMONG_CELLS) {
+            cells(&mut rng)
+        } else {
+            let list: Vec<Obstacle> = (0..rng.random_range(1..4)).map(|_| obstacle(&mut rng)).collect();
+            (Scene::new(&list).unwrap(), list)
+        };
         let start =
             Pose2::new(rng.random_range(-0.5..0.5), rng.random_range(-0.5..0.5), rng.random_range(-PI..PI));
         let pieces = sides(&obstacles);
@@ -117,11 +147,11 @@ fn motions_are_safe_and_not_too_careful() {
         ];
         for (motion, by) in motions {
             cases += 1;
-            for i in 0..=40 {
-                let pose = motion.after(start, motion.amount() * f64::from(i) / 40.0);
+            for i in 0..=SAMPLES {
+                let pose = motion.after(start, motion.amount() * f64::from(i) / f64::from(SAMPLES));
                 assert!(
                     distance(&pose) >= kept - 1e-9,
-                    "{footprint:?} {obstacles:?} {start:?} {motion:?} margin {margin} at {i}/40: {}",
+                    "{footprint:?} {obstacles:?} {start:?} {motion:?} margin {margin} at sample {i}: {}",
                     distance(&pose)
                 );
             }
@@ -137,4 +167,46 @@ fn motions_are_safe_and_not_too_careful() {
         }
     }
     assert!(stopped > cases / 5, "only {stopped} of {cases} motions met something");
+}
+
+/// Among many points the answers come from a tree; they are those of all points, asked in small groups.
+#[test]
+fn many_points_answer_as_all_of_them() {
+    let mut rng = ChaCha8Rng::seed_from_u64(9);
+    for _ in 0..300 {
+        let footprint = footprint(&mut rng);
+        let margin: f64 = rng.random_range(0.0..0.1);
+        let count = rng.random_range(300..3000);
+        let hole = rng.random_range(0.2..0.7);
+        let mut points = Vec::new();
+        while points.len() < count {
+            let p = Vector2::new(rng.random_range(-1.2..1.2), rng.random_range(-1.2..1.2));
+            if p.norm() > hole {
+                points.push(Obstacle::Point(p));
+            }
+        }
+        let all = Scene::new(&points).unwrap();
+        let groups: Vec<Scene> = points.chunks(150).map(|group| Scene::new(group).unwrap()).collect();
+        for _ in 0..10 {
+            let at = |rng: &mut ChaCha8Rng| rng.random_range(-0.3..0.3);
+            let pose = Pose2::new(at(&mut rng), at(&mut rng), rng.random_range(-PI..PI));
+            let clearance = |scene: &Scene| scene.clearance(&footprint, &pose, 0.3).map_or(0.3, |(d, _)| d);
+            let least = groups.iter().map(clearance).fold(0.3, f64::min);
+            assert_eq!(clearance(&all), least, "{footprint:?} {pose:?}");
+            if least <= margin.max(1e-4) + 1e-4 {
+                continue;
+            }
+            let mut space = Space::new(&footprint, margin, &all);
+            let (turn, drive) = (space.turn(&pose), space.drive(&pose, 1.0));
+            let (mut room, mut way) = ((f64::INFINITY, f64::INFINITY), (1.0_f64, 1.0_f64));
+            for group in &groups {
+                let mut space = Space::new(&footprint, margin, group);
+                let (turn, drive) = (space.turn(&pose), space.drive(&pose, 1.0));
+                room = (room.0.min(turn.left), room.1.min(turn.right));
+                way = (way.0.min(drive.ahead), way.1.min(drive.behind));
+            }
+            assert_eq!((turn.left, turn.right), room, "{footprint:?} {margin} {pose:?}");
+            assert_eq!((drive.ahead, drive.behind), way, "{footprint:?} {margin} {pose:?}");
+        }
+    }
 }

@@ -4,7 +4,7 @@ use crate::files::{content_lines, read_text};
 use std::path::Path;
 use trundle_core::{Beam, Invalid, Pose2, Scan, Stamp, require_finite, require_positive};
 
-/// What a CARMEN log does not say.
+/// What a log does not say.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct LaserLogOptions {
     /// `base_from_laser`, m and rad; by default what the poses of the lines say, else `PARAM robot_frontlaser_offset`, else 0.
@@ -24,23 +24,23 @@ pub struct LaserLogScan {
     pub scan: Scan,
 }
 
-/// A line that could not be used.
+/// A line, or a message of a bag, that could not be used.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct LaserLogSkip {
-    /// The line, from 1.
+    /// The line, or the message's number in the bag, from 1.
     pub line: usize,
     /// What is wrong with it.
     pub problem: String,
 }
 
-/// A CARMEN log.
+/// The log of a laser with odometry.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct LaserLog {
     /// The scans, by rising stamps.
     pub scans: Vec<LaserLogScan>,
-    /// The `ODOM` lines, by rising stamps.
+    /// The poses by odometry, by rising stamps.
     pub odometry: Vec<(Stamp, Pose2)>,
-    /// Lines that were skipped.
+    /// Lines or messages that were skipped.
     pub skipped: Vec<LaserLogSkip>,
     /// Ranges that were negative, zero, infinite or no number.
     pub bad_ranges: usize,
@@ -59,7 +59,7 @@ pub fn read_carmen(path: &Path, options: &LaserLogOptions) -> Result<LaserLog, I
     parse_carmen(path, &read_text(path)?, options)
 }
 
-fn validated(options: &LaserLogOptions) -> Result<(), Invalid> {
+pub(crate) fn validated(options: &LaserLogOptions) -> Result<(), Invalid> {
     if let Some(pose) = options.base_from_laser {
         require_finite("x of base_from_laser", pose.x, "m")?;
         require_finite("y of base_from_laser", pose.y, "m")?;

@@ -15,7 +15,7 @@ pub(super) struct MapYaml {
     negate: bool,
     occupied: f64,
     free: f64,
-    raw: bool,
+    mode: Mode,
 }
 
 #[derive(Deserialize)]
@@ -38,8 +38,8 @@ enum Flag {
     Number(u8),
 }
 
-/// `scale` differs from `trinary` only in the grades between the thresholds, which a trinary grid does not hold.
-#[derive(Deserialize, Default, PartialEq)]
+/// `scale` differs from `trinary` only in the grades between the thresholds, which a trinary grid does not hold, but a mask does.
+#[derive(Debug, Clone, Copy, Deserialize, Default, PartialEq)]
 #[serde(rename_all = "lowercase")]
 enum Mode {
     #[default]
@@ -84,17 +84,16 @@ impl MapYaml {
             negate,
             occupied,
             free,
-            raw: file.mode == Mode::Raw,
+            mode: file.mode,
         })
     }
 
     /// What a pixel says.
     pub fn cell(&self, value: u16, maxval: u16) -> Cell {
-        let occupancy = match (self.raw, self.negate) {
-            (true, _) if value > 100 => return Cell::Unknown,
-            (true, _) => f64::from(value) / 100.0,
-            (false, true) => f64::from(value) / f64::from(maxval),
-            (false, false) => f64::from(maxval - value) / f64::from(maxval),
+        let occupancy = match self.mode {
+            Mode::Raw if value > 100 => return Cell::Unknown,
+            Mode::Raw => f64::from(value) / 100.0,
+            _ => self.darkness(value, maxval),
         };
         if occupancy > self.occupied {
             Cell::Occupied
@@ -103,6 +102,28 @@ impl MapYaml {
         } else {
             Cell::Unknown
         }
+    }
+
+    /// What a pixel of a mask says, 0 to 100, as map_server fills an OccupancyGrid message; `None`: unknown.
+    pub fn value(&self, value: u16, maxval: u16) -> Option<u8> {
+        if self.mode == Mode::Raw {
+            return u8::try_from(value).ok().filter(|value| *value <= 100);
+        }
+        let darkness = self.darkness(value, maxval);
+        if darkness > self.occupied {
+            return Some(100);
+        }
+        if darkness < self.free {
+            return Some(0);
+        }
+        let grade = (darkness - self.free) / (self.occupied - self.free) * 100.0;
+        (self.mode == Mode::Scale).then(|| grade.round() as u8)
+    }
+
+    /// 0 for a free pixel to 1 for an occupied one.
+    fn darkness(&self, value: u16, maxval: u16) -> f64 {
+        let value = if self.negate { value } else { maxval - value };
+        f64::from(value) / f64::from(maxval)
     }
 }
 

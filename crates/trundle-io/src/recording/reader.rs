@@ -2,7 +2,7 @@ use super::messages::{
     self, CliffMessage, CompressedImage, GyroRateMessage, ScanMessage, TouchMessage, WheelTicksMessage,
 };
 use super::poses::PoseInFrame;
-use super::stream::{MessageStream, RawMessage};
+use super::stream::{Encoding, MessageStream, RawMessage};
 use super::topics;
 use crate::{EncodedEvent, IoError};
 use serde::de::DeserializeOwned;
@@ -42,7 +42,7 @@ impl RecordingReader {
     /// # Errors
     /// When the file cannot be read or is no MCAP recording.
     pub fn open(path: &Path) -> Result<Self, IoError> {
-        let mut stream = MessageStream::open(path)?;
+        let mut stream = MessageStream::open(path, Encoding::Json)?;
         let first = stream.next_message()?;
         let (config, ahead) = match first {
             Some(raw) if raw.schema == "trundle.Config" => (Some(json(stream.path(), &raw)?), None),

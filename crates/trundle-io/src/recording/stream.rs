@@ -1,8 +1,9 @@
+use super::chunk_decoder::ChunkDecoder;
 use crate::IoError;
 use mcap::McapError;
 use mcap::records::Record;
 use mcap::sans_io::linear_reader::{LinearReadEvent, LinearReader, LinearReaderOptions};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -13,27 +14,39 @@ const MAX_RECORD: usize = 1 << 28;
 
 /// A message as it stands in the file.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct RawMessage {
+pub(crate) struct RawMessage {
     pub topic: String,
     pub schema: String,
     pub stamp: Stamp,
     pub data: Vec<u8>,
 }
 
-/// The messages of an MCAP file in the order of the file, one chunk's piece in memory at a time.
-pub(super) struct MessageStream {
+/// How messages are written that a reader wants.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Encoding {
+    /// Trundle's own: any other message is an error.
+    Json,
+    /// Those of ROS 2; others are passed over.
+    Cdr,
+}
+
+/// The messages of an MCAP file in the order of the file; of its chunks a piece is in memory at a time, of compressed ones
+/// (lz4, zstd) the whole.
+pub(crate) struct MessageStream {
     path: PathBuf,
     file: File,
     reader: LinearReader,
+    encoding: Encoding,
     schemas: BTreeMap<u16, String>,
     channels: BTreeMap<u16, (String, u16)>,
+    passed_over: BTreeSet<u16>,
     read: u64,
     len: u64,
     stopped: bool,
 }
 
 impl MessageStream {
-    pub fn open(path: &Path) -> Result<Self, IoError> {
+    pub fn open(path: &Path, encoding: Encoding) -> Result<Self, IoError> {
         let system = || IoError::system(path, "read");
         let file = File::open(path).map_err(system())?;
         let meta = file.metadata().map_err(system())?;
@@ -43,12 +56,18 @@ impl MessageStream {
         let limit = usize::try_from(meta.len()).unwrap_or(MAX_RECORD).clamp(1024, MAX_RECORD);
         let options =
             LinearReaderOptions::default().with_validate_chunk_crcs(true).with_record_length_limit(limit);
+        let mut reader = LinearReader::new_with_options(options);
+        for decoder in ChunkDecoder::all() {
+            reader.add_decompressor(decoder).expect("invariant: the decoders have names");
+        }
         Ok(Self {
             path: path.to_owned(),
             file,
-            reader: LinearReader::new_with_options(options),
+            reader,
+            encoding,
             schemas: BTreeMap::new(),
             channels: BTreeMap::new(),
+            passed_over: BTreeSet::new(),
             read: 0,
             len: meta.len(),
             stopped: false,
@@ -98,15 +117,24 @@ impl MessageStream {
         match record {
             Record::Schema { header, .. } => drop(self.schemas.insert(header.id, header.name)),
             Record::Channel(channel) => {
-                if channel.message_encoding != "json" {
+                let expected = match self.encoding {
+                    Encoding::Json => "json",
+                    Encoding::Cdr => "cdr",
+                };
+                if channel.message_encoding != expected && self.encoding == Encoding::Cdr {
+                    self.passed_over.insert(channel.id);
+                    return Ok(None);
+                }
+                if channel.message_encoding != expected {
                     let problem = format!(
-                        "messages on {} are in '{}', expected json",
+                        "messages on {} are in '{}', expected {expected}",
                         channel.topic, channel.message_encoding
                     );
                     return Err(IoError::malformed(&self.path, problem));
                 }
                 self.channels.insert(channel.id, (channel.topic, channel.schema_id));
             }
+            Record::Message { header, .. } if self.passed_over.contains(&header.channel_id) => {}
             Record::Message { header, data } => {
                 let (topic, schema) = self.channels.get(&header.channel_id).ok_or_else(|| {
                     let problem = format!("a message on the unknown channel {}", header.channel_id);

@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, clippy::print_stderr, reason = "a test")]
 
 mod recording;
+mod ros;
 mod sequence;
 mod tum_writer;
 

@@ -53,6 +53,8 @@ fn visual(ms: i64, map_from_base: Pose2) -> VisualPose {
         visual_from_camera: visual_from_map * Pose3::from_pose2(map_from_base) * base_from_camera(),
         covariance: Matrix6::zeros(),
         quality: VisualQuality::Ok,
+        map: 0,
+        recognised: false,
     }
 }
 
@@ -238,4 +240,42 @@ fn the_cameras_covariance_becomes_the_bases() {
     assert!((covariance[(2, 2)] - 1e-4).abs() < 1e-12);
     // The lever of 0.45 m adds to the position what the camera's rotation is unsure of.
     assert!(covariance[(0, 0)] > 1.15e-4 && covariance[(0, 0)] < 1.25e-4, "{covariance}");
+}
+
+#[test]
+fn a_robot_that_was_carried_believes_the_place_that_it_recognises() {
+    let mut localizer = localizer();
+    let carried = Pose2::new(2.0, -1.0, 1.5);
+    for ms in (0..=4000).step_by(20) {
+        localizer.predict(&odometry(ms));
+        // For 1 s after it was carried nothing is recognised.
+        if ms % 60 == 0 && !(2000..3000).contains(&ms) {
+            let shift = if ms < 2000 { Pose2::IDENTITY } else { carried };
+            let recognised = ms == 3000;
+            let pose = VisualPose { recognised, ..visual(ms, shift * odometry(ms).pose) };
+            let correction = localizer.correct_visual(&pose);
+            assert_eq!(
+                matches!(correction, Correction::Recovered { .. }),
+                recognised,
+                "{ms} ms: {correction:?}"
+            );
+        }
+    }
+    assert!(gap(localizer.estimate().pose, carried * odometry(4000).pose) < 0.05);
+}
+
+#[test]
+fn another_visual_map_has_a_frame_of_its_own_and_the_first_keeps_its() {
+    let mut localizer = localizer();
+    for ms in (0..=4000).step_by(20) {
+        localizer.predict(&odometry(ms));
+        if ms % 60 == 0 {
+            let second = (1500..2700).contains(&ms);
+            let shift = if second { Pose2::new(7.0, 5.0, 2.0) } else { Pose2::IDENTITY };
+            let pose = VisualPose { map: u32::from(second), ..visual(ms, shift * odometry(ms).pose) };
+            let correction = localizer.correct_visual(&pose);
+            assert_eq!(correction == Correction::Anchored, ms == 0 || ms == 1500, "{ms} ms: {correction:?}");
+        }
+    }
+    assert!(gap(localizer.estimate().pose, odometry(4000).pose) < 1e-6);
 }

@@ -149,7 +149,11 @@ fn slip_is_told_and_widens_the_covariance() {
     gripping.drive_with_gyro(Twist2::new(0.3, 0.0), 0.0, 100);
     slipping.drive_with_gyro(Twist2::new(0.3, 0.0), 0.0, 50);
     // The right wheel spins on a cable: the wheels say turn, the gyro says straight.
-    slipping.drive_with_gyro(Twist2::new(0.3, 0.8), 0.0, 50);
+    // (A gyro that is alive trembles.)
+    for _ in 0..25 {
+        slipping.drive_with_gyro(Twist2::new(0.3, 0.8), 1e-4, 1);
+        slipping.drive_with_gyro(Twist2::new(0.3, 0.8), -1e-4, 1);
+    }
     assert!(
         matches!(slipping.odometry.report(), WheelReport::Slipping { rate } if (rate - 0.8).abs() < 0.03)
     );
@@ -214,4 +218,13 @@ fn a_broken_reading_is_refused_and_a_reset_counter_is_found() {
 fn bad_configurations_are_refused_by_name() {
     let config = OdometryConfig { max_gap: f64::NAN, ..OdometryConfig::default() };
     assert_eq!(WheelOdometry::new(DifferentialDrive::KOBUKI, config).unwrap_err().field, "max_gap");
+}
+
+#[test]
+fn a_gyro_that_is_stuck_no_longer_steers() {
+    let mut drive = Drive::new();
+    drive.drive_with_gyro(Twist2::ZERO, 0.0, 50);
+    drive.drive_with_gyro(Twist2::new(0.0, 1.0), 0.0, 100);
+    let theta = drive.odometry.odometry().pose.theta;
+    assert!((theta - 2.0).abs() < 0.05, "{theta}");
 }

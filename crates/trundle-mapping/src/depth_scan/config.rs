@@ -24,8 +24,13 @@ pub struct DepthScanConfig {
     /// How many sigmas of noise are kept between the floor and the lowest obstacle, 0 to 10. Default 3.
     pub floor_sigmas: f64,
     /// How wrong the camera's tilt may be before the floor becomes an obstacle, deg, 0 to 10. Default 1: a soft tyre,
-    /// a hard stop.
+    /// a hard stop. Where the floor is fitted, what the fit leaves open counts instead, when that is less.
     pub tilt_error_deg: f64,
+    /// The floor is fitted, and heights are taken from it, when it lies by no more than this from where the mount says, deg,
+    /// 0 (off) to 10. Default 3.
+    pub floor_fit_deg: f64,
+    /// What is so far below the floor is a hole, m, 0.02 to 1. Default 0.1: a Kobuki's wheel drops 0.04.
+    pub drop_depth: f64,
     /// Of a pixel's 8 neighbours, how many must be about as deep for it to be an obstacle, 0 to 8. Default 3: a line of
     /// flying pixels along an edge, one pixel wide, has two.
     pub hit_support_px: u8,
@@ -45,6 +50,8 @@ impl Default for DepthScanConfig {
             noise_growth: 0.0015,
             floor_sigmas: 3.0,
             tilt_error_deg: 1.0,
+            floor_fit_deg: 3.0,
+            drop_depth: 0.1,
             hit_support_px: 3,
             free_support_px: 2,
         }
@@ -66,6 +73,8 @@ impl DepthScanConfig {
         require_in("noise_growth", self.noise_growth, "m/m^2", 0.0, 0.1)?;
         require_in("floor_sigmas", self.floor_sigmas, "", 0.0, 10.0)?;
         require_in("tilt_error_deg", self.tilt_error_deg, "deg", 0.0, 10.0)?;
+        require_in("floor_fit_deg", self.floor_fit_deg, "deg", 0.0, 10.0)?;
+        require_in("drop_depth", self.drop_depth, "m", 0.02, 1.0)?;
         require_in("hit_support_px", f64::from(self.hit_support_px), "px", 0.0, 8.0)?;
         require_in("free_support_px", f64::from(self.free_support_px), "px", 0.0, 8.0)?;
         Ok(self)

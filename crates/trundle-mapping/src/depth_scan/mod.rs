@@ -1,10 +1,17 @@
-//! From a depth image to a laser-like scan: of each bearing the nearest obstacle, or how far nothing stands there.
+//! From a depth image to a laser-like scan: of each bearing the nearest obstacle, and where nothing stands for certain.
 
+mod bearings;
 mod config;
-mod height_gate;
+mod floor_fit;
+mod fusion;
+mod model;
+mod mount;
 mod pixel_rays;
+mod row;
 mod scanner;
-mod support;
+mod span_bits;
 
 pub use config::DepthScanConfig;
+pub use floor_fit::FloorFit;
+pub use fusion::{ScanFusion, ScanFusionConfig};
 pub use scanner::DepthScanner;

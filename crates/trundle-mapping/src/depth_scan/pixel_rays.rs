@@ -1,43 +1,41 @@
 use trundle_core::{PinholeCamera, Pose3, Vector2, Vector3, wrap_angle};
 
-/// Where a pixel's ray goes for each metre of depth.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct PixelRay {
-    /// Way over the floor, m for each m of depth.
-    pub(super) run: f32,
-    /// Climb, m for each m of depth.
-    pub(super) rise: f32,
-    /// The beam of the scan that it belongs to: its bearing does not depend on depth.
-    pub(super) beam: u32,
-    /// Where the ray leaves the height band upward, m over the floor; 0 when it does not.
-    pub(super) exit: f32,
-}
-
-impl PixelRay {
-    /// A ray of a camera that is `headroom` m below the band's upper edge.
-    pub(super) fn new(run: f32, rise: f32, beam: u32, headroom: f32) -> Self {
-        let exit = if rise > 0.0 && headroom > 0.0 { headroom * run / rise } else { 0.0 };
-        Self { run, rise, beam, exit }
-    }
-}
-
-/// The rays of a camera's pixels in its own frame, row by row, one m deep, its lens distortion undone.
+/// The rays of a camera's pixels in its own frame, row by row: (u, v, 1) m at one m of depth, its lens distortion undone.
 #[derive(Debug, Clone)]
 pub(super) struct LensRays {
     camera: PinholeCamera,
-    rays: Vec<Vector3>,
+    u: Vec<f32>,
+    v: Vec<f32>,
 }
 
 impl LensRays {
     pub(super) fn new(camera: PinholeCamera) -> Self {
         let width = camera.width();
         let pixel = |i: usize| ray_through(&camera, (i % width) as f64, (i / width) as f64);
-        Self { rays: (0..width * camera.height()).map(pixel).collect(), camera }
+        let (u, v) = (0..width * camera.height()).map(pixel).map(|ray| (ray.x as f32, ray.y as f32)).unzip();
+        Self { camera, u, v }
     }
 
     /// Columns and rows of the image.
     pub(super) fn image_size(&self) -> (usize, usize) {
         (self.camera.width(), self.camera.height())
+    }
+
+    /// The u and the v of a row.
+    pub(super) fn row(&self, y: usize) -> (&[f32], &[f32]) {
+        let width = self.camera.width();
+        let row = y * width..(y + 1) * width;
+        (&self.u[row.clone()], &self.v[row])
+    }
+
+    /// The ray of pixel `i`, row by row.
+    pub(super) fn ray(&self, i: usize) -> Vector3 {
+        Vector3::new(f64::from(self.u[i]), f64::from(self.v[i]), 1.0)
+    }
+
+    /// How many pixels there are.
+    pub(super) fn len(&self) -> usize {
+        self.u.len()
     }
 }
 
@@ -45,10 +43,11 @@ fn ray_through(camera: &PinholeCamera, x: f64, y: f64) -> Vector3 {
     camera.unproject(camera.undistort(Vector2::new(x, y)), 1.0)
 }
 
-/// The rays of all pixels, row by row, and the fan of beams that they fall into.
+/// The fan of beams that the pixels fall into. A pixel's bearing does not depend on its depth.
 #[derive(Debug, Clone)]
-pub(super) struct PixelRays {
-    pub(super) rays: Vec<PixelRay>,
+pub(super) struct Fan {
+    /// The beam of each pixel, row by row.
+    pub(super) beam_of: Vec<u16>,
     pub(super) beams: usize,
     /// Bearing of the middle of beam 0, base frame, rad.
     pub(super) angle_min: f64,
@@ -58,30 +57,28 @@ pub(super) struct PixelRays {
 
 /// Coarsest beam, rad: for a camera that looks straight down, whose pixels have no bearing of their own.
 const COARSEST_BEAM: f64 = 0.035;
+/// Finest beam, rad: a full circle of them can be counted in 16 bits.
+const FINEST_BEAM: f64 = 1e-4;
 
-impl PixelRays {
-    /// The rays of a camera at `base_from_camera`, for a band up to `band_high` m.
-    pub(super) fn new(lens: &LensRays, base_from_camera: &Pose3, band_high: f64) -> Self {
+impl Fan {
+    pub(super) fn new(lens: &LensRays, base_from_camera: &Pose3) -> Self {
         let forward = forward_bearing(base_from_camera);
         let base_from_lens = base_from_camera.rotation_matrix();
-        let bearing = |d: &Vector3| wrap_angle(d.y.atan2(d.x) - forward);
-        let directions: Vec<(Vector3, f64)> =
-            lens.rays.iter().map(|ray| base_from_lens * ray).map(|d| (d, bearing(&d))).collect();
-        let fan = directions.iter().map(|(_, bearing)| *bearing);
-        let (right, left) = fan.fold((f64::MAX, f64::MIN), |(lo, hi), b| (lo.min(b), hi.max(b)));
+        let bearing = |ray: Vector3| {
+            let d = base_from_lens * ray;
+            wrap_angle(d.y.atan2(d.x) - forward)
+        };
+        let bearings: Vec<f64> = (0..lens.len()).map(|i| bearing(lens.ray(i))).collect();
+        let (right, left) =
+            bearings.iter().fold((f64::MAX, f64::MIN), |(lo, hi), b| (lo.min(*b), hi.max(*b)));
 
-        let bearing_at = |x: f64, y: f64| bearing(&(base_from_lens * ray_through(&lens.camera, x, y)));
-        let widest = widest_pixel(&lens.camera, bearing_at).clamp(1e-5, COARSEST_BEAM);
+        let bearing_at = |x: f64, y: f64| bearing(ray_through(&lens.camera, x, y));
+        let widest = widest_pixel(&lens.camera, bearing_at).clamp(FINEST_BEAM, COARSEST_BEAM);
         let beams = (((left - right) / widest).floor() as usize).max(1);
         let angle_increment = ((left - right) / beams as f64).max(1e-5);
-
-        let headroom = (band_high - base_from_camera.translation.z) as f32;
-        let beam = |bearing: f64| (((bearing - right) / angle_increment) as usize).min(beams - 1) as u32;
-        let ray = |(d, bearing): &(Vector3, f64)| {
-            PixelRay::new(d.xy().norm() as f32, d.z as f32, beam(*bearing), headroom)
-        };
-        let rays = directions.iter().map(ray).collect();
-        Self { rays, beams, angle_min: forward + right + angle_increment / 2.0, angle_increment }
+        let beam = |bearing: &f64| (((bearing - right) / angle_increment) as usize).min(beams - 1) as u16;
+        let beam_of = bearings.iter().map(beam).collect();
+        Self { beam_of, beams, angle_min: forward + right + angle_increment / 2.0, angle_increment }
     }
 }
 

@@ -4,17 +4,18 @@ use trundle_core::{Pose2, Stamp};
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Ancestry {
     /// Poses that all particles share: up to their last common ancestor.
-    shared: Vec<(Stamp, Pose2)>,
+    pub(crate) shared: Vec<(Stamp, Pose2)>,
     /// Those since.
-    columns: Vec<Column>,
+    pub(crate) columns: Vec<Column>,
 }
 
+/// The poses at a time.
 #[derive(Debug, Clone)]
-struct Column {
-    stamp: Stamp,
-    poses: Vec<Pose2>,
+pub(crate) struct Column {
+    pub(crate) stamp: Stamp,
+    pub(crate) poses: Vec<Pose2>,
     /// Which particle of the column before each descends from.
-    parents: Vec<u16>,
+    pub(crate) parents: Vec<u16>,
 }
 
 /// Columns between two looks for a common ancestor.
@@ -38,6 +39,22 @@ impl Ancestry {
             at = usize::from(column.parents[at]);
         }
         self.shared.iter().copied().chain(own.into_iter().rev()).collect()
+    }
+
+    /// One trajectory for all particles from here on.
+    pub(crate) fn replace(&mut self, trajectory: Vec<(Stamp, Pose2)>) {
+        self.shared = trajectory;
+        self.columns.clear();
+    }
+
+    /// Poses through time.
+    pub(crate) fn len(&self) -> usize {
+        self.shared.len() + self.columns.len()
+    }
+
+    /// Adds a column as it was.
+    pub(crate) fn push_column(&mut self, stamp: Stamp, poses: Vec<Pose2>, parents: Vec<u16>) {
+        self.columns.push(Column { stamp, poses, parents });
     }
 
     /// Bytes in use.

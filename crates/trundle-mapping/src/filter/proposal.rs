@@ -3,10 +3,11 @@ use super::{
     chance::Chance,
     coarse::{CoarseSearch, SearchPrior},
     directions::Directions,
+    find::{Pyramid, Query},
     likelihood::{Likelihood, Vote},
     prior::Prior,
 };
-use crate::tiles::{TileMap, TileWindow};
+use crate::tiles::{TILE_BITS, TileMap, TileWindow};
 use nalgebra::{Cholesky, Matrix3, Vector3};
 use trundle_core::{Pose2, wrap_angle};
 
@@ -23,6 +24,8 @@ pub(crate) struct Proposer<'a> {
     pub(crate) shape: &'a ScanShape,
     /// Covariance of the motion, base frame before it: cells, rad.
     pub(crate) motion_covariance: Matrix3<f64>,
+    /// Mean ln p(z | m, x) of a point in the last scans.
+    pub(crate) usual: f64,
 }
 
 /// Where a particle goes.
@@ -36,6 +39,10 @@ pub(crate) struct Proposal {
     pub(crate) explained: f64,
     /// Part of the points on free ground with no obstacle near, 0 to 1.
     pub(crate) contradicted: f64,
+    /// Mean ln p(z | m, x) of the points at the optimum.
+    pub(crate) per_point: f64,
+    /// Whether the odometry was not believed.
+    pub(crate) slipped: bool,
     /// Directions left to the odometry, 0 to 3.
     pub(crate) degenerate: usize,
     /// Covariance of the drawn Gaussian (cells, cells, rad), map frame.
@@ -51,45 +58,11 @@ const ELSEWHERE: f64 = 5.0;
 const RIVAL: f64 = 2.0;
 /// Radius of the ellipsoid of samples, sigmas.
 const SPREAD: f64 = 2.5;
-/// More than this part of the points on free ground: the odometry may have slipped.
-const CONTRADICTED: f64 = 0.1;
-/// Or less than this part of them explained: scans overlap by more.
-const DOUBTFUL: f64 = 0.5;
-/// Less than this: the odometry may have failed.
-const STRANGE: f64 = 0.4;
-/// Or more than this part on free ground.
-const LOST: f64 = 0.3;
-/// So long a way between two scans may be the wheels' fancy, m.
-const LONG_WAY: f64 = 1.5;
-/// Where so much is explained, a lost robot is found.
-const FOUND: f64 = 0.6;
-/// The same for a robot that may look anywhere: corridors look alike both ways.
-const FOUND_AROUND: f64 = 0.7;
-/// And by how much it must then be better.
-const FAR_BETTER: f64 = 0.4;
-/// By how much (a part of the points) a search that goes farther must be better.
-const CLEARLY: f64 = 0.15;
+/// Most points of a wide search, and how far it reaches, sigmas.
+const MOST_POINTS: usize = 80;
+const REACH: f64 = 3.0;
 /// Less than this part of the points on known obstacles: there is nothing to match.
 const LEAST_EXPLAINED: f64 = 0.1;
-
-/// How a scan agrees with the map at a pose.
-#[derive(Debug, Clone, Copy)]
-struct Fit {
-    /// Part of the points at obstacles.
-    explained: f64,
-    /// Part of the points on free ground, with no obstacle near.
-    contradicted: f64,
-}
-
-impl Fit {
-    fn value(&self) -> f64 {
-        self.explained - self.contradicted
-    }
-
-    fn is_better_than(&self, other: &Self) -> bool {
-        self.value() > other.value() + CLEARLY
-    }
-}
 
 /// An optimum with the tiles in which it was looked for.
 struct Attempt<'m> {
@@ -98,14 +71,14 @@ struct Attempt<'m> {
     corner: (f64, f64),
     prior: Prior,
     optimum: Optimum,
-    fit: Fit,
+    contradicted: f64,
 }
 
 /// An optimum of the posterior.
-struct Optimum {
-    pose: Pose2,
-    vote: Vote,
-    directions: Directions,
+pub(crate) struct Optimum {
+    pub(crate) pose: Pose2,
+    pub(crate) vote: Vote,
+    pub(crate) directions: Directions,
     log_posterior: f64,
 }
 
@@ -116,6 +89,10 @@ impl Proposer<'_> {
     }
 
     /// Draws the pose of a particle that stood at `before` and should have come to `guess` (cells, rad, of the map).
+    ///
+    /// Two things may have happened: the odometry erred as its covariance says, or its wheels slipped or its words were
+    /// lost (`slip_rate`), and the robot is somewhere about the way that it tells of. The second is looked into where it
+    /// would be the likelier one if the scan fitted there as scans usually do.
     pub(crate) fn propose(
         &self,
         map: &TileMap,
@@ -124,59 +101,60 @@ impl Proposer<'_> {
         guess: Pose2,
         chance: &mut Chance,
     ) -> Proposal {
-        let prior = Prior::new(guess, before.theta, &self.motion_covariance);
-        let near = self.attempt(map, search, prior);
-        let Fit { explained, contradicted } = near.fit;
-        if contradicted > CONTRADICTED || explained < DOUBTFUL {
-            let wide =
-                prior.widened(self.config.slip_shift / self.config.map.resolution, self.config.slip_turn);
-            let far = self.attempt(map, search, wide);
-            if far.fit.is_better_than(&near.fit) {
-                return self.sample(&far, chance);
+        let near = self.attempt(map, search, Prior::new(guess, before.theta, &self.motion_covariance));
+        let config = self.config;
+        let slip = Prior::slipped(before, guess, config.slip_shift / config.map.resolution, config.slip_turn);
+        let rate = config.slip_rate.ln();
+        let usual = self.usual * self.shape.points.len() as f64 / config.correlation;
+        let needed = near.optimum.log_posterior - rate - 0.5 * slip.log_determinant;
+        if usual > needed
+            && let Some(far) = self.search_far(map, slip, needed)
+        {
+            let gain = far.optimum.log_posterior + rate - near.optimum.log_posterior;
+            if gain > 0.0 {
+                return self.sample(&far, rate, chance);
             }
         }
-        let way = (guess.position() - before.position()).norm() * self.config.map.resolution;
-        let suspicious = contradicted > LOST || explained < STRANGE || way > LONG_WAY;
-        if suspicious && let Some(found) = self.slipped(map, search, before, guess, &near) {
-            return self.sample(&found, chance);
-        }
-        self.sample(&near, chance)
+        self.sample(&near, 0.0, chance)
     }
 
-    /// The best pose anywhere on the way that the odometry tells of, where that is clearly better than `near`.
-    fn slipped<'m>(
-        &self,
-        map: &'m TileMap,
-        search: &mut CoarseSearch,
-        before: Pose2,
-        guess: Pose2,
-        near: &Attempt<'_>,
-    ) -> Option<Attempt<'m>> {
-        let resolution = self.config.map.resolution;
-        let along = |part: f64, heading: f64| {
-            let place = before.interpolate(&guess, part);
-            Prior::slipped(Pose2 { theta: heading, ..place }, resolution)
+    /// The best pose under a wide prior, by branch and bound; `None` where none can have the log-posterior `needed` (but for the
+    /// prior's normalisation).
+    fn search_far<'m>(&self, map: &'m TileMap, prior: Prior, needed: f64) -> Option<Attempt<'m>> {
+        let window = self.window(map, &prior);
+        let (cols, rows) = window.size();
+        let low = (window.corner.0 >> TILE_BITS, window.corner.1 >> TILE_BITS);
+        let pyramid = Pyramid::of(map, low, (low.0 + cols as i32 - 1, low.1 + rows as i32 - 1))?;
+        let every = self.shape.points.len().div_ceil(MOST_POINTS).max(1);
+        let points: Vec<_> = self.shape.points.iter().step_by(every).map(|p| (p.x, p.y)).collect();
+        let sigma = |k: usize| prior.covariance[(k, k)].sqrt();
+        let query = Query {
+            points: &points,
+            guess: prior.guess,
+            reach: (REACH * sigma(0), REACH * sigma(1)),
+            turn_reach: (REACH * sigma(2)).min(std::f64::consts::PI),
+            turn_step: (2.0 / self.shape.lever).clamp(0.01, 0.05),
+            sigma: (sigma(0), sigma(1), sigma(2)),
+            gain: -self.config.outliers.ln() / self.config.correlation * every as f64,
         };
-        // The search about each place reaches 0.7 m.
-        let way = (guess.position() - before.position()).norm() * resolution;
-        let steps = (way.ceil() as usize).clamp(1, 6);
-        let parts = || (0..=steps).map(|k| k as f64 / steps as f64);
-        let turned: Vec<_> = parts().map(|part| along(part, guess.theta)).collect();
-        let unturned: Vec<_> = parts().map(|part| along(part, before.theta)).collect();
-        let around = [Prior::turned(before, resolution)];
-        // Each kind of slip is rarer than the one before: it must be better by more.
-        let kinds: [(&[Prior], f64, f64); 3] =
-            [(&turned, CLEARLY, FOUND), (&unturned, CLEARLY, FOUND), (&around, FAR_BETTER, FOUND_AROUND)];
-        for (priors, better, explained) in kinds {
-            let best = priors
-                .iter()
-                .map(|prior| self.attempt(map, search, *prior))
-                .reduce(|best, next| if next.fit.value() > best.fit.value() { next } else { best })?;
-            if best.fit.value() > near.fit.value() + better && best.fit.explained > explained {
-                return Some(best);
-            }
+        // A point that fits nothing is no better than one on unknown ground.
+        let unseen =
+            0.5 * self.config.outliers.ln() * self.shape.points.len() as f64 / self.config.correlation;
+        let least = (needed - unseen).max(0.0);
+        let mut places = Vec::new();
+        while places.len() < 2
+            && let Some(place) = pyramid.search(&query, &places, (2.0 * ELSEWHERE, 0.2), least)
+        {
+            places.push(place);
         }
-        None
+        let corner = (f64::from(window.corner.0), f64::from(window.corner.1));
+        let local = |pose: Pose2| Pose2 { x: pose.x - corner.0, y: pose.y - corner.1, ..pose };
+        let prior = Prior { guess: local(prior.guess), ..prior };
+        let optimum = places
+            .iter()
+            .map(|place| self.climb(&window, &prior, local(place.pose)))
+            .reduce(|best, next| if next.log_posterior > best.log_posterior { next } else { best })?;
+        Some(self.attempted(window, corner, prior, optimum))
     }
 
     /// The best pose under a prior (cells of the map).
@@ -186,10 +164,18 @@ impl Proposer<'_> {
         let guess = Pose2 { x: prior.guess.x - corner.0, y: prior.guess.y - corner.1, ..prior.guess };
         let prior = Prior { guess, ..prior };
         let optimum = self.optimum(&window, search, &prior);
-        let all = self.shape.points.len().max(1) as f64;
-        let vote = &optimum.vote;
-        let fit = Fit { explained: vote.explained / all, contradicted: vote.contradicted / all };
-        Attempt { window, corner, prior, optimum, fit }
+        self.attempted(window, corner, prior, optimum)
+    }
+
+    fn attempted<'m>(
+        &self,
+        window: TileWindow<'m>,
+        corner: (f64, f64),
+        prior: Prior,
+        optimum: Optimum,
+    ) -> Attempt<'m> {
+        let contradicted = optimum.vote.contradicted / self.shape.points.len().max(1) as f64;
+        Attempt { window, corner, prior, optimum, contradicted }
     }
 
     /// The tiles that the scan can reach under a prior.
@@ -240,7 +226,7 @@ impl Proposer<'_> {
     }
 
     /// Gauss-Newton on hits and odometry together.
-    fn climb(&self, window: &TileWindow<'_>, prior: &Prior, start: Pose2) -> Optimum {
+    pub(crate) fn climb(&self, window: &TileWindow<'_>, prior: &Prior, start: Pose2) -> Optimum {
         let mut pose = start;
         let mut vote = self.likelihood.vote(window, self.shape, pose);
         let directions = Directions::new(self.shape, pose, &vote, self.config.degenerate_below);
@@ -270,7 +256,7 @@ impl Proposer<'_> {
             + 0.5 * prior.log_determinant
     }
 
-    fn sample(&self, attempt: &Attempt<'_>, chance: &mut Chance) -> Proposal {
+    fn sample(&self, attempt: &Attempt<'_>, log_rate: f64, chance: &mut Chance) -> Proposal {
         let Attempt { window, corner, prior, optimum, .. } = attempt;
         let Optimum { pose: top, vote, directions, .. } = optimum;
         let explained = vote.explained / self.shape.points.len().max(1) as f64;
@@ -325,9 +311,12 @@ impl Proposer<'_> {
         let pose = moved(mean + draw * chance.normal3());
         Proposal {
             pose: Pose2::new(pose.x + corner.0, pose.y + corner.1, pose.theta),
-            log_weight: greatest + (sum / count as f64).ln() + spread.determinant().ln(),
+            log_weight: log_rate + greatest + (sum / count as f64).ln() + spread.determinant().ln(),
             explained,
-            contradicted: attempt.fit.contradicted,
+            contradicted: attempt.contradicted,
+            per_point: self.likelihood.log_likelihood(window, self.shape, *top)
+                / self.shape.points.len().max(1) as f64,
+            slipped: log_rate < 0.0,
             degenerate: if lost { 3 } else { directions.degenerate },
             covariance: to_pose * covariance * to_pose.transpose(),
         }

@@ -1,5 +1,6 @@
-use super::ParticleConfig;
-use trundle_core::{Beam, Scan, Vector2};
+use super::{ParticleConfig, store::StoredScan};
+use std::collections::BTreeSet;
+use trundle_core::{Beam, Pose2, Scan, Vector2};
 
 /// A scan made ready for many particles: in cells, in the base frame, with surfaces and their normals.
 #[derive(Debug, Clone, Default)]
@@ -16,7 +17,10 @@ pub(crate) struct ScanShape {
     pub(crate) centroid: (f64, f64),
     /// Their root mean square distance from it, cells.
     pub(crate) lever: f64,
-    hits: Vec<(usize, Vector2)>,
+    /// Number of the beam, end, and one sigma of the range where the sensor says it (else 0).
+    hits: Vec<(usize, Vector2, f64)>,
+    /// The numbers of the rays' beams.
+    pub(crate) beams: Vec<usize>,
 }
 
 /// Where a beam ends.
@@ -85,9 +89,8 @@ impl ScanShape {
     /// Takes over a scan.
     pub(crate) fn set(&mut self, config: &ParticleConfig, scan: &Scan) {
         let cells = 1.0 / config.map.resolution;
-        self.rays.clear();
-        self.points.clear();
-        self.hits.clear();
+        self.clear();
+        self.beams.clear();
         self.origin = ((scan.origin().x * cells) as f32, (scan.origin().y * cells) as f32);
         let mut last: Option<(usize, Vector2)> = None;
         for (i, beam) in scan.beams().iter().enumerate() {
@@ -100,15 +103,72 @@ impl ScanShape {
             let joined =
                 hit && last.is_some_and(|(j, p)| j + 1 == i && (p - end).norm() <= config.map.surface_gap);
             self.rays.push(ScanRay { x: (end.x * cells) as f32, y: (end.y * cells) as f32, hit, joined });
+            self.beams.push(i);
             last = hit.then_some((i, end));
             if hit {
-                self.hits.push((i, end));
+                self.hits.push((i, end, scan.sigma(i).unwrap_or(0.0)));
             }
         }
-        self.find_points(config, scan, cells);
+        self.find_points(config, scan.origin());
     }
 
-    fn find_points(&mut self, config: &ParticleConfig, scan: &Scan, cells: f64) {
+    /// Takes over a scan from the store.
+    pub(crate) fn set_stored(&mut self, config: &ParticleConfig, stored: &StoredScan) {
+        self.clear();
+        self.origin = stored.origin;
+        let metres = config.map.resolution;
+        let origin = Vector2::new(f64::from(stored.origin.0), f64::from(stored.origin.1)) * metres;
+        for ray in stored.rays() {
+            if ray.ray.hit {
+                let end = Vector2::new(f64::from(ray.ray.x), f64::from(ray.ray.y)) * metres;
+                self.hits.push((ray.beam, end, 0.0));
+            }
+            self.rays.push(ray.ray);
+        }
+        self.find_points(config, origin);
+    }
+
+    /// Takes over the hits of several scans, each moved by its pose (cells), of which at most one counts in each square of
+    /// `spacing` cells.
+    pub(crate) fn gather<'a>(
+        &mut self,
+        parts: impl Iterator<Item = (&'a Self, Pose2)>,
+        spacing: f64,
+        taken: &mut BTreeSet<(i32, i32)>,
+    ) {
+        for (part, pose) in parts {
+            let (s, c) = pose.theta.sin_cos();
+            let turn = |x: f64, y: f64| (c * x - s * y, s * x + c * y);
+            for point in &part.points {
+                let (x, y) = turn(f64::from(point.x), f64::from(point.y));
+                let (x, y) = (x + pose.x, y + pose.y);
+                if taken.insert(((x / spacing).floor() as i32, (y / spacing).floor() as i32)) {
+                    let (nx, ny) = turn(f64::from(point.normal.0), f64::from(point.normal.1));
+                    let normal = (nx as f32, ny as f32);
+                    self.points.push(ScanPoint { x: x as f32, y: y as f32, normal, ..*point });
+                }
+            }
+        }
+    }
+
+    /// Forgets everything.
+    pub(crate) fn clear(&mut self) {
+        self.origin = (0.0, 0.0);
+        self.rays.clear();
+        self.points.clear();
+        self.groups.clear();
+        self.hits.clear();
+    }
+
+    /// Makes gathered points ready for matching.
+    pub(crate) fn finish(&mut self) {
+        self.measure_spread();
+        self.groups.clear();
+        self.groups.extend(self.points.chunks(LANES).map(PointGroup::new));
+    }
+
+    fn find_points(&mut self, config: &ParticleConfig, origin: Vector2) {
+        let cells = 1.0 / config.map.resolution;
         let spacing = SPACING_CELLS * config.map.resolution;
         let mut kept: Option<Vector2> = None;
         for k in 0..self.hits.len() {
@@ -117,8 +177,10 @@ impl ScanShape {
                 continue;
             }
             kept = Some(hit);
-            let range = (hit - scan.origin()).norm();
-            let range_sigma = config.range_noise + config.range_noise_growth * range * range;
+            let range = (hit - origin).norm();
+            let told = self.hits[k].2;
+            let usual = config.range_noise + config.range_noise_growth * range * range;
+            let range_sigma = if told > 0.0 { told } else { usual };
             // A cell's obstacle is known to about a fifth of the cell.
             let sigma = range_sigma.hypot(0.3 * config.map.resolution);
             let normal = self.normal(k, sigma).map_or((0.0, 0.0), |n| (n.x as f32, n.y as f32));
@@ -129,14 +191,12 @@ impl ScanShape {
                 information: (1.0 / (sigma * cells).powi(2)) as f32,
             });
         }
-        self.measure_spread();
-        self.groups.clear();
-        self.groups.extend(self.points.chunks(LANES).map(PointGroup::new));
+        self.finish();
     }
 
     /// The normal of the straight surface about hit `k`, if there is one.
     fn normal(&self, k: usize, sigma: f64) -> Option<Vector2> {
-        let (_, here) = self.hits[k];
+        let (_, here, _) = self.hits[k];
         let reach = |step: isize| {
             let mut at = k;
             loop {
@@ -158,7 +218,7 @@ impl ScanShape {
             (None, None) => return None,
             (first, last) => (first.unwrap_or(k), last.unwrap_or(k)),
         };
-        let points = self.hits[first..=last].iter().map(|(_, p)| *p);
+        let points = self.hits[first..=last].iter().map(|(_, p, _)| *p);
         let count = (last - first + 1) as f64;
         let mean = points.clone().sum::<Vector2>() / count;
         let (mut xx, mut xy, mut yy) = (0.0, 0.0, 0.0);

@@ -5,7 +5,7 @@ use super::{
     tile::{LOG_ODDS_UNIT, Nearest, TILE_BITS, TILE_SIDE, Tile},
 };
 use crate::{MapperConfig, filter::ScanShape};
-use trundle_core::Pose2;
+use trundle_core::{Cell, Pose2};
 
 /// How a scan changes a particle's map: the inverse sensor model in units of the tiles.
 #[derive(Debug, Clone)]
@@ -108,6 +108,21 @@ impl Brush {
             self.hit(map, hit);
         }
         drawn
+    }
+
+    /// Sets a cell to what a finished map says of it.
+    pub(crate) fn assert(&self, map: &mut TileMap, (x, y): (i32, i32), cell: Cell) {
+        let log_odds = match cell {
+            Cell::Unknown => return,
+            Cell::Free => self.low,
+            Cell::Occupied => self.high,
+        };
+        map.tile_mut((x >> TILE_BITS, y >> TILE_BITS)).log_odds[Tile::place(x, y)] = log_odds;
+        if cell == Cell::Occupied {
+            let own = Nearest::own(0, 0);
+            map.tile_mut((x >> TILE_BITS, y >> TILE_BITS)).nearest[Tile::place(x, y)] = own;
+            self.field.place(map, (x, y), own);
+        }
     }
 
     /// Lowers the cells of a ray; whether it passed through a wall.

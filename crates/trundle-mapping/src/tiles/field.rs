@@ -125,6 +125,14 @@ impl FieldModel {
         }
     }
 
+    /// Fills in the coarse field of a tile from its nearest obstacles.
+    pub(crate) fn fill_coarse(&self, tile: &mut Tile) {
+        let side = TILE_SIDE as i32;
+        for (x, y) in (0..side).step_by(2).flat_map(|y| (0..side).step_by(2).map(move |x| (x, y))) {
+            self.write(tile, (x, y), tile.nearest[Tile::place(x, y)]);
+        }
+    }
+
     #[inline]
     fn write(&self, tile: &mut Tile, at: (i32, i32), nearest: Nearest) {
         tile.nearest[Tile::place(at.0, at.1)] = nearest;

@@ -18,13 +18,19 @@ pub(crate) struct TileMap {
     chunks: Vec<Option<Arc<Chunk>>>,
 }
 
+/// 16 x 16 tiles.
 #[derive(Debug, Clone)]
-struct Chunk {
+pub(super) struct Chunk {
     tiles: [Option<Arc<Tile>>; CHUNK_SIDE * CHUNK_SIDE],
 }
 
 impl Chunk {
     const EMPTY: Self = Self { tiles: [const { None }; CHUNK_SIDE * CHUNK_SIDE] };
+
+    /// Its tiles with their places.
+    pub(super) fn tiles(&self) -> impl Iterator<Item = (usize, &Arc<Tile>)> {
+        self.tiles.iter().enumerate().filter_map(|(i, tile)| Some((i, tile.as_ref()?)))
+    }
 
     fn place(tile: (i32, i32)) -> usize {
         const MASK: i32 = CHUNK_SIDE as i32 - 1;
@@ -73,6 +79,28 @@ impl TileMap {
         }
     }
 
+    /// A chunk of tiles at these places.
+    pub(super) fn chunk_of(tiles: impl Iterator<Item = (usize, Arc<Tile>)>) -> Arc<Chunk> {
+        let mut chunk = Chunk::EMPTY;
+        tiles.for_each(|(place, tile)| chunk.tiles[place] = Some(tile));
+        Arc::new(chunk)
+    }
+
+    /// Puts a chunk where its lowest tile is `corner`.
+    pub(super) fn put(&mut self, corner: (i32, i32), chunk: Arc<Chunk>) {
+        let slot = self.reach(corner);
+        self.chunks[slot] = Some(chunk);
+    }
+
+    /// The lowest and the highest coordinates of tiles that hold something.
+    pub(crate) fn extent(&self) -> Option<((i32, i32), (i32, i32))> {
+        let tiles = self.chunks().flat_map(|(corner, chunk)| Self::tiles_of(corner, chunk));
+        tiles.fold(None, |bounds, (at, _)| {
+            let (low, high): ((i32, i32), (i32, i32)) = bounds.unwrap_or((at, at));
+            Some(((low.0.min(at.0), low.1.min(at.1)), (high.0.max(at.0), high.1.max(at.1))))
+        })
+    }
+
     fn get(&self, tile: (i32, i32)) -> Option<&Arc<Tile>> {
         self.chunk(tile)?.tiles[Chunk::place(tile)].as_ref()
     }
@@ -82,7 +110,7 @@ impl TileMap {
     }
 
     /// Each chunk with the tile at its corner.
-    fn chunks(&self) -> impl Iterator<Item = ((i32, i32), &Arc<Chunk>)> {
+    pub(super) fn chunks(&self) -> impl Iterator<Item = ((i32, i32), &Arc<Chunk>)> {
         let corner = |i: usize| {
             let (col, row) = ((i % self.cols) as i32, (i / self.cols) as i32);
             ((self.first.0 + col) << CHUNK_BITS, (self.first.1 + row) << CHUNK_BITS)

@@ -65,6 +65,23 @@ impl Tile {
         coarse: [0; COARSE_SIDE * COARSE_SIDE],
     };
 
+    /// Log-odds and nearest obstacles as bytes; the coarse field follows from them.
+    pub(crate) fn bytes(&self) -> impl Iterator<Item = u8> {
+        let log_odds = self.log_odds.iter().map(|v| *v as u8);
+        let (x, y) = (self.nearest.iter().map(|n| n.x as u8), self.nearest.iter().map(|n| n.y as u8));
+        log_odds.chain(x).chain(y)
+    }
+
+    /// From its bytes, 3 a cell, without the coarse field.
+    pub(crate) fn from_bytes(bytes: &[u8]) -> Self {
+        let mut tile = Self::EMPTY;
+        for i in 0..TILE_CELLS {
+            tile.log_odds[i] = bytes[i] as i8;
+            tile.nearest[i] = Nearest { x: bytes[TILE_CELLS + i] as i8, y: bytes[2 * TILE_CELLS + i] as i8 };
+        }
+        tile
+    }
+
     /// The place of a cell, from its coordinates in the whole map or in the tile.
     #[inline]
     pub(crate) fn place(x: i32, y: i32) -> usize {

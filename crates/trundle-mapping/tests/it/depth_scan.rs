@@ -1,7 +1,7 @@
 use crate::boxes::{Solid, add_noise, depth_of, mount, mounted, rgbd};
 use proptest::prelude::*;
-use trundle_core::{Beam, DepthImage, Distortion, PinholeCamera, Pose3, Scan, Vector2};
-use trundle_mapping::{DepthScanConfig, DepthScanner};
+use trundle_core::{Beam, DepthImage, Distortion, ObstacleKind, PinholeCamera, Pose2, Pose3, Scan, Vector2};
+use trundle_mapping::{DepthScanConfig, DepthScanner, ScanFusion, ScanFusionConfig};
 
 fn small_camera() -> PinholeCamera {
     PinholeCamera::from_field_of_view((128, 106), (1.232, 1.047)).unwrap()
@@ -195,4 +195,169 @@ fn a_remounted_scanner_is_a_new_one() {
     scanner.remount(there).unwrap();
     let depth = depth_of(&small_camera(), &there, &[Solid::wall(2.5, 2.0)], true);
     assert_eq!(scanner.scan(&rgbd(depth.clone())), scan_of(small_camera(), there, depth));
+}
+
+/// The free spans of the beam that looks ahead.
+fn spans_ahead(scan: &Scan) -> Vec<(f64, f64)> {
+    scan.free_spans(index_ahead(scan)).collect()
+}
+
+fn index_ahead(scan: &Scan) -> usize {
+    (0..scan.beams().len()).min_by(|&a, &b| scan.angle(a).abs().total_cmp(&scan.angle(b).abs())).unwrap()
+}
+
+#[test]
+fn what_gives_no_depth_is_not_cleared_though_the_wall_behind_it_is_seen() {
+    // A black box, 0.3 m high: it gives no depth, and hides the floor behind it as far as 2.35 / (1 - 0.3 / 0.45) m.
+    let (camera, base_from_camera) = (small_camera(), mount(0.45, 8.0));
+    let black = Solid::new([1.0, -0.3, 0.0], [1.2, 0.3, 0.3]);
+    let wall = Solid::wall(5.0, 2.0);
+    let mut depth = depth_of(&camera, &base_from_camera, &[black, wall], true);
+    let behind = depth_of(&camera, &base_from_camera, &[wall], true);
+    for (z, through) in depth.data_mut().iter_mut().zip(behind.data()) {
+        *z = if *z < through - 1e-4 { 0.0 } else { *z };
+    }
+    let scan = scan_of(camera, base_from_camera, depth);
+    let Beam::Hit { range } = ahead(&scan) else { panic!("{:?}", ahead(&scan)) };
+    assert!((range - 4.95).abs() < 0.01, "{range}");
+    // The camera sits 0.05 m ahead of the base: the box begins at 0.95 m and hides the floor up to 3 x 1.15 m.
+    let spans = spans_ahead(&scan);
+    assert_eq!(spans.len(), 2, "{spans:?}");
+    assert!(spans[0].0 == 0.0 && (0.8..=0.96).contains(&spans[0].1), "{spans:?}");
+    // What stands in the gap behind the box and is higher than 0.05 m would be seen from 8/9 of its end on.
+    assert!((2.95..3.6).contains(&spans[1].0) && spans[1].1 == range, "{spans:?}");
+}
+
+#[test]
+fn a_hole_in_the_floor_is_an_obstacle_of_its_own_kind() {
+    // The floor ends 2 m ahead of the base; 0.5 m below it goes on.
+    let (camera, base_from_camera) = (small_camera(), mount(0.45, 8.0));
+    let mut depth = depth_of(&camera, &base_from_camera, &[], true);
+    let lower = mount(0.95, 8.0);
+    let cellar = depth_of(&camera, &lower, &[], true);
+    for (i, z) in depth.data_mut().iter_mut().enumerate() {
+        let pixel = Vector2::new((i % 128) as f64, (i / 128) as f64);
+        let ray = base_from_camera.rotate(camera.unproject(pixel, 1.0));
+        let x = 0.05 + f64::from(*z) * ray.x;
+        *z = if *z == 0.0 || x > 2.0 { cellar.data()[i] } else { *z };
+    }
+    let scan = scan_of(camera, base_from_camera, depth);
+    let Beam::Hit { range } = ahead(&scan) else { panic!("{:?}", ahead(&scan)) };
+    assert_eq!(scan.obstacle(index_ahead(&scan)), Some(ObstacleKind::Drop));
+    // A row of floor is 0.1 m deep there.
+    assert!((1.94..2.1).contains(&range), "{range}");
+    assert!(spans_ahead(&scan).iter().all(|span| span.1 <= range + 1e-9));
+    let drops = (0..scan.beams().len()).filter(|&i| scan.obstacle(i) == Some(ObstacleKind::Drop)).count();
+    assert!(drops > 80, "{drops} of {} beams", scan.beams().len());
+}
+
+#[test]
+fn what_hangs_in_the_way_is_told_from_what_stands() {
+    let top = Solid::new([2.0, -0.5, 0.35], [2.6, 0.5, 0.39]);
+    let hanging = scan(mount(0.45, 8.0), &[top, Solid::wall(5.0, 2.0)]);
+    assert_eq!(hanging.obstacle(index_ahead(&hanging)), Some(ObstacleKind::Overhang));
+    let standing = Solid::new([2.0, -0.5, 0.0], [2.6, 0.5, 0.39]);
+    let standing = scan(mount(0.45, 8.0), &[standing, Solid::wall(5.0, 2.0)]);
+    assert_eq!(standing.obstacle(index_ahead(&standing)), Some(ObstacleKind::Standing));
+    let far = scan(mount(0.45, 8.0), &[Solid::wall(5.0, 2.0)]);
+    assert!((0..far.beams().len()).all(|i| far.obstacle(i) != Some(ObstacleKind::Overhang)));
+}
+
+#[test]
+fn the_noise_of_a_beam_grows_with_the_square_of_its_depth() {
+    let sigma = |distance: f64| {
+        let scan = scan(mount(0.45, 0.0), &[Solid::wall(distance, 2.0)]);
+        scan.sigma(index_ahead(&scan)).unwrap()
+    };
+    for distance in [1.0, 2.0, 4.0] {
+        let z = distance - 0.05;
+        assert!(
+            (sigma(distance) / (0.003 + 0.0015 * z * z) - 1.0).abs() < 0.1,
+            "{} at {z} m",
+            sigma(distance)
+        );
+    }
+}
+
+#[test]
+fn a_camera_that_never_sees_the_floor_clears_what_its_rays_pass() {
+    let scan = scan(mount(0.3, -35.0), &[Solid::wall(4.0, 3.0)]);
+    let Beam::Free { range } = ahead(&scan) else { panic!("{:?}", ahead(&scan)) };
+    // Its lowest ray climbs at 5 deg: out of the band, 0.35 m higher, at 4 m.
+    assert!(range > 2.5 && range < 4.0, "{range}");
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(32))]
+
+    #[test]
+    fn a_mount_that_is_wrong_by_two_degrees_is_found_and_undone(
+        tilt_error in -2.0..2.0_f64, roll_error in -1.5..1.5_f64, height_error in -0.015..0.015_f64, seed: u64,
+    ) {
+        let camera = small_camera();
+        let truth = mounted([0.05, 0.0, 0.45 + height_error], 0.0, 8.0 + tilt_error, roll_error);
+        let mut depth = depth_of(&camera, &truth, &[Solid::wall(4.5, 2.0)], true);
+        add_noise(&mut depth, seed);
+        let mut scanner = DepthScanner::new(camera, mount(0.45, 8.0), DepthScanConfig::default()).unwrap();
+        let scan = scanner.scan(&rgbd(depth));
+        let floor = scanner.floor().unwrap();
+        // Looking lower than believed, the floor seems nearer, so that it seems to rise.
+        prop_assert!((floor.rise_ahead.atan().to_degrees() - tilt_error).abs() < 0.3, "{:?}", floor);
+        prop_assert!((floor.height + height_error).abs() < 0.01, "{:?} {}", floor, height_error);
+        for point in scan.hits() {
+            prop_assert!((point.x - 4.5).abs() < 0.25, "{} is not on the wall", point);
+        }
+    }
+}
+
+#[test]
+fn a_platform_in_front_is_not_taken_for_the_floor() {
+    let pallet = Solid::new([0.4, -3.0, 0.0], [2.5, 3.0, 0.14]);
+    let found = scan(mount(0.45, 8.0), &[pallet, Solid::wall(5.0, 2.0)]);
+    let Beam::Hit { range } = ahead(&found) else { panic!("{:?}", ahead(&found)) };
+    assert!(range < 1.0, "{range}");
+}
+
+#[test]
+fn two_cameras_make_one_scan() {
+    let left = mounted([0.05, 0.1, 0.45], 50.0, 8.0, 0.0);
+    let right = mounted([0.05, -0.1, 0.45], -50.0, 8.0, 0.0);
+    let solids = [Solid::wall(2.0, 2.0), Solid::new([0.8, 0.7, 0.0], [1.0, 0.9, 0.5])];
+    let scans = [scan(left, &solids), scan(right, &solids)];
+    let mut fusion = ScanFusion::new(ScanFusionConfig { beams: 360, ..Default::default() }).unwrap();
+    let fused = fusion.fuse(scans.iter().map(|scan| (Pose2::IDENTITY, scan)));
+    assert_eq!((fused.beams().len(), fused.origin()), (360, Vector2::zeros()));
+    let seen: Vec<Vector2> = fused.hits().collect();
+    let on = |p: &Vector2| {
+        let wall = (p.x - 2.0).abs() < 0.06;
+        let block = p.x > 0.75 && p.x < 1.05 && p.y > 0.65 && p.y < 0.95;
+        wall || block
+    };
+    assert!(seen.len() > 60 && seen.iter().all(on), "{seen:?}");
+    assert!(seen.iter().any(|p| p.y > 0.7 && p.x < 1.1) && seen.iter().any(|p| p.y < -1.0));
+    // Free is what one of them saw: 1 m ahead to the left and right, not behind, nor behind the block.
+    let free_at = |p: Vector2| {
+        let i = (0..360).min_by(|&a, &b| {
+            let off = |i: usize| trundle_core::wrap_angle(fused.angle(i) - p.y.atan2(p.x)).abs();
+            off(a).total_cmp(&off(b))
+        });
+        fused.free_spans(i.unwrap()).any(|(from, to)| (from..=to).contains(&p.norm()))
+    };
+    assert!(free_at(Vector2::new(0.8, -0.8)) && free_at(Vector2::new(1.5, 0.9)));
+    assert!(!free_at(Vector2::new(-1.0, 0.0)) && !free_at(Vector2::new(1.35, 1.2)));
+    assert_eq!(
+        ScanFusion::new(ScanFusionConfig { beams: 3, ..Default::default() }).unwrap_err().field,
+        "beams"
+    );
+    assert!(fusion.fuse([]).beams().iter().all(|beam| *beam == Beam::Unseen));
+}
+
+#[test]
+fn a_scan_is_written_over_without_another() {
+    let (camera, base_from_camera) = (small_camera(), mount(0.45, 8.0));
+    let mut scanner = DepthScanner::new(camera, base_from_camera, DepthScanConfig::default()).unwrap();
+    let image = |x: f64| rgbd(depth_of(&camera, &base_from_camera, &[Solid::wall(x, 2.0)], true));
+    let mut scan = scanner.scan(&image(2.0));
+    scanner.scan_into(&image(3.0), &mut scan);
+    assert_eq!(scan, scanner.scan(&image(3.0)));
 }

@@ -9,7 +9,7 @@ fn noise(i: usize) -> f64 {
 }
 
 /// A ring of corridors 2 m wide about a block of 16 x 10 m, with niches so that places differ.
-fn ring() -> FlatRoom {
+pub fn ring() -> FlatRoom {
     FlatRoom::new(&[
         &[
             (-10.0, -7.0),
@@ -43,7 +43,7 @@ fn ring() -> FlatRoom {
 }
 
 /// Poses 0.25 m apart once around the ring and a bit on.
-fn lap() -> Vec<Pose2> {
+pub fn lap() -> Vec<Pose2> {
     let corners = [(-9.0, -6.0), (9.0, -6.0), (9.0, 6.0), (-9.0, 6.0), (-9.0, -6.0), (0.0, -6.0)];
     let mut poses: Vec<Pose2> = Vec::new();
     for pair in corners.windows(2) {
@@ -63,7 +63,7 @@ fn lap() -> Vec<Pose2> {
 }
 
 /// What wheels make of the poses: 3 % too short, turning 0.6 deg/m, and noise.
-fn odometry(poses: &[Pose2]) -> Vec<Pose2> {
+pub fn odometry(poses: &[Pose2]) -> Vec<Pose2> {
     let mut odom = vec![Pose2::IDENTITY];
     for (i, pair) in poses.windows(2).enumerate() {
         let step = pair[0].inverse() * pair[1];
@@ -76,7 +76,7 @@ fn odometry(poses: &[Pose2]) -> Vec<Pose2> {
     odom
 }
 
-fn laser(room: &FlatRoom, pose: Pose2, i: usize) -> Scan {
+pub fn laser(room: &FlatRoom, pose: Pose2, i: usize) -> Scan {
     let beam = |k: usize| {
         let angle = -FRAC_PI_2 + k as f64 * PI / 180.0;
         match room.cast(pose.position(), pose.theta + angle) {
@@ -88,7 +88,7 @@ fn laser(room: &FlatRoom, pose: Pose2, i: usize) -> Scan {
     Scan::new(stamp, Vector2::zeros(), -FRAC_PI_2, PI / 180.0, (0..180).map(beam).collect()).unwrap()
 }
 
-fn config(particles: usize) -> ParticleConfig {
+pub fn config(particles: usize) -> ParticleConfig {
     ParticleConfig { particles, ..ParticleConfig::default() }
 }
 

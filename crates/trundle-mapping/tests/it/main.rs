@@ -3,8 +3,11 @@
 #![allow(clippy::unwrap_used, reason = "tests")]
 
 mod boxes;
+mod building;
 mod depth_scan;
 mod filter;
 mod flat_room;
+mod lasting;
+mod live;
 mod maps;
 mod matching;

@@ -1,8 +1,9 @@
 //! Way-points, curve and timing on the maps of ../shared/data/nav, in numbers:
-//! `cargo run --release -p trundle-planning --example plan_bench [-- --csv PAIRS.csv]`.
+//! `cargo run --release -p trundle-planning --example plan_bench [-- --csv PAIRS.csv] [--seed N]`.
 //!
 //! Each map has the questions that come with it and random ones between connected places. Each is asked 20 times
-//! with the distance field up to date, and the thread's CPU time counts: it says something on a busy machine too. Every trajectory is judged by the tests' independent checker.
+//! with the distance field up to date, and the best CPU time of the thread counts: it says something on a busy machine too.
+//! `--only-plans` leaves out the rest. Every trajectory is judged by the tests' independent checker.
 
 #![expect(
     clippy::print_stdout,
@@ -19,9 +20,12 @@ mod shortest;
 mod support;
 
 use std::fmt::Write as _;
+use std::sync::OnceLock;
 use std::time::Instant;
 use trundle_core::{Cell, CellIndex, GridGeometry, OccupancyGrid, Pose2, Twist2, Vector2};
-use trundle_planning::{DistanceField, Plan, PlannerConfig, PotentialConfig, PotentialKind, UnknownIs};
+use trundle_planning::{
+    DistanceField, Plan, PlannerConfig, PotentialConfig, PotentialKind, StageTimes, UnknownIs,
+};
 
 /// The robot of the comparison with Nav2's planners, m.
 const RADIUS: f64 = 0.26;
@@ -36,24 +40,28 @@ struct Row {
     goal: Pose2,
     ms: f64,
     length: f64,
+    /// Of the way-points.
+    way: f64,
     /// The shortest any-angle length for the footprint.
     shortest: f64,
     /// The same for the room that the plan keeps, up to the margin.
     roomy: f64,
     curves: usize,
+    stages: StageTimes,
 }
 
 fn main() {
     let Some(data) = nav_data::data() else { return };
-    let csv = std::env::args().skip_while(|word| word != "--csv").nth(1);
+    let csv = argument("--csv");
+    let mut shares = Vec::new();
     let mut lines = String::from("map,sx,sy,sa,gx,gy,ga,ms,length_m,shortest_m\n");
     println!(
-        "disc of {RADIUS} m; CPU ms with the field up to date, each question's mean of {ROUNDS}; length over Theta*'s of the same clearance, of the footprint"
+        "disc of {RADIUS} m; CPU ms with the field up to date, each question's best of {ROUNDS}; length over Theta*'s of the same clearance, of the footprint"
     );
     println!(
-        "| map | cells | found | in one curve | ms median | p99 | worst | length mean | worst | footprint mean | worst |"
+        "| map | cells | found | in one curve | ms median | p99 | worst | length mean | worst | way-points worst | footprint mean | worst |"
     );
-    println!("|---|---|---|---|---|---|---|---|---|---|---|");
+    println!("|---|---|---|---|---|---|---|---|---|---|---|---|");
     for (name, file) in [
         ("depot", "nav2/depot.yaml"),
         ("tb3_sandbox", "nav2/tb3_sandbox.yaml"),
@@ -68,6 +76,7 @@ fn main() {
         pairs.extend(random_pairs(&grid, QUESTIONS - pairs.len()));
         let rows = measure(&grid, &pairs);
         print_row(name, &grid, pairs.len(), &rows);
+        shares.push(format!("{name}: {}", shares_of(&rows)));
         for row in rows {
             let (a, b) = (row.start, row.goal);
             let _ = writeln!(
@@ -77,27 +86,35 @@ fn main() {
             );
         }
     }
+    if let Some(path) = csv {
+        std::fs::write(path, lines).unwrap();
+    }
+    println!("\nShares of the time: {}", shares.join("; "));
+    if std::env::args().any(|word| word == "--only-plans") {
+        return;
+    }
     println!();
     updates("depot", &nav_data::read_map(&data.join("nav2/depot.yaml")));
     updates("office02", &nav_data::read_map(&data.join("mrpb/maps/office02_partially_unknown/map.yaml")));
     large();
     printed(&data);
-    if let Some(path) = csv {
-        std::fs::write(path, lines).unwrap();
-    }
 }
 
 fn measure(grid: &OccupancyGrid, pairs: &[(Pose2, Pose2)]) -> Vec<Row> {
     let field = DistanceField::from_grid(grid, UnknownIs::Free);
     let mut planner = support::planner(support::at_home(), RADIUS);
+    planner.set_clock(Some(seconds));
     planner.plan(grid, pairs[0].0, Twist2::ZERO, pairs[0].1);
     let ask = |(start, goal): &(Pose2, Pose2)| {
-        let mut last = None;
-        let begin = support::cpu_ms();
+        let (mut last, mut ms, mut stages) = (None, f64::INFINITY, StageTimes::default());
         for _ in 0..ROUNDS {
+            let begin = support::cpu_ms();
             last = Some(planner.plan(grid, *start, Twist2::ZERO, *goal));
+            let spent = support::cpu_ms() - begin;
+            if spent < ms {
+                (ms, stages) = (spent, planner.stage_times());
+            }
         }
-        let ms = (support::cpu_ms() - begin) / ROUNDS as f64;
         let Some(Plan::Found(result)) = last else {
             println!("{start:?} {goal:?}: {}", last.unwrap());
             return None;
@@ -105,10 +122,41 @@ fn measure(grid: &OccupancyGrid, pairs: &[(Pose2, Pose2)]) -> Vec<Row> {
         support::judge(grid, &result, *start, *goal, RADIUS);
         let by = |room: f64| shortest::shortest(&field, RADIUS + room, start.position(), goal.position());
         let (shortest, roomy) = (by(0.0), by(result.min_clearance.clamp(0.0, MARGIN)));
-        let curves = result.curves().count();
-        Some(Row { start: *start, goal: *goal, ms, length: result.length, shortest, roomy, curves })
+        let (curves, way) = (result.curves().count(), result.way_points.length());
+        Some(Row {
+            start: *start,
+            goal: *goal,
+            ms,
+            length: result.length,
+            way,
+            shortest,
+            roomy,
+            curves,
+            stages,
+        })
     };
     pairs.iter().filter_map(ask).collect()
+}
+
+/// The wall clock, for the stages' shares.
+fn seconds() -> f64 {
+    static BEGIN: OnceLock<Instant> = OnceLock::new();
+    BEGIN.get_or_init(Instant::now).elapsed().as_secs_f64()
+}
+
+/// What each stage takes of all the time.
+fn shares_of(rows: &[Row]) -> String {
+    let sum = |of: fn(&StageTimes) -> f64| rows.iter().map(|row| of(&row.stages)).sum::<f64>();
+    let stages = [sum(|s| s.field), sum(|s| s.way_points), sum(|s| s.curve), sum(|s| s.timing)];
+    let total: f64 = stages.iter().sum();
+    let share = |i: usize| 100.0 * stages[i] / total;
+    format!(
+        "field {:.0} %, way-points {:.0} %, curve {:.0} %, timing {:.0} %",
+        share(0),
+        share(1),
+        share(2),
+        share(3)
+    )
 }
 
 fn print_row(name: &str, grid: &OccupancyGrid, asked: usize, rows: &[Row]) {
@@ -120,11 +168,12 @@ fn print_row(name: &str, grid: &OccupancyGrid, asked: usize, rows: &[Row]) {
     let ms = sorted(|row| row.ms);
     let ratio = sorted(|row| row.length / row.roomy);
     let bare = sorted(|row| row.length / row.shortest);
+    let way = sorted(|row| row.way / row.roomy);
     let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
     let at = |values: &[f64], share: f64| values[((values.len() - 1) as f64 * share).round() as usize];
     let one = rows.iter().filter(|row| row.curves == 1).count();
     println!(
-        "| {name} | {} x {} | {} of {asked} | {one} | {:.2} | {:.2} | {:.2} | {:.3} | {:.3} | {:.3} | {:.3} |",
+        "| {name} | {} x {} | {} of {asked} | {one} | {:.2} | {:.2} | {:.2} | {:.3} | {:.3} | {:.3} | {:.3} | {:.3} |",
         grid.geometry().width,
         grid.geometry().height,
         rows.len(),
@@ -133,9 +182,15 @@ fn print_row(name: &str, grid: &OccupancyGrid, asked: usize, rows: &[Row]) {
         at(&ms, 1.0),
         mean(&ratio),
         at(&ratio, 1.0),
+        at(&way, 1.0),
         mean(&bare),
         at(&bare, 1.0)
     );
+}
+
+/// The word after an option.
+fn argument(option: &str) -> Option<String> {
+    std::env::args().skip_while(|word| word != option).nth(1)
 }
 
 /// Questions between places that 4-neighbour moves between free centres connect.
@@ -144,7 +199,7 @@ fn random_pairs(grid: &OccupancyGrid, count: usize) -> Vec<(Pose2, Pose2)> {
     let geometry = *grid.geometry();
     let sure = RADIUS + geometry.resolution / 2.0;
     let open = |cell: CellIndex| field.at_cell(cell) >= sure && grid.get(cell) == Cell::Free;
-    let mut seed = 1_u64;
+    let mut seed = argument("--seed").map_or(1_u64, |seed| seed.parse().unwrap());
     let mut next = move || {
         seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (seed >> 33) as f64 / f64::from(1_u32 << 31)

@@ -1,7 +1,6 @@
 //! Distances to the squares themselves: what a promise of clearance rests on.
 
 use super::{DistanceField, UnknownIs};
-use crate::geometry::box_gap;
 use trundle_core::{GridGeometry, Vector2};
 
 /// Rounding of the stored distances (f32) that a comparison forgives, m.
@@ -84,15 +83,30 @@ impl DistanceField {
         }
     }
 
+    /// Of each column, the nearest square is as many rows from the point's row as its gap says, above or below: a square further
+    /// off on the other side is no nearer to any point of the row.
     fn nearest_square(&self, point: Vector2, cap: f64) -> f64 {
-        let reach = Vector2::repeat(cap + self.geometry.resolution / 2.0);
-        let half = self.geometry.resolution / 2.0;
-        let mut best = cap;
-        self.for_obstacles_in(point - reach, point + reach, |linear| {
-            let centre = self.geometry.center(self.geometry.cell(linear));
-            best = best.min(box_gap(point, centre, half).norm());
-        });
-        best
+        let GridGeometry { resolution, origin, width, height } = self.geometry;
+        let at = (point - origin) / resolution;
+        let reach = cap / resolution;
+        let index = |at: f64, size: usize| at.floor().clamp(0.0, size as f64 - 1.0) as usize;
+        let row = index(at.y, height);
+        let mut best = reach * reach;
+        for col in index(at.x - reach, width)..=index(at.x + reach, width) {
+            let gap = usize::from(self.gap[row * width + col]);
+            let across = (at.x - (col as f64 + 0.5)).abs() - 0.5;
+            let beside = across.max(0.0).powi(2);
+            if gap as f64 - 1.0 > reach || beside >= best {
+                continue;
+            }
+            for other in [row.checked_sub(gap), Some(row + gap)].into_iter().flatten() {
+                if other < height && self.gap[other * width + col] == 0 {
+                    let along = (at.y - (other as f64 + 0.5)).abs() - 0.5;
+                    best = best.min(beside + along.max(0.0).powi(2));
+                }
+            }
+        }
+        (best.sqrt() * resolution).min(cap)
     }
 
     /// How far the point is inside the grid where outside counts as an obstacle, m.

@@ -54,6 +54,8 @@ fn outermost(mut cols: Range<usize>, changed: impl Fn(usize) -> bool) -> Option<
 #[derive(Debug, Clone, PartialEq)]
 pub struct DistanceField {
     geometry: GridGeometry,
+    /// Cells a metre.
+    per_metre: f64,
     unknown: UnknownIs,
     /// From cell centres to squares; 0 marks an obstacle.
     distance: Vec<f32>,
@@ -72,7 +74,8 @@ impl DistanceField {
     /// cells that the grid does not reach are unknown.
     pub(crate) fn over(geometry: GridGeometry, grid: &OccupancyGrid, unknown: UnknownIs) -> Self {
         let (distance, gap) = (vec![0.0; geometry.len()], vec![0; geometry.len()]);
-        let mut field = Self { geometry, unknown, distance, gap, blocks: Blocks::default() };
+        let per_metre = geometry.resolution.recip();
+        let mut field = Self { geometry, per_metre, unknown, distance, gap, blocks: Blocks::default() };
         field.blocks.resize(&geometry);
         field.refresh(grid, &Window::whole(&geometry));
         field
@@ -145,7 +148,34 @@ impl DistanceField {
     ///
     /// Never more than res^2 / 4d above the truth, d the distance. Outside the grid: the border's value where unknown
     /// is free (a lower bound), 0 where unknown is an obstacle. NaN: 0.
+    #[inline]
     pub fn distance(&self, point: Vector2) -> f64 {
+        self.among_centres(point).unwrap_or_else(|| self.distance_anywhere(point))
+    }
+
+    /// [`DistanceField::distance`] between four centres; `None` where there are none around the point.
+    #[inline]
+    fn among_centres(&self, point: Vector2) -> Option<f64> {
+        let GridGeometry { origin, width, .. } = self.geometry;
+        let (x, y) =
+            ((point.x - origin.x) * self.per_metre - 0.5, (point.y - origin.y) * self.per_metre - 0.5);
+        let (col, row) = (x as usize, y as usize);
+        // A whole column and row further on, so that neither wraps.
+        if !(x >= 0.0 && y >= 0.0 && col + 1 < width) {
+            return None;
+        }
+        let at = row * width + col;
+        let (below, above) = (self.distance.get(at..at + 2)?, self.distance.get(at + width..at + width + 2)?);
+        let (u, v) = (x - col as f64, y - row as f64);
+        let along = |pair: &[f32]| {
+            let (a, b) = (f64::from(pair[0]), f64::from(pair[1]));
+            a + (b - a) * u
+        };
+        let (low, high) = (along(below), along(above));
+        Some(low + (high - low) * v)
+    }
+
+    fn distance_anywhere(&self, point: Vector2) -> f64 {
         let Some(stencil) = self.stencil(point) else { return 0.0 };
         let [[a, b], [c, d]] = stencil.corners;
         let (u, v) = (stencil.u, stencil.v);

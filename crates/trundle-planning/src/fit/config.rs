@@ -16,11 +16,11 @@ pub struct CurveConfig {
     /// eps of METHODS A5: the least tangent at the ends, as a share of unit speed, 0.01 to 1. Default 0.7 (ours):
     /// a slower parameter bends sharply.
     pub least_tangent: f64,
-    /// Curvature above which a curve is refused and the way is split, 1/m, 0.1 to 1000. Default 8 (ours): there a Kobuki
-    /// still drives 0.36 m/s.
+    /// Highest curvature, 1/m, 0.1 to 1000: a bound of the programme; where no curve keeps it, the robot turns on the spot or
+    /// the way is split. Default 8 (ours): there a Kobuki still drives 0.36 m/s.
     pub max_curvature: f64,
     /// A curve into the headings at the ends may be this much longer than the way, 1 to 10; else the robot turns on the
-    /// spot. Default 1.04 (ours): with the way itself within 1 % of the shortest.
+    /// spot. Default 1.03 (ours): with the way itself within 2 % of the shortest, 5 % in all.
     pub detour: f64,
     /// Turn on the spot first when the way starts this far off the heading, rad, 0 to pi. Default 60 deg (ours).
     pub turn_first: f64,
@@ -38,7 +38,7 @@ impl Default for CurveConfig {
             reach: 0.8,
             least_tangent: 0.7,
             max_curvature: 8.0,
-            detour: 1.04,
+            detour: 1.03,
             turn_first: 60f64.to_radians(),
             turn_last: 100f64.to_radians(),
         }

@@ -12,6 +12,7 @@
 //! | theta_0, theta_f | [`Tangent::Heading`] | rad |
 //! | eps of x' cos theta + y' sin theta >= eps | `least_tangent` | 1 |
 
+mod bend;
 mod config;
 mod layout;
 mod objective;
@@ -22,7 +23,7 @@ pub use config::CurveConfig;
 use crate::bezier::BezierPiece;
 use crate::corridor::{HalfPlane, corridor};
 use crate::curve::{ActiveRow, Curve};
-use crate::fit::{layout::Layout, rows::Rows, rows::Side};
+use crate::fit::{bend::Place, layout::Layout, rows::Rows, rows::Side};
 use crate::space::Space;
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, SolverStatus, SupportedConeT};
@@ -70,8 +71,9 @@ pub(crate) fn stretches(space: &Space<'_>, way: &[Vector2], config: &CurveConfig
 
 /// The curve along `stretches` with these end tangents; `smoothing` is a length, m. `None` when there is none.
 ///
-/// Few of the corridors' sides matter: the programme is solved without them first, then again with those that the last
-/// curve comes near, until it keeps all (cutting planes). The result is that of the whole programme.
+/// Few of the corridors' sides matter: the programme is solved with those near the way first, then again with those that the
+/// last curve comes near, until it keeps all (cutting planes). The result is that of the whole programme. Where it bends more
+/// than `config.max_curvature`, the bound joins in; where that has no solution, the curve that bends is given.
 pub(crate) fn fit(
     stretches: &[Stretch],
     tangents: (Tangent, Tangent),
@@ -80,7 +82,8 @@ pub(crate) fn fit(
 ) -> Option<Curve> {
     let layout = Layout { degree: config.degree, pieces: stretches.len() };
     let (p, q) = objective::objective(stretches, layout, smoothing);
-    let mut sides: Vec<Side> = Vec::new();
+    let (mut sides, mut places): (Vec<Side>, Vec<Place>) = (nearby(stretches, config.degree), Vec::new());
+    let (mut bent, mut bends) = (None, 0);
     for _ in 0..ROUNDS {
         let mut rows = Rows::new(layout, stretches);
         rows.ends(tangents.0, tangents.1);
@@ -88,26 +91,61 @@ pub(crate) fn fit(
         rows.forward(tangents.0, tangents.1, config.least_tangent);
         let before = rows.count();
         rows.sides(&sides);
+        if let Some(bent) = &bent {
+            rows.bends(bent, &places, config.max_curvature);
+        }
         let cones = [
             SupportedConeT::ZeroConeT(equalities),
             SupportedConeT::NonnegativeConeT(rows.count() - equalities),
         ];
         let (a, b) = rows.finish();
-        let (mut x, multipliers) = solve(&p, &q, &a, &b, &cones)?;
+        let Some((mut x, multipliers)) = solve(&p, &q, &a, &b, &cones) else { return bent };
         settle(&mut x, stretches, layout, tangents);
         let curve = assemble(&x, stretches, layout);
         let crossed = crossed(&curve, stretches, &sides);
         if crossed.is_empty() {
             let corridors = stretches.iter().map(|stretch| stretch.planes.clone()).collect();
-            return Some(curve.within(corridors, active(&sides, &multipliers[before..])));
+            let curve = curve.within(corridors, active(&sides, &multipliers[before..]));
+            bends += 1;
+            match bend::bent(&curve, config.max_curvature) {
+                Some(more) if !more.is_empty() && bends <= BENDS => {
+                    places
+                        .extend(more.into_iter().filter(|place| !places.contains(place)).collect::<Vec<_>>());
+                    bent = Some(curve);
+                }
+                _ => return Some(curve),
+            }
         }
         sides.extend(crossed);
     }
-    None
+    bent
 }
 
-/// Rounds of adding sides.
-const ROUNDS: usize = 12;
+/// Sides that the way itself comes near, at the control points towards that end: most of those that will matter.
+fn nearby(stretches: &[Stretch], degree: usize) -> Vec<Side> {
+    let mut sides = Vec::new();
+    let last = stretches.len() - 1;
+    for (piece, stretch) in stretches.iter().enumerate() {
+        for (plane, half) in stretch.planes.iter().enumerate() {
+            let near = |point: Vector2| half.normal.dot(&point) > half.offset - NEAR_WAY;
+            let mut add = |control| sides.push(Side { piece, control, plane });
+            if near(stretch.from) {
+                (usize::from(piece == 0)..=degree / 2).for_each(&mut add);
+            }
+            if near(stretch.to) {
+                (degree / 2 + 1..=degree - usize::from(piece == last)).for_each(&mut add);
+            }
+        }
+    }
+    sides
+}
+
+/// Sides nearer than this to the way are in the first programme, m.
+const NEAR_WAY: f64 = 0.03;
+/// Rounds of adding sides and bends.
+const ROUNDS: usize = 16;
+/// Times that the curvature's bound is linearised.
+const BENDS: usize = 5;
 /// A control point so far beyond a side is rounding, m.
 const BEYOND: f64 = 2e-5;
 /// Sides nearer than this to a control point may be crossed next, m.

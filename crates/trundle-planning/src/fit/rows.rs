@@ -2,6 +2,7 @@
 
 use super::layout::{Layout, Triplets};
 use super::{Stretch, Tangent};
+use crate::bezier::binomial;
 use clarabel::algebra::CscMatrix;
 use trundle_core::Vector2;
 
@@ -81,6 +82,28 @@ impl<'a> Rows<'a> {
             }
             self.right.push(plane.offset);
         }
+    }
+
+    /// first . p'(u) + second . p''(u) <= right on a piece.
+    pub(super) fn derivatives(&mut self, piece: usize, u: f64, first: Vector2, second: Vector2, right: f64) {
+        let (n, span) = (self.layout.degree, self.stretches[piece].length());
+        let basis = |degree: usize, k: isize| match usize::try_from(k) {
+            Ok(k) if k <= degree => {
+                binomial(degree, k) * u.powi(k as i32) * (1.0 - u).powi((degree - k) as i32)
+            }
+            _ => 0.0,
+        };
+        for k in 0..=n {
+            let i = k as isize;
+            let by_first = (basis(n - 1, i - 1) - basis(n - 1, i)) * n as f64 / span;
+            let twice = basis(n - 2, i - 2) - 2.0 * basis(n - 2, i - 1) + basis(n - 2, i);
+            let by_second = twice * (n * (n - 1)) as f64 / (span * span);
+            let (terms, count) = self.layout.control(piece, k, span);
+            for (vector, share) in &terms[..count] {
+                self.put(*vector, (first * by_first + second * by_second) * *share);
+            }
+        }
+        self.right.push(right);
     }
 
     fn fix(&mut self, vector: usize, at: Vector2) {

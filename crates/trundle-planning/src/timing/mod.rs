@@ -33,18 +33,54 @@ pub(crate) fn trajectory(
     ceiling: impl Fn(Pose2) -> f64,
 ) -> Trajectory {
     let mut points = vec![TrajectoryPoint { time: 0.0, pose: start, twist: Twist2::ZERO }];
+    time_phases(phases, v_start, drive, &ceiling, &mut points);
+    Trajectory::new(points).expect(TIMES_RISE)
+}
+
+/// Like [`trajectory`], with a stop `arc` m along the first phase, which must be a curve; and when the robot stands there, s.
+/// `None` where it cannot stop there.
+pub(crate) fn trajectory_with_stop(
+    start: Pose2,
+    phases: &[Phase],
+    v_start: f64,
+    drive: &Drive,
+    ceiling: impl Fn(Pose2) -> f64,
+    arc: f64,
+) -> Option<(Trajectory, f64)> {
+    let (Phase::Drive(curve), rest) = phases.split_first()? else { return None };
+    let samples = curve.samples(SPACING);
+    let cut = samples.partition_point(|sample| sample.arc < arc).clamp(1, samples.len() - 1);
+    if !speeds::can_follow(&samples[..=cut], v_start, drive) {
+        return None;
+    }
+    let mut points = vec![TrajectoryPoint { time: 0.0, pose: start, twist: Twist2::ZERO }];
+    time_curve(curve, &samples[..=cut], v_start, drive, &ceiling, &mut points);
+    let stands = points.last().map_or(0.0, |point| point.time);
+    if cut + 1 < samples.len() {
+        time_curve(curve, &samples[cut..], 0.0, drive, &ceiling, &mut points);
+    }
+    time_phases(rest, 0.0, drive, &ceiling, &mut points);
+    Some((Trajectory::new(points).expect(TIMES_RISE), stands))
+}
+
+const TIMES_RISE: &str = "invariant: times rise from 0 and numbers are finite";
+
+fn time_phases(
+    phases: &[Phase],
+    v_start: f64,
+    drive: &Drive,
+    ceiling: &impl Fn(Pose2) -> f64,
+    points: &mut Vec<TrajectoryPoint>,
+) {
     for (i, phase) in phases.iter().enumerate() {
         let v = if i == 0 { v_start } else { 0.0 };
         match phase {
-            Phase::Turn { from, angle } => turn::time_turn(*from, *angle, drive, &mut points),
+            Phase::Turn { from, angle } => turn::time_turn(*from, *angle, drive, points),
             Phase::Drive(curve) => {
-                let samples = curve.samples(SPACING);
-                let profile = Profile::new(&samples, v, drive, &ceiling);
-                time_curve(curve, &samples, &profile, drive.config.period, &mut points);
+                time_curve(curve, &curve.samples(SPACING), v, drive, ceiling, points);
             }
         }
     }
-    Trajectory::new(points).expect("invariant: times rise from 0 and numbers are finite")
 }
 
 /// Whether a robot at `v` m/s can drive the first of `phases` within its limits, and come to rest on it.
@@ -55,24 +91,27 @@ pub(crate) fn can_follow(phases: &[Phase], v: f64, drive: &Drive) -> bool {
     }
 }
 
-/// Appends samples a period apart; the last one exactly at the curve's end.
+/// Appends samples a period apart over the part of the curve that `samples` cover; the last one exactly at its end.
 fn time_curve(
     curve: &Curve,
     samples: &[CurveSample],
-    profile: &Profile,
-    period: f64,
+    v_start: f64,
+    drive: &Drive,
+    ceiling: &impl Fn(Pose2) -> f64,
     points: &mut Vec<TrajectoryPoint>,
 ) {
+    let profile = Profile::new(samples, v_start, drive, ceiling);
     let begin = points.last().map_or(0.0, |point| point.time);
     let at = |s: f64, v: f64, time: f64| {
         let (pose, curvature) = curve.pose_and_curvature(s);
         TrajectoryPoint { time: begin + time, pose, twist: Twist2::new(v, curvature * v) }
     };
     points.pop();
-    points.push(at(0.0, profile.at(0.0).1, 0.0));
-    let duration = profile.duration();
+    points.push(at(samples[0].s, profile.at(0.0).1, 0.0));
+    let (duration, period) = (profile.duration(), drive.config.period);
     let mut after = 1;
     let count = ((duration - LEAST_GAP) / period).floor().max(0.0) as usize;
+    points.reserve(count + 1);
     for k in 1..=count {
         let time = k as f64 * period;
         let (arc, v) = profile.at(time);
@@ -83,5 +122,5 @@ fn time_curve(
         let share = ((arc - low.arc) / (high.arc - low.arc).max(1e-12)).clamp(0.0, 1.0);
         points.push(at(low.s + (high.s - low.s) * share, v, time));
     }
-    points.push(at(curve.span(), 0.0, duration));
+    points.push(at(samples[samples.len() - 1].s, 0.0, duration));
 }

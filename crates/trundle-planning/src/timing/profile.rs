@@ -49,7 +49,7 @@ impl Profile {
             return Self { window, lead: window, ..steep };
         }
         let hold = v_start * window / 2.0;
-        let from = samples.partition_point(|sample| sample.arc < hold);
+        let from = samples.partition_point(|sample| sample.arc < samples[0].arc + hold);
         if from + 1 < samples.len() {
             let after = speeds(&samples[from..], v_start, drive, &ceiling, reach);
             let free = speeds(samples, v_start, drive, &ceiling, reach);
@@ -64,7 +64,9 @@ impl Profile {
 
     /// Evenly accelerated from sample to sample.
     fn steep(samples: &[CurveSample], speeds: &[f64]) -> Self {
-        let mut knots = vec![Knot { time: 0.0, arc: 0.0, v: speeds[0], a: 0.0, area: 0.0 }];
+        let first = Knot { time: 0.0, arc: samples[0].arc, v: speeds[0], a: 0.0, area: 0.0 };
+        let mut knots = Vec::with_capacity(samples.len());
+        knots.push(first);
         for (pair, v) in samples.windows(2).zip(speeds.windows(2)) {
             let way = pair[1].arc - pair[0].arc;
             if way <= 0.0 || v[0] + v[1] <= 0.0 {

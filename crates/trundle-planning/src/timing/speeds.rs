@@ -139,9 +139,10 @@ fn ceilings(samples: &[CurveSample], drive: &Drive, ceiling: impl Fn(Pose2) -> f
 
 /// Evenly from the first speed to rest at the end.
 fn stop_short(v: &mut [f64], samples: &[CurveSample]) {
-    let length = samples[samples.len() - 1].arc;
+    let begin = samples[0].arc;
+    let length = samples[samples.len() - 1].arc - begin;
     let first = v[0];
     for (v, sample) in v.iter_mut().zip(samples) {
-        *v = v.min(first * (1.0 - sample.arc / length).max(0.0).sqrt());
+        *v = v.min(first * (1.0 - (sample.arc - begin) / length).max(0.0).sqrt());
     }
 }

@@ -1,8 +1,10 @@
 //! Questions that have no way for an answer.
 
-use crate::support::{at_home, found, planner};
-use trundle_core::{DifferentialDrive, DriveLimits, Footprint, OccupancyGrid, Pose2, Twist2};
-use trundle_planning::{Plan, Planner, PlannerConfig, UnknownIs};
+use crate::support::{at_home, found, judge, planner, room};
+use trundle_core::{
+    Cell, CellIndex, DifferentialDrive, DriveLimits, Footprint, OccupancyGrid, Pose2, Twist2, Vector2,
+};
+use trundle_planning::{Mover, Plan, Planner, PlannerConfig, Replan, RoomConfig, UnknownIs, WayPointGraph};
 
 const MAP: &str = "
     ????????????
@@ -88,4 +90,118 @@ fn configurations_are_checked_by_name() {
     let error =
         Planner::new(config, &Footprint::KOBUKI, DriveLimits::KOBUKI, DifferentialDrive::KOBUKI).unwrap_err();
     assert_eq!(error.field, "curve.degree");
+}
+
+/// A wall below, free above.
+fn beside_a_wall() -> OccupancyGrid {
+    OccupancyGrid::from_ascii(0.05, &format!("{}\n{}", vec![".".repeat(60); 38].join("\n"), "#".repeat(60)))
+        .unwrap()
+}
+
+#[test]
+fn a_start_within_the_clearance_is_planned_out_of() {
+    let grid = beside_a_wall();
+    let goal = Pose2::new(2.5, 1.5, 0.0);
+    for missing in [0.01, 0.03, 0.059] {
+        let start = Pose2::new(0.5, 0.05 + 0.17 - missing, 0.0);
+        let plan = found(planner(at_home(), 0.17).plan(&grid, start, Twist2::ZERO, goal));
+        // Never nearer than it stands, and clear of the wall once it has left.
+        judge(&grid, &plan, start, goal, 0.17 - missing);
+        let far = plan.trajectory.points().iter().filter(|p| p.pose.distance(&start) > missing + 0.16);
+        assert!(far.map(|p| room(&grid, p.pose.position())).fold(9.0, f64::min) >= 0.17 - 2e-4);
+    }
+    for missing in [0.07, 0.15, 0.2] {
+        let start = Pose2::new(0.5, 0.05 + 0.17 - missing, 0.0);
+        let plan = planner(at_home(), 0.17).plan(&grid, start, Twist2::ZERO, goal);
+        let Plan::StartInObstacle { clearance } = plan else { panic!("{plan}") };
+        assert!((clearance + missing.min(0.17)).abs() < 1e-6, "{clearance} {missing}");
+    }
+}
+
+#[test]
+fn unknown_space_is_allowed_dear_or_forbidden() {
+    // A known way around an unknown field: 1.4 times as long.
+    let mut grid = OccupancyGrid::from_ascii(0.1, &vec![".".repeat(60); 40].join("\n")).unwrap();
+    for col in 20..40 {
+        (5..40).for_each(|row| grid.set(CellIndex { col, row }, Cell::Unknown));
+    }
+    let (start, goal) = (Pose2::new(1.0, 1.4, 0.0), Pose2::new(5.0, 1.4, 0.0));
+    let ask = |unknown_weight: f64, unknown: UnknownIs| {
+        let config = PlannerConfig {
+            unknown,
+            room: RoomConfig { unknown_weight, ..RoomConfig::default() },
+            ..at_home()
+        };
+        let plan = found(planner(config, 0.17).plan(&grid, start, Twist2::ZERO, goal));
+        // The way keeps out of what is dear; the curve may cut its corners.
+        let deep =
+            |at: Vector2| [at, at - Vector2::new(0.0, 0.17)].iter().all(|p| grid.at(*p) == Cell::Unknown);
+        let unseen = plan.trajectory.points().iter().filter(|p| deep(p.pose.position())).count();
+        (unseen, plan.length)
+    };
+    let (allowed, length) = ask(0.0, UnknownIs::Free);
+    assert!(allowed > 0 && (length - 4.0).abs() < 0.01, "allowed: {length}");
+    let (unseen, length) = ask(5.0, UnknownIs::Free);
+    assert!(unseen * 4 < allowed && length > 4.3, "dear: {unseen} of {allowed}, {length}");
+    let (unseen, _) = ask(0.0, UnknownIs::Obstacle);
+    assert_eq!(unseen, 0, "forbidden");
+    (0..5).for_each(|row| grid.set(CellIndex { col: 30, row }, Cell::Unknown));
+    let walled = PlannerConfig { unknown: UnknownIs::Obstacle, ..at_home() };
+    let plan = planner(walled, 0.17).plan(&grid, start, Twist2::ZERO, goal);
+    assert!(matches!(plan, Plan::Blocked { nearest } if nearest.x < 3.0), "{plan}");
+}
+
+#[test]
+fn a_gap_of_one_cell_lets_through_what_fits_and_nothing_else() {
+    let wall = format!("{}.{}", "#".repeat(20), "#".repeat(19));
+    let open = vec![".".repeat(40); 15].join("\n");
+    let grid = OccupancyGrid::from_ascii(0.1, &format!("{open}\n{wall}\n{open}")).unwrap();
+    let (start, goal) = (Pose2::new(0.6, 0.5, 0.0), Pose2::new(3.4, 2.6, 1.0));
+    for radius in [0.03, 0.045, 0.0499] {
+        let plan = found(planner(at_home(), radius).plan(&grid, start, Twist2::ZERO, goal));
+        judge(&grid, &plan, start, goal, radius);
+    }
+    for radius in [0.0501, 0.06, 0.17] {
+        let plan = planner(at_home(), radius).plan(&grid, start, Twist2::ZERO, goal);
+        assert!(matches!(plan, Plan::Blocked { nearest } if nearest.y < 1.5), "{radius}: {plan}");
+    }
+}
+
+#[test]
+fn the_smallest_questions_have_answers() {
+    let speck = OccupancyGrid::from_ascii(0.5, ".").unwrap();
+    let here = Pose2::new(0.25, 0.25, 0.0);
+    assert_eq!(found(planner(at_home(), 0.1).plan(&speck, here, Twist2::ZERO, here)).length, 0.0);
+    let hair = Pose2::new(0.2504, 0.25, 0.0);
+    assert!(found(planner(at_home(), 0.1).plan(&speck, here, Twist2::ZERO, hair)).length < 1e-3);
+    let near = Pose2::new(0.2525, 0.25, 0.0);
+    let plan = found(planner(at_home(), 0.1).plan(&speck, here, Twist2::ZERO, near));
+    assert!((plan.length - 0.0025).abs() < 1e-3 && plan.trajectory.end().distance(&near) < 1.1e-3);
+    let wall = OccupancyGrid::from_ascii(0.5, "#").unwrap();
+    let plan = planner(at_home(), 0.1).plan(&wall, here, Twist2::ZERO, here);
+    assert!(matches!(plan, Plan::StartInObstacle { .. }), "{plan}");
+}
+
+#[test]
+fn numbers_that_are_none_are_refused_at_every_door() {
+    let grid = beside_a_wall();
+    let (here, there) = (Pose2::new(0.5, 1.0, 0.0), Pose2::new(2.5, 1.0, 0.0));
+    let nowhere = Pose2 { x: f64::NAN, ..there };
+    let mut planner = planner(at_home(), 0.17);
+    let first = found(planner.plan(&grid, here, Twist2::ZERO, there));
+    let refused = |plan: &Plan| matches!(plan, Plan::Refused(invalid) if invalid.field == "goal x");
+    assert!(refused(&planner.plan_among(&grid, &[], here, Twist2::ZERO, nowhere)));
+    let (at, why) = planner.plan_tour(&grid, here, Twist2::ZERO, &[there, nowhere]).unwrap_err();
+    assert!(at == 1 && refused(&why));
+    let graph = WayPointGraph::new(vec![Vector2::new(1.0, 1.0)], vec![]).unwrap();
+    assert!(refused(&planner.plan_on_graph(&grid, &graph, here, Twist2::ZERO, nowhere)));
+    let replan = planner.replan(&grid, &[], &first, 1.0, nowhere);
+    assert!(matches!(replan, Replan::New(plan) if refused(&plan)));
+    // A time that is none, or after the end, is no panic.
+    for time in [f64::NAN, -5.0, 1e9] {
+        let _ = planner.still_free(&grid, &first.trajectory, time);
+        let _ = planner.replan(&grid, &[], &first, time, there);
+    }
+    let still = Mover::new(here.position(), Vector2::zeros(), 0.3).unwrap();
+    let _ = planner.plan_among(&grid, &[still], here, Twist2::ZERO, there);
 }

@@ -2,7 +2,7 @@
 
 use crate::support::{at_home, found, judge, least_room, planner};
 use trundle_core::{Cell, GridGeometry, OccupancyGrid, Pose2, Twist2, Vector2};
-use trundle_planning::{Plan, PlannerConfig, SpeedMask, WayPointGraph};
+use trundle_planning::{Plan, PlannerConfig, Replan, SpeedMask, WayPointGraph};
 
 const RADIUS: f64 = 0.1755;
 
@@ -29,6 +29,55 @@ fn what_is_kept_out_is_kept_out() {
     planner.set_keep_out(None);
     let straight = found(planner.plan(&grid, start, Twist2::ZERO, goal));
     assert!((straight.length - 8.0).abs() < 1e-3);
+}
+
+#[test]
+fn a_plan_is_no_longer_free_where_a_mask_forbids_it_since() {
+    let grid = hall();
+    let (start, goal) = (Pose2::new(1.0, 3.0, 0.0), Pose2::new(9.0, 3.0, 0.0));
+    let mut planner = planner(at_home(), RADIUS);
+    let plan = found(planner.plan(&grid, start, Twist2::ZERO, goal));
+    let strip = OccupancyGrid::filled(
+        GridGeometry::new(0.03, Vector2::new(5.0, 2.0), 1, 60).unwrap(),
+        Cell::Occupied,
+    );
+    planner.set_keep_out(Some(strip.clone()));
+    let hit = planner.still_free(&grid, &plan.trajectory, 0.0).unwrap_err();
+    assert!((hit.pose.x - (5.0 - RADIUS)).abs() < 0.02, "{hit}");
+    let Replan::New(Plan::Found(around)) = planner.replan(&grid, &[], &plan, 2.0, goal) else {
+        panic!("kept")
+    };
+    assert!(around.is_continuous && planner.still_free(&grid, &around.trajectory, 0.0).is_ok());
+    planner.set_keep_out(None);
+    assert!(planner.still_free(&grid, &plan.trajectory, 0.0).is_ok());
+    // Seen from another frame: beside everything, it forbids nothing.
+    let elsewhere = GridGeometry::new(0.03, Vector2::new(500.0, -80.0), 9, 9).unwrap();
+    planner.set_keep_out(Some(OccupancyGrid::filled(elsewhere, Cell::Occupied)));
+    assert_eq!(planner.replan(&grid, &[], &plan, 2.0, goal), Replan::Keep);
+    assert_eq!(found(planner.plan(&grid, start, Twist2::ZERO, goal)).trajectory, plan.trajectory);
+}
+
+#[test]
+fn a_mask_holds_beside_the_map_too() {
+    let open = ".".repeat(40);
+    let barred = format!("{}#{}", ".".repeat(20), ".".repeat(19));
+    let art = format!("{open}\n{open}\n{barred}\n{open}\n{open}");
+    let mut grid = OccupancyGrid::from_ascii(0.1, &art).unwrap();
+    (0..5).for_each(|row| grid.set(trundle_core::CellIndex { col: 20, row }, Cell::Occupied));
+    let (start, goal) = (Pose2::new(0.5, 0.25, 0.0), Pose2::new(3.5, 0.25, 0.0));
+    let mut planner = planner(PlannerConfig::default(), RADIUS);
+    let over = found(planner.plan(&grid, start, Twist2::ZERO, goal));
+    assert!(over.trajectory.points().iter().any(|p| !(0.0..0.5).contains(&p.pose.y)), "beside the map");
+    let above = GridGeometry::new(0.1, Vector2::new(1.0, 0.5), 20, 20).unwrap();
+    planner.set_keep_out(Some(OccupancyGrid::filled(above, Cell::Occupied)));
+    let below = found(planner.plan(&grid, start, Twist2::ZERO, goal));
+    assert!(
+        below
+            .trajectory
+            .points()
+            .iter()
+            .all(|p| !(1.0..3.0).contains(&p.pose.x) || p.pose.y < 0.5 - RADIUS + 1e-3)
+    );
 }
 
 #[test]
@@ -92,6 +141,19 @@ fn lanes_are_kept_to_and_blocked_ones_avoided() {
     (0..60).for_each(|row| grid.set(trundle_core::CellIndex { col: 50, row }, Cell::Occupied));
     let blocked = planner.plan_on_graph(&grid, &graph, start, Twist2::ZERO, goal);
     assert!(matches!(blocked, Plan::Blocked { .. }), "{blocked}");
+}
+
+#[test]
+fn a_tour_keeps_to_lanes_that_are_one_way() {
+    let at = |x: f64, y: f64| Vector2::new(x, y);
+    let nodes = vec![at(2.0, 1.0), at(8.0, 1.0), at(8.0, 5.0), at(2.0, 5.0)];
+    let ring = WayPointGraph::one_way(nodes, vec![(0, 1), (1, 2), (2, 3), (3, 0)]).unwrap();
+    let start = Pose2::new(1.8, 1.0, 0.0);
+    let goals = [Pose2::new(8.3, 1.0, 0.0), Pose2::new(1.7, 1.0, 3.0)];
+    let mut planner = planner(at_home(), RADIUS);
+    let tour = planner.plan_tour_on_graph(&hall(), &ring, start, Twist2::ZERO, &goals).unwrap();
+    assert!(tour.legs[0].length < 7.0 && tour.legs[1].length > 13.0, "back the long way round");
+    assert!(tour.legs[1].way_points.points().contains(&at(2.0, 5.0)));
 }
 
 #[test]

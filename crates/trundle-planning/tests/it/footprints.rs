@@ -137,3 +137,27 @@ fn an_outline_in_a_wall_is_refused_with_reasons() {
     let result = found(plan(beside, free));
     judge_cart(&grid, &result, beside, free);
 }
+
+#[test]
+fn a_long_robot_that_moves_is_planned_for_as_it_moves() {
+    let (start, goal) = (Pose2::new(0.7, 0.7, 1.3), Pose2::new(3.7, 1.1, -2.0));
+    let grid = two_rooms(5);
+    let mut planner = cart_planner(at_home());
+    let first = found(planner.plan(&grid, start, Twist2::ZERO, goal));
+    let (mut moving, mut continued) = (0, 0);
+    for k in 1..20 {
+        let now = first.trajectory.at(first.trajectory.duration() * f64::from(k) / 20.0);
+        if now.twist.v < 0.05 {
+            continue;
+        }
+        let plan = found(planner.plan(&grid, now.pose, now.twist, Pose2::new(3.7, 0.8, 1.0)));
+        judge_cart(&grid, &plan, now.pose, Pose2::new(3.7, 0.8, 1.0));
+        let begin = plan.trajectory.points()[0].twist;
+        moving += 1;
+        continued += usize::from(plan.is_continuous);
+        let kept = (begin.v - now.twist.v).abs() < 1e-9 && (begin.omega - now.twist.omega).abs() < 1e-3;
+        assert!(if plan.is_continuous { kept } else { begin == Twist2::ZERO }, "{begin:?} {:?}", now.twist);
+    }
+    eprintln!("an outline under way: {continued} of {moving} plans go on from its motion");
+    assert!(moving >= 8 && continued * 10 >= moving * 9, "{continued} of {moving}");
+}

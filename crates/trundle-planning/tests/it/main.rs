@@ -5,6 +5,7 @@
 
 mod ascii;
 mod bad_input;
+mod curvature;
 mod discovery;
 mod errands;
 mod footprints;
@@ -16,3 +17,4 @@ mod replanning;
 mod size;
 mod support;
 mod timing;
+mod tracking;

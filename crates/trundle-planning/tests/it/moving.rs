@@ -19,6 +19,13 @@ fn least_gap(trajectory: &Trajectory, from: Vector2, velocity: Vector2) -> f64 {
     (0..=2000).map(|k| gap(f64::from(k) * 1e-3)).fold(9.0, f64::min)
 }
 
+/// The same while the steady motion is believed, 2 s.
+fn least_gap_within(trajectory: &Trajectory, from: Vector2, velocity: Vector2) -> f64 {
+    let gap =
+        |time: f64| (trajectory.at(time).pose.position() - from - velocity * time).norm() - PERSON - RADIUS;
+    (0..=2000).map(|k| gap(f64::from(k) * 1e-3)).fold(9.0, f64::min)
+}
+
 #[test]
 fn someone_who_crosses_is_let_pass_or_gone_around() {
     let (start, goal) = (Pose2::new(1.0, 2.0, 0.0), Pose2::new(5.0, 2.0, 0.0));
@@ -38,6 +45,34 @@ fn someone_who_crosses_is_let_pass_or_gone_around() {
         judge(&grid, &plan, start, goal, RADIUS);
         eprintln!("{:?}: {:.1} s of wait, {:.2} m", from.as_slice(), plan.wait, plan.length);
     }
+}
+
+/// Under way in a corridor too narrow to go around in.
+#[test]
+fn a_robot_that_moves_stops_for_someone_who_crosses_and_goes_on() {
+    let mut grid = hall(12);
+    // A door on either side, through which someone comes and goes.
+    (0..14).filter(|row| *row == 0 || *row == 13).for_each(|row| {
+        (28..36).for_each(|col| grid.set(trundle_core::CellIndex { col, row }, trundle_core::Cell::Free));
+    });
+    let (start, goal) = (Pose2::new(1.5, 0.7, 0.0), Pose2::new(8.0, 0.7, 0.0));
+    let mut waits = 0;
+    for (y, speed) in [(-0.6, 0.6), (0.0, 0.4), (-1.0, 0.9), (2.0, -0.6)] {
+        let (from, velocity) = (Vector2::new(3.2, y), Vector2::new(0.0, speed));
+        let mover = Mover::new(from, velocity, PERSON).unwrap();
+        let twist = Twist2::new(0.5, 0.0);
+        let mut planner = planner(at_home(), RADIUS);
+        let alone = found(planner.plan(&grid, start, twist, goal));
+        assert!(least_gap_within(&alone.trajectory, from, velocity) < 0.0, "no encounter at {y}");
+        let plan = found(planner.plan_among(&grid, &[mover], start, twist, goal));
+        assert!(plan.is_continuous && plan.trajectory.points()[0].twist.v == 0.5);
+        assert!(least_gap_within(&plan.trajectory, from, velocity) >= -2e-3, "{y}: {} s of wait", plan.wait);
+        judge(&grid, &plan, start, goal, RADIUS);
+        waits += usize::from(
+            plan.trajectory.points().iter().any(|p| p.time > 0.1 && p.twist.v == 0.0 && p.pose.x < 3.0),
+        );
+    }
+    assert!(waits >= 2, "{waits}");
 }
 
 #[test]

@@ -1,10 +1,12 @@
 mod palette;
 mod plan;
+mod plan_parts;
 mod run;
 mod trajectory;
 mod visual_map;
 
 pub use plan::{PlanScene, plan_picture};
+pub use plan_parts::{PlanParts, plan_part_pictures, speed_charts};
 pub use run::{CameraView, RunReport};
 pub use trajectory::trajectory_picture;
 pub use visual_map::{VisualMapScene, visual_map_picture};

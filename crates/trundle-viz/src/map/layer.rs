@@ -1,4 +1,5 @@
 use super::draw::{draw_dot, draw_line, draw_outline, draw_pose};
+use super::shade::Shade;
 use super::style::{DotStyle, LineStyle, PoseStyle};
 use super::view::View;
 use crate::canvas::{Canvas, Pen};
@@ -22,6 +23,7 @@ pub(crate) enum Shape {
     Pose { pose: Pose2, style: PoseStyle },
     Outlines { poses: Vec<Pose2>, footprint: Footprint, color: Color },
     Scan { seen: Vec<Vector2>, hits: Vec<Vector2>, color: Color },
+    Shade(Shade),
 }
 
 impl Shape {
@@ -60,7 +62,7 @@ impl Layer {
                 vec![pose.position() - reach, pose.position() + reach]
             }
             Shape::Outlines { poses, .. } => poses.iter().map(Pose2::position).collect(),
-            Shape::Dots { .. } | Shape::Scan { .. } => Vec::new(),
+            Shape::Dots { .. } | Shape::Scan { .. } | Shape::Shade(_) => Vec::new(),
         }
     }
 
@@ -87,6 +89,7 @@ impl Layer {
             Shape::Pose { pose, style } => (pose.is_finite(), style.color, Mark::Wedge),
             Shape::Outlines { poses, color, .. } => (poses.iter().any(Pose2::is_finite), *color, Mark::Ring),
             Shape::Scan { hits, color, .. } => (finite(hits), *color, Mark::Dot),
+            Shape::Shade(shade) => (!shade.values.is_empty(), Shade::color(), Mark::Band),
         };
         (shown && !self.label.is_empty()).then(|| LegendItem::new(self.label.clone(), color, mark))
     }
@@ -106,6 +109,7 @@ impl Layer {
             Shape::Outlines { poses, footprint, color } => {
                 poses.iter().for_each(|pose| draw_outline(canvas, view, *pose, footprint, *color));
             }
+            Shape::Shade(shade) => shade.draw(canvas, view),
             Shape::Scan { seen, hits, color } => {
                 let area: Vec<Px> = seen.iter().map(|p| view.px(*p)).collect();
                 canvas.polygon(&area, color.alpha(color.a / 6));

@@ -3,6 +3,7 @@ mod cells;
 mod draw;
 mod frame;
 mod layer;
+mod shade;
 mod style;
 mod view;
 
@@ -15,7 +16,8 @@ use bounds::Bounds;
 use cells::{CellBox, paint_cells};
 use frame::{paint_frame, paint_lattice};
 use layer::{Layer, Shape};
-use trundle_core::{Cell, Footprint, OccupancyGrid, Pose2, Scan, Vector2};
+use shade::Shade;
+use trundle_core::{Cell, Footprint, GridGeometry, OccupancyGrid, Pose2, Scan, Vector2};
 use view::View;
 
 /// A picture of a map from above, with what the robot thinks and does laid over it.
@@ -87,6 +89,11 @@ impl<'a> MapPicture<'a> {
     /// Adds a scan taken at `map_from_base`: its hits as dots, the area it found free as a tint.
     pub fn scan(self, label: &str, map_from_base: Pose2, scan: &Scan, color: Color) -> Self {
         self.layer(label, Shape::scan(map_from_base, scan, color))
+    }
+
+    /// Adds a tint a cell: `values` row by row from the lowest y, from 0, light, to `full`, dark. What is not finite is left out.
+    pub fn shade(self, label: &str, geometry: GridGeometry, values: Vec<f32>, full: f32) -> Self {
+        self.layer(label, Shape::Shade(Shade { geometry, values, full }))
     }
 
     /// Shows the square of `half_side` m about `center` and nothing else. Ignored when not finite or empty.

@@ -78,7 +78,7 @@ impl Course {
 
 /// A floor under everything that the maps reach.
 fn floor() -> Solid {
-    let (center, size) = (Vector3::new(0.0, 0.0, -0.2), Vector3::new(40.0, 40.0, 0.2));
+    let (center, size) = (Vector3::new(0.0, 0.0, -0.05), Vector3::new(40.0, 40.0, 0.1));
     let shape = Shape::Cuboid(Cuboid { center, size, yaw: 0.0 });
     Solid { shape, finish: Finish::all(Paint::Flat { color: [150, 150, 150] }) }
 }

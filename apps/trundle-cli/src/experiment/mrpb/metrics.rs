@@ -15,7 +15,7 @@ pub struct Metrics {
     pub path_roughness: f64,
     /// Smoothness of the speed: mean change of the commanded speed over time, m/s^2.
     pub speed_roughness: f64,
-    /// Computation: a control cycle (supervision, planning, control, safety), wall clock, ms: mean, median, 99th percentile, most.
+    /// Computation: a control cycle (odometry, supervision, planning, control, safety), processor time, ms: mean, median, 99th percentile, most.
     pub cycle_ms: [f64; 4],
 }
 

@@ -84,7 +84,7 @@ pub(super) fn report(trials: &[Trial], success: bool) -> Report {
     let note = format!(
         "Safety: least room and time nearer than {} m to an obstacle. Efficiency: time and way. Smoothness: mean square of the \
          second difference of the position, and mean change of the commanded speed over time, both at 25 Hz. Computation: the \
-         mean control cycle (supervision, planning, control, safety), wall clock.",
+         mean control cycle (odometry, supervision, planning, control, safety), processor time.",
         metrics::NEAR
     );
     let table = trials.iter().map(row).fold(Table::new("Metrics", HEADER).wide(), Table::row);

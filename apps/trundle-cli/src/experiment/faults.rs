@@ -1,0 +1,180 @@
+//! Bad days: sensors that break, wheels that slip, people in the way. Nothing may be touched; the robot stops where it
+//! cannot see, says why, and goes on when it can.
+
+use super::{RunsArgs, trial, trial::Trial, trial::TrialPlan};
+use crate::{Outcome, console, failure::Failure, robot_file};
+use trundle::core::Pose2;
+use trundle::io::{OutputFolder, Summary};
+use trundle::runtime::{DriveState, Mission, Task};
+use trundle::sim::{Fault, FaultKind, FaultSchedule, Person, Scene, WheelSide};
+use trundle::viz::{Report, Table, Verdict};
+
+/// How such a day must end.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum End {
+    /// At the goal, within 5 cm and 3 deg.
+    Arrived,
+    /// Standing, with a reason that holds this word.
+    Stopped(&'static str),
+}
+
+/// A bad day.
+struct Day {
+    name: &'static str,
+    scene: &'static str,
+    fault: Option<(f64, f64, FaultKind)>,
+    person: Option<Person>,
+    end: End,
+}
+
+const FOREVER: f64 = f64::INFINITY;
+
+/// The days of the issue, in its order.
+fn days() -> Vec<Day> {
+    let broken = |name, from, to, kind, end| Day {
+        name,
+        scene: "demo",
+        fault: Some((from, to, kind)),
+        person: None,
+        end,
+    };
+    let slips = FaultKind::WheelSlips { side: WheelSide::Left, factor: 0.5 };
+    let jump = FaultKind::OdometryJumps { left_ticks: 11_724, right_ticks: 11_724 };
+    let carried = FaultKind::Kidnapped { x: 2.0, y: 1.2, heading_deg: 30.0 };
+    vec![
+        broken("camera black for 10 s", 8.0, 18.0, FaultKind::CameraBlack, End::Arrived),
+        broken("camera frozen for 10 s", 8.0, 18.0, FaultKind::CameraFrozen, End::Arrived),
+        broken(
+            "camera gone",
+            8.0,
+            FOREVER,
+            FaultKind::CameraDropped { probability: 1.0 },
+            End::Stopped("image"),
+        ),
+        broken("depth gone for 10 s", 8.0, 18.0, FaultKind::DepthGone, End::Arrived),
+        broken("depth gone", 8.0, FOREVER, FaultKind::DepthGone, End::Stopped("image")),
+        broken("frames late by 500 ms", 0.0, FOREVER, FaultKind::CameraLate { delay_s: 0.5 }, End::Arrived),
+        broken("a wheel slips on a carpet", 8.0, 11.0, slips, End::Arrived),
+        broken("gyro stuck", 8.0, FOREVER, FaultKind::GyroStuck, End::Arrived),
+        broken("odometry jumps 1 m", 10.0, 10.1, jump, End::Arrived),
+        broken("kidnapped while driving", 12.0, 12.1, carried, End::Arrived),
+        Day {
+            name: "a person in the door for a minute",
+            scene: "house",
+            fault: None,
+            person: Some(in_the_door(60.0)),
+            end: End::Arrived,
+        },
+        Day {
+            name: "the door stays closed",
+            scene: "house",
+            fault: None,
+            person: Some(in_the_door(3600.0)),
+            end: End::Stopped("no "),
+        },
+    ]
+}
+
+/// Somebody who comes from behind the door of the house's bedroom, stands in it for so long, s, and goes back.
+fn in_the_door(pause: f64) -> Person {
+    Person { waypoints: vec![[8.6, 4.6], [8.55, 2.6], [8.6, 4.6]], pause, once: true, ..Person::default() }
+}
+
+/// Lives through every day, so many seeds.
+pub fn run(args: &RunsArgs) -> Result<Outcome, Failure> {
+    let robot = robot_file::load(args.config.as_deref())?;
+    let mut plans = Vec::new();
+    for day in days() {
+        for seed in 1..=u64::from(args.seeds) {
+            let mut scene = Scene::by_name(day.scene, seed)?;
+            scene.people.extend(day.person.clone());
+            let mission = Mission::new(vec![Task::Go(scene.start_from_goal())])?;
+            let fault =
+                day.fault.map(|(from_s, to_s, kind)| Fault { from_s, to_s, kind: in_world(kind, &scene) });
+            let faults = FaultSchedule { faults: fault.into_iter().collect() };
+            let name = day.name.to_owned();
+            plans.push(TrialPlan { name, seed, scene, mission, robot: robot.clone(), faults });
+        }
+    }
+    let folder = OutputFolder::create(&args.out)?;
+    let trials = trial::all(plans, args)?;
+    let success = trials.iter().all(is_good);
+    folder.write("report.html", report(&trials, success).to_html().as_bytes())?;
+    folder.write("summary.json", summary(&trials, success).to_json().as_bytes())?;
+    let place = folder.commit()?;
+    if !args.common.quiet {
+        let header = HEADER.map(str::to_owned).to_vec();
+        console::table(&std::iter::once(header).chain(trials.iter().map(row)).collect::<Vec<_>>());
+        console::say(&format!("\n{}\nSee {}", told(&trials), place.join("report.html").display()));
+    }
+    Ok(if success { Outcome::Reached } else { Outcome::Missed })
+}
+
+/// Kidnappings are written in the frame of the robot's start; the simulator wants them in the world's.
+fn in_world(kind: FaultKind, scene: &Scene) -> FaultKind {
+    match kind {
+        FaultKind::Kidnapped { x, y, heading_deg } => {
+            let Pose2 { x, y, theta } = scene.start * Pose2::new(x, y, heading_deg.to_radians());
+            FaultKind::Kidnapped { x, y, heading_deg: theta.to_degrees() }
+        }
+        other => other,
+    }
+}
+
+const HEADER: [&str; 6] = ["day", "seed", "as it should", "contacts", "time, s", "end"];
+
+/// Nothing touched, and the end that such a day must have.
+fn is_good(trial: &Trial) -> bool {
+    let numbers = &trial.numbers;
+    let end = days().into_iter().find(|day| day.name == trial.name).map(|day| day.end);
+    let as_it_should = match (end, &numbers.state) {
+        (Some(End::Arrived), _) => numbers.is_success(),
+        (Some(End::Stopped(word)), DriveState::Stopped { reason }) => reason.contains(word),
+        _ => false,
+    };
+    as_it_should && numbers.contacts == 0
+}
+
+fn row(trial: &Trial) -> Vec<String> {
+    let numbers = &trial.numbers;
+    let end = match (&numbers.state, numbers.goal_error) {
+        (DriveState::Arrived, Some(error)) => {
+            format!("arrived, {:.1} cm, {:.2} deg off", error.distance * 100.0, error.dtheta.to_degrees())
+        }
+        (state, _) => state.to_string(),
+    };
+    vec![
+        trial.name.clone(),
+        trial.seed.to_string(),
+        if is_good(trial) { "yes" } else { "NO" }.to_owned(),
+        numbers.contacts.to_string(),
+        format!("{:.1}", numbers.duration),
+        end,
+    ]
+}
+
+fn told(trials: &[Trial]) -> String {
+    let good = trials.iter().filter(|trial| is_good(trial)).count();
+    let contacts: usize = trials.iter().map(|trial| trial.numbers.contacts).sum();
+    format!("{good} of {} bad days ended as they should; {contacts} contacts.", trials.len())
+}
+
+fn report(trials: &[Trial], success: bool) -> Report {
+    let verdict = if success { Verdict::Ok(told(trials)) } else { Verdict::Failed(told(trials)) };
+    let table = trials.iter().map(row).fold(Table::new("Days", HEADER), Table::row).wide();
+    Report::new("Bad days")
+        .subtitle("What breaks while the robot drives, and how it ends.")
+        .verdict(verdict)
+        .table(table)
+}
+
+fn summary(trials: &[Trial], success: bool) -> Summary {
+    let mut summary = Summary::new("experiment faults");
+    summary.set("success", success).set("runs", trials.len());
+    summary.set("contacts", trials.iter().map(|trial| trial.numbers.contacts).sum::<usize>());
+    for trial in trials {
+        let end = serde_json::json!({ "good": is_good(trial), "end": trial.numbers.state.to_string() });
+        summary.set(&format!("{}, seed {}", trial.name, trial.seed), end);
+    }
+    summary
+}

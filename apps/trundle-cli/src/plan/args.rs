@@ -1,0 +1,74 @@
+use crate::args::{Common, PoseArg};
+use clap::Args;
+use std::path::PathBuf;
+use std::str::FromStr;
+
+/// `trundle plan`
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Example: trundle plan ../shared/data/nav/nav2/depot.yaml --from=9.3,10.7,114 --goal=17.1,9.2,-80\n\n\
+    Several goals are driven to in a row: --goal kitchen --goal=1,2,90. docs/algorithms/planning.md says what the files hold."
+)]
+pub struct PlanArgs {
+    /// A map in map_server's form.
+    pub map: PathBuf,
+    /// Start: a pose in the map frame (m, m, deg), or a place of --places.
+    #[arg(long, value_name = "X,Y,DEG|NAME", allow_hyphen_values = true)]
+    pub from: PlaceArg,
+    /// Goal: a pose in the map frame (m, m, deg), or a place of --places. Again for the next one.
+    #[arg(
+        long,
+        visible_alias = "to",
+        value_name = "X,Y,DEG|NAME",
+        allow_hyphen_values = true,
+        required = true
+    )]
+    pub goal: Vec<PlaceArg>,
+    /// Named places: TOML, a table a place with x, y, heading_deg.
+    #[arg(long, value_name = "FILE")]
+    pub places: Option<PathBuf>,
+    /// Keep-out mask, as Nav2's: what is black is forbidden.
+    #[arg(long, value_name = "MASK.yaml")]
+    pub keepout: Option<PathBuf>,
+    /// Speed mask, as Nav2's: the darker the slower.
+    #[arg(long, value_name = "MASK.yaml")]
+    pub speed_mask: Option<PathBuf>,
+    /// Way-point graph, GeoJSON as Nav2's route server has it: drive along its lanes.
+    #[arg(long, value_name = "FILE")]
+    pub graph: Option<PathBuf>,
+    /// Where a goal is blocked, stop as near to it as can be reached, at most so far off, m [default when given: 1]
+    #[arg(long, value_name = "M", num_args = 0..=1, require_equals = true, default_missing_value = "1")]
+    pub near: Option<f64>,
+    /// Print the curve's polynomials and the constraints that shape it.
+    #[arg(long)]
+    pub coefficients: bool,
+    /// Robot file (see `trundle config`).
+    #[arg(long, value_name = "FILE")]
+    pub config: Option<PathBuf>,
+    /// Folder for the results.
+    #[arg(long, value_name = "DIR", default_value = "out/plan")]
+    pub out: PathBuf,
+    /// What every command takes.
+    #[command(flatten)]
+    pub common: Common,
+}
+
+/// A pose on the command line, or the name of a place.
+#[derive(Debug, Clone, PartialEq)]
+pub enum PlaceArg {
+    Pose(PoseArg),
+    Name(String),
+}
+
+impl FromStr for PlaceArg {
+    type Err = String;
+
+    /// What has a comma is a pose.
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text.trim() {
+            "" => Err("expected a pose X,Y,DEG (m, m, deg) or the name of a place".to_owned()),
+            pose if pose.contains(',') => Ok(Self::Pose(pose.parse()?)),
+            name => Ok(Self::Name(name.to_owned())),
+        }
+    }
+}

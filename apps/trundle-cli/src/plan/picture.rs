@@ -1,0 +1,81 @@
+//! The plan in pictures.
+
+use super::errand::Errand;
+use super::table::{curves, points, rows};
+use trundle::core::{DriveLimits, Pose2, Vector2};
+use trundle::planning::{HalfPlane, StageTimes, Tour};
+use trundle::viz::{
+    Figure, PlanParts, PlanScene, Report, Table, plan_part_pictures, plan_picture, speed_charts,
+};
+
+/// `plan.png`, `field.png`, `corridors.png` and the page that holds them and the speeds.
+pub struct Pictures {
+    pub plan: Vec<u8>,
+    pub field: Vec<u8>,
+    pub corridors: Vec<u8>,
+    pub page: String,
+}
+
+/// Draws everything.
+pub fn draw(errand: &Errand, tour: &Tour, limits: DriveLimits, seconds: f64, stages: StageTimes) -> Pictures {
+    let join = |of: fn(&trundle::planning::PlanResult) -> &[Vector2]| -> Vec<Vector2> {
+        tour.legs.iter().flat_map(|leg| of(leg).iter().copied()).collect()
+    };
+    let (raw, way_points, curve) =
+        (join(|leg| leg.raw.points()), join(|leg| leg.way_points.points()), points(tour));
+    let goal: Pose2 = tour.trajectory.end();
+    let scene = PlanScene {
+        grid: &errand.grid,
+        start: errand.start.pose,
+        goal,
+        route: &raw,
+        way_points: &way_points,
+        curve: &curve,
+        footprint: &errand.footprint,
+    };
+    let field = errand.planner.field();
+    let geometry = field.map_or(*errand.grid.geometry(), |field| *field.geometry());
+    let distances: Vec<f32> = field.map_or(vec![], |field| {
+        (0..geometry.len()).map(|i| field.at_cell(geometry.cell(i)) as f32).collect()
+    });
+    let corridors: Vec<_> =
+        curves(tour).flat_map(|curve| curve.corridors()).map(|planes| HalfPlane::outline(planes)).collect();
+    let active: Vec<Vector2> = curves(tour)
+        .flat_map(|curve| curve.active().iter().map(|row| curve.pieces()[row.piece].control()[row.control]))
+        .collect();
+    let parts = PlanParts { geometry, distances: &distances, corridors: &corridors, active: &active };
+    let [field, corridors] = plan_part_pictures(&scene, &parts);
+    let plan = plan_picture(&scene);
+    let page = page([&plan, &field, &corridors], tour, limits, &rows(tour, seconds, stages));
+    Pictures { plan, field, corridors, page }
+}
+
+fn page(pictures: [&[u8]; 3], tour: &Tour, limits: DriveLimits, numbers: &[Vec<String>]) -> String {
+    let [plan, field, corridors] = pictures;
+    let figure = |title: &str, png: &[u8], caption: &str| Figure::png(title, png).caption(caption).wide();
+    let table = numbers
+        .iter()
+        .fold(Table::new("Numbers", ["", ""]), |table, row| table.row([row[0].clone(), row[1].clone()]));
+    let report = Report::new("A plan")
+        .subtitle("From a map, a start and a goal to way-points, a curve and its timing.")
+        .section("How it was made", "")
+        .figure(figure("Plan", plan, "What the robot will drive, and the floor that it sweeps."))
+        .figure(figure(
+            "Distance field and way-points",
+            field,
+            "How far everything is from the nearest obstacle; the search's path, dashed, and the way-points it was pulled to.",
+        ))
+        .figure(figure(
+            "Corridors and curve",
+            corridors,
+            "Convex free polygons that hold the pieces of the curve; circles are control points that lean on a side.",
+        ))
+        .section("Over time", "");
+    let charts = speed_charts(&tour.trajectory, (limits.v, limits.omega));
+    charts
+        .iter()
+        .fold(report, |report, chart| report.figure(Figure::chart(chart)))
+        .section("In numbers", "")
+        .table(table)
+        .to_html()
+}

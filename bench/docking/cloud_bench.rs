@@ -1,0 +1,41 @@
+//! Plans among a hundred thousand points, scene by scene; prints the times and the worst:
+//! `cargo run --release -p trundle-docking --example cloud_bench`, or only those whose name holds a word: `... -- walls`
+
+#![expect(clippy::print_stdout, reason = "an example prints its result")]
+
+mod clock;
+mod clouds;
+
+use clock::timed;
+use trundle_docking::{Docker, DockingConfig, Plan};
+
+/// Plans of each scene; the fastest counts.
+const TIMES: usize = 3;
+
+fn main() {
+    let docker = Docker::new(DockingConfig::default()).expect("valid");
+    let mut worst = (0.0, String::new());
+    let word = std::env::args().nth(1).unwrap_or_default();
+    for problem in clouds::scenes().into_iter().filter(|problem| problem.name.contains(&word)) {
+        let (scene, preparing) = timed(|| clouds::scene_of(&problem));
+        let plan = || docker.plan(&problem.footprint, &scene, problem.start, problem.goal);
+        let runs: Vec<_> = (0..TIMES).map(|_| timed(plan)).collect();
+        let least = runs.iter().map(|(_, ms)| *ms).fold(f64::INFINITY, f64::min);
+        let told = match &runs[0].0 {
+            Ok(Plan::Found(found)) => format!(
+                "{} motions, {:.2} s, bound {:.2} s, margin {:.1} mm",
+                found.manoeuvre.steps().len(),
+                found.manoeuvre.duration(),
+                found.bound,
+                1e3 * found.margin
+            ),
+            Ok(Plan::Impossible(none)) => format!("impossible: {:?}", none.certificate),
+            Err(refusal) => refusal.to_string(),
+        };
+        println!("{least:7.1} ms, scene {preparing:5.1} ms: {}: {told}", problem.name);
+        if least > worst.0 {
+            worst = (least, problem.name);
+        }
+    }
+    println!("worst: {:.1} ms, {}", worst.0, worst.1);
+}

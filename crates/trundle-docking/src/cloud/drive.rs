@@ -1,0 +1,37 @@
+use crate::geometry::{Hull, Profile, Segment};
+use crate::scene::Question;
+use crate::space::FreeDrive;
+use trundle_core::{Pose2, Vector2};
+
+/// How far a hull may drive straight.
+pub struct DriveQuestion<'q> {
+    hull: &'q Hull,
+    profile: &'q Profile,
+    center: Vector2,
+    direction: Vector2,
+    free: &'q mut FreeDrive,
+}
+
+impl<'q> DriveQuestion<'q> {
+    /// What is known so far is in `free`.
+    pub fn new(hull: &'q Hull, profile: &'q Profile, pose: &Pose2, free: &'q mut FreeDrive) -> Self {
+        Self { hull, profile, center: pose.position(), direction: pose.direction(), free }
+    }
+
+    fn seen(&self, p: Vector2) -> Segment {
+        Segment::point(p).seen_from(self.center, self.direction.x, self.direction.y)
+    }
+}
+
+impl Question for DriveQuestion<'_> {
+    const COST: u64 = 5;
+
+    fn promise(&self, center: Vector2, radius: f64) -> Option<f64> {
+        let (ahead, behind) = self.profile.ways(self.seen(center).a, radius);
+        (ahead < self.free.ahead || behind < self.free.behind).then(|| ahead.min(behind))
+    }
+
+    fn look(&mut self, p: Vector2, number: u32) {
+        self.free.meet(self.hull, &self.seen(p), || (number, p));
+    }
+}

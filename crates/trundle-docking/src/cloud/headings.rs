@@ -1,0 +1,81 @@
+use crate::geometry::{Arc, Hull, Profile, Segment, once_round};
+use crate::scene::Question;
+use std::f64::consts::TAU;
+use trundle_core::Vector2;
+
+/// At which headings a hull overlaps something.
+pub struct HeadingsQuestion<'q> {
+    hull: &'q Hull,
+    profile: &'q Profile,
+    position: Vector2,
+    angles: &'q mut Vec<f64>,
+    blocked: &'q mut Vec<Arc>,
+    first: usize,
+}
+
+impl<'q> HeadingsQuestion<'q> {
+    /// What is known so far is in `blocked` from `first` on, joined.
+    pub fn new(
+        (hull, profile): (&'q Hull, &'q Profile),
+        position: Vector2,
+        angles: &'q mut Vec<f64>,
+        blocked: &'q mut Vec<Arc>,
+        first: usize,
+    ) -> Self {
+        Self { hull, profile, position, angles, blocked, first }
+    }
+}
+
+impl Question for HeadingsQuestion<'_> {
+    const COST: u64 = 50;
+
+    fn promise(&self, center: Vector2, radius: f64) -> Option<f64> {
+        let arcs = &self.blocked[self.first..];
+        let inside = |arc: &Arc, from: f64, length: f64| {
+            arc.length >= TAU || once_round(from - arc.start) + length <= arc.length
+        };
+        let seen = center - self.position;
+        let known = |from, length| arcs.iter().any(|arc| inside(arc, from, length));
+        // Near ones forbid most.
+        (!self.profile.all_known(seen, radius, known)).then(|| seen.norm_squared())
+    }
+
+    fn look(&mut self, p: Vector2, _: u32) {
+        let segment = Segment::point(p).seen_from(self.position, 1.0, 0.0);
+        self.hull.blocked_headings(&segment, self.angles, self.blocked);
+        join(self.blocked, self.first);
+    }
+}
+
+/// Sorts arcs from `first` on and joins those that meet; an arc may reach over 2 pi.
+pub fn join(arcs: &mut Vec<Arc>, first: usize) {
+    arcs[first..].sort_unstable_by(|a, b| a.start.total_cmp(&b.start));
+    let mut kept = first;
+    for i in first..arcs.len() {
+        let arc = arcs[i];
+        if kept > first && arc.start <= arcs[kept - 1].start + arcs[kept - 1].length {
+            let last = &mut arcs[kept - 1];
+            last.length = last.length.max(arc.start + arc.length - last.start);
+        } else {
+            arcs[kept] = arc;
+            kept += 1;
+        }
+    }
+    arcs.truncate(kept);
+    // The last may reach over the first.
+    while arcs.len() > first + 1 {
+        let last = arcs[arcs.len() - 1];
+        let over = last.start + last.length - TAU;
+        if over < arcs[first].start {
+            break;
+        }
+        let reach = (arcs[first].start + arcs[first].length).max(over);
+        arcs.remove(first);
+        let end = arcs.len() - 1;
+        arcs[end].length = (reach + TAU - last.start).min(TAU);
+    }
+    if arcs[first..].iter().any(|arc| arc.length >= TAU - 1e-12) {
+        arcs.truncate(first);
+        arcs.push(Arc::FULL);
+    }
+}

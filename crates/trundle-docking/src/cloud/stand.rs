@@ -1,0 +1,45 @@
+use crate::geometry::{Hull, Segment};
+use crate::scene::{Blocker, Question};
+use trundle_core::{Pose2, Vector2};
+
+/// What is nearest to a hull that stands, and how near (m).
+pub struct StandQuestion<'q> {
+    hull: &'q Hull,
+    at: Vector2,
+    direction: (f64, f64),
+    /// Nothing farther is asked for, m.
+    reach: f64,
+    best: &'q mut Option<(f64, Blocker)>,
+}
+
+impl<'q> StandQuestion<'q> {
+    /// What is known so far is in `best`.
+    pub fn new(hull: &'q Hull, pose: &Pose2, reach: f64, best: &'q mut Option<(f64, Blocker)>) -> Self {
+        let (sin, cos) = pose.theta.sin_cos();
+        Self { hull, at: pose.position(), direction: (cos, sin), reach, best }
+    }
+
+    fn distance(&self, p: Vector2) -> f64 {
+        let (cos, sin) = self.direction;
+        self.hull.distance(&Segment::point(p).seen_from(self.at, cos, sin))
+    }
+}
+
+impl Question for StandQuestion<'_> {
+    fn promise(&self, center: Vector2, radius: f64) -> Option<f64> {
+        let away = (center - self.at).norm() - radius - self.hull.outer_radius();
+        let known = self.best.map_or(self.reach, |(least, _)| least);
+        if away >= known || known <= 0.0 {
+            return None;
+        }
+        let least = self.distance(center) - radius;
+        (least < known).then_some(least)
+    }
+
+    fn look(&mut self, p: Vector2, number: u32) {
+        let distance = self.distance(p);
+        if distance < self.best.map_or(self.reach, |(least, _)| least) {
+            *self.best = Some((distance, Blocker { obstacle: number as usize, at: p }));
+        }
+    }
+}

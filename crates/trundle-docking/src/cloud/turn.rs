@@ -1,0 +1,44 @@
+use crate::geometry::{Arc, Hull, Profile, Segment};
+use crate::scene::Question;
+use crate::space::FreeTurn;
+use trundle_core::{Pose2, Vector2};
+
+/// How far a hull may turn on the spot.
+pub struct TurnQuestion<'q> {
+    hull: &'q Hull,
+    profile: &'q Profile,
+    pose: Pose2,
+    direction: (f64, f64),
+    angles: &'q mut Vec<f64>,
+    arcs: &'q mut Vec<Arc>,
+    free: &'q mut FreeTurn,
+}
+
+impl<'q> TurnQuestion<'q> {
+    /// What is known so far is in `free`; the other two are scratch space.
+    pub fn new(
+        (hull, profile): (&'q Hull, &'q Profile),
+        pose: &Pose2,
+        (angles, arcs): (&'q mut Vec<f64>, &'q mut Vec<Arc>),
+        free: &'q mut FreeTurn,
+    ) -> Self {
+        let (sin, cos) = pose.theta.sin_cos();
+        Self { hull, profile, pose: *pose, direction: (cos, sin), angles, arcs, free }
+    }
+}
+
+impl Question for TurnQuestion<'_> {
+    const COST: u64 = 50;
+
+    fn promise(&self, center: Vector2, radius: f64) -> Option<f64> {
+        let (cos, sin) = self.direction;
+        let seen = Segment::point(center).seen_from(self.pose.position(), cos, sin).a;
+        let (left, right) = self.profile.rooms(seen, radius)?;
+        (left < self.free.left || right < self.free.right).then(|| left.min(right))
+    }
+
+    fn look(&mut self, p: Vector2, number: u32) {
+        let segment = Segment::point(p);
+        self.free.meet(self.hull, &segment, number, &self.pose, self.angles, self.arcs);
+    }
+}

@@ -1,0 +1,144 @@
+//! Masks of Nav2's costmap filters: a map_server picture whose greys forbid, or slow down.
+
+use super::pgm::Pgm;
+use super::{picture_of, yaml::MapYaml};
+use crate::IoError;
+use crate::files::read_text;
+use serde::Deserialize;
+use std::path::Path;
+use trundle_core::{Cell, GridGeometry, Invalid, OccupancyGrid, require_in};
+
+/// A mask's value that forbids.
+const LETHAL: u8 = 100;
+
+/// What the values of a speed mask mean, as Nav2's filter-info server says it: limit = base + multiplier * value.
+///
+/// Read from the mask's own YAML, whose keys `type`, `base` and `multiplier` map_server leaves alone.
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+#[serde(default)]
+struct FilterInfo {
+    /// 1: per cent of the robot's highest speed; 2: m/s.
+    #[serde(rename = "type")]
+    kind: u8,
+    base: f64,
+    multiplier: f64,
+}
+
+impl Default for FilterInfo {
+    fn default() -> Self {
+        Self { kind: 1, base: 100.0, multiplier: -1.0 }
+    }
+}
+
+impl FilterInfo {
+    fn checked(self) -> Result<Self, Invalid> {
+        if !(1..=2).contains(&self.kind) {
+            return Err(Invalid::new("type", self.kind, "", "1 (per cent) or 2 (m/s)"));
+        }
+        require_in("base", self.base, "", -1e6, 1e6)?;
+        require_in("multiplier", self.multiplier, "", -1e6, 1e6)?;
+        Ok(self)
+    }
+
+    /// The limit of a value, m/s; infinite where there is none: value 0, unknown, and what Nav2 calls out of range.
+    fn limit(self, value: Option<u8>, full_speed: f64) -> f32 {
+        let Some(value) = value.filter(|value| *value > 0) else { return f32::INFINITY };
+        let limit = self.base + self.multiplier * f64::from(value);
+        let limit = match self.kind {
+            1 if limit <= 100.0 => limit / 100.0 * full_speed,
+            1 => f64::INFINITY,
+            _ => limit,
+        };
+        if limit > 0.0 { limit as f32 } else { f32::INFINITY }
+    }
+}
+
+/// A keep-out mask from its YAML file and the PGM picture that it names: occupied where the robot must not be.
+///
+/// As Nav2's keep-out filter has it: a value of 100 forbids (in mode `trinary` and `scale` what is darker than
+/// `occupied_thresh`, in mode `raw` a pixel of 100); everything else, unknown too, is free.
+///
+/// # Errors
+/// As [`read_map`](crate::read_map).
+pub fn read_keep_out_mask(yaml_path: &Path) -> Result<OccupancyGrid, IoError> {
+    let (geometry, values) = values(yaml_path)?;
+    let cell = |value: Option<u8>| if value == Some(LETHAL) { Cell::Occupied } else { Cell::Free };
+    OccupancyGrid::new(geometry, values.into_iter().map(cell).collect()).map_err(IoError::field(yaml_path))
+}
+
+/// A speed mask from its YAML file and the PGM picture that it names: where its cells lie, and of each, row by row from the
+/// lowest y, the highest speed, m/s; infinite where it sets none.
+///
+/// As Nav2's speed filter has it: values are 0 to 100, limit = base + multiplier * value, value 0 and unknown set none. `type`
+/// (1: per cent of `full_speed`, m/s; 2: m/s), `base` and `multiplier` are read from the same YAML; without them 1, 100
+/// and -1: white is full speed, the darker the slower. Limits that are not above 0, or above 100 %, set none, as in Nav2.
+///
+/// # Errors
+/// As [`read_map`](crate::read_map); when `type` is neither 1 nor 2, `full_speed` is not above 0, or a number is not finite.
+pub fn read_speed_mask(yaml_path: &Path, full_speed: f64) -> Result<(GridGeometry, Vec<f32>), IoError> {
+    trundle_core::require_positive("full speed", full_speed, "m/s").map_err(IoError::field(yaml_path))?;
+    let text = read_text(yaml_path)?;
+    let (geometry, values) = values(yaml_path)?;
+    let info: FilterInfo = serde_saphyr::from_str(&text)
+        .map_err(|error| IoError::malformed(yaml_path, error.without_snippet().to_string()))?;
+    let info = info.checked().map_err(IoError::field(yaml_path))?;
+    Ok((geometry, values.into_iter().map(|value| info.limit(value, full_speed)).collect()))
+}
+
+/// The picture's values, 0 to 100, row by row from the lowest y; `None`: unknown.
+fn values(yaml_path: &Path) -> Result<(GridGeometry, Vec<Option<u8>>), IoError> {
+    let yaml = MapYaml::parse(yaml_path, &read_text(yaml_path)?)?;
+    let (_, pgm): (_, Pgm) = picture_of(yaml_path, &yaml)?;
+    let geometry = GridGeometry::new(yaml.resolution, yaml.origin, pgm.width, pgm.height)
+        .map_err(IoError::field(yaml_path))?;
+    let rows = pgm.values.chunks_exact(pgm.width).rev();
+    Ok((geometry, rows.flatten().map(|&value| yaml.value(value, pgm.maxval)).collect()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A mask of one row of greys.
+    fn write(folder: &Path, greys: &[u8], more: &str) -> std::path::PathBuf {
+        let mut pgm = format!("P5\n{} 1\n255\n", greys.len()).into_bytes();
+        pgm.extend(greys);
+        std::fs::write(folder.join("m.pgm"), pgm).unwrap();
+        let yaml = format!("image: m.pgm\nresolution: 0.1\norigin: [1.0, 2.0, 0.0]\nnegate: 0\n{more}");
+        std::fs::write(folder.join("m.yaml"), yaml).unwrap();
+        folder.join("m.yaml")
+    }
+
+    const SCALE: &str = "mode: scale\noccupied_thresh: 1.0\nfree_thresh: 0.0\n";
+    const TRINARY: &str = "occupied_thresh: 0.65\nfree_thresh: 0.196\n";
+
+    #[test]
+    fn what_is_black_is_kept_out_and_nothing_else() {
+        let scratch = tempfile::tempdir().unwrap();
+        let mask = read_keep_out_mask(&write(scratch.path(), &[0, 80, 128, 205, 254], TRINARY)).unwrap();
+        use Cell::{Free, Occupied};
+        assert_eq!(mask.cells(), [Occupied, Occupied, Free, Free, Free]);
+        assert_eq!(mask.geometry().origin, trundle_core::Vector2::new(1.0, 2.0));
+        let graded = read_keep_out_mask(&write(scratch.path(), &[0, 1, 128, 255], SCALE)).unwrap();
+        assert_eq!(graded.cells(), [Occupied, Occupied, Free, Free]);
+        let raw =
+            read_keep_out_mask(&write(scratch.path(), &[0, 99, 100, 101], &format!("mode: raw\n{TRINARY}")));
+        assert_eq!(raw.unwrap().cells(), [Free, Free, Occupied, Free]);
+    }
+
+    #[test]
+    fn the_darker_the_slower() {
+        let scratch = tempfile::tempdir().unwrap();
+        let limits =
+            |greys: &[u8], more: &str| read_speed_mask(&write(scratch.path(), greys, more), 0.7).map(|m| m.1);
+        let none = f32::INFINITY;
+        assert_eq!(limits(&[255, 204, 127, 0], SCALE).unwrap(), [none, 0.56, 0.35, none]);
+        let absolute = format!("{SCALE}type: 2\nbase: 0.1\nmultiplier: 0.01\n");
+        assert_eq!(limits(&[255, 204, 127], &absolute).unwrap(), [none, 0.3, 0.6]);
+        let error = limits(&[0], &format!("{SCALE}type: 3\n")).unwrap_err().to_string();
+        assert!(error.ends_with("type is 3, expected 1 (per cent) or 2 (m/s)"), "{error}");
+        assert!(limits(&[0], &format!("{SCALE}base: .nan\n")).is_err());
+        let (geometry, _) = read_speed_mask(&write(scratch.path(), &[0, 0], SCALE), 0.7).unwrap();
+        assert_eq!((geometry.width, geometry.height, geometry.resolution), (2, 1, 0.1));
+    }
+}

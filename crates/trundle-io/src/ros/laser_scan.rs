@@ -1,0 +1,164 @@
+use super::messages::LaserScan;
+use trundle_core::{Beam, Pose3, Scan, Vector3};
+
+/// A scan of ours made of a message.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct ConvertedScan {
+    pub scan: Scan,
+    /// Ranges that were negative, zero, NaN, or too near for the laser.
+    pub bad_ranges: usize,
+}
+
+/// A laser whose plane is tilted by more than this does not see one plane of the room, deg.
+const MOST_TILTED_DEG: f64 = 15.0;
+/// Most beams of a message.
+const MOST_BEAMS: usize = 100_000;
+
+/// The scan of a message by a laser at `base_from_laser`: turned, to the side, upside down, its beams in either order.
+///
+/// Infinite ranges and those from `max_range` on met nothing; negative ones, zero, NaN and those below the laser's least
+/// range are bad. Both are unseen: that nothing came back does not prove that nothing is there.
+///
+/// # Errors
+/// With a sentence: no or too many beams, angles that are no angles, or a laser that is tilted.
+pub(super) fn convert(
+    message: &LaserScan,
+    base_from_laser: &Pose3,
+    max_range: Option<f64>,
+) -> Result<ConvertedScan, String> {
+    let LaserScan { angle_min, angle_increment, ref ranges, .. } = *message;
+    check(message)?;
+    let up = base_from_laser.rotate(Vector3::z()).z;
+    let tilt = up.abs().min(1.0).acos().to_degrees();
+    if tilt > MOST_TILTED_DEG {
+        return Err(format!("the laser is tilted by {tilt:.1} deg, expected at most {MOST_TILTED_DEG}"));
+    }
+    let ahead = base_from_laser.rotate(Vector3::x());
+    let turn = ahead.y.atan2(ahead.x);
+    let hand = if up < 0.0 { -1.0 } else { 1.0 };
+    let bearing = |i: usize| turn + hand * (angle_min + i as f64 * angle_increment);
+
+    let limit = max_range.unwrap_or(f64::INFINITY).min(message.range_max);
+    let mut bad_ranges = 0;
+    let mut beams: Vec<Beam> = Vec::with_capacity(ranges.len());
+    for (i, range) in ranges.iter().map(|range| f64::from(*range)).enumerate() {
+        let bad = range.is_nan() || range <= 0.0 || range < message.range_min;
+        bad_ranges += usize::from(bad);
+        let angle = angle_min + i as f64 * angle_increment;
+        let flat = base_from_laser.rotate(Vector3::new(angle.cos(), angle.sin(), 0.0)).xy().norm();
+        let returned = !bad && range < limit;
+        beams.push(if returned { Beam::Hit { range: range * flat } } else { Beam::Unseen });
+    }
+    let falls = hand * angle_increment < 0.0;
+    if falls {
+        beams.reverse();
+    }
+    let first = bearing(if falls { ranges.len() - 1 } else { 0 });
+    let origin = base_from_laser.translation.xy();
+    let scan = Scan::new(message.stamp, origin, first, angle_increment.abs(), beams);
+    Ok(ConvertedScan { scan: scan.map_err(|invalid| invalid.to_string())?, bad_ranges })
+}
+
+fn check(message: &LaserScan) -> Result<(), String> {
+    let beams = message.ranges.len();
+    if !(1..=MOST_BEAMS).contains(&beams) {
+        return Err(format!("{beams} ranges, expected 1 to {MOST_BEAMS}"));
+    }
+    let (min, step) = (message.angle_min, message.angle_increment);
+    if !(min.is_finite() && min.abs() < 100.0) {
+        return Err(format!("angle_min is {min} rad, expected an angle"));
+    }
+    let sweep = step.abs() * beams as f64;
+    if !(step != 0.0 && sweep < 7.0) {
+        return Err(format!("angle_increment is {step} rad for {beams} ranges, expected a circle at most"));
+    }
+    if !(message.range_max > 0.0) {
+        return Err(format!("range_max is {} m, expected more than 0", message.range_max));
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::{FRAC_PI_2, PI};
+    use trundle_core::{Pose2, Stamp, Vector2};
+
+    fn message(ranges: &[f32]) -> LaserScan {
+        LaserScan {
+            stamp: Stamp::from_nanos(5),
+            frame: "laser".into(),
+            angle_min: -0.5,
+            angle_increment: 0.25,
+            range_min: 0.1,
+            range_max: 10.0,
+            ranges: ranges.to_vec(),
+        }
+    }
+
+    fn mounted(x: f64, roll: f64, pitch: f64, yaw: f64) -> Pose3 {
+        let rotation = nalgebra::UnitQuaternion::from_euler_angles(roll, pitch, yaw);
+        Pose3::new(rotation, Vector3::new(x, 0.0, 0.2))
+    }
+
+    fn points(message: &LaserScan, mount: &Pose3) -> Vec<Vector2> {
+        convert(message, mount, None).unwrap().scan.hits().collect()
+    }
+
+    #[test]
+    fn any_mounting_puts_the_points_where_the_transform_does() {
+        for (roll, yaw) in [(0.0, 0.0), (PI, 0.0), (0.0, FRAC_PI_2), (PI, -2.5), (PI, PI)] {
+            for (first, step) in [(-0.5, 0.25), (0.5, -0.25)] {
+                let laser =
+                    LaserScan { angle_min: first, angle_increment: step, ..message(&[1.0, 2.0, 3.0]) };
+                let mount = mounted(0.3, roll, 0.0, yaw);
+                let mut expected: Vec<Vector2> = (0..3)
+                    .map(|i| {
+                        let (angle, range) = (first + step * f64::from(i), f64::from(i + 1));
+                        mount.transform(Vector3::new(angle.cos(), angle.sin(), 0.0) * range).xy()
+                    })
+                    .collect();
+                let found = points(&laser, &mount);
+                expected.sort_by(|a, b| a.norm().total_cmp(&b.norm()));
+                for point in &expected {
+                    assert!(
+                        found.iter().any(|p| (p - point).norm() < 1e-6),
+                        "{roll} {yaw} {step}: {found:?}"
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn bad_ranges_are_unseen_and_counted() {
+        let found = convert(
+            &message(&[-1.0, f32::NAN, f32::INFINITY, 0.05, 2.0, 0.0, 10.5]),
+            &Pose3::identity(),
+            None,
+        )
+        .unwrap();
+        assert_eq!(found.bad_ranges, 4);
+        assert_eq!(found.scan.beams()[4], Beam::Hit { range: 2.0 });
+        assert_eq!(found.scan.beams().iter().filter(|b| **b == Beam::Unseen).count(), 6);
+        let limited = convert(&message(&[1.0, 2.0]), &Pose3::identity(), Some(1.5)).unwrap();
+        assert_eq!(limited.scan.beams(), [Beam::Hit { range: 1.0 }, Beam::Unseen]);
+    }
+
+    #[test]
+    fn what_cannot_be_a_scan_is_refused() {
+        let refuse = |message: &LaserScan, mount: &Pose3| convert(message, mount, None).unwrap_err();
+        let flat = Pose3::from_pose2(Pose2::IDENTITY);
+        assert_eq!(refuse(&message(&[]), &flat), "0 ranges, expected 1 to 100000");
+        let still = LaserScan { angle_increment: 0.0, ..message(&[1.0]) };
+        assert!(refuse(&still, &flat).starts_with("angle_increment is 0 rad for 1 ranges"));
+        let nan = LaserScan { angle_min: f64::NAN, ..message(&[1.0]) };
+        assert!(refuse(&nan, &flat).starts_with("angle_min is NaN rad"));
+        let none = LaserScan { range_max: f64::NAN, ..message(&[1.0]) };
+        assert!(refuse(&none, &flat).starts_with("range_max is NaN m"));
+        assert_eq!(
+            refuse(&message(&[1.0]), &mounted(0.0, 0.0, 0.5, 0.0)),
+            "the laser is tilted by 28.6 deg, expected at most 15"
+        );
+    }
+}

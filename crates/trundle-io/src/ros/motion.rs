@@ -1,0 +1,87 @@
+use trundle_core::{Pose2, Stamp};
+
+/// Where the base was by odometry, over time.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(super) struct Motion {
+    poses: Vec<(Stamp, Pose2)>,
+}
+
+/// Between two poses that are farther apart in time nothing is known, s.
+const LONGEST_GAP: f64 = 1.0;
+/// A pose holds for so long before and after it, s.
+const HOLDS: f64 = 0.1;
+
+impl Motion {
+    /// Adds a pose.
+    ///
+    /// # Errors
+    /// When it is not finite or its time goes back.
+    pub(super) fn push(&mut self, stamp: Stamp, pose: Pose2) -> Result<(), String> {
+        if !pose.is_finite() {
+            return Err("the pose is not finite, or its quaternion is none".to_owned());
+        }
+        match self.poses.last() {
+            Some((before, _)) if stamp < *before => {
+                Err(format!("time goes back from {before} s to {stamp} s"))
+            }
+            Some((before, _)) if stamp == *before => Ok(()),
+            _ => {
+                self.poses.push((stamp, pose));
+                Ok(())
+            }
+        }
+    }
+
+    /// The poses, by rising stamps.
+    pub(super) fn into_poses(self) -> Vec<(Stamp, Pose2)> {
+        self.poses
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.poses.is_empty()
+    }
+
+    /// The pose at a time, between the poses about it.
+    ///
+    /// # Errors
+    /// When there is none near.
+    pub(super) fn at(&self, stamp: Stamp) -> Result<Pose2, String> {
+        let after = self.poses.partition_point(|(at, _)| *at < stamp);
+        let (before, next) = (after.checked_sub(1).and_then(|i| self.poses.get(i)), self.poses.get(after));
+        let near = |pose: &&(Stamp, Pose2)| (pose.0 - stamp).abs() <= HOLDS;
+        match (before, next) {
+            (Some((t0, a)), Some((t1, b))) if *t1 - *t0 <= LONGEST_GAP => {
+                Ok(a.interpolate(b, (stamp - *t0) / (*t1 - *t0)))
+            }
+            (before, next) => {
+                let held = next.filter(near).or(before.filter(near));
+                held.map(|(_, pose)| *pose).ok_or_else(|| format!("no odometry about {stamp} s"))
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn stamp(ms: i64) -> Stamp {
+        Stamp::from_nanos(ms * 1_000_000)
+    }
+
+    #[test]
+    fn poses_between_and_none_in_gaps() {
+        let mut motion = Motion::default();
+        for (ms, x) in [(0, 0.0), (500, 1.0), (5000, 2.0)] {
+            motion.push(stamp(ms), Pose2::new(x, 0.0, 0.0)).unwrap();
+        }
+        assert!((motion.at(stamp(250)).unwrap().x - 0.5).abs() < 1e-12);
+        assert_eq!(motion.at(stamp(500)).unwrap().x, 1.0);
+        assert_eq!(motion.at(stamp(-50)).unwrap().x, 0.0);
+        assert_eq!(motion.at(stamp(5050)).unwrap().x, 2.0);
+        assert_eq!(motion.at(stamp(2000)).unwrap_err(), "no odometry about 2.000000000 s");
+        assert_eq!(motion.at(stamp(590)).unwrap().x, 1.0, "a pose holds for a moment");
+        assert!(motion.push(stamp(4000), Pose2::IDENTITY).unwrap_err().starts_with("time goes back"));
+        assert!(motion.push(stamp(6000), Pose2 { x: f64::NAN, ..Pose2::IDENTITY }).is_err());
+    }
+}

@@ -1,0 +1,48 @@
+use trundle_core::GyroRate;
+
+/// Tells a gyro that says the same again and again, whatever the wheels do, from one at rest.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct StuckGyro {
+    last: Option<GyroRate>,
+    same_for: f64,
+}
+
+/// A gyro whose readings were all the same for so long may be stuck, s: in motion noise alone makes them differ.
+const SUSPECT: f64 = 0.3;
+/// And is, when the wheels turn the robot at a rate so far from it, rad/s.
+const APART: f64 = 0.1;
+
+impl StuckGyro {
+    /// Notes a reading.
+    pub(crate) fn note(&mut self, rate: &GyroRate) {
+        self.same_for = match self.last {
+            Some(last) if last.omega == rate.omega => self.same_for + (rate.stamp - last.stamp),
+            _ => 0.0,
+        };
+        self.last = Some(*rate);
+    }
+
+    /// Whether the gyro is stuck, where the wheels say `by_wheels` rad/s and its bias is `bias` rad/s.
+    pub(crate) fn contradicts(&self, by_wheels: f64, bias: f64) -> bool {
+        let apart = |last: GyroRate| (last.omega - bias - by_wheels).abs() > APART;
+        self.same_for > SUSPECT && self.last.is_some_and(apart)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use trundle_core::Stamp;
+
+    #[test]
+    fn only_one_that_does_not_follow_the_wheels_is_stuck() {
+        let mut gyro = StuckGyro::default();
+        for i in 0..100 {
+            gyro.note(&GyroRate { stamp: Stamp::from_nanos(i * 20_000_000), omega: 0.02 });
+        }
+        assert!(!gyro.contradicts(0.0, 0.02), "a quiet gyro at rest");
+        assert!(gyro.contradicts(0.8, 0.02));
+        gyro.note(&GyroRate { stamp: Stamp::from_nanos(2_000_000_000), omega: 0.03 });
+        assert!(!gyro.contradicts(0.8, 0.02), "it speaks again");
+    }
+}

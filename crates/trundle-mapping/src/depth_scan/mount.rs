@@ -1,0 +1,118 @@
+use super::{
+    DepthScanConfig,
+    floor_fit::FloorSamples,
+    model::SortModel,
+    pixel_rays::{Fan, LensRays},
+    span_bits::{BELOW, BINS, SpanBits, bins},
+};
+use trundle_core::{Invalid, Pose3, Vector2, Vector3};
+
+/// What follows from where the camera sits.
+#[derive(Debug, Clone)]
+pub(super) struct Mount {
+    pub(super) origin: Vector2,
+    pub(super) fan: Fan,
+    pub(super) model: SortModel,
+    pub(super) views: Vec<BeamView>,
+    pub(super) samples: FloorSamples,
+    pub(super) blind_range: f64,
+    /// Whether some beam looks into the band where it does not look at the floor.
+    pub(super) passes_matter: bool,
+}
+
+/// Where a beam looks, as far as the mount says.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct BeamView {
+    /// Where its pixels would see the floor.
+    pub(super) floor: SpanBits,
+    /// The first bin in which they do.
+    pub(super) begin: usize,
+    /// Mean way over the floor of its rays, m for each m of depth.
+    pub(super) run: f32,
+}
+
+impl Mount {
+    pub(super) fn new(
+        lens: &LensRays,
+        base_from_camera: &Pose3,
+        config: &DepthScanConfig,
+    ) -> Result<Self, Invalid> {
+        if !base_from_camera.is_finite() {
+            return Err(Invalid::new("base_from_camera", "not finite", "", "finite numbers"));
+        }
+        let position = base_from_camera.translation;
+        trundle_core::require_positive("camera height above the floor", position.z, "m")?;
+        let fan = Fan::new(lens, base_from_camera);
+        let survey = Survey::new(lens, base_from_camera, config, &fan);
+        Ok(Self {
+            origin: position.xy(),
+            model: SortModel::new(config, base_from_camera),
+            samples: FloorSamples::new(lens, base_from_camera, config),
+            blind_range: survey.blind_range(config.max_range),
+            passes_matter: survey.passes_matter(),
+            views: survey.views(),
+            fan,
+        })
+    }
+}
+
+/// What the rays of each beam would see on an empty floor.
+struct Survey {
+    /// Floor, the way through the band, the first sight of the band's lower edge (m), sum and number of runs.
+    beams: Vec<(SpanBits, SpanBits, f64, f64, usize)>,
+}
+
+impl Survey {
+    fn new(lens: &LensRays, base_from_camera: &Pose3, config: &DepthScanConfig, fan: &Fan) -> Self {
+        let base_from_lens = base_from_camera.rotation_matrix();
+        let height = base_from_camera.translation.z;
+        let mut beams = vec![(0, 0, f64::INFINITY, 0.0, 0); fan.beams];
+        let bin = |range: f64| (range.max(0.0) * BINS as f64 / config.max_range) as usize;
+        for (i, &at) in fan.beam_of.iter().enumerate() {
+            let ray: Vector3 = base_from_lens * lens.ray(i);
+            let run = ray.xy().norm();
+            let beam = &mut beams[usize::from(at)];
+            (beam.3, beam.4) = (beam.3 + run, beam.4 + 1);
+            // Ranges at which the ray is at a height.
+            let at_height = |z: f64| (z - height) / ray.z * run;
+            if ray.z < 0.0 {
+                let depth = height / -ray.z;
+                let (floor, edge) = (at_height(0.0), at_height(config.band_low.min(height)));
+                if depth >= config.min_depth && depth <= config.max_depth {
+                    beam.0 |= bins(bin(edge), bin(floor));
+                }
+                beam.1 |= bins(bin(at_height(config.band_high.min(height))), bin(floor));
+                let first = (height - config.band_low).max(0.0) / -ray.z;
+                beam.2 = beam.2.min(first.max(config.min_depth) * run);
+            } else if height < config.band_high {
+                let to = if ray.z > 0.0 { at_height(config.band_high) } else { config.max_range };
+                beam.1 |= BELOW[bin(to).min(BINS)];
+            }
+        }
+        Self { beams }
+    }
+
+    fn views(&self) -> Vec<BeamView> {
+        let view = |&(floor, _, _, runs, count): &(SpanBits, SpanBits, f64, f64, usize)| BeamView {
+            floor,
+            begin: floor.trailing_zeros() as usize,
+            run: (runs / count.max(1) as f64) as f32,
+        };
+        self.beams.iter().map(view).collect()
+    }
+
+    /// Whether more than one beam in fifty passes through bins that it does not see the floor of.
+    fn passes_matter(&self) -> bool {
+        let gaps = self.beams.iter().filter(|(floor, band, ..)| {
+            let first = floor.trailing_zeros() as usize;
+            band & !(floor | BELOW[first.min(BINS)]) != 0 || (*floor == 0 && *band != 0)
+        });
+        gaps.count() * 50 > self.beams.len()
+    }
+
+    /// The range from which on every bearing that sees the band's lower edge at all sees it.
+    fn blind_range(&self, max_range: f64) -> f64 {
+        let seen = self.beams.iter().map(|beam| beam.2).filter(|range| range.is_finite());
+        seen.reduce(f64::max).unwrap_or(max_range).min(max_range)
+    }
+}

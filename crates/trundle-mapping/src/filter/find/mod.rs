@@ -1,0 +1,7 @@
+//! Where in a map, or in a part of it, a scan fits best: correlative search by branch and bound (\[Hess16\], \[Olson09\]).
+
+mod pyramid;
+mod search;
+
+pub(crate) use pyramid::Pyramid;
+pub(crate) use search::{Place, Query};

@@ -1,0 +1,45 @@
+use trundle_core::Invalid;
+
+/// Why a saved filter was not loaded.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum FilterFileError {
+    /// The bytes are something else.
+    #[error("no map of trundle-mapping")]
+    Foreign,
+    /// Made by a version that this one does not read.
+    #[error("map of version {found}, expected {expected}")]
+    Version {
+        /// Of the bytes.
+        found: u8,
+        /// Of this program.
+        expected: u8,
+    },
+    /// A bit was lost or turned on the way.
+    #[error("the map is damaged: its checksum is wrong")]
+    Checksum,
+    /// The bytes end too early.
+    #[error("the map is cut off in its {within}")]
+    Cut {
+        /// What was being read.
+        within: &'static str,
+    },
+    /// The map was made with another cell size or sensor model.
+    #[error("the map was made with {name} {saved}, not {given}")]
+    Mismatch {
+        /// Which setting.
+        name: &'static str,
+        /// What the map was made with.
+        saved: f64,
+        /// What it was asked for with.
+        given: f64,
+    },
+    /// The checksum is right, and yet a number cannot be.
+    #[error("the map contradicts itself: {what}")]
+    Content {
+        /// Which number.
+        what: &'static str,
+    },
+    /// The configuration given is out of range.
+    #[error(transparent)]
+    Config(#[from] Invalid),
+}

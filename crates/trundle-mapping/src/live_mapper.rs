@@ -1,0 +1,242 @@
+use crate::{GridMapper, Insertion, LogOddsGrid, MapperConfig};
+use std::sync::Arc;
+use trundle_core::{CellIndex, Invalid, OccupancyGrid, Pose2, Scan, Stamp, Vector2};
+
+/// A live map that follows corrections of the way it was drawn along.
+///
+/// Problem: a loop closure moves poses at which scans were drawn minutes ago. The scans are kept; [`LiveMapper::correct`] tells
+/// where they were taken by now, and [`LiveMapper::work`] draws what was bent anew, beside the map in use, in slices as large
+/// as the caller likes, counted in cells. Drawing begins at the last snapshot before the first scan that moved (snapshots
+/// share their tiles, so they cost what changed since), not at the beginning. When it has caught up, the new map takes the
+/// place of the old one. Cost of a call: its budget, and two passes over the grid for a whole redrawing.
+#[derive(Debug, Clone)]
+pub struct LiveMapper {
+    front: GridMapper,
+    kept: Vec<Kept>,
+    snapshots: Vec<Snapshot>,
+    /// Kept things between snapshots.
+    every: usize,
+    redrawing: Option<Redrawing>,
+}
+
+/// Something drawn that can be drawn again.
+#[derive(Debug, Clone)]
+struct Kept {
+    stamp: Stamp,
+    map_from_base: Pose2,
+    what: What,
+}
+
+#[derive(Debug, Clone)]
+enum What {
+    Scan(Arc<Scan>),
+    FreeDisc { radius: f64 },
+}
+
+/// The evidence when so many kept things were drawn.
+#[derive(Debug, Clone)]
+struct Snapshot {
+    drawn: usize,
+    evidence: LogOddsGrid,
+}
+
+#[derive(Debug, Clone)]
+struct Redrawing {
+    back: GridMapper,
+    drawn: usize,
+}
+
+/// What a slice of work did.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Redrawn {
+    /// Cells told.
+    pub cells: usize,
+    /// Scans that are still to be drawn; 0: the map is that of the corrected poses.
+    pub left: usize,
+}
+
+/// A scan is kept when it was taken so far from the last one kept, m and rad: others add to the map, but not to its redrawing.
+const KEEP: (f64, f64) = (0.1, 0.1);
+/// Most things kept: beyond, every second of the older half goes.
+const MOST_KEPT: usize = 30_000;
+const MOST_SNAPSHOTS: usize = 64;
+/// What beginning a scan costs, cells.
+const SCAN_COST: usize = 200;
+
+impl LiveMapper {
+    /// An empty map.
+    ///
+    /// # Errors
+    /// When the configuration is out of range.
+    pub fn new(config: MapperConfig) -> Result<Self, Invalid> {
+        let front = GridMapper::new(config)?;
+        Ok(Self { front, kept: Vec::new(), snapshots: Vec::new(), every: 64, redrawing: None })
+    }
+
+    /// Draws `scan`, taken with the base at `map_from_base`, and keeps it when it is from somewhere else than the last one.
+    pub fn insert(&mut self, map_from_base: Pose2, scan: &Scan) -> Insertion {
+        let insertion = self.front.insert(map_from_base, scan);
+        let last = self.kept.iter().rev().find(|kept| matches!(kept.what, What::Scan(_)));
+        if map_from_base.is_finite()
+            && last.is_none_or(|last| is_elsewhere(last.map_from_base, map_from_base))
+        {
+            self.keep(scan.stamp(), map_from_base, What::Scan(Arc::new(scan.clone())));
+        }
+        insertion
+    }
+
+    /// As [`GridMapper::mark_free_disc`]; it moves with the scan before it.
+    pub fn mark_free_disc(&mut self, map_from_base: Pose2, radius: f64) {
+        self.front.mark_free_disc(map_from_base, radius);
+        let last = self.kept.iter().rev().find(|kept| matches!(kept.what, What::FreeDisc { .. }));
+        if map_from_base.is_finite()
+            && last.is_none_or(|last| is_elsewhere(last.map_from_base, map_from_base))
+        {
+            let stamp = self.kept.last().map_or(Stamp::default(), |kept| kept.stamp);
+            self.keep(stamp, map_from_base, What::FreeDisc { radius });
+        }
+    }
+
+    /// Takes over corrected poses: `pose` gives, for the stamp of a scan and the pose at which it was drawn, where it was taken
+    /// by now. How many scans have moved; [`LiveMapper::work`] redraws them.
+    pub fn correct(&mut self, pose: impl Fn(Stamp, Pose2) -> Pose2) -> usize {
+        let (mut moved, mut first) = (0, None);
+        for (i, kept) in self.kept.iter_mut().enumerate() {
+            let now = pose(kept.stamp, kept.map_from_base);
+            let off = kept.map_from_base.inverse() * now;
+            if now.is_finite() && (off.position().norm() > STILL || off.theta.abs() > STILL) {
+                kept.map_from_base = now;
+                moved += 1;
+                first = first.or(Some(i));
+            }
+        }
+        if let Some(first) = first {
+            self.redraw_from(first);
+        }
+        moved
+    }
+
+    /// Redraws for about `budget` cells.
+    pub fn work(&mut self, budget: usize) -> Redrawn {
+        let mut cells = 0;
+        let Some(mut redrawing) = self.redrawing.take() else { return Redrawn { cells, left: 0 } };
+        while cells < budget && redrawing.drawn < self.kept.len() {
+            cells += draw(&mut redrawing.back, &self.kept[redrawing.drawn]);
+            redrawing.drawn += 1;
+            self.note(redrawing.drawn, redrawing.back.evidence());
+        }
+        let left = self.kept.len() - redrawing.drawn;
+        if left == 0 {
+            self.front.replace_with(redrawing.back);
+        } else {
+            self.redrawing = Some(redrawing);
+        }
+        Redrawn { cells, left }
+    }
+
+    /// Whether work is left.
+    pub fn is_redrawing(&self) -> bool {
+        self.redrawing.is_some()
+    }
+
+    /// The map in use.
+    pub fn mapper(&self) -> &GridMapper {
+        &self.front
+    }
+
+    /// Its three-valued grid.
+    pub fn grid(&self) -> &OccupancyGrid {
+        self.front.grid()
+    }
+
+    /// As [`GridMapper::revision`].
+    pub fn revision(&self) -> u64 {
+        self.front.revision()
+    }
+
+    /// As [`GridMapper::changes_since`].
+    pub fn changes_since(&self, revision: u64) -> impl Iterator<Item = (CellIndex, (usize, usize))> {
+        self.front.changes_since(revision)
+    }
+
+    /// Log-odds at a point of the map frame (m).
+    pub fn log_odds_at(&self, point: Vector2) -> f64 {
+        self.front.log_odds_at(point)
+    }
+
+    /// Scans and free discs kept for redrawing.
+    pub fn kept(&self) -> usize {
+        self.kept.len()
+    }
+
+    fn keep(&mut self, stamp: Stamp, map_from_base: Pose2, what: What) {
+        self.kept.push(Kept { stamp, map_from_base, what });
+        if self.redrawing.is_none() {
+            self.note(self.kept.len(), &self.front.evidence().clone());
+        }
+        if self.kept.len() > MOST_KEPT {
+            self.thin();
+        }
+    }
+
+    /// Takes a snapshot when it is time.
+    fn note(&mut self, drawn: usize, evidence: &LogOddsGrid) {
+        if drawn.is_multiple_of(self.every) {
+            self.snapshots.push(Snapshot { drawn, evidence: evidence.clone() });
+            if self.snapshots.len() > MOST_SNAPSHOTS {
+                self.every *= 2;
+                let every = self.every;
+                self.snapshots.retain(|snapshot| snapshot.drawn.is_multiple_of(every));
+            }
+        }
+    }
+
+    fn redraw_from(&mut self, first: usize) {
+        // A redrawing that had not come so far goes on as it is.
+        if let Some(redrawing) = self.redrawing.as_mut().filter(|redrawing| redrawing.drawn <= first) {
+            debug_assert!(redrawing.drawn <= self.kept.len(), "what was drawn was kept");
+            return;
+        }
+        self.snapshots.retain(|snapshot| snapshot.drawn <= first);
+        let (evidence, drawn) = match self.snapshots.last() {
+            Some(snapshot) => (snapshot.evidence.clone(), snapshot.drawn),
+            None => (LogOddsGrid::default(), 0),
+        };
+        self.redrawing = Some(Redrawing { back: self.front.with_evidence(evidence), drawn });
+    }
+
+    /// Lets every second thing of the older half go.
+    fn thin(&mut self) {
+        let half = self.kept.len() / 2;
+        let mut i = 0;
+        self.kept.retain(|_| {
+            i += 1;
+            i > half || i % 2 == 1
+        });
+        self.snapshots.clear();
+        if self.redrawing.take().is_some() {
+            self.redraw_from(0);
+        }
+    }
+}
+
+/// Poses nearer than this are the same, m and rad.
+const STILL: f64 = 1e-4;
+
+fn is_elsewhere(a: Pose2, b: Pose2) -> bool {
+    let step = a.inverse() * b;
+    step.position().norm() >= KEEP.0 || step.theta.abs() >= KEEP.1
+}
+
+fn draw(mapper: &mut GridMapper, kept: &Kept) -> usize {
+    match &kept.what {
+        What::Scan(scan) => {
+            let Insertion { hits, frees, .. } = mapper.insert(kept.map_from_base, scan);
+            hits + frees + SCAN_COST
+        }
+        What::FreeDisc { radius } => {
+            mapper.mark_free_disc(kept.map_from_base, *radius);
+            SCAN_COST
+        }
+    }
+}

@@ -1,0 +1,139 @@
+//! The live map and its corrections.
+
+use crate::filter::{lap, laser, ring};
+use trundle_core::{Cell, OccupancyGrid, Pose2, Scan};
+use trundle_mapping::{GridMapper, LiveMapper, MapperConfig};
+
+fn config() -> MapperConfig {
+    MapperConfig { blind_range: 0.0, max_range: 15.0, ..MapperConfig::default() }
+}
+
+/// Scans along a lap, where they were taken, and where a drifting estimate has them.
+fn run() -> Vec<(Scan, Pose2, Pose2)> {
+    let room = ring();
+    let mut drift = Pose2::IDENTITY;
+    let lap = lap();
+    lap.iter()
+        .enumerate()
+        .map(|(i, pose)| {
+            drift = drift * Pose2::new(0.004, 0.003, 0.0004);
+            (laser(&room, *pose, i), *pose, lap[0] * drift * (lap[0].inverse() * *pose))
+        })
+        .collect()
+}
+
+fn differ(a: &OccupancyGrid, b: &OccupancyGrid) -> usize {
+    let g = *b.geometry();
+    (0..g.len()).filter(|&k| a.at(g.center(g.cell(k))) != b.cells()[k]).count()
+}
+
+#[test]
+fn what_a_correction_bent_is_redrawn_in_slices() {
+    let run = run();
+    let mut live = LiveMapper::new(config()).unwrap();
+    for (scan, _, drifted) in &run {
+        live.insert(*drifted, scan);
+    }
+    // From the middle on the poses are corrected: the first half stays.
+    let middle = run.len() / 2;
+    let now = |i: usize| if i < middle { run[i].2 } else { run[i].1 };
+    let index = |stamp| run.iter().position(|(scan, _, _)| scan.stamp() == stamp).unwrap();
+    let moved = live.correct(|stamp, _| now(index(stamp)));
+    assert!(moved > middle / 2 && moved <= run.len() - middle, "{moved}");
+    let before = live.grid().clone();
+    let (mut slices, mut most) = (0, 0);
+    loop {
+        // While it is redrawn the map in use stays and takes in more.
+        assert_eq!(live.grid(), &before);
+        let done = live.work(20_000);
+        most = most.max(done.cells);
+        slices += 1;
+        if done.left == 0 {
+            break;
+        }
+    }
+    assert!(slices > 10 && most < 20_000 + 30_000, "{slices} slices, at most {most} cells");
+    // As if it had been drawn so at once; scans nearer than 0.1 m to another are not redrawn.
+    let mut fresh = GridMapper::new(config()).unwrap();
+    for (i, (scan, _, _)) in run.iter().enumerate() {
+        fresh.insert(now(i), scan);
+    }
+    let walls = fresh.grid().cells().iter().filter(|c| **c == Cell::Occupied).count();
+    assert!(
+        differ(live.grid(), fresh.grid()) < walls / 20,
+        "{} of {walls}",
+        differ(live.grid(), fresh.grid())
+    );
+    assert!(differ(&before, fresh.grid()) > walls / 2, "the correction matters");
+    assert_eq!(live.work(1000).left, 0);
+}
+
+#[test]
+fn what_comes_in_while_redrawing_is_not_lost() {
+    let run = run();
+    let mut live = LiveMapper::new(config()).unwrap();
+    let half = run.len() / 2;
+    for (scan, _, drifted) in &run[..half] {
+        live.insert(*drifted, scan);
+    }
+    let truth = |stamp, old| run.iter().find(|(scan, _, _)| scan.stamp() == stamp).map_or(old, |r| r.1);
+    live.correct(truth);
+    for (scan, pose, _) in &run[half..] {
+        live.insert(*pose, scan);
+        live.work(5_000);
+    }
+    while live.is_redrawing() {
+        live.work(50_000);
+    }
+    let mut fresh = GridMapper::new(config()).unwrap();
+    for (scan, pose, _) in &run {
+        fresh.insert(*pose, scan);
+    }
+    let walls = fresh.grid().cells().iter().filter(|c| **c == Cell::Occupied).count();
+    assert!(differ(live.grid(), fresh.grid()) < walls / 20);
+}
+
+#[test]
+fn every_change_of_the_grid_is_told() {
+    let run = run();
+    let mut live = LiveMapper::new(config()).unwrap();
+    let mut shown: Option<OccupancyGrid> = None;
+    for (i, (scan, pose, drifted)) in run.iter().enumerate().take(120) {
+        let revision = live.revision();
+        live.insert(*drifted, scan);
+        live.mark_free_disc(*drifted, 0.2);
+        if i == 80 {
+            live.correct(|_, old| old * Pose2::new(0.1, 0.05, 0.01));
+        }
+        live.work(30_000);
+        let grid = live.grid().clone();
+        let told: Vec<_> = live.changes_since(revision).collect();
+        if let Some(before) = shown.replace(grid.clone()) {
+            let g = *grid.geometry();
+            for k in 0..g.len() {
+                let cell = g.cell(k);
+                let changed = before.at(g.center(cell)) != grid.cells()[k];
+                let is_told = told.iter().any(|(corner, (cols, rows))| {
+                    (corner.col..corner.col + cols).contains(&cell.col)
+                        && (corner.row..corner.row + rows).contains(&cell.row)
+                });
+                assert!(!changed || is_told, "scan {i}, {pose:?}: a change that was not told");
+            }
+            assert!(
+                told.len() < g.len() / 4096 || i < 20 || i > 79,
+                "not all of the map changes with a scan"
+            );
+        }
+    }
+}
+
+#[test]
+fn an_hour_of_mapping_is_kept_in_bounds() {
+    let room = ring();
+    let mut live = LiveMapper::new(config()).unwrap();
+    let scan = laser(&room, lap()[0], 0);
+    for _ in 0..200 {
+        live.insert(lap()[0], &scan);
+    }
+    assert_eq!(live.kept(), 1, "standing still keeps nothing");
+}

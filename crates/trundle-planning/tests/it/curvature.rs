@@ -1,0 +1,73 @@
+//! Robots that cannot, or should not, bend sharply.
+
+use crate::support::{at_home, found, judge, planner};
+use proptest::prelude::*;
+use trundle_core::{OccupancyGrid, Pose2, Twist2};
+use trundle_planning::{CurveConfig, PlanResult, PlannerConfig};
+
+const RADIUS: f64 = 0.1755;
+
+fn gentle(max_curvature: f64) -> PlannerConfig {
+    let curve = CurveConfig { max_curvature, detour: 1.5, ..CurveConfig::default() };
+    PlannerConfig { curve, ..at_home() }
+}
+
+fn sharpest(result: &PlanResult) -> f64 {
+    let samples = result.curves().flat_map(|curve| curve.samples(0.002));
+    samples.map(|sample| sample.curvature.abs()).fold(0.0, f64::max)
+}
+
+/// Corridors 1.6 m wide that meet at right angles.
+fn bends() -> OccupancyGrid {
+    let corridor = |r: usize, c: usize| {
+        let first = r < 16;
+        let second = (44..60).contains(&c) && r < 60;
+        let third = (44..60).contains(&r) && c >= 44;
+        first && c < 60 || second || third
+    };
+    let row = |r: usize| (0..100).map(|c| if corridor(r, c) { '.' } else { '#' }).collect::<String>();
+    OccupancyGrid::from_ascii(0.1, &(0..60).rev().map(row).collect::<Vec<_>>().join("\n")).unwrap()
+}
+
+#[test]
+fn corners_are_taken_as_gently_as_asked() {
+    let (start, goal) = (Pose2::new(0.8, 0.8, 0.0), Pose2::new(9.0, 5.2, 0.0));
+    for most in [8.0, 3.0, 2.0, 1.5, 1.2] {
+        let result = found(planner(gentle(most), RADIUS).plan(&bends(), start, Twist2::ZERO, goal));
+        judge(&bends(), &result, start, goal, RADIUS);
+        eprintln!(
+            "at most {most} /m: {:.2} /m, {} phases, {:.2} m",
+            sharpest(&result),
+            result.phases.len(),
+            result.length
+        );
+        assert!(sharpest(&result) <= most * 1.001, "{} of {most}", sharpest(&result));
+        assert_eq!(result.phases.len(), 1, "{most}: {:?}", result.phases);
+    }
+}
+
+#[test]
+fn where_no_curve_is_gentle_enough_it_turns_on_the_spot() {
+    let (start, goal) = (Pose2::new(0.8, 0.8, 0.0), Pose2::new(9.0, 5.2, 0.0));
+    let result = found(planner(gentle(0.3), RADIUS).plan(&bends(), start, Twist2::ZERO, goal));
+    judge(&bends(), &result, start, goal, RADIUS);
+    assert!(sharpest(&result) <= 0.3 * 1.001 && result.phases.len() > 1);
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    /// Two arcs and a line between these headings have the room; so has a curve.
+    #[test]
+    fn an_open_floor_has_a_gentle_curve(
+        x in 4.0..5.0, y in -1.0..1.0, start in -0.7..0.7, end in -0.7..0.7, most in 1.0..4.0,
+    ) {
+        let grid = OccupancyGrid::from_ascii(0.1, &vec![".".repeat(120); 120].join("\n")).unwrap();
+        let way = f64::atan2(y, x);
+        let (start, goal) = (Pose2::new(3.0, 6.0, way + start), Pose2::new(3.0 + x, 6.0 + y, way + end));
+        let result = found(planner(gentle(most), RADIUS).plan(&grid, start, Twist2::ZERO, goal));
+        judge(&grid, &result, start, goal, RADIUS);
+        prop_assert!(sharpest(&result) <= most * 1.001, "{} of {most}", sharpest(&result));
+        prop_assert!(result.phases.len() == 1, "{most}: {:?}", result.phases.len());
+    }
+}

@@ -1,0 +1,91 @@
+use trundle_core::{Beam, Pose2, RgbdImage, Scan, Stamp};
+
+/// Tells images that show something from those of a camera that is covered, frozen or has lost its depth.
+#[derive(Debug, Default)]
+pub(crate) struct EyeWatch {
+    last: Option<(u64, Pose2)>,
+    /// Stamp of the newest scan that shows something.
+    seen: Option<Stamp>,
+    frozen: usize,
+}
+
+/// The robot has moved when it is so far from where it was, m, or has turned by so many rad.
+const MOVED: f64 = 0.01;
+/// A scan that shows so little of its bearings shows nothing.
+const LEAST_SEEN: f64 = 0.05;
+
+impl EyeWatch {
+    /// Whether this image, taken at `odom_from_base`, is bit for bit the last one though the robot has moved: the camera says
+    /// again what it said before. Noise alone makes any two true images differ.
+    pub(crate) fn is_frozen(&mut self, image: &RgbdImage, odom_from_base: Pose2) -> bool {
+        let print = fingerprint(image);
+        if let Some((last, at)) = self.last
+            && last == print
+        {
+            let motion = at.inverse() * odom_from_base;
+            let moved = motion.position().norm() > MOVED || motion.theta.abs() > MOVED;
+            self.frozen += usize::from(moved);
+            return moved;
+        }
+        self.last = Some((print, odom_from_base));
+        false
+    }
+
+    /// Notes a scan of an image that is not frozen.
+    pub(crate) fn note(&mut self, scan: &Scan) {
+        let seen = scan.beams().iter().filter(|beam| **beam != Beam::Unseen).count();
+        if seen as f64 >= LEAST_SEEN * scan.beams().len() as f64 && seen > 0 {
+            self.seen = Some(scan.stamp());
+        }
+    }
+
+    /// Stamp of the newest scan that shows something.
+    pub(crate) fn seen(&self) -> Option<Stamp> {
+        self.seen
+    }
+
+    /// Images that were left out because the camera was frozen.
+    pub(crate) fn frozen(&self) -> usize {
+        self.frozen
+    }
+}
+
+/// FNV-1a over the depth and every 16th byte of the colour image.
+fn fingerprint(image: &RgbdImage) -> u64 {
+    let fold = |hash: u64, word: u64| (hash ^ word).wrapping_mul(0x0100_0000_01b3);
+    let depth =
+        image.depth().data().iter().fold(0xcbf2_9ce4_8422_2325, |h, d| fold(h, u64::from(d.to_bits())));
+    image.color().data().iter().step_by(16).fold(depth, |h, rgb| fold(h, u64::from(rgb[1])))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use trundle_core::{DepthImage, Image, Vector2};
+
+    fn image(depth: f32) -> RgbdImage {
+        RgbdImage::new(Stamp::default(), Image::filled(8, 4, [9; 3]), DepthImage::filled(8, 4, depth))
+            .unwrap()
+    }
+
+    #[test]
+    fn an_image_that_stays_while_the_robot_moves_is_frozen() {
+        let mut eye = EyeWatch::default();
+        let at = |x: f64| Pose2::new(x, 0.0, 0.0);
+        assert!(!eye.is_frozen(&image(1.0), at(0.0)));
+        assert!(!eye.is_frozen(&image(1.0), at(0.0)), "standing still it may well be the same");
+        assert!(eye.is_frozen(&image(1.0), at(0.1)));
+        assert!(!eye.is_frozen(&image(1.1), at(0.2)));
+        assert_eq!(eye.frozen(), 1);
+    }
+
+    #[test]
+    fn a_scan_of_nothing_is_not_sight() {
+        let mut eye = EyeWatch::default();
+        let scan =
+            |beam, ms| Scan::new(Stamp::from_nanos(ms), Vector2::zeros(), 0.0, 0.1, vec![beam; 20]).unwrap();
+        eye.note(&scan(Beam::Free { range: 2.0 }, 1));
+        eye.note(&scan(Beam::Unseen, 2));
+        assert_eq!(eye.seen(), Some(Stamp::from_nanos(1)));
+    }
+}
