@@ -77,7 +77,9 @@ pub struct HouseArgs {
 
 /// `trundle experiment barn`
 #[derive(Debug, Args)]
-#[command(after_help = "Exit code: 0 success at least 97 % and mean score at least 0.45, 1 otherwise, 2 bad input.")]
+#[command(
+    after_help = "Exit code: 0 success at least 97 % and mean score at least 0.45, 1 otherwise, 2 bad input."
+)]
 pub struct BarnArgs {
     /// Which of the worlds, counted from 0 in the order of worlds.csv [default: all]
     #[arg(long, value_name = "A-B")]
@@ -139,7 +141,8 @@ impl FromStr for WorldRange {
 
     /// `A-B`, or `A` alone.
     fn from_str(text: &str) -> Result<Self, String> {
-        let number = |part: &str| part.trim().parse::<usize>().map_err(|_| format!("'{part}' is not a number"));
+        let number =
+            |part: &str| part.trim().parse::<usize>().map_err(|_| format!("'{part}' is not a number"));
         let (first, last) = text.split_once('-').unwrap_or((text, text));
         match (number(first)?, number(last)?) {
             (first, last) if first <= last => Ok(Self { first, last }),

@@ -76,6 +76,10 @@ pub(crate) struct Navigator {
     look: LookAround,
     /// Where the way to the goal ends, when there is none.
     blocked_at: Option<Vector2>,
+    /// A disc can always turn away.
+    is_polygon: bool,
+    /// The outline stands too near to something to turn: it backs out, as far as safety lets it.
+    is_wedged: bool,
     progress: ProgressWatch,
     /// Of the safety monitor, s.
     image_timeout: f64,
@@ -91,6 +95,8 @@ const SOONER: f64 = 0.05;
 const BLIND_PAUSE: f64 = 3.0;
 /// Slower than this the robot stands, m/s.
 const STANDING: f64 = 0.02;
+/// So fast it backs out where it has no room to turn, m/s.
+const BACKING_OUT: f64 = 0.1;
 /// So many turns see everything around twice.
 const TURNS: f64 = 2.0;
 /// One turn, and a little more, sees it once.
@@ -115,6 +121,8 @@ impl Navigator {
             held_since: None,
             look: LookAround::default(),
             blocked_at: None,
+            is_polygon: matches!(footprint, Footprint::Polygon { .. }),
+            is_wedged: false,
             progress: ProgressWatch::default(),
             image_timeout: config.safety.image_timeout,
         })
@@ -281,8 +289,8 @@ impl Navigator {
             return false;
         }
         let planner = &mut self.planner;
-        let plan = times
-            .measure(Stage::Planning, || planner.plan(s.grid, reference.pose, reference.twist, goal));
+        let plan =
+            times.measure(Stage::Planning, || planner.plan(s.grid, reference.pose, reference.twist, goal));
         match plan {
             Plan::Found(plan) if plan.is_continuous && plan.trajectory.duration() < left - SOONER => {
                 self.follower.follow(plan.trajectory.clone(), goal);
@@ -296,6 +304,7 @@ impl Navigator {
     /// No way is known: stop, turn on the spot until everything around has been seen, then wait, looking at where it ends.
     fn no_way(&mut self, refused: &Plan) {
         let reason = why(refused);
+        self.is_wedged = self.is_polygon && matches!(refused, Plan::StartInObstacle { .. });
         self.follower.halt();
         self.plan = None;
         self.blocked_at = match refused {
@@ -304,7 +313,7 @@ impl Navigator {
         };
         self.state = match self.goal {
             Goal::View(_) => DriveState::Stopped { reason },
-            _ if self.look.has_turned(TURNS) => DriveState::Waiting { reason },
+            _ if self.look.has_turned(TURNS) && !self.is_wedged => DriveState::Waiting { reason },
             _ => DriveState::Recovering { reason },
         };
     }
@@ -331,6 +340,7 @@ impl Navigator {
         let pose = s.estimate.pose;
         match &self.state {
             DriveState::Mapping if self.goal == Goal::Look => self.look_once(s),
+            DriveState::Recovering { .. } if self.is_wedged => Twist2::new(-BACKING_OUT, 0.0),
             DriveState::Recovering { .. } | DriveState::Lost { .. } => self.look.twist(pose),
             DriveState::Waiting { .. } if self.is_blind(s) => self.look_for_sight(s),
             DriveState::Waiting { .. } => match self.blocked_at.filter(|_| self.plan.is_none()) {

@@ -59,7 +59,8 @@ pub fn run(args: &BarnArgs) -> Result<Outcome, Failure> {
     let plans: Vec<(BarnWorld, u64)> = chosen
         .flat_map(|(_, world)| (1..=u64::from(args.seeds)).map(move |seed| (world.clone(), seed)))
         .collect();
-    let robot = args.config.as_deref().map_or_else(|| Ok(jackal::robot()), |file| robot_file::load(Some(file)))?;
+    let robot =
+        args.config.as_deref().map_or_else(|| Ok(jackal::robot()), |file| robot_file::load(Some(file)))?;
     let trials = all(&robot, plans, args.common.quiet)?;
     finish(args, &trials)
 }

@@ -4,8 +4,8 @@ mod course;
 mod metrics;
 mod report;
 
-use super::laser_run::{LaserPlan, LaserRun, drive, hokuyo};
 use super::MrpbArgs;
+use super::laser_run::{LaserPlan, LaserRun, drive, hokuyo};
 use crate::{Outcome, console, demo, failure::Failure, robot_file};
 use course::Course;
 use metrics::Metrics;
@@ -14,6 +14,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use trundle::control::{FollowerConfig, SettleConfig};
 use trundle::core::{DriveLimits, Invalid, OccupancyGrid, Vector2, difference_of_angles};
 use trundle::io::{OutputFolder, write_map};
+use trundle::localization::LocalizerConfig;
 use trundle::mapping::MapperConfig;
 use trundle::runtime::{DriveState, Mission, RobotConfig, Schedule, Sight, Task};
 use trundle::sim::{FaultSchedule, SimConfig};
@@ -51,7 +52,8 @@ struct Trial {
 /// Every course, so many seeds.
 pub fn run(args: &MrpbArgs) -> Result<Outcome, Failure> {
     let robot = args.config.as_deref().map_or_else(|| Ok(robot()), |file| robot_file::load(Some(file)))?;
-    let chosen = |course: &Course| args.only.as_ref().is_none_or(|only| course.name().contains(only.as_str()));
+    let chosen =
+        |course: &Course| args.only.as_ref().is_none_or(|only| course.name().contains(only.as_str()));
     let courses: Vec<Course> = course::read(&args.data)?.into_iter().filter(chosen).collect();
     if courses.is_empty() {
         let only = args.only.as_deref().unwrap_or("");
@@ -83,6 +85,13 @@ fn robot() -> RobotConfig {
         limits: DriveLimits { v: SPEED, ..DriveLimits::KOBUKI },
         schedule: Schedule { map_hz: 10.0, check_hz: 10.0, improve_hz: 1.0 },
         mapping: MapperConfig { max_range: 12.0, ..MapperConfig::default() },
+        // Scans of a laser err less alike than images: less of the heading is left to each.
+        localization: LocalizerConfig {
+            least_position_sigma: 0.005,
+            least_heading_sigma_deg: 0.1,
+            scan_heading_sigma_deg: 0.3,
+            ..LocalizerConfig::default()
+        },
         // A tenth of the benchmark's tolerance in position, a quarter in heading: the estimate has errors of its own.
         control: FollowerConfig {
             settling: SettleConfig {

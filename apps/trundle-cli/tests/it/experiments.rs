@@ -6,7 +6,8 @@ fn a_barn_world_is_crossed() {
     let Some(data) = shared("nav/barn") else { return };
     let scratch = tempfile::tempdir().unwrap();
     let out = scratch.path().join("out");
-    let output = trundle(&["experiment", "barn", "--worlds", "2", "--data", text(&data), "--out", text(&out)]);
+    let output =
+        trundle(&["experiment", "barn", "--worlds", "2", "--data", text(&data), "--out", text(&out)]);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let found = summary(&out);
     assert_eq!(found["success"].as_bool(), Some(true));

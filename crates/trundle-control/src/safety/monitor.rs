@@ -320,7 +320,8 @@ mod tests {
         let bearing = |i: i32| (-170.0 + 2.0 * f64::from(i)).to_radians();
         let ranges: Vec<f64> = (0..171).map(|i| half / bearing(i).sin().abs().max(1e-3)).collect();
         let walls = scan(bearing(0), 2.0_f64.to_radians(), &ranges);
-        let check = |v, omega| cart().check(&SafetyInput { scan: seen(&walls), ..fresh(Twist2::new(v, omega)) });
+        let check =
+            |v, omega| cart().check(&SafetyInput { scan: seen(&walls), ..fresh(Twist2::new(v, omega)) });
         assert_eq!(check(0.1, 0.0).action, SafetyAction::Pass);
         let turn = check(0.0, 1.5);
         assert!(turn.twist.omega < 0.5 && turn.action != SafetyAction::Pass, "{turn:?}");
@@ -339,7 +340,8 @@ mod tests {
         for _ in 0..400 {
             let at = Pose2::new(0.0, 0.0, theta).inverse().transform(post);
             let scan = scan(at.y.atan2(at.x), 0.01, &[at.norm()]);
-            let twist = cart().check(&SafetyInput { scan: seen(&scan), ..fresh(Twist2::new(0.0, 2.0)) }).twist;
+            let twist =
+                cart().check(&SafetyInput { scan: seen(&scan), ..fresh(Twist2::new(0.0, 2.0)) }).twist;
             // The base follows within what the monitor counts on.
             rate = twist.omega.clamp(rate - 3.0 * 0.02, rate + 3.0 * 0.02);
             theta += rate * 0.02;

@@ -85,7 +85,9 @@ impl fmt::Display for SlowReason {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::ObstacleAhead { way, .. } => write!(f, "an obstacle {way:.2} m ahead"),
-            Self::ObstacleBeside { angle, .. } => write!(f, "an obstacle after {:.0} deg", angle.to_degrees()),
+            Self::ObstacleBeside { angle, .. } => {
+                write!(f, "an obstacle after {:.0} deg", angle.to_degrees())
+            }
             Self::NarrowGap { at } => write!(f, "a narrow gap, {side}", side = side(*at)),
             Self::Reversing => f.write_str("backward without a view"),
             Self::BackingOut => f.write_str("backing out of a contact or off an edge"),

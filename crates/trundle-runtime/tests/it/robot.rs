@@ -1,6 +1,6 @@
 use trundle_core::{
-    Beam, DepthImage, GyroRate, Image, PinholeCamera, Pose2, RgbdImage, Scan, SensorEvent, Stamp, Touch, Twist2,
-    Vector2, WheelTicks,
+    Beam, DepthImage, GyroRate, Image, PinholeCamera, Pose2, RgbdImage, Scan, SensorEvent, Stamp, Touch,
+    Twist2, Vector2, WheelTicks,
 };
 use trundle_runtime::{DriveState, Robot, RobotConfig, Sight, StepReport};
 
@@ -91,7 +91,9 @@ fn sweep(stamp: Stamp, distance: f64) -> SensorEvent {
         if i.abs() < 80 && range < 10.0 { Beam::Hit { range } } else { Beam::Free { range: 10.0 } }
     };
     let (first, step) = ((-135_f64).to_radians(), 1_f64.to_radians());
-    SensorEvent::Scan(Scan::new(stamp, Vector2::zeros(), first, step, (-135..=135).map(beam).collect()).unwrap())
+    SensorEvent::Scan(
+        Scan::new(stamp, Vector2::zeros(), first, step, (-135..=135).map(beam).collect()).unwrap(),
+    )
 }
 
 /// A robot of 0.5 x 0.4 m that sees with a laser.

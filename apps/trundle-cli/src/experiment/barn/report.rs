@@ -126,8 +126,7 @@ pub(super) fn pictures(trials: &[Trial]) -> Vec<(String, Vec<u8>)> {
 fn picture(trial: &Trial) -> Vec<u8> {
     let start = super::BarnWorld::start();
     let map_from_world = start.inverse();
-    let moved =
-        |points: &[Vector2]| points.iter().map(|&p| map_from_world.transform(p)).collect::<Vec<_>>();
+    let moved = |points: &[Vector2]| points.iter().map(|&p| map_from_world.transform(p)).collect::<Vec<_>>();
     let goal = map_from_world * super::BarnWorld::goal();
     MapPicture::over(&trial.grid)
         .axes("x, m", "y, m")
@@ -153,7 +152,8 @@ pub(super) fn report(trials: &[Trial], means: &Means) -> Report {
     let told = means.told();
     let verdict = if means.within() { Verdict::Ok(told) } else { Verdict::Failed(told) };
     let worst = worst_first(trials).into_iter().take(SHOWN).map(row);
-    let scores = [(0.0, 0.01), (0.01, 0.2), (0.2, 0.3), (0.3, 0.4), (0.4, 0.45), (0.45, 0.4999), (0.4999, 1.0)];
+    let scores =
+        [(0.0, 0.01), (0.01, 0.2), (0.2, 0.3), (0.3, 0.4), (0.4, 0.45), (0.45, 0.4999), (0.4999, 1.0)];
     let ratios = [(0.0, 1.5), (1.5, 2.0), (2.0, 2.5), (2.5, 3.0), (3.0, 4.0), (4.0, 8.0), (8.0, 100.0)];
     let slowness = trials.iter().filter(|t| t.success).map(|trial| trial.time / trial.world.optimal_time);
     let mut report = Report::new("The BARN challenge")
@@ -217,6 +217,9 @@ pub(super) fn summary(trials: &[Trial], means: &Means) -> Summary {
         .set("mean_score", means.score)
         .set("mean_time_s", means.time)
         .set("runs_with_contact", means.contacts)
-        .set("wall_clock", serde_json::json!({ "cycle_median_ms": means.cycle_ms.0, "cycle_most_ms": means.cycle_ms.1 }));
+        .set(
+            "wall_clock",
+            serde_json::json!({ "cycle_median_ms": means.cycle_ms.0, "cycle_most_ms": means.cycle_ms.1 }),
+        );
     summary
 }

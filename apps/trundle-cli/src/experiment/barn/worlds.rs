@@ -60,11 +60,7 @@ impl BarnWorld {
 pub fn read(folder: &Path) -> Result<Vec<BarnWorld>, Failure> {
     let mut worlds = Vec::new();
     for row in rows(&folder.join("worlds.csv"), 4)? {
-        worlds.push(BarnWorld {
-            id: row.number(0)?,
-            optimal_time: row.number(3)?,
-            cylinders: Vec::new(),
-        });
+        worlds.push(BarnWorld { id: row.number(0)?, optimal_time: row.number(3)?, cylinders: Vec::new() });
     }
     for row in rows(&folder.join("obstacles.csv"), 5)? {
         let id: usize = row.number(0)?;

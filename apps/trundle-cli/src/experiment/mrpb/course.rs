@@ -134,7 +134,10 @@ mod tests {
     fn a_pair_with_people_comes_twice() {
         let folder = tempfile::tempdir().unwrap();
         let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
-        write("start_goal.csv", "scenario,map,test,sx,sy,sa,gx,gy,ga\na,a,1,0,0,0,1,1,0\nb,b,2,0,0,0,1,1,1.57\n");
+        write(
+            "start_goal.csv",
+            "scenario,map,test,sx,sy,sa,gx,gy,ga\na,a,1,0,0,0,1,1,0\nb,b,2,0,0,0,1,1,1.57\n",
+        );
         write("actors.csv", "scenario,actor,t,x,y,yaw\nb,one,0,3,0,0\nb,one,4,5,0,0\n");
         let names: Vec<String> = read(folder.path()).unwrap().iter().map(Course::name).collect();
         assert_eq!(names, ["a 1", "b 2", "b 2, with people"]);

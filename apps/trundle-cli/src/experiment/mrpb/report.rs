@@ -146,7 +146,8 @@ pub(super) fn csv(trials: &[Trial]) -> String {
 pub(super) fn summary(trials: &[Trial], success: bool) -> Summary {
     let cycle = |trial: &Trial| {
         let [mean, median, p99, most] = trial.metrics.cycle_ms;
-        let times = serde_json::json!({ "mean_ms": mean, "median_ms": median, "p99_ms": p99, "most_ms": most });
+        let times =
+            serde_json::json!({ "mean_ms": mean, "median_ms": median, "p99_ms": p99, "most_ms": most });
         (file_name(trial), times)
     };
     let cycles: serde_json::Map<String, serde_json::Value> = trials.iter().map(cycle).collect();
