@@ -31,7 +31,8 @@ pub fn run(root: &Path, seeds: Range<u64>) -> Verdict {
 fn one(trundle: &Path, scratch: &Path, seed: u64) -> Result<Run, String> {
     let out = scratch.join(seed.to_string());
     let begin = Instant::now();
-    let args = ["demo", "--seed", &seed.to_string(), "--quiet", "--out", &out.display().to_string()];
+    let args =
+        ["demo", "--direct", "--seed", &seed.to_string(), "--quiet", "--out", &out.display().to_string()];
     let code = program::run(trundle, &args)?;
     let mut summary = BTreeMap::new();
     if let Ok(bytes) = std::fs::read(out.join("summary.json")) {

@@ -153,7 +153,7 @@ mod tests {
                 if i <= 5 {
                     planar(i, i as f64, 0.0, 0.0)
                 } else {
-                    planar(i, 5.0, i as f64 - 5.0, 1.570_796_326_794_896_6)
+                    planar(i, 5.0, i as f64 - 5.0, std::f64::consts::FRAC_PI_2)
                 }
             })
             .collect();

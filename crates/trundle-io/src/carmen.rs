@@ -1,8 +1,8 @@
 mod line;
 mod log;
 
-pub use log::{LaserLog, LaserLogOptions, LaserLogScan, LaserLogSkip, read_carmen};
 pub(crate) use log::validated;
+pub use log::{LaserLog, LaserLogOptions, LaserLogScan, LaserLogSkip, read_carmen};
 
 use std::fmt::Write;
 use trundle_core::{Beam, Pose2, Scan, Stamp, Twist2};

@@ -6,6 +6,7 @@
 
 mod camera_mount;
 mod config;
+mod drawn;
 mod eye;
 mod last_stage;
 mod level_map;
@@ -24,7 +25,7 @@ mod supervisor_config;
 
 pub use camera_mount::CameraMount;
 pub use config::RobotConfig;
-pub use last_stage::LastStageConfig;
+pub use last_stage::{LastStageConfig, LastStageReport};
 pub use level_map::{LevelMap, level_from_first_camera};
 pub use mission::{Mission, Task, TaskEnd, TaskRecord};
 pub use report::StepReport;

@@ -1,5 +1,6 @@
 use crate::{
     config::RobotConfig,
+    drawn::DrawnPoses,
     eye::EyeWatch,
     mission::{Mission, Task, TaskRecord},
     navigator::{Navigator, Surroundings},
@@ -16,7 +17,7 @@ use trundle_core::{
     SensorEvent, Stamp, Vector2, WheelTicks,
 };
 use trundle_localization::{Localizer, VisualPose, VisualQuality, WheelOdometry, camera_motion};
-use trundle_mapping::{DepthScanner, GridMapper, MapperConfig, ScanMatcher};
+use trundle_mapping::{DepthScanner, LiveMapper, MapperConfig, ScanMatcher};
 use trundle_planning::PlanResult;
 use trundle_slam::{RgbdSlam, TrackReport, Tracking};
 
@@ -35,7 +36,8 @@ pub struct Robot {
     scanner: DepthScanner,
     matcher: ScanMatcher,
     localizer: Localizer,
-    mapper: GridMapper,
+    mapper: LiveMapper,
+    drawn: DrawnPoses,
     map_due: Ticker,
     navigator: Navigator,
     supervisor: Supervisor,
@@ -59,6 +61,11 @@ struct Latest {
 /// Exploring, the robot keeps so much more from things than its footprint needs, m: a view is not worth a squeeze.
 const EXPLORING: f64 = 0.03;
 
+/// A correction of the visual map by more than this bends the grid, m and rad.
+const BENT: f64 = 0.02;
+/// With each image, so many cells of a bent grid are redrawn, about 5 ms.
+const REDRAWING: usize = 150_000;
+
 impl Robot {
     /// A robot that has just been switched on: where it stands is the map's origin.
     ///
@@ -73,7 +80,7 @@ impl Robot {
             Sight::DepthCamera => scanner.blind_range(),
             Sight::Laser => 0.0,
         };
-        let mapper = GridMapper::new(MapperConfig { blind_range, ..config.mapping.clone() })?;
+        let mapper = LiveMapper::new(MapperConfig { blind_range, ..config.mapping.clone() })?;
         Ok(Self {
             sight: config.sight,
             base_from_camera,
@@ -85,6 +92,7 @@ impl Robot {
             localizer: Localizer::new(config.localization.clone(), base_from_camera)?,
             map_due: Ticker::new(config.schedule.validated()?.map_hz),
             mapper,
+            drawn: DrawnPoses::default(),
             navigator: Navigator::new(&config, &footprint)?,
             supervisor: Supervisor::new(&config.supervisor, footprint.circumscribed_radius() + EXPLORING)?,
             latest: Latest::default(),
@@ -115,7 +123,9 @@ impl Robot {
             SensorEvent::Rgbd(image) => self.look(image, &mut report),
             SensorEvent::Touch(touch) => self.navigator.touch(touch.pressed),
             SensorEvent::Cliff(cliff) => self.navigator.cliff(cliff.over_edge),
-            SensorEvent::Scan(scan) if self.sight == Sight::Laser => self.see(scan.clone()),
+            SensorEvent::Scan(scan) if self.sight == Sight::Laser => {
+                self.see(scan.clone());
+            }
             // The map is drawn from the depth image alone; a laser beside it is for other programs.
             SensorEvent::Scan(_) | SensorEvent::Truth { .. } => {}
         }
@@ -171,29 +181,42 @@ impl Robot {
         }
         let prior = self.camera_motion_since_last_image(odom_from_base);
         let track = self.times.measure(Stage::Slam, || self.slam.step(image, prior));
-        self.times.measure(Stage::Localization, || correct_by_sight(&mut self.localizer, &track));
+        let is_bent = is_bent(&track);
+        self.times.measure(Stage::Localization, || correct_by_sight(&mut self.localizer, &track, is_bent));
+        if is_bent {
+            self.follow_the_visual_map();
+        }
+        self.times.measure(Stage::Mapping, || self.mapper.work(REDRAWING));
         if self.sight == Sight::DepthCamera {
             let scan = self.times.measure(Stage::Scan, || self.scanner.scan(image));
-            self.see(scan);
+            let stamp = scan.stamp();
+            let is_drawn = self.see(scan);
+            let visual = self.visual_base(&track.visual_from_camera);
+            if let Some(visual) = visual.filter(|_| is_drawn && track.tracking.is_located()) {
+                self.drawn.note(stamp, visual);
+            }
         }
         report.track = Some(track);
     }
 
-    /// A scan: at the map's rate it corrects the estimate and enters the map; safety watches each.
-    fn see(&mut self, scan: Scan) {
-        if self.map_due.due(scan.stamp()) {
+    /// A scan: at the map's rate it corrects the estimate and enters the map; safety watches each. Whether it was drawn.
+    fn see(&mut self, scan: Scan) -> bool {
+        let is_due = self.map_due.due(scan.stamp());
+        if is_due {
             self.fit(&scan);
             self.draw(&scan);
         }
         self.latest.scan_odometry = self.odometry_at(scan.stamp());
         self.latest.eye.note(&scan);
         self.latest.scan = Some(scan);
+        is_due
     }
 
     /// Corrects the estimate by where the scan fits the map.
     fn fit(&mut self, scan: &Scan) {
         let Ok(guess) = self.localizer.pose_at(scan.stamp()) else { return };
-        let found = self.times.measure(Stage::ScanMatch, || self.matcher.refine(&self.mapper, scan, guess));
+        let found =
+            self.times.measure(Stage::ScanMatch, || self.matcher.refine(self.mapper.mapper(), scan, guess));
         if let Some(found) = found {
             self.localizer.correct_scan(scan.stamp(), found.pose, &found.covariance);
         }
@@ -206,6 +229,22 @@ impl Robot {
         self.times.measure(Stage::Mapping, || {
             mapper.insert(pose, scan);
             mapper.mark_free_disc(pose, radius);
+        });
+    }
+
+    /// The base, map frame, of a camera pose in the visual map.
+    fn visual_base(&self, visual_from_camera: &Pose3) -> Option<Pose2> {
+        let camera_from_base = self.base_from_camera.inverse();
+        Some((self.localizer.map_from_visual()? * *visual_from_camera * camera_from_base).to_pose2())
+    }
+
+    /// The visual map was bent: the grid is redrawn from where its scans were taken by now.
+    fn follow_the_visual_map(&mut self) {
+        let trajectory = self.slam.trajectory();
+        let bases = trajectory.iter().filter_map(|(stamp, pose)| Some((*stamp, self.visual_base(pose)?)));
+        let moved = self.drawn.follow(&bases.collect());
+        self.times.measure(Stage::Mapping, || {
+            self.mapper.correct(|stamp, pose| moved.get(&stamp).map_or(pose, |moved| *moved * pose))
         });
     }
 
@@ -295,8 +334,15 @@ fn inscribed_radius(footprint: &Footprint) -> f64 {
     }
 }
 
-/// The visual pose, where there is one, to the localizer.
-fn correct_by_sight(localizer: &mut Localizer, track: &TrackReport) {
+/// Whether the visual map was corrected by more than tracking goes along with.
+fn is_bent(track: &TrackReport) -> bool {
+    let is_large =
+        |correction: &Pose3| correction.translation.norm() > BENT || correction.log().norm() > BENT;
+    track.closed_loop.is_some() || track.merged.is_some() || track.refined.as_ref().is_some_and(is_large)
+}
+
+/// The visual pose, where there is one, to the localizer; one of a map that was just bent is believed.
+fn correct_by_sight(localizer: &mut Localizer, track: &TrackReport, is_bent: bool) {
     let quality = match track.tracking {
         Tracking::Ok => VisualQuality::Ok,
         Tracking::Weak => VisualQuality::Weak,
@@ -308,6 +354,6 @@ fn correct_by_sight(localizer: &mut Localizer, track: &TrackReport) {
         covariance: track.covariance,
         quality,
         map: track.map.number(),
-        recognised: track.relocalised || track.closed_loop.is_some() || track.merged.is_some(),
+        recognised: track.relocalised || is_bent,
     });
 }

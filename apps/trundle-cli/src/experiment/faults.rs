@@ -3,7 +3,7 @@
 
 use super::{RunsArgs, trial, trial::Trial, trial::TrialPlan};
 use crate::{Outcome, console, failure::Failure, robot_file};
-use trundle::core::Pose2;
+use trundle::core::{Pose2, Vector2};
 use trundle::io::{OutputFolder, Summary};
 use trundle::runtime::{DriveState, Mission, Task};
 use trundle::sim::{Fault, FaultKind, FaultSchedule, Person, Scene, WheelSide};
@@ -40,7 +40,7 @@ fn days() -> Vec<Day> {
     };
     let slips = FaultKind::WheelSlips { side: WheelSide::Left, factor: 0.5 };
     let jump = FaultKind::OdometryJumps { left_ticks: 11_724, right_ticks: 11_724 };
-    let carried = FaultKind::Kidnapped { x: 2.0, y: 1.2, heading_deg: 30.0 };
+    let carried = FaultKind::Kidnapped { x: 0.6, y: 0.3, heading_deg: 20.0 };
     vec![
         broken("camera black for 10 s", 8.0, 18.0, FaultKind::CameraBlack, End::Arrived),
         broken("camera frozen for 10 s", 8.0, 18.0, FaultKind::CameraFrozen, End::Arrived),
@@ -75,9 +75,10 @@ fn days() -> Vec<Day> {
     ]
 }
 
-/// Somebody who comes from behind the door of the house's bedroom, stands in it for so long, s, and goes back.
-fn in_the_door(pause: f64) -> Person {
-    Person { waypoints: vec![[8.6, 4.6], [8.55, 2.6], [8.6, 4.6]], pause, once: true, ..Person::default() }
+/// Somebody who stands in the door of the house's bedroom for so long, s, and goes inside, out of the way; frame of the
+/// robot's start.
+fn in_the_door(delay: f64) -> Person {
+    Person { waypoints: vec![[6.67, 0.6], [6.67, 1.4], [8.4, 1.4]], delay, once: true, ..Person::default() }
 }
 
 /// Lives through every day, so many seeds.
@@ -87,7 +88,7 @@ pub fn run(args: &RunsArgs) -> Result<Outcome, Failure> {
     for day in days() {
         for seed in 1..=u64::from(args.seeds) {
             let mut scene = Scene::by_name(day.scene, seed)?;
-            scene.people.extend(day.person.clone());
+            scene.people.extend(day.person.clone().map(|person| placed(person, &scene)));
             let mission = Mission::new(vec![Task::Go(scene.start_from_goal())])?;
             let fault =
                 day.fault.map(|(from_s, to_s, kind)| Fault { from_s, to_s, kind: in_world(kind, &scene) });
@@ -108,6 +109,12 @@ pub fn run(args: &RunsArgs) -> Result<Outcome, Failure> {
         console::say(&format!("\n{}\nSee {}", told(&trials), place.join("report.html").display()));
     }
     Ok(if success { Outcome::Reached } else { Outcome::Missed })
+}
+
+/// A person written in the frame of the robot's start, in the world's.
+fn placed(person: Person, scene: &Scene) -> Person {
+    let world = |point: &[f64; 2]| scene.start.transform(Vector2::new(point[0], point[1])).into();
+    Person { waypoints: person.waypoints.iter().map(world).collect(), ..person }
 }
 
 /// Kidnappings are written in the frame of the robot's start; the simulator wants them in the world's.

@@ -58,13 +58,13 @@ fn constraints(tour: &Tour) -> Vec<[f64; 7]> {
 
 /// The polynomials: of each piece, the coefficients of u^k, u from 0 to 1 along the piece.
 pub fn coefficients_csv(tour: &Tour) -> String {
-    table_csv(["curve", "piece", "power", "x_m", "y_m"], coefficients(tour).into_iter())
+    table_csv(["curve", "piece", "power", "x_m", "y_m"], coefficients(tour))
 }
 
 /// The active constraints: normal . control point <= offset, and what a metre of room would gain.
 pub fn constraints_csv(tour: &Tour) -> String {
     let head = ["curve", "piece", "control", "normal_x", "normal_y", "offset_m", "multiplier"];
-    table_csv(head, constraints(tour).into_iter())
+    table_csv(head, constraints(tour))
 }
 
 /// Prints polynomials and active constraints.

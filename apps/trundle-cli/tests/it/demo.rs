@@ -6,7 +6,7 @@ use std::fs;
 fn the_demo_reaches_its_goal_and_replays_byte_for_byte() {
     let scratch = tempfile::tempdir().unwrap();
     let (live, again) = (scratch.path().join("live"), scratch.path().join("again"));
-    let output = trundle(&["demo", "--seed", "2", "--quiet", "--out", text(&live)]);
+    let output = trundle(&["demo", "--direct", "--seed", "2", "--quiet", "--out", text(&live)]);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     assert!(output.stdout.is_empty());
 

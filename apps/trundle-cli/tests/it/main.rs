@@ -7,6 +7,7 @@ mod dock;
 mod experiments;
 mod inputs;
 mod map;
+mod missions;
 mod plan;
 mod program;
 mod sim;

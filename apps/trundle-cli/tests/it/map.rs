@@ -56,3 +56,111 @@ fn a_log_without_scans_is_refused_by_name() {
     let sentence = refusal(&["map", text(&log), "--resolution=-1"]);
     assert!(sentence.contains("resolution is -1"), "{sentence}");
 }
+
+/// A short log and the folder of its map.
+fn mapped(scratch: &Path) -> Option<(std::path::PathBuf, std::path::PathBuf)> {
+    let log = shared("laser/sena.log")?;
+    let (short, out) = (scratch.join("short.log"), scratch.join("first"));
+    beginning(&log, 40, &short);
+    map(&short, &out, "2");
+    Some((short, out))
+}
+
+#[test]
+fn an_old_map_is_gone_on_with_and_localised_in() {
+    let scratch = tempfile::tempdir().unwrap();
+    let Some((log, first)) = mapped(scratch.path()) else { return };
+    let (saved, grid) = (first.join("filter.map"), first.join("map.yaml"));
+    let before = fs::read(&saved).unwrap();
+    let run = |out: &Path, more: &[&str]| {
+        let fixed = ["map", text(&log), "--particles=4", "--laser-x=0.78", "--quiet", "--out", text(out)];
+        let output = trundle(&[&fixed[..], more].concat());
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        fs::read_to_string(out.join("trajectory.txt")).unwrap()
+    };
+    let pose = |line: &str| -> Vec<f64> { line.split(' ').skip(1).map(|v| v.parse().unwrap()).collect() };
+    let original = fs::read_to_string(first.join("trajectory.txt")).unwrap();
+    for (name, more) in [
+        ("on", vec!["--map", text(&saved)]),
+        ("in", vec!["--map", text(&saved), "--localise"]),
+        ("grid", vec!["--map", text(&grid), "--localise"]),
+    ] {
+        let out = scratch.path().join(name);
+        let found = run(&out, &more);
+        assert!(found.lines().count() > 20, "{name}: {found}");
+        // The same log in its own map: the same poses.
+        for line in found.lines() {
+            let same = original.lines().find(|o| o.split(' ').next() == line.split(' ').next()).unwrap();
+            let (a, b) = (pose(line), pose(same));
+            assert!((a[0] - b[0]).hypot(a[1] - b[1]) < 0.15, "{name}: {line} for {same}");
+        }
+        assert_eq!(out.join("filter.map").exists(), name == "on");
+    }
+    assert_eq!(fs::read(&saved).unwrap(), before);
+}
+
+#[test]
+fn a_damaged_map_is_refused_with_the_reason() {
+    let scratch = tempfile::tempdir().unwrap();
+    let Some((log, first)) = mapped(scratch.path()) else { return };
+    let saved = first.join("filter.map");
+    let mut bytes = fs::read(&saved).unwrap();
+    let middle = bytes.len() / 2;
+    bytes[middle] ^= 4;
+    fs::write(&saved, &bytes).unwrap();
+    let sentence = refusal(&["map", text(&log), "--map", text(&saved)]);
+    assert!(sentence.contains("filter.map: the map is damaged: its checksum is wrong"), "{sentence}");
+    bytes[7] = 77;
+    fs::write(&saved, &bytes).unwrap();
+    let sentence = refusal(&["map", text(&log), "--map", text(&saved), "--localise"]);
+    assert!(sentence.contains("map of version 77, expected"), "{sentence}");
+}
+
+#[test]
+fn the_old_map_survives_a_death_at_any_moment_of_saving() {
+    use std::process::{Command, Stdio};
+    use std::time::{Duration, Instant};
+    let scratch = tempfile::tempdir().unwrap();
+    let Some((log, first)) = mapped(scratch.path()) else { return };
+    let saved = first.join("filter.map");
+    let old = fs::read(&saved).unwrap();
+    let staging = || {
+        let entries = fs::read_dir(&first).unwrap().flatten();
+        entries
+            .filter(|e| e.file_name().to_string_lossy().starts_with(".trundle-"))
+            .any(|e| e.path().join("out/filter.map").exists())
+    };
+    let sweep = || {
+        for entry in fs::read_dir(&first).unwrap().flatten() {
+            if entry.file_name().to_string_lossy().starts_with(".trundle-") {
+                let _ = fs::remove_dir_all(entry.path());
+            }
+        }
+    };
+    let mut died = 0;
+    for k in 0..8_u64 {
+        let mut child = Command::new(env!("CARGO_BIN_EXE_trundle"))
+            .args(["map", text(&log), "--particles=4", "--laser-x=0.78", "--quiet", "--seed"])
+            .args([&(k + 2).to_string(), "--out", text(&first)])
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap();
+        let begun = Instant::now();
+        while !staging() && child.try_wait().unwrap().is_none() && begun.elapsed() < Duration::from_secs(60) {
+            std::thread::sleep(Duration::from_micros(50));
+        }
+        std::thread::sleep(Duration::from_micros(150 * k));
+        child.kill().unwrap();
+        died += usize::from(!child.wait().unwrap().success());
+        let bytes = fs::read(&saved).unwrap();
+        let whole = trundle::mapping::ParticleMapper::load(
+            &bytes,
+            trundle::mapping::ParticleConfig { particles: 4, ..trundle::mapping::ParticleConfig::default() },
+        );
+        assert!(whole.is_ok(), "{:?} after {k}", whole.err());
+        sweep();
+    }
+    assert!(died > 0, "every run had ended before it was killed");
+    assert!(!old.is_empty());
+}

@@ -72,7 +72,7 @@ fn check(message: &LaserScan) -> Result<(), String> {
     if !(step != 0.0 && sweep < 7.0) {
         return Err(format!("angle_increment is {step} rad for {beams} ranges, expected a circle at most"));
     }
-    if !(message.range_max > 0.0) {
+    if message.range_max.is_nan() || message.range_max <= 0.0 {
         return Err(format!("range_max is {} m, expected more than 0", message.range_max));
     }
     Ok(())

@@ -184,12 +184,18 @@ fn bad_messages_are_named_and_left_out() {
 #[test]
 fn bags_without_what_it_takes_are_refused_by_name() {
     let (one_scan, one_pose) = (scan(1.0, &[1.0]), odometry(1.0, 0.0));
-    assert_eq!(log_of(&[one_pose.clone()], "cdr").unwrap_err(), "BAG: no sensor_msgs/msg/LaserScan in it");
     assert_eq!(
-        log_of(&[one_scan.clone()], "cdr").unwrap_err(),
+        log_of(std::slice::from_ref(&one_pose), "cdr").unwrap_err(),
+        "BAG: no sensor_msgs/msg/LaserScan in it"
+    );
+    assert_eq!(
+        log_of(std::slice::from_ref(&one_scan), "cdr").unwrap_err(),
         "BAG: no nav_msgs/msg/Odometry and no transform below odom in it"
     );
-    assert_eq!(log_of(&[one_scan.clone()], "json").unwrap_err(), "BAG: no sensor_msgs/msg/LaserScan in it");
+    assert_eq!(
+        log_of(std::slice::from_ref(&one_scan), "json").unwrap_err(),
+        "BAG: no sensor_msgs/msg/LaserScan in it"
+    );
     let elsewhere = (
         ODOM,
         Cdr::default().header(1.0, "odom").text("base").f64s(&[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0]).bytes(),

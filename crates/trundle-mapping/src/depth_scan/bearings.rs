@@ -106,7 +106,10 @@ impl Bearings {
     pub(super) fn tell(&self, mount: &Mount, model: &SortModel, parts: &mut ScanParts) {
         let ScanParts { beams, free, sigmas, obstacles } = parts;
         let free = free.get_or_insert_default();
-        (beams.clear(), free.clear(), sigmas.clear(), obstacles.clear());
+        beams.clear();
+        free.clear();
+        sigmas.clear();
+        obstacles.clear();
         let bin_length = 1.0 / f64::from(model.bins_per_metre);
         for (i, view) in mount.views.iter().enumerate() {
             let hit = self.hit(i, model);

@@ -58,52 +58,66 @@ impl Mount {
 
 /// What the rays of each beam would see on an empty floor.
 struct Survey {
-    /// Floor, the way through the band, the first sight of the band's lower edge (m), sum and number of runs.
-    beams: Vec<(SpanBits, SpanBits, f64, f64, usize)>,
+    beams: Vec<SurveyedBeam>,
+}
+
+/// What the rays of a beam would see.
+#[derive(Debug, Clone, Copy)]
+struct SurveyedBeam {
+    /// Of the floor.
+    floor: SpanBits,
+    /// Of the band, on their way through it.
+    band: SpanBits,
+    /// Where the band's lower edge is seen first, m.
+    first: f64,
+    /// Sum and number of the rays' ways over the floor for each m of depth.
+    runs: f64,
+    count: usize,
 }
 
 impl Survey {
     fn new(lens: &LensRays, base_from_camera: &Pose3, config: &DepthScanConfig, fan: &Fan) -> Self {
         let base_from_lens = base_from_camera.rotation_matrix();
         let height = base_from_camera.translation.z;
-        let mut beams = vec![(0, 0, f64::INFINITY, 0.0, 0); fan.beams];
+        let empty = SurveyedBeam { floor: 0, band: 0, first: f64::INFINITY, runs: 0.0, count: 0 };
+        let mut beams = vec![empty; fan.beams];
         let bin = |range: f64| (range.max(0.0) * BINS as f64 / config.max_range) as usize;
         for (i, &at) in fan.beam_of.iter().enumerate() {
             let ray: Vector3 = base_from_lens * lens.ray(i);
             let run = ray.xy().norm();
             let beam = &mut beams[usize::from(at)];
-            (beam.3, beam.4) = (beam.3 + run, beam.4 + 1);
+            (beam.runs, beam.count) = (beam.runs + run, beam.count + 1);
             // Ranges at which the ray is at a height.
             let at_height = |z: f64| (z - height) / ray.z * run;
             if ray.z < 0.0 {
                 let depth = height / -ray.z;
                 let (floor, edge) = (at_height(0.0), at_height(config.band_low.min(height)));
                 if depth >= config.min_depth && depth <= config.max_depth {
-                    beam.0 |= bins(bin(edge), bin(floor));
+                    beam.floor |= bins(bin(edge), bin(floor));
                 }
-                beam.1 |= bins(bin(at_height(config.band_high.min(height))), bin(floor));
+                beam.band |= bins(bin(at_height(config.band_high.min(height))), bin(floor));
                 let first = (height - config.band_low).max(0.0) / -ray.z;
-                beam.2 = beam.2.min(first.max(config.min_depth) * run);
+                beam.first = beam.first.min(first.max(config.min_depth) * run);
             } else if height < config.band_high {
                 let to = if ray.z > 0.0 { at_height(config.band_high) } else { config.max_range };
-                beam.1 |= BELOW[bin(to).min(BINS)];
+                beam.band |= BELOW[bin(to).min(BINS)];
             }
         }
         Self { beams }
     }
 
     fn views(&self) -> Vec<BeamView> {
-        let view = |&(floor, _, _, runs, count): &(SpanBits, SpanBits, f64, f64, usize)| BeamView {
-            floor,
-            begin: floor.trailing_zeros() as usize,
-            run: (runs / count.max(1) as f64) as f32,
+        let view = |beam: &SurveyedBeam| BeamView {
+            floor: beam.floor,
+            begin: beam.floor.trailing_zeros() as usize,
+            run: (beam.runs / beam.count.max(1) as f64) as f32,
         };
         self.beams.iter().map(view).collect()
     }
 
     /// Whether more than one beam in fifty passes through bins that it does not see the floor of.
     fn passes_matter(&self) -> bool {
-        let gaps = self.beams.iter().filter(|(floor, band, ..)| {
+        let gaps = self.beams.iter().filter(|SurveyedBeam { floor, band, .. }| {
             let first = floor.trailing_zeros() as usize;
             band & !(floor | BELOW[first.min(BINS)]) != 0 || (*floor == 0 && *band != 0)
         });
@@ -112,7 +126,7 @@ impl Survey {
 
     /// The range from which on every bearing that sees the band's lower edge at all sees it.
     fn blind_range(&self, max_range: f64) -> f64 {
-        let seen = self.beams.iter().map(|beam| beam.2).filter(|range| range.is_finite());
+        let seen = self.beams.iter().map(|beam| beam.first).filter(|range| range.is_finite());
         seen.reduce(f64::max).unwrap_or(max_range).min(max_range)
     }
 }

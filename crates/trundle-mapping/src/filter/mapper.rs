@@ -2,38 +2,40 @@ use super::{
     ParticleConfig, ScanShape,
     ancestry::Ancestry,
     chance::Chance,
-    closing::{Closer, Tools},
+    closing::Closer,
     coarse::CoarseSearch,
-    find::Pyramid,
     gate::Gate,
     history::History,
     likelihood::Likelihood,
-    locate::{GlobalSearch, Lost},
+    locate::GlobalSearch,
     proposal::{Proposal, Proposer},
     publish::Publisher,
+    report::{Processed, ScanUpdate},
     resample::{effective, low_variance},
     store::StoredScan,
 };
 use crate::tiles::{Brush, DrawScratch, FieldModel, TileMap, tile_bytes};
 use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;
-use trundle_core::{Cell, CellIndex, Invalid, OccupancyGrid, Pose2, Scan, Stamp};
+use trundle_core::{CellIndex, Invalid, OccupancyGrid, Pose2, Scan, Stamp};
 
 /// Grid maps from laser scans and odometry by a Rao-Blackwellised particle filter \[Grisetti07\].
 ///
 /// Problem: trajectory and map at once. Each particle is a trajectory with the map that follows from it; a scan moves
 /// every particle by the improved proposal (odometry and scan match), draws its map on, and weighs it by how well its
-/// map foretold the scan; when few particles hold the weight, the others give way to their copies. Copies share their maps' tiles until
-/// one writes. Cost: per scan and particle one match (linear in the beams) and one drawing (linear in the cells that the
-/// beams pass); none grows with the length of the run.
+/// map foretold the scan; when few particles hold the weight, the others give way to their copies. Copies share their
+/// maps' tiles until one writes. What the particles cannot span, a loop after a long way, is searched for and proved, and
+/// the way is bent. Cost: per scan and particle one match (linear in the beams) and one drawing (linear in the cells that
+/// the beams pass); per 2 m a look for loops, and per loop that bends the way a redrawing, both linear in the scans kept
+/// (`most_scans`).
 #[derive(Debug)]
 pub struct ParticleMapper {
     pub(super) config: ParticleConfig,
     pub(super) seed: u64,
     pub(super) updates: u64,
     pub(super) brush: Brush,
-    likelihood: Likelihood,
-    shape: ScanShape,
+    pub(super) likelihood: Likelihood,
+    pub(super) shape: ScanShape,
     pub(super) particles: Vec<Particle>,
     /// Whose copy each particle is since the last column of the ancestry.
     pub(super) parents: Vec<u16>,
@@ -44,7 +46,7 @@ pub struct ParticleMapper {
     pub(super) closer: Closer,
     pub(super) gate: Gate,
     /// The search for the robot in a map that was there before it.
-    lost: Option<GlobalSearch>,
+    pub(super) lost: Option<GlobalSearch>,
     /// At which pose of the trajectory this run began.
     pub(super) session: usize,
     /// Mean ln p(z | m, x) of a point in the last scans.
@@ -65,53 +67,6 @@ pub(super) struct Particle {
 struct Scratch {
     search: CoarseSearch,
     draw: DrawScratch,
-}
-
-/// What became of a scan.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum ScanUpdate {
-    /// The robot has hardly moved: the scan was not looked at.
-    Still,
-    /// Refused: what is wrong with it.
-    Refused(Refusal),
-    /// The scan moved the particles and is in their maps.
-    Processed(Processed),
-    /// Where the robot is in the map is not known yet, after [`ParticleMapper::kidnapped`]: the map does not change.
-    Lost(Lost),
-    /// It is known from now on.
-    Found(Pose2),
-}
-
-/// Why a scan was not used.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Refusal {
-    /// The odometry is not finite.
-    NotFinite,
-    /// The scan is older than the last one.
-    TimeGoesBack,
-}
-
-/// A processed scan.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Processed {
-    /// Part of the hits that the best particle's map explains, 0 to 1.
-    pub explained: f64,
-    /// Part of them that lies on free ground of it with no obstacle near, 0 to 1.
-    pub contradicted: f64,
-    /// Directions that the best particle left to the odometry, 0 to 3: 3 is no overlap with the map.
-    pub degenerate: usize,
-    /// Covariance of the Gaussian that the best particle's pose was drawn from: m, m, rad, map frame.
-    pub covariance: Matrix3<f64>,
-    /// Effective number of particles before resampling.
-    pub effective: f64,
-    /// Whether particles were resampled.
-    pub resampled: bool,
-    /// Whether the odometry jumped farther than `jump`: the pose is then held where it was.
-    pub jumped: bool,
-    /// Whether the scan said that the odometry told nothing true: slipping wheels, lost messages.
-    pub slipped: bool,
-    /// When a loop was closed and the way bent: how far the pose went that went farthest, m.
-    pub bent: Option<f64>,
 }
 
 impl ParticleMapper {
@@ -194,41 +149,6 @@ impl ParticleMapper {
         })
     }
 
-    /// Tells that the robot may be anywhere in the map, as after loading it for another run: it is looked for, and until it is
-    /// found the map does not change. The trajectory begins anew.
-    pub fn kidnapped(&mut self) {
-        self.lost = Some(GlobalSearch::default());
-        self.gate = Gate::default();
-        self.session = self.history.scans.len();
-    }
-
-    /// Looks for the robot in the best particle's map; all particles go on from where it is found.
-    fn search(&mut self, stamp: Stamp) -> ScanUpdate {
-        let best = self.best();
-        let map = self.particles[best].map.clone();
-        let Some(pyramid) = Pyramid::new(&map) else { return ScanUpdate::Lost(Lost::NothingToSee) };
-        let Some(search) = &self.lost else { return ScanUpdate::Still };
-        let found = match search.look((&self.config, &self.likelihood), &map, &pyramid) {
-            Ok(found) => found,
-            Err(lost) => return ScanUpdate::Lost(lost),
-        };
-        self.lost = None;
-        let way = self.way();
-        let pose = metres(&self.config, found.pose);
-        self.history.measure(&way.iter().map(|(_, pose)| *pose).collect::<Vec<_>>());
-        // The old way and the new are tied by the map: as well as its parts are known to each other.
-        self.history
-            .push(StoredScan::new(&self.shape), Matrix3::from_diagonal(&Vector3::new(0.01, 0.01, 4e-4)));
-        for particle in &mut self.particles {
-            *particle = Particle { pose: found.pose, log_weight: 0.0, map: map.clone(), proposal: None };
-        }
-        self.session = way.len();
-        self.ancestry.replace(way.into_iter().chain([(stamp, pose)]).collect());
-        self.parents = vec![0; self.particles.len()];
-        self.updates += 1;
-        ScanUpdate::Found(pose)
-    }
-
     /// map_from_base of the best particle at the last processed scan.
     pub fn pose(&self) -> Pose2 {
         metres(&self.config, self.particles[self.best()].pose)
@@ -240,7 +160,7 @@ impl ParticleMapper {
     }
 
     /// The same from the first run on.
-    fn way(&self) -> Vec<(Stamp, Pose2)> {
+    pub(super) fn way(&self) -> Vec<(Stamp, Pose2)> {
         // The last resampling is not in the ancestry yet: parents lead from the particles to its last column.
         let best = self.best();
         self.ancestry.trajectory(usize::from(self.parents[best]))
@@ -306,56 +226,7 @@ impl ParticleMapper {
         });
     }
 
-    /// Covariance of the step to the last pose in its frame: m, m, rad.
-    fn step_covariance(&self, proposal: Option<&Proposal>) -> Matrix3<f64> {
-        let least = Matrix3::from_diagonal(&Vector3::new(1e-4, 1e-4, 2e-5));
-        let Some(proposal) = proposal else { return least };
-        let (s, c) = proposal.pose.theta.sin_cos();
-        let turn = Matrix3::new(c, s, 0.0, -s, c, 0.0, 0.0, 0.0, 1.0);
-        least + turn * scaled(proposal.covariance, self.config.map.resolution) * turn.transpose()
-    }
-
-    /// Looks for loops; where one is closed, the best particle's way and map are bent, and all go on from there.
-    fn close_loops(&mut self) -> Option<f64> {
-        let trajectory = self.way();
-        let poses: Vec<Pose2> = trajectory.iter().map(|(_, pose)| *pose).collect();
-        let tools = Tools { config: &self.config, brush: &self.brush, likelihood: &self.likelihood };
-        let closing = self.closer.look(&tools, &mut self.history, &poses)?;
-        if closing.farthest < self.config.map.resolution {
-            return None;
-        }
-        let mut map = TileMap::default();
-        let mut draw = DrawScratch::default();
-        for (scan, pose) in self.history.scans.iter().zip(&closing.poses) {
-            self.shape.set_stored(&self.config, scan);
-            self.brush.draw(&mut map, &mut draw, self.cells(*pose), &self.shape);
-        }
-        let stamps = trajectory.iter().map(|(stamp, _)| *stamp);
-        self.ancestry.replace(stamps.zip(closing.poses.iter().copied()).collect());
-        let last = *closing.poses.last().expect("invariant: loops are closed of some poses");
-        let pose = self.cells(last);
-        for particle in &mut self.particles {
-            particle.pose = pose;
-            particle.log_weight = 0.0;
-            particle.map = map.clone();
-        }
-        self.parents = vec![0; self.particles.len()];
-        Some(closing.farthest)
-    }
-
-    /// Keeps the store of scans within its bounds.
-    fn thin_history(&mut self) {
-        if self.history.scans.len() > self.config.most_scans {
-            let count = (self.config.most_scans / 2).min(self.ancestry.shared.len());
-            let before = self.history.scans.len();
-            self.history.thin(&mut self.ancestry.shared, count);
-            let gone = before - self.history.scans.len();
-            self.session = if self.session < count { self.session.div_ceil(2) } else { self.session - gone };
-            self.closer.pending.clear();
-        }
-    }
-
-    fn cells(&self, pose: Pose2) -> Pose2 {
+    pub(super) fn cells(&self, pose: Pose2) -> Pose2 {
         let per_metre = 1.0 / self.config.map.resolution;
         Pose2 { x: pose.x * per_metre, y: pose.y * per_metre, ..pose }
     }
@@ -363,20 +234,6 @@ impl ParticleMapper {
     /// The best particle's map.
     pub(super) fn best_map(&self) -> &TileMap {
         &self.particles[self.best()].map
-    }
-
-    /// A map of tiles that says what a three-valued one says.
-    pub(super) fn map_of(&self, grid: &OccupancyGrid) -> TileMap {
-        let mut map = TileMap::default();
-        let geometry = grid.geometry();
-        let resolution = self.config.map.resolution;
-        for (i, cell) in grid.cells().iter().enumerate() {
-            if *cell != Cell::Unknown {
-                let center = geometry.center(geometry.cell(i)) / resolution;
-                self.brush.assert(&mut map, (center.x.floor() as i32, center.y.floor() as i32), *cell);
-            }
-        }
-        map
     }
 
     /// Normalises the weights; the effective number of particles, and whether it is too low.
@@ -407,7 +264,7 @@ impl ParticleMapper {
     }
 
     /// The particle of the greatest weight, the first of equals.
-    fn best(&self) -> usize {
+    pub(super) fn best(&self) -> usize {
         let better = |best: usize, i: usize| {
             if self.particles[i].log_weight > self.particles[best].log_weight { i } else { best }
         };

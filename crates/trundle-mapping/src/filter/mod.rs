@@ -1,6 +1,7 @@
 //! The Rao-Blackwellised particle filter: every particle a trajectory and its own map (METHODS A3).
 
 mod ancestry;
+mod bending;
 mod carry;
 mod chance;
 mod closing;
@@ -19,6 +20,7 @@ mod persist;
 mod prior;
 mod proposal;
 mod publish;
+mod report;
 mod resample;
 mod shape;
 mod store;
@@ -26,6 +28,7 @@ mod store;
 pub use carry::carry_trajectory;
 pub use config::{MotionConfig, ParticleConfig};
 pub use locate::{Localized, Lost, MapLocalizer};
-pub use mapper::{ParticleMapper, Processed, Refusal, ScanUpdate};
+pub use mapper::ParticleMapper;
 pub use persist::FilterFileError;
+pub use report::{Processed, Refusal, ScanUpdate};
 pub(crate) use shape::ScanShape;

@@ -10,5 +10,5 @@ mod tile;
 pub(crate) use draw::{Brush, DrawScratch};
 pub(crate) use field::FieldModel;
 pub(crate) use map::{TileMap, TileWindow, tile_bytes};
-pub(crate) use pools::{Pools, assemble};
+pub(crate) use pools::{ChunkParts, Pools, assemble};
 pub(crate) use tile::{LOG_ODDS_UNIT, Nearest, TILE_BITS, TILE_CELLS, TILE_SIDE, Tile};

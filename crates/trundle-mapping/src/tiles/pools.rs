@@ -1,11 +1,13 @@
 use super::{map::TileMap, tile::Tile};
 use std::{collections::BTreeMap, sync::Arc};
 
+/// The tile at a chunk's corner, and the places of its tiles with the numbers of those.
+pub(crate) type ChunkParts = ((i32, i32), Vec<(u16, u32)>);
+
 /// Several maps taken apart: tiles, chunks and maps, each once, by their numbers.
 pub(crate) struct Pools<'a> {
     pub(crate) tiles: Vec<&'a Tile>,
-    /// The tile at the corner, and the places of tiles with the numbers of those.
-    pub(crate) chunks: Vec<((i32, i32), Vec<(u16, u32)>)>,
+    pub(crate) chunks: Vec<ChunkParts>,
     /// The chunks of each map.
     pub(crate) maps: Vec<Vec<u32>>,
 }
@@ -38,11 +40,7 @@ impl<'a> Pools<'a> {
 }
 
 /// Maps put together again; the chunks' numbers of tiles and the maps' numbers of chunks must be in range.
-pub(crate) fn assemble(
-    tiles: Vec<Tile>,
-    chunks: &[((i32, i32), Vec<(u16, u32)>)],
-    maps: &[Vec<u32>],
-) -> Vec<TileMap> {
+pub(crate) fn assemble(tiles: Vec<Tile>, chunks: &[ChunkParts], maps: &[Vec<u32>]) -> Vec<TileMap> {
     let tiles: Vec<Arc<Tile>> = tiles.into_iter().map(Arc::new).collect();
     let chunks: Vec<_> = chunks
         .iter()

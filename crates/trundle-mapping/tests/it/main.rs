@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "tests")]
 
 mod boxes;
+#[allow(dead_code, reason = "the bench drives through the others")]
 mod building;
 mod depth_scan;
 mod filter;

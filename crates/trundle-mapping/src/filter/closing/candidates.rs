@@ -20,8 +20,8 @@ pub(super) struct Candidate {
 const LEAST_WAY: f64 = 20.0;
 /// As far as a place may be from where another was seen well, m.
 const VIEW: f64 = 4.0;
-/// Widest search, m.
-const WIDEST: f64 = 15.0;
+/// Widest search, m: what a minute of failing odometry may amount to.
+pub(super) const WIDEST: f64 = 40.0;
 
 /// The stretches that the last pose may be near, the likeliest first. `ways` is the way up to each pose, m.
 pub(super) fn candidates(poses: &[Pose2], ways: &[f64], reached: &[Option<Reached>]) -> Vec<Candidate> {

@@ -1,5 +1,5 @@
 use super::{
-    candidates::{Candidate, candidates},
+    candidates::{Candidate, WIDEST, candidates},
     submap::{Submaps, cells, thinned},
     verify::{Finder, Found},
 };
@@ -43,7 +43,7 @@ const LOOK_EVERY: f64 = 2.0;
 /// The way whose scans are matched together, m.
 const SUBMAP_WAY: f64 = 8.0;
 const MOST_SCANS: usize = 24;
-/// The way about a candidate whose scans make the map to match against, m.
+/// Scans so near to a candidate, and within what the robot may be off, make the map to match against, m.
 const REFERENCE: f64 = 10.0;
 const MOST_REFERENCE: usize = 48;
 /// Candidates looked at in one go.
@@ -100,15 +100,15 @@ impl Closer {
         (own_map, own_cloud): &(TileMap, ScanShape),
     ) -> Option<Tie> {
         let (config, last) = (tools.config, poses.len() - 1);
-        let near = |&k: &usize| poses[k].distance(&poses[candidate.nearest]) < REFERENCE;
-        let onward =
-            thinned(poses, (candidate.nearest..candidate.range.end).filter(near), 0.4, MOST_REFERENCE / 2);
-        let back = thinned(
-            poses,
-            (candidate.range.start..candidate.nearest).rev().filter(near),
-            0.4,
-            MOST_REFERENCE / 2,
-        );
+        let drift = candidate.reached.covariance;
+        let far = (REFERENCE + 2.0 * drift[(0, 0)].max(drift[(1, 1)]).sqrt()).min(WIDEST);
+        let near = |&k: &usize| poses[k].distance(&poses[candidate.nearest]) < far;
+        let apart = (2.0 * far / MOST_REFERENCE as f64).max(0.4);
+        let half = |range: &mut dyn Iterator<Item = usize>| {
+            thinned(poses, range.filter(near), apart, MOST_REFERENCE / 2)
+        };
+        let onward = half(&mut (candidate.nearest..candidate.range.end));
+        let back = half(&mut (candidate.range.start..candidate.nearest).rev());
         let mut which: Vec<usize> = back.into_iter().chain(onward).collect();
         which.sort_unstable();
         let (map, cloud) = self.submaps.draw((config, tools.brush), history, &which, |k| poses[k]);
@@ -116,7 +116,7 @@ impl Closer {
         let scale = Matrix3::from_diagonal(&Vector3::new(per_metre, per_metre, 1.0));
         let least = Matrix3::from_diagonal(&Vector3::new(4.0, 4.0, 0.02 * 0.02));
         let covariance = scale * candidate.reached.covariance * scale + least;
-        let reach = |k: usize| (3.0 * covariance[(k, k)].sqrt()).clamp(10.0, 12.0 * per_metre);
+        let reach = |k: usize| (3.0 * covariance[(k, k)].sqrt()).clamp(10.0, WIDEST * per_metre);
         let turn = (3.0 * covariance[(2, 2)].sqrt()).clamp(0.05, 0.8);
         let finder = Finder { config, likelihood: tools.likelihood, cloud: own_cloud };
         let found =

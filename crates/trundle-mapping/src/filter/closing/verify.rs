@@ -1,6 +1,5 @@
 use crate::filter::{
     ParticleConfig, ScanShape,
-    directions::Directions,
     find::{Place, Pyramid, Query},
     likelihood::Likelihood,
     prior::Prior,
@@ -17,9 +16,8 @@ pub(crate) struct Found {
     pub(crate) pose: Pose2,
     /// Inverse covariance from the hits (cells, rad), map frame; directions that they do not hold are zero.
     pub(crate) information: Matrix3<f64>,
-    /// Parts of the hits at obstacles and on free ground with none near.
+    /// Part of the hits at obstacles.
     pub(crate) explained: f64,
-    pub(crate) contradicted: f64,
     /// Directions that are not held.
     pub(crate) degenerate: usize,
     /// ln p(z | m, x), tempered, nats.
@@ -106,11 +104,10 @@ impl Finder<'_> {
         let pose = Pose2::new(optimum.pose.x + corner.0, optimum.pose.y + corner.1, optimum.pose.theta);
         let all = self.cloud.points.len().max(1) as f64;
         let to_y = optimum.directions.pose_from_y.try_inverse().expect("invariant: a lever is positive");
-        let in_y = Directions::information(&optimum.directions, &optimum.vote) / self.config.correlation;
+        let in_y = optimum.directions.information(&optimum.vote) / self.config.correlation;
         Found {
             information: to_y.transpose() * in_y * to_y,
             explained: optimum.vote.explained / all,
-            contradicted: optimum.vote.contradicted / all,
             degenerate: optimum.directions.degenerate,
             log_likelihood: self.likelihood.log_likelihood(&window, self.cloud, optimum.pose)
                 / self.config.correlation,

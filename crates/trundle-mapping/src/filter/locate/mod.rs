@@ -2,6 +2,7 @@
 
 mod global;
 mod localizer;
+mod restart;
 
 pub(crate) use global::GlobalSearch;
 pub use global::Lost;

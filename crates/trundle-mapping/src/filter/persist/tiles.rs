@@ -2,7 +2,7 @@ use super::{
     bytes::{Reader, Writer},
     error::FilterFileError,
 };
-use crate::tiles::{Pools, TILE_CELLS, Tile};
+use crate::tiles::{ChunkParts, Pools, TILE_CELLS, Tile};
 
 /// The tiles of all maps: what they share is written once.
 pub(super) fn write(out: &mut Writer, pools: &Pools<'_>) {
@@ -30,7 +30,7 @@ pub(super) fn write(out: &mut Writer, pools: &Pools<'_>) {
 /// Tiles, chunks (corner, places with their tiles) and the chunks of each map.
 pub(super) struct ReadPools {
     pub(super) tiles: Vec<Tile>,
-    pub(super) chunks: Vec<((i32, i32), Vec<(u16, u32)>)>,
+    pub(super) chunks: Vec<ChunkParts>,
     pub(super) maps: Vec<Vec<u32>>,
 }
 
