@@ -92,5 +92,6 @@ pub fn simulated(robot: &RobotConfig, faults: FaultSchedule) -> Result<SimConfig
     };
     config.kobuki.drive = robot.drive;
     config.kobuki.footprint_radius = robot.footprint_radius;
+    config.kobuki.footprint = robot.footprint.clone();
     config.validated()
 }

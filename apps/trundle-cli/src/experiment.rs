@@ -1,14 +1,20 @@
 //! `trundle experiment`: the papers' experiments as commands; exit code 1 where a limit is missed.
 
+mod barn;
 mod corridor;
+mod cpu_clock;
 mod faults;
+mod laser_run;
 mod missions;
+mod mrpb;
 mod poses;
+mod rows;
 mod trial;
 
 use crate::{Outcome, args::Common, failure::Failure};
 use clap::{Args, Subcommand};
 use std::path::PathBuf;
+use std::str::FromStr;
 
 /// `trundle experiment`
 #[derive(Debug, Args)]
@@ -29,6 +35,10 @@ pub enum Which {
     House(HouseArgs),
     /// Sensors that break, wheels that slip, people in the way: nothing touched, and on when it can be.
     Faults(RunsArgs),
+    /// The worlds of the BARN challenge, crossed at up to 2 m/s with a 2-D laser.
+    Barn(BarnArgs),
+    /// The courses of the local-planning benchmark MRPB 1.0, with and without people, with a 2-D laser.
+    Mrpb(MrpbArgs),
     /// The four corridor scenarios of Hong (2024), by the paper's method and by the optimal one.
     Corridor(CorridorArgs),
 }
@@ -65,6 +75,82 @@ pub struct HouseArgs {
     pub runs: RunsArgs,
 }
 
+/// `trundle experiment barn`
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Exit code: 0 success at least 97 % and mean score at least 0.45, 1 otherwise, 2 bad input."
+)]
+pub struct BarnArgs {
+    /// Which of the worlds, counted from 0 in the order of worlds.csv [default: all]
+    #[arg(long, value_name = "A-B")]
+    pub worlds: Option<WorldRange>,
+    /// Seeds of noise for each world: 1 to N.
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub seeds: u32,
+    /// Folder with worlds.csv and obstacles.csv.
+    #[arg(long, value_name = "DIR", default_value = "../shared/data/nav/barn")]
+    pub data: PathBuf,
+    /// Robot file in place of the experiment's own robot.
+    #[arg(long, value_name = "FILE")]
+    pub config: Option<PathBuf>,
+    /// Folder for the results.
+    #[arg(long, value_name = "DIR", default_value = "out/barn")]
+    pub out: PathBuf,
+    /// What every command takes.
+    #[command(flatten)]
+    pub common: Common,
+}
+
+/// `trundle experiment mrpb`
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Exit code: 0 every goal reached, nothing touched, control cycle within 2 ms on average; 1 otherwise, 2 bad input."
+)]
+pub struct MrpbArgs {
+    /// Only the courses whose name contains this.
+    #[arg(long, value_name = "TEXT")]
+    pub only: Option<String>,
+    /// Seeds of noise for each course: 1 to N.
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub seeds: u32,
+    /// Folder with start_goal.csv, actors.csv and maps.
+    #[arg(long, value_name = "DIR", default_value = "../shared/data/nav/mrpb")]
+    pub data: PathBuf,
+    /// Robot file in place of the experiment's own robot.
+    #[arg(long, value_name = "FILE")]
+    pub config: Option<PathBuf>,
+    /// Folder for the results.
+    #[arg(long, value_name = "DIR", default_value = "out/mrpb")]
+    pub out: PathBuf,
+    /// What every command takes.
+    #[command(flatten)]
+    pub common: Common,
+}
+
+/// From one world to another, both included.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct WorldRange {
+    /// From 0.
+    pub first: usize,
+    /// Not before the first.
+    pub last: usize,
+}
+
+impl FromStr for WorldRange {
+    type Err = String;
+
+    /// `A-B`, or `A` alone.
+    fn from_str(text: &str) -> Result<Self, String> {
+        let number =
+            |part: &str| part.trim().parse::<usize>().map_err(|_| format!("'{part}' is not a number"));
+        let (first, last) = text.split_once('-').unwrap_or((text, text));
+        match (number(first)?, number(last)?) {
+            (first, last) if first <= last => Ok(Self { first, last }),
+            _ => Err("expected A-B with A not above B".to_owned()),
+        }
+    }
+}
+
 /// `trundle experiment corridor`
 #[derive(Debug, Args)]
 #[command(
@@ -85,6 +171,8 @@ impl ExperimentArgs {
         match &self.which {
             Which::Poses(args) | Which::Obstacles(args) | Which::Faults(args) => &args.common,
             Which::House(args) => &args.runs.common,
+            Which::Barn(args) => &args.common,
+            Which::Mrpb(args) => &args.common,
             Which::Corridor(args) => &args.common,
         }
     }
@@ -96,6 +184,8 @@ pub fn run(args: &ExperimentArgs) -> Result<Outcome, Failure> {
         Which::Poses(args) => poses::run(args),
         Which::Obstacles(args) => missions::obstacles(args),
         Which::House(args) => missions::house(&args.runs, &args.mesh),
+        Which::Barn(args) => barn::run(args),
+        Which::Mrpb(args) => mrpb::run(args),
         Which::Faults(args) => faults::run(args),
         Which::Corridor(args) => corridor::run(args),
     }

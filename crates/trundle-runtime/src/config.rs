@@ -1,10 +1,10 @@
 use crate::{
-    camera_mount::CameraMount, last_stage::LastStageConfig, robot::Robot, schedule::Schedule,
+    camera_mount::CameraMount, last_stage::LastStageConfig, robot::Robot, schedule::Schedule, sight::Sight,
     supervisor_config::SupervisorConfig,
 };
 use serde::{Deserialize, Serialize};
 use trundle_control::{FollowerConfig, SafetyConfig};
-use trundle_core::{DifferentialDrive, DriveLimits, Footprint, Invalid, PinholeCamera};
+use trundle_core::{DifferentialDrive, DriveLimits, Footprint, Invalid, PinholeCamera, Vector2};
 use trundle_localization::{LocalizerConfig, OdometryConfig};
 use trundle_mapping::{DepthScanConfig, MapperConfig, ScanMatchConfig};
 use trundle_planning::PlannerConfig;
@@ -16,6 +16,10 @@ use trundle_slam::SlamConfig;
 pub struct RobotConfig {
     /// Radius of the disc about the base that the robot stays within, m, above 0. Default 0.1755: the Kobuki.
     pub footprint_radius: f64,
+    /// Corners of a convex outline in place of the disc, base frame, m. Default none.
+    pub footprint: Option<Vec<[f64; 2]>>,
+    /// What the map is drawn from and what safety watches. Default the depth camera.
+    pub sight: Sight,
     /// Geometry of the base. Default: the Kobuki.
     pub drive: DifferentialDrive,
     /// What the base may be asked for. Default: the Kobuki.
@@ -54,6 +58,8 @@ impl Default for RobotConfig {
     fn default() -> Self {
         Self {
             footprint_radius: Footprint::KOBUKI.circumscribed_radius(),
+            footprint: None,
+            sight: Sight::DepthCamera,
             drive: DifferentialDrive::KOBUKI,
             limits: DriveLimits::KOBUKI,
             camera: PinholeCamera::kinect_v2(),
@@ -91,6 +97,16 @@ impl RobotConfig {
         Robot::new(self.clone()).map(|_| self)
     }
 
+    /// Refuses a base that may be faster than its odometry believes: it would lose its way at full speed.
+    pub(crate) fn require_believable_speeds(&self) -> Result<(), Invalid> {
+        let least = self.limits.wheel_speed;
+        if self.odometry.max_speed < least {
+            let expected = format!("limits.wheel_speed or more, {least} m/s");
+            return Err(Invalid::new("odometry.max_speed", self.odometry.max_speed, "m/s", expected));
+        }
+        Ok(())
+    }
+
     /// The whole robot file.
     pub fn to_toml(&self) -> String {
         toml::to_string(self).expect("invariant: the configuration is plain data")
@@ -102,11 +118,14 @@ impl RobotConfig {
         self
     }
 
-    /// The robot's outline.
+    /// The robot's outline: the polygon where there is one, else the disc.
     ///
     /// # Errors
-    /// When the radius is not positive.
+    /// When the radius is not positive, or the polygon is none that is convex.
     pub fn footprint(&self) -> Result<Footprint, Invalid> {
-        Footprint::disc(self.footprint_radius)
+        match &self.footprint {
+            Some(corners) => Footprint::polygon(corners.iter().map(|c| Vector2::new(c[0], c[1])).collect()),
+            None => Footprint::disc(self.footprint_radius),
+        }
     }
 }

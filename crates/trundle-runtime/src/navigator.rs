@@ -65,6 +65,7 @@ pub(crate) struct Navigator {
     last_stage: LastStage,
     safety: SafetyMonitor,
     check_due: Ticker,
+    improve_due: Ticker,
     goal: Goal,
     plan: Option<Box<PlanResult>>,
     state: DriveState,
@@ -75,6 +76,10 @@ pub(crate) struct Navigator {
     look: LookAround,
     /// Where the way to the goal ends, when there is none.
     blocked_at: Option<Vector2>,
+    /// A disc can always turn away.
+    is_polygon: bool,
+    /// The outline stands too near to something to turn: it backs out, as far as safety lets it.
+    is_wedged: bool,
     progress: ProgressWatch,
     /// Of the safety monitor, s.
     image_timeout: f64,
@@ -87,10 +92,16 @@ const PAUSE: f64 = 1.0;
 /// Speed of leaving what presses on the bumper, m/s, and how far behind must be free, m.
 const BACK_OUT: f64 = 0.05;
 const BACK_OUT_WAY: f64 = 0.15;
+/// What is left of a way is driven as planned when it takes less, s.
+const WORTH_IMPROVING: f64 = 0.5;
+/// A new way replaces a good one when it arrives so much sooner, s.
+const SOONER: f64 = 0.05;
 /// Without sight for so long, it turns to find some, s.
 const BLIND_PAUSE: f64 = 3.0;
 /// Slower than this the robot stands, m/s.
 const STANDING: f64 = 0.02;
+/// So fast it backs out where it has no room to turn, m/s.
+const BACKING_OUT: f64 = 0.1;
 /// So many turns see everything around twice.
 const TURNS: f64 = 2.0;
 /// One turn, and a little more, sees it once.
@@ -105,6 +116,7 @@ impl Navigator {
             last_stage: LastStage::new(&config.docking, footprint)?,
             safety: SafetyMonitor::new(config.safety.clone(), footprint)?,
             check_due: Ticker::new(config.schedule.validated()?.check_hz),
+            improve_due: Ticker::new(config.schedule.improve_hz),
             goal: Goal::Stay,
             plan: None,
             state: DriveState::Idle,
@@ -114,6 +126,8 @@ impl Navigator {
             held_since: None,
             look: LookAround::default(),
             blocked_at: None,
+            is_polygon: matches!(footprint, Footprint::Polygon { .. }),
+            is_wedged: false,
             progress: ProgressWatch::default(),
             image_timeout: config.safety.image_timeout,
             radius: footprint.circumscribed_radius(),
@@ -165,6 +179,7 @@ impl Navigator {
         self.watch(s);
         let goal = self.goal.pose().filter(|_| self.wants_plan(s));
         let replanned = goal.is_some_and(|goal| times.measure(Stage::Planning, || self.replan(goal, s)));
+        let replanned = replanned || self.improved(s, times);
         let follow = times.measure(Stage::Control, || self.follower.step(&s.estimate, s.now));
         self.note_progress(&follow, s, times);
         let wanted = self.wanted(&follow, s, times);
@@ -272,9 +287,31 @@ impl Navigator {
         }
     }
 
+    /// While it drives: a new plan that goes on from the reference and arrives sooner replaces the old one.
+    fn improved(&mut self, s: &Surroundings<'_>, times: &mut StageTimes) -> bool {
+        let (Some(goal), DriveState::Driving) = (self.goal.pose(), &self.state) else { return false };
+        let (Some(old), Some(reference)) = (&self.plan, self.follower.reference()) else { return false };
+        let left = old.trajectory.duration() - reference.time;
+        if left < WORTH_IMPROVING || !self.improve_due.due(s.now) {
+            return false;
+        }
+        let planner = &mut self.planner;
+        let plan =
+            times.measure(Stage::Planning, || planner.plan(s.grid, reference.pose, reference.twist, goal));
+        match plan {
+            Plan::Found(plan) if plan.is_continuous && plan.trajectory.duration() < left - SOONER => {
+                self.follower.follow(plan.trajectory.clone(), goal);
+                self.plan = Some(plan);
+                true
+            }
+            _ => false,
+        }
+    }
+
     /// No way is known: stop, turn on the spot until everything around has been seen, then wait, looking at where it ends.
     fn no_way(&mut self, refused: &Plan) {
         let reason = why(refused);
+        self.is_wedged = self.is_polygon && matches!(refused, Plan::StartInObstacle { .. });
         self.follower.halt();
         self.plan = None;
         self.blocked_at = match refused {
@@ -283,7 +320,7 @@ impl Navigator {
         };
         self.state = match self.goal {
             Goal::View(_) => DriveState::Stopped { reason },
-            _ if self.look.has_turned(TURNS) => DriveState::Waiting { reason },
+            _ if self.look.has_turned(TURNS) && !self.is_wedged => DriveState::Waiting { reason },
             _ => DriveState::Recovering { reason },
         };
     }
@@ -310,6 +347,7 @@ impl Navigator {
         let pose = s.estimate.pose;
         match &self.state {
             DriveState::Mapping if self.goal == Goal::Look => self.look_once(s),
+            DriveState::Recovering { .. } if self.is_wedged => Twist2::new(-BACKING_OUT, 0.0),
             DriveState::Recovering { .. } | DriveState::Lost { .. } => self.look.twist(pose),
             DriveState::Waiting { .. } if self.backs_out(s) => Twist2::new(-BACK_OUT, 0.0),
             DriveState::Waiting { .. } if self.is_blind(s) => self.look_for_sight(s),

@@ -6,14 +6,15 @@ use crate::{
     navigator::{Navigator, Surroundings},
     report::StepReport,
     schedule::Ticker,
+    sight::Sight,
     stage::{Stage, StageTimes},
     state::DriveState,
     supervisor::Supervisor,
 };
 use trundle_control::SafetyScan;
 use trundle_core::{
-    GyroRate, Invalid, OccupancyGrid, Odometry, Pose2, Pose3, PoseEstimate, RgbdImage, Scan, SensorEvent,
-    Stamp, WheelTicks,
+    Footprint, GyroRate, Invalid, OccupancyGrid, Odometry, Pose2, Pose3, PoseEstimate, RgbdImage, Scan,
+    SensorEvent, Stamp, Vector2, WheelTicks,
 };
 use trundle_localization::{Localizer, VisualPose, VisualQuality, WheelOdometry, camera_motion};
 use trundle_mapping::{DepthScanner, LiveMapper, MapperConfig, ScanMatcher};
@@ -26,8 +27,10 @@ use trundle_slam::{RgbdSlam, TrackReport, Tracking};
 /// same reports. (Wall-clock times are noted beside it in [`StageTimes`], which only reports read.)
 #[derive(Debug)]
 pub struct Robot {
+    sight: Sight,
     base_from_camera: Pose3,
-    footprint_radius: f64,
+    /// Of the disc that the robot stands on for certain, m.
+    inscribed_radius: f64,
     odometry: WheelOdometry,
     slam: RgbdSlam,
     scanner: DepthScanner,
@@ -48,8 +51,10 @@ struct Latest {
     odometry: Option<Odometry>,
     /// `odom_from_base` at the last image.
     image_odometry: Option<Pose2>,
-    /// The scan of the last image.
+    /// The newest scan.
     scan: Option<Scan>,
+    /// `odom_from_base` when it was taken.
+    scan_odometry: Option<Pose2>,
     eye: EyeWatch,
 }
 
@@ -69,12 +74,17 @@ impl Robot {
     pub fn new(config: RobotConfig) -> Result<Self, Invalid> {
         let base_from_camera = config.mount.validated()?.base_from_camera();
         let footprint = config.footprint()?;
+        config.require_believable_speeds()?;
         let scanner = DepthScanner::new(config.camera, base_from_camera, config.scan.clone())?;
-        let mapper =
-            LiveMapper::new(MapperConfig { blind_range: scanner.blind_range(), ..config.mapping.clone() })?;
+        let blind_range = match config.sight {
+            Sight::DepthCamera => scanner.blind_range(),
+            Sight::Laser => 0.0,
+        };
+        let mapper = LiveMapper::new(MapperConfig { blind_range, ..config.mapping.clone() })?;
         Ok(Self {
+            sight: config.sight,
             base_from_camera,
-            footprint_radius: config.footprint_radius,
+            inscribed_radius: inscribed_radius(&footprint),
             odometry: WheelOdometry::new(config.drive, config.odometry.clone())?,
             slam: RgbdSlam::new(config.camera, config.slam.clone())?,
             scanner,
@@ -113,7 +123,10 @@ impl Robot {
             SensorEvent::Rgbd(image) => self.look(image, &mut report),
             SensorEvent::Touch(touch) => self.navigator.touch(touch.pressed),
             SensorEvent::Cliff(cliff) => self.navigator.cliff(cliff.over_edge),
-            // The map is drawn from the depth image alone; a laser is for other programs.
+            SensorEvent::Scan(scan) if self.sight == Sight::Laser => {
+                self.see(scan.clone());
+            }
+            // The map is drawn from the depth image alone; a laser beside it is for other programs.
             SensorEvent::Scan(_) | SensorEvent::Truth { .. } => {}
         }
         report.estimate = Some(self.localizer.estimate());
@@ -174,19 +187,29 @@ impl Robot {
             self.follow_the_visual_map();
         }
         self.times.measure(Stage::Mapping, || self.mapper.work(REDRAWING));
-        let scan = self.times.measure(Stage::Scan, || self.scanner.scan(image));
-        if self.map_due.due(image.stamp()) {
-            self.fit(&scan);
-            self.draw(&scan);
-            if let Some(visual) =
-                self.visual_base(&track.visual_from_camera).filter(|_| track.tracking.is_located())
-            {
-                self.drawn.note(scan.stamp(), visual);
+        if self.sight == Sight::DepthCamera {
+            let scan = self.times.measure(Stage::Scan, || self.scanner.scan(image));
+            let stamp = scan.stamp();
+            let is_drawn = self.see(scan);
+            let visual = self.visual_base(&track.visual_from_camera);
+            if let Some(visual) = visual.filter(|_| is_drawn && track.tracking.is_located()) {
+                self.drawn.note(stamp, visual);
             }
         }
+        report.track = Some(track);
+    }
+
+    /// A scan: at the map's rate it corrects the estimate and enters the map; safety watches each. Whether it was drawn.
+    fn see(&mut self, scan: Scan) -> bool {
+        let is_due = self.map_due.due(scan.stamp());
+        if is_due {
+            self.fit(&scan);
+            self.draw(&scan);
+        }
+        self.latest.scan_odometry = self.odometry_at(scan.stamp());
         self.latest.eye.note(&scan);
         self.latest.scan = Some(scan);
-        report.track = Some(track);
+        is_due
     }
 
     /// Corrects the estimate by where the scan fits the map.
@@ -202,7 +225,7 @@ impl Robot {
     /// Draws the scan, and the floor that the robot stands on, into the map; not when no pose is known for its time.
     fn draw(&mut self, scan: &Scan) {
         let Ok(pose) = self.localizer.pose_at(scan.stamp()) else { return };
-        let (mapper, radius) = (&mut self.mapper, self.footprint_radius);
+        let (mapper, radius) = (&mut self.mapper, self.inscribed_radius);
         self.times.measure(Stage::Mapping, || {
             mapper.insert(pose, scan);
             mapper.mark_free_disc(pose, radius);
@@ -293,9 +316,21 @@ impl Latest {
     fn carried_scan(&self) -> Option<SafetyScan<'_>> {
         Some(SafetyScan {
             scan: self.scan.as_ref()?,
-            odom_at_scan: self.image_odometry?,
+            odom_at_scan: self.scan_odometry?,
             odom_now: self.odometry?.pose,
         })
+    }
+}
+
+/// Of the largest disc about the base's origin that is inside the footprint, m; 0 where the origin is outside.
+fn inscribed_radius(footprint: &Footprint) -> f64 {
+    match footprint {
+        Footprint::Disc { radius } => *radius,
+        Footprint::Polygon { corners } => {
+            let sides = corners.iter().zip(corners.iter().cycle().skip(1));
+            let from_side = |(a, b): (&Vector2, &Vector2)| (b - a).perp(&-a) / (b - a).norm();
+            sides.map(from_side).fold(f64::INFINITY, f64::min).max(0.0)
+        }
     }
 }
 

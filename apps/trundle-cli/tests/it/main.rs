@@ -4,6 +4,7 @@
 mod bad_input;
 mod demo;
 mod dock;
+mod experiments;
 mod inputs;
 mod map;
 mod missions;

@@ -7,6 +7,8 @@ use trundle_core::{Invalid, require_in};
 pub struct SafetyConfig {
     /// Deceleration to count on, m/s^2, 0.05 to 20. Default 0.5: [`DriveLimits::KOBUKI`](trundle_core::DriveLimits::KOBUKI); the base can do more.
     pub deceleration: f64,
+    /// Angular deceleration to count on when a polygon turns on the spot, rad/s^2, 0.1 to 100. Default 3, as above.
+    pub angular_deceleration: f64,
     /// From an image to the wheels obeying, s, 0 to 2, at least. Default 0.2: an image period, processing, delay and lag.
     pub latency: f64,
     /// Room left before an obstacle ahead, m, 0 to 1. Default 0.04 (ours).
@@ -42,6 +44,7 @@ impl Default for SafetyConfig {
     fn default() -> Self {
         Self {
             deceleration: 0.5,
+            angular_deceleration: 3.0,
             latency: 0.2,
             stop_margin: 0.04,
             side_margin: 0.01,
@@ -65,6 +68,7 @@ impl SafetyConfig {
     pub fn validated(self) -> Result<Self, Invalid> {
         let ranges = [
             ("deceleration", self.deceleration, "m/s^2", 0.05, 20.0),
+            ("angular_deceleration", self.angular_deceleration, "rad/s^2", 0.1, 100.0),
             ("latency", self.latency, "s", 0.0, 2.0),
             ("stop_margin", self.stop_margin, "m", 0.0, 1.0),
             ("side_margin", self.side_margin, "m", 0.0, 0.5),
@@ -90,9 +94,18 @@ impl SafetyConfig {
 
     /// The highest speed from which the robot stops within `way` metres, `latency` s after what it sees.
     pub(super) fn speed_for(&self, way: f64, latency: f64) -> f64 {
-        let reaction = self.deceleration * latency;
-        (reaction * reaction + 2.0 * self.deceleration * way.max(0.0)).sqrt() - reaction
+        braked(self.deceleration, latency, way)
     }
+
+    /// The highest turn rate from which it stops within `angle` rad, `latency` s after what it sees.
+    pub(super) fn turn_rate_for(&self, angle: f64, latency: f64) -> f64 {
+        braked(self.angular_deceleration, latency, angle)
+    }
+}
+
+fn braked(deceleration: f64, latency: f64, way: f64) -> f64 {
+    let reaction = deceleration * latency;
+    (reaction * reaction + 2.0 * deceleration * way.max(0.0)).sqrt() - reaction
 }
 
 #[cfg(test)]

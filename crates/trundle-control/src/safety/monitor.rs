@@ -1,18 +1,16 @@
 use super::{
     SafetyConfig,
-    arc::way_to_contact,
     obstacles::{Obstacle, SafetyMemory, SafetyScan, collect_memory, collect_scan},
+    outline::Outline,
     reason::{SafetyAction, SlowReason, StopReason},
 };
 use trundle_core::{Footprint, Invalid, Stamp, Twist2, Vector2};
 
 /// Lets only twists through from which the robot can still stop.
-///
-/// A footprint that is no disc is taken as the disc about it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SafetyMonitor {
     config: SafetyConfig,
-    radius: f64,
+    outline: Outline,
     /// From the newest image to the wheels obeying, s.
     latency: f64,
     /// Reused from call to call: what stands near by.
@@ -52,6 +50,9 @@ pub struct SafetyReport {
 /// Distances from a wall that differ by less are the same, m: a row of round cells is wavy by 1.5 mm.
 const SAME_DISTANCE: f64 = 3e-3;
 
+/// A slower turn on the spot is none, rad/s.
+const LEAST_TURN_RATE: f64 = 0.02;
+
 /// The free way along the arc.
 struct FreeWay {
     /// Until contact, m, and with what.
@@ -66,9 +67,8 @@ impl SafetyMonitor {
     /// # Errors
     /// When a number of the configuration is outside its range.
     pub fn new(config: SafetyConfig, footprint: &Footprint) -> Result<Self, Invalid> {
-        let radius = footprint.circumscribed_radius();
-        let config = config.validated()?;
-        Ok(Self { latency: config.latency, config, radius, obstacles: Vec::new() })
+        let (config, outline) = (config.validated()?, Outline::new(footprint));
+        Ok(Self { latency: config.latency, config, outline, obstacles: Vec::new() })
     }
 
     /// Judges a command.
@@ -85,11 +85,14 @@ impl SafetyMonitor {
         if input.touched || input.over_edge {
             return self.back_out(input);
         }
-        if input.twist.v == 0.0 {
+        if input.twist.v == 0.0 && self.may_turn(input.twist) {
             return SafetyReport { twist: input.twist, action: SafetyAction::Pass };
         }
         self.latency = self.config.latency_for(input.image.map_or(0.0, |image| input.now - image));
         self.gather(input);
+        if input.twist.v == 0.0 {
+            return self.within_the_free_turn(input.twist);
+        }
         self.within_the_free_way(input.twist)
     }
 
@@ -126,7 +129,7 @@ impl SafetyMonitor {
         self.obstacles.clear();
         let v = input.twist.v.abs();
         let braking = v * self.latency + v * v / (2.0 * self.config.deceleration);
-        let body = self.radius + self.config.slow_margin.max(self.config.stop_margin);
+        let body = self.outline.reach() + self.config.slow_margin.max(self.config.stop_margin);
         if let Some(scan) = &input.scan {
             collect_scan(scan, braking + self.config.stop_margin + body, &mut self.obstacles);
         }
@@ -137,21 +140,45 @@ impl SafetyMonitor {
     }
 
     fn free_way(&self, twist: Twist2) -> FreeWay {
-        let first = |radius: f64| {
-            let way = |o: &Obstacle| Some((way_to_contact(twist, o.at, radius + o.extent)?, o.at));
-            self.obstacles.iter().filter_map(way).min_by(|a, b| a.0.total_cmp(&b.0))
-        };
         FreeWay {
-            contact: first(self.contact_radius()),
-            beside: first(self.radius + self.config.slow_margin),
+            contact: self.first(twist, self.contact_margin(SAME_DISTANCE)),
+            beside: self.first(twist, self.config.slow_margin),
         }
     }
 
-    /// The disc that nothing may enter, m. A robot that is already nearer to something than the margin asks may go on as
-    /// long as it comes no nearer: else it could never leave a wall.
-    fn contact_radius(&self) -> f64 {
-        let nearest = self.obstacles.iter().map(|o| o.at.norm() - o.extent).fold(f64::INFINITY, f64::min);
-        (nearest - SAME_DISTANCE).clamp(self.radius, self.radius + self.config.side_margin)
+    /// The first obstacle that comes within `margin` m of the outline: way (of a turn on the spot, angle) until then, and where.
+    fn first(&self, twist: Twist2, margin: f64) -> Option<(f64, Vector2)> {
+        let way = |o: &Obstacle| Some((self.outline.way_to_contact(twist, o.at, margin + o.extent)?, o.at));
+        self.obstacles.iter().filter_map(way).min_by(|a, b| a.0.total_cmp(&b.0))
+    }
+
+    /// The rim about the outline that nothing may enter, m. A robot that is already nearer to something than the margin asks
+    /// may go on as long as it comes no nearer, give or take `slack`: else it could never leave a wall.
+    fn contact_margin(&self, slack: f64) -> f64 {
+        let gaps = self.obstacles.iter().map(|o| self.outline.gap(o.at) - o.extent);
+        (gaps.fold(f64::INFINITY, f64::min) - slack).clamp(0.0, self.config.side_margin)
+    }
+
+    /// Whether a turn on the spot need not be looked at.
+    fn may_turn(&self, turn: Twist2) -> bool {
+        turn.omega == 0.0 || self.outline.is_disc()
+    }
+
+    fn within_the_free_turn(&self, turn: Twist2) -> SafetyReport {
+        // No slack: a turn keeps no stop margin, so slack would be used up again with every step.
+        let contact = if self.may_turn(turn) { None } else { self.first(turn, self.contact_margin(0.0)) };
+        let Some((angle, at)) = contact else {
+            return SafetyReport { twist: turn, action: SafetyAction::Pass };
+        };
+        let rate = self.config.turn_rate_for(angle, self.latency);
+        if rate >= turn.omega.abs() {
+            SafetyReport { twist: turn, action: SafetyAction::Pass }
+        } else if rate < LEAST_TURN_RATE {
+            stop(StopReason::ObstacleBeside { angle, at })
+        } else {
+            let twist = Twist2::new(0.0, rate.copysign(turn.omega));
+            SafetyReport { twist, action: SafetyAction::Slow(SlowReason::ObstacleBeside { angle, at }) }
+        }
     }
 
     fn within_the_free_way(&self, twist: Twist2) -> SafetyReport {
@@ -167,8 +194,7 @@ impl SafetyMonitor {
         if let Some((way, at)) = free.contact {
             let speed = self.config.speed_for(way - self.config.stop_margin, self.latency);
             if speed < self.config.least_speed.min(twist.v.abs()) {
-                // A disc may always turn on the spot.
-                let turn = Twist2::new(0.0, twist.omega);
+                let turn = self.within_the_free_turn(Twist2::new(0.0, twist.omega)).twist;
                 let action = SafetyAction::Stop(StopReason::ObstacleAhead { way, at });
                 return SafetyReport { twist: turn, action };
             }
@@ -280,6 +306,49 @@ mod tests {
         assert!(check(0.1, 0.0).twist.v > 0.0, "along it: {}", check(0.1, 0.0).action);
         assert!(check(0.1, -0.1).twist.v > 0.0, "away from it: {}", check(0.1, -0.1).action);
         assert!(check(0.1, 0.3).twist.v < 0.03, "into it: {}", check(0.1, 0.3).action);
+    }
+
+    fn cart() -> SafetyMonitor {
+        let corners = [(0.4, 0.2), (-0.2, 0.2), (-0.2, -0.2), (0.4, -0.2)];
+        let footprint = Footprint::polygon(corners.iter().map(|&(x, y)| Vector2::new(x, y)).collect());
+        SafetyMonitor::new(SafetyConfig::default(), &footprint.unwrap()).unwrap()
+    }
+
+    #[test]
+    fn an_outline_goes_through_a_gap_that_its_disc_would_not_and_does_not_turn_there() {
+        let half = 0.26_f64;
+        let bearing = |i: i32| (-170.0 + 2.0 * f64::from(i)).to_radians();
+        let ranges: Vec<f64> = (0..171).map(|i| half / bearing(i).sin().abs().max(1e-3)).collect();
+        let walls = scan(bearing(0), 2.0_f64.to_radians(), &ranges);
+        let check =
+            |v, omega| cart().check(&SafetyInput { scan: seen(&walls), ..fresh(Twist2::new(v, omega)) });
+        assert_eq!(check(0.1, 0.0).action, SafetyAction::Pass);
+        let turn = check(0.0, 1.5);
+        assert!(turn.twist.omega < 0.5 && turn.action != SafetyAction::Pass, "{turn:?}");
+        let disc = Footprint::disc(0.4473).unwrap();
+        let mut disc = SafetyMonitor::new(SafetyConfig::default(), &disc).unwrap();
+        let straight = disc.check(&SafetyInput { scan: seen(&walls), ..fresh(Twist2::new(0.1, 0.0)) });
+        assert_eq!(straight.twist.v, 0.0);
+    }
+
+    #[test]
+    fn a_turn_ends_before_the_corner_meets_the_wall() {
+        // A post that the front left corner comes to after some 30 deg.
+        let (mut theta, mut rate) = (0.0_f64, 0.0_f64);
+        let post = Vector2::new(0.0, 0.44);
+        let mut least = f64::INFINITY;
+        for _ in 0..400 {
+            let at = Pose2::new(0.0, 0.0, theta).inverse().transform(post);
+            let scan = scan(at.y.atan2(at.x), 0.01, &[at.norm()]);
+            let twist =
+                cart().check(&SafetyInput { scan: seen(&scan), ..fresh(Twist2::new(0.0, 2.0)) }).twist;
+            // The base follows within what the monitor counts on.
+            rate = twist.omega.clamp(rate - 3.0 * 0.02, rate + 3.0 * 0.02);
+            theta += rate * 0.02;
+            let at = Pose2::new(0.0, 0.0, theta).inverse().transform(post);
+            least = least.min(cart().outline.gap(at));
+        }
+        assert!(least > 0.005 && theta > 0.5, "{least} m left after {theta} rad");
     }
 
     proptest! {

@@ -22,6 +22,13 @@ pub enum SlowReason {
         /// The obstacle, base frame, m.
         at: Vector2,
     },
+    /// An obstacle in the way of a turn on the spot, still far enough.
+    ObstacleBeside {
+        /// Angle until contact, rad.
+        angle: f64,
+        /// The obstacle, base frame, m.
+        at: Vector2,
+    },
     /// An obstacle close beside the way.
     NarrowGap {
         /// The obstacle, base frame, m.
@@ -43,15 +50,22 @@ pub enum StopReason {
         /// The obstacle, base frame, m.
         at: Vector2,
     },
+    /// An obstacle that a turn on the spot would swing into.
+    ObstacleBeside {
+        /// Angle until contact, rad.
+        angle: f64,
+        /// The obstacle, base frame, m.
+        at: Vector2,
+    },
     /// The bumper is pressed.
     Touched,
     /// A cliff sensor has no floor below it.
     Cliff,
-    /// No image has come yet.
+    /// No image, or scan of a laser, has come yet.
     NoImage,
-    /// Images come, but none has shown anything yet.
+    /// Images or scans come, but none has shown anything yet.
     NothingSeen,
-    /// The newest image that shows something is too old.
+    /// The newest image, or scan of a laser, that shows something is too old.
     StaleImage {
         /// Its age, s.
         age: f64,
@@ -71,6 +85,9 @@ impl fmt::Display for SlowReason {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::ObstacleAhead { way, .. } => write!(f, "an obstacle {way:.2} m ahead"),
+            Self::ObstacleBeside { angle, .. } => {
+                write!(f, "an obstacle after {:.0} deg", angle.to_degrees())
+            }
             Self::NarrowGap { at } => write!(f, "a narrow gap, {side}", side = side(*at)),
             Self::Reversing => f.write_str("backward without a view"),
             Self::BackingOut => f.write_str("backing out of a contact or off an edge"),
@@ -84,11 +101,14 @@ impl fmt::Display for StopReason {
             Self::ObstacleAhead { way, at } => {
                 write!(f, "an obstacle in the way, {way:.2} m to contact, {side}", side = side(*at))
             }
+            Self::ObstacleBeside { at, .. } => write!(f, "no room to turn, an obstacle {}", side(*at)),
             Self::Touched => f.write_str("the bumper is pressed"),
             Self::Cliff => f.write_str("there is no floor ahead"),
-            Self::NoImage => f.write_str("no image yet"),
+            Self::NoImage => f.write_str("no image or scan yet"),
             Self::NothingSeen => f.write_str("no image has shown anything yet"),
-            Self::StaleImage { age } => write!(f, "the newest image that shows something is {age:.2} s old"),
+            Self::StaleImage { age } => {
+                write!(f, "the newest image or scan that shows something is {age:.2} s old")
+            }
             Self::NoWheels => f.write_str("no wheel reading yet"),
             Self::StaleWheels { age } => write!(f, "the newest wheel reading is {age:.2} s old"),
             Self::NotFinite => f.write_str("the command is not a number"),
@@ -117,7 +137,7 @@ mod tests {
     #[test]
     fn every_reason_says_why_in_numbers() {
         let stop = SafetyAction::Stop(StopReason::StaleImage { age: 0.712 });
-        assert_eq!(stop.to_string(), "stop: the newest image that shows something is 0.71 s old");
+        assert_eq!(stop.to_string(), "stop: the newest image or scan that shows something is 0.71 s old");
         let slow = SafetyAction::Slow(SlowReason::ObstacleAhead { way: 0.5, at: Vector2::new(1.0, 0.0) });
         assert_eq!(slow.to_string(), "slow: an obstacle 0.50 m ahead");
     }

@@ -14,3 +14,17 @@ fn the_defaults_are_valid_and_wrong_keys_are_named() {
     let error = RobotConfig::from_toml("[schedule]\nmap_rate = 5.0\n").unwrap_err().to_string();
     assert!(error.contains("map_rate") && error.contains("line 2"), "{error}");
 }
+
+#[test]
+fn outlines_are_checked_and_a_base_is_not_faster_than_its_odometry_believes() {
+    let field = |config: RobotConfig| config.validated().unwrap_err().field;
+    let flat = RobotConfig { footprint: Some(vec![[0.0, 0.0], [1.0, 0.0]]), ..RobotConfig::default() };
+    assert_eq!(field(flat), "footprint corners");
+    let mut fast = RobotConfig::default();
+    fast.limits.wheel_speed = 2.4;
+    assert_eq!(field(fast.clone()), "odometry.max_speed");
+    fast.odometry.max_speed = 5.0;
+    fast.footprint = Some(vec![[0.2, 0.2], [-0.2, 0.2], [-0.2, -0.2]]);
+    let fast = fast.validated().unwrap();
+    assert_eq!(RobotConfig::from_toml(&fast.to_toml()).unwrap(), fast);
+}

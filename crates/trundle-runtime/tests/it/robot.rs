@@ -1,8 +1,8 @@
 use trundle_core::{
-    DepthImage, GyroRate, Image, PinholeCamera, Pose2, RgbdImage, SensorEvent, Stamp, Touch, Twist2,
-    Vector2, WheelTicks,
+    Beam, DepthImage, GyroRate, Image, PinholeCamera, Pose2, RgbdImage, Scan, SensorEvent, Stamp, Touch,
+    Twist2, Vector2, WheelTicks,
 };
-use trundle_runtime::{DriveState, Robot, RobotConfig, StepReport};
+use trundle_runtime::{DriveState, Robot, RobotConfig, Sight, StepReport};
 
 /// A wall of one colour across the view, `distance` m ahead of the base, and the floor before it, as the default mount sees them.
 fn wall(stamp: Stamp, distance: f64) -> SensorEvent {
@@ -108,4 +108,42 @@ fn the_same_events_give_the_same_reports() {
     let twists =
         |reports: Vec<StepReport>| reports.into_iter().map(|report| report.twist).collect::<Vec<_>>();
     assert_eq!(twists(run()), twists(run()));
+}
+
+/// A laser's sweep of a wall across the view, `distance` m ahead.
+fn sweep(stamp: Stamp, distance: f64) -> SensorEvent {
+    let beam = |i: i32| {
+        let range = distance / (f64::from(i).to_radians()).cos();
+        if i.abs() < 80 && range < 10.0 { Beam::Hit { range } } else { Beam::Free { range: 10.0 } }
+    };
+    let (first, step) = ((-135_f64).to_radians(), 1_f64.to_radians());
+    SensorEvent::Scan(
+        Scan::new(stamp, Vector2::zeros(), first, step, (-135..=135).map(beam).collect()).unwrap(),
+    )
+}
+
+/// A robot of 0.5 x 0.4 m that sees with a laser.
+fn box_with_laser() -> RobotConfig {
+    let footprint = Some(vec![[0.25, 0.2], [-0.25, 0.2], [-0.25, -0.2], [0.25, -0.2]]);
+    RobotConfig { sight: Sight::Laser, footprint, ..RobotConfig::default() }
+}
+
+#[test]
+fn with_a_laser_it_needs_no_camera_and_stops_when_the_scans_stop() {
+    let mut robot = Robot::new(box_with_laser()).unwrap();
+    robot.drive_to(Pose2::new(1.0, 0.0, 0.0)).unwrap();
+    let until = Stamp::from_nanos(3_000_000_000);
+    let reports = stand(&mut robot, 5.0, |stamp| (stamp < until).then(|| sweep(stamp, 3.0)));
+    assert!(reports[120..150].iter().any(|report| report.twist.unwrap().v > 0.05));
+    let last = reports.last().unwrap();
+    assert_eq!(last.twist, Some(Twist2::ZERO));
+    assert!(last.state.reason().is_some_and(|reason| reason.contains("scan")), "{:?}", last.state);
+    assert_eq!(robot.grid().at(Vector2::new(3.01, 0.0)), trundle_core::Cell::Occupied);
+}
+
+#[test]
+fn a_camera_robot_takes_no_scan_for_sight() {
+    let mut robot = robot(Pose2::new(1.0, 0.0, 0.0));
+    let reports = stand(&mut robot, 3.0, |stamp| Some(sweep(stamp, 3.0)));
+    assert!(reports.iter().all(|report| report.twist == Some(Twist2::ZERO)));
 }

@@ -1,0 +1,173 @@
+//! The local-planning benchmark MRPB 1.0 in trundle's simulator: every pair of start and goal, with and without people.
+
+mod course;
+mod metrics;
+mod report;
+
+use super::MrpbArgs;
+use super::laser_run::{LaserPlan, LaserRun, drive, hokuyo};
+use crate::{Outcome, console, demo, failure::Failure, robot_file};
+use course::Course;
+use metrics::Metrics;
+use rayon::prelude::*;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use trundle::control::{FollowerConfig, SettleConfig};
+use trundle::core::{DriveLimits, Invalid, OccupancyGrid, Vector2, difference_of_angles};
+use trundle::io::{OutputFolder, write_map};
+use trundle::localization::LocalizerConfig;
+use trundle::mapping::MapperConfig;
+use trundle::runtime::{DriveState, Mission, RobotConfig, Schedule, Sight, Task};
+use trundle::sim::{FaultSchedule, SimConfig};
+
+/// The benchmark's robot, m, and what it adds for its planners.
+const RADIUS: f64 = 0.25;
+const INFLATION: f64 = 0.01;
+/// Its highest speed, m/s.
+const SPEED: f64 = 0.55;
+/// Its tolerance at the goal, m and rad.
+const NEAR: f64 = 0.2;
+const ALIGNED: f64 = 0.1;
+/// A control cycle may take so long on average, ms.
+const CYCLE_MS: f64 = 2.0;
+/// After so long a run is given up, s.
+const TIME_LIMIT: f64 = 600.0;
+
+/// A course driven, or not.
+struct Trial {
+    course: Course,
+    seed: u64,
+    metrics: Metrics,
+    contacts: u32,
+    /// In truth, at the end: m and rad from the goal.
+    distance: f64,
+    turn: f64,
+    worst_estimate: f64,
+    state: DriveState,
+    /// World frame.
+    driven: Vec<Vector2>,
+    /// Map frame.
+    grid: OccupancyGrid,
+}
+
+/// Every course, so many seeds.
+pub fn run(args: &MrpbArgs) -> Result<Outcome, Failure> {
+    let robot = args.config.as_deref().map_or_else(|| Ok(robot()), |file| robot_file::load(Some(file)))?;
+    let chosen =
+        |course: &Course| args.only.as_ref().is_none_or(|only| course.name().contains(only.as_str()));
+    let courses: Vec<Course> = course::read(&args.data)?.into_iter().filter(chosen).collect();
+    if courses.is_empty() {
+        let only = args.only.as_deref().unwrap_or("");
+        return Err(Failure::Input(format!("--only '{only}': no course of that name")));
+    }
+    let plans: Vec<(Course, u64)> = courses
+        .into_iter()
+        .flat_map(|course| (1..=u64::from(args.seeds)).map(move |seed| (course.clone(), seed)))
+        .collect();
+    let (line, done, total) = (console::live_line(args.common.quiet), AtomicUsize::new(0), plans.len());
+    let trials = plans.into_par_iter().map(|(course, seed)| {
+        let trial = one(args, &robot, course, seed)?;
+        let done = 1 + done.fetch_add(1, Ordering::Relaxed);
+        line.set_message(format!("{done} of {total} runs"));
+        line.tick();
+        Ok(trial)
+    });
+    let trials: Result<Vec<Trial>, Failure> = trials.collect();
+    line.finish_and_clear();
+    finish(args, &trials?)
+}
+
+/// The benchmark's robot as the autonomy knows it: a round two-wheeled base with a laser.
+fn robot() -> RobotConfig {
+    let defaults = RobotConfig::default();
+    RobotConfig {
+        footprint_radius: RADIUS + INFLATION,
+        sight: Sight::Laser,
+        limits: DriveLimits { v: SPEED, ..DriveLimits::KOBUKI },
+        schedule: Schedule { map_hz: 10.0, check_hz: 10.0, improve_hz: 1.0 },
+        mapping: MapperConfig { max_range: 12.0, ..MapperConfig::default() },
+        // Scans of a laser err less alike than images: less of the heading is left to each.
+        localization: LocalizerConfig {
+            least_position_sigma: 0.005,
+            least_heading_sigma_deg: 0.1,
+            scan_heading_sigma_deg: 0.3,
+            ..LocalizerConfig::default()
+        },
+        // A tenth of the benchmark's tolerance in position, a quarter in heading: the estimate has errors of its own.
+        control: FollowerConfig {
+            settling: SettleConfig {
+                position_tolerance: 0.1 * NEAR,
+                heading_tolerance: 0.25 * ALIGNED,
+                ..SettleConfig::default()
+            },
+            ..FollowerConfig::default()
+        },
+        ..defaults
+    }
+}
+
+/// Its body in the simulator.
+fn body(robot: &RobotConfig) -> Result<SimConfig, Invalid> {
+    let mut config = demo::simulated(robot, FaultSchedule::default())?;
+    config.has_camera = false;
+    config.laser = Some(hokuyo(0.0));
+    config.kobuki.footprint_radius = RADIUS;
+    config.validated()
+}
+
+fn one(args: &MrpbArgs, robot: &RobotConfig, course: Course, seed: u64) -> Result<Trial, Failure> {
+    let plan = LaserPlan {
+        robot: robot.clone(),
+        body: body(robot)?,
+        scene: course.scene(&args.data)?,
+        mission: Mission::new(vec![Task::Go(course.start.inverse() * course.goal)])?,
+        seed,
+        time_limit: TIME_LIMIT,
+    };
+    Ok(Trial::of(course, seed, drive(plan, |_| false)?))
+}
+
+impl Trial {
+    fn of(course: Course, seed: u64, run: LaserRun) -> Self {
+        let end = *run.end();
+        Self {
+            metrics: Metrics::of(&run),
+            contacts: end.contacts,
+            distance: end.pose.distance(&course.goal),
+            turn: difference_of_angles(end.pose.theta, course.goal.theta).abs(),
+            worst_estimate: run.worst_estimate(),
+            driven: run.moments.iter().map(|m| m.pose.position()).collect(),
+            grid: run.robot.grid().clone(),
+            state: run.state,
+            course,
+            seed,
+        }
+    }
+
+    fn reached(&self) -> bool {
+        self.state == DriveState::Arrived && self.distance <= NEAR && self.turn <= ALIGNED
+    }
+
+    /// At the goal, nothing touched, cycles short enough.
+    fn success(&self) -> bool {
+        self.reached() && self.contacts == 0 && self.metrics.cycle_ms[0] <= CYCLE_MS
+    }
+}
+
+fn finish(args: &MrpbArgs, trials: &[Trial]) -> Result<Outcome, Failure> {
+    let success = trials.iter().all(Trial::success);
+    let folder = OutputFolder::create(&args.out)?;
+    for trial in trials {
+        folder.write(&format!("{}.png", report::file_name(trial)), &report::picture(trial))?;
+        write_map(&folder, &report::file_name(trial), &trial.grid)?;
+    }
+    folder.write("mrpb.csv", report::csv(trials).as_bytes())?;
+    folder.write("report.html", report::report(trials, success).to_html().as_bytes())?;
+    folder.write("summary.json", report::summary(trials, success).to_json().as_bytes())?;
+    let place = folder.commit()?;
+    if !args.common.quiet {
+        console::table(&report::rows(trials));
+        let told = report::verdict(trials, success);
+        console::say(&format!("\n{told}\nSee {}", place.join("report.html").display()));
+    }
+    Ok(if success { Outcome::Reached } else { Outcome::Missed })
+}

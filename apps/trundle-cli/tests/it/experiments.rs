@@ -1,0 +1,38 @@
+use crate::program::{refusal, shared, summary, text, trundle};
+use std::fs;
+
+#[test]
+fn a_barn_world_is_crossed() {
+    let Some(data) = shared("nav/barn") else { return };
+    let scratch = tempfile::tempdir().unwrap();
+    let out = scratch.path().join("out");
+    let output =
+        trundle(&["experiment", "barn", "--worlds", "2", "--data", text(&data), "--out", text(&out)]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let found = summary(&out);
+    assert_eq!(found["success"].as_bool(), Some(true));
+    assert!(found["mean_score"].as_f64().unwrap() > 0.4);
+    let table = fs::read_to_string(out.join("barn.csv")).unwrap();
+    assert!(table.starts_with("world,seed,success,contacts,") && table.lines().count() == 2, "{table}");
+    assert!(fs::metadata(out.join("worst-1.png")).unwrap().len() > 1000);
+}
+
+#[test]
+fn a_course_of_mrpb_is_driven() {
+    let Some(data) = shared("nav/mrpb") else { return };
+    let scratch = tempfile::tempdir().unwrap();
+    let out = scratch.path().join("out");
+    let course = ["--only", "office01add 3", "--data", text(&data), "--out", text(&out)];
+    trundle(&[&["experiment", "mrpb"], &course[..]].concat());
+    // Whether its cycles are short enough is the machine's affair: only the goal counts here.
+    let found = summary(&out);
+    assert_eq!((found["reached"].as_u64(), found["contacts"].as_u64()), (Some(1), Some(0)));
+    assert!(fs::read_to_string(out.join("mrpb.csv")).unwrap().lines().count() == 2);
+}
+
+#[test]
+fn what_the_data_does_not_have_is_said() {
+    assert!(refusal(&["experiment", "barn", "--data", "/nonexistent"]).contains("worlds.csv"));
+    assert!(refusal(&["experiment", "mrpb", "--data", "/nonexistent"]).contains("start_goal.csv"));
+    assert!(refusal(&["experiment", "barn", "--worlds", "5-2"]).contains("A not above B"));
+}
