@@ -8,6 +8,8 @@ use trundle::runtime::{DriveState, Stage, StageTimes, TaskEnd};
 pub struct RunNumbers {
     /// The goals of the mission, as they came.
     pub goals: Vec<GoalOutcome>,
+    /// How many goals the mission has.
+    pub goals_asked: usize,
     /// Where the robot stands in truth at the end, against the last goal; `None` without truth.
     pub goal_error: Option<GoalError>,
     /// Where it believes to stand, against the last goal.
@@ -44,6 +46,7 @@ impl RunNumbers {
         let against_goal = |pose| goal_error(setup.last_goal()?, pose).ok();
         Self {
             goals: GoalOutcome::all(run),
+            goals_asked: setup.mission.tasks().iter().filter_map(RunSetup::goal_of).count(),
             goal_error: log.truths.last().and_then(|(_, truth)| against_goal(*truth)),
             believed_error: against_goal(run.robot.estimate().pose),
             estimate_rmse: log.estimate_rmse(),
@@ -83,7 +86,7 @@ impl RunNumbers {
     /// How it went, in a sentence.
     pub fn verdict(&self) -> String {
         if self.is_success() {
-            return match self.goals.len() {
+            return match self.goals.iter().filter(|goal| goal.end == TaskEnd::Done).count() {
                 0 => "Mission done, nothing touched.".to_owned(),
                 1 => "Goal reached, nothing touched.".to_owned(),
                 n => format!("All {n} goals reached, nothing touched."),

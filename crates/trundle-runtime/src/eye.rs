@@ -31,12 +31,14 @@ impl EyeWatch {
         false
     }
 
-    /// Notes a scan of an image that is not frozen.
-    pub(crate) fn note(&mut self, scan: &Scan) {
+    /// Notes a scan of an image that is not frozen; whether it shows something.
+    pub(crate) fn note(&mut self, scan: &Scan) -> bool {
         let seen = scan.beams().iter().filter(|beam| **beam != Beam::Unseen).count();
-        if seen as f64 >= LEAST_SEEN * scan.beams().len() as f64 && seen > 0 {
-            self.seen = Some(scan.stamp());
+        let shows = seen as f64 >= LEAST_SEEN * scan.beams().len() as f64 && seen > 0;
+        if shows {
+            self.seen = self.seen.max(Some(scan.stamp()));
         }
+        shows
     }
 
     /// Stamp of the newest scan that shows something.

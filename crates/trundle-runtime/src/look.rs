@@ -30,9 +30,13 @@ impl LookAround {
 /// The turn on the spot that brings `at` (map frame, m) into the middle of the view.
 pub(crate) fn face(pose: Pose2, at: Vector2) -> Twist2 {
     let ahead = at - pose.position();
-    let off = wrap_angle(ahead.y.atan2(ahead.x) - pose.theta);
-    let is_faced = ahead.norm() < 1e-3 || off.abs() < FACED;
-    Twist2::new(0.0, if is_faced { 0.0 } else { (2.0 * off).clamp(-RATE, RATE) })
+    if ahead.norm() < 1e-3 { Twist2::ZERO } else { turn_to(pose, ahead.y.atan2(ahead.x)) }
+}
+
+/// The turn on the spot towards a heading; none where it is near enough.
+pub(crate) fn turn_to(pose: Pose2, heading: f64) -> Twist2 {
+    let off = wrap_angle(heading - pose.theta);
+    Twist2::new(0.0, if off.abs() < FACED { 0.0 } else { (2.0 * off).clamp(-RATE, RATE) })
 }
 
 #[cfg(test)]

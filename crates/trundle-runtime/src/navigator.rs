@@ -1,7 +1,7 @@
 use crate::{
     config::RobotConfig,
     last_stage::{LastStage, Progress},
-    look::{LookAround, face},
+    look::{LookAround, face, turn_to},
     progress::ProgressWatch,
     schedule::Ticker,
     stage::{Stage, StageTimes},
@@ -11,7 +11,9 @@ use crate::{
 use trundle_control::{
     FollowPhase, FollowReport, Follower, SafetyAction, SafetyInput, SafetyMemory, SafetyMonitor, SafetyScan,
 };
-use trundle_core::{Cell, CellIndex, Footprint, Invalid, OccupancyGrid, Pose2, PoseEstimate, Stamp, Twist2, Vector2};
+use trundle_core::{
+    Cell, CellIndex, Footprint, Invalid, OccupancyGrid, Pose2, PoseEstimate, Stamp, Twist2, Vector2,
+};
 use trundle_planning::{Plan, PlanResult, Planner};
 
 /// What the robot knows of its surroundings when it decides.
@@ -80,6 +82,8 @@ pub(crate) struct Navigator {
     is_polygon: bool,
     /// The outline stands too near to something to turn: it backs out, as far as safety lets it.
     is_wedged: bool,
+    /// Whether the robot is too far from its reference to go on from it.
+    is_off_track: bool,
     progress: ProgressWatch,
     /// Of the safety monitor, s.
     image_timeout: f64,
@@ -128,6 +132,7 @@ impl Navigator {
             blocked_at: None,
             is_polygon: matches!(footprint, Footprint::Polygon { .. }),
             is_wedged: false,
+            is_off_track: false,
             progress: ProgressWatch::default(),
             image_timeout: config.safety.image_timeout,
             radius: footprint.circumscribed_radius(),
@@ -141,6 +146,7 @@ impl Navigator {
         self.plan = None;
         self.held_since = None;
         self.blocked_at = None;
+        self.is_off_track = false;
         self.look = LookAround::default();
         self.last_stage.reset();
         self.progress.restart();
@@ -237,7 +243,7 @@ impl Navigator {
                 false
             }
             DriveState::Planning | DriveState::Recovering { .. } => self.check_due.due(s.now),
-            DriveState::Waiting { .. } if self.touched || self.over_edge => false,
+            DriveState::Waiting { .. } if self.touched || self.over_edge || self.is_blind(s) => false,
             DriveState::Waiting { .. } if self.held_since.is_some_and(|since| s.now - since < PAUSE) => false,
             DriveState::Waiting { .. } => self.check_due.due(s.now),
             DriveState::Driving => self.check_due.due(s.now) && !self.plan_holds(s.grid),
@@ -261,6 +267,7 @@ impl Navigator {
             return false;
         }
         let from = match (&self.state, self.follower.reference()) {
+            (DriveState::Driving, Some(_)) if self.is_off_track => (s.estimate.pose, s.estimate.twist),
             (DriveState::Driving, Some(reference)) => (reference.pose, reference.twist),
             _ => (s.estimate.pose, Twist2::ZERO),
         };
@@ -271,6 +278,7 @@ impl Navigator {
                 self.state = DriveState::Driving;
                 self.held_since = None;
                 self.blocked_at = None;
+                self.is_off_track = false;
                 self.look = LookAround::default();
                 true
             }
@@ -329,7 +337,7 @@ impl Navigator {
     fn turned_to_docking(&mut self, goal: Pose2, s: &Surroundings<'_>) -> bool {
         let stands = s.estimate.twist.v.abs() < STANDING;
         let is_exact = matches!(self.goal, Goal::Exact(_));
-        let turned = is_exact && stands && self.last_stage.begin_if_possible(s, goal);
+        let turned = is_exact && stands && !self.is_blind(s) && self.last_stage.begin_if_possible(s, goal);
         if turned {
             self.start_docking();
         }
@@ -355,9 +363,21 @@ impl Navigator {
                 Some(at) => face(pose, at),
                 None => follow.twist,
             },
+            DriveState::Settling if matches!(self.goal, Goal::View(_)) => self.turn_to_view(s),
+            DriveState::Docking if self.is_blind(s) => Twist2::ZERO,
             DriveState::Docking => times.measure(Stage::Control, || self.dock(s)),
             _ => follow.twist,
         }
+    }
+
+    /// At a viewpoint only the heading is taken up, and roughly: the view is wide.
+    fn turn_to_view(&mut self, s: &Surroundings<'_>) -> Twist2 {
+        let Goal::View(view) = self.goal else { return Twist2::ZERO };
+        let twist = turn_to(s.estimate.pose, view.theta);
+        if twist == Twist2::ZERO {
+            self.state = DriveState::Arrived;
+        }
+        twist
     }
 
     /// Whether it is time to leave what presses on the bumper, or an edge, backward, and the map has nothing there.
@@ -429,7 +449,7 @@ impl Navigator {
                 self.held_since.get_or_insert(s.now);
                 self.state = DriveState::Waiting { reason: reason.to_string() };
             }
-            (SafetyAction::Stop(_), DriveState::Docking) if twist != Twist2::ZERO => {
+            (SafetyAction::Stop(_), DriveState::Docking) if twist != Twist2::ZERO && !self.is_blind(s) => {
                 self.last_stage.interrupted(s);
             }
             (SafetyAction::Pass | SafetyAction::Slow(_), DriveState::Waiting { .. })
@@ -445,12 +465,11 @@ impl Navigator {
 
     /// At the end of the trajectory: an arc, or turns and straight moves; or it is near enough.
     fn begin_to_settle(&mut self, s: &Surroundings<'_>) {
+        self.state = DriveState::Settling;
         let Goal::Exact(goal) = self.goal else {
             self.follower.halt();
-            self.state = DriveState::Arrived;
             return;
         };
-        self.state = DriveState::Settling;
         let preview = self.follower.preview_settling(s.estimate.pose, goal);
         if self.last_stage.takes_over(s, goal, &preview) {
             self.start_docking();
@@ -467,7 +486,10 @@ impl Navigator {
                 times.measure(Stage::Planning, || self.begin_to_settle(s));
             }
             FollowPhase::Approaching | FollowPhase::Turning => self.state = DriveState::Settling,
-            FollowPhase::Tracking if follow.off_track => self.plan = None,
+            FollowPhase::Tracking if follow.off_track => {
+                self.is_off_track = true;
+                self.plan = None;
+            }
             FollowPhase::Tracking | FollowPhase::Idle => {}
         }
     }

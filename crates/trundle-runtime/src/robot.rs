@@ -16,7 +16,7 @@ use trundle_core::{
     Footprint, GyroRate, Invalid, OccupancyGrid, Odometry, Pose2, Pose3, PoseEstimate, RgbdImage, Scan,
     SensorEvent, Stamp, Vector2, WheelTicks,
 };
-use trundle_localization::{Localizer, VisualPose, VisualQuality, WheelOdometry, camera_motion};
+use trundle_localization::{Correction, Localizer, VisualPose, VisualQuality, WheelOdometry, camera_motion};
 use trundle_mapping::{DepthScanner, LiveMapper, MapperConfig, ScanMatcher};
 use trundle_planning::PlanResult;
 use trundle_slam::{RgbdSlam, TrackReport, Tracking};
@@ -182,7 +182,12 @@ impl Robot {
         let prior = self.camera_motion_since_last_image(odom_from_base);
         let track = self.times.measure(Stage::Slam, || self.slam.step(image, prior));
         let is_bent = is_bent(&track);
-        self.times.measure(Stage::Localization, || correct_by_sight(&mut self.localizer, &track, is_bent));
+        let (times, localizer) = (&mut self.times, &mut self.localizer);
+        let correction = times.measure(Stage::Localization, || correct_by_sight(localizer, &track, is_bent));
+        if correction == Some(Correction::Reanchored) {
+            // Scans drawn so far stay where they are: their visual poses are in a frame that has moved.
+            self.drawn = DrawnPoses::default();
+        }
         if is_bent {
             self.follow_the_visual_map();
         }
@@ -206,9 +211,11 @@ impl Robot {
             self.fit(&scan);
             self.draw(&scan);
         }
-        self.latest.scan_odometry = self.odometry_at(scan.stamp());
-        self.latest.eye.note(&scan);
-        self.latest.scan = Some(scan);
+        // One that shows nothing does not make safety forget what the last one showed.
+        if self.latest.eye.note(&scan) || self.latest.eye.seen().is_none() {
+            self.latest.scan_odometry = self.odometry_at(scan.stamp());
+            self.latest.scan = Some(scan);
+        }
         is_due
     }
 
@@ -342,18 +349,18 @@ fn is_bent(track: &TrackReport) -> bool {
 }
 
 /// The visual pose, where there is one, to the localizer; one of a map that was just bent is believed.
-fn correct_by_sight(localizer: &mut Localizer, track: &TrackReport, is_bent: bool) {
+fn correct_by_sight(localizer: &mut Localizer, track: &TrackReport, is_bent: bool) -> Option<Correction> {
     let quality = match track.tracking {
         Tracking::Ok => VisualQuality::Ok,
         Tracking::Weak => VisualQuality::Weak,
-        Tracking::DeadReckoning | Tracking::Lost => return,
+        Tracking::DeadReckoning | Tracking::Lost => return None,
     };
-    localizer.correct_visual(&VisualPose {
+    Some(localizer.correct_visual(&VisualPose {
         stamp: track.stamp,
         visual_from_camera: track.visual_from_camera,
         covariance: track.covariance,
         quality,
         map: track.map.number(),
         recognised: track.relocalised || is_bent,
-    });
+    }))
 }

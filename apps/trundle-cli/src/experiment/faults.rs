@@ -70,7 +70,7 @@ fn days() -> Vec<Day> {
             scene: "house",
             fault: None,
             person: Some(in_the_door(3600.0)),
-            end: End::Stopped("no "),
+            end: End::Stopped("no way"),
         },
     ]
 }
@@ -78,7 +78,7 @@ fn days() -> Vec<Day> {
 /// Somebody who stands in the door of the house's bedroom for so long, s, and goes inside, out of the way; frame of the
 /// robot's start.
 fn in_the_door(delay: f64) -> Person {
-    Person { waypoints: vec![[6.67, 0.6], [6.67, 1.2], [7.9, 1.2]], delay, once: true, ..Person::default() }
+    Person { waypoints: vec![[6.67, 0.6], [6.67, 1.3], [5.9, 2.0]], delay, once: true, ..Person::default() }
 }
 
 /// Lives through every day, so many seeds.

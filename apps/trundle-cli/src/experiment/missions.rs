@@ -5,7 +5,7 @@ use crate::{Outcome, console, demo, failure::Failure, goals::GoalOutcome, robot_
 use std::path::Path;
 use trundle::core::{Pose2, Vector2};
 use trundle::io::{OutputFolder, Summary, table_csv, write_map};
-use trundle::runtime::{Mission, Task};
+use trundle::runtime::{Mission, Task, TaskEnd};
 use trundle::sim::import::UpAxis;
 use trundle::sim::{FaultSchedule, Scene};
 use trundle::viz::{Color, Figure, LineStyle, MapPicture, PoseStyle, Report, Table, Verdict};
@@ -125,17 +125,13 @@ const HEADER: [&str; 7] =
 
 /// The goals that the robot came to, of all.
 fn reached(trial: &Trial) -> (usize, usize) {
-    let goals = &trial.numbers.goals;
-    let mut tasks: Vec<usize> = goals.iter().map(|goal| goal.task).collect();
-    tasks.dedup();
-    tasks.sort_unstable();
-    tasks.dedup();
-    (goals.iter().filter(|goal| goal.is_reached(0.05, 3_f64.to_radians())).count(), tasks.len())
+    let there = trial.numbers.goals.iter().filter(|goal| goal.is_reached(0.05, 3_f64.to_radians()));
+    (there.count(), trial.numbers.goals_asked)
 }
 
 fn worst(trial: &Trial) -> f64 {
-    let errors = trial.numbers.goals.iter().filter_map(|goal: &GoalOutcome| Some(goal.error?.distance));
-    errors.fold(0.0, f64::max)
+    let done = trial.numbers.goals.iter().filter(|goal: &&GoalOutcome| goal.end == TaskEnd::Done);
+    done.filter_map(|goal| Some(goal.error?.distance)).fold(0.0, f64::max)
 }
 
 fn row(trial: &Trial) -> Vec<String> {
@@ -188,7 +184,7 @@ fn csv(trials: &[Trial]) -> String {
             [
                 trial.seed as f64,
                 (goal.task + 1) as f64,
-                f64::from(u8::from(goal.end == trundle::runtime::TaskEnd::Done)),
+                f64::from(u8::from(goal.end == TaskEnd::Done)),
                 number(|e| e.dx),
                 number(|e| e.dy),
                 number(|e| e.distance),

@@ -92,6 +92,13 @@ impl SafetyConfig {
         self.latency.max(age + OBEYING)
     }
 
+    /// What part of its speed a robot keeps that last saw something `age` s ago: all of it up to the usual latency, none at
+    /// the time-out.
+    pub(super) fn freshness(&self, age: f64) -> f64 {
+        let span = (self.image_timeout - self.latency).max(1e-3);
+        ((self.image_timeout - age) / span).clamp(0.0, 1.0)
+    }
+
     /// The highest speed from which the robot stops within `way` metres, `latency` s after what it sees.
     pub(super) fn speed_for(&self, way: f64, latency: f64) -> f64 {
         braked(self.deceleration, latency, way)
@@ -121,6 +128,8 @@ mod tests {
         assert_eq!(config.speed_for(-1.0, 0.2), 0.0);
         assert_eq!(config.latency_for(0.05), 0.2, "a fresh image");
         assert!(config.speed_for(0.8, config.latency_for(0.5)) < v, "a late one");
+        assert_eq!((config.freshness(0.1), config.freshness(0.8)), (1.0, 0.0));
+        assert!((config.freshness(0.5) - 0.5).abs() < 1e-12);
     }
 
     #[test]

@@ -88,12 +88,15 @@ impl SafetyMonitor {
         if input.twist.v == 0.0 && self.may_turn(input.twist) {
             return SafetyReport { twist: input.twist, action: SafetyAction::Pass };
         }
-        self.latency = self.config.latency_for(input.image.map_or(0.0, |image| input.now - image));
+        let age = input.image.map_or(0.0, |image| input.now - image);
+        self.latency = self.config.latency_for(age);
         self.gather(input);
         if input.twist.v == 0.0 {
             return self.within_the_free_turn(input.twist);
         }
-        self.within_the_free_way(input.twist)
+        let fresh = self.config.freshness(age);
+        let slowed = slow_to(input.twist, input.twist.v.abs() * fresh, SlowReason::OldImage { age });
+        slower(self.within_the_free_way(input.twist), slowed)
     }
 
     /// Whether a number or the wheels are missing: then nothing may move.

@@ -34,6 +34,11 @@ pub enum SlowReason {
         /// The obstacle, base frame, m.
         at: Vector2,
     },
+    /// The newest image that shows something is older than usual.
+    OldImage {
+        /// Its age, s.
+        age: f64,
+    },
     /// Backward is where no camera looks.
     Reversing,
     /// The bumper is pressed or an edge is below, and the robot backs out.
@@ -89,6 +94,7 @@ impl fmt::Display for SlowReason {
                 write!(f, "an obstacle after {:.0} deg", angle.to_degrees())
             }
             Self::NarrowGap { at } => write!(f, "a narrow gap, {side}", side = side(*at)),
+            Self::OldImage { age } => write!(f, "the newest image that shows something is {age:.2} s old"),
             Self::Reversing => f.write_str("backward without a view"),
             Self::BackingOut => f.write_str("backing out of a contact or off an edge"),
         }
