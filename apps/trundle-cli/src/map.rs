@@ -91,6 +91,10 @@ pub fn run(args: &MapArgs) -> Result<Outcome, Failure> {
         let shown = if args.localise { "trajectory.txt" } else { "map.pgm" };
         console::say(&format!("See {}", place.join(shown).display()));
     }
+    if counts.processed == 0 {
+        console::warn("no scan was put into the map or found in it");
+        return Ok(Outcome::Missed);
+    }
     Ok(Outcome::Reached)
 }
 

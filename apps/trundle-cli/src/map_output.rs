@@ -85,7 +85,7 @@ pub fn rows(log: &LaserLog, counts: &Counts, megabytes: f64, seconds: f64) -> Ve
 }
 
 fn milliseconds(counts: &Counts, seconds: f64) -> f64 {
-    seconds * 1e3 / counts.processed.max(1) as f64
+    seconds * 1e3 / (counts.processed + counts.lost).max(1) as f64
 }
 
 /// `summary.json`.

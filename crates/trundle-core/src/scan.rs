@@ -53,6 +53,9 @@ pub struct ScanParts {
     pub obstacles: Vec<ObstacleKind>,
 }
 
+/// No sensor of a robot is farther from its base, m.
+const FARTHEST: f64 = 20.0;
+
 /// A laser-like scan in a horizontal plane: beam i looks along `angle_min + i * angle_increment` from the sensor.
 ///
 /// Its frame is the base frame's plane with the origin at `origin`: bearings are about `origin`, angles from x.
@@ -69,7 +72,8 @@ impl Scan {
     /// A scan whose beams start at `origin` (base frame, m).
     ///
     /// # Errors
-    /// When an angle or the origin is not finite, the increment is not positive, or a range is not finite and >= 0.
+    /// When an angle is not finite, the origin is not within 20 m of the base, the increment is not positive, or a range is not
+    /// finite and >= 0.
     pub fn new(
         stamp: Stamp,
         origin: Vector2,
@@ -97,8 +101,8 @@ impl Scan {
         (angle_min, angle_increment): (f64, f64),
         parts: ScanParts,
     ) -> Result<Self, Invalid> {
-        crate::require_finite("scan origin x", origin.x, "m")?;
-        crate::require_finite("scan origin y", origin.y, "m")?;
+        crate::require_in("scan origin x", origin.x, "m", -FARTHEST, FARTHEST)?;
+        crate::require_in("scan origin y", origin.y, "m", -FARTHEST, FARTHEST)?;
         crate::require_finite("angle_min", angle_min, "rad")?;
         crate::require_positive("angle_increment", angle_increment, "rad")?;
         parts.check()?;
