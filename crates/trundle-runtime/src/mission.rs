@@ -26,7 +26,8 @@ impl fmt::Display for Task {
     }
 }
 
-/// Tasks in a row. One that cannot be done is put off to the end and tried once more.
+/// Tasks in a row. A goal that cannot be reached while others wait is put off to the end, but before a return, and tried once
+/// more.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct Mission {

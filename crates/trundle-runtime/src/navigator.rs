@@ -1,20 +1,19 @@
+mod commands;
+mod plans;
+
 use crate::{
     config::RobotConfig,
-    last_stage::{LastStage, Progress},
-    look::{LookAround, face, turn_to},
+    last_stage::LastStage,
+    look::LookAround,
     progress::ProgressWatch,
     schedule::Ticker,
     stage::{Stage, StageTimes},
     state::DriveState,
     supervisor_config::SupervisorConfig,
 };
-use trundle_control::{
-    FollowPhase, FollowReport, Follower, SafetyAction, SafetyInput, SafetyMemory, SafetyMonitor, SafetyScan,
-};
-use trundle_core::{
-    Cell, CellIndex, Footprint, Invalid, OccupancyGrid, Pose2, PoseEstimate, Stamp, Twist2, Vector2,
-};
-use trundle_planning::{Plan, PlanResult, Planner};
+use trundle_control::{FollowPhase, FollowReport, Follower, SafetyMonitor, SafetyScan};
+use trundle_core::{Footprint, Invalid, OccupancyGrid, Pose2, PoseEstimate, Stamp, Twist2, Vector2};
+use trundle_planning::{PlanResult, Planner};
 
 /// What the robot knows of its surroundings when it decides.
 #[derive(Debug, Clone, Copy)]
@@ -93,23 +92,6 @@ pub(crate) struct Navigator {
 
 /// Held by safety for so long, it plans anew from where it stands, s.
 const PAUSE: f64 = 1.0;
-/// Speed of leaving what presses on the bumper, m/s, and how far behind must be free, m.
-const BACK_OUT: f64 = 0.05;
-const BACK_OUT_WAY: f64 = 0.15;
-/// What is left of a way is driven as planned when it takes less, s.
-const WORTH_IMPROVING: f64 = 0.5;
-/// A new way replaces a good one when it arrives so much sooner, s.
-const SOONER: f64 = 0.05;
-/// Without sight for so long, it turns to find some, s.
-const BLIND_PAUSE: f64 = 3.0;
-/// Slower than this the robot stands, m/s.
-const STANDING: f64 = 0.02;
-/// So fast it backs out where it has no room to turn, m/s.
-const BACKING_OUT: f64 = 0.1;
-/// So many turns see everything around twice.
-const TURNS: f64 = 2.0;
-/// One turn, and a little more, sees it once.
-const ONE_TURN: f64 = 1.02;
 
 impl Navigator {
     pub(crate) fn new(config: &RobotConfig, footprint: &Footprint) -> Result<Self, Invalid> {
@@ -235,234 +217,6 @@ impl Navigator {
         self.state = DriveState::Stopped { reason: format!("no progress for {stood:.0} s: {why}") };
     }
 
-    /// Whether it is time to plan: at the beginning, or when a check finds the old plan wanting.
-    fn wants_plan(&mut self, s: &Surroundings<'_>) -> bool {
-        match &self.state {
-            DriveState::Idle | DriveState::Arrived | DriveState::Stopped { .. } => false,
-            DriveState::Mapping | DriveState::Settling | DriveState::Docking | DriveState::Lost { .. } => {
-                false
-            }
-            DriveState::Planning | DriveState::Recovering { .. } => self.check_due.due(s.now),
-            DriveState::Waiting { .. } if self.touched || self.over_edge || self.is_blind(s) => false,
-            DriveState::Waiting { .. } if self.held_since.is_some_and(|since| s.now - since < PAUSE) => false,
-            DriveState::Waiting { .. } => self.check_due.due(s.now),
-            DriveState::Driving => self.check_due.due(s.now) && !self.plan_holds(s.grid),
-        }
-    }
-
-    /// Whether the rest of the trajectory is still free on the newest map.
-    fn plan_holds(&self, grid: &OccupancyGrid) -> bool {
-        match (&self.plan, self.follower.reference()) {
-            (Some(plan), Some(reference)) => {
-                self.planner.still_free(grid, &plan.trajectory, reference.time).is_ok()
-            }
-            (Some(_), None) => true,
-            (None, _) => false,
-        }
-    }
-
-    /// Plans from the reference where the robot is on it, else from where it stands; true when there is a new plan.
-    fn replan(&mut self, goal: Pose2, s: &Surroundings<'_>) -> bool {
-        if matches!(self.state, DriveState::Waiting { .. }) && self.turned_to_docking(goal, s) {
-            return false;
-        }
-        let from = match (&self.state, self.follower.reference()) {
-            (DriveState::Driving, Some(_)) if self.is_off_track => (s.estimate.pose, s.estimate.twist),
-            (DriveState::Driving, Some(reference)) => (reference.pose, reference.twist),
-            _ => (s.estimate.pose, Twist2::ZERO),
-        };
-        match self.planner.plan(s.grid, from.0, from.1, goal) {
-            Plan::Found(plan) if plan.is_continuous || s.estimate.twist.v.abs() < STANDING => {
-                self.follower.follow(plan.trajectory.clone(), goal);
-                self.plan = Some(plan);
-                self.state = DriveState::Driving;
-                self.held_since = None;
-                self.blocked_at = None;
-                self.is_off_track = false;
-                self.look = LookAround::default();
-                true
-            }
-            Plan::Found(_) => {
-                self.hold("stopping to plan anew", s.now);
-                false
-            }
-            refused => {
-                if !self.turned_to_docking(goal, s) {
-                    self.no_way(&refused);
-                }
-                false
-            }
-        }
-    }
-
-    /// While it drives: a new plan that goes on from the reference and arrives sooner replaces the old one.
-    fn improved(&mut self, s: &Surroundings<'_>, times: &mut StageTimes) -> bool {
-        let (Some(goal), DriveState::Driving) = (self.goal.pose(), &self.state) else { return false };
-        let (Some(old), Some(reference)) = (&self.plan, self.follower.reference()) else { return false };
-        let left = old.trajectory.duration() - reference.time;
-        if left < WORTH_IMPROVING || !self.improve_due.due(s.now) {
-            return false;
-        }
-        let planner = &mut self.planner;
-        let plan =
-            times.measure(Stage::Planning, || planner.plan(s.grid, reference.pose, reference.twist, goal));
-        match plan {
-            Plan::Found(plan) if plan.is_continuous && plan.trajectory.duration() < left - SOONER => {
-                self.follower.follow(plan.trajectory.clone(), goal);
-                self.plan = Some(plan);
-                true
-            }
-            _ => false,
-        }
-    }
-
-    /// No way is known: stop, turn on the spot until everything around has been seen, then wait, looking at where it ends.
-    fn no_way(&mut self, refused: &Plan) {
-        let reason = why(refused);
-        self.is_wedged = self.is_polygon && matches!(refused, Plan::StartInObstacle { .. });
-        self.follower.halt();
-        self.plan = None;
-        self.blocked_at = match refused {
-            Plan::Blocked { nearest } => Some(*nearest),
-            _ => self.goal.pose().map(|goal| goal.position()),
-        };
-        self.state = match self.goal {
-            Goal::View(_) => DriveState::Stopped { reason },
-            _ if self.look.has_turned(TURNS) && !self.is_wedged => DriveState::Waiting { reason },
-            _ => DriveState::Recovering { reason },
-        };
-    }
-
-    /// Near the goal, where no path is found or safety holds the robot: by turns and straight moves, if there are such.
-    fn turned_to_docking(&mut self, goal: Pose2, s: &Surroundings<'_>) -> bool {
-        let stands = s.estimate.twist.v.abs() < STANDING;
-        let is_exact = matches!(self.goal, Goal::Exact(_));
-        let turned = is_exact && stands && !self.is_blind(s) && self.last_stage.begin_if_possible(s, goal);
-        if turned {
-            self.start_docking();
-        }
-        turned
-    }
-
-    fn start_docking(&mut self) {
-        self.follower.halt();
-        self.held_since = None;
-        self.state = DriveState::Docking;
-    }
-
-    /// The command before safety's word on it.
-    fn wanted(&mut self, follow: &FollowReport, s: &Surroundings<'_>, times: &mut StageTimes) -> Twist2 {
-        let pose = s.estimate.pose;
-        match &self.state {
-            DriveState::Mapping if self.goal == Goal::Look => self.look_once(s),
-            DriveState::Recovering { .. } if self.is_wedged => Twist2::new(-BACKING_OUT, 0.0),
-            DriveState::Recovering { .. } | DriveState::Lost { .. } => self.look.twist(pose),
-            DriveState::Waiting { .. } if self.backs_out(s) => Twist2::new(-BACK_OUT, 0.0),
-            DriveState::Waiting { .. } if self.is_blind(s) => self.look_for_sight(s),
-            DriveState::Waiting { .. } => match self.blocked_at.filter(|_| self.plan.is_none()) {
-                Some(at) => face(pose, at),
-                None => follow.twist,
-            },
-            DriveState::Settling if matches!(self.goal, Goal::View(_)) => self.turn_to_view(s),
-            DriveState::Docking if self.is_blind(s) => Twist2::ZERO,
-            DriveState::Docking => times.measure(Stage::Control, || self.dock(s)),
-            _ => follow.twist,
-        }
-    }
-
-    /// At a viewpoint only the heading is taken up, and roughly: the view is wide.
-    fn turn_to_view(&mut self, s: &Surroundings<'_>) -> Twist2 {
-        let Goal::View(view) = self.goal else { return Twist2::ZERO };
-        let twist = turn_to(s.estimate.pose, view.theta);
-        if twist == Twist2::ZERO {
-            self.state = DriveState::Arrived;
-        }
-        twist
-    }
-
-    /// Whether it is time to leave what presses on the bumper, or an edge, backward, and the map has nothing there.
-    fn backs_out(&self, s: &Surroundings<'_>) -> bool {
-        let waited = self.held_since.is_some_and(|since| s.now - since > PAUSE);
-        (self.touched || self.over_edge) && waited && is_free_behind(s, self.radius)
-    }
-
-    /// Whether no image has shown anything for a while.
-    fn is_blind(&self, s: &Surroundings<'_>) -> bool {
-        s.seen.is_none_or(|seen| s.now - seen > self.image_timeout)
-    }
-
-    /// A camera too near to a wall sees nothing: after a while one turn on the spot shows whether that is it.
-    fn look_for_sight(&mut self, s: &Surroundings<'_>) -> Twist2 {
-        let waited = self.held_since.map_or(0.0, |since| s.now - since);
-        if waited < BLIND_PAUSE || self.look.has_turned(ONE_TURN) {
-            return Twist2::ZERO;
-        }
-        self.look.twist(s.estimate.pose)
-    }
-
-    /// A turn on the spot, and what is around has been seen.
-    fn look_once(&mut self, s: &Surroundings<'_>) -> Twist2 {
-        let is_open = self.started.is_some_and(|started| s.now - started >= self.config.opening);
-        if !is_open || s.scan.is_none() {
-            return Twist2::ZERO;
-        }
-        if self.look.has_turned(ONE_TURN) {
-            self.state = DriveState::Arrived;
-            return Twist2::ZERO;
-        }
-        self.look.twist(s.estimate.pose)
-    }
-
-    /// One step of turns and straight moves.
-    fn dock(&mut self, s: &Surroundings<'_>) -> Twist2 {
-        match self.last_stage.step(s) {
-            Progress::Moving(twist) => return twist,
-            Progress::Settled => self.state = DriveState::Arrived,
-            Progress::GivenUp(reason) => self.state = DriveState::Stopped { reason },
-        }
-        Twist2::ZERO
-    }
-
-    fn hold(&mut self, reason: &str, now: Stamp) {
-        self.follower.halt();
-        self.held_since.get_or_insert(now);
-        self.state = DriveState::Waiting { reason: reason.to_owned() };
-    }
-
-    /// Safety's word on a command.
-    fn guard(&mut self, twist: Twist2, s: &Surroundings<'_>) -> Twist2 {
-        let report = self.safety.check(&SafetyInput {
-            now: s.now,
-            twist,
-            scan: s.scan,
-            memory: Some(SafetyMemory { grid: s.grid, map_from_base: s.estimate.pose }),
-            touched: self.touched,
-            over_edge: self.over_edge,
-            image: s.seen,
-            wheels: Some(s.now),
-        });
-        match (report.action, &self.state) {
-            (
-                SafetyAction::Stop(reason),
-                DriveState::Driving | DriveState::Settling | DriveState::Waiting { .. },
-            ) => {
-                self.held_since.get_or_insert(s.now);
-                self.state = DriveState::Waiting { reason: reason.to_string() };
-            }
-            (SafetyAction::Stop(_), DriveState::Docking) if twist != Twist2::ZERO && !self.is_blind(s) => {
-                self.last_stage.interrupted(s);
-            }
-            (SafetyAction::Pass | SafetyAction::Slow(_), DriveState::Waiting { .. })
-                if self.follower.end().is_some() && !(self.touched || self.over_edge) =>
-            {
-                self.held_since = None;
-                self.state = DriveState::Driving;
-            }
-            _ => {}
-        }
-        report.twist
-    }
-
     /// At the end of the trajectory: an arc, or turns and straight moves; or it is near enough.
     fn begin_to_settle(&mut self, s: &Surroundings<'_>) {
         self.state = DriveState::Settling;
@@ -495,41 +249,9 @@ impl Navigator {
     }
 }
 
-/// Whether the map has nothing occupied where a disc of `radius` goes that backs out.
-fn is_free_behind(s: &Surroundings<'_>, radius: f64) -> bool {
-    let geometry = s.grid.geometry();
-    let ahead = s.estimate.pose.inverse();
-    let is_in_the_way = |at: Vector2| {
-        let at = ahead.transform(at);
-        // What is beside or before the robot it has come past, or touches.
-        at.x < -0.5 * radius && (at - Vector2::new(at.x.max(-BACK_OUT_WAY), 0.0)).norm() < radius
-    };
-    let reach = ((radius + BACK_OUT_WAY) / geometry.resolution).ceil() as usize;
-    let Some(CellIndex { col, row }) = geometry.cell_at(s.estimate.pose.position()) else { return false };
-    let around = |at: usize, size: usize| at.saturating_sub(reach)..(at + reach + 1).min(size);
-    let mut cells = around(row, geometry.height)
-        .flat_map(|row| around(col, geometry.width).map(move |col| CellIndex { col, row }));
-    !cells.any(|cell| s.grid.get(cell) == Cell::Occupied && is_in_the_way(geometry.center(cell)))
-}
-
 /// The larger standard deviation of the position, m.
 fn position_sigma(estimate: &PoseEstimate) -> f64 {
     let block = estimate.covariance.fixed_view::<2, 2>(0, 0);
     let (mean, half) = ((block[(0, 0)] + block[(1, 1)]) / 2.0, (block[(0, 0)] - block[(1, 1)]) / 2.0);
     (mean + half.hypot(block[(0, 1)])).max(0.0).sqrt()
-}
-
-/// Why there is no plan, for a person.
-fn why(plan: &Plan) -> String {
-    match plan {
-        Plan::Found(_) => "there is a way".to_owned(),
-        Plan::Blocked { nearest } => {
-            format!("no way to the goal is free; the nearest point is ({:.2}, {:.2}) m", nearest.x, nearest.y)
-        }
-        Plan::StartInObstacle { clearance } => format!("{:.3} m too little room here", -clearance),
-        Plan::GoalInObstacle { clearance } => format!("{:.3} m too little room at the goal", -clearance),
-        Plan::StartOutside => "the robot is off the map".to_owned(),
-        Plan::GoalOutside => "the goal is off the map".to_owned(),
-        Plan::Refused(invalid) => invalid.to_string(),
-    }
 }

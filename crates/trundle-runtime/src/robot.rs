@@ -3,7 +3,7 @@ use crate::{
     drawn::DrawnPoses,
     eye::EyeWatch,
     mission::{Mission, Task, TaskRecord},
-    navigator::{Navigator, Surroundings},
+    navigator::{Goal, Navigator, Surroundings},
     report::StepReport,
     schedule::Ticker,
     sight::Sight,
@@ -100,9 +100,13 @@ impl Robot {
         })
     }
 
-    /// Gives the robot a mission in place of what is left of its old one. It begins with the next reading of the wheels.
+    /// Gives the robot a mission in place of what is left of its old one. It begins with the next reading of the wheels; an
+    /// empty one lets the robot stand.
     pub fn begin(&mut self, mission: &Mission) {
         self.supervisor.begin(mission);
+        if mission.tasks().is_empty() {
+            self.navigator.take_up(Goal::Stay);
+        }
     }
 
     /// Gives the robot one goal pose, map frame.

@@ -47,7 +47,15 @@ enum Work {
     /// Driving to its goal.
     Going,
     /// Looking around, or on the way to a viewpoint.
-    Exploring { explorer: Box<Explorer>, frontier: Option<Frontier> },
+    Exploring {
+        explorer: Box<Explorer>,
+        /// What it is on the way to look at.
+        frontier: Option<Frontier>,
+        /// Viewpoints that it came to.
+        views: usize,
+        /// Why it did not come to the last one that it did not come to.
+        failure: Option<String>,
+    },
 }
 
 /// So often an explorer asks whether what it drives to is still unknown, 1/s.
@@ -119,7 +127,8 @@ impl Supervisor {
             Task::Explore => {
                 let explorer = Explorer::new(self.explore, self.radius)
                     .expect("invariant: the same settings were checked when the supervisor was made");
-                (Work::Exploring { explorer: Box::new(explorer), frontier: None }, Goal::Look)
+                let explorer = Box::new(explorer);
+                (Work::Exploring { explorer, frontier: None, views: 0, failure: None }, Goal::Look)
             }
         };
         self.current = Some(Current { entry, from: s.now, work });
@@ -130,7 +139,9 @@ impl Supervisor {
     fn look_on(&mut self, s: &Surroundings<'_>, state: &DriveState) -> Option<Goal> {
         let over = matches!(state, DriveState::Arrived | DriveState::Stopped { .. });
         let driving = matches!(state, DriveState::Driving | DriveState::Waiting { .. });
-        let Some(Current { work: Work::Exploring { explorer, frontier }, .. }) = &mut self.current else {
+        let Some(Current { work: Work::Exploring { explorer, frontier, views, failure }, .. }) =
+            &mut self.current
+        else {
             return None;
         };
         if !(over || driving && self.look_due.due(s.now)) {
@@ -150,7 +161,9 @@ impl Supervisor {
                 Some(Goal::View(view.pose))
             }
             Exploration::Complete { .. } => {
-                self.end(TaskEnd::Done, s);
+                // Where nothing could be driven to, nothing was explored.
+                let reason = failure.take().filter(|_| *views == 0);
+                self.end(reason.map_or(TaskEnd::Done, |reason| TaskEnd::GivenUp { reason }), s);
                 self.take_up(s).or(Some(Goal::Stay))
             }
         }
@@ -159,9 +172,10 @@ impl Supervisor {
     /// The navigator has arrived.
     fn reached(&mut self, s: &Surroundings<'_>) {
         match &mut self.current {
-            Some(Current { work: Work::Exploring { explorer, frontier }, .. }) => {
+            Some(Current { work: Work::Exploring { explorer, frontier, views, .. }, .. }) => {
                 if let Some(frontier) = frontier.take() {
                     explorer.looked_at(&frontier);
+                    *views += 1;
                 }
             }
             Some(_) => self.end(TaskEnd::Done, s),
@@ -172,7 +186,8 @@ impl Supervisor {
     /// The navigator has given up.
     fn failed(&mut self, reason: &str, s: &Surroundings<'_>) {
         let Some(current) = &mut self.current else { return };
-        if let Work::Exploring { explorer, frontier } = &mut current.work {
+        if let Work::Exploring { explorer, frontier, failure, .. } = &mut current.work {
+            *failure = Some(reason.to_owned());
             // What cannot be driven to now may be later, but not without end.
             if let Some(frontier) = frontier.take() {
                 explorer.looked_at(&frontier);
@@ -250,6 +265,24 @@ mod tests {
         assert!(
             supervisor.failure().unwrap().contains("task 1 (go to (1.00 m, 0.00 m, 0 deg)): a closed door")
         );
+    }
+
+    #[test]
+    fn where_no_view_can_be_driven_to_nothing_was_explored() {
+        let mut grid = room();
+        for row in 1..6 {
+            grid.set(trundle_core::CellIndex { col: 7, row }, trundle_core::Cell::Unknown);
+        }
+        let mut supervisor = supervisor(&[Task::Explore]);
+        let s = surroundings(&grid);
+        assert_eq!(supervisor.step(&s, &DriveState::Idle), Some(Goal::Look));
+        let mut next = supervisor.step(&s, &DriveState::Arrived);
+        let stopped = DriveState::Stopped { reason: "no way".to_owned() };
+        while let Some(Goal::View(_)) = next {
+            next = supervisor.step(&s, &stopped);
+        }
+        assert!(supervisor.is_idle());
+        assert!(supervisor.failure().unwrap().contains("no way"));
     }
 
     #[test]

@@ -10,6 +10,9 @@ use crate::planner::Plan;
 use crate::space::Space;
 use trundle_core::Pose2;
 
+/// The last centimetres and degrees: within so many tolerances of the goal.
+const LAST: f64 = 5.0;
+
 impl Positioner {
     /// The next motion; none when nothing is left to do.
     pub(super) fn next_motion(
@@ -31,12 +34,10 @@ impl Positioner {
 
     fn next_of_plan(&mut self, input: &PositionerInput<'_>, pose: &Pose2) -> Result<Motion, Reason> {
         let limits = self.docker.config().limits;
-        let mut space = Space::new(&self.footprint, -self.config.overlap / 2.0, input.scene);
-        let (tolerance, part) = (self.tolerance(), self.config.aim);
-        let motions = match nearly(&mut space, &limits, pose, &self.goal, &tolerance, part) {
+        let margin = self.margin(input);
+        let motions = match self.nearly_there(input, pose, margin) {
             Some(motions) => Manoeuvre::new(*pose, &motions, limits),
             None => {
-                let margin = self.margin(input);
                 let plan = self.docker.plan_keeping(margin, &self.footprint, input.scene, *pose, self.goal);
                 match plan.map_err(Reason::Refused)? {
                     Plan::Found(solution) => solution.manoeuvre,
@@ -48,6 +49,19 @@ impl Positioner {
         self.plan = Some(motions);
         // Nothing to do is a motion of nothing: it ends at once, and the pose is measured again.
         Ok(first.unwrap_or(Motion::Turn(0.0)))
+    }
+
+    /// One or two motions that end close enough, with the margin kept; for the last centimetres, where the noise of the pose
+    /// is as large as what is left, touching nothing is enough.
+    fn nearly_there(&self, input: &PositionerInput<'_>, pose: &Pose2, margin: f64) -> Option<Vec<Motion>> {
+        let limits = self.docker.config().limits;
+        let (tolerance, part) = (self.tolerance(), self.config.aim);
+        let within = |margin: f64| {
+            let mut space = Space::new(&self.footprint, margin, input.scene);
+            nearly(&mut space, &limits, pose, &self.goal, &tolerance, part)
+        };
+        let is_last = tolerance.holds(&(self.goal.inverse() * *pose), LAST);
+        within(margin).or_else(|| if is_last { within(-self.config.overlap / 2.0) } else { None })
     }
 
     /// One pair at a time, as the paper has it: the turn, then the straight, then a new decision.

@@ -160,6 +160,22 @@ fn twins_are_not_told_apart_by_guessing() {
 }
 
 #[test]
+fn in_a_map_of_another_building_nothing_is_found() {
+    let filter = mapped(&hall(), &round());
+    let mut localizer = MapLocalizer::of(&filter, 3);
+    let elsewhere = FlatRoom::new(&[
+        &[(-3.0, -2.5), (4.0, -2.5), (4.0, 1.0), (6.0, 1.0), (6.0, 4.0), (-3.0, 4.0)],
+        &[(0.5, 1.0), (1.5, 1.2), (1.2, 2.2)],
+        &[(-1.5, -1.5), (-0.9, -1.5), (-0.9, -0.6), (-1.5, -0.6)],
+    ]);
+    for i in 0..12_u32 {
+        let pose = Pose2::new(-2.0 + 0.25 * f64::from(i), 0.2, 0.5 * f64::from(i));
+        let found = localizer.update(pose, &laser(&elsewhere, pose, i as usize));
+        assert!(!matches!(found, Localized::Known { .. }), "{i}: {found:?}");
+    }
+}
+
+#[test]
 fn another_run_goes_on_with_an_old_map() {
     let (room, poses) = (hall(), round());
     let half = poses.len() / 2;

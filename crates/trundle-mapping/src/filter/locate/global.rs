@@ -33,6 +33,9 @@ const MOST_SCANS: usize = 20;
 const SPACING: f64 = 2.0;
 /// Fewer hits than this are next to nothing.
 const LEAST_POINTS: usize = 30;
+/// A place that leaves more of the hits unexplained is in another building, or one rebuilt: among all places of a large map
+/// some always explains half of them.
+const LEAST_EXPLAINED: f64 = 0.75;
 /// Standard deviation of a place that may be anywhere: cells, rad.
 const ANYWHERE: (f64, f64) = (1e5, 100.0);
 
@@ -73,7 +76,8 @@ impl GlobalSearch {
             3,
         );
         let unseen = 0.5 * config.outliers.ln() * cloud.points.len() as f64 / config.correlation;
-        let best = found.first().filter(|best| best.log_likelihood - unseen > PROOF && best.degenerate == 0);
+        let is_proved = |best: &&Found| best.log_likelihood - unseen > PROOF && best.degenerate == 0;
+        let best = found.first().filter(is_proved).filter(|best| best.explained >= LEAST_EXPLAINED);
         let best = best.ok_or(Lost::NothingFits)?;
         let rival = found.get(1).map_or(f64::NEG_INFINITY, |rival| rival.log_likelihood);
         if best.log_likelihood - rival > RIVAL { Ok(*best) } else { Err(Lost::SeveralPlaces) }

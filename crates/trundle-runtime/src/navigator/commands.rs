@@ -1,0 +1,152 @@
+//! The command of each state, and safety's word on it.
+
+use super::{Goal, Navigator, PAUSE, Surroundings};
+use crate::{
+    last_stage::Progress,
+    look::{face, turn_to},
+    stage::{Stage, StageTimes},
+    state::DriveState,
+};
+use trundle_control::{FollowReport, SafetyAction, SafetyInput, SafetyMemory};
+use trundle_core::{Cell, CellIndex, Twist2, Vector2};
+
+/// Speed of leaving what presses on the bumper, m/s, and how far behind must be free, m.
+const BACK_OUT: f64 = 0.05;
+const BACK_OUT_WAY: f64 = 0.15;
+/// Without sight for so long, it turns to find some, s.
+const BLIND_PAUSE: f64 = 3.0;
+/// So fast it backs out where it has no room to turn, m/s.
+const BACKING_OUT: f64 = 0.1;
+/// One turn, and a little more, sees it once.
+const ONE_TURN: f64 = 1.02;
+
+impl Navigator {
+    /// The command before safety's word on it.
+    pub(super) fn wanted(
+        &mut self,
+        follow: &FollowReport,
+        s: &Surroundings<'_>,
+        times: &mut StageTimes,
+    ) -> Twist2 {
+        let pose = s.estimate.pose;
+        match &self.state {
+            DriveState::Mapping if self.goal == Goal::Look => self.look_once(s),
+            DriveState::Recovering { .. } if self.is_wedged => Twist2::new(-BACKING_OUT, 0.0),
+            DriveState::Recovering { .. } | DriveState::Lost { .. } => self.look.twist(pose),
+            DriveState::Waiting { .. } if self.backs_out(s) => Twist2::new(-BACK_OUT, 0.0),
+            DriveState::Waiting { .. } if self.is_blind(s) => self.look_for_sight(s),
+            DriveState::Waiting { .. } => match self.blocked_at.filter(|_| self.plan.is_none()) {
+                Some(at) => face(pose, at),
+                None => follow.twist,
+            },
+            DriveState::Settling if matches!(self.goal, Goal::View(_)) => self.turn_to_view(s),
+            DriveState::Docking if self.is_blind(s) => Twist2::ZERO,
+            DriveState::Docking => times.measure(Stage::Control, || self.dock(s)),
+            _ => follow.twist,
+        }
+    }
+
+    /// At a viewpoint only the heading is taken up, and roughly: the view is wide.
+    pub(super) fn turn_to_view(&mut self, s: &Surroundings<'_>) -> Twist2 {
+        let Goal::View(view) = self.goal else { return Twist2::ZERO };
+        let twist = turn_to(s.estimate.pose, view.theta);
+        if twist == Twist2::ZERO {
+            self.state = DriveState::Arrived;
+        }
+        twist
+    }
+
+    /// Whether it is time to leave what presses on the bumper, or an edge, backward, and the map has nothing there.
+    pub(super) fn backs_out(&self, s: &Surroundings<'_>) -> bool {
+        let waited = self.held_since.is_some_and(|since| s.now - since > PAUSE);
+        (self.touched || self.over_edge) && waited && is_free_behind(s, self.radius)
+    }
+
+    /// Whether no image has shown anything for a while.
+    pub(super) fn is_blind(&self, s: &Surroundings<'_>) -> bool {
+        s.seen.is_none_or(|seen| s.now - seen > self.image_timeout)
+    }
+
+    /// A camera too near to a wall sees nothing: after a while one turn on the spot shows whether that is it.
+    pub(super) fn look_for_sight(&mut self, s: &Surroundings<'_>) -> Twist2 {
+        let waited = self.held_since.map_or(0.0, |since| s.now - since);
+        if waited < BLIND_PAUSE || self.look.has_turned(ONE_TURN) {
+            return Twist2::ZERO;
+        }
+        self.look.twist(s.estimate.pose)
+    }
+
+    /// A turn on the spot, and what is around has been seen.
+    pub(super) fn look_once(&mut self, s: &Surroundings<'_>) -> Twist2 {
+        let is_open = self.started.is_some_and(|started| s.now - started >= self.config.opening);
+        if !is_open || s.scan.is_none() {
+            return Twist2::ZERO;
+        }
+        if self.look.has_turned(ONE_TURN) {
+            self.state = DriveState::Arrived;
+            return Twist2::ZERO;
+        }
+        self.look.twist(s.estimate.pose)
+    }
+
+    /// One step of turns and straight moves.
+    pub(super) fn dock(&mut self, s: &Surroundings<'_>) -> Twist2 {
+        match self.last_stage.step(s) {
+            Progress::Moving(twist) => return twist,
+            Progress::Settled => self.state = DriveState::Arrived,
+            Progress::GivenUp(reason) => self.state = DriveState::Stopped { reason },
+        }
+        Twist2::ZERO
+    }
+
+    /// Safety's word on a command.
+    pub(super) fn guard(&mut self, twist: Twist2, s: &Surroundings<'_>) -> Twist2 {
+        let report = self.safety.check(&SafetyInput {
+            now: s.now,
+            twist,
+            scan: s.scan,
+            memory: Some(SafetyMemory { grid: s.grid, map_from_base: s.estimate.pose }),
+            touched: self.touched,
+            over_edge: self.over_edge,
+            image: s.seen,
+            wheels: Some(s.now),
+        });
+        match (report.action, &self.state) {
+            (
+                SafetyAction::Stop(reason),
+                DriveState::Driving | DriveState::Settling | DriveState::Waiting { .. },
+            ) => {
+                self.held_since.get_or_insert(s.now);
+                self.state = DriveState::Waiting { reason: reason.to_string() };
+            }
+            (SafetyAction::Stop(_), DriveState::Docking) if twist != Twist2::ZERO && !self.is_blind(s) => {
+                self.last_stage.interrupted(s);
+            }
+            (SafetyAction::Pass | SafetyAction::Slow(_), DriveState::Waiting { .. })
+                if self.follower.end().is_some() && !(self.touched || self.over_edge) =>
+            {
+                self.held_since = None;
+                self.state = DriveState::Driving;
+            }
+            _ => {}
+        }
+        report.twist
+    }
+}
+
+/// Whether the map has nothing occupied where a disc of `radius` goes that backs out.
+fn is_free_behind(s: &Surroundings<'_>, radius: f64) -> bool {
+    let geometry = s.grid.geometry();
+    let ahead = s.estimate.pose.inverse();
+    let is_in_the_way = |at: Vector2| {
+        let at = ahead.transform(at);
+        // What is beside or before the robot it has come past, or touches.
+        at.x < -0.5 * radius && (at - Vector2::new(at.x.max(-BACK_OUT_WAY), 0.0)).norm() < radius
+    };
+    let reach = ((radius + BACK_OUT_WAY) / geometry.resolution).ceil() as usize;
+    let Some(CellIndex { col, row }) = geometry.cell_at(s.estimate.pose.position()) else { return false };
+    let around = |at: usize, size: usize| at.saturating_sub(reach)..(at + reach + 1).min(size);
+    let mut cells = around(row, geometry.height)
+        .flat_map(|row| around(col, geometry.width).map(move |col| CellIndex { col, row }));
+    !cells.any(|cell| s.grid.get(cell) == Cell::Occupied && is_in_the_way(geometry.center(cell)))
+}

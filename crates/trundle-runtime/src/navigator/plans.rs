@@ -1,0 +1,157 @@
+//! When to plan, from where, and what to do when there is no way.
+
+use super::{Goal, Navigator, PAUSE, Surroundings};
+use crate::{
+    look::LookAround,
+    stage::{Stage, StageTimes},
+    state::DriveState,
+};
+use trundle_core::{OccupancyGrid, Pose2, Stamp, Twist2};
+use trundle_planning::Plan;
+
+/// What is left of a way is driven as planned when it takes less, s.
+const WORTH_IMPROVING: f64 = 0.5;
+/// A new way replaces a good one when it arrives so much sooner, s.
+const SOONER: f64 = 0.05;
+/// Slower than this the robot stands, m/s.
+const STANDING: f64 = 0.02;
+/// So many turns see everything around twice.
+const TURNS: f64 = 2.0;
+
+impl Navigator {
+    /// Whether it is time to plan: at the beginning, or when a check finds the old plan wanting.
+    pub(super) fn wants_plan(&mut self, s: &Surroundings<'_>) -> bool {
+        match &self.state {
+            DriveState::Idle | DriveState::Arrived | DriveState::Stopped { .. } => false,
+            DriveState::Mapping | DriveState::Settling | DriveState::Docking | DriveState::Lost { .. } => {
+                false
+            }
+            DriveState::Planning | DriveState::Recovering { .. } => self.check_due.due(s.now),
+            DriveState::Waiting { .. } if self.touched || self.over_edge || self.is_blind(s) => false,
+            DriveState::Waiting { .. } if self.held_since.is_some_and(|since| s.now - since < PAUSE) => false,
+            DriveState::Waiting { .. } => self.check_due.due(s.now),
+            DriveState::Driving => self.check_due.due(s.now) && !self.plan_holds(s.grid),
+        }
+    }
+
+    /// Whether the rest of the trajectory is still free on the newest map.
+    pub(super) fn plan_holds(&self, grid: &OccupancyGrid) -> bool {
+        match (&self.plan, self.follower.reference()) {
+            (Some(plan), Some(reference)) => {
+                self.planner.still_free(grid, &plan.trajectory, reference.time).is_ok()
+            }
+            (Some(_), None) => true,
+            (None, _) => false,
+        }
+    }
+
+    /// Plans from the reference where the robot is on it, else from where it stands; true when there is a new plan.
+    pub(super) fn replan(&mut self, goal: Pose2, s: &Surroundings<'_>) -> bool {
+        if matches!(self.state, DriveState::Waiting { .. }) && self.turned_to_docking(goal, s) {
+            return false;
+        }
+        let from = match (&self.state, self.follower.reference()) {
+            (DriveState::Driving, Some(_)) if self.is_off_track => (s.estimate.pose, s.estimate.twist),
+            (DriveState::Driving, Some(reference)) => (reference.pose, reference.twist),
+            _ => (s.estimate.pose, Twist2::ZERO),
+        };
+        match self.planner.plan(s.grid, from.0, from.1, goal) {
+            Plan::Found(plan) if plan.is_continuous || s.estimate.twist.v.abs() < STANDING => {
+                self.follower.follow(plan.trajectory.clone(), goal);
+                self.plan = Some(plan);
+                self.state = DriveState::Driving;
+                self.held_since = None;
+                self.blocked_at = None;
+                self.is_off_track = false;
+                self.look = LookAround::default();
+                true
+            }
+            Plan::Found(_) => {
+                self.hold("stopping to plan anew", s.now);
+                false
+            }
+            refused => {
+                if !self.turned_to_docking(goal, s) {
+                    self.no_way(&refused);
+                }
+                false
+            }
+        }
+    }
+
+    /// While it drives: a new plan that goes on from the reference and arrives sooner replaces the old one.
+    pub(super) fn improved(&mut self, s: &Surroundings<'_>, times: &mut StageTimes) -> bool {
+        let (Some(goal), DriveState::Driving) = (self.goal.pose(), &self.state) else { return false };
+        let (Some(old), Some(reference)) = (&self.plan, self.follower.reference()) else { return false };
+        let left = old.trajectory.duration() - reference.time;
+        if left < WORTH_IMPROVING || !self.improve_due.due(s.now) {
+            return false;
+        }
+        let planner = &mut self.planner;
+        let plan =
+            times.measure(Stage::Planning, || planner.plan(s.grid, reference.pose, reference.twist, goal));
+        match plan {
+            Plan::Found(plan) if plan.is_continuous && plan.trajectory.duration() < left - SOONER => {
+                self.follower.follow(plan.trajectory.clone(), goal);
+                self.plan = Some(plan);
+                true
+            }
+            _ => false,
+        }
+    }
+
+    /// No way is known: stop, turn on the spot until everything around has been seen, then wait, looking at where it ends.
+    pub(super) fn no_way(&mut self, refused: &Plan) {
+        let reason = why(refused);
+        self.is_wedged = self.is_polygon && matches!(refused, Plan::StartInObstacle { .. });
+        self.follower.halt();
+        self.plan = None;
+        self.blocked_at = match refused {
+            Plan::Blocked { nearest } => Some(*nearest),
+            _ => self.goal.pose().map(|goal| goal.position()),
+        };
+        self.state = match self.goal {
+            Goal::View(_) => DriveState::Stopped { reason },
+            _ if self.look.has_turned(TURNS) && !self.is_wedged => DriveState::Waiting { reason },
+            _ => DriveState::Recovering { reason },
+        };
+    }
+
+    /// Near the goal, where no path is found or safety holds the robot: by turns and straight moves, if there are such.
+    pub(super) fn turned_to_docking(&mut self, goal: Pose2, s: &Surroundings<'_>) -> bool {
+        let stands = s.estimate.twist.v.abs() < STANDING;
+        let is_exact = matches!(self.goal, Goal::Exact(_));
+        let turned = is_exact && stands && !self.is_blind(s) && self.last_stage.begin_if_possible(s, goal);
+        if turned {
+            self.start_docking();
+        }
+        turned
+    }
+
+    pub(super) fn start_docking(&mut self) {
+        self.follower.halt();
+        self.held_since = None;
+        self.state = DriveState::Docking;
+    }
+
+    pub(super) fn hold(&mut self, reason: &str, now: Stamp) {
+        self.follower.halt();
+        self.held_since.get_or_insert(now);
+        self.state = DriveState::Waiting { reason: reason.to_owned() };
+    }
+}
+
+/// Why there is no plan, for a person.
+fn why(plan: &Plan) -> String {
+    match plan {
+        Plan::Found(_) => "there is a way".to_owned(),
+        Plan::Blocked { nearest } => {
+            format!("no way to the goal is free; the nearest point is ({:.2}, {:.2}) m", nearest.x, nearest.y)
+        }
+        Plan::StartInObstacle { clearance } => format!("{:.3} m too little room here", -clearance),
+        Plan::GoalInObstacle { clearance } => format!("{:.3} m too little room at the goal", -clearance),
+        Plan::StartOutside => "the robot is off the map".to_owned(),
+        Plan::GoalOutside => "the goal is off the map".to_owned(),
+        Plan::Refused(invalid) => invalid.to_string(),
+    }
+}
