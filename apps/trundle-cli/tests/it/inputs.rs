@@ -56,7 +56,7 @@ fn a_map_is_judged_where_it_lies_and_where_it_fits() {
     };
     assert_eq!(precision(&[]), 1.0);
     assert_eq!(precision(&["--at=0.04,-0.03,1"]), 1.0);
-    assert!(precision(&["--at=0.08,0.04,0", "--exact"]) < 0.5);
+    assert!(precision(&["--at=0.06,0.06,0", "--exact"]) < 0.5);
     let sentence = refusal(&["eval", "map", text(&map), text(&map), "--within=-1"]);
     assert!(sentence.contains("within is -1 m"), "{sentence}");
 }
