@@ -100,6 +100,12 @@ fn on_map(args: &DockArgs) -> Result<Task, Failure> {
         return Err(Failure::Input(format!("{}: a map needs --from and --to", args.place.display())));
     };
     let (start, goal) = (start.0, goal.0);
+    for (name, pose) in [("start", start), ("goal", goal)] {
+        if grid.geometry().cell_at(pose.position()).is_none() {
+            let (file, Pose2 { x, y, .. }) = (args.place.display(), pose);
+            return Err(Failure::Input(format!("{file}: the {name} ({x:.2}, {y:.2}) m is off the map")));
+        }
+    }
     let footprint = footprint(args)?;
     let config = planner(args)?;
     let (center, half) = config.view(&footprint, &start, &goal);

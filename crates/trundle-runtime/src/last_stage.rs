@@ -326,6 +326,7 @@ mod tests {
             grid,
             scan: None,
             seen: None,
+            unplaced: 0.0,
         }
     }
 

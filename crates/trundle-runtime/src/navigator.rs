@@ -25,6 +25,8 @@ pub(crate) struct Surroundings<'a> {
     pub(crate) scan: Option<SafetyScan<'a>>,
     /// Stamp of the newest scan that shows something.
     pub(crate) seen: Option<Stamp>,
+    /// For how long images that show enough have not been located, s.
+    pub(crate) unplaced: f64,
 }
 
 /// What it decides.
@@ -71,6 +73,8 @@ pub(crate) struct Navigator {
     plan: Option<Box<PlanResult>>,
     state: DriveState,
     touched: bool,
+    /// Since the goal was taken up.
+    touches: u32,
     over_edge: bool,
     started: Option<Stamp>,
     held_since: Option<Stamp>,
@@ -90,6 +94,10 @@ pub(crate) struct Navigator {
     radius: f64,
 }
 
+/// When images that show enough have not been located for so long, s, the robot is not where it believes.
+const UNPLACED: f64 = 0.7;
+/// A goal is given up after so many touches.
+const MOST_TOUCHES: u32 = 3;
 /// Held by safety for so long, it plans anew from where it stands, s.
 const PAUSE: f64 = 1.0;
 
@@ -107,6 +115,7 @@ impl Navigator {
             plan: None,
             state: DriveState::Idle,
             touched: false,
+            touches: 0,
             over_edge: false,
             started: None,
             held_since: None,
@@ -129,6 +138,7 @@ impl Navigator {
         self.held_since = None;
         self.blocked_at = None;
         self.is_off_track = false;
+        self.touches = 0;
         self.look = LookAround::default();
         self.last_stage.reset();
         self.progress.restart();
@@ -145,7 +155,15 @@ impl Navigator {
 
     /// What the bumper says.
     pub(crate) fn touch(&mut self, pressed: bool) {
+        self.touches += u32::from(pressed && !self.touched);
         self.touched = pressed;
+        if self.touches >= MOST_TOUCHES && !self.state.is_over() {
+            // What is touched again and again the map does not show, or not where it is.
+            self.follower.halt();
+            self.last_stage.reset();
+            let reason = format!("touched something {} times on the way", self.touches);
+            self.state = DriveState::Stopped { reason };
+        }
     }
 
     /// What the cliff sensors say.
@@ -190,16 +208,19 @@ impl Navigator {
         if self.state.is_over() {
             return;
         }
-        let sigma = position_sigma(&s.estimate);
         let is_lost = matches!(self.state, DriveState::Lost { .. });
-        if sigma > self.config.lost_sigma && !is_lost {
-            self.follower.halt();
-            self.last_stage.reset();
-            self.plan = None;
-            let reason = format!("the position is only known to {sigma:.2} m");
-            self.state = DriveState::Lost { reason };
-        } else if is_lost && sigma < 0.5 * self.config.lost_sigma {
-            self.state = DriveState::Mapping;
+        match self.why_lost(s) {
+            Some(reason) if !is_lost => {
+                self.follower.halt();
+                self.last_stage.reset();
+                self.plan = None;
+                self.state = DriveState::Lost { reason };
+            }
+            None if is_lost && position_sigma(&s.estimate) < 0.5 * self.config.lost_sigma => {
+                self.look = LookAround::default();
+                self.state = DriveState::Mapping;
+            }
+            _ => {}
         }
         let turns_count = matches!(self.state, DriveState::Settling | DriveState::Docking)
             || self.state == DriveState::Driving
@@ -208,6 +229,15 @@ impl Navigator {
         if stood > self.config.patience {
             self.give_up(stood);
         }
+    }
+
+    /// Why the robot does not know where it is, when it does not.
+    fn why_lost(&self, s: &Surroundings<'_>) -> Option<String> {
+        let sigma = position_sigma(&s.estimate);
+        if sigma > self.config.lost_sigma {
+            return Some(format!("the position is only known to {sigma:.2} m"));
+        }
+        (s.unplaced > UNPLACED).then(|| "what the camera sees is not what is there on the map".to_owned())
     }
 
     fn give_up(&mut self, stood: f64) {

@@ -56,6 +56,8 @@ struct Latest {
     /// `odom_from_base` when it was taken.
     scan_odometry: Option<Pose2>,
     eye: EyeWatch,
+    /// Since when images that show enough have not been located.
+    unplaced: Option<Stamp>,
 }
 
 /// Exploring, the robot keeps so much more from things than its footprint needs, m: a view is not worth a squeeze.
@@ -165,6 +167,7 @@ impl Robot {
             grid: self.mapper.grid(),
             scan: self.latest.carried_scan(),
             seen: self.latest.eye.seen(),
+            unplaced: self.latest.unplaced.map_or(0.0, |since| wheels.stamp - since),
         };
         let (supervisor, navigator) = (&mut self.supervisor, &mut self.navigator);
         let order =
@@ -185,6 +188,9 @@ impl Robot {
         }
         let prior = self.camera_motion_since_last_image(odom_from_base);
         let track = self.times.measure(Stage::Slam, || self.slam.step(image, prior));
+        if self.latest.is_carried_away(&track) {
+            self.slam.kidnapped();
+        }
         let is_bent = is_bent(&track);
         let (times, localizer) = (&mut self.times, &mut self.localizer);
         let correction = times.measure(Stage::Localization, || correct_by_sight(localizer, &track, is_bent));
@@ -322,7 +328,26 @@ impl Robot {
     }
 }
 
+/// An image with so many features shows enough to be located by.
+const ENOUGH_FEATURES: usize = 200;
+/// Images that show enough and are not located for so long, s, are of another place than the odometry says.
+const CARRIED_AWAY: f64 = 1.5;
+
 impl Latest {
+    /// Whether it is time to look for the place everywhere: the odometry's has not been recognised for a while.
+    fn is_carried_away(&mut self, track: &TrackReport) -> bool {
+        if track.tracking.is_located() || track.features < ENOUGH_FEATURES {
+            self.unplaced = None;
+            return false;
+        }
+        let since = *self.unplaced.get_or_insert(track.stamp);
+        let is_time = track.stamp - since > CARRIED_AWAY;
+        if is_time {
+            self.unplaced = None;
+        }
+        is_time
+    }
+
     /// The last scan with the odometry that carries it to now.
     fn carried_scan(&self) -> Option<SafetyScan<'_>> {
         Some(SafetyScan {

@@ -39,6 +39,8 @@ pub struct SafetyConfig {
 
 /// From a command to the wheels obeying, s: delay and lag of the motors, and a control period.
 const OBEYING: f64 = 0.12;
+/// The highest speed by images that are older than usual, m/s.
+const LATE_SPEED: f64 = 0.7;
 
 impl Default for SafetyConfig {
     fn default() -> Self {
@@ -92,11 +94,16 @@ impl SafetyConfig {
         self.latency.max(age + OBEYING)
     }
 
-    /// What part of its speed a robot keeps that last saw something `age` s ago: all of it up to the usual latency, none at
-    /// the time-out.
-    pub(super) fn freshness(&self, age: f64) -> f64 {
+    /// How fast a robot may be that last saw something `age` s ago, m/s: any speed up to the usual latency, then from
+    /// [`LATE_SPEED`] down to none at the time-out. A limit, not a part of what was asked for: that would shrink from command
+    /// to command.
+    pub(super) fn speed_at_age(&self, age: f64) -> f64 {
         let span = (self.image_timeout - self.latency).max(1e-3);
-        ((self.image_timeout - age) / span).clamp(0.0, 1.0)
+        if age <= self.latency {
+            f64::INFINITY
+        } else {
+            LATE_SPEED * ((self.image_timeout - age) / span).max(0.0)
+        }
     }
 
     /// The highest speed from which the robot stops within `way` metres, `latency` s after what it sees.
@@ -128,8 +135,8 @@ mod tests {
         assert_eq!(config.speed_for(-1.0, 0.2), 0.0);
         assert_eq!(config.latency_for(0.05), 0.2, "a fresh image");
         assert!(config.speed_for(0.8, config.latency_for(0.5)) < v, "a late one");
-        assert_eq!((config.freshness(0.1), config.freshness(0.8)), (1.0, 0.0));
-        assert!((config.freshness(0.5) - 0.5).abs() < 1e-12);
+        assert_eq!((config.speed_at_age(0.1), config.speed_at_age(0.8)), (f64::INFINITY, 0.0));
+        assert!((config.speed_at_age(0.5) - 0.35).abs() < 1e-12);
     }
 
     #[test]

@@ -94,8 +94,7 @@ impl SafetyMonitor {
         if input.twist.v == 0.0 {
             return self.within_the_free_turn(input.twist);
         }
-        let fresh = self.config.freshness(age);
-        let slowed = slow_to(input.twist, input.twist.v.abs() * fresh, SlowReason::OldImage { age });
+        let slowed = slow_to(input.twist, self.config.speed_at_age(age), SlowReason::OldImage { age });
         slower(self.within_the_free_way(input.twist), slowed)
     }
 
