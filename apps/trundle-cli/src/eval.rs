@@ -5,7 +5,8 @@ mod relations;
 
 use crate::{Outcome, args::Common, args::PoseArg, failure::Failure};
 use clap::{Args, Subcommand};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
+use trundle::eval::{EvalError, Side};
 
 /// `trundle eval`
 #[derive(Debug, Args)]
@@ -86,6 +87,16 @@ impl EvalArgs {
             Which::Map(args) => &args.common,
         }
     }
+}
+
+/// What is wrong, by the name of the file that it is about.
+fn wrong(error: &EvalError, reference: &Path, estimate: &Path) -> Failure {
+    let (reference, estimate) = (reference.display(), estimate.display());
+    Failure::Input(match error.side() {
+        Some(Side::Reference) => format!("{reference}: {error}"),
+        Some(Side::Estimate) => format!("{estimate}: {error}"),
+        None => format!("{estimate} against {reference}: {error}"),
+    })
 }
 
 /// Judges what was asked for.

@@ -1,4 +1,4 @@
-use crate::map_output::{Counts, rows, summary, trajectory_text};
+use crate::map_output::{Counts, map_picture, rows, summary, trajectory_text};
 use crate::{Outcome, args::Common, console, failure::Failure, map_input};
 use clap::Args;
 use std::path::{Path, PathBuf};
@@ -13,7 +13,8 @@ use trundle::mapping::{
 #[derive(Debug, Args)]
 #[command(
     after_help = "Example: trundle map ../shared/data/laser/sena.log --laser-x 0.78 --out out/sena\n\n\
-    Writes trajectory.txt (t x y theta: s, m, m, rad), map.pgm, map.yaml, filter.map (to go on with by --map) and summary.json."
+    Writes trajectory.txt (t x y theta: s, m, m, rad), map.pgm, map.yaml, filter.map (to go on with by --map), overview.png and\n\
+    summary.json."
 )]
 pub struct MapArgs {
     /// A CARMEN log, a ROS 2 bag (folder, .mcap, .db3) or a TUM RGB-D folder, whose odometry is the motion.
@@ -30,7 +31,7 @@ pub struct MapArgs {
     /// How far ahead of the base the laser sits, m [default: what the log says]
     #[arg(long, value_name = "M", allow_hyphen_values = true)]
     pub laser_x: Option<f64>,
-    /// How far the laser is turned to the left, deg.
+    /// How far the laser is turned to the left, deg [default: what the log says]
     #[arg(long, value_name = "DEG", allow_hyphen_values = true)]
     pub laser_turn: Option<f64>,
     /// The laser hangs upside down.
@@ -55,7 +56,7 @@ pub struct MapArgs {
 
 /// `trundle map LOG`.
 pub fn run(args: &MapArgs) -> Result<Outcome, Failure> {
-    let log = map_input::read(&args.log, &args.log_options(), args.common.quiet)?;
+    let log = map_input::read(args, &args.log_options())?;
     let folder = OutputFolder::create(&args.out)?;
     let odometry: Vec<(Stamp, Pose2)> =
         log.scans.iter().map(|s| (s.scan.stamp(), s.odom_from_base)).collect();
@@ -64,14 +65,17 @@ pub fn run(args: &MapArgs) -> Result<Outcome, Failure> {
         (Some(file), true) => {
             let mut localizer = localizer(args, file)?;
             let (counts, poses) = localise(args, &log, &mut localizer);
+            folder.write("overview.png", &map_picture(&localizer.grid(), &poses))?;
             (counts, poses, 0.0)
         }
         _ => {
             let mut mapper = begin(args)?;
             let counts = map(args, &log, &mut mapper);
             write_map(&folder, "map", mapper.grid())?;
+            let way = mapper.trajectory();
+            folder.write("overview.png", &map_picture(mapper.grid(), &way))?;
             folder.write("filter.map", &mapper.save())?;
-            (counts, mapper.trajectory(), mapper.bytes() as f64 / 1e6)
+            (counts, way, mapper.bytes() as f64 / 1e6)
         }
     };
     let seconds = start.elapsed().as_secs_f64();
@@ -88,8 +92,7 @@ pub fn run(args: &MapArgs) -> Result<Outcome, Failure> {
     }
     if !args.common.quiet {
         console::table(&rows(&log, &counts, megabytes, seconds));
-        let shown = if args.localise { "trajectory.txt" } else { "map.pgm" };
-        console::say(&format!("See {}", place.join(shown).display()));
+        console::say(&format!("See {}", place.join("overview.png").display()));
     }
     if counts.processed == 0 {
         console::warn("no scan was put into the map or found in it");
@@ -100,16 +103,26 @@ pub fn run(args: &MapArgs) -> Result<Outcome, Failure> {
 
 impl MapArgs {
     fn log_options(&self) -> LaserLogOptions {
-        let placed = self.laser_x.is_some() || self.laser_turn.is_some();
-        let turn = self.laser_turn.unwrap_or(0.0).to_radians();
         LaserLogOptions {
-            base_from_laser: placed.then(|| Pose2::new(self.laser_x.unwrap_or(0.0), 0.0, turn)),
+            laser_x: self.laser_x,
+            laser_turn: self.laser_turn.map(f64::to_radians),
             upside_down: self.upside_down,
             max_range: self.max_range,
         }
     }
 
-    fn config(&self) -> ParticleConfig {
+    /// The options of those given that say something about a laser.
+    pub fn given_laser_options(&self) -> Vec<&'static str> {
+        let given = [
+            ("--laser-x", self.laser_x.is_some()),
+            ("--laser-turn", self.laser_turn.is_some()),
+            ("--upside-down", self.upside_down),
+            ("--max-range", self.max_range.is_some()),
+        ];
+        given.into_iter().filter(|(_, given)| *given).map(|(name, _)| name).collect()
+    }
+
+    fn config(&self) -> Result<ParticleConfig, Failure> {
         let default = ParticleConfig::default();
         let config = ParticleConfig {
             particles: usize::from(self.particles),
@@ -122,9 +135,9 @@ impl MapArgs {
 
 /// The filter that was asked for: a new one, or one that goes on with a saved map.
 fn begin(args: &MapArgs) -> Result<ParticleMapper, Failure> {
-    let Some(file) = &args.map else { return Ok(ParticleMapper::new(args.config(), args.seed)?) };
+    let Some(file) = &args.map else { return Ok(ParticleMapper::new(args.config()?, args.seed)?) };
     let bytes = std::fs::read(file).map_err(|error| refused(file, &error))?;
-    let mut mapper = ParticleMapper::load(&bytes, args.config()).map_err(|error| refused(file, &error))?;
+    let mut mapper = ParticleMapper::load(&bytes, args.config()?).map_err(|error| refused(file, &error))?;
     mapper.kidnapped();
     Ok(mapper)
 }
@@ -140,6 +153,7 @@ fn map(args: &MapArgs, log: &LaserLog, mapper: &mut ParticleMapper) -> Counts {
         counts.count(&mapper.update(entry.odom_from_base, &entry.scan));
         bar.inc(1);
     }
+    mapper.finish();
     bar.finish_and_clear();
     counts
 }
@@ -165,10 +179,10 @@ fn localizer(args: &MapArgs, file: &Path) -> Result<MapLocalizer, Failure> {
     if file.extension().is_some_and(|ext| ext == "yaml") {
         let grid = read_map(file)?;
         let resolution = grid.geometry().resolution;
-        let config = args.config();
+        let config = args.config()?;
         let config = ParticleConfig { map: MapperConfig { resolution, ..config.map }, ..config };
         return Ok(MapLocalizer::from_grid(&grid, config, args.seed)?);
     }
     let bytes = std::fs::read(file).map_err(|error| refused(file, &error))?;
-    MapLocalizer::load(&bytes, args.config(), args.seed).map_err(|error| refused(file, &error))
+    MapLocalizer::load(&bytes, args.config()?, args.seed).map_err(|error| refused(file, &error))
 }

@@ -2,28 +2,52 @@
 
 mod depth_folder;
 
-use crate::failure::Failure;
+use crate::{failure::Failure, map::MapArgs};
 use std::path::Path;
 use trundle::io::{LaserLog, LaserLogOptions, read_laser_log};
-use trundle::mapping::{MapperConfig, ParticleConfig};
+use trundle::mapping::{MapperConfig, MotionConfig, ParticleConfig};
 use trundle::runtime::RobotConfig;
 
-/// Reads `path`: a folder with `rgb.txt` is a TUM RGB-D folder, else a ROS 2 bag or a CARMEN log.
-pub fn read(path: &Path, options: &LaserLogOptions, quiet: bool) -> Result<LaserLog, Failure> {
-    if is_depth_folder(path) { depth_folder::read(path, quiet) } else { Ok(read_laser_log(path, options)?) }
+/// Reads the log: a folder with `rgb.txt` is a TUM RGB-D folder, else a ROS 2 bag or a CARMEN log.
+pub fn read(args: &MapArgs, options: &LaserLogOptions) -> Result<LaserLog, Failure> {
+    if !is_depth_folder(&args.log) {
+        return Ok(read_laser_log(&args.log, options)?);
+    }
+    if let Some(first) = args.given_laser_options().first() {
+        let folder = args.log.display();
+        return Err(Failure::Input(format!(
+            "{first} is about a laser, but {folder} is an RGB-D folder: its camera.toml says what the camera is, and the camera \
+             sits as on the default robot, or where groundtruth.txt says"
+        )));
+    }
+    depth_folder::read(&args.log, args.common.quiet)
 }
 
-/// The filter's settings for the sensor of `path`: those of a laser, or the reach and the noise of a depth camera.
-pub fn tuned(path: &Path, config: ParticleConfig) -> ParticleConfig {
+/// The filter's settings for the sensor of `path`: those of a laser, or the reach, the noise and the blind range of a depth camera.
+pub fn tuned(path: &Path, config: ParticleConfig) -> Result<ParticleConfig, Failure> {
     if !is_depth_folder(path) {
-        return config;
+        return Ok(config);
     }
     let scan = RobotConfig::default().scan;
-    ParticleConfig {
-        map: MapperConfig { max_range: scan.max_range, ..config.map },
+    let blind_range = depth_folder::scanner(path)?.0.blind_range();
+    Ok(ParticleConfig {
+        map: MapperConfig { max_range: scan.max_range, blind_range, ..config.map },
+        motion: wheels_and_gyro(),
         range_noise: 0.01,
         range_noise_growth: scan.noise_growth,
         ..config
+    })
+}
+
+/// The odometry of the default robot, or of a camera tracked by others: ten times as good as wheels alone on carpets.
+fn wheels_and_gyro() -> MotionConfig {
+    MotionConfig {
+        shift_per_metre: 0.05,
+        shift_per_radian: 0.02,
+        turn_per_metre: 0.02,
+        turn_per_radian: 0.04,
+        least_shift: 0.005,
+        least_turn: 0.003,
     }
 }
 

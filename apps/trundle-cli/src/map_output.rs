@@ -1,8 +1,9 @@
 use crate::map::MapArgs;
 use std::fmt::Write;
-use trundle::core::{Pose2, Stamp};
+use trundle::core::{OccupancyGrid, Pose2, Stamp};
 use trundle::io::{LaserLog, Summary};
 use trundle::mapping::{Localized, Processed, ScanUpdate};
+use trundle::viz::{Color, LineStyle, MapPicture, PoseStyle};
 
 /// What became of the scans.
 #[derive(Debug, Default)]
@@ -55,6 +56,15 @@ impl Counts {
         self.degenerate += usize::from(done.degenerate > 0);
         self.bends += usize::from(done.bent.is_some());
     }
+}
+
+/// The map with the way and its ends. A PNG.
+pub fn map_picture(grid: &OccupancyGrid, poses: &[(Stamp, Pose2)]) -> Vec<u8> {
+    let way: Vec<_> = poses.iter().map(|(_, pose)| pose.position()).collect();
+    let picture = MapPicture::over(grid).polyline("way", &way, LineStyle::solid(Color::BLUE));
+    let (Some((_, start)), Some((_, end))) = (poses.first(), poses.last()) else { return picture.to_png() };
+    let start = picture.pose("start", *start, PoseStyle::named(Color::GREEN));
+    start.pose("end", *end, PoseStyle::named(Color::VERMILLION)).to_png()
 }
 
 /// `t x y theta` lines.

@@ -35,15 +35,24 @@ pub struct GridGeometry {
     pub height: usize,
 }
 
+/// 2^40: a cell so far off is told from its neighbours to 1/4096 of it.
+const FARTHEST_CELLS: f64 = 1_099_511_627_776.0;
+
 impl GridGeometry {
     /// Checked geometry: resolution in m, origin in m, size in cells.
     ///
     /// # Errors
-    /// When the resolution is not positive, the origin not finite, a side zero, or there are more than 2^31 cells.
+    /// When the resolution is not positive, the origin is not finite or more than 2^40 cells from zero (so far off, f64 no longer
+    /// tells points of a cell apart), a side is zero, or there are more than 2^31 cells.
     pub fn new(resolution: f64, origin: Vector2, width: usize, height: usize) -> Result<Self, Invalid> {
         require_positive("resolution", resolution, "m")?;
-        require_finite("origin x", origin.x, "m")?;
-        require_finite("origin y", origin.y, "m")?;
+        for (name, value) in [("origin x", origin.x), ("origin y", origin.y)] {
+            require_finite(name, value, "m")?;
+            if value.abs() > FARTHEST_CELLS * resolution {
+                let expected = format!("at most 2^40 cells of {resolution} m from zero");
+                return Err(Invalid::new(name, value, "m", expected));
+            }
+        }
         let cells = width.checked_mul(height).filter(|n| (1..=1 << 31).contains(n));
         if cells.is_none() {
             return Err(Invalid::new("grid size", format!("{width} x {height}"), "cells", "1 to 2^31 cells"));
@@ -165,6 +174,18 @@ mod tests {
         assert_eq!(grid.at(Vector2::new(0.9, 0.1)), Cell::Unknown);
         assert_eq!(grid.at(Vector2::new(f64::NAN, 0.1)), Cell::Unknown);
         assert!(OccupancyGrid::from_ascii(0.5, "#.\n.").is_err());
+    }
+
+    #[test]
+    fn origins_that_no_cell_can_be_told_apart_at_are_refused() {
+        let at = |x: f64, resolution| GridGeometry::new(resolution, Vector2::new(x, 0.0), 1, 1);
+        let refused = at(8.126587341910605e94, 1e-9).unwrap_err().to_string();
+        assert!(
+            refused.contains("origin x") && refused.contains("at most 2^40 cells of 0.000000001 m"),
+            "{refused}"
+        );
+        assert!(at(f64::NAN, 0.05).is_err() && at(-1e12, 0.05).is_err());
+        assert!(at(-5e10, 0.05).is_ok() && at(1e3, 1e-9).is_ok());
     }
 
     #[test]

@@ -110,3 +110,17 @@ pub enum EvalError {
     #[error(transparent)]
     Invalid(#[from] Invalid),
 }
+
+impl EvalError {
+    /// Which of the two the error is about, where it is about one of them.
+    pub fn side(&self) -> Option<Side> {
+        match self {
+            Self::Empty(side)
+            | Self::StampsGoBack { side, .. }
+            | Self::NotFinite { side, .. }
+            | Self::NoObstacle { side } => Some(*side),
+            Self::NoRelation { .. } => Some(Side::Estimate),
+            _ => None,
+        }
+    }
+}

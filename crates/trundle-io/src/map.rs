@@ -107,11 +107,30 @@ mod tests {
             width in 1usize..20, height in 1usize..20, resolution in 1e-9..10f64,
             x in prop::num::f64::NORMAL, y in -1e3..1e3f64, seed in any::<u64>(),
         ) {
-            let geometry = GridGeometry::new(resolution, Vector2::new(x, y), width, height).unwrap();
+            // Of any origin: where the grid cannot hold it, the constructor says so.
+            let Ok(geometry) = GridGeometry::new(resolution, Vector2::new(x, y), width, height) else {
+                prop_assert!(x.abs() > 1e12 * resolution);
+                let near = GridGeometry::new(resolution, Vector2::new(y, y), width, height).unwrap();
+                let grid = OccupancyGrid::filled(near, Cell::Free);
+                prop_assert_eq!(round_trip(&grid), grid);
+                return Ok(());
+            };
             let cell = |i: usize| [Cell::Unknown, Cell::Free, Cell::Occupied][(seed >> (i % 60)) as usize % 3];
             let grid = OccupancyGrid::new(geometry, (0..width * height).map(cell).collect()).unwrap();
             prop_assert_eq!(round_trip(&grid), grid);
         }
+    }
+
+    #[test]
+    fn an_origin_beyond_all_cells_is_refused_by_file_and_field() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("m.yaml");
+        let grid = OccupancyGrid::from_ascii(0.05, "#").unwrap();
+        let yaml = map_yaml(&grid, "m.pgm").replace("origin: [0.0,", "origin: [8.126587341910605e94,");
+        std::fs::write(&path, yaml).unwrap();
+        std::fs::write(dir.path().join("m.pgm"), map_pgm(&grid)).unwrap();
+        let error = read_map(&path).unwrap_err().to_string();
+        assert!(error.contains("m.yaml") && error.contains("origin x is 81265873"), "{error}");
     }
 
     #[test]

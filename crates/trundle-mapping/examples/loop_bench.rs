@@ -29,6 +29,7 @@ fn main() {
                 }
                 stamps.push((scan.stamp(), *odom));
             }
+            mapper.finish();
             let found: Vec<(Stamp, _)> = carry_trajectory(&mapper.trajectory(), &stamps);
             let origin = drive.truth[0].inverse();
             let errors: Vec<f64> =

@@ -101,11 +101,23 @@ impl LogOddsGrid {
 
     /// A cell to write to; makes its tile if there is none, and copies it if a clone shares it.
     pub(crate) fn entry(&mut self, cell: GridCell) -> &mut Evidence {
+        &mut self.tile_of(cell)[cell.within_tile()]
+    }
+
+    /// Cells to write to, with their evidence: a tile is looked up once for those of it that follow each other.
+    pub(crate) fn each_entry(&mut self, cells: &[GridCell], mut each: impl FnMut(GridCell, &mut Evidence)) {
+        for run in cells.chunk_by(|a, b| a.tile() == b.tile()) {
+            let tile = self.tile_of(run[0]);
+            run.iter().for_each(|cell| each(*cell, &mut tile[cell.within_tile()]));
+        }
+    }
+
+    fn tile_of(&mut self, cell: GridCell) -> &mut [Evidence] {
         self.reach(cell);
         let slot = self.slot(cell.tile()).expect("invariant: the directory was grown to reach the cell");
         let tile =
             self.tiles[slot].get_or_insert_with(|| Arc::new([Evidence::NONE; TILE_CELLS * TILE_CELLS]));
-        &mut Arc::make_mut(tile)[cell.within_tile()]
+        Arc::make_mut(tile)
     }
 
     /// Grows the bounding box so that it holds `cell`.

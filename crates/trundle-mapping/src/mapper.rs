@@ -23,6 +23,8 @@ pub struct GridMapper {
     evidence: LogOddsGrid,
     live: LiveGrid,
     cells: ScanCells,
+    /// Whether the three-valued map follows; else only the evidence counts.
+    shows: bool,
 }
 
 /// What one scan did to the map.
@@ -46,7 +48,8 @@ impl GridMapper {
         let mut evidence = LogOddsGrid::default();
         evidence.reach(GridCell { x: -1, y: -1 });
         evidence.reach(GridCell { x: 0, y: 0 });
-        Ok(Self { live: LiveGrid::new(&config, &evidence), evidence, cells: ScanCells::default(), config })
+        let live = LiveGrid::new(&config, &evidence);
+        Ok(Self { live, evidence, cells: ScanCells::default(), shows: true, config })
     }
 
     /// Draws `scan`, taken with the base at `map_from_base`.
@@ -80,7 +83,9 @@ impl GridMapper {
                 let cell = GridCell { x, y };
                 if (cell.center_cells() - center).norm() <= reach.x {
                     self.evidence.entry(cell).log_odds = -self.config.clamp_low as f32;
-                    self.live.show(cell, -self.config.clamp_low as f32);
+                    if self.shows {
+                        self.live.show(cell, -self.config.clamp_low as f32);
+                    }
                 }
             }
         }
@@ -117,14 +122,14 @@ impl GridMapper {
         self.live.changes_since(revision)
     }
 
-    /// Another map with this one's settings and bounds, of other evidence within them.
+    /// Another map with this one's settings and bounds, of other evidence within them, whose three-valued map shows nothing: to be
+    /// taken over by [`GridMapper::replace_with`].
     pub(crate) fn with_evidence(&self, mut evidence: LogOddsGrid) -> Self {
         let (low, (cols, rows)) = self.evidence.bounds();
         evidence.reach(low);
         evidence.reach(GridCell { x: low.x + cols as i32 - 1, y: low.y + rows as i32 - 1 });
-        let mut live = LiveGrid::new(&self.config, &evidence);
-        live.show_all(&evidence);
-        Self { live, evidence, cells: ScanCells::default(), config: self.config.clone() }
+        let live = LiveGrid::new(&self.config, &evidence);
+        Self { live, evidence, cells: ScanCells::default(), shows: false, config: self.config.clone() }
     }
 
     /// Takes over another map, telling what differs.
@@ -173,26 +178,37 @@ impl GridMapper {
     fn grow(&mut self, low: GridCell, high: GridCell) {
         self.evidence.reach(low);
         self.evidence.reach(high);
-        self.live.fit(&self.evidence);
+        if self.shows {
+            self.live.fit(&self.evidence);
+        }
     }
 
     fn draw(&mut self, cells: &ScanCells) {
         let config = &self.config;
+        let (live, shows) = (&mut self.live, self.shows);
+        // Most cells are called what they were called before.
+        let mut show = |cell: GridCell, before: f32, now: f32| {
+            if shows && live.value(before) != live.value(now) {
+                live.show(cell, now);
+            }
+        };
         for hit in &cells.hits {
             let evidence = self.evidence.entry(hit.cell);
-            evidence.log_odds = (evidence.log_odds + config.hit as f32).min(config.clamp_high as f32);
+            let before = evidence.log_odds;
+            evidence.log_odds = (before + config.hit as f32).min(config.clamp_high as f32);
             evidence.add_hit(hit.mean_within());
-            self.live.show(hit.cell, evidence.log_odds);
+            show(hit.cell, before, evidence.log_odds);
         }
         let blind_cells = config.blind_range / config.resolution;
-        for &cell in &cells.frees {
-            let evidence = self.evidence.entry(cell);
-            let hidden = evidence.log_odds > 0.0 && (cell.center_cells() - cells.origin).norm() < blind_cells;
+        let (free, low) = (config.free as f32, -config.clamp_low as f32);
+        self.evidence.each_entry(&cells.frees, |cell, evidence| {
+            let before = evidence.log_odds;
+            let hidden = before > 0.0 && (cell.center_cells() - cells.origin).norm() < blind_cells;
             if !hidden {
-                evidence.log_odds = (evidence.log_odds - config.free as f32).max(-config.clamp_low as f32);
-                self.live.show(cell, evidence.log_odds);
+                evidence.log_odds = (before - free).max(low);
+                show(cell, before, evidence.log_odds);
             }
-        }
+        });
     }
 }
 

@@ -1,7 +1,7 @@
 use super::MapsArgs;
 use crate::{Outcome, console, failure::Failure};
 use trundle::core::Pose2;
-use trundle::eval::{MapAgreement, MapAgreementConfig, align_maps, map_agreement};
+use trundle::eval::{EvalError, MapAgreement, MapAgreementConfig, align_maps, map_agreement};
 use trundle::io::{OutputFolder, Summary, read_map};
 
 /// `trundle eval map`.
@@ -9,7 +9,7 @@ pub fn run(args: &MapsArgs) -> Result<Outcome, Failure> {
     let (truth, map) = (read_map(&args.truth)?, read_map(&args.map)?);
     let config = MapAgreementConfig { within: args.within, ..MapAgreementConfig::default() };
     let config = config.validated()?;
-    let wrong = |error: trundle::eval::EvalError| Failure::Input(format!("{}: {error}", args.map.display()));
+    let wrong = |error: EvalError| super::wrong(&error, &args.truth, &args.map);
     let pose = if args.exact { args.at.0 } else { align_maps(&truth, &map, args.at.0).map_err(wrong)? };
     let found = map_agreement(&truth, &map, pose, &config).map_err(wrong)?;
     if let Some(out) = &args.out {

@@ -3,7 +3,7 @@ use crate::{Outcome, console, failure::Failure};
 use std::path::Path;
 use trundle::core::{Pose3, Stamp};
 use trundle::eval::{
-    Relation, RelationConfig, RelationError, RelationSets, RelationSetsConfig, relation_error,
+    EvalError, Relation, RelationConfig, RelationError, RelationSets, RelationSetsConfig, relation_error,
     relations_from_text,
 };
 use trundle::io::{OutputFolder, Summary, read_odometry, read_trajectory};
@@ -13,8 +13,7 @@ pub fn run(args: &RelationsArgs) -> Result<Outcome, Failure> {
     let sets = sets(args)?;
     let estimate = trajectory(&args.estimate)?;
     let config = RelationConfig { max_difference: args.max_difference }.validated()?;
-    let wrong =
-        |error: trundle::eval::EvalError| Failure::Input(format!("{}: {error}", args.estimate.display()));
+    let wrong = |error: EvalError| super::wrong(&error, &args.reference, &args.estimate);
     let mut judged = Vec::new();
     for (name, relations) in sets {
         if !relations.is_empty() {
@@ -46,7 +45,8 @@ fn sets(args: &RelationsArgs) -> Result<Vec<(&'static str, Vec<Relation>)>, Fail
             .map_err(|error| Failure::Input(format!("{}, {error}", path.display())))?;
         return Ok(vec![("all", relations)]);
     }
-    let sets = RelationSets::of(&trajectory(path)?, &RelationSetsConfig::default())?;
+    let named = |problem| Failure::Input(format!("{}: {problem}", path.display()));
+    let sets = RelationSets::of(&trajectory(path)?, &RelationSetsConfig::default()).map_err(named)?;
     let all = sets.all();
     Ok(vec![("1 m", sets.near), ("10 m", sets.far), ("loops", sets.loops), ("all", all)])
 }

@@ -15,16 +15,13 @@ const LONGEST_GAP: f64 = 1.0;
 /// The motion is `odometry.txt`, with the camera mounted as on the default robot; else `groundtruth.txt`, whose frame must be
 /// level with the floor at z = 0, and each image is cut under the tilt and height that its pose says.
 pub fn read(dir: &Path, quiet: bool) -> Result<LaserLog, Failure> {
-    let own = dir.join("camera.toml");
-    let model = if own.exists() { CameraModel::read(&own)? } else { CameraModel::named("freiburg1")? };
+    let (mut scanner, model) = scanner(dir)?;
     let camera = model.camera;
     let sequence = TumSequence::open(dir, model.depth_scale, TumSequence::MAX_DIFFERENCE)?
         .with_size(camera.width(), camera.height());
-    let robot = RobotConfig::default();
-    let mut scanner = DepthScanner::new(camera, robot.mount.base_from_camera(), robot.scan.clone())?;
     let poses = Poses::of(dir, &sequence)?;
     let (mut log, mut last) = (LaserLog::default(), None);
-    log.max_range = Some(robot.scan.max_range);
+    log.max_range = Some(RobotConfig::default().scan.max_range);
     let bar = console::bar(quiet, sequence.len());
     for i in 0..sequence.len() {
         bar.inc(1);
@@ -48,6 +45,14 @@ pub fn read(dir: &Path, quiet: bool) -> Result<LaserLog, Failure> {
         }
         _ => Ok(log),
     }
+}
+
+/// The scanner of the folder's camera, mounted as on the default robot.
+pub fn scanner(dir: &Path) -> Result<(DepthScanner, CameraModel), Failure> {
+    let own = dir.join("camera.toml");
+    let model = if own.exists() { CameraModel::read(&own)? } else { CameraModel::named("freiburg1")? };
+    let robot = RobotConfig::default();
+    Ok((DepthScanner::new(model.camera, robot.mount.base_from_camera(), robot.scan)?, model))
 }
 
 fn scan(

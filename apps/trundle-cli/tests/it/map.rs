@@ -95,6 +95,7 @@ fn an_old_map_is_gone_on_with_and_localised_in() {
             assert!((a[0] - b[0]).hypot(a[1] - b[1]) < 0.15, "{name}: {line} for {same}");
         }
         assert_eq!(out.join("filter.map").exists(), name == "on");
+        assert!(fs::read(out.join("overview.png")).unwrap().starts_with(b"\x89PNG"), "{name}");
     }
     assert_eq!(fs::read(&saved).unwrap(), before);
 }
@@ -163,4 +164,68 @@ fn the_old_map_survives_a_death_at_any_moment_of_saving() {
     }
     assert!(died > 0, "every run had ended before it was killed");
     assert!(!old.is_empty());
+}
+
+#[test]
+fn the_old_map_survives_a_disk_that_fills_up() {
+    use std::process::Command;
+    let scratch = tempfile::tempdir().unwrap();
+    let Some((log, first)) = mapped(scratch.path()) else { return };
+    let read = |name: &str| fs::read(first.join(name)).unwrap();
+    let names = ["filter.map", "map.pgm", "map.yaml", "trajectory.txt", "summary.json"];
+    let old = names.map(read);
+    // No file may grow beyond so many blocks of 512 bytes: as on a disk with so much room.
+    for blocks in [0, 1, 8, 40] {
+        let script = format!("trap '' XFSZ; ulimit -f {blocks}; exec \"$@\"");
+        let output = Command::new("sh")
+            .args(["-c", &script, "sh", env!("CARGO_BIN_EXE_trundle"), "map", text(&log)])
+            .args(["--particles=4", "--laser-x=0.78", "--quiet", "--seed=9", "--out", text(&first)])
+            .output()
+            .unwrap();
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{blocks} blocks: {said}");
+        assert!(said.contains("cannot write"), "{said}");
+        assert_eq!(names.map(read), old, "{blocks} blocks");
+        let left: Vec<_> = fs::read_dir(&first).unwrap().flatten().map(|entry| entry.file_name()).collect();
+        assert!(left.iter().all(|name| !name.to_string_lossy().starts_with('.')), "{left:?}");
+    }
+}
+
+#[test]
+fn options_of_a_laser_are_refused_for_an_rgbd_folder() {
+    let scratch = tempfile::tempdir().unwrap();
+    fs::write(scratch.path().join("rgb.txt"), "").unwrap();
+    for option in ["--laser-x=0.1", "--laser-turn=5", "--upside-down", "--max-range=4"] {
+        let sentence = refusal(&["map", text(scratch.path()), option]);
+        let name = option.split('=').next().unwrap();
+        assert!(sentence.contains(name) && sentence.contains("is an RGB-D folder"), "{sentence}");
+    }
+}
+
+#[test]
+fn an_error_of_a_comparison_names_the_file_that_is_wrong() {
+    let scratch = tempfile::tempdir().unwrap();
+    let write = |name: &str, grey: &str| {
+        fs::write(scratch.path().join(format!("{name}.pgm")), format!("P2\n2 2\n255\n{grey}\n")).unwrap();
+        let yaml = scratch.path().join(format!("{name}.yaml"));
+        let text = format!(
+            "image: {name}.pgm\nresolution: 0.05\norigin: [0, 0, 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n"
+        );
+        fs::write(&yaml, text).unwrap();
+        yaml
+    };
+    let (walls, empty) = (write("walls", "0 254 0 0"), write("empty", "254 254 254 254"));
+    let sentence = refusal(&["eval", "map", text(&empty), text(&walls)]);
+    assert!(sentence.contains("empty.yaml: the reference map has no obstacle"), "{sentence}");
+    let sentence = refusal(&["eval", "map", text(&walls), text(&empty)]);
+    assert!(sentence.contains("empty.yaml: the estimate map has no obstacle"), "{sentence}");
+    let lines = |name: &str, lines: &str| {
+        let path = scratch.path().join(name);
+        fs::write(&path, lines).unwrap();
+        path
+    };
+    let way: String = (0..30).map(|k| format!("{k}.0 {k} 0 0\n")).collect();
+    let (reference, late) = (lines("ref.txt", &way), lines("late.txt", "900 0 0 0\n901 1 0 0\n"));
+    let sentence = refusal(&["eval", "relations", text(&reference), text(&late)]);
+    assert!(sentence.contains("late.txt: the estimate has poses for none of the"), "{sentence}");
 }

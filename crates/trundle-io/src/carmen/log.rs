@@ -2,13 +2,16 @@ use super::line::{LaserLine, Line, parse};
 use crate::IoError;
 use crate::files::{content_lines, read_text};
 use std::path::Path;
-use trundle_core::{Beam, Invalid, Pose2, Scan, Stamp, require_finite, require_positive};
+use trundle_core::{Beam, Invalid, Pose2, Scan, Stamp, require_finite, require_in, require_positive};
 
 /// What a log does not say.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct LaserLogOptions {
-    /// `base_from_laser`, m and rad; by default what the poses of the lines say, else `PARAM robot_frontlaser_offset`, else 0.
-    pub base_from_laser: Option<Pose2>,
+    /// How far ahead of the base the laser sits, m; by default what the log says: the poses of a CARMEN log's lines, else its
+    /// `PARAM robot_frontlaser_offset`, else 0; the transforms of a bag.
+    pub laser_x: Option<f64>,
+    /// How far the laser is turned to the left, rad; by default what the log says, else 0.
+    pub laser_turn: Option<f64>,
     /// The laser hangs upside down: its beams run from left to right.
     pub upside_down: bool,
     /// Ranges from here on are no returns, m; by default what the line says, else the reading at which many end.
@@ -60,11 +63,8 @@ pub fn read_carmen(path: &Path, options: &LaserLogOptions) -> Result<LaserLog, I
 }
 
 pub(crate) fn validated(options: &LaserLogOptions) -> Result<(), Invalid> {
-    if let Some(pose) = options.base_from_laser {
-        require_finite("x of base_from_laser", pose.x, "m")?;
-        require_finite("y of base_from_laser", pose.y, "m")?;
-        require_finite("theta of base_from_laser", pose.theta, "rad")?;
-    }
+    options.laser_x.map_or(Ok(0.0), |x| require_in("laser_x", x, "m", -20.0, 20.0))?;
+    options.laser_turn.map_or(Ok(0.0), |turn| require_finite("laser_turn", turn, "rad"))?;
     options.max_range.map_or(Ok(()), |range| require_positive("max_range", range, "m").map(drop))
 }
 
@@ -92,7 +92,9 @@ fn parse_carmen(path: &Path, text: &str, options: &LaserLogOptions) -> Result<La
         });
     }
     log.max_range = options.max_range.or_else(|| limit(&lasers));
-    let mount = options.base_from_laser.or_else(|| mount(&lasers)).unwrap_or(Pose2::new(offset, 0.0, 0.0));
+    let told = mount(&lasers).unwrap_or(Pose2::new(offset, 0.0, 0.0));
+    let (x, theta) = (options.laser_x.unwrap_or(told.x), options.laser_turn.unwrap_or(told.theta));
+    let mount = Pose2::new(x, told.y, theta);
     for laser in &lasers {
         let scan = log.scan(laser, mount, options.upside_down);
         log.scans.push(LaserLogScan { odom_from_base: laser.odom_from_base, scan });
@@ -193,6 +195,20 @@ mod tests {
         let down = read(GOOD, LaserLogOptions { upside_down: true, ..Default::default() }).unwrap();
         assert_eq!(down.scans[0].scan.beams()[0], Beam::Hit { range: 4.0 });
         assert!((down.scans[0].scan.angle(0) + 45_f64.to_radians()).abs() < 1e-12);
+    }
+
+    #[test]
+    fn what_is_given_of_the_mount_overrides_that_alone() {
+        let origin = |options: LaserLogOptions| {
+            let scan = read(GOOD, options).unwrap().scans[0].scan.clone();
+            (scan.origin().x, (scan.angle(0).to_degrees() * 1e6).round() / 1e6)
+        };
+        let turned = LaserLogOptions { laser_turn: Some(0.5_f64.to_radians()), ..Default::default() };
+        assert_eq!(origin(turned), (0.3, -89.5), "the place is still the log's");
+        let moved = LaserLogOptions { laser_x: Some(0.1), ..Default::default() };
+        assert_eq!(origin(moved), (0.1, -90.0));
+        let wrong = LaserLogOptions { laser_x: Some(1e9), ..Default::default() };
+        assert_eq!(validated(&wrong).unwrap_err().field, "laser_x");
     }
 
     #[test]

@@ -173,6 +173,15 @@ mod tests {
             [Free, Unknown, Occupied, Unknown, Unknown]
         );
         assert_eq!(map.cell(65_535, 65_535), Free);
+        // `scale` keeps the grades between the thresholds, for masks; a three-valued map does not know them.
+        let scale = parse(&format!("{GOOD}mode: scale\n")).unwrap();
+        assert_eq!(cells(&scale), cells(&map));
+        assert_eq!(
+            [0, 88, 128, 206, 254].map(|v| scale.value(v, 255)),
+            [Some(100), Some(100), Some(67), Some(0), Some(0)]
+        );
+        assert_eq!([0, 128, 254].map(|v| map.value(v, 255)), [Some(100), None, Some(0)]);
+        assert_eq!([0, 65, 100, 101].map(|v| raw.value(v, 255)), [Some(0), Some(65), Some(100), None]);
     }
 
     #[test]

@@ -6,6 +6,7 @@ use super::motion::Motion;
 use crate::IoError;
 use crate::carmen::{LaserLog, LaserLogOptions, LaserLogScan, LaserLogSkip, read_carmen};
 use crate::recording::RawMessage;
+use nalgebra::UnitQuaternion;
 use std::collections::BTreeMap;
 use std::path::Path;
 use trundle_core::{Pose2, Pose3};
@@ -199,12 +200,19 @@ impl Contents {
     }
 
     fn base_from_laser(&self, base: &str, laser: &str, options: &LaserLogOptions) -> Option<Pose3> {
-        if let Some(given) = options.base_from_laser {
-            let roll = if options.upside_down { std::f64::consts::PI } else { 0.0 };
-            let turned = nalgebra::UnitQuaternion::from_euler_angles(roll, 0.0, 0.0);
-            return Some(Pose3::from_pose2(given) * Pose3::new(turned, Default::default()));
+        let told = self.fixed.between(base, laser).or_else(|| self.all.between(base, laser));
+        let LaserLogOptions { laser_x, laser_turn, upside_down, .. } = *options;
+        if laser_x.is_none() && laser_turn.is_none() {
+            return told;
         }
-        self.fixed.between(base, laser).or_else(|| self.all.between(base, laser))
+        // Where no transform says anything, what was not given is zero.
+        let roll = if upside_down { std::f64::consts::PI } else { 0.0 };
+        let own = || Pose3::new(UnitQuaternion::from_euler_angles(roll, 0.0, 0.0), Default::default());
+        let Pose3 { rotation, mut translation } = told.unwrap_or_else(own);
+        translation.x = laser_x.unwrap_or(translation.x);
+        let ahead = rotation * nalgebra::Vector3::x();
+        let turn = laser_turn.map_or(0.0, |turn| turn - ahead.y.atan2(ahead.x));
+        Some(Pose3::new(UnitQuaternion::from_euler_angles(0.0, 0.0, turn) * rotation, translation))
     }
 
     fn skip(&mut self, number: usize, topic: &str, problem: &str) {

@@ -215,15 +215,16 @@ fn bags_without_what_it_takes_are_refused_by_name() {
 
 #[test]
 fn where_the_laser_sits_can_be_given() {
-    let laser = LaserLogOptions {
-        base_from_laser: Some(Pose2::new(0.5, 0.0, 0.0)),
-        upside_down: true,
-        max_range: Some(3.0),
-    };
+    let laser =
+        LaserLogOptions { laser_x: Some(0.5), laser_turn: None, upside_down: true, max_range: Some(3.0) };
     let log = read_laser_log(&bag("zstd.mcap"), &laser).unwrap();
     let scan = &log.scans[0].scan;
     assert_eq!((scan.origin().x, log.max_range), (0.5, Some(3.0)));
     assert!(scan.beams().iter().all(|beam| !matches!(beam, Beam::Hit { range } if *range >= 3.0)));
+    let as_told = read_laser_log(&bag("zstd.mcap"), &LaserLogOptions::default()).unwrap();
+    let turned = LaserLogOptions { laser_turn: Some(0.25), ..LaserLogOptions::default() };
+    let turned = read_laser_log(&bag("zstd.mcap"), &turned).unwrap();
+    assert_eq!(turned.scans[0].scan.origin(), as_told.scans[0].scan.origin(), "only the turn was given");
 }
 
 #[test]

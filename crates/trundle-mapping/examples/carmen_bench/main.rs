@@ -59,6 +59,7 @@ fn run(log: &log::Log, config: &ParticleConfig, seed: u64) -> Run {
             }
         }
     }
+    mapper.finish();
     let trajectory = carry_trajectory(&mapper.trajectory(), &odometry);
     let megabytes = mapper.bytes() as f64 / 1e6;
     let grid = mapper.grid().clone();

@@ -1,7 +1,33 @@
-use super::{ParticleMapper, closing::Tools, mapper::scaled, proposal::Proposal};
+use super::{
+    ParticleMapper, ScanShape,
+    closing::Tools,
+    mapper::{metres, scaled},
+    proposal::Proposal,
+};
 use crate::tiles::{DrawScratch, TileMap};
 use nalgebra::{Matrix3, Vector3};
 use trundle_core::Pose2;
+
+/// The map along a way that a loop has bent, in the making: drawn a little with each scan, beside the map in use.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Bending {
+    /// The bent poses, m, of the first scans kept.
+    pub(crate) poses: Vec<Pose2>,
+    /// How far the pose went that went farthest, m.
+    pub(crate) farthest: f64,
+    /// How many scans are drawn.
+    pub(crate) drawn: usize,
+    pub(crate) map: TileMap,
+    shape: ScanShape,
+    draw: DrawScratch,
+}
+
+/// Cells told anew with one scan: about as many as thirty particles' maps take of a scan of 180 beams in a hall, twice.
+const CELLS: usize = 1_000_000;
+/// What a scan costs at least, cells.
+const SCAN_COST: usize = 500;
+/// A look for loops each so many metres.
+const LOOK_EVERY: f64 = 2.0;
 
 /// The part of the filter that closes loops.
 impl ParticleMapper {
@@ -14,37 +40,83 @@ impl ParticleMapper {
         least + turn * scaled(proposal.covariance, self.config.map.resolution) * turn.transpose()
     }
 
-    /// Looks for loops; where one is closed, the best particle's way and map are bent, and all go on from there.
-    pub(super) fn close_loops(&mut self) -> Option<f64> {
-        let trajectory = self.way();
-        let poses: Vec<Pose2> = trajectory.iter().map(|(_, pose)| *pose).collect();
-        let tools = Tools { config: &self.config, brush: &self.brush, likelihood: &self.likelihood };
-        let closing = self.closer.look(&tools, &mut self.history, &poses)?;
-        if closing.farthest < self.config.map.resolution {
+    /// Looks for loops each 2 m of way; where one is closed, the best particle's way and map are bent, some scans with each
+    /// call, and all go on from there: then how far the farthest pose went, m.
+    pub(super) fn close_loops(&mut self, driven: f64) -> Option<f64> {
+        self.closer.driven += driven;
+        if self.bending.is_some() {
+            return self.go_on_bending(CELLS).1;
+        }
+        if self.closer.driven < LOOK_EVERY {
             return None;
         }
-        let mut map = TileMap::default();
-        let mut draw = DrawScratch::default();
-        for (scan, pose) in self.history.scans.iter().zip(&closing.poses) {
-            self.shape.set_stored(&self.config, scan);
-            self.brush.draw(&mut map, &mut draw, self.cells(*pose), &self.shape);
+        self.closer.driven = 0.0;
+        let poses: Vec<Pose2> = self.way().into_iter().map(|(_, pose)| pose).collect();
+        let tools = Tools { config: &self.config, brush: &self.brush, likelihood: &self.likelihood };
+        let closing = self.closer.look(&tools, &mut self.history, &poses)?;
+        if closing.farthest >= self.config.map.resolution {
+            self.bending =
+                Some(Bending { poses: closing.poses, farthest: closing.farthest, ..Bending::default() });
         }
-        let stamps = trajectory.iter().map(|(stamp, _)| *stamp);
-        self.ancestry.replace(stamps.zip(closing.poses.iter().copied()).collect());
-        let last = *closing.poses.last().expect("invariant: loops are closed of some poses");
+        None
+    }
+
+    /// Finishes what is under way, as after the last scan of a log: a map that a loop bends is drawn to its end.
+    pub fn finish(&mut self) {
+        self.go_on_bending(usize::MAX);
+    }
+
+    /// Draws scans at their bent poses for about `budget` cells, and goes over to the new map when all are drawn. How many cells
+    /// were told, and how far the farthest pose went when it is done.
+    pub(super) fn go_on_bending(&mut self, budget: usize) -> (usize, Option<f64>) {
+        let Some(mut bending) = self.bending.take() else { return (0, None) };
+        let mut cells = 0;
+        while cells < budget && bending.drawn < bending.poses.len() {
+            let pose = bending.poses[bending.drawn];
+            cells += self.draw_again(&mut bending, pose);
+        }
+        if bending.drawn < bending.poses.len() {
+            self.bending = Some(bending);
+            return (cells, None);
+        }
+        (cells, Some(self.take_over(bending)))
+    }
+
+    fn draw_again(&self, bending: &mut Bending, pose: Pose2) -> usize {
+        bending.shape.set_stored(&self.config, &self.history.scans[bending.drawn]);
+        bending.drawn += 1;
+        let pose = self.cells(pose);
+        self.brush.draw(&mut bending.map, &mut bending.draw, pose, &bending.shape) + SCAN_COST
+    }
+
+    /// All particles go on from the bent way, behind which the best one's scans since then follow as they were.
+    fn take_over(&mut self, mut bending: Bending) -> f64 {
+        let way = self.way();
+        let bent = bending.poses.len();
+        let moved = bending.poses[bent - 1] * way[bent - 1].1.inverse();
+        let mut trajectory = way;
+        for (k, (_, pose)) in trajectory.iter_mut().enumerate() {
+            *pose = if k < bent { bending.poses[k] } else { moved * *pose };
+            if k >= bent {
+                self.draw_again(&mut bending, *pose);
+            }
+        }
+        let last = trajectory.last().expect("invariant: a way that is bent has poses").1;
+        self.ancestry.replace(trajectory);
         let pose = self.cells(last);
         for particle in &mut self.particles {
             particle.pose = pose;
             particle.log_weight = 0.0;
-            particle.map = map.clone();
+            particle.map = bending.map.clone();
         }
         self.parents = vec![0; self.particles.len()];
-        Some(closing.farthest)
+        debug_assert!(metres(&self.config, pose).distance(&last) < 1e-6, "cells and metres agree");
+        bending.farthest
     }
 
     /// Keeps the store of scans within its bounds.
     pub(super) fn thin_history(&mut self) {
-        if self.history.scans.len() > self.config.most_scans {
+        if self.history.scans.len() > self.config.most_scans && self.bending.is_none() {
             let count = (self.config.most_scans / 2).min(self.ancestry.shared.len());
             let before = self.history.scans.len();
             self.history.thin(&mut self.ancestry.shared, count);

@@ -2,25 +2,29 @@ use super::{
     ScanShape,
     likelihood::{Placed, floor},
 };
-use crate::tiles::{TILE_SIDE, TileWindow};
+use crate::tiles::{COARSE_SIDE as HALF, TileWindow};
 use nalgebra::{Matrix3, Vector3};
 use trundle_core::Pose2;
 
-/// Half a tile: samples of the coarse field are two cells apart.
-const HALF: usize = TILE_SIDE / 2;
 /// Cells between samples.
 const STEP: f64 = 2.0;
 /// Widest search, samples to each side.
 const MOST_REACH: usize = 7;
 const LANES: usize = 16;
+const _: () = assert!(HALF == LANES && 2 * MOST_REACH < LANES);
 /// Points that the coarse search looks at, at most.
 const MOST_POINTS: usize = 80;
 
 /// The correlative search: all poses of a lattice about a guess, on the coarse field (\[Olson09\]).
 #[derive(Debug, Clone, Default)]
 pub(crate) struct CoarseSearch {
+    /// The coarse field in one piece, row by row, a tile's margin about it. Zero but for the tiles laid out.
     field: Vec<u8>,
     stride: usize,
+    rows: usize,
+    /// Which tiles (margin counted) are laid out, and where they begin.
+    laid: Vec<bool>,
+    firsts: Vec<usize>,
     best: Vec<(f64, Pose2)>,
 }
 
@@ -36,7 +40,7 @@ pub(crate) struct SearchPrior {
     pub(crate) gain: f64,
 }
 
-/// Sums of likelihoods: row by row, 16 columns each.
+/// Sums of likelihoods: row by row, 16 columns each, of which those beyond the reach say nothing.
 type Sums = [[u16; LANES]; 2 * MOST_REACH + 1];
 
 impl CoarseSearch {
@@ -48,7 +52,7 @@ impl CoarseSearch {
         guess: Pose2,
         prior: &SearchPrior,
     ) -> &[(f64, Pose2)] {
-        self.lay_out(window);
+        self.cover(window);
         self.best.clear();
         let reach = ((3.0 * prior.sigma / STEP).ceil() as usize).clamp(2, MOST_REACH);
         let turn_step = (STEP / shape.lever).clamp(0.004, 0.05);
@@ -60,7 +64,7 @@ impl CoarseSearch {
             let theta = f64::from(turn) * turn_step;
             let pose = Pose2 { theta: guess.theta + theta, ..guess };
             let mut sums: Sums = [[0; LANES]; 2 * MOST_REACH + 1];
-            self.sum_up(shape, every, pose, reach, &mut sums);
+            self.sum_up(window, (shape, every), pose, reach, &mut sums);
             let mut best = (f64::NEG_INFINITY, pose);
             for (j, row) in sums.iter().enumerate().take(2 * reach + 1) {
                 for (i, &sum) in row.iter().enumerate().take(2 * reach + 1) {
@@ -78,40 +82,71 @@ impl CoarseSearch {
         &self.best
     }
 
-    /// The coarse field of the window in one piece, row by row, with a margin in which nothing is.
-    fn lay_out(&mut self, window: &TileWindow<'_>) {
-        let (cols, rows) = window.size();
-        self.stride = cols * HALF + 2 * LANES;
-        self.field.clear();
-        self.field.resize(self.stride * (rows * HALF + 2 * LANES), 0);
-        for (i, tile) in window.tiles().iter().enumerate() {
-            let (col, row) = (i % cols, i / cols);
-            let first = (row * HALF + LANES) * self.stride + col * HALF + LANES;
-            for (k, line) in tile.coarse.chunks_exact(HALF).enumerate() {
-                let at = first + k * self.stride;
-                self.field[at..at + HALF].copy_from_slice(line);
+    /// Begins anew for a window: nothing is laid out.
+    fn cover(&mut self, window: &TileWindow<'_>) {
+        for first in self.firsts.drain(..) {
+            for k in 0..HALF {
+                self.field[first + k * self.stride..][..HALF].fill(0);
             }
+        }
+        let (cols, rows) = window.size();
+        (self.stride, self.rows) = ((cols + 2) * HALF, (rows + 2) * HALF);
+        if self.field.len() < self.stride * self.rows {
+            self.field.resize(self.stride * self.rows, 0);
+        }
+        self.laid.clear();
+        self.laid.resize((cols + 2) * (rows + 2), false);
+    }
+
+    /// Copies a tile (margin counted) to its place, if it is one of the window and was not copied before.
+    fn lay_out(&mut self, window: &TileWindow<'_>, (col, row): (usize, usize)) {
+        let (cols, rows) = window.size();
+        let laid = &mut self.laid[row * (cols + 2) + col];
+        if *laid {
+            return;
+        }
+        *laid = true;
+        if (1..=cols).contains(&col) && (1..=rows).contains(&row) {
+            let first = row * HALF * self.stride + col * HALF;
+            let tile = window.tiles()[(row - 1) * cols + col - 1];
+            for (k, line) in tile.coarse.chunks_exact(HALF).enumerate() {
+                self.field[first + k * self.stride..][..HALF].copy_from_slice(line);
+            }
+            self.firsts.push(first);
         }
     }
 
-    fn sum_up(&self, shape: &ScanShape, every: usize, pose: Pose2, reach: usize, sums: &mut Sums) {
+    fn sum_up(
+        &mut self,
+        window: &TileWindow<'_>,
+        (shape, every): (&ScanShape, usize),
+        pose: Pose2,
+        reach: usize,
+        sums: &mut Sums,
+    ) {
         let place = Placed::new(pose);
         for point in shape.points.iter().step_by(every) {
             let (rx, ry) = place.rotate(point.x, point.y);
             // Samples are at the middles of even cells: 0.5, 2.5 and so on.
-            let sample = |v: f32| i64::from(floor((v + 0.5) * 0.5)) + LANES as i64 - reach as i64;
+            let sample = |v: f32| i64::from(floor((v + 0.5) * 0.5)) + HALF as i64 - reach as i64;
             let (col, row) = (sample(rx + place.x), sample(ry + place.y));
-            let rows = (self.field.len() / self.stride) as i64;
             let inside = col >= 0
                 && row >= 0
                 && col + LANES as i64 <= self.stride as i64
-                && row + (2 * reach as i64) < rows;
-            if inside {
-                let first = row as usize * self.stride + col as usize;
-                for (j, sums) in sums.iter_mut().enumerate().take(2 * reach + 1) {
-                    let at = first + j * self.stride;
-                    add(sums, &self.field[at..at + LANES]);
+                && row + (2 * reach as i64) < self.rows as i64;
+            if !inside {
+                continue;
+            }
+            let (col, row) = (col as usize, row as usize);
+            for tile_row in row / HALF..=(row + 2 * reach) / HALF {
+                for tile_col in col / HALF..=(col + 2 * reach) / HALF {
+                    self.lay_out(window, (tile_col, tile_row));
                 }
+            }
+            let first = row * self.stride + col;
+            for (j, sums) in sums.iter_mut().enumerate().take(2 * reach + 1) {
+                let at = first + j * self.stride;
+                add(sums, &self.field[at..at + LANES]);
             }
         }
     }

@@ -1,10 +1,11 @@
 use super::{
     ParticleConfig, ScanShape,
     ancestry::Ancestry,
+    bending::Bending,
     chance::Chance,
     closing::Closer,
     coarse::CoarseSearch,
-    gate::Gate,
+    gate::{Gate, Step},
     history::History,
     likelihood::Likelihood,
     locate::GlobalSearch,
@@ -13,6 +14,7 @@ use super::{
     report::{Processed, ScanUpdate},
     resample::{effective, low_variance},
     store::StoredScan,
+    trust::OdometryTrust,
 };
 use crate::tiles::{Brush, DrawScratch, FieldModel, TileMap, tile_bytes};
 use nalgebra::{Matrix3, Vector3};
@@ -26,8 +28,8 @@ use trundle_core::{CellIndex, Invalid, OccupancyGrid, Pose2, Scan, Stamp};
 /// map foretold the scan; when few particles hold the weight, the others give way to their copies. Copies share their
 /// maps' tiles until one writes. What the particles cannot span, a loop after a long way, is searched for and proved, and
 /// the way is bent. Cost: per scan and particle one match (linear in the beams) and one drawing (linear in the cells that
-/// the beams pass); per 2 m a look for loops, and per loop that bends the way a redrawing, both linear in the scans kept
-/// (`most_scans`).
+/// the beams pass); per 2 m a look for loops, n log n in the scans kept (at most `most_scans`). A loop that bends the way has
+/// the map drawn anew, a million cells with each scan: nothing else grows with the length of the run.
 #[derive(Debug)]
 pub struct ParticleMapper {
     pub(super) config: ParticleConfig,
@@ -44,6 +46,8 @@ pub struct ParticleMapper {
     publisher: Publisher,
     pub(super) history: History,
     pub(super) closer: Closer,
+    /// The map that a loop bends, while it is drawn.
+    pub(super) bending: Option<Bending>,
     pub(super) gate: Gate,
     /// The search for the robot in a map that was there before it.
     pub(super) lost: Option<GlobalSearch>,
@@ -51,6 +55,8 @@ pub struct ParticleMapper {
     pub(super) session: usize,
     /// Mean ln p(z | m, x) of a point in the last scans.
     pub(super) usual: f64,
+    /// How good the odometry is.
+    pub(super) trust: OdometryTrust,
 }
 
 #[derive(Debug, Clone)]
@@ -92,10 +98,12 @@ impl ParticleMapper {
             publisher: Publisher::new(&config.map),
             history: History::default(),
             closer: Closer::default(),
+            bending: None,
             gate: Gate::default(),
             lost: None,
             session: 0,
             usual: USUAL,
+            trust: OdometryTrust::default(),
             config,
         })
     }
@@ -114,7 +122,8 @@ impl ParticleMapper {
             return self.search(scan.stamp());
         }
         let jumped = step.jumped;
-        self.move_and_draw(step.motion, step.covariance, step.first && self.updates == 0);
+        let covariance = if jumped { step.covariance } else { self.trust.scaled(&step.covariance) };
+        self.move_and_draw(step.motion, covariance, step.first && self.updates == 0);
         let (effective, resampled) = self.weigh();
         self.ancestry.push(
             scan.stamp(),
@@ -126,13 +135,14 @@ impl ParticleMapper {
         if let Some(proposal) = proposal.filter(|p| p.degenerate < 3) {
             self.usual += USUAL_RATE * (proposal.per_point - self.usual);
         }
+        self.learn_odometry(&step, proposal.as_ref());
         self.history.push(StoredScan::new(&self.shape), self.step_covariance(proposal.as_ref()));
         if resampled {
             self.resample();
         } else {
             self.parents = (0..self.particles.len() as u16).collect();
         }
-        let bent = self.close_loops();
+        let bent = self.close_loops(step.motion.position().norm());
         self.thin_history();
         self.updates += 1;
         ScanUpdate::Processed(Processed {
@@ -175,7 +185,8 @@ impl ParticleMapper {
 
     /// Bytes that maps, ancestry and buffers hold; tiles that particles share count once.
     pub fn bytes(&self) -> usize {
-        let maps = tile_bytes(self.particles.iter().map(|p| &p.map));
+        let bending = self.bending.iter().map(|bending| &bending.map);
+        let maps = tile_bytes(self.particles.iter().map(|p| &p.map).chain(bending));
         maps + self.ancestry.bytes() + self.history.bytes()
     }
 
@@ -204,6 +215,11 @@ impl ParticleMapper {
         let workers = rayon::current_num_threads().clamp(1, self.particles.len());
         let share = self.particles.len().div_ceil(workers);
         self.scratch.resize_with(workers, Scratch::default);
+        // Where the odometry failed it did so for all particles: the best one looks for where they are.
+        let best = &self.particles[best_of(&self.particles)];
+        let places = (best.pose, best.pose * motion);
+        let far =
+            if first { Vec::new() } else { proposer.far(&best.map, &mut self.scratch[0].search, places) };
         let shares = self.particles.par_chunks_mut(share).zip(&mut self.scratch).enumerate();
         shares.for_each(|(worker, (particles, scratch))| {
             for (i, particle) in particles.iter_mut().enumerate() {
@@ -211,10 +227,9 @@ impl ParticleMapper {
                     let mut chance = Chance::new(seed, updates, worker * share + i);
                     let guess = particle.pose * motion;
                     let found = proposer.propose(
-                        &particle.map,
+                        (&particle.map, &far),
                         &mut scratch.search,
-                        particle.pose,
-                        guess,
+                        (particle.pose, guess),
                         &mut chance,
                     );
                     particle.pose = found.pose;
@@ -224,6 +239,15 @@ impl ParticleMapper {
                 brush.draw(&mut particle.map, &mut scratch.draw, particle.pose, shape);
             }
         });
+    }
+
+    fn learn_odometry(&mut self, step: &Step, proposal: Option<&Proposal>) {
+        let Some(proposal) = proposal.filter(|_| !step.jumped) else { return };
+        if proposal.slipped {
+            self.trust.doubt();
+        } else if let Some(innovation) = proposal.innovation {
+            self.trust.learn(&innovation, &scaled(step.covariance, 1.0 / self.config.map.resolution));
+        }
     }
 
     pub(super) fn cells(&self, pose: Pose2) -> Pose2 {
@@ -265,19 +289,23 @@ impl ParticleMapper {
 
     /// The particle of the greatest weight, the first of equals.
     pub(super) fn best(&self) -> usize {
-        let better = |best: usize, i: usize| {
-            if self.particles[i].log_weight > self.particles[best].log_weight { i } else { best }
-        };
-        (1..self.particles.len()).fold(0, better)
+        best_of(&self.particles)
     }
+}
+
+fn best_of(particles: &[Particle]) -> usize {
+    let better = |best: usize, i: usize| {
+        if particles[i].log_weight > particles[best].log_weight { i } else { best }
+    };
+    (1..particles.len()).fold(0, better)
 }
 
 /// What a point of a scan is like before any was seen, nats: half of the points at obstacles, half on unknown ground.
 pub(super) const USUAL: f64 = -1.0;
 /// Weight of a new scan in what is usual: about the last twenty count.
 pub(super) const USUAL_RATE: f64 = 0.05;
-/// How far the field of nearest obstacles reaches, m.
-const FIELD_REACH: f64 = 0.3;
+/// How far the field of nearest obstacles reaches, m: eight sigmas of a laser's hits, four of a depth camera's at 4 m.
+const FIELD_REACH: f64 = 0.2;
 /// Sigma of the coarse search, cells: one step of it.
 const COARSE_SIGMA_CELLS: f64 = 2.0;
 

@@ -24,6 +24,7 @@ mod report;
 mod resample;
 mod shape;
 mod store;
+mod trust;
 
 pub use carry::carry_trajectory;
 pub use config::{MotionConfig, ParticleConfig};
@@ -31,4 +32,4 @@ pub use locate::{Localized, Lost, MapLocalizer};
 pub use mapper::ParticleMapper;
 pub use persist::FilterFileError;
 pub use report::{Processed, Refusal, ScanUpdate};
-pub(crate) use shape::ScanShape;
+pub(crate) use shape::{RaySpan, ScanShape};

@@ -6,6 +6,7 @@ use super::{
     find::{Pyramid, Query},
     likelihood::{Likelihood, Vote},
     prior::Prior,
+    trust::Innovation,
 };
 use crate::tiles::{TILE_BITS, TileMap, TileWindow};
 use nalgebra::{Cholesky, Matrix3, Vector3};
@@ -47,6 +48,8 @@ pub(crate) struct Proposal {
     pub(crate) degenerate: usize,
     /// Covariance of the drawn Gaussian (cells, cells, rad), map frame.
     pub(crate) covariance: Matrix3<f64>,
+    /// What the match says of the odometry, where it holds all directions.
+    pub(crate) innovation: Option<Innovation>,
 }
 
 const MOST_STEPS: usize = 10;
@@ -92,39 +95,63 @@ impl Proposer<'_> {
     ///
     /// Two things may have happened: the odometry erred as its covariance says, or its wheels slipped or its words were
     /// lost (`slip_rate`), and the robot is somewhere about the way that it tells of. The second is looked into where it
-    /// would be the likelier one if the scan fitted there as scans usually do.
+    /// would be the likelier one if the scan fitted there as scans usually do: at `far`, what [`Proposer::far`] found for one
+    /// particle of those that share most of their past.
     pub(crate) fn propose(
         &self,
-        map: &TileMap,
+        (map, far): (&TileMap, &[Pose2]),
         search: &mut CoarseSearch,
-        before: Pose2,
-        guess: Pose2,
+        (before, guess): (Pose2, Pose2),
         chance: &mut Chance,
     ) -> Proposal {
         let near = self.attempt(map, search, Prior::new(guess, before.theta, &self.motion_covariance));
-        let config = self.config;
-        let slip = Prior::slipped(before, guess, config.slip_shift / config.map.resolution, config.slip_turn);
-        let rate = config.slip_rate.ln();
-        let usual = self.usual * self.shape.points.len() as f64 / config.correlation;
-        let needed = near.optimum.log_posterior - rate - 0.5 * slip.log_determinant;
-        if usual > needed
-            && let Some(far) = self.search_far(map, slip, needed)
-        {
-            let gain = far.optimum.log_posterior + rate - near.optimum.log_posterior;
-            if gain > 0.0 {
+        let slip = self.slip(before, guess);
+        let rate = self.config.slip_rate.ln();
+        if !far.is_empty() && self.needed(&near, &slip).is_some() {
+            let far = self.climb_far(map, slip, far.iter().map(|place| before * *place));
+            if far.optimum.log_posterior + rate > near.optimum.log_posterior {
                 return self.sample(&far, rate, chance);
             }
         }
         self.sample(&near, 0.0, chance)
     }
 
-    /// The best pose under a wide prior, by branch and bound; `None` where none can have the log-posterior `needed` (but for the
-    /// prior's normalisation).
-    fn search_far<'m>(&self, map: &'m TileMap, prior: Prior, needed: f64) -> Option<Attempt<'m>> {
-        let window = self.window(map, &prior);
+    /// Places far from where the odometry leads that a particle at `before` may have come to, in the frame of `before`; none
+    /// where the scan fits near the odometry, or nowhere.
+    pub(crate) fn far(
+        &self,
+        map: &TileMap,
+        search: &mut CoarseSearch,
+        (before, guess): (Pose2, Pose2),
+    ) -> Vec<Pose2> {
+        let near = self.attempt(map, search, Prior::new(guess, before.theta, &self.motion_covariance));
+        let slip = self.slip(before, guess);
+        let Some(needed) = self.needed(&near, &slip) else { return Vec::new() };
+        let back = before.inverse();
+        self.search_far(map, &slip, needed).into_iter().map(|place| back * place).collect()
+    }
+
+    fn slip(&self, before: Pose2, guess: Pose2) -> Prior {
+        let config = self.config;
+        Prior::slipped(before, guess, config.slip_shift / config.map.resolution, config.slip_turn)
+    }
+
+    /// The log-posterior (but for the normalisation of the slip's prior) above which a place far away is the likelier one; `None`
+    /// where no scan as usual reaches it.
+    fn needed(&self, near: &Attempt<'_>, slip: &Prior) -> Option<f64> {
+        let usual = self.usual * self.shape.points.len() as f64 / self.config.correlation;
+        let needed = near.optimum.log_posterior - self.config.slip_rate.ln() - 0.5 * slip.log_determinant;
+        (usual > needed).then_some(needed)
+    }
+
+    /// The best poses under a wide prior, by branch and bound: those that can have the log-posterior `needed` (but for the
+    /// prior's normalisation), at most two.
+    fn search_far(&self, map: &TileMap, prior: &Prior, needed: f64) -> Vec<Pose2> {
+        let window = self.window(map, prior);
         let (cols, rows) = window.size();
         let low = (window.corner.0 >> TILE_BITS, window.corner.1 >> TILE_BITS);
-        let pyramid = Pyramid::of(map, low, (low.0 + cols as i32 - 1, low.1 + rows as i32 - 1))?;
+        let high = (low.0 + cols as i32 - 1, low.1 + rows as i32 - 1);
+        let Some(pyramid) = Pyramid::of(map, low, high) else { return Vec::new() };
         let every = self.shape.points.len().div_ceil(MOST_POINTS).max(1);
         let points: Vec<_> = self.shape.points.iter().step_by(every).map(|p| (p.x, p.y)).collect();
         let sigma = |k: usize| prior.covariance[(k, k)].sqrt();
@@ -147,14 +174,25 @@ impl Proposer<'_> {
         {
             places.push(place);
         }
+        places.into_iter().map(|place| place.pose).collect()
+    }
+
+    /// The best top near one of these places, of which there is one.
+    fn climb_far<'m>(
+        &self,
+        map: &'m TileMap,
+        prior: Prior,
+        places: impl Iterator<Item = Pose2>,
+    ) -> Attempt<'m> {
+        let window = self.window(map, &prior);
         let corner = (f64::from(window.corner.0), f64::from(window.corner.1));
         let local = |pose: Pose2| Pose2 { x: pose.x - corner.0, y: pose.y - corner.1, ..pose };
         let prior = Prior { guess: local(prior.guess), ..prior };
         let optimum = places
-            .iter()
-            .map(|place| self.climb(&window, &prior, local(place.pose)))
-            .reduce(|best, next| if next.log_posterior > best.log_posterior { next } else { best })?;
-        Some(self.attempted(window, corner, prior, optimum))
+            .map(|place| self.climb(&window, &prior, local(place)))
+            .reduce(|best, next| if next.log_posterior > best.log_posterior { next } else { best })
+            .expect("invariant: there is a place");
+        self.attempted(window, corner, prior, optimum)
     }
 
     /// The best pose under a prior (cells of the map).
@@ -319,7 +357,24 @@ impl Proposer<'_> {
             slipped: log_rate < 0.0,
             degenerate: if lost { 3 } else { directions.degenerate },
             covariance: to_pose * covariance * to_pose.transpose(),
+            innovation: self.innovation(attempt).filter(|_| !lost && log_rate == 0.0),
         }
+    }
+
+    /// What the hits alone say of the odometry's step. At the optimum x of hits (information H) and odometry (P, at g) the pulls are
+    /// even: H (m - x) = P (x - g) gives the hits' own optimum m.
+    fn innovation(&self, attempt: &Attempt<'_>) -> Option<Innovation> {
+        let Attempt { prior, optimum, .. } = attempt;
+        if optimum.directions.degenerate > 0 {
+            return None;
+        }
+        let hits = (optimum.vote.information / self.config.correlation).try_inverse()?;
+        let off = difference(optimum.pose, prior.guess);
+        let off = off + hits * (prior.information * off);
+        let (s, c) = prior.guess.theta.sin_cos();
+        let turn = Matrix3::new(c, s, 0.0, -s, c, 0.0, 0.0, 0.0, 1.0);
+        let open = (turn * hits * turn.transpose()).diagonal();
+        Some(Innovation { off: turn * off, open })
     }
 }
 

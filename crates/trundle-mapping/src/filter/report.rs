@@ -45,6 +45,7 @@ pub struct Processed {
     pub jumped: bool,
     /// Whether the scan said that the odometry told nothing true: slipping wheels, lost messages.
     pub slipped: bool,
-    /// When a loop was closed and the way bent: how far the pose went that went farthest, m.
+    /// When the way and the map were bent by a loop that was closed some scans before: how far the pose went that went
+    /// farthest, m.
     pub bent: Option<f64>,
 }

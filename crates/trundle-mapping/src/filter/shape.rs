@@ -21,6 +21,10 @@ pub(crate) struct ScanShape {
     hits: Vec<(usize, Vector2, f64)>,
     /// The numbers of the rays' beams.
     pub(crate) beams: Vec<usize>,
+    /// What was seen to be free of the rays that are not `whole`, by rising ray.
+    pub(crate) spans: Vec<RaySpan>,
+    /// One sigma of each ray's range, m; empty where the sensor does not say.
+    pub(crate) sigmas: Vec<f32>,
 }
 
 /// Where a beam ends.
@@ -31,6 +35,19 @@ pub(crate) struct ScanRay {
     pub(crate) hit: bool,
     /// Whether it lies on one surface with the beam before.
     pub(crate) joined: bool,
+    /// Whether all of it was seen to be free; else the scan's spans say what was.
+    pub(crate) whole: bool,
+    /// How surely the obstacle is in the cell of the end, against a sure one: 0 to 1.
+    pub(crate) sure: f32,
+}
+
+/// A stretch of a ray that was seen to be free.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct RaySpan {
+    pub(crate) ray: u32,
+    /// Where it begins and ends, as parts of the way from the origin to the ray's end, 0 to 1.
+    pub(crate) from: f32,
+    pub(crate) to: f32,
 }
 
 /// A hit to be matched.
@@ -90,7 +107,6 @@ impl ScanShape {
     pub(crate) fn set(&mut self, config: &ParticleConfig, scan: &Scan) {
         let cells = 1.0 / config.map.resolution;
         self.clear();
-        self.beams.clear();
         self.origin = ((scan.origin().x * cells) as f32, (scan.origin().y * cells) as f32);
         let mut last: Option<(usize, Vector2)> = None;
         for (i, beam) in scan.beams().iter().enumerate() {
@@ -102,7 +118,12 @@ impl ScanShape {
             let end = scan.point(i, range);
             let joined =
                 hit && last.is_some_and(|(j, p)| j + 1 == i && (p - end).norm() <= config.map.surface_gap);
-            self.rays.push(ScanRay { x: (end.x * cells) as f32, y: (end.y * cells) as f32, hit, joined });
+            let whole = self.take_spans(scan, i, range);
+            let ends = ((end.x * cells) as f32, (end.y * cells) as f32);
+            let sigma = scan.sigma(i).map(|sigma| sigma as f32);
+            let sure = sureness(sigma.unwrap_or(0.0) * cells as f32);
+            self.rays.push(ScanRay { x: ends.0, y: ends.1, hit, joined, whole, sure });
+            self.sigmas.extend(sigma);
             self.beams.push(i);
             last = hit.then_some((i, end));
             if hit {
@@ -117,15 +138,30 @@ impl ScanShape {
         self.clear();
         self.origin = stored.origin;
         let metres = config.map.resolution;
+        let cells = (1.0 / metres) as f32;
         let origin = Vector2::new(f64::from(stored.origin.0), f64::from(stored.origin.1)) * metres;
         for ray in stored.rays() {
             if ray.ray.hit {
                 let end = Vector2::new(f64::from(ray.ray.x), f64::from(ray.ray.y)) * metres;
-                self.hits.push((ray.beam, end, 0.0));
+                self.hits.push((ray.beam, end, f64::from(ray.sigma)));
             }
-            self.rays.push(ray.ray);
+            self.rays.push(ScanRay { sure: sureness(ray.sigma * cells), ..ray.ray });
         }
+        self.spans.extend(stored.spans());
         self.find_points(config, origin);
+    }
+
+    /// Notes what was seen to be free of beam `i`, the next ray, up to `range`; whether that is all of it.
+    fn take_spans(&mut self, scan: &Scan, i: usize, range: f64) -> bool {
+        let (ray, first) = (self.rays.len() as u32, self.spans.len());
+        for (from, to) in scan.free_spans(i).filter(|(from, _)| *from < range) {
+            self.spans.push(RaySpan { ray, from: (from / range) as f32, to: (to / range).min(1.0) as f32 });
+        }
+        let whole = matches!(self.spans[first..], [RaySpan { from: 0.0, to: 1.0, .. }]);
+        if whole {
+            self.spans.truncate(first);
+        }
+        whole
     }
 
     /// Takes over the hits of several scans, each moved by its pose (cells), of which at most one counts in each square of
@@ -155,6 +191,9 @@ impl ScanShape {
     pub(crate) fn clear(&mut self) {
         self.origin = (0.0, 0.0);
         self.rays.clear();
+        self.beams.clear();
+        self.spans.clear();
+        self.sigmas.clear();
         self.points.clear();
         self.groups.clear();
         self.hits.clear();
@@ -244,4 +283,12 @@ impl ScanShape {
         self.centroid = (x, y);
         self.lever = (self.points.iter().map(square).sum::<f64>() / count).sqrt().max(2.0);
     }
+}
+
+/// The part of a Gaussian of `sigma` cells that lies within half a cell of its middle, against that of half a cell's sigma: a
+/// hit that is as likely to lie in the cells beside its own says less of it.
+fn sureness(sigma: f32) -> f32 {
+    // Within h sigmas: tanh(0.8 h) to 0.02.
+    let within = |sigma: f32| (0.4 / sigma).tanh();
+    if sigma <= 0.5 { 1.0 } else { within(sigma) / within(0.5) }
 }

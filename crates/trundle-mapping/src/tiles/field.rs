@@ -35,14 +35,41 @@ impl FieldModel {
     pub(crate) fn place(&self, map: &mut TileMap, cell: (i32, i32), own: Nearest) {
         for_tiles_about(cell, self.reach, |tile_at, xs, ys| {
             let tile = map.tile_mut(tile_at);
-            for y in ys {
-                let step = (((cell.0 - xs.start()) << 4) as i16, ((cell.1 - y) << 4) as i16);
-                self.offer_row(tile, (xs.clone(), y), step, own);
-            }
+            self.offer(tile, (xs, ys), cell, own);
             if tile_at == (cell.0 >> TILE_BITS, cell.1 >> TILE_BITS) {
                 self.write(tile, cell, own);
+                tile.set_own(cell.0, cell.1, true);
             }
         });
+    }
+
+    /// Offers an obstacle to these columns and rows of a tile.
+    fn offer(&self, tile: &mut Tile, part: Part, cell: (i32, i32), own: Nearest) {
+        #[cfg(target_arch = "x86_64")]
+        if std::arch::is_x86_feature_detected!("avx2") {
+            // SAFETY: the processor has the one feature that the function is compiled for.
+            return unsafe { self.offer_by_avx2(tile, part, cell, own) };
+        }
+        self.offer_plainly(tile, part, cell, own);
+    }
+
+    /// The same arithmetic in vectors of sixteen.
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx2")]
+    fn offer_by_avx2(&self, tile: &mut Tile, part: Part, cell: (i32, i32), own: Nearest) {
+        self.offer_each(tile, part, cell, own);
+    }
+
+    fn offer_plainly(&self, tile: &mut Tile, part: Part, cell: (i32, i32), own: Nearest) {
+        self.offer_each(tile, part, cell, own);
+    }
+
+    #[inline(always)]
+    fn offer_each(&self, tile: &mut Tile, (xs, ys): Part, cell: (i32, i32), own: Nearest) {
+        for y in ys {
+            let step = (((cell.0 - xs.start()) << 4) as i16, ((cell.1 - y) << 4) as i16);
+            self.offer_row(tile, (xs.clone(), y), step, own);
+        }
     }
 
     /// Takes the obstacles of `cells` out of the field. The cells that lose their nearest one get those of the cells
@@ -57,6 +84,9 @@ impl FieldModel {
                         if target((x, y), tile.nearest[Tile::place(x, y)]) == Some(cell) {
                             self.write(tile, (x, y), Nearest::NONE);
                             lost.push((x, y));
+                            if (x, y) == cell {
+                                tile.set_own(x, y, false);
+                            }
                         }
                     }
                 }
@@ -79,7 +109,7 @@ impl FieldModel {
     ///
     /// Without branches, in 16-bit arithmetic: the compiler makes it vector code. Squares stay below 2^15 within reach,
     /// and that of `NONE` is 2^15.
-    #[inline]
+    #[inline(always)]
     fn offer_row(
         &self,
         tile: &mut Tile,
@@ -98,7 +128,8 @@ impl FieldModel {
         let row = row.expect("invariant: a row of a tile holds twice as many");
         let (mut old_x, mut old_y) = ([0_i16; LANES], [0_i16; LANES]);
         for (k, nearest) in row.iter().enumerate() {
-            (old_x[k], old_y[k]) = (i16::from(nearest.x), i16::from(nearest.y));
+            let both = i16::from_le_bytes([nearest.x as u8, nearest.y as u8]);
+            (old_x[k], old_y[k]) = ((both << 8) >> 8, both >> 8);
         }
         let mut taken = [0_i16; LANES];
         for k in 0..LANES {
@@ -116,7 +147,8 @@ impl FieldModel {
         }
         let changed = taken.iter().fold(0, |all, t| all | t) != 0;
         for (k, nearest) in row.iter_mut().enumerate() {
-            *nearest = Nearest { x: old_x[k] as i8, y: old_y[k] as i8 };
+            let [x, y] = ((old_x[k] & 255) | (old_y[k] << 8)).to_le_bytes();
+            *nearest = Nearest { x: x as i8, y: y as i8 };
         }
         if changed && y & 1 == 0 {
             for x in xs.filter(|x| x & 1 == 0) {
@@ -161,6 +193,9 @@ fn for_tiles_about(
     }
 }
 
+/// Columns and rows.
+type Part = (RangeInclusive<i32>, RangeInclusive<i32>);
+
 /// Cells that are looked at in one go: at least as many as an obstacle reaches across.
 const LANES: usize = 16;
 const COLUMNS: [i16; LANES] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15];
@@ -201,6 +236,21 @@ mod tests {
 
     proptest! {
         #[test]
+        fn vectors_do_what_plain_code_does(
+            obstacles in prop::collection::vec(((0..32_i32, 0..32_i32), (-7..=7_i32, -7..=7_i32)), 1..40),
+        ) {
+            let model = FieldModel::new(4, 2.0);
+            let (mut plain, mut vectors) = (Tile::EMPTY, Tile::EMPTY);
+            for (cell, (x, y)) in obstacles {
+                let part = |c: i32| (c - 4).max(0)..=(c + 4).min(31);
+                let part = (part(cell.0), part(cell.1));
+                model.offer_plainly(&mut plain, part.clone(), cell, Nearest::own(x, y));
+                model.offer(&mut vectors, part, cell, Nearest::own(x, y));
+            }
+            prop_assert!(plain.nearest == vectors.nearest && plain.coarse == vectors.coarse);
+        }
+
+        #[test]
         fn is_what_brute_force_finds(
             obstacles in prop::collection::btree_map((-20..20_i32, -20..20_i32), (-7..=7_i32, -7..=7_i32), 0..40),
             gone in prop::collection::vec(any::<prop::sample::Index>(), 0..20),
@@ -239,6 +289,10 @@ mod tests {
                 }
             }
             prop_assert!(wrong * 100 <= all, "{wrong} of {all}");
+            for (y, x) in (-32..32).flat_map(|y| (-32..32).map(move |x| (y, x))) {
+                let tile = map.tile((x >> TILE_BITS, y >> TILE_BITS));
+                prop_assert_eq!(tile.own[(y & 31) as usize] >> (x & 31) & 1 == 1, left.contains_key(&(x, y)));
+            }
         }
     }
 }

@@ -5,10 +5,12 @@ mod field;
 mod map;
 mod mask;
 mod pools;
+mod ray;
 mod tile;
+mod wipe;
 
 pub(crate) use draw::{Brush, DrawScratch};
 pub(crate) use field::FieldModel;
 pub(crate) use map::{TileMap, TileWindow, tile_bytes};
 pub(crate) use pools::{ChunkParts, Pools, assemble};
-pub(crate) use tile::{LOG_ODDS_UNIT, Nearest, TILE_BITS, TILE_CELLS, TILE_SIDE, Tile};
+pub(crate) use tile::{COARSE_SIDE, LOG_ODDS_UNIT, Nearest, TILE_BITS, TILE_CELLS, TILE_SIDE, Tile};

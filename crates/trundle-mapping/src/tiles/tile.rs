@@ -46,7 +46,7 @@ impl Nearest {
     }
 }
 
-/// 32 x 32 cells: 3.3 kB.
+/// 32 x 32 cells: 3.5 kB.
 #[derive(Debug, Clone)]
 pub(crate) struct Tile {
     /// In [`LOG_ODDS_UNIT`]s; 0 is "don't know".
@@ -55,6 +55,8 @@ pub(crate) struct Tile {
     pub(crate) nearest: [Nearest; TILE_CELLS],
     /// Likelihood of an obstacle at the middle of every second cell of every second row, 0 to 255.
     pub(crate) coarse: [u8; COARSE_SIDE * COARSE_SIDE],
+    /// Which cells have an obstacle of their own, a bit each, row by row.
+    pub(crate) own: [u32; TILE_SIDE],
 }
 
 impl Tile {
@@ -63,6 +65,7 @@ impl Tile {
         log_odds: [0; TILE_CELLS],
         nearest: [Nearest::NONE; TILE_CELLS],
         coarse: [0; COARSE_SIDE * COARSE_SIDE],
+        own: [0; TILE_SIDE],
     };
 
     /// Log-odds and nearest obstacles as bytes; the coarse field follows from them.
@@ -78,6 +81,7 @@ impl Tile {
         for i in 0..TILE_CELLS {
             tile.log_odds[i] = bytes[i] as i8;
             tile.nearest[i] = Nearest { x: bytes[TILE_CELLS + i] as i8, y: bytes[2 * TILE_CELLS + i] as i8 };
+            tile.own[i >> TILE_BITS] |= u32::from(tile.nearest[i].is_own()) << (i % TILE_SIDE);
         }
         tile
     }
@@ -87,6 +91,14 @@ impl Tile {
     pub(crate) fn place(x: i32, y: i32) -> usize {
         const MASK: i32 = TILE_SIDE as i32 - 1;
         (((y & MASK) << TILE_BITS) | (x & MASK)) as usize
+    }
+
+    /// Notes whether a cell has an obstacle of its own.
+    #[inline]
+    pub(crate) fn set_own(&mut self, x: i32, y: i32, own: bool) {
+        const MASK: i32 = TILE_SIDE as i32 - 1;
+        let (row, bit) = (&mut self.own[(y & MASK) as usize], 1 << (x & MASK));
+        *row = if own { *row | bit } else { *row & !bit };
     }
 
     /// The place of a cell in the coarse field, if it has one.

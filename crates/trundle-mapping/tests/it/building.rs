@@ -215,6 +215,7 @@ fn loops_of_corridors_are_closed_whatever_the_seed() {
                 bends += usize::from(done.bent.is_some());
             }
         }
+        mapper.finish();
         let origin = drive.truth[0].inverse();
         let truth = origin * *drive.truth.last().unwrap();
         let by_odometry = drive.odom.last().unwrap().distance(&truth);

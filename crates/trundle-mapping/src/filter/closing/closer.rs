@@ -23,8 +23,8 @@ pub(crate) struct Tools<'a> {
 /// Looks for loops along the way, and bends it where one is proved.
 #[derive(Debug, Default)]
 pub(crate) struct Closer {
-    /// The way at the last look, m.
-    pub(crate) looked_at: f64,
+    /// What was driven since the last look, m.
+    pub(crate) driven: f64,
     pub(crate) pending: Vec<Tie>,
     submaps: Submaps,
 }
@@ -38,8 +38,6 @@ pub(crate) struct Closing {
     pub(crate) farthest: f64,
 }
 
-/// A look each so many m of way.
-const LOOK_EVERY: f64 = 2.0;
 /// The way whose scans are matched together, m.
 const SUBMAP_WAY: f64 = 8.0;
 const MOST_SCANS: usize = 24;
@@ -67,10 +65,6 @@ impl Closer {
             }))
             .collect();
         let way = *ways.last()?;
-        if way - self.looked_at < LOOK_EVERY {
-            return None;
-        }
-        self.looked_at = way;
         let ties = history.ties(poses);
         let last = poses.len() - 1;
         let reached = reach(poses, &ties, last);

@@ -9,6 +9,7 @@ use crate::filter::{
     mapper::{USUAL, USUAL_RATE, metres, scaled},
     motion::{motion_covariance, unknown_motion_covariance},
     proposal::{Proposal, Proposer},
+    publish::Publisher,
     resample::{effective, low_variance},
 };
 use crate::tiles::TileMap;
@@ -120,6 +121,13 @@ impl MapLocalizer {
         }
     }
 
+    /// The map as a three-valued grid.
+    pub fn grid(&self) -> OccupancyGrid {
+        let mut publisher = Publisher::new(&self.config.map);
+        publisher.show(&self.map);
+        publisher.grid().clone()
+    }
+
     /// Tells where the base is: no search.
     pub fn start_at(&mut self, map_from_base: Pose2) {
         let per_metre = 1.0 / self.config.map.resolution;
@@ -185,10 +193,14 @@ impl MapLocalizer {
             usual: self.usual,
         };
         let motion = Pose2 { x: motion.x * per_metre, y: motion.y * per_metre, ..motion };
+        let lead =
+            particles.iter().fold(particles[0], |best, next| if next.1 > best.1 { *next } else { best }).0;
+        let far = proposer.far(&self.map, &mut self.coarse, (lead, lead * motion));
         let mut best: Option<(f64, Proposal)> = None;
         for (i, (pose, log_weight)) in particles.iter_mut().enumerate() {
             let mut chance = Chance::new(self.seed, self.updates, i);
-            let found = proposer.propose(&self.map, &mut self.coarse, *pose, *pose * motion, &mut chance);
+            let places = (*pose, *pose * motion);
+            let found = proposer.propose((&self.map, &far), &mut self.coarse, places, &mut chance);
             *pose = found.pose;
             *log_weight += found.log_weight * proposer.weight_scale();
             if best.is_none_or(|(greatest, _)| *log_weight > greatest) {

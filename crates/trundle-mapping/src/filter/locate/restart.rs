@@ -15,6 +15,7 @@ impl ParticleMapper {
     /// Tells that the robot may be anywhere in the map, as after loading it for another run: it is looked for, and until it is
     /// found the map does not change. The trajectory begins anew.
     pub fn kidnapped(&mut self) {
+        self.finish();
         self.lost = Some(GlobalSearch::default());
         self.gate = Gate::default();
         self.session = self.history.scans.len();

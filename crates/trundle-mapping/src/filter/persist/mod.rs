@@ -12,19 +12,20 @@
 
 mod bytes;
 mod error;
+mod scans;
 mod tiles;
 
 use super::{
-    ParticleConfig, ParticleMapper, ancestry::Ancestry, gate::Last, graph::Tie, history::History,
-    mapper::Particle, store::StoredScan,
+    ParticleConfig, ParticleMapper, ancestry::Ancestry, bending::Bending, gate::Last, graph::Tie,
+    history::History, mapper::Particle, trust::OdometryTrust,
 };
-use crate::tiles::{Pools, assemble};
+use crate::tiles::{Pools, TileMap, assemble};
 use bytes::{Reader, Writer, checksum};
 pub use error::FilterFileError;
 use trundle_core::Stamp;
 
 const MAGIC: &[u8; 7] = b"trundlF";
-const VERSION: u8 = 1;
+const VERSION: u8 = 2;
 /// Bytes before those that the checksum is of.
 const HEAD: usize = 16;
 
@@ -52,7 +53,8 @@ impl ParticleMapper {
         out.u64(self.seed);
         out.u64(self.updates);
         out.f64(self.usual);
-        out.f64(self.closer.looked_at);
+        self.trust.numbers().into_iter().for_each(|v| out.f64(v));
+        out.f64(self.closer.driven);
         out.count(self.session);
         let last = self.gate.last.unwrap_or_default();
         out.u8(u8::from(self.gate.last.is_some()));
@@ -64,9 +66,11 @@ impl ParticleMapper {
             out.f64(particle.log_weight);
             out.u16(*parent);
         }
-        tiles::write(&mut out, &Pools::new(self.particles.iter().map(|p| &p.map)));
+        let bending = self.bending.iter().map(|bending| &bending.map);
+        tiles::write(&mut out, &Pools::new(self.particles.iter().map(|p| &p.map).chain(bending)));
         write_ancestry(&mut out, &self.ancestry);
         write_history(&mut out, &self.history, &self.closer.pending);
+        write_bending(&mut out, self.bending.as_ref());
         let mut bytes = out.0;
         let sum = checksum(&bytes[HEAD..]);
         bytes[HEAD - 8..HEAD].copy_from_slice(&sum.to_le_bytes());
@@ -92,7 +96,10 @@ impl ParticleMapper {
         mapper.seed = body.u64()?;
         mapper.updates = body.u64()?;
         mapper.usual = body.f64("the usual likelihood")?;
-        mapper.closer.looked_at = body.f64("the way")?;
+        let trust = [(); 6].map(|()| body.f64("what is known of the odometry"));
+        let [a, b, c, d, e, f] = trust;
+        mapper.trust = OdometryTrust::from_numbers([a?, b?, c?, d?, e?, f?]);
+        mapper.closer.driven = body.f64("the way since the last look")?;
         mapper.session = body.u32()? as usize;
         let known = body.u8()? == 1;
         let last = Last {
@@ -106,29 +113,45 @@ impl ParticleMapper {
         for _ in 0..count {
             let state =
                 (body.pose("the pose of a particle")?, body.f64("the weight of a particle")?, body.u16()?);
-            body.require(usize::from(state.2) < count, "the parent of a particle")?;
             states.push(state);
         }
         let mut pools = tiles::read(&mut body)?;
-        body.require(pools.maps.len() == count, "the number of maps")?;
+        body.require((count..=count + 1).contains(&pools.maps.len()), "the number of maps")?;
         pools.tiles.iter_mut().for_each(|tile| mapper.brush.field.fill_coarse(tile));
-        let maps = assemble(pools.tiles, &pools.chunks, &pools.maps);
-        mapper.ancestry = read_ancestry(&mut body, count)?;
+        let mut maps = assemble(pools.tiles, &pools.chunks, &pools.maps);
+        let bent_map = if maps.len() > count { maps.pop() } else { None };
+        mapper.ancestry = read_ancestry(&mut body)?;
+        let column = mapper.ancestry.columns.last().map_or(usize::MAX, |column| column.poses.len());
+        body.require(states.iter().all(|s| usize::from(s.2) < column), "the parent of a particle")?;
         let length = mapper.ancestry.len();
         (mapper.history, mapper.closer.pending) = read_history(&mut body, length)?;
         body.require(mapper.session <= length, "the beginning of the run")?;
+        if let Some(map) = bent_map {
+            mapper.bending = Some(read_bending(&mut body, length, map)?);
+        }
         body.end()?;
-        let wanted = mapper.particles.len();
-        let particle = |i: usize| Particle {
-            pose: states[i % count].0,
-            log_weight: states[i % count].1,
-            map: maps[i % count].clone(),
+        let log_weights: Vec<f64> = states.iter().map(|state| state.1).collect();
+        let chosen = chosen(&log_weights, mapper.particles.len());
+        let particle = |&i: &usize| Particle {
+            pose: states[i].0,
+            log_weight: states[i].1,
+            map: maps[i].clone(),
             proposal: None,
         };
-        mapper.particles = (0..wanted).map(particle).collect();
-        mapper.parents = (0..wanted).map(|i| states[i % count].2).collect();
+        mapper.particles = chosen.iter().map(particle).collect();
+        mapper.parents = chosen.iter().map(|&i| states[i].2).collect();
         Ok(mapper)
     }
+}
+
+/// Which of the saved particles go on: where fewer are wanted the heaviest, in their order; where more, all of them in turn.
+fn chosen(log_weights: &[f64], wanted: usize) -> Vec<usize> {
+    let count = log_weights.len();
+    let mut order: Vec<usize> = (0..count).collect();
+    order.sort_by(|&a, &b| log_weights[b].total_cmp(&log_weights[a]));
+    order.truncate(wanted);
+    order.sort_unstable();
+    (0..wanted).map(|i| order[i % order.len()]).collect()
 }
 
 fn checked_body(bytes: &[u8]) -> Result<Reader<'_>, FilterFileError> {
@@ -165,7 +188,7 @@ fn write_ancestry(out: &mut Writer, ancestry: &Ancestry) {
     }
 }
 
-fn read_ancestry(bytes: &mut Reader<'_>, particles: usize) -> Result<Ancestry, FilterFileError> {
+fn read_ancestry(bytes: &mut Reader<'_>) -> Result<Ancestry, FilterFileError> {
     bytes.within = "trajectories";
     let mut ancestry = Ancestry::default();
     for _ in 0..bytes.count(32)? {
@@ -175,13 +198,15 @@ fn read_ancestry(bytes: &mut Reader<'_>, particles: usize) -> Result<Ancestry, F
     for _ in 0..bytes.count(12)? {
         let stamp = Stamp::from_nanos(bytes.u64()? as i64);
         let count = bytes.count(26)?;
-        bytes.require(count == particles, "the number of poses at a time")?;
+        bytes.require((1..=1000).contains(&count), "the number of poses at a time")?;
         let (mut poses, mut parents) = (Vec::new(), Vec::new());
         for _ in 0..count {
             poses.push(bytes.pose("a pose of the trajectory")?);
             parents.push(bytes.u16()?);
         }
-        bytes.require(parents.iter().all(|p| usize::from(*p) < count), "the parent of a pose")?;
+        // Filters may go on with more or fewer particles.
+        let before = ancestry.columns.last().map_or(usize::MAX, |column| column.poses.len());
+        bytes.require(parents.iter().all(|p| usize::from(*p) < before), "the parent of a pose")?;
         ancestry.push_column(stamp, poses, parents);
     }
     Ok(ancestry)
@@ -190,15 +215,8 @@ fn read_ancestry(bytes: &mut Reader<'_>, particles: usize) -> Result<Ancestry, F
 fn write_history(out: &mut Writer, history: &History, pending: &[Tie]) {
     out.count(history.scans.len());
     for (scan, step) in history.scans.iter().zip(&history.steps) {
-        out.u32(scan.origin.0.to_bits());
-        out.u32(scan.origin.1.to_bits());
         out.matrix(step);
-        out.count(scan.raw().count());
-        for (x, y, what) in scan.raw() {
-            out.u16(x as u16);
-            out.u16(y as u16);
-            out.u8(what);
-        }
+        scans::write(out, scan);
     }
     out.count(history.measured.len());
     history.measured.iter().for_each(|pose| out.pose(*pose));
@@ -216,17 +234,11 @@ fn write_history(out: &mut Writer, history: &History, pending: &[Tie]) {
 fn read_history(bytes: &mut Reader<'_>, poses: usize) -> Result<(History, Vec<Tie>), FilterFileError> {
     bytes.within = "scans";
     let mut history = History::default();
-    let count = bytes.count(84)?;
+    let count = bytes.count(92)?;
     bytes.require(count == poses, "the number of scans")?;
     for _ in 0..count {
-        let origin = (f32::from_bits(bytes.u32()?), f32::from_bits(bytes.u32()?));
-        bytes.require(origin.0.is_finite() && origin.1.is_finite(), "the origin of a scan")?;
         let step = bytes.covariance("the covariance of a step")?;
-        let mut rays = Vec::new();
-        for _ in 0..bytes.count(5)? {
-            rays.push((bytes.u16()? as i16, bytes.u16()? as i16, bytes.u8()?));
-        }
-        history.push(StoredScan::from_raw(origin, rays.into_iter()), step);
+        history.push(scans::read(bytes)?, step);
     }
     bytes.within = "loops";
     let measured = bytes.count(24)?;
@@ -239,6 +251,28 @@ fn read_history(bytes: &mut Reader<'_>, poses: usize) -> Result<(History, Vec<Ti
     Ok((history, read_ties(bytes, poses)?))
 }
 
+fn write_bending(out: &mut Writer, bending: Option<&Bending>) {
+    let Some(bending) = bending else { return };
+    out.f64(bending.farthest);
+    out.count(bending.drawn);
+    out.count(bending.poses.len());
+    bending.poses.iter().for_each(|pose| out.pose(*pose));
+}
+
+fn read_bending(bytes: &mut Reader<'_>, poses: usize, map: TileMap) -> Result<Bending, FilterFileError> {
+    bytes.within = "bent way";
+    let farthest = bytes.f64("how far a loop bent the way")?;
+    let drawn = bytes.u32()? as usize;
+    let count = bytes.count(24)?;
+    bytes.require((1..=poses).contains(&count) && drawn <= count, "the length of the bent way")?;
+    let mut bending = Bending::default();
+    (bending.farthest, bending.drawn, bending.map) = (farthest, drawn, map);
+    for _ in 0..count {
+        bending.poses.push(bytes.pose("a pose of the bent way")?);
+    }
+    Ok(bending)
+}
+
 fn read_ties(bytes: &mut Reader<'_>, poses: usize) -> Result<Vec<Tie>, FilterFileError> {
     let mut ties = Vec::new();
     for _ in 0..bytes.count(104)? {
@@ -249,4 +283,18 @@ fn read_ties(bytes: &mut Reader<'_>, poses: usize) -> Result<Vec<Tie>, FilterFil
         ties.push(Tie { from, to, from_to, covariance: bytes.covariance("the covariance of a loop")? });
     }
     Ok(ties)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::chosen;
+
+    #[test]
+    fn fewer_particles_are_the_heaviest_and_more_are_all_in_turn() {
+        let log_weights = [-3.0, 0.0, -1.0, -9.0, -2.0];
+        assert_eq!(chosen(&log_weights, 3), [1, 2, 4]);
+        assert_eq!(chosen(&log_weights, 1), [1]);
+        assert_eq!(chosen(&log_weights, 5), [0, 1, 2, 3, 4]);
+        assert_eq!(chosen(&log_weights, 7), [0, 1, 2, 3, 4, 0, 1]);
+    }
 }
