@@ -22,8 +22,9 @@ pub(crate) struct Bending {
     draw: DrawScratch,
 }
 
-/// Cells told anew with one scan: about as many as thirty particles' maps take of a scan of 180 beams in a hall, twice.
-const CELLS: usize = 1_000_000;
+/// Cells told anew with one scan: some ten times as many as thirty particles' maps take of one. Fewer would leave the robot in the
+/// unbent map for longer, where it matches what is double.
+const CELLS: usize = 4_000_000;
 /// What a scan costs at least, cells.
 const SCAN_COST: usize = 500;
 /// A look for loops each so many metres.
@@ -116,13 +117,65 @@ impl ParticleMapper {
 
     /// Keeps the store of scans within its bounds.
     pub(super) fn thin_history(&mut self) {
-        if self.history.scans.len() > self.config.most_scans && self.bending.is_none() {
+        if self.history.scans.len() > self.config.most_scans {
+            // Scans that are being drawn must not be renumbered.
+            self.finish();
             let count = (self.config.most_scans / 2).min(self.ancestry.shared.len());
             let before = self.history.scans.len();
             self.history.thin(&mut self.ancestry.shared, count);
             let gone = before - self.history.scans.len();
             self.session = if self.session < count { self.session.div_ceil(2) } else { self.session - gone };
             self.closer.pending.clear();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::filter::{ParticleConfig, store::StoredScan};
+    use trundle_core::{Beam, Scan, Stamp, Vector2};
+
+    /// A filter that has seen `scans` along a straight way, which a loop bends.
+    fn bent(scans: usize) -> ParticleMapper {
+        let config = ParticleConfig { particles: 3, ..ParticleConfig::default() };
+        let mut mapper = ParticleMapper::new(config, 1).unwrap();
+        let beams = (0..90).map(|k| Beam::Hit { range: 3.0 + 0.01 * f64::from(k % 7) }).collect();
+        let scan = Scan::new(Stamp::default(), Vector2::zeros(), -1.5, 0.03, beams).unwrap();
+        let mut shape = ScanShape::default();
+        shape.set(&mapper.config, &scan);
+        let way: Vec<_> = (0..scans)
+            .map(|k| (Stamp::from_nanos(k as i64), Pose2::new(0.05 * k as f64, 0.0, 0.0)))
+            .collect();
+        way.iter().for_each(|_| mapper.history.push(StoredScan::new(&shape), Matrix3::identity() * 1e-4));
+        let turn = |pose: Pose2| Pose2::new(0.0, 0.0, 0.1) * pose;
+        let poses = way[..scans - 5].iter().map(|(_, pose)| turn(*pose)).collect();
+        mapper.ancestry.replace(way);
+        mapper.bending = Some(Bending { poses, farthest: 1.0, ..Bending::default() });
+        mapper
+    }
+
+    #[test]
+    fn a_slice_of_bending_does_not_grow_with_the_run_and_ends_as_in_one_go() {
+        const BUDGET: usize = 20_000;
+        for scans in [40, 400] {
+            let (mut sliced, mut once) = (bent(scans), bent(scans));
+            let (mut most, mut slices, mut all) = (0, 0, 0);
+            loop {
+                let (cells, done) = sliced.go_on_bending(BUDGET);
+                (most, slices, all) = (most.max(cells), slices + 1, all + cells);
+                if done.is_some() {
+                    break;
+                }
+            }
+            once.finish();
+            assert!(most < BUDGET + 5_000, "{most} cells in one slice");
+            assert!(slices >= all / (BUDGET + 5_000), "{slices} slices");
+            assert!(once.bending.is_none() && once.grid() == sliced.grid());
+            // What came after the bent part is carried along as it was.
+            let end = Pose2::new(0.0, 0.0, 0.1) * Pose2::new(0.05 * (scans - 1) as f64, 0.0, 0.0);
+            assert!(sliced.pose().distance(&end) < 1e-6);
+            assert_eq!(sliced.trajectory().len(), scans);
         }
     }
 }

@@ -29,7 +29,7 @@ use trundle_core::{CellIndex, Invalid, OccupancyGrid, Pose2, Scan, Stamp};
 /// maps' tiles until one writes. What the particles cannot span, a loop after a long way, is searched for and proved, and
 /// the way is bent. Cost: per scan and particle one match (linear in the beams) and one drawing (linear in the cells that
 /// the beams pass); per 2 m a look for loops, n log n in the scans kept (at most `most_scans`). A loop that bends the way has
-/// the map drawn anew, a million cells with each scan: nothing else grows with the length of the run.
+/// the map drawn anew, four million cells with each scan: nothing else grows with the length of the run.
 #[derive(Debug)]
 pub struct ParticleMapper {
     pub(super) config: ParticleConfig,
