@@ -196,11 +196,15 @@ impl Navigator {
 
     /// The opening: nothing moves before there is a first view.
     fn open(&mut self, s: &Surroundings<'_>) {
-        let started = *self.started.get_or_insert(s.now);
-        let is_open = s.scan.is_some() && s.now - started >= self.config.opening;
-        if self.state == DriveState::Mapping && is_open && self.goal.pose().is_some() {
+        self.started.get_or_insert(s.now);
+        if self.state == DriveState::Mapping && self.is_open(s) && self.goal.pose().is_some() {
             self.state = DriveState::Planning;
         }
+    }
+
+    /// Whether the opening is over: the robot has stood for long enough, and there is a view.
+    fn is_open(&self, s: &Surroundings<'_>) -> bool {
+        s.scan.is_some() && self.started.is_some_and(|started| s.now - started >= self.config.opening)
     }
 
     /// Whether the robot knows where it is, and whether it gets on.

@@ -198,6 +198,10 @@ impl Robot {
             // Scans drawn so far stay where they are: their visual poses are in a frame that has moved.
             self.drawn = DrawnPoses::default();
         }
+        let goes_on = track.tracking == Tracking::Ok && !is_bent && !track.relocalised;
+        let goes_on = goes_on && matches!(correction, Some(Correction::Applied { .. }));
+        let visual = self.visual_base(&track.visual_from_camera).filter(|_| goes_on);
+        self.odometry.seen(odom_from_base, visual);
         if is_bent {
             self.follow_the_visual_map();
         }

@@ -149,12 +149,8 @@ impl Supervisor {
         }
         match explorer.next(s.grid, s.estimate.pose) {
             Exploration::Look(view) => {
-                let is_same =
-                    !over && frontier.as_ref().is_some_and(|old| old.middle == view.frontier.middle);
-                let was_moved = frontier
-                    .as_ref()
-                    .is_some_and(|old| !over && (old.middle - view.frontier.middle).norm() < SMALL_MOVE);
-                if is_same || was_moved {
+                let is_near = |old: &Frontier| (old.middle - view.frontier.middle).norm() < SMALL_MOVE;
+                if !over && frontier.as_ref().is_some_and(is_near) {
                     return None;
                 }
                 *frontier = Some(view.frontier);
