@@ -4,6 +4,7 @@
 //! (SLAM, mapping, localization, planning, control, docking) meet, as core types. It runs on the data's time: which stage runs
 //! when follows from the stamps and the [`Schedule`], so a recording fed again gives the same reports.
 
+mod bumper;
 mod camera_mount;
 mod config;
 mod drawn;

@@ -1,4 +1,5 @@
 use crate::{
+    bumper,
     config::RobotConfig,
     drawn::DrawnPoses,
     eye::EyeWatch,
@@ -31,6 +32,8 @@ pub struct Robot {
     base_from_camera: Pose3,
     /// Of the disc that the robot stands on for certain, m.
     inscribed_radius: f64,
+    /// Where something stands that presses the bumper, base frame, m.
+    bumper: Vec<Vector2>,
     odometry: WheelOdometry,
     slam: RgbdSlam,
     scanner: DepthScanner,
@@ -87,6 +90,7 @@ impl Robot {
             sight: config.sight,
             base_from_camera,
             inscribed_radius: inscribed_radius(&footprint),
+            bumper: bumper::ahead_of(&footprint),
             odometry: WheelOdometry::new(config.drive, config.odometry.clone())?,
             slam: RgbdSlam::new(config.camera, config.slam.clone())?,
             scanner,
@@ -127,7 +131,7 @@ impl Robot {
             SensorEvent::Gyro(gyro) => self.feel(gyro),
             SensorEvent::Wheels(wheels) => self.roll(wheels, &mut report),
             SensorEvent::Rgbd(image) => self.look(image, &mut report),
-            SensorEvent::Touch(touch) => self.navigator.touch(touch.pressed),
+            SensorEvent::Touch(touch) => self.touch(touch.pressed),
             SensorEvent::Cliff(cliff) => self.navigator.cliff(cliff.over_edge),
             SensorEvent::Scan(scan) if self.sight == Sight::Laser => {
                 self.see(scan.clone());
@@ -178,6 +182,14 @@ impl Robot {
         let decision = navigator.step(&surroundings, &mut self.times);
         report.twist = Some(decision.twist);
         report.replanned = decision.replanned;
+    }
+
+    /// The bumper: what presses it enters the map, which the camera may be blind for.
+    fn touch(&mut self, pressed: bool) {
+        if pressed && self.latest.odometry.is_some() {
+            self.mapper.mark_occupied(self.localizer.estimate().pose, &self.bumper);
+        }
+        self.navigator.touch(pressed);
     }
 
     /// An image: the visual pose corrects the estimate; at the map's rate the scan does too, and enters the map.
