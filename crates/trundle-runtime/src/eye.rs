@@ -6,7 +6,6 @@ pub(crate) struct EyeWatch {
     last: Option<Look>,
     /// Stamp of the newest scan that shows something.
     seen: Option<Stamp>,
-    frozen: usize,
 }
 
 /// The first of the images that are the same.
@@ -35,9 +34,7 @@ impl EyeWatch {
         };
         let motion = first.odom_from_base.inverse() * odom_from_base;
         let has_moved = motion.position().norm() > MOVED || motion.theta.abs() > MOVED;
-        let is_frozen = has_moved || now.stamp - first.stamp > SAME_FOR;
-        self.frozen += usize::from(is_frozen);
-        is_frozen
+        has_moved || now.stamp - first.stamp > SAME_FOR
     }
 
     /// Notes a scan of an image that is not frozen; whether it shows something.
@@ -53,11 +50,6 @@ impl EyeWatch {
     /// Stamp of the newest scan that shows something.
     pub(crate) fn seen(&self) -> Option<Stamp> {
         self.seen
-    }
-
-    /// Images that were left out because the camera was frozen.
-    pub(crate) fn frozen(&self) -> usize {
-        self.frozen
     }
 }
 
@@ -95,7 +87,6 @@ mod tests {
         assert!(!eye.is_frozen(&image(1.0), at(0.0)), "standing still it may well be the same");
         assert!(eye.is_frozen(&image(1.0), at(0.1)));
         assert!(!eye.is_frozen(&image(1.1), at(0.2)));
-        assert_eq!(eye.frozen(), 1);
     }
 
     #[test]

@@ -6,12 +6,18 @@
 
 mod bumper;
 mod camera_mount;
+mod captain;
 mod config;
 mod drawn;
 mod eye;
+mod helm;
+mod histogram;
+mod job;
 mod last_stage;
+mod lazy_image;
 mod level_map;
 mod look;
+mod lookout;
 mod mission;
 mod navigator;
 mod progress;
@@ -26,7 +32,10 @@ mod supervisor_config;
 
 pub use camera_mount::CameraMount;
 pub use config::RobotConfig;
+pub use histogram::Histogram;
+pub use job::{Answer, Helper, Job};
 pub use last_stage::{LastStageConfig, LastStageReport};
+pub use lazy_image::LazyImage;
 pub use level_map::{LevelMap, level_from_first_camera};
 pub use mission::{Mission, Task, TaskEnd, TaskRecord};
 pub use report::StepReport;

@@ -105,6 +105,14 @@ impl Supervisor {
         (!lost.is_empty()).then(|| lost.join("; "))
     }
 
+    /// Whether the next step may look for frontiers.
+    pub(crate) fn may_take_long(&self, s: &Surroundings<'_>, state: &DriveState) -> bool {
+        let explores = self.queue.front().is_some_and(|entry| entry.task == Task::Explore)
+            || matches!(&self.current, Some(Current { work: Work::Exploring { .. }, .. }));
+        let driving = matches!(state, DriveState::Driving | DriveState::Waiting { .. });
+        explores && (state.is_over() || driving && self.look_due.will_be_due(s.now))
+    }
+
     /// What the navigator, which is in `state`, shall do next; `None` to go on.
     pub(crate) fn step(&mut self, s: &Surroundings<'_>, state: &DriveState) -> Option<Goal> {
         match state {

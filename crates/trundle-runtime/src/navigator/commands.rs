@@ -100,16 +100,7 @@ impl Navigator {
 
     /// Safety's word on a command.
     pub(super) fn guard(&mut self, twist: Twist2, s: &Surroundings<'_>) -> Twist2 {
-        let report = self.safety.check(&SafetyInput {
-            now: s.now,
-            twist,
-            scan: s.scan,
-            memory: Some(SafetyMemory { grid: s.grid, map_from_base: s.estimate.pose }),
-            touched: self.touched,
-            over_edge: self.over_edge,
-            image: s.seen,
-            wheels: Some(s.now),
-        });
+        let report = self.safety.check(&safety_input(s, twist, self.touched, self.over_edge));
         match (report.action, &self.state) {
             (
                 SafetyAction::Stop(reason),
@@ -130,6 +121,25 @@ impl Navigator {
             _ => {}
         }
         report.twist
+    }
+}
+
+/// What safety judges a twist by.
+pub(crate) fn safety_input<'a>(
+    s: &Surroundings<'a>,
+    twist: Twist2,
+    touched: bool,
+    over_edge: bool,
+) -> SafetyInput<'a> {
+    SafetyInput {
+        now: s.now,
+        twist,
+        scan: s.scan,
+        memory: Some(SafetyMemory { grid: s.grid, map_from_base: s.estimate.pose }),
+        touched,
+        over_edge,
+        image: s.seen,
+        wheels: Some(s.now),
     }
 }
 
