@@ -21,6 +21,7 @@ mod lookout;
 mod mission;
 mod navigator;
 mod progress;
+pub mod real_time;
 mod report;
 mod robot;
 mod schedule;
