@@ -9,7 +9,7 @@ pub struct StepReport {
     pub twist: Option<Twist2>,
     /// The pose estimate after the step.
     pub estimate: Option<PoseEstimate>,
-    /// Stamp of the image that was looked at in the background, when what it showed is taken up.
+    /// Stamp of the image that was looked at, here or, when what it showed is taken up, in the background.
     pub image: Option<Stamp>,
     /// Why an image that was looked at was none.
     pub broken_image: Option<String>,

@@ -181,8 +181,7 @@ impl Robot {
             captain => {
                 let times = &mut self.times;
                 let background = &mut self.background;
-                report.twist =
-                    times.measure(Stage::Control, || background.steer(captain, &surroundings));
+                report.twist = times.measure(Stage::Control, || background.steer(captain, &surroundings));
             }
         }
     }
@@ -202,6 +201,7 @@ impl Robot {
         }
         let Some(odom_from_base) = self.odometry_at(image.stamp()) else { return };
         let Some(lookout) = &mut self.lookout else { return };
+        report.image = Some(image.stamp());
         match lookout.look(image, odom_from_base, &mut self.times) {
             Some(sighting) => self.take_in(sighting, report),
             None => self.latest.frozen += 1,

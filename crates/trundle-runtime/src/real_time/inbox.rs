@@ -1,5 +1,8 @@
 use super::pulse::Pulse;
-use crate::{Histogram, job::Answer};
+use crate::{
+    Histogram,
+    job::{Answer, Helper},
+};
 use std::collections::VecDeque;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -75,7 +78,13 @@ impl<E> Inbox<E> {
     pub fn new(capacity: usize) -> Self {
         let (sender, receiver) = sync_channel(capacity);
         let door = InboxDoor { sender, refused: Arc::default() };
-        Self { receiver, urgent: VecDeque::new(), patient: VecDeque::new(), door, lengths: Histogram::default() }
+        Self {
+            receiver,
+            urgent: VecDeque::new(),
+            patient: VecDeque::new(),
+            door,
+            lengths: Histogram::default(),
+        }
     }
 
     /// A way in.
@@ -101,6 +110,23 @@ impl<E> Inbox<E> {
                 Err(RecvTimeoutError::Timeout) if !self.patient.is_empty() => {}
                 Err(RecvTimeoutError::Timeout | RecvTimeoutError::Disconnected) => return None,
             }
+        }
+    }
+
+    /// The next answer of a helper, whatever else is there: that is let go. None when it does not come within `patience`.
+    pub fn next_answer(&mut self, helper: Helper, patience: Duration) -> Option<Answer> {
+        let start = Instant::now();
+        loop {
+            self.urgent.clear();
+            let is_it =
+                |input: &Input<E>| matches!(input, Input::Answer(answer) if answer.helper() == helper);
+            if let Some(at) = self.patient.iter().position(is_it)
+                && let Some(Input::Answer(answer)) = self.patient.remove(at)
+            {
+                return Some(answer);
+            }
+            let post = self.receiver.recv_timeout(patience.saturating_sub(start.elapsed())).ok()?;
+            self.sort(post);
         }
     }
 

@@ -5,7 +5,7 @@ use std::time::Duration;
 pub struct Place {
     /// The processor core, from 0; none: any.
     pub core: Option<usize>,
-    /// Niceness: -20 (first) to 19 (last). Default 0. Below 0 the system must allow it.
+    /// So much nicer to others than the thread that starts it, 0 to 39. Default 0.
     pub nice: i32,
 }
 
@@ -29,10 +29,11 @@ fn pin(core: usize) -> bool {
     sched_setaffinity(None, &set).is_ok()
 }
 
-/// Linux counts niceness by thread; 0 is the calling one.
+/// Linux counts niceness by thread; none is the calling one.
 #[cfg(target_os = "linux")]
-fn rank(nice: i32) -> bool {
-    rustix::process::setpriority_process(None, nice).is_ok()
+fn rank(nicer: i32) -> bool {
+    use rustix::process::{getpriority_process, setpriority_process};
+    getpriority_process(None).and_then(|now| setpriority_process(None, now + nicer)).is_ok()
 }
 
 #[cfg(not(target_os = "linux"))]

@@ -9,6 +9,7 @@ use crate::{
     mission::Mission,
     navigator::Surroundings,
     report::StepReport,
+    stage::Stage,
 };
 use trundle_core::{Stamp, Twist2};
 
@@ -78,7 +79,7 @@ impl Robot {
         if self.background.is_used() {
             self.background.leave(image);
         } else {
-            match image.load() {
+            match self.times.measure(Stage::Decoding, || image.load()) {
                 Ok(image) => self.look(&image, &mut report),
                 Err(problem) => report.broken_image = Some(problem),
             }

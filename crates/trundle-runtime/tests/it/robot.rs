@@ -5,7 +5,7 @@ use trundle_core::{
 use trundle_runtime::{DriveState, Robot, RobotConfig, Sight, StepReport};
 
 /// A wall of one colour across the view, `distance` m ahead of the base, and the floor before it, as the default mount sees them.
-fn wall(stamp: Stamp, distance: f64) -> SensorEvent {
+pub fn wall(stamp: Stamp, distance: f64) -> SensorEvent {
     let camera = PinholeCamera::kinect_v2();
     let base_from_camera = RobotConfig::default().mount.base_from_camera();
     let (width, height) = (camera.width(), camera.height());
@@ -37,7 +37,8 @@ fn stand(robot: &mut Robot, seconds: f64, image: impl Fn(Stamp) -> Option<Sensor
     reports
 }
 
-fn robot(goal: Pose2) -> Robot {
+/// A robot that shall drive to `goal`.
+pub fn robot(goal: Pose2) -> Robot {
     let mut robot = Robot::new(RobotConfig::default()).unwrap();
     robot.drive_to(goal).unwrap();
     robot

@@ -104,7 +104,8 @@ impl Crowd {
     /// [`SPREAD`] from it.
     pub(crate) fn clearance(&self, footprint: &Footprint, pose: Pose2) -> f64 {
         let reach = footprint.circumscribed_radius() + SPREAD;
-        let near = self.walkers.iter().zip(self.bodies.iter()).filter(|(w, _)| w.pose.distance(&pose) < reach);
+        let near =
+            self.walkers.iter().zip(self.bodies.iter()).filter(|(w, _)| w.pose.distance(&pose) < reach);
         near.map(|(walker, body)| clearance(body, walker, footprint, pose)).fold(f64::INFINITY, f64::min)
     }
 

@@ -8,7 +8,7 @@ use crate::people::CrowdView;
 use crate::scenes::Scene;
 use crate::world::Stage;
 use std::sync::Arc;
-use trundle_core::{Invalid, RgbdImage, Stamp};
+use trundle_core::{Invalid, RgbdImage, SensorEvent, Stamp};
 
 /// The simulated camera taken out of its [`Simulator`], for another thread: it makes images of [`Shot`]s.
 #[derive(Debug)]
@@ -59,6 +59,17 @@ impl Simulator {
     /// Takes the camera out: from now on there are no images among the events, but [`Simulator::shots`]. None the second time.
     pub fn detach_camera(&mut self) -> Option<CameraAside> {
         Some(CameraAside { eye: self.eye.take()?, scene: Arc::clone(&self.scene) })
+    }
+
+    /// Goes on by a millisecond: what the sensors say meanwhile, in order.
+    ///
+    /// # Errors
+    /// As [`trundle_core::RobotBody::next_event`].
+    pub fn advance(&mut self) -> Result<impl Iterator<Item = SensorEvent> + use<>, SimError> {
+        let before = std::mem::take(&mut self.queue);
+        self.step();
+        self.read_sensors()?;
+        Ok(before.into_iter().chain(std::mem::take(&mut self.queue)))
     }
 
     /// The shots since the last call, for the camera that was taken out.
