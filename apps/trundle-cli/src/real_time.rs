@@ -45,6 +45,8 @@ pub struct Timing {
     pub queues: Vec<QueueLength>,
     /// Events that the control thread was too slow to get.
     pub refused: u64,
+    /// Lines of the recording left out because the disk could not follow: it ends before the first.
+    pub lines_lost: u64,
     /// The simulator's own trouble.
     pub world: WorldReport,
     /// Resident memory of the whole program.
@@ -144,6 +146,7 @@ impl Timing {
             rows.push(row(format!("waiting for {queue}: median, p99, most"), lengths));
         }
         rows.push(row("events refused".to_owned(), self.refused.to_string()));
+        rows.push(row("lines of the recording lost".to_owned(), self.lines_lost.to_string()));
         let world = &self.world;
         let late = [world.lateness_p999_ms, world.lateness_most_ms];
         rows.push(row("simulated base late: p99.9, most".to_owned(), milliseconds(&late)));

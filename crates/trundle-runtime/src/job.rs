@@ -38,7 +38,7 @@ pub(crate) enum Work {
 #[derive(Debug)]
 pub struct Answer {
     pub(crate) result: Outcome,
-    pub(crate) times: StageTimes,
+    pub(crate) times: Box<StageTimes>,
 }
 
 #[derive(Debug)]
@@ -68,7 +68,7 @@ impl Job {
 
     /// Does the work.
     pub fn run(self) -> Answer {
-        let mut times = StageTimes::default();
+        let mut times = Box::<StageTimes>::default();
         let result = match self.0 {
             Work::Look { mut lookout, image, odom_from_base } => {
                 let stamp = image.stamp();

@@ -108,6 +108,7 @@ impl LiveBody {
             load,
             queues: queues.iter().filter_map(|(name, lengths)| QueueLength::of(name, lengths)).collect(),
             refused: self.inbox.refused(),
+            lines_lost: run.tape.lost,
             memory: world.memory.clone(),
             world,
             interrupted: self.stop.load(Ordering::Relaxed),
@@ -141,15 +142,9 @@ impl WiredBody for LiveBody {
     }
 
     fn last_answer(&mut self, helper: Helper) -> Option<Answer> {
-        while self.busy.contains_key(&helper) {
-            match self.inbox.next_answer(helper, PATIENCE) {
-                Some(answer) => {
-                    self.is_back(helper);
-                    return Some(answer);
-                }
-                None => return None,
-            }
-        }
-        None
+        self.busy.get(&helper)?;
+        let answer = self.inbox.next_answer(helper, PATIENCE)?;
+        self.is_back(helper);
+        Some(answer)
     }
 }

@@ -135,17 +135,17 @@ fn a_captain_who_thinks_for_long_leaves_a_robot_that_brakes_for_the_bumper() {
     let mut lost = Vec::new();
     let mut robot = deferring();
     let drives = |report: &StepReport| report.twist.is_some_and(|twist| twist.v > 0.05);
-    let reports = live(&mut robot, 3.0, 3.0, |now, jobs| {
+    let reports = live(&mut robot, 2.6, 2.6, |now, jobs| {
         let mut answers = Vec::new();
         for job in jobs {
-            let is_gone = now.as_secs() > 2.5 && job.helper() == Helper::Captain;
+            let is_gone = now.as_secs() > 2.4 && job.helper() == Helper::Captain;
             if is_gone { lost.push(job) } else { answers.push(job.run()) }
         }
         answers
     });
-    assert!(drives(reports.last().unwrap()), "without the captain it goes on");
+    assert!(reports[121..].iter().any(drives), "without the captain it goes on");
     assert_eq!(lost.len(), 1, "one captain, one job");
-    let stamp = Stamp::from_nanos(3_000_000_000);
+    let stamp = Stamp::from_nanos(2_600_000_000);
     robot.step(&SensorEvent::Touch(Touch { stamp, pressed: true }));
     let report = robot.step(&SensorEvent::Wheels(WheelTicks { stamp, left: 0, right: 0 }));
     assert_eq!(report.twist, Some(Twist2::ZERO));
