@@ -77,6 +77,9 @@ pub struct DemoArgs {
     /// Drive straight to the goal: the map is drawn on the way [default: explore until the map is complete, do the goals, come back]
     #[arg(long)]
     pub direct: bool,
+    /// By the clock on the wall: simulator and robot in threads of their own, camera at 30 Hz; Ctrl-C stops the robot and ends the run.
+    #[arg(long)]
+    pub real_time: bool,
     /// What breaks, and when: a TOML file as for `trundle sim --faults`.
     #[arg(long, value_name = "FILE")]
     pub faults: Option<PathBuf>,

@@ -1,6 +1,7 @@
 use crate::run::{RunSetup, drive};
 use crate::sim::scene::SceneOptions;
-use crate::{Outcome, args::DemoArgs, console, failure::Failure, robot_file, run_output, sim};
+use crate::tape::Tape;
+use crate::{Outcome, args::DemoArgs, console, failure::Failure, real_time, robot_file, run_output, sim};
 use trundle::core::{Invalid, Pose2};
 use trundle::io::OutputFolder;
 use trundle::runtime::{Mission, RobotConfig, Task};
@@ -26,20 +27,30 @@ pub fn run(args: &DemoArgs) -> Result<Outcome, Failure> {
         time_limit: time_limit(&mission),
         mission,
         robot: robot.with_seed(args.seed),
+        real_time: args.real_time,
     };
     for goal in setup.mission.tasks().iter().filter_map(RunSetup::goal_of) {
         require_free(&scene, scene.start * goal, &setup.robot)?;
     }
-    let mut body = Simulator::new(scene, simulated(&setup.robot, faults)?, args.seed)
-        .map_err(|error| Failure::Input(error.to_string()))?;
+    let mut config = simulated(&setup.robot, faults)?;
+    if args.real_time {
+        config.camera_rate_hz = real_time::CAMERA_HZ;
+        config.kobuki.command_timeout = real_time::COMMAND_TIMEOUT;
+    }
+    let mut body =
+        Simulator::new(scene, config, args.seed).map_err(|error| Failure::Input(error.to_string()))?;
     let folder = OutputFolder::create(&args.out)?;
     if !args.common.quiet {
         let (scene, seed) = (&setup.scene, setup.seed);
         let mission = run_output::told(&setup.mission);
         console::say(&format!("Room '{scene}', seed {seed}, on camera, wheels and gyro alone: {mission}."));
     }
-    let run = drive(&setup, &mut body, &folder, args.common.quiet)?;
-    run_output::write(&setup, &run, folder, args.common.quiet)
+    if args.real_time {
+        let (run, timing) = real_time::drive_live(&setup, body, &folder, args.common.quiet)?;
+        return run_output::write(&setup, &run, Some(&timing), folder, args.common.quiet);
+    }
+    let run = drive(&setup, &mut body, Tape::here(&folder)?, args.common.quiet)?;
+    run_output::write(&setup, &run, None, folder, args.common.quiet)
 }
 
 /// The goals asked for, or the room's own; before them exploration and after them the way back, unless it is to be direct.

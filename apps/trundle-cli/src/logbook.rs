@@ -69,6 +69,11 @@ impl Logbook {
         self.start.map_or(0.0, |start| self.now - start)
     }
 
+    /// Stamps as seconds since the first event.
+    pub fn seconds_of(&self, stamps: &[Stamp]) -> Vec<f64> {
+        stamps.iter().map(|stamp| self.start.map_or(0.0, |start| *stamp - start)).collect()
+    }
+
     /// The length of the true way, or of the believed one where truth is not known, m.
     pub fn path_length(&self) -> f64 {
         let way = if self.truths.is_empty() { &self.estimates } else { &self.truths };

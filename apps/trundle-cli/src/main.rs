@@ -13,8 +13,10 @@ mod logbook;
 mod map;
 mod map_input;
 mod map_output;
+mod pace;
 mod picture;
 mod plan;
+mod real_time;
 mod replay;
 mod robot_file;
 mod run;
@@ -25,6 +27,7 @@ mod sim;
 mod slam;
 mod slam_output;
 mod slam_recorder;
+mod tape;
 mod view;
 mod vocabulary;
 

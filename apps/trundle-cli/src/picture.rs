@@ -6,7 +6,8 @@ use trundle::viz::{CameraView, FeatureMark};
 /// The visual landmarks, map frame, m.
 pub fn landmarks_in_map(robot: &Robot) -> Vec<Vector3> {
     let Some(map_from_visual) = robot.map_from_visual() else { return Vec::new() };
-    robot.slam().landmarks().map(|landmark| map_from_visual.transform(landmark)).collect()
+    let Some(slam) = robot.slam() else { return Vec::new() };
+    slam.landmarks().map(|landmark| map_from_visual.transform(landmark)).collect()
 }
 
 /// An image with its features.

@@ -1,12 +1,12 @@
 use crate::run::{RunSetup, drive};
-use crate::{Outcome, args::ReplayArgs, failure::Failure, run_output};
+use crate::{Outcome, args::ReplayArgs, body::Recorded, failure::Failure, run_output, tape::Tape};
 use trundle::io::{OutputFolder, RecordingReader};
 
 /// `trundle replay RECORDING`.
 pub fn run(args: &ReplayArgs) -> Result<Outcome, Failure> {
     let name = args.recording.display();
-    let mut body = RecordingReader::open(&args.recording)?;
-    let config = body.config().ok_or_else(|| {
+    let reader = RecordingReader::open(&args.recording)?;
+    let config = reader.config().ok_or_else(|| {
         Failure::Input(format!(
             "{name}: no trundle.Config message comes first, so this is no recording of a trundle run"
         ))
@@ -15,6 +15,6 @@ pub fn run(args: &ReplayArgs) -> Result<Outcome, Failure> {
         .map_err(|error| Failure::Input(format!("{name}: the configuration cannot be used: {error}")))?;
     setup.robot.clone().validated().map_err(|error| Failure::Input(format!("{name}: {error}")))?;
     let folder = OutputFolder::create(&args.out)?;
-    let run = drive(&setup, &mut body, &folder, args.common.quiet)?;
-    run_output::write(&setup, &run, folder, args.common.quiet)
+    let run = drive(&setup, &mut Recorded::new(reader), Tape::here(&folder)?, args.common.quiet)?;
+    run_output::write(&setup, &run, None, folder, args.common.quiet)
 }

@@ -1,10 +1,11 @@
-use crate::{body::WiredBody, console, failure::Failure, logbook::Logbook, view::BestView};
-use indicatif::ProgressBar;
+mod trip;
+
+use crate::{body::WiredBody, failure::Failure, logbook::Logbook, tape::Tape, view::BestView};
 use serde::{Deserialize, Serialize};
-use std::time::Instant;
-use trundle::core::{FrameId, Pose2, RobotBody, SensorEvent, Stamp};
-use trundle::io::{EncodedEvent, OutputFolder, PoseInFrame, PosesInFrame, Recorder};
-use trundle::runtime::{Mission, Robot, RobotConfig, Stage, StepReport, Task};
+use std::time::{Duration, Instant};
+use trip::Trip;
+use trundle::core::{Pose2, RobotBody};
+use trundle::runtime::{Histogram, Mission, Robot, RobotConfig, Task};
 use trundle::sim::Simulator;
 
 /// What a run is: recorded first, and all that a replay needs besides the events.
@@ -23,6 +24,9 @@ pub struct RunSetup {
     pub time_limit: f64,
     /// The robot.
     pub robot: RobotConfig,
+    /// Whether it gave its long work out, to threads beside the control loop.
+    #[serde(default)]
+    pub real_time: bool,
 }
 
 impl RunSetup {
@@ -51,51 +55,37 @@ pub struct Run {
     pub view: BestView,
     /// Wall-clock time of the whole, s.
     pub seconds: f64,
+    /// What recording took.
+    pub tape: TapeCost,
+}
+
+/// What recording took.
+#[derive(Debug, Clone, Default)]
+pub struct TapeCost {
+    /// Lines that waited for the disk, each time one was put in.
+    pub waiting: Histogram,
+    /// Lines left out because the disk could not follow.
+    pub lost: u64,
+    /// Processor time of the thread that records, where there is one.
+    pub spent: Duration,
 }
 
 /// The robot stands and is watched for so long after it has arrived, s: what still rolls counts.
 const AFTERMATH: f64 = 0.5;
 
 /// Lets the robot of `setup` live in `body` until it has arrived, given up, or its time is over; records everything.
-pub fn drive(
-    setup: &RunSetup,
-    body: &mut dyn WiredBody,
-    folder: &OutputFolder,
-    quiet: bool,
-) -> Result<Run, Failure> {
-    let start = Instant::now();
-    let mut robot = Robot::new(setup.robot.clone())?;
-    robot.begin(&setup.mission);
-    let mut recorder = folder.recorder("recording.mcap")?;
-    recorder.record_json("/config", "trundle.Config", Stamp::default(), setup)?;
-    let mut log = Logbook::default();
-    let mut view = BestView::default();
-    let line = console::live_line(quiet);
+pub fn drive(setup: &RunSetup, body: &mut dyn WiredBody, tape: Tape, quiet: bool) -> Result<Run, Failure> {
+    let mut trip = Trip::begin(setup, tape, quiet)?;
     let mut finished = None;
-    while let Some(encoded) = body.next_event()? {
-        recorder.record_event(&encoded)?;
-        let event = encoded.decode().map_err(|error| Failure::Input(error.to_string()))?;
-        log.judge(&event, setup.map_from_world);
-        let report = robot.step(&event);
-        if let Some(twist) = report.twist {
-            body.command(twist)?;
-        }
-        record(&mut recorder, &robot, &encoded, &report)?;
-        log.note(event.stamp(), &report);
-        if let SensorEvent::Rgbd(image) = event {
-            show(&line, &log, &robot, start);
-            view.offer(image, &robot, &report);
-        }
-        if report.finished && log.now - *finished.get_or_insert(log.now) >= AFTERMATH {
-            break;
-        }
-        if log.elapsed() > setup.time_limit {
+    while let Some(input) = body.next_input()? {
+        let is_finished = trip.step(input, body)?;
+        let now = trip.log.now;
+        let is_over = is_finished && now - *finished.get_or_insert(now) >= AFTERMATH;
+        if is_over || trip.log.elapsed() > setup.time_limit {
             break;
         }
     }
-    line.finish_and_clear();
-    recorder.finish()?;
-    Ok(Run { robot, log, view, seconds: start.elapsed().as_secs_f64() })
+    trip.end(body)
 }
 
 /// Lets the robot of `setup` live in the simulator without recording: what the simulator says reaches it as it is.
@@ -117,46 +107,11 @@ pub fn live(setup: &RunSetup, body: &mut Simulator) -> Result<Run, Failure> {
             break;
         }
     }
-    Ok(Run { robot, log, view: BestView::default(), seconds: start.elapsed().as_secs_f64() })
-}
-
-fn record<W: std::io::Write + std::io::Seek>(
-    recorder: &mut Recorder<W>,
-    robot: &Robot,
-    event: &EncodedEvent,
-    report: &StepReport,
-) -> Result<(), Failure> {
-    let stamp = event.stamp();
-    if let Some(twist) = report.twist {
-        recorder.record_json("/twist", "trundle.Twist", stamp, &twist)?;
-    }
-    if let (Some(estimate), Some(_)) = (&report.estimate, &report.track) {
-        let pose = PoseInFrame::planar(stamp, &FrameId::Map.to_string(), estimate.pose);
-        recorder.record_json("/pose", PoseInFrame::SCHEMA, stamp, &pose)?;
-    }
-    if let (true, Some(plan)) = (report.replanned, robot.plan()) {
-        let poses = plan.trajectory.points().iter().map(|point| point.pose);
-        let poses = PosesInFrame::planar(stamp, &FrameId::Map.to_string(), poses);
-        recorder.record_json("/trajectory", PosesInFrame::SCHEMA, stamp, &poses)?;
-    }
-    Ok(())
-}
-
-fn show(line: &ProgressBar, log: &Logbook, robot: &Robot, start: Instant) {
-    let pose = robot.estimate().pose;
-    let wall = start.elapsed().as_secs_f64();
-    let rate = |stage: Stage| robot.times().runs(stage) as f64 / log.elapsed().max(0.1);
-    line.set_message(format!(
-        "{:5.1} s ({:.1}x)  pose {:6.2} {:6.2} m {:6.1} deg  {:<10}  slam {:4.1} Hz  map {:3.1} Hz  control {:4.1} Hz",
-        log.elapsed(),
-        log.elapsed() / wall.max(1e-3),
-        pose.x,
-        pose.y,
-        pose.theta.to_degrees(),
-        log.state.to_string(),
-        rate(Stage::Slam),
-        rate(Stage::Mapping),
-        rate(Stage::Control),
-    ));
-    line.tick();
+    Ok(Run {
+        robot,
+        log,
+        view: BestView::default(),
+        seconds: start.elapsed().as_secs_f64(),
+        tape: TapeCost::default(),
+    })
 }

@@ -1,3 +1,4 @@
+use crate::real_time::Timing;
 use crate::{Outcome, console, failure::Failure, picture, run::Run, run::RunSetup, run_table::RunNumbers};
 use trundle::core::{Footprint, Pose2};
 use trundle::io::{OutputFolder, trajectory_text_from_planar, write_map};
@@ -5,7 +6,13 @@ use trundle::runtime::Mission;
 use trundle::viz::{Card, Chart, Color, Figure, RunReport, Table, Verdict};
 
 /// Writes the folder of a run, prints its table, and says whether the goal was reached.
-pub fn write(setup: &RunSetup, run: &Run, folder: OutputFolder, quiet: bool) -> Result<Outcome, Failure> {
+pub fn write(
+    setup: &RunSetup,
+    run: &Run,
+    timing: Option<&Timing>,
+    folder: OutputFolder,
+    quiet: bool,
+) -> Result<Outcome, Failure> {
     let numbers = RunNumbers::of(setup, run);
     write_map(&folder, "map", run.robot.grid())?;
     folder.write("trajectory.txt", trajectory_text_from_planar(&run.log.estimates).as_bytes())?;
@@ -13,10 +20,13 @@ pub fn write(setup: &RunSetup, run: &Run, folder: OutputFolder, quiet: bool) -> 
     let report = report(setup, run, &numbers);
     folder.write("map.png", &report.map_png())?;
     folder.write("report.html", report.to_html().as_bytes())?;
-    folder.write("summary.json", numbers.summary(setup, run).to_json().as_bytes())?;
+    folder.write("summary.json", numbers.summary(setup, run, timing).to_json().as_bytes())?;
     let place = folder.commit()?;
     if !quiet {
         console::table(&numbers.rows(run));
+        if let Some(timing) = timing {
+            console::table(&timing.rows());
+        }
         console::say(&format!("\n{}\nSee {}", numbers.verdict(), place.join("report.html").display()));
     }
     Ok(if numbers.is_success() { Outcome::Reached } else { Outcome::Missed })
@@ -24,6 +34,7 @@ pub fn write(setup: &RunSetup, run: &Run, folder: OutputFolder, quiet: bool) -> 
 
 fn report(setup: &RunSetup, run: &Run, numbers: &RunNumbers) -> RunReport {
     let robot = &run.robot;
+    let image = run.view.image();
     let verdict = numbers.verdict();
     let plan = robot.plan();
     let curve = plan.map(|plan| plan.trajectory.points().iter().map(|p| p.pose.position()).collect());
@@ -48,8 +59,8 @@ fn report(setup: &RunSetup, run: &Run, numbers: &RunNumbers) -> RunReport {
         goal: setup.last_goal(),
         footprint: Footprint::disc(setup.robot.footprint_radius).ok(),
         scan: robot.scan().map(|scan| (pose, scan.clone())),
-        camera: run.view.image.as_ref().map(|image| picture::camera_view(image, &run.view.features)),
-        depth: run.view.image.as_ref().map(|image| image.depth().clone()),
+        camera: image.as_ref().map(|image| picture::camera_view(image, &run.view.features)),
+        depth: image.as_ref().map(|image| image.depth().clone()),
         charts: vec![error_chart(run), speed_chart(run)],
         figures: Vec::new(),
         tables: vec![table(numbers)],

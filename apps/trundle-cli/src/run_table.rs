@@ -1,3 +1,4 @@
+use crate::real_time::Timing;
 use crate::{goals::GoalOutcome, logbook::TrackCounts, run::Run, run::RunSetup};
 use serde_json::{Map, Value, json};
 use trundle::eval::{GoalError, goal_error};
@@ -30,6 +31,8 @@ pub struct RunNumbers {
     pub landmarks: usize,
     /// Keyframes in the visual map.
     pub keyframes: usize,
+    /// When images were taken that were dropped because newer ones came before they were looked at, s since the start.
+    pub images_dropped: Vec<f64>,
     /// How it ended.
     pub state: DriveState,
 }
@@ -55,8 +58,9 @@ impl RunNumbers {
             duration: log.elapsed(),
             plans: log.plans,
             tracked: log.tracked,
-            landmarks: run.robot.slam().landmarks().count(),
-            keyframes: run.robot.slam().keyframes().count(),
+            landmarks: run.robot.slam().map_or(0, |slam| slam.landmarks().count()),
+            keyframes: run.robot.slam().map_or(0, |slam| slam.keyframes().count()),
+            images_dropped: log.seconds_of(run.robot.dropped_images()),
             state: log.state.clone(),
         }
     }
@@ -131,6 +135,7 @@ impl RunNumbers {
             "images ok / weak / dead reckoned / lost",
             format!("{ok} / {weak} / {dead_reckoned} / {lost}"),
         ));
+        rows.push(row("images dropped", self.images_dropped.len().to_string()));
         rows.push(row("keyframes, landmarks", format!("{}, {}", self.keyframes, self.landmarks)));
         rows
     }
@@ -139,13 +144,13 @@ impl RunNumbers {
     pub fn rows(&self, run: &Run) -> Vec<Vec<String>> {
         let mut rows = self.run_rows();
         rows.push(vec!["wall clock".to_owned(), format!("{:.1} s", run.seconds)]);
-        rows.push(["stage, ms", "median", "p99", "runs"].map(str::to_owned).to_vec());
+        rows.push(["stage, ms", "median", "p99", "p99.9", "most", "runs"].map(str::to_owned).to_vec());
         rows.extend(stage_rows(run.robot.times()));
         rows
     }
 
     /// `summary.json`: the numbers of the table; the wall clock's under `wall_clock`.
-    pub fn summary(&self, setup: &RunSetup, run: &Run) -> Summary {
+    pub fn summary(&self, setup: &RunSetup, run: &Run, timing: Option<&Timing>) -> Summary {
         // A replay's summary is the run's, byte for byte, so it bears the run's name.
         let mut summary = Summary::new("demo");
         summary
@@ -171,20 +176,26 @@ impl RunNumbers {
             .set("images_lost", self.tracked.lost)
             .set("keyframes", self.keyframes)
             .set("landmarks", self.landmarks)
-            .set("wall_clock", wall_clock(run.seconds, run.robot.times()));
+            .set("images_dropped", self.images_dropped.len())
+            .set("images_dropped_at_s", &self.images_dropped)
+            .set("wall_clock", wall_clock(run.seconds, run.robot.times(), timing));
         summary
     }
 }
 
 /// What the clock on the wall said: the only part of any output that differs between two equal runs.
-pub fn wall_clock(seconds: f64, times: &StageTimes) -> Value {
+pub fn wall_clock(seconds: f64, times: &StageTimes, timing: Option<&Timing>) -> Value {
     let mut stages = Map::new();
     for stage in Stage::ALL {
         if let Some(cost) = times.cost(stage) {
             stages.insert(stage.name().to_owned(), json!(cost));
         }
     }
-    json!({ "total_s": seconds, "stages": stages })
+    let mut all = json!({ "total_s": seconds, "stages": stages });
+    if let Some(timing) = timing {
+        all["real_time"] = json!(timing);
+    }
+    all
 }
 
 /// A row a stage: name, median, 99th percentile, runs.
@@ -193,8 +204,9 @@ pub fn stage_rows(times: &StageTimes) -> Vec<Vec<String>> {
     costs
         .map(|(stage, cost)| {
             let numbers =
-                [format!("{:.3}", cost.median_ms), format!("{:.3}", cost.p99_ms), cost.runs.to_string()];
-            std::iter::once(stage.name().to_owned()).chain(numbers).collect()
+                [cost.median_ms, cost.p99_ms, cost.p999_ms, cost.most_ms].map(|ms| format!("{ms:.3}"));
+            let runs = cost.runs.to_string();
+            std::iter::once(stage.name().to_owned()).chain(numbers).chain([runs]).collect()
         })
         .collect()
 }

@@ -124,7 +124,7 @@ fn summary(args: &SlamArgs, sequence: &TumSequence, run: &SlamRun, judged: Optio
         .set("ate_pairs", judged.map(|j| j.absolute.pairs.len()))
         .set("rpe_translation_rmse_m", judged.map(|j| j.relative.translation.rmse))
         .set("rpe_rotation_rmse_rad", judged.map(|j| j.relative.rotation.rmse))
-        .set("wall_clock", wall_clock(run.seconds, &run.times));
+        .set("wall_clock", wall_clock(run.seconds, &run.times, None));
     summary
 }
 

@@ -39,6 +39,7 @@ mod turn_integral;
 mod visual_frame;
 mod wheel_odometry;
 mod wheel_report;
+mod wheel_size;
 
 pub use camera_motion::camera_motion;
 pub use correction::{Correction, Prediction, VisualPose, VisualQuality};

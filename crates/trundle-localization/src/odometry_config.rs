@@ -22,6 +22,9 @@ pub struct OdometryConfig {
     /// Heading by the gyro, sigma after 1 s, rad / sqrt(s), 0 to 1. Default 0.002: three times the angle random walk of a
     /// small gyro, for the rest of its bias.
     pub gyro_time_noise: f64,
+    /// What a wheel's radius may be off its nominal one before it was learnt (one sigma, as a part), 0 (never learnt) to 0.1.
+    /// Default 0.01: worn tyres.
+    pub wheel_radius_sigma: f64,
     /// Noise of one gyro reading (one sigma), rad/s, above 0, to 1. Default 0.01.
     pub gyro_rate_noise: f64,
     /// What the gyro's bias may be before it was measured (one sigma), rad/s, 0 to 1. Default 0.02.
@@ -56,6 +59,7 @@ impl Default for OdometryConfig {
             wheel_way_noise: 0.02,
             gyro_turn_noise: 0.01,
             gyro_time_noise: 0.002,
+            wheel_radius_sigma: 0.01,
             gyro_rate_noise: 0.01,
             gyro_bias_sigma: 0.02,
             gyro_bias_walk: 0.0002,
@@ -82,6 +86,7 @@ impl OdometryConfig {
         require_in("wheel_way_noise", self.wheel_way_noise, "rad/sqrt(m)", 0.0, 1.0)?;
         require_in("gyro_turn_noise", self.gyro_turn_noise, "rad/sqrt(rad)", 0.0, 1.0)?;
         require_in("gyro_time_noise", self.gyro_time_noise, "rad/sqrt(s)", 0.0, 1.0)?;
+        require_in("wheel_radius_sigma", self.wheel_radius_sigma, "", 0.0, 0.1)?;
         require_in("gyro_rate_noise", self.gyro_rate_noise, "rad/s", 1e-6, 1.0)?;
         require_in("gyro_bias_sigma", self.gyro_bias_sigma, "rad/s", 0.0, 1.0)?;
         require_in("gyro_bias_walk", self.gyro_bias_walk, "rad/s/sqrt(s)", 0.0, 0.1)?;

@@ -22,10 +22,15 @@ impl StuckGyro {
         self.last = Some(*rate);
     }
 
+    /// Whether it has said the same for so long that it may be stuck.
+    pub(crate) fn is_suspect(&self) -> bool {
+        self.same_for > SUSPECT
+    }
+
     /// Whether the gyro is stuck, where the wheels say `by_wheels` rad/s and its bias is `bias` rad/s.
     pub(crate) fn contradicts(&self, by_wheels: f64, bias: f64) -> bool {
         let apart = |last: GyroRate| (last.omega - bias - by_wheels).abs() > APART;
-        self.same_for > SUSPECT && self.last.is_some_and(apart)
+        self.is_suspect() && self.last.is_some_and(apart)
     }
 }
 

@@ -5,6 +5,7 @@ use crate::{
     planar::carried,
     stuck_gyro::StuckGyro,
     turn_integral::TurnIntegral,
+    wheel_size::{Rolled, WheelSize},
 };
 use nalgebra::Matrix3;
 use trundle_core::{
@@ -16,7 +17,8 @@ use trundle_core::{
 /// Problem: integrate encoder ticks to a pose. Between two readings the base drives an arc whose length is the mean of
 /// the two rims' ways and whose angle is the gyro's, less its bias, or the rims' difference over the wheelbase where
 /// there is no gyro. The arc is integrated exactly by the exponential map of SE(2). Counters wrap at 2^16; a difference
-/// is read as the shorter way round. While the wheels rest, so does the robot, and the gyro shows its bias. Cost: O(1).
+/// is read as the shorter way round. While the wheels rest, so does the robot, and the gyro shows its bias. While they roll,
+/// gyro and camera show how large they are ([`WheelOdometry::seen`]). Cost: O(1).
 ///
 /// A reading from the past, after a gap, or implying an impossible speed never makes the pose jump: see [`WheelReport`].
 #[derive(Debug, Clone)]
@@ -26,6 +28,7 @@ pub struct WheelOdometry {
     gyro: TurnIntegral,
     bias: GyroBias,
     stuck: StuckGyro,
+    size: WheelSize,
     last_rate: Option<GyroRate>,
     last: Option<WheelTicks>,
     suspect: Option<WheelTicks>,
@@ -52,6 +55,7 @@ impl WheelOdometry {
         let (drive, config) = (drive.validated()?, config.validated()?);
         Ok(Self {
             bias: GyroBias::new(&config),
+            size: WheelSize::new(&config),
             drive,
             config,
             gyro: TurnIntegral::default(),
@@ -120,6 +124,23 @@ impl WheelOdometry {
         self.bias.is_measured().then(|| self.bias.value())
     }
 
+    /// Radii of the left and the right wheel as far as gyro and camera have shown them, m.
+    pub fn wheel_radii(&self) -> [f64; 2] {
+        let (left, right) = self.size.ratios();
+        [left, right].map(|ratio| ratio * self.drive.wheel_radius)
+    }
+
+    /// The camera saw the base at `visual_from_base`, in a frame that rests, when the odometry had it at `odom_from_base`:
+    /// the ways by both show how large the wheels are. `None` where the frame does not go on from the last call's.
+    pub fn seen(&mut self, odom_from_base: Pose2, visual_from_base: Option<Pose2>) {
+        match visual_from_base {
+            Some(visual) if visual.is_finite() && odom_from_base.is_finite() => {
+                self.size.seen(odom_from_base, visual);
+            }
+            _ => self.size.unseen(),
+        }
+    }
+
     fn start(&mut self, ticks: &WheelTicks) -> WheelReport {
         self.last = Some(*ticks);
         self.odometry.stamp = ticks.stamp;
@@ -144,12 +165,13 @@ impl WheelOdometry {
     }
 
     fn rim_motion(&self, last: &WheelTicks, ticks: &WheelTicks) -> RimMotion {
-        let metres = |from: u16, to: u16| {
-            f64::from(to.wrapping_sub(from).cast_signed()) * self.drive.metres_per_tick()
+        let metres = |from: u16, to: u16, ratio: f64| {
+            f64::from(to.wrapping_sub(from).cast_signed()) * self.drive.metres_per_tick() * ratio
         };
+        let (left, right) = self.size.ratios();
         RimMotion {
-            left: metres(last.left, ticks.left),
-            right: metres(last.right, ticks.right),
+            left: metres(last.left, ticks.left, left),
+            right: metres(last.right, ticks.right, right),
             dt: ticks.stamp - last.stamp,
         }
     }
@@ -171,6 +193,13 @@ impl WheelOdometry {
         let slips = slip_rate.abs() > self.config.slip_rate;
         let way = (rims.left + rims.right) / 2.0;
         let slip = if slips { slip_rate.abs() * rims.dt * self.drive.wheelbase / 2.0 } else { 0.0 };
+        if slips {
+            self.size.interrupt();
+        } else {
+            let by_gyro = turn_by_gyro.filter(|_| !self.stuck.is_suspect());
+            let rolled = Rolled { way, time: rims.dt, by_wheels: turn_by_wheels, by_gyro };
+            self.size.rolled(&self.config, self.drive.wheelbase, rolled);
+        }
         self.move_by(stamp, &Step { way, turn, dt: rims.dt, by_gyro: turn_by_gyro.is_some(), slip });
         if slips { WheelReport::Slipping { rate: slip_rate } } else { WheelReport::Used }
     }
@@ -217,6 +246,7 @@ impl WheelOdometry {
         self.last = Some(*ticks);
         self.suspect = None;
         self.resting_since = None;
+        self.size.interrupt();
         self.gyro.turn_until(ticks.stamp, self.config.gyro_timeout);
         self.odometry.stamp = ticks.stamp;
         self.odometry.twist = Twist2::ZERO;

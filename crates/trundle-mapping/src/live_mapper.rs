@@ -31,6 +31,7 @@ struct Kept {
 enum What {
     Scan(Arc<Scan>),
     FreeDisc { radius: f64 },
+    Touched { points: Vec<Vector2> },
 }
 
 /// The evidence when so many kept things were drawn.
@@ -94,6 +95,15 @@ impl LiveMapper {
         {
             let stamp = self.kept.last().map_or(Stamp::default(), |kept| kept.stamp);
             self.keep(stamp, map_from_base, What::FreeDisc { radius });
+        }
+    }
+
+    /// As [`GridMapper::mark_occupied`]; it moves with the scan before it.
+    pub fn mark_occupied(&mut self, map_from_base: Pose2, points: &[Vector2]) {
+        self.front.mark_occupied(map_from_base, points);
+        if map_from_base.is_finite() {
+            let stamp = self.kept.last().map_or(Stamp::default(), |kept| kept.stamp);
+            self.keep(stamp, map_from_base, What::Touched { points: points.to_vec() });
         }
     }
 
@@ -236,6 +246,10 @@ fn draw(mapper: &mut GridMapper, kept: &Kept) -> usize {
         }
         What::FreeDisc { radius } => {
             mapper.mark_free_disc(kept.map_from_base, *radius);
+            SCAN_COST
+        }
+        What::Touched { points } => {
+            mapper.mark_occupied(kept.map_from_base, points);
             SCAN_COST
         }
     }

@@ -91,6 +91,21 @@ impl GridMapper {
         }
     }
 
+    /// Marks the cells at these points (base frame, m) as occupied for certain: the bumper met something there.
+    pub fn mark_occupied(&mut self, map_from_base: Pose2, points: &[Vector2]) {
+        self.live.begin();
+        for point in points {
+            let at = map_from_base.transform(*point);
+            let limit = self.config.half_extent;
+            if at.x.abs() <= limit && at.y.abs() <= limit {
+                let cell = GridCell::containing(at / self.config.resolution);
+                self.grow(cell, cell);
+                self.evidence.entry(cell).log_odds = self.config.clamp_high as f32;
+                self.live.show(cell, self.config.clamp_high as f32);
+            }
+        }
+    }
+
     /// The hook for corrections: forgets the map and draws it anew from scans at corrected poses.
     pub fn redraw<'a>(&mut self, scans: impl IntoIterator<Item = (Pose2, &'a Scan)>) {
         let (low, (cols, rows)) = self.evidence.bounds();
@@ -241,6 +256,23 @@ mod tests {
     }
 
     #[test]
+    fn what_was_touched_is_on_the_map_until_it_is_seen_to_be_free() {
+        let mut mapper = mapper();
+        let (pose, touched) = (Pose2::new(1.0, 1.0, std::f64::consts::FRAC_PI_2), Vector2::new(0.99, 1.21));
+        mapper.mark_occupied(pose, &[Vector2::new(0.21, 0.01)]);
+        assert_eq!(mapper.grid().at(touched), Cell::Occupied);
+        for _ in 0..20 {
+            mapper.insert(pose, &ahead(Beam::Free { range: 3.0 }));
+        }
+        assert_eq!(mapper.grid().at(touched), Cell::Occupied, "so near the camera sees nothing");
+        let away = Pose2::new(1.0, 0.0, std::f64::consts::FRAC_PI_2);
+        for _ in 0..20 {
+            mapper.insert(away, &ahead(Beam::Free { range: 3.0 }));
+        }
+        assert_eq!(mapper.grid().at(touched), Cell::Free);
+    }
+
+    #[test]
     fn a_beam_does_not_erase_what_hides_in_the_blind_range() {
         let mut mapper = mapper();
         let (low_box, beyond) = (Vector2::new(1.01, 0.01), Vector2::new(0.76, 0.01));
@@ -269,6 +301,8 @@ mod tests {
         }
         mapper.mark_free_disc(Pose2::new(f64::NAN, 0.0, 0.0), 0.2);
         mapper.mark_free_disc(Pose2::new(1e9, 0.0, 0.0), 0.2);
+        mapper.mark_occupied(Pose2::new(0.0, f64::NAN, 0.0), &[Vector2::x()]);
+        mapper.mark_occupied(Pose2::IDENTITY, &[Vector2::new(-1e9, 0.0)]);
     }
 
     #[test]

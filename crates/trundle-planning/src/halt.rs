@@ -15,7 +15,7 @@ impl Task<'_> {
     /// places that are tried, the one that arrives first.
     pub(crate) fn halted(&self, plan: &PlanResult, movers: &[Mover]) -> Option<(Trajectory, f64)> {
         let radius = self.body.radius;
-        let encounter = conflict(&plan.trajectory, movers, radius)?;
+        let encounter = conflict(&plan.trajectory, 0.0, movers, radius)?;
         let Phase::Drive(curve) = plan.phases.first()? else { return None };
         let first = plan.trajectory.points()[0];
         let (v, curvature) = (first.twist.v, first.twist.omega / first.twist.v.max(1e-9));

@@ -6,6 +6,9 @@ use trundle_core::{
 
 /// How far ahead a steady motion is believed, s.
 pub(crate) const HORIZON: f64 = 2.0;
+/// Plans keep so much more from movers than is asked of one that is under way, m: the next scan's velocities are a little
+/// different, and must not overturn a plan that was just made.
+const MARGIN: f64 = 0.05;
 /// Time between two looks, s.
 const LOOK: f64 = 0.02;
 /// Longest waits are tried in steps of this, s.
@@ -33,17 +36,22 @@ impl Mover {
         Ok(Self { position, velocity, radius })
     }
 
-    /// Where its centre will be, map frame, m.
+    /// The same, and room to spare.
+    pub(crate) fn with_margin(self) -> Self {
+        Self { radius: self.radius + MARGIN, ..self }
+    }
+
+    /// Where its centre will be after `time` s, map frame, m.
     pub fn at(&self, time: f64) -> Vector2 {
         self.position + self.velocity * time
     }
 }
 
-/// When a disc of `radius` m that follows the trajectory first comes nearer to a mover than both allow, within the horizon,
-/// s. A mover that is too near already counts only while it comes nearer.
-pub(crate) fn conflict(trajectory: &Trajectory, movers: &[Mover], radius: f64) -> Option<f64> {
+/// When a disc of `radius` m that follows the trajectory, `from` seconds into it now, first comes nearer to a mover than both
+/// allow, within the horizon, s from now. A mover that is too near already counts only while it comes nearer.
+pub(crate) fn conflict(trajectory: &Trajectory, from: f64, movers: &[Mover], radius: f64) -> Option<f64> {
     let gap = |mover: &Mover, time: f64| {
-        (trajectory.at(time).pose.position() - mover.at(time)).norm() - mover.radius - radius
+        (trajectory.at(from + time).pose.position() - mover.at(time)).norm() - mover.radius - radius
     };
     let steps = (HORIZON / LOOK) as usize;
     (0..=steps).map(|k| k as f64 * LOOK).find(|time| {
@@ -95,18 +103,10 @@ pub(crate) fn paused(
     let waits = (0..=(HORIZON / WAIT) as usize).map(|k| k as f64 * WAIT);
     waits
         .map(|wait| (with_pause(trajectory, stop, wait), wait))
-        .find(|(late, _)| conflict(late, movers, radius).is_none())
+        .find(|(late, _)| conflict(late, 0.0, movers, radius).is_none())
 }
 
-/// What is left of a trajectory after `time` s.
-pub(crate) fn rest_of(trajectory: &Trajectory, time: f64) -> Trajectory {
-    let now = TrajectoryPoint { time: 0.0, ..trajectory.at(time) };
-    let later = trajectory.points().iter().filter(|point| point.time > time);
-    let points = std::iter::once(now).chain(later.map(|p| TrajectoryPoint { time: p.time - time, ..*p }));
-    Trajectory::new(points.collect()).expect("invariant: times still rise")
-}
-
-/// The same, standing for `wait` s from its sample at `stop` s on.
+/// The trajectory, standing for `wait` s from its sample at `stop` s on.
 fn with_pause(trajectory: &Trajectory, stop: f64, wait: f64) -> Trajectory {
     let points = trajectory.points();
     let at = points.partition_point(|point| point.time < stop).min(points.len() - 1);

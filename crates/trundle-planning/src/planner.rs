@@ -1,7 +1,7 @@
 use crate::area::area;
 use crate::body::Body;
 use crate::masks::kept_out;
-use crate::movers::{Mover, conflict, delayed, rest_of, stamp};
+use crate::movers::{Mover, conflict, delayed, stamp};
 use crate::plan::{Plan, PlanResult};
 use crate::stopwatch::{StageTimes, Stopwatch};
 use crate::task::{Memory, Task};
@@ -145,9 +145,10 @@ impl Planner {
         goal: Pose2,
     ) -> Plan {
         let radius = self.body.radius;
+        let movers: &[Mover] = &movers.iter().map(|mover| mover.with_margin()).collect::<Vec<_>>();
         let direct = self.plan(grid, start, start_twist, goal);
         let Plan::Found(direct) = direct else { return direct };
-        if conflict(&direct.trajectory, movers, radius).is_none() {
+        if conflict(&direct.trajectory, 0.0, movers, radius).is_none() {
             return Plan::Found(direct);
         }
         let late = if direct.trajectory.points()[0].twist == Twist2::ZERO {
@@ -180,8 +181,7 @@ impl Planner {
         let end = current.trajectory.end();
         let same = end.distance(&goal) <= self.config.goal_tolerance.max(1e-2)
             && trundle_core::difference_of_angles(end.theta, goal.theta).abs() < 1e-2;
-        let rest = rest_of(&current.trajectory, time);
-        let clear = conflict(&rest, movers, self.body.radius).is_none();
+        let clear = self.meets(&current.trajectory, time, movers).is_none();
         if same && clear && self.still_free(grid, &current.trajectory, time).is_ok() {
             return Replan::Keep;
         }
@@ -203,6 +203,12 @@ impl Planner {
         let mask = self.keep_out.as_ref().map(|mask| (mask, UnknownIs::Free));
         let layers: Vec<_> = std::iter::once((grid, self.config.unknown)).chain(mask).collect();
         still_free(&layers, trajectory, from, &self.body)
+    }
+
+    /// When the robot, `from` seconds into `trajectory` now, first comes nearer to a mover than both allow, s from now; `None` where
+    /// it meets none within 2 s. Microseconds: a question for every scan.
+    pub fn meets(&self, trajectory: &Trajectory, from: f64, movers: &[Mover]) -> Option<f64> {
+        conflict(trajectory, from, movers, self.body.radius)
     }
 
     /// The distance field of the last plan, for pictures.
@@ -283,11 +289,11 @@ impl Planner {
         const ENCOUNTERS: usize = 4;
         let start = direct.trajectory.points()[0].pose;
         let mut closed = grid.clone();
-        let mut time = conflict(&direct.trajectory, movers, self.body.radius)?;
+        let mut time = conflict(&direct.trajectory, 0.0, movers, self.body.radius)?;
         for _ in 0..ENCOUNTERS {
             stamp(&mut closed, movers, time);
             let Plan::Found(around) = self.plan(&closed, start, twist, goal) else { return None };
-            match conflict(&around.trajectory, movers, self.body.radius) {
+            match conflict(&around.trajectory, 0.0, movers, self.body.radius) {
                 Some(next) => time = next,
                 None => return Some(around),
             }

@@ -3,32 +3,38 @@ use trundle_core::{Beam, Pose2, RgbdImage, Scan, Stamp};
 /// Tells images that show something from those of a camera that is covered, frozen or has lost its depth.
 #[derive(Debug, Default)]
 pub(crate) struct EyeWatch {
-    last: Option<(u64, Pose2)>,
+    last: Option<Look>,
     /// Stamp of the newest scan that shows something.
     seen: Option<Stamp>,
-    frozen: usize,
 }
 
+/// The first of the images that are the same.
+#[derive(Debug, Clone, Copy)]
+struct Look {
+    print: u64,
+    stamp: Stamp,
+    odom_from_base: Pose2,
+}
+
+/// A robot that rests may see the same for so long, s: a true camera's noise never lets it.
+const SAME_FOR: f64 = 3.0;
 /// The robot has moved when it is so far from where it was, m, or has turned by so many rad.
 const MOVED: f64 = 0.01;
 /// A scan that shows so little of its bearings shows nothing.
 const LEAST_SEEN: f64 = 0.05;
 
 impl EyeWatch {
-    /// Whether this image, taken at `odom_from_base`, is bit for bit the last one though the robot has moved: the camera says
-    /// again what it said before. Noise alone makes any two true images differ.
+    /// Whether this image, taken at `odom_from_base`, is bit for bit the last one though the robot has moved, or again and again:
+    /// the camera says what it said before. Noise alone makes any two true images differ.
     pub(crate) fn is_frozen(&mut self, image: &RgbdImage, odom_from_base: Pose2) -> bool {
-        let print = fingerprint(image);
-        if let Some((last, at)) = self.last
-            && last == print
-        {
-            let motion = at.inverse() * odom_from_base;
-            let moved = motion.position().norm() > MOVED || motion.theta.abs() > MOVED;
-            self.frozen += usize::from(moved);
-            return moved;
-        }
-        self.last = Some((print, odom_from_base));
-        false
+        let now = Look { print: fingerprint(image), stamp: image.stamp(), odom_from_base };
+        let Some(first) = self.last.filter(|first| first.print == now.print) else {
+            self.last = Some(now);
+            return false;
+        };
+        let motion = first.odom_from_base.inverse() * odom_from_base;
+        let has_moved = motion.position().norm() > MOVED || motion.theta.abs() > MOVED;
+        has_moved || now.stamp - first.stamp > SAME_FOR
     }
 
     /// Notes a scan of an image that is not frozen; whether it shows something.
@@ -44,11 +50,6 @@ impl EyeWatch {
     /// Stamp of the newest scan that shows something.
     pub(crate) fn seen(&self) -> Option<Stamp> {
         self.seen
-    }
-
-    /// Images that were left out because the camera was frozen.
-    pub(crate) fn frozen(&self) -> usize {
-        self.frozen
     }
 }
 
@@ -66,8 +67,16 @@ mod tests {
     use trundle_core::{DepthImage, Image, Vector2};
 
     fn image(depth: f32) -> RgbdImage {
-        RgbdImage::new(Stamp::default(), Image::filled(8, 4, [9; 3]), DepthImage::filled(8, 4, depth))
-            .unwrap()
+        image_at(0.0, depth)
+    }
+
+    fn image_at(time: f64, depth: f32) -> RgbdImage {
+        RgbdImage::new(
+            Stamp::default().after(time),
+            Image::filled(8, 4, [9; 3]),
+            DepthImage::filled(8, 4, depth),
+        )
+        .unwrap()
     }
 
     #[test]
@@ -78,7 +87,14 @@ mod tests {
         assert!(!eye.is_frozen(&image(1.0), at(0.0)), "standing still it may well be the same");
         assert!(eye.is_frozen(&image(1.0), at(0.1)));
         assert!(!eye.is_frozen(&image(1.1), at(0.2)));
-        assert_eq!(eye.frozen(), 1);
+    }
+
+    #[test]
+    fn a_camera_that_says_the_same_for_seconds_is_frozen_though_the_robot_rests() {
+        let mut eye = EyeWatch::default();
+        let frozen = |eye: &mut EyeWatch, time| eye.is_frozen(&image_at(time, 1.0), Pose2::IDENTITY);
+        assert!(!frozen(&mut eye, 0.0) && !frozen(&mut eye, 2.9) && frozen(&mut eye, 3.1));
+        assert!(!eye.is_frozen(&image_at(3.2, 1.1), Pose2::IDENTITY), "it goes on");
     }
 
     #[test]

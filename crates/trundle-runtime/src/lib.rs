@@ -4,16 +4,24 @@
 //! (SLAM, mapping, localization, planning, control, docking) meet, as core types. It runs on the data's time: which stage runs
 //! when follows from the stamps and the [`Schedule`], so a recording fed again gives the same reports.
 
+mod bumper;
 mod camera_mount;
+mod captain;
 mod config;
 mod drawn;
 mod eye;
+mod helm;
+mod histogram;
+mod job;
 mod last_stage;
+mod lazy_image;
 mod level_map;
 mod look;
+mod lookout;
 mod mission;
 mod navigator;
 mod progress;
+pub mod real_time;
 mod report;
 mod robot;
 mod schedule;
@@ -25,7 +33,10 @@ mod supervisor_config;
 
 pub use camera_mount::CameraMount;
 pub use config::RobotConfig;
+pub use histogram::Histogram;
+pub use job::{Answer, Helper, Job};
 pub use last_stage::{LastStageConfig, LastStageReport};
+pub use lazy_image::LazyImage;
 pub use level_map::{LevelMap, level_from_first_camera};
 pub use mission::{Mission, Task, TaskEnd, TaskRecord};
 pub use report::StepReport;

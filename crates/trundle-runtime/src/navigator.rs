@@ -1,5 +1,8 @@
 mod commands;
+mod deferring;
 mod plans;
+
+pub(crate) use commands::safety_input;
 
 use crate::{
     config::RobotConfig,
@@ -92,6 +95,8 @@ pub(crate) struct Navigator {
     image_timeout: f64,
     /// Of the disc about the robot, m.
     radius: f64,
+    /// What was wanted in the last step, before safety's word on it.
+    wanted: Twist2,
 }
 
 /// When images that show enough have not been located for so long, s, the robot is not where it believes.
@@ -127,6 +132,7 @@ impl Navigator {
             progress: ProgressWatch::default(),
             image_timeout: config.safety.image_timeout,
             radius: footprint.circumscribed_radius(),
+            wanted: Twist2::ZERO,
         })
     }
 
@@ -188,19 +194,23 @@ impl Navigator {
         let replanned = replanned || self.improved(s, times);
         let follow = times.measure(Stage::Control, || self.follower.step(&s.estimate, s.now));
         self.note_progress(&follow, s, times);
-        let wanted = self.wanted(&follow, s, times);
-        let twist = times.measure(Stage::Safety, || self.guard(wanted, s));
+        self.wanted = self.wanted(&follow, s, times);
+        let twist = times.measure(Stage::Safety, || self.guard(self.wanted, s));
         self.follower.sent(twist);
         Decision { twist, replanned }
     }
 
     /// The opening: nothing moves before there is a first view.
     fn open(&mut self, s: &Surroundings<'_>) {
-        let started = *self.started.get_or_insert(s.now);
-        let is_open = s.scan.is_some() && s.now - started >= self.config.opening;
-        if self.state == DriveState::Mapping && is_open && self.goal.pose().is_some() {
+        self.started.get_or_insert(s.now);
+        if self.state == DriveState::Mapping && self.is_open(s) && self.goal.pose().is_some() {
             self.state = DriveState::Planning;
         }
+    }
+
+    /// Whether the opening is over: the robot has stood for long enough, and there is a view.
+    fn is_open(&self, s: &Surroundings<'_>) -> bool {
+        s.scan.is_some() && self.started.is_some_and(|started| s.now - started >= self.config.opening)
     }
 
     /// Whether the robot knows where it is, and whether it gets on.

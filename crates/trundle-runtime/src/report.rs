@@ -1,5 +1,5 @@
 use crate::state::DriveState;
-use trundle_core::{PoseEstimate, Twist2};
+use trundle_core::{PoseEstimate, Stamp, Twist2};
 use trundle_slam::TrackReport;
 
 /// What one step of the robot tells the outside.
@@ -9,6 +9,10 @@ pub struct StepReport {
     pub twist: Option<Twist2>,
     /// The pose estimate after the step.
     pub estimate: Option<PoseEstimate>,
+    /// Stamp of the image that was looked at, here or, when what it showed is taken up, in the background.
+    pub image: Option<Stamp>,
+    /// Why an image that was looked at was none.
+    pub broken_image: Option<String>,
     /// What the visual tracker said, on images.
     pub track: Option<TrackReport>,
     /// What the robot is doing.

@@ -1,23 +1,28 @@
+mod background;
+
 use crate::{
+    bumper,
+    captain::Captain,
     config::RobotConfig,
     drawn::DrawnPoses,
     eye::EyeWatch,
+    lookout::{Lookout, Sighting},
     mission::{Mission, Task, TaskRecord},
-    navigator::{Goal, Navigator, Surroundings},
+    navigator::Surroundings,
     report::StepReport,
     schedule::Ticker,
     sight::Sight,
     stage::{Stage, StageTimes},
     state::DriveState,
-    supervisor::Supervisor,
 };
+use background::Background;
 use trundle_control::SafetyScan;
 use trundle_core::{
     Footprint, GyroRate, Invalid, OccupancyGrid, Odometry, Pose2, Pose3, PoseEstimate, RgbdImage, Scan,
     SensorEvent, Stamp, Vector2, WheelTicks,
 };
-use trundle_localization::{Correction, Localizer, VisualPose, VisualQuality, WheelOdometry, camera_motion};
-use trundle_mapping::{DepthScanner, LiveMapper, MapperConfig, ScanMatcher};
+use trundle_localization::{Correction, Localizer, VisualPose, VisualQuality, WheelOdometry};
+use trundle_mapping::{LiveMapper, MapperConfig, ScanMatcher};
 use trundle_planning::PlanResult;
 use trundle_slam::{RgbdSlam, TrackReport, Tracking};
 
@@ -25,22 +30,28 @@ use trundle_slam::{RgbdSlam, TrackReport, Tracking};
 ///
 /// It reads no clock and no file, and draws no chance but from the seeds of its configuration: the same events give the
 /// same reports. (Wall-clock times are noted beside it in [`StageTimes`], which only reports read.)
+///
+/// As it comes it does everything within the step. After [`Robot::deferring`] it gives long work out as [`crate::Job`]s and takes
+/// up their answers when they are there, between two events: the same events and answers in the same order give the same reports.
 #[derive(Debug)]
 pub struct Robot {
     sight: Sight,
     base_from_camera: Pose3,
     /// Of the disc that the robot stands on for certain, m.
     inscribed_radius: f64,
+    /// Where something stands that presses the bumper, base frame, m.
+    bumper: Vec<Vector2>,
     odometry: WheelOdometry,
-    slam: RgbdSlam,
-    scanner: DepthScanner,
+    /// None while it looks in the background.
+    lookout: Option<Box<Lookout>>,
     matcher: ScanMatcher,
     localizer: Localizer,
     mapper: LiveMapper,
     drawn: DrawnPoses,
     map_due: Ticker,
-    navigator: Navigator,
-    supervisor: Supervisor,
+    /// None while it thinks in the background.
+    captain: Option<Box<Captain>>,
+    background: Background,
     latest: Latest,
     times: StageTimes,
 }
@@ -49,8 +60,6 @@ pub struct Robot {
 #[derive(Debug, Default)]
 struct Latest {
     odometry: Option<Odometry>,
-    /// `odom_from_base` at the last image.
-    image_odometry: Option<Pose2>,
     /// The newest scan.
     scan: Option<Scan>,
     /// `odom_from_base` when it was taken.
@@ -58,13 +67,12 @@ struct Latest {
     eye: EyeWatch,
     /// Since when images that show enough have not been located.
     unplaced: Option<Stamp>,
+    /// Images that were left out because the camera was frozen.
+    frozen: usize,
+    /// What the captain said last of what the robot does, and whether the mission is over.
+    state: (DriveState, bool),
 }
 
-/// Exploring, the robot keeps so much more from things than its footprint needs, m: a view is not worth a squeeze.
-const EXPLORING: f64 = 0.03;
-
-/// A correction of the visual map by more than this bends the grid, m and rad.
-const BENT: f64 = 0.02;
 /// With each image, so many cells of a bent grid are redrawn, about 5 ms.
 const REDRAWING: usize = 150_000;
 
@@ -77,26 +85,23 @@ impl Robot {
         let base_from_camera = config.mount.validated()?.base_from_camera();
         let footprint = config.footprint()?;
         config.require_believable_speeds()?;
-        let scanner = DepthScanner::new(config.camera, base_from_camera, config.scan.clone())?;
-        let blind_range = match config.sight {
-            Sight::DepthCamera => scanner.blind_range(),
-            Sight::Laser => 0.0,
-        };
+        let lookout = Lookout::new(&config, base_from_camera)?;
+        let blind_range = lookout.blind_range();
         let mapper = LiveMapper::new(MapperConfig { blind_range, ..config.mapping.clone() })?;
         Ok(Self {
             sight: config.sight,
             base_from_camera,
             inscribed_radius: inscribed_radius(&footprint),
+            bumper: bumper::ahead_of(&footprint),
             odometry: WheelOdometry::new(config.drive, config.odometry.clone())?,
-            slam: RgbdSlam::new(config.camera, config.slam.clone())?,
-            scanner,
+            lookout: Some(Box::new(lookout)),
             matcher: ScanMatcher::new(config.scan_match.clone())?,
             localizer: Localizer::new(config.localization.clone(), base_from_camera)?,
             map_due: Ticker::new(config.schedule.validated()?.map_hz),
             mapper,
             drawn: DrawnPoses::default(),
-            navigator: Navigator::new(&config, &footprint)?,
-            supervisor: Supervisor::new(&config.supervisor, footprint.circumscribed_radius() + EXPLORING)?,
+            captain: Some(Box::new(Captain::new(&config, &footprint)?)),
+            background: Background::default(),
             latest: Latest::default(),
             times: StageTimes::default(),
         })
@@ -105,9 +110,9 @@ impl Robot {
     /// Gives the robot a mission in place of what is left of its old one. It begins with the next reading of the wheels; an
     /// empty one lets the robot stand.
     pub fn begin(&mut self, mission: &Mission) {
-        self.supervisor.begin(mission);
-        if mission.tasks().is_empty() {
-            self.navigator.take_up(Goal::Stay);
+        match &mut self.captain {
+            Some(captain) => captain.begin(mission),
+            None => self.background.orders = Some(mission.clone()),
         }
     }
 
@@ -127,28 +132,25 @@ impl Robot {
             SensorEvent::Gyro(gyro) => self.feel(gyro),
             SensorEvent::Wheels(wheels) => self.roll(wheels, &mut report),
             SensorEvent::Rgbd(image) => self.look(image, &mut report),
-            SensorEvent::Touch(touch) => self.navigator.touch(touch.pressed),
-            SensorEvent::Cliff(cliff) => self.navigator.cliff(cliff.over_edge),
+            SensorEvent::Touch(touch) => self.touch(touch.pressed),
+            SensorEvent::Cliff(cliff) => self.cliff(cliff.over_edge),
             SensorEvent::Scan(scan) if self.sight == Sight::Laser => {
                 self.see(scan.clone());
             }
             // The map is drawn from the depth image alone; a laser beside it is for other programs.
             SensorEvent::Scan(_) | SensorEvent::Truth { .. } => {}
         }
-        report.estimate = Some(self.localizer.estimate());
-        (report.state, report.finished) = self.state();
+        self.close(&mut report);
         report
     }
 
-    /// What the robot is doing, and whether its mission is over: then the state is that of the whole mission.
-    fn state(&self) -> (DriveState, bool) {
-        let finished = self.supervisor.is_idle() && !self.supervisor.records().is_empty();
-        let state = match self.supervisor.failure() {
-            Some(reason) if finished => DriveState::Stopped { reason },
-            None if finished => DriveState::Arrived,
-            _ => self.navigator.state().clone(),
-        };
-        (state, finished)
+    /// Every report ends with what holds after the step.
+    fn close(&mut self, report: &mut StepReport) {
+        report.estimate = Some(self.localizer.estimate());
+        if let Some(captain) = &self.captain {
+            self.latest.state = captain.state();
+        }
+        (report.state, report.finished) = self.latest.state.clone();
     }
 
     /// A gyro reading: into the odometry.
@@ -169,41 +171,63 @@ impl Robot {
             seen: self.latest.eye.seen(),
             unplaced: self.latest.unplaced.map_or(0.0, |since| wheels.stamp - since),
         };
-        let (supervisor, navigator) = (&mut self.supervisor, &mut self.navigator);
-        let order =
-            self.times.measure(Stage::Supervision, || supervisor.step(&surroundings, navigator.state()));
-        if let Some(goal) = order {
-            navigator.take_up(goal);
+        match self.captain.take() {
+            Some(mut captain) if !self.background.is_for(&captain, &surroundings) => {
+                let decision = captain.step(&surroundings, &mut self.times);
+                self.captain = Some(captain);
+                report.twist = Some(decision.twist);
+                report.replanned = decision.replanned;
+            }
+            captain => {
+                let times = &mut self.times;
+                let background = &mut self.background;
+                report.twist = times.measure(Stage::Control, || background.steer(captain, &surroundings));
+            }
         }
-        let decision = navigator.step(&surroundings, &mut self.times);
-        report.twist = Some(decision.twist);
-        report.replanned = decision.replanned;
     }
 
-    /// An image: the visual pose corrects the estimate; at the map's rate the scan does too, and enters the map.
+    /// The bumper: what presses it enters the map, which the camera may be blind for.
+    fn touch(&mut self, pressed: bool) {
+        if pressed && self.latest.odometry.is_some() {
+            self.mapper.mark_occupied(self.localizer.estimate().pose, &self.bumper);
+        }
+        self.tell_touch(pressed);
+    }
+
+    /// An image, looked at here or in the background.
     fn look(&mut self, image: &RgbdImage, report: &mut StepReport) {
+        if self.background.is_used() {
+            return self.background.leave(image.clone().into());
+        }
         let Some(odom_from_base) = self.odometry_at(image.stamp()) else { return };
-        if self.latest.eye.is_frozen(image, odom_from_base) {
-            return;
+        let Some(lookout) = &mut self.lookout else { return };
+        report.image = Some(image.stamp());
+        match lookout.look(image, odom_from_base, &mut self.times) {
+            Some(sighting) => self.take_in(sighting, report),
+            None => self.latest.frozen += 1,
         }
-        let prior = self.camera_motion_since_last_image(odom_from_base);
-        let track = self.times.measure(Stage::Slam, || self.slam.step(image, prior));
-        if self.latest.is_carried_away(&track) {
-            self.slam.kidnapped();
-        }
-        let is_bent = is_bent(&track);
+    }
+
+    /// What an image showed: the visual pose corrects the estimate; at the map's rate the scan does too, and enters the map.
+    fn take_in(&mut self, sighting: Sighting, report: &mut StepReport) {
+        let Sighting { odom_from_base, track, scan, unplaced, bent } = sighting;
+        self.latest.unplaced = unplaced;
         let (times, localizer) = (&mut self.times, &mut self.localizer);
-        let correction = times.measure(Stage::Localization, || correct_by_sight(localizer, &track, is_bent));
+        let correction =
+            times.measure(Stage::Localization, || correct_by_sight(localizer, &track, bent.is_some()));
         if correction == Some(Correction::Reanchored) {
             // Scans drawn so far stay where they are: their visual poses are in a frame that has moved.
             self.drawn = DrawnPoses::default();
         }
-        if is_bent {
-            self.follow_the_visual_map();
+        let goes_on = track.tracking == Tracking::Ok && bent.is_none() && !track.relocalised;
+        let goes_on = goes_on && matches!(correction, Some(Correction::Applied { .. }));
+        let visual = self.visual_base(&track.visual_from_camera).filter(|_| goes_on);
+        self.odometry.seen(odom_from_base, visual);
+        if let Some(trajectory) = bent {
+            self.follow_the_visual_map(&trajectory);
         }
         self.times.measure(Stage::Mapping, || self.mapper.work(REDRAWING));
-        if self.sight == Sight::DepthCamera {
-            let scan = self.times.measure(Stage::Scan, || self.scanner.scan(image));
+        if let Some(scan) = scan {
             let stamp = scan.stamp();
             let is_drawn = self.see(scan);
             let visual = self.visual_base(&track.visual_from_camera);
@@ -256,8 +280,7 @@ impl Robot {
     }
 
     /// The visual map was bent: the grid is redrawn from where its scans were taken by now.
-    fn follow_the_visual_map(&mut self) {
-        let trajectory = self.slam.trajectory();
+    fn follow_the_visual_map(&mut self, trajectory: &[(Stamp, Pose3)]) {
         let bases = trajectory.iter().filter_map(|(stamp, pose)| Some((*stamp, self.visual_base(pose)?)));
         let moved = self.drawn.follow(&bases.collect());
         self.times.measure(Stage::Mapping, || {
@@ -271,12 +294,6 @@ impl Robot {
         self.localizer.odometry_at(stamp).ok().or(newest)
     }
 
-    /// `previous_camera_from_camera` by wheels and gyro.
-    fn camera_motion_since_last_image(&mut self, odom_from_base: Pose2) -> Option<Pose3> {
-        let previous = self.latest.image_odometry.replace(odom_from_base)?;
-        Some(camera_motion(previous.inverse() * odom_from_base, self.base_from_camera))
-    }
-
     /// The pose estimate.
     pub fn estimate(&self) -> PoseEstimate {
         self.localizer.estimate()
@@ -287,9 +304,9 @@ impl Robot {
         self.mapper.grid()
     }
 
-    /// The visual tracker with its landmark map.
-    pub fn slam(&self) -> &RgbdSlam {
-        &self.slam
+    /// The visual tracker with its landmark map; none while it looks in the background.
+    pub fn slam(&self) -> Option<&RgbdSlam> {
+        self.lookout.as_ref().map(|lookout| lookout.slam())
     }
 
     /// The visual tracker's frame in the map.
@@ -297,19 +314,19 @@ impl Robot {
         self.localizer.map_from_visual()
     }
 
-    /// The tasks of the mission that have ended.
+    /// The tasks of the mission that have ended; nothing is told while a decision is made in the background.
     pub fn tasks_ended(&self) -> &[TaskRecord] {
-        self.supervisor.records()
+        self.captain.as_ref().map_or(&[], |captain| captain.supervisor.records())
     }
 
-    /// The task at hand.
+    /// The task at hand; none while a decision is made in the background.
     pub fn task(&self) -> Option<Task> {
-        self.supervisor.task()
+        self.captain.as_ref()?.supervisor.task()
     }
 
-    /// The newest plan.
+    /// The newest plan; none while a decision is made in the background.
     pub fn plan(&self) -> Option<&PlanResult> {
-        self.navigator.plan()
+        self.captain.as_ref()?.navigator.plan()
     }
 
     /// The newest scan.
@@ -319,7 +336,7 @@ impl Robot {
 
     /// Images that were left out because they were the last one again though the robot had moved.
     pub fn frozen_images(&self) -> usize {
-        self.latest.eye.frozen()
+        self.latest.frozen
     }
 
     /// What the stages cost.
@@ -328,26 +345,7 @@ impl Robot {
     }
 }
 
-/// An image with so many features shows enough to be located by.
-const ENOUGH_FEATURES: usize = 200;
-/// Images that show enough and are not located for so long, s, are of another place than the odometry says.
-const CARRIED_AWAY: f64 = 1.5;
-
 impl Latest {
-    /// Whether it is time to look for the place everywhere: the odometry's has not been recognised for a while.
-    fn is_carried_away(&mut self, track: &TrackReport) -> bool {
-        if track.tracking.is_located() || track.features < ENOUGH_FEATURES {
-            self.unplaced = None;
-            return false;
-        }
-        let since = *self.unplaced.get_or_insert(track.stamp);
-        let is_time = track.stamp - since > CARRIED_AWAY;
-        if is_time {
-            self.unplaced = None;
-        }
-        is_time
-    }
-
     /// The last scan with the odometry that carries it to now.
     fn carried_scan(&self) -> Option<SafetyScan<'_>> {
         Some(SafetyScan {
@@ -368,13 +366,6 @@ fn inscribed_radius(footprint: &Footprint) -> f64 {
             sides.map(from_side).fold(f64::INFINITY, f64::min).max(0.0)
         }
     }
-}
-
-/// Whether the visual map was corrected by more than tracking goes along with.
-fn is_bent(track: &TrackReport) -> bool {
-    let is_large =
-        |correction: &Pose3| correction.translation.norm() > BENT || correction.log().norm() > BENT;
-    track.closed_loop.is_some() || track.merged.is_some() || track.refined.as_ref().is_some_and(is_large)
 }
 
 /// The visual pose, where there is one, to the localizer; one of a map that was just bent is believed.

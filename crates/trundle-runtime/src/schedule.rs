@@ -53,11 +53,16 @@ impl Ticker {
 
     /// Whether the stage is due at `now`; if so, the next time is counted from now. A millisecond early is on time.
     pub(crate) fn due(&mut self, now: Stamp) -> bool {
-        let due = self.period.is_finite() && self.last.is_none_or(|last| now - last >= self.period - 1e-3);
+        let due = self.will_be_due(now);
         if due {
             self.last = Some(now);
         }
         due
+    }
+
+    /// What [`Ticker::due`] would say.
+    pub(crate) fn will_be_due(&self, now: Stamp) -> bool {
+        self.period.is_finite() && self.last.is_none_or(|last| now - last >= self.period - 1e-3)
     }
 }
 

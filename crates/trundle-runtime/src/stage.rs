@@ -1,3 +1,4 @@
+use crate::histogram::Histogram;
 use serde::Serialize;
 use std::time::{Duration, Instant};
 
@@ -7,6 +8,8 @@ use std::time::{Duration, Instant};
 pub enum Stage {
     /// Wheels and gyro to odometry.
     Odometry,
+    /// What came over the wire to an image, where that is done in the background.
+    Decoding,
     /// RGB-D image to camera pose.
     Slam,
     /// Depth image to scan.
@@ -29,8 +32,9 @@ pub enum Stage {
 
 impl Stage {
     /// Every stage, in the order of the data.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::Odometry,
+        Self::Decoding,
         Self::Slam,
         Self::Scan,
         Self::ScanMatch,
@@ -46,6 +50,7 @@ impl Stage {
     pub fn name(self) -> &'static str {
         match self {
             Self::Odometry => "odometry",
+            Self::Decoding => "decoding",
             Self::Slam => "slam",
             Self::Scan => "scan",
             Self::ScanMatch => "scan_match",
@@ -62,18 +67,25 @@ impl Stage {
 /// What the stages cost: wall-clock time, for reports only. No decision of the robot reads it.
 #[derive(Debug, Clone, Default)]
 pub struct StageTimes {
-    samples: [Vec<f32>; Stage::ALL.len()],
+    /// Milliseconds.
+    spent: [Histogram; Stage::ALL.len()],
 }
 
 /// The cost of one stage over a run.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct StageCost {
     /// How often it ran.
-    pub runs: usize,
+    pub runs: u64,
     /// Milliseconds.
     pub median_ms: f64,
     /// Milliseconds.
     pub p99_ms: f64,
+    /// Milliseconds.
+    pub p999_ms: f64,
+    /// Milliseconds.
+    pub most_ms: f64,
+    /// All runs together, s.
+    pub total_s: f64,
 }
 
 impl StageTimes {
@@ -85,22 +97,31 @@ impl StageTimes {
         result
     }
 
+    /// Takes over what was measured elsewhere.
+    pub fn add(&mut self, other: &Self) {
+        self.spent.iter_mut().zip(&other.spent).for_each(|(mine, theirs)| mine.add(theirs));
+    }
+
     fn note(&mut self, stage: Stage, elapsed: Duration) {
-        self.samples[stage as usize].push(elapsed.as_secs_f32() * 1e3);
+        self.spent[stage as usize].note(elapsed.as_secs_f64() * 1e3);
     }
 
     /// How often a stage ran so far.
-    pub fn runs(&self, stage: Stage) -> usize {
-        self.samples[stage as usize].len()
+    pub fn runs(&self, stage: Stage) -> u64 {
+        self.spent[stage as usize].count()
     }
 
     /// The cost of a stage; `None` when it never ran.
     pub fn cost(&self, stage: Stage) -> Option<StageCost> {
-        let mut sorted = self.samples[stage as usize].clone();
-        sorted.sort_by(f32::total_cmp);
-        let last = sorted.len().checked_sub(1)?;
-        let at = |fraction: f64| f64::from(sorted[(last as f64 * fraction).round() as usize]);
-        Some(StageCost { runs: sorted.len(), median_ms: at(0.5), p99_ms: at(0.99) })
+        let spent = &self.spent[stage as usize];
+        Some(StageCost {
+            runs: spent.count(),
+            median_ms: spent.quantile(0.5)?,
+            p99_ms: spent.quantile(0.99)?,
+            p999_ms: spent.quantile(0.999)?,
+            most_ms: spent.most()?,
+            total_s: spent.sum() * 1e-3,
+        })
     }
 }
 
@@ -115,7 +136,8 @@ mod tests {
             times.note(Stage::Slam, Duration::from_millis(ms));
         }
         let cost = times.cost(Stage::Slam).unwrap();
-        assert_eq!((cost.runs, cost.median_ms.round(), cost.p99_ms.round()), (101, 51.0, 100.0));
+        assert!((cost.median_ms / 51.0 - 1.0).abs() < 0.01 && (cost.p99_ms / 100.0 - 1.0).abs() < 0.01);
+        assert_eq!((cost.runs, cost.most_ms.round(), cost.total_s), (101, 101.0, 5.151));
         assert_eq!(times.cost(Stage::Scan), None);
     }
 

@@ -105,6 +105,14 @@ impl Supervisor {
         (!lost.is_empty()).then(|| lost.join("; "))
     }
 
+    /// Whether the next step may look for frontiers.
+    pub(crate) fn may_take_long(&self, s: &Surroundings<'_>, state: &DriveState) -> bool {
+        let explores = self.queue.front().is_some_and(|entry| entry.task == Task::Explore)
+            || matches!(&self.current, Some(Current { work: Work::Exploring { .. }, .. }));
+        let driving = matches!(state, DriveState::Driving | DriveState::Waiting { .. });
+        explores && (state.is_over() || driving && self.look_due.will_be_due(s.now))
+    }
+
     /// What the navigator, which is in `state`, shall do next; `None` to go on.
     pub(crate) fn step(&mut self, s: &Surroundings<'_>, state: &DriveState) -> Option<Goal> {
         match state {
@@ -149,12 +157,8 @@ impl Supervisor {
         }
         match explorer.next(s.grid, s.estimate.pose) {
             Exploration::Look(view) => {
-                let is_same =
-                    !over && frontier.as_ref().is_some_and(|old| old.middle == view.frontier.middle);
-                let was_moved = frontier
-                    .as_ref()
-                    .is_some_and(|old| !over && (old.middle - view.frontier.middle).norm() < SMALL_MOVE);
-                if is_same || was_moved {
+                let is_near = |old: &Frontier| (old.middle - view.frontier.middle).norm() < SMALL_MOVE;
+                if !over && frontier.as_ref().is_some_and(is_near) {
                     return None;
                 }
                 *frontier = Some(view.frontier);

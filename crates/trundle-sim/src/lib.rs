@@ -38,7 +38,7 @@ pub use laser::LaserConfig;
 pub use paint::{Finish, Paint};
 pub use people::Person;
 pub use scenes::Scene;
-pub use simulator::{SimError, Simulator};
+pub use simulator::{CameraAside, Shot, SimError, Simulator};
 pub use world::{
     Cuboid, Cylinder, HeightBand, Hit, Lamp, Lights, Material, Mesh, Mover, Obstacles, Shape, Solid, Stage,
     Target, Triangle, World,

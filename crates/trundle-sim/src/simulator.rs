@@ -1,3 +1,4 @@
+mod camera;
 mod clock;
 mod error;
 mod eye;
@@ -11,11 +12,13 @@ use crate::laser::Laser;
 use crate::people::Crowd;
 use crate::scenes::Scene;
 use crate::world::{HeightBand, Obstacles, Stage};
+pub use camera::{CameraAside, Shot};
 use clock::Clock;
 pub use error::SimError;
 use eye::Eye;
 use late::Late;
 use std::collections::VecDeque;
+use std::sync::Arc;
 use track::Track;
 use trundle_core::{
     Cliff, PinholeCamera, Pose2, RobotBody, SensorEvent, Stamp, Touch, Twist2, require_finite,
@@ -32,12 +35,15 @@ const PEOPLE: (f64, f64) = (0.05, 1.75);
 /// give the same bytes on any number of threads.
 #[derive(Debug)]
 pub struct Simulator {
-    scene: Scene,
+    scene: Arc<Scene>,
     config: SimConfig,
     obstacles: Obstacles,
     crowd: Crowd,
     body: Kobuki,
-    eye: Eye,
+    /// None when the camera is aside.
+    eye: Option<Eye>,
+    /// What the camera aside has not taken yet.
+    shots: Vec<Shot>,
     laser: Option<Laser>,
     faults: Faults,
     track: Track,
@@ -97,7 +103,8 @@ impl Simulator {
             obstacles,
             crowd,
             body: Kobuki::new(&config.kobuki, scene.start, seed)?,
-            eye: Eye::new(&config, seed)?,
+            eye: Some(Eye::new(&config, seed)?),
+            shots: Vec::new(),
             laser: config.laser.clone().map(|laser| Laser::new(laser, seed)),
             faults: Faults::new(config.faults.clone(), seed),
             track: Track::new(scene.start, config.memory()),
@@ -107,7 +114,7 @@ impl Simulator {
             queue: VecDeque::new(),
             late: Late::default(),
             refused_commands: 0,
-            scene,
+            scene: Arc::new(scene),
             config,
         };
         simulator.break_things();
@@ -127,7 +134,7 @@ impl Simulator {
 
     /// The camera.
     pub fn camera(&self) -> &PinholeCamera {
-        self.eye.camera()
+        &self.config.camera
     }
 
     /// The moment that the dynamics have reached: that of the newest event made.
@@ -260,9 +267,12 @@ impl Simulator {
         if fault.is_dropped {
             return Ok(());
         }
-        let movers = self.crowd.movers();
-        let stage = Stage { world: &self.scene.world, movers: &movers, lights: &self.scene.lights };
-        let image = self.eye.take(&stage, &self.track, stamp, frame, fault)?;
+        let shot = Shot { people: self.crowd.view(), track: self.track.clone(), stamp, frame, fault };
+        let Some(eye) = &mut self.eye else {
+            self.shots.push(shot);
+            return Ok(());
+        };
+        let image = shot.expose(eye, &self.scene)?;
         self.late.send(SensorEvent::Rgbd(image), self.now, fault.delay, &mut self.queue);
         Ok(())
     }

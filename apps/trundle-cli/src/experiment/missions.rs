@@ -5,7 +5,7 @@ use crate::{Outcome, console, demo, failure::Failure, goals::GoalOutcome, robot_
 use std::path::Path;
 use trundle::core::{Pose2, Vector2};
 use trundle::io::{OutputFolder, Summary, table_csv, write_map};
-use trundle::runtime::{Mission, Task, TaskEnd};
+use trundle::runtime::{Mission, RobotConfig, Task, TaskEnd};
 use trundle::sim::import::UpAxis;
 use trundle::sim::{FaultSchedule, Scene};
 use trundle::viz::{Color, Figure, LineStyle, MapPicture, PoseStyle, Report, Table, Verdict};
@@ -37,20 +37,11 @@ pub const HOUSE: Story = Story {
 /// Crosses the room of obstacles, so many seeds.
 pub fn obstacles(args: &RunsArgs) -> Result<Outcome, Failure> {
     let robot = robot_file::load(args.config.as_deref())?;
-    let plan = |seed| -> Result<TrialPlan, Failure> {
+    tell(&OBSTACLES, args, &robot, |seed| {
         let scene = Scene::by_name("obstacles", seed)?;
         let mission = Mission::new(vec![Task::Go(scene.start_from_goal())])?;
-        Ok(TrialPlan {
-            name: format!("seed {seed}"),
-            seed,
-            scene,
-            mission,
-            robot: robot.clone(),
-            faults: FaultSchedule::default(),
-        })
-    };
-    let plans = (1..=u64::from(args.seeds)).map(plan).collect::<Result<Vec<_>, _>>()?;
-    finish(&OBSTACLES, args, trial::all(plans, args)?)
+        Ok((scene, mission))
+    })
 }
 
 /// The robot's start in the house, world frame: m, m, deg.
@@ -74,25 +65,31 @@ pub fn house(args: &RunsArgs, mesh: &Path) -> Result<Outcome, Failure> {
     let robot = robot_file::load(args.config.as_deref())?;
     let pose = |(x, y, degrees): (f64, f64, f64)| Pose2::new(x, y, degrees.to_radians());
     let start = pose(HOUSE_START);
-    let plan = |seed| -> Result<TrialPlan, Failure> {
+    tell(&HOUSE, args, &robot, |seed| {
         let options = sim::scene::SceneOptions { seed, up: UpAxis::Z, start: Some(start) };
         let scene = sim::scene::load(&mesh.display().to_string(), options)?;
         for goal in HOUSE_GOALS {
             demo::require_free(&scene, pose(goal), &robot)?;
         }
         let goals = HOUSE_GOALS.map(|goal| Task::Go(start.inverse() * pose(goal)));
-        let mission = Mission::new(goals.to_vec())?;
-        Ok(TrialPlan {
-            name: format!("seed {seed}"),
-            seed,
-            scene,
-            mission,
-            robot: robot.clone(),
-            faults: FaultSchedule::default(),
-        })
+        Ok((scene, Mission::new(goals.to_vec())?))
+    })
+}
+
+/// A run for each seed, of the scene and the mission that `story_of` has for it.
+fn tell(
+    story: &Story,
+    args: &RunsArgs,
+    robot: &RobotConfig,
+    story_of: impl Fn(u64) -> Result<(Scene, Mission), Failure>,
+) -> Result<Outcome, Failure> {
+    let plan = |seed| -> Result<TrialPlan, Failure> {
+        let (scene, mission) = story_of(seed)?;
+        let (name, robot) = (format!("seed {seed}"), robot.clone());
+        Ok(TrialPlan { name, seed, scene, mission, robot, faults: FaultSchedule::default() })
     };
     let plans = (1..=u64::from(args.seeds)).map(plan).collect::<Result<Vec<_>, _>>()?;
-    finish(&HOUSE, args, trial::all(plans, args)?)
+    finish(story, args, trial::all(plans, args)?)
 }
 
 fn finish(story: &Story, args: &RunsArgs, trials: Vec<Trial>) -> Result<Outcome, Failure> {

@@ -79,6 +79,7 @@ fn one(plan: TrialPlan) -> Result<Trial, Failure> {
         time_limit: time_limit(&mission),
         mission,
         robot: robot.with_seed(seed),
+        real_time: false,
     };
     let config = simulated(&setup.robot, faults)?;
     let mut body = Simulator::new(scene, config, seed).map_err(|error| Failure::Input(error.to_string()))?;

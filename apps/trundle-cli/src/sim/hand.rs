@@ -1,13 +1,12 @@
 //! Driving by hand: keys in the terminal, a page in the browser, the clock on the wall.
 
-mod pace;
 mod page;
 mod server;
 mod steering;
 mod terminal;
 
+use crate::pace::Pace;
 use crate::{console, failure::Failure};
-use pace::Pace;
 use page::{Page, Sight};
 use server::Server;
 use steering::Steering;

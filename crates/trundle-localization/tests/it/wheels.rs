@@ -1,6 +1,6 @@
 use proptest::prelude::*;
 use std::f64::consts::{FRAC_PI_2, TAU};
-use trundle_core::{DifferentialDrive, GyroRate, Odometry, Stamp, Twist2, WheelTicks, wrap_angle};
+use trundle_core::{DifferentialDrive, GyroRate, Odometry, Pose2, Stamp, Twist2, WheelTicks, wrap_angle};
 use trundle_localization::{OdometryConfig, WheelOdometry, WheelReport};
 
 const DT: f64 = 0.02;
@@ -59,6 +59,43 @@ impl Drive {
             self.odometry.step_gyro(&GyroRate { stamp: self.stamp(), omega: gyro });
             self.read();
         }
+    }
+}
+
+#[test]
+fn wheels_that_are_not_as_large_as_said_are_learnt() {
+    let (mut drive, nominal) = (Drive::new(), DifferentialDrive::KOBUKI.wheel_radius);
+    let (left, right) = (1.012, 0.994);
+    let mut truth = Pose2::IDENTITY;
+    for i in 0..2000 {
+        // Straight on, and a bend now and then.
+        let twist = Twist2::new(0.4, if i % 400 < 100 { 0.5 } else { 0.0 });
+        let (l, r) = DifferentialDrive::KOBUKI.wheel_speeds(twist);
+        drive.nanos += 20_000_000;
+        drive.left += l * DT / (left * DifferentialDrive::KOBUKI.metres_per_tick());
+        drive.right += r * DT / (right * DifferentialDrive::KOBUKI.metres_per_tick());
+        truth = truth * Pose2::exp(nalgebra::Vector3::new(twist.v * DT, 0.0, twist.omega * DT));
+        let noise = if i % 2 == 0 { 0.01 } else { -0.01 };
+        drive.odometry.step_gyro(&GyroRate { stamp: drive.stamp(), omega: twist.omega + noise });
+        let odometry = drive.read();
+        let wobble = Pose2::new(noise * 0.3, -noise * 0.3, 0.0);
+        drive.odometry.seen(odometry.pose, Some(truth * wobble));
+    }
+    let [l, r] = drive.odometry.wheel_radii().map(|radius| radius / nominal);
+    assert!((l - left).abs() < 0.002 && (r - right).abs() < 0.002, "{l} {r}");
+}
+
+#[test]
+fn one_slip_does_not_change_the_wheels() {
+    let mut drive = Drive::new();
+    drive.drive_with_gyro(Twist2::new(0.4, 0.0), 0.0, 200);
+    // The left wheel spins: a turn that the gyro does not see, a way that the camera does not.
+    drive.drive_with_gyro(Twist2::new(0.4, -0.6), 0.0, 100);
+    drive.odometry.seen(Pose2::IDENTITY, Some(Pose2::IDENTITY));
+    drive.odometry.seen(Pose2::new(1.2, 0.0, 0.0), Some(Pose2::new(0.4, 0.0, 0.0)));
+    let nominal = DifferentialDrive::KOBUKI.wheel_radius;
+    for radius in drive.odometry.wheel_radii() {
+        assert!((radius / nominal - 1.0).abs() < 1e-3, "{radius}");
     }
 }
 

@@ -47,7 +47,7 @@ impl Navigator {
     }
 
     /// At a viewpoint only the heading is taken up, and roughly: the view is wide.
-    pub(super) fn turn_to_view(&mut self, s: &Surroundings<'_>) -> Twist2 {
+    fn turn_to_view(&mut self, s: &Surroundings<'_>) -> Twist2 {
         let Goal::View(view) = self.goal else { return Twist2::ZERO };
         let twist = turn_to(s.estimate.pose, view.theta);
         if twist == Twist2::ZERO {
@@ -57,7 +57,7 @@ impl Navigator {
     }
 
     /// Whether it is time to leave what presses on the bumper, or an edge, backward, and the map has nothing there.
-    pub(super) fn backs_out(&self, s: &Surroundings<'_>) -> bool {
+    fn backs_out(&self, s: &Surroundings<'_>) -> bool {
         let waited = self.held_since.is_some_and(|since| s.now - since > PAUSE);
         (self.touched || self.over_edge) && waited && is_free_behind(s, self.radius)
     }
@@ -68,7 +68,7 @@ impl Navigator {
     }
 
     /// A camera too near to a wall sees nothing: after a while one turn on the spot shows whether that is it.
-    pub(super) fn look_for_sight(&mut self, s: &Surroundings<'_>) -> Twist2 {
+    fn look_for_sight(&mut self, s: &Surroundings<'_>) -> Twist2 {
         let waited = self.held_since.map_or(0.0, |since| s.now - since);
         if waited < BLIND_PAUSE || self.look.has_turned(ONE_TURN) {
             return Twist2::ZERO;
@@ -77,9 +77,8 @@ impl Navigator {
     }
 
     /// A turn on the spot, and what is around has been seen.
-    pub(super) fn look_once(&mut self, s: &Surroundings<'_>) -> Twist2 {
-        let is_open = self.started.is_some_and(|started| s.now - started >= self.config.opening);
-        if !is_open || s.scan.is_none() {
+    fn look_once(&mut self, s: &Surroundings<'_>) -> Twist2 {
+        if !self.is_open(s) {
             return Twist2::ZERO;
         }
         if self.look.has_turned(ONE_TURN) {
@@ -90,7 +89,7 @@ impl Navigator {
     }
 
     /// One step of turns and straight moves.
-    pub(super) fn dock(&mut self, s: &Surroundings<'_>) -> Twist2 {
+    fn dock(&mut self, s: &Surroundings<'_>) -> Twist2 {
         match self.last_stage.step(s) {
             Progress::Moving(twist) => return twist,
             Progress::Settled => self.state = DriveState::Arrived,
@@ -101,16 +100,7 @@ impl Navigator {
 
     /// Safety's word on a command.
     pub(super) fn guard(&mut self, twist: Twist2, s: &Surroundings<'_>) -> Twist2 {
-        let report = self.safety.check(&SafetyInput {
-            now: s.now,
-            twist,
-            scan: s.scan,
-            memory: Some(SafetyMemory { grid: s.grid, map_from_base: s.estimate.pose }),
-            touched: self.touched,
-            over_edge: self.over_edge,
-            image: s.seen,
-            wheels: Some(s.now),
-        });
+        let report = self.safety.check(&safety_input(s, twist, self.touched, self.over_edge));
         match (report.action, &self.state) {
             (
                 SafetyAction::Stop(reason),
@@ -131,6 +121,25 @@ impl Navigator {
             _ => {}
         }
         report.twist
+    }
+}
+
+/// What safety judges a twist by.
+pub(crate) fn safety_input<'a>(
+    s: &Surroundings<'a>,
+    twist: Twist2,
+    touched: bool,
+    over_edge: bool,
+) -> SafetyInput<'a> {
+    SafetyInput {
+        now: s.now,
+        twist,
+        scan: s.scan,
+        memory: Some(SafetyMemory { grid: s.grid, map_from_base: s.estimate.pose }),
+        touched,
+        over_edge,
+        image: s.seen,
+        wheels: Some(s.now),
     }
 }
 

@@ -35,7 +35,7 @@ impl Navigator {
     }
 
     /// Whether the rest of the trajectory is still free on the newest map.
-    pub(super) fn plan_holds(&self, grid: &OccupancyGrid) -> bool {
+    fn plan_holds(&self, grid: &OccupancyGrid) -> bool {
         match (&self.plan, self.follower.reference()) {
             (Some(plan), Some(reference)) => {
                 self.planner.still_free(grid, &plan.trajectory, reference.time).is_ok()
@@ -101,7 +101,7 @@ impl Navigator {
     }
 
     /// No way is known: stop, turn on the spot until everything around has been seen, then wait, looking at where it ends.
-    pub(super) fn no_way(&mut self, refused: &Plan) {
+    fn no_way(&mut self, refused: &Plan) {
         let reason = why(refused);
         self.is_wedged = self.is_polygon && matches!(refused, Plan::StartInObstacle { .. });
         self.follower.halt();
@@ -118,7 +118,7 @@ impl Navigator {
     }
 
     /// Near the goal, where no path is found or safety holds the robot: by turns and straight moves, if there are such.
-    pub(super) fn turned_to_docking(&mut self, goal: Pose2, s: &Surroundings<'_>) -> bool {
+    fn turned_to_docking(&mut self, goal: Pose2, s: &Surroundings<'_>) -> bool {
         let stands = s.estimate.twist.v.abs() < STANDING;
         let is_exact = matches!(self.goal, Goal::Exact(_));
         let turned = is_exact && stands && !self.is_blind(s) && self.last_stage.begin_if_possible(s, goal);
@@ -134,7 +134,7 @@ impl Navigator {
         self.state = DriveState::Docking;
     }
 
-    pub(super) fn hold(&mut self, reason: &str, now: Stamp) {
+    fn hold(&mut self, reason: &str, now: Stamp) {
         self.follower.halt();
         self.held_since.get_or_insert(now);
         self.state = DriveState::Waiting { reason: reason.to_owned() };

@@ -5,11 +5,12 @@ use trundle_core::{
 use trundle_runtime::{DriveState, Robot, RobotConfig, Sight, StepReport};
 
 /// A wall of one colour across the view, `distance` m ahead of the base, and the floor before it, as the default mount sees them.
-fn wall(stamp: Stamp, distance: f64) -> SensorEvent {
+pub fn wall(stamp: Stamp, distance: f64) -> SensorEvent {
     let camera = PinholeCamera::kinect_v2();
     let base_from_camera = RobotConfig::default().mount.base_from_camera();
     let (width, height) = (camera.width(), camera.height());
-    let color = Image::filled(width, height, [90; 3]);
+    // No two images of a true camera are the same.
+    let color = Image::filled(width, height, [90, (stamp.nanos / 20_000_000 % 100) as u8, 90]);
     let depth = DepthImage::from_fn(width, height, |x, y| {
         let ray = base_from_camera.rotate(camera.unproject(Vector2::new(x as f64, y as f64), 1.0));
         let to_wall = (distance - base_from_camera.translation.x) / ray.x;
@@ -36,7 +37,8 @@ fn stand(robot: &mut Robot, seconds: f64, image: impl Fn(Stamp) -> Option<Sensor
     reports
 }
 
-fn robot(goal: Pose2) -> Robot {
+/// A robot that shall drive to `goal`.
+pub fn robot(goal: Pose2) -> Robot {
     let mut robot = Robot::new(RobotConfig::default()).unwrap();
     robot.drive_to(goal).unwrap();
     robot

@@ -3,6 +3,7 @@ use super::gait::{KNEE_SHARE, THIGH_SHARE};
 use super::person::Person;
 use super::walker::Walker;
 use crate::world::{HeightBand, Mover, Obstacles};
+use std::sync::Arc;
 use trundle_core::{Footprint, Invalid, Pose2};
 
 /// A person waits while the robot reaches into a disc this far ahead, of this radius, m.
@@ -23,7 +24,21 @@ const SHOULDERS: f64 = 0.2;
 pub(crate) struct Crowd {
     people: Vec<Person>,
     walkers: Vec<Walker>,
-    bodies: Vec<Body>,
+    bodies: Arc<[Body]>,
+}
+
+/// Everybody at one moment, for whoever looks at them elsewhere.
+#[derive(Debug, Clone)]
+pub(crate) struct CrowdView {
+    walkers: Vec<Walker>,
+    bodies: Arc<[Body]>,
+}
+
+impl CrowdView {
+    /// Everybody's parts where they were.
+    pub(crate) fn movers(&self) -> Vec<Mover<'_>> {
+        movers(&self.walkers, &self.bodies)
+    }
 }
 
 impl Crowd {
@@ -71,7 +86,7 @@ impl Crowd {
     /// Nobody moves into the robot: a step that would bring a leg too near is not made.
     pub(crate) fn step(&mut self, elapsed: f64, footprint: &Footprint, robot: Pose2) {
         let reach = footprint.circumscribed_radius();
-        for ((person, walker), body) in self.people.iter().zip(&mut self.walkers).zip(&self.bodies) {
+        for ((person, walker), body) in self.people.iter().zip(&mut self.walkers).zip(self.bodies.iter()) {
             if walker.pose.distance(&robot) > reach + SPREAD + AHEAD {
                 *walker = walker.after(person, elapsed, true);
                 continue;
@@ -89,7 +104,8 @@ impl Crowd {
     /// [`SPREAD`] from it.
     pub(crate) fn clearance(&self, footprint: &Footprint, pose: Pose2) -> f64 {
         let reach = footprint.circumscribed_radius() + SPREAD;
-        let near = self.walkers.iter().zip(&self.bodies).filter(|(w, _)| w.pose.distance(&pose) < reach);
+        let near =
+            self.walkers.iter().zip(self.bodies.iter()).filter(|(w, _)| w.pose.distance(&pose) < reach);
         near.map(|(walker, body)| clearance(body, walker, footprint, pose)).fold(f64::INFINITY, f64::min)
     }
 
@@ -100,14 +116,23 @@ impl Crowd {
 
     /// Everybody's parts where they are now.
     pub(crate) fn movers(&self) -> Vec<Mover<'_>> {
-        let parts = self.walkers.iter().zip(&self.bodies).flat_map(|(walker, body)| parts(body, walker));
-        parts.map(|(part, pose)| Mover { body: &part.world, pose }).collect()
+        movers(&self.walkers, &self.bodies)
+    }
+
+    /// Everybody as they are now.
+    pub(crate) fn view(&self) -> CrowdView {
+        CrowdView { walkers: self.walkers.clone(), bodies: Arc::clone(&self.bodies) }
     }
 
     /// Draws how everybody looks.
     pub(crate) fn paint(&self) {
         self.bodies.iter().for_each(Body::paint);
     }
+}
+
+fn movers<'b>(walkers: &[Walker], bodies: &'b [Body]) -> Vec<Mover<'b>> {
+    let parts = walkers.iter().zip(bodies).flat_map(|(walker, body)| parts(body, walker));
+    parts.map(|(part, pose)| Mover { body: &part.world, pose }).collect()
 }
 
 /// The parts of a person and where they stand, `world_from_part`.

@@ -6,5 +6,5 @@ mod gait;
 mod person;
 mod walker;
 
-pub(crate) use crowd::Crowd;
+pub(crate) use crowd::{Crowd, CrowdView};
 pub use person::Person;

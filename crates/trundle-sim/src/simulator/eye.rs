@@ -3,7 +3,7 @@ use crate::camera::{Renderer, RgbdSensor, View, blend};
 use crate::config::SimConfig;
 use crate::faults::CameraFault;
 use crate::world::Stage;
-use trundle_core::{ColorImage, DepthImage, Invalid, PinholeCamera, Pose3, RgbdImage, Stamp};
+use trundle_core::{ColorImage, DepthImage, Invalid, Pose3, RgbdImage, Stamp};
 
 /// The camera on the robot, with what may be wrong with it.
 #[derive(Debug)]
@@ -39,10 +39,6 @@ impl Eye {
             last: None,
             may_freeze: config.faults.freezes_camera(),
         })
-    }
-
-    pub(super) fn camera(&self) -> &PinholeCamera {
-        self.renderer.camera()
     }
 
     /// Image number `frame`, taken at `stamp`.
@@ -91,7 +87,7 @@ impl Eye {
     }
 
     fn black(&self, stamp: Stamp) -> Result<RgbdImage, Invalid> {
-        let (width, height) = (self.camera().width(), self.camera().height());
+        let (width, height) = (self.renderer.camera().width(), self.renderer.camera().height());
         let color = ColorImage::new(width, height, vec![[0; 3]; width * height])?;
         RgbdImage::new(stamp, color, no_depth(width, height)?)
     }

@@ -3,7 +3,7 @@ use std::collections::VecDeque;
 use trundle_core::Pose2;
 
 /// Where the base was in the last moments: a pose a step.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct Track {
     /// The newest first.
     poses: VecDeque<Pose2>,

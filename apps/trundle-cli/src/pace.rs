@@ -13,17 +13,23 @@ pub struct Pace {
 impl Pace {
     /// From simulated time 0 on.
     pub fn start() -> Self {
-        Self { origin: Instant::now() }
+        Self::start_at(Instant::now())
     }
 
-    /// Waits until `time` s have passed since the start.
-    pub fn wait_for(&mut self, time: f64) {
+    /// Simulated time was 0 at `origin`.
+    pub fn start_at(origin: Instant) -> Self {
+        Self { origin }
+    }
+
+    /// Waits until `time` s have passed since the start; how late it is already, s.
+    pub fn wait_for(&mut self, time: f64) -> f64 {
         let ahead = time - self.origin.elapsed().as_secs_f64();
         if ahead > 0.0 {
             std::thread::sleep(Duration::from_secs_f64(ahead));
         } else if ahead < -PATIENCE {
             self.origin += Duration::from_secs_f64(-ahead);
         }
+        (-ahead).max(0.0)
     }
 }
 

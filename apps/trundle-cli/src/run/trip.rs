@@ -1,0 +1,156 @@
+use super::{Run, RunSetup, TapeCost};
+use crate::body::{Input, TakenUp, WiredBody};
+use crate::{console, failure::Failure, logbook::Logbook, tape::Tape, view::BestView};
+use indicatif::ProgressBar;
+use std::time::Instant;
+use trundle::core::{FrameId, Pose2, Stamp};
+use trundle::io::{EncodedEvent, PoseInFrame, PosesInFrame};
+use trundle::runtime::{Answer, Helper, LazyImage, Robot, Stage, StepReport};
+
+/// A run under way: the robot is fed, and all that goes in and comes out is written down.
+pub(super) struct Trip<'s> {
+    setup: &'s RunSetup,
+    robot: Robot,
+    tape: Tape,
+    pub(super) log: Logbook,
+    view: BestView,
+    line: ProgressBar,
+    start: Instant,
+}
+
+impl<'s> Trip<'s> {
+    pub(super) fn begin(setup: &'s RunSetup, mut tape: Tape, quiet: bool) -> Result<Self, Failure> {
+        let mut robot = Robot::new(setup.robot.clone())?;
+        if setup.real_time {
+            robot = robot.deferring();
+        }
+        robot.begin(&setup.mission);
+        let config = setup.clone();
+        tape.put(move |tape| tape.record_json("/config", "trundle.Config", Stamp::default(), &config))?;
+        let (log, view) = (Logbook::default(), BestView::default());
+        Ok(Self { setup, robot, tape, log, view, line: console::live_line(quiet), start: Instant::now() })
+    }
+
+    /// Feeds the robot once; whether its mission is over.
+    pub(super) fn step(&mut self, input: Input, body: &mut dyn WiredBody) -> Result<bool, Failure> {
+        let (stamp, report) = match input {
+            Input::Event(event) => (event.stamp(), self.feel(event)?),
+            Input::Answer(answer) => (self.log.now, self.take_up(answer)?),
+        };
+        if let Some(twist) = report.twist {
+            body.command(twist)?;
+        }
+        if let Some(problem) = &report.broken_image {
+            return Err(Failure::Input(problem.clone()));
+        }
+        self.record(stamp, &report)?;
+        self.log.note(stamp, &report);
+        if let Some(image) = report.image {
+            self.show()?;
+            self.view.looked_at(image, &self.robot, &report);
+        }
+        while let Some(job) = self.robot.next_job() {
+            body.give(job);
+        }
+        Ok(report.finished)
+    }
+
+    /// Takes up what is still under way, in a fixed order, and closes the recording.
+    pub(super) fn end(mut self, body: &mut dyn WiredBody) -> Result<Run, Failure> {
+        if self.setup.real_time {
+            self.mark(None)?;
+            self.robot.drop_waiting_image();
+            for helper in Helper::ALL {
+                if let Some(answer) = body.last_answer(helper) {
+                    let report = self.take_up(answer)?;
+                    let stamp = self.log.now;
+                    self.record(stamp, &report)?;
+                    self.log.note(stamp, &report);
+                }
+            }
+        }
+        self.line.finish_and_clear();
+        let (waiting, lost) = (self.tape.lengths.clone(), self.tape.lost);
+        let tape = TapeCost { waiting, lost, spent: self.tape.finish()? };
+        let seconds = self.start.elapsed().as_secs_f64();
+        Ok(Run { robot: self.robot, log: self.log, view: self.view, seconds, tape })
+    }
+
+    fn feel(&mut self, event: EncodedEvent) -> Result<StepReport, Failure> {
+        let recorded = event.clone();
+        self.tape.put(move |tape| tape.record_event(&recorded))?;
+        if let EncodedEvent::Rgbd(image) = event {
+            self.view.arrived(&image);
+            let stamp = image.stamp;
+            let load = move || image.decode().map_err(|error| error.to_string());
+            return Ok(self.robot.leave_image(LazyImage::new(stamp, load)));
+        }
+        let event = event.decode().map_err(|error| Failure::Input(error.to_string()))?;
+        self.log.judge(&event, self.setup.map_from_world);
+        Ok(self.robot.step(&event))
+    }
+
+    fn take_up(&mut self, answer: Answer) -> Result<StepReport, Failure> {
+        self.mark(Some(answer.helper()))?;
+        Ok(self.robot.take_up(answer))
+    }
+
+    fn mark(&mut self, helper: Option<Helper>) -> Result<(), Failure> {
+        let (stamp, mark) = (self.log.now, TakenUp { helper });
+        self.tape.put(move |tape| tape.record_json(TakenUp::TOPIC, TakenUp::SCHEMA, stamp, &mark))
+    }
+
+    fn record(&mut self, stamp: Stamp, report: &StepReport) -> Result<(), Failure> {
+        if let Some(twist) = report.twist {
+            self.tape.put(move |tape| tape.record_json("/twist", "trundle.Twist", stamp, &twist))?;
+        }
+        let frame = || FrameId::Map.to_string();
+        if let (Some(estimate), Some(_)) = (report.estimate, &report.track) {
+            self.tape.put(move |tape| {
+                let pose = PoseInFrame::planar(stamp, &frame(), estimate.pose);
+                tape.record_json("/pose", PoseInFrame::SCHEMA, stamp, &pose)
+            })?;
+        }
+        if let (true, Some(plan)) = (report.replanned, self.robot.plan()) {
+            let poses: Vec<Pose2> = plan.trajectory.points().iter().map(|point| point.pose).collect();
+            self.tape.put(move |tape| {
+                let poses = PosesInFrame::planar(stamp, &frame(), poses);
+                tape.record_json("/trajectory", PosesInFrame::SCHEMA, stamp, &poses)
+            })?;
+        }
+        Ok(())
+    }
+
+    fn show(&mut self) -> Result<(), Failure> {
+        if self.line.is_hidden() {
+            return Ok(());
+        }
+        let message = self.told();
+        let line = self.line.clone();
+        // A terminal that is slow holds up whoever writes the recording, not control.
+        self.tape.put(move |_| {
+            line.set_message(message);
+            line.tick();
+            Ok(())
+        })
+    }
+
+    fn told(&self) -> String {
+        let (log, robot) = (&self.log, &self.robot);
+        let pose = robot.estimate().pose;
+        let wall = self.start.elapsed().as_secs_f64();
+        let rate = |stage: Stage| robot.times().runs(stage) as f64 / log.elapsed().max(0.1);
+        format!(
+            "{:5.1} s ({:.1}x)  pose {:6.2} {:6.2} m {:6.1} deg  {:<10}  slam {:4.1} Hz  map {:3.1} Hz  control {:4.1} Hz",
+            log.elapsed(),
+            log.elapsed() / wall.max(1e-3),
+            pose.x,
+            pose.y,
+            pose.theta.to_degrees(),
+            log.state.to_string(),
+            rate(Stage::Slam),
+            rate(Stage::Mapping),
+            rate(Stage::Control),
+        )
+    }
+}

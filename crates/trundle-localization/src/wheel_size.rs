@@ -1,0 +1,139 @@
+use crate::OdometryConfig;
+use trundle_core::Pose2;
+
+/// How large the wheels are over their nominal radius, learnt while driving: two Kalman filters of one number.
+///
+/// Their mean comes of chords that the camera saw, over the odometry's of the same time; their difference of straight ways on
+/// which wheels and gyro turn by different angles, `turn = 2 e way / wheelbase`.
+#[derive(Debug, Clone)]
+pub(crate) struct WheelSize {
+    mean: Learnt,
+    difference: Learnt,
+    seen: Option<Seen>,
+    stretch: Stretch,
+}
+
+/// A number and how sure it is.
+#[derive(Debug, Clone, Copy)]
+struct Learnt {
+    value: f64,
+    variance: f64,
+}
+
+/// Where a chord began.
+#[derive(Debug, Clone, Copy)]
+struct Seen {
+    odom_from_base: Pose2,
+    visual_from_base: Pose2,
+}
+
+/// What the wheels did since the last measurement of their difference.
+#[derive(Debug, Clone, Copy, Default)]
+struct Stretch {
+    way: f64,
+    time: f64,
+    by_gyro: f64,
+    /// Turn by the gyro less turn by the wheels, rad.
+    apart: f64,
+}
+
+/// A small motion by wheels and gyro: m, s, rad, rad.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Rolled {
+    pub(crate) way: f64,
+    pub(crate) time: f64,
+    pub(crate) by_wheels: f64,
+    pub(crate) by_gyro: Option<f64>,
+}
+
+/// Chords and straight stretches at least so long are measured, m.
+const LEAST_WAY: f64 = 1.0;
+/// A stretch that turns by more is not straight, rad: an error of the wheelbase would count for one of the wheels.
+const STRAIGHT: f64 = 0.2;
+/// Noise of the length of a chord that the camera saw (one sigma): m, and as a part of it.
+const CHORD_NOISE: (f64, f64) = (0.006, 0.005);
+/// What an uneven floor turns the robot by that its wheels do not show, rad / sqrt(m).
+const FLOOR_NOISE: f64 = 0.005;
+/// Never surer than this (one sigma, as a part): neighbouring measurements err alike.
+const LEAST_SIGMA: f64 = 3e-4;
+/// Measurements farther off are not believed, sigmas.
+const GATE: f64 = 4.0;
+
+impl WheelSize {
+    pub(crate) fn new(config: &OdometryConfig) -> Self {
+        let variance = config.wheel_radius_sigma.powi(2);
+        Self {
+            mean: Learnt { value: 1.0, variance },
+            difference: Learnt { value: 0.0, variance },
+            seen: None,
+            stretch: Stretch::default(),
+        }
+    }
+
+    /// True over nominal radius of the left wheel and of the right one.
+    pub(crate) fn ratios(&self) -> (f64, f64) {
+        (self.mean.value * (1.0 - self.difference.value), self.mean.value * (1.0 + self.difference.value))
+    }
+
+    /// What came before does not belong to what comes: a gap, or a slip.
+    pub(crate) fn interrupt(&mut self) {
+        self.seen = None;
+        self.stretch = Stretch::default();
+    }
+
+    /// What the camera saw before does not belong to what it will see.
+    pub(crate) fn unseen(&mut self) {
+        self.seen = None;
+    }
+
+    /// The robot rolled on.
+    pub(crate) fn rolled(&mut self, config: &OdometryConfig, wheelbase: f64, step: Rolled) {
+        let Some(by_gyro) = step.by_gyro else {
+            self.stretch = Stretch::default();
+            return;
+        };
+        self.stretch.way += step.way;
+        self.stretch.time += step.time;
+        self.stretch.by_gyro += by_gyro;
+        self.stretch.apart += by_gyro - step.by_wheels;
+        let is_straight = self.stretch.by_gyro.abs() < STRAIGHT;
+        if is_straight && self.stretch.way.abs() < LEAST_WAY {
+            return;
+        }
+        let Stretch { way, time, apart, .. } = std::mem::take(&mut self.stretch);
+        if is_straight {
+            let lever = wheelbase / (2.0 * way);
+            let turn = config.gyro_time_noise.powi(2) * time + FLOOR_NOISE.powi(2) * way.abs();
+            self.difference.learn(self.difference.value + apart * lever, turn * lever * lever);
+        }
+    }
+
+    /// The camera saw the robot at `visual_from_base` when the odometry had it at `odom_from_base`.
+    pub(crate) fn seen(&mut self, odom_from_base: Pose2, visual_from_base: Pose2) {
+        let now = Seen { odom_from_base, visual_from_base };
+        let Some(from) = self.seen else {
+            self.seen = Some(now);
+            return;
+        };
+        let rolled = (odom_from_base.position() - from.odom_from_base.position()).norm();
+        if rolled < LEAST_WAY {
+            return;
+        }
+        let chord = (visual_from_base.position() - from.visual_from_base.position()).norm();
+        let sigma = CHORD_NOISE.0.hypot(CHORD_NOISE.1 * chord) / rolled;
+        self.mean.learn(self.mean.value * chord / rolled, sigma * sigma);
+        self.seen = Some(now);
+    }
+}
+
+impl Learnt {
+    /// Takes in a measurement that can be believed.
+    fn learn(&mut self, measured: f64, variance: f64) {
+        let (off, all) = (measured - self.value, self.variance + variance);
+        if off * off <= GATE * GATE * all && self.variance > 0.0 {
+            let gain = self.variance / all;
+            self.value += gain * off;
+            self.variance = ((1.0 - gain) * self.variance).max(LEAST_SIGMA * LEAST_SIGMA);
+        }
+    }
+}

@@ -1,0 +1,101 @@
+use super::TrackerConfig;
+use super::cluster::Cluster;
+use super::seen::SeenCells;
+use trundle_core::Vector2;
+
+/// Something that was seen again and again.
+#[derive(Debug)]
+pub(super) struct Track {
+    /// Where it was hit when it was first seen.
+    first: Vec<Vector2>,
+    /// Where its middle was then.
+    from: Vector2,
+    /// Its hits now.
+    pub(super) hits: Vec<Vector2>,
+    /// When and where it was seen, oldest first, not longer ago than the memory.
+    seen: Vec<Sighting>,
+    sightings: usize,
+    pub(super) velocity: Vector2,
+}
+
+/// Where something was, and how large it looked.
+#[derive(Debug, Clone, Copy)]
+struct Sighting {
+    time: f64,
+    at: Vector2,
+    radius: f64,
+}
+
+impl Track {
+    pub(super) fn new(time: f64, cluster: Cluster) -> Self {
+        let seen = vec![Sighting { time, at: cluster.middle, radius: cluster.radius }];
+        let first = cluster.hits.clone();
+        Self {
+            first,
+            from: cluster.middle,
+            hits: cluster.hits,
+            seen,
+            sightings: 1,
+            velocity: Vector2::zeros(),
+        }
+    }
+
+    /// Where its middle should be.
+    pub(super) fn expected(&self, time: f64) -> Vector2 {
+        let last = self.last();
+        last.at + self.velocity * (time - last.time)
+    }
+
+    pub(super) fn last_seen(&self) -> f64 {
+        self.last().time
+    }
+
+    fn last(&self) -> &Sighting {
+        &self.seen[self.seen.len() - 1]
+    }
+
+    pub(super) fn add(&mut self, time: f64, cluster: Cluster, config: &TrackerConfig) {
+        self.seen.push(Sighting { time, at: cluster.middle, radius: cluster.radius });
+        self.seen.retain(|sighting| time - sighting.time <= config.memory);
+        self.sightings += 1;
+        self.hits = cluster.hits;
+        self.velocity = velocity(self.recent(config.window));
+    }
+
+    /// The largest that it looked lately.
+    pub(super) fn radius(&self, config: &TrackerConfig) -> f64 {
+        self.recent(config.window).iter().map(|sighting| sighting.radius).fold(config.smallest, f64::max)
+    }
+
+    /// Discs that it has been in, within the memory.
+    pub(super) fn trail(&self, config: &TrackerConfig) -> impl Iterator<Item = (Vector2, f64)> + '_ {
+        let radius = self.radius(config);
+        self.seen.iter().map(move |sighting| (sighting.at, radius))
+    }
+
+    /// Whether it moves: it has left where it was first seen. Of a thing that was put down, other sides come into view: less than
+    /// its radius is no way.
+    pub(super) fn moves(&self, cells: &SeenCells, config: &TrackerConfig) -> bool {
+        let left = self.first.iter().filter(|hit| !cells.is_hit(**hit, self.last_seen())).count();
+        self.sightings >= config.sightings
+            && self.velocity.norm() >= config.least_speed
+            && (self.last().at - self.from).norm() >= config.least_way.max(self.radius(config))
+            && 2 * left >= self.first.len()
+    }
+
+    fn recent(&self, window: f64) -> &[Sighting] {
+        let begin = self.seen.partition_point(|sighting| self.last_seen() - sighting.time > window);
+        &self.seen[begin..]
+    }
+}
+
+/// The slope of the straight line through places over time, by least squares.
+fn velocity(seen: &[Sighting]) -> Vector2 {
+    let count = seen.len() as f64;
+    let mean_time = seen.iter().map(|sighting| sighting.time).sum::<f64>() / count;
+    let spread: f64 = seen.iter().map(|sighting| (sighting.time - mean_time).powi(2)).sum();
+    if spread <= 0.0 {
+        return Vector2::zeros();
+    }
+    seen.iter().map(|sighting| sighting.at * (sighting.time - mean_time)).sum::<Vector2>() / spread
+}

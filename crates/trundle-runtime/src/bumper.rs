@@ -1,0 +1,52 @@
+use trundle_core::{Footprint, Vector2};
+
+/// Half of the bearings at which the bumper may have met something, deg: those that the robot drives to.
+const HALF_WIDTH: i32 = 30;
+/// A point each so many deg: closer than the cells of a map.
+const STEP: i32 = 6;
+/// What pressed the bumper is so far beyond the outline, m: in the next cell.
+const BEYOND: f64 = 0.03;
+
+/// Where something that presses the bumper of a robot of this outline may stand: points ahead of it, base frame, m.
+pub(crate) fn ahead_of(footprint: &Footprint) -> Vec<Vector2> {
+    let bearings = (-HALF_WIDTH..=HALF_WIDTH).step_by(STEP as usize).map(|deg| f64::from(deg).to_radians());
+    let point = |bearing: f64| {
+        let direction = Vector2::new(bearing.cos(), bearing.sin());
+        direction * (way_out(footprint, direction) + BEYOND)
+    };
+    bearings.map(point).collect()
+}
+
+/// How far the outline reaches from the base's origin in a direction, m.
+fn way_out(footprint: &Footprint, direction: Vector2) -> f64 {
+    match footprint {
+        Footprint::Disc { radius } => *radius,
+        Footprint::Polygon { corners } => {
+            let sides = corners.iter().zip(corners.iter().cycle().skip(1));
+            let crossing = |(a, b): (&Vector2, &Vector2)| {
+                let (side, across) = (b - a, direction.perp(&(b - a)));
+                let (way, part) = (a.perp(&side) / across, a.perp(&direction) / across);
+                (way >= 0.0 && (0.0..=1.0).contains(&part)).then_some(way)
+            };
+            sides.filter_map(crossing).fold(0.0, f64::max)
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_touched_stands_before_the_front() {
+        let corners = [(0.4, 0.2), (-0.2, 0.2), (-0.2, -0.2), (0.4, -0.2)];
+        let cart = Footprint::polygon(corners.map(|(x, y)| Vector2::new(x, y)).to_vec()).unwrap();
+        let points = ahead_of(&cart);
+        assert!(points.iter().any(|p| (p - Vector2::new(0.43, 0.0)).norm() < 1e-9), "{points:?}");
+        let is_outside = |p: &Vector2| p.x > 0.4 || p.y.abs() > 0.2;
+        assert!(points.len() == 11 && points.iter().all(|p| is_outside(p) && p.x > 0.35), "{points:?}");
+        for p in ahead_of(&Footprint::disc(0.2).unwrap()) {
+            assert!((p.norm() - 0.23).abs() < 1e-9 && p.x > 0.0);
+        }
+    }
+}

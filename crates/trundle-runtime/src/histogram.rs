@@ -1,0 +1,102 @@
+/// Quantiles of a stream of positive numbers in constant memory: bins of equal width in the logarithm.
+///
+/// A quantile is right to 1 %; count, sum and the largest number are exact. Numbers below a millionth count as a millionth,
+/// those above a million as a million.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Histogram {
+    /// Empty until there is something to count.
+    bins: Vec<u32>,
+    count: u64,
+    sum: f64,
+    most: f64,
+}
+
+/// The lower end of the first bin.
+const LEAST: f64 = 1e-6;
+/// Each bin reaches so much farther than it begins: quantiles are in the middle, so within 1 %.
+const RATIO: f64 = 1.02;
+/// Up to a million.
+const BINS: usize = 1396;
+
+impl Histogram {
+    /// Counts a number; one that is not finite is left out.
+    pub fn note(&mut self, value: f64) {
+        if !value.is_finite() {
+            return;
+        }
+        self.bins.resize(BINS, 0);
+        let bin = ((value.max(LEAST) / LEAST).ln() / RATIO.ln()) as usize;
+        self.bins[bin.min(BINS - 1)] += 1;
+        self.count += 1;
+        self.sum += value;
+        self.most = self.most.max(value);
+    }
+
+    /// Counts all that `other` has counted.
+    pub fn add(&mut self, other: &Self) {
+        if other.count == 0 {
+            return;
+        }
+        self.bins.resize(BINS, 0);
+        self.bins.iter_mut().zip(&other.bins).for_each(|(mine, theirs)| *mine += theirs);
+        self.count += other.count;
+        self.sum += other.sum;
+        self.most = self.most.max(other.most);
+    }
+
+    /// How many numbers were counted.
+    pub fn count(&self) -> u64 {
+        self.count
+    }
+
+    /// Their sum.
+    pub fn sum(&self) -> f64 {
+        self.sum
+    }
+
+    /// The largest; `None` where nothing was counted.
+    pub fn most(&self) -> Option<f64> {
+        (self.count > 0).then_some(self.most)
+    }
+
+    /// The number that the part `fraction` (0 to 1) of all do not exceed; `None` where nothing was counted.
+    pub fn quantile(&self, fraction: f64) -> Option<f64> {
+        let rank = (self.count.checked_sub(1)? as f64 * fraction.clamp(0.0, 1.0)).round() as u64;
+        let mut below = 0;
+        let bin = self.bins.iter().position(|&n| {
+            below += u64::from(n);
+            below > rank
+        })?;
+        Some((LEAST * RATIO.powf(bin as f64 + 0.5)).min(self.most))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn quantiles_are_within_a_hundredth_and_sums_exact() {
+        let (mut odd, mut even) = (Histogram::default(), Histogram::default());
+        for i in 1..=10_000 {
+            if i % 2 == 1 { odd.note(f64::from(i)) } else { even.note(f64::from(i)) }
+        }
+        odd.add(&even);
+        for fraction in [0.1, 0.5, 0.9, 0.99, 0.999] {
+            let ratio = odd.quantile(fraction).unwrap() / (fraction * 10_000.0);
+            assert!((ratio - 1.0).abs() < 0.0101, "{fraction}: {ratio}");
+        }
+        assert_eq!((odd.count(), odd.sum(), odd.most()), (10_000, 50_005_000.0, Some(10_000.0)));
+    }
+
+    #[test]
+    fn nothing_has_no_quantile_and_extremes_have_a_place() {
+        let mut all = Histogram::default();
+        assert_eq!((all.quantile(0.5), all.most()), (None, None));
+        for value in [0.0, 1e9, f64::NAN] {
+            all.note(value);
+        }
+        assert_eq!((all.count(), all.most()), (2, Some(1e9)));
+        assert!(all.quantile(0.0).unwrap() < 1.1e-6 && all.quantile(1.0).unwrap() > 0.9e6);
+    }
+}

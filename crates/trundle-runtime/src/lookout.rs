@@ -1,0 +1,124 @@
+use crate::{
+    config::RobotConfig,
+    eye::EyeWatch,
+    sight::Sight,
+    stage::{Stage, StageTimes},
+};
+use trundle_core::{Invalid, Pose2, Pose3, RgbdImage, Scan, Stamp};
+use trundle_localization::camera_motion;
+use trundle_mapping::DepthScanner;
+use trundle_slam::{RgbdSlam, TrackReport};
+
+/// All that is done with an image alone: the camera's pose by SLAM, and the scan.
+///
+/// What it finds depends on the images and the odometry that it was given, in their order, and on nothing else: it may work
+/// beside the control loop.
+#[derive(Debug)]
+pub(crate) struct Lookout {
+    sight: Sight,
+    base_from_camera: Pose3,
+    slam: RgbdSlam,
+    scanner: DepthScanner,
+    watch: EyeWatch,
+    /// `odom_from_base` at the last image.
+    last: Option<Pose2>,
+    /// Since when images that show enough have not been located.
+    unplaced: Option<Stamp>,
+}
+
+/// What an image showed.
+#[derive(Debug)]
+pub(crate) struct Sighting {
+    /// When the image was taken.
+    pub(crate) odom_from_base: Pose2,
+    pub(crate) track: TrackReport,
+    /// Where the robot sees by its camera.
+    pub(crate) scan: Option<Scan>,
+    /// Since when images that show enough have not been located.
+    pub(crate) unplaced: Option<Stamp>,
+    /// All poses of the visual map, when it was corrected by more than tracking goes along with.
+    pub(crate) bent: Option<Vec<(Stamp, Pose3)>>,
+}
+
+/// A correction of the visual map by more than this bends the grid, m and rad.
+const BENT: f64 = 0.02;
+/// An image with so many features shows enough to be located by.
+const ENOUGH_FEATURES: usize = 200;
+/// Images that show enough and are not located for so long, s, are of another place than the odometry says.
+const CARRIED_AWAY: f64 = 1.5;
+
+impl Lookout {
+    pub(crate) fn new(config: &RobotConfig, base_from_camera: Pose3) -> Result<Self, Invalid> {
+        Ok(Self {
+            sight: config.sight,
+            base_from_camera,
+            slam: RgbdSlam::new(config.camera, config.slam.clone())?,
+            scanner: DepthScanner::new(config.camera, base_from_camera, config.scan.clone())?,
+            watch: EyeWatch::default(),
+            last: None,
+            unplaced: None,
+        })
+    }
+
+    pub(crate) fn slam(&self) -> &RgbdSlam {
+        &self.slam
+    }
+
+    /// Nearer than this its scans show nothing, m.
+    pub(crate) fn blind_range(&self) -> f64 {
+        match self.sight {
+            Sight::DepthCamera => self.scanner.blind_range(),
+            Sight::Laser => 0.0,
+        }
+    }
+
+    /// Looks at an image taken at `odom_from_base`; none when it is the last one again though the robot has moved.
+    pub(crate) fn look(
+        &mut self,
+        image: &RgbdImage,
+        odom_from_base: Pose2,
+        times: &mut StageTimes,
+    ) -> Option<Sighting> {
+        if self.watch.is_frozen(image, odom_from_base) {
+            return None;
+        }
+        let prior = self.camera_motion_since_last_image(odom_from_base);
+        let track = times.measure(Stage::Slam, || self.slam.step(image, prior));
+        if self.is_carried_away(&track) {
+            self.slam.kidnapped();
+        }
+        let bent = is_bent(&track).then(|| self.slam.trajectory());
+        let scan = match self.sight {
+            Sight::DepthCamera => Some(times.measure(Stage::Scan, || self.scanner.scan(image))),
+            Sight::Laser => None,
+        };
+        Some(Sighting { odom_from_base, track, scan, unplaced: self.unplaced, bent })
+    }
+
+    /// `previous_camera_from_camera` by wheels and gyro.
+    fn camera_motion_since_last_image(&mut self, odom_from_base: Pose2) -> Option<Pose3> {
+        let previous = self.last.replace(odom_from_base)?;
+        Some(camera_motion(previous.inverse() * odom_from_base, self.base_from_camera))
+    }
+
+    /// Whether it is time to look for the place everywhere: the odometry's has not been recognised for a while.
+    fn is_carried_away(&mut self, track: &TrackReport) -> bool {
+        if track.tracking.is_located() || track.features < ENOUGH_FEATURES {
+            self.unplaced = None;
+            return false;
+        }
+        let since = *self.unplaced.get_or_insert(track.stamp);
+        let is_time = track.stamp - since > CARRIED_AWAY;
+        if is_time {
+            self.unplaced = None;
+        }
+        is_time
+    }
+}
+
+/// Whether the visual map was corrected by more than tracking goes along with.
+fn is_bent(track: &TrackReport) -> bool {
+    let is_large =
+        |correction: &Pose3| correction.translation.norm() > BENT || correction.log().norm() > BENT;
+    track.closed_loop.is_some() || track.merged.is_some() || track.refined.as_ref().is_some_and(is_large)
+}

@@ -1,0 +1,191 @@
+use super::pulse::Pulse;
+use crate::{
+    Histogram,
+    job::{Answer, Helper},
+};
+use std::collections::VecDeque;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, TrySendError, sync_channel};
+use std::time::{Duration, Instant};
+
+/// What the control thread is fed, in one queue of bounded length. Urgent events, which control waits for, overtake images and
+/// answers, and these are only handed out while there is time before the next reading of the wheels.
+#[derive(Debug)]
+pub struct Inbox<E> {
+    receiver: Receiver<Post<E>>,
+    urgent: VecDeque<E>,
+    patient: VecDeque<Input<E>>,
+    door: InboxDoor<E>,
+    lengths: Histogram,
+}
+
+/// Where others put in what the control thread shall get.
+#[derive(Debug)]
+pub struct InboxDoor<E> {
+    sender: SyncSender<Post<E>>,
+    refused: Arc<AtomicU64>,
+}
+
+/// Something put in.
+#[derive(Debug)]
+pub enum Post<E> {
+    /// An event that control waits for: wheels, gyro, bumper.
+    Urgent(E),
+    /// An event that has time: an image.
+    Patient(E),
+    /// What a helper came to.
+    Answer(Answer),
+}
+
+/// What the control thread gets.
+#[derive(Debug)]
+pub enum Input<E> {
+    /// What a sensor says.
+    Event(E),
+    /// What a helper came to.
+    Answer(Answer),
+}
+
+impl<E> Clone for InboxDoor<E> {
+    fn clone(&self) -> Self {
+        Self { sender: self.sender.clone(), refused: Arc::clone(&self.refused) }
+    }
+}
+
+impl<E> InboxDoor<E> {
+    /// Puts something in, without waiting: when the queue is full, because nobody has emptied it for seconds, it is refused and
+    /// counted; false then, or when nobody is there any more.
+    pub fn put(&self, post: Post<E>) -> bool {
+        match self.sender.try_send(post) {
+            Ok(()) => true,
+            Err(TrySendError::Full(_)) => {
+                self.refused.fetch_add(1, Ordering::Relaxed);
+                false
+            }
+            Err(TrySendError::Disconnected(_)) => false,
+        }
+    }
+
+    /// Puts something in that must not be lost, waiting where the queue is full.
+    pub fn hand_in(&self, post: Post<E>) -> bool {
+        self.sender.send(post).is_ok()
+    }
+}
+
+impl<E> Inbox<E> {
+    /// An empty one for at most `capacity` things.
+    pub fn new(capacity: usize) -> Self {
+        let (sender, receiver) = sync_channel(capacity);
+        let door = InboxDoor { sender, refused: Arc::default() };
+        Self {
+            receiver,
+            urgent: VecDeque::new(),
+            patient: VecDeque::new(),
+            door,
+            lengths: Histogram::default(),
+        }
+    }
+
+    /// A way in.
+    pub fn door(&self) -> InboxDoor<E> {
+        self.door.clone()
+    }
+
+    /// The next thing; none when nothing has come for `patience`. Things of a kind come in the order in which they were put in.
+    pub fn next(&mut self, pulse: &Pulse, patience: Duration) -> Option<Input<E>> {
+        let start = Instant::now();
+        loop {
+            self.empty();
+            if let Some(event) = self.urgent.pop_front() {
+                return Some(Input::Event(event));
+            }
+            let wait = match (self.patient.is_empty(), pulse.time_for_others()) {
+                (false, None) => return self.patient.pop_front(),
+                (false, Some(hold)) => hold,
+                (true, _) => patience.saturating_sub(start.elapsed()),
+            };
+            match self.receiver.recv_timeout(wait) {
+                Ok(post) => self.sort(post),
+                Err(RecvTimeoutError::Timeout) if !self.patient.is_empty() => {}
+                Err(RecvTimeoutError::Timeout | RecvTimeoutError::Disconnected) => return None,
+            }
+        }
+    }
+
+    /// The next answer of a helper, whatever else is there: that is let go. None when it does not come within `patience`.
+    pub fn next_answer(&mut self, helper: Helper, patience: Duration) -> Option<Answer> {
+        let start = Instant::now();
+        loop {
+            self.urgent.clear();
+            let is_it =
+                |input: &Input<E>| matches!(input, Input::Answer(answer) if answer.helper() == helper);
+            if let Some(at) = self.patient.iter().position(is_it)
+                && let Some(Input::Answer(answer)) = self.patient.remove(at)
+            {
+                return Some(answer);
+            }
+            let post = self.receiver.recv_timeout(patience.saturating_sub(start.elapsed())).ok()?;
+            self.sort(post);
+        }
+    }
+
+    /// Things refused because the queue was full.
+    pub fn refused(&self) -> u64 {
+        self.door.refused.load(Ordering::Relaxed)
+    }
+
+    /// How many things were waiting, each time something was taken.
+    pub fn lengths(&self) -> &Histogram {
+        &self.lengths
+    }
+
+    fn empty(&mut self) {
+        while let Ok(post) = self.receiver.try_recv() {
+            self.sort(post);
+        }
+        self.lengths.note((self.urgent.len() + self.patient.len()) as f64);
+    }
+
+    fn sort(&mut self, post: Post<E>) {
+        match post {
+            Post::Urgent(event) => self.urgent.push_back(event),
+            Post::Patient(event) => self.patient.push_back(Input::Event(event)),
+            Post::Answer(answer) => self.patient.push_back(Input::Answer(answer)),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::PulseConfig;
+    use super::*;
+
+    fn events(inbox: &mut Inbox<u32>, pulse: &Pulse) -> Vec<u32> {
+        let mut events = Vec::new();
+        while let Some(Input::Event(event)) = inbox.next(pulse, Duration::ZERO) {
+            events.push(event);
+        }
+        events
+    }
+
+    #[test]
+    fn urgent_things_overtake_and_each_kind_keeps_its_order() {
+        let mut inbox = Inbox::new(8);
+        let door = inbox.door();
+        for post in [Post::Patient(1), Post::Urgent(2), Post::Patient(3), Post::Urgent(4)] {
+            assert!(door.put(post));
+        }
+        assert_eq!(events(&mut inbox, &Pulse::new(PulseConfig::default())), [2, 4, 1, 3]);
+    }
+
+    #[test]
+    fn a_full_queue_refuses_and_counts() {
+        let mut inbox = Inbox::new(2);
+        let door = inbox.door();
+        let put: Vec<bool> = (0..4).map(|i| door.put(Post::Urgent(i))).collect();
+        assert_eq!(put, [true, true, false, false]);
+        assert_eq!(inbox.refused(), 2);
+        assert_eq!(events(&mut inbox, &Pulse::new(PulseConfig::default())), [0, 1]);
+    }
+}

@@ -1,0 +1,81 @@
+use std::time::Duration;
+
+/// Where a thread runs, and how urgently.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Place {
+    /// The processor core, from 0; none: any.
+    pub core: Option<usize>,
+    /// So much nicer to others than the thread that starts it, 0 to 39. Default 0.
+    pub nice: i32,
+}
+
+impl Place {
+    /// Puts the calling thread there; whether the system granted all of it. Elsewhere than on Linux nothing is granted.
+    pub fn take(self) -> bool {
+        let pinned = self.core.is_none_or(pin);
+        let ranked = self.nice == 0 || rank(self.nice);
+        pinned && ranked
+    }
+}
+
+#[cfg(target_os = "linux")]
+fn pin(core: usize) -> bool {
+    use rustix::thread::{CpuSet, sched_setaffinity};
+    let mut set = CpuSet::new();
+    if core >= CpuSet::MAX_CPU {
+        return false;
+    }
+    set.set(core);
+    sched_setaffinity(None, &set).is_ok()
+}
+
+/// Linux counts niceness by thread; none is the calling one.
+#[cfg(target_os = "linux")]
+fn rank(nicer: i32) -> bool {
+    use rustix::process::{getpriority_process, setpriority_process};
+    getpriority_process(None).and_then(|now| setpriority_process(None, now + nicer)).is_ok()
+}
+
+#[cfg(not(target_os = "linux"))]
+fn pin(_core: usize) -> bool {
+    false
+}
+
+#[cfg(not(target_os = "linux"))]
+fn rank(_nice: i32) -> bool {
+    false
+}
+
+/// What the calling thread has computed so far; none where threads have no clock of their own.
+#[cfg(unix)]
+pub fn thread_time() -> Option<Duration> {
+    let time = rustix::time::clock_gettime(rustix::time::ClockId::ThreadCPUTime);
+    Some(Duration::new(time.tv_sec.unsigned_abs(), u32::try_from(time.tv_nsec).ok()?))
+}
+
+/// What the calling thread has computed so far; none where threads have no clock of their own.
+#[cfg(not(unix))]
+pub fn thread_time() -> Option<Duration> {
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn a_thread_can_be_pinned_and_made_nicer() {
+        let place = Place { core: Some(0), nice: 5 };
+        assert!(std::thread::spawn(move || place.take()).join().unwrap());
+        let nowhere = Place { core: Some(100_000), nice: 0 };
+        assert!(!std::thread::spawn(move || nowhere.take()).join().unwrap());
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn the_clock_of_a_thread_never_goes_back() {
+        let before = thread_time().unwrap();
+        assert!(thread_time().unwrap() >= before);
+    }
+}

@@ -1,0 +1,168 @@
+//! The robot with its long work given out.
+
+use crate::robot::{robot, wall};
+use trundle_core::{GyroRate, Pose2, SensorEvent, Stamp, Touch, Twist2, WheelTicks};
+use trundle_runtime::{Answer, DriveState, Helper, Job, LazyImage, Robot, StepReport};
+
+/// The goal of all these drives.
+const GOAL: Pose2 = Pose2 { x: 1.0, y: 0.0, theta: 0.0 };
+
+/// Feeds a robot that stands still before a wall at 50 Hz, images at 10 Hz until `until`; `work` says what becomes of its jobs
+/// after each feeding: the answers to be taken up now.
+fn live(
+    robot: &mut Robot,
+    seconds: f64,
+    until: f64,
+    mut work: impl FnMut(Stamp, Vec<Job>) -> Vec<Answer>,
+) -> Vec<StepReport> {
+    let mut reports = Vec::new();
+    for i in 0..(seconds * 50.0) as i64 {
+        let stamp = Stamp::from_nanos(i * 20_000_000);
+        let mut step = robot.step(&SensorEvent::Gyro(GyroRate { stamp, omega: 0.0 }));
+        step = StepReport { twist: None, ..step };
+        for event in [SensorEvent::Wheels(WheelTicks { stamp, left: 0, right: 0 }), wall(stamp, 3.0)] {
+            let report = match event {
+                SensorEvent::Rgbd(_) if i % 5 != 0 || stamp.as_secs() >= until => continue,
+                SensorEvent::Rgbd(image) => robot.leave_image(LazyImage::from(image)),
+                event => robot.step(&event),
+            };
+            step = StepReport { twist: report.twist.or(step.twist), ..report };
+            let mut jobs: Vec<Job> = std::iter::from_fn(|| robot.next_job()).collect();
+            loop {
+                let answers = work(stamp, std::mem::take(&mut jobs));
+                if answers.is_empty() {
+                    break;
+                }
+                for answer in answers {
+                    let report = robot.take_up(answer);
+                    step = StepReport { twist: report.twist.or(step.twist), ..report };
+                    jobs.extend(std::iter::from_fn(|| robot.next_job()));
+                }
+            }
+        }
+        reports.push(step);
+    }
+    reports
+}
+
+fn at_once(_now: Stamp, jobs: Vec<Job>) -> Vec<Answer> {
+    jobs.into_iter().map(Job::run).collect()
+}
+
+fn deferring() -> Robot {
+    robot(GOAL).deferring()
+}
+
+/// Jobs done so long after they were given, s, by helper.
+fn after(look: f64, think: f64) -> impl FnMut(Stamp, Vec<Job>) -> Vec<Answer> {
+    let mut open: Vec<(Stamp, Job)> = Vec::new();
+    move |now, jobs| {
+        for job in jobs {
+            let takes = if job.helper() == Helper::Lookout { look } else { think };
+            open.push((now.after(takes), job));
+        }
+        let (ready, rest): (Vec<_>, Vec<_>) = open.drain(..).partition(|(due, _)| *due <= now);
+        open = rest;
+        ready.into_iter().map(|(_, job)| job.run()).collect()
+    }
+}
+
+fn twists(reports: &[StepReport]) -> Vec<Option<Twist2>> {
+    reports.iter().map(|report| report.twist).collect()
+}
+
+#[test]
+fn work_done_at_once_is_work_done_within_the_step() {
+    let within = live(&mut robot(GOAL), 4.0, 3.0, |_, jobs| {
+        assert!(jobs.is_empty(), "a robot that does not defer gives nothing out");
+        Vec::new()
+    });
+    let mut robot = deferring();
+    let beside = live(&mut robot, 4.0, 3.0, at_once);
+    assert_eq!(twists(&within), twists(&beside));
+    assert!(within.iter().zip(&beside).all(|(a, b)| a.state == b.state && a.estimate == b.estimate));
+    assert!(within.iter().any(|report| report.twist.is_some_and(|twist| twist.v > 0.05)), "it drove");
+    assert!(robot.dropped_images().is_empty());
+}
+
+#[test]
+fn answers_in_the_same_places_give_the_same_reports() {
+    let run = || {
+        let mut robot = deferring();
+        let reports = live(&mut robot, 4.0, 4.0, after(0.13, 0.07));
+        (twists(&reports), robot.dropped_images().to_vec())
+    };
+    assert_eq!(run(), run());
+    assert!(!run().1.is_empty(), "images every 0.1 s, each looked at for 0.13 s");
+}
+
+#[test]
+fn of_images_that_nobody_has_time_for_the_newest_is_kept() {
+    let mut robot = deferring();
+    // Images at 0, 0.1, ... 0.9 s; that of 0 is looked at until 0.52 s, then that of 0.5 until 1.04 s.
+    live(&mut robot, 1.0, 1.0, after(0.52, 0.0));
+    let dropped: Vec<i64> = robot.dropped_images().iter().map(|stamp| stamp.nanos / 1_000_000).collect();
+    assert_eq!(dropped, [100, 200, 300, 400, 600, 700, 800]);
+    robot.drop_waiting_image();
+    assert_eq!(robot.dropped_images().last().unwrap().nanos, 900_000_000);
+}
+
+#[test]
+fn a_lookout_that_does_not_come_back_stops_the_robot() {
+    let mut looks = 0;
+    let mut lost = Vec::new();
+    let reports = live(&mut deferring(), 6.0, 6.0, |_, jobs| {
+        let mut answers = Vec::new();
+        for job in jobs {
+            looks += u32::from(job.helper() == Helper::Lookout);
+            // From the 25th on nobody comes back.
+            if job.helper() == Helper::Lookout && looks >= 25 {
+                lost.push(job)
+            } else {
+                answers.push(job.run())
+            }
+        }
+        answers
+    });
+    assert!(reports.iter().any(|report| report.twist.is_some_and(|twist| twist.v > 0.05)), "it drove");
+    let last = reports.last().unwrap();
+    assert_eq!(last.twist, Some(Twist2::ZERO));
+    assert!(last.state.reason().is_some_and(|reason| reason.contains("image")), "{:?}", last.state);
+}
+
+#[test]
+fn a_captain_who_thinks_for_long_leaves_a_robot_that_brakes_for_the_bumper() {
+    let mut lost = Vec::new();
+    let mut robot = deferring();
+    let drives = |report: &StepReport| report.twist.is_some_and(|twist| twist.v > 0.05);
+    let reports = live(&mut robot, 2.6, 2.6, |now, jobs| {
+        let mut answers = Vec::new();
+        for job in jobs {
+            let is_gone = now.as_secs() > 2.4 && job.helper() == Helper::Captain;
+            if is_gone { lost.push(job) } else { answers.push(job.run()) }
+        }
+        answers
+    });
+    assert!(reports[121..].iter().any(drives), "without the captain it goes on");
+    assert_eq!(lost.len(), 1, "one captain, one job");
+    let stamp = Stamp::from_nanos(2_600_000_000);
+    robot.step(&SensorEvent::Touch(Touch { stamp, pressed: true }));
+    let report = robot.step(&SensorEvent::Wheels(WheelTicks { stamp, left: 0, right: 0 }));
+    assert_eq!(report.twist, Some(Twist2::ZERO));
+    // Back again, the captain has heard of the bumper; what was decided half a second ago is not sent any more.
+    let report = robot.take_up(lost.remove(0).run());
+    assert_eq!(report.twist, None);
+    let stamp = stamp.after(0.02);
+    let report = robot.step(&SensorEvent::Wheels(WheelTicks { stamp, left: 0, right: 0 }));
+    assert_eq!(report.twist, Some(Twist2::ZERO));
+    assert!(matches!(report.state, DriveState::Waiting { .. }), "{:?}", report.state);
+}
+
+#[test]
+fn an_image_that_is_none_is_said_to_be_none() {
+    let mut robot = deferring();
+    robot.step(&SensorEvent::Wheels(WheelTicks { stamp: Stamp::default(), left: 0, right: 0 }));
+    robot.leave_image(LazyImage::new(Stamp::default(), || Err("no JPEG".to_owned())));
+    let report = robot.next_job().map(|job| robot.take_up(job.run())).unwrap();
+    assert_eq!((report.broken_image.as_deref(), report.image), (Some("no JPEG"), Some(Stamp::default())));
+}

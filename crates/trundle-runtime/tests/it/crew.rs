@@ -1,0 +1,90 @@
+//! The robot in threads: what they did, in the order in which it was taken up, gives the same reports again.
+
+use crate::robot::{robot, wall};
+use std::time::Duration;
+use trundle_core::{GyroRate, Pose2, RgbdImage, SensorEvent, Stamp, Twist2, WheelTicks};
+use trundle_runtime::real_time::{Crew, Inbox, Input, Place, Post, Pulse, PulseConfig};
+use trundle_runtime::{Helper, Job, LazyImage, Robot};
+
+/// What the robot was fed, in order.
+#[derive(Debug, Clone)]
+enum Fed {
+    Event(SensorEvent),
+    Image(RgbdImage),
+    Answer(Helper),
+}
+
+fn events(seconds: i64) -> Vec<SensorEvent> {
+    let at = |i: i64| {
+        let stamp = Stamp::from_nanos(i * 20_000_000);
+        let gyro = SensorEvent::Gyro(GyroRate { stamp, omega: 0.0 });
+        let wheels = SensorEvent::Wheels(WheelTicks { stamp, left: 0, right: 0 });
+        [Some(gyro), Some(wheels), (i % 2 == 0).then(|| wall(stamp, 3.0))].into_iter().flatten()
+    };
+    (0..seconds * 50).flat_map(at).collect()
+}
+
+/// Feeds `robot` as fast as it can be, its work in threads; what it was fed, and what it commanded.
+fn live(robot: &mut Robot) -> (Vec<Fed>, Vec<Twist2>) {
+    let mut inbox: Inbox<SensorEvent> = Inbox::new(100_000);
+    let door = inbox.door();
+    let crew = Crew::start(Place::default(), move |answer| _ = door.put(Post::Answer(answer))).unwrap();
+    for event in events(4) {
+        let is_image = matches!(event, SensorEvent::Rgbd(_));
+        inbox.door().put(if is_image { Post::Patient(event) } else { Post::Urgent(event) });
+    }
+    let pulse = Pulse::new(PulseConfig::default());
+    let (mut fed, mut twists) = (Vec::new(), Vec::new());
+    while let Some(input) = inbox.next(&pulse, Duration::from_secs(1)) {
+        let report = match input {
+            Input::Event(SensorEvent::Rgbd(image)) => {
+                fed.push(Fed::Image(image.clone()));
+                robot.leave_image(LazyImage::from(image))
+            }
+            Input::Event(event) => {
+                fed.push(Fed::Event(event.clone()));
+                robot.step(&event)
+            }
+            Input::Answer(answer) => {
+                fed.push(Fed::Answer(answer.helper()));
+                robot.take_up(answer)
+            }
+        };
+        twists.extend(report.twist);
+        while let Some(job) = robot.next_job() {
+            crew.give(job);
+        }
+    }
+    assert_eq!(crew.dismiss().len(), Helper::ALL.len());
+    (fed, twists)
+}
+
+/// Feeds `robot` the same again, its work done where it was taken up.
+fn again(robot: &mut Robot, fed: Vec<Fed>) -> Vec<Twist2> {
+    let (mut twists, mut jobs) = (Vec::new(), Vec::<Job>::new());
+    for fed in fed {
+        let report = match fed {
+            Fed::Event(event) => robot.step(&event),
+            Fed::Image(image) => robot.leave_image(LazyImage::from(image)),
+            Fed::Answer(helper) => {
+                let at = jobs.iter().position(|job| job.helper() == helper).unwrap();
+                robot.take_up(jobs.remove(at).run())
+            }
+        };
+        twists.extend(report.twist);
+        jobs.extend(std::iter::from_fn(|| robot.next_job()));
+    }
+    twists
+}
+
+#[test]
+fn what_threads_did_can_be_done_again_without_them() {
+    let robot = || robot(Pose2::new(1.0, 0.5, 1.0)).deferring();
+    let (mut first, mut second) = (robot(), robot());
+    let (fed, twists) = live(&mut first);
+    assert!(fed.iter().any(|fed| matches!(fed, Fed::Answer(Helper::Lookout))));
+    assert!(fed.iter().any(|fed| matches!(fed, Fed::Answer(Helper::Captain))));
+    assert_eq!(twists, again(&mut second, fed));
+    assert_eq!(first.dropped_images(), second.dropped_images());
+    assert_eq!(first.grid(), second.grid());
+}
