@@ -82,10 +82,7 @@ impl GridMapper {
             for x in low.x..=high.x {
                 let cell = GridCell { x, y };
                 if (cell.center_cells() - center).norm() <= reach.x {
-                    self.evidence.entry(cell).log_odds = -self.config.clamp_low as f32;
-                    if self.shows {
-                        self.live.show(cell, -self.config.clamp_low as f32);
-                    }
+                    self.set(cell, -self.config.clamp_low as f32);
                 }
             }
         }
@@ -100,8 +97,7 @@ impl GridMapper {
             if at.x.abs() <= limit && at.y.abs() <= limit {
                 let cell = GridCell::containing(at / self.config.resolution);
                 self.grow(cell, cell);
-                self.evidence.entry(cell).log_odds = self.config.clamp_high as f32;
-                self.live.show(cell, self.config.clamp_high as f32);
+                self.set(cell, self.config.clamp_high as f32);
             }
         }
     }
@@ -188,6 +184,13 @@ impl GridMapper {
     /// What the three-valued map says of a cell.
     pub(crate) fn value(&self, log_odds: f32) -> Cell {
         self.live.value(log_odds)
+    }
+
+    fn set(&mut self, cell: GridCell, log_odds: f32) {
+        self.evidence.entry(cell).log_odds = log_odds;
+        if self.shows {
+            self.live.show(cell, log_odds);
+        }
     }
 
     fn grow(&mut self, low: GridCell, high: GridCell) {

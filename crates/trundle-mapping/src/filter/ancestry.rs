@@ -47,6 +47,30 @@ impl Ancestry {
         self.columns.clear();
     }
 
+    /// Lets every second of the first `count` poses go (not the first), of all particles.
+    pub(crate) fn thin(&mut self, count: usize) {
+        let goes = |k: usize| k % 2 == 1 && k + 1 < count;
+        let first = self.shared.len();
+        let mut k = 0;
+        self.shared.retain(|_| {
+            k += 1;
+            !goes(k - 1)
+        });
+        let mut gone: Option<Vec<u16>> = None;
+        let columns = std::mem::take(&mut self.columns).into_iter().enumerate();
+        for (k, mut column) in columns {
+            // Whose parent went descends from its parent.
+            if let Some(parents) = gone.take() {
+                column.parents.iter_mut().for_each(|parent| *parent = parents[usize::from(*parent)]);
+            }
+            if goes(first + k) {
+                gone = Some(column.parents);
+            } else {
+                self.columns.push(column);
+            }
+        }
+    }
+
     /// Poses through time.
     pub(crate) fn len(&self) -> usize {
         self.shared.len() + self.columns.len()
@@ -89,6 +113,33 @@ impl Ancestry {
         self.columns.drain(..=end);
         if let Some(first) = self.columns.first_mut() {
             first.parents.iter_mut().for_each(|parent| *parent = 0);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn thinning_leaves_every_particle_its_way() {
+        let mut ancestry = Ancestry::default();
+        let at = |k: usize, i: usize| Pose2::new(k as f64, i as f64, 0.0);
+        for k in 0..5 {
+            ancestry.shared.push((Stamp::from_nanos(k as i64), at(k, 0)));
+        }
+        // Three particles whose ways cross at every step.
+        for k in 5..20_usize {
+            let parents = if k == 5 { vec![0; 3] } else { vec![1, 2, (k % 3) as u16] };
+            ancestry.push_column(Stamp::from_nanos(k as i64), (0..3).map(|i| at(k, i)).collect(), parents);
+        }
+        let before: Vec<_> = (0..3).map(|i| ancestry.trajectory(i)).collect();
+        ancestry.thin(12);
+        assert_eq!(ancestry.len(), 20 - 5);
+        for (i, before) in before.iter().enumerate() {
+            let kept: Vec<_> =
+                before.iter().filter(|(s, _)| s.nanos % 2 == 0 || s.nanos >= 11).copied().collect();
+            assert_eq!(ancestry.trajectory(i), kept, "particle {i}");
         }
     }
 }

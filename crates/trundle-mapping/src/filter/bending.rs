@@ -120,9 +120,10 @@ impl ParticleMapper {
         if self.history.scans.len() > self.config.most_scans {
             // Scans that are being drawn must not be renumbered.
             self.finish();
-            let count = (self.config.most_scans / 2).min(self.ancestry.shared.len());
-            let before = self.history.scans.len();
-            self.history.thin(&mut self.ancestry.shared, count);
+            let (count, before) = (self.config.most_scans / 2, self.history.scans.len());
+            let mut way = self.way();
+            self.history.thin(&mut way, count);
+            self.ancestry.thin(count);
             let gone = before - self.history.scans.len();
             self.session = if self.session < count { self.session.div_ceil(2) } else { self.session - gone };
             self.closer.pending.clear();
