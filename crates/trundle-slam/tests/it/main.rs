@@ -11,5 +11,8 @@ mod room;
 mod saving;
 mod settings;
 mod synthetic;
-mod umeyama;
+#[path = "../support/align.rs"]
+mod align;
+#[path = "../support/drive.rs"]
+mod drive;
 mod walks;
