@@ -1,10 +1,11 @@
 //! Runs the SLAM over a recorded folder in the TUM layout, one image after the other: how accurate it is, and what it costs.
 //!
 //! `cargo run --release -p trundle-slam --example drive -- FOLDER [FRAMES] [--blind]` prints the frames located, loops, keyframes,
-//! the ATE after a rigid alignment, how much of it is up and down, and median and 99th percentile of the processor time, in
-//! ms, of the features, of the rest of a step (of all frames, of those that became keyframes), and of both together. Wheels are used where the folder
+//! the ATE after a rigid alignment, how much of it is up and down, and median, 99th percentile and most of the processor
+//! time, in ms, of the features alone, of a whole step, and of those that made keyframes. Wheels are used where the folder
 //! has them, unless `--blind`. Loading images is not timed. Without `camera.toml` the camera is that of freiburg1.
-//! `TRUNDLE_FRAMES=FILE` writes time, state, error (mm) and time (ms) of each frame.
+//! `TRUNDLE_FRAMES=FILE` writes of each frame: time, state, whether it is a keyframe, inliers, how far off it
+//! was told at once (m, rad, the first one being right), the error after all corrections (mm, aligned), and what it took (ms).
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a bench program")]
 
 #[path = "../tests/support/align.rs"]
@@ -16,7 +17,7 @@ use align::aligned;
 use drive::Drive;
 use rustix::time::{ClockId, clock_gettime};
 use std::fmt::Write;
-use trundle_core::{Vector3, gray_from_color};
+use trundle_core::{Pose3, Vector3, gray_from_color};
 use trundle_slam::{RgbdSlam, SlamConfig};
 use trundle_vision::OrbExtractor;
 
@@ -29,25 +30,35 @@ fn main() {
     config.motion.readout = drive.readout;
     let mut extractor = OrbExtractor::new(config.orb.clone()).unwrap();
     let mut slam = RgbdSlam::new(drive.camera, config).unwrap();
-    let (mut features, mut rest, mut kept, mut total) = (vec![], vec![], vec![], vec![]);
+    let (mut features, mut kept, mut total) = (vec![], vec![], vec![]);
     let (mut located, mut loops, mut states) = (0, 0, vec![]);
     for i in 0..count {
         let image = drive.image(i);
         let start = processor_ms();
-        let found = extractor.extract(&gray_from_color(image.color()));
+        extractor.extract(&gray_from_color(image.color()));
         let found_at = processor_ms();
         let prior = drive.wheels(i).filter(|_| flags.is_empty());
-        let report = slam.step_with_features(image.stamp(), found, image.depth(), prior);
+        let report = slam.step(&image, prior);
         let end = processor_ms();
         features.push(found_at - start);
-        rest.push(end - found_at);
-        total.push(end - start);
+        total.push(end - found_at);
         if report.new_keyframe {
             kept.push(end - found_at);
         }
         located += usize::from(report.tracking.is_located());
-        loops += usize::from(report.closed_loop.is_some());
-        states.push(format!("{:?} {}", report.tracking, u8::from(report.new_keyframe)));
+        if let Some(closed) = report.closed_loop {
+            loops += 1;
+            let (moved, turned) = (closed.correction.translation.norm(), closed.correction.angle());
+            println!("frame {i}: loop of {} points, by {moved:.3} m and {turned:.4} rad", closed.points);
+        }
+        let live = off_since_start(&drive, i, report.visual_from_camera);
+        let (off, turned) = live.map_or((f64::NAN, f64::NAN), |off| (off.translation.norm(), off.angle()));
+        states.push(format!(
+            "{:?} {} {} {off:.4} {turned:.4}",
+            report.tracking,
+            u8::from(report.new_keyframe),
+            report.inliers
+        ));
     }
     println!(
         "{located} of {count} frames located, {loops} loops, {} keyframes made, {} in the map, {} landmarks",
@@ -59,18 +70,23 @@ fn main() {
     judge(&drive, &slam, &states, &total);
     for (name, times) in [
         ("features", &mut features),
-        ("the rest of a step", &mut rest),
+        ("a step with these", &mut total),
         ("the same, keyframes", &mut kept),
-        ("together", &mut total),
     ] {
         let [median, high, most] = [0.5, 0.99, 1.0].map(|share| part(times, share));
         println!("{name:>20}: median {median:6.2} ms, 99 % {high:6.2} ms, most {most:6.2} ms");
     }
 }
 
+/// How far off the pose of frame `i` is as it is told at once, if the first one is right.
+fn off_since_start(drive: &Drive, i: usize, pose: Pose3) -> Option<Pose3> {
+    let truth = drive.frames[0].truth?.inverse() * drive.frames[i].truth?;
+    Some(truth.inverse() * pose)
+}
+
 /// The error of the trajectory against the truth.
 fn judge(drive: &Drive, slam: &RgbdSlam, states: &[String], times: &[f64]) {
-    let known = |(stamp, pose): &(_, trundle_core::Pose3)| {
+    let known = |(stamp, pose): &(_, Pose3)| {
         let i = drive.frames.binary_search_by_key(stamp, |frame| frame.stamp).ok()?;
         Some((i, pose.translation, drive.frames[i].truth?.translation))
     };
