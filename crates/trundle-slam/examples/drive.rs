@@ -68,11 +68,9 @@ fn main() {
     );
     slam.finish_refining();
     judge(&drive, &slam, &states, &total);
-    for (name, times) in [
-        ("features", &mut features),
-        ("a step with these", &mut total),
-        ("the same, keyframes", &mut kept),
-    ] {
+    for (name, times) in
+        [("features", &mut features), ("a step with these", &mut total), ("the same, keyframes", &mut kept)]
+    {
         let [median, high, most] = [0.5, 0.99, 1.0].map(|share| part(times, share));
         println!("{name:>20}: median {median:6.2} ms, 99 % {high:6.2} ms, most {most:6.2} ms");
     }

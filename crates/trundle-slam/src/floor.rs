@@ -55,8 +55,7 @@ pub(crate) struct Plane {
 impl Plane {
     /// The plane of most keyframes of a map whose camera turns about `axis` (camera frame); `None` where there is none.
     pub fn of(map: &LandmarkMap, axis: Vector3) -> Option<Self> {
-        let normals: Vec<Vector3> =
-            map.keyframes().map(|(_, k)| k.visual_from_camera.rotate(axis)).collect();
+        let normals: Vec<Vector3> = map.keyframes().map(|(_, k)| k.visual_from_camera.rotate(axis)).collect();
         let middle = |i: usize| median(normals.iter().map(|n| n[i]).collect());
         let normal = Vector3::new(middle(0)?, middle(1)?, middle(2)?).try_normalize(0.5)?;
         let heights = map.keyframes().map(|(_, k)| normal.dot(&k.visual_from_camera.translation));

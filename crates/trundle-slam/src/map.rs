@@ -196,8 +196,8 @@ impl LandmarkMap {
             self.observe(kept, keyframe, feature);
         }
         if let Some(kept) = self.landmark_mut(kept) {
-            kept.visible += merged.visible;
-            kept.found += merged.found;
+            kept.visible = kept.visible.saturating_add(merged.visible);
+            kept.found = kept.found.saturating_add(merged.found);
         }
     }
 

@@ -80,13 +80,7 @@ impl MapBundle {
     }
 
     /// Starts refining, with the buffers of an earlier solver.
-    pub fn begin(
-        &mut self,
-        map: &LandmarkMap,
-        sensor: &Sensor,
-        config: &BundleConfig,
-        solver: BundleSolver,
-    ) {
+    pub fn begin(&mut self, map: &LandmarkMap, sensor: &Sensor, config: &BundleConfig, solver: BundleSolver) {
         self.solver = solver;
         let ties = self.ties(map);
         let world = BundlePose { world_from_camera: Pose3::identity(), fixed: true };

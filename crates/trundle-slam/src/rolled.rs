@@ -39,8 +39,12 @@ impl Rolled {
 
     /// The same as a tie between the poses of these indices; `None` where it says nothing, or all.
     pub fn tie(&self, from: usize, to: usize) -> Option<PoseConstraint> {
-        let information = self.covariance.try_inverse().filter(|i| i.iter().all(|v| v.is_finite()))?;
-        Some(PoseConstraint { from, to, from_to: self.from_to, information })
+        Some(PoseConstraint { from, to, from_to: self.from_to, information: self.information()? })
+    }
+
+    /// The inverse of the covariance.
+    pub fn information(&self) -> Option<Matrix6<f64>> {
+        self.covariance.try_inverse().filter(|i| i.iter().all(|v| v.is_finite()))
     }
 }
 
@@ -53,7 +57,8 @@ mod tests {
         let config = MotionConfig::default();
         let step = Pose3::exp(Vector6::new(0.0, 0.0, 0.05, 0.0, 0.02, 0.0));
         let start = KeyframeId::from_index(0);
-        let go = |from: Rolled, steps: usize| (0..steps).fold(from, |rolled, _| rolled.on(step, 0.1, &config));
+        let go =
+            |from: Rolled, steps: usize| (0..steps).fold(from, |rolled, _| rolled.on(step, 0.1, &config));
         let (whole, first) = (go(Rolled::at(start), 20), go(Rolled::at(start), 8));
         let parts = first.then(&go(Rolled::at(KeyframeId::from_index(1)), 12));
         assert_eq!(parts.from, start);

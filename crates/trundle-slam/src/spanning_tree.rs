@@ -67,7 +67,8 @@ impl LandmarkMap {
 
     /// The way on from a forgotten keyframe goes on from the one before it.
     fn roll_past(&mut self, gone: KeyframeId, before: Option<Rolled>) {
-        let next = |(id, keyframe): (KeyframeId, &Keyframe)| Some((id, keyframe.rolled.filter(|r| r.from == gone)?));
+        let next =
+            |(id, keyframe): (KeyframeId, &Keyframe)| Some((id, keyframe.rolled.filter(|r| r.from == gone)?));
         let found: Vec<(KeyframeId, Rolled)> = self.keyframes().filter_map(next).collect();
         for (id, rolled) in found {
             self.keyframe_mut(id).rolled = before.map(|before| before.then(&rolled));

@@ -59,8 +59,8 @@ impl Correction<'_> {
         }
         let tie = |(from, to): (usize, usize)| {
             let as_now = self.tie(from, to, poses[from].inverse() * poses[to]);
-            let looser = || loose(map, (ids[from], ids[to]), (from, to)).map(|information| PoseConstraint { information, ..as_now.clone() });
-            looser().unwrap_or_else(|| as_now.clone())
+            let information = loose(map, (ids[from], ids[to])).unwrap_or(as_now.information);
+            PoseConstraint { information, ..as_now }
         };
         let mut ties: Vec<PoseConstraint> = pairs.into_iter().map(tie).collect();
         let candidate = node(self.found.candidate);
@@ -96,10 +96,10 @@ impl Correction<'_> {
 
 /// What is known of the way between two neighbours in time that hardly see anything in common, where only wheels tell it:
 /// the drift that a loop shows was mostly made there.
-fn loose(map: &LandmarkMap, (from, to): (KeyframeId, KeyframeId), places: (usize, usize)) -> Option<Matrix6<f64>> {
+fn loose(map: &LandmarkMap, (from, to): (KeyframeId, KeyframeId)) -> Option<Matrix6<f64>> {
     let rolled = map.keyframe(to).rolled.filter(|rolled| rolled.from == from)?;
-    let shared = map.covisible(to, SHARED).into_iter().any(|(id, _)| id == from);
-    if shared { None } else { Some(rolled.tie(places.0, places.1)?.information) }
+    let is_seen = map.covisible(to, SHARED).into_iter().any(|(id, _)| id == from);
+    rolled.information().filter(|_| !is_seen)
 }
 
 /// Moves each landmark with the keyframe that saw it first; `after` is where the keyframes `ids` go.

@@ -66,8 +66,11 @@ impl Fit {
 
     /// One round of Gauss-Newton; whether it was the last.
     pub fn advance(&mut self, pairs: &[Pair]) -> bool {
-        let parts: Vec<Part> =
-            pairs.iter().zip(&self.motions).map(|(pair, motion)| Part::of(pair, motion, &self.offset)).collect();
+        let parts: Vec<Part> = pairs
+            .iter()
+            .zip(&self.motions)
+            .map(|(pair, motion)| Part::of(pair, motion, &self.offset))
+            .collect();
         let cost = parts.iter().map(|part| part.cost).sum();
         let gain = self.cost - cost;
         (self.rounds, self.cost) = (self.rounds + 1, cost);
@@ -118,14 +121,6 @@ impl Fit {
         let squares: Offset = moved.iter().map(|o| (o - mean).map(|d| d * d)).sum();
         Some((squares * ((n - 1.0) / n)).map(f64::sqrt))
     }
-}
-
-/// The offsets that fit best, at once.
-#[cfg(test)]
-pub(super) fn fit(pairs: &[Pair], start: Offset, free: [bool; 6]) -> Option<Fitted> {
-    let mut fit = Fit::new(pairs, start, free);
-    while !fit.advance(pairs) {}
-    fit.result()
 }
 
 /// True normalised coordinates from the assumed ones.

@@ -58,7 +58,8 @@ impl Judgement {
         if let Some(model) = MODELS.get(done) {
             return Some((Offset::zeros(), *model));
         }
-        let is_focal = done == MODELS.len() && self.suspected(camera).is_some_and(|(model, _)| model == FOCAL);
+        let is_focal =
+            done == MODELS.len() && self.suspected(camera).is_some_and(|(model, _)| model == FOCAL);
         is_focal.then(|| (exchange(camera), MODELS[0]))
     }
 

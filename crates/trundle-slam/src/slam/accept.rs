@@ -103,12 +103,12 @@ impl RgbdSlam {
     fn count(&mut self, visible: &[(LandmarkId, Projection)], found: &[Option<LandmarkId>]) {
         for (id, _) in visible {
             if let Some(landmark) = self.active.map.landmark_mut(*id) {
-                landmark.visible += 1;
+                landmark.visible = landmark.visible.saturating_add(1);
             }
         }
         for id in found.iter().flatten() {
             if let Some(landmark) = self.active.map.landmark_mut(*id) {
-                landmark.found += 1;
+                landmark.found = landmark.found.saturating_add(1);
             }
         }
     }

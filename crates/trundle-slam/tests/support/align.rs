@@ -1,5 +1,7 @@
 //! The rigid alignment of two point sequences (Umeyama 1991, without scale), to judge trajectories by.
 
+#![allow(dead_code, reason = "each program uses a part of it")]
+
 use nalgebra::Matrix3;
 use trundle_core::Vector3;
 
@@ -20,7 +22,8 @@ pub fn aligned(estimate: &[Vector3], truth: &[Vector3]) -> Vec<Vector3> {
 
 /// Root mean square distance, m, after the best rotation and translation.
 pub fn aligned_rmse(estimate: &[Vector3], truth: &[Vector3]) -> f64 {
-    let squares = aligned(estimate, truth).iter().zip(truth).map(|(e, t)| (e - t).norm_squared()).sum::<f64>();
+    let squares =
+        aligned(estimate, truth).iter().zip(truth).map(|(e, t)| (e - t).norm_squared()).sum::<f64>();
     (squares / truth.len() as f64).sqrt()
 }
 

@@ -1,8 +1,12 @@
 //! Recorded sequences in the TUM layout, as the tests and examples of this crate read them.
 
+#![allow(dead_code, reason = "each program uses a part of it")]
+
 use nalgebra::{Matrix3, Quaternion, Rotation3, UnitQuaternion};
 use std::path::{Path, PathBuf};
-use trundle_core::{ColorImage, DepthImage, Distortion, PinholeCamera, Pose2, Pose3, RgbdImage, Stamp, Vector3};
+use trundle_core::{
+    ColorImage, DepthImage, Distortion, PinholeCamera, Pose2, Pose3, RgbdImage, Stamp, Vector3,
+};
 
 /// A folder of images: of the simulator (with `camera.toml` and, on wheels, `odometry.txt`), or else of the TUM benchmark's
 /// freiburg1.
