@@ -47,8 +47,10 @@ const RANK: i32 = 10;
 #[cfg(target_os = "linux")]
 fn go_first() -> bool {
     let rank = libc::sched_param { sched_priority: RANK };
+    // What such a thread starts is not first itself.
+    let policy = libc::SCHED_FIFO | libc::SCHED_RESET_ON_FORK;
     // SAFETY: the call reads one valid structure and changes nothing but how the calling thread (0) is scheduled.
-    unsafe { libc::sched_setscheduler(0, libc::SCHED_FIFO, &rank) == 0 }
+    unsafe { libc::sched_setscheduler(0, policy, &rank) == 0 }
 }
 
 #[cfg(not(target_os = "linux"))]
