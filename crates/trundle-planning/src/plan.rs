@@ -77,7 +77,7 @@ pub struct PlanResult {
     pub trajectory: Trajectory,
     /// Length of all curves, m.
     pub length: f64,
-    /// Least room beside the footprint along the trajectory, m; capped at 2 m.
+    /// Least room beside the footprint along the trajectory, m; capped at 1 m.
     pub min_clearance: f64,
     /// Whether the printed potential was trapped and the geodesic one took over.
     pub fell_back: bool,

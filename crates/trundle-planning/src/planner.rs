@@ -4,11 +4,11 @@ use crate::masks::kept_out;
 use crate::movers::{Mover, conflict, delayed, stamp};
 use crate::plan::{Plan, PlanResult};
 use crate::stopwatch::{StageTimes, Stopwatch};
-use crate::task::{Memory, Task};
+use crate::task::{Memory, ROOM_CAP, Task};
 use crate::timing::Drive;
 use crate::tour::{Replan, Tour};
 use crate::watch::{Obstruction, still_free};
-use crate::{DistanceField, PlannerConfig, SpeedMask, UnknownIs, WayPointGraph};
+use crate::{DistanceField, PlannerConfig, PotentialKind, SpeedMask, UnknownIs, WayPointGraph};
 use trundle_core::{
     DifferentialDrive, DriveLimits, Footprint, GridGeometry, Invalid, OccupancyGrid, Pose2, Trajectory,
     Twist2, Vector2,
@@ -363,8 +363,16 @@ impl Planner {
                 field.update(grid);
                 field
             }
-            _ => DistanceField::over(geometry, grid, self.config.unknown),
+            _ => DistanceField::over(geometry, grid, self.config.unknown, self.reach(geometry.resolution)),
         }
+    }
+
+    /// The longest distance to an obstacle that makes a difference to a plan, m, and cells to interpolate between.
+    fn reach(&self, resolution: f64) -> f64 {
+        let PlannerConfig { room, potential, timing, .. } = self.config;
+        let wanted = [room.comfort, room.margin, timing.full_speed_clearance, ROOM_CAP];
+        let reach = if potential.kind == PotentialKind::Printed { potential.reach } else { 0.0 };
+        self.body.radius + wanted.into_iter().fold(reach, f64::max) + 4.0 * resolution
     }
 
     /// The area to plan in.

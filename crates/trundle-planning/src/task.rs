@@ -19,7 +19,7 @@ pub(crate) const SAME_PLACE: f64 = 1e-3;
 /// Speeds below this count as standing, m/s.
 pub(crate) const STANDING: f64 = 0.01;
 /// Beyond this nobody cares how much room there is, m.
-const ROOM_CAP: f64 = 2.0;
+pub(crate) const ROOM_CAP: f64 = 1.0;
 /// The least radius that a search counts with, m: an axle outside the outline has no room of its own.
 pub(crate) const LEAST_RADIUS: f64 = 0.01;
 
