@@ -83,6 +83,11 @@ pub struct PlanResult {
     pub fell_back: bool,
     /// Whether the trajectory continues the twist given: false when it starts from rest although the robot moves.
     pub is_continuous: bool,
+    /// Why the trajectory ends at the reachable place nearest to the goal instead ([`PlannerConfig::goal_tolerance`]); `None`
+    /// where it ends at the goal.
+    ///
+    /// [`PlannerConfig::goal_tolerance`]: crate::PlannerConfig::goal_tolerance
+    pub instead_of: Option<Plan>,
     /// How long the robot stands, at the start or at a stop on the way, to let something pass, s; part of the trajectory.
     pub wait: f64,
 }

@@ -3,7 +3,8 @@
 //!
 //! Each map has the questions that come with it and random ones between connected places. Each is asked 20 times
 //! with the distance field up to date, and the best CPU time of the thread counts: it says something on a busy machine too.
-//! `--only-plans` and `--only-updates` leave out the rest. Every trajectory is judged by the tests' independent checker.
+//! `--only-plans`, `--only-updates` and `--only-printed` leave out
+//! the rest. Every trajectory is judged by the tests' independent checker.
 
 #![expect(
     clippy::print_stdout,
@@ -12,6 +13,7 @@
     reason = "a program for the terminal"
 )]
 
+mod barn;
 #[path = "../../tests/it/nav_data.rs"]
 mod nav_data;
 mod shortest;
@@ -53,6 +55,9 @@ fn main() {
     let Some(data) = nav_data::data() else { return };
     if std::env::args().any(|word| word == "--only-updates") {
         return field_updates(&data);
+    }
+    if std::env::args().any(|word| word == "--only-printed") {
+        return printed(&data);
     }
     let csv = argument("--csv");
     let mut shares = Vec::new();
@@ -267,19 +272,29 @@ fn large() {
     println!("\n{SIZE} x {SIZE} cells, field and plan: {ms:.0} ms CPU, {peak} at most resident; {plan}");
 }
 
-/// How often the printed potential is trapped, over all questions of all maps.
+/// How often the printed potential is trapped, over questions of all maps; of BARN's worlds the one question that each has.
 fn printed(data: &std::path::Path) {
-    println!("\n| map | questions | printed potential trapped |");
-    println!("|---|---|---|");
+    println!("\n| map | questions | found | printed potential trapped |");
+    println!("|---|---|---|---|");
+    let potential = PotentialConfig { kind: PotentialKind::Printed, ..Default::default() };
+    let asked = |grid: &OccupancyGrid, pairs: &[(Pose2, Pose2)]| {
+        let mut planner = support::planner(PlannerConfig { potential, ..support::at_home() }, RADIUS);
+        let mut found = (0, 0);
+        for (start, goal) in pairs {
+            if let Plan::Found(result) = planner.plan(grid, *start, Twist2::ZERO, *goal) {
+                found = (found.0 + 1, found.1 + usize::from(result.fell_back));
+            }
+        }
+        found
+    };
     for (map, file) in all_maps() {
         let grid = nav_data::read_map(&data.join(file));
-        let potential = PotentialConfig { kind: PotentialKind::Printed, ..Default::default() };
-        let mut planner = support::planner(PlannerConfig { potential, ..support::at_home() }, RADIUS);
         let pairs = random_pairs(&grid, 100);
-        let trapped = pairs.iter().filter(|(start, goal)| {
-            let plan = planner.plan(&grid, *start, Twist2::ZERO, *goal);
-            matches!(plan, Plan::Found(result) if result.fell_back)
-        });
-        println!("| {map} | {} | {} |", pairs.len(), trapped.count());
+        let (found, trapped) = asked(&grid, &pairs);
+        println!("| {map} | {} | {found} | {trapped} |", pairs.len());
     }
+    let worlds = barn::worlds(data);
+    let answers = worlds.iter().map(|grid| asked(grid, &[barn::question()]));
+    let (found, trapped) = answers.fold((0, 0), |sum, answer| (sum.0 + answer.0, sum.1 + answer.1));
+    println!("| BARN's worlds | {} | {found} | {trapped} |", worlds.len());
 }
