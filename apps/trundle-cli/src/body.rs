@@ -12,6 +12,8 @@ pub enum Input {
     Event(EncodedEvent),
     /// What came of work in the background.
     Answer(Answer),
+    /// The user ends the run.
+    Interrupted,
 }
 
 /// A body behind the wire: its events arrive encoded, as they are recorded. The robot's long work, where it gives any out, is done
@@ -30,18 +32,30 @@ pub trait WiredBody {
     fn last_answer(&mut self, helper: Helper) -> Option<Answer>;
 }
 
-/// The mark in a recording that work was taken up here, or that the run ended here.
+/// What a recording of a robot that gives its long work out says between the events.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub struct TakenUp {
-    /// Whose; none at the end of the run.
-    pub helper: Option<Helper>,
+#[serde(rename_all = "snake_case")]
+pub enum Mark {
+    /// What came of this helper's work was taken up here.
+    TakenUp(Helper),
+    /// The user ended the run.
+    Interrupted,
+    /// The run was over; what follows was still under way.
+    End,
 }
 
-impl TakenUp {
+impl Mark {
     /// Where it is recorded.
-    pub const TOPIC: &str = "/taken_up";
+    pub const TOPIC: &str = "/mark";
     /// The name of its schema.
-    pub const SCHEMA: &str = "trundle.TakenUp";
+    pub const SCHEMA: &str = "trundle.Mark";
+}
+
+/// A mark as it is recorded.
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
+pub struct MarkMessage {
+    /// What it says.
+    pub mark: Mark,
 }
 
 impl WiredBody for Simulator {
@@ -74,6 +88,21 @@ impl Recorded {
     pub fn new(reader: RecordingReader) -> Self {
         Self { reader, jobs: BTreeMap::new() }
     }
+
+    /// What a mark means for the run.
+    fn heed(&mut self, value: serde_json::Value) -> Result<Option<Input>, Failure> {
+        let message: MarkMessage = serde_json::from_value(value)
+            .map_err(|error| Failure::Input(format!("message on {}: {error}", Mark::TOPIC)))?;
+        let helper = match message.mark {
+            Mark::TakenUp(helper) => helper,
+            Mark::Interrupted => return Ok(Some(Input::Interrupted)),
+            Mark::End => return Ok(None),
+        };
+        let answer = self.last_answer(helper).ok_or_else(|| {
+            Failure::Input(format!("message on {}: {helper:?} has nothing to do here", Mark::TOPIC))
+        })?;
+        Ok(Some(Input::Answer(answer)))
+    }
 }
 
 impl WiredBody for Recorded {
@@ -81,14 +110,8 @@ impl WiredBody for Recorded {
         loop {
             match self.reader.next_message()? {
                 Some(RecordedMessage::Event(event)) => return Ok(Some(Input::Event(event))),
-                Some(RecordedMessage::Json { schema, value, .. }) if schema == TakenUp::SCHEMA => {
-                    let mark: TakenUp = serde_json::from_value(value)
-                        .map_err(|error| Failure::Input(format!("{}: {error}", TakenUp::TOPIC)))?;
-                    let Some(helper) = mark.helper else { return Ok(None) };
-                    let answer = self.last_answer(helper).ok_or_else(|| {
-                        Failure::Input(format!("{}: {helper:?} had no work here", TakenUp::TOPIC))
-                    })?;
-                    return Ok(Some(Input::Answer(answer)));
+                Some(RecordedMessage::Json { schema, value, .. }) if schema == Mark::SCHEMA => {
+                    return self.heed(value);
                 }
                 Some(RecordedMessage::Json { .. }) => {}
                 None => return Ok(None),

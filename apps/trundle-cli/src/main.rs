@@ -28,6 +28,7 @@ mod slam;
 mod slam_output;
 mod slam_recorder;
 mod tape;
+mod timing_page;
 mod view;
 mod vocabulary;
 

@@ -40,6 +40,7 @@ pub fn run(args: &PlanArgs) -> Result<Outcome, Failure> {
         table::print_curves(&tour);
     }
     if !args.common.quiet {
+        table::notes(&errand, &tour).iter().for_each(|note| console::say(note));
         console::table(&table::rows(&tour, spent, stages));
         console::say(&format!("See {}", place.join("plan.html").display()));
     }

@@ -99,17 +99,17 @@ pub fn drive_live(
     let stop = interrupt::flag()?;
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let (outside, inside) = if cores > 1 { (Some(0), Some(cores - 1)) } else { (None, None) };
-    let at = move |nice| Place { core: inside, nice };
+    let at = move |nice| Place { core: inside, nice, is_first: false };
     let tape = Tape::aside(folder, at(NICER.1))?;
     let pool = ThreadPoolBuilder::new()
         .num_threads(1)
         .thread_name(|_| "control".to_owned())
-        .start_handler(move |_| _ = at(0).take())
+        .start_handler(move |_| _ = Place { is_first: true, ..at(0) }.take())
         .build()
         .map_err(|error| Failure::Environment(format!("cannot start a thread: {error}")))?;
     pool.install(|| {
         let mut live = LiveBody::start(PulseConfig::default(), at(NICER.0), stop)?;
-        let world = World::start(body, live.door(), Place { core: outside, nice: 0 })?;
+        let world = World::start(body, live.door(), Place { core: outside, ..Place::default() })?;
         live.listen(world.commands());
         let before = thread_time().unwrap_or_default();
         let result = drive(setup, &mut live, tape, quiet);

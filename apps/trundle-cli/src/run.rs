@@ -81,7 +81,7 @@ pub fn drive(setup: &RunSetup, body: &mut dyn WiredBody, tape: Tape, quiet: bool
         let is_finished = trip.step(input, body)?;
         let now = trip.log.now;
         let is_over = is_finished && now - *finished.get_or_insert(now) >= AFTERMATH;
-        if is_over || trip.log.elapsed() > setup.time_limit {
+        if is_over || trip.is_interrupted || trip.log.elapsed() > setup.time_limit {
             break;
         }
     }

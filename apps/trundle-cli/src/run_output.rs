@@ -1,5 +1,7 @@
 use crate::real_time::Timing;
-use crate::{Outcome, console, failure::Failure, picture, run::Run, run::RunSetup, run_table::RunNumbers};
+use crate::{
+    Outcome, console, failure::Failure, picture, run::Run, run::RunSetup, run_table::RunNumbers, timing_page,
+};
 use trundle::core::{Footprint, Pose2};
 use trundle::io::{OutputFolder, trajectory_text_from_planar, write_map};
 use trundle::runtime::Mission;
@@ -20,6 +22,7 @@ pub fn write(
     let report = report(setup, run, &numbers);
     folder.write("map.png", &report.map_png())?;
     folder.write("report.html", report.to_html().as_bytes())?;
+    folder.write("timing.html", timing_page::html(run, &numbers, timing).as_bytes())?;
     folder.write("summary.json", numbers.summary(setup, run, timing).to_json().as_bytes())?;
     let place = folder.commit()?;
     if !quiet {

@@ -46,8 +46,8 @@ pub use codec::{
 pub use csv::{curve_csv, table_csv, trajectory_csv, waypoints_csv};
 pub use error::{FrameError, IoError};
 pub use map::{
-    GraphFile, map_pgm, map_yaml, read_graph, read_keep_out_mask, read_map, read_places, read_speed_mask,
-    write_map,
+    GraphFile, KeepOutFile, SpeedFile, map_pgm, map_yaml, read_graph, read_keep_out_mask, read_map,
+    read_places, read_speed_mask, write_map,
 };
 pub use output::OutputFolder;
 pub use recording::{

@@ -4,10 +4,11 @@ mod graph;
 mod mask;
 mod pgm;
 mod places;
+mod turned;
 mod yaml;
 
 pub use graph::{GraphFile, read_graph};
-pub use mask::{read_keep_out_mask, read_speed_mask};
+pub use mask::{KeepOutFile, SpeedFile, read_keep_out_mask, read_speed_mask};
 pub use places::read_places;
 
 use crate::files::{read_bytes, read_text};
@@ -28,11 +29,12 @@ const UNKNOWN: u8 = 205;
 /// A map from its YAML file and the PGM picture that it names.
 ///
 /// A pixel's occupancy is `(maxval - v) / maxval`, or `v / maxval` with `negate`; above `occupied_thresh` it is
-/// occupied, below `free_thresh` free, between them unknown. In mode `raw` it is `v / 100`, unknown above 100.
+/// occupied, below `free_thresh` free, between them unknown. In mode `raw` it is `v / 100`, unknown above 100. A picture with a yaw is
+/// drawn anew along the map's axes: a cell is occupied that touches an occupied one, so walls may become a cell thicker.
 ///
 /// # Errors
-/// When a file is missing or truncated, a field is missing or not accepted (a yaw of the origin other than 0 is not),
-/// thresholds are out of order, or the picture is larger than 2^28 cells.
+/// When a file is missing or truncated, a field is missing or not accepted, thresholds are out of order, or the picture is
+/// larger than 2^28 cells.
 pub fn read_map(yaml_path: &Path) -> Result<OccupancyGrid, IoError> {
     let yaml = MapYaml::parse(yaml_path, &read_text(yaml_path)?)?;
     let (pgm_path, pgm) = picture_of(yaml_path, &yaml)?;
@@ -40,6 +42,13 @@ pub fn read_map(yaml_path: &Path) -> Result<OccupancyGrid, IoError> {
         .map_err(IoError::field(yaml_path))?;
     let rows = pgm.values.chunks_exact(pgm.width).rev(); // the picture's first row is the highest y
     let cells = rows.flatten().map(|&value| yaml.cell(value, pgm.maxval)).collect();
+    let rank = |cell| match cell {
+        Cell::Occupied => 0,
+        Cell::Unknown => 1,
+        Cell::Free => 2,
+    };
+    let (geometry, cells) = turned::straightened(geometry, cells, yaml.yaw, Cell::Unknown, rank)
+        .map_err(IoError::field(yaml_path))?;
     OccupancyGrid::new(geometry, cells).map_err(IoError::field(&pgm_path))
 }
 

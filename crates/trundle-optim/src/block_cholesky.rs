@@ -24,6 +24,23 @@ pub(crate) struct BlockMatrix {
     unknowns: Vec<Column>,
     /// The inverse within the profile, as far as it was asked for.
     inverse: Vec<Block>,
+    /// The column of the inverse that is being worked out.
+    column: InverseColumn,
+}
+
+/// A column of the inverse on the way.
+#[derive(Debug, Clone, Default)]
+struct InverseColumn {
+    /// How many columns are left, this one included.
+    left: usize,
+    /// The rows below its diagonal that the profile has.
+    below: Vec<usize>,
+    /// Their blocks of the factor, divided by that of the diagonal.
+    factors: Vec<Block>,
+    /// How many of these rows are done.
+    done: usize,
+    /// The block on the diagonal as far as they say.
+    diagonal: Block,
 }
 
 impl BlockMatrix {
@@ -161,36 +178,75 @@ impl BlockMatrix {
     pub(crate) fn begin_inverse(&mut self) {
         self.inverse.clear();
         self.inverse.resize(self.blocks.len(), ZERO);
+        self.column.left = self.count();
+        self.begin_column();
     }
 
-    /// One column of the inverse within the profile, once all columns behind it are there (Takahashi et al. 1973): with
-    /// Z L = L'^-1 read column by column from the last, Z_ij = -sum Z_ik L_kj L_jj^-1.
-    pub(crate) fn invert_column(&mut self, j: usize) {
-        let block = |blocks: &[Block], row: usize, column: usize| {
-            Matrix6::from_data(ArrayStorage(blocks[self.start[row] + column - self.first[row]]))
-        };
-        let symmetric = |inverse: &[Block], i: usize, k: usize| {
-            if i >= k { block(inverse, i, k) } else { block(inverse, k, i).transpose() }
-        };
-        let own = block(&self.blocks, j, j).try_inverse().unwrap_or_else(Matrix6::zeros);
-        let below: Vec<usize> = (j + 1..self.count()).filter(|row| self.first[*row] <= j).collect();
-        let factors: Vec<Matrix6<f64>> = below.iter().map(|k| block(&self.blocks, *k, j) * own).collect();
-        let mut diagonal = own.transpose() * own;
-        for (&i, factor) in below.iter().zip(&factors) {
-            let mut sum = Matrix6::zeros();
-            for (&k, factor) in below.iter().zip(&factors) {
-                sum -= symmetric(&self.inverse, i, k) * factor;
-            }
-            diagonal -= sum.transpose() * factor;
-            self.inverse[self.start[i] + j - self.first[i]] = sum.data.0;
+    /// The next block of the inverse within the profile, column by column from the last (Takahashi et al. 1973): with
+    /// Z L = L'^-1, Z_ij = -sum Z_ik L_kj L_jj^-1. About how many products of blocks it took; `None` when all is done.
+    pub(crate) fn invert_on(&mut self) -> Option<usize> {
+        let j = self.column.left.checked_sub(1)?;
+        if self.column.done < self.column.below.len() {
+            self.invert_row(j);
+            return Some(self.column.below.len() + 1);
         }
-        self.inverse[self.start[j] + j - self.first[j]] = diagonal.data.0;
+        let place = self.start[j] + j - self.first[j];
+        self.inverse[place] = self.column.diagonal;
+        self.column.left = j;
+        self.begin_column();
+        Some(self.column.below.len() + 1)
     }
 
-    /// How many products of blocks a column of the inverse takes.
-    pub(crate) fn column_work(&self, j: usize) -> usize {
-        let below = self.first[j + 1..].iter().filter(|first| **first <= j).count();
-        below * below + below + 1
+    fn begin_column(&mut self) {
+        let Self { column, blocks, start, first, .. } = self;
+        column.below.clear();
+        column.factors.clear();
+        column.done = 0;
+        let Some(j) = column.left.checked_sub(1) else { return };
+        let at = |row: usize| Matrix6::from_data(ArrayStorage(blocks[start[row] + j - first[row]]));
+        let own: Matrix6<f64> = at(j).try_inverse().unwrap_or_else(Matrix6::zeros);
+        column.below.extend((j + 1..first.len()).filter(|row| first[*row] <= j));
+        column.factors.extend(column.below.iter().map(|row| (at(*row) * own).data.0));
+        column.diagonal = (own.transpose() * own).data.0;
+    }
+
+    fn invert_row(&mut self, j: usize) {
+        #[cfg(target_arch = "x86_64")]
+        if std::arch::is_x86_feature_detected!("avx") {
+            // SAFETY: the processor has the one feature that the function is compiled for.
+            return unsafe { self.invert_row_by_avx(j) };
+        }
+        self.invert_row_plainly(j);
+    }
+
+    /// The same as [`BlockMatrix::invert_row_plainly`] with four numbers to an operation.
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx")]
+    fn invert_row_by_avx(&mut self, j: usize) {
+        self.invert_row_plainly(j);
+    }
+
+    #[inline(always)]
+    fn invert_row_plainly(&mut self, j: usize) {
+        let Self { column, inverse, start, first, .. } = self;
+        let i = column.below[column.done];
+        let mut sum = ZERO;
+        for (&k, factor) in column.below.iter().zip(&column.factors) {
+            let (high, low) = (i.max(k), i.min(k));
+            let known = &inverse[start[high] + low - first[high]];
+            for (sum, factor) in sum.iter_mut().zip(factor) {
+                if i >= k {
+                    subtract_product(sum, known, factor);
+                } else {
+                    subtract_transposed_product(sum, known, factor);
+                }
+            }
+        }
+        for (diagonal, factor) in column.diagonal.iter_mut().zip(&column.factors[column.done]) {
+            subtract_transposed_product(diagonal, &sum, factor);
+        }
+        inverse[start[i] + j - first[i]] = sum;
+        column.done += 1;
     }
 
     /// The diagonal block of the inverse of a node, once its column is there.
@@ -276,7 +332,7 @@ mod tests {
             assert!((v - expected.fixed_rows::<6>(6 * i)).norm() < 1e-10);
         }
         blocks.begin_inverse();
-        (0..count).rev().for_each(|column| blocks.invert_column(column));
+        while blocks.invert_on().is_some() {}
         let inverse = dense.try_inverse().unwrap();
         for i in 0..count {
             assert!((blocks.inverse_of(i) - inverse.fixed_view::<6, 6>(6 * i, 6 * i)).norm() < 1e-10);

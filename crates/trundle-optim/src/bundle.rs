@@ -1,5 +1,6 @@
 use crate::bundle_solver::BundleSolver;
 use crate::observation::PointObservation;
+use crate::pose_graph::PoseConstraint;
 use serde::{Deserialize, Serialize};
 use trundle_core::{Invalid, PinholeCamera, Pose3, Vector3, require_positive};
 
@@ -65,6 +66,7 @@ pub struct BundleProblem {
     pub(crate) poses: Vec<BundlePose>,
     pub(crate) points: Vec<Vector3>,
     pub(crate) observations: Vec<BundleObservation>,
+    pub(crate) ties: Vec<PoseConstraint>,
 }
 
 /// What [`BundleProblem::solve`] finds.
@@ -102,7 +104,19 @@ impl BundleProblem {
                 return Err(Invalid::new("observation", value, "", expected));
             }
         }
-        Ok(Self { camera, poses, points, observations })
+        Ok(Self { camera, poses, points, observations, ties: Vec::new() })
+    }
+
+    /// The same with what else was measured between poses, by wheels or of the floor, say. Each counts under the Huber loss as
+    /// a whole, bent at 95 %: one that is wrong, as by slip, pulls no harder than one that is just believed.
+    ///
+    /// # Errors
+    /// When one names a pose that is not there, ties one to itself, or has a number that is not finite.
+    pub fn with_ties(self, ties: Vec<PoseConstraint>) -> Result<Self, Invalid> {
+        for (i, tie) in ties.iter().enumerate() {
+            tie.check(i, self.poses.len())?;
+        }
+        Ok(Self { ties, ..self })
     }
 
     /// Refines the free poses and all points, at once and with buffers of its own.
@@ -221,6 +235,35 @@ mod tests {
             assert_eq!((solver.poses(), solver.points()), (&whole.poses[..], &whole.points[..]));
             assert_eq!((solver.chi2(), solver.cost()), (&whole.chi2[..], whole.final_cost));
         }
+    }
+
+    /// What is measured between the poses of a scene, exactly.
+    fn measured(scene: &Scene, from: usize, to: usize, sigma: f64) -> PoseConstraint {
+        let information = nalgebra::Matrix6::identity() * sigma.powi(-2);
+        PoseConstraint { from, to, from_to: scene.poses[from].inverse() * scene.poses[to], information }
+    }
+
+    #[test]
+    fn ties_hold_what_no_point_holds_and_a_wrong_one_pulls_little() {
+        let mut scene = scene();
+        // The last two poses see nothing that the others see.
+        scene.observations.retain(|seen| seen.pose < 4);
+        let ties = vec![measured(&scene, 3, 4, 0.01), measured(&scene, 5, 4, 0.01)];
+        let problem = perturbed(&scene, 1).with_ties(ties.clone()).unwrap();
+        assert_recovered(&scene, &problem.solve(&EXACT), 1e-6);
+        let mut slipped = measured(&scene, 0, 2, 0.02);
+        slipped.from_to = slipped.from_to * Pose3::exp(Vector6::new(0.5, 0.0, 0.0, 0.0, 0.2, 0.0));
+        let problem = perturbed(&scene, 1).with_ties([&ties[..], &[slipped]].concat()).unwrap();
+        let off = (scene.poses[2].inverse() * problem.solve(&EXACT).poses[2]).log().norm();
+        assert!(off > 1e-9 && off < 0.01, "{off}");
+    }
+
+    #[test]
+    fn a_tie_to_nowhere_is_refused() {
+        let scene = scene();
+        let nowhere = PoseConstraint { to: 9, ..measured(&scene, 0, 1, 0.1) };
+        let error = perturbed(&scene, 1).with_ties(vec![nowhere]).unwrap_err().to_string();
+        assert!(error.contains("from 0 to 9"), "{error}");
     }
 
     /// A long row of cameras, in which few share points: the reduced system is sparse.

@@ -1,6 +1,8 @@
 use crate::bundle::{BundleConfig, BundleProblem};
 use crate::bundle_layout::Layout;
 use crate::bundle_system::{FIXED, Lens, Normal, View, moved, robust};
+use crate::observation::CHI2_95_6;
+use crate::pose_graph::PoseConstraint;
 use nalgebra::Matrix6;
 use trundle_core::{Pose3, Vector3};
 
@@ -9,6 +11,7 @@ const DENSE_POSES: usize = 64;
 /// Units of work of [`BundleSolver::advance`], measured: one is some 20 ns.
 const WORK_LINEARISE: usize = 4;
 const WORK_PRODUCT: usize = 3;
+const WORK_TIE: usize = 60;
 
 /// Bundle adjustment by the Schur complement (Triggs et al. 2000), under way.
 ///
@@ -36,6 +39,7 @@ pub struct BundleSolver {
     /// Where the step at hand leads.
     there: State,
     rows: Vec<u32>,
+    ties: Vec<PoseConstraint>,
     pairs: Vec<(usize, usize)>,
     phase: Phase,
     /// How far the phase has come: a point, or a row.
@@ -81,7 +85,7 @@ enum Phase {
     Move,
     /// What is left of every residual.
     Judge,
-    /// The inverse of the factor, column by column.
+    /// The inverse of the factor, block by block.
     Invert,
     #[default]
     Done,
@@ -95,6 +99,7 @@ impl BundleSolver {
         self.number_rows(problem);
         let Self { layout, rows, here, .. } = self;
         layout.fill(problem, |pose| rows[pose]);
+        self.ties.clone_from(&problem.ties);
         here.poses.clear();
         here.poses.extend(problem.poses.iter().map(|p| p.world_from_camera));
         here.points.clone_from(&problem.points);
@@ -230,12 +235,15 @@ impl BundleSolver {
                 self.normal.linearise(index, &point, &self.layout, &self.here.views, &self.lens);
         }
         if last {
+            for tie in &self.ties {
+                self.partial_cost += self.normal.add_tie(tie, &self.here.poses, &self.here.views);
+            }
             if self.steps == 0 {
                 (self.cost, self.initial_cost) = (self.partial_cost, self.partial_cost);
             }
             self.enter(Phase::Eliminate);
         }
-        WORK_LINEARISE * self.observations(&points)
+        WORK_LINEARISE * self.observations(&points) + if last { WORK_TIE * self.ties.len() } else { 0 }
     }
 
     fn eliminate(&mut self) -> usize {
@@ -290,6 +298,8 @@ impl BundleSolver {
         }
         let work = self.observations(&points);
         if last {
+            let cost = |tie: &PoseConstraint| robust(tie.chi2(&self.there.poses), CHI2_95_6).0;
+            self.partial_cost += self.ties.iter().map(cost).sum::<f64>();
             self.decide();
         }
         work
@@ -343,15 +353,14 @@ impl BundleSolver {
     }
 
     fn invert(&mut self) -> usize {
-        let reduced = &mut self.normal.reduced;
-        let Some(column) = reduced.count().checked_sub(self.cursor + 1) else {
-            self.ending = Ending::WorkedOut;
-            self.enter(Phase::Done);
-            return 1;
-        };
-        reduced.invert_column(column);
-        self.cursor += 1;
-        2 * WORK_PRODUCT * reduced.column_work(column)
+        match self.normal.reduced.invert_on() {
+            Some(products) => WORK_PRODUCT * products,
+            None => {
+                self.ending = Ending::WorkedOut;
+                self.enter(Phase::Done);
+                1
+            }
+        }
     }
 }
 
@@ -368,7 +377,7 @@ fn reduced_work(poses: usize) -> usize {
     20 * poses + 1
 }
 
-/// The pairs of free poses that see a point in common, by node.
+/// The pairs of free poses that see a point in common or are tied, by node.
 fn coupled(problem: &BundleProblem, nodes: &[u32], free: usize, pairs: &mut Vec<(usize, usize)>) {
     let mut seers: Vec<Vec<u32>> = vec![Vec::new(); problem.points.len()];
     for seen in problem.observations.iter().filter(|seen| nodes[seen.pose] != FIXED) {
@@ -379,6 +388,12 @@ fn coupled(problem: &BundleProblem, nodes: &[u32], free: usize, pairs: &mut Vec<
         seers.sort_unstable();
         for (i, a) in seers.iter().enumerate() {
             seers[i + 1..].iter().for_each(|b| is_coupled[*a as usize * free + *b as usize] = true);
+        }
+    }
+    for tie in &problem.ties {
+        let (a, b) = (nodes[tie.from], nodes[tie.to]);
+        if a != FIXED && b != FIXED {
+            is_coupled[a.min(b) as usize * free + a.max(b) as usize] = true;
         }
     }
     pairs.clear();

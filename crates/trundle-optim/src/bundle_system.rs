@@ -1,7 +1,8 @@
 use crate::block::{Block, Column, subtract_outer};
 use crate::block_cholesky::BlockMatrix;
 use crate::bundle_layout::{Layout, Measurement};
-use crate::observation::{COST_BEHIND, NEAREST};
+use crate::observation::{CHI2_95_6, COST_BEHIND, NEAREST};
+use crate::pose_graph::PoseConstraint;
 use nalgebra::{Matrix6, Vector6};
 use trundle_core::{PinholeCamera, Pose3, Vector3};
 
@@ -106,6 +107,8 @@ pub(crate) struct Normal {
     poses: Vec<(Block, Column)>,
     points: Vec<PointBlock>,
     couplings: Vec<Coupling>,
+    /// What ties couple two rows by, the lower one first.
+    crossed: Vec<(u32, u32, Matrix6<f64>)>,
     /// S = U - W V^-1 W' \[Triggs et al. 2000\].
     pub reduced: BlockMatrix,
     /// Its right-hand side by node, then the step.
@@ -132,6 +135,31 @@ impl Normal {
     /// Starts anew at other poses and points.
     pub fn clear(&mut self) {
         self.poses.fill(([[0.0; 6]; 6], [0.0; 6]));
+        self.crossed.clear();
+    }
+
+    /// Adds what a tie says of the poses of two rows; its robust cost.
+    pub fn add_tie(&mut self, tie: &PoseConstraint, poses: &[Pose3], views: &[View]) -> f64 {
+        let (residual, by_from, by_to) = tie.linearise(poses);
+        let chi2 = residual.dot(&(tie.information * residual));
+        let (loss, weight) = robust(chi2, CHI2_95_6);
+        let information = tie.information * weight;
+        let sides = [(views[tie.from].row, by_from), (views[tie.to].row, by_to)];
+        for (row, jacobian) in sides.iter().filter(|(row, _)| *row != FIXED) {
+            let (block, gradient) = &mut self.poses[*row as usize];
+            let own: Matrix6<f64> = jacobian.transpose() * information * jacobian;
+            let pull: Vector6<f64> = jacobian.transpose() * information * residual;
+            for (column, sum) in block.iter_mut().enumerate() {
+                (0..6).for_each(|row| sum[row] += own[(row, column)]);
+                gradient[column] += pull[column];
+            }
+        }
+        let [(from, by_from), (to, by_to)] = sides;
+        if from != FIXED && to != FIXED {
+            let mixed: Matrix6<f64> = by_from.transpose() * information * by_to;
+            self.crossed.push(if from < to { (from, to, mixed.transpose()) } else { (to, from, mixed) });
+        }
+        loss
     }
 
     /// Adds what was seen of a point; its robust cost.
@@ -221,6 +249,12 @@ impl Normal {
             *block = *hessian;
             (0..6).for_each(|k| block[k][k] += block[k][k] * damping);
             self.step[self.node_of[row]] = -Vector6::from(*gradient);
+        }
+        for (low, high, mixed) in &self.crossed {
+            let block = self.reduced.block_mut(*high as usize, *low as usize);
+            for (column, sum) in block.iter_mut().enumerate() {
+                (0..6).for_each(|row| sum[row] += mixed[(row, column)]);
+            }
         }
     }
 

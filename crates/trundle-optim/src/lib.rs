@@ -22,6 +22,6 @@ mod pose_graph;
 pub use bundle::{BundleConfig, BundleObservation, BundlePose, BundleProblem, BundleSolution};
 pub use bundle_solver::BundleSolver;
 pub use huber::Huber;
-pub use observation::{CHI2_95_2, CHI2_95_3, InverseDepth, Linearized, PointObservation};
+pub use observation::{CHI2_95_2, CHI2_95_3, CHI2_95_6, InverseDepth, Linearized, PointObservation};
 pub use pose::{PoseConfig, PoseProblem, PoseSolution};
 pub use pose_graph::{PoseConstraint, PoseGraph, PoseGraphConfig, PoseGraphSolution, adjoint};

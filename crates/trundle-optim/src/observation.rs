@@ -6,6 +6,8 @@ use trundle_core::{PinholeCamera, Vector2, Vector3};
 pub const CHI2_95_2: f64 = 5.991;
 /// The 95th percentile of the chi-square distribution with 3 degrees of freedom.
 pub const CHI2_95_3: f64 = 7.815;
+/// 95 % of the chi-square distribution of six: of a whole pose.
+pub const CHI2_95_6: f64 = 12.592;
 /// Points nearer than this along the optical axis (m) have no usable projection.
 pub(crate) const NEAREST: f64 = 0.02;
 

@@ -180,7 +180,7 @@ impl PoseGraph {
 }
 
 impl PoseConstraint {
-    fn check(&self, index: usize, count: usize) -> Result<(), Invalid> {
+    pub(crate) fn check(&self, index: usize, count: usize) -> Result<(), Invalid> {
         let name = format!("constraint {index} of the graph");
         if self.from >= count || self.to >= count || self.from == self.to {
             let value = format!("from {} to {}", self.from, self.to);
@@ -196,13 +196,13 @@ impl PoseConstraint {
         (self.from_to.inverse() * poses[self.from].inverse() * poses[self.to]).log()
     }
 
-    fn chi2(&self, poses: &[Pose3]) -> f64 {
+    pub(crate) fn chi2(&self, poses: &[Pose3]) -> f64 {
         let residual = self.residual(poses);
         residual.dot(&(self.information * residual))
     }
 
     /// The residual and its derivatives by right perturbations of both poses.
-    fn linearise(&self, poses: &[Pose3]) -> (Vector6<f64>, Matrix6<f64>, Matrix6<f64>) {
+    pub(crate) fn linearise(&self, poses: &[Pose3]) -> (Vector6<f64>, Matrix6<f64>, Matrix6<f64>) {
         let residual = self.residual(poses);
         let by_to = inverse_right_jacobian(residual);
         let to_from = poses[self.to].inverse() * poses[self.from];

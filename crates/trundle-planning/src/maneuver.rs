@@ -46,6 +46,10 @@ impl Maneuver {
         if !inside(start) || !inside(goal) {
             return Err(start.position());
         }
+        // Along a wall that it touches a robot goes straight or not at all.
+        if let Some(straight) = link(space, body, start, goal) {
+            return Ok(std::iter::once(start).chain(straight).collect());
+        }
         // Between two walls hardly a turn is free: then the lattice is entered further on, and left for the goal as far before.
         let (away, first) =
             door(space, body, start, 1.0, |pose, state| link(space, body, pose, state).is_some());

@@ -35,6 +35,38 @@ impl SpeedMask {
     }
 }
 
+/// How dear places are, cell by cell, from 0 to 100 per cent of [`RoomConfig::mask_weight`]: to be avoided, not forbidden.
+///
+/// [`RoomConfig::mask_weight`]: crate::RoomConfig::mask_weight
+#[derive(Debug, Clone, PartialEq)]
+pub struct DearMask {
+    geometry: GridGeometry,
+    values: Vec<u8>,
+}
+
+impl DearMask {
+    /// A mask of `values`, row by row from the lowest y.
+    ///
+    /// # Errors
+    /// When there are not as many values as cells, or one is above 100.
+    pub fn new(geometry: GridGeometry, values: Vec<u8>) -> Result<Self, Invalid> {
+        if values.len() != geometry.len() {
+            let expected = geometry.len().to_string();
+            return Err(Invalid::new("number of values of the mask", values.len(), "", expected));
+        }
+        match values.iter().find(|value| **value > 100) {
+            Some(value) => Err(Invalid::new("value of the mask", value, "", "0 to 100")),
+            None => Ok(Self { geometry, values }),
+        }
+    }
+
+    /// How dear a point of the map frame is, 0 to 1; 0 outside the mask.
+    pub(crate) fn share(&self, point: Vector2) -> f64 {
+        let cell = self.geometry.cell_at(point).map(|cell| self.values[self.geometry.linear(cell)]);
+        f64::from(cell.unwrap_or(0)) / 100.0
+    }
+}
+
 /// The grid with everything occupied that a keep-out mask touches; the mask may have a lattice of its own. With `grow`, the
 /// grid grows to hold what the mask forbids beside it.
 ///

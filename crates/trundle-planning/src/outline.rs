@@ -8,6 +8,9 @@ use crate::timing::can_follow;
 use crate::way::Way;
 use trundle_core::{Pose2, Twist2, Vector2};
 
+/// An overlap is measured up to here, or to the axle, m.
+pub(crate) const DEEPEST: f64 = 0.2;
+
 /// How an outline gets to the goal.
 struct Moves {
     poses: Vec<Pose2>,
@@ -25,12 +28,12 @@ impl Task<'_> {
         goal: Pose2,
     ) -> Plan {
         let inner = self.body.inner.max(LEAST_RADIUS);
-        let missing = |at: Vector2| (self.field.clearance(at, inner) - inner).min(0.0);
+        let missing = |pose: Pose2| -self.body.overlap(self.field, pose, self.body.inner.max(DEEPEST));
         if !self.fits(start) {
-            return Plan::StartInObstacle { clearance: missing(start.position()) };
+            return Plan::StartInObstacle { clearance: missing(start) };
         }
         if !self.fits(goal) {
-            return Plan::GoalInObstacle { clearance: missing(goal.position()) };
+            return Plan::GoalInObstacle { clearance: missing(goal) };
         }
         let space = self.space(inner, start.position());
         let course = self.course(&space);

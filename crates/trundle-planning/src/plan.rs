@@ -77,12 +77,17 @@ pub struct PlanResult {
     pub trajectory: Trajectory,
     /// Length of all curves, m.
     pub length: f64,
-    /// Least room beside the footprint along the trajectory, m; capped at 2 m.
+    /// Least room beside the footprint along the trajectory, m; capped at 1 m.
     pub min_clearance: f64,
     /// Whether the printed potential was trapped and the geodesic one took over.
     pub fell_back: bool,
     /// Whether the trajectory continues the twist given: false when it starts from rest although the robot moves.
     pub is_continuous: bool,
+    /// Why the trajectory ends at the reachable place nearest to the goal instead ([`PlannerConfig::goal_tolerance`]); `None`
+    /// where it ends at the goal.
+    ///
+    /// [`PlannerConfig::goal_tolerance`]: crate::PlannerConfig::goal_tolerance
+    pub instead_of: Option<Plan>,
     /// How long the robot stands, at the start or at a stop on the way, to let something pass, s; part of the trajectory.
     pub wait: f64,
 }

@@ -1,14 +1,15 @@
 use crate::area::area;
 use crate::body::Body;
+use crate::finer::finer;
 use crate::masks::kept_out;
 use crate::movers::{Mover, conflict, delayed, stamp};
 use crate::plan::{Plan, PlanResult};
 use crate::stopwatch::{StageTimes, Stopwatch};
-use crate::task::{Memory, Task};
+use crate::task::{Memory, ROOM_CAP, Task};
 use crate::timing::Drive;
 use crate::tour::{Replan, Tour};
 use crate::watch::{Obstruction, still_free};
-use crate::{DistanceField, PlannerConfig, SpeedMask, UnknownIs, WayPointGraph};
+use crate::{DearMask, DistanceField, PlannerConfig, PotentialKind, SpeedMask, UnknownIs, WayPointGraph};
 use trundle_core::{
     DifferentialDrive, DriveLimits, Footprint, GridGeometry, Invalid, OccupancyGrid, Pose2, Trajectory,
     Twist2, Vector2,
@@ -28,6 +29,7 @@ pub struct Planner {
     field: Option<DistanceField>,
     keep_out: Option<OccupancyGrid>,
     speeds: Option<SpeedMask>,
+    dear: Option<DearMask>,
     clock: Option<fn() -> f64>,
     times: StageTimes,
 }
@@ -58,6 +60,7 @@ impl Planner {
             field: None,
             keep_out: None,
             speeds: None,
+            dear: None,
             clock: None,
             times: StageTimes::default(),
         })
@@ -77,6 +80,11 @@ impl Planner {
     /// cell of the grid that it touches is forbidden, and beside the grid its cells are.
     pub fn set_keep_out(&mut self, mask: Option<OccupancyGrid>) {
         self.keep_out = mask;
+    }
+
+    /// From now on, ways through what is dear on `mask` are taken where they are so much shorter.
+    pub fn set_dear(&mut self, mask: Option<DearMask>) {
+        self.dear = mask;
     }
 
     /// From now on, no trajectory is faster than this allows.
@@ -272,6 +280,7 @@ impl Planner {
             field,
             grid,
             speeds: self.speeds.as_ref(),
+            dear: self.dear.as_ref(),
             graph,
             watch,
         }
@@ -349,11 +358,36 @@ impl Planner {
         let watch = Stopwatch::new(self.clock);
         let field = watch.time(|times| &mut times.field, || self.known(geometry, grid));
         let mut memory = std::mem::take(&mut self.memory);
-        let plan = self.task(grid, &field, graph, &watch).plan(&mut memory, start, twist, goal);
+        let task = self.task(grid, &field, graph, &watch);
+        let mut plan = task.plan(&mut memory, start, twist, goal);
+        if matches!(plan, Plan::Blocked { .. }) && task.may_be_tight(&mut memory, start, goal) {
+            plan = self.plan_finely(grid, &mut memory, &watch, (start, twist), goal, beyond).unwrap_or(plan);
+        }
         self.memory = memory;
         self.field = Some(field);
         self.times = self.times.plus(watch.times());
         plan
+    }
+
+    /// On a lattice twice as fine; `None` where there is no way either.
+    fn plan_finely(
+        &self,
+        grid: &OccupancyGrid,
+        memory: &mut Memory,
+        watch: &Stopwatch,
+        (start, twist): (Pose2, Twist2),
+        goal: Pose2,
+        beyond: f64,
+    ) -> Option<Plan> {
+        let fine = finer(grid)?;
+        let geometry = self.place(fine.geometry(), start.position(), goal.position(), beyond).ok()?;
+        let reach = self.reach(geometry.resolution);
+        let field = watch.time(
+            |times| &mut times.field,
+            || DistanceField::over(geometry, &fine, self.config.unknown, reach),
+        );
+        let plan = self.task(&fine, &field, None, watch).plan(memory, start, twist, goal);
+        matches!(plan, Plan::Found(_)).then_some(plan)
     }
 
     /// The field over `geometry`: the last one, brought up to date, where it lies there.
@@ -363,8 +397,16 @@ impl Planner {
                 field.update(grid);
                 field
             }
-            _ => DistanceField::over(geometry, grid, self.config.unknown),
+            _ => DistanceField::over(geometry, grid, self.config.unknown, self.reach(geometry.resolution)),
         }
+    }
+
+    /// The longest distance to an obstacle that makes a difference to a plan, m, and cells to interpolate between.
+    fn reach(&self, resolution: f64) -> f64 {
+        let PlannerConfig { room, potential, timing, .. } = self.config;
+        let wanted = [room.comfort, room.margin, timing.full_speed_clearance, ROOM_CAP];
+        let reach = if potential.kind == PotentialKind::Printed { potential.reach } else { 0.0 };
+        self.body.radius + wanted.into_iter().fold(reach, f64::max) + 4.0 * resolution
     }
 
     /// The area to plan in.

@@ -20,6 +20,9 @@ pub struct RoomConfig {
     /// Price of a metre in unknown space, on top of 1. 0 to 100, default 0.5 (ours): a known way that is half as long
     /// again is preferred.
     pub unknown_weight: f64,
+    /// Price of a metre where a mask of dear places ([`DearMask`](crate::DearMask)) says 100, on top of 1, in proportion below; 0 to
+    /// 20. Default 4: what Nav2's NavFn pays for a mask's values (50 a free cell, 0.8 a unit of cost, 2.54 units a value).
+    pub mask_weight: f64,
     /// How far a start may stand inside the footprint's clearance and still be planned out of it, m, 0 to 1.
     /// Default 0.06 (ours): one cell of map noise and a centimetre of pose.
     pub escape: f64,
@@ -33,6 +36,7 @@ impl Default for RoomConfig {
             comfort: 0.25,
             comfort_weight: 0.1,
             unknown_weight: 0.5,
+            mask_weight: 4.0,
             escape: 0.06,
         }
     }
@@ -62,6 +66,7 @@ impl RoomConfig {
         require_in("room.comfort", self.comfort, "m", 0.0, 5.0)?;
         require_in("room.comfort_weight", self.comfort_weight, "", 0.0, 10.0)?;
         require_in("room.unknown_weight", self.unknown_weight, "", 0.0, 100.0)?;
+        require_in("room.mask_weight", self.mask_weight, "", 0.0, 20.0)?;
         require_in("room.escape", self.escape, "m", 0.0, 1.0)?;
         Ok(self)
     }

@@ -1,5 +1,6 @@
 //! Where the robot may be, and what it costs to be there: the one judge that search, field and curve share.
 
+use crate::masks::DearMask;
 use crate::{DistanceField, RoomConfig};
 use trundle_core::{Cell, OccupancyGrid, Vector2};
 
@@ -28,6 +29,8 @@ pub(crate) struct Space<'a> {
     /// Prices a metre of clearance.
     per_price: f64,
     unknown_price: u16,
+    /// What is dear beside that.
+    dear: Option<&'a DearMask>,
     /// Step of a look along a straight line, m.
     look: f64,
     /// Whole cells from the grid's origin to the field's; none where the two are the same.
@@ -75,9 +78,20 @@ impl<'a> Space<'a> {
             prices: (0..=limit).map(|i| price(room.density(i as f64 / per_price))).collect(),
             per_price,
             unknown_price: price(room.unknown_weight),
+            dear: None,
             look,
             shift,
         }
+    }
+
+    /// The same, where some places are dear.
+    pub(crate) fn with_dear(self, dear: Option<&'a DearMask>) -> Self {
+        Self { dear, ..self }
+    }
+
+    /// What a metre at a point costs for the mask alone.
+    fn mask_density(&self, point: Vector2) -> f64 {
+        self.dear.map_or(0.0, |mask| mask.share(point) * self.room.mask_weight)
     }
 
     /// The distance that must be kept at a point, m: the radius, less only around a start that has less.
@@ -137,13 +151,22 @@ impl<'a> Space<'a> {
 
     /// No cell has a higher price.
     pub(crate) fn highest_price(&self) -> u16 {
-        self.prices[0] + self.unknown_price
+        let dear = if self.dear.is_some() { (self.room.mask_weight * 256.0) as u16 } else { 0 };
+        self.prices[0] + self.unknown_price + dear
     }
 
     /// The cost of a unit of way around the centre of a cell, in 1/256.
     pub(crate) fn cell_price(&self, linear: usize) -> u16 {
         let price = self.price_at(self.field.at_linear(linear));
-        if self.unknown_price > 0 && self.is_unknown(linear) { price + self.unknown_price } else { price }
+        let price = if self.unknown_price > 0 && self.is_unknown(linear) {
+            price + self.unknown_price
+        } else {
+            price
+        };
+        if self.dear.is_none() {
+            return price;
+        }
+        price + (self.mask_density(self.center(linear)) * 256.0) as u16
     }
 
     /// The price at a distance from obstacles, whatever is known; 0 where the robot does not fit.
@@ -170,6 +193,7 @@ impl<'a> Space<'a> {
             .map(|i| {
                 let point = a + (b - a) * ((i as f64 + 0.5) / steps);
                 self.density(self.field.distance(point), self.grid.at(point) == Cell::Unknown)
+                    + self.mask_density(point)
             })
             .sum();
         sum / steps * length

@@ -3,7 +3,8 @@
 use crate::body::Body;
 use crate::graph::WayPointGraph;
 use crate::maneuver::Maneuver;
-use crate::masks::{SpeedMask, is_unseen};
+use crate::masks::{DearMask, SpeedMask, is_unseen};
+use crate::outline::DEEPEST;
 use crate::plan::{Plan, PlanResult};
 use crate::route::{Course, Phase, is_drivable, route, turn};
 use crate::space::Space;
@@ -19,7 +20,7 @@ pub(crate) const SAME_PLACE: f64 = 1e-3;
 /// Speeds below this count as standing, m/s.
 pub(crate) const STANDING: f64 = 0.01;
 /// Beyond this nobody cares how much room there is, m.
-const ROOM_CAP: f64 = 2.0;
+pub(crate) const ROOM_CAP: f64 = 1.0;
 /// The least radius that a search counts with, m: an axle outside the outline has no room of its own.
 pub(crate) const LEAST_RADIUS: f64 = 0.01;
 
@@ -31,6 +32,7 @@ pub(crate) struct Task<'a> {
     pub(crate) field: &'a DistanceField,
     pub(crate) grid: &'a OccupancyGrid,
     pub(crate) speeds: Option<&'a SpeedMask>,
+    pub(crate) dear: Option<&'a DearMask>,
     pub(crate) graph: Option<&'a WayPointGraph>,
     pub(crate) watch: &'a Stopwatch,
 }
@@ -49,15 +51,50 @@ impl Task<'_> {
         if start.distance(&goal) < SAME_PLACE && (self.body.is_disc() || self.fits(start)) {
             return self.at_start(start.position()).unwrap_or_else(|| self.turn_only(start, twist, goal));
         }
-        let plan = self.plan_disc(&mut memory.wave, start, twist, goal);
-        if self.body.is_disc() || matches!(plan, Plan::Found(_)) {
+        if !self.body.is_disc() && !self.fits(start) {
+            return self.plan_out(memory, start, twist, goal);
+        }
+        self.plan_somehow(memory, start, twist, goal)
+    }
+
+    /// For an outline that overlaps something, not deeper than it may be planned out of.
+    fn plan_out(&self, memory: &mut Memory, start: Pose2, twist: Twist2, goal: Pose2) -> Plan {
+        let escape = self.config.room.escape;
+        let depth = self.body.overlap(self.field, start, escape.max(DEEPEST));
+        let resolution = self.field.geometry().resolution;
+        let leaving = self.body.leaving(start.position(), depth, resolution).filter(|_| depth <= escape);
+        match leaving {
+            Some(body) if body.gap(self.field, start, 1e-3) > 0.0 => {
+                Task { body: &body, ..*self }.plan_somehow(memory, start, twist, goal)
+            }
+            _ => Plan::StartInObstacle { clearance: -depth },
+        }
+    }
+
+    fn plan_somehow(&self, memory: &mut Memory, start: Pose2, twist: Twist2, goal: Pose2) -> Plan {
+        let tolerance = self.config.goal_tolerance;
+        if self.body.is_disc() {
+            return self.plan_disc(&mut memory.wave, start, twist, goal, tolerance);
+        }
+        let plan = self.plan_disc(&mut memory.wave, start, twist, goal, 0.0);
+        if matches!(plan, Plan::Found(_)) {
             return plan;
         }
-        self.plan_outline(&mut memory.maneuver, start, twist, goal)
+        let plan = self.plan_outline(&mut memory.maneuver, start, twist, goal);
+        if matches!(plan, Plan::Found(_)) || tolerance == 0.0 {
+            return plan;
+        }
+        match self.plan_disc(&mut memory.wave, start, twist, goal, tolerance) {
+            Plan::Found(mut nearby) => {
+                nearby.instead_of = Some(plan);
+                Plan::Found(nearby)
+            }
+            _ => plan,
+        }
     }
 
     pub(crate) fn space(&self, radius: f64, start: Vector2) -> Space<'_> {
-        Space::new(self.field, self.grid, self.config.room, radius, start)
+        Space::new(self.field, self.grid, self.config.room, radius, start).with_dear(self.dear)
     }
 
     pub(crate) fn course<'b>(&'b self, space: &'b Space<'b>) -> Course<'b> {
@@ -65,35 +102,58 @@ impl Task<'_> {
         Course { space, body, config: &self.config.curve }
     }
 
-    fn plan_disc(&self, wave: &mut WaveFront, start: Pose2, twist: Twist2, goal: Pose2) -> Plan {
+    /// To the goal, or to the reachable place nearest to it, at most `tolerance` m off.
+    fn plan_disc(
+        &self,
+        wave: &mut WaveFront,
+        start: Pose2,
+        twist: Twist2,
+        goal: Pose2,
+        tolerance: f64,
+    ) -> Plan {
         if let Some(refusal) = self.at_start(start.position()) {
             return refusal;
         }
         let radius = self.body.radius;
         let space = self.space(radius, start.position());
-        let tolerance = self.config.goal_tolerance;
-        if tolerance == 0.0 && !self.field.keeps(goal.position(), radius) {
-            let clearance = self.field.clearance(goal.position(), radius) - radius;
-            return Plan::GoalInObstacle { clearance };
+        let fits = self.field.keeps(goal.position(), radius);
+        let clearance = || self.field.clearance(goal.position(), radius) - radius;
+        if !fits && tolerance == 0.0 {
+            return Plan::GoalInObstacle { clearance: clearance() };
         }
-        let found = self.way(wave, &space, start.position(), goal.position());
-        let (way, goal) = match found {
-            Ok(way) => (way, goal),
-            Err(nearest) if (nearest - goal.position()).norm() > tolerance => {
-                return Plan::Blocked { nearest };
-            }
-            Err(nearest) => {
-                let instead = Pose2::new(nearest.x, nearest.y, goal.theta);
-                if start.distance(&instead) < SAME_PLACE {
-                    return self.turn_only(start, twist, instead);
-                }
-                match self.way(wave, &space, start.position(), nearest) {
-                    Ok(way) => (way, instead),
-                    Err(nearest) => return Plan::Blocked { nearest },
-                }
+        let nearest = match self.way(wave, &space, start.position(), goal.position()) {
+            Ok(way) => return self.on_way(wave, &space, way, (start, twist), goal),
+            Err(nearest) => nearest,
+        };
+        if (nearest - goal.position()).norm() > tolerance {
+            return Plan::Blocked { nearest };
+        }
+        let instead = Pose2::new(nearest.x, nearest.y, goal.theta);
+        let plan = if start.distance(&instead) < SAME_PLACE {
+            self.turn_only(start, twist, instead)
+        } else {
+            match self.way(wave, &space, start.position(), nearest) {
+                Ok(way) => self.on_way(wave, &space, way, (start, twist), instead),
+                Err(nearest) => Plan::Blocked { nearest },
             }
         };
-        let course = self.course(&space);
+        let Plan::Found(mut plan) = plan else { return plan };
+        let refusal =
+            if fits { Plan::Blocked { nearest } } else { Plan::GoalInObstacle { clearance: clearance() } };
+        plan.instead_of = Some(refusal);
+        Plan::Found(plan)
+    }
+
+    /// Along a way: on from the motion under way, or after braking, or from rest.
+    fn on_way(
+        &self,
+        wave: &mut WaveFront,
+        space: &Space<'_>,
+        way: Way,
+        (start, twist): (Pose2, Twist2),
+        goal: Pose2,
+    ) -> Plan {
+        let course = self.course(space);
         if twist.v > STANDING {
             let onward = self.route(&course, &way.points, start, goal, Some(twist.omega / twist.v));
             if let Some(phases) = onward.filter(|phases| can_follow(phases, twist.v, self.drive)) {
@@ -109,6 +169,20 @@ impl Task<'_> {
             // An outline that escapes from a wall, or turns beside it, may touch what its disc would not.
             None => Plan::Blocked { nearest: start.position() },
         }
+    }
+
+    /// Whether a way that the lattice does not see may lead from a free start to a free goal: every point of one lies within half a
+    /// cell's diagonal of a centre, which has so much less room at least.
+    pub(crate) fn may_be_tight(&self, memory: &mut Memory, start: Pose2, goal: Pose2) -> bool {
+        let radius = self.body.radius;
+        let off = self.field.geometry().resolution * std::f64::consts::FRAC_1_SQRT_2;
+        let less = (radius - off).max(LEAST_RADIUS);
+        let (start, goal) = (start.position(), goal.position());
+        if !self.body.is_disc() || self.graph.is_some() || !self.field.keeps(goal, radius) {
+            return false;
+        }
+        let space = Space::new(self.field, self.grid, self.config.room, less, start);
+        matches!(memory.wave.run(&space, start, goal), crate::wave::Wave::Met(_))
     }
 
     /// Whether the outline touches nothing.
@@ -221,6 +295,7 @@ impl Task<'_> {
             min_clearance,
             fell_back: way.fell_back,
             is_continuous,
+            instead_of: None,
             wait: 0.0,
         }))
     }

@@ -24,17 +24,31 @@ const SPACING: f64 = 0.01;
 /// A grid, and what its unknown cells count as.
 pub(crate) type Layer<'a> = (&'a OccupancyGrid, UnknownIs);
 
+/// A disc may miss so much room: rounding of the curve, m.
+const SLACK: f64 = 2e-4;
+/// An outline is looked at so much smaller, m: what a sweep may have missed.
+const MISSED: f64 = 5e-4;
+/// How far from where it stands a robot that already has less room may have no more, m, beside the room that is missing.
+const ZONE: f64 = 0.2;
+
 /// Checks a trajectory from `from` seconds on, against every layer. A robot that already has less room may go on as long as it
-/// gets no nearer.
+/// gets no nearer, until it has left.
 pub(crate) fn still_free(
     layers: &[Layer<'_>],
     trajectory: &Trajectory,
     from: f64,
     body: &Body,
 ) -> Result<(), Obstruction> {
+    let slim = body.shrunk(MISSED);
+    let body = slim.as_ref().unwrap_or(body);
     let mut last = trajectory.at(from);
     let room = |pose| layers.iter().map(|layer| room(*layer, pose, body)).fold(body.needs(), f64::min);
-    let required = room(last.pose) - 1e-6;
+    let (here, now) = (last.pose, room(last.pose));
+    let slack = if body.is_disc() { SLACK } else { body.needs() - 1e-9 };
+    let required = |pose: Pose2| {
+        let is_leaving = now < body.needs() && pose.distance(&here) <= body.needs() - now + ZONE;
+        if is_leaving { now - 1e-6 } else { body.needs() - slack }
+    };
     for point in trajectory.points().iter().filter(|point| point.time > from) {
         let turn = trundle_core::difference_of_angles(point.pose.theta, last.pose.theta);
         let turned = if body.is_disc() { 0.0 } else { body.radius * turn.abs() };
@@ -48,7 +62,7 @@ pub(crate) fn still_free(
             let share = k as f64 / steps;
             let pose = last.pose.interpolate(&point.pose, share);
             let distance = room(pose);
-            if distance < required {
+            if distance < required(pose) {
                 let time = last.time + (point.time - last.time) * share;
                 return Err(Obstruction { time, pose, clearance: distance - body.needs() });
             }

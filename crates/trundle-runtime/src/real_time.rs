@@ -3,6 +3,48 @@
 //! The control thread feeds a deferring [`crate::Robot`] from an [`Inbox`]; a [`Crew`] does its long work, a thread a helper. Whatever
 //! order the threads come to is the order in which the robot was fed, so who writes down events and answers in that order can
 //! feed them again and gets the same reports.
+//!
+//! The loop of a robot's driver, whose own threads put what sensors say into the inbox's door:
+//!
+//! ```no_run
+//! use std::time::Duration;
+//! use trundle_core::{SensorEvent, Twist2};
+//! use trundle_runtime::real_time::{Crew, Inbox, Input, Place, Post, Pulse, PulseConfig};
+//! use trundle_runtime::{LazyImage, Robot, RobotConfig};
+//!
+//! # fn drive(base: impl Fn(Twist2)) -> Result<(), Box<dyn std::error::Error>> {
+//! let mut robot = Robot::new(RobotConfig::default())?.deferring();
+//! let mut inbox: Inbox<SensorEvent> = Inbox::new(1024);
+//! let door = inbox.door(); // for the driver's threads: door.put(Post::Urgent(wheels)), door.put(Post::Patient(image))
+//! let answers = inbox.door();
+//! let helpers = Place { core: Some(1), nice: 5, is_first: false };
+//! let crew = Crew::start(helpers, move |answer| _ = answers.hand_in(Post::Answer(answer)))?;
+//! Place { core: Some(1), nice: 0, is_first: true }.take();
+//! let mut pulse = Pulse::new(PulseConfig::default());
+//! while let Some(input) = inbox.next(&pulse, Duration::from_millis(200)) {
+//!     let arrival = std::time::Instant::now();
+//!     let report = match input {
+//!         Input::Event(SensorEvent::Rgbd(image)) => robot.leave_image(LazyImage::from(image)),
+//!         Input::Event(event) => {
+//!             if matches!(event, SensorEvent::Wheels(_)) {
+//!                 pulse.begin();
+//!             }
+//!             robot.step(&event)
+//!         }
+//!         Input::Answer(answer) => robot.take_up(answer),
+//!     };
+//!     if let Some(twist) = report.twist {
+//!         base(twist);
+//!         pulse.end(arrival);
+//!     }
+//!     while let Some(job) = robot.next_job() {
+//!         crew.give(job);
+//!     }
+//! }
+//! base(Twist2::ZERO); // nothing came for 0.2 s
+//! # drop(door);
+//! # Ok(()) }
+//! ```
 
 mod crew;
 mod inbox;

@@ -8,10 +8,13 @@
 //! used, else written.
 #![allow(clippy::print_stdout, clippy::unwrap_used, reason = "a program for the terminal")]
 
-use nalgebra::Matrix3;
-use std::path::{Path, PathBuf};
+#[path = "../tests/support/drive.rs"]
+mod drive;
+
+use drive::Drive;
+use std::path::Path;
 use std::time::Instant;
-use trundle_core::{ColorImage, DepthImage, Distortion, PinholeCamera, Pose3, RgbdImage, Stamp, Vector3};
+use trundle_core::Pose3;
 use trundle_slam::{Mode, RgbdSlam, SlamConfig};
 
 /// A view farther from all that was mapped is none of a mapped place: m, and rad.
@@ -87,7 +90,7 @@ fn kidnap(slam: &mut RgbdSlam, mapped: &Drive, other: &Drive, views: usize) {
     while seen < views {
         draw = draw.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         let first = (draw >> 33) as usize % other.frames.len();
-        if !mapped.has_been_at(other.truth(first)) {
+        if !has_been_at(mapped, other.truth(first)) {
             continue;
         }
         seen += 1;
@@ -128,115 +131,9 @@ fn kidnap(slam: &mut RgbdSlam, mapped: &Drive, other: &Drive, views: usize) {
     );
 }
 
-/// A recorded drive.
-struct Drive {
-    folder: PathBuf,
-    camera: PinholeCamera,
-    depth_scale: f32,
-    frames: Vec<Frame>,
-}
-
-struct Frame {
-    stamp: Stamp,
-    color: String,
-    depth: String,
-    truth: Pose3,
-    /// Of the base, by the wheels.
-    wheels: Option<Pose3>,
-}
-
-impl Drive {
-    fn open(folder: &str) -> Self {
-        let folder = PathBuf::from(folder);
-        let read = |name: &str| std::fs::read_to_string(folder.join(name)).unwrap();
-        let settings = read("camera.toml");
-        let setting = |name: &str| -> f64 {
-            let line =
-                settings.lines().find_map(|line| line.split_once('=').filter(|(k, _)| k.trim() == name));
-            line.map_or(0.0, |(_, value)| value.trim().parse().unwrap())
-        };
-        let lens = Distortion {
-            k1: setting("k1"),
-            k2: setting("k2"),
-            p1: setting("p1"),
-            p2: setting("p2"),
-            k3: setting("k3"),
-        };
-        let size = (setting("width") as usize, setting("height") as usize);
-        let (focal, centre) = ((setting("fx"), setting("fy")), (setting("cx"), setting("cy")));
-        let camera = PinholeCamera::new(size, focal, centre, lens).unwrap();
-        let truth = truth(&read("groundtruth.txt"));
-        let wheels =
-            std::fs::read_to_string(folder.join("odometry.txt")).map_or(vec![], |text| wheels(&text));
-        let lines: Vec<String> = read("associations.txt").lines().map(str::to_owned).collect();
-        let frame = |line: &String| {
-            let fields: Vec<&str> = line.split_whitespace().collect();
-            let seconds: f64 = fields[0].parse().unwrap();
-            let at = truth.partition_point(|(t, _)| *t < seconds - 1e-6).min(truth.len() - 1);
-            let stamp = Stamp::from_secs(seconds).unwrap();
-            let rolled = wheels.partition_point(|(t, _)| *t < seconds - 1e-6);
-            let wheels = wheels.get(rolled).map(|(_, pose)| *pose);
-            Frame {
-                stamp,
-                color: fields[1].to_owned(),
-                depth: fields[3].to_owned(),
-                truth: truth[at].1,
-                wheels,
-            }
-        };
-        let frames = lines.iter().filter(|line| !line.starts_with('#')).map(frame).collect();
-        Self { folder, camera, depth_scale: setting("depth_scale") as f32, frames }
-    }
-
-    fn truth(&self, i: usize) -> Pose3 {
-        self.frames[i].truth
-    }
-
-    /// `previous_camera_from_camera` by the wheels, for the camera as the simulator mounts it: 5 cm forward, tilted by 8 deg.
-    fn wheels(&self, i: usize) -> Option<Pose3> {
-        let motion = self.frames[i.checked_sub(1)?].wheels?.inverse() * self.frames[i].wheels?;
-        let axes = Matrix3::new(0.0, 0.0, 1.0, -1.0, 0.0, 0.0, 0.0, -1.0, 0.0);
-        let tilt = nalgebra::Rotation3::from_euler_angles(0.0, 8_f64.to_radians(), 0.0);
-        let base_from_camera = Pose3::from_matrix(tilt.into_inner() * axes, Vector3::new(0.05, 0.0, 0.45));
-        Some(base_from_camera.inverse() * motion * base_from_camera)
-    }
-
-    fn has_been_at(&self, pose: Pose3) -> bool {
-        self.frames.iter().any(|frame| {
-            let offset = frame.truth.inverse() * pose;
-            offset.translation.norm() < MAPPED.0 && offset.angle() < MAPPED.1
-        })
-    }
-
-    fn image(&self, i: usize) -> RgbdImage {
-        let frame = &self.frames[i];
-        let color = image::open(self.folder.join(&frame.color)).unwrap().to_rgb8();
-        let depth = image::open(self.folder.join(&frame.depth)).unwrap().to_luma16();
-        let (width, height) = (color.width() as usize, color.height() as usize);
-        let color = ColorImage::new(width, height, color.pixels().map(|p| p.0).collect()).unwrap();
-        let depth = depth.into_raw().into_iter().map(|v| f32::from(v) / self.depth_scale).collect();
-        RgbdImage::new(frame.stamp, color, DepthImage::new(width, height, depth).unwrap()).unwrap()
-    }
-}
-
-/// Time (s) and planar pose of each line.
-fn wheels(text: &str) -> Vec<(f64, Pose3)> {
-    let pose = |line: &str| {
-        let v: Vec<f64> = line.split_whitespace().map(|v| v.parse().unwrap()).collect();
-        (v[0], Pose3::from_pose2(trundle_core::Pose2::new(v[1], v[2], v[3])))
-    };
-    text.lines().filter(|line| !line.starts_with('#')).map(pose).collect()
-}
-
-/// Time (s) and pose of each line.
-fn truth(text: &str) -> Vec<(f64, Pose3)> {
-    let pose = |line: &str| {
-        let v: Vec<f64> = line.split_whitespace().map(|v| v.parse().unwrap()).collect();
-        let rotation = nalgebra::Quaternion::new(v[7], v[4], v[5], v[6]);
-        (
-            v[0],
-            Pose3::new(nalgebra::UnitQuaternion::from_quaternion(rotation), Vector3::new(v[1], v[2], v[3])),
-        )
-    };
-    text.lines().filter(|line| !line.starts_with('#')).map(pose).collect()
+fn has_been_at(drive: &Drive, pose: Pose3) -> bool {
+    (0..drive.frames.len()).any(|i| {
+        let offset = drive.truth(i).inverse() * pose;
+        offset.translation.norm() < MAPPED.0 && offset.angle() < MAPPED.1
+    })
 }

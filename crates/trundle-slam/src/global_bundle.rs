@@ -5,7 +5,7 @@ use crate::motion::carried;
 use crate::sensor::Sensor;
 use std::collections::BTreeMap;
 use trundle_core::{Pose3, Vector3};
-use trundle_optim::BundleConfig;
+use trundle_optim::{BundleConfig, BundlePose, BundleSolver};
 
 /// Landmarks that two keyframes must share to hold each other in place \[MurArtal17\].
 const SHARED: u16 = 15;
@@ -41,12 +41,12 @@ impl GlobalBundle {
         }
     }
 
-    /// Goes on for about `work` units; whether it is done.
+    /// Goes on for about `work` units; whether it is done. `solver` lends its buffers.
     pub fn advance(
         &mut self,
         map: &LandmarkMap,
         sensor: &Sensor,
-        config: &BundleConfig,
+        (config, solver): (&BundleConfig, &mut BundleSolver),
         work: usize,
     ) -> bool {
         let Some(next) = self.next else { return self.bundle.advance(work) };
@@ -61,8 +61,8 @@ impl GlobalBundle {
         }
         self.next = Some(index).filter(|index| *index < bound);
         if self.next.is_none() {
-            self.hold();
-            self.bundle.begin(sensor, config);
+            self.hold(map);
+            self.bundle.begin(map, sensor, config, std::mem::take(solver));
         }
         false
     }
@@ -78,8 +78,9 @@ impl GlobalBundle {
         }
     }
 
-    /// The oldest keyframe holds still, of every part of the map that shares too little with the rest.
-    fn hold(&mut self) {
+    /// The oldest keyframe holds still, of every part of the map that shares too little with the rest and that no wheels
+    /// tie to it.
+    fn hold(&mut self, map: &LandmarkMap) {
         self.holds = (0..self.bundle.keyframes().count()).collect();
         let find = |holds: &[usize], mut i: usize| {
             while holds[i] != i {
@@ -88,7 +89,12 @@ impl GlobalBundle {
             i
         };
         let pairs = (0..self.holds.len()).flat_map(|b| (0..b).map(move |a| (a, b)));
-        for ((a, b), _) in pairs.zip(&self.shared).filter(|(_, count)| **count >= SHARED) {
+        let shared = pairs.zip(&self.shared).filter(|(_, count)| **count >= SHARED).map(|(pair, _)| pair);
+        let rolled = |(place, (id, _)): (usize, (KeyframeId, BundlePose))| {
+            Some((self.bundle.place_of(map.live_keyframe(id)?.rolled?.from)?, place))
+        };
+        let rolled: Vec<(usize, usize)> = self.bundle.keyframes().enumerate().filter_map(rolled).collect();
+        for (a, b) in shared.chain(rolled) {
             let (a, b) = (find(&self.holds, a), find(&self.holds, b));
             self.holds[a.max(b)] = a.min(b);
         }
@@ -113,6 +119,11 @@ impl GlobalBundle {
         }
         self.bundle.take_back(map);
         self.set_covariances(map);
+    }
+
+    /// The solver, for its buffers.
+    pub fn into_solver(self) -> BundleSolver {
+        self.bundle.into_solver()
     }
 
     /// How each keyframe of the map moves; a newer one as its parent does.
@@ -224,7 +235,7 @@ mod tests {
             let (sensor, config) = (sensor(), BundleConfig { covariances: true, ..BundleConfig::default() });
             map.set_covariance(ids[5], nalgebra::Matrix6::identity() * 0.04);
             let mut global = GlobalBundle::of(&map);
-            global.advance(&map, &sensor, &config, 1);
+            global.advance(&map, &sensor, (&config, &mut BundleSolver::default()), 1);
             // A keyframe that saw its place by the bent one, and a point that only it sees.
             let child =
                 map.add_keyframe(view(along(0.25)), along(0.2) * off * along(0.2).inverse() * along(0.25));
@@ -233,7 +244,7 @@ mod tests {
             );
             map.observe(own, child, 3);
             map.hang(child, ids[2]);
-            while !global.advance(&map, &sensor, &config, work) {}
+            while !global.advance(&map, &sensor, (&config, &mut BundleSolver::default()), work) {}
             global.apply(&mut map);
             (map, ids, child, own)
         };

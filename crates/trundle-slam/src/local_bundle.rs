@@ -3,7 +3,7 @@ use crate::map::LandmarkMap;
 use crate::map_bundle::MapBundle;
 use crate::sensor::Sensor;
 use trundle_core::Vector3;
-use trundle_optim::BundleConfig;
+use trundle_optim::{BundleConfig, BundleSolver};
 
 /// How much of the map is refined at once.
 #[derive(Debug, Clone, Copy)]
@@ -24,7 +24,7 @@ pub(crate) fn refine_around(
     config: &BundleConfig,
 ) {
     let mut bundle = bundle_around(map, centre, sensor, size);
-    bundle.begin(sensor, config);
+    bundle.begin(map, sensor, config, BundleSolver::default());
     while !bundle.advance(usize::MAX) {}
     apply(map, &bundle, sensor);
 }

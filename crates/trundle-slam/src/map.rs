@@ -4,6 +4,7 @@ use crate::ids::{KeyframeId, LandmarkId};
 use crate::keyframe_grid::KeyframeGrid;
 use crate::landmark::Landmark;
 use crate::refinement::Refinement;
+use crate::rolled::Rolled;
 use crate::sensor::Sensor;
 use crate::spanning_tree::Place;
 use nalgebra::Matrix6;
@@ -23,6 +24,8 @@ pub(crate) struct Keyframe {
     pub landmarks: Vec<Option<LandmarkId>>,
     /// Where it stands in the spanning tree.
     pub(crate) tree: Place,
+    /// The way to it from the keyframe before, where wheels knew it.
+    pub rolled: Option<Rolled>,
 }
 
 /// Keyframes and landmarks in two arenas, and who saw what.
@@ -36,6 +39,8 @@ pub(crate) struct LandmarkMap {
     pub(crate) grid: KeyframeGrid,
     /// What makes it better, and is not done yet.
     pub(crate) refinement: Refinement,
+    /// The axis about which a camera on a floor turns, camera frame.
+    pub(crate) floor: Option<Vector3>,
     /// Where forgotten keyframes stand to the one that took them over, by id.
     pub(crate) forgotten: std::collections::BTreeMap<KeyframeId, (KeyframeId, Pose3)>,
 }
@@ -112,7 +117,8 @@ impl LandmarkMap {
     pub fn add_keyframe(&mut self, frame: Frame, visual_from_camera: Pose3) -> KeyframeId {
         let landmarks = vec![None; frame.len()];
         let (covariance, ground, tree) = (Matrix6::zeros(), Matrix6::zeros(), Place::default());
-        let keyframe = Keyframe { frame, visual_from_camera, covariance, ground, landmarks, tree };
+        let rolled = None;
+        let keyframe = Keyframe { frame, visual_from_camera, covariance, ground, landmarks, tree, rolled };
         let id = KeyframeId::from_index(self.keyframes.insert(keyframe));
         self.grid.insert(id, visual_from_camera.translation);
         id
@@ -190,8 +196,8 @@ impl LandmarkMap {
             self.observe(kept, keyframe, feature);
         }
         if let Some(kept) = self.landmark_mut(kept) {
-            kept.visible += merged.visible;
-            kept.found += merged.found;
+            kept.visible = kept.visible.saturating_add(merged.visible);
+            kept.found = kept.found.saturating_add(merged.found);
         }
     }
 

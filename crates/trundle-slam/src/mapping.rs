@@ -3,6 +3,7 @@ use crate::frame::Frame;
 use crate::ids::{KeyframeId, LandmarkId};
 use crate::landmark::Landmark;
 use crate::map::LandmarkMap;
+use crate::rolled::Rolled;
 use crate::search::{Likeness, Projection, search};
 use crate::sensor::Sensor;
 use crate::triangulation::triangulate_new;
@@ -86,15 +87,17 @@ pub(crate) struct Mapper<'a> {
 
 impl Mapper<'_> {
     /// Makes `frame` a keyframe that sees the landmarks it was tracked by, gives its other features with a good depth, or
-    /// seen from two sides, landmarks of their own, looks for these in the keyframes around, and begins to refine all of them together.
+    /// seen from two sides, landmarks of their own, looks for these in the keyframes around, and begins to refine all of them
+    /// together. `rolled` is the way to it as wheels know it.
     pub fn insert(
         &self,
         map: &mut LandmarkMap,
         frame: Frame,
         pose: Pose3,
-        tracked: &[Option<LandmarkId>],
+        (tracked, rolled): (&[Option<LandmarkId>], Option<Rolled>),
     ) -> KeyframeId {
         let keyframe = map.add_keyframe(frame, pose);
+        map.keyframe_mut(keyframe).rolled = rolled;
         for (feature, landmark) in tracked.iter().enumerate().filter_map(|(i, l)| Some((i, (*l)?))) {
             map.observe(landmark, keyframe, feature);
         }

@@ -95,7 +95,8 @@ pub struct TrackReport {
     pub relocalised: bool,
     /// Whether the frame became a keyframe.
     pub new_keyframe: bool,
-    /// The place seen again by it, and how that moved the camera.
+    /// The place that a keyframe of the last frames was found to show again, and how that moved the camera since the last
+    /// frame: a correction, not a motion.
     pub closed_loop: Option<LoopClosure>,
     /// The map recognised by it, and how that moved the camera.
     pub merged: Option<MapMerge>,

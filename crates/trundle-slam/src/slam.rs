@@ -1,15 +1,18 @@
 mod accept;
 mod graph;
 mod locate;
+mod look_back;
 mod merge;
 mod miss;
 mod saving;
 
 use crate::anchor::Anchor;
 use crate::claim::Claim;
+use crate::closing::{LoopClosure, Search};
 use crate::component::Component;
 use crate::config::SlamConfig;
 use crate::diagnosis::{SettingsCheck, Suspicion};
+use crate::floor::Floor;
 use crate::frame::Frame;
 use crate::ids::{KeyframeId, LandmarkId};
 use crate::keyframe_culling::cull_keyframes;
@@ -18,8 +21,10 @@ use crate::map::LandmarkMap;
 use crate::mapping::Mapper;
 use crate::motion::Belief;
 use crate::report::{MapId, Mode, SeenFeature, TrackReport, Tracking};
+use crate::rolled::Rolled;
 use crate::sensor::Sensor;
 use crate::trajectory::Anchored;
+use std::collections::VecDeque;
 use std::sync::Arc;
 use trundle_core::{DepthImage, Invalid, PinholeCamera, Pose3, RgbdImage, Stamp, Vector3, gray_from_color};
 use trundle_vision::{Features, OrbExtractor, Vocabulary};
@@ -53,8 +58,16 @@ pub struct RgbdSlam {
     /// A place of the active map that it recognised farther off than it should be.
     surprise: Option<Claim<()>>,
     history: Vec<Past>,
+    /// The way since the newest keyframe, as long as wheels know it.
+    rolled: Option<Rolled>,
+    /// What the priors say of a floor.
+    floor: Floor,
+    /// The newest keyframes whose places are still to be looked for among the old ones.
+    searches: VecDeque<Search>,
     /// How refining the map moved the camera, before the frame at hand.
     refined: Option<Pose3>,
+    /// The loop that was closed before the frame at hand.
+    closed_loop: Option<LoopClosure>,
     seen: Vec<SeenFeature>,
     check: SettingsCheck,
 }
@@ -101,7 +114,11 @@ impl RgbdSlam {
             recognition: None,
             surprise: None,
             history: vec![],
+            rolled: None,
+            floor: Floor::default(),
+            searches: VecDeque::new(),
             refined: None,
+            closed_loop: None,
             seen: vec![],
             check: SettingsCheck::default(),
         })
@@ -129,6 +146,13 @@ impl RgbdSlam {
         let stamp = self.belief.stamp;
         self.belief = Belief { stamp, ..Belief::anywhere() };
         (self.placed, self.last, self.misses, self.doubt) = (false, None, 0, None);
+        self.forget_the_way();
+    }
+
+    /// Drops what belongs to the keyframes before this: they are of another map, or far away.
+    fn forget_the_way(&mut self) {
+        self.searches.clear();
+        self.rolled = None;
     }
 
     /// Goes on mapping, or only locates and leaves the maps as they are.
@@ -165,7 +189,8 @@ impl RgbdSlam {
         let turn = self.belief.turn_rate(stamp, prior) * self.config.motion.readout;
         let frame = Frame::new(stamp, features, depth, turn, (&self.sensor, &self.config.depth));
         self.check.note_frame(&frame, depth, prior, &self.sensor, &self.config.depth);
-        self.refine(self.config.mapping.work_per_frame);
+        self.roll(stamp, prior);
+        self.tidy_up(self.config.mapping.work_per_frame);
         match self.locate(&frame, depth, prior) {
             Some(sighting) => self.accept(frame, sighting),
             None => self.miss(frame, depth, prior),
@@ -175,22 +200,39 @@ impl RgbdSlam {
     /// Does all that is left of refining the map, which `step` does in slices between frames: before it is saved, say, or
     /// when the camera stands still for long.
     pub fn finish_refining(&mut self) {
-        while self.mode == Mode::Mapping && self.active.map.is_being_refined() {
-            self.refine(usize::MAX);
+        let is_due = |slam: &Self| !slam.searches.is_empty() || slam.active.map.is_being_refined();
+        while self.mode == Mode::Mapping && is_due(self) {
+            self.tidy_up(usize::MAX);
         }
     }
 
-    /// Goes on refining the map; the camera moves along with it.
-    fn refine(&mut self, work: usize) {
-        self.refined = None;
-        let map = &mut self.active.map;
-        if self.mode == Mode::Localisation || !map.refine(&self.sensor, &self.config.mapping, work) {
+    /// Takes note of what wheels say of the way since the last frame.
+    fn roll(&mut self, stamp: Stamp, prior: Option<Pose3>) {
+        let seconds = self.belief.stamp.map_or(0.0, |last| (stamp - last).max(0.0));
+        self.rolled = self.rolled.zip(prior).map(|(way, step)| way.on(step, seconds, &self.config.motion));
+        if let Some(step) = prior {
+            self.floor.note(step);
+        }
+    }
+
+    /// What is done between frames: looks for a loop, else goes on refining the map.
+    fn tidy_up(&mut self, work: usize) {
+        (self.refined, self.closed_loop) = (None, None);
+        if self.mode == Mode::Localisation || self.look_back() {
             return;
         }
-        let Some(past) = self.history.last().filter(|past| past.map == self.active.id) else { return };
-        let pose = past.anchored.visual_from_camera(map);
-        self.refined = Some(pose * self.belief.visual_from_camera.inverse());
+        if self.active.map.refine(&self.sensor, &self.config.mapping, work) {
+            self.refined = self.follow_the_map();
+        }
+    }
+
+    /// The camera moves along with the map that has changed; how it moved, `new_from_old` in the visual frame.
+    fn follow_the_map(&mut self) -> Option<Pose3> {
+        let past = self.history.last().filter(|past| past.map == self.active.id)?;
+        let pose = past.anchored.visual_from_camera(&self.active.map);
+        let correction = pose * self.belief.visual_from_camera.inverse();
         self.belief.visual_from_camera = pose;
+        Some(correction)
     }
 
     /// Pose of every frame that was not lost, in the order of `step`: `visual_from_camera` by the map as it is now. Of
@@ -251,7 +293,10 @@ impl RgbdSlam {
 
     fn insert(&mut self, frame: Frame, pose: Pose3, tracked: &[Option<LandmarkId>]) -> KeyframeId {
         let mapper = Self::mapper(&self.sensor, &self.config);
-        let keyframe = mapper.insert(&mut self.active.map, frame, pose, tracked);
+        self.active.map.floor = self.floor.axis();
+        let rolled = self.rolled.filter(|rolled| self.active.map.live_keyframe(rolled.from).is_some());
+        let keyframe = mapper.insert(&mut self.active.map, frame, pose, (tracked, rolled));
+        self.rolled = Some(Rolled::at(keyframe));
         cull_keyframes(&mut self.active.map, keyframe, &self.config.keyframes);
         self.active.follow();
         keyframe
@@ -285,7 +330,7 @@ impl RgbdSlam {
             inliers: 0,
             relocalised: false,
             new_keyframe: false,
-            closed_loop: None,
+            closed_loop: self.closed_loop,
             merged: None,
             refined: self.refined,
             keyframes: self.active.map.keyframe_count(),

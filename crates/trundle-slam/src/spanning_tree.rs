@@ -1,5 +1,6 @@
 use crate::ids::KeyframeId;
 use crate::map::{Keyframe, LandmarkMap};
+use crate::rolled::Rolled;
 use trundle_core::Pose3;
 
 /// Where a keyframe stands in the spanning tree: its parent is the keyframe it shared most landmarks with when it was
@@ -48,6 +49,7 @@ impl LandmarkMap {
         seen.into_iter().for_each(|landmark| self.unobserve(landmark, id));
         let Some(gone) = self.keyframes.remove(id.index()) else { return false };
         self.grid.remove(id, gone.visual_from_camera.translation);
+        self.roll_past(id, gone.rolled);
         let parent_from_gone = self.keyframe(parent).visual_from_camera.inverse() * gone.visual_from_camera;
         self.forgotten.insert(id, (parent, parent_from_gone));
         for ward in &gone.tree.heir_of {
@@ -61,6 +63,16 @@ impl LandmarkMap {
         tree.heir_of.extend(gone.tree.heir_of);
         gone.tree.children.into_iter().for_each(|child| self.hang(child, parent));
         true
+    }
+
+    /// The way on from a forgotten keyframe goes on from the one before it.
+    fn roll_past(&mut self, gone: KeyframeId, before: Option<Rolled>) {
+        let next =
+            |(id, keyframe): (KeyframeId, &Keyframe)| Some((id, keyframe.rolled.filter(|r| r.from == gone)?));
+        let found: Vec<(KeyframeId, Rolled)> = self.keyframes().filter_map(next).collect();
+        for (id, rolled) in found {
+            self.keyframe_mut(id).rolled = before.map(|before| before.then(&rolled));
+        }
     }
 
     /// Where a keyframe is, or would be now if it had not been forgotten.

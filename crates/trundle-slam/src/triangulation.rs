@@ -47,7 +47,7 @@ fn pairs(
 ) -> Vec<(usize, usize, Vector3)> {
     let (a, b) = (map.keyframe(id), map.keyframe(partner));
     let pair = Pair { a, b, b_from_a: b.visual_from_camera.inverse() * a.visual_from_camera, sensor };
-    let theirs: Vec<usize> = without_depth(b).collect();
+    let theirs: Vec<Ray> = without_depth(b).map(|feature| pair.in_b(feature)).collect();
     let mut is_taken = vec![false; b.frame.len()];
     let mut found = Vec::new();
     for own in without_depth(a) {
@@ -69,6 +69,17 @@ fn without_depth(keyframe: &Keyframe) -> impl Iterator<Item = usize> + '_ {
     (0..keyframe.frame.len()).filter(move |i| keyframe.landmarks[*i].is_none() && has_none(*i))
 }
 
+/// Where a feature is seen.
+#[derive(Debug, Clone, Copy)]
+struct Ray {
+    feature: usize,
+    /// At 1 m along the optical axis.
+    x: f64,
+    y: f64,
+    /// How far it may be off a line, px.
+    reach: f64,
+}
+
 /// Two keyframes that may see one point.
 struct Pair<'a> {
     a: &'a Keyframe,
@@ -78,17 +89,29 @@ struct Pair<'a> {
 }
 
 impl Pair<'_> {
+    /// A feature of `b`, which may be off its line by 95 %.
+    fn in_b(&self, feature: usize) -> Ray {
+        let (ray, reach) = (self.ray(self.b, feature), 1.96 * self.seen(self.b, feature).pixel_sigma);
+        Ray { feature, x: ray.x, y: ray.y, reach }
+    }
+
     /// The feature of `b` among `theirs` that is most like feature `own` of `a`, near its epipolar line, and clearly so.
-    fn likest(&self, own: usize, theirs: &[usize], likeness: Likeness) -> Option<usize> {
+    fn likest(&self, own: usize, theirs: &[Ray], likeness: Likeness) -> Option<usize> {
+        // The plane through both cameras and the point cuts the image along this line.
         let normal = self.b_from_a.translation.cross(&self.b_from_a.rotate(self.ray(self.a, own)));
+        let camera = &self.sensor.camera;
+        let line = normal / (normal.x / camera.fx()).hypot(normal.y / camera.fy());
         let (mut best, mut next) = ((u32::MAX, usize::MAX), u32::MAX);
-        for &other in theirs {
-            if !self.is_on_line(&normal, other) {
+        for other in theirs {
+            let off = line.x * other.x + line.y * other.y + line.z;
+            // Without a way between the cameras there is no line: `off` is no number, and not near.
+            let is_near = off.abs() <= other.reach;
+            if !is_near {
                 continue;
             }
-            let distance = self.a.frame.descriptor(own).distance(self.b.frame.descriptor(other));
+            let distance = self.a.frame.descriptor(own).distance(self.b.frame.descriptor(other.feature));
             if distance < best.0 {
-                (best, next) = ((distance, other), best.0);
+                (best, next) = ((distance, other.feature), best.0);
             } else {
                 next = next.min(distance);
             }
@@ -96,14 +119,6 @@ impl Pair<'_> {
         let (distance, other) = best;
         let is_clear = distance as f32 <= likeness.ratio * next as f32;
         (distance <= likeness.max_distance && is_clear).then_some(other)
-    }
-
-    /// Whether a feature of `b` is within 95 % of the line where the plane with this normal cuts the image.
-    fn is_on_line(&self, normal: &Vector3, other: usize) -> bool {
-        let camera = &self.sensor.camera;
-        let (x, y) = (normal.x / camera.fx(), normal.y / camera.fy());
-        let off = normal.dot(&self.ray(self.b, other)) / x.hypot(y);
-        off.abs() <= 1.96 * self.seen(self.b, other).pixel_sigma
     }
 
     /// The point that both features see, in the frame of `a`, m.

@@ -27,10 +27,10 @@ pub struct PlanArgs {
     /// Named places: TOML, a table a place with x, y, heading_deg.
     #[arg(long, value_name = "FILE")]
     pub places: Option<PathBuf>,
-    /// Keep-out mask, as Nav2's: what is black is forbidden.
+    /// Keep-out mask, as Nav2's: what is black is forbidden, greys (mode scale) are dear.
     #[arg(long, value_name = "MASK.yaml")]
     pub keepout: Option<PathBuf>,
-    /// Speed mask, as Nav2's: the darker the slower.
+    /// Speed mask, as Nav2's: the darker the slower; black sets no limit.
     #[arg(long, value_name = "MASK.yaml")]
     pub speed_mask: Option<PathBuf>,
     /// Way-point graph, GeoJSON as Nav2's route server has it: drive along its lanes.

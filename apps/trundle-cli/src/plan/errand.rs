@@ -1,13 +1,14 @@
 //! What is asked: the files and poses of the command line.
 
 use super::args::{PlaceArg, PlanArgs};
-use crate::failure::Failure;
+use crate::{console, failure::Failure};
 use std::collections::BTreeMap;
 use std::path::Path;
-use trundle::core::{Footprint, GridGeometry, OccupancyGrid, Pose2, Twist2};
+use trundle::core::{Cell, Footprint, GridGeometry, OccupancyGrid, Pose2, Twist2};
 use trundle::io::{read_graph, read_keep_out_mask, read_map, read_places, read_speed_mask};
-use trundle::planning::{Plan, Planner, PlannerConfig, SpeedMask, Tour, WayPointGraph};
+use trundle::planning::{DearMask, Plan, Planner, PlannerConfig, SpeedMask, Tour, WayPointGraph};
 use trundle::runtime::RobotConfig;
+use trundle::viz::MaskShares;
 
 /// A place to be, and what it is called in messages.
 #[derive(Debug, Clone)]
@@ -30,6 +31,10 @@ pub struct Errand {
     pub planner: Planner,
     pub start: Place,
     pub goals: Vec<Place>,
+    /// For pictures: 1 is forbidden, less is dear.
+    pub keep_out: Option<MaskShares>,
+    /// For pictures: 1 less the share of the full speed.
+    pub slow: Option<MaskShares>,
     graph: Option<WayPointGraph>,
 }
 
@@ -47,17 +52,11 @@ impl Errand {
         let goal_tolerance = args.near.unwrap_or(robot.planning.goal_tolerance);
         let config = PlannerConfig { beyond: 0.0, goal_tolerance, ..robot.planning };
         let mut planner = Planner::new(config, &footprint, robot.limits, robot.drive)?;
-        if let Some(path) = &args.keepout {
-            let mask = read_keep_out_mask(path)?;
-            on_the_map(path, mask.geometry(), grid.geometry())?;
-            planner.set_keep_out(Some(mask));
-        }
-        if let Some(path) = &args.speed_mask {
-            let (geometry, limits) = read_speed_mask(path, robot.limits.v)?;
-            on_the_map(path, &geometry, grid.geometry())?;
-            planner.set_speed_mask(Some(SpeedMask::new(geometry, limits)?));
-        }
-        Ok(Self { grid, footprint, planner, start, goals, graph })
+        let keep_out = args.keepout.as_deref().map(|path| keep_out(path, &grid, &mut planner)).transpose()?;
+        let full = robot.limits.v;
+        let slow =
+            args.speed_mask.as_deref().map(|path| slow(path, full, &grid, &mut planner)).transpose()?;
+        Ok(Self { grid, footprint, planner, start, goals, keep_out, slow, graph })
     }
 
     /// The plan through all goals, or in one sentence why there is none.
@@ -69,6 +68,18 @@ impl Errand {
             None => self.planner.plan_tour(grid, start, Twist2::ZERO, &goals),
         };
         tour.map_err(|(i, why)| Failure::Input(format!("{}: {}: {why}", map.display(), self.leg(i, &why))))
+    }
+
+    /// Of each goal that another place was taken for: how far off that is, and why.
+    pub fn goals_moved(&self, tour: &Tour) -> Vec<(usize, f64, String)> {
+        let moved = tour.legs.iter().zip(&self.goals).enumerate().filter_map(|(i, (leg, goal))| {
+            let why = match leg.instead_of.as_ref()? {
+                Plan::Blocked { .. } => "no way leads there".to_owned(),
+                refusal => refusal.to_string(),
+            };
+            Some((i, leg.trajectory.end().distance(&goal.pose), why))
+        });
+        moved.collect()
     }
 
     /// Which part of the errand has no plan.
@@ -104,6 +115,41 @@ fn resolve(
             Err(Failure::Input(message))
         }
     }
+}
+
+/// Reads a keep-out mask into the planner; what it says, for pictures.
+fn keep_out(path: &Path, grid: &OccupancyGrid, planner: &mut Planner) -> Result<MaskShares, Failure> {
+    let mask = read_keep_out_mask(path)?;
+    let geometry = *mask.forbidden.geometry();
+    on_the_map(path, &geometry, grid.geometry())?;
+    let share = |(cell, dear): (&Cell, &u8)| match cell {
+        Cell::Occupied => 1.0,
+        _ => f32::from(*dear) / 100.0,
+    };
+    let shares = mask.forbidden.cells().iter().zip(&mask.dear).map(share).collect();
+    planner.set_keep_out(Some(mask.forbidden));
+    if mask.dear.iter().any(|value| *value > 0) {
+        planner.set_dear(Some(DearMask::new(geometry, mask.dear)?));
+    }
+    Ok(MaskShares { geometry, shares })
+}
+
+/// Reads a speed mask into the planner; what it says, for pictures. `full`: the robot's highest speed, m/s.
+fn slow(path: &Path, full: f64, grid: &OccupancyGrid, planner: &mut Planner) -> Result<MaskShares, Failure> {
+    let mask = read_speed_mask(path, full)?;
+    on_the_map(path, &mask.geometry, grid.geometry())?;
+    if mask.out_of_range > 0 {
+        let (count, all) = (mask.out_of_range, mask.limits.len());
+        console::warn(&format!(
+            "{}: {count} of {all} cells stand for a speed that is not above 0, or above 100 %: they set no limit, as in Nav2. \
+             Black does so by default; to forbid a place, use --keepout",
+            path.display()
+        ));
+    }
+    let share = |limit: &f32| (1.0 - limit / full as f32).clamp(0.0, 1.0);
+    let shares = mask.limits.iter().map(share).collect();
+    planner.set_speed_mask(Some(SpeedMask::new(mask.geometry, mask.limits)?));
+    Ok(MaskShares { geometry: mask.geometry, shares })
 }
 
 fn graph(path: &Path) -> Result<WayPointGraph, Failure> {

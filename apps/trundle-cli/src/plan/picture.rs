@@ -1,7 +1,7 @@
 //! The plan in pictures.
 
 use super::errand::Errand;
-use super::table::{curves, points, rows};
+use super::table::{curves, notes, points, rows};
 use trundle::core::{DriveLimits, Pose2, Vector2};
 use trundle::planning::{HalfPlane, StageTimes, Tour};
 use trundle::viz::{
@@ -32,6 +32,8 @@ pub fn draw(errand: &Errand, tour: &Tour, limits: DriveLimits, seconds: f64, sta
         way_points: &way_points,
         curve: &curve,
         footprint: &errand.footprint,
+        keep_out: errand.keep_out.as_ref(),
+        slow: errand.slow.as_ref(),
     };
     let field = errand.planner.field();
     let geometry = field.map_or(*errand.grid.geometry(), |field| *field.geometry());
@@ -46,7 +48,9 @@ pub fn draw(errand: &Errand, tour: &Tour, limits: DriveLimits, seconds: f64, sta
     let parts = PlanParts { geometry, distances: &distances, corridors: &corridors, active: &active };
     let [field, corridors] = plan_part_pictures(&scene, &parts);
     let plan = plan_picture(&scene);
-    let page = page([&plan, &field, &corridors], tour, limits, &rows(tour, seconds, stages));
+    let notes = notes(errand, tour).into_iter().map(|note| vec![note, String::new()]);
+    let numbers: Vec<_> = notes.chain(rows(tour, seconds, stages)).collect();
+    let page = page([&plan, &field, &corridors], tour, limits, &numbers);
     Pictures { plan, field, corridors, page }
 }
 

@@ -97,6 +97,20 @@ fn polynomial(coefficients: impl Iterator<Item = f64>) -> String {
     coefficients.enumerate().map(term).collect::<Vec<_>>().join(" ")
 }
 
+/// Of each goal that another place was taken for: which, how far off, and why.
+pub fn notes(errand: &Errand, tour: &Tour) -> Vec<String> {
+    let note = |(i, off, why): (usize, f64, String)| {
+        let at = tour.legs[i].trajectory.end();
+        format!(
+            "goal {} moved to ({:.2}, {:.2}) m, {off:.2} m from the one asked for: {why}",
+            i + 1,
+            at.x,
+            at.y
+        )
+    };
+    errand.goals_moved(tour).into_iter().map(note).collect()
+}
+
 /// What the terminal shows.
 pub fn rows(tour: &Tour, seconds: f64, stages: StageTimes) -> Vec<Vec<String>> {
     let row = |name: &str, value: String| vec![name.to_owned(), value];
@@ -140,6 +154,11 @@ fn least_room(tour: &Tour) -> f64 {
 /// `summary.json`.
 pub fn summary(args: &PlanArgs, errand: &Errand, tour: &Tour, seconds: f64, stages: StageTimes) -> Summary {
     let goals: Vec<_> = errand.goals.iter().map(|goal| goal.pose).collect();
+    let moved: Vec<_> = errand
+        .goals_moved(tour)
+        .into_iter()
+        .map(|(goal, off, why)| serde_json::json!({ "goal": goal, "off_m": off, "why": why }))
+        .collect();
     let reached: Vec<_> = tour.legs.iter().map(|leg| leg.trajectory.end()).collect();
     let mut summary = Summary::new("plan");
     summary
@@ -149,6 +168,7 @@ pub fn summary(args: &PlanArgs, errand: &Errand, tour: &Tour, seconds: f64, stag
         .set("to", goals[goals.len() - 1])
         .set("goals", goals)
         .set("reached", reached)
+        .set("goals_moved", moved)
         .set("length_m", length(tour))
         .set("duration_s", tour.trajectory.duration())
         .set("way_points", way_points(tour))

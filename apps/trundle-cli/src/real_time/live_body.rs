@@ -119,8 +119,7 @@ impl LiveBody {
 impl WiredBody for LiveBody {
     fn next_input(&mut self) -> Result<Option<Input>, Failure> {
         if self.stop.load(Ordering::Relaxed) {
-            self.command(Twist2::ZERO)?;
-            return Ok(None);
+            return Ok(Some(Input::Interrupted));
         }
         Ok(self.wait_for_input())
     }

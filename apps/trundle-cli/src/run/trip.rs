@@ -1,11 +1,11 @@
 use super::{Run, RunSetup, TapeCost};
-use crate::body::{Input, TakenUp, WiredBody};
+use crate::body::{Input, Mark, MarkMessage, WiredBody};
 use crate::{console, failure::Failure, logbook::Logbook, tape::Tape, view::BestView};
 use indicatif::ProgressBar;
 use std::time::Instant;
-use trundle::core::{FrameId, Pose2, Stamp};
+use trundle::core::{FrameId, Pose2, Stamp, Twist2};
 use trundle::io::{EncodedEvent, PoseInFrame, PosesInFrame};
-use trundle::runtime::{Answer, Helper, LazyImage, Robot, Stage, StepReport};
+use trundle::runtime::{Answer, DriveState, Helper, LazyImage, Robot, Stage, StepReport};
 
 /// A run under way: the robot is fed, and all that goes in and comes out is written down.
 pub(super) struct Trip<'s> {
@@ -16,6 +16,7 @@ pub(super) struct Trip<'s> {
     view: BestView,
     line: ProgressBar,
     start: Instant,
+    pub(super) is_interrupted: bool,
 }
 
 impl<'s> Trip<'s> {
@@ -28,7 +29,8 @@ impl<'s> Trip<'s> {
         let config = setup.clone();
         tape.put(move |tape| tape.record_json("/config", "trundle.Config", Stamp::default(), &config))?;
         let (log, view) = (Logbook::default(), BestView::default());
-        Ok(Self { setup, robot, tape, log, view, line: console::live_line(quiet), start: Instant::now() })
+        let (line, start) = (console::live_line(quiet), Instant::now());
+        Ok(Self { setup, robot, tape, log, view, line, start, is_interrupted: false })
     }
 
     /// Feeds the robot once; whether its mission is over.
@@ -36,6 +38,7 @@ impl<'s> Trip<'s> {
         let (stamp, report) = match input {
             Input::Event(event) => (event.stamp(), self.feel(event)?),
             Input::Answer(answer) => (self.log.now, self.take_up(answer)?),
+            Input::Interrupted => return self.interrupt(body),
         };
         if let Some(twist) = report.twist {
             body.command(twist)?;
@@ -55,10 +58,18 @@ impl<'s> Trip<'s> {
         Ok(report.finished)
     }
 
+    /// The user has seen enough: the robot stops here.
+    fn interrupt(&mut self, body: &mut dyn WiredBody) -> Result<bool, Failure> {
+        body.command(Twist2::ZERO)?;
+        self.mark(Mark::Interrupted)?;
+        self.is_interrupted = true;
+        Ok(true)
+    }
+
     /// Takes up what is still under way, in a fixed order, and closes the recording.
     pub(super) fn end(mut self, body: &mut dyn WiredBody) -> Result<Run, Failure> {
         if self.setup.real_time {
-            self.mark(None)?;
+            self.mark(Mark::End)?;
             self.robot.drop_waiting_image();
             for helper in Helper::ALL {
                 if let Some(answer) = body.last_answer(helper) {
@@ -68,6 +79,9 @@ impl<'s> Trip<'s> {
                     self.log.note(stamp, &report);
                 }
             }
+        }
+        if self.is_interrupted {
+            self.log.state = DriveState::Stopped { reason: "the user ended the run".to_owned() };
         }
         self.line.finish_and_clear();
         let (waiting, lost) = (self.tape.lengths.clone(), self.tape.lost);
@@ -91,13 +105,13 @@ impl<'s> Trip<'s> {
     }
 
     fn take_up(&mut self, answer: Answer) -> Result<StepReport, Failure> {
-        self.mark(Some(answer.helper()))?;
+        self.mark(Mark::TakenUp(answer.helper()))?;
         Ok(self.robot.take_up(answer))
     }
 
-    fn mark(&mut self, helper: Option<Helper>) -> Result<(), Failure> {
-        let (stamp, mark) = (self.log.now, TakenUp { helper });
-        self.tape.put(move |tape| tape.record_json(TakenUp::TOPIC, TakenUp::SCHEMA, stamp, &mark))
+    fn mark(&mut self, mark: Mark) -> Result<(), Failure> {
+        let (stamp, message) = (self.log.now, MarkMessage { mark });
+        self.tape.put(move |tape| tape.record_json(Mark::TOPIC, Mark::SCHEMA, stamp, &message))
     }
 
     fn record(&mut self, stamp: Stamp, report: &StepReport) -> Result<(), Failure> {

@@ -10,6 +10,7 @@ mod map;
 mod missions;
 mod plan;
 mod program;
+mod real_time;
 mod sim;
 mod sim_files;
 mod slam;

@@ -127,7 +127,10 @@ fn masks_forbid_and_slow_down() {
     let within = room.plan(&["--from=desk", "--goal=4,3.5,0", "--keepout", text(&forbidden)]).unwrap_err();
     assert!(within.contains("does not fit at the goal"), "{within}");
     let near = room.plan(&["--from=desk", "--goal=4,3.5,0", "--near=2", "--keepout", text(&forbidden)]);
-    near.unwrap();
+    let said = near.unwrap();
+    assert!(said.contains("goal 1 moved to") && said.contains("from the one asked for"), "{said}");
+    assert!(said.contains("the robot does not fit at the goal"), "{said}");
+    assert!(room.summary()["goals_moved"][0]["off_m"].as_f64().unwrap() > 0.5);
     let reached = &room.summary()["reached"][0];
     assert!(reached["x"].as_f64().unwrap() < 3.4, "{reached}");
     let slow = write_mask(room.scratch.path(), "slow", (255, 26), SCALE);
@@ -137,6 +140,55 @@ fn masks_forbid_and_slow_down() {
     let inside = |row: &&Vec<f64>| (3.11..4.49).contains(&row[1]) && row[2] > 2.76;
     let fastest = rows.iter().filter(inside).map(|row| row[4]).fold(0.0, f64::max);
     assert!(fastest > 0.05 && fastest <= 0.0701, "{fastest}");
+    let black = write_mask(room.scratch.path(), "black", (255, 0), SCALE);
+    let output = trundle(&[
+        "plan",
+        text(&room.map),
+        "--from=1,1,0",
+        "--goal=5,1,0",
+        "--speed-mask",
+        text(&black),
+        "--out",
+        text(&room.out()),
+    ]);
+    assert!(output.status.success());
+    let complaint = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(
+        complaint.contains("700 of 9600 cells") && complaint.contains("they set no limit"),
+        "{complaint}"
+    );
+}
+
+/// Grey is dear: the way leads around it where that is no great detour.
+#[test]
+fn grey_of_a_keep_out_mask_is_dear() {
+    let room = Room::new();
+    let grey = write_mask(room.scratch.path(), "grey", (255, 30), SCALE);
+    let length = |more: &[&str]| {
+        room.plan(&[&["--from=2.9,3.5,0", "--goal=4.6,3.5,0"], more].concat()).unwrap();
+        room.summary()["length_m"].as_f64().unwrap()
+    };
+    let straight = length(&[]);
+    let around = length(&["--keepout", text(&grey)]);
+    assert!(straight < 1.75 && around > straight + 0.2, "{straight} {around}");
+}
+
+#[test]
+fn a_turned_map_is_planned_on() {
+    let room = Room::new();
+    let turned = fs::read_to_string(&room.map).unwrap().replace("[0.0, 0.0, 0.0]", "[0.0, 0.0, 0.6]");
+    let map = room.scratch.path().join("turned.yaml");
+    fs::write(&map, turned).unwrap();
+    let at = |x: f64, y: f64, deg: f64| {
+        let (s, c) = 0.6_f64.sin_cos();
+        format!("{},{},{}", c * x - s * y, s * x + c * y, deg + 0.6_f64.to_degrees())
+    };
+    let (from, goal) = (format!("--from={}", at(1.0, 1.0, 0.0)), format!("--goal={}", at(5.0, 1.0, -90.0)));
+    let out = room.out();
+    let output = trundle(&["plan", text(&map), &from, &goal, "--out", text(&out)]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let length = room.summary()["length_m"].as_f64().unwrap();
+    assert!(length > 5.0 && length < 9.0, "{length}");
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! Masks of Nav2's costmap filters: a map_server picture whose greys forbid, or slow down.
 
 use super::pgm::Pgm;
+use super::turned::straightened;
 use super::{picture_of, yaml::MapYaml};
 use crate::IoError;
 use crate::files::read_text;
@@ -53,36 +54,63 @@ impl FilterInfo {
     }
 }
 
-/// A keep-out mask from its YAML file and the PGM picture that it names: occupied where the robot must not be.
+/// A keep-out mask of a file.
+#[derive(Debug, Clone, PartialEq)]
+pub struct KeepOutFile {
+    /// Occupied where the robot must not be, else free.
+    pub forbidden: OccupancyGrid,
+    /// How dear each of its cells is, 0 to 100; 0 where it is forbidden or unknown.
+    pub dear: Vec<u8>,
+}
+
+/// A speed mask of a file.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SpeedFile {
+    /// Where its cells lie.
+    pub geometry: GridGeometry,
+    /// Of each cell, row by row from the lowest y, the highest speed, m/s; infinite where it sets none.
+    pub limits: Vec<f32>,
+    /// How many cells have a value above 0 and set no limit all the same: what comes out is not above 0, or above 100 %.
+    pub out_of_range: usize,
+}
+
+/// A keep-out mask from its YAML file and the PGM picture that it names: where the robot must not be, and where it should not.
 ///
 /// As Nav2's keep-out filter has it: a value of 100 forbids (in mode `trinary` and `scale` what is darker than
-/// `occupied_thresh`, in mode `raw` a pixel of 100); everything else, unknown too, is free.
+/// `occupied_thresh`, in mode `raw` a pixel of 100), values of 1 to 99 (modes `scale` and `raw`) make a place dear; what is unknown
+/// is free.
 ///
 /// # Errors
 /// As [`read_map`](crate::read_map).
-pub fn read_keep_out_mask(yaml_path: &Path) -> Result<OccupancyGrid, IoError> {
+pub fn read_keep_out_mask(yaml_path: &Path) -> Result<KeepOutFile, IoError> {
     let (geometry, values) = values(yaml_path)?;
-    let cell = |value: Option<u8>| if value == Some(LETHAL) { Cell::Occupied } else { Cell::Free };
-    OccupancyGrid::new(geometry, values.into_iter().map(cell).collect()).map_err(IoError::field(yaml_path))
+    let cell = |value: &Option<u8>| if *value == Some(LETHAL) { Cell::Occupied } else { Cell::Free };
+    let dear = values.iter().map(|value| value.filter(|value| *value < LETHAL).unwrap_or(0)).collect();
+    let forbidden = OccupancyGrid::new(geometry, values.iter().map(cell).collect());
+    Ok(KeepOutFile { forbidden: forbidden.map_err(IoError::field(yaml_path))?, dear })
 }
 
-/// A speed mask from its YAML file and the PGM picture that it names: where its cells lie, and of each, row by row from the
-/// lowest y, the highest speed, m/s; infinite where it sets none.
+/// A speed mask from its YAML file and the PGM picture that it names.
 ///
 /// As Nav2's speed filter has it: values are 0 to 100, limit = base + multiplier * value, value 0 and unknown set none. `type`
 /// (1: per cent of `full_speed`, m/s; 2: m/s), `base` and `multiplier` are read from the same YAML; without them 1, 100
-/// and -1: white is full speed, the darker the slower. Limits that are not above 0, or above 100 %, set none, as in Nav2.
+/// and -1: white is full speed, the darker the slower. Limits that are not above 0, or above 100 %, set none, as in Nav2: so
+/// black (100) sets none.
 ///
 /// # Errors
 /// As [`read_map`](crate::read_map); when `type` is neither 1 nor 2, `full_speed` is not above 0, or a number is not finite.
-pub fn read_speed_mask(yaml_path: &Path, full_speed: f64) -> Result<(GridGeometry, Vec<f32>), IoError> {
+pub fn read_speed_mask(yaml_path: &Path, full_speed: f64) -> Result<SpeedFile, IoError> {
     trundle_core::require_positive("full speed", full_speed, "m/s").map_err(IoError::field(yaml_path))?;
     let text = read_text(yaml_path)?;
     let (geometry, values) = values(yaml_path)?;
     let info: FilterInfo = serde_saphyr::from_str(&text)
         .map_err(|error| IoError::malformed(yaml_path, error.without_snippet().to_string()))?;
     let info = info.checked().map_err(IoError::field(yaml_path))?;
-    Ok((geometry, values.into_iter().map(|value| info.limit(value, full_speed)).collect()))
+    let limits: Vec<f32> = values.iter().map(|value| info.limit(*value, full_speed)).collect();
+    let is_out =
+        |value: &Option<u8>, limit: &f32| value.is_some_and(|value| value > 0) && limit.is_infinite();
+    let out_of_range = values.iter().zip(&limits).filter(|(value, limit)| is_out(value, limit)).count();
+    Ok(SpeedFile { geometry, limits, out_of_range })
 }
 
 /// The picture's values, 0 to 100, row by row from the lowest y; `None`: unknown.
@@ -92,7 +120,10 @@ fn values(yaml_path: &Path) -> Result<(GridGeometry, Vec<Option<u8>>), IoError> 
     let geometry = GridGeometry::new(yaml.resolution, yaml.origin, pgm.width, pgm.height)
         .map_err(IoError::field(yaml_path))?;
     let rows = pgm.values.chunks_exact(pgm.width).rev();
-    Ok((geometry, rows.flatten().map(|&value| yaml.value(value, pgm.maxval)).collect()))
+    let values = rows.flatten().map(|&value| yaml.value(value, pgm.maxval)).collect();
+    // Of a turned picture, what a cell touches that is darkest.
+    let rank = |value: Option<u8>| value.map_or(u8::MAX, |value| LETHAL - value.min(LETHAL));
+    straightened(geometry, values, yaml.yaw, None, rank).map_err(IoError::field(yaml_path))
 }
 
 #[cfg(test)]
@@ -113,24 +144,29 @@ mod tests {
     const TRINARY: &str = "occupied_thresh: 0.65\nfree_thresh: 0.196\n";
 
     #[test]
-    fn what_is_black_is_kept_out_and_nothing_else() {
+    fn what_is_black_is_kept_out_and_what_is_grey_is_dear() {
         let scratch = tempfile::tempdir().unwrap();
         let mask = read_keep_out_mask(&write(scratch.path(), &[0, 80, 128, 205, 254], TRINARY)).unwrap();
         use Cell::{Free, Occupied};
-        assert_eq!(mask.cells(), [Occupied, Occupied, Free, Free, Free]);
-        assert_eq!(mask.geometry().origin, trundle_core::Vector2::new(1.0, 2.0));
+        assert_eq!(mask.forbidden.cells(), [Occupied, Occupied, Free, Free, Free]);
+        assert_eq!(mask.dear, [0; 5]);
+        assert_eq!(mask.forbidden.geometry().origin, trundle_core::Vector2::new(1.0, 2.0));
         let graded = read_keep_out_mask(&write(scratch.path(), &[0, 1, 128, 255], SCALE)).unwrap();
-        assert_eq!(graded.cells(), [Occupied, Occupied, Free, Free]);
+        assert_eq!(graded.forbidden.cells(), [Occupied, Occupied, Free, Free]);
+        assert_eq!(graded.dear, [0, 0, 50, 0]);
         let raw =
             read_keep_out_mask(&write(scratch.path(), &[0, 99, 100, 101], &format!("mode: raw\n{TRINARY}")));
-        assert_eq!(raw.unwrap().cells(), [Free, Free, Occupied, Free]);
+        let raw = raw.unwrap();
+        assert_eq!(raw.forbidden.cells(), [Free, Free, Occupied, Free]);
+        assert_eq!(raw.dear, [0, 99, 0, 0]);
     }
 
     #[test]
     fn the_darker_the_slower() {
         let scratch = tempfile::tempdir().unwrap();
-        let limits =
-            |greys: &[u8], more: &str| read_speed_mask(&write(scratch.path(), greys, more), 0.7).map(|m| m.1);
+        let limits = |greys: &[u8], more: &str| {
+            read_speed_mask(&write(scratch.path(), greys, more), 0.7).map(|m| m.limits)
+        };
         let none = f32::INFINITY;
         assert_eq!(limits(&[255, 204, 127, 0], SCALE).unwrap(), [none, 0.56, 0.35, none]);
         let absolute = format!("{SCALE}type: 2\nbase: 0.1\nmultiplier: 0.01\n");
@@ -138,7 +174,8 @@ mod tests {
         let error = limits(&[0], &format!("{SCALE}type: 3\n")).unwrap_err().to_string();
         assert!(error.ends_with("type is 3, expected 1 (per cent) or 2 (m/s)"), "{error}");
         assert!(limits(&[0], &format!("{SCALE}base: .nan\n")).is_err());
-        let (geometry, _) = read_speed_mask(&write(scratch.path(), &[0, 0], SCALE), 0.7).unwrap();
-        assert_eq!((geometry.width, geometry.height, geometry.resolution), (2, 1, 0.1));
+        let black = read_speed_mask(&write(scratch.path(), &[0, 0, 255], SCALE), 0.7).unwrap();
+        assert_eq!((black.geometry.width, black.geometry.height, black.geometry.resolution), (3, 1, 0.1));
+        assert_eq!((black.limits, black.out_of_range), (vec![none; 3], 2));
     }
 }

@@ -12,6 +12,8 @@ pub(super) struct MapYaml {
     pub resolution: f64,
     /// Lower-left corner of the picture, map frame, m.
     pub origin: Vector2,
+    /// How far the picture is turned about that corner, counter-clockwise, rad.
+    pub yaw: f64,
     negate: bool,
     occupied: f64,
     free: f64,
@@ -64,9 +66,7 @@ impl MapYaml {
             let found = format!("{} numbers", file.origin.len());
             return Err(Invalid::new("origin", found, "", "[x, y, yaw] (m, m, rad)"));
         };
-        if yaw != 0.0 {
-            return Err(Invalid::new("origin yaw", yaw, "rad", "0: turned maps are not read"));
-        }
+        let yaw = require_in("origin yaw", yaw, "rad", -7.0, 7.0)?;
         let occupied = require_in("occupied_thresh", file.occupied_thresh, "", 0.0, 1.0)?;
         let free = require_in("free_thresh", file.free_thresh, "", 0.0, 1.0)?;
         if free >= occupied {
@@ -81,6 +81,7 @@ impl MapYaml {
             image: file.image,
             resolution: coarse_enough(file.resolution)?,
             origin: Vector2::new(require_finite("origin x", x, "m")?, require_finite("origin y", y, "m")?),
+            yaw,
             negate,
             occupied,
             free,
@@ -205,7 +206,7 @@ mod tests {
             ("0.050000", ".nan", "resolution is NaN m, expected a finite number above 0"),
             ("negate: 0", "negate: 2", "negate is 2, expected 0 or 1"),
             ("[-10.0, 2, 0.000000]", "[1, 2]", "origin is 2 numbers, expected [x, y, yaw] (m, m, rad)"),
-            ("0.000000]", "0.5]", "origin yaw is 0.5 rad, expected 0: turned maps are not read"),
+            ("0.000000]", "90]", "origin yaw is 90 rad, expected -7 to 7"),
             ("0.65", "1.5", "occupied_thresh is 1.5, expected 0 to 1"),
             ("0.65", "0.1", "free_thresh is 0.196, expected less than occupied_thresh (0.1)"),
         ] {

@@ -33,6 +33,7 @@ pub(super) fn json_schema(name: &str) -> String {
             ("ranges_m", r#"{"type":"array","items":{"type":["number","null"]}}"#),
             ("hits", r#"{"type":"array","items":{"type":"boolean"}}"#),
         ]),
+        "trundle.Mark" => fields(&[("mark", r#"{"oneOf":[{"type":"string"},{"type":"object"}]}"#)]),
         "trundle.Twist" => fields(&[("v", NUMBER), ("omega", NUMBER)]),
         "trundle.Goal" => fields(&[("x", NUMBER), ("y", NUMBER), ("theta", NUMBER)]),
         _ => fields(&[]),

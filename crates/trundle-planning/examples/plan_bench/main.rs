@@ -3,7 +3,8 @@
 //!
 //! Each map has the questions that come with it and random ones between connected places. Each is asked 20 times
 //! with the distance field up to date, and the best CPU time of the thread counts: it says something on a busy machine too.
-//! `--only-plans` leaves out the rest. Every trajectory is judged by the tests' independent checker.
+//! `--only-plans`, `--only-updates` and `--only-printed` leave out
+//! the rest. Every trajectory is judged by the tests' independent checker.
 
 #![expect(
     clippy::print_stdout,
@@ -12,12 +13,14 @@
     reason = "a program for the terminal"
 )]
 
+mod barn;
 #[path = "../../tests/it/nav_data.rs"]
 mod nav_data;
 mod shortest;
 #[path = "../../tests/it/support.rs"]
 #[expect(dead_code, reason = "shared with the tests")]
 mod support;
+mod updates;
 
 use std::fmt::Write as _;
 use std::sync::OnceLock;
@@ -36,8 +39,6 @@ const ROUNDS: usize = 20;
 const MARGIN: f64 = 0.05;
 
 struct Row {
-    start: Pose2,
-    goal: Pose2,
     ms: f64,
     length: f64,
     /// Of the way-points.
@@ -52,9 +53,15 @@ struct Row {
 
 fn main() {
     let Some(data) = nav_data::data() else { return };
+    if std::env::args().any(|word| word == "--only-updates") {
+        return field_updates(&data);
+    }
+    if std::env::args().any(|word| word == "--only-printed") {
+        return printed(&data);
+    }
     let csv = argument("--csv");
     let mut shares = Vec::new();
-    let mut lines = String::from("map,sx,sy,sa,gx,gy,ga,ms,length_m,shortest_m\n");
+    let mut lines = String::from("map,sx,sy,sa,gx,gy,ga,ms,length_m,shortest_m,roomy_m\n");
     println!(
         "disc of {RADIUS} m; CPU ms with the field up to date, each question's best of {ROUNDS}; length over Theta*'s of the same clearance, of the footprint"
     );
@@ -74,16 +81,17 @@ fn main() {
             None => nav_data::mrpb_pairs(&data, name),
         };
         pairs.extend(random_pairs(&grid, QUESTIONS - pairs.len()));
-        let rows = measure(&grid, &pairs);
+        let answers = measure(&grid, &pairs);
+        let rows: Vec<&Row> = answers.iter().flatten().collect();
         print_row(name, &grid, pairs.len(), &rows);
         shares.push(format!("{name}: {}", shares_of(&rows)));
-        for row in rows {
-            let (a, b) = (row.start, row.goal);
-            let _ = writeln!(
-                lines,
-                "{name},{},{},{},{},{},{},{},{},{}",
-                a.x, a.y, a.theta, b.x, b.y, b.theta, row.ms, row.length, row.shortest
-            );
+        for ((a, b), row) in pairs.iter().zip(&answers) {
+            let numbers = match row {
+                Ok(row) => format!("{},{},{},{}", row.ms, row.length, row.shortest, row.roomy),
+                Err(ms) => format!("{ms},,,"),
+            };
+            let _ =
+                writeln!(lines, "{name},{},{},{},{},{},{},{numbers}", a.x, a.y, a.theta, b.x, b.y, b.theta);
         }
     }
     if let Some(path) = csv {
@@ -94,13 +102,13 @@ fn main() {
         return;
     }
     println!();
-    updates("depot", &nav_data::read_map(&data.join("nav2/depot.yaml")));
-    updates("office02", &nav_data::read_map(&data.join("mrpb/maps/office02_partially_unknown/map.yaml")));
+    field_updates(&data);
     large();
     printed(&data);
 }
 
-fn measure(grid: &OccupancyGrid, pairs: &[(Pose2, Pose2)]) -> Vec<Row> {
+/// A row a question, or what it took to find no way, ms.
+fn measure(grid: &OccupancyGrid, pairs: &[(Pose2, Pose2)]) -> Vec<Result<Row, f64>> {
     let field = DistanceField::from_grid(grid, UnknownIs::Free);
     let mut planner = support::planner(support::at_home(), RADIUS);
     planner.set_clock(Some(seconds));
@@ -117,25 +125,15 @@ fn measure(grid: &OccupancyGrid, pairs: &[(Pose2, Pose2)]) -> Vec<Row> {
         }
         let Some(Plan::Found(result)) = last else {
             println!("{start:?} {goal:?}: {}", last.unwrap());
-            return None;
+            return Err(ms);
         };
         support::judge(grid, &result, *start, *goal, RADIUS);
         let by = |room: f64| shortest::shortest(&field, RADIUS + room, start.position(), goal.position());
         let (shortest, roomy) = (by(0.0), by(result.min_clearance.clamp(0.0, MARGIN)));
         let (curves, way) = (result.curves().count(), result.way_points.length());
-        Some(Row {
-            start: *start,
-            goal: *goal,
-            ms,
-            length: result.length,
-            way,
-            shortest,
-            roomy,
-            curves,
-            stages,
-        })
+        Ok(Row { ms, length: result.length, way, shortest, roomy, curves, stages })
     };
-    pairs.iter().filter_map(ask).collect()
+    pairs.iter().map(ask).collect()
 }
 
 /// The wall clock, for the stages' shares.
@@ -145,7 +143,7 @@ fn seconds() -> f64 {
 }
 
 /// What each stage takes of all the time.
-fn shares_of(rows: &[Row]) -> String {
+fn shares_of(rows: &[&Row]) -> String {
     let sum = |of: fn(&StageTimes) -> f64| rows.iter().map(|row| of(&row.stages)).sum::<f64>();
     let stages = [sum(|s| s.field), sum(|s| s.way_points), sum(|s| s.curve), sum(|s| s.timing)];
     let total: f64 = stages.iter().sum();
@@ -159,9 +157,9 @@ fn shares_of(rows: &[Row]) -> String {
     )
 }
 
-fn print_row(name: &str, grid: &OccupancyGrid, asked: usize, rows: &[Row]) {
+fn print_row(name: &str, grid: &OccupancyGrid, asked: usize, rows: &[&Row]) {
     let sorted = |of: fn(&Row) -> f64| {
-        let mut values: Vec<f64> = rows.iter().map(of).collect();
+        let mut values: Vec<f64> = rows.iter().map(|row| of(row)).collect();
         values.sort_by(f64::total_cmp);
         values
     };
@@ -235,38 +233,23 @@ fn flood(geometry: &GridGeometry, from: CellIndex, open: impl Fn(CellIndex) -> b
     reached
 }
 
-/// What a change of 6 x 6 m costs: clutter appears somewhere, and goes.
-fn updates(name: &str, grid: &OccupancyGrid) {
-    let begin = Instant::now();
-    let mut field = DistanceField::from_grid(grid, UnknownIs::Free);
-    let whole = begin.elapsed().as_secs_f64() * 1e3;
-    let cells = (6.0 / grid.geometry().resolution) as usize;
-    let mut times = Vec::new();
-    for k in 0..40 {
-        let GridGeometry { width, height, .. } = *grid.geometry();
-        let (col, row) = (k * 37 % (width - cells), k * 53 % (height - cells));
-        let mut changed = grid.clone();
-        for i in 0..cells * cells {
-            let cell = CellIndex { col: col + i % cells, row: row + i / cells };
-            if (i * 7 + k) % 97 == 0 || i == 0 || i + 1 == cells * cells {
-                let now = if grid.get(cell) == Cell::Occupied { Cell::Free } else { Cell::Occupied };
-                changed.set(cell, now);
-            }
-        }
-        for version in [&changed, grid] {
-            let begin = Instant::now();
-            field.update(version);
-            times.push(begin.elapsed().as_secs_f64() * 1e3);
-        }
+/// What a change costs the distance field: on the maps, and in large empty halls.
+fn field_updates(data: &std::path::Path) {
+    println!("| map | cells | new field, ms | 6 x 6 m changed | ms CPU, median | worst of 80 |");
+    println!("|---|---|---|---|---|---|");
+    for (name, file) in all_maps().filter(|(name, _)| *name != "empty_world") {
+        updates::print(name, &nav_data::read_map(&data.join(file)));
     }
-    assert!(field == DistanceField::from_grid(grid, UnknownIs::Free), "exact");
-    times.sort_by(f64::total_cmp);
-    println!(
-        "field of {name}, {} cells: new {whole:.2} ms; 6 x 6 m changed: {:.2} ms median, {:.2} worst of 80",
-        field.geometry().len(),
-        times[40],
-        times[79]
-    );
+    updates::print("empty hall", &updates::hall(1000, 0.05));
+    updates::print("empty hall", &updates::hall(4000, 0.05));
+    updates::print("empty hall of 2.5 cm cells", &updates::hall(1000, 0.025));
+}
+
+/// The maps of ../shared/data/nav.
+fn all_maps() -> impl Iterator<Item = (&'static str, String)> {
+    let nav2 = ["depot", "tb3_sandbox"].map(|map| (map, format!("nav2/{map}.yaml")));
+    let mrpb = ["office01add", "room02", "office02_partially_unknown", "track", "empty_world"];
+    nav2.into_iter().chain(mrpb.map(|map| (map, format!("mrpb/maps/{map}/map.yaml"))))
 }
 
 /// A warehouse of 200 x 200 m: boxes of a metre, shifted from row to row; across it from nothing.
@@ -289,21 +272,29 @@ fn large() {
     println!("\n{SIZE} x {SIZE} cells, field and plan: {ms:.0} ms CPU, {peak} at most resident; {plan}");
 }
 
-/// How often the printed potential is trapped, over all questions of all maps.
+/// How often the printed potential is trapped, over questions of all maps; of BARN's worlds the one question that each has.
 fn printed(data: &std::path::Path) {
-    println!("\n| map | questions | printed potential trapped |");
-    println!("|---|---|---|");
-    let nav2 = ["depot", "tb3_sandbox"].map(|map| (map, format!("nav2/{map}.yaml")));
-    let mrpb = ["office01add", "room02", "office02_partially_unknown", "track", "empty_world"];
-    for (map, file) in nav2.into_iter().chain(mrpb.map(|map| (map, format!("mrpb/maps/{map}/map.yaml")))) {
-        let grid = nav_data::read_map(&data.join(file));
-        let potential = PotentialConfig { kind: PotentialKind::Printed, ..Default::default() };
+    println!("\n| map | questions | found | printed potential trapped |");
+    println!("|---|---|---|---|");
+    let potential = PotentialConfig { kind: PotentialKind::Printed, ..Default::default() };
+    let asked = |grid: &OccupancyGrid, pairs: &[(Pose2, Pose2)]| {
         let mut planner = support::planner(PlannerConfig { potential, ..support::at_home() }, RADIUS);
+        let mut found = (0, 0);
+        for (start, goal) in pairs {
+            if let Plan::Found(result) = planner.plan(grid, *start, Twist2::ZERO, *goal) {
+                found = (found.0 + 1, found.1 + usize::from(result.fell_back));
+            }
+        }
+        found
+    };
+    for (map, file) in all_maps() {
+        let grid = nav_data::read_map(&data.join(file));
         let pairs = random_pairs(&grid, 100);
-        let trapped = pairs.iter().filter(|(start, goal)| {
-            let plan = planner.plan(&grid, *start, Twist2::ZERO, *goal);
-            matches!(plan, Plan::Found(result) if result.fell_back)
-        });
-        println!("| {map} | {} | {} |", pairs.len(), trapped.count());
+        let (found, trapped) = asked(&grid, &pairs);
+        println!("| {map} | {} | {found} | {trapped} |", pairs.len());
     }
+    let worlds = barn::worlds(data);
+    let answers = worlds.iter().map(|grid| asked(grid, &[barn::question()]));
+    let (found, trapped) = answers.fold((0, 0), |sum, answer| (sum.0 + answer.0, sum.1 + answer.1));
+    println!("| BARN's worlds | {} | {found} | {trapped} |", worlds.len());
 }

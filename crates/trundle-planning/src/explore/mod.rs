@@ -68,7 +68,7 @@ impl Explorer {
     pub fn next(&mut self, grid: &OccupancyGrid, pose: Pose2) -> Exploration {
         let all = frontiers(grid, self.config.least_frontier);
         let total = all.len();
-        let field = DistanceField::from_grid(grid, UnknownIs::Free);
+        let field = DistanceField::up_to(2.0 * self.radius, grid, UnknownIs::Free);
         let reach = Reach::from(grid, &field, pose.position(), self.radius);
         let views = all.into_iter().filter(|frontier| self.is_worth_it(frontier));
         let views: Vec<_> = views.filter_map(|frontier| self.view(grid, &reach, frontier)).collect();

@@ -7,11 +7,13 @@ use trundle_core::{GridGeometry, Vector2};
 const ROUNDING: f64 = 1e-6;
 
 impl DistanceField {
-    /// The exact distance from a point to the nearest obstacle's square, or `cap` if that is less, m. NaN: 0.
+    /// The exact distance from a point to the nearest obstacle's square, or `cap` if that is less, m; never more than
+    /// [`DistanceField::reach`]. NaN: 0.
     pub fn clearance(&self, point: Vector2, cap: f64) -> f64 {
         if !(point.x.is_finite() && point.y.is_finite()) {
             return 0.0;
         }
+        let cap = cap.min(self.reach);
         let mut best = cap;
         if let Some(cell) = self.geometry.cell_at(point) {
             let off = (point - self.geometry.center(cell)).norm();
@@ -19,7 +21,9 @@ impl DistanceField {
             if centre - off >= cap {
                 return cap;
             }
-            best = best.min(centre + off + ROUNDING);
+            if centre < self.reach {
+                best = best.min(centre + off + ROUNDING);
+            }
         }
         self.nearest_square(point, best).min(self.border_gap(point))
     }

@@ -1,12 +1,13 @@
 //! How far it is to the nearest obstacle, exactly, everywhere.
 //!
 //! Problem: every step of planning asks for the room at a point, and for the direction in which it grows. Idea: the
-//! distance from each cell's centre to the nearest occupied square is computed exactly by \[Felzenszwalb12\]
-//! (Distance transforms of sampled functions, Theory of Computing 8, 2012); between centres it is interpolated
-//! bilinearly; where a promise hangs on it, the squares themselves are measured ([`DistanceField::clearance`]).
-//! Cost: O(cells) once a map, O(cells near the change) after a change, O(1) a look.
+//! distance from each cell's centre to the nearest occupied square is computed exactly, by columns and then by rows as in
+//! \[Felzenszwalb12\]; between centres it is interpolated bilinearly; where a promise hangs on it, the squares themselves are
+//! measured ([`DistanceField::clearance`]). A field may tell distances apart up to a reach only: then a change reaches no further.
+//! Cost: O(cells x distance told apart) once a map, the same for the cells near a change, O(1) a look.
 
 mod blocks;
+mod erosion;
 mod exact;
 mod transform;
 mod window;
@@ -43,10 +44,24 @@ impl UnknownIs {
     }
 }
 
-/// From the first to the last column where `changed`.
-fn outermost(mut cols: Range<usize>, changed: impl Fn(usize) -> bool) -> Option<Range<usize>> {
-    let first = cols.clone().find(|col| changed(*col))?;
-    let last = cols.rfind(|col| changed(*col))?;
+/// From the first to the last of a row's cells that are obstacles where there were none, or the other way round.
+fn differing(was: &[bool], cells: &[Cell], unknown: UnknownIs) -> Option<Range<usize>> {
+    /// So many cells are compared at once, without a branch.
+    const CHUNK: usize = 256;
+    let unknown_blocks = unknown == UnknownIs::Obstacle;
+    let differ = |(was, cell): (&bool, &Cell)| {
+        ((*cell == Cell::Occupied) | ((*cell == Cell::Unknown) & unknown_blocks)) ^ *was
+    };
+    // In bytes, so that many are compared by one instruction.
+    let any = |(was, cells): (&[bool], &[Cell])| {
+        was.iter().zip(cells).fold(0_u8, |any, pair| any | u8::from(differ(pair))) != 0
+    };
+    let chunks = || was.chunks(CHUNK).zip(cells.chunks(CHUNK));
+    let first = chunks().position(any)? * CHUNK;
+    let last = chunks().rposition(any)? * CHUNK;
+    let first = first + was[first..].iter().zip(&cells[first..]).position(differ)?;
+    let end = (last + CHUNK).min(was.len());
+    let last = last + was[last..end].iter().zip(&cells[last..end]).rposition(differ)?;
     Some(first..last + 1)
 }
 
@@ -57,25 +72,43 @@ pub struct DistanceField {
     /// Cells a metre.
     per_metre: f64,
     unknown: UnknownIs,
-    /// From cell centres to squares; 0 marks an obstacle.
+    is_obstacle: Vec<bool>,
+    /// From cell centres to squares; 0 in obstacles.
     distance: Vec<f32>,
-    /// Rows to the nearest obstacle of the same column.
+    /// Rows to the nearest obstacle of the same column, at most `none`.
     gap: Vec<u16>,
+    none: u16,
+    /// The longest distance told apart, m.
+    reach: f64,
     blocks: Blocks,
 }
 
 impl DistanceField {
     /// The field of a grid. Outside the grid counts as unknown.
     pub fn from_grid(grid: &OccupancyGrid, unknown: UnknownIs) -> Self {
-        Self::over(*grid.geometry(), grid, unknown)
+        Self::over(*grid.geometry(), grid, unknown, FAR)
     }
 
-    /// The field of `grid` over another `geometry` of the same lattice (same resolution, origins whole cells apart);
-    /// cells that the grid does not reach are unknown.
-    pub(crate) fn over(geometry: GridGeometry, grid: &OccupancyGrid, unknown: UnknownIs) -> Self {
+    /// [`DistanceField::from_grid`] that tells distances apart up to `reach` m only, a few cells at least: what is further away
+    /// than that has this distance. It is made, and brought up to date, the faster for it.
+    pub fn up_to(reach: f64, grid: &OccupancyGrid, unknown: UnknownIs) -> Self {
+        Self::over(*grid.geometry(), grid, unknown, reach)
+    }
+
+    /// The field of `grid` over another `geometry` of the same lattice (same resolution, origins whole cells apart), up to
+    /// `reach` m; cells that the grid does not reach are unknown.
+    pub(crate) fn over(geometry: GridGeometry, grid: &OccupancyGrid, unknown: UnknownIs, reach: f64) -> Self {
+        /// Fewer cells a blocks' middle, and a step of the search, would not see.
+        const LEAST: f64 = 4.0;
         let (distance, gap) = (vec![0.0; geometry.len()], vec![0; geometry.len()]);
         let per_metre = geometry.resolution.recip();
-        let mut field = Self { geometry, per_metre, unknown, distance, gap, blocks: Blocks::default() };
+        let reach = reach.max(LEAST * geometry.resolution).min(FAR);
+        // Saturates where columns are longer than anything that is told apart.
+        let none = ((reach * per_metre).ceil() as u16).saturating_add(2);
+        let blocks = Blocks::default();
+        let is_obstacle = vec![false; geometry.len()];
+        let mut field =
+            Self { geometry, per_metre, unknown, is_obstacle, distance, gap, none, reach, blocks };
         field.blocks.resize(&geometry);
         field.refresh(grid, &Window::whole(&geometry));
         field
@@ -89,39 +122,50 @@ impl DistanceField {
         dirty.cols.len() * dirty.rows.len()
     }
 
+    /// The longest distance that is told apart, m.
+    pub fn reach(&self) -> f64 {
+        self.reach
+    }
+
     fn refresh(&mut self, grid: &OccupancyGrid, dirty: &Window) {
-        let geometry = self.geometry;
-        let unknown = self.unknown;
-        let outside = unknown == UnknownIs::Obstacle;
-        let mut transform =
-            Transform { geometry: &geometry, outside, gap: &mut self.gap, distance: &mut self.distance };
-        let touched = if geometry == *grid.geometry() {
-            let cells = grid.cells();
-            transform.update(dirty, |i| unknown.blocks(cells[i]))
-        } else {
-            let at = |i| unknown.blocks(grid.at(geometry.center(geometry.cell(i))));
-            transform.update(dirty, at)
+        let (geometry, unknown) = (self.geometry, self.unknown);
+        let same = geometry == *grid.geometry();
+        for row in dirty.rows.clone() {
+            let now = &mut self.is_obstacle[row * geometry.width..][dirty.cols.clone()];
+            if same {
+                let cells = &grid.cells()[row * geometry.width..][dirty.cols.clone()];
+                now.iter_mut().zip(cells).for_each(|(is, cell)| *is = unknown.blocks(*cell));
+            } else {
+                let at = |col| unknown.blocks(grid.at(geometry.center(CellIndex { col, row })));
+                now.iter_mut().zip(dirty.cols.clone()).for_each(|(is, col)| *is = at(col));
+            }
+        }
+        let mut transform = Transform {
+            geometry: &geometry,
+            is_obstacle: &self.is_obstacle,
+            outside: unknown == UnknownIs::Obstacle,
+            gap: &mut self.gap,
+            distance: &mut self.distance,
+            none: self.none,
+            reach: self.reach,
         };
+        let touched = transform.update(dirty);
         self.blocks.update(&geometry, &self.distance, &touched);
     }
 
     /// The box around all cells that became obstacles, or ceased to be.
     fn changed(&self, grid: &OccupancyGrid) -> Option<Window> {
         let (geometry, unknown) = (self.geometry, self.unknown);
+        let width = geometry.width;
         let same = geometry == *grid.geometry();
-        Window::around(&geometry, |row, cols| {
-            let at = row * geometry.width;
-            let gaps = &self.gap[at..at + geometry.width];
+        Window::around(&geometry, |row| {
+            let was = &self.is_obstacle[row * width..][..width];
             if same {
-                let cells = &grid.cells()[at..at + geometry.width];
-                let differs = |gap: u16, cell: Cell| unknown.blocks(cell) != (gap == 0);
-                if !gaps.iter().zip(cells).fold(false, |any, (gap, cell)| any | differs(*gap, *cell)) {
-                    return None;
-                }
-                return outermost(cols, |col| differs(gaps[col], cells[col]));
+                return differing(was, &grid.cells()[row * width..][..width], unknown);
             }
-            let now = |col| unknown.blocks(grid.at(geometry.center(CellIndex { col, row })));
-            outermost(cols, |col| now(col) != (gaps[col] == 0))
+            let now = |col: &usize| unknown.blocks(grid.at(geometry.center(CellIndex { col: *col, row })));
+            let differs = |col: &usize| now(col) != was[*col];
+            Some((0..width).find(differs)?..(0..width).rfind(differs)? + 1)
         })
     }
 
@@ -287,11 +331,11 @@ mod tests {
 
         #[test]
         fn an_update_is_what_a_new_field_would_be(
-            grid in any_grid(), obstacle in any::<bool>(),
+            grid in any_grid(), obstacle in any::<bool>(), reach in prop::sample::select(vec![0.0, 0.45, 0.8, FAR]),
             changes in prop::collection::vec((0usize..17, 0usize..17, 0u8..3), 1..9),
         ) {
             let unknown = if obstacle { UnknownIs::Obstacle } else { UnknownIs::Free };
-            let mut field = DistanceField::from_grid(&grid, unknown);
+            let mut field = DistanceField::up_to(reach, &grid, unknown);
             let mut grid = grid;
             for part in changes.chunks(3) {
                 for (col, row, value) in part {
@@ -299,7 +343,37 @@ mod tests {
                     grid.set(cell, [Cell::Occupied, Cell::Unknown, Cell::Free][usize::from(*value)]);
                 }
                 field.update(&grid);
-                prop_assert_eq!(&field, &DistanceField::from_grid(&grid, unknown));
+                prop_assert_eq!(&field, &DistanceField::up_to(reach, &grid, unknown));
+            }
+        }
+
+        #[test]
+        fn what_is_told_apart_is_exact(grid in any_grid(), reach in 0.4..2.0, x in -0.3..1.3, y in 0.7..2.3) {
+            let whole = DistanceField::from_grid(&grid, UnknownIs::Free);
+            let field = DistanceField::up_to(reach, &grid, UnknownIs::Free);
+            for i in 0..grid.geometry().len() {
+                let cell = grid.geometry().cell(i);
+                prop_assert_eq!(field.at_cell(cell), f64::from(whole.at_cell(cell).min(reach) as f32));
+            }
+            let point = Vector2::new(x, y);
+            let truth = brute_force(&grid, UnknownIs::Free, point).min(5.0).min(reach);
+            prop_assert!((field.clearance(point, 5.0) - truth).abs() < 1e-6);
+        }
+
+        /// Rows longer than a block.
+        #[test]
+        fn long_rows_agree_with_brute_force(
+            w in 60usize..140, h in 1usize..9, obstacle in any::<bool>(),
+            marks in prop::collection::vec((0usize..140, 0usize..9), 1..12),
+        ) {
+            let unknown = if obstacle { UnknownIs::Obstacle } else { UnknownIs::Free };
+            let geometry = GridGeometry::new(0.1, Vector2::new(-0.3, 0.7), w, h).unwrap();
+            let mut grid = OccupancyGrid::filled(geometry, Cell::Free);
+            marks.iter().for_each(|(c, r)| grid.set(CellIndex { col: c % w, row: r % h }, Cell::Occupied));
+            let field = DistanceField::from_grid(&grid, unknown);
+            for i in 0..geometry.len() {
+                let truth = brute_force(&grid, unknown, geometry.center(geometry.cell(i)));
+                prop_assert!((field.at_linear(i) - truth).abs() <= 1e-6 * truth.max(1.0));
             }
         }
 

@@ -20,15 +20,14 @@ impl Window {
         self.rows = self.rows.start.min(row)..self.rows.end.max(row + 1);
     }
 
-    /// The smallest box around all cells where `changed` says so of a row and a range of columns; `None` where there
-    /// are none. It is asked for whole rows, then for columns of the rows that changed.
+    /// The smallest box around what `changed` says of each row; `None` where nothing did.
     pub(super) fn around(
         geometry: &GridGeometry,
-        changed: impl Fn(usize, Range<usize>) -> Option<Range<usize>>,
+        changed: impl Fn(usize) -> Option<Range<usize>>,
     ) -> Option<Self> {
         let mut found: Option<Self> = None;
         for row in 0..geometry.height {
-            let Some(cols) = changed(row, 0..geometry.width) else { continue };
+            let Some(cols) = changed(row) else { continue };
             match &mut found {
                 Some(window) => window.include(&cols, row),
                 None => found = Some(Self { cols, rows: row..row + 1 }),

@@ -2,7 +2,7 @@
 
 use crate::support::{at_home, found, judge, least_room, planner};
 use trundle_core::{Cell, GridGeometry, OccupancyGrid, Pose2, Twist2, Vector2};
-use trundle_planning::{Plan, PlannerConfig, Replan, SpeedMask, WayPointGraph};
+use trundle_planning::{DearMask, Plan, PlannerConfig, Replan, SpeedMask, WayPointGraph};
 
 const RADIUS: f64 = 0.1755;
 
@@ -172,4 +172,46 @@ fn a_blocked_goal_is_approached_as_far_as_allowed() {
     let end = result.trajectory.end();
     assert!(end.distance(&goal) < 0.8 && (end.theta - 0.5).abs() < 1e-9, "{end:?}");
     assert!(least_room(&grid, &result) >= RADIUS - 2e-4);
+}
+
+#[test]
+fn what_is_dear_is_avoided_where_that_is_no_great_detour() {
+    let grid = hall();
+    let (start, goal) = (Pose2::new(1.0, 3.0, 0.0), Pose2::new(9.0, 3.0, 0.0));
+    let geometry = GridGeometry::new(0.25, Vector2::new(4.0, 1.0), 8, 10).unwrap();
+    let within = |value: u8| {
+        let mut planner = planner(at_home(), RADIUS);
+        planner.set_dear(Some(DearMask::new(geometry, vec![value; geometry.len()]).unwrap()));
+        let plan = found(planner.plan(&grid, start, Twist2::ZERO, goal));
+        judge(&grid, &plan, start, goal, RADIUS);
+        let inside = |p: Vector2| (4.1..5.9).contains(&p.x) && (1.1..3.4).contains(&p.y);
+        let points = plan.trajectory.points();
+        (points.iter().filter(|p| inside(p.pose.position())).count(), plan.length)
+    };
+    let (through, straight) = within(1);
+    let (around, longer) = within(90);
+    assert!(through > 0 && (straight - 8.0).abs() < 0.01, "{through} {straight}");
+    assert!(around == 0 && longer > 8.03 && longer < 9.5, "{around} {longer}");
+    // Where there is no way around, it is no wall.
+    let everywhere = GridGeometry::new(1.0, Vector2::zeros(), 10, 6).unwrap();
+    let mut planner = planner(at_home(), RADIUS);
+    planner.set_dear(Some(DearMask::new(everywhere, vec![99; 60]).unwrap()));
+    assert!((found(planner.plan(&grid, start, Twist2::ZERO, goal)).length - 8.0).abs() < 0.01);
+    assert!(DearMask::new(everywhere, vec![101; 60]).is_err() && DearMask::new(everywhere, vec![1]).is_err());
+}
+
+#[test]
+fn a_goal_nearby_says_why() {
+    let grid = hall();
+    let mut mask = OccupancyGrid::filled(*grid.geometry(), Cell::Free);
+    (70..100).for_each(|col| {
+        (0..60).for_each(|row| mask.set(trundle_core::CellIndex { col, row }, Cell::Occupied))
+    });
+    let mut planner = planner(PlannerConfig { goal_tolerance: 2.0, ..at_home() }, RADIUS);
+    planner.set_keep_out(Some(mask));
+    let start = Pose2::new(1.0, 3.0, 0.0);
+    let near = found(planner.plan(&grid, start, Twist2::ZERO, Pose2::new(8.0, 3.0, 0.0)));
+    assert!(matches!(near.instead_of, Some(Plan::GoalInObstacle { .. })), "{:?}", near.instead_of);
+    let there = found(planner.plan(&grid, start, Twist2::ZERO, Pose2::new(6.0, 3.0, 0.0)));
+    assert_eq!(there.instead_of, None);
 }

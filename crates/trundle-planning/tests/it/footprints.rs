@@ -161,3 +161,53 @@ fn a_long_robot_that_moves_is_planned_for_as_it_moves() {
     eprintln!("an outline under way: {continued} of {moving} plans go on from its motion");
     assert!(moving >= 8 && continued * 10 >= moving * 9, "{continued} of {moving}");
 }
+
+/// A wall above 2.9 m.
+fn below_a_wall() -> OccupancyGrid {
+    OccupancyGrid::from_ascii(0.1, &["#".repeat(30), vec![".".repeat(30); 29].join("\n")].join("\n")).unwrap()
+}
+
+#[test]
+fn an_outline_may_touch_a_wall_and_go_along_it() {
+    let grid = below_a_wall();
+    // Its left side exactly on the wall, at both ends.
+    let (start, goal) = (Pose2::new(0.8, 2.7, 0.0), Pose2::new(2.0, 2.7, 0.0));
+    let mut planner = cart_planner(at_home());
+    let result = found(planner.plan(&grid, start, Twist2::ZERO, goal));
+    judge_cart(&grid, &result, start, goal);
+    assert!(planner.still_free(&grid, &result.trajectory, 0.0).is_ok());
+    // A wall that it would drive into is seen although it touches one.
+    let mut barred = grid.clone();
+    (20..29).for_each(|row| barred.set(trundle_core::CellIndex { col: 18, row }, Cell::Occupied));
+    assert!(planner.still_free(&barred, &result.trajectory, 0.0).is_err());
+}
+
+#[test]
+fn an_outline_within_a_wall_is_planned_out_of_it_or_refused_with_the_depth() {
+    let grid = below_a_wall();
+    let goal = Pose2::new(2.0, 1.0, 0.0);
+    for depth in [0.005, 0.03, 0.055] {
+        // Its back in the wall.
+        let start = Pose2::new(0.8, 2.8 + depth, -std::f64::consts::FRAC_PI_2);
+        let mut planner = cart_planner(at_home());
+        let result = found(planner.plan(&grid, start, Twist2::ZERO, goal));
+        assert!(result.trajectory.end().distance(&goal) < 1.1e-3);
+        let left = result.trajectory.points().iter().filter(|p| p.pose.distance(&start) > depth + 0.31);
+        assert_eq!(left.filter(|p| touches(&grid, &cart(), p.pose)).count(), 0, "{depth}");
+        // Never deeper than at the start: what is so much smaller touches nothing.
+        let (long, wide) = (0.3 - depth - 5e-4, 0.2 - depth - 5e-4);
+        let slim = [(long, wide), (-long, wide), (-long, -wide), (long, -wide)]
+            .map(|(x, y)| Vector2::new(0.2 + x, y));
+        assert!(result.trajectory.points().iter().all(|p| !touches(&grid, &slim, p.pose)), "{depth}");
+        assert!(planner.still_free(&grid, &result.trajectory, 0.0).is_ok(), "{depth}");
+    }
+    // Its side in the wall, it can neither turn nor back out.
+    let wedged = Pose2::new(0.8, 2.71, 0.0);
+    let plan = cart_planner(at_home()).plan(&grid, wedged, Twist2::ZERO, goal);
+    assert!(matches!(plan, Plan::Blocked { .. }), "{plan}");
+    let start = Pose2::new(0.8, 2.8, 0.0);
+    let plan = cart_planner(at_home()).plan(&grid, start, Twist2::ZERO, goal);
+    assert!(matches!(plan, Plan::StartInObstacle { clearance } if (clearance + 0.1).abs() < 1e-3), "{plan}");
+    let plan = cart_planner(at_home()).plan(&grid, goal, Twist2::ZERO, start);
+    assert!(matches!(plan, Plan::GoalInObstacle { clearance } if (clearance + 0.1).abs() < 1e-3), "{plan}");
+}

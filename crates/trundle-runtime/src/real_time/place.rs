@@ -7,6 +7,9 @@ pub struct Place {
     pub core: Option<usize>,
     /// So much nicer to others than the thread that starts it, 0 to 39. Default 0.
     pub nice: i32,
+    /// Whether it runs before every thread that is not, whatever their niceness, where the system allows it (Linux: `SCHED_FIFO`).
+    /// For threads that compute little. Default false.
+    pub is_first: bool,
 }
 
 impl Place {
@@ -14,7 +17,8 @@ impl Place {
     pub fn take(self) -> bool {
         let pinned = self.core.is_none_or(pin);
         let ranked = self.nice == 0 || rank(self.nice);
-        pinned && ranked
+        let is_first = !self.is_first || go_first();
+        pinned && ranked && is_first
     }
 }
 
@@ -34,6 +38,24 @@ fn pin(core: usize) -> bool {
 fn rank(nicer: i32) -> bool {
     use rustix::process::{getpriority_process, setpriority_process};
     getpriority_process(None).and_then(|now| setpriority_process(None, now + nicer)).is_ok()
+}
+
+/// Of the ranks 1 to 99 of real-time threads: below those of the kernel's own.
+#[cfg(target_os = "linux")]
+const RANK: i32 = 10;
+
+#[cfg(target_os = "linux")]
+fn go_first() -> bool {
+    let rank = libc::sched_param { sched_priority: RANK };
+    // What such a thread starts is not first itself.
+    let policy = libc::SCHED_FIFO | libc::SCHED_RESET_ON_FORK;
+    // SAFETY: the call reads one valid structure and changes nothing but how the calling thread (0) is scheduled.
+    unsafe { libc::sched_setscheduler(0, policy, &rank) == 0 }
+}
+
+#[cfg(not(target_os = "linux"))]
+fn go_first() -> bool {
+    false
 }
 
 #[cfg(not(target_os = "linux"))]
@@ -66,9 +88,9 @@ mod tests {
     #[cfg(target_os = "linux")]
     #[test]
     fn a_thread_can_be_pinned_and_made_nicer() {
-        let place = Place { core: Some(0), nice: 5 };
+        let place = Place { core: Some(0), nice: 5, is_first: false };
         assert!(std::thread::spawn(move || place.take()).join().unwrap());
-        let nowhere = Place { core: Some(100_000), nice: 0 };
+        let nowhere = Place { core: Some(100_000), ..Place::default() };
         assert!(!std::thread::spawn(move || nowhere.take()).join().unwrap());
     }
 

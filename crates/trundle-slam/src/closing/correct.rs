@@ -4,6 +4,7 @@ use crate::ids::KeyframeId;
 use crate::map::LandmarkMap;
 use crate::mapping::MappingConfig;
 use crate::motion::carried;
+use crate::places::SHARED;
 use crate::search::Likeness;
 use crate::sensor::Sensor;
 use nalgebra::Matrix6;
@@ -56,7 +57,11 @@ impl Correction<'_> {
             let shared = map.covisible(*id, self.config.tied_by).into_iter().map(|(other, _)| node(other));
             pairs.extend(shared.filter(|other| *other < i).map(|other| (other, i)));
         }
-        let tie = |(from, to): (usize, usize)| self.tie(from, to, poses[from].inverse() * poses[to]);
+        let tie = |(from, to): (usize, usize)| {
+            let as_now = self.tie(from, to, poses[from].inverse() * poses[to]);
+            let information = loose(map, (ids[from], ids[to])).unwrap_or(as_now.information);
+            PoseConstraint { information, ..as_now }
+        };
         let mut ties: Vec<PoseConstraint> = pairs.into_iter().map(tie).collect();
         let candidate = node(self.found.candidate);
         let seen = poses[candidate].inverse() * self.found.visual_from_camera;
@@ -87,6 +92,14 @@ impl Correction<'_> {
             mapper.fuse_into(map, target, &self.found.landmarks);
         }
     }
+}
+
+/// What is known of the way between two neighbours in time that hardly see anything in common, where only wheels tell it:
+/// the drift that a loop shows was mostly made there.
+fn loose(map: &LandmarkMap, (from, to): (KeyframeId, KeyframeId)) -> Option<Matrix6<f64>> {
+    let rolled = map.keyframe(to).rolled.filter(|rolled| rolled.from == from)?;
+    let is_seen = map.covisible(to, SHARED).into_iter().any(|(id, _)| id == from);
+    rolled.information().filter(|_| !is_seen)
 }
 
 /// Moves each landmark with the keyframe that saw it first; `after` is where the keyframes `ids` go.

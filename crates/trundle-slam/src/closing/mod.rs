@@ -19,6 +19,7 @@ use crate::ids::KeyframeId;
 use crate::map::LandmarkMap;
 use crate::mapping::MappingConfig;
 use crate::places::Places;
+use crate::relocalisation::unrivalled;
 use crate::sensor::Sensor;
 use crate::tracker::TrackingConfig;
 use candidates::Drift;
@@ -53,16 +54,49 @@ pub struct LoopClosure {
     pub correction: Pose3,
 }
 
+/// The look for the place of one keyframe among the old ones, a piece a frame: which look like it, then one of these after
+/// the other.
+#[derive(Debug, Clone)]
+pub(crate) struct Search {
+    pub keyframe: KeyframeId,
+    /// What is still to be looked at, the likeliest last; `None` before it is known.
+    candidates: Option<Vec<KeyframeId>>,
+    found: Vec<Recognised>,
+}
+
+impl Search {
+    pub fn of(keyframe: KeyframeId) -> Self {
+        Self { keyframe, candidates: None, found: Vec::new() }
+    }
+}
+
 impl LoopCloser<'_> {
-    /// Ties `keyframe`, the newest, to a place seen before, if it shows one. `surprise` is what the keyframes before it said
-    /// against all expectation.
+    /// Does the next piece of a search; whether that was the last.
+    pub fn look(&self, map: &LandmarkMap, search: &mut Search) -> bool {
+        let Self { places, odometer, sensor, config, tracking, seed, .. } = *self;
+        let Some(own) = places.worded(map, search.keyframe) else { return true };
+        let Some(candidates) = &mut search.candidates else {
+            let found = candidates::candidates(map, (places, odometer), (search.keyframe, own), config);
+            return search.candidates.insert(found.into_iter().rev().collect()).is_empty();
+        };
+        // One may have been forgotten meanwhile.
+        let next = candidates.pop().filter(|id| map.live_keyframe(*id).is_some());
+        let is_last = candidates.is_empty();
+        let verifier = Verifier { map, places, sensor, tracking, config, seed };
+        search.found.extend(next.and_then(|id| verifier.verify(own, id)));
+        is_last
+    }
+
+    /// Ties the keyframe to the place that a search has found, if that can be believed. `surprise` is what the searches before
+    /// said against all expectation.
     pub fn close(
         &self,
         map: &mut LandmarkMap,
-        keyframe: KeyframeId,
+        search: Search,
         surprise: &mut Option<Claim<()>>,
     ) -> Option<LoopClosure> {
-        let found = self.recognise(map, keyframe, surprise)?;
+        let keyframe = search.keyframe;
+        let found = self.recognise(map, search, surprise)?;
         let before = map.keyframe(keyframe).visual_from_camera;
         let (seen_before, points) = (found.candidate, found.points);
         let correction = Correction {
@@ -82,18 +116,16 @@ impl LoopCloser<'_> {
     fn recognise(
         &self,
         map: &LandmarkMap,
-        keyframe: KeyframeId,
+        search: Search,
         surprise: &mut Option<Claim<()>>,
     ) -> Option<Recognised> {
         let said_before = surprise.take();
-        let own = self.places.worded(map, keyframe)?;
-        let Self { places, odometer, sensor, config, tracking, seed, .. } = *self;
-        let candidates = candidates::candidates(map, (places, odometer), (keyframe, own), config);
-        let verifier = Verifier { map, places, sensor, tracking, config, seed };
-        let found = verifier.recognise(own, &candidates)?;
-        let here = map.keyframe(keyframe).visual_from_camera;
+        let keyframe = search.keyframe;
+        let is_there = |found: &Recognised| map.live_keyframe(found.candidate).is_some();
+        let found = unrivalled(search.found).filter(is_there)?;
+        let here = map.live_keyframe(keyframe)?.visual_from_camera;
         let correction = here.inverse() * found.visual_from_camera;
-        let drift = Drift::between(map, odometer, (found.candidate, keyframe), config);
+        let drift = Drift::between(map, self.odometer, (found.candidate, keyframe), self.config);
         if drift.allows(correction) {
             return Some(found);
         }
@@ -102,6 +134,6 @@ impl LoopCloser<'_> {
         }
         *surprise = said_before;
         let times = Claim::note(surprise, (), found.visual_from_camera * here.inverse());
-        (times >= config.consistency).then_some(found)
+        (times >= self.config.consistency).then_some(found)
     }
 }

@@ -56,7 +56,8 @@ impl Verifier<'_> {
         unrivalled(candidates.iter().filter_map(|id| self.verify(own, *id)).collect())
     }
 
-    fn verify(&self, own: Worded, candidate: KeyframeId) -> Option<Recognised> {
+    /// The place of one keyframe, if the frame shows that.
+    pub fn verify(&self, own: Worded, candidate: KeyframeId) -> Option<Recognised> {
         let rough = self.by_words(own, candidate)?;
         let fix = self.by_old_landmarks(own, candidate, &rough);
         let points = fix.solution.inlier_count;

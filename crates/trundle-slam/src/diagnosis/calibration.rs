@@ -26,38 +26,101 @@ pub(super) struct Pair {
 }
 
 /// What a fit found.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub(super) struct Fitted {
     pub offset: Offset,
     /// Robust cost that is left.
     pub cost: f64,
+    /// Standard deviations of the offset.
+    pub sigmas: Offset,
 }
 
-/// Rounds of Gauss-Newton.
+/// Rounds of Gauss-Newton at most.
 const ROUNDS: usize = 10;
+/// A relative decrease of the cost below this ends it.
+const CONVERGED: f64 = 1e-6;
 /// Where Cauchy's loss bends, standard deviations: wrong matches are among the others.
 const CAUCHY: f64 = 2.5;
 /// Standard deviations of the offsets before anything is seen: wide, they only keep what is not seen at zero.
 const PRIOR: [f64; 6] = [0.3, 0.3, 0.1, 0.1, 0.5, 0.5];
 
-/// The offsets that make matches agree best, the motions being free. Only those marked in `free` are looked for; the others
-/// stay as in `start`. Least
-/// squares with Cauchy's loss on column, row and inverse depth, the motions eliminated (Schur complement).
-pub(super) fn fit(pairs: &[Pair], start: Offset, free: [bool; 6]) -> Option<Fitted> {
-    let mut pairs = pairs.to_vec();
-    let mut offset = start;
-    let mut last = None;
-    for _ in 0..ROUNDS {
-        let system = System::of(&pairs, &offset, free);
-        let step = system.reduced.cholesky()?.solve(&system.gradient);
-        for (pair, motion) in pairs.iter_mut().zip(&system.motions) {
-            let tangent = motion.solve(&step)?;
-            pair.b_from_a = (Pose3::exp(tangent) * pair.b_from_a).renormalized();
-        }
-        offset += step;
-        last = Some(Fitted { offset, cost: system.cost });
+/// The search for the offsets that make matches agree best, the motions being free. Only those marked in `free` are looked for;
+/// the others stay as at the start. Least squares with Cauchy's loss on column, row and inverse depth, the motions
+/// eliminated (Schur complement). One round at a time, always over the same pairs.
+#[derive(Debug, Clone)]
+pub(super) struct Fit {
+    free: [bool; 6],
+    offset: Offset,
+    motions: Vec<Pose3>,
+    rounds: usize,
+    cost: f64,
+    /// What each pair says of the offsets, with its weights of the last round.
+    parts: Vec<Part>,
+}
+
+impl Fit {
+    pub fn new(pairs: &[Pair], start: Offset, free: [bool; 6]) -> Self {
+        let motions = pairs.iter().map(|pair| pair.b_from_a).collect();
+        Self { free, offset: start, motions, rounds: 0, cost: f64::INFINITY, parts: Vec::new() }
     }
-    last.filter(|fitted| fitted.offset.iter().all(|v| v.is_finite()))
+
+    /// One round of Gauss-Newton; whether it was the last.
+    pub fn advance(&mut self, pairs: &[Pair]) -> bool {
+        let parts: Vec<Part> = pairs
+            .iter()
+            .zip(&self.motions)
+            .map(|(pair, motion)| Part::of(pair, motion, &self.offset))
+            .collect();
+        let cost = parts.iter().map(|part| part.cost).sum();
+        let gain = self.cost - cost;
+        (self.rounds, self.cost) = (self.rounds + 1, cost);
+        let step = self.step(&parts, None).unwrap_or_else(|| Offset::repeat(f64::NAN));
+        for (motion, part) in self.motions.iter_mut().zip(&parts) {
+            let tangent = part.motion(&step).unwrap_or_else(Vector6::zeros);
+            *motion = (Pose3::exp(tangent) * *motion).renormalized();
+        }
+        self.offset += step;
+        self.parts = parts;
+        let is_lost = !self.offset.iter().all(|v| v.is_finite());
+        is_lost || self.rounds >= ROUNDS || gain.abs() <= CONVERGED * cost
+    }
+
+    /// What was found, once the last round is done; `None` where it came to nothing.
+    pub fn result(&self) -> Option<Fitted> {
+        let offset = self.offset;
+        let sigmas = self.spread()?;
+        offset.iter().all(|v| v.is_finite()).then_some(Fitted { offset, cost: self.cost, sigmas })
+    }
+
+    /// How the offsets move by what these parts say, but for one of them.
+    fn step(&self, parts: &[Part], without: Option<usize>) -> Option<Offset> {
+        let prior = Vector6::from(PRIOR).map(|sigma| sigma.powi(-2));
+        let mut matrix = Matrix6::from_diagonal(&prior);
+        let mut gradient = -prior.component_mul(&self.offset);
+        for (_, part) in parts.iter().enumerate().filter(|(i, _)| Some(*i) != without) {
+            matrix += part.reduced;
+            gradient += part.reduced_gradient;
+        }
+        for i in (0..6).filter(|i| !self.free[*i]) {
+            matrix.row_mut(i).fill(0.0);
+            matrix.column_mut(i).fill(0.0);
+            matrix[(i, i)] = 1e12;
+            gradient[i] = 0.0;
+        }
+        Some(matrix.cholesky()?.solve(&gradient))
+    }
+
+    /// Standard deviations of the offsets by leaving out each pair in turn (jackknife, the step without it from where all of
+    /// them lead): what is wrong with a whole pair, as by a rolling shutter, is in them.
+    fn spread(&self) -> Option<Offset> {
+        let all = self.step(&self.parts, None)?;
+        let without = |i: usize| Some(self.step(&self.parts, Some(i))? - all);
+        let moved: Vec<Offset> = (0..self.parts.len()).map(without).collect::<Option<_>>()?;
+        let n = moved.len().max(1) as f64;
+        let mean = moved.iter().sum::<Offset>() / n;
+        let squares: Offset = moved.iter().map(|o| (o - mean).map(|d| d * d)).sum();
+        Some((squares * ((n - 1.0) / n)).map(f64::sqrt))
+    }
 }
 
 /// True normalised coordinates from the assumed ones.
@@ -86,66 +149,49 @@ pub(super) fn by_offset(n: Vector2) -> SMatrix<f64, 2, 6> {
     SMatrix::from_rows(&rows.map(RowVector6::from))
 }
 
-/// The normal equations of one round.
-#[derive(Debug)]
-struct System {
-    reduced: Matrix6<f64>,
-    gradient: Vector6<f64>,
-    motions: Vec<Motion>,
-    cost: f64,
-}
-
-/// What gives a pair's motion once the offsets are known.
-#[derive(Debug)]
-struct Motion {
+/// What one pair says: the normal equations of its motion, and of the offsets once that is eliminated.
+#[derive(Debug, Clone)]
+struct Part {
     own: Matrix6<f64>,
     mixed: Matrix6<f64>,
     gradient: Vector6<f64>,
+    reduced: Matrix6<f64>,
+    reduced_gradient: Vector6<f64>,
+    cost: f64,
 }
 
-impl Motion {
-    fn solve(&self, step: &Vector6<f64>) -> Option<Vector6<f64>> {
-        Some(self.own.cholesky()?.solve(&(self.gradient - self.mixed * step)))
+impl Part {
+    fn of(pair: &Pair, b_from_a: &Pose3, offset: &Offset) -> Self {
+        let (zero, none) = (Matrix6::zeros(), Vector6::zeros());
+        let mut part = Self {
+            own: Matrix6::identity() * 1e-6,
+            mixed: zero,
+            gradient: none,
+            reduced: zero,
+            reduced_gradient: none,
+            cost: 0.0,
+        };
+        for matched in &pair.matches {
+            let Some(rows) = Rows::of(matched, b_from_a, offset) else { continue };
+            let (w, cost) = cauchy(rows.residual.norm_squared());
+            let (j, m, r) = (&rows.by_offset, &rows.by_motion, &rows.residual);
+            part.reduced += j.transpose() * j * w;
+            part.reduced_gradient -= j.transpose() * r * w;
+            part.own += m.transpose() * m * w;
+            part.mixed += m.transpose() * j * w;
+            part.gradient -= m.transpose() * r * w;
+            part.cost += cost;
+        }
+        if let Some(factor) = part.own.cholesky() {
+            part.reduced -= part.mixed.transpose() * factor.solve(&part.mixed);
+            part.reduced_gradient -= part.mixed.transpose() * factor.solve(&part.gradient);
+        }
+        part
     }
-}
 
-impl System {
-    fn of(pairs: &[Pair], offset: &Offset, free: [bool; 6]) -> Self {
-        let prior = Vector6::from(PRIOR).map(|sigma| sigma.powi(-2));
-        let mut reduced = Matrix6::from_diagonal(&prior);
-        let mut gradient = -prior.component_mul(offset);
-        let mut system = Self { reduced, gradient, motions: Vec::with_capacity(pairs.len()), cost: 0.0 };
-        for pair in pairs {
-            let mut motion = Motion {
-                own: Matrix6::identity() * 1e-6,
-                mixed: Matrix6::zeros(),
-                gradient: Vector6::zeros(),
-            };
-            for matched in &pair.matches {
-                let Some(rows) = Rows::of(matched, &pair.b_from_a, offset) else { continue };
-                let (w, cost) = cauchy(rows.residual.norm_squared());
-                let (j, m, r) = (&rows.by_offset, &rows.by_motion, &rows.residual);
-                reduced += j.transpose() * j * w;
-                gradient -= j.transpose() * r * w;
-                motion.own += m.transpose() * m * w;
-                motion.mixed += m.transpose() * j * w;
-                motion.gradient -= m.transpose() * r * w;
-                system.cost += cost;
-            }
-            if let Some(factor) = motion.own.cholesky() {
-                reduced -= motion.mixed.transpose() * factor.solve(&motion.mixed);
-                gradient -= motion.mixed.transpose() * factor.solve(&motion.gradient);
-            }
-            system.motions.push(motion);
-        }
-        for i in (0..6).filter(|i| !free[*i]) {
-            reduced.row_mut(i).fill(0.0);
-            reduced.column_mut(i).fill(0.0);
-            reduced[(i, i)] = 1e12;
-            gradient[i] = 0.0;
-        }
-        (system.reduced, system.gradient) = (reduced, gradient);
-        system
+    /// How the pair's motion changes with the offsets' step.
+    fn motion(&self, step: &Offset) -> Option<Vector6<f64>> {
+        Some(self.own.cholesky()?.solve(&(self.gradient - self.mixed * step)))
     }
 }
 

@@ -39,6 +39,9 @@ impl DepthRange {
     }
 
     fn judge(&mut self, config: &DepthConfig) -> Option<Suspicion> {
+        if self.depths.is_empty() {
+            return Some(Suspicion::NoDepth);
+        }
         if self.depths.len() < LEAST {
             return None;
         }
@@ -68,8 +71,8 @@ mod tests {
     fn a_scale_off_by_five_is_noticed_either_way_and_the_right_one_is_not() {
         let room = |x: usize, y: usize| 0.6 + 4.0 * (x + y) as f32 / 560.0;
         assert_eq!(verdict(room), None);
-        assert_eq!(verdict(|_, _| 0.0), None);
-        assert_eq!(verdict(|_, _| f32::NAN), None);
+        assert_eq!(verdict(|_, _| 0.0), Some(Suspicion::NoDepth));
+        assert_eq!(verdict(|_, _| f32::NAN), Some(Suspicion::NoDepth));
         let far = verdict(|x, y| 5.0 * room(x, y)).unwrap();
         assert!(matches!(far, Suspicion::DepthRange { beyond: true, .. }), "{far}");
         let near = verdict(|x, y| 0.2 * room(x, y)).unwrap();

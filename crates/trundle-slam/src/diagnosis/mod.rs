@@ -9,6 +9,7 @@
 
 mod calibration;
 mod depth_range;
+mod judgement;
 mod registration;
 mod settings_check;
 mod suspicion;

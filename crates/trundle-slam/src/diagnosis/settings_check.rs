@@ -1,6 +1,7 @@
 use super::Suspicion;
-use super::calibration::{Fitted, Matched, Offset, Pair, corrected, fit};
+use super::calibration::{Matched, Pair};
 use super::depth_range::DepthRange;
+use super::judgement::Judgement;
 use super::registration::Registration;
 use super::travel::Travel;
 use crate::depth::DepthConfig;
@@ -19,14 +20,6 @@ const WAY: f64 = 0.1;
 const LEAST_PAIRS: usize = 6;
 /// Pairs of frames after which it is believed.
 const MOST_PAIRS: usize = 18;
-/// Standard deviations that an offset must be from zero.
-const CLEAR: f64 = 4.0;
-/// Standard deviations that the best focal lengths may be from the exchanged ones.
-const EXCHANGED: f64 = 3.0;
-/// Part of the cost that may be left once the wrong setting is put right.
-const MENDED: f64 = 0.9;
-/// Offsets below this, px at three quarters of the way to a corner, are no wrong setting.
-const HARMLESS_PX: f64 = 4.0;
 /// How far off matches may be at first, px and m: wrong settings bend the picture by some.
 const LOOSE: (f64, f64) = (10.0, 0.03);
 /// Matches that a motion must explain.
@@ -40,6 +33,10 @@ pub(crate) struct SettingsCheck {
     /// Camera motion since the anchor by the prior, as long as there is one.
     moved: Option<Pose3>,
     pairs: Vec<Pair>,
+    /// The camera as the first of these pairs see it, while that is being worked out.
+    judgement: Option<Judgement>,
+    /// How many pairs the last judgement had.
+    judged: usize,
     camera_judged: bool,
     range: DepthRange,
     travel: Travel,
@@ -72,10 +69,11 @@ impl SettingsCheck {
         self.moved = self.moved.zip(prior).map(|(moved, prior)| moved * prior);
         if self.frames.is_multiple_of(EVERY) {
             self.suspicions.extend(self.range.note(depth, config));
-            if !self.camera_judged {
+            if !self.camera_judged && self.pairs.len() < MOST_PAIRS {
                 self.compare(frame, sensor);
             }
         }
+        self.judge(&sensor.camera);
         self.frames += 1;
     }
 
@@ -90,21 +88,25 @@ impl SettingsCheck {
             let said = self.moved.map(|moved| moved.translation.norm());
             self.suspicions.extend(said.and_then(|said| self.travel.note(way, said)));
             self.pairs.push(pair);
-            self.judge(&sensor.camera);
         }
         self.anchor = Some(frame.clone());
         self.moved = Some(Pose3::identity());
     }
 
+    /// Goes on judging the camera, some rounds a frame, again whenever there are three more pairs.
     fn judge(&mut self, camera: &PinholeCamera) {
-        if self.pairs.len() < LEAST_PAIRS || !self.pairs.len().is_multiple_of(3) {
-            return;
+        let count = self.pairs.len() / 3 * 3;
+        if self.judgement.is_none() && count >= LEAST_PAIRS && count > self.judged {
+            self.judgement = Some(Judgement::of(&self.pairs[..count]));
+            self.judged = count;
         }
-        let suspicion = suspicion_of(&self.pairs, camera);
-        self.camera_judged = suspicion.is_some() || self.pairs.len() >= MOST_PAIRS;
+        let pairs = &self.pairs[..self.judged];
+        let Some(suspicion) = self.judgement.as_mut().and_then(|j| j.advance(pairs, camera)) else { return };
+        self.judgement = None;
+        self.camera_judged = suspicion.is_some() || self.judged >= MOST_PAIRS;
         self.suspicions.extend(suspicion);
         if self.camera_judged {
-            (self.pairs, self.anchor) = (Vec::new(), None);
+            (self.pairs, self.anchor, self.judged) = (Vec::new(), None, 0);
         }
     }
 }
@@ -131,75 +133,4 @@ fn pair_of(a: &Frame, b: &Frame, sensor: &Sensor) -> Option<Pair> {
     let config = RansacConfig { pixel_sigma, depth_sigma, min_inliers: LEAST_MATCHES, ..Default::default() };
     let motion = estimate_rigid_motion(&points.0, &points.1, camera, &config, 0)?;
     Some(Pair { b_from_a: motion.b_from_a, matches })
-}
-
-/// What may be free together: focal lengths, principal point, lens.
-const MODELS: [[bool; 6]; 3] = [
-    [true, true, false, false, false, false],
-    [false, false, true, true, false, false],
-    [false, false, false, false, true, true],
-];
-
-/// The setting that the pairs say is wrong, if one is.
-fn suspicion_of(pairs: &[Pair], camera: &PinholeCamera) -> Option<Suspicion> {
-    let as_set = fit(pairs, Offset::zeros(), [false; 6])?;
-    let fits = MODELS.iter().filter_map(|model| Some((*model, fit(pairs, Offset::zeros(), *model)?)));
-    let (model, best) = fits.min_by(|a, b| a.1.cost.total_cmp(&b.1.cost))?;
-    let sigmas = spread(pairs, model)?;
-    let clear = best.offset.iter().zip(sigmas.iter()).any(|(o, s)| o.abs() > CLEAR * s);
-    if !clear || best.cost > MENDED * as_set.cost || rim(&best, camera).abs() < HARMLESS_PX {
-        return None;
-    }
-    let Fitted { offset, .. } = best;
-    let (fx, fy) = (camera.fx(), camera.fy());
-    Some(if model[0] {
-        let found = (fx / (1.0 + offset[0]), fy / (1.0 + offset[1]));
-        Suspicion::FocalLengths {
-            given: (fx, fy),
-            found,
-            swapped: is_swapped(pairs, camera, &as_set, (&best, &sigmas)),
-        }
-    } else if model[2] {
-        Suspicion::PrincipalPoint { offset: (-fx * offset[2], -fy * offset[3]) }
-    } else {
-        Suspicion::Distortion { at_the_rim: rim(&best, camera) }
-    })
-}
-
-/// Whether exchanging the focal lengths mends most of what the best ones mend, and neither of the best speaks against it.
-fn is_swapped(
-    pairs: &[Pair],
-    camera: &PinholeCamera,
-    as_set: &Fitted,
-    (best, sigmas): (&Fitted, &Offset),
-) -> bool {
-    let ratio = camera.fx() / camera.fy();
-    let exchange = Offset::new(ratio - 1.0, ratio.recip() - 1.0, 0.0, 0.0, 0.0, 0.0);
-    if (0..2).any(|i| (best.offset[i] - exchange[i]).abs() > EXCHANGED * sigmas[i]) {
-        return false;
-    }
-    let exchanged = fit(pairs, exchange, [false; 6]);
-    exchanged.is_some_and(|exchanged| exchanged.cost - best.cost < 0.5 * (as_set.cost - best.cost))
-}
-
-/// Standard deviations of the offsets by leaving out each pair in turn (jackknife): what is wrong with a whole pair, as
-/// by a rolling shutter, is in them.
-fn spread(pairs: &[Pair], model: [bool; 6]) -> Option<Offset> {
-    let without = |i: usize| {
-        let others: Vec<Pair> =
-            pairs.iter().enumerate().filter(|(j, _)| *j != i).map(|(_, p)| p.clone()).collect();
-        Some(fit(&others, Offset::zeros(), model)?.offset)
-    };
-    let offsets: Vec<Offset> = (0..pairs.len()).map(without).collect::<Option<_>>()?;
-    let n = offsets.len() as f64;
-    let mean = offsets.iter().sum::<Offset>() / n;
-    let squares: Offset = offsets.iter().map(|o| (o - mean).map(|d| d * d)).sum();
-    Some((squares * ((n - 1.0) / n)).map(f64::sqrt))
-}
-
-/// How far points three quarters of the way to the image's corners are off, px, at most.
-fn rim(fitted: &Fitted, camera: &PinholeCamera) -> f64 {
-    let focal = Vector2::new(camera.fx(), camera.fy());
-    let n = (Vector2::new(camera.width() as f64, camera.height() as f64) * 0.375).component_div(&focal);
-    (corrected(n, &fitted.offset) - n).component_mul(&focal).norm()
 }

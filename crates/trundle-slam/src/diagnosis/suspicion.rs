@@ -12,6 +12,8 @@ pub enum Suspicion {
         /// The middle one of all depths, m.
         median: f64,
     },
+    /// No image had any depth.
+    NoDepth,
     /// The camera's way is not as long as the wheels'.
     Travel {
         /// How many times as long.
@@ -56,6 +58,10 @@ impl fmt::Display for Suspicion {
                 } else {
                     "too large (5000 set where 1000 is right)"
                 },
+            ),
+            Self::NoDepth => write!(
+                f,
+                "no image had any depth: is the depth scale far too large, or does the depth camera send nothing?"
             ),
             Self::Travel { ratio } => write!(
                 f,

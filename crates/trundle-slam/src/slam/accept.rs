@@ -1,6 +1,6 @@
 use super::locate::Sighting;
 use super::{Located, RgbdSlam};
-use crate::closing::{LoopCloser, LoopClosure};
+use crate::closing::Search;
 use crate::found::Found;
 use crate::frame::Frame;
 use crate::ids::{KeyframeId, LandmarkId};
@@ -13,7 +13,6 @@ use trundle_core::Pose3;
 /// A frame that became a keyframe, and what came of it.
 struct Kept {
     reference: KeyframeId,
-    closed_loop: Option<LoopClosure>,
     merged: Option<MapMerge>,
 }
 
@@ -49,7 +48,6 @@ impl RgbdSlam {
             inliers: found.inliers(),
             relocalised: found.relocalised,
             new_keyframe: kept.is_some(),
-            closed_loop: kept.as_ref().and_then(|kept| kept.closed_loop),
             merged: kept.and_then(|kept| kept.merged),
             ..self.report(frame.len())
         };
@@ -63,6 +61,7 @@ impl RgbdSlam {
             std::mem::swap(entered, &mut self.active);
             self.resting.sort_by_key(|resting| resting.id);
             (self.last, self.recognition, self.surprise) = (None, None, None);
+            self.forget_the_way();
         }
     }
 
@@ -94,37 +93,22 @@ impl RgbdSlam {
     ) -> Kept {
         let reference = self.insert(frame.clone(), pose, landmarks);
         self.active.map.set_covariance(reference, covariance);
-        let closed_loop = self.close_loop(reference);
+        self.searches.push_back(Search::of(reference));
         let merged = self.merge_maps(reference);
         let reference = merged.map_or(reference, |merged| merged.keyframe);
-        Kept { reference, closed_loop, merged }
-    }
-
-    fn close_loop(&mut self, keyframe: KeyframeId) -> Option<LoopClosure> {
-        let closer = LoopCloser {
-            places: &self.active.places,
-            odometer: &self.active.odometer,
-            sensor: &self.sensor,
-            config: &self.config.loops,
-            tracking: &self.config.tracking,
-            mapping: &self.config.mapping,
-            seed: self.seed(),
-        };
-        let closed = closer.close(&mut self.active.map, keyframe, &mut self.surprise);
-        self.active.follow();
-        closed
+        Kept { reference, merged }
     }
 
     /// Counts which landmarks should have been seen, and which were.
     fn count(&mut self, visible: &[(LandmarkId, Projection)], found: &[Option<LandmarkId>]) {
         for (id, _) in visible {
             if let Some(landmark) = self.active.map.landmark_mut(*id) {
-                landmark.visible += 1;
+                landmark.visible = landmark.visible.saturating_add(1);
             }
         }
         for id in found.iter().flatten() {
             if let Some(landmark) = self.active.map.landmark_mut(*id) {
-                landmark.found += 1;
+                landmark.found = landmark.found.saturating_add(1);
             }
         }
     }

@@ -56,6 +56,7 @@ impl RgbdSlam {
         mut found: Recognised,
         other_from_active: Pose3,
     ) -> MapMerge {
+        self.forget_the_way();
         let other = self.resting.remove(other);
         let is_older = other.id < self.active.id;
         let seam = |map: &LandmarkMap, id: KeyframeId| map.keyframe(id).covariance;

@@ -103,5 +103,6 @@ impl RgbdSlam {
         self.belief = Belief { stamp: self.belief.stamp, ..Belief::at(Pose3::identity()) };
         self.placed = true;
         (self.last, self.recognition, self.surprise) = (None, None, None);
+        self.forget_the_way();
     }
 }

@@ -1,6 +1,11 @@
 //! The SLAM as a whole: on rendered rooms with known motion, and on a recorded sequence.
 #![allow(clippy::unwrap_used, clippy::print_stdout, clippy::print_stderr, reason = "tests, helpers included")]
 
+#[path = "../support/align.rs"]
+mod align;
+mod determinism;
+#[path = "../support/drive.rs"]
+mod drive;
 mod freiburg;
 mod honesty;
 mod maps;
@@ -11,5 +16,4 @@ mod room;
 mod saving;
 mod settings;
 mod synthetic;
-mod umeyama;
 mod walks;

@@ -88,6 +88,8 @@ fn plan() -> Vec<u8> {
         way_points: &way_points,
         curve: &curve,
         footprint: &Footprint::KOBUKI,
+        keep_out: None,
+        slow: None,
     })
 }
 

@@ -9,6 +9,9 @@ pub(super) const PLAN: Color = Color::rgb(0xb0_4f_88);
 pub(super) const START: Color = Color::GREEN;
 pub(super) const GOAL: Color = Color::VERMILLION;
 pub(super) const SWEPT: Color = Color::SKY.alpha(70);
+pub(super) const FORBIDDEN: Color = Color::VERMILLION.alpha(120);
+pub(super) const DEAR: Color = Color::PURPLE.alpha(150);
+pub(super) const SLOW: Color = Color::YELLOW.alpha(150);
 pub(super) const LANDMARKS: Color = Color::GREEN;
 pub(super) const SCAN: Color = Color::SKY;
 

@@ -1,7 +1,16 @@
-use super::palette::{GOAL, START, SWEPT, way_point_dots};
+use super::palette::{DEAR, FORBIDDEN, GOAL, SLOW, START, SWEPT, way_point_dots};
 use crate::color::Color;
 use crate::map::{LineStyle, MapPicture, PoseStyle};
-use trundle_core::{Footprint, OccupancyGrid, Pose2, Vector2};
+use trundle_core::{Footprint, GridGeometry, OccupancyGrid, Pose2, Vector2};
+
+/// What a mask says of its cells, row by row from the lowest y, in shares from 0 (nothing) to 1.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MaskShares {
+    /// Where its cells lie.
+    pub geometry: GridGeometry,
+    /// How much each says.
+    pub shares: Vec<f32>,
+}
 
 /// A plan to be drawn, all in the map frame, m. What is empty is left out.
 #[derive(Debug, Clone, PartialEq)]
@@ -20,13 +29,38 @@ pub struct PlanScene<'a> {
     pub curve: &'a [Vector2],
     /// The robot's outline.
     pub footprint: &'a Footprint,
+    /// Where the robot must not be (1), or should not (less).
+    pub keep_out: Option<&'a MaskShares>,
+    /// Where it must be slow: 1 less the share of its full speed.
+    pub slow: Option<&'a MaskShares>,
+}
+
+impl<'a> PlanScene<'a> {
+    /// The map with what the masks say of it.
+    pub(super) fn ground(&self) -> MapPicture<'a> {
+        let mut picture = MapPicture::over(self.grid);
+        if let Some(mask) = self.slow {
+            // Hardly slower is still to be seen.
+            let shares = mask.shares.iter().map(|share| if *share > 0.0 { share.max(0.3) } else { 0.0 });
+            picture = picture.tint("slow by the speed mask", mask.geometry, shares.collect(), SLOW);
+        }
+        if let Some(mask) = self.keep_out {
+            let forbidden = mask.shares.iter().map(|share| if *share >= 1.0 { 1.0 } else { 0.0 });
+            let dear = mask.shares.iter().map(|share| if *share < 1.0 { 0.8 * share } else { 0.0 });
+            picture = picture
+                .tint("forbidden by the keep-out mask", mask.geometry, forbidden.collect(), FORBIDDEN)
+                .tint("dear by the keep-out mask", mask.geometry, dear.collect(), DEAR);
+        }
+        picture
+    }
 }
 
 /// The picture of `trundle plan`: the map, start and goal with the robot's outline, way-points, the fitted curve, and the
 /// floor the robot sweeps along it. An 8-bit RGB PNG.
 pub fn plan_picture(scene: &PlanScene) -> Vec<u8> {
     let pose = |color: Color| PoseStyle::named(color).with_footprint(scene.footprint.clone());
-    MapPicture::over(scene.grid)
+    scene
+        .ground()
         .band("floor swept by the robot", scene.curve, scene.footprint.circumscribed_radius(), SWEPT)
         .polyline("route", scene.route, LineStyle::solid(Color::FAINT_INK).width(0.8).plain())
         .polyline("curve", scene.curve, LineStyle::solid(Color::BLUE))

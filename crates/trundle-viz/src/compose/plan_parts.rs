@@ -19,7 +19,7 @@ pub struct PlanParts<'a> {
 }
 
 /// Distances are told apart up to this, m.
-const FAR: f32 = 1.5;
+const FAR: f32 = 1.0;
 
 /// The pictures of how a plan was made: the distance field with the way that the search found, and the corridors with the
 /// curve that was fitted into them. 8-bit RGB PNGs.
@@ -31,11 +31,12 @@ pub fn plan_part_pictures(scene: &PlanScene, parts: &PlanParts) -> [Vec<u8>; 2] 
     let free = |distance: &f32| if *distance > 0.0 { *distance } else { f32::NAN };
     let distances = parts.distances.iter().map(free).collect();
     let field = MapPicture::over(scene.grid)
-        .shade("distance to the nearest obstacle, dark from 1.5 m on", parts.geometry, distances, FAR)
+        .shade("distance to the nearest obstacle, dark from 1 m on", parts.geometry, distances, FAR)
         .polyline("route", scene.route, LineStyle::dashed(Color::BLACK).width(1.0))
         .polyline("way", scene.way_points, LineStyle::solid(PLAN))
         .dots("way-points", scene.way_points, way_point_dots());
-    let corridors = MapPicture::over(scene.grid)
+    let corridors = scene
+        .ground()
         .polyline("corridors", &outlines(parts.corridors), LineStyle::solid(Color::ORANGE).width(0.8).plain())
         .polyline("curve", scene.curve, LineStyle::solid(Color::BLUE))
         .dots("way-points", scene.way_points, way_point_dots())
@@ -67,12 +68,14 @@ fn outlines(polygons: &[Vec<Vector2>]) -> Vec<Vector2> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::compose::MaskShares;
     use trundle_core::{Footprint, OccupancyGrid, Pose2, TrajectoryPoint, Twist2};
 
     #[test]
     fn parts_are_drawn_and_nothing_is_no_panic() {
         let grid = OccupancyGrid::from_ascii(0.1, "#####\n#...#\n#...#\n#####").unwrap();
         let way = [Vector2::new(0.15, 0.15), Vector2::new(0.35, 0.25)];
+        let mask = MaskShares { geometry: *grid.geometry(), shares: vec![0.4; 20] };
         let scene = PlanScene {
             grid: &grid,
             start: Pose2::new(0.15, 0.15, 0.0),
@@ -81,6 +84,8 @@ mod tests {
             way_points: &way,
             curve: &way,
             footprint: &Footprint::KOBUKI,
+            keep_out: Some(&mask),
+            slow: Some(&mask),
         };
         let parts = |distances, corridors| PlanParts {
             geometry: *grid.geometry(),

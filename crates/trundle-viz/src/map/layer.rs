@@ -89,7 +89,7 @@ impl Layer {
             Shape::Pose { pose, style } => (pose.is_finite(), style.color, Mark::Wedge),
             Shape::Outlines { poses, color, .. } => (poses.iter().any(Pose2::is_finite), *color, Mark::Ring),
             Shape::Scan { hits, color, .. } => (finite(hits), *color, Mark::Dot),
-            Shape::Shade(shade) => (!shade.values.is_empty(), Shade::color(), Mark::Band),
+            Shape::Shade(shade) => (shade.is_visible(), shade.color(), Mark::Band),
         };
         (shown && !self.label.is_empty()).then(|| LegendItem::new(self.label.clone(), color, mark))
     }

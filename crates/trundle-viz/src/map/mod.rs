@@ -16,7 +16,7 @@ use bounds::Bounds;
 use cells::{CellBox, paint_cells};
 use frame::{paint_frame, paint_lattice};
 use layer::{Layer, Shape};
-use shade::Shade;
+use shade::{Paint, Shade};
 use trundle_core::{Cell, Footprint, GridGeometry, OccupancyGrid, Pose2, Scan, Vector2};
 use view::View;
 
@@ -93,7 +93,12 @@ impl<'a> MapPicture<'a> {
 
     /// Adds a tint a cell: `values` row by row from the lowest y, from 0, light, to `full`, dark. What is not finite is left out.
     pub fn shade(self, label: &str, geometry: GridGeometry, values: Vec<f32>, full: f32) -> Self {
-        self.layer(label, Shape::Shade(Shade { geometry, values, full }))
+        self.layer(label, Shape::Shade(Shade { geometry, values, paint: Paint::Scale(full) }))
+    }
+
+    /// Adds a tint of one colour: `shares` of its opacity, 0 to 1, row by row from the lowest y.
+    pub fn tint(self, label: &str, geometry: GridGeometry, shares: Vec<f32>, color: Color) -> Self {
+        self.layer(label, Shape::Shade(Shade { geometry, values: shares, paint: Paint::Tint(color) }))
     }
 
     /// Shows the square of `half_side` m about `center` and nothing else. Ignored when not finite or empty.

@@ -10,8 +10,25 @@ pub(crate) struct Shade {
     pub geometry: GridGeometry,
     /// Row by row from the lowest y; not finite: nothing is laid there.
     pub values: Vec<f32>,
-    /// The value of the darkest tint; 0 is the lightest.
-    pub full: f32,
+    pub paint: Paint,
+}
+
+/// What a value looks like.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Paint {
+    /// From light, 0, to dark, this value.
+    Scale(f32),
+    /// This colour, the more opaque the nearer to 1; nothing at 0.
+    Tint(Color),
+}
+
+impl Paint {
+    fn color(self, value: f32) -> Color {
+        match self {
+            Self::Scale(full) => tint(f64::from(value / full)),
+            Self::Tint(color) => color.alpha((f32::from(color.a) * value.clamp(0.0, 1.0)) as u8),
+        }
+    }
 }
 
 /// Opacity of the tint.
@@ -19,8 +36,19 @@ const ALPHA: u8 = 150;
 
 impl Shade {
     /// The tint that stands for it in a legend.
-    pub(crate) fn color() -> Color {
-        tint(0.35)
+    pub(crate) fn color(&self) -> Color {
+        match self.paint {
+            Paint::Scale(_) => tint(0.35),
+            Paint::Tint(color) => color,
+        }
+    }
+
+    /// Whether there is anything to see.
+    pub(crate) fn is_visible(&self) -> bool {
+        match self.paint {
+            Paint::Scale(_) => !self.values.is_empty(),
+            Paint::Tint(_) => self.values.iter().any(|value| *value > 0.0),
+        }
     }
 
     pub(crate) fn draw(&self, canvas: &mut Canvas, view: &View) {
@@ -32,7 +60,7 @@ impl Shade {
                 let cell = self.geometry.cell_at(Vector2::new(right, up));
                 let value = cell.and_then(|cell| self.values.get(self.geometry.linear(cell)));
                 if let Some(value) = value.filter(|value| value.is_finite()) {
-                    canvas.blend(x, y, tint(f64::from(value / self.full)));
+                    canvas.blend(x, y, self.paint.color(*value));
                 }
             }
         }

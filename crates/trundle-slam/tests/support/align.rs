@@ -1,21 +1,30 @@
 //! The rigid alignment of two point sequences (Umeyama 1991, without scale), to judge trajectories by.
 
+#![allow(dead_code, reason = "each program uses a part of it")]
+
 use nalgebra::Matrix3;
 use trundle_core::Vector3;
 
-/// Root mean square distance, m, after the best rotation and translation.
-pub fn aligned_rmse(estimate: &[Vector3], truth: &[Vector3]) -> f64 {
+/// The estimate, moved and turned as a whole to where it is nearest to the truth.
+pub fn aligned(estimate: &[Vector3], truth: &[Vector3]) -> Vec<Vector3> {
     assert_eq!(estimate.len(), truth.len());
     let n = truth.len() as f64;
     let mean = |points: &[Vector3]| points.iter().sum::<Vector3>() / n;
     let (mean_e, mean_t) = (mean(estimate), mean(truth));
-    let pairs = || estimate.iter().zip(truth).map(|(e, t)| (e - mean_e, t - mean_t));
-    let covariance: Matrix3<f64> = pairs().map(|(e, t)| t * e.transpose()).sum();
+    let pairs = estimate.iter().zip(truth).map(|(e, t)| (e - mean_e, t - mean_t));
+    let covariance: Matrix3<f64> = pairs.map(|(e, t)| t * e.transpose()).sum();
     let svd = covariance.svd(true, true);
     let (u, v_t) = (svd.u.unwrap(), svd.v_t.unwrap());
     let sign = Matrix3::from_diagonal(&Vector3::new(1.0, 1.0, (u * v_t).determinant().signum()));
     let rotation = u * sign * v_t;
-    (pairs().map(|(e, t)| (t - rotation * e).norm_squared()).sum::<f64>() / n).sqrt()
+    estimate.iter().map(|e| mean_t + rotation * (e - mean_e)).collect()
+}
+
+/// Root mean square distance, m, after the best rotation and translation.
+pub fn aligned_rmse(estimate: &[Vector3], truth: &[Vector3]) -> f64 {
+    let squares =
+        aligned(estimate, truth).iter().zip(truth).map(|(e, t)| (e - t).norm_squared()).sum::<f64>();
+    (squares / truth.len() as f64).sqrt()
 }
 
 #[test]

@@ -1,0 +1,70 @@
+use crate::program::{summary, text, trundle};
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+/// A robot file with a small camera, so that a loaded machine keeps up with most of its images.
+const SMALL_CAMERA: &str =
+    "[camera]\nwidth = 128\nheight = 106\nfx = 91.5\nfy = 91.5\ncx = 63.5\ncy = 52.5\n";
+
+/// The files that must be the same in a run and its replay.
+const SAME: [&str; 6] =
+    ["map.pgm", "map.yaml", "trajectory.txt", "groundtruth.txt", "report.html", "recording.mcap"];
+
+fn replay_is_the_same(scratch: &Path, live: &Path) {
+    let again = scratch.join("again");
+    let recording = live.join("recording.mcap");
+    let output = trundle(&["replay", text(&recording), "--threads", "1", "--quiet", "--out", text(&again)]);
+    assert!(output.status.code() != Some(2), "{}", String::from_utf8_lossy(&output.stderr));
+    for name in SAME {
+        let bytes = |folder: &Path| fs::read(folder.join(name)).unwrap();
+        assert!(bytes(live) == bytes(&again), "{name} differs");
+    }
+    let without_clock = |folder: &Path| {
+        let mut numbers = summary(folder);
+        numbers.as_object_mut().unwrap().remove("wall_clock");
+        numbers
+    };
+    assert_eq!(without_clock(live), without_clock(&again));
+}
+
+/// Whatever the threads did on however loaded a machine: nothing was touched, and it can be done again.
+#[test]
+fn a_run_in_real_time_replays_byte_for_byte() {
+    let scratch = tempfile::tempdir().unwrap();
+    let (live, robot) = (scratch.path().join("live"), scratch.path().join("robot.toml"));
+    fs::write(&robot, SMALL_CAMERA).unwrap();
+    let goal = ["--goal", "0.6,0,0"];
+    let args = ["demo", "--real-time", "--direct", "--quiet", "--config", text(&robot), "--out", text(&live)];
+    let output = trundle(&[&args[..], &goal].concat());
+    assert!(output.status.code() != Some(2), "{}", String::from_utf8_lossy(&output.stderr));
+    let numbers = summary(&live);
+    assert_eq!(numbers["contacts"], 0);
+    assert!(numbers["wall_clock"]["real_time"]["control"]["steps"].as_u64().unwrap() > 50, "{numbers}");
+    replay_is_the_same(scratch.path(), &live);
+}
+
+/// Ctrl-C: the run ends as runs do, with everything written.
+#[cfg(unix)]
+#[test]
+fn the_user_may_end_a_run_in_real_time() {
+    let scratch = tempfile::tempdir().unwrap();
+    let (live, robot) = (scratch.path().join("live"), scratch.path().join("robot.toml"));
+    fs::write(&robot, SMALL_CAMERA).unwrap();
+    let mut child = Command::new(env!("CARGO_BIN_EXE_trundle"))
+        .args(["demo", "--real-time", "--quiet", "--config", text(&robot), "--out", text(&live)])
+        .stdin(Stdio::null())
+        .spawn()
+        .unwrap();
+    std::thread::sleep(Duration::from_secs(4));
+    let pid = child.id().to_string();
+    assert!(Command::new("kill").args(["-INT", &pid]).status().unwrap().success());
+    let asked = Instant::now();
+    while child.try_wait().unwrap().is_none() && asked.elapsed() < Duration::from_secs(60) {
+        std::thread::sleep(Duration::from_millis(50));
+    }
+    assert_eq!(child.wait().unwrap().code(), Some(1), "not arrived");
+    assert_eq!(summary(&live)["state"], "stopped: the user ended the run");
+    replay_is_the_same(scratch.path(), &live);
+}

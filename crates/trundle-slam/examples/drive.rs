@@ -1,0 +1,126 @@
+//! Runs the SLAM over a recorded folder in the TUM layout, one image after the other: how accurate it is, and what it costs.
+//!
+//! `cargo run --release -p trundle-slam --example drive -- FOLDER [FRAMES] [--blind]` prints the frames located, loops, keyframes,
+//! the ATE after a rigid alignment, how much of it is up and down, and median, 99th percentile and most of the processor
+//! time, in ms, of the features alone, of a whole step, and of those that made keyframes. Wheels are used where the folder
+//! has them, unless `--blind`. Loading images is not timed. Without `camera.toml` the camera is that of freiburg1.
+//! `TRUNDLE_FRAMES=FILE` writes of each frame: time, state, whether it is a keyframe, inliers, how far off it
+//! was told at once (m, rad, the first one being right), the error after all corrections (mm, aligned), and what it took (ms).
+#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a bench program")]
+
+#[path = "../tests/support/align.rs"]
+mod align;
+#[path = "../tests/support/drive.rs"]
+mod drive;
+
+use align::aligned;
+use drive::Drive;
+use rustix::time::{ClockId, clock_gettime};
+use std::fmt::Write;
+use trundle_core::{Pose3, Vector3, gray_from_color};
+use trundle_slam::{RgbdSlam, SlamConfig};
+use trundle_vision::OrbExtractor;
+
+fn main() {
+    let (flags, args): (Vec<String>, Vec<String>) =
+        std::env::args().skip(1).partition(|arg| arg.starts_with("--"));
+    let drive = Drive::open(args.first().expect("a folder with associations.txt"));
+    let count = args.get(1).map_or(usize::MAX, |n| n.parse().unwrap()).min(drive.frames.len());
+    let mut config = SlamConfig::default();
+    config.motion.readout = drive.readout;
+    let mut extractor = OrbExtractor::new(config.orb.clone()).unwrap();
+    let mut slam = RgbdSlam::new(drive.camera, config).unwrap();
+    let (mut features, mut kept, mut total) = (vec![], vec![], vec![]);
+    let (mut located, mut loops, mut states) = (0, 0, vec![]);
+    for i in 0..count {
+        let image = drive.image(i);
+        let start = processor_ms();
+        extractor.extract(&gray_from_color(image.color()));
+        let found_at = processor_ms();
+        let prior = drive.wheels(i).filter(|_| flags.is_empty());
+        let report = slam.step(&image, prior);
+        let end = processor_ms();
+        features.push(found_at - start);
+        total.push(end - found_at);
+        if report.new_keyframe {
+            kept.push(end - found_at);
+        }
+        located += usize::from(report.tracking.is_located());
+        if let Some(closed) = report.closed_loop {
+            loops += 1;
+            let (moved, turned) = (closed.correction.translation.norm(), closed.correction.angle());
+            println!("frame {i}: loop of {} points, by {moved:.3} m and {turned:.4} rad", closed.points);
+        }
+        let live = off_since_start(&drive, i, report.visual_from_camera);
+        let (off, turned) = live.map_or((f64::NAN, f64::NAN), |off| (off.translation.norm(), off.angle()));
+        states.push(format!(
+            "{:?} {} {} {off:.4} {turned:.4}",
+            report.tracking,
+            u8::from(report.new_keyframe),
+            report.inliers
+        ));
+    }
+    println!(
+        "{located} of {count} frames located, {loops} loops, {} keyframes made, {} in the map, {} landmarks",
+        kept.len(),
+        slam.keyframes().count(),
+        slam.landmarks().count()
+    );
+    slam.finish_refining();
+    judge(&drive, &slam, &states, &total);
+    for (name, times) in
+        [("features", &mut features), ("a step with these", &mut total), ("the same, keyframes", &mut kept)]
+    {
+        let [median, high, most] = [0.5, 0.99, 1.0].map(|share| part(times, share));
+        println!("{name:>20}: median {median:6.2} ms, 99 % {high:6.2} ms, most {most:6.2} ms");
+    }
+}
+
+/// How far off the pose of frame `i` is as it is told at once, if the first one is right.
+fn off_since_start(drive: &Drive, i: usize, pose: Pose3) -> Option<Pose3> {
+    let truth = drive.frames[0].truth?.inverse() * drive.frames[i].truth?;
+    Some(truth.inverse() * pose)
+}
+
+/// The error of the trajectory against the truth.
+fn judge(drive: &Drive, slam: &RgbdSlam, states: &[String], times: &[f64]) {
+    let known = |(stamp, pose): &(_, Pose3)| {
+        let i = drive.frames.binary_search_by_key(stamp, |frame| frame.stamp).ok()?;
+        Some((i, pose.translation, drive.frames[i].truth?.translation))
+    };
+    let known: Vec<(usize, Vector3, Vector3)> = slam.trajectory().iter().filter_map(known).collect();
+    let (estimate, truth): (Vec<Vector3>, Vec<Vector3>) = known.iter().map(|(_, e, t)| (*e, *t)).unzip();
+    let way: f64 = truth.windows(2).map(|pair| (pair[1] - pair[0]).norm()).sum();
+    let errors: Vec<Vector3> =
+        aligned(&estimate, &truth).into_iter().zip(&truth).map(|(e, t)| e - t).collect();
+    let rms = |part: &dyn Fn(&Vector3) -> f64| {
+        (errors.iter().map(|e| part(e).powi(2)).sum::<f64>() / errors.len() as f64).sqrt() * 100.0
+    };
+    println!(
+        "ATE {:.2} cm over {} frames and {way:.1} m, {:.2} cm of it up and down",
+        rms(&|e| e.norm()),
+        errors.len(),
+        rms(&|e| e.z)
+    );
+    if let Some(file) = std::env::var_os("TRUNDLE_FRAMES") {
+        let mut text = String::new();
+        for ((i, ..), e) in known.iter().zip(&errors) {
+            let [x, y, z] = [e.x, e.y, e.z].map(|v| v * 1e3);
+            let stamp = drive.frames[*i].stamp;
+            writeln!(text, "{stamp} {} {x:.1} {y:.1} {z:.1} {:.2}", states[*i], times[*i]).unwrap();
+        }
+        std::fs::write(file, text).unwrap();
+    }
+}
+
+/// Time of this process on the processors: others may be at work too.
+fn processor_ms() -> f64 {
+    let now = clock_gettime(ClockId::ProcessCPUTime);
+    now.tv_sec as f64 * 1e3 + now.tv_nsec as f64 * 1e-6
+}
+
+fn part(times: &mut [f64], part: f64) -> f64 {
+    times.sort_by(f64::total_cmp);
+    let last = times.len().saturating_sub(1);
+    times.get((part * last as f64).round() as usize).copied().unwrap_or(f64::NAN)
+}

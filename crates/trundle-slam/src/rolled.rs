@@ -1,0 +1,71 @@
+use crate::ids::KeyframeId;
+use crate::motion::{MotionConfig, carried};
+use nalgebra::{Matrix6, Vector6};
+use trundle_core::Pose3;
+use trundle_optim::PoseConstraint;
+
+/// The way from a keyframe on, as wheels and gyro know it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Rolled {
+    pub from: KeyframeId,
+    /// Where the camera is now, in the keyframe's frame.
+    pub from_to: Pose3,
+    /// Of that as a right perturbation.
+    pub covariance: Matrix6<f64>,
+}
+
+impl Rolled {
+    /// Standing at a keyframe.
+    pub fn at(from: KeyframeId) -> Self {
+        Self { from, from_to: Pose3::identity(), covariance: Matrix6::zeros() }
+    }
+
+    /// After another step of so many seconds.
+    #[must_use]
+    pub fn on(&self, step: Pose3, seconds: f64, config: &MotionConfig) -> Self {
+        let (along, turned) = config.sigmas(step, seconds);
+        let (along, turned) = (along * along, turned * turned);
+        let noise = Matrix6::from_diagonal(&Vector6::new(along, along, along, turned, turned, turned));
+        let from_to = (self.from_to * step).renormalized();
+        Self { from_to, covariance: carried(&self.covariance, step) + noise, ..*self }
+    }
+
+    /// After the way that `next` knows, which begins where this one ends.
+    #[must_use]
+    pub fn then(&self, next: &Self) -> Self {
+        let covariance = carried(&self.covariance, next.from_to) + next.covariance;
+        Self { from: self.from, from_to: (self.from_to * next.from_to).renormalized(), covariance }
+    }
+
+    /// The same as a tie between the poses of these indices; `None` where it says nothing, or all.
+    pub fn tie(&self, from: usize, to: usize) -> Option<PoseConstraint> {
+        Some(PoseConstraint { from, to, from_to: self.from_to, information: self.information()? })
+    }
+
+    /// The inverse of the covariance.
+    pub fn information(&self) -> Option<Matrix6<f64>> {
+        self.covariance.try_inverse().filter(|i| i.iter().all(|v| v.is_finite()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_way_in_two_parts_is_the_whole_way() {
+        let config = MotionConfig::default();
+        let step = Pose3::exp(Vector6::new(0.0, 0.0, 0.05, 0.0, 0.02, 0.0));
+        let start = KeyframeId::from_index(0);
+        let go =
+            |from: Rolled, steps: usize| (0..steps).fold(from, |rolled, _| rolled.on(step, 0.1, &config));
+        let (whole, first) = (go(Rolled::at(start), 20), go(Rolled::at(start), 8));
+        let parts = first.then(&go(Rolled::at(KeyframeId::from_index(1)), 12));
+        assert_eq!(parts.from, start);
+        assert!((parts.from_to.inverse() * whole.from_to).log().norm() < 1e-12);
+        assert!((parts.covariance - whole.covariance).norm() < 1e-12);
+        let sigma = whole.covariance.fixed_view::<3, 3>(0, 0).trace().sqrt();
+        assert!((0.05..0.2).contains(&sigma), "{sigma}");
+        assert!(whole.tie(0, 1).is_some() && Rolled::at(start).tie(0, 1).is_none());
+    }
+}
