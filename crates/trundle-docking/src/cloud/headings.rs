@@ -1,5 +1,5 @@
 use crate::geometry::{Arc, Hull, Profile, Segment, once_round};
-use crate::scene::Question;
+use crate::scene::{Patch, Question};
 use std::f64::consts::TAU;
 use trundle_core::Vector2;
 
@@ -29,15 +29,15 @@ impl<'q> HeadingsQuestion<'q> {
 impl Question for HeadingsQuestion<'_> {
     const COST: u64 = 50;
 
-    fn promise(&self, center: Vector2, radius: f64) -> Option<f64> {
+    fn promise(&self, patch: &Patch) -> Option<f64> {
         let arcs = &self.blocked[self.first..];
         let inside = |arc: &Arc, from: f64, length: f64| {
             arc.length >= TAU || once_round(from - arc.start) + length <= arc.length
         };
-        let seen = center - self.position;
+        let seen = patch.seen_from(self.position, Vector2::x());
         let known = |from, length| arcs.iter().any(|arc| inside(arc, from, length));
         // Near ones forbid most.
-        (!self.profile.all_known(seen, radius, known)).then(|| seen.norm_squared())
+        (!self.profile.all_known(&seen, known)).then(|| seen.center.norm_squared())
     }
 
     fn look(&mut self, p: Vector2, _: u32) {
