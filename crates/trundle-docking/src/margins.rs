@@ -94,10 +94,7 @@ impl<'a> Margins<'a> {
 
     async fn one_or_two(&self, margin: f64) -> Option<Found<'a>> {
         let mut space = self.space(margin);
-        let (t,w)=(std::time::Instant::now(),space.work());
-        let legs = optimal::one_or_two(self.task, &mut space).await;
-        eprintln!("  one_or_two {margin:.4} {} work {:.2}M {:.1} ms", legs.is_some(), (space.work()-w) as f64*1e-6, t.elapsed().as_secs_f64()*1e3);
-        let legs=legs?;
+        let legs = optimal::one_or_two(self.task, &mut space).await?;
         Some(Found { space, legs, margin })
     }
 
@@ -105,10 +102,7 @@ impl<'a> Margins<'a> {
     async fn many(&self, margin: f64, part: u64) -> Result<Found<'a>, Apart> {
         let mut space = self.space(margin);
         let effort = Effort { work: self.effort.work / part, ..self.effort };
-        let (t,w)=(std::time::Instant::now(),space.work());
-        let o = optimal::many(self.task, &mut space, effort).await;
-        eprintln!("  many {margin:.4} {:?} work {:.2}M {:.1} ms", std::mem::discriminant(&o), (space.work()-w) as f64*1e-6, t.elapsed().as_secs_f64()*1e3);
-        match o {
+        match optimal::many(self.task, &mut space, effort).await {
             Outcome::Found(legs) => Ok(Found { space, legs, margin }),
             Outcome::Apart(certificate, by) => Err((certificate, by)),
             Outcome::Nothing => Err((Certificate::None, None)),
@@ -125,9 +119,7 @@ impl<'a> Margins<'a> {
     }
 
     async fn solution(&self, mut found: Found<'a>) -> Plan {
-        let (t,w)=(std::time::Instant::now(),found.space.work());
         let ((_, legs), bound) = optimal::better(self.task, &mut found.space, found.legs, self.effort).await;
-        eprintln!("  better work {:.2}M {:.1} ms", (found.space.work()-w) as f64*1e-6, t.elapsed().as_secs_f64()*1e3);
         let (_, motions) =
             legs.motions(&self.task, &mut found.space).expect("invariant: found legs are free");
         let manoeuvre = Manoeuvre::new(self.task.start, &motions, self.task.limits);

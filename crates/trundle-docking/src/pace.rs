@@ -16,17 +16,19 @@ use std::task::{Context, Poll, Waker};
 pub struct Meter {
     work: AtomicU64,
     granted: AtomicU64,
+    /// Everything ends when the work comes to this.
+    pub most: u64,
 }
 
 impl Meter {
     /// Never asks for a rest.
-    pub fn endless() -> Arc<Self> {
-        Arc::new(Self { work: AtomicU64::new(0), granted: AtomicU64::new(u64::MAX) })
+    pub fn endless(most: u64) -> Arc<Self> {
+        Arc::new(Self { work: AtomicU64::new(0), granted: AtomicU64::new(u64::MAX), most })
     }
 
     /// Rests at once, until more is granted.
-    pub fn rationed() -> Arc<Self> {
-        Arc::new(Self { work: AtomicU64::new(0), granted: AtomicU64::new(0) })
+    pub fn rationed(most: u64) -> Arc<Self> {
+        Arc::new(Self { work: AtomicU64::new(0), granted: AtomicU64::new(0), most })
     }
 
     /// So far.

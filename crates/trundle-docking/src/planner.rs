@@ -1,3 +1,4 @@
+use crate::cloud::FEW;
 use crate::config::{BESIDE, DockingConfig, Method, WIDER};
 use crate::geometry::Hull;
 use crate::manoeuvre::Manoeuvre;
@@ -115,7 +116,7 @@ impl Docker {
         goal: Pose2,
     ) -> Result<Plan, Refusal> {
         let most = self.checked(margin, footprint, scene, &start, &goal)?;
-        Ok(at_once(self.search(most, footprint, scene, self.task(start, goal), &Meter::endless())))
+        Ok(at_once(self.search(most, footprint, scene, self.task(start, goal), &Meter::endless(self.most_of(scene)))))
     }
 
     /// Begins what [`Docker::plan_keeping`] does at once: the search then goes on in parts ([`Planning::go_on`]).
@@ -133,7 +134,7 @@ impl Docker {
         let most = self.checked(margin, footprint, scene, &start, &goal)?;
         let (docker, footprint, task) = (self.clone(), footprint.clone(), self.task(start, goal));
         let scene = around(&footprint, scene, &wider(task));
-        let meter = Meter::rationed();
+        let meter = Meter::rationed(self.most_of(&scene));
         let counted = Arc::clone(&meter);
         let search = async move { docker.search(most, &footprint, &scene, task, &counted).await };
         Ok(Planning::new(meter, search))
@@ -163,6 +164,11 @@ impl Docker {
         let far = around(footprint, scene, &task);
         let effort = self.effort(&far);
         Margins { footprint, scene: &far, task, most: least, least, effort, saving, meter }.plan().await
+    }
+
+    /// What a plan may cost as a whole.
+    fn most_of(&self, scene: &Scene) -> u64 {
+        if scene.points().len() > FEW { self.config.points_work } else { u64::MAX }
     }
 
     fn effort(&self, scene: &Scene) -> Effort {

@@ -115,13 +115,14 @@ const WAY_COST: u64 = 5;
 impl<'a> Space<'a> {
     /// A footprint grown by `margin` (m, at least 0.1 mm) among obstacles.
     pub fn new(footprint: &Footprint, margin: f64, scene: &'a Scene) -> Self {
-        Self::metered(Hull::new(footprint, margin), scene, Meter::endless())
+        Self::metered(Hull::new(footprint, margin), scene, Meter::endless(u64::MAX))
     }
 
     /// A hull among obstacles, the work counted by `meter`.
     pub(crate) fn metered(hull: Hull, scene: &'a Scene, meter: Shared<Meter>) -> Self {
         let points = scene.points().len();
         let profile = (points > FEW).then(|| Profile::new(&hull, points));
+        meter.spend(profile.as_ref().map_or(0, Profile::cost));
         Self { scene, hull, profile, angles: Vec::new(), arcs: Vec::new(), meter }
     }
 
@@ -144,6 +145,16 @@ impl<'a> Space<'a> {
     /// processor of 2020. The same on every machine.
     pub fn work(&self) -> u64 {
         self.meter.work()
+    }
+
+    /// What the whole plan may come to.
+    pub(crate) fn most(&self) -> u64 {
+        self.meter.most
+    }
+
+    /// [`Space::work`] after so much more, at most what the whole plan may come to.
+    pub(crate) fn until(&self, more: u64) -> u64 {
+        self.work().saturating_add(more).min(self.meter.most)
     }
 
     /// Counts work done elsewhere on behalf of this space.
@@ -213,7 +224,8 @@ impl<'a> Space<'a> {
         free
     }
 
-    /// Adds all headings at which a base at `position` overlaps something, sorted and joined.
+    /// Adds the headings at which a base at `position` overlaps something, sorted and joined; among many points some
+    /// hundredths of a radian of them may be left out.
     pub fn blocked_headings(&mut self, position: Vector2, blocked: &mut Vec<Arc>) {
         let (hull, angles) = (&self.hull, &mut self.angles);
         let (first, half) = (blocked.len(), Vector2::repeat(hull.outer_radius()));

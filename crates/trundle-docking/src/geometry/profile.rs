@@ -5,6 +5,7 @@
 //! strips along x it is how far the hull reaches, rounded up. A box of points that is not met before what is known already
 //! need not be asked about. Rounding is always outward, so that nothing is left out.
 
+use super::driving::InTheWay;
 use super::hull::Hull;
 use super::segment::Segment;
 use crate::scene::Patch;
@@ -14,9 +15,15 @@ use trundle_core::Vector2;
 /// Rings between where the hull ends first and where it ends last: one for so many points, ...
 const POINTS_A_RING: usize = 100;
 /// ... at least and at most so many.
-const RINGS: (usize, usize) = (32, 1024);
+const RINGS: (usize, usize) = (32, 512);
+/// What a ring costs, in units of [`crate::space::Space::work`].
+const RING_COST: u64 = 100;
 /// Strips along x: a fraction of a millimetre, as what they round away is asked of every point.
 const STRIPS: usize = 512;
+/// Half thicknesses below which a box is looked at as its middle line, m: one that is met askew is far nearer by its corner.
+const THIN: [f64; 3] = [1e-8, 1e-5, 1e-3];
+/// So much longer than thick it must be.
+const SLENDER: f64 = 4.0;
 /// More than rounding can take away, m or rad.
 const SLACK: f64 = 1e-9;
 
@@ -33,6 +40,8 @@ pub struct Profile {
     strip: f64,
     /// How far the hull reaches forward and backward in each strip, m; then in every two neighbours, every four, and so on.
     fronts: Vec<Vec<(f64, f64)>>,
+    /// The hull grown by each of [`THIN`], for boxes that are no thicker than that.
+    grown: [Hull; THIN.len()],
 }
 
 impl Profile {
@@ -58,7 +67,7 @@ impl Profile {
             let (y0, y1) = (bottom + strip * i as f64, bottom + strip * (i + 1) as f64);
             (front_in(hull, y0, y1, 1.0), front_in(hull, y0, y1, -1.0))
         });
-        Self { inner, outer, rings, runs, starts, bottom, strip, fronts: runs_of(fronts.collect()) }
+        Self { inner, outer, rings, runs, starts, bottom, strip, fronts: runs_of(fronts.collect()), grown: THIN.map(|by| hull.grown(by)) }
     }
 
     /// The runs of the ring just within a distance.
@@ -66,6 +75,11 @@ impl Profile {
         let part = (distance - self.inner) / (self.outer - self.inner).max(SLACK);
         let ring = ((part * self.rings as f64) as usize).min(self.rings - 1);
         &self.runs[self.starts[ring] as usize..self.starts[ring + 1] as usize]
+    }
+
+    /// What it cost to make, in units of [`crate::space::Space::work`].
+    pub fn cost(&self) -> u64 {
+        RING_COST * self.rings as u64
     }
 
     /// How far at least the hull can turn left and right before it meets a point of a box (from the axle, in the hull's axes),
@@ -127,12 +141,32 @@ impl Profile {
         if high < 0.0 || low > STRIPS as f64 {
             return never;
         }
+        if let Some(ways) = self.ways_of_line(patch) {
+            return ways;
+        }
         let (first, last) = (low.max(0.0) as usize, (high as usize).min(STRIPS - 1));
         let reach = self.reach(first.min(STRIPS - 1), last);
         // Ahead of the hull lies nothing that is behind all of it.
-        let ahead = if p.x + extent.x < -reach.1 { f64::INFINITY } else { (p.x - extent.x - reach.0).max(0.0) };
-        let behind = if p.x - extent.x > reach.0 { f64::INFINITY } else { (-p.x - extent.x - reach.1).max(0.0) };
+        let is_behind = p.x + extent.x < -reach.1;
+        let ahead = if is_behind { f64::INFINITY } else { (p.x - extent.x - reach.0).max(0.0) };
+        let is_ahead = p.x - extent.x > reach.0;
+        let behind = if is_ahead { f64::INFINITY } else { (-p.x - extent.x - reach.1).max(0.0) };
         (ahead, behind)
+    }
+
+    /// The same of a box that is hardly more than a line beside the hull.
+    fn ways_of_line(&self, patch: &Patch) -> Option<(f64, f64)> {
+        let is_slender = |by: f64| patch.half.y <= by && patch.half.x > SLENDER * by;
+        let grown = &self.grown[THIN.iter().position(|&by| is_slender(by))?];
+        let line = patch.spine();
+        if grown.overlaps(&line) {
+            return None;
+        }
+        Some(match grown.stop_by(&line) {
+            Some(InTheWay::Ahead(way)) => (way - SLACK, f64::INFINITY),
+            Some(InTheWay::Behind(way)) => (f64::INFINITY, way - SLACK),
+            None => (f64::INFINITY, f64::INFINITY),
+        })
     }
 }
 
@@ -170,7 +204,7 @@ fn front_in(hull: &Hull, low: f64, high: f64, sign: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::{Arc, InTheWay, Segment};
+    use crate::geometry::{Arc, Segment};
     use proptest::prelude::*;
     use trundle_core::Footprint;
 
@@ -185,15 +219,15 @@ mod tests {
         #[test]
         fn never_more_than_the_closed_forms(
             shift in (-0.6..0.6_f64, -0.5..0.5_f64), margin in 0.0..0.05_f64,
-            center in (-0.8..0.8_f64, -0.8..0.8_f64), half in (0.0..0.3_f64, 0.0..0.2_f64),
+            center in (-0.8..0.8_f64, -0.8..0.8_f64), half in (0.0..0.3_f64, 0.0..0.2_f64), thin in -7.0..0.0_f64,
             part in (-1.0..1.0_f64, -1.0..1.0_f64), bearing in 0.0..TAU,
         ) {
             let hull = hull(shift, margin);
             let profile = Profile::new(&hull, 5000);
             let center = Vector2::new(center.0, center.1);
             let axis = Vector2::new(bearing.cos(), bearing.sin());
-            let patch = Patch { center, axis, half: Vector2::new(half.0, half.1) };
-            let p = center + axis * (half.0 * part.0) + Vector2::new(-axis.y, axis.x) * (half.1 * part.1);
+            let patch = Patch { center, axis, half: Vector2::new(half.0, half.1 * 10_f64.powf(thin)) };
+            let p = center + axis * (half.0 * part.0) + Vector2::new(-axis.y, axis.x) * (patch.half.y * part.1);
             let (mut angles, mut blocked) = (Vec::new(), Vec::<Arc>::new());
             hull.blocked_headings(&Segment::point(p), &mut angles, &mut blocked);
             let rooms = profile.rooms(&patch);

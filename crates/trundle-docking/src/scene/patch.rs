@@ -11,7 +11,7 @@ pub struct Patch {
     pub center: Vector2,
     /// Along its longer sides, unit.
     pub axis: Vector2,
-    /// Half its sides, along the axis and across, m.
+    /// Half its sides, along the axis (0 for a point only) and across, m.
     pub half: Vector2,
 }
 
@@ -23,13 +23,17 @@ impl Patch {
 
     /// About some points, along the direction in which they differ most.
     pub fn about(points: impl Iterator<Item = Vector2> + Clone) -> Self {
-        let count = points.clone().count().max(1) as f64;
-        let mean = points.clone().sum::<Vector2>() / count;
-        let (mut xx, mut xy, mut yy) = (0.0, 0.0, 0.0);
+        // Sums from a point among them: places may be far from the origin.
+        let first = points.clone().next().unwrap_or_default();
+        let (mut count, mut sum, mut xx, mut xy, mut yy) = (0.0, Vector2::zeros(), 0.0, 0.0, 0.0);
         for p in points.clone() {
-            let d = p - mean;
+            let d = p - first;
+            (count, sum) = (count + 1.0, sum + d);
             (xx, xy, yy) = (xx + d.x * d.x, xy + d.x * d.y, yy + d.y * d.y);
         }
+        let off = sum / f64::max(count, 1.0);
+        (xx, xy, yy) = (xx - sum.x * off.x, xy - sum.x * off.y, yy - sum.y * off.y);
+        let mean = first + off;
         let bearing = 0.5 * (2.0 * xy).atan2(xx - yy);
         let axis = Vector2::new(bearing.cos(), bearing.sin());
         let across = Vector2::new(-axis.y, axis.x);
@@ -67,11 +71,15 @@ impl Patch {
     pub fn nearest(&self) -> f64 {
         let beyond = |at: f64, half: f64| (at.abs() - half).max(0.0);
         let along = beyond(self.axis.dot(&self.center), self.half.x);
-        along.hypot(beyond(self.axis.perp(&self.center), self.half.y))
+        let across = beyond(self.axis.perp(&self.center), self.half.y);
+        (along * along + across * across).sqrt()
     }
 
     /// Half the angle at most that it takes up about the bearing of its middle, seen from the origin, rad.
     pub fn half_angle(&self) -> f64 {
+        if self.half.x == 0.0 {
+            return 0.0;
+        }
         let distance = self.center.norm();
         if distance == 0.0 {
             return std::f64::consts::PI;

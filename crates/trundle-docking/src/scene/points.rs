@@ -22,7 +22,7 @@ struct Node {
 /// Points of a node that is not halved.
 const LEAF: usize = 8;
 /// What it costs to see what a box promises.
-const PROMISE: u64 = 8;
+const PROMISE: u64 = 12;
 /// Nodes that can wait at once: halves are halves, so that this is deep enough for 2^31 points.
 const DEEPEST: usize = 64;
 
@@ -76,11 +76,12 @@ impl PointIndex {
     pub fn ask<Q: Question>(&self, question: &mut Q) -> u64 {
         let mut waiting = [0_u32; DEEPEST];
         let mut count = usize::from(!self.nodes.is_empty());
-        let mut work = 0;
+        // What has just been put on top has just been asked about.
+        let (mut work, mut is_fresh) = (0, false);
         while count > 0 {
             (count, work) = (count - 1, work + 2 * PROMISE);
             let node = &self.nodes[waiting[count] as usize];
-            if question.promise(&node.patch).is_none() {
+            if !std::mem::take(&mut is_fresh) && question.promise(&node.patch).is_none() {
                 continue;
             }
             if node.halves == 0 {
@@ -105,6 +106,7 @@ impl PointIndex {
                 if [a, b][half].is_some() {
                     waiting[count] = halves[half];
                     count += 1;
+                    is_fresh = true;
                 }
             }
         }
