@@ -75,10 +75,7 @@ pub struct Planning {
 }
 
 impl Planning {
-    pub(crate) fn new(
-        meter: Arc<Meter>,
-        search: impl Future<Output = Plan> + Send + Sync + 'static,
-    ) -> Self {
+    pub(crate) fn new(meter: Arc<Meter>, search: impl Future<Output = Plan> + Send + Sync + 'static) -> Self {
         Self { meter, search: Box::pin(search) }
     }
 

@@ -116,7 +116,13 @@ impl Docker {
         goal: Pose2,
     ) -> Result<Plan, Refusal> {
         let most = self.checked(margin, footprint, scene, &start, &goal)?;
-        Ok(at_once(self.search(most, footprint, scene, self.task(start, goal), &Meter::endless(self.most_of(scene)))))
+        Ok(at_once(self.search(
+            most,
+            footprint,
+            scene,
+            self.task(start, goal),
+            &Meter::endless(self.most_of(scene)),
+        )))
     }
 
     /// Begins what [`Docker::plan_keeping`] does at once: the search then goes on in parts ([`Planning::go_on`]).

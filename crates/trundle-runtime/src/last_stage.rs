@@ -268,7 +268,11 @@ fn told(reason: &Reason) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use clock::timed;
     use trundle_core::{OccupancyGrid, PoseEstimate};
+
+    #[path = "../../../../../bench/docking/clock.rs"]
+    mod clock;
 
     /// A corridor of 0.6 m.
     fn corridor() -> OccupancyGrid {
@@ -395,5 +399,92 @@ mod tests {
         let touching = SettlePreview { time: None, poses: vec![start, near] };
         assert!(!chosen(&mut off, &surroundings(&grid, start, 0.0), near, touching));
         assert!(!off.begin_if_possible(&surroundings(&grid, start, 0.0), near));
+    }
+
+    /// Until it has settled on an ideal base, s.
+    fn settles_in(stage: &mut LastStage, grid: &OccupancyGrid, mut pose: Pose2, goal: Pose2) -> f64 {
+        begin(stage, goal);
+        for i in 1..5000 {
+            match stage.step(&surroundings(grid, pose, 0.02 * f64::from(i))) {
+                Progress::Moving(twist) => pose = pose.advance(twist, 0.02),
+                Progress::Settled => return 0.02 * f64::from(i - 1),
+                Progress::GivenUp(_) => break,
+            }
+        }
+        f64::INFINITY
+    }
+
+    /// What is chosen is faster, driven to its end, than the other: arcs are kept where they are, and only there.
+    #[test]
+    fn the_way_that_is_chosen_is_the_faster_one_when_both_are_driven() {
+        let (robot, goal) = (crate::RobotConfig::default(), Pose2::new(1.5, 0.35, 0.0));
+        let follower =
+            trundle_control::Follower::new(robot.control.clone(), robot.drive, robot.limits).unwrap();
+        let open = OccupancyGrid::from_ascii(0.05, &(".".repeat(60) + "\n").repeat(60)).unwrap();
+        let (mut arcs, mut manoeuvres) = (0, 0);
+        for i in 0..24 {
+            let part = |k: i32| f64::from((i * k) % 24) / 24.0 - 0.5;
+            let (grid, goal) = if i % 2 == 0 {
+                (corridor(), goal)
+            } else {
+                (open.clone(), Pose2::new(1.5, 1.5, 0.0))
+            };
+            let start = Pose2::new(goal.x + 0.7 * part(5), goal.y + 0.12 * part(7), 0.9 * part(11));
+            let (mut stage, s) = (stage(), surroundings(&grid, start, 0.0));
+            let arc = follower.preview_settling(start, goal);
+            let manoeuvre_wins = chosen(&mut stage, &s, goal, arc.clone());
+            let scene = Scene::from_grid(&grid, goal.position(), 3.0, false);
+            let kept = LastStageConfig::default().arc_margin;
+            let touches = |pose: &Pose2| scene.clearance(&Footprint::KOBUKI, pose, kept).is_some();
+            let arc = arc.time.filter(|_| !arc.poses.iter().any(touches));
+            let driven = settles_in(&mut stage, &grid, start, goal);
+            match (manoeuvre_wins, arc) {
+                // Within what standing and creeping add to a plan.
+                (false, Some(arc)) => assert!(arc <= driven + 0.5, "{start:?}: arc {arc}, driven {driven}"),
+                (false, None) => assert!(driven.is_infinite(), "{start:?}: the arc touches, driven {driven}"),
+                (true, Some(arc)) => assert!(driven <= arc + 0.5, "{start:?}: arc {arc}, driven {driven}"),
+                (true, None) => assert!(driven.is_finite(), "{start:?}"),
+            }
+            (arcs, manoeuvres) = (arcs + i32::from(!manoeuvre_wins), manoeuvres + i32::from(manoeuvre_wins));
+        }
+        eprintln!("{arcs} arcs, {manoeuvres} manoeuvres");
+        assert!(arcs > 4 && manoeuvres > 2, "{arcs} arcs, {manoeuvres} manoeuvres");
+    }
+
+    /// No step costs more than 2 ms of a core, however hard the place is; the least of some runs, each the same.
+    #[test]
+    fn no_step_takes_longer_than_two_milliseconds() {
+        let (wall, free) = ("#".repeat(80) + "\n", ".".repeat(80) + "\n");
+        let grid = OccupancyGrid::from_ascii(0.05, &(wall.clone() + &free.repeat(9) + &wall)).unwrap();
+        let corners = [(0.3, 0.2), (-0.3, 0.2), (-0.3, -0.2), (0.3, -0.2)];
+        let corners = corners.map(|(x, y)| trundle_core::Vector2::new(x, y)).to_vec();
+        let footprint = Footprint::Polygon { corners };
+        // Too narrow to turn in: all that may be searched is searched.
+        let (start, goal) = (Pose2::new(1.9, 0.27, 0.0), Pose2::new(2.0, 0.28, 3.1));
+        let run = || {
+            let mut stage = LastStage::new(&LastStageConfig::default(), &footprint).unwrap();
+            let preview = SettlePreview { time: None, poses: vec![start, goal] };
+            let mut times = Vec::new();
+            let mut clock = |work: &mut dyn FnMut() -> bool| {
+                let (goes_on, ms) = timed(work);
+                times.push(ms);
+                goes_on
+            };
+            let s = surroundings(&grid, start, 0.0);
+            stage.consider(&s, goal, preview);
+            while clock(&mut || !stage.takes_over(&s) && stage.choice.is_some()) {}
+            begin(&mut stage, goal);
+            for i in 1..400 {
+                let s = surroundings(&grid, start, 0.02 * f64::from(i));
+                clock(&mut || matches!(stage.step(&s), Progress::Moving(_)));
+            }
+            times
+        };
+        let runs: Vec<Vec<f64>> = (0..5).map(|_| run()).collect();
+        let least = |i: usize| runs.iter().map(|run| run[i]).fold(f64::INFINITY, f64::min);
+        let worst = (0..runs[0].len()).map(least).fold(0.0, f64::max);
+        eprintln!("{} steps, the longest {worst:.2} ms", runs[0].len());
+        assert!(runs.iter().all(|run| run.len() == runs[0].len()), "as many steps every time");
+        assert!(worst <= 2.0, "{worst:.2} ms");
     }
 }

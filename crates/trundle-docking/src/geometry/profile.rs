@@ -67,7 +67,17 @@ impl Profile {
             let (y0, y1) = (bottom + strip * i as f64, bottom + strip * (i + 1) as f64);
             (front_in(hull, y0, y1, 1.0), front_in(hull, y0, y1, -1.0))
         });
-        Self { inner, outer, rings, runs, starts, bottom, strip, fronts: runs_of(fronts.collect()), grown: THIN.map(|by| hull.grown(by)) }
+        Self {
+            inner,
+            outer,
+            rings,
+            runs,
+            starts,
+            bottom,
+            strip,
+            fronts: runs_of(fronts.collect()),
+            grown: THIN.map(|by| hull.grown(by)),
+        }
     }
 
     /// The runs of the ring just within a distance.

@@ -43,12 +43,7 @@ pub async fn beam(search: &mut Search<'_, '_>, width: usize, nodes: usize) {
 }
 
 /// The same with many legs, led by a guide that knows how the free poses hang together.
-pub async fn guided_beam(
-    search: &mut Search<'_, '_>,
-    guide: &mut Guide<'_, '_>,
-    width: usize,
-    nodes: usize,
-) {
+pub async fn guided_beam(search: &mut Search<'_, '_>, guide: &mut Guide<'_, '_>, width: usize, nodes: usize) {
     layers(search, width, MOST_LEGS_GUIDED, (nodes, LAYERS_MORE), |_, pose| guide.seconds(pose)).await;
 }
 

@@ -12,12 +12,7 @@ const FINEST: f64 = 2e-3;
 
 /// The fastest of the sampled ways from one pose to another by a turn alone or by one or two legs, and its time, s; `None`
 /// when none of them is free.
-pub async fn connect(
-    task: &Task,
-    space: &mut Space<'_>,
-    from: &Pose2,
-    to: &Pose2,
-) -> Option<(f64, Legs)> {
+pub async fn connect(task: &Task, space: &mut Space<'_>, from: &Pose2, to: &Pose2) -> Option<(f64, Legs)> {
     let part = Task { start: *from, goal: *to, ..*task };
     if from.distance(to) < 1e-9 {
         let (time, _) = Legs::default().motions(&part, space)?;

@@ -9,13 +9,7 @@ use trundle_core::wrap_angle;
 ///
 /// Coordinate search with halving steps: the time has kinks where a turn vanishes or a speed limit is met, and the free
 /// set has corners, so no derivative is asked for.
-pub async fn polish(
-    task: &Task,
-    space: &mut Space<'_>,
-    legs: &Legs,
-    time: f64,
-    limit: u64,
-) -> (f64, Legs) {
+pub async fn polish(task: &Task, space: &mut Space<'_>, legs: &Legs, time: f64, limit: u64) -> (f64, Legs) {
     let mut best = (time, legs.clone());
     let n = legs.0.len();
     if n < 2 {

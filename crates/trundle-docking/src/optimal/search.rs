@@ -62,13 +62,7 @@ impl<'s, 'a> Search<'s, 'a> {
 
     /// Looks for the best way to the goal by one or two legs from a base at `pose`, whose `rays` are given. `prefix` are the
     /// legs that led there, `spent` their time with all pauses, s. Whether one was found that is better than all before.
-    pub async fn complete(
-        &mut self,
-        pose: &Pose2,
-        rays: &[Ray],
-        prefix: &[(f64, f64)],
-        spent: f64,
-    ) -> bool {
+    pub async fn complete(&mut self, pose: &Pose2, rays: &[Ray], prefix: &[(f64, f64)], spent: f64) -> bool {
         self.tails.clear();
         self.collect_straight(pose, spent);
         self.collect_pairs(pose, rays, spent);

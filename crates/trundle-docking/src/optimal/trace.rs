@@ -17,12 +17,7 @@ const HALVINGS: u32 = 5;
 
 /// Legs along `poses`, which lead from start to goal, and their time (s); `None` when some part is not
 /// free, or when [`Space::work`] comes to `limit` before.
-pub async fn trace(
-    task: &Task,
-    space: &mut Space<'_>,
-    poses: &[Pose2],
-    limit: u64,
-) -> Option<(f64, Legs)> {
+pub async fn trace(task: &Task, space: &mut Space<'_>, poses: &[Pose2], limit: u64) -> Option<(f64, Legs)> {
     let chain = linked(task, space, poses, limit).await?;
     through(task, space, &chain, limit).await
 }

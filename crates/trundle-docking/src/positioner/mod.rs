@@ -217,7 +217,12 @@ impl Positioner {
     }
 
     /// A part of the search for a manoeuvre from `pose`, and what follows when that was the last.
-    fn plan_on(&mut self, input: &PositionerInput<'_>, mut planning: Planning, pose: Pose2) -> (Phase, Reason) {
+    fn plan_on(
+        &mut self,
+        input: &PositionerInput<'_>,
+        mut planning: Planning,
+        pose: Pose2,
+    ) -> (Phase, Reason) {
         match planning.go_on(self.config.step_work).map(|plan| self.first_of(plan)) {
             None => (Phase::Plan { planning, pose }, Reason::Planning),
             Some(Ok(motion)) => follow(motion, pose),

@@ -27,11 +27,7 @@ pub(super) enum Next {
 
 impl Positioner {
     /// The next motion, or a search for it.
-    pub(super) fn next_motion(
-        &mut self,
-        input: &PositionerInput<'_>,
-        pose: &Pose2,
-    ) -> Result<Next, Reason> {
+    pub(super) fn next_motion(&mut self, input: &PositionerInput<'_>, pose: &Pose2) -> Result<Next, Reason> {
         match self.docker.config().method {
             Method::Optimal => self.next_of_plan(input, pose),
             Method::Paper => self.next_of_paper(input, pose),
