@@ -271,7 +271,7 @@ mod tests {
     use clock::timed;
     use trundle_core::{OccupancyGrid, PoseEstimate};
 
-    #[path = "../../../../../bench/docking/clock.rs"]
+    #[path = "../../../../bench/docking/clock.rs"]
     mod clock;
 
     /// A corridor of 0.6 m.

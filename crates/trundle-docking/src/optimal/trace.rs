@@ -49,7 +49,7 @@ async fn linked(task: &Task, space: &mut Space<'_>, poses: &[Pose2], limit: u64)
         }
         match part {
             Part::Run(from, to) if to > from + 1 => {
-                let middle = from + (to - from + 1) / 2;
+                let middle = from + (to - from).div_ceil(2);
                 parts.extend([Part::Run(middle, to), Part::Run(from, middle)]);
             }
             Part::Run(..) => parts.extend(halves(space, &first, &last, HALVINGS)?),
