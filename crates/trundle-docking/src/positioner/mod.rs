@@ -278,3 +278,35 @@ fn follow(motion: Motion, from: Pose2) -> (Phase, Reason) {
 fn measure(since: Stamp) -> Phase {
     Phase::Measure { since, average: PoseAverage::default() }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::config::Method;
+
+    /// Settled, it forgets the straight that was to follow; pushed off, it begins with a decision, not with that.
+    #[test]
+    fn what_was_to_follow_ends_on_the_goal() {
+        let docking = DockingConfig { method: Method::Paper, ..DockingConfig::default() };
+        let footprint = Footprint::Disc { radius: 0.2 };
+        let goal = Pose2::IDENTITY;
+        let mut positioner =
+            Positioner::new(docking, PositionerConfig::default(), footprint, goal).expect("valid");
+        (positioner.pending, positioner.recoveries) = (Some(Motion::Drive(0.3)), 3);
+        let scene = Scene::new(&[]).expect("valid");
+        let (mut time, covariance) = (0.0, Matrix3::zeros());
+        let mut run = |positioner: &mut Positioner, pose: Pose2, steps: usize| {
+            let mut last = Reason::BadPose;
+            for _ in 0..steps {
+                time += 0.1;
+                let stamp = Stamp::default().after(time);
+                last = positioner.step(&PositionerInput { stamp, pose, covariance, scene: &scene }).reason;
+            }
+            last
+        };
+        assert_eq!(run(&mut positioner, goal, 10), Reason::Settled);
+        assert_eq!((positioner.pending, positioner.recoveries), (None, 0));
+        let beside = Pose2::new(0.0, 0.1, 0.0);
+        assert!(matches!(run(&mut positioner, beside, 6), Reason::Moving(Motion::Turn(_))));
+    }
+}

@@ -245,6 +245,18 @@ mod tests {
     }
 
     #[test]
+    fn off_the_map_is_unknown() {
+        let grid = OccupancyGrid::from_ascii(0.1, &("..........\n".repeat(10))).unwrap();
+        let clear = |unknown_blocks: bool, x: f64| {
+            let scene = Scene::from_grid(&grid, Vector2::new(0.5, 0.5), 3.0, unknown_blocks);
+            let robot = Footprint::Disc { radius: 0.1 };
+            scene.clearance(&robot, &Pose2::new(x, 0.5, 0.0), 0.01).map(|(distance, _)| distance)
+        };
+        assert_eq!((clear(true, 0.5), clear(true, 0.95), clear(true, 2.5)), (None, Some(0.0), Some(0.0)));
+        assert_eq!((clear(false, 0.95), clear(false, 2.5)), (None, None));
+    }
+
+    #[test]
     fn inside_a_block_is_in_collision() {
         let corners = [(-5., -5.), (5., -5.), (5., 5.), (-5., 5.)].map(|(x, y)| Vector2::new(x, y)).to_vec();
         let scene = Scene::new(&[Obstacle::Polygon(corners)]).unwrap();
