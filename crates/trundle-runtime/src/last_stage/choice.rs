@@ -61,7 +61,12 @@ impl Choice {
     }
 
     /// A part of it. `drawn` is what stands about the manoeuvre, asked for once.
-    pub(super) fn step(&mut self, s: &Surroundings<'_>, means: &Means<'_>, drawn: impl Fn() -> Scene) -> Verdict {
+    pub(super) fn step(
+        &mut self,
+        s: &Surroundings<'_>,
+        means: &Means<'_>,
+        drawn: impl Fn() -> Scene,
+    ) -> Verdict {
         if !self.is_arc_looked_at(s, means) {
             return Verdict::Open;
         }
