@@ -7,7 +7,7 @@ use std::f64::consts::PI;
 use trundle_core::{Footprint, Pose2, Vector2};
 use trundle_docking::{Certificate, Docker, DockingConfig, Manoeuvre, Method, Obstacle, Plan, Scene};
 
-const PROBLEMS: usize = 250;
+const PROBLEMS: usize = 100;
 /// What is kept where a margin of 0 is asked for, m, less what a motion may be off by.
 const TOUCH: f64 = 1e-4 - 1e-6;
 
