@@ -37,7 +37,7 @@ pub struct LastStageConfig {
     /// stops 0.04 m before an obstacle, does not hold what was planned; and a tenth of the work, because the robot stands
     /// meanwhile.
     pub planner: DockingConfig,
-    /// Carrying them out. Default: as it comes, but a control step plans for no more than 1.5 ms.
+    /// Carrying them out. Default: as it comes, but a control step plans for some 0.6 to 1 ms only.
     pub positioner: PositionerConfig,
 }
 
@@ -50,7 +50,7 @@ impl Default for LastStageConfig {
             time_limit: 120.0,
             most_stops: 10,
             planner: DockingConfig { margin: 0.05, most_work: 5_000_000, ..DockingConfig::default() },
-            positioner: PositionerConfig { step_work: 150_000, ..PositionerConfig::default() },
+            positioner: PositionerConfig { step_work: 60_000, ..PositionerConfig::default() },
         }
     }
 }
