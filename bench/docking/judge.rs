@@ -1,5 +1,6 @@
 //! The judge: drives a path in fine steps and looks for contact by sampling, on its own. One for all methods.
 
+use std::collections::BTreeMap;
 use trundle_core::{Pose2, wrap_angle};
 use trundle_docking::MotionLimits;
 use trundle_docking::corridor::{Answer, Piece, Problem, time_of};
@@ -37,29 +38,58 @@ pub fn time(problem: &Problem, path: &[Piece]) -> Result<f64, String> {
     Ok(time_of(path, &MotionLimits::default()))
 }
 
-/// Judges answers to problems, prints what became of each that is not good and a summary.
-pub fn print(problems: &[Problem], answers: &[Answer]) {
-    let (mut times, mut impossible, mut wrong, mut missing) = (Vec::new(), 0, 0, 0);
+/// What became of the answers to some problems.
+#[derive(Debug, Default)]
+pub struct Judged {
+    /// Time of each path that is good, s.
+    pub times: Vec<f64>,
+    /// Problems that are said to be impossible.
+    pub impossible: usize,
+    /// Each wrong answer, with the reason.
+    pub wrong: Vec<String>,
+    /// Problems without an answer.
+    pub missing: usize,
+}
+
+/// Judges answers to problems; refuses two answers to one problem, and one to a problem that there is not.
+pub fn judge(problems: &[Problem], answers: &[Answer]) -> Result<Judged, String> {
+    let mut open: BTreeMap<&str, &Answer> = BTreeMap::new();
+    for answer in answers {
+        if open.insert(&answer.problem, answer).is_some() {
+            return Err(format!("two answers to problem `{}`", answer.problem));
+        }
+    }
+    let mut judged = Judged::default();
     for problem in problems {
-        match answers.iter().find(|answer| answer.problem == problem.name).map(|answer| &answer.path) {
-            None => missing += 1,
-            Some(None) => impossible += 1,
+        match open.remove(problem.name.as_str()).map(|answer| &answer.path) {
+            None => judged.missing += 1,
+            Some(None) => judged.impossible += 1,
             Some(Some(path)) => match time(problem, path) {
-                Ok(time) => times.push(time),
-                Err(reason) => {
-                    wrong += 1;
-                    println!("{}: {reason}", problem.name);
-                }
+                Ok(time) => judged.times.push(time),
+                Err(reason) => judged.wrong.push(format!("{}: {reason}", problem.name)),
             },
         }
     }
-    let sum: f64 = times.iter().sum();
-    println!(
-        "{} problems: {} settled, {impossible} said to be impossible, {wrong} wrong, {missing} without an answer; {:.3} s on average",
-        problems.len(),
-        times.len(),
-        sum / times.len().max(1) as f64
-    );
+    match open.keys().next() {
+        Some(name) => Err(format!("an answer to problem `{name}`, which is none of the {}", problems.len())),
+        None => Ok(judged),
+    }
+}
+
+impl Judged {
+    /// A line for each wrong answer, and one for all.
+    pub fn told(&self) -> String {
+        let Self { times, impossible, wrong, missing } = self;
+        let count = times.len() + impossible + wrong.len() + missing;
+        let mean = times.iter().sum::<f64>() / times.len().max(1) as f64;
+        let lines: String = wrong.iter().map(|line| format!("{line}\n")).collect();
+        format!(
+            "{lines}{count} problems: {} settled, {impossible} said to be impossible, {} wrong, {missing} without an answer; {mean:.3} s \
+             on average",
+            times.len(),
+            wrong.len()
+        )
+    }
 }
 
 #[cfg(test)]
@@ -76,5 +106,23 @@ mod tests {
         };
         assert!(off(0.0099, 0.0).is_ok() && off(0.007, 0.007).is_ok());
         assert!(off(0.0101, 0.0).is_err() && off(0.008, 0.008).is_err());
+    }
+
+    /// Answers written by hand to the paper's scenarios.
+    #[test]
+    fn answers_by_hand_are_judged() {
+        let problems = Scenario::ALL.map(Scenario::problem);
+        let read = |text: &str| trundle_docking::corridor::parse_answers(text).unwrap();
+        let judged = judge(&problems, &read(include_str!("answers_by_hand.txt"))).unwrap();
+        assert_eq!((judged.times.len(), judged.impossible, judged.missing), (2, 0, 1));
+        // 2 (1.2 rad/s, 3 rad/s^2 over 90 deg) + 1 (0.25 m/s, 0.5 m/s^2 over 0.2 m) + 2 pauses.
+        let turn = std::f64::consts::FRAC_PI_2 / 1.2 + 0.4;
+        assert!((judged.times[0] - (2.0 * turn + 1.3 + 1.0)).abs() < 1e-9, "{:?}", judged.times);
+        assert!(judged.wrong[0].starts_with("hong24-b: touches something in piece 1"), "{:?}", judged.wrong);
+        assert!(judged.told().contains("4 problems: 2 settled, 0 said to be impossible, 1 wrong, 1 without"));
+        let twice = judge(&problems, &read("trundle-answers 1\nproblem hong24-a\nproblem hong24-a\n"));
+        assert!(twice.unwrap_err().contains("two answers to problem `hong24-a`"));
+        let unknown = judge(&problems, &read("trundle-answers 1\nproblem x\nturn 3\n"));
+        assert!(unknown.unwrap_err().contains("`x`, which is none of the 4"));
     }
 }

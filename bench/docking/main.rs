@@ -20,21 +20,34 @@ mod world;
 
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
+use std::process::ExitCode;
 use table::{Row, Track};
+use trundle_core::Invalid;
 use trundle_docking::corridor::{
     Answer, Piece, Problem, generate, parse, parse_answers, write, write_answers,
 };
 use trundle_docking::paper::PaperConfig;
 use trundle_docking::{Certificate, Docker, DockingConfig, Method, MotionLimits, Plan};
 
-fn main() {
-    let problems = problems();
+fn main() -> ExitCode {
+    match run() {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(problem) => {
+            println!("{problem}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+fn run() -> Result<(), String> {
+    let problems = problems()?;
     if let Some(path) = argument("--write") {
-        return std::fs::write(path, write(&problems)).expect("a file that can be written");
+        return kept(&path, &write(&problems));
     }
     if let Some(path) = argument("--answers") {
-        let text = std::fs::read_to_string(path).expect("a file that can be read");
-        return judge::print(&problems, &parse_answers(&text).expect("the format of the page"));
+        let answers = read(&path, parse_answers)?;
+        println!("{}", judge::judge(&problems, &answers).map_err(|e| format!("{path}: {e}"))?.told());
+        return Ok(());
     }
     let mut rows = vec![optimal(&problems, number("--boxes", 50_000))];
     rows.push(by_paper(&problems));
@@ -42,25 +55,37 @@ fn main() {
     rows.push(by_hybrid(few));
     table::print(&rows);
     if let Some(path) = argument("--write-answers") {
-        std::fs::write(path, write_answers(&rows[0].answers)).expect("a file that can be written");
+        kept(&path, &write_answers(&rows[0].answers))?;
     }
     if let Some(path) = argument("--list") {
-        std::fs::write(path, table::list(&problems, &rows[0])).expect("a file that can be written");
+        kept(&path, &table::list(&problems, &rows[0]))?;
     }
     let solvable: Vec<&Problem> =
         problems.iter().zip(&rows[0].times).filter(|(_, time)| time.is_some()).map(|(p, _)| p).collect();
     closed_loop(&solvable, number("--loops", 500), number("--baselines", 200));
+    Ok(())
 }
 
-fn problems() -> Vec<Problem> {
+fn kept(path: &str, text: &str) -> Result<(), String> {
+    std::fs::write(path, text).map_err(|e| format!("{path}: cannot write it: {e}"))
+}
+
+fn read<T>(path: &str, parse: impl Fn(&str) -> Result<T, Invalid>) -> Result<T, String> {
+    let text = std::fs::read_to_string(path).map_err(|e| format!("{path}: cannot read it: {e}"))?;
+    parse(&text).map_err(|e| format!("{path}: {e}"))
+}
+
+fn problems() -> Result<Vec<Problem>, String> {
     if let Some(path) = argument("--file") {
-        return parse(&std::fs::read_to_string(path).expect("a file that can be read"))
-            .expect("the format of the page");
+        let problems = read(&path, parse)?;
+        for problem in &problems {
+            problem.scene().map_err(|e| format!("{path}: problem {}: {e}", problem.name))?;
+        }
+        return Ok(problems);
     }
     let (count, seed) = (number("--problems", 5000), number("--seed", 1) as u64);
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
-    let problems: Vec<Problem> = (0..count).map(|i| generate(format!("{seed}-{i}"), &mut rng)).collect();
-    problems
+    Ok((0..count).map(|i| generate(format!("{seed}-{i}"), &mut rng)).collect())
 }
 
 /// The default method, its times against a proven bound.

@@ -26,22 +26,65 @@ struct Task {
     problem: Option<Problem>,
 }
 
+/// Where the obstacles come from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Source {
+    Map,
+    Log,
+    BuiltIn,
+    File,
+}
+
+impl Source {
+    fn of(args: &DockArgs) -> Self {
+        let ending = args.place.extension().unwrap_or_default();
+        let is_a = |endings: &[&str]| endings.iter().any(|known| ending.eq_ignore_ascii_case(known));
+        if is_a(&["yaml", "yml"]) {
+            Self::Map
+        } else if is_a(&["log"]) {
+            Self::Log
+        } else if !args.place.exists() && built_in(&args.place).is_some() {
+            Self::BuiltIn
+        } else {
+            Self::File
+        }
+    }
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Map => "a map",
+            Self::Log => "a laser log",
+            Self::BuiltIn => "a built-in problem",
+            Self::File => "a file of problems",
+        }
+    }
+
+    /// Refuses options that mean nothing here.
+    fn checked(self, args: &DockArgs) -> Result<Self, Failure> {
+        let options = [
+            ("--scan", args.scan.is_some(), Self::Log),
+            ("--problem", args.problem.is_some(), Self::File),
+            ("--through-unknown", args.through_unknown, Self::Map),
+        ];
+        match options.into_iter().find(|&(_, is_given, place)| is_given && place != self) {
+            Some((option, _, place)) => {
+                Err(named(args, &format!("{option} goes with {}, this is {}", place.name(), self.name())))
+            }
+            None => Ok(self),
+        }
+    }
+}
+
 /// `trundle dock MAP.yaml --from --to`, `trundle dock SCANS.log --to`, `trundle dock PROBLEM.txt`, or a built-in problem by name.
 pub fn run(args: &DockArgs) -> Result<Outcome, Failure> {
+    let task = match Source::of(args).checked(args)? {
+        Source::Map => on_map(args)?,
+        Source::Log => task_of(args, in_scan(args)?)?,
+        Source::BuiltIn | Source::File => task_of(args, of_file(args)?)?,
+    };
     if let Some(file) = &args.write_problem {
-        return write_problem(args, file);
+        return write_problem(args, task, file);
     }
-    let is_a = |endings: &[&str]| {
-        let ending = args.place.extension().unwrap_or_default();
-        endings.iter().any(|known| ending.eq_ignore_ascii_case(known))
-    };
-    let task = if is_a(&["yaml", "yml"]) {
-        on_map(args)?
-    } else if is_a(&["log"]) {
-        task_of(args, in_scan(args)?)?
-    } else {
-        task_of(args, of_file(args)?)?
-    };
     let docker = Docker::new(planner(args)?)?;
     let clock = Instant::now();
     let plan = docker
@@ -63,7 +106,7 @@ pub fn run(args: &DockArgs) -> Result<Outcome, Failure> {
     };
     let ends = (task.start, task.goal);
     let picture = manoeuvre_picture(surroundings, &task.footprint, ends, found, in_the_way);
-    folder.write("dock.png", &picture)?;
+    folder.write("dock.png", &picture.to_png())?;
     folder.write("summary.json", summary(&task, &plan, seconds).to_json().as_bytes())?;
     let place = folder.commit()?;
     if !args.common.quiet {
@@ -73,19 +116,24 @@ pub fn run(args: &DockArgs) -> Result<Outcome, Failure> {
     Ok(if found.is_some() { Outcome::Reached } else { Outcome::Missed })
 }
 
-/// The robot file's `[docking.planner]`, where one is given.
+/// The robot file's `[docking.planner]`, where one is given, else the planner's own defaults; method and margin as asked for.
 fn planner(args: &DockArgs) -> Result<DockingConfig, Failure> {
     let config = match &args.config {
         Some(file) => robot_file::load(Some(file))?.docking.planner,
         None => DockingConfig::default(),
     };
     let method = args.method.map_or(config.method, Into::into);
-    Ok(DockingConfig { method, ..config })
+    Ok(DockingConfig { method, margin: args.margin.unwrap_or(config.margin), ..config })
 }
 
-/// Writes the chosen problem to a file of its own.
-fn write_problem(args: &DockArgs, file: &Path) -> Result<Outcome, Failure> {
-    let text = write(&[of_file(args)?]);
+/// Writes what would be solved to a file of its own.
+fn write_problem(args: &DockArgs, task: Task, file: &Path) -> Result<Outcome, Failure> {
+    let Task { name, footprint, start, goal, .. } = task;
+    let obstacles = match task.problem {
+        Some(problem) => problem.obstacles,
+        None => task.scene.pieces().iter().map(|p| Obstacle::Segment(p.segment.a, p.segment.b)).collect(),
+    };
+    let text = write(&[Problem { name, footprint, start, goal, obstacles }]);
     std::fs::write(file, text)
         .map_err(|error| Failure::Input(format!("{}: cannot write it: {error}", file.display())))?;
     if !args.common.quiet {
@@ -150,11 +198,13 @@ fn in_scan(args: &DockArgs) -> Result<Problem, Failure> {
     })
 }
 
+fn built_in(place: &Path) -> Option<Problem> {
+    Scenario::ALL.map(Scenario::problem).into_iter().find(|problem| place == Path::new(&problem.name))
+}
+
 fn of_file(args: &DockArgs) -> Result<Problem, Failure> {
     let named = |problem: &dyn std::fmt::Display| named(args, problem);
-    let built_in =
-        Scenario::ALL.map(Scenario::problem).into_iter().find(|p| args.place == Path::new(&p.name));
-    if let Some(problem) = built_in.filter(|_| !args.place.exists()) {
+    if let Some(problem) = built_in(&args.place).filter(|_| !args.place.exists()) {
         return Ok(problem);
     }
     let text =

@@ -4,11 +4,14 @@
 //! two legs are looked for with less and less margin first; more legs are looked for with the whole margin, and are taken
 //! when they are not much slower than what less margin allows. Cost: counted, not timed, so that the answer is one everywhere.
 
+use crate::geometry::Hull;
 use crate::manoeuvre::Manoeuvre;
 use crate::optimal::{self, Certificate, Effort, Outcome, Task, Timed};
+use crate::pace::Meter;
 use crate::planner::{Impossible, Plan, Solution};
 use crate::scene::{Blocker, Scene};
 use crate::space::Space;
+use std::sync::Arc;
 use trundle_core::Footprint;
 
 /// A manoeuvre of more than so many times the bound is compared with those of less margin.
@@ -29,6 +32,7 @@ pub struct Margins<'a> {
     pub effort: Effort,
     /// Less margin is taken where it saves this part of the time; 1 never takes less than it can.
     pub saving: f64,
+    pub meter: &'a Arc<Meter>,
 }
 
 /// Legs among obstacles at a distance.
@@ -40,73 +44,82 @@ struct Found<'a> {
 
 impl<'a> Margins<'a> {
     /// The manoeuvre, with the margin that is worth its time.
-    pub fn plan(&self) -> Plan {
-        if let Some(found) = self.one_or_two(self.most) {
-            return self.solution(found);
+    pub async fn plan(&self) -> Plan {
+        if let Some(found) = self.one_or_two(self.most).await {
+            return self.solution(found).await;
         }
         if self.most <= self.least {
-            return self.told(self.many(self.least, 1));
+            return self.told(self.many(self.least, 1).await).await;
         }
-        let quick = self.one_or_two(self.most / 3.0).or_else(|| self.one_or_two(self.least));
-        let Some(quick) = quick else { return self.told(self.of_many()) };
-        match self.many(self.most, if self.saving < 1.0 { PART } else { 1 }) {
-            Ok(slow) if (1.0 - self.saving) * slow.legs.0 <= quick.legs.0 => self.solution(slow),
-            _ => self.solution(quick),
+        let mut quick = self.one_or_two(self.most / 3.0).await;
+        if quick.is_none() {
+            quick = self.one_or_two(self.least).await;
+        }
+        let Some(quick) = quick else { return self.told(self.of_many().await).await };
+        match self.many(self.most, if self.saving < 1.0 { PART } else { 1 }).await {
+            Ok(slow) if (1.0 - self.saving) * slow.legs.0 <= quick.legs.0 => self.solution(slow).await,
+            _ => self.solution(quick).await,
         }
     }
 
     /// By many motions, with all the margin, the least, or what is between.
-    fn of_many(&self) -> Result<Found<'a>, Apart> {
-        let whole = self.many(self.most, 1);
+    async fn of_many(&self) -> Result<Found<'a>, Apart> {
+        let whole = self.many(self.most, 1).await;
         if let Ok(found) = &whole
-            && (self.saving >= 1.0 || !self.is_long(found))
+            && (self.saving >= 1.0 || !self.is_long(found).await)
         {
             return whole;
         }
-        let least = match (whole, self.many(self.least, 1)) {
+        let least = match (whole, self.many(self.least, 1).await) {
             (Ok(whole), Ok(least)) if (1.0 - self.saving) * whole.legs.0 <= least.legs.0 => return Ok(whole),
             (Ok(whole), Err(_)) => return Ok(whole),
             (_, least) => least?,
         };
-        match self.many(self.most / 3.0, 1) {
+        match self.many(self.most / 3.0, 1).await {
             Ok(between) if (1.0 - self.saving) * between.legs.0 <= least.legs.0 => Ok(between),
             _ => Ok(least),
         }
     }
 
-    fn is_long(&self, found: &Found<'_>) -> bool {
+    async fn is_long(&self, found: &Found<'_>) -> bool {
         let (mut space, time) = (found.space.clone(), found.legs.0);
         time > LONG
             * optimal::bound(&self.task, &mut space, time, self.effort.gap, BOXES.min(self.effort.boxes))
+                .await
     }
 
-    fn one_or_two(&self, margin: f64) -> Option<Found<'a>> {
-        let mut space = Space::new(self.footprint, margin, self.scene);
-        optimal::one_or_two(self.task, &mut space).map(|legs| Found { space, legs, margin })
+    fn space(&self, margin: f64) -> Space<'a> {
+        Space::metered(Hull::new(self.footprint, margin), self.scene, Arc::clone(self.meter))
+    }
+
+    async fn one_or_two(&self, margin: f64) -> Option<Found<'a>> {
+        let mut space = self.space(margin);
+        let legs = optimal::one_or_two(self.task, &mut space).await?;
+        Some(Found { space, legs, margin })
     }
 
     /// With a `part`-th of the work.
-    fn many(&self, margin: f64, part: u64) -> Result<Found<'a>, Apart> {
-        let mut space = Space::new(self.footprint, margin, self.scene);
+    async fn many(&self, margin: f64, part: u64) -> Result<Found<'a>, Apart> {
+        let mut space = self.space(margin);
         let effort = Effort { work: self.effort.work / part, ..self.effort };
-        match optimal::many(self.task, &mut space, effort) {
+        match optimal::many(self.task, &mut space, effort).await {
             Outcome::Found(legs) => Ok(Found { space, legs, margin }),
             Outcome::Apart(certificate, by) => Err((certificate, by)),
             Outcome::Nothing => Err((Certificate::None, None)),
         }
     }
 
-    fn told(&self, outcome: Result<Found<'a>, Apart>) -> Plan {
+    async fn told(&self, outcome: Result<Found<'a>, Apart>) -> Plan {
         match outcome {
-            Ok(found) => self.solution(found),
+            Ok(found) => self.solution(found).await,
             Err((certificate, by)) => {
                 Plan::Impossible(Impossible { by, certificate, within: self.task.reach })
             }
         }
     }
 
-    fn solution(&self, mut found: Found<'a>) -> Plan {
-        let ((_, legs), bound) = optimal::better(self.task, &mut found.space, found.legs, self.effort);
+    async fn solution(&self, mut found: Found<'a>) -> Plan {
+        let ((_, legs), bound) = optimal::better(self.task, &mut found.space, found.legs, self.effort).await;
         let (_, motions) =
             legs.motions(&self.task, &mut found.space).expect("invariant: found legs are free");
         let manoeuvre = Manoeuvre::new(self.task.start, &motions, self.task.limits);

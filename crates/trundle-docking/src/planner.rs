@@ -1,11 +1,14 @@
+use crate::cloud::FEW;
 use crate::config::{BESIDE, DockingConfig, Method, WIDER};
 use crate::geometry::Hull;
 use crate::manoeuvre::Manoeuvre;
 use crate::margins::Margins;
 use crate::optimal::{self, Certificate, Effort, Task};
+use crate::pace::{Meter, Planning, at_once};
 use crate::paper;
 use crate::scene::{Blocker, Scene};
 use crate::space::Space;
+use std::sync::Arc;
 use thiserror::Error;
 use trundle_core::{Footprint, Invalid, Pose2};
 
@@ -113,36 +116,65 @@ impl Docker {
         goal: Pose2,
     ) -> Result<Plan, Refusal> {
         let most = self.checked(margin, footprint, scene, &start, &goal)?;
-        let task = self.task(start, goal);
+        Ok(at_once(self.search(
+            most,
+            footprint,
+            scene,
+            self.task(start, goal),
+            &Meter::endless(self.most_of(scene)),
+        )))
+    }
+
+    /// Begins what [`Docker::plan_keeping`] does at once: the search then goes on in parts ([`Planning::go_on`]).
+    ///
+    /// # Errors
+    /// As [`Docker::plan`].
+    pub fn begin(
+        &self,
+        margin: f64,
+        footprint: &Footprint,
+        scene: &Scene,
+        start: Pose2,
+        goal: Pose2,
+    ) -> Result<Planning, Refusal> {
+        let most = self.checked(margin, footprint, scene, &start, &goal)?;
+        let (docker, footprint, task) = (self.clone(), footprint.clone(), self.task(start, goal));
+        let scene = around(&footprint, scene, &wider(task));
+        let meter = Meter::rationed(self.most_of(&scene));
+        let counted = Arc::clone(&meter);
+        let search = async move { docker.search(most, &footprint, &scene, task, &counted).await };
+        Ok(Planning::new(meter, search))
+    }
+
+    /// The search, with `most` (m) for a margin, which start and goal leave.
+    async fn search(
+        &self,
+        most: f64,
+        footprint: &Footprint,
+        scene: &Scene,
+        task: Task,
+        meter: &Arc<Meter>,
+    ) -> Plan {
+        let near = around(footprint, scene, &task);
+        if self.config.method == Method::Paper {
+            return self.by_paper(most, footprint, &near, &task);
+        }
         let least = most.min(0.0);
-        Ok(match self.config.method {
-            Method::Optimal => {
-                let within = |task: Task, most| {
-                    let near = around(footprint, scene, &task);
-                    Margins {
-                        footprint,
-                        scene: &near,
-                        task,
-                        most,
-                        least,
-                        effort: self.effort(&near),
-                        saving: self.config.margin_saving,
-                    }
-                    .plan()
-                };
-                match within(task, most) {
-                    Plan::Impossible(_) => within(Task { reach: WIDER * task.reach, ..task }, least),
-                    found => found,
-                }
-            }
-            Method::Paper => {
-                let near = around(footprint, scene, &task);
-                let plan = |margin| self.by_paper(&Space::new(footprint, margin, &near), &task, margin);
-                let margins = if most > least { vec![most, most / 3.0, least] } else { vec![least] };
-                let none = Impossible { by: None, certificate: Certificate::None, within: task.reach };
-                margins.into_iter().find_map(plan).map_or(Plan::Impossible(none), Plan::Found)
-            }
-        })
+        let (effort, saving) = (self.effort(&near), self.config.margin_saving);
+        let close = Margins { footprint, scene: &near, task, most, least, effort, saving, meter };
+        let plan = close.plan().await;
+        if matches!(plan, Plan::Found(_)) {
+            return plan;
+        }
+        let task = wider(task);
+        let far = around(footprint, scene, &task);
+        let effort = self.effort(&far);
+        Margins { footprint, scene: &far, task, most: least, least, effort, saving, meter }.plan().await
+    }
+
+    /// What a plan may cost as a whole.
+    fn most_of(&self, scene: &Scene) -> u64 {
+        if scene.points().len() > FEW { self.config.points_work } else { u64::MAX }
     }
 
     fn effort(&self, scene: &Scene) -> Effort {
@@ -157,9 +189,16 @@ impl Docker {
         }
     }
 
-    fn by_paper(&self, space: &Space<'_>, task: &Task, margin: f64) -> Option<Solution> {
-        let found = paper::plan(space, task.start, task.goal, &self.config.limits, &self.config.paper);
-        found.map(|manoeuvre| Solution { manoeuvre, bound: 0.0, margin })
+    fn by_paper(&self, most: f64, footprint: &Footprint, scene: &Scene, task: &Task) -> Plan {
+        let config = &self.config;
+        let plan = |margin| {
+            let space = Space::new(footprint, margin, scene);
+            let manoeuvre = paper::plan(&space, task.start, task.goal, &config.limits, &config.paper)?;
+            Some(Solution { manoeuvre, bound: 0.0, margin })
+        };
+        let margins = if most > 0.0 { vec![most, most / 3.0, 0.0] } else { vec![most] };
+        let none = Impossible { by: None, certificate: Certificate::None, within: task.reach };
+        margins.into_iter().find_map(plan).map_or(Plan::Impossible(none), Plan::Found)
     }
 
     fn task(&self, start: Pose2, goal: Pose2) -> Task {
@@ -183,7 +222,8 @@ impl Docker {
         let task = self.task(start, goal);
         let near = around(footprint, scene, &task);
         let mut space = Space::new(footprint, margin, &near);
-        Ok(optimal::bound(&task, &mut space, known, self.config.gap, self.config.bound_boxes))
+        let (gap, boxes) = (self.config.gap, self.config.bound_boxes);
+        Ok(at_once(optimal::bound(&task, &mut space, known, gap, boxes)))
     }
 
     /// The margin that start and goal leave, m.
@@ -218,6 +258,11 @@ impl Docker {
         }
         Ok(margin)
     }
+}
+
+/// The same task, farther about.
+fn wider(task: Task) -> Task {
+    Task { reach: WIDER * task.reach, ..task }
 }
 
 /// The part of a scene that a manoeuvre may meet.

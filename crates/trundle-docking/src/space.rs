@@ -1,9 +1,9 @@
 use crate::cloud::{DriveQuestion, FEW, HeadingsQuestion, TurnQuestion, join};
 use crate::geometry::{Arc, Hull, InTheWay, Profile, Segment};
+use crate::pace::{Meter, Rest};
 use crate::scene::{Blocker, Scene};
-use std::cell::Cell;
 use std::f64::consts::TAU;
-use std::rc::Rc;
+use std::sync::Arc as Shared;
 use trundle_core::{Footprint, Pose2, Vector2};
 
 /// Motions stop this much before a contact, m or rad, so that the next one begins where nothing touches.
@@ -105,7 +105,7 @@ pub struct Space<'a> {
     profile: Option<Profile>,
     angles: Vec<f64>,
     arcs: Vec<Arc>,
-    work: Rc<Cell<u64>>,
+    meter: Shared<Meter>,
 }
 
 /// What a piece costs when it is asked for headings and when it is asked for ways, in units of [`Space::work`].
@@ -115,18 +115,20 @@ const WAY_COST: u64 = 5;
 impl<'a> Space<'a> {
     /// A footprint grown by `margin` (m, at least 0.1 mm) among obstacles.
     pub fn new(footprint: &Footprint, margin: f64, scene: &'a Scene) -> Self {
-        Self::of_hull(Hull::new(footprint, margin), scene)
+        Self::metered(Hull::new(footprint, margin), scene, Meter::endless(u64::MAX))
     }
 
-    pub(crate) fn of_hull(hull: Hull, scene: &'a Scene) -> Self {
+    /// A hull among obstacles, the work counted by `meter`.
+    pub(crate) fn metered(hull: Hull, scene: &'a Scene, meter: Shared<Meter>) -> Self {
         let points = scene.points().len();
         let profile = (points > FEW).then(|| Profile::new(&hull, points));
-        Self { scene, hull, profile, angles: Vec::new(), arcs: Vec::new(), work: Rc::default() }
+        meter.spend(profile.as_ref().map_or(0, Profile::cost));
+        Self { scene, hull, profile, angles: Vec::new(), arcs: Vec::new(), meter }
     }
 
     /// The same obstacles for another hull; their work is counted together.
     pub(crate) fn with_hull(&self, hull: Hull) -> Self {
-        Self { work: Rc::clone(&self.work), ..Self::of_hull(hull, self.scene) }
+        Self::metered(hull, self.scene, Shared::clone(&self.meter))
     }
 
     /// The footprint with its margin.
@@ -142,12 +144,27 @@ impl<'a> Space<'a> {
     /// What its answers have cost so far, those of its clones included: counted steps, each about ten nanoseconds on a
     /// processor of 2020. The same on every machine.
     pub fn work(&self) -> u64 {
-        self.work.get()
+        self.meter.work()
+    }
+
+    /// What the whole plan may come to.
+    pub(crate) fn most(&self) -> u64 {
+        self.meter.most
+    }
+
+    /// [`Space::work`] after so much more, at most what the whole plan may come to.
+    pub(crate) fn until(&self, more: u64) -> u64 {
+        self.work().saturating_add(more).min(self.meter.most)
     }
 
     /// Counts work done elsewhere on behalf of this space.
     pub(crate) fn spend(&self, work: u64) {
-        self.work.set(self.work.get() + work);
+        self.meter.spend(work);
+    }
+
+    /// Waits, where the work is done in parts, until more may be done.
+    pub(crate) fn rest(&self) -> Rest<'_> {
+        Rest(&self.meter)
     }
 
     /// What the hull overlaps at a pose, if anything.
@@ -207,7 +224,8 @@ impl<'a> Space<'a> {
         free
     }
 
-    /// Adds all headings at which a base at `position` overlaps something, sorted and joined.
+    /// Adds the headings at which a base at `position` overlaps something, sorted and joined; among many points some
+    /// hundredths of a radian of them may be left out.
     pub fn blocked_headings(&mut self, position: Vector2, blocked: &mut Vec<Arc>) {
         let (hull, angles) = (&self.hull, &mut self.angles);
         let (first, half) = (blocked.len(), Vector2::repeat(hull.outer_radius()));

@@ -1,16 +1,20 @@
 //! The last stage of a mission: which way the robot settles on its goal.
 //!
 //! Where there is room, an arc is faster; where it is tight, turns on the spot and straight moves get there, footprint-exact.
-//! The rule: an arc, when the law's own run from here is free and takes no longer than the manoeuvre that was found.
+//! The rule: an arc, when the law's own run from here is free and takes no longer than the manoeuvre that was found. Both are
+//! known to the end before one is taken: neither looking nor planning takes more than a part of a control step.
+
+mod choice;
+mod report;
 
 use crate::{navigator::Surroundings, schedule::Ticker};
+use choice::{Choice, Means, Verdict};
+pub use report::LastStageReport;
+use report::Notes;
 use serde::{Deserialize, Serialize};
 use trundle_control::SettlePreview;
 use trundle_core::{Footprint, Invalid, Pose2, Stamp, Twist2, require_in};
-use trundle_docking::{
-    Docker, DockingConfig, Plan, Positioner, PositionerConfig, PositionerInput, PositionerReport, Reason,
-    Scene,
-};
+use trundle_docking::{Docker, DockingConfig, Positioner, PositionerConfig, PositionerInput, Reason, Scene};
 
 /// How the robot settles on its goal.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -30,10 +34,10 @@ pub struct LastStageConfig {
     /// (ours: at a second each, somebody who passes by has passed).
     pub most_stops: u32,
     /// Planning of turns and straight moves. Default: as it comes, but a margin of 0.05, so that the safety monitor, which
-    /// stops 0.04 m before an obstacle, does not hold what was planned; and a tenth of the work, because it plans within a
-    /// control step.
+    /// stops 0.04 m before an obstacle, does not hold what was planned; and a tenth of the work, because the robot stands
+    /// meanwhile.
     pub planner: DockingConfig,
-    /// Carrying them out.
+    /// Carrying them out. Default: as it comes, but a control step plans for some 0.6 to 1 ms only.
     pub positioner: PositionerConfig,
 }
 
@@ -46,7 +50,7 @@ impl Default for LastStageConfig {
             time_limit: 120.0,
             most_stops: 10,
             planner: DockingConfig { margin: 0.05, most_work: 5_000_000, ..DockingConfig::default() },
-            positioner: PositionerConfig::default(),
+            positioner: PositionerConfig { step_work: 60_000, ..PositionerConfig::default() },
         }
     }
 }
@@ -56,48 +60,20 @@ const SCENE_HZ: f64 = 10.0;
 /// Slower than this the robot stands, m/s and rad/s.
 const STANDING: (f64, f64) = (0.02, 0.05);
 
-/// What turns and straight moves came to at the end of a mission.
-#[derive(Debug, Clone, PartialEq, Default, Serialize)]
-pub struct LastStageReport {
-    /// How often a manoeuvre was planned, the looks beforehand included.
-    pub plans: u32,
-    /// Motions begun.
-    pub motions: u32,
-    /// Motions broken off: by an obstacle, or by the safety monitor.
-    pub restarts: u32,
-    /// Waits because no way was known, or the pose was no number.
-    pub waits: u32,
-    /// Since they took over, s.
-    pub time: f64,
-    /// `goal_from_base` when last looked at: longitudinal and lateral deviation (m), and of heading (rad).
-    pub deviation: Option<Pose2>,
-    /// How it ended; `None` while it goes on.
-    pub ended: Option<String>,
-}
-
-/// Chooses between an arc and a manoeuvre, and carries the manoeuvre out.
+/// Chooses between an arc and a manoeuvre, and carries the manoeuvre out. No step plans for longer than
+/// [`PositionerConfig::step_work`].
 #[derive(Debug)]
 pub(crate) struct LastStage {
     config: LastStageConfig,
     docker: Docker,
     footprint: Footprint,
+    choice: Option<Choice>,
     positioner: Option<Positioner>,
     scene: Option<Scene>,
     scene_due: Ticker,
-    /// In a row: none of these motions came to its end.
-    stops: u32,
     began: Option<Stamp>,
-    last: Doing,
-    report: LastStageReport,
-}
-
-/// What the positioner did in the last step.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-enum Doing {
-    #[default]
-    Standing,
-    Moving,
-    Waiting,
+    goal: Option<Pose2>,
+    notes: Notes,
 }
 
 /// What a step of the manoeuvre came to.
@@ -116,32 +92,31 @@ impl LastStage {
         require_in("docking.most_stops", f64::from(config.most_stops), "", 1.0, 1000.0)?;
         // Its settings are checked here, once; later positioners are of the same.
         Positioner::new(config.planner.clone(), config.positioner, footprint.clone(), Pose2::IDENTITY)?;
-        let docker =
-            Docker::new(DockingConfig { overlap: config.positioner.overlap, ..config.planner.clone() })?;
         Ok(Self {
-            docker,
+            docker: Docker::new(config.positioner.planner(config.planner.clone()))?,
             config: config.clone(),
             footprint: footprint.clone(),
+            choice: None,
             positioner: None,
             scene: None,
             scene_due: Ticker::new(SCENE_HZ),
-            stops: 0,
             began: None,
-            last: Doing::Standing,
-            report: LastStageReport::default(),
+            goal: None,
+            notes: Notes::default(),
         })
     }
 
-    /// What turns and straight moves have done for the goal of now.
-    #[allow(dead_code, reason = "for the reports of a mission")]
+    /// What turns and straight moves have done for the goal of now, or the last one they were asked about.
     pub(crate) fn report(&self) -> &LastStageReport {
-        &self.report
+        &self.notes.report
     }
 
-    /// Forgets the goal.
+    /// Forgets the goal; what was done for it can still be told.
     pub(crate) fn reset(&mut self) {
-        self.positioner = None;
-        self.report = LastStageReport::default();
+        if self.positioner.take().is_some() {
+            self.notes.report.ended.get_or_insert_with(|| "broken off".to_owned());
+        }
+        self.choice = None;
     }
 
     /// Whether a goal is so near that turns and straight moves may replace a path.
@@ -149,49 +124,70 @@ impl LastStage {
         self.config.enabled && pose.distance(goal) <= self.config.near
     }
 
-    /// At the end of the trajectory: whether turns and straight moves take over from the arc that `preview` shows. A robot that
-    /// still rolls is brought to a stand first, by [`LastStage::step`], and measured there.
-    pub(crate) fn takes_over(&mut self, s: &Surroundings<'_>, goal: Pose2, preview: &SettlePreview) -> bool {
-        if !self.config.enabled {
+    /// At the end of the trajectory: begins to look whether turns and straight moves take over from the arc that `preview`
+    /// shows. [`LastStage::takes_over`] tells.
+    pub(crate) fn consider(&mut self, s: &Surroundings<'_>, goal: Pose2, preview: SettlePreview) {
+        self.choice = None;
+        if self.config.enabled {
+            self.look_into(Choice::new(s.estimate.pose, goal, Some(preview)), goal);
+        }
+    }
+
+    /// Whether the robot had better stand until it is known: the arc is not free.
+    pub(crate) fn holds(&self) -> bool {
+        self.choice.as_ref().is_some_and(Choice::is_arc_lost)
+    }
+
+    /// A part of what [`LastStage::consider`] began: whether turns and straight moves take over now. A robot that still rolls is
+    /// brought to a stand first, by [`LastStage::step`], and measured there.
+    pub(crate) fn takes_over(&mut self, s: &Surroundings<'_>) -> bool {
+        self.verdict(s) == Verdict::Manoeuvre && self.begin()
+    }
+
+    /// Turns and straight moves, if there are such: no path was found. It may take some calls to know.
+    pub(crate) fn begin_if_possible(&mut self, s: &Surroundings<'_>, goal: Pose2) -> bool {
+        let pose = s.estimate.pose;
+        if !self.is_near(&pose, &goal) {
             return false;
         }
-        let arc = preview.time.filter(|_| self.is_free(s, preview));
-        let manoeuvre = self.manoeuvre_time(s, goal);
-        !arc_wins(arc, manoeuvre) && self.begin(goal)
+        if !self.choice.as_ref().is_some_and(|choice| choice.is_about(&pose, &goal)) {
+            self.look_into(Choice::new(pose, goal, None), goal);
+        }
+        self.takes_over(s)
     }
 
-    /// Turns and straight moves, if there are such.
-    pub(crate) fn begin_if_possible(&mut self, s: &Surroundings<'_>, goal: Pose2) -> bool {
-        self.is_near(&s.estimate.pose, &goal) && self.manoeuvre_time(s, goal).is_some() && self.begin(goal)
+    fn look_into(&mut self, choice: Choice, goal: Pose2) {
+        if self.goal != Some(goal) {
+            (self.goal, self.notes) = (Some(goal), Notes::default());
+        }
+        self.notes.report.plans += 1;
+        self.choice = Some(choice);
     }
 
-    fn begin(&mut self, goal: Pose2) -> bool {
+    fn verdict(&mut self, s: &Surroundings<'_>) -> Verdict {
+        let (Some(mut choice), Some(goal)) = (self.choice.take(), self.goal) else { return Verdict::Arc };
+        let means = Means {
+            docker: &self.docker,
+            footprint: &self.footprint,
+            arc_margin: self.config.arc_margin,
+            // The pose is measured before the first motion and after the last one too.
+            standing: 2.0 * self.config.positioner.measure_time,
+            work: self.config.positioner.step_work,
+        };
+        let verdict = choice.step(s, &means, || self.drawn(s, &goal));
+        if verdict == Verdict::Open {
+            self.choice = Some(choice);
+        }
+        verdict
+    }
+
+    fn begin(&mut self) -> bool {
+        let Some(goal) = self.goal else { return false };
         let (planner, config) = (self.config.planner.clone(), self.config.positioner);
         self.positioner = Positioner::new(planner, config, self.footprint.clone(), goal).ok();
-        (self.stops, self.began, self.last, self.scene) = (0, None, Doing::Standing, None);
-        self.report = LastStageReport { plans: self.report.plans, ..LastStageReport::default() };
+        (self.choice, self.began, self.scene) = (None, None, None);
+        self.notes.restart();
         self.positioner.is_some()
-    }
-
-    /// Whether the arc keeps clear of what the map holds.
-    fn is_free(&self, s: &Surroundings<'_>, preview: &SettlePreview) -> bool {
-        let reach = preview.poses.iter().map(|p| p.distance(&s.estimate.pose)).fold(0.0, f64::max);
-        let half = reach + self.footprint.circumscribed_radius() + self.config.arc_margin + 0.1;
-        let scene = Scene::from_grid(s.grid, s.estimate.pose.position(), half, false);
-        let clear = |pose: &Pose2| scene.clearance(&self.footprint, pose, self.config.arc_margin).is_none();
-        preview.poses.iter().all(clear)
-    }
-
-    fn manoeuvre_time(&mut self, s: &Surroundings<'_>, goal: Pose2) -> Option<f64> {
-        let scene = self.drawn(s, &goal);
-        self.report.plans += 1;
-        match self.docker.plan(&self.footprint, &scene, s.estimate.pose, goal) {
-            // The pose is measured before the first motion and after the last one too.
-            Ok(Plan::Found(solution)) => {
-                Some(solution.manoeuvre.duration() + 2.0 * self.config.positioner.measure_time)
-            }
-            Ok(Plan::Impossible(_)) | Err(_) => None,
-        }
     }
 
     /// What stands around, and what is unknown: no camera looks where a manoeuvre backs up.
@@ -206,11 +202,11 @@ impl LastStage {
             return Progress::GivenUp("no goal to settle on".to_owned());
         };
         let began = *self.began.get_or_insert(s.now);
-        self.report.time = s.now - began;
-        if self.report.time > self.config.time_limit {
+        self.notes.report.time = s.now - began;
+        if self.notes.report.time > self.config.time_limit {
             return self.given_up(format!("not settled within {:.0} s", self.config.time_limit));
         }
-        if self.report.motions == 0 && !stands(s.estimate.twist) {
+        if self.notes.report.motions == 0 && !stands(s.estimate.twist) {
             return Progress::Moving(Twist2::ZERO);
         }
         if self.scene_due.due(s.now) || self.scene.is_none() {
@@ -221,49 +217,20 @@ impl LastStage {
         };
         let (pose, covariance) = (s.estimate.pose, s.estimate.covariance);
         let report = positioner.step(&PositionerInput { stamp: s.now, pose, covariance, scene });
+        self.notes.note(&report);
         if positioner.is_settled() {
-            self.report.deviation = Some(report.error);
-            self.report.ended = Some("settled".to_owned());
+            self.notes.report.ended = Some("settled".to_owned());
             return Progress::Settled;
         }
-        self.note(&report);
-        if self.stops > self.config.most_stops {
+        if self.notes.stops > self.config.most_stops {
             return self.given_up(told(&report.reason));
         }
         Progress::Moving(report.twist)
     }
 
-    /// Counts what a step did.
-    fn note(&mut self, step: &PositionerReport) {
-        let doing = match step.reason {
-            Reason::Moving(_) => Doing::Moving,
-            Reason::NoWay(_) | Reason::Refused(_) | Reason::BadPose => Doing::Waiting,
-            Reason::Measuring | Reason::Obstacle(_) | Reason::Settled => Doing::Standing,
-        };
-        let began = |what| doing == what && self.last != what;
-        let (moves, waits) = (began(Doing::Moving), began(Doing::Waiting));
-        self.report.plans += u32::from(moves || (waits && step.reason != Reason::BadPose));
-        self.report.motions += u32::from(moves);
-        self.report.waits += u32::from(waits);
-        self.stops += u32::from(waits);
-        match (&step.reason, self.last) {
-            (Reason::Obstacle(_), _) => {
-                self.report.restarts += 1;
-                self.stops += 1;
-            }
-            // It came to its end.
-            (Reason::Measuring, Doing::Moving) => self.stops = 0,
-            _ => {}
-        }
-        self.last = doing;
-        if step.reason != Reason::BadPose {
-            self.report.deviation = Some(step.error);
-        }
-    }
-
     fn given_up(&mut self, reason: String) -> Progress {
         self.positioner = None;
-        self.report.ended = Some(reason.clone());
+        self.notes.report.ended = Some(reason.clone());
         Progress::GivenUp(reason)
     }
 
@@ -271,20 +238,8 @@ impl LastStage {
     pub(crate) fn interrupted(&mut self, s: &Surroundings<'_>) {
         if let Some(positioner) = &mut self.positioner {
             positioner.interrupted(s.now);
-            self.stops += 1;
-            self.report.restarts += 1;
-            self.last = Doing::Standing;
+            self.notes.interrupted();
         }
-    }
-}
-
-/// The rule: an arc that is free (its time, s), when no manoeuvre was found or none that is faster.
-fn arc_wins(arc: Option<f64>, manoeuvre: Option<f64>) -> bool {
-    match (arc, manoeuvre) {
-        (Some(arc), Some(manoeuvre)) => arc <= manoeuvre,
-        // Without either the arc is tried: the safety monitor watches it.
-        (_, None) => true,
-        (None, Some(_)) => false,
     }
 }
 
@@ -302,135 +257,11 @@ fn told(reason: &Reason) -> String {
         Reason::NoWay(by) => format!("no turns and straight moves lead to the goal, blocked{}", at(by)),
         Reason::Refused(refusal) => refusal.to_string(),
         Reason::BadPose => "the pose is not a number".to_owned(),
-        Reason::Measuring | Reason::Moving(_) | Reason::Settled => "stopped again and again".to_owned(),
+        Reason::Measuring | Reason::Planning | Reason::Moving(_) | Reason::Settled => {
+            "stopped again and again".to_owned()
+        }
     }
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use trundle_core::{OccupancyGrid, PoseEstimate};
-
-    /// A corridor of 0.6 m.
-    fn corridor() -> OccupancyGrid {
-        let (wall, free) = ("#".repeat(60) + "\n", ".".repeat(60) + "\n");
-        OccupancyGrid::from_ascii(0.05, &(wall.clone() + &free.repeat(12) + &wall)).unwrap()
-    }
-
-    fn surroundings(grid: &OccupancyGrid, pose: Pose2, time: f64) -> Surroundings<'_> {
-        let (now, twist) = (Stamp::default().after(time), Twist2::ZERO);
-        let covariance = nalgebra::Matrix3::from_diagonal_element(1e-6);
-        Surroundings {
-            now,
-            estimate: PoseEstimate { stamp: now, pose, twist, covariance },
-            grid,
-            scan: None,
-            seen: None,
-            unplaced: 0.0,
-        }
-    }
-
-    fn stage() -> LastStage {
-        LastStage::new(&LastStageConfig::default(), &Footprint::KOBUKI).unwrap()
-    }
-
-    #[test]
-    fn a_free_arc_stays_and_one_through_a_wall_is_taken_over_and_settles() {
-        let (grid, mut stage) = (corridor(), stage());
-        let (start, goal) = (Pose2::new(1.2, 0.32, 0.0), Pose2::new(1.5, 0.38, 0.0));
-        let free = SettlePreview { time: Some(2.0), poses: vec![start, goal] };
-        assert!(!stage.takes_over(&surroundings(&grid, start, 0.0), goal, &free));
-        let swinging = SettlePreview { time: Some(2.0), poses: vec![start, Pose2::new(1.3, 0.2, 0.0), goal] };
-        assert!(stage.takes_over(&surroundings(&grid, start, 0.0), goal, &swinging));
-        let (mut pose, mut settled) = (start, None);
-        for i in 1..3000 {
-            match stage.step(&surroundings(&grid, pose, 0.02 * f64::from(i))) {
-                Progress::Moving(twist) => pose = pose.advance(twist, 0.02),
-                other => {
-                    settled = Some(other);
-                    break;
-                }
-            }
-        }
-        assert_eq!(settled, Some(Progress::Settled));
-        assert!(pose.distance(&goal) < 0.01 && (pose.theta - goal.theta).abs() < 0.0175, "{pose:?}");
-        let report = stage.report();
-        assert!(report.motions > 0 && report.plans > 0 && report.restarts == 0, "{report:?}");
-        assert_eq!(report.ended.as_deref(), Some("settled"));
-        assert!(report.deviation.unwrap().position().norm() < 0.01);
-    }
-
-    /// Runs steps of 20 ms on an ideal base until it gives up: when (s), and why.
-    fn until_given_up(
-        stage: &mut LastStage,
-        grid: &OccupancyGrid,
-        mut pose: Pose2,
-        held: bool,
-    ) -> (f64, String) {
-        for i in 1..20_000 {
-            let now = surroundings(grid, pose, 0.02 * f64::from(i));
-            match stage.step(&now) {
-                Progress::Moving(_) if held => stage.interrupted(&now),
-                Progress::Moving(twist) => pose = pose.advance(twist, 0.02),
-                Progress::GivenUp(reason) => return (0.02 * f64::from(i), reason),
-                Progress::Settled => return (f64::NAN, "settled".to_owned()),
-            }
-        }
-        (f64::INFINITY, "never".to_owned())
-    }
-
-    #[test]
-    fn what_never_moves_ends_with_a_reason() {
-        let (grid, start, goal) = (corridor(), Pose2::new(1.2, 0.32, 0.0), Pose2::new(1.5, 0.38, 0.0));
-        // The safety monitor stops every command.
-        let mut held = stage();
-        held.begin(goal);
-        let (time, reason) = until_given_up(&mut held, &grid, start, true);
-        assert!(time < 30.0 && !reason.is_empty(), "{time} {reason}");
-        // No way: the goal is in the wall.
-        let mut walled = stage();
-        walled.begin(Pose2::new(1.5, 0.1, 0.0));
-        let (time, reason) = until_given_up(&mut walled, &grid, start, false);
-        assert!(time < 30.0 && reason.contains("goal"), "{time} {reason}");
-        assert!(walled.report().waits > 5 && walled.report().ended.is_some());
-        // The pose is no number: nothing else ends it but the time.
-        let mut lost = stage();
-        lost.begin(goal);
-        let (time, reason) = until_given_up(&mut lost, &grid, Pose2 { x: f64::NAN, ..start }, false);
-        assert!((119.0..122.0).contains(&time) && reason.contains("120 s"), "{time} {reason}");
-    }
-
-    #[test]
-    fn a_robot_that_rolls_is_stopped_first() {
-        let (grid, mut stage) = (corridor(), stage());
-        let (start, goal) = (Pose2::new(1.2, 0.32, 0.0), Pose2::new(1.5, 0.38, 0.0));
-        stage.begin(goal);
-        for i in 1..100 {
-            let mut now = surroundings(&grid, start, 0.02 * f64::from(i));
-            now.estimate.twist = Twist2::new(0.2, 0.0);
-            assert_eq!(stage.step(&now), Progress::Moving(Twist2::ZERO));
-        }
-        assert_eq!(stage.report().motions, 0);
-    }
-
-    #[test]
-    fn switched_off_or_far_away_it_never_takes_over() {
-        let (grid, mut far) = (corridor(), stage());
-        let (start, goal) = (Pose2::new(0.5, 0.35, 0.0), Pose2::new(2.5, 0.35, 0.0));
-        assert!(!far.begin_if_possible(&surroundings(&grid, start, 0.0), goal));
-        let config = LastStageConfig { enabled: false, ..LastStageConfig::default() };
-        let mut off = LastStage::new(&config, &Footprint::KOBUKI).unwrap();
-        let near = Pose2::new(0.8, 0.35, 0.0);
-        let touching = SettlePreview { time: None, poses: vec![start, near] };
-        assert!(!off.takes_over(&surroundings(&grid, start, 0.0), near, &touching));
-        assert!(!off.begin_if_possible(&surroundings(&grid, start, 0.0), near));
-    }
-
-    #[test]
-    fn the_faster_of_two_free_ways_is_taken() {
-        assert!(arc_wins(Some(3.0), Some(5.0)));
-        assert!(!arc_wins(Some(6.0), Some(5.0)));
-        assert!(!arc_wins(None, Some(5.0)), "an arc that touches something");
-        assert!(arc_wins(None, None) && arc_wins(Some(1.0), None));
-    }
-}
+mod tests;

@@ -6,7 +6,7 @@ pub(crate) use commands::safety_input;
 
 use crate::{
     config::RobotConfig,
-    last_stage::LastStage,
+    last_stage::{LastStage, LastStageReport},
     look::LookAround,
     progress::ProgressWatch,
     schedule::Ticker,
@@ -181,6 +181,11 @@ impl Navigator {
         &self.state
     }
 
+    /// What turns and straight moves did for the goal.
+    pub(crate) fn docking(&self) -> &LastStageReport {
+        self.last_stage.report()
+    }
+
     pub(crate) fn plan(&self) -> Option<&PlanResult> {
         self.plan.as_deref()
     }
@@ -265,7 +270,13 @@ impl Navigator {
             return;
         };
         let preview = self.follower.preview_settling(s.estimate.pose, goal);
-        if self.last_stage.takes_over(s, goal, &preview) {
+        self.last_stage.consider(s, goal, preview);
+        self.choose(s);
+    }
+
+    /// A part of choosing how to settle.
+    fn choose(&mut self, s: &Surroundings<'_>) {
+        if self.last_stage.takes_over(s) {
             self.start_docking();
         }
     }
@@ -279,7 +290,10 @@ impl Navigator {
             FollowPhase::Approaching | FollowPhase::Turning if self.state == DriveState::Driving => {
                 times.measure(Stage::Planning, || self.begin_to_settle(s));
             }
-            FollowPhase::Approaching | FollowPhase::Turning => self.state = DriveState::Settling,
+            FollowPhase::Approaching | FollowPhase::Turning => {
+                self.state = DriveState::Settling;
+                times.measure(Stage::Planning, || self.choose(s));
+            }
             FollowPhase::Tracking if follow.off_track => {
                 self.is_off_track = true;
                 self.plan = None;

@@ -6,6 +6,7 @@ use crate::{
     config::RobotConfig,
     drawn::DrawnPoses,
     eye::EyeWatch,
+    last_stage::LastStageReport,
     lookout::{Lookout, Sighting},
     mission::{Mission, Task, TaskRecord},
     navigator::Surroundings,
@@ -317,6 +318,12 @@ impl Robot {
     /// The tasks of the mission that have ended; nothing is told while a decision is made in the background.
     pub fn tasks_ended(&self) -> &[TaskRecord] {
         self.captain.as_ref().map_or(&[], |captain| captain.supervisor.records())
+    }
+
+    /// What turns and straight moves did for the goal of now, or the last one they were asked about; none while a decision is
+    /// made in the background.
+    pub fn docking(&self) -> Option<&LastStageReport> {
+        Some(self.captain.as_ref()?.navigator.docking())
     }
 
     /// The task at hand; none while a decision is made in the background.

@@ -105,12 +105,11 @@ impl Supervisor {
         (!lost.is_empty()).then(|| lost.join("; "))
     }
 
-    /// Whether the next step may look for frontiers.
+    /// Whether the next step may look for frontiers, or give a goal that is planned for at once.
     pub(crate) fn may_take_long(&self, s: &Surroundings<'_>, state: &DriveState) -> bool {
-        let explores = self.queue.front().is_some_and(|entry| entry.task == Task::Explore)
-            || matches!(&self.current, Some(Current { work: Work::Exploring { .. }, .. }));
+        let explores = matches!(&self.current, Some(Current { work: Work::Exploring { .. }, .. }));
         let driving = matches!(state, DriveState::Driving | DriveState::Waiting { .. });
-        explores && (state.is_over() || driving && self.look_due.will_be_due(s.now))
+        state.is_over() && !self.is_idle() || explores && driving && self.look_due.will_be_due(s.now)
     }
 
     /// What the navigator, which is in `state`, shall do next; `None` to go on.
@@ -258,7 +257,9 @@ mod tests {
         let mut supervisor = supervisor(&[Task::Go(a), Task::Go(b), Task::Return]);
         let s = surroundings(&grid);
         let stopped = DriveState::Stopped { reason: "a closed door".to_owned() };
+        assert!(supervisor.may_take_long(&s, &DriveState::Idle), "a goal is planned for at once");
         assert_eq!(supervisor.step(&s, &DriveState::Idle), Some(Goal::Exact(a)));
+        assert!(!supervisor.may_take_long(&s, &DriveState::Driving));
         assert_eq!(supervisor.step(&s, &DriveState::Driving), None);
         assert_eq!(supervisor.step(&s, &stopped), Some(Goal::Exact(b)));
         assert_eq!(supervisor.step(&s, &DriveState::Arrived), Some(Goal::Exact(a)), "once more");

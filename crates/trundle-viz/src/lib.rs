@@ -33,5 +33,5 @@ pub use compose::{
     plan_picture, speed_charts, trajectory_picture, visual_map_picture,
 };
 pub use legend::{LegendItem, Mark};
-pub use map::{DotStyle, LineStyle, MapPicture, PoseStyle};
+pub use map::{DotStyle, LineStyle, MapPicture, PoseStyle, tiles};
 pub use report::{Card, Figure, Report, Table, Verdict};

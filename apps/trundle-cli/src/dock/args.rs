@@ -27,22 +27,25 @@ pub struct DockArgs {
     /// The robot's outline: a radius, or the corners of a convex polygon, base frame, m [default: the problem's or the robot file's]
     #[arg(long, value_name = "R|'X,Y X,Y X,Y...'", allow_hyphen_values = true)]
     pub footprint: Option<FootprintArg>,
-    /// Which scan of the log, from 1; poses are in the frame of the robot that made it [default: the last]
+    /// Which scan of the log, from 1; poses are in the frame of the robot that made it [default: the last]. With a log only.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub scan: Option<u32>,
-    /// Which problem of the file [default: the first]
+    /// Which problem of the file [default: the first]. With a file of problems only.
     #[arg(long, value_name = "NAME")]
     pub problem: Option<String>,
     /// Which method plans [default: the robot file's, or optimal]
     #[arg(long, value_enum)]
     pub method: Option<MethodArg>,
-    /// Only write the problem to a file, as text to change.
+    /// Only write what would be solved to a file, as text to change: with --from, --to and --footprint where they are given; a map's outlines as walls.
     #[arg(long, value_name = "FILE")]
     pub write_problem: Option<PathBuf>,
-    /// Take unknown cells of the map for free rather than blocked.
+    /// Take unknown cells of the map, and what is off it, for free rather than blocked. With a map only.
     #[arg(long)]
     pub through_unknown: bool,
-    /// Robot file (see `trundle config`): footprint, and the settings of [docking.planner].
+    /// Kept from every obstacle, m [default: the robot file's docking.planner.margin, which is 0.05; without a robot file 0.01]
+    #[arg(long, value_name = "M")]
+    pub margin: Option<f64>,
+    /// Robot file (see `trundle config`): footprint, and the settings of [docking.planner], with which the robot itself plans.
     #[arg(long, value_name = "FILE")]
     pub config: Option<PathBuf>,
     /// Folder for the results.

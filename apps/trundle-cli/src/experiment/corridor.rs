@@ -5,7 +5,7 @@ use trundle::core::difference_of_angles;
 use trundle::docking::corridor::{Problem, Scenario};
 use trundle::docking::{Docker, DockingConfig, Method, Plan, Solution};
 use trundle::io::{OutputFolder, Summary, table_csv};
-use trundle::viz::{Figure, Report, Table, Verdict};
+use trundle::viz::{Figure, MapPicture, Report, Table, Verdict, tiles};
 
 /// A scenario solved by a method.
 struct Trial {
@@ -20,9 +20,10 @@ pub fn run(args: &CorridorArgs) -> Result<Outcome, Failure> {
     let trials = trials()?;
     let success = trials.iter().all(Trial::is_good);
     let folder = OutputFolder::create(&args.out)?;
-    let mut report = report(&trials, success);
+    let mut report =
+        report(&trials, success).figure(Figure::png("corridor", &together(&trials)).caption("All of them."));
     for trial in &trials {
-        let (name, png) = (trial.name(), trial.picture());
+        let (name, png) = (trial.name(), trial.picture().to_png());
         folder.write(&format!("{name}.png"), &png)?;
         if let Some(found) = trial.found() {
             folder.write(&format!("{name}.csv"), steps_csv(&found.manoeuvre).as_bytes())?;
@@ -30,6 +31,7 @@ pub fn run(args: &CorridorArgs) -> Result<Outcome, Failure> {
         report = report.figure(Figure::png(&name, &png).caption(&trial.told()));
     }
     folder.write("corridor.csv", csv(&trials).as_bytes())?;
+    folder.write("corridor.png", &together(&trials))?;
     folder.write("report.html", report.to_html().as_bytes())?;
     folder.write("summary.json", summary(&trials, success).to_json().as_bytes())?;
     let place = folder.commit()?;
@@ -80,7 +82,7 @@ impl Trial {
         format!("{}-{}", self.scenario.letter(), self.method)
     }
 
-    fn picture(&self) -> Vec<u8> {
+    fn picture(&self) -> MapPicture<'_> {
         let around = Surroundings { grid: None, problem: Some(&self.problem) };
         manoeuvre_picture(
             around,
@@ -115,7 +117,19 @@ fn report(trials: &[Trial], success: bool) -> Report {
         )
         .verdict(told)
         .table(table)
-        .section("Manoeuvres", "Green: start. Red: goal. Blue: the robot's outlines on its way.")
+        .section("Manoeuvres", "Green: start. Red: goal. Light blue: the floor that the robot covers. Blue: its outline after each motion.")
+}
+
+/// The four scenarios side by side, above by the paper's method.
+fn together(trials: &[Trial]) -> Vec<u8> {
+    let by = |method: &'static str| trials.iter().filter(move |trial| trial.method == method);
+    let titled = |trial: &'_ Trial| {
+        let seconds = trial.found().map_or(f64::NAN, |found| found.manoeuvre.duration());
+        format!("({}) {}, {seconds:.1} s", trial.scenario.letter(), trial.method)
+    };
+    let pictures: Vec<_> =
+        by("paper").chain(by("optimal")).map(|trial| (titled(trial), trial.picture())).collect();
+    tiles(&pictures, Scenario::ALL.len())
 }
 
 fn verdict(success: bool) -> String {

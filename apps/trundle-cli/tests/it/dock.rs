@@ -128,6 +128,38 @@ fn built_in_problems_are_written_and_read() {
     assert!(said.contains("`goal`"), "{said}");
 }
 
+/// What is written is what would have been solved.
+#[test]
+fn a_problem_is_written_as_it_was_asked_for() {
+    let scratch = tempfile::tempdir().unwrap();
+    let (map, file) = (write_room(scratch.path()), scratch.path().join("task.txt"));
+    let write = |place: &str, extra: &[&str]| {
+        let output = trundle(&[&["dock", place, "--write-problem", text(&file)], extra].concat());
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        fs::read_to_string(&file).unwrap()
+    };
+    let asked = ["--from=-0.1,0.05,90", "--to=0.12,0,90", "--footprint=0.2"];
+    let written = write("hong24-a", &asked);
+    for line in ["disc 0.2\n", "start -0.1 0.05 90\n", "goal 0.12 0 90\n", "problem hong24-a\n"] {
+        assert!(written.contains(line), "{line} in {written}");
+    }
+    let of_map = write(text(&map), &["--from=1,1,0", "--to=1.2,1.15,0", "--footprint=0.2"]);
+    assert!(of_map.contains("start 1 1 0\n") && of_map.contains("\nwall "), "{of_map}");
+    let out = scratch.path().join("out");
+    assert!(trundle(&["dock", text(&file), "--out", text(&out)]).status.success());
+}
+
+#[test]
+fn options_that_mean_nothing_here_are_refused() {
+    let said = |extra: &[&str]| refusal(&[&["dock", "hong24-a"], extra].concat());
+    assert!(
+        said(&["--problem=x"]).contains("--problem goes with a file of problems, this is a built-in problem")
+    );
+    assert!(said(&["--scan=1"]).contains("--scan goes with a laser log"));
+    assert!(said(&["--through-unknown"]).contains("--through-unknown goes with a map"));
+    assert!(said(&["--margin=0.9"]).contains("docking.margin is 0.9 m"));
+}
+
 #[test]
 fn the_robot_files_planner_counts() {
     let scratch = tempfile::tempdir().unwrap();

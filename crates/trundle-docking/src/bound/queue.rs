@@ -11,6 +11,8 @@ use trundle_core::wrap_angle;
 
 /// Squares of this level are not split: 2 mm of a region of 4 m.
 const FINEST_LEVEL: u8 = 11;
+/// What a box costs besides its questions about contact, in units of [`Space::work`].
+const BOX_COST: u64 = 100;
 /// From this level on the middles of the squares are tried as a manoeuvre.
 const TRY_LEVEL: u8 = 6;
 
@@ -57,7 +59,7 @@ impl Ord for Family {
 
 /// Raises the bound, and improves the legs where a box holds better ones, until they are within `gap` (a part) of each
 /// other or `most` boxes have been looked at, or [`Space::work`] comes to `limit`.
-pub fn improve(
+pub async fn improve(
     task: &Task,
     space: &mut Space<'_>,
     best: Option<(f64, Legs)>,
@@ -88,6 +90,8 @@ pub fn improve(
         }
         let Some(family) = queue.pop() else { return known };
         known.boxes += 1;
+        space.spend(BOX_COST);
+        space.rest().await;
         if !family.tested {
             if let Some(bound) = bounding.tested_bound(&family)
                 && bound < time

@@ -1,5 +1,6 @@
+use super::SAME;
 use crate::geometry::{Hull, Profile, Segment};
-use crate::scene::Question;
+use crate::scene::{Patch, Question};
 use crate::space::FreeDrive;
 use trundle_core::{Pose2, Vector2};
 
@@ -26,9 +27,10 @@ impl<'q> DriveQuestion<'q> {
 impl Question for DriveQuestion<'_> {
     const COST: u64 = 5;
 
-    fn promise(&self, center: Vector2, radius: f64) -> Option<f64> {
-        let (ahead, behind) = self.profile.ways(self.seen(center).a, radius);
-        (ahead < self.free.ahead || behind < self.free.behind).then(|| ahead.min(behind))
+    fn promise(&self, patch: &Patch) -> Option<f64> {
+        let seen = patch.seen_from(self.center, self.direction);
+        let (ahead, behind) = self.profile.ways(&seen);
+        (ahead + SAME < self.free.ahead || behind + SAME < self.free.behind).then(|| ahead.min(behind))
     }
 
     fn look(&mut self, p: Vector2, number: u32) {

@@ -1,9 +1,10 @@
 use crate::geometry::{Arc, Hull, Profile, Segment, once_round};
-use crate::scene::Question;
+use crate::scene::{Patch, Question};
 use std::f64::consts::TAU;
 use trundle_core::Vector2;
 
-/// At which headings a hull overlaps something.
+/// At which headings a hull overlaps something: all that are told do, of those that do [`LITTLE`] at either end may be left out.
+/// It is asked where a heading too many that counts as free does no harm: for bounds, proofs and guides.
 pub struct HeadingsQuestion<'q> {
     hull: &'q Hull,
     profile: &'q Profile,
@@ -12,6 +13,9 @@ pub struct HeadingsQuestion<'q> {
     blocked: &'q mut Vec<Arc>,
     first: usize,
 }
+
+/// Headings that are not worth a look, rad: three millimetres at the end of an arm of 0.3 m.
+const LITTLE: f64 = 0.01;
 
 impl<'q> HeadingsQuestion<'q> {
     /// What is known so far is in `blocked` from `first` on, joined.
@@ -29,15 +33,16 @@ impl<'q> HeadingsQuestion<'q> {
 impl Question for HeadingsQuestion<'_> {
     const COST: u64 = 50;
 
-    fn promise(&self, center: Vector2, radius: f64) -> Option<f64> {
+    fn promise(&self, patch: &Patch) -> Option<f64> {
         let arcs = &self.blocked[self.first..];
         let inside = |arc: &Arc, from: f64, length: f64| {
-            arc.length >= TAU || once_round(from - arc.start) + length <= arc.length
+            let core = (length - 2.0 * LITTLE).max(0.0);
+            arc.length >= TAU || once_round(from + LITTLE.min(length / 2.0) - arc.start) + core <= arc.length
         };
-        let seen = center - self.position;
+        let seen = patch.seen_from(self.position, Vector2::x());
         let known = |from, length| arcs.iter().any(|arc| inside(arc, from, length));
         // Near ones forbid most.
-        (!self.profile.all_known(seen, radius, known)).then(|| seen.norm_squared())
+        (!self.profile.all_known(&seen, known)).then(|| seen.center.norm_squared())
     }
 
     fn look(&mut self, p: Vector2, _: u32) {

@@ -1,5 +1,5 @@
 use crate::geometry::{Hull, Segment};
-use crate::scene::{Blocker, Question};
+use crate::scene::{Blocker, Patch, Question};
 use trundle_core::{Pose2, Vector2};
 
 /// What is nearest to a hull that stands, and how near (m).
@@ -19,25 +19,25 @@ impl<'q> StandQuestion<'q> {
         Self { hull, at: pose.position(), direction: (cos, sin), reach, best }
     }
 
-    fn distance(&self, p: Vector2) -> f64 {
+    fn distance(&self, piece: &Segment) -> f64 {
         let (cos, sin) = self.direction;
-        self.hull.distance(&Segment::point(p).seen_from(self.at, cos, sin))
+        self.hull.distance(&piece.seen_from(self.at, cos, sin))
     }
 }
 
 impl Question for StandQuestion<'_> {
-    fn promise(&self, center: Vector2, radius: f64) -> Option<f64> {
-        let away = (center - self.at).norm() - radius - self.hull.outer_radius();
+    fn promise(&self, patch: &Patch) -> Option<f64> {
+        let away = patch.seen_from(self.at, Vector2::x()).nearest() - self.hull.outer_radius();
         let known = self.best.map_or(self.reach, |(least, _)| least);
         if away >= known || known <= 0.0 {
             return None;
         }
-        let least = self.distance(center) - radius;
+        let least = self.distance(&patch.spine()) - patch.half.y;
         (least < known).then_some(least)
     }
 
     fn look(&mut self, p: Vector2, number: u32) {
-        let distance = self.distance(p);
+        let distance = self.distance(&Segment::point(p));
         if distance < self.best.map_or(self.reach, |(least, _)| least) {
             *self.best = Some((distance, Blocker { obstacle: number as usize, at: p }));
         }

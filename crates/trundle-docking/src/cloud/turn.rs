@@ -1,5 +1,6 @@
+use super::SAME;
 use crate::geometry::{Arc, Hull, Profile, Segment};
-use crate::scene::Question;
+use crate::scene::{Patch, Question};
 use crate::space::FreeTurn;
 use trundle_core::{Pose2, Vector2};
 
@@ -8,7 +9,7 @@ pub struct TurnQuestion<'q> {
     hull: &'q Hull,
     profile: &'q Profile,
     pose: Pose2,
-    direction: (f64, f64),
+    direction: Vector2,
     angles: &'q mut Vec<f64>,
     arcs: &'q mut Vec<Arc>,
     free: &'q mut FreeTurn,
@@ -22,19 +23,17 @@ impl<'q> TurnQuestion<'q> {
         (angles, arcs): (&'q mut Vec<f64>, &'q mut Vec<Arc>),
         free: &'q mut FreeTurn,
     ) -> Self {
-        let (sin, cos) = pose.theta.sin_cos();
-        Self { hull, profile, pose: *pose, direction: (cos, sin), angles, arcs, free }
+        Self { hull, profile, pose: *pose, direction: pose.direction(), angles, arcs, free }
     }
 }
 
 impl Question for TurnQuestion<'_> {
     const COST: u64 = 50;
 
-    fn promise(&self, center: Vector2, radius: f64) -> Option<f64> {
-        let (cos, sin) = self.direction;
-        let seen = Segment::point(center).seen_from(self.pose.position(), cos, sin).a;
-        let (left, right) = self.profile.rooms(seen, radius)?;
-        (left < self.free.left || right < self.free.right).then(|| left.min(right))
+    fn promise(&self, patch: &Patch) -> Option<f64> {
+        let seen = patch.seen_from(self.pose.position(), self.direction);
+        let (left, right) = self.profile.rooms(&seen)?;
+        (left + SAME < self.free.left || right + SAME < self.free.right).then(|| left.min(right))
     }
 
     fn look(&mut self, p: Vector2, number: u32) {

@@ -61,8 +61,11 @@ pub fn parse(text: &str) -> Result<Vec<Problem>, Invalid> {
             if let Some(last) = problems.last() {
                 given.checked(began, &last.name)?;
             }
+            if rest.trim().is_empty() {
+                return Err(refused(number, line, "problem NAME"));
+            }
             (given, began) = (Given::default(), number);
-            problems.push(empty(rest));
+            problems.push(empty(rest.trim()));
             continue;
         }
         let problem = problems.last_mut().ok_or_else(|| refused(number, word, "`problem NAME` first"))?;
@@ -185,6 +188,7 @@ mod tests {
         assert!(message("trundle-corridors 1\nwall 0 0 1 1").starts_with("line 2"));
         assert!(message("trundle-corridors 1\nproblem a\nwall 0 0 1 NaN").starts_with("line 3"));
         assert!(message("trundle-corridors 1\nproblem a\nhole 0 0").contains("line 3 is `hole`"));
+        assert!(message("trundle-corridors 1\nproblem").contains("problem NAME"));
         let whole = "trundle-corridors 1\nproblem a\ndisc 0.2\nstart 0 0 0\ngoal 1 0 0\n";
         assert!(parse(whole).is_ok());
         for part in ["disc 0.2\n", "start 0 0 0\n", "goal 1 0 0\n"] {

@@ -3,6 +3,8 @@ use crate::space::Space;
 use std::f64::consts::TAU;
 use trundle_core::{Pose2, Vector2};
 
+/// What a node costs besides its headings, in units of [`Space::work`].
+const NODE_COST: u64 = 20;
 /// A heading that is nearly the same, rad.
 const NEAR_HEADING: f64 = 0.03;
 
@@ -97,6 +99,7 @@ impl<'s, 'a> Columns<'s, 'a> {
     /// Adds the nodes of the four neighbouring cells whose headings meet a node's.
     pub fn neighbours(&mut self, node: Node, found: &mut Vec<Node>) {
         found.clear();
+        self.space.spend(NODE_COST);
         let (row, column) = (node.cell as usize / self.count, node.cell as usize % self.count);
         let (mine, last) = (self.gap(node), self.count - 1);
         let sides = [

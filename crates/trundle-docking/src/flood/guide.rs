@@ -23,7 +23,7 @@ const INSET: f64 = 0.05;
 impl<'s, 'a> Guide<'s, 'a> {
     /// Floods from the goal over cells of `side` (m) within a square, at `speed` (m/s), somewhat farther than to `start`; no
     /// farther than [`Space::work`] comes to `limit`.
-    pub fn new(
+    pub async fn new(
         space: &'s mut Space<'a>,
         goal: &Pose2,
         center: Vector2,
@@ -49,6 +49,7 @@ impl<'s, 'a> Guide<'s, 'a> {
             if (so_far * 1e6) as u64 != key {
                 continue;
             }
+            guide.columns.space().rest().await;
             guide.columns.neighbours(node, &mut found);
             for &next in &found {
                 let total = so_far + guide.step(node, next) / speed;

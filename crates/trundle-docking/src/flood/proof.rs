@@ -34,7 +34,7 @@ pub struct Ground {
 }
 
 /// Floods from both ends; the smaller flood goes on.
-pub fn disprove(space: &Space<'_>, start: &Pose2, goal: &Pose2, ground: Ground) -> Proof {
+pub async fn disprove(space: &Space<'_>, start: &Pose2, goal: &Pose2, ground: Ground) -> Proof {
     let Ground { center, half, side, .. } = ground;
     let depth = if ground.shrunk { side * std::f64::consts::FRAC_1_SQRT_2 } else { 0.0 };
     let Some(shrunk) = space.hull().shrunk(depth) else { return Proof::Together };
@@ -62,6 +62,7 @@ pub fn disprove(space: &Space<'_>, start: &Pose2, goal: &Pose2, ground: Ground) 
         if columns.space().work() >= ground.limit {
             return Proof::Together;
         }
+        columns.space().rest().await;
         columns.neighbours(node, &mut found);
         for &neighbour in &found {
             let mine = 1 + side as u8;

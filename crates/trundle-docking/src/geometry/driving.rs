@@ -39,7 +39,7 @@ impl Hull {
     }
 
     /// How far the hull reaches at height `y`: along x for `sign` 1, against x for -1.
-    fn front(&self, y: f64, sign: f64) -> f64 {
+    pub(super) fn front(&self, y: f64, sign: f64) -> f64 {
         let mut reach = f64::NEG_INFINITY;
         for corner in &self.core {
             let up = y - corner.at.y;

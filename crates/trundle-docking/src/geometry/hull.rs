@@ -56,6 +56,12 @@ impl Hull {
         }
     }
 
+    /// Everything within `by` (m) of this hull.
+    pub(super) fn grown(&self, by: f64) -> Self {
+        let core: Vec<Vector2> = self.core.iter().map(|c| c.at).collect();
+        Self::from_core(&core, self.radius + by)
+    }
+
     /// A part of this hull no point of which is nearer than `depth` (m) to the outside; `None` when none is left.
     ///
     /// The part is exact on the sides and leaves 0.1 mm at the corners: it never holds a point too many.

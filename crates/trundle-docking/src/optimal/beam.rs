@@ -38,16 +38,16 @@ const LAYERS_MORE: usize = 2;
 
 /// Layer by layer, one more leg each, the most promising `width` nodes are carried on; from each the search is completed by
 /// one or two exact legs. No more than `nodes` are expanded.
-pub fn beam(search: &mut Search<'_, '_>, width: usize, nodes: usize) {
-    layers(search, width, MOST_LEGS, (nodes, usize::MAX), |search, pose| search.estimate(pose));
+pub async fn beam(search: &mut Search<'_, '_>, width: usize, nodes: usize) {
+    layers(search, width, MOST_LEGS, (nodes, usize::MAX), |search, pose| search.estimate(pose)).await;
 }
 
 /// The same with many legs, led by a guide that knows how the free poses hang together.
-pub fn guided_beam(search: &mut Search<'_, '_>, guide: &mut Guide<'_, '_>, width: usize, nodes: usize) {
-    layers(search, width, MOST_LEGS_GUIDED, (nodes, LAYERS_MORE), |_, pose| guide.seconds(pose));
+pub async fn guided_beam(search: &mut Search<'_, '_>, guide: &mut Guide<'_, '_>, width: usize, nodes: usize) {
+    layers(search, width, MOST_LEGS_GUIDED, (nodes, LAYERS_MORE), |_, pose| guide.seconds(pose)).await;
 }
 
-fn layers(
+async fn layers(
     search: &mut Search<'_, '_>,
     width: usize,
     most_legs: usize,
@@ -66,9 +66,9 @@ fn layers(
                 continue;
             }
             expanded += 1;
-            rays(&search.task, search.space, &node.pose, HEADINGS, 0.02, &mut fan);
+            rays(&search.task, search.space, &node.pose, HEADINGS, 0.02, &mut fan).await;
             if index > 0 {
-                search.complete(&node.pose, &fan, &legs_to(&nodes, index), node.spent);
+                search.complete(&node.pose, &fan, &legs_to(&nodes, index), node.spent).await;
             }
             spread(search, &node, index, &fan, &mut children, &mut estimate);
         }

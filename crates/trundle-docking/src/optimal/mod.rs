@@ -73,80 +73,96 @@ const FAN: (usize, f64) = (120, 0.3 * std::f64::consts::PI / 180.0);
 /// What one or two legs may cost, and what it may cost to better legs that are known.
 const LITTLE: u64 = 2_000_000;
 
+/// The same where a whole plan may cost no more than a few times that.
+fn little(space: &Space<'_>) -> u64 {
+    LITTLE.min(space.most() / 8)
+}
+
 /// The best of the sampled one or two legs, polished.
-pub fn one_or_two(task: Task, space: &mut Space<'_>) -> Option<Timed> {
-    let limit = space.work() + LITTLE;
-    let mut search = Search::new(task, space, FAN, limit);
+pub async fn one_or_two(task: Task, space: &mut Space<'_>) -> Option<Timed> {
+    let limit = space.until(little(space));
+    if space.work() >= limit {
+        return None;
+    }
+    let mut search = Search::new(task, space, FAN, limit).await;
     let mut fan = Vec::new();
-    rays(&task, search.space, &task.start, FAN.0, FAN.1, &mut fan);
-    search.complete(&task.start, &fan, &[], 0.0);
-    polish_best(&mut search);
+    rays(&task, search.space, &task.start, FAN.0, FAN.1, &mut fan).await;
+    search.complete(&task.start, &fan, &[], 0.0).await;
+    polish_best(&mut search).await;
     search.best
 }
 
 /// Betters legs, and finds a time that none beat (s).
-pub fn better(task: Task, space: &mut Space<'_>, best: Timed, effort: Effort) -> (Timed, f64) {
-    let limit = space.work() + LITTLE;
-    let bounded = improve(&task, space, Some(best.clone()), effort.gap, (effort.boxes, limit));
-    let mut search = Search::new(task, space, FAN, 0);
-    search.limit = search.space.work() + LITTLE;
+pub async fn better(task: Task, space: &mut Space<'_>, best: Timed, effort: Effort) -> (Timed, f64) {
+    let limit = space.until(little(space));
+    let bounded = improve(&task, space, Some(best.clone()), effort.gap, (effort.boxes, limit)).await;
+    let bound = |(time, _): &Timed| bounded.bound.min(*time);
+    if space.until(1) <= space.work() {
+        let best = bounded.best.unwrap_or(best);
+        return (best.clone(), bound(&best));
+    }
+    let mut search = Search::new(task, space, FAN, 0).await;
+    search.limit = search.space.until(little(search.space));
     search.best = bounded.best;
-    polish_best(&mut search);
+    polish_best(&mut search).await;
     if bounded.bound < search.time_to_beat() * (1.0 - LOOSE.max(effort.gap)) && effort.nodes > 0 {
-        beam(&mut search, BEAM, effort.nodes);
-        polish_best(&mut search);
+        beam(&mut search, BEAM, effort.nodes).await;
+        polish_best(&mut search).await;
     }
     let best = search.best.unwrap_or(best);
-    let bound = bounded.bound.min(best.0);
+    let bound = bound(&best);
     (best, bound)
 }
 
 /// A time that no legs beat, s, at most `known`: boxes are split until it is within `gap` of that, at most `boxes` of them.
-pub fn bound(task: &Task, space: &mut Space<'_>, known: f64, gap: f64, boxes: usize) -> f64 {
-    improve(task, space, Some((known, Legs::default())), gap, (boxes, u64::MAX)).bound
+pub async fn bound(task: &Task, space: &mut Space<'_>, known: f64, gap: f64, boxes: usize) -> f64 {
+    improve(task, space, Some((known, Legs::default())), gap, (boxes, space.until(u64::MAX))).await.bound
 }
 
 /// Width of the beam that looks for better legs.
 const BEAM: usize = 24;
-/// Width of the beam where the guide knows the way.
-const GUIDED_BEAM: usize = 12;
+/// Width of the beam where the guide knows the way, and where a plan may cost but little.
+const GUIDED_BEAM: (usize, usize) = (12, 5);
 /// A gap at which it is worth while to look for more legs.
 const LOOSE: f64 = 0.05;
 
 /// Looks for legs where one or two do not do, or shows that there are none. With less effort than is needed for either:
 /// nothing.
-pub fn many(task: Task, space: &mut Space<'_>, effort: Effort) -> Outcome {
-    let limit = space.work().saturating_add(effort.work);
+pub async fn many(task: Task, space: &mut Space<'_>, effort: Effort) -> Outcome {
+    let limit = space.until(effort.work);
+    if space.work() >= limit {
+        return Outcome::Nothing;
+    }
     let mut second = space.clone();
-    let mut search = Search::new(task, space, FAN, limit);
+    let mut search = Search::new(task, space, FAN, limit).await;
     // A flood that shows that there is no way is as cheap as one that shows where it leads: coarse cells first, for both.
     let wide = task.half() > WIDE * effort.cell;
     for side in CELLS {
         let size = side * effort.cell;
-        if let Some(never) = apart(&task, &second, size, true, limit) {
+        if let Some(never) = apart(&task, &second, size, true, limit).await {
             return never;
         }
         if side == CELLS[2]
-            && let Some(outcome) = apart(&task, &second, size, false, limit)
+            && let Some(outcome) = apart(&task, &second, size, false, limit).await
         {
             return outcome;
         }
         if side < CELLS[0] || wide {
-            led_by_cells(&mut search, &mut second, size, effort.nodes);
+            led_by_cells(&mut search, &mut second, size, effort.nodes).await;
         }
         if search.best.is_none() {
             continue;
         }
-        shorten_best(&mut search);
+        shorten_best(&mut search).await;
         break;
     }
     search.best.map_or(Outcome::Nothing, Outcome::Found)
 }
 
 /// What cells of `side` (m) say against any motion, with the hull shrunk for a proof or as it is.
-fn apart(task: &Task, space: &Space<'_>, side: f64, shrunk: bool, limit: u64) -> Option<Outcome> {
+async fn apart(task: &Task, space: &Space<'_>, side: f64, shrunk: bool, limit: u64) -> Option<Outcome> {
     let ground = Ground { center: task.center(), half: task.half(), side, shrunk, limit };
-    match disprove(space, &task.start, &task.goal, ground) {
+    match disprove(space, &task.start, &task.goal, ground).await {
         Proof::Apart { by } => {
             let certificate = if shrunk { Certificate::Never } else { Certificate::AtResolution };
             Some(Outcome::Apart(certificate, by))
@@ -156,32 +172,33 @@ fn apart(task: &Task, space: &Space<'_>, side: f64, shrunk: bool, limit: u64) ->
 }
 
 /// A beam led by how cells of `side` (m) hang together; where that does not get through, legs along the cells' own path.
-fn led_by_cells<'a>(search: &mut Search<'_, 'a>, second: &mut Space<'a>, side: f64, nodes: usize) {
+async fn led_by_cells<'a>(search: &mut Search<'_, 'a>, second: &mut Space<'a>, side: f64, nodes: usize) {
     let task = search.task;
     let (center, half, speed) = (task.center(), task.half(), task.limits.speed);
     let until = (&task.start, search.limit);
-    let mut guide = Guide::new(second, &task.goal, center, half, side, speed, until);
+    let mut guide = Guide::new(second, &task.goal, center, half, side, speed, until).await;
     if nodes == 0 || guide.seconds(&task.start).is_infinite() {
         return;
     }
-    guided_beam(search, &mut guide, GUIDED_BEAM, nodes);
+    let width = if search.space.most() < u64::MAX { GUIDED_BEAM.1 } else { GUIDED_BEAM.0 };
+    guided_beam(search, &mut guide, width, nodes).await;
     if search.best.is_none() {
         let mut poses = guide.path(&task.start);
         poses.push(task.goal);
-        search.best = trace(&task, search.space, &poses, search.limit);
+        search.best = trace(&task, search.space, &poses, search.limit).await;
     }
 }
 
-fn shorten_best(search: &mut Search<'_, '_>) {
+async fn shorten_best(search: &mut Search<'_, '_>) {
     if let Some(best) = search.best.take() {
-        search.best = Some(shorten(&search.task, search.space, best, search.limit));
+        search.best = Some(shorten(&search.task, search.space, best, search.limit).await);
     }
-    polish_best(search);
+    polish_best(search).await;
 }
 
-fn polish_best(search: &mut Search<'_, '_>) {
-    let limit = search.limit.max(search.space.work() + LITTLE);
+async fn polish_best(search: &mut Search<'_, '_>) {
+    let limit = search.limit.max(search.space.until(little(search.space)));
     if let Some((time, legs)) = &search.best {
-        search.best = Some(polish(&search.task, search.space, legs, *time, limit));
+        search.best = Some(polish(&search.task, search.space, legs, *time, limit).await);
     }
 }

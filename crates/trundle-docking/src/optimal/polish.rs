@@ -9,7 +9,7 @@ use trundle_core::wrap_angle;
 ///
 /// Coordinate search with halving steps: the time has kinks where a turn vanishes or a speed limit is met, and the free
 /// set has corners, so no derivative is asked for.
-pub fn polish(task: &Task, space: &mut Space<'_>, legs: &Legs, time: f64, limit: u64) -> (f64, Legs) {
+pub async fn polish(task: &Task, space: &mut Space<'_>, legs: &Legs, time: f64, limit: u64) -> (f64, Legs) {
     let mut best = (time, legs.clone());
     let n = legs.0.len();
     if n < 2 {
@@ -23,6 +23,7 @@ pub fn polish(task: &Task, space: &mut Space<'_>, legs: &Legs, time: f64, limit:
                 if space.work() >= limit {
                     return best;
                 }
+                space.rest().await;
                 improved |= try_heading(task, space, &mut best, i, angle);
                 if i + 2 < n {
                     improved |= try_change(task, space, &mut best, |legs, sign| legs.0[i].1 += sign * way);

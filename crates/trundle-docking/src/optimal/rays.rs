@@ -23,7 +23,7 @@ const SLACK: f64 = 2e-4;
 
 /// Rays about `pose`: its own heading first, then headings all over the turns that are free: `count` steps over all of
 /// them, at least `finest` (rad) each, and both ends.
-pub fn rays(
+pub async fn rays(
     task: &Task,
     space: &mut Space<'_>,
     pose: &Pose2,
@@ -36,7 +36,7 @@ pub fn rays(
     let (left, right) = if free.left.is_infinite() { (PI, PI) } else { (free.left, free.right) };
     let step = ((left + right) / count as f64).max(finest);
     let reach = task.longest();
-    let mut add = |turn: f64| {
+    let mut add = |space: &Space<'_>, turn: f64| {
         let heading = wrap_angle(pose.theta + turn);
         let turned = Pose2 { theta: heading, ..*pose };
         let way = space.drive(&turned, reach);
@@ -49,15 +49,16 @@ pub fn rays(
         };
         found.push(ray);
     };
-    add(0.0);
+    add(space, 0.0);
     for (room, sign) in [(left, 1.0), (right, -1.0)] {
         let mut turn = step;
         while turn < room - 5.0 * SLACK {
-            add(sign * turn);
+            add(space, sign * turn);
             turn += step;
+            space.rest().await;
         }
         if room > 5.0 * SLACK {
-            add(sign * (room - SLACK));
+            add(space, sign * (room - SLACK));
         }
     }
 }

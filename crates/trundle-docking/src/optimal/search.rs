@@ -39,9 +39,14 @@ const MOST_TESTS_AT_START: usize = 2000;
 impl<'s, 'a> Search<'s, 'a> {
     /// A search that samples the goal's headings `count` times, not finer than `finest` (rad), until [`Space::work`] comes to
     /// `limit`.
-    pub fn new(task: Task, space: &'s mut Space<'a>, (count, finest): (usize, f64), limit: u64) -> Self {
+    pub async fn new(
+        task: Task,
+        space: &'s mut Space<'a>,
+        (count, finest): (usize, f64),
+        limit: u64,
+    ) -> Self {
         let mut goal_rays = Vec::new();
-        rays(&task, space, &task.goal, count, finest, &mut goal_rays);
+        rays(&task, space, &task.goal, count, finest, &mut goal_rays).await;
         Self { task, space, goal_rays, best: None, limit, tails: Vec::new() }
     }
 
@@ -57,7 +62,7 @@ impl<'s, 'a> Search<'s, 'a> {
 
     /// Looks for the best way to the goal by one or two legs from a base at `pose`, whose `rays` are given. `prefix` are the
     /// legs that led there, `spent` their time with all pauses, s. Whether one was found that is better than all before.
-    pub fn complete(&mut self, pose: &Pose2, rays: &[Ray], prefix: &[(f64, f64)], spent: f64) -> bool {
+    pub async fn complete(&mut self, pose: &Pose2, rays: &[Ray], prefix: &[(f64, f64)], spent: f64) -> bool {
         self.tails.clear();
         self.collect_straight(pose, spent);
         self.collect_pairs(pose, rays, spent);
@@ -65,6 +70,7 @@ impl<'s, 'a> Search<'s, 'a> {
         let before = self.time_to_beat();
         let most = if prefix.is_empty() { MOST_TESTS_AT_START } else { MOST_TESTS };
         for i in 0..self.tails.len().min(most) {
+            self.space.rest().await;
             let tail = self.tails[i];
             if tail.time >= self.time_to_beat() || self.is_spent() {
                 break;

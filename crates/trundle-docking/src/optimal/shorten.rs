@@ -9,13 +9,13 @@ const MOST: usize = 90;
 
 /// Replaces runs of legs by one or two, wherever that is free and saves time, until [`Space::work`] comes to `limit`; never
 /// slower than before.
-pub fn shorten(task: &Task, space: &mut Space<'_>, mut best: (f64, Legs), limit: u64) -> (f64, Legs) {
+pub async fn shorten(task: &Task, space: &mut Space<'_>, mut best: (f64, Legs), limit: u64) -> (f64, Legs) {
     while best.1.0.len() > 2 {
         let mut poses = vec![task.start];
         poses.extend(best.1.poses(&task.start));
         let last = poses.len() - 1;
         poses[last] = task.goal;
-        match through(task, space, &poses, limit) {
+        match through(task, space, &poses, limit).await {
             Some((time, legs)) if time < best.0 - 1e-3 => best = (time, legs),
             _ => break,
         }
@@ -25,7 +25,7 @@ pub fn shorten(task: &Task, space: &mut Space<'_>, mut best: (f64, Legs), limit:
 
 /// The fastest way along a list of poses, each of which may be passed over: legs and time (s), when there is one. Once
 /// [`Space::work`] comes to `limit`, only neighbours are joined.
-pub fn through(task: &Task, space: &mut Space<'_>, poses: &[Pose2], limit: u64) -> Option<(f64, Legs)> {
+pub async fn through(task: &Task, space: &mut Space<'_>, poses: &[Pose2], limit: u64) -> Option<(f64, Legs)> {
     let count = poses.len();
     // The time to each pose with the pause after it, the pose before, and the legs between.
     let mut best: Vec<(f64, usize, Legs)> = vec![(f64::INFINITY, 0, Legs::default()); count];
@@ -41,7 +41,7 @@ pub fn through(task: &Task, space: &mut Space<'_>, poses: &[Pose2], limit: u64) 
             if so_far + least >= best[j].0 {
                 continue;
             }
-            if let Some((time, legs)) = connect(task, space, &poses[i], &poses[j]) {
+            if let Some((time, legs)) = connect(task, space, &poses[i], &poses[j]).await {
                 let total = so_far + time + task.limits.switch_time;
                 if total < best[j].0 {
                     best[j] = (total, i, legs);

@@ -17,56 +17,53 @@ const HALVINGS: u32 = 5;
 
 /// Legs along `poses`, which lead from start to goal, and their time (s); `None` when some part is not
 /// free, or when [`Space::work`] comes to `limit` before.
-pub fn trace(task: &Task, space: &mut Space<'_>, poses: &[Pose2], limit: u64) -> Option<(f64, Legs)> {
+pub async fn trace(task: &Task, space: &mut Space<'_>, poses: &[Pose2], limit: u64) -> Option<(f64, Legs)> {
+    let chain = linked(task, space, poses, limit).await?;
+    through(task, space, &chain, limit).await
+}
+
+/// A part of the way that is still to be joined; those to come first lie on top.
+#[derive(Debug, Clone, Copy)]
+enum Part {
+    /// From one of the poses to another of them.
+    Run(usize, usize),
+    /// Between two neighbours, which may be halved so often.
+    Gap(Pose2, Pose2, u32),
+}
+
+/// Poses from the first of `poses` to the last, neighbours joined by legs.
+async fn linked(task: &Task, space: &mut Space<'_>, poses: &[Pose2], limit: u64) -> Option<Vec<Pose2>> {
     let mut chain = vec![task.start];
-    link(task, space, poses, &mut chain, limit)?;
-    through(task, space, &chain, limit)
+    let mut parts = vec![Part::Run(0, poses.len().checked_sub(1)?)];
+    while let Some(part) = parts.pop() {
+        if space.work() >= limit {
+            return None;
+        }
+        let (first, last) = match part {
+            Part::Run(from, to) => (poses[from], poses[to]),
+            Part::Gap(first, last, _) => (first, last),
+        };
+        if connect(task, space, &first, &last).await.is_some() {
+            chain.push(last);
+            continue;
+        }
+        match part {
+            Part::Run(from, to) if to > from + 1 => {
+                let middle = from + (to - from).div_ceil(2);
+                parts.extend([Part::Run(middle, to), Part::Run(from, middle)]);
+            }
+            Part::Run(..) => parts.extend(halves(space, &first, &last, HALVINGS)?),
+            Part::Gap(.., times) => parts.extend(halves(space, &first, &last, times)?),
+        }
+    }
+    Some(chain)
 }
 
-/// Adds poses to the chain that lead from the first of `poses` (already there) to the last, neighbours joined by legs.
-fn link(
-    task: &Task,
-    space: &mut Space<'_>,
-    poses: &[Pose2],
-    chain: &mut Vec<Pose2>,
-    limit: u64,
-) -> Option<()> {
-    if space.work() >= limit {
-        return None;
-    }
-    let (first, last) = (poses.first()?, poses.last()?);
-    if connect(task, space, first, last).is_some() {
-        chain.push(*last);
-        return Some(());
-    }
-    if poses.len() == 2 {
-        return halve(task, space, first, last, HALVINGS, chain);
-    }
-    let middle = poses.len() / 2;
-    link(task, space, &poses[..=middle], chain, limit)?;
-    link(task, space, &poses[middle..], chain, limit)
-}
-
-fn halve(
-    task: &Task,
-    space: &mut Space<'_>,
-    first: &Pose2,
-    last: &Pose2,
-    times: u32,
-    chain: &mut Vec<Pose2>,
-) -> Option<()> {
-    if connect(task, space, first, last).is_some() {
-        chain.push(*last);
-        return Some(());
-    }
-    if times == 0 {
-        return None;
-    }
+/// The two halves of a gap, the second first; `None` when it may not be halved, or its middle is not free.
+fn halves(space: &Space<'_>, first: &Pose2, last: &Pose2, times: u32) -> Option<[Part; 2]> {
+    let times = times.checked_sub(1)?;
     let turn = wrap_angle(last.theta - first.theta);
     let middle = Pose2::new((first.x + last.x) / 2.0, (first.y + last.y) / 2.0, first.theta + turn / 2.0);
-    if space.contact(&middle).is_some() {
-        return None;
-    }
-    halve(task, space, first, &middle, times - 1, chain)?;
-    halve(task, space, &middle, last, times - 1, chain)
+    let is_free = space.contact(&middle).is_none();
+    is_free.then_some([Part::Gap(middle, *last, times), Part::Gap(*first, middle, times)])
 }

@@ -1,3 +1,4 @@
+use crate::config::DockingConfig;
 use serde::{Deserialize, Serialize};
 use trundle_core::{Invalid, require_in};
 
@@ -36,6 +37,9 @@ pub struct PositionerConfig {
     pub most_margin: f64,
     /// Waiting before planning again when there is no way, s, 0.1 to 100. Default 1.
     pub patience: f64,
+    /// What a step may spend on planning, about, in counted steps of some 10 ns ([`crate::Space::work`]), 10^4 to 10^11: the
+    /// robot stands until the plan is complete. Default 2 * 10^6 (ours: 20 ms, a fifth of a step at 10 Hz).
+    pub step_work: u64,
 }
 
 impl Default for PositionerConfig {
@@ -54,11 +58,18 @@ impl Default for PositionerConfig {
             sigmas: 3.0,
             most_margin: 0.05,
             patience: 1.0,
+            step_work: 2_000_000,
         }
     }
 }
 
 impl PositionerConfig {
+    /// The planner's settings as they count in closed loop: poses are noisy, so that an overlap may be an error, and less margin
+    /// is kept only where there is no other way.
+    pub fn planner(&self, docking: DockingConfig) -> DockingConfig {
+        DockingConfig { overlap: self.overlap, margin_saving: 1.0, ..docking }
+    }
+
     /// Passes a valid configuration through.
     ///
     /// # Errors
@@ -78,6 +89,7 @@ impl PositionerConfig {
             ("sigmas", self.sigmas, "", 0.0, 10.0),
             ("most_margin", self.most_margin, "m", 0.0, 0.5),
             ("patience", self.patience, "s", 0.1, 100.0),
+            ("step_work", self.step_work as f64, "", 1e4, 1e11),
         ];
         for (name, value, unit, low, high) in ranges {
             require_in(&format!("positioner.{name}"), value, unit, low, high)?;

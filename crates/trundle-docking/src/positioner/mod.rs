@@ -5,7 +5,7 @@
 //! one or two motions end within the tolerance, these are taken instead of an exact manoeuvre; what is settled stays settled
 //! until an error exceeds the tolerance by far. By the paper's method the pair that it decided on is carried out, a turn and
 //! a straight, before it decides again. Every step looks along the motion for the stopping way; when something is
-//! there, the command is zero at once. Cost: one plan a motion, one closed-form query a step.
+//! there, the command is zero at once. Cost: one plan a motion, in parts of so much a step, one closed-form query a step.
 
 mod average;
 mod config;
@@ -17,6 +17,7 @@ pub use config::PositionerConfig;
 
 use crate::config::DockingConfig;
 use crate::manoeuvre::{Manoeuvre, Motion};
+use crate::pace::Planning;
 use crate::planner::{Docker, Refusal};
 use crate::scene::{Blocker, Scene};
 use crate::space::Space;
@@ -24,6 +25,7 @@ use average::PoseAverage;
 use follow::{Command, Following};
 use nalgebra::Matrix3;
 use nearly::Tolerance;
+use next::Next;
 use trundle_core::{Footprint, Invalid, Pose2, Stamp, Twist2};
 
 /// What the positioner is told at every step.
@@ -44,6 +46,8 @@ pub struct PositionerInput<'a> {
 pub enum Reason {
     /// At rest, averaging the pose.
     Measuring,
+    /// At rest, planning: as much of it a step as [`PositionerConfig::step_work`] allows.
+    Planning,
     /// Carrying out a motion.
     Moving(Motion),
     /// On the goal, within tolerance.
@@ -69,16 +73,17 @@ pub struct PositionerReport {
     pub error: Pose2,
 }
 
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 enum Phase {
     Measure { since: Stamp, average: PoseAverage },
+    Plan { planning: Planning, pose: Pose2 },
     Follow(Following),
     Wait { until: Stamp, reason: Reason },
     Settled,
 }
 
 /// Brings a robot onto a goal and keeps it there.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub struct Positioner {
     docker: Docker,
     config: PositionerConfig,
@@ -105,7 +110,7 @@ impl Positioner {
         goal: Pose2,
     ) -> Result<Self, Invalid> {
         let config = config.validated()?;
-        let docker = Docker::new(DockingConfig { overlap: config.overlap, margin_saving: 1.0, ..docking })?;
+        let docker = Docker::new(config.planner(docking))?;
         Ok(Self {
             docker,
             config,
@@ -157,6 +162,10 @@ impl Positioner {
         let phase = self.phase.take().unwrap_or_else(|| measure(input.stamp));
         let (phase, twist, reason, pose) = match phase {
             Phase::Measure { since, average } => self.measure(input, since, average),
+            Phase::Plan { planning, pose } => {
+                let (phase, reason) = self.plan_on(input, planning, pose);
+                (phase, Twist2::ZERO, reason, input.pose)
+            }
             Phase::Follow(following) => self.follow(input, following, dt),
             Phase::Wait { until, reason } if input.stamp < until => {
                 (Phase::Wait { until, reason: reason.clone() }, Twist2::ZERO, reason, input.pose)
@@ -196,17 +205,40 @@ impl Positioner {
         let error = self.goal.inverse() * *pose;
         let accepted = if self.attempts > self.config.attempts { self.config.release } else { 1.0 };
         if self.tolerance().holds(&error, accepted * 0.9) {
-            return (Phase::Settled, Reason::Settled);
+            return self.arrived();
         }
         self.attempts += u32::from(self.tolerance().holds(&error, self.config.release));
         match self.next_motion(input, pose) {
-            Ok(Some(motion)) => (Phase::Follow(Following::new(motion, *pose)), Reason::Moving(motion)),
-            Ok(None) => (Phase::Settled, Reason::Settled),
-            Err(reason) => (
-                Phase::Wait { until: input.stamp.after(self.config.patience), reason: reason.clone() },
-                reason,
-            ),
+            Ok(Next::Motion(motion)) => follow(motion, *pose),
+            Ok(Next::Search(planning)) => self.plan_on(input, planning, *pose),
+            Ok(Next::Nothing) => self.arrived(),
+            Err(reason) => self.wait(input, reason),
         }
+    }
+
+    /// A part of the search for a manoeuvre from `pose`, and what follows when that was the last.
+    fn plan_on(
+        &mut self,
+        input: &PositionerInput<'_>,
+        mut planning: Planning,
+        pose: Pose2,
+    ) -> (Phase, Reason) {
+        match planning.go_on(self.config.step_work).map(|plan| self.first_of(plan)) {
+            None => (Phase::Plan { planning, pose }, Reason::Planning),
+            Some(Ok(motion)) => follow(motion, pose),
+            Some(Err(reason)) => self.wait(input, reason),
+        }
+    }
+
+    fn wait(&self, input: &PositionerInput<'_>, reason: Reason) -> (Phase, Reason) {
+        let until = input.stamp.after(self.config.patience);
+        (Phase::Wait { until, reason: reason.clone() }, reason)
+    }
+
+    /// On the goal: what was still to follow is not, and the next approach has all its recovery moves.
+    fn arrived(&mut self) -> (Phase, Reason) {
+        (self.pending, self.recoveries) = (None, 0);
+        (Phase::Settled, Reason::Settled)
     }
 
     fn follow(
@@ -239,6 +271,42 @@ impl Positioner {
     }
 }
 
+fn follow(motion: Motion, from: Pose2) -> (Phase, Reason) {
+    (Phase::Follow(Following::new(motion, from)), Reason::Moving(motion))
+}
+
 fn measure(since: Stamp) -> Phase {
     Phase::Measure { since, average: PoseAverage::default() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::config::Method;
+
+    /// Settled, it forgets the straight that was to follow; pushed off, it begins with a decision, not with that.
+    #[test]
+    fn what_was_to_follow_ends_on_the_goal() {
+        let docking = DockingConfig { method: Method::Paper, ..DockingConfig::default() };
+        let footprint = Footprint::Disc { radius: 0.2 };
+        let goal = Pose2::IDENTITY;
+        let mut positioner =
+            Positioner::new(docking, PositionerConfig::default(), footprint, goal).expect("valid");
+        (positioner.pending, positioner.recoveries) = (Some(Motion::Drive(0.3)), 3);
+        let scene = Scene::new(&[]).expect("valid");
+        let (mut time, covariance) = (0.0, Matrix3::zeros());
+        let mut run = |positioner: &mut Positioner, pose: Pose2, steps: usize| {
+            let mut last = Reason::BadPose;
+            for _ in 0..steps {
+                time += 0.1;
+                let stamp = Stamp::default().after(time);
+                last = positioner.step(&PositionerInput { stamp, pose, covariance, scene: &scene }).reason;
+            }
+            last
+        };
+        assert_eq!(run(&mut positioner, goal, 10), Reason::Settled);
+        assert_eq!((positioner.pending, positioner.recoveries), (None, 0));
+        let beside = Pose2::new(0.0, 0.1, 0.0);
+        assert!(matches!(run(&mut positioner, beside, 6), Reason::Moving(Motion::Turn(_))));
+    }
 }

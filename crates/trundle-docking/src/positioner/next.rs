@@ -5,6 +5,7 @@ use super::{Positioner, PositionerInput, Reason};
 use crate::config::Method;
 use crate::manoeuvre::{Manoeuvre, Motion};
 use crate::margin::margin_of;
+use crate::pace::Planning;
 use crate::paper::{Decision, PaperMethod};
 use crate::planner::Plan;
 use crate::space::Space;
@@ -13,15 +14,22 @@ use trundle_core::Pose2;
 /// The last centimetres and degrees: within so many tolerances of the goal.
 const LAST: f64 = 5.0;
 
+/// What comes next.
+#[derive(Debug)]
+pub(super) enum Next {
+    /// This motion.
+    Motion(Motion),
+    /// The search for a manoeuvre.
+    Search(Planning),
+    /// Nothing is left to do.
+    Nothing,
+}
+
 impl Positioner {
-    /// The next motion; none when nothing is left to do.
-    pub(super) fn next_motion(
-        &mut self,
-        input: &PositionerInput<'_>,
-        pose: &Pose2,
-    ) -> Result<Option<Motion>, Reason> {
+    /// The next motion, or a search for it.
+    pub(super) fn next_motion(&mut self, input: &PositionerInput<'_>, pose: &Pose2) -> Result<Next, Reason> {
         match self.docker.config().method {
-            Method::Optimal => self.next_of_plan(input, pose).map(Some),
+            Method::Optimal => self.next_of_plan(input, pose),
             Method::Paper => self.next_of_paper(input, pose),
         }
     }
@@ -32,23 +40,30 @@ impl Positioner {
         asked.min(self.config.most_margin).max(self.docker.config().margin)
     }
 
-    fn next_of_plan(&mut self, input: &PositionerInput<'_>, pose: &Pose2) -> Result<Motion, Reason> {
-        let limits = self.docker.config().limits;
+    fn next_of_plan(&mut self, input: &PositionerInput<'_>, pose: &Pose2) -> Result<Next, Reason> {
         let margin = self.margin(input);
-        let motions = match self.nearly_there(input, pose, margin) {
-            Some(motions) => Manoeuvre::new(*pose, &motions, limits),
-            None => {
-                let plan = self.docker.plan_keeping(margin, &self.footprint, input.scene, *pose, self.goal);
-                match plan.map_err(Reason::Refused)? {
-                    Plan::Found(solution) => solution.manoeuvre,
-                    Plan::Impossible(impossible) => return Err(Reason::NoWay(impossible.by)),
-                }
-            }
-        };
-        let first = motions.steps().first().map(|step| step.motion);
-        self.plan = Some(motions);
-        // Nothing to do is a motion of nothing: it ends at once, and the pose is measured again.
-        Ok(first.unwrap_or(Motion::Turn(0.0)))
+        if let Some(motions) = self.nearly_there(input, pose, margin) {
+            let nearly = Manoeuvre::new(*pose, &motions, self.docker.config().limits);
+            return Ok(Next::Motion(self.taken(nearly)));
+        }
+        let search = self.docker.begin(margin, &self.footprint, input.scene, *pose, self.goal);
+        search.map(Next::Search).map_err(Reason::Refused)
+    }
+
+    /// The first motion of a plan.
+    pub(super) fn first_of(&mut self, plan: Plan) -> Result<Motion, Reason> {
+        match plan {
+            Plan::Found(solution) => Ok(self.taken(solution.manoeuvre)),
+            Plan::Impossible(impossible) => Err(Reason::NoWay(impossible.by)),
+        }
+    }
+
+    /// The first motion of a manoeuvre that is taken up. Nothing to do is a motion of nothing: it ends at once, and the pose is
+    /// measured again.
+    fn taken(&mut self, manoeuvre: Manoeuvre) -> Motion {
+        let first = manoeuvre.steps().first().map(|step| step.motion);
+        self.plan = Some(manoeuvre);
+        first.unwrap_or(Motion::Turn(0.0))
     }
 
     /// One or two motions that end close enough, with the margin kept; for the last centimetres, where the noise of the pose
@@ -65,9 +80,9 @@ impl Positioner {
     }
 
     /// One pair at a time, as the paper has it: the turn, then the straight, then a new decision.
-    fn next_of_paper(&mut self, input: &PositionerInput<'_>, pose: &Pose2) -> Result<Option<Motion>, Reason> {
+    fn next_of_paper(&mut self, input: &PositionerInput<'_>, pose: &Pose2) -> Result<Next, Reason> {
         if let Some(motion) = self.pending.take() {
-            return Ok(Some(motion));
+            return Ok(Next::Motion(motion));
         }
         let config = self.docker.config();
         let margin = self
@@ -77,7 +92,7 @@ impl Positioner {
         let space = Space::new(&self.footprint, margin, input.scene);
         let method = PaperMethod { space: &space, limits: config.limits, config: &config.paper };
         let motions = match method.decide(pose, &self.goal, self.recoveries) {
-            Decision::Settled => return Ok(None),
+            Decision::Settled => return Ok(Next::Nothing),
             Decision::Stuck => return Err(Reason::NoWay(None)),
             Decision::Recover(motion) => {
                 self.recoveries += 1;
@@ -86,10 +101,7 @@ impl Positioner {
             Decision::Move(motions) => motions,
         };
         let pair = Manoeuvre::new(*pose, &motions, config.limits);
-        let mut steps = pair.steps().iter().map(|step| step.motion);
-        let first = steps.next();
-        self.pending = steps.next();
-        self.plan = Some(pair);
-        Ok(Some(first.unwrap_or(Motion::Turn(0.0))))
+        self.pending = pair.steps().get(1).map(|step| step.motion);
+        Ok(Next::Motion(self.taken(pair)))
     }
 }

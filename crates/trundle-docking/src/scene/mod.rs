@@ -1,12 +1,17 @@
 //! What stands around the robot, as straight pieces that a hull may not overlap.
 
+mod cells;
 mod outline;
+mod patch;
 mod points;
 
 use crate::cloud::StandQuestion;
 use crate::geometry::{Hull, Segment};
+use cells::Cells;
+pub(crate) use patch::Patch;
 use points::PointIndex;
 pub(crate) use points::Question;
+use std::sync::Arc;
 use trundle_core::{Cell, CellIndex, Footprint, GridGeometry, Invalid, OccupancyGrid, Pose2, Vector2};
 
 /// Something that stands in the way, map frame, m.
@@ -42,9 +47,11 @@ pub struct Piece {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scene {
     pieces: Vec<Piece>,
-    points: PointIndex,
+    points: Arc<PointIndex>,
     /// Convex and counter-clockwise: what is inside of them is in collision though no side is near.
     solids: Vec<(Vec<Vector2>, u32)>,
+    /// Of a grid: what is inside of such a cell is in collision too.
+    cells: Option<Arc<Cells>>,
 }
 
 impl Scene {
@@ -71,33 +78,27 @@ impl Scene {
                 }
             }
         }
-        Ok(Self { pieces, points: PointIndex::new(points), solids })
+        Ok(Self { pieces, points: Arc::new(PointIndex::new(points)), solids, cells: None })
     }
 
-    /// The occupied cells of a grid within a box of half side `half` (m) about `center`, and where `unknown_blocks` the
-    /// unknown ones and the rim of the grid.
+    /// The occupied cells of a grid that reach into the box of half side `half` (m) about `center`. Where `unknown_blocks`, the
+    /// unknown ones too, and all that is off the grid: nothing is known of it.
     pub fn from_grid(grid: &OccupancyGrid, center: Vector2, half: f64, unknown_blocks: bool) -> Self {
         let geometry = *grid.geometry();
-        let blocks = |cell: CellIndex| {
-            let value = grid.get(cell);
-            (value == Cell::Occupied || (unknown_blocks && value == Cell::Unknown))
-                && (geometry.center(cell) - center).amax() <= half + geometry.resolution
+        let blocks = |cell: CellIndex| match grid.get(cell) {
+            Cell::Occupied => true,
+            Cell::Unknown => unknown_blocks,
+            Cell::Free => false,
         };
-        let outlines = outline::outlines(&geometry, blocks);
+        let cells = Cells::new(geometry, center, half, unknown_blocks, blocks);
         let number = |(i, segment): (usize, Segment)| Piece { segment, obstacle: i as u32 };
         let rim = unknown_blocks.then(|| rim_of(&geometry)).into_iter().flatten();
-        let pieces: Vec<Piece> = outlines.into_iter().chain(rim).enumerate().map(number).collect();
-        let side = geometry.resolution;
-        let cells = (0..geometry.len()).map(|i| geometry.cell(i)).filter(|&cell| blocks(cell));
-        let solids = cells.map(|cell| {
-            let low = geometry.center(cell) - Vector2::repeat(side / 2.0);
-            let corners = [(0.0, 0.0), (side, 0.0), (side, side), (0.0, side)];
-            (corners.iter().map(|&(x, y)| low + Vector2::new(x, y)).collect(), pieces.len() as u32)
-        });
-        Self { solids: solids.collect(), pieces, points: PointIndex::new(Vec::new()) }
+        let pieces = outline::outlines(&cells).into_iter().chain(rim).enumerate().map(number).collect();
+        let points = Arc::new(PointIndex::new(Vec::new()));
+        Self { pieces, points, solids: Vec::new(), cells: Some(Arc::new(cells)) }
     }
 
-    /// The part of the scene within a box of half side `half` (m) about `center`.
+    /// The scene without pieces beyond a box of half side `half` (m) about `center`. Points stay: their tree passes them over.
     pub(crate) fn around(&self, center: Vector2, half: f64) -> Self {
         let pieces = self
             .pieces
@@ -105,15 +106,10 @@ impl Scene {
             .filter(|p| touches_box(&p.segment, center, Vector2::repeat(half)))
             .copied()
             .collect();
-        let mut points = Vec::new();
-        self.points.visit(center, Vector2::repeat(half), |p, number| {
-            if (p - center).amax() <= half {
-                points.push((p, number));
-            }
-        });
         let near = |corners: &[Vector2]| corners.iter().any(|c| (c - center).amax() <= 2.0 * half);
         let solids = self.solids.iter().filter(|(corners, _)| near(corners) || holds(corners, center));
-        Self { pieces, points: PointIndex::new(points), solids: solids.cloned().collect() }
+        let (points, cells) = (Arc::clone(&self.points), self.cells.clone());
+        Self { pieces, points, solids: solids.cloned().collect(), cells }
     }
 
     /// Calls `visit` with every piece that reaches into a box about `center`.
@@ -170,6 +166,9 @@ impl Scene {
         let corner = hull.corners_at(pose).next().expect("invariant: a hull has a corner");
         for (corners, number) in self.solids.iter().filter(|(corners, _)| holds(corners, corner)) {
             offer(0.0, Blocker { obstacle: *number as usize, at: corners[0] });
+        }
+        if self.cells.as_ref().is_some_and(|cells| cells.hold(corner)) {
+            offer(0.0, Blocker { obstacle: self.pieces.len(), at: corner });
         }
         best
     }
@@ -243,6 +242,18 @@ mod tests {
         let corners = [(0., 0.), (2., 0.), (0.5, 0.5), (0., 2.)].map(|(x, y)| Vector2::new(x, y)).to_vec();
         let error = Scene::new(&[Obstacle::Polygon(corners)]).unwrap_err();
         assert!(error.to_string().contains("obstacle 0: polygon"), "{error}");
+    }
+
+    #[test]
+    fn off_the_map_is_unknown() {
+        let grid = OccupancyGrid::from_ascii(0.1, &("..........\n".repeat(10))).unwrap();
+        let clear = |unknown_blocks: bool, x: f64| {
+            let scene = Scene::from_grid(&grid, Vector2::new(0.5, 0.5), 3.0, unknown_blocks);
+            let robot = Footprint::Disc { radius: 0.1 };
+            scene.clearance(&robot, &Pose2::new(x, 0.5, 0.0), 0.01).map(|(distance, _)| distance)
+        };
+        assert_eq!((clear(true, 0.5), clear(true, 0.95), clear(true, 2.5)), (None, Some(0.0), Some(0.0)));
+        assert_eq!((clear(false, 0.95), clear(false, 2.5)), (None, None));
     }
 
     #[test]

@@ -1,32 +1,29 @@
+use super::cells::Cells;
 use crate::geometry::Segment;
-use trundle_core::{CellIndex, GridGeometry, Vector2};
+use trundle_core::{GridGeometry, Vector2};
 
-/// The outlines of a grid's occupied cells, as long as they run straight: between an occupied cell and one that is not.
-///
-/// `blocks` says which cells stand in the way.
-pub fn outlines(geometry: &GridGeometry, blocks: impl Fn(CellIndex) -> bool) -> Vec<Segment> {
-    let at = |col: isize, row: isize| {
-        let inside =
-            col >= 0 && row >= 0 && (col as usize) < geometry.width && (row as usize) < geometry.height;
-        inside && blocks(CellIndex { col: col as usize, row: row as usize })
-    };
+/// The outlines of the cells that stand in the way, as long as they run straight: between such a cell and one that is not.
+pub fn outlines(cells: &Cells) -> Vec<Segment> {
+    let (geometry, (left, right), (low, high)) = (cells.geometry(), cells.cols, cells.rows);
+    let at = |col: isize, row: isize| col >= 0 && row >= 0 && cells.blocks(col as usize, row as usize);
+    let (left, right, low, high) = (left as isize, right as isize, low as isize, high as isize);
     let mut pieces = Vec::new();
-    for row in 0..=geometry.height as isize {
+    for row in low..=high {
         let differs = |col: isize| at(col, row) != at(col, row - 1);
-        runs(geometry.width, differs, |from, to| pieces.push(piece(geometry, (from, row), (to, row))));
+        runs(left, right, differs, |from, to| pieces.push(piece(geometry, (from, row), (to, row))));
     }
-    for col in 0..=geometry.width as isize {
+    for col in left..=right {
         let differs = |row: isize| at(col, row) != at(col - 1, row);
-        runs(geometry.height, differs, |from, to| pieces.push(piece(geometry, (col, from), (col, to))));
+        runs(low, high, differs, |from, to| pieces.push(piece(geometry, (col, from), (col, to))));
     }
     pieces
 }
 
 /// Runs of cells along one line, from and to.
-fn runs(count: usize, holds: impl Fn(isize) -> bool, mut found: impl FnMut(isize, isize)) {
+fn runs(first: isize, end: isize, holds: impl Fn(isize) -> bool, mut found: impl FnMut(isize, isize)) {
     let mut start = None;
-    for i in 0..=count as isize {
-        let on = i < count as isize && holds(i);
+    for i in first..=end {
+        let on = i < end && holds(i);
         match (on, start) {
             (true, None) => start = Some(i),
             (false, Some(from)) => {
@@ -53,7 +50,8 @@ mod tests {
     #[test]
     fn a_wall_of_cells_has_four_sides() {
         let grid = OccupancyGrid::from_ascii(0.5, "......\n.####.\n......").unwrap();
-        let pieces = outlines(grid.geometry(), |cell| grid.get(cell) == Cell::Occupied);
+        let occupied = |cell| grid.get(cell) == Cell::Occupied;
+        let pieces = outlines(&Cells::new(*grid.geometry(), Vector2::zeros(), 9.0, false, occupied));
         assert_eq!(pieces.len(), 4);
         let length: f64 = pieces.iter().map(|s| (s.b - s.a).norm()).sum();
         assert!((length - 5.0).abs() < 1e-12);

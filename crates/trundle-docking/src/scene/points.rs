@@ -1,6 +1,7 @@
+use super::patch::Patch;
 use trundle_core::Vector2;
 
-/// Points in a tree of discs, so that what matters to a question is found without looking at all.
+/// Points in a tree of boxes, so that what matters to a question is found without looking at all.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PointIndex {
     points: Vec<(Vector2, u32)>,
@@ -8,11 +9,10 @@ pub struct PointIndex {
     nodes: Vec<Node>,
 }
 
-/// Points within a disc.
+/// Points within a box.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Node {
-    center: Vector2,
-    radius: f64,
+    patch: Patch,
     from: u32,
     to: u32,
     /// The first of its halves; 0 for none.
@@ -21,21 +21,21 @@ struct Node {
 
 /// Points of a node that is not halved.
 const LEAF: usize = 8;
-/// What it costs to see what a disc promises.
-const PROMISE: u64 = 8;
+/// What it costs to see what a box promises.
+const PROMISE: u64 = 12;
 /// Nodes that can wait at once: halves are halves, so that this is deep enough for 2^31 points.
 const DEEPEST: usize = 64;
 
 /// A question to all points.
 pub trait Question {
-    /// Whether a point of every disc is looked at before its halves are, and then once more.
+    /// Whether a point of every box is looked at before its halves are, and then once more.
     const SAMPLES: bool = true;
     /// What a look costs, in [`crate::space::Space::work`]'s units.
     const COST: u64 = 1;
 
-    /// Whether points within `radius` (m) of `center` may matter: those that promise most, by the least number, are looked at
-    /// first. `None` when they cannot matter, by what is known so far.
-    fn promise(&self, center: Vector2, radius: f64) -> Option<f64>;
+    /// Whether points in a box may matter: those that promise most, by the least number, are looked at first. `None` when they
+    /// cannot matter, by what is known so far.
+    fn promise(&self, patch: &Patch) -> Option<f64>;
 
     /// Looks at a point, whose number is given.
     fn look(&mut self, p: Vector2, number: u32);
@@ -53,7 +53,7 @@ impl PointIndex {
             let Node { from, to, .. } = nodes[next];
             let (from, to) = (from as usize, to as usize);
             if to - from > LEAF {
-                let middle = halve(&mut points[from..to]) + from;
+                let middle = halve(&mut points[from..to], nodes[next].patch.axis) + from;
                 nodes[next].halves = nodes.len() as u32;
                 nodes.extend([node(&points, from, middle), node(&points, middle, to)]);
             }
@@ -76,17 +76,18 @@ impl PointIndex {
     pub fn ask<Q: Question>(&self, question: &mut Q) -> u64 {
         let mut waiting = [0_u32; DEEPEST];
         let mut count = usize::from(!self.nodes.is_empty());
-        let mut work = 0;
+        // What has just been put on top has just been asked about.
+        let (mut work, mut is_fresh) = (0, false);
         while count > 0 {
             (count, work) = (count - 1, work + 2 * PROMISE);
             let node = &self.nodes[waiting[count] as usize];
-            if question.promise(node.center, node.radius).is_none() {
+            if !std::mem::take(&mut is_fresh) && question.promise(&node.patch).is_none() {
                 continue;
             }
             if node.halves == 0 {
                 for &(p, number) in &self.points[node.from as usize..node.to as usize] {
                     work += PROMISE;
-                    if question.promise(p, 0.0).is_some() {
+                    if question.promise(&Patch::point(p)).is_some() {
                         question.look(p, number);
                         work += Q::COST;
                     }
@@ -94,20 +95,18 @@ impl PointIndex {
                 continue;
             }
             let (p, number) = self.points[(node.from + node.to) as usize / 2];
-            if Q::SAMPLES && question.promise(p, 0.0).is_some() {
+            if Q::SAMPLES && question.promise(&Patch::point(p)).is_some() {
                 question.look(p, number);
                 work += Q::COST;
             }
             let halves = [node.halves, node.halves + 1];
-            let [a, b] = halves.map(|i| {
-                let half = &self.nodes[i as usize];
-                question.promise(half.center, half.radius)
-            });
+            let [a, b] = halves.map(|i| question.promise(&self.nodes[i as usize].patch));
             let first = usize::from(b.unwrap_or(f64::INFINITY) < a.unwrap_or(f64::INFINITY));
             for half in [1 - first, first] {
                 if [a, b][half].is_some() {
                     waiting[count] = halves[half];
                     count += 1;
+                    is_fresh = true;
                 }
             }
         }
@@ -115,27 +114,16 @@ impl PointIndex {
     }
 }
 
-/// The disc about the box of some points.
 fn node(points: &[(Vector2, u32)], from: usize, to: usize) -> Node {
-    let (low, high) = bounds(&points[from..to]);
-    let center = (low + high) / 2.0;
-    let farthest = points[from..to].iter().map(|(p, _)| (p - center).norm_squared()).fold(0.0, f64::max);
-    // Rounding must not leave a point outside.
-    let radius = farthest.sqrt() * (1.0 + 1e-12);
-    Node { center, radius, from: from as u32, to: to as u32, halves: 0 }
+    let patch = Patch::about(points[from..to].iter().map(|(p, _)| *p));
+    Node { patch, from: from as u32, to: to as u32, halves: 0 }
 }
 
-fn bounds(points: &[(Vector2, u32)]) -> (Vector2, Vector2) {
-    let start = (Vector2::repeat(f64::INFINITY), Vector2::repeat(f64::NEG_INFINITY));
-    points.iter().fold(start, |(low, high), (p, _)| (low.inf(p), high.sup(p)))
-}
-
-/// Sorts points so far that the first half lies on one side, along the longer side of their box; where the second begins.
-fn halve(points: &mut [(Vector2, u32)]) -> usize {
-    let (low, high) = bounds(points);
-    let axis = usize::from(high.y - low.y > high.x - low.x);
+/// Sorts points so far that the first half lies on one side along an axis; where the second begins.
+fn halve(points: &mut [(Vector2, u32)], axis: Vector2) -> usize {
     let middle = points.len() / 2;
-    points.select_nth_unstable_by(middle, |a, b| a.0[axis].total_cmp(&b.0[axis]).then(a.1.cmp(&b.1)));
+    let along = |(p, _): &(Vector2, u32)| axis.dot(p);
+    points.select_nth_unstable_by(middle, |a, b| along(a).total_cmp(&along(b)).then(a.1.cmp(&b.1)));
     middle
 }
 
@@ -148,9 +136,9 @@ struct InBox<F> {
 impl<F: FnMut(Vector2, u32)> Question for InBox<F> {
     const SAMPLES: bool = false;
 
-    fn promise(&self, center: Vector2, radius: f64) -> Option<f64> {
-        let off = (center - self.center).abs();
-        (off.x - radius <= self.half.x && off.y - radius <= self.half.y).then_some(0.0)
+    fn promise(&self, patch: &Patch) -> Option<f64> {
+        let off = (patch.center - self.center).abs() - patch.extent();
+        (off.x <= self.half.x && off.y <= self.half.y).then_some(0.0)
     }
 
     fn look(&mut self, p: Vector2, number: u32) {

@@ -14,7 +14,7 @@ const AMONG_CELLS: f64 = 0.2;
 const SAMPLES: u32 = 60;
 
 /// A convex footprint, often with the axle off its middle, sometimes with the axle outside; or a disc.
-fn footprint(rng: &mut ChaCha8Rng) -> Footprint {
+pub fn footprint(rng: &mut ChaCha8Rng) -> Footprint {
     if rng.random_bool(0.1) {
         return Footprint::disc(rng.random_range(0.05..0.5)).expect("a radius");
     }
@@ -29,7 +29,7 @@ fn footprint(rng: &mut ChaCha8Rng) -> Footprint {
         .expect("convex")
 }
 
-fn obstacle(rng: &mut ChaCha8Rng) -> Obstacle {
+pub fn obstacle(rng: &mut ChaCha8Rng) -> Obstacle {
     let mut point = || Vector2::new(rng.random_range(-1.2..1.2), rng.random_range(-1.2..1.2));
     let (p, q) = (point(), point());
     match rng.random_range(0..4) {
@@ -71,7 +71,7 @@ fn cells(rng: &mut ChaCha8Rng) -> (Scene, Vec<Obstacle>) {
 }
 
 /// Brute force, on its own: the least distance of the footprint from any side; 0 where they cross or one holds the other.
-fn distance(footprint: &Footprint, pose: &Pose2, pieces: &[(Vector2, Vector2)]) -> f64 {
+pub fn distance(footprint: &Footprint, pose: &Pose2, pieces: &[(Vector2, Vector2)]) -> f64 {
     let (outline, radius) = match footprint {
         Footprint::Disc { radius } => (vec![pose.position()], *radius),
         Footprint::Polygon { corners } => (corners.iter().map(|c| pose.transform(*c)).collect(), 0.0),
@@ -103,7 +103,7 @@ fn to_piece(p: Vector2, a: Vector2, b: Vector2) -> f64 {
     (a + along * part - p).norm()
 }
 
-fn sides(obstacles: &[Obstacle]) -> Vec<(Vector2, Vector2)> {
+pub fn sides(obstacles: &[Obstacle]) -> Vec<(Vector2, Vector2)> {
     let of = |obstacle: &Obstacle| match obstacle {
         Obstacle::Point(p) => vec![(*p, *p)],
         Obstacle::Segment(a, b) => vec![(*a, *b)],

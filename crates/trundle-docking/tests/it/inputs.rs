@@ -5,7 +5,9 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use trundle_core::{Cell, Footprint, GridGeometry, OccupancyGrid, Pose2, Vector2};
 use trundle_docking::corridor::{Problem, Scenario, generate, parse};
-use trundle_docking::{Certificate, Docker, DockingConfig, Motion, Obstacle, Plan, Refusal, Scene, Space};
+use trundle_docking::{
+    Certificate, Docker, DockingConfig, Method, Motion, Obstacle, Plan, Refusal, Scene, Space,
+};
 
 fn at(x: f64, y: f64) -> Vector2 {
     Vector2::new(x, y)
@@ -20,16 +22,38 @@ fn docker() -> Docker {
     Docker::new(DockingConfig::default()).expect("valid")
 }
 
+/// Each with what is wrong, where, and what to do.
 #[test]
 fn bad_input_is_refused_with_a_reason() {
     let wall = Scene::new(&[Obstacle::Segment(at(0.25, -1.0), at(0.25, 1.0))]).unwrap();
-    let plan = |start, goal| docker().plan(&robot(), &wall, start, goal).unwrap_err();
     let (here, there) = (Pose2::IDENTITY, Pose2::new(-0.5, 0.0, 0.0));
-    assert!(matches!(plan(here, there), Refusal::StartBlocked(by) if by.obstacle == 0));
-    assert!(matches!(plan(there, here), Refusal::GoalBlocked(_)));
-    let far = plan(there, Pose2::new(-50.0, 0.0, 0.0));
-    assert!(far.to_string().contains("plan a path there first"), "{far}");
-    assert!(matches!(plan(there, Pose2 { x: f64::NAN, ..there }), Refusal::Invalid(_)));
+    let far = Pose2::new(-50.5, 0.0, 0.0);
+    let nowhere = Pose2 { x: f64::NAN, ..there };
+    let cases = [
+        (here, there, "the start overlaps obstacle 0 at (0.250, 0.000) m"),
+        (there, here, "the goal overlaps obstacle 0 at (0.250, 0.000) m"),
+        (there, far, "the goal is 50.00 m away, expected at most 5.00 m: plan a path there first"),
+        (nowhere, there, "start is (NaN, 0, 0), expected finite numbers"),
+        (there, nowhere, "goal is (NaN, 0, 0), expected finite numbers"),
+    ];
+    for method in [Method::Optimal, Method::Paper] {
+        let docker = Docker::new(DockingConfig { method, ..DockingConfig::default() }).unwrap();
+        for (start, goal, expected) in cases {
+            let said = docker.plan(&robot(), &wall, start, goal).unwrap_err().to_string();
+            assert!(said.contains(expected), "{said}");
+            let begun = docker.begin(0.01, &robot(), &wall, start, goal).unwrap_err().to_string();
+            assert_eq!(said, begun);
+        }
+    }
+    let shape = |corners: &[(f64, f64)]| {
+        Footprint::polygon(corners.iter().map(|&(x, y)| at(x, y)).collect()).unwrap_err().to_string()
+    };
+    assert!(shape(&[(0.3, 0.2), (-0.3, 0.2), (0.0, 0.1), (-0.3, -0.2), (0.3, -0.2)]).contains("convex"));
+    assert!(shape(&[(0.0, 0.0), (1.0, 0.0), (2.0, 0.0)]).contains("area is 0 m^2"));
+    assert!(Footprint::disc(0.0).is_err() && Footprint::disc(f64::NAN).is_err());
+    let list = [Obstacle::Point(at(0.0, 0.0)), Obstacle::Segment(at(0.0, 1.0), at(f64::NAN, 0.0))];
+    let said = Scene::new(&list).unwrap_err().to_string();
+    assert!(said.contains("obstacle 1") && said.contains("finite"), "{said}");
 }
 
 #[test]

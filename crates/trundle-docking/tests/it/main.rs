@@ -4,6 +4,14 @@
 #[path = "../../../../bench/docking/clock.rs"]
 mod clock;
 mod closed_loop;
+#[allow(dead_code, reason = "the benchmark names them all")]
+#[path = "../../../../bench/docking/clouds.rs"]
+mod clouds;
 mod contact;
 mod inputs;
+#[allow(dead_code, reason = "the benchmark prints with it")]
+#[path = "../../../../bench/docking/judge.rs"]
+mod judge;
+mod parts;
+mod shapes;
 mod world;

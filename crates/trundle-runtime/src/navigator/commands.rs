@@ -40,6 +40,7 @@ impl Navigator {
                 None => follow.twist,
             },
             DriveState::Settling if matches!(self.goal, Goal::View(_)) => self.turn_to_view(s),
+            DriveState::Settling if self.last_stage.holds() => Twist2::ZERO,
             DriveState::Docking if self.is_blind(s) => Twist2::ZERO,
             DriveState::Docking => times.measure(Stage::Control, || self.dock(s)),
             _ => follow.twist,

@@ -70,8 +70,34 @@ pub(super) fn draw_outline(
 ) {
     let pen = Pen::solid(color, 1.3 * view.unit as f64);
     canvas.polyline(outline(view, pose, footprint), pen);
-    let tip = pose.position() + pose.direction() * footprint.circumscribed_radius();
+    let tip = pose.position() + pose.direction() * front(footprint);
     canvas.polyline([view.px(pose.position()), view.px(tip)], pen);
+}
+
+/// A filled polygon with a firm edge.
+pub(super) fn draw_area(canvas: &mut Canvas, view: &View, corners: &[Vector2], color: Color) {
+    let edge: Vec<Px> = corners.iter().chain(corners.first()).map(|corner| view.px(*corner)).collect();
+    canvas.polygon(&edge, color);
+    canvas.polyline(edge, Pen::solid(Color::OCCUPIED, view.unit as f64));
+}
+
+/// One of many outlines, laid over each other.
+pub(super) fn draw_swept(canvas: &mut Canvas, view: &View, pose: Pose2, footprint: &Footprint, color: Color) {
+    let edge = outline(view, pose, footprint);
+    canvas.polygon(&edge, color.alpha(16));
+    canvas.polyline(edge, Pen::solid(color.alpha(70), 0.5 * view.unit as f64));
+}
+
+/// How far the outline reaches straight ahead of the axle, m; as far as anywhere along x where the axle is outside.
+fn front(footprint: &Footprint) -> f64 {
+    let corners = match footprint {
+        Footprint::Disc { radius } => return *radius,
+        Footprint::Polygon { corners } => corners,
+    };
+    let sides = corners.iter().zip(corners.iter().cycle().skip(1));
+    let crossings = sides.filter(|(a, b)| (a.y <= 0.0) != (b.y <= 0.0));
+    let ahead = crossings.map(|(a, b)| a.x + (b.x - a.x) * a.y / (a.y - b.y));
+    ahead.max_by(f64::total_cmp).unwrap_or_else(|| corners.iter().map(|c| c.x).fold(0.0, f64::max))
 }
 
 /// The robot's outline at a pose, closed.

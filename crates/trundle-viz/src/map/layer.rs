@@ -1,4 +1,4 @@
-use super::draw::{draw_dot, draw_line, draw_outline, draw_pose};
+use super::draw::{draw_area, draw_dot, draw_line, draw_outline, draw_pose, draw_swept};
 use super::shade::Shade;
 use super::style::{DotStyle, LineStyle, PoseStyle};
 use super::view::View;
@@ -22,6 +22,8 @@ pub(crate) enum Shape {
     Band { points: Vec<Vector2>, radius: f64, color: Color },
     Pose { pose: Pose2, style: PoseStyle },
     Outlines { poses: Vec<Pose2>, footprint: Footprint, color: Color },
+    Area { corners: Vec<Vector2>, color: Color },
+    Swept { poses: Vec<Pose2>, footprint: Footprint, color: Color },
     Scan { seen: Vec<Vector2>, hits: Vec<Vector2>, color: Color },
     Shade(Shade),
 }
@@ -61,7 +63,10 @@ impl Layer {
                 let reach = Vector2::new(radius, radius);
                 vec![pose.position() - reach, pose.position() + reach]
             }
-            Shape::Outlines { poses, .. } => poses.iter().map(Pose2::position).collect(),
+            Shape::Outlines { poses, .. } | Shape::Swept { poses, .. } => {
+                poses.iter().map(Pose2::position).collect()
+            }
+            Shape::Area { corners, .. } => corners.clone(),
             Shape::Dots { .. } | Shape::Scan { .. } | Shape::Shade(_) => Vec::new(),
         }
     }
@@ -88,6 +93,10 @@ impl Layer {
             Shape::Band { points, color, .. } => (finite(points), *color, Mark::Band),
             Shape::Pose { pose, style } => (pose.is_finite(), style.color, Mark::Wedge),
             Shape::Outlines { poses, color, .. } => (poses.iter().any(Pose2::is_finite), *color, Mark::Ring),
+            Shape::Area { corners, color } => (finite(corners), *color, Mark::Cell),
+            Shape::Swept { poses, color, .. } => {
+                (poses.iter().any(Pose2::is_finite), color.alpha(110), Mark::Band)
+            }
             Shape::Scan { hits, color, .. } => (finite(hits), *color, Mark::Dot),
             Shape::Shade(shade) => (shade.is_visible(), shade.color(), Mark::Band),
         };
@@ -108,6 +117,10 @@ impl Layer {
             Shape::Pose { pose, style } => draw_pose(canvas, view, *pose, style, &self.label),
             Shape::Outlines { poses, footprint, color } => {
                 poses.iter().for_each(|pose| draw_outline(canvas, view, *pose, footprint, *color));
+            }
+            Shape::Area { corners, color } => draw_area(canvas, view, corners, *color),
+            Shape::Swept { poses, footprint, color } => {
+                poses.iter().for_each(|pose| draw_swept(canvas, view, *pose, footprint, *color));
             }
             Shape::Shade(shade) => shade.draw(canvas, view),
             Shape::Scan { seen, hits, color } => {

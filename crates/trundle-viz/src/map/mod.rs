@@ -5,9 +5,11 @@ mod frame;
 mod layer;
 mod shade;
 mod style;
+mod tiles;
 mod view;
 
 pub use style::{DotStyle, LineStyle, PoseStyle};
+pub use tiles::tiles;
 
 use crate::canvas::Canvas;
 use crate::color::Color;
@@ -79,6 +81,16 @@ impl<'a> MapPicture<'a> {
     /// Adds a pose as a wedge along its heading.
     pub fn pose(self, label: &str, pose: Pose2, style: PoseStyle) -> Self {
         self.layer(label, Shape::Pose { pose, style })
+    }
+
+    /// Adds a filled polygon.
+    pub fn area(self, label: &str, corners: &[Vector2], color: Color) -> Self {
+        self.layer(label, Shape::Area { corners: corners.to_vec(), color })
+    }
+
+    /// Adds the floor that the robot covers at poses close together: the darker, the longer.
+    pub fn swept(self, label: &str, poses: &[Pose2], footprint: &Footprint, color: Color) -> Self {
+        self.layer(label, Shape::Swept { poses: poses.to_vec(), footprint: footprint.clone(), color })
     }
 
     /// Adds the robot's outline at each pose, with a stroke along the heading.

@@ -67,6 +67,12 @@ impl View {
         Self { corner, px_per_m, width, height, cells: None, unit }
     }
 
+    /// The same part of the map in a picture `part` as large, for one that is not of cells.
+    pub(crate) fn scaled(self, part: f64) -> Self {
+        let side = |px: i64| ((px as f64 * part).round() as i64).max(1);
+        Self::new(self.corner, self.px_per_m * part, side(self.width), side(self.height))
+    }
+
     /// The same view with its lettering `factor` times as large.
     pub(crate) fn with_lettering(self, factor: f64) -> Self {
         let unit = ((self.unit as f64 * factor).round() as i64).clamp(1, 12);

@@ -1,0 +1,69 @@
+use trundle_core::{CellIndex, GridGeometry, Vector2};
+
+/// The cells of a grid within a box, and which of them stand in the way.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Cells {
+    geometry: GridGeometry,
+    /// First and one past the last, columns and rows.
+    pub cols: (usize, usize),
+    pub rows: (usize, usize),
+    blocked: Vec<bool>,
+    /// Whether what is off the grid stands in the way too.
+    beyond: bool,
+}
+
+impl Cells {
+    /// The cells of a grid that reach into the box of half side `half` (m) about `center`; `blocks` says which stand in the way.
+    pub fn new(
+        geometry: GridGeometry,
+        center: Vector2,
+        half: f64,
+        beyond: bool,
+        blocks: impl Fn(CellIndex) -> bool,
+    ) -> Self {
+        let part = |middle: f64, origin: f64, count: usize| {
+            let at = |x: f64| ((x - origin) / geometry.resolution).clamp(0.0, count as f64);
+            (at(middle - half).floor() as usize, at(middle + half).ceil() as usize)
+        };
+        let cols = part(center.x, geometry.origin.x, geometry.width);
+        let rows = part(center.y, geometry.origin.y, geometry.height);
+        let mut blocked = Vec::with_capacity((cols.1 - cols.0) * (rows.1 - rows.0));
+        for row in rows.0..rows.1 {
+            blocked.extend((cols.0..cols.1).map(|col| blocks(CellIndex { col, row })));
+        }
+        Self { geometry, cols, rows, blocked, beyond }
+    }
+
+    /// Of which grid.
+    pub fn geometry(&self) -> &GridGeometry {
+        &self.geometry
+    }
+
+    /// Whether a cell stands in the way; none beyond the box does.
+    pub fn blocks(&self, col: usize, row: usize) -> bool {
+        let inside = (self.cols.0..self.cols.1).contains(&col) && (self.rows.0..self.rows.1).contains(&row);
+        let index = || (row - self.rows.0) * (self.cols.1 - self.cols.0) + col - self.cols.0;
+        inside && self.blocked[index()]
+    }
+
+    /// Whether a point lies in a cell that stands in the way, or off the grid where that counts.
+    pub fn hold(&self, p: Vector2) -> bool {
+        self.geometry.cell_at(p).map_or(self.beyond, |cell| self.blocks(cell.col, cell.row))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_what_is_in_the_box_blocks_and_what_is_off_the_grid_where_it_counts() {
+        let geometry = GridGeometry::new(0.1, Vector2::zeros(), 20, 10).unwrap();
+        let at = |x: f64, y: f64| Vector2::new(x, y);
+        let cells = |beyond| Cells::new(geometry, at(0.5, 0.5), 0.3, beyond, |cell| cell.col % 2 == 0);
+        let some = cells(false);
+        assert!(some.hold(at(0.45, 0.5)) && !some.hold(at(0.55, 0.5)) && !some.hold(at(1.65, 0.5)));
+        assert!(!some.hold(at(-0.5, 0.5)) && cells(true).hold(at(-0.5, 0.5)));
+        assert_eq!((some.cols, some.rows), ((2, 8), (2, 8)));
+    }
+}

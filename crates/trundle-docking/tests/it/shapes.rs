@@ -1,0 +1,88 @@
+//! Whole plans of any footprint among anything, against brute force.
+
+use crate::contact::{distance, footprint, obstacle, sides};
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use std::f64::consts::PI;
+use trundle_core::{Footprint, Pose2, Vector2};
+use trundle_docking::{Certificate, Docker, DockingConfig, Manoeuvre, Method, Obstacle, Plan, Scene};
+
+const PROBLEMS: usize = 100;
+/// What is kept where a margin of 0 is asked for, m, less what a motion may be off by.
+const TOUCH: f64 = 1e-4 - 1e-6;
+
+/// Start and goal some centimetres from everything, near each other.
+fn ends(rng: &mut ChaCha8Rng, free: impl Fn(&Pose2) -> bool) -> Option<(Pose2, Pose2)> {
+    let start =
+        Pose2::new(rng.random_range(-0.3..0.3), rng.random_range(-0.3..0.3), rng.random_range(-PI..PI));
+    let part = if rng.random_bool(0.3) { 3.0 } else { 0.4 };
+    let by =
+        Pose2::new(rng.random_range(-0.3..0.3), rng.random_range(-0.25..0.25), rng.random_range(-part..part));
+    let goal = start * by;
+    (free(&start) && free(&goal)).then_some((start, goal))
+}
+
+/// The least distance on the way, no point of the robot moving by more than 2 mm between two looks.
+fn least_on_the_way(footprint: &Footprint, manoeuvre: &Manoeuvre, pieces: &[(Vector2, Vector2)]) -> f64 {
+    let arm = footprint.circumscribed_radius().max(1.0);
+    let mut least = f64::INFINITY;
+    for step in manoeuvre.steps() {
+        let amount = step.motion.amount();
+        let samples = (amount.abs() * arm / 0.002).ceil().max(1.0) as u32;
+        for i in 0..=samples {
+            let pose = step.motion.after(step.from, amount * f64::from(i) / f64::from(samples));
+            least = least.min(distance(footprint, &pose, pieces));
+        }
+    }
+    least
+}
+
+/// Discs, triangles, heptagons, the axle anywhere, outside too: every manoeuvre is free and ends exactly, and where the greedy
+/// method finds a free way nothing is called impossible.
+#[test]
+fn any_shape_is_safe_and_nothing_possible_is_called_impossible() {
+    let mut rng = ChaCha8Rng::seed_from_u64(21);
+    let config = DockingConfig { most_work: 4_000_000, bound_boxes: 100, ..DockingConfig::default() };
+    let dockers = [0.0, 0.01].map(|margin| Docker::new(DockingConfig { margin, ..config.clone() }).unwrap());
+    let by_paper = DockingConfig { method: Method::Paper, margin: 0.0, ..config };
+    let greedy = Docker::new(by_paper).unwrap();
+    let (mut count, mut found, mut never, mut least) = (0, 0, 0, f64::INFINITY);
+    while count < PROBLEMS {
+        let footprint = footprint(&mut rng);
+        let obstacles: Vec<Obstacle> = (0..rng.random_range(4..16)).map(|_| obstacle(&mut rng)).collect();
+        let (scene, pieces) = (Scene::new(&obstacles).unwrap(), sides(&obstacles));
+        let free = |pose: &Pose2| scene.clearance(&footprint, pose, 0.005).is_none();
+        let Some((start, goal)) = ends(&mut rng, free) else { continue };
+        count += 1;
+        match dockers[count % 2].plan(&footprint, &scene, start, goal).unwrap() {
+            Plan::Found(solution) => {
+                found += 1;
+                let manoeuvre = &solution.manoeuvre;
+                assert!(manoeuvre.end().distance(&goal) < 1e-9, "problem {count}");
+                let on_the_way = least_on_the_way(&footprint, manoeuvre, &pieces);
+                let kept = solution.margin.max(1e-4) - 1e-6;
+                assert!(on_the_way >= kept.max(TOUCH), "problem {count}: {on_the_way} of {kept}");
+                assert!(solution.bound <= manoeuvre.duration() + 1e-9);
+                least = least.min(on_the_way);
+            }
+            Plan::Impossible(none) => {
+                let Plan::Found(other) = greedy.plan(&footprint, &scene, start, goal).unwrap() else {
+                    never += i32::from(none.certificate == Certificate::Never);
+                    continue;
+                };
+                // It looks at samples only, and ends near the goal: free by a centimetre is free.
+                let is_free = least_on_the_way(&footprint, &other.manoeuvre, &pieces) > 0.005;
+                let is_there = other.manoeuvre.end().distance(&goal) < 1e-3;
+                assert!(
+                    !(is_free && is_there),
+                    "problem {count}: {none:?}, but the greedy method finds a way"
+                );
+            }
+        }
+    }
+    eprintln!(
+        "{found} of {count} found, {never} proven impossible; {:.2} mm the least on any way",
+        1e3 * least
+    );
+    assert!(found > PROBLEMS / 2, "{found} of {count}");
+}
