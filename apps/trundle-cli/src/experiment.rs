@@ -7,6 +7,7 @@ mod faults;
 mod laser_run;
 mod missions;
 mod mrpb;
+mod people;
 mod poses;
 mod rows;
 mod trial;
@@ -35,6 +36,8 @@ pub enum Which {
     House(HouseArgs),
     /// Sensors that break, wheels that slip, people in the way: nothing touched, and on when it can be.
     Faults(RunsArgs),
+    /// Somebody steps into the robot's way a metre before it, one a run.
+    People(RunsArgs),
     /// The worlds of the BARN challenge, crossed at up to 2 m/s with a 2-D laser.
     Barn(BarnArgs),
     /// The courses of the local-planning benchmark MRPB 1.0, with and without people, with a 2-D laser.
@@ -169,7 +172,9 @@ impl ExperimentArgs {
     /// What every command takes.
     pub fn common(&self) -> &Common {
         match &self.which {
-            Which::Poses(args) | Which::Obstacles(args) | Which::Faults(args) => &args.common,
+            Which::Poses(args) | Which::Obstacles(args) | Which::Faults(args) | Which::People(args) => {
+                &args.common
+            }
             Which::House(args) => &args.runs.common,
             Which::Barn(args) => &args.common,
             Which::Mrpb(args) => &args.common,
@@ -187,6 +192,7 @@ pub fn run(args: &ExperimentArgs) -> Result<Outcome, Failure> {
         Which::Barn(args) => barn::run(args),
         Which::Mrpb(args) => mrpb::run(args),
         Which::Faults(args) => faults::run(args),
+        Which::People(args) => people::run(args),
         Which::Corridor(args) => corridor::run(args),
     }
 }

@@ -23,6 +23,19 @@ pub struct Logbook {
     pub tracked: TrackCounts,
     /// What the robot was doing last.
     pub state: DriveState,
+    /// When it began to do something else.
+    pub changes: Vec<StateChange>,
+}
+
+/// The robot begins to do something else.
+#[derive(Debug, Clone)]
+pub struct StateChange {
+    /// Seconds since the first event.
+    pub at: f64,
+    /// What it does now.
+    pub state: DriveState,
+    /// Where it believes to be, map frame.
+    pub pose: Pose2,
 }
 
 /// Images by what tracking said of them.
@@ -55,6 +68,12 @@ impl Logbook {
     pub fn note(&mut self, now: Stamp, report: &StepReport) {
         self.start.get_or_insert(now);
         self.now = now;
+        if let Some(estimate) = &report.estimate
+            && self.changes.last().is_none_or(|last| last.state.name() != report.state.name())
+        {
+            let (at, state, pose) = (self.elapsed(), report.state.clone(), estimate.pose);
+            self.changes.push(StateChange { at, state, pose });
+        }
         self.state = report.state.clone();
         self.plans += usize::from(report.replanned);
         if let Some(track) = &report.track {

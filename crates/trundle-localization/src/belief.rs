@@ -19,6 +19,11 @@ pub(crate) struct Measurement {
 }
 
 impl Belief {
+    /// The larger of the variances of the position's coordinates, m^2.
+    pub(crate) fn position_variance(&self) -> f64 {
+        self.covariance[(0, 0)].max(self.covariance[(1, 1)])
+    }
+
     /// After a motion with this noise.
     pub(crate) fn moved(&self, motion: &Pose2, noise: &Matrix3<f64>) -> Self {
         Self { pose: self.pose * *motion, covariance: carried(&self.covariance, motion) + noise }

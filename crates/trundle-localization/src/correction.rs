@@ -33,6 +33,8 @@ pub enum VisualQuality {
 pub enum Correction {
     /// The first visual pose of a visual map: it only says where the visual frame lies in the map.
     Anchored,
+    /// The first visual pose of a visual map, while the place is too uncertain to lay a map by it: ignored.
+    Nowhere,
     /// Taken in.
     Applied {
         /// Mahalanobis distance from the prediction.

@@ -5,7 +5,8 @@ use crate::{
     recovery::{Recovery, Verdict},
     visual_frame::VisualFrame,
 };
-use nalgebra::Matrix3;
+use nalgebra::{Matrix3, Vector3};
+use std::collections::BTreeMap;
 use trundle_core::{Invalid, Odometry, Pose2, Pose3, PoseEstimate, Stamp, Twist2};
 
 /// The one pose estimate: odometry, corrected by visual poses and scan matches.
@@ -26,10 +27,15 @@ use trundle_core::{Invalid, Odometry, Pose2, Pose3, PoseEstimate, Stamp, Twist2}
 #[derive(Debug, Clone)]
 pub struct Localizer {
     config: LocalizerConfig,
+    /// What is believed before the first odometry.
+    start: Belief,
     history: Option<History>,
     visual: VisualFrame,
     recovery: Recovery,
 }
+
+/// The variances of a robot that may be anywhere in a building, m^2 and rad^2.
+const ANYWHERE: Vector3<f64> = Vector3::new(1e4, 1e4, 10.0);
 
 impl Localizer {
     /// An estimate at the map's origin, for a camera mounted at `base_from_camera`.
@@ -42,7 +48,17 @@ impl Localizer {
             return Err(Invalid::new("base_from_camera", "not finite", "", "finite numbers"));
         }
         let visual = VisualFrame::new(base_from_camera);
-        Ok(Self { config, history: None, visual, recovery: Recovery::default() })
+        let start = Belief { pose: Pose2::IDENTITY, covariance: Matrix3::zeros() };
+        Ok(Self { config, start, history: None, visual, recovery: Recovery::default() })
+    }
+
+    /// The same waking up in a known map: it knows where each visual map lies in it (`map_from_visual` by the map's number), and not
+    /// where the robot stands.
+    #[must_use]
+    pub fn waking(mut self, visual_maps: BTreeMap<u32, Pose3>) -> Self {
+        self.visual.lay(visual_maps);
+        self.start.covariance = Matrix3::from_diagonal(&ANYWHERE);
+        self
     }
 
     /// Moves the estimate with the odometry.
@@ -51,8 +67,7 @@ impl Localizer {
             return Prediction::NotFinite;
         }
         let Some(history) = &mut self.history else {
-            let start = Belief { pose: Pose2::IDENTITY, covariance: Matrix3::zeros() };
-            self.history = Some(History::new(odometry, start, self.config.least_variances()));
+            self.history = Some(History::new(odometry, self.start, self.config.least_variances()));
             return Prediction::Started;
         };
         let later = odometry.stamp - history.newest_odometry().stamp;
@@ -76,12 +91,16 @@ impl Localizer {
             Err(refusal) => return refusal,
         };
         let Some(measurement) = self.visual.measurement(visual, &self.config) else {
-            self.visual.anchor(moment.belief.pose, visual);
+            if moment.belief.position_variance() > self.config.anchor_sigma.powi(2) {
+                return Correction::Nowhere;
+            }
+            self.visual.anchor(&moment.belief, visual);
             return Correction::Anchored;
         };
         self.recovery.watch(&self.config, visual.stamp, measurement.pose, moment.odom_from_base());
         let correction = self.apply(&moment, measurement);
         let Correction::Gated { distance } = correction else {
+            self.visual.refine(&moment.belief, &measurement);
             self.recovery.believed();
             return correction;
         };
@@ -93,7 +112,7 @@ impl Localizer {
         match self.recovery.refused(&self.config) {
             Verdict::Wait => correction,
             Verdict::Reanchor => {
-                self.visual.anchor(moment.belief.pose, visual);
+                self.visual.anchor(&moment.belief, visual);
                 self.recovery = Recovery::default();
                 Correction::Reanchored
             }
@@ -158,6 +177,11 @@ impl Localizer {
     /// Where the current visual map's frame lies in the map, once there was a visual pose.
     pub fn map_from_visual(&self) -> Option<Pose3> {
         self.visual.map_from_visual()
+    }
+
+    /// Where every visual map lies in the map, by its number.
+    pub fn visual_maps(&self) -> BTreeMap<u32, Pose3> {
+        self.visual.maps()
     }
 
     fn find(&self, stamp: Stamp) -> Result<Moment, Correction> {

@@ -21,6 +21,8 @@ pub struct LocalizerConfig {
     pub least_position_sigma: f64,
     /// No number of corrections makes the heading surer than this (one sigma), deg, 0 to 30. Default 0.45.
     pub least_heading_sigma_deg: f64,
+    /// A visual map is laid into the map only by a place that is surer than this (one sigma), m, 0.01 to 10. Default 0.5.
+    pub anchor_sigma: f64,
     /// Measurements farther off than this are not believed, in sigmas (Mahalanobis distance), 1 to 100. Default 4: one
     /// good measurement in 1000.
     pub gate: f64,
@@ -47,6 +49,7 @@ impl Default for LocalizerConfig {
             scan_heading_sigma_deg: 0.5,
             least_position_sigma: 0.015,
             least_heading_sigma_deg: 0.45,
+            anchor_sigma: 0.5,
             gate: 4.0,
             recover_after: 8,
             jump_distance: 0.1,
@@ -70,6 +73,7 @@ impl LocalizerConfig {
         require_in("scan_heading_sigma_deg", self.scan_heading_sigma_deg, "deg", 0.01, 30.0)?;
         require_in("least_position_sigma", self.least_position_sigma, "m", 0.0, 1.0)?;
         require_in("least_heading_sigma_deg", self.least_heading_sigma_deg, "deg", 0.0, 30.0)?;
+        require_in("anchor_sigma", self.anchor_sigma, "m", 0.01, 10.0)?;
         require_in("gate", self.gate, "", 1.0, 100.0)?;
         require_in("recover_after", self.recover_after as f64, "", 2.0, 1000.0)?;
         require_in("jump_distance", self.jump_distance, "m", 0.01, 10.0)?;

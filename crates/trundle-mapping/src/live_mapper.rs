@@ -12,6 +12,8 @@ use trundle_core::{CellIndex, Invalid, OccupancyGrid, Pose2, Scan, Stamp, Vector
 #[derive(Debug, Clone)]
 pub struct LiveMapper {
     front: GridMapper,
+    /// What was known before the first scan.
+    known: LogOddsGrid,
     kept: Vec<Kept>,
     snapshots: Vec<Snapshot>,
     /// Kept things between snapshots.
@@ -70,8 +72,20 @@ impl LiveMapper {
     /// # Errors
     /// When the configuration is out of range.
     pub fn new(config: MapperConfig) -> Result<Self, Invalid> {
-        let front = GridMapper::new(config)?;
-        Ok(Self { front, kept: Vec::new(), snapshots: Vec::new(), every: 64, redrawing: None })
+        Ok(Self::over(GridMapper::new(config)?))
+    }
+
+    /// A map that goes on from a saved one, which no correction moves.
+    ///
+    /// # Errors
+    /// As [`GridMapper::from_grid`].
+    pub fn from_grid(config: MapperConfig, grid: &OccupancyGrid) -> Result<Self, Invalid> {
+        Ok(Self::over(GridMapper::from_grid(config, grid)?))
+    }
+
+    fn over(front: GridMapper) -> Self {
+        let known = front.evidence().clone();
+        Self { front, known, kept: Vec::new(), snapshots: Vec::new(), every: 64, redrawing: None }
     }
 
     /// Draws `scan`, taken with the base at `map_from_base`, and keeps it when it is from somewhere else than the last one.
@@ -210,7 +224,7 @@ impl LiveMapper {
         self.snapshots.retain(|snapshot| snapshot.drawn <= first);
         let (evidence, drawn) = match self.snapshots.last() {
             Some(snapshot) => (snapshot.evidence.clone(), snapshot.drawn),
-            None => (LogOddsGrid::default(), 0),
+            None => (self.known.clone(), 0),
         };
         self.redrawing = Some(Redrawing { back: self.front.with_evidence(evidence), drawn });
     }

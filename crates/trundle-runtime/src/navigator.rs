@@ -1,6 +1,7 @@
 mod commands;
 mod deferring;
 mod plans;
+mod vantage;
 
 pub(crate) use commands::safety_input;
 
@@ -17,6 +18,7 @@ use crate::{
 use trundle_control::{FollowPhase, FollowReport, Follower, SafetyMonitor, SafetyScan};
 use trundle_core::{Footprint, Invalid, OccupancyGrid, Pose2, PoseEstimate, Stamp, Twist2, Vector2};
 use trundle_planning::{PlanResult, Planner};
+use vantage::Vantage;
 
 /// What the robot knows of its surroundings when it decides.
 #[derive(Debug, Clone, Copy)]
@@ -82,8 +84,11 @@ pub(crate) struct Navigator {
     started: Option<Stamp>,
     held_since: Option<Stamp>,
     look: LookAround,
+    /// The turn of a robot that sees nothing.
+    sight_look: LookAround,
     /// Where the way to the goal ends, when there is none.
     blocked_at: Option<Vector2>,
+    vantage: Vantage,
     /// A disc can always turn away.
     is_polygon: bool,
     /// The outline stands too near to something to turn: it backs out, as far as safety lets it.
@@ -125,7 +130,9 @@ impl Navigator {
             started: None,
             held_since: None,
             look: LookAround::default(),
+            sight_look: LookAround::default(),
             blocked_at: None,
+            vantage: Vantage::Unknown,
             is_polygon: matches!(footprint, Footprint::Polygon { .. }),
             is_wedged: false,
             is_off_track: false,
@@ -143,6 +150,7 @@ impl Navigator {
         self.plan = None;
         self.held_since = None;
         self.blocked_at = None;
+        self.vantage = Vantage::Unknown;
         self.is_off_track = false;
         self.touches = 0;
         self.look = LookAround::default();
@@ -283,6 +291,10 @@ impl Navigator {
 
     /// What the follower's phase means for the state.
     fn note_progress(&mut self, follow: &FollowReport, s: &Surroundings<'_>, times: &mut StageTimes) {
+        if self.has_come_to_vantage(follow) {
+            self.follower.halt();
+            self.vantage = Vantage::Settled;
+        }
         let moving = matches!(self.state, DriveState::Driving | DriveState::Settling);
         match follow.phase {
             _ if !moving => {}

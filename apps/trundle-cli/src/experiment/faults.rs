@@ -2,7 +2,7 @@
 //! cannot see, says why, and goes on when it can.
 
 use super::{RunsArgs, trial, trial::Trial, trial::TrialPlan};
-use crate::{Outcome, console, failure::Failure, robot_file};
+use crate::{Outcome, console, failure::Failure, logbook::StateChange, robot_file};
 use trundle::core::{Pose2, Vector2};
 use trundle::io::{OutputFolder, Summary};
 use trundle::runtime::{DriveState, Mission, Task};
@@ -169,10 +169,23 @@ fn told(trials: &[Trial]) -> String {
 fn report(trials: &[Trial], success: bool) -> Report {
     let verdict = if success { Verdict::Ok(told(trials)) } else { Verdict::Failed(told(trials)) };
     let table = trials.iter().map(row).fold(Table::new("Days", HEADER), Table::row).wide();
-    Report::new("Bad days")
+    let report = Report::new("Bad days")
         .subtitle("What breaks while the robot drives, and how it ends.")
         .verdict(verdict)
-        .table(table)
+        .table(table);
+    trials.iter().fold(report, |report, trial| report.table(story(trial)))
+}
+
+/// What the robot did on that day, one after the other.
+fn story(trial: &Trial) -> Table {
+    let row = |change: &StateChange| {
+        let Pose2 { x, y, theta } = change.pose;
+        let place = format!("({x:.2} m, {y:.2} m, {:.0} deg)", theta.to_degrees());
+        vec![format!("{:.1}", change.at), place, change.state.to_string()]
+    };
+    let title = format!("{}, seed {}", trial.name, trial.seed);
+    let table = Table::new(&title, ["time, s", "believed place", "what it began to do"]);
+    trial.changes.iter().map(row).fold(table, Table::row).wide()
 }
 
 fn summary(trials: &[Trial], success: bool) -> Summary {

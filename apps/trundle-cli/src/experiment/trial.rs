@@ -1,5 +1,6 @@
 use super::RunsArgs;
 use crate::demo::{simulated, time_limit};
+use crate::logbook::StateChange;
 use crate::run::{Run, RunSetup, live};
 use crate::run_table::RunNumbers;
 use crate::{console, failure::Failure};
@@ -37,10 +38,14 @@ pub struct Trial {
     pub numbers: RunNumbers,
     /// The way driven in truth, world frame.
     pub driven: Vec<Vector2>,
+    /// When it was at each of these points, s since the beginning.
+    pub times: Vec<f64>,
     /// The trajectory planned last, world frame.
     pub planned: Vec<Vector2>,
     /// The map, map frame.
     pub grid: OccupancyGrid,
+    /// What the robot did, one after the other.
+    pub changes: Vec<StateChange>,
 }
 
 /// Makes the runs, as many at once as there are threads; the results are in the order of the plans.
@@ -69,7 +74,11 @@ pub fn all(mut plans: Vec<TrialPlan>, args: &RunsArgs) -> Result<Vec<Trial>, Fai
     trials
 }
 
-fn one(plan: TrialPlan) -> Result<Trial, Failure> {
+/// Makes one run.
+///
+/// # Errors
+/// When the plan cannot be carried out.
+pub fn one(plan: TrialPlan) -> Result<Trial, Failure> {
     let TrialPlan { name, seed, scene, mission, robot, faults } = plan;
     let world_from_map = scene.start;
     let setup = RunSetup {
@@ -90,9 +99,11 @@ fn one(plan: TrialPlan) -> Result<Trial, Failure> {
         seed,
         world_from_map,
         numbers: RunNumbers::of(&setup, &run),
+        times: run.log.truths.iter().map(|(stamp, _)| *stamp - run.log.start.unwrap_or_default()).collect(),
         driven: run.log.truths.iter().map(|(_, pose)| world_from_map.transform(pose.position())).collect(),
         planned: planned.into_iter().map(|point| world_from_map.transform(point)).collect(),
         grid: run.robot.grid().clone(),
+        changes: run.log.changes.clone(),
     })
 }
 

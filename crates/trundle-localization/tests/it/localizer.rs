@@ -39,6 +39,50 @@ fn localizer() -> Localizer {
     Localizer::new(LocalizerConfig::default(), base_from_camera()).unwrap()
 }
 
+#[test]
+fn waking_up_it_is_nowhere_until_a_known_map_is_recognised() {
+    let mut first = localizer();
+    driven(0, 1000, &mut first);
+    first.correct_visual(&visual(500, Pose2::IDENTITY));
+    let mut second = localizer().waking(first.visual_maps());
+    driven(0, 1000, &mut second);
+    assert!(second.estimate().covariance[(0, 0)] > 1e3);
+    let foreign = VisualPose { map: 1, ..visual(400, Pose2::IDENTITY) };
+    assert_eq!(second.correct_visual(&foreign), Correction::Nowhere);
+    // By the first one's map the robot stood here at 0.5 s.
+    let stood = Pose2::new(3.0, -2.0, 2.5);
+    assert!(second.correct_visual(&visual(500, stood)).is_applied());
+    let there = second.pose_at(at(500)).unwrap();
+    let expected = first.map_from_visual().unwrap()
+        * visual(500, stood).visual_from_camera
+        * base_from_camera().inverse();
+    assert!(there.distance(&expected.to_pose2()) < 0.01, "{there:?}");
+    assert!(wrap_angle(there.theta - expected.to_pose2().theta).abs() < 0.01);
+    assert!(second.estimate().covariance[(0, 0)] < 0.01);
+    assert!(matches!(second.correct_visual(&VisualPose { stamp: at(520), ..foreign }), Correction::Anchored));
+}
+
+#[test]
+fn a_visual_map_that_was_laid_in_doubt_is_moved_to_where_scans_say() {
+    let mut localizer = localizer();
+    driven(0, 20_000, &mut localizer);
+    let truth = |ms: i64| Pose2::new(0.2, -0.1, 0.05) * odometry(ms).pose;
+    localizer.correct_visual(&visual(19_000, truth(19_000)));
+    let before = localizer.map_from_visual().unwrap();
+    for ms in (20_020..26_000).step_by(20) {
+        localizer.predict(&odometry(ms));
+        if ms % 100 == 0 {
+            localizer.correct_scan(at(ms), truth(ms), &(Matrix3::identity() * 1e-5));
+            localizer.correct_visual(&visual(ms, truth(ms)));
+        }
+    }
+    // Laid where odometry alone had the robot; the visual poses and the scans agree only about the true frame.
+    let visual_from_map = base_from_camera().inverse();
+    let off = |map_from_visual: Pose3| (visual_from_map * map_from_visual).translation.norm();
+    let now = localizer.map_from_visual().unwrap();
+    assert!(off(now) < 0.5 * off(before), "{} before, {} now", off(before), off(now));
+}
+
 fn driven(from: i64, to: i64, localizer: &mut Localizer) {
     for ms in (from..=to).step_by(20) {
         localizer.predict(&odometry(ms));

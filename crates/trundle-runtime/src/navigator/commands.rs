@@ -1,9 +1,9 @@
 //! The command of each state, and safety's word on it.
 
-use super::{Goal, Navigator, PAUSE, Surroundings};
+use super::{Goal, Navigator, PAUSE, Surroundings, vantage::Vantage};
 use crate::{
     last_stage::Progress,
-    look::{face, turn_to},
+    look::{LookAround, face, turn_to},
     stage::{Stage, StageTimes},
     state::DriveState,
 };
@@ -29,9 +29,13 @@ impl Navigator {
         times: &mut StageTimes,
     ) -> Twist2 {
         let pose = s.estimate.pose;
+        if !self.is_blind(s) {
+            self.sight_look = LookAround::default();
+        }
         match &self.state {
             DriveState::Mapping if self.goal == Goal::Look => self.look_once(s),
             DriveState::Recovering { .. } if self.is_wedged => Twist2::new(-BACKING_OUT, 0.0),
+            DriveState::Recovering { .. } if self.vantage == Vantage::Going => follow.twist,
             DriveState::Recovering { .. } | DriveState::Lost { .. } => self.look.twist(pose),
             DriveState::Waiting { .. } if self.backs_out(s) => Twist2::new(-BACK_OUT, 0.0),
             DriveState::Waiting { .. } if self.is_blind(s) => self.look_for_sight(s),
@@ -71,10 +75,10 @@ impl Navigator {
     /// A camera too near to a wall sees nothing: after a while one turn on the spot shows whether that is it.
     fn look_for_sight(&mut self, s: &Surroundings<'_>) -> Twist2 {
         let waited = self.held_since.map_or(0.0, |since| s.now - since);
-        if waited < BLIND_PAUSE || self.look.has_turned(ONE_TURN) {
+        if waited < BLIND_PAUSE || self.sight_look.has_turned(ONE_TURN) {
             return Twist2::ZERO;
         }
-        self.look.twist(s.estimate.pose)
+        self.sight_look.twist(s.estimate.pose)
     }
 
     /// A turn on the spot, and what is around has been seen.

@@ -1,6 +1,6 @@
 //! When to plan, from where, and what to do when there is no way.
 
-use super::{Goal, Navigator, PAUSE, Surroundings};
+use super::{Goal, Navigator, PAUSE, Surroundings, vantage::Vantage};
 use crate::{
     look::LookAround,
     stage::{Stage, StageTimes},
@@ -62,6 +62,7 @@ impl Navigator {
                 self.state = DriveState::Driving;
                 self.held_since = None;
                 self.blocked_at = None;
+                self.vantage = Vantage::Unknown;
                 self.is_off_track = false;
                 self.look = LookAround::default();
                 true
@@ -72,7 +73,7 @@ impl Navigator {
             }
             refused => {
                 if !self.turned_to_docking(goal, s) {
-                    self.no_way(&refused);
+                    self.no_way(&refused, s);
                 }
                 false
             }
@@ -100,9 +101,14 @@ impl Navigator {
         }
     }
 
-    /// No way is known: stop, turn on the spot until everything around has been seen, then wait, looking at where it ends.
-    fn no_way(&mut self, refused: &Plan) {
+    /// No way is known: stop, turn on the spot until everything around has been seen, then go where what bars the way is seen, and
+    /// wait there, looking at it.
+    fn no_way(&mut self, refused: &Plan, s: &Surroundings<'_>) {
         let reason = why(refused);
+        if self.vantage == Vantage::Going {
+            self.state = DriveState::Recovering { reason };
+            return;
+        }
         self.is_wedged = self.is_polygon && matches!(refused, Plan::StartInObstacle { .. });
         self.follower.halt();
         self.plan = None;
@@ -110,10 +116,13 @@ impl Navigator {
             Plan::Blocked { nearest } => Some(*nearest),
             _ => self.goal.pose().map(|goal| goal.position()),
         };
-        self.state = match self.goal {
-            Goal::View(_) => DriveState::Stopped { reason },
-            _ if self.look.has_turned(TURNS) && !self.is_wedged => DriveState::Waiting { reason },
-            _ => DriveState::Recovering { reason },
+        let has_looked = self.look.has_turned(TURNS) && !self.is_wedged;
+        self.state = if matches!(self.goal, Goal::View(_)) {
+            DriveState::Stopped { reason }
+        } else if has_looked && !self.sets_out_to_vantage(s) {
+            DriveState::Waiting { reason }
+        } else {
+            DriveState::Recovering { reason }
         };
     }
 
