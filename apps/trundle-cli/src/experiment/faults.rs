@@ -1,13 +1,13 @@
 //! Bad days: sensors that break, wheels that slip, people in the way. Nothing may be touched; the robot stops where it
 //! cannot see, says why, and goes on when it can.
 
-use super::{RunsArgs, trial, trial::Trial, trial::TrialPlan};
+use super::{RunsArgs, missions, trial, trial::Trial, trial::TrialPlan};
 use crate::{Outcome, console, failure::Failure, logbook::StateChange, robot_file};
 use trundle::core::{Pose2, Vector2};
 use trundle::io::{OutputFolder, Summary};
 use trundle::runtime::{DriveState, Mission, Task};
 use trundle::sim::{Fault, FaultKind, FaultSchedule, Person, Scene, WheelSide};
-use trundle::viz::{Report, Table, Verdict};
+use trundle::viz::{Figure, Report, Table, Verdict};
 
 /// How such a day must end.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -173,7 +173,10 @@ fn report(trials: &[Trial], success: bool) -> Report {
         .subtitle("What breaks while the robot drives, and how it ends.")
         .verdict(verdict)
         .table(table);
-    trials.iter().fold(report, |report, trial| report.table(story(trial)))
+    trials.iter().fold(report, |report, trial| {
+        let figure = Figure::png(&format!("{}, seed {}", trial.name, trial.seed), &missions::picture(trial));
+        report.figure(figure.caption(&trial.numbers.verdict())).table(story(trial))
+    })
 }
 
 /// What the robot did on that day, one after the other.

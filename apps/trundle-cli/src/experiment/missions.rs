@@ -157,7 +157,7 @@ fn verdict(trials: &[Trial]) -> String {
 }
 
 /// The map with the way driven and the goals.
-fn picture(trial: &Trial) -> Vec<u8> {
+pub(super) fn picture(trial: &Trial) -> Vec<u8> {
     let map_from_world = trial.world_from_map.inverse();
     let line = |points: &[Vector2]| points.iter().map(|&p| map_from_world.transform(p)).collect::<Vec<_>>();
     let mut picture = MapPicture::over(&trial.grid)

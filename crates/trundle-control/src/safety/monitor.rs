@@ -76,14 +76,15 @@ impl SafetyMonitor {
         if let Some(reason) = self.broken(input) {
             return stop(reason);
         }
+        // No camera looks backward: what it no longer sees does not keep the robot from leaving what it touches.
+        if self.must_back_out(input) && input.image.is_some() {
+            return self.back_out(input);
+        }
         if let Some(reason) = self.blind(input) {
             // A disc may always turn on the spot, where that is what was asked for: so it comes to see again.
             let turns = input.twist.v == 0.0 && reason != StopReason::NoImage;
             let omega = if turns { input.twist.omega } else { 0.0 };
             return SafetyReport { twist: Twist2::new(0.0, omega), action: SafetyAction::Stop(reason) };
-        }
-        if input.touched || input.over_edge {
-            return self.back_out(input);
         }
         if input.twist.v == 0.0 && self.may_turn(input.twist) {
             return SafetyReport { twist: input.twist, action: SafetyAction::Pass };
@@ -117,6 +118,12 @@ impl SafetyMonitor {
         };
         let age = input.now - image;
         (age > self.config.image_timeout).then_some(StopReason::StaleImage { age })
+    }
+
+    /// Whether only the way back is open: not for a disc that turns on the spot against what it touches.
+    fn must_back_out(&self, input: &SafetyInput<'_>) -> bool {
+        let turns = input.twist.v == 0.0 && input.twist.omega != 0.0 && self.outline.is_disc();
+        input.over_edge || input.touched && !turns
     }
 
     fn back_out(&self, input: &SafetyInput<'_>) -> SafetyReport {
@@ -284,6 +291,24 @@ mod tests {
         let report = monitor().check(&SafetyInput { touched: true, ..fresh(Twist2::new(-0.3, 0.3)) });
         assert_eq!(report.action, SafetyAction::Slow(SlowReason::BackingOut));
         assert!((report.twist.v + 0.05).abs() < 1e-12 && (report.twist.omega - 0.05).abs() < 1e-12);
+    }
+
+    #[test]
+    fn blind_it_leaves_what_it_touches_backward_and_turns_but_goes_no_further_on() {
+        let now = Stamp::default().after(10.0);
+        let old = SafetyInput { now, wheels: Some(now), touched: true, ..fresh(Twist2::new(-0.05, 0.0)) };
+        assert_eq!(monitor().check(&old).twist, Twist2::new(-0.05, 0.0));
+        let turn = Twist2::new(0.0, 0.5);
+        assert_eq!(monitor().check(&SafetyInput { twist: turn, ..old }).twist, turn);
+        assert_eq!(monitor().check(&SafetyInput { twist: turn, over_edge: true, ..old }).twist, Twist2::ZERO);
+        assert_eq!(
+            cart().check(&SafetyInput { twist: turn, ..old }).twist,
+            Twist2::ZERO,
+            "its corners sweep"
+        );
+        let on = SafetyInput { twist: Twist2::new(0.1, 0.0), ..old };
+        assert_eq!(monitor().check(&on).twist, Twist2::ZERO);
+        assert_eq!(monitor().check(&SafetyInput { image: None, ..old }).twist, Twist2::ZERO);
     }
 
     #[test]
