@@ -1,13 +1,14 @@
 use crate::{
     config::RobotConfig,
     eye::EyeWatch,
+    schedule::Ticker,
     sight::Sight,
     stage::{Stage, StageTimes},
 };
 use trundle_core::{Invalid, Pose2, Pose3, RgbdImage, Scan, Stamp};
 use trundle_localization::camera_motion;
 use trundle_mapping::DepthScanner;
-use trundle_slam::{RgbdSlam, TrackReport};
+use trundle_slam::{MapFileError, RgbdSlam, TrackReport};
 
 /// All that is done with an image alone: the camera's pose by SLAM, and the scan.
 ///
@@ -24,6 +25,8 @@ pub(crate) struct Lookout {
     last: Option<Pose2>,
     /// Since when images that show enough have not been located.
     unplaced: Option<Stamp>,
+    /// When the visual maps are to be saved; none: never.
+    pub(crate) saving: Option<Ticker>,
 }
 
 /// What an image showed.
@@ -38,6 +41,8 @@ pub(crate) struct Sighting {
     pub(crate) unplaced: Option<Stamp>,
     /// All poses of the visual map, when it was corrected by more than tracking goes along with.
     pub(crate) bent: Option<Vec<(Stamp, Pose3)>>,
+    /// The visual maps, when it was time to save them.
+    pub(crate) saved: Option<Vec<u8>>,
 }
 
 /// A correction of the visual map by more than this bends the grid, m and rad.
@@ -57,7 +62,14 @@ impl Lookout {
             watch: EyeWatch::default(),
             last: None,
             unplaced: None,
+            saving: None,
         })
+    }
+
+    /// Goes on with saved visual maps; where in them the camera is it has to recognise.
+    pub(crate) fn recall(&mut self, config: &RobotConfig, visual: &[u8]) -> Result<(), MapFileError> {
+        self.slam = RgbdSlam::load(visual, config.camera, config.slam.clone())?;
+        Ok(())
     }
 
     pub(crate) fn slam(&self) -> &RgbdSlam {
@@ -92,7 +104,9 @@ impl Lookout {
             Sight::DepthCamera => Some(times.measure(Stage::Scan, || self.scanner.scan(image))),
             Sight::Laser => None,
         };
-        Some(Sighting { odom_from_base, track, scan, unplaced: self.unplaced, bent })
+        let is_time = self.saving.as_mut().is_some_and(|saving| saving.due(image.stamp()));
+        let saved = is_time.then(|| times.measure(Stage::Saving, || self.slam.save()));
+        Some(Sighting { odom_from_base, track, scan, unplaced: self.unplaced, bent, saved })
     }
 
     /// `previous_camera_from_camera` by wheels and gyro.

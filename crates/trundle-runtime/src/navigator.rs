@@ -316,7 +316,7 @@ impl Navigator {
 }
 
 /// The larger standard deviation of the position, m.
-fn position_sigma(estimate: &PoseEstimate) -> f64 {
+pub(crate) fn position_sigma(estimate: &PoseEstimate) -> f64 {
     let block = estimate.covariance.fixed_view::<2, 2>(0, 0);
     let (mean, half) = ((block[(0, 0)] + block[(1, 1)]) / 2.0, (block[(0, 0)] - block[(1, 1)]) / 2.0);
     (mean + half.hypot(block[(0, 1)])).max(0.0).sqrt()

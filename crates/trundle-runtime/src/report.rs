@@ -1,4 +1,5 @@
-use crate::state::DriveState;
+use crate::{memory::Memory, state::DriveState};
+use std::sync::Arc;
 use trundle_core::{PoseEstimate, Stamp, Twist2};
 use trundle_slam::TrackReport;
 
@@ -15,6 +16,8 @@ pub struct StepReport {
     pub broken_image: Option<String>,
     /// What the visual tracker said, on images.
     pub track: Option<TrackReport>,
+    /// What the robot would take along through a restart, now and then, where it remembers ([`crate::Robot::remembering`]).
+    pub memory: Option<Arc<Memory>>,
     /// What the robot is doing.
     pub state: DriveState,
     /// Whether the step made a new plan.

@@ -1,4 +1,5 @@
 mod background;
+mod waking;
 
 use crate::{
     bumper,
@@ -9,7 +10,7 @@ use crate::{
     last_stage::LastStageReport,
     lookout::{Lookout, Sighting},
     mission::{Mission, Task, TaskRecord},
-    navigator::Surroundings,
+    navigator::{Surroundings, position_sigma},
     report::StepReport,
     schedule::Ticker,
     sight::Sight,
@@ -17,6 +18,7 @@ use crate::{
     state::DriveState,
 };
 use background::Background;
+use std::sync::Arc;
 use trundle_control::SafetyScan;
 use trundle_core::{
     Footprint, GyroRate, Invalid, OccupancyGrid, Odometry, Pose2, Pose3, PoseEstimate, RgbdImage, Scan,
@@ -38,6 +40,8 @@ use trundle_slam::{RgbdSlam, TrackReport, Tracking};
 pub struct Robot {
     sight: Sight,
     base_from_camera: Pose3,
+    /// A position less sure than this is none, m.
+    lost_sigma: f64,
     /// Of the disc that the robot stands on for certain, m.
     inscribed_radius: f64,
     /// Where something stands that presses the bumper, base frame, m.
@@ -72,8 +76,12 @@ struct Latest {
     frozen: usize,
     /// What the captain said last of what the robot does, and whether the mission is over.
     state: (DriveState, bool),
+    /// What it said last is left of the mission.
+    left: Mission,
 }
 
+/// Images that show enough and have not been located for so long, s, are of another place than the odometry says.
+const UNPLACED: f64 = 0.3;
 /// With each image, so many cells of a bent grid are redrawn, about 5 ms.
 const REDRAWING: usize = 150_000;
 
@@ -92,6 +100,7 @@ impl Robot {
         Ok(Self {
             sight: config.sight,
             base_from_camera,
+            lost_sigma: config.supervisor.lost_sigma,
             inscribed_radius: inscribed_radius(&footprint),
             bumper: bumper::ahead_of(&footprint),
             odometry: WheelOdometry::new(config.drive, config.odometry.clone())?,
@@ -189,8 +198,9 @@ impl Robot {
 
     /// The bumper: what presses it enters the map, which the camera may be blind for.
     fn touch(&mut self, pressed: bool) {
-        if pressed && self.latest.odometry.is_some() {
-            self.mapper.mark_occupied(self.localizer.estimate().pose, &self.bumper);
+        let estimate = self.localizer.estimate();
+        if pressed && self.latest.odometry.is_some() && self.knows_its_place(estimate.stamp) {
+            self.mapper.mark_occupied(estimate.pose, &self.bumper);
         }
         self.tell_touch(pressed);
     }
@@ -211,7 +221,7 @@ impl Robot {
 
     /// What an image showed: the visual pose corrects the estimate; at the map's rate the scan does too, and enters the map.
     fn take_in(&mut self, sighting: Sighting, report: &mut StepReport) {
-        let Sighting { odom_from_base, track, scan, unplaced, bent } = sighting;
+        let Sighting { odom_from_base, track, scan, unplaced, bent, saved } = sighting;
         self.latest.unplaced = unplaced;
         let (times, localizer) = (&mut self.times, &mut self.localizer);
         let correction =
@@ -236,12 +246,13 @@ impl Robot {
                 self.drawn.note(stamp, visual);
             }
         }
+        report.memory = saved.map(|visual| Arc::new(self.remember(visual)));
         report.track = Some(track);
     }
 
     /// A scan: at the map's rate it corrects the estimate and enters the map; safety watches each. Whether it was drawn.
     fn see(&mut self, scan: Scan) -> bool {
-        let is_due = self.map_due.due(scan.stamp());
+        let is_due = self.map_due.due(scan.stamp()) && self.knows_its_place(scan.stamp());
         if is_due {
             self.fit(&scan);
             self.draw(&scan);
@@ -252,6 +263,12 @@ impl Robot {
             self.latest.scan = Some(scan);
         }
         is_due
+    }
+
+    /// Whether a scan can be laid on the map.
+    fn knows_its_place(&self, now: Stamp) -> bool {
+        let is_unplaced = self.latest.unplaced.is_some_and(|since| now - since > UNPLACED);
+        !is_unplaced && position_sigma(&self.localizer.estimate()) < self.lost_sigma
     }
 
     /// Corrects the estimate by where the scan fits the map.

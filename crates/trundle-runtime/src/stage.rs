@@ -14,6 +14,8 @@ pub enum Stage {
     Slam,
     /// Depth image to scan.
     Scan,
+    /// Visual maps to bytes, for a restart.
+    Saving,
     /// Scan against map.
     ScanMatch,
     /// Fusion to one pose estimate.
@@ -32,11 +34,12 @@ pub enum Stage {
 
 impl Stage {
     /// Every stage, in the order of the data.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 12] = [
         Self::Odometry,
         Self::Decoding,
         Self::Slam,
         Self::Scan,
+        Self::Saving,
         Self::ScanMatch,
         Self::Localization,
         Self::Mapping,
@@ -53,6 +56,7 @@ impl Stage {
             Self::Decoding => "decoding",
             Self::Slam => "slam",
             Self::Scan => "scan",
+            Self::Saving => "saving",
             Self::ScanMatch => "scan_match",
             Self::Localization => "localization",
             Self::Mapping => "mapping",

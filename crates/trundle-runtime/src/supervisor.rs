@@ -94,6 +94,13 @@ impl Supervisor {
         self.current.as_ref().map(|current| current.entry.task)
     }
 
+    /// What is left to be done, the task at hand first.
+    pub(crate) fn left(&self) -> Mission {
+        let entries = self.current.iter().map(|current| &current.entry).chain(&self.queue);
+        let tasks = entries.map(|entry| entry.task).collect();
+        Mission::new(tasks).expect("invariant: these tasks are of a mission")
+    }
+
     /// Whether there is nothing left to do.
     pub(crate) fn is_idle(&self) -> bool {
         self.current.is_none() && self.queue.is_empty()

@@ -2,7 +2,7 @@ use trundle_core::{
     Beam, DepthImage, GyroRate, Image, PinholeCamera, Pose2, RgbdImage, Scan, SensorEvent, Stamp, Touch,
     Twist2, Vector2, WheelTicks,
 };
-use trundle_runtime::{DriveState, Robot, RobotConfig, Sight, StepReport};
+use trundle_runtime::{DriveState, Memory, MemoryError, Task, Robot, RobotConfig, Sight, StepReport};
 
 /// A wall of one colour across the view, `distance` m ahead of the base, and the floor before it, as the default mount sees them.
 pub fn wall(stamp: Stamp, distance: f64) -> SensorEvent {
@@ -148,4 +148,28 @@ fn a_camera_robot_takes_no_scan_for_sight() {
     let mut robot = robot(Pose2::new(1.0, 0.0, 0.0));
     let reports = stand(&mut robot, 3.0, |stamp| Some(sweep(stamp, 3.0)));
     assert!(reports.iter().all(|report| report.twist == Some(Twist2::ZERO)));
+}
+
+#[test]
+fn a_robot_that_wakes_up_knows_the_rooms_and_not_its_place_and_draws_nothing_meanwhile() {
+    let mut first = robot(Pose2::new(1.0, 0.0, 0.0)).remembering();
+    let memory = (0..300)
+        .filter_map(|i| {
+            let stamp = Stamp::from_nanos(i * 50_000_000);
+            first.step(&SensorEvent::Wheels(WheelTicks { stamp, left: 0, right: 0 }));
+            first.step(&wall(stamp, 3.0)).memory
+        })
+        .last()
+        .unwrap();
+    assert_eq!(memory.grid.at(Vector2::new(3.01, 0.0)), trundle_core::Cell::Occupied);
+    assert_eq!(memory.mission.tasks(), [Task::Go(Pose2::new(1.0, 0.0, 0.0))]);
+    let memory = Memory::from_bytes(&memory.to_bytes()).unwrap();
+    let mut second = Robot::waking(RobotConfig::default(), &memory).unwrap();
+    assert_eq!(second.grid().at(Vector2::new(3.01, 0.0)), trundle_core::Cell::Occupied);
+    let reports = stand(&mut second, 3.0, |stamp| Some(wall(stamp, 1.5)));
+    assert!(matches!(&reports.last().unwrap().state, DriveState::Lost { reason } if reason.contains("position")));
+    assert!(reports.iter().all(|report| report.twist.unwrap().v == 0.0));
+    assert_ne!(second.grid().at(Vector2::new(1.51, 0.0)), trundle_core::Cell::Occupied);
+    let broken = Memory { visual: vec![1, 2, 3], ..memory };
+    assert!(matches!(Robot::waking(RobotConfig::default(), &broken), Err(MemoryError::Visual(_))));
 }

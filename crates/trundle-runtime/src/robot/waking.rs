@@ -1,0 +1,55 @@
+//! What is kept through a restart, and waking up with it.
+
+use super::Robot;
+use crate::{
+    config::RobotConfig,
+    memory::{Memory, MemoryError},
+    schedule::Ticker,
+};
+use trundle_localization::Localizer;
+use trundle_mapping::{LiveMapper, MapperConfig};
+
+/// How often a robot that remembers says what it would take along, 1/s.
+const REMEMBER_HZ: f64 = 0.1;
+
+impl Robot {
+    /// A robot that wakes up with what another one remembered: it knows the rooms, not where in them it stands, and turns on the
+    /// spot until it recognises a place. Then it goes on with what was left of the mission. The map frame is that of the memory.
+    ///
+    /// # Errors
+    /// When a number of the configuration is outside its range, or the memory does not fit it: other cells, another camera.
+    pub fn waking(config: RobotConfig, memory: &Memory) -> Result<Self, MemoryError> {
+        let mut robot = Self::new(config.clone())?;
+        if let Some(lookout) = &mut robot.lookout {
+            lookout.recall(&config, &memory.visual)?;
+            let blind_range = lookout.blind_range();
+            let mapping = MapperConfig { blind_range, ..config.mapping.clone() };
+            robot.mapper = LiveMapper::from_grid(mapping, &memory.grid)?;
+        }
+        robot.localizer =
+            Localizer::new(config.localization, robot.base_from_camera)?.waking(memory.visual_maps.clone());
+        robot.begin(&memory.mission);
+        Ok(robot)
+    }
+
+    /// The robot, saying every 10 s what it would take along through a restart: [`crate::StepReport::memory`].
+    #[must_use]
+    pub fn remembering(mut self) -> Self {
+        if let Some(lookout) = &mut self.lookout {
+            lookout.saving = Some(Ticker::new(REMEMBER_HZ));
+        }
+        self
+    }
+
+    pub(super) fn remember(&mut self, visual: Vec<u8>) -> Memory {
+        if let Some(captain) = &self.captain {
+            self.latest.left = captain.supervisor.left();
+        }
+        Memory {
+            visual,
+            visual_maps: self.localizer.visual_maps(),
+            grid: self.mapper.grid().clone(),
+            mission: self.latest.left.clone(),
+        }
+    }
+}
