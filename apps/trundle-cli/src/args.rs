@@ -80,6 +80,13 @@ pub struct DemoArgs {
     /// By the clock on the wall: simulator and robot in threads of their own, camera at 30 Hz; Ctrl-C stops the robot and ends the run.
     #[arg(long)]
     pub real_time: bool,
+    /// Keep maps and what is left of the mission in FILE, every 10 s: what `--wake` needs.
+    #[arg(long, value_name = "FILE")]
+    pub memory: Option<PathBuf>,
+    /// Wake up with what the file of --memory holds, standing here in the room (m, m, deg): the robot recognises where it is and goes on
+    /// with its mission. The map's frame stays that of --start.
+    #[arg(long, value_name = "X,Y,DEG", allow_hyphen_values = true, requires = "memory", conflicts_with_all = ["goal", "direct"])]
+    pub wake: Option<PoseArg>,
     /// What breaks, and when: a TOML file as for `trundle sim --faults`.
     #[arg(long, value_name = "FILE")]
     pub faults: Option<PathBuf>,

@@ -2,13 +2,16 @@ use crate::run::{RunSetup, drive};
 use crate::sim::scene::SceneOptions;
 use crate::tape::Tape;
 use crate::{Outcome, args::DemoArgs, console, failure::Failure, real_time, robot_file, run_output, sim};
+use base64::prelude::{BASE64_STANDARD, Engine};
+use std::fmt::Display;
+use std::path::Path;
 use trundle::core::{Invalid, Pose2};
 use trundle::io::OutputFolder;
-use trundle::runtime::{Mission, RobotConfig, Task};
+use trundle::runtime::{Memory, Mission, RobotConfig, Task};
 use trundle::sim::{FaultSchedule, HeightBand, Scene, SimConfig, Simulator};
 
 /// Seconds of the robot's time after which a task is given up by whoever watches.
-const TASK_LIMIT: f64 = 180.0;
+const TASK_LIMIT: f64 = 300.0;
 /// And an exploration.
 const EXPLORE_LIMIT: f64 = 1800.0;
 
@@ -17,9 +20,13 @@ pub fn run(args: &DemoArgs) -> Result<Outcome, Failure> {
     let robot = robot_file::load(args.config.as_deref())?;
     let options =
         SceneOptions { seed: args.seed, up: args.up.axis(), start: args.start.map(|start| start.0) };
-    let scene = sim::scene::load(&args.scene, options)?;
+    let mut scene = sim::scene::load(&args.scene, options)?;
     let faults = args.faults.as_deref().map(sim::faults::read).transpose()?.unwrap_or_default();
-    let mission = mission(args, &scene)?;
+    let woken = args.wake.and(args.memory.as_deref()).map(remembered).transpose()?;
+    let mission = match &woken {
+        Some((memory, _)) => memory.mission.clone(),
+        None => mission(args, &scene)?,
+    };
     let setup = RunSetup {
         scene: scene.name.clone(),
         seed: args.seed,
@@ -28,10 +35,12 @@ pub fn run(args: &DemoArgs) -> Result<Outcome, Failure> {
         mission,
         robot: robot.with_seed(args.seed),
         real_time: args.real_time,
+        woken: woken.map(|(_, bytes)| BASE64_STANDARD.encode(bytes)),
     };
     for goal in setup.mission.tasks().iter().filter_map(RunSetup::goal_of) {
         require_free(&scene, scene.start * goal, &setup.robot)?;
     }
+    scene.start = args.wake.map_or(scene.start, |wake| wake.0);
     let mut config = simulated(&setup.robot, faults)?;
     if args.real_time {
         config.camera_rate_hz = real_time::CAMERA_HZ;
@@ -46,11 +55,21 @@ pub fn run(args: &DemoArgs) -> Result<Outcome, Failure> {
         console::say(&format!("Room '{scene}', seed {seed}, on camera, wheels and gyro alone: {mission}."));
     }
     if args.real_time {
-        let (run, timing) = real_time::drive_live(&setup, body, &folder, args.common.quiet)?;
-        return run_output::write(&setup, &run, Some(&timing), folder, args.common.quiet);
+        let (run, timing) =
+            real_time::drive_live(&setup, body, &folder, args.memory.as_deref(), args.common.quiet)?;
+        return run_output::write(&setup, run, Some(&timing), folder, args.common.quiet);
     }
-    let run = drive(&setup, &mut body, Tape::here(&folder)?, args.common.quiet)?;
-    run_output::write(&setup, &run, None, folder, args.common.quiet)
+    let run =
+        drive(&setup, &mut body, Tape::here(&folder)?.keeping(args.memory.as_deref())?, args.common.quiet)?;
+    run_output::write(&setup, run, None, folder, args.common.quiet)
+}
+
+/// What a robot kept in this file, and its bytes.
+fn remembered(file: &Path) -> Result<(Memory, Vec<u8>), Failure> {
+    let refused = |error: &dyn Display| Failure::Input(format!("{}: {error}", file.display()));
+    let bytes = std::fs::read(file).map_err(|error| refused(&error))?;
+    let memory = Memory::from_bytes(&bytes).map_err(|error| refused(&error))?;
+    Ok((memory, bytes))
 }
 
 /// The goals asked for, or the room's own; before them exploration and after them the way back, unless it is to be direct.

@@ -9,6 +9,7 @@ mod eval;
 mod experiment;
 mod failure;
 mod goals;
+mod keeper;
 mod logbook;
 mod map;
 mod map_input;

@@ -19,6 +19,7 @@ use live_body::LiveBody;
 use memory::MemoryCurve;
 use rayon::ThreadPoolBuilder;
 use serde::Serialize;
+use std::path::Path;
 use trundle::io::OutputFolder;
 use trundle::runtime::Histogram;
 use trundle::runtime::real_time::{Place, PulseConfig, PulseReport, thread_time};
@@ -94,13 +95,14 @@ pub fn drive_live(
     setup: &RunSetup,
     body: Simulator,
     folder: &OutputFolder,
+    memory: Option<&Path>,
     quiet: bool,
 ) -> Result<(Run, Timing), Failure> {
     let stop = interrupt::flag()?;
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let (outside, inside) = if cores > 1 { (Some(0), Some(cores - 1)) } else { (None, None) };
     let at = move |nice| Place { core: inside, nice, is_first: false };
-    let tape = Tape::aside(folder, at(NICER.1))?;
+    let tape = Tape::aside(folder, at(NICER.1))?.keeping(memory)?;
     let pool = ThreadPoolBuilder::new()
         .num_threads(1)
         .thread_name(|_| "control".to_owned())

@@ -16,5 +16,5 @@ pub fn run(args: &ReplayArgs) -> Result<Outcome, Failure> {
     setup.robot.clone().validated().map_err(|error| Failure::Input(format!("{name}: {error}")))?;
     let folder = OutputFolder::create(&args.out)?;
     let run = drive(&setup, &mut Recorded::new(reader), Tape::here(&folder)?, args.common.quiet)?;
-    run_output::write(&setup, &run, None, folder, args.common.quiet)
+    run_output::write(&setup, run, None, folder, args.common.quiet)
 }

@@ -1,11 +1,12 @@
 mod trip;
 
 use crate::{body::WiredBody, failure::Failure, logbook::Logbook, tape::Tape, view::BestView};
+use base64::prelude::{BASE64_STANDARD, Engine};
 use serde::{Deserialize, Serialize};
 use std::time::{Duration, Instant};
 use trip::Trip;
 use trundle::core::{Pose2, RobotBody};
-use trundle::runtime::{Histogram, Mission, Robot, RobotConfig, Task};
+use trundle::runtime::{Histogram, Memory, Mission, Robot, RobotConfig, Task};
 use trundle::sim::Simulator;
 
 /// What a run is: recorded first, and all that a replay needs besides the events.
@@ -27,9 +28,25 @@ pub struct RunSetup {
     /// Whether it gave its long work out, to threads beside the control loop.
     #[serde(default)]
     pub real_time: bool,
+    /// What it woke up with, as base64 of [`Memory`]'s bytes; none: it began with an empty map.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub woken: Option<String>,
 }
 
 impl RunSetup {
+    /// The robot, with its mission begun.
+    pub fn robot_at_work(&self) -> Result<Robot, Failure> {
+        let Some(woken) = &self.woken else {
+            let mut robot = Robot::new(self.robot.clone())?;
+            robot.begin(&self.mission);
+            return Ok(robot);
+        };
+        let unusable = |error: String| Failure::Input(format!("the memory cannot be used: {error}"));
+        let bytes = BASE64_STANDARD.decode(woken).map_err(|error| unusable(error.to_string()))?;
+        let memory = Memory::from_bytes(&bytes).map_err(|error| unusable(error.to_string()))?;
+        waking(self, &memory)
+    }
+
     /// The goal of a task, map frame; `None` for one that has none.
     pub fn goal_of(task: &Task) -> Option<Pose2> {
         match task {
@@ -60,7 +77,7 @@ pub struct Run {
 }
 
 /// What recording took.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Default)]
 pub struct TapeCost {
     /// Lines that waited for the disk, each time one was put in.
     pub waiting: Histogram,
@@ -68,6 +85,8 @@ pub struct TapeCost {
     pub lost: u64,
     /// Processor time of the thread that records, where there is one.
     pub spent: Duration,
+    /// Why there is no whole recording, if there is none.
+    pub failure: Option<Failure>,
 }
 
 /// The robot stands and is watched for so long after it has arrived, s: what still rolls counts.
@@ -88,11 +107,15 @@ pub fn drive(setup: &RunSetup, body: &mut dyn WiredBody, tape: Tape, quiet: bool
     trip.end(body)
 }
 
-/// Lets the robot of `setup` live in the simulator without recording: what the simulator says reaches it as it is.
-pub fn live(setup: &RunSetup, body: &mut Simulator) -> Result<Run, Failure> {
+/// Lets the robot of `setup` live in the simulator without recording: what the simulator says reaches it as it is. After
+/// `restart` s it is switched off and on again where it stands, with nothing but what it remembers.
+pub fn live(setup: &RunSetup, body: &mut Simulator, restart: Option<f64>) -> Result<Run, Failure> {
     let start = Instant::now();
-    let mut robot = Robot::new(setup.robot.clone())?;
-    robot.begin(&setup.mission);
+    let mut robot = setup.robot_at_work()?;
+    if restart.is_some() {
+        robot = robot.remembering();
+    }
+    let mut restart = restart;
     let mut log = Logbook::default();
     let mut finished = None;
     while let Some(event) = RobotBody::next_event(body)? {
@@ -106,6 +129,10 @@ pub fn live(setup: &RunSetup, body: &mut Simulator) -> Result<Run, Failure> {
         if is_over || log.elapsed() > setup.time_limit {
             break;
         }
+        if let (Some(memory), true) = (&report.memory, restart.is_some_and(|at| log.elapsed() >= at)) {
+            robot = waking(setup, memory)?;
+            restart = None;
+        }
     }
     Ok(Run {
         robot,
@@ -114,4 +141,10 @@ pub fn live(setup: &RunSetup, body: &mut Simulator) -> Result<Run, Failure> {
         seconds: start.elapsed().as_secs_f64(),
         tape: TapeCost::default(),
     })
+}
+
+/// A robot that wakes up with a memory.
+fn waking(setup: &RunSetup, memory: &Memory) -> Result<Robot, Failure> {
+    Robot::waking(setup.robot.clone(), memory)
+        .map_err(|error| Failure::Input(format!("the memory cannot be used: {error}")))
 }

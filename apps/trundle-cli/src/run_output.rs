@@ -7,14 +7,20 @@ use trundle::io::{OutputFolder, trajectory_text_from_planar, write_map};
 use trundle::runtime::Mission;
 use trundle::viz::{Card, Chart, Color, Figure, RunReport, Table, Verdict};
 
-/// Writes the folder of a run, prints its table, and says whether the goal was reached.
+/// Writes the folder of a run, prints its table, and says whether the goal was reached. A recording that could not be written
+/// to its end is left out, and told when everything else is done.
 pub fn write(
     setup: &RunSetup,
-    run: &Run,
+    mut run: Run,
     timing: Option<&Timing>,
     folder: OutputFolder,
     quiet: bool,
 ) -> Result<Outcome, Failure> {
+    let broken = run.tape.failure.take();
+    if broken.is_some() {
+        _ = std::fs::remove_file(folder.staged("recording.mcap"));
+    }
+    let run = &run;
     let numbers = RunNumbers::of(setup, run);
     write_map(&folder, "map", run.robot.grid())?;
     folder.write("trajectory.txt", trajectory_text_from_planar(&run.log.estimates).as_bytes())?;
@@ -32,7 +38,11 @@ pub fn write(
         }
         console::say(&format!("\n{}\nSee {}", numbers.verdict(), place.join("report.html").display()));
     }
-    Ok(if numbers.is_success() { Outcome::Reached } else { Outcome::Missed })
+    match broken {
+        Some(failure) => Err(failure),
+        None if numbers.is_success() => Ok(Outcome::Reached),
+        None => Ok(Outcome::Missed),
+    }
 }
 
 fn report(setup: &RunSetup, run: &Run, numbers: &RunNumbers) -> RunReport {

@@ -1,14 +1,15 @@
-use crate::failure::Failure;
+use crate::{console, failure::Failure, keeper::Keeper};
 use std::fs::File;
 use std::io::BufWriter;
+use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::{SyncSender, TrySendError, sync_channel};
 use std::thread::JoinHandle;
 use std::time::Duration;
 use trundle::io::{IoError, OutputFolder, Recorder};
-use trundle::runtime::Histogram;
 use trundle::runtime::real_time::{Place, thread_time};
+use trundle::runtime::{Histogram, Memory};
 
 /// A recording into a file.
 pub type FileRecorder = Recorder<BufWriter<File>>;
@@ -22,11 +23,17 @@ pub struct Tape {
     pub lengths: Histogram,
     /// Lines left out because the disk could not follow; the recording ends before the first.
     pub lost: u64,
+    keeper: Option<Keeper>,
 }
 
 enum Way {
-    Here(Box<FileRecorder>),
-    Aside { lines: SyncSender<Line>, waiting: Arc<AtomicUsize>, thread: Writer },
+    /// With what ended the recording, if something did.
+    Here(Box<FileRecorder>, Option<IoError>),
+    Aside {
+        lines: SyncSender<Line>,
+        waiting: Arc<AtomicUsize>,
+        thread: Writer,
+    },
 }
 
 type Writer = JoinHandle<(Result<(), IoError>, Duration)>;
@@ -38,7 +45,7 @@ impl Tape {
     /// A recording that is written as it is made.
     pub fn here(folder: &OutputFolder) -> Result<Self, Failure> {
         let recorder = Box::new(folder.recorder("recording.mcap")?);
-        Ok(Self { way: Way::Here(recorder), lengths: Histogram::default(), lost: 0 })
+        Ok(Self { way: Way::Here(recorder, None), lengths: Histogram::default(), lost: 0, keeper: None })
     }
 
     /// A recording that is written by a thread at `place`.
@@ -62,7 +69,29 @@ impl Tape {
         let thread = std::thread::Builder::new().name("recorder".to_owned()).spawn(write);
         let thread = thread
             .map_err(|error| Failure::Environment(format!("cannot start a thread to record: {error}")))?;
-        Ok(Self { way: Way::Aside { lines, waiting, thread }, lengths: Histogram::default(), lost: 0 })
+        Ok(Self {
+            way: Way::Aside { lines, waiting, thread },
+            lengths: Histogram::default(),
+            lost: 0,
+            keeper: None,
+        })
+    }
+
+    /// The same, with what the robot remembers kept in a file where one is given.
+    pub fn keeping(self, file: Option<&Path>) -> Result<Self, Failure> {
+        Ok(Self { keeper: file.map(Keeper::new).transpose()?, ..self })
+    }
+
+    /// Whether what the robot remembers is wanted.
+    pub fn keeps(&self) -> bool {
+        self.keeper.is_some()
+    }
+
+    /// Keeps what the robot remembers, where that is wanted.
+    pub fn keep(&self, memory: Arc<Memory>) {
+        if let Some(keeper) = &self.keeper {
+            keeper.keep(memory);
+        }
     }
 
     /// Writes something down.
@@ -71,7 +100,15 @@ impl Tape {
         line: impl FnOnce(&mut FileRecorder) -> Result<(), IoError> + Send + 'static,
     ) -> Result<(), Failure> {
         match &mut self.way {
-            Way::Here(recorder) => Ok(line(recorder)?),
+            // A robot on its way does not stop because a disk is full.
+            Way::Here(_, Some(_)) => Ok(()),
+            Way::Here(recorder, failure) => {
+                *failure = line(recorder).err();
+                if let Some(failure) = failure {
+                    console::warn(&format!("{failure}; the recording ends here, the robot goes on"));
+                }
+                Ok(())
+            }
             Way::Aside { .. } if self.lost > 0 => {
                 self.lost += 1;
                 Ok(())
@@ -90,8 +127,12 @@ impl Tape {
 
     /// Ends the recording; what its thread has computed, where it had one.
     pub fn finish(self) -> Result<Duration, Failure> {
+        if let Some(keeper) = self.keeper {
+            keeper.finish();
+        }
         match self.way {
-            Way::Here(recorder) => {
+            Way::Here(_, Some(failure)) => Err(failure.into()),
+            Way::Here(recorder, None) => {
                 recorder.finish()?;
                 Ok(Duration::ZERO)
             }

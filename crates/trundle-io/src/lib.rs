@@ -32,6 +32,7 @@ mod files;
 mod map;
 mod output;
 mod recording;
+mod replace;
 mod ros;
 mod stamp_text;
 mod summary;
@@ -54,6 +55,7 @@ pub use recording::{
     FeatureMarks, KeyframeGraph, LandmarkCloud, PoseInFrame, PosesInFrame, RecordedMessage, Recorder,
     RecordingReader,
 };
+pub use replace::replace_file;
 pub use ros::{RosBagOptions, read_laser_log, read_ros_bag};
 pub use stamp_text::parse_stamp;
 pub use summary::Summary;

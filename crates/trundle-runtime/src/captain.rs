@@ -2,13 +2,14 @@ use crate::{
     config::RobotConfig,
     helm::Helm,
     mission::Mission,
-    navigator::{Decision, Goal, Navigator, Surroundings},
+    navigator::{Decision, Goal, Navigator, Surroundings, Traffic},
     stage::{Stage, StageTimes},
     state::DriveState,
     supervisor::Supervisor,
 };
 use trundle_control::SafetyScan;
 use trundle_core::{Footprint, Invalid, OccupancyGrid, Pose2, PoseEstimate, Scan, Stamp};
+use trundle_planning::Mover;
 
 /// Whoever decides: the mission's goals, plans, and the twist towards them.
 #[derive(Debug)]
@@ -77,6 +78,8 @@ pub(crate) struct Around {
     scan: Option<(Scan, Pose2, Pose2)>,
     seen: Option<Stamp>,
     unplaced: f64,
+    movers: Vec<Mover>,
+    still: Option<OccupancyGrid>,
 }
 
 impl From<&Surroundings<'_>> for Around {
@@ -88,6 +91,8 @@ impl From<&Surroundings<'_>> for Around {
             scan: s.scan.map(|seen| (seen.scan.clone(), seen.odom_at_scan, seen.odom_now)),
             seen: s.seen,
             unplaced: s.unplaced,
+            movers: s.traffic.movers.to_vec(),
+            still: s.traffic.still.cloned(),
         }
     }
 }
@@ -110,6 +115,7 @@ impl Around {
             }),
             seen: self.seen,
             unplaced: self.unplaced,
+            traffic: Traffic { movers: &self.movers, still: self.still.as_ref() },
         }
     }
 }

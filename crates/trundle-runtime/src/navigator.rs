@@ -17,7 +17,7 @@ use crate::{
 };
 use trundle_control::{FollowPhase, FollowReport, Follower, SafetyMonitor, SafetyScan};
 use trundle_core::{Footprint, Invalid, OccupancyGrid, Pose2, PoseEstimate, Stamp, Twist2, Vector2};
-use trundle_planning::{PlanResult, Planner};
+use trundle_planning::{Mover, PlanResult, Planner};
 use vantage::Vantage;
 
 /// What the robot knows of its surroundings when it decides.
@@ -32,6 +32,22 @@ pub(crate) struct Surroundings<'a> {
     pub(crate) seen: Option<Stamp>,
     /// For how long images that show enough have not been located, s.
     pub(crate) unplaced: f64,
+    pub(crate) traffic: Traffic<'a>,
+}
+
+/// What moves near by.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Traffic<'a> {
+    pub(crate) movers: &'a [Mover],
+    /// The map without them; none where nothing moves.
+    pub(crate) still: Option<&'a OccupancyGrid>,
+}
+
+impl<'a> Surroundings<'a> {
+    /// The map that plans are made on: what moves is not part of it.
+    pub(crate) fn floor(&self) -> &'a OccupancyGrid {
+        self.traffic.still.unwrap_or(self.grid)
+    }
 }
 
 /// What it decides.

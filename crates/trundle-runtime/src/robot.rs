@@ -10,7 +10,7 @@ use crate::{
     last_stage::LastStageReport,
     lookout::{Lookout, Sighting},
     mission::{Mission, Task, TaskRecord},
-    navigator::{Surroundings, position_sigma},
+    navigator::{Surroundings, Traffic, position_sigma},
     report::StepReport,
     schedule::Ticker,
     sight::Sight,
@@ -26,7 +26,7 @@ use trundle_core::{
 };
 use trundle_localization::{Correction, Localizer, VisualPose, VisualQuality, WheelOdometry};
 use trundle_mapping::{LiveMapper, MapperConfig, ScanMatcher};
-use trundle_planning::PlanResult;
+use trundle_planning::{Mover, MoverTracker, PlanResult};
 use trundle_slam::{RgbdSlam, TrackReport, Tracking};
 
 /// The whole robot: sensor events in; pose, map, plan and twist out.
@@ -50,6 +50,7 @@ pub struct Robot {
     /// None while it looks in the background.
     lookout: Option<Box<Lookout>>,
     matcher: ScanMatcher,
+    traffic: MoverTracker,
     localizer: Localizer,
     mapper: LiveMapper,
     drawn: DrawnPoses,
@@ -78,6 +79,10 @@ struct Latest {
     state: (DriveState, bool),
     /// What it said last is left of the mission.
     left: Mission,
+    /// What moved near by when the last scan was taken.
+    movers: Vec<Mover>,
+    /// The map without it; none where nothing moves.
+    still: Option<OccupancyGrid>,
 }
 
 /// Images that show enough and have not been located for so long, s, are of another place than the odometry says.
@@ -106,6 +111,7 @@ impl Robot {
             odometry: WheelOdometry::new(config.drive, config.odometry.clone())?,
             lookout: Some(Box::new(lookout)),
             matcher: ScanMatcher::new(config.scan_match.clone())?,
+            traffic: MoverTracker::new(config.movers)?,
             localizer: Localizer::new(config.localization.clone(), base_from_camera)?,
             map_due: Ticker::new(config.schedule.validated()?.map_hz),
             mapper,
@@ -173,6 +179,9 @@ impl Robot {
         let odometry = self.times.measure(Stage::Odometry, || self.odometry.step_wheels(wheels));
         self.times.measure(Stage::Localization, || self.localizer.predict(&odometry));
         self.latest.odometry = Some(odometry);
+        if !self.latest.movers.is_empty() {
+            self.latest.movers = self.traffic.movers(wheels.stamp);
+        }
         let surroundings = Surroundings {
             now: wheels.stamp,
             estimate: self.localizer.estimate(),
@@ -180,6 +189,7 @@ impl Robot {
             scan: self.latest.carried_scan(),
             seen: self.latest.eye.seen(),
             unplaced: self.latest.unplaced.map_or(0.0, |since| wheels.stamp - since),
+            traffic: Traffic { movers: &self.latest.movers, still: self.latest.still.as_ref() },
         };
         match self.captain.take() {
             Some(mut captain) if !self.background.is_for(&captain, &surroundings) => {
@@ -257,12 +267,27 @@ impl Robot {
             self.fit(&scan);
             self.draw(&scan);
         }
+        self.watch_traffic(&scan);
         // One that shows nothing does not make safety forget what the last one showed.
         if self.latest.eye.note(&scan) || self.latest.eye.seen().is_none() {
             self.latest.scan_odometry = self.odometry_at(scan.stamp());
             self.latest.scan = Some(scan);
         }
         is_due
+    }
+
+    /// What moves near by, by the newest scan.
+    fn watch_traffic(&mut self, scan: &Scan) {
+        if !self.knows_its_place(scan.stamp()) {
+            return;
+        }
+        let Ok(pose) = self.localizer.pose_at(scan.stamp()) else { return };
+        let (times, traffic, latest) = (&mut self.times, &mut self.traffic, &mut self.latest);
+        times.measure(Stage::Traffic, || {
+            traffic.see(pose, scan);
+            latest.movers = traffic.movers(scan.stamp());
+            latest.still = (!latest.movers.is_empty()).then(|| traffic.without_movers(self.mapper.grid()));
+        });
     }
 
     /// Whether a scan can be laid on the map.

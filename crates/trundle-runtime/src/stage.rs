@@ -22,6 +22,8 @@ pub enum Stage {
     Localization,
     /// Scan into the grid.
     Mapping,
+    /// Who moves near by.
+    Traffic,
     /// Mission to goal: where to go or to look next.
     Supervision,
     /// Grid to path, curve and trajectory.
@@ -34,7 +36,7 @@ pub enum Stage {
 
 impl Stage {
     /// Every stage, in the order of the data.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 13] = [
         Self::Odometry,
         Self::Decoding,
         Self::Slam,
@@ -43,6 +45,7 @@ impl Stage {
         Self::ScanMatch,
         Self::Localization,
         Self::Mapping,
+        Self::Traffic,
         Self::Supervision,
         Self::Planning,
         Self::Control,
@@ -60,6 +63,7 @@ impl Stage {
             Self::ScanMatch => "scan_match",
             Self::Localization => "localization",
             Self::Mapping => "mapping",
+            Self::Traffic => "traffic",
             Self::Supervision => "supervision",
             Self::Planning => "planning",
             Self::Control => "control",

@@ -24,6 +24,8 @@ struct Day {
     scene: &'static str,
     fault: Option<(f64, f64, FaultKind)>,
     person: Option<Person>,
+    /// Switched off and on again after so many seconds.
+    restart: Option<f64>,
     end: End,
 }
 
@@ -36,6 +38,7 @@ fn days() -> Vec<Day> {
         scene: "demo",
         fault: Some((from, to, kind)),
         person: None,
+        restart: None,
         end,
     };
     let slips = FaultKind::WheelSlips { side: WheelSide::Left, factor: 0.5 };
@@ -63,6 +66,7 @@ fn days() -> Vec<Day> {
             scene: "house",
             fault: None,
             person: Some(in_the_door(60.0)),
+            restart: None,
             end: End::Arrived,
         },
         Day {
@@ -70,7 +74,16 @@ fn days() -> Vec<Day> {
             scene: "house",
             fault: None,
             person: Some(in_the_door(3600.0)),
+            restart: None,
             end: End::Stopped("no way"),
+        },
+        Day {
+            name: "switched off and on again on the way",
+            scene: "demo",
+            fault: None,
+            person: None,
+            restart: Some(9.0),
+            end: End::Arrived,
         },
     ]
 }
@@ -94,7 +107,8 @@ pub fn run(args: &RunsArgs) -> Result<Outcome, Failure> {
                 day.fault.map(|(from_s, to_s, kind)| Fault { from_s, to_s, kind: in_world(kind, &scene) });
             let faults = FaultSchedule { faults: fault.into_iter().collect() };
             let name = day.name.to_owned();
-            plans.push(TrialPlan { name, seed, scene, mission, robot: robot.clone(), faults });
+            let (robot, restart) = (robot.clone(), day.restart);
+            plans.push(TrialPlan { name, seed, scene, mission, robot, faults, restart });
         }
     }
     let folder = OutputFolder::create(&args.out)?;

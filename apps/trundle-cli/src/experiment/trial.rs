@@ -24,6 +24,8 @@ pub struct TrialPlan {
     pub robot: RobotConfig,
     /// What breaks.
     pub faults: FaultSchedule,
+    /// After so many seconds it is switched off and on again.
+    pub restart: Option<f64>,
 }
 
 /// What it came to.
@@ -79,7 +81,7 @@ pub fn all(mut plans: Vec<TrialPlan>, args: &RunsArgs) -> Result<Vec<Trial>, Fai
 /// # Errors
 /// When the plan cannot be carried out.
 pub fn one(plan: TrialPlan) -> Result<Trial, Failure> {
-    let TrialPlan { name, seed, scene, mission, robot, faults } = plan;
+    let TrialPlan { name, seed, scene, mission, robot, faults, restart } = plan;
     let world_from_map = scene.start;
     let setup = RunSetup {
         scene: scene.name.clone(),
@@ -89,10 +91,11 @@ pub fn one(plan: TrialPlan) -> Result<Trial, Failure> {
         mission,
         robot: robot.with_seed(seed),
         real_time: false,
+        woken: None,
     };
     let config = simulated(&setup.robot, faults)?;
     let mut body = Simulator::new(scene, config, seed).map_err(|error| Failure::Input(error.to_string()))?;
-    let run = live(&setup, &mut body)?;
+    let run = live(&setup, &mut body, restart)?;
     let planned = planned(&run);
     Ok(Trial {
         name,

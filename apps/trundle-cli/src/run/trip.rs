@@ -2,7 +2,8 @@ use super::{Run, RunSetup, TapeCost};
 use crate::body::{Input, Mark, MarkMessage, WiredBody};
 use crate::{console, failure::Failure, logbook::Logbook, tape::Tape, view::BestView};
 use indicatif::ProgressBar;
-use std::time::Instant;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
 use trundle::core::{FrameId, Pose2, Stamp, Twist2};
 use trundle::io::{EncodedEvent, PoseInFrame, PosesInFrame};
 use trundle::runtime::{Answer, DriveState, Helper, LazyImage, Robot, Stage, StepReport};
@@ -21,11 +22,13 @@ pub(super) struct Trip<'s> {
 
 impl<'s> Trip<'s> {
     pub(super) fn begin(setup: &'s RunSetup, mut tape: Tape, quiet: bool) -> Result<Self, Failure> {
-        let mut robot = Robot::new(setup.robot.clone())?;
+        let mut robot = setup.robot_at_work()?;
         if setup.real_time {
             robot = robot.deferring();
         }
-        robot.begin(&setup.mission);
+        if tape.keeps() {
+            robot = robot.remembering();
+        }
         let config = setup.clone();
         tape.put(move |tape| tape.record_json("/config", "trundle.Config", Stamp::default(), &config))?;
         let (log, view) = (Logbook::default(), BestView::default());
@@ -48,6 +51,9 @@ impl<'s> Trip<'s> {
         }
         self.record(stamp, &report)?;
         self.log.note(stamp, &report);
+        if let Some(memory) = &report.memory {
+            self.tape.keep(Arc::clone(memory));
+        }
         if let Some(image) = report.image {
             self.show()?;
             self.view.looked_at(image, &self.robot, &report);
@@ -85,7 +91,11 @@ impl<'s> Trip<'s> {
         }
         self.line.finish_and_clear();
         let (waiting, lost) = (self.tape.lengths.clone(), self.tape.lost);
-        let tape = TapeCost { waiting, lost, spent: self.tape.finish()? };
+        let (spent, failure) = match self.tape.finish() {
+            Ok(spent) => (spent, None),
+            Err(failure) => (Duration::ZERO, Some(failure)),
+        };
+        let tape = TapeCost { waiting, lost, spent, failure };
         let seconds = self.start.elapsed().as_secs_f64();
         Ok(Run { robot: self.robot, log: self.log, view: self.view, seconds, tape })
     }

@@ -1,6 +1,7 @@
 //! The program as its users meet it: arguments in, files, sentences and exit codes out.
 #![allow(clippy::unwrap_used, clippy::print_stderr, reason = "helpers of tests")]
 
+mod bad_days;
 mod bad_input;
 mod demo;
 mod dock;

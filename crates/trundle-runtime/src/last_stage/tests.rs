@@ -21,6 +21,7 @@ fn surroundings(grid: &OccupancyGrid, pose: Pose2, time: f64) -> Surroundings<'_
         scan: None,
         seen: None,
         unplaced: 0.0,
+        traffic: crate::navigator::Traffic::default(),
     }
 }
 

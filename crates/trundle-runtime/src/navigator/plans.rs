@@ -6,7 +6,7 @@ use crate::{
     stage::{Stage, StageTimes},
     state::DriveState,
 };
-use trundle_core::{OccupancyGrid, Pose2, Stamp, Twist2};
+use trundle_core::{Pose2, Stamp, Twist2};
 use trundle_planning::Plan;
 
 /// What is left of a way is driven as planned when it takes less, s.
@@ -30,15 +30,17 @@ impl Navigator {
             DriveState::Waiting { .. } if self.touched || self.over_edge || self.is_blind(s) => false,
             DriveState::Waiting { .. } if self.held_since.is_some_and(|since| s.now - since < PAUSE) => false,
             DriveState::Waiting { .. } => self.check_due.due(s.now),
-            DriveState::Driving => self.check_due.due(s.now) && !self.plan_holds(s.grid),
+            DriveState::Driving => self.check_due.due(s.now) && !self.plan_holds(s),
         }
     }
 
-    /// Whether the rest of the trajectory is still free on the newest map.
-    fn plan_holds(&self, grid: &OccupancyGrid) -> bool {
+    /// Whether the rest of the trajectory is still free on the newest map, and of what moves.
+    fn plan_holds(&self, s: &Surroundings<'_>) -> bool {
         match (&self.plan, self.follower.reference()) {
             (Some(plan), Some(reference)) => {
-                self.planner.still_free(grid, &plan.trajectory, reference.time).is_ok()
+                let is_free = self.planner.still_free(s.floor(), &plan.trajectory, reference.time).is_ok();
+                let meets = || self.planner.meets(&plan.trajectory, reference.time, s.traffic.movers);
+                is_free && meets().is_none()
             }
             (Some(_), None) => true,
             (None, _) => false,
@@ -55,7 +57,7 @@ impl Navigator {
             (DriveState::Driving, Some(reference)) => (reference.pose, reference.twist),
             _ => (s.estimate.pose, Twist2::ZERO),
         };
-        match self.planner.plan(s.grid, from.0, from.1, goal) {
+        match self.planner.plan_among(s.floor(), s.traffic.movers, from.0, from.1, goal) {
             Plan::Found(plan) if plan.is_continuous || s.estimate.twist.v.abs() < STANDING => {
                 self.follower.follow(plan.trajectory.clone(), goal);
                 self.plan = Some(plan);
@@ -69,6 +71,10 @@ impl Navigator {
             }
             Plan::Found(_) => {
                 self.hold("stopping to plan anew", s.now);
+                false
+            }
+            Plan::Blocked { .. } if !s.traffic.movers.is_empty() => {
+                self.hold("somebody is on the move in the way", s.now);
                 false
             }
             refused => {
@@ -90,7 +96,9 @@ impl Navigator {
         }
         let planner = &mut self.planner;
         let plan =
-            times.measure(Stage::Planning, || planner.plan(s.grid, reference.pose, reference.twist, goal));
+            times.measure(Stage::Planning, || {
+                planner.plan_among(s.floor(), s.traffic.movers, reference.pose, reference.twist, goal)
+            });
         match plan {
             Plan::Found(plan) if plan.is_continuous && plan.trajectory.duration() < left - SOONER => {
                 self.follower.follow(plan.trajectory.clone(), goal);

@@ -39,7 +39,7 @@ impl Navigator {
             return false;
         }
         for place in places(s.grid, here, at).into_iter().take(MOST_PLANS) {
-            if let Plan::Found(plan) = self.planner.plan(s.grid, here, Twist2::ZERO, place) {
+            if let Plan::Found(plan) = self.planner.plan(s.floor(), here, Twist2::ZERO, place) {
                 self.follower.follow(plan.trajectory, place);
                 self.vantage = Vantage::Going;
                 return true;

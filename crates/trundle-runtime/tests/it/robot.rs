@@ -2,7 +2,7 @@ use trundle_core::{
     Beam, DepthImage, GyroRate, Image, PinholeCamera, Pose2, RgbdImage, Scan, SensorEvent, Stamp, Touch,
     Twist2, Vector2, WheelTicks,
 };
-use trundle_runtime::{DriveState, Memory, MemoryError, Task, Robot, RobotConfig, Sight, StepReport};
+use trundle_runtime::{DriveState, Memory, MemoryError, Robot, RobotConfig, Sight, StepReport, Task};
 
 /// A wall of one colour across the view, `distance` m ahead of the base, and the floor before it, as the default mount sees them.
 pub fn wall(stamp: Stamp, distance: f64) -> SensorEvent {
@@ -167,7 +167,9 @@ fn a_robot_that_wakes_up_knows_the_rooms_and_not_its_place_and_draws_nothing_mea
     let mut second = Robot::waking(RobotConfig::default(), &memory).unwrap();
     assert_eq!(second.grid().at(Vector2::new(3.01, 0.0)), trundle_core::Cell::Occupied);
     let reports = stand(&mut second, 3.0, |stamp| Some(wall(stamp, 1.5)));
-    assert!(matches!(&reports.last().unwrap().state, DriveState::Lost { reason } if reason.contains("position")));
+    assert!(
+        matches!(&reports.last().unwrap().state, DriveState::Lost { reason } if reason.contains("position"))
+    );
     assert!(reports.iter().all(|report| report.twist.unwrap().v == 0.0));
     assert_ne!(second.grid().at(Vector2::new(1.51, 0.0)), trundle_core::Cell::Occupied);
     let broken = Memory { visual: vec![1, 2, 3], ..memory };
