@@ -241,7 +241,15 @@ mod tests {
         let (stamp, covariance) = (Stamp::default(), nalgebra::Matrix3::zeros());
         let estimate =
             PoseEstimate { stamp, pose: Pose2::new(0.35, 0.35, 0.0), twist: Twist2::ZERO, covariance };
-        Surroundings { now: stamp, estimate, grid, scan: None, seen: None, unplaced: 0.0, traffic: crate::navigator::Traffic::default() }
+        Surroundings {
+            now: stamp,
+            estimate,
+            grid,
+            scan: None,
+            seen: None,
+            unplaced: 0.0,
+            traffic: crate::navigator::Traffic::default(),
+        }
     }
 
     fn room() -> OccupancyGrid {

@@ -164,9 +164,8 @@ mod tests {
     #[test]
     fn they_are_on_the_way_when_the_robot_is_a_metre_before_them() {
         // A robot that drives 1 m in 2 s.
-        let timetable: Vec<_> =
-            (0..100).map(|i| (f64::from(i) * 0.1, Vector2::new(FROM.0 + f64::from(i) * 0.05, 0.0)));
-        let timetable: Vec<_> = timetable.collect();
+        let point = |i: i32| (f64::from(i) * 0.1, Vector2::new(FROM.0 + f64::from(i) * 0.05, 0.0));
+        let timetable: Vec<_> = (0..100).map(point).collect();
         for seed in 1..50 {
             let step = StepOut::of(seed);
             let person = step.person(&timetable, 0.2);

@@ -95,10 +95,9 @@ impl Navigator {
             return false;
         }
         let planner = &mut self.planner;
-        let plan =
-            times.measure(Stage::Planning, || {
-                planner.plan_among(s.floor(), s.traffic.movers, reference.pose, reference.twist, goal)
-            });
+        let plan = times.measure(Stage::Planning, || {
+            planner.plan_among(s.floor(), s.traffic.movers, reference.pose, reference.twist, goal)
+        });
         match plan {
             Plan::Found(plan) if plan.is_continuous && plan.trajectory.duration() < left - SOONER => {
                 self.follower.follow(plan.trajectory.clone(), goal);
