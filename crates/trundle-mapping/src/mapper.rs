@@ -309,7 +309,9 @@ mod tests {
     fn a_saved_grid_goes_on_as_it_was() {
         let mut first = mapper();
         let at = Pose2::new(0.3, -0.2, 0.4);
-        (0..5).for_each(|_| drop(first.insert(at, &ahead(Beam::Hit { range: 2.0 }))));
+        for _ in 0..5 {
+            first.insert(at, &ahead(Beam::Hit { range: 2.0 }));
+        }
         let mut second = GridMapper::from_grid(MapperConfig::default(), first.grid()).unwrap();
         assert_eq!(second.grid(), first.grid());
         second.insert(at, &ahead(Beam::Free { range: 3.0 }));
