@@ -232,7 +232,7 @@ mod tests {
         let empty = OccupancyGrid::filled(geometry, Cell::Unknown);
         let error = raise_map("sea.yaml", &empty, &RaisedMap::default()).unwrap_err().to_string();
         assert_eq!(error, "sea.yaml: known cells of the map is 0, expected 1 or more");
-        let geometry = GridGeometry::new(0.05, Vector2::new(1e300, 0.0), 4, 4).unwrap();
+        let geometry = GridGeometry::new(0.05, Vector2::new(1e10, 0.0), 4, 4).unwrap();
         let far = OccupancyGrid::filled(geometry, Cell::Occupied);
         let error = raise_map("far.yaml", &far, &RaisedMap::default()).unwrap_err().to_string();
         assert!(error.starts_with("far.yaml: origin x of the map is 1"), "{error}");

@@ -35,6 +35,9 @@ pub fn any_grid() -> impl Strategy<Value = OccupancyGrid> {
     let origin = prop_oneof![8 => -5.0..5.0_f64, 1 => Just(-1e300), 1 => Just(1e12)];
     (resolution, origin, 1..60_usize, 1..60_usize, any::<u64>(), 0..4_u64).prop_map(
         |(resolution, origin, w, h, bits, mix)| {
+            // Farther off no geometry lets its cells be told apart.
+            let farthest = resolution * 2_f64.powi(39);
+            let origin = origin.clamp(-farthest, farthest);
             let geometry =
                 GridGeometry::new(resolution, Vector2::new(origin, -origin), w, h).expect("a geometry");
             let cell = |i: u64| match (bits.rotate_left((i % 64) as u32) ^ i) % (mix + 1) {
