@@ -255,10 +255,12 @@ fn reason(impossible: &Impossible) -> String {
     let proof = match impossible.certificate {
         Certificate::Never => "proven for motions of any kind",
         Certificate::AtResolution => {
-            "a complete search in steps of docking.position_tolerance found no way through; a way that is narrower than such a step is \
+            "a complete search in steps of docking.planner.position_tolerance found no way through; a way that is narrower than such a step is \
              not ruled out"
         }
-        Certificate::None => "none was found, which is no proof; more docking.most_work searches longer",
+        Certificate::None => {
+            "none was found, which is no proof; more docking.planner.most_work (points_work among many points) searches longer"
+        }
     };
     format!("No manoeuvre within {:.1} m{by} ({proof}).", impossible.within)
 }

@@ -17,7 +17,7 @@ impl Keeper {
     /// Keeps it in `path`.
     ///
     /// # Errors
-    /// When nothing can be written there.
+    /// When its thread cannot be started. What cannot be written is warned of, and tried again with the next.
     pub fn new(path: &Path) -> Result<Self, Failure> {
         let (inbox, memories) = sync_channel::<Arc<Memory>>(1);
         let path = path.to_owned();
@@ -42,8 +42,11 @@ impl Keeper {
         let _ = self.inbox.try_send(memory);
     }
 
-    /// Waits until all is written.
-    pub fn finish(self) {
+    /// Keeps this last one too, and waits until all is written.
+    pub fn finish(self, last: Option<Memory>) {
+        if let Some(last) = last {
+            let _ = self.inbox.send(Arc::new(last));
+        }
         drop(self.inbox);
         let _ = self.thread.join();
     }

@@ -125,10 +125,10 @@ impl Tape {
         }
     }
 
-    /// Ends the recording; what its thread has computed, where it had one.
-    pub fn finish(self) -> Result<Duration, Failure> {
+    /// Ends the recording, and keeps what the robot remembers last; what its thread has computed, where it had one.
+    pub fn finish(self, last: Option<Memory>) -> Result<Duration, Failure> {
         if let Some(keeper) = self.keeper {
-            keeper.finish();
+            keeper.finish(last);
         }
         match self.way {
             Way::Here(_, Some(failure)) => Err(failure.into()),

@@ -16,6 +16,8 @@ pub(crate) struct Measurement {
     pub(crate) noise: Matrix3<f64>,
     /// Added to the covariance first: what the belief had better not been so sure of.
     pub(crate) doubt: Matrix3<f64>,
+    /// What its frame is known to: measurements in one frame, however many, make no belief surer than that.
+    pub(crate) frame: Vector3<f64>,
 }
 
 impl Belief {
@@ -45,7 +47,8 @@ impl Belief {
         let (innovation, _) = self.innovation(measurement);
         let rest = Matrix3::identity() - gain;
         let covariance = rest * prior * rest.transpose() + gain * measurement.noise * gain.transpose();
-        let lacking = (least - covariance.diagonal()).sup(&Vector3::zeros());
+        let floor = least.sup(&measurement.frame.inf(&prior.diagonal()));
+        let lacking = (floor - covariance.diagonal()).sup(&Vector3::zeros());
         Self {
             pose: self.pose * Pose2::exp(gain * innovation),
             covariance: symmetric(covariance) + Matrix3::from_diagonal(&lacking),

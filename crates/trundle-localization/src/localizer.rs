@@ -136,7 +136,8 @@ impl Localizer {
         let noise = self.config.scan_noise() + covariance;
         match self.find(stamp) {
             Ok(moment) => {
-                self.apply(&moment, Measurement { pose: map_from_base, noise, doubt: Matrix3::zeros() })
+                let (doubt, frame) = (Matrix3::zeros(), Vector3::zeros());
+                self.apply(&moment, Measurement { pose: map_from_base, noise, doubt, frame })
             }
             Err(refusal) => refusal,
         }
@@ -177,6 +178,17 @@ impl Localizer {
     /// Where the current visual map's frame lies in the map, once there was a visual pose.
     pub fn map_from_visual(&self) -> Option<Pose3> {
         self.visual.map_from_visual()
+    }
+
+    /// Forgets where the robot is: it was carried away. What was measured before no longer counts.
+    pub fn lose_place(&mut self) {
+        if let Some(history) = &mut self.history {
+            let odometry = *history.newest_odometry();
+            let (_, Belief { pose, .. }) = history.newest();
+            let nowhere = Belief { pose: *pose, covariance: Matrix3::from_diagonal(&ANYWHERE) };
+            *history = History::new(&odometry, nowhere, self.config.least_variances());
+        }
+        self.recovery = Recovery::default();
     }
 
     /// Where every visual map lies in the map, by its number.

@@ -8,8 +8,8 @@ use std::collections::BTreeMap;
 use trundle_core::{Pose2, Pose3};
 
 /// Where the visual frames lie in the map: `map_from_visual` of each visual map, laid when a pose in it is first seen, and then
-/// estimated: as uncertain as the place was by which it was laid, and surer with each visual pose that differs from what the
-/// other sources say. The first one, laid when the map began, is certain: it makes the map's frame.
+/// estimated: as uncertain as the place was by which it was laid, and surer with each visual pose once other sources know the
+/// place better. The first one, laid when the map began, is certain: it makes the map's frame.
 #[derive(Debug, Clone)]
 pub(crate) struct VisualFrame {
     base_from_camera: Pose3,
@@ -25,6 +25,9 @@ struct Anchor {
     map_from_visual: Pose3,
     covariance: Matrix3<f64>,
 }
+
+/// The place is known better than a frame when its variance is so much smaller.
+const SURER: f64 = 0.25;
 
 impl VisualFrame {
     pub(crate) fn new(base_from_camera: Pose3) -> Self {
@@ -78,14 +81,17 @@ impl VisualFrame {
         let to_base = adjoint(&pose.inverse());
         let of_frame = to_base * anchor.covariance * to_base.transpose();
         let noise = (config.visual_noise() + own) * factor + out_of_plane(&map_from_base) + of_frame;
-        Some(Measurement { pose, noise: symmetric(noise), doubt: Matrix3::zeros() })
+        let (doubt, frame) = (Matrix3::zeros(), of_frame.diagonal());
+        Some(Measurement { pose, noise: symmetric(noise), doubt, frame })
     }
 
-    /// What a measurement that was just believed says of the frame it was made in: the part of the innovation that the frame's
-    /// uncertainty explains moves the frame, the Kalman update of `e` with the base's pose taken for independent of it.
+    /// What a measurement that was just believed says of the frame it was made in, where other sources know the place better than
+    /// the frame is known: the part of the innovation that the frame's uncertainty explains moves the frame, the Kalman update of
+    /// `e`. Before that, place and frame err alike, and nothing is learnt.
     pub(crate) fn refine(&mut self, before: &Belief, measurement: &Measurement) {
         let Some(anchor) = self.anchors.get_mut(&self.current) else { return };
-        if anchor.covariance.trace() == 0.0 {
+        let of_frame = measurement.frame.xy().max();
+        if before.position_variance() > SURER * of_frame || of_frame == 0.0 {
             return;
         }
         let (innovation, _) = before.innovation(measurement);

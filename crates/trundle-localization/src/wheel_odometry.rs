@@ -130,12 +130,12 @@ impl WheelOdometry {
         [left, right].map(|ratio| ratio * self.drive.wheel_radius)
     }
 
-    /// The camera saw the base at `visual_from_base`, in a frame that rests, when the odometry had it at `odom_from_base`:
-    /// the ways by both show how large the wheels are. `None` where the frame does not go on from the last call's.
-    pub fn seen(&mut self, odom_from_base: Pose2, visual_from_base: Option<Pose2>) {
-        match visual_from_base {
-            Some(visual) if visual.is_finite() && odom_from_base.is_finite() => {
-                self.size.seen(odom_from_base, visual);
+    /// The camera saw the base at `at` (m), in a frame that rests, when the odometry had it at `odom_from_base`: the ways by both
+    /// show how large the wheels are. `None` where the frame does not go on from the last call's.
+    pub fn seen(&mut self, odom_from_base: Pose2, at: Option<Vector3>) {
+        match at {
+            Some(at) if at.iter().all(|v| v.is_finite()) && odom_from_base.is_finite() => {
+                self.size.seen(odom_from_base, at);
             }
             _ => self.size.unseen(),
         }
@@ -196,7 +196,7 @@ impl WheelOdometry {
         if slips {
             self.size.interrupt();
         } else {
-            let by_gyro = turn_by_gyro.filter(|_| !self.stuck.is_suspect());
+            let by_gyro = turn_by_gyro.filter(|_| !self.stuck.is_suspect() && self.bias.is_measured());
             let rolled = Rolled { way, time: rims.dt, by_wheels: turn_by_wheels, by_gyro };
             self.size.rolled(&self.config, self.drive.wheelbase, rolled);
         }

@@ -1,5 +1,5 @@
 use crate::OdometryConfig;
-use trundle_core::Pose2;
+use trundle_core::{Pose2, Vector3};
 
 /// How large the wheels are over their nominal radius, learnt while driving: two Kalman filters of one number.
 ///
@@ -24,7 +24,7 @@ struct Learnt {
 #[derive(Debug, Clone, Copy)]
 struct Seen {
     odom_from_base: Pose2,
-    visual_from_base: Pose2,
+    at: Vector3,
 }
 
 /// What the wheels did since the last measurement of their difference.
@@ -56,6 +56,8 @@ const CHORD_NOISE: (f64, f64) = (0.006, 0.005);
 const FLOOR_NOISE: f64 = 0.005;
 /// Never surer than this (one sigma, as a part): neighbouring measurements err alike.
 const LEAST_SIGMA: f64 = 3e-4;
+/// How far a wheel may change from one measurement to the next (one sigma, as a part).
+const WALK: f64 = 1e-4;
 /// Measurements farther off are not believed, sigmas.
 const GATE: f64 = 4.0;
 
@@ -108,9 +110,9 @@ impl WheelSize {
         }
     }
 
-    /// The camera saw the robot at `visual_from_base` when the odometry had it at `odom_from_base`.
-    pub(crate) fn seen(&mut self, odom_from_base: Pose2, visual_from_base: Pose2) {
-        let now = Seen { odom_from_base, visual_from_base };
+    /// The camera saw the robot at `at` when the odometry had it at `odom_from_base`.
+    pub(crate) fn seen(&mut self, odom_from_base: Pose2, at: Vector3) {
+        let now = Seen { odom_from_base, at };
         let Some(from) = self.seen else {
             self.seen = Some(now);
             return;
@@ -119,7 +121,7 @@ impl WheelSize {
         if rolled < LEAST_WAY {
             return;
         }
-        let chord = (visual_from_base.position() - from.visual_from_base.position()).norm();
+        let chord = (at - from.at).norm();
         let sigma = CHORD_NOISE.0.hypot(CHORD_NOISE.1 * chord) / rolled;
         self.mean.learn(self.mean.value * chord / rolled, sigma * sigma);
         self.seen = Some(now);
@@ -129,6 +131,8 @@ impl WheelSize {
 impl Learnt {
     /// Takes in a measurement that can be believed.
     fn learn(&mut self, measured: f64, variance: f64) {
+        // Tyres wear and floors differ.
+        self.variance += if self.variance > 0.0 { WALK * WALK } else { 0.0 };
         let (off, all) = (measured - self.value, self.variance + variance);
         if off * off <= GATE * GATE * all && self.variance > 0.0 {
             let gain = self.variance / all;

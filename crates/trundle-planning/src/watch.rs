@@ -28,6 +28,8 @@ pub(crate) type Layer<'a> = (&'a OccupancyGrid, UnknownIs);
 const SLACK: f64 = 2e-4;
 /// An outline is looked at so much smaller, m: what a sweep may have missed.
 const MISSED: f64 = 5e-4;
+/// How deep an outline may overlap what it leaves, m: tried one after the other.
+const DEPTHS: [f64; 6] = [0.01, 0.02, 0.03, 0.04, 0.05, 0.065];
 /// How far from where it stands a robot that already has less room may have no more, m, beside the room that is missing.
 const ZONE: f64 = 0.2;
 
@@ -45,9 +47,21 @@ pub(crate) fn still_free(
     let room = |pose| layers.iter().map(|layer| room(*layer, pose, body)).fold(body.needs(), f64::min);
     let (here, now) = (last.pose, room(last.pose));
     let slack = if body.is_disc() { SLACK } else { body.needs() - 1e-9 };
-    let required = |pose: Pose2| {
-        let is_leaving = now < body.needs() && pose.distance(&here) <= body.needs() - now + ZONE;
-        if is_leaving { now - 1e-6 } else { body.needs() - slack }
+    let is_leaving = |pose: &Pose2| now < body.needs() && pose.distance(&here) <= body.needs() - now + ZONE;
+    let within = |pose, body: &Body| {
+        layers.iter().map(|layer| self::room(*layer, pose, body)).fold(body.needs(), f64::min)
+    };
+    // An outline that overlaps something may leave it no deeper than it is.
+    let overlaps = !body.is_disc() && now <= 0.0;
+    let inner = DEPTHS.iter().filter(|_| overlaps).filter_map(|depth| body.shrunk(*depth));
+    let inner = inner.into_iter().find(|inner| within(here, inner) > 0.0);
+    if overlaps && inner.is_none() {
+        return Err(Obstruction { time: from, pose: here, clearance: -DEPTHS[DEPTHS.len() - 1] });
+    }
+    let leaving_room = |pose| match &inner {
+        Some(inner) if within(pose, inner) > 0.0 => now,
+        Some(_) => f64::NEG_INFINITY,
+        None => room(pose),
     };
     for point in trajectory.points().iter().filter(|point| point.time > from) {
         let turn = trundle_core::difference_of_angles(point.pose.theta, last.pose.theta);
@@ -61,10 +75,14 @@ pub(crate) fn still_free(
         for k in 1..=steps as usize {
             let share = k as f64 / steps;
             let pose = last.pose.interpolate(&point.pose, share);
-            let distance = room(pose);
-            if distance < required(pose) {
+            let (distance, required) = if is_leaving(&pose) {
+                (leaving_room(pose), now - 1e-6)
+            } else {
+                (room(pose), body.needs() - slack)
+            };
+            if distance < required {
                 let time = last.time + (point.time - last.time) * share;
-                return Err(Obstruction { time, pose, clearance: distance - body.needs() });
+                return Err(Obstruction { time, pose, clearance: distance.max(0.0) - body.needs() });
             }
         }
         last = *point;

@@ -1,24 +1,30 @@
 use std::collections::BTreeMap;
-use trundle_core::{Pose2, Stamp};
+use trundle_core::{Pose2, Pose3, Stamp};
 
-/// Where the visual map said that the base was when each scan was drawn, so that the grid can follow when it says otherwise.
+/// Where the visual map said that the camera was when each scan was drawn, so that the grid can follow when it says otherwise.
 #[derive(Debug, Default)]
 pub(crate) struct DrawnPoses {
-    visual: BTreeMap<Stamp, Pose2>,
+    visual: BTreeMap<Stamp, Pose3>,
 }
 
 impl DrawnPoses {
-    /// Notes a scan that was drawn while the visual map had the base at `map_from_base`.
-    pub(crate) fn note(&mut self, stamp: Stamp, map_from_base: Pose2) {
-        self.visual.insert(stamp, map_from_base);
+    /// Notes a scan that was drawn while the visual map had the camera at `visual_from_camera`.
+    pub(crate) fn note(&mut self, stamp: Stamp, visual_from_camera: Pose3) {
+        self.visual.insert(stamp, visual_from_camera);
     }
 
-    /// Takes over where the visual map has the base by now: `new_from_old` (map frame) of every scan drawn that it still knows.
-    pub(crate) fn follow(&mut self, now: &BTreeMap<Stamp, Pose2>) -> BTreeMap<Stamp, Pose2> {
+    /// Takes over where the visual map has the camera by now: `new_from_old` (map frame) of every scan drawn that it still knows;
+    /// `base` says where a camera pose has the base, map frame.
+    pub(crate) fn follow(
+        &mut self,
+        now: &[(Stamp, Pose3)],
+        base: impl Fn(&Pose3) -> Option<Pose2>,
+    ) -> BTreeMap<Stamp, Pose2> {
         let mut moved = BTreeMap::new();
-        for (stamp, old) in &mut self.visual {
-            if let Some(new) = now.get(stamp) {
-                moved.insert(*stamp, *new * old.inverse());
+        for (stamp, new) in now {
+            let Some(old) = self.visual.get_mut(stamp) else { continue };
+            if let (Some(new_base), Some(old_base)) = (base(new), base(old)) {
+                moved.insert(*stamp, new_base * old_base.inverse());
                 *old = *new;
             }
         }
@@ -35,15 +41,16 @@ mod tests {
         let mut drawn = DrawnPoses::default();
         let (stamp, forgotten) = (Stamp::from_nanos(1), Stamp::from_nanos(2));
         let (old, new) = (Pose2::new(1.0, 0.0, 0.0), Pose2::new(1.0, 0.5, 0.1));
-        drawn.note(stamp, old);
-        drawn.note(forgotten, old);
-        let moved = drawn.follow(&BTreeMap::from([(stamp, new)]));
+        let base = |pose: &Pose3| Some(pose.to_pose2());
+        drawn.note(stamp, Pose3::from_pose2(old));
+        drawn.note(forgotten, Pose3::from_pose2(old));
+        let moved = drawn.follow(&[(stamp, Pose3::from_pose2(new))], base);
         assert_eq!(moved.len(), 1);
         // The scan was drawn 2 cm beside where the visual map had the base; it stays so.
         let beside = Pose2::new(0.0, 0.02, 0.0);
         let off = (moved[&stamp] * (old * beside)).inverse() * (new * beside);
         assert!(off.log().norm() < 1e-12, "{off:?}");
-        let again = drawn.follow(&BTreeMap::from([(stamp, new)]));
+        let again = drawn.follow(&[(stamp, Pose3::from_pose2(new))], base);
         assert!(again[&stamp].log().norm() < 1e-12);
     }
 }

@@ -257,9 +257,8 @@ fn told(reason: &Reason) -> String {
         Reason::NoWay(by) => format!("no turns and straight moves lead to the goal, blocked{}", at(by)),
         Reason::Refused(refusal) => refusal.to_string(),
         Reason::BadPose => "the pose is not a number".to_owned(),
-        Reason::Measuring | Reason::Planning | Reason::Moving(_) | Reason::Settled => {
-            "stopped again and again".to_owned()
-        }
+        Reason::Planning => "the search for turns and straight moves did not come to an end".to_owned(),
+        Reason::Measuring | Reason::Moving(_) | Reason::Settled => "stopped again and again".to_owned(),
     }
 }
 

@@ -25,6 +25,8 @@ pub(crate) struct Lookout {
     last: Option<Pose2>,
     /// Since when images that show enough have not been located.
     unplaced: Option<Stamp>,
+    /// When the place was last looked for everywhere, since then.
+    searched: Option<Stamp>,
     /// When the visual maps are to be saved; none: never.
     pub(crate) saving: Option<Ticker>,
 }
@@ -41,6 +43,8 @@ pub(crate) struct Sighting {
     pub(crate) unplaced: Option<Stamp>,
     /// All poses of the visual map, when it was corrected by more than tracking goes along with.
     pub(crate) bent: Option<Vec<(Stamp, Pose3)>>,
+    /// The robot must have been carried away: its place is looked for everywhere.
+    pub(crate) is_carried_away: bool,
     /// The visual maps, when it was time to save them.
     pub(crate) saved: Option<Vec<u8>>,
 }
@@ -51,6 +55,8 @@ const BENT: f64 = 0.02;
 const ENOUGH_FEATURES: usize = 200;
 /// Images that show enough and are not located for so long, s, are of another place than the odometry says.
 const CARRIED_AWAY: f64 = 1.5;
+/// And for so long, s, images that show less do not change that.
+const UNPLACED: f64 = 0.7;
 
 impl Lookout {
     pub(crate) fn new(config: &RobotConfig, base_from_camera: Pose3) -> Result<Self, Invalid> {
@@ -62,6 +68,7 @@ impl Lookout {
             watch: EyeWatch::default(),
             last: None,
             unplaced: None,
+            searched: None,
             saving: None,
         })
     }
@@ -96,7 +103,8 @@ impl Lookout {
         }
         let prior = self.camera_motion_since_last_image(odom_from_base);
         let track = times.measure(Stage::Slam, || self.slam.step(image, prior));
-        if self.is_carried_away(&track) {
+        let is_carried_away = self.is_carried_away(&track);
+        if is_carried_away {
             self.slam.kidnapped();
         }
         let bent = is_bent(&track).then(|| self.slam.trajectory());
@@ -106,7 +114,7 @@ impl Lookout {
         };
         let is_time = self.saving.as_mut().is_some_and(|saving| saving.due(image.stamp()));
         let saved = is_time.then(|| times.measure(Stage::Saving, || self.slam.save()));
-        Some(Sighting { odom_from_base, track, scan, unplaced: self.unplaced, bent, saved })
+        Some(Sighting { odom_from_base, track, scan, unplaced: self.unplaced, is_carried_away, bent, saved })
     }
 
     /// `previous_camera_from_camera` by wheels and gyro.
@@ -117,16 +125,24 @@ impl Lookout {
 
     /// Whether it is time to look for the place everywhere: the odometry's has not been recognised for a while.
     fn is_carried_away(&mut self, track: &TrackReport) -> bool {
-        if track.tracking.is_located() || track.features < ENOUGH_FEATURES {
-            self.unplaced = None;
+        let shows_enough = track.features >= ENOUGH_FEATURES;
+        if track.tracking.is_located() || !shows_enough && !self.has_been_unplaced(track.stamp) {
+            (self.unplaced, self.searched) = (None, None);
+        }
+        if track.tracking.is_located() || !shows_enough {
             return false;
         }
         let since = *self.unplaced.get_or_insert(track.stamp);
-        let is_time = track.stamp - since > CARRIED_AWAY;
+        let is_time = track.stamp - self.searched.unwrap_or(since) > CARRIED_AWAY;
         if is_time {
-            self.unplaced = None;
+            self.searched = Some(track.stamp);
         }
         is_time
+    }
+
+    /// A robot that does not know its place does not know it before a bare wall either.
+    fn has_been_unplaced(&self, now: Stamp) -> bool {
+        self.unplaced.is_some_and(|since| now - since > UNPLACED)
     }
 }
 

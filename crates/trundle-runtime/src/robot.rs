@@ -87,6 +87,8 @@ struct Latest {
 
 /// Images that show enough and have not been located for so long, s, are of another place than the odometry says.
 const UNPLACED: f64 = 0.3;
+/// So long after the last scan what moved may be anywhere, s.
+const MOVERS_LAST: f64 = 1.0;
 /// With each image, so many cells of a bent grid are redrawn, about 5 ms.
 const REDRAWING: usize = 150_000;
 
@@ -126,9 +128,10 @@ impl Robot {
     /// Gives the robot a mission in place of what is left of its old one. It begins with the next reading of the wheels; an
     /// empty one lets the robot stand.
     pub fn begin(&mut self, mission: &Mission) {
+        self.latest.left = mission.clone();
         match &mut self.captain {
             Some(captain) => captain.begin(mission),
-            None => self.background.orders = Some(mission.clone()),
+            None => self.background.give_orders(mission),
         }
     }
 
@@ -179,9 +182,7 @@ impl Robot {
         let odometry = self.times.measure(Stage::Odometry, || self.odometry.step_wheels(wheels));
         self.times.measure(Stage::Localization, || self.localizer.predict(&odometry));
         self.latest.odometry = Some(odometry);
-        if !self.latest.movers.is_empty() {
-            self.latest.movers = self.traffic.movers(wheels.stamp);
-        }
+        self.latest.movers_go_on(&self.traffic, wheels.stamp);
         let surroundings = Surroundings {
             now: wheels.stamp,
             estimate: self.localizer.estimate(),
@@ -231,8 +232,11 @@ impl Robot {
 
     /// What an image showed: the visual pose corrects the estimate; at the map's rate the scan does too, and enters the map.
     fn take_in(&mut self, sighting: Sighting, report: &mut StepReport) {
-        let Sighting { odom_from_base, track, scan, unplaced, bent, saved } = sighting;
+        let Sighting { odom_from_base, track, scan, unplaced, is_carried_away, bent, saved } = sighting;
         self.latest.unplaced = unplaced;
+        if is_carried_away {
+            self.localizer.lose_place();
+        }
         let (times, localizer) = (&mut self.times, &mut self.localizer);
         let correction =
             times.measure(Stage::Localization, || correct_by_sight(localizer, &track, bent.is_some()));
@@ -242,8 +246,8 @@ impl Robot {
         }
         let goes_on = track.tracking == Tracking::Ok && bent.is_none() && !track.relocalised;
         let goes_on = goes_on && matches!(correction, Some(Correction::Applied { .. }));
-        let visual = self.visual_base(&track.visual_from_camera).filter(|_| goes_on);
-        self.odometry.seen(odom_from_base, visual);
+        let base = track.visual_from_camera * self.base_from_camera.inverse();
+        self.odometry.seen(odom_from_base, goes_on.then_some(base.translation));
         if let Some(trajectory) = bent {
             self.follow_the_visual_map(&trajectory);
         }
@@ -251,11 +255,11 @@ impl Robot {
         if let Some(scan) = scan {
             let stamp = scan.stamp();
             let is_drawn = self.see(scan);
-            let visual = self.visual_base(&track.visual_from_camera);
-            if let Some(visual) = visual.filter(|_| is_drawn && track.tracking.is_located()) {
-                self.drawn.note(stamp, visual);
+            if is_drawn && track.tracking.is_located() {
+                self.drawn.note(stamp, track.visual_from_camera);
             }
         }
+        let saved = saved.filter(|_| self.knows_its_place(track.stamp));
         report.memory = saved.map(|visual| Arc::new(self.remember(visual)));
         report.track = Some(track);
     }
@@ -279,7 +283,7 @@ impl Robot {
     /// What moves near by, by the newest scan.
     fn watch_traffic(&mut self, scan: &Scan) {
         if !self.knows_its_place(scan.stamp()) {
-            return;
+            return self.latest.forget_movers();
         }
         let Ok(pose) = self.localizer.pose_at(scan.stamp()) else { return };
         let (times, traffic, latest) = (&mut self.times, &mut self.traffic, &mut self.latest);
@@ -324,8 +328,9 @@ impl Robot {
 
     /// The visual map was bent: the grid is redrawn from where its scans were taken by now.
     fn follow_the_visual_map(&mut self, trajectory: &[(Stamp, Pose3)]) {
-        let bases = trajectory.iter().filter_map(|(stamp, pose)| Some((*stamp, self.visual_base(pose)?)));
-        let moved = self.drawn.follow(&bases.collect());
+        let mut drawn = std::mem::take(&mut self.drawn);
+        let moved = drawn.follow(trajectory, |pose| self.visual_base(pose));
+        self.drawn = drawn;
         self.times.measure(Stage::Mapping, || {
             self.mapper.correct(|stamp, pose| moved.get(&stamp).map_or(pose, |moved| *moved * pose))
         });
@@ -395,6 +400,22 @@ impl Robot {
 }
 
 impl Latest {
+    /// What moves is where it will have come to by `now`; without scans nobody knows.
+    fn movers_go_on(&mut self, traffic: &MoverTracker, now: Stamp) {
+        if self.movers.is_empty() {
+            return;
+        }
+        self.movers = traffic.movers(now);
+        if self.movers.is_empty() || self.scan.as_ref().is_none_or(|scan| now - scan.stamp() > MOVERS_LAST) {
+            self.forget_movers();
+        }
+    }
+
+    fn forget_movers(&mut self) {
+        self.movers.clear();
+        self.still = None;
+    }
+
     /// The last scan with the odometry that carries it to now.
     fn carried_scan(&self) -> Option<SafetyScan<'_>> {
         Some(SafetyScan {

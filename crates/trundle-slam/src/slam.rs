@@ -42,6 +42,8 @@ pub struct RgbdSlam {
     active: Component,
     /// The other ones, by rising id.
     resting: Vec<Component>,
+    /// The highest number that a map ever had.
+    newest_map: u32,
     belief: Belief,
     /// Whether the belief says anything about where in the active map the camera is.
     placed: bool,
@@ -105,6 +107,7 @@ impl RgbdSlam {
             extractor,
             active: Component::new(MapId(0), LandmarkMap::default(), &Vocabulary::builtin()),
             resting: vec![],
+            newest_map: 0,
             belief: Belief::at(Pose3::identity()),
             placed: true,
             blind: false,

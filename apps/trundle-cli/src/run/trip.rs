@@ -91,7 +91,8 @@ impl<'s> Trip<'s> {
         }
         self.line.finish_and_clear();
         let (waiting, lost) = (self.tape.lengths.clone(), self.tape.lost);
-        let (spent, failure) = match self.tape.finish() {
+        let last = if self.tape.keeps() { self.robot.memory() } else { None };
+        let (spent, failure) = match self.tape.finish(last) {
             Ok(spent) => (spent, None),
             Err(failure) => (Duration::ZERO, Some(failure)),
         };

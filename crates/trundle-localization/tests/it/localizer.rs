@@ -69,6 +69,10 @@ fn a_visual_map_that_was_laid_in_doubt_is_moved_to_where_scans_say() {
     let truth = |ms: i64| Pose2::new(0.2, -0.1, 0.05) * odometry(ms).pose;
     localizer.correct_visual(&visual(19_000, truth(19_000)));
     let before = localizer.map_from_visual().unwrap();
+    for ms in (19_020..19_980).step_by(40) {
+        localizer.correct_visual(&visual(ms, truth(ms)));
+    }
+    assert!(localizer.estimate().covariance[(0, 0)] > 0.05_f64.powi(2), "nothing new was learnt");
     for ms in (20_020..26_000).step_by(20) {
         localizer.predict(&odometry(ms));
         if ms % 100 == 0 {

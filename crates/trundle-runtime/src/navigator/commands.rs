@@ -36,6 +36,8 @@ impl Navigator {
             DriveState::Mapping if self.goal == Goal::Look => self.look_once(s),
             DriveState::Recovering { .. } if self.is_wedged => Twist2::new(-BACKING_OUT, 0.0),
             DriveState::Recovering { .. } if self.vantage == Vantage::Going => follow.twist,
+            // The gyro's bias is measured at rest.
+            DriveState::Lost { .. } if !self.is_open(s) => Twist2::ZERO,
             DriveState::Recovering { .. } | DriveState::Lost { .. } => self.look.twist(pose),
             DriveState::Waiting { .. } if self.backs_out(s) => Twist2::new(-BACK_OUT, 0.0),
             DriveState::Waiting { .. } if self.is_blind(s) => self.look_for_sight(s),
@@ -111,6 +113,12 @@ impl Navigator {
                 SafetyAction::Stop(reason),
                 DriveState::Driving | DriveState::Settling | DriveState::Waiting { .. },
             ) => {
+                self.held_since.get_or_insert(s.now);
+                self.state = DriveState::Waiting { reason: reason.to_string() };
+            }
+            (SafetyAction::Stop(reason), DriveState::Recovering { .. }) if self.vantage == Vantage::Going => {
+                self.vantage = Vantage::Settled;
+                self.follower.halt();
                 self.held_since.get_or_insert(s.now);
                 self.state = DriveState::Waiting { reason: reason.to_string() };
             }

@@ -1,6 +1,6 @@
 //! What is asked of the navigator when it may be away for a while.
 
-use super::{Goal, Navigator, Surroundings};
+use super::{Goal, Navigator, Surroundings, vantage::Vantage};
 use crate::{helm::Helm, state::DriveState};
 use trundle_core::{Stamp, Twist2};
 
@@ -36,6 +36,7 @@ impl Navigator {
     pub(crate) fn helm(&self) -> Helm {
         let follows = match &self.state {
             DriveState::Driving => true,
+            DriveState::Recovering { .. } => self.vantage == Vantage::Going,
             DriveState::Settling => !matches!(self.goal, Goal::View(_)),
             _ => false,
         };

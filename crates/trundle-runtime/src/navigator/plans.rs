@@ -73,7 +73,7 @@ impl Navigator {
                 self.hold("stopping to plan anew", s.now);
                 false
             }
-            Plan::Blocked { .. } if !s.traffic.movers.is_empty() => {
+            Plan::Blocked { .. } if self.is_free_but_for_movers(s, from, goal) => {
                 self.hold("somebody is on the move in the way", s.now);
                 false
             }
@@ -84,6 +84,12 @@ impl Navigator {
                 false
             }
         }
+    }
+
+    /// Whether what moves alone bars the way.
+    fn is_free_but_for_movers(&mut self, s: &Surroundings<'_>, from: (Pose2, Twist2), goal: Pose2) -> bool {
+        !s.traffic.movers.is_empty()
+            && matches!(self.planner.plan(s.floor(), from.0, from.1, goal), Plan::Found(_))
     }
 
     /// While it drives: a new plan that goes on from the reference and arrives sooner replaces the old one.

@@ -22,7 +22,7 @@ pub(super) struct Background {
     /// While the captain thinks.
     helm: Option<Helm>,
     /// A mission given meanwhile.
-    pub(super) orders: Option<Mission>,
+    orders: Option<Mission>,
     /// What bumper and cliff sensors said meanwhile.
     felt: Vec<Felt>,
     /// The newest image that nobody has looked at yet.
@@ -54,6 +54,14 @@ impl Background {
             self.decision = Some(Job(Work::Decide { captain, around: Box::new(Around::from(s)) }));
         }
         self.helm.as_mut().map(|helm| helm.step(s))
+    }
+
+    /// A mission for the captain when it is back; to stand is done at once.
+    pub(super) fn give_orders(&mut self, mission: &Mission) {
+        if let (true, Some(helm)) = (mission.tasks().is_empty(), &mut self.helm) {
+            helm.wanted = Some(Twist2::ZERO);
+        }
+        self.orders = Some(mission.clone());
     }
 
     /// Leaves an image to be looked at: the newest wins.
@@ -159,6 +167,7 @@ impl Robot {
         if let Some(mission) = self.background.orders.take() {
             captain.begin(&mission);
         }
+        self.latest.left = captain.supervisor.left();
         self.captain = Some(captain);
     }
 

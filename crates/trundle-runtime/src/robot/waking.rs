@@ -41,15 +41,22 @@ impl Robot {
         self
     }
 
+    /// What the robot would take along through a restart now; none while it looks in the background, or does not know its place.
+    pub fn memory(&mut self) -> Option<Memory> {
+        let visual = self.lookout.as_ref()?.slam().save();
+        let now = self.localizer.estimate().stamp;
+        self.knows_its_place(now).then(|| self.remember(visual))
+    }
+
     pub(super) fn remember(&mut self, visual: Vec<u8>) -> Memory {
         if let Some(captain) = &self.captain {
             self.latest.left = captain.supervisor.left();
         }
-        Memory {
-            visual,
-            visual_maps: self.localizer.visual_maps(),
-            grid: self.mapper.grid().clone(),
-            mission: self.latest.left.clone(),
+        let mut visual_maps = self.localizer.visual_maps();
+        if let Some(slam) = self.slam() {
+            let maps: Vec<u32> = slam.maps().iter().map(|map| map.number()).collect();
+            visual_maps.retain(|map, _| maps.contains(map));
         }
+        Memory { visual, visual_maps, grid: self.mapper.grid().clone(), mission: self.latest.left.clone() }
     }
 }

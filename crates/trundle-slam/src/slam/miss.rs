@@ -91,8 +91,10 @@ impl RgbdSlam {
     /// Leaves the active map for an empty one, at its origin. One that is hardly begun is forgotten: a camera that finds
     /// nothing begins such maps for ever, and nobody would know one again.
     fn begin_map(&mut self) {
-        let newest = self.resting.iter().map(|map| map.id).max().max(Some(self.active.id));
-        let id = MapId(newest.map_or(0, |id| id.0 + 1));
+        // No number is given twice: whoever knows where a map lies knows it by its number.
+        let newest = self.resting.iter().map(|map| map.id.0).fold(self.active.id.0, u32::max);
+        self.newest_map = self.newest_map.max(newest).saturating_add(1);
+        let id = MapId(self.newest_map);
         let vocabulary = Arc::clone(self.active.places.vocabulary());
         let empty = Component::new(id, LandmarkMap::default(), &vocabulary);
         let left = std::mem::replace(&mut self.active, empty);
