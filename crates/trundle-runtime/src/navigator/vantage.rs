@@ -26,7 +26,7 @@ const AWAY: [f64; 2] = [1.2, 0.9];
 const BEARINGS: usize = 16;
 /// Of these the nearest are asked for a way there.
 const MOST_PLANS: usize = 4;
-/// What bars the way itself may hide it, m.
+/// A place in what bars the way is hidden by that itself, m; one before it is not.
 const OWN_SIZE: f64 = 0.35;
 
 impl Navigator {
@@ -73,7 +73,8 @@ fn places(grid: &OccupancyGrid, here: Pose2, at: Vector2) -> Vec<Pose2> {
 /// Whether nothing on the map stands between, but for what bars the way at `at` itself.
 fn is_in_sight(grid: &OccupancyGrid, from: Vector2, at: Vector2) -> bool {
     let (way, step) = (at - from, grid.geometry().resolution / 2.0);
-    let clear = (way.norm() - OWN_SIZE).max(0.0);
+    let own = if grid.at(at) == Cell::Free { 0.0 } else { OWN_SIZE };
+    let clear = (way.norm() - own).max(0.0);
     let count = (clear / step) as usize;
     let mut points = (0..count).map(|i| from + way * (i as f64 * step / way.norm()));
     !points.any(|point| grid.at(point) == Cell::Occupied)
