@@ -5,6 +5,7 @@
 //! are not taken, so an overlap deeper than half of it is never missed. Cost: O(squares near the outline) a look.
 
 use crate::DistanceField;
+use crate::escape::Escape;
 use crate::geometry::{box_gap, segment_to_square};
 use trundle_core::{Footprint, Pose2, Vector2};
 
@@ -13,14 +14,6 @@ const LEAST_STEP: f64 = 4e-4;
 
 /// A polygon that comes so near to a wall, or so far into it, touches it, and may: rounding of a pose, m.
 const TOUCH: f64 = 1e-4;
-
-/// Where an outline stands that overlaps something, and how much smaller it is taken to be near there.
-#[derive(Debug, Clone, PartialEq)]
-struct Escape {
-    start: Vector2,
-    zone: f64,
-    corners: Vec<Vector2>,
-}
 
 /// The outline, base frame.
 #[derive(Debug, Clone, PartialEq)]
@@ -31,7 +24,15 @@ pub(crate) struct Body {
     pub(crate) radius: f64,
     /// The least distance of its outline from the axle, m; 0 where the axle is outside.
     pub(crate) inner: f64,
-    escape: Option<Escape>,
+    leaving: Option<Box<Leaving>>,
+}
+
+/// How a body leaves what it overlaps.
+#[derive(Debug, Clone, PartialEq)]
+struct Leaving {
+    escape: Escape,
+    /// So much smaller that it touches nothing at the start.
+    slim: Body,
 }
 
 impl Body {
@@ -39,18 +40,22 @@ impl Body {
     pub(crate) fn new(footprint: &Footprint) -> Self {
         let radius = footprint.circumscribed_radius();
         match footprint {
-            Footprint::Disc { .. } => Self { corners: vec![], radius, inner: radius, escape: None },
+            Footprint::Disc { .. } => Self { corners: vec![], radius, inner: radius, leaving: None },
             Footprint::Polygon { corners } => {
                 let to_side = |(a, b): (Vector2, Vector2)| (b - a).perp(&-a) / (b - a).norm();
                 let inner = sides(corners).map(to_side).fold(f64::INFINITY, f64::min).max(0.0);
-                let whole = Self { corners: corners.clone(), radius, inner, escape: None };
+                let whole = Self { corners: corners.clone(), radius, inner, leaving: None };
                 whole.shrunk(TOUCH).unwrap_or(whole)
             }
         }
     }
 
-    /// The polygon with its sides `by` m further in; `None` for a disc, and where a side would vanish.
+    /// The body with its outline `by` m further in; `None` where nothing or a side less would be left.
     pub(crate) fn shrunk(&self, by: f64) -> Option<Self> {
+        if self.is_disc() {
+            let radius = self.radius - by;
+            return (radius > 0.0).then(|| Self { radius, inner: radius, ..self.clone() });
+        }
         let count = self.corners.len();
         let side = |i: usize| (self.corners[(i + 1) % count] - self.corners[i % count]).try_normalize(1e-12);
         let corner = |i: usize| {
@@ -63,12 +68,15 @@ impl Body {
         let corners: Vec<Vector2> = (0..count).map(corner).collect::<Option<_>>()?;
         let stands = (0..count)
             .all(|i| (corners[(i + 1) % count] - corners[i]).dot(&(side(i).unwrap_or_default())) > 0.0);
-        (count > 0 && stands).then(|| Self { corners, inner: (self.inner - by).max(0.0), ..self.clone() })
+        stands.then(|| Self { corners, inner: (self.inner - by).max(0.0), ..self.clone() })
     }
 
-    /// How far a polygon that overlaps something at a pose is inside it, m, by how much smaller it would fit; at most `cap`.
+    /// How far a body that overlaps something at a pose is inside it, m, by how much smaller it would fit; at most `cap`.
     pub(crate) fn overlap(&self, field: &DistanceField, pose: Pose2, cap: f64) -> f64 {
         const ROUNDS: usize = 12;
+        if self.is_disc() {
+            return (self.radius - field.clearance(pose.position(), self.radius)).min(cap);
+        }
         // What is so small that nothing is left fits everywhere.
         let fits = |by: f64| self.shrunk(by).is_none_or(|body| body.gap(field, pose, 1e-3) > 0.0);
         if !fits(cap) {
@@ -81,11 +89,26 @@ impl Body {
         (0..ROUNDS).fold((0.0, cap), halve).1
     }
 
-    /// The same polygon, `by` m smaller near `start`: it may leave what it overlaps there, and come no deeper.
-    pub(crate) fn leaving(&self, start: Vector2, by: f64, resolution: f64) -> Option<Self> {
-        let corners = self.shrunk(by)?.corners;
-        let escape = Some(Escape { start, zone: by + 3.0 * resolution, corners });
-        Some(Self { escape, ..self.clone() })
+    /// The same body, `by` m smaller near `start` against what it overlaps there: it may leave that, and come no deeper.
+    pub(crate) fn leaving(&self, field: &DistanceField, start: Pose2, by: f64) -> Option<Self> {
+        let slim = self.shrunk(by)?;
+        let (outline, half) = (self.outline(start), field.geometry().resolution / 2.0);
+        let escape = Escape::new(start.position(), by, half * 2.0);
+        let escape = escape.keeping_off_the_rest(field, self.radius, |centre| match outline[..] {
+            [] => (box_gap(start.position(), centre, half).norm() - self.radius).max(0.0),
+            _ => outline_to_square(&outline, centre, half, f64::INFINITY),
+        });
+        Some(Self { leaving: Some(Box::new(Leaving { escape, slim })), ..self.clone() })
+    }
+
+    /// How deep it is inside what it leaves, m; 0 where it leaves nothing.
+    pub(crate) fn depth(&self) -> f64 {
+        self.leaving.as_ref().map_or(0.0, |leaving| leaving.escape.depth)
+    }
+
+    /// Whether it is still near where it overlapped something.
+    pub(crate) fn is_leaving(&self, pose: Pose2) -> bool {
+        self.leaving.as_ref().is_some_and(|leaving| leaving.escape.covers(pose.position()))
     }
 
     pub(crate) fn is_disc(&self) -> bool {
@@ -101,13 +124,22 @@ impl Body {
     pub(crate) fn outline(&self, pose: Pose2) -> Vec<Vector2> {
         let along = pose.direction();
         let across = Vector2::new(-along.y, along.x);
-        let is_near = |escape: &&Escape| (pose.position() - escape.start).norm() <= escape.zone;
-        let corners = self.escape.as_ref().filter(is_near).map_or(&self.corners, |escape| &escape.corners);
-        corners.iter().map(|c| pose.position() + along * c.x + across * c.y).collect()
+        self.corners.iter().map(|c| pose.position() + along * c.x + across * c.y).collect()
     }
 
-    /// The exact distance between the outline at a pose and the nearest obstacle, at most `cap` m; 0 where they meet.
+    /// The exact distance between the outline at a pose and the nearest obstacle, at most `cap` m; 0 where they meet. Leaving
+    /// something, the distance that it may still come nearer.
     pub(crate) fn gap(&self, field: &DistanceField, pose: Pose2, cap: f64) -> f64 {
+        match &self.leaving {
+            Some(leaving) if leaving.escape.covers(pose.position()) => {
+                let cap = leaving.slim.gap_to(field, pose, cap);
+                leaving.escape.others().map_or(cap, |others| self.gap_to(others, pose, cap))
+            }
+            _ => self.gap_to(field, pose, cap),
+        }
+    }
+
+    fn gap_to(&self, field: &DistanceField, pose: Pose2, cap: f64) -> f64 {
         let at = pose.position();
         if self.is_disc() {
             return (field.clearance(at, self.radius + cap) - self.radius).max(0.0);

@@ -11,6 +11,7 @@ mod config;
 mod corridor;
 mod curve;
 mod dial;
+mod escape;
 mod explore;
 mod field;
 mod finer;

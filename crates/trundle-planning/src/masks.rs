@@ -89,25 +89,19 @@ pub(crate) fn kept_out(
             let (a, b) = square(linear);
             (low.inf(&a), high.sup(&b))
         });
-        merged = grown(grid, area(grid.geometry(), whole.0, whole.1, 0.0)?);
+        merged = cut(grid, area(grid.geometry(), whole.0, whole.1, 0.0)?);
     }
     forbidden().for_each(|(linear, _)| occupy(&mut merged, square(linear)));
     Ok(merged)
 }
 
-/// The grid over a larger geometry of its lattice; what it does not hold is unknown.
-fn grown(grid: &OccupancyGrid, geometry: GridGeometry) -> OccupancyGrid {
+/// The grid over another geometry of its lattice; what it does not hold is unknown.
+pub(crate) fn cut(grid: &OccupancyGrid, geometry: GridGeometry) -> OccupancyGrid {
     if geometry == *grid.geometry() {
         return grid.clone();
     }
-    let mut whole = OccupancyGrid::filled(geometry, Cell::Unknown);
-    for (linear, cell) in grid.cells().iter().enumerate() {
-        let centre = grid.geometry().center(grid.geometry().cell(linear));
-        if let Some(place) = geometry.cell_at(centre) {
-            whole.set(place, *cell);
-        }
-    }
-    whole
+    let cells = (0..geometry.len()).map(|linear| grid.at(geometry.center(geometry.cell(linear))));
+    OccupancyGrid::new(geometry, cells.collect()).expect("invariant: a cell for each")
 }
 
 /// Occupies the cells that a box overlaps.

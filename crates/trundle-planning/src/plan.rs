@@ -1,7 +1,7 @@
 use crate::curve::Curve;
 use crate::route::Phase;
 use std::fmt;
-use trundle_core::{Invalid, Path, Trajectory, Vector2};
+use trundle_core::{Invalid, Path, Pose2, Trajectory, Vector2};
 
 /// What became of a question for a way.
 #[derive(Debug, Clone, PartialEq)]
@@ -29,6 +29,26 @@ pub enum Plan {
     GoalOutside,
     /// The question was no question: a number is not finite, or a map or distance is out of proportion.
     Refused(Invalid),
+}
+
+impl Plan {
+    /// Whether there is no way to the goal, or to a place near enough to it, as far as is known.
+    pub(crate) fn falls_short(&self) -> bool {
+        match self {
+            Self::Blocked { .. } => true,
+            Self::Found(result) => matches!(result.instead_of, Some(Self::Blocked { .. })),
+            _ => false,
+        }
+    }
+
+    /// Whether it is a way that ends nearer to the goal than another plan does.
+    pub(crate) fn ends_nearer(&self, other: &Self, goal: Pose2) -> bool {
+        let off = |plan: &Self| match plan {
+            Self::Found(result) => result.trajectory.end().distance(&goal),
+            _ => f64::INFINITY,
+        };
+        off(self) < off(other)
+    }
 }
 
 /// One sentence.

@@ -1,18 +1,19 @@
 use crate::area::area;
 use crate::body::Body;
+use crate::escape::cells_around;
 use crate::finer::finer;
-use crate::masks::kept_out;
+use crate::masks::{cut, kept_out};
 use crate::movers::{Mover, conflict, delayed, stamp};
 use crate::plan::{Plan, PlanResult};
 use crate::stopwatch::{StageTimes, Stopwatch};
 use crate::task::{Memory, ROOM_CAP, Task};
 use crate::timing::Drive;
 use crate::tour::{Replan, Tour};
-use crate::watch::{Obstruction, still_free};
+use crate::watch::{Exit, Obstruction, deepest, slim, still_free};
 use crate::{DearMask, DistanceField, PlannerConfig, PotentialKind, SpeedMask, UnknownIs, WayPointGraph};
 use trundle_core::{
     DifferentialDrive, DriveLimits, Footprint, GridGeometry, Invalid, OccupancyGrid, Pose2, Trajectory,
-    Twist2, Vector2,
+    Twist2,
 };
 
 /// From a grid, a pose and a goal to way-points, a verified curve and a trajectory.
@@ -27,11 +28,22 @@ pub struct Planner {
     memory: Memory,
     /// Of the last plan.
     field: Option<DistanceField>,
+    /// Of the last plan on cells of half the side.
+    fine: Option<DistanceField>,
     keep_out: Option<OccupancyGrid>,
     speeds: Option<SpeedMask>,
     dear: Option<DearMask>,
     clock: Option<fn() -> f64>,
     times: StageTimes,
+}
+
+/// What is asked of a planner.
+#[derive(Clone, Copy)]
+struct Question<'a> {
+    graph: Option<&'a WayPointGraph>,
+    start: Pose2,
+    twist: Twist2,
+    goal: Pose2,
 }
 
 impl Planner {
@@ -58,6 +70,7 @@ impl Planner {
             drive,
             memory,
             field: None,
+            fine: None,
             keep_out: None,
             speeds: None,
             dear: None,
@@ -200,8 +213,8 @@ impl Planner {
     /// Whether the rest of `trajectory`, from `from` seconds on, is still free on a newer grid, and of the keep-out mask.
     ///
     /// # Errors
-    /// The first moment at which the footprint would touch something. A disc that touches something already may go on as
-    /// long as it gets no nearer.
+    /// The first moment at which the footprint would touch something. One that overlaps something already may go on as long as it
+    /// comes no deeper, and near there only, as a plan would that began there.
     pub fn still_free(
         &self,
         grid: &OccupancyGrid,
@@ -210,7 +223,18 @@ impl Planner {
     ) -> Result<(), Obstruction> {
         let mask = self.keep_out.as_ref().map(|mask| (mask, UnknownIs::Free));
         let layers: Vec<_> = std::iter::once((grid, self.config.unknown)).chain(mask).collect();
-        still_free(&layers, trajectory, from, &self.body)
+        let body = slim(&self.body);
+        still_free(&layers, trajectory, from, &body, |pose| self.exit(grid, pose, &body))
+    }
+
+    /// How a body leaves what it overlaps at a pose, on the grid and the mask as plans see them.
+    fn exit(&self, grid: &OccupancyGrid, pose: Pose2, body: &Body) -> Option<Exit> {
+        let around = cells_around(grid.geometry(), pose.position(), deepest(body), body.radius);
+        let mut around = cut(grid, around);
+        if let Some(mask) = &self.keep_out {
+            around = kept_out(&around, mask, false).ok()?;
+        }
+        Exit::new(&around, self.config.unknown, pose, body)
     }
 
     /// When the robot, `from` seconds into `trajectory` now, first comes nearer to a mover than both allow, s from now; `None` where
@@ -327,11 +351,11 @@ impl Planner {
         };
         let grid = merged.as_ref().unwrap_or(grid);
         self.times = StageTimes::default();
-        let start = Pose2::new(start.x, start.y, start.theta);
-        let goal = Pose2::new(goal.x, goal.y, goal.theta);
-        let mut plan = self.plan_within(grid, graph, (start, twist), goal, 0.0);
+        let wrapped = |pose: Pose2| Pose2::new(pose.x, pose.y, pose.theta);
+        let q = Question { graph, start: wrapped(start), twist, goal: wrapped(goal) };
+        let mut plan = self.plan_within(grid, q, 0.0);
         if matches!(plan, Plan::Blocked { .. }) && self.may_leave() {
-            let wider = self.plan_within(grid, graph, (start, twist), goal, self.config.beyond);
+            let wider = self.plan_within(grid, q, self.config.beyond);
             if !matches!(wider, Plan::Refused(_)) {
                 plan = wider;
             }
@@ -343,25 +367,20 @@ impl Planner {
         self.config.unknown == UnknownIs::Free && self.config.beyond > 0.0
     }
 
-    fn plan_within(
-        &mut self,
-        grid: &OccupancyGrid,
-        graph: Option<&WayPointGraph>,
-        (start, twist): (Pose2, Twist2),
-        goal: Pose2,
-        beyond: f64,
-    ) -> Plan {
-        let geometry = match self.place(grid.geometry(), start.position(), goal.position(), beyond) {
+    fn plan_within(&mut self, grid: &OccupancyGrid, q: Question<'_>, beyond: f64) -> Plan {
+        let geometry = match self.place(grid.geometry(), q, beyond) {
             Ok(geometry) => geometry,
             Err(plan) => return plan,
         };
         let watch = Stopwatch::new(self.clock);
-        let field = watch.time(|times| &mut times.field, || self.known(geometry, grid));
+        let last = self.field.take();
+        let field = watch.time(|times| &mut times.field, || self.known(last, geometry, grid));
         let mut memory = std::mem::take(&mut self.memory);
-        let task = self.task(grid, &field, graph, &watch);
-        let mut plan = task.plan(&mut memory, start, twist, goal);
-        if matches!(plan, Plan::Blocked { .. }) && task.may_be_tight(&mut memory, start, goal) {
-            plan = self.plan_finely(grid, &mut memory, &watch, (start, twist), goal, beyond).unwrap_or(plan);
+        let task = self.task(grid, &field, q.graph, &watch);
+        let mut plan = task.plan(&mut memory, q.start, q.twist, q.goal);
+        if task.may_be_tight(&mut memory, &plan, q.start, q.goal) {
+            let fine = self.plan_finely(grid, q, &mut memory, &watch, beyond);
+            plan = fine.filter(|fine| fine.ends_nearer(&plan, q.goal)).unwrap_or(plan);
         }
         self.memory = memory;
         self.field = Some(field);
@@ -369,30 +388,32 @@ impl Planner {
         plan
     }
 
-    /// On a lattice twice as fine; `None` where there is no way either.
+    /// On a lattice twice as fine; `None` where that would be out of proportion.
     fn plan_finely(
-        &self,
+        &mut self,
         grid: &OccupancyGrid,
+        q: Question<'_>,
         memory: &mut Memory,
         watch: &Stopwatch,
-        (start, twist): (Pose2, Twist2),
-        goal: Pose2,
         beyond: f64,
     ) -> Option<Plan> {
         let fine = finer(grid)?;
-        let geometry = self.place(fine.geometry(), start.position(), goal.position(), beyond).ok()?;
-        let reach = self.reach(geometry.resolution);
-        let field = watch.time(
-            |times| &mut times.field,
-            || DistanceField::over(geometry, &fine, self.config.unknown, reach),
-        );
-        let plan = self.task(&fine, &field, None, watch).plan(memory, start, twist, goal);
-        matches!(plan, Plan::Found(_)).then_some(plan)
+        let geometry = self.place(fine.geometry(), q, beyond).ok()?;
+        let last = self.fine.take();
+        let field = watch.time(|times| &mut times.field, || self.known(last, geometry, &fine));
+        let plan = self.task(&fine, &field, q.graph, watch).plan(memory, q.start, q.twist, q.goal);
+        self.fine = Some(field);
+        Some(plan)
     }
 
     /// The field over `geometry`: the last one, brought up to date, where it lies there.
-    fn known(&mut self, geometry: GridGeometry, grid: &OccupancyGrid) -> DistanceField {
-        match self.field.take() {
+    fn known(
+        &self,
+        last: Option<DistanceField>,
+        geometry: GridGeometry,
+        grid: &OccupancyGrid,
+    ) -> DistanceField {
+        match last {
             Some(mut field) if *field.geometry() == geometry => {
                 field.update(grid);
                 field
@@ -410,13 +431,8 @@ impl Planner {
     }
 
     /// The area to plan in.
-    fn place(
-        &self,
-        grid: &GridGeometry,
-        start: Vector2,
-        goal: Vector2,
-        beyond: f64,
-    ) -> Result<GridGeometry, Plan> {
+    fn place(&self, grid: &GridGeometry, q: Question<'_>, beyond: f64) -> Result<GridGeometry, Plan> {
+        let (start, goal) = (q.start.position(), q.goal.position());
         if !self.may_leave() {
             if grid.cell_at(start).is_none() {
                 return Err(Plan::StartOutside);

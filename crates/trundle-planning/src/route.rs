@@ -123,7 +123,7 @@ pub(crate) fn is_drivable(course: &Course<'_>, curve: &Curve) -> bool {
     smooth
         && samples.iter().all(|sample| {
             let at = sample.pose.position();
-            sample.curvature.abs() <= max_curvature && space.field.keeps(at, space.required(at) - ROUNDING)
+            sample.curvature.abs() <= max_curvature && space.keeps(at, ROUNDING)
         })
         && course.body.is_none_or(|body| sweeps(space, body, &samples))
 }

@@ -1,5 +1,7 @@
 //! Where the robot may be, and what it costs to be there: the one judge that search, field and curve share.
 
+use crate::escape::Escape;
+use crate::geometry::box_gap;
 use crate::masks::DearMask;
 use crate::{DistanceField, RoomConfig};
 use trundle_core::{Cell, OccupancyGrid, Vector2};
@@ -22,6 +24,7 @@ pub(crate) struct Space<'a> {
     /// Radius of the disc that must stay free, m.
     pub(crate) radius: f64,
     grid: &'a OccupancyGrid,
+    /// Around a start with less room than the radius.
     escape: Option<Escape>,
     surely: f64,
     /// Prices of a unit of way by clearance, in 1/256, falling; each is that of the least clearance it stands for.
@@ -37,13 +40,6 @@ pub(crate) struct Space<'a> {
     shift: Option<(i64, i64)>,
 }
 
-/// A robot that stands nearer to an obstacle than its radius may leave, without getting any nearer.
-struct Escape {
-    start: Vector2,
-    zone: f64,
-    radius: f64,
-}
-
 impl<'a> Space<'a> {
     /// The space of a disc of `radius` m. When `start` has less room than that, its room is enough around it.
     pub(crate) fn new(
@@ -55,11 +51,8 @@ impl<'a> Space<'a> {
     ) -> Self {
         let at_start = field.clearance(start, radius);
         let missing = radius - at_start;
-        let escape = (missing > ROUNDING).then(|| Escape {
-            start,
-            zone: missing + 3.0 * field.geometry().resolution,
-            radius: at_start,
-        });
+        let resolution = field.geometry().resolution;
+        let escape = (missing > ROUNDING).then(|| Escape::new(start, missing, resolution));
         let offset = (field.geometry().origin - grid.geometry().origin) / grid.geometry().resolution;
         let least = if missing > ROUNDING { at_start } else { radius };
         let look = (8.0 * least * DIP).sqrt().max(1e-3).min(LOOK * field.geometry().resolution);
@@ -89,31 +82,38 @@ impl<'a> Space<'a> {
         Self { dear, ..self }
     }
 
+    /// The same for a robot that is this disc: leaving `start`, it keeps its radius from all that it is not too near to there.
+    pub(crate) fn keeping_off_the_rest(self, start: Vector2) -> Self {
+        let (radius, half) = (self.radius, self.field.geometry().resolution / 2.0);
+        let gap = |centre| (box_gap(start, centre, half).norm() - radius).max(0.0);
+        let escape = self.escape.map(|escape| escape.keeping_off_the_rest(self.field, radius, gap));
+        Self { escape, ..self }
+    }
+
     /// What a metre at a point costs for the mask alone.
     fn mask_density(&self, point: Vector2) -> f64 {
         self.dear.map_or(0.0, |mask| mask.share(point) * self.room.mask_weight)
     }
 
-    /// The distance that must be kept at a point, m: the radius, less only around a start that has less.
-    pub(crate) fn required(&self, point: Vector2) -> f64 {
-        match &self.escape {
-            Some(escape) if (point - escape.start).norm() <= escape.zone => escape.radius,
-            _ => self.radius,
-        }
-    }
-
     /// Whether the robot may stand at a point.
     pub(crate) fn is_free(&self, point: Vector2) -> bool {
-        self.field.keeps(point, self.required(point))
+        self.keeps(point, 0.0)
+    }
+
+    /// Whether the room at a point is at most `short` m less than what must be kept there: the radius, less only around a start that
+    /// has less.
+    pub(crate) fn keeps(&self, point: Vector2, short: f64) -> bool {
+        let escape = self.escape.as_ref().filter(|escape| escape.covers(point));
+        let Some(escape) = escape else { return self.field.keeps(point, self.radius - short) };
+        self.field.keeps(point, self.radius - escape.depth - short)
+            && escape.others().is_none_or(|others| others.keeps(point, self.radius - short))
     }
 
     /// Whether the robot may stand at the centre of a cell.
     pub(crate) fn is_free_cell(&self, linear: usize) -> bool {
         let distance = self.field.at_linear(linear);
-        if distance >= self.radius - ROUNDING {
-            return true;
-        }
-        self.escape.is_some() && distance > 0.0 && distance >= self.required(self.center(linear)) - ROUNDING
+        distance >= self.radius - ROUNDING
+            || (self.escape.is_some() && distance > 0.0 && self.is_free(self.center(linear)))
     }
 
     /// Whether the straight move between neighbouring free cells `length` m apart stays free.
@@ -132,12 +132,10 @@ impl<'a> Space<'a> {
         let mut at = 0.0;
         while at < length {
             let point = a + (b - a) * (at / length);
-            let required = self.required(point);
-            let room = self.field.distance(point) - self.surely - required;
-            if room < 0.0 && !self.field.keeps(point, required) {
+            let room = self.field.distance(point) - self.surely - self.radius;
+            if room < 0.0 && !self.is_free(point) {
                 return false;
             }
-            let room = if self.escape.is_some() { room.min(0.0) } else { room };
             at += room.max(look);
         }
         self.is_free(b)

@@ -10,7 +10,7 @@ use crate::route::{Course, Phase, is_drivable, route, turn};
 use crate::space::Space;
 use crate::stopwatch::Stopwatch;
 use crate::timing::{Drive, can_follow, trajectory};
-use crate::wave::WaveFront;
+use crate::wave::{Wave, WaveFront};
 use crate::way::Way;
 use crate::{Curve, DistanceField, PlannerConfig};
 use trundle_core::{OccupancyGrid, Path, Pose2, Trajectory, Twist2, Vector2};
@@ -61,8 +61,7 @@ impl Task<'_> {
     fn plan_out(&self, memory: &mut Memory, start: Pose2, twist: Twist2, goal: Pose2) -> Plan {
         let escape = self.config.room.escape;
         let depth = self.body.overlap(self.field, start, escape.max(DEEPEST));
-        let resolution = self.field.geometry().resolution;
-        let leaving = self.body.leaving(start.position(), depth, resolution).filter(|_| depth <= escape);
+        let leaving = (depth <= escape).then(|| self.body.leaving(self.field, start, depth)).flatten();
         match leaving {
             Some(body) if body.gap(self.field, start, 1e-3) > 0.0 => {
                 Task { body: &body, ..*self }.plan_somehow(memory, start, twist, goal)
@@ -94,7 +93,8 @@ impl Task<'_> {
     }
 
     pub(crate) fn space(&self, radius: f64, start: Vector2) -> Space<'_> {
-        Space::new(self.field, self.grid, self.config.room, radius, start).with_dear(self.dear)
+        let space = Space::new(self.field, self.grid, self.config.room, radius, start).with_dear(self.dear);
+        if self.body.is_disc() { space.keeping_off_the_rest(start) } else { space }
     }
 
     pub(crate) fn course<'b>(&'b self, space: &'b Space<'b>) -> Course<'b> {
@@ -171,18 +171,25 @@ impl Task<'_> {
         }
     }
 
-    /// Whether a way that the lattice does not see may lead from a free start to a free goal: every point of one lies within half a
-    /// cell's diagonal of a centre, which has so much less room at least.
-    pub(crate) fn may_be_tight(&self, memory: &mut Memory, start: Pose2, goal: Pose2) -> bool {
-        let radius = self.body.radius;
-        let off = self.field.geometry().resolution * std::f64::consts::FRAC_1_SQRT_2;
-        let less = (radius - off).max(LEAST_RADIUS);
-        let (start, goal) = (start.position(), goal.position());
-        if !self.body.is_disc() || self.graph.is_some() || !self.field.keeps(goal, radius) {
+    /// Whether a way that the lattice does not see may lead to the goal, or near enough to one that does not fit: every point of one
+    /// lies within half a cell's diagonal of a centre, which has so much less room at least. Of discs; also along a graph, whose
+    /// ways are ways.
+    pub(crate) fn may_be_tight(&self, memory: &mut Memory, plan: &Plan, start: Pose2, goal: Pose2) -> bool {
+        if !self.body.is_disc() || !plan.falls_short() {
             return false;
         }
+        let off = self.field.geometry().resolution * std::f64::consts::FRAC_1_SQRT_2;
+        let less = (self.body.radius - off).max(LEAST_RADIUS);
+        let (start, goal) = (start.position(), goal.position());
         let space = Space::new(self.field, self.grid, self.config.room, less, start);
-        matches!(memory.wave.run(&space, start, goal), crate::wave::Wave::Met(_))
+        match memory.wave.run(&space, start, goal) {
+            Wave::Met(_) => true,
+            Wave::Stuck(nearest) => {
+                let (tolerance, is_blocked) =
+                    (self.config.goal_tolerance, matches!(plan, Plan::Blocked { .. }));
+                is_blocked && tolerance > 0.0 && (nearest - goal).norm() <= tolerance + off
+            }
+        }
     }
 
     /// Whether the outline touches nothing.
@@ -314,6 +321,9 @@ impl Task<'_> {
     fn least_room(&self, trajectory: &Trajectory) -> f64 {
         let radius = self.body.radius;
         let surely = self.field.overestimate(radius);
+        if self.body.depth() > 0.0 {
+            return -self.body.depth();
+        }
         trajectory.points().iter().fold(ROOM_CAP, |least, point| {
             let at = point.pose.position();
             if self.field.distance(at) - surely - radius > least {

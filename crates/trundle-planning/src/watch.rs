@@ -1,8 +1,9 @@
 //! Whether a plan made on an older map still holds.
 
-use crate::UnknownIs;
 use crate::body::{Body, outline_to_square};
 use crate::geometry::box_gap;
+use crate::outline::DEEPEST;
+use crate::{DistanceField, UnknownIs};
 use thiserror::Error;
 use trundle_core::{Cell, OccupancyGrid, Pose2, Trajectory, Vector2};
 
@@ -24,65 +25,69 @@ const SPACING: f64 = 0.01;
 /// A grid, and what its unknown cells count as.
 pub(crate) type Layer<'a> = (&'a OccupancyGrid, UnknownIs);
 
-/// A disc may miss so much room: rounding of the curve, m.
+/// A disc is looked at so much smaller, m: rounding of the curve.
 const SLACK: f64 = 2e-4;
 /// An outline is looked at so much smaller, m: what a sweep may have missed.
 const MISSED: f64 = 5e-4;
-/// How deep an outline may overlap what it leaves, m: tried one after the other.
-const DEPTHS: [f64; 6] = [0.01, 0.02, 0.03, 0.04, 0.05, 0.065];
-/// How far from where it stands a robot that already has less room may have no more, m, beside the room that is missing.
-const ZONE: f64 = 0.2;
 
-/// Checks a trajectory from `from` seconds on, against every layer. A robot that already has less room may go on as long as it
-/// gets no nearer, until it has left.
+/// The body as a plan under way is watched with: what a plan may have missed is no obstruction.
+pub(crate) fn slim(body: &Body) -> Body {
+    body.shrunk(if body.is_disc() { SLACK } else { MISSED }).unwrap_or_else(|| body.clone())
+}
+
+/// A robot that overlaps something where it stands, and everything around it.
+pub(crate) struct Exit {
+    pub(crate) field: DistanceField,
+    pub(crate) body: Body,
+}
+
+impl Exit {
+    /// Of a body at a pose, in a grid of the cells around it; `None` where its middle is inside something.
+    pub(crate) fn new(around: &OccupancyGrid, unknown: UnknownIs, pose: Pose2, body: &Body) -> Option<Self> {
+        let reach = body.radius + 4.0 * around.geometry().resolution;
+        let field = DistanceField::up_to(reach, around, unknown);
+        let depth = body.overlap(&field, pose, deepest(body));
+        let body = body.leaving(&field, pose, depth + SLACK)?;
+        (body.gap(&field, pose, SLACK) > 0.0).then_some(Self { field, body })
+    }
+}
+
+/// How far inside something a body may be and still leave it, m.
+pub(crate) fn deepest(body: &Body) -> f64 {
+    if body.is_disc() { body.radius } else { DEEPEST }
+}
+
+/// Checks a trajectory of a [`slim`] body from `from` seconds on, against every layer. Where it overlaps something at once,
+/// `exit` says what, and it may go on as long as it comes no deeper, until it has left.
 pub(crate) fn still_free(
     layers: &[Layer<'_>],
     trajectory: &Trajectory,
     from: f64,
     body: &Body,
+    exit: impl FnOnce(Pose2) -> Option<Exit>,
 ) -> Result<(), Obstruction> {
-    let slim = body.shrunk(MISSED);
-    let body = slim.as_ref().unwrap_or(body);
-    let mut last = trajectory.at(from);
     let room = |pose| layers.iter().map(|layer| room(*layer, pose, body)).fold(body.needs(), f64::min);
-    let (here, now) = (last.pose, room(last.pose));
-    let slack = if body.is_disc() { SLACK } else { body.needs() - 1e-9 };
-    let is_leaving = |pose: &Pose2| now < body.needs() && pose.distance(&here) <= body.needs() - now + ZONE;
-    let within = |pose, body: &Body| {
-        layers.iter().map(|layer| self::room(*layer, pose, body)).fold(body.needs(), f64::min)
-    };
-    // An outline that overlaps something may leave it no deeper than it is.
-    let overlaps = !body.is_disc() && now <= 0.0;
-    let inner = DEPTHS.iter().filter(|_| overlaps).filter_map(|depth| body.shrunk(*depth));
-    let inner = inner.into_iter().find(|inner| within(here, inner) > 0.0);
-    if overlaps && inner.is_none() {
-        return Err(Obstruction { time: from, pose: here, clearance: -DEPTHS[DEPTHS.len() - 1] });
+    let required = if body.is_disc() { body.needs() } else { f64::MIN_POSITIVE };
+    let obstruction = |time, pose| Obstruction { time, pose, clearance: room(pose).max(0.0) - body.needs() };
+    let mut last = trajectory.at(from);
+    let is_inside = room(last.pose) < required;
+    let exit = if is_inside { exit(last.pose) } else { None };
+    if is_inside && exit.is_none() {
+        return Err(obstruction(from, last.pose));
     }
-    let leaving_room = |pose| match &inner {
-        Some(inner) if within(pose, inner) > 0.0 => now,
-        Some(_) => f64::NEG_INFINITY,
-        None => room(pose),
+    let is_free = |pose| match &exit {
+        Some(exit) if exit.body.is_leaving(pose) => exit.body.gap(&exit.field, pose, SLACK) > 0.0,
+        _ => room(pose) >= required,
     };
     for point in trajectory.points().iter().filter(|point| point.time > from) {
         let turn = trundle_core::difference_of_angles(point.pose.theta, last.pose.theta);
         let turned = if body.is_disc() { 0.0 } else { body.radius * turn.abs() };
-        let way = point.pose.distance(&last.pose) + turned;
-        if way == 0.0 {
-            last = *point;
-            continue;
-        }
-        let steps = (way / SPACING).ceil();
+        let steps = ((point.pose.distance(&last.pose) + turned) / SPACING).ceil();
         for k in 1..=steps as usize {
             let share = k as f64 / steps;
             let pose = last.pose.interpolate(&point.pose, share);
-            let (distance, required) = if is_leaving(&pose) {
-                (leaving_room(pose), now - 1e-6)
-            } else {
-                (room(pose), body.needs() - slack)
-            };
-            if distance < required {
-                let time = last.time + (point.time - last.time) * share;
-                return Err(Obstruction { time, pose, clearance: distance.max(0.0) - body.needs() });
+            if !is_free(pose) {
+                return Err(obstruction(last.time + (point.time - last.time) * share, pose));
             }
         }
         last = *point;
@@ -135,10 +140,13 @@ mod tests {
             twist: Twist2::new(1.0, 0.0),
         };
         let trajectory = Trajectory::new(vec![at(0.0), at(1.5), at(3.0)]).unwrap();
-        assert!(still_free(&[(&grid, UnknownIs::Free)], &trajectory, 0.0, &disc).is_ok());
+        let check = |grid: &OccupancyGrid, from| {
+            still_free(&[(grid, UnknownIs::Free)], &trajectory, from, &disc, |_| None)
+        };
+        assert!(check(&grid, 0.0).is_ok());
         grid.set(trundle_core::CellIndex { col: 20, row: 5 }, Cell::Occupied);
-        let hit = still_free(&[(&grid, UnknownIs::Free)], &trajectory, 0.0, &disc).unwrap_err();
+        let hit = check(&grid, 0.0).unwrap_err();
         assert!((hit.pose.x - 1.8).abs() < 0.02 && (hit.time - 1.3).abs() < 0.02, "{hit}");
-        assert!(still_free(&[(&grid, UnknownIs::Free)], &trajectory, 1.9, &disc).is_ok());
+        assert!(check(&grid, 1.9).is_ok());
     }
 }

@@ -57,6 +57,13 @@ impl DistanceField {
         self.unknown == UnknownIs::Obstacle
     }
 
+    /// Whether the cell in this column and row of the lattice is an obstacle, inside the grid or outside.
+    pub(crate) fn blocks_at(&self, col: i64, row: i64) -> bool {
+        let (width, height) = (self.geometry.width as i64, self.geometry.height as i64);
+        let inside = (0..width).contains(&col) && (0..height).contains(&row);
+        if inside { self.distance[(row * width + col) as usize] == 0.0 } else { self.is_walled() }
+    }
+
     /// Visits the centres of obstacle cells that lie in the box (`low`, `high`) and have a free neighbour: the nearest
     /// square to anything free is one of them.
     pub(crate) fn for_obstacle_rims_in(&self, low: Vector2, high: Vector2, mut visit: impl FnMut(Vector2)) {

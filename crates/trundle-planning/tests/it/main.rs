@@ -8,6 +8,7 @@ mod bad_input;
 mod curvature;
 mod discovery;
 mod errands;
+mod escape;
 mod footprints;
 mod laws;
 mod maps;

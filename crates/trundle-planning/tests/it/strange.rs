@@ -1,8 +1,10 @@
 //! Maps of every kind: mazes, spirals, slanted walls, crumbs; fine and coarse, far from the origin, tiny, unknown at the border.
 
-use crate::support::{at_home, found, judge, planner};
-use trundle_core::{Cell, CellIndex, GridGeometry, OccupancyGrid, Pose2, Twist2, Vector2};
-use trundle_planning::{DistanceField, Plan, PlannerConfig, UnknownIs};
+use crate::support::{LIMITS, at_home, found, judge, planner};
+use trundle_core::{
+    Cell, CellIndex, DifferentialDrive, Footprint, GridGeometry, OccupancyGrid, Pose2, Twist2, Vector2,
+};
+use trundle_planning::{DistanceField, Plan, Planner, PlannerConfig, UnknownIs, WayPointGraph};
 
 struct Dice(u64);
 
@@ -216,4 +218,75 @@ fn the_tiniest_and_the_thinnest_maps_have_answers() {
             }
         }
     }
+}
+
+/// A hall with a wall across, and a gap of so many cells in it.
+fn gap(wide: usize) -> (OccupancyGrid, Pose2, Pose2) {
+    let geometry = GridGeometry::new(0.1, Vector2::zeros(), 60, 30).unwrap();
+    let mut grid = OccupancyGrid::filled(geometry, Cell::Free);
+    let wall = (0..30).filter(|row| !(14..14 + wide).contains(row));
+    wall.for_each(|row| (28..32).for_each(|col| grid.set(CellIndex { col, row }, Cell::Occupied)));
+    (grid, Pose2::new(1.0, 1.0, 0.0), Pose2::new(5.0, 2.0, 0.5))
+}
+
+/// The finer lattice is tried for discs whatever is asked: with a tolerance, for a goal that does not fit, and along a graph.
+#[test]
+fn a_tight_gap_is_passed_whatever_else_is_allowed() {
+    let (mut grid, start, goal) = gap(4);
+    let radius = 0.17;
+    let near = PlannerConfig { goal_tolerance: 6.0, ..at_home() };
+    let plan = found(planner(near, radius).plan(&grid, start, Twist2::ZERO, goal));
+    assert_eq!(plan.instead_of, None);
+    judge(&grid, &plan, start, goal, radius);
+    let at = |x: f64, y: f64| Vector2::new(x, y);
+    let graph = WayPointGraph::new(vec![at(1.5, 0.5), at(4.5, 2.5)], vec![]).unwrap();
+    let along = WayPointGraph::new(vec![at(4.0, 1.0), at(5.0, 1.0)], vec![(0, 1)]).unwrap();
+    let plan = planner(at_home(), radius).plan_on_graph(&grid, &graph, start, Twist2::ZERO, goal);
+    judge(&grid, &found(plan), start, goal, radius);
+    let plan = found(planner(at_home(), radius).plan_on_graph(&grid, &along, start, Twist2::ZERO, goal));
+    judge(&grid, &plan, start, goal, radius);
+    assert!(plan.way_points.points().contains(&at(4.0, 1.0)));
+    (48..52).for_each(|col| grid.set(CellIndex { col, row: 20 }, Cell::Occupied));
+    let some = PlannerConfig { goal_tolerance: 0.6, ..at_home() };
+    let plan = found(planner(some, radius).plan(&grid, start, Twist2::ZERO, goal));
+    assert!(plan.trajectory.end().distance(&goal) < 0.4, "{:?}", plan.trajectory.end());
+    assert!(matches!(plan.instead_of, Some(Plan::GoalInObstacle { .. })), "{:?}", plan.instead_of);
+}
+
+/// The fields of both lattices are kept and brought up to date: the same bytes as from a new planner.
+#[test]
+fn the_finer_field_follows_the_map() {
+    let (mut grid, start, goal) = gap(4);
+    let mut kept = planner(at_home(), 0.17);
+    for row in [2, 5, 18] {
+        (14..18).for_each(|col| grid.set(CellIndex { col, row }, Cell::Occupied));
+        let plan = kept.plan(&grid, start, Twist2::ZERO, goal);
+        assert_eq!(plan, planner(at_home(), 0.17).plan(&grid, start, Twist2::ZERO, goal));
+        judge(&grid, &found(plan), start, goal, 0.17);
+    }
+}
+
+/// What docs/algorithms/planning.md says of outlines: their lattice is that of the cells. Where a centre of a cell leads through a
+/// gap they pass it, flush or not; where none does, only straight ahead of the start or straight into the goal.
+#[test]
+fn an_outline_passes_what_its_lattice_passes() {
+    let cart = |half: f64| {
+        let corners =
+            [(0.3, half), (-0.1, half), (-0.1, -half), (0.3, -half)].map(|(x, y)| Vector2::new(x, y));
+        let footprint = Footprint::polygon(corners.to_vec()).unwrap();
+        Planner::new(at_home(), &footprint, LIMITS, DifferentialDrive::KOBUKI).unwrap()
+    };
+    let (odd, start, goal) = gap(3);
+    for half in [0.1, 0.14, 0.15] {
+        let plan = found(cart(half).plan(&odd, start, Twist2::ZERO, goal));
+        assert!(plan.trajectory.end().distance(&goal) < 1.1e-3);
+    }
+    let plan = cart(0.151).plan(&odd, start, Twist2::ZERO, goal);
+    assert!(matches!(plan, Plan::Blocked { nearest } if nearest.x < 2.9), "{plan}");
+    let (even, ..) = gap(4);
+    found(cart(0.15).plan(&even, start, Twist2::ZERO, goal));
+    let plan = cart(0.19).plan(&even, start, Twist2::ZERO, goal);
+    assert!(matches!(plan, Plan::Blocked { .. }), "no centre leads through: {plan}");
+    let before = Pose2::new(1.0, 1.6, 0.0);
+    found(cart(0.19).plan(&even, before, Twist2::ZERO, Pose2::new(5.0, 1.6, 0.0)));
 }
