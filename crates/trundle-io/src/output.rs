@@ -15,6 +15,8 @@ pub struct OutputFolder {
     scratch: TempDir,
     /// Folders above the target that did not exist before, the innermost first.
     made: Vec<PathBuf>,
+    /// Files that do not survive the commit unless they are written anew.
+    outdated: Vec<String>,
 }
 
 /// The folder in the temporary one that becomes the target.
@@ -44,7 +46,13 @@ impl OutputFolder {
             remove_empty(&mut made);
             IoError::system(target, "create")(error)
         })?;
-        Ok(Self { target: target.to_owned(), scratch, made })
+        Ok(Self { target: target.to_owned(), scratch, made, outdated: vec![] })
+    }
+
+    /// The same; the commit removes files of these names of an earlier run, unless they are written anew.
+    pub fn instead_of(mut self, names: &[&str]) -> Self {
+        self.outdated = names.iter().map(|name| (*name).to_owned()).collect();
+        self
     }
 
     /// Where the results will be.
@@ -85,6 +93,9 @@ impl OutputFolder {
     pub fn commit(mut self) -> Result<PathBuf, IoError> {
         self.made.clear();
         if self.target.is_dir() {
+            for name in self.outdated.iter().filter(|name| !self.staged(name).exists()) {
+                remove_file(&self.target.join(name))?;
+            }
             move_files(&self.stage(), &self.target)?;
         } else {
             fs::rename(self.stage(), &self.target).map_err(IoError::system(&self.target, "create"))?;
@@ -112,6 +123,15 @@ fn parent(path: &Path) -> &Path {
 fn missing_above(dir: &Path) -> Vec<PathBuf> {
     let missing = dir.ancestors().take_while(|dir| !dir.as_os_str().is_empty() && !dir.exists());
     missing.map(Path::to_owned).collect()
+}
+
+fn remove_file(path: &Path) -> Result<(), IoError> {
+    match fs::remove_file(path) {
+        Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
+            Err(IoError::system(path, "remove")(error))
+        }
+        _ => Ok(()),
+    }
 }
 
 fn remove_empty(made: &mut Vec<PathBuf>) {
@@ -187,6 +207,20 @@ mod tests {
         assert_eq!(fs::read(dir.path().join("map")).unwrap(), b"new");
         assert_eq!(names(dir.path()), ["keep", "map", "sub"]);
         assert_eq!(names(&dir.path().join("sub")), ["keep", "map"]);
+    }
+
+    #[test]
+    fn what_is_outdated_goes_with_the_commit_and_not_before() {
+        let dir = tempfile::tempdir().unwrap();
+        ["old", "new", "mine"].iter().for_each(|name| fs::write(dir.path().join(name), "1").unwrap());
+        let begin = || OutputFolder::create(dir.path()).unwrap().instead_of(&["old", "new", "never"]);
+        drop(begin());
+        assert_eq!(names(dir.path()), ["mine", "new", "old"]);
+        let out = begin();
+        out.write("new", b"2").unwrap();
+        out.commit().unwrap();
+        assert_eq!(names(dir.path()), ["mine", "new"]);
+        assert_eq!(fs::read(dir.path().join("new")).unwrap(), b"2");
     }
 
     #[test]

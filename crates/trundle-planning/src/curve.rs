@@ -24,7 +24,7 @@ pub struct ActiveRow {
     pub control: usize,
     /// Which side of the piece's corridor.
     pub plane: usize,
-    /// The Lagrange multiplier: by how much the objective falls for a metre of room.
+    /// The Lagrange multiplier, m^2: by how much the objective (m^3) falls for a metre of room.
     pub multiplier: f64,
 }
 

@@ -3,6 +3,9 @@ use crate::route::Phase;
 use std::fmt;
 use trundle_core::{Invalid, Path, Pose2, Trajectory, Vector2};
 
+/// Room beside the robot is measured up to here, m: what is further away makes no difference.
+pub const ROOM_CAP: f64 = 1.0;
+
 /// What became of a question for a way.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Plan {
@@ -57,11 +60,12 @@ impl fmt::Display for Plan {
         match self {
             Self::Found(result) => {
                 let (length, time) = (result.length, result.trajectory.duration());
-                write!(
-                    f,
-                    "a way of {length:.2} m in {time:.1} s, {:.3} m beside obstacles",
-                    result.min_clearance
-                )
+                let room = if result.min_clearance < ROOM_CAP {
+                    format!("{:.3} m", result.min_clearance)
+                } else {
+                    format!("{ROOM_CAP} m or more")
+                };
+                write!(f, "a way of {length:.2} m in {time:.1} s, {room} beside obstacles")
             }
             Self::Blocked { nearest } => {
                 write!(
@@ -97,7 +101,8 @@ pub struct PlanResult {
     pub trajectory: Trajectory,
     /// Length of all curves, m.
     pub length: f64,
-    /// Least room beside the footprint along the trajectory, m; capped at 1 m.
+    /// Least room beside the footprint along the trajectory, m; at most [`ROOM_CAP`]. Negative: how deep it is inside what it
+    /// leaves.
     pub min_clearance: f64,
     /// Whether the printed potential was trapped and the geodesic one took over.
     pub fell_back: bool,

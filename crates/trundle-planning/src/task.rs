@@ -5,7 +5,7 @@ use crate::graph::WayPointGraph;
 use crate::maneuver::Maneuver;
 use crate::masks::{DearMask, SpeedMask, is_unseen};
 use crate::outline::DEEPEST;
-use crate::plan::{Plan, PlanResult};
+use crate::plan::{Plan, PlanResult, ROOM_CAP};
 use crate::route::{Course, Phase, is_drivable, route, turn};
 use crate::space::Space;
 use crate::stopwatch::Stopwatch;
@@ -19,8 +19,6 @@ use trundle_core::{OccupancyGrid, Path, Pose2, Trajectory, Twist2, Vector2};
 pub(crate) const SAME_PLACE: f64 = 1e-3;
 /// Speeds below this count as standing, m/s.
 pub(crate) const STANDING: f64 = 0.01;
-/// Beyond this nobody cares how much room there is, m.
-pub(crate) const ROOM_CAP: f64 = 1.0;
 /// The least radius that a search counts with, m: an axle outside the outline has no room of its own.
 pub(crate) const LEAST_RADIUS: f64 = 0.01;
 

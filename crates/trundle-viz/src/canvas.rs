@@ -185,9 +185,8 @@ fn paint(color: Color) -> Paint<'static> {
     paint
 }
 
-#[cfg(test)]
 impl Canvas {
-    /// The colour of a pixel, for tests.
+    /// The colour of a pixel inside the picture.
     pub(crate) fn at(&self, x: i64, y: i64) -> [u8; 3] {
         let at = ((y * self.width() + x) * 4) as usize;
         let pixel = &self.pixels.data()[at..at + 3];

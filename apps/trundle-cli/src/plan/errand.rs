@@ -36,6 +36,39 @@ pub struct Errand {
     /// For pictures: 1 less the share of the full speed.
     pub slow: Option<MaskShares>,
     graph: Option<WayPointGraph>,
+    /// A planner that knows no keep-out mask: asked what that changes.
+    unmasked: Planner,
+}
+
+/// A part of an errand that has no plan: where it leads, and why not.
+#[derive(Debug)]
+pub struct Refusal {
+    /// The goal's number, from 0.
+    pub goal: usize,
+    pub why: Plan,
+}
+
+/// A goal that another place was taken for.
+pub struct Moved {
+    pub goal: usize,
+    /// Where the robot stops instead.
+    pub to: Pose2,
+    /// How far that is from the goal, m.
+    pub off: f64,
+    pub why: String,
+}
+
+impl Moved {
+    /// One sentence.
+    pub fn note(&self) -> String {
+        let Self { goal, to, off, why } = self;
+        format!(
+            "goal {} moved to ({:.2}, {:.2}) m, {off:.2} m from the one asked for: {why}",
+            goal + 1,
+            to.x,
+            to.y
+        )
+    }
 }
 
 impl Errand {
@@ -56,40 +89,84 @@ impl Errand {
         let full = robot.limits.v;
         let slow =
             args.speed_mask.as_deref().map(|path| slow(path, full, &grid, &mut planner)).transpose()?;
-        Ok(Self { grid, footprint, planner, start, goals, keep_out, slow, graph })
+        let unmasked = Planner::new(config, &footprint, robot.limits, robot.drive)?;
+        Ok(Self { grid, footprint, planner, start, goals, keep_out, slow, graph, unmasked })
     }
 
-    /// The plan through all goals, or in one sentence why there is none.
-    pub fn plan(&mut self, map: &Path) -> Result<Tour, Failure> {
+    /// The plan through all goals, or which of them has none.
+    pub fn plan(&mut self) -> Result<Tour, Refusal> {
         let goals: Vec<Pose2> = self.goals.iter().map(|goal| goal.pose).collect();
         let (start, grid) = (self.start.pose, &self.grid);
         let tour = match &self.graph {
             Some(graph) => self.planner.plan_tour_on_graph(grid, graph, start, Twist2::ZERO, &goals),
             None => self.planner.plan_tour(grid, start, Twist2::ZERO, &goals),
         };
-        tour.map_err(|(i, why)| Failure::Input(format!("{}: {}: {why}", map.display(), self.leg(i, &why))))
+        tour.map_err(|(goal, why)| Refusal { goal, why })
     }
 
     /// Of each goal that another place was taken for: how far off that is, and why.
-    pub fn goals_moved(&self, tour: &Tour) -> Vec<(usize, f64, String)> {
-        let moved = tour.legs.iter().zip(&self.goals).enumerate().filter_map(|(i, (leg, goal))| {
-            let why = match leg.instead_of.as_ref()? {
+    pub fn goals_moved(&mut self, tour: &Tour) -> Vec<Moved> {
+        let mut found = Vec::new();
+        for (goal, leg) in tour.legs.iter().enumerate() {
+            let Some(instead_of) = &leg.instead_of else { continue };
+            let why = match instead_of {
                 Plan::Blocked { .. } => "no way leads there".to_owned(),
                 refusal => refusal.to_string(),
             };
-            Some((i, leg.trajectory.end().distance(&goal.pose), why))
-        });
-        moved.collect()
+            let from = leg.trajectory.points()[0].pose;
+            let why = format!("{why}{}", self.without_the_mask(instead_of, from, goal));
+            let to = leg.trajectory.end();
+            found.push(Moved { goal, to, off: to.distance(&self.goals[goal].pose), why });
+        }
+        found
     }
 
-    /// Which part of the errand has no plan.
-    fn leg(&self, i: usize, why: &Plan) -> String {
-        let from = if i == 0 { &self.start } else { &self.goals[i - 1] };
-        let whole = format!("from {} to {}", from.describe(), self.goals[i].describe());
-        let whole = if self.goals.len() > 1 { format!("goal {}, {whole}", i + 1) } else { whole };
+    /// Where the part of an errand that has no plan begins, and where it leads.
+    pub fn ends(&self, refusal: &Refusal) -> (Pose2, Pose2) {
+        (self.before(refusal.goal).pose, self.goals[refusal.goal].pose)
+    }
+
+    fn before(&self, goal: usize) -> &Place {
+        if goal == 0 { &self.start } else { &self.goals[goal - 1] }
+    }
+
+    /// One sentence: which part of the errand has no plan, and why.
+    pub fn explain(&mut self, refusal: &Refusal) -> String {
+        let Refusal { goal, why } = refusal;
+        let from = self.before(*goal);
+        let mut whole = format!("from {} to {}", from.describe(), self.goals[*goal].describe());
+        if self.goals.len() > 1 {
+            whole = format!("goal {}, {whole}", goal + 1);
+        }
+        if matches!(why, Plan::Blocked { .. }) && self.graph.is_some() {
+            whole = format!("{whole} along the graph");
+        }
+        let pose = from.pose;
+        format!("{whole}: {why}{}", self.without_the_mask(why, pose, *goal))
+    }
+
+    /// What a refusal has to do with the keep-out mask; nothing where it would be the same without.
+    fn without_the_mask(&mut self, why: &Plan, from: Pose2, goal: usize) -> &'static str {
+        if self.keep_out.is_none() {
+            return "";
+        }
+        let goal = self.goals[goal].pose;
+        let bare = match &self.graph {
+            Some(graph) => self.unmasked.plan_on_graph(&self.grid, graph, from, Twist2::ZERO, goal),
+            None => self.unmasked.plan(&self.grid, from, Twist2::ZERO, goal),
+        };
+        let same = |of: fn(&Plan) -> bool| of(why) && of(&bare);
         match why {
-            Plan::Blocked { .. } if self.graph.is_some() => format!("{whole} along the graph"),
-            _ => whole,
+            Plan::StartInObstacle { .. } if !same(|plan| matches!(plan, Plan::StartInObstacle { .. })) => {
+                "; it would without the keep-out mask"
+            }
+            Plan::GoalInObstacle { .. } if !same(|plan| matches!(plan, Plan::GoalInObstacle { .. })) => {
+                "; it would without the keep-out mask"
+            }
+            Plan::Blocked { .. } if matches!(bare, Plan::Found(_)) => {
+                "; without the keep-out mask there is one"
+            }
+            _ => "",
         }
     }
 }

@@ -1,11 +1,13 @@
 //! The plan in pictures.
 
-use super::errand::Errand;
-use super::table::{curves, notes, points, rows};
+use super::Spent;
+use super::errand::{Errand, Moved, Refusal};
+use super::table::{curves, points, rows};
 use trundle::core::{DriveLimits, Pose2, Vector2};
-use trundle::planning::{HalfPlane, StageTimes, Tour};
+use trundle::planning::{HalfPlane, Plan, Tour};
 use trundle::viz::{
-    Figure, PlanParts, PlanScene, Report, Table, plan_part_pictures, plan_picture, speed_charts,
+    Figure, PlanParts, PlanScene, Report, Table, no_plan_picture, plan_part_pictures, plan_picture,
+    speed_charts,
 };
 
 /// `plan.png`, `field.png`, `corridors.png` and the page that holds them and the speeds.
@@ -17,7 +19,7 @@ pub struct Pictures {
 }
 
 /// Draws everything.
-pub fn draw(errand: &Errand, tour: &Tour, limits: DriveLimits, seconds: f64, stages: StageTimes) -> Pictures {
+pub fn draw(errand: &Errand, tour: &Tour, limits: DriveLimits, moved: &[Moved], spent: Spent) -> Pictures {
     let join = |of: fn(&trundle::planning::PlanResult) -> &[Vector2]| -> Vec<Vector2> {
         tour.legs.iter().flat_map(|leg| of(leg).iter().copied()).collect()
     };
@@ -48,10 +50,31 @@ pub fn draw(errand: &Errand, tour: &Tour, limits: DriveLimits, seconds: f64, sta
     let parts = PlanParts { geometry, distances: &distances, corridors: &corridors, active: &active };
     let [field, corridors] = plan_part_pictures(&scene, &parts);
     let plan = plan_picture(&scene);
-    let notes = notes(errand, tour).into_iter().map(|note| vec![note, String::new()]);
-    let numbers: Vec<_> = notes.chain(rows(tour, seconds, stages)).collect();
+    let notes = moved.iter().map(|moved| vec![moved.note(), String::new()]);
+    let numbers: Vec<_> = notes.chain(rows(tour, spent)).collect();
     let page = page([&plan, &field, &corridors], tour, limits, &numbers);
     Pictures { plan, field, corridors, page }
+}
+
+/// `plan.png` where there is no plan: the ends of the part that has none, and how near to its goal the robot could come.
+pub fn without_plan(errand: &Errand, refusal: &Refusal) -> Vec<u8> {
+    let (start, goal) = errand.ends(refusal);
+    let nearest: Vec<Vector2> = match refusal.why {
+        Plan::Blocked { nearest } => vec![nearest],
+        _ => vec![],
+    };
+    let scene = PlanScene {
+        grid: &errand.grid,
+        start,
+        goal,
+        route: &[],
+        way_points: &[],
+        curve: &[],
+        footprint: &errand.footprint,
+        keep_out: errand.keep_out.as_ref(),
+        slow: errand.slow.as_ref(),
+    };
+    no_plan_picture(&scene, &nearest)
 }
 
 fn page(pictures: [&[u8]; 3], tour: &Tour, limits: DriveLimits, numbers: &[Vec<String>]) -> String {

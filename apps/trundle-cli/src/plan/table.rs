@@ -1,11 +1,12 @@
 //! The plan in numbers.
 
+use super::Spent;
 use super::args::PlanArgs;
-use super::errand::Errand;
+use super::errand::{Errand, Moved, Refusal};
 use crate::console;
 use trundle::core::Vector2;
 use trundle::io::{Summary, table_csv};
-use trundle::planning::{Curve, StageTimes, Tour};
+use trundle::planning::{Curve, Plan, ROOM_CAP, Tour};
 
 /// Distance of two points of the curve in `curve.csv` and in pictures, m.
 const SPACING: f64 = 0.02;
@@ -79,11 +80,14 @@ pub fn print_curves(tour: &Tour) {
         }
     }
     let active = constraints(tour);
-    console::say(&format!("active constraints, normal . control point <= offset: {}", active.len()));
+    console::say(&format!(
+        "active constraints, normal . control point <= offset, multiplier in m^2: {}",
+        active.len()
+    ));
     for [curve, piece, control, x, y, offset, multiplier] in active {
         console::say(&format!(
             "  curve {curve}, piece {piece}, control point {control}: {x:+.4} x {y:+.4} y <= {offset:.4} m, \
-             multiplier {multiplier:.4}"
+             multiplier {multiplier:.2e}"
         ));
     }
 }
@@ -97,22 +101,8 @@ fn polynomial(coefficients: impl Iterator<Item = f64>) -> String {
     coefficients.enumerate().map(term).collect::<Vec<_>>().join(" ")
 }
 
-/// Of each goal that another place was taken for: which, how far off, and why.
-pub fn notes(errand: &Errand, tour: &Tour) -> Vec<String> {
-    let note = |(i, off, why): (usize, f64, String)| {
-        let at = tour.legs[i].trajectory.end();
-        format!(
-            "goal {} moved to ({:.2}, {:.2}) m, {off:.2} m from the one asked for: {why}",
-            i + 1,
-            at.x,
-            at.y
-        )
-    };
-    errand.goals_moved(tour).into_iter().map(note).collect()
-}
-
 /// What the terminal shows.
-pub fn rows(tour: &Tour, seconds: f64, stages: StageTimes) -> Vec<Vec<String>> {
+pub fn rows(tour: &Tour, Spent { all, stages }: Spent) -> Vec<Vec<String>> {
     let row = |name: &str, value: String| vec![name.to_owned(), value];
     let ms = |seconds: f64| format!("{:.2} ms", seconds * 1e3);
     let mut rows = Vec::new();
@@ -125,14 +115,19 @@ pub fn rows(tour: &Tour, seconds: f64, stages: StageTimes) -> Vec<Vec<String>> {
         row("way-points", way_points(tour).to_string()),
         row("curve pieces", pieces(tour).to_string()),
         row("active constraints", constraints(tour).len().to_string()),
-        row("least room beside the robot", format!("{:.3} m", least_room(tour))),
-        row("planning", ms(seconds)),
+        row("least room beside the robot", room(least_room(tour))),
+        row("planning", ms(all)),
         row("  distance field", ms(stages.field)),
         row("  way-points", ms(stages.way_points)),
         row("  curve", ms(stages.curve)),
         row("  timing", ms(stages.timing)),
     ]);
     rows
+}
+
+/// Room in words: it is measured up to a limit only.
+fn room(metres: f64) -> String {
+    if metres < ROOM_CAP { format!("{metres:.3} m") } else { format!("{ROOM_CAP} m or more") }
 }
 
 fn length(tour: &Tour) -> f64 {
@@ -151,13 +146,29 @@ fn least_room(tour: &Tour) -> f64 {
     tour.legs.iter().map(|leg| leg.min_clearance).fold(f64::INFINITY, f64::min)
 }
 
-/// `summary.json`.
-pub fn summary(args: &PlanArgs, errand: &Errand, tour: &Tour, seconds: f64, stages: StageTimes) -> Summary {
+/// `summary.json` of an errand without a plan.
+pub fn no_summary(args: &PlanArgs, errand: &Errand, refusal: &Refusal, why: &str) -> Summary {
     let goals: Vec<_> = errand.goals.iter().map(|goal| goal.pose).collect();
-    let moved: Vec<_> = errand
-        .goals_moved(tour)
-        .into_iter()
-        .map(|(goal, off, why)| serde_json::json!({ "goal": goal, "off_m": off, "why": why }))
+    let mut summary = Summary::new("plan");
+    summary
+        .set("success", false)
+        .set("map", args.map.display().to_string())
+        .set("from", errand.start.pose)
+        .set("goals", goals)
+        .set("goal_without_plan", refusal.goal)
+        .set("why", why);
+    if let Plan::Blocked { nearest } = &refusal.why {
+        summary.set("nearest_reachable_m", [nearest.x, nearest.y]);
+    }
+    summary
+}
+
+/// `summary.json`.
+pub fn summary(args: &PlanArgs, errand: &Errand, tour: &Tour, moved: &[Moved], spent: Spent) -> Summary {
+    let goals: Vec<_> = errand.goals.iter().map(|goal| goal.pose).collect();
+    let moved: Vec<_> = moved
+        .iter()
+        .map(|moved| serde_json::json!({ "goal": moved.goal, "off_m": moved.off, "why": moved.why }))
         .collect();
     let reached: Vec<_> = tour.legs.iter().map(|leg| leg.trajectory.end()).collect();
     let mut summary = Summary::new("plan");
@@ -175,15 +186,16 @@ pub fn summary(args: &PlanArgs, errand: &Errand, tour: &Tour, seconds: f64, stag
         .set("curve_pieces", pieces(tour))
         .set("active_constraints", constraints(tour).len())
         .set("min_clearance_m", least_room(tour))
+        .set("min_clearance_is_a_limit", least_room(tour) >= ROOM_CAP)
         .set("fell_back", tour.legs.iter().any(|leg| leg.fell_back))
         .set(
             "wall_clock",
             serde_json::json!({
-                "planning_s": seconds,
-                "field_s": stages.field,
-                "way_points_s": stages.way_points,
-                "curve_s": stages.curve,
-                "timing_s": stages.timing,
+                "planning_s": spent.all,
+                "field_s": spent.stages.field,
+                "way_points_s": spent.stages.way_points,
+                "curve_s": spent.stages.curve,
+                "timing_s": spent.stages.timing,
             }),
         );
     summary

@@ -159,6 +159,108 @@ fn masks_forbid_and_slow_down() {
     );
 }
 
+#[test]
+fn no_plan_leaves_its_reason_and_nothing_of_an_earlier_plan() {
+    let room = Room::new();
+    let out = room.out();
+    let ask = |more: &[&str]| {
+        let base = ["plan", text(&room.map), "--from=1,1,0", "--out", text(&out)];
+        let output = trundle(&[&base, more].concat());
+        (output.status.code().unwrap(), String::from_utf8(output.stderr).unwrap())
+    };
+    fs::create_dir(&out).unwrap();
+    fs::write(out.join("mine.txt"), "kept").unwrap();
+    let names = || {
+        let mut names: Vec<_> =
+            fs::read_dir(&out).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
+        names.sort();
+        names
+    };
+    assert_eq!(ask(&["--goal=5,1,0"]).0, 0);
+    assert_eq!(names().len(), 11);
+    // Bad input: nothing is written, nothing removed.
+    assert_eq!(ask(&["--goal=5,1,0", "--keepout=nowhere.yaml"]).0, 2);
+    assert_eq!(names().len(), 11);
+    let mask = write_mask(room.scratch.path(), "keepout", (254, 0), TRINARY);
+    let (code, why) = ask(&["--goal=5,1,0", "--keepout", text(&mask)]);
+    assert!(code == 1 && why.contains("; without the keep-out mask there is one"), "{code} {why}");
+    assert_eq!(names(), ["mine.txt", "plan.png", "summary.json"]);
+    let summary = room.summary();
+    assert_eq!(summary["success"], false);
+    assert!(
+        summary["why"].as_str().unwrap().contains("no way to the goal")
+            && summary["nearest_reachable_m"][0].is_f64()
+    );
+    let (code, why) = ask(&["--goal=4,3.5,0", "--keepout", text(&mask)]);
+    assert!(code == 1 && why.contains("m are missing; it would without the keep-out mask"), "{code} {why}");
+    let (code, why) = ask(&["--goal=3,1,0", "--keepout", text(&mask)]);
+    assert!(code == 1 && why.ends_with("m are missing\n"), "in a wall, mask or not: {code} {why}");
+}
+
+/// Rows of numbers of a CSV file.
+fn numbers(path: &Path) -> Vec<Vec<f64>> {
+    let csv = fs::read_to_string(path).unwrap();
+    csv.lines().skip(1).map(|line| line.split(',').map(|v| v.parse().unwrap()).collect()).collect()
+}
+
+fn over(n: usize, k: usize) -> f64 {
+    (0..k).fold(1.0, |product, i| product * (n - i) as f64 / (i + 1) as f64)
+}
+
+/// The printed polynomials are the drawn curve, and the printed constraints hold where they should.
+#[test]
+fn coefficients_are_the_curve_and_active_constraints_are_active() {
+    let room = Room::new();
+    // Around the wall's end and back: corners that lean on it.
+    let said =
+        room.plan(&["--from=desk", "--goal=3.5,0.8,-90", "--goal=2.5,0.6,180", "--coefficients"]).unwrap();
+    // Of each piece, as printed: x then y, rising powers.
+    let polynomials: Vec<Vec<f64>> = said
+        .lines()
+        .filter_map(|line| {
+            line.trim().strip_prefix("x(u) = ").or_else(|| line.trim().strip_prefix("y(u) = "))
+        })
+        .map(|sum| {
+            sum.split(' ').filter(|term| !term.starts_with('u')).map(|term| term.parse().unwrap()).collect()
+        })
+        .collect();
+    let pieces: Vec<(&Vec<f64>, &Vec<f64>)> =
+        polynomials.chunks(2).map(|axes| (&axes[0], &axes[1])).collect();
+    let at = |c: &[f64], u: f64| c.iter().rev().fold(0.0, |sum, c| sum * u + c);
+    let dense: Vec<(f64, f64)> = pieces
+        .iter()
+        .flat_map(|(x, y)| (0..=2000).map(move |k| f64::from(k) / 2000.0).map(move |u| (at(x, u), at(y, u))))
+        .collect();
+    let curve = numbers(&room.out().join("curve.csv"));
+    assert!(curve.len() > 100 && pieces.len() > 5);
+    for row in &curve {
+        let off = dense.iter().map(|(x, y)| (x - row[2]).hypot(y - row[3])).fold(9.0, f64::min);
+        assert!(off < 1e-3, "{row:?}: {off}");
+    }
+    let table = numbers(&room.out().join("coefficients.csv"));
+    let printed: usize = polynomials.iter().map(Vec::len).sum();
+    assert_eq!(table.len() * 2, printed);
+    // Of a curve and piece, a control point in the Bernstein basis.
+    let control = |curve: f64, piece: f64, k: usize| {
+        let rows: Vec<_> = table.iter().filter(|row| row[0] == curve && row[1] == piece).collect();
+        let n = rows.len() - 1;
+        let sum = |axis: usize| (0..=k).map(|i| over(k, i) / over(n, i) * rows[i][axis]).sum::<f64>();
+        (sum(3), sum(4))
+    };
+    let active = numbers(&room.out().join("constraints.csv"));
+    assert!(
+        said.contains(&format!("multiplier in m^2: {}", active.len())) && !said.contains("0.00e0"),
+        "{said}"
+    );
+    assert!(!active.is_empty());
+    for row in &active {
+        let (x, y) = control(row[0], row[1], row[2] as usize);
+        let beyond = row[3] * x + row[4] * y - row[5];
+        assert!(beyond.abs() < 1e-3 && row[6] > 0.0, "{beyond} m beyond: {row:?}");
+        assert!((row[3].hypot(row[4]) - 1.0).abs() < 1e-5, "{row:?}");
+    }
+}
+
 /// Grey is dear: the way leads around it where that is no great detour.
 #[test]
 fn grey_of_a_keep_out_mask_is_dear() {

@@ -105,7 +105,8 @@ pub(crate) fn fit(
         let crossed = crossed(&curve, stretches, &sides);
         if crossed.is_empty() {
             let corridors = stretches.iter().map(|stretch| stretch.planes.clone()).collect();
-            let curve = curve.within(corridors, active(&sides, &multipliers[before..]));
+            let active = active(&curve, stretches, &sides, &multipliers[before..]);
+            let curve = curve.within(corridors, active);
             bends += 1;
             match bend::bent(&curve, config.max_curvature) {
                 Some(more) if !more.is_empty() && bends <= BENDS => {
@@ -150,8 +151,10 @@ const BENDS: usize = 5;
 const BEYOND: f64 = 2e-5;
 /// Sides nearer than this to a control point may be crossed next, m.
 const NEAR: f64 = 0.01;
-/// A multiplier below this is none.
+/// A multiplier below this is none, m^2.
 const NO_MULTIPLIER: f64 = 1e-7;
+/// A control point further than this from a side does not lean on it, m.
+const LEANS: f64 = 1e-4;
 
 /// The sides near control points, where any side is crossed, that are not in `known`. The two ends are inside.
 fn crossed(curve: &Curve, stretches: &[Stretch], known: &[Side]) -> Vec<Side> {
@@ -174,8 +177,16 @@ fn crossed(curve: &Curve, stretches: &[Stretch], known: &[Side]) -> Vec<Side> {
     if is_crossed { near } else { Vec::new() }
 }
 
-fn active(sides: &[Side], multipliers: &[f64]) -> Vec<ActiveRow> {
-    let pairs = sides.iter().zip(multipliers).filter(|(_, multiplier)| **multiplier > NO_MULTIPLIER);
+/// The sides that control points lean on. An inner-point solver leaves every row a little multiplier, so that alone says nothing.
+fn active(curve: &Curve, stretches: &[Stretch], sides: &[Side], multipliers: &[f64]) -> Vec<ActiveRow> {
+    let leans = |Side { piece, control, plane }: &Side| {
+        let half = stretches[*piece].planes[*plane];
+        half.offset - half.normal.dot(&curve.pieces()[*piece].control()[*control]) < LEANS
+    };
+    let pairs = sides
+        .iter()
+        .zip(multipliers)
+        .filter(|(side, multiplier)| **multiplier > NO_MULTIPLIER && leans(side));
     let mut rows: Vec<_> = pairs
         .map(|(side, multiplier)| ActiveRow {
             piece: side.piece,

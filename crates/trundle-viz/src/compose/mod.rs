@@ -5,7 +5,7 @@ mod run;
 mod trajectory;
 mod visual_map;
 
-pub use plan::{MaskShares, PlanScene, plan_picture};
+pub use plan::{MaskShares, PlanScene, no_plan_picture, plan_picture};
 pub use plan_parts::{PlanParts, plan_part_pictures, speed_charts};
 pub use run::{CameraView, RunReport};
 pub use trajectory::trajectory_picture;

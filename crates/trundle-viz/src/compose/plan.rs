@@ -1,6 +1,6 @@
-use super::palette::{DEAR, FORBIDDEN, GOAL, SLOW, START, SWEPT, way_point_dots};
+use super::palette::{DEAR, FORBIDDEN, GOAL, PLAN, SLOW, START, SWEPT, way_point_dots};
 use crate::color::Color;
-use crate::map::{LineStyle, MapPicture, PoseStyle};
+use crate::map::{DotStyle, LineStyle, MapPicture, PoseStyle};
 use trundle_core::{Footprint, GridGeometry, OccupancyGrid, Pose2, Vector2};
 
 /// What a mask says of its cells, row by row from the lowest y, in shares from 0 (nothing) to 1.
@@ -45,14 +45,38 @@ impl<'a> PlanScene<'a> {
             picture = picture.tint("slow by the speed mask", mask.geometry, shares.collect(), SLOW);
         }
         if let Some(mask) = self.keep_out {
-            let forbidden = mask.shares.iter().map(|share| if *share >= 1.0 { 1.0 } else { 0.0 });
             let dear = mask.shares.iter().map(|share| if *share < 1.0 { 0.8 * share } else { 0.0 });
-            picture = picture
-                .tint("forbidden by the keep-out mask", mask.geometry, forbidden.collect(), FORBIDDEN)
-                .tint("dear by the keep-out mask", mask.geometry, dear.collect(), DEAR);
+            picture = picture.tint("dear by the keep-out mask", mask.geometry, dear.collect(), DEAR);
         }
-        picture
+        self.forbidden(picture)
     }
+
+    /// The picture with what the robot must keep out of.
+    pub(super) fn forbidden(&self, picture: MapPicture<'a>) -> MapPicture<'a> {
+        let Some(mask) = self.keep_out else { return picture };
+        let forbidden = mask.shares.iter().map(|share| if *share >= 1.0 { 1.0 } else { 0.0 });
+        picture.tint("forbidden by the keep-out mask", mask.geometry, forbidden.collect(), FORBIDDEN)
+    }
+
+    /// The way-points between start and goal, which have marks of their own.
+    pub(super) fn between(&self) -> Vec<Vector2> {
+        const SAME: f64 = 1e-3;
+        let is_end =
+            |p: &Vector2| [self.start, self.goal].iter().any(|end| (p - end.position()).norm() < SAME);
+        self.way_points.iter().filter(|p| !is_end(p)).copied().collect()
+    }
+}
+
+/// The picture of a plan that there is not: the map, start and goal with the robot's outline, and the `nearest` places to the goal
+/// that the robot could reach. An 8-bit RGB PNG.
+pub fn no_plan_picture(scene: &PlanScene, nearest: &[Vector2]) -> Vec<u8> {
+    let pose = |color: Color| PoseStyle::named(color).with_footprint(scene.footprint.clone());
+    scene
+        .ground()
+        .dots("nearest place that can be reached", nearest, DotStyle::circles(PLAN).radius(4.0))
+        .pose("start", scene.start, pose(START))
+        .pose("goal", scene.goal, pose(GOAL))
+        .to_png()
 }
 
 /// The picture of `trundle plan`: the map, start and goal with the robot's outline, way-points, the fitted curve, and the
@@ -64,7 +88,7 @@ pub fn plan_picture(scene: &PlanScene) -> Vec<u8> {
         .band("floor swept by the robot", scene.curve, scene.footprint.circumscribed_radius(), SWEPT)
         .polyline("route", scene.route, LineStyle::solid(Color::FAINT_INK).width(0.8).plain())
         .polyline("curve", scene.curve, LineStyle::solid(Color::BLUE))
-        .dots("way-points", scene.way_points, way_point_dots())
+        .dots("way-points", &scene.between(), way_point_dots())
         .pose("start", scene.start, pose(START))
         .pose("goal", scene.goal, pose(GOAL))
         .to_png()

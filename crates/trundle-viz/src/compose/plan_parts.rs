@@ -30,16 +30,22 @@ pub fn plan_part_pictures(scene: &PlanScene, parts: &PlanParts) -> [Vec<u8>; 2] 
     };
     let free = |distance: &f32| if *distance > 0.0 { *distance } else { f32::NAN };
     let distances = parts.distances.iter().map(free).collect();
-    let field = MapPicture::over(scene.grid)
-        .shade("distance to the nearest obstacle, dark from 1 m on", parts.geometry, distances, FAR)
+    let shaded = MapPicture::over(scene.grid).shade(
+        "distance to the nearest obstacle, dark from 1 m on",
+        parts.geometry,
+        distances,
+        FAR,
+    );
+    let field = scene
+        .forbidden(shaded)
         .polyline("route", scene.route, LineStyle::dashed(Color::BLACK).width(1.0))
         .polyline("way", scene.way_points, LineStyle::solid(PLAN))
-        .dots("way-points", scene.way_points, way_point_dots());
+        .dots("way-points", &scene.between(), way_point_dots());
     let corridors = scene
         .ground()
         .polyline("corridors", &outlines(parts.corridors), LineStyle::solid(Color::ORANGE).width(0.8).plain())
         .polyline("curve", scene.curve, LineStyle::solid(Color::BLUE))
-        .dots("way-points", scene.way_points, way_point_dots())
+        .dots("way-points", &scene.between(), way_point_dots())
         .dots("active constraints", parts.active, DotStyle::circles(Color::VERMILLION).radius(3.6));
     [ends(field), ends(corridors)]
 }

@@ -1,7 +1,7 @@
 use super::style::{DotStyle, LineStyle, PoseStyle};
 use super::view::View;
 use crate::canvas::{Canvas, Pen};
-use crate::clip::Px;
+use crate::clip::{Px, visible_runs};
 use crate::color::Color;
 use crate::legend::wedge;
 use crate::text::{TextStyle, cap_height, text_width};
@@ -27,8 +27,15 @@ pub(super) fn draw_dot(canvas: &mut Canvas, center: Px, style: &DotStyle, unit: 
     }
 }
 
-/// A wedge along the heading, as large as the robot but never too small to see.
-pub(super) fn draw_pose(canvas: &mut Canvas, view: &View, pose: Pose2, style: &PoseStyle, label: &str) {
+/// A wedge along the heading, as large as the robot but never too small to see. Its name keeps off `lines` where it can.
+pub(super) fn draw_pose(
+    canvas: &mut Canvas,
+    view: &View,
+    pose: Pose2,
+    style: &PoseStyle,
+    label: &str,
+    lines: &[Vec<Px>],
+) {
     if !pose.is_finite() {
         return;
     }
@@ -43,21 +50,45 @@ pub(super) fn draw_pose(canvas: &mut Canvas, view: &View, pose: Pose2, style: &P
     canvas.polygon(&wedge(center, tip + 1.8 * unit, -pose.theta), Color::WHITE);
     canvas.polygon(&wedge(center, tip, -pose.theta), style.color);
     if style.named {
-        draw_name(canvas, view.unit, center, tip.max(body) + 3.0 * unit, label, style.color);
+        let distance = tip.max(body) + 3.0 * unit;
+        let far = 4.0 * canvas.width().max(canvas.height()) as f64;
+        if center.0.abs() < far && center.1.abs() < far && distance < far {
+            let (left, top) = place_of_name(canvas, view.unit, center, distance, label, lines);
+            let style = TextStyle { scale: view.unit, color: style.color, halo: Some(Color::WHITE) };
+            canvas.text(left, top, label, style);
+        }
     }
 }
 
-/// A name beside a place: to its right, or to its left where the picture ends.
-fn draw_name(canvas: &mut Canvas, unit: i64, center: Px, distance: f64, label: &str, color: Color) {
-    let far = 4.0 * canvas.width().max(canvas.height()) as f64;
-    if !(center.0.abs() < far && center.1.abs() < far && distance < far) {
-        return;
-    }
-    let (x, reach, width) = (center.0 as i64, distance as i64, text_width(label, unit));
-    let left = if x + reach + width < canvas.width() { x + reach } else { x - reach - width };
-    let top = center.1 as i64 - cap_height(unit) / 2;
-    let style = TextStyle { scale: unit, color, halo: Some(Color::WHITE) };
-    canvas.text(left, top, label, style);
+/// The upper left corner of a name beside a place: of right, left, above and below the first that the fewest lines cross,
+/// within the picture.
+fn place_of_name(
+    canvas: &Canvas,
+    unit: i64,
+    center: Px,
+    distance: f64,
+    label: &str,
+    lines: &[Vec<Px>],
+) -> (i64, i64) {
+    let (width, height) = (text_width(label, unit), cap_height(unit));
+    let (x, y, reach) = (center.0 as i64, center.1 as i64, distance as i64);
+    let places = [
+        (x + reach, y - height / 2),
+        (x - reach - width, y - height / 2),
+        (x - width / 2, y - reach - height),
+        (x - width / 2, y + reach),
+    ];
+    let size = (width as f64, height as f64);
+    let crossed = |(left, top): (i64, i64)| -> i64 {
+        let beside = |p: &Px| (p.0 - left as f64, p.1 - top as f64);
+        let within = |line: &Vec<Px>| visible_runs(line.iter().map(beside), size, unit as f64);
+        lines.iter().flat_map(within).map(|run| run.len() as i64).sum()
+    };
+    let outside = |(left, top): (i64, i64)| {
+        left < 0 || top < 0 || left + width >= canvas.width() || top + height >= canvas.height()
+    };
+    let cost = |place: &(i64, i64)| (outside(*place), crossed(*place));
+    places.into_iter().min_by_key(cost).unwrap_or(places[0])
 }
 
 /// The robot's outline, with a stroke from its middle along the heading.

@@ -103,7 +103,16 @@ impl Layer {
         (shown && !self.label.is_empty()).then(|| LegendItem::new(self.label.clone(), color, mark))
     }
 
-    pub(crate) fn draw(&self, canvas: &mut Canvas, view: &View) {
+    /// Where its line runs in a picture; nothing where it is none.
+    pub(crate) fn line(&self, view: &View) -> Vec<Px> {
+        match &self.shape {
+            Shape::Line { points, .. } => points.iter().map(|p| view.px(*p)).collect(),
+            _ => Vec::new(),
+        }
+    }
+
+    /// Lays it over a picture; names keep off `lines` where they can.
+    pub(crate) fn draw(&self, canvas: &mut Canvas, view: &View, lines: &[Vec<Px>]) {
         let unit = view.unit as f64;
         match &self.shape {
             Shape::Line { points, style } => draw_line(canvas, view, points, style),
@@ -114,7 +123,7 @@ impl Layer {
                 let pen = Pen::solid(*color, view.length_px(2.0 * radius));
                 canvas.polyline(points.iter().map(|p| view.px(*p)), pen);
             }
-            Shape::Pose { pose, style } => draw_pose(canvas, view, *pose, style, &self.label),
+            Shape::Pose { pose, style } => draw_pose(canvas, view, *pose, style, &self.label, lines),
             Shape::Outlines { poses, footprint, color } => {
                 poses.iter().for_each(|pose| draw_outline(canvas, view, *pose, footprint, *color));
             }

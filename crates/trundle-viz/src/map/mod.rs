@@ -156,9 +156,14 @@ impl<'a> MapPicture<'a> {
     pub fn to_png(&self) -> Vec<u8> {
         let view = self.view().with_lettering(self.lettering);
         let mut plot = self.ground(&view);
-        self.layers.iter().for_each(|layer| layer.draw(&mut plot, &view));
+        self.draw_layers(&mut plot, &view);
         let legend = self.legend.then(|| paint_legend(&self.legend(), view.width, view.unit));
         paint_frame(&plot, &view, &self.axes, legend.as_ref()).to_png()
+    }
+
+    fn draw_layers(&self, canvas: &mut Canvas, view: &View) {
+        let lines: Vec<_> = self.layers.iter().map(|layer| layer.line(view)).collect();
+        self.layers.iter().for_each(|layer| layer.draw(canvas, view, &lines));
     }
 
     fn layer(mut self, label: &str, shape: Shape) -> Self {

@@ -51,15 +51,18 @@ impl Shade {
         }
     }
 
+    /// Walls stay walls: nothing is laid over them.
     pub(crate) fn draw(&self, canvas: &mut Canvas, view: &View) {
         let (low, high) = view.extent();
+        let wall = Color::OCCUPIED.over([0; 3]);
         for y in 0..canvas.height() {
             for x in 0..canvas.width() {
                 let right = low.x + view.metres(x as f64 + 0.5);
                 let up = high.y - view.metres(y as f64 + 0.5);
                 let cell = self.geometry.cell_at(Vector2::new(right, up));
                 let value = cell.and_then(|cell| self.values.get(self.geometry.linear(cell)));
-                if let Some(value) = value.filter(|value| value.is_finite()) {
+                let value = value.filter(|value| value.is_finite() && canvas.at(x, y) != wall);
+                if let Some(value) = value {
                     canvas.blend(x, y, self.paint.color(*value));
                 }
             }

@@ -57,7 +57,7 @@ fn overlays_are_drawn_where_they_belong() {
     let mut plot = picture.ground(&view);
     let (x, y) = view.px(center);
     assert_eq!(plot.at(x as i64, y as i64), Color::FREE.over([0; 3]));
-    picture.layers[0].draw(&mut plot, &view);
+    picture.layers[0].draw(&mut plot, &view, &[]);
     assert_eq!(plot.at(x as i64, y as i64), Color::BLUE.over([0; 3]));
 }
 

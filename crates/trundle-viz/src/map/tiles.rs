@@ -1,4 +1,4 @@
-use super::{Layer, MapPicture};
+use super::MapPicture;
 use crate::canvas::Canvas;
 use crate::color::Color;
 use crate::legend::paint_legend;
@@ -44,7 +44,7 @@ pub fn tiles(pictures: &[(String, MapPicture<'_>)], columns: usize) -> Vec<u8> {
 fn plot(picture: &MapPicture<'_>) -> Canvas {
     let view = picture.view().scaled(PART);
     let mut canvas = picture.ground(&view);
-    picture.layers.iter().for_each(|layer: &Layer| layer.draw(&mut canvas, &view));
+    picture.draw_layers(&mut canvas, &view);
     canvas
 }
 
