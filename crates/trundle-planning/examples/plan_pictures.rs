@@ -93,6 +93,13 @@ impl Picture {
         let _ = writeln!(self.body, "<circle cx='{x}' cy='{y}' r='{:.1}' {style}/>", radius * SCALE);
     }
 
+    fn text(&mut self, p: Vector2, text: &str) {
+        let at = self.at(p);
+        let (x, y) = at.split_once(',').unwrap();
+        let style = "font-family='sans-serif' font-size='16' fill='#3a3f47'";
+        let _ = writeln!(self.body, "<text x='{x}' y='{y}' {style}>{text}</text>");
+    }
+
     fn save(self, name: &str) {
         let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/pictures/planning");
         std::fs::create_dir_all(folder).unwrap();
@@ -179,18 +186,63 @@ fn along(curve: &Curve) -> Vec<Vector2> {
     curve.samples(0.02).iter().map(|sample| sample.pose.position()).collect()
 }
 
-/// Speed and turn rate over time, with and without a limit of the jerk.
+/// Speed above, turn rate below, over time, with the drive's limits dashed.
 fn speeds(plan: &PlanResult) {
-    let duration = plan.trajectory.duration();
     let mut picture =
-        Picture { body: String::new(), low: Vector2::new(0.0, -0.4), size: Vector2::new(6.0, 1.4) };
-    picture.line(&[Vector2::zeros(), Vector2::new(6.0, 0.0)], "stroke='#9aa5b1' stroke-width='1'");
-    let place = |time: f64, value: f64| Vector2::new(time / duration * 6.0, value);
-    let v: Vec<_> = plan.trajectory.points().iter().map(|p| place(p.time, p.twist.v)).collect();
-    let omega: Vec<_> = plan.trajectory.points().iter().map(|p| place(p.time, p.twist.omega / 4.0)).collect();
-    picture.line(&omega, "stroke='#edae49' stroke-width='2'");
-    picture.line(&v, "stroke='#d1495b' stroke-width='3'");
+        Picture { body: String::new(), low: Vector2::new(-0.6, -0.5), size: Vector2::new(6.8, 3.6) };
+    let points = plan.trajectory.points();
+    let (limits, duration) = (DriveLimits::KOBUKI, plan.trajectory.duration());
+    let v: Vec<_> = points.iter().map(|p| (p.time, p.twist.v)).collect();
+    let omega: Vec<_> = points.iter().map(|p| (p.time, p.twist.omega)).collect();
+    let speed = Axes { name: "speed, m/s", low: 1.8, high: 2.8, range: (0.0, 0.8), step: 0.2, duration };
+    speed.draw(&mut picture, &v, &[limits.v], "#d1495b");
+    let turning =
+        Axes { name: "turn rate, rad/s", low: 0.0, high: 1.2, range: (-2.0, 2.0), step: 1.0, duration };
+    turning.draw(&mut picture, &omega, &[limits.omega, -limits.omega], "#b07800");
+    picture.text(Vector2::new(5.5, -0.4), "time, s");
     picture.save("speeds");
+}
+
+/// A chart over time in a part of a picture 6 m wide.
+struct Axes {
+    name: &'static str,
+    /// Its lower and upper border in the picture, m.
+    low: f64,
+    high: f64,
+    range: (f64, f64),
+    /// From tick to tick.
+    step: f64,
+    duration: f64,
+}
+
+impl Axes {
+    fn place(&self, time: f64, value: f64) -> Vector2 {
+        let share = (value - self.range.0) / (self.range.1 - self.range.0);
+        Vector2::new(time / self.duration * 6.0, self.low + share * (self.high - self.low))
+    }
+
+    fn draw(&self, picture: &mut Picture, values: &[(f64, f64)], limits: &[f64], color: &str) {
+        let faint = "stroke='#d5dae0' stroke-width='1'";
+        for k in 0..=((self.range.1 - self.range.0) / self.step).round() as usize {
+            let value = self.range.0 + k as f64 * self.step;
+            picture.line(&[self.place(0.0, value), self.place(self.duration, value)], faint);
+            picture.text(self.place(0.0, value) + Vector2::new(-0.35, -0.04), &format!("{value:.1}"));
+        }
+        for second in 0..=self.duration as usize {
+            let foot = self.place(second as f64, self.range.0);
+            picture.line(&[foot, foot + Vector2::new(0.0, -0.06)], "stroke='#5b6570' stroke-width='1'");
+            if second.is_multiple_of(2) {
+                picture.text(foot + Vector2::new(-0.04, -0.22), &second.to_string());
+            }
+        }
+        for limit in limits {
+            let ends = [self.place(0.0, *limit), self.place(self.duration, *limit)];
+            picture.line(&ends, "stroke='#5b6570' stroke-width='2' stroke-dasharray='8 6'");
+        }
+        let points: Vec<_> = values.iter().map(|(time, value)| self.place(*time, *value)).collect();
+        picture.line(&points, &format!("stroke='{color}' stroke-width='3'"));
+        picture.text(Vector2::new(0.0, self.high + 0.08), self.name);
+    }
 }
 
 /// A long robot in a corridor that its circle does not pass.
