@@ -3,8 +3,7 @@
 //!
 //! Each map has the questions that come with it and random ones between connected places. Each is asked 20 times
 //! with the distance field up to date, and the best CPU time of the thread counts: it says something on a busy machine too.
-//! `--only-plans`, `--only-updates` and `--only-printed` leave out
-//! the rest. Every trajectory is judged by the tests' independent checker.
+//! `--only-plans`, `--only-updates`, `--only-large` and `--only-printed` leave out the rest. Every trajectory is judged by the tests' independent checker.
 
 #![expect(
     clippy::print_stdout,
@@ -55,6 +54,9 @@ fn main() {
     let Some(data) = nav_data::data() else { return };
     if std::env::args().any(|word| word == "--only-updates") {
         return field_updates(&data);
+    }
+    if std::env::args().any(|word| word == "--only-large") {
+        return large();
     }
     if std::env::args().any(|word| word == "--only-printed") {
         return printed(&data);

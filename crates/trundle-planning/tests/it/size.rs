@@ -59,3 +59,24 @@ fn a_warehouse_of_a_thousand_cells_square() {
 fn a_thousand_cells_square() {
     across(1000);
 }
+
+/// 200 x 200 m in cells of 5 cm, from nothing: field and plan in a second of a core and 400 MB. The best of two, for the machine may be
+/// busy; the peak is that of the whole process, whatever other tests take meanwhile.
+#[test]
+fn sixteen_million_cells_in_a_second() {
+    let grid = warehouse(4000);
+    let (start, goal) = (Pose2::new(1.0, 1.0, 0.0), Pose2::new(195.0, 195.0, 1.0));
+    let ask = || {
+        let mut planner = planner(at_home(), 0.26);
+        let begin = crate::support::cpu_ms();
+        let plan = found(planner.plan(&grid, start, Twist2::ZERO, goal));
+        (crate::support::cpu_ms() - begin, plan)
+    };
+    let ((first, plan), (second, same)) = (ask(), ask());
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let peak = status.lines().find_map(|line| line.strip_prefix("VmHWM:")).unwrap_or("0 kB");
+    let peak: f64 = peak.trim().trim_end_matches(" kB").parse().unwrap();
+    eprintln!("4000 x 4000: {first:.0} and {second:.0} ms CPU for {:.0} m, {peak} kB", plan.length);
+    assert_eq!(plan, same);
+    assert!(first.min(second) < 1000.0 && peak < 400e3, "{first} {second} ms, {peak} kB");
+}

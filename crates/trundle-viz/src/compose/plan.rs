@@ -48,14 +48,14 @@ impl<'a> PlanScene<'a> {
             let dear = mask.shares.iter().map(|share| if *share < 1.0 { 0.8 * share } else { 0.0 });
             picture = picture.tint("dear by the keep-out mask", mask.geometry, dear.collect(), DEAR);
         }
-        self.forbidden(picture)
+        self.forbidden(picture, FORBIDDEN)
     }
 
     /// The picture with what the robot must keep out of.
-    pub(super) fn forbidden(&self, picture: MapPicture<'a>) -> MapPicture<'a> {
+    pub(super) fn forbidden(&self, picture: MapPicture<'a>, color: Color) -> MapPicture<'a> {
         let Some(mask) = self.keep_out else { return picture };
         let forbidden = mask.shares.iter().map(|share| if *share >= 1.0 { 1.0 } else { 0.0 });
-        picture.tint("forbidden by the keep-out mask", mask.geometry, forbidden.collect(), FORBIDDEN)
+        picture.tint("forbidden by the keep-out mask", mask.geometry, forbidden.collect(), color)
     }
 
     /// The way-points between start and goal, which have marks of their own.

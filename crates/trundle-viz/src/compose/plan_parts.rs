@@ -1,4 +1,4 @@
-use super::palette::{GOAL, PLAN, START, way_point_dots};
+use super::palette::{FORBIDDEN, GOAL, PLAN, START, way_point_dots};
 use super::plan::PlanScene;
 use crate::chart::Chart;
 use crate::color::Color;
@@ -37,7 +37,7 @@ pub fn plan_part_pictures(scene: &PlanScene, parts: &PlanParts) -> [Vec<u8>; 2] 
         FAR,
     );
     let field = scene
-        .forbidden(shaded)
+        .forbidden(shaded, FORBIDDEN.alpha(255))
         .polyline("route", scene.route, LineStyle::dashed(Color::BLACK).width(1.0))
         .polyline("way", scene.way_points, LineStyle::solid(PLAN))
         .dots("way-points", &scene.between(), way_point_dots());
