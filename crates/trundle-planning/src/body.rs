@@ -24,6 +24,8 @@ pub(crate) struct Body {
     pub(crate) radius: f64,
     /// The least distance of its outline from the axle, m; 0 where the axle is outside.
     pub(crate) inner: f64,
+    /// Middle and radius of the largest disc inside the outline, base frame, m.
+    pub(crate) inscribed: (Vector2, f64),
     leaving: Option<Box<Leaving>>,
 }
 
@@ -40,11 +42,22 @@ impl Body {
     pub(crate) fn new(footprint: &Footprint) -> Self {
         let radius = footprint.circumscribed_radius();
         match footprint {
-            Footprint::Disc { .. } => Self { corners: vec![], radius, inner: radius, leaving: None },
+            Footprint::Disc { .. } => Self {
+                corners: vec![],
+                radius,
+                inner: radius,
+                inscribed: (Vector2::zeros(), radius),
+                leaving: None,
+            },
             Footprint::Polygon { corners } => {
-                let to_side = |(a, b): (Vector2, Vector2)| (b - a).perp(&-a) / (b - a).norm();
-                let inner = sides(corners).map(to_side).fold(f64::INFINITY, f64::min).max(0.0);
-                let whole = Self { corners: corners.clone(), radius, inner, leaving: None };
+                let inner = depth_within(corners, Vector2::zeros()).max(0.0);
+                let whole = Self {
+                    corners: corners.clone(),
+                    radius,
+                    inner,
+                    inscribed: inscribed(corners),
+                    leaving: None,
+                };
                 whole.shrunk(TOUCH).unwrap_or(whole)
             }
         }
@@ -198,6 +211,32 @@ fn sides(corners: &[Vector2]) -> impl Iterator<Item = (Vector2, Vector2)> + '_ {
     corners.iter().copied().zip(corners.iter().copied().cycle().skip(1))
 }
 
+/// How far a point is inside a convex polygon, m; negative outside.
+fn depth_within(corners: &[Vector2], point: Vector2) -> f64 {
+    let to_side = |(a, b): (Vector2, Vector2)| (b - a).perp(&(point - a)) / (b - a).norm();
+    sides(corners).map(to_side).fold(f64::INFINITY, f64::min)
+}
+
+/// Middle and radius of the largest disc in a convex polygon: the depth is concave, so ever finer looks about the deepest find it.
+fn inscribed(corners: &[Vector2]) -> (Vector2, f64) {
+    const ROUNDS: usize = 12;
+    const LOOKS: i32 = 4;
+    let mut best = (middle(corners), depth_within(corners, middle(corners)));
+    let mut reach = corners.iter().map(|c| (c - best.0).norm()).fold(0.0, f64::max);
+    for _ in 0..ROUNDS {
+        let around = best.0;
+        for (i, j) in (-LOOKS..=LOOKS).flat_map(|i| (-LOOKS..=LOOKS).map(move |j| (i, j))) {
+            let at = around + Vector2::new(f64::from(i), f64::from(j)) * (reach / f64::from(LOOKS));
+            let depth = depth_within(corners, at);
+            if depth > best.1 {
+                best = (at, depth);
+            }
+        }
+        reach /= 2.0;
+    }
+    best
+}
+
 fn middle(points: &[Vector2]) -> Vector2 {
     points.iter().sum::<Vector2>() / points.len() as f64
 }
@@ -237,6 +276,18 @@ mod tests {
         let at = |x, y| Vector2::new(x, y);
         let corners = vec![at(0.45, 0.2), at(-0.15, 0.2), at(-0.15, -0.2), at(0.45, -0.2)];
         Body::new(&Footprint::polygon(corners).unwrap())
+    }
+
+    #[test]
+    fn the_largest_disc_inside_is_found() {
+        let (at, radius) = cart().inscribed;
+        assert!(
+            (radius - 0.2).abs() < 1e-4 && at.y.abs() < 1e-3 && (0.04..0.26).contains(&at.x),
+            "{at} {radius}"
+        );
+        let triangle = [(0.0, 0.0), (3.0, 0.0), (0.0, 4.0)].map(|(x, y)| Vector2::new(x, y)).to_vec();
+        let (at, radius) = Body::new(&Footprint::polygon(triangle).unwrap()).inscribed;
+        assert!((radius - 1.0).abs() < 1e-3 && (at - Vector2::new(1.0, 1.0)).norm() < 5e-3, "{at} {radius}");
     }
 
     #[test]

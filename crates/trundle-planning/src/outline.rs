@@ -3,13 +3,18 @@
 use crate::maneuver::{Maneuver, shortened};
 use crate::plan::Plan;
 use crate::route::{Course, Phase, is_drivable, straight};
-use crate::task::{LEAST_RADIUS, SAME_PLACE, STANDING, Task};
+use crate::space::Space;
+use crate::task::{LEAST_RADIUS, Memory, SAME_PLACE, STANDING, Task};
 use crate::timing::can_follow;
+use crate::wave::{Wave, WaveFront};
 use crate::way::Way;
 use trundle_core::{Pose2, Twist2, Vector2};
 
 /// An overlap is measured up to here, or to the axle, m.
 pub(crate) const DEEPEST: f64 = 0.2;
+
+/// What a motion may overlap unnoticed, m.
+const ROUNDING: f64 = 1e-3;
 
 /// How an outline gets to the goal.
 struct Moves {
@@ -20,12 +25,14 @@ struct Moves {
 impl Task<'_> {
     /// By straight moves and turns of the outline; along a curve where one is free. A robot under way goes on along a curve
     /// that continues its motion, or brakes on its arc first; where neither is free, the plan starts from rest and says so.
+    /// `by_disc`: what became of the disc about it.
     pub(crate) fn plan_outline(
         &self,
-        maneuver: &mut Maneuver,
+        memory: &mut Memory,
         start: Pose2,
         twist: Twist2,
         goal: Pose2,
+        by_disc: &Plan,
     ) -> Plan {
         let inner = self.body.inner.max(LEAST_RADIUS);
         let missing = |pose: Pose2| -self.body.overlap(self.field, pose, self.body.inner.max(DEEPEST));
@@ -35,8 +42,15 @@ impl Task<'_> {
         if !self.fits(goal) {
             return Plan::GoalInObstacle { clearance: missing(goal) };
         }
+        if self.is_shut_off(&mut memory.wave, start, goal) {
+            return match by_disc {
+                Plan::Blocked { .. } => by_disc.clone(),
+                _ => Plan::Blocked { nearest: self.nearest(&mut memory.wave, start, goal) },
+            };
+        }
         let space = self.space(inner, start.position());
         let course = self.course(&space);
+        let maneuver = &mut memory.maneuver;
         let moves = match self.moves(maneuver, &course, start, goal) {
             Ok(moves) => moves,
             Err(nearest) => return Plan::Blocked { nearest },
@@ -53,6 +67,31 @@ impl Task<'_> {
         match self.phases(&course, &moves, start, goal) {
             Some(phases) => self.timed(moves.way, phases, start, 0.0, twist.v.abs() <= STANDING),
             None => Plan::Blocked { nearest: start.position() },
+        }
+    }
+
+    /// Whether not even the largest disc inside the outline gets through, by half a cell's diagonal smaller, as it would on any way
+    /// between the centres: quickly told, where the search over headings would look everywhere.
+    fn is_shut_off(&self, wave: &mut WaveFront, start: Pose2, goal: Pose2) -> bool {
+        let geometry = self.field.geometry();
+        let (middle, radius) = self.body.inscribed;
+        let off = geometry.resolution * std::f64::consts::FRAC_1_SQRT_2;
+        let less = radius - self.body.depth() - off - ROUNDING;
+        let (from, to) = (start.transform(middle), goal.transform(middle));
+        let is_inside = [from, to].iter().all(|at| geometry.cell_at(*at).is_some());
+        if less < LEAST_RADIUS || !is_inside {
+            return false;
+        }
+        let space = Space::new(self.field, self.grid, self.config.room, less, from);
+        matches!(wave.run(&space, from, to), Wave::Stuck(_))
+    }
+
+    /// The place nearest to the goal that the disc about the outline reaches.
+    fn nearest(&self, wave: &mut WaveFront, start: Pose2, goal: Pose2) -> Vector2 {
+        let space = self.space(self.body.radius, start.position());
+        match wave.run(&space, start.position(), goal.position()) {
+            Wave::Stuck(nearest) => nearest,
+            Wave::Met(_) => goal.position(),
         }
     }
 

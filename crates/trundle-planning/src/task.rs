@@ -38,8 +38,8 @@ pub(crate) struct Task<'a> {
 /// What searches remember from plan to plan: their buffers.
 #[derive(Debug, Default)]
 pub(crate) struct Memory {
-    wave: WaveFront,
-    maneuver: Maneuver,
+    pub(crate) wave: WaveFront,
+    pub(crate) maneuver: Maneuver,
 }
 
 impl Task<'_> {
@@ -77,7 +77,7 @@ impl Task<'_> {
         if matches!(plan, Plan::Found(_)) {
             return plan;
         }
-        let plan = self.plan_outline(&mut memory.maneuver, start, twist, goal);
+        let plan = self.plan_outline(memory, start, twist, goal, &plan);
         if matches!(plan, Plan::Found(_)) || tolerance == 0.0 {
             return plan;
         }

@@ -2,8 +2,8 @@
 
 use crate::support::{HALF_BASE, LIMITS, at_home, found};
 use trundle_core::{
-    Cell, DifferentialDrive, Footprint, OccupancyGrid, Pose2, Twist2, Vector2, difference_of_angles,
-    wrap_angle,
+    Cell, CellIndex, DifferentialDrive, Footprint, GridGeometry, OccupancyGrid, Pose2, Twist2, Vector2,
+    difference_of_angles, wrap_angle,
 };
 use trundle_planning::{Phase, Plan, PlanResult, Planner, PlannerConfig};
 
@@ -210,4 +210,28 @@ fn an_outline_within_a_wall_is_planned_out_of_it_or_refused_with_the_depth() {
     assert!(matches!(plan, Plan::StartInObstacle { clearance } if (clearance + 0.1).abs() < 1e-3), "{plan}");
     let plan = cart_planner(at_home()).plan(&grid, goal, Twist2::ZERO, start);
     assert!(matches!(plan, Plan::GoalInObstacle { clearance } if (clearance + 0.1).abs() < 1e-3), "{plan}");
+}
+
+/// A goal in a closed room is told quickly, however large the rest of the map is for the search over headings.
+#[test]
+fn a_closed_room_is_told_without_looking_everywhere() {
+    let geometry = GridGeometry::new(0.05, Vector2::zeros(), 600, 600).unwrap();
+    let mut grid = OccupancyGrid::filled(geometry, Cell::Free);
+    for k in 400..=440 {
+        for (col, row) in [(k, 400), (k, 440), (400, k), (440, k)] {
+            grid.set(CellIndex { col, row }, Cell::Occupied);
+        }
+    }
+    let (start, goal) = (Pose2::new(2.0, 2.0, 0.0), Pose2::new(21.0, 21.0, 0.0));
+    let mut planner = cart_planner(at_home());
+    let begin = crate::support::cpu_ms();
+    let plan = planner.plan(&grid, start, Twist2::ZERO, goal);
+    let spent = crate::support::cpu_ms() - begin;
+    let Plan::Blocked { nearest } = plan else { panic!("{plan}") };
+    assert!((nearest - goal.position()).norm() > 1.0 && nearest.x + nearest.y > 30.0, "{nearest}");
+    eprintln!("a closed room: {spent:.0} ms CPU");
+    assert!(spent < 1000.0, "{spent} ms");
+    // With a door that it passes, the way is found.
+    (415..=425).for_each(|row| grid.set(CellIndex { col: 400, row }, Cell::Free));
+    found(planner.plan(&grid, start, Twist2::ZERO, goal));
 }
