@@ -1,11 +1,12 @@
 //! Runs the SLAM over a recorded folder in the TUM layout, one image after the other: how accurate it is, and what it costs.
 //!
-//! `cargo run --release -p trundle-slam --example drive -- FOLDER [FRAMES] [--blind]` prints the frames located, loops, keyframes,
+//! `cargo run --release -p trundle-slam --example drive -- FOLDER [FRAMES] [--blind] [--seed=N]` prints the frames located, loops, keyframes,
 //! the ATE after a rigid alignment, how much of it is up and down, and median, 99th percentile and most of the processor
 //! time, in ms, of the features alone, of a whole step, and of those that made keyframes. Wheels are used where the folder
-//! has them, unless `--blind`. Loading images is not timed. Without `camera.toml` the camera is that of freiburg1.
+//! has them, unless `--blind`; N is the seed of what is drawn at random. Loading images is not timed. Without `camera.toml` the camera is that of freiburg1.
 //! `TRUNDLE_FRAMES=FILE` writes of each frame: time, state, whether it is a keyframe, inliers, how far off it
-//! was told at once (m, rad, the first one being right), the error after all corrections (mm, aligned), and what it took (ms).
+//! was told at once (m, rad, the first one being right), how uncertain that was told to be (m, rad, one standard deviation), the
+//! normalised squared error of this (6 is true), the error after all corrections (mm, aligned), and what it took (ms).
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a bench program")]
 
 #[path = "../tests/support/align.rs"]
@@ -15,10 +16,11 @@ mod drive;
 
 use align::aligned;
 use drive::Drive;
+use nalgebra::Vector6;
 use rustix::time::{ClockId, clock_gettime};
 use std::fmt::Write;
 use trundle_core::{Pose3, Vector3, gray_from_color};
-use trundle_slam::{RgbdSlam, SlamConfig};
+use trundle_slam::{RgbdSlam, SlamConfig, TrackReport};
 use trundle_vision::OrbExtractor;
 
 fn main() {
@@ -28,6 +30,10 @@ fn main() {
     let count = args.get(1).map_or(usize::MAX, |n| n.parse().unwrap()).min(drive.frames.len());
     let mut config = SlamConfig::default();
     config.motion.readout = drive.readout;
+    if let Some(seed) = flags.iter().find_map(|flag| flag.strip_prefix("--seed=")) {
+        config.seed = seed.parse().unwrap();
+    }
+    let is_blind = flags.iter().any(|flag| flag == "--blind");
     let mut extractor = OrbExtractor::new(config.orb.clone()).unwrap();
     let mut slam = RgbdSlam::new(drive.camera, config).unwrap();
     let (mut features, mut kept, mut total) = (vec![], vec![], vec![]);
@@ -37,7 +43,7 @@ fn main() {
         let start = processor_ms();
         extractor.extract(&gray_from_color(image.color()));
         let found_at = processor_ms();
-        let prior = drive.wheels(i).filter(|_| flags.is_empty());
+        let prior = drive.wheels(i).filter(|_| !is_blind);
         let report = slam.step(&image, prior);
         let end = processor_ms();
         features.push(found_at - start);
@@ -52,13 +58,7 @@ fn main() {
             println!("frame {i}: loop of {} points, by {moved:.3} m and {turned:.4} rad", closed.points);
         }
         let live = off_since_start(&drive, i, report.visual_from_camera);
-        let (off, turned) = live.map_or((f64::NAN, f64::NAN), |off| (off.translation.norm(), off.angle()));
-        states.push(format!(
-            "{:?} {} {} {off:.4} {turned:.4}",
-            report.tracking,
-            u8::from(report.new_keyframe),
-            report.inliers
-        ));
+        states.push(state(&report, live));
     }
     println!(
         "{located} of {count} frames located, {loops} loops, {} keyframes made, {} in the map, {} landmarks",
@@ -80,6 +80,24 @@ fn main() {
 fn off_since_start(drive: &Drive, i: usize, pose: Pose3) -> Option<Pose3> {
     let truth = drive.frames[0].truth?.inverse() * drive.frames[i].truth?;
     Some(truth.inverse() * pose)
+}
+
+/// What `TRUNDLE_FRAMES` tells of a frame when it is there, `off` from the truth.
+fn state(report: &TrackReport, off: Option<Pose3>) -> String {
+    let off = off.map_or(Vector6::repeat(f64::NAN), |off| off.log());
+    let sigma = |from: usize| report.covariance.fixed_view::<3, 3>(from, from).trace().sqrt();
+    let information = report.covariance.try_inverse().unwrap_or_default();
+    format!(
+        "{:?} {} {} {:.4} {:.4} {:.4} {:.4} {:.1}",
+        report.tracking,
+        u8::from(report.new_keyframe),
+        report.inliers,
+        off.fixed_rows::<3>(0).norm(),
+        off.fixed_rows::<3>(3).norm(),
+        sigma(0),
+        sigma(3),
+        off.dot(&(information * off))
+    )
 }
 
 /// The error of the trajectory against the truth.

@@ -51,6 +51,7 @@ mod slam;
 mod spanning_tree;
 #[cfg(test)]
 mod testing;
+mod ties;
 mod tracker;
 mod trajectory;
 mod triangulation;

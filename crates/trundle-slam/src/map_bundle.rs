@@ -1,12 +1,10 @@
-use crate::floor::Plane;
 use crate::ids::{KeyframeId, LandmarkId};
 use crate::map::LandmarkMap;
 use crate::sensor::Sensor;
+use crate::ties::known_ties;
 use nalgebra::Matrix6;
 use trundle_core::{Pose3, Vector3};
-use trundle_optim::{
-    BundleConfig, BundleObservation, BundlePose, BundleProblem, BundleSolver, CHI2_95_2, PoseConstraint,
-};
+use trundle_optim::{BundleConfig, BundleObservation, BundlePose, BundleProblem, BundleSolver, CHI2_95_2};
 
 /// A bundle adjustment of some keyframes and landmarks, under way while the map goes on changing.
 ///
@@ -82,7 +80,8 @@ impl MapBundle {
     /// Starts refining, with the buffers of an earlier solver.
     pub fn begin(&mut self, map: &LandmarkMap, sensor: &Sensor, config: &BundleConfig, solver: BundleSolver) {
         self.solver = solver;
-        let ties = self.ties(map);
+        let ids: Vec<KeyframeId> = self.keyframes.iter().map(|(id, _)| *id).collect();
+        let ties = known_ties(map, &ids, |i| self.keyframes[i].1.fixed);
         let world = BundlePose { world_from_camera: Pose3::identity(), fixed: true };
         let poses = self.keyframes.iter().map(|(_, pose)| *pose).chain([world]).collect();
         let points = self.landmarks.iter().map(|(_, point)| *point).collect();
@@ -90,22 +89,6 @@ impl MapBundle {
         let problem = BundleProblem::new(sensor.camera, poses, points, observations)
             .and_then(|problem| problem.with_ties(ties));
         self.solver.begin(&problem.expect("invariant: every index was counted here"), config);
-    }
-
-    /// What is known of the keyframes besides what they see: the ways between them by the wheels, and the floor.
-    fn ties(&self, map: &LandmarkMap) -> Vec<PoseConstraint> {
-        let plane = map.floor.and_then(|axis| Plane::of(map, axis));
-        let world = self.keyframes.len();
-        let mut ties = Vec::new();
-        for (to, (id, pose)) in self.keyframes.iter().enumerate() {
-            let rolled = map.live_keyframe(*id).and_then(|keyframe| keyframe.rolled);
-            let from = rolled.and_then(|rolled| self.place_of(rolled.from));
-            let is_free = |from: &usize| !(pose.fixed && self.keyframes[*from].1.fixed);
-            ties.extend(rolled.zip(from.filter(is_free)).and_then(|(rolled, from)| rolled.tie(from, to)));
-            let plane = plane.filter(|_| !pose.fixed);
-            ties.extend(plane.and_then(|plane| plane.tie(map, *id, world, to)));
-        }
-        ties
     }
 
     /// The solver, for its buffers, once the result is taken over.

@@ -49,8 +49,8 @@ impl<'a> Drift<'a> {
         config: &'a LoopConfig,
     ) -> Self {
         let way = odometer.between(old, new);
-        let off = (config.drift_part * way.length).hypot(config.tie_sigma).powi(2);
-        let turned = (config.drift_part * way.turn).hypot(config.tie_sigma_turn).powi(2);
+        let (off, turned) = (config.drift_part * way.length, config.drift_part * way.turn);
+        let (off, turned) = (off * off, turned * turned);
         let least = Vector6::new(off, off, off, turned, turned, turned);
         let grown = map.keyframe(new).covariance + map.keyframe(old).covariance;
         Self { covariance: grown + Matrix6::from_diagonal(&least), config }
@@ -64,10 +64,11 @@ impl<'a> Drift<'a> {
             && offset.angle() <= config.turn + off(3).max(config.surprise_turn)
     }
 
-    /// Whether the drift may have been this correction (a right perturbation), by its chi-square of six.
-    pub fn allows(&self, correction: Pose3) -> bool {
+    /// Whether the drift may have been this correction (a right perturbation), itself as uncertain as `seen`, by its chi-square
+    /// of six.
+    pub fn allows(&self, correction: Pose3, seen: &Matrix6<f64>) -> bool {
         let tangent = correction.log();
-        let Some(information) = self.covariance.try_inverse() else { return false };
+        let Some(information) = (self.covariance + seen).try_inverse() else { return false };
         tangent.dot(&(information * tangent)) <= self.config.most_sigmas.powi(2) + CHI2_MARGIN
     }
 

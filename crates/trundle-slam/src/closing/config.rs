@@ -32,10 +32,6 @@ pub struct LoopConfig {
     /// Standard deviation of the drift whatever the covariance says: part of the way between, 0 to 1. Default 0.01: what
     /// RGB-D odometry drifts by.
     pub drift_part: f64,
-    /// Standard deviations of what ties keyframes that see the same: m, above 0. Default 0.002: 100 landmarks, each known to 2 cm.
-    pub tie_sigma: f64,
-    /// And rad, above 0. Default 0.001: the same landmarks, 2 m away.
-    pub tie_sigma_turn: f64,
     /// Landmarks that two keyframes share to be tied in the pose graph, 1 or more. Default 100 \[MurArtal17\].
     pub tied_by: usize,
     /// The pose graph.
@@ -56,8 +52,6 @@ impl Default for LoopConfig {
             min_agreement: 0.5,
             most_sigmas: 5.0,
             drift_part: 0.01,
-            tie_sigma: 0.002,
-            tie_sigma_turn: 0.001,
             tied_by: 100,
             graph: PoseGraphConfig::default(),
         }
@@ -87,8 +81,6 @@ impl LoopConfig {
             ("loops.surprise", self.surprise, "m"),
             ("loops.surprise_turn", self.surprise_turn, "rad"),
             ("loops.most_sigmas", self.most_sigmas, ""),
-            ("loops.tie_sigma", self.tie_sigma, "m"),
-            ("loops.tie_sigma_turn", self.tie_sigma_turn, "rad"),
         ] {
             require_positive(name, value, unit)?;
         }

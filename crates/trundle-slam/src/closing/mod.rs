@@ -9,6 +9,7 @@
 //! matching under the words, about a ms each.
 
 mod candidates;
+mod common_sight;
 mod config;
 mod correct;
 mod odometer;
@@ -126,7 +127,7 @@ impl LoopCloser<'_> {
         let here = map.live_keyframe(keyframe)?.visual_from_camera;
         let correction = here.inverse() * found.visual_from_camera;
         let drift = Drift::between(map, self.odometer, (found.candidate, keyframe), self.config);
-        if drift.allows(correction) {
+        if drift.allows(correction, &found.covariance) {
             return Some(found);
         }
         if !drift.may_be_surprised_by(correction) {
