@@ -3,6 +3,7 @@ use crate::ids::{KeyframeId, LandmarkId};
 use crate::map::LandmarkMap;
 use crate::places::Places;
 use crate::report::MapId;
+use crate::rolled::Rolled;
 use nalgebra::Matrix6;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -52,6 +53,9 @@ impl Component {
             let pose = (own_from_other * keyframe.visual_from_camera).renormalized();
             let new = self.map.add_keyframe(keyframe.frame.clone(), pose);
             self.map.set_covariances(new, keyframe.covariance + seam, keyframe.ground + seam);
+            let rolled = keyframe.rolled.filter(|rolled| renamed.keyframes.contains_key(&rolled.from));
+            self.map.keyframe_mut(new).rolled =
+                rolled.map(|rolled| Rolled { from: renamed.keyframes[&rolled.from], ..rolled });
             renamed.keyframes.insert(old, new);
         }
         for (old, landmark) in other.landmarks() {

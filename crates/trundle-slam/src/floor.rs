@@ -35,9 +35,10 @@ impl Floor {
         self.axis = self.axis.filter(|axis| *axis != Vector3::zeros());
     }
 
-    /// The axis about which the camera turns, camera frame; `None` where the camera is not on a floor, or has not turned yet.
-    pub fn axis(&self) -> Option<Vector3> {
-        self.axis.filter(|_| !self.is_left)
+    /// The axis about which the camera turns, camera frame; as long as it has not turned the one known `before`. `None` where the
+    /// camera is not on a floor.
+    pub fn axis_after(&self, before: Option<Vector3>) -> Option<Vector3> {
+        self.axis.or(before).filter(|_| !self.is_left)
     }
 }
 
@@ -114,12 +115,13 @@ mod tests {
     fn priors_of_wheels_tell_the_floor_and_those_of_a_hand_do_not() {
         let mut floor = Floor::default();
         floor.note(mount().inverse() * Pose3::from_pose2(Pose2::new(0.1, 0.0, 0.0)) * mount());
-        assert_eq!(floor.axis(), None);
+        assert_eq!(floor.axis_after(None), None);
+        assert_eq!(floor.axis_after(Some(Vector3::y())), Some(Vector3::y()), "it has not turned yet");
         (1..20).for_each(|i| floor.note(at(i - 1).inverse() * at(i)));
-        let axis = floor.axis().unwrap();
+        let axis = floor.axis_after(None).unwrap();
         assert!(mount().rotate(axis).z.abs() > 1.0 - 1e-9);
         floor.note(Pose3::exp(Vector6::new(0.0, 0.0, 0.01, 0.001, 0.002, 0.003)));
-        assert_eq!(floor.axis(), None);
+        assert_eq!(floor.axis_after(Some(Vector3::y())), None);
     }
 
     #[test]

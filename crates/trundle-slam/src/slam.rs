@@ -296,7 +296,7 @@ impl RgbdSlam {
 
     fn insert(&mut self, frame: Frame, pose: Pose3, tracked: &[Option<LandmarkId>]) -> KeyframeId {
         let mapper = Self::mapper(&self.sensor, &self.config);
-        self.active.map.floor = self.floor.axis();
+        self.active.map.floor = self.floor.axis_after(self.active.map.floor);
         let rolled = self.rolled.filter(|rolled| self.active.map.live_keyframe(rolled.from).is_some());
         let keyframe = mapper.insert(&mut self.active.map, frame, pose, (tracked, rolled));
         self.rolled = Some(Rolled::at(keyframe));

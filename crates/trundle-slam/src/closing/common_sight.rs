@@ -3,7 +3,7 @@ use crate::landmark::Landmark;
 use crate::map::LandmarkMap;
 use crate::sensor::Sensor;
 use nalgebra::{Matrix3, Matrix6};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use trundle_core::Vector3;
 use trundle_optim::adjoint;
 
@@ -17,10 +17,10 @@ pub(super) fn common_sight(
     map: &LandmarkMap,
     sensor: &Sensor,
     ids: &[KeyframeId],
-    pairs: impl Iterator<Item = (usize, usize)>,
+    pairs: BTreeSet<(usize, usize)>,
 ) -> BTreeMap<(usize, usize), Matrix6<f64>> {
     let mut known: BTreeMap<(usize, usize), Matrix6<f64>> =
-        pairs.map(|pair| (pair, Matrix6::zeros())).collect();
+        pairs.into_iter().map(|pair| (pair, Matrix6::zeros())).collect();
     for (_, landmark) in map.landmarks() {
         let views = views(map, sensor, ids, landmark);
         for (i, (a, by_a)) in views.iter().enumerate() {
@@ -70,4 +70,49 @@ fn of_bodies(of_point: Matrix3<f64>, point: Vector3) -> Matrix6<f64> {
     information.fixed_view_mut::<3, 3>(3, 0).copy_from(&mixed.transpose());
     information.fixed_view_mut::<3, 3>(3, 3).copy_from(&(by_turn.transpose() * mixed));
     information
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::{frame_with_depth, sensor};
+    use nalgebra::{Matrix3x6, Vector6};
+    use trundle_core::Pose3;
+
+    #[test]
+    fn it_is_what_is_left_when_the_landmarks_are_eliminated() {
+        let (mut map, sensor) = (LandmarkMap::default(), sensor());
+        let poses =
+            [Vector6::new(0.3, -0.1, 0.2, 0.1, 0.4, -0.2), Vector6::new(0.5, 0.1, 0.1, 0.0, 0.3, -0.1)];
+        let ids = poses.map(|pose| map.add_keyframe(frame_with_depth(60), Pose3::exp(pose)));
+        let mut schur = Matrix6::zeros();
+        for feature in 0..60 {
+            let (a, b) = (map.keyframe(ids[0]), map.keyframe(ids[1]));
+            let point = b.visual_from_camera.transform(sensor.point(&b.frame, feature).unwrap());
+            let by_point = |keyframe: &crate::map::Keyframe| {
+                let p_camera = keyframe.visual_from_camera.inverse().transform(point);
+                let seen = sensor.observation(&keyframe.frame, feature);
+                let linear = seen.linearize(&sensor.camera, p_camera).unwrap();
+                let weight = seen.huber().weight(linear.residual.norm_squared()).sqrt();
+                (linear.by_point * weight, p_camera)
+            };
+            let ((by_a, _), (by_b, p_camera)) = (by_point(a), by_point(b));
+            // Of b's frame: its point moves by -rho + p x phi, and A is turned into it.
+            let mut by_pose = Matrix3x6::zeros();
+            by_pose.fixed_view_mut::<3, 3>(0, 0).copy_from(&-Matrix3::identity());
+            by_pose.fixed_view_mut::<3, 3>(0, 3).copy_from(&p_camera.cross_matrix());
+            let jacobian = by_b * by_pose;
+            let a_from_b = (a.visual_from_camera.inverse() * b.visual_from_camera).rotation_matrix();
+            let by_a = by_a * a_from_b;
+            let points = by_a.transpose() * by_a + by_b.transpose() * by_b;
+            let mixed = jacobian.transpose() * by_b;
+            schur +=
+                jacobian.transpose() * jacobian - mixed * points.try_inverse().unwrap() * mixed.transpose();
+            let landmark = map.add_landmark(point);
+            assert!(map.observe(landmark, ids[0], feature) && map.observe(landmark, ids[1], feature));
+        }
+        let known = common_sight(&map, &sensor, &ids, BTreeSet::from([(0, 1)]));
+        let off = (known[&(0, 1)] - schur).norm() / schur.norm();
+        assert!(off < 1e-9, "{off}");
+    }
 }

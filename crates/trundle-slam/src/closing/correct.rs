@@ -1,5 +1,5 @@
 use super::LoopConfig;
-use super::common_sight::common_sight;
+use super::essential_graph::essential_graph;
 use super::verify::Recognised;
 use crate::ids::KeyframeId;
 use crate::map::LandmarkMap;
@@ -7,11 +7,7 @@ use crate::mapping::MappingConfig;
 use crate::motion::carried;
 use crate::search::Likeness;
 use crate::sensor::Sensor;
-use crate::ties::known_ties;
-use nalgebra::Matrix6;
-use std::collections::BTreeSet;
 use trundle_core::{Pose3, Vector3};
-use trundle_optim::{CHI2_95_6, Huber, PoseConstraint, PoseGraph};
 
 /// Mends the map once a place is recognised.
 #[derive(Debug, Clone)]
@@ -29,7 +25,8 @@ impl Correction<'_> {
     /// those that are there twice, and begins to refine the whole map.
     pub fn apply(&self, map: &mut LandmarkMap, keyframe: KeyframeId) {
         let ids: Vec<KeyframeId> = map.keyframe_ids().collect();
-        let after = self.graph(map, keyframe, &ids).solve(&self.config.graph).poses;
+        let graph = essential_graph(map, self.sensor, (keyframe, &self.found), self.config.tied_by);
+        let after = graph.solve(&self.config.graph).poses;
         carry_landmarks(map, &ids, &after);
         for (id, pose) in ids.into_iter().zip(after) {
             map.move_keyframe(id, pose);
@@ -48,49 +45,6 @@ impl Correction<'_> {
         map.set_covariances(keyframe, ground + self.found.covariance, ground);
     }
 
-    /// Every keyframe tied to the others by what they both see, by the wheels and to the floor, as they stand to each other
-    /// now, each tie as certain as that is; and the newest to the place it recognised.
-    fn graph(&self, map: &LandmarkMap, keyframe: KeyframeId, ids: &[KeyframeId]) -> PoseGraph {
-        let node = |id: KeyframeId| ids.binary_search(&id).expect("invariant: the keyframe is alive");
-        let poses = ids.iter().map(|id| map.keyframe(*id).visual_from_camera);
-        let poses: Vec<Pose3> = poses.chain([Pose3::identity()]).collect();
-        let as_now = |(from, to): (usize, usize), information: Matrix6<f64>| PoseConstraint {
-            from,
-            to,
-            from_to: poses[from].inverse() * poses[to],
-            information,
-        };
-        let seen = common_sight(map, self.sensor, ids, self.pairs(map, ids).into_iter());
-        let mut ties: Vec<PoseConstraint> =
-            seen.into_iter().map(|(pair, by)| as_now(pair, by + Matrix6::identity())).collect();
-        for tie in known_ties(map, ids, |i| i == 0) {
-            let is_floor = tie.from == ids.len();
-            ties.push(if is_floor { tie } else { as_now((tie.from, tie.to), believed(&tie, &poses)) });
-        }
-        let candidate = node(self.found.candidate);
-        let from_to = poses[candidate].inverse() * self.found.visual_from_camera;
-        let information = self.found.covariance.try_inverse().unwrap_or_default();
-        ties.push(PoseConstraint { from: candidate, to: node(keyframe), from_to, information });
-        let fixed: Vec<bool> = (0..poses.len()).map(|i| i == 0 || i == ids.len()).collect();
-        PoseGraph::new(poses, &fixed, ties).expect("invariant: every index was counted here")
-    }
-
-    /// The pairs of keyframes that the graph ties, by their places: the essential graph \[MurArtal17\] of the spanning tree,
-    /// strong covisibility and earlier loops, and neighbours in time.
-    fn pairs(&self, map: &LandmarkMap, ids: &[KeyframeId]) -> BTreeSet<(usize, usize)> {
-        let place = |id: &KeyframeId| ids.binary_search(id).ok();
-        let mut pairs: BTreeSet<(usize, usize)> = (1..ids.len()).map(|i| (i - 1, i)).collect();
-        for (i, id) in ids.iter().enumerate() {
-            let tree = &map.keyframe(*id).tree;
-            let shared = map.covisible(*id, self.config.tied_by).into_iter().map(|(other, _)| other);
-            let tied = shared.chain(tree.parent).chain(tree.loops.iter().copied());
-            let others: Vec<usize> =
-                tied.filter_map(|other| place(&other)).filter(|other| *other != i).collect();
-            pairs.extend(others.into_iter().map(|other| (other.min(i), other.max(i))));
-        }
-        pairs
-    }
-
     /// Looks for the old place's landmarks in the newest keyframe and those around it.
     fn fuse(&self, map: &mut LandmarkMap, keyframe: KeyframeId) {
         let around = map.covisible(keyframe, 15).into_iter().map(|(id, _)| id);
@@ -106,12 +60,6 @@ impl Correction<'_> {
             mapper.fuse_into(map, target, &self.found.landmarks);
         }
     }
-}
-
-/// What a tie by the wheels says where the poses are these: where they slipped, no more than under the Huber loss.
-fn believed(tie: &PoseConstraint, poses: &[Pose3]) -> Matrix6<f64> {
-    let off = (tie.from_to.inverse() * poses[tie.from].inverse() * poses[tie.to]).log();
-    tie.information * Huber::beyond(CHI2_95_6).weight(off.dot(&(tie.information * off)))
 }
 
 /// Moves each landmark with the keyframe that saw it first; `after` is where the keyframes `ids` go.

@@ -12,6 +12,7 @@ mod candidates;
 mod common_sight;
 mod config;
 mod correct;
+mod essential_graph;
 mod odometer;
 mod verify;
 

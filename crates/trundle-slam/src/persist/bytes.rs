@@ -127,6 +127,21 @@ impl<'a> Reader<'a> {
         Ok(Vector3::new(self.length(name)?, self.length(name)?, self.length(name)?))
     }
 
+    /// Whether something follows.
+    pub fn mark(&mut self, name: &str) -> Read<bool> {
+        let mark = self.u8()?;
+        self.require(mark < 2, name, mark, || "0 or 1".to_owned())?;
+        Ok(mark == 1)
+    }
+
+    /// A vector of unit length.
+    pub fn direction(&mut self, name: &str) -> Read<Vector3> {
+        let direction = self.vector(name)?;
+        let length = direction.norm();
+        self.require((length - 1.0).abs() < 1e-6, name, length, || "a vector of length 1".to_owned())?;
+        Ok(direction)
+    }
+
     pub fn descriptor(&mut self) -> Read<Descriptor> {
         Ok(Descriptor([self.u64()?, self.u64()?, self.u64()?, self.u64()?]))
     }

@@ -56,9 +56,7 @@ fn read_keypoint(bytes: &mut Reader, sensor: &Sensor) -> Result<Keypoint, MapFil
 }
 
 fn read_depth(bytes: &mut Reader) -> Result<Option<InverseDepth>, MapFileError> {
-    let is_there = bytes.u8()?;
-    bytes.require(is_there < 2, "mark of a depth", is_there, || "0 or 1".to_owned())?;
-    if is_there == 0 {
+    if !bytes.mark("mark of a depth")? {
         return Ok(None);
     }
     let mut positive = |name: &str| bytes.f64_in(name, 1e-9, 1e9);

@@ -6,19 +6,22 @@ use super::frame;
 use crate::ids::{KeyframeId, LandmarkId};
 use crate::landmark::Landmark;
 use crate::map::{Keyframe, LandmarkMap};
+use crate::rolled::Rolled;
 use crate::sensor::Sensor;
 use nalgebra::Matrix6;
 use std::collections::BTreeMap;
 
 /// The least bytes of a keyframe, a landmark and an observation.
-const LEAST: (usize, usize, usize) = (8 + 4 + 7 * 8 + 72 * 8, 24 + 32 + 24 + 8 + 4 * 3 + 8, 8);
+const LEAST: (usize, usize, usize) = (8 + 4 + 7 * 8 + 72 * 8 + 1, 24 + 32 + 24 + 8 + 4 * 3 + 8, 8);
 
 pub(super) fn write(out: &mut Writer, map: &LandmarkMap) {
     let numbers: BTreeMap<KeyframeId, usize> = map.keyframes().map(|(id, _)| id).zip(0..).collect();
     out.count(numbers.len());
     for (_, keyframe) in map.keyframes() {
-        write_keyframe(out, keyframe);
+        write_keyframe(out, keyframe, |id| numbers[&id]);
     }
+    out.u8(u8::from(map.floor.is_some()));
+    out.f64s(map.floor.iter().flat_map(|axis| axis.iter().copied()));
     out.count(map.landmark_count());
     for (_, landmark) in map.landmarks() {
         write_landmark(out, landmark, |id| numbers[&id]);
@@ -36,7 +39,11 @@ pub(super) fn read(bytes: &mut Reader, sensor: &Sensor) -> Result<LandmarkMap, M
     bytes.within = "keyframes";
     let count = bytes.count(LEAST.0)?;
     bytes.require(count > 0, "keyframes of a map", count, || "1 or more".to_owned())?;
-    let ids = (0..count).map(|_| read_keyframe(bytes, &mut map, sensor)).collect::<Result<Vec<_>, _>>()?;
+    let mut ids = Vec::new();
+    for _ in 0..count {
+        ids.push(read_keyframe(bytes, &mut map, sensor, &ids)?);
+    }
+    map.floor = bytes.mark("mark of a floor")?.then(|| bytes.direction("axis of the floor")).transpose()?;
     bytes.within = "landmarks";
     for _ in 0..bytes.count(LEAST.1)? {
         read_landmark(bytes, &mut map, &ids)?;
@@ -52,26 +59,48 @@ pub(super) fn read(bytes: &mut Reader, sensor: &Sensor) -> Result<LandmarkMap, M
     Ok(map)
 }
 
-fn write_keyframe(out: &mut Writer, keyframe: &Keyframe) {
+fn write_keyframe(out: &mut Writer, keyframe: &Keyframe, number: impl Fn(KeyframeId) -> usize) {
     frame::write(out, &keyframe.frame);
     out.pose(&keyframe.visual_from_camera);
     out.f64s(keyframe.covariance.iter().chain(keyframe.ground.iter()).copied());
+    out.u8(u8::from(keyframe.rolled.is_some()));
+    if let Some(Rolled { from, from_to, covariance }) = &keyframe.rolled {
+        out.count(number(*from));
+        out.pose(from_to);
+        out.f64s(covariance.iter().copied());
+    }
 }
 
 fn read_keyframe(
     bytes: &mut Reader,
     map: &mut LandmarkMap,
     sensor: &Sensor,
+    before: &[KeyframeId],
 ) -> Result<KeyframeId, MapFileError> {
     let frame = frame::read(bytes, sensor)?;
     let pose = bytes.pose("pose of a keyframe")?;
-    let (mut covariance, mut ground) = (Matrix6::zeros(), Matrix6::zeros());
-    for entry in covariance.iter_mut().chain(ground.iter_mut()) {
-        *entry = bytes.length("covariance of a keyframe")?;
-    }
+    let whole = read_covariance(bytes, "covariance of a keyframe")?;
+    let ground = read_covariance(bytes, "covariance of a keyframe")?;
+    let rolled = bytes.mark("mark of a way")?.then(|| read_rolled(bytes, before)).transpose()?;
     let id = map.add_keyframe(frame, pose);
-    map.set_covariances(id, covariance, ground);
+    map.set_covariances(id, whole, ground);
+    map.keyframe_mut(id).rolled = rolled;
     Ok(id)
+}
+
+/// The way to a keyframe from one of those before it.
+fn read_rolled(bytes: &mut Reader, before: &[KeyframeId]) -> Result<Rolled, MapFileError> {
+    let from = before[bytes.index("keyframe that a way begins at", before.len())?];
+    let from_to = bytes.pose("way between keyframes")?;
+    Ok(Rolled { from, from_to, covariance: read_covariance(bytes, "covariance of a way")? })
+}
+
+fn read_covariance(bytes: &mut Reader, name: &str) -> Result<Matrix6<f64>, MapFileError> {
+    let mut covariance = Matrix6::zeros();
+    for entry in covariance.iter_mut() {
+        *entry = bytes.length(name)?;
+    }
+    Ok(covariance)
 }
 
 fn write_landmark(out: &mut Writer, landmark: &Landmark, number: impl Fn(KeyframeId) -> usize) {
