@@ -9,7 +9,7 @@ use trundle_core::Invalid;
 use trundle_vision::OrbConfig;
 
 /// Everything that can be set about the RGB-D SLAM.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct SlamConfig {
     /// Features.
@@ -28,6 +28,24 @@ pub struct SlamConfig {
     pub loops: LoopConfig,
     /// Seed of the random samples. Default 0.
     pub seed: u64,
+    /// Frames whose poses are kept, the newest ones, 1 or more. Default 108,000: an hour at 30 Hz, some 10 MB.
+    pub kept_frames: usize,
+}
+
+impl Default for SlamConfig {
+    fn default() -> Self {
+        Self {
+            orb: OrbConfig::default(),
+            depth: DepthConfig::default(),
+            tracking: TrackingConfig::default(),
+            motion: MotionConfig::default(),
+            keyframes: KeyframeConfig::default(),
+            mapping: MappingConfig::default(),
+            loops: LoopConfig::default(),
+            seed: 0,
+            kept_frames: 108_000,
+        }
+    }
 }
 
 impl SlamConfig {
@@ -36,6 +54,9 @@ impl SlamConfig {
     /// # Errors
     /// When a number is out of the range that its field names.
     pub fn validated(self) -> Result<Self, Invalid> {
+        if self.kept_frames == 0 {
+            return Err(Invalid::new("slam.kept_frames", 0, "", "1 or more"));
+        }
         Ok(Self {
             orb: self.orb.validated()?,
             depth: self.depth.validated()?,
@@ -44,7 +65,7 @@ impl SlamConfig {
             keyframes: self.keyframes.validated()?,
             mapping: self.mapping.validated()?,
             loops: self.loops.validated()?,
-            seed: self.seed,
+            ..self
         })
     }
 }

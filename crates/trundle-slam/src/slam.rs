@@ -59,7 +59,10 @@ pub struct RgbdSlam {
     recognition: Option<Claim<MapId>>,
     /// A place of the active map that it recognised farther off than it should be.
     surprise: Option<Claim<()>>,
-    history: Vec<Past>,
+    /// The newest frames, the last one behind.
+    history: VecDeque<Past>,
+    /// How many frames there were in all.
+    frames: u64,
     /// The way since the newest keyframe, as long as wheels know it.
     rolled: Option<Rolled>,
     /// What the priors say of a floor.
@@ -116,7 +119,8 @@ impl RgbdSlam {
             doubt: None,
             recognition: None,
             surprise: None,
-            history: vec![],
+            history: VecDeque::new(),
+            frames: 0,
             rolled: None,
             floor: Floor::default(),
             searches: VecDeque::new(),
@@ -231,15 +235,15 @@ impl RgbdSlam {
 
     /// The camera moves along with the map that has changed; how it moved, `new_from_old` in the visual frame.
     fn follow_the_map(&mut self) -> Option<Pose3> {
-        let past = self.history.last().filter(|past| past.map == self.active.id)?;
+        let past = self.history.back().filter(|past| past.map == self.active.id)?;
         let pose = past.anchored.visual_from_camera(&self.active.map);
         let correction = pose * self.belief.visual_from_camera.inverse();
         self.belief.visual_from_camera = pose;
         Some(correction)
     }
 
-    /// Pose of every frame that was not lost, in the order of `step`: `visual_from_camera` by the map as it is now. Of
-    /// several maps that of the last frame; the others have frames of their own.
+    /// Pose of every frame that was not lost, of the newest [`SlamConfig::kept_frames`], in the order of `step`:
+    /// `visual_from_camera` by the map as it is now. Of several maps that of the last frame; the others have frames of their own.
     pub fn trajectory(&self) -> Vec<(Stamp, Pose3)> {
         let is_here = |past: &&Past| past.map == self.active.id && past.tracking != Tracking::Lost;
         let pose = |past: &Past| (past.anchored.stamp, past.anchored.visual_from_camera(&self.active.map));
@@ -285,7 +289,7 @@ impl RgbdSlam {
 
     /// Of the samples drawn for this frame.
     fn seed(&self) -> u64 {
-        self.config.seed.wrapping_add(self.history.len() as u64)
+        self.config.seed.wrapping_add(self.frames)
     }
 
     fn mapper<'a>(sensor: &'a Sensor, config: &'a SlamConfig) -> Mapper<'a> {
@@ -314,14 +318,18 @@ impl RgbdSlam {
     fn remember(&mut self, stamp: Stamp, reference: Option<KeyframeId>, tracking: Tracking) -> Anchored {
         let pose = self.belief.visual_from_camera;
         let anchored = Anchored::new(stamp, reference, pose, &self.active.map);
-        self.history.push(Past { anchored, map: self.active.id, tracking });
+        if self.history.len() == self.config.kept_frames {
+            self.history.pop_front();
+        }
+        self.history.push_back(Past { anchored, map: self.active.id, tracking });
+        self.frames += 1;
         anchored
     }
 
     /// Of the frame remembered last.
     fn report(&self, features: usize) -> TrackReport {
         let Past { anchored, map, tracking } =
-            *self.history.last().expect("invariant: the frame was remembered");
+            *self.history.back().expect("invariant: the frame was remembered");
         TrackReport {
             stamp: anchored.stamp,
             tracking,

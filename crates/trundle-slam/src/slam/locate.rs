@@ -65,7 +65,7 @@ impl RgbdSlam {
         }
         let other = self
             .resting
-            .get(self.history.len() % self.resting.len().max(1))
+            .get(self.frames as usize % self.resting.len().max(1))
             .filter(|_| reach != Reach::Told)?;
         let found = unrivalled(relocalise(&self.tracker(other, frame, depth, &words)))?;
         Some(Sighting { map: other.id, found })

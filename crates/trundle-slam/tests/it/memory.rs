@@ -1,6 +1,6 @@
-//! Ten laps of one room take no more memory than three.
+//! Ten laps of one room take no more memory than three, and no time does.
 
-use crate::points::{Dice, Room, camera, stamp};
+use crate::points::{Dice, Room, camera, darkness, stamp};
 use nalgebra::Vector6;
 use std::f64::consts::TAU;
 use trundle_core::Pose3;
@@ -38,4 +38,23 @@ fn ten_laps_of_a_room_take_no_more_than_three() {
     assert!(within(ten.1, three.1) && within(ten.2, three.2), "landmarks and bytes");
     // Keyframes are few in a room, and some come late: 21 after three laps, 26 after eight, and no more.
     assert_eq!(after[7].0, ten.0, "keyframes");
+}
+
+#[test]
+fn only_the_newest_poses_are_kept() {
+    let config = SlamConfig { kept_frames: 7, ..SlamConfig::default() };
+    let mut slam = RgbdSlam::new(camera(), config).unwrap();
+    let (room, mut dice) = (Room::new(), Dice(5));
+    let mut told = Vec::new();
+    for i in 0..20 {
+        let (features, depth) =
+            if i % 5 == 3 { darkness() } else { room.seen_from(lap(i, &mut Dice(5)), &mut dice) };
+        let report = slam.step_with_features(stamp(i), features, &depth, Some(Pose3::identity()));
+        told.push(report.stamp);
+    }
+    let kept: Vec<_> = slam.trajectory().into_iter().map(|(stamp, _)| stamp).collect();
+    assert_eq!(kept, told[13..]);
+    let none = SlamConfig { kept_frames: 0, ..SlamConfig::default() };
+    let error = RgbdSlam::new(camera(), none).unwrap_err().to_string();
+    assert_eq!(error, "slam.kept_frames is 0, expected 1 or more");
 }
