@@ -3,12 +3,12 @@ use crate::landmark::Landmark;
 use crate::map::LandmarkMap;
 use crate::sensor::Sensor;
 use nalgebra::{Matrix3, Matrix6};
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 use trundle_core::Vector3;
 use trundle_optim::adjoint;
 
-/// How well what two keyframes both see holds them to each other: of each pair of places in `ids` (by rising id) the
-/// information of where the second one is in the frame of the first, a right perturbation.
+/// How well what two keyframes both see holds them to each other: of each pair of places in `ids` (by rising id), the lower
+/// first, the information of where the second one is in the frame of the first, a right perturbation.
 ///
 /// Each keyframe sees a common landmark X with an information A and B (visual frame, in it the Huber weight of its residual);
 /// with X itself unknown, they are held at it by (A^-1 + B^-1)^-1, and a turn about the origin moves it by -X^. A landmark
@@ -18,16 +18,19 @@ pub(super) fn common_sight(
     sensor: &Sensor,
     ids: &[KeyframeId],
     pairs: BTreeSet<(usize, usize)>,
-) -> BTreeMap<(usize, usize), Matrix6<f64>> {
-    let mut known: BTreeMap<(usize, usize), Matrix6<f64>> =
-        pairs.into_iter().map(|pair| (pair, Matrix6::zeros())).collect();
-    for (_, landmark) in map.landmarks() {
+) -> Vec<((usize, usize), Matrix6<f64>)> {
+    let slot_of = |a: usize, b: usize| b * (b - 1) / 2 + a;
+    let mut slots: Vec<Option<usize>> = vec![None; slot_of(0, ids.len().max(1))];
+    pairs.iter().enumerate().for_each(|(slot, (a, b))| slots[slot_of(*a, *b)] = Some(slot));
+    let mut known: Vec<_> = pairs.into_iter().map(|pair| (pair, Matrix6::zeros())).collect();
+    for (_, landmark) in map.landmarks().filter(|(_, landmark)| landmark.observations.len() > 1) {
         let views = views(map, sensor, ids, landmark);
         for (i, (a, by_a)) in views.iter().enumerate() {
             for (b, by_b) in &views[i + 1..] {
-                let Some(sum) = known.get_mut(&(*a, *b)) else { continue };
+                let Some(slot) = slots[slot_of(*a, *b)] else { continue };
                 let Some(both) = (by_a + by_b).try_inverse() else { continue };
-                *sum += of_bodies(by_a * both * by_b, landmark.position) * (2.0 / views.len() as f64);
+                known[slot].1 +=
+                    of_bodies(by_a * both * by_b, landmark.position) * (2.0 / views.len() as f64);
             }
         }
     }
@@ -112,7 +115,7 @@ mod tests {
             assert!(map.observe(landmark, ids[0], feature) && map.observe(landmark, ids[1], feature));
         }
         let known = common_sight(&map, &sensor, &ids, BTreeSet::from([(0, 1)]));
-        let off = (known[&(0, 1)] - schur).norm() / schur.norm();
+        let off = (known[0].1 - schur).norm() / schur.norm();
         assert!(off < 1e-9, "{off}");
     }
 }
