@@ -197,7 +197,7 @@ fn speeds(plan: &PlanResult) {
     let speed = Axes { name: "speed, m/s", low: 1.8, high: 2.8, range: (0.0, 0.8), step: 0.2, duration };
     speed.draw(&mut picture, &v, &[limits.v], "#d1495b");
     let turning =
-        Axes { name: "turn rate, rad/s", low: 0.0, high: 1.2, range: (-2.0, 2.0), step: 1.0, duration };
+        Axes { name: "turn rate, rad/s", low: 0.0, high: 1.2, range: (-4.0, 4.0), step: 2.0, duration };
     turning.draw(&mut picture, &omega, &[limits.omega, -limits.omega], "#b07800");
     picture.text(Vector2::new(5.5, -0.4), "time, s");
     picture.save("speeds");
