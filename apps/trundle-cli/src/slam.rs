@@ -3,7 +3,7 @@ use crate::{Outcome, args::SlamArgs, console, failure::Failure, slam_output};
 use indicatif::ProgressBar;
 use std::time::Instant;
 use trundle::core::{Pose3, RgbdImage, Stamp};
-use trundle::io::{CameraModel, EncodedRgbd, OutputFolder, TumSequence};
+use trundle::io::{CameraModel, EncodedRgbd, FrameError, IoError, OutputFolder, TumSequence};
 use trundle::localization::camera_motion;
 use trundle::runtime::{LevelMap, RobotConfig, Stage, StageTimes, level_from_first_camera};
 use trundle::slam::{Mode, RgbdSlam, SlamConfig, TrackReport};
@@ -22,6 +22,8 @@ pub struct SlamRun {
     warned: usize,
     /// Frames that could not be read, in words.
     pub unreadable: Vec<String>,
+    /// What was wrong with them, each told once.
+    problems: Vec<String>,
     /// Wall-clock time of the stages.
     pub times: StageTimes,
     /// Wall-clock time of the whole, s.
@@ -53,6 +55,7 @@ fn track(
         last_image: None,
         warned: 0,
         unreadable: Vec::new(),
+        problems: Vec::new(),
         times: StageTimes::default(),
         seconds: 0.0,
     };
@@ -69,7 +72,7 @@ fn track(
                 recorder.note(encoded, &report, &run.slam)?;
                 run.warn_of_settings(&bar);
             }
-            Err(error) => run.unreadable.push(report(&bar, &error.to_string())),
+            Err(error) => run.skip(&bar, &error),
         }
         bar.inc(1);
     }
@@ -103,15 +106,23 @@ fn encoded(image: &RgbdImage) -> Result<EncodedRgbd, Failure> {
     EncodedRgbd::encode(image).map_err(|error| Failure::Input(error.to_string()))
 }
 
-fn report(bar: &ProgressBar, message: &str) -> String {
-    bar.suspend(|| console::warn(&format!("{message}; skipped")));
-    message.to_owned()
-}
-
 impl SlamRun {
     /// Whether any frame but the first, which only lays the frame, was located by sight.
     pub fn is_located(&self) -> bool {
         self.counts.ok + self.counts.weak > 0 && self.slam.landmarks().next().is_some()
+    }
+
+    /// Says of a frame that cannot be read why; of many whose files say the same, an image of another size, once.
+    fn skip(&mut self, bar: &ProgressBar, error: &FrameError) {
+        self.unreadable.push(error.to_string());
+        let problem = match &error.source {
+            IoError::Field { problem, .. } => problem.to_string(),
+            _ => error.to_string(),
+        };
+        if !self.problems.contains(&problem) {
+            bar.suspend(|| console::warn(&format!("{error}; skipped, and others like it")));
+            self.problems.push(problem);
+        }
     }
 
     /// Says of each setting that is newly suspected why.
