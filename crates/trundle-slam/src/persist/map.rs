@@ -155,3 +155,46 @@ fn read_observation(
         "one landmark a feature, one feature a landmark".to_owned()
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::motion::MotionConfig;
+    use crate::testing::{blank_frame, sensor};
+    use nalgebra::Vector6;
+    use trundle_core::{Pose3, Vector3};
+
+    /// Two keyframes with the way between them by the wheels, on a floor.
+    fn rolled_map() -> (LandmarkMap, Rolled) {
+        let mut map = LandmarkMap::default();
+        let ids = [0.0, 0.1]
+            .map(|x| map.add_keyframe(blank_frame(3), Pose3::exp(Vector6::new(x, 0.0, 0.0, 0.0, 0.0, 0.0))));
+        let step = Pose3::exp(Vector6::new(0.1, 0.0, 0.02, 0.0, 0.3, 0.0));
+        let rolled = Rolled::at(ids[0]).on(step, 0.1, &MotionConfig::default());
+        map.keyframe_mut(ids[1]).rolled = Some(rolled);
+        map.floor = Some(Vector3::y());
+        (map, rolled)
+    }
+
+    #[test]
+    fn the_ways_by_the_wheels_and_the_floor_come_back() {
+        let (map, rolled) = rolled_map();
+        let mut out = Writer::default();
+        write(&mut out, &map);
+        let read = read(&mut Reader::new(&out.0, "map"), &sensor()).unwrap();
+        let ways: Vec<Option<Rolled>> = read.keyframes().map(|(_, keyframe)| keyframe.rolled).collect();
+        assert_eq!(ways, vec![None, Some(rolled)]);
+        assert_eq!(read.floor, Some(Vector3::y()));
+    }
+
+    #[test]
+    fn a_way_from_what_comes_later_is_refused() {
+        let (mut map, rolled) = rolled_map();
+        let last = map.newest_keyframe().unwrap();
+        map.keyframe_mut(last).rolled = Some(Rolled { from: last, ..rolled });
+        let mut out = Writer::default();
+        write(&mut out, &map);
+        let error = read(&mut Reader::new(&out.0, "map"), &sensor()).unwrap_err().to_string();
+        assert!(error.ends_with("keyframe that a way begins at is 1, expected less than 1"), "{error}");
+    }
+}

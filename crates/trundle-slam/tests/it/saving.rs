@@ -51,19 +51,6 @@ fn a_loaded_map_is_the_same_and_is_recognised_and_goes_on() {
     assert_ne!(slam.save(), bytes);
 }
 
-/// A robot turns on the spot; for a part of it, it is dark. What ties the parts is the wheels' way, and that is saved.
-#[test]
-fn what_only_wheels_tie_is_still_tied_in_a_loaded_map() {
-    let mut slam = RgbdSlam::new(camera(), small()).unwrap();
-    for i in 0..45 {
-        let image = if (10..25).contains(&i) { dark(i) } else { shoot(i, turned(2 * i)) };
-        slam.step(&image, (i > 0).then(|| turned(2)));
-    }
-    slam.finish_refining();
-    let bytes = slam.save();
-    assert_eq!(load(&bytes).unwrap().save(), bytes);
-}
-
 #[test]
 fn until_it_is_recognised_the_camera_is_lost_whatever_the_wheels_say() {
     let mut slam = load(&SAVED).unwrap();
