@@ -249,18 +249,18 @@ fn tell(plan: &Plan, seconds: f64) {
 
 /// Why there is no manoeuvre, in one sentence.
 fn reason(impossible: &Impossible) -> String {
-    let by = impossible.by.as_ref().map_or_else(String::new, |by| {
-        format!(": obstacle {} at ({:.3}, {:.3}) m is in the way", by.obstacle, by.at.x, by.at.y)
-    });
-    let proof = match impossible.certificate {
-        Certificate::Never => "proven for motions of any kind",
-        Certificate::AtResolution => {
+    let by = impossible.by.as_ref().map_or_else(String::new, |by| format!(": {by} is in the way"));
+    let proof = match (impossible.certificate, impossible.limit) {
+        (Certificate::Never, _) => "proven for motions of any kind".to_owned(),
+        (Certificate::AtResolution, _) => {
             "a complete search in steps of docking.planner.position_tolerance found no way through; a way that is narrower than such a step is \
-             not ruled out"
+             not ruled out".to_owned()
         }
-        Certificate::None => {
-            "none was found, which is no proof; more docking.planner.most_work (points_work among many points) searches longer"
-        }
+        (Certificate::None, None) => "none was found, which is no proof".to_owned(),
+        (Certificate::None, Some(limit)) => format!(
+            "none was found, which is no proof: the search ended at docking.planner.{}, more of it searches longer",
+            limit.setting()
+        ),
     };
     format!("No manoeuvre within {:.1} m{by} ({proof}).", impossible.within)
 }

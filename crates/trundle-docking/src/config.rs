@@ -44,8 +44,11 @@ pub struct DockingConfig {
     /// What the search for many motions may cost for each margin, in counted steps of some 10 ns ([`crate::Space::work`]), 10^5
     /// to 10^11. Default 5 * 10^7 (ours: half a second; the hardest of 5,000 corridor problems takes a third of it).
     pub most_work: u64,
-    /// What a whole plan among more than 200 points may cost, in the same steps, 10^5 to 10^11: it then says what it has. Default
-    /// 6 * 10^6 (ours: less than 100 ms among a hundred thousand points, whatever their places).
+    /// What a whole plan may cost, in the same steps, 10^5 to 10^11: it then says what it has. Default 2 * 10^8 (ours: two
+    /// seconds; the hardest of 5,000 corridor problems takes half of it).
+    pub plan_work: u64,
+    /// The same among more than 200 points, if that is less. Default 6 * 10^6 (ours: less than 100 ms among a hundred thousand
+    /// points, whatever their places).
     pub points_work: u64,
     /// Boxes of the search for a better bound on the time, 0 to 10^8. Default 400 (ours: a few ms).
     pub bound_boxes: usize,
@@ -69,6 +72,7 @@ impl Default for DockingConfig {
             heading_tolerance: 1_f64.to_radians(),
             search_nodes: 2500,
             most_work: 50_000_000,
+            plan_work: 200_000_000,
             points_work: 6_000_000,
             bound_boxes: 400,
             gap: 0.01,
@@ -109,6 +113,7 @@ impl DockingConfig {
             ("heading_tolerance", self.heading_tolerance, "rad", 0.001, 0.2),
             ("search_nodes", self.search_nodes as f64, "", 0.0, 1e7),
             ("most_work", self.most_work as f64, "", 1e5, 1e11),
+            ("plan_work", self.plan_work as f64, "", 1e5, 1e11),
             ("points_work", self.points_work as f64, "", 1e5, 1e11),
             ("bound_boxes", self.bound_boxes as f64, "", 0.0, 1e8),
             ("gap", self.gap, "", 0.0, 1.0),

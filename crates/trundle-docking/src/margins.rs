@@ -8,7 +8,7 @@ use crate::geometry::Hull;
 use crate::manoeuvre::Manoeuvre;
 use crate::optimal::{self, Certificate, Effort, Outcome, Task, Timed};
 use crate::pace::Meter;
-use crate::planner::{Impossible, Plan, Solution};
+use crate::plan::{Impossible, Limit, Plan, Solution};
 use crate::scene::{Blocker, Scene};
 use crate::space::Space;
 use std::sync::Arc;
@@ -104,16 +104,19 @@ impl<'a> Margins<'a> {
         let effort = Effort { work: self.effort.work / part, ..self.effort };
         match optimal::many(self.task, &mut space, effort).await {
             Outcome::Found(legs) => Ok(Found { space, legs, margin }),
-            Outcome::Apart(certificate, by) => Err((certificate, by)),
-            Outcome::Nothing => Err((Certificate::None, None)),
+            Outcome::Apart(certificate, by) => Err(Apart { certificate, by, limit: None }),
+            Outcome::Nothing(limit) => {
+                Err(Apart { certificate: Certificate::None, by: None, limit: Some(limit) })
+            }
         }
     }
 
     async fn told(&self, outcome: Result<Found<'a>, Apart>) -> Plan {
         match outcome {
             Ok(found) => self.solution(found).await,
-            Err((certificate, by)) => {
-                Plan::Impossible(Impossible { by, certificate, within: self.task.reach })
+            Err(Apart { certificate, by, limit }) => {
+                let by = by.map(|by| self.scene.named(by));
+                Plan::Impossible(Impossible { by, certificate, limit, within: self.task.reach })
             }
         }
     }
@@ -128,4 +131,8 @@ impl<'a> Margins<'a> {
 }
 
 /// Why there are no legs.
-type Apart = (Certificate, Option<Blocker>);
+struct Apart {
+    certificate: Certificate,
+    by: Option<Blocker>,
+    limit: Option<Limit>,
+}

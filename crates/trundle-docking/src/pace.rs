@@ -4,7 +4,7 @@
 //! rests wherever it has used up what it was granted, and goes on at the next grant. Nothing but counted work decides where,
 //! so that the answer and the number of grants are the same on every machine.
 
-use crate::planner::Plan;
+use crate::plan::Plan;
 use std::fmt;
 use std::pin::{Pin, pin};
 use std::sync::Arc;
@@ -34,6 +34,11 @@ impl Meter {
     /// So far.
     pub fn work(&self) -> u64 {
         self.work.load(Ordering::Relaxed)
+    }
+
+    /// Whether it has come to the most.
+    pub fn is_spent(&self) -> bool {
+        self.work() >= self.most
     }
 
     /// Adds work. One at a time: a plan runs on one thread.
@@ -68,23 +73,24 @@ pub fn at_once<T>(search: impl Future<Output = T>) -> T {
     }
 }
 
-/// A plan in the making: see [`crate::Docker::begin`].
-pub struct Planning {
+/// A plan, or something else, in the making: see [`crate::Docker::begin`].
+pub struct Planning<T = Plan> {
     meter: Arc<Meter>,
-    search: Pin<Box<dyn Future<Output = Plan> + Send + Sync>>,
+    search: Pin<Box<dyn Future<Output = T> + Send + Sync>>,
 }
 
-impl Planning {
-    pub(crate) fn new(meter: Arc<Meter>, search: impl Future<Output = Plan> + Send + Sync + 'static) -> Self {
+impl<T> Planning<T> {
+    pub(crate) fn new(meter: Arc<Meter>, search: impl Future<Output = T> + Send + Sync + 'static) -> Self {
         Self { meter, search: Box::pin(search) }
     }
 
-    /// Searches on for about `work` steps, each about ten nanoseconds ([`crate::Space::work`]); the plan, once there is one.
-    /// The same plan as [`crate::Docker::plan_keeping`]'s, however it is cut. Not to be called again after that.
-    pub fn go_on(&mut self, work: u64) -> Option<Plan> {
+    /// Searches on for about `work` steps, each about ten nanoseconds ([`crate::Space::work`]): it rests at the first place
+    /// beyond. The plan, once there is one: the same as [`crate::Docker::plan_keeping`]'s, however it is cut. Not to be called
+    /// again after that.
+    pub fn go_on(&mut self, work: u64) -> Option<T> {
         self.meter.grant(work);
         match self.search.as_mut().poll(&mut Context::from_waker(Waker::noop())) {
-            Poll::Ready(plan) => Some(plan),
+            Poll::Ready(found) => Some(found),
             Poll::Pending => None,
         }
     }
@@ -95,7 +101,7 @@ impl Planning {
     }
 }
 
-impl fmt::Debug for Planning {
+impl<T> fmt::Debug for Planning<T> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Planning").field("work", &self.work()).finish_non_exhaustive()
     }

@@ -1,72 +1,18 @@
 use crate::cloud::FEW;
 use crate::config::{BESIDE, DockingConfig, Method, WIDER};
 use crate::geometry::Hull;
-use crate::manoeuvre::Manoeuvre;
 use crate::margins::Margins;
 use crate::optimal::{self, Certificate, Effort, Task};
 use crate::pace::{Meter, Planning, at_once};
-use crate::paper;
+use crate::paper::{self, Decision, PaperMethod};
+use crate::plan::{Impossible, Limit, Plan, Refusal, Solution};
 use crate::scene::{Blocker, Scene};
 use crate::space::Space;
 use std::sync::Arc;
-use thiserror::Error;
 use trundle_core::{Footprint, Invalid, Pose2};
 
 /// Pieces of a scene above which the bound is sought with fewer boxes.
 const MANY_PIECES: usize = 200;
-
-/// Why there is nothing to plan.
-#[derive(Debug, Clone, PartialEq, Error)]
-pub enum Refusal {
-    /// The robot overlaps an obstacle where it stands.
-    #[error("the start overlaps obstacle {} at ({:.3}, {:.3}) m", .0.obstacle, .0.at.x, .0.at.y)]
-    StartBlocked(Blocker),
-    /// The robot would overlap an obstacle at the goal.
-    #[error("the goal overlaps obstacle {} at ({:.3}, {:.3}) m", .0.obstacle, .0.at.x, .0.at.y)]
-    GoalBlocked(Blocker),
-    /// Docking is for the last metres.
-    #[error("the goal is {distance:.2} m away, expected at most {most:.2} m: plan a path there first")]
-    TooFar {
-        /// From start to goal, m.
-        distance: f64,
-        /// `docking.max_distance`, m.
-        most: f64,
-    },
-    /// A number of the input.
-    #[error(transparent)]
-    Invalid(#[from] Invalid),
-}
-
-/// What came of planning.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Plan {
-    /// A manoeuvre.
-    Found(Solution),
-    /// There is none.
-    Impossible(Impossible),
-}
-
-/// A manoeuvre and what is known about it.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Solution {
-    /// What to do.
-    pub manoeuvre: Manoeuvre,
-    /// No manoeuvre that keeps the margin is faster than this, s.
-    pub bound: f64,
-    /// The margin that was kept, m.
-    pub margin: f64,
-}
-
-/// Why there is no manoeuvre.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Impossible {
-    /// What stands in the way.
-    pub by: Option<Blocker>,
-    /// What was shown; always [`Certificate::None`] by the paper's method.
-    pub certificate: Certificate,
-    /// How far from the line between start and goal motions were thought of, m.
-    pub within: f64,
-}
 
 /// Plans manoeuvres onto a goal pose.
 #[derive(Debug, Clone)]
@@ -146,6 +92,31 @@ impl Docker {
         Ok(Planning::new(meter, search))
     }
 
+    /// Begins one decision of the paper's method from `pose`, with so many recovery moves behind it; it goes on in parts.
+    ///
+    /// # Errors
+    /// As [`Docker::plan`].
+    pub(crate) fn begin_decision(
+        &self,
+        margin: f64,
+        footprint: &Footprint,
+        scene: &Scene,
+        (pose, goal): (Pose2, Pose2),
+        recoveries: usize,
+    ) -> Result<Planning<Decision>, Refusal> {
+        let margin = self.checked(margin, footprint, scene, &pose, &goal)?;
+        let scene = around(footprint, scene, &self.task(pose, goal));
+        let (hull, limits, config) =
+            (Hull::new(footprint, margin), self.config.limits, self.config.paper.clone());
+        let meter = Meter::rationed(self.most_of(&scene));
+        let counted = Arc::clone(&meter);
+        Ok(Planning::new(meter, async move {
+            let space = Space::metered(hull, &scene, counted);
+            let method = PaperMethod { space: &space, limits, config: &config };
+            method.decide(&pose, &goal, recoveries).await
+        }))
+    }
+
     /// The search, with `most` (m) for a margin, which start and goal leave.
     async fn search(
         &self,
@@ -155,10 +126,28 @@ impl Docker {
         task: Task,
         meter: &Arc<Meter>,
     ) -> Plan {
-        let near = around(footprint, scene, &task);
-        if self.config.method == Method::Paper {
-            return self.by_paper(most, footprint, &near, &task);
+        let plan = match self.config.method {
+            Method::Paper => self.by_paper(most, footprint, scene, &task, meter).await,
+            Method::Optimal => self.by_search(most, footprint, scene, task, meter).await,
+        };
+        match plan {
+            Plan::Impossible(none) if none.certificate == Certificate::None && meter.is_spent() => {
+                Plan::Impossible(Impossible { limit: Some(self.limit_of(scene).1), ..none })
+            }
+            plan => plan,
         }
+    }
+
+    /// By the optimal method: first near the ends, then farther about.
+    async fn by_search(
+        &self,
+        most: f64,
+        footprint: &Footprint,
+        scene: &Scene,
+        task: Task,
+        meter: &Arc<Meter>,
+    ) -> Plan {
+        let near = around(footprint, scene, &task);
         let least = most.min(0.0);
         let (effort, saving) = (self.effort(&near), self.config.margin_saving);
         let close = Margins { footprint, scene: &near, task, most, least, effort, saving, meter };
@@ -174,7 +163,17 @@ impl Docker {
 
     /// What a plan may cost as a whole.
     fn most_of(&self, scene: &Scene) -> u64 {
-        if scene.points().len() > FEW { self.config.points_work } else { u64::MAX }
+        self.limit_of(scene).0
+    }
+
+    /// The same, and which setting says so.
+    fn limit_of(&self, scene: &Scene) -> (u64, Limit) {
+        let (plan, points) = (self.config.plan_work, self.config.points_work);
+        if scene.points().len() > FEW && points < plan {
+            (points, Limit::PointsWork)
+        } else {
+            (plan, Limit::PlanWork)
+        }
     }
 
     fn effort(&self, scene: &Scene) -> Effort {
@@ -189,16 +188,26 @@ impl Docker {
         }
     }
 
-    fn by_paper(&self, most: f64, footprint: &Footprint, scene: &Scene, task: &Task) -> Plan {
-        let config = &self.config;
-        let plan = |margin| {
-            let space = Space::new(footprint, margin, scene);
-            let manoeuvre = paper::plan(&space, task.start, task.goal, &config.limits, &config.paper)?;
-            Some(Solution { manoeuvre, bound: 0.0, margin })
-        };
+    /// By the paper's method, with the whole margin, a third of it, or none.
+    async fn by_paper(
+        &self,
+        most: f64,
+        footprint: &Footprint,
+        scene: &Scene,
+        task: &Task,
+        meter: &Arc<Meter>,
+    ) -> Plan {
+        let (config, near) = (&self.config, around(footprint, scene, task));
         let margins = if most > 0.0 { vec![most, most / 3.0, 0.0] } else { vec![most] };
-        let none = Impossible { by: None, certificate: Certificate::None, within: task.reach };
-        margins.into_iter().find_map(plan).map_or(Plan::Impossible(none), Plan::Found)
+        for margin in margins {
+            let space = Space::metered(Hull::new(footprint, margin), &near, Arc::clone(meter));
+            let found = paper::plan(&space, task.start, task.goal, &config.limits, &config.paper).await;
+            if let Some(manoeuvre) = found {
+                return Plan::Found(Solution { manoeuvre, bound: 0.0, margin });
+            }
+        }
+        let (certificate, within) = (Certificate::None, task.reach);
+        Plan::Impossible(Impossible { by: None, certificate, limit: None, within })
     }
 
     fn task(&self, start: Pose2, goal: Pose2) -> Task {
@@ -251,7 +260,7 @@ impl Docker {
         for (pose, refusal) in ends {
             if let Some((clearance, by)) = scene.clearance_of(&least, pose, margin + overlap + 2e-4) {
                 if clearance <= 1e-9 {
-                    return Err(refusal(by));
+                    return Err(refusal(scene.named(by)));
                 }
                 margin = margin.min(clearance - overlap);
             }

@@ -1,5 +1,6 @@
 use crate::cloud::{DriveQuestion, FEW, HeadingsQuestion, TurnQuestion, join};
 use crate::geometry::{Arc, Hull, InTheWay, Profile, Segment};
+use crate::manoeuvre::Motion;
 use crate::pace::{Meter, Rest};
 use crate::scene::{Blocker, Scene};
 use std::f64::consts::TAU;
@@ -42,7 +43,7 @@ impl FreeTurn {
         hull.blocked_headings(&segment.seen_from(center, 1.0, 0.0), angles, arcs);
         for arc in arcs.iter() {
             let (left, right) = arc.room_from(pose.theta);
-            let blocker = || Some(Blocker { obstacle: number as usize, at: segment.nearest(center) });
+            let blocker = || Some(Blocker::listed(number, segment.nearest(center)));
             if left < self.left {
                 (self.left, self.left_by) = (left, blocker());
             }
@@ -52,14 +53,15 @@ impl FreeTurn {
         }
     }
 
+    /// Whether a turn by `angle` (rad, counter-clockwise positive) is free.
+    pub fn allows(&self, angle: f64) -> bool {
+        angle <= self.left + ROUNDING && -angle <= self.right + ROUNDING
+    }
+
     /// The turn that takes the heading by `angle` (in (-pi, pi], rad): the shorter way where it is free, or the longer.
     pub fn way(&self, angle: f64) -> Option<f64> {
-        let (with, against) = if angle >= 0.0 { (self.left, self.right) } else { (self.right, self.left) };
-        if angle.abs() <= with + ROUNDING {
-            return Some(angle);
-        }
-        let longer = TAU - angle.abs();
-        (longer <= against + ROUNDING).then(|| -longer.copysign(angle))
+        let longer = -(TAU - angle.abs()).copysign(angle);
+        [angle, longer].into_iter().find(|&turn| self.allows(turn))
     }
 }
 
@@ -81,7 +83,7 @@ impl FreeDrive {
     pub(crate) fn meet(&mut self, hull: &Hull, seen: &Segment, blocker: impl Fn() -> (u32, Vector2)) {
         let by = || {
             let (number, at) = blocker();
-            Some(Blocker { obstacle: number as usize, at })
+            Some(Blocker::listed(number, at))
         };
         match hull.stop_by(seen) {
             Some(InTheWay::Ahead(way)) if way < self.ahead => (self.ahead, self.ahead_by) = (way, by()),
@@ -157,6 +159,11 @@ impl<'a> Space<'a> {
         self.work().saturating_add(more).min(self.meter.most)
     }
 
+    /// Whether the whole plan has come to that.
+    pub(crate) fn is_spent(&self) -> bool {
+        self.meter.is_spent()
+    }
+
     /// Counts work done elsewhere on behalf of this space.
     pub(crate) fn spend(&self, work: u64) {
         self.meter.spend(work);
@@ -169,7 +176,25 @@ impl<'a> Space<'a> {
 
     /// What the hull overlaps at a pose, if anything.
     pub fn contact(&self, pose: &Pose2) -> Option<Blocker> {
-        self.scene.clearance_of(&self.hull, pose, 1e-12).map(|(_, blocker)| blocker)
+        let (nearest, work) = self.scene.nearest(&self.hull, pose, 1e-12);
+        self.spend(work);
+        nearest.map(|(_, blocker)| blocker)
+    }
+
+    /// What stops a motion from `pose` before its end, if anything.
+    pub fn in_the_way(&mut self, pose: &Pose2, motion: Motion) -> Option<Blocker> {
+        match motion {
+            Motion::Turn(angle) => {
+                let free = self.turn(pose);
+                let by = if angle > 0.0 { free.left_by } else { free.right_by };
+                by.filter(|_| !free.allows(angle))
+            }
+            Motion::Drive(way) => {
+                let free = self.drive(pose, way.abs() + 0.01);
+                let by = if way > 0.0 { free.ahead_by } else { free.behind_by };
+                by.filter(|_| !free.allows(way))
+            }
+        }
     }
 
     /// How far the base may turn on the spot each way.

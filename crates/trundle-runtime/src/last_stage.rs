@@ -35,9 +35,9 @@ pub struct LastStageConfig {
     pub most_stops: u32,
     /// Planning of turns and straight moves. Default: as it comes, but a margin of 0.05, so that the safety monitor, which
     /// stops 0.04 m before an obstacle, does not hold what was planned; and a tenth of the work, because the robot stands
-    /// meanwhile.
+    /// meanwhile: a whole plan takes 2 * 10^7 counted steps at most, 7 s at 50 Hz.
     pub planner: DockingConfig,
-    /// Carrying them out. Default: as it comes, but a control step plans for some 0.6 to 1 ms only.
+    /// Carrying them out. Default: as it comes, but a control step is granted 60,000 counted steps of planning, 0.6 to 1 ms.
     pub positioner: PositionerConfig,
 }
 
@@ -49,7 +49,12 @@ impl Default for LastStageConfig {
             arc_margin: 0.02,
             time_limit: 120.0,
             most_stops: 10,
-            planner: DockingConfig { margin: 0.05, most_work: 5_000_000, ..DockingConfig::default() },
+            planner: DockingConfig {
+                margin: 0.05,
+                most_work: 5_000_000,
+                plan_work: 20_000_000,
+                ..DockingConfig::default()
+            },
             positioner: PositionerConfig { step_work: 60_000, ..PositionerConfig::default() },
         }
     }
@@ -60,8 +65,8 @@ const SCENE_HZ: f64 = 10.0;
 /// Slower than this the robot stands, m/s and rad/s.
 const STANDING: (f64, f64) = (0.02, 0.05);
 
-/// Chooses between an arc and a manoeuvre, and carries the manoeuvre out. No step plans for longer than
-/// [`PositionerConfig::step_work`].
+/// Chooses between an arc and a manoeuvre, and carries the manoeuvre out. A step plans for about
+/// [`PositionerConfig::step_work`]: no more than as much again beyond it.
 #[derive(Debug)]
 pub(crate) struct LastStage {
     config: LastStageConfig,
@@ -249,12 +254,12 @@ fn stands(twist: Twist2) -> bool {
 
 /// Why it stands, for a person.
 fn told(reason: &Reason) -> String {
-    let at = |by: &Option<trundle_docking::Blocker>| {
-        by.map_or_else(String::new, |by| format!(" at ({:.2}, {:.2}) m", by.at.x, by.at.y))
-    };
     match reason {
-        Reason::Obstacle(by) => format!("something in the way{} while settling", at(by)),
-        Reason::NoWay(by) => format!("no turns and straight moves lead to the goal, blocked{}", at(by)),
+        Reason::Obstacle(by) => format!("{by} is in the way while settling"),
+        Reason::NoWay(Some(by)) => {
+            format!("no turns and straight moves lead to the goal: {by} is in the way")
+        }
+        Reason::NoWay(None) => "no turns and straight moves to the goal were found".to_owned(),
         Reason::Refused(refusal) => refusal.to_string(),
         Reason::BadPose => "the pose is not a number".to_owned(),
         Reason::Planning => "the search for turns and straight moves did not come to an end".to_owned(),

@@ -66,8 +66,14 @@ fn bad_tasks_are_refused_with_their_reason() {
     fs::write(&file, PROBLEM).unwrap();
     let said = |extra: &[&str]| refusal(&[&["dock"], extra].concat());
     assert!(said(&[text(&map)]).contains("a map needs --from and --to"));
-    assert!(said(&[text(&map), "--from=0.1,1,0", "--to=1,1,0"]).contains("the start overlaps obstacle"));
-    assert!(said(&[text(&map), "--from=1,1,0", "--to=3.02,0.5,0"]).contains("the goal overlaps obstacle"));
+    assert!(
+        said(&[text(&map), "--from=0.1,1,0", "--to=1,1,0"])
+            .contains("the start overlaps the occupied cell at (0.025, ")
+    );
+    assert!(
+        said(&[text(&map), "--from=1,1,0", "--to=3.02,0.5,0"])
+            .contains("the goal overlaps the occupied cell at (3.0")
+    );
     assert!(said(&[text(&map), "--from=1,1,0", "--to=-30,1,0"]).contains("the goal (-30.00, 1.00) m is off"));
     assert!(said(&[text(&file), "--to=40,30,0"]).contains("plan a path there first"));
     assert!(said(&[text(&file), "--problem=x"]).contains("it has no problem 'x'"));

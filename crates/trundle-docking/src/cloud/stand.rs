@@ -39,7 +39,7 @@ impl Question for StandQuestion<'_> {
     fn look(&mut self, p: Vector2, number: u32) {
         let distance = self.distance(&Segment::point(p));
         if distance < self.best.map_or(self.reach, |(least, _)| least) {
-            *self.best = Some((distance, Blocker { obstacle: number as usize, at: p }));
+            *self.best = Some((distance, Blocker::listed(number, p)));
         }
     }
 }

@@ -15,6 +15,7 @@ pub use task::Task;
 
 use crate::bound::improve;
 use crate::flood::{Ground, Guide, Proof, disprove};
+use crate::plan::Limit;
 use crate::scene::Blocker;
 use crate::space::Space;
 use beam::{beam, guided_beam};
@@ -34,8 +35,8 @@ pub enum Outcome {
     Found(Timed),
     /// There is no motion of any kind, or none at the resolution asked for; this forbids it.
     Apart(Certificate, Option<Blocker>),
-    /// Nothing was found with the effort allowed, though start and goal hang together as far as the cells tell.
-    Nothing,
+    /// Nothing was found with the effort allowed, which this ended, though start and goal hang together as far as the cells tell.
+    Nothing(Limit),
 }
 
 /// What was shown when there is no manoeuvre.
@@ -123,6 +124,8 @@ pub async fn bound(task: &Task, space: &mut Space<'_>, known: f64, gap: f64, box
 const BEAM: usize = 24;
 /// Width of the beam where the guide knows the way, and where a plan may cost but little.
 const GUIDED_BEAM: (usize, usize) = (12, 5);
+/// A whole plan may cost but little where it may cost less than this.
+const SCANTY: u64 = 10_000_000;
 /// A gap at which it is worth while to look for more legs.
 const LOOSE: f64 = 0.05;
 
@@ -131,7 +134,7 @@ const LOOSE: f64 = 0.05;
 pub async fn many(task: Task, space: &mut Space<'_>, effort: Effort) -> Outcome {
     let limit = space.until(effort.work);
     if space.work() >= limit {
-        return Outcome::Nothing;
+        return Outcome::Nothing(Limit::MostWork);
     }
     let mut second = space.clone();
     let mut search = Search::new(task, space, FAN, limit).await;
@@ -156,7 +159,8 @@ pub async fn many(task: Task, space: &mut Space<'_>, effort: Effort) -> Outcome 
         shorten_best(&mut search).await;
         break;
     }
-    search.best.map_or(Outcome::Nothing, Outcome::Found)
+    let ended_by = if search.is_spent() { Limit::MostWork } else { Limit::SearchNodes };
+    search.best.map_or(Outcome::Nothing(ended_by), Outcome::Found)
 }
 
 /// What cells of `side` (m) say against any motion, with the hull shrunk for a proof or as it is.
@@ -180,7 +184,7 @@ async fn led_by_cells<'a>(search: &mut Search<'_, 'a>, second: &mut Space<'a>, s
     if nodes == 0 || guide.seconds(&task.start).is_infinite() {
         return;
     }
-    let width = if search.space.most() < u64::MAX { GUIDED_BEAM.1 } else { GUIDED_BEAM.0 };
+    let width = if search.space.most() < SCANTY { GUIDED_BEAM.1 } else { GUIDED_BEAM.0 };
     guided_beam(search, &mut guide, width, nodes).await;
     if search.best.is_none() {
         let mut poses = guide.path(&task.start);

@@ -33,29 +33,33 @@ pub struct PaperMethod<'a> {
 
 impl PaperMethod<'_> {
     /// The next motions for a base at `pose`: lateral deviation first, then longitudinal, then angular. `recoveries`
-    /// counts the recovery moves so far: they alternate between back and forward.
-    pub fn decide(&self, pose: &Pose2, goal: &Pose2, recoveries: usize) -> Decision {
+    /// counts the recovery moves so far: they alternate between back and forward. Stuck, too, once the plan's work is used up.
+    pub async fn decide(&self, pose: &Pose2, goal: &Pose2, recoveries: usize) -> Decision {
         let error = goal.inverse() * *pose;
         let found = if error.y.abs() > self.config.lateral_threshold {
-            self.lateral(pose, goal)
+            self.lateral(pose, goal).await
         } else if error.x.abs() > self.config.longitudinal_threshold {
-            self.longitudinal(pose, goal)
+            self.longitudinal(pose, goal).await
         } else if error.theta.abs() > self.config.angle_threshold {
-            self.turn_to(pose, goal.theta).map(|turn| vec![Motion::Turn(turn)])
+            self.turn_to(pose, goal.theta).await.map(|turn| vec![Motion::Turn(turn)])
         } else {
             return Decision::Settled;
         };
-        found.map_or_else(|| self.recover(pose, recoveries), Decision::Move)
+        match found {
+            _ if self.space.is_spent() => Decision::Stuck,
+            Some(motions) => Decision::Move(motions),
+            None => self.recover(pose, recoveries).await,
+        }
     }
 
     /// The turn and the straight of least cost.
-    fn lateral(&self, pose: &Pose2, goal: &Pose2) -> Option<Vec<Motion>> {
+    async fn lateral(&self, pose: &Pose2, goal: &Pose2) -> Option<Vec<Motion>> {
         let deviation = (goal.inverse() * *pose).y.abs();
         let mut best: Option<(f64, f64, f64)> = None;
-        for turn in self.turns(pose) {
+        for turn in self.turns(pose).await {
             let turned = Pose2::new(pose.x, pose.y, pose.theta + turn);
             for sign in [1.0, -1.0] {
-                let (way, left) = self.least_lateral(&turned, goal, sign);
+                let (way, left) = self.least_lateral(&turned, goal, sign).await;
                 if left >= deviation - self.config.lateral_threshold / 2.0 {
                     continue;
                 }
@@ -70,31 +74,27 @@ impl PaperMethod<'_> {
     }
 
     /// Every sampled turn that is free, each way up to the first contact.
-    fn turns(&self, pose: &Pose2) -> Vec<f64> {
+    async fn turns(&self, pose: &Pose2) -> Vec<f64> {
         let step = self.config.angle_step;
         let most = (std::f64::consts::PI / step).floor() as usize;
         let mut turns = vec![0.0];
         for sign in [-1.0, 1.0] {
-            let samples = (1..=most).map(|i| sign * i as f64 * step);
-            turns.extend(
-                samples.take_while(|turn| self.is_free(&Pose2::new(pose.x, pose.y, pose.theta + turn))),
-            );
+            let turn = |i: usize| sign * i as f64 * step;
+            let free = self.free_samples(most, |i| Motion::Turn(turn(i)).after(*pose, turn(i))).await;
+            turns.extend((1..=free).map(turn));
         }
         turns
     }
 
     /// Point D of the straight AC: the way to it (negative backward, m) and the lateral deviation left there, m.
-    fn least_lateral(&self, from: &Pose2, goal: &Pose2, sign: f64) -> (f64, f64) {
+    async fn least_lateral(&self, from: &Pose2, goal: &Pose2, sign: f64) -> (f64, f64) {
         let samples = (self.config.reach / self.config.distance_step).floor() as usize;
         let mut best = (0.0, f64::INFINITY);
         for i in 1..=samples {
             let way = sign * i as f64 * self.config.distance_step;
             let pose = Motion::Drive(way).after(*from, way);
-            if !self.is_free(&pose) {
-                break;
-            }
             let left = (goal.inverse() * pose).y.abs();
-            if left >= best.1 {
+            if left >= best.1 || !self.is_free(&pose).await {
                 break;
             }
             best = (way, left);
@@ -103,38 +103,32 @@ impl PaperMethod<'_> {
     }
 
     /// Takes up the goal's heading and drives what is left along it, as far as it is free.
-    fn longitudinal(&self, pose: &Pose2, goal: &Pose2) -> Option<Vec<Motion>> {
-        let turn = self.turn_to(pose, goal.theta)?;
+    async fn longitudinal(&self, pose: &Pose2, goal: &Pose2) -> Option<Vec<Motion>> {
+        let turn = self.turn_to(pose, goal.theta).await?;
         let turned = Pose2::new(pose.x, pose.y, goal.theta);
         let way = -(goal.inverse() * *pose).x;
-        let step = self.config.distance_step;
-        let samples = (way.abs() / step).ceil().max(1.0);
-        let at = |i: f64| way * i / samples;
-        let free = (1..=samples as usize)
-            .take_while(|&i| self.is_free(&Motion::Drive(way).after(turned, at(i as f64))));
-        let free = at(free.count() as f64);
-        (free.abs() > self.config.longitudinal_threshold / 2.0)
-            .then(|| vec![Motion::Turn(turn), Motion::Drive(free)])
+        let samples = (way.abs() / self.config.distance_step).ceil().max(1.0);
+        let at = |i: usize| way * i as f64 / samples;
+        let free = self.free_samples(samples as usize, |i| Motion::Drive(way).after(turned, at(i))).await;
+        (at(free).abs() > self.config.longitudinal_threshold / 2.0)
+            .then(|| vec![Motion::Turn(turn), Motion::Drive(at(free))])
     }
 
     /// The shorter turn to a heading, when every sample of it is free.
-    fn turn_to(&self, pose: &Pose2, heading: f64) -> Option<f64> {
+    async fn turn_to(&self, pose: &Pose2, heading: f64) -> Option<f64> {
         let turn = wrap_angle(heading - pose.theta);
         let samples = (turn.abs() / self.config.angle_step).ceil().max(1.0) as usize;
-        let free =
-            |i| self.is_free(&Pose2::new(pose.x, pose.y, pose.theta + turn * f64::from(i) / samples as f64));
-        (1..=samples as u32).all(free).then_some(turn)
+        let at = |i: usize| Motion::Turn(turn).after(*pose, turn * i as f64 / samples as f64);
+        (self.free_samples(samples, at).await == samples).then_some(turn)
     }
 
     /// Back, then forward, by turns.
-    fn recover(&self, pose: &Pose2, recoveries: usize) -> Decision {
+    async fn recover(&self, pose: &Pose2, recoveries: usize) -> Decision {
         let first = if recoveries.is_multiple_of(2) { -1.0 } else { 1.0 };
         for sign in [first, -first] {
             let samples = (self.config.recovery / self.config.distance_step).floor().max(1.0) as usize;
             let at = |i: usize| sign * self.config.recovery * i as f64 / samples as f64;
-            let free = (1..=samples)
-                .take_while(|&i| self.is_free(&Motion::Drive(at(i)).after(*pose, at(i))))
-                .count();
+            let free = self.free_samples(samples, |i| Motion::Drive(at(i)).after(*pose, at(i))).await;
             if free > 0 {
                 return Decision::Recover(Motion::Drive(at(free)));
             }
@@ -142,7 +136,18 @@ impl PaperMethod<'_> {
         Decision::Stuck
     }
 
-    fn is_free(&self, pose: &Pose2) -> bool {
-        self.space.contact(pose).is_none()
+    /// How many samples, from the first to `count`, are free before one is not.
+    async fn free_samples(&self, count: usize, at: impl Fn(usize) -> Pose2) -> usize {
+        let mut free = 0;
+        while free < count && self.is_free(&at(free + 1)).await {
+            free += 1;
+        }
+        free
+    }
+
+    /// Nothing is, once the plan's work is used up.
+    async fn is_free(&self, pose: &Pose2) -> bool {
+        self.space.rest().await;
+        !self.space.is_spent() && self.space.contact(pose).is_none()
     }
 }

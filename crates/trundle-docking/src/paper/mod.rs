@@ -3,7 +3,7 @@
 //! Problem: settle on a pose in a corridor by turns on the spot and straight moves. Idea: put the lateral deviation right
 //! with the turn and the straight that cost least, f = w1 t + w2 d; then take up the goal's heading and drive the
 //! longitudinal one; then turn the rest. Cost: turn samples times straight samples a decision. Contact is tested at the
-//! samples only, as in the paper.
+//! samples only, as in the paper. It rests between two samples, so that it may be done in parts (`pace`).
 //!
 //! | paper | name here | unit |
 //! |---|---|---|
@@ -23,7 +23,7 @@ use crate::space::Space;
 use trundle_core::Pose2;
 
 /// Repeats the method's decisions, each carried out exactly, until it is settled or gives up (`None`).
-pub fn plan(
+pub async fn plan(
     space: &Space<'_>,
     start: Pose2,
     goal: Pose2,
@@ -33,7 +33,7 @@ pub fn plan(
     let method = PaperMethod { space, limits: *limits, config };
     let (mut pose, mut motions, mut recoveries) = (start, Vec::new(), 0);
     while motions.len() < config.most_motions {
-        let next: Vec<Motion> = match method.decide(&pose, &goal, recoveries) {
+        let next: Vec<Motion> = match method.decide(&pose, &goal, recoveries).await {
             Decision::Settled => return Some(Manoeuvre::new(start, &motions, *limits)),
             Decision::Move(next) => next,
             Decision::Recover(next) => {

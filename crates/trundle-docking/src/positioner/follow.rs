@@ -23,7 +23,7 @@ pub enum Command {
     /// The motion is at its end.
     Done,
     /// Something is in the way.
-    Blocked(Option<Blocker>),
+    Blocked(Blocker),
 }
 
 impl Following {
@@ -67,8 +67,13 @@ impl Following {
         let allowed = (2.0 * braking * left).sqrt().min(top).max(creep);
         let rate = allowed.min(self.rate.abs() + acceleration * dt);
         let stopping = (rate * rate / (2.0 * braking) + rate * config.delay).min(left);
-        if let Some(blocker) = self.blocked(pose, stopping, space) {
-            return Command::Blocked(blocker);
+        // What is still to come, as far as it takes to stop.
+        let ahead = match self.motion {
+            Motion::Turn(_) => Motion::Turn(stopping.copysign(whole)),
+            Motion::Drive(_) => Motion::Drive(stopping.copysign(whole)),
+        };
+        if let Some(by) = space.in_the_way(pose, ahead) {
+            return Command::Blocked(by);
         }
         self.rate = rate;
         Command::Go(match self.motion {
@@ -78,20 +83,5 @@ impl Following {
                 Twist2::new(rate.copysign(whole), (config.heading_gain * off).clamp(-0.1, 0.1))
             }
         })
-    }
-
-    /// What stands within the stopping way, if anything.
-    fn blocked(&self, pose: &Pose2, stopping: f64, space: &mut Space<'_>) -> Option<Option<Blocker>> {
-        let (room, by) = match self.motion {
-            Motion::Turn(angle) => {
-                let free = space.turn(pose);
-                if angle > 0.0 { (free.left, free.left_by) } else { (free.right, free.right_by) }
-            }
-            Motion::Drive(way) => {
-                let free = space.drive(pose, stopping + 0.05);
-                if way > 0.0 { (free.ahead, free.ahead_by) } else { (free.behind, free.behind_by) }
-            }
-        };
-        (room < stopping).then_some(by)
     }
 }

@@ -3,7 +3,8 @@
 //! Problem: poses are measured with noise and wheels lag, so that a manoeuvre carried out blindly ends beside its goal, and
 //! one corrected without end hunts. Idea: after every motion the pose is averaged at rest and the rest is planned anew; where
 //! one or two motions end within the tolerance, these are taken instead of an exact manoeuvre; what is settled stays settled
-//! until an error exceeds the tolerance by far. By the paper's method the pair that it decided on is carried out, a turn and
+//! until an error exceeds the tolerance by far. A search in parts has a pose and obstacles of its beginning: who is pushed
+//! meanwhile begins anew, and what came of it is looked at once more among what stands around at its end. By the paper's method the pair that it decided on is carried out, a turn and
 //! a straight, before it decides again. Every step looks along the motion for the stopping way; when something is
 //! there, the command is zero at once. Cost: one plan a motion, in parts of so much a step, one closed-form query a step.
 
@@ -12,13 +13,14 @@ mod config;
 mod follow;
 mod nearly;
 mod next;
+mod search;
 
 pub use config::PositionerConfig;
 
 use crate::config::DockingConfig;
 use crate::manoeuvre::{Manoeuvre, Motion};
-use crate::pace::Planning;
-use crate::planner::{Docker, Refusal};
+use crate::plan::Refusal;
+use crate::planner::Docker;
 use crate::scene::{Blocker, Scene};
 use crate::space::Space;
 use average::PoseAverage;
@@ -26,6 +28,7 @@ use follow::{Command, Following};
 use nalgebra::Matrix3;
 use nearly::Tolerance;
 use next::Next;
+use search::Search;
 use trundle_core::{Footprint, Invalid, Pose2, Stamp, Twist2};
 
 /// What the positioner is told at every step.
@@ -46,14 +49,14 @@ pub struct PositionerInput<'a> {
 pub enum Reason {
     /// At rest, averaging the pose.
     Measuring,
-    /// At rest, planning: as much of it a step as [`PositionerConfig::step_work`] allows.
+    /// At rest, planning: as much of it a step as [`PositionerConfig::step_work`] grants.
     Planning,
     /// Carrying out a motion.
     Moving(Motion),
     /// On the goal, within tolerance.
     Settled,
-    /// Something is in the way of the motion: stopped, and planning anew from here.
-    Obstacle(Option<Blocker>),
+    /// Something is in the way of the motion, or of a plan that was ready: stopped, and planning anew from here.
+    Obstacle(Blocker),
     /// There is no manoeuvre; trying again after a while.
     NoWay(Option<Blocker>),
     /// Nothing can be planned; trying again after a while.
@@ -76,7 +79,7 @@ pub struct PositionerReport {
 #[derive(Debug)]
 enum Phase {
     Measure { since: Stamp, average: PoseAverage },
-    Plan { planning: Planning, pose: Pose2 },
+    Plan { search: Search, pose: Pose2 },
     Follow(Following),
     Wait { until: Stamp, reason: Reason },
     Settled,
@@ -162,8 +165,8 @@ impl Positioner {
         let phase = self.phase.take().unwrap_or_else(|| measure(input.stamp));
         let (phase, twist, reason, pose) = match phase {
             Phase::Measure { since, average } => self.measure(input, since, average),
-            Phase::Plan { planning, pose } => {
-                let (phase, reason) = self.plan_on(input, planning, pose);
+            Phase::Plan { search, pose } => {
+                let (phase, reason) = self.plan_on(input, search, pose);
                 (phase, Twist2::ZERO, reason, input.pose)
             }
             Phase::Follow(following) => self.follow(input, following, dt),
@@ -210,22 +213,21 @@ impl Positioner {
         self.attempts += u32::from(self.tolerance().holds(&error, self.config.release));
         match self.next_motion(input, pose) {
             Ok(Next::Motion(motion)) => follow(motion, *pose),
-            Ok(Next::Search(planning)) => self.plan_on(input, planning, *pose),
-            Ok(Next::Nothing) => self.arrived(),
+            Ok(Next::Search(search)) => self.plan_on(input, search, *pose),
             Err(reason) => self.wait(input, reason),
         }
     }
 
-    /// A part of the search for a manoeuvre from `pose`, and what follows when that was the last.
-    fn plan_on(
-        &mut self,
-        input: &PositionerInput<'_>,
-        mut planning: Planning,
-        pose: Pose2,
-    ) -> (Phase, Reason) {
-        match planning.go_on(self.config.step_work).map(|plan| self.first_of(plan)) {
-            None => (Phase::Plan { planning, pose }, Reason::Planning),
-            Some(Ok(motion)) => follow(motion, pose),
+    /// A part of the search for motions from `pose`, and what follows when that was the last.
+    fn plan_on(&mut self, input: &PositionerInput<'_>, mut search: Search, pose: Pose2) -> (Phase, Reason) {
+        if self.is_pushed(input, &pose) {
+            return (measure(input.stamp), Reason::Measuring);
+        }
+        match self.search_on(&mut search, input, &pose) {
+            None => (Phase::Plan { search, pose }, Reason::Planning),
+            Some(Ok(Some(motion))) => follow(motion, pose),
+            Some(Ok(None)) => self.arrived(),
+            Some(Err(reason @ Reason::Obstacle(_))) => (measure(input.stamp), reason),
             Some(Err(reason)) => self.wait(input, reason),
         }
     }
@@ -255,7 +257,7 @@ impl Positioner {
             Command::Done => (measure(input.stamp), Twist2::ZERO, Reason::Measuring),
             Command::Blocked(by) => {
                 self.pending = None;
-                (measure(input.stamp), Twist2::ZERO, Reason::Obstacle(by))
+                (measure(input.stamp), Twist2::ZERO, Reason::Obstacle(input.scene.named(by)))
             }
         };
         (phase, twist, reason, input.pose)

@@ -1,7 +1,7 @@
 use crate::limits::MotionLimits;
 use crate::manoeuvre::Motion;
 use crate::space::Space;
-use trundle_core::{Pose2, wrap_angle};
+use trundle_core::Pose2;
 
 /// What counts as there.
 #[derive(Debug, Clone, Copy)]
@@ -49,11 +49,8 @@ pub fn nearly(
 
 fn is_free(space: &mut Space<'_>, mut pose: Pose2, motions: &[Motion]) -> bool {
     motions.iter().all(|motion| {
-        let free = match motion {
-            Motion::Turn(angle) => space.turn(&pose).way(wrap_angle(*angle)) == Some(*angle),
-            Motion::Drive(way) => space.drive(&pose, way.abs() + 0.01).allows(*way),
-        };
+        let is_free = space.in_the_way(&pose, *motion).is_none();
         pose = motion.after(pose, motion.amount());
-        free
+        is_free
     })
 }

@@ -1,4 +1,4 @@
-use trundle_core::{CellIndex, GridGeometry, Vector2};
+use trundle_core::{Cell, CellIndex, GridGeometry, Vector2};
 
 /// The cells of a grid within a box, and which of them stand in the way.
 #[derive(Debug, Clone, PartialEq)]
@@ -7,19 +7,21 @@ pub struct Cells {
     /// First and one past the last, columns and rows.
     pub cols: (usize, usize),
     pub rows: (usize, usize),
-    blocked: Vec<bool>,
+    /// Row by row; free is what does not stand in the way.
+    kinds: Vec<Cell>,
     /// Whether what is off the grid stands in the way too.
     beyond: bool,
 }
 
 impl Cells {
-    /// The cells of a grid that reach into the box of half side `half` (m) about `center`; `blocks` says which stand in the way.
+    /// The cells of a grid that reach into the box of half side `half` (m) about `center`; `kind` says what each
+    /// counts as: all but free ones stand in the way.
     pub fn new(
         geometry: GridGeometry,
         center: Vector2,
         half: f64,
         beyond: bool,
-        blocks: impl Fn(CellIndex) -> bool,
+        kind: impl Fn(CellIndex) -> Cell,
     ) -> Self {
         let part = |middle: f64, origin: f64, count: usize| {
             let at = |x: f64| ((x - origin) / geometry.resolution).clamp(0.0, count as f64);
@@ -27,11 +29,11 @@ impl Cells {
         };
         let cols = part(center.x, geometry.origin.x, geometry.width);
         let rows = part(center.y, geometry.origin.y, geometry.height);
-        let mut blocked = Vec::with_capacity((cols.1 - cols.0) * (rows.1 - rows.0));
+        let mut kinds = Vec::with_capacity((cols.1 - cols.0) * (rows.1 - rows.0));
         for row in rows.0..rows.1 {
-            blocked.extend((cols.0..cols.1).map(|col| blocks(CellIndex { col, row })));
+            kinds.extend((cols.0..cols.1).map(|col| kind(CellIndex { col, row })));
         }
-        Self { geometry, cols, rows, blocked, beyond }
+        Self { geometry, cols, rows, kinds, beyond }
     }
 
     /// Of which grid.
@@ -41,9 +43,24 @@ impl Cells {
 
     /// Whether a cell stands in the way; none beyond the box does.
     pub fn blocks(&self, col: usize, row: usize) -> bool {
+        self.kind(col, row) != Cell::Free
+    }
+
+    fn kind(&self, col: usize, row: usize) -> Cell {
         let inside = (self.cols.0..self.cols.1).contains(&col) && (self.rows.0..self.rows.1).contains(&row);
         let index = || (row - self.rows.0) * (self.cols.1 - self.cols.0) + col - self.cols.0;
-        inside && self.blocked[index()]
+        if inside { self.kinds[index()] } else { Cell::Free }
+    }
+
+    /// The cell that stands in the way at a point of its outline or within: what it is, and its middle, m; `None` at the rim.
+    pub fn at(&self, p: Vector2) -> Option<(Cell, Vector2)> {
+        let off = 1e-3 * self.geometry.resolution;
+        let about = [(0.0, 0.0), (off, off), (-off, off), (-off, -off), (off, -off)];
+        about.into_iter().find_map(|(x, y)| {
+            let cell = self.geometry.cell_at(p + Vector2::new(x, y))?;
+            let kind = self.kind(cell.col, cell.row);
+            (kind != Cell::Free).then(|| (kind, self.geometry.center(cell)))
+        })
     }
 
     /// Whether a point lies in a cell that stands in the way, or off the grid where that counts.
@@ -60,10 +77,14 @@ mod tests {
     fn only_what_is_in_the_box_blocks_and_what_is_off_the_grid_where_it_counts() {
         let geometry = GridGeometry::new(0.1, Vector2::zeros(), 20, 10).unwrap();
         let at = |x: f64, y: f64| Vector2::new(x, y);
-        let cells = |beyond| Cells::new(geometry, at(0.5, 0.5), 0.3, beyond, |cell| cell.col % 2 == 0);
+        let kind = |cell: CellIndex| if cell.col % 2 == 0 { Cell::Occupied } else { Cell::Free };
+        let cells = |beyond| Cells::new(geometry, at(0.5, 0.5), 0.3, beyond, kind);
         let some = cells(false);
         assert!(some.hold(at(0.45, 0.5)) && !some.hold(at(0.55, 0.5)) && !some.hold(at(1.65, 0.5)));
         assert!(!some.hold(at(-0.5, 0.5)) && cells(true).hold(at(-0.5, 0.5)));
         assert_eq!((some.cols, some.rows), ((2, 8), (2, 8)));
+        let (kind, middle) = some.at(at(0.5, 0.43)).unwrap();
+        assert!(kind == Cell::Occupied && (middle - at(0.45, 0.45)).norm() < 1e-9, "{middle}");
+        assert!(some.at(at(0.55, 0.5)).is_none() && some.at(at(5.0, 5.0)).is_none());
     }
 }

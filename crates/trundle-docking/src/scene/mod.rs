@@ -1,5 +1,6 @@
 //! What stands around the robot, as straight pieces that a hull may not overlap.
 
+mod blocker;
 mod cells;
 mod outline;
 mod patch;
@@ -7,6 +8,7 @@ mod points;
 
 use crate::cloud::StandQuestion;
 use crate::geometry::{Hull, Segment};
+pub use blocker::{Blocker, Thing};
 use cells::Cells;
 pub(crate) use patch::Patch;
 use points::PointIndex;
@@ -25,14 +27,8 @@ pub enum Obstacle {
     Polygon(Vec<Vector2>),
 }
 
-/// What a motion or a pose meets.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Blocker {
-    /// Which of the obstacles, by its place in the list; of a grid, which piece of an outline.
-    pub obstacle: usize,
-    /// Its nearest point, map frame, m.
-    pub at: Vector2,
-}
+/// What it costs to see how far a piece is, in units of [`crate::Space::work`].
+const DISTANCE_COST: u64 = 5;
 
 /// A straight piece of an obstacle.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -85,12 +81,11 @@ impl Scene {
     /// unknown ones too, and all that is off the grid: nothing is known of it.
     pub fn from_grid(grid: &OccupancyGrid, center: Vector2, half: f64, unknown_blocks: bool) -> Self {
         let geometry = *grid.geometry();
-        let blocks = |cell: CellIndex| match grid.get(cell) {
-            Cell::Occupied => true,
-            Cell::Unknown => unknown_blocks,
-            Cell::Free => false,
+        let kind = |cell: CellIndex| match grid.get(cell) {
+            Cell::Unknown if !unknown_blocks => Cell::Free,
+            kind => kind,
         };
-        let cells = Cells::new(geometry, center, half, unknown_blocks, blocks);
+        let cells = Cells::new(geometry, center, half, unknown_blocks, kind);
         let number = |(i, segment): (usize, Segment)| Piece { segment, obstacle: i as u32 };
         let rim = unknown_blocks.then(|| rim_of(&geometry)).into_iter().flatten();
         let pieces = outline::outlines(&cells).into_iter().chain(rim).enumerate().map(number).collect();
@@ -145,32 +140,34 @@ impl Scene {
     }
 
     pub(crate) fn clearance_of(&self, hull: &Hull, pose: &Pose2, reach: f64) -> Option<(f64, Blocker)> {
+        self.nearest(hull, pose, reach).0
+    }
+
+    /// The nearest obstacle as [`Scene::clearance`] has it, and what it cost to find it.
+    pub(crate) fn nearest(&self, hull: &Hull, pose: &Pose2, reach: f64) -> (Option<(f64, Blocker)>, u64) {
         let (sin, cos) = pose.theta.sin_cos();
         let mut best: Option<(f64, Blocker)> = None;
-        let mut offer = |distance: f64, blocker: Blocker| {
-            if distance < reach && best.is_none_or(|(least, _)| distance < least) {
-                best = Some((distance, blocker));
-            }
-        };
+        let mut work = self.pieces.len() as u64;
         let half = Vector2::repeat(hull.outer_radius() + reach);
         self.visit_pieces(pose.position(), half, |segment, number| {
             let distance = hull.distance(&segment.seen_from(pose.position(), cos, sin));
-            offer(distance, Blocker { obstacle: number as usize, at: segment.nearest(pose.position()) });
+            offer(&mut best, reach, distance, || Blocker::listed(number, segment.nearest(pose.position())));
+            work += DISTANCE_COST;
         });
-        self.points.ask(&mut StandQuestion::new(hull, pose, reach, &mut best));
-        let mut offer = |distance: f64, blocker: Blocker| {
-            if distance < reach && best.is_none_or(|(least, _)| distance < least) {
-                best = Some((distance, blocker));
-            }
-        };
+        work += self.points.ask(&mut StandQuestion::new(hull, pose, reach, &mut best));
         let corner = hull.corners_at(pose).next().expect("invariant: a hull has a corner");
         for (corners, number) in self.solids.iter().filter(|(corners, _)| holds(corners, corner)) {
-            offer(0.0, Blocker { obstacle: *number as usize, at: corners[0] });
+            offer(&mut best, reach, 0.0, || Blocker::listed(*number, corners[0]));
         }
         if self.cells.as_ref().is_some_and(|cells| cells.hold(corner)) {
-            offer(0.0, Blocker { obstacle: self.pieces.len(), at: corner });
+            offer(&mut best, reach, 0.0, || Blocker::listed(self.pieces.len() as u32, corner));
         }
-        best
+        (best, work)
+    }
+
+    /// What a blocker is, for people: of a grid, the cell rather than a piece of an outline.
+    pub(crate) fn named(&self, blocker: Blocker) -> Blocker {
+        self.cells.as_ref().map_or(blocker, |cells| blocker.among(cells))
     }
 
     /// The number of points and straight pieces.
@@ -191,6 +188,13 @@ impl Scene {
     /// The points, for drawing, map frame, m.
     pub fn points(&self) -> impl ExactSizeIterator<Item = Vector2> + '_ {
         self.points.all().iter().map(|(p, _)| *p)
+    }
+}
+
+/// Keeps what is nearer than `reach` and all before, m.
+fn offer(best: &mut Option<(f64, Blocker)>, reach: f64, distance: f64, blocker: impl Fn() -> Blocker) {
+    if distance < best.map_or(reach, |(least, _)| least) {
+        *best = Some((distance, blocker()));
     }
 }
 
@@ -261,7 +265,7 @@ mod tests {
         let corners = [(-5., -5.), (5., -5.), (5., 5.), (-5., 5.)].map(|(x, y)| Vector2::new(x, y)).to_vec();
         let scene = Scene::new(&[Obstacle::Polygon(corners)]).unwrap();
         let (distance, blocker) = scene.clearance(&Footprint::KOBUKI, &Pose2::IDENTITY, 1.0).unwrap();
-        assert_eq!((distance, blocker.obstacle), (0.0, 0));
+        assert_eq!((distance, blocker.thing), (0.0, Thing::Listed(0)));
         let grid = OccupancyGrid::from_ascii(1.0, "####\n####\n####\n####").unwrap();
         let scene = Scene::from_grid(&grid, Vector2::new(2.0, 2.0), 3.0, false);
         assert_eq!(scene.clearance(&Footprint::KOBUKI, &Pose2::new(1.5, 1.5, 0.0), 1.0).unwrap().0, 0.0);

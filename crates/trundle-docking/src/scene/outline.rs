@@ -45,13 +45,13 @@ fn piece(geometry: &GridGeometry, from: (isize, isize), to: (isize, isize)) -> S
 #[cfg(test)]
 mod tests {
     use super::*;
-    use trundle_core::{Cell, OccupancyGrid};
+    use trundle_core::OccupancyGrid;
 
     #[test]
     fn a_wall_of_cells_has_four_sides() {
         let grid = OccupancyGrid::from_ascii(0.5, "......\n.####.\n......").unwrap();
-        let occupied = |cell| grid.get(cell) == Cell::Occupied;
-        let pieces = outlines(&Cells::new(*grid.geometry(), Vector2::zeros(), 9.0, false, occupied));
+        let kind = |cell| grid.get(cell);
+        let pieces = outlines(&Cells::new(*grid.geometry(), Vector2::zeros(), 9.0, false, kind));
         assert_eq!(pieces.len(), 4);
         let length: f64 = pieces.iter().map(|s| (s.b - s.a).norm()).sum();
         assert!((length - 5.0).abs() < 1e-12);

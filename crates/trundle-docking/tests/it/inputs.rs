@@ -6,7 +6,7 @@ use rand_chacha::ChaCha8Rng;
 use trundle_core::{Cell, Footprint, GridGeometry, OccupancyGrid, Pose2, Vector2};
 use trundle_docking::corridor::{Problem, Scenario, generate, parse};
 use trundle_docking::{
-    Certificate, Docker, DockingConfig, Method, Motion, Obstacle, Plan, Refusal, Scene, Space,
+    Certificate, Docker, DockingConfig, Method, Motion, Obstacle, Plan, Refusal, Scene, Space, Thing,
 };
 
 fn at(x: f64, y: f64) -> Vector2 {
@@ -68,7 +68,10 @@ fn a_closed_wall_is_named_as_what_forbids_it() {
     let plan =
         docker().plan(&robot(), &scene, Pose2::new(-0.6, 0.0, 0.0), Pose2::new(0.6, 0.0, 0.0)).unwrap();
     let Plan::Impossible(impossible) = plan else { panic!("{plan:?}") };
-    assert_eq!((impossible.certificate, impossible.by.unwrap().obstacle), (Certificate::Never, 4));
+    assert_eq!(
+        (impossible.certificate, impossible.by.unwrap().thing),
+        (Certificate::Never, Thing::Listed(4))
+    );
 }
 
 /// A goal the other way round in a corridor too narrow to turn: impossible; where it widens far off, out of reach.
