@@ -1,5 +1,6 @@
 //! Plans among a hundred thousand points, scene by scene; prints the times and the worst:
-//! `cargo run --release -p trundle-docking --example cloud_bench`, or only those whose name holds a word: `... -- walls`
+//! `cargo run --release -p trundle-docking --example cloud_bench`, or only those whose name holds a word: `... -- walls`, and with
+//! another `points_work`: `... -- walls 1000000000`
 
 #![expect(clippy::print_stdout, reason = "an example prints its result")]
 
@@ -13,7 +14,10 @@ use trundle_docking::{Docker, DockingConfig, Plan};
 const TIMES: usize = 3;
 
 fn main() {
-    let docker = Docker::new(DockingConfig::default()).expect("valid");
+    let standard = DockingConfig::default();
+    let points_work = std::env::args().nth(2).map_or(standard.points_work, |n| n.parse().expect("a number"));
+    let plan_work = standard.plan_work.max(points_work);
+    let docker = Docker::new(DockingConfig { points_work, plan_work, ..standard }).expect("valid");
     let mut worst = (0.0, String::new());
     let word = std::env::args().nth(1).unwrap_or_default();
     for problem in clouds::scenes().into_iter().filter(|problem| problem.name.contains(&word)) {
@@ -29,7 +33,10 @@ fn main() {
                 found.bound,
                 1e3 * found.margin
             ),
-            Ok(Plan::Impossible(none)) => format!("impossible: {:?}", none.certificate),
+            Ok(Plan::Impossible(none)) => format!(
+                "impossible within {} m: {:?}, ended by {:?}",
+                none.within, none.certificate, none.limit
+            ),
             Err(refusal) => refusal.to_string(),
         };
         println!("{least:7.1} ms, scene {preparing:5.1} ms: {}: {told}", problem.name);

@@ -170,10 +170,10 @@ fn plan_all(name: &'static str, problems: &[Problem], docker: &Docker) -> Row {
         match plan {
             Plan::Found(solution) => row.note(problem, Some(Piece::all_of(&solution.manoeuvre))),
             Plan::Impossible(impossible) => {
-                match impossible.certificate {
-                    Certificate::Never => row.never += 1,
-                    Certificate::AtResolution => row.at_resolution += 1,
-                    Certificate::None => row.unsolved.push(problem.name.clone()),
+                match (impossible.certificate, impossible.limit) {
+                    (Certificate::Never, None) => row.never += 1,
+                    (Certificate::AtResolution, None) => row.at_resolution += 1,
+                    _ => row.unsolved.push(problem.name.clone()),
                 }
                 row.times.push(None);
                 row.answers.push(Answer { problem: problem.name.clone(), path: None });

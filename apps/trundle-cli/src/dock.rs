@@ -12,7 +12,9 @@ use std::time::Instant;
 pub(crate) use table::{motions, steps_csv};
 use trundle::core::{Footprint, OccupancyGrid, Pose2};
 use trundle::docking::corridor::{Problem, Scenario, parse, write};
-use trundle::docking::{Certificate, Docker, DockingConfig, Impossible, Obstacle, Plan, Scene, Solution};
+use trundle::docking::{
+    Certificate, Docker, DockingConfig, Impossible, Limit, Obstacle, Plan, Scene, Solution,
+};
 use trundle::io::{LaserLogOptions, OutputFolder, Summary, read_carmen, read_map};
 
 /// What is to be planned, and what stands around.
@@ -250,17 +252,20 @@ fn tell(plan: &Plan, seconds: f64) {
 /// Why there is no manoeuvre, in one sentence.
 fn reason(impossible: &Impossible) -> String {
     let by = impossible.by.as_ref().map_or_else(String::new, |by| format!(": {by} is in the way"));
+    let ended = |limit: Limit| {
+        format!("the search ended at docking.planner.{}, more of it searches longer", limit.setting())
+    };
     let proof = match (impossible.certificate, impossible.limit) {
-        (Certificate::Never, _) => "proven for motions of any kind".to_owned(),
+        (Certificate::Never, None) => "proven for motions of any kind".to_owned(),
+        (Certificate::Never, Some(limit)) => {
+            format!("proven for motions of any kind; farther off none was found: {}", ended(limit))
+        }
         (Certificate::AtResolution, _) => {
             "a complete search in steps of docking.planner.position_tolerance found no way through; a way that is narrower than such a step is \
              not ruled out".to_owned()
         }
         (Certificate::None, None) => "none was found, which is no proof".to_owned(),
-        (Certificate::None, Some(limit)) => format!(
-            "none was found, which is no proof: the search ended at docking.planner.{}, more of it searches longer",
-            limit.setting()
-        ),
+        (Certificate::None, Some(limit)) => format!("none was found, which is no proof: {}", ended(limit)),
     };
     format!("No manoeuvre within {:.1} m{by} ({proof}).", impossible.within)
 }

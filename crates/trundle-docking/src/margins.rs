@@ -55,7 +55,16 @@ impl<'a> Margins<'a> {
         if quick.is_none() {
             quick = self.one_or_two(self.least).await;
         }
-        let Some(quick) = quick else { return self.told(self.of_many().await).await };
+        let Some(quick) = quick else {
+            // What is shown for the least margin holds for all.
+            let never = optimal::never(&self.task, &self.space(self.least), self.effort).await;
+            return match never {
+                Some(Outcome::Apart(certificate, by)) => {
+                    self.told(Err(Apart { certificate, by, limit: None })).await
+                }
+                _ => self.told(self.of_many().await).await,
+            };
+        };
         match self.many(self.most, if self.saving < 1.0 { PART } else { 1 }).await {
             Ok(slow) if (1.0 - self.saving) * slow.legs.0 <= quick.legs.0 => self.solution(slow).await,
             _ => self.solution(quick).await,

@@ -53,7 +53,8 @@ pub struct Impossible {
     pub by: Option<Blocker>,
     /// What was shown; always [`Certificate::None`] by the paper's method.
     pub certificate: Certificate,
-    /// Where nothing was shown: what ended the search; `None` when it was complete in its own way.
+    /// What ended the search where it found and showed nothing; with a certificate, where it looked farther off than
+    /// `within`. `None` when it was complete.
     pub limit: Option<Limit>,
     /// How far from the line between start and goal motions were thought of, m.
     pub within: f64,

@@ -126,15 +126,9 @@ impl Docker {
         task: Task,
         meter: &Arc<Meter>,
     ) -> Plan {
-        let plan = match self.config.method {
+        match self.config.method {
             Method::Paper => self.by_paper(most, footprint, scene, &task, meter).await,
             Method::Optimal => self.by_search(most, footprint, scene, task, meter).await,
-        };
-        match plan {
-            Plan::Impossible(none) if none.certificate == Certificate::None && meter.is_spent() => {
-                Plan::Impossible(Impossible { limit: Some(self.limit_of(scene).1), ..none })
-            }
-            plan => plan,
         }
     }
 
@@ -151,14 +145,23 @@ impl Docker {
         let least = most.min(0.0);
         let (effort, saving) = (self.effort(&near), self.config.margin_saving);
         let close = Margins { footprint, scene: &near, task, most, least, effort, saving, meter };
-        let plan = close.plan().await;
-        if matches!(plan, Plan::Found(_)) {
-            return plan;
-        }
+        let nearby = match close.plan().await {
+            Plan::Impossible(nearby) => nearby,
+            found => return found,
+        };
         let task = wider(task);
         let far = around(footprint, scene, &task);
         let effort = self.effort(&far);
-        Margins { footprint, scene: &far, task, most: least, least, effort, saving, meter }.plan().await
+        let wide = Margins { footprint, scene: &far, task, most: least, least, effort, saving, meter };
+        match wide.plan().await {
+            Plan::Impossible(none) if none.certificate == Certificate::None => {
+                let limit = if meter.is_spent() { Some(self.limit_of(scene).1) } else { none.limit };
+                // What was shown near the ends stands.
+                let shown = if nearby.certificate == Certificate::None { none } else { nearby };
+                Plan::Impossible(Impossible { limit, ..shown })
+            }
+            plan => plan,
+        }
     }
 
     /// What a plan may cost as a whole.
@@ -206,8 +209,9 @@ impl Docker {
                 return Plan::Found(Solution { manoeuvre, bound: 0.0, margin });
             }
         }
+        let limit = meter.is_spent().then(|| self.limit_of(scene).1);
         let (certificate, within) = (Certificate::None, task.reach);
-        Plan::Impossible(Impossible { by: None, certificate, limit: None, within })
+        Plan::Impossible(Impossible { by: None, certificate, limit, within })
     }
 
     fn task(&self, start: Pose2, goal: Pose2) -> Task {

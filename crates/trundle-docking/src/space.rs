@@ -108,8 +108,12 @@ pub struct Space<'a> {
     angles: Vec<f64>,
     arcs: Vec<Arc>,
     meter: Shared<Meter>,
+    /// Among many points: blocked headings that may be left out, rad.
+    little: f64,
 }
 
+/// Three millimetres at the end of an arm of 0.3 m, rad.
+const LITTLE: f64 = 0.01;
 /// What a piece costs when it is asked for headings and when it is asked for ways, in units of [`Space::work`].
 const HEADINGS_COST: u64 = 40;
 const WAY_COST: u64 = 5;
@@ -125,12 +129,17 @@ impl<'a> Space<'a> {
         let points = scene.points().len();
         let profile = (points > FEW).then(|| Profile::new(&hull, points));
         meter.spend(profile.as_ref().map_or(0, Profile::cost));
-        Self { scene, hull, profile, angles: Vec::new(), arcs: Vec::new(), meter }
+        Self { scene, hull, profile, angles: Vec::new(), arcs: Vec::new(), meter, little: LITTLE }
     }
 
     /// The same obstacles for another hull; their work is counted together.
     pub(crate) fn with_hull(&self, hull: Hull) -> Self {
         Self::metered(hull, self.scene, Shared::clone(&self.meter))
+    }
+
+    /// From now on headings are told no finer than what is `length` (m) at the farthest point.
+    pub(crate) fn tell_headings_within(&mut self, length: f64) {
+        self.little = length / self.hull.outer_radius();
     }
 
     /// The footprint with its margin.
@@ -263,7 +272,8 @@ impl<'a> Space<'a> {
             Some(profile) => {
                 join(blocked, first);
                 let all = (hull, profile);
-                let mut question = HeadingsQuestion::new(all, position, angles, blocked, first);
+                let mut question =
+                    HeadingsQuestion::new(all, position, angles, blocked, (first, self.little));
                 work += self.scene.ask(&mut question);
             }
             None => self.scene.visit_points(position, half, |p, _| {

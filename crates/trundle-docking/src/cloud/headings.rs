@@ -3,7 +3,7 @@ use crate::scene::{Patch, Question};
 use std::f64::consts::TAU;
 use trundle_core::Vector2;
 
-/// At which headings a hull overlaps something: all that are told do, of those that do [`LITTLE`] at either end may be left out.
+/// At which headings a hull overlaps something: all that are told do, of those that do a little at either end may be left out.
 /// It is asked where a heading too many that counts as free does no harm: for bounds, proofs and guides.
 pub struct HeadingsQuestion<'q> {
     hull: &'q Hull,
@@ -12,10 +12,9 @@ pub struct HeadingsQuestion<'q> {
     angles: &'q mut Vec<f64>,
     blocked: &'q mut Vec<Arc>,
     first: usize,
+    /// Headings that are not worth a look, rad.
+    little: f64,
 }
-
-/// Headings that are not worth a look, rad: three millimetres at the end of an arm of 0.3 m.
-const LITTLE: f64 = 0.01;
 
 impl<'q> HeadingsQuestion<'q> {
     /// What is known so far is in `blocked` from `first` on, joined.
@@ -24,9 +23,9 @@ impl<'q> HeadingsQuestion<'q> {
         position: Vector2,
         angles: &'q mut Vec<f64>,
         blocked: &'q mut Vec<Arc>,
-        first: usize,
+        (first, little): (usize, f64),
     ) -> Self {
-        Self { hull, profile, position, angles, blocked, first }
+        Self { hull, profile, position, angles, blocked, first, little }
     }
 }
 
@@ -36,8 +35,9 @@ impl Question for HeadingsQuestion<'_> {
     fn promise(&self, patch: &Patch) -> Option<f64> {
         let arcs = &self.blocked[self.first..];
         let inside = |arc: &Arc, from: f64, length: f64| {
-            let core = (length - 2.0 * LITTLE).max(0.0);
-            arc.length >= TAU || once_round(from + LITTLE.min(length / 2.0) - arc.start) + core <= arc.length
+            let core = (length - 2.0 * self.little).max(0.0);
+            arc.length >= TAU
+                || once_round(from + self.little.min(length / 2.0) - arc.start) + core <= arc.length
         };
         let seen = patch.seen_from(self.position, Vector2::x());
         let known = |from, length| arcs.iter().any(|arc| inside(arc, from, length));

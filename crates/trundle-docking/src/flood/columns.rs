@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 use trundle_core::{Pose2, Vector2};
 
 /// What a node costs besides its headings, in units of [`Space::work`].
-const NODE_COST: u64 = 20;
+const NODE_COST: u64 = 40;
 /// A heading that is nearly the same, rad.
 const NEAR_HEADING: f64 = 0.03;
 
@@ -37,6 +37,7 @@ impl<'s, 'a> Columns<'s, 'a> {
         let count = (2.0 * half / side).ceil() as usize + 1;
         let low = center - Vector2::repeat(count as f64 * side / 2.0);
         let ranges = vec![(u32::MAX, 0); count * count];
+        space.tell_headings_within(side / 4.0);
         Self { space, low, side, count, ranges, gaps: Vec::new(), blocked: Vec::new() }
     }
 

@@ -15,14 +15,12 @@ pub struct Guide<'s, 'a> {
 
 /// Metres along the heading that a metre across it costs: there and back, at the angles a corridor leaves.
 const ACROSS: f64 = 8.0;
-/// Poses farther than the start by half and by this, us, are of no use.
-const MARGIN_US: u64 = 3_000_000;
 /// Headings of a path keep this from the ends of what is free, rad.
 const INSET: f64 = 0.05;
 
 impl<'s, 'a> Guide<'s, 'a> {
-    /// Floods from the goal over cells of `side` (m) within a square, at `speed` (m/s), somewhat farther than to `start`; no
-    /// farther than [`Space::work`] comes to `limit`.
+    /// Floods from the goal over cells of `side` (m) within a square, at `speed` (m/s), farther than to `start` by `beyond` (s)
+    /// and as many sixths of the way there as that is half seconds; no farther than [`Space::work`] comes to `limit`.
     pub async fn new(
         space: &'s mut Space<'a>,
         goal: &Pose2,
@@ -30,7 +28,7 @@ impl<'s, 'a> Guide<'s, 'a> {
         half: f64,
         side: f64,
         speed: f64,
-        (start, limit): (&Pose2, u64),
+        (start, beyond, limit): (&Pose2, f64, u64),
     ) -> Self {
         let mut guide = Self { columns: Columns::new(space, center, half, side), seconds: Vec::new() };
         let Some(from) = guide.columns.node_near(goal) else { return guide };
@@ -43,7 +41,7 @@ impl<'s, 'a> Guide<'s, 'a> {
                 break;
             }
             if Some(node) == end {
-                far = key + key / 2 + MARGIN_US;
+                far = key + (beyond * (key as f64 / 6.0 + 1e6)) as u64;
             }
             let so_far = f64::from(guide.seconds[node.gap as usize]);
             if (so_far * 1e6) as u64 != key {

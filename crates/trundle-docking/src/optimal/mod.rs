@@ -66,7 +66,7 @@ pub struct Effort {
 }
 
 /// Sides of the cells of the certificate, in units of the finest: coarse ones often do.
-const CELLS: [f64; 3] = [4.0, 2.0, 1.0];
+const CELLS: [f64; 4] = [8.0, 4.0, 2.0, 1.0];
 /// Half a square of more cells than this is searched by cells twice as large.
 const WIDE: f64 = 220.0;
 /// Headings tried at start and goal, and how close they may be, rad.
@@ -74,7 +74,12 @@ const FAN: (usize, f64) = (120, 0.3 * std::f64::consts::PI / 180.0);
 /// What one or two legs may cost, and what it may cost to better legs that are known.
 const LITTLE: u64 = 2_000_000;
 
-/// The same where a whole plan may cost no more than a few times that.
+/// Whether a whole plan may cost but little.
+fn is_scanty(space: &Space<'_>) -> bool {
+    space.most() < 5 * LITTLE
+}
+
+/// What one or two legs may cost, less where a whole plan may cost no more than a few times that.
 fn little(space: &Space<'_>) -> u64 {
     LITTLE.min(space.most() / 8)
 }
@@ -124,8 +129,8 @@ pub async fn bound(task: &Task, space: &mut Space<'_>, known: f64, gap: f64, box
 const BEAM: usize = 24;
 /// Width of the beam where the guide knows the way, and where a plan may cost but little.
 const GUIDED_BEAM: (usize, usize) = (12, 5);
-/// A whole plan may cost but little where it may cost less than this.
-const SCANTY: u64 = 10_000_000;
+/// How much farther than the start a guide reaches, s, and the same where a plan may cost but little.
+const BEYOND: (f64, f64) = (3.0, 0.5);
 /// A gap at which it is worth while to look for more legs.
 const LOOSE: f64 = 0.05;
 
@@ -139,28 +144,42 @@ pub async fn many(task: Task, space: &mut Space<'_>, effort: Effort) -> Outcome 
     let mut second = space.clone();
     let mut search = Search::new(task, space, FAN, limit).await;
     // A flood that shows that there is no way is as cheap as one that shows where it leads: coarse cells first, for both.
-    let wide = task.half() > WIDE * effort.cell;
+    let leading = if task.half() > WIDE * effort.cell { CELLS[1] } else { CELLS[2] };
     for side in CELLS {
         let size = side * effort.cell;
         if let Some(never) = apart(&task, &second, size, true, limit).await {
             return never;
         }
-        if side == CELLS[2]
+        if side == CELLS[3]
             && let Some(outcome) = apart(&task, &second, size, false, limit).await
         {
             return outcome;
         }
-        if side < CELLS[0] || wide {
+        if side <= leading {
             led_by_cells(&mut search, &mut second, size, effort.nodes).await;
         }
-        if search.best.is_none() {
-            continue;
+        if search.best.is_some() {
+            shorten_best(&mut search).await;
+            break;
         }
-        shorten_best(&mut search).await;
-        break;
+        if search.is_spent() {
+            break;
+        }
     }
     let ended_by = if search.is_spent() { Limit::MostWork } else { Limit::SearchNodes };
     search.best.map_or(Outcome::Nothing(ended_by), Outcome::Found)
+}
+
+/// Whether coarse cells show that no motion of any kind leads to the goal.
+pub async fn never(task: &Task, space: &Space<'_>, effort: Effort) -> Option<Outcome> {
+    let limit = space.until(effort.work);
+    for side in &CELLS[..2] {
+        let never = apart(task, space, side * effort.cell, true, limit).await;
+        if never.is_some() {
+            return never;
+        }
+    }
+    None
 }
 
 /// What cells of `side` (m) say against any motion, with the hull shrunk for a proof or as it is.
@@ -179,12 +198,13 @@ async fn apart(task: &Task, space: &Space<'_>, side: f64, shrunk: bool, limit: u
 async fn led_by_cells<'a>(search: &mut Search<'_, 'a>, second: &mut Space<'a>, side: f64, nodes: usize) {
     let task = search.task;
     let (center, half, speed) = (task.center(), task.half(), task.limits.speed);
-    let until = (&task.start, search.limit);
+    let beyond = if is_scanty(search.space) { BEYOND.1 } else { BEYOND.0 };
+    let until = (&task.start, beyond, search.limit);
     let mut guide = Guide::new(second, &task.goal, center, half, side, speed, until).await;
     if nodes == 0 || guide.seconds(&task.start).is_infinite() {
         return;
     }
-    let width = if search.space.most() < SCANTY { GUIDED_BEAM.1 } else { GUIDED_BEAM.0 };
+    let width = if is_scanty(search.space) { GUIDED_BEAM.1 } else { GUIDED_BEAM.0 };
     guided_beam(search, &mut guide, width, nodes).await;
     if search.best.is_none() {
         let mut poses = guide.path(&task.start);

@@ -3,11 +3,11 @@
 use crate::world::{DT, World, covariance, run};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
-use trundle_core::{Pose2, Stamp, Twist2, Vector2};
+use trundle_core::{Footprint, Pose2, Stamp, Twist2, Vector2};
 use trundle_docking::corridor::{Scenario, generate};
 use trundle_docking::{
-    Docker, DockingConfig, Method, Obstacle, Plan, Positioner, PositionerConfig, PositionerInput, Reason,
-    Scene,
+    Docker, DockingConfig, Manoeuvre, Method, Obstacle, Plan, Positioner, PositionerConfig, PositionerInput,
+    Reason, Scene,
 };
 
 /// Solvable problems settle within 1 cm and 1 deg, and none touches anything; the benchmark does 500 of them.
@@ -45,7 +45,7 @@ fn settles_under_noise() {
 
 /// A box that appears in the way: the command is zero within 0.1 s; when it is gone, the robot goes on from where it stands.
 fn stops_and_starts_again(method: Method) {
-    let footprint = trundle_core::Footprint::KOBUKI;
+    let footprint = Footprint::KOBUKI;
     let goal = Pose2::new(1.0, 0.0, 0.0);
     let at = |x: f64, y: f64| Vector2::new(x, y);
     let walls = vec![
@@ -110,6 +110,83 @@ fn the_papers_method_stops_and_starts_again_too() {
     stops_and_starts_again(Method::Paper);
 }
 
+/// A positioner in a search of many steps: at which of them it begins to move; pose and scene by step.
+fn begins<'s>(
+    method: Method,
+    at: impl Fn(usize) -> (Pose2, &'s Scene),
+) -> (Vec<Reason>, Option<(usize, Manoeuvre)>) {
+    let docking = DockingConfig { method, ..DockingConfig::default() };
+    let config = PositionerConfig { step_work: 10_000, ..PositionerConfig::default() };
+    let goal = Pose2::new(0.1, 0.9, 0.2);
+    let mut positioner = Positioner::new(docking, config, Footprint::KOBUKI, goal).unwrap();
+    let (mut reasons, mut began) = (Vec::new(), None);
+    for i in 0..1000 {
+        let (pose, scene) = at(i);
+        let stamp = Stamp::default().after(i as f64 * DT);
+        let report = positioner.step(&PositionerInput { stamp, pose, covariance: covariance(), scene });
+        reasons.push(report.reason.clone());
+        if matches!(report.reason, Reason::Moving(_)) {
+            began = Some((i, positioner.manoeuvre().expect("planned").clone()));
+            break;
+        }
+    }
+    (reasons, began)
+}
+
+/// Things farther off than the robot goes: the more, the longer a search.
+fn far_off() -> Vec<Obstacle> {
+    let around = |i: u32| {
+        let (sin, cos) = (f64::from(i) * 0.01 * std::f64::consts::TAU).sin_cos();
+        let p = Vector2::new(1.4 * cos, 0.45 + 1.4 * sin);
+        Obstacle::Segment(p, p + Vector2::new(0.01, 0.0))
+    };
+    (0..100).map(around).collect()
+}
+
+/// The step in the middle of the first search.
+fn amid(reasons: &[Reason]) -> usize {
+    let planning = |i: &usize| reasons[*i] == Reason::Planning;
+    let steps: Vec<usize> = (0..reasons.len()).filter(planning).collect();
+    assert!(steps.len() > 3, "a search of {} steps", steps.len());
+    steps[steps.len() / 2]
+}
+
+/// Who is pushed while it plans plans anew from where it stands then.
+#[test]
+fn a_plan_from_where_it_no_longer_stands_is_not_carried_out() {
+    let scene = Scene::new(&far_off()).unwrap();
+    let (here, there) = (Pose2::IDENTITY, Pose2::new(0.0, 0.05, 0.0));
+    for method in [Method::Optimal, Method::Paper] {
+        let (reasons, began) = begins(method, |_| (here, &scene));
+        assert!(began.unwrap().1.start().distance(&here) < 1e-9, "{method:?}");
+        let pushed = amid(&reasons);
+        let (again, began) = begins(method, |i| (if i < pushed { here } else { there }, &scene));
+        assert_eq!(again[pushed], Reason::Measuring, "{method:?}");
+        assert!(began.unwrap().1.start().distance(&there) < 1e-9, "{method:?}");
+    }
+}
+
+/// A plan that is ready is looked at among what stands around by then, to its last motion: here its first, a turn of a disc,
+/// is free.
+#[test]
+fn a_plan_through_what_has_come_meanwhile_is_not_carried_out() {
+    let mut around = far_off();
+    let open = Scene::new(&around).unwrap();
+    around.push(Obstacle::Point(Vector2::new(0.05, 0.45)));
+    let shut = Scene::new(&around).unwrap();
+    for method in [Method::Optimal, Method::Paper] {
+        let (reasons, began) = begins(method, |_| (Pose2::IDENTITY, &open));
+        let (came, (first, _)) = (amid(&reasons), began.unwrap());
+        let (again, began) = begins(method, |i| (Pose2::IDENTITY, if i < came { &open } else { &shut }));
+        assert!(matches!(again[first], Reason::Obstacle(_)), "{method:?}: {:?}", again[first]);
+        let (_, manoeuvre) = began.expect("another way");
+        for i in 0..=200 {
+            let (pose, _) = manoeuvre.at(manoeuvre.duration() * f64::from(i) / 200.0);
+            assert!(shut.clearance(&Footprint::KOBUKI, &pose, 0.003).is_none(), "{method:?}: {pose:?}");
+        }
+    }
+}
+
 /// The paper's four scenarios in closed loop, by its own method: settled within its thresholds, nothing touched.
 #[test]
 fn the_papers_method_settles_its_scenarios_under_noise() {
@@ -124,7 +201,7 @@ fn the_papers_method_settles_its_scenarios_under_noise() {
 #[test]
 fn the_margin_follows_the_covariance() {
     let wall = Scene::new(&[Obstacle::Segment(Vector2::new(-2.0, 0.36), Vector2::new(2.0, 0.36))]).unwrap();
-    let footprint = trundle_core::Footprint::KOBUKI;
+    let footprint = Footprint::KOBUKI;
     let (start, goal) = (Pose2::IDENTITY, Pose2::new(0.1, 0.08, 0.0));
     let nearest = |sigma: f64| {
         let mut positioner =

@@ -184,6 +184,26 @@ fn hardly_any_room_takes_many_motions_and_is_solved() {
     }
 }
 
+/// On a map a person is told which cell is in the way, not which piece of which outline.
+#[test]
+fn on_a_map_the_cell_that_is_in_the_way_is_told() {
+    let wall = "#".repeat(30) + "\n";
+    let row = "...............#..........????\n";
+    let grid = OccupancyGrid::from_ascii(0.1, &(wall.clone() + &row.repeat(16) + &wall)).unwrap();
+    let scene = Scene::from_grid(&grid, at(1.5, 0.9), 5.0, true);
+    let (free, disc) = (Pose2::new(0.8, 0.9, 0.0), Footprint::disc(0.2).unwrap());
+    let said = |goal: Pose2| docker().plan(&disc, &scene, free, goal).unwrap_err().to_string();
+    let goal = |x: f64, y: f64| Pose2::new(x, y, 0.0);
+    assert_eq!(said(goal(1.38, 0.93)), "the goal overlaps the occupied cell at (1.550, 0.950) m");
+    assert_eq!(said(goal(1.55, 0.93)), "the goal overlaps the occupied cell at (1.550, 0.950) m");
+    assert_eq!(said(goal(2.75, 0.85)), "the goal overlaps the unknown cell at (2.650, 0.850) m");
+    assert!(said(goal(-0.05, 0.93)).contains("the goal overlaps the end of the map at ("));
+    let Plan::Impossible(none) = docker().plan(&disc, &scene, free, goal(2.1, 0.9)).unwrap() else {
+        panic!("through a wall")
+    };
+    assert_eq!((none.certificate, none.by.unwrap().thing), (Certificate::Never, Thing::Occupied));
+}
+
 #[test]
 fn a_grid_is_a_scene() {
     let (wall, free) = ("#".repeat(20) + "\n", ".".repeat(20) + "\n");
