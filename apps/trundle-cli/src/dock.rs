@@ -6,7 +6,7 @@ mod table;
 
 use crate::{Outcome, console, failure::Failure, robot_file};
 pub use args::DockArgs;
-pub(crate) use picture::{Surroundings, manoeuvre_picture};
+pub(crate) use picture::{Surroundings, manoeuvre_picture, step_pictures, view};
 use std::path::Path;
 use std::time::Instant;
 pub(crate) use table::{motions, steps_csv};
@@ -16,6 +16,7 @@ use trundle::docking::{
     Certificate, Docker, DockingConfig, Impossible, Limit, Obstacle, Plan, Scene, Solution,
 };
 use trundle::io::{LaserLogOptions, OutputFolder, Summary, read_carmen, read_map};
+use trundle::viz::tiles;
 
 /// What is to be planned, and what stands around.
 struct Task {
@@ -99,14 +100,16 @@ pub fn run(args: &DockArgs) -> Result<Outcome, Failure> {
         Plan::Found(found) => Some(found),
         Plan::Impossible(_) => None,
     };
-    if let Some(found) = found {
-        folder.write("steps.csv", steps_csv(&found.manoeuvre).as_bytes())?;
-    }
     let in_the_way = match &plan {
         Plan::Impossible(impossible) => impossible.by.map(|by| by.at),
         Plan::Found(_) => None,
     };
     let ends = (task.start, task.goal);
+    if let Some(found) = found.filter(|found| !found.manoeuvre.steps().is_empty()) {
+        folder.write("steps.csv", steps_csv(&found.manoeuvre).as_bytes())?;
+        let steps = step_pictures(surroundings, &task.footprint, ends, found);
+        folder.write("steps.png", &tiles(&steps, columns(steps.len())))?;
+    }
     let picture = manoeuvre_picture(surroundings, &task.footprint, ends, found, in_the_way);
     folder.write("dock.png", &picture.to_png())?;
     folder.write("summary.json", summary(&task, &plan, seconds).to_json().as_bytes())?;
@@ -116,6 +119,11 @@ pub fn run(args: &DockArgs) -> Result<Outcome, Failure> {
         console::say(&format!("See {}", place.join("dock.png").display()));
     }
     Ok(if found.is_some() { Outcome::Reached } else { Outcome::Missed })
+}
+
+/// Four motions a row; of more than 16 about as many as there are rows.
+fn columns(motions: usize) -> usize {
+    motions.isqrt().max(4)
 }
 
 /// The robot file's `[docking.planner]`, where one is given, else the planner's own defaults; method and margin as asked for.

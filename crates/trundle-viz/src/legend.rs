@@ -1,5 +1,6 @@
 use crate::canvas::{Canvas, Pen};
 use crate::color::Color;
+use crate::map::{draw_badge, radius_of};
 use crate::text::{TextStyle, cap_height, line_height, text_width};
 
 /// The sign that stands for something in a legend.
@@ -7,6 +8,12 @@ use crate::text::{TextStyle, cap_height, line_height, text_width};
 pub enum Mark {
     /// A solid line.
     Line,
+    /// A line with a head.
+    Arrow,
+    /// A number in a circle.
+    Badge,
+    /// An empty box: an outline.
+    Outline,
     /// A dashed line.
     Dashes,
     /// A filled dot.
@@ -80,6 +87,17 @@ fn paint_mark(canvas: &mut Canvas, item: &LegendItem, (x, y): (i64, i64), scale:
     let center = ((left + right) / 2.0, middle);
     match item.mark {
         Mark::Line => canvas.polyline([(left, middle), (right, middle)], Pen::solid(color, 2.0 * s)),
+        Mark::Arrow => {
+            canvas.polyline([(left, middle), (right - 4.0 * s, middle)], Pen::solid(color, 1.5 * s));
+            let foot = |side: f64| (right - 5.0 * s, middle + 3.0 * s * side);
+            canvas.polygon(&[(right, middle), foot(1.0), foot(-1.0)], color);
+        }
+        Mark::Badge => draw_badge(canvas, center, radius_of("1", scale), "1", scale, color),
+        Mark::Outline => {
+            let line = Pen::solid(color, 1.3 * s);
+            let (low, high) = (middle - 3.0 * s, middle + 3.0 * s);
+            canvas.polyline([(left, low), (right, low), (right, high), (left, high), (left, low)], line);
+        }
         Mark::Dashes => {
             let pen = Pen { color, width: 2.0 * s, dash: Some(2.4 * s) };
             canvas.polyline([(left, middle), (right, middle)], pen);
@@ -109,14 +127,24 @@ mod tests {
 
     #[test]
     fn a_legend_wraps_and_shows_every_item() {
-        let items: Vec<_> =
-            [Mark::Line, Mark::Dashes, Mark::Dot, Mark::Ring, Mark::Wedge, Mark::Band, Mark::Cell]
-                .map(|mark| LegendItem::new("something", Color::BLUE, mark))
-                .into();
+        let items: Vec<_> = [
+            Mark::Line,
+            Mark::Arrow,
+            Mark::Badge,
+            Mark::Outline,
+            Mark::Dashes,
+            Mark::Dot,
+            Mark::Ring,
+            Mark::Wedge,
+            Mark::Band,
+            Mark::Cell,
+        ]
+        .map(|mark| LegendItem::new("something", Color::BLUE, mark))
+        .into();
         let wide = paint_legend(&items, 2000, 2);
         let narrow = paint_legend(&items, 10, 2);
-        assert_eq!(narrow.height(), 7 * wide.height());
-        for row in 0..7 {
+        assert_eq!(narrow.height(), items.len() as i64 * wide.height());
+        for row in 0..items.len() as i64 {
             let band = row * wide.height()..(row + 1) * wide.height();
             assert!(
                 band.clone().any(|y| (0..28).any(|x| narrow.at(x, y) != [255; 3])),

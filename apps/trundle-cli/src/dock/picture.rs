@@ -1,6 +1,7 @@
+use super::table::amount;
 use trundle::core::{Footprint, OccupancyGrid, Pose2, Vector2};
 use trundle::docking::corridor::Problem;
-use trundle::docking::{Manoeuvre, Obstacle, Solution};
+use trundle::docking::{Manoeuvre, Motion, Obstacle, Solution, Step};
 use trundle::viz::{Color, DotStyle, LineStyle, MapPicture, PoseStyle};
 
 /// Seconds between two of the outlines that show the floor that is covered.
@@ -17,55 +18,136 @@ pub(crate) struct Surroundings<'a> {
     pub(crate) problem: Option<&'a Problem>,
 }
 
-/// Start, goal, what stands around, the robot along the manoeuvre, and what forbids one.
+/// Start, goal, what stands around, the robot along the manoeuvre with its motions numbered, and what forbids one.
 pub(crate) fn manoeuvre_picture<'a>(
     around: Surroundings<'a>,
     footprint: &Footprint,
-    (start, goal): (Pose2, Pose2),
+    ends: (Pose2, Pose2),
     found: Option<&Solution>,
     in_the_way: Option<Vector2>,
 ) -> MapPicture<'a> {
-    let blank = around.grid.map_or_else(MapPicture::blank, MapPicture::over);
-    let mut picture = around.problem.map_or(blank, |problem| with_obstacles(MapPicture::blank(), problem));
+    let mut picture = ground(around);
     if let Some(found) = found {
         picture = with_manoeuvre(picture, &found.manoeuvre, footprint);
     }
     if let Some(at) = in_the_way {
         picture = picture.dots("in the way", &[at], DotStyle::crowd(Color::PURPLE).radius(7.0));
     }
-    let reach = found.map_or(0.0, |found| {
-        let ends = found.manoeuvre.steps().iter().map(|step| step.to.position());
-        ends.map(|p| (p - (start.position() + goal.position()) / 2.0).amax()).fold(0.0, f64::max)
-    });
-    let half = reach.max(start.distance(&goal) / 2.0) + 1.3 * footprint.circumscribed_radius() + 0.15;
-    // Both are named by the legend: side by side, two names would cover each other.
-    let pose = |color: Color| PoseStyle::named(color).nameless().with_footprint(footprint.clone());
-    picture
-        .pose("start", start, pose(Color::GREEN))
-        .pose("goal", goal, pose(Color::VERMILLION))
-        .window((start.position() + goal.position()) / 2.0, half)
+    let (center, half) = view(footprint, ends, found);
+    let picture = with_ends(picture, footprint, ends).window(center, half);
+    match found {
+        Some(found) => with_numbers(picture, &found.manoeuvre, footprint),
+        None => picture,
+    }
 }
 
-/// The floor it covers, the outlines where a motion ends, the axle's way and where it turns.
+/// One picture for each motion, with its number, what it is, and how long it takes.
+pub(crate) fn step_pictures<'a>(
+    around: Surroundings<'a>,
+    footprint: &Footprint,
+    ends: (Pose2, Pose2),
+    found: &Solution,
+) -> Vec<(String, MapPicture<'a>)> {
+    let (center, half) = view(footprint, ends, Some(found));
+    let picture = |step: &Step| {
+        let poses = between(step.lasts, |time| found.manoeuvre.at(step.starts + time).0);
+        with_ends(ground(around), footprint, ends)
+            .swept("floor covered", &poses, footprint, Color::SKY)
+            .outlines("before the motion", &[step.from], footprint, Color::BLUE.alpha(90))
+            .outlines("after it", &[step.to], footprint, Color::BLUE)
+            .arrow("motion", &trail(step, footprint), LineStyle::solid(Color::BLACK).width(1.4))
+            .window(center, half)
+    };
+    let titled = |(i, step): (usize, &Step)| {
+        let (word, amount) = (step.motion.word(), amount(step.motion));
+        (format!("{}  {word} {amount}, {:.1} s", i + 1, step.lasts), picture(step))
+    };
+    found.manoeuvre.steps().iter().enumerate().map(titled).collect()
+}
+
+/// Middle and half side of the square that holds the manoeuvre, m.
+pub(crate) fn view(
+    footprint: &Footprint,
+    (start, goal): (Pose2, Pose2),
+    found: Option<&Solution>,
+) -> (Vector2, f64) {
+    let middle = (start.position() + goal.position()) / 2.0;
+    let steps = found.map_or(&[][..], |found| found.manoeuvre.steps());
+    let reach = steps.iter().map(|step| (step.to.position() - middle).amax()).fold(0.0, f64::max);
+    let half = reach.max(start.distance(&goal) / 2.0) + 1.3 * footprint.circumscribed_radius() + 0.15;
+    (middle, half)
+}
+
+fn ground(around: Surroundings<'_>) -> MapPicture<'_> {
+    match (around.problem, around.grid) {
+        (Some(problem), _) => with_obstacles(MapPicture::blank(), problem),
+        (None, Some(grid)) => MapPicture::over(grid),
+        (None, None) => MapPicture::blank(),
+    }
+}
+
+/// Both are named by the legend: side by side, two names would cover each other.
+fn with_ends<'a>(
+    picture: MapPicture<'a>,
+    footprint: &Footprint,
+    (start, goal): (Pose2, Pose2),
+) -> MapPicture<'a> {
+    let pose = |color: Color| PoseStyle::named(color).nameless().with_footprint(footprint.clone());
+    picture.pose("start", start, pose(Color::GREEN)).pose("goal", goal, pose(Color::VERMILLION))
+}
+
+/// The floor it covers, and the outlines where a motion ends.
 fn with_manoeuvre<'a>(
     picture: MapPicture<'a>,
     manoeuvre: &Manoeuvre,
     footprint: &Footprint,
 ) -> MapPicture<'a> {
-    let count = (manoeuvre.duration() / EVERY).clamp(1.0, OUTLINES).round();
-    let at = |i: usize| manoeuvre.at(manoeuvre.duration() * i as f64 / count).0;
-    let poses: Vec<Pose2> = (0..=count as usize).map(at).collect();
-    let steps = manoeuvre.steps();
-    let between: Vec<Pose2> = steps.iter().rev().skip(1).map(|step| step.to).collect();
-    let way: Vec<Vector2> = std::iter::once(manoeuvre.start())
-        .chain(steps.iter().map(|step| step.to))
-        .map(|p| p.position())
-        .collect();
-    picture
-        .swept("floor covered", &poses, footprint, Color::SKY)
-        .outlines("after a motion", &between, footprint, Color::BLUE)
-        .polyline("way of the axle", &way, LineStyle::solid(Color::BLACK).width(1.2))
-        .dots("turning place", &way, DotStyle::circles(Color::BLACK).radius(2.0))
+    let poses = between(manoeuvre.duration(), |time| manoeuvre.at(time).0);
+    let ends: Vec<Pose2> = manoeuvre.steps().iter().rev().skip(1).map(|step| step.to).collect();
+    picture.swept("floor covered", &poses, footprint, Color::SKY).outlines(
+        "after a motion",
+        &ends,
+        footprint,
+        Color::BLUE,
+    )
+}
+
+/// Each motion as an arrow with its number.
+fn with_numbers<'a>(picture: MapPicture<'a>, manoeuvre: &Manoeuvre, footprint: &Footprint) -> MapPicture<'a> {
+    let trails: Vec<Vec<Vector2>> = manoeuvre.steps().iter().map(|step| trail(step, footprint)).collect();
+    let numbered = |(i, trail): (usize, &Vec<Vector2>)| ((i + 1).to_string(), middle(trail));
+    let numbers: Vec<(String, Vector2)> = trails.iter().enumerate().map(numbered).collect();
+    let style = LineStyle::solid(Color::BLACK).width(1.4);
+    trails.iter().fold(picture, |picture, trail| picture.arrow("motion", trail, style)).badges(
+        "its number",
+        &numbers,
+        Color::BLACK,
+    )
+}
+
+/// The axle's way; of a turn, the way of a point ahead of the axle, half as far out as the robot reaches.
+fn trail(step: &Step, footprint: &Footprint) -> Vec<Vector2> {
+    const PIECES: u32 = 24;
+    match step.motion {
+        Motion::Drive(_) => {
+            vec![step.from.position(), (step.from.position() + step.to.position()) / 2.0, step.to.position()]
+        }
+        Motion::Turn(angle) => {
+            let arm = 0.5 * footprint.circumscribed_radius();
+            let at = |i: u32| step.motion.after(step.from, angle * f64::from(i) / f64::from(PIECES));
+            (0..=PIECES).map(|i| at(i).position() + at(i).direction() * arm).collect()
+        }
+    }
+}
+
+fn middle(trail: &[Vector2]) -> Vector2 {
+    trail[trail.len() / 2]
+}
+
+/// Poses close together over so many seconds.
+fn between(seconds: f64, at: impl Fn(f64) -> Pose2) -> Vec<Pose2> {
+    let count = (seconds / EVERY).clamp(1.0, OUTLINES).round();
+    (0..=count as usize).map(|i| at(seconds * i as f64 / count)).collect()
 }
 
 fn with_obstacles<'a>(picture: MapPicture<'a>, problem: &Problem) -> MapPicture<'a> {

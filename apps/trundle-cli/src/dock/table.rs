@@ -18,7 +18,8 @@ pub(super) fn rows(manoeuvre: &Manoeuvre) -> Vec<Vec<String>> {
     std::iter::once(header).chain(manoeuvre.steps().iter().enumerate().map(row)).collect()
 }
 
-fn amount(motion: Motion) -> String {
+/// How far, in the unit of its kind.
+pub(super) fn amount(motion: Motion) -> String {
     match motion {
         Motion::Turn(angle) => format!("{:.1} deg", angle.to_degrees().abs()),
         Motion::Drive(way) => format!("{:.3} m", way.abs()),

@@ -1,7 +1,7 @@
 use super::CorridorArgs;
-use crate::dock::{Surroundings, manoeuvre_picture, motions, steps_csv};
+use crate::dock::{Surroundings, manoeuvre_picture, motions, step_pictures, steps_csv, view};
 use crate::{Outcome, console, failure::Failure};
-use trundle::core::difference_of_angles;
+use trundle::core::{Pose2, Vector2, difference_of_angles};
 use trundle::docking::corridor::{Problem, Scenario};
 use trundle::docking::{Docker, DockingConfig, Method, Plan, Solution};
 use trundle::io::{OutputFolder, Summary, table_csv};
@@ -20,18 +20,20 @@ pub fn run(args: &CorridorArgs) -> Result<Outcome, Failure> {
     let trials = trials()?;
     let success = trials.iter().all(Trial::is_good);
     let folder = OutputFolder::create(&args.out)?;
-    let mut report =
-        report(&trials, success).figure(Figure::png("corridor", &together(&trials)).caption("All of them."));
+    let view = common_view(&trials);
+    let all = together(&trials, view);
+    let mut report = report(&trials, success).figure(Figure::png("corridor", &all).caption("All of them."));
     for trial in &trials {
-        let (name, png) = (trial.name(), trial.picture().to_png());
+        let (name, png) = (trial.name(), trial.picture(view).to_png());
         folder.write(&format!("{name}.png"), &png)?;
         if let Some(found) = trial.found() {
             folder.write(&format!("{name}.csv"), steps_csv(&found.manoeuvre).as_bytes())?;
+            folder.write(&format!("{name}-steps.png"), &trial.steps(found, view))?;
         }
         report = report.figure(Figure::png(&name, &png).caption(&trial.told()));
     }
     folder.write("corridor.csv", csv(&trials).as_bytes())?;
-    folder.write("corridor.png", &together(&trials))?;
+    folder.write("corridor.png", &all)?;
     folder.write("report.html", report.to_html().as_bytes())?;
     folder.write("summary.json", summary(&trials, success).to_json().as_bytes())?;
     let place = folder.commit()?;
@@ -82,15 +84,25 @@ impl Trial {
         format!("{}-{}", self.scenario.letter(), self.method)
     }
 
-    fn picture(&self) -> MapPicture<'_> {
-        let around = Surroundings { grid: None, problem: Some(&self.problem) };
-        manoeuvre_picture(
-            around,
-            &self.problem.footprint,
-            (self.problem.start, self.problem.goal),
-            self.found(),
-            None,
-        )
+    fn around(&self) -> Surroundings<'_> {
+        Surroundings { grid: None, problem: Some(&self.problem) }
+    }
+
+    fn ends(&self) -> (Pose2, Pose2) {
+        (self.problem.start, self.problem.goal)
+    }
+
+    fn picture(&self, (center, half): (Vector2, f64)) -> MapPicture<'_> {
+        let footprint = &self.problem.footprint;
+        manoeuvre_picture(self.around(), footprint, self.ends(), self.found(), None).window(center, half)
+    }
+
+    /// Motion by motion.
+    fn steps(&self, found: &Solution, (center, half): (Vector2, f64)) -> Vec<u8> {
+        let pictures = step_pictures(self.around(), &self.problem.footprint, self.ends(), found);
+        let pictures: Vec<_> =
+            pictures.into_iter().map(|(title, picture)| (title, picture.window(center, half))).collect();
+        tiles(&pictures, pictures.len())
     }
 
     fn told(&self) -> String {
@@ -117,18 +129,26 @@ fn report(trials: &[Trial], success: bool) -> Report {
         )
         .verdict(told)
         .table(table)
-        .section("Manoeuvres", "Green: start. Red: goal. Light blue: the floor that the robot covers. Blue: its outline after each motion.")
+        .section("Manoeuvres", "Green: start. Red: goal. Light blue: the floor that the robot covers. Blue: its outline after each motion. Arrows: the motions in their order; of a turn, the way of a point ahead of the axle.")
+}
+
+/// The square that holds every manoeuvre: one scale for all pictures.
+fn common_view(trials: &[Trial]) -> (Vector2, f64) {
+    let views = || trials.iter().map(|trial| view(&trial.problem.footprint, trial.ends(), trial.found()));
+    let center = views().map(|(center, _)| center).sum::<Vector2>() / trials.len().max(1) as f64;
+    let half = views().map(|(middle, half)| (middle - center).amax() + half).fold(0.0, f64::max);
+    (center, half)
 }
 
 /// The four scenarios side by side, above by the paper's method.
-fn together(trials: &[Trial]) -> Vec<u8> {
+fn together(trials: &[Trial], view: (Vector2, f64)) -> Vec<u8> {
     let by = |method: &'static str| trials.iter().filter(move |trial| trial.method == method);
     let titled = |trial: &'_ Trial| {
         let seconds = trial.found().map_or(f64::NAN, |found| found.manoeuvre.duration());
         format!("({}) {}, {seconds:.1} s", trial.scenario.letter(), trial.method)
     };
     let pictures: Vec<_> =
-        by("paper").chain(by("optimal")).map(|trial| (titled(trial), trial.picture())).collect();
+        by("paper").chain(by("optimal")).map(|trial| (titled(trial), trial.picture(view))).collect();
     tiles(&pictures, Scenario::ALL.len())
 }
 

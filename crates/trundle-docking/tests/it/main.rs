@@ -1,6 +1,7 @@
 //! Laws and closed loops of trundle-docking.
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
+mod certificates;
 #[path = "../../../../bench/docking/clock.rs"]
 mod clock;
 mod closed_loop;

@@ -12,7 +12,7 @@ const PROBLEMS: usize = 100;
 const TOUCH: f64 = 1e-4 - 1e-6;
 
 /// Start and goal some centimetres from everything, near each other.
-fn ends(rng: &mut ChaCha8Rng, free: impl Fn(&Pose2) -> bool) -> Option<(Pose2, Pose2)> {
+pub fn ends(rng: &mut ChaCha8Rng, free: impl Fn(&Pose2) -> bool) -> Option<(Pose2, Pose2)> {
     let start =
         Pose2::new(rng.random_range(-0.3..0.3), rng.random_range(-0.3..0.3), rng.random_range(-PI..PI));
     let part = if rng.random_bool(0.3) { 3.0 } else { 0.4 };

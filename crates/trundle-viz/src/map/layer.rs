@@ -1,3 +1,5 @@
+use super::arrow::draw_arrow;
+use super::badge::draw_badges;
 use super::draw::{draw_area, draw_dot, draw_line, draw_outline, draw_pose, draw_swept};
 use super::shade::Shade;
 use super::style::{DotStyle, LineStyle, PoseStyle};
@@ -18,6 +20,8 @@ pub(crate) struct Layer {
 #[derive(Debug, Clone)]
 pub(crate) enum Shape {
     Line { points: Vec<Vector2>, style: LineStyle },
+    Arrow { points: Vec<Vector2>, style: LineStyle },
+    Badges { badges: Vec<(String, Vector2)>, color: Color },
     Dots { points: Vec<Vector2>, style: DotStyle },
     Band { points: Vec<Vector2>, radius: f64, color: Color },
     Pose { pose: Pose2, style: PoseStyle },
@@ -53,7 +57,7 @@ impl Layer {
     /// The points that the picture has to hold. Landmarks and scans reach beyond what anybody wants to see.
     pub(crate) fn anchors(&self) -> Vec<Vector2> {
         match &self.shape {
-            Shape::Line { points, .. } => points.clone(),
+            Shape::Line { points, .. } | Shape::Arrow { points, .. } => points.clone(),
             Shape::Band { points, radius, .. } => {
                 let reach = Vector2::new(*radius, *radius);
                 points.iter().flat_map(|p| [p - reach, p + reach]).collect()
@@ -67,6 +71,7 @@ impl Layer {
                 poses.iter().map(Pose2::position).collect()
             }
             Shape::Area { corners, .. } => corners.clone(),
+            Shape::Badges { badges, .. } => badges.iter().map(|(_, p)| *p).collect(),
             Shape::Dots { .. } | Shape::Scan { .. } | Shape::Shade(_) => Vec::new(),
         }
     }
@@ -87,12 +92,16 @@ impl Layer {
             Shape::Line { points, style } => {
                 (finite(points), style.color, if style.dashed { Mark::Dashes } else { Mark::Line })
             }
+            Shape::Arrow { points, style } => (finite(points), style.color, Mark::Arrow),
+            Shape::Badges { badges, color } => (!badges.is_empty(), *color, Mark::Badge),
             Shape::Dots { points, style } => {
                 (finite(points), style.color, if style.hollow { Mark::Ring } else { Mark::Dot })
             }
             Shape::Band { points, color, .. } => (finite(points), *color, Mark::Band),
             Shape::Pose { pose, style } => (pose.is_finite(), style.color, Mark::Wedge),
-            Shape::Outlines { poses, color, .. } => (poses.iter().any(Pose2::is_finite), *color, Mark::Ring),
+            Shape::Outlines { poses, color, .. } => {
+                (poses.iter().any(Pose2::is_finite), *color, Mark::Outline)
+            }
             Shape::Area { corners, color } => (finite(corners), *color, Mark::Cell),
             Shape::Swept { poses, color, .. } => {
                 (poses.iter().any(Pose2::is_finite), color.alpha(110), Mark::Band)
@@ -116,6 +125,8 @@ impl Layer {
         let unit = view.unit as f64;
         match &self.shape {
             Shape::Line { points, style } => draw_line(canvas, view, points, style),
+            Shape::Arrow { points, style } => draw_arrow(canvas, view, points, style),
+            Shape::Badges { badges, color } => draw_badges(canvas, view, badges, *color),
             Shape::Dots { points, style } => {
                 points.iter().for_each(|p| draw_dot(canvas, view.px(*p), style, unit));
             }

@@ -1,3 +1,5 @@
+mod arrow;
+mod badge;
 mod bounds;
 mod cells;
 mod draw;
@@ -8,6 +10,7 @@ mod style;
 mod tiles;
 mod view;
 
+pub(crate) use badge::{draw_badge, radius_of};
 pub use style::{DotStyle, LineStyle, PoseStyle};
 pub use tiles::tiles;
 
@@ -66,6 +69,16 @@ impl<'a> MapPicture<'a> {
     /// Adds straight pieces between points.
     pub fn polyline(self, label: &str, points: &[Vector2], style: LineStyle) -> Self {
         self.layer(label, Shape::Line { points: points.to_vec(), style })
+    }
+
+    /// Adds straight pieces between points, with an arrow's head at the last.
+    pub fn arrow(self, label: &str, points: &[Vector2], style: LineStyle) -> Self {
+        self.layer(label, Shape::Arrow { points: points.to_vec(), style })
+    }
+
+    /// Adds short texts, numbers say, in circles: each at its place, or beside it with a line to it where it would cover another.
+    pub fn badges(self, label: &str, badges: &[(String, Vector2)], color: Color) -> Self {
+        self.layer(label, Shape::Badges { badges: badges.to_vec(), color })
     }
 
     /// Adds dots or circles.

@@ -84,6 +84,17 @@ fn legend_line(item: &LegendItem) -> String {
     let solid = item.color.alpha(item.color.a.max(200)).css();
     let mark = match item.mark {
         Mark::Line => format!("<path d=\"M3 8h24\" stroke=\"{color}\" stroke-width=\"4\"/>"),
+        Mark::Arrow => {
+            format!(
+                "<path d=\"M3 8h18\" stroke=\"{color}\" stroke-width=\"3\"/><path d=\"M19 2l10 6-10 6z\" fill=\"{color}\"/>"
+            )
+        }
+        Mark::Badge => format!(
+            "<circle cx=\"15\" cy=\"8\" r=\"7\" fill=\"#fff\" stroke=\"{color}\"/><text x=\"15\" y=\"12\" font-size=\"11\" text-anchor=\"middle\">1</text>"
+        ),
+        Mark::Outline => {
+            format!("<path d=\"M2 2h26v12H2z\" fill=\"none\" stroke=\"{color}\" stroke-width=\"2\"/>")
+        }
         Mark::Dashes => {
             format!("<path d=\"M3 8h24\" stroke=\"{color}\" stroke-width=\"4\" stroke-dasharray=\"6 3\"/>")
         }

@@ -1,0 +1,87 @@
+use super::arrow::draw_leader;
+use super::view::View;
+use crate::canvas::Canvas;
+use crate::clip::Px;
+use crate::color::Color;
+use crate::text::{TextStyle, cap_height, text_width};
+use trundle_core::Vector2;
+
+/// Space about a text within its badge, in dots of the typeface.
+const PADDING: f64 = 2.5;
+/// How far from their places badges are moved at most, in their own diameters.
+const FARTHEST: u32 = 6;
+/// Bearings tried at each distance.
+const BEARINGS: u32 = 12;
+
+/// Short texts in circles at their places, none over another: one that would be is moved aside, with a line to its place.
+pub(super) fn draw_badges(canvas: &mut Canvas, view: &View, badges: &[(String, Vector2)], color: Color) {
+    let scale = view.unit + 1;
+    let places: Vec<Px> = badges.iter().map(|(_, p)| view.px(*p)).collect();
+    let radius = badges.iter().map(|(text, _)| radius_of(text, scale)).fold(0.0, f64::max);
+    let size = (canvas.width() as f64, canvas.height() as f64);
+    let placed = spread(&places, radius, size);
+    for (from, to) in places.iter().zip(&placed).filter(|(from, to)| from != to) {
+        draw_leader(canvas, *from, *to, scale as f64, color);
+    }
+    for ((text, _), center) in badges.iter().zip(placed) {
+        draw_badge(canvas, center, radius, text, scale, color);
+    }
+}
+
+/// One text in its circle.
+pub(crate) fn draw_badge(canvas: &mut Canvas, center: Px, radius: f64, text: &str, scale: i64, color: Color) {
+    if !(center.0.is_finite() && center.1.is_finite()) {
+        return;
+    }
+    canvas.dot(center, radius, Color::WHITE);
+    canvas.ring(center, radius, 0.8 * scale as f64, color);
+    let left = center.0 - text_width(text, scale) as f64 / 2.0;
+    let top = center.1 - cap_height(scale) as f64 / 2.0;
+    canvas.text(left.round() as i64, top.round() as i64, text, TextStyle::new(scale, Color::INK));
+}
+
+/// The circle about a text, px.
+pub(crate) fn radius_of(text: &str, scale: i64) -> f64 {
+    (text_width(text, scale) as f64).hypot(cap_height(scale) as f64) / 2.0 + PADDING * scale as f64 / 2.0
+}
+
+/// Where circles are drawn that belong at `places`: there, or as near as no other is in the way, within a picture of `size`.
+fn spread(places: &[Px], radius: f64, size: Px) -> Vec<Px> {
+    let mut placed: Vec<Px> = Vec::with_capacity(places.len());
+    for &place in places {
+        let is_free = |p: &Px| {
+            let inside = |at: f64, size: f64| at >= radius && at <= size - radius;
+            inside(p.0, size.0)
+                && inside(p.1, size.1)
+                && placed.iter().all(|q| (p.0 - q.0).hypot(p.1 - q.1) > 2.0 * radius + 1.0)
+        };
+        let beside = (1..=2 * FARTHEST).flat_map(|step| {
+            let distance = f64::from(step) * radius;
+            (0..BEARINGS).map(move |i| {
+                let (sin, cos) = (std::f64::consts::TAU * f64::from(i) / f64::from(BEARINGS)).sin_cos();
+                (place.0 + distance * cos, place.1 - distance * sin)
+            })
+        });
+        let chosen = std::iter::once(place).chain(beside).find(is_free).unwrap_or(place);
+        placed.push(chosen);
+    }
+    placed
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_badge_lies_over_another_or_off_the_picture() {
+        let places: Vec<Px> = (0..12).map(|i| (50.0 + f64::from(i), 3.0)).collect();
+        let placed = spread(&places, 8.0, (300.0, 300.0));
+        for (i, p) in placed.iter().enumerate() {
+            assert!(p.0 >= 8.0 && p.1 >= 8.0, "{p:?}");
+            for q in &placed[..i] {
+                assert!((p.0 - q.0).hypot(p.1 - q.1) > 16.0, "{p:?} {q:?}");
+            }
+        }
+        assert_eq!(spread(&[(100.0, 100.0)], 8.0, (300.0, 300.0)), [(100.0, 100.0)]);
+    }
+}
