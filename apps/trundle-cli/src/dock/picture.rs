@@ -71,11 +71,11 @@ pub(crate) fn view(
     (start, goal): (Pose2, Pose2),
     found: Option<&Solution>,
 ) -> (Vector2, f64) {
-    let middle = (start.position() + goal.position()) / 2.0;
     let steps = found.map_or(&[][..], |found| found.manoeuvre.steps());
-    let reach = steps.iter().map(|step| (step.to.position() - middle).amax()).fold(0.0, f64::max);
-    let half = reach.max(start.distance(&goal) / 2.0) + 1.3 * footprint.circumscribed_radius() + 0.15;
-    (middle, half)
+    let places = steps.iter().map(|step| step.to.position()).chain([goal.position()]);
+    let (low, high) =
+        places.fold((start.position(), start.position()), |(low, high), p| (low.inf(&p), high.sup(&p)));
+    ((low + high) / 2.0, (high - low).amax() / 2.0 + 1.3 * footprint.circumscribed_radius() + 0.15)
 }
 
 fn ground(around: Surroundings<'_>) -> MapPicture<'_> {
@@ -115,7 +115,8 @@ fn with_manoeuvre<'a>(
 /// Each motion as an arrow with its number.
 fn with_numbers<'a>(picture: MapPicture<'a>, manoeuvre: &Manoeuvre, footprint: &Footprint) -> MapPicture<'a> {
     let trails: Vec<Vec<Vector2>> = manoeuvre.steps().iter().map(|step| trail(step, footprint)).collect();
-    let numbered = |(i, trail): (usize, &Vec<Vector2>)| ((i + 1).to_string(), middle(trail));
+    let aside = 0.2 * footprint.circumscribed_radius();
+    let numbered = |(i, trail): (usize, &Vec<Vector2>)| ((i + 1).to_string(), beside(trail, aside));
     let numbers: Vec<(String, Vector2)> = trails.iter().enumerate().map(numbered).collect();
     let style = LineStyle::solid(Color::BLACK).width(1.4);
     trails.iter().fold(picture, |picture, trail| picture.arrow("motion", trail, style)).badges(
@@ -140,8 +141,13 @@ fn trail(step: &Step, footprint: &Footprint) -> Vec<Vector2> {
     }
 }
 
-fn middle(trail: &[Vector2]) -> Vector2 {
-    trail[trail.len() / 2]
+/// A place beside the middle of a trail, by so much (m).
+fn beside(trail: &[Vector2], by: f64) -> Vector2 {
+    let (first, last) = (trail[0], trail[trail.len() - 1]);
+    let across = Vector2::new(first.y - last.y, last.x - first.x).try_normalize(1e-9).unwrap_or_default();
+    // An arc's number lies on its outside.
+    let outward = if (trail[trail.len() / 2] - (first + last) / 2.0).dot(&across) < 0.0 { -by } else { by };
+    trail[trail.len() / 2] + across * outward
 }
 
 /// Poses close together over so many seconds.

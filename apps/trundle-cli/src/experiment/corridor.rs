@@ -134,10 +134,12 @@ fn report(trials: &[Trial], success: bool) -> Report {
 
 /// The square that holds every manoeuvre: one scale for all pictures.
 fn common_view(trials: &[Trial]) -> (Vector2, f64) {
-    let views = || trials.iter().map(|trial| view(&trial.problem.footprint, trial.ends(), trial.found()));
-    let center = views().map(|(center, _)| center).sum::<Vector2>() / trials.len().max(1) as f64;
-    let half = views().map(|(middle, half)| (middle - center).amax() + half).fold(0.0, f64::max);
-    (center, half)
+    let views = trials.iter().map(|trial| view(&trial.problem.footprint, trial.ends(), trial.found()));
+    let none = (Vector2::repeat(f64::INFINITY), Vector2::repeat(f64::NEG_INFINITY));
+    let (low, high) = views.fold(none, |(low, high), (middle, half)| {
+        (low.inf(&middle.add_scalar(-half)), high.sup(&middle.add_scalar(half)))
+    });
+    ((low + high) / 2.0, (high - low).amax() / 2.0)
 }
 
 /// The four scenarios side by side, above by the paper's method.

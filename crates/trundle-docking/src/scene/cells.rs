@@ -77,7 +77,7 @@ mod tests {
     fn only_what_is_in_the_box_blocks_and_what_is_off_the_grid_where_it_counts() {
         let geometry = GridGeometry::new(0.1, Vector2::zeros(), 20, 10).unwrap();
         let at = |x: f64, y: f64| Vector2::new(x, y);
-        let kind = |cell: CellIndex| if cell.col % 2 == 0 { Cell::Occupied } else { Cell::Free };
+        let kind = |cell: CellIndex| if cell.col.is_multiple_of(2) { Cell::Occupied } else { Cell::Free };
         let cells = |beyond| Cells::new(geometry, at(0.5, 0.5), 0.3, beyond, kind);
         let some = cells(false);
         assert!(some.hold(at(0.45, 0.5)) && !some.hold(at(0.55, 0.5)) && !some.hold(at(1.65, 0.5)));
