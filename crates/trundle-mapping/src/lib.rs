@@ -26,6 +26,7 @@
 mod depth_scan;
 mod evidence;
 mod filter;
+mod kept;
 mod live_grid;
 mod live_mapper;
 mod mapper;

@@ -1,4 +1,7 @@
-use crate::{GridMapper, Insertion, LogOddsGrid, MapperConfig};
+use crate::{
+    GridMapper, Insertion, LogOddsGrid, MapperConfig,
+    kept::{Kept, What, thin},
+};
 use std::sync::Arc;
 use trundle_core::{CellIndex, Invalid, OccupancyGrid, Pose2, Scan, Stamp, Vector2};
 
@@ -18,22 +21,9 @@ pub struct LiveMapper {
     snapshots: Vec<Snapshot>,
     /// Kept things between snapshots.
     every: usize,
+    /// So many kept things are thinned.
+    thin_at: usize,
     redrawing: Option<Redrawing>,
-}
-
-/// Something drawn that can be drawn again.
-#[derive(Debug, Clone)]
-struct Kept {
-    stamp: Stamp,
-    map_from_base: Pose2,
-    what: What,
-}
-
-#[derive(Debug, Clone)]
-enum What {
-    Scan(Arc<Scan>),
-    FreeDisc { radius: f64 },
-    Touched { points: Vec<Vector2> },
 }
 
 /// The evidence when so many kept things were drawn.
@@ -58,13 +48,12 @@ pub struct Redrawn {
     pub left: usize,
 }
 
-/// A scan is kept when it was taken so far from the last one kept, m and rad: others add to the map, but not to its redrawing.
-const KEEP: (f64, f64) = (0.1, 0.1);
-/// Most things kept: beyond, every second of the older half goes.
+/// What is kept is thinned when there is so much of it, and then when it has doubled.
+const THIN_AT: usize = 1024;
+/// Most things kept, in whatever many places: beyond, every second of the older half goes.
 const MOST_KEPT: usize = 30_000;
+const SNAPSHOT_EVERY: usize = 64;
 const MOST_SNAPSHOTS: usize = 64;
-/// What beginning a scan costs, cells.
-const SCAN_COST: usize = 200;
 
 impl LiveMapper {
     /// An empty map.
@@ -85,40 +74,34 @@ impl LiveMapper {
 
     fn over(front: GridMapper) -> Self {
         let known = front.evidence().clone();
-        Self { front, known, kept: Vec::new(), snapshots: Vec::new(), every: 64, redrawing: None }
+        Self {
+            front,
+            known,
+            kept: Vec::new(),
+            snapshots: Vec::new(),
+            every: SNAPSHOT_EVERY,
+            thin_at: THIN_AT,
+            redrawing: None,
+        }
     }
 
     /// Draws `scan`, taken with the base at `map_from_base`, and keeps it when it is from somewhere else than the last one.
     pub fn insert(&mut self, map_from_base: Pose2, scan: &Scan) -> Insertion {
         let insertion = self.front.insert(map_from_base, scan);
-        let last = self.kept.iter().rev().find(|kept| matches!(kept.what, What::Scan(_)));
-        if map_from_base.is_finite()
-            && last.is_none_or(|last| is_elsewhere(last.map_from_base, map_from_base))
-        {
-            self.keep(scan.stamp(), map_from_base, What::Scan(Arc::new(scan.clone())));
-        }
+        self.keep(scan.stamp(), map_from_base, What::Scan(Arc::new(scan.clone())));
         insertion
     }
 
     /// As [`GridMapper::mark_free_disc`]; it moves with the scan before it.
     pub fn mark_free_disc(&mut self, map_from_base: Pose2, radius: f64) {
         self.front.mark_free_disc(map_from_base, radius);
-        let last = self.kept.iter().rev().find(|kept| matches!(kept.what, What::FreeDisc { .. }));
-        if map_from_base.is_finite()
-            && last.is_none_or(|last| is_elsewhere(last.map_from_base, map_from_base))
-        {
-            let stamp = self.kept.last().map_or(Stamp::default(), |kept| kept.stamp);
-            self.keep(stamp, map_from_base, What::FreeDisc { radius });
-        }
+        self.keep(self.last_stamp(), map_from_base, What::FreeDisc { radius });
     }
 
     /// As [`GridMapper::mark_occupied`]; it moves with the scan before it.
     pub fn mark_occupied(&mut self, map_from_base: Pose2, points: &[Vector2]) {
         self.front.mark_occupied(map_from_base, points);
-        if map_from_base.is_finite() {
-            let stamp = self.kept.last().map_or(Stamp::default(), |kept| kept.stamp);
-            self.keep(stamp, map_from_base, What::Touched { points: points.to_vec() });
-        }
+        self.keep(self.last_stamp(), map_from_base, What::Touched { points: points.into() });
     }
 
     /// Takes over corrected poses: `pose` gives, for the stamp of a scan and the pose at which it was drawn, where it was taken
@@ -145,7 +128,7 @@ impl LiveMapper {
         let mut cells = 0;
         let Some(mut redrawing) = self.redrawing.take() else { return Redrawn { cells, left: 0 } };
         while cells < budget && redrawing.drawn < self.kept.len() {
-            cells += draw(&mut redrawing.back, &self.kept[redrawing.drawn]);
+            cells += self.kept[redrawing.drawn].draw(&mut redrawing.back);
             redrawing.drawn += 1;
             self.note(redrawing.drawn, redrawing.back.evidence());
         }
@@ -193,14 +176,22 @@ impl LiveMapper {
         self.kept.len()
     }
 
+    /// Keeps what was just drawn, when it is from somewhere else than the last of its kind.
     fn keep(&mut self, stamp: Stamp, map_from_base: Pose2, what: What) {
+        if !map_from_base.is_finite() || Kept::is_repeated(&self.kept, map_from_base, &what) {
+            return;
+        }
         self.kept.push(Kept { stamp, map_from_base, what });
         if self.redrawing.is_none() {
             self.note(self.kept.len(), &self.front.evidence().clone());
         }
-        if self.kept.len() > MOST_KEPT {
+        if self.kept.len() >= self.thin_at {
             self.thin();
         }
+    }
+
+    fn last_stamp(&self) -> Stamp {
+        self.kept.last().map_or(Stamp::default(), |kept| kept.stamp)
     }
 
     /// Takes a snapshot when it is time.
@@ -229,42 +220,29 @@ impl LiveMapper {
         self.redrawing = Some(Redrawing { back: self.front.with_evidence(evidence), drawn });
     }
 
-    /// Lets every second thing of the older half go.
+    /// Lets go what newer things of the same place show too. Snapshots, which count the things before them, go with it.
     fn thin(&mut self) {
+        thin(&mut self.kept);
+        if self.kept.len() > MOST_KEPT / 2 {
+            self.halve_the_older_half();
+        }
+        self.thin_at = (2 * self.kept.len()).max(THIN_AT);
+        self.snapshots.clear();
+        self.every = SNAPSHOT_EVERY;
+        if self.redrawing.take().is_some() {
+            self.redraw_from(0);
+        }
+    }
+
+    fn halve_the_older_half(&mut self) {
         let half = self.kept.len() / 2;
         let mut i = 0;
         self.kept.retain(|_| {
             i += 1;
             i > half || i % 2 == 1
         });
-        self.snapshots.clear();
-        if self.redrawing.take().is_some() {
-            self.redraw_from(0);
-        }
     }
 }
 
 /// Poses nearer than this are the same, m and rad.
 const STILL: f64 = 1e-4;
-
-fn is_elsewhere(a: Pose2, b: Pose2) -> bool {
-    let step = a.inverse() * b;
-    step.position().norm() >= KEEP.0 || step.theta.abs() >= KEEP.1
-}
-
-fn draw(mapper: &mut GridMapper, kept: &Kept) -> usize {
-    match &kept.what {
-        What::Scan(scan) => {
-            let Insertion { hits, frees, .. } = mapper.insert(kept.map_from_base, scan);
-            hits + frees + SCAN_COST
-        }
-        What::FreeDisc { radius } => {
-            mapper.mark_free_disc(kept.map_from_base, *radius);
-            SCAN_COST
-        }
-        What::Touched { points } => {
-            mapper.mark_occupied(kept.map_from_base, points);
-            SCAN_COST
-        }
-    }
-}

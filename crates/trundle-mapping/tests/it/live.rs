@@ -128,12 +128,44 @@ fn every_change_of_the_grid_is_told() {
 }
 
 #[test]
-fn an_hour_of_mapping_is_kept_in_bounds() {
+fn standing_still_keeps_nothing() {
     let room = ring();
     let mut live = LiveMapper::new(config()).unwrap();
     let scan = laser(&room, lap()[0], 0);
     for _ in 0..200 {
         live.insert(lap()[0], &scan);
     }
-    assert_eq!(live.kept(), 1, "standing still keeps nothing");
+    assert_eq!(live.kept(), 1);
+}
+
+#[test]
+fn what_is_kept_grows_with_the_floor_and_not_with_the_time() {
+    let room = ring();
+    let lap: Vec<_> = lap().into_iter().enumerate().map(|(i, pose)| (laser(&room, pose, i), pose)).collect();
+    let mut live = LiveMapper::new(config()).unwrap();
+    let drive = |live: &mut LiveMapper, laps: usize| {
+        for _ in 0..laps {
+            for (scan, pose) in &lap {
+                live.insert(*pose, scan);
+                live.mark_free_disc(*pose, 0.2);
+            }
+        }
+        live.kept()
+    };
+    let once = drive(&mut live, 1);
+    let laps = 4096 / once + 2;
+    drive(&mut live, laps);
+    assert!(live.kept() < 4 * 1024, "{} of {} things kept", live.kept(), once * (laps + 1));
+    let before = live.grid().clone();
+    let shift = Pose2::new(1.0, 0.5, 0.0);
+    assert_eq!(live.correct(|_, pose| shift * pose), live.kept());
+    while live.is_redrawing() {
+        live.work(500_000);
+    }
+    // A metre and a half a metre are whole cells: the map that was drawn of all scans, moved.
+    let g = *before.geometry();
+    let moved = |k: usize| live.grid().at(g.center(g.cell(k)) + shift.position());
+    let walls = before.cells().iter().filter(|cell| **cell == Cell::Occupied).count();
+    let other = (0..g.len()).filter(|&k| moved(k) != before.cells()[k]).count();
+    assert!(other < walls / 20, "{other} of {walls}");
 }

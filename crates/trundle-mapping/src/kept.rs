@@ -1,0 +1,87 @@
+use crate::{GridMapper, Insertion};
+use std::{collections::HashMap, sync::Arc};
+use trundle_core::{Pose2, Scan, Stamp, Vector2};
+
+/// Something drawn that can be drawn again.
+#[derive(Debug, Clone)]
+pub(crate) struct Kept {
+    pub(crate) stamp: Stamp,
+    pub(crate) map_from_base: Pose2,
+    pub(crate) what: What,
+}
+
+#[derive(Debug, Clone)]
+pub(crate) enum What {
+    Scan(Arc<Scan>),
+    FreeDisc { radius: f64 },
+    Touched { points: Arc<[Vector2]> },
+}
+
+/// One is kept when the robot has come so far from the last one of its kind, m and rad: others add to the map, but not to its
+/// redrawing.
+const STEP: (f64, f64) = (0.1, 0.1);
+/// Scans of one place and direction, m and rad, of which the newest are kept: as many as one drive through it takes.
+const SCANS: (f64, f64, u32) = (0.5, std::f64::consts::FRAC_PI_6, 5);
+/// Discs and touches are small: one for each of these.
+const SMALL: (f64, f64, u32) = (0.1, std::f64::consts::FRAC_PI_6, 1);
+/// What beginning a scan costs, cells.
+const SCAN_COST: usize = 200;
+
+impl Kept {
+    /// Whether `what` at `map_from_base` is from so near the last of its kind in `kept` that it need not be kept.
+    pub(crate) fn is_repeated(kept: &[Self], map_from_base: Pose2, what: &What) -> bool {
+        let last =
+            kept.iter().rev().find(|kept| std::mem::discriminant(&kept.what) == std::mem::discriminant(what));
+        last.is_some_and(|last| is_near(last.map_from_base, map_from_base))
+    }
+
+    /// Draws it; what that cost, cells.
+    pub(crate) fn draw(&self, mapper: &mut GridMapper) -> usize {
+        match &self.what {
+            What::Scan(scan) => {
+                let Insertion { hits, frees, .. } = mapper.insert(self.map_from_base, scan);
+                return hits + frees + SCAN_COST;
+            }
+            What::FreeDisc { radius } => mapper.mark_free_disc(self.map_from_base, *radius),
+            What::Touched { points } => mapper.mark_occupied(self.map_from_base, points),
+        }
+        SCAN_COST
+    }
+
+    /// Its kind, place and direction, and how many of these are enough.
+    fn place(&self) -> (Place, u32) {
+        let (kind, (side, turn, enough)) = match self.what {
+            What::Scan(_) => (0, SCANS),
+            What::FreeDisc { .. } => (1, SMALL),
+            What::Touched { .. } => (2, SMALL),
+        };
+        let pose = self.map_from_base;
+        let cell = |value: f64, side: f64| (value / side).floor() as i64;
+        ((kind, cell(pose.x, side), cell(pose.y, side), cell(pose.theta, turn)), enough)
+    }
+}
+
+/// Kind, column, row and direction.
+type Place = (u8, i64, i64, i64);
+
+/// Lets go what was drawn again often enough since, in the same place and direction: what is left grows with the floor, not with the
+/// time.
+pub(crate) fn thin(kept: &mut Vec<Kept>) {
+    let mut newer: HashMap<Place, u32> = HashMap::new();
+    let mut stays: Vec<bool> = kept
+        .iter()
+        .rev()
+        .map(|one| {
+            let (place, enough) = one.place();
+            let there = newer.entry(place).or_default();
+            *there += 1;
+            *there <= enough
+        })
+        .collect();
+    kept.retain(|_| stays.pop().expect("invariant: one word for each thing kept"));
+}
+
+fn is_near(a: Pose2, b: Pose2) -> bool {
+    let step = a.inverse() * b;
+    step.position().norm() < STEP.0 && step.theta.abs() < STEP.1
+}
