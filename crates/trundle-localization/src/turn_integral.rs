@@ -2,8 +2,9 @@ use trundle_core::{GyroRate, Stamp};
 
 /// The integral of the gyro's rate, read off at the wheels' times.
 ///
-/// Between readings the rate is linear (trapezoids); after the newest it is held, and what that was wrong by is made
-/// good with the next reading.
+/// A reading is the mean rate since the one before it: a gyro's output filter passes half its own rate of readings, and trapezoids over
+/// such means would lag by half a period (a degree when a turn of 100 deg/s begins). After the newest reading its rate is held, and what
+/// that was wrong by is made good with the next one.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct TurnIntegral {
     newest: Option<GyroRate>,
@@ -28,7 +29,7 @@ impl TurnIntegral {
             if dt > timeout {
                 *self = Self::default();
             } else {
-                self.angle += 0.5 * (newest.omega + rate.omega) * dt;
+                self.angle += rate.omega * dt;
             }
         }
         self.newest = Some(rate);
@@ -59,7 +60,8 @@ mod tests {
             let mut integral = TurnIntegral::default();
             let mut sum = 0.0;
             for i in 0..=100 {
-                let rate = GyroRate { stamp: at(i * 20), omega: 0.01 * i as f64 };
+                // The mean of 0.5 t over the 20 ms before.
+                let rate = GyroRate { stamp: at(i * 20), omega: 0.01 * (i as f64 - 0.5) };
                 if gyro_first {
                     integral.push(rate, 0.1);
                 }
