@@ -11,7 +11,7 @@ use trundle::runtime::{Memory, Mission, RobotConfig, Task};
 use trundle::sim::{FaultSchedule, HeightBand, Scene, SimConfig, Simulator};
 
 /// Seconds of the robot's time after which a task is given up by whoever watches.
-const TASK_LIMIT: f64 = 300.0;
+const TASK_LIMIT: f64 = 600.0;
 /// And an exploration.
 const EXPLORE_LIMIT: f64 = 1800.0;
 

@@ -1,6 +1,7 @@
 mod commands;
 mod deferring;
 mod plans;
+mod unseen;
 mod vantage;
 
 pub(crate) use commands::safety_input;
@@ -18,6 +19,7 @@ use crate::{
 use trundle_control::{FollowPhase, FollowReport, Follower, SafetyMonitor, SafetyScan};
 use trundle_core::{Footprint, Invalid, OccupancyGrid, Pose2, PoseEstimate, Stamp, Twist2, Vector2};
 use trundle_planning::{Mover, PlanResult, Planner};
+use unseen::View;
 use vantage::Vantage;
 
 /// What the robot knows of its surroundings when it decides.
@@ -85,6 +87,8 @@ impl Goal {
 pub(crate) struct Navigator {
     config: SupervisorConfig,
     planner: Planner,
+    /// What a camera sees; none where a laser sees all.
+    view: Option<View>,
     follower: Follower,
     last_stage: LastStage,
     safety: SafetyMonitor,
@@ -132,6 +136,7 @@ impl Navigator {
         Ok(Self {
             config: config.supervisor.validated()?,
             planner: Planner::new(config.planning, footprint, config.limits, config.drive)?,
+            view: View::of(config)?,
             follower: Follower::new(config.control.clone(), config.drive, config.limits)?,
             last_stage: LastStage::new(&config.docking, footprint)?,
             safety: SafetyMonitor::new(config.safety.clone(), footprint)?,

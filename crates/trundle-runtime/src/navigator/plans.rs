@@ -57,7 +57,7 @@ impl Navigator {
             (DriveState::Driving, Some(reference)) => (reference.pose, reference.twist),
             _ => (s.estimate.pose, Twist2::ZERO),
         };
-        match self.planner.plan_among(s.floor(), s.traffic.movers, from.0, from.1, goal) {
+        match self.plan_in_view(s, from, goal) {
             Plan::Found(plan) if plan.is_continuous || s.estimate.twist.v.abs() < STANDING => {
                 self.follower.follow(plan.trajectory.clone(), goal);
                 self.plan = Some(plan);
