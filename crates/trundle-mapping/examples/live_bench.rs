@@ -14,7 +14,7 @@ use trundle_mapping::{LiveMapper, MapperConfig};
 
 const HERTZ: f64 = 5.0;
 const SCANS: usize = 18_000;
-/// Cells redrawn with each camera image, as the robot does.
+/// Cells redrawn with each control step, as the robot does.
 const BUDGET: usize = 250_000;
 
 /// Time on the processor, ms: others may be at work too.
@@ -72,6 +72,6 @@ fn main() {
         "a loop moves {moved} of them in {correct:.1} ms; redrawn in {all:.0} ms of processor time, {} slices",
         slices.len()
     );
-    println!("at 15 slices a second that is {:.1} s", slices.len() as f64 / 15.0);
+    println!("at 50 slices a second that is {:.1} s", slices.len() as f64 / 50.0);
     report("a slice", slices);
 }

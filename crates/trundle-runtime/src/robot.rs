@@ -89,8 +89,8 @@ struct Latest {
 const UNPLACED: f64 = 0.3;
 /// So long after the last scan what moved may be anywhere, s.
 const MOVERS_LAST: f64 = 1.0;
-/// With each image, so many cells of a bent grid are redrawn, about 5 ms.
-const REDRAWING: usize = 150_000;
+/// After each command, so many cells of a bent grid are redrawn, about 6 ms.
+const REDRAWING: usize = 250_000;
 
 impl Robot {
     /// A robot that has just been switched on: where it stands is the map's origin.
@@ -205,6 +205,9 @@ impl Robot {
                 report.twist = times.measure(Stage::Control, || background.steer(captain, &surroundings));
             }
         }
+        if self.mapper.is_redrawing() {
+            self.times.measure(Stage::Mapping, || self.mapper.work(REDRAWING));
+        }
     }
 
     /// The bumper: what presses it enters the map, which the camera may be blind for.
@@ -251,7 +254,6 @@ impl Robot {
         if let Some(trajectory) = bent {
             self.follow_the_visual_map(&trajectory);
         }
-        self.times.measure(Stage::Mapping, || self.mapper.work(REDRAWING));
         if let Some(scan) = scan {
             let stamp = scan.stamp();
             let is_drawn = self.see(scan);
