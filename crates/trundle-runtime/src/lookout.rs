@@ -55,8 +55,8 @@ const BENT: f64 = 0.02;
 const ENOUGH_FEATURES: usize = 200;
 /// Images that show enough and are not located for so long, s, are of another place than the odometry says.
 const CARRIED_AWAY: f64 = 1.5;
-/// And for so long, s, images that show less do not change that.
-const UNPLACED: f64 = 0.7;
+/// Not located for so long, s, the robot is not where it believes, and images that show less do not change that.
+pub(crate) const UNPLACED: f64 = 0.7;
 
 impl Lookout {
     pub(crate) fn new(config: &RobotConfig, base_from_camera: Pose3) -> Result<Self, Invalid> {

@@ -10,6 +10,7 @@ use crate::{
     config::RobotConfig,
     last_stage::{LastStage, LastStageReport},
     look::LookAround,
+    lookout::UNPLACED,
     progress::ProgressWatch,
     schedule::Ticker,
     stage::{Stage, StageTimes},
@@ -124,8 +125,6 @@ pub(crate) struct Navigator {
     wanted: Twist2,
 }
 
-/// When images that show enough have not been located for so long, s, the robot is not where it believes.
-const UNPLACED: f64 = 0.7;
 /// A goal is given up after so many touches.
 const MOST_TOUCHES: u32 = 3;
 /// Held by safety for so long, it plans anew from where it stands, s.

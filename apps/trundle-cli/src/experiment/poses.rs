@@ -124,6 +124,7 @@ fn rows(trials: &[Trial]) -> Vec<Vec<String>> {
     let mut rows: Vec<_> = STARTS
         .iter()
         .enumerate()
+        .filter(|(i, _)| of_start(trials, *i).next().is_some())
         .map(|(i, (x, y))| Means::of(of_start(trials, i)).row(&format!("{} ({x}, {y})", i + 1)))
         .collect();
     rows.push(Means::of(trials).row("all"));
