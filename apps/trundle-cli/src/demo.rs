@@ -10,7 +10,8 @@ use trundle::io::OutputFolder;
 use trundle::runtime::{Memory, Mission, RobotConfig, Task};
 use trundle::sim::{FaultSchedule, HeightBand, Scene, SimConfig, Simulator};
 
-/// Seconds of the robot's time after which a task is given up by whoever watches.
+/// Seconds of the robot's time after which a task is given up by whoever watches: looking for another way through seven rooms takes 5
+/// minutes, and then it waits.
 const TASK_LIMIT: f64 = 600.0;
 /// And an exploration.
 const EXPLORE_LIMIT: f64 = 1800.0;
@@ -69,6 +70,9 @@ fn remembered(file: &Path) -> Result<(Memory, Vec<u8>), Failure> {
     let refused = |error: &dyn Display| Failure::Input(format!("{}: {error}", file.display()));
     let bytes = std::fs::read(file).map_err(|error| refused(&error))?;
     let memory = Memory::from_bytes(&bytes).map_err(|error| refused(&error))?;
+    if memory.mission.tasks().is_empty() {
+        return Err(refused(&"nothing is left of its mission: the run that kept it came to its end"));
+    }
     Ok((memory, bytes))
 }
 

@@ -94,7 +94,7 @@ pub fn run(args: &DockArgs) -> Result<Outcome, Failure> {
         .plan(&task.footprint, &task.scene, task.start, task.goal)
         .map_err(|refusal| Failure::Input(format!("{}: {refusal}", args.place.display())))?;
     let seconds = clock.elapsed().as_secs_f64();
-    let folder = OutputFolder::create(&args.out)?;
+    let folder = OutputFolder::create(&args.out)?.instead_of(&["steps.csv", "steps.png"]);
     let surroundings = Surroundings { grid: task.grid.as_ref(), problem: task.problem.as_ref() };
     let found = match &plan {
         Plan::Found(found) => Some(found),

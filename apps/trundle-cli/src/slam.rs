@@ -88,7 +88,8 @@ fn track(
 
 /// An empty map, or the one that was asked for.
 fn begin(args: &SlamArgs, model: &CameraModel) -> Result<RgbdSlam, Failure> {
-    let mut config = SlamConfig { seed: args.seed, ..SlamConfig::default() };
+    // A recording is judged whole.
+    let mut config = SlamConfig { seed: args.seed, kept_frames: usize::MAX, ..SlamConfig::default() };
     config.motion.readout = model.readout;
     let camera = model.camera;
     let Some(file) = &args.map else {

@@ -1,5 +1,5 @@
 use crate::{GridMapper, Insertion};
-use std::{collections::HashMap, sync::Arc};
+use std::{collections::HashMap, mem::discriminant, sync::Arc};
 use trundle_core::{Pose2, Scan, Stamp, Vector2};
 
 /// Something drawn that can be drawn again.
@@ -7,6 +7,8 @@ use trundle_core::{Pose2, Scan, Stamp, Vector2};
 pub(crate) struct Kept {
     pub(crate) stamp: Stamp,
     pub(crate) map_from_base: Pose2,
+    /// Where the first was taken in whose place this one is kept.
+    pub(crate) anchor: Pose2,
     pub(crate) what: What,
 }
 
@@ -28,11 +30,19 @@ const SMALL: (f64, f64, u32) = (0.1, std::f64::consts::FRAC_PI_6, 1);
 const SCAN_COST: usize = 200;
 
 impl Kept {
-    /// Whether `what` at `map_from_base` is from so near the last of its kind in `kept` that it need not be kept.
-    pub(crate) fn is_repeated(kept: &[Self], map_from_base: Pose2, what: &What) -> bool {
-        let last =
-            kept.iter().rev().find(|kept| std::mem::discriminant(&kept.what) == std::mem::discriminant(what));
-        last.is_some_and(|last| is_near(last.map_from_base, map_from_base))
+    /// Which of `kept` is from so near `map_from_base` that `what` need not be kept beside it: the last of its kind; a touch is always
+    /// kept.
+    pub(crate) fn repeated(kept: &[Self], map_from_base: Pose2, what: &What) -> Option<usize> {
+        let is_alike = |kept: &Self| discriminant(&kept.what) == discriminant(what);
+        let last = kept.iter().rposition(is_alike)?;
+        let is_near = is_near(kept[last].anchor, map_from_base);
+        (is_near && !matches!(what, What::Touched { .. })).then_some(last)
+    }
+
+    /// Takes it to where it was taken by now.
+    pub(crate) fn shift(&mut self, now: Pose2) {
+        self.anchor = now * (self.map_from_base.inverse() * self.anchor);
+        self.map_from_base = now;
     }
 
     /// Draws it; what that cost, cells.
@@ -81,7 +91,50 @@ pub(crate) fn thin(kept: &mut Vec<Kept>) {
     kept.retain(|_| stays.pop().expect("invariant: one word for each thing kept"));
 }
 
+/// Lets every second scan and disc of the older half go; whether there was one.
+pub(crate) fn halve_the_older_half(kept: &mut Vec<Kept>) -> bool {
+    let (before, half) = (kept.len(), kept.len() / 2);
+    let (mut i, mut scans, mut discs) = (0, 0, 0);
+    kept.retain(|one| {
+        i += 1;
+        let nth = match one.what {
+            What::Scan(_) => &mut scans,
+            What::FreeDisc { .. } => &mut discs,
+            What::Touched { .. } => return true,
+        };
+        *nth += 1;
+        i > half || *nth % 2 == 1
+    });
+    kept.len() < before
+}
+
 fn is_near(a: Pose2, b: Pose2) -> bool {
     let step = a.inverse() * b;
     step.position().norm() < STEP.0 && step.theta.abs() < STEP.1
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn of_the_older_half_every_second_of_each_kind_goes_and_no_touch() {
+        let kinds = |i: usize| match i % 3 {
+            0 => What::FreeDisc { radius: i as f64 },
+            1 => What::FreeDisc { radius: -(i as f64) },
+            _ => What::Touched { points: Arc::new([]) },
+        };
+        let one = |i| Kept {
+            stamp: Stamp::default(),
+            map_from_base: Pose2::IDENTITY,
+            anchor: Pose2::IDENTITY,
+            what: kinds(i),
+        };
+        let mut kept: Vec<_> = (0..12).map(one).collect();
+        halve_the_older_half(&mut kept);
+        let discs = |range: std::ops::Range<usize>| {
+            kept[range].iter().filter(|one| matches!(one.what, What::FreeDisc { .. })).count()
+        };
+        assert_eq!((kept.len(), discs(0..4), discs(4..10)), (10, 2, 4));
+    }
 }

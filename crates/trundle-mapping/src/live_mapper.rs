@@ -1,6 +1,6 @@
 use crate::{
     GridMapper, Insertion, LogOddsGrid, MapperConfig,
-    kept::{Kept, What, thin},
+    kept::{Kept, What, halve_the_older_half, thin},
 };
 use std::sync::Arc;
 use trundle_core::{CellIndex, Invalid, OccupancyGrid, Pose2, Scan, Stamp, Vector2};
@@ -112,7 +112,7 @@ impl LiveMapper {
             let now = pose(kept.stamp, kept.map_from_base);
             let off = kept.map_from_base.inverse() * now;
             if now.is_finite() && (off.position().norm() > STILL || off.theta.abs() > STILL) {
-                kept.map_from_base = now;
+                kept.shift(now);
                 moved += 1;
                 first = first.or(Some(i));
             }
@@ -176,12 +176,22 @@ impl LiveMapper {
         self.kept.len()
     }
 
-    /// Keeps what was just drawn, when it is from somewhere else than the last of its kind.
+    /// Keeps what was just drawn; what is from where the last of its kind is, in its place, while no snapshot holds that.
     fn keep(&mut self, stamp: Stamp, map_from_base: Pose2, what: What) {
-        if !map_from_base.is_finite() || Kept::is_repeated(&self.kept, map_from_base, &what) {
+        if !map_from_base.is_finite() {
             return;
         }
-        self.kept.push(Kept { stamp, map_from_base, what });
+        let new = Kept { stamp, map_from_base, anchor: map_from_base, what };
+        if let Some(last) = Kept::repeated(&self.kept, map_from_base, &new.what) {
+            let is_drawn = |drawn: usize| drawn > last;
+            let is_held = self.snapshots.last().is_some_and(|snapshot| is_drawn(snapshot.drawn))
+                || self.redrawing.as_ref().is_some_and(|redrawing| is_drawn(redrawing.drawn));
+            if !is_held {
+                self.kept[last] = Kept { anchor: self.kept[last].anchor, ..new };
+            }
+            return;
+        }
+        self.kept.push(new);
         if self.redrawing.is_none() {
             self.note(self.kept.len(), &self.front.evidence().clone());
         }
@@ -223,24 +233,13 @@ impl LiveMapper {
     /// Lets go what newer things of the same place show too. Snapshots, which count the things before them, go with it.
     fn thin(&mut self) {
         thin(&mut self.kept);
-        if self.kept.len() > MOST_KEPT / 2 {
-            self.halve_the_older_half();
-        }
-        self.thin_at = (2 * self.kept.len()).max(THIN_AT);
+        while self.kept.len() > MOST_KEPT / 2 && halve_the_older_half(&mut self.kept) {}
+        self.thin_at = (2 * self.kept.len()).clamp(THIN_AT, MOST_KEPT);
         self.snapshots.clear();
         self.every = SNAPSHOT_EVERY;
         if self.redrawing.take().is_some() {
             self.redraw_from(0);
         }
-    }
-
-    fn halve_the_older_half(&mut self) {
-        let half = self.kept.len() / 2;
-        let mut i = 0;
-        self.kept.retain(|_| {
-            i += 1;
-            i > half || i % 2 == 1
-        });
     }
 }
 

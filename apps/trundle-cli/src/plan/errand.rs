@@ -89,7 +89,9 @@ impl Errand {
         let full = robot.limits.v;
         let slow =
             args.speed_mask.as_deref().map(|path| slow(path, full, &grid, &mut planner)).transpose()?;
-        let unmasked = Planner::new(config, &footprint, robot.limits, robot.drive)?;
+        // It is asked for the goal itself, not for a place nearby.
+        let exact = PlannerConfig { goal_tolerance: 0.0, ..config };
+        let unmasked = Planner::new(exact, &footprint, robot.limits, robot.drive)?;
         Ok(Self { grid, footprint, planner, start, goals, keep_out, slow, graph, unmasked })
     }
 

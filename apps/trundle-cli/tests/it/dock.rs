@@ -48,6 +48,7 @@ fn on_a_map_too_and_a_wall_between_is_a_reason() {
     assert_eq!(dock("--from=1,1,0", "--to=1.2,1.15,0").status.code(), Some(0));
     let (here, there) = ("--from=2.6,0.6,90", "--to=3.5,0.6,90");
     assert_eq!(dock(here, there).status.code(), Some(0), "around the wall's end");
+    assert!(out.join("steps.csv").exists());
     let picture = scratch.path().join("room.pgm");
     let mut cells = fs::read(&picture).unwrap();
     let header = cells.len() - 120 * 80;
@@ -56,6 +57,7 @@ fn on_a_map_too_and_a_wall_between_is_a_reason() {
     let apart = dock(here, there);
     assert_eq!(apart.status.code(), Some(1), "{}", String::from_utf8_lossy(&apart.stderr));
     assert!(String::from_utf8_lossy(&apart.stdout).contains("No manoeuvre"));
+    assert!(!out.join("steps.csv").exists() && !out.join("steps.png").exists(), "those of an earlier one");
 }
 
 #[test]

@@ -105,6 +105,8 @@ impl Navigator {
             planner.plan_among(s.floor(), s.traffic.movers, reference.pose, reference.twist, goal)
         });
         match plan {
+            // What the way of now keeps off because it was not seen, a quicker one must keep off too.
+            Plan::Found(plan) if self.unseen_on(&plan.trajectory, s.floor()).is_some() => false,
             Plan::Found(plan) if plan.is_continuous && plan.trajectory.duration() < left - SOONER => {
                 self.follower.follow(plan.trajectory.clone(), goal);
                 self.plan = Some(plan);

@@ -3,13 +3,15 @@
 use super::{Navigator, Surroundings};
 use crate::{config::RobotConfig, sight::Sight};
 use std::collections::HashSet;
-use trundle_core::{Cell, CellIndex, Invalid, OccupancyGrid, Pose2, Trajectory, Twist2, Vector2};
+use trundle_core::{Cell, CellIndex, Invalid, OccupancyGrid, Pose2, Trajectory, Twist2, Vector2, Vector3};
 use trundle_mapping::DepthScanner;
-use trundle_planning::Plan;
+use trundle_planning::{Plan, PlanResult};
 
-/// What a camera that looks ahead sees of the floor: a sector.
+/// What a camera sees of the floor: a sector.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct View {
+    /// Where it stands on the base and looks to.
+    base_from_sector: Pose2,
     /// Half its angle, rad.
     half_angle: f64,
     /// Where it begins, m.
@@ -28,18 +30,20 @@ const SLIVER: f64 = 0.02;
 const HOME: f64 = 0.8;
 /// What a way must not lead onto is walled off so far about, m, and so many times a plan.
 const WALL: f64 = 0.3;
-const MOST_WALLS: usize = 4;
+const MOST_WALLS: usize = 3;
+/// A way that shows all may take so many times as long as the best, and so many seconds more.
+const WORTH: (f64, f64) = (1.5, 10.0);
 
 impl View {
-    /// That of the robot's camera; none for a laser, which has no blind zone to speak of.
+    /// That of the robot's camera; none for a laser, which has no blind zone to speak of, and for a lens too narrow to look by.
     pub(super) fn of(config: &RobotConfig) -> Result<Option<Self>, Invalid> {
-        if config.sight == Sight::Laser {
-            return Ok(None);
-        }
         let base_from_camera = config.mount.validated()?.base_from_camera();
         let scanner = DepthScanner::new(config.camera, base_from_camera, config.scan.clone())?;
         let half_angle = (config.camera.width() as f64 / 2.0 / config.camera.fx()).atan() - RIM.0;
-        Ok(Some(Self { half_angle, nearest: scanner.blind_range() + RIM.1 }))
+        let (at, axis) = (base_from_camera.translation, base_from_camera.rotate(Vector3::z()));
+        let base_from_sector = Pose2::new(at.x, at.y, axis.y.atan2(axis.x));
+        let view = Self { base_from_sector, half_angle, nearest: scanner.blind_range() + RIM.1 };
+        Ok((config.sight == Sight::DepthCamera && half_angle > 0.0).then_some(view))
     }
 
     /// Where the way first leads the disc of `radius` onto floor that was never seen and is not seen on the way either.
@@ -68,15 +72,16 @@ impl View {
 
     /// Whether the camera at `from` looks at a point, and nothing on the map stands between.
     fn shows(self, grid: &OccupancyGrid, from: Pose2, at: Vector2) -> bool {
-        let to = from.inverse().transform(at);
+        let sector = from * self.base_from_sector;
+        let to = sector.inverse().transform(at);
         (self.nearest..FARTHEST).contains(&to.norm())
             && to.y.atan2(to.x).abs() < self.half_angle
-            && is_clear(grid, from.position(), at)
+            && is_clear(grid, sector.position(), at)
     }
 }
 
 impl Navigator {
-    /// A plan that shows the camera what it leads onto, where there is one; else the best plan there is.
+    /// A plan that shows the camera what it leads onto, where there is one that is worth it; else the best plan there is.
     pub(super) fn plan_in_view(
         &mut self,
         s: &Surroundings<'_>,
@@ -84,24 +89,37 @@ impl Navigator {
         goal: Pose2,
     ) -> Plan {
         let best = self.planner.plan_among(s.floor(), s.traffic.movers, from, twist, goal);
-        let Some(mut unseen) = self.unseen_on(&best, s.floor()) else { return best };
+        let Plan::Found(first) = &best else { return best };
+        let Some(mut unseen) = self.unseen_on(&first.trajectory, s.floor()) else { return best };
         let mut floor = s.floor().clone();
         for _ in 0..MOST_WALLS {
-            wall_off(&mut floor, unseen);
-            let plan = self.planner.plan_among(&floor, s.traffic.movers, from, twist, goal);
-            match (&plan, self.unseen_on(&plan, &floor)) {
-                (Plan::Found(_), None) => return plan,
-                (_, Some(next)) => unseen = next,
-                (_, None) => break,
+            wall_off(&mut floor, unseen, [from, goal].map(|pose| pose.position()), self.radius);
+            let Plan::Found(plan) = self.planner.plan_among(&floor, s.traffic.movers, from, twist, goal)
+            else {
+                return best;
+            };
+            match self.unseen_on(&plan.trajectory, s.floor()) {
+                Some(next) => unseen = next,
+                None if is_worth(&plan, first, &floor) => return Plan::Found(plan),
+                None => return best,
             }
         }
         best
     }
 
-    fn unseen_on(&self, plan: &Plan, floor: &OccupancyGrid) -> Option<Vector2> {
-        let Plan::Found(plan) = plan else { return None };
-        self.view?.first_unseen(&plan.trajectory, floor, self.radius)
+    /// Where a way leads onto what the camera will not have seen.
+    pub(super) fn unseen_on(&self, way: &Trajectory, floor: &OccupancyGrid) -> Option<Vector2> {
+        self.view?.first_unseen(way, floor, self.radius)
     }
+}
+
+/// Whether a way takes hardly longer than the best, goes on from where the robot is as smoothly, and stays on the map.
+fn is_worth(plan: &PlanResult, best: &PlanResult, floor: &OccupancyGrid) -> bool {
+    let stays =
+        plan.trajectory.points().iter().all(|p| floor.geometry().cell_at(p.pose.position()).is_some());
+    stays
+        && (plan.is_continuous || !best.is_continuous)
+        && plan.trajectory.duration() < WORTH.0 * best.trajectory.duration() + WORTH.1
 }
 
 fn is_near(a: Pose2, b: Pose2) -> bool {
@@ -130,9 +148,13 @@ fn cells_about(grid: &OccupancyGrid, at: Vector2, radius: f64) -> impl Iterator<
         .filter(move |cell| (geometry.center(*cell) - at).norm() < radius)
 }
 
-/// No way leads over the unknown cells about a point.
-fn wall_off(floor: &mut OccupancyGrid, at: Vector2) {
-    let cells: Vec<_> = unknown_under(floor, at, WALL).collect();
+/// No way leads over the unknown cells about a point, but for those under the ends of the way.
+fn wall_off(floor: &mut OccupancyGrid, at: Vector2, ends: [Vector2; 2], radius: f64) {
+    let geometry = *floor.geometry();
+    let is_off_the_ends = |cell: &CellIndex| {
+        ends.iter().all(|end| (geometry.center(*cell) - end).norm() > radius + geometry.resolution)
+    };
+    let cells: Vec<_> = unknown_under(floor, at, WALL).filter(is_off_the_ends).collect();
     for cell in cells {
         floor.set(cell, Cell::Occupied);
     }
@@ -148,9 +170,10 @@ fn is_clear(grid: &OccupancyGrid, from: Vector2, to: Vector2) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use trundle_core::TrajectoryPoint;
+    use crate::navigator::Traffic;
+    use trundle_core::{PoseEstimate, Stamp, TrajectoryPoint};
 
-    const VIEW: View = View { half_angle: 0.5, nearest: 0.6 };
+    const VIEW: View = View { base_from_sector: Pose2::IDENTITY, half_angle: 0.5, nearest: 0.6 };
 
     /// Known floor, 6 x 4 m about (3, 2), with unknown floor where `hidden` says so.
     fn floor(hidden: impl Fn(Vector2) -> bool) -> OccupancyGrid {
@@ -198,9 +221,58 @@ mod tests {
     #[test]
     fn walls_are_put_on_the_unknown_alone() {
         let mut grid = floor(|at| at.y > 2.3);
-        wall_off(&mut grid, Vector2::new(4.0, 2.4));
+        wall_off(&mut grid, Vector2::new(4.0, 2.4), [Vector2::new(3.9, 2.6), Vector2::zeros()], 0.1);
+        assert_eq!(grid.at(Vector2::new(3.9, 2.6)), Cell::Unknown, "an end of the way");
         assert_eq!(grid.at(Vector2::new(4.0, 2.45)), Cell::Occupied);
         assert_eq!(grid.at(Vector2::new(4.0, 2.2)), Cell::Free);
         assert_eq!(grid.at(Vector2::new(5.0, 2.4)), Cell::Unknown);
+    }
+
+    /// A robot beside a bed whose far side was never seen, and a goal behind it.
+    fn beside_a_bed() -> OccupancyGrid {
+        let mut grid = floor(|at| (1.5..4.0).contains(&at.x) && (1.2..2.0).contains(&at.y));
+        let geometry = *grid.geometry();
+        for k in 0..geometry.len() {
+            let at = geometry.center(geometry.cell(k));
+            let is_side = (at.x - 4.025).abs() < 0.03 && (1.6..2.0).contains(&at.y);
+            if is_side || (1.5..4.0).contains(&at.x) && (at.y - 2.025).abs() < 0.03 {
+                grid.set(geometry.cell(k), Cell::Occupied);
+            }
+        }
+        grid
+    }
+
+    fn navigator() -> Navigator {
+        let config = RobotConfig::default();
+        let footprint = config.footprint().unwrap();
+        Navigator::new(&config, &footprint).unwrap()
+    }
+
+    #[test]
+    fn a_way_is_taken_that_shows_what_it_leads_onto_or_else_the_best() {
+        let (grid, mut navigator) = (beside_a_bed(), navigator());
+        let (from, goal) = (Pose2::new(4.45, 1.75, -1.57), Pose2::new(2.75, 0.7, 3.1));
+        let now = Stamp::default();
+        let covariance = nalgebra::Matrix3::from_diagonal_element(1e-6);
+        let s = Surroundings {
+            now,
+            estimate: PoseEstimate { stamp: now, pose: from, twist: Twist2::ZERO, covariance },
+            grid: &grid,
+            scan: None,
+            seen: None,
+            unplaced: 0.0,
+            traffic: Traffic::default(),
+        };
+        let found = |plan: Plan| match plan {
+            Plan::Found(plan) => plan.trajectory,
+            other => panic!("{other:?}"),
+        };
+        let best = found(navigator.planner.plan(&grid, from, Twist2::ZERO, goal));
+        assert!(navigator.unseen_on(&best, &grid).is_some(), "the best way cuts the unseen corner");
+        let shown = found(navigator.plan_in_view(&s, (from, Twist2::ZERO), goal));
+        assert_eq!(navigator.unseen_on(&shown, &grid), None);
+        assert!(shown.duration() < WORTH.0 * best.duration() + WORTH.1);
+        navigator.view = None;
+        assert_eq!(found(navigator.plan_in_view(&s, (from, Twist2::ZERO), goal)), best);
     }
 }

@@ -100,8 +100,17 @@ fn read_covariance(bytes: &mut Reader, name: &str) -> Result<Matrix6<f64>, MapFi
     for entry in covariance.iter_mut() {
         *entry = bytes.length(name)?;
     }
+    let least = ((covariance + covariance.transpose()) / 2.0).symmetric_eigenvalues().min();
+    let size = covariance.amax();
+    let is_one = (covariance - covariance.transpose()).amax() <= ROUNDING * size && least >= -ROUNDING * size;
+    bytes.require(is_one, name, format!("eigenvalue {least:e}"), || {
+        "symmetric, eigenvalues of 0 or more".to_owned()
+    })?;
     Ok(covariance)
 }
+
+/// What sums of products leave of symmetry and sign, of the largest entry.
+const ROUNDING: f64 = 1e-9;
 
 fn write_landmark(out: &mut Writer, landmark: &Landmark, number: impl Fn(KeyframeId) -> usize) {
     out.f64s(landmark.position.iter().copied());
