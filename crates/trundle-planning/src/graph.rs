@@ -49,6 +49,11 @@ impl WayPointGraph {
         &self.nodes
     }
 
+    /// The lanes, by the numbers of their ends.
+    pub fn lanes(&self) -> &[(usize, usize)] {
+        &self.lanes
+    }
+
     /// The nodes by rising distance from a point.
     pub(crate) fn nearest(&self, point: Vector2) -> Vec<usize> {
         let mut order: Vec<usize> = (0..self.nodes.len()).collect();

@@ -1,5 +1,6 @@
 //! Ways on the grid: by the potential chosen, or over the lanes of a way-point graph.
 
+use crate::WayPointGraph;
 use crate::potential::{PotentialField, PotentialKind, PotentialOutcome};
 use crate::pull::pull_taut;
 use crate::space::Space;
@@ -9,6 +10,8 @@ use trundle_core::Vector2;
 
 /// Nodes of a way-point graph that are tried as the first, and as the last.
 const DOORS: usize = 3;
+/// They are no more than so many times as far off as the nearest, and so many m more: else the robot would leave the lanes aside.
+const DOORS_OFF: (f64, f64) = (1.5, 1.0);
 
 /// A way on the grid.
 pub(crate) struct Way {
@@ -50,8 +53,8 @@ impl Task<'_> {
         goal: Vector2,
     ) -> Result<Way, Vector2> {
         let Some(graph) = self.graph else { return self.leg(wave, space, start, goal) };
-        let (enter, leave) = (graph.nearest(start), graph.nearest(goal));
-        let ends = enter.iter().take(DOORS).flat_map(|a| leave.iter().take(DOORS).map(move |b| (*a, *b)));
+        let (enter, leave) = (doors(graph, start), doors(graph, goal));
+        let ends = enter.iter().flat_map(|a| leave.iter().map(move |b| (*a, *b)));
         let mut failure = start;
         for (first, last) in ends {
             let Some(nodes) = graph.way(first, last, |a, b| space.sees(a, b)) else { continue };
@@ -110,4 +113,14 @@ impl Task<'_> {
             Wave::Stuck(nearest) => Err(nearest),
         }
     }
+}
+
+/// The nodes by which a place is left for the lanes, or reached from them, the nearest first.
+fn doors(graph: &WayPointGraph, place: Vector2) -> Vec<usize> {
+    let off = |node: &usize| (graph.nodes()[*node] - place).norm();
+    let mut nodes = graph.nearest(place);
+    let farthest = nodes.first().map_or(0.0, off) * DOORS_OFF.0 + DOORS_OFF.1;
+    nodes.truncate(DOORS);
+    nodes.retain(|node| off(node) <= farthest);
+    nodes
 }

@@ -4,7 +4,7 @@ use super::args::{PlaceArg, PlanArgs};
 use crate::{console, failure::Failure};
 use std::collections::BTreeMap;
 use std::path::Path;
-use trundle::core::{Cell, Footprint, GridGeometry, OccupancyGrid, Pose2, Twist2};
+use trundle::core::{Cell, Footprint, GridGeometry, OccupancyGrid, Pose2, Twist2, Vector2};
 use trundle::io::{read_graph, read_keep_out_mask, read_map, read_places, read_speed_mask};
 use trundle::planning::{DearMask, Plan, Planner, PlannerConfig, SpeedMask, Tour, WayPointGraph};
 use trundle::runtime::RobotConfig;
@@ -45,6 +45,8 @@ pub struct Errand {
 pub struct Refusal {
     /// The goal's number, from 0.
     pub goal: usize,
+    /// Where the robot stands by then: the start, or where it stopped at the goal before.
+    from: Pose2,
     pub why: Plan,
 }
 
@@ -98,12 +100,19 @@ impl Errand {
     /// The plan through all goals, or which of them has none.
     pub fn plan(&mut self) -> Result<Tour, Refusal> {
         let goals: Vec<Pose2> = self.goals.iter().map(|goal| goal.pose).collect();
+        self.tour(&goals).map_err(|(goal, why)| {
+            let before = (goal > 0).then(|| self.tour(&goals[..goal]).ok()).flatten();
+            let from = before.map_or(self.start.pose, |tour| tour.trajectory.end());
+            Refusal { goal, from, why }
+        })
+    }
+
+    fn tour(&mut self, goals: &[Pose2]) -> Result<Tour, (usize, Plan)> {
         let (start, grid) = (self.start.pose, &self.grid);
-        let tour = match &self.graph {
-            Some(graph) => self.planner.plan_tour_on_graph(grid, graph, start, Twist2::ZERO, &goals),
-            None => self.planner.plan_tour(grid, start, Twist2::ZERO, &goals),
-        };
-        tour.map_err(|(goal, why)| Refusal { goal, why })
+        match &self.graph {
+            Some(graph) => self.planner.plan_tour_on_graph(grid, graph, start, Twist2::ZERO, goals),
+            None => self.planner.plan_tour(grid, start, Twist2::ZERO, goals),
+        }
     }
 
     /// Of each goal that another place was taken for: how far off that is, and why.
@@ -123,19 +132,37 @@ impl Errand {
         found
     }
 
-    /// Where the part of an errand that has no plan begins, and where it leads.
-    pub fn ends(&self, refusal: &Refusal) -> (Pose2, Pose2) {
-        (self.before(refusal.goal).pose, self.goals[refusal.goal].pose)
+    /// The lanes of the way-point graph, end to end; none without one.
+    pub fn lanes(&self) -> Vec<[Vector2; 2]> {
+        let of = |graph: &WayPointGraph| {
+            graph.lanes().iter().map(|(a, b)| [graph.nodes()[*a], graph.nodes()[*b]]).collect()
+        };
+        self.graph.as_ref().map(of).unwrap_or_default()
     }
 
-    fn before(&self, goal: usize) -> &Place {
-        if goal == 0 { &self.start } else { &self.goals[goal - 1] }
+    /// Where the part of an errand that has no plan begins, and where it leads.
+    pub fn ends(&self, refusal: &Refusal) -> (Pose2, Pose2) {
+        (refusal.from, self.goals[refusal.goal].pose)
+    }
+
+    /// The place that such a part begins at: the start or the goal before, or another place that was taken for that.
+    fn before(&self, refusal: &Refusal) -> Place {
+        const SAME: f64 = 0.01;
+        let asked = if refusal.goal == 0 { &self.start } else { &self.goals[refusal.goal - 1] };
+        let is_there = asked.pose.distance(&refusal.from) < SAME;
+        let round = |value: f64| (value * 100.0).round() / 100.0;
+        let Pose2 { x, y, theta } = refusal.from;
+        if is_there {
+            asked.clone()
+        } else {
+            Place { pose: Pose2::new(round(x), round(y), theta), name: None }
+        }
     }
 
     /// One sentence: which part of the errand has no plan, and why.
     pub fn explain(&mut self, refusal: &Refusal) -> String {
-        let Refusal { goal, why } = refusal;
-        let from = self.before(*goal);
+        let Refusal { goal, why, .. } = refusal;
+        let from = self.before(refusal);
         let mut whole = format!("from {} to {}", from.describe(), self.goals[*goal].describe());
         if self.goals.len() > 1 {
             whole = format!("goal {}, {whole}", goal + 1);
@@ -143,8 +170,7 @@ impl Errand {
         if matches!(why, Plan::Blocked { .. }) && self.graph.is_some() {
             whole = format!("{whole} along the graph");
         }
-        let pose = from.pose;
-        format!("{whole}: {why}{}", self.without_the_mask(why, pose, *goal))
+        format!("{whole}: {why}{}", self.without_the_mask(why, refusal.from, *goal))
     }
 
     /// What a refusal has to do with the keep-out mask; nothing where it would be the same without.

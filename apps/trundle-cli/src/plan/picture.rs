@@ -25,11 +25,14 @@ pub fn draw(errand: &Errand, tour: &Tour, limits: DriveLimits, moved: &[Moved], 
     };
     let (raw, way_points, curve) =
         (join(|leg| leg.raw.points()), join(|leg| leg.way_points.points()), points(tour));
-    let goal: Pose2 = tour.trajectory.end();
+    let goals: Vec<Pose2> = tour.legs.iter().map(|leg| leg.trajectory.end()).collect();
+    let replaced: Vec<Pose2> = moved.iter().map(|moved| errand.goals[moved.goal].pose).collect();
     let scene = PlanScene {
         grid: &errand.grid,
         start: errand.start.pose,
-        goal,
+        goals: &goals,
+        replaced: &replaced,
+        lanes: &errand.lanes(),
         route: &raw,
         way_points: &way_points,
         curve: &curve,
@@ -66,7 +69,9 @@ pub fn without_plan(errand: &Errand, refusal: &Refusal) -> Vec<u8> {
     let scene = PlanScene {
         grid: &errand.grid,
         start,
-        goal,
+        goals: &[goal],
+        replaced: &[],
+        lanes: &errand.lanes(),
         route: &[],
         way_points: &[],
         curve: &[],

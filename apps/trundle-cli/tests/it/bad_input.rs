@@ -1,6 +1,6 @@
 use crate::{
     plan::write_room,
-    program::{refusal, text},
+    program::{refusal, summary, text, trundle},
 };
 use std::fs;
 
@@ -23,7 +23,11 @@ fn ends_of_a_plan_in_a_wall_and_off_the_map() {
     let map = write_room(scratch.path());
     let out = scratch.path().join("out");
     let plan = |from: &str, to: &str| {
-        refusal(&["plan", text(&map), &format!("--from={from}"), &format!("--to={to}"), "--out", text(&out)])
+        let (from, to) = (format!("--from={from}"), format!("--to={to}"));
+        let output = trundle(&["plan", text(&map), &from, &to, "--out", text(&out)]);
+        assert_eq!(output.status.code(), Some(1), "no plan");
+        assert_eq!(summary(&out)["success"], false);
+        String::from_utf8(output.stderr).unwrap()
     };
     for (from, to, words) in [
         ("0.02,1,0", "5,1,0", "start"),
@@ -34,7 +38,7 @@ fn ends_of_a_plan_in_a_wall_and_off_the_map() {
         let sentence = plan(from, to);
         assert!(sentence.contains(words) && sentence.contains("room.yaml"), "{sentence}");
     }
-    assert!(!out.exists());
+    assert!(!out.join("trajectory.csv").exists());
 }
 
 #[test]

@@ -144,6 +144,18 @@ fn lanes_are_kept_to_and_blocked_ones_avoided() {
 }
 
 #[test]
+fn where_no_lanes_lead_to_the_goal_the_robot_does_not_cross_the_room() {
+    let at = |x: f64, y: f64| Vector2::new(x, y);
+    let nodes = vec![at(1.0, 1.0), at(8.0, 1.0), at(8.0, 5.0)];
+    let there = WayPointGraph::one_way(nodes, vec![(0, 1), (1, 2)]).unwrap();
+    let (here, goal) = (Pose2::new(1.2, 1.0, 0.0), Pose2::new(8.0, 4.8, 1.6));
+    let mut planner = planner(at_home(), RADIUS);
+    found(planner.plan_on_graph(&hall(), &there, here, Twist2::ZERO, goal));
+    let back = planner.plan_on_graph(&hall(), &there, goal, Twist2::ZERO, here);
+    assert!(matches!(back, Plan::Blocked { .. }), "{back}");
+}
+
+#[test]
 fn a_tour_keeps_to_lanes_that_are_one_way() {
     let at = |x: f64, y: f64| Vector2::new(x, y);
     let nodes = vec![at(2.0, 1.0), at(8.0, 1.0), at(8.0, 5.0), at(2.0, 5.0)];

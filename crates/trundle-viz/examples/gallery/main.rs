@@ -83,7 +83,9 @@ fn plan() -> Vec<u8> {
     plan_picture(&PlanScene {
         grid: &room::grid(),
         start: Pose2::new(curve[0].x, curve[0].y, 0.3),
-        goal: Pose2::new(curve[curve.len() - 1].x, curve[curve.len() - 1].y, 1.57),
+        goals: &[Pose2::new(curve[curve.len() - 1].x, curve[curve.len() - 1].y, 1.57)],
+        replaced: &[],
+        lanes: &[],
         route: &[],
         way_points: &way_points,
         curve: &curve,

@@ -19,8 +19,12 @@ pub struct PlanScene<'a> {
     pub grid: &'a OccupancyGrid,
     /// Where the robot stands.
     pub start: Pose2,
-    /// Where it is to stand.
-    pub goal: Pose2,
+    /// Where it is to stand, one after the other.
+    pub goals: &'a [Pose2],
+    /// Goals asked for in whose place others were taken.
+    pub replaced: &'a [Pose2],
+    /// The lanes of a way-point graph, end to end.
+    pub lanes: &'a [[Vector2; 2]],
     /// The route as the search found it; pass none to leave it out.
     pub route: &'a [Vector2],
     /// The way-points.
@@ -39,6 +43,9 @@ impl<'a> PlanScene<'a> {
     /// The map with what the masks say of it.
     pub(super) fn ground(&self) -> MapPicture<'a> {
         let mut picture = MapPicture::over(self.grid);
+        for lane in self.lanes {
+            picture = picture.polyline("lane", lane, LineStyle::dashed(Color::FAINT_INK));
+        }
         if let Some(mask) = self.slow {
             // Hardly slower is still to be seen.
             let shares = mask.shares.iter().map(|share| if *share > 0.0 { share.max(0.3) } else { 0.0 });
@@ -58,11 +65,24 @@ impl<'a> PlanScene<'a> {
         picture.tint("forbidden by the keep-out mask", mask.geometry, forbidden.collect(), color)
     }
 
-    /// The way-points between start and goal, which have marks of their own.
+    /// The picture with start and goals, the outline about each; several goals are numbered.
+    pub(super) fn ends(&self, picture: MapPicture<'a>) -> MapPicture<'a> {
+        let pose = |color: Color| PoseStyle::named(color).with_footprint(self.footprint.clone());
+        let asked =
+            |picture: MapPicture<'a>, at: &Pose2| picture.pose("goal asked for", *at, pose(Color::FAINT_INK));
+        let picture = self.replaced.iter().fold(picture, asked).pose("start", self.start, pose(START));
+        let name =
+            |i: usize| if self.goals.len() == 1 { "goal".to_owned() } else { format!("goal {}", i + 1) };
+        let goals = self.goals.iter().enumerate();
+        goals.fold(picture, |picture, (i, goal)| picture.pose(&name(i), *goal, pose(GOAL)))
+    }
+
+    /// The way-points between start and goals, which have marks of their own.
     pub(super) fn between(&self) -> Vec<Vector2> {
         const SAME: f64 = 1e-3;
-        let is_end =
-            |p: &Vector2| [self.start, self.goal].iter().any(|end| (p - end.position()).norm() < SAME);
+        let is_end = |p: &Vector2| {
+            self.goals.iter().chain([&self.start]).any(|end| (p - end.position()).norm() < SAME)
+        };
         self.way_points.iter().filter(|p| !is_end(p)).copied().collect()
     }
 }
@@ -70,26 +90,18 @@ impl<'a> PlanScene<'a> {
 /// The picture of a plan that there is not: the map, start and goal with the robot's outline, and the `nearest` places to the goal
 /// that the robot could reach. An 8-bit RGB PNG.
 pub fn no_plan_picture(scene: &PlanScene, nearest: &[Vector2]) -> Vec<u8> {
-    let pose = |color: Color| PoseStyle::named(color).with_footprint(scene.footprint.clone());
-    scene
-        .ground()
-        .dots("nearest place that can be reached", nearest, DotStyle::circles(PLAN).radius(4.0))
-        .pose("start", scene.start, pose(START))
-        .pose("goal", scene.goal, pose(GOAL))
-        .to_png()
+    let dots = DotStyle::circles(PLAN).radius(4.0);
+    scene.ends(scene.ground().dots("nearest place that can be reached", nearest, dots)).to_png()
 }
 
 /// The picture of `trundle plan`: the map, start and goal with the robot's outline, way-points, the fitted curve, and the
 /// floor the robot sweeps along it. An 8-bit RGB PNG.
 pub fn plan_picture(scene: &PlanScene) -> Vec<u8> {
-    let pose = |color: Color| PoseStyle::named(color).with_footprint(scene.footprint.clone());
-    scene
+    let picture = scene
         .ground()
         .band("floor swept by the robot", scene.curve, scene.footprint.circumscribed_radius(), SWEPT)
         .polyline("route", scene.route, LineStyle::solid(Color::FAINT_INK).width(0.8).plain())
         .polyline("curve", scene.curve, LineStyle::solid(Color::BLUE))
-        .dots("way-points", &scene.between(), way_point_dots())
-        .pose("start", scene.start, pose(START))
-        .pose("goal", scene.goal, pose(GOAL))
-        .to_png()
+        .dots("way-points", &scene.between(), way_point_dots());
+    scene.ends(picture).to_png()
 }

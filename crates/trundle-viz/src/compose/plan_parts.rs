@@ -1,8 +1,8 @@
-use super::palette::{FORBIDDEN, GOAL, PLAN, START, way_point_dots};
+use super::palette::{FORBIDDEN, PLAN, way_point_dots};
 use super::plan::PlanScene;
 use crate::chart::Chart;
 use crate::color::Color;
-use crate::map::{DotStyle, LineStyle, MapPicture, PoseStyle};
+use crate::map::{DotStyle, LineStyle, MapPicture};
 use trundle_core::{GridGeometry, Trajectory, Vector2};
 
 /// What a plan was made of, beside [`PlanScene`]; map frame, m. What is empty is left out.
@@ -24,10 +24,6 @@ const FAR: f32 = 1.0;
 /// The pictures of how a plan was made: the distance field with the way that the search found, and the corridors with the
 /// curve that was fitted into them. 8-bit RGB PNGs.
 pub fn plan_part_pictures(scene: &PlanScene, parts: &PlanParts) -> [Vec<u8>; 2] {
-    let ends = |picture: MapPicture<'_>| {
-        let pose = |color: Color| PoseStyle::named(color).with_footprint(scene.footprint.clone());
-        picture.pose("start", scene.start, pose(START)).pose("goal", scene.goal, pose(GOAL)).to_png()
-    };
     let free = |distance: &f32| if *distance > 0.0 { *distance } else { f32::NAN };
     let distances = parts.distances.iter().map(free).collect();
     let shaded = MapPicture::over(scene.grid).shade(
@@ -47,7 +43,7 @@ pub fn plan_part_pictures(scene: &PlanScene, parts: &PlanParts) -> [Vec<u8>; 2] 
         .polyline("curve", scene.curve, LineStyle::solid(Color::BLUE))
         .dots("way-points", &scene.between(), way_point_dots())
         .dots("active constraints", parts.active, DotStyle::circles(Color::VERMILLION).radius(3.6));
-    [ends(field), ends(corridors)]
+    [field, corridors].map(|picture| scene.ends(picture).to_png())
 }
 
 /// Speed and turn rate over time, with the drive's limits (m/s, rad/s).
@@ -85,7 +81,9 @@ mod tests {
         let scene = PlanScene {
             grid: &grid,
             start: Pose2::new(0.15, 0.15, 0.0),
-            goal: Pose2::new(0.35, 0.25, 0.0),
+            goals: &[Pose2::new(0.35, 0.25, 0.0)],
+            replaced: &[],
+            lanes: &[],
             route: &way,
             way_points: &way,
             curve: &way,

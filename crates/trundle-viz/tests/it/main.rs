@@ -46,7 +46,7 @@ proptest! {
 
     #[test]
     fn any_plan_is_drawn(grid in any_grid(), points in any_points(), start in any_pose(), goal in any_pose(), footprint in any_footprint()) {
-        let scene = PlanScene { grid: &grid, start, goal, route: &points, way_points: &points, curve: &points, footprint: &footprint, keep_out: None, slow: None };
+        let scene = PlanScene { grid: &grid, start, goals: &[goal, start], replaced: &[goal], lanes: &[[start.position(), goal.position()]], route: &points, way_points: &points, curve: &points, footprint: &footprint, keep_out: None, slow: None };
         size_of(&plan_picture(&scene));
     }
 
