@@ -10,10 +10,13 @@ use crate::task::{Memory, Task};
 use crate::timing::Drive;
 use crate::tour::{Replan, Tour};
 use crate::watch::{Exit, Obstruction, deepest, slim, still_free};
-use crate::{DearMask, DistanceField, PlannerConfig, SpeedMask, UnknownIs, WayPointGraph};
+use crate::{CurveConfig, DearMask, DistanceField, PlannerConfig, SpeedMask, UnknownIs, WayPointGraph};
 use trundle_core::{
     DifferentialDrive, DriveLimits, Footprint, Invalid, OccupancyGrid, Pose2, Trajectory, Twist2,
 };
+
+/// The corridor of a lane reaches so far beside it, m: a lane is where the robot is expected.
+const LANE: f64 = 0.2;
 
 /// From a grid, a pose and a goal to way-points, a verified curve and a trajectory.
 ///
@@ -22,6 +25,8 @@ use trundle_core::{
 #[derive(Debug)]
 pub struct Planner {
     config: PlannerConfig,
+    /// The same where the robot keeps to lanes.
+    on_lanes: PlannerConfig,
     body: Body,
     drive: Drive,
     memory: Memory,
@@ -54,8 +59,11 @@ impl Planner {
             config: config.timing,
         };
         let (body, memory) = (Body::new(footprint), Memory::default());
+        let reach = config.curve.reach.min(LANE);
+        let on_lanes = PlannerConfig { curve: CurveConfig { reach, ..config.curve }, ..config };
         Ok(Self {
             config,
+            on_lanes,
             body,
             drive,
             memory,
@@ -288,7 +296,7 @@ impl Planner {
         watch: &'a Stopwatch,
     ) -> Task<'a> {
         Task {
-            config: &self.config,
+            config: if graph.is_some() { &self.on_lanes } else { &self.config },
             body: &self.body,
             drive: &self.drive,
             field,

@@ -2,7 +2,7 @@
 
 use crate::support::{at_home, found, judge, least_room, planner};
 use trundle_core::{Cell, GridGeometry, OccupancyGrid, Pose2, Twist2, Vector2};
-use trundle_planning::{DearMask, Plan, PlannerConfig, Replan, SpeedMask, WayPointGraph};
+use trundle_planning::{DearMask, Plan, PlanResult, PlannerConfig, Replan, SpeedMask, WayPointGraph};
 
 const RADIUS: f64 = 0.1755;
 
@@ -134,10 +134,18 @@ fn lanes_are_kept_to_and_blocked_ones_avoided() {
     let direct = found(planner.plan_on_graph(&grid, &graph, start, Twist2::ZERO, goal));
     judge(&grid, &direct, start, goal, RADIUS);
     assert!(direct.way_points.points().contains(&at(2.0, 1.0)) && direct.length < 8.3);
+    let off_the_lane = |plan: &PlanResult| -> f64 {
+        let beside = |p: Vector2| {
+            (p.y - 1.0).abs().min((p.y - 5.0).abs()).min((p.x - 2.0).abs()).min((p.x - 8.0).abs())
+        };
+        plan.trajectory.points().iter().map(|point| beside(point.pose.position())).fold(0.0, f64::max)
+    };
+    assert!(off_the_lane(&direct) < 0.25, "{}", off_the_lane(&direct));
     (0..30).for_each(|row| grid.set(trundle_core::CellIndex { col: 50, row }, Cell::Occupied));
     let around = found(planner.plan_on_graph(&grid, &graph, start, Twist2::ZERO, goal));
     judge(&grid, &around, start, goal, RADIUS);
     assert!(around.way_points.points().contains(&at(8.0, 5.0)));
+    assert!(off_the_lane(&around) < 0.3, "{}", off_the_lane(&around));
     (0..60).for_each(|row| grid.set(trundle_core::CellIndex { col: 50, row }, Cell::Occupied));
     let blocked = planner.plan_on_graph(&grid, &graph, start, Twist2::ZERO, goal);
     assert!(matches!(blocked, Plan::Blocked { .. }), "{blocked}");
