@@ -15,7 +15,7 @@ use trundle_mapping::{LiveMapper, MapperConfig};
 const HERTZ: f64 = 5.0;
 const SCANS: usize = 18_000;
 /// Cells redrawn with each control step, as the robot does.
-const BUDGET: usize = 250_000;
+const BUDGET: usize = 60_000;
 
 /// Time on the processor, ms: others may be at work too.
 fn processor_ms() -> f64 {

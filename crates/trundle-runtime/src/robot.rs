@@ -89,8 +89,8 @@ struct Latest {
 const UNPLACED: f64 = 0.3;
 /// So long after the last scan what moved may be anywhere, s.
 const MOVERS_LAST: f64 = 1.0;
-/// After each command, so many cells of a bent grid are redrawn, about 6 ms.
-const REDRAWING: usize = 250_000;
+/// After each command, so many cells of a bent grid are redrawn, about 6 ms of a camera's scans.
+const REDRAWING: usize = 60_000;
 
 impl Robot {
     /// A robot that has just been switched on: where it stands is the map's origin.
