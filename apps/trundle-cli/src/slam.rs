@@ -2,9 +2,9 @@ use crate::slam_recorder::SlamRecorder;
 use crate::{Outcome, args::SlamArgs, console, failure::Failure, slam_output};
 use indicatif::ProgressBar;
 use std::time::Instant;
-use trundle::core::{Pose3, RgbdImage, Stamp};
+use trundle::core::{CameraMotion, Pose2, Pose3, RgbdImage, Stamp};
 use trundle::io::{CameraModel, EncodedRgbd, FrameError, IoError, OutputFolder, TumSequence};
-use trundle::localization::camera_motion;
+use trundle::localization::{OdometryConfig, camera_motion};
 use trundle::runtime::{LevelMap, RobotConfig, Stage, StageTimes, level_from_first_camera};
 use trundle::slam::{Mode, RgbdSlam, SlamConfig, TrackReport};
 
@@ -150,23 +150,26 @@ impl SlamRun {
 
 /// The camera's motion by the sequence's odometry, where it has one.
 struct OdometryPrior<'a> {
-    poses: &'a [(Stamp, trundle::core::Pose2)],
+    poses: &'a [(Stamp, Pose2)],
     base_from_camera: Pose3,
+    noise: OdometryConfig,
 }
 
 impl<'a> OdometryPrior<'a> {
     fn new(sequence: &'a TumSequence) -> Self {
-        let base_from_camera = RobotConfig::default().mount.base_from_camera();
-        Self { poses: sequence.odometry().unwrap_or(&[]), base_from_camera }
+        let robot = RobotConfig::default();
+        let base_from_camera = robot.mount.base_from_camera();
+        Self { poses: sequence.odometry().unwrap_or(&[]), base_from_camera, noise: robot.odometry }
     }
 
     /// `earlier_camera_from_later_camera`.
-    fn motion(&self, earlier: Stamp, later: Stamp) -> Option<Pose3> {
+    fn motion(&self, earlier: Stamp, later: Stamp) -> Option<CameraMotion> {
         let base_motion = self.at(earlier)?.inverse() * self.at(later)?;
-        Some(camera_motion(base_motion, self.base_from_camera))
+        let noise = self.noise.by_wheels(&base_motion);
+        Some(camera_motion((base_motion, noise), self.base_from_camera))
     }
 
-    fn at(&self, stamp: Stamp) -> Option<trundle::core::Pose2> {
+    fn at(&self, stamp: Stamp) -> Option<Pose2> {
         let after = self.poses.partition_point(|(at, _)| *at <= stamp);
         let (t0, a) = self.poses.get(after.checked_sub(1)?)?;
         let (t1, b) = self.poses.get(after)?;

@@ -7,6 +7,7 @@
 mod angle;
 mod body;
 mod camera;
+mod camera_motion;
 mod drive;
 mod estimate;
 mod footprint;
@@ -27,6 +28,7 @@ mod twist;
 pub use angle::{difference_of_angles, wrap_angle};
 pub use body::{Cliff, RobotBody, SensorEvent, Touch};
 pub use camera::{Distortion, PinholeCamera};
+pub use camera_motion::CameraMotion;
 pub use drive::{DifferentialDrive, DriveLimits};
 pub use estimate::PoseEstimate;
 pub use footprint::Footprint;

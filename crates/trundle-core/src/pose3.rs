@@ -1,5 +1,5 @@
 use crate::{Pose2, Vector3};
-use nalgebra::{Isometry3, Matrix3, Rotation3, Translation3, UnitQuaternion, Vector6};
+use nalgebra::{Isometry3, Matrix3, Matrix6, Rotation3, Translation3, UnitQuaternion, Vector6};
 use serde::{Deserialize, Serialize};
 use std::ops::Mul;
 
@@ -85,6 +85,17 @@ impl Pose3 {
         let phi = self.rotation.scaled_axis();
         let rho = left_jacobian(phi).try_inverse().unwrap_or_else(Matrix3::identity) * self.translation;
         Vector6::new(rho.x, rho.y, rho.z, phi.x, phi.y, phi.z)
+    }
+
+    /// The adjoint of SE(3), translation first (Sola et al. 2018, eq. 175): how a right perturbation before the pose appears
+    /// behind it, `pose exp(x) = exp(adjoint x) pose`.
+    pub fn adjoint(&self) -> Matrix6<f64> {
+        let rotation = self.rotation_matrix();
+        let mut matrix = Matrix6::zeros();
+        matrix.fixed_view_mut::<3, 3>(0, 0).copy_from(&rotation);
+        matrix.fixed_view_mut::<3, 3>(0, 3).copy_from(&(self.translation.cross_matrix() * rotation));
+        matrix.fixed_view_mut::<3, 3>(3, 3).copy_from(&rotation);
+        matrix
     }
 
     /// The angle of the rotation, rad, in [0, pi].

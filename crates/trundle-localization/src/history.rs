@@ -1,9 +1,9 @@
 use crate::{
-    Correction,
+    Correction, Odometer,
     belief::{Belief, Measurement},
-    planar::{carried, without_negative_variances},
+    planar::carried,
 };
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Vector3;
 use std::collections::VecDeque;
 use trundle_core::{Odometry, Pose2, Stamp};
 
@@ -27,49 +27,13 @@ struct Node {
     belief: Belief,
 }
 
-/// The odometry's own pose and its accumulated covariance.
-#[derive(Debug, Clone, Copy)]
-struct Odometer {
-    pose: Pose2,
-    covariance: Matrix3<f64>,
-}
-
-impl Odometer {
-    /// The motion from `earlier` to here and its noise.
-    fn since(&self, earlier: &Self) -> (Pose2, Matrix3<f64>) {
-        let motion = earlier.pose.inverse() * self.pose;
-        let noise = self.covariance - carried(&earlier.covariance, &motion);
-        (motion, without_negative_variances(noise))
-    }
-
-    /// Part of the way from here to `later`.
-    fn towards(&self, later: &Self, fraction: f64) -> Self {
-        let (motion, noise) = later.since(self);
-        let part = Pose2::exp(motion.log() * fraction);
-        Self { pose: self.pose * part, covariance: carried(&self.covariance, &part) + noise * fraction }
-    }
-}
-
-impl From<&Odometry> for Odometer {
-    fn from(odometry: &Odometry) -> Self {
-        Self { pose: odometry.pose, covariance: odometry.covariance }
-    }
-}
-
 /// Where in the history a moment lies, and what was believed then.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Moment {
     index: usize,
     stamp: Stamp,
-    odometer: Odometer,
+    pub(crate) odometer: Odometer,
     pub(crate) belief: Belief,
-}
-
-impl Moment {
-    /// `odom_from_base` at the moment.
-    pub(crate) fn odom_from_base(&self) -> Pose2 {
-        self.odometer.pose
-    }
 }
 
 impl History {

@@ -1,5 +1,5 @@
 use crate::{
-    Correction, LocalizerConfig, Prediction, VisualPose,
+    Correction, LocalizerConfig, Odometer, Prediction, VisualPose,
     belief::{Belief, Measurement},
     history::{History, Moment},
     recovery::{Recovery, Verdict},
@@ -97,7 +97,7 @@ impl Localizer {
             self.visual.anchor(&moment.belief, visual);
             return Correction::Anchored;
         };
-        self.recovery.watch(&self.config, visual.stamp, measurement.pose, moment.odom_from_base());
+        self.recovery.watch(&self.config, visual.stamp, measurement.pose, moment.odometer.pose);
         let correction = self.apply(&moment, measurement);
         let Correction::Gated { distance } = correction else {
             self.visual.refine(&moment.belief, &measurement);
@@ -167,12 +167,12 @@ impl Localizer {
         self.find(stamp).map(|moment| moment.belief.pose)
     }
 
-    /// `odom_from_base` at a moment of the last seconds, between two readings on the arc between them.
+    /// What the odometry said at a moment of the last seconds, between two readings on the arc between them.
     ///
     /// # Errors
     /// [`Correction::TooOld`], [`Correction::TooNew`] or [`Correction::NoOdometry`].
-    pub fn odometry_at(&self, stamp: Stamp) -> Result<Pose2, Correction> {
-        self.find(stamp).map(|moment| moment.odom_from_base())
+    pub fn odometry_at(&self, stamp: Stamp) -> Result<Odometer, Correction> {
+        self.find(stamp).map(|moment| moment.odometer)
     }
 
     /// Where the current visual map's frame lies in the map, once there was a visual pose.

@@ -26,9 +26,10 @@ pub(crate) fn of_step(config: &OdometryConfig, step: &Step) -> Matrix3<f64> {
         // A slip of the wheels that nobody checks is part of these two constants.
         config.wheel_turn_noise.powi(2) * turn + config.wheel_way_noise.powi(2) * way
     };
+    let spot = config.spot_noise.powi(2) * turn + slip;
     Matrix3::from_diagonal(&nalgebra::Vector3::new(
-        config.way_noise.powi(2) * way + slip,
-        config.sideways_noise.powi(2) * way + slip,
+        config.way_noise.powi(2) * way + spot,
+        config.sideways_noise.powi(2) * way + spot,
         heading,
     ))
 }

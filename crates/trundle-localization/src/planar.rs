@@ -32,13 +32,8 @@ pub(crate) fn without_negative_variances(matrix: Matrix3<f64>) -> Matrix3<f64> {
 /// The covariance of the base's planar pose (x m, y m, theta rad) that comes of the covariance of the camera's pose
 /// (m, m, m, rad, rad, rad), both as right perturbations.
 pub fn planar_covariance(camera: &Matrix6<f64>, base_from_camera: &Pose3) -> Matrix3<f64> {
-    let rotation = base_from_camera.rotation_matrix();
-    let lever = base_from_camera.translation.cross_matrix() * rotation;
-    // The rows x, y and yaw of the adjoint of SE(3) (Sola et al. 2018, eq. 175).
-    let mut planar = Matrix3x6::zeros();
-    planar.fixed_view_mut::<2, 3>(0, 0).copy_from(&rotation.fixed_rows::<2>(0));
-    planar.fixed_view_mut::<2, 3>(0, 3).copy_from(&lever.fixed_rows::<2>(0));
-    planar.fixed_view_mut::<1, 3>(2, 3).copy_from(&rotation.fixed_rows::<1>(2));
+    let to_base = base_from_camera.adjoint();
+    let planar = Matrix3x6::from_rows(&[to_base.row(0), to_base.row(1), to_base.row(5)]);
     symmetric(planar * camera * planar.transpose())
 }
 

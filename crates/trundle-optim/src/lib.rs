@@ -18,10 +18,12 @@ mod narrow_order;
 mod observation;
 mod pose;
 mod pose_graph;
+mod pose_prior;
 
 pub use bundle::{BundleConfig, BundleObservation, BundlePose, BundleProblem, BundleSolution};
 pub use bundle_solver::BundleSolver;
 pub use huber::Huber;
 pub use observation::{CHI2_95_2, CHI2_95_3, CHI2_95_6, InverseDepth, Linearized, PointObservation};
 pub use pose::{PoseConfig, PoseProblem, PoseSolution};
-pub use pose_graph::{PoseConstraint, PoseGraph, PoseGraphConfig, PoseGraphSolution, adjoint};
+pub use pose_graph::{PoseConstraint, PoseGraph, PoseGraphConfig, PoseGraphSolution};
+pub use pose_prior::PosePrior;

@@ -1,4 +1,5 @@
 use crate::observation::{PointObservation, camera_point_by_pose, robust_cost};
+use crate::pose_prior::PosePrior;
 use nalgebra::{Matrix6, Vector6};
 use serde::{Deserialize, Serialize};
 use trundle_core::{Invalid, PinholeCamera, Pose3, Vector3, require_positive};
@@ -47,6 +48,8 @@ pub struct PoseProblem<'a> {
     pub camera: &'a PinholeCamera,
     /// Points (world, m) and what the image says of each.
     pub observations: &'a [(Vector3, PointObservation)],
+    /// What is known of the pose besides, by wheels, say. At odds with the points it counts for nothing.
+    pub prior: Option<PosePrior>,
 }
 
 /// What [`PoseProblem::solve`] finds.
@@ -58,7 +61,8 @@ pub struct PoseSolution {
     pub inliers: Vec<bool>,
     /// How many do.
     pub inlier_count: usize,
-    /// Sum of J'J over the inliers: the inverse covariance of a right perturbation (m, rad) if every sigma is true.
+    /// Sum of J'J over the inliers: the inverse covariance of a right perturbation (m, rad) if every sigma is true. Without
+    /// the prior: what the image says.
     pub information: Matrix6<f64>,
     /// Sum of the inliers' squared residuals over the degrees of freedom: 1 if every sigma is true.
     pub variance_factor: f64,
@@ -78,9 +82,13 @@ impl PoseProblem<'_> {
     pub fn solve(&self, world_from_camera: Pose3, config: &PoseConfig) -> PoseSolution {
         let mut pose = world_from_camera;
         let mut inliers = vec![true; self.observations.len()];
+        let mut prior = self.prior;
         for _ in 0..config.rounds {
-            pose = self.optimise(pose, &inliers, config);
-            if !self.classify(pose, &mut inliers) {
+            pose = self.optimise(pose, (&inliers, prior), config);
+            let agreeing = self.prior.filter(|prior| prior.agrees_with(pose));
+            let changed = agreeing.is_some() != prior.is_some();
+            prior = agreeing;
+            if !self.classify(pose, &mut inliers) && !changed {
                 break;
             }
         }
@@ -88,17 +96,26 @@ impl PoseProblem<'_> {
     }
 
     /// Levenberg-Marquardt over the inliers.
-    fn optimise(&self, start: Pose3, inliers: &[bool], config: &PoseConfig) -> Pose3 {
+    fn optimise(
+        &self,
+        start: Pose3,
+        (inliers, prior): (&[bool], Option<PosePrior>),
+        config: &PoseConfig,
+    ) -> Pose3 {
+        let cost_at = |pose| self.cost(pose, inliers) + prior.map_or(0.0, |prior| prior.cost(pose));
         let mut pose = start;
-        let mut cost = self.cost(pose, inliers);
+        let mut cost = cost_at(pose);
         let mut damping = 1e-6;
         for _ in 0..config.steps {
-            let (hessian, gradient) = self.normal_equations(pose, inliers);
+            let (mut hessian, mut gradient) = self.normal_equations(pose, inliers);
+            if let Some(prior) = prior {
+                prior.add_to(pose, &mut hessian, &mut gradient);
+            }
             let damped = hessian + Matrix6::from_diagonal(&(hessian.diagonal().add_scalar(1e-9) * damping));
             let Some(cholesky) = damped.cholesky() else { break };
             let step = -cholesky.solve(&gradient);
             let candidate = (pose * Pose3::exp(step)).renormalized();
-            let candidate_cost = self.cost(candidate, inliers);
+            let candidate_cost = cost_at(candidate);
             if candidate_cost < cost {
                 (pose, cost) = (candidate, candidate_cost);
                 damping = (damping * 0.1).max(1e-9);
@@ -214,7 +231,7 @@ mod tests {
     #[test]
     fn a_perturbed_pose_comes_back_exactly() {
         let observations = scene(truth(), 60, 0.0, 1);
-        let problem = PoseProblem { camera: &camera(), observations: &observations };
+        let problem = PoseProblem { camera: &camera(), observations: &observations, prior: None };
         let solution = problem.solve(start(), &PoseConfig::default());
         assert!(gap(solution.world_from_camera, truth()) < 1e-8);
         assert_eq!(solution.inlier_count, 60);
@@ -226,7 +243,7 @@ mod tests {
         for (i, (_, seen)) in observations.iter_mut().enumerate().filter(|(i, _)| i % 3 == 0) {
             seen.pixel += Vector2::new(15.0 + i as f64, -12.0);
         }
-        let problem = PoseProblem { camera: &camera(), observations: &observations };
+        let problem = PoseProblem { camera: &camera(), observations: &observations, prior: None };
         let solution = problem.solve(start(), &PoseConfig::default());
         assert!(gap(solution.world_from_camera, truth()) < 1e-7);
         for (i, inlier) in solution.inliers.iter().enumerate() {
@@ -234,12 +251,41 @@ mod tests {
         }
     }
 
+    /// Known to 1 mm and 1 mrad.
+    fn known(world_from_camera: Pose3) -> PosePrior {
+        PosePrior { world_from_camera, information: Matrix6::identity() * 1e6 }
+    }
+
+    #[test]
+    fn what_is_known_besides_makes_up_for_a_poor_image() {
+        let error = |prior: Option<PosePrior>| {
+            let off = |seed| {
+                let observations = scene(truth(), 12, 1.0, seed);
+                let problem = PoseProblem { camera: &camera(), observations: &observations, prior };
+                gap(problem.solve(start(), &PoseConfig::default()).world_from_camera, truth())
+            };
+            (0..20).map(off).sum::<f64>()
+        };
+        assert!(error(Some(known(truth()))) < 0.5 * error(None));
+    }
+
+    #[test]
+    fn what_contradicts_the_image_counts_for_nothing() {
+        let observations = scene(truth(), 150, 1.0, 5);
+        let solve = |prior| {
+            PoseProblem { camera: &camera(), observations: &observations, prior }
+                .solve(start(), &PoseConfig::default())
+        };
+        let slipped = truth() * Pose3::exp(Vector6::new(0.1, 0.0, 0.05, 0.0, 0.05, 0.0));
+        assert!(gap(solve(Some(known(slipped))).world_from_camera, solve(None).world_from_camera) < 1e-5);
+    }
+
     #[test]
     fn the_covariance_is_honest() {
         let (mut nees, runs) = (0.0, 60);
         for seed in 0..runs {
             let observations = scene(truth(), 150, 1.0, seed);
-            let problem = PoseProblem { camera: &camera(), observations: &observations };
+            let problem = PoseProblem { camera: &camera(), observations: &observations, prior: None };
             let solution = problem.solve(start(), &PoseConfig::default());
             let error = (truth().inverse() * solution.world_from_camera).log();
             nees += (error.transpose() * solution.covariance().unwrap().try_inverse().unwrap() * error)[0];
@@ -250,8 +296,8 @@ mod tests {
 
     #[test]
     fn nothing_seen_changes_nothing() {
-        let solution =
-            PoseProblem { camera: &camera(), observations: &[] }.solve(start(), &PoseConfig::default());
+        let solution = PoseProblem { camera: &camera(), observations: &[], prior: None }
+            .solve(start(), &PoseConfig::default());
         assert_eq!(solution.world_from_camera, start());
         assert_eq!(solution.covariance(), None);
         assert!(PoseConfig { rounds: 0, ..PoseConfig::default() }.validated().is_err());

@@ -1,5 +1,5 @@
 use crate::block_cholesky::BlockMatrix;
-use nalgebra::{Matrix3, Matrix6, Vector6};
+use nalgebra::{Matrix6, Vector6};
 use serde::{Deserialize, Serialize};
 use trundle_core::{Invalid, Pose3, Vector3, require_positive};
 
@@ -206,31 +206,19 @@ impl PoseConstraint {
         let residual = self.residual(poses);
         let by_to = inverse_right_jacobian(residual);
         let to_from = poses[self.to].inverse() * poses[self.from];
-        (residual, -by_to * adjoint(to_from), by_to)
+        (residual, -by_to * to_from.adjoint(), by_to)
     }
-}
-
-/// The adjoint of SE(3), translation first (Sola et al. 2018, eq. 175): how a right perturbation before a pose appears behind
-/// it, pose exp(x) = exp(Ad x) pose.
-pub fn adjoint(pose: Pose3) -> Matrix6<f64> {
-    let rotation = pose.rotation_matrix();
-    blocks(rotation, pose.translation.cross_matrix() * rotation, rotation)
 }
 
 /// The inverse right Jacobian of SE(3) by its series I + ad/2 + ad^2/12 (Barfoot 2017, eq. 7.94): 1e-3 off at 1 rad,
 /// exact where a graph ends up.
-fn inverse_right_jacobian(x: Vector6<f64>) -> Matrix6<f64> {
+pub(crate) fn inverse_right_jacobian(x: Vector6<f64>) -> Matrix6<f64> {
     let (rho, phi) = (Vector3::new(x[0], x[1], x[2]), Vector3::new(x[3], x[4], x[5]));
-    let ad = blocks(phi.cross_matrix(), rho.cross_matrix(), phi.cross_matrix());
+    let mut ad = Matrix6::zeros();
+    ad.fixed_view_mut::<3, 3>(0, 0).copy_from(&phi.cross_matrix());
+    ad.fixed_view_mut::<3, 3>(0, 3).copy_from(&rho.cross_matrix());
+    ad.fixed_view_mut::<3, 3>(3, 3).copy_from(&phi.cross_matrix());
     Matrix6::identity() + ad * 0.5 + ad * ad / 12.0
-}
-
-fn blocks(upper_left: Matrix3<f64>, upper_right: Matrix3<f64>, lower_right: Matrix3<f64>) -> Matrix6<f64> {
-    let mut matrix = Matrix6::zeros();
-    matrix.fixed_view_mut::<3, 3>(0, 0).copy_from(&upper_left);
-    matrix.fixed_view_mut::<3, 3>(0, 3).copy_from(&upper_right);
-    matrix.fixed_view_mut::<3, 3>(3, 3).copy_from(&lower_right);
-    matrix
 }
 
 #[cfg(test)]

@@ -6,7 +6,8 @@ use crate::{
     stage::{Stage, StageTimes},
 };
 use serde::{Deserialize, Serialize};
-use trundle_core::{Pose2, Stamp};
+use trundle_core::Stamp;
+use trundle_localization::Odometer;
 
 /// Whose work it is. Each does one job at a time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
@@ -30,7 +31,7 @@ pub struct Job(pub(crate) Work);
 
 #[derive(Debug)]
 pub(crate) enum Work {
-    Look { lookout: Box<Lookout>, image: LazyImage, odom_from_base: Pose2 },
+    Look { lookout: Box<Lookout>, image: LazyImage, odometer: Box<Odometer> },
     Decide { captain: Box<Captain>, around: Box<Around> },
 }
 
@@ -70,11 +71,10 @@ impl Job {
     pub fn run(self) -> Answer {
         let mut times = Box::<StageTimes>::default();
         let result = match self.0 {
-            Work::Look { mut lookout, image, odom_from_base } => {
+            Work::Look { mut lookout, image, odometer } => {
                 let stamp = image.stamp();
                 let image = times.measure(Stage::Decoding, || image.load());
-                let sighting =
-                    image.map(|image| lookout.look(&image, odom_from_base, &mut times).map(Box::new));
+                let sighting = image.map(|image| lookout.look(&image, *odometer, &mut times).map(Box::new));
                 Outcome::Looked { lookout, stamp, sighting }
             }
             Work::Decide { mut captain, around } => {

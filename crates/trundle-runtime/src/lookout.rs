@@ -5,8 +5,8 @@ use crate::{
     sight::Sight,
     stage::{Stage, StageTimes},
 };
-use trundle_core::{Invalid, Pose2, Pose3, RgbdImage, Scan, Stamp};
-use trundle_localization::camera_motion;
+use trundle_core::{CameraMotion, Invalid, Pose2, Pose3, RgbdImage, Scan, Stamp};
+use trundle_localization::{Odometer, camera_motion};
 use trundle_mapping::DepthScanner;
 use trundle_slam::{MapFileError, RgbdSlam, TrackReport};
 
@@ -21,8 +21,8 @@ pub(crate) struct Lookout {
     slam: RgbdSlam,
     scanner: DepthScanner,
     watch: EyeWatch,
-    /// `odom_from_base` at the last image.
-    last: Option<Pose2>,
+    /// What the odometry said at the last image.
+    last: Option<Odometer>,
     /// Since when images that show enough have not been located.
     unplaced: Option<Stamp>,
     /// When the place was last looked for everywhere, since then.
@@ -91,17 +91,18 @@ impl Lookout {
         }
     }
 
-    /// Looks at an image taken at `odom_from_base`; none when it is the last one again though the robot has moved.
+    /// Looks at an image taken when the odometry said this; none when it is the last one again though the robot has moved.
     pub(crate) fn look(
         &mut self,
         image: &RgbdImage,
-        odom_from_base: Pose2,
+        odometer: Odometer,
         times: &mut StageTimes,
     ) -> Option<Sighting> {
+        let odom_from_base = odometer.pose;
         if self.watch.is_frozen(image, odom_from_base) {
             return None;
         }
-        let prior = self.camera_motion_since_last_image(odom_from_base);
+        let prior = self.camera_motion_since_last_image(odometer);
         let track = times.measure(Stage::Slam, || self.slam.step(image, prior));
         let is_carried_away = self.is_carried_away(&track);
         if is_carried_away {
@@ -118,9 +119,9 @@ impl Lookout {
     }
 
     /// `previous_camera_from_camera` by wheels and gyro.
-    fn camera_motion_since_last_image(&mut self, odom_from_base: Pose2) -> Option<Pose3> {
-        let previous = self.last.replace(odom_from_base)?;
-        Some(camera_motion(previous.inverse() * odom_from_base, self.base_from_camera))
+    fn camera_motion_since_last_image(&mut self, odometer: Odometer) -> Option<CameraMotion> {
+        let previous = self.last.replace(odometer)?;
+        Some(camera_motion(odometer.since(&previous), self.base_from_camera))
     }
 
     /// Whether it is time to look for the place everywhere: the odometry's has not been recognised for a while.

@@ -24,7 +24,7 @@ use trundle_core::{
     Footprint, GyroRate, Invalid, OccupancyGrid, Odometry, Pose2, Pose3, PoseEstimate, RgbdImage, Scan,
     SensorEvent, Stamp, Vector2, WheelTicks,
 };
-use trundle_localization::{Correction, Localizer, VisualPose, VisualQuality, WheelOdometry};
+use trundle_localization::{Correction, Localizer, Odometer, VisualPose, VisualQuality, WheelOdometry};
 use trundle_mapping::{LiveMapper, MapperConfig, ScanMatcher};
 use trundle_planning::{Mover, MoverTracker, PlanResult};
 use trundle_slam::{RgbdSlam, TrackReport, Tracking};
@@ -224,10 +224,10 @@ impl Robot {
         if self.background.is_used() {
             return self.background.leave(image.clone().into());
         }
-        let Some(odom_from_base) = self.odometry_at(image.stamp()) else { return };
+        let Some(odometer) = self.odometry_at(image.stamp()) else { return };
         let Some(lookout) = &mut self.lookout else { return };
         report.image = Some(image.stamp());
-        match lookout.look(image, odom_from_base, &mut self.times) {
+        match lookout.look(image, odometer, &mut self.times) {
             Some(sighting) => self.take_in(sighting, report),
             None => self.latest.frozen += 1,
         }
@@ -276,7 +276,7 @@ impl Robot {
         self.watch_traffic(&scan);
         // One that shows nothing does not make safety forget what the last one showed.
         if self.latest.eye.note(&scan) || self.latest.eye.seen().is_none() {
-            self.latest.scan_odometry = self.odometry_at(scan.stamp());
+            self.latest.scan_odometry = self.odometry_at(scan.stamp()).map(|odometer| odometer.pose);
             self.latest.scan = Some(scan);
         }
         is_due
@@ -338,9 +338,9 @@ impl Robot {
         });
     }
 
-    /// `odom_from_base` when an image was taken, which may be a while ago.
-    fn odometry_at(&self, stamp: Stamp) -> Option<Pose2> {
-        let newest = self.latest.odometry.map(|odometry| odometry.pose);
+    /// What the odometry said when an image was taken, which may be a while ago.
+    fn odometry_at(&self, stamp: Stamp) -> Option<Odometer> {
+        let newest = self.latest.odometry.as_ref().map(Odometer::from);
         self.localizer.odometry_at(stamp).ok().or(newest)
     }
 

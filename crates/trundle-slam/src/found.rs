@@ -28,7 +28,7 @@ impl Found {
         predicted: Pose3,
     ) -> Option<Self> {
         let rough = tracker.by_last(last, reference, predicted)?;
-        let (fix, visible) = tracker.by_map(&rough);
+        let (fix, visible) = tracker.by_map(&rough, tracker.rolled);
         let by_map = fix.is_sound(tracker.config.min_inliers);
         let fix = if by_map { fix } else { rough };
         Some(Self { fix, visible, by_map, relocalised: false })
@@ -38,7 +38,7 @@ impl Found {
     /// good part of the view: a picture that hangs in two rooms is not the room.
     pub fn from_keyframe(tracker: &Tracker, keyframe: KeyframeId) -> Option<Self> {
         let rough = tracker.by_words(keyframe)?;
-        let (fix, visible) = tracker.by_map(&rough);
+        let (fix, visible) = tracker.by_map(&rough, None);
         let found = fix.inliers().map(|m| tracker.frame.pixels[m.feature]);
         let is_seen =
             seen_part(visible.iter().map(|(_, seen)| seen.pixel), found) >= tracker.config.recognised_part;

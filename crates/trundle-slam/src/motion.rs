@@ -1,7 +1,6 @@
 use nalgebra::{Matrix6, Vector6};
 use serde::{Deserialize, Serialize};
-use trundle_core::{Invalid, Pose3, Stamp, Vector3, require_in};
-use trundle_optim::adjoint;
+use trundle_core::{CameraMotion, Invalid, Pose3, Stamp, Vector3, require_in};
 
 /// How uncertain a pose becomes while the image does not give it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -32,6 +31,14 @@ impl MotionConfig {
         let drift = self.prior_drift * seconds.sqrt();
         let grown = |way: f64| (self.prior_part * way.sqrt()).hypot(drift);
         (grown(motion.translation.norm()), grown(motion.angle()))
+    }
+
+    /// The covariance of a motion prior over so many seconds: its own, else by these settings.
+    pub(crate) fn covariance_of(&self, prior: &CameraMotion, seconds: f64) -> Matrix6<f64> {
+        prior.covariance.unwrap_or_else(|| {
+            let (along, turned) = self.sigmas(prior.motion, seconds);
+            of_sigmas(along, turned)
+        })
     }
 
     /// Passes a valid configuration through.
@@ -100,16 +107,14 @@ impl Belief {
     }
 
     /// The frame at `stamp` was not located: moves by the prior, or holds the pose, and grows uncertain.
-    pub fn missed(&mut self, stamp: Stamp, prior: Option<Pose3>, config: &MotionConfig) {
+    pub fn missed(&mut self, stamp: Stamp, prior: Option<CameraMotion>, config: &MotionConfig) {
         let elapsed = self.elapsed(stamp);
-        let motion = self.since_last(prior).unwrap_or_default();
-        let (along, turned) = match prior {
-            Some(_) => config.sigmas(motion, elapsed),
-            None => (config.unseen * elapsed, config.unseen * elapsed),
+        let motion = self.since_last(prior.map(|prior| prior.motion)).unwrap_or_default();
+        let noise = match prior {
+            Some(prior) => config.covariance_of(&prior, elapsed),
+            None => of_sigmas(config.unseen * elapsed, config.unseen * elapsed),
         };
-        let (along, turned) = (along * along, turned * turned);
-        let noise = Vector6::new(along, along, along, turned, turned, turned);
-        self.covariance = carried(&self.covariance, motion) + Matrix6::from_diagonal(&noise);
+        self.covariance = carried(&self.covariance, motion) + noise;
         self.visual_from_camera = (self.visual_from_camera * motion).renormalized();
         (self.stamp, self.velocity) = (Some(stamp), None);
     }
@@ -125,10 +130,15 @@ impl Belief {
     }
 }
 
+pub(crate) fn of_sigmas(along: f64, turned: f64) -> Matrix6<f64> {
+    let (along, turned) = (along * along, turned * turned);
+    Matrix6::from_diagonal(&Vector6::new(along, along, along, turned, turned, turned))
+}
+
 /// The covariance of `a_from_b * motion` when that of `a_from_b` is `covariance` and the motion is exact; both as right
 /// perturbations.
 pub(crate) fn carried(covariance: &Matrix6<f64>, motion: Pose3) -> Matrix6<f64> {
-    let backward = adjoint(motion.inverse());
+    let backward = motion.inverse().adjoint();
     backward * covariance * backward.transpose()
 }
 
@@ -144,7 +154,7 @@ mod tests {
         ) {
             let (pose, small) = (Pose3::exp(Vector6::from(a)), Vector6::from(b));
             let through = (pose * Pose3::exp(small) * pose.inverse()).log();
-            prop_assert!((through - adjoint(pose) * small).norm() < 1e-10);
+            prop_assert!((through - pose.adjoint() * small).norm() < 1e-10);
         }
     }
 
@@ -175,12 +185,16 @@ mod tests {
         let mut belief = Belief::at(Pose3::identity());
         let config = MotionConfig::default();
         let mut last = 0.0;
-        belief.missed(Stamp::from_secs(-0.1).unwrap(), Some(Pose3::exp(Vector6::repeat(1.0))), &config);
+        belief.missed(
+            Stamp::from_secs(-0.1).unwrap(),
+            Some(Pose3::exp(Vector6::repeat(1.0)).into()),
+            &config,
+        );
         assert_eq!(belief.visual_from_camera, Pose3::identity(), "nothing to move from");
         for i in 0..5 {
             let stamp = Stamp::from_secs(f64::from(i) * 0.1).unwrap();
             let prior = Pose3::exp(Vector6::new(0.0, 0.0, 0.1, 0.0, 0.1, 0.0));
-            belief.missed(stamp, Some(prior), &config);
+            belief.missed(stamp, Some(prior.into()), &config);
             let trace = belief.covariance.trace();
             assert!(trace > last);
             last = trace;

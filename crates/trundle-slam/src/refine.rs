@@ -3,7 +3,7 @@ use crate::ids::LandmarkId;
 use crate::map::LandmarkMap;
 use crate::sensor::Sensor;
 use trundle_core::{Pose3, Vector3};
-use trundle_optim::{InverseDepth, PointObservation, PoseConfig, PoseProblem, PoseSolution};
+use trundle_optim::{InverseDepth, PointObservation, PoseConfig, PosePrior, PoseProblem, PoseSolution};
 
 /// A feature of the frame, taken for a point of the visual frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -34,10 +34,10 @@ pub(crate) struct Fix {
 }
 
 impl Fix {
-    /// Refines `start` on `matches`.
+    /// Refines `start` on `matches`, and on what else is known of the pose.
     pub fn by(
         matches: Vec<PointMatch>,
-        start: Pose3,
+        (start, prior): (Pose3, Option<PosePrior>),
         frame: &Frame,
         sensor: &Sensor,
         config: &PoseConfig,
@@ -45,7 +45,7 @@ impl Fix {
         let observe =
             |m: &PointMatch| (m.point, widened(sensor.observation(frame, m.feature), m.sigma_factor));
         let observations: Vec<(Vector3, PointObservation)> = matches.iter().map(observe).collect();
-        let problem = PoseProblem { camera: &sensor.camera, observations: &observations };
+        let problem = PoseProblem { camera: &sensor.camera, observations: &observations, prior };
         let solution = problem.solve(start, config);
         Self { matches, solution }
     }

@@ -1,8 +1,12 @@
 use crate::ids::KeyframeId;
-use crate::motion::{MotionConfig, carried};
-use nalgebra::{Matrix6, Vector6};
-use trundle_core::Pose3;
-use trundle_optim::PoseConstraint;
+use crate::map::LandmarkMap;
+use crate::motion::{MotionConfig, carried, of_sigmas};
+use nalgebra::Matrix6;
+use trundle_core::{CameraMotion, Pose3};
+use trundle_optim::{PoseConstraint, PosePrior};
+
+/// What the camera may be off against the base whatever the wheels say, m and rad: its mast sways.
+const STEADY: (f64, f64) = (1e-4, 5e-4);
 
 /// The way from a keyframe on, as wheels and gyro know it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -22,12 +26,10 @@ impl Rolled {
 
     /// After another step of so many seconds.
     #[must_use]
-    pub fn on(&self, step: Pose3, seconds: f64, config: &MotionConfig) -> Self {
-        let (along, turned) = config.sigmas(step, seconds);
-        let (along, turned) = (along * along, turned * turned);
-        let noise = Matrix6::from_diagonal(&Vector6::new(along, along, along, turned, turned, turned));
-        let from_to = (self.from_to * step).renormalized();
-        Self { from_to, covariance: carried(&self.covariance, step) + noise, ..*self }
+    pub fn on(&self, step: CameraMotion, seconds: f64, config: &MotionConfig) -> Self {
+        let noise = config.covariance_of(&step, seconds);
+        let from_to = (self.from_to * step.motion).renormalized();
+        Self { from_to, covariance: carried(&self.covariance, step.motion) + noise, ..*self }
     }
 
     /// After the way that `next` knows, which begins where this one ends.
@@ -37,28 +39,38 @@ impl Rolled {
         Self { from: self.from, from_to: (self.from_to * next.from_to).renormalized(), covariance }
     }
 
-    /// The same as a tie between the poses of these indices; `None` where it says nothing, or all.
+    /// The same as a tie between the poses of these indices; `None` where it says nothing.
     pub fn tie(&self, from: usize, to: usize) -> Option<PoseConstraint> {
         Some(PoseConstraint { from, to, from_to: self.from_to, information: self.information()? })
     }
 
-    /// The inverse of the covariance.
+    /// Where the way leads from the keyframe in a map that has it.
+    pub fn prior(&self, map: &LandmarkMap) -> Option<PosePrior> {
+        let keyframe = map.live_keyframe(self.from)?;
+        let world_from_camera = keyframe.visual_from_camera * self.from_to;
+        Some(PosePrior { world_from_camera, information: self.information()? })
+    }
+
+    /// The inverse of the covariance, for a camera whose mast sways.
     pub fn information(&self) -> Option<Matrix6<f64>> {
-        self.covariance.try_inverse().filter(|i| i.iter().all(|v| v.is_finite()))
+        let steady = of_sigmas(STEADY.0, STEADY.1);
+        (self.covariance + steady).try_inverse().filter(|i| i.iter().all(|v| v.is_finite()))
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use nalgebra::Vector6;
 
     #[test]
     fn a_way_in_two_parts_is_the_whole_way() {
         let config = MotionConfig::default();
         let step = Pose3::exp(Vector6::new(0.0, 0.0, 0.05, 0.0, 0.02, 0.0));
         let start = KeyframeId::from_index(0);
-        let go =
-            |from: Rolled, steps: usize| (0..steps).fold(from, |rolled, _| rolled.on(step, 0.1, &config));
+        let go = |from: Rolled, steps: usize| {
+            (0..steps).fold(from, |rolled, _| rolled.on(step.into(), 0.1, &config))
+        };
         let (whole, first) = (go(Rolled::at(start), 20), go(Rolled::at(start), 8));
         let parts = first.then(&go(Rolled::at(KeyframeId::from_index(1)), 12));
         assert_eq!(parts.from, start);
@@ -66,6 +78,9 @@ mod tests {
         assert!((parts.covariance - whole.covariance).norm() < 1e-12);
         let sigma = whole.covariance.fixed_view::<3, 3>(0, 0).trace().sqrt();
         assert!((0.05..0.2).contains(&sigma), "{sigma}");
-        assert!(whole.tie(0, 1).is_some() && Rolled::at(start).tie(0, 1).is_none());
+        let known = |rolled: &Rolled| rolled.information().unwrap().trace();
+        assert!(
+            known(&whole) < known(&parts.then(&Rolled::at(start))) + 1e-6 && known(&first) > known(&whole)
+        );
     }
 }

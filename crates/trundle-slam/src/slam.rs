@@ -26,7 +26,9 @@ use crate::sensor::Sensor;
 use crate::trajectory::Anchored;
 use std::collections::VecDeque;
 use std::sync::Arc;
-use trundle_core::{DepthImage, Invalid, PinholeCamera, Pose3, RgbdImage, Stamp, Vector3, gray_from_color};
+use trundle_core::{
+    CameraMotion, DepthImage, Invalid, PinholeCamera, Pose3, RgbdImage, Stamp, Vector3, gray_from_color,
+};
 use trundle_vision::{Features, OrbExtractor, Vocabulary};
 
 /// RGB-D SLAM: one image in, the camera's pose out; keeps the landmark map. See the crate's documentation.
@@ -175,7 +177,7 @@ impl RgbdSlam {
     /// Locates one image. `prior` is the motion since the last image given, `previous_camera_from_camera`, as wheels and
     /// gyro know it; without it the camera is taken to go on as it went. An image of another size than the camera's, or
     /// with nothing in it, is an image without features: the report says that it was not located.
-    pub fn step(&mut self, image: &RgbdImage, prior: Option<Pose3>) -> TrackReport {
+    pub fn step(&mut self, image: &RgbdImage, prior: Option<CameraMotion>) -> TrackReport {
         let camera = &self.sensor.camera;
         let fits = image.color().width() == camera.width() && image.color().height() == camera.height();
         let gray = gray_from_color(image.color());
@@ -190,17 +192,18 @@ impl RgbdSlam {
         stamp: Stamp,
         features: Features,
         depth: &DepthImage,
-        prior: Option<Pose3>,
+        prior: Option<CameraMotion>,
     ) -> TrackReport {
-        let prior = prior.filter(Pose3::is_finite);
+        let told = prior.filter(CameraMotion::is_finite);
+        let prior = told.map(|told| told.motion);
         let turn = self.belief.turn_rate(stamp, prior) * self.config.motion.readout;
         let frame = Frame::new(stamp, features, depth, turn, (&self.sensor, &self.config.depth));
         self.check.note_frame(&frame, depth, prior, &self.sensor, &self.config.depth);
-        self.roll(stamp, prior);
+        self.roll(stamp, told);
         self.tidy_up(self.config.mapping.work_per_frame);
         match self.locate(&frame, depth, prior) {
             Some(sighting) => self.accept(frame, sighting),
-            None => self.miss(frame, depth, prior),
+            None => self.miss(frame, depth, told),
         }
     }
 
@@ -214,11 +217,11 @@ impl RgbdSlam {
     }
 
     /// Takes note of what wheels say of the way since the last frame.
-    fn roll(&mut self, stamp: Stamp, prior: Option<Pose3>) {
+    fn roll(&mut self, stamp: Stamp, prior: Option<CameraMotion>) {
         let seconds = self.belief.stamp.map_or(0.0, |last| (stamp - last).max(0.0));
         self.rolled = self.rolled.zip(prior).map(|(way, step)| way.on(step, seconds, &self.config.motion));
         if let Some(step) = prior {
-            self.floor.note(step);
+            self.floor.note(step.motion);
         }
     }
 

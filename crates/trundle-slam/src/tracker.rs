@@ -10,7 +10,7 @@ use crate::sensor::Sensor;
 use serde::{Deserialize, Serialize};
 use std::cell::OnceCell;
 use trundle_core::{Invalid, Pose3, require_in, require_positive};
-use trundle_optim::PoseConfig;
+use trundle_optim::{PoseConfig, PosePrior};
 use trundle_vision::{Match, match_mutual};
 
 /// How the pose of a frame is found.
@@ -118,6 +118,8 @@ pub(crate) struct Tracker<'a> {
     pub view: View<'a>,
     pub config: &'a TrackingConfig,
     pub frame: &'a Frame,
+    /// Where wheels have brought the camera since the newest keyframe.
+    pub rolled: Option<PosePrior>,
     /// The frame's words, once somebody asked for them.
     pub words: &'a OnceCell<Words>,
     pub seed: u64,
@@ -156,7 +158,7 @@ impl Tracker<'_> {
         let likeness = self.config.window_likeness();
         let window = wider * self.config.motion_window_px;
         let matches = last.match_by_motion(self.frame, predicted, window, likeness, (self.map, self.sensor));
-        self.refined(matches, predicted)
+        self.refined(matches, predicted, self.rolled)
     }
 
     /// The pose from what looks alike in a keyframe, feature by feature under the same node of the vocabulary.
@@ -176,12 +178,12 @@ impl Tracker<'_> {
 
     fn located(&self, anchor: Anchor, pairs: &[Match]) -> Option<Fix> {
         let (pose, matches) = anchor.locate(self.frame, pairs, self.seed, (self.map, self.sensor))?;
-        self.refined(matches, pose)
+        self.refined(matches, pose, None)
     }
 
     /// The final pose: against all landmarks of the map that a camera at the pose of `rough` should see. What `rough` has
     /// matched with a landmark stays matched. Also which landmarks should have been seen.
-    pub fn by_map(&self, rough: &Fix) -> (Fix, Vec<(LandmarkId, Projection)>) {
+    pub fn by_map(&self, rough: &Fix, prior: Option<PosePrior>) -> (Fix, Vec<(LandmarkId, Projection)>) {
         let pose = rough.visual_from_camera();
         let mut matches: Vec<PointMatch> =
             rough.inliers().filter(|m| m.landmark.is_some()).copied().collect();
@@ -195,15 +197,15 @@ impl Tracker<'_> {
         let found = search(self.frame, &free, &projections, self.config.window_likeness());
         let taken = |(feature, i): (usize, usize)| PointMatch::of_landmark(feature, sought[i].0, self.map);
         matches.extend(found.into_iter().filter_map(taken));
-        let fix = Fix::by(matches, pose, self.frame, self.sensor, &self.config.pose);
+        let fix = Fix::by(matches, (pose, prior), self.frame, self.sensor, &self.config.pose);
         (fix, visible)
     }
 
-    fn refined(&self, matches: Vec<PointMatch>, start: Pose3) -> Option<Fix> {
+    fn refined(&self, matches: Vec<PointMatch>, start: Pose3, prior: Option<PosePrior>) -> Option<Fix> {
         if matches.len() < self.config.min_inliers {
             return None;
         }
-        let fix = Fix::by(matches, start, self.frame, self.sensor, &self.config.pose);
+        let fix = Fix::by(matches, (start, prior), self.frame, self.sensor, &self.config.pose);
         fix.is_sound(self.config.min_inliers).then_some(fix)
     }
 }

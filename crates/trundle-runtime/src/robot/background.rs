@@ -104,13 +104,14 @@ impl Robot {
         }
         self.lookout.as_ref()?;
         let image = self.background.waiting.take()?;
-        let Some(odom_from_base) = self.odometry_at(image.stamp()) else {
+        let Some(odometer) = self.odometry_at(image.stamp()) else {
             // Before the wheels have said anything an image is of no use.
             self.background.dropped.push(image.stamp());
             return None;
         };
         let lookout = self.lookout.take()?;
-        Some(Job(Work::Look { lookout, image, odom_from_base }))
+        let odometer = Box::new(odometer);
+        Some(Job(Work::Look { lookout, image, odometer }))
     }
 
     /// Takes up what a job came to, between two events.

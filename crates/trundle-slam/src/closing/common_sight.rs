@@ -5,7 +5,6 @@ use crate::sensor::Sensor;
 use nalgebra::{Matrix3, Matrix6};
 use std::collections::BTreeSet;
 use trundle_core::Vector3;
-use trundle_optim::adjoint;
 
 /// How well what two keyframes both see holds them to each other: of each pair of places in `ids` (by rising id), the lower
 /// first, the information of where the second one is in the frame of the first, a right perturbation.
@@ -19,23 +18,22 @@ pub(super) fn common_sight(
     ids: &[KeyframeId],
     pairs: BTreeSet<(usize, usize)>,
 ) -> Vec<((usize, usize), Matrix6<f64>)> {
-    let slot_of = |a: usize, b: usize| b * (b - 1) / 2 + a;
-    let mut slots: Vec<Option<usize>> = vec![None; slot_of(0, ids.len().max(1))];
-    pairs.iter().enumerate().for_each(|(slot, (a, b))| slots[slot_of(*a, *b)] = Some(slot));
+    let mut slots: Vec<Vec<(usize, usize)>> = vec![vec![]; ids.len()];
+    pairs.iter().enumerate().for_each(|(slot, (a, b))| slots[*a].push((*b, slot)));
     let mut known: Vec<_> = pairs.into_iter().map(|pair| (pair, Matrix6::zeros())).collect();
     for (_, landmark) in map.landmarks().filter(|(_, landmark)| landmark.observations.len() > 1) {
         let views = views(map, sensor, ids, landmark);
         for (i, (a, by_a)) in views.iter().enumerate() {
             for (b, by_b) in &views[i + 1..] {
-                let Some(slot) = slots[slot_of(*a, *b)] else { continue };
+                let Ok(at) = slots[*a].binary_search_by_key(b, |(other, _)| *other) else { continue };
                 let Some(both) = (by_a + by_b).try_inverse() else { continue };
-                known[slot].1 +=
+                known[slots[*a][at].1].1 +=
                     of_bodies(by_a * both * by_b, landmark.position) * (2.0 / views.len() as f64);
             }
         }
     }
     for ((_, b), information) in &mut known {
-        let by_right = adjoint(map.keyframe(ids[*b]).visual_from_camera);
+        let by_right = map.keyframe(ids[*b]).visual_from_camera.adjoint();
         *information = by_right.transpose() * *information * by_right;
     }
     known

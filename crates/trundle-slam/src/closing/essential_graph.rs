@@ -37,7 +37,7 @@ pub(super) fn essential_graph(
     }
     let (from, to) = (place(found.candidate), place(keyframe));
     let from_to = poses[from].inverse() * found.visual_from_camera;
-    let information = found.covariance.try_inverse().unwrap_or_default();
+    let information = found.covariance.try_inverse().unwrap_or(Matrix6::identity() * UNKNOWN);
     ties.push(PoseConstraint { from, to, from_to, information });
     let fixed: Vec<bool> = (0..poses.len()).map(|i| i == 0 || i == ids.len()).collect();
     PoseGraph::new(poses, &fixed, ties).expect("invariant: every index was counted here")

@@ -78,6 +78,7 @@ impl RgbdSlam {
         depth: &'a DepthImage,
         words: &'a OnceCell<Words>,
     ) -> Tracker<'a> {
+        let is_active = component.id == self.active.id;
         Tracker {
             map: &component.map,
             places: &component.places,
@@ -85,6 +86,7 @@ impl RgbdSlam {
             view: self.view(depth),
             config: &self.config.tracking,
             frame,
+            rolled: self.rolled.filter(|_| is_active).and_then(|rolled| rolled.prior(&component.map)),
             words,
             seed: self.seed(),
         }

@@ -8,7 +8,7 @@ use crate::motion::Belief;
 use crate::report::{MapId, Mode, TrackReport, Tracking};
 use nalgebra::Matrix6;
 use std::sync::Arc;
-use trundle_core::{DepthImage, Pose3};
+use trundle_core::{CameraMotion, DepthImage, Pose3};
 
 /// Keyframes of a map that is worth keeping when the camera is lost in it.
 const LEAST_KEYFRAMES: usize = 4;
@@ -28,7 +28,12 @@ enum Beginning {
 
 impl RgbdSlam {
     /// Goes on without a found pose; begins a map at the believed pose where there is none to be found again.
-    pub(super) fn miss(&mut self, frame: Frame, depth: &DepthImage, prior: Option<Pose3>) -> TrackReport {
+    pub(super) fn miss(
+        &mut self,
+        frame: Frame,
+        depth: &DepthImage,
+        prior: Option<CameraMotion>,
+    ) -> TrackReport {
         self.belief.missed(frame.stamp, prior, &self.config.motion);
         self.misses += 1;
         self.blind |= prior.is_none();
@@ -54,7 +59,7 @@ impl RgbdSlam {
         report
     }
 
-    fn beginning(&self, frame: &Frame, depth: &DepthImage, prior: Option<Pose3>) -> Beginning {
+    fn beginning(&self, frame: &Frame, depth: &DepthImage, prior: Option<CameraMotion>) -> Beginning {
         let is_able = with_depth(frame).count() >= self.config.mapping.min_points;
         let is_lost = self.blind || !self.placed;
         if !is_able || self.mode == Mode::Localisation {

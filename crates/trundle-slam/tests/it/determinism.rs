@@ -18,7 +18,7 @@ fn run(
     pool.install(|| {
         let mut slam = RgbdSlam::new(camera, SlamConfig::default()).unwrap();
         for (i, image) in images.iter().enumerate() {
-            slam.step(image, priors.map(|priors| priors[i]));
+            slam.step(image, priors.map(|priors| priors[i].into()));
         }
         assert!(slam.keyframes().count() > 1, "nothing was mapped");
         (slam.trajectory(), slam.save())

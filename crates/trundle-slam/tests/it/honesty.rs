@@ -31,7 +31,7 @@ impl<'a> Run<'a> {
     fn step(&mut self, to: Pose3, is_dark: bool) -> TrackReport {
         let prior = reported(self.at.inverse() * to, &SlamConfig::default(), &mut self.dice);
         let (features, depth) = if is_dark { darkness() } else { self.room.seen_from(to, &mut self.dice) };
-        let report = self.slam.step_with_features(stamp(self.number), features, &depth, Some(prior));
+        let report = self.slam.step_with_features(stamp(self.number), features, &depth, Some(prior.into()));
         self.at = to;
         self.number += 1;
         report

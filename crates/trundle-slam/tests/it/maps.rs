@@ -63,16 +63,16 @@ fn a_room_that_looks_the_same_elsewhere_is_another_room() {
     let mut slam = RgbdSlam::new(camera(), SlamConfig::default()).unwrap();
     let step = Pose3::exp(Vector6::new(0.0, 0.0, 0.4, 0.0, 0.0, 0.0));
     for i in 0..20 {
-        assert!(slam.step(&shoot(i, turned(2 * i)), Some(turned(2))).tracking.is_located());
+        assert!(slam.step(&shoot(i, turned(2 * i)), Some(turned(2).into())).tracking.is_located());
     }
     let mut truth = turned(38);
     for i in 20..30 {
         truth = truth * step;
-        assert_eq!(slam.step(&dark(i), Some(step)).tracking, Tracking::DeadReckoning);
+        assert_eq!(slam.step(&dark(i), Some(step.into())).tracking, Tracking::DeadReckoning);
     }
     for i in 30..60 {
         truth = truth * turned(2);
-        let report = slam.step(&shoot(i, turned(2 * i - 20)), Some(turned(2)));
+        let report = slam.step(&shoot(i, turned(2 * i - 20)), Some(turned(2).into()));
         assert!(!report.relocalised && report.closed_loop.is_none() && report.merged.is_none(), "frame {i}");
         let error = (truth.inverse() * report.visual_from_camera).log().norm();
         assert!(error < 0.1, "frame {i} is off by {error:.3}");

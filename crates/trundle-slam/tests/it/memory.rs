@@ -25,7 +25,7 @@ fn ten_laps_of_a_room_take_no_more_than_three() {
     for i in 0..10 * LAP {
         let to = if i == 0 { at } else { lap(i, &mut dice) };
         let (features, depth) = room.seen_from(to, &mut dice);
-        let report = slam.step_with_features(stamp(i), features, &depth, Some(at.inverse() * to));
+        let report = slam.step_with_features(stamp(i), features, &depth, Some((at.inverse() * to).into()));
         assert_eq!(report.tracking, Tracking::Ok, "frame {i}");
         at = to;
         if (i + 1) % LAP == 0 {
@@ -49,7 +49,7 @@ fn only_the_newest_poses_are_kept() {
     for i in 0..20 {
         let (features, depth) =
             if i % 5 == 3 { darkness() } else { room.seen_from(lap(i, &mut Dice(5)), &mut dice) };
-        let report = slam.step_with_features(stamp(i), features, &depth, Some(Pose3::identity()));
+        let report = slam.step_with_features(stamp(i), features, &depth, Some(Pose3::identity().into()));
         told.push(report.stamp);
     }
     let kept: Vec<_> = slam.trajectory().into_iter().map(|(stamp, _)| stamp).collect();

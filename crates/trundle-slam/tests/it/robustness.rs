@@ -38,12 +38,12 @@ fn images_with_nothing_in_them_are_reported_and_survived() {
     }
     assert_eq!(slam.step(&shoot(5, Pose3::identity()), None).tracking, Tracking::Ok);
     for (i, blank) in empty.iter().enumerate() {
-        let report = slam.step(blank, (i % 2 == 0).then(|| forward(0.01)));
+        let report = slam.step(blank, (i % 2 == 0).then(|| forward(0.01).into()));
         let expected = if i % 2 == 0 { Tracking::DeadReckoning } else { Tracking::Lost };
         // The depthless picture is still located, by the landmarks that it shows.
         assert_eq!(report.tracking, if i == 3 { Tracking::Ok } else { expected }, "image {i}");
     }
-    let report = slam.step(&shoot(11, Pose3::identity()), Some(Pose3::exp(Vector6::repeat(f64::NAN))));
+    let report = slam.step(&shoot(11, Pose3::identity()), Some(Pose3::exp(Vector6::repeat(f64::NAN)).into()));
     assert!(report.tracking.is_located() && report.visual_from_camera.translation.norm() < 0.005);
 }
 
@@ -76,15 +76,15 @@ fn dead_reckoning_bridges_a_blank_wall_and_begins_a_new_map_behind_it() {
     let mut slam = slam();
     let step = |i: usize| Pose3::exp(Vector6::new(0.0, 0.0, 0.0, 0.0, 0.1 * i as f64, 0.0));
     for i in 0..3 {
-        slam.step(&shoot(i, step(i)), Some(step(1)));
+        slam.step(&shoot(i, step(i)), Some(step(1).into()));
     }
     for i in 3..20 {
-        let report = slam.step(&image(i, (320, 240), 128, 1.0), Some(step(1)));
+        let report = slam.step(&image(i, (320, 240), 128, 1.0), Some(step(1).into()));
         assert_eq!(report.tracking, Tracking::DeadReckoning);
     }
-    let report = slam.step(&shoot(20, step(20)), Some(step(1)));
+    let report = slam.step(&shoot(20, step(20)), Some(step(1).into()));
     assert!(report.new_keyframe && report.tracking == Tracking::DeadReckoning);
-    let report = slam.step(&shoot(21, step(21)), Some(step(1)));
+    let report = slam.step(&shoot(21, step(21)), Some(step(1).into()));
     assert_eq!(report.tracking, Tracking::Ok);
     let error = (step(21).inverse() * report.visual_from_camera).log().norm();
     assert!(error < 0.04, "{error}");

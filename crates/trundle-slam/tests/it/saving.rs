@@ -55,12 +55,12 @@ fn a_loaded_map_is_the_same_and_is_recognised_and_goes_on() {
 fn until_it_is_recognised_the_camera_is_lost_whatever_the_wheels_say() {
     let mut slam = load(&SAVED).unwrap();
     for i in 0..5 {
-        let report = slam.step(&dark(i), Some(turned(1)));
+        let report = slam.step(&dark(i), Some(turned(1).into()));
         assert_eq!((report.tracking, report.new_keyframe), (Tracking::Lost, false));
     }
     let mut slam = load(&SAVED).unwrap().starting_at(turned(3));
     assert_eq!(slam.step(&dark(0), None).tracking, Tracking::Lost);
-    assert_eq!(slam.step(&dark(1), Some(turned(1))).tracking, Tracking::DeadReckoning);
+    assert_eq!(slam.step(&dark(1), Some(turned(1).into())).tracking, Tracking::DeadReckoning);
 }
 
 #[test]
@@ -71,7 +71,7 @@ fn localisation_leaves_every_bit_of_the_map_as_it_is() {
     let (mut located, mut lost) = (0, 0);
     for i in 10..40 {
         let image = if i % 7 == 0 { dark(i) } else { shoot(i, turned(2 * i)) };
-        let report = slam.step(&image, (i % 3 > 0).then(|| turned(2)));
+        let report = slam.step(&image, (i % 3 > 0).then(|| turned(2).into()));
         assert!(!report.new_keyframe && report.merged.is_none());
         located += usize::from(report.tracking.is_located());
         lost += usize::from(!report.tracking.is_located());

@@ -106,7 +106,7 @@ fn suspected_in_the_room(said: PinholeCamera, wheels: f64) -> Vec<Suspicion> {
     for i in 0..100 {
         let step = pose(i.max(1) - 1).inverse() * pose(i);
         let prior = Pose3::new(step.rotation, step.translation * wheels);
-        slam.step(&Clean::at(pose(i)).shot(i), Some(prior));
+        slam.step(&Clean::at(pose(i)).shot(i), Some(prior.into()));
     }
     println!("{:?}", slam.suspicions());
     slam.suspicions().to_vec()

@@ -93,7 +93,7 @@ fn a_place_seen_again_takes_the_drift_out() {
         let motion = turned(i.max(1) - 1).inverse() * turned(i);
         let prior = if i == 45 { motion * slip } else { motion };
         let image = if is_dark { dark(i) } else { shoot(i, turned(i)) };
-        let report = slam.step(&image, Some(prior));
+        let report = slam.step(&image, Some(prior.into()));
         if i == 85 {
             before = error(i, report.visual_from_camera);
         }

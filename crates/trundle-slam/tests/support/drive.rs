@@ -5,8 +5,9 @@
 use nalgebra::{Matrix3, Quaternion, Rotation3, UnitQuaternion};
 use std::path::{Path, PathBuf};
 use trundle_core::{
-    ColorImage, DepthImage, Distortion, PinholeCamera, Pose2, Pose3, RgbdImage, Stamp, Vector3,
+    CameraMotion, ColorImage, DepthImage, Distortion, PinholeCamera, Pose2, Pose3, RgbdImage, Stamp, Vector3,
 };
+use trundle_localization::{OdometryConfig, camera_motion};
 
 /// A folder of images: of the simulator (with `camera.toml` and, on wheels, `odometry.txt`), or else of the TUM benchmark's
 /// freiburg1.
@@ -64,12 +65,13 @@ impl Drive {
     }
 
     /// `previous_camera_from_camera` by the wheels, for the camera as the simulator mounts it: 5 cm forward, tilted by 8 deg.
-    pub fn wheels(&self, i: usize) -> Option<Pose3> {
+    pub fn wheels(&self, i: usize) -> Option<CameraMotion> {
         let motion = self.frames[i.checked_sub(1)?].wheels?.inverse() * self.frames[i].wheels?;
         let axes = Matrix3::new(0.0, 0.0, 1.0, -1.0, 0.0, 0.0, 0.0, -1.0, 0.0);
         let tilt = Rotation3::from_euler_angles(0.0, 8_f64.to_radians(), 0.0);
         let base_from_camera = Pose3::from_matrix(tilt.into_inner() * axes, Vector3::new(0.05, 0.0, 0.45));
-        Some(base_from_camera.inverse() * motion * base_from_camera)
+        let motion = motion.to_pose2();
+        Some(camera_motion((motion, OdometryConfig::default().by_wheels(&motion)), base_from_camera))
     }
 
     /// Where the camera of frame `i` was.
