@@ -38,6 +38,7 @@ fn main() {
     let mut slam = RgbdSlam::new(drive.camera, config).unwrap();
     let (mut features, mut kept, mut total) = (vec![], vec![], vec![]);
     let (mut located, mut loops, mut states) = (0, 0, vec![]);
+    let mut drift = None;
     for i in 0..count {
         let image = drive.image(i);
         let start = processor_ms();
@@ -58,6 +59,9 @@ fn main() {
             println!("frame {i}: loop of {} points, by {moved:.3} m and {turned:.4} rad", closed.points);
         }
         let live = off_since_start(&drive, i, report.visual_from_camera);
+        if loops == 0 {
+            drift = live.map(|off| (i, off.translation.norm())).or(drift);
+        }
         states.push(state(&report, live));
     }
     println!(
@@ -66,6 +70,11 @@ fn main() {
         slam.keyframes().count(),
         slam.landmarks().count()
     );
+    if let Some((last, off)) = drift {
+        let way = way(&drive, last);
+        let percent = 100.0 * off / way.max(1e-9);
+        println!("until the first loop: {off:.3} m off after {way:.1} m, {percent:.2} %");
+    }
     slam.finish_refining();
     judge(&drive, &slam, &states, &total);
     for (name, times) in
@@ -80,6 +89,13 @@ fn main() {
 fn off_since_start(drive: &Drive, i: usize, pose: Pose3) -> Option<Pose3> {
     let truth = drive.frames[0].truth?.inverse() * drive.frames[i].truth?;
     Some(truth.inverse() * pose)
+}
+
+/// How far the camera had gone at frame `last`, m.
+fn way(drive: &Drive, last: usize) -> f64 {
+    let places: Vec<Vector3> =
+        drive.frames[..=last].iter().filter_map(|frame| Some(frame.truth?.translation)).collect();
+    places.windows(2).map(|pair| (pair[1] - pair[0]).norm()).sum()
 }
 
 /// What `TRUNDLE_FRAMES` tells of a frame when it is there, `off` from the truth.
