@@ -33,9 +33,9 @@ impl MotionConfig {
         (grown(motion.translation.norm()), grown(motion.angle()))
     }
 
-    /// The covariance of a motion prior over so many seconds: its own, else by these settings.
+    /// The covariance of a motion prior over so many seconds: its own, if it can be one, else by these settings.
     pub(crate) fn covariance_of(&self, prior: &CameraMotion, seconds: f64) -> Matrix6<f64> {
-        prior.covariance.unwrap_or_else(|| {
+        prior.covariance.filter(is_covariance).unwrap_or_else(|| {
             let (along, turned) = self.sigmas(prior.motion, seconds);
             of_sigmas(along, turned)
         })
@@ -130,6 +130,13 @@ impl Belief {
     }
 }
 
+/// Whether a matrix is symmetric and has no negative variance, but for rounding.
+fn is_covariance(matrix: &Matrix6<f64>) -> bool {
+    let size = matrix.amax();
+    let lifted = matrix + Matrix6::identity() * (1e-9 * size + f64::MIN_POSITIVE);
+    (matrix - matrix.transpose()).amax() <= 1e-9 * size && lifted.cholesky().is_some()
+}
+
 pub(crate) fn of_sigmas(along: f64, turned: f64) -> Matrix6<f64> {
     let (along, turned) = (along * along, turned * turned);
     Matrix6::from_diagonal(&Vector6::new(along, along, along, turned, turned, turned))
@@ -178,6 +185,27 @@ mod tests {
         let (whole, _) = config.sigmas(way(1.0), 2.0);
         let (part, _) = config.sigmas(way(0.1), 0.2);
         assert!((whole * whole - 10.0 * part * part).abs() < 1e-12);
+    }
+
+    #[test]
+    fn what_cannot_be_a_covariance_is_not_taken_for_one() {
+        let config = MotionConfig::default();
+        let step = Pose3::exp(Vector6::repeat(0.01));
+        let told = |matrix: Matrix6<f64>| CameraMotion { motion: step, covariance: Some(matrix) };
+        let own = config.covariance_of(&step.into(), 0.1);
+        let mut lopsided = Matrix6::identity();
+        lopsided[(0, 1)] = 0.5;
+        for wrong in [
+            -Matrix6::identity(),
+            lopsided,
+            Matrix6::from_diagonal(&Vector6::new(1.0, 1.0, -0.1, 1.0, 1.0, 1.0)),
+        ] {
+            assert_eq!(config.covariance_of(&told(wrong), 0.1), own);
+        }
+        let planar = Matrix6::from_diagonal(&Vector6::new(1e-6, 1e-6, 0.0, 0.0, 0.0, 1e-8));
+        for right in [planar, Matrix6::zeros()] {
+            assert_eq!(config.covariance_of(&told(right), 0.1), right);
+        }
     }
 
     #[test]
