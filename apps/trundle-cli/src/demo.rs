@@ -1,3 +1,4 @@
+use crate::logbook::Logbook;
 use crate::run::{RunSetup, drive};
 use crate::sim::scene::SceneOptions;
 use crate::tape::Tape;
@@ -25,7 +26,7 @@ pub fn run(args: &DemoArgs) -> Result<Outcome, Failure> {
     let faults = args.faults.as_deref().map(sim::faults::read).transpose()?.unwrap_or_default();
     let woken = args.wake.and(args.memory.as_deref()).map(remembered).transpose()?;
     let mission = match &woken {
-        Some((memory, _)) => memory.mission.clone(),
+        Some((memory, _)) => memory.mission.left.clone(),
         None => mission(args, &scene)?,
     };
     let setup = RunSetup {
@@ -56,12 +57,23 @@ pub fn run(args: &DemoArgs) -> Result<Outcome, Failure> {
         console::say(&format!("Room '{scene}', seed {seed}, on camera, wheels and gyro alone: {mission}."));
     }
     if args.real_time {
-        let (run, timing) =
-            real_time::drive_live(&setup, body, &folder, args.memory.as_deref(), args.common.quiet)?;
+        let (run, timing) = real_time::drive_live(
+            &setup,
+            body,
+            &folder,
+            args.memory.as_deref(),
+            Logbook::default(),
+            args.common.quiet,
+        )?;
         return run_output::write(&setup, run, Some(&timing), folder, args.common.quiet);
     }
-    let run =
-        drive(&setup, &mut body, Tape::here(&folder)?.keeping(args.memory.as_deref())?, args.common.quiet)?;
+    let run = drive(
+        &setup,
+        &mut body,
+        Tape::here(&folder)?.keeping(args.memory.as_deref())?,
+        Logbook::default(),
+        args.common.quiet,
+    )?;
     run_output::write(&setup, run, None, folder, args.common.quiet)
 }
 
@@ -70,7 +82,7 @@ fn remembered(file: &Path) -> Result<(Memory, Vec<u8>), Failure> {
     let refused = |error: &dyn Display| Failure::Input(format!("{}: {error}", file.display()));
     let bytes = std::fs::read(file).map_err(|error| refused(&error))?;
     let memory = Memory::from_bytes(&bytes).map_err(|error| refused(&error))?;
-    if memory.mission.tasks().is_empty() {
+    if memory.mission.left.tasks().is_empty() {
         return Err(refused(&"nothing is left of its mission: the run that kept it came to its end"));
     }
     Ok((memory, bytes))

@@ -19,6 +19,8 @@ pub struct GoalOutcome {
     pub error: Option<GoalError>,
     /// Where it believed to stand.
     pub believed: Option<GoalError>,
+    /// Whether the robot was switched off and on again since: the time is of the run before.
+    pub before_restart: bool,
 }
 
 impl GoalOutcome {
@@ -30,20 +32,24 @@ impl GoalOutcome {
     fn of(record: &TaskRecord, run: &Run) -> Option<Self> {
         let goal = RunSetup::goal_of(&record.task)?;
         let log = &run.log;
+        // The truth of an earlier run is not known to this one.
+        let truth = log.truth_at(record.to).filter(|_| !record.before_restart);
         Some(Self {
             task: record.index,
             goal,
             end: record.end.clone(),
             at_s: log.start.map_or(0.0, |start| record.to - start),
-            error: log.truth_at(record.to).and_then(|truth| goal_error(goal, truth).ok()),
+            error: truth.and_then(|truth| goal_error(goal, truth).ok()),
             believed: goal_error(goal, record.pose).ok(),
+            before_restart: record.before_restart,
         })
     }
 
-    /// Whether the robot came to the goal, in truth, within these of it: m and rad.
+    /// Whether the robot came to the goal, in truth, within these of it: m and rad. Of one before a restart nothing but its word is known.
     pub fn is_reached(&self, distance: f64, turn: f64) -> bool {
         let near = |error: GoalError| error.distance < distance && error.dtheta.abs() < turn;
-        self.end == TaskEnd::Done && self.error.is_some_and(near)
+        let error = if self.before_restart { self.believed } else { self.error };
+        self.end == TaskEnd::Done && error.is_some_and(near)
     }
 
     /// A row for people.
@@ -56,7 +62,11 @@ impl GoalOutcome {
         };
         vec![
             format!("goal {} at ({x:.2} m, {y:.2} m, {:.0} deg)", self.task + 1, theta.to_degrees()),
-            format!("{:.1} s: {}, {}", self.at_s, self.end, error(&self.error)),
+            if self.before_restart {
+                format!("{}, before it was switched off; believed {}", self.end, error(&self.believed))
+            } else {
+                format!("{:.1} s: {}, {}", self.at_s, self.end, error(&self.error))
+            },
         ]
     }
 }

@@ -25,7 +25,13 @@ pub struct Logbook {
     pub state: DriveState,
     /// When it began to do something else.
     pub changes: Vec<StateChange>,
+    /// Whether it keeps the last minute alone.
+    is_brief: bool,
 }
+
+/// So long a brief log goes back, s, and so many things are beyond what it keeps before they go.
+const BRIEF: f64 = 60.0;
+const SURPLUS: usize = 1000;
 
 /// The robot begins to do something else.
 #[derive(Debug, Clone)]
@@ -64,6 +70,21 @@ impl TrackCounts {
 }
 
 impl Logbook {
+    /// One that keeps of poses, commands and states the last minute alone: it does not grow in a run of hours.
+    pub fn brief() -> Self {
+        Self { is_brief: true, ..Self::default() }
+    }
+
+    /// Lets go what a brief log does not keep.
+    fn forget(&mut self) {
+        let (now, end) = (self.now, self.elapsed());
+        let is_old = |stamp: &Stamp| now - *stamp > BRIEF;
+        drop_first(&mut self.estimates, |(stamp, _)| is_old(stamp));
+        drop_first(&mut self.truths, |(stamp, _)| is_old(stamp));
+        drop_first(&mut self.twists, |(stamp, _)| is_old(stamp));
+        drop_first(&mut self.changes, |change| end - change.at > BRIEF);
+    }
+
     /// Takes down what a step said.
     pub fn note(&mut self, now: Stamp, report: &StepReport) {
         self.start.get_or_insert(now);
@@ -81,6 +102,9 @@ impl Logbook {
             self.estimates.extend(report.estimate.map(|estimate| (estimate.stamp, estimate.pose)));
         }
         self.twists.extend(report.twist.map(|twist| (now, twist)));
+        if self.is_brief {
+            self.forget();
+        }
     }
 
     /// Seconds since the first event.
@@ -121,5 +145,31 @@ impl Logbook {
             SensorEvent::Touch(touch) => self.contacts += usize::from(touch.pressed),
             _ => {}
         }
+    }
+}
+
+/// Drops what is old from the front of a list in the order of time, many at once.
+fn drop_first<T>(list: &mut Vec<T>, is_old: impl Fn(&T) -> bool) {
+    if list.get(SURPLUS).is_some_and(&is_old) {
+        list.drain(..list.partition_point(is_old));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_brief_log_does_not_grow() {
+        let mut log = Logbook::brief();
+        for i in 0..20_000 {
+            let stamp = Stamp::from_nanos(i * 20_000_000);
+            log.judge(&SensorEvent::Truth { stamp, pose: Pose2::IDENTITY }, Pose2::IDENTITY);
+            log.note(stamp, &StepReport { twist: Some(Twist2::ZERO), ..StepReport::default() });
+        }
+        for length in [log.truths.len(), log.twists.len()] {
+            assert!((3000..=3001 + SURPLUS).contains(&length), "{length}");
+        }
+        assert!(log.truth_at(log.now).is_some());
     }
 }

@@ -14,7 +14,7 @@ mod memory;
 mod world;
 
 use crate::run::{Run, RunSetup, drive};
-use crate::{failure::Failure, tape::Tape};
+use crate::{failure::Failure, logbook::Logbook, tape::Tape};
 use live_body::LiveBody;
 use memory::MemoryCurve;
 use rayon::ThreadPoolBuilder;
@@ -96,6 +96,7 @@ pub fn drive_live(
     body: Simulator,
     folder: &OutputFolder,
     memory: Option<&Path>,
+    log: Logbook,
     quiet: bool,
 ) -> Result<(Run, Timing), Failure> {
     let stop = interrupt::flag()?;
@@ -114,7 +115,7 @@ pub fn drive_live(
         let world = World::start(body, live.door(), Place { core: outside, ..Place::default() })?;
         live.listen(world.commands());
         let before = thread_time().unwrap_or_default();
-        let result = drive(setup, &mut live, tape, quiet);
+        let result = drive(setup, &mut live, tape, log, quiet);
         let control = thread_time().unwrap_or_default().saturating_sub(before);
         let world = world.stop();
         let run = result?;
@@ -156,7 +157,8 @@ impl Timing {
         rows.push(row("age of images on arrival: median, p99".to_owned(), milliseconds(&age)));
         let images = format!("{} of {}", world.images_not_taken, world.images);
         rows.push(row("images the simulator did not get drawn".to_owned(), images));
-        if let Some(growth) = self.memory.growth_mb_an_hour() {
+        let half = self.memory.samples.last().map_or(0.0, |(time, _)| time / 2.0);
+        if let Some(growth) = self.memory.growth_mb_an_hour(half) {
             rows.push(row("growth of memory in the second half".to_owned(), format!("{growth:.1} MB/h")));
         }
         rows

@@ -1,5 +1,7 @@
 use crate::run::{RunSetup, drive};
-use crate::{Outcome, args::ReplayArgs, body::Recorded, failure::Failure, run_output, tape::Tape};
+use crate::{
+    Outcome, args::ReplayArgs, body::Recorded, failure::Failure, logbook::Logbook, run_output, tape::Tape,
+};
 use trundle::io::{OutputFolder, RecordingReader};
 
 /// `trundle replay RECORDING`.
@@ -15,6 +17,12 @@ pub fn run(args: &ReplayArgs) -> Result<Outcome, Failure> {
         .map_err(|error| Failure::Input(format!("{name}: the configuration cannot be used: {error}")))?;
     setup.robot.clone().validated().map_err(|error| Failure::Input(format!("{name}: {error}")))?;
     let folder = OutputFolder::create(&args.out)?;
-    let run = drive(&setup, &mut Recorded::new(reader), Tape::here(&folder)?, args.common.quiet)?;
+    let run = drive(
+        &setup,
+        &mut Recorded::new(reader),
+        Tape::here(&folder)?,
+        Logbook::default(),
+        args.common.quiet,
+    )?;
     run_output::write(&setup, run, None, folder, args.common.quiet)
 }

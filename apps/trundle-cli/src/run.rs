@@ -92,9 +92,16 @@ pub struct TapeCost {
 /// The robot stands and is watched for so long after it has arrived, s: what still rolls counts.
 const AFTERMATH: f64 = 0.5;
 
-/// Lets the robot of `setup` live in `body` until it has arrived, given up, or its time is over; records everything.
-pub fn drive(setup: &RunSetup, body: &mut dyn WiredBody, tape: Tape, quiet: bool) -> Result<Run, Failure> {
-    let mut trip = Trip::begin(setup, tape, quiet)?;
+/// Lets the robot of `setup` live in `body` until it has arrived, given up, or its time is over; records everything, and notes it in
+/// `log`.
+pub fn drive(
+    setup: &RunSetup,
+    body: &mut dyn WiredBody,
+    tape: Tape,
+    log: Logbook,
+    quiet: bool,
+) -> Result<Run, Failure> {
+    let mut trip = Trip::begin(setup, tape, log, quiet)?;
     let mut finished = None;
     while let Some(input) = body.next_input()? {
         let is_finished = trip.step(input, body)?;

@@ -3,7 +3,7 @@ use crate::{goals::GoalOutcome, logbook::TrackCounts, run::Run, run::RunSetup};
 use serde_json::{Map, Value, json};
 use trundle::eval::{GoalError, goal_error};
 use trundle::io::Summary;
-use trundle::runtime::{DriveState, Stage, StageTimes, TaskEnd};
+use trundle::runtime::{DriveState, LastStageReport, Stage, StageTimes, TaskEnd};
 
 /// The numbers of a run, all but the wall clock's.
 pub struct RunNumbers {
@@ -33,8 +33,16 @@ pub struct RunNumbers {
     pub keyframes: usize,
     /// When images were taken that were dropped because newer ones came before they were looked at, s since the start.
     pub images_dropped: Vec<f64>,
+    /// What turns and straight moves did for the last goal that they were asked about; `None` where they never were.
+    pub docking: Option<LastStageReport>,
     /// How it ended.
     pub state: DriveState,
+}
+
+fn told(docking: &LastStageReport) -> String {
+    let LastStageReport { plans, motions, restarts, waits, time, ended, .. } = docking;
+    let end = ended.as_deref().unwrap_or("not taken up");
+    format!("{motions} motions, {plans} plans, {restarts} broken off, {waits} waits, {time:.1} s; {end}")
 }
 
 /// The goal counts as reached within this, m.
@@ -61,6 +69,7 @@ impl RunNumbers {
             landmarks: run.robot.slam().map_or(0, |slam| slam.landmarks().count()),
             keyframes: run.robot.slam().map_or(0, |slam| slam.keyframes().count()),
             images_dropped: log.seconds_of(run.robot.dropped_images()),
+            docking: run.robot.docking().filter(|docking| docking.plans > 0).cloned(),
             state: log.state.clone(),
         }
     }
@@ -135,6 +144,7 @@ impl RunNumbers {
             "images ok / weak / dead reckoned / lost",
             format!("{ok} / {weak} / {dead_reckoned} / {lost}"),
         ));
+        rows.extend(self.docking.as_ref().map(|docking| row("turns and straight moves", told(docking))));
         rows.push(row("images dropped", self.images_dropped.len().to_string()));
         rows.push(row("keyframes, landmarks", format!("{}, {}", self.keyframes, self.landmarks)));
         rows
@@ -176,6 +186,7 @@ impl RunNumbers {
             .set("images_lost", self.tracked.lost)
             .set("keyframes", self.keyframes)
             .set("landmarks", self.landmarks)
+            .set("docking", &self.docking)
             .set("images_dropped", self.images_dropped.len())
             .set("images_dropped_at_s", &self.images_dropped)
             .set("wall_clock", wall_clock(run.seconds, run.robot.times(), timing));

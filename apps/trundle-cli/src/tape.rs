@@ -48,6 +48,18 @@ impl Tape {
         Ok(Self { way: Way::Here(recorder, None), lengths: Histogram::default(), lost: 0, keeper: None })
     }
 
+    /// A recording onto a disk that is full.
+    ///
+    /// # Errors
+    /// On systems without a device that plays one.
+    pub fn full() -> Result<Self, Failure> {
+        let path = Path::new("/dev/full");
+        let file = File::options().write(true).open(path);
+        let file = file.map_err(|error| Failure::Environment(format!("{}: {error}", path.display())))?;
+        let recorder = Box::new(Recorder::new(BufWriter::with_capacity(1 << 20, file), path)?);
+        Ok(Self { way: Way::Here(recorder, None), lengths: Histogram::default(), lost: 0, keeper: None })
+    }
+
     /// A recording that is written by a thread at `place`.
     pub fn aside(folder: &OutputFolder, place: Place) -> Result<Self, Failure> {
         let mut recorder = folder.recorder("recording.mcap")?;

@@ -20,6 +20,17 @@ pub struct Docker {
     config: DockingConfig,
 }
 
+/// What is searched for.
+#[derive(Clone, Copy)]
+struct Question<'a> {
+    /// A margin that start and goal leave, m.
+    most: f64,
+    footprint: &'a Footprint,
+    scene: &'a Scene,
+    task: Task,
+    meter: &'a Arc<Meter>,
+}
+
 impl Docker {
     /// A planner.
     ///
@@ -62,13 +73,9 @@ impl Docker {
         goal: Pose2,
     ) -> Result<Plan, Refusal> {
         let most = self.checked(margin, footprint, scene, &start, &goal)?;
-        Ok(at_once(self.search(
-            most,
-            footprint,
-            scene,
-            self.task(start, goal),
-            &Meter::endless(self.most_of(scene)),
-        )))
+        let meter = &Meter::endless(self.most_of(scene));
+        let task = self.task(start, goal);
+        Ok(at_once(self.search(Question { most, footprint, scene, task, meter })))
     }
 
     /// Begins what [`Docker::plan_keeping`] does at once: the search then goes on in parts ([`Planning::go_on`]).
@@ -88,7 +95,10 @@ impl Docker {
         let scene = around(&footprint, scene, &wider(task));
         let meter = Meter::rationed(self.most_of(&scene));
         let counted = Arc::clone(&meter);
-        let search = async move { docker.search(most, &footprint, &scene, task, &counted).await };
+        let search = async move {
+            let (footprint, scene, meter) = (&footprint, &scene, &counted);
+            docker.search(Question { most, footprint, scene, task, meter }).await
+        };
         Ok(Planning::new(meter, search))
     }
 
@@ -117,30 +127,16 @@ impl Docker {
         }))
     }
 
-    /// The search, with `most` (m) for a margin, which start and goal leave.
-    async fn search(
-        &self,
-        most: f64,
-        footprint: &Footprint,
-        scene: &Scene,
-        task: Task,
-        meter: &Arc<Meter>,
-    ) -> Plan {
+    /// The search.
+    async fn search(&self, question: Question<'_>) -> Plan {
         match self.config.method {
-            Method::Paper => self.by_paper(most, footprint, scene, &task, meter).await,
-            Method::Optimal => self.by_search(most, footprint, scene, task, meter).await,
+            Method::Paper => self.by_paper(question).await,
+            Method::Optimal => self.by_search(question).await,
         }
     }
 
     /// By the optimal method: first near the ends, then farther about.
-    async fn by_search(
-        &self,
-        most: f64,
-        footprint: &Footprint,
-        scene: &Scene,
-        task: Task,
-        meter: &Arc<Meter>,
-    ) -> Plan {
+    async fn by_search(&self, Question { most, footprint, scene, task, meter }: Question<'_>) -> Plan {
         let near = around(footprint, scene, &task);
         let least = most.min(0.0);
         let (effort, saving) = (self.effort(&near), self.config.margin_saving);
@@ -192,15 +188,8 @@ impl Docker {
     }
 
     /// By the paper's method, with the whole margin, a third of it, or none.
-    async fn by_paper(
-        &self,
-        most: f64,
-        footprint: &Footprint,
-        scene: &Scene,
-        task: &Task,
-        meter: &Arc<Meter>,
-    ) -> Plan {
-        let (config, near) = (&self.config, around(footprint, scene, task));
+    async fn by_paper(&self, Question { most, footprint, scene, task, meter }: Question<'_>) -> Plan {
+        let (config, near) = (&self.config, around(footprint, scene, &task));
         let margins = if most > 0.0 { vec![most, most / 3.0, 0.0] } else { vec![most] };
         for margin in margins {
             let space = Space::metered(Hull::new(footprint, margin), &near, Arc::clone(meter));

@@ -49,5 +49,6 @@ pub use localizer_config::LocalizerConfig;
 pub use odometer::Odometer;
 pub use odometry_config::OdometryConfig;
 pub use planar::planar_covariance;
+pub use visual_frame::VisualAnchor;
 pub use wheel_odometry::WheelOdometry;
 pub use wheel_report::{WheelCounts, WheelReport};

@@ -3,7 +3,7 @@ use crate::{
     belief::{Belief, Measurement},
     history::{History, Moment},
     recovery::{Recovery, Verdict},
-    visual_frame::VisualFrame,
+    visual_frame::{VisualAnchor, VisualFrame},
 };
 use nalgebra::{Matrix3, Vector3};
 use std::collections::BTreeMap;
@@ -52,10 +52,10 @@ impl Localizer {
         Ok(Self { config, start, history: None, visual, recovery: Recovery::default() })
     }
 
-    /// The same waking up in a known map: it knows where each visual map lies in it (`map_from_visual` by the map's number), and not
-    /// where the robot stands.
+    /// The same waking up in a known map: it knows where each visual map lies in it, by its number, and not where the robot
+    /// stands.
     #[must_use]
-    pub fn waking(mut self, visual_maps: BTreeMap<u32, Pose3>) -> Self {
+    pub fn waking(mut self, visual_maps: BTreeMap<u32, VisualAnchor>) -> Self {
         self.visual.lay(visual_maps);
         self.start.covariance = Matrix3::from_diagonal(&ANYWHERE);
         self
@@ -192,7 +192,7 @@ impl Localizer {
     }
 
     /// Where every visual map lies in the map, by its number.
-    pub fn visual_maps(&self) -> BTreeMap<u32, Pose3> {
+    pub fn visual_maps(&self) -> BTreeMap<u32, VisualAnchor> {
         self.visual.maps()
     }
 

@@ -4,6 +4,7 @@ use crate::{
     planar::{adjoint, planar_covariance, symmetric},
 };
 use nalgebra::{Matrix3, Vector3};
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use trundle_core::{Pose2, Pose3};
 
@@ -19,7 +20,28 @@ pub(crate) struct VisualFrame {
     current: u32,
 }
 
-/// `exp(e) * map_from_visual` with `e` in the floor's plane, of zero mean and this covariance (x m, y m, theta rad).
+/// Where a visual map lies: at `exp(e) * map_from_visual` with `e` in the floor's plane, of zero mean and this covariance.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct VisualAnchor {
+    /// The visual map's frame in the map.
+    pub map_from_visual: Pose3,
+    /// Symmetric; x (m), y (m), theta (rad). All 0: certain, it is not moved any more.
+    pub covariance: [[f64; 3]; 3],
+}
+
+impl VisualAnchor {
+    /// Whether all numbers are finite and no variance is negative.
+    pub fn is_valid(&self) -> bool {
+        let numbers = || self.covariance.iter().flatten();
+        let is_symmetric = (0..3).all(|i| (0..i).all(|j| self.covariance[i][j] == self.covariance[j][i]));
+        self.map_from_visual.is_finite()
+            && numbers().all(|n| n.is_finite())
+            && is_symmetric
+            && Matrix3::from(self.covariance).symmetric_eigenvalues().min() > -1e-9
+    }
+}
+
 #[derive(Debug, Clone, Copy)]
 struct Anchor {
     map_from_visual: Pose3,
@@ -35,14 +57,21 @@ impl VisualFrame {
     }
 
     /// Takes over where visual maps lie.
-    pub(crate) fn lay(&mut self, maps: BTreeMap<u32, Pose3>) {
-        let anchor = |map_from_visual| Anchor { map_from_visual, covariance: Matrix3::zeros() };
-        self.anchors = maps.into_iter().map(|(map, pose)| (map, anchor(pose))).collect();
+    pub(crate) fn lay(&mut self, maps: BTreeMap<u32, VisualAnchor>) {
+        let anchor = |VisualAnchor { map_from_visual, covariance }| Anchor {
+            map_from_visual,
+            covariance: covariance.into(),
+        };
+        self.anchors = maps.into_iter().map(|(map, laid)| (map, anchor(laid))).collect();
     }
 
     /// Where every visual map lies, by its number.
-    pub(crate) fn maps(&self) -> BTreeMap<u32, Pose3> {
-        self.anchors.iter().map(|(map, anchor)| (*map, anchor.map_from_visual)).collect()
+    pub(crate) fn maps(&self) -> BTreeMap<u32, VisualAnchor> {
+        let laid = |Anchor { map_from_visual, covariance }: &Anchor| VisualAnchor {
+            map_from_visual: *map_from_visual,
+            covariance: symmetric(*covariance).into(),
+        };
+        self.anchors.iter().map(|(map, anchor)| (*map, laid(anchor))).collect()
     }
 
     pub(crate) fn map_from_visual(&self) -> Option<Pose3> {

@@ -14,8 +14,8 @@ use trundle_mapping::{LiveMapper, MapperConfig};
 
 const HERTZ: f64 = 5.0;
 const SCANS: usize = 18_000;
-/// Cells redrawn with each control step, as the robot does.
-const BUDGET: usize = 60_000;
+/// Least cells redrawn with each control step, and within how many all is redrawn, as the robot does.
+const REDRAWING: (usize, usize) = (60_000, 90);
 
 /// Time on the processor, ms: others may be at work too.
 fn processor_ms() -> f64 {
@@ -65,7 +65,8 @@ fn main() {
     let (correct, moved) = timed(|| mapper.correct(bend));
     let mut slices = Vec::new();
     while mapper.is_redrawing() {
-        slices.push(timed(|| mapper.work(BUDGET)).0);
+        let within = REDRAWING.1.saturating_sub(slices.len()).max(1);
+        slices.push(timed(|| mapper.work_within(REDRAWING.0, within)).0);
     }
     let all: f64 = slices.iter().sum();
     println!(

@@ -1,5 +1,5 @@
 use crate::{GridMapper, Insertion};
-use std::{collections::HashMap, mem::discriminant, sync::Arc};
+use std::{collections::HashMap, sync::Arc};
 use trundle_core::{Pose2, Scan, Stamp, Vector2};
 
 /// Something drawn that can be drawn again.
@@ -19,6 +19,24 @@ pub(crate) enum What {
     Touched { points: Arc<[Vector2]> },
 }
 
+/// What something drawn is, without what it bears.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Kind {
+    Scan,
+    FreeDisc,
+    Touched,
+}
+
+impl What {
+    fn kind(&self) -> Kind {
+        match self {
+            Self::Scan(_) => Kind::Scan,
+            Self::FreeDisc { .. } => Kind::FreeDisc,
+            Self::Touched { .. } => Kind::Touched,
+        }
+    }
+}
+
 /// One is kept when the robot has come so far from the last one of its kind, m and rad: others add to the map, but not to its
 /// redrawing.
 const STEP: (f64, f64) = (0.1, 0.1);
@@ -30,13 +48,11 @@ const SMALL: (f64, f64, u32) = (0.1, std::f64::consts::FRAC_PI_6, 1);
 const SCAN_COST: usize = 200;
 
 impl Kept {
-    /// Which of `kept` is from so near `map_from_base` that `what` need not be kept beside it: the last of its kind; a touch is always
-    /// kept.
-    pub(crate) fn repeated(kept: &[Self], map_from_base: Pose2, what: &What) -> Option<usize> {
-        let is_alike = |kept: &Self| discriminant(&kept.what) == discriminant(what);
-        let last = kept.iter().rposition(is_alike)?;
-        let is_near = is_near(kept[last].anchor, map_from_base);
-        (is_near && !matches!(what, What::Touched { .. })).then_some(last)
+    /// Which of `kept` is from so near `map_from_base` that one of `kind` need not be kept beside it: the last of its kind; a touch is
+    /// always kept.
+    pub(crate) fn repeated(kept: &[Self], map_from_base: Pose2, kind: Kind) -> Option<usize> {
+        let last = kept.iter().rposition(|kept| kept.what.kind() == kind)?;
+        (kind != Kind::Touched && is_near(kept[last].anchor, map_from_base)).then_some(last)
     }
 
     /// Takes it to where it was taken by now.

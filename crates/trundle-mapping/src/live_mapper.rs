@@ -1,6 +1,6 @@
 use crate::{
     GridMapper, Insertion, LogOddsGrid, MapperConfig,
-    kept::{Kept, What, halve_the_older_half, thin},
+    kept::{Kept, Kind, What, halve_the_older_half, thin},
 };
 use std::sync::Arc;
 use trundle_core::{CellIndex, Invalid, OccupancyGrid, Pose2, Scan, Stamp, Vector2};
@@ -88,20 +88,22 @@ impl LiveMapper {
     /// Draws `scan`, taken with the base at `map_from_base`, and keeps it when it is from somewhere else than the last one.
     pub fn insert(&mut self, map_from_base: Pose2, scan: &Scan) -> Insertion {
         let insertion = self.front.insert(map_from_base, scan);
-        self.keep(scan.stamp(), map_from_base, What::Scan(Arc::new(scan.clone())));
+        self.keep(scan.stamp(), map_from_base, Kind::Scan, || What::Scan(Arc::new(scan.clone())));
         insertion
     }
 
     /// As [`GridMapper::mark_free_disc`]; it moves with the scan before it.
     pub fn mark_free_disc(&mut self, map_from_base: Pose2, radius: f64) {
         self.front.mark_free_disc(map_from_base, radius);
-        self.keep(self.last_stamp(), map_from_base, What::FreeDisc { radius });
+        self.keep(self.last_stamp(), map_from_base, Kind::FreeDisc, || What::FreeDisc { radius });
     }
 
     /// As [`GridMapper::mark_occupied`]; it moves with the scan before it.
     pub fn mark_occupied(&mut self, map_from_base: Pose2, points: &[Vector2]) {
         self.front.mark_occupied(map_from_base, points);
-        self.keep(self.last_stamp(), map_from_base, What::Touched { points: points.into() });
+        self.keep(self.last_stamp(), map_from_base, Kind::Touched, || What::Touched {
+            points: points.into(),
+        });
     }
 
     /// Takes over corrected poses: `pose` gives, for the stamp of a scan and the pose at which it was drawn, where it was taken
@@ -125,9 +127,15 @@ impl LiveMapper {
 
     /// Redraws for about `budget` cells.
     pub fn work(&mut self, budget: usize) -> Redrawn {
+        self.work_within(budget, usize::MAX)
+    }
+
+    /// Redraws for about `budget` cells, and at least so much of what is left that it is done in `calls` such calls.
+    pub fn work_within(&mut self, budget: usize, calls: usize) -> Redrawn {
         let mut cells = 0;
         let Some(mut redrawing) = self.redrawing.take() else { return Redrawn { cells, left: 0 } };
-        while cells < budget && redrawing.drawn < self.kept.len() {
+        let due = redrawing.drawn + (self.kept.len() - redrawing.drawn).div_ceil(calls.max(1));
+        while redrawing.drawn < self.kept.len() && (cells < budget || redrawing.drawn < due) {
             cells += self.kept[redrawing.drawn].draw(&mut redrawing.back);
             redrawing.drawn += 1;
             self.note(redrawing.drawn, redrawing.back.evidence());
@@ -171,33 +179,41 @@ impl LiveMapper {
         self.front.log_odds_at(point)
     }
 
+    /// When the scans were taken that are kept for redrawing: others no correction moves.
+    pub fn kept_stamps(&self) -> impl Iterator<Item = Stamp> {
+        self.kept.iter().map(|kept| kept.stamp)
+    }
+
     /// Scans and free discs kept for redrawing.
     pub fn kept(&self) -> usize {
         self.kept.len()
     }
 
     /// Keeps what was just drawn; what is from where the last of its kind is, in its place, while no snapshot holds that.
-    fn keep(&mut self, stamp: Stamp, map_from_base: Pose2, what: What) {
+    fn keep(&mut self, stamp: Stamp, map_from_base: Pose2, kind: Kind, what: impl FnOnce() -> What) {
         if !map_from_base.is_finite() {
             return;
         }
-        let new = Kept { stamp, map_from_base, anchor: map_from_base, what };
-        if let Some(last) = Kept::repeated(&self.kept, map_from_base, &new.what) {
-            let is_drawn = |drawn: usize| drawn > last;
-            let is_held = self.snapshots.last().is_some_and(|snapshot| is_drawn(snapshot.drawn))
-                || self.redrawing.as_ref().is_some_and(|redrawing| is_drawn(redrawing.drawn));
-            if !is_held {
-                self.kept[last] = Kept { anchor: self.kept[last].anchor, ..new };
+        let new = |anchor| Kept { stamp, map_from_base, anchor, what: what() };
+        if let Some(last) = Kept::repeated(&self.kept, map_from_base, kind) {
+            if !self.is_drawn_elsewhere(last) {
+                self.kept[last] = new(self.kept[last].anchor);
             }
             return;
         }
-        self.kept.push(new);
+        self.kept.push(new(map_from_base));
         if self.redrawing.is_none() {
             self.note(self.kept.len(), &self.front.evidence().clone());
         }
         if self.kept.len() >= self.thin_at {
             self.thin();
         }
+    }
+
+    /// Whether a snapshot, or the map that is being redrawn, holds one of the kept things.
+    fn is_drawn_elsewhere(&self, kept: usize) -> bool {
+        self.snapshots.last().is_some_and(|snapshot| snapshot.drawn > kept)
+            || self.redrawing.as_ref().is_some_and(|redrawing| redrawing.drawn > kept)
     }
 
     fn last_stamp(&self) -> Stamp {

@@ -51,7 +51,7 @@ pub use fit::CurveConfig;
 pub use graph::WayPointGraph;
 pub use masks::{DearMask, SpeedMask};
 pub use movers::Mover;
-pub use plan::{Plan, PlanResult, ROOM_CAP};
+pub use plan::{Plan, PlanResult, ROOM_CAP, room_in_words};
 pub use planner::Planner;
 pub use potential::{PotentialConfig, PotentialField, PotentialKind, PotentialOutcome};
 pub use room::RoomConfig;

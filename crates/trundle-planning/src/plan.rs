@@ -60,11 +60,7 @@ impl fmt::Display for Plan {
         match self {
             Self::Found(result) => {
                 let (length, time) = (result.length, result.trajectory.duration());
-                let room = if result.min_clearance < ROOM_CAP {
-                    format!("{:.3} m", result.min_clearance)
-                } else {
-                    format!("{ROOM_CAP} m or more")
-                };
+                let room = room_in_words(result.min_clearance);
                 write!(f, "a way of {length:.2} m in {time:.1} s, {room} beside obstacles")
             }
             Self::Blocked { nearest } => {
@@ -85,6 +81,11 @@ impl fmt::Display for Plan {
             Self::Refused(invalid) => write!(f, "{invalid}"),
         }
     }
+}
+
+/// Room beside the robot (m) for a person: it is measured up to a limit only.
+pub fn room_in_words(metres: f64) -> String {
+    if metres < ROOM_CAP { format!("{metres:.3} m") } else { format!("{ROOM_CAP} m or more") }
 }
 
 /// A way from start to goal.

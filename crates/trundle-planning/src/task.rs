@@ -317,11 +317,11 @@ impl Task<'_> {
     /// The least exact room beside the robot along the trajectory, m; squares are measured only where the interpolated
     /// distance could make it less.
     fn least_room(&self, trajectory: &Trajectory) -> f64 {
-        let radius = self.body.radius;
-        let surely = self.field.overestimate(radius);
         if self.body.depth() > 0.0 {
             return -self.body.depth();
         }
+        let radius = self.body.radius;
+        let surely = self.field.overestimate(radius);
         trajectory.points().iter().fold(ROOM_CAP, |least, point| {
             let at = point.pose.position();
             if self.field.distance(at) - surely - radius > least {

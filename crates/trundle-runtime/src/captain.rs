@@ -1,7 +1,7 @@
 use crate::{
     config::RobotConfig,
     helm::Helm,
-    mission::Mission,
+    mission::MissionState,
     navigator::{Decision, Goal, Navigator, Surroundings, Traffic},
     stage::{Stage, StageTimes},
     state::DriveState,
@@ -29,9 +29,9 @@ impl Captain {
         })
     }
 
-    pub(crate) fn begin(&mut self, mission: &Mission) {
+    pub(crate) fn begin(&mut self, mission: &MissionState) {
         self.supervisor.begin(mission);
-        if mission.tasks().is_empty() {
+        if mission.left.tasks().is_empty() {
             self.navigator.take_up(Goal::Stay);
         }
     }

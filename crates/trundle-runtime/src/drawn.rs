@@ -1,15 +1,31 @@
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use trundle_core::{Pose2, Pose3, Stamp};
 
 /// Where the visual map said that the camera was when each scan was drawn, so that the grid can follow when it says otherwise.
 #[derive(Debug, Default)]
 pub(crate) struct DrawnPoses {
     visual: BTreeMap<Stamp, Pose3>,
+    /// So many are looked over for what is not kept any more; 0: the first number.
+    most: usize,
 }
 
+/// So many are noted before any is let go.
+const FEW: usize = 2048;
+
 impl DrawnPoses {
-    /// Notes a scan that was drawn while the visual map had the camera at `visual_from_camera`.
-    pub(crate) fn note(&mut self, stamp: Stamp, visual_from_camera: Pose3) {
+    /// Notes a scan that was drawn while the visual map had the camera at `visual_from_camera`. Those that the map has not `kept` are let
+    /// go from time to time: what is noted grows with what is kept.
+    pub(crate) fn note<I: Iterator<Item = Stamp>>(
+        &mut self,
+        stamp: Stamp,
+        visual_from_camera: Pose3,
+        kept: impl FnOnce() -> I,
+    ) {
+        if self.visual.len() >= self.most.max(FEW) {
+            let kept: BTreeSet<Stamp> = kept().collect();
+            self.visual.retain(|stamp, _| kept.contains(stamp));
+            self.most = 2 * self.visual.len();
+        }
         self.visual.insert(stamp, visual_from_camera);
     }
 
@@ -37,13 +53,24 @@ mod tests {
     use super::*;
 
     #[test]
+    fn what_is_not_kept_is_let_go() {
+        let mut drawn = DrawnPoses::default();
+        let at = Stamp::from_nanos;
+        for i in 0..20_000 {
+            drawn.note(at(i), Pose3::identity(), || (0..20_000).step_by(100).map(at));
+            assert!(drawn.visual.len() <= FEW);
+        }
+        assert!((0..20_000).step_by(100).all(|i| drawn.visual.contains_key(&at(i))));
+    }
+
+    #[test]
     fn a_scan_moves_as_its_visual_pose_does_and_only_once() {
         let mut drawn = DrawnPoses::default();
         let (stamp, forgotten) = (Stamp::from_nanos(1), Stamp::from_nanos(2));
         let (old, new) = (Pose2::new(1.0, 0.0, 0.0), Pose2::new(1.0, 0.5, 0.1));
         let base = |pose: &Pose3| Some(pose.to_pose2());
-        drawn.note(stamp, Pose3::from_pose2(old));
-        drawn.note(forgotten, Pose3::from_pose2(old));
+        drawn.note(stamp, Pose3::from_pose2(old), std::iter::empty);
+        drawn.note(forgotten, Pose3::from_pose2(old), std::iter::empty);
         let moved = drawn.follow(&[(stamp, Pose3::from_pose2(new))], base);
         assert_eq!(moved.len(), 1);
         // The scan was drawn 2 cm beside where the visual map had the base; it stays so.

@@ -40,7 +40,7 @@ pub use last_stage::{LastStageConfig, LastStageReport};
 pub use lazy_image::LazyImage;
 pub use level_map::{LevelMap, level_from_first_camera};
 pub use memory::{Memory, MemoryError};
-pub use mission::{Mission, Task, TaskEnd, TaskRecord};
+pub use mission::{Mission, MissionState, Task, TaskEnd, TaskRecord};
 pub use report::StepReport;
 pub use robot::Robot;
 pub use schedule::Schedule;

@@ -1,10 +1,11 @@
-use crate::mission::Mission;
+use crate::mission::MissionState;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use trundle_core::{Cell, GridGeometry, Invalid, OccupancyGrid, Pose3, Vector2};
+use trundle_core::{Cell, GridGeometry, Invalid, OccupancyGrid, Vector2};
+use trundle_localization::VisualAnchor;
 use trundle_slam::MapFileError;
 
-/// What a robot takes along through a restart: its maps, where they lie, and what is left of its mission.
+/// What a robot takes along through a restart: its maps, where they lie, and how far its mission has come.
 ///
 /// As bytes: `TRUNDLEM`, version (u32), checksum (CRC-32 of the rest), length of the notes (u32), the notes as JSON, a byte for
 /// each cell of the floor map (0 unknown, 1 free, 2 occupied), and the visual maps; numbers little endian.
@@ -12,12 +13,12 @@ use trundle_slam::MapFileError;
 pub struct Memory {
     /// The visual maps, as [`trundle_slam::RgbdSlam::save`] gives them.
     pub visual: Vec<u8>,
-    /// `map_from_visual` of each of them, by its number.
-    pub visual_maps: BTreeMap<u32, Pose3>,
+    /// Where each of them lies in the map, and how surely, by its number.
+    pub visual_maps: BTreeMap<u32, VisualAnchor>,
     /// The floor map.
     pub grid: OccupancyGrid,
-    /// What is left to be done.
-    pub mission: Mission,
+    /// What was done, and what is left to be done.
+    pub mission: MissionState,
 }
 
 /// Why a memory was not taken up.
@@ -53,8 +54,8 @@ pub enum MemoryError {
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Notes {
-    visual_maps: BTreeMap<u32, Pose3>,
-    mission: Mission,
+    visual_maps: BTreeMap<u32, VisualAnchor>,
+    mission: MissionState,
     /// Of the floor map, m.
     resolution: f64,
     /// Lower left corner of the floor map, map frame, m.
@@ -64,7 +65,7 @@ struct Notes {
 }
 
 const MAGIC: &[u8; 8] = b"TRUNDLEM";
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 
 impl Memory {
     /// The memory as bytes.
@@ -105,12 +106,12 @@ impl Memory {
         let geometry = GridGeometry::new(notes.resolution, Vector2::from(notes.origin), width, height)?;
         let (cells, visual) = split(rest, geometry.len())?;
         let cells = cells.iter().map(|code| cell(*code)).collect::<Result<Vec<_>, _>>()?;
-        require(notes.visual_maps.values().all(Pose3::is_finite), "a visual map lies nowhere")?;
+        require(notes.visual_maps.values().all(VisualAnchor::is_valid), "a visual map lies nowhere")?;
         Ok(Self {
             visual: visual.to_vec(),
             visual_maps: notes.visual_maps,
             grid: OccupancyGrid::new(geometry, cells)?,
-            mission: Mission::new(notes.mission.tasks().to_vec())?,
+            mission: notes.mission.validated()?,
         })
     }
 }
@@ -148,17 +149,32 @@ fn split(bytes: &[u8], at: usize) -> Result<(&[u8], &[u8]), MemoryError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mission::Task;
+    use crate::mission::{Mission, Task, TaskEnd, TaskRecord};
     use proptest::prelude::*;
-    use trundle_core::Pose2;
+    use trundle_core::{Pose2, Pose3, Stamp};
+
+    fn anchor(variance: f64) -> VisualAnchor {
+        let covariance = nalgebra::Matrix3::from_diagonal_element(variance).into();
+        VisualAnchor { map_from_visual: Pose3::identity(), covariance }
+    }
 
     fn memory() -> Memory {
         let mission = Mission::new(vec![Task::Explore, Task::Go(Pose2::new(1.5, -2.0, 0.25)), Task::Return]);
+        let mission = MissionState::new(mission.unwrap());
+        let ended = TaskRecord {
+            index: 1,
+            task: Task::Go(Pose2::new(0.1, 0.2, 0.3)),
+            end: TaskEnd::Done,
+            from: Stamp::from_nanos(5),
+            to: Stamp::from_nanos(7),
+            pose: Pose2::new(0.1, 0.21, 0.3),
+            before_restart: false,
+        };
         Memory {
             visual: vec![7; 100],
-            visual_maps: BTreeMap::from([(0, Pose3::identity()), (3, Pose3::identity())]),
+            visual_maps: BTreeMap::from([(0, anchor(0.0)), (3, anchor(1e-4))]),
             grid: OccupancyGrid::from_ascii(0.05, "#.#\n?..\n").unwrap(),
-            mission: mission.unwrap(),
+            mission: MissionState { places: vec![0, 2, 3], ended: vec![ended], ..mission },
         }
     }
 
@@ -173,7 +189,7 @@ mod tests {
         assert_eq!(error(b"P5 3 3 255"), "no memory of trundle");
         let mut bytes = memory().to_bytes();
         bytes[8] = 9;
-        assert_eq!(error(&bytes), "memory of version 9, expected 1");
+        assert_eq!(error(&bytes), "memory of version 9, expected 2");
     }
 
     proptest! {

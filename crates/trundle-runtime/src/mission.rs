@@ -57,8 +57,46 @@ impl Mission {
     }
 }
 
+/// How far a mission has come.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MissionState {
+    /// What is left to be done, the task at hand first.
+    pub left: Mission,
+    /// The places of these tasks in the mission.
+    pub places: Vec<usize>,
+    /// The tasks that have ended.
+    pub ended: Vec<TaskRecord>,
+}
+
+impl MissionState {
+    /// A mission that has yet to begin.
+    pub fn new(mission: Mission) -> Self {
+        Self { places: (0..mission.tasks().len()).collect(), left: mission, ended: Vec::new() }
+    }
+
+    /// Passes one from a file through.
+    ///
+    /// # Errors
+    /// When a goal is not finite, or tasks and places are not as many.
+    pub fn validated(self) -> Result<Self, Invalid> {
+        let (tasks, places) = (self.left.tasks.len(), self.places.len());
+        if tasks != places {
+            return Err(Invalid::new("places of tasks", places, "", format!("{tasks}, one for each task")));
+        }
+        Ok(Self { left: Mission::new(self.left.tasks)?, ..self })
+    }
+
+    /// The same after the robot was switched off and on again.
+    #[must_use]
+    pub(crate) fn woken(mut self) -> Self {
+        self.ended.iter_mut().for_each(|record| record.before_restart = true);
+        self
+    }
+}
+
 /// How a task ended.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum TaskEnd {
     /// As it should.
@@ -86,7 +124,8 @@ impl fmt::Display for TaskEnd {
 }
 
 /// A task that has ended.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct TaskRecord {
     /// Its place in the mission.
     pub index: usize,
@@ -100,6 +139,8 @@ pub struct TaskRecord {
     pub to: Stamp,
     /// Where the robot believed to stand then, map frame.
     pub pose: Pose2,
+    /// Whether the robot was switched off since: the stamps are of another clock.
+    pub before_restart: bool,
 }
 
 #[cfg(test)]

@@ -1,8 +1,10 @@
 mod commands;
 mod deferring;
+mod floor;
 mod plans;
 mod unseen;
 mod vantage;
+mod view;
 
 pub(crate) use commands::safety_input;
 
@@ -20,8 +22,9 @@ use crate::{
 use trundle_control::{FollowPhase, FollowReport, Follower, SafetyMonitor, SafetyScan};
 use trundle_core::{Footprint, Invalid, OccupancyGrid, Pose2, PoseEstimate, Stamp, Twist2, Vector2};
 use trundle_planning::{Mover, PlanResult, Planner};
-use unseen::View;
+use unseen::Unseen;
 use vantage::Vantage;
+use view::View;
 
 /// What the robot knows of its surroundings when it decides.
 #[derive(Debug, Clone, Copy)]
@@ -110,6 +113,7 @@ pub(crate) struct Navigator {
     /// Where the way to the goal ends, when there is none.
     blocked_at: Option<Vector2>,
     vantage: Vantage,
+    unseen: Unseen,
     /// A disc can always turn away.
     is_polygon: bool,
     /// The outline stands too near to something to turn: it backs out, as far as safety lets it.
@@ -153,6 +157,7 @@ impl Navigator {
             sight_look: LookAround::default(),
             blocked_at: None,
             vantage: Vantage::Unknown,
+            unseen: Unseen::default(),
             is_polygon: matches!(footprint, Footprint::Polygon { .. }),
             is_wedged: false,
             is_off_track: false,
@@ -171,6 +176,7 @@ impl Navigator {
         self.held_since = None;
         self.blocked_at = None;
         self.vantage = Vantage::Unknown;
+        self.unseen.restart();
         self.is_off_track = false;
         self.touches = 0;
         self.look = LookAround::default();
@@ -237,6 +243,7 @@ impl Navigator {
     fn open(&mut self, s: &Surroundings<'_>) {
         self.started.get_or_insert(s.now);
         if self.state == DriveState::Mapping && self.is_open(s) && self.goal.pose().is_some() {
+            self.unseen.home.get_or_insert(s.estimate.pose.position());
             self.state = DriveState::Planning;
         }
     }
@@ -261,6 +268,8 @@ impl Navigator {
             }
             None if is_lost && position_sigma(&s.estimate) < 0.5 * self.config.lost_sigma => {
                 self.look = LookAround::default();
+                // It may have been carried here.
+                self.unseen.home = None;
                 self.state = DriveState::Mapping;
             }
             _ => {}
@@ -311,10 +320,7 @@ impl Navigator {
 
     /// What the follower's phase means for the state.
     fn note_progress(&mut self, follow: &FollowReport, s: &Surroundings<'_>, times: &mut StageTimes) {
-        if self.has_come_to_vantage(follow) {
-            self.follower.halt();
-            self.vantage = Vantage::Settled;
-        }
+        self.note_vantage(follow, s.now);
         let moving = matches!(self.state, DriveState::Driving | DriveState::Settling);
         match follow.phase {
             _ if !moving => {}

@@ -9,7 +9,7 @@ use crate::{
     eye::EyeWatch,
     last_stage::LastStageReport,
     lookout::{Lookout, Sighting},
-    mission::{Mission, Task, TaskRecord},
+    mission::{Mission, MissionState, Task, TaskRecord},
     navigator::{Surroundings, Traffic, position_sigma},
     report::StepReport,
     schedule::Ticker,
@@ -54,6 +54,8 @@ pub struct Robot {
     localizer: Localizer,
     mapper: LiveMapper,
     drawn: DrawnPoses,
+    /// What is bent is to be redrawn within so many commands.
+    redrawn_within: usize,
     map_due: Ticker,
     /// None while it thinks in the background.
     captain: Option<Box<Captain>>,
@@ -77,8 +79,8 @@ struct Latest {
     frozen: usize,
     /// What the captain said last of what the robot does, and whether the mission is over.
     state: (DriveState, bool),
-    /// What it said last is left of the mission.
-    left: Mission,
+    /// How far the mission had come when it said so last.
+    mission: MissionState,
     /// What moved near by when the last scan was taken.
     movers: Vec<Mover>,
     /// The map without it; none where nothing moves.
@@ -87,10 +89,13 @@ struct Latest {
 
 /// Images that show enough and have not been located for so long, s, are of another place than the odometry says.
 const UNPLACED: f64 = 0.3;
+/// A correction by more than this is a jump: what moves is not told from scans on both sides of it, m and rad.
+const JUMP: (f64, f64) = (0.1, 0.1);
 /// So long after the last scan what moved may be anywhere, s.
 const MOVERS_LAST: f64 = 1.0;
-/// After each command, so many cells of a bent grid are redrawn, about 6 ms of a camera's scans.
-const REDRAWING: usize = 60_000;
+/// After each command at least so many cells of a bent grid are redrawn, about 1.5 ms of a camera's scans; and so much of what is
+/// left that all is done after so many commands, which is 1.8 s.
+const REDRAWING: (usize, usize) = (60_000, 90);
 
 impl Robot {
     /// A robot that has just been switched on: where it stands is the map's origin.
@@ -118,6 +123,7 @@ impl Robot {
             map_due: Ticker::new(config.schedule.validated()?.map_hz),
             mapper,
             drawn: DrawnPoses::default(),
+            redrawn_within: REDRAWING.1,
             captain: Some(Box::new(Captain::new(&config, &footprint)?)),
             background: Background::default(),
             latest: Latest::default(),
@@ -128,11 +134,16 @@ impl Robot {
     /// Gives the robot a mission in place of what is left of its old one. It begins with the next reading of the wheels; an
     /// empty one lets the robot stand.
     pub fn begin(&mut self, mission: &Mission) {
-        self.latest.left = mission.clone();
+        self.go_on(MissionState::new(mission.clone()));
+    }
+
+    /// Takes up a mission where it was left.
+    fn go_on(&mut self, mission: MissionState) {
         match &mut self.captain {
-            Some(captain) => captain.begin(mission),
-            None => self.background.give_orders(mission),
+            Some(captain) => captain.begin(&mission),
+            None => self.background.give_orders(&mission),
         }
+        self.latest.mission = mission;
     }
 
     /// Gives the robot one goal pose, map frame.
@@ -205,8 +216,15 @@ impl Robot {
                 report.twist = times.measure(Stage::Control, || background.steer(captain, &surroundings));
             }
         }
+        self.redraw();
+    }
+
+    /// A slice of redrawing what a loop bent.
+    fn redraw(&mut self) {
         if self.mapper.is_redrawing() {
-            self.times.measure(Stage::Mapping, || self.mapper.work(REDRAWING));
+            let (cells, within) = (REDRAWING.0, self.redrawn_within);
+            self.times.measure(Stage::Mapping, || self.mapper.work_within(cells, within));
+            self.redrawn_within = within.saturating_sub(1).max(1);
         }
     }
 
@@ -241,8 +259,15 @@ impl Robot {
             self.localizer.lose_place();
         }
         let (times, localizer) = (&mut self.times, &mut self.localizer);
+        let before = localizer.estimate().pose;
         let correction =
             times.measure(Stage::Localization, || correct_by_sight(localizer, &track, bent.is_some()));
+        let jump = before.inverse() * localizer.estimate().pose;
+        if jump.position().norm() > JUMP.0 || jump.theta.abs() > JUMP.1 {
+            // What stands seems to have moved.
+            self.traffic.forget();
+            self.latest.forget_movers();
+        }
         if correction == Some(Correction::Reanchored) {
             // Scans drawn so far stay where they are: their visual poses are in a frame that has moved.
             self.drawn = DrawnPoses::default();
@@ -258,7 +283,7 @@ impl Robot {
             let stamp = scan.stamp();
             let is_drawn = self.see(scan);
             if is_drawn && track.tracking.is_located() {
-                self.drawn.note(stamp, track.visual_from_camera);
+                self.drawn.note(stamp, track.visual_from_camera, || self.mapper.kept_stamps());
             }
         }
         let saved = saved.filter(|_| self.knows_its_place(track.stamp));
@@ -333,9 +358,12 @@ impl Robot {
         let mut drawn = std::mem::take(&mut self.drawn);
         let moved = drawn.follow(trajectory, |pose| self.visual_base(pose));
         self.drawn = drawn;
-        self.times.measure(Stage::Mapping, || {
+        let bent = self.times.measure(Stage::Mapping, || {
             self.mapper.correct(|stamp, pose| moved.get(&stamp).map_or(pose, |moved| *moved * pose))
         });
+        if bent > 0 {
+            self.redrawn_within = REDRAWING.1;
+        }
     }
 
     /// What the odometry said when an image was taken, which may be a while ago.

@@ -1,5 +1,5 @@
 use crate::{
-    mission::{Mission, Task, TaskEnd, TaskRecord},
+    mission::{Mission, MissionState, Task, TaskEnd, TaskRecord},
     navigator::{Goal, Surroundings},
     schedule::Ticker,
     state::DriveState,
@@ -76,12 +76,12 @@ impl Supervisor {
         })
     }
 
-    /// Takes up a mission in place of what is left of the old one.
-    pub(crate) fn begin(&mut self, mission: &Mission) {
-        let entry = |(index, &task)| Entry { index, task, is_second_try: false };
-        self.queue = mission.tasks().iter().enumerate().map(entry).collect();
+    /// Takes up a mission, as far as it has come, in place of what is left of the old one.
+    pub(crate) fn begin(&mut self, mission: &MissionState) {
+        let entry = |(&index, &task)| Entry { index, task, is_second_try: false };
+        self.queue = mission.places.iter().zip(mission.left.tasks()).map(entry).collect();
         self.current = None;
-        self.records.clear();
+        self.records.clone_from(&mission.ended);
     }
 
     /// The tasks that have ended.
@@ -94,11 +94,12 @@ impl Supervisor {
         self.current.as_ref().map(|current| current.entry.task)
     }
 
-    /// What is left to be done, the task at hand first.
-    pub(crate) fn left(&self) -> Mission {
+    /// How far the mission has come.
+    pub(crate) fn mission(&self) -> MissionState {
         let entries = self.current.iter().map(|current| &current.entry).chain(&self.queue);
-        let tasks = entries.map(|entry| entry.task).collect();
-        Mission::new(tasks).expect("invariant: these tasks are of a mission")
+        let (places, tasks) = entries.map(|entry| (entry.index, entry.task)).unzip();
+        let left = Mission::new(tasks).expect("invariant: these tasks are of a mission");
+        MissionState { left, places, ended: self.records.clone() }
     }
 
     /// Whether there is nothing left to do.
@@ -217,7 +218,8 @@ impl Supervisor {
     fn end(&mut self, end: TaskEnd, s: &Surroundings<'_>) {
         if let Some(Current { entry, from, .. }) = self.current.take() {
             let Entry { index, task, .. } = entry;
-            self.records.push(TaskRecord { index, task, end, from, to: s.now, pose: s.estimate.pose });
+            let (to, pose) = (s.now, s.estimate.pose);
+            self.records.push(TaskRecord { index, task, end, from, to, pose, before_restart: false });
         }
     }
 }
@@ -262,7 +264,7 @@ mod tests {
 
     fn supervisor(tasks: &[Task]) -> Supervisor {
         let mut supervisor = Supervisor::new(&SupervisorConfig::default(), 0.17).unwrap();
-        supervisor.begin(&Mission::new(tasks.to_vec()).unwrap());
+        supervisor.begin(&MissionState::new(Mission::new(tasks.to_vec()).unwrap()));
         supervisor
     }
 
@@ -285,6 +287,21 @@ mod tests {
         assert!(
             supervisor.failure().unwrap().contains("task 1 (go to (1.00 m, 0.00 m, 0 deg)): a closed door")
         );
+    }
+
+    #[test]
+    fn switched_off_on_the_way_it_goes_on_and_what_was_done_stays_done() {
+        let (grid, [a, b]) = (room(), [1.0, 2.0].map(|x| Pose2::new(x, 0.0, 0.0)));
+        let mut first = supervisor(&[Task::Go(a), Task::Go(b), Task::Return]);
+        let s = surroundings(&grid);
+        first.step(&s, &DriveState::Idle);
+        assert_eq!(first.step(&s, &DriveState::Arrived), Some(Goal::Exact(b)));
+        let mut second = supervisor(&[]);
+        second.begin(&first.mission().woken());
+        assert_eq!(second.step(&s, &DriveState::Idle), Some(Goal::Exact(b)));
+        assert_eq!(second.step(&s, &DriveState::Arrived), Some(Goal::Exact(Pose2::IDENTITY)));
+        let ended: Vec<_> = second.records().iter().map(|r| (r.index, r.before_restart)).collect();
+        assert_eq!(ended, [(0, true), (1, false)]);
     }
 
     #[test]

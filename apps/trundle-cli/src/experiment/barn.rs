@@ -90,6 +90,7 @@ fn one(robot: &RobotConfig, world: BarnWorld, seed: u64) -> Result<Trial, Failur
         robot,
         scene: world.scene()?,
         mission: Mission::new(vec![Task::Go(BarnWorld::start().inverse() * BarnWorld::goal())])?,
+        known: None,
         seed,
         time_limit: TIME_LIMIT,
     };

@@ -1,7 +1,8 @@
 //! Bad days: sensors that break, wheels that slip, people in the way. Nothing may be touched; the robot stops where it
 //! cannot see, says why, and goes on when it can.
 
-use super::{RunsArgs, missions, trial, trial::Trial, trial::TrialPlan};
+use super::trial::{self, Mishap, Trial, TrialPlan};
+use super::{RunsArgs, missions};
 use crate::{Outcome, console, failure::Failure, logbook::StateChange, robot_file};
 use trundle::core::{Pose2, Vector2};
 use trundle::io::{OutputFolder, Summary};
@@ -24,8 +25,9 @@ struct Day {
     scene: &'static str,
     fault: Option<(f64, f64, FaultKind)>,
     person: Option<Person>,
-    /// Switched off and on again after so many seconds.
-    restart: Option<f64>,
+    /// Whether the person is told in the frame of the goal, not of the start.
+    at_goal: bool,
+    mishap: Option<Mishap>,
     end: End,
 }
 
@@ -38,9 +40,12 @@ fn days() -> Vec<Day> {
         scene: "demo",
         fault: Some((from, to, kind)),
         person: None,
-        restart: None,
+        at_goal: false,
+        mishap: None,
         end,
     };
+    let plain =
+        |name, scene, end| Day { scene, fault: None, ..broken(name, 0.0, 0.0, FaultKind::CameraBlack, end) };
     let slips = FaultKind::WheelSlips { side: WheelSide::Left, factor: 0.5 };
     let jump = FaultKind::OdometryJumps { left_ticks: 11_724, right_ticks: 11_724 };
     let carried = FaultKind::Kidnapped { x: 0.6, y: 0.3, heading_deg: 20.0 };
@@ -62,28 +67,22 @@ fn days() -> Vec<Day> {
         broken("odometry jumps 1 m", 10.0, 10.1, jump, End::Arrived),
         broken("kidnapped while driving", 12.0, 12.1, carried, End::Arrived),
         Day {
-            name: "a person in the door for a minute",
-            scene: "house",
-            fault: None,
             person: Some(in_the_door(60.0)),
-            restart: None,
-            end: End::Arrived,
+            ..plain("a person in the door for a minute", "house", End::Arrived)
         },
         Day {
-            name: "the door stays closed",
-            scene: "house",
-            fault: None,
             person: Some(in_the_door(3600.0)),
-            restart: None,
-            end: End::Stopped("no way"),
+            ..plain("the door stays closed", "house", End::Stopped("no way"))
         },
         Day {
-            name: "switched off and on again on the way",
-            scene: "demo",
-            fault: None,
-            person: None,
-            restart: Some(9.0),
-            end: End::Arrived,
+            person: Some(onto_the_goal()),
+            at_goal: true,
+            ..plain("the goal becomes unreachable", "demo", End::Stopped("no progress"))
+        },
+        Day { mishap: Some(Mishap::FullDisk), ..plain("the disk is full", "demo", End::Arrived) },
+        Day {
+            mishap: Some(Mishap::Restart(9.0)),
+            ..plain("killed and switched on again on the way", "demo", End::Arrived)
         },
     ]
 }
@@ -94,6 +93,11 @@ fn in_the_door(delay: f64) -> Person {
     Person { waypoints: vec![[6.67, 0.6], [6.67, 1.3], [5.9, 2.0]], delay, once: true, ..Person::default() }
 }
 
+/// Somebody who steps onto the goal while the robot is on its way, and stays; frame of the goal.
+fn onto_the_goal() -> Person {
+    Person { waypoints: vec![[0.6, 0.0], [0.0, 0.0]], delay: 10.0, once: true, ..Person::default() }
+}
+
 /// Lives through every day, so many seeds.
 pub fn run(args: &RunsArgs) -> Result<Outcome, Failure> {
     let robot = robot_file::load(args.config.as_deref())?;
@@ -101,14 +105,15 @@ pub fn run(args: &RunsArgs) -> Result<Outcome, Failure> {
     for day in days() {
         for seed in 1..=u64::from(args.seeds) {
             let mut scene = Scene::by_name(day.scene, seed)?;
-            scene.people.extend(day.person.clone().map(|person| placed(person, &scene)));
+            let frame = if day.at_goal { scene.goal } else { scene.start };
+            scene.people.extend(day.person.clone().map(|person| placed(person, frame)));
             let mission = Mission::new(vec![Task::Go(scene.start_from_goal())])?;
             let fault =
                 day.fault.map(|(from_s, to_s, kind)| Fault { from_s, to_s, kind: in_world(kind, &scene) });
             let faults = FaultSchedule { faults: fault.into_iter().collect() };
             let name = day.name.to_owned();
-            let (robot, restart) = (robot.clone(), day.restart);
-            plans.push(TrialPlan { name, seed, scene, mission, robot, faults, restart });
+            let (robot, mishap) = (robot.clone(), day.mishap);
+            plans.push(TrialPlan { name, seed, scene, mission, robot, faults, mishap });
         }
     }
     let folder = OutputFolder::create(&args.out)?;
@@ -125,9 +130,9 @@ pub fn run(args: &RunsArgs) -> Result<Outcome, Failure> {
     Ok(if success { Outcome::Reached } else { Outcome::Missed })
 }
 
-/// A person written in the frame of the robot's start, in the world's.
-fn placed(person: Person, scene: &Scene) -> Person {
-    let world = |point: &[f64; 2]| scene.start.transform(Vector2::new(point[0], point[1])).into();
+/// A person written in a frame, in the world's.
+fn placed(person: Person, world_from_frame: Pose2) -> Person {
+    let world = |point: &[f64; 2]| world_from_frame.transform(Vector2::new(point[0], point[1])).into();
     Person { waypoints: person.waypoints.iter().map(world).collect(), ..person }
 }
 

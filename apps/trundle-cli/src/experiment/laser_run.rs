@@ -1,6 +1,6 @@
 use super::cpu_clock;
 use crate::failure::Failure;
-use trundle::core::{Pose2, RobotBody, SensorEvent, Twist2};
+use trundle::core::{OccupancyGrid, Pose2, RobotBody, SensorEvent, Twist2};
 use trundle::runtime::{DriveState, Mission, Robot, RobotConfig};
 use trundle::sim::{LaserConfig, Scene, SimConfig, Simulator};
 
@@ -14,6 +14,8 @@ pub struct LaserPlan {
     pub scene: Scene,
     /// What it shall do, map frame.
     pub mission: Mission,
+    /// The map that it brings along; none: it begins with an empty one.
+    pub known: Option<OccupancyGrid>,
     /// Of all noise.
     pub seed: u64,
     /// Seconds of the robot's time after which it is given up.
@@ -71,7 +73,11 @@ pub fn hokuyo(forward: f64) -> LaserConfig {
 /// # Errors
 /// When a number of the plan is outside its range, or the start is not free.
 pub fn drive(plan: LaserPlan, is_over: impl Fn(&Moment) -> bool) -> Result<LaserRun, Failure> {
-    let mut robot = Robot::new(plan.robot.with_seed(plan.seed))?;
+    let config = plan.robot.with_seed(plan.seed);
+    let mut robot = match &plan.known {
+        Some(known) => Robot::on_map(config, known)?,
+        None => Robot::new(config)?,
+    };
     robot.begin(&plan.mission);
     let map_from_world = plan.scene.start.inverse();
     let mut body = Simulator::new(plan.scene, plan.body, plan.seed)?;

@@ -86,7 +86,7 @@ fn tell(
     let plan = |seed| -> Result<TrialPlan, Failure> {
         let (scene, mission) = story_of(seed)?;
         let (name, robot) = (format!("seed {seed}"), robot.clone());
-        Ok(TrialPlan { name, seed, scene, mission, robot, faults: FaultSchedule::default(), restart: None })
+        Ok(TrialPlan { name, seed, scene, mission, robot, faults: FaultSchedule::default(), mishap: None })
     };
     let plans = (1..=u64::from(args.seeds)).map(plan).collect::<Result<Vec<_>, _>>()?;
     finish(story, args, trial::all(plans, args)?)

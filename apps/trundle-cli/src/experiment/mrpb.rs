@@ -1,4 +1,5 @@
-//! The local-planning benchmark MRPB 1.0 in trundle's simulator: every pair of start and goal, with and without people.
+//! The local-planning benchmark MRPB 1.0 in trundle's simulator: every pair of start and goal, with and without people. As there,
+//! the robot has the map, and knows where on it it starts.
 
 mod course;
 mod metrics;
@@ -120,6 +121,7 @@ fn one(args: &MrpbArgs, robot: &RobotConfig, course: Course, seed: u64) -> Resul
         body: body(robot)?,
         scene: course.scene(&args.data)?,
         mission: Mission::new(vec![Task::Go(course.start.inverse() * course.goal)])?,
+        known: course.known(&args.data, robot.mapping.resolution)?,
         seed,
         time_limit: TIME_LIMIT,
     };

@@ -94,7 +94,7 @@ fn plan(name: &str, seed: u64, robot: &RobotConfig) -> Result<TrialPlan, Failure
     scene.goal = Pose2::new(TO.0, TO.1, 0.0);
     let mission = Mission::new(vec![Task::Go(scene.start_from_goal())])?;
     let (name, robot) = (name.to_owned(), robot.clone());
-    Ok(TrialPlan { name, seed, scene, mission, robot, faults: FaultSchedule::default(), restart: None })
+    Ok(TrialPlan { name, seed, scene, mission, robot, faults: FaultSchedule::default(), mishap: None })
 }
 
 fn is_good(trial: &Trial) -> bool {

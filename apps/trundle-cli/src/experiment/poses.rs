@@ -44,7 +44,7 @@ pub fn run(args: &RunsArgs) -> Result<Outcome, Failure> {
                 mission,
                 robot: robot.clone(),
                 faults: FaultSchedule::default(),
-                restart: None,
+                mishap: None,
             });
         }
     }

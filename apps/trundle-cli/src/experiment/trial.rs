@@ -1,9 +1,9 @@
 use super::RunsArgs;
 use crate::demo::{simulated, time_limit};
-use crate::logbook::StateChange;
-use crate::run::{Run, RunSetup, live};
+use crate::logbook::{Logbook, StateChange};
+use crate::run::{Run, RunSetup, drive, live};
 use crate::run_table::RunNumbers;
-use crate::{console, failure::Failure};
+use crate::{console, failure::Failure, tape::Tape};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use trundle::core::{OccupancyGrid, Pose2, Vector2};
@@ -24,8 +24,17 @@ pub struct TrialPlan {
     pub robot: RobotConfig,
     /// What breaks.
     pub faults: FaultSchedule,
-    /// After so many seconds it is switched off and on again.
-    pub restart: Option<f64>,
+    /// What happens to the computer.
+    pub mishap: Option<Mishap>,
+}
+
+/// What happens to the robot's computer.
+#[derive(Debug, Clone, Copy)]
+pub enum Mishap {
+    /// Killed after so many seconds, and switched on again with what it remembered last.
+    Restart(f64),
+    /// Its disk takes no more.
+    FullDisk,
 }
 
 /// What it came to.
@@ -81,7 +90,7 @@ pub fn all(mut plans: Vec<TrialPlan>, args: &RunsArgs) -> Result<Vec<Trial>, Fai
 /// # Errors
 /// When the plan cannot be carried out.
 pub fn one(plan: TrialPlan) -> Result<Trial, Failure> {
-    let TrialPlan { name, seed, scene, mission, robot, faults, restart } = plan;
+    let TrialPlan { name, seed, scene, mission, robot, faults, mishap } = plan;
     let world_from_map = scene.start;
     let setup = RunSetup {
         scene: scene.name.clone(),
@@ -95,7 +104,11 @@ pub fn one(plan: TrialPlan) -> Result<Trial, Failure> {
     };
     let config = simulated(&setup.robot, faults)?;
     let mut body = Simulator::new(scene, config, seed).map_err(|error| Failure::Input(error.to_string()))?;
-    let run = live(&setup, &mut body, restart)?;
+    let run = match mishap {
+        None => live(&setup, &mut body, None),
+        Some(Mishap::Restart(at)) => live(&setup, &mut body, Some(at)),
+        Some(Mishap::FullDisk) => drive(&setup, &mut body, Tape::full()?, Logbook::default(), true),
+    }?;
     let planned = planned(&run);
     Ok(Trial {
         name,

@@ -6,7 +6,7 @@ use super::errand::{Errand, Moved, Refusal};
 use crate::console;
 use trundle::core::Vector2;
 use trundle::io::{Summary, table_csv};
-use trundle::planning::{Curve, Plan, ROOM_CAP, Tour};
+use trundle::planning::{Curve, Plan, ROOM_CAP, Tour, room_in_words};
 
 /// Distance of two points of the curve in `curve.csv` and in pictures, m.
 const SPACING: f64 = 0.02;
@@ -115,7 +115,7 @@ pub fn rows(tour: &Tour, Spent { all, stages }: Spent) -> Vec<Vec<String>> {
         row("way-points", way_points(tour).to_string()),
         row("curve pieces", pieces(tour).to_string()),
         row("active constraints", constraints(tour).len().to_string()),
-        row("least room beside the robot", room(least_room(tour))),
+        row("least room beside the robot", room_in_words(least_room(tour))),
         row("planning", ms(all)),
         row("  distance field", ms(stages.field)),
         row("  way-points", ms(stages.way_points)),
@@ -123,11 +123,6 @@ pub fn rows(tour: &Tour, Spent { all, stages }: Spent) -> Vec<Vec<String>> {
         row("  timing", ms(stages.timing)),
     ]);
     rows
-}
-
-/// Room in words: it is measured up to a limit only.
-fn room(metres: f64) -> String {
-    if metres < ROOM_CAP { format!("{metres:.3} m") } else { format!("{ROOM_CAP} m or more") }
 }
 
 fn length(tour: &Tour) -> f64 {

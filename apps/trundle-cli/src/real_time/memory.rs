@@ -18,15 +18,15 @@ impl MemoryCurve {
         }
     }
 
-    /// Growth over the second half by a straight line through it, MB an hour; `None` for less than a minute.
-    pub fn growth_mb_an_hour(&self) -> Option<f64> {
+    /// Growth from `begin` s on by a straight line through it, MB an hour; `None` where that is less than half a minute.
+    pub fn growth_mb_an_hour(&self, begin: f64) -> Option<f64> {
         let end = self.samples.last()?.0;
-        let late: Vec<_> = self.samples.iter().filter(|(time, _)| *time >= end / 2.0).collect();
+        let late: Vec<_> = self.samples.iter().filter(|(time, _)| *time >= begin).collect();
         let n = late.len() as f64;
         let (t, m) = late.iter().fold((0.0, 0.0), |(t, m), (time, mb)| (t + time / n, m + mb / n));
         let spread: f64 = late.iter().map(|(time, _)| (time - t).powi(2)).sum();
         let together: f64 = late.iter().map(|(time, mb)| (time - t) * (mb - m)).sum();
-        (end >= 60.0 && spread > 0.0).then(|| together / spread * 3600.0)
+        (end - begin >= 30.0 && spread > 0.0).then(|| together / spread * 3600.0)
     }
 }
 
@@ -42,11 +42,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn growth_is_that_of_the_second_half() {
+    fn growth_is_that_after_the_beginning() {
         let mb = |i: u32| if i < 60 { f64::from(i) } else { 60.0 + 0.01 * f64::from(i - 60) };
         let curve = MemoryCurve { samples: (0..=120).map(|i| (f64::from(i) * 10.0, mb(i))).collect() };
-        assert!((curve.growth_mb_an_hour().unwrap() - 3.6).abs() < 1e-9);
-        assert_eq!(MemoryCurve::default().growth_mb_an_hour(), None);
+        assert!((curve.growth_mb_an_hour(600.0).unwrap() - 3.6).abs() < 1e-9);
+        assert_eq!(MemoryCurve::default().growth_mb_an_hour(0.0), None);
     }
 
     #[cfg(target_os = "linux")]

@@ -21,7 +21,12 @@ pub(super) struct Trip<'s> {
 }
 
 impl<'s> Trip<'s> {
-    pub(super) fn begin(setup: &'s RunSetup, mut tape: Tape, quiet: bool) -> Result<Self, Failure> {
+    pub(super) fn begin(
+        setup: &'s RunSetup,
+        mut tape: Tape,
+        log: Logbook,
+        quiet: bool,
+    ) -> Result<Self, Failure> {
         let mut robot = setup.robot_at_work()?;
         if setup.real_time {
             robot = robot.deferring();
@@ -31,7 +36,7 @@ impl<'s> Trip<'s> {
         }
         let config = setup.clone();
         tape.put(move |tape| tape.record_json("/config", "trundle.Config", Stamp::default(), &config))?;
-        let (log, view) = (Logbook::default(), BestView::default());
+        let view = BestView::default();
         let (line, start) = (console::live_line(quiet), Instant::now());
         Ok(Self { setup, robot, tape, log, view, line, start, is_interrupted: false })
     }

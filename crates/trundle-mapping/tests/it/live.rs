@@ -69,6 +69,32 @@ fn what_a_correction_bent_is_redrawn_in_slices() {
 }
 
 #[test]
+fn all_is_redrawn_within_the_calls_asked_for() {
+    let run = run();
+    let mut live = LiveMapper::new(config()).unwrap();
+    for (scan, _, drifted) in &run {
+        live.insert(*drifted, scan);
+    }
+    let truth = |stamp, old| run.iter().find(|(scan, _, _)| scan.stamp() == stamp).map_or(old, |r| r.1);
+    // As if scans were drawn meanwhile, each of which is to be redrawn too.
+    let mut all = Vec::new();
+    for (calls, budget) in [(20, 0), (20, usize::MAX), (1, 0), (0, 0)] {
+        let mut mapper = live.clone();
+        assert!(mapper.correct(truth) > 20);
+        let (mut done, mut most) = (0, 0);
+        while mapper.is_redrawing() {
+            let (scan, pose, _) = &run[done % run.len()];
+            mapper.insert(*pose, scan);
+            let redrawn = mapper.work_within(budget, calls - done.min(calls));
+            (done, most) = (done + 1, most.max(redrawn.cells));
+        }
+        assert_eq!(done, if budget > 0 { 1 } else { calls.max(1) });
+        all.push(most);
+    }
+    assert!(all[0] < all[2] / 10, "the work is shared out: {all:?}");
+}
+
+#[test]
 fn what_comes_in_while_redrawing_is_not_lost() {
     let run = run();
     let mut live = LiveMapper::new(config()).unwrap();

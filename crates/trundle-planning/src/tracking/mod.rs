@@ -70,6 +70,12 @@ impl MoverTracker {
         self.follow(found);
     }
 
+    /// Forgets all that was seen: the robot is not where it believed, and what stood seems to have moved.
+    pub fn forget(&mut self) {
+        self.cells = SeenCells::new(self.config.reach, self.config.memory);
+        self.tracks.clear();
+    }
+
     /// What moves, at its places at `now`: not long after the last scan.
     pub fn movers(&self, now: Stamp) -> Vec<Mover> {
         let now = self.begin.map_or(0.0, |begin| now - begin);

@@ -1,6 +1,6 @@
 //! The command of each state, and safety's word on it.
 
-use super::{Goal, Navigator, PAUSE, Surroundings, vantage::Vantage};
+use super::{Goal, Navigator, PAUSE, Surroundings, floor::cells_about, vantage::Vantage};
 use crate::{
     last_stage::Progress,
     look::{LookAround, face, turn_to},
@@ -8,7 +8,7 @@ use crate::{
     state::DriveState,
 };
 use trundle_control::{FollowReport, SafetyAction, SafetyInput, SafetyMemory};
-use trundle_core::{Cell, CellIndex, Twist2, Vector2};
+use trundle_core::{Cell, Twist2, Vector2};
 
 /// Speed of leaving what presses on the bumper, m/s, and how far behind must be free, m.
 const BACK_OUT: f64 = 0.05;
@@ -35,7 +35,8 @@ impl Navigator {
         match &self.state {
             DriveState::Mapping if self.goal == Goal::Look => self.look_once(s),
             DriveState::Recovering { .. } if self.is_wedged => Twist2::new(-BACKING_OUT, 0.0),
-            DriveState::Recovering { .. } if self.vantage == Vantage::Going => follow.twist,
+            DriveState::Recovering { .. } if matches!(self.vantage, Vantage::Going(_)) => follow.twist,
+            DriveState::Recovering { .. } if self.looks_still() => Twist2::ZERO,
             // The gyro's bias is measured at rest.
             DriveState::Lost { .. } if !self.is_open(s) => Twist2::ZERO,
             DriveState::Recovering { .. } | DriveState::Lost { .. } => self.look.twist(pose),
@@ -116,7 +117,9 @@ impl Navigator {
                 self.held_since.get_or_insert(s.now);
                 self.state = DriveState::Waiting { reason: reason.to_string() };
             }
-            (SafetyAction::Stop(reason), DriveState::Recovering { .. }) if self.vantage == Vantage::Going => {
+            (SafetyAction::Stop(reason), DriveState::Recovering { .. })
+                if matches!(self.vantage, Vantage::Going(_)) =>
+            {
                 self.vantage = Vantage::Settled;
                 self.follower.halt();
                 self.held_since.get_or_insert(s.now);
@@ -159,16 +162,13 @@ pub(crate) fn safety_input<'a>(
 /// Whether the map has nothing occupied where a disc of `radius` goes that backs out.
 fn is_free_behind(s: &Surroundings<'_>, radius: f64) -> bool {
     let geometry = s.grid.geometry();
-    let ahead = s.estimate.pose.inverse();
+    let (here, ahead) = (s.estimate.pose.position(), s.estimate.pose.inverse());
     let is_in_the_way = |at: Vector2| {
         let at = ahead.transform(at);
         // What is beside or before the robot it has come past, or touches.
         at.x < -0.5 * radius && (at - Vector2::new(at.x.max(-BACK_OUT_WAY), 0.0)).norm() < radius
     };
-    let reach = ((radius + BACK_OUT_WAY) / geometry.resolution).ceil() as usize;
-    let Some(CellIndex { col, row }) = geometry.cell_at(s.estimate.pose.position()) else { return false };
-    let around = |at: usize, size: usize| at.saturating_sub(reach)..(at + reach + 1).min(size);
-    let mut cells = around(row, geometry.height)
-        .flat_map(|row| around(col, geometry.width).map(move |col| CellIndex { col, row }));
-    !cells.any(|cell| s.grid.get(cell) == Cell::Occupied && is_in_the_way(geometry.center(cell)))
+    let mut cells = cells_about(s.grid, here, radius + BACK_OUT_WAY);
+    geometry.cell_at(here).is_some()
+        && !cells.any(|cell| s.grid.get(cell) == Cell::Occupied && is_in_the_way(geometry.center(cell)))
 }

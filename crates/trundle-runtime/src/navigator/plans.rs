@@ -1,13 +1,13 @@
 //! When to plan, from where, and what to do when there is no way.
 
-use super::{Goal, Navigator, PAUSE, Surroundings, vantage::Vantage};
+use super::{Goal, Navigator, PAUSE, Surroundings, unseen::InView, vantage::Vantage};
 use crate::{
     look::LookAround,
     stage::{Stage, StageTimes},
     state::DriveState,
 };
-use trundle_core::{Pose2, Stamp, Twist2};
-use trundle_planning::Plan;
+use trundle_core::{Pose2, Stamp, Twist2, Vector2};
+use trundle_planning::{Plan, PlanResult};
 
 /// What is left of a way is driven as planned when it takes less, s.
 const WORTH_IMPROVING: f64 = 0.5;
@@ -26,6 +26,7 @@ impl Navigator {
             DriveState::Mapping | DriveState::Settling | DriveState::Docking | DriveState::Lost { .. } => {
                 false
             }
+            DriveState::Recovering { .. } if !self.looks_for_news(s) => false,
             DriveState::Planning | DriveState::Recovering { .. } => self.check_due.due(s.now),
             DriveState::Waiting { .. } if self.touched || self.over_edge || self.is_blind(s) => false,
             DriveState::Waiting { .. } if self.held_since.is_some_and(|since| s.now - since < PAUSE) => false,
@@ -57,7 +58,15 @@ impl Navigator {
             (DriveState::Driving, Some(reference)) => (reference.pose, reference.twist),
             _ => (s.estimate.pose, Twist2::ZERO),
         };
-        match self.plan_in_view(s, from, goal) {
+        let plan = match self.plan_in_view(s, from, goal) {
+            InView::Plan(plan) => plan,
+            InView::Asking => return self.stands_to_look(s),
+            InView::Unseen(at, long) => match self.first_looks_at(at, long, s) {
+                Some(long) => Plan::Found(long),
+                None => return false,
+            },
+        };
+        match plan {
             Plan::Found(plan) if plan.is_continuous || s.estimate.twist.v.abs() < STANDING => {
                 self.follower.follow(plan.trajectory.clone(), goal);
                 self.plan = Some(plan);
@@ -86,6 +95,45 @@ impl Navigator {
         }
     }
 
+    /// Before a way that leads onto floor at `at` that no image has shown it goes to where that is seen; where that cannot be, the
+    /// `long` way is taken.
+    fn first_looks_at(
+        &mut self,
+        at: Vector2,
+        long: Option<Box<PlanResult>>,
+        s: &Surroundings<'_>,
+    ) -> Option<Box<PlanResult>> {
+        if self.state == DriveState::Driving {
+            self.stands_to_look(s);
+            return None;
+        }
+        if self.seeks_sight_of(at, s) {
+            if !matches!(self.vantage, Vantage::Going(_)) {
+                self.follower.halt();
+                self.plan = None;
+            }
+            let reason = format!("first to see what the way leads onto at ({:.2}, {:.2}) m", at.x, at.y);
+            self.state = DriveState::Recovering { reason };
+            return None;
+        }
+        self.vantage = Vantage::Unknown;
+        if long.is_none() && self.unseen.bar(at) {
+            // The next plan keeps off it.
+            self.stands_to_look(s);
+        } else if long.is_none() {
+            self.no_way(&Plan::Blocked { nearest: at }, s);
+        }
+        long
+    }
+
+    /// What it drives on does not show where it leads: it stops until there is a plan that does. Never a new plan.
+    fn stands_to_look(&mut self, s: &Surroundings<'_>) -> bool {
+        if self.state == DriveState::Driving {
+            self.hold("looking for a way that shows where it leads", s.now);
+        }
+        false
+    }
+
     /// Whether what moves alone bars the way.
     fn is_free_but_for_movers(&mut self, s: &Surroundings<'_>, from: (Pose2, Twist2), goal: Pose2) -> bool {
         !s.traffic.movers.is_empty()
@@ -106,8 +154,11 @@ impl Navigator {
         });
         match plan {
             // What the way of now keeps off because it was not seen, a quicker one must keep off too.
-            Plan::Found(plan) if self.unseen_on(&plan.trajectory, s.floor()).is_some() => false,
-            Plan::Found(plan) if plan.is_continuous && plan.trajectory.duration() < left - SOONER => {
+            Plan::Found(plan)
+                if plan.is_continuous
+                    && plan.trajectory.duration() < left - SOONER
+                    && self.first_unseen(&plan.trajectory, s.floor()).is_none() =>
+            {
                 self.follower.follow(plan.trajectory.clone(), goal);
                 self.plan = Some(plan);
                 true
@@ -119,8 +170,8 @@ impl Navigator {
     /// No way is known: stop, turn on the spot until everything around has been seen, then go where what bars the way is seen, and
     /// wait there, looking at it.
     fn no_way(&mut self, refused: &Plan, s: &Surroundings<'_>) {
-        let reason = why(refused);
-        if self.vantage == Vantage::Going {
+        let reason = self.why(refused);
+        if matches!(self.vantage, Vantage::Going(_)) {
             self.state = DriveState::Recovering { reason };
             return;
         }
@@ -134,7 +185,7 @@ impl Navigator {
         let has_looked = self.look.has_turned(TURNS) && !self.is_wedged;
         self.state = if matches!(self.goal, Goal::View(_)) {
             DriveState::Stopped { reason }
-        } else if has_looked && !self.sets_out_to_vantage(s) {
+        } else if has_looked && !self.seeks_vantage(s) {
             DriveState::Waiting { reason }
         } else {
             DriveState::Recovering { reason }
@@ -156,6 +207,14 @@ impl Navigator {
         self.follower.halt();
         self.held_since = None;
         self.state = DriveState::Docking;
+    }
+
+    /// Why there is no plan, for a person, and what no way was looked for over.
+    fn why(&self, plan: &Plan) -> String {
+        match self.unseen.barred() {
+            Some(at) => format!("{}; what is at ({:.2}, {:.2}) m could not be seen", why(plan), at.x, at.y),
+            None => why(plan),
+        }
     }
 
     fn hold(&mut self, reason: &str, now: Stamp) {

@@ -1,21 +1,36 @@
-//! Where to wait for a way that is barred: not against what bars it, where the camera is blind, and not out of its sight.
+//! Where to look from: at what bars a way, not against it, where the camera is blind, and not out of its sight; or at what a way
+//! leads onto and was never seen.
 
-use super::{Navigator, Surroundings};
+use super::{Navigator, Surroundings, floor::is_in_sight, unseen::Unseen, view::View};
+use crate::state::DriveState;
 use std::f64::consts::TAU;
 use trundle_control::{FollowPhase, FollowReport};
-use trundle_core::{Cell, OccupancyGrid, Pose2, Twist2, Vector2};
+use trundle_core::{Cell, OccupancyGrid, Pose2, Stamp, Twist2, Vector2, difference_of_angles};
 use trundle_planning::Plan;
 
-/// The way to a place from where the robot sees what bars its way.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+/// The way to a place from where the robot sees what it wants to see.
+#[derive(Debug, Clone, PartialEq, Default)]
 pub(super) enum Vantage {
     /// None was looked for since the last plan.
     #[default]
     Unknown,
+    /// Places that a way is still to be asked for, the best last.
+    Choosing(Aim, Vec<Pose2>),
     /// On the way there.
-    Going,
+    Going(Aim),
+    /// There, looking until then.
+    Looking(Stamp),
     /// There, or there is none.
     Settled,
+}
+
+/// What is to be seen.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Aim {
+    /// What bars the way.
+    Bar,
+    /// Floor that was never seen.
+    Unseen,
 }
 
 /// From so far what bars the way is seen whole and well, m.
@@ -24,60 +39,137 @@ const GOOD: std::ops::RangeInclusive<f64> = 0.8..=2.5;
 const AWAY: [f64; 2] = [1.2, 0.9];
 /// Bearings of the places that are looked at.
 const BEARINGS: usize = 16;
-/// Of these the nearest are asked for a way there.
+/// Of these the nearest are asked for a way there, one a step.
 const MOST_PLANS: usize = 4;
 /// A place in what bars the way is hidden by that itself, m; one before it is not.
 const OWN_SIZE: f64 = 0.35;
+/// So long it looks, s: several scans are drawn.
+const LOOK: f64 = 1.0;
 
 impl Navigator {
-    /// Whether it set out to a place from where it sees what bars the way; not when it stands at such a place.
-    pub(super) fn sets_out_to_vantage(&mut self, s: &Surroundings<'_>) -> bool {
-        let (Some(at), Vantage::Unknown) = (self.blocked_at, self.vantage) else { return false };
-        self.vantage = Vantage::Settled;
-        let here = s.estimate.pose;
-        if GOOD.contains(&(at - here.position()).norm()) && is_in_sight(s.grid, here.position(), at) {
-            return false;
+    /// Whether it is about to go to a place from where it sees what bars the way; not when it stands at such a place.
+    pub(super) fn seeks_vantage(&mut self, s: &Surroundings<'_>) -> bool {
+        let Some(at) = self.blocked_at else { return false };
+        if !matches!(self.vantage, Vantage::Choosing(Aim::Bar, _) | Vantage::Going(_) | Vantage::Settled) {
+            let here = s.estimate.pose;
+            let own_size = if s.grid.at(at) == Cell::Free { 0.0 } else { OWN_SIZE };
+            let stands_well = GOOD.contains(&(at - here.position()).norm())
+                && is_in_sight(s.grid, here.position(), at, own_size);
+            let places = if stands_well { Vec::new() } else { places(s.grid, here, at, own_size, self.view) };
+            self.vantage = Vantage::Choosing(Aim::Bar, best_last(places));
         }
-        for place in places(s.grid, here, at).into_iter().take(MOST_PLANS) {
-            if let Plan::Found(plan) = self.planner.plan(s.floor(), here, Twist2::ZERO, place) {
-                self.follower.follow(plan.trajectory, place);
-                self.vantage = Vantage::Going;
-                return true;
-            }
-        }
-        false
+        self.sets_out(s)
     }
 
-    /// Whether the robot has come to its place, or cannot.
-    pub(super) fn has_come_to_vantage(&self, follow: &FollowReport) -> bool {
+    /// The way leads onto floor at `at` that no image has shown: first it is looked at, from where it can be seen. Whether that is
+    /// so; not when there is no such place, or it was looked at in vain.
+    pub(super) fn seeks_sight_of(&mut self, at: Vector2, s: &Surroundings<'_>) -> bool {
+        match &self.vantage {
+            Vantage::Going(_) => return true,
+            Vantage::Looking(until) if s.now < *until => return true,
+            Vantage::Choosing(Aim::Unseen, _) => {}
+            _ => {
+                let worth = self.unseen.is_worth_a_look(at);
+                let places = if worth {
+                    sights(s.floor(), s.estimate.pose, at, self.view, &self.unseen)
+                } else {
+                    Vec::new()
+                };
+                self.blocked_at = Some(at);
+                self.vantage = Vantage::Choosing(Aim::Unseen, best_last(places));
+            }
+        }
+        self.sets_out(s)
+    }
+
+    /// Asks for the way to one of the places to choose from; whether there is one, or another to be asked for.
+    fn sets_out(&mut self, s: &Surroundings<'_>) -> bool {
+        let Vantage::Choosing(aim, places) = &mut self.vantage else { return self.is_at_vantage_or_going() };
+        let aim = *aim;
+        let Some(place) = places.pop() else {
+            self.vantage = Vantage::Settled;
+            return false;
+        };
+        if let Plan::Found(plan) = self.planner.plan(s.floor(), s.estimate.pose, Twist2::ZERO, place)
+            && self.first_unseen(&plan.trajectory, s.floor()).is_none()
+        {
+            if let (Aim::Unseen, Some(at)) = (aim, self.blocked_at) {
+                self.unseen.note_look(at, place.position());
+            }
+            self.follower.follow(plan.trajectory, place);
+            self.vantage = Vantage::Going(aim);
+        }
+        true
+    }
+
+    /// While it is on its way to look, or looks.
+    fn is_at_vantage_or_going(&self) -> bool {
+        matches!(self.vantage, Vantage::Going(_) | Vantage::Looking(_))
+    }
+
+    /// Whether a plan is to be asked for while it goes to look: what bars a way may go away, what was not seen may be seen.
+    pub(super) fn looks_for_news(&self, s: &Surroundings<'_>) -> bool {
+        match &self.vantage {
+            Vantage::Going(Aim::Unseen) => self.blocked_at.is_none_or(|at| s.floor().at(at) != Cell::Unknown),
+            Vantage::Looking(until) => s.now >= *until,
+            _ => true,
+        }
+    }
+
+    /// At the end of the way to a place, or off it: it looks.
+    pub(super) fn note_vantage(&mut self, follow: &FollowReport, now: Stamp) {
+        let Vantage::Going(aim) = self.vantage else { return };
         let is_over = matches!(follow.phase, FollowPhase::Settled | FollowPhase::Idle);
-        self.vantage == Vantage::Going && (is_over || follow.off_track)
+        if is_over || follow.off_track {
+            self.follower.halt();
+            self.vantage = match aim {
+                Aim::Bar => Vantage::Settled,
+                Aim::Unseen => Vantage::Looking(now.after(LOOK)),
+            };
+        }
+    }
+
+    /// Whether it stands still while it recovers: choosing where to look from, or looking.
+    pub(super) fn looks_still(&self) -> bool {
+        let recovers = matches!(self.state, DriveState::Recovering { .. });
+        recovers && matches!(self.vantage, Vantage::Looking(_) | Vantage::Choosing(..))
     }
 }
 
-/// Places on the map's free floor that see `at`, the nearest to `here` first.
-fn places(grid: &OccupancyGrid, here: Pose2, at: Vector2) -> Vec<Pose2> {
-    let bearings = (0..BEARINGS).map(|i| TAU * i as f64 / BEARINGS as f64);
-    let place = |(bearing, away): (f64, f64)| {
-        let back = Vector2::new(bearing.cos(), bearing.sin());
-        let stand = at - back * away;
-        (grid.at(stand) == Cell::Free && is_in_sight(grid, stand, at))
-            .then(|| Pose2::new(stand.x, stand.y, bearing))
-    };
-    let all = bearings.flat_map(|bearing| AWAY.map(|away| (bearing, away)));
-    let mut places: Vec<Pose2> = all.filter_map(place).collect();
+/// The nearest of these, the first to be asked for last.
+fn best_last(mut places: Vec<Pose2>) -> Vec<Pose2> {
+    places.truncate(MOST_PLANS);
+    places.reverse();
+    places
+}
+
+/// Places on the map's free floor that see `at`, but for the last `own_size` m, the nearest to `here` first.
+fn places(grid: &OccupancyGrid, here: Pose2, at: Vector2, own_size: f64, view: Option<View>) -> Vec<Pose2> {
+    let around = (0..BEARINGS).map(|i| TAU * i as f64 / BEARINGS as f64);
+    let around =
+        around.flat_map(|bearing| AWAY.map(|away| at - away * Vector2::new(bearing.cos(), bearing.sin())));
+    let stands =
+        around.filter(|stand| grid.at(*stand) == Cell::Free && is_in_sight(grid, *stand, at, own_size));
+    let mut places: Vec<Pose2> = stands.map(|stand| facing(stand, at, view)).collect();
     places.sort_by(|a, b| a.distance(&here).total_cmp(&b.distance(&here)));
     places
 }
 
-/// Whether nothing on the map stands between, but for what bars the way at `at` itself.
-fn is_in_sight(grid: &OccupancyGrid, from: Vector2, at: Vector2) -> bool {
-    let (way, step) = (at - from, grid.geometry().resolution / 2.0);
-    let own = if grid.at(at) == Cell::Free { 0.0 } else { OWN_SIZE };
-    let clear = (way.norm() - own).max(0.0);
-    let count = (clear / step) as usize;
-    let mut points = (0..count).map(|i| from + way * (i as f64 * step / way.norm()));
-    !points.any(|point| grid.at(point) == Cell::Occupied)
+/// Places that show the camera the floor at `at`, other than those from where it was looked at before: here, when turning is enough,
+/// then the nearest.
+fn sights(grid: &OccupancyGrid, here: Pose2, at: Vector2, view: Option<View>, unseen: &Unseen) -> Vec<Pose2> {
+    let Some(view) = view else { return Vec::new() };
+    let turned = facing(here.position(), at, Some(view));
+    let all = std::iter::once(turned).chain(places(grid, here, at, 0.0, Some(view)));
+    let is_new = |place: &Pose2| unseen.is_elsewhere(at, place.position());
+    all.filter(is_new).filter(|place| view.shows(grid, *place, at)).collect()
+}
+
+/// The pose at `stand` with `at` in the middle of the view.
+fn facing(stand: Vector2, at: Vector2, view: Option<View>) -> Pose2 {
+    let way = at - stand;
+    let aside = view.map_or(0.0, |view| view.base_from_sector.theta);
+    Pose2::new(stand.x, stand.y, difference_of_angles(way.y.atan2(way.x), aside))
 }
 
 #[cfg(test)]
@@ -92,7 +184,7 @@ mod tests {
             [vec![rows[0].clone(); 10], vec![rows[1].clone()], vec![rows[2].clone(); 30]].concat().join("\n");
         let grid = OccupancyGrid::from_ascii(0.1, &text).unwrap();
         let (here, at) = (Pose2::new(2.0, 2.6, 1.5), Vector2::new(2.0, 2.7));
-        let places = places(&grid, here, at);
+        let places = places(&grid, here, at, 0.0, None);
         assert!(!places.is_empty());
         for place in &places {
             let way = at - place.position();

@@ -6,7 +6,7 @@ use crate::{
     helm::Helm,
     job::{Answer, Job, Outcome, Work},
     lazy_image::LazyImage,
-    mission::Mission,
+    mission::MissionState,
     navigator::Surroundings,
     report::StepReport,
     stage::Stage,
@@ -22,7 +22,7 @@ pub(super) struct Background {
     /// While the captain thinks.
     helm: Option<Helm>,
     /// A mission given meanwhile.
-    orders: Option<Mission>,
+    orders: Option<MissionState>,
     /// What bumper and cliff sensors said meanwhile.
     felt: Vec<Felt>,
     /// The newest image that nobody has looked at yet.
@@ -57,8 +57,8 @@ impl Background {
     }
 
     /// A mission for the captain when it is back; to stand is done at once.
-    pub(super) fn give_orders(&mut self, mission: &Mission) {
-        if let (true, Some(helm)) = (mission.tasks().is_empty(), &mut self.helm) {
+    pub(super) fn give_orders(&mut self, mission: &MissionState) {
+        if let (true, Some(helm)) = (mission.left.tasks().is_empty(), &mut self.helm) {
             helm.wanted = Some(Twist2::ZERO);
         }
         self.orders = Some(mission.clone());
@@ -168,7 +168,7 @@ impl Robot {
         if let Some(mission) = self.background.orders.take() {
             captain.begin(&mission);
         }
-        self.latest.left = captain.supervisor.left();
+        self.latest.mission = captain.supervisor.mission();
         self.captain = Some(captain);
     }
 

@@ -6,6 +6,7 @@ use crate::{
     memory::{Memory, MemoryError},
     schedule::Ticker,
 };
+use trundle_core::{Invalid, OccupancyGrid};
 use trundle_localization::Localizer;
 use trundle_mapping::{LiveMapper, MapperConfig};
 
@@ -22,14 +23,30 @@ impl Robot {
         let mut robot = Self::new(config.clone())?;
         if let Some(lookout) = &mut robot.lookout {
             lookout.recall(&config, &memory.visual)?;
-            let blind_range = lookout.blind_range();
-            let mapping = MapperConfig { blind_range, ..config.mapping.clone() };
-            robot.mapper = LiveMapper::from_grid(mapping, &memory.grid)?;
         }
+        robot.know(&config, &memory.grid)?;
         robot.localizer =
             Localizer::new(config.localization, robot.base_from_camera)?.waking(memory.visual_maps.clone());
-        robot.begin(&memory.mission);
+        robot.go_on(memory.mission.clone().woken());
         Ok(robot)
+    }
+
+    /// A robot that has just been switched on and brings a map of the place: its frame is where the robot stands.
+    ///
+    /// # Errors
+    /// When a number of the configuration is outside its range, or the map has other cells.
+    pub fn on_map(config: RobotConfig, grid: &OccupancyGrid) -> Result<Self, Invalid> {
+        let mut robot = Self::new(config.clone())?;
+        robot.know(&config, grid)?;
+        Ok(robot)
+    }
+
+    /// Goes on with a map in place of its own, which is empty.
+    fn know(&mut self, config: &RobotConfig, grid: &OccupancyGrid) -> Result<(), Invalid> {
+        let blind_range = self.lookout.as_ref().map_or(0.0, |lookout| lookout.blind_range());
+        let mapping = MapperConfig { blind_range, ..config.mapping.clone() };
+        self.mapper = LiveMapper::from_grid(mapping, grid)?;
+        Ok(())
     }
 
     /// The robot, saying every 10 s what it would take along through a restart: [`crate::StepReport::memory`].
@@ -50,13 +67,13 @@ impl Robot {
 
     pub(super) fn remember(&mut self, visual: Vec<u8>) -> Memory {
         if let Some(captain) = &self.captain {
-            self.latest.left = captain.supervisor.left();
+            self.latest.mission = captain.supervisor.mission();
         }
         let mut visual_maps = self.localizer.visual_maps();
         if let Some(slam) = self.slam() {
             let maps: Vec<u32> = slam.maps().iter().map(|map| map.number()).collect();
             visual_maps.retain(|map, _| maps.contains(map));
         }
-        Memory { visual, visual_maps, grid: self.mapper.grid().clone(), mission: self.latest.left.clone() }
+        Memory { visual, visual_maps, grid: self.mapper.grid().clone(), mission: self.latest.mission.clone() }
     }
 }

@@ -162,7 +162,7 @@ fn a_robot_that_wakes_up_knows_the_rooms_and_not_its_place_and_draws_nothing_mea
         .last()
         .unwrap();
     assert_eq!(memory.grid.at(Vector2::new(3.01, 0.0)), trundle_core::Cell::Occupied);
-    assert_eq!(memory.mission.tasks(), [Task::Go(Pose2::new(1.0, 0.0, 0.0))]);
+    assert_eq!(memory.mission.left.tasks(), [Task::Go(Pose2::new(1.0, 0.0, 0.0))]);
     let memory = Memory::from_bytes(&memory.to_bytes()).unwrap();
     let mut second = Robot::waking(RobotConfig::default(), &memory).unwrap();
     assert_eq!(second.grid().at(Vector2::new(3.01, 0.0)), trundle_core::Cell::Occupied);

@@ -1,7 +1,7 @@
 use crate::experiment::rows::rows;
 use crate::failure::Failure;
-use std::path::Path;
-use trundle::core::{Pose2, Vector3};
+use std::path::{Path, PathBuf};
+use trundle::core::{Cell, GridGeometry, Invalid, OccupancyGrid, Pose2, Vector2, Vector3};
 use trundle::io::read_map;
 use trundle::sim::import::{RaisedMap, raise_map};
 use trundle::sim::{Cuboid, Finish, Lights, Paint, Person, Scene, Shape, Solid, World};
@@ -54,6 +54,21 @@ impl Course {
         format!("{} {}{with}", self.scenario, self.test)
     }
 
+    /// The benchmark's map, as the robot has it that stands at the start: none of the open floor.
+    ///
+    /// # Errors
+    /// When the map cannot be read.
+    pub fn known(&self, folder: &Path, resolution: f64) -> Result<Option<OccupancyGrid>, Failure> {
+        if self.map == OPEN {
+            return Ok(None);
+        }
+        Ok(Some(laid_anew(&read_map(&self.file(folder))?, self.start, resolution)?))
+    }
+
+    fn file(&self, folder: &Path) -> PathBuf {
+        folder.join("maps").join(&self.map).join("map.yaml")
+    }
+
     /// As the simulator has it: the map's walls, or an open floor.
     ///
     /// # Errors
@@ -61,7 +76,7 @@ impl Course {
     pub fn scene(&self, folder: &Path) -> Result<Scene, Failure> {
         let mut solids = vec![floor()];
         if self.map != OPEN {
-            let file = folder.join("maps").join(&self.map).join("map.yaml");
+            let file = self.file(folder);
             let walls = raise_map(&file.display().to_string(), &read_map(&file)?, &RaisedMap::default());
             solids.extend(walls.map_err(|error| Failure::Input(error.to_string()))?);
         }
@@ -74,6 +89,33 @@ impl Course {
             goal: self.goal,
         })
     }
+}
+
+/// The same map in cells of another size and in the frame of `world_from_map`: a cell is occupied where the map is at its middle or
+/// halfway to a corner.
+fn laid_anew(map: &OccupancyGrid, world_from_map: Pose2, resolution: f64) -> Result<OccupancyGrid, Invalid> {
+    let old = map.geometry();
+    let (width, height) = (old.width as f64 * old.resolution, old.height as f64 * old.resolution);
+    let corners = [(0.0, 0.0), (width, 0.0), (0.0, height), (width, height)];
+    let corners = corners.map(|(x, y)| world_from_map.inverse().transform(old.origin + Vector2::new(x, y)));
+    let bound = |pick: fn(&Vector2) -> f64, end: fn(f64, f64) -> f64| {
+        corners.iter().map(pick).reduce(end).expect("invariant: four corners") / resolution
+    };
+    let low = [bound(|c| c.x, f64::min), bound(|c| c.y, f64::min)].map(f64::floor);
+    let high = [bound(|c| c.x, f64::max), bound(|c| c.y, f64::max)].map(f64::ceil);
+    let origin = Vector2::from(low) * resolution;
+    let [cols, rows] = [0, 1].map(|i| (high[i] - low[i]) as usize);
+    let mut grid = OccupancyGrid::filled(GridGeometry::new(resolution, origin, cols, rows)?, Cell::Unknown);
+    let geometry = *grid.geometry();
+    let around = [(0.0, 0.0), (1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)];
+    for k in 0..geometry.len() {
+        let cell = geometry.cell(k);
+        let at = |(x, y)| geometry.center(cell) + Vector2::new(x, y) * (0.25 * resolution);
+        let mut values = around.map(|part| map.at(world_from_map.transform(at(part)))).into_iter();
+        let middle = values.next().unwrap_or(Cell::Unknown);
+        grid.set(cell, if values.any(|value| value == Cell::Occupied) { Cell::Occupied } else { middle });
+    }
+    Ok(grid)
 }
 
 /// A floor under everything that the maps reach.
@@ -128,6 +170,25 @@ mod tests {
         let person = person(&way);
         assert_eq!(person.waypoints, [[1.0, 5.0], [1.0, 0.0]]);
         assert_eq!((person.speed, person.pause, person.around), (0.25, 5.0, true));
+    }
+
+    #[test]
+    fn a_map_laid_anew_has_its_walls_where_they_are_seen_from_the_start() {
+        let map =
+            OccupancyGrid::from_ascii(0.05, &["#".repeat(40), ".".repeat(40), ".".repeat(40)].join("\n"));
+        let (map, start) = (map.unwrap(), Pose2::new(1.0, 0.05, 0.3));
+        let new = laid_anew(&map, start, 0.05).unwrap();
+        let geometry = *new.geometry();
+        for k in 0..geometry.len() {
+            let (cell, at) = (new.cells()[k], start.transform(geometry.center(geometry.cell(k))));
+            match cell {
+                Cell::Occupied => assert!(at.y > 0.1 - 0.02, "{at}"),
+                Cell::Free => assert!(at.y < 0.1 && at.y > 0.0),
+                Cell::Unknown => assert!(map.at(at) == Cell::Unknown),
+            }
+        }
+        let walls = new.cells().iter().filter(|cell| **cell == Cell::Occupied).count();
+        assert!((40..=90).contains(&walls), "{walls}");
     }
 
     #[test]
