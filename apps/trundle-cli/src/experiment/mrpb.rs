@@ -23,6 +23,8 @@ use trundle::sim::{FaultSchedule, SimConfig};
 /// The benchmark's robot, m, and what it adds for its planners.
 const RADIUS: f64 = 0.25;
 const INFLATION: f64 = 0.01;
+/// Of its laser, m.
+const REACH: f64 = 30.0;
 /// Its highest speed, m/s.
 const SPEED: f64 = 0.55;
 /// Its tolerance at the goal, m and rad.
@@ -85,7 +87,8 @@ fn robot() -> RobotConfig {
         sight: Sight::Laser,
         limits: DriveLimits { v: SPEED, ..DriveLimits::KOBUKI },
         schedule: Schedule { map_hz: 10.0, check_hz: 10.0, improve_hz: 1.0 },
-        mapping: MapperConfig { max_range: 12.0, ..MapperConfig::default() },
+        // The ends of a long corridor are what tells how far along it the robot is.
+        mapping: MapperConfig { max_range: REACH, ..MapperConfig::default() },
         // Scans of a laser err less alike than images: less of the heading is left to each.
         localization: LocalizerConfig {
             least_position_sigma: 0.005,
