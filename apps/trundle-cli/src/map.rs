@@ -19,6 +19,9 @@ use trundle::mapping::{
 pub struct MapArgs {
     /// A CARMEN log, a ROS 2 bag (folder, .mcap, .db3) or a TUM RGB-D folder, whose odometry is the motion.
     pub log: PathBuf,
+    /// The motion of an RGB-D folder: the camera's trajectory that `trundle slam` wrote, or another in TUM format.
+    #[arg(long, value_name = "FILE")]
+    pub poses: Option<PathBuf>,
     /// Particles of the filter.
     #[arg(long, value_name = "N", default_value_t = 30, value_parser = clap::value_parser!(u16).range(1..=1000))]
     pub particles: u16,
@@ -129,7 +132,7 @@ impl MapArgs {
             map: MapperConfig { resolution: self.resolution, ..default.map },
             ..default
         };
-        map_input::tuned(&self.log, config)
+        map_input::tuned(self, config)
     }
 }
 

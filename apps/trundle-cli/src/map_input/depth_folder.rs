@@ -1,7 +1,7 @@
 use crate::{console, failure::Failure};
 use std::path::Path;
 use trundle::core::{Pose2, Pose3, Stamp, Vector3};
-use trundle::io::{CameraModel, LaserLog, LaserLogScan, LaserLogSkip, TumSequence};
+use trundle::io::{CameraModel, LaserLog, LaserLogScan, LaserLogSkip, TumSequence, read_trajectory};
 use trundle::mapping::DepthScanner;
 use trundle::runtime::RobotConfig;
 
@@ -12,14 +12,19 @@ const LONGEST_GAP: f64 = 1.0;
 
 /// The scans of a TUM RGB-D folder at 5 Hz.
 ///
-/// The motion is `odometry.txt`, with the camera mounted as on the default robot; else `groundtruth.txt`, whose frame must be
-/// level with the floor at z = 0, and each image is cut under the tilt and height that its pose says.
-pub fn read(dir: &Path, quiet: bool) -> Result<LaserLog, Failure> {
+/// The motion is `tracked`, a TUM trajectory of the camera, or `odometry.txt`, both with the camera mounted as on the default
+/// robot; else `groundtruth.txt`, whose frame must be level with the floor at z = 0, and each image is cut under the tilt and
+/// height that its pose says.
+pub fn read(dir: &Path, tracked: Option<&Path>, quiet: bool) -> Result<LaserLog, Failure> {
     let (mut scanner, model) = scanner(dir)?;
     let camera = model.camera;
     let sequence = TumSequence::open(dir, model.depth_scale, TumSequence::MAX_DIFFERENCE)?
         .with_size(camera.width(), camera.height());
-    let poses = Poses::of(dir, &sequence)?;
+    let tracked = tracked.map(|file| base_poses(file)).transpose()?;
+    let poses = match &tracked {
+        Some(poses) => Poses::Base(poses),
+        None => Poses::of(dir, &sequence)?,
+    };
     let (mut log, mut last) = (LaserLog::default(), None);
     log.max_range = Some(RobotConfig::default().scan.max_range);
     let bar = console::bar(quiet, sequence.len());
@@ -75,7 +80,7 @@ fn scan(
 /// Where the base was.
 enum Poses<'a> {
     /// odom_from_base.
-    Odometry(&'a [(Stamp, Pose2)]),
+    Base(&'a [(Stamp, Pose2)]),
     /// level_from_camera.
     Camera(&'a [(Stamp, Pose3)]),
 }
@@ -83,7 +88,7 @@ enum Poses<'a> {
 impl<'a> Poses<'a> {
     fn of(dir: &Path, sequence: &'a TumSequence) -> Result<Self, Failure> {
         match (sequence.odometry(), sequence.ground_truth()) {
-            (Some(odometry), _) => Ok(Self::Odometry(odometry)),
+            (Some(odometry), _) => Ok(Self::Base(odometry)),
             (None, Some(camera)) => Ok(Self::Camera(camera)),
             (None, None) => Err(Failure::Input(format!(
                 "{}: neither odometry.txt nor groundtruth.txt, expected poses for a map",
@@ -95,7 +100,7 @@ impl<'a> Poses<'a> {
     /// The base at a time, and where the camera sits on it when that changes.
     fn at(&self, stamp: Stamp) -> Option<(Pose2, Option<Pose3>)> {
         match self {
-            Self::Odometry(poses) => {
+            Self::Base(poses) => {
                 let (a, b, part) = about(poses, stamp)?;
                 Some((a.interpolate(&b, part), None))
             }
@@ -107,6 +112,18 @@ impl<'a> Poses<'a> {
             }
         }
     }
+}
+
+/// The base's way from a TUM trajectory of the camera, whatever its frame: about the first pose, seen from above.
+fn base_poses(file: &Path) -> Result<Vec<(Stamp, Pose2)>, Failure> {
+    let camera = read_trajectory(file)?;
+    let Some((_, first)) = camera.first() else {
+        return Err(Failure::Input(format!("{}: no pose, expected those of the camera", file.display())));
+    };
+    let base_from_camera = RobotConfig::default().mount.base_from_camera();
+    let (first_from_frame, camera_from_base) = (first.inverse(), base_from_camera.inverse());
+    let base = |pose: &Pose3| (base_from_camera * first_from_frame * *pose * camera_from_base).to_pose2();
+    Ok(camera.iter().map(|(stamp, pose)| (*stamp, base(pose))).collect())
 }
 
 /// The poses before and after a time, and how far between them it lies.

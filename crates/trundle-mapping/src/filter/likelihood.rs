@@ -70,86 +70,45 @@ impl Likelihood {
 
     /// ln p(z | m, x) of all points at a pose (cells of the window, rad).
     pub(crate) fn log_likelihood(&self, window: &TileWindow<'_>, shape: &ScanShape, pose: Pose2) -> f64 {
-        #[cfg(target_arch = "x86_64")]
-        if std::arch::is_x86_feature_detected!("avx2") {
-            // SAFETY: the processor has the one feature that the function is compiled for.
-            return unsafe { self.sum_by_avx2(window, shape, pose) };
-        }
-        self.sum_plainly(window, shape, pose)
-    }
-
-    /// The same arithmetic in vectors of eight, no sum reordered: the same bits.
-    #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx2")]
-    fn sum_by_avx2(&self, window: &TileWindow<'_>, shape: &ScanShape, pose: Pose2) -> f64 {
-        self.sum_each(window, shape, pose)
-    }
-
-    fn sum_plainly(&self, window: &TileWindow<'_>, shape: &ScanShape, pose: Pose2) -> f64 {
-        self.sum_each(window, shape, pose)
-    }
-
-    #[inline(always)]
-    fn sum_each(&self, window: &TileWindow<'_>, shape: &ScanShape, pose: Pose2) -> f64 {
-        let place = Placed::new(pose);
         let mut sum = 0.0_f32;
-        for group in &shape.groups {
-            let r = self.look(window, group, &place);
-            for k in 0..group.count {
-                sum += self.log[r.ground[k] as usize][r.step[k] as usize];
-            }
-        }
+        self.tell(&mut sum, window, shape, pose);
         f64::from(sum)
     }
 
     /// What the points say about where to go from a pose.
     pub(crate) fn vote(&self, window: &TileWindow<'_>, shape: &ScanShape, pose: Pose2) -> Vote {
+        let mut sums = Sums::default();
+        self.tell(&mut sums, window, shape, pose);
+        sums.vote()
+    }
+
+    /// Tells a listener of all points, eight by eight.
+    fn tell<L: Listener>(&self, to: &mut L, window: &TileWindow<'_>, shape: &ScanShape, pose: Pose2) {
         #[cfg(target_arch = "x86_64")]
         if std::arch::is_x86_feature_detected!("avx2") {
             // SAFETY: the processor has the one feature that the function is compiled for.
-            return unsafe { self.vote_by_avx2(window, shape, pose) };
+            return unsafe { self.tell_by_avx2(to, window, shape, pose) };
         }
-        self.vote_plainly(window, shape, pose)
+        self.tell_plainly(to, window, shape, pose);
     }
 
     /// The same arithmetic in vectors of eight, no sum reordered: the same bits.
     #[cfg(target_arch = "x86_64")]
     #[target_feature(enable = "avx2")]
-    fn vote_by_avx2(&self, window: &TileWindow<'_>, shape: &ScanShape, pose: Pose2) -> Vote {
-        self.vote_each(window, shape, pose)
+    fn tell_by_avx2<L: Listener>(&self, to: &mut L, window: &TileWindow<'_>, shape: &ScanShape, pose: Pose2) {
+        self.tell_each(to, window, shape, pose);
     }
 
-    fn vote_plainly(&self, window: &TileWindow<'_>, shape: &ScanShape, pose: Pose2) -> Vote {
-        self.vote_each(window, shape, pose)
+    fn tell_plainly<L: Listener>(&self, to: &mut L, window: &TileWindow<'_>, shape: &ScanShape, pose: Pose2) {
+        self.tell_each(to, window, shape, pose);
     }
 
     #[inline(always)]
-    fn vote_each(&self, window: &TileWindow<'_>, shape: &ScanShape, pose: Pose2) -> Vote {
+    fn tell_each<L: Listener>(&self, to: &mut L, window: &TileWindow<'_>, shape: &ScanShape, pose: Pose2) {
         let place = Placed::new(pose);
-        let mut sums = Sums::default();
         for group in &shape.groups {
-            let r = self.look(window, group, &place);
-            for k in 0..group.count {
-                let share = self.share[r.step[k] as usize];
-                if share < 0.1 && r.ground[k] == 0 {
-                    sums.contradicted += 1;
-                }
-                if share == 0.0 {
-                    continue;
-                }
-                let w = share * group.information[k];
-                sums.explained += share;
-                sums.weight += w;
-                let (arm, to) = ((r.rx[k], r.ry[k]), (r.dx[k], r.dy[k]));
-                if group.wall[k] == 0.0 {
-                    sums.add(w, (1.0, 0.0), arm, to);
-                    sums.add(w, (0.0, 1.0), arm, to);
-                } else {
-                    sums.add(w, (r.nx[k], r.ny[k]), arm, to);
-                }
-            }
+            to.take(self, group, &self.look(window, group, &place));
         }
-        sums.vote()
     }
 
     /// Looks eight hits up: arithmetic lane by lane, which the compiler makes vector code, and one load for each.
@@ -172,12 +131,15 @@ impl Likelihood {
             cell_x[k] = floor(r.rx[k] + place.x);
             cell_y[k] = floor(r.ry[k] + place.y);
         }
+        let mut near = [0_i32; LANES];
+        for k in 0..LANES {
+            let (tile, place) = window.at(cell_x[k], cell_y[k]);
+            near[k] = i32::from(tile.nearest[place].packed());
+            r.ground[k] = u32::from(tile.log_odds[place] >= 0);
+        }
         let (mut near_x, mut near_y) = ([0_i32; LANES], [0_i32; LANES]);
         for k in 0..LANES {
-            let found = window.at(cell_x[k], cell_y[k]);
-            let nearest = found.map_or(Nearest::NONE, |(tile, place)| tile.nearest[place]);
-            r.ground[k] = u32::from(found.is_none_or(|(tile, place)| tile.log_odds[place] >= 0));
-            (near_x[k], near_y[k]) = (i32::from(nearest.x), i32::from(nearest.y));
+            (near_x[k], near_y[k]) = ((near[k] << 24) >> 24, near[k] >> 8);
         }
         const CELL: f32 = 1.0 / Nearest::PER_CELL as f32;
         for k in 0..LANES {
@@ -200,6 +162,47 @@ impl Likelihood {
 
 /// The last entry of the tables.
 const FAR: f32 = (STEPS - 1) as f32;
+
+/// What becomes of the hits that were looked up.
+trait Listener {
+    fn take(&mut self, likelihood: &Likelihood, group: &PointGroup, found: &Residuals);
+}
+
+/// The sum of their ln p.
+impl Listener for f32 {
+    #[inline(always)]
+    fn take(&mut self, likelihood: &Likelihood, group: &PointGroup, found: &Residuals) {
+        for k in 0..group.count {
+            *self += likelihood.log[found.ground[k] as usize][found.step[k] as usize];
+        }
+    }
+}
+
+/// Where they pull.
+impl Listener for Sums {
+    #[inline(always)]
+    fn take(&mut self, likelihood: &Likelihood, group: &PointGroup, r: &Residuals) {
+        for k in 0..group.count {
+            let share = likelihood.share[r.step[k] as usize];
+            if share < 0.1 && r.ground[k] == 0 {
+                self.contradicted += 1;
+            }
+            if share == 0.0 {
+                continue;
+            }
+            let w = share * group.information[k];
+            self.explained += share;
+            self.weight += w;
+            let (arm, to) = ((r.rx[k], r.ry[k]), (r.dx[k], r.dy[k]));
+            if group.wall[k] == 0.0 {
+                self.add(w, (1.0, 0.0), arm, to);
+                self.add(w, (0.0, 1.0), arm, to);
+            } else {
+                self.add(w, (r.nx[k], r.ny[k]), arm, to);
+            }
+        }
+    }
+}
 
 /// Sums over the hits: upper triangle of the information, pull.
 #[derive(Default)]
@@ -288,9 +291,11 @@ mod tests {
             let (mut shape, likelihood) = (ScanShape::default(), Likelihood::new(&config));
             shape.set(&config, &scan);
             let (window, pose) = (TileWindow::new(&map, (0, 0), (191, 127)), Pose2::new(x, 60.0, theta));
-            let (a, b) = (likelihood.log_likelihood(&window, &shape, pose), likelihood.sum_plainly(&window, &shape, pose));
-            prop_assert_eq!(a.to_bits(), b.to_bits());
-            prop_assert_eq!(likelihood.vote(&window, &shape, pose), likelihood.vote_plainly(&window, &shape, pose));
+            let (mut sum, mut sums) = (0.0_f32, Sums::default());
+            likelihood.tell_plainly(&mut sum, &window, &shape, pose);
+            likelihood.tell_plainly(&mut sums, &window, &shape, pose);
+            prop_assert_eq!(likelihood.log_likelihood(&window, &shape, pose).to_bits(), f64::from(sum).to_bits());
+            prop_assert_eq!(likelihood.vote(&window, &shape, pose), sums.vote());
         }
     }
 }

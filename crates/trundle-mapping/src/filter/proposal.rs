@@ -247,7 +247,7 @@ impl Proposer<'_> {
             sigma_turn: prior.covariance[(2, 2)].sqrt(),
             gain: -self.config.outliers.ln() / self.config.correlation,
         };
-        let starts = search.search(window, self.shape, prior.guess, &about);
+        let starts = search.search(window, self.shape, prior.guess, (&about, RIVAL));
         let (first, top) = starts[0];
         // Another start is worth climbing from when it is nearly as good and somewhere else.
         let elsewhere = |p: &Pose2| {

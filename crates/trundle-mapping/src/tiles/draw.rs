@@ -143,13 +143,13 @@ impl Brush {
             let rate = if old >= self.high { MEAN_RATE } else { 1.0 / (1.0 + visits) };
             let mean =
                 |was: i8, is: i32| i32::from(was) + (f64::from(is - i32::from(was)) * rate).round() as i32;
-            Nearest::own(mean(before.x, there.0), mean(before.y, there.1))
+            Nearest::own(mean(before.x(), there.0), mean(before.y(), there.1))
         } else {
             Nearest::own(there.0, there.1)
         };
         tile.nearest[place] = own;
         // Cells about it follow when it has moved by a quarter of a cell.
-        let quarters = |n: Nearest| (n.x >> 2, n.y >> 2);
+        let quarters = |n: Nearest| (n.x() >> 2, n.y() >> 2);
         if !was_own || quarters(own) != quarters(before) {
             self.field.place(map, hit.cell, own);
         }

@@ -12,8 +12,8 @@ use super::{
 #[derive(Debug, Clone)]
 pub(crate) struct FieldModel {
     reach: i32,
-    /// Likelihood 0 to 255 by squared distance in quarters of a cell squared.
-    coarse: [u8; 512],
+    /// Likelihood 0 to 255 by squared distance in quarters of a cell squared; the last is that of none.
+    coarse: [u8; NOT_IN_REACH + 1],
 }
 
 impl FieldModel {
@@ -22,8 +22,8 @@ impl FieldModel {
 
     /// A field that reaches `reach` cells; the coarse likelihood falls off with `sigma` cells.
     pub(crate) fn new(reach: i32, sigma: f64) -> Self {
-        let mut coarse = [0; 512];
-        for (i, value) in coarse.iter_mut().enumerate() {
+        let mut coarse = [0; NOT_IN_REACH + 1];
+        for (i, value) in coarse.iter_mut().take(NOT_IN_REACH).enumerate() {
             let squared = i as f64 / 4.0;
             *value = (255.0 * (-0.5 * squared / (sigma * sigma)).exp()).round() as u8;
         }
@@ -33,6 +33,18 @@ impl FieldModel {
     /// Makes the cell's obstacle known to the cells about it: those for which it is the nearest, and those that
     /// held it for the nearest before it moved within its cell. `own` is where in the cell it is now.
     pub(crate) fn place(&self, map: &mut TileMap, cell: (i32, i32), own: Nearest) {
+        let inside = |v: i32| {
+            let within = v.rem_euclid(TILE_SIDE as i32);
+            within >= self.reach && within + self.reach < TILE_SIDE as i32
+        };
+        if inside(cell.0) && inside(cell.1) {
+            let part = |v: i32| v - self.reach..=v + self.reach;
+            let tile = map.tile_mut((cell.0 >> TILE_BITS, cell.1 >> TILE_BITS));
+            self.offer(tile, (part(cell.0), part(cell.1)), cell, own);
+            self.write(tile, cell, own);
+            tile.set_own(cell.0, cell.1, true);
+            return;
+        }
         for_tiles_about(cell, self.reach, |tile_at, xs, ys| {
             let tile = map.tile_mut(tile_at);
             self.offer(tile, (xs, ys), cell, own);
@@ -123,12 +135,12 @@ impl FieldModel {
         let high = (low as i32 + xs.end() - xs.start()) as i16;
         let (low, from_x) = (low as i16, step.0 + 16 * low as i16);
         let first = ((y as usize % TILE_SIDE) << TILE_BITS) + column;
-        let (step_y, own_x, own_y) = (step.1, i16::from(own.x), i16::from(own.y));
+        let (step_y, own_x, own_y) = (step.1, i16::from(own.x()), i16::from(own.y()));
         let row = tile.nearest[first..].first_chunk_mut::<LANES>();
         let row = row.expect("invariant: a row of a tile holds twice as many");
         let (mut old_x, mut old_y) = ([0_i16; LANES], [0_i16; LANES]);
-        for (k, nearest) in row.iter().enumerate() {
-            let both = i16::from_le_bytes([nearest.x as u8, nearest.y as u8]);
+        for k in 0..LANES {
+            let both = row[k].packed();
             (old_x[k], old_y[k]) = ((both << 8) >> 8, both >> 8);
         }
         let mut taken = [0_i16; LANES];
@@ -146,13 +158,17 @@ impl FieldModel {
             old_y[k] = (dy & taken[k]) | (old_y[k] & !taken[k]);
         }
         let changed = taken.iter().fold(0, |all, t| all | t) != 0;
-        for (k, nearest) in row.iter_mut().enumerate() {
-            let [x, y] = ((old_x[k] & 255) | (old_y[k] << 8)).to_le_bytes();
-            *nearest = Nearest { x: x as i8, y: y as i8 };
+        let mut quarters = [0_u16; LANES];
+        for k in 0..LANES {
+            row[k] = Nearest::from_packed((old_x[k] & 255) | (old_y[k] << 8));
+            let squared = old_x[k].wrapping_mul(old_x[k]).wrapping_add(old_y[k].wrapping_mul(old_y[k]));
+            quarters[k] = squared as u16 >> 6;
         }
         if changed && y & 1 == 0 {
             for x in xs.filter(|x| x & 1 == 0) {
-                self.write(tile, (x, y), tile.nearest[Tile::place(x, y)]);
+                let lane = (x as usize % TILE_SIDE - column) % LANES;
+                let value = self.coarse[usize::from(quarters[lane]).min(NOT_IN_REACH)];
+                tile.coarse[Tile::coarse_index(x, y)] = value;
             }
         }
     }
@@ -170,7 +186,7 @@ impl FieldModel {
         tile.nearest[Tile::place(at.0, at.1)] = nearest;
         if let Some(place) = Tile::coarse_place(at.0, at.1) {
             let quarters = (nearest.squared() >> 6) as usize;
-            tile.coarse[place] = if nearest.is_none() { 0 } else { self.coarse[quarters.min(511)] };
+            tile.coarse[place] = self.coarse[quarters.min(NOT_IN_REACH)];
         }
     }
 }
@@ -196,6 +212,8 @@ fn for_tiles_about(
 /// Columns and rows.
 type Part = (RangeInclusive<i32>, RangeInclusive<i32>);
 
+/// The squared distance of [`Nearest::NONE`], quarters of a cell squared; those within reach are less.
+const NOT_IN_REACH: usize = 512;
 /// Cells that are looked at in one go: at least as many as an obstacle reaches across.
 const LANES: usize = 16;
 const COLUMNS: [i16; LANES] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15];
@@ -219,7 +237,7 @@ fn within(v: i16) -> i16 {
 #[inline]
 fn target((x, y): (i32, i32), nearest: Nearest) -> Option<(i32, i32)> {
     let step = |offset: i8| (i32::from(offset) + Nearest::PER_CELL / 2) >> 4;
-    (!nearest.is_none()).then(|| (x + step(nearest.x), y + step(nearest.y)))
+    (!nearest.is_none()).then(|| (x + step(nearest.x()), y + step(nearest.y())))
 }
 
 const _: () = assert!(COARSE_SIDE * 2 == TILE_SIDE && Nearest::PER_CELL == 16);

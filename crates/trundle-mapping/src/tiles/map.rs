@@ -201,13 +201,12 @@ impl<'a> TileWindow<'a> {
         &self.tiles
     }
 
-    /// The tile and the place in it of a cell counted from the window's corner; `None` outside.
+    /// The tile and the place in it of a cell counted from the window's corner; outside, the empty tile's.
     #[inline]
-    pub(crate) fn at(&self, x: i32, y: i32) -> Option<(&'a Tile, usize)> {
+    pub(crate) fn at(&self, x: i32, y: i32) -> (&'a Tile, usize) {
         let (col, row) = ((x >> TILE_BITS) as u32 as usize, (y >> TILE_BITS) as u32 as usize);
-        if col >= self.cols || row >= self.rows {
-            return None;
-        }
-        Some((self.tiles[row * self.cols + col], Tile::place(x, y)))
+        let inside = (col < self.cols) & (row < self.rows);
+        let tile = if inside { self.tiles[row * self.cols + col] } else { &NOTHING };
+        (tile, Tile::place(x, y))
     }
 }
