@@ -93,6 +93,12 @@ pub fn run(args: &MapArgs) -> Result<Outcome, Failure> {
             first.line, first.problem
         ));
     }
+    if let Some(first) = log.first_bad_range {
+        let (count, file) = (log.bad_ranges, args.log.display());
+        console::warn(&format!(
+            "{file}: {count} ranges are negative, zero, infinite or no number, the first in entry {first}: nothing is taken to be seen there"
+        ));
+    }
     if !args.common.quiet {
         console::table(&rows(&log, &counts, megabytes, seconds));
         console::say(&format!("See {}", place.join("overview.png").display()));

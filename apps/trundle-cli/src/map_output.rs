@@ -58,13 +58,22 @@ impl Counts {
     }
 }
 
+/// Places nearer to each other than this part of the map's side have one name in its picture.
+const TOGETHER: f64 = 0.12;
+
 /// The map with the way and its ends. A PNG.
 pub fn map_picture(grid: &OccupancyGrid, poses: &[(Stamp, Pose2)]) -> Vec<u8> {
     let way: Vec<_> = poses.iter().map(|(_, pose)| pose.position()).collect();
     let picture = MapPicture::over(grid).polyline("way", &way, LineStyle::solid(Color::BLUE));
     let (Some((_, start)), Some((_, end))) = (poses.first(), poses.last()) else { return picture.to_png() };
-    let start = picture.pose("start", *start, PoseStyle::named(Color::GREEN));
-    start.pose("end", *end, PoseStyle::named(Color::VERMILLION)).to_png()
+    let (first, last) = (PoseStyle::named(Color::GREEN), PoseStyle::named(Color::VERMILLION));
+    // Where both are one place, one name says so: two would lie over each other.
+    let geometry = grid.geometry();
+    let side = geometry.width.max(geometry.height) as f64 * geometry.resolution;
+    if start.distance(end) < TOGETHER * side {
+        return picture.pose("start", *start, first.nameless()).pose("start and end", *end, last).to_png();
+    }
+    picture.pose("start", *start, first).pose("end", *end, last).to_png()
 }
 
 /// `t x y theta` lines.
@@ -81,6 +90,7 @@ pub fn rows(log: &LaserLog, counts: &Counts, megabytes: f64, seconds: f64) -> Ve
     let row = |name: &str, value: String| vec![name.to_owned(), value];
     vec![
         row("scans", log.scans.len().to_string()),
+        row("ranges that are negative, zero, infinite or no number", log.bad_ranges.to_string()),
         row("processed", counts.processed.to_string()),
         row("odometry jumps", counts.jumps.to_string()),
         row("steps where the odometry was not believed", counts.slips.to_string()),

@@ -47,6 +47,8 @@ pub struct LaserLog {
     pub skipped: Vec<LaserLogSkip>,
     /// Ranges that were negative, zero, infinite or no number.
     pub bad_ranges: usize,
+    /// The first line, or message, with such a range.
+    pub first_bad_range: Option<usize>,
     /// Ranges from here on were taken for no returns, m.
     pub max_range: Option<f64>,
 }
@@ -74,7 +76,12 @@ fn parse_carmen(path: &Path, text: &str, options: &LaserLogOptions) -> Result<La
     for (number, line) in content_lines(text) {
         let taken = parse(line).and_then(|line| match line {
             Line::Odometry(stamp, pose) => log.take_odometry(stamp, pose),
-            Line::Laser(laser) => take_laser(&mut lasers, laser),
+            Line::Laser(laser) => {
+                let bad = laser.ranges.iter().any(|range| !is_range(*range));
+                take_laser(&mut lasers, laser)?;
+                log.first_bad_range = log.first_bad_range.or(bad.then_some(number));
+                Ok(())
+            }
             Line::Offset(metres) => {
                 offset = metres;
                 Ok(())
@@ -126,7 +133,7 @@ impl LaserLog {
             .ranges
             .iter()
             .map(|&range| {
-                let good = range > 0.0 && range.is_finite();
+                let good = is_range(range);
                 bad += usize::from(!good);
                 if good && range < limit { Beam::Hit { range } } else { Beam::Unseen }
             })
@@ -141,6 +148,10 @@ impl LaserLog {
         Scan::new(laser.stamp, mount.position(), mount.theta + first, laser.angle_increment, beams)
             .expect("invariant: angles and mount were checked, ranges are finite and positive")
     }
+}
+
+fn is_range(range: f64) -> bool {
+    range > 0.0 && range.is_finite()
 }
 
 /// The reading at which many beams end, if there is one: a laser without a return says its limit, give or take.
@@ -248,10 +259,11 @@ mod tests {
 
     #[test]
     fn bad_ranges_are_unseen_and_counted() {
-        let log = read("FLASER 5 -1 nan inf 0 2 0 0 0 0 0 0 1 h 1", LaserLogOptions::default()).unwrap();
-        assert_eq!(log.bad_ranges, 4);
-        assert_eq!(log.scans[0].scan.beams()[4], Beam::Hit { range: 2.0 });
-        assert_eq!(log.scans[0].scan.beams()[..4], [Beam::Unseen; 4]);
+        let bad = "FLASER 5 -1 nan inf 0 2 0 0 0 0 0 0 11 h 1";
+        let log = read(&format!("{GOOD}{bad}"), LaserLogOptions::default()).unwrap();
+        assert_eq!((log.bad_ranges, log.first_bad_range), (4, Some(2)));
+        assert_eq!(log.scans[1].scan.beams()[4], Beam::Hit { range: 2.0 });
+        assert_eq!(log.scans[1].scan.beams()[..4], [Beam::Unseen; 4]);
     }
 
     #[test]

@@ -62,6 +62,9 @@ pub fn read_ros_bag(path: &Path, options: &RosBagOptions) -> Result<LaserLog, Io
             }
             Some(mount) => take(&mut log, &message, &mount, &motion, options.laser.max_range),
         };
+        if log.bad_ranges > 0 {
+            log.first_bad_range.get_or_insert(number);
+        }
         if let Err(problem) = taken {
             contents.skip(number, &topic, &problem);
         }

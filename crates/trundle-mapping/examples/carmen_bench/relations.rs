@@ -18,6 +18,8 @@ pub struct Relation {
     from: Stamp,
     to: Stamp,
     relative: Pose2,
+    /// Numbers of the reference's poses.
+    poses: (usize, usize),
 }
 
 /// Those that a reference trajectory has.
@@ -25,7 +27,7 @@ pub fn relations(reference: &[(Stamp, Pose2)]) -> Vec<Relation> {
     let mut found = Vec::new();
     let relation = |kind, i: usize, j: usize| {
         let ((from, a), (to, b)) = (reference[i], reference[j]);
-        Relation { kind, from, to, relative: a.inverse() * b }
+        Relation { kind, from, to, relative: a.inverse() * b, poses: (i, j) }
     };
     for i in 0..reference.len() {
         let mut way = 0.0;
@@ -63,38 +65,83 @@ pub fn relations(reference: &[(Stamp, Pose2)]) -> Vec<Relation> {
     found
 }
 
-/// Mean and standard deviation of the errors, by kind; then the error of the whole trajectory.
-pub fn report(relations: &[Relation], reference: &[(Stamp, Pose2)], estimate: &[(Stamp, Pose2)]) -> String {
-    if relations.is_empty() {
-        return String::new();
-    }
-    let at = |stamp: Stamp| {
-        let i = estimate.partition_point(|(s, _)| *s < stamp.after(-1e-4));
-        estimate.get(i).filter(|(s, _)| (*s - stamp).abs() < 1e-3).map(|(_, pose)| *pose)
-    };
-    let mut text = String::new();
-    let mut all = Vec::new();
-    for (name, kind) in [("1 m", Kind::Near), ("10 m", Kind::Far), ("loops", Kind::Loop)] {
-        let errors: Vec<(f64, f64)> = relations
-            .iter()
-            .filter(|r| r.kind == kind)
-            .filter_map(|r| {
-                let error = r.relative.inverse() * (at(r.from)?.inverse() * at(r.to)?);
-                Some((error.position().norm(), wrap_angle(error.theta).abs().to_degrees()))
-            })
-            .collect();
-        text += &format!("{name} ({}) {}; ", errors.len(), summary(&errors));
-        all.extend(errors);
-    }
-    let pairs: Vec<(Vector2, Vector2)> =
-        reference.iter().filter_map(|(s, p)| Some((p.position(), at(*s)?.position()))).collect();
-    format!("{text}all {}; ATE {:.3} m", summary(&all), absolute(&pairs))
+/// Errors of a relation, m and deg.
+type Error = (f64, f64);
+
+/// How well an estimate agrees with a reference.
+pub struct Agreement {
+    by_kind: [Vec<Error>; 3],
+    all: Vec<Error>,
+    /// Those of relations that do not touch the poses left out.
+    rest: Option<Vec<Error>>,
+    /// RMSE of the positions, m.
+    absolute: f64,
 }
 
-fn summary(errors: &[(f64, f64)]) -> String {
+/// Loops that are farther off than this are not closed, m: more than the reference itself is.
+const OPEN: f64 = 3.0;
+
+impl Agreement {
+    /// None without a reference. `but`: poses of the reference, from and up to.
+    pub fn of(
+        relations: &[Relation],
+        reference: &[(Stamp, Pose2)],
+        estimate: &[(Stamp, Pose2)],
+        but: Option<(usize, usize)>,
+    ) -> Option<Self> {
+        let at = |stamp: Stamp| {
+            let i = estimate.partition_point(|(s, _)| *s < stamp.after(-1e-4));
+            estimate.get(i).filter(|(s, _)| (*s - stamp).abs() < 1e-3).map(|(_, pose)| *pose)
+        };
+        let error = |r: &Relation| {
+            let error = r.relative.inverse() * (at(r.from)?.inverse() * at(r.to)?);
+            Some((error.position().norm(), wrap_angle(error.theta).abs().to_degrees()))
+        };
+        let errors = |which: &dyn Fn(&Relation) -> bool| -> Vec<Error> {
+            relations.iter().filter(|r| which(r)).filter_map(error).collect()
+        };
+        let pairs: Vec<(Vector2, Vector2)> =
+            reference.iter().filter_map(|(s, p)| Some((p.position(), at(*s)?.position()))).collect();
+        (!relations.is_empty()).then(|| Self {
+            by_kind: [Kind::Near, Kind::Far, Kind::Loop].map(|kind| errors(&|r| r.kind == kind)),
+            all: errors(&|_| true),
+            rest: but.map(|(from, to)| {
+                let out = |pose: usize| (from..to).contains(&pose);
+                errors(&|r| !out(r.poses.0) && !out(r.poses.1))
+            }),
+            absolute: absolute(&pairs),
+        })
+    }
+
+    /// Mean error of all relations, m.
+    pub fn mean(&self) -> f64 {
+        self.all.iter().map(|e| e.0).sum::<f64>() / self.all.len().max(1) as f64
+    }
+
+    /// How many relations of loops are so far off that the loop is not closed.
+    pub fn open_loops(&self) -> usize {
+        self.by_kind[2].iter().filter(|e| e.0 > OPEN).count()
+    }
+}
+
+/// Mean and standard deviation of the errors, by kind; then the error of the whole trajectory.
+impl std::fmt::Display for Agreement {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        for (name, errors) in ["1 m", "10 m", "loops"].iter().zip(&self.by_kind) {
+            write!(f, "{name} ({}) {}; ", errors.len(), summary(errors))?;
+        }
+        write!(f, "{} loops open; all {}; ", self.open_loops(), summary(&self.all))?;
+        if let Some(rest) = &self.rest {
+            write!(f, "without the poses left out ({}) {}; ", rest.len(), summary(rest))?;
+        }
+        write!(f, "ATE {:.3} m", self.absolute)
+    }
+}
+
+fn summary(errors: &[Error]) -> String {
     let n = errors.len().max(1) as f64;
-    let mean = |f: fn(&(f64, f64)) -> f64| errors.iter().map(f).sum::<f64>() / n;
-    let spread = |f: fn(&(f64, f64)) -> f64| {
+    let mean = |f: fn(&Error) -> f64| errors.iter().map(f).sum::<f64>() / n;
+    let spread = |f: fn(&Error) -> f64| {
         let m = mean(f);
         (errors.iter().map(|e| (f(e) - m).powi(2)).sum::<f64>() / n).sqrt()
     };

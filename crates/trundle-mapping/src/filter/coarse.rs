@@ -162,32 +162,17 @@ impl CoarseSearch {
     /// The same sums in vectors of sixteen.
     #[cfg(target_arch = "x86_64")]
     #[target_feature(enable = "avx2")]
-    fn sum_rows_by_avx2<const ROWS: usize>(
-        &mut self,
-        window: &TileWindow<'_>,
-        pose: Pose2,
-        sums: &mut Sums,
-    ) {
+    fn sum_rows_by_avx2<const ROWS: usize>(&mut self, window: &TileWindow<'_>, pose: Pose2, sums: &mut Sums) {
         self.sum_rows_each::<ROWS>(window, pose, sums);
     }
 
-    fn sum_rows_plainly<const ROWS: usize>(
-        &mut self,
-        window: &TileWindow<'_>,
-        pose: Pose2,
-        sums: &mut Sums,
-    ) {
+    fn sum_rows_plainly<const ROWS: usize>(&mut self, window: &TileWindow<'_>, pose: Pose2, sums: &mut Sums) {
         self.sum_rows_each::<ROWS>(window, pose, sums);
     }
 
     /// `ROWS` is known when compiled, so that the sums stay in registers from point to point.
     #[inline(always)]
-    fn sum_rows_each<const ROWS: usize>(
-        &mut self,
-        window: &TileWindow<'_>,
-        pose: Pose2,
-        all: &mut Sums,
-    ) {
+    fn sum_rows_each<const ROWS: usize>(&mut self, window: &TileWindow<'_>, pose: Pose2, all: &mut Sums) {
         let reach = (ROWS / 2) as i32;
         let (place, tile_cols) = (Placed::new(pose), window.size().0 + 2);
         let (most_col, most_row) = (self.stride as i32 - LANES as i32, self.rows as i32 - ROWS as i32);

@@ -2,6 +2,7 @@ use super::{
     ParticleConfig, ScanShape,
     ancestry::Ancestry,
     bending::Bending,
+    bias::OdometryBias,
     chance::Chance,
     closing::Closer,
     coarse::CoarseSearch,
@@ -57,6 +58,8 @@ pub struct ParticleMapper {
     pub(super) usual: f64,
     /// How good the odometry is.
     pub(super) trust: OdometryTrust,
+    /// What it has wrong at every step.
+    pub(super) bias: OdometryBias,
 }
 
 #[derive(Debug, Clone)]
@@ -104,6 +107,7 @@ impl ParticleMapper {
             session: 0,
             usual: USUAL,
             trust: OdometryTrust::default(),
+            bias: OdometryBias::default(),
             config,
         })
     }
@@ -123,7 +127,8 @@ impl ParticleMapper {
         }
         let jumped = step.jumped;
         let covariance = if jumped { step.covariance } else { self.trust.scaled(&step.covariance) };
-        self.move_and_draw(step.motion, covariance, step.first && self.updates == 0);
+        let motion = if jumped { step.motion } else { self.bias.corrected(step.motion) };
+        self.move_and_draw(motion, covariance, step.first && self.updates == 0);
         let (effective, resampled) = self.weigh();
         self.ancestry.push(
             scan.stamp(),
@@ -246,7 +251,10 @@ impl ParticleMapper {
         if proposal.slipped {
             self.trust.doubt();
         } else if let Some(innovation) = proposal.innovation {
-            self.trust.learn(&innovation, &scaled(step.covariance, 1.0 / self.config.map.resolution));
+            let (unit, configured) = (self.config.map.resolution, step.covariance);
+            let noise = scaled(self.trust.scaled(&configured), 1.0 / unit).diagonal();
+            self.bias.learn(step.motion, &innovation, noise, unit);
+            self.trust.learn(&innovation, &scaled(configured, 1.0 / unit));
         }
     }
 

@@ -2,6 +2,7 @@
 
 mod ancestry;
 mod bending;
+mod bias;
 mod carry;
 mod chance;
 mod closing;

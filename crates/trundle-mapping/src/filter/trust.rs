@@ -36,8 +36,9 @@ const MOST_SIGMAS: f64 = 3.0;
 const MEMORY: f64 = 60.0;
 /// Steps at the configured errors that it begins with.
 const FIRST: f64 = 4.0;
-/// Errors are taken for so much larger than they were: tomorrow's floor may be worse.
-const CAUTION: f64 = 1.5;
+/// Errors are taken for so much larger than they were: tomorrow's floor may be worse, and errors of steps one after another are
+/// alike. In drawn buildings (`loop_bench 3`) 3 is better than 1.5: 0.13 m off on average, not 0.18.
+const CAUTION: f64 = 3.0;
 /// The odometry is never believed to be better than this part of the configured errors.
 const LEAST: f64 = 0.15;
 
@@ -131,12 +132,12 @@ mod tests {
 
     #[test]
     fn learns_how_good_the_odometry_is_and_forgets_it() {
-        for good in [0.2, 0.3, 0.5] {
+        for good in [0.1, 0.2, 0.3] {
             let trust = learnt(good, 300);
             assert!((trust.shift.scale() - CAUTION * good).abs() < 0.2, "{good}: {trust:?}");
             assert!((trust.turn.scale() - CAUTION * good).abs() < 0.25, "{good}: {trust:?}");
         }
-        assert_eq!(learnt(0.0, 200).turn.scale(), LEAST);
+        assert_eq!(learnt(0.0, 400).turn.scale(), LEAST);
         assert_eq!(learnt(3.0, 50).shift.scale(), 1.0);
         let mut trust = learnt(0.2, 300);
         let covariance = Matrix3::identity();

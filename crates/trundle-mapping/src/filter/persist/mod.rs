@@ -16,8 +16,8 @@ mod scans;
 mod tiles;
 
 use super::{
-    ParticleConfig, ParticleMapper, ancestry::Ancestry, bending::Bending, gate::Last, graph::Tie,
-    history::History, mapper::Particle, trust::OdometryTrust,
+    ParticleConfig, ParticleMapper, ancestry::Ancestry, bending::Bending, bias::OdometryBias, gate::Last,
+    graph::Tie, history::History, mapper::Particle, trust::OdometryTrust,
 };
 use crate::tiles::{Pools, TileMap, assemble};
 use bytes::{Reader, Writer, checksum};
@@ -25,7 +25,7 @@ pub use error::FilterFileError;
 use trundle_core::Stamp;
 
 const MAGIC: &[u8; 7] = b"trundlF";
-const VERSION: u8 = 2;
+const VERSION: u8 = 3;
 /// Bytes before those that the checksum is of.
 const HEAD: usize = 16;
 
@@ -53,7 +53,7 @@ impl ParticleMapper {
         out.u64(self.seed);
         out.u64(self.updates);
         out.f64(self.usual);
-        self.trust.numbers().into_iter().for_each(|v| out.f64(v));
+        self.trust.numbers().into_iter().chain(self.bias.numbers()).for_each(|v| out.f64(v));
         out.f64(self.closer.driven);
         out.count(self.session);
         let last = self.gate.last.unwrap_or_default();
@@ -99,6 +99,9 @@ impl ParticleMapper {
         let trust = [(); 6].map(|()| body.f64("what is known of the odometry"));
         let [a, b, c, d, e, f] = trust;
         mapper.trust = OdometryTrust::from_numbers([a?, b?, c?, d?, e?, f?]);
+        let bias = [(); 7].map(|()| body.f64("what the odometry has wrong"));
+        let [a, b, c, d, e, f, g] = bias;
+        mapper.bias = OdometryBias::from_numbers([a?, b?, c?, d?, e?, f?, g?]);
         mapper.closer.driven = body.f64("the way since the last look")?;
         mapper.session = body.u32()? as usize;
         let known = body.u8()? == 1;
