@@ -20,7 +20,7 @@ pub fn read(dir: &Path, tracked: Option<&Path>, quiet: bool) -> Result<LaserLog,
     let camera = model.camera;
     let sequence = TumSequence::open(dir, model.depth_scale, TumSequence::MAX_DIFFERENCE)?
         .with_size(camera.width(), camera.height());
-    let tracked = tracked.map(|file| base_poses(file)).transpose()?;
+    let tracked = tracked.map(base_poses).transpose()?;
     let poses = match &tracked {
         Some(poses) => Poses::Base(poses),
         None => Poses::of(dir, &sequence)?,
