@@ -4,7 +4,7 @@ use indicatif::ProgressBar;
 use std::time::Instant;
 use trundle::core::{CameraMotion, Pose2, Pose3, RgbdImage, Stamp};
 use trundle::io::{CameraModel, EncodedRgbd, FrameError, IoError, OutputFolder, TumSequence};
-use trundle::localization::{OdometryConfig, camera_motion};
+use trundle::localization::OdometryConfig;
 use trundle::runtime::{LevelMap, RobotConfig, Stage, StageTimes, level_from_first_camera};
 use trundle::slam::{Mode, RgbdSlam, SlamConfig, TrackReport};
 
@@ -166,7 +166,7 @@ impl<'a> OdometryPrior<'a> {
     fn motion(&self, earlier: Stamp, later: Stamp) -> Option<CameraMotion> {
         let base_motion = self.at(earlier)?.inverse() * self.at(later)?;
         let noise = self.noise.by_wheels(&base_motion);
-        Some(camera_motion((base_motion, noise), self.base_from_camera))
+        Some(CameraMotion::of_base((base_motion, noise), self.base_from_camera))
     }
 
     fn at(&self, stamp: Stamp) -> Option<Pose2> {

@@ -3,7 +3,7 @@
 //! - [`WheelOdometry`]: encoder ticks and gyro to a continuous, drifting pose with honest covariance.
 //! - [`Localizer`]: that odometry, corrected by visual poses and scan matches at the times they were taken, to the one
 //!   [`trundle_core::PoseEstimate`] that planning and control use.
-//! - [`camera_motion`]: what the camera did while the base moved: the motion prior of visual tracking.
+//! - [`Odometer`]: what that said at a moment: with [`trundle_core::CameraMotion::of_base`] the motion prior of visual tracking.
 //!
 //! ```
 //! use trundle_core::{DifferentialDrive, GyroRate, Pose3, Stamp, Vector3, WheelTicks};
@@ -24,7 +24,6 @@
 //! ```
 
 mod belief;
-mod camera_motion;
 mod correction;
 mod gyro_bias;
 mod history;
@@ -42,7 +41,6 @@ mod wheel_odometry;
 mod wheel_report;
 mod wheel_size;
 
-pub use camera_motion::camera_motion;
 pub use correction::{Correction, Prediction, VisualPose, VisualQuality};
 pub use localizer::Localizer;
 pub use localizer_config::LocalizerConfig;

@@ -6,7 +6,7 @@ use crate::{
     stage::{Stage, StageTimes},
 };
 use trundle_core::{CameraMotion, Invalid, Pose2, Pose3, RgbdImage, Scan, Stamp};
-use trundle_localization::{Odometer, camera_motion};
+use trundle_localization::Odometer;
 use trundle_mapping::DepthScanner;
 use trundle_slam::{MapFileError, RgbdSlam, TrackReport};
 
@@ -121,7 +121,7 @@ impl Lookout {
     /// `previous_camera_from_camera` by wheels and gyro.
     fn camera_motion_since_last_image(&mut self, odometer: Odometer) -> Option<CameraMotion> {
         let previous = self.last.replace(odometer)?;
-        Some(camera_motion(odometer.since(&previous), self.base_from_camera))
+        Some(CameraMotion::of_base(odometer.since(&previous), self.base_from_camera))
     }
 
     /// Whether it is time to look for the place everywhere: the odometry's has not been recognised for a while.

@@ -7,7 +7,6 @@ use std::path::{Path, PathBuf};
 use trundle_core::{
     CameraMotion, ColorImage, DepthImage, Distortion, PinholeCamera, Pose2, Pose3, RgbdImage, Stamp, Vector3,
 };
-use trundle_localization::{OdometryConfig, camera_motion};
 
 /// A folder of images: of the simulator (with `camera.toml` and, on wheels, `odometry.txt`), or else of the TUM benchmark's
 /// freiburg1.
@@ -71,13 +70,25 @@ impl Drive {
         let tilt = Rotation3::from_euler_angles(0.0, 8_f64.to_radians(), 0.0);
         let base_from_camera = Pose3::from_matrix(tilt.into_inner() * axes, Vector3::new(0.05, 0.0, 0.45));
         let motion = motion.to_pose2();
-        Some(camera_motion((motion, OdometryConfig::default().by_wheels(&motion)), base_from_camera))
+        Some(CameraMotion::of_base((motion, noise(&motion)), base_from_camera))
     }
 
     /// Where the camera of frame `i` was.
     pub fn truth(&self, i: usize) -> Pose3 {
         self.frames[i].truth.unwrap()
     }
+}
+
+/// How far off wheels without a gyro are, as `OdometryConfig` of trundle-localization has it.
+fn noise(motion: &Pose2) -> Matrix3<f64> {
+    let (way, turn) = (motion.x.hypot(motion.y), motion.theta.abs());
+    let spot = 0.002_f64.powi(2) * turn;
+    let heading = 0.05_f64.powi(2) * turn + 0.02_f64.powi(2) * way;
+    Matrix3::from_diagonal(&Vector3::new(
+        0.02_f64.powi(2) * way + spot,
+        0.005_f64.powi(2) * way + spot,
+        heading,
+    ))
 }
 
 /// The camera of the TUM benchmark's freiburg1.
