@@ -24,6 +24,8 @@ pub struct SlamRun {
     pub unreadable: Vec<String>,
     /// What was wrong with them, each told once.
     problems: Vec<String>,
+    /// Images between which and the one before the odometry told of the motion.
+    pub told: usize,
     /// Wall-clock time of the stages.
     pub times: StageTimes,
     /// Wall-clock time of the whole, s.
@@ -56,6 +58,7 @@ fn track(
         warned: 0,
         unreadable: Vec::new(),
         problems: Vec::new(),
+        told: 0,
         times: StageTimes::default(),
         seconds: 0.0,
     };
@@ -80,7 +83,12 @@ fn track(
     run.slam.finish_refining();
     recorder.finish(&run.slam)?;
     if let (None, Some(first)) = (&run.last_image, run.unreadable.first()) {
-        return Err(Failure::Input(format!("{}: no frame can be read; {first}", args.dir.display())));
+        let (dir, camera) = (args.dir.display(), args.camera());
+        let problem = format!("{dir}: no frame can be read as one of camera {camera} (--camera); {first}");
+        return Err(Failure::Input(problem));
+    }
+    if sequence.odometry().is_some() && run.told == 0 && frames > 1 {
+        console::warn("odometry.txt tells of no motion between images: is it empty, or of another clock?");
     }
     run.seconds = start.elapsed().as_secs_f64();
     Ok(run)
@@ -137,6 +145,7 @@ impl SlamRun {
     fn step(&mut self, image: RgbdImage, odometry: &OdometryPrior) -> TrackReport {
         let since = self.last_image.as_ref().map(RgbdImage::stamp);
         let prior = since.and_then(|since| odometry.motion(since, image.stamp()));
+        self.told += usize::from(prior.is_some());
         let report = self.times.measure(Stage::Slam, || self.slam.step(&image, prior));
         self.counts.count(report.tracking);
         if report.tracking.is_located() {
@@ -162,9 +171,13 @@ impl<'a> OdometryPrior<'a> {
         Self { poses: sequence.odometry().unwrap_or(&[]), base_from_camera, noise: robot.odometry }
     }
 
-    /// `earlier_camera_from_later_camera`.
+    /// `earlier_camera_from_later_camera`; `None` where the odometry does not tell it: in its holes, and where it jumps.
     fn motion(&self, earlier: Stamp, later: Stamp) -> Option<CameraMotion> {
         let base_motion = self.at(earlier)?.inverse() * self.at(later)?;
+        let farthest = self.noise.max_speed * (later - earlier);
+        if base_motion.x.hypot(base_motion.y) > farthest {
+            return None;
+        }
         let noise = self.noise.by_wheels(&base_motion);
         Some(CameraMotion::of_base((base_motion, noise), self.base_from_camera))
     }
@@ -172,7 +185,7 @@ impl<'a> OdometryPrior<'a> {
     fn at(&self, stamp: Stamp) -> Option<Pose2> {
         let after = self.poses.partition_point(|(at, _)| *at <= stamp);
         let (t0, a) = self.poses.get(after.checked_sub(1)?)?;
-        let (t1, b) = self.poses.get(after)?;
+        let (t1, b) = self.poses.get(after).filter(|(t1, _)| *t1 - *t0 <= self.noise.max_gap)?;
         Some(a.interpolate(b, (stamp - *t0) / (*t1 - *t0)))
     }
 }

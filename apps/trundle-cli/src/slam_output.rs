@@ -85,6 +85,7 @@ fn rows(sequence: &TumSequence, run: &SlamRun, judged: Option<&Judged>) -> Vec<V
             "ok / weak / dead reckoned / lost",
             format!("{} / {} / {} / {}", c.ok, c.weak, c.dead_reckoned, c.lost),
         ),
+        row("motions told by odometry.txt", run.told.to_string()),
         row("keyframes", run.slam.keyframes().count().to_string()),
         row("landmarks", run.slam.landmarks().count().to_string()),
         row("loops closed", run.slam.loops().len().to_string()),

@@ -1,5 +1,6 @@
 use crate::OdometryConfig;
 use nalgebra::Matrix3;
+use std::f64::consts::PI;
 
 /// One small motion of the base, and how it was measured.
 #[derive(Debug, Clone, Copy)]
@@ -38,6 +39,9 @@ pub(crate) fn of_step(config: &OdometryConfig, step: &Step) -> Matrix3<f64> {
 pub(crate) fn of_gap(config: &OdometryConfig, gap: f64) -> Matrix3<f64> {
     /// Turn for each metre that the robot may have gone, rad.
     const TURN: f64 = 3.0;
-    let way = (config.gap_speed * gap).powi(2);
-    Matrix3::from_diagonal(&nalgebra::Vector3::new(way, way, TURN * TURN * way))
+    /// However long the gap: m. More would drown the steps after it, whose noise is a difference of such numbers.
+    const FARTHEST: f64 = 10.0;
+    let way = (config.gap_speed * gap).min(FARTHEST).powi(2);
+    let turn = (TURN * TURN * way).min(PI * PI);
+    Matrix3::from_diagonal(&nalgebra::Vector3::new(way, way, turn))
 }

@@ -141,6 +141,11 @@ impl WheelOdometry {
         }
     }
 
+    /// The covariance of a motion of the base that no reading has told of for `gap` s, as a right perturbation (x m, y m, theta rad).
+    pub fn untold(&self, gap: f64) -> Matrix3<f64> {
+        of_gap(&self.config, gap)
+    }
+
     fn start(&mut self, ticks: &WheelTicks) -> WheelReport {
         self.last = Some(*ticks);
         self.odometry.stamp = ticks.stamp;

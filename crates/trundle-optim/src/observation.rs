@@ -8,6 +8,8 @@ pub const CHI2_95_2: f64 = 5.991;
 pub const CHI2_95_3: f64 = 7.815;
 /// 95 % of the chi-square distribution of six: of a whole pose.
 pub const CHI2_95_6: f64 = 12.592;
+/// 99.9 % of the same.
+pub(crate) const CHI2_999_6: f64 = 22.458;
 /// Points nearer than this along the optical axis (m) have no usable projection.
 pub(crate) const NEAREST: f64 = 0.02;
 

@@ -48,7 +48,7 @@ pub struct PoseProblem<'a> {
     pub camera: &'a PinholeCamera,
     /// Points (world, m) and what the image says of each.
     pub observations: &'a [(Vector3, PointObservation)],
-    /// What is known of the pose besides, by wheels, say. At odds with the points it counts for nothing.
+    /// What is known of the pose besides, by wheels, say. It counts once the points are found to agree with it.
     pub prior: Option<PosePrior>,
 }
 
@@ -61,6 +61,8 @@ pub struct PoseSolution {
     pub inliers: Vec<bool>,
     /// How many do.
     pub inlier_count: usize,
+    /// Whether there was a prior that contradicts them.
+    pub contradicts_prior: bool,
     /// Sum of J'J over the inliers: the inverse covariance of a right perturbation (m, rad) if every sigma is true. Without
     /// the prior: what the image says.
     pub information: Matrix6<f64>,
@@ -80,15 +82,27 @@ impl PoseSolution {
 impl PoseProblem<'_> {
     /// Refines `world_from_camera`. With nothing to go by the pose comes back as it was.
     pub fn solve(&self, world_from_camera: Pose3, config: &PoseConfig) -> PoseSolution {
-        let mut pose = world_from_camera;
-        let mut inliers = vec![true; self.observations.len()];
-        let mut prior = self.prior;
+        let everything = vec![true; self.observations.len()];
+        let by_image = self.refine(world_from_camera, (everything, None), config);
+        let Some(prior) = self.prior else { return by_image };
+        let agreed = by_image.covariance().is_none_or(|c| prior.agrees_with(by_image.world_from_camera, &c));
+        if !agreed {
+            return PoseSolution { contradicts_prior: true, ..by_image };
+        }
+        self.refine(by_image.world_from_camera, (by_image.inliers, Some(prior)), config)
+    }
+
+    /// Rounds of optimising and re-classifying.
+    fn refine(
+        &self,
+        start: Pose3,
+        (mut inliers, prior): (Vec<bool>, Option<PosePrior>),
+        config: &PoseConfig,
+    ) -> PoseSolution {
+        let mut pose = start;
         for _ in 0..config.rounds {
             pose = self.optimise(pose, (&inliers, prior), config);
-            let agreeing = self.prior.filter(|prior| prior.agrees_with(pose));
-            let changed = agreeing.is_some() != prior.is_some();
-            prior = agreeing;
-            if !self.classify(pose, &mut inliers) && !changed {
+            if !self.classify(pose, &mut inliers) {
                 break;
             }
         }
@@ -178,7 +192,14 @@ impl PoseProblem<'_> {
             inlier_count += 1;
         }
         let variance_factor = if freedoms > 0.0 { chi2 / freedoms } else { 1.0 };
-        PoseSolution { world_from_camera: pose, inliers, inlier_count, information, variance_factor }
+        PoseSolution {
+            world_from_camera: pose,
+            inliers,
+            inlier_count,
+            contradicts_prior: false,
+            information,
+            variance_factor,
+        }
     }
 }
 

@@ -1,5 +1,5 @@
 use crate::Huber;
-use crate::observation::CHI2_95_6;
+use crate::observation::{CHI2_95_6, CHI2_999_6};
 use crate::pose_graph::inverse_right_jacobian;
 use nalgebra::{Matrix6, Vector6};
 use trundle_core::Pose3;
@@ -14,9 +14,12 @@ pub struct PosePrior {
 }
 
 impl PosePrior {
-    /// Whether the two agree at 95 %.
-    pub fn agrees_with(&self, pose: Pose3) -> bool {
-        self.chi2(self.residual(pose)) <= CHI2_95_6
+    /// Whether it agrees at 99.9 % with a pose that was found without it, of that covariance (right perturbation; m, rad).
+    pub fn agrees_with(&self, pose: Pose3, covariance: &Matrix6<f64>) -> bool {
+        let Some(own) = self.information.cholesky().map(|c| c.inverse()) else { return false };
+        let off = self.residual(pose);
+        let spread = (own + covariance).cholesky();
+        spread.is_some_and(|spread| off.dot(&spread.solve(&off)) <= CHI2_999_6)
     }
 
     /// Under the Huber loss as a whole.

@@ -366,10 +366,15 @@ impl Robot {
         }
     }
 
-    /// What the odometry said when an image was taken, which may be a while ago.
+    /// What the odometry said when an image was taken, which may be a while ago; long after its newest reading it is that, and as
+    /// uncertain as the base may have moved since.
     fn odometry_at(&self, stamp: Stamp) -> Option<Odometer> {
-        let newest = self.latest.odometry.as_ref().map(Odometer::from);
-        self.localizer.odometry_at(stamp).ok().or(newest)
+        let newest = || {
+            let odometry = self.latest.odometry.as_ref()?;
+            let untold = self.odometry.untold((stamp - odometry.stamp).max(0.0));
+            Some(Odometer { covariance: odometry.covariance + untold, ..Odometer::from(odometry) })
+        };
+        self.localizer.odometry_at(stamp).ok().or_else(newest)
     }
 
     /// The pose estimate.

@@ -5,8 +5,10 @@ use nalgebra::Matrix6;
 use trundle_core::{CameraMotion, Pose3};
 use trundle_optim::{PoseConstraint, PosePrior};
 
-/// What the camera may be off against the base whatever the wheels say, m and rad: its mast sways.
-const STEADY: (f64, f64) = (1e-4, 5e-4);
+/// What the camera may be off against the base whatever the wheels say, m and rad: a mast of 1 m sways by so much.
+const STEADY: (f64, f64) = (5e-4, 5e-4);
+/// A way that is less certain, or longer, m, says nothing.
+const FARTHEST: f64 = 100.0;
 
 /// The way from a keyframe on, as wheels and gyro know it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -24,12 +26,13 @@ impl Rolled {
         Self { from, from_to: Pose3::identity(), covariance: Matrix6::zeros() }
     }
 
-    /// After another step of so many seconds.
-    #[must_use]
-    pub fn on(&self, step: CameraMotion, seconds: f64, config: &MotionConfig) -> Self {
+    /// After another step of so many seconds; `None` once it says nothing any more.
+    pub fn on(&self, step: CameraMotion, seconds: f64, config: &MotionConfig) -> Option<Self> {
         let noise = config.covariance_of(&step, seconds);
         let from_to = (self.from_to * step.motion).renormalized();
-        Self { from_to, covariance: carried(&self.covariance, step.motion) + noise, ..*self }
+        let way = Self { from_to, covariance: carried(&self.covariance, step.motion) + noise, ..*self };
+        let is_near = from_to.translation.norm() < FARTHEST && way.covariance.amax() < FARTHEST.powi(2);
+        is_near.then_some(way)
     }
 
     /// After the way that `next` knows, which begins where this one ends.
@@ -53,8 +56,9 @@ impl Rolled {
 
     /// The inverse of the covariance, for a camera whose mast sways.
     pub fn information(&self) -> Option<Matrix6<f64>> {
-        let steady = of_sigmas(STEADY.0, STEADY.1);
-        (self.covariance + steady).try_inverse().filter(|i| i.iter().all(|v| v.is_finite()))
+        let spread = self.covariance + of_sigmas(STEADY.0, STEADY.1);
+        let information = ((spread + spread.transpose()) * 0.5).cholesky()?.inverse();
+        information.iter().all(|v| v.is_finite()).then_some(information)
     }
 }
 
@@ -69,7 +73,7 @@ mod tests {
         let step = Pose3::exp(Vector6::new(0.0, 0.0, 0.05, 0.0, 0.02, 0.0));
         let start = KeyframeId::from_index(0);
         let go = |from: Rolled, steps: usize| {
-            (0..steps).fold(from, |rolled, _| rolled.on(step.into(), 0.1, &config))
+            (0..steps).fold(from, |rolled, _| rolled.on(step.into(), 0.1, &config).unwrap())
         };
         let (whole, first) = (go(Rolled::at(start), 20), go(Rolled::at(start), 8));
         let parts = first.then(&go(Rolled::at(KeyframeId::from_index(1)), 12));

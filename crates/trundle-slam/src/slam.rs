@@ -219,7 +219,8 @@ impl RgbdSlam {
     /// Takes note of what wheels say of the way since the last frame.
     fn roll(&mut self, stamp: Stamp, prior: Option<CameraMotion>) {
         let seconds = self.belief.stamp.map_or(0.0, |last| (stamp - last).max(0.0));
-        self.rolled = self.rolled.zip(prior).map(|(way, step)| way.on(step, seconds, &self.config.motion));
+        self.rolled =
+            self.rolled.zip(prior).and_then(|(way, step)| way.on(step, seconds, &self.config.motion));
         if let Some(step) = prior {
             self.floor.note(step.motion);
         }

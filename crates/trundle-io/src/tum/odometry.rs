@@ -4,11 +4,15 @@ use std::fmt::Write;
 use std::path::Path;
 use trundle_core::{Pose2, Stamp};
 
+/// Farther off no robot gets, m, and rad.
+const FARTHEST: f64 = 1e6;
+
 /// Odometry beside a TUM sequence: lines of `timestamp x y theta` (s, m, m, rad), the pose `odom_from_base`, `#` for
 /// comments. Stamps rise.
 ///
 /// # Errors
-/// With the line, when a field is missing, too many or not a finite number, or when time stands still or goes back.
+/// With the line, when a field is missing, too many or not a finite number, when time stands still or goes back, or when a pose
+/// is farther off than any robot gets.
 pub fn read_odometry(path: &Path) -> Result<Vec<(Stamp, Pose2)>, IoError> {
     parse_odometry(path, &read_text(path)?)
 }
@@ -19,6 +23,11 @@ fn parse_odometry(path: &Path, text: &str) -> Result<Vec<(Stamp, Pose2)>, IoErro
         let (stamp, [x, y, theta]) = stamped_numbers(path, line, ["x", "y", "theta"])?;
         if let Some((before, _)) = poses.last().filter(|(before, _)| stamp <= *before) {
             let problem = format!("timestamp is {stamp} s, expected more than the {before} s before");
+            return Err(IoError::line(path, line.0, problem));
+        }
+        let all = [("x", x, "m"), ("y", y, "m"), ("theta", theta, "rad")];
+        if let Some((name, value, unit)) = all.into_iter().find(|(_, value, _)| value.abs() > FARTHEST) {
+            let problem = format!("{name} is {value} {unit}, expected at most {FARTHEST} {unit}");
             return Err(IoError::line(path, line.0, problem));
         }
         poses.push((stamp, Pose2::new(x, y, theta)));
@@ -50,6 +59,10 @@ mod tests {
         assert_eq!(
             parse("1 0 0 0\n1 0 0 0").unwrap_err().to_string(),
             "odometry.txt, line 2: timestamp is 1.000000000 s, expected more than the 1.000000000 s before"
+        );
+        assert_eq!(
+            parse("1 0 0 0\n2 0 -1e7 0").unwrap_err().to_string(),
+            "odometry.txt, line 2: y is -10000000 m, expected at most 1000000 m"
         );
         assert!(
             parse("1 0 0").unwrap_err().to_string().contains("3 fields, expected 4: timestamp x y theta")

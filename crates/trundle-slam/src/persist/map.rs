@@ -179,7 +179,7 @@ mod tests {
         let ids = [0.0, 0.1]
             .map(|x| map.add_keyframe(blank_frame(3), Pose3::exp(Vector6::new(x, 0.0, 0.0, 0.0, 0.0, 0.0))));
         let step = Pose3::exp(Vector6::new(0.1, 0.0, 0.02, 0.0, 0.3, 0.0));
-        let rolled = Rolled::at(ids[0]).on(step.into(), 0.1, &MotionConfig::default());
+        let rolled = Rolled::at(ids[0]).on(step.into(), 0.1, &MotionConfig::default()).unwrap();
         map.keyframe_mut(ids[1]).rolled = Some(rolled);
         map.floor = Some(Vector3::y());
         (map, rolled)

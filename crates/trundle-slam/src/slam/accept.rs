@@ -26,6 +26,10 @@ impl RgbdSlam {
         for inlier in found.fix.inliers() {
             landmarks[inlier.feature] = inlier.landmark;
         }
+        if found.fix.solution.contradicts_prior || found.relocalised {
+            // The wheels slipped, or the robot was carried.
+            self.rolled = None;
+        }
         self.show(&frame, &landmarks);
         let mut pose = found.fix.visual_from_camera();
         let mut reference = self.reference(&landmarks);

@@ -17,3 +17,4 @@ mod saving;
 mod settings;
 mod synthetic;
 mod walks;
+mod wheels;

@@ -1,0 +1,47 @@
+//! What wheels know besides the images: it helps while it is true, and does no harm where it is not.
+
+use crate::points::{Dice, Room, camera, stamp};
+use nalgebra::{Matrix6, Vector6};
+use trundle_core::{CameraMotion, Pose3};
+use trundle_slam::{RgbdSlam, SlamConfig};
+
+/// One and a half seconds on, looking about.
+fn walk(frame: usize) -> Pose3 {
+    let t = frame as f64 / 90.0 * std::f64::consts::TAU;
+    Pose3::exp(Vector6::new(0.5 * t.sin(), 0.0, 0.4 - 0.4 * t.cos(), 0.0, 0.6 * t.sin(), 0.0))
+}
+
+/// The mean error of the last pose over some runs, m, where the wheels say this of each true step.
+fn error(told: impl Fn(Pose3) -> Option<CameraMotion>) -> f64 {
+    const RUNS: u64 = 6;
+    let room = Room::new();
+    let of_run = |seed| {
+        let mut slam = RgbdSlam::new(camera(), SlamConfig::default()).unwrap().starting_at(walk(0));
+        let mut dice = Dice(seed + 1000);
+        let mut step = |i: usize| {
+            let motion = walk(i.saturating_sub(1)).inverse() * walk(i);
+            let (features, depth) = room.seen_from(walk(i), &mut dice);
+            slam.step_with_features(stamp(i), features, &depth, told(motion)).visual_from_camera
+        };
+        let last = (0..=45).map(&mut step).last().unwrap();
+        (walk(45).inverse() * last).translation.norm()
+    };
+    let mean = (0..RUNS).map(of_run).sum::<f64>() / RUNS as f64;
+    println!("{:.2} mm", mean * 1e3);
+    mean
+}
+
+fn exactly(motion: Pose3) -> CameraMotion {
+    CameraMotion { motion, covariance: Some(Matrix6::zeros()) }
+}
+
+#[test]
+fn wheels_that_are_right_make_the_pose_better() {
+    assert!(error(|motion| Some(exactly(motion))) < 0.8 * error(|_| None));
+}
+
+/// Encoders that are dead, or a robot that is pushed: the way is zero, and the wheels are sure of it.
+#[test]
+fn wheels_that_stand_do_not_hold_a_camera_that_moves() {
+    assert!(error(|_| Some(exactly(Pose3::identity()))) < 1.5 * error(|_| None) + 1e-3);
+}
