@@ -205,7 +205,8 @@ impl LiveMapper {
         if self.redrawing.is_none() {
             self.note(self.kept.len(), &self.front.evidence().clone());
         }
-        if self.kept.len() >= self.thin_at {
+        // A redrawing would have to begin again.
+        if self.kept.len() >= self.thin_at && self.redrawing.is_none() {
             self.thin();
         }
     }
@@ -253,9 +254,6 @@ impl LiveMapper {
         self.thin_at = (2 * self.kept.len()).clamp(THIN_AT, MOST_KEPT);
         self.snapshots.clear();
         self.every = SNAPSHOT_EVERY;
-        if self.redrawing.take().is_some() {
-            self.redraw_from(0);
-        }
     }
 }
 

@@ -286,7 +286,9 @@ impl Robot {
                 self.drawn.note(stamp, track.visual_from_camera, || self.mapper.kept_stamps());
             }
         }
-        let saved = saved.filter(|_| self.knows_its_place(track.stamp));
+        // A grid that has not yet followed the visual map does not fit it.
+        let fits = self.knows_its_place(track.stamp) && !self.mapper.is_redrawing();
+        let saved = saved.filter(|_| fits);
         report.memory = saved.map(|visual| Arc::new(self.remember(visual)));
         report.track = Some(track);
     }

@@ -78,7 +78,10 @@ impl Supervisor {
 
     /// Takes up a mission, as far as it has come, in place of what is left of the old one.
     pub(crate) fn begin(&mut self, mission: &MissionState) {
-        let entry = |(&index, &task)| Entry { index, task, is_second_try: false };
+        let was_put_off = |index: usize| {
+            mission.ended.iter().any(|r| r.index == index && matches!(r.end, TaskEnd::PutOff { .. }))
+        };
+        let entry = |(&index, &task)| Entry { index, task, is_second_try: was_put_off(index) };
         self.queue = mission.places.iter().zip(mission.left.tasks()).map(entry).collect();
         self.current = None;
         self.records.clone_from(&mission.ended);

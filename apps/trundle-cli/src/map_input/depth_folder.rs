@@ -114,12 +114,21 @@ impl<'a> Poses<'a> {
     }
 }
 
+/// Farther off no camera gets, m.
+const FARTHEST: f64 = 1e6;
+
 /// The base's way from a TUM trajectory of the camera, whatever its frame: about the first pose, seen from above.
 fn base_poses(file: &Path) -> Result<Vec<(Stamp, Pose2)>, Failure> {
     let camera = read_trajectory(file)?;
     let Some((_, first)) = camera.first() else {
         return Err(Failure::Input(format!("{}: no pose, expected those of the camera", file.display())));
     };
+    let is_far = |pose: &Pose3| !(pose.translation.norm() <= FARTHEST);
+    if let Some((stamp, pose)) = camera.iter().find(|(_, pose)| is_far(pose)) {
+        let (file, off) = (file.display(), pose.translation.norm());
+        let problem = format!("{file}: the pose at {stamp} s is {off} m off, expected at most {FARTHEST} m");
+        return Err(Failure::Input(problem));
+    }
     let base_from_camera = RobotConfig::default().mount.base_from_camera();
     let (first_from_frame, camera_from_base) = (first.inverse(), base_from_camera.inverse());
     let base = |pose: &Pose3| (base_from_camera * first_from_frame * *pose * camera_from_base).to_pose2();

@@ -56,6 +56,10 @@ impl Navigator {
         let from = match (&self.state, self.follower.reference()) {
             (DriveState::Driving, Some(_)) if self.is_off_track => (s.estimate.pose, s.estimate.twist),
             (DriveState::Driving, Some(reference)) => (reference.pose, reference.twist),
+            // On the way to a vantage it rolls as well.
+            (DriveState::Recovering { .. }, Some(reference)) if matches!(self.vantage, Vantage::Going(_)) => {
+                (reference.pose, reference.twist)
+            }
             _ => (s.estimate.pose, Twist2::ZERO),
         };
         let plan = match self.plan_in_view(s, from, goal) {
@@ -114,6 +118,7 @@ impl Navigator {
             }
             let reason = format!("first to see what the way leads onto at ({:.2}, {:.2}) m", at.x, at.y);
             self.state = DriveState::Recovering { reason };
+            self.held_since = None;
             return None;
         }
         self.vantage = Vantage::Unknown;

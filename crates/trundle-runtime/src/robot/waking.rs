@@ -61,6 +61,8 @@ impl Robot {
     /// What the robot would take along through a restart now; none while it looks in the background, or does not know its place.
     pub fn memory(&mut self) -> Option<Memory> {
         let visual = self.lookout.as_ref()?.slam().save();
+        // The grid that fits it.
+        self.mapper.work_within(usize::MAX, 1);
         let now = self.localizer.estimate().stamp;
         self.knows_its_place(now).then(|| self.remember(visual))
     }

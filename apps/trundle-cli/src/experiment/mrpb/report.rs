@@ -56,7 +56,7 @@ pub(super) fn verdict(trials: &[Trial], success: bool) -> String {
     let head = if success { "Within the limits" } else { "Missed" };
     format!(
         "{head}: {reached} of {} runs reached the goal within {NEAR} m and {ALIGNED} rad, {contacts} contacts, control cycle \
-         {slowest:.2} ms on average at worst (at most {CYCLE_MS}). In trundle's own simulator, with the benchmark's map.",
+         {slowest:.2} ms on average at worst (at most {CYCLE_MS}). In trundle's own simulator, with the benchmark's map where it has one.",
         trials.len()
     )
 }
@@ -91,7 +91,7 @@ pub(super) fn report(trials: &[Trial], success: bool) -> Report {
     let report = Report::new("MRPB 1.0: local planning")
         .subtitle(
             "Every pair of start and goal, where the benchmark has people with and without them. A round robot of 0.25 m \
-             radius at up to 0.55 m/s, with the benchmark's map, on a laser of 270 deg and 720 beams that measures all at once, wheels \
+             radius at up to 0.55 m/s, with the benchmark's map where it has one, on a laser of 270 deg and 720 beams that measures all at once, wheels \
              and gyro. People walk the benchmark's ways at its mean speeds, and wait while the robot is right before them.",
         )
         .verdict(if success { Verdict::Ok(told_all) } else { Verdict::Failed(told_all) })
