@@ -123,7 +123,7 @@ fn base_poses(file: &Path) -> Result<Vec<(Stamp, Pose2)>, Failure> {
     let Some((_, first)) = camera.first() else {
         return Err(Failure::Input(format!("{}: no pose, expected those of the camera", file.display())));
     };
-    let is_far = |pose: &Pose3| !(pose.translation.norm() <= FARTHEST);
+    let is_far = |pose: &Pose3| pose.translation.norm() > FARTHEST;
     if let Some((stamp, pose)) = camera.iter().find(|(_, pose)| is_far(pose)) {
         let (file, off) = (file.display(), pose.translation.norm());
         let problem = format!("{file}: the pose at {stamp} s is {off} m off, expected at most {FARTHEST} m");
