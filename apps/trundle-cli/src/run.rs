@@ -115,14 +115,17 @@ pub fn drive(
 }
 
 /// Lets the robot of `setup` live in the simulator without recording: what the simulator says reaches it as it is. After
-/// `restart` s it is switched off and on again where it stands, with nothing but what it remembers.
-pub fn live(setup: &RunSetup, body: &mut Simulator, restart: Option<f64>) -> Result<Run, Failure> {
+/// `restart` s it is switched off and on again where it stands, with nothing but the file that it kept last.
+///
+/// # Errors
+/// When the robot has kept nothing by then, or the run is over before.
+pub fn live(setup: &RunSetup, body: &mut Simulator, mut restart: Option<f64>) -> Result<Run, Failure> {
     let start = Instant::now();
     let mut robot = setup.robot_at_work()?;
     if restart.is_some() {
         robot = robot.remembering();
     }
-    let mut restart = restart;
+    let mut kept = None;
     let mut log = Logbook::default();
     let mut finished = None;
     while let Some(event) = RobotBody::next_event(body)? {
@@ -136,10 +139,14 @@ pub fn live(setup: &RunSetup, body: &mut Simulator, restart: Option<f64>) -> Res
         if is_over || log.elapsed() > setup.time_limit {
             break;
         }
-        if let (Some(memory), true) = (&report.memory, restart.is_some_and(|at| log.elapsed() >= at)) {
-            robot = waking(setup, memory)?;
-            restart = None;
+        kept = report.memory.or(kept);
+        if let Some(at) = restart.take_if(|at| log.elapsed() >= *at) {
+            robot = woken_after_kill(setup, kept.as_deref(), at)?;
         }
+    }
+    if let Some(at) = restart {
+        let ended = log.elapsed();
+        return Err(Failure::Input(format!("the restart at {at} s: the run was over after {ended:.1} s")));
     }
     Ok(Run {
         robot,
@@ -148,6 +155,14 @@ pub fn live(setup: &RunSetup, body: &mut Simulator, restart: Option<f64>) -> Res
         seconds: start.elapsed().as_secs_f64(),
         tape: TapeCost::default(),
     })
+}
+
+/// The robot that is switched on after a kill at `at` s, with what was in its file.
+fn woken_after_kill(setup: &RunSetup, kept: Option<&Memory>, at: f64) -> Result<Robot, Failure> {
+    let kept =
+        kept.ok_or_else(|| Failure::Input(format!("the restart at {at} s: nothing had been kept by then")))?;
+    let woken = Some(BASE64_STANDARD.encode(kept.to_bytes()));
+    RunSetup { woken, ..setup.clone() }.robot_at_work()
 }
 
 /// A robot that wakes up with a memory.

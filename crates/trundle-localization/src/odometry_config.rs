@@ -12,7 +12,8 @@ use trundle_core::{Invalid, Pose2, require_in};
 pub struct OdometryConfig {
     /// Along the way, sigma after 1 m, m / sqrt(m), 0 to 1. Default 0.02: wheel radius and floor, a usual indoor figure.
     pub way_noise: f64,
-    /// Across the way, sigma after 1 m, m / sqrt(m), 0 to 1. Default 0.005: driven wheels slide sideways little.
+    /// Across the way, sigma after 1 m, m / sqrt(m), 0 to 1. Default 0.001: driven wheels roll, they do not slide; models of odometry
+    /// (Chong and Kleeman 1997) have none. That the camera sees no sideways motion either is what tells turning from it.
     pub sideways_noise: f64,
     /// The place, sigma after a turn of 1 rad, m / sqrt(rad), 0 to 1. Default 0.002: rims that slip 2 mm in 0.1 m of way each, and
     /// wheels that touch off their middle.
@@ -59,7 +60,7 @@ impl Default for OdometryConfig {
     fn default() -> Self {
         Self {
             way_noise: 0.02,
-            sideways_noise: 0.005,
+            sideways_noise: 0.001,
             spot_noise: 0.002,
             wheel_turn_noise: 0.05,
             wheel_way_noise: 0.02,

@@ -176,7 +176,7 @@ impl Navigator {
         self.held_since = None;
         self.blocked_at = None;
         self.vantage = Vantage::Unknown;
-        self.unseen.restart();
+        self.unseen.restart(matches!(goal, Goal::View(_)));
         self.is_off_track = false;
         self.touches = 0;
         self.look = LookAround::default();
@@ -268,8 +268,7 @@ impl Navigator {
             }
             None if is_lost && position_sigma(&s.estimate) < 0.5 * self.config.lost_sigma => {
                 self.look = LookAround::default();
-                // It may have been carried here.
-                self.unseen.home = None;
+                self.unseen.note_found(s);
                 self.state = DriveState::Mapping;
             }
             _ => {}

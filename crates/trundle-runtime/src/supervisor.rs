@@ -167,8 +167,8 @@ impl Supervisor {
         }
         match explorer.next(s.grid, s.estimate.pose) {
             Exploration::Look(view) => {
-                let is_near = |old: &Frontier| (old.middle - view.frontier.middle).norm() < SMALL_MOVE;
-                if !over && frontier.as_ref().is_some_and(is_near) {
+                let is_old = |old: &Frontier| view.frontier.is_that_at(old.middle);
+                if !over && frontier.as_ref().is_some_and(is_old) {
                     return None;
                 }
                 *frontier = Some(view.frontier);
@@ -226,9 +226,6 @@ impl Supervisor {
         }
     }
 }
-
-/// A frontier whose middle moved by less is the one that is being driven to, m.
-const SMALL_MOVE: f64 = 0.3;
 
 fn told(record: &TaskRecord) -> Option<String> {
     match &record.end {

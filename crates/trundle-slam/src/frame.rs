@@ -1,4 +1,5 @@
 use crate::depth::DepthConfig;
+use crate::outline::is_on_outline;
 use crate::sensor::Sensor;
 use nalgebra::UnitQuaternion;
 use trundle_core::{DepthImage, Stamp, Vector2, Vector3};
@@ -19,7 +20,7 @@ pub(crate) struct Frame {
 
 impl Frame {
     /// Of an image during which the camera turned by `turn` (rad, camera frame) from its first row to its last: features
-    /// are kept where they would be had all rows been taken with the middle one.
+    /// are kept where they would be had all rows been taken with the middle one, but for those on outlines, which are dropped.
     pub fn new(
         stamp: Stamp,
         mut features: Features,
@@ -27,6 +28,8 @@ impl Frame {
         turn: Vector3,
         (sensor, depth): (&Sensor, &DepthConfig),
     ) -> Self {
+        let scale = |k: &Keypoint| sensor.scale(k.octave);
+        features.retain(|k| !is_on_outline(image, raw(k), scale(k), depth));
         let depths = features.keypoints.iter().map(|k| depth.measure(image, raw(k))).collect();
         if turn != Vector3::zeros() {
             features.keypoints.iter_mut().for_each(|k| unroll(k, turn, sensor));

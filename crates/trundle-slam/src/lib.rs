@@ -38,6 +38,7 @@ mod map;
 mod map_bundle;
 mod mapping;
 mod motion;
+mod outline;
 mod persist;
 mod places;
 mod refine;

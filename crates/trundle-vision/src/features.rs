@@ -33,3 +33,37 @@ pub struct Features {
     /// Their descriptors.
     pub descriptors: Vec<Descriptor>,
 }
+
+impl Features {
+    /// Keeps those whose keypoints are wanted, in their order.
+    pub fn retain(&mut self, wants: impl Fn(&Keypoint) -> bool) {
+        let mut kept = 0;
+        for i in 0..self.keypoints.len().min(self.descriptors.len()) {
+            if wants(&self.keypoints[i]) {
+                self.keypoints.swap(kept, i);
+                self.descriptors.swap(kept, i);
+                kept += 1;
+            }
+        }
+        self.keypoints.truncate(kept);
+        self.descriptors.truncate(kept);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_kept_stays_together_and_in_order() {
+        let keypoint = |i: u8| Keypoint { x: f32::from(i), y: 0.0, octave: 0, angle: 0.0, response: 1.0 };
+        let mut features = Features {
+            keypoints: (0..9).map(keypoint).collect(),
+            descriptors: (0..9).map(|i| Descriptor([i; 4])).collect(),
+        };
+        features.retain(|k| k.octave == 0 && k.x as u8 % 3 == 1);
+        let places: Vec<f32> = features.keypoints.iter().map(|k| k.x).collect();
+        let words: Vec<u64> = features.descriptors.iter().map(|d| d.0[0]).collect();
+        assert_eq!((places, words), (vec![1.0, 4.0, 7.0], vec![1, 4, 7]));
+    }
+}

@@ -81,7 +81,7 @@ fn days() -> Vec<Day> {
         },
         Day { mishap: Some(Mishap::FullDisk), ..plain("the disk is full", "demo", End::Arrived) },
         Day {
-            mishap: Some(Mishap::Restart(9.0)),
+            mishap: Some(Mishap::Restart(17.0)),
             ..plain("killed and switched on again on the way", "demo", End::Arrived)
         },
     ]

@@ -103,6 +103,7 @@ fn finish(story: &Story, args: &RunsArgs, trials: Vec<Trial>) -> Result<Outcome,
         let png = picture(trial);
         folder.write(&format!("seed-{}.png", trial.seed), &png)?;
         write_map(&folder, &format!("seed-{}", trial.seed), &trial.grid)?;
+        folder.write(&format!("seed-{}.csv", trial.seed), way_csv(trial).as_bytes())?;
         report = report.figure(Figure::png(&trial.name, &png).caption(&trial.numbers.verdict()));
     }
     folder.write(&format!("{}.csv", story.name), csv(&trials).as_bytes())?;
@@ -115,6 +116,15 @@ fn finish(story: &Story, args: &RunsArgs, trials: Vec<Trial>) -> Result<Outcome,
         console::say(&format!("\n{told}\nSee {}", place.join("report.html").display()));
     }
     Ok(if success { Outcome::Reached } else { Outcome::Missed })
+}
+
+/// Where the robot believed to be and where it was, map frame, at every image.
+fn way_csv(trial: &Trial) -> String {
+    let header = ["t_s", "x_m", "y_m", "theta_rad", "true_x_m", "true_y_m", "true_theta_rad"];
+    let row = |(time, here, truth): &(f64, Pose2, Pose2)| {
+        [*time, here.x, here.y, here.theta, truth.x, truth.y, truth.theta]
+    };
+    table_csv(header, trial.beliefs.iter().map(row))
 }
 
 const HEADER: [&str; 7] =

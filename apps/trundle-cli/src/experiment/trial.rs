@@ -6,7 +6,7 @@ use crate::run_table::RunNumbers;
 use crate::{console, failure::Failure, tape::Tape};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use trundle::core::{OccupancyGrid, Pose2, Vector2};
+use trundle::core::{OccupancyGrid, Pose2, Stamp, Vector2};
 use trundle::runtime::{Mission, RobotConfig};
 use trundle::sim::{FaultSchedule, Scene, Simulator};
 
@@ -31,7 +31,7 @@ pub struct TrialPlan {
 /// What happens to the robot's computer.
 #[derive(Debug, Clone, Copy)]
 pub enum Mishap {
-    /// Killed after so many seconds, and switched on again with what it remembered last.
+    /// Killed after so many seconds, and switched on again with what it kept last, which may be seconds old.
     Restart(f64),
     /// Its disk takes no more.
     FullDisk,
@@ -51,6 +51,8 @@ pub struct Trial {
     pub driven: Vec<Vector2>,
     /// When it was at each of these points, s since the beginning.
     pub times: Vec<f64>,
+    /// At every image: s since the beginning, where the robot believed to be, and where it was, map frame.
+    pub beliefs: Vec<(f64, Pose2, Pose2)>,
     /// The trajectory planned last, world frame.
     pub planned: Vec<Vector2>,
     /// The map, map frame.
@@ -116,11 +118,18 @@ pub fn one(plan: TrialPlan) -> Result<Trial, Failure> {
         world_from_map,
         numbers: RunNumbers::of(&setup, &run),
         times: run.log.truths.iter().map(|(stamp, _)| *stamp - run.log.start.unwrap_or_default()).collect(),
+        beliefs: beliefs(&run.log),
         driven: run.log.truths.iter().map(|(_, pose)| world_from_map.transform(pose.position())).collect(),
         planned: planned.into_iter().map(|point| world_from_map.transform(point)).collect(),
         grid: run.robot.grid().clone(),
         changes: run.log.changes.clone(),
     })
+}
+
+fn beliefs(log: &Logbook) -> Vec<(f64, Pose2, Pose2)> {
+    let start = log.start.unwrap_or_default();
+    let belief = |(stamp, pose): &(Stamp, Pose2)| Some((*stamp - start, *pose, log.truth_at(*stamp)?));
+    log.estimates.iter().filter_map(belief).collect()
 }
 
 fn planned(run: &Run) -> Vec<Vector2> {

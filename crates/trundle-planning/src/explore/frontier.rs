@@ -9,6 +9,16 @@ pub struct Frontier {
     pub length: f64,
 }
 
+/// Frontiers whose middles are nearer than this are one and the same, m.
+const SAME: f64 = 0.5;
+
+impl Frontier {
+    /// Whether this is the frontier whose middle was there on an older map.
+    pub fn is_that_at(&self, middle: Vector2) -> bool {
+        (self.middle - middle).norm() < SAME
+    }
+}
+
 /// All frontiers of at least `least` metres, by the place of their first cell in the grid.
 ///
 /// Free cells with an unknown neighbour (of four), joined where they touch (of eight). O(cells).

@@ -50,9 +50,6 @@ pub struct Explorer {
     current: Option<Vector2>,
 }
 
-/// Frontiers whose middles are nearer than this are one and the same, m.
-const SAME: f64 = 0.5;
-
 impl Explorer {
     /// An explorer for a robot that keeps `radius` m from obstacles, 0.01 to 5.
     ///
@@ -72,9 +69,8 @@ impl Explorer {
         let reach = Reach::from(grid, &field, pose.position(), self.radius);
         let views = all.into_iter().filter(|frontier| self.is_worth_it(frontier));
         let views: Vec<_> = views.filter_map(|frontier| self.view(grid, &reach, frontier)).collect();
-        let kept = self
-            .current
-            .and_then(|current| views.iter().find(|view| (view.frontier.middle - current).norm() < SAME));
+        let kept =
+            self.current.and_then(|current| views.iter().find(|view| view.frontier.is_that_at(current)));
         let cost = |view: &Viewpoint| view.way - self.config.gain * view.frontier.length;
         let best = kept.or_else(|| views.iter().min_by(|a, b| cost(a).total_cmp(&cost(b)))).cloned();
         self.current = best.as_ref().map(|view| view.frontier.middle);
@@ -88,7 +84,7 @@ impl Explorer {
     }
 
     fn is_worth_it(&self, frontier: &Frontier) -> bool {
-        let looks = self.looked.iter().filter(|&&middle| (middle - frontier.middle).norm() < SAME).count();
+        let looks = self.looked.iter().filter(|&&middle| frontier.is_that_at(middle)).count();
         frontier.middle.norm() <= self.config.reach && looks < self.config.looks as usize
     }
 

@@ -86,7 +86,7 @@ fn noise(motion: &Pose2) -> Matrix3<f64> {
     let heading = 0.05_f64.powi(2) * turn + 0.02_f64.powi(2) * way;
     Matrix3::from_diagonal(&Vector3::new(
         0.02_f64.powi(2) * way + spot,
-        0.005_f64.powi(2) * way + spot,
+        0.001_f64.powi(2) * way + spot,
         heading,
     ))
 }
