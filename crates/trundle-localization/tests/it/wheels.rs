@@ -156,8 +156,8 @@ fn a_metre_costs_the_documented_sigmas() {
     let covariance = drive.odometry.odometry().covariance;
     assert!((covariance[(0, 0)].sqrt() - 0.02).abs() < 1e-4, "{covariance}");
     assert!((covariance[(2, 2)].sqrt() - 0.02).abs() < 1e-4, "{covariance}");
-    // Across: sliding, and the heading's random walk carried along: 0.005^2 + 0.02^2 / 3.
-    assert!((covariance[(1, 1)] - (0.005_f64.powi(2) + 0.02_f64.powi(2) / 3.0)).abs() < 4e-6, "{covariance}");
+    // Across: sliding, and the heading's random walk carried along: 0.001^2 + 0.02^2 / 3.
+    assert!((covariance[(1, 1)] - (0.001_f64.powi(2) + 0.02_f64.powi(2) / 3.0)).abs() < 4e-6, "{covariance}");
 }
 
 #[test]
