@@ -176,7 +176,7 @@ impl Navigator {
         self.held_since = None;
         self.blocked_at = None;
         self.vantage = Vantage::Unknown;
-        self.unseen.restart(matches!(goal, Goal::View(_)));
+        self.unseen.restart();
         self.is_off_track = false;
         self.touches = 0;
         self.look = LookAround::default();
@@ -268,7 +268,8 @@ impl Navigator {
             }
             None if is_lost && position_sigma(&s.estimate) < 0.5 * self.config.lost_sigma => {
                 self.look = LookAround::default();
-                self.unseen.note_found(s);
+                // It may have been carried here.
+                self.unseen.home = None;
                 self.state = DriveState::Mapping;
             }
             _ => {}

@@ -1,5 +1,5 @@
 use crate::depth::DepthConfig;
-use crate::outline::is_on_outline;
+use crate::outline::drop_outlines;
 use crate::sensor::Sensor;
 use nalgebra::UnitQuaternion;
 use trundle_core::{DepthImage, Stamp, Vector2, Vector3};
@@ -28,8 +28,7 @@ impl Frame {
         turn: Vector3,
         (sensor, depth): (&Sensor, &DepthConfig),
     ) -> Self {
-        let scale = |k: &Keypoint| sensor.scale(k.octave);
-        features.retain(|k| !is_on_outline(image, raw(k), scale(k), depth));
+        drop_outlines(&mut features, image, |octave| sensor.scale(octave), depth);
         let depths = features.keypoints.iter().map(|k| depth.measure(image, raw(k))).collect();
         if turn != Vector3::zeros() {
             features.keypoints.iter_mut().for_each(|k| unroll(k, turn, sensor));

@@ -85,7 +85,7 @@ pub struct TrackReport {
     /// Covariance of that pose as a right perturbation (m, m, m, rad, rad, rad), against the first keyframe: of the pose
     /// on the map, and of the map along the chain of keyframes that leads here. Grows while not located.
     pub covariance: Matrix6<f64>,
-    /// Features found in the image.
+    /// Features found in the image, without those on outlines, which are no points of anything.
     pub features: usize,
     /// Features matched with landmarks.
     pub matches: usize,

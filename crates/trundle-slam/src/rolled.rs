@@ -5,7 +5,7 @@ use nalgebra::Matrix6;
 use trundle_core::{CameraMotion, Pose3};
 use trundle_optim::{PoseConstraint, PosePrior};
 
-/// What the camera may be off against the base whatever the wheels say, m and rad: a mast of 0.5 m that sways and springs back.
+/// What the camera may be off against the base whatever the wheels say, m and rad: how much a camera on a short mast nods.
 ///
 /// This is what holds a robot that turns on the spot in its place: keyframe follows keyframe there, and what their images have wrong
 /// they have wrong alike, so that a tie that lets each go 0.5 mm lets the turn go centimetres (docs/results.md).

@@ -3,7 +3,7 @@
 
 use super::trial::{self, Mishap, Trial, TrialPlan};
 use super::{RunsArgs, missions};
-use crate::{Outcome, console, failure::Failure, logbook::StateChange, robot_file};
+use crate::{Outcome, console, failure::Failure, robot_file};
 use trundle::core::{Pose2, Vector2};
 use trundle::io::{OutputFolder, Summary};
 use trundle::runtime::{DriveState, Mission, Task};
@@ -194,20 +194,8 @@ fn report(trials: &[Trial], success: bool) -> Report {
         .table(table);
     trials.iter().fold(report, |report, trial| {
         let figure = Figure::png(&format!("{}, seed {}", trial.name, trial.seed), &missions::picture(trial));
-        report.figure(figure.caption(&trial.numbers.verdict())).table(story(trial))
+        report.figure(figure.caption(&trial.numbers.verdict())).table(trial.story())
     })
-}
-
-/// What the robot did on that day, one after the other.
-fn story(trial: &Trial) -> Table {
-    let row = |change: &StateChange| {
-        let Pose2 { x, y, theta } = change.pose;
-        let place = format!("({x:.2} m, {y:.2} m, {:.0} deg)", theta.to_degrees());
-        vec![format!("{:.1}", change.at), place, change.state.to_string()]
-    };
-    let title = format!("{}, seed {}", trial.name, trial.seed);
-    let table = Table::new(&title, ["time, s", "believed place", "what it began to do"]);
-    trial.changes.iter().map(row).fold(table, Table::row).wide()
 }
 
 fn summary(trials: &[Trial], success: bool) -> Summary {

@@ -104,7 +104,8 @@ fn finish(story: &Story, args: &RunsArgs, trials: Vec<Trial>) -> Result<Outcome,
         folder.write(&format!("seed-{}.png", trial.seed), &png)?;
         write_map(&folder, &format!("seed-{}", trial.seed), &trial.grid)?;
         folder.write(&format!("seed-{}.csv", trial.seed), way_csv(trial).as_bytes())?;
-        report = report.figure(Figure::png(&trial.name, &png).caption(&trial.numbers.verdict()));
+        let figure = Figure::png(&trial.name, &png).caption(&trial.numbers.verdict());
+        report = report.figure(figure).table(trial.story());
     }
     folder.write(&format!("{}.csv", story.name), csv(&trials).as_bytes())?;
     folder.write("report.html", report.to_html().as_bytes())?;

@@ -9,6 +9,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use trundle::core::{OccupancyGrid, Pose2, Stamp, Vector2};
 use trundle::runtime::{Mission, RobotConfig};
 use trundle::sim::{FaultSchedule, Scene, Simulator};
+use trundle::viz::Table;
 
 /// A closed-loop run to be made: robot and simulator, with noise, and no truth in the loop.
 pub struct TrialPlan {
@@ -61,6 +62,20 @@ pub struct Trial {
     pub changes: Vec<StateChange>,
 }
 
+impl Trial {
+    /// What the robot did, one after the other.
+    pub fn story(&self) -> Table {
+        let row = |change: &StateChange| {
+            let Pose2 { x, y, theta } = change.pose;
+            let place = format!("({x:.2} m, {y:.2} m, {:.0} deg)", theta.to_degrees());
+            vec![format!("{:.1}", change.at), place, change.state.to_string()]
+        };
+        let title = format!("{}, seed {}", self.name, self.seed);
+        let table = Table::new(&title, ["time, s", "believed place", "what it began to do"]);
+        self.changes.iter().map(row).fold(table, Table::row).wide()
+    }
+}
+
 /// Makes the runs, as many at once as there are threads; the results are in the order of the plans.
 ///
 /// # Errors
@@ -108,7 +123,8 @@ pub fn one(plan: TrialPlan) -> Result<Trial, Failure> {
     let mut body = Simulator::new(scene, config, seed).map_err(|error| Failure::Input(error.to_string()))?;
     let run = match mishap {
         None => live(&setup, &mut body, None),
-        Some(Mishap::Restart(at)) => live(&setup, &mut body, Some(at)),
+        Some(Mishap::Restart(at)) => live(&setup, &mut body, Some(at))
+            .map_err(|error| Failure::Input(format!("{name}, seed {seed}: {error}"))),
         Some(Mishap::FullDisk) => drive(&setup, &mut body, Tape::full()?, Logbook::default(), true),
     }?;
     let planned = planned(&run);

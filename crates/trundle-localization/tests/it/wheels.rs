@@ -20,8 +20,16 @@ impl Drive {
         Self::from_ticks(0.0, 0.0)
     }
 
+    fn with(config: OdometryConfig) -> Self {
+        Self::starting((0.0, 0.0), config)
+    }
+
     fn from_ticks(left: f64, right: f64) -> Self {
-        let odometry = WheelOdometry::new(DifferentialDrive::KOBUKI, OdometryConfig::default()).unwrap();
+        Self::starting((left, right), OdometryConfig::default())
+    }
+
+    fn starting((left, right): (f64, f64), config: OdometryConfig) -> Self {
+        let odometry = WheelOdometry::new(DifferentialDrive::KOBUKI, config).unwrap();
         let mut drive = Self { odometry, nanos: 1_000_000_000, left, right };
         drive.read();
         drive
@@ -156,8 +164,12 @@ fn a_metre_costs_the_documented_sigmas() {
     let covariance = drive.odometry.odometry().covariance;
     assert!((covariance[(0, 0)].sqrt() - 0.02).abs() < 1e-4, "{covariance}");
     assert!((covariance[(2, 2)].sqrt() - 0.02).abs() < 1e-4, "{covariance}");
-    // Across: sliding, and the heading's random walk carried along: 0.001^2 + 0.02^2 / 3.
-    assert!((covariance[(1, 1)] - (0.001_f64.powi(2) + 0.02_f64.powi(2) / 3.0)).abs() < 4e-6, "{covariance}");
+    // Across: the heading's random walk carried along, and sliding.
+    let mut rails = Drive::with(OdometryConfig { sideways_noise: 0.0, ..OdometryConfig::default() });
+    rails.drive(Twist2::new(0.5, 0.0), 100);
+    let carried = rails.odometry.odometry().covariance[(1, 1)];
+    assert!((carried - 0.02_f64.powi(2) / 3.0).abs() < 4e-6, "{carried}");
+    assert!((covariance[(1, 1)] - carried - 0.001_f64.powi(2)).abs() < 1e-9, "{covariance}");
 }
 
 #[test]

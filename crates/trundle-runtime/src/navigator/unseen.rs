@@ -39,18 +39,9 @@ const APART: f64 = 0.4;
 const MOST_LOOKS_A_GOAL: usize = 12;
 
 impl Unseen {
-    /// For the next goal. Where that is but the next view of the same search, what was looked at in vain stays barred.
-    pub(super) fn restart(&mut self, is_same_search: bool) {
-        let barred = if is_same_search { std::mem::take(&mut self.barred) } else { Vec::new() };
-        *self = Self { home: self.home, barred, ..Self::default() };
-    }
-
-    /// It was lost and knows its place again: where that is floor never seen, it was carried here.
-    pub(super) fn note_found(&mut self, s: &Surroundings<'_>) {
-        let here = s.estimate.pose.position();
-        if unknown_about(s.floor(), here, s.floor().geometry().resolution, self.home).next().is_some() {
-            self.home = None;
-        }
+    /// For the next goal.
+    pub(super) fn restart(&mut self) {
+        *self = Self { home: self.home, ..Self::default() };
     }
 
     /// Notes that it sets out to look at `at` from `from`.
