@@ -129,13 +129,19 @@ impl Logbook {
         self.truths.get(after.checked_sub(1)?).map(|(_, pose)| *pose)
     }
 
+    /// At every image of which truth is known: s since the first event, where the robot believed to be, and where it was, map frame.
+    pub fn beliefs(&self) -> Vec<(f64, Pose2, Pose2)> {
+        let start = self.start.unwrap_or_default();
+        let belief = |(stamp, pose): &(Stamp, Pose2)| Some((*stamp - start, *pose, self.truth_at(*stamp)?));
+        self.estimates.iter().filter_map(belief).collect()
+    }
+
     /// Distance of the estimate from truth: root of the mean square, m.
     pub fn estimate_rmse(&self) -> Option<f64> {
-        let squares = self.estimates.iter().filter_map(|(stamp, pose)| {
-            Some((pose.position() - self.truth_at(*stamp)?.position()).norm_squared())
-        });
-        let squares: Vec<f64> = squares.collect();
-        (!squares.is_empty()).then(|| (squares.iter().sum::<f64>() / squares.len() as f64).sqrt())
+        let beliefs = self.beliefs();
+        let square = |(_, believed, truth): &(f64, Pose2, Pose2)| believed.distance(truth).powi(2);
+        let sum: f64 = beliefs.iter().map(square).sum();
+        (!beliefs.is_empty()).then(|| (sum / beliefs.len() as f64).sqrt())
     }
 
     /// Takes down what only judges may know: truth (moved into the map frame) and contacts.

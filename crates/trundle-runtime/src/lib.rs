@@ -31,6 +31,7 @@ mod stage;
 mod state;
 mod supervisor;
 mod supervisor_config;
+mod whereabouts;
 
 pub use camera_mount::CameraMount;
 pub use config::RobotConfig;

@@ -4,6 +4,7 @@ use crate::{
     schedule::Ticker,
     sight::Sight,
     stage::{Stage, StageTimes},
+    whereabouts::{Place, Whereabouts},
 };
 use trundle_core::{CameraMotion, Invalid, Pose2, Pose3, RgbdImage, Scan, Stamp};
 use trundle_localization::Odometer;
@@ -21,6 +22,8 @@ pub(crate) struct Lookout {
     slam: RgbdSlam,
     scanner: DepthScanner,
     watch: EyeWatch,
+    /// The place by scans, while it is not known.
+    pub(crate) whereabouts: Whereabouts,
     /// What the odometry said at the last image.
     last: Option<Odometer>,
     /// Since when images that show enough have not been located.
@@ -39,6 +42,8 @@ pub(crate) struct Sighting {
     pub(crate) track: TrackReport,
     /// Where the robot sees by its camera.
     pub(crate) scan: Option<Scan>,
+    /// Where its scans fit the map alone, while it does not know its place.
+    pub(crate) place: Option<Place>,
     /// Since when images that show enough have not been located.
     pub(crate) unplaced: Option<Stamp>,
     /// All poses of the visual map, when it was corrected by more than tracking goes along with.
@@ -60,11 +65,14 @@ pub(crate) const UNPLACED: f64 = 0.7;
 
 impl Lookout {
     pub(crate) fn new(config: &RobotConfig, base_from_camera: Pose3) -> Result<Self, Invalid> {
+        let scanner = DepthScanner::new(config.camera, base_from_camera, config.scan.clone())?;
+        let blind_range = blind_range(config.sight, &scanner);
         Ok(Self {
             sight: config.sight,
             base_from_camera,
             slam: RgbdSlam::new(config.camera, config.slam.clone())?,
-            scanner: DepthScanner::new(config.camera, base_from_camera, config.scan.clone())?,
+            scanner,
+            whereabouts: Whereabouts::new(config, blind_range)?,
             watch: EyeWatch::default(),
             last: None,
             unplaced: None,
@@ -85,10 +93,7 @@ impl Lookout {
 
     /// Nearer than this its scans show nothing, m.
     pub(crate) fn blind_range(&self) -> f64 {
-        match self.sight {
-            Sight::DepthCamera => self.scanner.blind_range(),
-            Sight::Laser => 0.0,
-        }
+        blind_range(self.sight, &self.scanner)
     }
 
     /// Looks at an image taken when the odometry said this; none when it is the last one again though the robot has moved.
@@ -113,9 +118,23 @@ impl Lookout {
             Sight::DepthCamera => Some(times.measure(Stage::Scan, || self.scanner.scan(image))),
             Sight::Laser => None,
         };
+        let place = scan.as_ref().and_then(|scan| self.seek(odom_from_base, scan, times));
         let is_time = self.saving.as_mut().is_some_and(|saving| saving.due(image.stamp()));
         let saved = is_time.then(|| times.measure(Stage::Saving, || self.slam.save()));
-        Some(Sighting { odom_from_base, track, scan, unplaced: self.unplaced, is_carried_away, bent, saved })
+        let unplaced = self.unplaced;
+        Some(Sighting { odom_from_base, track, scan, place, unplaced, is_carried_away, bent, saved })
+    }
+
+    /// Looks for the place by a scan, while it is not known.
+    pub(crate) fn seek(
+        &mut self,
+        odom_from_base: Pose2,
+        scan: &Scan,
+        times: &mut StageTimes,
+    ) -> Option<Place> {
+        let whereabouts = &mut self.whereabouts;
+        let is_sought = whereabouts.is_sought();
+        is_sought.then(|| times.measure(Stage::Search, || whereabouts.look(odom_from_base, scan))).flatten()
     }
 
     /// `previous_camera_from_camera` by wheels and gyro.
@@ -144,6 +163,14 @@ impl Lookout {
     /// A robot that does not know its place does not know it before a bare wall either.
     fn has_been_unplaced(&self, now: Stamp) -> bool {
         self.unplaced.is_some_and(|since| now - since > UNPLACED)
+    }
+}
+
+/// Nearer than this its scans show nothing, m.
+fn blind_range(sight: Sight, scanner: &DepthScanner) -> f64 {
+    match sight {
+        Sight::DepthCamera => scanner.blind_range(),
+        Sight::Laser => 0.0,
     }
 }
 

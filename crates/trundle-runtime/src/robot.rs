@@ -16,6 +16,7 @@ use crate::{
     sight::Sight,
     stage::{Stage, StageTimes},
     state::DriveState,
+    whereabouts::Place,
 };
 use background::Background;
 use std::sync::Arc;
@@ -164,9 +165,7 @@ impl Robot {
             SensorEvent::Rgbd(image) => self.look(image, &mut report),
             SensorEvent::Touch(touch) => self.touch(touch.pressed),
             SensorEvent::Cliff(cliff) => self.cliff(cliff.over_edge),
-            SensorEvent::Scan(scan) if self.sight == Sight::Laser => {
-                self.see(scan.clone());
-            }
+            SensorEvent::Scan(scan) if self.sight == Sight::Laser => self.sweep(scan),
             // The map is drawn from the depth image alone; a laser beside it is for other programs.
             SensorEvent::Scan(_) | SensorEvent::Truth { .. } => {}
         }
@@ -251,9 +250,20 @@ impl Robot {
         }
     }
 
+    /// A scan of a laser that the robot sees by.
+    fn sweep(&mut self, scan: &Scan) {
+        let odometer = self.odometry_at(scan.stamp());
+        if let (Some(lookout), Some(odometer)) = (&mut self.lookout, odometer) {
+            let place = lookout.seek(odometer.pose, scan, &mut self.times);
+            self.note_place(place);
+        }
+        self.see(scan.clone());
+    }
+
     /// What an image showed: the visual pose corrects the estimate; at the map's rate the scan does too, and enters the map.
     fn take_in(&mut self, sighting: Sighting, report: &mut StepReport) {
-        let Sighting { odom_from_base, track, scan, unplaced, is_carried_away, bent, saved } = sighting;
+        let Sighting { odom_from_base, track, scan, place, unplaced, is_carried_away, bent, saved } =
+            sighting;
         self.latest.unplaced = unplaced;
         if is_carried_away {
             self.localizer.lose_place();
@@ -279,6 +289,7 @@ impl Robot {
         if let Some(trajectory) = bent {
             self.follow_the_visual_map(&trajectory);
         }
+        self.note_place(place);
         if let Some(scan) = scan {
             let stamp = scan.stamp();
             let is_drawn = self.see(scan);
@@ -291,6 +302,23 @@ impl Robot {
         let saved = saved.filter(|_| fits);
         report.memory = saved.map(|visual| Arc::new(self.remember(visual)));
         report.track = Some(track);
+    }
+
+    /// A robot that does not know its place is where its scans fit the map alone; where that is still to be found, it is looked for.
+    fn note_place(&mut self, place: Option<Place>) {
+        let is_lost = |localizer: &Localizer| position_sigma(&localizer.estimate()) >= self.lost_sigma;
+        if let Some(Place { stamp, map_from_base, covariance }) = place
+            && is_lost(&self.localizer)
+        {
+            self.localizer.correct_scan(stamp, map_from_base, &covariance);
+        }
+        let is_lost = is_lost(&self.localizer);
+        let Some(lookout) = &mut self.lookout else { return };
+        match (is_lost, lookout.whereabouts.is_sought()) {
+            (true, false) => lookout.whereabouts.seek(self.mapper.grid().clone()),
+            (false, true) => lookout.whereabouts.end(),
+            _ => {}
+        }
     }
 
     /// A scan: at the map's rate it corrects the estimate and enters the map; safety watches each. Whether it was drawn.

@@ -18,6 +18,8 @@ pub enum Stage {
     Saving,
     /// Scan against map.
     ScanMatch,
+    /// A robot that does not know its place: its scans against the whole map.
+    Search,
     /// Fusion to one pose estimate.
     Localization,
     /// Scan into the grid.
@@ -36,13 +38,14 @@ pub enum Stage {
 
 impl Stage {
     /// Every stage, in the order of the data.
-    pub const ALL: [Self; 13] = [
+    pub const ALL: [Self; 14] = [
         Self::Odometry,
         Self::Decoding,
         Self::Slam,
         Self::Scan,
         Self::Saving,
         Self::ScanMatch,
+        Self::Search,
         Self::Localization,
         Self::Mapping,
         Self::Traffic,
@@ -61,6 +64,7 @@ impl Stage {
             Self::Scan => "scan",
             Self::Saving => "saving",
             Self::ScanMatch => "scan_match",
+            Self::Search => "search",
             Self::Localization => "localization",
             Self::Mapping => "mapping",
             Self::Traffic => "traffic",

@@ -78,7 +78,8 @@ fn unroll(keypoint: &mut Keypoint, turn: Vector3, sensor: &Sensor) {
     }
 }
 
-fn raw(keypoint: &Keypoint) -> Vector2 {
+/// Where the image has a keypoint, px, as the lens bends it.
+pub(crate) fn raw(keypoint: &Keypoint) -> Vector2 {
     Vector2::new(f64::from(keypoint.x), f64::from(keypoint.y))
 }
 

@@ -1,12 +1,16 @@
 //! Corners on the outline of something, which are no point of anything.
 
 use crate::depth::DepthConfig;
-use std::f64::consts::FRAC_PI_4;
+use crate::frame::raw;
+use std::f64::consts::FRAC_1_SQRT_2;
 use trundle_core::{DepthImage, Vector2};
-use trundle_vision::{Features, Keypoint};
+use trundle_vision::Features;
 
 /// The circle of FAST around a corner, px of its octave \[Rosten06\], and one half as large: what made it one is within.
 const CIRCLES: [f64; 2] = [1.5, 3.0];
+/// Half of a circle's directions; the other half lies across.
+const DIRECTIONS: [(f64, f64); 4] =
+    [(1.0, 0.0), (FRAC_1_SQRT_2, FRAC_1_SQRT_2), (0.0, 1.0), (-FRAC_1_SQRT_2, FRAC_1_SQRT_2)];
 /// Octaves coarser than this ratio are looked at as if they were this one: farther out a floor meets its wall.
 const COARSEST: f64 = 2.0;
 /// Second differences of the inverse depth are a step beyond this part of it, and so many sigmas of its noise: swept in
@@ -22,10 +26,9 @@ pub(crate) fn drop_outlines(
     scale: impl Fn(u8) -> f64,
     config: &DepthConfig,
 ) {
-    let is_sound = |k: &Keypoint| {
-        !is_on_outline(image, Vector2::new(f64::from(k.x), f64::from(k.y)), scale(k.octave), config)
-    };
-    let sound: Vec<bool> = features.keypoints.iter().map(is_sound).collect();
+    let keypoints = features.keypoints.iter();
+    let sound: Vec<bool> =
+        keypoints.map(|k| !is_on_outline(image, raw(k), scale(k.octave), config)).collect();
     if sound.iter().filter(|sound| **sound).count() >= LEAST {
         features.retain(|i| sound[i]);
     }
@@ -49,10 +52,7 @@ fn is_on_outline(image: &DepthImage, pixel: Vector2, scale: f64, config: &DepthC
     };
     let offsets = CIRCLES.into_iter().flat_map(|radius| {
         let reach = (radius * scale.min(COARSEST)).max(1.0);
-        (0..4).map(move |i| {
-            let (sin, cos) = (f64::from(i) * FRAC_PI_4).sin_cos();
-            Vector2::new(reach * cos, reach * sin).map(f64::round)
-        })
+        DIRECTIONS.into_iter().map(move |(x, y)| Vector2::new(reach * x, reach * y).map(f64::round))
     });
     offsets.filter_map(step).any(|step| step > STEP.0 * here + STEP.1 * noise)
 }

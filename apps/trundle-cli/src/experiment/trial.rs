@@ -6,7 +6,7 @@ use crate::run_table::RunNumbers;
 use crate::{console, failure::Failure, tape::Tape};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use trundle::core::{OccupancyGrid, Pose2, Stamp, Vector2};
+use trundle::core::{OccupancyGrid, Pose2, Vector2};
 use trundle::runtime::{Mission, RobotConfig};
 use trundle::sim::{FaultSchedule, Scene, Simulator};
 use trundle::viz::Table;
@@ -134,18 +134,12 @@ pub fn one(plan: TrialPlan) -> Result<Trial, Failure> {
         world_from_map,
         numbers: RunNumbers::of(&setup, &run),
         times: run.log.truths.iter().map(|(stamp, _)| *stamp - run.log.start.unwrap_or_default()).collect(),
-        beliefs: beliefs(&run.log),
+        beliefs: run.log.beliefs(),
         driven: run.log.truths.iter().map(|(_, pose)| world_from_map.transform(pose.position())).collect(),
         planned: planned.into_iter().map(|point| world_from_map.transform(point)).collect(),
         grid: run.robot.grid().clone(),
         changes: run.log.changes.clone(),
     })
-}
-
-fn beliefs(log: &Logbook) -> Vec<(f64, Pose2, Pose2)> {
-    let start = log.start.unwrap_or_default();
-    let belief = |(stamp, pose): &(Stamp, Pose2)| Some((*stamp - start, *pose, log.truth_at(*stamp)?));
-    log.estimates.iter().filter_map(belief).collect()
 }
 
 fn planned(run: &Run) -> Vec<Vector2> {
