@@ -59,6 +59,7 @@ fn days() -> Vec<Day> {
             FaultKind::CameraDropped { probability: 1.0 },
             End::Stopped("image"),
         ),
+        broken("lights out", 8.0, FOREVER, FaultKind::LightsOut, End::Arrived),
         broken("depth gone for 10 s", 8.0, 18.0, FaultKind::DepthGone, End::Arrived),
         broken("depth gone", 8.0, FOREVER, FaultKind::DepthGone, End::Stopped("image")),
         broken("frames late by 500 ms", 0.0, FOREVER, FaultKind::CameraLate { delay_s: 0.5 }, End::Arrived),

@@ -7,6 +7,8 @@ use trundle_core::{Invalid, Pose2, require_finite, require_in};
 pub enum FaultKind {
     /// The lens is covered: images come, black and without depth.
     CameraBlack,
+    /// It is dark: colour is black, and the depth camera has a light of its own.
+    LightsOut,
     /// Images come with new stamps, but all are the last one before (the first one, when there is none before).
     CameraFrozen,
     /// Images do not come.

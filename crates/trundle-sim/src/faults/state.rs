@@ -16,6 +16,7 @@ pub(crate) struct Faults {
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct CameraFault {
     pub(crate) is_black: bool,
+    pub(crate) is_dark: bool,
     pub(crate) is_frozen: bool,
     pub(crate) has_no_depth: bool,
     pub(crate) is_dropped: bool,
@@ -41,6 +42,7 @@ impl Faults {
         for (i, kind) in self.holding() {
             match kind {
                 FaultKind::CameraBlack => fault.is_black = true,
+                FaultKind::LightsOut => fault.is_dark = true,
                 FaultKind::CameraFrozen => fault.is_frozen = true,
                 FaultKind::DepthGone => fault.has_no_depth = true,
                 FaultKind::CameraLate { delay_s } => fault.delay = delay_s,

@@ -61,6 +61,7 @@ impl Eye {
             None => self.look(stage, track, stamp, frame)?,
         };
         self.last = self.may_freeze.then(|| image.clone());
+        let image = if fault.is_dark { without_light(&image)? } else { image };
         if fault.has_no_depth { without_depth(&image) } else { Ok(image) }
     }
 
@@ -88,9 +89,13 @@ impl Eye {
 
     fn black(&self, stamp: Stamp) -> Result<RgbdImage, Invalid> {
         let (width, height) = (self.renderer.camera().width(), self.renderer.camera().height());
-        let color = ColorImage::new(width, height, vec![[0; 3]; width * height])?;
-        RgbdImage::new(stamp, color, no_depth(width, height)?)
+        RgbdImage::new(stamp, ColorImage::filled(width, height, [0; 3]), no_depth(width, height)?)
     }
+}
+
+fn without_light(image: &RgbdImage) -> Result<RgbdImage, Invalid> {
+    let color = ColorImage::filled(image.color().width(), image.color().height(), [0; 3]);
+    RgbdImage::new(image.stamp(), color, image.depth().clone())
 }
 
 fn without_depth(image: &RgbdImage) -> Result<RgbdImage, Invalid> {

@@ -82,6 +82,15 @@ fn a_camera_without_depth_still_has_colour() {
 }
 
 #[test]
+fn in_the_dark_there_is_depth_and_no_colour() {
+    let (events, _) = events(broken(FaultKind::LightsOut));
+    for image in images(&events) {
+        assert_eq!(is_black(image), is_during(image.stamp()), "{}", image.stamp());
+        assert!(has_depth(image));
+    }
+}
+
+#[test]
 fn a_frozen_camera_repeats_its_last_image_with_new_stamps() {
     let (events, _) = events(broken(FaultKind::CameraFrozen));
     let images = images(&events);
