@@ -26,7 +26,9 @@
 mod belief;
 mod correction;
 mod gyro_bias;
+mod gyro_scale;
 mod history;
+mod learnt;
 mod localizer;
 mod localizer_config;
 mod odometer;

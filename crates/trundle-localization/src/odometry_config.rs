@@ -35,6 +35,9 @@ pub struct OdometryConfig {
     pub gyro_rate_noise: f64,
     /// What the gyro's bias may be before it was measured (one sigma), rad/s, 0 to 1. Default 0.02.
     pub gyro_bias_sigma: f64,
+    /// What the gyro's scale may be off before it was learnt (one sigma, as a part), 0 (never learnt) to 0.1. Default 0.005: a small
+    /// gyro, calibrated at the factory.
+    pub gyro_scale_sigma: f64,
     /// How the bias wanders, rad/s / sqrt(s), 0 to 0.1. Default 0.0002.
     pub gyro_bias_walk: f64,
     /// Wheels at rest for this long are a robot at rest, s, 0.05 to 10: then the bias is measured. Default 0.3.
@@ -69,6 +72,7 @@ impl Default for OdometryConfig {
             wheel_radius_sigma: 0.01,
             gyro_rate_noise: 0.01,
             gyro_bias_sigma: 0.02,
+            gyro_scale_sigma: 0.005,
             gyro_bias_walk: 0.0002,
             still_time: 0.3,
             gyro_timeout: 0.05,
@@ -104,6 +108,7 @@ impl OdometryConfig {
         require_in("wheel_radius_sigma", self.wheel_radius_sigma, "", 0.0, 0.1)?;
         require_in("gyro_rate_noise", self.gyro_rate_noise, "rad/s", 1e-6, 1.0)?;
         require_in("gyro_bias_sigma", self.gyro_bias_sigma, "rad/s", 0.0, 1.0)?;
+        require_in("gyro_scale_sigma", self.gyro_scale_sigma, "", 0.0, 0.1)?;
         require_in("gyro_bias_walk", self.gyro_bias_walk, "rad/s/sqrt(s)", 0.0, 0.1)?;
         require_in("still_time", self.still_time, "s", 0.05, 10.0)?;
         require_in("gyro_timeout", self.gyro_timeout, "s", 0.02, 2.0)?;

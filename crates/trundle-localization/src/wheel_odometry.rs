@@ -1,6 +1,7 @@
 use crate::{
     OdometryConfig, WheelCounts, WheelReport,
     gyro_bias::GyroBias,
+    gyro_scale::GyroScale,
     odometry_noise::{Step, of_gap, of_step},
     planar::carried,
     stuck_gyro::StuckGyro,
@@ -9,7 +10,7 @@ use crate::{
 };
 use nalgebra::Matrix3;
 use trundle_core::{
-    DifferentialDrive, GyroRate, Invalid, Odometry, Pose2, Stamp, Twist2, Vector3, WheelTicks,
+    DifferentialDrive, GyroRate, Invalid, Odometry, Pose2, Pose3, Stamp, Twist2, Vector3, WheelTicks,
 };
 
 /// Where the wheels and the gyro believe the robot is.
@@ -27,12 +28,15 @@ pub struct WheelOdometry {
     config: OdometryConfig,
     gyro: TurnIntegral,
     bias: GyroBias,
+    scale: GyroScale,
     stuck: StuckGyro,
     size: WheelSize,
     last_rate: Option<GyroRate>,
     last: Option<WheelTicks>,
     suspect: Option<WheelTicks>,
     resting_since: Option<Stamp>,
+    /// The length of all steps, m.
+    way: f64,
     odometry: Odometry,
     report: WheelReport,
     counts: WheelCounts,
@@ -55,6 +59,7 @@ impl WheelOdometry {
         let (drive, config) = (drive.validated()?, config.validated()?);
         Ok(Self {
             bias: GyroBias::new(&config),
+            scale: GyroScale::new(&config),
             size: WheelSize::new(&config),
             drive,
             config,
@@ -64,6 +69,7 @@ impl WheelOdometry {
             last: None,
             suspect: None,
             resting_since: None,
+            way: 0.0,
             odometry: Odometry {
                 stamp: Stamp::default(),
                 pose: Pose2::IDENTITY,
@@ -124,20 +130,30 @@ impl WheelOdometry {
         self.bias.is_measured().then(|| self.bias.value())
     }
 
+    /// True turns over the gyro's, as far as the camera has shown them.
+    pub fn gyro_scale(&self) -> f64 {
+        self.scale.value()
+    }
+
     /// Radii of the left and the right wheel as far as gyro and camera have shown them, m.
     pub fn wheel_radii(&self) -> [f64; 2] {
         let (left, right) = self.size.ratios();
         [left, right].map(|ratio| ratio * self.drive.wheel_radius)
     }
 
-    /// The camera saw the base at `at` (m), in a frame that rests, when the odometry had it at `odom_from_base`: the ways by both
-    /// show how large the wheels are. `None` where the frame does not go on from the last call's.
-    pub fn seen(&mut self, odom_from_base: Pose2, at: Option<Vector3>) {
-        match at {
-            Some(at) if at.iter().all(|v| v.is_finite()) && odom_from_base.is_finite() => {
-                self.size.seen(odom_from_base, at);
+    /// The camera saw the base at `seen_from_base`, in a frame that rests, when the odometry had it at `odom_from_base`: the ways by
+    /// both show how large the wheels are, the turns how much the gyro makes of them. `None` where the frame does not go on from
+    /// the last call's.
+    pub fn seen(&mut self, odom_from_base: Pose2, seen_from_base: Option<Pose3>) {
+        match seen_from_base.filter(|seen| seen.is_finite() && odom_from_base.is_finite()) {
+            Some(seen) => {
+                self.size.seen(odom_from_base, seen.translation);
+                self.scale.seen(odom_from_base.theta, seen.rotation, self.way);
             }
-            _ => self.size.unseen(),
+            None => {
+                self.size.unseen();
+                self.scale.interrupt();
+            }
         }
     }
 
@@ -198,6 +214,9 @@ impl WheelOdometry {
         let slips = slip_rate.abs() > self.config.slip_rate;
         let way = (rims.left + rims.right) / 2.0;
         let slip = if slips { slip_rate.abs() * rims.dt * self.drive.wheelbase / 2.0 } else { 0.0 };
+        if slips || turn_by_gyro.is_none() {
+            self.scale.interrupt();
+        }
         if slips {
             self.size.interrupt();
         } else {
@@ -211,6 +230,7 @@ impl WheelOdometry {
 
     fn move_by(&mut self, stamp: Stamp, step: &Step) {
         let motion = Pose2::exp(Vector3::new(step.way, 0.0, step.turn));
+        self.way += step.way.abs();
         let odometry = &mut self.odometry;
         odometry.stamp = stamp;
         odometry.pose = odometry.pose * motion;
@@ -221,7 +241,7 @@ impl WheelOdometry {
     /// The gyro's turn over the last `dt` s, less its bias, rad, if it covers them.
     fn turn_by_gyro(&mut self, stamp: Stamp, dt: f64) -> Option<f64> {
         let (turn, covered) = self.gyro.turn_until(stamp, self.config.gyro_timeout)?;
-        ((covered - dt).abs() < 1e-6).then(|| turn - self.bias.value() * dt)
+        ((covered - dt).abs() < 1e-6).then(|| (turn - self.bias.value() * dt) * self.scale.value())
     }
 
     fn is_noise(&self, rate_without_bias: f64) -> bool {
@@ -252,6 +272,7 @@ impl WheelOdometry {
         self.suspect = None;
         self.resting_since = None;
         self.size.interrupt();
+        self.scale.interrupt();
         self.gyro.turn_until(ticks.stamp, self.config.gyro_timeout);
         self.odometry.stamp = ticks.stamp;
         self.odometry.twist = Twist2::ZERO;

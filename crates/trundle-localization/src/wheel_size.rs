@@ -1,4 +1,4 @@
-use crate::OdometryConfig;
+use crate::{OdometryConfig, learnt::Learnt};
 use trundle_core::{Pose2, Vector3};
 
 /// How large the wheels are over their nominal radius, learnt while driving: two Kalman filters of one number.
@@ -11,13 +11,6 @@ pub(crate) struct WheelSize {
     difference: Learnt,
     seen: Option<Seen>,
     stretch: Stretch,
-}
-
-/// A number and how sure it is.
-#[derive(Debug, Clone, Copy)]
-struct Learnt {
-    value: f64,
-    variance: f64,
 }
 
 /// Where a chord began.
@@ -54,19 +47,12 @@ const STRAIGHT: f64 = 0.2;
 const CHORD_NOISE: (f64, f64) = (0.006, 0.005);
 /// What an uneven floor turns the robot by that its wheels do not show, rad / sqrt(m).
 const FLOOR_NOISE: f64 = 0.005;
-/// Never surer than this (one sigma, as a part): neighbouring measurements err alike.
-const LEAST_SIGMA: f64 = 3e-4;
-/// How far a wheel may change from one measurement to the next (one sigma, as a part).
-const WALK: f64 = 1e-4;
-/// Measurements farther off are not believed, sigmas.
-const GATE: f64 = 4.0;
 
 impl WheelSize {
     pub(crate) fn new(config: &OdometryConfig) -> Self {
-        let variance = config.wheel_radius_sigma.powi(2);
         Self {
-            mean: Learnt { value: 1.0, variance },
-            difference: Learnt { value: 0.0, variance },
+            mean: Learnt::new(1.0, config.wheel_radius_sigma),
+            difference: Learnt::new(0.0, config.wheel_radius_sigma),
             seen: None,
             stretch: Stretch::default(),
         }
@@ -74,7 +60,10 @@ impl WheelSize {
 
     /// True over nominal radius of the left wheel and of the right one.
     pub(crate) fn ratios(&self) -> (f64, f64) {
-        (self.mean.value * (1.0 - self.difference.value), self.mean.value * (1.0 + self.difference.value))
+        (
+            self.mean.value() * (1.0 - self.difference.value()),
+            self.mean.value() * (1.0 + self.difference.value()),
+        )
     }
 
     /// What came before does not belong to what comes: a gap, or a slip.
@@ -106,7 +95,7 @@ impl WheelSize {
         if is_straight {
             let lever = wheelbase / (2.0 * way);
             let turn = config.gyro_time_noise.powi(2) * time + FLOOR_NOISE.powi(2) * way.abs();
-            self.difference.learn(self.difference.value + apart * lever, turn * lever * lever);
+            self.difference.learn(self.difference.value() + apart * lever, turn * lever * lever);
         }
     }
 
@@ -123,21 +112,7 @@ impl WheelSize {
         }
         let chord = (at - from.at).norm();
         let sigma = CHORD_NOISE.0.hypot(CHORD_NOISE.1 * chord) / rolled;
-        self.mean.learn(self.mean.value * chord / rolled, sigma * sigma);
+        self.mean.learn(self.mean.value() * chord / rolled, sigma * sigma);
         self.seen = Some(now);
-    }
-}
-
-impl Learnt {
-    /// Takes in a measurement that can be believed.
-    fn learn(&mut self, measured: f64, variance: f64) {
-        // Tyres wear and floors differ.
-        self.variance += if self.variance > 0.0 { WALK * WALK } else { 0.0 };
-        let (off, all) = (measured - self.value, self.variance + variance);
-        if off * off <= GATE * GATE * all && self.variance > 0.0 {
-            let gain = self.variance / all;
-            self.value += gain * off;
-            self.variance = ((1.0 - gain) * self.variance).max(LEAST_SIGMA * LEAST_SIGMA);
-        }
     }
 }
