@@ -37,7 +37,7 @@ impl Found {
     /// From a keyframe to the map; to be believed, it takes more landmarks that agree, most of those matched, and some in a
     /// good part of the view: a picture that hangs in two rooms is not the room.
     pub fn from_keyframe(tracker: &Tracker, keyframe: KeyframeId) -> Option<Self> {
-        let rough = tracker.by_words(keyframe)?;
+        let rough = tracker.by_words(keyframe, None)?;
         let (fix, visible) = tracker.by_map(&rough, None);
         let found = fix.inliers().map(|m| tracker.frame.pixels[m.feature]);
         let is_seen =

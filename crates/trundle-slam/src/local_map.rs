@@ -59,13 +59,10 @@ impl View<'_> {
             return None;
         }
         let octave = self.sensor.octave_of(scale);
-        Some(Projection {
-            pixel,
-            depth: p_camera.z,
-            radius: self.window * self.sensor.scale(octave),
-            octaves: (octave.saturating_sub(1), octave + 1),
-            descriptor: landmark.descriptor,
-        })
+        let radius = self.window * self.sensor.scale(octave);
+        let octaves = (octave.saturating_sub(1), octave + 1);
+        let seen = Projection { pixel, depth: p_camera.z, radius, octaves, descriptor: landmark.descriptor };
+        self.sensor.finds_all_over(raw, radius, octaves.1).then_some(seen)
     }
 
     /// Whether a surface stands before a point at `depth` m behind the raw pixel.

@@ -29,12 +29,12 @@ impl Projection {
         window: f64,
     ) -> Option<(Self, Vector3)> {
         let p_camera = camera_from_visual.transform(landmark.position);
-        let (pixel, _) = sensor.project(p_camera)?;
+        let (pixel, raw) = sensor.project(p_camera)?;
         let octave = sensor.octave_of(landmark.distance_at_octave_0 / p_camera.norm());
         let radius = window * sensor.scale(octave);
         let octaves = (octave.saturating_sub(1), octave + 1);
         let projection = Self { pixel, depth: p_camera.z, radius, octaves, descriptor: landmark.descriptor };
-        Some((projection, p_camera))
+        sensor.finds_all_over(raw, radius, octaves.1).then_some((projection, p_camera))
     }
 }
 

@@ -1,6 +1,7 @@
 use crate::frame::Frame;
 use trundle_core::{PinholeCamera, Vector2, Vector3};
 use trundle_optim::PointObservation;
+use trundle_vision::OrbConfig;
 
 /// The camera as the tracker uses it: projection into the rectified image, and how sure a keypoint is.
 #[derive(Debug, Clone)]
@@ -39,6 +40,17 @@ impl Sensor {
             && pixel.y <= self.high.y;
         let raw = boxed.then(|| self.camera.distort(pixel))?;
         self.camera.contains(raw).then_some((pixel, raw))
+    }
+
+    /// Whether features of every octave up to this one can be found all over a window about a raw `pixel`, px.
+    ///
+    /// Of a point whose window reaches into the margin only what is inward can be taken for it, rightly or not: while the camera turns,
+    /// what leaves the view would hold it back.
+    pub fn finds_all_over(&self, pixel: Vector2, radius: f64, octave: u8) -> bool {
+        let margin = OrbConfig::MARGIN as f64 * self.scale(octave) + radius;
+        let [right, bottom] =
+            [self.camera.width(), self.camera.height()].map(|side| side as f64 - 1.0 - margin);
+        (margin..=right).contains(&pixel.x) && (margin..=bottom).contains(&pixel.y)
     }
 
     /// What `frame` says of its feature `i`.

@@ -59,6 +59,8 @@ pub struct RgbdSlam {
     doubt: Option<Claim<()>>,
     /// Another map that the last keyframe recognised.
     recognition: Option<Claim<MapId>>,
+    /// Frames in a row whose few points contradicted the wheels.
+    contradictions: usize,
     /// A place of the active map that it recognised farther off than it should be.
     surprise: Option<Claim<()>>,
     /// The newest frames, the last one behind.
@@ -120,6 +122,7 @@ impl RgbdSlam {
             misses: 0,
             doubt: None,
             recognition: None,
+            contradictions: 0,
             surprise: None,
             history: VecDeque::new(),
             frames: 0,

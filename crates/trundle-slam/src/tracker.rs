@@ -133,7 +133,7 @@ impl Tracker<'_> {
         let tries: [&dyn Fn() -> Option<Fix>; 4] = [
             &|| self.by_motion(last, predicted, 1.0),
             &|| self.by_motion(last, predicted, 2.0),
-            &|| self.by_words(reference?),
+            &|| self.by_words(reference?, self.rolled),
             &|| self.by_likeness(last),
         ];
         let mut best: Option<Fix> = None;
@@ -162,10 +162,10 @@ impl Tracker<'_> {
     }
 
     /// The pose from what looks alike in a keyframe, feature by feature under the same node of the vocabulary.
-    pub fn by_words(&self, keyframe: KeyframeId) -> Option<Fix> {
+    pub fn by_words(&self, keyframe: KeyframeId, prior: Option<PosePrior>) -> Option<Fix> {
         let own = Worded { frame: self.frame, words: self.words() };
         let pairs = self.places.worded(self.map, keyframe)?.matches(own, self.config.free_likeness());
-        self.located(self.map.keyframe(keyframe).into(), &pairs)
+        self.located(self.map.keyframe(keyframe).into(), &pairs, prior)
     }
 
     /// The pose from what looks alike in `last`, wherever it is in the image.
@@ -173,12 +173,12 @@ impl Tracker<'_> {
         let Likeness { max_distance, ratio } = self.config.free_likeness();
         let (there, here) = (&last.frame.features.descriptors, &self.frame.features.descriptors);
         let pairs = match_mutual(there, here, max_distance, ratio);
-        self.located(last, &pairs)
+        self.located(last, &pairs, self.rolled)
     }
 
-    fn located(&self, anchor: Anchor, pairs: &[Match]) -> Option<Fix> {
+    fn located(&self, anchor: Anchor, pairs: &[Match], prior: Option<PosePrior>) -> Option<Fix> {
         let (pose, matches) = anchor.locate(self.frame, pairs, self.seed, (self.map, self.sensor))?;
-        self.refined(matches, pose, None)
+        self.refined(matches, pose, prior)
     }
 
     /// The final pose: against all landmarks of the map that a camera at the pose of `rough` should see. What `rough` has

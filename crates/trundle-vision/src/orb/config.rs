@@ -34,6 +34,9 @@ impl Default for OrbConfig {
 }
 
 impl OrbConfig {
+    /// Nearer than this to the border, px of its octave, no feature is found: there is nothing to describe it by.
+    pub const MARGIN: usize = super::patch::BORDER;
+
     /// Passes a valid configuration through.
     ///
     /// # Errors
