@@ -35,7 +35,7 @@ impl Navigator {
         match &self.state {
             DriveState::Mapping if self.goal == Goal::Look => self.look_once(s),
             DriveState::Recovering { .. } if self.is_wedged => Twist2::new(-BACKING_OUT, 0.0),
-            DriveState::Recovering { .. } if matches!(self.vantage, Vantage::Going(_)) => follow.twist,
+            DriveState::Recovering { .. } if matches!(self.vantage, Vantage::Going(..)) => follow.twist,
             DriveState::Recovering { .. } if self.looks_still() => Twist2::ZERO,
             // The gyro's bias is measured at rest.
             DriveState::Lost { .. } if !self.is_open(s) => Twist2::ZERO,
@@ -118,7 +118,7 @@ impl Navigator {
                 self.state = DriveState::Waiting { reason: reason.to_string() };
             }
             (SafetyAction::Stop(reason), DriveState::Recovering { .. })
-                if matches!(self.vantage, Vantage::Going(_)) =>
+                if matches!(self.vantage, Vantage::Going(..)) =>
             {
                 self.vantage = Vantage::Settled;
                 self.follower.halt();

@@ -36,7 +36,7 @@ impl Navigator {
     pub(crate) fn helm(&self) -> Helm {
         let follows = match &self.state {
             DriveState::Driving => true,
-            DriveState::Recovering { .. } => matches!(self.vantage, Vantage::Going(_)),
+            DriveState::Recovering { .. } => matches!(self.vantage, Vantage::Going(..)),
             DriveState::Settling => !matches!(self.goal, Goal::View(_)),
             _ => false,
         };

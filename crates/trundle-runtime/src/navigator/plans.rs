@@ -26,7 +26,12 @@ impl Navigator {
             DriveState::Mapping | DriveState::Settling | DriveState::Docking | DriveState::Lost { .. } => {
                 false
             }
-            DriveState::Recovering { .. } if !self.looks_for_news(s) => false,
+            DriveState::Recovering { .. } if !self.looks_for_news(s) => {
+                if self.check_due.due(s.now) {
+                    self.watch_way_to_vantage(s);
+                }
+                false
+            }
             DriveState::Planning | DriveState::Recovering { .. } => self.check_due.due(s.now),
             DriveState::Waiting { .. } if self.touched || self.over_edge || self.is_blind(s) => false,
             DriveState::Waiting { .. } if self.held_since.is_some_and(|since| s.now - since < PAUSE) => false,
@@ -57,7 +62,9 @@ impl Navigator {
             (DriveState::Driving, Some(_)) if self.is_off_track => (s.estimate.pose, s.estimate.twist),
             (DriveState::Driving, Some(reference)) => (reference.pose, reference.twist),
             // On the way to a vantage it rolls as well.
-            (DriveState::Recovering { .. }, Some(reference)) if matches!(self.vantage, Vantage::Going(_)) => {
+            (DriveState::Recovering { .. }, Some(reference))
+                if matches!(self.vantage, Vantage::Going(..)) =>
+            {
                 (reference.pose, reference.twist)
             }
             _ => (s.estimate.pose, Twist2::ZERO),
@@ -112,7 +119,7 @@ impl Navigator {
             return None;
         }
         if self.seeks_sight_of(at, s) {
-            if !matches!(self.vantage, Vantage::Going(_)) {
+            if !matches!(self.vantage, Vantage::Going(..)) {
                 self.follower.halt();
                 self.plan = None;
             }
@@ -162,7 +169,7 @@ impl Navigator {
             Plan::Found(plan)
                 if plan.is_continuous
                     && plan.trajectory.duration() < left - SOONER
-                    && self.first_unseen(&plan.trajectory, s.floor()).is_none() =>
+                    && self.first_unseen(plan.trajectory.points(), s.floor()).is_none() =>
             {
                 self.follower.follow(plan.trajectory.clone(), goal);
                 self.plan = Some(plan);
@@ -176,7 +183,7 @@ impl Navigator {
     /// wait there, looking at it.
     fn no_way(&mut self, refused: &Plan, s: &Surroundings<'_>) {
         let reason = self.why(refused);
-        if matches!(self.vantage, Vantage::Going(_)) {
+        if matches!(self.vantage, Vantage::Going(..)) {
             self.state = DriveState::Recovering { reason };
             return;
         }

@@ -1,7 +1,7 @@
 //! Ways that show the camera what they lead onto before the robot is too near to see it.
 
 use super::{Navigator, Surroundings, view::unknown_about};
-use trundle_core::{Cell, CellIndex, OccupancyGrid, Pose2, Trajectory, Twist2, Vector2};
+use trundle_core::{Cell, CellIndex, OccupancyGrid, Pose2, TrajectoryPoint, Twist2, Vector2};
 use trundle_planning::{Plan, PlanResult};
 
 /// What the robot did about floor that was never seen, on the way to the goal of now.
@@ -99,7 +99,7 @@ impl Navigator {
             self.planner.plan_among(floor, s.traffic.movers, from, twist, goal)
         };
         let Plan::Found(best) = best else { return self.found(InView::Plan(best)) };
-        let Some(unseen) = self.first_unseen(&best.trajectory, s.floor()) else {
+        let Some(unseen) = self.first_unseen(best.trajectory.points(), s.floor()) else {
             return self.found(InView::Plan(Plan::Found(best)));
         };
         if self.unseen.walls.is_empty() {
@@ -112,7 +112,7 @@ impl Navigator {
         let Plan::Found(plan) = self.planner.plan_among(&floor, s.traffic.movers, from, twist, goal) else {
             return self.found(InView::Unseen(unseen, None));
         };
-        match self.first_unseen(&plan.trajectory, s.floor()) {
+        match self.first_unseen(plan.trajectory.points(), s.floor()) {
             Some(next) if self.unseen.walls.len() < MOST_WALLS => {
                 self.unseen.walls.push(next);
                 InView::Asking
@@ -131,7 +131,7 @@ impl Navigator {
     }
 
     /// Where a way first leads onto what the camera will not have seen.
-    pub(super) fn first_unseen(&self, way: &Trajectory, floor: &OccupancyGrid) -> Option<Vector2> {
+    pub(super) fn first_unseen(&self, way: &[TrajectoryPoint], floor: &OccupancyGrid) -> Option<Vector2> {
         self.view?.first_unseen(way, floor, self.radius, &self.unseen)
     }
 
@@ -235,10 +235,13 @@ mod tests {
             other => panic!("{other:?}"),
         };
         let best = found(navigator.planner.plan(&grid, from, Twist2::ZERO, goal));
-        assert!(navigator.first_unseen(&best, &grid).is_some(), "the best way cuts the unseen corner");
+        assert!(
+            navigator.first_unseen(best.points(), &grid).is_some(),
+            "the best way cuts the unseen corner"
+        );
         let InView::Plan(shown) = asked(&mut navigator, &s, goal) else { panic!("there is one in view") };
         let shown = found(shown);
-        assert_eq!(navigator.first_unseen(&shown, &grid), None);
+        assert_eq!(navigator.first_unseen(shown.points(), &grid), None);
         assert!(shown.duration() < WORTH.0 * best.duration() + WORTH.1);
         navigator.view = None;
         let InView::Plan(any) = asked(&mut navigator, &s, goal) else { panic!("a laser sees all") };
@@ -288,5 +291,32 @@ mod tests {
         assert!((1..=MOST_LOOKS_A_GOAL).contains(&looks), "{looks} looks");
         let reason = navigator.state.reason().unwrap();
         assert!(reason.contains("no way") && reason.contains("could not be seen"), "{reason}");
+    }
+
+    #[test]
+    fn the_way_to_look_ends_where_it_is_barred_or_not_shown_what_it_leads_onto() {
+        use super::super::vantage::{Aim, Vantage};
+        let ends_on = |floor_by_now: &OccupancyGrid| {
+            let (grid, mut navigator) = (floor(|_| false), navigator());
+            let (from, place) = (Pose2::new(1.0, 2.0, 0.0), Pose2::new(4.0, 2.0, 0.0));
+            let Plan::Found(plan) = navigator.planner.plan(&grid, from, Twist2::ZERO, place) else {
+                panic!("nothing is in the way")
+            };
+            navigator.follower.follow(plan.trajectory.clone(), place);
+            navigator.vantage = Vantage::Going(Aim::Unseen, plan.trajectory);
+            let s = at_rest(floor_by_now, Stamp::default(), from);
+            navigator.follower.step(&s.estimate, s.now);
+            navigator.watch_way_to_vantage(&s);
+            let halts = navigator.follower.reference().is_none();
+            assert_eq!(halts, matches!(navigator.vantage, Vantage::Looking(_)));
+            halts
+        };
+        assert!(!ends_on(&floor(|_| false)), "all is as it was");
+        assert!(!ends_on(&floor(|at| at.x > 5.0)), "unseen beyond the place");
+        // A chair that hides its own side: what is beside the robot it will not see on the way.
+        assert!(ends_on(&floor(|at| at.x < 1.6 && at.y > 2.05)));
+        let mut barred = floor(|_| false);
+        (0..80).for_each(|row| barred.set(CellIndex { col: 50, row }, Cell::Occupied));
+        assert!(ends_on(&barred));
     }
 }

@@ -5,7 +5,7 @@ use super::{Navigator, Surroundings, floor::is_in_sight, unseen::Unseen, view::V
 use crate::state::DriveState;
 use std::f64::consts::TAU;
 use trundle_control::{FollowPhase, FollowReport};
-use trundle_core::{Cell, OccupancyGrid, Pose2, Stamp, Twist2, Vector2, difference_of_angles};
+use trundle_core::{Cell, OccupancyGrid, Pose2, Stamp, Trajectory, Twist2, Vector2, difference_of_angles};
 use trundle_planning::Plan;
 
 /// The way to a place from where the robot sees what it wants to see.
@@ -17,7 +17,7 @@ pub(super) enum Vantage {
     /// Places that a way is still to be asked for, the best last.
     Choosing(Aim, Vec<Pose2>),
     /// On the way there.
-    Going(Aim),
+    Going(Aim, Trajectory),
     /// There, looking until then.
     Looking(Stamp),
     /// There, or there is none.
@@ -50,7 +50,7 @@ impl Navigator {
     /// Whether it is about to go to a place from where it sees what bars the way; not when it stands at such a place.
     pub(super) fn seeks_vantage(&mut self, s: &Surroundings<'_>) -> bool {
         let Some(at) = self.blocked_at else { return false };
-        if !matches!(self.vantage, Vantage::Choosing(Aim::Bar, _) | Vantage::Going(_) | Vantage::Settled) {
+        if !matches!(self.vantage, Vantage::Choosing(Aim::Bar, _) | Vantage::Going(..) | Vantage::Settled) {
             let here = s.estimate.pose;
             let own_size = if s.grid.at(at) == Cell::Free { 0.0 } else { OWN_SIZE };
             let stands_well = GOOD.contains(&(at - here.position()).norm())
@@ -65,7 +65,7 @@ impl Navigator {
     /// so; not when there is no such place, or it was looked at in vain.
     pub(super) fn seeks_sight_of(&mut self, at: Vector2, s: &Surroundings<'_>) -> bool {
         match &self.vantage {
-            Vantage::Going(_) => return true,
+            Vantage::Going(..) => return true,
             Vantage::Looking(until) if s.now < *until => return true,
             Vantage::Choosing(Aim::Unseen, _) => {}
             _ => {
@@ -91,26 +91,28 @@ impl Navigator {
             return false;
         };
         if let Plan::Found(plan) = self.planner.plan(s.floor(), s.estimate.pose, Twist2::ZERO, place)
-            && self.first_unseen(&plan.trajectory, s.floor()).is_none()
+            && self.first_unseen(plan.trajectory.points(), s.floor()).is_none()
         {
             if let (Aim::Unseen, Some(at)) = (aim, self.blocked_at) {
                 self.unseen.note_look(at, place.position());
             }
-            self.follower.follow(plan.trajectory, place);
-            self.vantage = Vantage::Going(aim);
+            self.follower.follow(plan.trajectory.clone(), place);
+            self.vantage = Vantage::Going(aim, plan.trajectory);
         }
         true
     }
 
     /// While it is on its way to look, or looks.
     fn is_at_vantage_or_going(&self) -> bool {
-        matches!(self.vantage, Vantage::Going(_) | Vantage::Looking(_))
+        matches!(self.vantage, Vantage::Going(..) | Vantage::Looking(_))
     }
 
     /// Whether a plan is to be asked for while it goes to look: what bars a way may go away, what was not seen may be seen.
     pub(super) fn looks_for_news(&self, s: &Surroundings<'_>) -> bool {
         match &self.vantage {
-            Vantage::Going(Aim::Unseen) => self.blocked_at.is_none_or(|at| s.floor().at(at) != Cell::Unknown),
+            Vantage::Going(Aim::Unseen, _) => {
+                self.blocked_at.is_none_or(|at| s.floor().at(at) != Cell::Unknown)
+            }
             Vantage::Looking(until) => s.now >= *until,
             _ => true,
         }
@@ -118,15 +120,32 @@ impl Navigator {
 
     /// At the end of the way to a place, or off it: it looks.
     pub(super) fn note_vantage(&mut self, follow: &FollowReport, now: Stamp) {
-        let Vantage::Going(aim) = self.vantage else { return };
+        let is_going = matches!(self.vantage, Vantage::Going(..));
         let is_over = matches!(follow.phase, FollowPhase::Settled | FollowPhase::Idle);
-        if is_over || follow.off_track {
-            self.follower.halt();
-            self.vantage = match aim {
-                Aim::Bar => Vantage::Settled,
-                Aim::Unseen => Vantage::Looking(now.after(LOOK)),
-            };
+        if is_going && (is_over || follow.off_track) {
+            self.look_from_here(now);
         }
+    }
+
+    /// Ends the way to a place where what it was to show by now is not seen, or something stands on it: the robot looks from where it is.
+    pub(super) fn watch_way_to_vantage(&mut self, s: &Surroundings<'_>) {
+        let (Vantage::Going(_, way), Some(reference)) = (&self.vantage, self.follower.reference()) else {
+            return;
+        };
+        let rest = &way.points()[way.points().partition_point(|point| point.time < reference.time)..];
+        let is_free = self.planner.still_free(s.floor(), way, reference.time).is_ok();
+        if !is_free || self.first_unseen(rest, s.floor()).is_some() {
+            self.look_from_here(s.now);
+        }
+    }
+
+    /// The way to a place is over.
+    fn look_from_here(&mut self, now: Stamp) {
+        self.follower.halt();
+        self.vantage = match self.vantage {
+            Vantage::Going(Aim::Unseen, _) => Vantage::Looking(now.after(LOOK)),
+            _ => Vantage::Settled,
+        };
     }
 
     /// Whether it stands still while it recovers: choosing where to look from, or looking.

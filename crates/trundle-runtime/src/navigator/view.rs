@@ -4,7 +4,7 @@ use super::floor::{cells_about, is_in_sight};
 use super::unseen::Unseen;
 use crate::{config::RobotConfig, sight::Sight};
 use std::collections::HashSet;
-use trundle_core::{Cell, CellIndex, Invalid, OccupancyGrid, Pose2, Trajectory, Vector2, Vector3};
+use trundle_core::{Cell, CellIndex, Invalid, OccupancyGrid, Pose2, TrajectoryPoint, Vector2, Vector3};
 use trundle_mapping::DepthScanner;
 
 /// What a camera sees of the floor: a sector.
@@ -45,7 +45,7 @@ impl View {
     /// looked at in vain.
     pub(super) fn first_unseen(
         self,
-        way: &Trajectory,
+        way: &[TrajectoryPoint],
         grid: &OccupancyGrid,
         radius: f64,
         unseen: &Unseen,
@@ -53,7 +53,7 @@ impl View {
         let mut passed: Vec<Pose2> = Vec::new();
         let mut judged = HashSet::new();
         let least = SLIVER / grid.geometry().resolution.powi(2);
-        for pose in way.points().iter().map(|point| point.pose) {
+        for pose in way.iter().map(|point| point.pose) {
             if passed.last().is_some_and(|last| is_near(*last, pose)) {
                 continue;
             }
@@ -109,7 +109,7 @@ fn is_near(a: Pose2, b: Pose2) -> bool {
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
-    use trundle_core::{TrajectoryPoint, Twist2};
+    use trundle_core::{Trajectory, Twist2};
 
     const VIEW: View = View { base_from_sector: Pose2::IDENTITY, half_angle: 0.5, nearest: 0.6 };
 
@@ -138,8 +138,8 @@ pub(super) mod tests {
         let straight = way((0..60).map(|i| Pose2::new(2.0 + 0.05 * f64::from(i), 2.0, 0.0)));
         let mut in_vain = Unseen::default();
         in_vain.note_look(Vector2::new(4.1, 2.0), Vector2::new(3.0, 2.0));
-        assert!(VIEW.first_unseen(&straight, &ahead, 0.2, &in_vain).is_some());
-        assert_eq!(VIEW.first_unseen(&straight, &ahead, 0.2, &Unseen::default()), None);
+        assert!(VIEW.first_unseen(straight.points(), &ahead, 0.2, &in_vain).is_some());
+        assert_eq!(VIEW.first_unseen(straight.points(), &ahead, 0.2, &Unseen::default()), None);
     }
 
     #[test]
@@ -150,16 +150,19 @@ pub(super) mod tests {
         let turn = || (0..16).map(|i| Pose2::new(3.95, 2.0, 0.1 * f64::from(i)));
         let on = || (0..20).map(|i| Pose2::new(3.95, 2.0 + 0.05 * f64::from(i), 1.57));
         let bend = way(along.chain(turn()).chain(on()));
-        let at = VIEW.first_unseen(&bend, &beside, 0.2, &Unseen::default()).unwrap();
+        let at = VIEW.first_unseen(bend.points(), &beside, 0.2, &Unseen::default()).unwrap();
         assert!((at - Vector2::new(3.95, 2.35)).norm() < 0.1, "{at}");
         assert_eq!(beside.at(at), Cell::Unknown);
         // There it was set down: it stands in what it cannot see.
         let mut set_down = Unseen::default();
         set_down.home = Some(at);
-        assert_eq!(VIEW.first_unseen(&bend, &beside, 0.2, &set_down), None);
+        assert_eq!(VIEW.first_unseen(bend.points(), &beside, 0.2, &set_down), None);
         // The same over known floor, and over a sliver of unknown floor.
         for grid in [floor(|_| false), floor(|at| (at.y - 2.4).abs() < 0.03 && at.x < 3.9)] {
-            assert_eq!(VIEW.first_unseen(&way(turn().chain(on())), &grid, 0.2, &Unseen::default()), None);
+            assert_eq!(
+                VIEW.first_unseen(way(turn().chain(on())).points(), &grid, 0.2, &Unseen::default()),
+                None
+            );
         }
     }
 }
