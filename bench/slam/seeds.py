@@ -1,12 +1,14 @@
 """Accuracy over several drives with noise: records them one after the other, runs the SLAM over each, and deletes them again.
 
-usage: seeds.py SCENE... --trundle T --drive D [--seeds 5] [--length 46] [--out FILE]
+usage: seeds.py SCENE... --trundle T --drive D [--first 1] [--seeds 5] [--length 46] [--up z] [--maps] [--out FILE]
 
 SCENE is a built-in scene of `trundle sim` or a scene file. Each seed is another route and another noise. T is the program
 `trundle`, D the example `drive` of trundle-slam (both built for release). Prints of each drive what `drive` says, and of each scene the
-median of the ATE. Needs numpy; a recording takes about 2 GB while it is looked at.
+median of the ATE. With --maps the drive is also mapped, along the poses of `trundle slam` and by wheels alone, and each map judged against
+the true one. Needs numpy; a recording takes about 2 GB while it is looked at.
 """
 import argparse
+import json
 import pathlib
 import re
 import statistics
@@ -26,15 +28,33 @@ def run(*command):
 
 def judge(scene, seed, length, args, scratch):
     """What `drive` says of one recorded drive."""
-    if not (scratch / "map.yaml").exists():
-        run(args.trundle, "sim", scene, "--map", scratch / "map.yaml")
+    # A seed is another furnishing, too.
+    sim = ["sim", scene, "--up", args.up, "--seed", seed]
+    run(args.trundle, *sim, "--map", scratch / "map.yaml")
     way, recording = scratch / "way.txt", scratch / "drive"
     route = run(sys.executable, HERE / "routes.py", scratch / "map.yaml", way, "--length", length, "--seed", seed)
     start = route.rsplit("start ", 1)[1].strip()
-    run(args.trundle, "sim", scene, "--seed", seed, f"--start={start}", "--follow", way, "--record", recording)
+    run(args.trundle, *sim, f"--start={start}", "--follow", way, "--record", recording)
     said = run(args.drive, recording)
+    if args.maps:
+        run(args.trundle, *sim, "--map", scratch / "truth.yaml", "--resolution", 0.01)
+        said += maps(args.trundle, start, seed, recording, scratch)
     run("rm", "-r", recording)
     return said
+
+
+def maps(trundle, start, seed, recording, scratch):
+    """How many of the occupied cells of the maps of a recording are right."""
+    poses, out = scratch / "slam", scratch / "mapped"
+    run(trundle, "slam", recording, "--height", 0.45, "--tilt", 8, "--out", poses)
+    said = "map: occupied cells within 5 cm of true ones, and true ones within 5 cm of the map's:"
+    for motion, option in [("slam", ["--poses", poses / "trajectory.txt"]), ("wheels", [])]:
+        run(trundle, "map", recording, *option, "--seed", seed, "--out", out)
+        run(trundle, "eval", "map", scratch / "truth.yaml", out / "map.yaml", f"--at={start}", "--out", scratch / "judged")
+        judged = json.loads((scratch / "judged" / "summary.json").read_text())
+        said += f" {motion} {judged['precision'] * 100:.2f} and {judged['recall'] * 100:.1f} %;"
+    run("rm", "-r", poses, out)
+    return said + "\n"
 
 
 def main():
@@ -42,8 +62,11 @@ def main():
     parser.add_argument("scenes", nargs="+")
     parser.add_argument("--trundle", type=pathlib.Path, required=True)
     parser.add_argument("--drive", type=pathlib.Path, required=True)
-    parser.add_argument("--seeds", type=int, default=5)
+    parser.add_argument("--first", type=int, default=1, help="seed of the first drive")
+    parser.add_argument("--seeds", type=int, default=5, help="how many")
     parser.add_argument("--length", type=float, default=46.0, help="m, at least")
+    parser.add_argument("--up", default="y", help="the axis that points up in a glTF scene")
+    parser.add_argument("--maps", action="store_true", help="judge maps, too")
     parser.add_argument("--out", type=pathlib.Path, help="all that is printed goes here as well")
     args = parser.parse_args()
     lines = []
@@ -57,7 +80,7 @@ def main():
     for scene in args.scenes:
         errors = []
         with tempfile.TemporaryDirectory() as scratch:
-            for seed in range(1, args.seeds + 1):
+            for seed in range(args.first, args.first + args.seeds):
                 said = judge(scene, seed, args.length, args, pathlib.Path(scratch))
                 errors.append(float(re.search(r"ATE ([\d.]+) cm", said)[1]))
                 say(f"{scene}, seed {seed}\n{said.rstrip()}")
