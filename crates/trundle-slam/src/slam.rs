@@ -164,7 +164,7 @@ impl RgbdSlam {
     /// Drops what belongs to the keyframes before this: they are of another map, or far away.
     fn forget_the_way(&mut self) {
         self.searches.clear();
-        self.rolled = None;
+        (self.rolled, self.contradictions) = (None, 0);
     }
 
     /// Goes on mapping, or only locates and leaves the maps as they are.
