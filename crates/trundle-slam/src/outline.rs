@@ -60,6 +60,7 @@ fn is_on_outline(image: &DepthImage, pixel: Vector2, scale: f64, config: &DepthC
 #[cfg(test)]
 mod tests {
     use super::*;
+    use trundle_vision::Keypoint;
 
     fn is_on(image: &DepthImage, x: f64, y: f64, scale: f64) -> bool {
         is_on_outline(image, Vector2::new(x, y), scale, &DepthConfig::default())
