@@ -5,9 +5,9 @@ pub(crate) struct Learnt {
     variance: f64,
 }
 
-/// Never surer than this (one sigma): neighbouring measurements err alike.
+/// Never surer than this (one sigma, as a part): neighbouring measurements err alike.
 const LEAST_SIGMA: f64 = 3e-4;
-/// How far the number may go from one measurement to the next (one sigma): tyres wear, floors differ, sensors get warm.
+/// How far the number may go from one measurement to the next (one sigma, as a part): tyres wear, floors differ, sensors get warm.
 const WALK: f64 = 1e-4;
 /// Measurements farther off are not believed, sigmas.
 const GATE: f64 = 4.0;

@@ -24,6 +24,8 @@ pub(crate) struct Lookout {
     watch: EyeWatch,
     /// The place by scans, while it is not known.
     pub(crate) whereabouts: Whereabouts,
+    /// Whether the place was last told by scans.
+    is_placed_by_scans: bool,
     /// What the odometry said at the last image.
     last: Option<Odometer>,
     /// Since when images that show enough have not been located.
@@ -74,6 +76,7 @@ impl Lookout {
             scanner,
             whereabouts: Whereabouts::new(config, blind_range)?,
             watch: EyeWatch::default(),
+            is_placed_by_scans: false,
             last: None,
             unplaced: None,
             searched: None,
@@ -118,7 +121,8 @@ impl Lookout {
             Sight::DepthCamera => Some(times.measure(Stage::Scan, || self.scanner.scan(image))),
             Sight::Laser => None,
         };
-        let place = scan.as_ref().and_then(|scan| self.seek(odom_from_base, scan, times));
+        let in_the_dark = track.features < ENOUGH_FEATURES;
+        let place = scan.as_ref().and_then(|scan| self.seek(odom_from_base, scan, in_the_dark, times));
         let is_time = self.saving.as_mut().is_some_and(|saving| saving.due(image.stamp()));
         let saved = is_time.then(|| times.measure(Stage::Saving, || self.slam.save()));
         let unplaced = self.unplaced;
@@ -130,11 +134,19 @@ impl Lookout {
         &mut self,
         odom_from_base: Pose2,
         scan: &Scan,
+        in_the_dark: bool,
         times: &mut StageTimes,
     ) -> Option<Place> {
         let whereabouts = &mut self.whereabouts;
         let is_sought = whereabouts.is_sought();
-        is_sought.then(|| times.measure(Stage::Search, || whereabouts.look(odom_from_base, scan))).flatten()
+        let look = || whereabouts.look(odom_from_base, scan, in_the_dark);
+        is_sought.then(|| times.measure(Stage::Search, look)).flatten()
+    }
+
+    /// Its scans tell the place: images that are not recognised do not take it back, until one is located again.
+    pub(crate) fn placed_by_scans(&mut self) {
+        self.is_placed_by_scans = true;
+        (self.unplaced, self.searched) = (None, None);
     }
 
     /// `previous_camera_from_camera` by wheels and gyro.
@@ -146,6 +158,10 @@ impl Lookout {
     /// Whether it is time to look for the place everywhere: the odometry's has not been recognised for a while.
     fn is_carried_away(&mut self, track: &TrackReport) -> bool {
         let shows_enough = track.features >= ENOUGH_FEATURES;
+        self.is_placed_by_scans &= !track.tracking.is_located();
+        if self.is_placed_by_scans {
+            return false;
+        }
         if track.tracking.is_located() || !shows_enough && !self.has_been_unplaced(track.stamp) {
             (self.unplaced, self.searched) = (None, None);
         }

@@ -254,7 +254,7 @@ impl Robot {
     fn sweep(&mut self, scan: &Scan) {
         let odometer = self.odometry_at(scan.stamp());
         if let (Some(lookout), Some(odometer)) = (&mut self.lookout, odometer) {
-            let place = lookout.seek(odometer.pose, scan, &mut self.times);
+            let place = lookout.seek(odometer.pose, scan, true, &mut self.times);
             self.note_place(place);
         }
         self.see(scan.clone());
@@ -310,11 +310,19 @@ impl Robot {
         if let Some(Place { stamp, map_from_base, covariance }) = place
             && is_lost(&self.localizer)
         {
-            self.localizer.correct_scan(stamp, map_from_base, &covariance);
+            match self.localizer.correct_scan(stamp, map_from_base, &covariance) {
+                Correction::Applied { .. } => {
+                    self.latest.unplaced = None;
+                    self.lookout.iter_mut().for_each(|lookout| lookout.placed_by_scans());
+                }
+                // It is elsewhere than it was believed to be, however unsurely: the next scan tells where.
+                _ => self.localizer.lose_place(),
+            }
         }
         let is_lost = is_lost(&self.localizer);
         let Some(lookout) = &mut self.lookout else { return };
         match (is_lost, lookout.whereabouts.is_sought()) {
+            (true, false) if self.mapper.is_redrawing() => {}
             (true, false) => lookout.whereabouts.seek(self.mapper.grid().clone()),
             (false, true) => lookout.whereabouts.end(),
             _ => {}
@@ -393,6 +401,8 @@ impl Robot {
         });
         if bent > 0 {
             self.redrawn_within = REDRAWING.1;
+            // What was looked for in the old one is looked for anew.
+            self.lookout.iter_mut().for_each(|lookout| lookout.whereabouts.end());
         }
     }
 

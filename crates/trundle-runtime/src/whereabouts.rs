@@ -41,23 +41,27 @@ pub(crate) struct Place {
     pub(crate) covariance: Matrix3<f64>,
 }
 
-/// So many scans after the first, each 10 deg or 0.3 m farther on, must fit the place as well.
-const CONFIRMED: usize = 6;
+/// So many scans after the first, each 10 deg or 0.3 m farther on, must fit the place as well: in the dark, and where images show
+/// enough to be recognised and are not, which speaks against every place of the map.
+const CONFIRMED: (usize, usize) = (6, 18);
+/// A robot that stands shows the same again and again, s: as long as it likes.
+const STANDING: f64 = 3600.0;
 /// A scan that the map explains less of does not fit the place.
 const LEAST_EXPLAINED: f64 = 0.75;
-/// Standard deviation of a depth camera's range at 0 m.
+/// Standard deviation of a depth camera's range at 0 m, at least: cells have corners.
 const DEPTH_NOISE: f64 = 0.01;
 
 impl Whereabouts {
     /// Nothing is looked for yet.
     pub(crate) fn new(config: &RobotConfig, blind_range: f64) -> Result<Self, Invalid> {
         let map = MapperConfig { blind_range, ..config.mapping.clone() };
-        let laser = ParticleConfig { map, ..ParticleConfig::default() };
+        let laser = ParticleConfig { map, wait_gate: STANDING, ..ParticleConfig::default() };
         let config = match config.sight {
             Sight::Laser => laser,
             Sight::DepthCamera => {
                 let range_noise_growth = config.scan.noise_growth;
-                ParticleConfig { range_noise: DEPTH_NOISE, range_noise_growth, ..laser }
+                let range_noise = config.scan.noise_base.max(DEPTH_NOISE);
+                ParticleConfig { range_noise, range_noise_growth, ..laser }
             }
         };
         Ok(Self { config: config.validated()?, searches: 0, search: Search::None })
@@ -78,10 +82,11 @@ impl Whereabouts {
         self.search = Search::None;
     }
 
-    /// Takes in a scan; the place once it is certain. Cost: linear in the map's area for each scan 10 deg or 0.3 m farther on, until a
+    /// Takes in a scan, `in_the_dark` where images show too little to be recognised; the place once it is certain. Cost: linear in the map's area for each scan 10 deg or 0.3 m farther on, until a
     /// place is found.
-    pub(crate) fn look(&mut self, odom_from_base: Pose2, scan: &Scan) -> Option<Place> {
+    pub(crate) fn look(&mut self, odom_from_base: Pose2, scan: &Scan, in_the_dark: bool) -> Option<Place> {
         self.get_ready();
+        let confirmed = if in_the_dark { CONFIRMED.0 } else { CONFIRMED.1 };
         let Search::UnderWay { localizer, explained: times } = &mut self.search else { return None };
         match localizer.update(odom_from_base, scan) {
             Localized::Known { map_from_base, covariance, explained, degenerate } => {
@@ -93,7 +98,7 @@ impl Whereabouts {
                     map_from_base,
                     covariance: seen_from(map_from_base, covariance),
                 };
-                (fits && *times > CONFIRMED).then(place)
+                (fits && *times > confirmed).then(place)
             }
             Localized::Lost(_) | Localized::Refused(_) => {
                 *times = 0;
@@ -156,18 +161,24 @@ mod tests {
         Scan::new(stamp, Vector2::zeros(), first, step, (-35..=35).map(beam).collect()).unwrap()
     }
 
-    /// Where a robot that turns three times at `at` is believed to be in `map`, by the scans of `truth`.
-    fn found(map: &OccupancyGrid, truth: &OccupancyGrid, at: Pose2) -> Option<Pose2> {
+    /// Where a robot that turns three times at `at` is believed to be in `map`, by the scans of `truth`, and after how many.
+    fn found(
+        map: &OccupancyGrid,
+        truth: &OccupancyGrid,
+        (at, in_the_dark): (Pose2, bool),
+    ) -> Option<(Pose2, usize)> {
         let mut whereabouts = Whereabouts::new(&RobotConfig::default(), 0.5).unwrap();
-        assert!(whereabouts.look(at, &scan(truth, at, Stamp::default())).is_none(), "nothing is looked for");
+        assert!(
+            whereabouts.look(at, &scan(truth, at, Stamp::default()), true).is_none(),
+            "nothing is looked for"
+        );
         whereabouts.seek(map.clone());
-        (0..108).find_map(|i| {
+        (0..108).find_map(|i: u32| {
             let turned = Pose2::new(0.0, 0.0, 0.175 * f64::from(i));
-            let now = at * turned;
-            let place =
-                whereabouts.look(turned, &scan(truth, now, Stamp::from_nanos(i64::from(i) * 300_000_000)))?;
+            let seen = scan(truth, at * turned, Stamp::from_nanos(i64::from(i) * 300_000_000));
+            let place = whereabouts.look(turned, &seen, in_the_dark)?;
             assert!(place.covariance.symmetric_eigenvalues().min() > 0.0);
-            Some(place.map_from_base * turned.inverse())
+            Some((place.map_from_base * turned.inverse(), i as usize))
         })
     }
 
@@ -175,7 +186,9 @@ mod tests {
     fn a_robot_that_turns_on_the_spot_finds_its_place() {
         let map = room(90, 60, &[[60, 75, 1, 20], [1, 12, 40, 58]]);
         for at in [Pose2::new(1.5, 1.0, 0.3), Pose2::new(2.5, 2.2, -2.0), Pose2::new(3.9, 1.8, 1.5)] {
-            let place = found(&map, &map, at).unwrap();
+            let (place, scans) = found(&map, &map, (at, true)).unwrap();
+            let (_, in_the_light) = found(&map, &map, (at, false)).unwrap();
+            assert!(scans >= CONFIRMED.0 && in_the_light >= scans + CONFIRMED.1 - CONFIRMED.0, "{scans}");
             let off = at.inverse() * place;
             assert!(off.position().norm() < 0.05 && off.theta.abs() < 0.02, "{place:?} for {at:?}");
         }
@@ -184,15 +197,37 @@ mod tests {
     #[test]
     fn of_two_places_that_look_alike_it_takes_neither() {
         let square = room(60, 60, &[]);
-        assert_eq!(found(&square, &square, Pose2::new(1.2, 0.9, 0.4)), None);
+        assert_eq!(found(&square, &square, (Pose2::new(1.2, 0.9, 0.4), true)), None);
     }
 
     #[test]
     fn in_a_room_that_is_not_on_the_map_it_is_nowhere() {
         let (map, other) =
             (room(90, 60, &[[60, 75, 1, 20], [1, 12, 40, 58]]), room(50, 110, &[[1, 20, 50, 55]]));
-        assert_eq!(found(&map, &other, Pose2::new(1.2, 1.5, 0.4)), None);
+        assert_eq!(found(&map, &other, (Pose2::new(1.2, 1.5, 0.4), true)), None);
         let unknown = OccupancyGrid::filled(*map.geometry(), Cell::Unknown);
-        assert_eq!(found(&unknown, &map, Pose2::new(1.5, 1.0, 0.3)), None);
+        assert_eq!(found(&unknown, &map, (Pose2::new(1.5, 1.0, 0.3), true)), None);
+    }
+
+    #[test]
+    fn a_robot_that_stands_is_no_surer_for_it() {
+        let map = room(90, 60, &[[60, 75, 1, 20], [1, 12, 40, 58]]);
+        let at = Pose2::new(1.5, 1.0, 0.3);
+        let mut whereabouts = Whereabouts::new(&RobotConfig::default(), 0.5).unwrap();
+        whereabouts.seek(map.clone());
+        for i in 0..40 {
+            let seen = scan(&map, at, Stamp::from_nanos(i * 3_000_000_000));
+            assert_eq!(whereabouts.look(Pose2::IDENTITY, &seen, true), None);
+        }
+    }
+
+    #[test]
+    fn a_covariance_is_turned_into_the_robots_directions() {
+        let along_y = Matrix3::from_diagonal(&nalgebra::Vector3::new(1.0, 4.0, 0.1));
+        let facing = Pose2::new(3.0, 1.0, std::f64::consts::FRAC_PI_6);
+        let own = seen_from(facing, along_y);
+        // Most of it to the side, and to the left more when it lies ahead.
+        assert!((own[(0, 0)] - 1.75).abs() < 1e-12 && (own[(1, 1)] - 3.25).abs() < 1e-12);
+        assert!((own[(0, 1)] - 3.0 * 0.75_f64.sqrt() / 2.0).abs() < 1e-12 && own[(2, 2)] == 0.1);
     }
 }

@@ -20,6 +20,7 @@ mod claim;
 mod closing;
 mod component;
 mod config;
+mod contradiction;
 mod covisibility;
 mod depth;
 mod diagnosis;

@@ -88,6 +88,16 @@ mod tests {
     }
 
     #[test]
+    fn a_window_that_reaches_into_the_margin_is_not_searched() {
+        let sensor = freiburg1();
+        let finds = |x: f64, octave: u8| sensor.finds_all_over(Vector2::new(x, 240.0), 6.0, octave);
+        assert!(finds(22.5, 0) && !finds(21.5, 0) && finds(616.5, 0) && !finds(617.5, 0));
+        assert!(finds(25.5, 1) && !finds(25.0, 1), "the margin is in px of the octave");
+        assert!(!sensor.finds_all_over(Vector2::new(320.0, 21.0), 6.0, 0));
+        assert!(!finds(f64::NAN, 0));
+    }
+
+    #[test]
     fn what_the_lens_shows_is_in_view_and_the_rest_is_not() {
         let sensor = freiburg1();
         for raw in [(0.0, 0.0), (639.0, 479.0), (320.0, 3.0)] {

@@ -11,6 +11,7 @@ use crate::claim::Claim;
 use crate::closing::{LoopClosure, Search};
 use crate::component::Component;
 use crate::config::SlamConfig;
+use crate::contradiction::Contradiction;
 use crate::diagnosis::{SettingsCheck, Suspicion};
 use crate::floor::Floor;
 use crate::frame::Frame;
@@ -59,8 +60,8 @@ pub struct RgbdSlam {
     doubt: Option<Claim<()>>,
     /// Another map that the last keyframe recognised.
     recognition: Option<Claim<MapId>>,
-    /// Frames in a row whose few points contradicted the wheels.
-    contradictions: usize,
+    /// Tracked poses against the wheels.
+    contradiction: Contradiction,
     /// A place of the active map that it recognised farther off than it should be.
     surprise: Option<Claim<()>>,
     /// The newest frames, the last one behind.
@@ -122,7 +123,7 @@ impl RgbdSlam {
             misses: 0,
             doubt: None,
             recognition: None,
-            contradictions: 0,
+            contradiction: Contradiction::default(),
             surprise: None,
             history: VecDeque::new(),
             frames: 0,
@@ -164,7 +165,7 @@ impl RgbdSlam {
     /// Drops what belongs to the keyframes before this: they are of another map, or far away.
     fn forget_the_way(&mut self) {
         self.searches.clear();
-        (self.rolled, self.contradictions) = (None, 0);
+        (self.rolled, self.contradiction) = (None, Contradiction::default());
     }
 
     /// Goes on mapping, or only locates and leaves the maps as they are.

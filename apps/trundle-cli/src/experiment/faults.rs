@@ -33,7 +33,7 @@ struct Day {
 
 const FOREVER: f64 = f64::INFINITY;
 
-/// The days of the issue, in its order.
+/// The bad days.
 fn days() -> Vec<Day> {
     let broken = |name, from, to, kind, end| Day {
         name,

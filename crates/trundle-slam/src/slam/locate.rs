@@ -1,6 +1,7 @@
 use super::RgbdSlam;
 use crate::claim::Claim;
 use crate::component::Component;
+use crate::contradiction::Contradiction;
 use crate::found::Found;
 use crate::frame::Frame;
 use crate::places::Words;
@@ -17,10 +18,6 @@ const MOST_CHI2: f64 = 37.0;
 const LEAST_SIGMA: f64 = 0.1;
 /// Faster than this no camera moves that nobody tells about: m/s, a brisk walk, and rad/s, 200 deg.
 const FASTEST: (f64, f64) = (2.0, 3.5);
-/// So many points that agree are not all wrong.
-const CONVINCING: usize = 100;
-/// Frames in a row after which fewer are believed, too.
-const STUBBORN: usize = 6;
 /// What it may be off besides: m and rad.
 const LEAST_REACH: f64 = 0.3;
 
@@ -61,9 +58,14 @@ impl RgbdSlam {
         });
         let is_believed = |found: &Found| self.may_be(reach, predicted, found.pose());
         if let Some(found) = tracked.filter(is_believed) {
-            return self.outweighs_wheels(&found).then_some(Sighting { map: self.active.id, found });
+            self.doubt = None;
+            let solution = &found.fix.solution;
+            let is_believed =
+                self.contradiction.believes(frame.stamp, solution.contradicts_prior, solution.inlier_count);
+            return is_believed.then_some(Sighting { map: self.active.id, found });
         }
         let recognised = relocalise(&here);
+        self.contradiction = Contradiction::default();
         if let Some(found) = self.believable(recognised, predicted, reach) {
             return Some(Sighting { map: self.active.id, found });
         }
@@ -94,14 +96,6 @@ impl RgbdSlam {
             words,
             seed: self.seed(),
         }
-    }
-
-    /// Whether a pose that was tracked is to be believed though wheels say another one. Few points that agree may do so by chance, all in
-    /// one corner of a bare wall, unless they say so again and again.
-    fn outweighs_wheels(&mut self, found: &Found) -> bool {
-        let contradicts = found.fix.solution.contradicts_prior;
-        self.contradictions = if contradicts { self.contradictions + 1 } else { 0 };
-        !contradicts || found.inliers() >= CONVINCING || self.contradictions >= STUBBORN
     }
 
     /// What the camera can have moved by since it was last located.

@@ -68,7 +68,11 @@ impl RgbdSlam {
             Beginning::First
         } else if is_lost && self.misses >= self.config.tracking.patience {
             Beginning::Another
-        } else if !is_lost && prior.is_some() && self.is_beyond_the_map(depth) {
+        } else if !is_lost
+            && prior.is_some()
+            && !self.contradiction.is_going_on()
+            && self.is_beyond_the_map(depth)
+        {
             Beginning::Onward
         } else {
             Beginning::None
