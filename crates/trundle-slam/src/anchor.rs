@@ -60,6 +60,7 @@ impl Anchor<'_> {
                 radius: window * sensor.scale(octave),
                 octaves: (octave.saturating_sub(1), octave + 1),
                 descriptor: *self.frame.descriptor(point.feature),
+                is_findable: true,
             });
             points.push(point);
         }

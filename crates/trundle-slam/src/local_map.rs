@@ -61,8 +61,9 @@ impl View<'_> {
         let octave = self.sensor.octave_of(scale);
         let radius = self.window * self.sensor.scale(octave);
         let octaves = (octave.saturating_sub(1), octave + 1);
-        let seen = Projection { pixel, depth: p_camera.z, radius, octaves, descriptor: landmark.descriptor };
-        self.sensor.finds_all_over(raw, radius, octaves.1).then_some(seen)
+        let is_findable = self.sensor.can_find_at(raw, octave);
+        let descriptor = landmark.descriptor;
+        Some(Projection { pixel, depth: p_camera.z, radius, octaves, descriptor, is_findable })
     }
 
     /// Whether a surface stands before a point at `depth` m behind the raw pixel.

@@ -17,6 +17,8 @@ pub(crate) struct Projection {
     pub octaves: (u8, u8),
     /// What it looks like.
     pub descriptor: Descriptor,
+    /// Whether there a feature can be found at all.
+    pub is_findable: bool,
 }
 
 impl Projection {
@@ -33,8 +35,9 @@ impl Projection {
         let octave = sensor.octave_of(landmark.distance_at_octave_0 / p_camera.norm());
         let radius = window * sensor.scale(octave);
         let octaves = (octave.saturating_sub(1), octave + 1);
-        let projection = Self { pixel, depth: p_camera.z, radius, octaves, descriptor: landmark.descriptor };
-        sensor.finds_all_over(raw, radius, octaves.1).then_some((projection, p_camera))
+        let is_findable = sensor.can_find_at(raw, octave);
+        let descriptor = landmark.descriptor;
+        Some((Self { pixel, depth: p_camera.z, radius, octaves, descriptor, is_findable }, p_camera))
     }
 }
 
@@ -105,7 +108,7 @@ mod tests {
 
     fn looking_for(frame: &Frame, feature: usize, radius: f64) -> Projection {
         let (pixel, descriptor) = (frame.pixels[feature], *frame.descriptor(feature));
-        Projection { pixel, depth: 2.0, radius, octaves: (0, 1), descriptor }
+        Projection { pixel, depth: 2.0, radius, octaves: (0, 1), descriptor, is_findable: true }
     }
 
     #[test]

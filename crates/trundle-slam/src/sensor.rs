@@ -16,6 +16,9 @@ pub(crate) struct Sensor {
     high: Vector2,
 }
 
+/// A keypoint is hardly farther off than so many standard deviations.
+const KEYPOINT: f64 = 2.0;
+
 impl Sensor {
     pub fn new(camera: PinholeCamera, scale_factors: Vec<f64>, pixel_sigma: f64) -> Self {
         let (right, bottom) = (camera.width() as f64 - 1.0, camera.height() as f64 - 1.0);
@@ -42,12 +45,12 @@ impl Sensor {
         self.camera.contains(raw).then_some((pixel, raw))
     }
 
-    /// Whether features of every octave up to this one can be found all over a window about a raw `pixel`, px.
+    /// Whether a feature of an octave can be found at a raw `pixel`, and about it as far as a keypoint is off.
     ///
-    /// Of a point whose window reaches into the margin only what is inward can be taken for it, rightly or not: while the camera turns,
-    /// what leaves the view would hold it back.
-    pub fn finds_all_over(&self, pixel: Vector2, radius: f64, octave: u8) -> bool {
-        let margin = OrbConfig::MARGIN as f64 * self.scale(octave) + radius;
+    /// Of a point in the margin only something inward can be taken for it, wrongly: while the camera turns, what leaves the view
+    /// would hold it back.
+    pub fn can_find_at(&self, pixel: Vector2, octave: u8) -> bool {
+        let margin = (OrbConfig::MARGIN as f64 + KEYPOINT * self.pixel_sigma) * self.scale(octave);
         let [right, bottom] =
             [self.camera.width(), self.camera.height()].map(|side| side as f64 - 1.0 - margin);
         (margin..=right).contains(&pixel.x) && (margin..=bottom).contains(&pixel.y)
@@ -88,13 +91,12 @@ mod tests {
     }
 
     #[test]
-    fn a_window_that_reaches_into_the_margin_is_not_searched() {
+    fn in_the_margin_nothing_is_to_be_found() {
         let sensor = freiburg1();
-        let finds = |x: f64, octave: u8| sensor.finds_all_over(Vector2::new(x, 240.0), 6.0, octave);
-        assert!(finds(22.5, 0) && !finds(21.5, 0) && finds(616.5, 0) && !finds(617.5, 0));
-        assert!(finds(25.5, 1) && !finds(25.0, 1), "the margin is in px of the octave");
-        assert!(!sensor.finds_all_over(Vector2::new(320.0, 21.0), 6.0, 0));
-        assert!(!finds(f64::NAN, 0));
+        let finds = |x: f64, octave: u8| sensor.can_find_at(Vector2::new(x, 240.0), octave);
+        assert!(finds(18.5, 0) && !finds(17.5, 0) && finds(620.5, 0) && !finds(621.5, 0));
+        assert!(finds(22.0, 1) && !finds(21.0, 1), "the margin is in px of the octave");
+        assert!(!sensor.can_find_at(Vector2::new(320.0, 17.0), 0) && !finds(f64::NAN, 0));
     }
 
     #[test]

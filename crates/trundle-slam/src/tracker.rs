@@ -192,7 +192,9 @@ impl Tracker<'_> {
         let mut matched: Vec<LandmarkId> = matches.iter().filter_map(|m| m.landmark).collect();
         matched.sort_unstable();
         let visible = self.view.landmarks(self.map, pose);
-        let sought: Vec<_> = visible.iter().filter(|(id, _)| matched.binary_search(id).is_err()).collect();
+        let is_sought =
+            |(id, seen): &&(LandmarkId, Projection)| seen.is_findable && matched.binary_search(id).is_err();
+        let sought: Vec<_> = visible.iter().filter(is_sought).collect();
         let projections: Vec<Projection> = sought.iter().map(|(_, projection)| *projection).collect();
         let found = search(self.frame, &free, &projections, self.config.window_likeness());
         let taken = |(feature, i): (usize, usize)| PointMatch::of_landmark(feature, sought[i].0, self.map);

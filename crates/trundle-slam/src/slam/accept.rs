@@ -103,9 +103,9 @@ impl RgbdSlam {
         Kept { reference, merged }
     }
 
-    /// Counts which landmarks should have been seen, and which were.
+    /// Counts which landmarks should have been found, and which were.
     fn count(&mut self, visible: &[(LandmarkId, Projection)], found: &[Option<LandmarkId>]) {
-        for (id, _) in visible {
+        for (id, _) in visible.iter().filter(|(_, seen)| seen.is_findable) {
             if let Some(landmark) = self.active.map.landmark_mut(*id) {
                 landmark.visible = landmark.visible.saturating_add(1);
             }
