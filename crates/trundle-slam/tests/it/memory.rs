@@ -21,12 +21,13 @@ fn lap(frame: usize, dice: &mut Dice) -> Pose3 {
 fn ten_laps_of_a_room_take_no_more_than_three() {
     let (room, mut dice) = (Room::new(), Dice(5));
     let mut slam = RgbdSlam::new(camera(), SlamConfig::default()).unwrap();
-    let (mut at, mut after) = (lap(0, &mut dice), Vec::new());
+    let (mut at, mut after, mut weak) = (lap(0, &mut dice), Vec::new(), 0);
     for i in 0..10 * LAP {
         let to = if i == 0 { at } else { lap(i, &mut dice) };
         let (features, depth) = room.seen_from(to, &mut dice);
         let report = slam.step_with_features(stamp(i), features, &depth, Some((at.inverse() * to).into()));
-        assert_eq!(report.tracking, Tracking::Ok, "frame {i}");
+        assert!(report.tracking.is_located(), "frame {i}");
+        weak += usize::from(report.tracking == Tracking::Weak);
         at = to;
         if (i + 1) % LAP == 0 {
             after.push((report.keyframes, report.landmarks, slam.save().len()));
@@ -35,9 +36,9 @@ fn ten_laps_of_a_room_take_no_more_than_three() {
     println!("keyframes, landmarks, bytes after each lap: {after:?}");
     let within = |ten: usize, three: usize| ten as f64 <= 1.1 * three as f64;
     let (three, ten) = (after[2], after[9]);
+    assert!(within(ten.0, three.0), "keyframes");
     assert!(within(ten.1, three.1) && within(ten.2, three.2), "landmarks and bytes");
-    // Keyframes are few in a room, and some come late: 21 after three laps, 26 after eight, and no more.
-    assert_eq!(after[7].0, ten.0, "keyframes");
+    assert!(weak <= 3, "{weak} weak frames");
 }
 
 #[test]

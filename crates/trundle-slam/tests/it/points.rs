@@ -4,12 +4,12 @@
 use nalgebra::Vector6;
 use trundle_core::{DepthImage, PinholeCamera, Pose3, Stamp, Vector2, Vector3};
 use trundle_slam::SlamConfig;
-use trundle_vision::{Descriptor, Features, Keypoint};
+use trundle_vision::{Descriptor, Features, Keypoint, OrbConfig};
 
 /// Half the size of the room along x, y, z, m.
 const HALF: Vector3 = Vector3::new(2.2, 1.4, 2.6);
 /// Points on its walls.
-const POINTS: u64 = 4500;
+const POINTS: u64 = 7000;
 /// Bits of a descriptor that differ from look to look.
 const FLIPPED: usize = 10;
 /// How much larger an octave is than the one before.
@@ -86,7 +86,7 @@ impl Room {
             let Some(pixel) = camera.project(p) else { continue };
             let pixel = pixel + Vector2::new(dice.normal(), dice.normal()) * sigma;
             let measured = p.z + config.depth.sigma_at(p.z) * dice.normal();
-            if set_patch(&mut depth, pixel, measured) {
+            if set_patch(&mut depth, pixel, measured) && is_describable(pixel, octave.round() as i32) {
                 let (x, y) = (pixel.x as f32, pixel.y as f32);
                 let keypoint = Keypoint { x, y, octave: octave.round() as u8, angle: 0.0, response: 1.0 };
                 features.keypoints.push(keypoint);
@@ -95,6 +95,13 @@ impl Room {
         }
         (features, depth)
     }
+}
+
+/// Whether ORB has enough around a pixel to describe it by.
+fn is_describable(pixel: Vector2, octave: i32) -> bool {
+    let (camera, margin) = (camera(), OrbConfig::MARGIN as f64 * SCALE.powi(octave));
+    let is_within = |v: f64, side: usize| (margin..=side as f64 - 1.0 - margin).contains(&v);
+    is_within(pixel.x, camera.width()) && is_within(pixel.y, camera.height())
 }
 
 /// Nothing to see.
