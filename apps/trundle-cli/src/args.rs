@@ -83,8 +83,8 @@ pub struct DemoArgs {
     /// Keep maps and how far the mission has come in FILE, every 10 s: what `--wake` goes on with after a run that was broken off.
     #[arg(long, value_name = "FILE")]
     pub memory: Option<PathBuf>,
-    /// Wake up with what the file of --memory holds, standing here in the room (m, m, deg): the robot recognises where it is, or finds it by its scans, and goes on
-    /// with its mission. The map's frame stays that of --start.
+    /// Wake up with what the file of --memory holds, standing here in the room (m, m, deg): the robot recognises where it is, or finds it by
+    /// its scans, and goes on with its mission. The map's frame stays that of --start.
     #[arg(long, value_name = "X,Y,DEG", allow_hyphen_values = true, requires = "memory", conflicts_with_all = ["goal", "direct"])]
     pub wake: Option<PoseArg>,
     /// What breaks, and when: a TOML file as for `trundle sim --faults`.

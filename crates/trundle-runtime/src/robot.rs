@@ -1,4 +1,5 @@
 mod background;
+mod placing;
 mod waking;
 
 use crate::{
@@ -16,7 +17,6 @@ use crate::{
     sight::Sight,
     stage::{Stage, StageTimes},
     state::DriveState,
-    whereabouts::Place,
 };
 use background::Background;
 use std::sync::Arc;
@@ -250,16 +250,6 @@ impl Robot {
         }
     }
 
-    /// A scan of a laser that the robot sees by.
-    fn sweep(&mut self, scan: &Scan) {
-        let odometer = self.odometry_at(scan.stamp());
-        if let (Some(lookout), Some(odometer)) = (&mut self.lookout, odometer) {
-            let place = lookout.seek(odometer.pose, scan, true, &mut self.times);
-            self.note_place(place);
-        }
-        self.see(scan.clone());
-    }
-
     /// What an image showed: the visual pose corrects the estimate; at the map's rate the scan does too, and enters the map.
     fn take_in(&mut self, sighting: Sighting, report: &mut StepReport) {
         let Sighting { odom_from_base, track, scan, place, unplaced, is_carried_away, bent, saved } =
@@ -302,31 +292,6 @@ impl Robot {
         let saved = saved.filter(|_| fits);
         report.memory = saved.map(|visual| Arc::new(self.remember(visual)));
         report.track = Some(track);
-    }
-
-    /// A robot that does not know its place is where its scans fit the map alone; where that is still to be found, it is looked for.
-    fn note_place(&mut self, place: Option<Place>) {
-        let is_lost = |localizer: &Localizer| position_sigma(&localizer.estimate()) >= self.lost_sigma;
-        if let Some(Place { stamp, map_from_base, covariance }) = place
-            && is_lost(&self.localizer)
-        {
-            match self.localizer.correct_scan(stamp, map_from_base, &covariance) {
-                Correction::Applied { .. } => {
-                    self.latest.unplaced = None;
-                    self.lookout.iter_mut().for_each(|lookout| lookout.placed_by_scans());
-                }
-                // It is elsewhere than it was believed to be, however unsurely: the next scan tells where.
-                _ => self.localizer.lose_place(),
-            }
-        }
-        let is_lost = is_lost(&self.localizer);
-        let Some(lookout) = &mut self.lookout else { return };
-        match (is_lost, lookout.whereabouts.is_sought()) {
-            (true, false) if self.mapper.is_redrawing() => {}
-            (true, false) => lookout.whereabouts.seek(self.mapper.grid().clone()),
-            (false, true) => lookout.whereabouts.end(),
-            _ => {}
-        }
     }
 
     /// A scan: at the map's rate it corrects the estimate and enters the map; safety watches each. Whether it was drawn.

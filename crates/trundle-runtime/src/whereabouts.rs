@@ -82,8 +82,8 @@ impl Whereabouts {
         self.search = Search::None;
     }
 
-    /// Takes in a scan, `in_the_dark` where images show too little to be recognised; the place once it is certain. Cost: linear in the map's area for each scan 10 deg or 0.3 m farther on, until a
-    /// place is found.
+    /// Takes in a scan, `in_the_dark` where images show too little to be recognised; the place once it is certain.
+    /// Cost: linear in the map's area for each scan 10 deg or 0.3 m farther on, until a place is found.
     pub(crate) fn look(&mut self, odom_from_base: Pose2, scan: &Scan, in_the_dark: bool) -> Option<Place> {
         self.get_ready();
         let confirmed = if in_the_dark { CONFIRMED.0 } else { CONFIRMED.1 };

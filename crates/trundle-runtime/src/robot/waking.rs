@@ -15,7 +15,8 @@ const REMEMBER_HZ: f64 = 0.1;
 
 impl Robot {
     /// A robot that wakes up with what another one remembered: it knows the rooms, not where in them it stands, and turns on the
-    /// spot until it recognises a place or its scans fit one alone. Then it goes on with what was left of the mission. The map frame is that of the memory.
+    /// spot until it recognises a place or its scans fit one alone. Then it goes on with what was left of the mission. The map frame is that
+    /// of the memory.
     ///
     /// # Errors
     /// When a number of the configuration is outside its range, or the memory does not fit it: other cells, another camera.
