@@ -24,9 +24,9 @@
 //! ```
 
 mod belief;
+mod camera_turns;
 mod correction;
-mod gyro_bias;
-mod gyro_scale;
+mod gyro_errors;
 mod history;
 mod learnt;
 mod localizer;

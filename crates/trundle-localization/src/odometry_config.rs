@@ -23,10 +23,10 @@ pub struct OdometryConfig {
     pub wheel_turn_noise: f64,
     /// Heading by the wheels, sigma after 1 m, rad / sqrt(m), 0 to 1. Default 0.02: unequal wheels.
     pub wheel_way_noise: f64,
-    /// Heading by the gyro, sigma after a turn of 1 rad, rad / sqrt(rad), 0 to 1. Default 0.01: its scale.
+    /// Heading by the gyro, sigma after a turn of 1 rad, rad / sqrt(rad), 0 to 1, besides what its scale may be off. Default 0.002.
     pub gyro_turn_noise: f64,
-    /// Heading by the gyro, sigma after 1 s, rad / sqrt(s), 0 to 1. Default 0.002: three times the angle random walk of a
-    /// small gyro, for the rest of its bias.
+    /// Heading by the gyro, sigma after 1 s, rad / sqrt(s), 0 to 1, besides what its bias may be off. Default 0.0007: the angle random
+    /// walk of a small gyro, 0.04 deg / s / sqrt(Hz).
     pub gyro_time_noise: f64,
     /// What a wheel's radius may be off its nominal one before it was learnt (one sigma, as a part), 0 (never learnt) to 0.1.
     /// Default 0.01: worn tyres.
@@ -67,8 +67,8 @@ impl Default for OdometryConfig {
             spot_noise: 0.002,
             wheel_turn_noise: 0.05,
             wheel_way_noise: 0.02,
-            gyro_turn_noise: 0.01,
-            gyro_time_noise: 0.002,
+            gyro_turn_noise: 0.002,
+            gyro_time_noise: 0.0007,
             wheel_radius_sigma: 0.01,
             gyro_rate_noise: 0.01,
             gyro_bias_sigma: 0.02,
@@ -90,7 +90,7 @@ impl OdometryConfig {
     /// rad).
     pub fn by_wheels(&self, motion: &Pose2) -> Matrix3<f64> {
         let way = motion.x.hypot(motion.y);
-        of_step(self, &Step { way, turn: motion.theta, dt: 0.0, by_gyro: false, slip: 0.0 })
+        of_step(self, &Step { way, turn: motion.theta, dt: 0.0, by_gyro: None, slip: 0.0 })
     }
 
     /// Passes a valid configuration through.

@@ -11,8 +11,8 @@ pub(crate) struct Step {
     pub(crate) turn: f64,
     /// Seconds.
     pub(crate) dt: f64,
-    /// Whether the turn is the gyro's.
-    pub(crate) by_gyro: bool,
+    /// The variance of the turn where it is the gyro's, rad^2.
+    pub(crate) by_gyro: Option<f64>,
     /// Metres that the wheels' rims and the gyro disagree by, when they slip; else 0.
     pub(crate) slip: f64,
 }
@@ -21,12 +21,9 @@ pub(crate) struct Step {
 pub(crate) fn of_step(config: &OdometryConfig, step: &Step) -> Matrix3<f64> {
     let (way, turn) = (step.way.abs(), step.turn.abs());
     let slip = config.slip_length * step.slip;
-    let heading = if step.by_gyro {
-        config.gyro_turn_noise.powi(2) * turn + config.gyro_time_noise.powi(2) * step.dt
-    } else {
-        // A slip of the wheels that nobody checks is part of these two constants.
-        config.wheel_turn_noise.powi(2) * turn + config.wheel_way_noise.powi(2) * way
-    };
+    // A slip of the wheels that nobody checks is part of these two constants.
+    let by_wheels = config.wheel_turn_noise.powi(2) * turn + config.wheel_way_noise.powi(2) * way;
+    let heading = step.by_gyro.unwrap_or(by_wheels);
     let spot = config.spot_noise.powi(2) * turn + slip;
     Matrix3::from_diagonal(&nalgebra::Vector3::new(
         config.way_noise.powi(2) * way + spot,

@@ -1,7 +1,7 @@
 use crate::{
     OdometryConfig, WheelCounts, WheelReport,
-    gyro_bias::GyroBias,
-    gyro_scale::GyroScale,
+    camera_turns::{CameraTurns, SeenHeading},
+    gyro_errors::GyroErrors,
     odometry_noise::{Step, of_gap, of_step},
     planar::carried,
     stuck_gyro::StuckGyro,
@@ -27,8 +27,8 @@ pub struct WheelOdometry {
     drive: DifferentialDrive,
     config: OdometryConfig,
     gyro: TurnIntegral,
-    bias: GyroBias,
-    scale: GyroScale,
+    errors: GyroErrors,
+    turns: CameraTurns,
     stuck: StuckGyro,
     size: WheelSize,
     last_rate: Option<GyroRate>,
@@ -58,8 +58,8 @@ impl WheelOdometry {
     pub fn new(drive: DifferentialDrive, config: OdometryConfig) -> Result<Self, Invalid> {
         let (drive, config) = (drive.validated()?, config.validated()?);
         Ok(Self {
-            bias: GyroBias::new(&config),
-            scale: GyroScale::new(&config),
+            errors: GyroErrors::new(&config),
+            turns: CameraTurns::default(),
             size: WheelSize::new(&config),
             drive,
             config,
@@ -89,9 +89,9 @@ impl WheelOdometry {
         }
         self.stuck.note(rate);
         let dt = self.last_rate.map_or(0.0, |last| rate.stamp - last.stamp);
-        self.bias.wander(&self.config, dt);
-        if self.at_rest(rate.stamp) && self.bias.explains(&self.config, rate.omega) {
-            self.bias.measure(&self.config, rate.omega);
+        self.errors.wander(&self.config, dt);
+        if self.at_rest(rate.stamp) && self.errors.explains(&self.config, rate.omega) {
+            self.errors.rest(&self.config, rate.omega);
         }
         self.last_rate = Some(*rate);
     }
@@ -125,14 +125,14 @@ impl WheelOdometry {
         self.counts
     }
 
-    /// The gyro's bias, rad/s, once it was measured at rest.
+    /// The gyro's bias, rad/s, once it was measured, at rest or by the camera.
     pub fn gyro_bias(&self) -> Option<f64> {
-        self.bias.is_measured().then(|| self.bias.value())
+        self.errors.is_measured().then(|| self.errors.bias())
     }
 
     /// True turns over the gyro's, as far as the camera has shown them.
     pub fn gyro_scale(&self) -> f64 {
-        self.scale.value()
+        self.errors.scale()
     }
 
     /// Radii of the left and the right wheel as far as gyro and camera have shown them, m.
@@ -141,18 +141,22 @@ impl WheelOdometry {
         [left, right].map(|ratio| ratio * self.drive.wheel_radius)
     }
 
-    /// The camera saw the base at `seen_from_base`, in a frame that rests, when the odometry had it at `odom_from_base`: the ways by
-    /// both show how large the wheels are, the turns how much the gyro makes of them. `None` where the frame does not go on from
-    /// the last call's.
-    pub fn seen(&mut self, odom_from_base: Pose2, seen_from_base: Option<Pose3>) {
+    /// At `stamp` the camera saw the base at `seen_from_base`, in a frame that rests, when the odometry had it at `odom_from_base`: the
+    /// ways by both show how large the wheels are, the turns what the gyro tells wrong. `None` where the frame does not go on from
+    /// the last call's. Images may come late, but in order.
+    pub fn seen(&mut self, stamp: Stamp, odom_from_base: Pose2, seen_from_base: Option<Pose3>) {
         match seen_from_base.filter(|seen| seen.is_finite() && odom_from_base.is_finite()) {
             Some(seen) => {
                 self.size.seen(odom_from_base, seen.translation);
-                self.scale.seen(odom_from_base.theta, seen.rotation, self.way);
+                let (by_odometry, by_camera) = (odom_from_base.theta, seen.rotation);
+                let heading = SeenHeading { stamp, by_odometry, by_camera, way: self.way };
+                if let Some(turn) = self.turns.see(heading) {
+                    self.errors.seen(&turn);
+                }
             }
             None => {
                 self.size.unseen();
-                self.scale.interrupt();
+                self.turns.interrupt(stamp);
             }
         }
     }
@@ -202,7 +206,7 @@ impl WheelOdometry {
         self.resting_since = if rests { self.resting_since.or(Some(stamp)) } else { None };
 
         let turn_by_wheels = (rims.right - rims.left) / self.drive.wheelbase;
-        let is_stuck = self.stuck.contradicts(turn_by_wheels / rims.dt, self.bias.value());
+        let is_stuck = self.stuck.contradicts(turn_by_wheels / rims.dt, self.errors.bias());
         let turn_by_gyro = self.turn_by_gyro(stamp, rims.dt).filter(|_| !is_stuck);
         let turn = match turn_by_gyro {
             // The gyro's noise does not turn a robot whose wheels rest.
@@ -214,17 +218,18 @@ impl WheelOdometry {
         let slips = slip_rate.abs() > self.config.slip_rate;
         let way = (rims.left + rims.right) / 2.0;
         let slip = if slips { slip_rate.abs() * rims.dt * self.drive.wheelbase / 2.0 } else { 0.0 };
-        if slips || turn_by_gyro.is_none() {
-            self.scale.interrupt();
+        if slips || rests || turn_by_gyro.is_none() {
+            self.turns.interrupt(stamp);
         }
+        let by_gyro = turn_by_gyro.map(|turn| self.errors.turn_variance(&self.config, turn, rims.dt));
         if slips {
             self.size.interrupt();
         } else {
-            let by_gyro = turn_by_gyro.filter(|_| !self.stuck.is_suspect() && self.bias.is_measured());
-            let rolled = Rolled { way, time: rims.dt, by_wheels: turn_by_wheels, by_gyro };
-            self.size.rolled(&self.config, self.drive.wheelbase, rolled);
+            let is_sure = !self.stuck.is_suspect() && self.errors.is_measured();
+            let by_gyro = turn_by_gyro.zip(by_gyro).filter(|_| is_sure);
+            self.size.rolled(self.drive.wheelbase, Rolled { way, by_wheels: turn_by_wheels, by_gyro });
         }
-        self.move_by(stamp, &Step { way, turn, dt: rims.dt, by_gyro: turn_by_gyro.is_some(), slip });
+        self.move_by(stamp, &Step { way, turn, dt: rims.dt, by_gyro, slip });
         if slips { WheelReport::Slipping { rate: slip_rate } } else { WheelReport::Used }
     }
 
@@ -241,11 +246,11 @@ impl WheelOdometry {
     /// The gyro's turn over the last `dt` s, less its bias, rad, if it covers them.
     fn turn_by_gyro(&mut self, stamp: Stamp, dt: f64) -> Option<f64> {
         let (turn, covered) = self.gyro.turn_until(stamp, self.config.gyro_timeout)?;
-        ((covered - dt).abs() < 1e-6).then(|| (turn - self.bias.value() * dt) * self.scale.value())
+        ((covered - dt).abs() < 1e-6).then(|| self.errors.true_turn(turn, dt))
     }
 
     fn is_noise(&self, rate_without_bias: f64) -> bool {
-        self.bias.explains(&self.config, rate_without_bias + self.bias.value())
+        self.errors.explains(&self.config, rate_without_bias + self.errors.bias())
     }
 
     fn at_rest(&self, now: Stamp) -> bool {
@@ -272,7 +277,7 @@ impl WheelOdometry {
         self.suspect = None;
         self.resting_since = None;
         self.size.interrupt();
-        self.scale.interrupt();
+        self.turns.interrupt(ticks.stamp);
         self.gyro.turn_until(ticks.stamp, self.config.gyro_timeout);
         self.odometry.stamp = ticks.stamp;
         self.odometry.twist = Twist2::ZERO;

@@ -24,19 +24,20 @@ struct Seen {
 #[derive(Debug, Clone, Copy, Default)]
 struct Stretch {
     way: f64,
-    time: f64,
+    /// Of the gyro's turn, rad^2.
+    variance: f64,
     by_gyro: f64,
     /// Turn by the gyro less turn by the wheels, rad.
     apart: f64,
 }
 
-/// A small motion by wheels and gyro: m, s, rad, rad.
+/// A small motion by wheels and gyro: m, rad.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Rolled {
     pub(crate) way: f64,
-    pub(crate) time: f64,
     pub(crate) by_wheels: f64,
-    pub(crate) by_gyro: Option<f64>,
+    /// The turn by the gyro and its variance, rad^2.
+    pub(crate) by_gyro: Option<(f64, f64)>,
 }
 
 /// Chords and straight stretches at least so long are measured, m.
@@ -78,23 +79,23 @@ impl WheelSize {
     }
 
     /// The robot rolled on.
-    pub(crate) fn rolled(&mut self, config: &OdometryConfig, wheelbase: f64, step: Rolled) {
-        let Some(by_gyro) = step.by_gyro else {
+    pub(crate) fn rolled(&mut self, wheelbase: f64, step: Rolled) {
+        let Some((by_gyro, variance)) = step.by_gyro else {
             self.stretch = Stretch::default();
             return;
         };
         self.stretch.way += step.way;
-        self.stretch.time += step.time;
+        self.stretch.variance += variance;
         self.stretch.by_gyro += by_gyro;
         self.stretch.apart += by_gyro - step.by_wheels;
         let is_straight = self.stretch.by_gyro.abs() < STRAIGHT;
         if is_straight && self.stretch.way.abs() < LEAST_WAY {
             return;
         }
-        let Stretch { way, time, apart, .. } = std::mem::take(&mut self.stretch);
+        let Stretch { way, variance, apart, .. } = std::mem::take(&mut self.stretch);
         if is_straight {
             let lever = wheelbase / (2.0 * way);
-            let turn = config.gyro_time_noise.powi(2) * time + FLOOR_NOISE.powi(2) * way.abs();
+            let turn = variance + FLOOR_NOISE.powi(2) * way.abs();
             self.difference.learn(self.difference.value() + apart * lever, turn * lever * lever);
         }
     }

@@ -275,7 +275,7 @@ impl Robot {
         let goes_on = track.tracking == Tracking::Ok && bent.is_none() && !track.relocalised;
         let goes_on = goes_on && matches!(correction, Some(Correction::Applied { .. }));
         let base = track.visual_from_camera * self.base_from_camera.inverse();
-        self.odometry.seen(odom_from_base, goes_on.then_some(base));
+        self.odometry.seen(track.stamp, odom_from_base, goes_on.then_some(base));
         if let Some(trajectory) = bent {
             self.follow_the_visual_map(&trajectory);
         }

@@ -91,15 +91,15 @@ fn wheels_that_are_not_as_large_as_said_are_learnt() {
         let odometry = drive.read();
         let wobble = Pose2::new(noise * 0.3, -noise * 0.3, 0.0);
         let seen = truth * wobble;
-        drive.odometry.seen(odometry.pose, Some(Pose3::from_pose2(seen)));
+        drive.odometry.seen(drive.stamp(), odometry.pose, Some(Pose3::from_pose2(seen)));
     }
     let [l, r] = drive.odometry.wheel_radii().map(|radius| radius / nominal);
     assert!((l - left).abs() < 0.002 && (r - right).abs() < 0.002, "{l} {r}");
 }
 
-/// The scale that is learnt of turns to and fro which the camera sees, when the gyro makes so much of them; `tells`: whether there is
-/// a gyro.
-fn learnt_scale(gyro: f64, tells: bool, config: OdometryConfig) -> f64 {
+/// Scale and bias that are learnt of turns to and fro which the camera sees, when the gyro makes so much of them and `bias` rad/s more from
+/// the first turn on, and the wheels 3 % too much; `tells`: whether there is a gyro.
+fn learnt((gyro, bias): (f64, f64), tells: bool, config: OdometryConfig) -> (f64, f64) {
     let mut drive =
         Drive { odometry: WheelOdometry::new(DifferentialDrive::KOBUKI, config).unwrap(), ..Drive::new() };
     let mut truth = Pose2::IDENTITY;
@@ -108,26 +108,29 @@ fn learnt_scale(gyro: f64, tells: bool, config: OdometryConfig) -> f64 {
         let twist = Twist2::new(0.2, if i % 600 < 300 { 0.7 } else { -0.7 });
         truth = truth * Pose2::exp(Vector3::new(twist.v * DT, 0.0, twist.omega * DT));
         let noise = if i % 2 == 0 { 0.01 } else { -0.01 };
-        drive.roll(twist);
+        drive.roll(Twist2::new(twist.v, 1.03 * twist.omega));
         if tells {
-            drive.odometry.step_gyro(&GyroRate { stamp: drive.stamp(), omega: twist.omega * gyro + noise });
+            let omega = twist.omega * gyro + bias + noise;
+            drive.odometry.step_gyro(&GyroRate { stamp: drive.stamp(), omega });
         }
         let odometry = drive.read();
         let wobble = Pose2::new(0.0, 0.0, 0.2 * noise);
-        drive.odometry.seen(odometry.pose, Some(Pose3::from_pose2(truth * wobble)));
+        drive.odometry.seen(drive.stamp(), odometry.pose, Some(Pose3::from_pose2(truth * wobble)));
     }
-    drive.odometry.gyro_scale()
+    (drive.odometry.gyro_scale(), drive.odometry.gyro_bias().unwrap_or_default())
 }
 
 #[test]
-fn a_gyro_that_makes_too_much_of_turns_is_learnt() {
+fn what_a_gyro_makes_of_turns_and_adds_to_them_is_learnt() {
     let config = OdometryConfig::default();
-    for gyro in [0.99, 1.0, 1.006] {
-        let scale = learnt_scale(gyro, true, config.clone());
+    for (gyro, bias) in [(0.99, 0.0), (1.0, 0.004), (1.006, -0.002)] {
+        let (scale, found) = learnt((gyro, bias), true, config.clone());
         assert!((scale * gyro - 1.0).abs() < 1e-3, "{scale} for {gyro}");
+        assert!((found - bias).abs() < 5e-4, "{found} for {bias}");
     }
-    assert_eq!(learnt_scale(0.99, true, OdometryConfig { gyro_scale_sigma: 0.0, ..config.clone() }), 1.0);
-    assert_eq!(learnt_scale(0.99, false, config), 1.0, "turns of the wheels are none of the gyro's");
+    let (scale, _) = learnt((0.99, 0.0), true, OdometryConfig { gyro_scale_sigma: 0.0, ..config.clone() });
+    assert_eq!(scale, 1.0);
+    assert_eq!(learnt((0.99, 0.0), false, config), (1.0, 0.0), "turns of the wheels are none of the gyro's");
 }
 
 #[test]
@@ -137,8 +140,8 @@ fn one_slip_does_not_change_the_wheels() {
     drive.drive_with_gyro(Twist2::new(0.4, 0.0), 0.0, 200);
     // The left wheel spins: a turn that the gyro does not see, a way that the camera does not.
     drive.drive_with_gyro(Twist2::new(0.4, -0.6), 0.0, 100);
-    drive.odometry.seen(Pose2::IDENTITY, Some(Pose3::identity()));
-    drive.odometry.seen(Pose2::new(1.2, 0.0, 0.0), Some(Pose3::from_pose2(Pose2::new(0.4, 0.0, 0.0))));
+    drive.odometry.seen(drive.stamp(), Pose2::IDENTITY, Some(Pose3::identity()));
+    drive.odometry.seen(drive.stamp(), Pose2::new(1.2, 0.0, 0.0), Some(Pose3::from_pose2(Pose2::new(0.4, 0.0, 0.0))));
     let nominal = DifferentialDrive::KOBUKI.wheel_radius;
     for radius in drive.odometry.wheel_radii() {
         assert!((radius / nominal - 1.0).abs() < 1e-3, "{radius}");
