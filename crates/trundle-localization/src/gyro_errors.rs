@@ -30,8 +30,8 @@ const GATE_SIGMAS: f64 = 4.0;
 const SCALE_WALK: f64 = 3e-5;
 /// Never surer of the scale than this (one sigma, as a part): neighbouring turns err alike.
 const LEAST_SCALE_SIGMA: f64 = 3e-4;
-/// For so long what is wrong with the bias is wrong the same way, s: as long as the camera takes to show it.
-const BIAS_LASTS: f64 = 5.0;
+/// For so long what is wrong with the bias is wrong the same way, s: from one keyframe to the next, whose tie it is.
+const BIAS_LASTS: f64 = 1.0;
 /// For such a turn the same of the scale, rad.
 const SCALE_LASTS: f64 = 1.0;
 
@@ -148,9 +148,8 @@ mod tests {
         }
         assert!((gyro.bias() - bias).abs() < 3e-4, "{}", gyro.bias());
         assert!((gyro.scale() - scale).abs() < 1e-3, "{}", gyro.scale());
-        let surer = |turn, dt| {
-            gyro.turn_variance(&config, turn, dt) < 0.5 * before.turn_variance(&config, turn, dt)
-        };
+        let surer =
+            |turn, dt| gyro.turn_variance(&config, turn, dt) < 0.5 * before.turn_variance(&config, turn, dt);
         assert!(surer(1.0, 0.0) && surer(0.0, 1.0));
     }
 }

@@ -1,7 +1,5 @@
-use crate::Huber;
-use crate::observation::{CHI2_95_6, CHI2_999_6};
-use crate::pose_graph::inverse_right_jacobian;
-use nalgebra::{Matrix6, Vector6};
+use crate::observation::CHI2_999_6;
+use nalgebra::Matrix6;
 use trundle_core::Pose3;
 
 /// A pose that is known besides what the image says: where wheels have brought the camera, say.
@@ -9,39 +7,48 @@ use trundle_core::Pose3;
 pub struct PosePrior {
     /// The pose.
     pub world_from_camera: Pose3,
-    /// Inverse covariance of a right perturbation of it (m, rad).
-    pub information: Matrix6<f64>,
+    /// Covariance of a right perturbation of it (m, rad).
+    pub covariance: Matrix6<f64>,
 }
 
 impl PosePrior {
-    /// Whether it agrees at 99.9 % with a pose that was found without it, of that covariance (right perturbation; m, rad).
-    pub fn agrees_with(&self, pose: Pose3, covariance: &Matrix6<f64>) -> bool {
-        let Some(own) = self.information.cholesky().map(|c| c.inverse()) else { return false };
-        let off = self.residual(pose);
-        let spread = (own + covariance).cholesky();
-        spread.is_some_and(|spread| off.dot(&spread.solve(&off)) <= CHI2_999_6)
+    /// Between this and `pose`, found without it: an update of a Kalman filter, and its covariance (Joseph's form). That of `pose` is
+    /// `covariance` (right perturbation; m, rad) and counts as `alike` times as much, for what it says may be sure of itself too much.
+    /// `None` where the two contradict each other at 99.9 %.
+    pub fn fused_with(
+        &self,
+        pose: Pose3,
+        covariance: &Matrix6<f64>,
+        alike: f64,
+    ) -> Option<(Pose3, Matrix6<f64>)> {
+        let off = (self.world_from_camera.inverse() * pose).log();
+        let spread = (self.covariance + covariance * alike).cholesky()?;
+        let agrees = off.dot(&spread.solve(&off)) <= CHI2_999_6;
+        let gain = self.covariance * spread.inverse();
+        let rest = Matrix6::identity() - gain;
+        let fused = rest * self.covariance * rest.transpose() + gain * covariance * gain.transpose();
+        agrees.then(|| ((self.world_from_camera * Pose3::exp(gain * off)).renormalized(), fused))
     }
+}
 
-    /// Under the Huber loss as a whole.
-    pub(crate) fn cost(&self, pose: Pose3) -> f64 {
-        Huber::beyond(CHI2_95_6).cost(self.chi2(self.residual(pose)))
-    }
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::Vector6;
 
-    /// Adds J'WJ and J'Wr at `pose`.
-    pub(crate) fn add_to(&self, pose: Pose3, hessian: &mut Matrix6<f64>, gradient: &mut Vector6<f64>) {
-        let residual = self.residual(pose);
-        let jacobian = inverse_right_jacobian(residual);
-        let weight = Huber::beyond(CHI2_95_6).weight(self.chi2(residual));
-        let weighted = jacobian.transpose() * self.information * weight;
-        *hessian += weighted * jacobian;
-        *gradient += weighted * residual;
-    }
-
-    fn residual(&self, pose: Pose3) -> Vector6<f64> {
-        (self.world_from_camera.inverse() * pose).log()
-    }
-
-    fn chi2(&self, residual: Vector6<f64>) -> f64 {
-        residual.dot(&(self.information * residual))
+    #[test]
+    fn the_surer_pose_counts_more_axis_by_axis() {
+        let sure = Matrix6::from_diagonal(&Vector6::new(1e-6, 4e-4, 1e-4, 1e-4, 1e-4, 1e-4));
+        let prior = PosePrior { world_from_camera: Pose3::identity(), covariance: sure };
+        let pose = Pose3::exp(Vector6::new(0.02, 0.03, 0.0, 0.0, 0.0, 0.01));
+        let (fused, covariance) = prior.fused_with(pose, &(Matrix6::identity() * 1e-4), 1.0).unwrap();
+        let expected = Pose3::exp(Vector6::new(0.02 / 101.0, 0.03 * 0.8, 0.0, 0.0, 0.0, 0.005));
+        assert!((expected.inverse() * fused).log().norm() < 2e-4, "{fused:?}");
+        assert!((covariance[(1, 1)] - 0.8e-4).abs() < 1e-12 && (covariance[(5, 5)] - 0.5e-4).abs() < 1e-12);
+        let (nearer, wider) = prior.fused_with(pose, &(Matrix6::identity() * 1e-4), 4.0).unwrap();
+        let off = |pose: Pose3| (prior.world_from_camera.inverse() * pose).log().norm();
+        assert!(off(nearer) < off(fused) && wider[(1, 1)] > covariance[(1, 1)]);
+        let far = Pose3::exp(Vector6::new(0.0, 0.0, 0.0, 0.0, 0.1, 0.0));
+        assert_eq!(prior.fused_with(far, &(Matrix6::identity() * 1e-4), 1.0), None);
     }
 }

@@ -61,7 +61,7 @@ impl Fix {
 
     /// Whether enough matches agree to believe it, and they determine the pose.
     pub fn is_sound(&self, least_inliers: usize) -> bool {
-        self.solution.inlier_count >= least_inliers && self.solution.covariance().is_some()
+        self.solution.inlier_count >= least_inliers && self.solution.covariance.is_some()
     }
 
     /// Whether most matches agree: where the prediction is off, windows are full of wrong ones that agree by chance.

@@ -54,14 +54,19 @@ impl Rolled {
     pub fn prior(&self, map: &LandmarkMap) -> Option<PosePrior> {
         let keyframe = map.live_keyframe(self.from)?;
         let world_from_camera = keyframe.visual_from_camera * self.from_to;
-        Some(PosePrior { world_from_camera, information: self.information()? })
+        Some(PosePrior { world_from_camera, covariance: self.spread() })
     }
 
     /// The inverse of the covariance, for a camera whose mast sways.
     pub fn information(&self) -> Option<Matrix6<f64>> {
-        let spread = self.covariance + of_sigmas(STEADY.0, STEADY.1);
-        let information = ((spread + spread.transpose()) * 0.5).cholesky()?.inverse();
+        let information = self.spread().cholesky()?.inverse();
         information.iter().all(|v| v.is_finite()).then_some(information)
+    }
+
+    /// The covariance, for a camera whose mast sways.
+    fn spread(&self) -> Matrix6<f64> {
+        let spread = self.covariance + of_sigmas(STEADY.0, STEADY.1);
+        (spread + spread.transpose()) * 0.5
     }
 }
 

@@ -63,7 +63,7 @@ impl Verifier<'_> {
         let points = fix.solution.inlier_count;
         let agreement = points as f64 / fix.matches.len().max(1) as f64;
         let enough = points >= self.config.min_points && agreement >= self.config.min_agreement;
-        let covariance = fix.solution.covariance().filter(|_| enough)?;
+        let covariance = fix.solution.covariance.filter(|_| enough)?;
         let landmarks = fix.inliers().filter_map(|m| m.landmark).collect();
         let visual_from_camera = fix.visual_from_camera();
         Some(Recognised { candidate, visual_from_camera, covariance, points, landmarks })

@@ -121,7 +121,7 @@ impl RgbdSlam {
     fn covariance(&self, found: &Found, reference: KeyframeId) -> Matrix6<f64> {
         let keyframe = self.active.map.keyframe(reference);
         let offset = keyframe.visual_from_camera.inverse() * found.fix.visual_from_camera();
-        let local = found.fix.solution.covariance().unwrap_or_else(Matrix6::identity);
+        let local = found.fix.solution.covariance.unwrap_or_else(Matrix6::identity);
         carried(&keyframe.ground, offset) + local
     }
 
