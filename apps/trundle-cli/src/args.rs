@@ -80,7 +80,7 @@ pub struct DemoArgs {
     /// By the clock on the wall: simulator and robot in threads of their own, camera at 30 Hz; Ctrl-C stops the robot and ends the run.
     #[arg(long)]
     pub real_time: bool,
-    /// Keep maps and how far the mission has come in FILE, every 10 s: what `--wake` goes on with after a run that was broken off.
+    /// Keep maps and how far the mission has come in FILE, every 3 to 10 s: what `--wake` goes on with after a run that was broken off.
     #[arg(long, value_name = "FILE")]
     pub memory: Option<PathBuf>,
     /// Wake up with what the file of --memory holds, standing here in the room (m, m, deg): the robot recognises where it is, or finds it by

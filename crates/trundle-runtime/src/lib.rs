@@ -25,6 +25,7 @@ mod progress;
 pub mod real_time;
 mod report;
 mod robot;
+mod saving;
 mod schedule;
 mod sight;
 mod stage;

@@ -1,7 +1,7 @@
 use crate::{
     config::RobotConfig,
     eye::EyeWatch,
-    schedule::Ticker,
+    saving::Saving,
     sight::Sight,
     stage::{Stage, StageTimes},
     whereabouts::{Place, Whereabouts},
@@ -33,7 +33,7 @@ pub(crate) struct Lookout {
     /// When the place was last looked for everywhere, since then.
     searched: Option<Stamp>,
     /// When the visual maps are to be saved; none: never.
-    pub(crate) saving: Option<Ticker>,
+    pub(crate) saving: Option<Saving>,
 }
 
 /// What an image showed.
@@ -123,10 +123,17 @@ impl Lookout {
         };
         let in_the_dark = track.features < ENOUGH_FEATURES;
         let place = scan.as_ref().and_then(|scan| self.seek(odom_from_base, scan, in_the_dark, times));
-        let is_time = self.saving.as_mut().is_some_and(|saving| saving.due(image.stamp()));
-        let saved = is_time.then(|| times.measure(Stage::Saving, || self.slam.save()));
+        let saved = self.save(image.stamp(), times);
         let unplaced = self.unplaced;
         Some(Sighting { odom_from_base, track, scan, place, unplaced, is_carried_away, bent, saved })
+    }
+
+    /// The visual maps, when it is time to save them.
+    fn save(&mut self, now: Stamp, times: &mut StageTimes) -> Option<Vec<u8>> {
+        let saving = self.saving.as_mut().filter(|saving| saving.is_due(now))?;
+        let saved = times.measure(Stage::Saving, || self.slam.save());
+        saving.saved(now, saved.len());
+        Some(saved)
     }
 
     /// Looks for the place by a scan, while it is not known.

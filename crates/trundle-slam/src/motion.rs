@@ -84,7 +84,7 @@ impl Belief {
 
     /// How fast the camera should be turning at `stamp`, rad/s, camera frame.
     pub fn turn_rate(&self, stamp: Stamp, prior: Option<Pose3>) -> Vector3 {
-        let elapsed = self.elapsed(stamp);
+        let elapsed = self.seconds_until(stamp);
         if elapsed > 0.0 {
             self.motion(stamp, prior).rotation.scaled_axis() / elapsed
         } else {
@@ -94,21 +94,21 @@ impl Belief {
 
     /// The motion since the last frame.
     fn motion(&self, stamp: Stamp, prior: Option<Pose3>) -> Pose3 {
-        let elapsed = self.elapsed(stamp);
+        let elapsed = self.seconds_until(stamp);
         let going_on = || self.velocity.map(|velocity| Pose3::exp(velocity * elapsed));
         self.since_last(prior).or_else(going_on).unwrap_or_default()
     }
 
     /// The frame at `stamp` was located. `before` is where the last frame was, as the map has it now, if it was located.
     pub fn located(&mut self, stamp: Stamp, pose: Pose3, covariance: Matrix6<f64>, before: Option<Pose3>) {
-        let elapsed = self.elapsed(stamp);
+        let elapsed = self.seconds_until(stamp);
         self.velocity = before.filter(|_| elapsed > 0.0).map(|b| (b.inverse() * pose).log() / elapsed);
         (self.stamp, self.visual_from_camera, self.covariance) = (Some(stamp), pose, covariance);
     }
 
     /// The frame at `stamp` was not located: moves by the prior, or holds the pose, and grows uncertain.
     pub fn missed(&mut self, stamp: Stamp, prior: Option<CameraMotion>, config: &MotionConfig) {
-        let elapsed = self.elapsed(stamp);
+        let elapsed = self.seconds_until(stamp);
         let motion = self.since_last(prior.map(|prior| prior.motion)).unwrap_or_default();
         let noise = match prior {
             Some(prior) => config.covariance_of(&prior, elapsed),
@@ -125,7 +125,7 @@ impl Belief {
     }
 
     /// Seconds since the last frame, 0 for the first or when stamps go back.
-    fn elapsed(&self, stamp: Stamp) -> f64 {
+    pub fn seconds_until(&self, stamp: Stamp) -> f64 {
         self.stamp.map_or(0.0, |last| (stamp - last).max(0.0))
     }
 }

@@ -179,7 +179,7 @@ impl RgbdSlam {
     }
 
     /// Locates one image. `prior` is the motion since the last image given, `previous_camera_from_camera`, as wheels and
-    /// gyro know it; without it the camera is taken to go on as it went. An image of another size than the camera's, or
+    /// gyro know it; without it, or where it is one that no robot makes in that time, the camera is taken to go on as it went. An image of another size than the camera's, or
     /// with nothing in it, is an image without features: the report says that it was not located.
     pub fn step(&mut self, image: &RgbdImage, prior: Option<CameraMotion>) -> TrackReport {
         let camera = &self.sensor.camera;
@@ -198,7 +198,8 @@ impl RgbdSlam {
         depth: &DepthImage,
         prior: Option<CameraMotion>,
     ) -> TrackReport {
-        let told = prior.filter(CameraMotion::is_finite);
+        let seconds = self.belief.seconds_until(stamp);
+        let told = prior.filter(|told| told.is_finite() && is_possible(told.motion, seconds));
         let prior = told.map(|told| told.motion);
         let turn = self.belief.turn_rate(stamp, prior) * self.config.motion.readout;
         let frame = Frame::new(stamp, features, depth, turn, (&self.sensor, &self.config.depth));
@@ -222,7 +223,7 @@ impl RgbdSlam {
 
     /// Takes note of what wheels say of the way since the last frame.
     fn roll(&mut self, stamp: Stamp, prior: Option<CameraMotion>) {
-        let seconds = self.belief.stamp.map_or(0.0, |last| (stamp - last).max(0.0));
+        let seconds = self.belief.seconds_until(stamp);
         self.rolled =
             self.rolled.zip(prior).and_then(|(way, step)| way.on(step, seconds, &self.config.motion));
         if let Some(step) = prior {
@@ -356,6 +357,17 @@ impl RgbdSlam {
             landmarks: self.active.map.landmark_count(),
         }
     }
+}
+
+/// Faster than this no robot moves, m/s, and turns, rad/s: its odometry has jumped.
+const FASTEST: (f64, f64) = (10.0, 20.0);
+/// And farther than this in no time at all, m and rad.
+const AT_ONCE: f64 = 0.2;
+
+/// Whether a robot may have moved so in so many seconds.
+fn is_possible(motion: Pose3, seconds: f64) -> bool {
+    let (way, turn) = (motion.translation.norm(), motion.angle());
+    way <= AT_ONCE + FASTEST.0 * seconds && turn <= AT_ONCE + FASTEST.1 * seconds
 }
 
 impl Located {

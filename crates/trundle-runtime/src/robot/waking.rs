@@ -4,14 +4,11 @@ use super::Robot;
 use crate::{
     config::RobotConfig,
     memory::{Memory, MemoryError},
-    schedule::Ticker,
+    saving::Saving,
 };
 use trundle_core::{Invalid, OccupancyGrid};
 use trundle_localization::Localizer;
 use trundle_mapping::{LiveMapper, MapperConfig};
-
-/// How often a robot that remembers says what it would take along, 1/s.
-const REMEMBER_HZ: f64 = 0.1;
 
 impl Robot {
     /// A robot that wakes up with what another one remembered: it knows the rooms, not where in them it stands, and turns on the
@@ -50,11 +47,11 @@ impl Robot {
         Ok(())
     }
 
-    /// The robot, saying every 10 s what it would take along through a restart: [`crate::StepReport::memory`].
+    /// The robot, saying every 3 to 10 s, the larger the map the more seldom, what it would take along through a restart: [`crate::StepReport::memory`].
     #[must_use]
     pub fn remembering(mut self) -> Self {
         if let Some(lookout) = &mut self.lookout {
-            lookout.saving = Some(Ticker::new(REMEMBER_HZ));
+            lookout.saving = Some(Saving::default());
         }
         self
     }
