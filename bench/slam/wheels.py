@@ -56,7 +56,7 @@ def aside(rows, degrees):
 def restarted(rows):
     """Odometry that starts again at the origin half way."""
     half = len(rows) // 2
-    return rows[:half] + [(t, x - rows[half][1], y - rows[half][2], w) for t, x, y, w in rows[half:]]
+    return rows[:half] + driven([(rows[half][0], 0, 0, 0)] + steps(rows[half:])[1:])
 
 
 def holes(rows):
@@ -109,7 +109,8 @@ def main():
             said = subprocess.run([args.drive, copy], capture_output=True, text=True, check=True).stdout
         located, loops = re.search(r"(\d+ of \d+) frames located, (\d+) loops", said).groups()
         ate = re.search(r"ATE ([\d.]+) cm", said)[1]
-        off = re.search(r"until the first loop: .* ([\d.]+) %", said)[1]
+        off = re.search(r"until the first loop: .* ([\d.]+) %", said)
+        off = off[1] if off else "-"
         print(f"| {name} | {located} | {loops} | {ate} | {off} |", flush=True)
 
 

@@ -45,7 +45,8 @@ impl CameraTurns {
     /// nothing.
     pub(crate) fn interrupt(&mut self, now: Stamp) {
         self.turn = None;
-        self.interrupted = Some(now);
+        // An image that comes late may tell of an older one.
+        self.interrupted = self.interrupted.max(Some(now));
     }
 
     /// Takes in what an image showed, late as it may come; the turn that ends with it, if one does.
@@ -81,7 +82,7 @@ impl Turn {
         let turned = wrap_angle(heading.by_odometry - before.by_odometry);
         self.by_odometry += turned;
         self.by_camera += (before.by_camera.inverse() * heading.by_camera).scaled_axis().z;
-        turned.abs() / (heading.stamp - before.stamp)
+        turned.abs() / (heading.stamp - before.stamp).max(1e-3)
     }
 }
 
@@ -115,6 +116,7 @@ mod tests {
         let mut turns = CameraTurns::default();
         turns.see(heading(0, 0.0, 0.0));
         turns.interrupt(Stamp::from_nanos(100_000_000));
+        turns.interrupt(Stamp::from_nanos(40_000_000));
         assert!(turns.see(heading(60_000_000, 0.0, 0.0)).is_none());
         assert!(turns.see(heading(160_000_000, 0.5, 0.5)).is_none());
         turns.see(heading(260_000_000, 1.4, 1.4));

@@ -10,7 +10,13 @@ pub(crate) struct GyroErrors {
     scale: f64,
     /// Of bias and scale.
     covariance: Matrix2<f64>,
+    /// Before anything was measured.
+    unknown: Matrix2<f64>,
     is_measured: bool,
+    /// Since the bias was last learnt, s.
+    untold: f64,
+    /// Measurements in a row that were not believed.
+    refused: usize,
 }
 
 /// A turn that the camera saw.
@@ -30,20 +36,23 @@ const GATE_SIGMAS: f64 = 4.0;
 const SCALE_WALK: f64 = 3e-5;
 /// Never surer of the scale than this (one sigma, as a part): neighbouring turns err alike.
 const LEAST_SCALE_SIGMA: f64 = 3e-4;
+/// So many in a row are right, and what was learnt is wrong: a gyro that was knocked, or got warm.
+const MOST_REFUSED: usize = 3;
 /// For so long what is wrong with the bias is wrong the same way, s: from one keyframe to the next, whose tie it is.
 const BIAS_LASTS: f64 = 1.0;
+/// Unless nothing has told the bias for longer than this, s: then it has been wrong the same way since.
+const TOLD: f64 = 5.0;
+/// A robot at rest may tremble, and gyros may be noisier than told: so many times.
+const TREMBLE: f64 = 2.0;
 /// For such a turn the same of the scale, rad.
 const SCALE_LASTS: f64 = 1.0;
 
 impl GyroErrors {
     pub(crate) fn new(config: &OdometryConfig) -> Self {
         let variances = [config.gyro_bias_sigma, config.gyro_scale_sigma].map(|sigma| sigma * sigma);
-        Self {
-            bias: 0.0,
-            scale: 1.0,
-            covariance: Matrix2::from_diagonal(&variances.into()),
-            is_measured: false,
-        }
+        let unknown = Matrix2::from_diagonal(&variances.into());
+        let (bias, scale, covariance) = (0.0, 1.0, unknown);
+        Self { bias, scale, covariance, unknown, is_measured: false, untold: 0.0, refused: 0 }
     }
 
     /// The bias, rad/s: 0 before it was measured.
@@ -69,12 +78,14 @@ impl GyroErrors {
     /// The variance of that turn, rad^2.
     pub(crate) fn turn_variance(&self, config: &OdometryConfig, turn: f64, dt: f64) -> f64 {
         let by_turn = config.gyro_turn_noise.powi(2) + self.covariance.m22 * SCALE_LASTS;
-        let by_time = config.gyro_time_noise.powi(2) + self.covariance.m11 * BIAS_LASTS;
+        let lasts = BIAS_LASTS + 2.0 * (self.untold - TOLD).max(0.0);
+        let by_time = config.gyro_time_noise.powi(2) + self.covariance.m11 * lasts;
         by_turn * turn.abs() + by_time * dt
     }
 
     /// Lets `dt` s pass.
     pub(crate) fn wander(&mut self, config: &OdometryConfig, dt: f64) {
+        self.untold += dt;
         let grown = |variance: f64, walk: f64, most: f64| (variance + walk * walk * dt).min(most * most);
         let (bias, scale) = (self.covariance.m11, self.covariance.m22);
         self.covariance.m11 = grown(bias, config.gyro_bias_walk, config.gyro_bias_sigma);
@@ -83,38 +94,53 @@ impl GyroErrors {
 
     /// Whether a rate (rad/s) could be that of a robot at rest.
     pub(crate) fn explains(&self, config: &OdometryConfig, rate: f64) -> bool {
-        let sigma = (self.covariance.m11 + config.gyro_rate_noise.powi(2)).sqrt();
+        let sigma = (self.covariance.m11 + (TREMBLE * config.gyro_rate_noise).powi(2)).sqrt();
         (rate - self.bias).abs() <= GATE_SIGMAS * sigma
     }
 
     /// Takes in a rate (rad/s) of a robot at rest.
     pub(crate) fn rest(&mut self, config: &OdometryConfig, rate: f64) {
-        self.learn(RowVector2::new(1.0, 0.0), rate - self.bias, config.gyro_rate_noise);
+        self.learn(RowVector2::new(1.0, 0.0), rate - self.bias, TREMBLE * config.gyro_rate_noise);
+        self.is_measured = true;
     }
 
     /// Takes in a turn that the camera saw.
     pub(crate) fn seen(&mut self, turn: &SeenTurn) {
         let (by_camera, sigma) = turn.by_camera;
         let slope = RowVector2::new(-self.scale * turn.time, turn.by_gyro / self.scale);
-        self.learn(slope, by_camera - turn.by_gyro, sigma);
+        let off = by_camera - turn.by_gyro;
+        if !self.believes(slope, off, sigma) {
+            self.refused += 1;
+            if self.refused < MOST_REFUSED {
+                return;
+            }
+            self.covariance = self.unknown;
+        }
+        self.refused = 0;
+        if self.believes(slope, off, sigma) {
+            self.learn(slope, off, sigma);
+            self.is_measured |= self.covariance.m11 < 0.25 * self.unknown.m11;
+        }
+    }
+
+    /// Whether a measurement may differ by `off` from what is expected.
+    fn believes(&self, slope: RowVector2<f64>, off: f64, sigma: f64) -> bool {
+        let variance = (slope * self.covariance * slope.transpose()).x + sigma * sigma;
+        off * off <= GATE_SIGMAS.powi(2) * variance
     }
 
     /// A measurement that differs by `off` from what is expected, and by `slope` from bias and scale.
     fn learn(&mut self, slope: RowVector2<f64>, off: f64, sigma: f64) {
         let variance = (slope * self.covariance * slope.transpose()).x + sigma * sigma;
-        if off * off > GATE_SIGMAS.powi(2) * variance {
-            return;
-        }
         let gain = self.covariance * slope.transpose() / variance;
         self.bias += gain.x * off;
         self.scale += gain.y * off;
         let left = Matrix2::identity() - gain * slope;
         // The form that stays symmetric and positive [Joseph].
         self.covariance = left * self.covariance * left.transpose() + gain * gain.transpose() * sigma.powi(2);
-        let is_learnt = self.covariance.m22 > 0.0;
-        self.covariance.m22 =
-            self.covariance.m22.max(if is_learnt { LEAST_SCALE_SIGMA.powi(2) } else { 0.0 });
-        self.is_measured = true;
+        let least = LEAST_SCALE_SIGMA.powi(2).min(self.unknown.m22);
+        self.covariance.m22 = self.covariance.m22.max(least);
+        self.untold = 0.0;
     }
 }
 
@@ -132,7 +158,7 @@ mod tests {
             gyro.rest(&config, 0.013 + if i % 2 == 0 { 0.01 } else { -0.01 });
         }
         assert!((gyro.bias() - 0.013).abs() < 0.001, "{}", gyro.bias());
-        assert!(!gyro.explains(&config, 0.1));
+        assert!(gyro.is_measured() && !gyro.explains(&config, 0.1));
         assert_eq!(gyro.scale(), 1.0, "rest says nothing about turns");
     }
 
@@ -151,5 +177,46 @@ mod tests {
         let surer =
             |turn, dt| gyro.turn_variance(&config, turn, dt) < 0.5 * before.turn_variance(&config, turn, dt);
         assert!(surer(1.0, 0.0) && surer(0.0, 1.0));
+    }
+
+    #[test]
+    fn a_bias_that_jumps_is_learnt_anew_and_one_wrong_turn_is_not() {
+        let config = OdometryConfig::default();
+        let mut gyro = GyroErrors::new(&config);
+        (0..100).for_each(|_| gyro.rest(&config, 0.0));
+        let straight = |gyro: &mut GyroErrors, bias: f64| {
+            let by_gyro = gyro.true_turn(bias * 3.0, 3.0);
+            gyro.seen(&SeenTurn { by_camera: (0.0, 0.003), by_gyro, time: 3.0 });
+        };
+        straight(&mut gyro, 0.03);
+        assert!(gyro.bias().abs() < 1e-3, "{}", gyro.bias());
+        straight(&mut gyro, 0.0);
+        (0..5).for_each(|_| straight(&mut gyro, 0.03));
+        assert!((gyro.bias() - 0.03).abs() < 1e-3, "{}", gyro.bias());
+    }
+
+    #[test]
+    fn in_the_dark_the_heading_is_told_as_uncertain_as_a_bias_makes_it() {
+        let config = OdometryConfig::default();
+        let mut gyro = GyroErrors::new(&config);
+        (0..100).for_each(|_| gyro.rest(&config, 0.0));
+        let variance: f64 = (0..3000)
+            .map(|_| {
+                gyro.wander(&config, 0.02);
+                gyro.turn_variance(&config, 0.0, 0.02)
+            })
+            .sum();
+        // The bias walks: the integral of a random walk.
+        let walked = config.gyro_bias_walk.powi(2) * 60.0_f64.powi(3) / 3.0;
+        assert!((0.5..3.0).contains(&(variance / walked)), "{}", variance / walked);
+    }
+
+    #[test]
+    fn what_is_told_to_be_known_is_not_learnt() {
+        let config = OdometryConfig { gyro_bias_sigma: 0.0, gyro_scale_sigma: 0.0, ..Default::default() };
+        let mut gyro = GyroErrors::new(&config);
+        (0..9).for_each(|_| gyro.seen(&SeenTurn { by_camera: (1.0, 0.003), by_gyro: 0.9, time: 3.0 }));
+        gyro.rest(&config, 0.01);
+        assert_eq!((gyro.bias(), gyro.scale()), (0.0, 1.0));
     }
 }

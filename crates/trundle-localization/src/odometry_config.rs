@@ -31,9 +31,9 @@ pub struct OdometryConfig {
     /// What a wheel's radius may be off its nominal one before it was learnt (one sigma, as a part), 0 (never learnt) to 0.1.
     /// Default 0.01: worn tyres.
     pub wheel_radius_sigma: f64,
-    /// Noise of one gyro reading (one sigma), rad/s, above 0, to 1. Default 0.005: that of small gyros at 50 Hz by their data sheets, and a third more.
+    /// Noise of one gyro reading (one sigma), rad/s, above 0, to 1. Default 0.005: a third more than 0.03 deg / s / sqrt(Hz) at 50 Hz.
     pub gyro_rate_noise: f64,
-    /// What the gyro's bias may be before it was measured (one sigma), rad/s, 0 to 1. Default 0.02.
+    /// What the gyro's bias may be before it was measured (one sigma), rad/s, 0 (never learnt) to 1. Default 0.02.
     pub gyro_bias_sigma: f64,
     /// What the gyro's scale may be off before it was learnt (one sigma, as a part), 0 (never learnt) to 0.1. Default 0.005: a small
     /// gyro, calibrated at the factory.

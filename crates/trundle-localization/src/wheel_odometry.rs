@@ -208,20 +208,18 @@ impl WheelOdometry {
         let turn_by_wheels = (rims.right - rims.left) / self.drive.wheelbase;
         let is_stuck = self.stuck.contradicts(turn_by_wheels / rims.dt, self.errors.bias());
         let turn_by_gyro = self.turn_by_gyro(stamp, rims.dt).filter(|_| !is_stuck);
-        let turn = match turn_by_gyro {
-            // The gyro's noise does not turn a robot whose wheels rest.
-            Some(turn) if rests && self.is_noise(turn / rims.dt) => 0.0,
-            Some(turn) => turn,
-            None => turn_by_wheels,
-        };
+        // The gyro's noise does not turn a robot whose wheels rest.
+        let is_noise = rests && turn_by_gyro.is_some_and(|turn| self.is_noise(turn / rims.dt));
+        let turn = if is_noise { 0.0 } else { turn_by_gyro.unwrap_or(turn_by_wheels) };
         let slip_rate = turn_by_gyro.map_or(0.0, |_| (turn_by_wheels - turn) / rims.dt);
         let slips = slip_rate.abs() > self.config.slip_rate;
         let way = (rims.left + rims.right) / 2.0;
         let slip = if slips { slip_rate.abs() * rims.dt * self.drive.wheelbase / 2.0 } else { 0.0 };
-        if slips || rests || turn_by_gyro.is_none() {
+        if slips || self.at_rest(stamp) || turn_by_gyro.is_none() || self.stuck.is_suspect() {
             self.turns.interrupt(stamp);
         }
-        let by_gyro = turn_by_gyro.map(|turn| self.errors.turn_variance(&self.config, turn, rims.dt));
+        let variance = |turn| self.errors.turn_variance(&self.config, turn, rims.dt);
+        let by_gyro = turn_by_gyro.map(|turn| if is_noise { 0.0 } else { variance(turn) });
         if slips {
             self.size.interrupt();
         } else {

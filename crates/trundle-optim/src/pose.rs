@@ -57,7 +57,7 @@ pub struct PoseProblem<'a> {
 pub struct PoseSolution {
     /// The refined pose.
     pub world_from_camera: Pose3,
-    /// Whether observation i agrees with it at 95 %.
+    /// Whether observation i agrees at 95 % with the pose that the image alone gives.
     pub inliers: Vec<bool>,
     /// How many do.
     pub inlier_count: usize,
@@ -183,8 +183,8 @@ fn inverse(information: Matrix6<f64>) -> Option<Matrix6<f64>> {
     inverse.iter().all(|v| v.is_finite()).then_some(inverse)
 }
 
-/// Points of one image err alike in groups of about so many: the squared error of poses in rendered rooms is so many times what
-/// independent errors would make (docs/results.md).
+/// Points of one image err alike, now and then in groups of so many (docs/algorithms/slam.md): so many times as uncertain an image counts
+/// against what is known besides. Told is what independent errors make, which most images have.
 const ALIKE: f64 = 8.0;
 
 #[cfg(test)]
@@ -282,6 +282,7 @@ mod tests {
                 .solve(start(), &PoseConfig::default())
         };
         let slipped = truth() * Pose3::exp(Vector6::new(0.1, 0.0, 0.05, 0.0, 0.05, 0.0));
+        assert!(solve(Some(known(slipped))).contradicts_prior);
         assert!(gap(solve(Some(known(slipped))).world_from_camera, solve(None).world_from_camera) < 1e-5);
     }
 

@@ -1,4 +1,4 @@
-use crate::observation::CHI2_999_6;
+use crate::observation::{CHI2_95_6, CHI2_999_6};
 use nalgebra::Matrix6;
 use trundle_core::Pose3;
 
@@ -23,12 +23,15 @@ impl PosePrior {
         alike: f64,
     ) -> Option<(Pose3, Matrix6<f64>)> {
         let off = (self.world_from_camera.inverse() * pose).log();
-        let spread = (self.covariance + covariance * alike).cholesky()?;
-        let agrees = off.dot(&spread.solve(&off)) <= CHI2_999_6;
-        let gain = self.covariance * spread.inverse();
+        let counted = covariance * alike;
+        let chi2 = off.dot(&(self.covariance + counted).cholesky()?.solve(&off));
+        // Between the two bounds it counts the less the farther off it is (Huber).
+        let own = self.covariance * (chi2 / CHI2_95_6).max(1.0);
+        let gain = own * (own + counted).cholesky()?.inverse();
         let rest = Matrix6::identity() - gain;
-        let fused = covariance + rest * self.covariance * rest.transpose();
-        agrees.then(|| ((self.world_from_camera * Pose3::exp(gain * off)).renormalized(), fused))
+        let fused = covariance + rest * own * rest.transpose();
+        let pose = (self.world_from_camera * Pose3::exp(gain * off)).renormalized();
+        (chi2 <= CHI2_999_6 && pose.is_finite()).then_some((pose, fused))
     }
 }
 
@@ -50,6 +53,8 @@ mod tests {
         let (nearer, _) = prior.fused_with(pose, &(Matrix6::identity() * 1e-4), 4.0).unwrap();
         let off = |pose: Pose3| (prior.world_from_camera.inverse() * pose).log().norm();
         assert!(off(nearer) < off(fused));
+        let far = PosePrior { covariance: sure * f64::INFINITY, ..prior };
+        assert_eq!(far.fused_with(pose, &(Matrix6::identity() * 1e-4), 1.0), None);
         let far = Pose3::exp(Vector6::new(0.0, 0.0, 0.0, 0.0, 0.1, 0.0));
         assert_eq!(prior.fused_with(far, &(Matrix6::identity() * 1e-4), 1.0), None);
     }

@@ -1,5 +1,5 @@
 use super::LoopConfig;
-use super::odometer::Odometer;
+use super::odometer::{Odometer, Ways};
 use crate::ids::KeyframeId;
 use crate::map::LandmarkMap;
 use crate::places::{Places, SHARED, Worded};
@@ -48,9 +48,12 @@ impl<'a> Drift<'a> {
         (old, new): (KeyframeId, KeyframeId),
         config: &'a LoopConfig,
     ) -> Self {
-        let way = odometer.between(old, new);
-        let (off, turned) = (config.drift_part * way.length, config.drift_part * way.turn);
-        let (off, turned) = (off * off, turned * turned);
+        let Ways { alone, on_wheels } = odometer.between(old, new);
+        let variance = |alone: f64, on_wheels: f64| {
+            (config.drift_part * alone + config.drift_part_on_wheels * on_wheels).powi(2)
+        };
+        let off = variance(alone.length, on_wheels.length);
+        let turned = variance(alone.turn, on_wheels.turn);
         let least = Vector6::new(off, off, off, turned, turned, turned);
         let grown = map.keyframe(new).covariance + map.keyframe(old).covariance;
         Self { covariance: grown + Matrix6::from_diagonal(&least), config }

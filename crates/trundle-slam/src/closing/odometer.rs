@@ -1,11 +1,19 @@
 use crate::ids::KeyframeId;
 use crate::map::LandmarkMap;
 use std::collections::BTreeMap;
+use trundle_core::Pose3;
 
-/// How far the camera went and turned up to each keyframe, from keyframe to keyframe: m and rad.
+/// How far the camera went and turned up to each keyframe, from keyframe to keyframe.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Odometer {
-    ways: BTreeMap<KeyframeId, Way>,
+    ways: BTreeMap<KeyframeId, Ways>,
+}
+
+/// What the camera went alone, and where wheels tie each keyframe to the one before.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(super) struct Ways {
+    pub alone: Way,
+    pub on_wheels: Way,
 }
 
 /// A length and a turn, m and rad.
@@ -15,6 +23,16 @@ pub(super) struct Way {
     pub turn: f64,
 }
 
+impl Way {
+    fn after(self, step: Pose3) -> Self {
+        Self { length: self.length + step.translation.norm(), turn: self.turn + step.angle() }
+    }
+
+    fn since(self, other: Self) -> Self {
+        Self { length: (self.length - other.length).abs(), turn: (self.turn - other.turn).abs() }
+    }
+}
+
 impl Odometer {
     /// Takes in the keyframes that are new in `map`, and forgets those that it has no more.
     pub fn follow(&mut self, map: &LandmarkMap) {
@@ -22,30 +40,33 @@ impl Odometer {
             if self.ways.contains_key(&id) {
                 continue;
             }
-            let before = self.ways.last_key_value().map(|(last, way)| (*last, *way));
-            let way = before.map_or(Way::default(), |(last, way)| {
+            let before = self.ways.last_key_value().map(|(last, ways)| (*last, *ways));
+            let ways = before.map_or(Ways::default(), |(last, mut ways)| {
                 let step = map.visual_from_keyframe(last).inverse() * keyframe.visual_from_camera;
-                Way { length: way.length + step.translation.norm(), turn: way.turn + step.angle() }
+                let way = if keyframe.rolled.is_some() { &mut ways.on_wheels } else { &mut ways.alone };
+                *way = way.after(step);
+                ways
             });
-            self.ways.insert(id, way);
+            self.ways.insert(id, ways);
         }
         let newest = self.ways.last_key_value().map(|(id, _)| *id);
         self.ways.retain(|id, _| Some(*id) == newest || map.live_keyframe(*id).is_some());
     }
 
-    /// The way between two keyframes.
-    pub(super) fn between(&self, a: KeyframeId, b: KeyframeId) -> Way {
+    /// The ways between two keyframes.
+    pub(super) fn between(&self, a: KeyframeId, b: KeyframeId) -> Ways {
         let at = |id: &KeyframeId| self.ways.get(id).copied().unwrap_or_default();
         let (a, b) = (at(&a), at(&b));
-        Way { length: (a.length - b.length).abs(), turn: (a.turn - b.turn).abs() }
+        Ways { alone: a.alone.since(b.alone), on_wheels: a.on_wheels.since(b.on_wheels) }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::rolled::Rolled;
     use crate::testing::blank_frame;
-    use trundle_core::{Pose3, Vector3};
+    use trundle_core::Vector3;
 
     #[test]
     fn the_way_adds_up_and_outlasts_what_is_forgotten() {
@@ -59,9 +80,15 @@ mod tests {
                 id
             })
             .to_vec();
-        assert_eq!(odometer.between(ids[0], ids[3]), Way { length: 5.5, turn: 0.0 });
+        let alone = |length: f64| Ways { alone: Way { length, turn: 0.0 }, ..Ways::default() };
+        assert_eq!(odometer.between(ids[0], ids[3]), alone(5.5));
         assert!(map.forget_keyframe(ids[2]));
         odometer.follow(&map);
-        assert_eq!(odometer.between(ids[1], ids[3]), Way { length: 4.5, turn: 0.0 });
+        assert_eq!(odometer.between(ids[1], ids[3]), alone(4.5));
+        let on_wheels = map.add_keyframe(blank_frame(1), along(2.5));
+        map.keyframe_mut(on_wheels).rolled = Some(Rolled::at(ids[3]));
+        odometer.follow(&map);
+        let ways = odometer.between(ids[1], on_wheels);
+        assert_eq!((ways.alone.length, ways.on_wheels.length), (4.5, 2.0));
     }
 }
