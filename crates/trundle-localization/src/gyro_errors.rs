@@ -42,7 +42,7 @@ const MOST_REFUSED: usize = 3;
 const BIAS_LASTS: f64 = 1.0;
 /// Unless nothing has told the bias for longer than this, s: then it has been wrong the same way since.
 const TOLD: f64 = 5.0;
-/// A robot at rest may tremble, and gyros may be noisier than told: so many times.
+/// A robot at rest may tremble, and gyros may be noisier than told: so many times, before a rate is taken for a turn.
 const TREMBLE: f64 = 2.0;
 /// For such a turn the same of the scale, rad.
 const SCALE_LASTS: f64 = 1.0;
@@ -100,7 +100,7 @@ impl GyroErrors {
 
     /// Takes in a rate (rad/s) of a robot at rest.
     pub(crate) fn rest(&mut self, config: &OdometryConfig, rate: f64) {
-        self.learn(RowVector2::new(1.0, 0.0), rate - self.bias, TREMBLE * config.gyro_rate_noise);
+        self.learn(RowVector2::new(1.0, 0.0), rate - self.bias, config.gyro_rate_noise);
         self.is_measured = true;
     }
 
