@@ -42,10 +42,10 @@ const MOST_REFUSED: usize = 3;
 const BIAS_LASTS: f64 = 1.0;
 /// Unless nothing has told the bias for longer than this, s: then it has been wrong the same way since.
 const TOLD: f64 = 5.0;
+/// For such a turn what is wrong with the scale is wrong the same way, rad.
+const SCALE_LASTS: f64 = 1.0;
 /// A robot at rest may tremble, and gyros may be noisier than told: so many times, before a rate is taken for a turn.
 const TREMBLE: f64 = 2.0;
-/// For such a turn the same of the scale, rad.
-const SCALE_LASTS: f64 = 1.0;
 
 impl GyroErrors {
     pub(crate) fn new(config: &OdometryConfig) -> Self {

@@ -179,8 +179,9 @@ impl RgbdSlam {
     }
 
     /// Locates one image. `prior` is the motion since the last image given, `previous_camera_from_camera`, as wheels and
-    /// gyro know it; without it, or where it is one that no robot makes in that time, the camera is taken to go on as it went. An image of another size than the camera's, or
-    /// with nothing in it, is an image without features: the report says that it was not located.
+    /// gyro know it; without it, or where it is one that no robot makes in that time, the camera is taken to go on as it went.
+    /// An image of another size than the camera's, or with nothing in it, is an image without features: the report says that
+    /// it was not located.
     pub fn step(&mut self, image: &RgbdImage, prior: Option<CameraMotion>) -> TrackReport {
         let camera = &self.sensor.camera;
         let fits = image.color().width() == camera.width() && image.color().height() == camera.height();

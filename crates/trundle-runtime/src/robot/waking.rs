@@ -47,7 +47,8 @@ impl Robot {
         Ok(())
     }
 
-    /// The robot, saying every 3 to 10 s, the larger the map the more seldom, what it would take along through a restart: [`crate::StepReport::memory`].
+    /// The robot, saying every 3 to 10 s, the larger the map the more seldom, what it would take along through a restart:
+    /// [`crate::StepReport::memory`].
     #[must_use]
     pub fn remembering(mut self) -> Self {
         if let Some(lookout) = &mut self.lookout {
