@@ -86,10 +86,9 @@ impl GyroErrors {
     /// Lets `dt` s pass.
     pub(crate) fn wander(&mut self, config: &OdometryConfig, dt: f64) {
         self.untold += dt;
-        let grown = |variance: f64, walk: f64, most: f64| (variance + walk * walk * dt).min(most * most);
-        let (bias, scale) = (self.covariance.m11, self.covariance.m22);
-        self.covariance.m11 = grown(bias, config.gyro_bias_walk, config.gyro_bias_sigma);
-        self.covariance.m22 = grown(scale, SCALE_WALK, config.gyro_scale_sigma);
+        let grown = |variance: f64, walk: f64, most: f64| (variance + walk * walk * dt).min(most);
+        self.covariance.m11 = grown(self.covariance.m11, config.gyro_bias_walk, self.unknown.m11);
+        self.covariance.m22 = grown(self.covariance.m22, SCALE_WALK, self.unknown.m22);
     }
 
     /// Whether a rate (rad/s) could be that of a robot at rest.
@@ -125,14 +124,17 @@ impl GyroErrors {
 
     /// Whether a measurement may differ by `off` from what is expected.
     fn believes(&self, slope: RowVector2<f64>, off: f64, sigma: f64) -> bool {
-        let variance = (slope * self.covariance * slope.transpose()).x + sigma * sigma;
-        off * off <= GATE_SIGMAS.powi(2) * variance
+        off * off <= GATE_SIGMAS.powi(2) * self.spread(slope, sigma)
+    }
+
+    /// The variance of a measurement about what is expected.
+    fn spread(&self, slope: RowVector2<f64>, sigma: f64) -> f64 {
+        (slope * self.covariance * slope.transpose()).x + sigma * sigma
     }
 
     /// A measurement that differs by `off` from what is expected, and by `slope` from bias and scale.
     fn learn(&mut self, slope: RowVector2<f64>, off: f64, sigma: f64) {
-        let variance = (slope * self.covariance * slope.transpose()).x + sigma * sigma;
-        let gain = self.covariance * slope.transpose() / variance;
+        let gain = self.covariance * slope.transpose() / self.spread(slope, sigma);
         self.bias += gain.x * off;
         self.scale += gain.y * off;
         let left = Matrix2::identity() - gain * slope;

@@ -212,7 +212,7 @@ impl PoseConstraint {
 
 /// The inverse right Jacobian of SE(3) by its series I + ad/2 + ad^2/12 (Barfoot 2017, eq. 7.94): 1e-3 off at 1 rad,
 /// exact where a graph ends up.
-pub(crate) fn inverse_right_jacobian(x: Vector6<f64>) -> Matrix6<f64> {
+fn inverse_right_jacobian(x: Vector6<f64>) -> Matrix6<f64> {
     let (rho, phi) = (Vector3::new(x[0], x[1], x[2]), Vector3::new(x[3], x[4], x[5]));
     let mut ad = Matrix6::zeros();
     ad.fixed_view_mut::<3, 3>(0, 0).copy_from(&phi.cross_matrix());

@@ -130,6 +130,12 @@ impl Belief {
     }
 }
 
+/// Whether something can have moved so in so many seconds: by `least` (m and rad) however short they are, and by no more than
+/// `fastest` (m/s and rad/s) besides.
+pub(crate) fn is_within(motion: Pose3, least: f64, fastest: (f64, f64), seconds: f64) -> bool {
+    motion.translation.norm() <= least + fastest.0 * seconds && motion.angle() <= least + fastest.1 * seconds
+}
+
 /// Whether a matrix is symmetric and has no negative variance, but for rounding.
 fn is_covariance(matrix: &Matrix6<f64>) -> bool {
     let size = matrix.amax();

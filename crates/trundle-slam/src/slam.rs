@@ -20,7 +20,7 @@ use crate::keyframe_culling::cull_keyframes;
 use crate::local_map::View;
 use crate::map::LandmarkMap;
 use crate::mapping::Mapper;
-use crate::motion::Belief;
+use crate::motion::{Belief, is_within};
 use crate::report::{MapId, Mode, SeenFeature, TrackReport, Tracking};
 use crate::rolled::Rolled;
 use crate::sensor::Sensor;
@@ -200,7 +200,7 @@ impl RgbdSlam {
         prior: Option<CameraMotion>,
     ) -> TrackReport {
         let seconds = self.belief.seconds_until(stamp);
-        let told = prior.filter(|told| told.is_finite() && is_possible(told.motion, seconds));
+        let told = prior.filter(|told| told.is_finite() && is_within(told.motion, AT_ONCE, FASTEST, seconds));
         let prior = told.map(|told| told.motion);
         let turn = self.belief.turn_rate(stamp, prior) * self.config.motion.readout;
         let frame = Frame::new(stamp, features, depth, turn, (&self.sensor, &self.config.depth));
@@ -364,12 +364,6 @@ impl RgbdSlam {
 const FASTEST: (f64, f64) = (10.0, 20.0);
 /// And farther than this in no time at all, m and rad.
 const AT_ONCE: f64 = 0.2;
-
-/// Whether a robot may have moved so in so many seconds.
-fn is_possible(motion: Pose3, seconds: f64) -> bool {
-    let (way, turn) = (motion.translation.norm(), motion.angle());
-    way <= AT_ONCE + FASTEST.0 * seconds && turn <= AT_ONCE + FASTEST.1 * seconds
-}
 
 impl Located {
     fn anchor(&self, map: &LandmarkMap) -> Anchor<'_> {

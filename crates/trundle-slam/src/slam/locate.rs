@@ -4,6 +4,7 @@ use crate::component::Component;
 use crate::contradiction::Contradiction;
 use crate::found::Found;
 use crate::frame::Frame;
+use crate::motion::is_within;
 use crate::places::Words;
 use crate::relocalisation::{Placed, relocalise, unrivalled};
 use crate::report::MapId;
@@ -132,10 +133,7 @@ impl RgbdSlam {
         match reach {
             Reach::Anywhere => true,
             Reach::Told => self.is_uncertain_by(offset),
-            Reach::For(elapsed) => {
-                offset.translation.norm() <= LEAST_REACH + FASTEST.0 * elapsed
-                    && offset.angle() <= LEAST_REACH + FASTEST.1 * elapsed
-            }
+            Reach::For(elapsed) => is_within(offset, LEAST_REACH, FASTEST, elapsed),
         }
     }
 
