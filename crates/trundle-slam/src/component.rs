@@ -1,4 +1,3 @@
-use crate::closing::Odometer;
 use crate::ids::{KeyframeId, LandmarkId};
 use crate::map::LandmarkMap;
 use crate::places::Places;
@@ -16,7 +15,6 @@ pub(crate) struct Component {
     pub id: MapId,
     pub map: LandmarkMap,
     pub places: Places,
-    pub odometer: Odometer,
 }
 
 /// What keyframes and landmarks are called in the map that took them over.
@@ -29,7 +27,7 @@ pub(crate) struct Renamed {
 impl Component {
     pub fn new(id: MapId, map: LandmarkMap, vocabulary: &Arc<Vocabulary>) -> Self {
         let places = Places::new(Arc::clone(vocabulary));
-        let mut component = Self { id, map, places, odometer: Odometer::default() };
+        let mut component = Self { id, map, places };
         component.follow();
         component
     }
@@ -40,10 +38,9 @@ impl Component {
         self.follow();
     }
 
-    /// Brings what is said of the map up to date with it.
+    /// Brings the places up to date with the map.
     pub fn follow(&mut self) {
         self.places.follow(&self.map);
-        self.odometer.follow(&self.map);
     }
 
     /// Takes over another map that stands at `own_from_other`, known by a keyframe that is as uncertain as `seam`.

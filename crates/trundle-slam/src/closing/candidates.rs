@@ -1,5 +1,5 @@
 use super::LoopConfig;
-use super::odometer::{Odometer, Ways};
+use super::ways::SurestWays;
 use crate::ids::KeyframeId;
 use crate::map::LandmarkMap;
 use crate::places::{Places, SHARED, Worded};
@@ -11,16 +11,17 @@ use trundle_core::Pose3;
 /// wrong than should have.
 pub(super) fn candidates(
     map: &LandmarkMap,
-    (places, odometer): (&Places, &Odometer),
+    places: &Places,
     (keyframe, own): (KeyframeId, Worded),
     config: &LoopConfig,
 ) -> Vec<KeyframeId> {
     let tied = tied(map, keyframe);
     let oldest_kept_out = map.keyframe_ids().rev().nth(config.least_age).or(map.first_keyframe());
     let here = map.keyframe(keyframe).visual_from_camera.inverse();
+    let ways = SurestWays::from(map, keyframe, config);
     let is_near = |id: KeyframeId| {
         let offset = here * map.keyframe(id).visual_from_camera;
-        Drift::between(map, odometer, (id, keyframe), config).reaches(offset)
+        Drift::along(&ways, map, (id, keyframe), config).is_some_and(|drift| drift.reaches(offset))
     };
     let is_asked_for = |id: KeyframeId| Some(id) < oldest_kept_out && !tied.contains(&id) && is_near(id);
     places.alike(map, own.words, is_asked_for, config.candidates)
@@ -41,22 +42,19 @@ pub(super) struct Drift<'a> {
 }
 
 impl<'a> Drift<'a> {
-    /// The covariance that grew between an old keyframe and a new one, and a part of the way.
-    pub fn between(
+    /// The covariance that grew between an old keyframe and a new one, and what may go wrong along the surest way from the one to
+    /// the other; `None` where nothing ties them.
+    pub fn along(
+        ways: &SurestWays,
         map: &LandmarkMap,
-        odometer: &Odometer,
         (old, new): (KeyframeId, KeyframeId),
         config: &'a LoopConfig,
-    ) -> Self {
-        let Ways { alone, on_wheels } = odometer.between(old, new);
-        let variance = |alone: f64, on_wheels: f64| {
-            (config.drift_part * alone + config.drift_part_on_wheels * on_wheels).powi(2)
-        };
-        let off = variance(alone.length, on_wheels.length);
-        let turned = variance(alone.turn, on_wheels.turn);
+    ) -> Option<Self> {
+        let way = ways.to(old)?;
+        let (off, turned) = (way.off.powi(2), way.turned.powi(2));
         let least = Vector6::new(off, off, off, turned, turned, turned);
         let grown = map.keyframe(new).covariance + map.keyframe(old).covariance;
-        Self { covariance: grown + Matrix6::from_diagonal(&least), config }
+        Some(Self { covariance: grown + Matrix6::from_diagonal(&least), config })
     }
 
     /// Whether a keyframe that stands at this offset by the map may see the same in truth.

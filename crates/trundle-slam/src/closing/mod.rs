@@ -13,8 +13,8 @@ mod common_sight;
 mod config;
 mod correct;
 mod essential_graph;
-mod odometer;
 mod verify;
+mod ways;
 
 use crate::claim::Claim;
 use crate::ids::KeyframeId;
@@ -27,15 +27,14 @@ use crate::tracker::TrackingConfig;
 use candidates::Drift;
 pub use config::LoopConfig;
 use correct::Correction;
-pub(crate) use odometer::Odometer;
 use trundle_core::Pose3;
 pub(crate) use verify::{Recognised, Verifier};
+use ways::SurestWays;
 
 /// Closes loops as keyframes come.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct LoopCloser<'a> {
     pub places: &'a Places,
-    pub odometer: &'a Odometer,
     pub sensor: &'a Sensor,
     pub config: &'a LoopConfig,
     pub tracking: &'a TrackingConfig,
@@ -75,10 +74,10 @@ impl Search {
 impl LoopCloser<'_> {
     /// Does the next piece of a search; whether that was the last.
     pub fn look(&self, map: &LandmarkMap, search: &mut Search) -> bool {
-        let Self { places, odometer, sensor, config, tracking, seed, .. } = *self;
+        let Self { places, sensor, config, tracking, seed, .. } = *self;
         let Some(own) = places.worded(map, search.keyframe) else { return true };
         let Some(candidates) = &mut search.candidates else {
-            let found = candidates::candidates(map, (places, odometer), (search.keyframe, own), config);
+            let found = candidates::candidates(map, places, (search.keyframe, own), config);
             return search.candidates.insert(found.into_iter().rev().collect()).is_empty();
         };
         // One may have been forgotten meanwhile.
@@ -127,7 +126,8 @@ impl LoopCloser<'_> {
         let found = unrivalled(search.found).filter(is_there)?;
         let here = map.live_keyframe(keyframe)?.visual_from_camera;
         let correction = here.inverse() * found.visual_from_camera;
-        let drift = Drift::between(map, self.odometer, (found.candidate, keyframe), self.config);
+        let ways = SurestWays::from(map, keyframe, self.config);
+        let drift = Drift::along(&ways, map, (found.candidate, keyframe), self.config)?;
         if drift.allows(correction, &found.covariance) {
             return Some(found);
         }

@@ -8,7 +8,6 @@ impl RgbdSlam {
         let Some(mut search) = self.searches.pop_front() else { return false };
         let closer = LoopCloser {
             places: &self.active.places,
-            odometer: &self.active.odometer,
             sensor: &self.sensor,
             config: &self.config.loops,
             tracking: &self.config.tracking,
