@@ -1,8 +1,10 @@
+mod known;
+
 use crate::{
     GridCell, LogOddsGrid, MapperConfig, live_grid::LiveGrid, mapper_config::probability,
     scan_cells::ScanCells,
 };
-use trundle_core::{Cell, CellIndex, GridGeometry, Invalid, OccupancyGrid, Pose2, Scan, Vector2};
+use trundle_core::{Cell, CellIndex, Invalid, OccupancyGrid, Pose2, Scan, Vector2};
 
 /// Draws scans taken at known poses into a log-odds occupancy grid.
 ///
@@ -50,53 +52,6 @@ impl GridMapper {
         evidence.reach(GridCell { x: 0, y: 0 });
         let live = LiveGrid::new(&config, &evidence);
         Ok(Self { live, evidence, cells: ScanCells::default(), shows: true, config })
-    }
-
-    /// A map that goes on from a three-valued one, whose cells count as sure as evidence gets.
-    ///
-    /// # Errors
-    /// When the configuration is out of range, or the grid has cells of another size, lies askew of this one's, or reaches beyond
-    /// its greatest extent.
-    pub fn from_grid(config: MapperConfig, grid: &OccupancyGrid) -> Result<Self, Invalid> {
-        let mut mapper = Self::new(config)?;
-        let (low, high) = mapper.cells_of(grid.geometry())?;
-        mapper.grow(low, high);
-        mapper.live.begin();
-        for (i, value) in grid.cells().iter().enumerate() {
-            let log_odds = match value {
-                Cell::Unknown => continue,
-                Cell::Free => -mapper.config.clamp_low as f32,
-                Cell::Occupied => mapper.config.clamp_high as f32,
-            };
-            let CellIndex { col, row } = grid.geometry().cell(i);
-            let cell = GridCell { x: low.x + col as i32, y: low.y + row as i32 };
-            mapper.evidence.entry(cell).log_odds = log_odds;
-            mapper.live.show(cell, log_odds);
-        }
-        Ok(mapper)
-    }
-
-    /// The lowest and the highest of this map's cells that a grid covers.
-    fn cells_of(&self, geometry: &GridGeometry) -> Result<(GridCell, GridCell), Invalid> {
-        let GridGeometry { resolution, origin, width, height } = *geometry;
-        let own = self.config.resolution;
-        if (resolution - own).abs() > 1e-9 {
-            return Err(Invalid::new("resolution of the map", resolution, "m", format!("{own}")));
-        }
-        let (corner, size) = (origin / own, Vector2::new(width as f64, height as f64));
-        let rounded = corner.map(f64::round);
-        if (corner - rounded).norm() > 1e-3 {
-            let value = format!("({}, {})", origin.x, origin.y);
-            return Err(Invalid::new("origin of the map", value, "m", format!("multiples of {own}")));
-        }
-        let most = self.config.half_extent / own;
-        if rounded.amax() > most || (rounded + size).amax() > most {
-            let value = format!("{width} x {height} cells from ({}, {})", origin.x, origin.y);
-            let within = format!("within {} m of the origin", self.config.half_extent);
-            return Err(Invalid::new("extent of the map", value, "m", within));
-        }
-        let middle = Vector2::repeat(0.5);
-        Ok((GridCell::containing(rounded + middle), GridCell::containing(rounded + size - middle)))
     }
 
     /// Draws `scan`, taken with the base at `map_from_base`.
@@ -317,19 +272,6 @@ mod tests {
         second.insert(at, &ahead(Beam::Free { range: 3.0 }));
         let wall = at.transform(Vector2::new(2.0, 0.004));
         assert_eq!(second.grid().at(wall), Cell::Occupied, "one look does not undo it");
-    }
-
-    #[test]
-    fn a_grid_that_does_not_lie_on_the_cells_is_refused_by_name() {
-        let from = |resolution, x| {
-            let geometry = GridGeometry::new(resolution, Vector2::new(x, 0.0), 3, 3).unwrap();
-            let grid = OccupancyGrid::filled(geometry, Cell::Free);
-            GridMapper::from_grid(MapperConfig::default(), &grid).map(drop).map_err(|error| error.field)
-        };
-        assert_eq!(from(0.05, -0.1), Ok(()));
-        assert_eq!(from(0.1, -0.1).unwrap_err(), "resolution of the map");
-        assert_eq!(from(0.05, 0.02).unwrap_err(), "origin of the map");
-        assert_eq!(from(0.05, 1e6).unwrap_err(), "extent of the map");
     }
 
     #[test]
