@@ -117,6 +117,19 @@ impl Places {
         is_asked_for: impl Fn(KeyframeId) -> bool,
         most: usize,
     ) -> Vec<KeyframeId> {
+        let places = self.places_alike(map, words, is_asked_for, most);
+        let rank = |rank: usize| places.iter().filter_map(move |place| place.members.get(rank).copied());
+        (0..4 * most).flat_map(rank).take(most).collect()
+    }
+
+    /// The places that look most like `words`, at most `most`, the likeliest first.
+    pub fn places_alike(
+        &self,
+        map: &LandmarkMap,
+        words: &Words,
+        is_asked_for: impl Fn(KeyframeId) -> bool,
+        most: usize,
+    ) -> Vec<Place> {
         let id = |place: u32| KeyframeId::from_index(place as usize);
         let asked = self.index.query(&words.bag, |place| is_asked_for(id(place))).into_iter();
         let mut places: Vec<Place> = Vec::new();
@@ -129,16 +142,18 @@ impl Places {
             }
         }
         places.sort_by(|a, b| b.similarity.total_cmp(&a.similarity).then(a.members.cmp(&b.members)));
-        let rank = |rank: usize| places.iter().filter_map(move |place| place.members.get(rank).copied());
-        (0..4 * most).flat_map(rank).take(most).collect()
+        places
     }
 }
 
 /// Keyframes that see the same.
-struct Place {
-    around: Vec<KeyframeId>,
-    similarity: f32,
-    members: Vec<KeyframeId>,
+#[derive(Debug, Clone)]
+pub(crate) struct Place {
+    pub around: Vec<KeyframeId>,
+    /// Of all its members together.
+    pub similarity: f32,
+    /// Those that look alike, the likeliest first.
+    pub members: Vec<KeyframeId>,
 }
 
 impl Place {
