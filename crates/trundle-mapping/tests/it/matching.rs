@@ -49,6 +49,23 @@ fn a_wrong_guess_is_pulled_back() {
 }
 
 #[test]
+fn a_map_that_was_brought_along_is_matched_with_from_the_first_scan() {
+    let (drawn, room) = (room_map(), FlatRoom::furnished());
+    let mapper = GridMapper::from_grid(MapperConfig::default(), drawn.grid()).unwrap();
+    for i in 0..50 {
+        let at = |part: usize, size: f64| noise(3 * i + part) / 0.0175 * size;
+        let truth = Pose2::new(at(0, 0.9), 0.7 + at(1, 0.7), at(2, 3.1));
+        let guess = truth * Pose2::new(at(1, 0.13), at(2, 0.13), at(0, 0.09));
+        let found = refine(&mapper, &room, truth, guess, TAU).unwrap();
+        let turned = wrap_angle(found.pose.theta - truth.theta).abs();
+        assert!(found.pose.distance(&truth) < 0.015 && turned < 0.006, "{found:?} {truth:?}");
+        let off = (found.pose.inverse() * truth).log();
+        let squared = off.dot(&(found.covariance.try_inverse().unwrap() * off));
+        assert!(!found.degenerate && squared < 16.0, "surer than right: {squared}");
+    }
+}
+
+#[test]
 fn a_cameras_view_of_a_corner_is_enough() {
     let (mapper, room) = (room_map(), FlatRoom::furnished());
     let truth = Pose2::new(0.5, -0.6, -0.5);
