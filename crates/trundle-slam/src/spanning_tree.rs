@@ -8,6 +8,9 @@ use trundle_core::Pose3;
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Place {
     pub parent: Option<KeyframeId>,
+    /// Whether nothing it saw led to its parent, which merely is the one before: the first of a map that was taken over, or one made
+    /// in the dark.
+    pub is_astray: bool,
     pub children: Vec<KeyframeId>,
     /// Keyframes in which it found its place again, or which found theirs in it: the loops it closes.
     pub loops: Vec<KeyframeId>,
@@ -23,6 +26,7 @@ impl LandmarkMap {
         let nearest = self.covisible(id, 1).into_iter().map(|(other, _)| other).find(|other| *other < id);
         if let Some(parent) = nearest.or_else(before) {
             self.hang(id, parent);
+            self.keyframe_mut(id).tree.is_astray = nearest.is_none();
         }
     }
 
@@ -61,7 +65,10 @@ impl LandmarkMap {
         tree.children.retain(|child| *child != id);
         tree.heir_of.push(id);
         tree.heir_of.extend(gone.tree.heir_of);
-        gone.tree.children.into_iter().for_each(|child| self.hang(child, parent));
+        for child in gone.tree.children {
+            self.hang(child, parent);
+            self.keyframe_mut(child).tree.is_astray |= gone.tree.is_astray;
+        }
         true
     }
 

@@ -3,7 +3,9 @@ use crate::{GridCell, MapperConfig};
 use trundle_core::{Cell, CellIndex, GridGeometry, Invalid, OccupancyGrid, Vector2};
 
 impl GridMapper {
-    /// A map that goes on from a three-valued one, whose cells count as sure as evidence gets.
+    /// A map that goes on from a three-valued one, whose cells count as sure as evidence gets. Scans are matched with its walls from
+    /// the first on, at the middles of their cells, since where in them the hits were is not saved: half a cell may be wrong there, for
+    /// all scans alike, until new hits tell it better.
     ///
     /// # Errors
     /// When the configuration is out of range, or the grid has cells of another size, lies askew of this one's, or reaches beyond
@@ -55,20 +57,32 @@ impl GridMapper {
     }
 }
 
-/// Whether a laser can have measured a cell: it is occupied, and free beside. What is inside a wall is nothing to match with.
+/// Cells so deep inside an obstacle no scan shows, and drawn walls are two or three thick.
+const DEEP: usize = 2;
+
+/// Whether scans are to be matched with a cell: it is occupied, and not all around it is.
 fn is_surface(grid: &OccupancyGrid, cell: CellIndex) -> bool {
     let GridGeometry { width, height, .. } = *grid.geometry();
-    let is_free = |(right, up): (isize, isize)| {
-        let (col, row) = (cell.col.checked_add_signed(right), cell.row.checked_add_signed(up));
-        let beside = col.zip(row).filter(|(col, row)| *col < width && *row < height);
-        beside.is_some_and(|(col, row)| grid.get(CellIndex { col, row }) == Cell::Free)
-    };
-    grid.get(cell) == Cell::Occupied && [(1, 0), (-1, 0), (0, 1), (0, -1)].into_iter().any(is_free)
+    let around = |at: usize, size: usize| at.saturating_sub(DEEP)..(at + DEEP + 1).min(size);
+    let is_occupied = |row, col| grid.get(CellIndex { col, row }) == Cell::Occupied;
+    let is_deep =
+        || around(cell.row, height).all(|row| around(cell.col, width).all(|col| is_occupied(row, col)));
+    is_occupied(cell.row, cell.col) && !is_deep()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_is_deep_inside_a_wall_is_nothing_to_match_with() {
+        let geometry = GridGeometry::new(0.05, Vector2::zeros(), 12, 7).unwrap();
+        let mut grid = OccupancyGrid::filled(geometry, Cell::Free);
+        (0..7).for_each(|row| (3..12).for_each(|col| grid.set(CellIndex { col, row }, Cell::Occupied)));
+        let mapper = GridMapper::from_grid(MapperConfig::default(), &grid).unwrap();
+        let is_site = |x| mapper.evidence.get(GridCell { x, y: 3 }).unwrap().hit().is_some();
+        assert_eq!([2, 3, 4, 5, 8].map(is_site), [false, true, true, false, false]);
+    }
 
     #[test]
     fn a_grid_that_does_not_lie_on_the_cells_is_refused_by_name() {

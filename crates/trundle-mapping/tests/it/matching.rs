@@ -18,8 +18,12 @@ fn noise(i: usize) -> f64 {
 }
 
 fn room_map() -> GridMapper {
-    let circle = (0..40).map(|i| f64::from(i) / 40.0 * TAU);
-    map_of(&FlatRoom::furnished(), circle.map(|t| Pose2::new(2.5 * t.cos(), 1.5 * t.sin(), t)))
+    map_of(&FlatRoom::furnished(), circle())
+}
+
+/// A way around the furnished room.
+fn circle() -> impl Iterator<Item = Pose2> {
+    (0..40).map(|i| f64::from(i) / 40.0 * TAU).map(|t| Pose2::new(2.5 * t.cos(), 1.5 * t.sin(), t))
 }
 
 fn refine(mapper: &GridMapper, room: &FlatRoom, truth: Pose2, guess: Pose2, view: f64) -> Option<ScanMatch> {
@@ -50,18 +54,27 @@ fn a_wrong_guess_is_pulled_back() {
 
 #[test]
 fn a_map_that_was_brought_along_is_matched_with_from_the_first_scan() {
-    let (drawn, room) = (room_map(), FlatRoom::furnished());
-    let mapper = GridMapper::from_grid(MapperConfig::default(), drawn.grid()).unwrap();
-    for i in 0..50 {
-        let at = |part: usize, size: f64| noise(3 * i + part) / 0.0175 * size;
-        let truth = Pose2::new(at(0, 0.9), 0.7 + at(1, 0.7), at(2, 3.1));
-        let guess = truth * Pose2::new(at(1, 0.13), at(2, 0.13), at(0, 0.09));
-        let found = refine(&mapper, &room, truth, guess, TAU).unwrap();
-        let turned = wrap_angle(found.pose.theta - truth.theta).abs();
-        assert!(found.pose.distance(&truth) < 0.015 && turned < 0.006, "{found:?} {truth:?}");
-        let off = (found.pose.inverse() * truth).log();
-        let squared = off.dot(&(found.covariance.try_inverse().unwrap() * off));
-        assert!(!found.degenerate && squared < 16.0, "surer than right: {squared}");
+    let room = FlatRoom::furnished();
+    // However the walls lie to the cells.
+    for (shift, turn) in [(0.0, 0.0), (0.0125, 0.0), (0.0375, 0.0), (0.0, 0.7854), (0.01, 0.3)] {
+        let map_from_room = Pose2::new(shift, shift, turn);
+        let mut drawn = GridMapper::new(MapperConfig::default()).unwrap();
+        for (i, pose) in circle().enumerate() {
+            drawn.insert(map_from_room * pose, &room.scan(pose, TAU, 720, 8.0, |beam| noise(i * 720 + beam)));
+        }
+        let mapper = GridMapper::from_grid(MapperConfig::default(), drawn.grid()).unwrap();
+        for i in 0..20 {
+            let at = |part: usize, size: f64| noise(3 * i + part) / 0.0175 * size;
+            let truth = Pose2::new(at(0, 0.9), 0.7 + at(1, 0.7), at(2, 3.1));
+            let guess = map_from_room * truth * Pose2::new(at(1, 0.13), at(2, 0.13), at(0, 0.09));
+            let scan = room.scan(truth, TAU, 2000, 6.0, |beam| noise(beam + 7_000_000));
+            let matcher = ScanMatcher::new(ScanMatchConfig::default()).unwrap();
+            let found = matcher.refine(&mapper, &scan, guess).unwrap();
+            let off = (found.pose.inverse() * map_from_room * truth).log();
+            assert!(off.xy().norm() < 0.01 && off.z.abs() < 0.006, "{map_from_room:?} {off:?}");
+            let squared = off.dot(&(found.covariance.try_inverse().unwrap() * off));
+            assert!(!found.degenerate && squared < 16.0, "surer than right: {squared}");
+        }
     }
 }
 

@@ -21,7 +21,7 @@ pub(super) fn candidates(
     let ways = SurestWays::from(map, keyframe, config);
     let is_near = |id: KeyframeId| {
         let offset = here * map.keyframe(id).visual_from_camera;
-        Drift::along(&ways, map, (id, keyframe), config).is_some_and(|drift| drift.reaches(offset))
+        Drift::along(&ways, map, (id, keyframe), config).reaches(offset)
     };
     let is_asked_for = |id: KeyframeId| Some(id) < oldest_kept_out && !tied.contains(&id) && is_near(id);
     places.alike(map, own.words, is_asked_for, config.candidates)
@@ -43,18 +43,18 @@ pub(super) struct Drift<'a> {
 
 impl<'a> Drift<'a> {
     /// The covariance that grew between an old keyframe and a new one, and what may go wrong along the surest way from the one to
-    /// the other; `None` where nothing ties them.
+    /// the other: the covariance alone where nothing ties them.
     pub fn along(
         ways: &SurestWays,
         map: &LandmarkMap,
         (old, new): (KeyframeId, KeyframeId),
         config: &'a LoopConfig,
-    ) -> Option<Self> {
-        let way = ways.to(old)?;
+    ) -> Self {
+        let way = ways.to(old).unwrap_or_default();
         let (off, turned) = (way.off.powi(2), way.turned.powi(2));
         let least = Vector6::new(off, off, off, turned, turned, turned);
         let grown = map.keyframe(new).covariance + map.keyframe(old).covariance;
-        Some(Self { covariance: grown + Matrix6::from_diagonal(&least), config })
+        Self { covariance: grown + Matrix6::from_diagonal(&least), config }
     }
 
     /// Whether a keyframe that stands at this offset by the map may see the same in truth.

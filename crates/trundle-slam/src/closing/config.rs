@@ -29,11 +29,11 @@ pub struct LoopConfig {
     /// How many standard deviations of the drift a correction may be, above 0. Default 5: covariances along a chain are
     /// somewhat small. What is farther off is a look-alike.
     pub most_sigmas: f64,
-    /// Standard deviation of the drift whatever the covariance says: part of the way between, 0 to 1. Default 0.01: what
-    /// RGB-D odometry drifts by.
+    /// Standard deviation of the drift whatever the covariance says: part of each tie of common sight, or of a loop, along the surest
+    /// way between, 0 to 1. Default 0.01: what RGB-D odometry drifts by.
     pub drift_part: f64,
-    /// The same where wheels tie each keyframe to the one before, 0 to 1. Default 0.003: twice what the worst but one of 25 drives was off
-    /// when its first loop closed. With 1 % a twin room 4.3 m away was taken for its like after 80 m.
+    /// The same of a tie by wheels, 0 to 1. Default 0.003: twice what the worst but one of 25 drives was off when its first loop closed.
+    /// With 1 % a twin room 4.3 m away was taken for its like after 80 m.
     pub drift_part_on_wheels: f64,
     /// Landmarks that two keyframes share to be tied in the pose graph, 1 or more. Default 100 \[MurArtal17\].
     pub tied_by: usize,

@@ -127,7 +127,7 @@ impl LoopCloser<'_> {
         let here = map.live_keyframe(keyframe)?.visual_from_camera;
         let correction = here.inverse() * found.visual_from_camera;
         let ways = SurestWays::from(map, keyframe, self.config);
-        let drift = Drift::along(&ways, map, (found.candidate, keyframe), self.config)?;
+        let drift = Drift::along(&ways, map, (found.candidate, keyframe), self.config);
         if drift.allows(correction, &found.covariance) {
             return Some(found);
         }

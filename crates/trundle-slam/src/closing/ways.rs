@@ -7,7 +7,7 @@ use std::collections::BinaryHeap;
 /// How far off keyframes may be against one of them: along the surest way of ties between them, each off by a part of its
 /// length and turn.
 ///
-/// Ties are the spanning tree, loops, and the wheels' ways. What a loop has tied to an old place is as sure as that place,
+/// Ties are the spanning tree where it is of common sight, loops, and the wheels' ways. What a loop has tied to an old place is as sure as that place,
 /// however far the camera went between.
 #[derive(Debug, Clone)]
 pub(super) struct SurestWays {
@@ -67,7 +67,8 @@ impl SurestWays {
 fn ties(map: &LandmarkMap, ids: &[KeyframeId], config: &LoopConfig) -> Vec<Vec<(usize, Way)>> {
     let mut ties = vec![Vec::new(); ids.len()];
     for (at, (_, keyframe)) in map.keyframes().enumerate() {
-        let seen = keyframe.tree.parent.iter().chain(&keyframe.tree.loops).map(|id| (*id, config.drift_part));
+        let parent = keyframe.tree.parent.iter().filter(|_| !keyframe.tree.is_astray);
+        let seen = parent.chain(&keyframe.tree.loops).map(|id| (*id, config.drift_part));
         let rolled = keyframe.rolled.iter().map(|rolled| (rolled.from, config.drift_part_on_wheels));
         for (other, part) in seen.chain(rolled) {
             let Ok(to) = ids.binary_search(&other) else { continue };
@@ -87,12 +88,12 @@ mod tests {
     use crate::testing::blank_frame;
     use trundle_core::{Pose3, Vector3};
 
-    /// Keyframes along a line, each hung under the one before.
+    /// Keyframes along a line, each of which sees what the one before did.
     fn line(xs: &[f64]) -> (LandmarkMap, Vec<KeyframeId>) {
         let mut map = LandmarkMap::default();
         let along = |x: f64| Pose3::new(nalgebra::UnitQuaternion::identity(), Vector3::x() * x);
         let ids: Vec<_> = xs.iter().map(|x| map.add_keyframe(blank_frame(1), along(*x))).collect();
-        ids.iter().for_each(|id| map.enter_tree(*id));
+        ids.windows(2).for_each(|pair| map.hang(pair[1], pair[0]));
         (map, ids)
     }
 
@@ -122,6 +123,18 @@ mod tests {
         map.tie(ids[0], ids[4]);
         assert!((off(&map, ids[0], ids[5]) - 0.1).abs() < 1e-12);
         assert!((off(&map, ids[1], ids[3]) - 0.2).abs() < 1e-12, "as before where that is surer");
+    }
+
+    #[test]
+    fn the_one_before_that_nothing_leads_to_is_no_tie() {
+        let (mut map, ids) = line(&[0.0, 1.0, 2.0]);
+        map.keyframe_mut(ids[1]).tree.is_astray = true;
+        let config = LoopConfig::default();
+        assert_eq!(SurestWays::from(&map, ids[0], &config).to(ids[2]), None);
+        map.keyframe_mut(ids[1]).rolled = Some(Rolled::at(ids[0]));
+        assert!((off(&map, ids[0], ids[2]) - 0.013).abs() < 1e-12);
+        assert!(map.forget_keyframe(ids[1]));
+        assert_eq!(SurestWays::from(&map, ids[0], &config).to(ids[2]), None, "nor to what hung under it");
     }
 
     #[test]
