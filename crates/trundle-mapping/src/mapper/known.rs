@@ -57,17 +57,17 @@ impl GridMapper {
     }
 }
 
-/// Cells so deep inside an obstacle no scan shows, and drawn walls are two or three thick.
-const DEEP: usize = 2;
-
-/// Whether scans are to be matched with a cell: it is occupied, and not all around it is.
+/// Whether scans are to be matched with a cell: it is occupied, and free beside. The surface is at the near side of that cell in a wall
+/// that a plan shows solid, and at its far side where noise has drawn a wall two cells thick; deeper cells would pull scans into
+/// solid walls.
 fn is_surface(grid: &OccupancyGrid, cell: CellIndex) -> bool {
     let GridGeometry { width, height, .. } = *grid.geometry();
-    let around = |at: usize, size: usize| at.saturating_sub(DEEP)..(at + DEEP + 1).min(size);
-    let is_occupied = |row, col| grid.get(CellIndex { col, row }) == Cell::Occupied;
-    let is_deep =
-        || around(cell.row, height).all(|row| around(cell.col, width).all(|col| is_occupied(row, col)));
-    is_occupied(cell.row, cell.col) && !is_deep()
+    let is_free = |(right, up): (isize, isize)| {
+        let (col, row) = (cell.col.checked_add_signed(right), cell.row.checked_add_signed(up));
+        let beside = col.zip(row).filter(|(col, row)| *col < width && *row < height);
+        beside.is_some_and(|(col, row)| grid.get(CellIndex { col, row }) == Cell::Free)
+    };
+    grid.get(cell) == Cell::Occupied && [(1, 0), (-1, 0), (0, 1), (0, -1)].into_iter().any(is_free)
 }
 
 #[cfg(test)]
@@ -81,7 +81,7 @@ mod tests {
         (0..7).for_each(|row| (3..12).for_each(|col| grid.set(CellIndex { col, row }, Cell::Occupied)));
         let mapper = GridMapper::from_grid(MapperConfig::default(), &grid).unwrap();
         let is_site = |x| mapper.evidence.get(GridCell { x, y: 3 }).unwrap().hit().is_some();
-        assert_eq!([2, 3, 4, 5, 8].map(is_site), [false, true, true, false, false]);
+        assert_eq!([2, 3, 4, 8].map(is_site), [false, true, false, false]);
     }
 
     #[test]
