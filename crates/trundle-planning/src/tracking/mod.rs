@@ -6,7 +6,8 @@
 //! those are expected; a straight line through a track's last places, by least squares, is its velocity; it counts as moving once
 //! it has left the place where it was first seen. Cost: O(beams x reach / cell) a scan.
 //!
-//! What was never seen free is not new: a wall that comes into view is no mover. What stops is none after `memory` seconds.
+//! What was never seen free is not new: a wall that comes into view is no mover. What stops is none after `memory` seconds. What went to
+//! where the sensor is blind, near by, and was not seen to leave stands there for up to 10 s.
 
 mod cluster;
 mod config;
@@ -67,7 +68,7 @@ impl MoverTracker {
             self.hits.iter().copied().filter(|hit| self.cells.has_come(*hit, time)).collect();
         let mut found = clusters(&new, sensor, self.config.gap);
         found.retain(|cluster| self.may_move(cluster));
-        self.follow(found);
+        self.follow(found, sensor);
     }
 
     /// Forgets all that was seen: the robot is not where it believed, and what stood seems to have moved.
@@ -80,8 +81,8 @@ impl MoverTracker {
     pub fn movers(&self, now: Stamp) -> Vec<Mover> {
         let now = self.begin.map_or(0.0, |begin| now - begin);
         let mover = |track: &Track| {
-            let grown = track.radius(&self.config) + SIDE / 2.0;
-            Mover::new(track.expected(now), track.velocity, grown).ok()
+            let (at, velocity, radius) = track.mover(now, &self.config);
+            Mover::new(at, velocity, radius + SIDE / 2.0).ok()
         };
         self.moving().filter_map(mover).collect()
     }
@@ -91,7 +92,8 @@ impl MoverTracker {
     pub fn without_movers(&self, grid: &OccupancyGrid) -> OccupancyGrid {
         let mut still = grid.clone();
         for track in self.moving() {
-            let now = (track.expected(self.time), track.radius(&self.config));
+            let (at, _, radius) = track.mover(self.time, &self.config);
+            let now = (at, radius);
             clear(&mut still, now, |at| self.cells.is_open(at, self.time));
             track.trail(&self.config).for_each(|disc| clear(&mut still, disc, |at| self.cells.is_left(at)));
         }
@@ -163,8 +165,9 @@ impl MoverTracker {
         }
     }
 
-    /// Ties clusters to tracks, nearest first; the rest begin tracks of their own. Tracks not seen for a window end.
-    fn follow(&mut self, clusters: Vec<Cluster>) {
+    /// Ties clusters to tracks, nearest first; the rest begin tracks of their own. Tracks not seen for a window end, but for those
+    /// that went to where the sensor is blind.
+    fn follow(&mut self, clusters: Vec<Cluster>, sensor: Vector2) {
         let (time, config) = (self.time, self.config);
         let mut pairs = Vec::new();
         for (t, track) in self.tracks.iter().enumerate() {
@@ -186,7 +189,8 @@ impl MoverTracker {
                 self.tracks[t].add(time, cluster, &config);
             }
         }
-        self.tracks.retain(|track| time - track.last_seen() <= config.window);
+        let cells = &self.cells;
+        self.tracks.retain_mut(|track| track.lasts(time, sensor, cells, &config));
         self.tracks.extend(clusters.into_iter().flatten().map(|cluster| Track::new(time, cluster)));
     }
 }

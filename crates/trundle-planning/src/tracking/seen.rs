@@ -92,6 +92,11 @@ impl SeenCells {
             && !self.stands(place, time)
     }
 
+    /// Whether a point was seen free after a time.
+    pub(super) fn is_free_since(&self, point: Vector2, time: f64) -> bool {
+        self.known(place_of(point)).is_some_and(|seen| seen.free_at > time)
+    }
+
     /// Whether the newest that was seen of a point is that it is free.
     pub(super) fn is_left(&self, point: Vector2) -> bool {
         self.known(place_of(point)).is_some_and(|seen| seen.free_at > seen.hit_at)

@@ -1,6 +1,6 @@
 use super::TrackerConfig;
 use super::cluster::Cluster;
-use super::seen::SeenCells;
+use super::seen::{SIDE, SeenCells};
 use trundle_core::Vector2;
 
 /// Something that was seen again and again.
@@ -16,7 +16,16 @@ pub(super) struct Track {
     seen: Vec<Sighting>,
     sightings: usize,
     pub(super) velocity: Vector2,
+    /// Where it may stand unseen: middle and radius.
+    hidden: Option<(Vector2, f64)>,
 }
+
+/// A mover that was not seen to go is believed to stand where nothing can be seen for so long, s.
+const HIDES: f64 = 10.0;
+/// So long a walker may be missed by scans that see it, s.
+const BLINK: f64 = 0.2;
+/// So near to the sensor that it may be blind there, m, and nearer than where somebody has room, m.
+const NEAR: (f64, f64) = (0.35, 0.8);
 
 /// Where something was, and how large it looked.
 #[derive(Debug, Clone, Copy)]
@@ -37,7 +46,48 @@ impl Track {
             seen,
             sightings: 1,
             velocity: Vector2::zeros(),
+            hidden: None,
         }
+    }
+
+    /// Where it is at a time, how it moves, and its radius.
+    pub(super) fn mover(&self, time: f64, config: &TrackerConfig) -> (Vector2, Vector2, f64) {
+        match self.hidden {
+            Some((at, radius)) => (at, Vector2::zeros(), radius),
+            None => (self.expected(time), self.velocity, self.radius(config)),
+        }
+    }
+
+    /// Whether it is to be believed in at `time`: it was seen a moment ago, or went to where the sensor is blind and was not seen to
+    /// leave.
+    pub(super) fn lasts(
+        &mut self,
+        time: f64,
+        sensor: Vector2,
+        cells: &SeenCells,
+        config: &TrackerConfig,
+    ) -> bool {
+        let unseen = time - self.last_seen();
+        let may_hide = (BLINK..HIDES).contains(&unseen) && self.moves(cells, config);
+        self.hidden = may_hide.then(|| self.hides(sensor, cells, config)).flatten();
+        unseen <= config.window || self.hidden.is_some()
+    }
+
+    /// The part of its way on that is near the sensor and has not been seen free since, as a disc.
+    fn hides(&self, sensor: Vector2, cells: &SeenCells, config: &TrackerConfig) -> Option<(Vector2, f64)> {
+        let last = self.last();
+        let steps = (self.velocity.norm() * config.window / SIDE).ceil().min(100.0) as usize;
+        let on =
+            (0..=steps).map(|i| last.at + self.velocity * (config.window * i as f64 / steps.max(1) as f64));
+        let is_unseen = |at: &Vector2| {
+            let range = (at - sensor).norm();
+            let has_room = range >= NEAR.0 || *at == last.at;
+            has_room && range <= NEAR.1 && !cells.is_free_since(*at, last.time)
+        };
+        let mut unseen = on.filter(is_unseen);
+        let first = unseen.next()?;
+        let end = unseen.next_back().unwrap_or(first);
+        Some(((first + end) * 0.5, self.radius(config) + (end - first).norm() / 2.0))
     }
 
     /// Where its middle should be.
@@ -58,6 +108,7 @@ impl Track {
         self.seen.push(Sighting { time, at: cluster.middle, radius: cluster.radius });
         self.seen.retain(|sighting| time - sighting.time <= config.memory);
         self.sightings += 1;
+        self.hidden = None;
         self.hits = cluster.hits;
         self.velocity = velocity(self.recent(config.window));
     }

@@ -164,6 +164,37 @@ fn who_stops_is_soon_none() {
 }
 
 #[test]
+fn who_steps_to_where_the_camera_is_blind_stands_there_until_seen_to_leave() {
+    const BLIND: f64 = 0.5;
+    let (mut tracker, pose) = (tracker(), Pose2::new(1.0, 3.0, 0.0));
+    // At 1.5 s somebody stops before the camera, so near that it sees nothing of them.
+    let (stops, walks) = (1.5, (at(1.82, 4.2), at(0.0, -0.8)));
+    let mut world = World::new(&[walks]);
+    let look = |tracker: &mut MoverTracker, world: &mut World, from: f64, to: f64| {
+        for k in (from * 10.0) as i32..=(to * 10.0) as i32 {
+            let time = f64::from(k) * 0.1;
+            let seen = world.scan(pose, time.min(stops), (320, 2.4));
+            let dim = |beam: &Beam| match beam {
+                Beam::Hit { range } if *range < BLIND => Beam::Unseen,
+                beam => *beam,
+            };
+            let beams = seen.beams().iter().map(dim).collect();
+            let (first, step) = (seen.angle(0), seen.angle_increment());
+            tracker.see(pose, &Scan::new(stamp(time), seen.origin(), first, step, beams).unwrap());
+        }
+        tracker.movers(stamp(to))
+    };
+    look(&mut tracker, &mut world, 0.0, 1.5);
+    for until in [2.0, 3.5, 9.0] {
+        let movers = look(&mut tracker, &mut world, until - 0.4, until);
+        assert!(movers.iter().any(|m| (m.at(0.0) - at(1.82, 3.0)).norm() < 0.4), "{until} s: {movers:?}");
+    }
+    // Nobody is there any more: seen free, it is free.
+    world.people.clear();
+    assert!(look(&mut tracker, &mut world, 9.1, 9.5).is_empty());
+}
+
+#[test]
 fn scans_from_the_past_and_wrong_numbers_change_nothing() {
     let (mut tracker, pose) = (tracker(), Pose2::new(1.0, 3.0, 0.0));
     let mut world = World::new(&[(at(4.0, 2.0), at(0.0, 0.7))]);
