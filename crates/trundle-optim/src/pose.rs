@@ -1,3 +1,4 @@
+use crate::leverage::bounded;
 use crate::observation::{PointObservation, camera_point_by_pose, robust_cost};
 use crate::pose_prior::PosePrior;
 use nalgebra::{Matrix6, Vector6};
@@ -37,6 +38,10 @@ impl PoseConfig {
         Ok(self)
     }
 }
+
+/// Points of one image err alike, now and then in groups of so many (docs/algorithms/slam.md): so many times as uncertain an image
+/// counts against what is known besides. What [`PoseSolution`] tells is what independent errors make, which most images have.
+pub const ALIKE: f64 = 8.0;
 
 /// One camera pose against points that are taken as known: motion-only bundle adjustment \[MurArtal17\].
 ///
@@ -86,7 +91,8 @@ impl PoseProblem<'_> {
         let mut inliers = vec![true; self.observations.len()];
         let mut pose = start;
         for _ in 0..config.rounds {
-            pose = self.optimise(pose, &inliers, config);
+            let weights = self.weights(pose, &inliers);
+            pose = self.optimise(pose, &weights, config);
             if !self.classify(pose, &mut inliers) {
                 break;
             }
@@ -94,18 +100,34 @@ impl PoseProblem<'_> {
         self.summarise(pose, inliers)
     }
 
-    /// Levenberg-Marquardt over the inliers.
-    fn optimise(&self, start: Pose3, inliers: &[bool], config: &PoseConfig) -> Pose3 {
+    /// What each observation counts: nothing for an outlier, and one that nobody could contradict no more than its share.
+    fn weights(&self, pose: Pose3, inliers: &[bool]) -> Vec<f64> {
+        let camera_from_world = pose.inverse();
+        let row = |((point, seen), inlier): (&(Vector3, PointObservation), &bool)| {
+            let p_camera = camera_from_world.transform(*point);
+            let linear = seen.linearize(self.camera, p_camera).filter(|_| *inlier)?;
+            let weight = seen.huber().weight(linear.residual.norm_squared());
+            Some(linear.by_point * camera_point_by_pose(p_camera) * weight.sqrt())
+        };
+        let rows: Vec<_> =
+            self.observations.iter().zip(inliers).map(|o| row(o).unwrap_or_default()).collect();
+        let mut weights = bounded(&rows);
+        weights.iter_mut().zip(inliers).filter(|(_, inlier)| !**inlier).for_each(|(weight, _)| *weight = 0.0);
+        weights
+    }
+
+    /// Levenberg-Marquardt over what counts.
+    fn optimise(&self, start: Pose3, weights: &[f64], config: &PoseConfig) -> Pose3 {
         let mut pose = start;
-        let mut cost = self.cost(pose, inliers);
+        let mut cost = self.cost(pose, weights);
         let mut damping = 1e-6;
         for _ in 0..config.steps {
-            let (hessian, gradient) = self.normal_equations(pose, inliers);
+            let (hessian, gradient) = self.normal_equations(pose, weights);
             let damped = hessian + Matrix6::from_diagonal(&(hessian.diagonal().add_scalar(1e-9) * damping));
             let Some(cholesky) = damped.cholesky() else { break };
             let step = -cholesky.solve(&gradient);
             let candidate = (pose * Pose3::exp(step)).renormalized();
-            let candidate_cost = self.cost(candidate, inliers);
+            let candidate_cost = self.cost(candidate, weights);
             if candidate_cost < cost {
                 (pose, cost) = (candidate, candidate_cost);
                 damping = (damping * 0.1).max(1e-9);
@@ -131,25 +153,28 @@ impl PoseProblem<'_> {
         changed
     }
 
-    fn cost(&self, pose: Pose3, inliers: &[bool]) -> f64 {
+    fn cost(&self, pose: Pose3, weights: &[f64]) -> f64 {
         let camera_from_world = pose.inverse();
-        self.chosen(inliers)
-            .map(|(point, seen)| robust_cost(self.camera, seen, camera_from_world.transform(*point)))
-            .sum()
+        let cost =
+            |(point, seen): &(_, _)| robust_cost(self.camera, seen, camera_from_world.transform(*point));
+        self.counting(weights).map(|(seen, weight)| weight * cost(seen)).sum()
     }
 
-    fn chosen<'s>(&'s self, inliers: &'s [bool]) -> impl Iterator<Item = &'s (Vector3, PointObservation)> {
-        self.observations.iter().zip(inliers).filter_map(|(seen, inlier)| inlier.then_some(seen))
+    fn counting<'s>(
+        &'s self,
+        weights: &'s [f64],
+    ) -> impl Iterator<Item = (&'s (Vector3, PointObservation), f64)> {
+        self.observations.iter().zip(weights.iter().copied()).filter(|(_, weight)| *weight > 0.0)
     }
 
     /// J'WJ and J'Wr at `pose`.
-    fn normal_equations(&self, pose: Pose3, inliers: &[bool]) -> (Matrix6<f64>, Vector6<f64>) {
+    fn normal_equations(&self, pose: Pose3, weights: &[f64]) -> (Matrix6<f64>, Vector6<f64>) {
         let camera_from_world = pose.inverse();
         let (mut hessian, mut gradient) = (Matrix6::zeros(), Vector6::zeros());
-        for (point, seen) in self.chosen(inliers) {
+        for ((point, seen), counts) in self.counting(weights) {
             let p_camera = camera_from_world.transform(*point);
             let Some(linear) = seen.linearize(self.camera, p_camera) else { continue };
-            let weight = seen.huber().weight(linear.residual.norm_squared());
+            let weight = counts * seen.huber().weight(linear.residual.norm_squared());
             let jacobian = linear.by_point * camera_point_by_pose(p_camera);
             let weighted = jacobian.transpose() * weight;
             hessian += weighted * jacobian;
@@ -159,10 +184,11 @@ impl PoseProblem<'_> {
     }
 
     fn summarise(&self, pose: Pose3, inliers: Vec<bool>) -> PoseSolution {
-        let (information, _) = self.normal_equations(pose, &inliers);
+        let weights = self.weights(pose, &inliers);
+        let (information, _) = self.normal_equations(pose, &weights);
         let camera_from_world = pose.inverse();
         let (mut chi2, mut freedoms, mut inlier_count) = (0.0, -6.0, 0);
-        for (point, seen) in self.chosen(&inliers) {
+        for ((point, seen), _) in self.counting(&weights) {
             chi2 += seen.chi2(self.camera, camera_from_world.transform(*point));
             freedoms += if seen.depth.is_some() { 3.0 } else { 2.0 };
             inlier_count += 1;
@@ -182,10 +208,6 @@ fn inverse(information: Matrix6<f64>) -> Option<Matrix6<f64>> {
     let inverse = information.cholesky()?.inverse();
     inverse.iter().all(|v| v.is_finite()).then_some(inverse)
 }
-
-/// Points of one image err alike, now and then in groups of so many (docs/algorithms/slam.md): so many times as uncertain an image counts
-/// against what is known besides. Told is what independent errors make, which most images have.
-const ALIKE: f64 = 8.0;
 
 #[cfg(test)]
 mod tests {
@@ -284,6 +306,27 @@ mod tests {
         let slipped = truth() * Pose3::exp(Vector6::new(0.1, 0.0, 0.05, 0.0, 0.05, 0.0));
         assert!(solve(Some(known(slipped))).contradicts_prior);
         assert!(gap(solve(Some(known(slipped))).world_from_camera, solve(None).world_from_camera) < 1e-5);
+    }
+
+    #[test]
+    fn a_near_point_that_is_none_does_not_place_the_camera() {
+        let off = |seed| {
+            let mut observations = scene(truth(), 80, 1.0, seed);
+            for (i, (point, seen)) in observations.iter_mut().enumerate() {
+                let p_camera = truth().inverse().transform(*point);
+                // All beyond the depth camera's range, but for three that were mapped 8 cm aside of where they are.
+                let (range, aside) = if i < 3 { (0.1 + 0.03 * i as f64, 0.08) } else { (8.0, 0.0) };
+                let p_camera = p_camera * range / p_camera.z + Vector3::x() * aside;
+                (*point, seen.depth) = (truth().transform(p_camera), None);
+            }
+            let problem = PoseProblem { camera: &camera(), observations: &observations, prior: None };
+            let beside = truth() * Pose3::exp(Vector6::new(0.08, 0.0, 0.0, 0.0, -0.01, 0.0));
+            let solution = problem.solve(beside, &PoseConfig::default());
+            assert_eq!(solution.inliers[..3], [false; 3], "seed {seed}");
+            (truth().inverse() * solution.world_from_camera).translation.norm()
+        };
+        let mean = (0..10).map(off).sum::<f64>() / 10.0;
+        assert!(mean < 0.04, "{mean} m off, 0.08 where the three decide");
     }
 
     #[test]

@@ -12,6 +12,7 @@
 mod drive;
 
 use drive::Drive;
+use nalgebra::Matrix6;
 use std::path::Path;
 use std::time::Instant;
 use trundle_core::Pose3;
@@ -85,7 +86,7 @@ fn map(drive: &Drive) -> Vec<u8> {
 
 fn kidnap(slam: &mut RgbdSlam, mapped: &Drive, other: &Drive, views: usize) {
     let (mut recognised, mut wrong, mut at_once, mut draw) = (0, 0, 0, 12345_u64);
-    let mut costs: Vec<f64> = Vec::new();
+    let (mut costs, mut errors): (Vec<f64>, Vec<f64>) = Default::default();
     let mut seen = 0;
     while seen < views {
         draw = draw.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
@@ -112,23 +113,43 @@ fn kidnap(slam: &mut RgbdSlam, mapped: &Drive, other: &Drive, views: usize) {
         let is_wrong = off.translation.norm() > WRONG.0 || off.angle() > WRONG.1;
         if is_wrong {
             println!(
-                "view {first}: WRONG by {:.3} m, {:.3} rad, {} of {}",
+                "view {first}: WRONG by {:.3} m, {:.3} rad (told {:.3} m, squared error {:.0}), {} of {}",
                 off.translation.norm(),
                 off.angle(),
+                report.covariance.fixed_view::<3, 3>(0, 0).trace().sqrt(),
+                squared_error(off, &report.covariance),
                 report.inliers,
                 report.matches
             );
         }
         (recognised, wrong) = (recognised + 1, wrong + usize::from(is_wrong));
+        if std::env::var("TOLD").is_ok() {
+            println!(
+                "told {} off {} err {} inl {} view {first}",
+                report.covariance.fixed_view::<3, 3>(0, 0).trace().sqrt(),
+                off.translation.norm(),
+                squared_error(off, &report.covariance),
+                report.inliers
+            );
+        }
+        errors.push(squared_error(off, &report.covariance));
         at_once += usize::from(i == first);
     }
     costs.sort_by(f64::total_cmp);
+    errors.sort_by(f64::total_cmp);
     println!(
         "{recognised} of {views} views recognised, {at_once} of them at the first frame, {wrong} wrongly; a frame {:.1} ms \
-         (median, features included), {:.1} ms at most",
+         (median, features included), {:.1} ms at most; squared errors by what was told {:.1} (median), {:.0} at most",
         costs[costs.len() / 2],
         costs[costs.len() - 1],
+        errors.get(errors.len() / 2).unwrap_or(&f64::NAN),
+        errors.last().unwrap_or(&f64::NAN),
     );
+}
+
+/// Of a pose that is off by `off`, normalised by its covariance: 6 on average where that is true.
+fn squared_error(off: Pose3, covariance: &Matrix6<f64>) -> f64 {
+    covariance.cholesky().map_or(f64::NAN, |told| off.log().dot(&told.solve(&off.log())))
 }
 
 fn has_been_at(drive: &Drive, pose: Pose3) -> bool {

@@ -5,6 +5,7 @@ use crate::search::Projection;
 use crate::tracker::Tracker;
 use std::collections::{BTreeMap, BTreeSet};
 use trundle_core::{Pose3, Vector2};
+use trundle_optim::ALIKE;
 
 /// How a frame was located.
 #[derive(Debug)]
@@ -35,14 +36,18 @@ impl Found {
     }
 
     /// From a keyframe to the map; to be believed, it takes more landmarks that agree, most of those matched, and some in a
-    /// good part of the view: a picture that hangs in two rooms is not the room.
+    /// good part of the view: a picture that hangs in two rooms is not the room. And they must tell where it is: nothing else
+    /// does, so that errors which points of one image share are counted.
     pub fn from_keyframe(tracker: &Tracker, keyframe: KeyframeId) -> Option<Self> {
         let rough = tracker.by_words(keyframe, None)?;
-        let (fix, visible) = tracker.by_map(&rough, None);
+        let (mut fix, visible) = tracker.by_map(&rough, None);
+        let config = tracker.config;
         let found = fix.inliers().map(|m| tracker.frame.pixels[m.feature]);
-        let is_seen =
-            seen_part(visible.iter().map(|(_, seen)| seen.pixel), found) >= tracker.config.recognised_part;
-        let sound = fix.is_sound(tracker.config.weak_inliers) && fix.is_convincing() && is_seen;
+        let is_seen = seen_part(visible.iter().map(|(_, seen)| seen.pixel), found) >= config.recognised_part;
+        let covariance = fix.solution.covariance? * ALIKE;
+        let is_sure = covariance.fixed_view::<3, 3>(0, 0).trace().sqrt() <= config.recognised_sigma;
+        fix.solution.covariance = Some(covariance);
+        let sound = fix.is_sound(config.weak_inliers) && fix.is_convincing() && is_seen && is_sure;
         sound.then_some(Self { fix, visible, by_map: true, relocalised: true })
     }
 
