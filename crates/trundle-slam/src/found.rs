@@ -1,6 +1,6 @@
 use crate::anchor::Anchor;
 use crate::ids::{KeyframeId, LandmarkId};
-use crate::refine::Fix;
+use crate::refine::{Fix, Known};
 use crate::search::Projection;
 use crate::tracker::Tracker;
 use std::collections::{BTreeMap, BTreeSet};
@@ -29,7 +29,7 @@ impl Found {
         predicted: Pose3,
     ) -> Option<Self> {
         let rough = tracker.by_last(last, reference, predicted)?;
-        let (fix, visible) = tracker.by_map(&rough, tracker.rolled);
+        let (fix, visible) = tracker.by_map(&rough, tracker.followed());
         let by_map = fix.is_sound(tracker.config.min_inliers);
         let fix = if by_map { fix } else { rough };
         Some(Self { fix, visible, by_map, relocalised: false })
@@ -39,8 +39,8 @@ impl Found {
     /// good part of the view: a picture that hangs in two rooms is not the room. And they must tell where it is: nothing else
     /// does, so that errors which points of one image share are counted.
     pub fn from_keyframe(tracker: &Tracker, keyframe: KeyframeId) -> Option<Self> {
-        let rough = tracker.by_words(keyframe, None)?;
-        let (mut fix, visible) = tracker.by_map(&rough, None);
+        let rough = tracker.by_words(keyframe, Known::Nothing)?;
+        let (mut fix, visible) = tracker.by_map(&rough, Known::Nothing);
         let config = tracker.config;
         let found = fix.inliers().map(|m| tracker.frame.pixels[m.feature]);
         let is_seen = seen_part(visible.iter().map(|(_, seen)| seen.pixel), found) >= config.recognised_part;

@@ -26,6 +26,15 @@ impl PointMatch {
     }
 }
 
+/// What is known of a camera besides what an image shows.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Known<'a> {
+    /// It was followed to here, by wheels, if there are any.
+    Followed(Option<&'a PosePrior>),
+    /// It may be anywhere: nothing contradicts what looks right.
+    Nothing,
+}
+
 /// The pose of a frame, and by which matches.
 #[derive(Debug, Clone)]
 pub(crate) struct Fix {
@@ -34,10 +43,10 @@ pub(crate) struct Fix {
 }
 
 impl Fix {
-    /// Refines `start` on `matches`, and on what else is known of the pose.
+    /// Refines `start` on `matches`, and on what else is known of the camera.
     pub fn by(
         matches: Vec<PointMatch>,
-        (start, prior): (Pose3, Option<PosePrior>),
+        (start, known): (Pose3, Known),
         frame: &Frame,
         sensor: &Sensor,
         config: &PoseConfig,
@@ -45,7 +54,11 @@ impl Fix {
         let observe =
             |m: &PointMatch| (m.point, widened(sensor.observation(frame, m.feature), m.sigma_factor));
         let observations: Vec<(Vector3, PointObservation)> = matches.iter().map(observe).collect();
-        let problem = PoseProblem { camera: &sensor.camera, observations: &observations, prior };
+        let (prior, bounded) = match known {
+            Known::Followed(prior) => (prior.copied(), false),
+            Known::Nothing => (None, true),
+        };
+        let problem = PoseProblem { camera: &sensor.camera, observations: &observations, prior, bounded };
         let solution = problem.solve(start, config);
         Self { matches, solution }
     }

@@ -4,7 +4,7 @@ use crate::ids::{KeyframeId, LandmarkId};
 use crate::local_map::View;
 use crate::map::LandmarkMap;
 use crate::places::{Places, Worded, Words};
-use crate::refine::{Fix, PointMatch};
+use crate::refine::{Fix, Known, PointMatch};
 use crate::search::{Likeness, Projection, search};
 use crate::sensor::Sensor;
 use serde::{Deserialize, Serialize};
@@ -139,7 +139,7 @@ impl Tracker<'_> {
         let tries: [&dyn Fn() -> Option<Fix>; 4] = [
             &|| self.by_motion(last, predicted, 1.0),
             &|| self.by_motion(last, predicted, 2.0),
-            &|| self.by_words(reference?, self.rolled),
+            &|| self.by_words(reference?, self.followed()),
             &|| self.by_likeness(last),
         ];
         let mut best: Option<Fix> = None;
@@ -155,6 +155,11 @@ impl Tracker<'_> {
         best.filter(|fix| fix.is_sound(self.config.weak_inliers))
     }
 
+    /// What is known of a camera that was followed from frame to frame.
+    pub fn followed(&self) -> Known<'_> {
+        Known::Followed(self.rolled.as_ref())
+    }
+
     /// The frame's words.
     pub fn words(&self) -> &Words {
         self.words.get_or_init(|| Words::of(self.frame, self.places.vocabulary()))
@@ -164,14 +169,14 @@ impl Tracker<'_> {
         let likeness = self.config.window_likeness();
         let window = wider * self.config.motion_window_px;
         let matches = last.match_by_motion(self.frame, predicted, window, likeness, (self.map, self.sensor));
-        self.refined(matches, predicted, self.rolled)
+        self.refined(matches, predicted, self.followed())
     }
 
     /// The pose from what looks alike in a keyframe, feature by feature under the same node of the vocabulary.
-    pub fn by_words(&self, keyframe: KeyframeId, prior: Option<PosePrior>) -> Option<Fix> {
+    pub fn by_words(&self, keyframe: KeyframeId, known: Known) -> Option<Fix> {
         let own = Worded { frame: self.frame, words: self.words() };
         let pairs = self.places.worded(self.map, keyframe)?.matches(own, self.config.free_likeness());
-        self.located(self.map.keyframe(keyframe).into(), &pairs, prior)
+        self.located(self.map.keyframe(keyframe).into(), &pairs, known)
     }
 
     /// The pose from what looks alike in `last`, wherever it is in the image.
@@ -179,17 +184,17 @@ impl Tracker<'_> {
         let Likeness { max_distance, ratio } = self.config.free_likeness();
         let (there, here) = (&last.frame.features.descriptors, &self.frame.features.descriptors);
         let pairs = match_mutual(there, here, max_distance, ratio);
-        self.located(last, &pairs, self.rolled)
+        self.located(last, &pairs, self.followed())
     }
 
-    fn located(&self, anchor: Anchor, pairs: &[Match], prior: Option<PosePrior>) -> Option<Fix> {
+    fn located(&self, anchor: Anchor, pairs: &[Match], known: Known) -> Option<Fix> {
         let (pose, matches) = anchor.locate(self.frame, pairs, self.seed, (self.map, self.sensor))?;
-        self.refined(matches, pose, prior)
+        self.refined(matches, pose, known)
     }
 
     /// The final pose: against all landmarks of the map that a camera at the pose of `rough` should see. What `rough` has
     /// matched with a landmark stays matched. Also which landmarks should have been seen.
-    pub fn by_map(&self, rough: &Fix, prior: Option<PosePrior>) -> (Fix, Vec<(LandmarkId, Projection)>) {
+    pub fn by_map(&self, rough: &Fix, known: Known) -> (Fix, Vec<(LandmarkId, Projection)>) {
         let pose = rough.visual_from_camera();
         let mut matches: Vec<PointMatch> =
             rough.inliers().filter(|m| m.landmark.is_some()).copied().collect();
@@ -205,15 +210,15 @@ impl Tracker<'_> {
         let found = search(self.frame, &free, &projections, self.config.window_likeness());
         let taken = |(feature, i): (usize, usize)| PointMatch::of_landmark(feature, sought[i].0, self.map);
         matches.extend(found.into_iter().filter_map(taken));
-        let fix = Fix::by(matches, (pose, prior), self.frame, self.sensor, &self.config.pose);
+        let fix = Fix::by(matches, (pose, known), self.frame, self.sensor, &self.config.pose);
         (fix, visible)
     }
 
-    fn refined(&self, matches: Vec<PointMatch>, start: Pose3, prior: Option<PosePrior>) -> Option<Fix> {
+    fn refined(&self, matches: Vec<PointMatch>, start: Pose3, known: Known) -> Option<Fix> {
         if matches.len() < self.config.min_inliers {
             return None;
         }
-        let fix = Fix::by(matches, (start, prior), self.frame, self.sensor, &self.config.pose);
+        let fix = Fix::by(matches, (start, known), self.frame, self.sensor, &self.config.pose);
         fix.is_sound(self.config.min_inliers).then_some(fix)
     }
 }

@@ -3,7 +3,7 @@ use crate::anchor::Anchor;
 use crate::ids::{KeyframeId, LandmarkId};
 use crate::map::LandmarkMap;
 use crate::places::{Places, SHARED, Worded};
-use crate::refine::{Fix, PointMatch};
+use crate::refine::{Fix, Known, PointMatch};
 use crate::relocalisation::{Placed, unrivalled};
 use crate::search::{Projection, search};
 use crate::sensor::Sensor;
@@ -74,7 +74,7 @@ impl Verifier<'_> {
         let pairs = self.places.worded(self.map, candidate)?.matches(own, self.tracking.free_likeness());
         let anchor: Anchor = self.map.keyframe(candidate).into();
         let (pose, matches) = anchor.locate(own.frame, &pairs, self.seed, (self.map, self.sensor))?;
-        let fix = Fix::by(matches, (pose, None), own.frame, self.sensor, &self.tracking.pose);
+        let fix = Fix::by(matches, (pose, Known::Nothing), own.frame, self.sensor, &self.tracking.pose);
         fix.is_sound(self.tracking.min_inliers).then_some(fix)
     }
 
@@ -100,7 +100,7 @@ impl Verifier<'_> {
         let found = search(frame, &free, &projections, self.tracking.window_likeness());
         let taken = |(feature, i): (usize, usize)| PointMatch::of_landmark(feature, ids[i], self.map);
         matches.extend(found.into_iter().filter_map(taken));
-        Fix::by(matches, (pose, None), frame, self.sensor, &self.tracking.pose)
+        Fix::by(matches, (pose, Known::Nothing), frame, self.sensor, &self.tracking.pose)
     }
 
     /// What the candidate and those around it see, by rising id.
