@@ -17,6 +17,8 @@ pub(crate) struct Found {
     pub by_map: bool,
     /// Whether it was found by a keyframe that looks alike.
     pub relocalised: bool,
+    /// Whether nothing speaks against it but other places that look like it.
+    pub is_certain: bool,
 }
 
 impl Found {
@@ -32,23 +34,25 @@ impl Found {
         let (fix, visible) = tracker.by_map(&rough, tracker.followed());
         let by_map = fix.is_sound(tracker.config.min_inliers);
         let fix = if by_map { fix } else { rough };
-        Some(Self { fix, visible, by_map, relocalised: false })
+        Some(Self { fix, visible, by_map, relocalised: false, is_certain: true })
     }
 
-    /// From a keyframe to the map; to be believed, it takes more landmarks that agree, most of those matched, and some in a
-    /// good part of the view: a picture that hangs in two rooms is not the room. And they must tell where it is: nothing else
-    /// does, so that errors which points of one image share are counted.
+    /// From a keyframe to the map. It takes more landmarks that agree to be certain of it, and some in a good part of the view: a
+    /// picture that hangs in two rooms is not the room. And they must tell where it is: nothing else does, so that errors
+    /// which points of one image share are counted.
     pub fn from_keyframe(tracker: &Tracker, keyframe: KeyframeId) -> Option<Self> {
         let rough = tracker.by_words(keyframe, Known::Nothing)?;
-        let (mut fix, visible) = tracker.by_map(&rough, Known::Nothing);
+        let (nearly, _) = tracker.searching_wider().by_map(&rough, Known::Nothing);
+        let (mut fix, visible) = tracker.by_map(&nearly, Known::Nothing);
         let config = tracker.config;
+        (fix.is_sound(config.min_inliers) && fix.is_convincing()).then_some(())?;
+        let covariance = fix.solution.covariance? * ALIKE;
+        fix.solution.covariance = Some(covariance);
         let found = fix.inliers().map(|m| tracker.frame.pixels[m.feature]);
         let is_seen = seen_part(visible.iter().map(|(_, seen)| seen.pixel), found) >= config.recognised_part;
-        let covariance = fix.solution.covariance? * ALIKE;
-        let is_sure = covariance.fixed_view::<3, 3>(0, 0).trace().sqrt() <= config.recognised_sigma;
-        fix.solution.covariance = Some(covariance);
-        let sound = fix.is_sound(config.weak_inliers) && fix.is_convincing() && is_seen && is_sure;
-        sound.then_some(Self { fix, visible, by_map: true, relocalised: true })
+        let sigma = covariance.fixed_view::<3, 3>(0, 0).trace().sqrt();
+        let is_certain = fix.is_sound(config.weak_inliers) && is_seen && sigma <= config.recognised_sigma;
+        Some(Self { fix, visible, by_map: true, relocalised: true, is_certain })
     }
 
     /// Points that agree.

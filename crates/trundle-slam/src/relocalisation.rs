@@ -10,17 +10,22 @@ const SAME_PLACE: (f64, f64) = (0.3, 0.3);
 /// is nearly as near \[Lowe04\].
 const RIVAL: f64 = 0.7;
 
-/// Where a camera may be that was not followed: the keyframes that look alike, each tried in full.
+/// Where a camera may be that was not followed: the keyframes that look alike, each tried in full. Among them are places that are
+/// not to be believed by themselves, and yet make others doubtful.
 pub(crate) fn relocalise(tracker: &Tracker) -> Vec<Found> {
     let most = tracker.config.relocalisation_keyframes;
     let places = tracker.places.places_alike(tracker.map, tracker.words(), |_| true, most);
     tried(places, most, |id| Found::from_keyframe(tracker, id))
 }
 
-/// What is found in `most` tries. A place in which nothing was found is tried again by its next keyframe, before others that are as
+/// What is found in `most` tries. A place in which nothing certain was found is tried again by its next keyframe, before others that are as
 /// much less like it: where it stands at the edge of what was mapped, few of its keyframes show enough, and a twin would have
 /// no rival. (Tries are dealt out as seats are by D'Hondt.)
-fn tried<T>(places: Vec<Place>, most: usize, mut find: impl FnMut(KeyframeId) -> Option<T>) -> Vec<T> {
+fn tried<T: Placed>(
+    places: Vec<Place>,
+    most: usize,
+    mut find: impl FnMut(KeyframeId) -> Option<T>,
+) -> Vec<T> {
     let mut open: Vec<(Place, usize)> = places.into_iter().map(|place| (place, 0)).collect();
     let mut found = Vec::new();
     for _ in 0..most {
@@ -30,13 +35,12 @@ fn tried<T>(places: Vec<Place>, most: usize, mut find: impl FnMut(KeyframeId) ->
         // Of equal ones, the first.
         let Some(next) = (0..open.len()).rev().filter(is_open).max_by(by_hope) else { break };
         let (place, tries) = &mut open[next];
-        match find(place.members[*tries]) {
-            Some(at) => {
-                found.push(at);
-                open.remove(next);
-            }
-            None => *tries += 1,
+        let at = find(place.members[*tries]);
+        *tries += 1;
+        if at.as_ref().is_some_and(T::is_certain) {
+            open.remove(next);
         }
+        found.extend(at);
     }
     found
 }
@@ -45,6 +49,8 @@ fn tried<T>(places: Vec<Place>, most: usize, mut find: impl FnMut(KeyframeId) ->
 pub(crate) trait Placed {
     fn pose(&self) -> Pose3;
     fn points(&self) -> usize;
+    /// Whether they may be believed, if there is no rival.
+    fn is_certain(&self) -> bool;
 }
 
 impl Placed for Found {
@@ -55,15 +61,20 @@ impl Placed for Found {
     fn points(&self) -> usize {
         self.inliers()
     }
+
+    fn is_certain(&self) -> bool {
+        self.is_certain
+    }
 }
 
-/// The place with the most points, of equal ones the first; `None` when there is none, or when a second one elsewhere has
-/// nearly as many, as rooms that look the same do.
+/// The certain place with the most points, of equal ones the first; `None` when there is none, or when a second one elsewhere has
+/// nearly as many, as rooms that look the same do, or one that is not certain has more.
 pub(crate) fn unrivalled<T: Placed>(mut found: Vec<T>) -> Option<T> {
-    found.sort_by_key(|found| std::cmp::Reverse(found.points()));
+    found.sort_by_key(|found| (!found.is_certain(), std::cmp::Reverse(found.points())));
     let mut found = found.into_iter();
-    let best = found.next()?;
-    let is_near = |other: &T| other.points() as f64 > RIVAL * best.points() as f64;
+    let best = found.next().filter(T::is_certain)?;
+    let share = |other: &T| if other.is_certain() { RIVAL } else { 1.0 };
+    let is_near = |other: &T| other.points() as f64 > share(other) * best.points() as f64;
     let is_rival = |other: T| is_near(&other) && !is_same_place(best.pose(), other.pose());
     (!found.any(is_rival)).then_some(best)
 }
@@ -79,13 +90,18 @@ mod tests {
     use super::*;
     use trundle_core::Vector3;
 
-    impl Placed for (f64, usize) {
+    /// Where along a line, how many points, and whether it is certain.
+    impl Placed for (f64, usize, bool) {
         fn pose(&self) -> Pose3 {
             Pose3::new(nalgebra::UnitQuaternion::identity(), Vector3::x() * self.0)
         }
 
         fn points(&self) -> usize {
             self.1
+        }
+
+        fn is_certain(&self) -> bool {
+            self.2
         }
     }
 
@@ -99,25 +115,39 @@ mod tests {
         };
         let places =
             vec![place(0.33, &[1, 2, 3]), place(0.26, &[10, 11]), place(0.05, &[20]), place(0.05, &[21])];
-        let tries = |most: usize, found: &[usize]| {
+        let tries = |most: usize, certain: &[usize], doubtful: &[usize]| {
             let mut tries = Vec::new();
             let at = tried(places.clone(), most, |member| {
-                tries.push(member.index());
-                found.contains(&member.index()).then_some(member.index())
+                let id = member.index();
+                tries.push(id);
+                let is_certain = certain.contains(&id);
+                (is_certain || doubtful.contains(&id)).then_some((0.0, id, is_certain))
             });
-            (tries, at)
+            (tries, at.into_iter().map(|(_, id, _)| id).collect::<Vec<_>>())
         };
-        assert_eq!(tries(5, &[10]), (vec![1, 10, 2, 3, 20], vec![10]));
-        assert_eq!(tries(5, &[1, 10]), (vec![1, 10, 20, 21], vec![1, 10]), "once found is enough");
-        assert_eq!(tries(9, &[]), (vec![1, 10, 2, 11, 3, 20, 21], vec![]));
-        assert_eq!(tries(0, &[1]), (vec![], vec![]));
+        assert_eq!(tries(5, &[10], &[]), (vec![1, 10, 2, 3, 20], vec![10]));
+        assert_eq!(tries(5, &[1, 10], &[]), (vec![1, 10, 20, 21], vec![1, 10]), "once found is enough");
+        assert_eq!(tries(5, &[10], &[1, 3]), (vec![1, 10, 2, 3, 20], vec![1, 10, 3]), "if it is certain");
+        assert_eq!(tries(9, &[], &[]), (vec![1, 10, 2, 11, 3, 20, 21], vec![]));
+        assert_eq!(tries(0, &[1], &[]), (vec![], vec![]));
     }
 
     #[test]
     fn the_most_points_win_unless_another_place_has_nearly_as_many() {
-        assert_eq!(unrivalled::<(f64, usize)>(vec![]), None);
-        assert_eq!(unrivalled(vec![(0.0, 50), (0.1, 60), (4.0, 40)]), Some((0.1, 60)));
-        assert_eq!(unrivalled(vec![(0.0, 50), (4.0, 60)]), None);
-        assert_eq!(unrivalled(vec![(0.0, 60), (0.2, 59)]), Some((0.0, 60)));
+        assert_eq!(unrivalled::<(f64, usize, bool)>(vec![]), None);
+        let best = |found: &[(f64, usize)]| {
+            unrivalled(found.iter().map(|(x, points)| (*x, *points, true)).collect()).map(|(x, n, _)| (x, n))
+        };
+        assert_eq!(best(&[(0.0, 50), (0.1, 60), (4.0, 40)]), Some((0.1, 60)));
+        assert_eq!(best(&[(0.0, 50), (4.0, 60)]), None);
+        assert_eq!(best(&[(0.0, 60), (0.2, 59)]), Some((0.0, 60)));
+    }
+
+    #[test]
+    fn a_doubtful_place_is_a_rival_and_no_winner() {
+        let certain = (0.0, 50, true);
+        assert_eq!(unrivalled(vec![(4.0, 51, false), certain]), None);
+        assert_eq!(unrivalled(vec![(0.1, 90, false), certain, (4.0, 49, false)]), Some(certain));
+        assert_eq!(unrivalled(vec![(0.0, 90, false)]), None);
     }
 }

@@ -56,8 +56,8 @@ pub struct RgbdSlam {
     last: Option<Located>,
     /// Frames since then.
     misses: usize,
-    /// A place that looks right where the belief says the camera cannot be.
-    doubt: Option<Claim<()>>,
+    /// A place that looks right, and is not believed yet.
+    doubt: Option<Claim<MapId>>,
     /// Another map that the last keyframe recognised.
     recognition: Option<Claim<MapId>>,
     /// Tracked poses against the wheels.

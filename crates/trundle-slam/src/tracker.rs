@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 use std::cell::OnceCell;
 use trundle_core::{Invalid, Pose3, require_in, require_positive};
 use trundle_optim::{PoseConfig, PosePrior};
-use trundle_vision::{Match, match_mutual};
+use trundle_vision::{Match, RansacConfig, match_mutual};
 
 /// How the pose of a frame is found.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -214,11 +214,21 @@ impl Tracker<'_> {
         (fix, visible)
     }
 
+    /// The same for a camera whose pose is known roughly.
+    pub fn searching_wider(&self) -> Self {
+        Self { view: View { window: self.config.motion_window_px, ..self.view }, ..*self }
+    }
+
     fn refined(&self, matches: Vec<PointMatch>, start: Pose3, known: Known) -> Option<Fix> {
-        if matches.len() < self.config.min_inliers {
+        let least = match known {
+            Known::Followed(_) => self.config.min_inliers,
+            // They do not agree by chance, and the map is asked next.
+            Known::Nothing => RansacConfig::default().min_inliers,
+        };
+        if matches.len() < least {
             return None;
         }
         let fix = Fix::by(matches, (start, known), self.frame, self.sensor, &self.config.pose);
-        fix.is_sound(self.config.min_inliers).then_some(fix)
+        fix.is_sound(least).then_some(fix)
     }
 }

@@ -48,6 +48,10 @@ impl Placed for Recognised {
     fn points(&self) -> usize {
         self.points
     }
+
+    fn is_certain(&self) -> bool {
+        true
+    }
 }
 
 impl Verifier<'_> {

@@ -21,6 +21,8 @@ const LEAST_SIGMA: f64 = 0.1;
 const FASTEST: (f64, f64) = (2.0, 3.5);
 /// What it may be off besides: m and rad.
 const LEAST_REACH: f64 = 0.3;
+/// So many frames must say the same of where a camera is that nobody told about: one showed a twin room in 0.7 of its view.
+const SAID: usize = 2;
 
 /// A frame found in a map.
 #[derive(Debug)]
@@ -65,17 +67,18 @@ impl RgbdSlam {
                 self.contradiction.believes(frame.stamp, solution.contradicts_prior, solution.inlier_count);
             return is_believed.then_some(Sighting { map: self.active.id, found });
         }
-        let recognised = relocalise(&here);
+        let (map, recognised) = (self.active.id, relocalise(&here));
         self.contradiction = Contradiction::default();
-        if let Some(found) = self.believable(recognised, predicted, reach) {
-            return Some(Sighting { map: self.active.id, found });
+        if let Some(found) = self.believable(map, recognised, predicted, reach) {
+            return Some(Sighting { map, found });
         }
         let other = self
             .resting
             .get(self.frames as usize % self.resting.len().max(1))
             .filter(|_| reach != Reach::Told)?;
-        let found = unrivalled(relocalise(&self.tracker(other, frame, depth, &words)))?;
-        Some(Sighting { map: other.id, found })
+        let (map, recognised) = (other.id, relocalise(&self.tracker(other, frame, depth, &words)));
+        let found = self.believable(map, recognised, predicted, Reach::Anywhere)?;
+        Some(Sighting { map, found })
     }
 
     fn tracker<'a>(
@@ -111,20 +114,26 @@ impl RgbdSlam {
         }
     }
 
-    /// Which of the places that look right to believe, for a camera that should be at `predicted`: one in reach, or one
-    /// said by as many frames in a row as it takes to be at a loss. Wheels that know where they went outweigh a room that
-    /// looks like another one, not a robot that was carried.
-    fn believable(&mut self, recognised: Vec<Found>, predicted: Pose3, reach: Reach) -> Option<Found> {
-        let said_before = self.doubt.take();
+    /// Which of the places of a map that look right to believe, for a camera that should be at `predicted`: one in reach, if a second
+    /// frame says it too where wheels do not, or one that as many frames say as it takes to be at a loss. Wheels that know where they
+    /// went outweigh a room that looks like another one, not a robot that was carried. Frames that show no place do not count.
+    fn believable(
+        &mut self,
+        map: MapId,
+        recognised: Vec<Found>,
+        predicted: Pose3,
+        reach: Reach,
+    ) -> Option<Found> {
         let is_near = |found: &Found| self.may_be(reach, predicted, found.pose());
         let (near, far): (Vec<Found>, Vec<Found>) = recognised.into_iter().partition(is_near);
-        if !near.is_empty() {
-            return unrivalled(near);
-        }
-        let found = unrivalled(far)?;
-        self.doubt = said_before;
-        let times = Claim::note(&mut self.doubt, (), found.pose() * predicted.inverse());
-        (times >= self.config.tracking.patience).then_some(found)
+        let (found, needed) = match reach {
+            _ if !near.iter().any(Placed::is_certain) => (far, self.config.tracking.patience),
+            Reach::Told => (near, 1),
+            Reach::Anywhere | Reach::For(_) => (near, SAID),
+        };
+        let found = unrivalled(found)?;
+        let times = Claim::note(&mut self.doubt, map, found.pose(), predicted);
+        (times >= needed).then_some(found)
     }
 
     /// Whether a camera that should be at `predicted` can be at `pose`.
