@@ -6,7 +6,7 @@
 //! those are expected; a straight line through a track's last places, by least squares, is its velocity; it counts as moving once
 //! it has left the place where it was first seen. Cost: O(beams x reach / cell) a scan.
 //!
-//! What was never seen free is not new: a wall that comes into view is no mover. What stops is none after `memory` seconds. What went to
+//! What was never seen free is not new: a wall that comes into view is no mover. What stops is none after `memory` seconds. What came to
 //! where the sensor is blind, near by, and was not seen to leave stands there for up to 10 s.
 
 mod cluster;
@@ -107,7 +107,7 @@ impl MoverTracker {
     }
 
     fn moving(&self) -> impl Iterator<Item = &Track> {
-        self.tracks.iter().filter(|track| track.moves(&self.cells, &self.config))
+        self.tracks.iter().filter(|track| track.is_hidden() || track.moves(&self.cells, &self.config))
     }
 
     fn note_hits(&mut self, map_from_base: Pose2, scan: &Scan) {

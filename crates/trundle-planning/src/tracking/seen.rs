@@ -97,6 +97,11 @@ impl SeenCells {
         self.known(place_of(point)).is_some_and(|seen| seen.free_at > time)
     }
 
+    /// Whether a point was hit after a time.
+    pub(super) fn is_hit_since(&self, point: Vector2, time: f64) -> bool {
+        self.known(place_of(point)).is_some_and(|seen| seen.hit_at > time)
+    }
+
     /// Whether the newest that was seen of a point is that it is free.
     pub(super) fn is_left(&self, point: Vector2) -> bool {
         self.known(place_of(point)).is_some_and(|seen| seen.free_at > seen.hit_at)

@@ -58,8 +58,8 @@ impl Track {
         }
     }
 
-    /// Whether it is to be believed in at `time`: it was seen a moment ago, or went to where the sensor is blind and was not seen to
-    /// leave.
+    /// Whether it is to be believed in at `time`: it was seen a moment ago, or it went, or stood, where the sensor is blind now, and was
+    /// not seen to leave. Of what stands there it is enough that it came: nobody can see whether it goes on.
     pub(super) fn lasts(
         &mut self,
         time: f64,
@@ -68,7 +68,7 @@ impl Track {
         config: &TrackerConfig,
     ) -> bool {
         let unseen = time - self.last_seen();
-        let may_hide = (BLINK..HIDES).contains(&unseen) && self.moves(cells, config);
+        let may_hide = (BLINK..HIDES).contains(&unseen) && self.sightings >= config.sightings;
         self.hidden = may_hide.then(|| self.hides(sensor, cells, config)).flatten();
         unseen <= config.window || self.hidden.is_some()
     }
@@ -76,9 +76,16 @@ impl Track {
     /// The part of its way on that is near the sensor and has not been seen free since, as a disc.
     fn hides(&self, sensor: Vector2, cells: &SeenCells, config: &TrackerConfig) -> Option<(Vector2, f64)> {
         let last = self.last();
-        let steps = (self.velocity.norm() * config.window / SIDE).ceil().min(100.0) as usize;
-        let on =
-            (0..=steps).map(|i| last.at + self.velocity * (config.window * i as f64 / steps.max(1) as f64));
+        let (way, radius) = if self.moves(cells, config) {
+            (self.velocity * config.window, self.radius(config))
+        } else if self.hits.iter().any(|hit| cells.is_hit_since(*hit, last.time)) {
+            // It is in sight, and was there before.
+            return None;
+        } else {
+            (Vector2::zeros(), last.radius)
+        };
+        let steps = (way.norm() / SIDE).ceil().min(100.0) as usize;
+        let on = (0..=steps).map(|i| last.at + way * (i as f64 / steps.max(1) as f64));
         let is_unseen = |at: &Vector2| {
             let range = (at - sensor).norm();
             let has_room = range >= NEAR.0 || *at == last.at;
@@ -87,7 +94,7 @@ impl Track {
         let mut unseen = on.filter(is_unseen);
         let first = unseen.next()?;
         let end = unseen.next_back().unwrap_or(first);
-        Some(((first + end) * 0.5, self.radius(config) + (end - first).norm() / 2.0))
+        Some(((first + end) * 0.5, radius + (end - first).norm() / 2.0))
     }
 
     /// Where its middle should be.
@@ -122,6 +129,11 @@ impl Track {
     pub(super) fn trail(&self, config: &TrackerConfig) -> impl Iterator<Item = (Vector2, f64)> + '_ {
         let radius = self.radius(config);
         self.seen.iter().map(move |sighting| (sighting.at, radius))
+    }
+
+    /// Whether it may stand where nothing can be seen.
+    pub(super) fn is_hidden(&self) -> bool {
+        self.hidden.is_some()
     }
 
     /// Whether it moves: it has left where it was first seen. Of a thing that was put down, other sides come into view: less than

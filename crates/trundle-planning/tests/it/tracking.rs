@@ -163,35 +163,57 @@ fn who_stops_is_soon_none() {
     assert_eq!(left, 0);
 }
 
+/// A camera that is blind nearer than `blind` (m) looks on, ten times a second, at those who walk until `stop` (s).
+fn dim(
+    tracker: &mut MoverTracker,
+    world: &mut World,
+    (from, to, stop): (f64, f64, f64),
+    blind: f64,
+) -> Vec<Mover> {
+    let pose = Pose2::new(1.0, 3.0, 0.0);
+    for k in (from * 10.0).round() as i32..=(to * 10.0).round() as i32 {
+        let time = f64::from(k) * 0.1;
+        let seen = world.scan(pose, time.min(stop), (320, 2.4));
+        let dim = |beam: &Beam| match beam {
+            Beam::Hit { range } if *range < blind => Beam::Unseen,
+            beam => *beam,
+        };
+        let beams = seen.beams().iter().map(dim).collect();
+        let (first, step) = (seen.angle(0), seen.angle_increment());
+        tracker.see(pose, &Scan::new(stamp(time), seen.origin(), first, step, beams).unwrap());
+    }
+    tracker.movers(stamp(to))
+}
+
 #[test]
 fn who_steps_to_where_the_camera_is_blind_stands_there_until_seen_to_leave() {
-    const BLIND: f64 = 0.5;
-    let (mut tracker, pose) = (tracker(), Pose2::new(1.0, 3.0, 0.0));
+    let mut tracker = tracker();
     // At 1.5 s somebody stops before the camera, so near that it sees nothing of them.
-    let (stops, walks) = (1.5, (at(1.82, 4.2), at(0.0, -0.8)));
-    let mut world = World::new(&[walks]);
-    let look = |tracker: &mut MoverTracker, world: &mut World, from: f64, to: f64| {
-        for k in (from * 10.0) as i32..=(to * 10.0) as i32 {
-            let time = f64::from(k) * 0.1;
-            let seen = world.scan(pose, time.min(stops), (320, 2.4));
-            let dim = |beam: &Beam| match beam {
-                Beam::Hit { range } if *range < BLIND => Beam::Unseen,
-                beam => *beam,
-            };
-            let beams = seen.beams().iter().map(dim).collect();
-            let (first, step) = (seen.angle(0), seen.angle_increment());
-            tracker.see(pose, &Scan::new(stamp(time), seen.origin(), first, step, beams).unwrap());
-        }
-        tracker.movers(stamp(to))
-    };
-    look(&mut tracker, &mut world, 0.0, 1.5);
+    let mut world = World::new(&[(at(1.82, 4.2), at(0.0, -0.8))]);
+    dim(&mut tracker, &mut world, (0.0, 1.5, 1.5), 0.5);
     for until in [2.0, 3.5, 9.0] {
-        let movers = look(&mut tracker, &mut world, until - 0.4, until);
+        let movers = dim(&mut tracker, &mut world, (until - 0.4, until, 1.5), 0.5);
         assert!(movers.iter().any(|m| (m.at(0.0) - at(1.82, 3.0)).norm() < 0.4), "{until} s: {movers:?}");
     }
     // Nobody is there any more: seen free, it is free.
     world.people.clear();
-    assert!(look(&mut tracker, &mut world, 9.1, 9.5).is_empty());
+    assert!(dim(&mut tracker, &mut world, (9.1, 9.5, 1.5), 0.5).is_empty());
+}
+
+#[test]
+fn who_stood_where_the_camera_is_blind_now_still_stands_there() {
+    let mut tracker = tracker();
+    let (mut nobody, mut world) = (World::new(&[]), World::new(&[(at(1.8, 3.0), at(0.0, 0.0))]));
+    dim(&mut tracker, &mut nobody, (0.0, 1.0, 0.0), 0.3);
+    assert!(dim(&mut tracker, &mut world, (1.1, 1.8, 0.0), 0.3).is_empty(), "nobody was seen to move");
+    for until in [2.4, 4.0, 9.0] {
+        let movers = dim(&mut tracker, &mut world, (until - 0.4, until, 0.0), 0.9);
+        assert!(movers.iter().any(|m| (m.at(0.0) - at(1.8, 3.0)).norm() < 0.3), "{until} s: {movers:?}");
+        assert!(movers.iter().all(|m| m.at(0.0) == m.at(9.0)), "they stand");
+    }
+    assert!(dim(&mut tracker, &mut world, (12.0, 12.4, 0.0), 0.9).is_empty(), "nobody waits for ever");
+    dim(&mut tracker, &mut nobody, (12.5, 13.0, 0.0), 0.3);
+    assert!(dim(&mut tracker, &mut nobody, (13.1, 13.5, 0.0), 0.3).is_empty());
 }
 
 #[test]
