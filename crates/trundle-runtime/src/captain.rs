@@ -8,7 +8,7 @@ use crate::{
     supervisor::Supervisor,
 };
 use trundle_control::SafetyScan;
-use trundle_core::{Footprint, Invalid, OccupancyGrid, Pose2, PoseEstimate, Scan, Stamp};
+use trundle_core::{Footprint, Invalid, OccupancyGrid, Pose2, PoseEstimate, Scan, Stamp, Vector2};
 use trundle_planning::Mover;
 
 /// Whoever decides: the mission's goals, plans, and the twist towards them.
@@ -79,6 +79,7 @@ pub(crate) struct Around {
     seen: Option<Stamp>,
     unplaced: f64,
     movers: Vec<Mover>,
+    lately: Vec<Vector2>,
     still: Option<OccupancyGrid>,
 }
 
@@ -92,6 +93,7 @@ impl From<&Surroundings<'_>> for Around {
             seen: s.seen,
             unplaced: s.unplaced,
             movers: s.traffic.movers.to_vec(),
+            lately: s.traffic.lately.to_vec(),
             still: s.traffic.still.cloned(),
         }
     }
@@ -115,7 +117,7 @@ impl Around {
             }),
             seen: self.seen,
             unplaced: self.unplaced,
-            traffic: Traffic { movers: &self.movers, still: self.still.as_ref() },
+            traffic: Traffic { movers: &self.movers, lately: &self.lately, still: self.still.as_ref() },
         }
     }
 }

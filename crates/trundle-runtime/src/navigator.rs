@@ -45,6 +45,8 @@ pub(crate) struct Surroundings<'a> {
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Traffic<'a> {
     pub(crate) movers: &'a [Mover],
+    /// Hits of what came near by lately and has not been seen to go, map frame, m.
+    pub(crate) lately: &'a [Vector2],
     /// The map without them; none where nothing moves.
     pub(crate) still: Option<&'a OccupancyGrid>,
 }

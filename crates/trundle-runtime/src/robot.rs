@@ -86,12 +86,16 @@ struct Latest {
     movers: Vec<Mover>,
     /// The map without it; none where nothing moves.
     still: Option<OccupancyGrid>,
+    /// Hits of what came near by lately and has not been seen to go, map frame, m.
+    lately: Vec<Vector2>,
 }
 
 /// Images that show enough and have not been located for so long, s, are of another place than the odometry says.
 const UNPLACED: f64 = 0.3;
 /// A correction by more than this is a jump: what moves is not told from scans on both sides of it, m and rad.
 const JUMP: (f64, f64) = (0.1, 0.1);
+/// What came within so many m lately is minded until it is seen to go: more than a robot needs to brake.
+const NEAR_BY: f64 = 1.5;
 /// So long after the last scan what moved may be anywhere, s.
 const MOVERS_LAST: f64 = 1.0;
 /// After each command at least so many cells of a bent grid are redrawn, about 1.5 ms of a camera's scans; and so much of what is
@@ -200,7 +204,11 @@ impl Robot {
             scan: self.latest.carried_scan(),
             seen: self.latest.eye.seen(),
             unplaced: self.latest.unplaced.map_or(0.0, |since| wheels.stamp - since),
-            traffic: Traffic { movers: &self.latest.movers, still: self.latest.still.as_ref() },
+            traffic: Traffic {
+                movers: &self.latest.movers,
+                lately: &self.latest.lately,
+                still: self.latest.still.as_ref(),
+            },
         };
         match self.captain.take() {
             Some(mut captain) if !self.background.is_for(&captain, &surroundings) => {
@@ -266,6 +274,7 @@ impl Robot {
         if jump.position().norm() > JUMP.0 || jump.theta.abs() > JUMP.1 {
             // What stands seems to have moved.
             self.traffic.forget();
+            self.latest.lately.clear();
             self.latest.forget_movers();
         }
         if correction == Some(Correction::Reanchored) {
@@ -313,6 +322,7 @@ impl Robot {
     /// What moves near by, by the newest scan.
     fn watch_traffic(&mut self, scan: &Scan) {
         if !self.knows_its_place(scan.stamp()) {
+            self.latest.lately.clear();
             return self.latest.forget_movers();
         }
         let Ok(pose) = self.localizer.pose_at(scan.stamp()) else { return };
@@ -320,6 +330,7 @@ impl Robot {
         times.measure(Stage::Traffic, || {
             traffic.see(pose, scan);
             latest.movers = traffic.movers(scan.stamp());
+            latest.lately = traffic.not_gone(pose.position(), NEAR_BY);
             latest.still = (!latest.movers.is_empty()).then(|| traffic.without_movers(self.mapper.grid()));
         });
     }

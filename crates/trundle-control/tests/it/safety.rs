@@ -83,7 +83,7 @@ fn drive(world: &World, mut plant: Plant, command: Twist2, seconds: f64, with_ma
             images.push((world.scan(plant.pose, plant.now), plant.pose));
         }
         let (scan, odom_at_scan) = &images[images.len() - 2];
-        let memory = SafetyMemory { grid: &grid, map_from_base: plant.pose };
+        let memory = SafetyMemory { grid: &grid, lately: &[], map_from_base: plant.pose };
         last = monitor.check(&SafetyInput {
             now: plant.now,
             twist: command,

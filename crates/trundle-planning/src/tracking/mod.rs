@@ -19,7 +19,7 @@ pub use config::TrackerConfig;
 use crate::Mover;
 use cluster::{Cluster, clusters};
 use seen::{SIDE, SeenCells};
-use track::Track;
+use track::{HIDES, Track};
 use trundle_core::{Beam, Cell, CellIndex, Invalid, OccupancyGrid, Pose2, Scan, Stamp, Vector2};
 
 /// Beams are believed to be free up to so far before what they hit, m: pose and range are not exact.
@@ -85,6 +85,12 @@ impl MoverTracker {
             Mover::new(at, velocity, radius + SIDE / 2.0).ok()
         };
         self.moving().filter_map(mover).collect()
+    }
+
+    /// Hits within `reach` m of a place, map frame: of what came there in the last 10 s and has not been seen to go, whether it is
+    /// in sight or where the sensor is blind. A map takes longer to believe in it.
+    pub fn not_gone(&self, near: Vector2, reach: f64) -> Vec<Vector2> {
+        self.cells.not_gone(near, reach, self.time, HIDES)
     }
 
     /// The grid without what moves, and without what it left behind where it has been seen to be free since: a plan among movers

@@ -27,6 +27,20 @@ struct Seen {
     since: f64,
     /// Whether it had been seen free shortly before.
     came: bool,
+    /// Where it was hit last.
+    hit: Vector2,
+}
+
+impl Seen {
+    /// Nothing.
+    fn of(place: Place) -> Self {
+        Self { place, free_at: NEVER, hit_at: NEVER, since: NEVER, came: false, hit: Vector2::zeros() }
+    }
+
+    /// Whether it was hit, and not seen free since.
+    fn is_taken(&self) -> bool {
+        self.hit_at > self.free_at
+    }
 }
 
 /// Cells around the robot: each place has its slot, which it takes over from the one a window away.
@@ -42,8 +56,7 @@ impl SeenCells {
     /// A window that reaches so far from its middle, m. `memory`: how long a place counts as newly occupied, s.
     pub(super) fn new(reach: f64, memory: f64) -> Self {
         let width = ((2.0 * reach / SIDE).ceil() as usize + 2).next_power_of_two();
-        let nothing =
-            Seen { place: (i32::MAX, i32::MAX), free_at: NEVER, hit_at: NEVER, since: NEVER, came: false };
+        let nothing = Seen::of((i32::MAX, i32::MAX));
         Self { slots: vec![nothing; width * width], width: width as i32, memory }
     }
 
@@ -64,7 +77,7 @@ impl SeenCells {
         if is_new {
             (seen.since, seen.came) = (time, time - seen.free_at <= memory);
         }
-        seen.hit_at = time;
+        (seen.hit_at, seen.hit) = (time, point);
     }
 
     /// Whether what was hit at a point came there lately, and nothing stands beside it.
@@ -97,6 +110,20 @@ impl SeenCells {
         self.known(place_of(point)).is_some_and(|seen| seen.free_at > time)
     }
 
+    /// Hits within `reach` m of a point of what came where nothing else stands, not longer ago than `span` s, whose places have not
+    /// been seen free since.
+    pub(super) fn not_gone(&self, point: Vector2, reach: f64, time: f64, span: f64) -> Vec<Vector2> {
+        let is_there = |seen: &&Seen| {
+            seen.came && seen.is_taken() && time - seen.hit_at <= span && (seen.hit - point).norm() <= reach
+        };
+        let stands = |place: Place| self.known(place).is_some_and(|seen| seen.is_taken() && !seen.came);
+        around(place_of(point), (reach / SIDE).ceil() as i32)
+            .filter_map(|place| self.known(place).filter(is_there))
+            .filter(|seen| !around(seen.place, BESIDE).any(stands))
+            .map(|seen| seen.hit)
+            .collect()
+    }
+
     /// Whether a point was hit after a time.
     pub(super) fn is_hit_since(&self, point: Vector2, time: f64) -> bool {
         self.known(place_of(point)).is_some_and(|seen| seen.hit_at > time)
@@ -124,7 +151,7 @@ impl SeenCells {
         let slot = self.slot(place);
         let seen = &mut self.slots[slot];
         if seen.place != place {
-            *seen = Seen { place, free_at: NEVER, hit_at: NEVER, since: NEVER, came: false };
+            *seen = Seen::of(place);
         }
         seen
     }

@@ -21,7 +21,7 @@ pub(super) struct Track {
 }
 
 /// A mover that was not seen to go is believed to stand where nothing can be seen for so long, s.
-const HIDES: f64 = 10.0;
+pub(super) const HIDES: f64 = 10.0;
 /// So long a walker may be missed by scans that see it, s.
 const BLINK: f64 = 0.2;
 /// So near to the sensor that it may be blind there, m, and nearer than where somebody has room, m.

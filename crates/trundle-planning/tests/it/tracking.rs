@@ -196,8 +196,10 @@ fn who_steps_to_where_the_camera_is_blind_stands_there_until_seen_to_leave() {
         assert!(movers.iter().any(|m| (m.at(0.0) - at(1.82, 3.0)).norm() < 0.4), "{until} s: {movers:?}");
     }
     // Nobody is there any more: seen free, it is free.
+    assert!(!tracker.not_gone(at(1.0, 3.0), 2.0).is_empty());
     world.people.clear();
     assert!(dim(&mut tracker, &mut world, (9.1, 9.5, 1.5), 0.5).is_empty());
+    assert!(tracker.not_gone(at(1.0, 3.0), 2.0).is_empty());
 }
 
 #[test]
@@ -205,13 +207,19 @@ fn who_stood_where_the_camera_is_blind_now_still_stands_there() {
     let mut tracker = tracker();
     let (mut nobody, mut world) = (World::new(&[]), World::new(&[(at(1.8, 3.0), at(0.0, 0.0))]));
     dim(&mut tracker, &mut nobody, (0.0, 1.0, 0.0), 0.3);
+    assert!(tracker.not_gone(at(1.0, 3.0), 2.0).is_empty());
     assert!(dim(&mut tracker, &mut world, (1.1, 1.8, 0.0), 0.3).is_empty(), "nobody was seen to move");
+    let is_theirs = |hit: &Vector2| ((hit - at(1.8, 3.0)).norm() - PERSON).abs() < 0.03;
     for until in [2.4, 4.0, 9.0] {
         let movers = dim(&mut tracker, &mut world, (until - 0.4, until, 0.0), 0.9);
         assert!(movers.iter().any(|m| (m.at(0.0) - at(1.8, 3.0)).norm() < 0.3), "{until} s: {movers:?}");
         assert!(movers.iter().all(|m| m.at(0.0) == m.at(9.0)), "they stand");
+        let hits = tracker.not_gone(at(1.0, 3.0), 2.0);
+        assert!(hits.len() > 3 && hits.iter().all(is_theirs), "{until} s: {hits:?}");
+        assert!(tracker.not_gone(at(1.0, 3.0), 0.4).is_empty(), "they are farther away");
     }
     assert!(dim(&mut tracker, &mut world, (12.0, 12.4, 0.0), 0.9).is_empty(), "nobody waits for ever");
+    assert!(tracker.not_gone(at(1.0, 3.0), 2.0).is_empty());
     dim(&mut tracker, &mut nobody, (12.5, 13.0, 0.0), 0.3);
     assert!(dim(&mut tracker, &mut nobody, (13.1, 13.5, 0.0), 0.3).is_empty());
 }
