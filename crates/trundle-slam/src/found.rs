@@ -15,9 +15,11 @@ pub(crate) struct Found {
     pub visible: Vec<(LandmarkId, Projection)>,
     /// Whether the landmark map itself agrees, not only the last frame.
     pub by_map: bool,
-    /// Whether it was found by a keyframe that looks alike.
-    pub relocalised: bool,
-    /// Whether nothing speaks against it but other places that look like it.
+    /// The keyframe that looks alike, if it was found by one.
+    pub recognised: Option<KeyframeId>,
+    /// Whether enough of the view shows that place, if no other one looks like it.
+    pub looks_right: bool,
+    /// Whether that says where in it the camera is, too.
     pub is_certain: bool,
 }
 
@@ -34,7 +36,7 @@ impl Found {
         let (fix, visible) = tracker.by_map(&rough, tracker.followed());
         let by_map = fix.is_sound(tracker.config.min_inliers);
         let fix = if by_map { fix } else { rough };
-        Some(Self { fix, visible, by_map, relocalised: false, is_certain: true })
+        Some(Self { fix, visible, by_map, recognised: None, looks_right: true, is_certain: true })
     }
 
     /// From a keyframe to the map. It takes more landmarks that agree to be certain of it, and some in a good part of the view: a
@@ -51,8 +53,9 @@ impl Found {
         let found = fix.inliers().map(|m| tracker.frame.pixels[m.feature]);
         let is_seen = seen_part(visible.iter().map(|(_, seen)| seen.pixel), found) >= config.recognised_part;
         let sigma = covariance.fixed_view::<3, 3>(0, 0).trace().sqrt();
-        let is_certain = fix.is_sound(config.weak_inliers) && is_seen && sigma <= config.recognised_sigma;
-        Some(Self { fix, visible, by_map: true, relocalised: true, is_certain })
+        let looks_right = fix.is_sound(config.weak_inliers) && is_seen;
+        let is_certain = looks_right && sigma <= config.recognised_sigma;
+        Some(Self { fix, visible, by_map: true, recognised: Some(keyframe), looks_right, is_certain })
     }
 
     /// Points that agree.

@@ -1,7 +1,8 @@
 use crate::found::Found;
 use crate::ids::KeyframeId;
-use crate::places::Place;
+use crate::places::{Place, Worded};
 use crate::tracker::Tracker;
+use std::collections::BTreeSet;
 use trundle_core::Pose3;
 
 /// Two poses nearer to each other than this are one place: m, and rad.
@@ -14,8 +15,25 @@ const RIVAL: f64 = 0.7;
 /// not to be believed by themselves, and yet make others doubtful.
 pub(crate) fn relocalise(tracker: &Tracker) -> Vec<Found> {
     let most = tracker.config.relocalisation_keyframes;
-    let places = tracker.places.places_alike(tracker.map, tracker.words(), |_| true, most);
-    tried(places, most, |id| Found::from_keyframe(tracker, id))
+    let find = |places| tried(places, most, |id| Found::from_keyframe(tracker, id));
+    let mut found = find(tracker.places.places_alike(tracker.map, tracker.words(), |_| true, most));
+    let twins = best(&found).and_then(|i| found[i].recognised).map(|id| twins(tracker, id, most));
+    found.extend(twins.into_iter().flat_map(find));
+    found
+}
+
+/// Places that look like that of a keyframe: of a room and its twin an image may show what looks more like the wrong one, but the two
+/// look like each other.
+fn twins(tracker: &Tracker, keyframe: KeyframeId, most: usize) -> Vec<Place> {
+    let Some(Worded { words, .. }) = tracker.places.worded(tracker.map, keyframe) else { return vec![] };
+    let here: BTreeSet<KeyframeId> =
+        tracker.map.covisible(keyframe, 1).into_iter().map(|(id, _)| id).chain([keyframe]).collect();
+    tracker.places.places_alike(tracker.map, words, |id| !here.contains(&id), most)
+}
+
+/// Which is the certain one with the most points, of equal ones the first.
+fn best<T: Placed>(found: &[T]) -> Option<usize> {
+    (0..found.len()).rev().filter(|i| found[*i].is_certain()).max_by_key(|i| found[*i].points())
 }
 
 /// What is found in `most` tries. A place in which nothing certain was found is tried again by its next keyframe, before others that are as
@@ -49,6 +67,8 @@ fn tried<T: Placed>(
 pub(crate) trait Placed {
     fn pose(&self) -> Pose3;
     fn points(&self) -> usize;
+    /// Whether what should be there is seen there.
+    fn looks_right(&self) -> bool;
     /// Whether they may be believed, if there is no rival.
     fn is_certain(&self) -> bool;
 }
@@ -62,21 +82,24 @@ impl Placed for Found {
         self.inliers()
     }
 
+    fn looks_right(&self) -> bool {
+        self.looks_right
+    }
+
     fn is_certain(&self) -> bool {
         self.is_certain
     }
 }
 
 /// The certain place with the most points, of equal ones the first; `None` when there is none, or when a second one elsewhere has
-/// nearly as many, as rooms that look the same do, or one that is not certain has more.
+/// nearly as many, as rooms that look the same do, or one that does not look quite right has more.
 pub(crate) fn unrivalled<T: Placed>(mut found: Vec<T>) -> Option<T> {
-    found.sort_by_key(|found| (!found.is_certain(), std::cmp::Reverse(found.points())));
-    let mut found = found.into_iter();
-    let best = found.next().filter(T::is_certain)?;
-    let share = |other: &T| if other.is_certain() { RIVAL } else { 1.0 };
+    let i = best(&found)?;
+    let best = &found[i];
+    let share = |other: &T| if other.looks_right() { RIVAL } else { 1.0 };
     let is_near = |other: &T| other.points() as f64 > share(other) * best.points() as f64;
-    let is_rival = |other: T| is_near(&other) && !is_same_place(best.pose(), other.pose());
-    (!found.any(is_rival)).then_some(best)
+    let is_rival = |other: &T| is_near(other) && !is_same_place(best.pose(), other.pose());
+    (!found.iter().any(is_rival)).then(|| found.swap_remove(i))
 }
 
 /// Whether two poses are of one place.
@@ -90,8 +113,17 @@ mod tests {
     use super::*;
     use trundle_core::Vector3;
 
-    /// Where along a line, how many points, and whether it is certain.
-    impl Placed for (f64, usize, bool) {
+    /// How certain a place is.
+    #[derive(Debug, Clone, Copy, PartialEq, PartialOrd)]
+    enum Says {
+        Little,
+        LooksRight,
+        Certain,
+    }
+    use Says::{Certain, Little, LooksRight};
+
+    /// Where along a line, and how many points.
+    impl Placed for (f64, usize, Says) {
         fn pose(&self) -> Pose3 {
             Pose3::new(nalgebra::UnitQuaternion::identity(), Vector3::x() * self.0)
         }
@@ -100,8 +132,12 @@ mod tests {
             self.1
         }
 
+        fn looks_right(&self) -> bool {
+            self.2 >= LooksRight
+        }
+
         fn is_certain(&self) -> bool {
-            self.2
+            self.2 == Certain
         }
     }
 
@@ -120,8 +156,8 @@ mod tests {
             let at = tried(places.clone(), most, |member| {
                 let id = member.index();
                 tries.push(id);
-                let is_certain = certain.contains(&id);
-                (is_certain || doubtful.contains(&id)).then_some((0.0, id, is_certain))
+                let says = if certain.contains(&id) { Certain } else { Little };
+                (says == Certain || doubtful.contains(&id)).then_some((0.0, id, says))
             });
             (tries, at.into_iter().map(|(_, id, _)| id).collect::<Vec<_>>())
         };
@@ -134,9 +170,10 @@ mod tests {
 
     #[test]
     fn the_most_points_win_unless_another_place_has_nearly_as_many() {
-        assert_eq!(unrivalled::<(f64, usize, bool)>(vec![]), None);
+        assert_eq!(unrivalled::<(f64, usize, Says)>(vec![]), None);
         let best = |found: &[(f64, usize)]| {
-            unrivalled(found.iter().map(|(x, points)| (*x, *points, true)).collect()).map(|(x, n, _)| (x, n))
+            unrivalled(found.iter().map(|(x, points)| (*x, *points, Certain)).collect())
+                .map(|(x, n, _)| (x, n))
         };
         assert_eq!(best(&[(0.0, 50), (0.1, 60), (4.0, 40)]), Some((0.1, 60)));
         assert_eq!(best(&[(0.0, 50), (4.0, 60)]), None);
@@ -145,9 +182,10 @@ mod tests {
 
     #[test]
     fn a_doubtful_place_is_a_rival_and_no_winner() {
-        let certain = (0.0, 50, true);
-        assert_eq!(unrivalled(vec![(4.0, 51, false), certain]), None);
-        assert_eq!(unrivalled(vec![(0.1, 90, false), certain, (4.0, 49, false)]), Some(certain));
-        assert_eq!(unrivalled(vec![(0.0, 90, false)]), None);
+        let certain = (0.0, 50, Certain);
+        assert_eq!(unrivalled(vec![(4.0, 51, Little), certain]), None);
+        assert_eq!(unrivalled(vec![(4.0, 40, LooksRight), certain]), None);
+        assert_eq!(unrivalled(vec![(0.1, 90, Little), certain, (4.0, 49, Little)]), Some(certain));
+        assert_eq!(unrivalled(vec![(0.0, 90, LooksRight)]), None);
     }
 }

@@ -49,6 +49,10 @@ impl Placed for Recognised {
         self.points
     }
 
+    fn looks_right(&self) -> bool {
+        true
+    }
+
     fn is_certain(&self) -> bool {
         true
     }

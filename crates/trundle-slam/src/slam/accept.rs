@@ -26,7 +26,7 @@ impl RgbdSlam {
         for inlier in found.fix.inliers() {
             landmarks[inlier.feature] = inlier.landmark;
         }
-        if found.fix.solution.contradicts_prior || found.relocalised {
+        if found.fix.solution.contradicts_prior || found.recognised.is_some() {
             // The wheels slipped, or the robot was carried.
             self.rolled = None;
         }
@@ -50,7 +50,7 @@ impl RgbdSlam {
         let report = TrackReport {
             matches: found.fix.matches.len(),
             inliers: found.inliers(),
-            relocalised: found.relocalised,
+            relocalised: found.recognised.is_some(),
             new_keyframe: kept.is_some(),
             merged: kept.and_then(|kept| kept.merged),
             ..self.report(frame.len())
