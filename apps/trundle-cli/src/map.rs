@@ -22,6 +22,9 @@ pub struct MapArgs {
     /// The motion of an RGB-D folder: the camera's trajectory that `trundle slam` wrote, or another in TUM format.
     #[arg(long, value_name = "FILE")]
     pub poses: Option<PathBuf>,
+    /// These poses drift, as of odometry by images that closes no loops: only their steps are believed.
+    #[arg(long, requires = "poses")]
+    pub poses_drift: bool,
     /// Particles of the filter.
     #[arg(long, value_name = "N", default_value_t = 30, value_parser = clap::value_parser!(u16).range(1..=1000))]
     pub particles: u16,

@@ -5,7 +5,7 @@ mod depth_folder;
 use crate::{failure::Failure, map::MapArgs};
 use std::path::Path;
 use trundle::io::{LaserLog, LaserLogOptions, read_laser_log};
-use trundle::mapping::{MapperConfig, MotionConfig, ParticleConfig};
+use trundle::mapping::{MapperConfig, MotionConfig, ParticleConfig, PosePriorConfig};
 use trundle::runtime::RobotConfig;
 
 /// Reads the log: a folder with `rgb.txt` is a TUM RGB-D folder, else a ROS 2 bag or a CARMEN log.
@@ -42,6 +42,7 @@ pub fn tuned(args: &MapArgs, config: ParticleConfig) -> Result<ParticleConfig, F
     Ok(ParticleConfig {
         map: MapperConfig { max_range: scan.max_range, blind_range, ..config.map },
         motion: if by_wheels { MotionConfig::default() } else { tracked_camera() },
+        pose_prior: (!by_wheels && !args.poses_drift).then(PosePriorConfig::default),
         range_noise: 0.01,
         range_noise_growth: scan.noise_growth,
         ..config

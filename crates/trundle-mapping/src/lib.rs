@@ -39,8 +39,8 @@ mod tiles;
 pub use depth_scan::{DepthScanConfig, DepthScanner, FloorFit, ScanFusion, ScanFusionConfig};
 pub use evidence::{Evidence, GridCell, LogOddsGrid};
 pub use filter::{
-    FilterFileError, Localized, Lost, MapLocalizer, MotionConfig, ParticleConfig, ParticleMapper, Processed,
-    Refusal, ScanUpdate, carry_trajectory,
+    FilterFileError, Localized, Lost, MapLocalizer, MotionConfig, ParticleConfig, ParticleMapper,
+    PosePriorConfig, Processed, Refusal, ScanUpdate, carry_trajectory,
 };
 pub use live_mapper::{LiveMapper, Redrawn};
 pub use mapper::{GridMapper, Insertion};

@@ -1,6 +1,7 @@
 use super::{
     ParticleConfig, ScanShape,
     ancestry::Ancestry,
+    anchor::Anchor,
     bending::Bending,
     bias::OdometryBias,
     chance::Chance,
@@ -50,6 +51,8 @@ pub struct ParticleMapper {
     /// The map that a loop bends, while it is drawn.
     pub(super) bending: Option<Bending>,
     pub(super) gate: Gate,
+    /// map_from_odom of odometry that does not drift, m and rad: its first pose is the map's origin.
+    pub(super) map_from_odom: Option<Pose2>,
     /// The search for the robot in a map that was there before it.
     pub(super) lost: Option<GlobalSearch>,
     /// At which pose of the trajectory this run began.
@@ -103,6 +106,7 @@ impl ParticleMapper {
             closer: Closer::default(),
             bending: None,
             gate: Gate::default(),
+            map_from_odom: None,
             lost: None,
             session: 0,
             usual: USUAL,
@@ -125,10 +129,15 @@ impl ParticleMapper {
             search.push(&self.shape, odom_cells);
             return self.search(scan.stamp());
         }
+        let first = step.first && self.updates == 0;
+        if first {
+            self.map_from_odom = Some(odom_from_base.inverse());
+        }
+        let anchor = self.map_from_odom.and_then(|origin| Anchor::new(&self.config, origin * odom_from_base));
         let jumped = step.jumped;
         let covariance = if jumped { step.covariance } else { self.trust.scaled(&step.covariance) };
         let motion = if jumped { step.motion } else { self.bias.corrected(step.motion) };
-        self.move_and_draw(motion, covariance, step.first && self.updates == 0);
+        self.move_and_draw((motion, covariance), anchor, first);
         let (effective, resampled) = self.weigh();
         self.ancestry.push(
             scan.stamp(),
@@ -140,14 +149,16 @@ impl ParticleMapper {
         if let Some(proposal) = proposal.filter(|p| p.degenerate < 3) {
             self.usual += USUAL_RATE * (proposal.per_point - self.usual);
         }
-        self.learn_odometry(&step, proposal.as_ref());
+        if anchor.is_none() {
+            self.learn_odometry(&step, proposal.as_ref());
+        }
         self.history.push(StoredScan::new(&self.shape), self.step_covariance(proposal.as_ref()));
         if resampled {
             self.resample();
         } else {
             self.parents = (0..self.particles.len() as u16).collect();
         }
-        let bent = self.close_loops(step.motion.position().norm());
+        let bent = if anchor.is_none() { self.close_loops(step.motion.position().norm()) } else { None };
         self.thin_history();
         self.updates += 1;
         ScanUpdate::Processed(Processed {
@@ -206,13 +217,19 @@ impl ParticleMapper {
     }
 
     /// Moves every particle by the proposal, and draws the scan into its map.
-    fn move_and_draw(&mut self, motion: Pose2, covariance: Matrix3<f64>, first: bool) {
+    fn move_and_draw(
+        &mut self,
+        (motion, covariance): (Pose2, Matrix3<f64>),
+        anchor: Option<Anchor>,
+        first: bool,
+    ) {
         let per_metre = 1.0 / self.config.map.resolution;
         let proposer = Proposer {
             config: &self.config,
             likelihood: &self.likelihood,
             shape: &self.shape,
             motion_covariance: scaled(covariance, per_metre),
+            anchor,
             usual: self.usual,
         };
         let motion = Pose2 { x: motion.x * per_metre, y: motion.y * per_metre, ..motion };

@@ -1,6 +1,7 @@
 //! The Rao-Blackwellised particle filter: every particle a trajectory and its own map (METHODS A3).
 
 mod ancestry;
+mod anchor;
 mod bending;
 mod bias;
 mod carry;
@@ -28,7 +29,7 @@ mod store;
 mod trust;
 
 pub use carry::carry_trajectory;
-pub use config::{MotionConfig, ParticleConfig};
+pub use config::{MotionConfig, ParticleConfig, PosePriorConfig};
 pub use locate::{Localized, Lost, MapLocalizer};
 pub use mapper::ParticleMapper;
 pub use persist::FilterFileError;

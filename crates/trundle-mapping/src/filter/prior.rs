@@ -26,6 +26,15 @@ impl Prior {
         Self { guess, covariance, information, log_determinant: -covariance.determinant().ln() }
     }
 
+    /// The product with another Gaussian (cells, rad, map frame), whose error is its own.
+    pub(crate) fn fused(self, pose: Pose2, covariance: &Matrix3<f64>) -> Self {
+        let other = covariance.try_inverse().expect("invariant: a positive covariance");
+        let both = (self.information + other).try_inverse().expect("invariant: a sum of positive matrices");
+        let (guess, turn) = (self.guess, wrap_angle(pose.theta - self.guess.theta));
+        let step = both * other * Vector3::new(pose.x - guess.x, pose.y - guess.y, turn);
+        Self::with(Pose2::new(guess.x + step.x, guess.y + step.y, guess.theta + step.z), both)
+    }
+
     /// Of a robot whose odometry failed: it is somewhere about the way from `before` to `guess`, one sigma `shift` (cells)
     /// and `turn` (rad) off it.
     pub(crate) fn slipped(before: Pose2, guess: Pose2, shift: f64, turn: f64) -> Self {

@@ -1,5 +1,6 @@
 use super::{
     ParticleConfig, ScanShape,
+    anchor::Anchor,
     chance::Chance,
     coarse::{CoarseSearch, SearchPrior},
     directions::Directions,
@@ -25,6 +26,8 @@ pub(crate) struct Proposer<'a> {
     pub(crate) shape: &'a ScanShape,
     /// Covariance of the motion, base frame before it: cells, rad.
     pub(crate) motion_covariance: Matrix3<f64>,
+    /// Where the robot is by odometry that does not drift.
+    pub(crate) anchor: Option<Anchor>,
     /// Mean ln p(z | m, x) of a point in the last scans.
     pub(crate) usual: f64,
 }
@@ -104,7 +107,7 @@ impl Proposer<'_> {
         (before, guess): (Pose2, Pose2),
         chance: &mut Chance,
     ) -> Proposal {
-        let near = self.attempt(map, search, Prior::new(guess, before.theta, &self.motion_covariance));
+        let near = self.attempt(map, search, self.near(before, guess));
         let slip = self.slip(before, guess);
         let rate = self.config.slip_rate.ln();
         if !far.is_empty() && self.needed(&near, &slip).is_some() {
@@ -124,11 +127,19 @@ impl Proposer<'_> {
         search: &mut CoarseSearch,
         (before, guess): (Pose2, Pose2),
     ) -> Vec<Pose2> {
-        let near = self.attempt(map, search, Prior::new(guess, before.theta, &self.motion_covariance));
+        let near = self.attempt(map, search, self.near(before, guess));
         let slip = self.slip(before, guess);
         let Some(needed) = self.needed(&near, &slip) else { return Vec::new() };
         let back = before.inverse();
         self.search_far(map, &slip, needed).into_iter().map(|place| back * place).collect()
+    }
+
+    fn near(&self, before: Pose2, guess: Pose2) -> Prior {
+        let prior = Prior::new(guess, before.theta, &self.motion_covariance);
+        match &self.anchor {
+            Some(anchor) => prior.fused(anchor.pose, &anchor.covariance),
+            None => prior,
+        }
     }
 
     fn slip(&self, before: Pose2, guess: Pose2) -> Prior {

@@ -1,7 +1,9 @@
 use crate::flat_room::FlatRoom;
 use std::f64::consts::{FRAC_PI_2, PI};
 use trundle_core::{Beam, Cell, Pose2, Scan, Stamp, Vector2, wrap_angle};
-use trundle_mapping::{ParticleConfig, ParticleMapper, Processed, Refusal, ScanUpdate, carry_trajectory};
+use trundle_mapping::{
+    ParticleConfig, ParticleMapper, PosePriorConfig, Processed, Refusal, ScanUpdate, carry_trajectory,
+};
 
 /// In [-0.5, 0.5), from a hash.
 fn noise(i: usize) -> f64 {
@@ -129,6 +131,32 @@ fn a_lap_of_corridors_ends_where_it_began() {
         let end = found.last().unwrap().1.distance(&(poses[0].inverse() * *poses.last().unwrap()));
         assert!(end < 0.25, "seed {seed}: {end} m off at the end");
     }
+}
+
+/// Once around, each pose up to 1 cm off for itself: as the poses of a SLAM that has closed its loops are.
+#[test]
+fn poses_that_do_not_drift_are_believed_as_poses() {
+    let (room, poses) = (ring(), lap());
+    let shake = |i: usize| {
+        Pose2::new(
+            0.02 * noise(7 * i),
+            0.02 * noise(7 * i + 1),
+            if i == 0 { 0.0 } else { 0.004 * noise(7 * i + 2) },
+        )
+    };
+    let told: Vec<Pose2> = poses.iter().enumerate().map(|(i, pose)| *pose * shake(i)).collect();
+    let worst = |pose_prior: Option<PosePriorConfig>| {
+        let (mapper, _) = run(&room, &poses, &told, ParticleConfig { pose_prior, ..config(10) }, 1);
+        let mut worst = 0.0_f64;
+        for (stamp, pose) in mapper.trajectory() {
+            let i = ((stamp - Stamp::from_nanos(1_000_000_000)) / 0.2).round() as usize;
+            worst = worst.max(pose.distance(&(told[0].inverse() * poses[i])));
+        }
+        worst
+    };
+    let (believed, dead_reckoned) = (worst(Some(PosePriorConfig::default())), worst(None));
+    assert!(believed < 0.04, "{believed} m off at worst");
+    assert!(dead_reckoned > 2.0 * believed, "{dead_reckoned} m off by the steps alone");
 }
 
 #[test]

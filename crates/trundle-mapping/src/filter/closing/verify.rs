@@ -94,6 +94,7 @@ impl Finder<'_> {
             likelihood: self.likelihood,
             shape: self.cloud,
             motion_covariance: Matrix3::identity(),
+            anchor: None,
             usual: 0.0,
         };
         let window = self.window(map, start);

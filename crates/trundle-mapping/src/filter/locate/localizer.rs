@@ -190,6 +190,7 @@ impl MapLocalizer {
             likelihood: &self.likelihood,
             shape: &self.shape,
             motion_covariance: scaled(covariance, per_metre),
+            anchor: None,
             usual: self.usual,
         };
         let motion = Pose2 { x: motion.x * per_metre, y: motion.y * per_metre, ..motion };

@@ -18,6 +18,7 @@ impl ParticleMapper {
         self.finish();
         self.lost = Some(GlobalSearch::default());
         self.gate = Gate::default();
+        self.map_from_odom = None;
         self.session = self.history.scans.len();
     }
 
