@@ -265,6 +265,7 @@ impl Robot {
         self.latest.unplaced = unplaced;
         if is_carried_away {
             self.localizer.lose_place();
+            self.forget_traffic();
         }
         let (times, localizer) = (&mut self.times, &mut self.localizer);
         let before = localizer.estimate().pose;
@@ -272,10 +273,7 @@ impl Robot {
             times.measure(Stage::Localization, || correct_by_sight(localizer, &track, bent.is_some()));
         let jump = before.inverse() * localizer.estimate().pose;
         if jump.position().norm() > JUMP.0 || jump.theta.abs() > JUMP.1 {
-            // What stands seems to have moved.
-            self.traffic.forget();
-            self.latest.lately.clear();
-            self.latest.forget_movers();
+            self.forget_traffic();
         }
         if correction == Some(Correction::Reanchored) {
             // Scans drawn so far stay where they are: their visual poses are in a frame that has moved.
@@ -303,6 +301,13 @@ impl Robot {
         report.track = Some(track);
     }
 
+    /// What stands seems to have moved.
+    fn forget_traffic(&mut self) {
+        self.traffic.forget();
+        self.latest.lately.clear();
+        self.latest.forget_movers();
+    }
+
     /// A scan: at the map's rate it corrects the estimate and enters the map; safety watches each. Whether it was drawn.
     fn see(&mut self, scan: Scan) -> bool {
         let is_due = self.map_due.due(scan.stamp()) && self.knows_its_place(scan.stamp());
@@ -321,16 +326,19 @@ impl Robot {
 
     /// What moves near by, by the newest scan.
     fn watch_traffic(&mut self, scan: &Scan) {
-        if !self.knows_its_place(scan.stamp()) {
-            self.latest.lately.clear();
+        let now = scan.stamp();
+        if !self.knows_its_place(now) {
+            // What came lately is where the map is, and expires.
+            let here = self.localizer.estimate().pose.position();
+            self.latest.lately = self.traffic.not_gone(now, here, NEAR_BY);
             return self.latest.forget_movers();
         }
-        let Ok(pose) = self.localizer.pose_at(scan.stamp()) else { return };
+        let Ok(pose) = self.localizer.pose_at(now) else { return };
         let (times, traffic, latest) = (&mut self.times, &mut self.traffic, &mut self.latest);
         times.measure(Stage::Traffic, || {
             traffic.see(pose, scan);
-            latest.movers = traffic.movers(scan.stamp());
-            latest.lately = traffic.not_gone(pose.position(), NEAR_BY);
+            latest.movers = traffic.movers(now);
+            latest.lately = traffic.not_gone(now, pose.position(), NEAR_BY);
             latest.still = (!latest.movers.is_empty()).then(|| traffic.without_movers(self.mapper.grid()));
         });
     }

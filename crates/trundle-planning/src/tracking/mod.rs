@@ -52,8 +52,12 @@ impl MoverTracker {
     }
 
     /// Takes in a scan, made where the base was at `map_from_base`. One that is not later than the last one is ignored, and so
-    /// is one from nowhere (NaN).
+    /// is one from nowhere (NaN). One that is 10 s older says that the clock was set back: all is forgotten.
     pub fn see(&mut self, map_from_base: Pose2, scan: &Scan) {
+        if self.seconds(scan.stamp()) < self.time - HIDES {
+            self.forget();
+            (self.begin, self.time) = (None, f64::NEG_INFINITY);
+        }
         let time = scan.stamp() - *self.begin.get_or_insert(scan.stamp());
         let is_somewhere =
             [map_from_base.x, map_from_base.y, map_from_base.theta].iter().all(|n| n.abs() < 1e6);
@@ -77,9 +81,14 @@ impl MoverTracker {
         self.tracks.clear();
     }
 
+    /// Seconds since the first scan.
+    fn seconds(&self, stamp: Stamp) -> f64 {
+        self.begin.map_or(0.0, |begin| stamp - begin)
+    }
+
     /// What moves, at its places at `now`: not long after the last scan.
     pub fn movers(&self, now: Stamp) -> Vec<Mover> {
-        let now = self.begin.map_or(0.0, |begin| now - begin);
+        let now = self.seconds(now);
         let mover = |track: &Track| {
             let (at, velocity, radius) = track.mover(now, &self.config);
             Mover::new(at, velocity, radius + SIDE / 2.0).ok()
@@ -87,10 +96,11 @@ impl MoverTracker {
         self.moving().filter_map(mover).collect()
     }
 
-    /// Hits within `reach` m of a place, map frame: of what came there in the last 10 s and has not been seen to go, whether it is
-    /// in sight or where the sensor is blind. A map takes longer to believe in it.
-    pub fn not_gone(&self, near: Vector2, reach: f64) -> Vec<Vector2> {
-        self.cells.not_gone(near, reach, self.time, HIDES)
+    /// Hits within `reach` m of a place, map frame, and of the reach of the scans: of what came while it was watched, was last seen there
+    /// at most 10 s before `now`, and has not been seen to go, whether it is in sight or where the sensor is blind. A map takes longer
+    /// to believe in it.
+    pub fn not_gone(&self, now: Stamp, near: Vector2, reach: f64) -> Vec<Vector2> {
+        self.cells.not_gone(near, reach.min(self.config.reach), self.seconds(now) - HIDES)
     }
 
     /// The grid without what moves, and without what it left behind where it has been seen to be free since: a plan among movers
@@ -178,7 +188,7 @@ impl MoverTracker {
         let mut pairs = Vec::new();
         for (t, track) in self.tracks.iter().enumerate() {
             for (c, cluster) in clusters.iter().enumerate() {
-                let off = (track.expected(time) - cluster.middle).norm();
+                let off = track.gap(time, cluster.middle);
                 if off <= config.gate {
                     pairs.push((off, t, c));
                 }

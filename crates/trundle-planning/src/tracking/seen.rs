@@ -110,16 +110,17 @@ impl SeenCells {
         self.known(place_of(point)).is_some_and(|seen| seen.free_at > time)
     }
 
-    /// Hits within `reach` m of a point of what came where nothing else stands, not longer ago than `span` s, whose places have not
-    /// been seen free since.
-    pub(super) fn not_gone(&self, point: Vector2, reach: f64, time: f64, span: f64) -> Vec<Vector2> {
-        let is_there = |seen: &&Seen| {
-            seen.came && seen.is_taken() && time - seen.hit_at <= span && (seen.hit - point).norm() <= reach
-        };
+    /// Hits within `reach` m of a point since a time, of what came where nothing else stands and whose places have not been seen free
+    /// since. One alone is noise.
+    pub(super) fn not_gone(&self, point: Vector2, reach: f64, since: f64) -> Vec<Vector2> {
+        let is_there = |seen: &&Seen| seen.came && seen.is_taken() && seen.hit_at >= since;
+        let there = |place: Place| self.known(place).filter(is_there);
         let stands = |place: Place| self.known(place).is_some_and(|seen| seen.is_taken() && !seen.came);
         around(place_of(point), (reach / SIDE).ceil() as i32)
-            .filter_map(|place| self.known(place).filter(is_there))
+            .filter_map(there)
+            .filter(|seen| (seen.hit - point).norm() <= reach)
             .filter(|seen| !around(seen.place, BESIDE).any(stands))
+            .filter(|seen| around(seen.place, BESIDE).filter_map(there).count() > 1)
             .map(|seen| seen.hit)
             .collect()
     }

@@ -24,7 +24,7 @@ pub(super) struct Track {
 pub(super) const HIDES: f64 = 10.0;
 /// So long a walker may be missed by scans that see it, s.
 const BLINK: f64 = 0.2;
-/// So near to the sensor that it may be blind there, m, and nearer than where somebody has room, m.
+/// Nearer to the sensor than this nobody has room, m, and farther than this it is not blind, m.
 const NEAR: (f64, f64) = (0.35, 0.8);
 
 /// Where something was, and how large it looked.
@@ -78,8 +78,10 @@ impl Track {
         let last = self.last();
         let (way, radius) = if self.moves(cells, config) {
             (self.velocity * config.window, self.radius(config))
-        } else if self.hits.iter().any(|hit| cells.is_hit_since(*hit, last.time)) {
-            // It is in sight, and was there before.
+        } else if 2 * self.hits.iter().filter(|hit| cells.is_hit_since(**hit, last.time)).count()
+            > self.hits.len()
+        {
+            // It is in sight, and was there before: more than an edge of it.
             return None;
         } else {
             (Vector2::zeros(), last.radius)
@@ -95,6 +97,14 @@ impl Track {
         let first = unseen.next()?;
         let end = unseen.next_back().unwrap_or(first);
         Some(((first + end) * 0.5, radius + (end - first).norm() / 2.0))
+    }
+
+    /// How far from where it should be a cluster's middle is, m; of what is hidden, from the disc that it may stand in.
+    pub(super) fn gap(&self, time: f64, middle: Vector2) -> f64 {
+        match self.hidden {
+            Some((at, radius)) => ((middle - at).norm() - radius).max(0.0),
+            None => (self.expected(time) - middle).norm(),
+        }
     }
 
     /// Where its middle should be.

@@ -185,21 +185,38 @@ fn dim(
     tracker.movers(stamp(to))
 }
 
+/// What came lately within 2 m.
+fn lately(tracker: &MoverTracker, now: f64) -> Vec<Vector2> {
+    tracker.not_gone(stamp(now), at(1.0, 3.0), 2.0)
+}
+
 #[test]
 fn who_steps_to_where_the_camera_is_blind_stands_there_until_seen_to_leave() {
     let mut tracker = tracker();
-    // At 1.5 s somebody stops before the camera, so near that it sees nothing of them.
-    let mut world = World::new(&[(at(1.82, 4.2), at(0.0, -0.8))]);
+    // At 1.5 s somebody stops before the camera, so near that it sees nothing of them, 0.4 m.
+    let mut world = World::new(&[(at(1.5, 4.2), at(0.0, -0.8))]);
     dim(&mut tracker, &mut world, (0.0, 1.5, 1.5), 0.5);
-    for until in [2.0, 3.5, 9.0] {
-        let movers = dim(&mut tracker, &mut world, (until - 0.4, until, 1.5), 0.5);
-        assert!(movers.iter().any(|m| (m.at(0.0) - at(1.82, 3.0)).norm() < 0.4), "{until} s: {movers:?}");
+    for (from, until) in [(1.6, 2.0), (2.1, 3.5), (3.6, 9.0)] {
+        let movers = dim(&mut tracker, &mut world, (from, until, 1.5), 0.5);
+        assert!(movers.iter().any(|m| (m.at(0.0) - at(1.5, 3.0)).norm() < 0.4), "{until} s: {movers:?}");
     }
     // Nobody is there any more: seen free, it is free.
-    assert!(!tracker.not_gone(at(1.0, 3.0), 2.0).is_empty());
+    assert!(!lately(&tracker, 9.0).is_empty());
     world.people.clear();
     assert!(dim(&mut tracker, &mut world, (9.1, 9.5, 1.5), 0.5).is_empty());
-    assert!(tracker.not_gone(at(1.0, 3.0), 2.0).is_empty());
+    assert!(lately(&tracker, 9.5).is_empty());
+}
+
+#[test]
+fn of_whom_an_edge_is_seen_on_stands_there_for_safety() {
+    let (mut tracker, mut world) = (tracker(), World::new(&[(at(1.82, 4.2), at(0.0, -0.8))]));
+    for k in 0..75 {
+        let now = 0.1 * f64::from(k);
+        dim(&mut tracker, &mut world, (now, now, 1.5), 0.5);
+        let they = at(1.82, 4.2 - 0.8 * now.min(1.5));
+        let near = lately(&tracker, now).iter().filter(|hit| (**hit - they).norm() < PERSON + 0.05).count();
+        assert!(near > 3 || now < 1.0, "{now} s: {near} hits");
+    }
 }
 
 #[test]
@@ -207,21 +224,38 @@ fn who_stood_where_the_camera_is_blind_now_still_stands_there() {
     let mut tracker = tracker();
     let (mut nobody, mut world) = (World::new(&[]), World::new(&[(at(1.8, 3.0), at(0.0, 0.0))]));
     dim(&mut tracker, &mut nobody, (0.0, 1.0, 0.0), 0.3);
-    assert!(tracker.not_gone(at(1.0, 3.0), 2.0).is_empty());
+    assert!(lately(&tracker, 1.0).is_empty());
     assert!(dim(&mut tracker, &mut world, (1.1, 1.8, 0.0), 0.3).is_empty(), "nobody was seen to move");
     let is_theirs = |hit: &Vector2| ((hit - at(1.8, 3.0)).norm() - PERSON).abs() < 0.03;
     for until in [2.4, 4.0, 9.0] {
         let movers = dim(&mut tracker, &mut world, (until - 0.4, until, 0.0), 0.9);
         assert!(movers.iter().any(|m| (m.at(0.0) - at(1.8, 3.0)).norm() < 0.3), "{until} s: {movers:?}");
         assert!(movers.iter().all(|m| m.at(0.0) == m.at(9.0)), "they stand");
-        let hits = tracker.not_gone(at(1.0, 3.0), 2.0);
+        let hits = lately(&tracker, until);
         assert!(hits.len() > 3 && hits.iter().all(is_theirs), "{until} s: {hits:?}");
-        assert!(tracker.not_gone(at(1.0, 3.0), 0.4).is_empty(), "they are farther away");
+        assert!(tracker.not_gone(stamp(until), at(1.0, 3.0), 0.4).is_empty(), "they are farther away");
     }
     assert!(dim(&mut tracker, &mut world, (12.0, 12.4, 0.0), 0.9).is_empty(), "nobody waits for ever");
-    assert!(tracker.not_gone(at(1.0, 3.0), 2.0).is_empty());
+    assert!(lately(&tracker, 12.4).is_empty());
     dim(&mut tracker, &mut nobody, (12.5, 13.0, 0.0), 0.3);
     assert!(dim(&mut tracker, &mut nobody, (13.1, 13.5, 0.0), 0.3).is_empty());
+}
+
+#[test]
+fn what_came_is_not_kept_when_scans_end_or_the_clock_is_set_back() {
+    let (mut tracker, mut nobody) = (tracker(), World::new(&[]));
+    let mut world = World::new(&[(at(1.8, 3.0), at(0.0, 0.0))]);
+    dim(&mut tracker, &mut nobody, (100.0, 101.0, 0.0), 0.3);
+    dim(&mut tracker, &mut world, (101.1, 101.8, 0.0), 0.3);
+    let count = |tracker: &MoverTracker, now: f64| lately(tracker, now).len();
+    assert!(count(&tracker, 101.8) > 3 && count(&tracker, 111.0) == count(&tracker, 101.8));
+    assert_eq!(count(&tracker, 112.0), 0, "no scan came for 10 s");
+    dim(&mut tracker, &mut nobody, (0.0, 1.0, 0.0), 0.3);
+    assert_eq!(count(&tracker, 1.0), 0, "the clock was set back");
+    dim(&mut tracker, &mut world, (1.1, 1.8, 0.0), 0.3);
+    assert!(count(&tracker, 1.8) > 3);
+    assert!(tracker.not_gone(stamp(1.8), at(f64::NAN, 3.0), 2.0).is_empty());
+    assert!(tracker.not_gone(stamp(1.8), at(1.0, 3.0), f64::INFINITY).len() > 3);
 }
 
 #[test]

@@ -40,13 +40,12 @@ impl Navigator {
         }
     }
 
-    /// Whether the rest of the trajectory is still free on the newest map, and of what moves.
+    /// Whether the rest of the trajectory is still free on the newest map, shows what it leads onto, and meets nothing that moves.
     fn plan_holds(&self, s: &Surroundings<'_>) -> bool {
         match (&self.plan, self.follower.reference()) {
             (Some(plan), Some(reference)) => {
-                let is_free = self.planner.still_free(s.floor(), &plan.trajectory, reference.time).is_ok();
                 let meets = || self.planner.meets(&plan.trajectory, reference.time, s.traffic.movers);
-                is_free && meets().is_none()
+                self.is_still_good(&plan.trajectory, reference.time, s) && meets().is_none()
             }
             (Some(_), None) => true,
             (None, _) => false,

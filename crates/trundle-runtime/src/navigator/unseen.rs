@@ -1,7 +1,7 @@
 //! Ways that show the camera what they lead onto before the robot is too near to see it.
 
 use super::{Navigator, Surroundings, view::unknown_about};
-use trundle_core::{Cell, CellIndex, OccupancyGrid, Pose2, TrajectoryPoint, Twist2, Vector2};
+use trundle_core::{Cell, CellIndex, OccupancyGrid, Pose2, Trajectory, TrajectoryPoint, Twist2, Vector2};
 use trundle_planning::{Plan, PlanResult};
 
 /// What the robot did about floor that was never seen, on the way to the goal of now.
@@ -133,6 +133,12 @@ impl Navigator {
     /// Where a way first leads onto what the camera will not have seen.
     pub(super) fn first_unseen(&self, way: &[TrajectoryPoint], floor: &OccupancyGrid) -> Option<Vector2> {
         self.view?.first_unseen(way, floor, self.radius, &self.unseen)
+    }
+
+    /// Whether the rest of a way, from `time` on (s of the way), is free on the newest map, and what it leads onto was seen or will be.
+    pub(super) fn is_still_good(&self, way: &Trajectory, time: f64, s: &Surroundings<'_>) -> bool {
+        let rest = &way.points()[way.points().partition_point(|point| point.time < time)..];
+        self.planner.still_free(s.floor(), way, time).is_ok() && self.first_unseen(rest, s.floor()).is_none()
     }
 
     /// The floor with no way over what is unknown about these places, but for what is under the ends of the way; none without places.

@@ -132,9 +132,7 @@ impl Navigator {
         let (Vantage::Going(_, way), Some(reference)) = (&self.vantage, self.follower.reference()) else {
             return;
         };
-        let rest = &way.points()[way.points().partition_point(|point| point.time < reference.time)..];
-        let is_free = self.planner.still_free(s.floor(), way, reference.time).is_ok();
-        if !is_free || self.first_unseen(rest, s.floor()).is_some() {
+        if !self.is_still_good(way, reference.time, s) {
             self.look_from_here(s.now);
         }
     }
