@@ -200,17 +200,16 @@ impl PoseProblem<'_> {
         let weights = self.weights(pose, &inliers);
         let (information, _) = self.normal_equations(pose, &weights);
         let camera_from_world = pose.inverse();
-        let (mut chi2, mut freedoms, mut inlier_count) = (0.0, -6.0, 0);
+        let (mut chi2, mut freedoms) = (0.0, -6.0);
         for ((point, seen), _) in self.counting(&weights) {
             chi2 += seen.chi2(self.camera, camera_from_world.transform(*point));
             freedoms += if seen.depth.is_some() { 3.0 } else { 2.0 };
-            inlier_count += 1;
         }
         let variance_factor = if freedoms > 0.0 { chi2 / freedoms } else { 1.0 };
         PoseSolution {
             world_from_camera: pose,
+            inlier_count: inliers.iter().filter(|inlier| **inlier).count(),
             inliers,
-            inlier_count,
             contradicts_prior: false,
             covariance: inverse(information).map(|inverse| inverse * variance_factor.max(1.0)),
         }

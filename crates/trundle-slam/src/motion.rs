@@ -130,6 +130,9 @@ impl Belief {
     }
 }
 
+/// Faster than this no camera moves that nobody tells about: m/s, a brisk walk, and rad/s, 200 deg.
+pub(crate) const FASTEST_CAMERA: (f64, f64) = (2.0, 3.5);
+
 /// Whether something can have moved so in so many seconds: by `least` (m and rad) however short they are, and by no more than
 /// `fastest` (m/s and rad/s) besides.
 pub(crate) fn is_within(motion: Pose3, least: f64, fastest: (f64, f64), seconds: f64) -> bool {

@@ -15,7 +15,10 @@ const RIVAL: f64 = 0.7;
 /// not to be believed by themselves, and yet make others doubtful.
 pub(crate) fn relocalise(tracker: &Tracker) -> Vec<Found> {
     let most = tracker.config.relocalisation_keyframes;
-    let find = |places| tried(places, most, |id| Found::from_keyframe(tracker, id));
+    let mut asked = BTreeSet::new();
+    let mut find = |places| {
+        tried(places, most, |id| asked.insert(id).then(|| Found::from_keyframe(tracker, id)).flatten())
+    };
     let mut found = find(tracker.places.places_alike(tracker.map, tracker.words(), |_| true, most));
     let twins = best(&found).and_then(|i| found[i].recognised).map(|id| twins(tracker, id, most));
     found.extend(twins.into_iter().flat_map(find));

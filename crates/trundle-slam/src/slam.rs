@@ -1,4 +1,5 @@
 mod accept;
+mod doubts;
 mod graph;
 mod locate;
 mod look_back;
@@ -25,6 +26,7 @@ use crate::report::{MapId, Mode, SeenFeature, TrackReport, Tracking};
 use crate::rolled::Rolled;
 use crate::sensor::Sensor;
 use crate::trajectory::Anchored;
+use doubts::Doubts;
 use std::collections::VecDeque;
 use std::sync::Arc;
 use trundle_core::{
@@ -56,8 +58,10 @@ pub struct RgbdSlam {
     last: Option<Located>,
     /// Frames since then.
     misses: usize,
-    /// A place that looks right, and is not believed yet.
-    doubt: Option<Claim<MapId>>,
+    /// The last frame, if it was not located.
+    missed: Option<Frame>,
+    /// Places that look right, and are not believed yet.
+    doubts: Doubts,
     /// Another map that the last keyframe recognised.
     recognition: Option<Claim<MapId>>,
     /// Tracked poses against the wheels.
@@ -121,7 +125,8 @@ impl RgbdSlam {
             blind: false,
             last: None,
             misses: 0,
-            doubt: None,
+            missed: None,
+            doubts: Doubts::default(),
             recognition: None,
             contradiction: Contradiction::default(),
             surprise: None,
@@ -158,7 +163,7 @@ impl RgbdSlam {
     pub fn kidnapped(&mut self) {
         let stamp = self.belief.stamp;
         self.belief = Belief { stamp, ..Belief::anywhere() };
-        (self.placed, self.last, self.misses, self.doubt) = (false, None, 0, None);
+        (self.placed, self.last, self.misses, self.doubts) = (false, None, 0, Doubts::default());
         self.forget_the_way();
     }
 

@@ -135,7 +135,7 @@ impl LoopCloser<'_> {
             return None;
         }
         *surprise = said_before;
-        let times = Claim::note(surprise, (), found.visual_from_camera, here);
+        let times = Claim::note(surprise, (), (found.visual_from_camera, here), 0.0);
         (times >= self.config.consistency).then_some(found)
     }
 }

@@ -1,5 +1,5 @@
 use super::locate::Sighting;
-use super::{Located, RgbdSlam};
+use super::{Located, RgbdSlam, doubts::Doubts};
 use crate::closing::Search;
 use crate::found::Found;
 use crate::frame::Frame;
@@ -45,7 +45,7 @@ impl RgbdSlam {
         let tracking = if enough { Tracking::Ok } else { Tracking::Weak };
         let is_one_frame = kept.as_ref().is_none_or(|kept| kept.merged.is_none());
         self.belief.located(frame.stamp, pose, covariance, before.filter(|_| is_one_frame));
-        (self.misses, self.placed, self.blind, self.doubt) = (0, true, false, None);
+        (self.misses, self.placed, self.blind, self.doubts) = (0, true, false, Doubts::default());
         let anchored = self.remember(frame.stamp, Some(reference), tracking);
         let report = TrackReport {
             matches: found.fix.matches.len(),
@@ -56,6 +56,7 @@ impl RgbdSlam {
             ..self.report(frame.len())
         };
         self.last = Some(Located { frame, landmarks, anchored });
+        self.missed = None;
         report
     }
 

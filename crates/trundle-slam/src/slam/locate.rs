@@ -1,10 +1,9 @@
-use super::RgbdSlam;
-use crate::claim::Claim;
+use super::{RgbdSlam, doubts::Doubts};
 use crate::component::Component;
 use crate::contradiction::Contradiction;
 use crate::found::Found;
 use crate::frame::Frame;
-use crate::motion::is_within;
+use crate::motion::{FASTEST_CAMERA, is_within};
 use crate::places::Words;
 use crate::relocalisation::{Placed, relocalise, unrivalled};
 use crate::report::MapId;
@@ -17,8 +16,6 @@ use trundle_core::{DepthImage, Pose3, Stamp};
 const MOST_CHI2: f64 = 37.0;
 /// Standard deviation of a belief whatever it says: m and rad.
 const LEAST_SIGMA: f64 = 0.1;
-/// Faster than this no camera moves that nobody tells about: m/s, a brisk walk, and rad/s, 200 deg.
-const FASTEST: (f64, f64) = (2.0, 3.5);
 /// What it may be off besides: m and rad.
 const LEAST_REACH: f64 = 0.3;
 /// So many frames must say the same of where a camera is that nobody told about: one showed a twin room in 0.7 of its view.
@@ -61,7 +58,7 @@ impl RgbdSlam {
         });
         let is_believed = |found: &Found| self.may_be(reach, predicted, found.pose());
         if let Some(found) = tracked.filter(is_believed) {
-            self.doubt = None;
+            self.doubts = Doubts::default();
             let solution = &found.fix.solution;
             let is_believed =
                 self.contradiction.believes(frame.stamp, solution.contradicts_prior, solution.inlier_count);
@@ -69,7 +66,8 @@ impl RgbdSlam {
         }
         let (map, recognised) = (self.active.id, relocalise(&here));
         self.contradiction = Contradiction::default();
-        if let Some(found) = self.believable(map, recognised, predicted, reach) {
+        let camera = (frame.stamp, predicted, prior.is_some());
+        if let Some(found) = self.believable(map, recognised, camera, reach) {
             return Some(Sighting { map, found });
         }
         let other = self
@@ -77,7 +75,7 @@ impl RgbdSlam {
             .get(self.frames as usize % self.resting.len().max(1))
             .filter(|_| reach != Reach::Told)?;
         let (map, recognised) = (other.id, relocalise(&self.tracker(other, frame, depth, &words)));
-        let found = self.believable(map, recognised, predicted, Reach::Anywhere)?;
+        let found = self.believable(map, recognised, camera, Reach::Anywhere)?;
         Some(Sighting { map, found })
     }
 
@@ -120,19 +118,20 @@ impl RgbdSlam {
     fn believable(
         &mut self,
         map: MapId,
-        recognised: Vec<Found>,
-        predicted: Pose3,
+        mut recognised: Vec<Found>,
+        (now, predicted, is_told): (Stamp, Pose3, bool),
         reach: Reach,
     ) -> Option<Found> {
         let is_near = |found: &Found| self.may_be(reach, predicted, found.pose());
-        let (near, far): (Vec<Found>, Vec<Found>) = recognised.into_iter().partition(is_near);
-        let (found, needed) = match reach {
-            _ if !near.iter().any(Placed::is_certain) => (far, self.config.tracking.patience),
-            Reach::Told => (near, 1),
-            Reach::Anywhere | Reach::For(_) => (near, SAID),
+        let needed = if !recognised.iter().any(|found| found.is_certain && is_near(found)) {
+            // What is near and doubtful makes what is far off doubtful too.
+            self.config.tracking.patience
+        } else {
+            recognised.retain(is_near);
+            if reach == Reach::Told { 1 } else { SAID }
         };
-        let found = unrivalled(found)?;
-        let times = Claim::note(&mut self.doubt, map, found.pose(), predicted);
+        let found = unrivalled(recognised)?;
+        let times = self.doubts.note(map, now, (found.pose(), predicted), is_told);
         (times >= needed).then_some(found)
     }
 
@@ -142,7 +141,7 @@ impl RgbdSlam {
         match reach {
             Reach::Anywhere => true,
             Reach::Told => self.is_uncertain_by(offset),
-            Reach::For(elapsed) => is_within(offset, LEAST_REACH, FASTEST, elapsed),
+            Reach::For(elapsed) => is_within(offset, LEAST_REACH, FASTEST_CAMERA, elapsed),
         }
     }
 

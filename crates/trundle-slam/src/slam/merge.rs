@@ -22,8 +22,8 @@ impl RgbdSlam {
         let here = self.active.map.keyframe(keyframe).visual_from_camera;
         let other_from_active = found.visual_from_camera * here.inverse();
         self.recognition = said_before;
-        let times =
-            Claim::note(&mut self.recognition, self.resting[other].id, found.visual_from_camera, here);
+        let poses = (found.visual_from_camera, here);
+        let times = Claim::note(&mut self.recognition, self.resting[other].id, poses, 0.0);
         if times < self.config.loops.consistency {
             return None;
         }

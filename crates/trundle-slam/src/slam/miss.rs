@@ -1,4 +1,4 @@
-use super::{Located, RgbdSlam};
+use super::{Located, RgbdSlam, doubts::Doubts};
 use crate::component::Component;
 use crate::frame::Frame;
 use crate::ids::KeyframeId;
@@ -6,9 +6,11 @@ use crate::keyframe_policy::with_depth;
 use crate::map::LandmarkMap;
 use crate::motion::Belief;
 use crate::report::{MapId, Mode, TrackReport, Tracking};
+use crate::search::Likeness;
 use nalgebra::Matrix6;
 use std::sync::Arc;
 use trundle_core::{CameraMotion, DepthImage, Pose3};
+use trundle_vision::match_mutual;
 
 /// Keyframes of a map that is worth keeping when the camera is lost in it.
 const LEAST_KEYFRAMES: usize = 4;
@@ -54,7 +56,10 @@ impl RgbdSlam {
         if let Some(id) = reference {
             let landmarks = self.active.map.keyframe(id).landmarks.clone();
             self.last = Some(Located { frame, landmarks, anchored });
-            (self.misses, self.blind, self.doubt) = (0, false, None);
+            (self.misses, self.blind, self.doubts) = (0, false, Doubts::default());
+            self.missed = None;
+        } else {
+            self.missed = Some(frame);
         }
         report
     }
@@ -72,6 +77,7 @@ impl RgbdSlam {
             && prior.is_some()
             && !self.contradiction.is_going_on()
             && self.is_beyond_the_map(depth)
+            && self.shows_the_same_again(frame)
         {
             Beginning::Onward
         } else {
@@ -85,6 +91,16 @@ impl RgbdSlam {
         let config = &self.config.tracking;
         let expected = self.view(depth).landmarks(&self.active.map, self.belief.visual_from_camera).len();
         expected < config.min_inliers || self.misses >= config.patience
+    }
+
+    /// Whether it shows what the frame before it showed, which was not located either: corners that noise makes of a bare wall no later
+    /// frame shows again, and from a keyframe of such ones nothing is followed.
+    fn shows_the_same_again(&self, frame: &Frame) -> bool {
+        let Likeness { max_distance, ratio } = self.config.tracking.free_likeness();
+        let again = |before: &Frame| {
+            match_mutual(&before.features.descriptors, &frame.features.descriptors, max_distance, ratio).len()
+        };
+        self.missed.as_ref().is_some_and(|before| again(before) >= self.config.tracking.weak_inliers)
     }
 
     /// The first keyframe of the active map, or one that goes on from it.

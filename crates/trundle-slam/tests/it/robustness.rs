@@ -82,13 +82,40 @@ fn dead_reckoning_bridges_a_blank_wall_and_begins_a_new_map_behind_it() {
         let report = slam.step(&image(i, (320, 240), 128, 1.0), Some(step(1).into()));
         assert_eq!(report.tracking, Tracking::DeadReckoning);
     }
-    let report = slam.step(&shoot(20, step(20)), Some(step(1).into()));
-    assert!(report.new_keyframe && report.tracking == Tracking::DeadReckoning);
-    let report = slam.step(&shoot(21, step(21)), Some(step(1).into()));
+    // What is seen twice is no noise.
+    for (i, begins) in [(20, false), (21, true)] {
+        let report = slam.step(&shoot(i, step(i)), Some(step(1).into()));
+        assert_eq!((report.new_keyframe, report.tracking), (begins, Tracking::DeadReckoning));
+    }
+    let report = slam.step(&shoot(22, step(22)), Some(step(1).into()));
     assert_eq!(report.tracking, Tracking::Ok);
-    let error = (step(21).inverse() * report.visual_from_camera).log().norm();
+    let error = (step(22).inverse() * report.visual_from_camera).log().norm();
     assert!(error < 0.04, "{error}");
-    assert_eq!(slam.trajectory().len(), 22);
+    assert_eq!(slam.trajectory().len(), 23);
+}
+
+/// A wall 1 m ahead of which a camera sees its own noise: another one in every image.
+fn noise(number: usize) -> RgbdImage {
+    let mut state = number as u64 + 1;
+    let mut pixel = || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        [(state >> 56) as u8; 3]
+    };
+    let color = ColorImage::from_fn(320, 240, |_, _| pixel());
+    RgbdImage::new(stamp(number), color, DepthImage::filled(320, 240, 1.0)).unwrap()
+}
+
+#[test]
+fn of_noise_on_a_bare_wall_no_map_is_made() {
+    let mut slam = slam();
+    assert_eq!(slam.step(&shoot(0, Pose3::identity()), None).tracking, Tracking::Ok);
+    let told = || Some(forward(0.0).into());
+    for i in 1..60 {
+        let report = slam.step(&noise(i), told());
+        assert!(report.features > 100 && !report.new_keyframe, "frame {i}: {}", report.features);
+        assert_eq!(report.tracking, Tracking::DeadReckoning);
+    }
+    assert_eq!(slam.step(&shoot(60, Pose3::identity()), told()).tracking, Tracking::Ok);
 }
 
 #[test]
