@@ -89,7 +89,7 @@ fn a_place_seen_again_takes_the_drift_out() {
     let error = |i: usize, pose: Pose3| (turned(i).inverse() * pose).log().norm();
     let (mut closed, mut before) = (None, 0.0);
     for i in 0..=112 {
-        let is_dark = (35..55).contains(&i);
+        let is_dark = (34..54).contains(&i);
         let motion = turned(i.max(1) - 1).inverse() * turned(i);
         let prior = if i == 45 { motion * slip } else { motion };
         let image = if is_dark { dark(i) } else { shoot(i, turned(i)) };
