@@ -19,10 +19,11 @@ use trundle::mapping::{
 pub struct MapArgs {
     /// A CARMEN log, a ROS 2 bag (folder, .mcap, .db3) or a TUM RGB-D folder, whose odometry is the motion.
     pub log: PathBuf,
-    /// The motion of an RGB-D folder: the camera's trajectory that `trundle slam` wrote, or another in TUM format.
+    /// The motion of an RGB-D folder: the camera's trajectory that `trundle slam` wrote, or another in TUM format. Each pose is
+    /// believed to 1 cm and 0.003 rad (in a new map), and no loops are looked for.
     #[arg(long, value_name = "FILE")]
     pub poses: Option<PathBuf>,
-    /// These poses drift, as of odometry by images that closes no loops: only their steps are believed.
+    /// These poses drift, as of odometry by images that closes no loops: only their steps are believed, and loops are looked for.
     #[arg(long, requires = "poses")]
     pub poses_drift: bool,
     /// Particles of the filter.

@@ -123,15 +123,6 @@ fn kidnap(slam: &mut RgbdSlam, mapped: &Drive, other: &Drive, views: usize) {
             );
         }
         (recognised, wrong) = (recognised + 1, wrong + usize::from(is_wrong));
-        if std::env::var("TOLD").is_ok() {
-            println!(
-                "told {} off {} err {} inl {} view {first}",
-                report.covariance.fixed_view::<3, 3>(0, 0).trace().sqrt(),
-                off.translation.norm(),
-                squared_error(off, &report.covariance),
-                report.inliers
-            );
-        }
         errors.push(squared_error(off, &report.covariance));
         at_once += usize::from(i == first);
     }

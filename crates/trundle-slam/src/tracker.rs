@@ -39,7 +39,8 @@ pub struct TrackingConfig {
     pub min_inliers: usize,
     /// Fewer inliers than this and it is located weakly; a relocalisation needs as many. Default 40.
     pub weak_inliers: usize,
-    /// Keyframes that a lost camera is compared with in one frame, 1 or more. Default 5: some 10 ms.
+    /// Keyframes that a lost camera is compared with in one frame, 1 or more, and as many of those that look like the one found.
+    /// Default 5: some 20 ms, 40 when another map is asked as well.
     pub relocalisation_keyframes: usize,
     /// Part of the view, of its parts that should show landmarks, in which a relocalisation must find some, 0 to 1. Default
     /// 0.6: of 400 views of a simulated office with twin rooms, twins without a rival showed up to 0.56, and as many were recognised

@@ -13,7 +13,8 @@ pub struct ParticleConfig {
     /// The odometry's errors.
     pub motion: MotionConfig,
     /// Odometry that does not drift, as the poses of a SLAM that has closed its loops: each of them is believed, not its steps alone, and
-    /// loops are not looked for. Default: none, dead reckoning. What goes on with a saved map takes the steps alone.
+    /// loops are not looked for. Default: none, dead reckoning. After [`crate::ParticleMapper::kidnapped`] the steps alone are taken: where
+    /// that odometry begins in the map is not known as well.
     pub pose_prior: Option<PosePriorConfig>,
     /// A scan is processed when the robot moved this far since the last one, m, 0 to 5. Default 0.3.
     pub move_gate: f64,

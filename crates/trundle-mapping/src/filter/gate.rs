@@ -5,6 +5,9 @@ use super::{
 use nalgebra::Matrix3;
 use trundle_core::{Pose2, Scan, Stamp};
 
+/// Farther from its origin no odometry tells of anything true, m.
+const FARTHEST: f64 = 1e6;
+
 /// Which scans are looked at: those after some motion or time.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Gate {
@@ -41,6 +44,9 @@ impl Gate {
         if !odom_from_base.is_finite() {
             return Err(Refusal::NotFinite);
         }
+        if odom_from_base.position().amax() > FARTHEST {
+            return Err(Refusal::OutOfReach);
+        }
         let now = Last { stamp: scan.stamp(), odom_from_base };
         let Some(last) = self.last else {
             self.last = Some(now);
@@ -57,8 +63,12 @@ impl Gate {
         if still {
             return Ok(None);
         }
+        let way = motion.position().norm();
+        let jumped = way > config.jump;
+        if config.pose_prior.is_some() && way > config.jump * (scan.stamp() - last.stamp).max(1.0) {
+            return Err(Refusal::OutOfReach);
+        }
         self.last = Some(now);
-        let jumped = motion.position().norm() > config.jump;
         let (motion, covariance) = if jumped {
             (Pose2::IDENTITY, unknown_motion_covariance())
         } else {

@@ -159,6 +159,46 @@ fn poses_that_do_not_drift_are_believed_as_poses() {
     assert!(dead_reckoned > 2.0 * believed, "{dead_reckoned} m off by the steps alone");
 }
 
+/// A new filter that believes poses, and the first `count` scans of the lap at poses that are right.
+fn believing(count: usize) -> (ParticleMapper, FlatRoom, Vec<Pose2>) {
+    let config = ParticleConfig { pose_prior: Some(PosePriorConfig::default()), ..config(3) };
+    let (mut mapper, room, poses) = (ParticleMapper::new(config, 1).unwrap(), ring(), lap());
+    for (i, pose) in poses.iter().enumerate().take(count) {
+        mapper.update(*pose, &laser(&room, *pose, i));
+    }
+    (mapper, room, poses)
+}
+
+#[test]
+fn a_wild_pose_is_refused_and_the_next_one_is_not() {
+    let (mut mapper, room, poses) = believing(20);
+    for (i, x) in [(20, 300.0), (21, -1e5), (22, 1e200), (23, f64::MAX)] {
+        let said = mapper.update(Pose2 { x, ..poses[i] }, &laser(&room, poses[i], i));
+        assert_eq!(said, ScanUpdate::Refused(Refusal::OutOfReach), "{x}");
+    }
+    assert!(matches!(mapper.update(poses[24], &laser(&room, poses[24], 24)), ScanUpdate::Processed(_)));
+    assert!(mapper.pose().distance(&(poses[0].inverse() * poses[24])) < 0.05);
+    // At 5 m/s it can have got there while nothing was told of it.
+    let late = laser(&room, poses[60], 60 + 100);
+    assert!(matches!(mapper.update(poses[60], &late), ScanUpdate::Processed(done) if done.jumped));
+    assert!(mapper.pose().distance(&(poses[0].inverse() * poses[60])) < 0.05);
+}
+
+#[test]
+fn a_saved_filter_goes_on_believing_poses() {
+    let (mut whole, room, poses) = believing(40);
+    let mut again = ParticleMapper::load(
+        &whole.save(),
+        ParticleConfig { pose_prior: Some(PosePriorConfig::default()), ..config(3) },
+    )
+    .unwrap();
+    for (i, pose) in poses.iter().enumerate().skip(40).take(40) {
+        let scan = laser(&room, *pose, i);
+        assert_eq!(whole.update(*pose, &scan), again.update(*pose, &scan));
+    }
+    assert!(whole.save() == again.save(), "to the byte");
+}
+
 #[test]
 fn the_same_bytes_on_any_number_of_threads() {
     let (room, poses) = (ring(), lap());

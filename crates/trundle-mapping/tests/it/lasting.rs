@@ -98,7 +98,7 @@ fn what_is_no_map_is_refused_with_the_reason() {
     assert_eq!(load(b"P5 100 100 255"), FilterFileError::Foreign);
     let mut other = bytes.clone();
     other[7] = 9;
-    assert_eq!(load(&other).to_string(), "map of version 9, expected 3");
+    assert_eq!(load(&other).to_string(), "map of version 9, expected 4");
     for at in (16..bytes.len()).step_by(bytes.len() / 60) {
         let mut flipped = bytes.clone();
         flipped[at] ^= 1 << (at % 8);

@@ -120,7 +120,9 @@ fn a_camera_that_is_lost_where_two_maps_lie_is_found() {
 #[test]
 fn a_lost_camera_that_turns_fast_or_sees_now_and_then_is_found() {
     let mut slam = RgbdSlam::new(camera(), SlamConfig::default()).unwrap();
-    (0..25).for_each(|i| drop(slam.step(&shoot(i, turned(4 * i)), None)));
+    for i in 0..25 {
+        slam.step(&shoot(i, turned(4 * i)), None);
+    }
     let saved = slam.save();
     for (step, dark_between) in [(1, false), (6, false), (3, true)] {
         let mut slam = RgbdSlam::load(&saved, camera(), SlamConfig::default()).unwrap();

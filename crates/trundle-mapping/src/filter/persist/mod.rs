@@ -25,7 +25,7 @@ pub use error::FilterFileError;
 use trundle_core::Stamp;
 
 const MAGIC: &[u8; 7] = b"trundlF";
-const VERSION: u8 = 3;
+const VERSION: u8 = 4;
 /// Bytes before those that the checksum is of.
 const HEAD: usize = 16;
 
@@ -60,6 +60,8 @@ impl ParticleMapper {
         out.u8(u8::from(self.gate.last.is_some()));
         out.u64(last.stamp.nanos as u64);
         out.pose(last.odom_from_base);
+        out.u8(u8::from(self.map_from_odom.is_some()));
+        out.pose(self.map_from_odom.unwrap_or_default());
         out.count(self.particles.len());
         for (particle, parent) in self.particles.iter().zip(&self.parents) {
             out.pose(particle.pose);
@@ -110,6 +112,9 @@ impl ParticleMapper {
             odom_from_base: body.pose("the last odometry")?,
         };
         mapper.gate.last = known.then_some(last);
+        let known = body.u8()? == 1;
+        let map_from_odom = body.pose("where the odometry begins")?;
+        mapper.map_from_odom = known.then_some(map_from_odom);
         let count = body.count(34)?;
         body.require((1..=1000).contains(&count), "the number of particles")?;
         let mut states = Vec::new();
