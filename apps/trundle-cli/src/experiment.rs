@@ -136,7 +136,7 @@ pub struct MrpbArgs {
 /// `trundle experiment real-time`
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Writes a recording, some 100 MB a minute.\n\nExit code: 0 jitter at most 5 ms (p99.9), load at most 60 %, memory \
+    after_help = "Writes a recording, some 600 MB a minute.\n\nExit code: 0 jitter at most 5 ms (p99.9), load at most 60 %, memory \
                   growing by at most 10 MB/h, nothing touched; 1 otherwise, 2 bad input."
 )]
 pub struct RealTimeArgs {
