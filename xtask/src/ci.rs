@@ -1,6 +1,6 @@
 //! Everything that must hold before a change is merged.
 
-use crate::{Verdict, program, replay_check, tidy};
+use crate::{Verdict, bad_days, program, replay_check, tidy};
 use std::path::Path;
 use std::time::Instant;
 
@@ -15,7 +15,7 @@ const TEST: Step = Step {
     check: |root| program::cargo(root, &["test", "--workspace"], &[]),
 };
 
-const REST: [Step; 6] = [
+const REST: [Step; 7] = [
     Step {
         name: "cargo fmt --all --check",
         check: |root| program::cargo(root, &["fmt", "--all", "--check"], &[]),
@@ -35,6 +35,7 @@ const REST: [Step; 6] = [
     },
     Step { name: "cargo build --release", check: |root| program::cargo(root, &["build", "--release"], &[]) },
     Step { name: "cargo xtask replay-check", check: |root| replay_check::run(root, 1) },
+    Step { name: "cargo xtask bad-days", check: bad_days::run },
 ];
 
 /// Runs the steps in order and stops at the first that fails.

@@ -1,6 +1,7 @@
-//! Chores of the workspace: `cargo xtask ci | tidy | replay-check | demo-seeds`.
+//! Chores of the workspace: `cargo xtask ci | tidy | replay-check | bad-days | demo-seeds`.
 #![expect(clippy::print_stdout, clippy::print_stderr, reason = "this is a program that talks")]
 
+mod bad_days;
 mod ci;
 mod compare;
 mod program;
@@ -36,6 +37,8 @@ enum Chore {
         #[arg(long, default_value_t = 1)]
         seed: u64,
     },
+    /// Sensors that break, wheels that slip, people in the way: every day must end as it should.
+    BadDays,
     /// Run the demo on many seeds and print a table of their summaries.
     DemoSeeds {
         /// How many seeds, from the first on.
@@ -56,6 +59,7 @@ fn main() -> ExitCode {
         Chore::Ci { tested } => ci::run(&root, tested),
         Chore::Tidy => tidy::run(&root),
         Chore::ReplayCheck { seed } => replay_check::run(&root, seed),
+        Chore::BadDays => bad_days::run(&root),
         Chore::DemoSeeds { seeds, first } => seeds::run(&root, first..first.saturating_add(seeds)),
     };
     match verdict {

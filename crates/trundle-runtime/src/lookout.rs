@@ -1,5 +1,6 @@
 use crate::{
     config::RobotConfig,
+    drawn::DrawnPoses,
     eye::EyeWatch,
     saving::Saving,
     sight::Sight,
@@ -126,6 +127,11 @@ impl Lookout {
         let saved = self.save(image.stamp(), times);
         let unplaced = self.unplaced;
         Some(Sighting { odom_from_base, track, scan, place, unplaced, is_carried_away, bent, saved })
+    }
+
+    /// Poses are wanted from now on of frames whose scans may still move.
+    pub(crate) fn forget_frames(&mut self, drawn: &DrawnPoses) {
+        self.slam.forget_frames(|stamp| drawn.has(stamp));
     }
 
     /// The visual maps, when it is time to save them.

@@ -290,8 +290,11 @@ impl Robot {
         if let Some(scan) = scan {
             let stamp = scan.stamp();
             let is_drawn = self.see(scan);
-            if is_drawn && track.tracking.is_located() {
-                self.drawn.note(stamp, track.visual_from_camera, || self.mapper.kept_stamps());
+            if is_drawn
+                && track.tracking.is_located()
+                && self.drawn.note(stamp, track.visual_from_camera, || self.mapper.kept_stamps())
+            {
+                self.lookout.iter_mut().for_each(|lookout| lookout.forget_frames(&self.drawn));
             }
         }
         // A grid that has not yet followed the visual map does not fit it.

@@ -71,6 +71,8 @@ struct Said {
     /// Whether the bumper truly is pressed.
     is_touching: bool,
     is_pressed: bool,
+    /// The wheels' counters, left and right.
+    counters: Option<(u16, u16)>,
     turn_rate: Option<f64>,
 }
 
@@ -212,7 +214,7 @@ impl Simulator {
         let (wheels, gyro) = (self.clocks.wheels.due(self.now), self.clocks.gyro.due(self.now));
         let (scan, image) = (self.clocks.laser.due(self.now), self.clocks.camera.due(self.now));
         if wheels.is_some() {
-            self.queue.push_back(SensorEvent::Wheels(self.body.read_wheels(stamp)));
+            self.read_wheels(stamp);
         }
         if gyro.is_some() {
             self.read_gyro(stamp);
@@ -234,6 +236,15 @@ impl Simulator {
         }
         self.late.arrive(self.now, &mut self.queue);
         Ok(())
+    }
+
+    fn read_wheels(&mut self, stamp: Stamp) {
+        let mut ticks = self.body.read_wheels(stamp);
+        if self.faults.are_encoders_stuck() {
+            (ticks.left, ticks.right) = self.said.counters.unwrap_or((ticks.left, ticks.right));
+        }
+        self.said.counters = Some((ticks.left, ticks.right));
+        self.queue.push_back(SensorEvent::Wheels(ticks));
     }
 
     fn read_gyro(&mut self, stamp: Stamp) {

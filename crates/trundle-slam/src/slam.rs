@@ -257,12 +257,19 @@ impl RgbdSlam {
         Some(correction)
     }
 
-    /// Pose of every frame that was not lost, of the newest [`SlamConfig::kept_frames`], in the order of `step`:
-    /// `visual_from_camera` by the map as it is now. Of several maps that of the last frame; the others have frames of their own.
+    /// Pose of every frame that was not lost, of the newest [`SlamConfig::kept_frames`] that were not forgotten, in the order of
+    /// `step`: `visual_from_camera` by the map as it is now. Of several maps that of the last frame; the others have frames of their own.
     pub fn trajectory(&self) -> Vec<(Stamp, Pose3)> {
         let is_here = |past: &&Past| past.map == self.active.id && past.tracking != Tracking::Lost;
         let pose = |past: &Past| (past.anchored.stamp, past.anchored.visual_from_camera(&self.active.map));
         self.history.iter().filter(is_here).map(pose).collect()
+    }
+
+    /// Lets go the poses of all frames but the last one and those `wanted`: a robot wants those where something was drawn, and an
+    /// hour has a hundred thousand.
+    pub fn forget_frames(&mut self, wanted: impl Fn(Stamp) -> bool) {
+        let last = self.history.back().map(|past| past.anchored.stamp);
+        self.history.retain(|past| Some(past.anchored.stamp) == last || wanted(past.anchored.stamp));
     }
 
     /// All landmarks of the map that the camera is in, visual frame, m, in the order of their making.

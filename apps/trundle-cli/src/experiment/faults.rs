@@ -65,6 +65,7 @@ fn days() -> Vec<Day> {
         broken("frames late by 500 ms", 0.0, FOREVER, FaultKind::CameraLate { delay_s: 0.5 }, End::Arrived),
         broken("a wheel slips on a carpet", 8.0, 11.0, slips, End::Arrived),
         broken("gyro stuck", 8.0, FOREVER, FaultKind::GyroStuck, End::Arrived),
+        broken("encoders stuck", 8.0, FOREVER, FaultKind::EncodersStuck, End::Arrived),
         broken("odometry jumps 1 m", 10.0, 10.1, jump, End::Arrived),
         broken("kidnapped while driving", 12.0, 12.1, carried, End::Arrived),
         Day {

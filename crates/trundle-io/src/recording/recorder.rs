@@ -12,6 +12,10 @@ use std::io::{BufWriter, Seek, Write};
 use std::path::{Path, PathBuf};
 use trundle_core::{Invalid, Stamp};
 
+/// So many bytes make a chunk, which the recorder remembers for the index at the end: an hour of 30 images a second is 9,000 chunks
+/// and some 2 MB of index. A program that is killed loses the chunk that it was writing.
+const CHUNK: u64 = 4 << 20;
+
 /// Writes a recording: MCAP in uncompressed chunks (images are compressed already), messages in JSON.
 ///
 /// The bytes depend on nothing but what is recorded: no clock, no chance; log time and publish time are the stamp.
@@ -45,7 +49,8 @@ impl<W: Write + Seek> Recorder<W> {
     /// # Errors
     /// When nothing can be written.
     pub fn new(writer: W, path: &Path) -> Result<Self, IoError> {
-        let options = WriteOptions::new().compression(None).profile("").library("trundle");
+        let options =
+            WriteOptions::new().chunk_size(Some(CHUNK)).compression(None).profile("").library("trundle");
         let writer = options.create(writer).map_err(|error| failed(path, error))?;
         Ok(Self { writer, path: path.to_owned(), channels: BTreeMap::new(), buffer: Vec::new() })
     }

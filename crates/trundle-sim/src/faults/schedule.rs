@@ -30,6 +30,8 @@ pub enum FaultKind {
         /// The part of its way, 0 (it spins) to 2.
         factor: f64,
     },
+    /// The encoders say again and again what they said last, while the wheels turn.
+    EncodersStuck,
     /// The gyro says again and again what it said last.
     GyroStuck,
     /// At `from_s` the encoders' counters jump, for good; `to_s` does not matter.

@@ -68,6 +68,10 @@ impl Faults {
         grip
     }
 
+    pub(crate) fn are_encoders_stuck(&self) -> bool {
+        self.holding().any(|(_, kind)| kind == FaultKind::EncodersStuck)
+    }
+
     pub(crate) fn is_gyro_stuck(&self) -> bool {
         self.holding().any(|(_, kind)| kind == FaultKind::GyroStuck)
     }

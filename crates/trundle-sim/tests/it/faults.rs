@@ -169,6 +169,26 @@ fn a_stuck_gyro_repeats_itself() {
 }
 
 #[test]
+fn stuck_encoders_repeat_themselves_while_the_robot_drives() {
+    let (events, robot) = events(broken(FaultKind::EncodersStuck));
+    let counters = |events: &[SensorEvent]| -> Vec<(Stamp, u16, u16)> {
+        let counters = events.iter().filter_map(|event| match event {
+            SensorEvent::Wheels(ticks) => Some((ticks.stamp, ticks.left, ticks.right)),
+            _ => None,
+        });
+        counters.collect()
+    };
+    let (stuck, whole) = (counters(&events), counters(&whole()));
+    let last = stuck.iter().rfind(|(stamp, ..)| stamp.as_secs() < 1.0).unwrap();
+    for (said, true_ticks) in stuck.iter().zip(&whole) {
+        let expected = if is_during(said.0) { (said.0, last.1, last.2) } else { *true_ticks };
+        assert_eq!(*said, expected);
+    }
+    assert_ne!((last.1, last.2), (whole[100].1, whole[100].2));
+    assert!(robot.true_pose().x > -1.5, "the robot drives on");
+}
+
+#[test]
 fn odometry_jumps_by_ticks_and_the_robot_does_not() {
     let (events, _) = events(broken(FaultKind::OdometryJumps { left_ticks: 300, right_ticks: -70 }));
     let mut difference = Vec::new();

@@ -42,7 +42,7 @@ fn ten_laps_of_a_room_take_no_more_than_three() {
 }
 
 #[test]
-fn only_the_newest_poses_are_kept() {
+fn only_the_newest_poses_are_kept_that_are_wanted() {
     let config = SlamConfig { kept_frames: 7, ..SlamConfig::default() };
     let mut slam = RgbdSlam::new(camera(), config).unwrap();
     let (room, mut dice) = (Room::new(), Dice(5));
@@ -55,6 +55,9 @@ fn only_the_newest_poses_are_kept() {
     }
     let kept: Vec<_> = slam.trajectory().into_iter().map(|(stamp, _)| stamp).collect();
     assert_eq!(kept, told[13..]);
+    slam.forget_frames(|stamp| stamp == told[15]);
+    let kept: Vec<_> = slam.trajectory().into_iter().map(|(stamp, _)| stamp).collect();
+    assert_eq!(kept, [told[15], told[19]], "that one, and the last");
     let none = SlamConfig { kept_frames: 0, ..SlamConfig::default() };
     let error = RgbdSlam::new(camera(), none).unwrap_err().to_string();
     assert_eq!(error, "slam.kept_frames is 0, expected 1 or more");
