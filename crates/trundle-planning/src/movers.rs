@@ -41,6 +41,11 @@ impl Mover {
         Self { radius: self.radius + MARGIN, ..self }
     }
 
+    /// Of its disc, m.
+    pub fn radius(&self) -> f64 {
+        self.radius
+    }
+
     /// Where its centre will be after `time` s, map frame, m.
     pub fn at(&self, time: f64) -> Vector2 {
         self.position + self.velocity * time

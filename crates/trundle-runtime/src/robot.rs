@@ -271,10 +271,6 @@ impl Robot {
         let before = localizer.estimate().pose;
         let correction =
             times.measure(Stage::Localization, || correct_by_sight(localizer, &track, bent.is_some()));
-        let jump = before.inverse() * localizer.estimate().pose;
-        if jump.position().norm() > JUMP.0 || jump.theta.abs() > JUMP.1 {
-            self.forget_traffic();
-        }
         if correction == Some(Correction::Reanchored) {
             // Scans drawn so far stay where they are: their visual poses are in a frame that has moved.
             self.drawn = DrawnPoses::default();
@@ -287,6 +283,10 @@ impl Robot {
             self.follow_the_visual_map(&trajectory);
         }
         self.note_place(place);
+        let jump = before.inverse() * self.localizer.estimate().pose;
+        if jump.position().norm() > JUMP.0 || jump.theta.abs() > JUMP.1 {
+            self.forget_traffic();
+        }
         if let Some(scan) = scan {
             let stamp = scan.stamp();
             let is_drawn = self.see(scan);

@@ -121,9 +121,9 @@ impl GlobalBundle {
         self.set_covariances(map);
     }
 
-    /// The solver, for its buffers.
-    pub fn into_solver(self) -> BundleSolver {
-        self.bundle.into_solver()
+    /// The solver that was lent, for its buffers; none before it was.
+    pub fn into_solver(self) -> Option<BundleSolver> {
+        self.next.is_none().then(|| self.bundle.into_solver())
     }
 
     /// How each keyframe of the map moves; a newer one as its parent does.

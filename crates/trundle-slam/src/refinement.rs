@@ -46,14 +46,14 @@ impl LandmarkMap {
 
     /// Drops what is under way and begins with the whole map: after a loop, all that was known before has moved.
     pub fn begin_refining_all(&mut self) {
-        let Refinement { local, global, .. } = std::mem::take(&mut self.refinement);
-        let spare = [local.map(MapBundle::into_solver), global.map(GlobalBundle::into_solver)];
-        self.refinement = Refinement {
-            local: None,
-            global: Some(GlobalBundle::of(self)),
-            is_due: false,
-            spare: spare.map(Option::unwrap_or_default),
-        };
+        let Refinement { local, global, spare: [for_local, for_global], .. } =
+            std::mem::take(&mut self.refinement);
+        let spare = [
+            local.map_or(for_local, MapBundle::into_solver),
+            global.and_then(GlobalBundle::into_solver).unwrap_or(for_global),
+        ];
+        self.refinement =
+            Refinement { local: None, global: Some(GlobalBundle::of(self)), is_due: false, spare };
     }
 
     /// Goes on refining for about `work` units of the solver; whether anything moved.
@@ -78,7 +78,7 @@ impl LandmarkMap {
         self.refinement.spare[GLOBAL] = solver;
         if is_done {
             global.apply(self);
-            self.refinement.spare[GLOBAL] = global.into_solver();
+            self.refinement.spare[GLOBAL] = global.into_solver().unwrap_or_default();
             return true;
         }
         self.refinement.global = Some(global);

@@ -118,7 +118,8 @@ impl ParticleMapper {
 
     /// Takes in a scan taken with the base at `odom_from_base` by the odometry.
     pub fn update(&mut self, odom_from_base: Pose2, scan: &Scan) -> ScanUpdate {
-        let step = match self.gate.pass(&self.config, odom_from_base, scan) {
+        let poses_count = self.map_from_odom.is_some();
+        let step = match self.gate.pass(&self.config, poses_count, odom_from_base, scan) {
             Ok(Some(step)) => step,
             Ok(None) => return ScanUpdate::Still,
             Err(refusal) => return ScanUpdate::Refused(refusal),
@@ -130,7 +131,7 @@ impl ParticleMapper {
             return self.search(scan.stamp());
         }
         let first = step.first && self.updates == 0;
-        if first {
+        if first && self.config.pose_prior.is_some() {
             self.map_from_odom = Some(odom_from_base.inverse());
         }
         let anchor = self.map_from_odom.and_then(|origin| Anchor::new(&self.config, origin * odom_from_base));

@@ -25,7 +25,7 @@ pub enum Refusal {
     /// The scan is older than the last one.
     TimeGoesBack,
     /// The odometry's pose is more than 1000 km from its origin; or, of odometry that does not drift (`pose_prior`), farther from the
-    /// last one than it can have got: `jump` a second.
+    /// last one than it can have got: `jump` a second. Five such poses in a row that agree with each other are believed.
     OutOfReach,
 }
 
@@ -44,7 +44,7 @@ pub struct Processed {
     pub effective: f64,
     /// Whether particles were resampled.
     pub resampled: bool,
-    /// Whether the odometry jumped farther than `jump`: the pose is then held where it was, or, with a `pose_prior`, where it says.
+    /// Whether the odometry jumped farther than `jump`: the pose is then held where it was, or, while a `pose_prior` holds, where it says.
     pub jumped: bool,
     /// Whether the scan said that the odometry told nothing true: slipping wheels, lost messages.
     pub slipped: bool,

@@ -185,6 +185,24 @@ fn a_wild_pose_is_refused_and_the_next_one_is_not() {
 }
 
 #[test]
+fn wild_poses_that_agree_five_times_are_believed() {
+    let (mut mapper, room, poses) = believing(20);
+    let update = |mapper: &mut ParticleMapper, i: usize, off: f64| {
+        mapper.update(Pose2 { x: poses[i].x + off, ..poses[i] }, &laser(&room, poses[i], i))
+    };
+    let is_refused = |said: ScanUpdate| said == ScanUpdate::Refused(Refusal::OutOfReach);
+    assert!((20..24).all(|i| is_refused(update(&mut mapper, i, 300.0))));
+    assert!(is_refused(update(&mut mapper, 24, -300.0)), "these are others");
+    assert!((25..29).all(|i| is_refused(update(&mut mapper, i, 300.0))));
+    assert!(matches!(update(&mut mapper, 29, 300.0), ScanUpdate::Processed(done) if done.jumped));
+    let way = mapper.pose().distance(&(poses[0].inverse() * poses[29]));
+    assert!((way - 300.0).abs() < 0.05, "{way} m");
+    // Of steps alone a jump says nothing, and the scans tell.
+    mapper.kidnapped();
+    assert!(!is_refused(update(&mut mapper, 30, 0.0)));
+}
+
+#[test]
 fn a_saved_filter_goes_on_believing_poses() {
     let (mut whole, room, poses) = believing(40);
     let mut again = ParticleMapper::load(

@@ -54,14 +54,16 @@ impl MoverTracker {
     /// Takes in a scan, made where the base was at `map_from_base`. One that is not later than the last one is ignored, and so
     /// is one from nowhere (NaN). One that is 10 s older says that the clock was set back: all is forgotten.
     pub fn see(&mut self, map_from_base: Pose2, scan: &Scan) {
+        let is_somewhere = [map_from_base.x, map_from_base.y, map_from_base.theta].into_iter().all(is_place);
+        if !is_somewhere {
+            return;
+        }
         if self.seconds(scan.stamp()) < self.time - HIDES {
             self.forget();
             (self.begin, self.time) = (None, f64::NEG_INFINITY);
         }
         let time = scan.stamp() - *self.begin.get_or_insert(scan.stamp());
-        let is_somewhere =
-            [map_from_base.x, map_from_base.y, map_from_base.theta].iter().all(|n| n.abs() < 1e6);
-        if time <= self.time || !is_somewhere {
+        if time <= self.time {
             return;
         }
         self.time = time;
@@ -98,8 +100,11 @@ impl MoverTracker {
 
     /// Hits within `reach` m of a place, map frame, and of the reach of the scans: of what came while it was watched, was last seen there
     /// at most 10 s before `now`, and has not been seen to go, whether it is in sight or where the sensor is blind. A map takes longer
-    /// to believe in it.
+    /// to believe in it. None about a place that is none.
     pub fn not_gone(&self, now: Stamp, near: Vector2, reach: f64) -> Vec<Vector2> {
+        if !near.iter().all(|n| is_place(*n)) || reach.is_nan() {
+            return Vec::new();
+        }
         self.cells.not_gone(near, reach.min(self.config.reach), self.seconds(now) - HIDES)
     }
 
@@ -181,7 +186,7 @@ impl MoverTracker {
         }
     }
 
-    /// Ties clusters to tracks, nearest first; the rest begin tracks of their own. Tracks not seen for a window end, but for those
+    /// Ties clusters to tracks, nearest first, and to those in sight before those that hide; the rest begin tracks of their own. Tracks not seen for a window end, but for those
     /// that went to where the sensor is blind.
     fn follow(&mut self, clusters: Vec<Cluster>, sensor: Vector2) {
         let (time, config) = (self.time, self.config);
@@ -190,14 +195,14 @@ impl MoverTracker {
             for (c, cluster) in clusters.iter().enumerate() {
                 let off = track.gap(time, cluster.middle);
                 if off <= config.gate {
-                    pairs.push((off, t, c));
+                    pairs.push((track.is_hidden(), off, t, c));
                 }
             }
         }
-        pairs.sort_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
+        pairs.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)).then((a.2, a.3).cmp(&(b.2, b.3))));
         let mut clusters: Vec<Option<Cluster>> = clusters.into_iter().map(Some).collect();
         let mut found = vec![false; self.tracks.len()];
-        for (_, t, c) in pairs {
+        for (.., t, c) in pairs {
             if !found[t]
                 && let Some(cluster) = clusters[c].take()
             {
@@ -209,6 +214,11 @@ impl MoverTracker {
         self.tracks.retain_mut(|track| track.lasts(time, sensor, cells, &config));
         self.tracks.extend(clusters.into_iter().flatten().map(|cluster| Track::new(time, cluster)));
     }
+}
+
+/// Whether a coordinate of a map, m, or a heading can be one.
+fn is_place(coordinate: f64) -> bool {
+    coordinate.abs() < 1e6
 }
 
 /// Frees what is occupied in a disc, where `may` says so of a cell's centre.

@@ -76,15 +76,16 @@ impl Track {
     /// The part of its way on that is near the sensor and has not been seen free since, as a disc.
     fn hides(&self, sensor: Vector2, cells: &SeenCells, config: &TrackerConfig) -> Option<(Vector2, f64)> {
         let last = self.last();
-        let (way, radius) = if self.moves(cells, config) {
-            (self.velocity * config.window, self.radius(config))
+        let radius = self.radius(config);
+        let way = if self.moves(cells, config) {
+            self.velocity * config.window
         } else if 2 * self.hits.iter().filter(|hit| cells.is_hit_since(**hit, last.time)).count()
             > self.hits.len()
         {
             // It is in sight, and was there before: more than an edge of it.
             return None;
         } else {
-            (Vector2::zeros(), last.radius)
+            Vector2::zeros()
         };
         let steps = (way.norm() / SIDE).ceil().min(100.0) as usize;
         let on = (0..=steps).map(|i| last.at + way * (i as f64 / steps.max(1) as f64));

@@ -208,6 +208,19 @@ fn who_steps_to_where_the_camera_is_blind_stands_there_until_seen_to_leave() {
 }
 
 #[test]
+fn who_hides_is_as_large_as_they_ever_looked() {
+    // Of somebody who stops beside the blind zone their edge alone is seen at last.
+    let (mut tracker, mut world) = (tracker(), World::new(&[(at(1.5, 4.2), at(0.0, -0.8))]));
+    dim(&mut tracker, &mut world, (0.0, 1.5, 1.5), 0.5);
+    for k in 16..80 {
+        let now = 0.1 * f64::from(k);
+        for mover in dim(&mut tracker, &mut world, (now, now, 1.5), 0.5) {
+            assert!(mover.radius() >= 0.2, "{now} s: {mover:?}");
+        }
+    }
+}
+
+#[test]
 fn of_whom_an_edge_is_seen_on_stands_there_for_safety() {
     let (mut tracker, mut world) = (tracker(), World::new(&[(at(1.82, 4.2), at(0.0, -0.8))]));
     for k in 0..75 {
@@ -254,7 +267,9 @@ fn what_came_is_not_kept_when_scans_end_or_the_clock_is_set_back() {
     assert_eq!(count(&tracker, 1.0), 0, "the clock was set back");
     dim(&mut tracker, &mut world, (1.1, 1.8, 0.0), 0.3);
     assert!(count(&tracker, 1.8) > 3);
-    assert!(tracker.not_gone(stamp(1.8), at(f64::NAN, 3.0), 2.0).is_empty());
+    for (x, reach) in [(f64::NAN, 2.0), (f64::INFINITY, 2.0), (-1e300, 2.0), (1.0, f64::NAN), (1.0, -1.0)] {
+        assert!(tracker.not_gone(stamp(1.8), at(x, 3.0), reach).is_empty(), "{reach} m about {x}");
+    }
     assert!(tracker.not_gone(stamp(1.8), at(1.0, 3.0), f64::INFINITY).len() > 3);
 }
 
@@ -267,6 +282,11 @@ fn scans_from_the_past_and_wrong_numbers_change_nothing() {
     tracker.see(pose, &world.scan(pose, 1.0, LASER));
     tracker.see(Pose2 { x: f64::NAN, ..pose }, &world.scan(pose, 2.1, LASER));
     tracker.see(Pose2 { y: 1e300, ..pose }, &world.scan(pose, 2.1, LASER));
+    let since = Stamp::default().after(-60.0);
+    let old = world.scan(pose, 2.1, LASER);
+    let old =
+        Scan::new(since, old.origin(), old.angle(0), old.angle_increment(), old.beams().to_vec()).unwrap();
+    tracker.see(Pose2 { x: f64::NAN, ..pose }, &old);
     assert_eq!(tracker.movers(stamp(2.0)), movers);
     assert!(MoverTracker::new(TrackerConfig { memory: f64::NAN, ..TrackerConfig::default() }).is_err());
     assert!(MoverTracker::new(TrackerConfig { sightings: 1, ..TrackerConfig::default() }).is_err());

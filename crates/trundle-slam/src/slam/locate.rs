@@ -48,6 +48,7 @@ impl RgbdSlam {
         depth: &DepthImage,
         prior: Option<Pose3>,
     ) -> Option<Sighting> {
+        self.doubts.pass(frame.stamp, prior.is_some());
         let words = OnceCell::new();
         let predicted = self.belief.predict(frame.stamp, prior);
         let reach = self.reach(frame.stamp, prior);
@@ -66,8 +67,7 @@ impl RgbdSlam {
         }
         let (map, recognised) = (self.active.id, relocalise(&here));
         self.contradiction = Contradiction::default();
-        let camera = (frame.stamp, predicted, prior.is_some());
-        if let Some(found) = self.believable(map, recognised, camera, reach) {
+        if let Some(found) = self.believable(map, recognised, predicted, reach) {
             return Some(Sighting { map, found });
         }
         let other = self
@@ -75,7 +75,7 @@ impl RgbdSlam {
             .get(self.frames as usize % self.resting.len().max(1))
             .filter(|_| reach != Reach::Told)?;
         let (map, recognised) = (other.id, relocalise(&self.tracker(other, frame, depth, &words)));
-        let found = self.believable(map, recognised, camera, Reach::Anywhere)?;
+        let found = self.believable(map, recognised, predicted, Reach::Anywhere)?;
         Some(Sighting { map, found })
     }
 
@@ -119,7 +119,7 @@ impl RgbdSlam {
         &mut self,
         map: MapId,
         mut recognised: Vec<Found>,
-        (now, predicted, is_told): (Stamp, Pose3, bool),
+        predicted: Pose3,
         reach: Reach,
     ) -> Option<Found> {
         let is_near = |found: &Found| self.may_be(reach, predicted, found.pose());
@@ -131,7 +131,7 @@ impl RgbdSlam {
             if reach == Reach::Told { 1 } else { SAID }
         };
         let found = unrivalled(recognised)?;
-        let times = self.doubts.note(map, now, (found.pose(), predicted), is_told);
+        let times = self.doubts.note(map, (found.pose(), predicted));
         (times >= needed).then_some(found)
     }
 

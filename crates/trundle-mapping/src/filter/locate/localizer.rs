@@ -142,7 +142,7 @@ impl MapLocalizer {
 
     /// Takes in a scan taken with the base at `odom_from_base` by the odometry.
     pub fn update(&mut self, odom_from_base: Pose2, scan: &Scan) -> Localized {
-        let step = match self.gate.pass(&self.config, odom_from_base, scan) {
+        let step = match self.gate.pass(&self.config, false, odom_from_base, scan) {
             Ok(Some(step)) => step,
             Ok(None) => return Localized::Still,
             Err(refusal) => return Localized::Refused(refusal),
