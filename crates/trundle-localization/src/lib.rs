@@ -24,6 +24,7 @@
 //! ```
 
 mod belief;
+mod between_ticks;
 mod camera_turns;
 mod correction;
 mod gyro_errors;

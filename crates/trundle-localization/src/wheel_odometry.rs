@@ -1,5 +1,6 @@
 use crate::{
     OdometryConfig, WheelCounts, WheelReport,
+    between_ticks::{BetweenTicks, Told},
     camera_turns::{CameraTurns, SeenHeading},
     gyro_errors::GyroErrors,
     odometry_noise::{Step, of_gap, of_step},
@@ -35,6 +36,7 @@ pub struct WheelOdometry {
     last: Option<WheelTicks>,
     suspect: Option<WheelTicks>,
     resting_since: Option<Stamp>,
+    between: BetweenTicks,
     /// The length of all steps, m.
     way: f64,
     odometry: Odometry,
@@ -69,6 +71,7 @@ impl WheelOdometry {
             last: None,
             suspect: None,
             resting_since: None,
+            between: BetweenTicks::default(),
             way: 0.0,
             odometry: Odometry {
                 stamp: Stamp::default(),
@@ -208,9 +211,8 @@ impl WheelOdometry {
         let turn_by_wheels = (rims.right - rims.left) / self.drive.wheelbase;
         let is_stuck = self.stuck.contradicts(turn_by_wheels / rims.dt, self.errors.bias());
         let turn_by_gyro = self.turn_by_gyro(stamp, rims.dt).filter(|_| !is_stuck);
-        // The gyro's noise does not turn a robot whose wheels rest.
-        let is_noise = rests && turn_by_gyro.is_some_and(|turn| self.is_noise(turn / rims.dt));
-        let turn = if is_noise { 0.0 } else { turn_by_gyro.unwrap_or(turn_by_wheels) };
+        let told = turn_by_gyro.map(|turn| self.counted(stamp, rests, Told { turn, time: rims.dt }));
+        let turn = told.map_or(turn_by_wheels, |told| told.turn);
         let slip_rate = turn_by_gyro.map_or(0.0, |_| (turn_by_wheels - turn) / rims.dt);
         let slips = slip_rate.abs() > self.config.slip_rate;
         let way = (rims.left + rims.right) / 2.0;
@@ -218,26 +220,39 @@ impl WheelOdometry {
         if slips || self.at_rest(stamp) || turn_by_gyro.is_none() || self.stuck.is_suspect() {
             self.turns.interrupt(stamp);
         }
-        let variance = |turn| self.errors.turn_variance(&self.config, turn, rims.dt);
-        let by_gyro = turn_by_gyro.map(|turn| if is_noise { 0.0 } else { variance(turn) });
+        let by_gyro = told.map(|told| self.errors.turn_variance(&self.config, told.turn, told.time));
         if slips {
             self.size.interrupt();
         } else {
             let is_sure = !self.stuck.is_suspect() && self.errors.is_measured();
-            let by_gyro = turn_by_gyro.zip(by_gyro).filter(|_| is_sure);
+            let by_gyro = told.map(|told| told.turn).zip(by_gyro).filter(|_| is_sure);
             self.size.rolled(self.drive.wheelbase, Rolled { way, by_wheels: turn_by_wheels, by_gyro });
         }
-        self.move_by(stamp, &Step { way, turn, dt: rims.dt, by_gyro, slip });
+        let rate = turn / told.map_or(rims.dt, |told| told.time.max(rims.dt));
+        self.move_by(stamp, &Step { way, turn, by_gyro, slip }, Twist2::new(way / rims.dt, rate));
         if slips { WheelReport::Slipping { rate: slip_rate } } else { WheelReport::Used }
     }
 
-    fn move_by(&mut self, stamp: Stamp, step: &Step) {
+    /// What counts of a step that the gyro told of. Its noise does not turn a robot that rests.
+    fn counted(&mut self, stamp: Stamp, is_without_tick: bool, step: Told) -> Told {
+        if !is_without_tick || !self.is_noise(step.turn / step.time) {
+            return self.between.count(step);
+        }
+        if self.at_rest(stamp) {
+            self.between.forget();
+        } else {
+            self.between.hold(step);
+        }
+        Told::default()
+    }
+
+    fn move_by(&mut self, stamp: Stamp, step: &Step, twist: Twist2) {
         let motion = Pose2::exp(Vector3::new(step.way, 0.0, step.turn));
         self.way += step.way.abs();
         let odometry = &mut self.odometry;
         odometry.stamp = stamp;
         odometry.pose = odometry.pose * motion;
-        odometry.twist = Twist2::new(step.way / step.dt, step.turn / step.dt);
+        odometry.twist = twist;
         odometry.covariance = carried(&odometry.covariance, &motion) + of_step(&self.config, step);
     }
 
@@ -274,6 +289,7 @@ impl WheelOdometry {
         self.last = Some(*ticks);
         self.suspect = None;
         self.resting_since = None;
+        self.between.forget();
         self.size.interrupt();
         self.turns.interrupt(ticks.stamp);
         self.gyro.turn_until(ticks.stamp, self.config.gyro_timeout);
