@@ -24,7 +24,6 @@
 //! ```
 
 mod belief;
-mod between_ticks;
 mod camera_turns;
 mod correction;
 mod gyro_errors;

@@ -90,7 +90,7 @@ impl OdometryConfig {
     /// rad).
     pub fn by_wheels(&self, motion: &Pose2) -> Matrix3<f64> {
         let way = motion.x.hypot(motion.y);
-        of_step(self, &Step { way, turn: motion.theta, by_gyro: None, slip: 0.0 })
+        of_step(self, &Step { way, turn: motion.theta, dt: 0.0, by_gyro: None, slip: 0.0 })
     }
 
     /// Passes a valid configuration through.

@@ -9,6 +9,8 @@ pub(crate) struct Step {
     pub(crate) way: f64,
     /// Counter-clockwise, rad.
     pub(crate) turn: f64,
+    /// Seconds.
+    pub(crate) dt: f64,
     /// The variance of the turn where it is the gyro's, rad^2.
     pub(crate) by_gyro: Option<f64>,
     /// Metres that the wheels' rims and the gyro disagree by, when they slip; else 0.

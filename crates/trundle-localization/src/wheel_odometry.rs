@@ -1,6 +1,5 @@
 use crate::{
     OdometryConfig, WheelCounts, WheelReport,
-    between_ticks::{BetweenTicks, Told},
     camera_turns::{CameraTurns, SeenHeading},
     gyro_errors::GyroErrors,
     odometry_noise::{Step, of_gap, of_step},
@@ -19,7 +18,7 @@ use trundle_core::{
 /// Problem: integrate encoder ticks to a pose. Between two readings the base drives an arc whose length is the mean of
 /// the two rims' ways and whose angle is the gyro's, less its bias, or the rims' difference over the wheelbase where
 /// there is no gyro. The arc is integrated exactly by the exponential map of SE(2). Counters wrap at 2^16; a difference
-/// is read as the shorter way round. While the wheels rest, so does the robot, and the gyro shows its bias. While they roll,
+/// is read as the shorter way round. While the wheels rest for long enough, so does the robot, and the gyro shows its bias. While they roll,
 /// gyro and camera show how large they are ([`WheelOdometry::seen`]). Cost: O(1).
 ///
 /// A reading from the past, after a gap, or implying an impossible speed never makes the pose jump: see [`WheelReport`].
@@ -36,7 +35,6 @@ pub struct WheelOdometry {
     last: Option<WheelTicks>,
     suspect: Option<WheelTicks>,
     resting_since: Option<Stamp>,
-    between: BetweenTicks,
     /// The length of all steps, m.
     way: f64,
     odometry: Odometry,
@@ -71,7 +69,6 @@ impl WheelOdometry {
             last: None,
             suspect: None,
             resting_since: None,
-            between: BetweenTicks::default(),
             way: 0.0,
             odometry: Odometry {
                 stamp: Stamp::default(),
@@ -211,8 +208,10 @@ impl WheelOdometry {
         let turn_by_wheels = (rims.right - rims.left) / self.drive.wheelbase;
         let is_stuck = self.stuck.contradicts(turn_by_wheels / rims.dt, self.errors.bias());
         let turn_by_gyro = self.turn_by_gyro(stamp, rims.dt).filter(|_| !is_stuck);
-        let told = turn_by_gyro.map(|turn| self.counted(stamp, rests, Told { turn, time: rims.dt }));
-        let turn = told.map_or(turn_by_wheels, |told| told.turn);
+        // The gyro's noise does not turn a robot that rests. A single reading without a tick says nothing: one that creeps has them too.
+        let may_rest = rests && (self.at_rest(stamp) || !self.errors.is_measured());
+        let is_noise = may_rest && turn_by_gyro.is_some_and(|turn| self.is_noise(turn / rims.dt));
+        let turn = if is_noise { 0.0 } else { turn_by_gyro.unwrap_or(turn_by_wheels) };
         let slip_rate = turn_by_gyro.map_or(0.0, |_| (turn_by_wheels - turn) / rims.dt);
         let slips = slip_rate.abs() > self.config.slip_rate;
         let way = (rims.left + rims.right) / 2.0;
@@ -220,39 +219,26 @@ impl WheelOdometry {
         if slips || self.at_rest(stamp) || turn_by_gyro.is_none() || self.stuck.is_suspect() {
             self.turns.interrupt(stamp);
         }
-        let by_gyro = told.map(|told| self.errors.turn_variance(&self.config, told.turn, told.time));
+        let variance = |turn| self.errors.turn_variance(&self.config, turn, rims.dt);
+        let by_gyro = turn_by_gyro.map(|turn| if is_noise { 0.0 } else { variance(turn) });
         if slips {
             self.size.interrupt();
         } else {
             let is_sure = !self.stuck.is_suspect() && self.errors.is_measured();
-            let by_gyro = told.map(|told| told.turn).zip(by_gyro).filter(|_| is_sure);
+            let by_gyro = turn_by_gyro.zip(by_gyro).filter(|_| is_sure);
             self.size.rolled(self.drive.wheelbase, Rolled { way, by_wheels: turn_by_wheels, by_gyro });
         }
-        let rate = turn / told.map_or(rims.dt, |told| told.time.max(rims.dt));
-        self.move_by(stamp, &Step { way, turn, by_gyro, slip }, Twist2::new(way / rims.dt, rate));
+        self.move_by(stamp, &Step { way, turn, dt: rims.dt, by_gyro, slip });
         if slips { WheelReport::Slipping { rate: slip_rate } } else { WheelReport::Used }
     }
 
-    /// What counts of a step that the gyro told of. Its noise does not turn a robot that rests.
-    fn counted(&mut self, stamp: Stamp, is_without_tick: bool, step: Told) -> Told {
-        if !is_without_tick || !self.is_noise(step.turn / step.time) {
-            return self.between.count(step);
-        }
-        if self.at_rest(stamp) {
-            self.between.forget();
-        } else {
-            self.between.hold(step);
-        }
-        Told::default()
-    }
-
-    fn move_by(&mut self, stamp: Stamp, step: &Step, twist: Twist2) {
+    fn move_by(&mut self, stamp: Stamp, step: &Step) {
         let motion = Pose2::exp(Vector3::new(step.way, 0.0, step.turn));
         self.way += step.way.abs();
         let odometry = &mut self.odometry;
         odometry.stamp = stamp;
         odometry.pose = odometry.pose * motion;
-        odometry.twist = twist;
+        odometry.twist = Twist2::new(step.way / step.dt, step.turn / step.dt);
         odometry.covariance = carried(&odometry.covariance, &motion) + of_step(&self.config, step);
     }
 
@@ -289,7 +275,6 @@ impl WheelOdometry {
         self.last = Some(*ticks);
         self.suspect = None;
         self.resting_since = None;
-        self.between.forget();
         self.size.interrupt();
         self.turns.interrupt(ticks.stamp);
         self.gyro.turn_until(ticks.stamp, self.config.gyro_timeout);

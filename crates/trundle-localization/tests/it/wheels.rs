@@ -246,6 +246,18 @@ fn a_robot_that_creeps_turns_between_the_ticks_too() {
 }
 
 #[test]
+fn the_first_tick_after_a_short_stop_tells_of_its_own_step_alone() {
+    let mut drive = Drive::new();
+    drive.drive_with_gyro(Twist2::ZERO, 0.0, 200);
+    drive.drive_with_gyro(Twist2::new(0.3, 0.0), 0.0, 50);
+    drive.drive_with_gyro(Twist2::ZERO, 0.03, 14);
+    drive.drive_with_gyro(Twist2::new(0.2, 1.0), 1.0, 1);
+    assert_eq!(drive.odometry.report(), WheelReport::Used);
+    let omega = drive.odometry.odometry().twist.omega;
+    assert!((omega - 1.0).abs() < 0.01, "{omega}");
+}
+
+#[test]
 fn without_a_gyro_for_a_while_the_wheels_steer() {
     let mut drive = Drive::new();
     drive.drive_with_gyro(Twist2::ZERO, 0.0, 50);
