@@ -128,7 +128,7 @@ impl Navigator {
             return None;
         }
         self.vantage = Vantage::Unknown;
-        if long.is_none() && self.unseen.bar(at) {
+        if long.is_none() && self.unseen.bar(at, s.now) {
             // The next plan keeps off it.
             self.stands_to_look(s);
         } else if long.is_none() {

@@ -1,7 +1,9 @@
 //! Ways that show the camera what they lead onto before the robot is too near to see it.
 
 use super::{Navigator, Surroundings, view::unknown_about};
-use trundle_core::{Cell, CellIndex, OccupancyGrid, Pose2, Trajectory, TrajectoryPoint, Twist2, Vector2};
+use trundle_core::{
+    Cell, CellIndex, OccupancyGrid, Pose2, Stamp, Trajectory, TrajectoryPoint, Twist2, Vector2,
+};
 use trundle_planning::{Plan, PlanResult};
 
 /// What the robot did about floor that was never seen, on the way to the goal of now.
@@ -11,10 +13,20 @@ pub(super) struct Unseen {
     pub(super) home: Option<Vector2>,
     /// Where the ways looked over so far led onto what was never seen.
     walls: Vec<Vector2>,
-    /// What it set out to look at, and from where.
-    looks: Vec<(Vector2, Vector2)>,
-    /// What it looked at in vain: no way leads there.
-    barred: Vec<Vector2>,
+    /// What it set out to look at of late.
+    looks: Vec<Look>,
+    /// How often it set out to look, since the goal was given.
+    looked: usize,
+    /// What it looked at in vain, and when it knew: no way leads there.
+    barred: Vec<(Vector2, Stamp)>,
+}
+
+/// What the robot set out to look at, from where, and when.
+#[derive(Debug, Clone, Copy)]
+struct Look {
+    at: Vector2,
+    from: Vector2,
+    since: Stamp,
 }
 
 /// What looking for a way that shows where it leads came to.
@@ -37,6 +49,8 @@ const WORTH: (f64, f64) = (1.5, 10.0);
 const MOST_LOOKS: usize = 2;
 const APART: f64 = 0.4;
 const MOST_LOOKS_A_GOAL: usize = 12;
+/// What was looked at in vain may be seen after so long, s: somebody stood before it, and has gone.
+const AGAIN: f64 = 20.0;
 
 impl Unseen {
     /// For the next goal.
@@ -45,13 +59,20 @@ impl Unseen {
     }
 
     /// Notes that it sets out to look at `at` from `from`.
-    pub(super) fn note_look(&mut self, at: Vector2, from: Vector2) {
-        self.looks.push((at, from));
+    pub(super) fn note_look(&mut self, at: Vector2, from: Vector2, now: Stamp) {
+        self.looks.push(Look { at, from, since: now });
+        self.looked += 1;
+    }
+
+    /// Looks that were long ago tell nothing of what may be seen now.
+    pub(super) fn forget(&mut self, now: Stamp) {
+        self.looks.retain(|look| now - look.since < AGAIN);
+        self.barred.retain(|(_, since)| now - *since < AGAIN);
     }
 
     /// From where it has looked at this.
     fn looks_at(&self, at: Vector2) -> impl Iterator<Item = Vector2> + '_ {
-        self.looks.iter().filter(move |(what, _)| (what - at).norm() < WALL).map(|(_, from)| *from)
+        self.looks.iter().filter(move |look| (look.at - at).norm() < WALL).map(|look| look.from)
     }
 
     /// Whether it has looked at this: if nothing is known of it still, driving will not show it either.
@@ -61,7 +82,7 @@ impl Unseen {
 
     /// Whether looking at `at` once more may help.
     pub(super) fn is_worth_a_look(&self, at: Vector2) -> bool {
-        self.looks_at(at).count() < MOST_LOOKS && self.looks.len() < MOST_LOOKS_A_GOAL
+        self.looks_at(at).count() < MOST_LOOKS && self.looked < MOST_LOOKS_A_GOAL
     }
 
     /// Whether `from` is another place to look at `at` from than it was before.
@@ -69,18 +90,23 @@ impl Unseen {
         self.looks_at(at).all(|old| (old - from).norm() > APART)
     }
 
-    /// No way is to lead there any more. Whether that is new.
-    pub(super) fn bar(&mut self, at: Vector2) -> bool {
-        let is_new = self.barred.iter().all(|old| (old - at).norm() > WALL / 2.0);
+    /// No way is to lead there for a while. Whether that is new.
+    pub(super) fn bar(&mut self, at: Vector2, now: Stamp) -> bool {
+        let is_new = self.barred.iter().all(|(old, _)| (old - at).norm() > WALL / 2.0);
         if is_new {
-            self.barred.push(at);
+            self.barred.push((at, now));
         }
         is_new
     }
 
+    /// Where no way is to lead.
+    fn bars(&self) -> Vec<Vector2> {
+        self.barred.iter().map(|(at, _)| *at).collect()
+    }
+
     /// The place that it looked at last in vain.
     pub(super) fn barred(&self) -> Option<Vector2> {
-        self.barred.last().copied()
+        self.barred.last().map(|(at, _)| *at)
     }
 }
 
@@ -92,9 +118,11 @@ impl Navigator {
         (from, twist): (Pose2, Twist2),
         goal: Pose2,
     ) -> InView {
+        self.unseen.forget(s.now);
         let ends = [from, goal].map(|pose| pose.position());
+        let bars = self.unseen.bars();
         let best = {
-            let floor = self.walled(s.floor(), &self.unseen.barred, ends);
+            let floor = self.walled(s.floor(), &bars, ends);
             let floor = floor.as_ref().unwrap_or(s.floor());
             self.planner.plan_among(floor, s.traffic.movers, from, twist, goal)
         };
@@ -105,7 +133,7 @@ impl Navigator {
         if self.unseen.walls.is_empty() {
             self.unseen.walls.push(unseen);
         }
-        let walls = [self.unseen.barred.as_slice(), &self.unseen.walls].concat();
+        let walls = [bars, self.unseen.walls.clone()].concat();
         let Some(floor) = self.walled(s.floor(), &walls, ends) else {
             return self.found(InView::Unseen(unseen, None));
         };
@@ -181,7 +209,26 @@ mod tests {
         config::RobotConfig,
         navigator::{Traffic, view::tests::floor},
     };
-    use trundle_core::{PoseEstimate, Stamp};
+    use trundle_core::PoseEstimate;
+
+    #[test]
+    fn what_was_looked_at_in_vain_is_looked_at_again_after_a_while() {
+        let (mut unseen, at) = (Unseen::default(), Vector2::new(1.0, 2.0));
+        let time = |s: f64| Stamp::default().after(s);
+        unseen.note_look(at, Vector2::zeros(), time(5.0));
+        assert!(unseen.bar(at, time(7.0)) && !unseen.bar(at, time(8.0)));
+        unseen.forget(time(24.0));
+        assert!(
+            unseen.was_looked_at(at)
+                && unseen.barred().is_some()
+                && !unseen.is_elsewhere(at, Vector2::zeros())
+        );
+        unseen.forget(time(28.0));
+        assert!(!unseen.was_looked_at(at) && unseen.barred().is_none() && unseen.is_worth_a_look(at));
+        (1..MOST_LOOKS_A_GOAL).for_each(|i| unseen.note_look(at, Vector2::zeros(), time(30.0 * i as f64)));
+        unseen.forget(time(1000.0));
+        assert!(!unseen.is_worth_a_look(at), "not for ever");
+    }
 
     #[test]
     fn walls_are_put_on_the_unknown_alone() {

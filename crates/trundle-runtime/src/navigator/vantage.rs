@@ -94,7 +94,7 @@ impl Navigator {
             && self.first_unseen(plan.trajectory.points(), s.floor()).is_none()
         {
             if let (Aim::Unseen, Some(at)) = (aim, self.blocked_at) {
-                self.unseen.note_look(at, place.position());
+                self.unseen.note_look(at, place.position(), s.now);
             }
             self.follower.follow(plan.trajectory.clone(), place);
             self.vantage = Vantage::Going(aim, plan.trajectory);

@@ -109,7 +109,7 @@ fn is_near(a: Pose2, b: Pose2) -> bool {
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
-    use trundle_core::{Trajectory, Twist2};
+    use trundle_core::{Stamp, Trajectory, Twist2};
 
     const VIEW: View = View { base_from_sector: Pose2::IDENTITY, half_angle: 0.5, nearest: 0.6 };
 
@@ -137,7 +137,7 @@ pub(super) mod tests {
         let ahead = floor(|at| at.x > 4.0);
         let straight = way((0..60).map(|i| Pose2::new(2.0 + 0.05 * f64::from(i), 2.0, 0.0)));
         let mut in_vain = Unseen::default();
-        in_vain.note_look(Vector2::new(4.1, 2.0), Vector2::new(3.0, 2.0));
+        in_vain.note_look(Vector2::new(4.1, 2.0), Vector2::new(3.0, 2.0), Stamp::default());
         assert!(VIEW.first_unseen(straight.points(), &ahead, 0.2, &in_vain).is_some());
         assert_eq!(VIEW.first_unseen(straight.points(), &ahead, 0.2, &Unseen::default()), None);
     }
