@@ -83,7 +83,7 @@ impl Trial {
 pub fn all(mut plans: Vec<TrialPlan>, args: &RunsArgs) -> Result<Vec<Trial>, Failure> {
     let quiet = args.common.quiet;
     if let Some(word) = &args.only {
-        plans.retain(|plan| plan.name.contains(word.as_str()));
+        plans.retain(|plan| format!("{}, seed {}", plan.name, plan.seed).contains(word.as_str()));
     }
     if plans.is_empty() {
         let word = args.only.as_deref().unwrap_or_default();
