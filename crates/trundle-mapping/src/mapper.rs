@@ -58,7 +58,7 @@ impl GridMapper {
     pub fn insert(&mut self, map_from_base: Pose2, scan: &Scan) -> Insertion {
         self.live.begin();
         let mut cells = std::mem::take(&mut self.cells);
-        cells.rasterise(&self.config, map_from_base, scan);
+        cells.rasterise(&self.config, map_from_base, scan, |cell| self.evidence.log_odds(cell) > 0.0);
         if let Some((low, high)) = cells.reach() {
             self.grow(low, high);
         }
@@ -305,6 +305,24 @@ mod tests {
             mapper.insert(Pose2::new(-0.5, 0.0, 0.0), &ahead(Beam::Free { range: 3.0 }));
         }
         assert_eq!(mapper.grid().at(low_box), Cell::Free);
+    }
+
+    #[test]
+    fn a_beam_that_meets_what_hides_in_the_blind_range_says_nothing_of_what_is_behind_it() {
+        // A chair's seat: its near edge is too near to be seen, and the floor is seen under it.
+        let mut mapper = mapper();
+        let at = |x: f64| Vector2::new(x, 0.01);
+        for edge in [1.01, 1.41] {
+            for _ in 0..3 {
+                mapper.insert(Pose2::IDENTITY, &ahead(Beam::Hit { range: edge }));
+            }
+        }
+        for _ in 0..20 {
+            mapper.insert(Pose2::new(0.5, 0.0, 0.0), &ahead(Beam::Free { range: 3.0 }));
+        }
+        assert_eq!(mapper.grid().at(at(0.76)), Cell::Free);
+        assert_eq!(mapper.grid().at(at(1.41)), Cell::Occupied, "its far edge");
+        assert_eq!(mapper.grid().at(at(2.01)), Cell::Unknown, "beyond");
     }
 
     #[test]

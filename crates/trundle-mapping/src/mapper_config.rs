@@ -21,8 +21,8 @@ pub struct MapperConfig {
     pub free_below: f64,
     /// Beams are cut at this range, m, 0.1 to 200. Default 12.
     pub max_range: f64,
-    /// Nearer than this to the sensor, a beam clears only what was not thought occupied, m, 0 to 10: there a low
-    /// obstacle hides under the field of view, and the map alone remembers it. Default 0.65: a Kinect V2, 0.45 m high,
+    /// Nearer than this to the sensor, a beam clears only what was not thought occupied, and nothing behind that, m, 0 to 10: there
+    /// a low obstacle hides under the field of view and a seat is too near to be seen, and the map alone remembers them. Default 0.65: a Kinect V2, 0.45 m high,
     /// 8 deg down; take `DepthScanner::blind_range`. 0 for a laser.
     pub blind_range: f64,
     /// Neighbouring hits at most so far apart are one surface, and what lies between them on it is not cleared by beams that

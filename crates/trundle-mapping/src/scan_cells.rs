@@ -56,11 +56,17 @@ const SURFACE: u32 = 2;
 const FIRST_HIT: u32 = 3;
 
 impl ScanCells {
-    /// Finds the cells of `scan` taken at `map_from_base`.
-    pub(crate) fn rasterise(&mut self, config: &MapperConfig, map_from_base: Pose2, scan: &Scan) {
+    /// Finds the cells of `scan` taken at `map_from_base`. `hides`: whether a cell of the blind range may hide what is behind it.
+    pub(crate) fn rasterise(
+        &mut self,
+        config: &MapperConfig,
+        map_from_base: Pose2,
+        scan: &Scan,
+        hides: impl Fn(GridCell) -> bool,
+    ) {
         self.hits.clear();
         self.frees.clear();
-        self.find_segments(config, map_from_base, scan);
+        self.find_segments(config, map_from_base, scan, hides);
         self.window.cover(self.origin, &self.segments);
         for i in 0..self.segments.len() {
             if self.segments[i].hit {
@@ -81,7 +87,13 @@ impl ScanCells {
         Some((low, GridCell { x: low.x + *width as i32 - 1, y: low.y + height as i32 - 1 }))
     }
 
-    fn find_segments(&mut self, config: &MapperConfig, map_from_base: Pose2, scan: &Scan) {
+    fn find_segments(
+        &mut self,
+        config: &MapperConfig,
+        map_from_base: Pose2,
+        scan: &Scan,
+        hides: impl Fn(GridCell) -> bool,
+    ) {
         let cells_from_metres = 1.0 / config.resolution;
         let limit = config.half_extent * cells_from_metres;
         // NaN is not within either.
@@ -101,16 +113,26 @@ impl ScanCells {
             let end = at(range);
             if origin_counts && within(end) {
                 self.segments.push(Segment { beam: i, end, hit });
-                let spans = scan.free_spans(i).filter(|(from, _)| *from < range);
+                let covered = self.covered_from(at(range.min(config.blind_range)), &hides);
+                let seen = covered.map_or(range, |cells| range.min(cells * config.resolution));
+                let spans = scan.free_spans(i).filter(|(from, _)| *from < seen);
                 let way = |(from, to): (f64, f64)| {
                     let start = if from == 0.0 { self.origin } else { at(from) };
-                    (start, if to < range { at(to) } else { end })
+                    (start, if to < seen { at(to) } else { at(seen) })
                 };
                 self.ways.extend(spans.map(way));
             } else {
                 self.ignored_beams += 1;
             }
         }
+    }
+
+    /// Where a beam meets something in the blind range, which ends at `blind_end`, cells. What the sensor itself stands over it
+    /// leaves first.
+    fn covered_from(&self, blind_end: Vector2, hides: impl Fn(GridCell) -> bool) -> Option<f64> {
+        let covers =
+            ray_cells(self.origin, blind_end).skip_while(|cell| hides(*cell)).find(|cell| hides(*cell));
+        covers.map(|cell| (cell.center_cells() - self.origin).norm())
     }
 
     fn mark_hit(&mut self, end: Vector2) {
@@ -200,7 +222,7 @@ mod tests {
             let pose = Pose2::new(x, y, theta);
             let scan = Scan::new(Stamp::default(), Vector2::new(0.1, 0.0), -0.6, 0.02, beams).unwrap();
             let mut cells = ScanCells::default();
-            cells.rasterise(&config, pose, &scan);
+            cells.rasterise(&config, pose, &scan, |_| false);
 
             let origin = pose.transform(scan.origin()) * 10.0;
             let (mut hits, mut frees) = (BTreeSet::new(), BTreeSet::new());
@@ -229,7 +251,7 @@ mod tests {
         let cleared = |surface_gap: f64| {
             let mut cells = ScanCells::default();
             let config = MapperConfig { surface_gap, ..MapperConfig::default() };
-            cells.rasterise(&config, Pose2::new(0.02, 0.02, 0.0), &scan);
+            cells.rasterise(&config, Pose2::new(0.02, 0.02, 0.0), &scan, |_| false);
             cells.frees.iter().filter(|cell| cell.y == 2 && cell.x > 4).count()
         };
         assert!(cleared(0.0) > 5);
@@ -246,7 +268,8 @@ mod tests {
         };
         let scan = Scan::from_parts(Stamp::default(), Vector2::zeros(), (0.0, 0.1), parts).unwrap();
         let mut cells = ScanCells::default();
-        cells.rasterise(&MapperConfig { resolution: 0.1, ..MapperConfig::default() }, Pose2::IDENTITY, &scan);
+        let config = MapperConfig { resolution: 0.1, ..MapperConfig::default() };
+        cells.rasterise(&config, Pose2::IDENTITY, &scan, |_| false);
         let columns: Vec<i32> = cells.frees.iter().map(|cell| cell.x).collect();
         // The cell in which a stretch ends counts as the whole beam's does; the hit's own does not.
         assert_eq!(columns, [0, 1, 2, 3, 4, 5, 10, 11, 12, 13, 14, 15, 17, 18, 19]);
@@ -264,7 +287,7 @@ mod tests {
             Pose2 { theta: f64::NAN, ..Pose2::IDENTITY },
             Pose2::new(1e300, 0.0, 0.0),
         ] {
-            cells.rasterise(&config, pose, &scan);
+            cells.rasterise(&config, pose, &scan, |_| false);
             assert_eq!((cells.ignored_beams, cells.hits.len(), cells.reach()), (3, 0, None));
         }
     }
