@@ -21,7 +21,7 @@ pub(super) struct Unseen {
     barred: Vec<(Vector2, Stamp)>,
 }
 
-/// What the robot set out to look at, from where, and when.
+/// What the robot set out to look at, from where, and when it set out or, once there, came there.
 #[derive(Debug, Clone, Copy)]
 struct Look {
     at: Vector2,
@@ -62,6 +62,11 @@ impl Unseen {
     pub(super) fn note_look(&mut self, at: Vector2, from: Vector2, now: Stamp) {
         self.looks.push(Look { at, from, since: now });
         self.looked += 1;
+    }
+
+    /// Notes that it has come to where it set out to last.
+    pub(super) fn note_arrival(&mut self, now: Stamp) {
+        self.looks.last_mut().into_iter().for_each(|look| look.since = now);
     }
 
     /// Looks that were long ago tell nothing of what may be seen now.
@@ -215,7 +220,9 @@ mod tests {
     fn what_was_looked_at_in_vain_is_looked_at_again_after_a_while() {
         let (mut unseen, at) = (Unseen::default(), Vector2::new(1.0, 2.0));
         let time = |s: f64| Stamp::default().after(s);
-        unseen.note_look(at, Vector2::zeros(), time(5.0));
+        unseen.note_look(at, Vector2::zeros(), time(-15.0));
+        // The way was long.
+        unseen.note_arrival(time(5.5));
         assert!(unseen.bar(at, time(7.0)) && !unseen.bar(at, time(8.0)));
         unseen.forget(time(24.0));
         assert!(

@@ -141,7 +141,10 @@ impl Navigator {
     fn look_from_here(&mut self, now: Stamp) {
         self.follower.halt();
         self.vantage = match self.vantage {
-            Vantage::Going(Aim::Unseen, _) => Vantage::Looking(now.after(LOOK)),
+            Vantage::Going(Aim::Unseen, _) => {
+                self.unseen.note_arrival(now);
+                Vantage::Looking(now.after(LOOK))
+            }
             _ => Vantage::Settled,
         };
     }
