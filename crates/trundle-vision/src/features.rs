@@ -1,3 +1,5 @@
+use crate::ImagePatch;
+
 /// A corner found in an image.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Keypoint {
@@ -32,6 +34,8 @@ pub struct Features {
     pub keypoints: Vec<Keypoint>,
     /// Their descriptors.
     pub descriptors: Vec<Descriptor>,
+    /// What is around them, or nothing at all where nobody cut it out.
+    pub patches: Vec<ImagePatch>,
 }
 
 impl Features {
@@ -42,11 +46,15 @@ impl Features {
             if wants(i) {
                 self.keypoints.swap(kept, i);
                 self.descriptors.swap(kept, i);
+                if i < self.patches.len() {
+                    self.patches.swap(kept, i);
+                }
                 kept += 1;
             }
         }
         self.keypoints.truncate(kept);
         self.descriptors.truncate(kept);
+        self.patches.truncate(kept);
     }
 }
 
@@ -60,10 +68,12 @@ mod tests {
         let mut features = Features {
             keypoints: (0..9).map(keypoint).collect(),
             descriptors: (0..9).map(|i| Descriptor([i; 4])).collect(),
+            patches: (0..9).filter_map(|i| ImagePatch::new([i; ImagePatch::BYTES], [0.0; 2])).collect(),
         };
         features.retain(|i| i % 3 == 1);
         let places: Vec<f32> = features.keypoints.iter().map(|k| k.x).collect();
         let words: Vec<u64> = features.descriptors.iter().map(|d| d.0[0]).collect();
         assert_eq!((places, words), (vec![1.0, 4.0, 7.0], vec![1, 4, 7]));
+        assert_eq!(features.patches.iter().map(|p| p.pixels()[0]).collect::<Vec<_>>(), vec![1, 4, 7]);
     }
 }

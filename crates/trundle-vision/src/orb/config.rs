@@ -18,6 +18,10 @@ pub struct OrbConfig {
     /// Side of the cells in which the lower threshold is resorted to, px of the level, 8 to 65535. Default 32: about
     /// the size of what a descriptor sees.
     pub cell_px: usize,
+    /// A corner is one of something where the smoothed image around it (15 x 15 px of its level) has at least this gradient in every
+    /// direction, root mean square, in standard deviations of the image's own noise a px, 0 to 100; 0 takes corners of noise and steps
+    /// along edges too. Default 0.5: swept in docs/results.md.
+    pub least_texture: f64,
 }
 
 impl Default for OrbConfig {
@@ -29,6 +33,7 @@ impl Default for OrbConfig {
             fast_threshold: 20,
             fast_min_threshold: 7,
             cell_px: 32,
+            least_texture: 0.5,
         }
     }
 }
@@ -52,6 +57,7 @@ impl OrbConfig {
         let low = f64::from(self.fast_min_threshold);
         require_in("orb.fast_min_threshold", low, "grey values", 1.0, threshold)?;
         require_in("orb.cell_px", self.cell_px as f64, "px", 8.0, 65535.0)?;
+        require_in("orb.least_texture", self.least_texture, "sigmas a px", 0.0, 100.0)?;
         Ok(self)
     }
 
@@ -93,6 +99,7 @@ mod tests {
         assert_eq!(refused(OrbConfig { fast_threshold: 0, ..good() }), "orb.fast_threshold");
         assert_eq!(refused(OrbConfig { fast_min_threshold: 21, ..good() }), "orb.fast_min_threshold");
         assert_eq!(refused(OrbConfig { cell_px: 2, ..good() }), "orb.cell_px");
+        assert_eq!(refused(OrbConfig { least_texture: -0.1, ..good() }), "orb.least_texture");
         assert!(good().validated().is_ok());
     }
 }

@@ -52,11 +52,19 @@ pub(crate) struct Detector {
 
 impl Detector {
     /// Appends the corners of `image` that are at least [`BORDER`] px from its border, row by row: local maxima of the
-    /// score above the threshold, and in cells that have none, above the lower one. The image is larger than two borders.
-    pub fn detect(&mut self, image: &GrayImage, config: &OrbConfig, corners: &mut Vec<Corner>) {
+    /// score above the threshold, and in cells that have none, above the lower one; only of those that are `wanted`. The image is
+    /// larger than two borders.
+    pub fn detect(
+        &mut self,
+        image: &GrayImage,
+        config: &OrbConfig,
+        wanted: impl Fn(Corner) -> bool,
+        corners: &mut Vec<Corner>,
+    ) {
         let size = (image.width(), image.height());
         self.score(image, config.fast_min_threshold);
         self.find_maxima(size, corners);
+        corners.retain(|corner| wanted(*corner));
         let side = config.cell_px as u16;
         let across = size.0.div_ceil(config.cell_px);
         let cell = |c: &Corner| usize::from(c.y / side) * across + usize::from(c.x / side);
@@ -293,7 +301,7 @@ mod tests {
 
     fn detected(image: &GrayImage) -> Vec<Corner> {
         let mut corners = Vec::new();
-        Detector::default().detect(image, &OrbConfig::default(), &mut corners);
+        Detector::default().detect(image, &OrbConfig::default(), |_| true, &mut corners);
         corners
     }
 

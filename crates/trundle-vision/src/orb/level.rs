@@ -1,7 +1,8 @@
 use super::{
     Described, OrbConfig, blur::Blur, brief, distribute, fast, fast::Corner, orientation, patch,
-    resize::Resize, subpixel,
+    resize::Resize, subpixel, texture,
 };
+use crate::ImagePatch;
 use trundle_core::GrayImage;
 
 /// One level of the pyramid, with the buffers of every step.
@@ -50,11 +51,14 @@ impl Level {
         }
     }
 
-    /// Finds the corners that are far enough from the border to be described.
-    pub fn detect(&mut self, config: &OrbConfig) {
+    /// Finds the corners that are far enough from the border to be described, with gradients of `least` grey values a px
+    /// around them whichever way.
+    pub fn detect(&mut self, config: &OrbConfig, least: f32) {
         self.corners.clear();
         if self.width().min(self.height()) > 2 * patch::BORDER && self.width().max(self.height()) <= 65536 {
-            self.detector.detect(&self.image, config, &mut self.corners);
+            self.blur.run(&self.image, &mut self.blurred);
+            let has_texture = |corner: Corner| texture::least_gradient(&self.blurred, corner) >= least;
+            self.detector.detect(&self.image, config, has_texture, &mut self.corners);
         }
     }
 
@@ -76,7 +80,6 @@ impl Level {
         if self.chosen.is_empty() {
             return;
         }
-        self.blur.run(&self.image, &mut self.blurred);
         let blurred = &self.blurred;
         self.features.extend(self.chosen.iter().map(|&corner| {
             let patch = patch::around(blurred, corner);
@@ -89,6 +92,7 @@ impl Level {
                 score: corner.score,
                 angle: direction.angle,
                 descriptor,
+                patch: ImagePatch::cut(&self.image, (corner.x.into(), corner.y.into()), [dx, dy]),
             }
         }));
     }

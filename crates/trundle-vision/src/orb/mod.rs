@@ -20,14 +20,16 @@ mod config;
 mod distribute;
 mod fast;
 mod level;
+mod noise;
 mod orientation;
 mod patch;
 mod resize;
 mod subpixel;
+mod texture;
 
 pub use config::OrbConfig;
 
-use crate::{Descriptor, Features, Keypoint};
+use crate::{Descriptor, Features, ImagePatch, Keypoint};
 use level::Level;
 use rayon::prelude::*;
 use trundle_core::{GrayImage, Invalid};
@@ -75,7 +77,8 @@ impl OrbExtractor {
     pub fn extract_into(&mut self, image: &GrayImage, features: &mut Features) {
         self.build_pyramid(image);
         let config = &self.config;
-        self.levels.par_iter_mut().for_each(|level| level.detect(config));
+        let least = config.least_texture as f32 * noise::sigma(image);
+        self.levels.par_iter_mut().for_each(|level| level.detect(config, least));
         self.choose();
         self.levels.par_iter_mut().for_each(Level::describe);
         self.collect(image, features);
@@ -105,6 +108,7 @@ impl OrbExtractor {
     fn collect(&self, image: &GrayImage, features: &mut Features) {
         features.keypoints.clear();
         features.descriptors.clear();
+        features.patches.clear();
         for (octave, level) in self.levels.iter().enumerate() {
             // Pixel centres are whole numbers on every level, so the corners of the images coincide at -0.5.
             let across = image.width() as f32 / level.width().max(1) as f32;
@@ -118,6 +122,7 @@ impl OrbExtractor {
                     response: f32::from(described.score),
                 });
                 features.descriptors.push(described.descriptor);
+                features.patches.push(described.patch);
             }
         }
     }
@@ -131,4 +136,5 @@ struct Described {
     score: u8,
     angle: f32,
     descriptor: Descriptor,
+    patch: ImagePatch,
 }

@@ -1,0 +1,78 @@
+use trundle_core::GrayImage;
+
+/// Pixels that a patch reaches from its middle one.
+pub(super) const REACH: usize = 10;
+/// Its side, px.
+pub(super) const SIDE: usize = 2 * REACH + 1;
+
+/// What an image shows around a feature: 21 x 21 px of the feature's level of the pyramid.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ImagePatch {
+    pixels: [u8; SIDE * SIDE],
+    /// Where the feature is, px right and down of the middle pixel.
+    feature: [f32; 2],
+}
+
+impl ImagePatch {
+    /// Bytes of a patch.
+    pub const BYTES: usize = SIDE * SIDE;
+
+    /// Of these pixels, row by row, with the feature so many px right and down of the middle one; `None` where that is more than
+    /// half a pixel off.
+    pub fn new(pixels: [u8; Self::BYTES], feature: [f32; 2]) -> Option<Self> {
+        feature.iter().all(|v| v.abs() <= 0.5).then_some(Self { pixels, feature })
+    }
+
+    /// Cut from an `image` around pixel (`x`, `y`), which is 10 px or more from its border.
+    pub(crate) fn cut(image: &GrayImage, (x, y): (usize, usize), feature: [f32; 2]) -> Self {
+        let mut pixels = [0; Self::BYTES];
+        for (row, to) in pixels.as_chunks_mut::<SIDE>().0.iter_mut().enumerate() {
+            to.copy_from_slice(&image.row(y + row - REACH)[x - REACH..][..SIDE]);
+        }
+        Self { pixels, feature }
+    }
+
+    /// The pixels, row by row.
+    pub fn pixels(&self) -> &[u8; Self::BYTES] {
+        &self.pixels
+    }
+
+    /// Where the feature is, px right and down of the middle pixel.
+    pub fn feature(&self) -> [f32; 2] {
+        self.feature
+    }
+
+    /// The grey value at (`x`, `y`) px from the first pixel, between the four around it; `None` outside.
+    pub(super) fn at(&self, x: f32, y: f32) -> Option<f32> {
+        let last = (SIDE - 1) as f32;
+        if !(x >= 0.0 && y >= 0.0 && x < last && y < last) {
+            return None;
+        }
+        let (left, top) = (x as usize, y as usize);
+        let (right, down) = (x - left as f32, y - top as f32);
+        let value = |i: usize| f32::from(self.pixels[i]);
+        let first = top * SIDE + left;
+        let above = value(first) + right * (value(first + 1) - value(first));
+        let below = value(first + SIDE) + right * (value(first + SIDE + 1) - value(first + SIDE));
+        Some(above + down * (below - above))
+    }
+
+    /// Of each `N` x `N` px from pixel (`left`, `top`) on: the sum of the four pixels from it on by their weights, row by row.
+    #[inline(always)]
+    pub(super) fn blend<const N: usize>(
+        &self,
+        (left, top): (usize, usize),
+        weights: [f32; 4],
+        to: &mut [f32],
+    ) {
+        for (y, to) in to.as_chunks_mut::<N>().0.iter_mut().take(N).enumerate() {
+            let first = (top + y) * SIDE + left;
+            let (above, below) = (&self.pixels[first..][..=N], &self.pixels[first + SIDE..][..=N]);
+            for (x, to) in to.iter_mut().enumerate() {
+                *to = weights[0] * f32::from(above[x])
+                    + weights[1] * f32::from(above[x + 1])
+                    + (weights[2] * f32::from(below[x]) + weights[3] * f32::from(below[x + 1]));
+            }
+        }
+    }
+}

@@ -1,0 +1,269 @@
+use super::patch::{ImagePatch, REACH};
+use nalgebra::{Matrix2, Vector2};
+
+/// Pixels that a template reaches from its middle.
+const HALF: usize = 5;
+/// Its side, px.
+const SIDE: usize = 2 * HALF + 1;
+/// Its pixels, filled up with zeros to whole registers.
+const LENGTH: usize = (SIDE * SIDE).next_multiple_of(LANES);
+/// Numbers that are summed side by side, whatever the processor has: sums of floats depend on their order.
+const LANES: usize = 8;
+/// The same with a pixel more around, for the gradients.
+const WARPED: usize = SIDE + 2;
+/// Steps at most, and the last one at most, px.
+const STEPS: (usize, f32) = (10, 0.02);
+/// How much of the contrast in view may be something else.
+const MOST_UNLIKE: f32 = 0.3;
+/// By how much the contrast may differ, either way.
+const MOST_CONTRAST: f32 = 2.0;
+/// Numbers that are fitted: place, brightness, contrast.
+const FITTED: usize = 4;
+
+type Pixels = [f32; LENGTH];
+
+/// A patch as it should look in another image.
+#[derive(Debug, Clone)]
+pub struct Template {
+    /// Grey values less their mean.
+    values: Pixels,
+    /// Gradients less what a change of brightness or contrast does.
+    right: Pixels,
+    down: Pixels,
+    /// Sum of the squared values.
+    contrast: f32,
+    /// Inverse of the sums of the gradients' products.
+    inverse: Matrix2<f32>,
+}
+
+/// Where a template was found.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Alignment {
+    /// Where it is, px of the patch's level right and down of the patch's own feature.
+    pub offset: Vector2<f32>,
+    /// Standard deviation of that in its least certain direction, by what is left of the differences, px of the level.
+    pub sigma: f32,
+}
+
+impl Template {
+    /// What `patch` shows, seen from where an offset of a px is one of `there_from_here`, px. `None` where the patch is too small for
+    /// that, or looks the same a bit aside.
+    pub fn new(patch: &ImagePatch, there_from_here: Matrix2<f32>) -> Option<Self> {
+        let warped = warp(patch, there_from_here.try_inverse()?)?;
+        let mut template = Self::gradients(&warped);
+        let mean = sum(&template.values) / (SIDE * SIDE) as f32;
+        template.values[..SIDE * SIDE].iter_mut().for_each(|v| *v -= mean);
+        template.contrast = dot(&template.values, &template.values);
+        for gradient in [&mut template.right, &mut template.down] {
+            let (mean, share) =
+                (sum(gradient) / (SIDE * SIDE) as f32, dot(gradient, &template.values) / template.contrast);
+            for (g, v) in gradient.iter_mut().zip(&template.values).take(SIDE * SIDE) {
+                *g -= mean + share * v;
+            }
+        }
+        let (right, down) = (&template.right, &template.down);
+        let across = dot(right, down);
+        template.inverse = Matrix2::new(dot(right, right), across, across, dot(down, down)).try_inverse()?;
+        (template.contrast > 0.0 && template.inverse.iter().all(|v| v.is_finite())).then_some(template)
+    }
+
+    /// Values as they are, and their gradients.
+    fn gradients(warped: &[[f32; WARPED]; WARPED]) -> Self {
+        let mut template = Self {
+            values: [0.0; LENGTH],
+            right: [0.0; LENGTH],
+            down: [0.0; LENGTH],
+            contrast: 0.0,
+            inverse: Matrix2::zeros(),
+        };
+        for (i, (y, x)) in (1..=SIDE).flat_map(|y| (1..=SIDE).map(move |x| (y, x))).enumerate() {
+            template.values[i] = warped[y][x];
+            template.right[i] = (warped[y][x + 1] - warped[y][x - 1]) / 2.0;
+            template.down[i] = (warped[y + 1][x] - warped[y - 1][x]) / 2.0;
+        }
+        template
+    }
+
+    /// Where in `patch` it is, looked for from `start` on, px of the patch's level right and down of the patch's own feature;
+    /// `None` where nothing within it is like it.
+    pub fn find(&self, patch: &ImagePatch, start: Vector2<f32>) -> Option<Alignment> {
+        #[cfg(target_arch = "x86_64")]
+        if std::arch::is_x86_feature_detected!("avx2") {
+            // SAFETY: the processor has the one feature that the function is compiled for.
+            return unsafe { self.find_by_avx2(patch, start) };
+        }
+        self.find_plainly(patch, start)
+    }
+
+    /// The same as [`Template::find_plainly`], more numbers an instruction.
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx2")]
+    fn find_by_avx2(&self, patch: &ImagePatch, start: Vector2<f32>) -> Option<Alignment> {
+        self.find_plainly(patch, start)
+    }
+
+    #[inline(always)]
+    fn find_plainly(&self, patch: &ImagePatch, start: Vector2<f32>) -> Option<Alignment> {
+        let feature = Vector2::from(patch.feature());
+        let mut at = feature + start;
+        let mut seen = [0.0; LENGTH];
+        for _ in 0..STEPS.0 {
+            sample(patch, at, &mut seen)?;
+            let gain = dot(&self.values, &seen) / self.contrast;
+            let step = self.inverse * Vector2::new(dot(&self.right, &seen), dot(&self.down, &seen))
+                / gain.clamp(1.0 / MOST_CONTRAST, MOST_CONTRAST);
+            at -= step;
+            if step.norm() <= STEPS.1 {
+                return self.judged(&seen, gain, at - feature);
+            }
+        }
+        None
+    }
+
+    /// The place, unless what is `seen` there is something else.
+    #[inline(always)]
+    fn judged(&self, seen: &Pixels, gain: f32, offset: Vector2<f32>) -> Option<Alignment> {
+        let count = (SIDE * SIDE) as f32;
+        let mean = sum(seen) / count;
+        let contrast = dot(seen, seen) - count * mean * mean;
+        let unlike = (contrast - gain * gain * self.contrast).max(0.0);
+        let variance = unlike / (count - FITTED as f32) / (gain * gain);
+        let half = (self.inverse.m11 + self.inverse.m22) / 2.0;
+        let widest = half + ((self.inverse.m11 - self.inverse.m22) / 2.0).hypot(self.inverse.m12);
+        let sigma = (variance * widest).sqrt();
+        let is_like =
+            unlike <= MOST_UNLIKE * contrast && (1.0 / MOST_CONTRAST..=MOST_CONTRAST).contains(&gain);
+        is_like.then_some(Alignment { offset, sigma })
+    }
+}
+
+/// The patch around its feature, an offset of a px being one of `here_from_there`; `None` where it does not reach so far.
+fn warp(patch: &ImagePatch, here_from_there: Matrix2<f32>) -> Option<[[f32; WARPED]; WARPED]> {
+    let [x, y] = patch.feature();
+    let middle = Vector2::new(x, y).add_scalar(REACH as f32);
+    let mut warped = [[0.0; WARPED]; WARPED];
+    for (row, values) in warped.iter_mut().enumerate() {
+        for (column, value) in values.iter_mut().enumerate() {
+            let offset = Vector2::new(column as f32, row as f32).add_scalar(-(HALF as f32 + 1.0));
+            let at = middle + here_from_there * offset;
+            *value = patch.at(at.x, at.y)?;
+        }
+    }
+    Some(warped)
+}
+
+/// What `patch` shows in the square around `at`, px from its middle; `None` where it does not reach so far.
+#[inline(always)]
+fn sample(patch: &ImagePatch, at: Vector2<f32>, seen: &mut Pixels) -> Option<()> {
+    let corner = at.add_scalar((REACH - HALF) as f32);
+    let most = 2.0 * (REACH - HALF) as f32;
+    if !(corner.x >= 0.0 && corner.y >= 0.0 && corner.x < most && corner.y < most) {
+        return None;
+    }
+    let (left, top) = (corner.x as usize, corner.y as usize);
+    let (right, down) = (corner.x - left as f32, corner.y - top as f32);
+    let weights = [(1.0 - right) * (1.0 - down), right * (1.0 - down), (1.0 - right) * down, right * down];
+    patch.blend::<SIDE>((left, top), weights, seen);
+    Some(())
+}
+
+/// The sum of the products, in an order that does not depend on the processor.
+#[inline(always)]
+fn dot(a: &Pixels, b: &Pixels) -> f32 {
+    let mut lanes = [0.0; LANES];
+    for (a, b) in a.as_chunks::<LANES>().0.iter().zip(b.as_chunks::<LANES>().0) {
+        for lane in 0..LANES {
+            lanes[lane] += a[lane] * b[lane];
+        }
+    }
+    total(lanes)
+}
+
+/// The sum, in the same order.
+#[inline(always)]
+fn sum(a: &Pixels) -> f32 {
+    let mut lanes = [0.0; LANES];
+    for a in a.as_chunks::<LANES>().0 {
+        for lane in 0..LANES {
+            lanes[lane] += a[lane];
+        }
+    }
+    total(lanes)
+}
+
+#[inline(always)]
+fn total([a, b, c, d, e, f, g, h]: [f32; LANES]) -> f32 {
+    ((a + e) + (c + g)) + ((b + f) + (d + h))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// A smooth surface with something everywhere, at (x, y) px.
+    fn surface(x: f32, y: f32) -> f32 {
+        120.0 + 50.0 * (0.5 * x + 0.2 * y).sin() + 40.0 * (0.15 * x - 0.6 * y + 1.0).sin()
+    }
+
+    /// What a camera shows of it that has its feature so far from the middle, and the surface moved.
+    fn patch(feature: [f32; 2], value: impl Fn(f32, f32) -> f32) -> ImagePatch {
+        let side = 2 * REACH + 1;
+        let pixels = std::array::from_fn(|i| {
+            let (x, y) = ((i % side) as f32 - REACH as f32, (i / side) as f32 - REACH as f32);
+            value(x, y).round() as u8
+        });
+        ImagePatch::new(pixels, feature).unwrap()
+    }
+
+    fn unmoved() -> ImagePatch {
+        patch([0.0, 0.0], surface)
+    }
+
+    proptest! {
+        #[test]
+        fn it_is_found_where_it_is(dx in -2.0_f32..2.0, dy in -2.0_f32..2.0, gain in 0.8_f32..1.3) {
+            let template = Template::new(&unmoved(), Matrix2::identity()).unwrap();
+            let moved = patch([0.25, -0.5], |x, y| gain * surface(x - dx, y - dy) * 0.7 + 10.0);
+            let found = template.find(&moved, Vector2::new(0.5, -0.5)).unwrap();
+            prop_assert!((found.offset - Vector2::new(dx - 0.25, dy + 0.5)).norm() < 0.05, "{found:?}");
+            prop_assert!(found.sigma < 0.05);
+        }
+
+        #[test]
+        fn processors_agree(dx in -2.0_f32..2.0, dy in -2.0_f32..2.0, noise in prop::collection::vec(0_u8..9, ImagePatch::BYTES)) {
+            let template = Template::new(&unmoved(), Matrix2::identity()).unwrap();
+            let clean = patch([0.0, 0.0], |x, y| surface(x - dx, y - dy) * 0.8);
+            let pixels = std::array::from_fn(|i| clean.pixels()[i] + noise[i]);
+            let noisy = ImagePatch::new(pixels, [0.0, 0.0]).unwrap();
+            prop_assert_eq!(template.find(&noisy, Vector2::zeros()), template.find_plainly(&noisy, Vector2::zeros()));
+        }
+    }
+
+    #[test]
+    fn a_view_from_nearer_and_aside_is_expected_as_it_is() {
+        let there_from_here = Matrix2::new(1.15, 0.1, -0.05, 0.9);
+        let template = Template::new(&unmoved(), there_from_here).unwrap();
+        let here = there_from_here.try_inverse().unwrap();
+        let seen = patch([0.0, 0.0], |x, y| {
+            let at = here * Vector2::new(x - 0.7, y + 0.4);
+            surface(at.x, at.y)
+        });
+        let found = template.find(&seen, Vector2::zeros()).unwrap();
+        assert!((found.offset - Vector2::new(0.7, -0.4)).norm() < 0.05, "{found:?}");
+        assert!(Template::new(&unmoved(), Matrix2::identity() * 0.4).is_none(), "the patch is too small");
+        assert!(Template::new(&unmoved(), Matrix2::zeros()).is_none());
+    }
+
+    #[test]
+    fn what_is_something_else_or_nothing_is_not_taken_for_it() {
+        let template = Template::new(&unmoved(), Matrix2::identity()).unwrap();
+        let other = patch([0.0, 0.0], |x, y| 120.0 + 60.0 * (0.9 * x).sin() * (0.8 * y + 0.3).cos());
+        assert_eq!(template.find(&other, Vector2::zeros()), None);
+        let flat = patch([0.0, 0.0], |_, _| 90.0);
+        assert_eq!(template.find(&flat, Vector2::zeros()), None);
+        assert!(Template::new(&flat, Matrix2::identity()).is_none());
+        let edge = patch([0.0, 0.0], |x, _| if x > 0.0 { 200.0 } else { 50.0 });
+        assert!(Template::new(&edge, Matrix2::identity()).is_none(), "it slides along itself");
+    }
+}

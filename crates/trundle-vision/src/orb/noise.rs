@@ -1,0 +1,83 @@
+//! How much noise an image has.
+
+use trundle_core::GrayImage;
+
+/// Standard deviation of the mask's answer to noise of 1 \[Immerkaer96\].
+const GAIN: f32 = 6.0;
+/// The part of the answers that are looked at, and how many standard deviations it reaches of those of noise: where a quarter of an
+/// image is bare, the rest may be anything.
+const QUARTER: (usize, f32) = (4, 0.3186);
+/// What whole grey values leave, and no image has less.
+const LEAST: f32 = 0.29;
+/// Every second pixel either way is looked at.
+const STEP: usize = 2;
+/// The highest answer: 8 x 255 and none.
+const ANSWERS: usize = 8 * 255 + 1;
+
+/// Standard deviation of the image's noise, grey values, at least that of rounding: by how much its pixels differ from what
+/// their neighbours let expect, where that is little. A ramp, and the middle of a straight edge, differ by nothing \[Immerkaer96\].
+pub(crate) fn sigma(image: &GrayImage) -> f32 {
+    let mut counts = [0_usize; ANSWERS];
+    for y in (1..image.height().saturating_sub(1)).step_by(STEP) {
+        let rows = [y - 1, y, y + 1].map(|y| image.row(y));
+        for x in (1..image.width() - 1).step_by(STEP) {
+            counts[usize::from(answer(rows.map(|row| [row[x - 1], row[x], row[x + 1]])))] += 1;
+        }
+    }
+    (quarter(&counts) / (QUARTER.1 * GAIN)).max(LEAST)
+}
+
+/// The answer, whatever its sign, of the mask 1 -2 1, -2 4 -2, 1 -2 1.
+fn answer(rows: [[u8; 3]; 3]) -> u16 {
+    let [above, here, below] =
+        rows.map(|[left, middle, right]| i16::from(left) - 2 * i16::from(middle) + i16::from(right));
+    (above - 2 * here + below).unsigned_abs()
+}
+
+/// Below what a quarter of the answers is; 0 of none. Whole numbers stand for what is rounded to them.
+fn quarter(counts: &[usize; ANSWERS]) -> f32 {
+    let wanted = counts.iter().sum::<usize>() as f32 / QUARTER.0 as f32;
+    let mut below = 0.0;
+    for (answer, count) in counts.iter().enumerate().filter(|(_, count)| **count > 0) {
+        let (count, low) = (*count as f32, (answer as f32 - 0.5).max(0.0));
+        if below + count >= wanted {
+            return low + (answer as f32 + 0.5 - low) * (wanted - below) / count;
+        }
+        below += count;
+    }
+    0.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::{RngExt, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
+
+    /// Half bare, half full of edges, with noise of so many grey values.
+    fn image(noise: f32) -> GrayImage {
+        let mut rng = ChaCha8Rng::seed_from_u64(4);
+        let mut normal = || (0..12).map(|_| rng.random_range(-0.5_f32..0.5)).sum::<f32>();
+        GrayImage::from_fn(320, 240, |x, y| {
+            let clean =
+                if x < 160 { 90.0 + 0.2 * y as f32 } else { 60.0 + 90.0 * ((x / 5 + y / 7) % 2) as f32 };
+            (clean + noise * normal()).round() as u8
+        })
+    }
+
+    #[test]
+    fn it_is_that_of_the_bare_half() {
+        for noise in [1.0, 2.0, 5.0] {
+            let found = sigma(&image(noise));
+            assert!((0.9..1.6).contains(&(found / noise)), "{found} for {noise}");
+        }
+    }
+
+    #[test]
+    fn a_clean_image_and_none_have_that_of_rounding() {
+        assert_eq!(sigma(&image(0.0)), LEAST);
+        for (width, height) in [(0, 0), (1, 1), (2, 9), (9, 2)] {
+            assert_eq!(sigma(&GrayImage::filled(width, height, 7)), LEAST);
+        }
+    }
+}

@@ -1,0 +1,94 @@
+//! Whether there is anything around a corner that holds it in place.
+
+use super::fast::Corner;
+use trundle_core::GrayImage;
+
+/// Pixels that are looked at, from the corner.
+const RADIUS: usize = 7;
+const SIDE: usize = 2 * RADIUS + 1;
+/// Columns that are read: a power of two, of which the last does not count.
+const STRIDE: usize = SIDE + 1;
+const COUNTS: [i16; STRIDE] = {
+    let mut counts = [1; STRIDE];
+    counts[SIDE] = 0;
+    counts
+};
+
+/// Root mean square of the gradient around `corner` in the direction in which it is least, grey values a px: the smaller
+/// eigenvalue of the structure tensor \[Shi94\]. An edge has none along itself, however strong it is.
+///
+/// `image` is smoothed, so that its noise counts little; the corner is far enough from its border to be described.
+pub(crate) fn least_gradient(image: &GrayImage, corner: Corner) -> f32 {
+    let [across, down, both] = tensor(image, corner).map(f64::from);
+    let middle = (across + down) / 2.0;
+    let least = (middle - ((across - down) / 2.0).hypot(both)).max(0.0);
+    // The differences are over two pixels.
+    (least / (4 * SIDE * SIDE) as f64).sqrt() as f32
+}
+
+fn tensor(image: &GrayImage, corner: Corner) -> [i32; 3] {
+    #[cfg(target_arch = "x86_64")]
+    if std::arch::is_x86_feature_detected!("avx2") {
+        // SAFETY: the processor has the one feature that the function is compiled for.
+        return unsafe { tensor_by_avx2(image, corner) };
+    }
+    tensor_plainly(image, corner)
+}
+
+/// The same as [`tensor_plainly`], more numbers an instruction.
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2")]
+fn tensor_by_avx2(image: &GrayImage, corner: Corner) -> [i32; 3] {
+    tensor_plainly(image, corner)
+}
+
+/// Sums over the square of the squared differences across, down, and of their product.
+#[inline(always)]
+fn tensor_plainly(image: &GrayImage, corner: Corner) -> [i32; 3] {
+    let (left, top) = (usize::from(corner.x) - RADIUS, usize::from(corner.y) - RADIUS);
+    let mut sums = [[0_i32; STRIDE]; 3];
+    let row = |y: usize| &image.row(y)[left - 1..][..STRIDE + 2];
+    for y in top..top + SIDE {
+        let (above, here, below) = (row(y - 1), row(y), row(y + 1));
+        for x in 0..STRIDE {
+            let difference = |a: u8, b: u8| (i16::from(a) - i16::from(b)) * COUNTS[x];
+            let across = i32::from(difference(here[x + 2], here[x]));
+            let down = i32::from(difference(below[x + 1], above[x + 1]));
+            sums[0][x] += across * across;
+            sums[1][x] += down * down;
+            sums[2][x] += across * down;
+        }
+    }
+    sums.map(|lanes| lanes.iter().sum())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    const MIDDLE: Corner = Corner { x: 16, y: 16, score: 20 };
+
+    fn least(value: impl Fn(f64, f64) -> f64) -> f32 {
+        let pixel = |x: usize, y: usize| value(x as f64 - 16.0, y as f64 - 16.0).round() as u8;
+        least_gradient(&GrayImage::from_fn(33, 33, pixel), MIDDLE)
+    }
+
+    #[test]
+    fn an_edge_has_none_and_a_corner_of_two_has_some() {
+        assert_eq!(least(|_, _| 90.0), 0.0);
+        assert_eq!(least(|x, _| 128.0 + 8.0 * x), 0.0);
+        assert!(least(|x, y| (128.0 + 20.0 * (0.6 * x + 0.8 * y)).clamp(50.0, 200.0)) < 0.5);
+        assert!(least(|x, y| if x > 0.0 && y > 0.0 { 200.0 } else { 50.0 }) > 10.0);
+        let bump = least(|x, y| 90.0 + 3.0 * x.abs() + 3.0 * y.abs());
+        assert!((bump - 2.9).abs() < 0.1, "{bump}");
+    }
+
+    proptest! {
+        #[test]
+        fn processors_agree(pixels in prop::collection::vec(any::<u8>(), 33 * 33)) {
+            let image = GrayImage::new(33, 33, pixels).unwrap();
+            prop_assert_eq!(tensor(&image, MIDDLE), tensor_plainly(&image, MIDDLE));
+        }
+    }
+}
