@@ -36,7 +36,8 @@ impl Anchor<'_> {
         let depth = self.frame.depths[i]?;
         (depth.sigma <= MAX_RELATIVE_SIGMA * depth.value).then_some(())?;
         let point = self.visual_from_camera.transform(sensor.point(self.frame, i)?);
-        Some(PointMatch { feature: i, point, landmark: None, sigma_factor: 2.0_f64.sqrt() })
+        let landmark = None;
+        Some(PointMatch { feature: i, point, landmark, sigma_factor: 2.0_f64.sqrt(), aligned: None })
     }
 
     /// Looks for the anchor's points in `frame` within `window` px (of octave 0) of where `predicted` puts them.

@@ -56,13 +56,15 @@ impl Component {
             renamed.keyframes.insert(old, new);
         }
         for (old, landmark) in other.landmarks() {
-            let new = self.map.add_landmark(own_from_other.transform(landmark.position));
+            let new = self.map.add_landmark(landmark.position);
             for (keyframe, feature) in &landmark.observations {
                 self.map.observe(new, renamed.keyframes[keyframe], *feature);
             }
             if let Some(taken) = self.map.landmark_mut(new) {
                 taken.descriptor = landmark.descriptor;
-                taken.toward_camera = own_from_other.rotate(landmark.toward_camera);
+                taken.toward_camera = landmark.toward_camera;
+                taken.looks.clone_from(&landmark.looks);
+                taken.carry(&own_from_other);
                 taken.distance_at_octave_0 = landmark.distance_at_octave_0;
                 (taken.visible, taken.found) = (landmark.visible, landmark.found);
             }

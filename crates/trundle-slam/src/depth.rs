@@ -2,6 +2,14 @@ use serde::{Deserialize, Serialize};
 use trundle_core::{DepthImage, Invalid, Vector2, require_in, require_positive};
 use trundle_optim::InverseDepth;
 
+/// Half of the pixels around a feature that tell its plane, px of its octave; the other half lies across. Their products of x and y
+/// cancel each other.
+const AROUND: [(f64, f64); 6] = [(5.0, 0.0), (0.0, 5.0), (4.0, 4.0), (4.0, -4.0), (2.5, 0.0), (0.0, 2.5)];
+/// Fewer pairs of them do not.
+const LEAST_PAIRS: usize = 4;
+/// What differs more from the middle, as a part of its depth, is something else.
+const SAME: f64 = 0.1;
+
 /// What the depth camera can be trusted with.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
@@ -61,6 +69,31 @@ impl DepthConfig {
         Some(InverseDepth { value: 1.0 / depth, sigma: sigma / (depth * depth) })
     }
 
+    /// How the inverse depth rises around a raw `pixel`, 1/(m px), right and down: on a plane the same everywhere. By pixels up to
+    /// five times `px` off, as far as they are of the same thing; zero where these are too few.
+    pub fn slope(&self, image: &DepthImage, pixel: Vector2, px: f64) -> Vector2 {
+        let Some(middle) = self.at(image, pixel) else { return Vector2::zeros() };
+        let (mut sum, mut products) = (Vector2::zeros(), Vector2::zeros());
+        let mut pairs = 0;
+        for (x, y) in AROUND {
+            let offset = (Vector2::new(x, y) * px).map(f64::round);
+            let Some((after, before)) = self.at(image, pixel + offset).zip(self.at(image, pixel - offset))
+            else {
+                continue;
+            };
+            if (after - middle).abs().max((before - middle).abs()) > SAME * middle {
+                continue;
+            }
+            pairs += 1;
+            sum += offset.component_mul(&offset) * 2.0;
+            products += offset * (1.0 / after - 1.0 / before);
+        }
+        if pairs < LEAST_PAIRS || sum.min() <= 0.0 {
+            return Vector2::zeros();
+        }
+        products.component_div(&sum)
+    }
+
     /// The depth of the nearest pixel, m, if it is in range.
     pub fn at(&self, image: &DepthImage, pixel: Vector2) -> Option<f64> {
         let (x, y) = (pixel.x.round(), pixel.y.round());
@@ -98,5 +131,20 @@ mod tests {
         }
         assert!(config.measure(&image, Vector2::new(2.0, 3.0)).unwrap().sigma.is_finite());
         assert!(DepthConfig { farthest: 0.1, ..config }.validated().is_err());
+    }
+
+    #[test]
+    fn the_slope_of_a_plane_is_that_of_its_inverse_depth() {
+        let config = DepthConfig::default();
+        let plane = |x: usize, y: usize| 0.5 + 0.002 * x as f64 - 0.001 * y as f64;
+        let image = DepthImage::from_fn(64, 48, |x, y| (1.0 / plane(x, y)) as f32);
+        for px in [1.0, 1.7] {
+            let slope = config.slope(&image, Vector2::new(30.2, 20.4), px);
+            assert!((slope - Vector2::new(0.002, -0.001)).norm() < 1e-6, "{slope}");
+        }
+        let edge = DepthImage::from_fn(64, 48, |x, _| if x < 32 { 1.0 } else { 3.0 });
+        for pixel in [(31.0, 20.0), (f64::NAN, 3.0), (-4.0, 3.0)] {
+            assert_eq!(config.slope(&edge, Vector2::new(pixel.0, pixel.1), 1.0), Vector2::zeros());
+        }
     }
 }

@@ -1,5 +1,6 @@
 use crate::ids::KeyframeId;
 use crate::map::{Keyframe, LandmarkMap};
+use crate::median::median;
 use nalgebra::{Matrix3, Matrix6, UnitQuaternion};
 use trundle_core::{Pose3, Vector3};
 use trundle_optim::PoseConstraint;
@@ -57,10 +58,10 @@ impl Plane {
     /// The plane of most keyframes of a map whose camera turns about `axis` (camera frame); `None` where there is none.
     pub fn of(map: &LandmarkMap, axis: Vector3) -> Option<Self> {
         let normals: Vec<Vector3> = map.keyframes().map(|(_, k)| k.visual_from_camera.rotate(axis)).collect();
-        let middle = |i: usize| median(normals.iter().map(|n| n[i]).collect());
+        let middle = |i: usize| median(normals.iter().map(|n| n[i]));
         let normal = Vector3::new(middle(0)?, middle(1)?, middle(2)?).try_normalize(0.5)?;
         let heights = map.keyframes().map(|(_, k)| normal.dot(&k.visual_from_camera.translation));
-        let plane = Self { axis, normal, height: median(heights.collect())? };
+        let plane = Self { axis, normal, height: median(heights)? };
         let on_it = map.keyframes().filter(|(_, k)| plane.has(k)).count();
         (on_it as f64 >= MOST * normals.len() as f64).then_some(plane)
     }
@@ -86,12 +87,6 @@ impl Plane {
         let off = self.normal.dot(&pose.translation) - self.height;
         off.abs() <= ELSEWHERE.0 && pose.rotate(self.axis).angle(&self.normal) <= ELSEWHERE.1
     }
-}
-
-fn median(mut values: Vec<f64>) -> Option<f64> {
-    let middle = values.len() / 2;
-    values.sort_unstable_by(f64::total_cmp);
-    values.get(middle).copied()
 }
 
 #[cfg(test)]

@@ -1,10 +1,15 @@
+use crate::align::Aligned;
 use crate::depth::DepthConfig;
+use crate::median::median;
 use crate::outline::drop_outlines;
 use crate::sensor::Sensor;
 use nalgebra::UnitQuaternion;
 use trundle_core::{DepthImage, Stamp, Vector2, Vector3};
 use trundle_optim::InverseDepth;
 use trundle_vision::{Descriptor, FeatureGrid, Features, Keypoint};
+
+/// What is placed better than this part of the standard deviation of a feature was aligned.
+const ALIGNED: f64 = 0.99;
 
 /// What is kept of one image: features, where they are in the rectified image, and how far.
 #[derive(Debug, Clone)]
@@ -15,6 +20,10 @@ pub(crate) struct Frame {
     pub pixels: Vec<Vector2>,
     /// Inverse depth of each feature, looked up at its raw pixel.
     pub depths: Vec<Option<InverseDepth>>,
+    /// Standard deviation of either coordinate of each feature's place, px.
+    pub pixel_sigmas: Vec<f32>,
+    /// How the inverse depth rises around each feature, 1/(m px), right and down; of a frame that was kept, nothing.
+    pub slopes: Vec<Vector2>,
     grid: FeatureGrid,
 }
 
@@ -30,20 +39,49 @@ impl Frame {
     ) -> Self {
         drop_outlines(&mut features, image, |octave| sensor.scale(octave), depth);
         let depths = features.keypoints.iter().map(|k| depth.measure(image, raw(k))).collect();
+        let slope = |k: &Keypoint| depth.slope(image, raw(k), sensor.scale(k.octave));
+        let slopes = match features.patches.is_empty() {
+            true => vec![],
+            false => features.keypoints.iter().map(slope).collect(),
+        };
         if turn != Vector3::zeros() {
             features.keypoints.iter_mut().for_each(|k| unroll(k, turn, sensor));
         }
-        Self::of(stamp, features, depths, sensor)
+        Self { slopes, ..Self::of(stamp, features, depths, sensor) }
     }
 
     /// Of features with their inverse depths.
     pub fn of(stamp: Stamp, features: Features, depths: Vec<Option<InverseDepth>>, sensor: &Sensor) -> Self {
-        let pixels: Vec<Vector2> =
-            features.keypoints.iter().map(|k| sensor.camera.undistort(raw(k))).collect();
-        let rectified = |(k, p): (&Keypoint, &Vector2)| Keypoint { x: p.x as f32, y: p.y as f32, ..*k };
-        let rectified: Vec<Keypoint> = features.keypoints.iter().zip(&pixels).map(rectified).collect();
-        let grid = FeatureGrid::new(&rectified, sensor.camera.width(), sensor.camera.height());
-        Self { stamp, features, pixels, depths, grid }
+        let pixels: Vec<Vector2> = features.keypoints.iter().map(|k| rectified(k, sensor)).collect();
+        let grid = grid(&features, &pixels, sensor);
+        let pixel_sigmas = features.keypoints.iter().map(|k| sensor.sigma_of(k.octave) as f32);
+        let pixel_sigmas = pixel_sigmas.collect();
+        Self { stamp, features, pixels, depths, pixel_sigmas, slopes: vec![], grid }
+    }
+
+    /// The same with features where they were aligned to.
+    #[must_use]
+    pub fn with_aligned(mut self, aligned: impl Iterator<Item = (usize, Aligned)>, sensor: &Sensor) -> Self {
+        for (i, Aligned { raw, sigma, .. }) in aligned {
+            let keypoint = &mut self.features.keypoints[i];
+            (keypoint.x, keypoint.y) = (raw.x as f32, raw.y as f32);
+            self.pixels[i] = rectified(keypoint, sensor);
+            self.pixel_sigmas[i] = sigma as f32;
+        }
+        self.grid = grid(&self.features, &self.pixels, sensor);
+        self
+    }
+
+    /// Standard deviation of its aligned features, the median of them, px of their octaves; that of a plain one where there are none.
+    pub fn sharpness(&self, sensor: &Sensor) -> f64 {
+        let in_octave = |(k, sigma): (&Keypoint, &f32)| f64::from(*sigma) / sensor.scale(k.octave);
+        let sigmas = self.features.keypoints.iter().zip(&self.pixel_sigmas).map(in_octave);
+        median(sigmas.filter(|sigma| *sigma < ALIGNED * sensor.pixel_sigma)).unwrap_or(sensor.pixel_sigma)
+    }
+
+    /// Lets go what only a frame at hand needs.
+    pub fn forget_image(&mut self) {
+        (self.features.patches, self.slopes) = (vec![], vec![]);
     }
 
     /// How many features it has.
@@ -70,12 +108,23 @@ impl Frame {
 fn unroll(keypoint: &mut Keypoint, turn: Vector3, sensor: &Sensor) {
     let camera = &sensor.camera;
     let late = f64::from(keypoint.y) / (camera.height() as f64 - 1.0) - 0.5;
-    let ray = camera.unproject(camera.undistort(raw(keypoint)), 1.0);
+    let ray = camera.unproject(rectified(keypoint, sensor), 1.0);
     let turned = UnitQuaternion::from_scaled_axis(turn * late) * ray;
     if let Some(pixel) = camera.project(turned) {
         let moved = camera.distort(pixel);
         (keypoint.x, keypoint.y) = (moved.x as f32, moved.y as f32);
     }
+}
+
+/// Where a keypoint would be without the lens, px.
+fn rectified(keypoint: &Keypoint, sensor: &Sensor) -> Vector2 {
+    sensor.camera.undistort(raw(keypoint))
+}
+
+fn grid(features: &Features, pixels: &[Vector2], sensor: &Sensor) -> FeatureGrid {
+    let at = |(k, p): (&Keypoint, &Vector2)| Keypoint { x: p.x as f32, y: p.y as f32, ..*k };
+    let keypoints: Vec<Keypoint> = features.keypoints.iter().zip(pixels).map(at).collect();
+    FeatureGrid::new(&keypoints, sensor.camera.width(), sensor.camera.height())
 }
 
 /// Where the image has a keypoint, px, as the lens bends it.

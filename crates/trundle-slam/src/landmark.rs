@@ -1,8 +1,9 @@
 use crate::arena::Arena;
 use crate::ids::KeyframeId;
+use crate::look::Look;
 use crate::map::Keyframe;
 use crate::sensor::Sensor;
-use trundle_core::Vector3;
+use trundle_core::{Pose3, Vector3};
 use trundle_vision::Descriptor;
 
 /// Of how many of the newest observations the descriptor is chosen.
@@ -21,6 +22,8 @@ pub(crate) struct Landmark {
     pub distance_at_octave_0: f64,
     /// Keyframe and feature, in the order of observing.
     pub observations: Vec<(KeyframeId, usize)>,
+    /// What it looks like from here and there, the oldest first.
+    pub looks: Vec<Look>,
     /// In how many frames it should have been seen.
     pub visible: u32,
     /// In how many it was.
@@ -35,6 +38,7 @@ impl Landmark {
             toward_camera: Vector3::zeros(),
             distance_at_octave_0: 0.0,
             observations: Vec::new(),
+            looks: Vec::new(),
             visible: 0,
             found: 0,
         }
@@ -43,6 +47,13 @@ impl Landmark {
     /// Which feature of `keyframe` it is.
     pub fn observation_in(&self, keyframe: KeyframeId) -> Option<usize> {
         self.observations.iter().find(|(k, _)| *k == keyframe).map(|(_, feature)| *feature)
+    }
+
+    /// Moves it, and all that is known of how it looks, with what is around it.
+    pub fn carry(&mut self, new_from_old: &Pose3) {
+        self.position = new_from_old.transform(self.position);
+        self.toward_camera = new_from_old.rotate(self.toward_camera);
+        self.looks.iter_mut().for_each(|look| look.turn(new_from_old.rotation));
     }
 
     /// How much larger a standard deviation is when the point itself is known from these observations only: a mean of

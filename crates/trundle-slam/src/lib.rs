@@ -14,6 +14,7 @@
 //! | Sigma | `pixel_sigma` x scale of the octave, `DepthConfig` | px, 1/m |
 //! | K_L, K_F | free and fixed keyframes of the local bundle | |
 
+mod align;
 mod anchor;
 mod arena;
 mod claim;
@@ -35,9 +36,11 @@ mod keyframe_policy;
 mod landmark;
 mod local_bundle;
 mod local_map;
+mod look;
 mod map;
 mod map_bundle;
 mod mapping;
+mod median;
 mod motion;
 mod outline;
 mod persist;

@@ -196,6 +196,9 @@ impl LandmarkMap {
             self.observe(kept, keyframe, feature);
         }
         if let Some(kept) = self.landmark_mut(kept) {
+            if kept.looks.is_empty() {
+                kept.looks = merged.looks;
+            }
             kept.visible = kept.visible.saturating_add(merged.visible);
             kept.found = kept.found.saturating_add(merged.found);
         }

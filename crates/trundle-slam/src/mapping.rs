@@ -2,6 +2,7 @@ use crate::anchor::MAX_RELATIVE_SIGMA;
 use crate::frame::Frame;
 use crate::ids::{KeyframeId, LandmarkId};
 use crate::landmark::Landmark;
+use crate::look::keep_looks;
 use crate::map::LandmarkMap;
 use crate::rolled::Rolled;
 use crate::search::{Likeness, Projection, search};
@@ -108,6 +109,7 @@ impl Mapper<'_> {
         for id in map.keyframe(keyframe).landmarks.clone().into_iter().flatten() {
             map.refresh(id, self.sensor);
         }
+        keep_looks(map, keyframe, self.sensor);
         self.cull(map, keyframe);
         map.begin_refining(keyframe, self.sensor, self.config);
         keyframe

@@ -126,6 +126,7 @@ mod tests {
             let mut features = Features {
                 keypoints: (0..300).map(keypoint).collect(),
                 descriptors: vec![trundle_vision::Descriptor::default(); 300],
+                ..Default::default()
             };
             drop_outlines(&mut features, image, |_| 1.0, &DepthConfig::default());
             features.keypoints.len()

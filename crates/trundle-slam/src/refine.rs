@@ -1,6 +1,8 @@
+use crate::align::Aligned;
 use crate::frame::Frame;
 use crate::ids::LandmarkId;
 use crate::map::LandmarkMap;
+use crate::median::median;
 use crate::sensor::Sensor;
 use trundle_core::{Pose3, Vector3};
 use trundle_optim::{InverseDepth, PointObservation, PoseConfig, PosePrior, PoseProblem, PoseSolution};
@@ -15,6 +17,8 @@ pub(crate) struct PointMatch {
     pub landmark: Option<LandmarkId>,
     /// How much larger the standard deviations are, because the point is not known exactly.
     pub sigma_factor: f64,
+    /// Where the feature is by what is around it, if that fits.
+    pub aligned: Option<Aligned>,
 }
 
 impl PointMatch {
@@ -22,7 +26,14 @@ impl PointMatch {
     pub fn of_landmark(feature: usize, id: LandmarkId, map: &LandmarkMap) -> Option<Self> {
         let landmark = map.landmark(id)?;
         let (point, sigma_factor) = (landmark.position, landmark.sigma_factor());
-        Some(Self { feature, point, landmark: Some(id), sigma_factor })
+        Some(Self { feature, point, landmark: Some(id), sigma_factor, aligned: None })
+    }
+
+    /// What the frame says of its feature.
+    fn observation(&self, frame: &Frame, sensor: &Sensor) -> PointObservation {
+        let found = sensor.observation(frame, self.feature);
+        let aligned = |Aligned { pixel, sigma, .. }| PointObservation { pixel, pixel_sigma: sigma, ..found };
+        self.aligned.map_or(found, aligned)
     }
 }
 
@@ -34,6 +45,9 @@ pub(crate) enum Known<'a> {
     /// It may be anywhere: nothing contradicts what looks right.
     Nothing,
 }
+
+/// What a standard deviation of normal errors is in medians of their sizes.
+const DEVIATIONS: f64 = 1.4826;
 
 /// The pose of a frame, and by which matches.
 #[derive(Debug, Clone)]
@@ -51,8 +65,7 @@ impl Fix {
         sensor: &Sensor,
         config: &PoseConfig,
     ) -> Self {
-        let observe =
-            |m: &PointMatch| (m.point, widened(sensor.observation(frame, m.feature), m.sigma_factor));
+        let observe = |m: &PointMatch| (m.point, widened(m.observation(frame, sensor), m.sigma_factor));
         let observations: Vec<(Vector3, PointObservation)> = matches.iter().map(observe).collect();
         let (prior, bounded) = match known {
             Known::Followed(prior) => (prior.copied(), false),
@@ -61,6 +74,18 @@ impl Fix {
         let problem = PoseProblem { camera: &sensor.camera, observations: &observations, prior, bounded };
         let solution = problem.solve(start, config);
         Self { matches, solution }
+    }
+
+    /// By how much aligned features are farther off than they say: their median error in standard deviations; 0 of none.
+    pub fn spread(&self, sensor: &Sensor) -> f64 {
+        let camera_from_visual = self.visual_from_camera().inverse();
+        let errors = |m: &PointMatch| {
+            let aligned = m.aligned.filter(|aligned| aligned.is_alike)?;
+            let seen = sensor.camera.project(camera_from_visual.transform(m.point))?;
+            let error = (seen - aligned.pixel) / (aligned.sigma * m.sigma_factor);
+            Some([error.x.abs(), error.y.abs()])
+        };
+        median(self.matches.iter().filter_map(errors).flatten()).map_or(0.0, |size| DEVIATIONS * size)
     }
 
     /// The matches that agree with the pose.
@@ -86,4 +111,35 @@ impl Fix {
 fn widened(seen: PointObservation, factor: f64) -> PointObservation {
     let depth = seen.depth.map(|d| InverseDepth { sigma: d.sigma * factor, ..d });
     PointObservation { pixel_sigma: seen.pixel_sigma * factor, depth, ..seen }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::{painted_frame, painted_map, painted_points, sensor};
+    use trundle_core::Vector2;
+
+    #[test]
+    fn the_spread_is_what_is_left_of_aligned_features_in_what_they_say() {
+        let (sensor, (map, _)) = (sensor(), painted_map());
+        let frame = painted_frame(Pose3::identity(), &painted_points(), Vector2::zeros());
+        let aligned = |i: usize| {
+            let off = Vector2::new(
+                if i.is_multiple_of(2) { 0.4 } else { -0.4 },
+                if (i / 2).is_multiple_of(2) { 0.4 } else { -0.4 },
+            );
+            Aligned { raw: frame.pixels[i], pixel: frame.pixels[i] + off, sigma: 0.5, is_alike: i < 40 }
+        };
+        let matches = map.landmarks().enumerate().map(|(i, (id, _))| {
+            let m = PointMatch::of_landmark(i, id, &map).unwrap();
+            PointMatch { aligned: Some(aligned(i)), sigma_factor: 1.0, ..m }
+        });
+        let known = Known::Followed(None);
+        let fix =
+            Fix::by(matches.collect(), (Pose3::identity(), known), &frame, &sensor, &PoseConfig::default());
+        let spread = fix.spread(&sensor);
+        assert!((spread - DEVIATIONS * 0.8).abs() < 0.2, "{spread}");
+        let none = Fix { matches: vec![], ..fix };
+        assert_eq!(none.spread(&sensor), 0.0);
+    }
 }

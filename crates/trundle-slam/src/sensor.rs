@@ -58,8 +58,16 @@ impl Sensor {
 
     /// What `frame` says of its feature `i`.
     pub fn observation(&self, frame: &Frame, i: usize) -> PointObservation {
-        let pixel_sigma = self.pixel_sigma * self.scale(frame.octave(i));
-        PointObservation { pixel: frame.pixels[i], pixel_sigma, depth: frame.depths[i] }
+        PointObservation {
+            pixel: frame.pixels[i],
+            pixel_sigma: f64::from(frame.pixel_sigmas[i]),
+            depth: frame.depths[i],
+        }
+    }
+
+    /// Standard deviation of a keypoint of `octave` as the extractor finds it, px.
+    pub fn sigma_of(&self, octave: u8) -> f64 {
+        self.pixel_sigma * self.scale(octave)
     }
 
     /// Where feature `i` of `frame` is by its own depth, camera frame, m.

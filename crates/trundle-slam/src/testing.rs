@@ -5,8 +5,8 @@ use crate::frame::Frame;
 use crate::ids::KeyframeId;
 use crate::map::LandmarkMap;
 use crate::sensor::Sensor;
-use trundle_core::{DepthImage, PinholeCamera, Pose3, Stamp, Vector3};
-use trundle_vision::{Descriptor, Features, Keypoint};
+use trundle_core::{DepthImage, PinholeCamera, Pose3, Stamp, Vector2, Vector3};
+use trundle_vision::{Descriptor, Features, ImagePatch, Keypoint};
 
 /// A small camera without distortion.
 pub(crate) fn sensor() -> Sensor {
@@ -25,7 +25,7 @@ fn frame_over(depth: f32, features: usize) -> Frame {
     let keypoints = (0..features).map(keypoint).collect();
     let descriptors = (0..features).map(|i| Descriptor([i as u64; 4])).collect();
     let image = DepthImage::filled(320, 240, depth);
-    let features = Features { keypoints, descriptors };
+    let features = Features { keypoints, descriptors, ..Default::default() };
     let (sensor, turn) = (sensor(), Vector3::zeros());
     Frame::new(Stamp::default(), features, &image, turn, (&sensor, &DepthConfig::default()))
 }
@@ -45,6 +45,56 @@ pub(crate) fn map_of_one_view(features: usize) -> (LandmarkMap, KeyframeId) {
     let (mut map, sensor) = (LandmarkMap::default(), sensor());
     let frame = frame_with_depth(features);
     let points: Vec<_> = (0..features).map(|i| sensor.point(&frame, i).unwrap()).collect();
+    let keyframe = map.add_keyframe(frame, Pose3::identity());
+    for (feature, point) in points.into_iter().enumerate() {
+        let landmark = map.add_landmark(point);
+        map.observe(landmark, keyframe, feature);
+    }
+    (map, keyframe)
+}
+
+/// Points of a painted wall at z = 2 m.
+pub(crate) fn painted_points() -> Vec<Vector3> {
+    (0..48).map(|i| Vector3::new(0.12 * f64::from(i % 8 - 4), 0.12 * f64::from(i / 8 - 3), 2.0)).collect()
+}
+
+/// A frame of the painted wall, with these points of it as features, each `off` px from where it is.
+pub(crate) fn painted_frame(visual_from_camera: Pose3, points: &[Vector3], off: Vector2) -> Frame {
+    let sensor = sensor();
+    let camera_from_visual = visual_from_camera.inverse();
+    let wall = |x: f64, y: f64| {
+        let ray = visual_from_camera.rotate(sensor.camera.unproject(Vector2::new(x, y), 1.0));
+        let depth = (2.0 - visual_from_camera.translation.z) / ray.z;
+        (visual_from_camera.translation + ray * depth, depth)
+    };
+    let mut features = Features::default();
+    for (i, point) in points.iter().enumerate() {
+        let pixel = sensor.project(camera_from_visual.transform(*point)).unwrap().0 + off;
+        let middle = pixel.map(f64::round);
+        let shade = |i: usize| {
+            let from_middle = Vector2::new((i % 21) as f64, (i / 21) as f64).add_scalar(-10.0);
+            paint(wall(middle.x + from_middle.x, middle.y + from_middle.y).0)
+        };
+        let feature = (pixel - middle).cast::<f32>();
+        features.patches.push(ImagePatch::new(std::array::from_fn(shade), feature.into()).unwrap());
+        let (x, y) = (pixel.x as f32, pixel.y as f32);
+        features.keypoints.push(Keypoint { x, y, octave: 0, angle: 0.0, response: 1.0 });
+        features.descriptors.push(Descriptor([i as u64; 4]));
+    }
+    let image = DepthImage::from_fn(320, 240, |x, y| wall(x as f64, y as f64).1 as f32);
+    Frame::new(Stamp::default(), features, &image, Vector3::zeros(), (&sensor, &DepthConfig::default()))
+}
+
+/// The grey value of a point of the wall: something everywhere, the same nowhere near.
+fn paint(point: Vector3) -> u8 {
+    let (x, y) = (point.x * 110.0, point.y * 110.0);
+    (120.0 + 50.0 * (0.5 * x + 0.2 * y).sin() + 40.0 * (0.15 * x - 0.6 * y + 1.0).sin()).round() as u8
+}
+
+/// A map of the painted wall, seen from the origin, and the keyframe.
+pub(crate) fn painted_map() -> (LandmarkMap, KeyframeId) {
+    let (mut map, points) = (LandmarkMap::default(), painted_points());
+    let frame = painted_frame(Pose3::identity(), &points, Vector2::zeros());
     let keyframe = map.add_keyframe(frame, Pose3::identity());
     for (feature, point) in points.into_iter().enumerate() {
         let landmark = map.add_landmark(point);

@@ -1,3 +1,4 @@
+use crate::align::{aligned, widen};
 use crate::anchor::Anchor;
 use crate::frame::Frame;
 use crate::ids::{KeyframeId, LandmarkId};
@@ -212,7 +213,22 @@ impl Tracker<'_> {
         let taken = |(feature, i): (usize, usize)| PointMatch::of_landmark(feature, sought[i].0, self.map);
         matches.extend(found.into_iter().filter_map(taken));
         let fix = Fix::by(matches, (pose, known), self.frame, self.sensor, &self.config.pose);
-        (fix, visible)
+        (self.aligned(fix, known), visible)
+    }
+
+    /// The pose from features that lie where what is around them fits.
+    fn aligned(&self, fix: Fix, known: Known) -> Fix {
+        let pose = fix.visual_from_camera();
+        let Some(matches) = aligned(&fix.matches, pose, self.frame, (self.map, self.sensor)) else {
+            return fix;
+        };
+        let mut fix = Fix::by(matches, (pose, known), self.frame, self.sensor, &self.config.pose);
+        let spread = fix.spread(self.sensor);
+        if !widen(&mut fix.matches, spread, self.sensor) {
+            return fix;
+        }
+        let pose = fix.visual_from_camera();
+        Fix::by(fix.matches, (pose, known), self.frame, self.sensor, &self.config.pose)
     }
 
     /// The same for a camera whose pose is known roughly.

@@ -7,7 +7,7 @@ use crate::mapping::MappingConfig;
 use crate::motion::carried;
 use crate::search::Likeness;
 use crate::sensor::Sensor;
-use trundle_core::{Pose3, Vector3};
+use trundle_core::Pose3;
 
 /// Mends the map once a place is recognised.
 #[derive(Debug, Clone)]
@@ -67,17 +67,17 @@ fn carry_landmarks(map: &mut LandmarkMap, ids: &[KeyframeId], after: &[Pose3]) {
     let correction =
         |(id, after): (&KeyframeId, &Pose3)| *after * map.keyframe(*id).visual_from_camera.inverse();
     let corrections: Vec<Pose3> = ids.iter().zip(after).map(correction).collect();
-    let moved: Vec<(_, Vector3)> = map
+    let moved: Vec<(_, Pose3)> = map
         .landmarks()
         .filter_map(|(id, landmark)| {
             let (first, _) = landmark.observations.iter().min()?;
             let correction = corrections[ids.binary_search(first).ok()?];
-            Some((id, correction.transform(landmark.position)))
+            Some((id, correction))
         })
         .collect();
-    for (id, position) in moved {
+    for (id, correction) in moved {
         if let Some(landmark) = map.landmark_mut(id) {
-            landmark.position = position;
+            landmark.carry(&correction);
         }
     }
 }

@@ -66,7 +66,7 @@ impl<'a> Reader<'a> {
         Self { rest: bytes, within }
     }
 
-    fn take<const N: usize>(&mut self) -> Read<[u8; N]> {
+    pub fn take<const N: usize>(&mut self) -> Read<[u8; N]> {
         let (taken, rest) =
             self.rest.split_first_chunk::<N>().ok_or(MapFileError::Cut { within: self.within })?;
         self.rest = rest;
@@ -114,6 +114,13 @@ impl<'a> Reader<'a> {
     /// A number in `low..=high`.
     pub fn f64_in(&mut self, name: &str, low: f64, high: f64) -> Read<f64> {
         let value = self.f64()?;
+        self.require((low..=high).contains(&value), name, value, || format!("{low} to {high}"))?;
+        Ok(value)
+    }
+
+    /// The same of an f32.
+    pub fn f32_in(&mut self, name: &str, low: f32, high: f32) -> Read<f32> {
+        let value = self.f32()?;
         self.require((low..=high).contains(&value), name, value, || format!("{low} to {high}"))?;
         Ok(value)
     }

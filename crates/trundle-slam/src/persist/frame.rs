@@ -9,7 +9,11 @@ use trundle_optim::InverseDepth;
 use trundle_vision::{Features, Keypoint};
 
 /// The least bytes of a feature.
-const LEAST: usize = 17 + 32 + 1;
+const LEAST: usize = 17 + 4 + 32 + 1;
+
+/// No keypoint is better or worse placed, px.
+const LEAST_SIGMA: f32 = 1e-6;
+const MOST_SIGMA: f32 = 1e6;
 
 pub(super) fn write(out: &mut Writer, frame: &Frame) {
     out.u64(frame.stamp.nanos.cast_unsigned());
@@ -17,6 +21,7 @@ pub(super) fn write(out: &mut Writer, frame: &Frame) {
     for (i, keypoint) in frame.features.keypoints.iter().enumerate() {
         [keypoint.x, keypoint.y, keypoint.angle, keypoint.response].into_iter().for_each(|v| out.f32(v));
         out.u8(keypoint.octave);
+        out.f32(frame.pixel_sigmas[i]);
         out.descriptor(frame.descriptor(i));
         out.u8(u8::from(frame.depths[i].is_some()));
         out.f64s(frame.depths[i].into_iter().flat_map(|depth| [depth.value, depth.sigma]));
@@ -25,13 +30,15 @@ pub(super) fn write(out: &mut Writer, frame: &Frame) {
 
 pub(super) fn read(bytes: &mut Reader, sensor: &Sensor) -> Result<Frame, MapFileError> {
     let stamp = Stamp::from_nanos(bytes.u64()?.cast_signed());
-    let (mut features, mut depths) = (Features::default(), Vec::new());
+    let (mut features, mut depths, mut pixel_sigmas) = (Features::default(), Vec::new(), Vec::new());
     for _ in 0..bytes.count(LEAST)? {
         features.keypoints.push(read_keypoint(bytes, sensor)?);
+        pixel_sigmas.push(bytes.f32_in("sigma of a keypoint", LEAST_SIGMA, MOST_SIGMA)?);
         features.descriptors.push(bytes.descriptor()?);
         depths.push(read_depth(bytes)?);
     }
-    let frame = Frame::of(stamp, features, depths, sensor);
+    let mut frame = Frame::of(stamp, features, depths, sensor);
+    frame.pixel_sigmas = pixel_sigmas;
     let is_rectified = frame.pixels.iter().all(|pixel| pixel.iter().all(|v| v.is_finite()));
     bytes.require(is_rectified, "rectified place of a keypoint", "infinite", || "finite".to_owned())?;
     Ok(frame)

@@ -2,7 +2,7 @@
 
 use super::bytes::{Reader, Writer};
 use super::error::MapFileError;
-use super::frame;
+use super::{frame, look};
 use crate::ids::{KeyframeId, LandmarkId};
 use crate::landmark::Landmark;
 use crate::map::{Keyframe, LandmarkMap};
@@ -12,7 +12,7 @@ use nalgebra::Matrix6;
 use std::collections::BTreeMap;
 
 /// The least bytes of a keyframe, a landmark and an observation.
-const LEAST: (usize, usize, usize) = (8 + 4 + 7 * 8 + 72 * 8 + 1, 24 + 32 + 24 + 8 + 4 * 3 + 8, 8);
+const LEAST: (usize, usize, usize) = (8 + 4 + 7 * 8 + 72 * 8 + 1, 24 + 32 + 24 + 8 + 4 * 3 + 8 + 1, 8);
 
 pub(super) fn write(out: &mut Writer, map: &LandmarkMap) {
     let numbers: BTreeMap<KeyframeId, usize> = map.keyframes().map(|(id, _)| id).zip(0..).collect();
@@ -124,6 +124,7 @@ fn write_landmark(out: &mut Writer, landmark: &Landmark, number: impl Fn(Keyfram
         out.count(number(*keyframe));
         out.count(*feature);
     }
+    look::write_all(out, &landmark.looks);
 }
 
 fn read_landmark(bytes: &mut Reader, map: &mut LandmarkMap, ids: &[KeyframeId]) -> Result<(), MapFileError> {
@@ -137,11 +138,13 @@ fn read_landmark(bytes: &mut Reader, map: &mut LandmarkMap, ids: &[KeyframeId]) 
     for _ in 0..observations {
         read_observation(bytes, map, ids, id)?;
     }
+    let looks = look::read_all(bytes)?;
     if let Some(landmark) = map.landmark_mut(id) {
         *landmark = Landmark {
             descriptor,
             toward_camera,
             distance_at_octave_0,
+            looks,
             visible,
             found,
             ..std::mem::replace(landmark, Landmark::new(landmark.position))

@@ -5,8 +5,8 @@
 //! | 7 | `trundlM` |
 //! | 1 | version |
 //! | 8 | checksum of the rest (FNV-1a by words of 8 bytes) |
-//! | 17 x 8 | camera and ORB settings, f64 |
-//! | 4, then each | number of maps; a map: its number, keyframes with the ways between them by the wheels, the axis of the floor, landmarks with their observations, loops |
+//! | 18 x 8 | camera and ORB settings, f64 |
+//! | 4, then each | number of maps; a map: its number, keyframes with the ways between them by the wheels, the axis of the floor, landmarks with their observations and looks, loops |
 //!
 //! All little endian. What follows from the rest is not saved: rectified pixels, words, spanning tree. The trajectory is
 //! no part of a map.
@@ -14,6 +14,7 @@
 mod bytes;
 mod error;
 mod frame;
+mod look;
 mod map;
 mod settings;
 
@@ -26,7 +27,7 @@ pub use error::MapFileError;
 use trundle_core::PinholeCamera;
 
 const MAGIC: &[u8; 7] = b"trundlM";
-const VERSION: u8 = 2;
+const VERSION: u8 = 3;
 /// Bytes before those that the checksum is of.
 const HEAD: usize = 16;
 

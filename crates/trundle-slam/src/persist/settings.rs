@@ -6,7 +6,7 @@ use trundle_core::PinholeCamera;
 use trundle_vision::OrbConfig;
 
 /// Name and value of each setting; whole numbers are exact as f64.
-fn settings(camera: &PinholeCamera, orb: &OrbConfig) -> [(&'static str, f64); 17] {
+fn settings(camera: &PinholeCamera, orb: &OrbConfig) -> [(&'static str, f64); 18] {
     let lens = camera.distortion();
     [
         ("camera width (px)", camera.width() as f64),
@@ -26,6 +26,7 @@ fn settings(camera: &PinholeCamera, orb: &OrbConfig) -> [(&'static str, f64); 17
         ("orb.fast_threshold (grey values)", f64::from(orb.fast_threshold)),
         ("orb.fast_min_threshold (grey values)", f64::from(orb.fast_min_threshold)),
         ("orb.cell_px", orb.cell_px as f64),
+        ("orb.least_texture", orb.least_texture),
     ]
 }
 

@@ -30,6 +30,8 @@ impl RgbdSlam {
             // The wheels slipped, or the robot was carried.
             self.rolled = None;
         }
+        let aligned = found.fix.inliers().filter_map(|m| Some((m.feature, m.aligned?)));
+        let frame = frame.with_aligned(aligned, &self.sensor);
         self.show(&frame, &landmarks);
         let mut pose = found.fix.visual_from_camera();
         let mut reference = self.reference(&landmarks);

@@ -119,7 +119,7 @@ fn what_is_no_map_is_refused_with_the_reason() {
     assert_eq!(refused(&SAVED[..SAVED.len() - 1]), "the map is damaged: its checksum is wrong");
     let mut newer = SAVED.clone();
     newer[7] = 9;
-    assert_eq!(refused(&newer), "map of version 9, expected 2");
+    assert_eq!(refused(&newer), "map of version 9, expected 3");
     assert_eq!(refused(&sealed(&SAVED[..SAVED.len() - 1])), "the map is cut off in its loops");
     let mut longer = SAVED.clone();
     longer.push(0);

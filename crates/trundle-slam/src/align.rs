@@ -1,0 +1,189 @@
+//! Moves matched features to where what is around them fits what was around their landmarks \[Forster14, sec. IV-B\].
+
+use crate::frame::{Frame, raw};
+use crate::look::Look;
+use crate::map::LandmarkMap;
+use crate::refine::PointMatch;
+use crate::sensor::Sensor;
+use trundle_core::{Pose3, Vector2};
+
+/// How far a feature is moved at most, px of its octave: farther off it was something else.
+const FARTHEST: f32 = 2.0;
+/// From where the landmark should be it is looked for, unless that is farther off, px of the octave: then the pose is.
+const NEAR: f64 = 4.0;
+/// What an alignment is off at least, besides what it says itself, px of its octave.
+const SIGMA: f64 = 0.3;
+/// Fewer aligned features than this do not tell the pose alone.
+const ENOUGH: usize = 20;
+/// How much less a feature counts than one of its kind when others are aligned and it was never seen from about here: those are
+/// a tenth of a pixel off, and it half a pixel, to the same side in every frame.
+const UNKNOWN: f64 = 6.0;
+
+/// Where a feature is once its surroundings were compared.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Aligned {
+    /// Raw px.
+    pub raw: Vector2,
+    /// Rectified px.
+    pub pixel: Vector2,
+    /// Standard deviation of either coordinate, px.
+    pub sigma: f64,
+    /// Whether a look of the landmark fits there; else it is where it was found.
+    pub is_alike: bool,
+}
+
+/// What is around a feature, against what was around the landmark that it was taken for.
+enum Surroundings {
+    Alike(Aligned),
+    Different,
+    /// It was never seen from about here.
+    Unknown,
+}
+
+/// The matches with their features aligned, for a camera about at `visual_from_camera`, and without those whose surroundings tell that
+/// they are something else. `None` where too few fit.
+pub(crate) fn aligned(
+    matches: &[PointMatch],
+    visual_from_camera: Pose3,
+    frame: &Frame,
+    (map, sensor): (&LandmarkMap, &Sensor),
+) -> Option<Vec<PointMatch>> {
+    if frame.features.patches.is_empty() {
+        return None;
+    }
+    let camera_from_visual = visual_from_camera.inverse();
+    let compare = |m: &PointMatch| compared(m, &camera_from_visual, frame, (map, sensor));
+    let seen: Vec<Surroundings> = matches.iter().map(compare).collect();
+    let count = seen.iter().filter(|seen| matches!(seen, Surroundings::Alike(_))).count();
+    (count >= ENOUGH).then_some(())?;
+    let keep = |(m, seen): (&PointMatch, Surroundings)| {
+        let aligned = match seen {
+            Surroundings::Alike(aligned) => aligned,
+            Surroundings::Different => return None,
+            Surroundings::Unknown => in_place(m, frame),
+        };
+        Some(PointMatch { aligned: Some(aligned), ..*m })
+    };
+    Some(matches.iter().zip(seen).filter_map(keep).collect())
+}
+
+/// Widens all alignments by what the pose that they give leaves of them, `spread` standard deviations, where that is more
+/// than they say: a lens is not quite as it was calibrated, and a shutter rolls. Hardly beyond what a feature says by itself. Whether
+/// anything changed.
+pub(crate) fn widen(matches: &mut [PointMatch], spread: f64, sensor: &Sensor) -> bool {
+    let factor = spread.min(sensor.pixel_sigma / SIGMA);
+    if factor <= 1.0 {
+        return false;
+    }
+    let alike = matches.iter_mut().filter_map(|m| m.aligned.as_mut()).filter(|aligned| aligned.is_alike);
+    alike.for_each(|aligned| aligned.sigma *= factor);
+    true
+}
+
+/// The feature where it was found.
+fn in_place(m: &PointMatch, frame: &Frame) -> Aligned {
+    let (raw, pixel) = (raw(&frame.features.keypoints[m.feature]), frame.pixels[m.feature]);
+    Aligned { raw, pixel, sigma: UNKNOWN * f64::from(frame.pixel_sigmas[m.feature]), is_alike: false }
+}
+
+fn compared(
+    m: &PointMatch,
+    camera_from_visual: &Pose3,
+    frame: &Frame,
+    (map, sensor): (&LandmarkMap, &Sensor),
+) -> Surroundings {
+    let octave = frame.octave(m.feature);
+    let landmark = m.landmark.and_then(|id| map.landmark(id));
+    let template = landmark.and_then(|landmark| {
+        let seen = |look: &Look| look.seen_from(camera_from_visual, landmark.position, octave, sensor);
+        landmark.looks.iter().find_map(seen)
+    });
+    let Some(template) = template else { return Surroundings::Unknown };
+    let scale = sensor.scale(octave);
+    let start = expected(m, camera_from_visual, frame, sensor) / scale;
+    let start = if start.amax() <= NEAR { start } else { Vector2::zeros() };
+    let found = template.find(&frame.features.patches[m.feature], start.cast());
+    let Some(found) = found.filter(|found| found.offset.amax() <= FARTHEST) else {
+        return Surroundings::Different;
+    };
+    let raw = raw(&frame.features.keypoints[m.feature]) + found.offset.cast() * scale;
+    let sigma = SIGMA.hypot(f64::from(found.sigma)) * scale;
+    Surroundings::Alike(Aligned { raw, pixel: sensor.camera.undistort(raw), sigma, is_alike: true })
+}
+
+/// How far from its feature the landmark should be seen, px; nothing where it should not.
+fn expected(m: &PointMatch, camera_from_visual: &Pose3, frame: &Frame, sensor: &Sensor) -> Vector2 {
+    let seen = sensor.project(camera_from_visual.transform(m.point));
+    seen.map_or_else(Vector2::zeros, |(pixel, _)| pixel - frame.pixels[m.feature])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::look::keep_looks;
+    use crate::testing::{painted_frame, painted_map, painted_points, sensor};
+    use nalgebra::Vector6;
+
+    /// A map of a wall with all looks, and matches of a frame with features 1 px off, from nearer and aside.
+    fn tracked() -> (LandmarkMap, Frame, Pose3, Vec<PointMatch>) {
+        let (mut map, keyframe) = painted_map();
+        keep_looks(&mut map, keyframe, &sensor());
+        let pose = Pose3::exp(Vector6::new(0.2, 0.0, 0.3, 0.0, -0.1, 0.05));
+        let frame = painted_frame(pose, &painted_points(), Vector2::new(0.8, -0.6));
+        let ids = map.landmarks().enumerate();
+        let matches = ids.map(|(i, (id, _))| PointMatch::of_landmark(i, id, &map).unwrap()).collect();
+        (map, frame, pose, matches)
+    }
+
+    #[test]
+    fn features_go_where_their_landmarks_are() {
+        let ((map, frame, pose, matches), sensor) = (tracked(), sensor());
+        let about = pose * Pose3::exp(Vector6::new(0.004, 0.0, 0.0, 0.0, 0.003, 0.0));
+        let found = aligned(&matches, about, &frame, (&map, &sensor)).unwrap();
+        assert_eq!(found.len(), matches.len());
+        for m in &found {
+            let truth = sensor.project(pose.inverse().transform(m.point)).unwrap().0;
+            let aligned = m.aligned.unwrap();
+            assert!((aligned.pixel - truth).norm() < 0.1 && aligned.is_alike, "{aligned:?} is not {truth}");
+            assert!((0.3..0.4).contains(&aligned.sigma));
+        }
+        let moved = found.iter().filter_map(|m| Some((m.feature, m.aligned?)));
+        let (first, there) = (frame.pixels[0], found[0].aligned.unwrap());
+        let frame = frame.with_aligned(moved, &sensor);
+        assert!(
+            frame.near(there.pixel, 0.05, (0, 0)).eq([0]) && frame.near(first, 0.5, (0, 0)).next().is_none()
+        );
+        assert!((frame.sharpness(&sensor) - 0.3).abs() < 0.02);
+    }
+
+    #[test]
+    fn what_looks_different_goes_and_what_is_unknown_counts_little() {
+        let ((mut map, frame, pose, mut matches), sensor) = (tracked(), sensor());
+        matches[5] = PointMatch { feature: matches[6].feature, ..matches[5] };
+        map.landmark_mut(matches[9].landmark.unwrap()).unwrap().looks.clear();
+        let found = aligned(&matches, pose, &frame, (&map, &sensor)).unwrap();
+        assert!(found.iter().all(|m| m.landmark != matches[5].landmark));
+        let unknown = found.iter().find(|m| m.landmark == matches[9].landmark).unwrap().aligned.unwrap();
+        assert_eq!((unknown.pixel, unknown.sigma, unknown.is_alike), (frame.pixels[9], UNKNOWN, false));
+    }
+
+    #[test]
+    fn few_do_not_tell_alone() {
+        let ((map, mut frame, pose, matches), sensor) = (tracked(), sensor());
+        assert!(aligned(&matches[..ENOUGH], pose, &frame, (&map, &sensor)).is_some());
+        assert_eq!(aligned(&matches[1..ENOUGH], pose, &frame, (&map, &sensor)), None);
+        frame.forget_image();
+        assert_eq!(aligned(&matches, pose, &frame, (&map, &sensor)), None);
+    }
+
+    #[test]
+    fn they_are_as_good_as_the_pose_shows_and_no_better() {
+        let ((map, frame, pose, matches), sensor) = (tracked(), sensor());
+        let mut found = aligned(&matches, pose, &frame, (&map, &sensor)).unwrap();
+        let sigma = |found: &[PointMatch]| found[0].aligned.unwrap().sigma;
+        let said = sigma(&found);
+        assert!(!widen(&mut found, 0.7, &sensor) && sigma(&found) == said);
+        assert!(widen(&mut found, 2.0, &sensor) && sigma(&found) == 2.0 * said);
+        assert!(widen(&mut found, 99.0, &sensor) && sigma(&found) < 7.0 * said);
+    }
+}

@@ -1,0 +1,211 @@
+use crate::frame::{Frame, raw};
+use crate::ids::{KeyframeId, LandmarkId};
+use crate::map::LandmarkMap;
+use crate::sensor::Sensor;
+use nalgebra::{Matrix2, UnitQuaternion};
+use trundle_core::{Pose3, Vector2, Vector3};
+use trundle_vision::{ImagePatch, Template};
+
+/// The cosine of the steepest angle between the directions from which a patch was seen and is looked for: 37 deg. What is around
+/// a point is not quite a plane.
+const MIN_COSINE: f64 = 0.8;
+/// By how much a patch may be magnified.
+const MOST_MAGNIFIED: f64 = 1.8;
+
+/// From how many sides at most a landmark's look is kept.
+pub(crate) const MOST_LOOKS: usize = 4;
+
+/// How a landmark looks from somewhere: what is around it, on the plane that the depth camera saw there.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Look {
+    pub patch: ImagePatch,
+    /// One px of the patch to the right and down, on that plane, visual frame, m.
+    pub right: Vector3,
+    pub down: Vector3,
+    /// Direction from the landmark to the camera, unit length.
+    pub toward_camera: Vector3,
+}
+
+impl Look {
+    /// Of the landmark at `position` (visual frame, m), which is feature `i` of a frame of a camera at `visual_from_camera`.
+    /// `None` where the frame has kept no image of it.
+    pub fn of(
+        frame: &Frame,
+        i: usize,
+        (visual_from_camera, position): (Pose3, Vector3),
+        sensor: &Sensor,
+    ) -> Option<Self> {
+        let patch = *frame.features.patches.get(i)?;
+        let p_camera = visual_from_camera.inverse().transform(position);
+        let plane = Plane {
+            middle: raw(&frame.features.keypoints[i]),
+            inverse: 1.0 / p_camera.z,
+            slope: frame.slopes.get(i).copied().unwrap_or_default(),
+        };
+        let px = sensor.scale(frame.octave(i));
+        let tangent = |step: Vector2| {
+            let tangent = (plane.at(step, sensor)? - plane.at(-step, sensor)?) / 2.0;
+            Some(visual_from_camera.rotate(tangent))
+        };
+        Some(Self {
+            patch,
+            right: tangent(Vector2::new(px, 0.0))?,
+            down: tangent(Vector2::new(0.0, px))?,
+            toward_camera: (visual_from_camera.translation - position).try_normalize(1e-9)?,
+        })
+    }
+
+    /// What a camera should see of it on an octave, of the landmark at `position`; `None` from where it looks too different.
+    pub fn seen_from(
+        &self,
+        camera_from_visual: &Pose3,
+        position: Vector3,
+        octave: u8,
+        sensor: &Sensor,
+    ) -> Option<Template> {
+        let ray = camera_from_visual.inverse().translation - position;
+        if ray.dot(&self.toward_camera) < MIN_COSINE * ray.norm() {
+            return None;
+        }
+        let at = |point: Vector3| {
+            let pixel = sensor.camera.project(camera_from_visual.transform(point))?;
+            Some(sensor.camera.distort(pixel) / sensor.scale(octave))
+        };
+        let step = |tangent: Vector3| Some((at(position + tangent)? - at(position - tangent)?) / 2.0);
+        let warp = Matrix2::from_columns(&[step(self.right)?, step(self.down)?]);
+        let is_near = warp.norm_squared() <= 2.0 * MOST_MAGNIFIED * MOST_MAGNIFIED;
+        Template::new(&self.patch, is_near.then_some(warp)?.cast())
+    }
+
+    /// The same once the landmark has turned with the map.
+    pub fn turn(&mut self, rotation: UnitQuaternion<f64>) {
+        for direction in [&mut self.right, &mut self.down, &mut self.toward_camera] {
+            *direction = rotation * *direction;
+        }
+    }
+}
+
+/// Keeps how the landmarks of a new keyframe look, where that is new, and lets the image go. What a landmark's first look is of is
+/// as sharp as what is aligned to it will be.
+pub(crate) fn keep_looks(map: &mut LandmarkMap, id: KeyframeId, sensor: &Sensor) {
+    let sharpness = map.keyframe(id).frame.sharpness(sensor);
+    for (feature, seen, look) in new_looks(map, id, sensor) {
+        let Some(landmark) = map.landmark_mut(seen) else { continue };
+        landmark.looks.push(look);
+        if landmark.looks.len() == 1 {
+            let frame = &mut map.keyframe_mut(id).frame;
+            frame.pixel_sigmas[feature] = (sharpness * sensor.scale(frame.octave(feature))) as f32;
+        }
+    }
+    map.keyframe_mut(id).frame.forget_image();
+}
+
+fn new_looks(map: &LandmarkMap, id: KeyframeId, sensor: &Sensor) -> Vec<(usize, LandmarkId, Look)> {
+    let keyframe = map.keyframe(id);
+    let pose = keyframe.visual_from_camera;
+    let camera_from_visual = pose.inverse();
+    let new = |(feature, seen): (usize, &Option<LandmarkId>)| {
+        let landmark = map.landmark((*seen)?)?;
+        let octave = keyframe.frame.octave(feature);
+        let shows =
+            |look: &Look| look.seen_from(&camera_from_visual, landmark.position, octave, sensor).is_some();
+        (landmark.looks.len() < MOST_LOOKS && !landmark.looks.iter().any(shows)).then_some(())?;
+        Some((feature, (*seen)?, Look::of(&keyframe.frame, feature, (pose, landmark.position), sensor)?))
+    };
+    keyframe.landmarks.iter().enumerate().filter_map(new).collect()
+}
+
+/// What the depth camera saw around a feature: on a plane, the inverse depth is affine in the pixel.
+struct Plane {
+    /// Raw px.
+    middle: Vector2,
+    /// 1/m.
+    inverse: f64,
+    /// 1/(m px).
+    slope: Vector2,
+}
+
+impl Plane {
+    /// Where it is `offset` px from the feature, camera frame, m; `None` behind the camera.
+    fn at(&self, offset: Vector2, sensor: &Sensor) -> Option<Vector3> {
+        let inverse = self.inverse + self.slope.dot(&offset);
+        let pixel = sensor.camera.undistort(self.middle + offset);
+        (inverse > 0.0).then(|| sensor.camera.unproject(pixel, 1.0 / inverse))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::{painted_frame, painted_map, painted_points, sensor};
+    use nalgebra::Vector6;
+
+    fn look_of_the_first() -> Look {
+        let points = painted_points();
+        let frame = painted_frame(Pose3::identity(), &points, Vector2::zeros());
+        Look::of(&frame, 0, (Pose3::identity(), points[0]), &sensor()).unwrap()
+    }
+
+    /// How far off the first point is found from a camera there, px; `None` where it looks too different.
+    fn off_from(look: &Look, visual_from_camera: Pose3) -> Option<f32> {
+        let point = painted_points()[0];
+        let template = look.seen_from(&visual_from_camera.inverse(), point, 0, &sensor())?;
+        let frame = painted_frame(visual_from_camera, &[point], Vector2::new(0.9, -0.7));
+        let found = template.find(&frame.features.patches[0], nalgebra::Vector2::zeros()).unwrap();
+        Some((found.offset - nalgebra::Vector2::new(-0.9, 0.7)).norm())
+    }
+
+    #[test]
+    fn a_point_is_found_from_nearer_and_aside() {
+        let look = look_of_the_first();
+        for motion in [
+            Vector6::zeros(),
+            Vector6::new(0.0, 0.0, 0.5, 0.0, 0.0, 0.0),
+            Vector6::new(0.5, 0.1, 0.2, 0.0, -0.3, 0.1),
+            Vector6::new(-0.8, 0.0, -0.5, 0.1, 0.4, -0.2),
+        ] {
+            let off = off_from(&look, Pose3::exp(motion)).unwrap();
+            assert!(off < 0.1, "{off} px off after {motion:?}");
+        }
+    }
+
+    #[test]
+    fn from_far_aside_or_much_nearer_it_may_look_different() {
+        let look = look_of_the_first();
+        assert_eq!(off_from(&look, Pose3::exp(Vector6::new(0.0, 0.0, 1.2, 0.0, 0.0, 0.0))), None);
+        let aside =
+            Pose3::new(UnitQuaternion::from_euler_angles(0.0, -0.9, 0.0), Vector3::new(1.6, 0.0, 0.3));
+        assert_eq!(off_from(&look, aside), None);
+    }
+
+    #[test]
+    fn it_turns_with_the_map() {
+        let (mut look, point) = (look_of_the_first(), painted_points()[0]);
+        let new_from_old = Pose3::exp(Vector6::new(1.0, 2.0, 3.0, 0.3, 2.0, -1.0));
+        look.turn(new_from_old.rotation);
+        let camera = new_from_old * Pose3::exp(Vector6::new(0.3, 0.0, 0.2, 0.0, -0.2, 0.0));
+        let template =
+            look.seen_from(&camera.inverse(), new_from_old.transform(point), 0, &sensor()).unwrap();
+        let frame = painted_frame(new_from_old.inverse() * camera, &[point], Vector2::zeros());
+        let found = template.find(&frame.features.patches[0], nalgebra::Vector2::zeros()).unwrap();
+        assert!(found.offset.norm() < 0.1, "{found:?}");
+    }
+
+    #[test]
+    fn one_look_is_kept_and_what_it_is_of_is_as_sharp_as_what_was_aligned() {
+        let ((mut map, keyframe), sensor) = (painted_map(), sensor());
+        map.keyframe_mut(keyframe).frame.pixel_sigmas[7] = 0.25;
+        keep_looks(&mut map, keyframe, &sensor);
+        assert!(map.landmarks().all(|(_, landmark)| landmark.looks.len() == 1));
+        let frame = &map.keyframe(keyframe).frame;
+        assert!(frame.pixel_sigmas.iter().all(|sigma| *sigma == 0.25) && frame.features.patches.is_empty());
+        let frame = painted_frame(Pose3::identity(), &painted_points(), Vector2::zeros());
+        let again = map.add_keyframe(frame, Pose3::identity());
+        for (feature, id) in map.landmarks().map(|(id, _)| id).collect::<Vec<_>>().into_iter().enumerate() {
+            map.observe(id, again, feature);
+        }
+        keep_looks(&mut map, again, &sensor);
+        assert!(map.landmarks().all(|(_, landmark)| landmark.looks.len() == 1));
+        assert_eq!(map.keyframe(again).frame.pixel_sigmas[3], 1.0);
+    }
+}

@@ -1,0 +1,18 @@
+/// The middle one of `values`, of an even number the upper; `None` of none.
+pub(crate) fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
+    let mut values: Vec<f64> = values.collect();
+    let middle = values.len() / 2;
+    (!values.is_empty()).then(|| *values.select_nth_unstable_by(middle, f64::total_cmp).1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn half_of_them_are_below() {
+        assert_eq!(median([3.0, 9.0, 1.0].into_iter()), Some(3.0));
+        assert_eq!(median([4.0, 1.0].into_iter()), Some(4.0));
+        assert_eq!(median(std::iter::empty()), None);
+    }
+}
