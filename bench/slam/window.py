@@ -46,7 +46,7 @@ def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("mesh", type=pathlib.Path)
     for name in ["trundle", "drive", "records"]:
-        parser.add_argument(f"--{name}", required=True, type=pathlib.Path)
+        parser.add_argument(f"--{name}", required=True, type=lambda path: pathlib.Path(path).resolve())
     parser.add_argument("--seeds", type=int, default=7)
     args = parser.parse_args(own)
     all_drives = []
