@@ -3,8 +3,9 @@
 use crate::frame::{Frame, raw};
 use crate::look::Look;
 use crate::map::LandmarkMap;
-use crate::refine::PointMatch;
+use crate::refine::{Fix, PointMatch};
 use crate::sensor::Sensor;
+use std::collections::BTreeSet;
 use trundle_core::{Pose3, Vector2};
 
 /// How far a feature is moved at most, px of its octave: farther off it was something else.
@@ -80,6 +81,15 @@ pub(crate) fn widen(matches: &mut [PointMatch], spread: f64, sensor: &Sensor) ->
     true
 }
 
+/// What agreed before features were aligned, or does since: what does not fit any more is seen where it was found, and counts little. (Let go, it
+/// would become a second landmark in the next keyframe.)
+pub(crate) fn all_that_agrees(before: &Fix, since: &Fix, frame: &Frame) -> Vec<PointMatch> {
+    let fits: BTreeSet<usize> = since.inliers().map(|m| m.feature).collect();
+    let rest = before.inliers().filter(|m| !fits.contains(&m.feature));
+    let rest = rest.map(|m| PointMatch { aligned: Some(in_place(m, frame)), ..*m });
+    since.inliers().copied().chain(rest).collect()
+}
+
 /// The feature where it was found.
 fn in_place(m: &PointMatch, frame: &Frame) -> Aligned {
     let (raw, pixel) = (raw(&frame.features.keypoints[m.feature]), frame.pixels[m.feature]);
@@ -121,8 +131,10 @@ fn expected(m: &PointMatch, camera_from_visual: &Pose3, frame: &Frame, sensor: &
 mod tests {
     use super::*;
     use crate::look::keep_looks;
+    use crate::refine::Known;
     use crate::testing::{painted_frame, painted_map, painted_points, sensor};
     use nalgebra::Vector6;
+    use trundle_optim::PoseConfig;
 
     /// A map of a wall with all looks, and matches of a frame with features 1 px off, from nearer and aside.
     fn tracked() -> (LandmarkMap, Frame, Pose3, Vec<PointMatch>) {
@@ -165,6 +177,24 @@ mod tests {
         assert!(found.iter().all(|m| m.landmark != matches[5].landmark));
         let unknown = found.iter().find(|m| m.landmark == matches[9].landmark).unwrap().aligned.unwrap();
         assert_eq!((unknown.pixel, unknown.sigma, unknown.is_alike), (frame.pixels[9], UNKNOWN, false));
+    }
+
+    #[test]
+    fn what_fits_no_look_is_still_seen_and_counts_little() {
+        let ((map, frame, pose, matches), sensor) = (tracked(), sensor());
+        let solve = |matches| {
+            let known = Known::Followed(None);
+            Fix::by(matches, (pose, known), &frame, &sensor, &PoseConfig::default())
+        };
+        let before = solve(matches.clone());
+        assert_eq!(before.solution.inlier_count, matches.len());
+        let mut fitting = aligned(&matches, pose, &frame, (&map, &sensor)).unwrap();
+        fitting.remove(3);
+        let seen = all_that_agrees(&before, &solve(fitting), &frame);
+        assert_eq!(seen.len(), matches.len());
+        let again = seen.iter().find(|m| m.landmark == matches[3].landmark).unwrap().aligned.unwrap();
+        assert_eq!((again.pixel, again.is_alike), (frame.pixels[matches[3].feature], false));
+        assert!(seen.iter().filter(|m| m.aligned.unwrap().is_alike).count() == matches.len() - 1);
     }
 
     #[test]

@@ -1,6 +1,7 @@
+use crate::align::all_that_agrees;
 use crate::anchor::Anchor;
 use crate::ids::{KeyframeId, LandmarkId};
-use crate::refine::{Fix, Known};
+use crate::refine::{Fix, Known, PointMatch};
 use crate::search::Projection;
 use crate::tracker::Tracker;
 use std::collections::{BTreeMap, BTreeSet};
@@ -11,6 +12,12 @@ use trundle_optim::ALIKE;
 #[derive(Debug)]
 pub(crate) struct Found {
     pub fix: Fix,
+    /// The matches that agree, with their features where they were aligned to.
+    pub seen: Vec<PointMatch>,
+    /// How many features were matched, and how many of these agreed, before they were aligned: by that it is judged whether this is
+    /// the place. Where in it the camera is, those that could be aligned tell better, and they are fewer.
+    pub matches: usize,
+    pub points: usize,
     /// The landmarks that should have been seen, and where.
     pub visible: Vec<(LandmarkId, Projection)>,
     /// Whether the landmark map itself agrees, not only the last frame.
@@ -36,7 +43,8 @@ impl Found {
         let (fix, visible) = tracker.by_map(&rough, tracker.followed());
         let by_map = fix.is_sound(tracker.config.min_inliers);
         let fix = if by_map { fix } else { rough };
-        Some(Self { fix, visible, by_map, recognised: None, looks_right: true, is_certain: true })
+        let found = Self::by_matches(fix, visible);
+        Some(if by_map { found.aligned(tracker, tracker.followed()) } else { Self { by_map, ..found } })
     }
 
     /// From a keyframe to the map. It takes more landmarks that agree to be certain of it, and some in a good part of the view: a
@@ -45,22 +53,38 @@ impl Found {
     pub fn from_keyframe(tracker: &Tracker, keyframe: KeyframeId) -> Option<Self> {
         let rough = tracker.by_words(keyframe, Known::Nothing)?;
         let (nearly, _) = tracker.searching_wider().by_map(&rough, Known::Nothing);
-        let (mut fix, visible) = tracker.by_map(&nearly, Known::Nothing);
+        let (fix, visible) = tracker.by_map(&nearly, Known::Nothing);
         let config = tracker.config;
         (fix.is_sound(config.min_inliers) && fix.is_convincing()).then_some(())?;
-        let covariance = fix.solution.covariance? * ALIKE;
-        fix.solution.covariance = Some(covariance);
         let found = fix.inliers().map(|m| tracker.frame.pixels[m.feature]);
         let is_seen = seen_part(visible.iter().map(|(_, seen)| seen.pixel), found) >= config.recognised_part;
-        let sigma = covariance.fixed_view::<3, 3>(0, 0).trace().sqrt();
+        let sigma = (fix.solution.covariance? * ALIKE).fixed_view::<3, 3>(0, 0).trace().sqrt();
         let looks_right = fix.is_sound(config.weak_inliers) && is_seen;
         let is_certain = looks_right && sigma <= config.recognised_sigma;
-        Some(Self { fix, visible, by_map: true, recognised: Some(keyframe), looks_right, is_certain })
+        let mut found = Self::by_matches(fix, visible).aligned(tracker, Known::Nothing);
+        found.fix.solution.covariance = Some(found.fix.solution.covariance? * ALIKE);
+        Some(Self { recognised: Some(keyframe), looks_right, is_certain, ..found })
     }
 
-    /// Points that agree.
-    pub fn inliers(&self) -> usize {
-        self.fix.solution.inlier_count
+    /// By a pose on the map, followed there.
+    fn by_matches(fix: Fix, visible: Vec<(LandmarkId, Projection)>) -> Self {
+        Self {
+            seen: fix.inliers().copied().collect(),
+            matches: fix.matches.len(),
+            points: fix.solution.inlier_count,
+            fix,
+            visible,
+            by_map: true,
+            recognised: None,
+            looks_right: true,
+            is_certain: true,
+        }
+    }
+
+    /// The same with its features aligned, where enough of them can be.
+    fn aligned(self, tracker: &Tracker, known: Known) -> Self {
+        let Some(fix) = tracker.aligned(&self.fix, known) else { return self };
+        Self { seen: all_that_agrees(&self.fix, &fix, tracker.frame), fix, ..self }
     }
 }
 

@@ -82,7 +82,7 @@ impl Placed for Found {
     }
 
     fn points(&self) -> usize {
-        self.inliers()
+        self.points
     }
 
     fn looks_right(&self) -> bool {

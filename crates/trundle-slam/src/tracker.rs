@@ -213,22 +213,22 @@ impl Tracker<'_> {
         let taken = |(feature, i): (usize, usize)| PointMatch::of_landmark(feature, sought[i].0, self.map);
         matches.extend(found.into_iter().filter_map(taken));
         let fix = Fix::by(matches, (pose, known), self.frame, self.sensor, &self.config.pose);
-        (self.aligned(fix, known), visible)
+        (fix, visible)
     }
 
-    /// The pose from features that lie where what is around them fits.
-    fn aligned(&self, fix: Fix, known: Known) -> Fix {
-        let pose = fix.visual_from_camera();
-        let Some(matches) = aligned(&fix.matches, pose, self.frame, (self.map, self.sensor)) else {
-            return fix;
-        };
-        let mut fix = Fix::by(matches, (pose, known), self.frame, self.sensor, &self.config.pose);
+    /// The pose of `found` again, from features that lie where what is around them fits; `None` where too few do.
+    pub fn aligned(&self, found: &Fix, known: Known) -> Option<Fix> {
+        let solve =
+            |matches, pose| Fix::by(matches, (pose, known), self.frame, self.sensor, &self.config.pose);
+        let pose = found.visual_from_camera();
+        let matches = aligned(&found.matches, pose, self.frame, (self.map, self.sensor))?;
+        let mut fix = solve(matches, pose);
         let spread = fix.spread(self.sensor);
-        if !widen(&mut fix.matches, spread, self.sensor) {
-            return fix;
+        if widen(&mut fix.matches, spread, self.sensor) {
+            let pose = fix.visual_from_camera();
+            fix = solve(fix.matches, pose);
         }
-        let pose = fix.visual_from_camera();
-        Fix::by(fix.matches, (pose, known), self.frame, self.sensor, &self.config.pose)
+        fix.is_sound(self.config.min_inliers).then_some(fix)
     }
 
     /// The same for a camera whose pose is known roughly.

@@ -23,14 +23,14 @@ impl RgbdSlam {
         let before = before.map(|last| last.anchored.visual_from_camera(&self.active.map));
         self.enter(map);
         let mut landmarks = vec![None; frame.len()];
-        for inlier in found.fix.inliers() {
-            landmarks[inlier.feature] = inlier.landmark;
+        for seen in &found.seen {
+            landmarks[seen.feature] = seen.landmark;
         }
         if found.fix.solution.contradicts_prior || found.recognised.is_some() {
             // The wheels slipped, or the robot was carried.
             self.rolled = None;
         }
-        let aligned = found.fix.inliers().filter_map(|m| Some((m.feature, m.aligned?)));
+        let aligned = found.seen.iter().filter_map(|m| Some((m.feature, m.aligned?)));
         let frame = frame.with_aligned(aligned, &self.sensor);
         self.show(&frame, &landmarks);
         let mut pose = found.fix.visual_from_camera();
@@ -43,15 +43,15 @@ impl RgbdSlam {
             covariance = keyframe.covariance;
             (pose, landmarks) = (keyframe.visual_from_camera, keyframe.landmarks.clone());
         }
-        let enough = found.by_map && found.inliers() >= self.config.tracking.weak_inliers;
+        let enough = found.by_map && found.points >= self.config.tracking.weak_inliers;
         let tracking = if enough { Tracking::Ok } else { Tracking::Weak };
         let is_one_frame = kept.as_ref().is_none_or(|kept| kept.merged.is_none());
         self.belief.located(frame.stamp, pose, covariance, before.filter(|_| is_one_frame));
         (self.misses, self.placed, self.blind, self.doubts) = (0, true, false, Doubts::default());
         let anchored = self.remember(frame.stamp, Some(reference), tracking);
         let report = TrackReport {
-            matches: found.fix.matches.len(),
-            inliers: found.inliers(),
+            matches: found.matches,
+            inliers: found.points,
             relocalised: found.recognised.is_some(),
             new_keyframe: kept.is_some(),
             merged: kept.and_then(|kept| kept.merged),
