@@ -108,11 +108,13 @@ fn compared(
         let seen = |look: &Look| look.seen_from(camera_from_visual, landmark.position, octave, sensor);
         landmark.looks.iter().find_map(seen)
     });
-    let Some(template) = template else { return Surroundings::Unknown };
+    let Some((template, patch)) = template.zip(frame.features.patches.get(m.feature)) else {
+        return Surroundings::Unknown;
+    };
     let scale = sensor.scale(octave);
     let start = expected(m, camera_from_visual, frame, sensor) / scale;
     let start = if start.amax() <= NEAR { start } else { Vector2::zeros() };
-    let found = template.find(&frame.features.patches[m.feature], start.cast());
+    let found = template.find(patch, start.cast());
     let Some(found) = found.filter(|found| found.offset.amax() <= FARTHEST) else {
         return Surroundings::Different;
     };

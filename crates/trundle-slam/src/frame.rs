@@ -54,9 +54,7 @@ impl Frame {
     pub fn of(stamp: Stamp, features: Features, depths: Vec<Option<InverseDepth>>, sensor: &Sensor) -> Self {
         let pixels: Vec<Vector2> = features.keypoints.iter().map(|k| rectified(k, sensor)).collect();
         let grid = grid(&features, &pixels, sensor);
-        let pixel_sigmas = features.keypoints.iter().map(|k| sensor.sigma_of(k.octave) as f32);
-        let pixel_sigmas = pixel_sigmas.collect();
-        Self { stamp, features, pixels, depths, pixel_sigmas, slopes: vec![], grid }
+        Self { stamp, features, pixels, depths, pixel_sigmas: vec![], slopes: vec![], grid }.unaligned(sensor)
     }
 
     /// The same with features where they were aligned to.
@@ -69,6 +67,14 @@ impl Frame {
             self.pixel_sigmas[i] = sigma as f32;
         }
         self.grid = grid(&self.features, &self.pixels, sensor);
+        self
+    }
+
+    /// The same with all features as uncertain as plain ones.
+    #[must_use]
+    pub fn unaligned(mut self, sensor: &Sensor) -> Self {
+        let sigmas = self.features.keypoints.iter().map(|k| sensor.sigma_of(k.octave) as f32);
+        self.pixel_sigmas = sigmas.collect();
         self
     }
 

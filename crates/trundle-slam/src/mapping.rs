@@ -172,7 +172,7 @@ impl Mapper<'_> {
         }
         let agrees = |(feature, i): (usize, usize)| {
             let (id, p_camera) = sought[i];
-            let seen = self.sensor.observation(&other.frame, feature);
+            let seen = self.sensor.plain_observation(&other.frame, feature);
             (seen.chi2(&self.sensor.camera, p_camera) <= seen.chi2_bound()).then_some((feature, id))
         };
         let all = vec![true; other.frame.len()];

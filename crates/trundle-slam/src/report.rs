@@ -87,9 +87,9 @@ pub struct TrackReport {
     pub covariance: Matrix6<f64>,
     /// Features found in the image, without those on outlines, which are no points of anything.
     pub features: usize,
-    /// Features matched with landmarks.
+    /// Features matched with landmarks, before what is around them was compared.
     pub matches: usize,
-    /// Matches that agree with the pose at 95 %.
+    /// Of these, the ones that agree with the pose at 95 %.
     pub inliers: usize,
     /// Whether the pose was found without the motion prediction, from a keyframe that looks alike.
     pub relocalised: bool,

@@ -65,6 +65,11 @@ impl Sensor {
         }
     }
 
+    /// The same as of a plain feature, however well it was aligned to its own landmark: for judging whether it may be another one.
+    pub fn plain_observation(&self, frame: &Frame, i: usize) -> PointObservation {
+        PointObservation { pixel_sigma: self.sigma_of(frame.octave(i)), ..self.observation(frame, i) }
+    }
+
     /// Standard deviation of a keypoint of `octave` as the extractor finds it, px.
     pub fn sigma_of(&self, octave: u8) -> f64 {
         self.pixel_sigma * self.scale(octave)

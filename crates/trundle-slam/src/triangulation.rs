@@ -146,7 +146,7 @@ impl Pair<'_> {
 
     /// Only where it is in the image: what depth there is, is of something else.
     fn seen(&self, keyframe: &Keyframe, feature: usize) -> PointObservation {
-        PointObservation { depth: None, ..self.sensor.observation(&keyframe.frame, feature) }
+        PointObservation { depth: None, ..self.sensor.plain_observation(&keyframe.frame, feature) }
     }
 }
 

@@ -66,6 +66,9 @@ impl Verifier<'_> {
 
     /// The place of one keyframe, if the frame shows that.
     pub fn verify(&self, own: Worded, candidate: KeyframeId) -> Option<Recognised> {
+        // It was aligned to the landmarks of the way here, and says nothing yet of the old ones.
+        let frame = own.frame.clone().unaligned(self.sensor);
+        let own = Worded { frame: &frame, ..own };
         let rough = self.by_words(own, candidate)?;
         let fix = self.by_old_landmarks(own, candidate, &rough);
         let points = fix.solution.inlier_count;

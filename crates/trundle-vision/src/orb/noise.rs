@@ -20,7 +20,7 @@ pub(crate) fn sigma(image: &GrayImage) -> f32 {
     let mut counts = [0_usize; ANSWERS];
     for y in (1..image.height().saturating_sub(1)).step_by(STEP) {
         let rows = [y - 1, y, y + 1].map(|y| image.row(y));
-        for x in (1..image.width() - 1).step_by(STEP) {
+        for x in (1..image.width().saturating_sub(1)).step_by(STEP) {
             counts[usize::from(answer(rows.map(|row| [row[x - 1], row[x], row[x + 1]])))] += 1;
         }
     }
@@ -76,7 +76,7 @@ mod tests {
     #[test]
     fn a_clean_image_and_none_have_that_of_rounding() {
         assert_eq!(sigma(&image(0.0)), LEAST);
-        for (width, height) in [(0, 0), (1, 1), (2, 9), (9, 2)] {
+        for (width, height) in [(0, 0), (0, 9), (9, 0), (1, 1), (2, 9), (9, 2)] {
             assert_eq!(sigma(&GrayImage::filled(width, height, 7)), LEAST);
         }
     }
