@@ -1,6 +1,7 @@
 use super::SettleConfig;
 use super::polar::{Gear, Polar, gear, polar_law};
 use crate::{Limiter, TrackingError};
+use std::f64::consts::TAU;
 use trundle_core::{DifferentialDrive, DriveLimits, Invalid, Pose2, PoseEstimate, Twist2};
 
 /// Brings the base to a pose near by, and to rest there.
@@ -13,6 +14,8 @@ pub struct Stabilizer {
     goal: Option<Pose2>,
     /// How often it had to go again.
     repeats: u32,
+    /// How far it has turned in this approach, counter-clockwise, rad.
+    turned: f64,
 }
 
 /// What the robot does about its goal.
@@ -61,6 +64,7 @@ impl Stabilizer {
             gear: None,
             goal: None,
             repeats: 0,
+            turned: 0.0,
         })
     }
 
@@ -77,6 +81,7 @@ impl Stabilizer {
     /// The command for now, `dt` seconds after the last one; `goal` in the frame of the estimate.
     pub fn step(&mut self, estimate: &PoseEstimate, goal: Pose2, dt: f64) -> SettleReport {
         self.take_goal(goal);
+        self.turned += estimate.twist.omega * dt;
         let error = TrackingError::between(estimate.pose, goal);
         self.change_state(error, estimate.twist);
         let wanted = match self.state {
@@ -95,8 +100,7 @@ impl Stabilizer {
             moved.distance() < SAME_GOAL && moved.heading.abs() < SAME_GOAL
         });
         if !same {
-            self.state = SettleState::Approaching;
-            self.gear = None;
+            self.approach_anew();
             self.repeats = 0;
             self.goal = Some(goal);
         }
@@ -110,6 +114,7 @@ impl Stabilizer {
         let standing = moving.omega.abs() < STANDING && self.limiter.last().omega.abs() < STANDING;
         match self.state {
             SettleState::Approaching if distance <= enough * ARRIVED => self.state = SettleState::Turning,
+            SettleState::Approaching if self.turned.abs() > TAU => self.stop_circling(),
             SettleState::Turning if distance > enough && patient => self.go_again(),
             SettleState::Turning if heading <= TURNED && standing => self.state = SettleState::Settled,
             SettleState::Settled if distance > self.config.release && patient => self.go_again(),
@@ -120,8 +125,23 @@ impl Stabilizer {
 
     fn go_again(&mut self) {
         self.repeats += 1;
-        self.gear = None;
+        self.approach_anew();
+    }
+
+    fn approach_anew(&mut self) {
+        (self.gear, self.turned) = (None, 0.0);
         self.state = SettleState::Approaching;
+    }
+
+    /// No approach takes a whole turn, unless the estimate goes round the goal as the robot turns, by a map that is off by a centimetre
+    /// to this side and that: it would turn after the goal for ever. It makes do with `release` tolerances, else with where it is.
+    fn stop_circling(&mut self) {
+        if self.repeats < self.config.attempts {
+            self.repeats = self.config.attempts;
+            self.approach_anew();
+        } else {
+            self.state = SettleState::Turning;
+        }
     }
 
     fn approach(&mut self, pose: Pose2, goal: Pose2) -> Twist2 {
@@ -135,5 +155,43 @@ impl Stabilizer {
         let braking = (self.limiter.limits().angular_acceleration * heading.abs()).sqrt();
         let rate = (self.config.k_turn * heading.abs()).min(braking).min(self.config.turn_rate);
         rate.copysign(heading)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use trundle_core::Stamp;
+
+    /// Where a robot ends that stands on its goal and is told that it stands `aside` m to the right of that, whichever way it turns; how
+    /// often it turned round, and whether it has settled.
+    fn told_aside(aside: f64) -> (Pose2, f64, SettleState) {
+        let drive = DifferentialDrive::KOBUKI;
+        let mut law = Stabilizer::new(SettleConfig::default(), drive, DriveLimits::KOBUKI).unwrap();
+        let (goal, dt) = (Pose2::new(1.0, 2.0, -1.5), 0.02);
+        let (mut pose, mut twist, mut turned) = (Pose2::new(1.0, 2.0, 0.4), Twist2::ZERO, 0.0);
+        for _ in 0..1500 {
+            let told = pose * Pose2::new(0.0, -aside, 0.0);
+            let covariance = nalgebra::Matrix3::zeros();
+            let estimate = PoseEstimate { stamp: Stamp::default(), pose: told, twist, covariance };
+            let report = law.step(&estimate, goal, dt);
+            if report.state == SettleState::Settled {
+                break;
+            }
+            twist = report.twist;
+            turned += twist.omega.abs() * dt / TAU;
+            pose = pose.advance(twist, dt);
+        }
+        (pose, turned, law.state)
+    }
+
+    #[test]
+    fn it_does_not_turn_after_the_goal_for_ever() {
+        for aside in [0.008, 0.015, 0.03] {
+            let (pose, turned, state) = told_aside(aside);
+            assert_eq!(state, SettleState::Settled, "told {aside} m aside, turned {turned} times");
+            assert!(turned < 3.5 && pose.distance(&Pose2::new(1.0, 2.0, 0.0)) < 0.05, "{turned}, {pose:?}");
+        }
+        assert!(told_aside(0.0).1 < 0.4, "a goal that is there is turned to");
     }
 }
