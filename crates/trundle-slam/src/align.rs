@@ -7,12 +7,13 @@ use crate::refine::{Fix, PointMatch};
 use crate::sensor::Sensor;
 use std::collections::BTreeSet;
 use trundle_core::{Pose3, Vector2};
+use trundle_vision::Template;
 
 /// How far a feature is moved at most, px of its octave: farther off it was something else.
 const FARTHEST: f32 = 2.0;
 /// From where the landmark should be it is looked for, unless that is farther off, px of the octave: then the pose is.
 const NEAR: f64 = 4.0;
-/// What an alignment is off at least, besides what it says itself, px of its octave.
+/// What an alignment is off at least, besides what it says itself, px of its octave; no more than a feature by itself.
 const SIGMA: f64 = 0.3;
 /// Fewer aligned features than this do not tell the pose alone.
 const ENOUGH: usize = 20;
@@ -72,7 +73,7 @@ pub(crate) fn aligned(
 /// than they say: a lens is not quite as it was calibrated, and a shutter rolls. Hardly beyond what a feature says by itself. Whether
 /// anything changed.
 pub(crate) fn widen(matches: &mut [PointMatch], spread: f64, sensor: &Sensor) -> bool {
-    let factor = spread.min(sensor.pixel_sigma / SIGMA);
+    let factor = spread.min(sensor.pixel_sigma / least_sigma(sensor));
     if factor <= 1.0 {
         return false;
     }
@@ -104,23 +105,29 @@ fn compared(
 ) -> Surroundings {
     let octave = frame.octave(m.feature);
     let landmark = m.landmark.and_then(|id| map.landmark(id));
-    let template = landmark.and_then(|landmark| {
-        let seen = |look: &Look| look.seen_from(camera_from_visual, landmark.position, octave, sensor);
-        landmark.looks.iter().find_map(seen)
-    });
-    let Some((template, patch)) = template.zip(frame.features.patches.get(m.feature)) else {
+    let Some((landmark, patch)) = landmark.zip(frame.features.patches.get(m.feature)) else {
         return Surroundings::Unknown;
     };
+    let seen = |look: &Look| look.seen_from(camera_from_visual, landmark.position, octave, sensor);
+    let mut templates = landmark.looks.iter().filter_map(seen).peekable();
+    if templates.peek().is_none() {
+        return Surroundings::Unknown;
+    }
     let scale = sensor.scale(octave);
     let start = expected(m, camera_from_visual, frame, sensor) / scale;
     let start = if start.amax() <= NEAR { start } else { Vector2::zeros() };
-    let found = template.find(patch, start.cast());
-    let Some(found) = found.filter(|found| found.offset.amax() <= FARTHEST) else {
-        return Surroundings::Different;
+    let find = |template: Template| {
+        template.find(patch, start.cast()).filter(|found| found.offset.amax() <= FARTHEST)
     };
+    let Some(found) = templates.find_map(find) else { return Surroundings::Different };
     let raw = raw(&frame.features.keypoints[m.feature]) + found.offset.cast() * scale;
-    let sigma = SIGMA.hypot(f64::from(found.sigma)) * scale;
+    let sigma = least_sigma(sensor).hypot(f64::from(found.sigma)) * scale;
     Surroundings::Alike(Aligned { raw, pixel: sensor.camera.undistort(raw), sigma, is_alike: true })
+}
+
+/// What an alignment is off at least, px of its octave.
+fn least_sigma(sensor: &Sensor) -> f64 {
+    SIGMA.min(sensor.pixel_sigma)
 }
 
 /// How far from its feature the landmark should be seen, px; nothing where it should not.

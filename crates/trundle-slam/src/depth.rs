@@ -1,9 +1,9 @@
+use nalgebra::Matrix2;
 use serde::{Deserialize, Serialize};
 use trundle_core::{DepthImage, Invalid, Vector2, require_in, require_positive};
 use trundle_optim::InverseDepth;
 
-/// Half of the pixels around a feature that tell its plane, px of its octave; the other half lies across. Their products of x and y
-/// cancel each other.
+/// Half of the pixels around a feature that tell its plane, px of its octave; the other half lies across.
 const AROUND: [(f64, f64); 6] = [(5.0, 0.0), (0.0, 5.0), (4.0, 4.0), (4.0, -4.0), (2.5, 0.0), (0.0, 2.5)];
 /// Fewer pairs of them do not.
 const LEAST_PAIRS: usize = 4;
@@ -73,7 +73,7 @@ impl DepthConfig {
     /// five times `px` off, as far as they are of the same thing; zero where these are too few.
     pub fn slope(&self, image: &DepthImage, pixel: Vector2, px: f64) -> Vector2 {
         let Some(middle) = self.at(image, pixel) else { return Vector2::zeros() };
-        let (mut sum, mut products) = (Vector2::zeros(), Vector2::zeros());
+        let (mut normal, mut products) = (Matrix2::zeros(), Vector2::zeros());
         let mut pairs = 0;
         for (x, y) in AROUND {
             let offset = (Vector2::new(x, y) * px).map(f64::round);
@@ -85,13 +85,11 @@ impl DepthConfig {
                 continue;
             }
             pairs += 1;
-            sum += offset.component_mul(&offset) * 2.0;
+            normal += offset * offset.transpose() * 2.0;
             products += offset * (1.0 / after - 1.0 / before);
         }
-        if pairs < LEAST_PAIRS || sum.min() <= 0.0 {
-            return Vector2::zeros();
-        }
-        products.component_div(&sum)
+        let inverse = normal.try_inverse().filter(|_| pairs >= LEAST_PAIRS);
+        inverse.map_or_else(Vector2::zeros, |inverse| inverse * products)
     }
 
     /// The depth of the nearest pixel, m, if it is in range.
@@ -142,6 +140,10 @@ mod tests {
             let slope = config.slope(&image, Vector2::new(30.2, 20.4), px);
             assert!((slope - Vector2::new(0.002, -0.001)).norm() < 1e-6, "{slope}");
         }
+        let mut holed = image;
+        holed[(34, 24)] = 0.0;
+        let slope = config.slope(&holed, Vector2::new(30.0, 20.0), 1.0);
+        assert!((slope - Vector2::new(0.002, -0.001)).norm() < 1e-6, "{slope} with a diagonal pair missing");
         let edge = DepthImage::from_fn(64, 48, |x, _| if x < 32 { 1.0 } else { 3.0 });
         for pixel in [(31.0, 20.0), (f64::NAN, 3.0), (-4.0, 3.0)] {
             assert_eq!(config.slope(&edge, Vector2::new(pixel.0, pixel.1), 1.0), Vector2::zeros());

@@ -61,8 +61,7 @@ impl Found {
         let sigma = (fix.solution.covariance? * ALIKE).fixed_view::<3, 3>(0, 0).trace().sqrt();
         let looks_right = fix.is_sound(config.weak_inliers) && is_seen;
         let is_certain = looks_right && sigma <= config.recognised_sigma;
-        let mut found = Self::by_matches(fix, visible).aligned(tracker, Known::Nothing);
-        found.fix.solution.covariance = Some(found.fix.solution.covariance? * ALIKE);
+        let found = Self::by_matches(of_one_image(fix), visible);
         Some(Self { recognised: Some(keyframe), looks_right, is_certain, ..found })
     }
 
@@ -82,10 +81,17 @@ impl Found {
     }
 
     /// The same with its features aligned, where enough of them can be.
-    fn aligned(self, tracker: &Tracker, known: Known) -> Self {
+    pub fn aligned(self, tracker: &Tracker, known: Known) -> Self {
         let Some(fix) = tracker.aligned(&self.fix, known) else { return self };
+        let fix = if self.recognised.is_some() { of_one_image(fix) } else { fix };
         Self { seen: all_that_agrees(&self.fix, &fix, tracker.frame), fix, ..self }
     }
+}
+
+/// With the errors counted that points of one image share.
+fn of_one_image(mut fix: Fix) -> Fix {
+    fix.solution.covariance = fix.solution.covariance.map(|covariance| covariance * ALIKE);
+    fix
 }
 
 /// Side of the parts of the image that are looked at one by one, px.

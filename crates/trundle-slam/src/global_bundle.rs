@@ -4,7 +4,7 @@ use crate::map_bundle::MapBundle;
 use crate::motion::carried;
 use crate::sensor::Sensor;
 use std::collections::BTreeMap;
-use trundle_core::{Pose3, Vector3};
+use trundle_core::Pose3;
 use trundle_optim::{BundleConfig, BundlePose, BundleSolver};
 
 /// Landmarks that two keyframes must share to hold each other in place \[MurArtal17\].
@@ -108,9 +108,9 @@ impl GlobalBundle {
         let moved = self.corrections(map);
         let others = self.other_landmarks(map, &moved);
         self.bundle.move_landmarks(map);
-        for (id, position) in others {
+        for (id, correction) in others {
             if let Some(landmark) = map.landmark_mut(id) {
-                landmark.position = position;
+                landmark.carry(&correction);
             }
         }
         for (id, correction) in &moved {
@@ -146,17 +146,17 @@ impl GlobalBundle {
         moved
     }
 
-    /// Where the landmarks go that are not in the bundle.
+    /// How the landmarks move that are not in the bundle: as the first keyframe that sees each.
     fn other_landmarks(
         &self,
         map: &LandmarkMap,
         moved: &BTreeMap<KeyframeId, Pose3>,
-    ) -> Vec<(LandmarkId, Vector3)> {
+    ) -> Vec<(LandmarkId, Pose3)> {
         let others = map.landmarks().filter(|(id, _)| !self.bundle.has(*id));
         others
             .filter_map(|(id, landmark)| {
                 let (first, _) = landmark.observations.iter().min()?;
-                Some((id, moved.get(first)?.transform(landmark.position)))
+                Some((id, *moved.get(first)?))
             })
             .collect()
     }
@@ -181,7 +181,7 @@ mod tests {
     use crate::frame::Frame;
     use crate::testing::sensor;
     use nalgebra::Vector6;
-    use trundle_core::Stamp;
+    use trundle_core::{Stamp, Vector3};
     use trundle_optim::InverseDepth;
     use trundle_vision::{Descriptor, Features, Keypoint};
 

@@ -2,7 +2,7 @@ use crate::ids::{KeyframeId, LandmarkId};
 use crate::map::LandmarkMap;
 use crate::map_bundle::MapBundle;
 use crate::sensor::Sensor;
-use trundle_core::Vector3;
+use trundle_core::Pose3;
 use trundle_optim::{BundleConfig, BundleSolver};
 
 /// How much of the map is refined at once.
@@ -51,17 +51,17 @@ pub(crate) fn apply(map: &mut LandmarkMap, bundle: &MapBundle, sensor: &Sensor) 
     let carried = alone(map, bundle);
     bundle.move_keyframes(map);
     bundle.move_landmarks(map);
-    for (id, position) in carried {
+    for (id, correction) in carried {
         if let Some(landmark) = map.landmark_mut(id) {
-            landmark.position = position;
+            landmark.carry(&correction);
         }
     }
     bundle.take_back(map);
     bundle.landmarks().for_each(|id| map.refresh(id, sensor));
 }
 
-/// Where the landmarks go that only one of the moved keyframes sees.
-fn alone(map: &LandmarkMap, bundle: &MapBundle) -> Vec<(LandmarkId, Vector3)> {
+/// How the landmarks move that only one of the moved keyframes sees.
+fn alone(map: &LandmarkMap, bundle: &MapBundle) -> Vec<(LandmarkId, Pose3)> {
     let mut carried = Vec::new();
     for (id, pose) in bundle.keyframes() {
         let (Some(keyframe), Some(moved)) = (map.live_keyframe(id), bundle.correction(map, id)) else {
@@ -69,7 +69,7 @@ fn alone(map: &LandmarkMap, bundle: &MapBundle) -> Vec<(LandmarkId, Vector3)> {
         };
         for landmark in keyframe.landmarks.iter().flatten().filter(|_| !pose.fixed) {
             let alone = map.landmark(*landmark).filter(|l| l.observations.len() == 1);
-            carried.extend(alone.map(|l| (*landmark, moved.transform(l.position))));
+            carried.extend(alone.map(|_| (*landmark, moved)));
         }
     }
     carried
@@ -120,7 +120,7 @@ mod tests {
     use super::*;
     use crate::rolled::Rolled;
     use crate::testing::blank_frame;
-    use trundle_core::Pose3;
+    use trundle_core::Vector3;
 
     /// Keyframes in a row, each reached by wheels from the one before; the last two see forty points together, of which one other
     /// keyframe, the first, sees one.

@@ -9,7 +9,7 @@ use trundle_vision::{ImagePatch, Template};
 /// The cosine of the steepest angle between the directions from which a patch was seen and is looked for: 37 deg. What is around
 /// a point is not quite a plane.
 const MIN_COSINE: f64 = 0.8;
-/// By how much a patch may be magnified.
+/// By how much a patch may be magnified: the root mean square of its sides.
 const MOST_MAGNIFIED: f64 = 1.8;
 
 /// From how many sides at most a landmark's look is kept.
@@ -91,6 +91,8 @@ pub(crate) fn keep_looks(map: &mut LandmarkMap, id: KeyframeId, sensor: &Sensor)
     let sharpness = map.keyframe(id).frame.sharpness(sensor);
     for (feature, seen, look) in new_looks(map, id, sensor) {
         let Some(landmark) = map.landmark_mut(seen) else { continue };
+        // Most landmarks have one, and room for four is 2 kB.
+        landmark.looks.reserve_exact(1);
         landmark.looks.push(look);
         if landmark.looks.len() == 1 {
             let frame = &mut map.keyframe_mut(id).frame;

@@ -18,7 +18,7 @@ use trundle_vision::{Match, RansacConfig, match_mutual};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct TrackingConfig {
-    /// Standard deviation of a keypoint of the finest octave, px, above 0. Default 1 \[MurArtal17\].
+    /// Standard deviation of a keypoint of the finest octave, px, 0.01 to 100. Default 1 \[MurArtal17\].
     pub pixel_sigma: f64,
     /// How far around its prediction a point of the last frame is looked for, px of its octave, above 0; twice as far at
     /// the second try. Default 15 \[MurArtal17\].
@@ -86,7 +86,7 @@ impl TrackingConfig {
     /// # Errors
     /// When a number is out of the range that its field names.
     pub fn validated(mut self) -> Result<Self, Invalid> {
-        require_positive("tracking.pixel_sigma", self.pixel_sigma, "px")?;
+        require_in("tracking.pixel_sigma", self.pixel_sigma, "px", 0.01, 100.0)?;
         require_positive("tracking.motion_window_px", self.motion_window_px, "px")?;
         require_positive("tracking.map_window_px", self.map_window_px, "px")?;
         require_in("tracking.window_ratio", f64::from(self.window_ratio), "", 0.01, 1.0)?;

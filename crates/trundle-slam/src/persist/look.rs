@@ -17,7 +17,11 @@ pub(super) fn write_all(out: &mut Writer, looks: &[Look]) {
 pub(super) fn read_all(bytes: &mut Reader) -> Result<Vec<Look>, MapFileError> {
     let count = usize::from(bytes.u8()?);
     bytes.require(count <= MOST_LOOKS, "looks of a landmark", count, || format!("at most {MOST_LOOKS}"))?;
-    (0..count).map(|_| read(bytes)).collect()
+    let mut looks = Vec::with_capacity(count);
+    for _ in 0..count {
+        looks.push(read(bytes)?);
+    }
+    Ok(looks)
 }
 
 fn read(bytes: &mut Reader) -> Result<Look, MapFileError> {

@@ -5,6 +5,7 @@ use crate::found::Found;
 use crate::frame::Frame;
 use crate::motion::{FASTEST_CAMERA, is_within};
 use crate::places::Words;
+use crate::refine::Known;
 use crate::relocalisation::{Placed, relocalise, unrivalled};
 use crate::report::MapId;
 use crate::tracker::Tracker;
@@ -60,22 +61,21 @@ impl RgbdSlam {
         let is_believed = |found: &Found| self.may_be(reach, predicted, found.pose());
         if let Some(found) = tracked.filter(is_believed) {
             self.doubts = Doubts::default();
-            let solution = &found.fix.solution;
-            let is_believed =
-                self.contradiction.believes(frame.stamp, solution.contradicts_prior, solution.inlier_count);
+            let contradicts = found.fix.solution.contradicts_prior;
+            let is_believed = self.contradiction.believes(frame.stamp, contradicts, found.points);
             return is_believed.then_some(Sighting { map: self.active.id, found });
         }
         let (map, recognised) = (self.active.id, relocalise(&here));
         self.contradiction = Contradiction::default();
         if let Some(found) = self.believable(map, recognised, predicted, reach) {
+            let found = found.aligned(&self.tracker(&self.active, frame, depth, &words), Known::Nothing);
             return Some(Sighting { map, found });
         }
-        let other = self
-            .resting
-            .get(self.frames as usize % self.resting.len().max(1))
-            .filter(|_| reach != Reach::Told)?;
-        let (map, recognised) = (other.id, relocalise(&self.tracker(other, frame, depth, &words)));
+        let other = self.frames as usize % self.resting.len().max(1);
+        let component = self.resting.get(other).filter(|_| reach != Reach::Told)?;
+        let (map, recognised) = (component.id, relocalise(&self.tracker(component, frame, depth, &words)));
         let found = self.believable(map, recognised, predicted, Reach::Anywhere)?;
+        let found = found.aligned(&self.tracker(&self.resting[other], frame, depth, &words), Known::Nothing);
         Some(Sighting { map, found })
     }
 
