@@ -13,7 +13,7 @@ use trundle_vision::Template;
 const FARTHEST: f32 = 2.0;
 /// From where the landmark should be it is looked for, unless that is farther off, px of the octave: then the pose is.
 const NEAR: f64 = 4.0;
-/// What an alignment is off at least, besides what it says itself, px of its octave; no more than a feature by itself.
+/// What an alignment is off at least, besides what it says itself, px of its octave; together no more than a feature by itself.
 const SIGMA: f64 = 0.3;
 /// Fewer aligned features than this do not tell the pose alone.
 const ENOUGH: usize = 20;
@@ -70,15 +70,18 @@ pub(crate) fn aligned(
 }
 
 /// Widens all alignments by what the pose that they give leaves of them, `spread` standard deviations, where that is more
-/// than they say: a lens is not quite as it was calibrated, and a shutter rolls. Hardly beyond what a feature says by itself. Whether
+/// than they say: a lens is not quite as it was calibrated, and a shutter rolls. Not beyond what a feature says by itself. Whether
 /// anything changed.
-pub(crate) fn widen(matches: &mut [PointMatch], spread: f64, sensor: &Sensor) -> bool {
-    let factor = spread.min(sensor.pixel_sigma / least_sigma(sensor));
-    if factor <= 1.0 {
+pub(crate) fn widen(matches: &mut [PointMatch], spread: f64, frame: &Frame, sensor: &Sensor) -> bool {
+    if spread <= 1.0 {
         return false;
     }
-    let alike = matches.iter_mut().filter_map(|m| m.aligned.as_mut()).filter(|aligned| aligned.is_alike);
-    alike.for_each(|aligned| aligned.sigma *= factor);
+    for m in matches {
+        let most = sensor.sigma_of(frame.octave(m.feature));
+        if let Some(aligned) = m.aligned.as_mut().filter(|aligned| aligned.is_alike) {
+            aligned.sigma = (spread * aligned.sigma).min(most);
+        }
+    }
     true
 }
 
@@ -121,13 +124,8 @@ fn compared(
     };
     let Some(found) = templates.find_map(find) else { return Surroundings::Different };
     let raw = raw(&frame.features.keypoints[m.feature]) + found.offset.cast() * scale;
-    let sigma = least_sigma(sensor).hypot(f64::from(found.sigma)) * scale;
+    let sigma = SIGMA.hypot(f64::from(found.sigma)).min(sensor.pixel_sigma) * scale;
     Surroundings::Alike(Aligned { raw, pixel: sensor.camera.undistort(raw), sigma, is_alike: true })
-}
-
-/// What an alignment is off at least, px of its octave.
-fn least_sigma(sensor: &Sensor) -> f64 {
-    SIGMA.min(sensor.pixel_sigma)
 }
 
 /// How far from its feature the landmark should be seen, px; nothing where it should not.
@@ -221,8 +219,37 @@ mod tests {
         let mut found = aligned(&matches, pose, &frame, (&map, &sensor)).unwrap();
         let sigma = |found: &[PointMatch]| found[0].aligned.unwrap().sigma;
         let said = sigma(&found);
-        assert!(!widen(&mut found, 0.7, &sensor) && sigma(&found) == said);
-        assert!(widen(&mut found, 2.0, &sensor) && sigma(&found) == 2.0 * said);
-        assert!(widen(&mut found, 99.0, &sensor) && sigma(&found) < 7.0 * said);
+        assert!(!widen(&mut found, 0.7, &frame, &sensor) && sigma(&found) == said);
+        assert!(widen(&mut found, 2.0, &frame, &sensor) && sigma(&found) == 2.0 * said);
+        assert!(widen(&mut found, 99.0, &frame, &sensor) && sigma(&found) == 1.0);
+    }
+
+    #[test]
+    fn where_features_are_sharp_the_aligned_are_as_sharp() {
+        let ((map, frame, pose, matches), mut sharp) = (tracked(), sensor());
+        sharp.pixel_sigma = 0.1;
+        let frame = frame.unaligned(&sharp);
+        let mut found = aligned(&matches, pose, &frame, (&map, &sharp)).unwrap();
+        let is_sharp = |found: &[PointMatch]| {
+            found.iter().all(|m| m.aligned.is_some_and(|aligned| aligned.sigma <= 0.1))
+        };
+        assert!(is_sharp(&found) && widen(&mut found, 9.0, &frame, &sharp) && is_sharp(&found));
+    }
+
+    #[test]
+    fn every_look_that_serves_is_asked() {
+        let ((mut map, frame, pose, matches), sensor) = (tracked(), sensor());
+        let (id, other) = (matches[5].landmark.unwrap(), matches[30].landmark.unwrap());
+        let wrong = map.landmark(other).unwrap().looks[0].clone();
+        map.landmark_mut(id).unwrap().looks.insert(0, wrong);
+        let find = |map: &LandmarkMap| {
+            let found = aligned(&matches, pose, &frame, (map, &sensor)).unwrap();
+            found.into_iter().find(|m| m.landmark == Some(id))
+        };
+        let truth = sensor.project(pose.inverse().transform(matches[5].point)).unwrap().0;
+        let there = find(&map).unwrap().aligned.unwrap();
+        assert!(there.is_alike && (there.pixel - truth).norm() < 0.1, "{there:?} is not {truth}");
+        map.landmark_mut(id).unwrap().looks.truncate(1);
+        assert_eq!(find(&map), None, "the wrong look serves and does not fit");
     }
 }

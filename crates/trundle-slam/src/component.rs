@@ -63,7 +63,7 @@ impl Component {
             if let Some(taken) = self.map.landmark_mut(new) {
                 taken.descriptor = landmark.descriptor;
                 taken.toward_camera = landmark.toward_camera;
-                taken.looks.clone_from(&landmark.looks);
+                taken.looks = landmark.looks.clone();
                 taken.carry(&own_from_other);
                 taken.distance_at_octave_0 = landmark.distance_at_octave_0;
                 (taken.visible, taken.found) = (landmark.visible, landmark.found);

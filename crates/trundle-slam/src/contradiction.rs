@@ -14,13 +14,13 @@ const CONVINCING: usize = 100;
 const STUBBORN: f64 = 0.3;
 
 impl Contradiction {
-    /// Whether the pose of a frame at `now`, by so many points that agree, is to be believed.
-    pub fn believes(&mut self, now: Stamp, contradicts: bool, inliers: usize) -> bool {
-        if !contradicts {
+    /// Whether the pose of a frame at `now` is to be believed, when so many points say it against the wheels.
+    pub fn believes(&mut self, now: Stamp, against_wheels: Option<usize>) -> bool {
+        let Some(points) = against_wheels else {
             self.since = None;
             return true;
-        }
-        inliers >= CONVINCING || now - *self.since.get_or_insert(now) >= STUBBORN
+        };
+        points >= CONVINCING || now - *self.since.get_or_insert(now) >= STUBBORN
     }
 
     /// Whether the newest tracked pose is in doubt.
@@ -37,12 +37,12 @@ mod tests {
     fn few_points_are_believed_against_the_wheels_when_they_insist() {
         let at = |seconds: f64| Stamp::default().after(seconds);
         let mut contradiction = Contradiction::default();
-        assert!(contradiction.believes(at(0.0), false, 30) && !contradiction.is_going_on());
-        assert!(!contradiction.believes(at(1.0), true, 99) && contradiction.is_going_on());
-        assert!(contradiction.believes(at(1.1), true, 100), "many are believed at once");
-        assert!(!contradiction.believes(at(1.2), true, 30));
-        assert!(contradiction.believes(at(1.3), true, 30), "after 0.3 s");
-        assert!(contradiction.believes(at(1.4), false, 30), "they agree again");
-        assert!(!contradiction.believes(at(9.0), true, 30), "and it begins anew");
+        assert!(contradiction.believes(at(0.0), None) && !contradiction.is_going_on());
+        assert!(!contradiction.believes(at(1.0), Some(99)) && contradiction.is_going_on());
+        assert!(contradiction.believes(at(1.1), Some(100)), "many are believed at once");
+        assert!(!contradiction.believes(at(1.2), Some(30)));
+        assert!(contradiction.believes(at(1.3), Some(30)), "after 0.3 s");
+        assert!(contradiction.believes(at(1.4), None), "they agree again");
+        assert!(!contradiction.believes(at(9.0), Some(30)), "and it begins anew");
     }
 }

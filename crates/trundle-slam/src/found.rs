@@ -2,6 +2,7 @@ use crate::align::all_that_agrees;
 use crate::anchor::Anchor;
 use crate::ids::{KeyframeId, LandmarkId};
 use crate::refine::{Fix, Known, PointMatch};
+use crate::relocalisation::is_same_place;
 use crate::search::Projection;
 use crate::tracker::Tracker;
 use std::collections::{BTreeMap, BTreeSet};
@@ -18,6 +19,8 @@ pub(crate) struct Found {
     /// the place. Where in it the camera is, those that could be aligned tell better, and they are fewer.
     pub matches: usize,
     pub points: usize,
+    /// Whether that contradicted the wheels.
+    contradicted: bool,
     /// The landmarks that should have been seen, and where.
     pub visible: Vec<(LandmarkId, Projection)>,
     /// Whether the landmark map itself agrees, not only the last frame.
@@ -65,12 +68,20 @@ impl Found {
         Some(Self { recognised: Some(keyframe), looks_right, is_certain, ..found })
     }
 
+    /// How many points say that the wheels are wrong; `None` where they do not.
+    pub fn against_wheels(&self) -> Option<usize> {
+        let Fix { solution, .. } = &self.fix;
+        let points = if self.contradicted { self.points } else { solution.inlier_count };
+        solution.contradicts_prior.then_some(points)
+    }
+
     /// By a pose on the map, followed there.
     fn by_matches(fix: Fix, visible: Vec<(LandmarkId, Projection)>) -> Self {
         Self {
             seen: fix.inliers().copied().collect(),
             matches: fix.matches.len(),
             points: fix.solution.inlier_count,
+            contradicted: fix.solution.contradicts_prior,
             fix,
             visible,
             by_map: true,
@@ -80,10 +91,14 @@ impl Found {
         }
     }
 
-    /// The same with its features aligned, where enough of them can be.
+    /// The same with its features aligned, where enough of them can be and they say the same place. Of a recognised place, errors that
+    /// points of one image share are counted again.
     pub fn aligned(self, tracker: &Tracker, known: Known) -> Self {
         let Some(fix) = tracker.aligned(&self.fix, known) else { return self };
         let fix = if self.recognised.is_some() { of_one_image(fix) } else { fix };
+        if !is_same_place(fix.visual_from_camera(), self.fix.visual_from_camera()) {
+            return self;
+        }
         Self { seen: all_that_agrees(&self.fix, &fix, tracker.frame), fix, ..self }
     }
 }

@@ -48,14 +48,14 @@ pub(crate) fn bundle_around(
 
 /// Takes a bundle's result over, as far as it has come. A landmark that only one keyframe sees moves along with it.
 pub(crate) fn apply(map: &mut LandmarkMap, bundle: &MapBundle, sensor: &Sensor) {
-    let carried = alone(map, bundle);
-    bundle.move_keyframes(map);
-    bundle.move_landmarks(map);
-    for (id, correction) in carried {
+    // One that others saw when the bundle began is in it, too, and goes where that puts it.
+    for (id, correction) in alone(map, bundle) {
         if let Some(landmark) = map.landmark_mut(id) {
             landmark.carry(&correction);
         }
     }
+    bundle.move_keyframes(map);
+    bundle.move_landmarks(map);
     bundle.take_back(map);
     bundle.landmarks().for_each(|id| map.refresh(id, sensor));
 }
@@ -118,9 +118,12 @@ fn window_around(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::look::Look;
     use crate::rolled::Rolled;
-    use crate::testing::blank_frame;
-    use trundle_core::Vector3;
+    use crate::testing::{blank_frame, painted_frame, painted_map, painted_points, sensor};
+    use nalgebra::Vector6;
+    use trundle_core::{Vector2, Vector3};
+    use trundle_vision::ImagePatch;
 
     /// Keyframes in a row, each reached by wheels from the one before; the last two see forty points together, of which one other
     /// keyframe, the first, sees one.
@@ -146,6 +149,37 @@ mod tests {
         let (map, ids) = row(6);
         let (keyframes, _) = window_around(&map, ids[5], BundleSize { local: 10, fixed: 10 });
         assert_eq!(keyframes, [(ids[5], false), (ids[4], false), (ids[0], true), (ids[3], true)]);
+    }
+
+    #[test]
+    fn what_one_keyframe_sees_goes_along_once_and_with_its_looks() {
+        let (sensor, points, (mut map, first)) = (sensor(), painted_points(), painted_map());
+        let truth = Pose3::exp(Vector6::new(0.2, 0.0, 0.0, 0.0, -0.1, 0.0));
+        let off = Pose3::exp(Vector6::new(0.02, -0.01, 0.01, 0.0, 0.02, 0.01));
+        let ids: Vec<LandmarkId> = map.landmarks().map(|(id, _)| id).collect();
+        let second = map.add_keyframe(painted_frame(truth, &points, Vector2::zeros()), truth * off);
+        ids.iter().enumerate().skip(2).for_each(|(feature, id)| assert!(map.observe(*id, second, feature)));
+        let astray = truth * off * truth.inverse();
+        let own = map.add_landmark(astray.transform(points[0]));
+        map.observe(own, second, 0);
+        let [right, down, toward_camera] =
+            [Vector3::x(), Vector3::y(), -Vector3::z()].map(|v| astray.rotate(v));
+        let patch = ImagePatch::new([0; 441], [0.0; 2]).unwrap();
+        map.landmark_mut(own).unwrap().looks.push(Look { patch, right, down, toward_camera });
+        let mut bundle = bundle_around(&map, second, &sensor, BundleSize { local: 10, fixed: 10 });
+        bundle.begin(&map, &sensor, &BundleConfig::default(), BundleSolver::default());
+        while !bundle.advance(usize::MAX) {}
+        // As culling does while a bundle is under way.
+        map.unobserve(ids[2], first);
+        apply(&mut map, &bundle, &sensor);
+        for (id, truth) in [(own, points[0]), (ids[2], points[2])] {
+            let off = (map.landmark(id).unwrap().position - truth).norm();
+            assert!(off < 5e-3, "{id:?} is {off} m off");
+        }
+        let look = &map.landmark(own).unwrap().looks[0];
+        assert!(
+            (look.toward_camera + Vector3::z()).norm() < 5e-3 && (look.right - Vector3::x()).norm() < 5e-3
+        );
     }
 
     #[test]

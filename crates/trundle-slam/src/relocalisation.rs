@@ -11,7 +11,7 @@ const SAME_PLACE: (f64, f64) = (0.3, 0.3);
 /// is nearly as near \[Lowe04\].
 const RIVAL: f64 = 0.7;
 
-/// Where a camera may be that was not followed: the keyframes that look alike, each tried in full. Among them are places that are
+/// Where a camera may be that was not followed: the keyframes that look alike, each tried in full but for aligning features. Among them are places that are
 /// not to be believed by themselves, and yet make others doubtful.
 pub(crate) fn relocalise(tracker: &Tracker) -> Vec<Found> {
     let most = tracker.config.relocalisation_keyframes;

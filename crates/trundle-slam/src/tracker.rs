@@ -224,7 +224,7 @@ impl Tracker<'_> {
         let matches = aligned(&found.matches, pose, self.frame, (self.map, self.sensor))?;
         let mut fix = solve(matches, pose);
         let spread = fix.spread(self.sensor);
-        if widen(&mut fix.matches, spread, self.sensor) {
+        if widen(&mut fix.matches, spread, self.frame, self.sensor) {
             let pose = fix.visual_from_camera();
             fix = solve(fix.matches, pose);
         }
@@ -247,5 +247,19 @@ impl Tracker<'_> {
         }
         let fix = Fix::by(matches, (start, known), self.frame, self.sensor, &self.config.pose);
         fix.is_sound(least).then_some(fix)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_pixel_sigma_is_a_sensible_one() {
+        let is_valid =
+            |pixel_sigma| TrackingConfig { pixel_sigma, ..TrackingConfig::default() }.validated().is_ok();
+        let expected = [(0.0, false), (0.009, false), (0.01, true), (100.0, true), (101.0, false)];
+        expected.iter().for_each(|(sigma, valid)| assert_eq!(is_valid(*sigma), *valid, "{sigma}"));
+        assert!(!is_valid(f64::NAN));
     }
 }

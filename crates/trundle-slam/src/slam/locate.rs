@@ -61,8 +61,7 @@ impl RgbdSlam {
         let is_believed = |found: &Found| self.may_be(reach, predicted, found.pose());
         if let Some(found) = tracked.filter(is_believed) {
             self.doubts = Doubts::default();
-            let contradicts = found.fix.solution.contradicts_prior;
-            let is_believed = self.contradiction.believes(frame.stamp, contradicts, found.points);
+            let is_believed = self.contradiction.believes(frame.stamp, found.against_wheels());
             return is_believed.then_some(Sighting { map: self.active.id, found });
         }
         let (map, recognised) = (self.active.id, relocalise(&here));
