@@ -128,6 +128,74 @@ fn seen_part(expected: impl Iterator<Item = Vector2>, found: impl Iterator<Item 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::component::Component;
+    use crate::frame::Frame;
+    use crate::local_map::View;
+    use crate::look::keep_looks;
+    use crate::report::MapId;
+    use crate::testing::{painted_frame, painted_map, painted_points, sensor};
+    use crate::tracker::TrackingConfig;
+    use nalgebra::Vector6;
+    use std::cell::OnceCell;
+    use trundle_core::DepthImage;
+    use trundle_optim::PosePrior;
+    use trundle_vision::Vocabulary;
+
+    /// What a frame of the painted wall is found to be in its map by matches that are all right, for a camera of which so much is known.
+    fn with_found(frame: &Frame, known: Known, check: impl FnOnce(Found, &Tracker)) {
+        let (sensor, config, (mut map, keyframe)) = (sensor(), TrackingConfig::default(), painted_map());
+        keep_looks(&mut map, keyframe, &sensor);
+        let Component { map, places, .. } = Component::new(MapId(0), map, &Vocabulary::builtin());
+        let ids = map.landmarks().enumerate();
+        let matches = ids.map(|(i, (id, _))| PointMatch::of_landmark(i, id, &map).unwrap()).collect();
+        let fix = Fix::by(matches, (Pose3::identity(), known), frame, &sensor, &config.pose);
+        let image = DepthImage::filled(320, 240, 0.0);
+        let view = View { sensor: &sensor, depth: (&image, &Default::default()), window: 6.0, most: 4000 };
+        let words = OnceCell::new();
+        let (map, places, sensor, config) = (&map, &places, &sensor, &config);
+        let tracker =
+            Tracker { map, places, sensor, view, config, frame, rolled: None, words: &words, seed: 0 };
+        check(Found::by_matches(fix, vec![]), &tracker);
+    }
+
+    fn frame_of_the_wall() -> Frame {
+        painted_frame(Pose3::identity(), &painted_points(), Vector2::new(0.2, -0.1))
+    }
+
+    #[test]
+    fn errors_that_points_share_are_counted_once_aligned_or_not() {
+        let (mut frame, recognised) = (frame_of_the_wall(), Some(KeyframeId::from_index(0)));
+        with_found(&frame, Known::Nothing, |found, tracker| {
+            let aligned = tracker.aligned(&found.fix, Known::Nothing).unwrap().solution.covariance.unwrap();
+            let found = Found { recognised, fix: of_one_image(found.fix), ..found };
+            let found = found.aligned(tracker, Known::Nothing);
+            assert_eq!(found.fix.solution.covariance, Some(aligned * ALIKE));
+            assert!(found.seen.iter().all(|m| m.aligned.is_some()));
+        });
+        frame.forget_image();
+        with_found(&frame, Known::Nothing, |found, tracker| {
+            let plain = found.fix.solution.covariance.unwrap();
+            let found = Found { recognised, fix: of_one_image(found.fix), ..found };
+            let found = found.aligned(tracker, Known::Nothing);
+            assert_eq!(found.fix.solution.covariance, Some(plain * ALIKE), "nothing could be aligned");
+        });
+    }
+
+    #[test]
+    fn only_points_that_contradict_the_wheels_speak_against_them() {
+        let frame = frame_of_the_wall();
+        let elsewhere = PosePrior {
+            world_from_camera: Pose3::exp(Vector6::new(0.5, 0.0, 0.0, 0.0, 0.2, 0.0)),
+            covariance: nalgebra::Matrix6::identity() * 1e-6,
+        };
+        with_found(&frame, Known::Followed(Some(&elsewhere)), |found, _| {
+            assert_eq!(found.against_wheels(), Some(found.points));
+            let aligned_only = Found { contradicted: false, points: 1000, ..found };
+            let aligned = aligned_only.fix.solution.inlier_count;
+            assert_eq!(aligned_only.against_wheels(), Some(aligned), "the many did not say so");
+        });
+        with_found(&frame, Known::Followed(None), |found, _| assert_eq!(found.against_wheels(), None));
+    }
 
     #[test]
     fn what_is_seen_in_one_corner_is_not_the_view() {
