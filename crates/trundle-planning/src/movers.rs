@@ -41,6 +41,11 @@ impl Mover {
         Self { radius: self.radius + MARGIN, ..self }
     }
 
+    /// Whether it is where it is for now.
+    pub(crate) fn stands(&self) -> bool {
+        self.velocity == Vector2::zeros()
+    }
+
     /// Of its disc, m.
     pub fn radius(&self) -> f64 {
         self.radius

@@ -152,7 +152,8 @@ impl Planner {
         self.tour(grid, Some(graph), (start, start_twist), goals)
     }
 
-    /// Like [`Planner::plan`], among things that move, each believed to go on as it does for 2 s: past them, or after a wait,
+    /// Like [`Planner::plan`], among things that move, each believed to go on as it does for 2 s, and things that stand for now, which are
+    /// kept off as obstacles are where there is a way: past them, or after a wait,
     /// at the start or, for a robot that moves, at a stop on its way, whichever arrives earlier. Where both fail,
     /// [`Plan::Blocked`] where the robot stands: it should stop.
     pub fn plan_among(
@@ -165,6 +166,9 @@ impl Planner {
     ) -> Plan {
         let radius = self.body.radius;
         let movers: &[Mover] = &movers.iter().map(|mover| mover.with_margin()).collect::<Vec<_>>();
+        if let Some(plan) = self.plan_clear_of_standing(grid, movers, (start, start_twist), goal) {
+            return Plan::Found(plan);
+        }
         let direct = self.plan(grid, start, start_twist, goal);
         let Plan::Found(direct) = direct else { return direct };
         if conflict(&direct.trajectory, 0.0, movers, radius).is_none() {
@@ -184,6 +188,24 @@ impl Planner {
             (Some(around), None) => Plan::Found(around),
             (None, None) => Plan::Blocked { nearest: start.position() },
         }
+    }
+
+    /// A way that keeps off what stands among the movers, however late it comes there, and meets none of the others.
+    fn plan_clear_of_standing(
+        &mut self,
+        grid: &OccupancyGrid,
+        movers: &[Mover],
+        (start, twist): (Pose2, Twist2),
+        goal: Pose2,
+    ) -> Option<Box<PlanResult>> {
+        let standing: Vec<Mover> = movers.iter().filter(|mover| mover.stands()).copied().collect();
+        if standing.is_empty() {
+            return None;
+        }
+        let mut closed = grid.clone();
+        stamp(&mut closed, &standing, 0.0);
+        let Plan::Found(plan) = self.plan(&closed, start, twist, goal) else { return None };
+        conflict(&plan.trajectory, 0.0, movers, self.body.radius).is_none().then_some(plan)
     }
 
     /// What to do `time` seconds into the plan `current` now that the map, the goal or the movers may have changed: its rest

@@ -43,6 +43,8 @@ pub struct RgbdSlam {
     mode: Mode,
     sensor: Sensor,
     extractor: OrbExtractor,
+    /// Room for the features of the next image, half a megabyte that is not to be found anew thirty times a second.
+    spare: Features,
     /// The map that the camera is in, or was last.
     active: Component,
     /// The other ones, by rising id.
@@ -117,6 +119,7 @@ impl RgbdSlam {
             mode: Mode::default(),
             sensor,
             extractor,
+            spare: Features::default(),
             active: Component::new(MapId(0), LandmarkMap::default(), &Vocabulary::builtin()),
             resting: vec![],
             newest_map: 0,
@@ -191,7 +194,12 @@ impl RgbdSlam {
         let camera = &self.sensor.camera;
         let fits = image.color().width() == camera.width() && image.color().height() == camera.height();
         let gray = gray_from_color(image.color());
-        let features = if fits { self.extractor.extract(&gray) } else { Features::default() };
+        let mut features = std::mem::take(&mut self.spare);
+        if fits {
+            self.extractor.extract_into(&gray, &mut features);
+        } else {
+            features = Features::default();
+        }
         self.check.note_image(&gray, image.depth());
         self.step_with_features(image.stamp(), features, image.depth(), prior)
     }
@@ -329,6 +337,13 @@ impl RgbdSlam {
         cull_keyframes(&mut self.active.map, keyframe, &self.config.keyframes);
         self.active.follow();
         keyframe
+    }
+
+    /// Goes on from a frame; the one before leaves its room to the next image's features.
+    fn go_on_from(&mut self, located: Located) {
+        if let Some(before) = self.last.replace(located) {
+            self.spare = before.frame.features;
+        }
     }
 
     fn show(&mut self, frame: &Frame, landmarks: &[Option<LandmarkId>]) {

@@ -6,7 +6,7 @@
 //! those are expected; a straight line through a track's last places, by least squares, is its velocity; it counts as moving once
 //! it has left the place where it was first seen. Cost: O(beams x reach / cell) a scan.
 //!
-//! What was never seen free is not new: a wall that comes into view is no mover. What stops is none after `memory` seconds. What came to
+//! What was never seen free is not new: a wall that comes into view is no mover. What stops may go on any moment, for 10 s. What came to
 //! where the sensor is blind, near by, and was not seen to leave stands there for up to 10 s.
 
 mod cluster;
@@ -88,14 +88,14 @@ impl MoverTracker {
         self.begin.map_or(0.0, |begin| stamp - begin)
     }
 
-    /// What moves, at its places at `now`: not long after the last scan.
+    /// What moves, at its places at `now`: not long after the last scan. Who walked within the last 10 s and stopped may go on as before
+    /// any moment: their way of the next 2 s is taken by discs that stand, so that whoever passes goes behind, or waits.
     pub fn movers(&self, now: Stamp) -> Vec<Mover> {
         let now = self.seconds(now);
-        let mover = |track: &Track| {
-            let (at, velocity, radius) = track.mover(now, &self.config);
-            Mover::new(at, velocity, radius + SIDE / 2.0).ok()
-        };
-        self.moving().filter_map(mover).collect()
+        let moving = self.moving().map(|track| track.mover(now, &self.config));
+        let stopped = self.tracks.iter().flat_map(|track| track.way_on(now, &self.config));
+        let mover = |(at, velocity, radius)| Mover::new(at, velocity, radius + SIDE / 2.0).ok();
+        moving.chain(stopped).filter_map(mover).collect()
     }
 
     /// Hits within `reach` m of a place, map frame, and of the reach of the scans: of what came while it was watched, was last seen there

@@ -1,6 +1,7 @@
 use super::TrackerConfig;
 use super::cluster::Cluster;
 use super::seen::{SIDE, SeenCells};
+use crate::movers::HORIZON;
 use trundle_core::Vector2;
 
 /// Something that was seen again and again.
@@ -18,6 +19,8 @@ pub(super) struct Track {
     pub(super) velocity: Vector2,
     /// Where it may stand unseen: middle and radius.
     hidden: Option<(Vector2, f64)>,
+    /// When it last walked, and how.
+    walk: Option<(f64, Vector2)>,
 }
 
 /// A mover that was not seen to go is believed to stand where nothing can be seen for so long, s.
@@ -26,6 +29,9 @@ pub(super) const HIDES: f64 = 10.0;
 const BLINK: f64 = 0.2;
 /// Nearer to the sensor than this nobody has room, m, and farther than this it is not blind, m.
 const NEAR: (f64, f64) = (0.35, 0.8);
+
+/// Discs that a way on is made of at most.
+const MOST_DISCS: f64 = 20.0;
 
 /// Where something was, and how large it looked.
 #[derive(Debug, Clone, Copy)]
@@ -47,6 +53,7 @@ impl Track {
             sightings: 1,
             velocity: Vector2::zeros(),
             hidden: None,
+            walk: None,
         }
     }
 
@@ -68,9 +75,45 @@ impl Track {
         config: &TrackerConfig,
     ) -> bool {
         let unseen = time - self.last_seen();
+        if self.moves(cells, config) {
+            self.walk = Some((self.last_seen(), self.pace()));
+        }
         let may_hide = (BLINK..HIDES).contains(&unseen) && self.sightings >= config.sightings;
         self.hidden = may_hide.then(|| self.hides(sensor, cells, config)).flatten();
-        unseen <= config.window || self.hidden.is_some()
+        unseen <= config.window || self.hidden.is_some() || self.stands(time, cells, config)
+    }
+
+    /// Whether it walked not long ago, stopped, and has not been seen to leave.
+    fn stands(&self, time: f64, cells: &SeenCells, config: &TrackerConfig) -> bool {
+        let walked = self.walk.is_some_and(|(last, _)| time - last < HIDES);
+        walked && self.is_still(config) && !cells.is_free_since(self.last().at, self.last_seen())
+    }
+
+    /// How it walks: as fast as it ever did, for a velocity over a second lags behind somebody who stops; and that way, unless it turned.
+    fn pace(&self) -> Vector2 {
+        let (now, before) = (self.velocity, self.walk.map_or_else(Vector2::zeros, |(_, velocity)| velocity));
+        let stops = 2.0 * now.norm() < before.norm();
+        if stops { before } else { now.normalize() * now.norm().max(before.norm()) }
+    }
+
+    fn is_still(&self, config: &TrackerConfig) -> bool {
+        self.velocity.norm() < config.least_speed
+    }
+
+    /// Of who walked not long ago and stopped: the way on that it may take any moment, as discs (middle, no velocity, radius) that overlap.
+    pub(super) fn way_on(
+        &self,
+        time: f64,
+        config: &TrackerConfig,
+    ) -> impl Iterator<Item = (Vector2, Vector2, f64)> {
+        let stopped = self.is_hidden() || self.is_still(config);
+        let walk = self.walk.filter(|(last, _)| stopped && time - last < HIDES);
+        let (at, radius) = (self.last().at, self.radius(config));
+        walk.into_iter().flat_map(move |(_, velocity)| {
+            let way = velocity * HORIZON;
+            let discs = (way.norm() / radius).ceil().clamp(1.0, MOST_DISCS) as usize;
+            (1..=discs).map(move |k| (at + way * (k as f64 / discs as f64), Vector2::zeros(), radius))
+        })
     }
 
     /// The part of its way on that is near the sensor and has not been seen free since, as a disc.

@@ -149,18 +149,69 @@ fn what_stands_appears_or_comes_into_view_is_no_mover() {
 }
 
 #[test]
-fn who_stops_is_soon_none() {
+fn who_stops_may_go_on_for_a_while() {
     let (mut tracker, pose) = (tracker(), Pose2::new(1.0, 3.0, 0.0));
     let walks = (at(4.0, 2.0), at(0.0, 0.7));
     assert_eq!(watched(&mut tracker, &mut World::new(&[walks]), pose, 2.0, LASER).len(), 1);
-    let mut stands = World::new(&[(walks.0 + walks.1 * 2.0, Vector2::zeros())]);
-    let mut left = 1;
-    for k in 1..=40 {
-        let time = 2.0 + f64::from(k) * 0.1;
-        tracker.see(pose, &stands.scan(pose, time, LASER));
-        left = tracker.movers(stamp(time)).len();
+    let stop = walks.0 + walks.1 * 2.0;
+    let mut stands = World::new(&[(stop, Vector2::zeros())]);
+    let mut looks_on = |from: i32, to: i32| {
+        (from..=to).for_each(|k| {
+            let time = 2.0 + f64::from(k) * 0.1;
+            tracker.see(pose, &stands.scan(pose, time, LASER));
+        });
+        tracker.movers(stamp(2.0 + f64::from(to) * 0.1))
+    };
+    for movers in [looks_on(1, 20), looks_on(21, 80)] {
+        for ahead in [0.5, 1.0, 2.0] {
+            let place = stop + walks.1 * ahead;
+            let off = movers.iter().map(|m| (m.at(0.0) - place).norm().max((m.at(2.0) - place).norm()));
+            assert!(off.fold(9.0, f64::min) < 0.25, "it may be at {place} any moment: {movers:?}");
+        }
+        let behind = stop - walks.1 * 0.5;
+        assert!(movers.iter().all(|m| (m.at(0.0) - behind).norm() > 0.4), "but not behind: {movers:?}");
     }
-    assert_eq!(left, 0);
+    assert_eq!(looks_on(81, 110), [], "who stands for ten seconds stays");
+}
+
+#[test]
+fn who_stopped_and_went_away_unseen_is_none() {
+    let mut tracker = tracker();
+    let mut world = World::new(&[(at(4.0, 2.0), at(0.0, 0.7))]);
+    let pose = Pose2::new(1.0, 3.0, 0.0);
+    watched(&mut tracker, &mut world, pose, 2.0, LASER);
+    let mut stands = World::new(&[(at(4.0, 3.4), Vector2::zeros())]);
+    let mut empty = World::new(&[]);
+    for k in 1..=35 {
+        let (time, is_there) = (2.0 + f64::from(k) * 0.1, k <= 20);
+        let world = if is_there { &mut stands } else { &mut empty };
+        tracker.see(pose, &world.scan(pose, time, LASER));
+    }
+    assert_eq!(tracker.movers(stamp(5.5)), []);
+}
+
+/// Somebody came from the right, stopped in the way and may go on to the left: the robot passes behind.
+#[test]
+fn whoever_passes_one_who_stopped_goes_behind() {
+    let grid = OccupancyGrid::filled(GridGeometry::new(0.05, at(0.0, 0.0), 200, 120).unwrap(), Cell::Free);
+    for side in [1.0, -1.0] {
+        let ways_on = [0.45, 0.9, 1.35, 1.8].map(|on| at(5.0, 3.0 + on * side));
+        let ways_on = ways_on.map(|at| Mover::new(at, Vector2::zeros(), 0.25).unwrap());
+        let mut with_them = grid.clone();
+        for row in 0..120 {
+            for col in 0..200 {
+                let cell = CellIndex { col, row };
+                if (with_them.geometry().center(cell) - at(5.0, 3.0)).norm() < 0.25 {
+                    with_them.set(cell, Cell::Occupied);
+                }
+            }
+        }
+        let (from, goal) = (Pose2::new(4.3, 3.0, 0.0), Pose2::new(8.0, 3.0, 0.0));
+        let plan = planner(at_home(), RADIUS).plan_among(&with_them, &ways_on, from, Twist2::ZERO, goal);
+        let plan = found(plan);
+        let beside = plan.trajectory.points().iter().find(|p| p.pose.x >= 5.0).unwrap().pose.y - 3.0;
+        assert!(beside * side < -0.3, "{beside} m to the left of who goes to {side}");
+    }
 }
 
 /// A camera that is blind nearer than `blind` (m) looks on, ten times a second, at those who walk until `stop` (s).

@@ -57,7 +57,7 @@ impl RgbdSlam {
             merged: kept.and_then(|kept| kept.merged),
             ..self.report(frame.len())
         };
-        self.last = Some(Located { frame, landmarks, anchored });
+        self.go_on_from(Located { frame, landmarks, anchored });
         self.missed = None;
         report
     }

@@ -55,7 +55,7 @@ impl RgbdSlam {
         let report = TrackReport { new_keyframe: reference.is_some(), ..self.report(frame.len()) };
         if let Some(id) = reference {
             let landmarks = self.active.map.keyframe(id).landmarks.clone();
-            self.last = Some(Located { frame, landmarks, anchored });
+            self.go_on_from(Located { frame, landmarks, anchored });
             (self.misses, self.blind, self.doubts) = (0, false, Doubts::default());
             self.missed = None;
         } else {

@@ -109,6 +109,7 @@ impl OrbExtractor {
         features.keypoints.clear();
         features.descriptors.clear();
         features.patches.clear();
+        features.patches.reserve(self.levels.iter().map(|level| level.features().len()).sum());
         for (octave, level) in self.levels.iter().enumerate() {
             // Pixel centres are whole numbers on every level, so the corners of the images coincide at -0.5.
             let across = image.width() as f32 / level.width().max(1) as f32;
