@@ -6,6 +6,8 @@ use trundle_core::{
 
 /// How far ahead a steady motion is believed, s.
 pub(crate) const HORIZON: f64 = 2.0;
+/// Who walked and stopped is believed to go on any moment for so long, s.
+pub(crate) const MAY_GO_ON: f64 = 10.0;
 /// Plans keep so much more from movers than is asked of one that is under way, m: the next scan's velocities are a little
 /// different, and must not overturn a plan that was just made.
 const MARGIN: f64 = 0.05;

@@ -3,7 +3,7 @@ mod question;
 use crate::body::Body;
 use crate::escape::cells_around;
 use crate::masks::{cut, kept_out};
-use crate::movers::{Mover, conflict, delayed, stamp};
+use crate::movers::{MAY_GO_ON, Mover, conflict, delayed, stamp};
 use crate::plan::{Plan, PlanResult};
 use crate::stopwatch::{StageTimes, Stopwatch};
 use crate::task::{Memory, Task};
@@ -153,9 +153,8 @@ impl Planner {
     }
 
     /// Like [`Planner::plan`], among things that move, each believed to go on as it does for 2 s, and things that stand for now, which are
-    /// kept off as obstacles are where there is a way: past them, or after a wait,
-    /// at the start or, for a robot that moves, at a stop on its way, whichever arrives earlier. Where both fail,
-    /// [`Plan::Blocked`] where the robot stands: it should stop.
+    /// kept off as obstacles are where there is a way that is not 10 s longer: past them, or after a wait, at the start or, for a robot that
+    /// moves, at a stop on its way, whichever arrives earlier. Where both fail, [`Plan::Blocked`] where the robot stands: it should stop.
     pub fn plan_among(
         &mut self,
         grid: &OccupancyGrid,
@@ -164,16 +163,39 @@ impl Planner {
         start_twist: Twist2,
         goal: Pose2,
     ) -> Plan {
-        let radius = self.body.radius;
         let movers: &[Mover] = &movers.iter().map(|mover| mover.with_margin()).collect::<Vec<_>>();
-        if let Some(plan) = self.plan_clear_of_standing(grid, movers, (start, start_twist), goal) {
+        let open = match self.plan(grid, start, start_twist, goal) {
+            Plan::Found(plan) if movers.iter().any(Mover::stands) => plan.trajectory.duration(),
+            Plan::Found(plan) => return self.past(grid, movers, plan, start_twist, goal),
+            none => return none,
+        };
+        if let Some((closed, clear)) =
+            self.clear_of_standing(grid, movers, (start, start_twist), (goal, open))
+            && let Plan::Found(plan) = self.past(&closed, movers, clear, start_twist, goal)
+        {
             return Plan::Found(plan);
         }
-        let direct = self.plan(grid, start, start_twist, goal);
-        let Plan::Found(direct) = direct else { return direct };
+        // Once more, for the field of distances is that of another grid now.
+        match self.plan(grid, start, start_twist, goal) {
+            Plan::Found(plan) => self.past(grid, movers, plan, start_twist, goal),
+            none => none,
+        }
+    }
+
+    /// The plan `direct`, or what of it is best among movers.
+    fn past(
+        &mut self,
+        grid: &OccupancyGrid,
+        movers: &[Mover],
+        direct: Box<PlanResult>,
+        start_twist: Twist2,
+        goal: Pose2,
+    ) -> Plan {
+        let radius = self.body.radius;
         if conflict(&direct.trajectory, 0.0, movers, radius).is_none() {
             return Plan::Found(direct);
         }
+        let start = direct.trajectory.points()[0].pose;
         let late = if direct.trajectory.points()[0].twist == Twist2::ZERO {
             delayed(&direct.trajectory, movers, radius)
         } else {
@@ -190,22 +212,23 @@ impl Planner {
         }
     }
 
-    /// A way that keeps off what stands among the movers, however late it comes there, and meets none of the others.
-    fn plan_clear_of_standing(
+    /// The grid closed where something stands among the movers, and a way on it: one that goes on as the robot does, to the goal itself, and
+    /// is not so much longer than the `direct` one, s, that waiting until those who stand are believed to stay is sooner.
+    fn clear_of_standing(
         &mut self,
         grid: &OccupancyGrid,
         movers: &[Mover],
         (start, twist): (Pose2, Twist2),
-        goal: Pose2,
-    ) -> Option<Box<PlanResult>> {
+        (goal, direct): (Pose2, f64),
+    ) -> Option<(OccupancyGrid, Box<PlanResult>)> {
         let standing: Vec<Mover> = movers.iter().filter(|mover| mover.stands()).copied().collect();
-        if standing.is_empty() {
-            return None;
-        }
         let mut closed = grid.clone();
         stamp(&mut closed, &standing, 0.0);
         let Plan::Found(plan) = self.plan(&closed, start, twist, goal) else { return None };
-        conflict(&plan.trajectory, 0.0, movers, self.body.radius).is_none().then_some(plan)
+        let is_good = plan.is_continuous
+            && plan.instead_of.is_none()
+            && plan.trajectory.duration() < direct + MAY_GO_ON;
+        is_good.then_some((closed, plan))
     }
 
     /// What to do `time` seconds into the plan `current` now that the map, the goal or the movers may have changed: its rest

@@ -8,7 +8,7 @@ pub struct TrackerConfig {
     /// How far around the sensor it looks, m, 1 to 20. Default 6 (ours): who walks 1.5 m/s needs 4 s from there.
     pub reach: f64,
     /// For how long a place counts as newly occupied, and how long ago it must have been seen free at the most, s, 0.1 to 60.
-    /// Default 3 (ours): at 0.2 m/s all of a person (0.6 m) is new. What stands longer is no mover any more.
+    /// Default 3 (ours): at 0.2 m/s all of a person (0.6 m) is new. What stands longer is no mover any more, but for who walked up to there: they may go on for 10 s.
     pub memory: f64,
     /// Hits of a cluster below which it is noise, 1 to 10000. Default 3 (ours).
     pub least_hits: usize,

@@ -93,7 +93,7 @@ impl MoverTracker {
     pub fn movers(&self, now: Stamp) -> Vec<Mover> {
         let now = self.seconds(now);
         let moving = self.moving().map(|track| track.mover(now, &self.config));
-        let stopped = self.tracks.iter().flat_map(|track| track.way_on(now, &self.config));
+        let stopped = self.tracks.iter().flat_map(|track| track.way_on(now, &self.cells, &self.config));
         let mover = |(at, velocity, radius)| Mover::new(at, velocity, radius + SIDE / 2.0).ok();
         moving.chain(stopped).filter_map(mover).collect()
     }
@@ -187,7 +187,7 @@ impl MoverTracker {
     }
 
     /// Ties clusters to tracks, nearest first, and to those in sight before those that hide; the rest begin tracks of their own. Tracks not seen for a window end, but for those
-    /// that went to where the sensor is blind.
+    /// that went to where the sensor is blind, and those that stopped and were not seen to leave.
     fn follow(&mut self, clusters: Vec<Cluster>, sensor: Vector2) {
         let (time, config) = (self.time, self.config);
         let mut pairs = Vec::new();
@@ -195,7 +195,7 @@ impl MoverTracker {
             for (c, cluster) in clusters.iter().enumerate() {
                 let off = track.gap(time, cluster.middle);
                 if off <= config.gate {
-                    pairs.push((track.is_hidden(), off, t, c));
+                    pairs.push((track.is_hidden() || track.is_lost(time), off, t, c));
                 }
             }
         }

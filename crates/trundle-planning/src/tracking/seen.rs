@@ -130,6 +130,12 @@ impl SeenCells {
         self.known(place_of(point)).is_some_and(|seen| seen.hit_at > time)
     }
 
+    /// Whether something stands at a point, or beside it, that did not come while it was watched.
+    pub(super) fn is_wall(&self, point: Vector2) -> bool {
+        let stays = |seen: &Seen| seen.is_taken() && !seen.came;
+        around(place_of(point), 1).any(|place| self.known(place).is_some_and(stays))
+    }
+
     /// Whether the newest that was seen of a point is that it is free.
     pub(super) fn is_left(&self, point: Vector2) -> bool {
         self.known(place_of(point)).is_some_and(|seen| seen.free_at > seen.hit_at)

@@ -1,7 +1,7 @@
 use super::TrackerConfig;
 use super::cluster::Cluster;
 use super::seen::{SIDE, SeenCells};
-use crate::movers::HORIZON;
+use crate::movers::{HORIZON, MAY_GO_ON};
 use trundle_core::Vector2;
 
 /// Something that was seen again and again.
@@ -21,17 +21,21 @@ pub(super) struct Track {
     hidden: Option<(Vector2, f64)>,
     /// When it last walked, and how.
     walk: Option<(f64, Vector2)>,
+    /// Where the sensor was at the newest scan.
+    watched_from: Vector2,
 }
 
 /// A mover that was not seen to go is believed to stand where nothing can be seen for so long, s.
 pub(super) const HIDES: f64 = 10.0;
+/// Who was not seen for so long is not expected to have gone on as they went, s.
+const LOST: f64 = 1.0;
 /// So long a walker may be missed by scans that see it, s.
 const BLINK: f64 = 0.2;
 /// Nearer to the sensor than this nobody has room, m, and farther than this it is not blind, m.
 const NEAR: (f64, f64) = (0.35, 0.8);
 
-/// Discs that a way on is made of at most.
-const MOST_DISCS: f64 = 20.0;
+/// Faster than this nobody is believed to walk on, m/s: a brisk walk.
+const FASTEST: f64 = 2.0;
 
 /// Where something was, and how large it looked.
 #[derive(Debug, Clone, Copy)]
@@ -54,6 +58,7 @@ impl Track {
             velocity: Vector2::zeros(),
             hidden: None,
             walk: None,
+            watched_from: Vector2::repeat(f64::INFINITY),
         }
     }
 
@@ -75,44 +80,65 @@ impl Track {
         config: &TrackerConfig,
     ) -> bool {
         let unseen = time - self.last_seen();
+        self.watched_from = sensor;
         if self.moves(cells, config) {
-            self.walk = Some((self.last_seen(), self.pace()));
+            self.walk = self.pace(config).or(self.walk);
         }
         let may_hide = (BLINK..HIDES).contains(&unseen) && self.sightings >= config.sightings;
         self.hidden = may_hide.then(|| self.hides(sensor, cells, config)).flatten();
-        unseen <= config.window || self.hidden.is_some() || self.stands(time, cells, config)
+        unseen <= config.window || self.hidden.is_some() || self.stands(time, cells)
     }
 
-    /// Whether it walked not long ago, stopped, and has not been seen to leave.
-    fn stands(&self, time: f64, cells: &SeenCells, config: &TrackerConfig) -> bool {
-        let walked = self.walk.is_some_and(|(last, _)| time - last < HIDES);
-        walked && self.is_still(config) && !cells.is_free_since(self.last().at, self.last_seen())
+    /// Whether it walked not long ago, stopped, and has not been seen to leave: half of where it was hit has not been seen free since.
+    fn stands(&self, time: f64, cells: &SeenCells) -> bool {
+        let left = self.hits.iter().filter(|hit| cells.is_free_since(**hit, self.last_seen())).count();
+        self.walked(time).is_some_and(|velocity| self.has_stopped(velocity)) && 2 * left <= self.hits.len()
     }
 
-    /// How it walks: as fast as it ever did, for a velocity over a second lags behind somebody who stops; and that way, unless it turned.
-    fn pace(&self) -> Vector2 {
-        let (now, before) = (self.velocity, self.walk.map_or_else(Vector2::zeros, |(_, velocity)| velocity));
-        let stops = 2.0 * now.norm() < before.norm();
-        if stops { before } else { now.normalize() * now.norm().max(before.norm()) }
+    /// How it walked, if that is not too long ago.
+    fn walked(&self, time: f64) -> Option<Vector2> {
+        self.walk.filter(|(last, _)| time - last < MAY_GO_ON).map(|(_, velocity)| velocity)
     }
 
-    fn is_still(&self, config: &TrackerConfig) -> bool {
-        self.velocity.norm() < config.least_speed
+    /// Whether it stopped, or is about to: a velocity over a second lags behind.
+    fn has_stopped(&self, walk: Vector2) -> bool {
+        2.0 * self.velocity.norm() < walk.norm()
+    }
+
+    /// When it was seen to walk, and how: as fast as lately, unless it stops, which the velocity follows late. Of a velocity over half a
+    /// window at least: two places in a row say little.
+    fn pace(&self, config: &TrackerConfig) -> Option<(f64, Vector2)> {
+        let last = self.last_seen();
+        let seen = last - self.recent(config.window)[0].time;
+        let speed = self.velocity.norm();
+        let before = self.walk.filter(|(time, _)| last - time <= 2.0 * config.window).map(|(_, v)| v);
+        let slows = before.is_some_and(|before| speed < before.norm());
+        if 2.0 * seen < config.window || before.is_some_and(|before| self.has_stopped(before)) {
+            return None;
+        }
+        let walk = if slows { self.velocity / speed * before?.norm() } else { self.velocity };
+        Some((last, walk * (FASTEST / walk.norm()).min(1.0)))
     }
 
     /// Of who walked not long ago and stopped: the way on that it may take any moment, as discs (middle, no velocity, radius) that overlap.
-    pub(super) fn way_on(
-        &self,
+    /// It ends before a wall, and before the sensor, through which nobody walks.
+    pub(super) fn way_on<'a>(
+        &'a self,
         time: f64,
+        cells: &'a SeenCells,
         config: &TrackerConfig,
-    ) -> impl Iterator<Item = (Vector2, Vector2, f64)> {
-        let stopped = self.is_hidden() || self.is_still(config);
-        let walk = self.walk.filter(|(last, _)| stopped && time - last < HIDES);
-        let (at, radius) = (self.last().at, self.radius(config));
-        walk.into_iter().flat_map(move |(_, velocity)| {
+    ) -> impl Iterator<Item = (Vector2, Vector2, f64)> + 'a {
+        let walk = self.walked(time).filter(|walk| self.is_hidden() || self.has_stopped(*walk));
+        let (at, radius, sensor) = (self.last().at, self.radius(config), self.watched_from);
+        walk.into_iter().flat_map(move |velocity| {
             let way = velocity * HORIZON;
-            let discs = (way.norm() / radius).ceil().clamp(1.0, MOST_DISCS) as usize;
-            (1..=discs).map(move |k| (at + way * (k as f64 / discs as f64), Vector2::zeros(), radius))
+            let steps = (way.norm() / SIDE).ceil().max(1.0) as usize;
+            let between = ((radius / SIDE) as usize).max(1);
+            let is_open =
+                move |middle: &Vector2| (middle - sensor).norm() > radius && !cells.is_wall(*middle);
+            let middles = (1..=steps).map(move |k| at + way * (k as f64 / steps as f64));
+            let discs = middles.take_while(is_open).skip(between - 1).step_by(between);
+            discs.map(move |middle| (middle, Vector2::zeros(), radius))
         })
     }
 
@@ -147,8 +173,14 @@ impl Track {
     pub(super) fn gap(&self, time: f64, middle: Vector2) -> f64 {
         match self.hidden {
             Some((at, radius)) => ((middle - at).norm() - radius).max(0.0),
+            None if self.is_lost(time) => (self.last().at - middle).norm(),
             None => (self.expected(time) - middle).norm(),
         }
+    }
+
+    /// Whether it lasts for where it stopped, unseen.
+    pub(super) fn is_lost(&self, time: f64) -> bool {
+        time - self.last_seen() > LOST
     }
 
     /// Where its middle should be.
@@ -166,6 +198,11 @@ impl Track {
     }
 
     pub(super) fn add(&mut self, time: f64, cluster: Cluster, config: &TrackerConfig) {
+        if self.is_lost(time) {
+            // Who is seen there may be somebody else.
+            (self.sightings, self.from, self.first) = (0, cluster.middle, cluster.hits.clone());
+            self.seen.clear();
+        }
         self.seen.push(Sighting { time, at: cluster.middle, radius: cluster.radius });
         self.seen.retain(|sighting| time - sighting.time <= config.memory);
         self.sightings += 1;

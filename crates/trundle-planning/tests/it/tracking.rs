@@ -175,7 +175,7 @@ fn who_stops_may_go_on_for_a_while() {
 }
 
 #[test]
-fn who_stopped_and_went_away_unseen_is_none() {
+fn who_stopped_and_is_gone_is_none() {
     let mut tracker = tracker();
     let mut world = World::new(&[(at(4.0, 2.0), at(0.0, 0.7))]);
     let pose = Pose2::new(1.0, 3.0, 0.0);
@@ -190,7 +190,41 @@ fn who_stopped_and_went_away_unseen_is_none() {
     assert_eq!(tracker.movers(stamp(5.5)), []);
 }
 
-/// Somebody came from the right, stopped in the way and may go on to the left: the robot passes behind.
+#[test]
+fn who_stops_before_a_wall_does_not_go_on_through_it() {
+    let mut tracker = tracker();
+    let pose = Pose2::new(1.0, 3.0, 0.0);
+    let walks = (at(4.0, 3.6), at(0.0, 0.8));
+    watched(&mut tracker, &mut World::new(&[walks]), pose, 2.0, LASER);
+    let mut stands = World::new(&[(walks.0 + walks.1 * 2.0, Vector2::zeros())]);
+    (1..=20).for_each(|k| {
+        let time = 2.0 + f64::from(k) * 0.1;
+        tracker.see(pose, &stands.scan(pose, time, LASER));
+    });
+    let movers = tracker.movers(stamp(4.0));
+    assert!(!movers.is_empty() && movers.iter().all(|m| m.at(0.0).y < 6.0), "the wall is at 6: {movers:?}");
+}
+
+#[test]
+fn who_is_lost_from_sight_soon_after_they_stopped_is_remembered() {
+    let mut tracker = tracker();
+    let walks = (at(4.0, 1.6), at(0.0, 0.7));
+    let (ahead, away) = (Pose2::new(2.5, 3.0, 0.0), Pose2::new(2.5, 3.0, -2.0));
+    watched(&mut tracker, &mut World::new(&[walks]), ahead, 2.0, CAMERA);
+    let stop = walks.0 + walks.1 * 2.0;
+    let mut stands = World::new(&[(stop, Vector2::zeros())]);
+    for k in 1..=40 {
+        let time = 2.0 + f64::from(k) * 0.1;
+        let pose = if k <= 7 { ahead } else { away };
+        tracker.see(pose, &stands.scan(pose, time, CAMERA));
+    }
+    let on = stop + walks.1;
+    let movers = tracker.movers(stamp(6.0));
+    assert!(movers.iter().any(|m| (m.at(0.0) - on).norm() < 0.3), "they may go on to {on}: {movers:?}");
+}
+
+/// Somebody came from the right, stopped in the way and may go on to the left: the robot passes behind, and when another comes along
+/// behind as well, it waits.
 #[test]
 fn whoever_passes_one_who_stopped_goes_behind() {
     let grid = OccupancyGrid::filled(GridGeometry::new(0.05, at(0.0, 0.0), 200, 120).unwrap(), Cell::Free);
