@@ -108,11 +108,7 @@ impl GlobalBundle {
         let moved = self.corrections(map);
         let others = self.other_landmarks(map, &moved);
         self.bundle.move_landmarks(map);
-        for (id, correction) in others {
-            if let Some(landmark) = map.landmark_mut(id) {
-                landmark.carry(&correction);
-            }
-        }
+        map.carry(others);
         for (id, correction) in &moved {
             let pose = *correction * map.keyframe(*id).visual_from_camera;
             map.move_keyframe(*id, pose.renormalized());

@@ -49,11 +49,7 @@ pub(crate) fn bundle_around(
 /// Takes a bundle's result over, as far as it has come. A landmark that only one keyframe sees moves along with it.
 pub(crate) fn apply(map: &mut LandmarkMap, bundle: &MapBundle, sensor: &Sensor) {
     // One that others saw when the bundle began is in it, too, and goes where that puts it.
-    for (id, correction) in alone(map, bundle) {
-        if let Some(landmark) = map.landmark_mut(id) {
-            landmark.carry(&correction);
-        }
-    }
+    map.carry(alone(map, bundle));
     bundle.move_keyframes(map);
     bundle.move_landmarks(map);
     bundle.take_back(map);

@@ -185,6 +185,15 @@ impl LandmarkMap {
         }
     }
 
+    /// Moves landmarks, `new_from_old` in the visual frame, and what is known of how they look.
+    pub fn carry(&mut self, moves: Vec<(LandmarkId, Pose3)>) {
+        for (id, new_from_old) in moves {
+            if let Some(landmark) = self.landmark_mut(id) {
+                landmark.carry(&new_from_old);
+            }
+        }
+    }
+
     /// Makes one landmark of two: `kept` takes over the observations of `gone` in keyframes where it has none.
     pub fn merge(&mut self, kept: LandmarkId, gone: LandmarkId) {
         if kept == gone || self.landmark(kept).is_none() {

@@ -194,11 +194,10 @@ impl RgbdSlam {
         let camera = &self.sensor.camera;
         let fits = image.color().width() == camera.width() && image.color().height() == camera.height();
         let gray = gray_from_color(image.color());
-        let mut features = std::mem::take(&mut self.spare);
+        let mut features = Features::default();
         if fits {
+            features = std::mem::take(&mut self.spare);
             self.extractor.extract_into(&gray, &mut features);
-        } else {
-            features = Features::default();
         }
         self.check.note_image(&gray, image.depth());
         self.step_with_features(image.stamp(), features, image.depth(), prior)

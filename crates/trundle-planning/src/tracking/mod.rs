@@ -35,6 +35,8 @@ pub struct MoverTracker {
     /// Of the first scan; times are seconds since.
     begin: Option<Stamp>,
     time: f64,
+    /// Where the sensor was then, map frame.
+    sensor: Vector2,
     tracks: Vec<Track>,
     /// Hits of a scan within reach, map frame; kept for its memory.
     hits: Vec<Vector2>,
@@ -48,7 +50,15 @@ impl MoverTracker {
     pub fn new(config: TrackerConfig) -> Result<Self, Invalid> {
         let config = config.validated()?;
         let cells = SeenCells::new(config.reach, config.memory);
-        Ok(Self { config, cells, begin: None, time: f64::NEG_INFINITY, tracks: vec![], hits: vec![] })
+        Ok(Self {
+            config,
+            cells,
+            begin: None,
+            time: f64::NEG_INFINITY,
+            sensor: Vector2::zeros(),
+            tracks: vec![],
+            hits: vec![],
+        })
     }
 
     /// Takes in a scan, made where the base was at `map_from_base`. One that is not later than the last one is ignored, and so
@@ -67,14 +77,14 @@ impl MoverTracker {
             return;
         }
         self.time = time;
-        let sensor = map_from_base.transform(scan.origin());
+        self.sensor = map_from_base.transform(scan.origin());
         self.note_hits(map_from_base, scan);
-        self.note_free(map_from_base, sensor, scan);
+        self.note_free(map_from_base, self.sensor, scan);
         let new: Vec<Vector2> =
             self.hits.iter().copied().filter(|hit| self.cells.has_come(*hit, time)).collect();
-        let mut found = clusters(&new, sensor, self.config.gap);
+        let mut found = clusters(&new, self.sensor, self.config.gap);
         found.retain(|cluster| self.may_move(cluster));
-        self.follow(found, sensor);
+        self.follow(found);
     }
 
     /// Forgets all that was seen: the robot is not where it believed, and what stood seems to have moved.
@@ -93,7 +103,8 @@ impl MoverTracker {
     pub fn movers(&self, now: Stamp) -> Vec<Mover> {
         let now = self.seconds(now);
         let moving = self.moving().map(|track| track.mover(now, &self.config));
-        let stopped = self.tracks.iter().flat_map(|track| track.way_on(now, &self.cells, &self.config));
+        let stopped =
+            self.tracks.iter().flat_map(|track| track.way_on(now, self.sensor, &self.cells, &self.config));
         let mover = |(at, velocity, radius)| Mover::new(at, velocity, radius + SIDE / 2.0).ok();
         moving.chain(stopped).filter_map(mover).collect()
     }
@@ -188,14 +199,14 @@ impl MoverTracker {
 
     /// Ties clusters to tracks, nearest first, and to those in sight before those that hide; the rest begin tracks of their own. Tracks not seen for a window end, but for those
     /// that went to where the sensor is blind, and those that stopped and were not seen to leave.
-    fn follow(&mut self, clusters: Vec<Cluster>, sensor: Vector2) {
-        let (time, config) = (self.time, self.config);
+    fn follow(&mut self, clusters: Vec<Cluster>) {
+        let (time, sensor, config) = (self.time, self.sensor, self.config);
         let mut pairs = Vec::new();
         for (t, track) in self.tracks.iter().enumerate() {
             for (c, cluster) in clusters.iter().enumerate() {
-                let off = track.gap(time, cluster.middle);
+                let off = track.gap(time, cluster.middle, &config);
                 if off <= config.gate {
-                    pairs.push((track.is_hidden() || track.is_lost(time), off, t, c));
+                    pairs.push((track.is_hidden() || track.is_lost(time, &config), off, t, c));
                 }
             }
         }

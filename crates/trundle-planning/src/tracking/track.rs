@@ -21,14 +21,10 @@ pub(super) struct Track {
     hidden: Option<(Vector2, f64)>,
     /// When it last walked, and how.
     walk: Option<(f64, Vector2)>,
-    /// Where the sensor was at the newest scan.
-    watched_from: Vector2,
 }
 
 /// A mover that was not seen to go is believed to stand where nothing can be seen for so long, s.
 pub(super) const HIDES: f64 = 10.0;
-/// Who was not seen for so long is not expected to have gone on as they went, s.
-const LOST: f64 = 1.0;
 /// So long a walker may be missed by scans that see it, s.
 const BLINK: f64 = 0.2;
 /// Nearer to the sensor than this nobody has room, m, and farther than this it is not blind, m.
@@ -58,7 +54,6 @@ impl Track {
             velocity: Vector2::zeros(),
             hidden: None,
             walk: None,
-            watched_from: Vector2::repeat(f64::INFINITY),
         }
     }
 
@@ -80,13 +75,12 @@ impl Track {
         config: &TrackerConfig,
     ) -> bool {
         let unseen = time - self.last_seen();
-        self.watched_from = sensor;
         if self.moves(cells, config) {
             self.walk = self.pace(config).or(self.walk);
         }
         let may_hide = (BLINK..HIDES).contains(&unseen) && self.sightings >= config.sightings;
         self.hidden = may_hide.then(|| self.hides(sensor, cells, config)).flatten();
-        unseen <= config.window || self.hidden.is_some() || self.stands(time, cells)
+        !self.is_lost(time, config) || self.hidden.is_some() || self.stands(time, cells)
     }
 
     /// Whether it walked not long ago, stopped, and has not been seen to leave: half of where it was hit has not been seen free since.
@@ -125,11 +119,12 @@ impl Track {
     pub(super) fn way_on<'a>(
         &'a self,
         time: f64,
+        sensor: Vector2,
         cells: &'a SeenCells,
         config: &TrackerConfig,
     ) -> impl Iterator<Item = (Vector2, Vector2, f64)> + 'a {
         let walk = self.walked(time).filter(|walk| self.is_hidden() || self.has_stopped(*walk));
-        let (at, radius, sensor) = (self.last().at, self.radius(config), self.watched_from);
+        let (at, radius) = (self.last().at, self.radius(config));
         walk.into_iter().flat_map(move |velocity| {
             let way = velocity * HORIZON;
             let steps = (way.norm() / SIDE).ceil().max(1.0) as usize;
@@ -170,17 +165,17 @@ impl Track {
     }
 
     /// How far from where it should be a cluster's middle is, m; of what is hidden, from the disc that it may stand in.
-    pub(super) fn gap(&self, time: f64, middle: Vector2) -> f64 {
+    pub(super) fn gap(&self, time: f64, middle: Vector2, config: &TrackerConfig) -> f64 {
         match self.hidden {
             Some((at, radius)) => ((middle - at).norm() - radius).max(0.0),
-            None if self.is_lost(time) => (self.last().at - middle).norm(),
+            None if self.is_lost(time, config) => (self.last().at - middle).norm(),
             None => (self.expected(time) - middle).norm(),
         }
     }
 
     /// Whether it lasts for where it stopped, unseen.
-    pub(super) fn is_lost(&self, time: f64) -> bool {
-        time - self.last_seen() > LOST
+    pub(super) fn is_lost(&self, time: f64, config: &TrackerConfig) -> bool {
+        time - self.last_seen() > config.window
     }
 
     /// Where its middle should be.
@@ -198,7 +193,7 @@ impl Track {
     }
 
     pub(super) fn add(&mut self, time: f64, cluster: Cluster, config: &TrackerConfig) {
-        if self.is_lost(time) {
+        if self.is_lost(time, config) {
             // Who is seen there may be somebody else.
             (self.sightings, self.from, self.first) = (0, cluster.middle, cluster.hits.clone());
             self.seen.clear();

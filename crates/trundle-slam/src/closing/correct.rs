@@ -75,9 +75,5 @@ fn carry_landmarks(map: &mut LandmarkMap, ids: &[KeyframeId], after: &[Pose3]) {
             Some((id, correction))
         })
         .collect();
-    for (id, correction) in moved {
-        if let Some(landmark) = map.landmark_mut(id) {
-            landmark.carry(&correction);
-        }
-    }
+    map.carry(moved);
 }
