@@ -15,7 +15,7 @@ const TEST: Step = Step {
     check: |root| program::cargo(root, &["test", "--workspace"], &[]),
 };
 
-const REST: [Step; 7] = [
+const REST: [Step; 8] = [
     Step {
         name: "cargo fmt --all --check",
         check: |root| program::cargo(root, &["fmt", "--all", "--check"], &[]),
@@ -34,9 +34,17 @@ const REST: [Step; 7] = [
         },
     },
     Step { name: "cargo build --release", check: |root| program::cargo(root, &["build", "--release"], &[]) },
+    Step { name: "trundle demo", check: demo },
     Step { name: "cargo xtask replay-check", check: |root| replay_check::run(root, 1) },
     Step { name: "cargo xtask bad-days", check: bad_days::run },
 ];
+
+/// The README's first command: the robot explores, drives to its goal and back, and touches nothing.
+fn demo(root: &Path) -> Verdict {
+    let out = program::scratch(root, "demo")?.display().to_string();
+    let code = program::run(&program::release_trundle(root)?, &["demo", "--quiet", "--out", &out])?;
+    Ok(code == Some(0))
+}
 
 /// Runs the steps in order and stops at the first that fails.
 pub fn run(root: &Path, tested: bool) -> Verdict {

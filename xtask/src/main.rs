@@ -47,6 +47,9 @@ enum Chore {
         /// The first seed.
         #[arg(long, default_value_t = 1)]
         first: u64,
+        /// Explore first, as the README's demo does.
+        #[arg(long)]
+        explore: bool,
     },
 }
 
@@ -60,7 +63,9 @@ fn main() -> ExitCode {
         Chore::Tidy => tidy::run(&root),
         Chore::ReplayCheck { seed } => replay_check::run(&root, seed),
         Chore::BadDays => bad_days::run(&root),
-        Chore::DemoSeeds { seeds, first } => seeds::run(&root, first..first.saturating_add(seeds)),
+        Chore::DemoSeeds { seeds, first, explore } => {
+            seeds::run(&root, first..first.saturating_add(seeds), explore)
+        }
     };
     match verdict {
         Ok(true) => ExitCode::SUCCESS,

@@ -15,11 +15,11 @@ struct Run {
     summary: BTreeMap<String, Value>,
 }
 
-/// Runs the demo on each seed and prints its summary, one column a seed.
-pub fn run(root: &Path, seeds: Range<u64>) -> Verdict {
+/// Runs the demo on each seed, straight to its goal or as the README does, and prints its summary, one column a seed.
+pub fn run(root: &Path, seeds: Range<u64>, explores: bool) -> Verdict {
     let trundle = program::release_trundle(root)?;
     let scratch = program::scratch(root, "demo-seeds")?;
-    let runs = seeds.map(|seed| one(&trundle, &scratch, seed)).collect::<Result<Vec<_>, _>>()?;
+    let runs = seeds.map(|seed| one(&trundle, &scratch, seed, explores)).collect::<Result<Vec<_>, _>>()?;
     for line in table(&runs) {
         println!("{line}");
     }
@@ -28,18 +28,20 @@ pub fn run(root: &Path, seeds: Range<u64>) -> Verdict {
     Ok(missed == 0)
 }
 
-fn one(trundle: &Path, scratch: &Path, seed: u64) -> Result<Run, String> {
+fn one(trundle: &Path, scratch: &Path, seed: u64, explores: bool) -> Result<Run, String> {
     let out = scratch.join(seed.to_string());
     let begin = Instant::now();
-    let args =
-        ["demo", "--direct", "--seed", &seed.to_string(), "--quiet", "--out", &out.display().to_string()];
-    let code = program::run(trundle, &args)?;
+    let (seed_word, folder) = (seed.to_string(), out.display().to_string());
+    let args = ["demo", "--seed", &seed_word, "--quiet", "--out", &folder, "--direct"];
+    let code = program::run(trundle, &args[..args.len() - usize::from(explores)])?;
     let mut summary = BTreeMap::new();
     if let Ok(bytes) = std::fs::read(out.join("summary.json")) {
         let value =
             serde_json::from_slice(&bytes).map_err(|e| format!("summary.json of seed {seed}: {e}"))?;
         flatten("", &value, &mut summary);
     }
+    // Some GB, of which nobody looks at many.
+    let _ = std::fs::remove_file(out.join("recording.mcap"));
     Ok(Run { seed, code, seconds: begin.elapsed().as_secs_f64(), summary })
 }
 

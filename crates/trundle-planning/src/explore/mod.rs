@@ -50,6 +50,11 @@ pub struct Explorer {
     current: Option<Vector2>,
 }
 
+/// It looks from where there is so much room around it, m, where that can be had: each metre that is missing costs as much as so many
+/// metres of way.
+const ROOM: f64 = 0.25;
+const CROWDED: f64 = 3.0;
+
 impl Explorer {
     /// An explorer for a robot that keeps `radius` m from obstacles, 0.01 to 5.
     ///
@@ -67,8 +72,9 @@ impl Explorer {
         let total = all.len();
         let field = DistanceField::up_to(2.0 * self.radius, grid, UnknownIs::Free);
         let reach = Reach::from(grid, &field, pose.position(), self.radius);
+        let room = DistanceField::up_to(self.radius + ROOM, grid, UnknownIs::Obstacle);
         let views = all.into_iter().filter(|frontier| self.is_worth_it(frontier));
-        let views: Vec<_> = views.filter_map(|frontier| self.view(grid, &reach, frontier)).collect();
+        let views: Vec<_> = views.filter_map(|frontier| self.view(grid, &reach, &room, frontier)).collect();
         let kept =
             self.current.and_then(|current| views.iter().find(|view| view.frontier.is_that_at(current)));
         let cost = |view: &Viewpoint| view.way - self.config.gain * view.frontier.length;
@@ -88,15 +94,24 @@ impl Explorer {
         frontier.middle.norm() <= self.config.reach && looks < self.config.looks as usize
     }
 
-    /// The place nearest by way from which the frontier's middle is in sight.
-    fn view(&self, grid: &OccupancyGrid, reach: &Reach, frontier: Frontier) -> Option<Viewpoint> {
+    /// The place from which the frontier's middle is in sight that is nearest by way, but for a detour to where there is more room: a
+    /// corner of which only one side was seen may stand out into a cell that looks free. `room` is to what is occupied or unknown.
+    fn view(
+        &self,
+        grid: &OccupancyGrid,
+        reach: &Reach,
+        room: &DistanceField,
+        frontier: Frontier,
+    ) -> Option<Viewpoint> {
         let geometry = grid.geometry();
         let standing = |cell: &CellIndex| grid.get(*cell) == Cell::Free;
         let near = disc(geometry, frontier.middle, self.config.view_distance).filter(standing);
-        let mut near: Vec<_> = near.filter_map(|cell| Some((reach.way_to(cell)?, cell))).collect();
+        let crowded = |cell: CellIndex| CROWDED * (self.radius + ROOM - room.at_cell(cell)).max(0.0);
+        let priced = |cell| reach.way_to(cell).map(|way| (way + crowded(cell), way, cell));
+        let mut near: Vec<_> = near.filter_map(priced).collect();
         near.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let (way, cell) =
-            near.into_iter().find(|&(_, cell)| in_sight(grid, geometry.center(cell), frontier.middle))?;
+        let (_, way, cell) =
+            near.into_iter().find(|&(.., cell)| in_sight(grid, geometry.center(cell), frontier.middle))?;
         let at = geometry.center(cell);
         let ahead = frontier.middle - at;
         let theta = if ahead.norm() > 0.0 { ahead.y.atan2(ahead.x) } else { 0.0 };
@@ -139,6 +154,27 @@ mod tests {
             explorer.looked_at(&view.frontier);
         }
         assert_eq!(explorer.next(&grid, pose), Exploration::Complete { left: 1 });
+    }
+
+    #[test]
+    fn it_looks_round_a_corner_from_where_there_is_room() {
+        // A wall from the left ends at x = 2 m; what is behind it on the left is unknown.
+        let row = |y: usize| match y {
+            0 | 39 => "#".repeat(40),
+            21.. => "?".repeat(8) + &".".repeat(31) + "#",
+            20 => "#".repeat(20) + &".".repeat(19) + "#",
+            _ => "#".to_owned() + &".".repeat(38) + "#",
+        };
+        let rows: Vec<String> = (0..40).rev().map(row).collect();
+        let grid = OccupancyGrid::from_ascii(0.1, &rows.join("\n")).unwrap();
+        let config = ExploreConfig { view_distance: 3.0, ..ExploreConfig::default() };
+        let mut explorer = Explorer::new(config, 0.17).unwrap();
+        let Exploration::Look(view) = explorer.next(&grid, Pose2::new(1.6, 1.6, 0.0)) else {
+            panic!("nothing to see")
+        };
+        let corner = Vector2::new(2.0, view.pose.y.clamp(2.0, 2.1));
+        assert!((view.pose.position() - corner).norm() > 0.17 + ROOM - 0.05, "{view:?}");
+        assert!((view.frontier.middle - Vector2::new(0.85, 3.0)).norm() < 0.2, "{view:?}");
     }
 
     #[test]
