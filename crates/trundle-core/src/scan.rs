@@ -150,6 +150,11 @@ impl Scan {
         self.origin + Vector2::new(angle.cos(), angle.sin()) * range
     }
 
+    /// All stretches that were seen to be free, by rising beam and range; `None` of a scan that does not say.
+    pub fn all_free_spans(&self) -> Option<&[FreeSpan]> {
+        self.parts.free.as_deref()
+    }
+
     /// The stretches of beam `i` that were seen to be free, m from the sensor, by rising range. Of a scan that does not say:
     /// all up to the beam's range.
     pub fn free_spans(&self, i: usize) -> impl Iterator<Item = (f64, f64)> + '_ {

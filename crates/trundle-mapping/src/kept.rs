@@ -1,6 +1,6 @@
-use crate::{GridMapper, Insertion};
+use crate::{GridMapper, Insertion, packed_scan::PackedScan};
 use std::{collections::HashMap, sync::Arc};
-use trundle_core::{Pose2, Scan, Stamp, Vector2};
+use trundle_core::{Pose2, Stamp, Vector2};
 
 /// Something drawn that can be drawn again.
 #[derive(Debug, Clone)]
@@ -14,7 +14,7 @@ pub(crate) struct Kept {
 
 #[derive(Debug, Clone)]
 pub(crate) enum What {
-    Scan(Arc<Scan>),
+    Scan(Arc<PackedScan>),
     FreeDisc { radius: f64 },
     Touched { points: Arc<[Vector2]> },
 }
@@ -65,7 +65,7 @@ impl Kept {
     pub(crate) fn draw(&self, mapper: &mut GridMapper) -> usize {
         match &self.what {
             What::Scan(scan) => {
-                let Insertion { hits, frees, .. } = mapper.insert(self.map_from_base, scan);
+                let Insertion { hits, frees, .. } = mapper.insert(self.map_from_base, &scan.unpack());
                 return hits + frees + SCAN_COST;
             }
             What::FreeDisc { radius } => mapper.mark_free_disc(self.map_from_base, *radius),

@@ -31,6 +31,7 @@ mod live_grid;
 mod live_mapper;
 mod mapper;
 mod mapper_config;
+mod packed_scan;
 mod ray;
 mod scan_cells;
 mod scan_match;

@@ -53,7 +53,7 @@ const THIN_AT: usize = 1024;
 /// Most things kept, in whatever many places: beyond, every second of the older half goes.
 const MOST_KEPT: usize = 30_000;
 const SNAPSHOT_EVERY: usize = 64;
-const MOST_SNAPSHOTS: usize = 64;
+const MOST_SNAPSHOTS: usize = 16;
 
 impl LiveMapper {
     /// An empty map.
@@ -88,7 +88,7 @@ impl LiveMapper {
     /// Draws `scan`, taken with the base at `map_from_base`, and keeps it when it is from somewhere else than the last one.
     pub fn insert(&mut self, map_from_base: Pose2, scan: &Scan) -> Insertion {
         let insertion = self.front.insert(map_from_base, scan);
-        self.keep(scan.stamp(), map_from_base, Kind::Scan, || What::Scan(Arc::new(scan.clone())));
+        self.keep(scan.stamp(), map_from_base, Kind::Scan, || What::Scan(Arc::new(scan.into())));
         insertion
     }
 

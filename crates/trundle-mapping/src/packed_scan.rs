@@ -1,0 +1,132 @@
+use trundle_core::{Beam, FreeSpan, Scan, ScanParts, Stamp, Vector2};
+
+/// What a map needs of a scan to draw it again, in a third of its room: ranges to seven digits, neither sigmas nor kinds.
+///
+/// The scan of a depth camera takes 20 KB, and a robot that drives for an hour keeps thousands.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct PackedScan {
+    stamp: Stamp,
+    origin: Vector2,
+    /// Of the first beam, and between neighbouring beams, rad.
+    angles: (f64, f64),
+    /// Of each beam, m: a free one's has the sign bit, an unseen one's is not a number.
+    ranges: Box<[f32]>,
+    free: Option<Box<[PackedSpan]>>,
+}
+
+/// A [`FreeSpan`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct PackedSpan {
+    beam: u32,
+    from: f32,
+    to: f32,
+}
+
+impl From<&Scan> for PackedScan {
+    fn from(scan: &Scan) -> Self {
+        Self {
+            stamp: scan.stamp(),
+            origin: scan.origin(),
+            angles: (scan.angle_min(), scan.angle_increment()),
+            ranges: scan.beams().iter().map(packed).collect(),
+            free: scan.all_free_spans().map(|spans| spans.iter().map(PackedSpan::from).collect()),
+        }
+    }
+}
+
+impl PackedScan {
+    /// The scan.
+    pub(crate) fn unpack(&self) -> Scan {
+        let beams = self.ranges.iter().map(|range| unpacked(*range)).collect();
+        let free = self.free.as_ref().map(|spans| spans.iter().map(|span| span.unpack()).collect());
+        let parts = ScanParts { beams, free, ..ScanParts::default() };
+        Scan::from_parts(self.stamp, self.origin, self.angles, parts)
+            .expect("invariant: it was a scan, and rounding keeps the order of ranges")
+    }
+}
+
+impl From<&FreeSpan> for PackedSpan {
+    fn from(span: &FreeSpan) -> Self {
+        Self { beam: span.beam, from: rounded(span.from), to: rounded(span.to) }
+    }
+}
+
+impl PackedSpan {
+    fn unpack(self) -> FreeSpan {
+        FreeSpan { beam: self.beam, from: f64::from(self.from), to: f64::from(self.to) }
+    }
+}
+
+fn packed(beam: &Beam) -> f32 {
+    match *beam {
+        Beam::Hit { range } => rounded(range).abs(),
+        Beam::Free { range } => -rounded(range).abs(),
+        Beam::Unseen => f32::NAN,
+    }
+}
+
+fn unpacked(range: f32) -> Beam {
+    match f64::from(range.abs()) {
+        _ if range.is_nan() => Beam::Unseen,
+        range_m if range.is_sign_negative() => Beam::Free { range: range_m },
+        range_m => Beam::Hit { range: range_m },
+    }
+}
+
+/// The nearest that is finite.
+fn rounded(range: f64) -> f32 {
+    (range as f32).min(f32::MAX)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn scan(beams: Vec<Beam>, free: Option<Vec<FreeSpan>>) -> Scan {
+        let parts = ScanParts { beams, free, ..ScanParts::default() };
+        Scan::from_parts(Stamp::from_nanos(7), Vector2::new(0.1, -0.2), (-0.5, 0.01), parts).unwrap()
+    }
+
+    #[test]
+    fn what_single_precision_holds_comes_back_as_it_was() {
+        let span = |beam, from, to| FreeSpan { beam, from, to };
+        let beams =
+            vec![Beam::Hit { range: 2.5 }, Beam::Unseen, Beam::Free { range: 0.0 }, Beam::Hit { range: 0.0 }];
+        for free in [None, Some(vec![]), Some(vec![span(0, 0.0, 0.5), span(0, 0.5, 2.5), span(2, 0.0, 0.0)])]
+        {
+            let scan = scan(beams.clone(), free);
+            assert_eq!(PackedScan::from(&scan).unpack(), scan);
+        }
+    }
+
+    fn is_same(a: &Beam, b: &Beam) -> bool {
+        let near = |a: f64, b: f64| (a - b).abs() <= 1e-7 * a + 1e-37 || a > f64::from(f32::MAX);
+        match (a, b) {
+            (Beam::Hit { range: a }, Beam::Hit { range: b })
+            | (Beam::Free { range: a }, Beam::Free { range: b }) => near(*a, *b),
+            (a, b) => a == b,
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn any_scan_comes_back_to_seven_digits(
+            ranges in prop::collection::vec((prop::num::f64::POSITIVE, 0..3), 0..20),
+        ) {
+            let beam = |&(range, kind): &(f64, i32)| match kind {
+                0 => Beam::Hit { range },
+                1 => Beam::Free { range },
+                _ => Beam::Unseen,
+            };
+            let ranges: Vec<_> = ranges.into_iter().filter(|(range, _)| range.is_finite()).collect();
+            let spans = ranges.iter().enumerate();
+            let spans = spans.map(|(i, (range, _))| FreeSpan { beam: i as u32, from: range * 0.5, to: *range });
+            let before = scan(ranges.iter().map(beam).collect(), Some(spans.collect()));
+            let after = PackedScan::from(&before).unpack();
+            let same = before.beams().iter().zip(after.beams()).all(|(a, b)| is_same(a, b));
+            prop_assert!(same, "{before:?} {after:?}");
+            prop_assert_eq!(before.all_free_spans().unwrap().len(), after.all_free_spans().unwrap().len());
+        }
+    }
+}
