@@ -26,6 +26,12 @@ pub fn run(program: &Path, args: &[&str]) -> Result<Option<i32>, String> {
     Ok(status.map_err(|e| format!("cannot start {}: {e}", program.display()))?.code())
 }
 
+/// Lets go the recording of a run that went well: some GB.
+pub fn drop_recording(out: &Path) {
+    // What cannot be removed is overwritten by the next run.
+    let _ = std::fs::remove_file(out.join("recording.mcap"));
+}
+
 /// The folder of build results.
 pub fn target(root: &Path) -> Result<PathBuf, String> {
     let args = ["metadata", "--format-version=1", "--no-deps", "--offline"];

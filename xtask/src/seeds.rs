@@ -15,7 +15,8 @@ struct Run {
     summary: BTreeMap<String, Value>,
 }
 
-/// Runs the demo on each seed, straight to its goal or as the README does, and prints its summary, one column a seed.
+/// Runs the demo on each seed, straight to its goal or as the README does, and prints its summary, one column a
+/// seed. Recordings are kept of runs that did not end well.
 pub fn run(root: &Path, seeds: Range<u64>, explores: bool) -> Verdict {
     let trundle = program::release_trundle(root)?;
     let scratch = program::scratch(root, "demo-seeds")?;
@@ -32,16 +33,18 @@ fn one(trundle: &Path, scratch: &Path, seed: u64, explores: bool) -> Result<Run,
     let out = scratch.join(seed.to_string());
     let begin = Instant::now();
     let (seed_word, folder) = (seed.to_string(), out.display().to_string());
-    let args = ["demo", "--seed", &seed_word, "--quiet", "--out", &folder, "--direct"];
-    let code = program::run(trundle, &args[..args.len() - usize::from(explores)])?;
+    let mut args = vec!["demo", "--seed", &seed_word, "--quiet", "--out", &folder];
+    args.extend((!explores).then_some("--direct"));
+    let code = program::run(trundle, &args)?;
     let mut summary = BTreeMap::new();
     if let Ok(bytes) = std::fs::read(out.join("summary.json")) {
         let value =
             serde_json::from_slice(&bytes).map_err(|e| format!("summary.json of seed {seed}: {e}"))?;
         flatten("", &value, &mut summary);
     }
-    // Some GB, of which nobody looks at many.
-    let _ = std::fs::remove_file(out.join("recording.mcap"));
+    if code == Some(0) {
+        program::drop_recording(&out);
+    }
     Ok(Run { seed, code, seconds: begin.elapsed().as_secs_f64(), summary })
 }
 

@@ -50,10 +50,10 @@ pub struct Explorer {
     current: Option<Vector2>,
 }
 
-/// It looks from where there is so much room around it, m, where that can be had: each metre that is missing costs as much as so many
-/// metres of way.
+/// It likes so much room around it where it looks, m.
 const ROOM: f64 = 0.25;
-const CROWDED: f64 = 3.0;
+/// What a metre of that room is worth, in metres of way.
+const PRICE_OF_ROOM: f64 = 3.0;
 
 impl Explorer {
     /// An explorer for a robot that keeps `radius` m from obstacles, 0.01 to 5.
@@ -106,8 +106,8 @@ impl Explorer {
         let geometry = grid.geometry();
         let standing = |cell: &CellIndex| grid.get(*cell) == Cell::Free;
         let near = disc(geometry, frontier.middle, self.config.view_distance).filter(standing);
-        let crowded = |cell: CellIndex| CROWDED * (self.radius + ROOM - room.at_cell(cell)).max(0.0);
-        let priced = |cell| reach.way_to(cell).map(|way| (way + crowded(cell), way, cell));
+        let missing = |cell| (self.radius + ROOM - room.at_cell(cell)).clamp(0.0, ROOM);
+        let priced = |cell| reach.way_to(cell).map(|way| (way + PRICE_OF_ROOM * missing(cell), way, cell));
         let mut near: Vec<_> = near.filter_map(priced).collect();
         near.sort_by(|a, b| a.0.total_cmp(&b.0));
         let (_, way, cell) =
@@ -172,9 +172,34 @@ mod tests {
         let Exploration::Look(view) = explorer.next(&grid, Pose2::new(1.6, 1.6, 0.0)) else {
             panic!("nothing to see")
         };
-        let corner = Vector2::new(2.0, view.pose.y.clamp(2.0, 2.1));
-        assert!((view.pose.position() - corner).norm() > 0.17 + ROOM - 0.05, "{view:?}");
+        assert!(room_at(&view, &grid) > 0.37, "{view:?}");
         assert!((view.frontier.middle - Vector2::new(0.85, 3.0)).norm() < 0.2, "{view:?}");
+    }
+
+    #[test]
+    fn from_the_brink_of_the_unknown_it_steps_back_to_look() {
+        let corridor = |width: usize| {
+            let row = format!("#{}{}", ".".repeat(15), "?".repeat(14));
+            let walls = "#".repeat(30);
+            let rows = [vec![walls.clone()], vec![row; width], vec![walls]].concat();
+            OccupancyGrid::from_ascii(0.1, &rows.join("\n")).unwrap()
+        };
+        let look = |grid: &OccupancyGrid, y: f64| match explorer().next(grid, Pose2::new(1.35, y, 0.0)) {
+            Exploration::Look(view) => view,
+            complete => panic!("{complete:?}"),
+        };
+        let wide = corridor(12);
+        let view = look(&wide, 0.75);
+        assert!(room_at(&view, &wide) > 0.37 && view.pose.x > 1.0, "{view:?}");
+        // Where it is narrow everywhere it looks from there, and what it lacks is no part of the way.
+        let view = look(&corridor(5), 0.35);
+        assert!(view.way < 0.4, "{view:?}");
+    }
+
+    /// From where it looks to what is occupied or unknown, m.
+    fn room_at(view: &Viewpoint, grid: &OccupancyGrid) -> f64 {
+        let cell = grid.geometry().cell_at(view.pose.position()).unwrap();
+        DistanceField::from_grid(grid, UnknownIs::Obstacle).at_cell(cell)
     }
 
     #[test]
