@@ -112,6 +112,8 @@ pub(crate) struct Navigator {
     look: LookAround,
     /// The turn of a robot that sees nothing.
     sight_look: LookAround,
+    /// How often such a turn brought its sight back, since the goal was given.
+    sights: u32,
     /// Where the way to the goal ends, when there is none.
     blocked_at: Option<Vector2>,
     vantage: Vantage,
@@ -133,6 +135,9 @@ pub(crate) struct Navigator {
 
 /// A goal is given up after so many touches.
 const MOST_TOUCHES: u32 = 3;
+/// Sight that comes back after so many turns came back by turning; for a view that happens so often.
+const TURNED_AWAY: f64 = 0.02;
+const MOST_SIGHTS: u32 = 2;
 /// Held by safety for so long, it plans anew from where it stands, s.
 const PAUSE: f64 = 1.0;
 
@@ -157,6 +162,7 @@ impl Navigator {
             held_since: None,
             look: LookAround::default(),
             sight_look: LookAround::default(),
+            sights: 0,
             blocked_at: None,
             vantage: Vantage::Unknown,
             unseen: Unseen::default(),
@@ -181,6 +187,7 @@ impl Navigator {
         self.unseen.restart();
         self.is_off_track = false;
         self.touches = 0;
+        self.sights = 0;
         self.look = LookAround::default();
         self.last_stage.reset();
         self.progress.restart();
@@ -230,6 +237,7 @@ impl Navigator {
     pub(crate) fn step(&mut self, s: &Surroundings<'_>, times: &mut StageTimes) -> Decision {
         self.open(s);
         self.watch(s);
+        self.watch_sight(s);
         let goal = self.goal.pose().filter(|_| self.wants_plan(s));
         let replanned = goal.is_some_and(|goal| times.measure(Stage::Planning, || self.replan(goal, s)));
         let replanned = replanned || self.improved(s, times);
@@ -282,6 +290,21 @@ impl Navigator {
         let stood = self.progress.standing_for(s.now, s.estimate.pose, turns_count);
         if stood > self.config.patience {
             self.give_up(stood);
+        }
+    }
+
+    /// Whether the camera sees again what it had lost. Where a turn on the spot brings that back twice on the way to a viewpoint, the
+    /// way leads so near to something that the camera is blind there: no place to look from.
+    fn watch_sight(&mut self, s: &Surroundings<'_>) {
+        if self.is_blind(s) {
+            return;
+        }
+        self.sights += u32::from(std::mem::take(&mut self.sight_look).has_turned(TURNED_AWAY));
+        let waits = matches!(self.state, DriveState::Waiting { .. });
+        if waits && self.sights >= MOST_SIGHTS && matches!(self.goal, Goal::View(_)) {
+            self.follower.halt();
+            self.state =
+                DriveState::Stopped { reason: "the camera sees nothing on the way there".to_owned() };
         }
     }
 

@@ -3,7 +3,7 @@
 use super::{Goal, Navigator, PAUSE, Surroundings, floor::cells_about, vantage::Vantage};
 use crate::{
     last_stage::Progress,
-    look::{LookAround, face, turn_to},
+    look::{face, turn_to},
     stage::{Stage, StageTimes},
     state::DriveState,
 };
@@ -29,9 +29,6 @@ impl Navigator {
         times: &mut StageTimes,
     ) -> Twist2 {
         let pose = s.estimate.pose;
-        if !self.is_blind(s) {
-            self.sight_look = LookAround::default();
-        }
         match &self.state {
             DriveState::Mapping if self.goal == Goal::Look => self.look_once(s),
             DriveState::Recovering { .. } if self.is_wedged => Twist2::new(-BACKING_OUT, 0.0),
@@ -171,4 +168,53 @@ fn is_free_behind(s: &Surroundings<'_>, radius: f64) -> bool {
     let mut cells = cells_about(s.grid, here, radius + BACK_OUT_WAY);
     geometry.cell_at(here).is_some()
         && !cells.any(|cell| s.grid.get(cell) == Cell::Occupied && is_in_the_way(geometry.center(cell)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{
+        unseen::tests::{at_rest, navigator},
+        view::tests::floor,
+    };
+    use super::*;
+    use trundle_core::{OccupancyGrid, Pose2, Stamp};
+
+    /// Blind for so long, s; a control step, s.
+    const BLIND: f64 = 5.0;
+    const STEP: f64 = 0.02;
+
+    /// It waits without sight, as it turns in vain, and then sees again; when that is.
+    fn lose_sight_and_find_it(navigator: &mut Navigator, grid: &OccupancyGrid, from: Stamp) -> Stamp {
+        let mut times = StageTimes::default();
+        let mut pose = Pose2::new(3.0, 2.0, 0.0);
+        navigator.state = DriveState::Waiting { reason: "the newest image is old".to_owned() };
+        navigator.held_since = Some(from);
+        for i in 1..=(BLIND / STEP) as i32 {
+            let now = from.after(STEP * f64::from(i));
+            let s = Surroundings { seen: Some(from.after(-1.0)), ..at_rest(grid, now, pose) };
+            let twist = navigator.step(&s, &mut times).twist;
+            pose = pose.advance(twist, STEP);
+        }
+        assert!(pose.theta > 0.5, "it turns to find its sight: {}", pose.theta);
+        let now = from.after(BLIND + STEP);
+        navigator.step(&Surroundings { seen: Some(now), ..at_rest(grid, now, pose) }, &mut times);
+        now
+    }
+
+    #[test]
+    fn a_viewpoint_on_whose_way_the_camera_goes_blind_twice_is_given_up_and_a_goal_is_not() {
+        let (grid, ahead) = (floor(|_| false), Pose2::new(4.0, 2.0, 0.0));
+        for (goal, given_up) in [(Goal::View(ahead), true), (Goal::Exact(ahead), false)] {
+            let mut navigator = navigator();
+            navigator.take_up(goal);
+            let once = lose_sight_and_find_it(&mut navigator, &grid, Stamp::default().after(10.0));
+            assert!(!navigator.state().is_over(), "the camera may have failed: {:?}", navigator.state());
+            let twice = lose_sight_and_find_it(&mut navigator, &grid, once);
+            assert_eq!(navigator.state().is_over(), given_up, "{goal:?}: {:?}", navigator.state());
+            // For the next goal it counts anew.
+            navigator.take_up(goal);
+            lose_sight_and_find_it(&mut navigator, &grid, twice);
+            assert!(!navigator.state().is_over(), "{:?}", navigator.state());
+        }
+    }
 }

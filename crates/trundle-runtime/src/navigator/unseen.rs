@@ -208,7 +208,7 @@ fn wall_off(floor: &mut OccupancyGrid, at: Vector2, ends: [Vector2; 2], radius: 
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use crate::{
         config::RobotConfig,
@@ -261,13 +261,13 @@ mod tests {
         grid
     }
 
-    fn navigator() -> Navigator {
+    pub(in crate::navigator) fn navigator() -> Navigator {
         let config = RobotConfig::default();
         let footprint = config.footprint().unwrap();
         Navigator::new(&config, &footprint).unwrap()
     }
 
-    fn at_rest(grid: &OccupancyGrid, now: Stamp, pose: Pose2) -> Surroundings<'_> {
+    pub(in crate::navigator) fn at_rest(grid: &OccupancyGrid, now: Stamp, pose: Pose2) -> Surroundings<'_> {
         let covariance = nalgebra::Matrix3::from_diagonal_element(1e-6);
         Surroundings {
             now,
