@@ -26,6 +26,16 @@ pub fn run(program: &Path, args: &[&str]) -> Result<Option<i32>, String> {
     Ok(status.map_err(|e| format!("cannot start {}: {e}", program.display()))?.code())
 }
 
+/// Runs the program, and says so where it does not end with exit code 0; whether it does.
+pub fn ends_well(program: &Path, args: &[&str]) -> Result<bool, String> {
+    let code = run(program, args)?;
+    if code != Some(0) {
+        let code = code.map_or("none (killed)".into(), |code| code.to_string());
+        println!("exit code {code}, expected 0: trundle {}", args.join(" "));
+    }
+    Ok(code == Some(0))
+}
+
 /// Lets go the recording of a run that went well: some GB.
 pub fn drop_recording(out: &Path) {
     // What cannot be removed is overwritten by the next run.

@@ -17,12 +17,8 @@ pub fn run(root: &Path, seed: u64) -> Verdict {
         &["replay", &recording, "--quiet", "--out", &replayed],
     ];
     for args in runs {
-        match program::run(&trundle, args)? {
-            Some(0) => {}
-            code => {
-                println!("exit code {}, expected 0: trundle {}", show(code), args.join(" "));
-                return Ok(false);
-            }
+        if !program::ends_well(&trundle, args)? {
+            return Ok(false);
         }
     }
     let mut same = true;
@@ -38,8 +34,4 @@ pub fn run(root: &Path, seed: u64) -> Verdict {
         if same { "same bytes on one thread, on two, and replayed" } else { "not the same bytes" }
     );
     Ok(same)
-}
-
-fn show(code: Option<i32>) -> String {
-    code.map_or("none (killed)".into(), |code| code.to_string())
 }
