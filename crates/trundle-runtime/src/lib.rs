@@ -28,6 +28,7 @@ mod robot;
 mod saving;
 mod schedule;
 mod sight;
+mod sight_watch;
 mod stage;
 mod state;
 mod supervisor;

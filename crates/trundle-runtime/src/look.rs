@@ -10,15 +10,22 @@ pub(crate) struct LookAround {
 
 /// Turn rate, rad/s: slow enough for features to be tracked.
 const RATE: f64 = 0.6;
+/// One turn, and a little more, sees all around.
+pub(crate) const ONE_TURN: f64 = 1.02;
 /// Turning to something, it is near enough to the middle of the view, rad.
 const FACED: f64 = 0.05;
 
 impl LookAround {
-    /// The command, and a note of how far it has turned.
+    /// The command, and a note of how far it has turned: to the left.
     pub(crate) fn twist(&mut self, pose: Pose2) -> Twist2 {
+        self.twist_towards(RATE, pose)
+    }
+
+    /// The same to the side that this turn rate (rad/s) is of.
+    pub(crate) fn twist_towards(&mut self, side: f64, pose: Pose2) -> Twist2 {
         let last = self.last.replace(pose.theta).unwrap_or(pose.theta);
         self.turned += wrap_angle(pose.theta - last).abs();
-        Twist2::new(0.0, RATE)
+        Twist2::new(0.0, RATE.copysign(side))
     }
 
     /// Whether it has turned so many times.

@@ -15,6 +15,7 @@ use crate::{
     lookout::UNPLACED,
     progress::ProgressWatch,
     schedule::Ticker,
+    sight_watch::SightWatch,
     stage::{Stage, StageTimes},
     state::DriveState,
     supervisor_config::SupervisorConfig,
@@ -110,10 +111,7 @@ pub(crate) struct Navigator {
     started: Option<Stamp>,
     held_since: Option<Stamp>,
     look: LookAround,
-    /// The turn of a robot that sees nothing.
-    sight_look: LookAround,
-    /// How often such a turn brought its sight back, since the goal was given.
-    sights: u32,
+    sight_watch: SightWatch,
     /// Where the way to the goal ends, when there is none.
     blocked_at: Option<Vector2>,
     vantage: Vantage,
@@ -135,9 +133,6 @@ pub(crate) struct Navigator {
 
 /// A goal is given up after so many touches.
 const MOST_TOUCHES: u32 = 3;
-/// Sight that comes back after so many turns came back by turning; for a view that happens so often.
-const TURNED_AWAY: f64 = 0.02;
-const MOST_SIGHTS: u32 = 2;
 /// Held by safety for so long, it plans anew from where it stands, s.
 const PAUSE: f64 = 1.0;
 
@@ -161,8 +156,7 @@ impl Navigator {
             started: None,
             held_since: None,
             look: LookAround::default(),
-            sight_look: LookAround::default(),
-            sights: 0,
+            sight_watch: SightWatch::default(),
             blocked_at: None,
             vantage: Vantage::Unknown,
             unseen: Unseen::default(),
@@ -187,7 +181,7 @@ impl Navigator {
         self.unseen.restart();
         self.is_off_track = false;
         self.touches = 0;
-        self.sights = 0;
+        self.sight_watch = SightWatch::default();
         self.look = LookAround::default();
         self.last_stage.reset();
         self.progress.restart();
@@ -293,15 +287,15 @@ impl Navigator {
         }
     }
 
-    /// Whether the camera sees again what it had lost. Where a turn on the spot brings that back twice on the way to a viewpoint, the
-    /// way leads so near to something that the camera is blind there: no place to look from.
+    /// Whether the robot sees again, which saw nothing. Where a turn on the spot brings its sight back twice at one place on the way to a
+    /// viewpoint, the way leads so near to something that the camera is blind there: no place to look from.
     fn watch_sight(&mut self, s: &Surroundings<'_>) {
         if self.is_blind(s) {
             return;
         }
-        self.sights += u32::from(std::mem::take(&mut self.sight_look).has_turned(TURNED_AWAY));
+        let is_in_vain = self.sight_watch.sees(s.estimate.pose.position());
         let waits = matches!(self.state, DriveState::Waiting { .. });
-        if waits && self.sights >= MOST_SIGHTS && matches!(self.goal, Goal::View(_)) {
+        if is_in_vain && waits && matches!(self.goal, Goal::View(_)) {
             self.follower.halt();
             self.state =
                 DriveState::Stopped { reason: "the camera sees nothing on the way there".to_owned() };

@@ -12,13 +12,13 @@ pub(crate) struct ProgressWatch {
 const STEP: f64 = 0.15;
 /// Or when a turn to the goal's heading has come so far, rad. A turn that looks for a way does not count.
 const TURN: f64 = 0.2;
-/// Turns that count at one place: one whole turn. Who turns on and on there does not get on.
+/// Turns that count at one place: one whole turn, each of which begins patience anew. Who turns on and on there does not get on.
 const MOST_TURNS: u32 = 32;
 
 impl ProgressWatch {
     /// Begins anew.
     pub(crate) fn restart(&mut self) {
-        self.last = None;
+        *self = Self::default();
     }
 
     /// How long the robot has not got on, s; `turns_count` where turning leads to the goal.
@@ -64,5 +64,18 @@ mod tests {
         // At another place it may turn again.
         watch.standing_for(Stamp::default().after(90.0), Pose2::new(0.5, 0.0, 0.0), true);
         assert_eq!(watch.standing_for(Stamp::default().after(91.0), Pose2::new(0.5, 0.0, 1.0), true), 0.0);
+        // And for another goal.
+        (91..200).for_each(|i| _ = stood(&mut watch, i));
+        watch.restart();
+        (200..=232).for_each(|i| assert_eq!(stood(&mut watch, i), 0.0, "{i}"));
+    }
+
+    #[test]
+    fn to_creep_while_turning_is_to_get_on() {
+        let mut watch = ProgressWatch::default();
+        for i in 0..200 {
+            let pose = Pose2::new(6e-3 * f64::from(i), 0.0, f64::from(i % 2));
+            assert_eq!(watch.standing_for(Stamp::default().after(f64::from(i)), pose, true), 0.0, "{i}");
+        }
     }
 }

@@ -10,6 +10,7 @@ pub struct SupervisorConfig {
     /// Default 1.5 (ours).
     pub opening: f64,
     /// Without getting on for so long a goal is given up, s, 1 to 3600. Default 75: longer than a person stands in a door.
+    /// What counts is way, and turns while it drives or settles, at one place up to one whole turn.
     pub patience: f64,
     /// A position less sure than this (one sigma) is no position: the robot is lost, m, 0.1 to 10. Default 0.7 (ours).
     pub lost_sigma: f64,

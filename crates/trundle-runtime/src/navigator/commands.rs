@@ -3,7 +3,7 @@
 use super::{Goal, Navigator, PAUSE, Surroundings, floor::cells_about, vantage::Vantage};
 use crate::{
     last_stage::Progress,
-    look::{face, turn_to},
+    look::{ONE_TURN, face, turn_to},
     stage::{Stage, StageTimes},
     state::DriveState,
 };
@@ -17,8 +17,6 @@ const BACK_OUT_WAY: f64 = 0.15;
 const BLIND_PAUSE: f64 = 3.0;
 /// So fast it backs out where it has no room to turn, m/s.
 const BACKING_OUT: f64 = 0.1;
-/// One turn, and a little more, sees it once.
-const ONE_TURN: f64 = 1.02;
 
 impl Navigator {
     /// The command before safety's word on it.
@@ -74,11 +72,9 @@ impl Navigator {
 
     /// A camera too near to a wall sees nothing: after a while one turn on the spot shows whether that is it.
     fn look_for_sight(&mut self, s: &Surroundings<'_>) -> Twist2 {
-        let waited = self.held_since.map_or(0.0, |since| s.now - since);
-        if waited < BLIND_PAUSE || self.sight_look.has_turned(ONE_TURN) {
-            return Twist2::ZERO;
-        }
-        self.sight_look.twist(s.estimate.pose)
+        let since = self.held_since.max(s.seen);
+        let is_long = since.is_some_and(|since| s.now - since >= BLIND_PAUSE);
+        if is_long { self.sight_watch.turn(s.estimate.pose) } else { Twist2::ZERO }
     }
 
     /// A turn on the spot, and what is around has been seen.
@@ -111,6 +107,9 @@ impl Navigator {
                 SafetyAction::Stop(reason),
                 DriveState::Driving | DriveState::Settling | DriveState::Waiting { .. },
             ) => {
+                if !matches!(self.state, DriveState::Waiting { .. }) {
+                    self.sight_watch.held(twist);
+                }
                 self.held_since.get_or_insert(s.now);
                 self.state = DriveState::Waiting { reason: reason.to_string() };
             }
@@ -196,9 +195,30 @@ mod tests {
             pose = pose.advance(twist, STEP);
         }
         assert!(pose.theta > 0.5, "it turns to find its sight: {}", pose.theta);
-        let now = from.after(BLIND + STEP);
-        navigator.step(&Surroundings { seen: Some(now), ..at_rest(grid, now, pose) }, &mut times);
-        now
+        let sees = |after: f64| from.after(BLIND + after);
+        for now in (1..50).map(|i| sees(STEP * f64::from(i))) {
+            navigator.state = match &navigator.state {
+                over if over.is_over() => over.clone(),
+                _ => DriveState::Waiting { reason: "a way is looked for".to_owned() },
+            };
+            navigator.step(&Surroundings { seen: Some(now), ..at_rest(grid, now, pose) }, &mut times);
+        }
+        sees(1.0)
+    }
+
+    #[test]
+    fn it_turns_only_after_it_has_seen_nothing_for_a_while_however_long_it_was_held() {
+        let (grid, mut navigator, pose) = (floor(|_| false), navigator(), Pose2::new(3.0, 2.0, 0.0));
+        navigator.take_up(Goal::View(Pose2::new(4.0, 2.0, 0.0)));
+        let (held, mut times) = (Stamp::default().after(10.0), StageTimes::default());
+        let seen = held.after(20.0);
+        for (blind, turns) in [(1.0, false), (2.9, false), (3.1, true)] {
+            navigator.state = DriveState::Waiting { reason: "somebody is on the move".to_owned() };
+            navigator.held_since = Some(held);
+            let s = Surroundings { seen: Some(seen), ..at_rest(&grid, seen.after(blind), pose) };
+            let twist = navigator.step(&s, &mut times).twist;
+            assert_eq!(twist.omega != 0.0, turns, "blind for {blind} s: {twist:?}");
+        }
     }
 
     #[test]
