@@ -15,8 +15,8 @@ pub(super) struct Unseen {
     walls: Vec<Vector2>,
     /// What it set out to look at of late.
     looks: Vec<Look>,
-    /// How often it set out to look, since the goal was given.
-    looked: usize,
+    /// How often it set out to look and has not seen, since the goal was given.
+    in_vain: usize,
     /// What it looked at in vain, and when it knew: no way leads there.
     barred: Vec<(Vector2, Stamp)>,
 }
@@ -27,6 +27,7 @@ struct Look {
     at: Vector2,
     from: Vector2,
     since: Stamp,
+    is_in_vain: bool,
 }
 
 /// What looking for a way that shows where it leads came to.
@@ -45,10 +46,11 @@ const WALL: f64 = 0.3;
 const MOST_WALLS: usize = 3;
 /// A way that shows all may take so many times as long as the best, and so many seconds more.
 const WORTH: (f64, f64) = (1.5, 10.0);
-/// The same place is looked at so many times, from places so far apart, m; and so many looks are taken for a goal.
+/// The same place is looked at so many times, from places so far apart, m; and so many looks are taken for a goal that show
+/// nothing: those that show what they were for explore, which has an end of its own.
 const MOST_LOOKS: usize = 2;
 const APART: f64 = 0.4;
-const MOST_LOOKS_A_GOAL: usize = 12;
+const MOST_LOOKS_IN_VAIN: usize = 12;
 /// What was looked at in vain may be seen after so long, s: somebody stood before it, and has gone.
 const AGAIN: f64 = 20.0;
 
@@ -60,13 +62,22 @@ impl Unseen {
 
     /// Notes that it sets out to look at `at` from `from`.
     pub(super) fn note_look(&mut self, at: Vector2, from: Vector2, now: Stamp) {
-        self.looks.push(Look { at, from, since: now });
-        self.looked += 1;
+        self.looks.push(Look { at, from, since: now, is_in_vain: true });
+        self.in_vain += 1;
     }
 
     /// Notes that it has come to where it set out to last.
     pub(super) fn note_arrival(&mut self, now: Stamp) {
         self.looks.last_mut().into_iter().for_each(|look| look.since = now);
+    }
+
+    /// Notes what the newest map knows of what it looked at.
+    pub(super) fn note_seen(&mut self, floor: &OccupancyGrid) {
+        for look in &mut self.looks {
+            let is_seen = look.is_in_vain && floor.at(look.at) != Cell::Unknown;
+            look.is_in_vain &= !is_seen;
+            self.in_vain -= usize::from(is_seen);
+        }
     }
 
     /// Looks that were long ago tell nothing of what may be seen now.
@@ -87,7 +98,7 @@ impl Unseen {
 
     /// Whether looking at `at` once more may help.
     pub(super) fn is_worth_a_look(&self, at: Vector2) -> bool {
-        self.looks_at(at).count() < MOST_LOOKS && self.looked < MOST_LOOKS_A_GOAL
+        self.looks_at(at).count() < MOST_LOOKS && self.in_vain < MOST_LOOKS_IN_VAIN
     }
 
     /// Whether `from` is another place to look at `at` from than it was before.
@@ -123,6 +134,7 @@ impl Navigator {
         (from, twist): (Pose2, Twist2),
         goal: Pose2,
     ) -> InView {
+        self.unseen.note_seen(s.floor());
         self.unseen.forget(s.now);
         let ends = [from, goal].map(|pose| pose.position());
         let bars = self.unseen.bars();
@@ -232,9 +244,29 @@ pub(super) mod tests {
         );
         unseen.forget(time(28.0));
         assert!(!unseen.was_looked_at(at) && unseen.barred().is_none() && unseen.is_worth_a_look(at));
-        (1..MOST_LOOKS_A_GOAL).for_each(|i| unseen.note_look(at, Vector2::zeros(), time(30.0 * i as f64)));
+        (1..MOST_LOOKS_IN_VAIN).for_each(|i| unseen.note_look(at, Vector2::zeros(), time(30.0 * i as f64)));
         unseen.forget(time(1000.0));
         assert!(!unseen.is_worth_a_look(at), "not for ever");
+    }
+
+    #[test]
+    fn looks_that_showed_what_they_were_for_may_be_as_many_as_there_is_floor() {
+        let (mut unseen, time) = (Unseen::default(), |s: f64| Stamp::default().after(s));
+        let known = floor(|at| at.x > 3.0);
+        for i in 0..3 * MOST_LOOKS_IN_VAIN {
+            let at = Vector2::new(0.1 * (1 + i % 20) as f64, 2.0);
+            assert!(unseen.is_worth_a_look(at), "{i}");
+            unseen.note_look(at, Vector2::zeros(), time(30.0 * i as f64));
+            (0..2).for_each(|_| unseen.note_seen(&known));
+            unseen.forget(time(30.0 * i as f64 + 25.0));
+        }
+        for i in 0..MOST_LOOKS_IN_VAIN {
+            assert!(unseen.is_worth_a_look(Vector2::new(4.0, 2.0)), "{i}");
+            unseen.note_look(Vector2::new(4.0, 2.0), Vector2::zeros(), time(30.0 * i as f64));
+            unseen.note_seen(&known);
+            unseen.forget(time(30.0 * i as f64 + 25.0));
+        }
+        assert!(!unseen.is_worth_a_look(Vector2::new(4.0, 2.0)));
     }
 
     #[test]
@@ -348,7 +380,7 @@ pub(super) mod tests {
                 assert!(navigator.view.unwrap().shows(&grid, pose, navigator.blocked_at.unwrap()));
             }
         }
-        assert!((1..=MOST_LOOKS_A_GOAL).contains(&looks), "{looks} looks");
+        assert!((1..=MOST_LOOKS_IN_VAIN).contains(&looks), "{looks} looks");
         let reason = navigator.state.reason().unwrap();
         assert!(reason.contains("no way") && reason.contains("could not be seen"), "{reason}");
     }
