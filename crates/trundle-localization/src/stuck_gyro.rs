@@ -5,6 +5,8 @@ use trundle_core::GyroRate;
 pub(crate) struct StuckGyro {
     last: Option<GyroRate>,
     same_for: f64,
+    /// It contradicted the wheels, and has said nothing else since.
+    is_stuck: bool,
 }
 
 /// A gyro whose readings were all the same for so long may be stuck, s: in motion noise alone makes them differ.
@@ -17,7 +19,10 @@ impl StuckGyro {
     pub(crate) fn note(&mut self, rate: &GyroRate) {
         self.same_for = match self.last {
             Some(last) if last.omega == rate.omega => self.same_for + (rate.stamp - last.stamp),
-            _ => 0.0,
+            _ => {
+                self.is_stuck = false;
+                0.0
+            }
         };
         self.last = Some(*rate);
     }
@@ -28,9 +33,11 @@ impl StuckGyro {
     }
 
     /// Whether the gyro is stuck, where the wheels say `by_wheels` rad/s and its bias is `bias` rad/s.
-    pub(crate) fn contradicts(&self, by_wheels: f64, bias: f64) -> bool {
+    /// Once it was, it is until it says something else: slow turns would not show it.
+    pub(crate) fn contradicts(&mut self, by_wheels: f64, bias: f64) -> bool {
         let apart = |last: GyroRate| (last.omega - bias - by_wheels).abs() > APART;
-        self.is_suspect() && self.last.is_some_and(apart)
+        self.is_stuck |= self.is_suspect() && self.last.is_some_and(apart);
+        self.is_stuck
     }
 }
 
@@ -47,6 +54,7 @@ mod tests {
         }
         assert!(!gyro.contradicts(0.0, 0.02), "a quiet gyro at rest");
         assert!(gyro.contradicts(0.8, 0.02));
+        assert!(gyro.contradicts(0.05, 0.02), "a slow turn does not make it whole");
         gyro.note(&GyroRate { stamp: Stamp::from_nanos(2_000_000_000), omega: 0.03 });
         assert!(!gyro.contradicts(0.8, 0.02), "it speaks again");
     }
