@@ -52,19 +52,24 @@ impl TryFrom<Unchecked> for PinholeCamera {
     }
 }
 
+/// An image has no more columns or rows than this: a number that was mistyped would not fit into memory.
+const MOST_PIXELS: usize = 16_384;
+
 impl PinholeCamera {
     /// A camera of `width` x `height` px, focal lengths and principal point in px.
     ///
     /// # Errors
-    /// When a side is zero, a focal length is not positive, or any number is not finite.
+    /// When a side is zero or above 16384 px, a focal length is not positive, or any number is not finite.
     pub fn new(
         (width, height): (usize, usize),
         (fx, fy): (f64, f64),
         (cx, cy): (f64, f64),
         distortion: Distortion,
     ) -> Result<Self, Invalid> {
-        if width == 0 || height == 0 {
-            return Err(Invalid::new("camera size", format!("{width} x {height}"), "px", "at least 1 x 1"));
+        let is_a_side = |pixels: usize| (1..=MOST_PIXELS).contains(&pixels);
+        if !is_a_side(width) || !is_a_side(height) {
+            let size = format!("{width} x {height}");
+            return Err(Invalid::new("camera size", size, "px", "1 x 1 to 16384 x 16384"));
         }
         require_positive("fx", fx, "px")?;
         require_positive("fy", fy, "px")?;
@@ -237,5 +242,9 @@ mod tests {
         let error =
             PinholeCamera::new((640, 480), (-1.0, 500.0), (320.0, 240.0), Distortion::default()).unwrap_err();
         assert_eq!(error.field, "fx");
+        for size in [(0, 480), (5_120_000_000, 424)] {
+            let camera = PinholeCamera::new(size, (500.0, 500.0), (320.0, 240.0), Distortion::default());
+            assert_eq!(camera.unwrap_err().field, "camera size", "{size:?}");
+        }
     }
 }
