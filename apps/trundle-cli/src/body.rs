@@ -30,14 +30,19 @@ pub trait WiredBody {
 
     /// What came of a helper's work that is still under way, at the end of a run; `None` where there is none.
     fn last_answer(&mut self, helper: Helper) -> Option<Answer>;
+
+    /// How often it has touched something by now, in truth; `None` where only its bumper says so.
+    fn contacts(&self) -> Option<u32>;
 }
 
-/// What a recording of a robot that gives its long work out says between the events.
+/// What a recording says between the events: of the robot's body, and of work that a robot gives out.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Mark {
     /// What came of this helper's work was taken up here.
     TakenUp(Helper),
+    /// The body had touched something so often by now, in truth: before the event that follows.
+    Contacts(u32),
     /// The user ended the run.
     Interrupted,
     /// The run was over; what follows was still under way.
@@ -75,29 +80,34 @@ impl WiredBody for Simulator {
     fn last_answer(&mut self, _helper: Helper) -> Option<Answer> {
         None
     }
+
+    fn contacts(&self) -> Option<u32> {
+        Some(Self::contacts(self))
+    }
 }
 
 /// A recording fed again. Work is done when the recording says that it was taken up.
 pub struct Recorded {
     reader: RecordingReader,
     jobs: BTreeMap<Helper, Job>,
+    contacts: Option<u32>,
 }
 
 impl Recorded {
     /// From the recording's beginning.
     pub fn new(reader: RecordingReader) -> Self {
-        Self { reader, jobs: BTreeMap::new() }
+        Self { reader, jobs: BTreeMap::new(), contacts: None }
     }
 
-    /// What a mark means for the run.
-    fn heed(&mut self, value: serde_json::Value) -> Result<Option<Input>, Failure> {
+    /// What a mark says.
+    fn read(value: serde_json::Value) -> Result<Mark, Failure> {
         let message: MarkMessage = serde_json::from_value(value)
             .map_err(|error| Failure::Input(format!("message on {}: {error}", Mark::TOPIC)))?;
-        let helper = match message.mark {
-            Mark::TakenUp(helper) => helper,
-            Mark::Interrupted => return Ok(Some(Input::Interrupted)),
-            Mark::End => return Ok(None),
-        };
+        Ok(message.mark)
+    }
+
+    /// What came of the helper's work, which is done now.
+    fn answer_of(&mut self, helper: Helper) -> Result<Option<Input>, Failure> {
         let answer = self.last_answer(helper).ok_or_else(|| {
             Failure::Input(format!("message on {}: {helper:?} has nothing to do here", Mark::TOPIC))
         })?;
@@ -111,7 +121,12 @@ impl WiredBody for Recorded {
             match self.reader.next_message()? {
                 Some(RecordedMessage::Event(event)) => return Ok(Some(Input::Event(event))),
                 Some(RecordedMessage::Json { schema, value, .. }) if schema == Mark::SCHEMA => {
-                    return self.heed(value);
+                    match Self::read(value)? {
+                        Mark::Contacts(count) => self.contacts = Some(count),
+                        Mark::TakenUp(helper) => return self.answer_of(helper),
+                        Mark::Interrupted => return Ok(Some(Input::Interrupted)),
+                        Mark::End => return Ok(None),
+                    }
                 }
                 Some(RecordedMessage::Json { .. }) => {}
                 None => return Ok(None),
@@ -130,5 +145,9 @@ impl WiredBody for Recorded {
 
     fn last_answer(&mut self, helper: Helper) -> Option<Answer> {
         self.jobs.remove(&helper).map(Job::run)
+    }
+
+    fn contacts(&self) -> Option<u32> {
+        self.contacts
     }
 }

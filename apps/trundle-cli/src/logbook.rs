@@ -15,8 +15,10 @@ pub struct Logbook {
     pub truths: Vec<(Stamp, Pose2)>,
     /// Commands by time.
     pub twists: Vec<(Stamp, Twist2)>,
-    /// Times the bumper was pressed.
-    pub contacts: usize,
+    /// Times that the bumper says it was pressed.
+    pub presses: usize,
+    /// Times that the body touched something in truth, where that is known.
+    pub true_contacts: Option<u32>,
     /// Plans made.
     pub plans: usize,
     /// Images by what tracking said of them.
@@ -144,11 +146,16 @@ impl Logbook {
         (!beliefs.is_empty()).then(|| (sum / beliefs.len() as f64).sqrt())
     }
 
-    /// Takes down what only judges may know: truth (moved into the map frame) and contacts.
+    /// Times that something was touched: in truth, or by the bumper's word where that is all there is.
+    pub fn contacts(&self) -> usize {
+        self.true_contacts.map_or(self.presses, |count| count as usize)
+    }
+
+    /// Takes down what only judges may know: truth (moved into the map frame) and what the bumper says.
     pub fn judge(&mut self, event: &SensorEvent, map_from_world: Pose2) {
         match event {
             SensorEvent::Truth { stamp, pose } => self.truths.push((*stamp, map_from_world * *pose)),
-            SensorEvent::Touch(touch) => self.contacts += usize::from(touch.pressed),
+            SensorEvent::Touch(touch) => self.presses += usize::from(touch.pressed),
             _ => {}
         }
     }

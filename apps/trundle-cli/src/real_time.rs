@@ -113,7 +113,7 @@ pub fn drive_live(
     pool.install(|| {
         let mut live = LiveBody::start(PulseConfig::default(), at(NICER.0), stop)?;
         let world = World::start(body, live.door(), Place { core: outside, ..Place::default() })?;
-        live.listen(world.commands());
+        live.listen(world.commands(), world.contacts());
         let before = thread_time().unwrap_or_default();
         let result = drive(setup, &mut live, tape, log, quiet);
         let control = thread_time().unwrap_or_default().saturating_sub(before);

@@ -130,6 +130,7 @@ pub fn live(setup: &RunSetup, body: &mut Simulator, mut restart: Option<f64>) ->
     let mut finished = None;
     while let Some(event) = RobotBody::next_event(body)? {
         log.judge(&event, setup.map_from_world);
+        log.true_contacts = Some(body.contacts());
         let report = robot.step(&event);
         if let Some(twist) = report.twist {
             RobotBody::command(body, twist)?;

@@ -17,7 +17,7 @@ pub struct RunNumbers {
     pub believed_error: Option<GoalError>,
     /// The estimate's distance from truth over the run: root of the mean square, m.
     pub estimate_rmse: Option<f64>,
-    /// Times the bumper was pressed.
+    /// Times that something was touched: in truth, where that is known.
     pub contacts: usize,
     /// The way driven, m.
     pub path_length: f64,
@@ -61,7 +61,7 @@ impl RunNumbers {
             goal_error: log.truths.last().and_then(|(_, truth)| against_goal(*truth)),
             believed_error: against_goal(run.robot.estimate().pose),
             estimate_rmse: log.estimate_rmse(),
-            contacts: log.contacts,
+            contacts: log.contacts(),
             path_length: log.path_length(),
             duration: log.elapsed(),
             plans: log.plans,

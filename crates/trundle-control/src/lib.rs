@@ -31,8 +31,8 @@ mod tracking;
 pub use following::{FollowPhase, FollowReport, Follower, FollowerConfig};
 pub use limiter::{Limited, Limiter};
 pub use safety::{
-    SafetyAction, SafetyConfig, SafetyInput, SafetyMemory, SafetyMonitor, SafetyReport, SafetyScan,
-    SlowReason, StopReason,
+    MotionSense, SafetyAction, SafetyConfig, SafetyInput, SafetyMemory, SafetyMonitor, SafetyReport,
+    SafetyScan, SlowReason, StopReason,
 };
 pub use settling::{SettleConfig, SettlePreview, SettleReport, SettleState, Stabilizer};
 pub use tracking::{ControlReport, Tracker, TrackingConfig, TrackingError};

@@ -31,6 +31,7 @@ mod history;
 mod learnt;
 mod localizer;
 mod localizer_config;
+mod obedience;
 mod odometer;
 mod odometry_config;
 mod odometry_noise;

@@ -42,3 +42,35 @@ pub(crate) fn of_gap(config: &OdometryConfig, gap: f64) -> Matrix3<f64> {
     let turn = (TURN * TURN * way).min(PI * PI);
     Matrix3::from_diagonal(&nalgebra::Vector3::new(way, way, turn))
 }
+
+/// What the base may have done that nobody counted: variances of its way, m^2, and of its turn, rad^2.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(crate) struct Untold {
+    pub(crate) way_variance: f64,
+    pub(crate) turn_variance: f64,
+}
+
+/// For so long what is not counted is not counted the same way, s.
+const UNTOLD_LASTS: f64 = 1.0;
+/// Of a way that nobody counted so much may be sideways: it bends.
+const SIDEWAYS: f64 = 0.2;
+
+impl Untold {
+    /// So much way and turn (m, rad).
+    pub(crate) fn at_once(way: f64, turn: f64) -> Self {
+        Self { way_variance: way * way, turn_variance: turn * turn }
+    }
+
+    /// `dt` s of so many m/s and rad/s.
+    pub(crate) fn on_and_on(pace: (f64, f64), dt: f64) -> Self {
+        let grown = |speed: f64| speed * speed * UNTOLD_LASTS * dt;
+        Self { way_variance: grown(pace.0), turn_variance: grown(pace.1) }
+    }
+
+    /// As a right perturbation (x m, y m, theta rad); a turn that the gyro told was told.
+    pub(crate) fn covariance(&self, has_gyro: bool) -> Matrix3<f64> {
+        let turn = if has_gyro { 0.0 } else { self.turn_variance };
+        let sideways = SIDEWAYS * SIDEWAYS * self.way_variance;
+        Matrix3::from_diagonal(&nalgebra::Vector3::new(self.way_variance, sideways, turn))
+    }
+}

@@ -2,6 +2,7 @@ use crate::{
     OdometryConfig, WheelCounts, WheelReport,
     camera_turns::{CameraTurns, SeenHeading},
     gyro_errors::GyroErrors,
+    obedience::Obedience,
     odometry_noise::{Step, of_gap, of_step},
     planar::carried,
     stuck_gyro::StuckGyro,
@@ -19,7 +20,8 @@ use trundle_core::{
 /// the two rims' ways and whose angle is the gyro's, less its bias, or the rims' difference over the wheelbase where
 /// there is no gyro. The arc is integrated exactly by the exponential map of SE(2). Counters wrap at 2^16; a difference
 /// is read as the shorter way round. While the wheels rest for long enough, so does the robot, and the gyro shows its bias. While they roll,
-/// gyro and camera show how large they are ([`WheelOdometry::seen`]). Cost: O(1).
+/// gyro and camera show how large they are ([`WheelOdometry::seen`]). Wheels that are told to roll ([`WheelOdometry::tell`]) and count
+/// nothing are not at rest: the pose is as uncertain as the way that they were told. Cost: O(1).
 ///
 /// A reading from the past, after a gap, or implying an impossible speed never makes the pose jump: see [`WheelReport`].
 #[derive(Debug, Clone)]
@@ -30,6 +32,7 @@ pub struct WheelOdometry {
     errors: GyroErrors,
     turns: CameraTurns,
     stuck: StuckGyro,
+    obedience: Obedience,
     size: WheelSize,
     last_rate: Option<GyroRate>,
     last: Option<WheelTicks>,
@@ -65,6 +68,7 @@ impl WheelOdometry {
             config,
             gyro: TurnIntegral::default(),
             stuck: StuckGyro::default(),
+            obedience: Obedience::default(),
             last_rate: None,
             last: None,
             suspect: None,
@@ -94,6 +98,16 @@ impl WheelOdometry {
             self.errors.rest(&self.config, rate.omega);
         }
         self.last_rate = Some(*rate);
+    }
+
+    /// The base is told to do this from now on.
+    pub fn tell(&mut self, twist: Twist2) {
+        self.obedience.tell(twist);
+    }
+
+    /// Whether the wheels have been told to roll for a while and count nothing: encoders that are stuck, or wheels that are blocked.
+    pub fn wheels_do_not_answer(&self) -> bool {
+        self.obedience.is_refused()
     }
 
     /// Takes in a reading of the wheels and returns the odometry after it; [`WheelOdometry::report`] says what became of
@@ -202,11 +216,17 @@ impl WheelOdometry {
     }
 
     fn integrate(&mut self, stamp: Stamp, rims: &RimMotion) -> WheelReport {
-        let rests = rims.left == 0.0 && rims.right == 0.0;
+        let half_base = self.drive.wheelbase / 2.0;
+        let counts_nothing = rims.left == 0.0 && rims.right == 0.0;
+        let untold = self.obedience.step(half_base, !counts_nothing, rims.dt);
+        let rests = counts_nothing && !self.obedience.is_to_roll(half_base);
         self.resting_since = if rests { self.resting_since.or(Some(stamp)) } else { None };
 
         let turn_by_wheels = (rims.right - rims.left) / self.drive.wheelbase;
-        let is_stuck = self.stuck.contradicts(turn_by_wheels / rims.dt, self.errors.bias());
+        let do_not_answer = self.obedience.is_refused();
+        // Of wheels that say nothing and a gyro that says the same again and again nobody knows which is right.
+        let is_stuck = self.stuck.contradicts(turn_by_wheels / rims.dt, self.errors.bias())
+            || do_not_answer && self.stuck.is_suspect();
         let turn_by_gyro = self.turn_by_gyro(stamp, rims.dt).filter(|_| !is_stuck);
         // The gyro's noise does not turn a robot that rests. A single reading without a tick says nothing: one that creeps has them too.
         let may_rest = rests && (self.at_rest(stamp) || !self.errors.is_measured());
@@ -221,7 +241,7 @@ impl WheelOdometry {
         }
         let variance = |turn| self.errors.turn_variance(&self.config, turn, rims.dt);
         let by_gyro = turn_by_gyro.map(|turn| if is_noise { 0.0 } else { variance(turn) });
-        if slips {
+        if slips || do_not_answer {
             self.size.interrupt();
         } else {
             let is_sure = !self.stuck.is_suspect() && self.errors.is_measured();
@@ -229,6 +249,7 @@ impl WheelOdometry {
             self.size.rolled(self.drive.wheelbase, Rolled { way, by_wheels: turn_by_wheels, by_gyro });
         }
         self.move_by(stamp, &Step { way, turn, dt: rims.dt, by_gyro, slip });
+        self.odometry.covariance += untold.covariance(by_gyro.is_some());
         if slips { WheelReport::Slipping { rate: slip_rate } } else { WheelReport::Used }
     }
 

@@ -7,7 +7,7 @@ use crate::{
     state::DriveState,
     supervisor::Supervisor,
 };
-use trundle_control::SafetyScan;
+use trundle_control::{MotionSense, SafetyScan};
 use trundle_core::{Footprint, Invalid, OccupancyGrid, Pose2, PoseEstimate, Scan, Stamp, Vector2};
 use trundle_planning::Mover;
 
@@ -78,6 +78,7 @@ pub(crate) struct Around {
     scan: Option<(Scan, Pose2, Pose2)>,
     seen: Option<Stamp>,
     unplaced: f64,
+    motion: MotionSense,
     movers: Vec<Mover>,
     lately: Vec<Vector2>,
     still: Option<OccupancyGrid>,
@@ -92,6 +93,7 @@ impl From<&Surroundings<'_>> for Around {
             scan: s.scan.map(|seen| (seen.scan.clone(), seen.odom_at_scan, seen.odom_now)),
             seen: s.seen,
             unplaced: s.unplaced,
+            motion: s.motion,
             movers: s.traffic.movers.to_vec(),
             lately: s.traffic.lately.to_vec(),
             still: s.traffic.still.cloned(),
@@ -117,6 +119,7 @@ impl Around {
             }),
             seen: self.seen,
             unplaced: self.unplaced,
+            motion: self.motion,
             traffic: Traffic { movers: &self.movers, lately: &self.lately, still: self.still.as_ref() },
         }
     }

@@ -20,7 +20,7 @@ use crate::{
     state::DriveState,
     supervisor_config::SupervisorConfig,
 };
-use trundle_control::{FollowPhase, FollowReport, Follower, SafetyMonitor, SafetyScan};
+use trundle_control::{FollowPhase, FollowReport, Follower, MotionSense, SafetyMonitor, SafetyScan};
 use trundle_core::{Footprint, Invalid, OccupancyGrid, Pose2, PoseEstimate, Stamp, Twist2, Vector2};
 use trundle_planning::{Mover, PlanResult, Planner};
 use unseen::Unseen;
@@ -39,6 +39,8 @@ pub(crate) struct Surroundings<'a> {
     pub(crate) seen: Option<Stamp>,
     /// For how long images that show enough have not been located, s.
     pub(crate) unplaced: f64,
+    /// What tells how the robot moves.
+    pub(crate) motion: MotionSense,
     pub(crate) traffic: Traffic<'a>,
 }
 
@@ -306,7 +308,12 @@ impl Navigator {
     fn why_lost(&self, s: &Surroundings<'_>) -> Option<String> {
         let sigma = position_sigma(&s.estimate);
         if sigma > self.config.lost_sigma {
-            return Some(format!("the position is only known to {sigma:.2} m"));
+            let why = if s.motion != MotionSense::Wheels {
+                ": the wheels are told to roll and count nothing"
+            } else {
+                ""
+            };
+            return Some(format!("the position is only known to {sigma:.2} m{why}"));
         }
         (s.unplaced > UNPLACED).then(|| "what the camera sees is not what is there on the map".to_owned())
     }

@@ -20,7 +20,7 @@ use crate::{
 };
 use background::Background;
 use std::sync::Arc;
-use trundle_control::SafetyScan;
+use trundle_control::{MotionSense, SafetyScan};
 use trundle_core::{
     Footprint, GyroRate, Invalid, OccupancyGrid, Odometry, Pose2, Pose3, PoseEstimate, RgbdImage, Scan,
     SensorEvent, Stamp, Vector2, WheelTicks,
@@ -76,6 +76,8 @@ struct Latest {
     eye: EyeWatch,
     /// Since when images that show enough have not been located.
     unplaced: Option<Stamp>,
+    /// Stamp of the newest image that was located.
+    located: Option<Stamp>,
     /// Images that were left out because the camera was frozen.
     frozen: usize,
     /// What the captain said last of what the robot does, and whether the mission is over.
@@ -92,6 +94,8 @@ struct Latest {
 
 /// Images that show enough and have not been located for so long, s, are of another place than the odometry says.
 const UNPLACED: f64 = 0.3;
+/// An image located so long ago, s, no longer tells how the robot moves.
+const MOTION_SEEN: f64 = 0.8;
 /// A correction by more than this is a jump: what moves is not told from scans on both sides of it, m and rad.
 const JUMP: (f64, f64) = (0.1, 0.1);
 /// What came within so many m lately is minded until it is seen to go: more than a robot needs to brake.
@@ -204,6 +208,7 @@ impl Robot {
             scan: self.latest.carried_scan(),
             seen: self.latest.eye.seen(),
             unplaced: self.latest.unplaced.map_or(0.0, |since| wheels.stamp - since),
+            motion: self.motion_sense(wheels.stamp),
             traffic: Traffic {
                 movers: &self.latest.movers,
                 lately: &self.latest.lately,
@@ -223,7 +228,18 @@ impl Robot {
                 report.twist = times.measure(Stage::Control, || background.steer(captain, &surroundings));
             }
         }
+        report.twist.into_iter().for_each(|twist| self.odometry.tell(twist));
         self.redraw();
+    }
+
+    /// What tells how the robot moves.
+    fn motion_sense(&self, now: Stamp) -> MotionSense {
+        let is_seen = || self.latest.located.is_some_and(|located| now - located <= MOTION_SEEN);
+        match self.sight {
+            _ if !self.odometry.wheels_do_not_answer() => MotionSense::Wheels,
+            Sight::DepthCamera if !is_seen() => MotionSense::Nothing,
+            Sight::DepthCamera | Sight::Laser => MotionSense::Sight,
+        }
     }
 
     /// A slice of redrawing what a loop bent.
@@ -263,6 +279,9 @@ impl Robot {
         let Sighting { odom_from_base, track, scan, place, unplaced, is_carried_away, bent, saved } =
             sighting;
         self.latest.unplaced = unplaced;
+        if track.tracking.is_located() {
+            self.latest.located = self.latest.located.max(Some(track.stamp));
+        }
         if is_carried_away {
             self.localizer.lose_place();
             self.forget_traffic();

@@ -250,6 +250,7 @@ mod tests {
             scan: None,
             seen: None,
             unplaced: 0.0,
+            motion: trundle_control::MotionSense::Wheels,
             traffic: crate::navigator::Traffic::default(),
         }
     }

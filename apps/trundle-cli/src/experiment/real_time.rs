@@ -100,7 +100,7 @@ fn limits(timing: &Timing) -> Vec<Limit> {
 
 fn finish(args: &RealTimeArgs, run: &Run, timing: &Timing, folder: OutputFolder) -> Result<Outcome, Failure> {
     let limits = limits(timing);
-    let contacts = run.log.contacts;
+    let contacts = run.log.contacts();
     let is_reached = |record: &&TaskRecord| record.task != Task::Explore && record.end == TaskEnd::Done;
     let done = run.robot.tasks_ended().iter().filter(is_reached).count();
     let is_left = |record: &TaskRecord| record.task == Task::Explore && record.end != TaskEnd::Done;

@@ -4,7 +4,7 @@ use crate::failure::Failure;
 use crate::run::Run;
 use std::collections::BTreeMap;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::mpsc::Sender;
 use std::time::{Duration, Instant};
 use trundle::core::Twist2;
@@ -32,6 +32,8 @@ pub struct LiveBody {
     /// From giving a job to taking up its answer, ms.
     waits: BTreeMap<Helper, Histogram>,
     costs: Vec<Load>,
+    /// What the body has touched, by the world's count.
+    contacts: Arc<AtomicU32>,
 }
 
 /// Things that wait for the control thread at most: some seconds' worth.
@@ -56,6 +58,7 @@ impl LiveBody {
             busy: BTreeMap::new(),
             waits: BTreeMap::new(),
             costs: Vec::new(),
+            contacts: Arc::default(),
         })
     }
 
@@ -64,9 +67,10 @@ impl LiveBody {
         self.inbox.door()
     }
 
-    /// Commands go there from now on.
-    pub fn listen(&mut self, commands: Sender<Twist2>) {
+    /// Commands go there from now on, and the world counts there what the body touches.
+    pub fn listen(&mut self, commands: Sender<Twist2>, contacts: Arc<AtomicU32>) {
         self.commands = Some(commands);
+        self.contacts = contacts;
     }
 
     fn wait_for_input(&mut self) -> Option<Input> {
@@ -145,5 +149,9 @@ impl WiredBody for LiveBody {
         let answer = self.inbox.next_answer(helper, PATIENCE)?;
         self.is_back(helper);
         Some(answer)
+    }
+
+    fn contacts(&self) -> Option<u32> {
+        Some(self.contacts.load(Ordering::Relaxed))
     }
 }

@@ -5,7 +5,7 @@ use crate::pace::Pace;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use serde::Serialize;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU32, AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, Sender, SyncSender, channel, sync_channel};
 use std::time::{Duration, Instant};
 use trundle::core::{RobotBody, SensorEvent, Twist2};
@@ -18,6 +18,7 @@ use trundle::sim::{CameraAside, Shot, Simulator};
 pub struct World {
     commands: Sender<Twist2>,
     stop: Arc<AtomicBool>,
+    contacts: Arc<AtomicU32>,
     ended: Receiver<Result<WorldReport, Failure>>,
     _pools: [ThreadPool; 2],
 }
@@ -48,6 +49,8 @@ struct Shared {
     door: InboxDoor<Arrived>,
     stop: Arc<AtomicBool>,
     not_taken: Arc<AtomicU64>,
+    /// What the body has touched by now.
+    contacts: Arc<AtomicU32>,
     /// The moment of simulated time 0.
     origin: Instant,
 }
@@ -58,8 +61,14 @@ impl World {
         // The base is hardware to the robot: it keeps its time whatever the camera does.
         let pools = [pool("camera", place)?, pool("base", Place { is_first: true, ..place })?];
         let stop = Arc::<AtomicBool>::default();
-        let shared =
-            Shared { door, stop: Arc::clone(&stop), not_taken: Arc::default(), origin: Instant::now() };
+        let contacts = Arc::<AtomicU32>::default();
+        let shared = Shared {
+            door,
+            stop: Arc::clone(&stop),
+            not_taken: Arc::default(),
+            contacts: Arc::clone(&contacts),
+            origin: Instant::now(),
+        };
         let (commands, orders) = channel();
         let (shots, to_take) = sync_channel(1);
         let (ages, aged) = channel();
@@ -75,12 +84,17 @@ impl World {
             let report = base.and_then(|report| with_ages(report, &ages?));
             let _ = end.send(report);
         });
-        Ok(Self { commands, stop, ended, _pools: pools })
+        Ok(Self { commands, stop, contacts, ended, _pools: pools })
     }
 
     /// Where commands go.
     pub fn commands(&self) -> Sender<Twist2> {
         self.commands.clone()
+    }
+
+    /// What the body has touched by now, in truth.
+    pub fn contacts(&self) -> Arc<AtomicU32> {
+        Arc::clone(&self.contacts)
     }
 
     /// Ends both threads.
@@ -116,7 +130,9 @@ fn live(
         for twist in orders.try_iter() {
             body.command(twist).map_err(refused)?;
         }
-        for event in body.advance().map_err(refused)? {
+        let events = body.advance().map_err(refused)?;
+        shared.contacts.store(body.contacts(), Ordering::Relaxed);
+        for event in events {
             if matches!(event, SensorEvent::Wheels(_)) {
                 lateness.note(late * 1e3);
                 memory.look(time);

@@ -43,6 +43,7 @@ impl<'s> Trip<'s> {
 
     /// Feeds the robot once; whether its mission is over.
     pub(super) fn step(&mut self, input: Input, body: &mut dyn WiredBody) -> Result<bool, Failure> {
+        self.judge(body)?;
         let (stamp, report) = match input {
             Input::Event(event) => (event.stamp(), self.feel(event)?),
             Input::Answer(answer) => (self.log.now, self.take_up(answer)?),
@@ -67,6 +68,17 @@ impl<'s> Trip<'s> {
             body.give(job);
         }
         Ok(report.finished)
+    }
+
+    /// Takes down what the body has touched, where it knows.
+    fn judge(&mut self, body: &dyn WiredBody) -> Result<(), Failure> {
+        match body.contacts() {
+            contacts @ Some(count) if contacts != self.log.true_contacts => {
+                self.log.true_contacts = contacts;
+                self.mark(Mark::Contacts(count))
+            }
+            _ => Ok(()),
+        }
     }
 
     /// The user has seen enough: the robot stops here.

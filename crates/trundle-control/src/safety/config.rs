@@ -25,6 +25,9 @@ pub struct SafetyConfig {
     pub reverse_speed: f64,
     /// Speed of backing out while the bumper is pressed, m/s, 0.01 to 0.5. Default 0.05 (ours).
     pub back_out_speed: f64,
+    /// Highest speed while the wheels are told to roll and count nothing, m/s, 0.02 to 2. Default 0.15 (ours): 1 cm from image to
+    /// image.
+    pub uncounted_speed: f64,
     /// A slower command than this is no motion but a stop, m/s, 0.001 to 0.1. Default 0.01 (ours).
     pub least_speed: f64,
     /// How far around the robot the map is looked at, m from its edge, 0 to 5. Default 0.8: the camera's blind zone, and what
@@ -54,6 +57,7 @@ impl Default for SafetyConfig {
             creep_speed: 0.12,
             reverse_speed: 0.2,
             back_out_speed: 0.05,
+            uncounted_speed: 0.15,
             least_speed: 0.01,
             memory_reach: 0.8,
             image_timeout: 0.8,
@@ -78,6 +82,7 @@ impl SafetyConfig {
             ("creep_speed", self.creep_speed, "m/s", 0.02, 1.0),
             ("reverse_speed", self.reverse_speed, "m/s", 0.02, 2.0),
             ("back_out_speed", self.back_out_speed, "m/s", 0.01, 0.5),
+            ("uncounted_speed", self.uncounted_speed, "m/s", 0.02, 2.0),
             ("least_speed", self.least_speed, "m/s", 0.001, 0.1),
             ("memory_reach", self.memory_reach, "m", 0.0, 5.0),
             ("image_timeout", self.image_timeout, "s", 0.05, 60.0),

@@ -16,6 +16,6 @@ mod outline;
 mod reason;
 
 pub use config::SafetyConfig;
-pub use monitor::{SafetyInput, SafetyMonitor, SafetyReport};
+pub use monitor::{MotionSense, SafetyInput, SafetyMonitor, SafetyReport};
 pub use obstacles::{SafetyMemory, SafetyScan};
 pub use reason::{SafetyAction, SlowReason, StopReason};

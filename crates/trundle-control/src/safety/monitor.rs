@@ -36,6 +36,20 @@ pub struct SafetyInput<'a> {
     pub image: Option<Stamp>,
     /// Stamp of the newest wheel reading.
     pub wheels: Option<Stamp>,
+    /// What tells how the robot moves.
+    pub motion: MotionSense,
+}
+
+/// What tells how far the robot has come since the scan, and since it knew its place.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum MotionSense {
+    /// The wheels count it.
+    #[default]
+    Wheels,
+    /// The wheels are told to roll and count nothing; images or scans tell, later.
+    Sight,
+    /// Nothing does.
+    Nothing,
 }
 
 /// What the monitor decided.
@@ -96,7 +110,7 @@ impl SafetyMonitor {
             return self.within_the_free_turn(input.twist);
         }
         let slowed = slow_to(input.twist, self.config.speed_at_age(age), SlowReason::OldImage { age });
-        slower(self.within_the_free_way(input.twist), slowed)
+        slower(self.within_the_free_way(input.twist), slower(slowed, self.uncounted(input)))
     }
 
     /// Whether a number or the wheels are missing: then nothing may move.
@@ -117,7 +131,17 @@ impl SafetyMonitor {
             return Some(if input.scan.is_some() { StopReason::NothingSeen } else { StopReason::NoImage });
         };
         let age = input.now - image;
-        (age > self.config.image_timeout).then_some(StopReason::StaleImage { age })
+        if age > self.config.image_timeout {
+            return Some(StopReason::StaleImage { age });
+        }
+        (input.motion == MotionSense::Nothing).then_some(StopReason::NothingTellsMotion)
+    }
+
+    /// A robot whose wheels count nothing goes slowly.
+    fn uncounted(&self, input: &SafetyInput<'_>) -> SafetyReport {
+        let speed =
+            if input.motion == MotionSense::Wheels { f64::INFINITY } else { self.config.uncounted_speed };
+        slow_to(input.twist, speed, SlowReason::WheelsCountNothing)
     }
 
     /// Whether only the way back is open: not for a disc that turns on the spot against what it touches.
@@ -252,6 +276,7 @@ mod tests {
             over_edge: false,
             image: Some(now),
             wheels: Some(now),
+            motion: MotionSense::Wheels,
         }
     }
 
@@ -284,6 +309,24 @@ mod tests {
         assert_eq!(reason(SafetyInput { twist: Twist2::new(f64::NAN, 0.0), ..input }), StopReason::NotFinite);
         assert_eq!(reason(SafetyInput { touched: true, ..input }), StopReason::Touched);
         assert_eq!(reason(SafetyInput { over_edge: true, ..input }), StopReason::Cliff);
+    }
+
+    #[test]
+    fn whose_wheels_count_nothing_goes_slowly_and_says_so() {
+        let twist = Twist2::new(0.5, 0.4);
+        let report = monitor().check(&SafetyInput { motion: MotionSense::Sight, ..fresh(twist) });
+        assert_eq!(report.action, SafetyAction::Slow(SlowReason::WheelsCountNothing));
+        assert!(
+            (report.twist.v - 0.15).abs() < 1e-12 && (report.twist.omega - 0.12).abs() < 1e-12,
+            "{report:?}"
+        );
+        let creeping = SafetyInput { motion: MotionSense::Sight, ..fresh(Twist2::new(0.1, 0.4)) };
+        assert_eq!(monitor().check(&creeping).action, SafetyAction::Pass);
+        let nothing = SafetyInput { motion: MotionSense::Nothing, ..fresh(twist) };
+        let stopped = SafetyAction::Stop(StopReason::NothingTellsMotion);
+        assert_eq!(monitor().check(&nothing), SafetyReport { twist: Twist2::ZERO, action: stopped });
+        let turn = SafetyInput { twist: Twist2::new(0.0, 0.4), ..nothing };
+        assert_eq!(monitor().check(&turn).twist, turn.twist, "so it may come to see more");
     }
 
     #[test]

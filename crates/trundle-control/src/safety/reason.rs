@@ -39,6 +39,8 @@ pub enum SlowReason {
         /// Its age, s.
         age: f64,
     },
+    /// The wheels are told to roll and count nothing.
+    WheelsCountNothing,
     /// Backward is where no camera looks.
     Reversing,
     /// The bumper is pressed or an edge is below, and the robot backs out.
@@ -75,6 +77,8 @@ pub enum StopReason {
         /// Its age, s.
         age: f64,
     },
+    /// The wheels are told to roll and count nothing, and no image tells how the robot moves.
+    NothingTellsMotion,
     /// No wheel reading has come yet.
     NoWheels,
     /// The newest wheel reading is too old.
@@ -95,6 +99,7 @@ impl fmt::Display for SlowReason {
             }
             Self::NarrowGap { at } => write!(f, "a narrow gap, {side}", side = side(*at)),
             Self::OldImage { age } => write!(f, "the newest image that shows something is {age:.2} s old"),
+            Self::WheelsCountNothing => f.write_str("the wheels are told to roll and count nothing"),
             Self::Reversing => f.write_str("backward without a view"),
             Self::BackingOut => f.write_str("backing out of a contact or off an edge"),
         }
@@ -115,6 +120,9 @@ impl fmt::Display for StopReason {
             Self::StaleImage { age } => {
                 write!(f, "the newest image or scan that shows something is {age:.2} s old")
             }
+            Self::NothingTellsMotion => f.write_str(
+                "the wheels are told to roll and count nothing, and no image tells how the robot moves",
+            ),
             Self::NoWheels => f.write_str("no wheel reading yet"),
             Self::StaleWheels { age } => write!(f, "the newest wheel reading is {age:.2} s old"),
             Self::NotFinite => f.write_str("the command is not a number"),

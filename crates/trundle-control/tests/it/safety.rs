@@ -1,7 +1,8 @@
 use crate::plant::{DT, Plant};
 use proptest::prelude::*;
 use trundle_control::{
-    SafetyAction, SafetyConfig, SafetyInput, SafetyMemory, SafetyMonitor, SafetyReport, SafetyScan,
+    MotionSense, SafetyAction, SafetyConfig, SafetyInput, SafetyMemory, SafetyMonitor, SafetyReport,
+    SafetyScan,
 };
 use trundle_core::{Beam, Cell, Footprint, GridGeometry, OccupancyGrid, Pose2, Scan, Stamp, Twist2, Vector2};
 
@@ -93,6 +94,7 @@ fn drive(world: &World, mut plant: Plant, command: Twist2, seconds: f64, with_ma
             over_edge: false,
             image: Some(scan.stamp()),
             wheels: Some(plant.now),
+            motion: MotionSense::Wheels,
         });
         plant.drive(last.twist);
         least_clearance = least_clearance.min(world.clearance(plant.pose));

@@ -49,7 +49,7 @@ pub(crate) fn trajectory_with_stop(
 ) -> Option<(Trajectory, f64)> {
     let (Phase::Drive(curve), rest) = phases.split_first()? else { return None };
     let samples = curve.samples(SPACING);
-    let cut = samples.partition_point(|sample| sample.arc < arc).clamp(1, samples.len() - 1);
+    let cut = stop_among(&samples, arc);
     if !speeds::can_follow(&samples[..=cut], v_start, drive) {
         return None;
     }
@@ -60,8 +60,17 @@ pub(crate) fn trajectory_with_stop(
         time_curve(curve, &samples[cut..], 0.0, drive, &ceiling, &mut points);
     }
     time_phases(rest, 0.0, drive, &ceiling, &mut points);
-    // A stop so near to the curve's end that nothing is left to time is none to drive by.
-    Some((Trajectory::new(points).ok()?, stands))
+    Some((Trajectory::new(points).expect(TIMES_RISE), stands))
+}
+
+/// The sample at which a robot stops `arc` m along, or just before the end. From rest to rest there is at least one sample on the way:
+/// only there has it any speed.
+fn stop_among(samples: &[CurveSample], arc: f64) -> usize {
+    let last = samples.len() - 1;
+    match samples.partition_point(|sample| sample.arc < arc).clamp(2.min(last), last) {
+        next_to_last if next_to_last + 1 == last => next_to_last.saturating_sub(1).max(1),
+        cut => cut,
+    }
 }
 
 const TIMES_RISE: &str = "invariant: times rise from 0 and numbers are finite";
@@ -92,7 +101,8 @@ pub(crate) fn can_follow(phases: &[Phase], v: f64, drive: &Drive) -> bool {
     }
 }
 
-/// Appends samples a period apart over the part of the curve that `samples` cover; the last one exactly at its end.
+/// Appends samples a period apart over the part of the curve that `samples` cover; the last one exactly at its end. Nothing for a
+/// part of no length.
 fn time_curve(
     curve: &Curve,
     samples: &[CurveSample],
@@ -102,6 +112,9 @@ fn time_curve(
     points: &mut Vec<TrajectoryPoint>,
 ) {
     let profile = Profile::new(samples, v_start, drive, ceiling);
+    if profile.duration() <= LEAST_GAP {
+        return;
+    }
     let begin = points.last().map_or(0.0, |point| point.time);
     let at = |s: f64, v: f64, time: f64| {
         let (pose, curvature) = curve.pose_and_curvature(s);
@@ -124,4 +137,56 @@ fn time_curve(
         points.push(at(low.s + (high.s - low.s) * share, v, time));
     }
     points.push(at(samples[samples.len() - 1].s, 0.0, duration));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use trundle_core::{DriveLimits, Vector2};
+
+    fn drive(jerk: Option<f64>) -> Drive {
+        let config = TimingConfig { jerk, ..TimingConfig::default() };
+        Drive { limits: DriveLimits::KOBUKI, half_base: 0.115, config }
+    }
+
+    fn free(_: Pose2) -> f64 {
+        f64::INFINITY
+    }
+
+    #[test]
+    fn wherever_on_a_curve_it_stops_time_goes_on_and_nothing_jumps() {
+        let (start, curve) = (Pose2::IDENTITY, Curve::line(Vector2::zeros(), Vector2::new(0.3, 0.0)));
+        let phases = [Phase::Drive(curve), Phase::Turn { from: Pose2::new(0.3, 0.0, 0.0), angle: 0.5 }];
+        let mut stops = 0;
+        for (v, arc) in [0.0, 0.2].iter().flat_map(|v| (0..=310).map(|mm| (*v, f64::from(mm) / 1000.0))) {
+            for jerk in [None, Some(3.0)] {
+                let drive = drive(jerk);
+                let Some((trajectory, stands)) = trajectory_with_stop(start, &phases, v, &drive, free, arc)
+                else {
+                    continue;
+                };
+                stops += 1;
+                let there = trajectory.at(stands);
+                assert!((there.pose.x - arc.min(0.3)).abs() < 0.021, "{arc} m at {v} m/s: {:?}", there.pose);
+                assert!(there.twist.v.abs() < 1e-9);
+                for pair in trajectory.points().windows(2) {
+                    let (way, dt) = (pair[0].pose.distance(&pair[1].pose), pair[1].time - pair[0].time);
+                    assert!(
+                        way <= DriveLimits::KOBUKI.v * dt + 1e-6,
+                        "{arc} m at {v} m/s: {way} m in {dt} s"
+                    );
+                }
+                assert!(trajectory.end().distance(&Pose2::new(0.3, 0.0, 0.0)) < 1e-9);
+            }
+        }
+        assert!(stops > 4 * 200, "{stops}");
+    }
+
+    #[test]
+    fn a_curve_of_no_length_takes_no_time() {
+        let here = Vector2::new(1.0, 2.0);
+        let phases = [Phase::Drive(Curve::line(here, here + Vector2::new(1e-12, 0.0)))];
+        let trajectory = trajectory(Pose2::new(1.0, 2.0, 0.0), &phases, 0.0, &drive(None), free);
+        assert_eq!(trajectory.duration(), 0.0);
+    }
 }

@@ -22,6 +22,7 @@ fn surroundings(grid: &OccupancyGrid, pose: Pose2, time: f64) -> Surroundings<'_
         scan: None,
         seen: None,
         unplaced: 0.0,
+        motion: trundle_control::MotionSense::Wheels,
         traffic: crate::navigator::Traffic::default(),
     }
 }

@@ -7,7 +7,7 @@ use crate::{
     stage::{Stage, StageTimes},
     state::DriveState,
 };
-use trundle_control::{FollowReport, SafetyAction, SafetyInput, SafetyMemory};
+use trundle_control::{FollowReport, MotionSense, SafetyAction, SafetyInput, SafetyMemory};
 use trundle_core::{Cell, Twist2, Vector2};
 
 /// Speed of leaving what presses on the bumper, m/s, and how far behind must be free, m.
@@ -65,14 +65,16 @@ impl Navigator {
         (self.touched || self.over_edge) && waited && is_free_behind(s, self.radius)
     }
 
-    /// Whether no image has shown anything for a while.
+    /// Whether no image has shown anything for a while, or none how the robot moves, which nothing else tells.
     pub(super) fn is_blind(&self, s: &Surroundings<'_>) -> bool {
-        s.seen.is_none_or(|seen| s.now - seen > self.image_timeout)
+        s.motion == MotionSense::Nothing || s.seen.is_none_or(|seen| s.now - seen > self.image_timeout)
     }
 
     /// A camera too near to a wall sees nothing: after a while one turn on the spot shows whether that is it.
     fn look_for_sight(&mut self, s: &Surroundings<'_>) -> Twist2 {
-        let since = self.held_since.max(s.seen);
+        // Images that show something, but not how it moves, are no sight.
+        let seen = s.seen.filter(|_| s.motion != MotionSense::Nothing);
+        let since = self.held_since.max(seen);
         let is_long = since.is_some_and(|since| s.now - since >= BLIND_PAUSE);
         if is_long { self.sight_watch.turn(s.estimate.pose) } else { Twist2::ZERO }
     }
@@ -152,6 +154,7 @@ pub(crate) fn safety_input<'a>(
         over_edge,
         image: s.seen,
         wheels: Some(s.now),
+        motion: s.motion,
     }
 }
 

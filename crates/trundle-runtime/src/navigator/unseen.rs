@@ -308,6 +308,7 @@ pub(super) mod tests {
             scan: None,
             seen: None,
             unplaced: 0.0,
+            motion: trundle_control::MotionSense::Wheels,
             traffic: Traffic::default(),
         }
     }
