@@ -51,7 +51,7 @@ pub(crate) struct Untold {
 }
 
 /// For so long what is not counted is not counted the same way, s.
-const UNTOLD_LASTS: f64 = 1.0;
+const UNTOLD_LASTS: f64 = 2.0;
 /// Of a way that nobody counted so much may be sideways: it bends.
 const SIDEWAYS: f64 = 0.2;
 

@@ -18,6 +18,7 @@ mod lazy_image;
 mod level_map;
 mod look;
 mod lookout;
+mod map_watch;
 mod memory;
 mod mission;
 mod navigator;

@@ -135,6 +135,8 @@ pub(crate) struct Navigator {
 
 /// A goal is given up after so many touches.
 const MOST_TOUCHES: u32 = 3;
+/// A position that is known no better is not known at all, m.
+const ANYWHERE: f64 = 50.0;
 /// Held by safety for so long, it plans anew from where it stands, s.
 const PAUSE: f64 = 1.0;
 
@@ -307,6 +309,11 @@ impl Navigator {
     /// Why the robot does not know where it is, when it does not.
     fn why_lost(&self, s: &Surroundings<'_>) -> Option<String> {
         let sigma = position_sigma(&s.estimate);
+        if sigma > ANYWHERE {
+            let reason =
+                "nothing tells where the robot is: it was carried away, or the map is of another place";
+            return Some(reason.to_owned());
+        }
         if sigma > self.config.lost_sigma {
             let why = if s.motion != MotionSense::Wheels {
                 ": the wheels are told to roll and count nothing"

@@ -10,6 +10,7 @@ use crate::{
     eye::EyeWatch,
     last_stage::LastStageReport,
     lookout::{Lookout, Sighting},
+    map_watch::{Fit, MapWatch},
     mission::{Mission, MissionState, Task, TaskRecord},
     navigator::{Surroundings, Traffic, position_sigma},
     report::StepReport,
@@ -78,6 +79,7 @@ struct Latest {
     unplaced: Option<Stamp>,
     /// Stamp of the newest image that was located.
     located: Option<Stamp>,
+    map_watch: MapWatch,
     /// Images that were left out because the camera was frozen.
     frozen: usize,
     /// What the captain said last of what the robot does, and whether the mission is over.
@@ -333,6 +335,7 @@ impl Robot {
     /// A scan: at the map's rate it corrects the estimate and enters the map; safety watches each. Whether it was drawn.
     fn see(&mut self, scan: Scan) -> bool {
         let is_due = self.map_due.due(scan.stamp()) && self.knows_its_place(scan.stamp());
+        let is_due = is_due && self.is_of_this_place(&scan);
         if is_due {
             self.fit(&scan);
             self.draw(&scan);
@@ -344,6 +347,23 @@ impl Robot {
             self.latest.scan = Some(scan);
         }
         is_due
+    }
+
+    /// Whether a scan may be of the place where the robot believes to be. Where images tell, they are believed; where none has for a
+    /// while, a robot whose scans contradict the map must have been carried away.
+    fn is_of_this_place(&mut self, scan: &Scan) -> bool {
+        let (now, watch) = (scan.stamp(), &mut self.latest.map_watch);
+        if self.latest.located.is_some_and(|located| now - located <= MOTION_SEEN) {
+            watch.forget();
+            return true;
+        }
+        let Ok(pose) = self.localizer.pose_at(now) else { return true };
+        let fit = watch.judge(self.mapper.grid(), pose, scan);
+        if fit == Fit::Elsewhere {
+            self.localizer.lose_place();
+            self.forget_traffic();
+        }
+        fit == Fit::Fits
     }
 
     /// What moves near by, by the newest scan.

@@ -1,13 +1,13 @@
 //! The robot with its long work given out.
 
-use crate::robot::{robot, wall};
-use trundle_core::{GyroRate, Pose2, SensorEvent, Stamp, Touch, Twist2, WheelTicks};
+use crate::robot::{Base, robot, wall};
+use trundle_core::{Pose2, SensorEvent, Stamp, Touch, Twist2, WheelTicks};
 use trundle_runtime::{Answer, DriveState, Helper, Job, LazyImage, Robot, StepReport};
 
 /// The goal of all these drives.
-const GOAL: Pose2 = Pose2 { x: 1.0, y: 0.0, theta: 0.0 };
+const GOAL: Pose2 = Pose2 { x: 1.5, y: 0.0, theta: 0.0 };
 
-/// Feeds a robot that stands still before a wall at 50 Hz, images at 10 Hz until `until`; `work` says what becomes of its jobs
+/// Feeds a robot that drives towards a wall at 50 Hz, images at 10 Hz until `until`; `work` says what becomes of its jobs
 /// after each feeding: the answers to be taken up now.
 fn live(
     robot: &mut Robot,
@@ -15,12 +15,13 @@ fn live(
     until: f64,
     mut work: impl FnMut(Stamp, Vec<Job>) -> Vec<Answer>,
 ) -> Vec<StepReport> {
-    let mut reports = Vec::new();
+    let (mut reports, mut base) = (Vec::new(), Base::default());
     for i in 0..(seconds * 50.0) as i64 {
         let stamp = Stamp::from_nanos(i * 20_000_000);
-        let mut step = robot.step(&SensorEvent::Gyro(GyroRate { stamp, omega: 0.0 }));
+        let [gyro, wheels] = base.roll(stamp);
+        let mut step = robot.step(&gyro);
         step = StepReport { twist: None, ..step };
-        for event in [SensorEvent::Wheels(WheelTicks { stamp, left: 0, right: 0 }), wall(stamp, 3.0)] {
+        for event in [wheels, wall(stamp, base.to_wall())] {
             let report = match event {
                 SensorEvent::Rgbd(_) if i % 5 != 0 || stamp.as_secs() >= until => continue,
                 SensorEvent::Rgbd(image) => robot.leave_image(LazyImage::from(image)),
@@ -40,6 +41,7 @@ fn live(
                 }
             }
         }
+        base.tell(step.twist);
         reports.push(step);
     }
     reports

@@ -1,6 +1,6 @@
 use trundle_core::{
-    Beam, DepthImage, GyroRate, Image, PinholeCamera, Pose2, RgbdImage, Scan, SensorEvent, Stamp, Touch,
-    Twist2, Vector2, WheelTicks,
+    Beam, DepthImage, DifferentialDrive, GyroRate, Image, PinholeCamera, Pose2, RgbdImage, Scan, SensorEvent,
+    Stamp, Touch, Twist2, Vector2, WheelTicks,
 };
 use trundle_runtime::{DriveState, Memory, MemoryError, Robot, RobotConfig, Sight, StepReport, Task};
 
@@ -19,6 +19,54 @@ pub fn wall(stamp: Stamp, distance: f64) -> SensorEvent {
         if depth > 0.5 && depth < 8.0 { depth as f32 } else { 0.0 }
     });
     SensorEvent::Rgbd(RgbdImage::new(stamp, color, depth).unwrap())
+}
+
+/// A base that does at once what it is told.
+#[derive(Debug, Default)]
+pub struct Base {
+    told: Twist2,
+    pose: Pose2,
+    ways: (f64, f64),
+}
+
+impl Base {
+    /// A step of 20 ms on, to `stamp`: what gyro and wheels say.
+    pub fn roll(&mut self, stamp: Stamp) -> [SensorEvent; 2] {
+        let drive = DifferentialDrive::KOBUKI;
+        let (left, right) = drive.wheel_speeds(self.told);
+        self.pose = self.pose.advance(self.told, 0.02);
+        self.ways = (self.ways.0 + left * 0.02, self.ways.1 + right * 0.02);
+        let ticks = |way: f64| ((way / drive.metres_per_tick()) as i64).rem_euclid(65_536) as u16;
+        let wheels = WheelTicks { stamp, left: ticks(self.ways.0), right: ticks(self.ways.1) };
+        [SensorEvent::Gyro(GyroRate { stamp, omega: self.told.omega }), SensorEvent::Wheels(wheels)]
+    }
+
+    /// What it is told from now on.
+    pub fn tell(&mut self, twist: Option<Twist2>) {
+        self.told = twist.unwrap_or(self.told);
+    }
+
+    /// How far a wall is that was 3 m ahead, m.
+    pub fn to_wall(&self) -> f64 {
+        3.0 - self.pose.x
+    }
+}
+
+/// Lets a robot drive straight towards a wall 3 m ahead from `from` to `to` s; images come at 10 Hz until `until`, s.
+fn drive(robot: &mut Robot, base: &mut Base, (from, to): (f64, f64), until: f64) -> Vec<StepReport> {
+    let steps = (from * 50.0) as i64..(to * 50.0) as i64;
+    let step = |i: i64| {
+        let stamp = Stamp::from_nanos(i * 20_000_000);
+        let [gyro, wheels] = base.roll(stamp);
+        robot.step(&gyro);
+        let report = robot.step(&wheels);
+        base.tell(report.twist);
+        if i % 5 == 0 && stamp.as_secs() < until {
+            robot.step(&wall(stamp, base.to_wall()));
+        }
+        report
+    };
+    steps.map(step).collect()
 }
 
 /// Feeds a robot that stands still for `seconds`: wheels and gyro at 50 Hz, and at 10 Hz what `image` gives.
@@ -53,14 +101,27 @@ fn a_blind_robot_does_not_move() {
 
 #[test]
 fn it_sets_out_when_the_way_is_seen_and_stops_when_the_images_stop() {
-    let mut robot = robot(Pose2::new(1.0, 0.0, 0.0));
-    let until = Stamp::from_nanos(3_000_000_000);
-    let reports = stand(&mut robot, 5.0, |stamp| (stamp < until).then(|| wall(stamp, 3.0)));
+    let mut robot = robot(Pose2::new(1.5, 0.0, 0.0));
+    let reports = drive(&mut robot, &mut Base::default(), (0.0, 5.0), 3.0);
     assert!(reports[120..150].iter().any(|report| report.twist.unwrap().v > 0.05));
     let last = reports.last().unwrap();
     assert_eq!(last.twist, Some(Twist2::ZERO));
     let DriveState::Waiting { reason } = &last.state else { panic!("{:?}", last.state) };
     assert!(reason.contains("image"), "{reason}");
+}
+
+#[test]
+fn wheels_that_count_nothing_stop_it_where_no_image_tells_how_it_moves() {
+    let mut robot = robot(Pose2::new(1.0, 0.0, 0.0));
+    let reports = stand(&mut robot, 4.0, |stamp| Some(wall(stamp, 3.0)));
+    let driven: f64 = reports.iter().map(|report| report.twist.unwrap().v * 0.02).sum();
+    assert!((0.02..0.2).contains(&driven), "{driven} m before it was noticed");
+    let last = reports.last().unwrap();
+    assert_eq!(last.twist.unwrap().v, 0.0);
+    assert!(last.state.reason().is_some_and(|reason| reason.contains("count nothing")), "{:?}", last.state);
+    let sigma = |report: &StepReport| report.estimate.unwrap().covariance[(0, 0)].sqrt();
+    let most = reports.iter().map(sigma).fold(0.0, f64::max);
+    assert!((0.5 * driven..3.0 * driven).contains(&most), "{most} m after {driven} m that nobody counted");
 }
 
 #[test]
@@ -87,19 +148,11 @@ fn a_pressed_bumper_stops_it() {
 
 #[test]
 fn from_a_pressed_bumper_it_backs_out_slowly() {
-    let mut robot = robot(Pose2::new(1.0, 0.0, 0.0));
-    stand(&mut robot, 3.0, |stamp| Some(wall(stamp, 3.0)));
+    let (mut robot, mut base) = (robot(Pose2::new(1.5, 0.0, 0.0)), Base::default());
+    drive(&mut robot, &mut base, (0.0, 3.0), f64::INFINITY);
     robot.step(&SensorEvent::Touch(Touch { stamp: Stamp::from_nanos(3_000_000_000), pressed: true }));
-    let twists: Vec<Twist2> = (150..250)
-        .map(|i| {
-            let stamp = Stamp::from_nanos(i * 20_000_000);
-            robot.step(&SensorEvent::Gyro(GyroRate { stamp, omega: 0.0 }));
-            if i % 5 == 0 {
-                robot.step(&wall(stamp, 3.0));
-            }
-            robot.step(&SensorEvent::Wheels(WheelTicks { stamp, left: 0, right: 0 })).twist.unwrap()
-        })
-        .collect();
+    let reports = drive(&mut robot, &mut base, (3.0, 5.0), f64::INFINITY);
+    let twists: Vec<Twist2> = reports.iter().map(|report| report.twist.unwrap()).collect();
     assert!(twists[..45].iter().all(|twist| *twist == Twist2::ZERO), "first it stands");
     assert!(twists[60..].iter().all(|twist| *twist == Twist2::new(-0.05, 0.0)), "{:?}", twists.last());
 }
@@ -168,7 +221,7 @@ fn a_robot_that_wakes_up_knows_the_rooms_and_not_its_place_and_draws_nothing_mea
     assert_eq!(second.grid().at(Vector2::new(3.01, 0.0)), trundle_core::Cell::Occupied);
     let reports = stand(&mut second, 3.0, |stamp| Some(wall(stamp, 1.5)));
     assert!(
-        matches!(&reports.last().unwrap().state, DriveState::Lost { reason } if reason.contains("position"))
+        matches!(&reports.last().unwrap().state, DriveState::Lost { reason } if reason.contains("where the robot is"))
     );
     assert!(reports.iter().all(|report| report.twist.unwrap().v == 0.0));
     assert_ne!(second.grid().at(Vector2::new(1.51, 0.0)), trundle_core::Cell::Occupied);
