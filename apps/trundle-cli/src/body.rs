@@ -99,6 +99,12 @@ impl Recorded {
         Self { reader, jobs: BTreeMap::new(), contacts: None }
     }
 
+    /// Whether the rest, which no run needs, can be read to its end.
+    pub fn read_on(&mut self) -> Result<(), Failure> {
+        while self.reader.next_message()?.is_some() {}
+        Ok(())
+    }
+
     /// What a mark says.
     fn read(value: serde_json::Value) -> Result<Mark, Failure> {
         let message: MarkMessage = serde_json::from_value(value)

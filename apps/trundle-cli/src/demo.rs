@@ -39,8 +39,9 @@ pub fn run(args: &DemoArgs) -> Result<Outcome, Failure> {
         real_time: args.real_time,
         woken: woken.map(|(_, bytes)| BASE64_STANDARD.encode(bytes)),
     };
+    require_free("start", &scene, scene.start, &setup.robot)?;
     for goal in setup.mission.tasks().iter().filter_map(RunSetup::goal_of) {
-        require_free(&scene, scene.start * goal, &setup.robot)?;
+        require_free("goal", &scene, scene.start * goal, &setup.robot)?;
     }
     scene.start = args.wake.map_or(scene.start, |wake| wake.0);
     let mut config = simulated(&setup.robot, faults)?;
@@ -106,22 +107,22 @@ pub fn time_limit(mission: &Mission) -> f64 {
     mission.tasks().iter().map(limit).sum()
 }
 
-/// Refuses a goal that no robot could reach: outside the room, or where something stands.
-pub fn require_free(scene: &Scene, world_from_goal: Pose2, robot: &RobotConfig) -> Result<(), Failure> {
+/// Refuses a place (`name`d, world frame) where no robot can stand: outside the room, or where something stands.
+pub fn require_free(name: &str, scene: &Scene, place: Pose2, robot: &RobotConfig) -> Result<(), Failure> {
     let (low, high) = scene.world.bounds();
-    let Pose2 { x, y, .. } = world_from_goal;
+    let Pose2 { x, y, .. } = place;
     if !(low.x..=high.x).contains(&x) || !(low.y..=high.y).contains(&y) {
         return Err(Failure::Input(format!(
-            "goal is outside the room '{}': at ({x:.2}, {y:.2}) m of its frame",
+            "{name} is outside the room '{}': at ({x:.2}, {y:.2}) m of its frame",
             scene.name
         )));
     }
     let body = SimConfig::default().kobuki;
     let band = HeightBand::new(body.step_over, body.height)?;
-    let clearance = scene.world.clearance(&robot.footprint()?, world_from_goal, band)?;
+    let clearance = scene.world.clearance(&robot.footprint()?, place, band)?;
     if clearance <= 0.0 {
         return Err(Failure::Input(format!(
-            "goal is in an obstacle of the room '{}': {:.3} m too little room",
+            "{name} is in an obstacle of the room '{}': {:.3} m too little room",
             scene.name, -clearance
         )));
     }

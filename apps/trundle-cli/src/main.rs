@@ -34,7 +34,7 @@ mod view;
 mod vocabulary;
 
 use args::{Cli, Command, Common};
-use clap::Parser;
+use clap::{CommandFactory, FromArgMatches};
 use failure::Failure;
 use std::process::ExitCode;
 
@@ -46,7 +46,7 @@ enum Outcome {
 }
 
 fn main() -> ExitCode {
-    match run(Cli::parse()) {
+    match run(read_arguments()) {
         Ok(Outcome::Reached) => ExitCode::SUCCESS,
         Ok(Outcome::Missed) => ExitCode::from(1),
         Err(failure) => {
@@ -54,6 +54,19 @@ fn main() -> ExitCode {
             ExitCode::from(failure.exit_code())
         }
     }
+}
+
+/// What the user asks for. A negative number is the value of the option before it, not an option.
+fn read_arguments() -> Cli {
+    let matches = with_negative_numbers(Cli::command()).get_matches();
+    Cli::from_arg_matches(&matches).unwrap_or_else(|error| error.exit())
+}
+
+fn with_negative_numbers(command: clap::Command) -> clap::Command {
+    let takes_numbers = |arg: clap::Arg| {
+        if arg.get_action().takes_values() { arg.allow_negative_numbers(true) } else { arg }
+    };
+    command.mut_args(takes_numbers).mut_subcommands(with_negative_numbers)
 }
 
 fn run(cli: Cli) -> Result<Outcome, Failure> {

@@ -5,6 +5,7 @@ use super::trial::{self, Mishap, Trial, TrialPlan};
 use super::{RunsArgs, missions};
 use crate::{Outcome, console, failure::Failure, robot_file};
 use trundle::core::{Pose2, Vector2};
+use trundle::eval::GoalError;
 use trundle::io::{OutputFolder, Summary};
 use trundle::runtime::{DriveState, Mission, Task};
 use trundle::sim::{Fault, FaultKind, FaultSchedule, Person, Scene, WheelSide};
@@ -17,13 +18,16 @@ enum End {
     Arrived,
     /// Standing, with a reason that holds this word.
     Stopped(&'static str),
+    /// Standing with such a reason, or at the goal within 15 cm and 5 deg: it has found its place again by scans alone.
+    FoundOrStopped(&'static str),
 }
 
 /// A bad day.
 struct Day {
     name: &'static str,
     scene: &'static str,
-    fault: Option<(f64, f64, FaultKind)>,
+    /// What breaks, from when to when, s.
+    faults: Vec<(f64, f64, FaultKind)>,
     person: Option<Person>,
     /// Whether the person is told in the frame of the goal, not of the start.
     at_goal: bool,
@@ -38,14 +42,21 @@ fn days() -> Vec<Day> {
     let broken = |name, from, to, kind, end| Day {
         name,
         scene: "demo",
-        fault: Some((from, to, kind)),
+        faults: vec![(from, to, kind)],
         person: None,
         at_goal: false,
         mishap: None,
         end,
     };
-    let plain =
-        |name, scene, end| Day { scene, fault: None, ..broken(name, 0.0, 0.0, FaultKind::CameraBlack, end) };
+    let plain = |name, scene, end| Day {
+        scene,
+        faults: Vec::new(),
+        ..broken(name, 0.0, 0.0, FaultKind::CameraBlack, end)
+    };
+    let two = |name, faults: [(f64, f64, FaultKind); 2], end| Day {
+        faults: faults.to_vec(),
+        ..plain(name, "demo", end)
+    };
     let slips = FaultKind::WheelSlips { side: WheelSide::Left, factor: 0.5 };
     let jump = FaultKind::OdometryJumps { left_ticks: 11_724, right_ticks: 11_724 };
     let carried = FaultKind::Kidnapped { x: 0.6, y: 0.3, heading_deg: 20.0 };
@@ -68,6 +79,26 @@ fn days() -> Vec<Day> {
         broken("encoders stuck", 8.0, FOREVER, FaultKind::EncodersStuck, End::Arrived),
         broken("odometry jumps 1 m", 10.0, 10.1, jump, End::Arrived),
         broken("kidnapped while driving", 12.0, 12.1, carried, End::Arrived),
+        two(
+            "in the dark, encoders stuck",
+            [(8.0, FOREVER, FaultKind::LightsOut), (8.0, FOREVER, FaultKind::EncodersStuck)],
+            End::Stopped("count nothing"),
+        ),
+        two(
+            "dark for 10 s, encoders stuck",
+            [(8.0, 18.0, FaultKind::LightsOut), (8.0, FOREVER, FaultKind::EncodersStuck)],
+            End::Arrived,
+        ),
+        two(
+            "gyro stuck, encoders for 14 s",
+            [(5.0, FOREVER, FaultKind::GyroStuck), (6.0, 20.0, FaultKind::EncodersStuck)],
+            End::Arrived,
+        ),
+        two(
+            "carried away in the dark",
+            [(8.0, FOREVER, FaultKind::LightsOut), (12.0, 12.1, carried)],
+            End::FoundOrStopped("where the robot is"),
+        ),
         Day {
             person: Some(in_the_door(60.0)),
             ..plain("a person in the door for a minute", "house", End::Arrived)
@@ -110,9 +141,8 @@ pub fn run(args: &RunsArgs) -> Result<Outcome, Failure> {
             let frame = if day.at_goal { scene.goal } else { scene.start };
             scene.people.extend(day.person.clone().map(|person| placed(person, frame)));
             let mission = Mission::new(vec![Task::Go(scene.start_from_goal())])?;
-            let fault =
-                day.fault.map(|(from_s, to_s, kind)| Fault { from_s, to_s, kind: in_world(kind, &scene) });
-            let faults = FaultSchedule { faults: fault.into_iter().collect() };
+            let fault = |&(from_s, to_s, kind)| Fault { from_s, to_s, kind: in_world(kind, &scene) };
+            let faults = FaultSchedule { faults: day.faults.iter().map(fault).collect() };
             let name = day.name.to_owned();
             let (robot, mishap) = (robot.clone(), day.mishap);
             plans.push(TrialPlan { name, seed, scene, mission, robot, faults, mishap });
@@ -157,10 +187,17 @@ fn is_good(trial: &Trial) -> bool {
     let end = days().into_iter().find(|day| day.name == trial.name).map(|day| day.end);
     let as_it_should = match (end, &numbers.state) {
         (Some(End::Arrived), _) => numbers.is_success(),
-        (Some(End::Stopped(word)), DriveState::Stopped { reason }) => reason.contains(word),
+        (Some(End::Stopped(word) | End::FoundOrStopped(word)), DriveState::Stopped { reason }) => {
+            reason.contains(word)
+        }
+        (Some(End::FoundOrStopped(_)), DriveState::Arrived) => numbers.goal_error.is_some_and(has_found),
         _ => false,
     };
     as_it_should && numbers.contacts == 0
+}
+
+fn has_found(error: GoalError) -> bool {
+    error.distance < 0.15 && error.dtheta.abs().to_degrees() < 5.0
 }
 
 fn row(trial: &Trial) -> Vec<String> {

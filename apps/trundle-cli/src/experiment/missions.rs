@@ -63,13 +63,17 @@ const HOUSE_GOALS: [(f64, f64, f64); 10] = [
 /// Drives to the ten goals of the house, so many seeds.
 pub fn house(args: &RunsArgs, mesh: &Path) -> Result<Outcome, Failure> {
     let robot = robot_file::load(args.config.as_deref())?;
+    if !mesh.exists() {
+        let problem = "is not there: the house does not come with trundle, --mesh names its file";
+        return Err(Failure::Input(format!("{} {problem}", mesh.display())));
+    }
     let pose = |(x, y, degrees): (f64, f64, f64)| Pose2::new(x, y, degrees.to_radians());
     let start = pose(HOUSE_START);
     tell(&HOUSE, args, &robot, |seed| {
         let options = sim::scene::SceneOptions { seed, up: UpAxis::Z, start: Some(start) };
         let scene = sim::scene::load(&mesh.display().to_string(), options)?;
         for goal in HOUSE_GOALS {
-            demo::require_free(&scene, pose(goal), &robot)?;
+            demo::require_free("goal", &scene, pose(goal), &robot)?;
         }
         let goals = HOUSE_GOALS.map(|goal| Task::Go(start.inverse() * pose(goal)));
         Ok((scene, Mission::new(goals.to_vec())?))

@@ -57,10 +57,12 @@ pub fn run(args: &MrpbArgs) -> Result<Outcome, Failure> {
     let robot = args.config.as_deref().map_or_else(|| Ok(robot()), |file| robot_file::load(Some(file)))?;
     let chosen =
         |course: &Course| args.only.as_ref().is_none_or(|only| course.name().contains(only.as_str()));
-    let courses: Vec<Course> = course::read(&args.data)?.into_iter().filter(chosen).collect();
+    let all = course::read(&args.data)?;
+    let names = all.iter().map(Course::name).collect::<Vec<_>>().join(", ");
+    let courses: Vec<Course> = all.into_iter().filter(chosen).collect();
     if courses.is_empty() {
         let only = args.only.as_deref().unwrap_or("");
-        return Err(Failure::Input(format!("--only '{only}': no course of that name")));
+        return Err(Failure::Input(format!("--only '{only}': no course of that name; there are {names}")));
     }
     let plans: Vec<(Course, u64)> = courses
         .into_iter()

@@ -1,5 +1,6 @@
 use crate::failure::Failure;
 use std::fs;
+use std::io::ErrorKind;
 use std::path::Path;
 use std::str::FromStr;
 
@@ -33,7 +34,14 @@ impl Row {
 /// When it cannot be read, or a line is too short.
 pub fn rows(file: &Path, columns: usize) -> Result<Vec<Row>, Failure> {
     let name = file.display();
-    let text = fs::read_to_string(file).map_err(|error| Failure::Input(format!("{name}: {error}")))?;
+    let refused = |error: std::io::Error| match error {
+        error if error.kind() == ErrorKind::NotFound => {
+            let problem = "is not there: the data set does not come with trundle, --data names its folder";
+            Failure::Input(format!("{name} {problem}"))
+        }
+        error => Failure::Input(format!("{name}: {error}")),
+    };
+    let text = fs::read_to_string(file).map_err(refused)?;
     let row = |(i, line): (usize, &str)| {
         let place = format!("{name}, line {}", i + 1);
         let cells: Vec<String> = line.trim().split(',').map(str::to_owned).collect();

@@ -5,11 +5,15 @@ use crate::run::{Run, RunSetup, drive, live};
 use crate::run_table::RunNumbers;
 use crate::{console, failure::Failure, tape::Tape};
 use rayon::prelude::*;
+use std::collections::BTreeSet;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use trundle::core::{OccupancyGrid, Pose2, Vector2};
 use trundle::runtime::{Mission, RobotConfig};
 use trundle::sim::{FaultSchedule, Scene, Simulator};
 use trundle::viz::Table;
+
+/// So many names of runs are said at most.
+const NAMED: usize = 30;
 
 /// A closed-loop run to be made: robot and simulator, with noise, and no truth in the loop.
 pub struct TrialPlan {
@@ -82,12 +86,16 @@ impl Trial {
 /// The first plan that cannot be carried out.
 pub fn all(mut plans: Vec<TrialPlan>, args: &RunsArgs) -> Result<Vec<Trial>, Failure> {
     let quiet = args.common.quiet;
+    let names: BTreeSet<String> = plans.iter().map(|plan| plan.name.clone()).collect();
     if let Some(word) = &args.only {
         plans.retain(|plan| format!("{}, seed {}", plan.name, plan.seed).contains(word.as_str()));
     }
     if plans.is_empty() {
         let word = args.only.as_deref().unwrap_or_default();
-        return Err(Failure::Input(format!("--only {word}: no run has a name that holds this")));
+        let first = names.iter().take(NAMED).cloned().collect::<Vec<_>>().join("', '");
+        let more = if names.len() > NAMED { ", ..." } else { "" };
+        let problem = format!("--only {word}: no run has a name that holds this; there are '{first}'{more}");
+        return Err(Failure::Input(problem));
     }
     let (line, done, total) = (console::live_line(quiet), AtomicUsize::new(0), plans.len());
     let trials = plans.into_par_iter().map(|plan| {

@@ -53,7 +53,8 @@ impl<'s> Trip<'s> {
             body.command(twist)?;
         }
         if let Some(problem) = &report.broken_image {
-            return Err(Failure::Input(problem.clone()));
+            let at = stamp.as_secs();
+            return Err(Failure::Input(format!("the image that came at {at:.3} s is broken: {problem}")));
         }
         self.record(stamp, &report)?;
         self.log.note(stamp, &report);
