@@ -160,10 +160,13 @@ impl GlobalBundle {
     fn set_covariances(&self, map: &mut LandmarkMap) {
         let factor = self.bundle.variance_factor().max(1.0);
         let keyframes: Vec<KeyframeId> = self.bundle.keyframes().map(|(id, _)| id).collect();
+        let seen = self.bundle.seen();
         for (place, id) in keyframes.iter().enumerate().filter(|(place, _)| self.holds[*place] != *place) {
-            let Some((whole, ground)) = self.bundle.covariances(place) else { continue };
             let Some(holding) = map.live_keyframe(keyframes[self.holds[place]]) else { continue };
             let Some(keyframe) = map.live_keyframe(*id) else { continue };
+            let all = keyframe.landmarks.iter().flatten().count().max(seen[place]).max(1);
+            let alone = 1.0 - seen[place] as f64 / all as f64;
+            let Some((whole, ground)) = self.bundle.covariances(place, alone) else { continue };
             let offset = holding.visual_from_camera.inverse() * keyframe.visual_from_camera;
             let held = carried(&holding.covariance, offset);
             map.set_covariances(*id, held + whole * factor, held + ground * factor);
@@ -175,8 +178,10 @@ impl GlobalBundle {
 mod tests {
     use super::*;
     use crate::frame::Frame;
+    use crate::motion::of_sigmas;
+    use crate::rolled::Rolled;
     use crate::testing::sensor;
-    use nalgebra::Vector6;
+    use nalgebra::{Matrix6, Vector6};
     use trundle_core::{Stamp, Vector3};
     use trundle_optim::InverseDepth;
     use trundle_vision::{Descriptor, Features, Keypoint};
@@ -260,5 +265,30 @@ mod tests {
             assert_eq!(keyframe.visual_from_camera, sliced.keyframe(id).visual_from_camera);
             assert_eq!(keyframe.covariance, sliced.keyframe(id).covariance);
         }
+    }
+
+    /// Beyond the dark, where only the wheels know the way.
+    #[test]
+    fn points_that_one_keyframe_sees_alone_are_as_uncertain_as_the_keyframe() {
+        let (mut map, ids, _) = bent();
+        let after = map.add_keyframe(view(along(1.0)), along(1.0));
+        for (feature, point) in points().into_iter().enumerate() {
+            let landmark = map.add_landmark(point);
+            assert!(map.observe(landmark, after, feature));
+        }
+        map.enter_tree(after);
+        let covariance = of_sigmas(0.3, 0.01);
+        let way = Rolled { from_to: along(0.4).inverse() * along(1.0), covariance, ..Rolled::at(ids[4]) };
+        map.keyframe_mut(after).rolled = Some(way);
+        let (sensor, config) = (sensor(), BundleConfig { covariances: true, ..BundleConfig::default() });
+        let mut global = GlobalBundle::of(&map);
+        while !global.advance(&map, &sensor, (&config, &mut BundleSolver::default()), usize::MAX) {}
+        global.apply(&mut map);
+        let sigma = |m: &Matrix6<f64>| m[(0, 0)].sqrt();
+        let seen = map.keyframe(after);
+        assert!((0.29..0.4).contains(&sigma(&seen.covariance)), "{}", sigma(&seen.covariance));
+        assert!(sigma(&seen.ground) > 0.29, "what is located by these points: {}", sigma(&seen.ground));
+        let before = map.keyframe(ids[4]);
+        assert!(sigma(&before.ground) < sigma(&before.covariance), "it shares all that it sees");
     }
 }
