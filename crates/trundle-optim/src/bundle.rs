@@ -67,6 +67,8 @@ pub struct BundleProblem {
     pub(crate) points: Vec<Vector3>,
     pub(crate) observations: Vec<BundleObservation>,
     pub(crate) ties: Vec<PoseConstraint>,
+    /// Empty where all poses are of one part.
+    pub(crate) parts: Vec<usize>,
 }
 
 /// What [`BundleProblem::solve`] finds.
@@ -104,7 +106,7 @@ impl BundleProblem {
                 return Err(Invalid::new("observation", value, "", expected));
             }
         }
-        Ok(Self { camera, poses, points, observations, ties: Vec::new() })
+        Ok(Self { camera, poses, points, observations, ties: Vec::new(), parts: Vec::new() })
     }
 
     /// The same with what else was measured between poses, by wheels or of the floor, say. Each counts under the Huber loss as
@@ -117,6 +119,18 @@ impl BundleProblem {
             tie.check(i, self.poses.len())?;
         }
         Ok(Self { ties, ..self })
+    }
+
+    /// The same where poses are of several parts, told by a number for each, that have so few points in common that these may be
+    /// taken for each other by chance: what links two parts counts while they are refined, but makes no covariance smaller.
+    ///
+    /// # Errors
+    /// When there are not as many numbers as poses.
+    pub fn with_parts(self, parts: Vec<usize>) -> Result<Self, Invalid> {
+        if parts.len() != self.poses.len() {
+            return Err(Invalid::new("parts", parts.len(), "", format!("{}, one a pose", self.poses.len())));
+        }
+        Ok(Self { parts, ..self })
     }
 
     /// Refines the free poses and all points, at once and with buffers of its own.
@@ -256,6 +270,28 @@ mod tests {
         let problem = perturbed(&scene, 1).with_ties([&ties[..], &[slipped]].concat()).unwrap();
         let off = (scene.poses[2].inverse() * problem.solve(&EXACT).poses[2]).log().norm();
         assert!(off > 1e-9 && off < 0.01, "{off}");
+    }
+
+    #[test]
+    fn what_links_parts_by_chance_makes_no_covariance_smaller() {
+        let mut scene = scene();
+        // Of what the first four poses see, the last two see three points only.
+        let known: Vec<usize> = scene.observations.iter().filter(|o| o.pose < 4).map(|o| o.point).collect();
+        scene.observations.retain(|o| o.pose < 4 || !known.contains(&o.point) || o.point < 3);
+        let ties = vec![measured(&scene, 3, 4, 0.3), measured(&scene, 5, 4, 0.01)];
+        let tied = perturbed(&scene, 1).with_ties(ties).unwrap();
+        let sigma = |problem: &BundleProblem| {
+            let mut solver = BundleSolver::default();
+            solver.begin(problem, &BundleConfig { covariances: true, ..EXACT });
+            solver.finish();
+            let covariance = solver.covariance(4).expect("the tie holds it");
+            (solver.poses()[4], covariance.fixed_view::<3, 3>(0, 0).trace().sqrt())
+        };
+        let (with_links, known) = sigma(&tied);
+        let (with_parts, by_ties) = sigma(&tied.clone().with_parts(vec![0, 0, 0, 0, 1, 1]).unwrap());
+        assert_eq!(with_links, with_parts);
+        assert!(known < 0.1 && by_ties > 0.5, "{known} m by the links, {by_ties} m by the ties");
+        assert!(tied.with_parts(vec![0; 5]).unwrap_err().to_string().contains("parts"));
     }
 
     #[test]

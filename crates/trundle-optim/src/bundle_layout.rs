@@ -27,6 +27,8 @@ pub(crate) struct Measurement {
     pub per_depth: f64,
     /// Squared residual where the loss turns linear.
     pub bound: f64,
+    /// Whether it counts for how certain the result is.
+    pub is_certain: bool,
 }
 
 impl Layout {
@@ -52,6 +54,18 @@ impl Layout {
         let centre = [problem.camera.cx(), problem.camera.cy()];
         self.seen.clear();
         self.seen.extend(self.order.iter().map(|i| Measurement::of(&observations[*i as usize], centre)));
+        if !problem.parts.is_empty() {
+            self.doubt_links(&problem.parts);
+        }
+    }
+
+    /// What a pose sees of a point that one of another part saw first is not certain.
+    fn doubt_links(&mut self, parts: &[usize]) {
+        for bounds in self.starts.windows(2) {
+            let of_point = &mut self.seen[bounds[0] as usize..bounds[1] as usize];
+            let part = of_point.iter().map(|seen| seen.pose).min().map(|first| parts[first as usize]);
+            of_point.iter_mut().for_each(|seen| seen.is_certain = Some(parts[seen.pose as usize]) == part);
+        }
     }
 
     /// Where the observations of a point stand.
@@ -71,6 +85,7 @@ impl Measurement {
             inverse_depth: seen.depth.map_or(0.0, |d| d.value),
             per_depth: seen.depth.map_or(0.0, |d| 1.0 / d.sigma),
             bound: seen.chi2_bound(),
+            is_certain: true,
         }
     }
 }

@@ -1,6 +1,6 @@
 use crate::bundle::{BundleConfig, BundleProblem};
 use crate::bundle_layout::Layout;
-use crate::bundle_system::{FIXED, Lens, Normal, View, moved, robust};
+use crate::bundle_system::{FIXED, Lens, Normal, View, certain, moved, refining, robust};
 use crate::observation::CHI2_95_6;
 use crate::pose_graph::PoseConstraint;
 use nalgebra::Matrix6;
@@ -230,9 +230,13 @@ impl BundleSolver {
     fn linearise(&mut self) -> usize {
         let (points, last) = self.chunk();
         for index in points.clone() {
-            let point = self.here.points[index].into();
-            self.partial_cost +=
-                self.normal.linearise(index, &point, &self.layout, &self.here.views, &self.lens);
+            let point = (index, &self.here.points[index].into());
+            let Self { normal, layout, here, lens, .. } = self;
+            self.partial_cost += if self.ending == Ending::WorkingOut {
+                normal.linearise(point, layout, &here.views, lens, certain)
+            } else {
+                normal.linearise(point, layout, &here.views, lens, refining)
+            };
         }
         if last {
             for tie in &self.ties {

@@ -79,6 +79,18 @@ pub(crate) fn robust(chi2: f64, bound: f64) -> (f64, f64) {
     ((threshold * (2.0 * residual - threshold)).min(COST_BEHIND), threshold / residual)
 }
 
+/// The Huber loss while poses and points are refined.
+#[inline(always)]
+pub(crate) fn refining(chi2: f64, seen: &Measurement) -> (f64, f64) {
+    robust(chi2, seen.bound)
+}
+
+/// The loss by which the result is certain: what may link two parts by chance does not count.
+#[inline(always)]
+pub(crate) fn certain(chi2: f64, seen: &Measurement) -> (f64, f64) {
+    if seen.is_certain { robust(chi2, seen.bound) } else { (0.0, 0.0) }
+}
+
 /// What couples an observation's pose and point: with M = [-I | p^], the derivative of p by the pose, the block between
 /// them is M' `coupling`.
 #[derive(Debug, Clone, Copy)]
@@ -162,15 +174,15 @@ impl Normal {
         loss
     }
 
-    /// Adds what was seen of a point; its robust cost.
+    /// Adds what was seen of a point; its robust cost by `loss_of`, [`refining`] or [`certain`].
     #[inline(always)]
     pub fn linearise(
         &mut self,
-        index: usize,
-        point: &[f64; 3],
+        (index, point): (usize, &[f64; 3]),
         layout: &Layout,
         views: &[View],
         lens: &Lens,
+        loss_of: impl Fn(f64, &Measurement) -> (f64, f64),
     ) -> f64 {
         let range = layout.of_point(index);
         let mut block = PointBlock::default();
@@ -185,7 +197,7 @@ impl Normal {
             }
             let inverse = 1.0 / p[2];
             let r = lens.residual(seen, &p, inverse);
-            let (loss, weight) = robust(dot(&r, &r), seen.bound);
+            let (loss, weight) = loss_of(dot(&r, &r), seen);
             cost += loss;
             // Derivative of the residual by p: rows (a, 0, -a x), (0, b, -b y), (0, 0, c).
             let (x, y) = (p[0] * inverse, p[1] * inverse);
@@ -453,7 +465,7 @@ mod tests {
         plain.reduced.shape_full(4);
         plain.fit(&layout, points.len());
         for (i, point) in points.iter().enumerate() {
-            plain.linearise(i, &(*point).into(), &layout, &views, &Lens::of(&camera));
+            plain.linearise((i, &(*point).into()), &layout, &views, &Lens::of(&camera), refining);
         }
         plain.begin_reduced(1e-4);
         let mut fast = plain.clone();

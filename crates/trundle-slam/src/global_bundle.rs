@@ -81,26 +81,18 @@ impl GlobalBundle {
     /// The oldest keyframe holds still, of every part of the map that shares too little with the rest and that no wheels
     /// tie to it.
     fn hold(&mut self, map: &LandmarkMap) {
-        self.holds = (0..self.bundle.keyframes().count()).collect();
-        let find = |holds: &[usize], mut i: usize| {
-            while holds[i] != i {
-                i = holds[i];
-            }
-            i
-        };
-        let pairs = (0..self.holds.len()).flat_map(|b| (0..b).map(move |a| (a, b)));
+        let count = self.bundle.keyframes().count();
+        let pairs = (0..count).flat_map(|b| (0..b).map(move |a| (a, b)));
         let shared = pairs.zip(&self.shared).filter(|(_, count)| **count >= SHARED).map(|(pair, _)| pair);
         let rolled = |(place, (id, _)): (usize, (KeyframeId, BundlePose))| {
             Some((self.bundle.place_of(map.live_keyframe(id)?.rolled?.from)?, place))
         };
         let rolled: Vec<(usize, usize)> = self.bundle.keyframes().enumerate().filter_map(rolled).collect();
-        for (a, b) in shared.chain(rolled) {
-            let (a, b) = (find(&self.holds, a), find(&self.holds, b));
-            self.holds[a.max(b)] = a.min(b);
-        }
-        self.holds = (0..self.holds.len()).map(|i| find(&self.holds, i)).collect();
+        let parts = joined((0..count).collect(), shared);
+        self.holds = joined(parts.clone(), rolled.into_iter());
         let holds = &self.holds;
         self.bundle.fix(|i| holds[i] == i);
+        self.bundle.divide(parts);
     }
 
     /// Takes the result over.
@@ -172,6 +164,21 @@ impl GlobalBundle {
             map.set_covariances(*id, held + whole * factor, held + ground * factor);
         }
     }
+}
+
+/// Which place stands for each one's set, the lowest of it, after these pairs have joined theirs.
+fn joined(mut sets: Vec<usize>, pairs: impl Iterator<Item = (usize, usize)>) -> Vec<usize> {
+    let find = |sets: &[usize], mut i: usize| {
+        while sets[i] != i {
+            i = sets[i];
+        }
+        i
+    };
+    for (a, b) in pairs {
+        let (a, b) = (find(&sets, a), find(&sets, b));
+        sets[a.max(b)] = a.min(b);
+    }
+    (0..sets.len()).map(|i| find(&sets, i)).collect()
 }
 
 #[cfg(test)]

@@ -19,6 +19,8 @@ pub(crate) struct MapBundle {
     observations: Vec<BundleObservation>,
     /// Landmark, keyframe and bound of each observation.
     sources: Vec<(LandmarkId, KeyframeId, f64)>,
+    /// By place.
+    parts: Vec<usize>,
     solver: BundleSolver,
     is_done: bool,
 }
@@ -77,6 +79,11 @@ impl MapBundle {
         self.keyframes.iter_mut().enumerate().for_each(|(i, (_, pose))| pose.fixed = is_fixed(i));
     }
 
+    /// Says which keyframes are of one part: a number for each, by place. Parts share so few landmarks that chance may have done it.
+    pub fn divide(&mut self, parts: Vec<usize>) {
+        self.parts = parts;
+    }
+
     /// Starts refining, with the buffers of an earlier solver.
     pub fn begin(&mut self, map: &LandmarkMap, sensor: &Sensor, config: &BundleConfig, solver: BundleSolver) {
         self.solver = solver;
@@ -86,8 +93,10 @@ impl MapBundle {
         let poses = self.keyframes.iter().map(|(_, pose)| *pose).chain([world]).collect();
         let points = self.landmarks.iter().map(|(_, point)| *point).collect();
         let observations = std::mem::take(&mut self.observations);
+        self.parts.resize(self.keyframes.len() + 1, 0);
+        let parts = std::mem::take(&mut self.parts);
         let problem = BundleProblem::new(sensor.camera, poses, points, observations)
-            .and_then(|problem| problem.with_ties(ties));
+            .and_then(|problem| problem.with_ties(ties)?.with_parts(parts));
         self.solver.begin(&problem.expect("invariant: every index was counted here"), config);
     }
 
