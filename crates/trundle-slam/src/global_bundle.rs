@@ -156,9 +156,9 @@ impl GlobalBundle {
         for (place, id) in keyframes.iter().enumerate().filter(|(place, _)| self.holds[*place] != *place) {
             let Some(holding) = map.live_keyframe(keyframes[self.holds[place]]) else { continue };
             let Some(keyframe) = map.live_keyframe(*id) else { continue };
-            let all = keyframe.landmarks.iter().flatten().count().max(seen[place]).max(1);
-            let alone = 1.0 - seen[place] as f64 / all as f64;
-            let Some((whole, ground)) = self.bundle.covariances(place, alone) else { continue };
+            let Some((whole, ground)) = self.bundle.covariances(place) else { continue };
+            // What hardly another keyframe sees is where the keyframe saw it.
+            let ground = if seen[place] < usize::from(SHARED) { whole } else { ground };
             let offset = holding.visual_from_camera.inverse() * keyframe.visual_from_camera;
             let held = carried(&holding.covariance, offset);
             map.set_covariances(*id, held + whole * factor, held + ground * factor);

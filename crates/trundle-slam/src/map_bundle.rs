@@ -181,12 +181,11 @@ impl MapBundle {
     }
 
     /// Covariance of a free keyframe against the fixed ones, and its part that is not the keyframe's own: that of the
-    /// points it sees, as of one body. Of these points the part `alone`, 0 to 1, is seen by it only and is not in the
-    /// bundle: such ones are off by what the keyframe is off. `None` where the bundle did not work them out.
-    pub fn covariances(&self, place: usize, alone: f64) -> Option<(Matrix6<f64>, Matrix6<f64>)> {
+    /// points it sees, as of one body. `None` where the bundle did not work them out.
+    pub fn covariances(&self, place: usize) -> Option<(Matrix6<f64>, Matrix6<f64>)> {
         let whole = self.solver.covariance(place)?;
         let own = self.solver.information(place)?.cholesky()?.inverse();
-        let eigen = (whole - own * (1.0 - alone)).symmetric_eigen();
+        let eigen = (whole - own).symmetric_eigen();
         let cut = Matrix6::from_diagonal(&eigen.eigenvalues.map(|value| value.max(0.0)));
         Some((whole, eigen.eigenvectors * cut * eigen.eigenvectors.transpose()))
     }

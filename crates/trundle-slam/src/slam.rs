@@ -1,4 +1,5 @@
 mod accept;
+mod begun;
 mod doubts;
 mod graph;
 mod locate;
@@ -26,6 +27,7 @@ use crate::report::{MapId, Mode, SeenFeature, TrackReport, Tracking};
 use crate::rolled::Rolled;
 use crate::sensor::Sensor;
 use crate::trajectory::Anchored;
+use begun::Begun;
 use doubts::Doubts;
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -64,6 +66,8 @@ pub struct RgbdSlam {
     missed: Option<Frame>,
     /// Places that look right, and are not believed yet.
     doubts: Doubts,
+    /// How the newest map began, where that was behind a way in the dark.
+    begun: Option<Begun>,
     /// Another map that the last keyframe recognised.
     recognition: Option<Claim<MapId>>,
     /// Tracked poses against the wheels.
@@ -130,6 +134,7 @@ impl RgbdSlam {
             misses: 0,
             missed: None,
             doubts: Doubts::default(),
+            begun: None,
             recognition: None,
             contradiction: Contradiction::default(),
             surprise: None,

@@ -21,6 +21,10 @@ impl RgbdSlam {
         let (other, found) = self.recognise_another(keyframe)?;
         let here = self.active.map.keyframe(keyframe).visual_from_camera;
         let other_from_active = found.visual_from_camera * here.inverse();
+        let pair = (self.resting[other].id, self.active.id);
+        if self.begun.is_some_and(|begun| !begun.allows(pair, other_from_active, &self.config.loops)) {
+            return None;
+        }
         self.recognition = said_before;
         let poses = (found.visual_from_camera, here);
         let times = Claim::note(&mut self.recognition, self.resting[other].id, poses, 0.0);

@@ -1,4 +1,4 @@
-use super::{Located, RgbdSlam, doubts::Doubts};
+use super::{Located, RgbdSlam, begun::Begun, doubts::Doubts};
 use crate::component::Component;
 use crate::frame::Frame;
 use crate::ids::KeyframeId;
@@ -27,6 +27,10 @@ enum Beginning {
     /// Another map, since nobody knows where in this one the camera is.
     Another,
 }
+
+/// After a way in the dark that is less certain (one sigma, m and rad) another map begins: in this one all that comes after would
+/// be off by as much, and off alike, while whoever has other senses may know the place better and lays the new one there.
+const ASTRAY: (f64, f64) = (0.2, 0.2);
 
 impl RgbdSlam {
     /// Goes on without a found pose; begins a map at the believed pose where there is none to be found again.
@@ -79,10 +83,15 @@ impl RgbdSlam {
             && self.is_beyond_the_map(depth)
             && self.shows_the_same_again(frame)
         {
-            Beginning::Onward
+            if self.is_astray() { Beginning::Another } else { Beginning::Onward }
         } else {
             Beginning::None
         }
+    }
+
+    fn is_astray(&self) -> bool {
+        let sigma = |i: usize| self.belief.covariance[(i, i)].sqrt();
+        (0..3).any(|i| sigma(i) > ASTRAY.0) || (3..6).any(|i| sigma(i) > ASTRAY.1)
     }
 
     /// Whether there is no use in waiting to see a known landmark again: none should be in view, or none was found for
@@ -116,6 +125,9 @@ impl RgbdSlam {
     /// Leaves the active map for an empty one, at its origin. One that is hardly begun is forgotten: a camera that finds
     /// nothing begins such maps for ever, and nobody would know one again.
     fn begin_map(&mut self) {
+        let way =
+            (self.placed && !self.blind).then_some((self.belief.visual_from_camera, self.belief.covariance));
+        let before = self.active.id;
         // No number is given twice: whoever knows where a map lies knows it by its number.
         let newest = self.resting.iter().map(|map| map.id.0).fold(self.active.id.0, u32::max);
         self.newest_map = self.newest_map.max(newest).saturating_add(1);
@@ -131,5 +143,7 @@ impl RgbdSlam {
         self.placed = true;
         (self.last, self.recognition, self.surprise) = (None, None, None);
         self.forget_the_way();
+        self.begun =
+            way.map(|(before_from_map, covariance)| Begun { map: id, before, before_from_map, covariance });
     }
 }

@@ -2,8 +2,8 @@
 
 use crate::room::{Clean, camera, shoot};
 use crate::walks::{dark, turned};
-use nalgebra::Vector6;
-use trundle_core::{Pose3, RgbdImage};
+use nalgebra::{Matrix6, Vector6};
+use trundle_core::{CameraMotion, Pose3, RgbdImage};
 use trundle_slam::{Mode, RgbdSlam, SlamConfig, TrackReport, Tracking};
 
 /// Where the camera is: maps one side of the room, is carried to the other in the dark (`None`), where it is lost and begins
@@ -77,6 +77,36 @@ fn a_room_that_looks_the_same_elsewhere_is_another_room() {
         let error = (truth.inverse() * report.visual_from_camera).log().norm();
         assert!(error < 0.1, "frame {i} is off by {error:.3}");
     }
+}
+
+/// Wheels that lost count in the dark: what comes behind is laid by whoever knows the place, until the first map is seen again.
+#[test]
+fn behind_a_way_that_nobody_is_sure_of_another_map_begins_and_joins_the_first() {
+    let unsure = |motion: Pose3| CameraMotion {
+        motion,
+        covariance: Some(Matrix6::from_diagonal(&Vector6::new(0.01, 0.01, 0.01, 1e-4, 1e-4, 1e-4))),
+    };
+    let mut slam = RgbdSlam::new(camera(), SlamConfig::default()).unwrap();
+    for i in 0..20 {
+        assert!(slam.step(&shoot(i, turned(2 * i)), Some(turned(2).into())).tracking.is_located());
+    }
+    // Half way round, of which the wheels tell all but 0.2 rad, and a third of a metre that was none.
+    let told = turned(4) * Pose3::exp(Vector6::new(0.0, 0.0, 0.03, 0.0, 0.01, 0.0));
+    for i in 20..30 {
+        assert_eq!(slam.step(&dark(i), Some(unsure(told))).tracking, Tracking::DeadReckoning);
+    }
+    let mut merged = None;
+    for (i, view) in (30..100).zip((80..).step_by(2)) {
+        let report = slam.step(&shoot(i, turned(view)), Some(turned(2).into()));
+        assert!(i == 30 || report.tracking.is_located(), "frame {i}");
+        let first = report.map.number() == 0;
+        assert_eq!(first, i == 30 || merged.is_some() || report.merged.is_some(), "frame {i}");
+        merged = merged.or(report.merged);
+        let error = (turned(view).inverse() * report.visual_from_camera).log().norm();
+        assert!(!first || i == 30 || error < 0.05, "frame {i} is off by {error:.3}");
+    }
+    assert!(merged.is_some(), "it came round");
+    assert_eq!(slam.maps().len(), 1);
 }
 
 #[test]
