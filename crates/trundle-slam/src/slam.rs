@@ -58,6 +58,8 @@ pub struct RgbdSlam {
     placed: bool,
     /// Whether nothing told how the camera moved since it was last located.
     blind: bool,
+    /// Whether what it should see next was gone at once: it was carried, or something stands before the lens.
+    torn: bool,
     /// The last frame that was located.
     last: Option<Located>,
     /// Frames since then.
@@ -130,6 +132,7 @@ impl RgbdSlam {
             belief: Belief::at(Pose3::identity()),
             placed: true,
             blind: false,
+            torn: false,
             last: None,
             misses: 0,
             missed: None,

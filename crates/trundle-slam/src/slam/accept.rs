@@ -47,7 +47,8 @@ impl RgbdSlam {
         let tracking = if enough { Tracking::Ok } else { Tracking::Weak };
         let is_one_frame = kept.as_ref().is_none_or(|kept| kept.merged.is_none());
         self.belief.located(frame.stamp, pose, covariance, before.filter(|_| is_one_frame));
-        (self.misses, self.placed, self.blind, self.doubts) = (0, true, false, Doubts::default());
+        (self.misses, self.placed, self.doubts) = (0, true, Doubts::default());
+        (self.blind, self.torn) = (false, false);
         let anchored = self.remember(frame.stamp, Some(reference), tracking);
         let report = TrackReport {
             matches: found.matches,

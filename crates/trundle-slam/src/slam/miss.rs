@@ -32,6 +32,11 @@ enum Beginning {
 /// be off by as much, and off alike, while whoever has other senses may know the place better and lays the new one there.
 const ASTRAY: (f64, f64) = (0.2, 0.2);
 
+/// So many features, or landmarks, are much.
+const MUCH: usize = 200;
+/// Frames less apart follow each other without a gap, s.
+const AT_A_STRETCH: f64 = 0.5;
+
 impl RgbdSlam {
     /// Goes on without a found pose; begins a map at the believed pose where there is none to be found again.
     pub(super) fn miss(
@@ -43,6 +48,7 @@ impl RgbdSlam {
         self.belief.missed(frame.stamp, prior, &self.config.motion);
         self.misses += 1;
         self.blind |= prior.is_none();
+        self.torn |= self.is_torn(&frame, depth);
         self.show(&frame, &vec![None; frame.len()]);
         let begins = self.beginning(&frame, depth, prior);
         if begins == Beginning::Another {
@@ -60,7 +66,7 @@ impl RgbdSlam {
         if let Some(id) = reference {
             let landmarks = self.active.map.keyframe(id).landmarks.clone();
             self.go_on_from(Located { frame, landmarks, anchored });
-            (self.misses, self.blind, self.doubts) = (0, false, Doubts::default());
+            (self.misses, self.blind, self.torn, self.doubts) = (0, false, false, Doubts::default());
             self.missed = None;
         } else {
             self.missed = Some(frame);
@@ -70,7 +76,7 @@ impl RgbdSlam {
 
     fn beginning(&self, frame: &Frame, depth: &DepthImage, prior: Option<CameraMotion>) -> Beginning {
         let is_able = with_depth(frame).count() >= self.config.mapping.min_points;
-        let is_lost = self.blind || !self.placed;
+        let is_lost = self.blind || !self.placed || self.torn;
         if !is_able || self.mode == Mode::Localisation {
             Beginning::None
         } else if self.active.map.keyframe_count() == 0 {
@@ -87,6 +93,17 @@ impl RgbdSlam {
         } else {
             Beginning::None
         }
+    }
+
+    /// Whether a frame shows much, and nothing of the much that it should show, right after one that was located: whatever moved the
+    /// camera was not what the wheels counted, and what it sees next is not what lies beyond the map.
+    fn is_torn(&self, frame: &Frame, depth: &DepthImage) -> bool {
+        let is_next = |last: &Located| frame.stamp - last.frame.stamp < AT_A_STRETCH;
+        let expected = || self.view(depth).landmarks(&self.active.map, self.belief.visual_from_camera).len();
+        self.misses == 1
+            && frame.len() >= MUCH
+            && self.last.as_ref().is_some_and(is_next)
+            && expected() >= MUCH
     }
 
     fn is_astray(&self) -> bool {

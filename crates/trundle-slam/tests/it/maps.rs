@@ -79,6 +79,27 @@ fn a_room_that_looks_the_same_elsewhere_is_another_room() {
     }
 }
 
+/// Set down elsewhere while it turns: what it sees then is not what lies where the first map ends.
+#[test]
+fn a_camera_that_is_carried_from_one_image_to_the_next_does_not_map_on() {
+    let mut slam = RgbdSlam::new(camera(), SlamConfig::default()).unwrap();
+    for i in 0..20 {
+        assert!(slam.step(&shoot(i, turned(2 * i)), Some(turned(2).into())).tracking.is_located());
+    }
+    for i in 20..48 {
+        let report = slam.step(&shoot(i, turned(2 * i + 30)), Some(turned(2).into()));
+        assert!(report.features >= 200 && !report.tracking.is_located(), "frame {i}: {report:?}");
+        assert!(!report.new_keyframe, "frame {i} is of another place than the wheels say");
+    }
+    let found =
+        (48..60).find(|i| slam.step(&shoot(*i, turned(10)), Some(Pose3::identity().into())).relocalised);
+    assert_eq!(found, None, "the wheels know better, until somebody says that it was carried");
+    slam.kidnapped();
+    let found =
+        (60..70).find(|i| slam.step(&shoot(*i, turned(10)), Some(Pose3::identity().into())).relocalised);
+    assert!(found.is_some());
+}
+
 /// Wheels that lost count in the dark: what comes behind is laid by whoever knows the place, until the first map is seen again.
 #[test]
 fn behind_a_way_that_nobody_is_sure_of_another_map_begins_and_joins_the_first() {
