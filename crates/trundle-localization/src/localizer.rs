@@ -97,7 +97,7 @@ impl Localizer {
             self.visual.anchor(&moment.belief, visual);
             return Correction::Anchored;
         };
-        self.recovery.watch(&self.config, visual.stamp, measurement.pose, moment.odometer);
+        self.recovery.watch(&self.config, visual.stamp, measurement.pose, moment.odometer.pose);
         let correction = self.apply(&moment, measurement);
         let Correction::Gated { distance } = correction else {
             self.visual.refine(&moment.belief, &measurement);

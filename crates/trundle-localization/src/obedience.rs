@@ -15,7 +15,7 @@ pub(crate) struct Obedience {
 }
 
 /// Rims that are told to go so fast roll, m/s: slower ones may stick.
-const ROLLS: f64 = 0.05;
+const ROLLS: f64 = 0.04;
 /// And they do within so long, s: motors answer late, and on a carpet later still.
 const ANSWERS: f64 = 0.5;
 /// So a base slows that is told to, m/s^2 and rad/s^2, at least.

@@ -1,4 +1,4 @@
-use crate::{LocalizerConfig, Odometer};
+use crate::LocalizerConfig;
 use trundle_core::{Pose2, Stamp};
 
 /// Watches visual poses that are not believed, to tell a visual frame that jumped from wheels that went astray.
@@ -6,7 +6,7 @@ use trundle_core::{Pose2, Stamp};
 pub(crate) struct Recovery {
     refused: usize,
     jumped: bool,
-    last: Option<(Stamp, Pose2, Odometer)>,
+    last: Option<(Stamp, Pose2, Pose2)>,
 }
 
 /// What to do about a visual pose outside the gate.
@@ -23,28 +23,16 @@ pub(crate) enum Verdict {
 /// After this long without visual poses, s, nobody knows whether they jumped: they may have.
 const BLACKOUT: f64 = 1.0;
 
-/// Wheels whose way since the last visual pose is uncertain by so much of a jump (one sigma) tell no jump.
-const UNSURE: f64 = 0.5;
-
 impl Recovery {
     /// Notes a visual pose of the base and the odometry's at the same moment.
-    pub(crate) fn watch(
-        &mut self,
-        config: &LocalizerConfig,
-        stamp: Stamp,
-        visual: Pose2,
-        odometer: Odometer,
-    ) {
+    pub(crate) fn watch(&mut self, config: &LocalizerConfig, stamp: Stamp, visual: Pose2, odometer: Pose2) {
         if let Some((since, last_visual, last_odometer)) = self.last {
             let by_eye = last_visual.inverse() * visual;
-            let (by_wheel, noise) = odometer.since(&last_odometer);
+            let by_wheel = last_odometer.inverse() * odometer;
             let apart = by_wheel.inverse() * by_eye;
-            let (far, turned) = (config.jump_distance, config.jump_turn_deg.to_radians());
-            let is_apart = apart.position().norm() > far || apart.theta.abs() > turned;
-            // Where the wheels themselves do not know, nothing speaks against the eye.
-            let sigma = |i: usize| noise[(i, i)].sqrt();
-            let knows_better = sigma(0).max(sigma(1)) < UNSURE * far && sigma(2) < UNSURE * turned;
-            self.jumped |= knows_better && (is_apart || (stamp - since).abs() > BLACKOUT);
+            self.jumped |= apart.position().norm() > config.jump_distance
+                || apart.theta.abs() > config.jump_turn_deg.to_radians()
+                || (stamp - since).abs() > BLACKOUT;
         }
         self.last = Some((stamp, visual, odometer));
     }

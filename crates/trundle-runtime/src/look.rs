@@ -6,12 +6,17 @@ use trundle_core::{Pose2, Twist2, Vector2, wrap_angle};
 pub(crate) struct LookAround {
     last: Option<f64>,
     turned: f64,
+    /// The commands so far.
+    told: u32,
 }
 
 /// Turn rate, rad/s: slow enough for features to be tracked.
 const RATE: f64 = 0.6;
 /// One turn, and a little more, sees all around.
 pub(crate) const ONE_TURN: f64 = 1.02;
+/// A turn that nobody counts is over after so many times the commands that it takes, at 50 a second.
+const UNCOUNTED: f64 = 1.5;
+const PERIOD: f64 = 0.02;
 /// Turning to something, it is near enough to the middle of the view, rad.
 const FACED: f64 = 0.05;
 
@@ -25,12 +30,13 @@ impl LookAround {
     pub(crate) fn twist_towards(&mut self, side: f64, pose: Pose2) -> Twist2 {
         let last = self.last.replace(pose.theta).unwrap_or(pose.theta);
         self.turned += wrap_angle(pose.theta - last).abs();
+        self.told = self.told.saturating_add(1);
         Twist2::new(0.0, RATE.copysign(side))
     }
 
     /// Whether it has turned so many times.
     pub(crate) fn has_turned(&self, turns: f64) -> bool {
-        self.turned > turns * TAU
+        self.turned.max(f64::from(self.told) * PERIOD * RATE / UNCOUNTED) > turns * TAU
     }
 }
 
@@ -59,6 +65,15 @@ mod tests {
             steps += 1;
         }
         assert!((f64::from(steps) * 0.1 - 2.0 * TAU).abs() < 0.3, "{steps} steps");
+    }
+
+    #[test]
+    fn a_turn_that_nobody_counts_comes_to_an_end() {
+        let mut look = LookAround::default();
+        let steps =
+            (0..10_000).take_while(|_| !look.has_turned(1.0) && look.twist(Pose2::IDENTITY).omega > 0.0);
+        let seconds = steps.count() as f64 * PERIOD;
+        assert!((seconds - 1.5 * TAU / RATE).abs() < 0.1, "{seconds} s");
     }
 
     #[test]

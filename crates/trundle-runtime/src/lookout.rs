@@ -156,6 +156,11 @@ impl Lookout {
         is_sought.then(|| times.measure(Stage::Search, look)).flatten()
     }
 
+    /// It was carried away, as others have found out: where images show the place again, it may be anywhere.
+    pub(crate) fn kidnapped(&mut self) {
+        self.slam.kidnapped();
+    }
+
     /// Its scans tell the place: images that are not recognised do not take it back, until one is located again.
     pub(crate) fn placed_by_scans(&mut self) {
         self.is_placed_by_scans = true;

@@ -42,7 +42,12 @@ impl MapWatch {
     pub(crate) fn judge(&mut self, grid: &OccupancyGrid, map_from_base: Pose2, scan: &Scan) -> Fit {
         let part = contradicted(grid, map_from_base, scan);
         let before = self.last.replace((scan.stamp(), part));
-        let fitted = before.is_some_and(|(at, part)| part <= FITS && scan.stamp() - at <= JUST_NOW);
+        let before = before.filter(|(at, _)| scan.stamp() - *at <= JUST_NOW);
+        if before.is_none() {
+            // What was before a gap says nothing of what lasts.
+            self.since = None;
+        }
+        let fitted = before.is_some_and(|(_, part)| part <= FITS);
         let enough = if fitted || self.since.is_some() { AT_ONCE } else { MUCH };
         if part < enough {
             self.since = None;

@@ -285,8 +285,7 @@ impl Robot {
             self.latest.located = self.latest.located.max(Some(track.stamp));
         }
         if is_carried_away {
-            self.localizer.lose_place();
-            self.forget_traffic();
+            self.lose_place();
         }
         let (times, localizer) = (&mut self.times, &mut self.localizer);
         let before = localizer.estimate().pose;
@@ -353,6 +352,9 @@ impl Robot {
     /// while, a robot whose scans contradict the map must have been carried away.
     fn is_of_this_place(&mut self, scan: &Scan) -> bool {
         let (now, watch) = (scan.stamp(), &mut self.latest.map_watch);
+        if self.sight == Sight::Laser {
+            return true;
+        }
         if self.latest.located.is_some_and(|located| now - located <= MOTION_SEEN) {
             watch.forget();
             return true;
@@ -360,10 +362,17 @@ impl Robot {
         let Ok(pose) = self.localizer.pose_at(now) else { return true };
         let fit = watch.judge(self.mapper.grid(), pose, scan);
         if fit == Fit::Elsewhere {
-            self.localizer.lose_place();
-            self.forget_traffic();
+            self.lose_place();
+            self.lookout.iter_mut().for_each(|lookout| lookout.kidnapped());
         }
         fit == Fit::Fits
+    }
+
+    /// It was carried away.
+    fn lose_place(&mut self) {
+        self.localizer.lose_place();
+        self.latest.map_watch.forget();
+        self.forget_traffic();
     }
 
     /// What moves near by, by the newest scan.

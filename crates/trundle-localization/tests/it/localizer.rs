@@ -264,33 +264,6 @@ fn a_visual_frame_that_jumps_is_laid_anew_and_the_estimate_stays() {
 }
 
 #[test]
-fn after_a_blackout_the_eye_is_believed_where_the_wheels_have_counted_nothing() {
-    for (untold, believed) in [(0.3, true), (0.01, false)] {
-        let mut localizer = localizer();
-        let mut corrections = Vec::new();
-        // In the dark from 2 to 5 s it goes on by half a metre that nobody counts; a scan puts it, wrongly, where it was.
-        for ms in (0..=8000).step_by(20) {
-            let standing = odometry(ms.min(2000));
-            let sigma = if ms < 3000 { 0.0 } else { untold };
-            let covariance = standing.covariance + Matrix3::from_diagonal(&Vector3::repeat(sigma * sigma));
-            localizer.predict(&Odometry { stamp: at(ms), covariance, ..standing });
-            if ms == 4000 {
-                localizer.correct_scan(at(ms), standing.pose, &(Matrix3::identity() * 1e-4));
-            }
-            if ms % 60 == 0 && !(2000..5000).contains(&ms) {
-                let truth =
-                    if ms < 2000 { odometry(ms).pose } else { standing.pose * Pose2::new(0.5, 0.0, 0.0) };
-                corrections.push(localizer.correct_visual(&visual(ms, truth)));
-            }
-        }
-        let is_reanchored = corrections.contains(&Correction::Reanchored);
-        let off = localizer.estimate().pose.distance(&odometry(2000).pose);
-        assert_eq!(is_reanchored, !believed, "{untold}");
-        assert!(if believed { (off - 0.5).abs() < 0.05 } else { off < 0.05 }, "{untold}: {off}");
-    }
-}
-
-#[test]
 fn wheels_that_spin_against_a_wall_do_not_carry_the_estimate_away() {
     let mut localizer = localizer();
     let stuck = odometry(2000).pose;

@@ -13,6 +13,8 @@ use trundle_core::{Cell, Twist2, Vector2};
 /// Speed of leaving what presses on the bumper, m/s, and how far behind must be free, m.
 const BACK_OUT: f64 = 0.05;
 const BACK_OUT_WAY: f64 = 0.15;
+/// And for so long, s, twice that way: a bumper that is still pressed then is broken, or something pushes.
+const BACK_OUT_TIME: f64 = 6.0;
 /// Without sight for so long, it turns to find some, s.
 const BLIND_PAUSE: f64 = 3.0;
 /// So fast it backs out where it has no room to turn, m/s.
@@ -61,7 +63,8 @@ impl Navigator {
 
     /// Whether it is time to leave what presses on the bumper, or an edge, backward, and the map has nothing there.
     fn backs_out(&self, s: &Surroundings<'_>) -> bool {
-        let waited = self.held_since.is_some_and(|since| s.now - since > PAUSE);
+        let backs = PAUSE..PAUSE + BACK_OUT_TIME;
+        let waited = self.held_since.is_some_and(|since| backs.contains(&(s.now - since)));
         (self.touched || self.over_edge) && waited && is_free_behind(s, self.radius)
     }
 

@@ -1,4 +1,5 @@
 use crate::closing::LoopConfig;
+use crate::motion::carried;
 use crate::report::MapId;
 use nalgebra::Matrix6;
 use trundle_core::Pose3;
@@ -14,6 +15,13 @@ pub(super) struct Begun {
 }
 
 impl Begun {
+    /// The same of the map that began behind the next way; `None` where that led from another map.
+    pub fn then(self, next: Self) -> Option<Self> {
+        let covariance = carried(&self.covariance, next.before_from_map) + next.covariance;
+        let before_from_map = self.before_from_map * next.before_from_map;
+        (self.map == next.before).then_some(Self { before: self.before, before_from_map, covariance, ..next })
+    }
+
     /// Whether `other` may lie so in `active`: no farther off the way than its uncertainty, or a loop that surprises, goes. Of maps
     /// that no way leads between it knows nothing.
     pub fn allows(
@@ -54,6 +62,9 @@ mod tests {
         assert!(allows((before, map), along(6.5)) && allows((map, before), along(-6.5)));
         assert!(!allows((before, map), along(0.5)) && !allows((map, before), along(-0.5)));
         assert!(allows((MapId(1), map), along(0.5)), "nobody knows of it");
+        let on = Begun { map: MapId(3), before: map, before_from_map: along(2.0), covariance };
+        let both = begun.then(on).expect("one leads on from the other");
+        assert!(both.allows((before, MapId(3)), along(9.0), &config) && on.then(begun).is_none());
         let exact = Begun { covariance: Matrix6::zeros(), ..begun };
         assert!(
             exact.allows((before, map), along(5.9), &config)

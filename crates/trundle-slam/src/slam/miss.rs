@@ -160,7 +160,10 @@ impl RgbdSlam {
         self.placed = true;
         (self.last, self.recognition, self.surprise) = (None, None, None);
         self.forget_the_way();
-        self.begun =
+        let begun =
             way.map(|(before_from_map, covariance)| Begun { map: id, before, before_from_map, covariance });
+        // Where the map before is forgotten, the way leads on from the one before that.
+        let is_forgotten = self.resting.iter().all(|map| map.id != before);
+        self.begun = if is_forgotten { self.begun.zip(begun).and_then(|(a, b)| a.then(b)) } else { begun };
     }
 }
