@@ -10,7 +10,7 @@ use crate::{
     eye::EyeWatch,
     last_stage::LastStageReport,
     lookout::{Lookout, Sighting},
-    map_watch::{Fit, MapWatch},
+    map_watch::MapWatch,
     mission::{Mission, MissionState, Task, TaskRecord},
     navigator::{Surroundings, Traffic, position_sigma},
     report::StepReport,
@@ -346,33 +346,6 @@ impl Robot {
             self.latest.scan = Some(scan);
         }
         is_due
-    }
-
-    /// Whether a scan may be of the place where the robot believes to be. Where images tell, they are believed; where none has for a
-    /// while, a robot whose scans contradict the map must have been carried away.
-    fn is_of_this_place(&mut self, scan: &Scan) -> bool {
-        let (now, watch) = (scan.stamp(), &mut self.latest.map_watch);
-        if self.sight == Sight::Laser {
-            return true;
-        }
-        if self.latest.located.is_some_and(|located| now - located <= MOTION_SEEN) {
-            watch.forget();
-            return true;
-        }
-        let Ok(pose) = self.localizer.pose_at(now) else { return true };
-        let fit = watch.judge(self.mapper.grid(), pose, scan);
-        if fit == Fit::Elsewhere {
-            self.lose_place();
-            self.lookout.iter_mut().for_each(|lookout| lookout.kidnapped());
-        }
-        fit == Fit::Fits
-    }
-
-    /// It was carried away.
-    fn lose_place(&mut self) {
-        self.localizer.lose_place();
-        self.latest.map_watch.forget();
-        self.forget_traffic();
     }
 
     /// What moves near by, by the newest scan.

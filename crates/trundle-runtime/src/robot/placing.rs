@@ -1,7 +1,7 @@
 //! A robot that does not know its place, and where its scans put it.
 
-use super::Robot;
-use crate::{navigator::position_sigma, whereabouts::Place};
+use super::{MOTION_SEEN, Robot};
+use crate::{map_watch::Fit, navigator::position_sigma, sight::Sight, whereabouts::Place};
 use trundle_core::Scan;
 use trundle_localization::{Correction, Localizer};
 
@@ -39,5 +39,32 @@ impl Robot {
             (false, true) => lookout.whereabouts.end(),
             _ => {}
         }
+    }
+
+    /// Whether a scan may be of the place where the robot believes to be. Where images tell, they are believed; where none has for a
+    /// while, a robot whose scans contradict the map must have been carried away.
+    pub(super) fn is_of_this_place(&mut self, scan: &Scan) -> bool {
+        let (now, watch) = (scan.stamp(), &mut self.latest.map_watch);
+        if self.sight == Sight::Laser {
+            return true;
+        }
+        if self.latest.located.is_some_and(|located| now - located <= MOTION_SEEN) {
+            watch.forget();
+            return true;
+        }
+        let Ok(pose) = self.localizer.pose_at(now) else { return true };
+        let fit = watch.judge(self.mapper.grid(), pose, scan);
+        if fit == Fit::Elsewhere {
+            self.lose_place();
+            self.lookout.iter_mut().for_each(|lookout| lookout.kidnapped());
+        }
+        fit == Fit::Fits
+    }
+
+    /// It was carried away.
+    pub(super) fn lose_place(&mut self) {
+        self.localizer.lose_place();
+        self.latest.map_watch.forget();
+        self.forget_traffic();
     }
 }
