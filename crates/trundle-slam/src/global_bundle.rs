@@ -90,9 +90,22 @@ impl GlobalBundle {
         let rolled: Vec<(usize, usize)> = self.bundle.keyframes().enumerate().filter_map(rolled).collect();
         let parts = joined((0..count).collect(), shared);
         self.holds = joined(parts.clone(), rolled.into_iter());
+        let parts = self.joined_by_all(parts);
         let holds = &self.holds;
         self.bundle.fix(|i| holds[i] == i);
         self.bundle.divide(parts);
+    }
+
+    /// The parts after those have joined that share enough in all, if not from keyframe to keyframe: chance does not reach that.
+    fn joined_by_all(&self, parts: Vec<usize>) -> Vec<usize> {
+        let mut between: BTreeMap<(usize, usize), usize> = BTreeMap::new();
+        let pairs = (0..parts.len()).flat_map(|b| (0..b).map(move |a| (a, b)));
+        for ((a, b), count) in pairs.zip(&self.shared).filter(|((a, b), _)| parts[*a] != parts[*b]) {
+            let (a, b) = (parts[a], parts[b]);
+            *between.entry((a.min(b), a.max(b))).or_default() += usize::from(*count);
+        }
+        let enough = between.into_iter().filter(|(_, count)| *count >= usize::from(SHARED));
+        joined(parts, enough.map(|(pair, _)| pair))
     }
 
     /// Takes the result over.
