@@ -19,7 +19,7 @@ pub(crate) struct MapBundle {
     observations: Vec<BundleObservation>,
     /// Landmark, keyframe and bound of each observation.
     sources: Vec<(LandmarkId, KeyframeId, f64)>,
-    /// By place.
+    /// By place; empty where nobody has divided it.
     parts: Vec<usize>,
     solver: BundleSolver,
     is_done: bool,
@@ -93,10 +93,13 @@ impl MapBundle {
         let poses = self.keyframes.iter().map(|(_, pose)| *pose).chain([world]).collect();
         let points = self.landmarks.iter().map(|(_, point)| *point).collect();
         let observations = std::mem::take(&mut self.observations);
-        self.parts.resize(self.keyframes.len() + 1, 0);
-        let parts = std::mem::take(&mut self.parts);
+        let mut parts = std::mem::take(&mut self.parts);
+        if !parts.is_empty() {
+            parts.resize(self.keyframes.len() + 1, 0);
+        }
         let problem = BundleProblem::new(sensor.camera, poses, points, observations)
-            .and_then(|problem| problem.with_ties(ties)?.with_parts(parts));
+            .and_then(|problem| problem.with_ties(ties))
+            .and_then(|problem| if parts.is_empty() { Ok(problem) } else { problem.with_parts(parts) });
         self.solver.begin(&problem.expect("invariant: every index was counted here"), config);
     }
 

@@ -76,14 +76,13 @@ impl RgbdSlam {
 
     fn beginning(&self, frame: &Frame, depth: &DepthImage, prior: Option<CameraMotion>) -> Beginning {
         let is_able = with_depth(frame).count() >= self.config.mapping.min_points;
-        let is_lost = self.blind || !self.placed || self.torn;
         if !is_able || self.mode == Mode::Localisation {
             Beginning::None
         } else if self.active.map.keyframe_count() == 0 {
             Beginning::First
-        } else if is_lost && self.misses >= self.config.tracking.patience {
+        } else if self.is_lost() && self.misses >= self.config.tracking.patience {
             Beginning::Another
-        } else if !is_lost
+        } else if !self.is_lost()
             && prior.is_some()
             && !self.contradiction.is_going_on()
             && self.is_beyond_the_map(depth)
@@ -93,6 +92,11 @@ impl RgbdSlam {
         } else {
             Beginning::None
         }
+    }
+
+    /// Whether what wheels tell of the way says nothing of where in the active map the camera is.
+    fn is_lost(&self) -> bool {
+        self.blind || !self.placed || self.torn
     }
 
     /// Whether a frame shows much, and nothing of the much that it should show, right after one that was located: whatever moved the
@@ -142,8 +146,7 @@ impl RgbdSlam {
     /// Leaves the active map for an empty one, at its origin. One that is hardly begun is forgotten: a camera that finds
     /// nothing begins such maps for ever, and nobody would know one again.
     fn begin_map(&mut self) {
-        let way =
-            (self.placed && !self.blind).then_some((self.belief.visual_from_camera, self.belief.covariance));
+        let way = (!self.is_lost()).then_some((self.belief.visual_from_camera, self.belief.covariance));
         let before = self.active.id;
         // No number is given twice: whoever knows where a map lies knows it by its number.
         let newest = self.resting.iter().map(|map| map.id.0).fold(self.active.id.0, u32::max);
