@@ -1,9 +1,10 @@
-//! From wheels, gyro, visual pose and scan match to one pose estimate.
+//! Wheels, gyro, visual poses and scan matches fused to one pose estimate.
 //!
-//! - [`WheelOdometry`]: encoder ticks and gyro to a continuous, drifting pose with honest covariance.
-//! - [`Localizer`]: that odometry, corrected by visual poses and scan matches at the times they were taken, to the one
-//!   [`trundle_core::PoseEstimate`] that planning and control use.
-//! - [`Odometer`]: what that said at a moment: with [`trundle_core::CameraMotion::of_base`] the motion prior of visual tracking.
+//! - [`WheelOdometry`]: encoder ticks and gyro to a continuous pose that drifts, with its covariance.
+//! - [`Localizer`]: an extended Kalman filter on SE(2). It corrects that odometry by visual poses and scan matches at the stamps
+//!   of their measurement, and yields the one [`trundle_core::PoseEstimate`] that planning and control use.
+//! - [`OdometryState`]: pose and covariance of the odometry at a stamp. With [`trundle_core::CameraMotion::of_base`] it is the
+//!   motion prior of visual tracking.
 //!
 //! ```
 //! use trundle_core::{DifferentialDrive, GyroRate, Pose3, Stamp, Vector3, WheelTicks};
@@ -18,38 +19,25 @@
 //!     let odometry = wheels.step_wheels(&WheelTicks { stamp, left: i * 70, right: i * 70 });
 //!     localizer.predict(&odometry);
 //! }
-//! let way = 50.0 * 70.0 * DifferentialDrive::KOBUKI.metres_per_tick();
-//! assert!((localizer.estimate().pose.x - way).abs() < 1e-9);
+//! let distance = 50.0 * 70.0 * DifferentialDrive::KOBUKI.metres_per_tick();
+//! assert!((localizer.estimate().pose.x - distance).abs() < 1e-9);
 //! # Ok::<(), trundle_core::Invalid>(())
 //! ```
 
-mod belief;
-mod camera_turns;
-mod correction;
-mod gyro_errors;
-mod history;
-mod learnt;
-mod localizer;
-mod localizer_config;
-mod obedience;
-mod odometer;
+mod calibration;
+mod faults;
+mod fusion;
+mod odometry;
 mod odometry_config;
 mod odometry_noise;
 mod planar;
-mod recovery;
-mod stuck_gyro;
-mod turn_integral;
-mod visual_frame;
-mod wheel_odometry;
-mod wheel_report;
-mod wheel_size;
 
-pub use correction::{Correction, Prediction, VisualPose, VisualQuality};
-pub use localizer::Localizer;
-pub use localizer_config::LocalizerConfig;
-pub use odometer::Odometer;
+pub use fusion::config::LocalizerConfig;
+pub use fusion::correction::{Correction, Prediction, VisualPose, VisualQuality};
+pub use fusion::localizer::Localizer;
+pub use fusion::visual_frame::VisualAnchor;
+pub use odometry::report::{WheelCounts, WheelReport};
+pub use odometry::state::OdometryState;
+pub use odometry::wheel_odometry::WheelOdometry;
 pub use odometry_config::OdometryConfig;
 pub use planar::planar_covariance;
-pub use visual_frame::VisualAnchor;
-pub use wheel_odometry::WheelOdometry;
-pub use wheel_report::{WheelCounts, WheelReport};

@@ -1,3 +1,5 @@
+//! Covariances of planar poses.
+
 use nalgebra::{Matrix3, Matrix3x6, Matrix6};
 use trundle_core::{Pose2, Pose3};
 
@@ -8,8 +10,8 @@ pub(crate) fn adjoint(pose: &Pose2) -> Matrix3<f64> {
     Matrix3::new(c, -s, pose.y, s, c, -pose.x, 0.0, 0.0, 1.0)
 }
 
-/// The covariance of `pose * motion` that comes of the covariance of `pose`, both as right perturbations.
-pub(crate) fn carried(covariance: &Matrix3<f64>, motion: &Pose2) -> Matrix3<f64> {
+/// The covariance of `pose * motion` that follows from the covariance of `pose`, both as right perturbations.
+pub(crate) fn transported(covariance: &Matrix3<f64>, motion: &Pose2) -> Matrix3<f64> {
     let back = adjoint(&motion.inverse());
     symmetric(back * covariance * back.transpose())
 }
@@ -29,7 +31,7 @@ pub(crate) fn without_negative_variances(matrix: Matrix3<f64>) -> Matrix3<f64> {
     symmetric(eigen.recompose())
 }
 
-/// The covariance of the base's planar pose (x m, y m, theta rad) that comes of the covariance of the camera's pose
+/// The covariance of the base's planar pose (x m, y m, theta rad) that follows from the covariance of the camera's pose
 /// (m, m, m, rad, rad, rad), both as right perturbations.
 pub fn planar_covariance(camera: &Matrix6<f64>, base_from_camera: &Pose3) -> Matrix3<f64> {
     let to_base = base_from_camera.adjoint();

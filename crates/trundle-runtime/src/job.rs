@@ -7,7 +7,7 @@ use crate::{
 };
 use serde::{Deserialize, Serialize};
 use trundle_core::Stamp;
-use trundle_localization::Odometer;
+use trundle_localization::OdometryState;
 
 /// Whose work it is. Each does one job at a time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
@@ -31,7 +31,7 @@ pub struct Job(pub(crate) Work);
 
 #[derive(Debug)]
 pub(crate) enum Work {
-    Look { lookout: Box<Lookout>, image: LazyImage, odometer: Box<Odometer> },
+    Look { lookout: Box<Lookout>, image: LazyImage, odometer: Box<OdometryState> },
     Decide { captain: Box<Captain>, around: Box<Around> },
 }
 

@@ -8,7 +8,7 @@ use crate::{
     whereabouts::{Place, Whereabouts},
 };
 use trundle_core::{CameraMotion, Invalid, Pose2, Pose3, RgbdImage, Scan, Stamp};
-use trundle_localization::Odometer;
+use trundle_localization::OdometryState;
 use trundle_mapping::DepthScanner;
 use trundle_slam::{MapFileError, RgbdSlam, TrackReport};
 
@@ -28,7 +28,7 @@ pub(crate) struct Lookout {
     /// Whether the place was last told by scans.
     is_placed_by_scans: bool,
     /// What the odometry said at the last image.
-    last: Option<Odometer>,
+    last: Option<OdometryState>,
     /// Since when images that show enough have not been located.
     unplaced: Option<Stamp>,
     /// When the place was last looked for everywhere, since then.
@@ -104,7 +104,7 @@ impl Lookout {
     pub(crate) fn look(
         &mut self,
         image: &RgbdImage,
-        odometer: Odometer,
+        odometer: OdometryState,
         times: &mut StageTimes,
     ) -> Option<Sighting> {
         let odom_from_base = odometer.pose;
@@ -168,7 +168,7 @@ impl Lookout {
     }
 
     /// `previous_camera_from_camera` by wheels and gyro.
-    fn camera_motion_since_last_image(&mut self, odometer: Odometer) -> Option<CameraMotion> {
+    fn camera_motion_since_last_image(&mut self, odometer: OdometryState) -> Option<CameraMotion> {
         let previous = self.last.replace(odometer)?;
         Some(CameraMotion::of_base(odometer.since(&previous), self.base_from_camera))
     }

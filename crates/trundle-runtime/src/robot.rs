@@ -26,7 +26,7 @@ use trundle_core::{
     Footprint, GyroRate, Invalid, OccupancyGrid, Odometry, Pose2, Pose3, PoseEstimate, RgbdImage, Scan,
     SensorEvent, Stamp, Vector2, WheelTicks,
 };
-use trundle_localization::{Correction, Localizer, Odometer, VisualPose, VisualQuality, WheelOdometry};
+use trundle_localization::{Correction, Localizer, OdometryState, VisualPose, VisualQuality, WheelOdometry};
 use trundle_mapping::{LiveMapper, MapperConfig, ScanMatcher};
 use trundle_planning::{Mover, MoverTracker, PlanResult};
 use trundle_slam::{RgbdSlam, TrackReport, Tracking};
@@ -230,7 +230,7 @@ impl Robot {
                 report.twist = times.measure(Stage::Control, || background.steer(captain, &surroundings));
             }
         }
-        report.twist.into_iter().for_each(|twist| self.odometry.tell(twist));
+        report.twist.into_iter().for_each(|twist| self.odometry.set_command(twist));
         self.redraw();
     }
 
@@ -238,7 +238,7 @@ impl Robot {
     fn motion_sense(&self, now: Stamp) -> MotionSense {
         let is_seen = || self.latest.located.is_some_and(|located| now - located <= MOTION_SEEN);
         match self.sight {
-            _ if !self.odometry.wheels_do_not_answer() => MotionSense::Wheels,
+            _ if !self.odometry.wheels_are_unresponsive() => MotionSense::Wheels,
             Sight::DepthCamera if !is_seen() => MotionSense::Nothing,
             Sight::DepthCamera | Sight::Laser => MotionSense::Sight,
         }
@@ -298,7 +298,11 @@ impl Robot {
         let goes_on = track.tracking == Tracking::Ok && bent.is_none() && !track.relocalised;
         let goes_on = goes_on && matches!(correction, Some(Correction::Applied { .. }));
         let base = track.visual_from_camera * self.base_from_camera.inverse();
-        self.odometry.seen(track.stamp, odom_from_base, goes_on.then_some(base));
+        if goes_on {
+            self.odometry.add_visual_pose(track.stamp, odom_from_base, base);
+        } else {
+            self.odometry.break_visual_track(track.stamp);
+        }
         if let Some(trajectory) = bent {
             self.follow_the_visual_map(&trajectory);
         }
@@ -416,11 +420,11 @@ impl Robot {
 
     /// What the odometry said when an image was taken, which may be a while ago; long after its newest reading it is that, and as
     /// uncertain as the base may have moved since.
-    fn odometry_at(&self, stamp: Stamp) -> Option<Odometer> {
+    fn odometry_at(&self, stamp: Stamp) -> Option<OdometryState> {
         let newest = || {
             let odometry = self.latest.odometry.as_ref()?;
-            let untold = self.odometry.untold((stamp - odometry.stamp).max(0.0));
-            Some(Odometer { covariance: odometry.covariance + untold, ..Odometer::from(odometry) })
+            let untold = self.odometry.unobserved_motion((stamp - odometry.stamp).max(0.0));
+            Some(OdometryState { covariance: odometry.covariance + untold, ..OdometryState::from(odometry) })
         };
         self.localizer.odometry_at(stamp).ok().or_else(newest)
     }

@@ -1,4 +1,4 @@
-//! Is the filter as sure as it may be? Normalised estimation error squared (Bar-Shalom, Li, Kirubarajan 2001, ch. 5.4).
+//! Consistency of the filter: normalised estimation error squared (Bar-Shalom, Li, Kirubarajan 2001, ch. 5.4).
 
 use nalgebra::{Matrix3, Vector3};
 use rand::{RngExt, SeedableRng};
@@ -27,9 +27,9 @@ fn adjoint(pose: &Pose2) -> Matrix3<f64> {
     Matrix3::new(c, -s, pose.y, s, c, -pose.x, 0.0, 0.0, 1.0)
 }
 
-/// Mean of the normalised squared error over runs of 20 s. Errors of the measurements last: each is `memory` times the
-/// one before plus new noise, so that all have the sigmas above.
-fn mean_squared_error(config: &LocalizerConfig, memory: f64, runs: u64) -> f64 {
+/// Mean of the normalised squared error over runs of 20 s. Errors of the measurements are correlated: each is `correlation` times
+/// the previous one plus new noise, and all have the sigmas above.
+fn mean_squared_error(config: &LocalizerConfig, correlation: f64, runs: u64) -> f64 {
     let mut sum = 0.0;
     let mut count = 0.0;
     for seed in 0..runs {
@@ -50,7 +50,8 @@ fn mean_squared_error(config: &LocalizerConfig, memory: f64, runs: u64) -> f64 {
             }
             localizer.predict(&Odometry { stamp, pose, twist, covariance });
             if step % 3 == 0 {
-                error = error * memory + normal(&mut rng, MEASURED) * (1.0 - memory * memory).sqrt();
+                error = error * correlation
+                    + normal(&mut rng, MEASURED) * (1.0 - correlation * correlation).sqrt();
                 localizer.correct_scan(stamp, truth * Pose2::exp(error), &Matrix3::zeros());
             }
             if step > 100 && step % 20 == 0 {
@@ -65,7 +66,7 @@ fn mean_squared_error(config: &LocalizerConfig, memory: f64, runs: u64) -> f64 {
 }
 
 #[test]
-fn white_errors_give_the_error_that_the_covariance_promises() {
+fn white_errors_match_the_covariance() {
     let config = LocalizerConfig {
         scan_position_sigma: MEASURED[0],
         scan_heading_sigma_deg: MEASURED[2].to_degrees(),
@@ -79,11 +80,11 @@ fn white_errors_give_the_error_that_the_covariance_promises() {
 }
 
 #[test]
-fn errors_that_last_do_not_make_the_filter_too_sure() {
+fn correlated_errors_do_not_make_the_filter_overconfident() {
     let usual = LocalizerConfig::default();
-    // Errors last for 0.6 s: ten measurements.
+    // Errors are correlated over 0.6 s: ten measurements.
     let error = mean_squared_error(&usual, 0.9, 20);
     assert!(error < 6.0, "{error}");
     let trusting = LocalizerConfig { least_position_sigma: 0.0, least_heading_sigma_deg: 0.0, ..usual };
-    assert!(mean_squared_error(&trusting, 0.9, 20) > 1.5 * error, "the floor is what keeps it honest");
+    assert!(mean_squared_error(&trusting, 0.9, 20) > 1.5 * error, "without the sigma floor");
 }

@@ -1,3 +1,5 @@
+//! Laws, faults and recoveries of the localizer.
+
 use nalgebra::{Matrix3, Matrix6, UnitQuaternion};
 use proptest::prelude::*;
 use trundle_core::{Odometry, Pose2, Pose3, Stamp, Twist2, Vector3, wrap_angle};
@@ -9,7 +11,7 @@ fn at(ms: i64) -> Stamp {
     Stamp::from_nanos(ms * 1_000_000)
 }
 
-/// A camera that looks ahead and 8 deg down.
+/// A camera pitched 8 deg down.
 fn base_from_camera() -> Pose3 {
     let optical = Pose3::from_matrix(
         Matrix3::new(0.0, 0.0, 1.0, -1.0, 0.0, 0.0, 0.0, -1.0, 0.0),
@@ -40,21 +42,21 @@ fn localizer() -> Localizer {
 }
 
 #[test]
-fn waking_up_it_is_nowhere_until_a_known_map_is_recognised() {
+fn a_resumed_localizer_has_no_pose_until_a_known_map_is_recognised() {
     let mut first = localizer();
     driven(0, 1000, &mut first);
     first.correct_visual(&visual(500, Pose2::IDENTITY));
-    let mut second = localizer().waking(first.visual_maps());
+    let mut second = localizer().resumed(first.visual_maps());
     driven(0, 1000, &mut second);
     assert!(second.estimate().covariance[(0, 0)] > 1e3);
     let foreign = VisualPose { map: 1, ..visual(400, Pose2::IDENTITY) };
-    assert_eq!(second.correct_visual(&foreign), Correction::Nowhere);
-    // By the first one's map the robot stood here at 0.5 s.
-    let stood = Pose2::new(3.0, -2.0, 2.5);
-    assert!(second.correct_visual(&visual(500, stood)).is_applied());
+    assert_eq!(second.correct_visual(&foreign), Correction::PoseUnknown);
+    // Pose at 0.5 s in the first run's map.
+    let pose = Pose2::new(3.0, -2.0, 2.5);
+    assert!(second.correct_visual(&visual(500, pose)).is_applied());
     let there = second.pose_at(at(500)).unwrap();
     let expected = first.map_from_visual().unwrap()
-        * visual(500, stood).visual_from_camera
+        * visual(500, pose).visual_from_camera
         * base_from_camera().inverse();
     assert!(there.distance(&expected.to_pose2()) < 0.01, "{there:?}");
     assert!(wrap_angle(there.theta - expected.to_pose2().theta).abs() < 0.01);
@@ -63,7 +65,7 @@ fn waking_up_it_is_nowhere_until_a_known_map_is_recognised() {
 }
 
 #[test]
-fn a_visual_map_that_was_laid_in_doubt_is_moved_to_where_scans_say() {
+fn scan_matches_refine_an_uncertain_visual_anchor() {
     let mut localizer = localizer();
     driven(0, 20_000, &mut localizer);
     let truth = |ms: i64| Pose2::new(0.2, -0.1, 0.05) * odometry(ms).pose;
@@ -72,7 +74,10 @@ fn a_visual_map_that_was_laid_in_doubt_is_moved_to_where_scans_say() {
     for ms in (19_020..19_980).step_by(40) {
         localizer.correct_visual(&visual(ms, truth(ms)));
     }
-    assert!(localizer.estimate().covariance[(0, 0)] > 0.05_f64.powi(2), "nothing new was learnt");
+    assert!(
+        localizer.estimate().covariance[(0, 0)] > 0.05_f64.powi(2),
+        "a visual pose in its own frame adds no information"
+    );
     for ms in (20_020..26_000).step_by(20) {
         localizer.predict(&odometry(ms));
         if ms % 100 == 0 {
@@ -80,7 +85,7 @@ fn a_visual_map_that_was_laid_in_doubt_is_moved_to_where_scans_say() {
             localizer.correct_visual(&visual(ms, truth(ms)));
         }
     }
-    // Laid where odometry alone had the robot; the visual poses and the scans agree only about the true frame.
+    // The anchor starts at the pose of the odometry; only the true frame agrees with visual poses and scans.
     let visual_from_map = base_from_camera().inverse();
     let off = |map_from_visual: Pose3| (visual_from_map * map_from_visual).translation.norm();
     let now = localizer.map_from_visual().unwrap();
@@ -93,7 +98,7 @@ fn driven(from: i64, to: i64, localizer: &mut Localizer) {
     }
 }
 
-/// What a perfect visual tracker says of a base pose: in the frame of its first camera.
+/// A visual pose without error, in the frame of the first camera.
 fn visual(ms: i64, map_from_base: Pose2) -> VisualPose {
     let visual_from_map = base_from_camera().inverse();
     VisualPose {
@@ -111,7 +116,7 @@ fn gap(a: Pose2, b: Pose2) -> f64 {
 }
 
 #[test]
-fn wheels_alone_are_enough() {
+fn odometry_alone_yields_an_estimate() {
     let mut localizer = localizer();
     assert_eq!(localizer.estimate().pose, Pose2::IDENTITY);
     driven(0, 4000, &mut localizer);
@@ -123,7 +128,7 @@ fn wheels_alone_are_enough() {
 }
 
 #[test]
-fn the_first_visual_pose_lays_the_visual_frame_and_changes_nothing() {
+fn the_first_visual_pose_anchors_its_frame_and_leaves_the_estimate() {
     let mut localizer = localizer();
     driven(0, 400, &mut localizer);
     let before = localizer.estimate();
@@ -137,7 +142,7 @@ fn the_first_visual_pose_lays_the_visual_frame_and_changes_nothing() {
 }
 
 #[test]
-fn corrections_pull_towards_the_measurement_and_the_floor_holds() {
+fn corrections_converge_to_the_measurement_and_keep_the_sigma_floor() {
     let mut localizer = localizer();
     driven(0, 1000, &mut localizer);
     localizer.correct_visual(&visual(0, Pose2::IDENTITY));
@@ -147,12 +152,12 @@ fn corrections_pull_towards_the_measurement_and_the_floor_holds() {
     }
     let estimate = localizer.estimate();
     assert!(gap(estimate.pose, truth) < 2e-3, "{:?} {truth:?}", estimate.pose);
-    assert!(estimate.covariance[(0, 0)].sqrt() >= 0.015 - 1e-12, "sixty images are no better than one");
+    assert!(estimate.covariance[(0, 0)].sqrt() >= 0.015 - 1e-12, "sixty correlated images");
     assert!(estimate.covariance[(2, 2)].sqrt() >= 0.45_f64.to_radians() - 1e-12);
 }
 
 #[test]
-fn a_weak_pose_pulls_less_and_so_does_one_that_floats() {
+fn weak_and_off_plane_poses_have_less_influence() {
     let pulled = |change: fn(&mut VisualPose)| {
         let mut localizer = localizer();
         driven(0, 1000, &mut localizer);
@@ -170,7 +175,7 @@ fn a_weak_pose_pulls_less_and_so_does_one_that_floats() {
 }
 
 #[test]
-fn what_cannot_be_is_refused_with_the_reason() {
+fn invalid_measurements_are_rejected_with_the_reason() {
     let mut localizer = localizer();
     let here = visual(0, Pose2::IDENTITY);
     assert_eq!(localizer.correct_visual(&here), Correction::NoOdometry);
@@ -178,13 +183,13 @@ fn what_cannot_be_is_refused_with_the_reason() {
     assert!(matches!(localizer.correct_visual(&here), Correction::TooOld { by } if by > 1.5));
     assert_eq!(localizer.correct_visual(&visual(4000, odometry(4000).pose)), Correction::Anchored);
     assert!(matches!(localizer.correct_visual(&visual(4300, Pose2::IDENTITY)), Correction::TooNew { .. }));
-    let nowhere = VisualPose { covariance: Matrix6::repeat(f64::NAN), ..here };
-    assert_eq!(localizer.correct_visual(&nowhere), Correction::NotFinite);
+    let broken = VisualPose { covariance: Matrix6::repeat(f64::NAN), ..here };
+    assert_eq!(localizer.correct_visual(&broken), Correction::NotFinite);
 
     let before = localizer.estimate();
     let far = odometry(4000).pose * Pose2::new(0.0, 0.5, 0.0);
-    let refused = localizer.correct_scan(at(4000), far, &(Matrix3::identity() * 1e-4));
-    assert!(matches!(refused, Correction::Gated { distance } if distance > 4.0));
+    let rejected = localizer.correct_scan(at(4000), far, &(Matrix3::identity() * 1e-4));
+    assert!(matches!(rejected, Correction::Gated { distance } if distance > 4.0));
     assert_eq!(localizer.estimate(), before);
 
     assert!(matches!(localizer.predict(&odometry(3000)), Prediction::TimeWentBack { by } if by == 1.0));
@@ -196,7 +201,7 @@ fn what_cannot_be_is_refused_with_the_reason() {
 
 proptest! {
     #[test]
-    fn late_is_as_good_as_in_time(
+    fn a_delay_of_a_measurement_does_not_change_the_estimate(
         offsets in prop::collection::vec((-0.03..0.03, -0.03..0.03, -0.01..0.01), 6),
         delays in prop::collection::vec(0..20_i64, 6),
     ) {
@@ -226,7 +231,7 @@ proptest! {
     }
 
     #[test]
-    fn a_measurement_between_two_readings_is_applied_where_it_belongs(ms in 1..999_i64) {
+    fn a_measurement_between_two_readings_is_applied_at_its_stamp(ms in 1..999_i64) {
         let truth = |ms: i64| odometry(ms).pose;
         let mut localizer = localizer();
         driven(0, 1000, &mut localizer);
@@ -247,7 +252,7 @@ fn a_measurement_may_be_ahead_of_the_odometry() {
 }
 
 #[test]
-fn a_visual_frame_that_jumps_is_laid_anew_and_the_estimate_stays() {
+fn a_visual_frame_that_jumps_is_anchored_again_and_the_estimate_stays() {
     let mut localizer = localizer();
     let mut corrections = Vec::new();
     for ms in (0..=4000).step_by(20) {
@@ -264,7 +269,7 @@ fn a_visual_frame_that_jumps_is_laid_anew_and_the_estimate_stays() {
 }
 
 #[test]
-fn wheels_that_spin_against_a_wall_do_not_carry_the_estimate_away() {
+fn wheels_that_spin_at_a_wall_do_not_move_the_estimate_away() {
     let mut localizer = localizer();
     let stuck = odometry(2000).pose;
     let mut recovered = 0;
@@ -283,22 +288,22 @@ fn wheels_that_spin_against_a_wall_do_not_carry_the_estimate_away() {
 }
 
 #[test]
-fn the_cameras_covariance_becomes_the_bases() {
+fn the_camera_covariance_maps_to_the_base() {
     let covariance = planar_covariance(&(Matrix6::identity() * 1e-4), &base_from_camera());
     assert!((covariance[(2, 2)] - 1e-4).abs() < 1e-12);
-    // The lever of 0.45 m adds to the position what the camera's rotation is unsure of.
+    // The lever of 0.45 m adds the camera's rotation error to the position.
     assert!(covariance[(0, 0)] > 1.15e-4 && covariance[(0, 0)] < 1.25e-4, "{covariance}");
 }
 
 #[test]
-fn a_robot_that_was_carried_believes_the_place_that_it_recognises() {
+fn a_kidnapped_robot_recovers_at_the_recognised_place() {
     let mut localizer = localizer();
-    let carried = Pose2::new(2.0, -1.0, 1.5);
+    let carried_by = Pose2::new(2.0, -1.0, 1.5);
     for ms in (0..=4000).step_by(20) {
         localizer.predict(&odometry(ms));
-        // For 1 s after it was carried nothing is recognised.
+        // No place is recognised in the first second after the kidnapping.
         if ms % 60 == 0 && !(2000..3000).contains(&ms) {
-            let shift = if ms < 2000 { Pose2::IDENTITY } else { carried };
+            let shift = if ms < 2000 { Pose2::IDENTITY } else { carried_by };
             let recognised = ms == 3000;
             let pose = VisualPose { recognised, ..visual(ms, shift * odometry(ms).pose) };
             let correction = localizer.correct_visual(&pose);
@@ -309,11 +314,11 @@ fn a_robot_that_was_carried_believes_the_place_that_it_recognises() {
             );
         }
     }
-    assert!(gap(localizer.estimate().pose, carried * odometry(4000).pose) < 0.05);
+    assert!(gap(localizer.estimate().pose, carried_by * odometry(4000).pose) < 0.05);
 }
 
 #[test]
-fn another_visual_map_has_a_frame_of_its_own_and_the_first_keeps_its() {
+fn each_visual_map_keeps_its_own_anchor() {
     let mut localizer = localizer();
     for ms in (0..=4000).step_by(20) {
         localizer.predict(&odometry(ms));

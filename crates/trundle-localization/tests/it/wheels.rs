@@ -1,3 +1,5 @@
+//! Laws and faults of the wheel odometry.
+
 use proptest::prelude::*;
 use std::f64::consts::{FRAC_PI_2, TAU};
 use trundle_core::{
@@ -7,7 +9,7 @@ use trundle_localization::{OdometryConfig, WheelOdometry, WheelReport};
 
 const DT: f64 = 0.02;
 
-/// A Kobuki whose counters are rounded as the real ones are.
+/// A Kobuki with rounded encoder counters.
 struct Drive {
     odometry: WheelOdometry,
     nanos: i64,
@@ -73,13 +75,13 @@ impl Drive {
 }
 
 #[test]
-fn wheels_that_are_not_as_large_as_said_are_learnt() {
+fn wheel_radii_are_estimated_while_driving() {
     let (mut drive, nominal) = (Drive::new(), DifferentialDrive::KOBUKI.wheel_radius);
     let (left, right) = (1.012, 0.994);
     let mut truth = Pose2::IDENTITY;
     drive.drive_with_gyro(Twist2::ZERO, 0.0, 50);
     for i in 0..2000 {
-        // Straight on, and a bend now and then.
+        // Straight on, with a bend in every fourth part.
         let twist = Twist2::new(0.4, if i % 400 < 100 { 0.5 } else { 0.0 });
         let (l, r) = DifferentialDrive::KOBUKI.wheel_speeds(twist);
         drive.nanos += 20_000_000;
@@ -90,16 +92,15 @@ fn wheels_that_are_not_as_large_as_said_are_learnt() {
         drive.odometry.step_gyro(&GyroRate { stamp: drive.stamp(), omega: twist.omega + noise });
         let odometry = drive.read();
         let wobble = Pose2::new(noise * 0.3, -noise * 0.3, 0.0);
-        let seen = truth * wobble;
-        drive.odometry.seen(drive.stamp(), odometry.pose, Some(Pose3::from_pose2(seen)));
+        drive.odometry.add_visual_pose(drive.stamp(), odometry.pose, Pose3::from_pose2(truth * wobble));
     }
     let [l, r] = drive.odometry.wheel_radii().map(|radius| radius / nominal);
     assert!((l - left).abs() < 0.002 && (r - right).abs() < 0.002, "{l} {r}");
 }
 
-/// Scale and bias that are learnt of turns to and fro which the camera sees, when the gyro makes so much of them and `bias` rad/s more from
-/// the first turn on, and the wheels 3 % too much; `tells`: whether there is a gyro.
-fn learnt((gyro, bias): (f64, f64), tells: bool, config: OdometryConfig) -> (f64, f64) {
+/// Estimated scale and bias after turns to both sides that the camera measures. The gyro multiplies the rate by `gyro` and adds
+/// `bias` rad/s from the first turn on; the wheels overestimate turns by 3 %.
+fn calibrated((gyro, bias): (f64, f64), has_gyro: bool, config: OdometryConfig) -> (f64, f64) {
     let mut drive =
         Drive { odometry: WheelOdometry::new(DifferentialDrive::KOBUKI, config).unwrap(), ..Drive::new() };
     let mut truth = Pose2::IDENTITY;
@@ -110,28 +111,33 @@ fn learnt((gyro, bias): (f64, f64), tells: bool, config: OdometryConfig) -> (f64
         truth = truth * Pose2::exp(Vector3::new(twist.v * DT, 0.0, twist.omega * DT));
         let noise = if i % 2 == 0 { 0.01 } else { -0.01 };
         drive.roll(Twist2::new(twist.v, 1.03 * twist.omega));
-        if tells {
+        if has_gyro {
             let omega = twist.omega * gyro + bias + noise;
             drive.odometry.step_gyro(&GyroRate { stamp: drive.stamp(), omega });
         }
         let odometry = drive.read();
         let wobble = Pose2::new(0.0, 0.0, 0.2 * noise);
-        drive.odometry.seen(drive.stamp(), odometry.pose, Some(Pose3::from_pose2(truth * wobble)));
+        drive.odometry.add_visual_pose(drive.stamp(), odometry.pose, Pose3::from_pose2(truth * wobble));
     }
     (drive.odometry.gyro_scale(), drive.odometry.gyro_bias().unwrap_or_default())
 }
 
 #[test]
-fn what_a_gyro_makes_of_turns_and_adds_to_them_is_learnt() {
+fn gyro_scale_and_bias_are_estimated_from_visual_turns() {
     let config = OdometryConfig::default();
     for (gyro, bias) in [(0.99, 0.0), (1.0, 0.004), (1.006, -0.002)] {
-        let (scale, found) = learnt((gyro, bias), true, config.clone());
+        let (scale, found) = calibrated((gyro, bias), true, config.clone());
         assert!((scale * gyro - 1.0).abs() < 1e-3, "{scale} for {gyro}");
         assert!((found - bias).abs() < 5e-4, "{found} for {bias}");
     }
-    let (scale, _) = learnt((0.99, 0.0), true, OdometryConfig { gyro_scale_sigma: 0.0, ..config.clone() });
+    let (scale, _) =
+        calibrated((0.99, 0.0), true, OdometryConfig { gyro_scale_sigma: 0.0, ..config.clone() });
     assert_eq!(scale, 1.0);
-    assert_eq!(learnt((0.99, 0.0), false, config), (1.0, 0.0), "turns of the wheels are none of the gyro's");
+    assert_eq!(
+        calibrated((0.99, 0.0), false, config),
+        (1.0, 0.0),
+        "turns of the wheels do not calibrate the gyro"
+    );
 }
 
 #[test]
@@ -139,14 +145,11 @@ fn one_slip_does_not_change_the_wheels() {
     let mut drive = Drive::new();
     drive.drive_with_gyro(Twist2::ZERO, 0.0, 50);
     drive.drive_with_gyro(Twist2::new(0.4, 0.0), 0.0, 200);
-    // The left wheel spins: a turn that the gyro does not see, a way that the camera does not.
+    // The left wheel spins: the gyro measures no such turn, the camera no such distance.
     drive.drive_with_gyro(Twist2::new(0.4, -0.6), 0.0, 100);
-    drive.odometry.seen(drive.stamp(), Pose2::IDENTITY, Some(Pose3::identity()));
-    drive.odometry.seen(
-        drive.stamp(),
-        Pose2::new(1.2, 0.0, 0.0),
-        Some(Pose3::from_pose2(Pose2::new(0.4, 0.0, 0.0))),
-    );
+    drive.odometry.add_visual_pose(drive.stamp(), Pose2::IDENTITY, Pose3::identity());
+    let visual = Pose3::from_pose2(Pose2::new(0.4, 0.0, 0.0));
+    drive.odometry.add_visual_pose(drive.stamp(), Pose2::new(1.2, 0.0, 0.0), visual);
     let nominal = DifferentialDrive::KOBUKI.wheel_radius;
     for radius in drive.odometry.wheel_radii() {
         assert!((radius / nominal - 1.0).abs() < 1e-3, "{radius}");
@@ -163,7 +166,7 @@ fn a_circle_closes() {
 }
 
 #[test]
-fn a_square_has_corners_where_they_are() {
+fn the_corners_of_a_square_are_exact() {
     let mut drive = Drive::new();
     for corner in [(1.0, 0.0), (1.0, 1.0), (0.0, 1.0), (0.0, 0.0)] {
         drive.drive(Twist2::new(0.5, 0.0), 100);
@@ -175,7 +178,7 @@ fn a_square_has_corners_where_they_are() {
 
 proptest! {
     #[test]
-    fn where_the_counters_start_does_not_matter(left: u16, right: u16, v in -0.7..0.7_f64, omega in -2.0..2.0_f64) {
+    fn odometry_does_not_depend_on_the_start_of_the_counters(left: u16, right: u16, v in -0.7..0.7_f64, omega in -2.0..2.0_f64) {
         let mut here = Drive::new();
         let mut there = Drive::from_ticks(f64::from(left), f64::from(right));
         here.drive(Twist2::new(v, omega), 300);
@@ -199,27 +202,27 @@ proptest! {
 }
 
 #[test]
-fn a_metre_costs_the_documented_sigmas() {
+fn a_metre_adds_the_documented_sigmas() {
     let mut drive = Drive::new();
     drive.drive(Twist2::new(0.5, 0.0), 100);
     let covariance = drive.odometry.odometry().covariance;
     assert!((covariance[(0, 0)].sqrt() - 0.02).abs() < 1e-4, "{covariance}");
     assert!((covariance[(2, 2)].sqrt() - 0.02).abs() < 1e-4, "{covariance}");
-    // Across: the heading's random walk carried along, and sliding.
+    // Across: the heading's random walk transported along the path, plus the sideways noise.
     let mut rails = Drive::with(OdometryConfig { sideways_noise: 0.0, ..OdometryConfig::default() });
     rails.drive(Twist2::new(0.5, 0.0), 100);
-    let carried = rails.odometry.odometry().covariance[(1, 1)];
-    assert!((carried - 0.02_f64.powi(2) / 3.0).abs() < 4e-6, "{carried}");
-    assert!((covariance[(1, 1)] - carried - 0.001_f64.powi(2)).abs() < 1e-9, "{covariance}");
+    let transported = rails.odometry.odometry().covariance[(1, 1)];
+    assert!((transported - 0.02_f64.powi(2) / 3.0).abs() < 4e-6, "{transported}");
+    assert!((covariance[(1, 1)] - transported - 0.001_f64.powi(2)).abs() < 1e-9, "{covariance}");
 }
 
 #[test]
-fn the_gyro_steers_less_its_bias_which_it_shows_at_rest() {
+fn the_gyro_sets_the_heading_with_its_bias_removed() {
     let mut drive = Drive::new();
     drive.drive_with_gyro(Twist2::ZERO, 0.03, 200);
     assert!((drive.odometry.gyro_bias().unwrap() - 0.03).abs() < 1e-3);
     assert_eq!(drive.odometry.odometry().pose.theta, 0.0, "noise does not turn a robot at rest");
-    // Wheels that believe in 5 % more turn than there is.
+    // The wheels overestimate the turn by 5 %.
     drive.drive_with_gyro(Twist2::new(0.2, 1.05), 1.03, 100);
     let theta = drive.odometry.odometry().pose.theta;
     assert!((theta - 2.0).abs() < 0.03, "{theta}");
@@ -228,7 +231,7 @@ fn the_gyro_steers_less_its_bias_which_it_shows_at_rest() {
 }
 
 #[test]
-fn a_robot_that_creeps_turns_between_the_ticks_too() {
+fn slow_turns_are_integrated_between_ticks() {
     // A tick of one wheel is 0.04 deg: at these rates two to nine readings of ten show none.
     for rate in [0.005, 0.01, -0.02, 0.03] {
         let mut drive = Drive::new();
@@ -246,7 +249,7 @@ fn a_robot_that_creeps_turns_between_the_ticks_too() {
 }
 
 #[test]
-fn the_first_tick_after_a_short_stop_tells_of_its_own_step_alone() {
+fn the_first_step_after_a_stop_has_only_its_own_turn() {
     let mut drive = Drive::new();
     drive.drive_with_gyro(Twist2::ZERO, 0.0, 200);
     drive.drive_with_gyro(Twist2::new(0.3, 0.0), 0.0, 50);
@@ -258,23 +261,22 @@ fn the_first_tick_after_a_short_stop_tells_of_its_own_step_alone() {
 }
 
 #[test]
-fn without_a_gyro_for_a_while_the_wheels_steer() {
+fn wheels_set_the_heading_while_the_gyro_is_silent() {
     let mut drive = Drive::new();
     drive.drive_with_gyro(Twist2::ZERO, 0.0, 50);
     drive.drive(Twist2::new(0.0, 1.0), 50);
     drive.drive_with_gyro(Twist2::new(0.0, 1.0), 1.0, 50);
     let theta = drive.odometry.odometry().pose.theta;
-    // When it fell silent its last rate was held for 0.05 s.
+    // The last rate of a silent gyro is held for 0.05 s.
     assert!((theta - 2.0).abs() < 0.055, "{theta}");
 }
 
 #[test]
-fn slip_is_told_and_widens_the_covariance() {
+fn slip_is_reported_and_widens_the_covariance() {
     let (mut gripping, mut slipping) = (Drive::new(), Drive::new());
     gripping.drive_with_gyro(Twist2::new(0.3, 0.0), 0.0, 100);
     slipping.drive_with_gyro(Twist2::new(0.3, 0.0), 0.0, 50);
-    // The right wheel spins on a cable: the wheels say turn, the gyro says straight.
-    // (A gyro that is alive trembles.)
+    // The right wheel spins: the wheels measure a turn, the gyro none. Noise shows that the gyro works.
     for _ in 0..25 {
         slipping.drive_with_gyro(Twist2::new(0.3, 0.8), 1e-4, 1);
         slipping.drive_with_gyro(Twist2::new(0.3, 0.8), -1e-4, 1);
@@ -290,7 +292,7 @@ fn slip_is_told_and_widens_the_covariance() {
 }
 
 #[test]
-fn time_that_goes_back_is_told_and_changes_nothing() {
+fn a_reading_from_the_past_is_reported_and_changes_nothing() {
     let mut drive = Drive::new();
     drive.drive(Twist2::new(0.5, 0.1), 50);
     let before = *drive.odometry.odometry();
@@ -302,7 +304,7 @@ fn time_that_goes_back_is_told_and_changes_nothing() {
 }
 
 #[test]
-fn a_gap_is_told_and_widens_the_covariance_but_never_jumps() {
+fn a_gap_is_reported_and_widens_the_covariance_without_a_jump() {
     let mut drive = Drive::new();
     drive.drive(Twist2::new(0.5, 0.0), 50);
     let before = *drive.odometry.odometry();
@@ -318,7 +320,7 @@ fn a_gap_is_told_and_widens_the_covariance_but_never_jumps() {
 }
 
 #[test]
-fn a_broken_reading_is_refused_and_a_reset_counter_is_found() {
+fn a_broken_reading_is_rejected_and_a_counter_reset_is_detected() {
     let mut drive = Drive::new();
     drive.drive(Twist2::new(0.5, 0.0), 50);
     let before = *drive.odometry.odometry();
@@ -328,7 +330,7 @@ fn a_broken_reading_is_refused_and_a_reset_counter_is_found() {
     assert_eq!(drive.odometry.step_wheels(&broken), before);
     assert!(matches!(drive.odometry.report(), WheelReport::TooFast { speed } if speed > 2.0));
     drive.drive(Twist2::new(0.5, 0.0), 49);
-    assert!((drive.odometry.odometry().pose.x - 1.0).abs() < 1e-3, "one broken reading loses no way");
+    assert!((drive.odometry.odometry().pose.x - 1.0).abs() < 1e-3, "one broken reading loses no distance");
     assert_eq!(drive.odometry.counts().too_fast, 1);
 
     (drive.left, drive.right) = (20_000.0, 20_000.0);
@@ -340,13 +342,13 @@ fn a_broken_reading_is_refused_and_a_reset_counter_is_found() {
 }
 
 #[test]
-fn bad_configurations_are_refused_by_name() {
+fn an_invalid_configuration_is_rejected_with_its_field() {
     let config = OdometryConfig { max_gap: f64::NAN, ..OdometryConfig::default() };
     assert_eq!(WheelOdometry::new(DifferentialDrive::KOBUKI, config).unwrap_err().field, "max_gap");
 }
 
 #[test]
-fn a_gyro_that_is_stuck_no_longer_steers() {
+fn a_frozen_gyro_does_not_set_the_heading() {
     let mut drive = Drive::new();
     drive.drive_with_gyro(Twist2::ZERO, 0.0, 50);
     drive.drive_with_gyro(Twist2::new(0.0, 1.0), 0.0, 100);

@@ -134,7 +134,7 @@ impl Robot {
             Outcome::Decided { captain, decision, asked } => {
                 let is_newest = self.latest.odometry.is_some_and(|odometry| odometry.stamp == asked);
                 report.twist = (is_newest && self.background.felt.is_empty()).then_some(decision.twist);
-                report.twist.into_iter().for_each(|twist| self.odometry.tell(twist));
+                report.twist.into_iter().for_each(|twist| self.odometry.set_command(twist));
                 self.take_back(captain, report.twist);
                 report.replanned = decision.replanned;
             }

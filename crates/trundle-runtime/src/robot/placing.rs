@@ -28,7 +28,7 @@ impl Robot {
                     self.lookout.iter_mut().for_each(|lookout| lookout.placed_by_scans());
                 }
                 // It is elsewhere than it was believed to be, however unsurely: the next scan tells where.
-                _ => self.localizer.lose_place(),
+                _ => self.localizer.set_pose_unknown(),
             }
         }
         let is_lost = is_lost(&self.localizer);
@@ -63,7 +63,7 @@ impl Robot {
 
     /// It was carried away.
     pub(super) fn lose_place(&mut self) {
-        self.localizer.lose_place();
+        self.localizer.set_pose_unknown();
         self.latest.map_watch.forget();
         self.forget_traffic();
     }

@@ -24,7 +24,7 @@ impl Robot {
         }
         robot.know(&config, &memory.grid)?;
         robot.localizer =
-            Localizer::new(config.localization, robot.base_from_camera)?.waking(memory.visual_maps.clone());
+            Localizer::new(config.localization, robot.base_from_camera)?.resumed(memory.visual_maps.clone());
         robot.go_on(memory.mission.clone().woken());
         Ok(robot)
     }

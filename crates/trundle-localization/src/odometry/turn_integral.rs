@@ -1,22 +1,24 @@
+//! Integral of the gyro's rate, read at the stamps of the wheels.
+
 use trundle_core::{GyroRate, Stamp};
 
-/// The integral of the gyro's rate, read off at the wheels' times.
+/// The integral of the gyro's rate, read at the stamps of the wheels.
 ///
-/// A reading is the mean rate since the one before it: a gyro's output filter passes half its own rate of readings, and trapezoids over
-/// such means would lag by half a period (a degree when a turn of 100 deg/s begins). After the newest reading its rate is held, and what
-/// that was wrong by is made good with the next one.
+/// A reading is the mean rate since the one before it: a gyro's output filter passes half its own rate of readings. Trapezoids
+/// over such means would lag by half a period (a degree at the start of a turn of 100 deg/s). After the newest reading its rate
+/// is held; the next reading corrects the held part.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct TurnIntegral {
     newest: Option<GyroRate>,
-    /// Integral up to the newest reading, rad, bias in it.
+    /// Integral up to the newest reading, rad, with the bias.
     angle: f64,
-    /// What was read off last: up to when, and the angle there.
-    read: Option<(Stamp, f64)>,
+    /// Stamp and integral of the last call of [`Self::turn_until`].
+    last_read: Option<(Stamp, f64)>,
 }
 
 impl TurnIntegral {
-    /// Takes in a reading. One that is not newer than the last is refused (`false`); after a gap longer than `timeout` s
-    /// the integral begins anew.
+    /// Adds a reading. A reading that is not newer than the last is rejected (`false`); a gap longer than `timeout` s restarts
+    /// the integral.
     pub(crate) fn push(&mut self, rate: GyroRate, timeout: f64) -> bool {
         if !rate.omega.is_finite() {
             return false;
@@ -36,12 +38,11 @@ impl TurnIntegral {
         true
     }
 
-    /// The turn since the last time it was read off, rad, with how long that was, s; `None` when the gyro does not cover
-    /// that time.
+    /// The turn since the last call, rad, with its duration, s; `None` where the gyro does not cover that time.
     pub(crate) fn turn_until(&mut self, stamp: Stamp, timeout: f64) -> Option<(f64, f64)> {
         let newest = self.newest.filter(|newest| (stamp - newest.stamp).abs() <= timeout)?;
         let angle = self.angle + newest.omega * (stamp - newest.stamp);
-        let last = self.read.replace((stamp, angle));
+        let last = self.last_read.replace((stamp, angle));
         last.map(|(since, start)| (angle - start, stamp - since))
     }
 }
@@ -55,7 +56,7 @@ mod tests {
     }
 
     #[test]
-    fn a_changing_rate_is_integrated_whatever_the_order_of_the_readings() {
+    fn the_integral_does_not_depend_on_the_order_of_wheel_and_gyro_readings() {
         for gyro_first in [true, false] {
             let mut integral = TurnIntegral::default();
             let mut sum = 0.0;
@@ -78,7 +79,7 @@ mod tests {
     }
 
     #[test]
-    fn a_gyro_that_falls_silent_is_no_gyro() {
+    fn a_silent_gyro_yields_no_turn() {
         let mut integral = TurnIntegral::default();
         assert_eq!(integral.turn_until(at(0), 0.1), None);
         integral.push(GyroRate { stamp: at(0), omega: 1.0 }, 0.1);

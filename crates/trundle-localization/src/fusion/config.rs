@@ -1,41 +1,43 @@
+//! Configuration of the localizer.
+
 use nalgebra::{Matrix3, Vector3};
 use serde::{Deserialize, Serialize};
 use trundle_core::{Invalid, require_in};
 
-/// How far each source of the pose is trusted.
+/// Noise, gates and time limits of the localizer's measurements.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct LocalizerConfig {
-    /// Noise of a visual position beyond its own covariance (one sigma), m, 0.001 to 1. Default 0.02.
+    /// Noise of a visual position added to the covariance of the pose (one sigma), m, 0.001 to 1. Default 0.02.
     pub visual_position_sigma: f64,
-    /// Noise of a visual heading beyond its own covariance (one sigma), deg, 0.01 to 30. Default 0.6.
+    /// Noise of a visual heading added to the covariance of the pose (one sigma), deg, 0.01 to 30. Default 0.6.
     pub visual_heading_sigma_deg: f64,
-    /// A weak visual pose has this many times the sigma, 1 to 100. Default 3.
+    /// Factor on the sigma of a weak visual pose, 1 to 100. Default 3.
     pub weak_factor: f64,
-    /// Noise of a scan match's position beyond its own covariance (one sigma), m, 0.001 to 1. Default 0.02.
+    /// Noise of a scan match's position added to its covariance (one sigma), m, 0.001 to 1. Default 0.02.
     pub scan_position_sigma: f64,
-    /// Noise of a scan match's heading beyond its own covariance (one sigma), deg, 0.01 to 30. Default 0.5.
+    /// Noise of a scan match's heading added to its covariance (one sigma), deg, 0.01 to 30. Default 0.5.
     pub scan_heading_sigma_deg: f64,
-    /// No number of corrections makes the position surer than this (one sigma), m, 0 to 1. Default 0.015: neighbouring
-    /// images err alike, so that their mean is hardly better than one of them.
+    /// Smallest sigma of the position after any number of corrections, m, 0 to 1. Default 0.015: errors of neighbouring images
+    /// are correlated, and averaging them gains little.
     pub least_position_sigma: f64,
-    /// No number of corrections makes the heading surer than this (one sigma), deg, 0 to 30. Default 0.45.
+    /// Smallest sigma of the heading after any number of corrections, deg, 0 to 30. Default 0.45.
     pub least_heading_sigma_deg: f64,
-    /// A visual map is laid into the map only by a place that is surer than this (one sigma), m, 0.01 to 10. Default 0.5.
+    /// Largest sigma of the position that still anchors a visual map, m, 0.01 to 10. Default 0.5.
     pub anchor_sigma: f64,
-    /// Measurements farther off than this are not believed, in sigmas (Mahalanobis distance), 1 to 100. Default 4: one
-    /// good measurement in 1000.
+    /// Gate of the Mahalanobis distance, sigmas, 1 to 100. Measurements farther off are rejected. Default 4: one correct
+    /// measurement in 1000.
     pub gate: f64,
-    /// After so many unbelieved visual poses in a row something must have happened, 2 to 1000. Default 8: half a second.
+    /// Number of consecutive rejected visual poses that starts a recovery, 2 to 1000. Default 8: half a second.
     pub recover_after: usize,
-    /// Between two visual poses: a motion that differs this much from the wheels' is a jump, m, 0.01 to 10. Default 0.1:
-    /// three times what slipping wheels make of 1/15 s at 0.5 m/s.
+    /// Difference of the motions by camera and wheels between two visual poses that counts as a jump, m, 0.01 to 10.
+    /// Default 0.1: three times the slip of 1/15 s at 0.5 m/s.
     pub jump_distance: f64,
-    /// Between two visual poses: a turn that differs this much from the wheels' is a jump, deg, 0.1 to 180. Default 6.
+    /// Difference of the turns by camera and wheels between two visual poses that counts as a jump, deg, 0.1 to 180. Default 6.
     pub jump_turn_deg: f64,
-    /// Measurements may be this late, s, 0.1 to 60. Default 2.
+    /// Largest delay of a measurement, s, 0.1 to 60. Default 2.
     pub history: f64,
-    /// Measurements may be this far ahead of the newest odometry, s, 0 to 1. Default 0.1.
+    /// Largest lead of a measurement over the newest odometry, s, 0 to 1. Default 0.1.
     pub most_ahead: f64,
 }
 
@@ -61,10 +63,10 @@ impl Default for LocalizerConfig {
 }
 
 impl LocalizerConfig {
-    /// Passes a valid configuration through.
+    /// Returns a valid configuration unchanged.
     ///
     /// # Errors
-    /// When a number is out of the range that its field names.
+    /// When a number is outside the range in its field's documentation.
     pub fn validated(self) -> Result<Self, Invalid> {
         require_in("visual_position_sigma", self.visual_position_sigma, "m", 0.001, 1.0)?;
         require_in("visual_heading_sigma_deg", self.visual_heading_sigma_deg, "deg", 0.01, 30.0)?;
@@ -91,7 +93,7 @@ impl LocalizerConfig {
         variances(self.scan_position_sigma, self.scan_heading_sigma_deg)
     }
 
-    pub(crate) fn least_variances(&self) -> Vector3<f64> {
+    pub(crate) fn min_variances(&self) -> Vector3<f64> {
         variances(self.least_position_sigma, self.least_heading_sigma_deg).diagonal()
     }
 }

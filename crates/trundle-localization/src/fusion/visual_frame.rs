@@ -1,6 +1,9 @@
+//! Poses of the visual maps in the map frame.
+
 use crate::{
-    LocalizerConfig, VisualPose, VisualQuality,
-    belief::{Belief, Measurement},
+    fusion::belief::{Belief, Measurement},
+    fusion::config::LocalizerConfig,
+    fusion::correction::{VisualPose, VisualQuality},
     planar::{adjoint, planar_covariance, symmetric},
 };
 use nalgebra::{Matrix3, Vector3};
@@ -8,25 +11,27 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use trundle_core::{Pose2, Pose3};
 
-/// Where the visual frames lie in the map: `map_from_visual` of each visual map, laid when a pose in it is first seen, and then
-/// estimated: as uncertain as the place was by which it was laid, and surer with each visual pose once other sources know the
-/// place better. The first one, laid when the map began, is certain: it makes the map's frame.
+/// The estimated `map_from_visual` of each visual map.
+///
+/// The first pose of a visual map anchors its frame, with the uncertainty of the base's pose at that stamp. Later visual poses
+/// refine the anchor where other sources know the base's pose better. The anchor of the first visual map is certain: it
+/// defines the map's frame.
 #[derive(Debug, Clone)]
 pub(crate) struct VisualFrame {
     base_from_camera: Pose3,
-    /// By visual map. A map that begins while another is lost has a frame of its own.
+    /// Anchor of each visual map. A map that starts while another is lost has its own frame.
     anchors: BTreeMap<u32, Anchor>,
     /// The visual map of the last pose.
     current: u32,
 }
 
-/// Where a visual map lies: at `exp(e) * map_from_visual` with `e` in the floor's plane, of zero mean and this covariance.
+/// Pose of a visual map: `exp(e) * map_from_visual` with `e` in the floor's plane, of zero mean and this covariance.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct VisualAnchor {
     /// The visual map's frame in the map.
     pub map_from_visual: Pose3,
-    /// Symmetric; x (m), y (m), theta (rad). All 0: certain, it is not moved any more.
+    /// Symmetric; x (m), y (m), theta (rad). All 0: certain, the anchor is fixed.
     pub covariance: [[f64; 3]; 3],
 }
 
@@ -48,37 +53,38 @@ struct Anchor {
     covariance: Matrix3<f64>,
 }
 
-/// The place is known better than a frame when its variance is so much smaller.
-const SURER: f64 = 0.25;
+/// Ratio of the variances of base and anchor below which a visual pose refines the anchor. Above it both share their error.
+/// Source: ours.
+const MAX_VARIANCE_RATIO: f64 = 0.25;
 
 impl VisualFrame {
     pub(crate) fn new(base_from_camera: Pose3) -> Self {
         Self { base_from_camera, anchors: BTreeMap::new(), current: 0 }
     }
 
-    /// Takes over where visual maps lie.
-    pub(crate) fn lay(&mut self, maps: BTreeMap<u32, VisualAnchor>) {
+    /// Replaces the anchors of all visual maps.
+    pub(crate) fn set_anchors(&mut self, maps: BTreeMap<u32, VisualAnchor>) {
         let anchor = |VisualAnchor { map_from_visual, covariance }| Anchor {
             map_from_visual,
             covariance: covariance.into(),
         };
-        self.anchors = maps.into_iter().map(|(map, laid)| (map, anchor(laid))).collect();
+        self.anchors = maps.into_iter().map(|(map, stored)| (map, anchor(stored))).collect();
     }
 
-    /// Where every visual map lies, by its number.
+    /// The anchor of every visual map, by its number.
     pub(crate) fn maps(&self) -> BTreeMap<u32, VisualAnchor> {
-        let laid = |Anchor { map_from_visual, covariance }: &Anchor| VisualAnchor {
+        let stored = |Anchor { map_from_visual, covariance }: &Anchor| VisualAnchor {
             map_from_visual: *map_from_visual,
             covariance: symmetric(*covariance).into(),
         };
-        self.anchors.iter().map(|(map, anchor)| (*map, laid(anchor))).collect()
+        self.anchors.iter().map(|(map, anchor)| (*map, stored(anchor))).collect()
     }
 
     pub(crate) fn map_from_visual(&self) -> Option<Pose3> {
         Some(self.anchors.get(&self.current)?.map_from_visual)
     }
 
-    /// Lays the visual frame so that a visual pose agrees with where the base is believed to be: gravity is along the base's z
+    /// Anchors the visual frame so that a visual pose agrees with the belief of the base's pose: gravity is along the base's z
     /// axis.
     pub(crate) fn anchor(&mut self, belief: &Belief, visual: &VisualPose) {
         let map_from_camera = Pose3::from_pose2(belief.pose) * self.base_from_camera;
@@ -88,10 +94,11 @@ impl VisualFrame {
         self.anchors.insert(visual.map, Anchor { map_from_visual, covariance });
     }
 
-    /// What a visual pose says of the base; `None` before its frame is anchored.
+    /// The measurement of the base's pose by a visual pose; `None` before its frame is anchored.
     ///
-    /// Its noise is its own covariance and the configured one, both for weak poses larger, that of its frame, and how far out of
-    /// the floor's plane it lies: a visual map that errs by so much upward errs by so much sideways too.
+    /// Its noise is the sum of four covariances: the pose's own and the configured one (both larger for weak poses), that of the
+    /// anchor, and the distance of the pose from the floor's plane. A visual map with a vertical error has a horizontal error of
+    /// the same size.
     pub(crate) fn measurement(
         &mut self,
         visual: &VisualPose,
@@ -108,26 +115,26 @@ impl VisualFrame {
         let own = planar_covariance(&visual.covariance, &self.base_from_camera);
         let pose = map_from_base.to_pose2();
         let to_base = adjoint(&pose.inverse());
-        let of_frame = to_base * anchor.covariance * to_base.transpose();
-        let noise = (config.visual_noise() + own) * factor + out_of_plane(&map_from_base) + of_frame;
-        let (doubt, frame) = (Matrix3::zeros(), of_frame.diagonal());
-        Some(Measurement { pose, noise: symmetric(noise), doubt, frame })
+        let anchor_covariance = to_base * anchor.covariance * to_base.transpose();
+        let noise = (config.visual_noise() + own) * factor + out_of_plane(&map_from_base) + anchor_covariance;
+        let (prior_inflation, variance_floor) = (Matrix3::zeros(), anchor_covariance.diagonal());
+        Some(Measurement { pose, noise: symmetric(noise), prior_inflation, variance_floor })
     }
 
-    /// What a measurement that was just believed says of the frame it was made in, where other sources know the place better than
-    /// the frame is known: the part of the innovation that the frame's uncertainty explains moves the frame, the Kalman update of
-    /// `e`. Before that, place and frame err alike, and nothing is learnt.
+    /// Refines the anchor by a measurement that was just accepted, where other sources know the base's pose better than the
+    /// anchor: a Kalman update of `e` by the part of the innovation that the anchor's uncertainty explains. Elsewhere base and
+    /// anchor share their error, and the anchor stays.
     pub(crate) fn refine(&mut self, before: &Belief, measurement: &Measurement) {
         let Some(anchor) = self.anchors.get_mut(&self.current) else { return };
-        let of_frame = measurement.frame.xy().max();
-        if before.position_variance() > SURER * of_frame || of_frame == 0.0 {
+        let anchor_variance = measurement.variance_floor.xy().max();
+        if before.position_variance() > MAX_VARIANCE_RATIO * anchor_variance || anchor_variance == 0.0 {
             return;
         }
         let (innovation, _) = before.innovation(measurement);
         let to_base = adjoint(&measurement.pose.inverse());
         let Some(spread) = symmetric(before.covariance + measurement.noise).cholesky() else { return };
         let gain = anchor.covariance * to_base.transpose() * spread.inverse();
-        // A frame that lies too far ahead shows the base too far ahead.
+        // An anchor too far ahead measures the base too far ahead.
         let off = Pose2::exp(-(gain * innovation));
         anchor.map_from_visual = (Pose3::from_pose2(off) * anchor.map_from_visual).renormalized();
         anchor.covariance = symmetric(anchor.covariance - gain * to_base * anchor.covariance);

@@ -1,0 +1,4 @@
+//! Detection of faults of wheels and gyro.
+
+pub(crate) mod gyro_fault;
+pub(crate) mod wheel_fault;

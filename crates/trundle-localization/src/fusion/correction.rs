@@ -1,0 +1,98 @@
+//! Measurements of the localizer, and the use that was made of each.
+
+use nalgebra::Matrix6;
+use trundle_core::{Pose3, Stamp};
+
+/// A camera pose from visual tracking.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct VisualPose {
+    /// Stamp of the image.
+    pub stamp: Stamp,
+    /// The camera's pose in the visual frame.
+    pub visual_from_camera: Pose3,
+    /// Its covariance as a right perturbation (m, m, m, rad, rad, rad); zeros leave the configured noise alone.
+    pub covariance: Matrix6<f64>,
+    /// Quality of the pose.
+    pub quality: VisualQuality,
+    /// Number of the visual map of the pose: each visual map has its own frame.
+    pub map: u32,
+    /// Whether a place was recognised in this image (a loop closure, a relocalisation, a merge of two maps). Such a pose is
+    /// accepted at any distance from the prediction.
+    pub recognised: bool,
+}
+
+/// Quality of a visual pose.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum VisualQuality {
+    /// A pose from many landmarks.
+    Ok,
+    /// A pose from few landmarks, with larger noise.
+    Weak,
+}
+
+/// Use of a measurement of the pose.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Correction {
+    /// First visual pose of a visual map: it anchors the visual frame in the map.
+    Anchored,
+    /// First visual pose of a visual map while the robot's pose is too uncertain to anchor the map: ignored.
+    PoseUnknown,
+    /// Applied.
+    Applied {
+        /// Mahalanobis distance from the prediction.
+        distance: f64,
+    },
+    /// Outside the gate: rejected.
+    Gated {
+        /// Mahalanobis distance from the prediction.
+        distance: f64,
+    },
+    /// Consecutive visual poses outside the gate, which began with a jump that the wheels did not measure: the visual frame
+    /// moved (a loop closure, a new map). `map_from_visual` was anchored again; the estimate stays.
+    Reanchored,
+    /// A recognised place far from the prediction, or consecutive visual poses outside the gate without a jump: the wheels
+    /// slipped, or the robot was transported. The estimate moved to the visual pose.
+    Recovered {
+        /// Mahalanobis distance from the prediction.
+        distance: f64,
+    },
+    /// Older than the buffer: rejected.
+    TooOld {
+        /// By how much, s.
+        by: f64,
+    },
+    /// Too far ahead of the newest odometry: rejected.
+    TooNew {
+        /// By how much, s.
+        by: f64,
+    },
+    /// No odometry has arrived: rejected.
+    NoOdometry,
+    /// Pose or covariance is not finite: rejected.
+    NotFinite,
+}
+
+impl Correction {
+    /// Whether the measurement changed the estimate.
+    pub fn is_applied(&self) -> bool {
+        matches!(self, Self::Applied { .. } | Self::Recovered { .. })
+    }
+}
+
+/// Use of a reading of the odometry.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Prediction {
+    /// First reading: the estimate starts here.
+    Started,
+    /// The estimate moved with the odometry.
+    Moved,
+    /// Stamp of the last reading: no effect.
+    NothingNew,
+    /// Older than the last reading: rejected.
+    TimeWentBack {
+        /// By how much, s.
+        by: f64,
+    },
+    /// A number in the reading is not finite: rejected.
+    NotFinite,
+}

@@ -1,0 +1,6 @@
+//! Odometry of wheels and gyro.
+
+pub(crate) mod report;
+pub(crate) mod state;
+pub(crate) mod turn_integral;
+pub(crate) mod wheel_odometry;

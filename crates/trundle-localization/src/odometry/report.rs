@@ -1,0 +1,86 @@
+//! Use of each reading of the wheels.
+
+/// Use of one reading of the wheels.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum WheelReport {
+    /// No reading has arrived.
+    #[default]
+    Nothing,
+    /// First reading: the odometry starts here.
+    Started,
+    /// Applied.
+    Used,
+    /// Applied while wheels and gyro disagree: at least one wheel slips. The covariance grows with the difference.
+    Slipping {
+        /// Turn rate by the wheels minus turn rate by the gyro, rad/s.
+        rate: f64,
+    },
+    /// Not newer than the last reading: rejected.
+    TimeWentBack {
+        /// By how much, s, 0 or more.
+        by: f64,
+    },
+    /// Too long after the last reading: the motion between is unknown. It enters the covariance, not the pose.
+    Gap {
+        /// How long, s.
+        length: f64,
+    },
+    /// Speed of a wheel above the limit: rejected.
+    TooFast {
+        /// Speed of the faster wheel, m/s.
+        speed: f64,
+    },
+    /// Second consecutive reading at impossible counts: the encoders were reset. The motion between is unknown. It enters the
+    /// covariance, not the pose.
+    Restarted,
+}
+
+/// Number of readings of each kind.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct WheelCounts {
+    /// Applied, with or without slip.
+    pub used: usize,
+    /// Applied with slip.
+    pub slipping: usize,
+    /// Not newer than the last reading.
+    pub time_went_back: usize,
+    /// After a gap.
+    pub gaps: usize,
+    /// Above the speed limit.
+    pub too_fast: usize,
+    /// Resets of the encoders.
+    pub restarts: usize,
+    /// Readings of the gyro that were not newer than the last one, or not finite.
+    pub gyro_refused: usize,
+}
+
+/// The newest report and the counts of all.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct ReportLog {
+    pub(crate) newest: WheelReport,
+    pub(crate) counts: WheelCounts,
+}
+
+impl ReportLog {
+    pub(crate) fn add(&mut self, report: WheelReport) {
+        self.newest = report;
+        self.counts.add(&report);
+    }
+}
+
+impl WheelCounts {
+    fn add(&mut self, report: &WheelReport) {
+        match report {
+            WheelReport::Nothing | WheelReport::Started => {}
+            WheelReport::Used => self.used += 1,
+            WheelReport::Slipping { .. } => {
+                self.used += 1;
+                self.slipping += 1;
+            }
+            WheelReport::TimeWentBack { .. } => self.time_went_back += 1,
+            WheelReport::Gap { .. } => self.gaps += 1,
+            WheelReport::TooFast { .. } => self.too_fast += 1,
+            WheelReport::Restarted => self.restarts += 1,
+        }
+    }
+}
