@@ -1,6 +1,6 @@
 //! Everything that must hold before a change is merged.
 
-use crate::{Verdict, bad_days, program, replay_check, tidy};
+use crate::{Verdict, bad_days, golden, program, replay_check, tidy};
 use std::path::Path;
 use std::time::Instant;
 
@@ -15,7 +15,7 @@ const TEST: Step = Step {
     check: |root| program::cargo(root, &["test", "--workspace"], &[]),
 };
 
-const REST: [Step; 8] = [
+const REST: [Step; 9] = [
     Step {
         name: "cargo fmt --all --check",
         check: |root| program::cargo(root, &["fmt", "--all", "--check"], &[]),
@@ -34,10 +34,16 @@ const REST: [Step; 8] = [
         },
     },
     Step { name: "cargo build --release", check: |root| program::cargo(root, &["build", "--release"], &[]) },
+    Step { name: "cargo xtask golden", check: golden_net },
     Step { name: "trundle demo", check: demo },
     Step { name: "cargo xtask replay-check", check: |root| replay_check::run(root, 1) },
     Step { name: "cargo xtask bad-days", check: bad_days::run },
 ];
+
+/// Nothing has changed that was not meant to change.
+fn golden_net(root: &Path) -> Verdict {
+    golden::run(root, &golden::Options { update: false, only: None, profile: "release".into() })
+}
 
 /// The README's first command: it must end well, and nothing be touched.
 fn demo(root: &Path) -> Verdict {

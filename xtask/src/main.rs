@@ -1,9 +1,10 @@
-//! Chores of the workspace: `cargo xtask ci | tidy | replay-check | bad-days | demo-seeds`.
+//! Chores of the workspace: `cargo xtask ci | tidy | golden | replay-check | bad-days | demo-seeds`.
 #![expect(clippy::print_stdout, clippy::print_stderr, reason = "this is a program that talks")]
 
 mod bad_days;
 mod ci;
 mod compare;
+mod golden;
 mod program;
 mod replay_check;
 mod seeds;
@@ -31,6 +32,18 @@ enum Chore {
     },
     /// Check the design's invariants in the sources.
     Tidy,
+    /// Compare hashes of twists, poses, grids, maps and plans with the committed ones.
+    Golden {
+        /// Write the hashes that were found into the golden file.
+        #[arg(long)]
+        update: bool,
+        /// Only cases whose name holds this.
+        #[arg(long, value_name = "WORD")]
+        only: Option<String>,
+        /// Build profile of the program under test: release or dev.
+        #[arg(long, default_value = "release")]
+        profile: String,
+    },
     /// Demo on one thread, on two, and replayed: all three must write the same bytes.
     ReplayCheck {
         /// Seed of the demo.
@@ -61,6 +74,9 @@ fn main() -> ExitCode {
     let verdict = match Cli::parse().chore {
         Chore::Ci { tested } => ci::run(&root, tested),
         Chore::Tidy => tidy::run(&root),
+        Chore::Golden { update, only, profile } => {
+            golden::run(&root, &golden::Options { update, only, profile })
+        }
         Chore::ReplayCheck { seed } => replay_check::run(&root, seed),
         Chore::BadDays => bad_days::run(&root),
         Chore::DemoSeeds { seeds, first, explore } => {

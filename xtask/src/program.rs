@@ -11,12 +11,18 @@ pub fn cargo(root: &Path, args: &[&str], env: &[(&str, &str)]) -> Result<bool, S
     Ok(status.success())
 }
 
+/// Builds the program in a profile (`release`, `dev`) and says where it is.
+pub fn trundle(root: &Path, profile: &str) -> Result<PathBuf, String> {
+    if !cargo(root, &["build", "--profile", profile, "--package", "trundle-cli"], &[])? {
+        return Err(format!("the program does not build in profile {profile}"));
+    }
+    let folder = if profile == "dev" { "debug" } else { profile };
+    Ok(target(root)?.join(folder).join(format!("trundle{}", std::env::consts::EXE_SUFFIX)))
+}
+
 /// Builds the release program and says where it is.
 pub fn release_trundle(root: &Path) -> Result<PathBuf, String> {
-    if !cargo(root, &["build", "--release", "--package", "trundle-cli"], &[])? {
-        return Err("the release program does not build".into());
-    }
-    Ok(target(root)?.join("release").join(format!("trundle{}", std::env::consts::EXE_SUFFIX)))
+    trundle(root, "release")
 }
 
 /// Runs the program; its exit code (`None`: killed). What it prints goes through.

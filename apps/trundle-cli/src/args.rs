@@ -90,6 +90,9 @@ pub struct DemoArgs {
     /// What breaks, and when: a TOML file as for `trundle sim --faults`.
     #[arg(long, value_name = "FILE")]
     pub faults: Option<PathBuf>,
+    /// Give the run up after this much of the robot's time, s [default: 600 a goal, 1800 for exploring]
+    #[arg(long, value_name = "S", value_parser = positive_seconds)]
+    pub time_limit: Option<f64>,
     /// Robot file (see `trundle config`).
     #[arg(long, value_name = "FILE")]
     pub config: Option<PathBuf>,
@@ -197,6 +200,14 @@ impl FromStr for PoseArg {
         let y = coordinate("Y", y, "m", 1e6)?;
         let degrees = coordinate("DEG", degrees, "deg", 1e6)?;
         Ok(Self(Pose2::new(x, y, degrees.to_radians())))
+    }
+}
+
+/// A time span on the command line: a finite number of seconds above 0.
+fn positive_seconds(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(seconds) if seconds > 0.0 && seconds.is_finite() => Ok(seconds),
+        _ => Err("expected a finite number of seconds above 0".to_owned()),
     }
 }
 

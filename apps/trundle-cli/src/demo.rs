@@ -33,7 +33,7 @@ pub fn run(args: &DemoArgs) -> Result<Outcome, Failure> {
         scene: scene.name.clone(),
         seed: args.seed,
         map_from_world: scene.start.inverse(),
-        time_limit: time_limit(&mission),
+        time_limit: args.time_limit.unwrap_or_else(|| time_limit(&mission)),
         mission,
         robot: robot.with_seed(args.seed),
         real_time: args.real_time,
