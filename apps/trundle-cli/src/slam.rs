@@ -18,7 +18,7 @@ pub struct SlamRun {
     pub counts: crate::logbook::TrackCounts,
     /// The last frame that could be read.
     pub last_image: Option<RgbdImage>,
-    /// How many suspicions about the settings were told.
+    /// How many calibration issues were printed.
     warned: usize,
     /// Frames that could not be read, in words.
     pub unreadable: Vec<String>,
@@ -97,8 +97,7 @@ fn track(
 /// An empty map, or the one that was asked for.
 fn begin(args: &SlamArgs, model: &CameraModel) -> Result<RgbdSlam, Failure> {
     // A recording is judged whole.
-    let mut config = SlamConfig { seed: args.seed, kept_frames: usize::MAX, ..SlamConfig::default() };
-    config.motion.readout = model.readout;
+    let config = SlamConfig { seed: args.seed, kept_frames: usize::MAX, ..SlamConfig::default() };
     let camera = model.camera;
     let Some(file) = &args.map else {
         let level_from_camera = level_from_first_camera(args.height, args.tilt, args.roll)?;
@@ -136,10 +135,10 @@ impl SlamRun {
 
     /// Says of each setting that is newly suspected why.
     fn warn_of_settings(&mut self, bar: &ProgressBar) {
-        for suspicion in &self.slam.suspicions()[self.warned..] {
-            bar.suspend(|| console::warn(&suspicion.to_string()));
+        for issue in &self.slam.calibration_issues()[self.warned..] {
+            bar.suspend(|| console::warn(&issue.to_string()));
         }
-        self.warned = self.slam.suspicions().len();
+        self.warned = self.slam.calibration_issues().len();
     }
 
     fn step(&mut self, image: RgbdImage, odometry: &OdometryPrior) -> TrackReport {

@@ -119,7 +119,7 @@ fn summary(args: &SlamArgs, sequence: &TumSequence, run: &SlamRun, judged: Optio
         .set("keyframes", run.slam.keyframes().count())
         .set("landmarks", run.slam.landmarks().count())
         .set("loops_closed", run.slam.loops().len())
-        .set("warnings", run.slam.suspicions().iter().map(ToString::to_string).collect::<Vec<_>>())
+        .set("warnings", run.slam.calibration_issues().iter().map(ToString::to_string).collect::<Vec<_>>())
         .set("ate_rmse_m", judged.map(|j| j.absolute.statistics.rmse))
         .set("ate_max_m", judged.map(|j| j.absolute.statistics.max))
         .set("ate_pairs", judged.map(|j| j.absolute.pairs.len()))

@@ -1,4 +1,4 @@
-use crate::{Invalid, Vector2, Vector3, require_finite, require_positive};
+use crate::{Invalid, Vector2, Vector3, require_finite, require_in, require_positive};
 use serde::{Deserialize, Serialize};
 
 /// Lens distortion of Brown and Conrady, in the order of OpenCV.
@@ -17,7 +17,7 @@ pub struct Distortion {
     pub k3: f64,
 }
 
-/// A pinhole camera with Brown-Conrady distortion. Pixel (0, 0) is the centre of the top-left pixel.
+/// A pinhole camera with Brown-Conrady distortion and a rolling shutter. Pixel (0, 0) is the centre of the top-left pixel.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "Unchecked")]
 pub struct PinholeCamera {
@@ -28,6 +28,12 @@ pub struct PinholeCamera {
     cx: f64,
     cy: f64,
     distortion: Distortion,
+    #[serde(skip_serializing_if = "is_zero")]
+    readout: f64,
+}
+
+fn is_zero(value: &f64) -> bool {
+    *value == 0.0
 }
 
 /// A camera as a file has it.
@@ -42,18 +48,23 @@ struct Unchecked {
     cy: f64,
     #[serde(default)]
     distortion: Distortion,
+    #[serde(default)]
+    readout: f64,
 }
 
 impl TryFrom<Unchecked> for PinholeCamera {
     type Error = Invalid;
 
     fn try_from(c: Unchecked) -> Result<Self, Invalid> {
-        Self::new((c.width, c.height), (c.fx, c.fy), (c.cx, c.cy), c.distortion)
+        Self::new((c.width, c.height), (c.fx, c.fy), (c.cx, c.cy), c.distortion)?.with_readout(c.readout)
     }
 }
 
 /// An image has no more columns or rows than this: a number that was mistyped would not fit into memory.
 const MOST_PIXELS: usize = 16_384;
+
+/// Longest readout time of a camera: 0.05 s. A longer one is refused, since no colour camera of a robot takes longer. Source: ours.
+const MAX_READOUT_S: f64 = 0.05;
 
 impl PinholeCamera {
     /// A camera of `width` x `height` px, focal lengths and principal point in px.
@@ -79,7 +90,17 @@ impl PinholeCamera {
         for (name, value) in [("k1", k1), ("k2", k2), ("p1", p1), ("p2", p2), ("k3", k3)] {
             require_finite(name, value, "")?;
         }
-        Ok(Self { width, height, fx, fy, cx, cy, distortion })
+        Ok(Self { width, height, fx, fy, cx, cy, distortion, readout: 0.0 })
+    }
+
+    /// The same camera with a rolling shutter: `readout` is the time from the first to the last row of an image, s. 0, the value of
+    /// [`PinholeCamera::new`], is a global shutter.
+    ///
+    /// # Errors
+    /// When the time is outside 0 to 0.05 s.
+    pub fn with_readout(self, readout: f64) -> Result<Self, Invalid> {
+        require_in("readout", readout, "s", 0.0, MAX_READOUT_S)?;
+        Ok(Self { readout, ..self })
     }
 
     /// A camera without distortion from its fields of view (rad), principal point in the middle.
@@ -114,6 +135,11 @@ impl PinholeCamera {
     pub fn kinect_v1() -> Self {
         Self::new((640, 480), (525.0, 525.0), (319.5, 239.5), Distortion::default())
             .expect("invariant: the preset is valid")
+    }
+
+    /// Time from the first to the last row of an image, s: a rolling shutter; 0 where all rows are taken at once.
+    pub fn readout(&self) -> f64 {
+        self.readout
     }
 
     /// Columns, px.
@@ -235,6 +261,15 @@ mod tests {
         let camera = PinholeCamera::kinect_v2();
         let edge = camera.unproject(Vector2::new(-0.5, 211.5), 1.0);
         assert!((edge.x.atan().to_degrees() + 35.3).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_rolling_shutter_is_part_of_the_camera() {
+        let camera = freiburg1().with_readout(0.026).unwrap();
+        assert_eq!((camera.readout(), freiburg1().readout()), (0.026, 0.0));
+        for readout in [-0.001, 0.051, f64::NAN] {
+            assert_eq!(freiburg1().with_readout(readout).unwrap_err().field, "readout");
+        }
     }
 
     #[test]

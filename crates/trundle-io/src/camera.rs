@@ -2,7 +2,7 @@ use crate::IoError;
 use crate::files::read_text;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
-use trundle_core::{Distortion, Invalid, PinholeCamera, require_in, require_positive};
+use trundle_core::{Distortion, Invalid, PinholeCamera, require_positive};
 
 /// What 1 m is in TUM's depth images.
 pub const TUM_DEPTH_SCALE: f64 = 5000.0;
@@ -15,18 +15,14 @@ const PRESETS: &str = "freiburg1, freiburg2, freiburg3, kinect_v2";
 /// A camera and the unit of its depth images.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CameraModel {
-    /// Intrinsics and lens.
+    /// Intrinsics, lens and readout time.
     pub camera: PinholeCamera,
     /// What 1 m is in its depth images.
     pub depth_scale: f64,
-    /// Time from the first to the last row of a colour image, s: a rolling shutter; 0 where all rows are taken at once.
-    pub readout: f64,
 }
 
-/// No colour camera of a robot takes longer to read out, s.
-const LONGEST_READOUT: f64 = 0.05;
-/// A Kinect v1's readout, s \[Ringaby11\].
-const KINECT_V1_READOUT: f64 = 0.026;
+/// Readout time of a Kinect v1's colour camera: 0.026 s. Without it, images of a turning camera are distorted. Source: \[Ringaby11\].
+const KINECT_V1_READOUT_S: f64 = 0.026;
 
 impl CameraModel {
     /// The camera of a preset (`freiburg1`, `freiburg2`, `freiburg3`, `kinect_v2`) or else of a TOML file.
@@ -51,23 +47,24 @@ impl CameraModel {
         let lens = |k1, k2, p1, p2, k3| Distortion { k1, k2, p1, p2, k3 };
         let tum = |focal, centre, distortion, readout| {
             let camera = PinholeCamera::new((640, 480), focal, centre, distortion)
+                .and_then(|camera| camera.with_readout(readout))
                 .expect("invariant: the preset is valid");
-            Self { camera, depth_scale: TUM_DEPTH_SCALE, readout }
+            Self { camera, depth_scale: TUM_DEPTH_SCALE }
         };
         Some(match name {
             "freiburg1" => {
                 let lens = lens(0.2624, -0.9531, -0.0054, 0.0026, 1.1633);
-                tum((517.3, 516.5), (318.6, 255.3), lens, KINECT_V1_READOUT)
+                tum((517.3, 516.5), (318.6, 255.3), lens, KINECT_V1_READOUT_S)
             }
             "freiburg2" => {
                 let lens = lens(0.2312, -0.7849, -0.0033, -0.0001, 0.9172);
-                tum((520.9, 521.0), (325.1, 249.7), lens, KINECT_V1_READOUT)
+                tum((520.9, 521.0), (325.1, 249.7), lens, KINECT_V1_READOUT_S)
             }
             // An Xtion, whose readout is not known to us.
             "freiburg3" => tum((535.4, 539.2), (320.1, 247.6), Distortion::default(), 0.0),
             "kinect_v2" => {
                 let camera = PinholeCamera::kinect_v2();
-                Self { camera, depth_scale: KINECT_V2_DEPTH_SCALE, readout: 0.0 }
+                Self { camera, depth_scale: KINECT_V2_DEPTH_SCALE }
             }
             _ => return None,
         })
@@ -88,7 +85,7 @@ impl CameraModel {
         let Distortion { k1, k2, p1, p2, k3 } = camera.distortion();
         let (width, height) = (camera.width(), camera.height());
         let (fx, fy, cx, cy) = (camera.fx(), camera.fy(), camera.cx(), camera.cy());
-        let Self { depth_scale, readout, .. } = *self;
+        let (depth_scale, readout) = (self.depth_scale, camera.readout());
         let file = CameraFile { width, height, fx, fy, cx, cy, depth_scale, k1, k2, p1, p2, k3, readout };
         toml::to_string(&file).expect("invariant: a camera is plain data")
     }
@@ -132,8 +129,7 @@ impl CameraFile {
         let lens = Distortion { k1, k2, p1, p2, k3 };
         let camera = PinholeCamera::new((width, height), (fx, fy), (cx, cy), lens)?;
         require_positive("depth_scale", depth_scale, "units a metre")?;
-        require_in("readout", readout, "s", 0.0, LONGEST_READOUT)?;
-        Ok(CameraModel { camera, depth_scale, readout })
+        Ok(CameraModel { camera: camera.with_readout(readout)?, depth_scale })
     }
 }
 

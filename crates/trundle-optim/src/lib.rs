@@ -25,6 +25,6 @@ pub use bundle::{BundleConfig, BundleObservation, BundlePose, BundleProblem, Bun
 pub use bundle_solver::BundleSolver;
 pub use huber::Huber;
 pub use observation::{CHI2_95_2, CHI2_95_3, CHI2_95_6, InverseDepth, Linearized, PointObservation};
-pub use pose::{ALIKE, PoseConfig, PoseProblem, PoseSolution};
+pub use pose::{CORRELATED_POINTS, PoseConfig, PoseProblem, PoseSolution};
 pub use pose_graph::{PoseConstraint, PoseGraph, PoseGraphConfig, PoseGraphSolution};
 pub use pose_prior::PosePrior;

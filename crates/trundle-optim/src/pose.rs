@@ -39,9 +39,9 @@ impl PoseConfig {
     }
 }
 
-/// Points of one image err alike, now and then in groups of so many (docs/algorithms/slam.md): so many times as uncertain an image
-/// counts against what is known besides. What [`PoseSolution`] tells is what independent errors make, which most images have.
-pub const ALIKE: f64 = 8.0;
+/// Number of points of one image whose errors are the same in the worst case: 8. The covariance of a pose is multiplied by this number
+/// where the pose is compared with a prior; [`PoseSolution`] itself assumes independent errors. Source: docs/algorithms/slam.md.
+pub const CORRELATED_POINTS: f64 = 8.0;
 
 /// One camera pose against points that are taken as known: motion-only bundle adjustment \[MurArtal17\].
 ///
@@ -85,7 +85,7 @@ impl PoseProblem<'_> {
     pub fn solve(&self, world_from_camera: Pose3, config: &PoseConfig) -> PoseSolution {
         let by_image = self.by_image(world_from_camera, config);
         let (Some(prior), Some(covariance)) = (self.prior, by_image.covariance) else { return by_image };
-        match prior.fused_with(by_image.world_from_camera, &covariance, ALIKE) {
+        match prior.fused_with(by_image.world_from_camera, &covariance, CORRELATED_POINTS) {
             Some((fused, covariance)) => {
                 PoseSolution { world_from_camera: fused, covariance: Some(covariance), ..by_image }
             }

@@ -1,9 +1,9 @@
 //! Runs the SLAM over a recorded folder in the TUM layout, one image after the other: how accurate it is, and what it costs.
 //!
-//! `cargo run --release -p trundle-slam --example drive -- FOLDER [FRAMES] [--blind] [--seed=N] [--least-texture=X]` prints the frames located, loops, keyframes,
+//! `cargo run --release -p trundle-slam --example drive -- FOLDER [FRAMES] [--motion_unknown] [--seed=N] [--least-texture=X]` prints the frames located, loops, keyframes,
 //! the ATE after a rigid alignment, how much of it is up and down, and median, 99th percentile and most of the processor
 //! time, in ms, of the features alone, of a whole step, and of those that made keyframes. Wheels are used where the folder
-//! has them, unless `--blind`; N is the seed of what is drawn at random, X `orb.least_texture`. Loading images is not timed. Without `camera.toml` the camera is that of freiburg1.
+//! has them, unless `--motion_unknown`; N is the seed of what is drawn at random, X `orb.least_texture`. Loading images is not timed. Without `camera.toml` the camera is that of freiburg1.
 //! `TRUNDLE_FRAMES=FILE` writes of each frame: time, state, whether it is a keyframe, inliers, how far off it
 //! was told at once (m, rad, the first one being right), how uncertain that was told to be (m, rad, one standard deviation), the
 //! normalised squared error of this (6 is true), the error after all corrections (mm, aligned), and what it took (ms).
@@ -29,7 +29,6 @@ fn main() {
     let drive = Drive::open(args.first().expect("a folder with associations.txt"));
     let count = args.get(1).map_or(usize::MAX, |n| n.parse().unwrap()).min(drive.frames.len());
     let mut config = SlamConfig::default();
-    config.motion.readout = drive.readout;
     let value = |name: &str| flags.iter().find_map(|flag| flag.strip_prefix(name));
     if let Some(seed) = value("--seed=") {
         config.seed = seed.parse().unwrap();

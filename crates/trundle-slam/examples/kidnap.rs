@@ -85,7 +85,7 @@ fn map(drive: &Drive) -> Vec<u8> {
 }
 
 fn kidnap(slam: &mut RgbdSlam, mapped: &Drive, other: &Drive, views: usize) {
-    let (mut recognised, mut wrong, mut at_once, mut draw) = (0, 0, 0, 12345_u64);
+    let (mut recognized, mut wrong, mut at_once, mut draw) = (0, 0, 0, 12345_u64);
     let (mut costs, mut errors): (Vec<f64>, Vec<f64>) = Default::default();
     let mut seen = 0;
     while seen < views {
@@ -122,14 +122,14 @@ fn kidnap(slam: &mut RgbdSlam, mapped: &Drive, other: &Drive, views: usize) {
                 report.matches
             );
         }
-        (recognised, wrong) = (recognised + 1, wrong + usize::from(is_wrong));
+        (recognized, wrong) = (recognized + 1, wrong + usize::from(is_wrong));
         errors.push(squared_error(off, &report.covariance));
         at_once += usize::from(i == first);
     }
     costs.sort_by(f64::total_cmp);
     errors.sort_by(f64::total_cmp);
     println!(
-        "{recognised} of {views} views recognised, {at_once} of them at the first frame, {wrong} wrongly; a frame {:.1} ms \
+        "{recognized} of {views} views recognized, {at_once} of them at the first frame, {wrong} wrongly; a frame {:.1} ms \
          (median, features included), {:.1} ms at most; squared errors by what was told {:.1} (median), {:.0} at most",
         costs[costs.len() / 2],
         costs[costs.len() - 1],

@@ -1,9 +1,9 @@
-use crate::closing::LoopConfig;
-use crate::depth::DepthConfig;
-use crate::keyframe_policy::KeyframeConfig;
-use crate::mapping::MappingConfig;
-use crate::motion::MotionConfig;
-use crate::tracker::TrackingConfig;
+use crate::frame::depth::DepthConfig;
+use crate::local_mapping::config::MappingConfig;
+use crate::local_mapping::keyframe_policy::KeyframeConfig;
+use crate::loop_closing::config::LoopConfig;
+use crate::motion::motion_model::MotionConfig;
+use crate::tracking::config::TrackingConfig;
 use serde::{Deserialize, Serialize};
 use trundle_core::Invalid;
 use trundle_vision::OrbConfig;

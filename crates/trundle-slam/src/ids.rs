@@ -1,3 +1,5 @@
+//! Ids of maps, keyframes and landmarks.
+
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
@@ -34,3 +36,21 @@ macro_rules! arena_id {
 
 arena_id!(KeyframeId, "K");
 arena_id!(LandmarkId, "L");
+
+/// A map with a frame of its own. Numbers rise in the order of beginning and are never used twice.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct MapId(pub(crate) u32);
+
+impl MapId {
+    /// Its number.
+    pub fn number(self) -> u32 {
+        self.0
+    }
+}
+
+impl fmt::Display for MapId {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "M{}", self.0)
+    }
+}

@@ -1,10 +1,50 @@
-//! From RGB-D frames to a camera trajectory and a landmark map.
+//! RGB-D SLAM: from images to a camera trajectory and a landmark map.
 //!
-//! The problem: where was the camera when it took each image? The idea, that of ORB-SLAM2 \[MurArtal17\] on RGB-D: each
-//! frame is located against landmarks by reprojection; frames that see something new become keyframes, whose depths make
-//! new landmarks; after each keyframe, local bundle adjustment refines poses and landmarks around it. A place seen again
-//! is matched with the landmarks it already has, so a camera that looks around a room, or stands still, does not drift.
-//! Cost: a few ms a frame on one core besides the features, and some tens of ms a keyframe. See `docs/algorithms/slam.md`.
+//! The problem: where was the camera when it took each image? The idea is that of ORB-SLAM2 \[MurArtal17\] on RGB-D. Each frame is
+//! located against landmarks by reprojection. A frame with a new view becomes a keyframe, whose depths make new landmarks, and local
+//! bundle adjustment refines poses and landmarks around it. A place seen again is matched with the landmarks it already has, so that a
+//! camera that looks around a room, or stands still, does not drift. Cost: a few ms a frame on one core besides the features, and some
+//! tens of ms a keyframe. See `docs/algorithms/slam.md`.
+//!
+//! ```
+//! use trundle_core::{ColorImage, DepthImage, PinholeCamera, RgbdImage, Stamp};
+//! use trundle_slam::{RgbdSlam, SlamConfig, Tracking};
+//!
+//! // The camera is given whole: a rolling shutter is part of it.
+//! let camera = PinholeCamera::kinect_v1().with_readout(0.026)?;
+//! let mut slam = RgbdSlam::new(camera, SlamConfig::default())?;
+//!
+//! // A wall at 2 m with a pattern of random tiles.
+//! let tile = |x: usize, y: usize| ((x / 8 * 73 + y / 8 * 151) * 2_654_435_761 >> 7) as u8;
+//! let color = ColorImage::from_fn(640, 480, |x, y| [tile(x, y); 3]);
+//! let depth = DepthImage::filled(640, 480, 2.0);
+//! for i in 0..3 {
+//!     let stamp = Stamp::default().after(f64::from(i) / 30.0);
+//!     let image = RgbdImage::new(stamp, color.clone(), depth.clone())?;
+//!     let report = slam.step(&image, None);
+//!     assert_eq!(report.tracking, Tracking::Ok);
+//!     assert!(report.visual_from_camera.translation.norm() < 0.001, "the camera stands still");
+//! }
+//! assert_eq!((slam.trajectory().len(), slam.keyframes().count()), (3, 1));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! Folders, from images to maps; each uses only those before it:
+//!
+//! | folder | holds |
+//! |---|---|
+//! | `frame/` | features of an image, their depths and standard deviations |
+//! | `motion/` | motion priors, velocity, and how uncertain poses compose |
+//! | `map/` | keyframes and landmarks in arenas, covisibility, spanning tree |
+//! | `matching/` | features matched with points, and the pose that the matches give |
+//! | `place_recognition/` | bags of words over the keyframes |
+//! | `tracking/` | the pose of a frame: tracked, or relocalized |
+//! | `local_mapping/` | new keyframes and landmarks, culling |
+//! | `optimisation/` | local and global bundle adjustment, in slices |
+//! | `loop_closing/` | loops found, verified and closed |
+//! | `atlas/` | several maps, and their merging |
+//! | `calibration_check/` | wrong settings found by the images |
+//! | `persist/` | maps as bytes |
 //!
 //! | \[MurArtal17\] | here | unit |
 //! |---|---|---|
@@ -14,62 +54,37 @@
 //! | Sigma | `pixel_sigma` x scale of the octave, `DepthConfig` | px, 1/m |
 //! | K_L, K_F | free and fixed keyframes of the local bundle | |
 
-mod align;
-mod anchor;
-mod arena;
-mod claim;
-mod closing;
-mod component;
+mod atlas;
+mod calibration_check;
 mod config;
-mod contradiction;
-mod covisibility;
-mod depth;
-mod diagnosis;
-mod floor;
-mod found;
 mod frame;
-mod global_bundle;
 mod ids;
-mod keyframe_culling;
-mod keyframe_grid;
-mod keyframe_policy;
-mod landmark;
-mod local_bundle;
-mod local_map;
-mod look;
+mod local_mapping;
+mod loop_closing;
 mod map;
-mod map_bundle;
-mod mapping;
+mod matching;
 mod median;
 mod motion;
-mod outline;
+mod optimisation;
 mod persist;
-mod places;
-mod refine;
-mod refinement;
-mod relocalisation;
+mod place_recognition;
 mod report;
-mod rolled;
-mod search;
-mod sensor;
 mod slam;
-mod spanning_tree;
 #[cfg(test)]
 mod testing;
-mod ties;
-mod tracker;
-mod trajectory;
-mod triangulation;
+mod tracking;
 
-pub use closing::{LoopClosure, LoopConfig};
+pub use calibration_check::issue::CalibrationIssue;
 pub use config::SlamConfig;
-pub use depth::DepthConfig;
-pub use diagnosis::Suspicion;
-pub use ids::{KeyframeId, LandmarkId};
-pub use keyframe_policy::KeyframeConfig;
-pub use mapping::MappingConfig;
-pub use motion::MotionConfig;
-pub use persist::MapFileError;
-pub use report::{MapId, MapMerge, Mode, SeenFeature, TrackReport, Tracking};
+pub use frame::depth::DepthConfig;
+pub use ids::{KeyframeId, LandmarkId, MapId};
+pub use local_mapping::config::MappingConfig;
+pub use local_mapping::keyframe_policy::KeyframeConfig;
+pub use loop_closing::config::LoopConfig;
+pub use loop_closing::loop_closure::LoopClosure;
+pub use motion::motion_model::MotionConfig;
+pub use persist::error::MapFileError;
+pub use report::{MapMerge, Mode, SeenFeature, TrackReport};
 pub use slam::RgbdSlam;
-pub use tracker::TrackingConfig;
+pub use tracking::config::TrackingConfig;
+pub use tracking::tracking_status::Tracking;

@@ -1,31 +1,12 @@
-use crate::closing::LoopClosure;
-use crate::ids::KeyframeId;
+//! What became of one frame.
+
+use crate::ids::{KeyframeId, MapId};
+use crate::loop_closing::loop_closure::LoopClosure;
+use crate::tracking::tracking_status::Tracking;
 use nalgebra::Matrix6;
 use serde::{Deserialize, Serialize};
-use std::fmt;
 use trundle_core::{Pose3, Stamp};
 use trundle_vision::Keypoint;
-
-/// How well the last frame was located.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Tracking {
-    /// Located against the landmark map.
-    Ok,
-    /// Located, but by few landmarks: the covariance says how well.
-    Weak,
-    /// Not located: the pose is the last one moved by the given prior.
-    DeadReckoning,
-    /// Not located and no prior: the pose is held.
-    Lost,
-}
-
-impl Tracking {
-    /// Whether the pose comes from the image.
-    pub fn is_located(self) -> bool {
-        matches!(self, Self::Ok | Self::Weak)
-    }
-}
 
 /// Whether maps are made or only used.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -36,24 +17,6 @@ pub enum Mode {
     Mapping,
     /// Maps stay as they are, to the bit.
     Localisation,
-}
-
-/// A map with a frame of its own. Numbers rise in the order of beginning and are never used twice.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
-#[serde(transparent)]
-pub struct MapId(pub(crate) u32);
-
-impl MapId {
-    /// Its number.
-    pub fn number(self) -> u32 {
-        self.0
-    }
-}
-
-impl fmt::Display for MapId {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "M{}", self.0)
-    }
 }
 
 /// Two maps that became one.

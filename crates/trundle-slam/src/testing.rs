@@ -1,17 +1,17 @@
 //! Small maps for the tests beside the code.
 
-use crate::depth::DepthConfig;
-use crate::frame::Frame;
+use crate::frame::depth::DepthConfig;
+use crate::frame::observation_model::ObservationModel;
+use crate::frame::rgbd_frame::Frame;
 use crate::ids::KeyframeId;
-use crate::map::LandmarkMap;
-use crate::sensor::Sensor;
+use crate::map::landmark_map::LandmarkMap;
 use trundle_core::{DepthImage, PinholeCamera, Pose3, Stamp, Vector2, Vector3};
 use trundle_vision::{Descriptor, Features, ImagePatch, Keypoint};
 
 /// A small camera without distortion.
-pub(crate) fn sensor() -> Sensor {
+pub(crate) fn model() -> ObservationModel {
     let camera = PinholeCamera::from_field_of_view((320, 240), (1.2, 0.9)).unwrap();
-    Sensor::new(camera, vec![1.0, 1.2, 1.44], 1.0)
+    ObservationModel::new(camera, vec![1.0, 1.2, 1.44], 1.0)
 }
 
 fn frame_over(depth: f32, features: usize) -> Frame {
@@ -26,8 +26,8 @@ fn frame_over(depth: f32, features: usize) -> Frame {
     let descriptors = (0..features).map(|i| Descriptor([i as u64; 4])).collect();
     let image = DepthImage::filled(320, 240, depth);
     let features = Features { keypoints, descriptors, ..Default::default() };
-    let (sensor, turn) = (sensor(), Vector3::zeros());
-    Frame::new(Stamp::default(), features, &image, turn, (&sensor, &DepthConfig::default()))
+    let (model, turn) = (model(), Vector3::zeros());
+    Frame::new(Stamp::default(), features, &image, turn, (&model, &DepthConfig::default()))
 }
 
 /// A frame without depth.
@@ -42,9 +42,9 @@ pub(crate) fn frame_with_depth(features: usize) -> Frame {
 
 /// A keyframe at the origin that sees a wall of landmarks.
 pub(crate) fn map_of_one_view(features: usize) -> (LandmarkMap, KeyframeId) {
-    let (mut map, sensor) = (LandmarkMap::default(), sensor());
+    let (mut map, model) = (LandmarkMap::default(), model());
     let frame = frame_with_depth(features);
-    let points: Vec<_> = (0..features).map(|i| sensor.point(&frame, i).unwrap()).collect();
+    let points: Vec<_> = (0..features).map(|i| frame.point(i, &model).unwrap()).collect();
     let keyframe = map.add_keyframe(frame, Pose3::identity());
     for (feature, point) in points.into_iter().enumerate() {
         let landmark = map.add_landmark(point);
@@ -60,16 +60,16 @@ pub(crate) fn painted_points() -> Vec<Vector3> {
 
 /// A frame of the painted wall, with these points of it as features, each `off` px from where it is.
 pub(crate) fn painted_frame(visual_from_camera: Pose3, points: &[Vector3], off: Vector2) -> Frame {
-    let sensor = sensor();
+    let model = model();
     let camera_from_visual = visual_from_camera.inverse();
     let wall = |x: f64, y: f64| {
-        let ray = visual_from_camera.rotate(sensor.camera.unproject(Vector2::new(x, y), 1.0));
+        let ray = visual_from_camera.rotate(model.camera.unproject(Vector2::new(x, y), 1.0));
         let depth = (2.0 - visual_from_camera.translation.z) / ray.z;
         (visual_from_camera.translation + ray * depth, depth)
     };
     let mut features = Features::default();
     for (i, point) in points.iter().enumerate() {
-        let pixel = sensor.project(camera_from_visual.transform(*point)).unwrap().0 + off;
+        let pixel = model.project(camera_from_visual.transform(*point)).unwrap().0 + off;
         let middle = pixel.map(f64::round);
         let shade = |i: usize| {
             let from_middle = Vector2::new((i % 21) as f64, (i / 21) as f64).add_scalar(-10.0);
@@ -82,7 +82,7 @@ pub(crate) fn painted_frame(visual_from_camera: Pose3, points: &[Vector3], off: 
         features.descriptors.push(Descriptor([i as u64; 4]));
     }
     let image = DepthImage::from_fn(320, 240, |x, y| wall(x as f64, y as f64).1 as f32);
-    Frame::new(Stamp::default(), features, &image, Vector3::zeros(), (&sensor, &DepthConfig::default()))
+    Frame::new(Stamp::default(), features, &image, Vector3::zeros(), (&model, &DepthConfig::default()))
 }
 
 /// The grey value of a point of the wall: something everywhere, the same nowhere near.

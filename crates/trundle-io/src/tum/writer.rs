@@ -77,7 +77,7 @@ impl<'f> TumWriter<'f> {
         if !self.odometry.is_empty() {
             write("odometry.txt", odometry_text(&by_stamp(self.odometry)))?;
         }
-        let model = CameraModel { camera: self.camera, depth_scale: TUM_DEPTH_SCALE, readout: 0.0 };
+        let model = CameraModel { camera: self.camera, depth_scale: TUM_DEPTH_SCALE };
         write("camera.toml", model.to_toml())?;
         write("orb_slam.yaml", orb_slam_yaml(&model, self.rate_hz))
     }

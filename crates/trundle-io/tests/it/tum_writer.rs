@@ -45,7 +45,7 @@ fn what_is_written_is_read_again() {
     let dir = written();
     let run = dir.path().join("run");
     let model = CameraModel::read(&run.join("camera.toml")).unwrap();
-    assert_eq!(model, CameraModel { camera: camera(), depth_scale: TUM_DEPTH_SCALE, readout: 0.0 });
+    assert_eq!(model, CameraModel { camera: camera(), depth_scale: TUM_DEPTH_SCALE });
     let sequence = TumSequence::open(&run, model.depth_scale, 0.0).unwrap().with_size(SIZE.0, SIZE.1);
     assert_eq!((sequence.len(), sequence.unpaired()), (4, 0));
     for (image, read) in images().iter().zip(sequence.frames()) {

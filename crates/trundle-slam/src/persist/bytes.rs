@@ -1,6 +1,6 @@
 //! Numbers as bytes, little endian, and back.
 
-use super::error::MapFileError;
+use crate::persist::error::MapFileError;
 use trundle_core::{Invalid, Pose3, Vector3};
 use trundle_vision::Descriptor;
 
@@ -9,7 +9,7 @@ const FARTHEST: f64 = 1e9;
 
 /// Bytes in the making.
 #[derive(Debug, Default)]
-pub(super) struct Writer(pub Vec<u8>);
+pub(crate) struct Writer(pub Vec<u8>);
 
 impl Writer {
     pub fn u8(&mut self, value: u8) {
@@ -53,7 +53,7 @@ impl Writer {
 
 /// Bytes to be read: checks all that it hands out.
 #[derive(Debug)]
-pub(super) struct Reader<'a> {
+pub(crate) struct Reader<'a> {
     rest: &'a [u8],
     /// What is being read, for errors.
     pub within: &'static str,
@@ -169,18 +169,18 @@ impl<'a> Reader<'a> {
     /// Refuses a value that cannot be.
     pub fn require(
         &self,
-        holds: bool,
+        anchors: bool,
         name: &str,
         value: impl ToString,
         expected: impl FnOnce() -> String,
     ) -> Read<()> {
         let refuse = || MapFileError::Content(Invalid::new(name, value, "", expected()));
-        if holds { Ok(()) } else { Err(refuse()) }
+        if anchors { Ok(()) } else { Err(refuse()) }
     }
 }
 
 /// FNV-1a over 8 bytes at a time, the last ones filled with zeros, and the length: any change of one word changes it.
-pub(super) fn checksum(bytes: &[u8]) -> u64 {
+pub(crate) fn checksum(bytes: &[u8]) -> u64 {
     bytes.chunks(8).fold(0xCBF2_9CE4_8422_2325 ^ bytes.len() as u64, |sum, chunk| {
         let word = chunk.iter().rev().fold(0, |word, byte| word << 8 | u64::from(*byte));
         (sum ^ word).wrapping_mul(0x0100_0000_01B3)

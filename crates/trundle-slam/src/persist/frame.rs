@@ -1,9 +1,9 @@
 //! What a map keeps of an image, as bytes.
 
-use super::bytes::{Reader, Writer};
-use super::error::MapFileError;
-use crate::frame::Frame;
-use crate::sensor::Sensor;
+use crate::frame::observation_model::ObservationModel;
+use crate::frame::rgbd_frame::Frame;
+use crate::persist::bytes::{Reader, Writer};
+use crate::persist::error::MapFileError;
 use trundle_core::Stamp;
 use trundle_optim::InverseDepth;
 use trundle_vision::{Features, Keypoint};
@@ -15,7 +15,7 @@ const LEAST: usize = 17 + 4 + 32 + 1;
 const LEAST_SIGMA: f32 = 1e-6;
 const MOST_SIGMA: f32 = 1e6;
 
-pub(super) fn write(out: &mut Writer, frame: &Frame) {
+pub(crate) fn write(out: &mut Writer, frame: &Frame) {
     out.u64(frame.stamp.nanos.cast_unsigned());
     out.count(frame.len());
     for (i, keypoint) in frame.features.keypoints.iter().enumerate() {
@@ -28,34 +28,34 @@ pub(super) fn write(out: &mut Writer, frame: &Frame) {
     }
 }
 
-pub(super) fn read(bytes: &mut Reader, sensor: &Sensor) -> Result<Frame, MapFileError> {
+pub(crate) fn read(bytes: &mut Reader, model: &ObservationModel) -> Result<Frame, MapFileError> {
     let stamp = Stamp::from_nanos(bytes.u64()?.cast_signed());
     let (mut features, mut depths, mut pixel_sigmas) = (Features::default(), Vec::new(), Vec::new());
     for _ in 0..bytes.count(LEAST)? {
-        features.keypoints.push(read_keypoint(bytes, sensor)?);
+        features.keypoints.push(read_keypoint(bytes, model)?);
         pixel_sigmas.push(bytes.f32_in("sigma of a keypoint", LEAST_SIGMA, MOST_SIGMA)?);
         features.descriptors.push(bytes.descriptor()?);
         depths.push(read_depth(bytes)?);
     }
-    let mut frame = Frame::of(stamp, features, depths, sensor);
+    let mut frame = Frame::of(stamp, features, depths, model);
     frame.pixel_sigmas = pixel_sigmas;
     let is_rectified = frame.pixels.iter().all(|pixel| pixel.iter().all(|v| v.is_finite()));
     bytes.require(is_rectified, "rectified place of a keypoint", "infinite", || "finite".to_owned())?;
     Ok(frame)
 }
 
-fn read_keypoint(bytes: &mut Reader, sensor: &Sensor) -> Result<Keypoint, MapFileError> {
+fn read_keypoint(bytes: &mut Reader, model: &ObservationModel) -> Result<Keypoint, MapFileError> {
     let [x, y, angle, response] = [bytes.f32()?, bytes.f32()?, bytes.f32()?, bytes.f32()?];
     let octave = bytes.u8()?;
     // What a rolling shutter saw at the rim may be kept beyond it.
-    let (width, height) = (sensor.camera.width() as f32, sensor.camera.height() as f32);
+    let (width, height) = (model.camera.width() as f32, model.camera.height() as f32);
     let is_near = (-width..=2.0 * width).contains(&x) && (-height..=2.0 * height).contains(&y);
     bytes.require(is_near, "place of a keypoint", format!("({x}, {y})"), || {
         "in or near the image".to_owned()
     })?;
     let plain = angle.is_finite() && response.is_finite();
     bytes.require(plain, "angle or response of a keypoint", angle + response, || "finite".to_owned())?;
-    let levels = sensor.scale_factors.len();
+    let levels = model.scale_factors.len();
     bytes.require(usize::from(octave) < levels, "octave of a keypoint", octave, || {
         format!("less than {levels}")
     })?;

@@ -1,20 +1,23 @@
 //! One landmark map as bytes. Keyframes and landmarks are numbered anew, without gaps, in the order of their making.
 
-use super::bytes::{Reader, Writer};
-use super::error::MapFileError;
-use super::{frame, look};
-use crate::ids::{KeyframeId, LandmarkId};
-use crate::landmark::Landmark;
-use crate::map::{Keyframe, LandmarkMap};
-use crate::rolled::Rolled;
-use crate::sensor::Sensor;
+use crate::frame::observation_model::ObservationModel;
+use crate::ids::KeyframeId;
+use crate::ids::LandmarkId;
+use crate::map::keyframe::Keyframe;
+use crate::map::landmark::Landmark;
+use crate::map::landmark_map::LandmarkMap;
+use crate::map::odometry_factor::OdometryFactor;
+use crate::motion::uncertain_pose::UncertainPose;
+use crate::persist::bytes::{Reader, Writer};
+use crate::persist::error::MapFileError;
+use crate::persist::{frame, reference_patch};
 use nalgebra::Matrix6;
 use std::collections::BTreeMap;
 
 /// The least bytes of a keyframe, a landmark and an observation.
 const LEAST: (usize, usize, usize) = (8 + 4 + 7 * 8 + 72 * 8 + 1, 24 + 32 + 24 + 8 + 4 * 3 + 8 + 1, 8);
 
-pub(super) fn write(out: &mut Writer, map: &LandmarkMap) {
+pub(crate) fn write(out: &mut Writer, map: &LandmarkMap) {
     let numbers: BTreeMap<KeyframeId, usize> = map.keyframes().map(|(id, _)| id).zip(0..).collect();
     out.count(numbers.len());
     for (_, keyframe) in map.keyframes() {
@@ -34,27 +37,27 @@ pub(super) fn write(out: &mut Writer, map: &LandmarkMap) {
     }
 }
 
-pub(super) fn read(bytes: &mut Reader, sensor: &Sensor) -> Result<LandmarkMap, MapFileError> {
+pub(crate) fn read(bytes: &mut Reader, model: &ObservationModel) -> Result<LandmarkMap, MapFileError> {
     let mut map = LandmarkMap::default();
     bytes.within = "keyframes";
     let count = bytes.count(LEAST.0)?;
     bytes.require(count > 0, "keyframes of a map", count, || "1 or more".to_owned())?;
     let mut ids = Vec::new();
     for _ in 0..count {
-        ids.push(read_keyframe(bytes, &mut map, sensor, &ids)?);
+        ids.push(read_keyframe(bytes, &mut map, model, &ids)?);
     }
     map.floor = bytes.mark("mark of a floor")?.then(|| bytes.direction("axis of the floor")).transpose()?;
     bytes.within = "landmarks";
     for _ in 0..bytes.count(LEAST.1)? {
         read_landmark(bytes, &mut map, &ids)?;
     }
-    ids.iter().for_each(|id| map.enter_tree(*id));
+    ids.iter().for_each(|id| map.add_to_spanning_tree(*id));
     bytes.within = "loops";
     for _ in 0..bytes.count(8)? {
         let (old, new) =
             (bytes.index("keyframe of a loop", ids.len())?, bytes.index("keyframe of a loop", ids.len())?);
         bytes.require(old < new, "keyframe of a loop", old, || format!("less than {new}"))?;
-        map.tie(ids[old], ids[new]);
+        map.add_loop_edge(ids[old], ids[new]);
     }
     Ok(map)
 }
@@ -62,11 +65,11 @@ pub(super) fn read(bytes: &mut Reader, sensor: &Sensor) -> Result<LandmarkMap, M
 fn write_keyframe(out: &mut Writer, keyframe: &Keyframe, number: impl Fn(KeyframeId) -> usize) {
     frame::write(out, &keyframe.frame);
     out.pose(&keyframe.visual_from_camera);
-    out.f64s(keyframe.covariance.iter().chain(keyframe.ground.iter()).copied());
-    out.u8(u8::from(keyframe.rolled.is_some()));
-    if let Some(Rolled { from, from_to, covariance }) = &keyframe.rolled {
+    out.f64s(keyframe.covariance.iter().chain(keyframe.map_covariance.iter()).copied());
+    out.u8(u8::from(keyframe.odometry.is_some()));
+    if let Some(OdometryFactor { from, from_to: UncertainPose { pose, covariance } }) = &keyframe.odometry {
         out.count(number(*from));
-        out.pose(from_to);
+        out.pose(pose);
         out.f64s(covariance.iter().copied());
     }
 }
@@ -74,25 +77,27 @@ fn write_keyframe(out: &mut Writer, keyframe: &Keyframe, number: impl Fn(Keyfram
 fn read_keyframe(
     bytes: &mut Reader,
     map: &mut LandmarkMap,
-    sensor: &Sensor,
+    model: &ObservationModel,
     before: &[KeyframeId],
 ) -> Result<KeyframeId, MapFileError> {
-    let frame = frame::read(bytes, sensor)?;
+    let frame = frame::read(bytes, model)?;
     let pose = bytes.pose("pose of a keyframe")?;
     let whole = read_covariance(bytes, "covariance of a keyframe")?;
-    let ground = read_covariance(bytes, "covariance of a keyframe")?;
-    let rolled = bytes.mark("mark of a way")?.then(|| read_rolled(bytes, before)).transpose()?;
+    let map_covariance = read_covariance(bytes, "covariance of a keyframe")?;
+    let odometry =
+        bytes.mark("mark of an odometry factor")?.then(|| read_odometry(bytes, before)).transpose()?;
     let id = map.add_keyframe(frame, pose);
-    map.set_covariances(id, whole, ground);
-    map.keyframe_mut(id).rolled = rolled;
+    map.set_covariances(id, whole, map_covariance);
+    map.keyframe_mut(id).odometry = odometry;
     Ok(id)
 }
 
-/// The way to a keyframe from one of those before it.
-fn read_rolled(bytes: &mut Reader, before: &[KeyframeId]) -> Result<Rolled, MapFileError> {
-    let from = before[bytes.index("keyframe that a way begins at", before.len())?];
-    let from_to = bytes.pose("way between keyframes")?;
-    Ok(Rolled { from, from_to, covariance: read_covariance(bytes, "covariance of a way")? })
+/// The odometry to a keyframe from one of those before it.
+fn read_odometry(bytes: &mut Reader, before: &[KeyframeId]) -> Result<OdometryFactor, MapFileError> {
+    let from = before[bytes.index("first keyframe of an odometry factor", before.len())?];
+    let pose = bytes.pose("pose of an odometry factor")?;
+    let covariance = read_covariance(bytes, "covariance of an odometry factor")?;
+    Ok(OdometryFactor { from, from_to: UncertainPose { pose, covariance } })
 }
 
 fn read_covariance(bytes: &mut Reader, name: &str) -> Result<Matrix6<f64>, MapFileError> {
@@ -124,7 +129,7 @@ fn write_landmark(out: &mut Writer, landmark: &Landmark, number: impl Fn(Keyfram
         out.count(number(*keyframe));
         out.count(*feature);
     }
-    look::write_all(out, &landmark.looks);
+    reference_patch::write_all(out, &landmark.reference_patches);
 }
 
 fn read_landmark(bytes: &mut Reader, map: &mut LandmarkMap, ids: &[KeyframeId]) -> Result<(), MapFileError> {
@@ -138,13 +143,13 @@ fn read_landmark(bytes: &mut Reader, map: &mut LandmarkMap, ids: &[KeyframeId]) 
     for _ in 0..observations {
         read_observation(bytes, map, ids, id)?;
     }
-    let looks = look::read_all(bytes)?;
+    let reference_patches = reference_patch::read_all(bytes)?;
     if let Some(landmark) = map.landmark_mut(id) {
         *landmark = Landmark {
             descriptor,
             toward_camera,
             distance_at_octave_0,
-            looks,
+            reference_patches,
             visible,
             found,
             ..std::mem::replace(landmark, Landmark::new(landmark.position))
@@ -171,42 +176,48 @@ fn read_observation(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::motion::MotionConfig;
-    use crate::testing::{blank_frame, sensor};
+    use crate::motion::motion_model::MotionConfig;
+    use crate::testing::blank_frame;
+    use crate::testing::model;
     use nalgebra::Vector6;
     use trundle_core::{Pose3, Vector3};
 
-    /// Two keyframes with the way between them by the wheels, on a floor.
-    fn rolled_map() -> (LandmarkMap, Rolled) {
+    /// Two keyframes with odometry between them, on a floor.
+    fn map_with_odometry() -> (LandmarkMap, OdometryFactor) {
         let mut map = LandmarkMap::default();
         let ids = [0.0, 0.1]
             .map(|x| map.add_keyframe(blank_frame(3), Pose3::exp(Vector6::new(x, 0.0, 0.0, 0.0, 0.0, 0.0))));
         let step = Pose3::exp(Vector6::new(0.1, 0.0, 0.02, 0.0, 0.3, 0.0));
-        let rolled = Rolled::at(ids[0]).on(step.into(), 0.1, &MotionConfig::default()).unwrap();
-        map.keyframe_mut(ids[1]).rolled = Some(rolled);
+        let odometry =
+            OdometryFactor::at(ids[0]).extended_by(step.into(), 0.1, &MotionConfig::default()).unwrap();
+        map.keyframe_mut(ids[1]).odometry = Some(odometry);
         map.floor = Some(Vector3::y());
-        (map, rolled)
+        (map, odometry)
     }
 
     #[test]
-    fn the_ways_by_the_wheels_and_the_floor_come_back() {
-        let (map, rolled) = rolled_map();
+    fn odometry_factors_and_the_floor_come_back() {
+        let (map, odometry) = map_with_odometry();
         let mut out = Writer::default();
         write(&mut out, &map);
-        let read = read(&mut Reader::new(&out.0, "map"), &sensor()).unwrap();
-        let ways: Vec<Option<Rolled>> = read.keyframes().map(|(_, keyframe)| keyframe.rolled).collect();
-        assert_eq!(ways, vec![None, Some(rolled)]);
+        let read = read(&mut Reader::new(&out.0, "map"), &model()).unwrap();
+        let factors: Vec<Option<OdometryFactor>> =
+            read.keyframes().map(|(_, keyframe)| keyframe.odometry).collect();
+        assert_eq!(factors, vec![None, Some(odometry)]);
         assert_eq!(read.floor, Some(Vector3::y()));
     }
 
     #[test]
-    fn a_way_from_what_comes_later_is_refused() {
-        let (mut map, rolled) = rolled_map();
+    fn odometry_from_a_later_keyframe_is_refused() {
+        let (mut map, odometry) = map_with_odometry();
         let last = map.newest_keyframe().unwrap();
-        map.keyframe_mut(last).rolled = Some(Rolled { from: last, ..rolled });
+        map.keyframe_mut(last).odometry = Some(OdometryFactor { from: last, ..odometry });
         let mut out = Writer::default();
         write(&mut out, &map);
-        let error = read(&mut Reader::new(&out.0, "map"), &sensor()).unwrap_err().to_string();
-        assert!(error.ends_with("keyframe that a way begins at is 1, expected less than 1"), "{error}");
+        let error = read(&mut Reader::new(&out.0, "map"), &model()).unwrap_err().to_string();
+        assert!(
+            error.ends_with("first keyframe of an odometry factor is 1, expected less than 1"),
+            "{error}"
+        );
     }
 }

@@ -1,7 +1,7 @@
 //! What a map's features depend on: camera and extractor. They are saved with it, and must be the same to use it.
 
-use super::bytes::{Reader, Writer};
-use super::error::MapFileError;
+use crate::persist::bytes::{Reader, Writer};
+use crate::persist::error::MapFileError;
 use trundle_core::PinholeCamera;
 use trundle_vision::OrbConfig;
 
@@ -30,12 +30,12 @@ fn settings(camera: &PinholeCamera, orb: &OrbConfig) -> [(&'static str, f64); 18
     ]
 }
 
-pub(super) fn write(out: &mut Writer, camera: &PinholeCamera, orb: &OrbConfig) {
+pub(crate) fn write(out: &mut Writer, camera: &PinholeCamera, orb: &OrbConfig) {
     out.f64s(settings(camera, orb).map(|(_, value)| value));
 }
 
 /// Passes over the settings of a map that was made with these.
-pub(super) fn check(bytes: &mut Reader, camera: &PinholeCamera, orb: &OrbConfig) -> Result<(), MapFileError> {
+pub(crate) fn check(bytes: &mut Reader, camera: &PinholeCamera, orb: &OrbConfig) -> Result<(), MapFileError> {
     for (name, given) in settings(camera, orb) {
         let saved = bytes.f64()?;
         if saved != given {

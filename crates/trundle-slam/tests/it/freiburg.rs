@@ -11,13 +11,6 @@ const SEQUENCE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/dat
 
 pub use crate::drive::freiburg1 as camera;
 
-/// What is particular about the camera: its rolling shutter.
-fn kinect_v1() -> SlamConfig {
-    let mut config = SlamConfig::default();
-    config.motion.readout = 0.026;
-    config
-}
-
 /// The sequence; `None`, and a line about it, where it is not at hand.
 fn sequence() -> Option<Drive> {
     let drive = Path::new(SEQUENCE).exists().then(|| Drive::open(SEQUENCE));
@@ -36,7 +29,7 @@ pub fn frames(most: usize) -> Option<Vec<RgbdImage>> {
 #[test]
 fn freiburg1_rpy_is_tracked_within_2_cm() {
     let Some(drive) = sequence() else { return };
-    let mut slam = RgbdSlam::new(camera(), kinect_v1()).unwrap();
+    let mut slam = RgbdSlam::new(drive.camera, SlamConfig::default()).unwrap();
     let mut extractor = trundle_vision::OrbExtractor::new(SlamConfig::default().orb).unwrap();
     let (mut located, mut total, mut features, mut slowest) = (0, 0.0, 0.0, 0.0_f64);
     for i in 0..drive.frames.len() {

@@ -4,18 +4,21 @@ use crate::freiburg;
 use crate::room::{Clean, camera};
 use nalgebra::Vector6;
 use trundle_core::{ColorImage, DepthImage, Distortion, PinholeCamera, Pose3, RgbdImage, Vector2, Vector3};
-use trundle_slam::{RgbdSlam, SlamConfig, Suspicion};
+use trundle_slam::{CalibrationIssue, RgbdSlam, SlamConfig};
 
 /// What is suspected after the first 100 frames of freiburg1_rpy, changed by `change`, as `camera` is said to see them;
 /// `None` where the sequence is not at hand.
-fn suspected(camera: PinholeCamera, change: impl Fn(RgbdImage) -> RgbdImage) -> Option<Vec<Suspicion>> {
+fn suspected(
+    camera: PinholeCamera,
+    change: impl Fn(RgbdImage) -> RgbdImage,
+) -> Option<Vec<CalibrationIssue>> {
     let frames = freiburg::frames(100)?;
     let mut slam = RgbdSlam::new(camera, SlamConfig::default()).unwrap();
     for image in frames {
         slam.step(&change(image), None);
     }
-    println!("{:?}", slam.suspicions());
-    Some(slam.suspicions().to_vec())
+    println!("{:?}", slam.calibration_issues());
+    Some(slam.calibration_issues().to_vec())
 }
 
 fn with_depth(image: &RgbdImage, depth: DepthImage) -> RgbdImage {
@@ -95,7 +98,7 @@ fn colour_and_depth_that_are_not_registered_are_noticed() {
 
 /// What is suspected of `said` after 100 frames of a robot that drives and turns in the rendered room; its wheels say
 /// `wheels` times the way.
-fn suspected_in_the_room(said: PinholeCamera, wheels: f64) -> Vec<Suspicion> {
+fn suspected_in_the_room(said: PinholeCamera, wheels: f64) -> Vec<CalibrationIssue> {
     let pose = |i: usize| {
         let turn = 0.5 * (i as f64 * 0.06).sin();
         Pose3::exp(Vector6::new(0.0, 0.0, i as f64 * 0.012 - 0.6, 0.0, 0.0, 0.0))
@@ -108,17 +111,17 @@ fn suspected_in_the_room(said: PinholeCamera, wheels: f64) -> Vec<Suspicion> {
         let prior = Pose3::new(step.rotation, step.translation * wheels);
         slam.step(&Clean::at(pose(i)).shot(i), Some(prior.into()));
     }
-    println!("{:?}", slam.suspicions());
-    slam.suspicions().to_vec()
+    println!("{:?}", slam.calibration_issues());
+    slam.calibration_issues().to_vec()
 }
 
 #[test]
 fn a_driving_robots_settings_are_judged_too() {
     assert_eq!(suspected_in_the_room(camera(), 1.0), vec![]);
     let short = suspected_in_the_room(camera(), 0.2);
-    assert!(short.iter().any(|s| matches!(s, Suspicion::Travel { .. })), "{short:?}");
+    assert!(short.iter().any(|s| matches!(s, CalibrationIssue::TravelledDistance { .. })), "{short:?}");
     let other =
         PinholeCamera::new((320, 240), (300.0, 300.0), (159.5, 119.5), Distortion::default()).unwrap();
     let focal = suspected_in_the_room(other, 1.0);
-    assert!(focal.iter().any(|s| matches!(s, Suspicion::FocalLengths { .. })), "{focal:?}");
+    assert!(focal.iter().any(|s| matches!(s, CalibrationIssue::FocalLengths { .. })), "{focal:?}");
 }

@@ -14,8 +14,6 @@ pub struct Drive {
     folder: PathBuf,
     pub camera: PinholeCamera,
     depth_scale: f32,
-    /// Time from the first to the last row of a colour image, s.
-    pub readout: f64,
     pub frames: Vec<DriveFrame>,
 }
 
@@ -49,7 +47,7 @@ impl Drive {
             text if text.is_empty() => (freiburg1(), 5000.0, 0.026),
             text => (camera(&text), setting(&text, "depth_scale") as f32, setting(&text, "readout")),
         };
-        Self { folder, camera, depth_scale, readout, frames }
+        Self { folder, camera: camera.with_readout(readout).unwrap(), depth_scale, frames }
     }
 
     /// The image of frame `i`.

@@ -1,0 +1,7 @@
+//! Several maps, each with a frame of its own.
+
+pub(crate) mod map_collection;
+pub(crate) mod map_merger;
+pub(crate) mod sub_map;
+pub(crate) mod submap_link;
+pub(crate) mod trajectory;

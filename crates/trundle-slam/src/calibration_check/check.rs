@@ -1,0 +1,136 @@
+use crate::calibration_check::depth_range::DepthRange;
+use crate::calibration_check::issue::CalibrationIssue;
+use crate::calibration_check::model_selection::ModelSelection;
+use crate::calibration_check::registration::Registration;
+use crate::calibration_check::self_calibration::{FeaturePair, Pair};
+use crate::calibration_check::travelled_distance::TravelledDistance;
+use crate::frame::depth::DepthConfig;
+use crate::frame::observation_model::ObservationModel;
+use crate::frame::rgbd_frame::Frame;
+use trundle_core::{DepthImage, GrayImage, PinholeCamera, Pose3, Vector2, Vector3};
+use trundle_vision::{RansacConfig, estimate_rigid_motion, match_mutual};
+
+/// Every so many frames one is looked at.
+const EVERY: usize = 5;
+/// Two frames are compared when the camera turned by this between them, rad.
+const TURN: f64 = 0.08;
+/// Or went so far, m.
+const WAY: f64 = 0.1;
+/// Pairs of frames before the camera is judged.
+const LEAST_PAIRS: usize = 6;
+/// Pairs of frames after which it is believed.
+const MOST_PAIRS: usize = 18;
+/// How far off matches may be at first, px and m: wrong settings bend the picture by some.
+const LOOSE: (f64, f64) = (10.0, 0.03);
+/// Matches that a motion must explain.
+const LEAST_MATCHES: usize = 40;
+
+/// Looks at the first images of a run for traces of wrong settings. Says each suspicion once.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct CalibrationCheck {
+    frames: usize,
+    anchor: Option<Frame>,
+    /// Camera motion since the anchor by the prior, as long as there is one.
+    moved: Option<Pose3>,
+    pairs: Vec<Pair>,
+    /// The camera as the first of these pairs see it, while that is being worked out.
+    judgement: Option<ModelSelection>,
+    /// How many pairs the last judgement had.
+    judged: usize,
+    camera_judged: bool,
+    range: DepthRange,
+    travel: TravelledDistance,
+    registration: Registration,
+    calibration_issues: Vec<CalibrationIssue>,
+}
+
+impl CalibrationCheck {
+    /// What was found so far.
+    pub fn issues(&self) -> &[CalibrationIssue] {
+        &self.calibration_issues
+    }
+
+    /// Looks at picture and depth.
+    pub fn record_image(&mut self, gray: &GrayImage, depth: &DepthImage) {
+        if self.frames.is_multiple_of(EVERY) {
+            self.calibration_issues.extend(self.registration.record(gray, depth));
+        }
+    }
+
+    /// Looks at a frame's features, the depth image they come from, and the prior of the motion since the last frame.
+    pub fn record_frame(
+        &mut self,
+        frame: &Frame,
+        depth: &DepthImage,
+        prior: Option<Pose3>,
+        model: &ObservationModel,
+        config: &DepthConfig,
+    ) {
+        self.moved = self.moved.zip(prior).map(|(moved, prior)| moved * prior);
+        if self.frames.is_multiple_of(EVERY) {
+            self.calibration_issues.extend(self.range.record(depth, config));
+            if !self.camera_judged && self.pairs.len() < MOST_PAIRS {
+                self.compare(frame, model);
+            }
+        }
+        self.judge(&model.camera);
+        self.frames += 1;
+    }
+
+    /// Matches a frame with the anchor; where the camera moved enough between, the pair is kept.
+    fn compare(&mut self, frame: &Frame, model: &ObservationModel) {
+        let pair = self.anchor.as_ref().and_then(|anchor| pair_of(anchor, frame, model));
+        if let Some(pair) = pair {
+            let (turn, way) = (pair.b_from_a.angle(), pair.b_from_a.translation.norm());
+            if turn < TURN && way < WAY {
+                return;
+            }
+            let said = self.moved.map(|moved| moved.translation.norm());
+            self.calibration_issues.extend(said.and_then(|said| self.travel.record(way, said)));
+            self.pairs.push(pair);
+        }
+        self.anchor = Some(frame.clone());
+        self.moved = Some(Pose3::identity());
+    }
+
+    /// Goes on judging the camera, some rounds a frame, again whenever there are three more pairs.
+    fn judge(&mut self, camera: &PinholeCamera) {
+        let count = self.pairs.len() / 3 * 3;
+        if self.judgement.is_none() && count >= LEAST_PAIRS && count > self.judged {
+            self.judgement = Some(ModelSelection::of(&self.pairs[..count]));
+            self.judged = count;
+        }
+        let pairs = &self.pairs[..self.judged];
+        let Some(suspicion) = self.judgement.as_mut().and_then(|j| j.advance(pairs, camera)) else { return };
+        self.judgement = None;
+        self.camera_judged = suspicion.is_some() || self.judged >= MOST_PAIRS;
+        self.calibration_issues.extend(suspicion);
+        if self.camera_judged {
+            (self.pairs, self.anchor, self.judged) = (Vec::new(), None, 0);
+        }
+    }
+}
+
+/// The matches of two frames that a motion explains, loosely.
+fn pair_of(a: &Frame, b: &Frame, model: &ObservationModel) -> Option<Pair> {
+    let camera = &model.camera;
+    let normal =
+        |p: Vector2| Vector2::new((p.x - camera.cx()) / camera.fx(), (p.y - camera.cy()) / camera.fy());
+    let (mut points, mut matches): ((Vec<Vector3>, Vec<Vector3>), Vec<FeaturePair>) = Default::default();
+    for pair in match_mutual(&a.features.descriptors, &b.features.descriptors, 50, 0.8) {
+        let (Some(here), Some(there)) = (a.point(pair.a, model), b.point(pair.b, model)) else { continue };
+        points.0.push(here);
+        points.1.push(there);
+        matches.push(FeaturePair {
+            a: normal(a.pixels[pair.a]),
+            depth_a: here.z,
+            b: normal(b.pixels[pair.b]),
+            inverse_b: b.depths[pair.b].map(|d| (d.value, d.sigma)),
+            sigma: 1.5 * model.scale(a.octave(pair.a).max(b.octave(pair.b))) / camera.fx(),
+        });
+    }
+    let (pixel_sigma, depth_sigma) = LOOSE;
+    let config = RansacConfig { pixel_sigma, depth_sigma, min_inliers: LEAST_MATCHES, ..Default::default() };
+    let motion = estimate_rigid_motion(&points.0, &points.1, camera, &config, 0)?;
+    Some(Pair { b_from_a: motion.b_from_a, matches })
+}

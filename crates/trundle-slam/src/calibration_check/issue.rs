@@ -1,0 +1,117 @@
+use std::fmt;
+
+/// A setting that is probably wrong, and what says so.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum CalibrationIssue {
+    /// Many depths are where no depth camera measures.
+    DepthRange {
+        /// Part of the depths, 0 to 1.
+        part: f64,
+        /// Whether they are beyond the far end of the range; else they are before its near end.
+        beyond: bool,
+        /// The middle one of all depths, m.
+        median: f64,
+    },
+    /// No image had any depth.
+    NoDepth,
+    /// The camera's way is not as long as the wheels'.
+    TravelledDistance {
+        /// How many times as long.
+        ratio: f64,
+    },
+    /// Matched points ask for other focal lengths, in x and y, px.
+    FocalLengths {
+        /// Those that are set.
+        given: (f64, f64),
+        /// Those that fit best.
+        found: (f64, f64),
+        /// Whether exchanging them mends most of it.
+        swapped: bool,
+    },
+    /// Matched points ask for another principal point.
+    PrincipalPoint {
+        /// How far from the one that is set, px.
+        offset: (f64, f64),
+    },
+    /// Matched points are bent towards the rim of the picture.
+    Distortion {
+        /// By how much three quarters of the way to a corner, px.
+        at_the_rim: f64,
+    },
+    /// The edges of the depth image lie beside those of the picture.
+    Registration {
+        /// How far it would have to be shifted, px.
+        offset: (f64, f64),
+    },
+}
+
+impl fmt::Display for CalibrationIssue {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self::DepthRange { part, beyond, median } => write!(
+                f,
+                "{:.0} % of the depths are {} than a depth camera measures (median {median:.2} m): is the depth scale {}?",
+                100.0 * part,
+                if beyond { "farther" } else { "nearer" },
+                if beyond {
+                    "too small (1000 set where 5000 is right)"
+                } else {
+                    "too large (5000 set where 1000 is right)"
+                },
+            ),
+            Self::NoDepth => write!(
+                f,
+                "no image had any depth: is the depth scale far too large, or does the depth camera send nothing?"
+            ),
+            Self::TravelledDistance { ratio } => write!(
+                f,
+                "the camera goes {ratio:.2} times as far as the wheels say: is the depth scale wrong, or the wheels' radius?"
+            ),
+            Self::FocalLengths { given, found, swapped } => {
+                let cause = if swapped {
+                    "are fx and fy swapped"
+                } else {
+                    "are they another camera's, or of another image size"
+                };
+                write!(
+                    f,
+                    "the points ask for focal lengths of about {:.0}, {:.0} px, but {:.0}, {:.0} px are set: {cause}?",
+                    found.0, found.1, given.0, given.1
+                )
+            }
+            Self::PrincipalPoint { offset } => write!(
+                f,
+                "the points ask for a principal point about {:.0}, {:.0} px from the one set: is it another camera's, or was the image cut?",
+                offset.0, offset.1
+            ),
+            Self::Distortion { at_the_rim } => write!(
+                f,
+                "points are off by about {at_the_rim:.0} px towards the rim of the image: are the distortion coefficients another camera's, or is the image rectified already?"
+            ),
+            Self::Registration { offset } => write!(
+                f,
+                "the depth image's edges lie about {:.0}, {:.0} px beside the picture's: are colour and depth not registered?",
+                offset.0, offset.1
+            ),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_names_its_likely_cause() {
+        let swapped =
+            CalibrationIssue::FocalLengths { given: (300.0, 360.0), found: (355.0, 304.0), swapped: true }
+                .to_string();
+        assert!(swapped.contains("fx and fy swapped"), "{swapped}");
+        let other =
+            CalibrationIssue::FocalLengths { given: (300.0, 300.0), found: (525.0, 524.0), swapped: false }
+                .to_string();
+        assert!(other.contains("another camera's") && other.contains("525, 524"), "{other}");
+        let scale = CalibrationIssue::DepthRange { part: 0.8, beyond: true, median: 11.0 }.to_string();
+        assert!(scale.contains("depth scale too small") && scale.contains("80 %"), "{scale}");
+    }
+}

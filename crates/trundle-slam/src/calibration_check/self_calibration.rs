@@ -1,0 +1,245 @@
+use nalgebra::{Matrix2, Matrix2x3, Matrix6, RowVector6, SMatrix, SVector, Vector6};
+use trundle_core::{Pose3, Vector2, Vector3};
+
+/// What the settings may be off by, to first order: true normalised coordinates from the assumed ones n are
+/// n (1 + scale) + shift + n (k1 |n|^2 + k2 |n|^4), the numbers in the order scale x, y, shift x, y, k1, k2.
+pub(crate) type CalibrationOffset = Vector6<f64>;
+
+/// A match of two frames in normalised coordinates of the rectified image.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct FeaturePair {
+    pub a: Vector2,
+    /// Along the optical axis, m.
+    pub depth_a: f64,
+    pub b: Vector2,
+    /// Inverse depth and its standard deviation, 1/m.
+    pub inverse_b: Option<(f64, f64)>,
+    /// Standard deviation of `b`.
+    pub sigma: f64,
+}
+
+/// Matches of two frames and the motion between.
+#[derive(Debug, Clone)]
+pub(crate) struct Pair {
+    pub b_from_a: Pose3,
+    pub matches: Vec<FeaturePair>,
+}
+
+/// What a fit found.
+#[derive(Debug, Clone)]
+pub(crate) struct FittedOffset {
+    pub offset: CalibrationOffset,
+    /// Robust cost that is left.
+    pub cost: f64,
+    /// Standard deviations of the offset.
+    pub sigmas: CalibrationOffset,
+}
+
+/// Rounds of Gauss-Newton at most.
+const ROUNDS: usize = 10;
+/// A relative decrease of the cost below this ends it.
+const CONVERGED: f64 = 1e-6;
+/// Where Cauchy's loss bends, standard deviations: wrong matches are among the others.
+const CAUCHY: f64 = 2.5;
+/// Standard deviations of the offsets before anything is seen: wide, they only keep what is not seen at zero.
+const PRIOR: [f64; 6] = [0.3, 0.3, 0.1, 0.1, 0.5, 0.5];
+
+/// The search for the offsets that make matches agree best, the motions being free. Only those marked in `free` are looked for;
+/// the others stay as at the start. Least squares with Cauchy's loss on column, row and inverse depth, the motions
+/// eliminated (Schur complement). One round at a time, always over the same pairs.
+#[derive(Debug, Clone)]
+pub(crate) struct CalibrationFit {
+    free: [bool; 6],
+    offset: CalibrationOffset,
+    motions: Vec<Pose3>,
+    rounds: usize,
+    cost: f64,
+    /// What each pair says of the offsets, with its weights of the last round.
+    parts: Vec<PairEquations>,
+}
+
+impl CalibrationFit {
+    pub fn new(pairs: &[Pair], start: CalibrationOffset, free: [bool; 6]) -> Self {
+        let motions = pairs.iter().map(|pair| pair.b_from_a).collect();
+        Self { free, offset: start, motions, rounds: 0, cost: f64::INFINITY, parts: Vec::new() }
+    }
+
+    /// One round of Gauss-Newton; whether it was the last.
+    pub fn advance(&mut self, pairs: &[Pair]) -> bool {
+        let parts: Vec<PairEquations> = pairs
+            .iter()
+            .zip(&self.motions)
+            .map(|(pair, motion)| PairEquations::of(pair, motion, &self.offset))
+            .collect();
+        let cost = parts.iter().map(|part| part.cost).sum();
+        let gain = self.cost - cost;
+        (self.rounds, self.cost) = (self.rounds + 1, cost);
+        let step = self.step(&parts, None).unwrap_or_else(|| CalibrationOffset::repeat(f64::NAN));
+        for (motion, part) in self.motions.iter_mut().zip(&parts) {
+            let tangent = part.motion(&step).unwrap_or_else(Vector6::zeros);
+            *motion = (Pose3::exp(tangent) * *motion).renormalized();
+        }
+        self.offset += step;
+        self.parts = parts;
+        let is_lost = !self.offset.iter().all(|v| v.is_finite());
+        is_lost || self.rounds >= ROUNDS || gain.abs() <= CONVERGED * cost
+    }
+
+    /// What was found, once the last round is done; `None` where it came to nothing.
+    pub fn result(&self) -> Option<FittedOffset> {
+        let offset = self.offset;
+        let sigmas = self.spread()?;
+        offset.iter().all(|v| v.is_finite()).then_some(FittedOffset { offset, cost: self.cost, sigmas })
+    }
+
+    /// How the offsets move by what these parts say, but for one of them.
+    fn step(&self, parts: &[PairEquations], without: Option<usize>) -> Option<CalibrationOffset> {
+        let prior = Vector6::from(PRIOR).map(|sigma| sigma.powi(-2));
+        let mut matrix = Matrix6::from_diagonal(&prior);
+        let mut gradient = -prior.component_mul(&self.offset);
+        for (_, part) in parts.iter().enumerate().filter(|(i, _)| Some(*i) != without) {
+            matrix += part.reduced;
+            gradient += part.reduced_gradient;
+        }
+        for i in (0..6).filter(|i| !self.free[*i]) {
+            matrix.row_mut(i).fill(0.0);
+            matrix.column_mut(i).fill(0.0);
+            matrix[(i, i)] = 1e12;
+            gradient[i] = 0.0;
+        }
+        Some(matrix.cholesky()?.solve(&gradient))
+    }
+
+    /// Standard deviations of the offsets by leaving out each pair in turn (jackknife, the step without it from where all of
+    /// them lead): what is wrong with a whole pair, as by a rolling shutter, is in them.
+    fn spread(&self) -> Option<CalibrationOffset> {
+        let all = self.step(&self.parts, None)?;
+        let without = |i: usize| Some(self.step(&self.parts, Some(i))? - all);
+        let moved: Vec<CalibrationOffset> = (0..self.parts.len()).map(without).collect::<Option<_>>()?;
+        let n = moved.len().max(1) as f64;
+        let mean = moved.iter().sum::<CalibrationOffset>() / n;
+        let squares: CalibrationOffset = moved.iter().map(|o| (o - mean).map(|d| d * d)).sum();
+        Some((squares * ((n - 1.0) / n)).map(f64::sqrt))
+    }
+}
+
+/// True normalised coordinates from the assumed ones.
+pub(crate) fn corrected(n: Vector2, offset: &CalibrationOffset) -> Vector2 {
+    n.component_mul(&stretch(n, offset)) + Vector2::new(offset[2], offset[3])
+}
+
+/// The inverse of [`corrected`], to well below a pixel for offsets that a fit may find.
+fn uncorrected(m: Vector2, offset: &CalibrationOffset) -> Vector2 {
+    let shifted = m - Vector2::new(offset[2], offset[3]);
+    (0..5).fold(m, |n, _| shifted.component_div(&stretch(n, offset)))
+}
+
+/// What coordinates n are multiplied by in x and y.
+fn stretch(n: Vector2, offset: &CalibrationOffset) -> Vector2 {
+    let r2 = n.norm_squared();
+    let radial = r2 * (offset[4] + r2 * offset[5]);
+    Vector2::new(1.0 + offset[0] + radial, 1.0 + offset[1] + radial).map(|s| s.max(0.2))
+}
+
+/// How [`corrected`] depends on the offsets.
+pub(crate) fn by_offset(n: Vector2) -> SMatrix<f64, 2, 6> {
+    let r2 = n.norm_squared();
+    let row = |v: f64, x: f64, y: f64| [v * x, v * y, x, y, v * r2, v * r2 * r2];
+    let rows = [row(n.x, 1.0, 0.0), row(n.y, 0.0, 1.0)];
+    SMatrix::from_rows(&rows.map(RowVector6::from))
+}
+
+/// What one pair says: the normal equations of its motion, and of the offsets once that is eliminated.
+#[derive(Debug, Clone)]
+struct PairEquations {
+    own: Matrix6<f64>,
+    mixed: Matrix6<f64>,
+    gradient: Vector6<f64>,
+    reduced: Matrix6<f64>,
+    reduced_gradient: Vector6<f64>,
+    cost: f64,
+}
+
+impl PairEquations {
+    fn of(pair: &Pair, b_from_a: &Pose3, offset: &CalibrationOffset) -> Self {
+        let (zero, none) = (Matrix6::zeros(), Vector6::zeros());
+        let mut part = Self {
+            own: Matrix6::identity() * 1e-6,
+            mixed: zero,
+            gradient: none,
+            reduced: zero,
+            reduced_gradient: none,
+            cost: 0.0,
+        };
+        for matched in &pair.matches {
+            let Some(rows) = ResidualRows::of(matched, b_from_a, offset) else { continue };
+            let (w, cost) = cauchy(rows.residual.norm_squared());
+            let (j, m, r) = (&rows.by_offset, &rows.by_motion, &rows.residual);
+            part.reduced += j.transpose() * j * w;
+            part.reduced_gradient -= j.transpose() * r * w;
+            part.own += m.transpose() * m * w;
+            part.mixed += m.transpose() * j * w;
+            part.gradient -= m.transpose() * r * w;
+            part.cost += cost;
+        }
+        if let Some(factor) = part.own.cholesky() {
+            part.reduced -= part.mixed.transpose() * factor.solve(&part.mixed);
+            part.reduced_gradient -= part.mixed.transpose() * factor.solve(&part.gradient);
+        }
+        part
+    }
+
+    /// How the pair's motion changes with the offsets' step.
+    fn motion(&self, step: &CalibrationOffset) -> Option<Vector6<f64>> {
+        Some(self.own.cholesky()?.solve(&(self.gradient - self.mixed * step)))
+    }
+}
+
+/// Weight and cost of a squared residual.
+fn cauchy(squared: f64) -> (f64, f64) {
+    let bent = 1.0 + squared / (CAUCHY * CAUCHY);
+    (1.0 / bent, CAUCHY * CAUCHY * bent.ln())
+}
+
+/// The residual of one match over its standard deviations, and how it depends on offsets and motion.
+#[derive(Debug)]
+struct ResidualRows {
+    residual: Vector3,
+    by_offset: SMatrix<f64, 3, 6>,
+    by_motion: SMatrix<f64, 3, 6>,
+}
+
+impl ResidualRows {
+    fn of(matched: &FeaturePair, b_from_a: &Pose3, offset: &CalibrationOffset) -> Option<Self> {
+        let FeaturePair { a, depth_a, b, inverse_b, sigma } = *matched;
+        let ray = corrected(a, offset);
+        let p = b_from_a.transform(Vector3::new(ray.x, ray.y, 1.0) * depth_a);
+        if p.z <= 0.05 {
+            return None;
+        }
+        // Compared where it was measured, in the assumed coordinates: else a fit could shrink the picture to shrink the errors.
+        let expected = uncorrected(Vector2::new(p.x, p.y) / p.z, offset);
+        let unstretched = Matrix2::from_diagonal(&stretch(expected, offset).map(f64::recip));
+        let projection =
+            unstretched * Matrix2x3::new(1.0, 0.0, -p.x / p.z, 0.0, 1.0, -p.y / p.z) / (p.z * sigma);
+        let rotation = b_from_a.rotation_matrix();
+        let point_by_offset = rotation.fixed_columns::<2>(0) * by_offset(a) * depth_a;
+        let mut point_by_motion = SMatrix::<f64, 3, 6>::zeros();
+        point_by_motion.fixed_columns_mut::<3>(0).fill_with_identity();
+        point_by_motion.fixed_columns_mut::<3>(3).copy_from(&-p.cross_matrix());
+        let mut by = SMatrix::<f64, 3, 6>::zeros();
+        let mut by_motion = SMatrix::<f64, 3, 6>::zeros();
+        by.fixed_rows_mut::<2>(0)
+            .copy_from(&(projection * point_by_offset - unstretched * by_offset(expected) / sigma));
+        by_motion.fixed_rows_mut::<2>(0).copy_from(&(projection * point_by_motion));
+        let off = (expected - b) / sigma;
+        let mut third = 0.0;
+        if let Some((inverse, sigma)) = inverse_b {
+            let by_z: SVector<f64, 1> = SVector::from([-1.0 / (p.z * p.z * sigma)]);
+            by.fixed_rows_mut::<1>(2).copy_from(&(by_z * point_by_offset.row(2)));
+            by_motion.fixed_rows_mut::<1>(2).copy_from(&(by_z * point_by_motion.row(2)));
+            third = (1.0 / p.z - inverse) / sigma;
+        }
+        Some(Self { residual: Vector3::new(off.x, off.y, third), by_offset: by, by_motion })
+    }
+}

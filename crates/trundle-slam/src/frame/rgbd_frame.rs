@@ -1,0 +1,205 @@
+use crate::frame::aligned_feature::Aligned;
+use crate::frame::aligned_feature::raw;
+use crate::frame::depth::DepthConfig;
+use crate::frame::depth::MAX_RELATIVE_SIGMA;
+use crate::frame::depth_edges::drop_depth_edges;
+use crate::frame::observation_model::ObservationModel;
+use crate::median::median;
+use nalgebra::UnitQuaternion;
+use trundle_core::{DepthImage, Stamp, Vector2, Vector3};
+use trundle_optim::InverseDepth;
+use trundle_optim::PointObservation;
+use trundle_vision::{Descriptor, FeatureGrid, Features, Keypoint};
+
+/// What is placed better than this part of the standard deviation of a feature was aligned.
+const ALIGNED: f64 = 0.99;
+
+/// What is kept of one image: features, where they are in the rectified image, and how far.
+#[derive(Debug, Clone)]
+pub(crate) struct Frame {
+    pub stamp: Stamp,
+    pub features: Features,
+    /// Rectified position of each feature, px.
+    pub pixels: Vec<Vector2>,
+    /// Inverse depth of each feature, looked up at its raw pixel.
+    pub depths: Vec<Option<InverseDepth>>,
+    /// Standard deviation of either coordinate of each feature's place, px.
+    pub pixel_sigmas: Vec<f32>,
+    /// How the inverse depth rises around each feature, 1/(m px), right and down; of a frame that was kept, nothing.
+    pub slopes: Vec<Vector2>,
+    grid: FeatureGrid,
+}
+
+impl Frame {
+    /// Of an image during which the camera turned by `turn` (rad, camera frame) from its first row to its last: features
+    /// are kept where they would be had all rows been taken with the middle one, but for those on outlines, which are dropped.
+    pub fn new(
+        stamp: Stamp,
+        mut features: Features,
+        image: &DepthImage,
+        turn: Vector3,
+        (model, depth): (&ObservationModel, &DepthConfig),
+    ) -> Self {
+        drop_depth_edges(&mut features, image, |octave| model.scale(octave), depth);
+        let depths = features.keypoints.iter().map(|k| depth.measure(image, raw(k))).collect();
+        let slope = |k: &Keypoint| depth.slope(image, raw(k), model.scale(k.octave));
+        let slopes = match features.patches.is_empty() {
+            true => vec![],
+            false => features.keypoints.iter().map(slope).collect(),
+        };
+        if turn != Vector3::zeros() {
+            features.keypoints.iter_mut().for_each(|k| correct_rolling_shutter(k, turn, model));
+        }
+        Self { slopes, ..Self::of(stamp, features, depths, model) }
+    }
+
+    /// Of features with their inverse depths.
+    pub fn of(
+        stamp: Stamp,
+        features: Features,
+        depths: Vec<Option<InverseDepth>>,
+        model: &ObservationModel,
+    ) -> Self {
+        let pixels: Vec<Vector2> = features.keypoints.iter().map(|k| rectified(k, model)).collect();
+        let grid = grid(&features, &pixels, model);
+        Self { stamp, features, pixels, depths, pixel_sigmas: vec![], slopes: vec![], grid }.unaligned(model)
+    }
+
+    /// The same with features where they were aligned to.
+    #[must_use]
+    pub fn with_aligned(
+        mut self,
+        aligned: impl Iterator<Item = (usize, Aligned)>,
+        model: &ObservationModel,
+    ) -> Self {
+        for (i, Aligned { raw, sigma, .. }) in aligned {
+            let keypoint = &mut self.features.keypoints[i];
+            (keypoint.x, keypoint.y) = (raw.x as f32, raw.y as f32);
+            self.pixels[i] = rectified(keypoint, model);
+            self.pixel_sigmas[i] = sigma as f32;
+        }
+        self.grid = grid(&self.features, &self.pixels, model);
+        self
+    }
+
+    /// The same with all features as uncertain as plain ones.
+    #[must_use]
+    pub fn unaligned(mut self, model: &ObservationModel) -> Self {
+        let sigmas = self.features.keypoints.iter().map(|k| model.sigma_of(k.octave) as f32);
+        self.pixel_sigmas = sigmas.collect();
+        self
+    }
+
+    /// Standard deviation of its aligned features, the median of them, px of their octaves; that of a plain one where there are none.
+    pub fn median_aligned_sigma_px(&self, model: &ObservationModel) -> f64 {
+        let in_octave = |(k, sigma): (&Keypoint, &f32)| f64::from(*sigma) / model.scale(k.octave);
+        let sigmas = self.features.keypoints.iter().zip(&self.pixel_sigmas).map(in_octave);
+        median(sigmas.filter(|sigma| *sigma < ALIGNED * model.pixel_sigma)).unwrap_or(model.pixel_sigma)
+    }
+
+    /// Lets go what only a frame at hand needs.
+    pub fn drop_image(&mut self) {
+        (self.features.patches, self.slopes) = (vec![], vec![]);
+    }
+
+    /// How many features it has.
+    pub fn len(&self) -> usize {
+        self.pixels.len()
+    }
+
+    /// The observation of feature `i`.
+    pub fn observation(&self, i: usize) -> PointObservation {
+        PointObservation {
+            pixel: self.pixels[i],
+            pixel_sigma: f64::from(self.pixel_sigmas[i]),
+            depth: self.depths[i],
+        }
+    }
+
+    /// The same with the standard deviation of a feature that was not aligned: to judge whether the feature may be of another landmark
+    /// than the one it was aligned to.
+    pub fn unaligned_observation(&self, i: usize, model: &ObservationModel) -> PointObservation {
+        PointObservation { pixel_sigma: model.sigma_of(self.octave(i)), ..self.observation(i) }
+    }
+
+    /// Position of feature `i` by its own depth, camera frame, m.
+    pub fn point(&self, i: usize, model: &ObservationModel) -> Option<Vector3> {
+        self.depths[i].map(|depth| model.camera.unproject(self.pixels[i], 1.0 / depth.value))
+    }
+
+    pub fn octave(&self, i: usize) -> u8 {
+        self.features.keypoints[i].octave
+    }
+
+    pub fn descriptor(&self, i: usize) -> &Descriptor {
+        &self.features.descriptors[i]
+    }
+
+    /// The features within `radius` px of a rectified `pixel`, of the given octaves.
+    pub fn near(&self, pixel: Vector2, radius: f64, octaves: (u8, u8)) -> impl Iterator<Item = usize> + '_ {
+        self.grid.near(pixel.x as f32, pixel.y as f32, radius as f32, octaves.0..=octaves.1)
+    }
+}
+
+/// Moves a feature to where the middle row's camera would have seen it, as a direction: what is not far is off by the way
+/// the camera went meanwhile, which is little.
+fn correct_rolling_shutter(keypoint: &mut Keypoint, turn: Vector3, model: &ObservationModel) {
+    let camera = &model.camera;
+    let late = f64::from(keypoint.y) / (camera.height() as f64 - 1.0) - 0.5;
+    let ray = camera.unproject(rectified(keypoint, model), 1.0);
+    let turned = UnitQuaternion::from_scaled_axis(turn * late) * ray;
+    if let Some(pixel) = camera.project(turned) {
+        let moved = camera.distort(pixel);
+        (keypoint.x, keypoint.y) = (moved.x as f32, moved.y as f32);
+    }
+}
+
+/// Where a keypoint would be without the lens, px.
+fn rectified(keypoint: &Keypoint, model: &ObservationModel) -> Vector2 {
+    model.camera.undistort(raw(keypoint))
+}
+
+fn grid(features: &Features, pixels: &[Vector2], model: &ObservationModel) -> FeatureGrid {
+    let at = |(k, p): (&Keypoint, &Vector2)| Keypoint { x: p.x as f32, y: p.y as f32, ..*k };
+    let keypoints: Vec<Keypoint> = features.keypoints.iter().zip(pixels).map(at).collect();
+    FeatureGrid::new(&keypoints, model.camera.width(), model.camera.height())
+}
+
+/// The features that have a depth good enough to become landmarks.
+pub(crate) fn with_depth(frame: &Frame) -> impl Iterator<Item = usize> + '_ {
+    let good = |i: &usize| frame.depths[*i].is_some_and(|d| d.sigma <= MAX_RELATIVE_SIGMA * d.value);
+    (0..frame.len()).filter(good)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::model;
+
+    #[test]
+    fn a_rolling_shutter_is_taken_out() {
+        let (model, turn) = (model(), Vector3::new(0.01, 0.04, -0.02));
+        let image = DepthImage::filled(320, 240, 2.0);
+        let mut features = Features::default();
+        let mut still = Vec::new();
+        for (x, y) in [(-0.4, -0.3), (0.0, 0.0), (0.3, 0.25), (0.1, -0.28)] {
+            let ray = Vector3::new(x, y, 1.0);
+            let mut row = 120.0;
+            // Where the row is read at which the point appears.
+            let mut pixel = Vector2::zeros();
+            for _ in 0..9 {
+                let turned = UnitQuaternion::from_scaled_axis(turn * (row / 239.0 - 0.5)).inverse() * ray;
+                pixel = model.camera.project(turned).unwrap();
+                row = pixel.y;
+            }
+            let (x, y) = (pixel.x as f32, pixel.y as f32);
+            features.keypoints.push(Keypoint { x, y, octave: 0, angle: 0.0, response: 1.0 });
+            features.descriptors.push(Descriptor::default());
+            still.push(model.camera.project(ray).unwrap());
+        }
+        let frame = Frame::new(Stamp::default(), features, &image, turn, (&model, &DepthConfig::default()));
+        for (found, truth) in frame.pixels.iter().zip(&still) {
+            assert!((found - truth).norm() < 1e-3, "{found} is not {truth}");
+        }
+    }
+}

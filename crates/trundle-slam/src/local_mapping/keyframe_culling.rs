@@ -1,0 +1,101 @@
+use crate::ids::KeyframeId;
+use crate::local_mapping::keyframe_policy::KeyframeConfig;
+use crate::map::landmark::Landmark;
+use crate::map::landmark_map::LandmarkMap;
+
+/// Others that must see a landmark for a keyframe not to be needed for it \[MurArtal17\].
+const OTHERS: usize = 3;
+/// Part of its landmarks that a keyframe must not be needed for \[MurArtal17\].
+const REDUNDANT: f64 = 0.9;
+/// The newest keyframes stay: tracking hangs on them, and what they saw is still on trial.
+const NEWEST: usize = 5;
+/// Keyframes looked at for one that is new.
+const LOOKED_AT: usize = 20;
+
+/// Forgets keyframes around a new one that show nothing which others do not show as well: those 90 % of whose landmarks are
+/// seen by three others at the same or a finer scale \[MurArtal17\]. The first one stays, and the newest, those that
+/// close a loop, and those without which the place would ask for a keyframe again. How many were forgotten.
+pub(crate) fn cull_keyframes(map: &mut LandmarkMap, new: KeyframeId, config: &KeyframeConfig) -> usize {
+    let around = map.covisible(new, 1).into_iter().map(|(id, _)| id).take(LOOKED_AT);
+    let Some(newest) = map.keyframe_ids().rev().nth(NEWEST) else { return 0 };
+    let candidates: Vec<KeyframeId> = around.filter(|id| *id <= newest).collect();
+    let mut removed = 0;
+    for id in candidates {
+        let is_tied = !map.keyframe(id).tree.loops.is_empty();
+        if !is_tied && config.is_covered_without(map, id) && is_redundant(map, id) {
+            removed += usize::from(map.remove_keyframe(id));
+        }
+    }
+    removed
+}
+
+fn is_redundant(map: &LandmarkMap, id: KeyframeId) -> bool {
+    let keyframe = map.keyframe(id);
+    let seen = || keyframe.landmarks.iter().enumerate().filter_map(|(f, l)| Some((f, map.landmark((*l)?)?)));
+    let most_needed = ((1.0 - REDUNDANT) * seen().count() as f64).floor() as usize;
+    let needed = seen().filter(|(feature, l)| is_needed(map, id, keyframe.frame.octave(*feature), l));
+    needed.take(most_needed + 1).count() <= most_needed
+}
+
+/// Whether fewer than three others see a landmark as finely.
+fn is_needed(map: &LandmarkMap, id: KeyframeId, octave: u8, landmark: &Landmark) -> bool {
+    let as_fine = |(other, feature): &&(KeyframeId, usize)| {
+        *other != id && map.keyframe(*other).frame.octave(*feature) <= octave
+    };
+    landmark.observations.len() <= OTHERS
+        || landmark.observations.iter().filter(as_fine).take(OTHERS).count() < OTHERS
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::map::landmark_map::tests::assert_consistent;
+    use crate::testing::frame_with_depth;
+    use nalgebra::Vector6;
+    use trundle_core::{Pose3, Vector3};
+
+    /// Keyframes a few cm apart that all see the same, except for what `own` says.
+    fn crowd(own: &[(usize, usize)]) -> (LandmarkMap, Vec<KeyframeId>) {
+        let mut map = LandmarkMap::default();
+        let ids: Vec<KeyframeId> = (0..12)
+            .map(|i| {
+                let pose = Pose3::exp(Vector6::new(0.04 * f64::from(i), 0.0, 0.0, 0.0, 0.0, 0.0));
+                map.add_keyframe(frame_with_depth(40), pose)
+            })
+            .collect();
+        for feature in 0..40 {
+            let landmark = map.add_landmark(Vector3::z());
+            let single_view_landmark_moves = own.iter().find(|(_, f)| *f == feature).map(|(k, _)| ids[*k]);
+            for id in ids.iter().filter(|id| {
+                single_view_landmark_moves
+                    .is_none_or(|single_view_landmark_moves| single_view_landmark_moves == **id)
+            }) {
+                map.observe(landmark, *id, feature);
+            }
+        }
+        ids.iter().for_each(|id| map.add_to_spanning_tree(*id));
+        (map, ids)
+    }
+
+    #[test]
+    fn what_shows_nothing_of_its_own_is_forgotten() {
+        let config = KeyframeConfig::default();
+        // Keyframe 3 alone sees 5 of its 40: more than a tenth. Keyframe 4 sees two.
+        let own = [(3, 30), (3, 31), (3, 32), (3, 33), (3, 34), (4, 35), (4, 36)];
+        let (mut map, ids) = crowd(&own);
+        map.add_loop_edge(ids[2], ids[11]);
+        let gone = cull_keyframes(&mut map, ids[11], &config);
+        let left: Vec<usize> = map.keyframe_ids().map(KeyframeId::index).collect();
+        // First, tied, needed, and the newest five before the last.
+        assert_eq!((gone, left), (4, vec![0, 2, 3, 7, 8, 9, 10, 11]));
+        assert_consistent(&map);
+        assert_eq!(cull_keyframes(&mut map, ids[11], &config), 0);
+    }
+
+    #[test]
+    fn a_place_keeps_a_keyframe() {
+        let config = KeyframeConfig { min_translation: 0.01, max_translation: 0.015, ..Default::default() };
+        let (mut map, ids) = crowd(&[]);
+        assert_eq!(cull_keyframes(&mut map, ids[11], &config), 0);
+    }
+}

@@ -1,0 +1,149 @@
+use crate::frame::rgbd_frame::Frame;
+use crate::frame::rgbd_frame::with_depth;
+use crate::ids::KeyframeId;
+use crate::map::landmark_map::LandmarkMap;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeSet;
+use trundle_core::{Invalid, Pose3, Vector2, require_in, require_positive};
+
+/// When a frame becomes a keyframe. Time has no part in it: a camera that stands still adds nothing, however long.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct KeyframeConfig {
+    /// Never nearer to every keyframe than this, m, above 0. Default 0.03: well over the tracking noise.
+    pub min_translation: f64,
+    /// Nor turned less than this against it, rad, above 0. Default 0.05 (3 deg): a tenth of the picture at most.
+    pub min_rotation: f64,
+    /// When farther than this from every keyframe, m, and half of `new_ratio` is new; always when twice as far. Default 0.3:
+    /// the smaller detail then looks different.
+    pub max_translation: f64,
+    /// The same for what it is turned against it, rad. Default 0.35 (20 deg): a third of the picture is new.
+    pub max_rotation: f64,
+    /// When more than this part of the features with depth is where the map has no landmark to show, 0 to 1. Default 0.25.
+    /// Judged by where landmarks should be, not by which were found: a blurred frame finds few, and is the worst
+    /// keyframe there is.
+    pub new_ratio: f64,
+    /// When fewer landmarks than this are seen, though as many more features have a depth. Default 50: tracking is about
+    /// to fail.
+    pub min_tracked: usize,
+}
+
+impl Default for KeyframeConfig {
+    fn default() -> Self {
+        Self {
+            min_translation: 0.03,
+            min_rotation: 0.05,
+            max_translation: 0.3,
+            max_rotation: 0.35,
+            new_ratio: 0.25,
+            min_tracked: 50,
+        }
+    }
+}
+
+impl KeyframeConfig {
+    /// Passes a valid configuration through.
+    ///
+    /// # Errors
+    /// When a number is out of the range that its field names, or a `min` is above its `max`.
+    pub fn validated(self) -> Result<Self, Invalid> {
+        require_positive("keyframes.min_translation", self.min_translation, "m")?;
+        require_positive("keyframes.min_rotation", self.min_rotation, "rad")?;
+        require_in("keyframes.max_translation", self.max_translation, "m", self.min_translation, f64::MAX)?;
+        require_in("keyframes.max_rotation", self.max_rotation, "rad", self.min_rotation, f64::MAX)?;
+        require_in("keyframes.new_ratio", self.new_ratio, "", 0.0, 1.0)?;
+        Ok(self)
+    }
+
+    /// Whether a frame at `pose` that found `tracked` landmarks should become a keyframe. `shown` is where in the
+    /// rectified image the map has landmarks, px.
+    pub(crate) fn wants(
+        &self,
+        frame: &Frame,
+        pose: Pose3,
+        tracked: usize,
+        shown: impl Iterator<Item = Vector2>,
+        map: &LandmarkMap,
+    ) -> bool {
+        let beyond_all =
+            |translation: f64, rotation: f64| !is_near_one(map, pose, (translation, rotation), None);
+        if !beyond_all(self.min_translation, self.min_rotation) {
+            return false;
+        }
+        let all = with_depth(frame).count();
+        let thin = tracked < self.min_tracked && all >= 2 * tracked;
+        let new = count_new_features(frame, shown) as f64 / all.max(1) as f64;
+        let (far, turned) = (self.max_translation, self.max_rotation);
+        thin || new > self.new_ratio
+            || (new > 0.5 * self.new_ratio && beyond_all(far, turned))
+            || beyond_all(2.0 * far, 2.0 * turned)
+    }
+}
+
+impl KeyframeConfig {
+    /// Whether the place of a keyframe would not ask for another one if it were forgotten.
+    pub(crate) fn is_covered_without(&self, map: &LandmarkMap, id: KeyframeId) -> bool {
+        let pose = map.keyframe(id).visual_from_camera;
+        is_near_one(map, pose, (2.0 * self.max_translation, 2.0 * self.max_rotation), Some(id))
+    }
+}
+
+/// Whether a keyframe other than `except` is within so many m and rad of a pose.
+fn is_near_one(
+    map: &LandmarkMap,
+    pose: Pose3,
+    (translation, rotation): (f64, f64),
+    except: Option<KeyframeId>,
+) -> bool {
+    let near = map.keyframes_near(pose.translation, translation);
+    near.into_iter().filter(|id| Some(*id) != except).any(|id| {
+        let offset = map.keyframe(id).visual_from_camera.inverse() * pose;
+        offset.translation.norm() <= translation && offset.angle() <= rotation
+    })
+}
+
+/// How many features with depth are in a part of the image where no landmark is shown.
+fn count_new_features(frame: &Frame, shown: impl Iterator<Item = Vector2>) -> usize {
+    let cell = |pixel: Vector2| ((pixel.x / CELL_PX).floor() as i32, (pixel.y / CELL_PX).floor() as i32);
+    let known: BTreeSet<(i32, i32)> = shown.map(cell).collect();
+    with_depth(frame).filter(|i| !known.contains(&cell(frame.pixels[*i]))).count()
+}
+
+/// Side of the parts of the image that are known or new, px: a few times the distance between features.
+const CELL_PX: f64 = 40.0;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::frame_with_depth;
+    use crate::testing::map_of_one_view;
+    use nalgebra::Vector6;
+
+    #[test]
+    fn what_stands_still_adds_nothing_and_what_moves_does() {
+        let config = KeyframeConfig::default();
+        let (map, _) = map_of_one_view(100);
+        let frame = frame_with_depth(100);
+        let wants = |x: f64, turn: f64, tracked: usize, shown: usize| {
+            let pose = Pose3::exp(Vector6::new(x, 0.0, 0.0, 0.0, turn, 0.0));
+            let shown = frame.pixels[..shown].iter().copied();
+            config.wants(&frame, pose, tracked, shown, &map)
+        };
+        assert!(!wants(0.02, 0.01, 5, 5), "blind but still");
+        assert!(!wants(0.1, 0.1, 90, 100), "moved, but the view is well known");
+        assert!(!wants(0.1, 0.1, 60, 100), "blurred, but the view is well known");
+        assert!(wants(0.1, 0.0, 60, 60), "a part of the view is new");
+        assert!(wants(0.1, 0.0, 40, 100), "about to get lost");
+        assert!(!wants(0.4, 0.4, 100, 100), "farther, but the view is well known");
+        assert!(wants(0.0, 0.4, 100, 70), "turned far");
+        assert!(wants(0.4, 0.0, 100, 70), "moved far");
+        assert!(wants(0.0, 0.8, 100, 100), "turned very far");
+        assert!(wants(0.7, 0.0, 100, 100), "moved very far");
+    }
+
+    #[test]
+    fn bounds_are_checked() {
+        assert!(KeyframeConfig { max_rotation: 0.01, ..Default::default() }.validated().is_err());
+        assert!(KeyframeConfig { new_ratio: f64::NAN, ..Default::default() }.validated().is_err());
+    }
+}

@@ -1,0 +1,107 @@
+use crate::ids::KeyframeId;
+use crate::map::keyframe::Keyframe;
+use crate::map::landmark_map::LandmarkMap;
+use crate::median::median;
+use nalgebra::{Matrix3, Matrix6, UnitQuaternion};
+use trundle_core::{Pose3, Vector3};
+use trundle_optim::PoseConstraint;
+
+/// How far from the plane a camera on wheels may be, m, and how much it may lean against it, rad: a floor may be off by 1 cm over
+/// 4 m and 4 mm over 1 m \[DIN18202, table 3\].
+const SIGMA: (f64, f64) = (0.01, 0.004);
+/// What is farther off than this, m and rad, is on a ramp or on another floor.
+const ELSEWHERE: (f64, f64) = (0.1, 0.1);
+/// Part of the keyframes that must be on the plane for it to be one.
+const MOST: f64 = 0.8;
+
+/// The plane in which the camera moves, visual frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct FloorPlane {
+    /// Across the plane, camera frame.
+    axis: Vector3,
+    /// The same in the visual frame.
+    normal: Vector3,
+    /// Along it, m.
+    height: f64,
+}
+
+impl FloorPlane {
+    /// The plane of most keyframes of a map whose camera turns about `axis` (camera frame); `None` where there is none.
+    pub fn of(map: &LandmarkMap, axis: Vector3) -> Option<Self> {
+        let normals: Vec<Vector3> = map.keyframes().map(|(_, k)| k.visual_from_camera.rotate(axis)).collect();
+        let middle = |i: usize| median(normals.iter().map(|n| n[i]));
+        let normal = Vector3::new(middle(0)?, middle(1)?, middle(2)?).try_normalize(0.5)?;
+        let heights = map.keyframes().map(|(_, k)| normal.dot(&k.visual_from_camera.translation));
+        let plane = Self { axis, normal, height: median(heights)? };
+        let on_it = map.keyframes().filter(|(_, k)| plane.has(k)).count();
+        (on_it as f64 >= MOST * normals.len() as f64).then_some(plane)
+    }
+
+    /// Ties the keyframe, which is pose `to`, to where it would be on the plane; pose `world` is the identity. `None` of one that is elsewhere.
+    pub fn constraint(
+        &self,
+        map: &LandmarkMap,
+        id: KeyframeId,
+        world: usize,
+        to: usize,
+    ) -> Option<PoseConstraint> {
+        let keyframe = map.live_keyframe(id).filter(|keyframe| self.has(keyframe))?;
+        let pose = keyframe.visual_from_camera;
+        let upright = UnitQuaternion::rotation_between(&pose.rotate(self.axis), &self.normal)?;
+        let down = self.normal * (self.height - self.normal.dot(&pose.translation));
+        let from_to = Pose3::new(upright * pose.rotation, pose.translation + down);
+        let across = self.axis * self.axis.transpose();
+        let mut information = Matrix6::zeros();
+        information.fixed_view_mut::<3, 3>(0, 0).copy_from(&(across / SIGMA.0.powi(2)));
+        information
+            .fixed_view_mut::<3, 3>(3, 3)
+            .copy_from(&((Matrix3::identity() - across) / SIGMA.1.powi(2)));
+        Some(PoseConstraint { from: world, to, from_to, information })
+    }
+
+    fn has(&self, keyframe: &Keyframe) -> bool {
+        let pose = keyframe.visual_from_camera;
+        let off = self.normal.dot(&pose.translation) - self.height;
+        off.abs() <= ELSEWHERE.0 && pose.rotate(self.axis).angle(&self.normal) <= ELSEWHERE.1
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::blank_frame;
+    use nalgebra::Vector6;
+    use trundle_core::Pose2;
+
+    /// A camera 0.4 m above the floor, turned and tilted on its robot.
+    fn mount() -> Pose3 {
+        Pose3::exp(Vector6::new(0.1, 0.02, 0.4, -1.4, 1.1, -1.2))
+    }
+
+    fn at(i: usize) -> Pose3 {
+        let along = 0.2 * i as f64;
+        Pose3::from_pose2(Pose2::new(along.sin(), 0.5 * along, 0.3 * along)) * mount()
+    }
+
+    #[test]
+    fn a_keyframe_is_tied_to_the_plane_of_most_but_not_one_elsewhere() {
+        let mut map = LandmarkMap::default();
+        let bent = Pose3::exp(Vector6::new(0.01, -0.02, 0.02, 0.01, 0.02, 0.01));
+        let ids: Vec<KeyframeId> = (0..10)
+            .map(|i| map.add_keyframe(blank_frame(1), if i == 4 { at(i) * bent } else { at(i) }))
+            .collect();
+        let axis = mount().inverse().rotate(Vector3::z());
+        let plane = FloorPlane::of(&map, axis).unwrap();
+        let tie = plane.constraint(&map, ids[4], 7, 4).unwrap();
+        assert!((tie.from_to.translation.z - mount().translation.z).abs() < 1e-9);
+        assert!(tie.from_to.rotate(axis).angle(&Vector3::z()) < 1e-9);
+        let along = |pose: Pose3| pose.translation.xy();
+        assert!((along(tie.from_to) - along(at(4) * bent)).norm() < 1e-9, "it is free to go along the floor");
+        map.move_keyframe(ids[5], Pose3::exp(Vector6::new(0.0, 0.0, 0.5, 0.0, 0.0, 0.0)) * at(5));
+        assert_eq!(FloorPlane::of(&map, axis).unwrap().constraint(&map, ids[5], 7, 5), None);
+        (0..5).for_each(|i| {
+            map.move_keyframe(ids[i], Pose3::exp(Vector6::new(0.0, 0.0, i as f64, 0.0, 0.0, 0.0)) * at(i));
+        });
+        assert_eq!(FloorPlane::of(&map, axis), None, "stairs");
+    }
+}

@@ -1,0 +1,48 @@
+//! The odometry since the newest keyframe, and the axis of the floor that it shows.
+
+use crate::ids::KeyframeId;
+use crate::map::landmark_map::LandmarkMap;
+use crate::map::odometry_factor::OdometryFactor;
+use crate::motion::floor_axis::FloorAxis;
+use crate::motion::motion_model::MotionConfig;
+use trundle_core::CameraMotion;
+
+/// Odometry that is summed up between keyframes.
+#[derive(Debug, Default)]
+pub(crate) struct OdometryTrack {
+    /// The motion since the newest keyframe, while all of it was measured.
+    pub since_keyframe: Option<OdometryFactor>,
+    floor: FloorAxis,
+}
+
+impl OdometryTrack {
+    /// Takes the motion prior of a frame, over so many seconds.
+    pub fn extend(&mut self, prior: Option<CameraMotion>, seconds: f64, config: &MotionConfig) {
+        let extended =
+            |(factor, step): (OdometryFactor, CameraMotion)| factor.extended_by(step, seconds, config);
+        self.since_keyframe = self.since_keyframe.zip(prior).and_then(extended);
+        if let Some(step) = prior {
+            self.floor.record(step.motion);
+        }
+    }
+
+    /// The odometry is not of the camera's motion since the newest keyframe any more.
+    pub fn interrupt(&mut self) {
+        self.since_keyframe = None;
+    }
+
+    /// The factor for a keyframe at hand, where the keyframe before is still in the map.
+    pub fn factor_in(&self, map: &LandmarkMap) -> Option<OdometryFactor> {
+        self.since_keyframe.filter(|factor| map.live_keyframe(factor.from).is_some())
+    }
+
+    /// Brings the map's axis of the floor up to date.
+    pub fn update_floor(&self, map: &mut LandmarkMap) {
+        map.floor = self.floor.axis_after(map.floor);
+    }
+
+    /// Starts anew at a keyframe.
+    pub fn start_at(&mut self, keyframe: KeyframeId) {
+        self.since_keyframe = Some(OdometryFactor::at(keyframe));
+    }
+}

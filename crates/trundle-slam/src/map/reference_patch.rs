@@ -1,0 +1,163 @@
+use crate::frame::aligned_feature::raw;
+use crate::frame::observation_model::ObservationModel;
+use crate::frame::rgbd_frame::Frame;
+use nalgebra::{Matrix2, UnitQuaternion};
+use trundle_core::{Pose3, Vector2, Vector3};
+use trundle_vision::{ImagePatch, Template};
+
+/// The cosine of the steepest angle between the directions from which a patch was seen and is looked for: 37 deg. What is around
+/// a point is not quite a plane.
+const MIN_COSINE: f64 = 0.8;
+/// By how much a patch may be magnified: the root mean square of its sides.
+const MOST_MAGNIFIED: f64 = 1.8;
+
+/// From how many sides at most a landmark's look is kept.
+pub(crate) const MAX_REFERENCE_PATCHES: usize = 4;
+
+/// How a landmark looks from somewhere: what is around it, on the plane that the depth camera saw there.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct ReferencePatch {
+    pub image: ImagePatch,
+    /// One px of the patch to the right and down, on that plane, visual frame, m.
+    pub right: Vector3,
+    pub down: Vector3,
+    /// Direction from the landmark to the camera, unit length.
+    pub toward_camera: Vector3,
+}
+
+impl ReferencePatch {
+    /// Of the landmark at `position` (visual frame, m), which is feature `i` of a frame of a camera at `visual_from_camera`.
+    /// `None` where the frame has kept no image of it.
+    pub fn of(
+        frame: &Frame,
+        i: usize,
+        (visual_from_camera, position): (Pose3, Vector3),
+        model: &ObservationModel,
+    ) -> Option<Self> {
+        let image = *frame.features.patches.get(i)?;
+        let p_camera = visual_from_camera.inverse().transform(position);
+        let plane = Plane {
+            middle: raw(&frame.features.keypoints[i]),
+            inverse: 1.0 / p_camera.z,
+            slope: frame.slopes.get(i).copied().unwrap_or_default(),
+        };
+        let px = model.scale(frame.octave(i));
+        let tangent = |step: Vector2| {
+            let tangent = (plane.at(step, model)? - plane.at(-step, model)?) / 2.0;
+            Some(visual_from_camera.rotate(tangent))
+        };
+        Some(Self {
+            image,
+            right: tangent(Vector2::new(px, 0.0))?,
+            down: tangent(Vector2::new(0.0, px))?,
+            toward_camera: (visual_from_camera.translation - position).try_normalize(1e-9)?,
+        })
+    }
+
+    /// What a camera should see of it on an octave, of the landmark at `position`; `None` from where it looks too different.
+    pub fn seen_from(
+        &self,
+        camera_from_visual: &Pose3,
+        position: Vector3,
+        octave: u8,
+        model: &ObservationModel,
+    ) -> Option<Template> {
+        let ray = camera_from_visual.inverse().translation - position;
+        if ray.dot(&self.toward_camera) < MIN_COSINE * ray.norm() {
+            return None;
+        }
+        let at = |point: Vector3| {
+            let pixel = model.camera.project(camera_from_visual.transform(point))?;
+            Some(model.camera.distort(pixel) / model.scale(octave))
+        };
+        let step = |tangent: Vector3| Some((at(position + tangent)? - at(position - tangent)?) / 2.0);
+        let warp = Matrix2::from_columns(&[step(self.right)?, step(self.down)?]);
+        let is_near = warp.norm_squared() <= 2.0 * MOST_MAGNIFIED * MOST_MAGNIFIED;
+        Template::new(&self.image, is_near.then_some(warp)?.cast())
+    }
+
+    /// The same once the landmark has turned with the map.
+    pub fn turn(&mut self, rotation: UnitQuaternion<f64>) {
+        for direction in [&mut self.right, &mut self.down, &mut self.toward_camera] {
+            *direction = rotation * *direction;
+        }
+    }
+}
+
+/// What the depth camera saw around a feature: on a plane, the inverse depth is affine in the pixel.
+struct Plane {
+    /// Raw px.
+    middle: Vector2,
+    /// 1/m.
+    inverse: f64,
+    /// 1/(m px).
+    slope: Vector2,
+}
+
+impl Plane {
+    /// Where it is `offset` px from the feature, camera frame, m; `None` behind the camera.
+    fn at(&self, offset: Vector2, model: &ObservationModel) -> Option<Vector3> {
+        let inverse = self.inverse + self.slope.dot(&offset);
+        let pixel = model.camera.undistort(self.middle + offset);
+        (inverse > 0.0).then(|| model.camera.unproject(pixel, 1.0 / inverse))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::model;
+    use crate::testing::painted_frame;
+    use crate::testing::painted_points;
+    use nalgebra::Vector6;
+
+    fn look_of_the_first() -> ReferencePatch {
+        let points = painted_points();
+        let frame = painted_frame(Pose3::identity(), &points, Vector2::zeros());
+        ReferencePatch::of(&frame, 0, (Pose3::identity(), points[0]), &model()).unwrap()
+    }
+
+    /// How far off the first point is found from a camera there, px; `None` where it looks too different.
+    fn off_from(look: &ReferencePatch, visual_from_camera: Pose3) -> Option<f32> {
+        let point = painted_points()[0];
+        let template = look.seen_from(&visual_from_camera.inverse(), point, 0, &model())?;
+        let frame = painted_frame(visual_from_camera, &[point], Vector2::new(0.9, -0.7));
+        let found = template.find(&frame.features.patches[0], nalgebra::Vector2::zeros()).unwrap();
+        Some((found.offset - nalgebra::Vector2::new(-0.9, 0.7)).norm())
+    }
+
+    #[test]
+    fn a_point_is_found_from_nearer_and_aside() {
+        let look = look_of_the_first();
+        for motion in [
+            Vector6::zeros(),
+            Vector6::new(0.0, 0.0, 0.5, 0.0, 0.0, 0.0),
+            Vector6::new(0.5, 0.1, 0.2, 0.0, -0.3, 0.1),
+            Vector6::new(-0.8, 0.0, -0.5, 0.1, 0.4, -0.2),
+        ] {
+            let off = off_from(&look, Pose3::exp(motion)).unwrap();
+            assert!(off < 0.1, "{off} px off after {motion:?}");
+        }
+    }
+
+    #[test]
+    fn from_far_aside_or_much_nearer_it_may_look_different() {
+        let look = look_of_the_first();
+        assert_eq!(off_from(&look, Pose3::exp(Vector6::new(0.0, 0.0, 1.2, 0.0, 0.0, 0.0))), None);
+        let aside =
+            Pose3::new(UnitQuaternion::from_euler_angles(0.0, -0.9, 0.0), Vector3::new(1.6, 0.0, 0.3));
+        assert_eq!(off_from(&look, aside), None);
+    }
+
+    #[test]
+    fn it_turns_with_the_map() {
+        let (mut look, point) = (look_of_the_first(), painted_points()[0]);
+        let new_from_old = Pose3::exp(Vector6::new(1.0, 2.0, 3.0, 0.3, 2.0, -1.0));
+        look.turn(new_from_old.rotation);
+        let camera = new_from_old * Pose3::exp(Vector6::new(0.3, 0.0, 0.2, 0.0, -0.2, 0.0));
+        let template = look.seen_from(&camera.inverse(), new_from_old.transform(point), 0, &model()).unwrap();
+        let frame = painted_frame(new_from_old.inverse() * camera, &[point], Vector2::zeros());
+        let found = template.find(&frame.features.patches[0], nalgebra::Vector2::zeros()).unwrap();
+        assert!(found.offset.norm() < 0.1, "{found:?}");
+    }
+}

@@ -1,0 +1,202 @@
+use crate::frame::observation_model::ObservationModel;
+use crate::ids::KeyframeId;
+use crate::ids::LandmarkId;
+use crate::map::landmark_map::LandmarkMap;
+use crate::optimisation::constraints::odometry_and_floor_constraints;
+use nalgebra::Matrix6;
+use trundle_core::{Pose3, Vector3};
+use trundle_optim::{BundleConfig, BundleObservation, BundlePose, BundleProblem, BundleSolver, CHI2_95_2};
+
+/// A bundle adjustment of some keyframes and landmarks, under way while the map goes on changing.
+///
+/// What comes out counts, also for what something else moved meanwhile: poses and points of one bundle fit each other. What
+/// is not in it goes along by corrections, from where a keyframe is now to where the bundle puts it.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct MapBundle {
+    /// By rising id, where they were when they were taken up, and whether they hold still.
+    keyframes: Vec<(KeyframeId, BundlePose)>,
+    /// By rising id, and where they were.
+    landmarks: Vec<(LandmarkId, Vector3)>,
+    observations: Vec<BundleObservation>,
+    /// Landmark, keyframe and bound of each observation.
+    sources: Vec<(LandmarkId, KeyframeId, f64)>,
+    /// By place; empty where nobody has divided it.
+    parts: Vec<usize>,
+    solver: BundleSolver,
+    is_done: bool,
+}
+
+impl MapBundle {
+    /// Takes up keyframes; each with whether it holds still.
+    pub fn of(map: &LandmarkMap, keyframes: impl Iterator<Item = (KeyframeId, bool)>) -> Self {
+        let pose = |(id, fixed): (KeyframeId, bool)| {
+            let world_from_camera = map.keyframe(id).visual_from_camera;
+            (id, BundlePose { world_from_camera, fixed })
+        };
+        let mut keyframes: Vec<_> = keyframes.map(pose).collect();
+        keyframes.sort_unstable_by_key(|(id, _)| *id);
+        Self { keyframes, ..Self::default() }
+    }
+
+    /// Takes up a landmark, which must be newer than all before it, and what these keyframes see of it if that are two or
+    /// more; how many see it.
+    pub fn add(&mut self, map: &LandmarkMap, id: LandmarkId) -> usize {
+        let Some(landmark) = map.landmark(id) else { return 0 };
+        let start = self.observations.len();
+        for (keyframe, feature) in &landmark.observations {
+            let Some(pose) = self.place_of(*keyframe) else { continue };
+            let seen = map.keyframe(*keyframe).frame.observation(*feature);
+            self.observations.push(BundleObservation { pose, point: self.landmarks.len(), seen });
+            self.sources.push((id, *keyframe, seen.chi2_bound()));
+        }
+        let count = self.observations.len() - start;
+        if count < 2 {
+            self.observations.truncate(start);
+            self.sources.truncate(start);
+            return 0;
+        }
+        self.landmarks.push((id, landmark.position));
+        count
+    }
+
+    /// The places of the keyframes that see the landmark added last.
+    pub fn newest_observers(&self) -> impl Iterator<Item = usize> + '_ {
+        let newest = self.landmarks.len().wrapping_sub(1);
+        self.observations.iter().rev().take_while(move |o| o.point == newest).map(|o| o.pose)
+    }
+
+    /// The place of a keyframe among those taken up.
+    pub fn place_of(&self, id: KeyframeId) -> Option<usize> {
+        self.keyframes.binary_search_by_key(&id, |(own, _)| *own).ok()
+    }
+
+    /// The keyframes taken up, by rising id.
+    pub fn keyframes(&self) -> impl Iterator<Item = (KeyframeId, BundlePose)> + '_ {
+        self.keyframes.iter().copied()
+    }
+
+    /// Says which keyframes hold still.
+    pub fn fix(&mut self, is_fixed: impl Fn(usize) -> bool) {
+        self.keyframes.iter_mut().enumerate().for_each(|(i, (_, pose))| pose.fixed = is_fixed(i));
+    }
+
+    /// Says which keyframes are of one part: a number for each, by place. Parts share so few landmarks that chance may have done it.
+    pub fn set_parts(&mut self, parts: Vec<usize>) {
+        self.parts = parts;
+    }
+
+    /// Starts refining, with the buffers of an earlier solver.
+    pub fn begin(
+        &mut self,
+        map: &LandmarkMap,
+        model: &ObservationModel,
+        config: &BundleConfig,
+        solver: BundleSolver,
+    ) {
+        self.solver = solver;
+        let ids: Vec<KeyframeId> = self.keyframes.iter().map(|(id, _)| *id).collect();
+        let constraints = odometry_and_floor_constraints(map, &ids, |i| self.keyframes[i].1.fixed);
+        let world = BundlePose { world_from_camera: Pose3::identity(), fixed: true };
+        let poses = self.keyframes.iter().map(|(_, pose)| *pose).chain([world]).collect();
+        let points = self.landmarks.iter().map(|(_, point)| *point).collect();
+        let observations = std::mem::take(&mut self.observations);
+        let mut parts = std::mem::take(&mut self.parts);
+        if !parts.is_empty() {
+            parts.resize(self.keyframes.len() + 1, 0);
+        }
+        let problem = BundleProblem::new(model.camera, poses, points, observations)
+            .and_then(|problem| problem.with_ties(constraints))
+            .and_then(|problem| if parts.is_empty() { Ok(problem) } else { problem.with_parts(parts) });
+        self.solver.begin(&problem.expect("invariant: every index was counted here"), config);
+    }
+
+    /// The solver, for its buffers, once the result is taken over.
+    pub fn into_solver(self) -> BundleSolver {
+        self.solver
+    }
+
+    /// Goes on for about `work` units of the solver; whether it is done.
+    pub fn advance(&mut self, work: usize) -> bool {
+        self.is_done = self.solver.advance(work);
+        self.is_done
+    }
+
+    /// How the bundle moves a keyframe from where it is now, `new_from_old` in the visual frame; `None` of one that it does
+    /// not have, or that is forgotten.
+    pub fn correction(&self, map: &LandmarkMap, id: KeyframeId) -> Option<Pose3> {
+        let now = map.live_keyframe(id)?.visual_from_camera;
+        Some(self.solver.poses()[self.place_of(id)?] * now.inverse())
+    }
+
+    /// Moves the keyframes that were free and are still there.
+    pub fn move_keyframes(&self, map: &mut LandmarkMap) {
+        for ((id, _), pose) in self.keyframes.iter().zip(self.solver.poses()).filter(|((_, k), _)| !k.fixed) {
+            if map.live_keyframe(*id).is_some() {
+                map.move_keyframe(*id, pose.renormalized());
+            }
+        }
+    }
+
+    /// Moves the landmarks that are still there.
+    pub fn move_landmarks(&self, map: &mut LandmarkMap) {
+        for ((id, _), position) in self.landmarks.iter().zip(self.solver.points()) {
+            if let Some(landmark) = map.landmark_mut(*id) {
+                landmark.position = *position;
+            }
+        }
+    }
+
+    /// Whether it has the landmark.
+    pub fn has(&self, id: LandmarkId) -> bool {
+        self.landmarks.binary_search_by_key(&id, |(own, _)| *own).is_ok()
+    }
+
+    /// Takes observations back that disagree with the result at 95 %, once it is done.
+    pub fn remove_outliers(&self, map: &mut LandmarkMap) {
+        if !self.is_done {
+            return;
+        }
+        for ((landmark, keyframe, bound), chi2) in self.sources.iter().zip(self.solver.chi2()) {
+            if chi2 > bound {
+                map.unobserve(*landmark, *keyframe);
+            }
+        }
+    }
+
+    /// The landmarks taken up.
+    pub fn landmarks(&self) -> impl Iterator<Item = LandmarkId> + '_ {
+        self.landmarks.iter().map(|(id, _)| *id)
+    }
+
+    /// The mean square of what is left of the residuals, in their variances, over the observations that agree: 1 if every
+    /// sigma is true (the variance of unit weight).
+    pub fn variance_factor(&self) -> f64 {
+        let free = self.keyframes.iter().filter(|(_, pose)| !pose.fixed).count();
+        let mut freedoms = -(6.0 * free as f64 + 3.0 * self.landmarks.len() as f64);
+        let mut sum = 0.0;
+        for ((_, _, bound), chi2) in self.sources.iter().zip(self.solver.chi2()).filter(|(s, c)| **c <= s.2) {
+            freedoms += if *bound > CHI2_95_2 { 3.0 } else { 2.0 };
+            sum += chi2;
+        }
+        if freedoms > 0.0 { sum / freedoms } else { 1.0 }
+    }
+
+    /// How many of the landmarks taken up each keyframe sees, by place.
+    pub fn seen(&self) -> Vec<usize> {
+        let mut seen = vec![0; self.keyframes.len()];
+        for place in self.sources.iter().filter_map(|(_, keyframe, _)| self.place_of(*keyframe)) {
+            seen[place] += 1;
+        }
+        seen
+    }
+
+    /// Covariance of a free keyframe against the fixed ones, and its part that is not the keyframe's own: that of the
+    /// points it sees, as of one body. `None` where the bundle did not work them out.
+    pub fn covariances(&self, place: usize) -> Option<(Matrix6<f64>, Matrix6<f64>)> {
+        let whole = self.solver.covariance(place)?;
+        let own = self.solver.information(place)?.cholesky()?.inverse();
+        let eigen = (whole - own).symmetric_eigen();
+        let cut = Matrix6::from_diagonal(&eigen.eigenvalues.map(|value| value.max(0.0)));
+        Some((whole, eigen.eigenvectors * cut * eigen.eigenvectors.transpose()))
+    }
+}

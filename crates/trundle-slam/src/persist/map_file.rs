@@ -1,0 +1,77 @@
+//! Maps as the bytes of a file, and back.
+
+use crate::config::SlamConfig;
+use crate::frame::observation_model::ObservationModel;
+use crate::ids::MapId;
+use crate::map::landmark_map::LandmarkMap;
+use crate::persist::bytes::{Reader, Writer, checksum};
+use crate::persist::error::MapFileError;
+use crate::persist::{map, settings};
+use trundle_core::PinholeCamera;
+
+const MAGIC: &[u8; 7] = b"trundlM";
+const VERSION: u8 = 3;
+/// Bytes before those that the checksum is of.
+const HEAD: usize = 16;
+
+/// Maps with their numbers, by rising number, and what they were made with.
+pub(crate) fn save<'a>(
+    camera: &PinholeCamera,
+    config: &SlamConfig,
+    maps: impl ExactSizeIterator<Item = (MapId, &'a LandmarkMap)>,
+) -> Vec<u8> {
+    let mut out = Writer::default();
+    out.0.extend(MAGIC);
+    out.u8(VERSION);
+    out.u64(0);
+    settings::write(&mut out, camera, &config.orb);
+    out.count(maps.len());
+    for (id, map) in maps {
+        out.u32(id.0);
+        map::write(&mut out, map);
+    }
+    let mut bytes = out.0;
+    let sum = checksum(&bytes[HEAD..]);
+    bytes[HEAD - 8..HEAD].copy_from_slice(&sum.to_le_bytes());
+    bytes
+}
+
+/// Reads [`save`].
+///
+/// # Errors
+/// When the bytes are no map, of another version, damaged, cut off, made with other settings, or contradict themselves.
+pub(crate) fn load(
+    bytes: &[u8],
+    model: &ObservationModel,
+    config: &SlamConfig,
+) -> Result<Vec<(MapId, LandmarkMap)>, MapFileError> {
+    let mut body = checked_body(bytes)?;
+    settings::check(&mut body, &model.camera, &config.orb)?;
+    let mut maps: Vec<(MapId, LandmarkMap)> = Vec::new();
+    for _ in 0..body.count(12)? {
+        let id = body.u32()?;
+        let rises = maps.last().is_none_or(|(last, _)| last.0 < id) && id < u32::MAX;
+        body.require(rises, "number of a map", id, || "rising numbers".to_owned())?;
+        maps.push((MapId(id), map::read(&mut body, model)?));
+    }
+    body.end()?;
+    Ok(maps)
+}
+
+fn checked_body(bytes: &[u8]) -> Result<Reader<'_>, MapFileError> {
+    let Some((magic, rest)) = bytes.split_first_chunk::<7>().filter(|(magic, _)| *magic == MAGIC) else {
+        return Err(MapFileError::Foreign);
+    };
+    let _ = magic;
+    let mut head = Reader::new(rest, "head");
+    let found = head.u8()?;
+    if found != VERSION {
+        return Err(MapFileError::Version { found, expected: VERSION });
+    }
+    let sum = head.u64()?;
+    let body = &bytes[HEAD..];
+    if checksum(body) != sum {
+        return Err(MapFileError::Checksum);
+    }
+    Ok(Reader::new(body, "settings"))
+}

@@ -1,0 +1,101 @@
+//! Hypotheses of where a camera is, and which of them to believe.
+
+use trundle_core::Pose3;
+
+/// Largest distance between two poses of the same place: 0.3 m. Poses farther apart are rivals. Source: ours.
+const SAME_PLACE_M: f64 = 0.3;
+/// Largest rotation between two poses of the same place: 0.3 rad. See [`SAME_PLACE_M`].
+const SAME_PLACE_RAD: f64 = 0.3;
+/// Fraction of the best hypothesis' points above which a second one elsewhere makes both doubtful: 0.7. Source: \[Lowe04\], the ratio
+/// test of a second match that is nearly as near.
+const RIVAL_POINTS_RATIO: f64 = 0.7;
+
+/// A pose where the camera may be, and how many points support it.
+pub(crate) trait PlaceHypothesis {
+    fn pose(&self) -> Pose3;
+    fn points(&self) -> usize;
+    /// Whether enough of what should be seen there is seen.
+    fn is_plausible(&self) -> bool;
+    /// Whether the hypothesis can be believed, if it has no rival.
+    fn is_certain(&self) -> bool;
+}
+
+/// Index of the certain hypothesis with the most points, of equal ones the first.
+pub(crate) fn best_hypothesis<T: PlaceHypothesis>(found: &[T]) -> Option<usize> {
+    (0..found.len()).rev().filter(|i| found[*i].is_certain()).max_by_key(|i| found[*i].points())
+}
+
+/// The certain hypothesis with the most points; `None` when there is none, when a plausible one elsewhere has nearly as many, as
+/// look-alike rooms do, or when an implausible one elsewhere has more.
+pub(crate) fn without_rival<T: PlaceHypothesis>(mut found: Vec<T>) -> Option<T> {
+    let i = best_hypothesis(&found)?;
+    let best = &found[i];
+    let share = |other: &T| if other.is_plausible() { RIVAL_POINTS_RATIO } else { 1.0 };
+    let has_as_many = |other: &T| other.points() as f64 > share(other) * best.points() as f64;
+    let is_rival = |other: &T| has_as_many(other) && !is_same_place(best.pose(), other.pose());
+    (!found.iter().any(is_rival)).then(|| found.swap_remove(i))
+}
+
+/// Whether two poses are of the same place.
+pub(crate) fn is_same_place(a: Pose3, b: Pose3) -> bool {
+    let offset = a.inverse() * b;
+    offset.translation.norm() < SAME_PLACE_M && offset.angle() < SAME_PLACE_RAD
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use trundle_core::Vector3;
+
+    /// How certain a hypothesis is.
+    #[derive(Debug, Clone, Copy, PartialEq, PartialOrd)]
+    enum Certainty {
+        Implausible,
+        Plausible,
+        Certain,
+    }
+    use Certainty::{Certain, Implausible, Plausible};
+
+    /// Where along a line, and how many points.
+    impl PlaceHypothesis for (f64, usize, Certainty) {
+        fn pose(&self) -> Pose3 {
+            Pose3::new(nalgebra::UnitQuaternion::identity(), Vector3::x() * self.0)
+        }
+
+        fn points(&self) -> usize {
+            self.1
+        }
+
+        fn is_plausible(&self) -> bool {
+            self.2 >= Plausible
+        }
+
+        fn is_certain(&self) -> bool {
+            self.2 == Certain
+        }
+    }
+
+    #[test]
+    fn the_hypothesis_with_most_points_wins_unless_a_rival_elsewhere_has_nearly_as_many() {
+        assert_eq!(without_rival::<(f64, usize, Certainty)>(vec![]), None);
+        let best = |found: &[(f64, usize)]| {
+            without_rival(found.iter().map(|(x, points)| (*x, *points, Certain)).collect())
+                .map(|(x, n, _)| (x, n))
+        };
+        assert_eq!(best(&[(0.0, 50), (0.1, 60), (4.0, 40)]), Some((0.1, 60)));
+        assert_eq!(best(&[(0.0, 50), (4.0, 60)]), None);
+        assert_eq!(best(&[(0.0, 60), (0.2, 59)]), Some((0.0, 60)));
+    }
+
+    #[test]
+    fn an_uncertain_hypothesis_is_a_rival_and_cannot_win() {
+        let certain = (0.0, 50, Certain);
+        assert_eq!(without_rival(vec![(4.0, 51, Implausible), certain]), None);
+        assert_eq!(without_rival(vec![(4.0, 40, Plausible), certain]), None);
+        assert_eq!(
+            without_rival(vec![(0.1, 90, Implausible), certain, (4.0, 49, Implausible)]),
+            Some(certain)
+        );
+        assert_eq!(without_rival(vec![(0.0, 90, Plausible)]), None);
+    }
+}

@@ -1,0 +1,286 @@
+//! What a frame changes, once it is known whether it was located.
+
+use super::RgbdSlam;
+use super::localizer::Localization;
+use super::map_start::{MapStart, MapStartQuery, Visibility};
+use crate::atlas::map_merger::{MapMerger, Merged};
+use crate::atlas::trajectory::FrameRecord;
+use crate::frame::rgbd_frame::Frame;
+use crate::ids::{KeyframeId, LandmarkId, MapId};
+use crate::local_mapping::keyframe_culling::cull_keyframes;
+use crate::local_mapping::local_mapper::LocalMapper;
+use crate::map::anchored_pose::AnchoredPose;
+use crate::motion::uncertain_pose::{UncertainPose, carried};
+use crate::report::{MapMerge, Mode, SeenFeature, TrackReport};
+use crate::tracking::last_frame::LastFrame;
+use crate::tracking::local_map::LocalMapQuery;
+use crate::tracking::localized_frame::LocalizedFrame;
+use crate::tracking::tracking_status::Tracking;
+use nalgebra::Matrix6;
+use trundle_core::{CameraMotion, DepthImage, Pose3, Stamp};
+
+/// A frame that became a keyframe.
+struct InsertedKeyframe {
+    id: KeyframeId,
+    merged: Option<MapMerge>,
+}
+
+impl RgbdSlam {
+    /// Takes a found pose over: counts landmarks, makes a keyframe where one is wanted.
+    pub(super) fn on_located(&mut self, frame: Frame, found: Localization) -> TrackReport {
+        let Localization { map, localized } = found;
+        let is_continuous = self.tracking.lost_frames == 0 && map == self.atlas.active.id;
+        let last = self.tracking.last.as_ref().filter(|_| is_continuous);
+        let before = last.map(|last| last.anchored.visual_from_camera(&self.atlas.active.map));
+        self.enter(map);
+        if localized.contradicts_odometry() {
+            // The wheels slipped, or the robot was carried.
+            self.odometry.interrupt();
+        }
+        let mut landmarks = localized.landmarks(frame.len());
+        let frame = frame.with_aligned(localized.aligned_features(), &self.front_end.model);
+        self.record_features(&frame, &landmarks);
+        let mut pose = localized.pose.visual_from_camera();
+        let mut reference = self.reference_keyframe(&landmarks);
+        let mut covariance = self.covariance(&localized, reference);
+        let inserted = self.update_map(&frame, &localized, &landmarks, covariance);
+        if let Some(inserted) = &inserted {
+            reference = inserted.id;
+            let keyframe = self.atlas.active.map.keyframe(reference);
+            covariance = keyframe.covariance;
+            (pose, landmarks) = (keyframe.visual_from_camera, keyframe.landmarks.clone());
+        }
+        let is_one_frame = inserted.as_ref().is_none_or(|inserted| inserted.merged.is_none());
+        self.tracking.belief.located(frame.stamp, pose, covariance, before.filter(|_| is_one_frame));
+        self.tracking.pose_known = true;
+        self.tracking.end_lost_run();
+        let tracking = localized.tracking(&self.config.tracking);
+        let anchored = self.record_pose(frame.stamp, Some(reference), tracking);
+        let report = TrackReport {
+            matches: localized.matches,
+            inliers: localized.points,
+            relocalised: localized.recognized.is_some(),
+            new_keyframe: inserted.is_some(),
+            merged: inserted.and_then(|inserted| inserted.merged),
+            ..self.report(frame.len())
+        };
+        self.set_last(LastFrame { frame, landmarks, anchored });
+        report
+    }
+
+    /// Goes on without a found pose; begins a map at the believed pose where there is none to be found again.
+    pub(super) fn on_lost(
+        &mut self,
+        frame: Frame,
+        depth: &DepthImage,
+        prior: Option<CameraMotion>,
+    ) -> TrackReport {
+        let tracking = &mut self.tracking;
+        tracking.belief.missed(frame.stamp, prior, &self.config.motion);
+        tracking.lost_frames += 1;
+        tracking.motion_unknown |= prior.is_none();
+        self.record_features(&frame, &vec![None; frame.len()]);
+        let start = self.map_start(&frame, depth, prior.is_some());
+        if start == MapStart::NewMap {
+            self.start_new_map();
+        }
+        let keyframe = (start != MapStart::Wait).then(|| self.start_map(&frame, start));
+        let tracking = match start {
+            MapStart::FirstMap | MapStart::NewMap => Tracking::Ok,
+            _ if prior.is_some() && self.tracking.pose_known => Tracking::DeadReckoning,
+            _ => Tracking::Lost,
+        };
+        let known = || self.tracking.last.as_ref().and_then(|last| last.anchored.reference);
+        let anchored = self.record_pose(frame.stamp, keyframe.or_else(known), tracking);
+        let report = TrackReport { new_keyframe: keyframe.is_some(), ..self.report(frame.len()) };
+        if let Some(id) = keyframe {
+            let landmarks = self.atlas.active.map.keyframe(id).landmarks.clone();
+            self.set_last(LastFrame { frame, landmarks, anchored });
+            self.tracking.end_lost_run();
+        } else {
+            self.tracking.lost_frame = Some(frame);
+        }
+        report
+    }
+
+    /// Decides whether a frame that was not located begins a map, and whether the view changed at once.
+    fn map_start(&mut self, frame: &Frame, depth: &DepthImage, has_prior: bool) -> MapStart {
+        let Self { config, front_end, atlas, tracking, mode, .. } = self;
+        let query = LocalMapQuery::new(&front_end.model, (depth, &config.depth), &config.tracking);
+        let map = &atlas.active.map;
+        let expected = || query.landmarks(map, tracking.belief.visual_from_camera).len();
+        let visibility = Visibility { frame, expected: &expected };
+        let is_discontinuous = visibility.is_discontinuous(tracking);
+        tracking.view_discontinuity |= is_discontinuous;
+        if *mode == Mode::Localisation {
+            return MapStart::Wait;
+        }
+        let expected = || query.landmarks(map, tracking.belief.visual_from_camera).len();
+        let visibility = Visibility { frame, expected: &expected };
+        MapStartQuery { visibility, config, map, tracking, has_prior }.decide()
+    }
+
+    /// Makes `map` the active one.
+    fn enter(&mut self, map: MapId) {
+        if self.atlas.enter(map) {
+            self.tracking.last = None;
+            self.loops.drop_pending();
+            self.leave_keyframe();
+        }
+    }
+
+    /// Drops what belongs to the newest keyframes: they are of another map, or far away.
+    pub(super) fn leave_keyframe(&mut self) {
+        self.loops.drop_searches();
+        self.odometry.interrupt();
+        self.tracking.odometry_conflict = Default::default();
+    }
+
+    /// Updates the map by a located frame, unless the map is to stay as it is.
+    fn update_map(
+        &mut self,
+        frame: &Frame,
+        localized: &LocalizedFrame,
+        landmarks: &[Option<LandmarkId>],
+        covariance: Matrix6<f64>,
+    ) -> Option<InsertedKeyframe> {
+        if self.mode == Mode::Localisation {
+            return None;
+        }
+        let map = &mut self.atlas.active.map;
+        map.count_observations(localized.findable(), landmarks);
+        let pose = localized.pose.visual_from_camera();
+        let tracked = landmarks.iter().flatten().count();
+        let shown = localized.visible.iter().map(|(_, projection)| projection.pixel);
+        let is_wanted = self.config.keyframes.wants(frame, pose, tracked, shown, map);
+        is_wanted.then(|| self.add_keyframe(frame, pose, landmarks, covariance))
+    }
+
+    fn add_keyframe(
+        &mut self,
+        frame: &Frame,
+        pose: Pose3,
+        landmarks: &[Option<LandmarkId>],
+        covariance: Matrix6<f64>,
+    ) -> InsertedKeyframe {
+        let id = self.insert(frame.clone(), pose, landmarks);
+        self.atlas.active.map.set_covariance(id, covariance);
+        self.loops.push(id);
+        let merged = self.merge_maps(id);
+        InsertedKeyframe { id: merged.map_or(id, |merged| merged.keyframe), merged }
+    }
+
+    /// Merges the active map with another one that the keyframe shows.
+    fn merge_maps(&mut self, keyframe: KeyframeId) -> Option<MapMerge> {
+        let merger = MapMerger {
+            mapper: LocalMapper::new(&self.front_end.model, &self.config.mapping, &self.config.tracking),
+            config: &self.config.loops,
+            tracking: &self.config.tracking,
+            seed: self.seed(),
+        };
+        let Merged { report, absorbed, ids, into_from_absorbed } = merger.merge(&mut self.atlas, keyframe)?;
+        self.leave_keyframe();
+        self.trajectory.move_into(report.into, &absorbed, &ids, into_from_absorbed);
+        Some(report)
+    }
+
+    fn insert(&mut self, frame: Frame, pose: Pose3, tracked: &[Option<LandmarkId>]) -> KeyframeId {
+        let Self { config, front_end, atlas, odometry, .. } = self;
+        let (model, active) = (&front_end.model, &mut atlas.active);
+        odometry.update_floor(&mut active.map);
+        let factor = odometry.factor_in(&active.map);
+        let mapper = LocalMapper::new(model, &config.mapping, &config.tracking);
+        let keyframe = mapper.insert(&mut active.map, frame, pose, (tracked, factor));
+        active.optimisation.begin_around(&mut active.map, keyframe, model, &config.mapping);
+        odometry.start_at(keyframe);
+        cull_keyframes(&mut active.map, keyframe, &config.keyframes);
+        active.update_index();
+        keyframe
+    }
+
+    /// Leaves the active map for an empty one, whose origin is the camera.
+    fn start_new_map(&mut self) {
+        let belief = &self.tracking.belief;
+        let measured = UncertainPose { pose: belief.visual_from_camera, covariance: belief.covariance };
+        self.atlas.start_new_map((!self.tracking.is_lost()).then_some(measured));
+        self.tracking.restart_at(Pose3::identity());
+        self.loops.drop_pending();
+        self.leave_keyframe();
+    }
+
+    /// The first keyframe of the active map, or one that goes on from it by odometry.
+    fn start_map(&mut self, frame: &Frame, start: MapStart) -> KeyframeId {
+        if start != MapStart::Continue {
+            self.tracking.belief.covariance = Matrix6::zeros();
+        }
+        let (pose, covariance) = (self.tracking.belief.visual_from_camera, self.tracking.belief.covariance);
+        let id = self.insert(frame.clone(), pose, &vec![None; frame.len()]);
+        self.atlas.active.map.set_covariance(id, covariance);
+        id
+    }
+
+    /// Covariance of a found pose: of the pose against the points, and of the points around the reference keyframe.
+    fn covariance(&self, localized: &LocalizedFrame, reference: KeyframeId) -> Matrix6<f64> {
+        let keyframe = self.atlas.active.map.keyframe(reference);
+        let offset = keyframe.visual_from_camera.inverse() * localized.pose.visual_from_camera();
+        let local = localized.pose.solution.covariance.unwrap_or_else(Matrix6::identity);
+        carried(&keyframe.map_covariance, offset) + local
+    }
+
+    /// The keyframe that shares most landmarks with the frame; the last frame's reference where no keyframe does.
+    fn reference_keyframe(&self, landmarks: &[Option<LandmarkId>]) -> KeyframeId {
+        let map = &self.atlas.active.map;
+        let seeing = map.keyframes_seeing(landmarks.iter().flatten().copied());
+        let last = || Some(map.resolve(self.tracking.last.as_ref()?.anchored.reference?).0);
+        let newest =
+            || map.newest_keyframe().expect("invariant: a frame is tracked only in a map with keyframes");
+        seeing.first().map(|(id, _)| *id).or_else(last).unwrap_or_else(newest)
+    }
+
+    /// Goes on from a located frame; the one before leaves its buffers to the next image's features.
+    fn set_last(&mut self, located: LastFrame) {
+        if let Some(before) = self.tracking.last.replace(located) {
+            self.front_end.reuse(before.frame);
+        }
+    }
+
+    fn record_features(&mut self, frame: &Frame, landmarks: &[Option<LandmarkId>]) {
+        self.features.clear();
+        let keypoints = frame.features.keypoints.iter().zip(landmarks);
+        self.features.extend(keypoints.map(|(k, l)| SeenFeature { keypoint: *k, tracked: l.is_some() }));
+    }
+
+    fn record_pose(
+        &mut self,
+        stamp: Stamp,
+        reference: Option<KeyframeId>,
+        tracking: Tracking,
+    ) -> AnchoredPose {
+        let (pose, active) = (self.tracking.belief.visual_from_camera, &self.atlas.active);
+        let anchored = AnchoredPose::new(stamp, reference, pose, &active.map);
+        self.trajectory.record(FrameRecord { anchored, map: active.id, tracking });
+        anchored
+    }
+
+    /// The report of the frame recorded last, with so many features.
+    fn report(&self, features: usize) -> TrackReport {
+        let record = self.trajectory.last().expect("invariant: the frame was recorded");
+        TrackReport {
+            stamp: record.anchored.stamp,
+            tracking: record.tracking,
+            map: record.map,
+            visual_from_camera: self.tracking.belief.visual_from_camera,
+            covariance: self.tracking.belief.covariance,
+            features,
+            matches: 0,
+            inliers: 0,
+            relocalised: false,
+            new_keyframe: false,
+            closed_loop: self.corrections.closed_loop,
+            merged: None,
+            refined: self.corrections.refined,
+            keyframes: self.atlas.active.map.keyframe_count(),
+            landmarks: self.atlas.active.map.landmark_count(),
+        }
+    }
+}

@@ -1,0 +1,148 @@
+//! The pose of a frame: tracked from the last one, else relocalized in one of the maps.
+
+use crate::atlas::map_collection::Atlas;
+use crate::atlas::sub_map::SubMap;
+use crate::config::SlamConfig;
+use crate::frame::observation_model::ObservationModel;
+use crate::frame::rgbd_frame::Frame;
+use crate::ids::MapId;
+use crate::map::odometry_factor::OdometryFactor;
+use crate::matching::matched_pose::PosePriorKind;
+use crate::place_recognition::bow::Bow;
+use crate::place_recognition::place_hypothesis::{PlaceHypothesis, without_rival};
+use crate::tracking::local_map::LocalMapQuery;
+use crate::tracking::localized_frame::LocalizedFrame;
+use crate::tracking::odometry_conflict::OdometryConflict;
+use crate::tracking::pose_gate::PoseGate;
+use crate::tracking::relocalisation::relocalize;
+use crate::tracking::tracker::Tracker;
+use crate::tracking::tracking_state::TrackingState;
+use std::cell::OnceCell;
+use trundle_core::{DepthImage, Pose3};
+
+/// Frames in a row that must give the same relocalisation where odometry does not confirm it: 2. One frame showed a look-alike room in
+/// 0.7 of its view. Source: docs/experiments/slam-relocalisation.md.
+const MIN_CONFIRMING_FRAMES: usize = 2;
+
+/// A frame located in a map.
+#[derive(Debug)]
+pub(super) struct Localization {
+    pub map: MapId,
+    pub localized: LocalizedFrame,
+}
+
+/// All that the pose of a frame depends on, besides the state of tracking.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Localizer<'a> {
+    pub atlas: &'a Atlas,
+    pub model: &'a ObservationModel,
+    pub config: &'a SlamConfig,
+    /// The motion since the newest keyframe of the active map.
+    pub odometry: Option<OdometryFactor>,
+    pub frame: &'a Frame,
+    pub depth: &'a DepthImage,
+    pub frame_number: u64,
+}
+
+/// Where the camera should be, and how far off it can be.
+#[derive(Debug, Clone, Copy)]
+struct Expectation {
+    predicted: Pose3,
+    gate: PoseGate,
+}
+
+impl Localizer<'_> {
+    /// The pose of the frame: by the last frame and the map; else by keyframes of that map which look alike; else by those of
+    /// one of the other maps, which take turns.
+    pub fn localize(&self, state: &mut TrackingState, prior: Option<Pose3>) -> Option<Localization> {
+        let stamp = self.frame.stamp;
+        state.pending_relocalisations.record_frame(stamp, prior.is_some());
+        let predicted = state.belief.predict(stamp, prior);
+        let expected = Expectation { predicted, gate: state.gate(stamp, prior.is_some()) };
+        let (bow, active) = (OnceCell::new(), &self.atlas.active);
+        let tracker = self.tracker(active, &bow);
+        if let Some(localized) = track(&tracker, state, expected) {
+            state.pending_relocalisations = Default::default();
+            let is_believed = state.odometry_conflict.believes(stamp, localized.points_against_odometry());
+            return is_believed.then_some(Localization { map: active.id, localized });
+        }
+        let found = relocalize(&tracker);
+        state.odometry_conflict = OdometryConflict::default();
+        if let Some(localized) = self.confirmed(state, active.id, found, expected) {
+            let localized = localized.aligned(&tracker, PosePriorKind::Unknown);
+            return Some(Localization { map: active.id, localized });
+        }
+        self.relocalize_elsewhere(state, &bow, expected)
+    }
+
+    /// The pose in one of the inactive maps, which take turns.
+    fn relocalize_elsewhere(
+        &self,
+        state: &mut TrackingState,
+        bow: &OnceCell<Bow>,
+        expected: Expectation,
+    ) -> Option<Localization> {
+        let inactive = &self.atlas.inactive;
+        let turn = self.frame_number as usize % inactive.len().max(1);
+        let other = inactive.get(turn).filter(|_| expected.gate != PoseGate::Covariance)?;
+        let tracker = self.tracker(other, bow);
+        let anywhere = Expectation { gate: PoseGate::Open, ..expected };
+        let localized = self.confirmed(state, other.id, relocalize(&tracker), anywhere)?;
+        let localized = localized.aligned(&tracker, PosePriorKind::Unknown);
+        Some(Localization { map: other.id, localized })
+    }
+
+    fn tracker<'a>(&'a self, sub_map: &'a SubMap, bow: &'a OnceCell<Bow>) -> Tracker<'a> {
+        let is_active = sub_map.id == self.atlas.active.id;
+        let (map, config) = (&sub_map.map, &self.config.tracking);
+        let prior =
+            |factor: OdometryFactor| Some(factor.prior(map.live_keyframe(factor.from)?.visual_from_camera));
+        Tracker {
+            map,
+            place_index: &sub_map.place_index,
+            model: self.model,
+            local_map: LocalMapQuery::new(self.model, (self.depth, &self.config.depth), config),
+            config,
+            frame: self.frame,
+            odometry_prior: self.odometry.filter(|_| is_active).and_then(prior),
+            bow,
+            seed: self.config.seed.wrapping_add(self.frame_number),
+        }
+    }
+
+    /// The relocalisation to believe: one within the gate, if a second frame gives it too where odometry does not confirm it; or one
+    /// that as many frames give as it takes to be lost. Odometry outweighs a look-alike room, but not a robot that was carried. Frames
+    /// without a relocalisation do not count.
+    fn confirmed(
+        &self,
+        state: &mut TrackingState,
+        map: MapId,
+        mut found: Vec<LocalizedFrame>,
+        Expectation { predicted, gate }: Expectation,
+    ) -> Option<LocalizedFrame> {
+        let covariance = state.belief.covariance;
+        let is_near = |found: &LocalizedFrame| gate.allows(found.pose(), predicted, &covariance);
+        let needed = if found.iter().any(|found| found.is_certain && is_near(found)) {
+            found.retain(is_near);
+            if gate == PoseGate::Covariance { 1 } else { MIN_CONFIRMING_FRAMES }
+        } else {
+            // An uncertain place that is near makes a certain one that is far doubtful.
+            self.config.tracking.patience
+        };
+        let found = without_rival(found)?;
+        let count = state.pending_relocalisations.record(map, (found.pose(), predicted));
+        (count >= needed).then_some(found)
+    }
+}
+
+/// The pose by the last frame, if it is possible.
+fn track(
+    tracker: &Tracker,
+    state: &TrackingState,
+    Expectation { predicted, gate }: Expectation,
+) -> Option<LocalizedFrame> {
+    let last = state.last.as_ref()?;
+    let reference = last.anchored.reference.map(|id| tracker.map.resolve(id).0);
+    let tracked = LocalizedFrame::from_last(tracker, last.as_reference(tracker.map), reference, predicted)?;
+    gate.allows(tracked.pose(), predicted, &state.belief.covariance).then_some(tracked)
+}

@@ -1,0 +1,52 @@
+//! Tracked poses that contradict the wheels, one after the other.
+
+use trundle_core::Stamp;
+
+/// Points that agree on one pose and are believed against the wheels at once: 100. Fewer have to persist for
+/// [`MIN_CONFLICT_S`]. Source: ours.
+const MIN_CONVINCING_POINTS: usize = 100;
+/// Time for which fewer points must contradict the wheels before they are believed: 0.3 s. Source: ours.
+const MIN_CONFLICT_S: f64 = 0.3;
+
+/// Since when tracked poses have contradicted the wheels.
+///
+/// Few points can agree by chance, all in one corner of a bare wall, but not for long.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(crate) struct OdometryConflict {
+    since: Option<Stamp>,
+}
+
+impl OdometryConflict {
+    /// Whether to believe the tracked pose of a frame at `now`; `points_against_odometry` is how many points contradict the wheels,
+    /// `None` where they agree.
+    pub fn believes(&mut self, now: Stamp, points_against_odometry: Option<usize>) -> bool {
+        let Some(points) = points_against_odometry else {
+            self.since = None;
+            return true;
+        };
+        points >= MIN_CONVINCING_POINTS || now - *self.since.get_or_insert(now) >= MIN_CONFLICT_S
+    }
+
+    /// Whether the newest tracked pose contradicts the wheels.
+    pub fn is_active(&self) -> bool {
+        self.since.is_some()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn few_points_are_believed_against_the_wheels_when_they_persist() {
+        let at = |seconds: f64| Stamp::default().after(seconds);
+        let mut conflict = OdometryConflict::default();
+        assert!(conflict.believes(at(0.0), None) && !conflict.is_active());
+        assert!(!conflict.believes(at(1.0), Some(99)) && conflict.is_active());
+        assert!(conflict.believes(at(1.1), Some(100)), "many are believed at once");
+        assert!(!conflict.believes(at(1.2), Some(30)));
+        assert!(conflict.believes(at(1.3), Some(30)), "after 0.3 s");
+        assert!(conflict.believes(at(1.4), None), "points and wheels agree again");
+        assert!(!conflict.believes(at(9.0), Some(30)), "a new conflict");
+    }
+}

@@ -1,0 +1,24 @@
+//! How well a frame was located.
+
+use serde::{Deserialize, Serialize};
+
+/// How well the last frame was located.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Tracking {
+    /// Located against the landmark map.
+    Ok,
+    /// Located, but by few landmarks: the covariance says how well.
+    Weak,
+    /// Not located: the pose is the last one moved by the given prior.
+    DeadReckoning,
+    /// Not located and no prior: the pose is held.
+    Lost,
+}
+
+impl Tracking {
+    /// Whether the pose comes from the image.
+    pub fn is_located(self) -> bool {
+        matches!(self, Self::Ok | Self::Weak)
+    }
+}
