@@ -1,6 +1,7 @@
 //! What breaks while the robot drives: every day must end as it should, without a contact.
 
-use crate::{Verdict, program};
+use crate::program;
+use crate::workspace::Verdict;
 use std::path::Path;
 
 /// Lives through every bad day of `trundle experiment faults`, two at a time.

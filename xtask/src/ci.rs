@@ -1,6 +1,7 @@
 //! Everything that must hold before a change is merged.
 
-use crate::{Verdict, bad_days, golden, program, replay_check, tidy};
+use crate::workspace::Verdict;
+use crate::{bad_days, golden, program, replay_check, tidy};
 use std::path::Path;
 use std::time::Instant;
 

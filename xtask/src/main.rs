@@ -9,9 +9,9 @@ mod program;
 mod replay_check;
 mod seeds;
 mod tidy;
+mod workspace;
 
 use clap::{Parser, Subcommand};
-use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 /// Chores of the workspace.
@@ -31,7 +31,14 @@ enum Chore {
         tested: bool,
     },
     /// Check the design's invariants in the sources.
-    Tidy,
+    Tidy {
+        /// Lower the allow-list (xtask/tidy-allowed.txt) to what is found.
+        #[arg(long)]
+        shrink: bool,
+        /// Take up all findings into the allow-list: for a new rule only.
+        #[arg(long, hide = true)]
+        grow: bool,
+    },
     /// Compare hashes of twists, poses, grids, maps and plans with the committed ones.
     Golden {
         /// Write the hashes that were found into the golden file.
@@ -66,14 +73,12 @@ enum Chore {
     },
 }
 
-/// What a chore that ran says: whether all is well, or why it could not run.
-type Verdict = Result<bool, String>;
-
 fn main() -> ExitCode {
-    let root = root();
+    let root = workspace::root();
     let verdict = match Cli::parse().chore {
         Chore::Ci { tested } => ci::run(&root, tested),
-        Chore::Tidy => tidy::run(&root),
+        Chore::Tidy { shrink, grow } if shrink || grow => tidy::shrink(&root, grow),
+        Chore::Tidy { .. } => tidy::run(&root),
         Chore::Golden { update, only, profile } => {
             golden::run(&root, &golden::Options { update, only, profile })
         }
@@ -91,10 +96,4 @@ fn main() -> ExitCode {
             ExitCode::FAILURE
         }
     }
-}
-
-/// The workspace's folder.
-fn root() -> PathBuf {
-    let here = Path::new(env!("CARGO_MANIFEST_DIR"));
-    here.parent().expect("invariant: xtask lies in the workspace").to_path_buf()
 }

@@ -79,7 +79,7 @@ mod tests {
 
     #[test]
     fn the_build_results_are_found_and_scratch_is_empty() {
-        let scratch = scratch(&crate::root(), "xtask-test").unwrap();
+        let scratch = scratch(&crate::workspace::root(), "xtask-test").unwrap();
         assert!(scratch.is_dir() && std::fs::read_dir(&scratch).unwrap().next().is_none());
         std::fs::remove_dir(scratch).unwrap();
     }

@@ -1,6 +1,7 @@
 //! The same input gives the same bytes: on one thread, on two, and from the recording.
 
-use crate::{Verdict, compare::compare_folders, program};
+use crate::workspace::Verdict;
+use crate::{compare::compare_folders, program};
 use std::path::Path;
 
 /// Runs the demo on one thread, on two, and replays the first; compares the folders.

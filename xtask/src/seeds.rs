@@ -1,6 +1,7 @@
 //! The demo on many seeds.
 
-use crate::{Verdict, program};
+use crate::program;
+use crate::workspace::Verdict;
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::ops::Range;

@@ -5,7 +5,8 @@ mod cases;
 mod digest;
 mod expected;
 
-use crate::{Verdict, program};
+use crate::program;
+use crate::workspace::Verdict;
 use cases::{CASES, Case};
 use digest::Digest;
 use expected::Digests;

@@ -23,7 +23,7 @@ pub fn check(tree: &Tree) -> Vec<Finding> {
 fn broken_links(tree: &Tree, file: &File) -> Vec<Finding> {
     let exists = |path: &str| {
         let inside = tree.files.iter().any(|f| f.path == path || f.path.starts_with(&format!("{path}/")));
-        inside || crate::root().join(path).exists()
+        inside || crate::workspace::root().join(path).exists()
     };
     let broken = links(&file.text).into_iter().filter(|(_, link)| !exists(&resolve(&file.path, link)));
     broken

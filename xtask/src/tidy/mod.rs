@@ -3,18 +3,24 @@
 //! Each file here is one kind of rule. A rule is a function from the workspace's tree to findings; every finding names a
 //! file and a line. `cargo test` runs them all as a test.
 
+mod allowed;
 mod arrows;
 mod citations;
 mod finding;
 mod leftovers;
 mod lockfile;
 mod markdown;
+mod modules;
+mod prose;
 mod purity;
 mod shape;
 mod source;
 mod tree;
+mod types;
+mod use_paths;
 
-use crate::Verdict;
+use crate::workspace::Verdict;
+use allowed::Allowed;
 use finding::{Finding, Severity};
 use std::path::Path;
 use tree::Tree;
@@ -30,8 +36,27 @@ pub fn run(root: &Path) -> Verdict {
     Ok(errors == 0)
 }
 
-/// All findings, by file and line.
+/// Lowers the allow-list to what is found; with `grows` it takes up all that is found (for a new rule).
+pub fn shrink(root: &Path, grows: bool) -> Verdict {
+    let text = allowed(root)?.shrunk(&all_findings(root)?, grows);
+    std::fs::write(root.join(allowed::FILE), text)
+        .map_err(|e| format!("cannot write {}: {e}", allowed::FILE))?;
+    Ok(true)
+}
+
+/// The findings that are not allowed, by file and line.
 fn check(root: &Path) -> Result<Vec<Finding>, String> {
+    Ok(allowed(root)?.apply(all_findings(root)?))
+}
+
+fn allowed(root: &Path) -> Result<Allowed, String> {
+    let file = root.join(allowed::FILE);
+    let text = std::fs::read_to_string(&file).map_err(|e| format!("cannot read {}: {e}", allowed::FILE))?;
+    Allowed::parse(&text)
+}
+
+/// All findings, by file and line.
+fn all_findings(root: &Path) -> Result<Vec<Finding>, String> {
     let tree = Tree::read(root)?;
     let rules = [
         arrows::check,
@@ -41,6 +66,9 @@ fn check(root: &Path) -> Result<Vec<Finding>, String> {
         leftovers::check,
         lockfile::check,
         markdown::check,
+        modules::check,
+        types::check,
+        prose::check,
     ];
     let mut findings: Vec<Finding> = rules.iter().flat_map(|rule| rule(&tree)).collect();
     findings.sort();
@@ -53,7 +81,7 @@ mod tests {
 
     #[test]
     fn the_workspace_is_tidy() {
-        let findings = check(&crate::root()).unwrap();
+        let findings = check(&crate::workspace::root()).unwrap();
         let errors: Vec<String> =
             findings.iter().filter(|f| f.severity == Severity::Error).map(Finding::to_string).collect();
         assert!(errors.is_empty(), "\n{}\n", errors.join("\n"));

@@ -1,3 +1,5 @@
+//! Rust code as tidy reads it: without comments, strings and tests.
+
 /// Rust code in which comments, strings and test items are blanks: as long as the text, line for line.
 pub struct Code {
     text: String,
@@ -10,6 +12,11 @@ impl Code {
         blank_comments_and_strings(&mut chars);
         blank_tests(&mut chars);
         Self { text: chars.into_iter().collect() }
+    }
+
+    /// The code as text.
+    pub fn text(&self) -> &str {
+        &self.text
     }
 
     /// Lines with code, from 1.

@@ -1,3 +1,5 @@
+//! The workspace's text files and packages, read once.
+
 use super::source::Code;
 use std::path::Path;
 
