@@ -1,3 +1,5 @@
+//! All settings of the RGB-D SLAM.
+
 use crate::frame::depth::DepthConfig;
 use crate::local_mapping::config::MappingConfig;
 use crate::local_mapping::keyframe_policy::KeyframeConfig;

@@ -1,3 +1,5 @@
+//! The median.
+
 /// The middle one of `values`, of an even number the upper; `None` of none.
 pub(crate) fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
     let mut values: Vec<f64> = values.collect();
@@ -10,7 +12,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn half_of_them_are_below() {
+    fn the_median_has_half_of_the_values_below() {
         assert_eq!(median([3.0, 9.0, 1.0].into_iter()), Some(3.0));
         assert_eq!(median([4.0, 1.0].into_iter()), Some(4.0));
         assert_eq!(median(std::iter::empty()), None);

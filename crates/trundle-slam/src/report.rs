@@ -48,18 +48,17 @@ pub struct TrackReport {
     /// Covariance of that pose as a right perturbation (m, m, m, rad, rad, rad), against the first keyframe: of the pose
     /// on the map, and of the map along the chain of keyframes that leads here. Grows while not located.
     pub covariance: Matrix6<f64>,
-    /// Features found in the image, without those on outlines, which are no points of anything.
+    /// Features found in the image, without those on depth edges.
     pub features: usize,
     /// Features matched with landmarks, before what is around them was compared.
     pub matches: usize,
     /// Of these, the ones that agree with the pose at 95 %.
     pub inliers: usize,
-    /// Whether the pose was found without the motion prediction, from a keyframe that looks alike.
+    /// Whether the pose was found without the motion prediction, from a similar keyframe.
     pub relocalised: bool,
     /// Whether the frame became a keyframe.
     pub new_keyframe: bool,
-    /// The place that a keyframe of the last frames was found to show again, and how that moved the camera since the last
-    /// frame: a correction, not a motion.
+    /// The loop that was closed since the last frame, and how that moved the camera: a correction, not a motion.
     pub closed_loop: Option<LoopClosure>,
     /// The map recognised by it, and how that moved the camera.
     pub merged: Option<MapMerge>,

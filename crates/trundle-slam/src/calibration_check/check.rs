@@ -1,3 +1,5 @@
+//! Checks the first images of a run for wrong settings.
+
 use crate::calibration_check::depth_range::DepthRange;
 use crate::calibration_check::issue::CalibrationIssue;
 use crate::calibration_check::model_selection::ModelSelection;
@@ -10,20 +12,22 @@ use crate::frame::rgbd_frame::Frame;
 use trundle_core::{DepthImage, GrayImage, PinholeCamera, Pose3, Vector2, Vector3};
 use trundle_vision::{RansacConfig, estimate_rigid_motion, match_mutual};
 
-/// Every so many frames one is looked at.
-const EVERY: usize = 5;
-/// Two frames are compared when the camera turned by this between them, rad.
-const TURN: f64 = 0.08;
-/// Or went so far, m.
-const WAY: f64 = 0.1;
-/// Pairs of frames before the camera is judged.
-const LEAST_PAIRS: usize = 6;
-/// Pairs of frames after which it is believed.
-const MOST_PAIRS: usize = 18;
-/// How far off matches may be at first, px and m: wrong settings bend the picture by some.
-const LOOSE: (f64, f64) = (10.0, 0.03);
-/// Matches that a motion must explain.
-const LEAST_MATCHES: usize = 40;
+/// Every so many frames one is checked: 5. Source: ours.
+const FRAME_STRIDE: usize = 5;
+/// Rotation between two frames from which they are compared: 0.08 rad. Source: ours.
+const MIN_PAIR_TURN_RAD: f64 = 0.08;
+/// Translation between two frames from which they are compared: 0.1 m. Source: ours.
+const MIN_PAIR_DISTANCE_M: f64 = 0.1;
+/// Fewest frame pairs for a decision about the camera: 6. Source: ours.
+const MIN_PAIRS: usize = 6;
+/// Frame pairs after which the camera counts as right: 18. Source: ours.
+const MAX_PAIRS: usize = 18;
+/// Standard deviation of a match in the first motion of a pair: 10 px, since wrong settings distort the image. Source: ours.
+const LOOSE_PIXEL_SIGMA_PX: f64 = 10.0;
+/// Standard deviation of a depth in it: 0.03 m. Source: ours.
+const LOOSE_DEPTH_SIGMA_M: f64 = 0.03;
+/// Fewest matches that the motion of a pair must explain: 40. Source: ours.
+const MIN_MATCHES: usize = 40;
 
 /// Looks at the first images of a run for traces of wrong settings. Says each suspicion once.
 #[derive(Debug, Clone, Default)]
@@ -52,7 +56,7 @@ impl CalibrationCheck {
 
     /// Looks at picture and depth.
     pub fn record_image(&mut self, gray: &GrayImage, depth: &DepthImage) {
-        if self.frames.is_multiple_of(EVERY) {
+        if self.frames.is_multiple_of(FRAME_STRIDE) {
             self.calibration_issues.extend(self.registration.record(gray, depth));
         }
     }
@@ -67,9 +71,9 @@ impl CalibrationCheck {
         config: &DepthConfig,
     ) {
         self.moved = self.moved.zip(prior).map(|(moved, prior)| moved * prior);
-        if self.frames.is_multiple_of(EVERY) {
+        if self.frames.is_multiple_of(FRAME_STRIDE) {
             self.calibration_issues.extend(self.range.record(depth, config));
-            if !self.camera_judged && self.pairs.len() < MOST_PAIRS {
+            if !self.camera_judged && self.pairs.len() < MAX_PAIRS {
                 self.compare(frame, model);
             }
         }
@@ -82,7 +86,7 @@ impl CalibrationCheck {
         let pair = self.anchor.as_ref().and_then(|anchor| pair_of(anchor, frame, model));
         if let Some(pair) = pair {
             let (turn, way) = (pair.b_from_a.angle(), pair.b_from_a.translation.norm());
-            if turn < TURN && way < WAY {
+            if turn < MIN_PAIR_TURN_RAD && way < MIN_PAIR_DISTANCE_M {
                 return;
             }
             let said = self.moved.map(|moved| moved.translation.norm());
@@ -96,14 +100,14 @@ impl CalibrationCheck {
     /// Goes on judging the camera, some rounds a frame, again whenever there are three more pairs.
     fn judge(&mut self, camera: &PinholeCamera) {
         let count = self.pairs.len() / 3 * 3;
-        if self.judgement.is_none() && count >= LEAST_PAIRS && count > self.judged {
+        if self.judgement.is_none() && count >= MIN_PAIRS && count > self.judged {
             self.judgement = Some(ModelSelection::of(&self.pairs[..count]));
             self.judged = count;
         }
         let pairs = &self.pairs[..self.judged];
         let Some(suspicion) = self.judgement.as_mut().and_then(|j| j.advance(pairs, camera)) else { return };
         self.judgement = None;
-        self.camera_judged = suspicion.is_some() || self.judged >= MOST_PAIRS;
+        self.camera_judged = suspicion.is_some() || self.judged >= MAX_PAIRS;
         self.calibration_issues.extend(suspicion);
         if self.camera_judged {
             (self.pairs, self.anchor, self.judged) = (Vec::new(), None, 0);
@@ -129,8 +133,8 @@ fn pair_of(a: &Frame, b: &Frame, model: &ObservationModel) -> Option<Pair> {
             sigma: 1.5 * model.scale(a.octave(pair.a).max(b.octave(pair.b))) / camera.fx(),
         });
     }
-    let (pixel_sigma, depth_sigma) = LOOSE;
-    let config = RansacConfig { pixel_sigma, depth_sigma, min_inliers: LEAST_MATCHES, ..Default::default() };
+    let (pixel_sigma, depth_sigma) = (LOOSE_PIXEL_SIGMA_PX, LOOSE_DEPTH_SIGMA_M);
+    let config = RansacConfig { pixel_sigma, depth_sigma, min_inliers: MIN_MATCHES, ..Default::default() };
     let motion = estimate_rigid_motion(&points.0, &points.1, camera, &config, 0)?;
     Some(Pair { b_from_a: motion.b_from_a, matches })
 }

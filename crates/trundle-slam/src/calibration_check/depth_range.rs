@@ -1,17 +1,20 @@
+//! Whether depths are where a depth camera measures.
+
 use crate::calibration_check::issue::CalibrationIssue;
 use crate::frame::depth::DepthConfig;
 use trundle_core::DepthImage;
 
-/// Images that are looked at.
-const IMAGES: usize = 16;
-/// Every so many pixels along both sides.
-const STRIDE: usize = 8;
-/// More than this part of the depths where the camera cannot measure is suspicious.
-const MOST: f64 = 0.05;
-/// How far beyond the far end of the range, in parts of it: some cameras give a little more than they promise.
-const BEYOND: f64 = 1.5;
-/// Fewer depths than this say nothing.
-const LEAST: usize = 200;
+/// Images that are checked: 16. Source: ours.
+const CHECKED_IMAGES: usize = 16;
+/// Distance between the pixels that are checked, in both directions: 8 px. Source: ours.
+const STRIDE_PX: usize = 8;
+/// Fraction of the depths outside the camera's range beyond which the depth scale is wrong: 0.05. Source: ours.
+const MAX_OUTSIDE_RATIO: f64 = 0.05;
+/// Factor of the camera's largest depth up to which depths count as in range: 1.5. Some cameras measure a little farther than
+/// specified. Source: ours.
+const RANGE_MARGIN: f64 = 1.5;
+/// Fewest depths for a decision: 200. Source: ours.
+const MIN_DEPTHS: usize = 200;
 
 /// Whether depths are where a depth camera measures.
 #[derive(Debug, Clone, Default)]
@@ -23,14 +26,14 @@ pub(crate) struct DepthRange {
 impl DepthRange {
     /// Takes an image; judges after some.
     pub fn record(&mut self, image: &DepthImage, config: &DepthConfig) -> Option<CalibrationIssue> {
-        if self.images == IMAGES {
+        if self.images == CHECKED_IMAGES {
             return None;
         }
         self.images += 1;
-        for row in (0..image.height()).step_by(STRIDE).map(|y| image.row(y)) {
-            self.depths.extend(row.iter().step_by(STRIDE).filter(|d| d.is_finite() && **d > 0.0));
+        for row in (0..image.height()).step_by(STRIDE_PX).map(|y| image.row(y)) {
+            self.depths.extend(row.iter().step_by(STRIDE_PX).filter(|d| d.is_finite() && **d > 0.0));
         }
-        if self.images < IMAGES {
+        if self.images < CHECKED_IMAGES {
             return None;
         }
         let suspicion = self.judge(config);
@@ -42,18 +45,18 @@ impl DepthRange {
         if self.depths.is_empty() {
             return Some(CalibrationIssue::NoDepth);
         }
-        if self.depths.len() < LEAST {
+        if self.depths.len() < MIN_DEPTHS {
             return None;
         }
         self.depths.sort_unstable_by(f32::total_cmp);
         let all = self.depths.len();
         let below = |limit: f64| self.depths.partition_point(|d| f64::from(*d) < limit) as f64 / all as f64;
         let median = f64::from(self.depths[all / 2]);
-        let (near, far) = (below(config.nearest), 1.0 - below(BEYOND * config.farthest));
-        if near > MOST {
+        let (near, far) = (below(config.nearest), 1.0 - below(RANGE_MARGIN * config.farthest));
+        if near > MAX_OUTSIDE_RATIO {
             return Some(CalibrationIssue::DepthRange { part: near, beyond: false, median });
         }
-        (far > MOST).then_some(CalibrationIssue::DepthRange { part: far, beyond: true, median })
+        (far > MAX_OUTSIDE_RATIO).then_some(CalibrationIssue::DepthRange { part: far, beyond: true, median })
     }
 }
 
@@ -64,7 +67,7 @@ mod tests {
     fn verdict(depth: impl Fn(usize, usize) -> f32) -> Option<CalibrationIssue> {
         let mut check = DepthRange::default();
         let image = DepthImage::from_fn(320, 240, depth);
-        (0..2 * IMAGES).find_map(|_| check.record(&image, &DepthConfig::default()))
+        (0..2 * CHECKED_IMAGES).find_map(|_| check.record(&image, &DepthConfig::default()))
     }
 
     #[test]

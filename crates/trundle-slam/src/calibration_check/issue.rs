@@ -1,6 +1,8 @@
+//! What the images say is wrong about the settings.
+
 use std::fmt;
 
-/// A setting that is probably wrong, and what says so.
+/// A setting that is probably wrong, and the evidence.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum CalibrationIssue {
     /// Many depths are where no depth camera measures.
@@ -14,7 +16,7 @@ pub enum CalibrationIssue {
     },
     /// No image had any depth.
     NoDepth,
-    /// The camera's way is not as long as the wheels'.
+    /// The camera does not travel as far as the wheels.
     TravelledDistance {
         /// How many times as long.
         ratio: f64,
@@ -25,7 +27,7 @@ pub enum CalibrationIssue {
         given: (f64, f64),
         /// Those that fit best.
         found: (f64, f64),
-        /// Whether exchanging them mends most of it.
+        /// Whether exchanging them explains it.
         swapped: bool,
     },
     /// Matched points ask for another principal point.
@@ -35,7 +37,7 @@ pub enum CalibrationIssue {
     },
     /// Matched points are bent towards the rim of the picture.
     Distortion {
-        /// By how much three quarters of the way to a corner, px.
+        /// Error at three quarters of the half diagonal, px.
         at_the_rim: f64,
     },
     /// The edges of the depth image lie beside those of the picture.

@@ -1,11 +1,10 @@
-//! Wrong settings, noticed from the images themselves.
+//! Wrong settings, found by the images themselves.
 //!
-//! Problem: a depth scale off by five, another camera's lens or an unregistered depth image does not stop a SLAM: it only
-//! makes it bad, and nobody knows why. Idea: each of these leaves a trace that the right settings do not. Depths that no
-//! depth camera measures, or a way much longer than the wheels', tell a wrong scale; matched points of a turning camera
-//! tell focal lengths and distortion (a self-calibration by least squares, the motions eliminated); edges of depth that lie
-//! beside the edges of the picture tell a missing registration. Cost: a few ms every fifth frame, only until each check has
-//! enough to judge by.
+//! Problem: a depth scale off by five, another camera's lens or an unregistered depth image does not stop a SLAM; the result is bad
+//! without a visible cause. Idea: each of these errors leaves evidence in the images. Depths outside the camera's range, or a distance
+//! much longer than the wheels', show a wrong scale. Matched points of a turning camera show focal lengths and distortion, by a
+//! self-calibration with the motions eliminated. Depth edges beside the edges of the colour image show a missing registration. Cost: a
+//! few ms every fifth frame, until each check has enough data.
 
 pub(crate) mod check;
 pub(crate) mod depth_range;

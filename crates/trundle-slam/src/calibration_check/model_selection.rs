@@ -1,3 +1,5 @@
+//! Which camera setting is wrong, by fits with different settings free.
+
 use crate::calibration_check::issue::CalibrationIssue;
 use crate::calibration_check::self_calibration::{
     CalibrationFit, CalibrationOffset, FittedOffset, Pair, corrected,
@@ -11,21 +13,22 @@ const MODELS: [[bool; 6]; 4] = [
     [false, false, true, true, false, false],
     [false, false, false, false, true, true],
 ];
-/// Places among them.
-const FOCAL: usize = 1;
-const CENTRE: usize = 2;
-/// Matches that are looked at in one frame, 100 ns each.
+/// Index of the model with free focal lengths.
+const FOCAL_MODEL: usize = 1;
+/// Index of the model with a free principal point.
+const CENTRE_MODEL: usize = 2;
+/// Matches that are evaluated between two frames: 10,000, of 100 ns each. Source: ours.
 const MATCHES_PER_FRAME: usize = 10_000;
-/// Standard deviations that an offset must be from zero.
-const CLEAR: f64 = 4.0;
-/// Standard deviations that the best focal lengths may be from the exchanged ones.
-const EXCHANGED: f64 = 3.0;
-/// Part of the cost that may be left once the wrong setting is put right.
-const MENDED: f64 = 0.9;
-/// Offsets below this, px at three quarters of the way to a corner, are no wrong setting.
-const HARMLESS_PX: f64 = 4.0;
+/// Standard deviations that an offset must be from zero to be wrong: 4. Source: ours.
+const MIN_OFFSET_SIGMAS: f64 = 4.0;
+/// Largest difference of the best focal lengths from the swapped ones: 3 standard deviations. Source: ours.
+const MAX_SWAP_SIGMAS: f64 = 3.0;
+/// Fraction of the cost that may be left after a correction: 0.9. With more left the correction explains nothing. Source: ours.
+const MAX_REMAINING_COST: f64 = 0.9;
+/// Smallest error at three quarters of the half diagonal that is reported: 4 px. Source: ours.
+const MIN_ERROR_PX: f64 = 4.0;
 
-/// What pairs of frames say of the camera's settings, worked out in slices between frames.
+/// Fits camera settings to pairs of frames, in slices between frames.
 #[derive(Debug, Clone)]
 pub(crate) struct ModelSelection {
     fit: CalibrationFit,
@@ -61,17 +64,19 @@ impl ModelSelection {
             return Some((CalibrationOffset::zeros(), *model));
         }
         let is_focal =
-            done == MODELS.len() && self.suspected(camera).is_some_and(|(model, _)| model == FOCAL);
+            done == MODELS.len() && self.suspected(camera).is_some_and(|(model, _)| model == FOCAL_MODEL);
         is_focal.then(|| (exchange(camera), MODELS[0]))
     }
 
-    /// The model that puts right what is wrong, by its place among them, if something is.
+    /// The model that corrects the error, if there is one.
     fn suspected(&self, camera: &PinholeCamera) -> Option<(usize, &FittedOffset)> {
         let as_set = self.fitted[0].as_ref()?;
         let fits = (1..MODELS.len()).filter_map(|model| Some((model, self.fitted[model].as_ref()?)));
         let (model, best) = fits.min_by(|a, b| a.1.cost.total_cmp(&b.1.cost))?;
-        let is_clear = best.offset.iter().zip(best.sigmas.iter()).any(|(o, s)| o.abs() > CLEAR * s);
-        let is_wrong = is_clear && best.cost <= MENDED * as_set.cost && rim(best, camera) >= HARMLESS_PX;
+        let is_clear =
+            best.offset.iter().zip(best.sigmas.iter()).any(|(o, s)| o.abs() > MIN_OFFSET_SIGMAS * s);
+        let is_wrong =
+            is_clear && best.cost <= MAX_REMAINING_COST * as_set.cost && rim(best, camera) >= MIN_ERROR_PX;
         is_wrong.then_some((model, best))
     }
 
@@ -79,20 +84,21 @@ impl ModelSelection {
         let (model, best) = self.suspected(camera)?;
         let (offset, fx, fy) = (&best.offset, camera.fx(), camera.fy());
         Some(match model {
-            FOCAL => CalibrationIssue::FocalLengths {
+            FOCAL_MODEL => CalibrationIssue::FocalLengths {
                 given: (fx, fy),
                 found: (fx / (1.0 + offset[0]), fy / (1.0 + offset[1])),
                 swapped: self.is_swapped(best, camera),
             },
-            CENTRE => CalibrationIssue::PrincipalPoint { offset: (-fx * offset[2], -fy * offset[3]) },
+            CENTRE_MODEL => CalibrationIssue::PrincipalPoint { offset: (-fx * offset[2], -fy * offset[3]) },
             _ => CalibrationIssue::Distortion { at_the_rim: rim(best, camera) },
         })
     }
 
-    /// Whether exchanging the focal lengths mends most of what the best ones mend, and neither of the best speaks against it.
+    /// Whether exchanging the focal lengths explains most of what the best ones explain, and neither of the best contradicts
+    /// it.
     fn is_swapped(&self, best: &FittedOffset, camera: &PinholeCamera) -> bool {
         let exchange = exchange(camera);
-        let fits = |i: usize| (best.offset[i] - exchange[i]).abs() <= EXCHANGED * best.sigmas[i];
+        let fits = |i: usize| (best.offset[i] - exchange[i]).abs() <= MAX_SWAP_SIGMAS * best.sigmas[i];
         let [Some(as_set), .., Some(exchanged)] = &self.fitted[..] else { return false };
         let mends = exchanged.cost - best.cost < 0.5 * (as_set.cost - best.cost);
         self.fitted.len() > MODELS.len() && (0..2).all(fits) && mends
@@ -105,7 +111,7 @@ fn exchange(camera: &PinholeCamera) -> CalibrationOffset {
     CalibrationOffset::new(ratio - 1.0, ratio.recip() - 1.0, 0.0, 0.0, 0.0, 0.0)
 }
 
-/// How far points three quarters of the way to the image's corners are off, px, at most.
+/// Error of points at three quarters of the half diagonal, px.
 fn rim(fitted: &FittedOffset, camera: &PinholeCamera) -> f64 {
     let focal = Vector2::new(camera.fx(), camera.fy());
     let n = (Vector2::new(camera.width() as f64, camera.height() as f64) * 0.375).component_div(&focal);

@@ -1,27 +1,34 @@
+//! Whether the edges of depth lie on the edges of the colour image.
+
 use crate::calibration_check::issue::CalibrationIssue;
 use trundle_core::{DepthImage, GrayImage};
 
-/// Images that are looked at.
-const IMAGES: usize = 16;
-/// Side of the blocks of pixels that are compared, px.
-const BLOCK: usize = 4;
-/// How far the depth image may be shifted, blocks to each side.
-const REACH: (i64, i64) = (12, 8);
-/// A jump of depth between neighbours by more than this part of it is an edge.
-const JUMP: f32 = 0.08;
-/// How far apart along a row the two sides of an edge may be, px: depth cameras see nothing in the shadow between.
-const SHADOW: usize = 12;
-/// How much stronger than their mean the picture's edges must be under the shifted edges of depth, as a part of it.
-const LEAST_CONTRAST: f64 = 0.1;
-/// How many times as much stronger than without a shift.
-const CLEAR: f64 = 1.5;
-/// How far apart the shifts may be that both halves of the images ask for, blocks: what is near needs another one than what
-/// is far.
-const SAME: i64 = 5;
-/// Farther shifts than this, blocks, no pair of cameras in one housing asks for.
-const MOST: (i64, i64) = (8, 6);
-/// Fewer edge blocks than this in an image say nothing.
-const LEAST: usize = 50;
+/// Images that are checked: 16. Source: ours.
+const CHECKED_IMAGES: usize = 16;
+/// Side of the blocks that are compared: 4 px. Source: ours.
+const BLOCK_PX: usize = 4;
+/// Largest shift of the depth image that is tried along a row: 12 blocks. Source: ours.
+const MAX_SEARCH_X_BLOCKS: i64 = 12;
+/// Largest shift that is tried along a column: 8 blocks. Source: ours.
+const MAX_SEARCH_Y_BLOCKS: i64 = 8;
+/// Relative difference of neighbouring depths that is an edge: 0.08. Source: ours.
+const MIN_JUMP_RATIO: f32 = 0.08;
+/// Largest gap without depth between the two sides of an edge: 12 px, the shadow of a depth camera. Source: ours.
+const MAX_SHADOW_PX: usize = 12;
+/// Excess of the image's edges under the shifted depth edges over their mean, as a fraction of it, for a registration error: 0.1.
+/// Source: ours.
+const MIN_CONTRAST: f64 = 0.1;
+/// Ratio of that excess to the one without a shift: 1.5. Below it the registration counts as right. Source: ours.
+const MIN_CONTRAST_RATIO: f64 = 1.5;
+/// Largest difference between the shifts found in two halves of the images: 5 blocks. Near edges need another shift than far ones.
+/// Source: ours.
+const MAX_SHIFT_DIFFERENCE_BLOCKS: i64 = 5;
+/// Largest plausible shift along a row: 8 blocks. A larger one is no pair of cameras in one housing. Source: ours.
+const MAX_SHIFT_X_BLOCKS: i64 = 8;
+/// Largest plausible shift along a column: 6 blocks. Source: ours.
+const MAX_SHIFT_Y_BLOCKS: i64 = 6;
+/// Fewest blocks with a depth edge in an image: 50. An image with fewer is skipped. Source: ours.
+const MIN_EDGE_BLOCKS: usize = 50;
 
 /// Whether the edges of depth lie on the edges of the picture.
 #[derive(Debug, Clone, Default)]
@@ -35,7 +42,7 @@ pub(crate) struct Registration {
 impl Registration {
     /// Whether it still wants images.
     fn is_open(&self) -> bool {
-        self.images < IMAGES
+        self.images < CHECKED_IMAGES
     }
 
     /// Takes an image; judges after some.
@@ -46,10 +53,10 @@ impl Registration {
         let picture = Blocks::contrast(gray);
         let edges = edges_of(depth, &picture);
         let mean = picture.mean();
-        if edges.len() < LEAST || mean <= 0.0 {
+        if edges.len() < MIN_EDGE_BLOCKS || mean <= 0.0 {
             return None;
         }
-        let shifts = (2 * REACH.0 + 1) * (2 * REACH.1 + 1);
+        let shifts = (2 * MAX_SEARCH_X_BLOCKS + 1) * (2 * MAX_SEARCH_Y_BLOCKS + 1);
         let scores = &mut self.scores[self.images % 2];
         scores.resize(shifts as usize, 0.0);
         self.images += 1;
@@ -65,9 +72,10 @@ impl Registration {
     /// to find, they do not.
     fn judge(&self) -> Option<CalibrationIssue> {
         let [a, b] = [shift_of(&self.scores[0])?, shift_of(&self.scores[1])?];
-        let same = (a.0 - b.0).abs() <= SAME && (a.1 - b.1).abs() <= SAME;
-        let inside = |(dx, dy): (i64, i64)| dx.abs() <= MOST.0 && dy.abs() <= MOST.1;
-        let px = |blocks: i64| (blocks * BLOCK as i64) as f64 / 2.0;
+        let same = (a.0 - b.0).abs() <= MAX_SHIFT_DIFFERENCE_BLOCKS
+            && (a.1 - b.1).abs() <= MAX_SHIFT_DIFFERENCE_BLOCKS;
+        let inside = |(dx, dy): (i64, i64)| dx.abs() <= MAX_SHIFT_X_BLOCKS && dy.abs() <= MAX_SHIFT_Y_BLOCKS;
+        let px = |blocks: i64| (blocks * BLOCK_PX as i64) as f64 / 2.0;
         let offset = (px(a.0 + b.0), px(a.1 + b.1));
         (same && inside(a) && inside(b)).then_some(CalibrationIssue::Registration { offset })
     }
@@ -82,12 +90,13 @@ fn shift_of(scores: &[f64]) -> Option<(i64, i64)> {
     };
     let ((here, _), (there, shift)) = (of(true)?, of(false)?);
     let mean = scores.iter().sum::<f64>() / scores.len() as f64;
-    let clear = there - mean > LEAST_CONTRAST * mean && there - mean > CLEAR * (here - mean);
+    let clear = there - mean > MIN_CONTRAST * mean && there - mean > MIN_CONTRAST_RATIO * (here - mean);
     clear.then_some(shift)
 }
 
 fn shifts_of() -> impl Iterator<Item = (i64, i64)> {
-    (-REACH.1..=REACH.1).flat_map(|dy| (-REACH.0..=REACH.0).map(move |dx| (dx, dy)))
+    (-MAX_SEARCH_Y_BLOCKS..=MAX_SEARCH_Y_BLOCKS)
+        .flat_map(|dy| (-MAX_SEARCH_X_BLOCKS..=MAX_SEARCH_X_BLOCKS).map(move |dx| (dx, dy)))
 }
 
 /// A value for each block of an image.
@@ -100,13 +109,13 @@ struct Blocks {
 impl Blocks {
     /// The strongest contrast between neighbouring pixels in each block.
     fn contrast(gray: &GrayImage) -> Self {
-        let (width, height) = (gray.width() / BLOCK, gray.height() / BLOCK);
+        let (width, height) = (gray.width() / BLOCK_PX, gray.height() / BLOCK_PX);
         let mut values = vec![0.0; width * height];
-        for y in 0..(height * BLOCK).saturating_sub(1) {
+        for y in 0..(height * BLOCK_PX).saturating_sub(1) {
             let (row, below) = (gray.row(y), gray.row(y + 1));
-            for x in 0..(width * BLOCK).saturating_sub(1) {
+            for x in 0..(width * BLOCK_PX).saturating_sub(1) {
                 let strength = row[x].abs_diff(row[x + 1]).max(row[x].abs_diff(below[x]));
-                let block = &mut values[y / BLOCK * width + x / BLOCK];
+                let block = &mut values[y / BLOCK_PX * width + x / BLOCK_PX];
                 *block = f64::max(*block, f64::from(strength));
             }
         }
@@ -126,15 +135,16 @@ impl Blocks {
 /// The blocks in which something ends before what is behind it; on the side of what is near, which has no shadow.
 fn edges_of(depth: &DepthImage, like: &Blocks) -> Vec<(i64, i64)> {
     let mut marked = vec![false; like.values.len()];
-    for y in 0..depth.height() / BLOCK * BLOCK {
+    for y in 0..depth.height() / BLOCK_PX * BLOCK_PX {
         let mut last: Option<(usize, f32)> = None;
-        for (x, &here) in depth.row(y).iter().enumerate().take(like.width * BLOCK).filter(|(_, d)| **d > 0.0)
+        for (x, &here) in
+            depth.row(y).iter().enumerate().take(like.width * BLOCK_PX).filter(|(_, d)| **d > 0.0)
         {
-            if let Some((before, there)) = last.filter(|(before, _)| x - before <= SHADOW)
-                && (here - there).abs() > JUMP * here.min(there)
+            if let Some((before, there)) = last.filter(|(before, _)| x - before <= MAX_SHADOW_PX)
+                && (here - there).abs() > MIN_JUMP_RATIO * here.min(there)
             {
                 let near = if here < there { x } else { before };
-                marked[y / BLOCK * like.width + near / BLOCK] = true;
+                marked[y / BLOCK_PX * like.width + near / BLOCK_PX] = true;
             }
             last = Some((x, here));
         }
@@ -160,7 +170,7 @@ mod tests {
             );
         let depth = DepthImage::from_fn(320, 240, |x, y| if near(x + shift, y) { 1.5 } else { 2.5 });
         let mut check = Registration::default();
-        (0..2 * IMAGES).find_map(|_| check.record(&gray, &depth))
+        (0..2 * CHECKED_IMAGES).find_map(|_| check.record(&gray, &depth))
     }
 
     #[test]
@@ -172,7 +182,7 @@ mod tests {
     }
 
     #[test]
-    fn a_picture_without_edges_says_nothing() {
+    fn without_edges_the_registration_is_unknown() {
         let mut check = Registration::default();
         let depth = DepthImage::from_fn(64, 64, |x, _| 1.0 + (x / 20) as f32);
         assert_eq!((0..20).find_map(|_| check.record(&GrayImage::filled(64, 64, 9), &depth)), None);

@@ -1,3 +1,5 @@
+//! Self-calibration: the camera settings that make matches of frame pairs agree best.
+
 use nalgebra::{Matrix2, Matrix2x3, Matrix6, RowVector6, SMatrix, SVector, Vector6};
 use trundle_core::{Pose3, Vector2, Vector3};
 
@@ -35,18 +37,18 @@ pub(crate) struct FittedOffset {
     pub sigmas: CalibrationOffset,
 }
 
-/// Rounds of Gauss-Newton at most.
-const ROUNDS: usize = 10;
-/// A relative decrease of the cost below this ends it.
-const CONVERGED: f64 = 1e-6;
-/// Where Cauchy's loss bends, standard deviations: wrong matches are among the others.
-const CAUCHY: f64 = 2.5;
-/// Standard deviations of the offsets before anything is seen: wide, they only keep what is not seen at zero.
-const PRIOR: [f64; 6] = [0.3, 0.3, 0.1, 0.1, 0.5, 0.5];
+/// Most iterations of Gauss-Newton: 10. Source: ours.
+const MAX_ITERATIONS: usize = 10;
+/// Relative decrease of the cost below which the iteration ends: 1e-6. Source: ours.
+const MIN_COST_DECREASE: f64 = 1e-6;
+/// Scale of Cauchy's loss: 2.5 standard deviations. Larger residuals, of wrong matches, weigh little. Source: ours.
+const CAUCHY_SIGMAS: f64 = 2.5;
+/// Standard deviations of the offsets before any match: wide, so that they only hold unobservable offsets at zero. Source: ours.
+const PRIOR_SIGMAS: [f64; 6] = [0.3, 0.3, 0.1, 0.1, 0.5, 0.5];
 
-/// The search for the offsets that make matches agree best, the motions being free. Only those marked in `free` are looked for;
-/// the others stay as at the start. Least squares with Cauchy's loss on column, row and inverse depth, the motions
-/// eliminated (Schur complement). One round at a time, always over the same pairs.
+/// The search for the offsets that make matches agree best, the motions being free. Only those marked in `free` are estimated;
+/// the others stay as at the start. Least squares with Cauchy's loss on column, row and inverse depth, the motions eliminated
+/// (Schur complement). One iteration at a time, always over the same pairs.
 #[derive(Debug, Clone)]
 pub(crate) struct CalibrationFit {
     free: [bool; 6],
@@ -82,7 +84,7 @@ impl CalibrationFit {
         self.offset += step;
         self.parts = parts;
         let is_lost = !self.offset.iter().all(|v| v.is_finite());
-        is_lost || self.rounds >= ROUNDS || gain.abs() <= CONVERGED * cost
+        is_lost || self.rounds >= MAX_ITERATIONS || gain.abs() <= MIN_COST_DECREASE * cost
     }
 
     /// What was found, once the last round is done; `None` where it came to nothing.
@@ -92,9 +94,9 @@ impl CalibrationFit {
         offset.iter().all(|v| v.is_finite()).then_some(FittedOffset { offset, cost: self.cost, sigmas })
     }
 
-    /// How the offsets move by what these parts say, but for one of them.
+    /// The step of the offsets by all pairs but one.
     fn step(&self, parts: &[PairEquations], without: Option<usize>) -> Option<CalibrationOffset> {
-        let prior = Vector6::from(PRIOR).map(|sigma| sigma.powi(-2));
+        let prior = Vector6::from(PRIOR_SIGMAS).map(|sigma| sigma.powi(-2));
         let mut matrix = Matrix6::from_diagonal(&prior);
         let mut gradient = -prior.component_mul(&self.offset);
         for (_, part) in parts.iter().enumerate().filter(|(i, _)| Some(*i) != without) {
@@ -149,7 +151,7 @@ pub(crate) fn by_offset(n: Vector2) -> SMatrix<f64, 2, 6> {
     SMatrix::from_rows(&rows.map(RowVector6::from))
 }
 
-/// What one pair says: the normal equations of its motion, and of the offsets once that is eliminated.
+/// The normal equations of one pair: of its motion, and of the offsets once that is eliminated.
 #[derive(Debug, Clone)]
 struct PairEquations {
     own: Matrix6<f64>,
@@ -197,8 +199,8 @@ impl PairEquations {
 
 /// Weight and cost of a squared residual.
 fn cauchy(squared: f64) -> (f64, f64) {
-    let bent = 1.0 + squared / (CAUCHY * CAUCHY);
-    (1.0 / bent, CAUCHY * CAUCHY * bent.ln())
+    let bent = 1.0 + squared / (CAUCHY_SIGMAS * CAUCHY_SIGMAS);
+    (1.0 / bent, CAUCHY_SIGMAS * CAUCHY_SIGMAS * bent.ln())
 }
 
 /// The residual of one match over its standard deviations, and how it depends on offsets and motion.

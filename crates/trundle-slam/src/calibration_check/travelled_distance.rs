@@ -1,13 +1,16 @@
+//! Whether the camera travels as far as the wheels.
+
 use crate::calibration_check::issue::CalibrationIssue;
 
-/// Way, by the camera or by the wheels, before they are compared, m.
-const LEAST: f64 = 0.5;
-/// Way by the wheels that is none, m.
-const STANDING: f64 = 0.02;
-/// How many times as far, or as short, is suspicious: wheels slip and floors tilt, but not by half.
-const MOST: f64 = 1.5;
+/// Distance by camera or wheels before the two are compared: 0.5 m. Source: ours.
+const MIN_DISTANCE_M: f64 = 0.5;
+/// Distance by the wheels below which nothing is compared: 0.02 m. Source: ours.
+const MIN_WHEEL_DISTANCE_M: f64 = 0.02;
+/// Ratio of the two distances, or its inverse, beyond which the depth scale or the wheels are wrong: 1.5. Wheels slip by less.
+/// Source: ours.
+const MAX_DISTANCE_RATIO: f64 = 1.5;
 
-/// Whether the camera's way is as long as the wheels'.
+/// Compares the distance that the camera travels with that of the wheels.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct TravelledDistance {
     seen: f64,
@@ -16,16 +19,17 @@ pub(crate) struct TravelledDistance {
 }
 
 impl TravelledDistance {
-    /// Takes a step of so many metres as the camera saw it and as the wheels said; judges once.
+    /// Takes a step of so many metres by the camera and by the wheels; decides once.
     pub fn record(&mut self, seen: f64, said: f64) -> Option<CalibrationIssue> {
         self.seen += seen;
         self.said += said;
-        if self.judged || self.said < STANDING || self.seen.max(self.said) < LEAST {
+        if self.judged || self.said < MIN_WHEEL_DISTANCE_M || self.seen.max(self.said) < MIN_DISTANCE_M {
             return None;
         }
         self.judged = true;
         let ratio = self.seen / self.said;
-        (!(1.0 / MOST..=MOST).contains(&ratio)).then_some(CalibrationIssue::TravelledDistance { ratio })
+        (!(1.0 / MAX_DISTANCE_RATIO..=MAX_DISTANCE_RATIO).contains(&ratio))
+            .then_some(CalibrationIssue::TravelledDistance { ratio })
     }
 }
 
@@ -34,7 +38,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_way_five_times_as_long_is_noticed_once() {
+    fn a_distance_five_times_as_long_is_reported_once() {
         let mut check = TravelledDistance::default();
         let said: Vec<_> = (0..20).filter_map(|_| check.record(0.25, 0.05)).collect();
         assert_eq!(said.len(), 1);

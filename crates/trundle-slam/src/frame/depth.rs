@@ -1,14 +1,18 @@
+//! What the depth camera measures, and how exactly.
+
 use nalgebra::Matrix2;
 use serde::{Deserialize, Serialize};
 use trundle_core::{DepthImage, Invalid, Vector2, require_in, require_positive};
 use trundle_optim::InverseDepth;
 
-/// Half of the pixels around a feature that tell its plane, px of its octave; the other half lies across.
-const AROUND: [(f64, f64); 6] = [(5.0, 0.0), (0.0, 5.0), (4.0, 4.0), (4.0, -4.0), (2.5, 0.0), (0.0, 2.5)];
-/// Fewer pairs of them do not.
-const LEAST_PAIRS: usize = 4;
-/// What differs more from the middle, as a part of its depth, is something else.
-const SAME: f64 = 0.1;
+/// Offsets of the pixels by which the slope of the depth is fitted, px of the octave; each with its mirror image. Source: ours.
+const SLOPE_OFFSETS_PX: [(f64, f64); 6] =
+    [(5.0, 0.0), (0.0, 5.0), (4.0, 4.0), (4.0, -4.0), (2.5, 0.0), (0.0, 2.5)];
+/// Fewest pixel pairs with depth for a fit of the slope: 4. With fewer the slope is taken for 0. Source: ours.
+const MIN_SLOPE_PAIRS: usize = 4;
+/// Largest relative difference of a depth from the middle one in the fit of the slope: 0.1. Beyond it the pixel is of another
+/// surface. Source: ours.
+const MAX_SLOPE_DEPTH_RATIO: f64 = 0.1;
 
 /// A depth whose standard deviation is a larger part of it than this does not make a point.
 pub(crate) const MAX_RELATIVE_SIGMA: f64 = 0.1;
@@ -78,20 +82,20 @@ impl DepthConfig {
         let Some(middle) = self.at(image, pixel) else { return Vector2::zeros() };
         let (mut normal, mut products) = (Matrix2::zeros(), Vector2::zeros());
         let mut pairs = 0;
-        for (x, y) in AROUND {
+        for (x, y) in SLOPE_OFFSETS_PX {
             let offset = (Vector2::new(x, y) * px).map(f64::round);
             let Some((after, before)) = self.at(image, pixel + offset).zip(self.at(image, pixel - offset))
             else {
                 continue;
             };
-            if (after - middle).abs().max((before - middle).abs()) > SAME * middle {
+            if (after - middle).abs().max((before - middle).abs()) > MAX_SLOPE_DEPTH_RATIO * middle {
                 continue;
             }
             pairs += 1;
             normal += offset * offset.transpose() * 2.0;
             products += offset * (1.0 / after - 1.0 / before);
         }
-        let inverse = normal.try_inverse().filter(|_| pairs >= LEAST_PAIRS);
+        let inverse = normal.try_inverse().filter(|_| pairs >= MIN_SLOPE_PAIRS);
         inverse.map_or_else(Vector2::zeros, |inverse| inverse * products)
     }
 
@@ -111,7 +115,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_jump_in_depth_is_worth_little() {
+    fn a_depth_at_a_jump_has_a_large_sigma() {
         let config = DepthConfig::default();
         let image = DepthImage::from_fn(8, 8, |x, _| if x < 4 { 1.0 } else { 3.0 });
         let smooth = config.measure(&image, Vector2::new(1.2, 2.0)).unwrap();
@@ -121,7 +125,7 @@ mod tests {
     }
 
     #[test]
-    fn holes_and_the_outside_have_no_depth() {
+    fn holes_and_pixels_outside_have_no_depth() {
         let config = DepthConfig::default();
         let mut image = DepthImage::filled(8, 8, 1.0);
         image[(3, 3)] = 0.0;

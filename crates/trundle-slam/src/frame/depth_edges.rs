@@ -6,20 +6,21 @@ use std::f64::consts::FRAC_1_SQRT_2;
 use trundle_core::{DepthImage, Vector2};
 use trundle_vision::Features;
 
-/// The circle of FAST around a corner, px of its octave \[Rosten06\], and one half as large: what made it one is within.
-const CIRCLES: [f64; 2] = [1.5, 3.0];
-/// Half of a circle's directions; the other half lies across.
+/// Radii on which the depth is compared, px of the octave: the circle of FAST \[Rosten06\], and one half as large.
+const CIRCLE_RADII_PX: [f64; 2] = [1.5, 3.0];
+/// Half of the directions on a circle; the others are their opposites.
 const DIRECTIONS: [(f64, f64); 4] =
     [(1.0, 0.0), (FRAC_1_SQRT_2, FRAC_1_SQRT_2), (0.0, 1.0), (-FRAC_1_SQRT_2, FRAC_1_SQRT_2)];
-/// Octaves coarser than this ratio are looked at as if they were this one: farther out a floor meets its wall.
-const COARSEST: f64 = 2.0;
-/// Second differences of the inverse depth are a step beyond this part of it, and so many sigmas of its noise: swept in
-/// docs/results.md.
-const STEP: (f64, f64) = (0.1, 3.0);
-/// Where fewer than this would be left, outlines are better than nothing: railings, leaves, a depth that is all noise.
-const LEAST: usize = 100;
+/// Largest scale of an octave at which the radii still grow: 2. Farther out a floor meets its wall. Source: ours.
+const MAX_OCTAVE_SCALE: f64 = 2.0;
+/// Second difference of the inverse depth that is a step, as a fraction of it: 0.1. Source: docs/experiments/slam-depth-edges.md.
+const MIN_STEP_RATIO: f64 = 0.1;
+/// The same besides, in standard deviations of its noise: 3. See [`MIN_STEP_RATIO`].
+const MIN_STEP_SIGMAS: f64 = 3.0;
+/// Fewest features that must be left: 100. Otherwise none is dropped, as on railings, leaves and noisy depths. Source: ours.
+const MIN_KEPT_FEATURES: usize = 100;
 
-/// Drops the features on outlines, where enough others are left. `scale` is the size of an octave's pixel, px.
+/// Drops the features on depth edges, where enough others are left. `scale` is the size of an octave's pixel, px.
 pub(crate) fn drop_depth_edges(
     features: &mut Features,
     image: &DepthImage,
@@ -29,17 +30,17 @@ pub(crate) fn drop_depth_edges(
     let keypoints = features.keypoints.iter();
     let sound: Vec<bool> =
         keypoints.map(|k| !is_on_depth_edge(image, raw(k), scale(k.octave), config)).collect();
-    if sound.iter().filter(|sound| **sound).count() >= LEAST {
+    if sound.iter().filter(|sound| **sound).count() >= MIN_KEPT_FEATURES {
         features.retain(|i| sound[i]);
     }
 }
 
-/// Whether the depth steps within what makes the corner at a raw `pixel`, whose octave has pixels of `scale`.
+/// Whether the depth has a step near the corner at a raw `pixel`, whose octave has pixels of `scale`.
 ///
-/// Where the outline of something near crosses what is behind it, or leaves it, FAST sees a corner that neither of the two has: it
-/// slides along as the camera moves. The inverse depth of a plane is affine in the pixel, so that its second difference vanishes on
-/// every plane however steep, is small where a floor meets a wall, and large across an outline. Where there is no depth on both sides,
-/// nothing is said. Cost: 17 looks.
+/// Where the edge of a near surface crosses the background, FAST finds a corner that belongs to neither, and that slides along
+/// as the camera moves. The inverse depth of a plane is affine in the pixel, so that its second difference vanishes on every
+/// plane, is small where a floor meets a wall, and large across a depth edge. Directions without depth on both sides are
+/// skipped. Cost: 17 pixel reads.
 fn is_on_depth_edge(image: &DepthImage, pixel: Vector2, scale: f64, config: &DepthConfig) -> bool {
     let inverse = |at: Vector2| config.at(image, at).map(|depth| 1.0 / depth);
     let middle = pixel.map(f64::round);
@@ -50,11 +51,11 @@ fn is_on_depth_edge(image: &DepthImage, pixel: Vector2, scale: f64, config: &Dep
         let (after, before) = (inverse(middle + offset)?, inverse(middle - offset)?);
         Some((after + before - 2.0 * here).abs())
     };
-    let offsets = CIRCLES.into_iter().flat_map(|radius| {
-        let reach = (radius * scale.min(COARSEST)).max(1.0);
+    let offsets = CIRCLE_RADII_PX.into_iter().flat_map(|radius| {
+        let reach = (radius * scale.min(MAX_OCTAVE_SCALE)).max(1.0);
         DIRECTIONS.into_iter().map(move |(x, y)| Vector2::new(reach * x, reach * y).map(f64::round))
     });
-    offsets.filter_map(step).any(|step| step > STEP.0 * here + STEP.1 * noise)
+    offsets.filter_map(step).any(|step| step > MIN_STEP_RATIO * here + MIN_STEP_SIGMAS * noise)
 }
 
 #[cfg(test)]
@@ -67,7 +68,7 @@ mod tests {
     }
 
     #[test]
-    fn a_floor_seen_flat_is_no_outline_and_a_chair_before_it_is() {
+    fn a_slanted_floor_is_no_depth_edge_and_a_chair_before_it_is() {
         // A floor 0.45 m below a camera that looks level; a chair leg, 2 px wide, 1.5 m away.
         let image = DepthImage::from_fn(80, 80, |x, y| {
             let floor = 0.45 * 365.0 / (y as f32 + 25.0);
@@ -81,7 +82,7 @@ mod tests {
     }
 
     #[test]
-    fn where_a_floor_meets_its_wall_is_no_outline() {
+    fn the_corner_of_floor_and_wall_is_no_depth_edge() {
         for wall in [2.0_f32, 3.0, 4.0, 5.0] {
             let image = DepthImage::from_fn(80, 120, |_, y| (0.45 * 365.0 / (y as f32 + 1e-3)).min(wall));
             let seam = (0.45 * 365.0 / f64::from(wall)).round();
@@ -92,7 +93,7 @@ mod tests {
     }
 
     #[test]
-    fn a_noisy_wall_has_next_to_no_outlines() {
+    fn a_noisy_wall_has_hardly_any_depth_edge() {
         let config = DepthConfig::default();
         for depth in [2.0, 5.0, 7.5] {
             // Sums of twelve uniform numbers: nearly normal.
@@ -112,7 +113,7 @@ mod tests {
     }
 
     #[test]
-    fn where_little_would_be_left_all_is_kept() {
+    fn all_features_are_kept_where_few_would_be_left() {
         let blinds = DepthImage::from_fn(320, 240, |x, _| if x / 2 % 2 == 0 { 2.0 } else { 3.0 });
         let half = DepthImage::from_fn(320, 240, |x, _| if x < 160 || x / 2 % 2 == 0 { 2.0 } else { 3.0 });
         let left = |image: &DepthImage| {
@@ -132,11 +133,11 @@ mod tests {
             features.keypoints.len()
         };
         assert_eq!(left(&blinds), 300);
-        assert!((LEAST..200).contains(&left(&half)), "{}", left(&half));
+        assert!((MIN_KEPT_FEATURES..200).contains(&left(&half)), "{}", left(&half));
     }
 
     #[test]
-    fn where_there_is_no_depth_nothing_is_said() {
+    fn without_depth_there_is_no_depth_edge() {
         let mut image = DepthImage::filled(40, 40, 2.0);
         assert!(
             !is_on(&image, 0.0, 0.0, 3.6)

@@ -1,3 +1,5 @@
+//! How a camera sees points: projection into the rectified image, and standard deviations of keypoints.
+
 use trundle_core::{PinholeCamera, Vector2, Vector3};
 use trundle_vision::OrbConfig;
 
@@ -14,8 +16,9 @@ pub(crate) struct ObservationModel {
     high: Vector2,
 }
 
-/// A keypoint is hardly farther off than so many standard deviations.
-const KEYPOINT: f64 = 2.0;
+/// Distance of a keypoint from its landmark that hardly any exceeds: 2 standard deviations. Source: ours, 95 % of a normal
+/// distribution.
+const KEYPOINT_SIGMAS: f64 = 2.0;
 
 impl ObservationModel {
     pub fn new(camera: PinholeCamera, scale_factors: Vec<f64>, pixel_sigma: f64) -> Self {
@@ -48,7 +51,7 @@ impl ObservationModel {
     /// Of a point in the margin only something inward can be taken for it, wrongly: while the camera turns, what leaves the view
     /// would hold it back.
     pub fn can_find_at(&self, pixel: Vector2, octave: u8) -> bool {
-        let margin = (OrbConfig::MARGIN as f64 + KEYPOINT * self.pixel_sigma) * self.scale(octave);
+        let margin = (OrbConfig::MARGIN as f64 + KEYPOINT_SIGMAS * self.pixel_sigma) * self.scale(octave);
         let [right, bottom] =
             [self.camera.width(), self.camera.height()].map(|side| side as f64 - 1.0 - margin);
         (margin..=right).contains(&pixel.x) && (margin..=bottom).contains(&pixel.y)
@@ -83,7 +86,7 @@ mod tests {
     }
 
     #[test]
-    fn in_the_margin_nothing_is_to_be_found() {
+    fn no_feature_can_be_found_in_the_margin() {
         let model = freiburg1();
         let finds = |x: f64, octave: u8| model.can_find_at(Vector2::new(x, 240.0), octave);
         assert!(finds(18.5, 0) && !finds(17.5, 0) && finds(620.5, 0) && !finds(621.5, 0));
@@ -92,7 +95,7 @@ mod tests {
     }
 
     #[test]
-    fn what_the_lens_shows_is_in_view_and_the_rest_is_not() {
+    fn points_are_in_view_where_the_distorted_image_has_them() {
         let model = freiburg1();
         for raw in [(0.0, 0.0), (639.0, 479.0), (320.0, 3.0)] {
             let pixel = model.camera.undistort(Vector2::new(raw.0, raw.1));

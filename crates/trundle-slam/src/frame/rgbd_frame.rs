@@ -1,18 +1,17 @@
-use crate::frame::aligned_feature::Aligned;
-use crate::frame::aligned_feature::raw;
-use crate::frame::depth::DepthConfig;
-use crate::frame::depth::MAX_RELATIVE_SIGMA;
+//! What is kept of one image: features, their rectified positions and their depths.
+
+use crate::frame::aligned_feature::{Aligned, raw};
+use crate::frame::depth::{DepthConfig, MAX_RELATIVE_SIGMA};
 use crate::frame::depth_edges::drop_depth_edges;
 use crate::frame::observation_model::ObservationModel;
 use crate::median::median;
 use nalgebra::UnitQuaternion;
 use trundle_core::{DepthImage, Stamp, Vector2, Vector3};
-use trundle_optim::InverseDepth;
-use trundle_optim::PointObservation;
+use trundle_optim::{InverseDepth, PointObservation};
 use trundle_vision::{Descriptor, FeatureGrid, Features, Keypoint};
 
-/// What is placed better than this part of the standard deviation of a feature was aligned.
-const ALIGNED: f64 = 0.99;
+/// Standard deviation of a feature, as a fraction of that of a plain one, below which it counts as aligned: 0.99. Source: ours.
+const ALIGNED_SIGMA_RATIO: f64 = 0.99;
 
 /// What is kept of one image: features, where they are in the rectified image, and how far.
 #[derive(Debug, Clone)]
@@ -25,14 +24,14 @@ pub(crate) struct Frame {
     pub depths: Vec<Option<InverseDepth>>,
     /// Standard deviation of either coordinate of each feature's place, px.
     pub pixel_sigmas: Vec<f32>,
-    /// How the inverse depth rises around each feature, 1/(m px), right and down; of a frame that was kept, nothing.
+    /// Gradient of the inverse depth around each feature, 1/(m px), right and down; empty for a keyframe.
     pub slopes: Vec<Vector2>,
     grid: FeatureGrid,
 }
 
 impl Frame {
-    /// Of an image during which the camera turned by `turn` (rad, camera frame) from its first row to its last: features
-    /// are kept where they would be had all rows been taken with the middle one, but for those on outlines, which are dropped.
+    /// A frame of an image during which the camera turned by `turn` (rad, camera frame) from the first row to the last.
+    /// Features are kept where they would be had all rows been taken with the middle one; those on depth edges are dropped.
     pub fn new(
         stamp: Stamp,
         mut features: Features,
@@ -90,14 +89,15 @@ impl Frame {
         self
     }
 
-    /// Standard deviation of its aligned features, the median of them, px of their octaves; that of a plain one where there are none.
+    /// Median standard deviation of the aligned features, px of their octaves; that of a plain one where there are none.
     pub fn median_aligned_sigma_px(&self, model: &ObservationModel) -> f64 {
         let in_octave = |(k, sigma): (&Keypoint, &f32)| f64::from(*sigma) / model.scale(k.octave);
         let sigmas = self.features.keypoints.iter().zip(&self.pixel_sigmas).map(in_octave);
-        median(sigmas.filter(|sigma| *sigma < ALIGNED * model.pixel_sigma)).unwrap_or(model.pixel_sigma)
+        median(sigmas.filter(|sigma| *sigma < ALIGNED_SIGMA_RATIO * model.pixel_sigma))
+            .unwrap_or(model.pixel_sigma)
     }
 
-    /// Lets go what only a frame at hand needs.
+    /// Frees what only the current frame needs.
     pub fn drop_image(&mut self) {
         (self.features.patches, self.slopes) = (vec![], vec![]);
     }
@@ -141,8 +141,8 @@ impl Frame {
     }
 }
 
-/// Moves a feature to where the middle row's camera would have seen it, as a direction: what is not far is off by the way
-/// the camera went meanwhile, which is little.
+/// Moves a feature to where the camera would have seen it at the time of the middle row. Only rotation is corrected:
+/// translation during the readout is small.
 fn correct_rolling_shutter(keypoint: &mut Keypoint, turn: Vector3, model: &ObservationModel) {
     let camera = &model.camera;
     let late = f64::from(keypoint.y) / (camera.height() as f64 - 1.0) - 0.5;
@@ -154,7 +154,7 @@ fn correct_rolling_shutter(keypoint: &mut Keypoint, turn: Vector3, model: &Obser
     }
 }
 
-/// Where a keypoint would be without the lens, px.
+/// Position of a keypoint without lens distortion, px.
 fn rectified(keypoint: &Keypoint, model: &ObservationModel) -> Vector2 {
     model.camera.undistort(raw(keypoint))
 }
@@ -177,7 +177,7 @@ mod tests {
     use crate::testing::model;
 
     #[test]
-    fn a_rolling_shutter_is_taken_out() {
+    fn a_rolling_shutter_is_corrected() {
         let (model, turn) = (model(), Vector3::new(0.01, 0.04, -0.02));
         let image = DepthImage::filled(320, 240, 2.0);
         let mut features = Features::default();

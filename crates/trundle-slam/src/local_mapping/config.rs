@@ -1,7 +1,6 @@
 //! Settings of the landmark map.
 
-use serde::Deserialize;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use trundle_core::Invalid;
 use trundle_optim::BundleConfig;
 
@@ -15,9 +14,9 @@ pub struct MappingConfig {
     pub local_keyframes: usize,
     /// Keyframes that hold them in place. Default 10.
     pub fixed_keyframes: usize,
-    /// Keyframes in which new landmarks are looked for at once. Default 10 \[MurArtal17\].
+    /// Keyframes in which new landmarks are searched at once. Default 10 \[MurArtal17\].
     pub fused_keyframes: usize,
-    /// A landmark that only one keyframe sees is forgotten after so many more keyframes. Default 3 \[MurArtal17\].
+    /// A landmark that only one keyframe sees is removed after so many more keyframes. Default 3 \[MurArtal17\].
     pub trial_keyframes: usize,
     /// Frames in which a landmark should have been seen before it is judged. Default 10.
     pub trial_frames: u32,

@@ -1,23 +1,25 @@
+//! Removes redundant keyframes.
+
 use crate::ids::KeyframeId;
 use crate::local_mapping::keyframe_policy::KeyframeConfig;
 use crate::map::landmark::Landmark;
 use crate::map::landmark_map::LandmarkMap;
 
-/// Others that must see a landmark for a keyframe not to be needed for it \[MurArtal17\].
-const OTHERS: usize = 3;
-/// Part of its landmarks that a keyframe must not be needed for \[MurArtal17\].
-const REDUNDANT: f64 = 0.9;
-/// The newest keyframes stay: tracking hangs on them, and what they saw is still on trial.
-const NEWEST: usize = 5;
-/// Keyframes looked at for one that is new.
-const LOOKED_AT: usize = 20;
+/// Other keyframes that must see a landmark, so that a keyframe is not needed for it: 3. Source: \[MurArtal17\].
+const MIN_OTHER_OBSERVERS: usize = 3;
+/// Fraction of a keyframe's landmarks for which it must not be needed to be removed: 0.9. Source: \[MurArtal17\].
+const MIN_REDUNDANT_RATIO: f64 = 0.9;
+/// Newest keyframes that are never removed: 5. Tracking depends on them, and their landmarks are not yet confirmed. Source: ours.
+const KEPT_NEWEST_KEYFRAMES: usize = 5;
+/// Most keyframes that are checked for one that is new: 20. Source: ours.
+const MAX_CHECKED_KEYFRAMES: usize = 20;
 
-/// Forgets keyframes around a new one that show nothing which others do not show as well: those 90 % of whose landmarks are
-/// seen by three others at the same or a finer scale \[MurArtal17\]. The first one stays, and the newest, those that
-/// close a loop, and those without which the place would ask for a keyframe again. How many were forgotten.
+/// Removes keyframes around a new one that are redundant: those 90 % of whose landmarks are seen by three others at the same or
+/// a finer scale \[MurArtal17\]. The first keyframe stays, the newest, those that close a loop, and those without which a
+/// keyframe would be made again. How many were removed.
 pub(crate) fn cull_keyframes(map: &mut LandmarkMap, new: KeyframeId, config: &KeyframeConfig) -> usize {
-    let around = map.covisible(new, 1).into_iter().map(|(id, _)| id).take(LOOKED_AT);
-    let Some(newest) = map.keyframe_ids().rev().nth(NEWEST) else { return 0 };
+    let around = map.covisible(new, 1).into_iter().map(|(id, _)| id).take(MAX_CHECKED_KEYFRAMES);
+    let Some(newest) = map.keyframe_ids().rev().nth(KEPT_NEWEST_KEYFRAMES) else { return 0 };
     let candidates: Vec<KeyframeId> = around.filter(|id| *id <= newest).collect();
     let mut removed = 0;
     for id in candidates {
@@ -32,7 +34,7 @@ pub(crate) fn cull_keyframes(map: &mut LandmarkMap, new: KeyframeId, config: &Ke
 fn is_redundant(map: &LandmarkMap, id: KeyframeId) -> bool {
     let keyframe = map.keyframe(id);
     let seen = || keyframe.landmarks.iter().enumerate().filter_map(|(f, l)| Some((f, map.landmark((*l)?)?)));
-    let most_needed = ((1.0 - REDUNDANT) * seen().count() as f64).floor() as usize;
+    let most_needed = ((1.0 - MIN_REDUNDANT_RATIO) * seen().count() as f64).floor() as usize;
     let needed = seen().filter(|(feature, l)| is_needed(map, id, keyframe.frame.octave(*feature), l));
     needed.take(most_needed + 1).count() <= most_needed
 }
@@ -42,8 +44,9 @@ fn is_needed(map: &LandmarkMap, id: KeyframeId, octave: u8, landmark: &Landmark)
     let as_fine = |(other, feature): &&(KeyframeId, usize)| {
         *other != id && map.keyframe(*other).frame.octave(*feature) <= octave
     };
-    landmark.observations.len() <= OTHERS
-        || landmark.observations.iter().filter(as_fine).take(OTHERS).count() < OTHERS
+    landmark.observations.len() <= MIN_OTHER_OBSERVERS
+        || landmark.observations.iter().filter(as_fine).take(MIN_OTHER_OBSERVERS).count()
+            < MIN_OTHER_OBSERVERS
 }
 
 #[cfg(test)]
@@ -78,7 +81,7 @@ mod tests {
     }
 
     #[test]
-    fn what_shows_nothing_of_its_own_is_forgotten() {
+    fn redundant_keyframes_are_removed() {
         let config = KeyframeConfig::default();
         // Keyframe 3 alone sees 5 of its 40: more than a tenth. Keyframe 4 sees two.
         let own = [(3, 30), (3, 31), (3, 32), (3, 33), (3, 34), (4, 35), (4, 36)];
@@ -93,7 +96,7 @@ mod tests {
     }
 
     #[test]
-    fn a_place_keeps_a_keyframe() {
+    fn a_place_keeps_at_least_one_keyframe() {
         let config = KeyframeConfig { min_translation: 0.01, max_translation: 0.015, ..Default::default() };
         let (mut map, ids) = crowd(&[]);
         assert_eq!(cull_keyframes(&mut map, ids[11], &config), 0);

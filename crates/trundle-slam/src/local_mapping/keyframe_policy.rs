@@ -1,5 +1,6 @@
-use crate::frame::rgbd_frame::Frame;
-use crate::frame::rgbd_frame::with_depth;
+//! When a frame becomes a keyframe.
+
+use crate::frame::rgbd_frame::{Frame, with_depth};
 use crate::ids::KeyframeId;
 use crate::map::landmark_map::LandmarkMap;
 use serde::{Deserialize, Serialize};
@@ -15,7 +16,7 @@ pub struct KeyframeConfig {
     /// Nor turned less than this against it, rad, above 0. Default 0.05 (3 deg): a tenth of the picture at most.
     pub min_rotation: f64,
     /// When farther than this from every keyframe, m, and half of `new_ratio` is new; always when twice as far. Default 0.3:
-    /// the smaller detail then looks different.
+    /// smaller detail then appears different.
     pub max_translation: f64,
     /// The same for what it is turned against it, rad. Default 0.35 (20 deg): a third of the picture is new.
     pub max_rotation: f64,
@@ -81,7 +82,7 @@ impl KeyframeConfig {
 }
 
 impl KeyframeConfig {
-    /// Whether the place of a keyframe would not ask for another one if it were forgotten.
+    /// Whether no new keyframe would be made at this keyframe's pose if it were removed.
     pub(crate) fn is_covered_without(&self, map: &LandmarkMap, id: KeyframeId) -> bool {
         let pose = map.keyframe(id).visual_from_camera;
         is_near_one(map, pose, (2.0 * self.max_translation, 2.0 * self.max_rotation), Some(id))
@@ -109,18 +110,17 @@ fn count_new_features(frame: &Frame, shown: impl Iterator<Item = Vector2>) -> us
     with_depth(frame).filter(|i| !known.contains(&cell(frame.pixels[*i]))).count()
 }
 
-/// Side of the parts of the image that are known or new, px: a few times the distance between features.
+/// Side of the image cells that count as known or new: 40 px, a few times the distance between features. Source: ours.
 const CELL_PX: f64 = 40.0;
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::testing::frame_with_depth;
-    use crate::testing::map_of_one_view;
+    use crate::testing::{frame_with_depth, map_of_one_view};
     use nalgebra::Vector6;
 
     #[test]
-    fn what_stands_still_adds_nothing_and_what_moves_does() {
+    fn a_still_camera_makes_no_keyframe_and_a_moving_one_does() {
         let config = KeyframeConfig::default();
         let (map, _) = map_of_one_view(100);
         let frame = frame_with_depth(100);

@@ -32,9 +32,9 @@ impl<'a> LocalMapper<'a> {
         Self { model, config, thresholds, window_px }
     }
 
-    /// Makes `frame` a keyframe that sees the landmarks it was tracked by, gives its other features with a good depth, or
-    /// seen from two sides, landmarks of their own, looks for these in the keyframes around, and begins to refine all of them
-    /// together. `odometry` is the way to it as wheels know it.
+    /// Makes `frame` a keyframe that sees the landmarks it was tracked by. Its other features with a good depth, or seen from
+    /// two sides, become new landmarks, which are then searched in the keyframes around. `odometry` is the motion from the
+    /// keyframe before.
     pub fn insert(
         &self,
         map: &mut LandmarkMap,
@@ -110,7 +110,7 @@ impl<'a> LocalMapper<'a> {
         }
     }
 
-    /// Which features of a keyframe are of these landmarks, by descriptor, window and reprojection at 95 %.
+    /// Features of a keyframe that are of these landmarks, by descriptor, window and reprojection at 95 %.
     fn find(
         &self,
         map: &LandmarkMap,
@@ -135,9 +135,8 @@ impl<'a> LocalMapper<'a> {
         search(&other.frame, &all, &projections, self.thresholds).into_iter().filter_map(agrees).collect()
     }
 
-    /// Forgets landmarks that no second keyframe saw in time, or that were seldom found where they should have been seen.
-    /// Looks at what the keyframes around the new one see, and at the one whose landmarks have now been on trial for long
-    /// enough.
+    /// Removes landmarks that no second keyframe saw in time, or that were seldom found where they should have been seen.
+    /// Checks the landmarks of the keyframes around the new one, and of the keyframe whose trial ends.
     fn cull(&self, map: &mut LandmarkMap, new: KeyframeId) {
         let MappingConfig { trial_keyframes, trial_frames, found_ratio, .. } = *self.config;
         let Some(oldest_on_trial) = map.keyframe_ids().rev().nth(trial_keyframes) else { return };

@@ -1,14 +1,12 @@
 //! Keeps how the landmarks of a new keyframe look.
 
 use crate::frame::observation_model::ObservationModel;
-use crate::ids::KeyframeId;
-use crate::ids::LandmarkId;
+use crate::ids::{KeyframeId, LandmarkId};
 use crate::map::landmark_map::LandmarkMap;
-use crate::map::reference_patch::MAX_REFERENCE_PATCHES;
-use crate::map::reference_patch::ReferencePatch;
+use crate::map::reference_patch::{MAX_REFERENCE_PATCHES, ReferencePatch};
 
-/// Keeps how the landmarks of a new keyframe look, where that is new, and lets the image go. What a landmark's first look is of is
-/// as sharp as what is aligned to it will be.
+/// Stores reference patches of a new keyframe's landmarks, where they are new, and frees the image. The feature of a landmark's
+/// first patch becomes as certain as the features that will be aligned to it.
 pub(crate) fn store_reference_patches(map: &mut LandmarkMap, id: KeyframeId, model: &ObservationModel) {
     let median_aligned_sigma_px = map.keyframe(id).frame.median_aligned_sigma_px(model);
     for (feature, seen, look) in new_reference_patches(map, id, model) {

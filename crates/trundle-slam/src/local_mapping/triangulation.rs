@@ -1,19 +1,21 @@
+//! Landmarks from two views of features without depth.
+
 use crate::frame::depth::MAX_RELATIVE_SIGMA;
 use crate::frame::observation_model::ObservationModel;
-use crate::ids::KeyframeId;
-use crate::ids::LandmarkId;
+use crate::ids::{KeyframeId, LandmarkId};
 use crate::map::keyframe::Keyframe;
 use crate::map::landmark_map::LandmarkMap;
 use crate::matching::projection_search::MatchThresholds;
 use trundle_core::{Pose3, Vector3};
 use trundle_optim::{CHI2_95_2, PointObservation};
 
-/// The cosine of the least angle between the two rays to a point: 1.15 deg, a tenth of a rad over a Kinect's pixel noise of
-/// half a mrad leaves a twentieth of the distance.
-const MOST_PARALLEL: f64 = 0.9998;
-/// How many keyframes are asked for a second view.
-const PARTNERS: usize = 5;
-/// How much more the distances may differ than the octaves say.
+/// Largest cosine of the angle between the two rays to a point: 0.9998 (1.15 deg). With a smaller angle the distance is too
+/// uncertain: a pixel noise of 0.5 mrad over 20 mrad leaves a twentieth of it. Source: \[MurArtal17\].
+const MAX_RAY_COSINE: f64 = 0.9998;
+/// Keyframes in which a second view of a feature is searched: 5. Source: ours.
+const MAX_PARTNERS: usize = 5;
+/// Factor by which the ratio of distances may differ from that of the octaves: 1.5. Beyond it the features are not of one point.
+/// Source: \[MurArtal17\].
 const SCALE_TOLERANCE: f64 = 1.5;
 
 /// Makes landmarks of features whose depth the camera could not measure, beyond its range or in a hole, from two keyframes
@@ -25,7 +27,7 @@ pub(crate) fn triangulate_new(
     thresholds: MatchThresholds,
 ) -> Vec<LandmarkId> {
     let partners: Vec<KeyframeId> =
-        map.covisible(id, 15).into_iter().map(|(other, _)| other).take(PARTNERS).collect();
+        map.covisible(id, 15).into_iter().map(|(other, _)| other).take(MAX_PARTNERS).collect();
     let mut made = Vec::new();
     for partner in partners {
         for (own, other, point) in pairs(map, id, partner, model, thresholds) {
@@ -39,7 +41,7 @@ pub(crate) fn triangulate_new(
     made
 }
 
-/// Features of two keyframes that look alike and see one point, with that point; each feature at most once.
+/// Similar features of two keyframes that see one point, with that point; each feature at most once.
 fn pairs(
     map: &LandmarkMap,
     id: KeyframeId,
@@ -97,7 +99,7 @@ impl Pair<'_> {
         Ray { feature, x: ray.x, y: ray.y, reach }
     }
 
-    /// The feature of `b` among `theirs` that is most like feature `own` of `a`, near its epipolar line, and clearly so.
+    /// The feature of `b` among `theirs` that is most similar to feature `own` of `a`, near its epipolar line, and clearly so.
     fn best_match(&self, own: usize, theirs: &[Ray], thresholds: MatchThresholds) -> Option<usize> {
         // The plane through both cameras and the point cuts the image along this line.
         let normal = self.b_from_a.translation.cross(&self.b_from_a.rotate(self.ray(self.a, own)));
@@ -127,7 +129,7 @@ impl Pair<'_> {
     fn point(&self, own: usize, other: usize) -> Option<Vector3> {
         let (ray_a, ray_b) = (self.ray(self.a, own), self.b_from_a.inverse().rotate(self.ray(self.b, other)));
         let cosine = ray_a.dot(&ray_b) / (ray_a.norm() * ray_b.norm());
-        if !(0.0..MOST_PARALLEL).contains(&cosine) {
+        if !(0.0..MAX_RAY_COSINE).contains(&cosine) {
             return None;
         }
         let point = midpoint(ray_a, self.b_from_a.inverse().translation, ray_b)?;
@@ -209,7 +211,7 @@ mod tests {
     }
 
     #[test]
-    fn far_points_are_found_from_two_views_and_nothing_else_is() {
+    fn far_points_are_triangulated_and_wrong_pairs_are_not() {
         let found = made(0.5, 0.0);
         assert_eq!(found.len(), 25);
         for (point, truth) in found.iter().zip(&points()[15..]) {

@@ -1,3 +1,5 @@
+//! Old keyframes that may close a loop with a new one.
+
 use crate::ids::KeyframeId;
 use crate::loop_closing::config::LoopConfig;
 use crate::loop_closing::uncertainty_paths::UncertaintyPaths;
@@ -9,8 +11,8 @@ use nalgebra::{Matrix6, Vector6};
 use std::collections::BTreeSet;
 use trundle_core::Pose3;
 
-/// The old keyframes that look like `keyframe`, the likeliest first: not tied to it, and near enough by, even if more went
-/// wrong than should have.
+/// The old keyframes that are similar to `keyframe`, the most similar first: without common landmarks, and near enough for the
+/// drift or an unexpected correction.
 pub(crate) fn loop_candidates(
     map: &LandmarkMap,
     place_index: &KeyframeIndex,
@@ -36,7 +38,7 @@ fn connected(map: &LandmarkMap, keyframe: KeyframeId) -> BTreeSet<KeyframeId> {
     near.iter().copied().flat_map(around).chain(near.iter().copied()).chain([keyframe]).collect()
 }
 
-/// How far two keyframes may be off against each other.
+/// How far two keyframes may have drifted against each other.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct DriftBound<'a> {
     covariance: Matrix6<f64>,
@@ -44,8 +46,8 @@ pub(crate) struct DriftBound<'a> {
 }
 
 impl<'a> DriftBound<'a> {
-    /// The covariance that grew between an old keyframe and a new one, and what may go wrong along the surest way from the one to
-    /// the other: the covariance alone where nothing ties them.
+    /// The drift between an old keyframe and a new one: the covariance that grew in between, and the drift along the least
+    /// uncertain path; the covariance alone where no path leads.
     pub fn along(
         paths: &UncertaintyPaths,
         map: &LandmarkMap,
@@ -59,7 +61,7 @@ impl<'a> DriftBound<'a> {
         Self { covariance: grown + Matrix6::from_diagonal(&least), config }
     }
 
-    /// Whether a keyframe that stands at this offset by the map may see the same in truth.
+    /// Whether a keyframe at this offset may see the same as the other one.
     fn reaches(&self, offset: Pose3) -> bool {
         let Self { covariance, config } = self;
         let off = |from: usize| config.most_sigmas * covariance.fixed_view::<3, 3>(from, from).trace().sqrt();
@@ -75,13 +77,13 @@ impl<'a> DriftBound<'a> {
         tangent.dot(&(information * tangent)) <= self.config.most_sigmas.powi(2) + CHI2_MARGIN
     }
 
-    /// Whether more may have gone wrong than that: less than what parts two places.
+    /// Whether a correction that the drift does not explain is small enough to be none of a look-alike.
     pub fn allows_unexpected(&self, correction: Pose3) -> bool {
         correction.translation.norm() <= self.config.surprise
             && correction.angle() <= self.config.surprise_turn
     }
 }
 
-/// What a chi-square of six has more than the square of one normal variable at the same small chance: 37 at that of five
-/// standard deviations.
+/// Difference between the quantile of a chi-square of six and that of a chi-square of one, at the probability of five standard
+/// deviations: 12.
 const CHI2_MARGIN: f64 = 12.0;

@@ -1,8 +1,10 @@
+//! Settings of loop closing.
+
 use serde::{Deserialize, Serialize};
 use trundle_core::{Invalid, require_in, require_positive};
 use trundle_optim::PoseGraphConfig;
 
-/// When a place counts as seen again, and how the map is then mended.
+/// When a place counts as seen again, and how the map is then corrected.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct LoopConfig {
@@ -10,7 +12,7 @@ pub struct LoopConfig {
     pub candidates: usize,
     /// Keyframes newer than this many before are no loop, 1 or more. Default 10: as many as a local bundle moves.
     pub least_age: usize,
-    /// How far apart two keyframes may be that see the same, m, above 0. Default 1.5: half a room.
+    /// Largest distance between two keyframes that see the same, m, above 0. Default 1.5: half a room.
     pub reach: f64,
     /// How much they may be turned, rad, above 0. Default 0.9 (50 deg): a quarter of a Kinect's picture is then common.
     pub turn: f64,
@@ -19,23 +21,23 @@ pub struct LoopConfig {
     /// Keyframes in a row that must show the same before a correction is believed that the drift does not explain, or another
     /// map is taken for this place, 1 or more. Default 3 \[MurArtal17\].
     pub consistency: usize,
-    /// The largest such correction, m, above 0. Default 1: wheels may slip so far unseen, and rooms that look the same are
-    /// farther apart.
+    /// Largest correction that the drift does not explain, m, above 0. Default 1: wheels may slip by as much, and look-alike
+    /// rooms are farther apart.
     pub surprise: f64,
-    /// And rad, above 0. Default 0.5.
+    /// Largest such rotation, rad, above 0. Default 0.5.
     pub surprise_turn: f64,
     /// Part of the matches that must agree, 0 to 1. Default 0.5: chance does not reach it.
     pub min_agreement: f64,
-    /// How many standard deviations of the drift a correction may be, above 0. Default 5: covariances along a chain are
-    /// somewhat small. What is farther off is a look-alike.
+    /// Largest correction in standard deviations of the drift, above 0. Default 5: covariances along a chain are somewhat
+    /// small. A larger correction is a look-alike.
     pub most_sigmas: f64,
-    /// Standard deviation of the drift whatever the covariance says: part of each tie of common sight, or of a loop, along the surest
-    /// way between, 0 to 1. Default 0.01: what RGB-D odometry drifts by.
+    /// Standard deviation of the drift, besides the covariance, as a fraction of the length of each constraint by common
+    /// landmarks or a loop, along the least uncertain path, 0 to 1. Default 0.01, the drift of RGB-D odometry.
     pub drift_part: f64,
-    /// The same of a tie by wheels, 0 to 1. Default 0.003: twice what the worst but one of 25 drives was off when its first loop closed.
-    /// With 1 % a twin room 4.3 m away was taken for its like after 80 m.
+    /// The same of an odometry constraint, 0 to 1. Default 0.003: twice the drift of the second worst of 25 drives at its first
+    /// loop. With 0.01 a look-alike room 4.3 m away closed a false loop after 80 m.
     pub drift_part_on_wheels: f64,
-    /// Landmarks that two keyframes share to be tied in the pose graph, 1 or more. Default 100 \[MurArtal17\].
+    /// Landmarks that two keyframes share to be constrained in the pose graph, 1 or more. Default 100 \[MurArtal17\].
     pub tied_by: usize,
     /// The pose graph.
     pub graph: PoseGraphConfig,

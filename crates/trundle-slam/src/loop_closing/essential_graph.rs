@@ -1,3 +1,5 @@
+//! The pose graph that a loop closure solves.
+
 use crate::frame::observation_model::ObservationModel;
 use crate::ids::KeyframeId;
 use crate::loop_closing::place_verification::RecognizedPlace;
@@ -9,9 +11,10 @@ use std::collections::BTreeSet;
 use trundle_core::Pose3;
 use trundle_optim::{CHI2_95_6, Huber, PoseConstraint, PoseGraph};
 
-/// The pose graph that a loop bends: keyframes tied by what they both see, by the wheels and to the floor, as they stand to
-/// each other now, each tie as certain as that is, so that the correction goes where the drift was made; and `keyframe` to
-/// the place that it recognised. Behind the keyframes, by rising id, a last pose is the identity, which floors are tied to.
+/// The pose graph of a loop closure. Keyframes are constrained by common landmarks, odometry and the floor, at their present
+/// relative poses; each constraint has the information of what it comes from, so that the correction goes where the drift
+/// arose. A last constraint puts `keyframe` at the recognized place. Poses are the keyframes by rising id, and then the
+/// identity, to which floors are constrained.
 pub(crate) fn essential_graph(
     map: &LandmarkMap,
     model: &ObservationModel,
@@ -30,24 +33,24 @@ pub(crate) fn essential_graph(
     };
     let seen = shared_landmark_information(map, model, &ids, pairs(map, &ids, tied_by));
     let mut constraints: Vec<PoseConstraint> =
-        seen.into_iter().map(|(pair, by)| as_now(pair, by + Matrix6::identity() * UNKNOWN)).collect();
+        seen.into_iter().map(|(pair, by)| as_now(pair, by + Matrix6::identity() * MIN_INFORMATION)).collect();
     for tie in odometry_and_floor_constraints(map, &ids, |i| i == 0) {
         let is_floor = tie.from == ids.len();
         constraints.push(if is_floor { tie } else { as_now((tie.from, tie.to), believed(&tie, &poses)) });
     }
     let (from, to) = (place(found.candidate), place(keyframe));
     let from_to = poses[from].inverse() * found.visual_from_camera;
-    let information = found.covariance.try_inverse().unwrap_or(Matrix6::identity() * UNKNOWN);
+    let information = found.covariance.try_inverse().unwrap_or(Matrix6::identity() * MIN_INFORMATION);
     constraints.push(PoseConstraint { from, to, from_to, information });
     let fixed: Vec<bool> = (0..poses.len()).map(|i| i == 0 || i == ids.len()).collect();
     PoseGraph::new(poses, &fixed, constraints).expect("invariant: every index was counted here")
 }
 
-/// Information by which the pairs hold each other whatever they see, 1/m^2 and 1/rad^2: what shares nothing with the rest goes
-/// along.
-const UNKNOWN: f64 = 1.0;
+/// Information of a constraint besides that of its landmarks: 1 (1/m^2 and 1/rad^2). Keyframes that share nothing with the rest
+/// move along by it. Source: ours.
+const MIN_INFORMATION: f64 = 1.0;
 
-/// The pairs of keyframes that the graph ties, by their places: the spanning tree, those that share `tied_by` landmarks, earlier
+/// Pairs of keyframes that the graph constrains, by index: the spanning tree, those that share `tied_by` landmarks, earlier
 /// loops \[MurArtal17\], and neighbours in time.
 fn pairs(map: &LandmarkMap, ids: &[KeyframeId], tied_by: usize) -> BTreeSet<(usize, usize)> {
     let mut pairs: BTreeSet<(usize, usize)> = (1..ids.len()).map(|i| (i - 1, i)).collect();
@@ -61,7 +64,7 @@ fn pairs(map: &LandmarkMap, ids: &[KeyframeId], tied_by: usize) -> BTreeSet<(usi
     pairs
 }
 
-/// What a tie by the wheels says where the poses are these: where they slipped, no more than under the Huber loss.
+/// Information of an odometry constraint at these poses, reduced by the Huber loss where the wheels slipped.
 fn believed(tie: &PoseConstraint, poses: &[Pose3]) -> Matrix6<f64> {
     let off = (tie.from_to.inverse() * poses[tie.from].inverse() * poses[tie.to]).log();
     tie.information * Huber::beyond(CHI2_95_6).weight(off.dot(&(tie.information * off)))
@@ -70,8 +73,7 @@ fn believed(tie: &PoseConstraint, poses: &[Pose3]) -> Matrix6<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::testing::frame_with_depth;
-    use crate::testing::model;
+    use crate::testing::{frame_with_depth, model};
     use nalgebra::Vector6;
     use trundle_optim::PoseGraphConfig;
 

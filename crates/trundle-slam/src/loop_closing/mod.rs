@@ -1,12 +1,11 @@
-//! Loop closing: a place seen again takes the drift out of everything since.
+//! Loop closing: a place seen again removes the drift of everything since.
 //!
-//! Problem: along a corridor the map drifts, and a place reached again stands beside its first image. Idea: a new
-//! keyframe is compared with the old ones that look alike by their words, that it is not yet tied to, and that its drift
-//! lets be near; where enough of the old points are found in it under one pose, and under no other nearly as many, the
-//! keyframes between are moved by a pose graph, and landmarks that are there twice become one \[MurArtal17\]. A correction
-//! larger than the drift explains must be asked for by several keyframes in a row, and be smaller than what parts two
-//! rooms: a look-alike elsewhere is refused. Cost: a question to the index, and for each of at most three candidates a
-//! matching under the words, about a ms each.
+//! Problem: along a corridor the map drifts, and a place reached again stands beside its first image. Idea: a new keyframe is compared
+//! with old ones that are similar by their bags of words, that share no landmarks with it, and that its drift lets be near. Where enough
+//! of the old points are found in it under one pose, and under no other nearly as many, a pose graph moves the keyframes in between, and
+//! landmarks that are there twice are fused \[MurArtal17\]. A correction larger than the drift explains must be found by several
+//! keyframes in a row, and be smaller than the distance of look-alike rooms. Cost: a query of the index, and for each of at most three
+//! candidates a matching under the vocabulary, about 1 ms each.
 
 pub(crate) mod candidates;
 pub(crate) mod config;

@@ -1,28 +1,26 @@
+//! Verifies that a frame shows the place of an old keyframe.
+
 use crate::frame::observation_model::ObservationModel;
-use crate::ids::KeyframeId;
-use crate::ids::LandmarkId;
+use crate::ids::{KeyframeId, LandmarkId};
 use crate::loop_closing::config::LoopConfig;
 use crate::map::covisibility::MIN_SHARED_LANDMARKS;
 use crate::map::landmark_map::LandmarkMap;
-use crate::matching::matched_pose::MatchedPose;
-use crate::matching::matched_pose::PosePriorKind;
+use crate::matching::matched_pose::{MatchedPose, PosePriorKind};
 use crate::matching::point_match::PointMatch;
-use crate::matching::projection_search::Projection;
-use crate::matching::projection_search::search;
+use crate::matching::projection_search::{Projection, search};
 use crate::matching::reference_frame::ReferenceFrame;
 use crate::place_recognition::bow::FrameBow;
 use crate::place_recognition::keyframe_index::KeyframeIndex;
-use crate::place_recognition::place_hypothesis::PlaceHypothesis;
-use crate::place_recognition::place_hypothesis::without_rival;
+use crate::place_recognition::place_hypothesis::{PlaceHypothesis, without_rival};
 use crate::tracking::config::TrackingConfig;
 use nalgebra::Matrix6;
 use std::collections::BTreeSet;
 use trundle_core::Pose3;
 
-/// Keyframes around a candidate whose landmarks are looked for \[MurArtal17\].
-const AROUND: usize = 10;
+/// Keyframes covisible with a candidate whose landmarks are searched: 10. Source: \[MurArtal17\].
+const COVISIBLE_KEYFRAMES: usize = 10;
 
-/// Tells whether a frame shows what a keyframe of `map` saw.
+/// Verifies whether a frame shows what a keyframe of `map` saw.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct PlaceVerifier<'a> {
     pub map: &'a LandmarkMap,
@@ -66,12 +64,12 @@ impl PlaceHypothesis for RecognizedPlace {
 }
 
 impl PlaceVerifier<'_> {
-    /// The one of these places that the frame shows; `None` when two that are apart look right.
+    /// The one of these candidates that the frame shows; `None` when two that are apart do.
     pub fn recognize(&self, own: FrameBow, candidates: &[KeyframeId]) -> Option<RecognizedPlace> {
         without_rival(candidates.iter().filter_map(|id| self.verify(own, *id)).collect())
     }
 
-    /// The place of one keyframe, if the frame shows that.
+    /// The place of one keyframe, if the frame shows it.
     pub fn verify(&self, own: FrameBow, candidate: KeyframeId) -> Option<RecognizedPlace> {
         // It was aligned to the landmarks of the way here, and says nothing yet of the old ones.
         let frame = own.frame.clone().unaligned(self.model);
@@ -87,7 +85,7 @@ impl PlaceVerifier<'_> {
         Some(RecognizedPlace { candidate, visual_from_camera, covariance, points, landmarks })
     }
 
-    /// The pose by what looks alike in both.
+    /// The pose by similar features of both.
     fn by_bow(&self, own: FrameBow, candidate: KeyframeId) -> Option<MatchedPose> {
         let pairs = self
             .place_index
@@ -133,7 +131,7 @@ impl PlaceVerifier<'_> {
     /// What the candidate and those around it see, by rising id.
     fn landmarks_around(&self, candidate: KeyframeId) -> Vec<LandmarkId> {
         let around = self.map.covisible(candidate, MIN_SHARED_LANDMARKS).into_iter().map(|(id, _)| id);
-        let around = around.take(AROUND).chain([candidate]);
+        let around = around.take(COVISIBLE_KEYFRAMES).chain([candidate]);
         let mut ids: Vec<LandmarkId> =
             around.flat_map(|id| self.map.keyframe(id).landmarks.iter().flatten().copied()).collect();
         ids.sort_unstable();

@@ -1,3 +1,5 @@
+//! The information that common landmarks give about the relative pose of two keyframes.
+
 use crate::frame::observation_model::ObservationModel;
 use crate::ids::KeyframeId;
 use crate::map::landmark::Landmark;
@@ -6,12 +8,13 @@ use nalgebra::{Matrix3, Matrix6};
 use std::collections::BTreeSet;
 use trundle_core::Vector3;
 
-/// How well what two keyframes both see holds them to each other: of each pair of places in `ids` (by rising id), the lower
-/// first, the information of where the second one is in the frame of the first, a right perturbation.
+/// Information of the relative pose of each pair of keyframes from the landmarks that both see, as a right perturbation. Pairs
+/// are indices into `ids` (by rising id), the lower first.
 ///
-/// Each keyframe sees a common landmark X with an information A and B (visual frame, in it the Huber weight of its residual);
-/// with X itself unknown, they are held at it by (A^-1 + B^-1)^-1, and a turn about the origin moves it by -X^. A landmark
-/// that n keyframes see ties n (n - 1) / 2 pairs, but says no more than n - 1 things: it counts 2 / n in each.
+/// Each keyframe sees a common landmark X with an information A and B (visual frame, with the Huber weight of its residual).
+/// With X itself unknown, the relative pose has the information (A^-1 + B^-1)^-1 of X, and a rotation about the origin moves X
+/// by -X^. A landmark that n keyframes see counts in n (n - 1) / 2 pairs but gives n - 1 constraints: its weight is 2 / n in
+/// each pair.
 pub(crate) fn shared_landmark_information(
     map: &LandmarkMap,
     model: &ObservationModel,
@@ -76,13 +79,12 @@ fn of_bodies(of_point: Matrix3<f64>, point: Vector3) -> Matrix6<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::testing::frame_with_depth;
-    use crate::testing::model;
+    use crate::testing::{frame_with_depth, model};
     use nalgebra::{Matrix3x6, Vector6};
     use trundle_core::Pose3;
 
     #[test]
-    fn it_is_what_is_left_when_the_landmarks_are_eliminated() {
+    fn the_information_is_the_schur_complement_of_the_landmarks() {
         let (mut map, model) = (LandmarkMap::default(), model());
         let poses =
             [Vector6::new(0.3, -0.1, 0.2, 0.1, 0.4, -0.2), Vector6::new(0.5, 0.1, 0.1, 0.0, 0.3, -0.1)];

@@ -1,14 +1,16 @@
+//! The least uncertain path of constraints between two keyframes.
+
 use crate::ids::KeyframeId;
 use crate::loop_closing::config::LoopConfig;
 use crate::map::landmark_map::LandmarkMap;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-/// How far off keyframes may be against one of them: along the surest path of ties between them, each off by a part of its
-/// length and turn.
+/// Drift between one keyframe and all others, along the least uncertain path of constraints; each constraint drifts by a
+/// fraction of its length and rotation.
 ///
-/// Ties are the spanning tree where it is of common sight, loops, and the wheels' paths. What a loop has tied to an old place is as sure as that place,
-/// however far the camera went between.
+/// Constraints are the spanning tree where it comes from common landmarks, loops, and odometry. A keyframe that a loop put at
+/// an old place is as certain as that place, however far the camera went in between.
 #[derive(Debug, Clone)]
 pub(crate) struct UncertaintyPaths {
     ids: Vec<KeyframeId>,
@@ -30,14 +32,14 @@ impl PathUncertainty {
         }
     }
 
-    /// What paths are compared by, a metre like a radian: the bits of a number that is not negative, which are in its order.
+    /// The order of paths, a metre like a radian: the bits of a number that is not negative have its order.
     fn rank(self) -> u64 {
         (self.translation_sigma + self.rotation_sigma).to_bits()
     }
 }
 
 impl UncertaintyPaths {
-    /// The paths from one keyframe to all that ties lead to, by Dijkstra's algorithm. Time: n log n in the keyframes.
+    /// The paths from one keyframe to all that constraints reach, by Dijkstra's algorithm. Time: n log n in the keyframes.
     pub fn from(map: &LandmarkMap, start: KeyframeId, config: &LoopConfig) -> Self {
         let ids: Vec<KeyframeId> = map.keyframe_ids().collect();
         let edges = edges(map, &ids, config);
@@ -60,13 +62,13 @@ impl UncertaintyPaths {
         Self { ids, paths }
     }
 
-    /// The path to a keyframe; `None` where no edge leads.
+    /// The path to a keyframe; `None` where no constraint leads.
     pub fn to(&self, id: KeyframeId) -> Option<PathUncertainty> {
         self.paths[self.ids.binary_search(&id).ok()?]
     }
 }
 
-/// The ties of each keyframe, there and back: to which place, and how far off.
+/// The constraints of each keyframe, in both directions: index of the other keyframe, and drift.
 fn edges(map: &LandmarkMap, ids: &[KeyframeId], config: &LoopConfig) -> Vec<Vec<(usize, PathUncertainty)>> {
     let mut edges = vec![Vec::new(); ids.len()];
     for (at, (_, keyframe)) in map.keyframes().enumerate() {
@@ -115,7 +117,7 @@ mod tests {
     }
 
     #[test]
-    fn the_way_adds_up_and_wheels_are_surer() {
+    fn drift_adds_up_along_a_path_and_odometry_drifts_less() {
         let (mut map, ids) = line(&[0.0, 1.0, 3.0, 0.5]);
         assert!((off(&map, ids[0], ids[3]) - 0.055).abs() < 1e-12);
         map.keyframe_mut(ids[2]).odometry = Some(OdometryFactor::at(ids[1]));
@@ -125,7 +127,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_loop_has_tied_is_as_sure_as_the_place() {
+    fn a_loop_makes_a_keyframe_as_certain_as_the_place() {
         let (mut map, ids) = line(&[0.0, 10.0, 20.0, 10.0, 0.5, 10.0]);
         assert!((off(&map, ids[0], ids[5]) - 0.49).abs() < 1e-12);
         map.add_loop_edge(ids[0], ids[4]);
@@ -134,7 +136,7 @@ mod tests {
     }
 
     #[test]
-    fn the_one_before_that_nothing_leads_to_is_no_tie() {
+    fn a_parent_without_common_landmarks_is_no_constraint() {
         let (mut map, ids) = line(&[0.0, 1.0, 2.0]);
         map.keyframe_mut(ids[1]).tree.is_astray = true;
         let config = LoopConfig::default();
@@ -150,7 +152,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_is_said_of_what_is_not_tied() {
+    fn without_a_path_there_is_no_drift() {
         let (map, ids) = line(&[0.0, 1.0]);
         let (nobody, config) = (KeyframeId::from_index(7), LoopConfig::default());
         assert_eq!(UncertaintyPaths::from(&map, ids[0], &config).to(nobody), None);

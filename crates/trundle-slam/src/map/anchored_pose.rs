@@ -1,3 +1,5 @@
+//! The pose of a frame relative to a keyframe.
+
 use crate::ids::KeyframeId;
 use crate::map::landmark_map::LandmarkMap;
 use trundle_core::{Pose3, Stamp};
@@ -24,7 +26,7 @@ impl AnchoredPose {
         Self { stamp, reference, reference_from_camera }
     }
 
-    /// Where it is by the map as it is now. A reference that was forgotten goes on as its heir holds it.
+    /// The pose by the map as it is now. A removed reference counts as its successor has it.
     pub fn visual_from_camera(&self, map: &LandmarkMap) -> Pose3 {
         let visual_from_reference = self.reference.map(|id| map.visual_from_keyframe(id));
         (visual_from_reference.unwrap_or_default() * self.reference_from_camera).renormalized()

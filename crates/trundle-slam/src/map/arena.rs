@@ -1,17 +1,19 @@
-/// Things found by a number that rises with each one made and is never used twice.
+//! Items found by a number that is never used twice.
+
+/// Items found by a number that rises with each one made and is never used twice.
 ///
-/// What is removed gives its place to the next one made: memory is that of the most things alive at once, and four bytes
-/// for each one ever made.
+/// The slot of a removed item is used again: memory is that of the largest number of items alive at once, and four bytes for
+/// each one ever made.
 #[derive(Debug, Clone)]
 pub(crate) struct Arena<T> {
-    /// Where each thing ever made stands, [`GONE`] once it is removed.
+    /// Where each thing ever made stands, [`REMOVED`] once it is removed.
     places: Vec<u32>,
     things: Vec<Option<T>>,
     free: Vec<u32>,
 }
 
-/// The place of what is removed.
-const GONE: u32 = u32::MAX;
+/// The slot of a removed item.
+const REMOVED: u32 = u32::MAX;
 
 impl<T> Default for Arena<T> {
     fn default() -> Self {
@@ -33,7 +35,7 @@ impl<T> Arena<T> {
 
     /// Takes a thing out; `None` when it is gone already.
     pub fn remove(&mut self, number: usize) -> Option<T> {
-        let place = std::mem::replace(self.places.get_mut(number)?, GONE);
+        let place = std::mem::replace(self.places.get_mut(number)?, REMOVED);
         let thing = self.things.get_mut(place as usize)?.take();
         self.free.push(place);
         thing
@@ -71,7 +73,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn numbers_are_never_used_twice_and_places_are() {
+    fn numbers_are_never_used_twice_and_slots_are() {
         let mut arena = Arena::default();
         let numbers: Vec<usize> = ["a", "b", "c"].into_iter().map(|thing| arena.insert(thing)).collect();
         assert_eq!((arena.remove(numbers[1]), arena.remove(numbers[1])), (Some("b"), None));

@@ -1,13 +1,14 @@
-use crate::ids::KeyframeId;
-use crate::ids::LandmarkId;
+//! Which keyframes see the same landmarks.
+
+use crate::ids::{KeyframeId, LandmarkId};
 use crate::map::landmark_map::LandmarkMap;
 use trundle_core::Pose3;
 
-/// Landmarks that tie two keyframes to one place \[MurArtal17\].
+/// Fewest landmarks that two keyframes share to count as neighbours: 15. Source: \[MurArtal17\].
 pub(crate) const MIN_SHARED_LANDMARKS: usize = 15;
 
 impl LandmarkMap {
-    /// The keyframes that see any of these landmarks, and how many each; most first, then newest first.
+    /// The keyframes that see any of these landmarks, and how many each; the largest number first, then the newest.
     pub fn keyframes_seeing(&self, landmarks: impl Iterator<Item = LandmarkId>) -> Vec<(KeyframeId, usize)> {
         let mut counts = vec![0; self.keyframe_bound()];
         for landmark in landmarks.filter_map(|id| self.landmark(id)) {
@@ -25,31 +26,31 @@ impl LandmarkMap {
         seeing
     }
 
-    /// The other keyframes that share at least `least` landmarks with `keyframe`, most shared first: its neighbours in
-    /// the covisibility graph, read off the observations.
+    /// The other keyframes that share at least `least` landmarks with `keyframe`, the largest number first: its neighbours in
+    /// the covisibility graph.
     pub fn covisible(&self, keyframe: KeyframeId, least: usize) -> Vec<(KeyframeId, usize)> {
         let mut others = self.keyframes_seeing(self.keyframe(keyframe).landmarks.iter().flatten().copied());
         others.retain(|(id, shared)| *id != keyframe && *shared >= least);
         others
     }
 
-    /// The keyframes that a camera at a pose may share landmarks with: those near by that look about the same way, the
-    /// nearest first, and what is covisible with the first of them.
+    /// The keyframes that a camera at a pose may share landmarks with: those near by with a similar direction, the nearest
+    /// first, and the keyframes covisible with the first of them.
     pub fn around(&self, visual_from_camera: Pose3) -> Vec<KeyframeId> {
         let inverse = visual_from_camera.inverse();
         let rank = |id: KeyframeId| {
             let offset = inverse * self.keyframe(id).visual_from_camera;
-            (offset.translation.norm() / REACH + offset.angle() / TURN, id)
+            (offset.translation.norm() / NEAR_KEYFRAME_M + offset.angle() / NEAR_KEYFRAME_RAD, id)
         };
-        let near = self.keyframes_near(visual_from_camera.translation, REACH);
+        let near = self.keyframes_near(visual_from_camera.translation, NEAR_KEYFRAME_M);
         let mut ranked: Vec<(f64, KeyframeId)> =
             near.into_iter().map(rank).filter(|(r, _)| *r <= 2.0).collect();
         ranked.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         let nearest = |most: usize| ranked.iter().take(most).map(|(_, id)| *id);
-        let mut around: Vec<KeyframeId> = nearest(NEAREST).collect();
-        for id in nearest(ASKED) {
+        let mut around: Vec<KeyframeId> = nearest(MAX_NEAR_KEYFRAMES).collect();
+        for id in nearest(EXPANDED_KEYFRAMES) {
             let neighbours = self.covisible(id, MIN_SHARED_LANDMARKS).into_iter().map(|(id, _)| id);
-            around.extend(neighbours.take(NEIGHBOURS));
+            around.extend(neighbours.take(MAX_NEIGHBOURS));
         }
         around.sort_unstable();
         around.dedup();
@@ -57,15 +58,18 @@ impl LandmarkMap {
     }
 }
 
-/// How far away (m) and how much turned (rad) a keyframe may be to show a good part of the same things: most of a room, and a
-/// Kinect's field of view. What is near may be turned by as much again, and the other way round.
-const REACH: f64 = 3.0;
-const TURN: f64 = 1.2;
-/// Keyframes that are looked at because they are near.
-const NEAREST: usize = 20;
-/// Of how many of these the covisible ones are looked at as well, and how many of each, if they share this many landmarks.
-const ASKED: usize = 3;
-const NEIGHBOURS: usize = 15;
+/// Largest distance of a keyframe that may show the same landmarks: 3 m, most of a room. A keyframe that is nearer may be turned by
+/// more, and the other way round. Source: ours.
+const NEAR_KEYFRAME_M: f64 = 3.0;
+/// Largest rotation of a keyframe that may show the same landmarks: 1.2 rad, the field of view of a Kinect. See
+/// [`NEAR_KEYFRAME_M`].
+const NEAR_KEYFRAME_RAD: f64 = 1.2;
+/// Most keyframes that are used because they are near: 20. Source: ours.
+const MAX_NEAR_KEYFRAMES: usize = 20;
+/// Nearest keyframes whose covisible keyframes are used as well: 3. Source: ours.
+const EXPANDED_KEYFRAMES: usize = 3;
+/// Most covisible keyframes of each of them: 15. Source: ours.
+const MAX_NEIGHBOURS: usize = 15;
 
 #[cfg(test)]
 mod tests {
@@ -75,7 +79,7 @@ mod tests {
     use trundle_core::Vector3;
 
     #[test]
-    fn neighbours_come_by_shared_landmarks() {
+    fn neighbours_are_ordered_by_shared_landmarks() {
         let mut map = LandmarkMap::default();
         let k: Vec<_> = (0..4).map(|_| map.add_keyframe(blank_frame(8), Pose3::identity())).collect();
         for (feature, seen_by) in [vec![0, 1], vec![0, 2], vec![0, 2], vec![3]].iter().enumerate() {
@@ -87,7 +91,7 @@ mod tests {
         assert_eq!(map.covisible(k[3], 1), vec![]);
     }
     #[test]
-    fn what_is_around_is_near_and_looks_the_same_way_or_is_tied_to_that() {
+    fn keyframes_around_are_near_with_a_similar_direction_or_covisible_with_these() {
         let mut map = LandmarkMap::default();
         let mut at = |x: f64, turn: f64| {
             map.add_keyframe(blank_frame(20), Pose3::exp(Vector6::new(x, 0.0, 0.0, 0.0, turn, 0.0)))

@@ -1,3 +1,5 @@
+//! The plane in which a camera on wheels moves.
+
 use crate::ids::KeyframeId;
 use crate::map::keyframe::Keyframe;
 use crate::map::landmark_map::LandmarkMap;
@@ -6,13 +8,17 @@ use nalgebra::{Matrix3, Matrix6, UnitQuaternion};
 use trundle_core::{Pose3, Vector3};
 use trundle_optim::PoseConstraint;
 
-/// How far from the plane a camera on wheels may be, m, and how much it may lean against it, rad: a floor may be off by 1 cm over
-/// 4 m and 4 mm over 1 m \[DIN18202, table 3\].
-const SIGMA: (f64, f64) = (0.01, 0.004);
-/// What is farther off than this, m and rad, is on a ramp or on another floor.
-const ELSEWHERE: (f64, f64) = (0.1, 0.1);
-/// Part of the keyframes that must be on the plane for it to be one.
-const MOST: f64 = 0.8;
+/// Standard deviation of a camera's height on wheels: 0.01 m. Source: \[DIN18202, table 3\], 1 cm over 4 m.
+const HEIGHT_SIGMA_M: f64 = 0.01;
+/// Standard deviation of a camera's tilt on wheels: 0.004 rad. Source: \[DIN18202, table 3\], 4 mm over 1 m.
+const TILT_SIGMA_RAD: f64 = 0.004;
+/// Largest distance of a keyframe from the plane: 0.1 m. Beyond it the keyframe is on a ramp or on another floor, and is not
+/// constrained. Source: ours.
+const MAX_OFF_PLANE_M: f64 = 0.1;
+/// Largest tilt of a keyframe against the plane: 0.1 rad. See [`MAX_OFF_PLANE_M`].
+const MAX_TILT_RAD: f64 = 0.1;
+/// Fraction of the keyframes that must be on the plane: 0.8. With fewer there is no plane. Source: ours.
+const MIN_ON_PLANE_RATIO: f64 = 0.8;
 
 /// The plane in which the camera moves, visual frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -34,10 +40,11 @@ impl FloorPlane {
         let heights = map.keyframes().map(|(_, k)| normal.dot(&k.visual_from_camera.translation));
         let plane = Self { axis, normal, height: median(heights)? };
         let on_it = map.keyframes().filter(|(_, k)| plane.has(k)).count();
-        (on_it as f64 >= MOST * normals.len() as f64).then_some(plane)
+        (on_it as f64 >= MIN_ON_PLANE_RATIO * normals.len() as f64).then_some(plane)
     }
 
-    /// Ties the keyframe, which is pose `to`, to where it would be on the plane; pose `world` is the identity. `None` of one that is elsewhere.
+    /// Constrains a keyframe, pose `to`, to its projection onto the plane; pose `world` is the identity. `None` of a keyframe
+    /// off the plane.
     pub fn constraint(
         &self,
         map: &LandmarkMap,
@@ -52,17 +59,17 @@ impl FloorPlane {
         let from_to = Pose3::new(upright * pose.rotation, pose.translation + down);
         let across = self.axis * self.axis.transpose();
         let mut information = Matrix6::zeros();
-        information.fixed_view_mut::<3, 3>(0, 0).copy_from(&(across / SIGMA.0.powi(2)));
+        information.fixed_view_mut::<3, 3>(0, 0).copy_from(&(across / HEIGHT_SIGMA_M.powi(2)));
         information
             .fixed_view_mut::<3, 3>(3, 3)
-            .copy_from(&((Matrix3::identity() - across) / SIGMA.1.powi(2)));
+            .copy_from(&((Matrix3::identity() - across) / TILT_SIGMA_RAD.powi(2)));
         Some(PoseConstraint { from: world, to, from_to, information })
     }
 
     fn has(&self, keyframe: &Keyframe) -> bool {
         let pose = keyframe.visual_from_camera;
         let off = self.normal.dot(&pose.translation) - self.height;
-        off.abs() <= ELSEWHERE.0 && pose.rotate(self.axis).angle(&self.normal) <= ELSEWHERE.1
+        off.abs() <= MAX_OFF_PLANE_M && pose.rotate(self.axis).angle(&self.normal) <= MAX_TILT_RAD
     }
 }
 
@@ -84,7 +91,7 @@ mod tests {
     }
 
     #[test]
-    fn a_keyframe_is_tied_to_the_plane_of_most_but_not_one_elsewhere() {
+    fn keyframes_are_constrained_to_the_common_plane_unless_they_are_off_it() {
         let mut map = LandmarkMap::default();
         let bent = Pose3::exp(Vector6::new(0.01, -0.02, 0.02, 0.01, 0.02, 0.01));
         let ids: Vec<KeyframeId> = (0..10)

@@ -14,13 +14,12 @@ pub(crate) struct Keyframe {
     pub visual_from_camera: Pose3,
     /// Of that pose as a right perturbation, against the first keyframe.
     pub covariance: Matrix6<f64>,
-    /// The part of it that is not the keyframe's own but that of the points it sees, as of one body: what a frame located
-    /// by these points inherits.
+    /// The part of the covariance that the points it sees share, as of one body: a frame located by these points inherits it.
     pub map_covariance: Matrix6<f64>,
     /// Which landmark each feature is of.
     pub landmarks: Vec<Option<LandmarkId>>,
     /// Where it stands in the spanning tree.
     pub(crate) tree: TreeNode,
-    /// The way to it from the keyframe before, where wheels knew it.
+    /// Odometry to it from the keyframe before, if it was measured.
     pub odometry: Option<OdometryFactor>,
 }

@@ -1,11 +1,13 @@
+//! Keyframes by position.
+
 use crate::ids::KeyframeId;
 use std::collections::BTreeMap;
 use trundle_core::Vector3;
 
-/// Side of a cell, m: as far as the keyframes of one place are apart.
-const CELL: f64 = 1.0;
+/// Side of a cell: 1 m, the extent of the keyframes of one place. Source: ours.
+const CELL_M: f64 = 1.0;
 
-/// Which keyframes are where: those near a point without a look at all the others.
+/// Keyframes by position: those near a point are found without checking all others.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct KeyframeGrid {
     cells: BTreeMap<[i32; 3], Vec<KeyframeId>>,
@@ -44,7 +46,7 @@ impl KeyframeGrid {
 
 fn cell(position: Vector3) -> [i32; 3] {
     // The cast saturates.
-    std::array::from_fn(|i| (position[i] / CELL).floor() as i32)
+    std::array::from_fn(|i| (position[i] / CELL_M).floor() as i32)
 }
 
 #[cfg(test)]
@@ -54,7 +56,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn nobody_near_is_missed(
+        fn every_near_keyframe_is_found(
             places in prop::collection::vec(prop::array::uniform3(-4.0..4.0), 1..30),
             at in prop::array::uniform3(-4.0..4.0), reach in 0.0..2.5, gone in 0..30usize,
         ) {
@@ -69,7 +71,7 @@ mod tests {
             for (i, place) in places.iter().enumerate().filter(|(i, _)| *i != gone) {
                 let off = (place - at).amax();
                 prop_assert!(off > reach || found.contains(&id(i)));
-                prop_assert!(off <= reach + CELL || !found.contains(&id(i)));
+                prop_assert!(off <= reach + CELL_M || !found.contains(&id(i)));
             }
         }
     }

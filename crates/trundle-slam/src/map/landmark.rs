@@ -1,3 +1,5 @@
+//! A point of the world that keyframes have seen.
+
 use crate::frame::observation_model::ObservationModel;
 use crate::ids::KeyframeId;
 use crate::map::arena::Arena;
@@ -6,8 +8,8 @@ use crate::map::reference_patch::ReferencePatch;
 use trundle_core::{Pose3, Vector3};
 use trundle_vision::Descriptor;
 
-/// Of how many of the newest observations the descriptor is chosen.
-const DESCRIPTORS: usize = 12;
+/// Newest observations from which a landmark's descriptor is chosen: 12. Source: ours.
+const MAX_DESCRIPTORS: usize = 12;
 
 /// A point of the world that keyframes have seen.
 #[derive(Debug, Clone, PartialEq)]
@@ -22,7 +24,7 @@ pub(crate) struct Landmark {
     pub distance_at_octave_0: f64,
     /// Keyframe and feature, in the order of observing.
     pub observations: Vec<(KeyframeId, usize)>,
-    /// What it looks like from here and there, the oldest first.
+    /// How it looks from several directions, the oldest first.
     pub reference_patches: Vec<ReferencePatch>,
     /// In how many frames it should have been seen.
     pub visible: u32,
@@ -49,7 +51,7 @@ impl Landmark {
         self.observations.iter().find(|(k, _)| *k == keyframe).map(|(_, feature)| *feature)
     }
 
-    /// Moves it, and all that is known of how it looks, with what is around it.
+    /// Moves it with its direction and its reference patches.
     pub fn transform(&mut self, new_from_old: &Pose3) {
         self.position = new_from_old.transform(self.position);
         self.toward_camera = new_from_old.rotate(self.toward_camera);
@@ -67,7 +69,7 @@ impl Landmark {
         let keyframe = |id: &KeyframeId| {
             keyframes.get(id.index()).expect("invariant: keyframes that see a landmark are alive")
         };
-        let newest = &self.observations[self.observations.len().saturating_sub(DESCRIPTORS)..];
+        let newest = &self.observations[self.observations.len().saturating_sub(MAX_DESCRIPTORS)..];
         let descriptors: Vec<&Descriptor> =
             newest.iter().map(|(k, f)| keyframe(k).frame.descriptor(*f)).collect();
         let apart = |d: &&&Descriptor| descriptors.iter().map(|o| d.distance(o)).sum::<u32>();

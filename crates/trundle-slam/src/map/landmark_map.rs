@@ -1,7 +1,8 @@
+//! Keyframes and landmarks, and which keyframe sees which landmark.
+
 use crate::frame::observation_model::ObservationModel;
 use crate::frame::rgbd_frame::Frame;
-use crate::ids::KeyframeId;
-use crate::ids::LandmarkId;
+use crate::ids::{KeyframeId, LandmarkId};
 use crate::map::arena::Arena;
 use crate::map::keyframe::Keyframe;
 use crate::map::keyframe_grid::KeyframeGrid;
@@ -21,17 +22,17 @@ pub(crate) struct LandmarkMap {
     pub(crate) grid: KeyframeGrid,
     /// The axis about which a camera on a floor turns, camera frame.
     pub(crate) floor: Option<Vector3>,
-    /// Where forgotten keyframes stand to the one that took them over, by id.
+    /// Removed keyframes: the one that took each over, and the pose in it, by id.
     pub(crate) removed: std::collections::BTreeMap<KeyframeId, (KeyframeId, Pose3)>,
 }
 
 impl LandmarkMap {
-    /// The keyframe, which must not have been forgotten.
+    /// The keyframe, which must not have been removed.
     pub fn keyframe(&self, id: KeyframeId) -> &Keyframe {
         self.keyframes.get(id.index()).expect("invariant: the keyframe is alive")
     }
 
-    /// The keyframe, unless it was forgotten.
+    /// The keyframe, unless it was removed.
     pub fn live_keyframe(&self, id: KeyframeId) -> Option<&Keyframe> {
         self.keyframes.get(id.index())
     }
@@ -66,7 +67,7 @@ impl LandmarkMap {
         self.keyframe_ids().next_back()
     }
 
-    /// The landmark, unless it was forgotten.
+    /// The landmark, unless it was removed.
     pub fn landmark(&self, id: LandmarkId) -> Option<&Landmark> {
         self.landmarks.get(id.index())
     }
@@ -113,12 +114,12 @@ impl LandmarkMap {
         self.keyframe_mut(id).visual_from_camera = visual_from_camera;
     }
 
-    /// Says how uncertain a keyframe's pose is, and with it all that it sees.
+    /// Sets the covariance of a keyframe's pose and of the points it sees alike.
     pub fn set_covariance(&mut self, id: KeyframeId, covariance: Matrix6<f64>) {
         self.set_covariances(id, covariance, covariance);
     }
 
-    /// Says how uncertain a keyframe's pose is, and what it sees.
+    /// Sets the covariance of a keyframe's pose, and of the points it sees.
     pub fn set_covariances(
         &mut self,
         id: KeyframeId,
@@ -133,7 +134,7 @@ impl LandmarkMap {
         self.keyframes.get_mut(id.index()).expect("invariant: the keyframe is alive")
     }
 
-    /// A new landmark at `position` (visual frame, m), seen by nobody yet.
+    /// A new landmark at `position` (visual frame, m), without observations.
     pub fn add_landmark(&mut self, position: Vector3) -> LandmarkId {
         LandmarkId::from_index(self.landmarks.insert(Landmark::new(position)))
     }
@@ -152,7 +153,7 @@ impl LandmarkMap {
         true
     }
 
-    /// Takes an observation back; a landmark that nobody sees any more is forgotten.
+    /// Removes an observation; a landmark without observations is removed.
     pub fn unobserve(&mut self, landmark: LandmarkId, keyframe: KeyframeId) {
         let Some(seen) = self.landmarks.get_mut(landmark.index()) else { return };
         let Some(at) = seen.observations.iter().position(|(k, _)| *k == keyframe) else { return };
@@ -171,7 +172,7 @@ impl LandmarkMap {
         }
     }
 
-    /// Moves landmarks, `new_from_old` in the visual frame, and what is known of how they look.
+    /// Moves landmarks with their reference patches, `new_from_old` in the visual frame.
     pub fn transform_landmarks(&mut self, moves: Vec<(LandmarkId, Pose3)>) {
         for (id, new_from_old) in moves {
             if let Some(landmark) = self.landmark_mut(id) {

@@ -1,3 +1,5 @@
+//! How a landmark looks from somewhere.
+
 use crate::frame::aligned_feature::raw;
 use crate::frame::observation_model::ObservationModel;
 use crate::frame::rgbd_frame::Frame;
@@ -5,16 +7,16 @@ use nalgebra::{Matrix2, UnitQuaternion};
 use trundle_core::{Pose3, Vector2, Vector3};
 use trundle_vision::{ImagePatch, Template};
 
-/// The cosine of the steepest angle between the directions from which a patch was seen and is looked for: 37 deg. What is around
-/// a point is not quite a plane.
-const MIN_COSINE: f64 = 0.8;
-/// By how much a patch may be magnified: the root mean square of its sides.
-const MOST_MAGNIFIED: f64 = 1.8;
+/// Smallest cosine of the angle between the directions from which a patch was seen and is searched: 0.8 (37 deg). Beyond it the
+/// surroundings of a point are not a plane. Source: ours.
+const MIN_DIRECTION_COSINE: f64 = 0.8;
+/// Largest magnification of a patch, as root mean square of its sides: 1.8. Beyond it the patch is too coarse. Source: ours.
+const MAX_MAGNIFICATION: f64 = 1.8;
 
-/// From how many sides at most a landmark's look is kept.
+/// Most reference patches of a landmark: 4, each from another direction or distance. Source: ours.
 pub(crate) const MAX_REFERENCE_PATCHES: usize = 4;
 
-/// How a landmark looks from somewhere: what is around it, on the plane that the depth camera saw there.
+/// The image around a landmark, on the plane that the depth camera measured there.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct ReferencePatch {
     pub image: ImagePatch,
@@ -54,7 +56,8 @@ impl ReferencePatch {
         })
     }
 
-    /// What a camera should see of it on an octave, of the landmark at `position`; `None` from where it looks too different.
+    /// What a camera should see of it on an octave, for the landmark at `position`; `None` from too different a direction or
+    /// distance.
     pub fn seen_from(
         &self,
         camera_from_visual: &Pose3,
@@ -63,7 +66,7 @@ impl ReferencePatch {
         model: &ObservationModel,
     ) -> Option<Template> {
         let ray = camera_from_visual.inverse().translation - position;
-        if ray.dot(&self.toward_camera) < MIN_COSINE * ray.norm() {
+        if ray.dot(&self.toward_camera) < MIN_DIRECTION_COSINE * ray.norm() {
             return None;
         }
         let at = |point: Vector3| {
@@ -72,11 +75,11 @@ impl ReferencePatch {
         };
         let step = |tangent: Vector3| Some((at(position + tangent)? - at(position - tangent)?) / 2.0);
         let warp = Matrix2::from_columns(&[step(self.right)?, step(self.down)?]);
-        let is_near = warp.norm_squared() <= 2.0 * MOST_MAGNIFIED * MOST_MAGNIFIED;
+        let is_near = warp.norm_squared() <= 2.0 * MAX_MAGNIFICATION * MAX_MAGNIFICATION;
         Template::new(&self.image, is_near.then_some(warp)?.cast())
     }
 
-    /// The same once the landmark has turned with the map.
+    /// Turns it with the map.
     pub fn turn(&mut self, rotation: UnitQuaternion<f64>) {
         for direction in [&mut self.right, &mut self.down, &mut self.toward_camera] {
             *direction = rotation * *direction;
@@ -106,9 +109,7 @@ impl Plane {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::testing::model;
-    use crate::testing::painted_frame;
-    use crate::testing::painted_points;
+    use crate::testing::{model, painted_frame, painted_points};
     use nalgebra::Vector6;
 
     fn look_of_the_first() -> ReferencePatch {
@@ -117,7 +118,7 @@ mod tests {
         ReferencePatch::of(&frame, 0, (Pose3::identity(), points[0]), &model()).unwrap()
     }
 
-    /// How far off the first point is found from a camera there, px; `None` where it looks too different.
+    /// Error of the first point as found from a camera there, px; `None` where the patch is not usable.
     fn off_from(look: &ReferencePatch, visual_from_camera: Pose3) -> Option<f32> {
         let point = painted_points()[0];
         let template = look.seen_from(&visual_from_camera.inverse(), point, 0, &model())?;
@@ -127,7 +128,7 @@ mod tests {
     }
 
     #[test]
-    fn a_point_is_found_from_nearer_and_aside() {
+    fn a_patch_is_found_from_nearer_and_from_the_side() {
         let look = look_of_the_first();
         for motion in [
             Vector6::zeros(),
@@ -141,7 +142,7 @@ mod tests {
     }
 
     #[test]
-    fn from_far_aside_or_much_nearer_it_may_look_different() {
+    fn a_patch_is_not_used_from_far_aside_or_much_nearer() {
         let look = look_of_the_first();
         assert_eq!(off_from(&look, Pose3::exp(Vector6::new(0.0, 0.0, 1.2, 0.0, 0.0, 0.0))), None);
         let aside =
@@ -150,7 +151,7 @@ mod tests {
     }
 
     #[test]
-    fn it_turns_with_the_map() {
+    fn a_patch_turns_with_the_map() {
         let (mut look, point) = (look_of_the_first(), painted_points()[0]);
         let new_from_old = Pose3::exp(Vector6::new(1.0, 2.0, 3.0, 0.3, 2.0, -1.0));
         look.turn(new_from_old.rotation);

@@ -1,3 +1,5 @@
+//! The spanning tree over the keyframes of a map, and the loops.
+
 use crate::ids::KeyframeId;
 use crate::map::keyframe::Keyframe;
 use crate::map::landmark_map::LandmarkMap;
@@ -5,7 +7,7 @@ use crate::map::odometry_factor::OdometryFactor;
 use trundle_core::Pose3;
 
 impl LandmarkMap {
-    /// Hangs a new keyframe into the tree, once it is known what it sees: under the keyframe that sees most of it, or the
+    /// Adds a new keyframe to the tree, once its observations are known: under the keyframe that shares most landmarks, or the
     /// one before it.
     pub fn add_to_spanning_tree(&mut self, id: KeyframeId) {
         let before = || self.keyframe_ids().take_while(|other| *other < id).last();
@@ -16,7 +18,7 @@ impl LandmarkMap {
         }
     }
 
-    /// Records that two keyframes close a loop: neither is forgotten from now on.
+    /// Records that two keyframes close a loop: neither is removed from then on.
     pub fn add_loop_edge(&mut self, a: KeyframeId, b: KeyframeId) {
         self.keyframe_mut(a).tree.loops.push(b);
         self.keyframe_mut(b).tree.loops.push(a);
@@ -31,8 +33,8 @@ impl LandmarkMap {
         self.keyframes().flat_map(older)
     }
 
-    /// Removes a keyframe and all that it saw. Its children go to its parent, and so do the frames that were kept relative
-    /// to it. The root stays: whether it was removed.
+    /// Removes a keyframe and all its observations. Its children, and the frames that were kept relative to it, go to its
+    /// parent. The root stays: whether it was removed.
     pub fn remove_keyframe(&mut self, id: KeyframeId) -> bool {
         let Some(parent) = self.live_keyframe(id).and_then(|k| k.tree.parent) else { return false };
         let seen: Vec<_> = self.keyframe(id).landmarks.iter().flatten().copied().collect();
@@ -59,7 +61,7 @@ impl LandmarkMap {
         true
     }
 
-    /// The way on from a forgotten keyframe goes on from the one before it.
+    /// Joins the odometry to and from a removed keyframe.
     fn join_odometry_over(&mut self, gone: KeyframeId, before: Option<OdometryFactor>) {
         let next = |(id, keyframe): (KeyframeId, &Keyframe)| {
             Some((id, keyframe.odometry.filter(|r| r.from == gone)?))
@@ -70,13 +72,13 @@ impl LandmarkMap {
         }
     }
 
-    /// Where a keyframe is, or would be now if it had not been forgotten.
+    /// Pose of a keyframe, or the pose it would have now if it had not been removed.
     pub fn visual_from_keyframe(&self, id: KeyframeId) -> Pose3 {
         let (successor, successor_from_keyframe) = self.resolve(id);
         self.keyframe(successor).visual_from_camera * successor_from_keyframe
     }
 
-    /// The keyframe itself, or the one that took a forgotten one over; and where it stands to that.
+    /// The keyframe itself, or the one that took a removed one over; and its pose in that.
     pub fn resolve(&self, id: KeyframeId) -> (KeyframeId, Pose3) {
         self.removed.get(&id).copied().unwrap_or((id, Pose3::identity()))
     }
@@ -118,7 +120,7 @@ mod tests {
     }
 
     #[test]
-    fn a_forgotten_keyframe_leaves_children_and_frames_to_its_parent() {
+    fn a_removed_keyframe_leaves_children_and_frames_to_its_parent() {
         let (mut map, k) = chain();
         assert_eq!(map.keyframe(k[3]).tree.parent, Some(k[2]));
         assert!(map.remove_keyframe(k[2]) && map.remove_keyframe(k[1]));

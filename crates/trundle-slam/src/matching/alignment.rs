@@ -147,10 +147,7 @@ mod tests {
     use super::*;
     use crate::local_mapping::reference_patch_storage::store_reference_patches;
     use crate::matching::matched_pose::PosePriorKind;
-    use crate::testing::model;
-    use crate::testing::painted_frame;
-    use crate::testing::painted_map;
-    use crate::testing::painted_points;
+    use crate::testing::{model, painted_frame, painted_map, painted_points};
     use nalgebra::Vector6;
     use trundle_optim::PoseConfig;
 

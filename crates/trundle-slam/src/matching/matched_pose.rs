@@ -87,14 +87,11 @@ fn inflated(seen: PointObservation, factor: f64) -> PointObservation {
 mod tests {
     use super::*;
     use crate::frame::aligned_feature::Aligned;
-    use crate::testing::model;
-    use crate::testing::painted_frame;
-    use crate::testing::painted_map;
-    use crate::testing::painted_points;
+    use crate::testing::{model, painted_frame, painted_map, painted_points};
     use trundle_core::Vector2;
 
     #[test]
-    fn the_spread_is_what_is_left_of_aligned_features_in_what_they_say() {
+    fn the_spread_is_the_scale_of_the_aligned_residuals() {
         let (model, (map, _)) = (model(), painted_map());
         let frame = painted_frame(Pose3::identity(), &painted_points(), Vector2::zeros());
         let aligned = |i: usize| {

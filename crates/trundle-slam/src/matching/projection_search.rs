@@ -1,29 +1,31 @@
+//! Searches projected points among the features of a frame.
+
 use crate::frame::observation_model::ObservationModel;
 use crate::frame::rgbd_frame::Frame;
 use crate::map::landmark::Landmark;
 use trundle_core::{Pose3, Vector2, Vector3};
 use trundle_vision::Descriptor;
 
-/// A point that should be seen, and where to look for it.
+/// A point that should be seen, and where to search it.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Projection {
     /// Where it should be, rectified px.
     pub pixel: Vector2,
     /// Its depth along the optical axis, m.
     pub depth: f64,
-    /// How far around to look, px.
+    /// Radius of the search window, px.
     pub radius: f64,
-    /// Lowest and highest octave to look on.
+    /// Lowest and highest octave to search.
     pub octaves: (u8, u8),
-    /// What it looks like.
+    /// Descriptor of the point.
     pub descriptor: Descriptor,
-    /// Whether there a feature can be found at all.
+    /// Whether a feature can be found there at all.
     pub is_findable: bool,
 }
 
 impl Projection {
-    /// Where a camera sees a landmark, looked for within `window` px at octave 0, and the landmark in the camera's frame;
-    /// `None` outside the image.
+    /// The projection of a landmark, with a window of `window` px at octave 0, and the landmark in the camera frame; `None`
+    /// outside the image.
     pub fn of(
         landmark: &Landmark,
         camera_from_visual: Pose3,
@@ -41,7 +43,7 @@ impl Projection {
     }
 }
 
-/// How alike two descriptors must be.
+/// How similar two descriptors must be to match.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct MatchThresholds {
     /// Highest distance, bits.
@@ -50,11 +52,12 @@ pub(crate) struct MatchThresholds {
     pub ratio: f32,
 }
 
-/// Part of the depth by which a match may be off, beyond three standard deviations.
-const DEPTH_TOLERANCE: f64 = 0.2;
+/// Largest relative difference of a feature's depth from its prediction, beyond three standard deviations: 0.2. Beyond it the
+/// feature is not matched. Source: ours.
+const DEPTH_TOLERANCE_RATIO: f64 = 0.2;
 
-/// Finds each projection's feature among the `free` ones of `frame`: (feature, projection), by rising feature. Each feature goes to the
-/// projection that it is most like, the earlier one where two are alike.
+/// Finds each projection's feature among the `free` ones of `frame`: (feature, projection), by rising feature. Each feature is
+/// matched with the most similar projection, of equal ones the earlier.
 pub(crate) fn search(
     frame: &Frame,
     free: &[bool],
@@ -71,7 +74,7 @@ pub(crate) fn search(
     taken.iter().enumerate().filter_map(|(feature, t)| Some((feature, (*t)?.1))).collect()
 }
 
-/// The feature most like the projection within its window, unless a second one is nearly as like.
+/// The most similar feature within the window, unless a second one is nearly as similar.
 fn best(
     frame: &Frame,
     free: &[bool],
@@ -100,7 +103,8 @@ fn best(
 /// Whether the feature's own depth, if it has one, can be that of the projection.
 fn depth_agrees(frame: &Frame, feature: usize, depth: f64) -> bool {
     frame.depths[feature].is_none_or(|seen| {
-        (seen.value - 1.0 / depth).abs() <= DEPTH_TOLERANCE * seen.value.max(1.0 / depth) + 3.0 * seen.sigma
+        (seen.value - 1.0 / depth).abs()
+            <= DEPTH_TOLERANCE_RATIO * seen.value.max(1.0 / depth) + 3.0 * seen.sigma
     })
 }
 
@@ -125,7 +129,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_far_away_taken_or_at_another_depth_or_octave_is_not_found() {
+    fn features_out_of_the_window_taken_or_at_another_depth_or_octave_are_not_found() {
         let frame = frame_with_depth(64);
         let sought = looking_for(&frame, 20, 5.0);
         let mut free = vec![true; 64];
@@ -140,7 +144,7 @@ mod tests {
     }
 
     #[test]
-    fn of_two_projections_the_more_alike_gets_the_feature() {
+    fn of_two_projections_the_more_similar_gets_the_feature() {
         let frame = frame_with_depth(64);
         let mut worse = looking_for(&frame, 20, 5.0);
         worse.descriptor.0[0] ^= 1 << 40;

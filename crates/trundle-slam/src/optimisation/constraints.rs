@@ -1,11 +1,12 @@
+//! Constraints between keyframes that do not come from landmarks: odometry and the floor.
+
 use crate::ids::KeyframeId;
 use crate::map::floor_plane::FloorPlane;
 use crate::map::landmark_map::LandmarkMap;
 use trundle_optim::PoseConstraint;
 
-/// What is known of keyframes besides what they see: the ways between them by the wheels, and the floor. Pose i is keyframe
-/// `ids[i]` (by rising id), the pose after these is the identity, which floors are tied to. What ties only fixed ones is left
-/// out.
+/// Constraints of keyframes by odometry and by the floor. Pose i is keyframe `ids[i]` (by rising id); the pose after these is
+/// the identity, to which floors are constrained. Constraints between fixed keyframes are left out.
 pub(crate) fn odometry_and_floor_constraints(
     map: &LandmarkMap,
     ids: &[KeyframeId],

@@ -1,6 +1,7 @@
+//! Bundle adjustment of the whole map.
+
 use crate::frame::observation_model::ObservationModel;
-use crate::ids::KeyframeId;
-use crate::ids::LandmarkId;
+use crate::ids::{KeyframeId, LandmarkId};
 use crate::map::landmark_map::LandmarkMap;
 use crate::motion::uncertain_pose::carried;
 use crate::optimisation::map_bundle::MapBundle;
@@ -8,10 +9,11 @@ use std::collections::BTreeMap;
 use trundle_core::Pose3;
 use trundle_optim::{BundleConfig, BundlePose, BundleSolver};
 
-/// Landmarks that two keyframes must share to hold each other in place \[MurArtal17\].
-const SHARED: u16 = 15;
-/// Units of work of taking up one observation.
-const WORK_GATHER: usize = 5;
+/// Fewest landmarks that two keyframes must share to hold each other in place: 15. With fewer, they are of separate parts of the
+/// map. Source: \[MurArtal17\].
+const MIN_SHARED_LANDMARKS: u16 = 15;
+/// Units of work to add one observation to the bundle: 5, measured against the solver's. Source: ours.
+const WORK_PER_OBSERVATION: usize = 5;
 
 /// Bundle adjustment of the whole map, in slices between frames \[MurArtal17, sec. III-D\].
 ///
@@ -26,7 +28,7 @@ pub(crate) struct GlobalBundle {
     next: Option<usize>,
     /// Landmarks that each two keyframes share: of places a < b at b (b - 1) / 2 + a.
     shared: Vec<u16>,
-    /// The place of the keyframe that holds each one's part of the map in place.
+    /// The index of the fixed keyframe of each keyframe's part of the map.
     anchors: Vec<usize>,
 }
 
@@ -57,7 +59,7 @@ impl GlobalBundle {
             if seen > 0 {
                 self.count_shared();
             }
-            left = left.saturating_sub((WORK_GATHER + seen) * seen + 1);
+            left = left.saturating_sub((WORK_PER_OBSERVATION + seen) * seen + 1);
             index += 1;
         }
         self.next = Some(index).filter(|index| *index < bound);
@@ -79,12 +81,15 @@ impl GlobalBundle {
         }
     }
 
-    /// The oldest keyframe holds still, of every part of the map that shares too little with the rest and that no wheels
-    /// tie to it.
+    /// Fixes the oldest keyframe of every part of the map that shares too few landmarks with the rest, and that no odometry
+    /// connects to it.
     fn fix_gauge(&mut self, map: &LandmarkMap) {
         let count = self.bundle.keyframes().count();
         let pairs = (0..count).flat_map(|b| (0..b).map(move |a| (a, b)));
-        let shared = pairs.zip(&self.shared).filter(|(_, count)| **count >= SHARED).map(|(pair, _)| pair);
+        let shared = pairs
+            .zip(&self.shared)
+            .filter(|(_, count)| **count >= MIN_SHARED_LANDMARKS)
+            .map(|(pair, _)| pair);
         let odometry = |(place, (id, _)): (usize, (KeyframeId, BundlePose))| {
             Some((self.bundle.place_of(map.live_keyframe(id)?.odometry?.from)?, place))
         };
@@ -98,7 +103,8 @@ impl GlobalBundle {
         self.bundle.set_parts(parts);
     }
 
-    /// The parts after those have joined that share enough in all, if not from keyframe to keyframe: chance does not reach that.
+    /// Joins the parts that share enough landmarks in all, if not from keyframe to keyframe: chance matches do not reach that
+    /// number.
     fn join_by_total(&self, parts: Vec<usize>) -> Vec<usize> {
         let mut between: BTreeMap<(usize, usize), usize> = BTreeMap::new();
         let pairs = (0..parts.len()).flat_map(|b| (0..b).map(move |a| (a, b)));
@@ -106,7 +112,7 @@ impl GlobalBundle {
             let (a, b) = (parts[a], parts[b]);
             *between.entry((a.min(b), a.max(b))).or_default() += usize::from(*count);
         }
-        let enough = between.into_iter().filter(|(_, count)| *count >= usize::from(SHARED));
+        let enough = between.into_iter().filter(|(_, count)| *count >= usize::from(MIN_SHARED_LANDMARKS));
         join_sets(parts, enough.map(|(pair, _)| pair))
     }
 
@@ -124,7 +130,7 @@ impl GlobalBundle {
         self.set_covariances(map);
     }
 
-    /// The solver that was lent, for its buffers; none before it was.
+    /// The solver that was lent, for its buffers; `None` before it was.
     pub fn into_solver(self) -> Option<BundleSolver> {
         self.next.is_none().then(|| self.bundle.into_solver())
     }
@@ -173,7 +179,8 @@ impl GlobalBundle {
             let Some(keyframe) = map.live_keyframe(*id) else { continue };
             let Some((whole, map_covariance)) = self.bundle.covariances(place) else { continue };
             // What hardly another keyframe sees is where the keyframe saw it.
-            let map_covariance = if seen[place] < usize::from(SHARED) { whole } else { map_covariance };
+            let map_covariance =
+                if seen[place] < usize::from(MIN_SHARED_LANDMARKS) { whole } else { map_covariance };
             let offset = holding.visual_from_camera.inverse() * keyframe.visual_from_camera;
             let held = carried(&holding.covariance, offset);
             map.set_covariances(*id, held + whole * factor, held + map_covariance * factor);
@@ -181,7 +188,7 @@ impl GlobalBundle {
     }
 }
 
-/// Which place stands for each one's set, the lowest of it, after these pairs have joined theirs.
+/// Index of the lowest member of each one's set, after these pairs have joined their sets.
 fn join_sets(mut sets: Vec<usize>, pairs: impl Iterator<Item = (usize, usize)>) -> Vec<usize> {
     let find = |sets: &[usize], mut i: usize| {
         while sets[i] != i {
@@ -201,8 +208,7 @@ mod tests {
     use super::*;
     use crate::frame::rgbd_frame::Frame;
     use crate::map::odometry_factor::OdometryFactor;
-    use crate::motion::uncertain_pose::UncertainPose;
-    use crate::motion::uncertain_pose::of_sigmas;
+    use crate::motion::uncertain_pose::{UncertainPose, of_sigmas};
     use crate::testing::model;
     use nalgebra::{Matrix6, Vector6};
     use trundle_core::{Stamp, Vector3};
@@ -253,7 +259,7 @@ mod tests {
     }
 
     #[test]
-    fn what_comes_meanwhile_goes_along_and_slices_change_nothing() {
+    fn what_is_added_meanwhile_moves_along_and_slices_change_nothing() {
         let run = |work: usize| {
             let (mut map, ids, off) = bent();
             let (model, config) = (model(), BundleConfig { covariances: true, ..BundleConfig::default() });
@@ -290,7 +296,7 @@ mod tests {
         }
     }
 
-    /// Beyond the dark, where only the wheels know the way.
+    /// Behind a stretch without landmarks, where only odometry connects the map.
     #[test]
     fn points_that_one_keyframe_sees_alone_are_as_uncertain_as_the_keyframe() {
         let (mut map, ids, _) = bent();

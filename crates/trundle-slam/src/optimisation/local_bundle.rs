@@ -1,12 +1,13 @@
+//! Bundle adjustment of the keyframes around one.
+
 use crate::frame::observation_model::ObservationModel;
-use crate::ids::KeyframeId;
-use crate::ids::LandmarkId;
+use crate::ids::{KeyframeId, LandmarkId};
 use crate::map::landmark_map::LandmarkMap;
 use crate::optimisation::map_bundle::MapBundle;
 use trundle_core::Pose3;
 use trundle_optim::{BundleConfig, BundleSolver};
 
-/// How much of the map is refined at once.
+/// How many keyframes are adjusted at once.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct BundleSize {
     /// Keyframes that move.
@@ -67,8 +68,8 @@ fn single_view_landmark_moves(map: &LandmarkMap, bundle: &MapBundle) -> Vec<(Lan
     carried
 }
 
-/// From where the wheels came to these keyframes. A group that sees little of what others see is held by its way there: without its
-/// begin, a dozen points turned four keyframes by 2 deg and 0.15 m, until the next bundle turned them back.
+/// First keyframes of these keyframes' odometry. Odometry holds a group that shares few landmarks with others: without it, a
+/// dozen points turned four keyframes by 2 deg and 0.15 m.
 fn odometry_sources<'a>(
     map: &'a LandmarkMap,
     keyframes: &'a [KeyframeId],
@@ -112,11 +113,7 @@ mod tests {
     use super::*;
     use crate::map::odometry_factor::OdometryFactor;
     use crate::map::reference_patch::ReferencePatch;
-    use crate::testing::blank_frame;
-    use crate::testing::model;
-    use crate::testing::painted_frame;
-    use crate::testing::painted_map;
-    use crate::testing::painted_points;
+    use crate::testing::{blank_frame, model, painted_frame, painted_map, painted_points};
     use nalgebra::Vector6;
     use trundle_core::{Vector2, Vector3};
     use trundle_vision::ImagePatch;
@@ -141,14 +138,14 @@ mod tests {
     }
 
     #[test]
-    fn a_group_that_others_hardly_see_is_held_by_the_way_to_it() {
+    fn odometry_holds_a_group_that_shares_few_landmarks() {
         let (map, ids) = row(6);
         let (keyframes, _) = window_around(&map, ids[5], BundleSize { local: 10, fixed: 10 });
         assert_eq!(keyframes, [(ids[5], false), (ids[4], false), (ids[0], true), (ids[3], true)]);
     }
 
     #[test]
-    fn what_one_keyframe_sees_goes_along_once_and_with_its_looks() {
+    fn landmarks_of_one_keyframe_move_along_once_with_their_patches() {
         let (model, points, (mut map, first)) = (model(), painted_points(), painted_map());
         let truth = Pose3::exp(Vector6::new(0.2, 0.0, 0.0, 0.0, -0.1, 0.0));
         let off = Pose3::exp(Vector6::new(0.02, -0.01, 0.01, 0.0, 0.02, 0.01));
@@ -184,7 +181,7 @@ mod tests {
     }
 
     #[test]
-    fn what_holds_already_is_there_once() {
+    fn a_fixed_keyframe_is_in_the_window_once() {
         let (mut map, ids) = row(6);
         map.keyframe_mut(ids[4]).odometry = Some(OdometryFactor::at(ids[0]));
         let (keyframes, _) = window_around(&map, ids[5], BundleSize { local: 10, fixed: 10 });

@@ -1,16 +1,17 @@
+//! A bundle adjustment that is under way while the map goes on changing.
+
 use crate::frame::observation_model::ObservationModel;
-use crate::ids::KeyframeId;
-use crate::ids::LandmarkId;
+use crate::ids::{KeyframeId, LandmarkId};
 use crate::map::landmark_map::LandmarkMap;
 use crate::optimisation::constraints::odometry_and_floor_constraints;
 use nalgebra::Matrix6;
 use trundle_core::{Pose3, Vector3};
 use trundle_optim::{BundleConfig, BundleObservation, BundlePose, BundleProblem, BundleSolver, CHI2_95_2};
 
-/// A bundle adjustment of some keyframes and landmarks, under way while the map goes on changing.
+/// A bundle adjustment of some keyframes and landmarks.
 ///
-/// What comes out counts, also for what something else moved meanwhile: poses and points of one bundle fit each other. What
-/// is not in it goes along by corrections, from where a keyframe is now to where the bundle puts it.
+/// Its result replaces changes made meanwhile, since poses and points of one bundle fit each other. What the bundle does not
+/// have is moved by corrections, from where a keyframe is now to where the bundle puts it.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct MapBundle {
     /// By rising id, where they were when they were taken up, and whether they hold still.
@@ -20,7 +21,7 @@ pub(crate) struct MapBundle {
     observations: Vec<BundleObservation>,
     /// Landmark, keyframe and bound of each observation.
     sources: Vec<(LandmarkId, KeyframeId, f64)>,
-    /// By place; empty where nobody has divided it.
+    /// Part of the map of each keyframe, by index; empty where there is only one.
     parts: Vec<usize>,
     solver: BundleSolver,
     is_done: bool,
@@ -80,7 +81,7 @@ impl MapBundle {
         self.keyframes.iter_mut().enumerate().for_each(|(i, (_, pose))| pose.fixed = is_fixed(i));
     }
 
-    /// Says which keyframes are of one part: a number for each, by place. Parts share so few landmarks that chance may have done it.
+    /// Sets the part of the map of each keyframe, by index. Parts share so few landmarks that those may be chance matches.
     pub fn set_parts(&mut self, parts: Vec<usize>) {
         self.parts = parts;
     }
@@ -121,8 +122,8 @@ impl MapBundle {
         self.is_done
     }
 
-    /// How the bundle moves a keyframe from where it is now, `new_from_old` in the visual frame; `None` of one that it does
-    /// not have, or that is forgotten.
+    /// How the bundle moves a keyframe from where it is now, `new_from_old` in the visual frame; `None` of a keyframe that the
+    /// bundle does not have, or that was removed.
     pub fn correction(&self, map: &LandmarkMap, id: KeyframeId) -> Option<Pose3> {
         let now = map.live_keyframe(id)?.visual_from_camera;
         Some(self.solver.poses()[self.place_of(id)?] * now.inverse())

@@ -4,8 +4,8 @@ use crate::persist::error::MapFileError;
 use trundle_core::{Invalid, Pose3, Vector3};
 use trundle_vision::Descriptor;
 
-/// Farther off than this (m), or worse known (m^2, rad^2), nothing on Earth is.
-const FARTHEST: f64 = 1e9;
+/// Largest coordinate (m) or covariance entry (m^2, rad^2) of a map: 1e9. A larger one is refused as damage. Source: ours.
+const MAX_COORDINATE: f64 = 1e9;
 
 /// Bytes in the making.
 #[derive(Debug, Default)]
@@ -127,7 +127,7 @@ impl<'a> Reader<'a> {
 
     /// A coordinate, or a covariance of coordinates.
     pub fn length(&mut self, name: &str) -> Read<f64> {
-        self.f64_in(name, -FARTHEST, FARTHEST)
+        self.f64_in(name, -MAX_COORDINATE, MAX_COORDINATE)
     }
 
     pub fn vector(&mut self, name: &str) -> Read<Vector3> {

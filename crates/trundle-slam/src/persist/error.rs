@@ -1,3 +1,5 @@
+//! Why a saved map cannot be loaded.
+
 use trundle_core::Invalid;
 
 /// Why a saved map was not loaded.
@@ -14,7 +16,7 @@ pub enum MapFileError {
         /// Of this program.
         expected: u8,
     },
-    /// A bit was lost or turned on the way.
+    /// A bit was lost or changed.
     #[error("the map is damaged: its checksum is wrong")]
     Checksum,
     /// The bytes end too early.

@@ -8,12 +8,13 @@ use trundle_core::Stamp;
 use trundle_optim::InverseDepth;
 use trundle_vision::{Features, Keypoint};
 
-/// The least bytes of a feature.
-const LEAST: usize = 17 + 4 + 32 + 1;
+/// Fewest bytes of a feature.
+const MIN_FEATURE_BYTES: usize = 17 + 4 + 32 + 1;
 
-/// No keypoint is better or worse placed, px.
-const LEAST_SIGMA: f32 = 1e-6;
-const MOST_SIGMA: f32 = 1e6;
+/// Smallest standard deviation of a keypoint: 1e-6 px. A smaller one is refused as damage. Source: ours.
+const MIN_KEYPOINT_SIGMA_PX: f32 = 1e-6;
+/// Largest standard deviation of a keypoint: 1e6 px. A larger one is refused as damage. Source: ours.
+const MAX_KEYPOINT_SIGMA_PX: f32 = 1e6;
 
 pub(crate) fn write(out: &mut Writer, frame: &Frame) {
     out.u64(frame.stamp.nanos.cast_unsigned());
@@ -31,9 +32,13 @@ pub(crate) fn write(out: &mut Writer, frame: &Frame) {
 pub(crate) fn read(bytes: &mut Reader, model: &ObservationModel) -> Result<Frame, MapFileError> {
     let stamp = Stamp::from_nanos(bytes.u64()?.cast_signed());
     let (mut features, mut depths, mut pixel_sigmas) = (Features::default(), Vec::new(), Vec::new());
-    for _ in 0..bytes.count(LEAST)? {
+    for _ in 0..bytes.count(MIN_FEATURE_BYTES)? {
         features.keypoints.push(read_keypoint(bytes, model)?);
-        pixel_sigmas.push(bytes.f32_in("sigma of a keypoint", LEAST_SIGMA, MOST_SIGMA)?);
+        pixel_sigmas.push(bytes.f32_in(
+            "sigma of a keypoint",
+            MIN_KEYPOINT_SIGMA_PX,
+            MAX_KEYPOINT_SIGMA_PX,
+        )?);
         features.descriptors.push(bytes.descriptor()?);
         depths.push(read_depth(bytes)?);
     }

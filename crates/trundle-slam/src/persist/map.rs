@@ -1,8 +1,7 @@
 //! One landmark map as bytes. Keyframes and landmarks are numbered anew, without gaps, in the order of their making.
 
 use crate::frame::observation_model::ObservationModel;
-use crate::ids::KeyframeId;
-use crate::ids::LandmarkId;
+use crate::ids::{KeyframeId, LandmarkId};
 use crate::map::keyframe::Keyframe;
 use crate::map::landmark::Landmark;
 use crate::map::landmark_map::LandmarkMap;
@@ -14,8 +13,12 @@ use crate::persist::{frame, reference_patch};
 use nalgebra::Matrix6;
 use std::collections::BTreeMap;
 
-/// The least bytes of a keyframe, a landmark and an observation.
-const LEAST: (usize, usize, usize) = (8 + 4 + 7 * 8 + 72 * 8 + 1, 24 + 32 + 24 + 8 + 4 * 3 + 8 + 1, 8);
+/// Fewest bytes of a keyframe: a count beyond the rest of the bytes is refused before memory is reserved.
+const MIN_KEYFRAME_BYTES: usize = 8 + 4 + 7 * 8 + 72 * 8 + 1;
+/// Fewest bytes of a landmark.
+const MIN_LANDMARK_BYTES: usize = 24 + 32 + 24 + 8 + 4 * 3 + 8 + 1;
+/// Bytes of an observation.
+const OBSERVATION_BYTES: usize = 8;
 
 pub(crate) fn write(out: &mut Writer, map: &LandmarkMap) {
     let numbers: BTreeMap<KeyframeId, usize> = map.keyframes().map(|(id, _)| id).zip(0..).collect();
@@ -40,7 +43,7 @@ pub(crate) fn write(out: &mut Writer, map: &LandmarkMap) {
 pub(crate) fn read(bytes: &mut Reader, model: &ObservationModel) -> Result<LandmarkMap, MapFileError> {
     let mut map = LandmarkMap::default();
     bytes.within = "keyframes";
-    let count = bytes.count(LEAST.0)?;
+    let count = bytes.count(MIN_KEYFRAME_BYTES)?;
     bytes.require(count > 0, "keyframes of a map", count, || "1 or more".to_owned())?;
     let mut ids = Vec::new();
     for _ in 0..count {
@@ -48,7 +51,7 @@ pub(crate) fn read(bytes: &mut Reader, model: &ObservationModel) -> Result<Landm
     }
     map.floor = bytes.mark("mark of a floor")?.then(|| bytes.direction("axis of the floor")).transpose()?;
     bytes.within = "landmarks";
-    for _ in 0..bytes.count(LEAST.1)? {
+    for _ in 0..bytes.count(MIN_LANDMARK_BYTES)? {
         read_landmark(bytes, &mut map, &ids)?;
     }
     ids.iter().for_each(|id| map.add_to_spanning_tree(*id));
@@ -107,15 +110,17 @@ fn read_covariance(bytes: &mut Reader, name: &str) -> Result<Matrix6<f64>, MapFi
     }
     let least = ((covariance + covariance.transpose()) / 2.0).symmetric_eigenvalues().min();
     let size = covariance.amax();
-    let is_one = (covariance - covariance.transpose()).amax() <= ROUNDING * size && least >= -ROUNDING * size;
+    let is_one = (covariance - covariance.transpose()).amax() <= MAX_ASYMMETRY * size
+        && least >= -MAX_ASYMMETRY * size;
     bytes.require(is_one, name, format!("eigenvalue {least:e}"), || {
         "symmetric, eigenvalues of 0 or more".to_owned()
     })?;
     Ok(covariance)
 }
 
-/// What sums of products leave of symmetry and sign, of the largest entry.
-const ROUNDING: f64 = 1e-9;
+/// Largest asymmetry and most negative eigenvalue of a covariance, as a fraction of its largest entry: 1e-9, the rounding of sums
+/// of products.
+const MAX_ASYMMETRY: f64 = 1e-9;
 
 fn write_landmark(out: &mut Writer, landmark: &Landmark, number: impl Fn(KeyframeId) -> usize) {
     out.f64s(landmark.position.iter().copied());
@@ -138,7 +143,7 @@ fn read_landmark(bytes: &mut Reader, map: &mut LandmarkMap, ids: &[KeyframeId]) 
     let toward_camera = bytes.vector("direction of a landmark")?;
     let distance_at_octave_0 = bytes.f64_in("distance of a landmark at octave 0", 0.0, 1e9)?;
     let (visible, found) = (bytes.u32()?, bytes.u32()?);
-    let observations = bytes.count(LEAST.2)?;
+    let observations = bytes.count(OBSERVATION_BYTES)?;
     bytes.require(observations > 0, "observations of a landmark", 0, || "1 or more".to_owned())?;
     for _ in 0..observations {
         read_observation(bytes, map, ids, id)?;
@@ -177,8 +182,7 @@ fn read_observation(
 mod tests {
     use super::*;
     use crate::motion::motion_model::MotionConfig;
-    use crate::testing::blank_frame;
-    use crate::testing::model;
+    use crate::testing::{blank_frame, model};
     use nalgebra::Vector6;
     use trundle_core::{Pose3, Vector3};
 

@@ -9,10 +9,12 @@ use crate::persist::error::MapFileError;
 use crate::persist::{map, settings};
 use trundle_core::PinholeCamera;
 
+/// First bytes of a map file.
 const MAGIC: &[u8; 7] = b"trundlM";
+/// Version of the format.
 const VERSION: u8 = 3;
-/// Bytes before those that the checksum is of.
-const HEAD: usize = 16;
+/// Bytes before those that the checksum covers.
+const HEAD_BYTES: usize = 16;
 
 /// Maps with their numbers, by rising number, and what they were made with.
 pub(crate) fn save<'a>(
@@ -31,8 +33,8 @@ pub(crate) fn save<'a>(
         map::write(&mut out, map);
     }
     let mut bytes = out.0;
-    let sum = checksum(&bytes[HEAD..]);
-    bytes[HEAD - 8..HEAD].copy_from_slice(&sum.to_le_bytes());
+    let sum = checksum(&bytes[HEAD_BYTES..]);
+    bytes[HEAD_BYTES - 8..HEAD_BYTES].copy_from_slice(&sum.to_le_bytes());
     bytes
 }
 
@@ -69,7 +71,7 @@ fn checked_body(bytes: &[u8]) -> Result<Reader<'_>, MapFileError> {
         return Err(MapFileError::Version { found, expected: VERSION });
     }
     let sum = head.u64()?;
-    let body = &bytes[HEAD..];
+    let body = &bytes[HEAD_BYTES..];
     if checksum(body) != sum {
         return Err(MapFileError::Checksum);
     }

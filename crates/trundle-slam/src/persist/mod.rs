@@ -1,4 +1,4 @@
-//! Maps that last: saved as bytes, loaded with every number checked.
+//! Maps on disk: saved as bytes, loaded with every number checked.
 //!
 //! | bytes | |
 //! |---|---|
@@ -6,9 +6,9 @@
 //! | 1 | version |
 //! | 8 | checksum of the rest (FNV-1a by words of 8 bytes) |
 //! | 18 x 8 | camera and ORB settings, f64 |
-//! | 4, then each | number of maps; a map: its number, keyframes with the ways between them by the wheels, the axis of the floor, landmarks with their observations and looks, loops |
+//! | 4, then each | number of maps; a map: its number, keyframes with the odometry between them, the axis of the floor, landmarks with their observations and reference patches, loops |
 //!
-//! All little endian. What follows from the rest is not saved: rectified pixels, words, spanning tree. The trajectory is
+//! All little endian. What follows from the rest is not saved: rectified pixels, bags of words, spanning tree. The trajectory is
 //! no part of a map.
 
 pub(crate) mod bytes;

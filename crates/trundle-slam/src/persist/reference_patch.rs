@@ -1,7 +1,6 @@
 //! What a landmark looks like, as bytes.
 
-use crate::map::reference_patch::MAX_REFERENCE_PATCHES;
-use crate::map::reference_patch::ReferencePatch;
+use crate::map::reference_patch::{MAX_REFERENCE_PATCHES, ReferencePatch};
 use crate::persist::bytes::{Reader, Writer};
 use crate::persist::error::MapFileError;
 use trundle_vision::ImagePatch;

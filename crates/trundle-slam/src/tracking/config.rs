@@ -1,11 +1,8 @@
 //! Settings of visual tracking.
 
 use crate::matching::projection_search::MatchThresholds;
-use serde::Deserialize;
-use serde::Serialize;
-use trundle_core::Invalid;
-use trundle_core::require_in;
-use trundle_core::require_positive;
+use serde::{Deserialize, Serialize};
+use trundle_core::{Invalid, require_in, require_positive};
 use trundle_optim::PoseConfig;
 
 /// How the pose of a frame is found.
@@ -14,7 +11,7 @@ use trundle_optim::PoseConfig;
 pub struct TrackingConfig {
     /// Standard deviation of a keypoint of the finest octave, px, 0.01 to 100. Default 1 \[MurArtal17\].
     pub pixel_sigma: f64,
-    /// How far around its prediction a point of the last frame is looked for, px of its octave, above 0; twice as far at
+    /// Radius of the search for a point of the last frame around its prediction, px of its octave, above 0; twice as large at
     /// the second try. Default 15 \[MurArtal17\].
     pub motion_window_px: f64,
     /// The same for a landmark of the map, once the pose is known from the last frame. Default 6: three standard
@@ -28,25 +25,25 @@ pub struct TrackingConfig {
     pub free_distance: u32,
     /// Highest quotient of the best and the next best distance without a window, above 0 to 1. Default 0.8.
     pub free_ratio: f32,
-    /// Landmarks of the map that are looked for in one frame. Default 4000.
+    /// Landmarks of the map that are searched in one frame. Default 4000.
     pub most_landmarks: usize,
     /// Fewer inliers than this and the frame is not located, 6 or more. Default 20.
     pub min_inliers: usize,
     /// Fewer inliers than this and it is located weakly; a relocalisation needs as many. Default 40.
     pub weak_inliers: usize,
-    /// Keyframes that a lost camera is compared with in one frame, 1 or more, and as many of those that look like the one found.
-    /// Default 5: some 20 ms, 40 when another map is asked as well.
+    /// Keyframes that a lost camera is compared with in one frame, 1 or more, and as many of those similar to the one found.
+    /// Default 5: some 20 ms, 40 when another map is tried as well.
     pub relocalisation_keyframes: usize,
-    /// Part of the view, of its parts that should show landmarks, in which a relocalisation must find some, 0 to 1. Default
-    /// 0.6: of 400 views of a simulated office with twin rooms, twins without a rival showed up to 0.56, and as many were recognised
-    /// within 1 s as with 0.5; pictures that hang in two rooms show 0.45 and less.
+    /// Fraction of the view, of its cells with expected landmarks, in which a relocalisation must find some, 0 to 1. Default
+    /// 0.6: of 400 views of a simulated office with look-alike rooms, wrong ones without a rival reached 0.56; pictures that
+    /// hang in two rooms reach 0.45.
     pub recognised_part: f64,
-    /// Standard deviation of a relocalisation's position at most, m, above 0, with the errors counted that points of one image
-    /// share. Default 0.05: then it is within 0.1 m at two of them. Views of little but what is beyond 6 m say more, and
-    /// were up to 0.3 m off; 97 of 100 others say less (docs/results.md).
+    /// Largest standard deviation of a relocalisation's position, m, above 0, with the errors counted that points of one image
+    /// share. Default 0.05: two of them are 0.1 m. Views of little but points beyond 6 m exceed it, and had errors up to 0.3 m;
+    /// 97 of 100 other views do not (docs/results.md).
     pub recognised_sigma: f64,
-    /// After so many frames without success, a map is begun: at the dead-reckoned pose, or without a prior one of its own.
-    /// Default 30: a second.
+    /// Frames without success after which a map is begun: at the dead-reckoned pose, or without a prior as another map. Default
+    /// 30: a second.
     pub patience: usize,
     /// The solver.
     pub pose: PoseConfig,

@@ -1,3 +1,5 @@
+//! Which landmarks a camera should see.
+
 use crate::frame::depth::DepthConfig;
 use crate::frame::observation_model::ObservationModel;
 use crate::ids::LandmarkId;
@@ -111,8 +113,7 @@ fn landmarks_around(map: &LandmarkMap, visual_from_camera: Pose3) -> Vec<Landmar
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::testing::map_of_one_view;
-    use crate::testing::model;
+    use crate::testing::{map_of_one_view, model};
     use nalgebra::Vector6;
 
     #[test]

@@ -189,10 +189,7 @@ mod tests {
     use crate::frame::rgbd_frame::Frame;
     use crate::ids::MapId;
     use crate::local_mapping::reference_patch_storage::store_reference_patches;
-    use crate::testing::model;
-    use crate::testing::painted_frame;
-    use crate::testing::painted_map;
-    use crate::testing::painted_points;
+    use crate::testing::{model, painted_frame, painted_map, painted_points};
     use crate::tracking::config::TrackingConfig;
     use crate::tracking::local_map::LocalMapQuery;
     use nalgebra::Vector6;

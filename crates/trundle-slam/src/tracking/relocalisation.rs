@@ -64,8 +64,7 @@ fn try_groups<T: PlaceHypothesis>(
 mod tests {
     use super::*;
     use crate::place_recognition::place_hypothesis::PlaceHypothesis;
-    use trundle_core::Pose3;
-    use trundle_core::Vector3;
+    use trundle_core::{Pose3, Vector3};
 
     /// How certain a hypothesis is.
     #[derive(Debug, Clone, Copy, PartialEq, PartialOrd)]

@@ -170,7 +170,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_pixel_sigma_is_a_sensible_one() {
+    fn a_pixel_sigma_out_of_range_is_refused() {
         let is_valid =
             |pixel_sigma| TrackingConfig { pixel_sigma, ..TrackingConfig::default() }.validated().is_ok();
         let expected = [(0.0, false), (0.009, false), (0.01, true), (100.0, true), (101.0, false)];

@@ -69,7 +69,7 @@ fn turned(frame: usize) -> Pose3 {
 }
 
 #[test]
-fn while_located_on_the_way() {
+fn the_covariance_is_consistent_while_tracked() {
     let room = Room::new();
     let mean = mean_over_runs(|seed| {
         let mut run = Run::new(&room, seed, walk(0));
@@ -82,7 +82,7 @@ fn while_located_on_the_way() {
 }
 
 #[test]
-fn in_the_dark() {
+fn the_covariance_is_consistent_in_the_dark() {
     let room = Room::new();
     let mean = mean_over_runs(|seed| {
         let mut run = Run::new(&room, seed, walk(0));
@@ -97,7 +97,7 @@ fn in_the_dark() {
 
 /// All the way round on the spot, with a part of it in the dark: the last views show the first ones again.
 #[test]
-fn after_a_loop() {
+fn the_covariance_is_consistent_after_a_loop() {
     let room = Room::new();
     let mean = mean_over_runs(|seed| {
         let mut run = Run::new(&room, seed, turned(0));

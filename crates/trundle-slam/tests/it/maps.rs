@@ -25,19 +25,19 @@ fn run(images: &[RgbdImage]) -> (RgbdSlam, Vec<TrackReport>) {
 }
 
 #[test]
-fn a_second_map_begins_when_lost_and_becomes_one_with_the_first_when_that_is_recognised() {
+fn a_lost_camera_begins_a_second_map_that_is_merged_when_the_first_is_seen() {
     let way = carried();
     let shot = |(i, pose): (usize, &Option<Pose3>)| pose.map_or_else(|| dark(i), |pose| shoot(i, pose));
     let images: Vec<RgbdImage> = way.iter().enumerate().map(shot).collect();
     let (slam, reports) = run(&images);
-    let submap_link = reports.iter().position(|r| r.map != reports[0].map).expect("a second map");
-    assert_eq!(submap_link, 17, "after 8 frames of patience");
-    assert!(reports[10..submap_link].iter().all(|r| r.tracking == Tracking::Lost));
-    assert_eq!(reports[submap_link].visual_from_camera, Pose3::identity(), "in a frame of its own");
-    assert!(reports[submap_link..].iter().all(|r| r.tracking.is_located()), "and never lost again");
+    let second_map = reports.iter().position(|r| r.map != reports[0].map).expect("a second map");
+    assert_eq!(second_map, 17, "after 8 frames of patience");
+    assert!(reports[10..second_map].iter().all(|r| r.tracking == Tracking::Lost));
+    assert_eq!(reports[second_map].visual_from_camera, Pose3::identity(), "in a frame of its own");
+    assert!(reports[second_map..].iter().all(|r| r.tracking.is_located()), "and never lost again");
     let at = reports.iter().position(|r| r.merged.is_some()).expect("they became one");
     let merged = reports[at].merged.unwrap();
-    assert_eq!((merged.into, merged.from), (reports[0].map, reports[submap_link].map));
+    assert_eq!((merged.into, merged.from), (reports[0].map, reports[second_map].map));
     assert_eq!((slam.maps(), reports[at].map), (vec![merged.into], merged.into));
     let jump = reports[at].visual_from_camera * reports[at - 1].visual_from_camera.inverse();
     assert!((merged.correction.inverse() * jump).log().norm() < 0.2, "reported as a correction: {jump:?}");
@@ -59,7 +59,7 @@ fn a_second_map_begins_when_lost_and_becomes_one_with_the_first_when_that_is_rec
 
 /// Drives on in the dark into a second room that looks the same to the pixel.
 #[test]
-fn a_room_that_looks_the_same_elsewhere_is_another_room() {
+fn a_look_alike_room_is_not_merged() {
     let mut slam = RgbdSlam::new(camera(), SlamConfig::default()).unwrap();
     let step = Pose3::exp(Vector6::new(0.0, 0.0, 0.4, 0.0, 0.0, 0.0));
     for i in 0..20 {
@@ -81,7 +81,7 @@ fn a_room_that_looks_the_same_elsewhere_is_another_room() {
 
 /// Set down elsewhere while it turns: what it sees then is not what lies where the first map ends.
 #[test]
-fn a_camera_that_is_carried_from_one_image_to_the_next_does_not_map_on() {
+fn a_camera_that_is_carried_between_two_images_does_not_go_on_mapping() {
     let mut slam = RgbdSlam::new(camera(), SlamConfig::default()).unwrap();
     for i in 0..20 {
         assert!(slam.step(&shoot(i, turned(2 * i)), Some(turned(2).into())).tracking.is_located());
@@ -102,7 +102,7 @@ fn a_camera_that_is_carried_from_one_image_to_the_next_does_not_map_on() {
 
 /// Wheels that lost count in the dark: what comes behind is laid by whoever knows the place, until the first map is seen again.
 #[test]
-fn behind_a_way_that_nobody_is_sure_of_another_map_begins_and_joins_the_first() {
+fn after_uncertain_dead_reckoning_another_map_begins_and_is_merged() {
     let unsure = |motion: Pose3| CameraMotion {
         motion,
         covariance: Some(Matrix6::from_diagonal(&Vector6::new(0.01, 0.01, 0.01, 1e-4, 1e-4, 1e-4))),
@@ -131,7 +131,7 @@ fn behind_a_way_that_nobody_is_sure_of_another_map_begins_and_joins_the_first() 
 }
 
 #[test]
-fn a_camera_that_nobody_tells_about_is_only_where_it_can_have_got_to() {
+fn without_odometry_a_relocalisation_must_be_within_reach() {
     let mut slam = RgbdSlam::new(camera(), SlamConfig::default()).unwrap();
     for i in 0..20 {
         assert!(slam.step(&shoot(i, turned(2 * i)), None).tracking.is_located());
@@ -150,7 +150,7 @@ fn a_camera_that_nobody_tells_about_is_only_where_it_can_have_got_to() {
 
 /// The place is in both, which were never found to be one: that two say where it is must not keep it lost.
 #[test]
-fn a_camera_that_is_lost_where_two_maps_lie_is_found() {
+fn a_lost_camera_is_found_where_two_maps_overlap() {
     let mut config = SlamConfig::default();
     config.tracking.patience = 8;
     config.loops.consistency = 1000;

@@ -42,7 +42,7 @@ fn ten_laps_of_a_room_take_no_more_than_three() {
 }
 
 #[test]
-fn only_the_newest_poses_are_kept_that_are_wanted() {
+fn only_wanted_poses_of_the_newest_frames_are_kept() {
     let config = SlamConfig { kept_frames: 7, ..SlamConfig::default() };
     let mut slam = RgbdSlam::new(camera(), config).unwrap();
     let (room, mut dice) = (Room::new(), Dice(5));

@@ -17,7 +17,7 @@ fn image(number: usize, size: (usize, usize), shade: u8, depth: f32) -> RgbdImag
 }
 
 #[test]
-fn images_with_nothing_in_them_are_reported_and_survived() {
+fn empty_images_are_reported_and_survived() {
     let mut slam = slam();
     let depthless = RgbdImage::new(
         stamp(3),
@@ -48,7 +48,7 @@ fn images_with_nothing_in_them_are_reported_and_survived() {
 }
 
 #[test]
-fn a_carried_camera_finds_itself_again() {
+fn a_carried_camera_is_relocalized() {
     let mut slam = slam();
     for i in 0..30 {
         let pose = Pose3::exp(Vector6::new(0.0, 0.0, 0.0, 0.0, i as f64 * 0.06, 0.0));
@@ -72,7 +72,7 @@ fn a_carried_camera_finds_itself_again() {
 }
 
 #[test]
-fn dead_reckoning_bridges_a_blank_wall_and_begins_a_new_map_behind_it() {
+fn dead_reckoning_bridges_a_blank_wall_and_mapping_goes_on_behind_it() {
     let mut slam = slam();
     let step = |i: usize| Pose3::exp(Vector6::new(0.0, 0.0, 0.0, 0.0, 0.1 * i as f64, 0.0));
     for i in 0..3 {
@@ -106,7 +106,7 @@ fn noise(number: usize) -> RgbdImage {
 }
 
 #[test]
-fn of_noise_on_a_bare_wall_no_map_is_made() {
+fn noise_on_a_bare_wall_makes_no_map() {
     assert_eq!(slam().step(&noise(0), None).keyframes, 0, "noise has no corners");
     let mut config = SlamConfig::default();
     config.orb.least_texture = 0.0;

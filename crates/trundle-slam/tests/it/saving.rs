@@ -33,7 +33,7 @@ fn load(bytes: &[u8]) -> Result<RgbdSlam, MapFileError> {
 }
 
 #[test]
-fn a_loaded_map_is_the_same_and_is_recognised_and_goes_on() {
+fn a_loaded_map_is_identical_and_the_camera_is_relocalized_in_it() {
     let bytes = mapped(SlamConfig::default()).save();
     let mut slam = RgbdSlam::load(&bytes, camera(), SlamConfig::default()).unwrap();
     assert_eq!(slam.save(), bytes);
@@ -65,7 +65,7 @@ fn a_loaded_map_is_the_same_and_is_recognised_and_goes_on() {
 }
 
 #[test]
-fn until_it_is_recognised_the_camera_is_lost_whatever_the_wheels_say() {
+fn in_a_loaded_map_the_camera_is_lost_until_a_place_is_recognized() {
     let mut slam = load(&SAVED).unwrap();
     for i in 0..5 {
         let report = slam.step(&dark(i), Some(turned(1).into()));
@@ -94,7 +94,7 @@ fn localisation_leaves_every_bit_of_the_map_as_it_is() {
 }
 
 #[test]
-fn what_was_made_with_other_settings_is_refused_by_name() {
+fn a_map_of_other_settings_is_refused_by_name() {
     let refused = |camera: PinholeCamera, change: &dyn Fn(&mut SlamConfig)| {
         let mut config = small();
         change(&mut config);
@@ -111,7 +111,7 @@ fn what_was_made_with_other_settings_is_refused_by_name() {
 }
 
 #[test]
-fn what_is_no_map_is_refused_with_the_reason() {
+fn bytes_that_are_no_map_are_refused_with_the_reason() {
     let refused = |bytes: &[u8]| load(bytes).unwrap_err().to_string();
     assert_eq!(refused(b""), "no map of trundle-slam");
     assert_eq!(refused(b"ply\nformat ascii 1.0"), "no map of trundle-slam");
@@ -144,7 +144,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(100))]
 
     #[test]
-    fn a_turned_bit_or_a_cut_is_noticed(at in any::<prop::sample::Index>(), bit in 0..8_u8, cut: bool) {
+    fn a_flipped_bit_or_a_cut_is_refused(at in any::<prop::sample::Index>(), bit in 0..8_u8, cut: bool) {
         let at = at.index(SAVED.len());
         let mut bytes = SAVED.clone();
         if cut { bytes.truncate(at) } else { bytes[at] ^= 1_u8 << bit }

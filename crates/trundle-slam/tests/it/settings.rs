@@ -58,7 +58,7 @@ fn squeezed(image: &RgbdImage) -> RgbdImage {
 }
 
 #[test]
-fn right_settings_are_not_suspected() {
+fn right_settings_raise_no_issue() {
     let Some(found) = suspected(freiburg::camera(), |image| image) else { return };
     assert_eq!(found, vec![]);
 }
@@ -116,7 +116,7 @@ fn suspected_in_the_room(said: PinholeCamera, wheels: f64) -> Vec<CalibrationIss
 }
 
 #[test]
-fn a_driving_robots_settings_are_judged_too() {
+fn the_settings_of_a_driving_robot_are_checked_too() {
     assert_eq!(suspected_in_the_room(camera(), 1.0), vec![]);
     let short = suspected_in_the_room(camera(), 0.2);
     assert!(short.iter().any(|s| matches!(s, CalibrationIssue::TravelledDistance { .. })), "{short:?}");

@@ -83,7 +83,7 @@ fn the_same_images_give_the_same_bits() {
 /// Turns on the spot; in the dark in the middle of it the wheels are wrong by 15 cm and 3 deg, and the far side of the
 /// room is mapped from there on. Back at the first view, the loop must be seen and the whole error taken out.
 #[test]
-fn a_place_seen_again_takes_the_drift_out() {
+fn a_loop_closure_removes_the_drift() {
     let mut slam = slam();
     let slip = Pose3::exp(Vector6::new(0.12, 0.0, 0.09, 0.0, 0.05, 0.0));
     let error = |i: usize, pose: Pose3| (turned(i).inverse() * pose).log().norm();

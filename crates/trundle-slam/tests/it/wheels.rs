@@ -36,19 +36,19 @@ fn exactly(motion: Pose3) -> CameraMotion {
 }
 
 #[test]
-fn wheels_that_are_right_make_the_pose_better() {
+fn right_odometry_improves_the_pose() {
     assert!(error(|_, motion| Some(exactly(motion))) < 0.8 * error(|_, _| None));
 }
 
 /// Encoders that are dead, or a robot that is pushed: the way is zero, and the wheels are sure of it.
 #[test]
-fn wheels_that_stand_do_not_hold_a_camera_that_moves() {
+fn odometry_that_stands_still_does_not_hold_a_moving_camera() {
     assert!(error(|_, _| Some(exactly(Pose3::identity()))) < 1.5 * error(|_, _| None) + 1e-3);
 }
 
 /// Odometry that starts again at its origin: a step that nothing on wheels can make, again and again.
 #[test]
-fn a_step_that_no_wheel_makes_is_not_believed() {
+fn an_impossible_odometry_step_is_dropped() {
     let far = Pose3::exp(Vector6::new(3.0, 0.0, -2.0, 0.0, 1.0, 0.0));
     let jumping = error(|i, motion| Some(exactly(if i % 20 == 10 { far } else { motion })));
     assert!(jumping < 1.5 * error(|_, _| None) + 1e-3);
