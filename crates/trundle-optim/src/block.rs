@@ -113,7 +113,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn they_do_what_matrices_do(a in any_block(), b in any_block(), x in prop::array::uniform6(-1.0..1.0)) {
+        fn block_operations_agree_with_dense_matrices(a in any_block(), b in any_block(), x in prop::array::uniform6(-1.0..1.0)) {
             let (ma, mb, vx) = (matrix(&a), matrix(&b), Vector6::from(x));
             let (mut out, three) = (a, |m: &Block| [m[0], m[1], m[2]]);
             subtract_outer(&mut out, &three(&a), &three(&b));
@@ -140,7 +140,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_definite_is_refused() {
+    fn an_indefinite_block_is_refused() {
         assert!(!factorise(&mut [[0.0; 6]; 6]));
         assert!(!factorise(&mut [[f64::NAN; 6]; 6]));
     }

@@ -1,3 +1,5 @@
+//! The Cholesky factor of a sparse symmetric matrix of 6 x 6 blocks.
+
 use crate::block::{
     Block, Column, divide_by_transposed, factorise, solve_lower, solve_upper, subtract_outer,
     subtract_product, subtract_transposed_product,
@@ -295,7 +297,7 @@ mod tests {
     use rand_chacha::ChaCha8Rng;
 
     #[test]
-    fn it_solves_what_the_dense_solver_solves() {
+    fn the_block_solver_agrees_with_a_dense_solver() {
         let mut rng = ChaCha8Rng::seed_from_u64(4);
         let count = 15;
         let mut pairs: Vec<(usize, usize)> = (1..count).map(|i| (i - 1, i)).collect();

@@ -1,4 +1,5 @@
-use crate::bundle_solver::BundleSolver;
+//! A bundle problem: poses, points and observations.
+
 use crate::observation::PointObservation;
 use crate::pose_graph::PoseConstraint;
 use serde::{Deserialize, Serialize};
@@ -66,7 +67,7 @@ pub struct BundleProblem {
     pub(crate) poses: Vec<BundlePose>,
     pub(crate) points: Vec<Vector3>,
     pub(crate) observations: Vec<BundleObservation>,
-    pub(crate) ties: Vec<PoseConstraint>,
+    pub(crate) constraints: Vec<PoseConstraint>,
     /// Empty where all poses are of one part.
     pub(crate) parts: Vec<usize>,
 }
@@ -106,19 +107,19 @@ impl BundleProblem {
                 return Err(Invalid::new("observation", value, "", expected));
             }
         }
-        Ok(Self { camera, poses, points, observations, ties: Vec::new(), parts: Vec::new() })
+        Ok(Self { camera, poses, points, observations, constraints: Vec::new(), parts: Vec::new() })
     }
 
     /// The same with what else was measured between poses, by wheels or of the floor, say. Each counts under the Huber loss as
     /// a whole, bent at 95 %: one that is wrong, as by slip, pulls no harder than one that is just believed.
     ///
     /// # Errors
-    /// When one names a pose that is not there, ties one to itself, or has a number that is not finite.
-    pub fn with_ties(self, ties: Vec<PoseConstraint>) -> Result<Self, Invalid> {
-        for (i, tie) in ties.iter().enumerate() {
-            tie.check(i, self.poses.len())?;
+    /// When one names a pose that is not there, constrains one to itself, or has a number that is not finite.
+    pub fn with_constraints(self, constraints: Vec<PoseConstraint>) -> Result<Self, Invalid> {
+        for (i, constraint) in constraints.iter().enumerate() {
+            constraint.check(i, self.poses.len())?;
         }
-        Ok(Self { ties, ..self })
+        Ok(Self { constraints, ..self })
     }
 
     /// The same where poses are of several parts, told by a number for each, that have so few points in common that these may be
@@ -132,27 +133,13 @@ impl BundleProblem {
         }
         Ok(Self { parts, ..self })
     }
-
-    /// Refines the free poses and all points, at once and with buffers of its own.
-    pub fn solve(&self, config: &BundleConfig) -> BundleSolution {
-        let mut solver = BundleSolver::default();
-        solver.begin(self, config);
-        solver.finish();
-        BundleSolution {
-            poses: solver.poses().to_vec(),
-            points: solver.points().to_vec(),
-            chi2: solver.chi2().to_vec(),
-            initial_cost: solver.initial_cost(),
-            final_cost: solver.cost(),
-            steps: solver.steps(),
-        }
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::InverseDepth;
+    use crate::bundle_solver::BundleSolver;
     use nalgebra::Vector6;
     use rand::{RngExt, SeedableRng};
     use rand_chacha::ChaCha8Rng;
@@ -258,28 +245,28 @@ mod tests {
     }
 
     #[test]
-    fn ties_hold_what_no_point_holds_and_a_wrong_one_pulls_little() {
+    fn constraints_hold_poses_without_points_and_a_wrong_one_pulls_little() {
         let mut scene = scene();
         // The last two poses see nothing that the others see.
         scene.observations.retain(|seen| seen.pose < 4);
-        let ties = vec![measured(&scene, 3, 4, 0.01), measured(&scene, 5, 4, 0.01)];
-        let problem = perturbed(&scene, 1).with_ties(ties.clone()).unwrap();
+        let constraints = vec![measured(&scene, 3, 4, 0.01), measured(&scene, 5, 4, 0.01)];
+        let problem = perturbed(&scene, 1).with_constraints(constraints.clone()).unwrap();
         assert_recovered(&scene, &problem.solve(&EXACT), 1e-6);
         let mut slipped = measured(&scene, 0, 2, 0.02);
         slipped.from_to = slipped.from_to * Pose3::exp(Vector6::new(0.5, 0.0, 0.0, 0.0, 0.2, 0.0));
-        let problem = perturbed(&scene, 1).with_ties([&ties[..], &[slipped]].concat()).unwrap();
+        let problem = perturbed(&scene, 1).with_constraints([&constraints[..], &[slipped]].concat()).unwrap();
         let off = (scene.poses[2].inverse() * problem.solve(&EXACT).poses[2]).log().norm();
         assert!(off > 1e-9 && off < 0.01, "{off}");
     }
 
     #[test]
-    fn what_links_parts_by_chance_makes_no_covariance_smaller() {
+    fn chance_links_between_parts_do_not_reduce_covariances() {
         let mut scene = scene();
         // Of what the first four poses see, the last two see three points only.
         let known: Vec<usize> = scene.observations.iter().filter(|o| o.pose < 4).map(|o| o.point).collect();
         scene.observations.retain(|o| o.pose < 4 || !known.contains(&o.point) || o.point < 3);
-        let ties = vec![measured(&scene, 3, 4, 0.3), measured(&scene, 5, 4, 0.01)];
-        let tied = perturbed(&scene, 1).with_ties(ties).unwrap();
+        let constraints = vec![measured(&scene, 3, 4, 0.3), measured(&scene, 5, 4, 0.01)];
+        let tied = perturbed(&scene, 1).with_constraints(constraints).unwrap();
         let sigma = |problem: &BundleProblem| {
             let mut solver = BundleSolver::default();
             solver.begin(problem, &BundleConfig { covariances: true, ..EXACT });
@@ -295,10 +282,10 @@ mod tests {
     }
 
     #[test]
-    fn a_tie_to_nowhere_is_refused() {
+    fn a_constraint_to_a_missing_pose_is_refused() {
         let scene = scene();
         let nowhere = PoseConstraint { to: 9, ..measured(&scene, 0, 1, 0.1) };
-        let error = perturbed(&scene, 1).with_ties(vec![nowhere]).unwrap_err().to_string();
+        let error = perturbed(&scene, 1).with_constraints(vec![nowhere]).unwrap_err().to_string();
         assert!(error.contains("from 0 to 9"), "{error}");
     }
 
@@ -338,7 +325,7 @@ mod tests {
 
     /// The error of a pose over many noisy scenes, by the covariance that the solver gives it: six on average.
     #[test]
-    fn covariances_are_true() {
+    fn covariances_agree_with_the_inverse_of_the_full_system() {
         let scene = scene();
         let (mut sum, runs) = (0.0, 100);
         for seed in 0..runs {
@@ -367,7 +354,7 @@ mod tests {
     }
 
     #[test]
-    fn outliers_do_not_pull_and_are_told_by_their_chi2() {
+    fn outliers_do_not_pull_and_are_found_by_their_chi2() {
         let mut scene = scene();
         let wrong: Vec<usize> = (0..scene.observations.len()).filter(|i| i % 29 == 5).collect();
         for &i in &wrong {
@@ -394,7 +381,7 @@ mod tests {
     }
 
     #[test]
-    fn an_observation_of_nothing_is_refused() {
+    fn an_observation_of_a_missing_point_is_refused() {
         let mut scene = scene();
         scene.observations[3].point = 80;
         let pose = BundlePose { world_from_camera: Pose3::identity(), fixed: true };

@@ -1,3 +1,5 @@
+//! The observations of a bundle problem in the order of the solver.
+
 use crate::bundle::{BundleObservation, BundleProblem};
 
 /// The observations of a bundle problem as the solver walks over them: by rising point, within a point by rising row of the

@@ -1,17 +1,22 @@
-use crate::bundle::{BundleConfig, BundleProblem};
+//! Solves a bundle problem in slices of work.
+
+use crate::bundle::{BundleConfig, BundleProblem, BundleSolution};
 use crate::bundle_layout::Layout;
-use crate::bundle_system::{FIXED, Lens, Normal, View, certain, moved, refining, robust};
+use crate::bundle_system::{FIXED_ROW, Lens, Normal, View, certain, moved, refining, robust};
 use crate::observation::CHI2_95_6;
 use crate::pose_graph::PoseConstraint;
 use nalgebra::Matrix6;
 use trundle_core::{Pose3, Vector3};
 
-/// With more free poses than this, those that share no point are left uncoupled: sorting them out is then worth its time.
-const DENSE_POSES: usize = 64;
-/// Units of work of [`BundleSolver::advance`], measured: one is some 20 ns.
-const WORK_LINEARISE: usize = 4;
-const WORK_PRODUCT: usize = 3;
-const WORK_TIE: usize = 60;
+/// Most free poses for which the reduced system is dense: 64. With more, poses without a common point stay uncoupled, which then
+/// saves time. Source: ours.
+const MAX_DENSE_POSES: usize = 64;
+/// Units of work of [`BundleSolver::advance`] to linearise an observation: 4. One unit takes some 20 ns. Source: ours, measured.
+const WORK_PER_OBSERVATION: usize = 4;
+/// Units of work for a product of two 6 x 6 blocks: 3. See [`WORK_PER_OBSERVATION`].
+const WORK_PER_PRODUCT: usize = 3;
+/// Units of work for a constraint: 60. See [`WORK_PER_OBSERVATION`].
+const WORK_PER_CONSTRAINT: usize = 60;
 
 /// Bundle adjustment by the Schur complement (Triggs et al. 2000), under way.
 ///
@@ -39,7 +44,7 @@ pub struct BundleSolver {
     /// Where the step at hand leads.
     there: State,
     rows: Vec<u32>,
-    ties: Vec<PoseConstraint>,
+    constraints: Vec<PoseConstraint>,
     pairs: Vec<(usize, usize)>,
     phase: Phase,
     /// How far the phase has come: a point, or a row.
@@ -63,8 +68,8 @@ enum Ending {
     WorkedOut,
 }
 
-/// Damping of the system that the covariances are read from: no more than keeps it definite.
-const LEAST_DAMPING: f64 = 1e-9;
+/// Damping of the system that the covariances are read from: 1e-9, which keeps the system definite. Source: ours.
+const COVARIANCE_DAMPING: f64 = 1e-9;
 
 #[derive(Debug, Clone, Default)]
 struct State {
@@ -99,7 +104,7 @@ impl BundleSolver {
         self.number_rows(problem);
         let Self { layout, rows, here, .. } = self;
         layout.fill(problem, |pose| rows[pose]);
-        self.ties.clone_from(&problem.ties);
+        self.constraints.clone_from(&problem.constraints);
         here.poses.clear();
         here.poses.extend(problem.poses.iter().map(|p| p.world_from_camera));
         here.points.clone_from(&problem.points);
@@ -146,13 +151,13 @@ impl BundleSolver {
     /// Covariance of a pose as a right perturbation (m, rad), taking every fixed pose and every sigma as true; once it is
     /// done, if the configuration asked for it and the pose is free and determined.
     pub fn covariance(&self, pose: usize) -> Option<Matrix6<f64>> {
-        let row = self.rows.get(pose).filter(|row| **row != FIXED && self.ending == Ending::WorkedOut)?;
+        let row = self.rows.get(pose).filter(|row| **row != FIXED_ROW && self.ending == Ending::WorkedOut)?;
         Some(self.normal.covariance_of(*row)).filter(|c| c.iter().all(|value| value.is_finite()))
     }
 
     /// Inverse of the covariance that a free pose would have if all points were known, on the same conditions.
     pub fn information(&self, pose: usize) -> Option<Matrix6<f64>> {
-        let row = self.rows.get(pose).filter(|row| **row != FIXED && self.ending == Ending::WorkedOut)?;
+        let row = self.rows.get(pose).filter(|row| **row != FIXED_ROW && self.ending == Ending::WorkedOut)?;
         Some(self.normal.information_of(*row))
     }
 
@@ -176,17 +181,19 @@ impl BundleSolver {
         let free = problem.poses.iter().filter(|pose| !pose.fixed).count();
         let mut node = 0..;
         self.rows.clear();
-        let numbers =
-            problem.poses.iter().map(|pose| if pose.fixed { FIXED } else { node.next().unwrap_or(FIXED) });
+        let numbers = problem
+            .poses
+            .iter()
+            .map(|pose| if pose.fixed { FIXED_ROW } else { node.next().unwrap_or(FIXED_ROW) });
         self.rows.extend(numbers);
         let reduced = &mut self.normal.reduced;
-        if free <= DENSE_POSES {
+        if free <= MAX_DENSE_POSES {
             reduced.shape_full(free);
         } else {
             coupled(problem, &self.rows, free, &mut self.pairs);
             reduced.shape(free, &self.pairs);
         }
-        for row in self.rows.iter_mut().filter(|row| **row != FIXED) {
+        for row in self.rows.iter_mut().filter(|row| **row != FIXED_ROW) {
             *row = reduced.row(*row as usize) as u32;
         }
     }
@@ -216,9 +223,9 @@ impl BundleSolver {
 
     /// The next points, and whether they are the last.
     fn chunk(&mut self) -> (std::ops::Range<usize>, bool) {
-        const POINTS: usize = 32;
+        const POINTS_PER_CHUNK: usize = 32;
         let count = self.here.points.len();
-        let range = self.cursor..(self.cursor + POINTS).min(count);
+        let range = self.cursor..(self.cursor + POINTS_PER_CHUNK).min(count);
         self.cursor = range.end;
         (range.clone(), range.end == count)
     }
@@ -239,15 +246,17 @@ impl BundleSolver {
             };
         }
         if last {
-            for tie in &self.ties {
-                self.partial_cost += self.normal.add_tie(tie, &self.here.poses, &self.here.views);
+            for constraint in &self.constraints {
+                self.partial_cost +=
+                    self.normal.add_constraint(constraint, &self.here.poses, &self.here.views);
             }
             if self.steps == 0 {
                 (self.cost, self.initial_cost) = (self.partial_cost, self.partial_cost);
             }
             self.enter(Phase::Eliminate);
         }
-        WORK_LINEARISE * self.observations(&points) + if last { WORK_TIE * self.ties.len() } else { 0 }
+        WORK_PER_OBSERVATION * self.observations(&points)
+            + if last { WORK_PER_CONSTRAINT * self.constraints.len() } else { 0 }
     }
 
     fn eliminate(&mut self) -> usize {
@@ -266,7 +275,7 @@ impl BundleSolver {
         self.cursor += 1;
         let reduced = &mut self.normal.reduced;
         if row < reduced.count() {
-            let work = reduced.row_work(row) * WORK_PRODUCT;
+            let work = reduced.row_work(row) * WORK_PER_PRODUCT;
             if !reduced.factorise_row(row) {
                 self.refuse();
             }
@@ -280,7 +289,7 @@ impl BundleSolver {
             self.refuse();
             return 1;
         }
-        for (i, row) in self.rows.iter().enumerate().filter(|(_, row)| **row != FIXED) {
+        for (i, row) in self.rows.iter().enumerate().filter(|(_, row)| **row != FIXED_ROW) {
             let step = self.normal.step_of(*row);
             self.there.poses[i] = (self.here.poses[i] * Pose3::exp(step)).renormalized();
         }
@@ -302,8 +311,8 @@ impl BundleSolver {
         }
         let work = self.observations(&points);
         if last {
-            let cost = |tie: &PoseConstraint| robust(tie.chi2(&self.there.poses), CHI2_95_6).0;
-            self.partial_cost += self.ties.iter().map(cost).sum::<f64>();
+            let cost = |constraint: &PoseConstraint| robust(constraint.chi2(&self.there.poses), CHI2_95_6).0;
+            self.partial_cost += self.constraints.iter().map(cost).sum::<f64>();
             self.decide();
         }
         work
@@ -348,7 +357,7 @@ impl BundleSolver {
             }
         }
         if last && self.config.covariances {
-            (self.ending, self.damping) = (Ending::WorkingOut, LEAST_DAMPING);
+            (self.ending, self.damping) = (Ending::WorkingOut, COVARIANCE_DAMPING);
             self.enter(Phase::Linearise);
         } else if last {
             self.enter(Phase::Done);
@@ -358,7 +367,7 @@ impl BundleSolver {
 
     fn invert(&mut self) -> usize {
         match self.normal.reduced.invert_on() {
-            Some(products) => WORK_PRODUCT * products,
+            Some(products) => WORK_PER_PRODUCT * products,
             None => {
                 self.ending = Ending::WorkedOut;
                 self.enter(Phase::Done);
@@ -376,6 +385,23 @@ impl State {
     }
 }
 
+impl BundleProblem {
+    /// Refines the free poses and all points, at once and with buffers of its own.
+    pub fn solve(&self, config: &BundleConfig) -> BundleSolution {
+        let mut solver = BundleSolver::default();
+        solver.begin(self, config);
+        solver.finish();
+        BundleSolution {
+            poses: solver.poses().to_vec(),
+            points: solver.points().to_vec(),
+            chi2: solver.chi2().to_vec(),
+            initial_cost: solver.initial_cost(),
+            final_cost: solver.cost(),
+            steps: solver.steps(),
+        }
+    }
+}
+
 /// Units of work of moving that many poses.
 fn reduced_work(poses: usize) -> usize {
     20 * poses + 1
@@ -384,7 +410,7 @@ fn reduced_work(poses: usize) -> usize {
 /// The pairs of free poses that see a point in common or are tied, by node.
 fn coupled(problem: &BundleProblem, nodes: &[u32], free: usize, pairs: &mut Vec<(usize, usize)>) {
     let mut seers: Vec<Vec<u32>> = vec![Vec::new(); problem.points.len()];
-    for seen in problem.observations.iter().filter(|seen| nodes[seen.pose] != FIXED) {
+    for seen in problem.observations.iter().filter(|seen| nodes[seen.pose] != FIXED_ROW) {
         seers[seen.point].push(nodes[seen.pose]);
     }
     let mut is_coupled = vec![false; free * free];
@@ -394,9 +420,9 @@ fn coupled(problem: &BundleProblem, nodes: &[u32], free: usize, pairs: &mut Vec<
             seers[i + 1..].iter().for_each(|b| is_coupled[*a as usize * free + *b as usize] = true);
         }
     }
-    for tie in &problem.ties {
-        let (a, b) = (nodes[tie.from], nodes[tie.to]);
-        if a != FIXED && b != FIXED {
+    for constraint in &problem.constraints {
+        let (a, b) = (nodes[constraint.from], nodes[constraint.to]);
+        if a != FIXED_ROW && b != FIXED_ROW {
             is_coupled[a.min(b) as usize * free + a.max(b) as usize] = true;
         }
     }

@@ -1,7 +1,9 @@
+//! The normal equations of a bundle problem.
+
 use crate::block::{Block, Column, subtract_outer};
 use crate::block_cholesky::BlockMatrix;
 use crate::bundle_layout::{Layout, Measurement};
-use crate::observation::{CHI2_95_6, COST_BEHIND, NEAREST};
+use crate::observation::{CHI2_95_6, COST_BEHIND_CAMERA, MIN_PROJECTION_DEPTH_M};
 use crate::pose_graph::PoseConstraint;
 use nalgebra::{Matrix6, Vector6};
 use trundle_core::{PinholeCamera, Pose3, Vector3};
@@ -12,12 +14,12 @@ pub(crate) struct View {
     /// Of `camera_from_world`, by rows.
     rotation: [[f64; 3]; 3],
     translation: [f64; 3],
-    /// Row of the reduced system, [`FIXED`] where the pose does not move.
+    /// Row of the reduced system, [`FIXED_ROW`] where the pose does not move.
     pub row: u32,
 }
 
 /// The row of a pose that does not move.
-pub(crate) const FIXED: u32 = u32::MAX;
+pub(crate) const FIXED_ROW: u32 = u32::MAX;
 
 impl View {
     pub fn of(world_from_camera: &Pose3, row: u32) -> Self {
@@ -49,7 +51,7 @@ impl Lens {
     #[inline(always)]
     pub fn chi2(&self, view: &View, seen: &Measurement, point: &[f64; 3]) -> f64 {
         let p = view.see(point);
-        if p[2] < NEAREST {
+        if p[2] < MIN_PROJECTION_DEPTH_M {
             return f64::INFINITY;
         }
         let r = self.residual(seen, &p, 1.0 / p[2]);
@@ -73,10 +75,10 @@ pub(crate) fn robust(chi2: f64, bound: f64) -> (f64, f64) {
         return (chi2, 1.0);
     }
     if chi2 == f64::INFINITY {
-        return (COST_BEHIND, 0.0);
+        return (COST_BEHIND_CAMERA, 0.0);
     }
     let (residual, threshold) = (chi2.sqrt(), bound.sqrt());
-    ((threshold * (2.0 * residual - threshold)).min(COST_BEHIND), threshold / residual)
+    ((threshold * (2.0 * residual - threshold)).min(COST_BEHIND_CAMERA), threshold / residual)
 }
 
 /// The Huber loss while poses and points are refined.
@@ -119,7 +121,7 @@ pub(crate) struct Normal {
     poses: Vec<(Block, Column)>,
     points: Vec<PointBlock>,
     couplings: Vec<Coupling>,
-    /// What ties couple two rows by, the lower one first.
+    /// Coupling of two rows by constraints, the lower row first.
     crossed: Vec<(u32, u32, Matrix6<f64>)>,
     /// S = U - W V^-1 W' \[Triggs et al. 2000\].
     pub reduced: BlockMatrix,
@@ -150,14 +152,14 @@ impl Normal {
         self.crossed.clear();
     }
 
-    /// Adds what a tie says of the poses of two rows; its robust cost.
-    pub fn add_tie(&mut self, tie: &PoseConstraint, poses: &[Pose3], views: &[View]) -> f64 {
-        let (residual, by_from, by_to) = tie.linearise(poses);
-        let chi2 = residual.dot(&(tie.information * residual));
+    /// Adds a constraint between the poses of two rows; its robust cost.
+    pub fn add_constraint(&mut self, constraint: &PoseConstraint, poses: &[Pose3], views: &[View]) -> f64 {
+        let (residual, by_from, by_to) = constraint.linearise(poses);
+        let chi2 = residual.dot(&(constraint.information * residual));
         let (loss, weight) = robust(chi2, CHI2_95_6);
-        let information = tie.information * weight;
-        let sides = [(views[tie.from].row, by_from), (views[tie.to].row, by_to)];
-        for (row, jacobian) in sides.iter().filter(|(row, _)| *row != FIXED) {
+        let information = constraint.information * weight;
+        let sides = [(views[constraint.from].row, by_from), (views[constraint.to].row, by_to)];
+        for (row, jacobian) in sides.iter().filter(|(row, _)| *row != FIXED_ROW) {
             let (block, gradient) = &mut self.poses[*row as usize];
             let own: Matrix6<f64> = jacobian.transpose() * information * jacobian;
             let pull: Vector6<f64> = jacobian.transpose() * information * residual;
@@ -167,7 +169,7 @@ impl Normal {
             }
         }
         let [(from, by_from), (to, by_to)] = sides;
-        if from != FIXED && to != FIXED {
+        if from != FIXED_ROW && to != FIXED_ROW {
             let mixed: Matrix6<f64> = by_from.transpose() * information * by_to;
             self.crossed.push(if from < to { (from, to, mixed.transpose()) } else { (to, from, mixed) });
         }
@@ -191,8 +193,8 @@ impl Normal {
             let view = &views[seen.pose as usize];
             *kept = UNCOUPLED;
             let p = view.see(point);
-            if p[2] < NEAREST {
-                cost += COST_BEHIND;
+            if p[2] < MIN_PROJECTION_DEPTH_M {
+                cost += COST_BEHIND_CAMERA;
                 continue;
             }
             let inverse = 1.0 / p[2];
@@ -229,7 +231,7 @@ impl Normal {
                 }
                 block.gradient[i] += dot(&column, &g);
             }
-            if view.row != FIXED {
+            if view.row != FIXED_ROW {
                 *kept = Coupling { p, coupling };
                 add_pose(&mut self.poses[view.row as usize], &info, &g, &p);
             }
@@ -315,7 +317,7 @@ impl Normal {
             let range = layout.of_point(index);
             for (seen, kept) in layout.seen[range.clone()].iter().zip(&self.couplings[range]) {
                 let row = views[seen.pose as usize].row;
-                if row == FIXED {
+                if row == FIXED_ROW {
                     break;
                 }
                 let wide = kept.wide();
@@ -354,7 +356,7 @@ impl Normal {
         let range = layout.of_point(index);
         for (seen, kept) in layout.seen[range.clone()].iter().zip(&self.couplings[range]) {
             let row = views[seen.pose as usize].row;
-            if row == FIXED {
+            if row == FIXED_ROW {
                 break;
             }
             let step = &self.step[self.node_of[row as usize]];

@@ -1,3 +1,5 @@
+//! The loss of Huber.
+
 /// The loss of Huber (1964) on a squared residual: quadratic within `threshold` standard deviations, linear beyond.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Huber {

@@ -1,28 +1,31 @@
+//! Weights that limit the influence of single points on a pose.
+
 use nalgebra::{Matrix3x6, Matrix6};
 
-/// No point makes up more of a pose than this, of the six parts that a pose has, while there are enough of them. Points that
-/// nobody could contradict, a near one among many far away, say, would put the camera wherever they were matched.
-const MOST: f64 = 0.25;
-/// With few points each makes up more: at most so many times the mean.
-const MOST_OF_MEAN: f64 = 3.0;
-/// Passes over the points; three that agree by chance are where they should be after some ten.
-const PASSES: usize = 20;
-/// A share this much above the most is good enough.
-const SLACK: f64 = 1.1;
+/// Largest share of a point in one of the six components of a pose: 0.25, while there are enough points. A point with a larger
+/// share, a near one among many far ones, would put the camera where it was matched, whether right or wrong. Source: ours, after
+/// \[Hampel86\].
+const MAX_LEVERAGE: f64 = 0.25;
+/// Largest share in multiples of the mean share, where points are few: 3. Source: ours.
+const MAX_LEVERAGE_OF_MEAN: f64 = 3.0;
+/// Most passes over the points: 20. Three wrong points that agree are held down after some ten. Source: ours.
+const MAX_PASSES: usize = 20;
+/// Ratio of a share to its limit that ends the passes: 1.1. Source: ours.
+const LEVERAGE_TOLERANCE: f64 = 1.1;
 
 /// By how much to weight each of `rows`, the Jacobians of points' residuals in standard deviations, 0 to 1: so that no leverage,
 /// the part of the fit that a point decides by itself, is above the bound (the GM-estimators of Mallows, \[Hampel86\]).
 pub(crate) fn bounded(rows: &[Matrix3x6<f64>]) -> Vec<f64> {
     let mut weights = vec![1.0; rows.len()];
     let counted = rows.iter().filter(|row| **row != Matrix3x6::zeros()).count();
-    let most = MOST.max(MOST_OF_MEAN * 6.0 / counted.max(1) as f64);
-    for _ in 0..PASSES {
+    let most = MAX_LEVERAGE.max(MAX_LEVERAGE_OF_MEAN * 6.0 / counted.max(1) as f64);
+    for _ in 0..MAX_PASSES {
         let information = sum(rows, &weights);
         let Some(covariance) = information.cholesky().map(|c| c.inverse()) else { break };
         let mut is_bounded = true;
         for (row, weight) in rows.iter().zip(&mut weights) {
             let leverage = *weight * (row * covariance).component_mul(row).sum();
-            if leverage > most * SLACK {
+            if leverage > most * LEVERAGE_TOLERANCE {
                 *weight *= most / leverage;
                 is_bounded = false;
             }
@@ -49,20 +52,23 @@ mod tests {
     }
 
     #[test]
-    fn what_others_tell_as_well_counts_in_full() {
+    fn points_confirmed_by_others_have_full_weight() {
         assert_eq!(bounded(&rows(10)), vec![1.0; 30]);
         assert_eq!(bounded(&[]), Vec::<f64>::new());
         assert_eq!(bounded(&rows(1)[..1]), vec![1.0], "of what tells no pose nothing is asked");
     }
 
     #[test]
-    fn what_decides_by_itself_is_held_down() {
+    fn a_point_that_decides_alone_is_weighted_down() {
         let mut rows = rows(20);
         rows[7] *= 1000.0;
         let weights = bounded(&rows);
         let covariance = sum(&rows, &weights).try_inverse().unwrap();
         let leverage = weights[7] * (rows[7] * covariance).component_mul(&rows[7]).sum();
-        assert!(weights[7] < 1e-4 && (0.2..=MOST_OF_MEAN * 0.1 * SLACK).contains(&leverage), "{leverage}");
+        assert!(
+            weights[7] < 1e-4 && (0.2..=MAX_LEVERAGE_OF_MEAN * 0.1 * LEVERAGE_TOLERANCE).contains(&leverage),
+            "{leverage}"
+        );
         assert!(weights.iter().enumerate().all(|(i, weight)| i == 7 || *weight == 1.0));
     }
 }

@@ -1,11 +1,31 @@
-//! Solvers for trundle: robust least squares on SE(3) over what an RGB-D camera says of points.
+//! Robust least squares on SE(3) over what an RGB-D camera measures of points.
 //!
-//! [`PoseProblem`] refines one camera pose against known points (tracking); [`BundleProblem`] refines several poses and
-//! the points together by the Schur complement (local bundle adjustment, Triggs et al. 2000); [`PoseGraph`] spreads a
-//! closed loop's correction over poses tied by relative measurements. The first two share the residual of
-//! [`PointObservation`] (rectified pixel and inverse depth, each in its standard deviations), the Huber loss and the
-//! perturbation: poses are `world_from_camera`, moved on the right, translation first, so that a covariance is that of
-//! the camera in its own frame. Everything runs on one thread in a fixed order: the same input gives the same bits.
+//! [`PoseProblem`] refines one camera pose against known points (tracking). [`BundleProblem`] refines several poses and the points
+//! together by the Schur complement (bundle adjustment, Triggs et al. 2000). [`PoseGraph`] distributes the correction of a closed loop
+//! over poses with relative constraints. The first two share the residual of [`PointObservation`] (rectified pixel and inverse depth, each
+//! in its standard deviations), the Huber loss and the perturbation: poses are `world_from_camera`, perturbed on the right, translation
+//! first, so that a covariance is that of the camera in its own frame. Everything runs on one thread in a fixed order: the same input
+//! gives the same bits.
+//!
+//! ```
+//! use nalgebra::{Matrix6, UnitQuaternion};
+//! use trundle_core::{Pose3, Vector3};
+//! use trundle_optim::{PoseConstraint, PoseGraph, PoseGraphConfig};
+//!
+//! // Four poses along a line by odometry, each step 0.1 m too long, and a loop closure that says 3 m.
+//! let at = |x: f64| Pose3::new(UnitQuaternion::identity(), Vector3::x() * x);
+//! let constraint = |from, to, length| PoseConstraint { from, to, from_to: at(length), information: Matrix6::identity() };
+//! let mut constraints: Vec<PoseConstraint> = (0..3).map(|i| constraint(i, i + 1, 1.1)).collect();
+//! constraints.push(PoseConstraint { information: Matrix6::identity() * 1e6, ..constraint(0, 3, 3.0) });
+//!
+//! let poses = (0..4).map(|i| at(1.1 * f64::from(i))).collect();
+//! let graph = PoseGraph::new(poses, &[true, false, false, false], constraints)?;
+//! let solution = graph.solve(&PoseGraphConfig::default());
+//! for (i, pose) in solution.poses.iter().enumerate() {
+//!     assert!((pose.translation.x - i as f64).abs() < 1e-3, "the correction is distributed evenly");
+//! }
+//! # Ok::<(), trundle_core::Invalid>(())
+//! ```
 
 mod block;
 mod block_cholesky;

@@ -1,3 +1,5 @@
+//! The order of a sparse system that keeps its profile narrow.
+
 use std::collections::VecDeque;
 
 /// The row of each node by reverse Cuthill-McKee (Cuthill, McKee 1969; George 1971): breadth first from a node of least

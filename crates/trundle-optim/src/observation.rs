@@ -1,3 +1,5 @@
+//! What an RGB-D camera measures of a point, and its residual.
+
 use crate::Huber;
 use nalgebra::{Matrix3, Matrix3x6};
 use trundle_core::{PinholeCamera, Vector2, Vector3};
@@ -6,12 +8,13 @@ use trundle_core::{PinholeCamera, Vector2, Vector3};
 pub const CHI2_95_2: f64 = 5.991;
 /// The 95th percentile of the chi-square distribution with 3 degrees of freedom.
 pub const CHI2_95_3: f64 = 7.815;
-/// 95 % of the chi-square distribution of six: of a whole pose.
+/// The 95th percentile of the chi-square distribution with 6 degrees of freedom: of a whole pose.
 pub const CHI2_95_6: f64 = 12.592;
-/// 99.9 % of the same.
+/// The 99.9th percentile of the chi-square distribution with 6 degrees of freedom.
 pub(crate) const CHI2_999_6: f64 = 22.458;
-/// Points nearer than this along the optical axis (m) have no usable projection.
-pub(crate) const NEAREST: f64 = 0.02;
+/// Smallest depth of a point along the optical axis that has a projection: 0.02 m. A nearer point counts as behind the camera.
+/// Source: ours.
+pub(crate) const MIN_PROJECTION_DEPTH_M: f64 = 0.02;
 
 /// A measured inverse depth. Sensors that measure a disparity (Kinect v1, stereo) have the same `sigma` at every range.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -55,7 +58,7 @@ impl PointObservation {
 
     /// The residual in standard deviations for a point at `p_camera` (m); `None` behind or in the lens.
     pub fn residual(&self, camera: &PinholeCamera, p_camera: Vector3) -> Option<Vector3> {
-        if p_camera.z < NEAREST {
+        if p_camera.z < MIN_PROJECTION_DEPTH_M {
             return None;
         }
         let inverse = 1.0 / p_camera.z;
@@ -95,13 +98,13 @@ pub(crate) fn camera_point_by_pose(p_camera: Vector3) -> Matrix3x6<f64> {
     jacobian
 }
 
-/// The loss that a point behind the camera costs: enough to reject a step, not enough to rule the sum.
-pub(crate) const COST_BEHIND: f64 = 1e3;
+/// Cost of a point behind the camera: 1e3. It rejects a step and does not dominate the sum. Source: ours.
+pub(crate) const COST_BEHIND_CAMERA: f64 = 1e3;
 
 /// The robust loss of an observation of a point at `p_camera`.
 pub(crate) fn robust_cost(camera: &PinholeCamera, seen: &PointObservation, p_camera: Vector3) -> f64 {
     seen.residual(camera, p_camera)
-        .map_or(COST_BEHIND, |r| seen.huber().cost(r.norm_squared()).min(COST_BEHIND))
+        .map_or(COST_BEHIND_CAMERA, |r| seen.huber().cost(r.norm_squared()).min(COST_BEHIND_CAMERA))
 }
 
 #[cfg(test)]
@@ -154,6 +157,6 @@ mod tests {
         let behind = Vector3::new(0.1, 0.1, -1.0);
         assert!(seen(true).linearize(&camera(), behind).is_none());
         assert_eq!(seen(true).chi2(&camera(), behind), f64::INFINITY);
-        assert_eq!(robust_cost(&camera(), &seen(true), behind), COST_BEHIND);
+        assert_eq!(robust_cost(&camera(), &seen(true), behind), COST_BEHIND_CAMERA);
     }
 }

@@ -1,3 +1,5 @@
+//! One camera pose against known points.
+
 use crate::leverage::bounded;
 use crate::observation::{PointObservation, camera_point_by_pose, robust_cost};
 use crate::pose_prior::PosePrior;
@@ -298,7 +300,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_known_besides_makes_up_for_a_poor_image() {
+    fn a_prior_compensates_for_a_poor_image() {
         let error = |prior: Option<PosePrior>| {
             let off = |seed| {
                 let observations = scene(truth(), 12, 1.0, seed);
@@ -312,7 +314,7 @@ mod tests {
     }
 
     #[test]
-    fn what_contradicts_the_image_counts_for_nothing() {
+    fn a_prior_that_contradicts_the_image_is_ignored() {
         let observations = scene(truth(), 150, 1.0, 5);
         let solve = |prior| {
             PoseProblem { camera: &camera(), observations: &observations, prior, bounded: false }
@@ -324,7 +326,7 @@ mod tests {
     }
 
     #[test]
-    fn a_near_point_that_is_none_does_not_place_the_camera() {
+    fn a_wrong_near_point_does_not_determine_the_pose() {
         let off = |seed| {
             let mut observations = scene(truth(), 80, 1.0, seed);
             for (i, (point, seen)) in observations.iter_mut().enumerate() {
@@ -346,7 +348,7 @@ mod tests {
     }
 
     #[test]
-    fn the_covariance_is_honest() {
+    fn the_covariance_is_consistent() {
         let (mut nees, runs) = (0.0, 60);
         for seed in 0..runs {
             let observations = scene(truth(), 150, 1.0, seed);

@@ -1,3 +1,5 @@
+//! Poses with relative constraints between them.
+
 use crate::block_cholesky::BlockMatrix;
 use nalgebra::{Matrix6, Vector6};
 use serde::{Deserialize, Serialize};
@@ -81,7 +83,7 @@ impl PoseGraph {
     /// A graph over `poses` (`world_from_pose`), of which those marked in `fixed` stay.
     ///
     /// # Errors
-    /// When the lengths differ, no pose is fixed, a constraint names a pose that is not there or ties one to itself, or
+    /// When the lengths differ, no pose is fixed, a constraint names a pose that is not there or constrains one to itself, or
     /// a number is not finite.
     pub fn new(poses: Vec<Pose3>, fixed: &[bool], constraints: Vec<PoseConstraint>) -> Result<Self, Invalid> {
         if fixed.len() != poses.len() {
@@ -98,8 +100,8 @@ impl PoseGraph {
         if let Some(i) = poses.iter().position(|pose| !pose.is_finite()) {
             return Err(Invalid::new(format!("pose {i} of the graph"), "not finite", "", "finite numbers"));
         }
-        for (i, tie) in constraints.iter().enumerate() {
-            tie.check(i, poses.len())?;
+        for (i, constraint) in constraints.iter().enumerate() {
+            constraint.check(i, poses.len())?;
         }
         let mut count = 0;
         let number = |is_fixed: &bool| {
@@ -133,17 +135,18 @@ impl PoseGraph {
                 break;
             }
         }
-        let chi2 = self.constraints.iter().map(|tie| tie.chi2(&self.poses)).collect();
+        let chi2 = self.constraints.iter().map(|constraint| constraint.chi2(&self.poses)).collect();
         PoseGraphSolution { chi2, initial_cost, final_cost: cost, steps, poses: self.poses }
     }
 
     fn cost(&self, poses: &[Pose3]) -> f64 {
-        self.constraints.iter().map(|tie| tie.chi2(poses)).sum()
+        self.constraints.iter().map(|constraint| constraint.chi2(poses)).sum()
     }
 
     fn blank(&self) -> (BlockMatrix, Vec<Vector6<f64>>) {
         let count = self.free.iter().flatten().count();
-        let pair = |tie: &PoseConstraint| Some((self.free[tie.from]?, self.free[tie.to]?));
+        let pair =
+            |constraint: &PoseConstraint| Some((self.free[constraint.from]?, self.free[constraint.to]?));
         let pairs: Vec<(usize, usize)> = self.constraints.iter().filter_map(pair).collect();
         (BlockMatrix::new(count, &pairs), vec![Vector6::zeros(); count])
     }
@@ -152,10 +155,10 @@ impl PoseGraph {
     fn linearise(&self, matrix: &mut BlockMatrix, gradient: &mut [Vector6<f64>]) {
         matrix.clear();
         gradient.fill(Vector6::zeros());
-        for tie in &self.constraints {
-            let (residual, by_from, by_to) = tie.linearise(&self.poses);
-            let information = tie.information;
-            let sides = [(self.free[tie.from], by_from), (self.free[tie.to], by_to)];
+        for constraint in &self.constraints {
+            let (residual, by_from, by_to) = constraint.linearise(&self.poses);
+            let information = constraint.information;
+            let sides = [(self.free[constraint.from], by_from), (self.free[constraint.to], by_to)];
             for (i, jacobian) in &sides {
                 let Some(i) = *i else { continue };
                 matrix.add(i, i, &(jacobian.transpose() * information * jacobian));
@@ -233,7 +236,7 @@ mod tests {
         (a.inverse() * b).log().norm()
     }
 
-    fn tie(from: usize, to: usize, from_to: Pose3) -> PoseConstraint {
+    fn constraint(from: usize, to: usize, from_to: Pose3) -> PoseConstraint {
         PoseConstraint { from, to, from_to, information: Matrix6::identity() }
     }
 
@@ -247,7 +250,7 @@ mod tests {
         let truth: Vec<Pose3> = (0..count).map(at).collect();
         let step = |i: usize| {
             let error = Vector6::from_fn(|_, _| noise * rng.random_range(-1.0..1.0));
-            tie(i, i + 1, truth[i].inverse() * truth[i + 1] * Pose3::exp(error))
+            constraint(i, i + 1, truth[i].inverse() * truth[i + 1] * Pose3::exp(error))
         };
         let odometry = (0..count - 1).map(step).collect();
         (truth, odometry)
@@ -255,8 +258,8 @@ mod tests {
 
     fn chained(start: Pose3, odometry: &[PoseConstraint]) -> Vec<Pose3> {
         let mut poses = vec![start];
-        for tie in odometry {
-            poses.push(poses[tie.from] * tie.from_to);
+        for constraint in odometry {
+            poses.push(poses[constraint.from] * constraint.from_to);
         }
         poses
     }
@@ -266,13 +269,13 @@ mod tests {
     }
 
     #[test]
-    fn a_closed_loop_takes_most_of_the_drift_away() {
-        let (truth, mut ties) = ring(60, 0.01);
-        let start = chained(truth[0], &ties);
-        ties.push(tie(59, 0, truth[59].inverse() * truth[0]));
+    fn a_closed_loop_removes_most_of_the_drift() {
+        let (truth, mut constraints) = ring(60, 0.01);
+        let start = chained(truth[0], &constraints);
+        constraints.push(constraint(59, 0, truth[59].inverse() * truth[0]));
         let drift = gap(start[59], truth[59]);
         let solution =
-            PoseGraph::new(start, &only_first(60), ties).unwrap().solve(&PoseGraphConfig::default());
+            PoseGraph::new(start, &only_first(60), constraints).unwrap().solve(&PoseGraphConfig::default());
         assert_eq!(solution.poses[0], truth[0]);
         assert!(solution.final_cost < 0.1 * solution.initial_cost);
         let left = gap(solution.poses[59], truth[59]);
@@ -281,8 +284,8 @@ mod tests {
 
     #[test]
     fn exact_measurements_are_met_from_a_bad_start() {
-        let (truth, mut ties) = ring(30, 0.0);
-        ties.push(tie(29, 0, truth[29].inverse() * truth[0]));
+        let (truth, mut constraints) = ring(30, 0.0);
+        constraints.push(constraint(29, 0, truth[29].inverse() * truth[0]));
         let mut rng = ChaCha8Rng::seed_from_u64(3);
         let moved = |(i, pose): (usize, &Pose3)| {
             let error = Vector6::from_fn(|_, _| rng.random_range(-0.3..0.3));
@@ -290,7 +293,7 @@ mod tests {
         };
         let start = truth.iter().enumerate().map(moved).collect();
         let solution =
-            PoseGraph::new(start, &only_first(30), ties).unwrap().solve(&PoseGraphConfig::default());
+            PoseGraph::new(start, &only_first(30), constraints).unwrap().solve(&PoseGraphConfig::default());
         for (found, truth) in solution.poses.iter().zip(&truth) {
             assert!(gap(*found, *truth) < 1e-6);
         }
@@ -298,12 +301,12 @@ mod tests {
 
     #[test]
     fn broken_graphs_are_refused() {
-        let refused = |fixed: &[bool], ties| {
-            PoseGraph::new(vec![Pose3::identity(); 2], fixed, ties).unwrap_err().to_string()
+        let refused = |fixed: &[bool], constraints| {
+            PoseGraph::new(vec![Pose3::identity(); 2], fixed, constraints).unwrap_err().to_string()
         };
         assert!(refused(&[false, false], vec![]).contains("fixed poses is 0"));
         assert!(refused(&[true], vec![]).contains("marks of fixed poses is 1"));
-        let own = tie(1, 1, Pose3::identity());
+        let own = constraint(1, 1, Pose3::identity());
         assert!(refused(&[true, false], vec![own]).contains("constraint 0 of the graph is from 1 to 1"));
         let lone = PoseGraph::new(vec![Pose3::identity()], &[true], vec![]).unwrap();
         assert_eq!(lone.solve(&PoseGraphConfig::default()).final_cost, 0.0);
@@ -315,8 +318,8 @@ mod tests {
             a in prop::array::uniform6(-1.0..1.0), b in prop::array::uniform6(-1.0..1.0), e in prop::array::uniform6(-0.1..0.1),
         ) {
             let poses = [Pose3::exp(Vector6::from(a)), Pose3::exp(Vector6::from(b))];
-            let tie = tie(0, 1, poses[0].inverse() * poses[1] * Pose3::exp(Vector6::from(e)));
-            let (_, by_from, by_to) = tie.linearise(&poses);
+            let constraint = constraint(0, 1, poses[0].inverse() * poses[1] * Pose3::exp(Vector6::from(e)));
+            let (_, by_from, by_to) = constraint.linearise(&poses);
             for k in 0..6 {
                 let mut nudge = Vector6::zeros();
                 nudge[k] = 1e-6;
@@ -324,7 +327,7 @@ mod tests {
                     let at = |sign: f64| {
                         let mut moved = poses;
                         moved[i] = moved[i] * Pose3::exp(nudge * sign);
-                        tie.residual(&moved)
+                        constraint.residual(&moved)
                     };
                     let slope = (at(1.0) - at(-1.0)) / 2e-6;
                     prop_assert!((slope - jacobian.column(k)).norm() < 1e-4, "{}", slope - jacobian.column(k));

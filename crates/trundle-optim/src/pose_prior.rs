@@ -1,3 +1,5 @@
+//! A pose known from another sensor, and its fusion with that of the image.
+
 use crate::observation::{CHI2_95_6, CHI2_999_6};
 use nalgebra::Matrix6;
 use trundle_core::Pose3;
@@ -41,7 +43,7 @@ mod tests {
     use nalgebra::Vector6;
 
     #[test]
-    fn the_surer_pose_counts_more_axis_by_axis() {
+    fn the_more_certain_pose_counts_more_axis_by_axis() {
         let sure = Matrix6::from_diagonal(&Vector6::new(1e-6, 4e-4, 1e-4, 1e-4, 1e-4, 1e-4));
         let prior = PosePrior { world_from_camera: Pose3::identity(), covariance: sure };
         let pose = Pose3::exp(Vector6::new(0.02, 0.03, 0.0, 0.0, 0.0, 0.01));

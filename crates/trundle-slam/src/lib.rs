@@ -15,7 +15,10 @@
 //! let mut slam = RgbdSlam::new(camera, SlamConfig::default())?;
 //!
 //! // A wall at 2 m with a pattern of random tiles.
-//! let tile = |x: usize, y: usize| ((x / 8 * 73 + y / 8 * 151) * 2_654_435_761 >> 7) as u8;
+//! let tile = |x: usize, y: usize| {
+//!     let hash = (x / 8 * 0x9E37_79B9) ^ (y / 8 * 0x85EB_CA6B);
+//!     ((hash ^ (hash >> 15)).wrapping_mul(0x2C1B_3C6D) >> 16) as u8
+//! };
 //! let color = ColorImage::from_fn(640, 480, |x, y| [tile(x, y); 3]);
 //! let depth = DepthImage::filled(640, 480, 2.0);
 //! for i in 0..3 {

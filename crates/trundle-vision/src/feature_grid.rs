@@ -1,8 +1,10 @@
+//! Keypoints by position.
+
 use crate::Keypoint;
 use std::ops::{Range, RangeInclusive};
 
-/// Side of a cell, px.
-const CELL: f32 = 16.0;
+/// Side of a cell: 16 px. Source: ours.
+const CELL_PX: f32 = 16.0;
 
 /// The features of an image sorted into square cells: where to look for a projected point.
 ///
@@ -28,7 +30,7 @@ impl FeatureGrid {
     /// Sorts `keypoints` (raw or rectified px, as the queries will be) of an image of `width` x `height` px. Those outside
     /// of it are found all the same; those whose position is not finite never are.
     pub fn new(keypoints: &[Keypoint], width: usize, height: usize) -> Self {
-        let count = |side: usize| (side as f32 / CELL).ceil().max(1.0) as usize;
+        let count = |side: usize| (side as f32 / CELL_PX).ceil().max(1.0) as usize;
         let (columns, rows) = (count(width), count(height));
         let mut grid = Self { columns, rows, starts: vec![0; columns * rows + 1], entries: Vec::new() };
         let cell = |k: &Keypoint| cell_of(k.y, rows) * columns + cell_of(k.x, columns);
@@ -76,7 +78,7 @@ impl FeatureGrid {
 /// The cell of a coordinate, the first or last one for those outside.
 fn cell_of(position: f32, cells: usize) -> usize {
     // The cast saturates, and takes NaN for 0.
-    ((position / CELL) as usize).min(cells - 1)
+    ((position / CELL_PX) as usize).min(cells - 1)
 }
 
 #[cfg(test)]
@@ -97,7 +99,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn finds_what_looking_at_all_finds(
+        fn the_grid_finds_what_a_linear_search_finds(
             keypoints in any_keypoints(),
             x in -50.0..150.0_f32, y in -50.0..110.0_f32, radius in 0.0..60.0_f32, low in 0..4u8, high in 0..4u8,
         ) {

@@ -1,3 +1,5 @@
+//! Keypoints and descriptors of an image.
+
 use crate::ImagePatch;
 
 /// A corner found in an image.
@@ -63,7 +65,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_kept_stays_together_and_in_order() {
+    fn kept_features_stay_together_and_in_order() {
         let keypoint = |i: u8| Keypoint { x: f32::from(i), y: 0.0, octave: 0, angle: 0.0, response: 1.0 };
         let mut features = Features {
             keypoints: (0..9).map(keypoint).collect(),

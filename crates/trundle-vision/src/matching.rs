@@ -1,3 +1,5 @@
+//! Pairs of similar descriptors.
+
 use crate::Descriptor;
 
 /// A pair of features that look alike.

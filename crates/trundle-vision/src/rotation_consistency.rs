@@ -1,8 +1,10 @@
+//! Keeps pairs of keypoints whose rotations agree.
+
 use crate::{Keypoint, Match};
 use std::f32::consts::TAU;
 
-/// Bins over the circle: 12 deg each.
-const BINS: usize = 30;
+/// Bins over the circle: 30, of 12 deg each. Source: \[MurArtal17\].
+const ROTATION_BINS: usize = 30;
 
 /// The matches whose keypoints turn between the images as most others do: those in the three fullest bins of a
 /// histogram of the angle differences, 12 deg each, in their old order. Of equally full bins the lower counts. A camera
@@ -12,11 +14,11 @@ const BINS: usize = 30;
 pub fn rotation_consistent(matches: &[Match], a: &[Keypoint], b: &[Keypoint]) -> Vec<Match> {
     let bin = |m: &Match| {
         let turn = (b[m.b].angle - a[m.a].angle).rem_euclid(TAU) / TAU;
-        (turn * BINS as f32) as usize % BINS
+        (turn * ROTATION_BINS as f32) as usize % ROTATION_BINS
     };
-    let mut histogram = [0; BINS];
+    let mut histogram = [0; ROTATION_BINS];
     matches.iter().for_each(|m| histogram[bin(m)] += 1);
-    let mut by_size: [usize; BINS] = std::array::from_fn(|i| i);
+    let mut by_size: [usize; ROTATION_BINS] = std::array::from_fn(|i| i);
     by_size.sort_by_key(|&i| std::cmp::Reverse(histogram[i]));
     matches.iter().filter(|m| by_size[..3].contains(&bin(m))).copied().collect()
 }
@@ -30,7 +32,7 @@ mod tests {
     }
 
     #[test]
-    fn what_turns_unlike_the_rest_is_dropped() {
+    fn pairs_with_a_different_rotation_are_dropped() {
         let a: Vec<Keypoint> = (0..50).map(|i| keypoint(i as f32 * 0.12 - 3.0)).collect();
         let mut b: Vec<Keypoint> = a.iter().map(|k| keypoint((k.angle + 0.6 + TAU) % TAU)).collect();
         for i in [3, 17, 40] {
@@ -43,7 +45,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_in_nothing_out() {
+    fn no_pairs_give_no_pairs() {
         assert_eq!(rotation_consistent(&[], &[], &[]), vec![]);
     }
 }

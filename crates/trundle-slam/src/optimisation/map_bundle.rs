@@ -106,7 +106,7 @@ impl MapBundle {
             parts.resize(self.keyframes.len() + 1, 0);
         }
         let problem = BundleProblem::new(model.camera, poses, points, observations)
-            .and_then(|problem| problem.with_ties(constraints))
+            .and_then(|problem| problem.with_constraints(constraints))
             .and_then(|problem| if parts.is_empty() { Ok(problem) } else { problem.with_parts(parts) });
         self.solver.begin(&problem.expect("invariant: every index was counted here"), config);
     }

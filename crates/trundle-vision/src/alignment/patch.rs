@@ -1,21 +1,23 @@
+//! The image around a feature.
+
 use trundle_core::GrayImage;
 
-/// Pixels that a patch reaches from its middle one.
-pub(super) const REACH: usize = 10;
-/// Its side, px.
-pub(super) const SIDE: usize = 2 * REACH + 1;
+/// Pixels from the middle of a patch to its border: 10. Source: ours.
+pub(super) const PATCH_RADIUS_PX: usize = 10;
+/// Side of a patch, px.
+pub(super) const PATCH_SIDE_PX: usize = 2 * PATCH_RADIUS_PX + 1;
 
 /// What an image shows around a feature: 21 x 21 px of the feature's level of the pyramid.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ImagePatch {
-    pixels: [u8; SIDE * SIDE],
+    pixels: [u8; PATCH_SIDE_PX * PATCH_SIDE_PX],
     /// Where the feature is, px right and down of the middle pixel.
     feature: [f32; 2],
 }
 
 impl ImagePatch {
     /// Bytes of a patch.
-    pub const BYTES: usize = SIDE * SIDE;
+    pub const BYTES: usize = PATCH_SIDE_PX * PATCH_SIDE_PX;
 
     /// Of these pixels, row by row, with the feature so many px right and down of the middle one; `None` where that is more than
     /// half a pixel off.
@@ -26,8 +28,8 @@ impl ImagePatch {
     /// Cut from an `image` around pixel (`x`, `y`), which is 10 px or more from its border.
     pub(crate) fn cut(image: &GrayImage, (x, y): (usize, usize), feature: [f32; 2]) -> Self {
         let mut pixels = [0; Self::BYTES];
-        for (row, to) in pixels.as_chunks_mut::<SIDE>().0.iter_mut().enumerate() {
-            to.copy_from_slice(&image.row(y + row - REACH)[x - REACH..][..SIDE]);
+        for (row, to) in pixels.as_chunks_mut::<PATCH_SIDE_PX>().0.iter_mut().enumerate() {
+            to.copy_from_slice(&image.row(y + row - PATCH_RADIUS_PX)[x - PATCH_RADIUS_PX..][..PATCH_SIDE_PX]);
         }
         Self { pixels, feature }
     }
@@ -44,16 +46,17 @@ impl ImagePatch {
 
     /// The grey value at (`x`, `y`) px from the first pixel, between the four around it; `None` outside.
     pub(super) fn at(&self, x: f32, y: f32) -> Option<f32> {
-        let last = (SIDE - 1) as f32;
+        let last = (PATCH_SIDE_PX - 1) as f32;
         if !(x >= 0.0 && y >= 0.0 && x < last && y < last) {
             return None;
         }
         let (left, top) = (x as usize, y as usize);
         let (right, down) = (x - left as f32, y - top as f32);
         let value = |i: usize| f32::from(self.pixels[i]);
-        let first = top * SIDE + left;
+        let first = top * PATCH_SIDE_PX + left;
         let above = value(first) + right * (value(first + 1) - value(first));
-        let below = value(first + SIDE) + right * (value(first + SIDE + 1) - value(first + SIDE));
+        let below = value(first + PATCH_SIDE_PX)
+            + right * (value(first + PATCH_SIDE_PX + 1) - value(first + PATCH_SIDE_PX));
         Some(above + down * (below - above))
     }
 
@@ -66,8 +69,8 @@ impl ImagePatch {
         to: &mut [f32],
     ) {
         for (y, to) in to.as_chunks_mut::<N>().0.iter_mut().take(N).enumerate() {
-            let first = (top + y) * SIDE + left;
-            let (above, below) = (&self.pixels[first..][..=N], &self.pixels[first + SIDE..][..=N]);
+            let first = (top + y) * PATCH_SIDE_PX + left;
+            let (above, below) = (&self.pixels[first..][..=N], &self.pixels[first + PATCH_SIDE_PX..][..=N]);
             for (x, to) in to.iter_mut().enumerate() {
                 *to = weights[0] * f32::from(above[x])
                     + weights[1] * f32::from(above[x + 1])

@@ -1,26 +1,30 @@
-use super::patch::{ImagePatch, REACH};
+//! Finds a template in a patch, to a fraction of a pixel.
+
+use super::patch::{ImagePatch, PATCH_RADIUS_PX};
 use nalgebra::{Matrix2, Vector2};
 
-/// Pixels that a template reaches from its middle.
-const HALF: usize = 5;
-/// Its side, px.
-const SIDE: usize = 2 * HALF + 1;
-/// Its pixels, filled up with zeros to whole registers.
-const LENGTH: usize = (SIDE * SIDE).next_multiple_of(LANES);
-/// Numbers that are summed side by side, whatever the processor has: sums of floats depend on their order.
+/// Pixels from the middle of a template to its border: 5. Source: ours.
+const TEMPLATE_RADIUS_PX: usize = 5;
+/// Side of a template, px.
+const TEMPLATE_SIDE_PX: usize = 2 * TEMPLATE_RADIUS_PX + 1;
+/// Pixels of a template, padded with zeros to whole registers.
+const PADDED_LENGTH: usize = (TEMPLATE_SIDE_PX * TEMPLATE_SIDE_PX).next_multiple_of(LANES);
+/// Sums that are accumulated side by side on every processor: 8. Sums of floats depend on their order.
 const LANES: usize = 8;
-/// The same with a pixel more around, for the gradients.
-const WARPED: usize = SIDE + 2;
-/// Steps at most, and the last one at most, px.
-const STEPS: (usize, f32) = (10, 0.02);
-/// How much of the contrast in view may be something else.
-const MOST_UNLIKE: f32 = 0.3;
-/// By how much the contrast may differ, either way.
-const MOST_CONTRAST: f32 = 2.0;
-/// Numbers that are fitted: place, brightness, contrast.
-const FITTED: usize = 4;
+/// Side of a template with a border of one pixel for the gradients, px.
+const WARPED_SIDE_PX: usize = TEMPLATE_SIDE_PX + 2;
+/// Most steps of an alignment: 10. It then ends as far as it has come. Source: ours.
+const MAX_STEPS: usize = 10;
+/// Step that ends an alignment: 0.02 px. Source: ours.
+const CONVERGED_STEP_PX: f32 = 0.02;
+/// Largest fraction of the contrast in view that the template does not explain: 0.3. Beyond it the alignment fails. Source: ours.
+const MAX_RESIDUAL_RATIO: f32 = 0.3;
+/// Largest ratio of the contrasts of image and template, or its inverse: 2. Beyond it the alignment fails. Source: ours.
+const MAX_CONTRAST_RATIO: f32 = 2.0;
+/// Parameters that are fitted: position (two), brightness, contrast.
+const FITTED_PARAMETERS: usize = 4;
 
-type Pixels = [f32; LENGTH];
+type Pixels = [f32; PADDED_LENGTH];
 
 /// A patch as it should look in another image.
 #[derive(Debug, Clone)]
@@ -51,13 +55,16 @@ impl Template {
     pub fn new(patch: &ImagePatch, there_from_here: Matrix2<f32>) -> Option<Self> {
         let warped = warp(patch, there_from_here.try_inverse()?)?;
         let mut template = Self::gradients(&warped);
-        let mean = sum(&template.values) / (SIDE * SIDE) as f32;
-        template.values[..SIDE * SIDE].iter_mut().for_each(|v| *v -= mean);
+        let mean = sum(&template.values) / (TEMPLATE_SIDE_PX * TEMPLATE_SIDE_PX) as f32;
+        template.values[..TEMPLATE_SIDE_PX * TEMPLATE_SIDE_PX].iter_mut().for_each(|v| *v -= mean);
         template.contrast = dot(&template.values, &template.values);
         for gradient in [&mut template.right, &mut template.down] {
-            let (mean, share) =
-                (sum(gradient) / (SIDE * SIDE) as f32, dot(gradient, &template.values) / template.contrast);
-            for (g, v) in gradient.iter_mut().zip(&template.values).take(SIDE * SIDE) {
+            let (mean, share) = (
+                sum(gradient) / (TEMPLATE_SIDE_PX * TEMPLATE_SIDE_PX) as f32,
+                dot(gradient, &template.values) / template.contrast,
+            );
+            for (g, v) in gradient.iter_mut().zip(&template.values).take(TEMPLATE_SIDE_PX * TEMPLATE_SIDE_PX)
+            {
                 *g -= mean + share * v;
             }
         }
@@ -68,15 +75,17 @@ impl Template {
     }
 
     /// Values as they are, and their gradients.
-    fn gradients(warped: &[[f32; WARPED]; WARPED]) -> Self {
+    fn gradients(warped: &[[f32; WARPED_SIDE_PX]; WARPED_SIDE_PX]) -> Self {
         let mut template = Self {
-            values: [0.0; LENGTH],
-            right: [0.0; LENGTH],
-            down: [0.0; LENGTH],
+            values: [0.0; PADDED_LENGTH],
+            right: [0.0; PADDED_LENGTH],
+            down: [0.0; PADDED_LENGTH],
             contrast: 0.0,
             inverse: Matrix2::zeros(),
         };
-        for (i, (y, x)) in (1..=SIDE).flat_map(|y| (1..=SIDE).map(move |x| (y, x))).enumerate() {
+        for (i, (y, x)) in
+            (1..=TEMPLATE_SIDE_PX).flat_map(|y| (1..=TEMPLATE_SIDE_PX).map(move |x| (y, x))).enumerate()
+        {
             template.values[i] = warped[y][x];
             template.right[i] = (warped[y][x + 1] - warped[y][x - 1]) / 2.0;
             template.down[i] = (warped[y + 1][x] - warped[y - 1][x]) / 2.0;
@@ -106,14 +115,14 @@ impl Template {
     fn find_plainly(&self, patch: &ImagePatch, start: Vector2<f32>) -> Option<Alignment> {
         let feature = Vector2::from(patch.feature());
         let mut at = feature + start;
-        let mut seen = [0.0; LENGTH];
-        for _ in 0..STEPS.0 {
+        let mut seen = [0.0; PADDED_LENGTH];
+        for _ in 0..MAX_STEPS {
             sample(patch, at, &mut seen)?;
             let gain = dot(&self.values, &seen) / self.contrast;
             let step = self.inverse * Vector2::new(dot(&self.right, &seen), dot(&self.down, &seen))
-                / gain.clamp(1.0 / MOST_CONTRAST, MOST_CONTRAST);
+                / gain.clamp(1.0 / MAX_CONTRAST_RATIO, MAX_CONTRAST_RATIO);
             at -= step;
-            if step.norm() <= STEPS.1 {
+            if step.norm() <= CONVERGED_STEP_PX {
                 return self.judged(&seen, gain, at - feature);
             }
         }
@@ -123,28 +132,32 @@ impl Template {
     /// The place, unless what is `seen` there is something else.
     #[inline(always)]
     fn judged(&self, seen: &Pixels, gain: f32, offset: Vector2<f32>) -> Option<Alignment> {
-        let count = (SIDE * SIDE) as f32;
+        let count = (TEMPLATE_SIDE_PX * TEMPLATE_SIDE_PX) as f32;
         let mean = sum(seen) / count;
         let contrast = dot(seen, seen) - count * mean * mean;
         let unlike = (contrast - gain * gain * self.contrast).max(0.0);
-        let variance = unlike / (count - FITTED as f32) / (gain * gain);
+        let variance = unlike / (count - FITTED_PARAMETERS as f32) / (gain * gain);
         let half = (self.inverse.m11 + self.inverse.m22) / 2.0;
         let widest = half + ((self.inverse.m11 - self.inverse.m22) / 2.0).hypot(self.inverse.m12);
         let sigma = (variance * widest).sqrt();
-        let is_like =
-            unlike <= MOST_UNLIKE * contrast && (1.0 / MOST_CONTRAST..=MOST_CONTRAST).contains(&gain);
+        let is_like = unlike <= MAX_RESIDUAL_RATIO * contrast
+            && (1.0 / MAX_CONTRAST_RATIO..=MAX_CONTRAST_RATIO).contains(&gain);
         is_like.then_some(Alignment { offset, sigma })
     }
 }
 
 /// The patch around its feature, an offset of a px being one of `here_from_there`; `None` where it does not reach so far.
-fn warp(patch: &ImagePatch, here_from_there: Matrix2<f32>) -> Option<[[f32; WARPED]; WARPED]> {
+fn warp(
+    patch: &ImagePatch,
+    here_from_there: Matrix2<f32>,
+) -> Option<[[f32; WARPED_SIDE_PX]; WARPED_SIDE_PX]> {
     let [x, y] = patch.feature();
-    let middle = Vector2::new(x, y).add_scalar(REACH as f32);
-    let mut warped = [[0.0; WARPED]; WARPED];
+    let middle = Vector2::new(x, y).add_scalar(PATCH_RADIUS_PX as f32);
+    let mut warped = [[0.0; WARPED_SIDE_PX]; WARPED_SIDE_PX];
     for (row, values) in warped.iter_mut().enumerate() {
         for (column, value) in values.iter_mut().enumerate() {
-            let offset = Vector2::new(column as f32, row as f32).add_scalar(-(HALF as f32 + 1.0));
+            let offset =
+                Vector2::new(column as f32, row as f32).add_scalar(-(TEMPLATE_RADIUS_PX as f32 + 1.0));
             let at = middle + here_from_there * offset;
             *value = patch.at(at.x, at.y)?;
         }
@@ -155,15 +168,15 @@ fn warp(patch: &ImagePatch, here_from_there: Matrix2<f32>) -> Option<[[f32; WARP
 /// What `patch` shows in the square around `at`, px from its middle; `None` where it does not reach so far.
 #[inline(always)]
 fn sample(patch: &ImagePatch, at: Vector2<f32>, seen: &mut Pixels) -> Option<()> {
-    let corner = at.add_scalar((REACH - HALF) as f32);
-    let most = 2.0 * (REACH - HALF) as f32;
+    let corner = at.add_scalar((PATCH_RADIUS_PX - TEMPLATE_RADIUS_PX) as f32);
+    let most = 2.0 * (PATCH_RADIUS_PX - TEMPLATE_RADIUS_PX) as f32;
     if !(corner.x >= 0.0 && corner.y >= 0.0 && corner.x < most && corner.y < most) {
         return None;
     }
     let (left, top) = (corner.x as usize, corner.y as usize);
     let (right, down) = (corner.x - left as f32, corner.y - top as f32);
     let weights = [(1.0 - right) * (1.0 - down), right * (1.0 - down), (1.0 - right) * down, right * down];
-    patch.blend::<SIDE>((left, top), weights, seen);
+    patch.blend::<TEMPLATE_SIDE_PX>((left, top), weights, seen);
     Some(())
 }
 
@@ -208,9 +221,10 @@ mod tests {
 
     /// What a camera shows of it that has its feature so far from the middle, and the surface moved.
     fn patch(feature: [f32; 2], value: impl Fn(f32, f32) -> f32) -> ImagePatch {
-        let side = 2 * REACH + 1;
+        let side = 2 * PATCH_RADIUS_PX + 1;
         let pixels = std::array::from_fn(|i| {
-            let (x, y) = ((i % side) as f32 - REACH as f32, (i / side) as f32 - REACH as f32);
+            let (x, y) =
+                ((i % side) as f32 - PATCH_RADIUS_PX as f32, (i / side) as f32 - PATCH_RADIUS_PX as f32);
             value(x, y).round() as u8
         });
         ImagePatch::new(pixels, feature).unwrap()
@@ -222,7 +236,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn it_is_found_where_it_is(dx in -2.0_f32..2.0, dy in -2.0_f32..2.0, gain in 0.8_f32..1.3) {
+        fn a_template_is_found_where_it_is(dx in -2.0_f32..2.0, dy in -2.0_f32..2.0, gain in 0.8_f32..1.3) {
             let template = Template::new(&unmoved(), Matrix2::identity()).unwrap();
             let moved = patch([0.25, -0.5], |x, y| gain * surface(x - dx, y - dy) * 0.7 + 10.0);
             let found = template.find(&moved, Vector2::new(0.5, -0.5)).unwrap();
@@ -241,7 +255,7 @@ mod tests {
     }
 
     #[test]
-    fn a_view_from_nearer_and_aside_is_expected_as_it_is() {
+    fn a_warped_template_fits_a_view_from_nearer_and_aside() {
         let there_from_here = Matrix2::new(1.15, 0.1, -0.05, 0.9);
         let template = Template::new(&unmoved(), there_from_here).unwrap();
         let here = there_from_here.try_inverse().unwrap();
@@ -256,7 +270,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_something_else_or_nothing_is_not_taken_for_it() {
+    fn a_different_or_plain_patch_is_not_aligned() {
         let template = Template::new(&unmoved(), Matrix2::identity()).unwrap();
         let other = patch([0.0, 0.0], |x, y| 120.0 + 60.0 * (0.9 * x).sin() * (0.8 * y + 0.3).cos());
         assert_eq!(template.find(&other, Vector2::zeros()), None);

@@ -1,3 +1,5 @@
+//! RANSAC: the motion that most pairs agree with.
+
 use super::ransac_config::RansacConfig;
 use super::refine::gauss_newton;
 use super::residual::{Mover, Observation};
@@ -5,10 +7,12 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use trundle_core::{PinholeCamera, Pose3};
 
-/// Rounds of polishing at most; the inliers have settled long before.
-const POLISHING: usize = 5;
-/// Gauss-Newton steps a round, and the step (m and rad) that ends it.
-const STEPS: (usize, f64) = (10, 1e-7);
+/// Most rounds of refinement by the inliers: 5. Source: ours.
+const MAX_REFINEMENTS: usize = 5;
+/// Most Gauss-Newton steps of a round: 10. Source: ours.
+const MAX_STEPS: usize = 10;
+/// Step that ends a round: 1e-7, m and rad. Source: ours.
+const CONVERGED_STEP: f64 = 1e-7;
 
 /// RANSAC \[Fischler81\] over observations, some of them wrong: samples of three propose motions, the one of least truncated
 /// cost \[Torr00\] wins, and is polished on those that agree with it.
@@ -81,9 +85,9 @@ impl Consensus<'_> {
     fn polish(&self, b_from_a: Pose3) -> Option<(Pose3, Vec<usize>)> {
         let mut motion = b_from_a;
         let mut inliers = self.inliers(motion);
-        for _ in 0..POLISHING {
+        for _ in 0..MAX_REFINEMENTS {
             let agreeing: Vec<Observation> = inliers.iter().map(|&i| self.observations[i]).collect();
-            motion = gauss_newton(motion, &agreeing, self.camera, STEPS.0, STEPS.1)?;
+            motion = gauss_newton(motion, &agreeing, self.camera, MAX_STEPS, CONVERGED_STEP)?;
             let now = self.inliers(motion);
             let settled = now == inliers;
             inliers = now;

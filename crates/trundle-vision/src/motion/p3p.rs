@@ -30,10 +30,11 @@ pub(crate) fn poses_of_three(points: [Vector3; 3], bearings: [Vector3; 3]) -> [O
 
 /// Sides, by corners (0, 1), (0, 2), (1, 2).
 const SIDES: [(usize, usize); 3] = [(0, 1), (0, 2), (1, 2)];
-/// Newton steps on the distances.
-const POLISHING: usize = 5;
-/// How far the square of a side may be off in the end, in parts of the longest: more is no solution.
-const TOLERANCE: f64 = 1e-7;
+/// Newton steps on the distances: 5. Source: ours.
+const NEWTON_STEPS: usize = 5;
+/// Largest error of a side's square in a solution, as a fraction of the longest: 1e-7. Beyond it there is no solution. Source:
+/// ours.
+const MAX_SIDE_ERROR: f64 = 1e-7;
 
 /// A triangle, and under which angles its sides are seen.
 struct Triangle {
@@ -82,12 +83,12 @@ impl Triangle {
 
     /// The distances that fit the sides, by Newton's method; `None` when none near by do.
     fn polished(&self, mut distances: Vector3) -> Option<Vector3> {
-        for _ in 0..POLISHING {
+        for _ in 0..NEWTON_STEPS {
             let jacobian = Matrix3::from_fn(|side, k| 2.0 * (self.quadric(side) * distances)[k]);
             distances -= jacobian.try_inverse()? * self.misfit(&distances);
         }
         let longest = self.squares.iter().fold(0.0, |a: f64, b| a.max(*b));
-        let fits = self.misfit(&distances).amax() <= TOLERANCE * longest;
+        let fits = self.misfit(&distances).amax() <= MAX_SIDE_ERROR * longest;
         (fits && distances.min() > 0.0).then_some(distances)
     }
 
@@ -273,7 +274,7 @@ mod tests {
     }
 
     #[test]
-    fn what_has_no_pose_gives_none() {
+    fn points_without_a_pose_give_none() {
         let bearings =
             [Vector3::z(), Vector3::new(0.1, 0.0, 1.0).normalize(), Vector3::new(0.2, 0.0, 1.0).normalize()];
         let line = [0.0, 1.0, 2.0].map(|x| Vector3::new(x, 0.0, 3.0));

@@ -1,3 +1,5 @@
+//! The pose of a camera from points and their pixels.
+
 use super::consensus::Consensus;
 use super::p3p::poses_of_three;
 use super::ransac::RansacResult;
@@ -118,7 +120,7 @@ mod tests {
     }
 
     #[test]
-    fn what_does_not_determine_a_pose_gives_none() {
+    fn points_that_do_not_determine_a_pose_give_none() {
         let camera = PinholeCamera::kinect_v2();
         let seen = |points: Vec<Vector3>| {
             let pixels = points.iter().map(|p| camera.project(*p).unwrap()).collect();
@@ -133,7 +135,7 @@ mod tests {
     }
 
     #[test]
-    fn chance_is_not_a_pose() {
+    fn random_pairs_give_no_pose() {
         assert_eq!(estimated(&scene(Pose3::identity(), 100, 0.0, 1, 1), 0), None);
     }
 

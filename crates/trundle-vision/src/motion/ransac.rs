@@ -1,3 +1,5 @@
+//! The motion between two RGB-D frames, from pairs of points.
+
 use super::consensus::Consensus;
 use super::ransac_config::RansacConfig;
 use super::residual::Observation;
@@ -150,7 +152,7 @@ mod tests {
     }
 
     #[test]
-    fn chance_is_not_a_motion() {
+    fn random_pairs_give_no_motion() {
         let (a, _) = half_wrong(Pose3::identity(), 100, 1);
         let (b, _) = half_wrong(Pose3::identity(), 100, 2);
         assert_eq!(estimated(&(a, b), 0), None);

@@ -1,3 +1,5 @@
+//! Settings of RANSAC.
+
 use serde::{Deserialize, Serialize};
 use trundle_core::{Invalid, require_in, require_positive};
 

@@ -1,3 +1,5 @@
+//! Refines a pose by reprojection.
+
 use super::residual::{Mover, Observation};
 use nalgebra::{Matrix6, Vector6};
 use serde::{Deserialize, Serialize};
@@ -170,7 +172,7 @@ mod tests {
     }
 
     #[test]
-    fn what_does_not_determine_a_pose_gives_none() {
+    fn points_that_do_not_determine_a_pose_give_none() {
         let points = scene(2);
         assert_eq!(refined(&points, &seen(&points, Pose3::identity())), None);
         let same = [scene(1)[0]; 9];

@@ -1,3 +1,5 @@
+//! The residual of a point against an observation.
+
 use nalgebra::{Matrix2x3, Matrix3, Matrix3x6, RowVector3};
 use trundle_core::{PinholeCamera, Pose3, Vector2, Vector3};
 
@@ -18,8 +20,8 @@ pub(crate) struct Observation {
     pub bound: f64,
 }
 
-/// The squared residual of a point that came to lie behind the camera: worse than any in front of it, yet finite.
-const BEHIND: f64 = 1e8;
+/// Squared residual of a point behind the camera: 1e8, larger than any in front of it, and finite. Source: ours.
+const CHI2_BEHIND_CAMERA: f64 = 1e8;
 
 impl Observation {
     /// Column, row and depth: measured less predicted, each in its standard deviations. `None` behind the camera.
@@ -30,7 +32,7 @@ impl Observation {
 
     /// The squared length of the residual.
     pub fn chi2(&self, camera: &PinholeCamera, p_b: Vector3) -> f64 {
-        self.residual(camera, p_b).map_or(BEHIND, |r| r.norm_squared())
+        self.residual(camera, p_b).map_or(CHI2_BEHIND_CAMERA, |r| r.norm_squared())
     }
 
     /// Derivative of the residual by the right perturbation of `b_from_a`, translation first.

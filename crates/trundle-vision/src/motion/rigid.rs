@@ -1,3 +1,5 @@
+//! The rigid motion between two sets of points.
+
 use nalgebra::{Matrix3, SVD};
 use trundle_core::{Pose3, Vector3};
 
@@ -49,7 +51,7 @@ mod tests {
     }
 
     #[test]
-    fn too_little_gives_none() {
+    fn too_few_points_give_no_motion() {
         let line: Vec<_> = (0..5).map(|i| Vector3::new(i as f64, 2.0, 1.0)).map(|p| (p, p)).collect();
         assert_eq!(rigid_motion(&line), None);
         assert_eq!(rigid_motion(&[(Vector3::x(), Vector3::x()), (Vector3::y(), Vector3::y())]), None);

@@ -4,7 +4,7 @@
 use std::arch::x86_64::*;
 
 /// Pixels of a block: as many as a register of AVX2 has bytes.
-pub(crate) const BLOCK: usize = 32;
+pub(crate) const BLOCK_PX: usize = 32;
 
 /// Where blocks of `size` start that cover `length`, which is `size` or more. The last may overlap the one before: single pixels
 /// at the end of a row would cost as much as a block each.

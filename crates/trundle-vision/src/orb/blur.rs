@@ -1,5 +1,7 @@
+//! Smooths an image by a Gaussian.
+
 #[cfg(target_arch = "x86_64")]
-use super::avx2::{self, BLOCK, block, block_mut, starts};
+use super::avx2::{self, BLOCK_PX, block, block_mut, starts};
 use trundle_core::GrayImage;
 
 /// Weights of a Gaussian of standard deviation 2 px over 7 px, in 1/256: middle first. BRIEF compares single pixels, so
@@ -33,7 +35,7 @@ impl Blur {
 /// The weighted mean of seven slices, element by element.
 fn smooth(from: [&[u8]; 2 * RADIUS + 1], to: &mut [u8]) {
     #[cfg(target_arch = "x86_64")]
-    if to.len() >= 2 * BLOCK && std::arch::is_x86_feature_detected!("avx2") {
+    if to.len() >= 2 * BLOCK_PX && std::arch::is_x86_feature_detected!("avx2") {
         // SAFETY: the processor has the one feature that the function is compiled for.
         return unsafe { smooth_by_avx2(from, to) };
     }
@@ -51,7 +53,7 @@ fn smooth_plainly([a, b, c, d, e, f, g]: [&[u8]; 2 * RADIUS + 1], to: &mut [u8])
     }
 }
 
-/// [`smooth_plainly`] of two [`BLOCK`]s of pixels or more. No sum of two products exceeds 15 bits, nor that of all 16.
+/// [`smooth_plainly`] of two [`BLOCK_PX`]s of pixels or more. No sum of two products exceeds 15 bits, nor that of all 16.
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2")]
 fn smooth_by_avx2(from: [&[u8]; 2 * RADIUS + 1], to: &mut [u8]) {
@@ -60,13 +62,13 @@ fn smooth_by_avx2(from: [&[u8]; 2 * RADIUS + 1], to: &mut [u8]) {
     let (next, second, third) = (both(KERNEL[1]), both(KERNEL[2]), both(KERNEL[3]));
     // The middle is paired with twos: 64 of these make the half that rounds.
     let (twos, middle) = (both(2), _mm256_set1_epi16(64 << 8 | KERNEL[0] as i16));
-    for x in starts(to.len(), 2 * BLOCK) {
-        let mut windows = [&[0; 2 * BLOCK]; 2 * RADIUS + 1];
+    for x in starts(to.len(), 2 * BLOCK_PX) {
+        let mut windows = [&[0; 2 * BLOCK_PX]; 2 * RADIUS + 1];
         for (window, slice) in windows.iter_mut().zip(from) {
             *window = block(slice, x);
         }
-        let out: &mut [u8; 2 * BLOCK] = block_mut(to, x);
-        for part in [0, BLOCK] {
+        let out: &mut [u8; 2 * BLOCK_PX] = block_mut(to, x);
+        for part in [0, BLOCK_PX] {
             let at = |k: usize| avx2::load(block(windows[k], part));
             let pairs =
                 [(at(3), twos, middle), (at(2), at(4), next), (at(1), at(5), second), (at(0), at(6), third)];

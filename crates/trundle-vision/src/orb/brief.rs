@@ -1,15 +1,17 @@
+//! Rotated BRIEF descriptors.
+
 use super::orientation::Direction;
-use super::patch::{Patch, RADIUS, STRIDE};
+use super::patch::{DISC_RADIUS_PX, PATCH_STRIDE, Patch};
 use crate::Descriptor;
 
 /// Brightness comparisons, a bit each.
-const TESTS: usize = 256;
+const BRIGHTNESS_TESTS: usize = 256;
 
 /// Rotated BRIEF: bit i says whether the first point of test i is darker than the second, the tests being turned by the
 /// patch's direction \[Rublee11, sec. 4.1\]. The patch is smoothed already.
 pub(crate) fn describe(patch: &Patch, direction: Direction) -> Descriptor {
     let [first, second] = turned(direction);
-    let value = |at: u32| patch[at as usize % (STRIDE * STRIDE)];
+    let value = |at: u32| patch[at as usize % (PATCH_STRIDE * PATCH_STRIDE)];
     let mut words = [0; 4];
     let (first, second) = (first.as_chunks::<64>().0, second.as_chunks::<64>().0);
     for (word, (first, second)) in words.iter_mut().zip(first.iter().zip(second)) {
@@ -22,7 +24,7 @@ pub(crate) fn describe(patch: &Patch, direction: Direction) -> Descriptor {
 }
 
 /// Where in a patch the ends of every test are when turned.
-type Places = [[u32; TESTS]; 2];
+type Places = [[u32; BRIGHTNESS_TESTS]; 2];
 
 fn turned(direction: Direction) -> Places {
     #[cfg(target_arch = "x86_64")]
@@ -42,54 +44,54 @@ fn turned_by_avx2(direction: Direction) -> Places {
 
 #[inline(always)]
 fn turned_plainly(direction: Direction) -> Places {
-    let mut places = [[0; TESTS]; 2];
+    let mut places = [[0; BRIGHTNESS_TESTS]; 2];
     for (places, points) in places.iter_mut().zip(&PATTERN) {
         for ((at, x), y) in places.iter_mut().zip(&points.x).zip(&points.y) {
             let across = rounded_bits(direction.cos * x - direction.sin * y);
             let down = rounded_bits(direction.sin * x + direction.cos * y);
-            *at = (down.wrapping_mul(STRIDE as u32)).wrapping_add(across).wrapping_add(MIDDLE);
+            *at = (down.wrapping_mul(PATCH_STRIDE as u32)).wrapping_add(across).wrapping_add(MIDDLE_INDEX);
         }
     }
     places
 }
 
 /// Index of the patch's middle, less what [`rounded_bits`] adds.
-const MIDDLE: u32 =
-    ((RADIUS * STRIDE + RADIUS) as u32).wrapping_sub(ROUNDER.to_bits().wrapping_mul(STRIDE as u32 + 1));
+const MIDDLE_INDEX: u32 = ((DISC_RADIUS_PX * PATCH_STRIDE + DISC_RADIUS_PX) as u32)
+    .wrapping_sub(ROUNDING_OFFSET.to_bits().wrapping_mul(PATCH_STRIDE as u32 + 1));
 /// Adding it leaves no bits for a fraction: the sum's last bits are the nearest whole number.
-const ROUNDER: f32 = 12_582_912.0;
+const ROUNDING_OFFSET: f32 = 12_582_912.0;
 
-/// The nearest whole number plus the bits of [`ROUNDER`], without a conversion that the compiler cannot vectorise.
+/// The nearest whole number plus the bits of [`ROUNDING_OFFSET`], without a conversion that the compiler cannot vectorise.
 fn rounded_bits(value: f32) -> u32 {
-    (value + ROUNDER).to_bits()
+    (value + ROUNDING_OFFSET).to_bits()
 }
 
 /// Where one end of every test is, px from the middle.
 struct Points {
-    x: [f32; TESTS],
-    y: [f32; TESTS],
+    x: [f32; BRIGHTNESS_TESTS],
+    y: [f32; BRIGHTNESS_TESTS],
 }
 
 /// Both ends of every test, drawn from an isotropic normal distribution of variance S^2 / 25 for a patch of side S, which
 /// did best in \[Calonder10, sec. 3.2\] (G II). Ours: from a fixed seed, not the learned table of \[Rublee11\].
 static PATTERN: [Points; 2] = pattern();
 
-/// Farthest that a point may be from the middle, px, so that it stays in the patch however it is turned.
-const REACH: f32 = RADIUS as f32 - 0.5;
-/// S / 5.
-const SIGMA: f32 = (2 * RADIUS + 1) as f32 / 5.0;
+/// Largest distance of a test point from the middle, px: it stays in the patch under every rotation.
+const MAX_TEST_RADIUS_PX: f32 = DISC_RADIUS_PX as f32 - 0.5;
+/// Standard deviation of the test points, px: S / 5 of \[Calonder10\].
+const TEST_SIGMA_PX: f32 = (2 * DISC_RADIUS_PX + 1) as f32 / 5.0;
 
 const fn pattern() -> [Points; 2] {
-    let mut points = [const { Points { x: [0.0; TESTS], y: [0.0; TESTS] } }; 2];
+    let mut points = [const { Points { x: [0.0; BRIGHTNESS_TESTS], y: [0.0; BRIGHTNESS_TESTS] } }; 2];
     let mut state = 0x7472_756e_646c_6531; // "trundle1"
     let mut i = 0;
-    while i < 2 * TESTS {
+    while i < 2 * BRIGHTNESS_TESTS {
         let (x, y);
         (x, state) = normal(state);
         (y, state) = normal(state);
-        if x * x + y * y <= REACH * REACH / (SIGMA * SIGMA) {
-            points[i % 2].x[i / 2] = x * SIGMA;
-            points[i % 2].y[i / 2] = y * SIGMA;
+        if x * x + y * y <= MAX_TEST_RADIUS_PX * MAX_TEST_RADIUS_PX / (TEST_SIGMA_PX * TEST_SIGMA_PX) {
+            points[i % 2].x[i / 2] = x * TEST_SIGMA_PX;
+            points[i % 2].y[i / 2] = y * TEST_SIGMA_PX;
             i += 1;
         }
     }
@@ -131,24 +133,26 @@ mod tests {
         let mean = all.iter().sum::<f32>() / all.len() as f32;
         let variance = all.iter().map(|v| (v - mean) * (v - mean)).sum::<f32>() / all.len() as f32;
         assert!(mean.abs() < 0.6, "{mean}");
-        assert!((variance.sqrt() - SIGMA).abs() < 0.9, "{}", variance.sqrt());
+        assert!((variance.sqrt() - TEST_SIGMA_PX).abs() < 0.9, "{}", variance.sqrt());
         for points in &PATTERN {
-            assert!(points.x.iter().zip(&points.y).all(|(x, y)| x.hypot(*y) < REACH + 1e-3));
+            assert!(points.x.iter().zip(&points.y).all(|(x, y)| x.hypot(*y) < MAX_TEST_RADIUS_PX + 1e-3));
         }
     }
 
     #[test]
-    fn every_test_reads_the_pixel_that_it_says() {
+    fn every_test_reads_its_pixel() {
         let patch: Patch = std::array::from_fn(|i| (i * 37 % 251) as u8);
         for degrees in [0.0, 33.0, -120.0] {
             let direction = turned_by(degrees);
             let descriptor = describe(&patch, direction);
-            for test in 0..TESTS {
+            for test in 0..BRIGHTNESS_TESTS {
                 let [a, b] = [0, 1].map(|end| {
                     let (x, y) = (PATTERN[end].x[test], PATTERN[end].y[test]);
-                    let across = (direction.cos * x - direction.sin * y).round_ties_even() + RADIUS as f32;
-                    let down = (direction.sin * x + direction.cos * y).round_ties_even() + RADIUS as f32;
-                    patch[down as usize * STRIDE + across as usize]
+                    let across =
+                        (direction.cos * x - direction.sin * y).round_ties_even() + DISC_RADIUS_PX as f32;
+                    let down =
+                        (direction.sin * x + direction.cos * y).round_ties_even() + DISC_RADIUS_PX as f32;
+                    patch[down as usize * PATCH_STRIDE + across as usize]
                 });
                 assert_eq!(
                     descriptor.0[test / 64] >> (test % 64) & 1 == 1,

@@ -1,3 +1,5 @@
+//! Settings of the ORB extractor.
+
 use serde::{Deserialize, Serialize};
 use trundle_core::{Invalid, require_in};
 
@@ -40,7 +42,7 @@ impl Default for OrbConfig {
 
 impl OrbConfig {
     /// Nearer than this to the border, px of its octave, no feature is found: there is nothing to describe it by.
-    pub const MARGIN: usize = super::patch::BORDER;
+    pub const MARGIN: usize = super::patch::BORDER_PX;
 
     /// Passes a valid configuration through.
     ///

@@ -1,10 +1,12 @@
-use super::fast::Corner;
+//! Distributes corners evenly over an image.
+
+use super::corner::Corner;
 use std::cmp::Reverse;
 
 /// Appends to `chosen` `quota` of the `corners`, or all if there are fewer, spread evenly over an image of this size.
 ///
 /// The image is halved again and again across its longer side, and the quota with it; what one half cannot use, the
-/// other may. Where the quota has come down to [`LEAF`], the strongest corners are taken. Cost: n log n. The order of the
+/// other may. Where the quota has come down to [`MAX_LEAF_CORNERS`], the strongest corners are taken. Cost: n log n. The order of the
 /// `corners` is lost; that of `chosen` is fixed.
 pub(crate) fn choose(
     corners: &mut [Corner],
@@ -16,9 +18,9 @@ pub(crate) fn choose(
     choose_in(area, corners, quota, chosen);
 }
 
-/// How many corners of one part may lie where they like. One would spread them more evenly; three take the stronger ones,
-/// which gives a tenth more inliers between the frames of TUM freiburg1_rpy.
-const LEAF: usize = 3;
+/// Most corners of one part that are taken by strength: 3. One would distribute corners more evenly; three give a tenth more
+/// inliers between frames of TUM freiburg1_rpy. Source: ours.
+const MAX_LEAF_CORNERS: usize = 3;
 
 /// A rectangle of pixels, right and bottom exclusive.
 #[derive(Clone, Copy)]
@@ -49,7 +51,7 @@ impl Area {
 fn choose_in(area: Area, corners: &mut [Corner], quota: usize, chosen: &mut Vec<Corner>) {
     if corners.len() <= quota {
         chosen.extend_from_slice(corners);
-    } else if quota <= LEAF {
+    } else if quota <= MAX_LEAF_CORNERS {
         corners.sort_unstable_by_key(|c| (Reverse(c.score), c.y, c.x));
         chosen.extend_from_slice(&corners[..quota]);
     } else {
@@ -115,11 +117,11 @@ mod tests {
     }
 
     #[test]
-    fn a_crowd_does_not_starve_a_lonely_corner() {
+    fn a_dense_cluster_does_not_displace_a_lonely_corner() {
         let mut corners: Vec<Corner> =
             (0..400).map(|i| Corner { x: i % 20, y: i / 20, score: 200 }).collect();
         let lonely = Corner { x: 60, y: 40, score: 8 };
         corners.push(lonely);
-        assert!(chosen(&corners, 2 * LEAF).contains(&lonely));
+        assert!(chosen(&corners, 2 * MAX_LEAF_CORNERS).contains(&lonely));
     }
 }

@@ -5,21 +5,13 @@
 
 use super::OrbConfig;
 #[cfg(target_arch = "x86_64")]
-use super::avx2::{self, BLOCK, block, block_mut, starts};
-use super::patch::BORDER;
+use super::avx2::{self, BLOCK_PX, block, block_mut, starts};
+use super::corner::Corner;
+use super::patch::BORDER_PX;
 use trundle_core::GrayImage;
 
-/// A corner of a level.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Corner {
-    pub x: u16,
-    pub y: u16,
-    /// Least difference of its arc from it, grey values.
-    pub score: u8,
-}
-
-/// Radius of the circle, px.
-const RADIUS: usize = 3;
+/// Radius of the circle: 3 px. Source: \[Rosten06\].
+const CIRCLE_RADIUS_PX: usize = 3;
 
 /// The circle, (x, y) px from the corner of its square, clockwise from the top.
 const CIRCLE: [(usize, usize); 16] = [
@@ -51,7 +43,7 @@ pub(crate) struct Detector {
 }
 
 impl Detector {
-    /// Appends the corners of `image` that are at least [`BORDER`] px from its border, row by row: local maxima of the
+    /// Appends the corners of `image` that are at least [`BORDER_PX`] px from its border, row by row: local maxima of the
     /// score above the threshold, and in cells that have none, above the lower one; only of those that are `wanted`. The image is
     /// larger than two borders.
     pub fn detect(
@@ -85,29 +77,29 @@ impl Detector {
     fn score(&mut self, image: &GrayImage, threshold: u8) {
         let (width, height) = (image.width(), image.height());
         self.scores.resize(width * height, 0);
-        let around = BORDER - 1 - RADIUS..width - (BORDER - 1 - RADIUS);
-        for y in BORDER - 1..=height - BORDER {
-            let rows = std::array::from_fn(|k| &image.row(y + k - RADIUS)[around.clone()]);
-            score_row(rows, threshold, &mut self.scores[y * width..][BORDER - 1..=width - BORDER]);
+        let around = BORDER_PX - 1 - CIRCLE_RADIUS_PX..width - (BORDER_PX - 1 - CIRCLE_RADIUS_PX);
+        for y in BORDER_PX - 1..=height - BORDER_PX {
+            let rows = std::array::from_fn(|k| &image.row(y + k - CIRCLE_RADIUS_PX)[around.clone()]);
+            score_row(rows, threshold, &mut self.scores[y * width..][BORDER_PX - 1..=width - BORDER_PX]);
         }
     }
 
     fn find_maxima(&mut self, (width, height): (usize, usize), corners: &mut Vec<Corner>) {
-        self.maxima.resize((width - 2 * BORDER).next_multiple_of(WORD), 0);
+        self.maxima.resize((width - 2 * BORDER_PX).next_multiple_of(WORD_PX), 0);
         // The last word is longer than the row: what an image of another size left there is no maximum.
-        self.maxima[width - 2 * BORDER..].fill(0);
-        for y in BORDER..height - BORDER {
-            let row = |y: usize| &self.scores[y * width..][BORDER - 1..=width - BORDER];
-            let maxima = &mut self.maxima[..width - 2 * BORDER];
+        self.maxima[width - 2 * BORDER_PX..].fill(0);
+        for y in BORDER_PX..height - BORDER_PX {
+            let row = |y: usize| &self.scores[y * width..][BORDER_PX - 1..=width - BORDER_PX];
+            let maxima = &mut self.maxima[..width - 2 * BORDER_PX];
             suppress_row([row(y - 1), row(y), row(y + 1)], maxima);
-            for (word, scores) in self.maxima.as_chunks::<WORD>().0.iter().enumerate() {
+            for (word, scores) in self.maxima.as_chunks::<WORD_PX>().0.iter().enumerate() {
                 // Most words are empty, and the others nearly.
                 let mut left = u64::from_le_bytes(*scores);
                 while left != 0 {
                     let i = left.trailing_zeros() as usize / 8;
                     left &= !(0xff << (8 * i));
                     corners.push(Corner {
-                        x: (BORDER + WORD * word + i) as u16,
+                        x: (BORDER_PX + WORD_PX * word + i) as u16,
                         y: y as u16,
                         score: scores[i],
                     });
@@ -117,8 +109,8 @@ impl Detector {
     }
 }
 
-/// Pixels that are looked through at once for maxima.
-const WORD: usize = 8;
+/// Pixels that are searched at once for maxima: 8.
+const WORD_PX: usize = 8;
 
 /// The `$best` over all arcs of nine of `$circle` of the `$worst` of its pixels, be these one each or many. Two arcs of nine
 /// share eight; the eight halve twice.
@@ -142,40 +134,41 @@ macro_rules! best_arc {
     }};
 }
 
-/// Scores a row of pixels, from the seven rows around it, each 2 * [`RADIUS`] longer than `scores`. What does not exceed
+/// Scores a row of pixels, from the seven rows around it, each 2 * [`CIRCLE_RADIUS_PX`] longer than `scores`. What does not exceed
 /// `threshold` becomes 0.
-fn score_row(rows: [&[u8]; 2 * RADIUS + 1], threshold: u8, scores: &mut [u8]) {
+fn score_row(rows: [&[u8]; 2 * CIRCLE_RADIUS_PX + 1], threshold: u8, scores: &mut [u8]) {
     #[cfg(target_arch = "x86_64")]
-    if scores.len() >= BLOCK && std::arch::is_x86_feature_detected!("avx2") {
+    if scores.len() >= BLOCK_PX && std::arch::is_x86_feature_detected!("avx2") {
         // SAFETY: the processor has the one feature that the function is compiled for.
         return unsafe { score_row_by_avx2(rows, threshold, scores) };
     }
     score_row_plainly(rows, threshold, scores);
 }
 
-fn score_row_plainly(rows: [&[u8]; 2 * RADIUS + 1], threshold: u8, scores: &mut [u8]) {
+fn score_row_plainly(rows: [&[u8]; 2 * CIRCLE_RADIUS_PX + 1], threshold: u8, scores: &mut [u8]) {
     for (x, out) in scores.iter_mut().enumerate() {
-        let score = score(CIRCLE.map(|(dx, dy)| rows[dy][x + dx]), rows[RADIUS][x + RADIUS]);
+        let score =
+            score(CIRCLE.map(|(dx, dy)| rows[dy][x + dx]), rows[CIRCLE_RADIUS_PX][x + CIRCLE_RADIUS_PX]);
         *out = if score > threshold { score } else { 0 };
     }
 }
 
-/// [`score_row_plainly`] of [`BLOCK`] pixels or more, a block at a time.
+/// [`score_row_plainly`] of [`BLOCK_PX`] pixels or more, a block at a time.
 ///
 /// An arc of nine holds one of the topmost and the lowest pixel of the circle, and one of the leftmost and the rightmost. Where
 /// these four alone show that a block has no corner, as in most of an image, that is all that is looked at.
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2")]
-fn score_row_by_avx2(rows: [&[u8]; 2 * RADIUS + 1], threshold: u8, scores: &mut [u8]) {
+fn score_row_by_avx2(rows: [&[u8]; 2 * CIRCLE_RADIUS_PX + 1], threshold: u8, scores: &mut [u8]) {
     use std::arch::x86_64::*;
     let least = _mm256_set1_epi8(threshold.saturating_add(1) as i8);
-    for x in starts(scores.len(), BLOCK) {
-        let mut windows = [&[0; BLOCK + 2 * RADIUS]; 2 * RADIUS + 1];
+    for x in starts(scores.len(), BLOCK_PX) {
+        let mut windows = [&[0; BLOCK_PX + 2 * CIRCLE_RADIUS_PX]; 2 * CIRCLE_RADIUS_PX + 1];
         for (window, row) in windows.iter_mut().zip(rows) {
             *window = block(row, x);
         }
         let at = |(dx, dy): (usize, usize)| avx2::load(block(windows[dy], dx));
-        let middle = at((RADIUS, RADIUS));
+        let middle = at((CIRCLE_RADIUS_PX, CIRCLE_RADIUS_PX));
         let beyond = |bright, dark| {
             let difference =
                 _mm256_max_epu8(_mm256_subs_epu8(bright, middle), _mm256_subs_epu8(middle, dark));
@@ -210,7 +203,7 @@ fn score(circle: [u8; 16], middle: u8) -> u8 {
 /// rows are those above, of and below `maxima`, each one longer at either end.
 fn suppress_row(rows: [&[u8]; 3], maxima: &mut [u8]) {
     #[cfg(target_arch = "x86_64")]
-    if maxima.len() >= BLOCK && std::arch::is_x86_feature_detected!("avx2") {
+    if maxima.len() >= BLOCK_PX && std::arch::is_x86_feature_detected!("avx2") {
         // SAFETY: the processor has the one feature that the function is compiled for.
         return unsafe { suppress_row_by_avx2(rows, maxima) };
     }
@@ -225,13 +218,13 @@ fn suppress_row_plainly([above, own, below]: [&[u8]; 3], maxima: &mut [u8]) {
     }
 }
 
-/// [`suppress_row_plainly`] of [`BLOCK`] pixels or more, a block at a time.
+/// [`suppress_row_plainly`] of [`BLOCK_PX`] pixels or more, a block at a time.
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2")]
 fn suppress_row_by_avx2(rows: [&[u8]; 3], maxima: &mut [u8]) {
     use std::arch::x86_64::*;
     let max = |a, b| _mm256_max_epu8(a, b);
-    for x in starts(maxima.len(), BLOCK) {
+    for x in starts(maxima.len(), BLOCK_PX) {
         let at = |row: usize, dx: usize| avx2::load(block(rows[row], x + dx));
         let own = at(1, 1);
         let mut kept = own;
@@ -338,7 +331,7 @@ mod tests {
     }
 
     #[test]
-    fn none_is_nearer_to_the_border_than_can_be_described() {
+    fn no_corner_is_nearer_to_the_border_than_can_be_described() {
         let corners = detected(&dots(&[(15, 40, 90), (16, 50, 90), (79, 60, 90), (80, 70, 90)]));
         assert_eq!(corners.iter().map(|c| c.x).collect::<Vec<_>>(), vec![16, 79]);
     }

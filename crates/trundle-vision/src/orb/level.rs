@@ -1,5 +1,7 @@
+//! One level of the image pyramid.
+
 use super::{
-    Described, OrbConfig, blur::Blur, brief, distribute, fast, fast::Corner, orientation, patch,
+    Described, OrbConfig, blur::Blur, brief, corner::Corner, distribute, fast, orientation, patch,
     resize::Resize, subpixel, texture,
 };
 use crate::ImagePatch;
@@ -55,7 +57,8 @@ impl Level {
     /// around them whichever way.
     pub fn detect(&mut self, config: &OrbConfig, least: f32) {
         self.corners.clear();
-        if self.width().min(self.height()) > 2 * patch::BORDER && self.width().max(self.height()) <= 65536 {
+        if self.width().min(self.height()) > 2 * patch::BORDER_PX && self.width().max(self.height()) <= 65536
+        {
             self.blur.run(&self.image, &mut self.blurred);
             let has_texture = |corner: Corner| texture::least_gradient(&self.blurred, corner) >= least;
             self.detector.detect(&self.image, config, has_texture, &mut self.corners);

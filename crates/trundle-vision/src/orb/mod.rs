@@ -17,6 +17,7 @@ mod avx2;
 mod blur;
 mod brief;
 mod config;
+mod corner;
 mod distribute;
 mod fast;
 mod level;

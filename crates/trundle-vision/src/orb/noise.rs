@@ -2,29 +2,31 @@
 
 use trundle_core::GrayImage;
 
-/// Standard deviation of the mask's answer to noise of 1 \[Immerkaer96\].
-const GAIN: f32 = 6.0;
-/// The part of the answers that are looked at, and how many standard deviations it reaches of those of noise: where a quarter of an
-/// image is bare, the rest may be anything.
-const QUARTER: (usize, f32) = (4, 0.3186);
-/// What whole grey values leave, and no image has less.
-const LEAST: f32 = 0.29;
-/// Every second pixel either way is looked at.
-const STEP: usize = 2;
-/// The highest answer: 8 x 255 and none.
-const ANSWERS: usize = 8 * 255 + 1;
+/// Standard deviation of the mask's answer to noise of 1: 6. Source: \[Immerkaer96\].
+const MASK_GAIN: f32 = 6.0;
+/// The answers' quantile that is used: a quarter. The estimate holds as long as a quarter of the image has no texture. Source:
+/// ours.
+const QUANTILE_DIVISOR: usize = 4;
+/// That quantile of the absolute values of a normal distribution, in standard deviations.
+const QUANTILE_SIGMAS: f32 = 0.3186;
+/// Smallest standard deviation of an image's noise: 0.29 grey values, the rounding to whole ones.
+const MIN_NOISE_SIGMA: f32 = 0.29;
+/// Distance between the pixels that are used, in both directions: 2. Source: ours.
+const STRIDE_PX: usize = 2;
+/// Number of possible answers: 8 x 255 and 0.
+const ANSWER_COUNT: usize = 8 * 255 + 1;
 
 /// Standard deviation of the image's noise, grey values, at least that of rounding: by how much its pixels differ from what
 /// their neighbours let expect, where that is little. A ramp, and the middle of a straight edge, differ by nothing \[Immerkaer96\].
 pub(crate) fn sigma(image: &GrayImage) -> f32 {
-    let mut counts = [0_usize; ANSWERS];
-    for y in (1..image.height().saturating_sub(1)).step_by(STEP) {
+    let mut counts = [0_usize; ANSWER_COUNT];
+    for y in (1..image.height().saturating_sub(1)).step_by(STRIDE_PX) {
         let rows = [y - 1, y, y + 1].map(|y| image.row(y));
-        for x in (1..image.width().saturating_sub(1)).step_by(STEP) {
+        for x in (1..image.width().saturating_sub(1)).step_by(STRIDE_PX) {
             counts[usize::from(answer(rows.map(|row| [row[x - 1], row[x], row[x + 1]])))] += 1;
         }
     }
-    (quarter(&counts) / (QUARTER.1 * GAIN)).max(LEAST)
+    (quarter(&counts) / (QUANTILE_SIGMAS * MASK_GAIN)).max(MIN_NOISE_SIGMA)
 }
 
 /// The answer, whatever its sign, of the mask 1 -2 1, -2 4 -2, 1 -2 1.
@@ -35,8 +37,8 @@ fn answer(rows: [[u8; 3]; 3]) -> u16 {
 }
 
 /// Below what a quarter of the answers is; 0 of none. Whole numbers stand for what is rounded to them.
-fn quarter(counts: &[usize; ANSWERS]) -> f32 {
-    let wanted = counts.iter().sum::<usize>() as f32 / QUARTER.0 as f32;
+fn quarter(counts: &[usize; ANSWER_COUNT]) -> f32 {
+    let wanted = counts.iter().sum::<usize>() as f32 / QUANTILE_DIVISOR as f32;
     let mut below = 0.0;
     for (answer, count) in counts.iter().enumerate().filter(|(_, count)| **count > 0) {
         let (count, low) = (*count as f32, (answer as f32 - 0.5).max(0.0));
@@ -66,7 +68,7 @@ mod tests {
     }
 
     #[test]
-    fn it_is_that_of_the_bare_half() {
+    fn the_noise_is_that_of_the_half_without_texture() {
         for noise in [1.0, 2.0, 5.0] {
             let found = sigma(&image(noise));
             assert!((0.9..1.6).contains(&(found / noise)), "{found} for {noise}");
@@ -74,10 +76,10 @@ mod tests {
     }
 
     #[test]
-    fn a_clean_image_and_none_have_that_of_rounding() {
-        assert_eq!(sigma(&image(0.0)), LEAST);
+    fn a_clean_and_an_empty_image_have_the_noise_of_rounding() {
+        assert_eq!(sigma(&image(0.0)), MIN_NOISE_SIGMA);
         for (width, height) in [(0, 0), (0, 9), (9, 0), (1, 1), (2, 9), (9, 2)] {
-            assert_eq!(sigma(&GrayImage::filled(width, height, 7)), LEAST);
+            assert_eq!(sigma(&GrayImage::filled(width, height, 7)), MIN_NOISE_SIGMA);
         }
     }
 }

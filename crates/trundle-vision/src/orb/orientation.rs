@@ -1,4 +1,6 @@
-use super::patch::{Patch, RADIUS, STRIDE};
+//! The orientation of a patch.
+
+use super::patch::{DISC_RADIUS_PX, PATCH_STRIDE, Patch};
 use std::num::Wrapping;
 
 /// Which way a patch points: from its middle to its centre of mass \[Rosin99\].
@@ -42,30 +44,35 @@ fn moments_by_avx2(patch: &Patch) -> (i32, i32) {
 /// sum can overflow: it says so (`Wrapping`) because checks would keep the compiler from doing many at once.
 #[inline(always)]
 fn moments_plainly(patch: &Patch) -> (i32, i32) {
-    let (mut sums, mut downs) = ([Wrapping(0i16); STRIDE], [Wrapping(0i16); STRIDE]);
-    for ((row, disc), y) in
-        patch.as_chunks::<STRIDE>().0.iter().zip(&DISC).zip(-(RADIUS as i16)..=RADIUS as i16)
+    let (mut sums, mut downs) = ([Wrapping(0i16); PATCH_STRIDE], [Wrapping(0i16); PATCH_STRIDE]);
+    for ((row, disc), y) in patch
+        .as_chunks::<PATCH_STRIDE>()
+        .0
+        .iter()
+        .zip(&DISC)
+        .zip(-(DISC_RADIUS_PX as i16)..=DISC_RADIUS_PX as i16)
     {
-        for x in 0..STRIDE {
+        for x in 0..PATCH_STRIDE {
             let value = Wrapping(i16::from(row[x] & disc[x]));
             sums[x] += value;
             downs[x] += value * Wrapping(y);
         }
     }
-    let m10 = sums.iter().zip(-(RADIUS as i32)..).map(|(sum, x)| x * i32::from(sum.0)).sum();
+    let m10 = sums.iter().zip(-(DISC_RADIUS_PX as i32)..).map(|(sum, x)| x * i32::from(sum.0)).sum();
     (m10, downs.iter().map(|down| i32::from(down.0)).sum())
 }
 
 /// All bits set within the disc, none outside.
-static DISC: [[u8; STRIDE]; STRIDE] = disc();
+static DISC: [[u8; PATCH_STRIDE]; PATCH_STRIDE] = disc();
 
-const fn disc() -> [[u8; STRIDE]; STRIDE] {
-    let mut disc = [[0; STRIDE]; STRIDE];
+const fn disc() -> [[u8; PATCH_STRIDE]; PATCH_STRIDE] {
+    let mut disc = [[0; PATCH_STRIDE]; PATCH_STRIDE];
     let mut i = 0;
-    while i < STRIDE * STRIDE {
-        let (x, y) = ((i % STRIDE).abs_diff(RADIUS), (i / STRIDE).abs_diff(RADIUS));
-        if x * x + y * y <= RADIUS * RADIUS {
-            disc[i / STRIDE][i % STRIDE] = u8::MAX;
+    while i < PATCH_STRIDE * PATCH_STRIDE {
+        let (x, y) =
+            ((i % PATCH_STRIDE).abs_diff(DISC_RADIUS_PX), (i / PATCH_STRIDE).abs_diff(DISC_RADIUS_PX));
+        if x * x + y * y <= DISC_RADIUS_PX * DISC_RADIUS_PX {
+            disc[i / PATCH_STRIDE][i % PATCH_STRIDE] = u8::MAX;
         }
         i += 1;
     }
@@ -78,8 +85,8 @@ mod tests {
 
     fn patch(value: impl Fn(f32, f32) -> f32) -> Patch {
         std::array::from_fn(|i| {
-            let middle = RADIUS as f32;
-            value((i % STRIDE) as f32 - middle, (i / STRIDE) as f32 - middle) as u8
+            let middle = DISC_RADIUS_PX as f32;
+            value((i % PATCH_STRIDE) as f32 - middle, (i / PATCH_STRIDE) as f32 - middle) as u8
         })
     }
 
@@ -97,8 +104,9 @@ mod tests {
     fn the_moments_are_the_sums_that_define_them() {
         for image in [patch(|x, y| x * y + 90.0), patch(|_, y| if y > 0.0 { 255.0 } else { 0.0 })] {
             let disc = || {
-                let at = |i: usize| (i32::from(image[i]), i % STRIDE, i / STRIDE);
-                let centred = |(v, x, y)| (v, x as i32 - RADIUS as i32, y as i32 - RADIUS as i32);
+                let at = |i: usize| (i32::from(image[i]), i % PATCH_STRIDE, i / PATCH_STRIDE);
+                let centred =
+                    |(v, x, y)| (v, x as i32 - DISC_RADIUS_PX as i32, y as i32 - DISC_RADIUS_PX as i32);
                 (0..image.len()).map(at).map(centred).filter(|(_, x, y)| x * x + y * y <= 225)
             };
             let expected = (disc().map(|(v, x, _)| v * x).sum(), disc().map(|(v, _, y)| v * y).sum());
@@ -108,7 +116,7 @@ mod tests {
     }
 
     #[test]
-    fn a_flat_patch_and_what_lies_outside_the_disc_do_not_point() {
+    fn a_flat_patch_and_pixels_outside_the_disc_have_no_orientation() {
         let flat = Direction { angle: 0.0, cos: 1.0, sin: 0.0 };
         assert_eq!(direction(&patch(|_, _| 90.0)), flat);
         assert_eq!(direction(&patch(|x, y| if x * x + y * y > 225.0 { 9.0 + x } else { 50.0 })), flat);

@@ -1,3 +1,5 @@
+//! Shrinks an image.
+
 #[cfg(target_arch = "x86_64")]
 use super::avx2::{self, block, block_mut, starts};
 use trundle_core::GrayImage;

@@ -1,6 +1,6 @@
 //! Where between the pixels a corner is.
 
-use super::fast::Corner;
+use super::corner::Corner;
 
 /// Where the score is highest, px from the `corner`, at most half a pixel either way: the tops of parabolas through the three
 /// columns and the three rows around it, their scores weighted 1, 2, 1. Weighted so they place a corner twice as exactly as
@@ -38,7 +38,7 @@ mod tests {
     }
 
     #[test]
-    fn it_stays_within_the_pixel() {
+    fn the_maximum_stays_within_the_pixel() {
         assert_eq!(top([0, 10, 10]), 0.5);
         assert_eq!(top([30, 10, 0]), 0.0);
         assert_eq!(top([21, 20, 0]), -0.5);
@@ -46,7 +46,7 @@ mod tests {
     }
 
     #[test]
-    fn the_higher_neighbours_draw_it() {
+    fn the_maximum_moves_toward_the_higher_neighbours() {
         let corner = Corner { x: 1, y: 1, score: 40 };
         let (x, y) = offset(&[0, 10, 20, 0, 40, 30, 0, 0, 0], 3, corner);
         assert!(x > 0.2 && y < -0.1, "{x} {y}");

@@ -1,15 +1,15 @@
 //! Whether there is anything around a corner that holds it in place.
 
-use super::fast::Corner;
+use super::corner::Corner;
 use trundle_core::GrayImage;
 
-/// Pixels that are looked at, from the corner.
-const RADIUS: usize = 7;
-const SIDE: usize = 2 * RADIUS + 1;
-/// Columns that are read: a power of two, of which the last does not count.
-const STRIDE: usize = SIDE + 1;
-const COUNTS: [i16; STRIDE] = {
-    let mut counts = [1; STRIDE];
+/// Pixels around a corner in which its texture is measured: 7. Source: ours.
+const TEXTURE_RADIUS_PX: usize = 7;
+const SIDE: usize = 2 * TEXTURE_RADIUS_PX + 1;
+/// Columns that are read: a power of two; the last is not counted.
+const TEXTURE_STRIDE: usize = SIDE + 1;
+const COUNTS: [i16; TEXTURE_STRIDE] = {
+    let mut counts = [1; TEXTURE_STRIDE];
     counts[SIDE] = 0;
     counts
 };
@@ -45,12 +45,12 @@ fn tensor_by_avx2(image: &GrayImage, corner: Corner) -> [i32; 3] {
 /// Sums over the square of the squared differences across, down, and of their product.
 #[inline(always)]
 fn tensor_plainly(image: &GrayImage, corner: Corner) -> [i32; 3] {
-    let (left, top) = (usize::from(corner.x) - RADIUS, usize::from(corner.y) - RADIUS);
-    let mut sums = [[0_i32; STRIDE]; 3];
-    let row = |y: usize| &image.row(y)[left - 1..][..STRIDE + 2];
+    let (left, top) = (usize::from(corner.x) - TEXTURE_RADIUS_PX, usize::from(corner.y) - TEXTURE_RADIUS_PX);
+    let mut sums = [[0_i32; TEXTURE_STRIDE]; 3];
+    let row = |y: usize| &image.row(y)[left - 1..][..TEXTURE_STRIDE + 2];
     for y in top..top + SIDE {
         let (above, here, below) = (row(y - 1), row(y), row(y + 1));
-        for x in 0..STRIDE {
+        for x in 0..TEXTURE_STRIDE {
             let difference = |a: u8, b: u8| (i16::from(a) - i16::from(b)) * COUNTS[x];
             let across = i32::from(difference(here[x + 2], here[x]));
             let down = i32::from(difference(below[x + 1], above[x + 1]));
@@ -75,7 +75,7 @@ mod tests {
     }
 
     #[test]
-    fn an_edge_has_none_and_a_corner_of_two_has_some() {
+    fn an_edge_has_no_texture_and_a_corner_has() {
         assert_eq!(least(|_, _| 90.0), 0.0);
         assert_eq!(least(|x, _| 128.0 + 8.0 * x), 0.0);
         assert!(least(|x, y| (128.0 + 20.0 * (0.6 * x + 0.8 * y)).clamp(50.0, 200.0)) < 0.5);

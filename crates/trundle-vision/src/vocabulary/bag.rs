@@ -1,3 +1,5 @@
+//! The weighted words of an image.
+
 use super::NodeId;
 
 /// The words of an image with their weights: term frequency times inverse document frequency, L1 norm 1.

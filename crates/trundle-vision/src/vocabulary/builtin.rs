@@ -1,3 +1,5 @@
+//! The vocabulary of the program.
+
 use super::Vocabulary;
 use std::sync::{Arc, OnceLock};
 
@@ -21,7 +23,7 @@ mod tests {
 
     /// Training again changes the numbers: set those that the new file has.
     #[test]
-    fn the_programs_own_vocabulary_is_the_one_that_its_readme_describes() {
+    fn the_builtin_vocabulary_is_the_one_that_its_readme_describes() {
         assert!(BYTES.len() <= 12_000_000, "{} bytes", BYTES.len());
         let vocabulary = Vocabulary::builtin();
         assert!(Arc::ptr_eq(&vocabulary, &Vocabulary::builtin()));

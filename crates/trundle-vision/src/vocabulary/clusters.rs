@@ -1,3 +1,5 @@
+//! Clusters of binary descriptors, by k-medians.
+
 use super::hamming::nearest;
 use super::majority::BitCounts;
 use crate::Descriptor;
@@ -5,11 +7,11 @@ use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 
-/// Rounds of assignment and new medians at most; it hardly ever takes as many.
-const MOST_ROUNDS: usize = 20;
+/// Most rounds of assignment and new medians: 20. Clusters rarely need as many. Source: ours.
+const MAX_ROUNDS: usize = 20;
 
-/// Descriptors that a thread assigns at a time at least: fewer are not worth the hand-over.
-const BATCH: usize = 4096;
+/// Fewest descriptors that a thread assigns at a time: 4096. Source: ours.
+const MIN_BATCH: usize = 4096;
 
 /// Descriptors that are alike.
 #[derive(Debug, Clone, PartialEq)]
@@ -27,7 +29,7 @@ pub(super) struct Cluster {
 pub(super) fn clusters(descriptors: &[Descriptor], k: usize, rng: &mut ChaCha8Rng) -> Vec<Cluster> {
     let mut centers = seeds(descriptors, k, rng);
     let mut assigned = Vec::new();
-    for _ in 0..MOST_ROUNDS {
+    for _ in 0..MAX_ROUNDS {
         let now = assign(descriptors, &centers);
         if now == assigned {
             break;
@@ -70,7 +72,7 @@ fn seeds(descriptors: &[Descriptor], k: usize, rng: &mut ChaCha8Rng) -> Vec<Desc
 /// For each descriptor its nearest centre.
 fn assign(descriptors: &[Descriptor], centers: &[Descriptor]) -> Vec<usize> {
     let to = |d: &Descriptor| nearest(centers, d).expect("invariant: there is a centre").0;
-    descriptors.par_iter().with_min_len(BATCH).map(to).collect()
+    descriptors.par_iter().with_min_len(MIN_BATCH).map(to).collect()
 }
 
 /// Moves each centre amid what is assigned to it; one without stays.
@@ -90,7 +92,7 @@ mod tests {
     use rand::SeedableRng;
 
     #[test]
-    fn well_parted_groups_are_found_and_their_centres_are_majorities() {
+    fn separated_groups_are_found_and_their_centres_are_majorities() {
         let center = [0, u64::MAX, 0xFFFF_0000_FFFF_0000];
         let member =
             |i: u64| Descriptor([center[i as usize % 3] ^ 1 << (i % 64), center[i as usize % 3], 0, 0]);

@@ -1,3 +1,5 @@
+//! The binary file of a vocabulary.
+
 use super::Vocabulary;
 use super::listed::{check_shape, check_weight};
 use super::tree::Tree;
@@ -8,7 +10,7 @@ use trundle_core::Invalid;
 const MAGIC: &[u8; 8] = b"trundlV\x02";
 
 /// Bytes of the head: magic, branching, depth, nodes, words, checksum of all but magic and checksum.
-const HEAD: usize = 8 + 4 * 4 + 8;
+const HEAD_BYTES: usize = 8 + 4 * 4 + 8;
 
 /// Why a vocabulary could not be read.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -46,7 +48,7 @@ impl Vocabulary {
         bytes.extend(self.nodes().map(|node| self.children(node) as u8));
         bytes.extend(weights.into_iter().flat_map(f32::to_le_bytes));
         let sum = checksum(&bytes);
-        bytes[HEAD - 8..HEAD].copy_from_slice(&sum.to_le_bytes());
+        bytes[HEAD_BYTES - 8..HEAD_BYTES].copy_from_slice(&sum.to_le_bytes());
         bytes
     }
 
@@ -56,7 +58,7 @@ impl Vocabulary {
     /// When the bytes are of another kind or version, cut off, damaged, or the nodes are no tree.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, VocabularyError> {
         let bad = |problem: String| Err(VocabularyError::Bytes(problem));
-        if bytes.len() < HEAD || bytes[..7] != MAGIC[..7] {
+        if bytes.len() < HEAD_BYTES || bytes[..7] != MAGIC[..7] {
             return bad("no trundle vocabulary".to_owned());
         }
         if bytes[7] != MAGIC[7] {
@@ -64,18 +66,18 @@ impl Vocabulary {
         }
         let [branching, depth, nodes, words] = std::array::from_fn(|i| number(&bytes[8 + 4 * i..]) as usize);
         let expected =
-            (HEAD + 1).saturating_add(nodes.saturating_mul(33)).saturating_add(words.saturating_mul(4));
+            (HEAD_BYTES + 1).saturating_add(nodes.saturating_mul(33)).saturating_add(words.saturating_mul(4));
         if bytes.len() != expected {
             return bad(format!(
                 "vocabulary of {} bytes, expected {expected} for {nodes} nodes",
                 bytes.len()
             ));
         }
-        if checksum(bytes).to_le_bytes() != bytes[HEAD - 8..HEAD] {
+        if checksum(bytes).to_le_bytes() != bytes[HEAD_BYTES - 8..HEAD_BYTES] {
             return bad("the vocabulary is damaged: its checksum is wrong".to_owned());
         }
         check_shape(branching, depth)?;
-        Ok(Self::from_tree(branching, depth, tree(&bytes[HEAD..], nodes, branching)?)?)
+        Ok(Self::from_tree(branching, depth, tree(&bytes[HEAD_BYTES..], nodes, branching)?)?)
     }
 }
 
@@ -111,7 +113,7 @@ fn long(bytes: &[u8]) -> u64 {
 
 /// FNV-1a, 8 bytes at a time, over the numbers of the head and all that follows it; the last bytes are filled with zeros.
 fn checksum(bytes: &[u8]) -> u64 {
-    let (head, body) = (&bytes[8..HEAD - 8], &bytes[HEAD..]);
+    let (head, body) = (&bytes[8..HEAD_BYTES - 8], &bytes[HEAD_BYTES..]);
     let whole = body.chunks_exact(8);
     let mut last = [0; 8];
     last[..whole.remainder().len()].copy_from_slice(whole.remainder());
@@ -137,7 +139,7 @@ mod tests {
     }
 
     #[test]
-    fn bytes_read_back_and_damage_is_told() {
+    fn bytes_read_back_and_damage_is_reported() {
         let bytes = trained().to_bytes();
         assert_eq!(Vocabulary::from_bytes(&bytes).unwrap(), trained());
         assert_eq!(refused(b"ORBvoc"), "no trundle vocabulary");
@@ -148,21 +150,21 @@ mod tests {
             refused(&bytes)
         };
         assert_eq!(changed(7), "vocabulary of version 6, expected 2");
-        for at in (8..16).chain(HEAD - 8..bytes.len()) {
+        for at in (8..16).chain(HEAD_BYTES - 8..bytes.len()) {
             assert_eq!(changed(at), "the vocabulary is damaged: its checksum is wrong", "byte {at}");
         }
     }
 
     #[test]
-    fn what_is_no_tree_is_refused_even_with_a_right_checksum() {
+    fn a_broken_tree_is_refused_even_with_a_right_checksum() {
         let forged = |at: usize, value: u8| {
             let mut bytes = trained().to_bytes();
             bytes[at] = value;
             let sum = checksum(&bytes);
-            bytes[HEAD - 8..HEAD].copy_from_slice(&sum.to_le_bytes());
+            bytes[HEAD_BYTES - 8..HEAD_BYTES].copy_from_slice(&sum.to_le_bytes());
             refused(&bytes)
         };
-        let counts = HEAD + 32 * trained().nodes().len();
+        let counts = HEAD_BYTES + 32 * trained().nodes().len();
         assert_eq!(forged(8, 200), "branching of the vocabulary is 200, expected 2 to 64");
         assert_eq!(forged(12, 0), "depth of the vocabulary is 0, expected 1 to 10");
         assert_eq!(forged(counts + 2, 9), "children of vocabulary node 2 is 9, expected 3 or fewer");

@@ -1,3 +1,5 @@
+//! The text file of DBoW2.
+
 use super::Vocabulary;
 use super::compact::VocabularyError;
 use super::listed::ListedNode;
@@ -83,7 +85,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_written_reads_back_to_the_last_bit() {
+    fn a_written_vocabulary_reads_back_to_the_last_bit() {
         let text = trained().to_dbow2_text();
         assert!(text.starts_with("4 3 0 0\n0 0 "));
         assert!(!text.ends_with('\n'));

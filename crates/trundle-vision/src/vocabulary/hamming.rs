@@ -1,3 +1,5 @@
+//! The nearest of several descriptors.
+
 use crate::Descriptor;
 
 /// Index and distance of the nearest of `candidates`, the first of equally near ones; `None` where there is none.

@@ -1,4 +1,6 @@
-use super::tree::{MOST_BRANCHING, MOST_DEPTH, Tree};
+//! The nodes of a vocabulary as text files list them.
+
+use super::tree::{MAX_BRANCHING, MAX_DEPTH, Tree};
 use super::{NodeId, Vocabulary};
 use crate::Descriptor;
 use trundle_core::{Invalid, require_in};
@@ -32,8 +34,8 @@ impl Vocabulary {
 
 /// Passes a shape that a vocabulary may have.
 pub(super) fn check_shape(branching: usize, depth: usize) -> Result<(), Invalid> {
-    require_in("branching of the vocabulary", branching as f64, "", 2.0, MOST_BRANCHING as f64)?;
-    require_in("depth of the vocabulary", depth as f64, "", 1.0, MOST_DEPTH as f64)?;
+    require_in("branching of the vocabulary", branching as f64, "", 2.0, MAX_BRANCHING as f64)?;
+    require_in("depth of the vocabulary", depth as f64, "", 1.0, MAX_DEPTH as f64)?;
     Ok(())
 }
 
@@ -121,9 +123,28 @@ fn in_breadth(list: &[ListedNode], children: &Children) -> Tree {
     tree
 }
 
+/// Root with two inner nodes of two leaves each.
+#[cfg(test)]
+pub(super) fn small() -> Vec<ListedNode> {
+    let listed = |parent, is_leaf, bits| ListedNode {
+        parent,
+        is_leaf,
+        descriptor: Descriptor([bits, 0, 0, 0]),
+        weight: 1.0,
+    };
+    vec![
+        listed(0, false, 0x0F),
+        listed(0, false, 0xF0),
+        listed(1, true, 0x03),
+        listed(2, true, 0x30),
+        listed(1, true, 0x0C),
+        listed(2, true, 0xC0),
+    ]
+}
+
 #[cfg(test)]
 mod tests {
-    use super::super::tree::small;
+
     use super::*;
 
     #[test]

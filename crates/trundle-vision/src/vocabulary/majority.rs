@@ -1,3 +1,5 @@
+//! The bitwise median of descriptors.
+
 use crate::Descriptor;
 
 /// How many descriptors of a set have each of the 256 bits, for their bitwise median.
@@ -11,7 +13,7 @@ pub(super) struct BitCounts {
 }
 
 /// The bits of a byte as eight bytes of 0 or 1, the lowest first.
-const SPREAD: [u64; 256] = {
+const BYTE_OF_BITS: [u64; 256] = {
     let mut table = [0; 256];
     let mut at = 0;
     while at < 256 * 8 {
@@ -32,7 +34,7 @@ impl BitCounts {
     pub fn add(&mut self, descriptor: &Descriptor) {
         for (small, word) in self.small.chunks_exact_mut(8).zip(descriptor.0) {
             for (small, byte) in small.iter_mut().zip(word.to_le_bytes()) {
-                *small += SPREAD[usize::from(byte)];
+                *small += BYTE_OF_BITS[usize::from(byte)];
             }
         }
         self.count += 1;
@@ -85,7 +87,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_has_no_median() {
+    fn an_empty_set_has_no_median() {
         assert_eq!(BitCounts::new().median(), None);
     }
 }

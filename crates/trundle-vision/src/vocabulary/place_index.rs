@@ -1,3 +1,5 @@
+//! Finds similar bags of words by an inverse index.
+
 use super::{BagOfWords, NodeId};
 use std::collections::BTreeMap;
 
@@ -140,7 +142,7 @@ mod tests {
     proptest! {
         /// However places come and go, and in whatever slots they are.
         #[test]
-        fn the_index_says_what_comparing_all_says(
+        fn the_index_finds_what_comparing_all_finds(
             steps in prop::collection::vec((0..12_u32, prop::collection::vec(1..30_u32, 0..12)), 1..60),
             asked in prop::collection::vec(1..30_u32, 0..12),
             left_out in 0..12_u32,

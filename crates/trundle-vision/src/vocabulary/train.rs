@@ -1,6 +1,8 @@
+//! Trains a vocabulary.
+
 use super::clusters::{Cluster, clusters};
 use super::listed::ListedNode;
-use super::tree::{MOST_BRANCHING, MOST_DEPTH};
+use super::tree::{MAX_BRANCHING, MAX_DEPTH};
 use super::{NodeId, Vocabulary};
 use crate::Descriptor;
 use rand::SeedableRng;
@@ -34,8 +36,8 @@ impl VocabularyConfig {
     /// # Errors
     /// When a number is outside its range.
     pub fn validated(self) -> Result<Self, Invalid> {
-        require_in("vocabulary.branching", self.branching as f64, "", 2.0, MOST_BRANCHING as f64)?;
-        require_in("vocabulary.depth", self.depth as f64, "", 1.0, MOST_DEPTH as f64)?;
+        require_in("vocabulary.branching", self.branching as f64, "", 2.0, MAX_BRANCHING as f64)?;
+        require_in("vocabulary.depth", self.depth as f64, "", 1.0, MAX_DEPTH as f64)?;
         require_in("vocabulary.least_to_divide", self.least_to_divide as f64, "", 2.0, 1e9)?;
         Ok(self)
     }
@@ -147,7 +149,7 @@ mod tests {
     }
 
     #[test]
-    fn words_weigh_what_their_images_say_and_are_never_infinite() {
+    fn words_weigh_their_inverse_frequency_and_never_infinitely() {
         let images = images(12, 2);
         let vocabulary = Vocabulary::train(&images, &VocabularyConfig::default(), 3).unwrap();
         for word in vocabulary.nodes().filter(|node| vocabulary.is_word(*node)) {

@@ -1,3 +1,5 @@
+//! The tree of a vocabulary, and the words of an image.
+
 use super::BagOfWords;
 use super::hamming::nearest;
 use crate::Descriptor;
@@ -47,9 +49,10 @@ impl Tree {
     }
 }
 
-/// Most children of a node, and most levels below the root.
-pub(super) const MOST_BRANCHING: usize = 64;
-pub(super) const MOST_DEPTH: usize = 10;
+/// Most children of a node: 64. A file with more is refused. Source: ours.
+pub(super) const MAX_BRANCHING: usize = 64;
+/// Most levels below the root: 10. A file with more is refused. Source: ours.
+pub(super) const MAX_DEPTH: usize = 10;
 
 impl Vocabulary {
     /// The vocabulary of a tree of this shape.
@@ -174,27 +177,9 @@ fn first_children(counts: &[u8], nodes: usize) -> Result<Vec<NodeId>, Invalid> {
     Ok(first_child)
 }
 
-/// Root with two inner nodes of two leaves each.
-#[cfg(test)]
-pub(super) fn small() -> Vec<super::listed::ListedNode> {
-    let listed = |parent, is_leaf, bits| super::listed::ListedNode {
-        parent,
-        is_leaf,
-        descriptor: Descriptor([bits, 0, 0, 0]),
-        weight: 1.0,
-    };
-    vec![
-        listed(0, false, 0x0F),
-        listed(0, false, 0xF0),
-        listed(1, true, 0x03),
-        listed(2, true, 0x30),
-        listed(1, true, 0x0C),
-        listed(2, true, 0xC0),
-    ]
-}
-
 #[cfg(test)]
 mod tests {
+    use super::super::listed::small;
     use super::*;
 
     #[test]

@@ -14,7 +14,7 @@ fn the_number_of_threads_changes_no_bit() {
 }
 
 #[test]
-fn what_was_extracted_before_does_not_matter() {
+fn an_extraction_does_not_depend_on_the_one_before() {
     let (one, other) = (picture((320, 240), |p| p), picture((200, 180), |p| p * 1.3));
     let fresh = |image: &GrayImage| OrbExtractor::new(OrbConfig::default()).unwrap().extract(image);
     let mut used = OrbExtractor::new(OrbConfig::default()).unwrap();

@@ -98,7 +98,7 @@ fn no_octave_is_biased() {
 }
 
 #[test]
-fn a_coarse_octave_says_what_octave_zero_of_a_smaller_picture_says() {
+fn a_coarse_octave_agrees_with_octave_zero_of_a_smaller_image() {
     let near = extracted(&noisy(&drawn(|p| p), 2.0, 1));
     for octave in [1, 3, 5] {
         let shrink = SCALE.powi(octave as i32);

@@ -7,7 +7,7 @@ fn extracted(image: &GrayImage, features: usize) -> Features {
 }
 
 #[test]
-fn a_faint_half_is_not_forgotten() {
+fn a_faint_half_has_features_too() {
     let mut image = picture((640, 480), |p| p);
     for y in 0..480 {
         image.row_mut(y)[320..].iter_mut().for_each(|v| *v = 110 + *v / 6);
