@@ -1,4 +1,4 @@
-//! Chores of the workspace: `cargo xtask ci | tidy | golden | replay-check | bad-days | demo-seeds`.
+//! Chores of the workspace: `cargo xtask ci | tidy | golden | results | replay-check | bad-days | demo-seeds`.
 #![expect(clippy::print_stdout, clippy::print_stderr, reason = "this is a program that talks")]
 
 mod bad_days;
@@ -7,6 +7,7 @@ mod compare;
 mod golden;
 mod program;
 mod replay_check;
+mod results;
 mod seeds;
 mod tidy;
 mod workspace;
@@ -51,6 +52,12 @@ enum Chore {
         #[arg(long, default_value = "release")]
         profile: String,
     },
+    /// Write docs/results.md from results/*.json.
+    Results {
+        /// Repeat this measurement first (its name in results/); may be given again.
+        #[arg(long, value_name = "NAME")]
+        measure: Vec<String>,
+    },
     /// Demo on one thread, on two, and replayed: all three must write the same bytes.
     ReplayCheck {
         /// Seed of the demo.
@@ -82,6 +89,7 @@ fn main() -> ExitCode {
         Chore::Golden { update, only, profile } => {
             golden::run(&root, &golden::Options { update, only, profile })
         }
+        Chore::Results { measure } => results::run(&root, &measure),
         Chore::ReplayCheck { seed } => replay_check::run(&root, seed),
         Chore::BadDays => bad_days::run(&root),
         Chore::DemoSeeds { seeds, first, explore } => {

@@ -1,0 +1,129 @@
+//! A result file: `results/NAME.json`, what one command measures.
+
+use serde::{Deserialize, Serialize};
+
+/// What one command measures.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Measurement {
+    /// The heading of the results page under which it stands.
+    pub subject: String,
+    /// What is measured, in words.
+    pub title: String,
+    /// The command, from the workspace's folder; `trundle` is the release program.
+    pub command: String,
+    /// The commit of the program that was measured.
+    pub commit: String,
+    /// The machine.
+    pub machine: String,
+    /// The day, as YYYY-MM-DD.
+    pub date: String,
+    /// The figures.
+    pub figures: Vec<Figure>,
+}
+
+/// One figure.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Figure {
+    /// What it is.
+    pub name: String,
+    /// The value.
+    pub value: f64,
+    /// Its unit; empty for counts.
+    pub unit: String,
+    /// What was aimed at.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub goal: Option<Goal>,
+    /// Which way is better, where no goal says it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub better: Option<Better>,
+    /// Another program's or paper's figure.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub peer: Option<Peer>,
+    /// Where the command's output holds it; without it, the figure is copied from what the command prints.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub from: Option<Source>,
+}
+
+/// What was aimed at.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Goal {
+    /// The value must not be above.
+    AtMost(f64),
+    /// The value must not be below.
+    AtLeast(f64),
+}
+
+/// Which way is better.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Better {
+    /// Small values are.
+    Less,
+    /// Large values are.
+    More,
+}
+
+/// Another program's or paper's figure.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Peer {
+    /// Whose.
+    pub name: String,
+    /// The value, in the same unit.
+    pub value: f64,
+    /// Whether the command measures it in the same run.
+    #[serde(default)]
+    pub same_run: bool,
+    /// Where the command's output holds it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub from: Option<Source>,
+}
+
+/// Where an output holds a number.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Source {
+    /// JSON pointer into the output folder's `summary.json`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub summary: Option<String>,
+    /// Text on standard output after which the number stands.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub after: Option<String>,
+    /// Factor from the output's unit to the figure's.
+    #[serde(default = "one")]
+    pub scale: f64,
+}
+
+fn one() -> f64 {
+    1.0
+}
+
+impl Goal {
+    /// Whether a value keeps it.
+    pub fn is_kept_by(self, value: f64) -> bool {
+        match self {
+            Self::AtMost(limit) => value <= limit,
+            Self::AtLeast(limit) => value >= limit,
+        }
+    }
+}
+
+impl Figure {
+    /// How many times better than the peer's; above 1 is better. `None` without a peer, or where nothing says which way is
+    /// better.
+    pub fn ratio(&self) -> Option<f64> {
+        let peer = self.peer.as_ref()?.value;
+        let better = self.better.or(self.goal.map(|goal| match goal {
+            Goal::AtMost(_) => Better::Less,
+            Goal::AtLeast(_) => Better::More,
+        }))?;
+        let ratio = match better {
+            Better::Less => peer / self.value,
+            Better::More => self.value / peer,
+        };
+        ratio.is_finite().then_some(ratio)
+    }
+}
