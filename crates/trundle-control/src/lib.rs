@@ -1,6 +1,6 @@
 //! From a trajectory and a pose to a twist: tracking, point stabilisation, limits, safe stop.
 //!
-//! [`Follower`] is the door: it drives along a trajectory with [`Tracker`] (METHODS.md A6), its reference clock waiting
+//! [`Follower`] is the door: it drives along a trajectory with [`Tracker`] (docs/methods.md A6), its reference clock waiting
 //! for the robot, and settles at the goal with [`Stabilizer`] (A7). [`SafetyMonitor`] comes after it, knows nothing of plans,
 //! and lets only twists through from which the robot can still stop. Every command obeys [`Limiter`].
 //! The laws, their gains and their limits stand in `docs/algorithms/control.md`.

@@ -1,7 +1,7 @@
 //! From depth images to scans, from scans to an occupancy grid, and scans against that grid.
 //!
-//! - [`DepthScanner`]: one depth image in, one laser-like [`trundle_core::Scan`] out (the robot's height band, METHODS A2).
-//! - [`GridMapper`]: scans at known poses in, a log-odds occupancy grid out (METHODS A3 with one particle).
+//! - [`DepthScanner`]: one depth image in, one laser-like [`trundle_core::Scan`] out (the robot's height band, docs/methods.md A2).
+//! - [`GridMapper`]: scans at known poses in, a log-odds occupancy grid out (docs/methods.md A3 with one particle).
 //! - [`ScanMatcher`]: where a scan fits the grid best, how well, and in which directions nobody can tell.
 //!
 //! The parts a particle filter needs are parts of their own: the map of one particle is a [`LogOddsGrid`] (tiles shared

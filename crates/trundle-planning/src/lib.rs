@@ -2,7 +2,7 @@
 //!
 //! [`Planner`] is the door: [`DistanceField`] says how much room there is, the potential ([`PotentialConfig`]) leads to
 //! way-points, a quadratic programme lays a [`Curve`] through them inside a convex free corridor, and timing turns it into
-//! a [`Trajectory`](trundle_core::Trajectory) within the drive's limits. METHODS.md A4 and A5; `docs/algorithms/planning.md`.
+//! a [`Trajectory`](trundle_core::Trajectory) within the drive's limits. docs/methods.md A4 and A5; `docs/algorithms/planning.md`.
 
 mod area;
 mod bezier;

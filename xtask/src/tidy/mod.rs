@@ -6,7 +6,9 @@
 mod allowed;
 mod arrows;
 mod citations;
+mod cited_files;
 mod finding;
+mod glossary;
 mod leftovers;
 mod lockfile;
 mod markdown;
@@ -61,6 +63,8 @@ fn all_findings(root: &Path) -> Result<Vec<Finding>, String> {
     let rules = [
         arrows::check,
         citations::check,
+        cited_files::check,
+        glossary::check,
         purity::check,
         shape::check,
         leftovers::check,

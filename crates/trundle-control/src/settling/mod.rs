@@ -1,4 +1,4 @@
-//! Point stabilisation: to a pose, and to rest there (METHODS.md A7; \[Aicardi95\]).
+//! Point stabilisation: to a pose, and to rest there (docs/methods.md A7; \[Aicardi95\]).
 //!
 //! Problem: no smooth law of the pose alone brings a two-wheeled robot to rest at a pose \[Brockett83\]. Idea: in polar
 //! coordinates about the goal a linear law does; it is driven forward or backward, whichever the goal asks for. What is

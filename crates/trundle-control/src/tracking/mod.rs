@@ -1,4 +1,4 @@
-//! Tracking a moving reference (METHODS.md A6; \[Kanayama90\], \[Li18\]).
+//! Tracking a moving reference (docs/methods.md A6; \[Kanayama90\], \[Li18\]).
 //!
 //! Problem: stay at a reference pose that moves with a known twist. Idea: see the error in the robot's frame; drive what
 //! the reference drives, plus feedback on the error along and in heading; turn towards the reference where it stands

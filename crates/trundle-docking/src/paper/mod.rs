@@ -1,4 +1,4 @@
-//! The position adjustment of \[Hong24\] (METHODS.md B), as the paper has it: greedy, one turn and one straight at a time.
+//! The position adjustment of \[Hong24\] (docs/methods.md B), as the paper has it: greedy, one turn and one straight at a time.
 //!
 //! Problem: settle on a pose in a corridor by turns on the spot and straight moves. Idea: put the lateral deviation right
 //! with the turn and the straight that cost least, f = w1 t + w2 d; then take up the goal's heading and drive the

@@ -8,7 +8,7 @@ use super::{
 };
 use trundle_core::{DepthImage, Invalid, PinholeCamera, Pose3, RgbdImage, Scan, ScanParts, Stamp, Vector2};
 
-/// Makes scans of depth images: of each bearing the nearest obstacle in the robot's height band (METHODS A2), and where the
+/// Makes scans of depth images: of each bearing the nearest obstacle in the robot's height band (docs/methods.md A2), and where the
 /// way to it and beyond was seen to be free.
 ///
 /// A pixel's bearing is fixed by the camera and its mount, and its height and way over the floor are products of its depth

@@ -1,4 +1,4 @@
-//! The Rao-Blackwellised particle filter: every particle a trajectory and its own map (METHODS A3).
+//! The Rao-Blackwellised particle filter: every particle a trajectory and its own map (docs/methods.md A3).
 
 mod ancestry;
 mod anchor;

@@ -13,7 +13,7 @@ pub struct CurveConfig {
     pub piece: f64,
     /// How far beside a stretch its corridor may reach, m, 0.1 to 10. Default 0.8 (ours).
     pub reach: f64,
-    /// eps of METHODS A5: the least tangent at the ends, as a share of unit speed, 0.01 to 1. Default 0.7 (ours):
+    /// eps of docs/methods.md A5: the least tangent at the ends, as a share of unit speed, 0.01 to 1. Default 0.7 (ours):
     /// a slower parameter bends sharply.
     pub least_tangent: f64,
     /// Highest curvature, 1/m, 0.1 to 1000: a bound of the programme; where no curve keeps it, the robot turns on the spot or

@@ -1,4 +1,4 @@
-//! Motion from paired features (METHODS A1): RANSAC over three-point motions between two RGB-D frames, or over the poses that
+//! Motion from paired features (docs/methods.md A1): RANSAC over three-point motions between two RGB-D frames, or over the poses that
 //! three points and their pixels allow where there is no depth; polished by reprojection.
 
 mod consensus;
