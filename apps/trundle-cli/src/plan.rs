@@ -11,7 +11,7 @@ use std::sync::OnceLock;
 use std::time::Instant;
 use trundle::core::{DriveLimits, Vector2};
 use trundle::io::{OutputFolder, trajectory_csv, waypoints_csv};
-use trundle::planning::{StageTimes, Tour};
+use trundle::planning::{MultiGoalPlan, PlanningTimes};
 
 /// Everything that a plan may write: what an earlier one left behind is removed.
 const FILES: [&str; 10] = [
@@ -45,14 +45,14 @@ pub fn run(args: &PlanArgs) -> Result<Outcome, Failure> {
 fn write_tour(
     args: &PlanArgs,
     errand: &mut Errand,
-    tour: &Tour,
+    tour: &MultiGoalPlan,
     limits: DriveLimits,
     spent: Spent,
     folder: OutputFolder,
 ) -> Result<Outcome, Failure> {
     let moved = errand.goals_moved(tour);
     let way_points: Vec<Vector2> =
-        tour.legs.iter().flat_map(|leg| leg.way_points.points().iter().copied()).collect();
+        tour.legs.iter().flat_map(|leg| leg.waypoints.points().iter().copied()).collect();
     folder.write("waypoints.csv", waypoints_csv(&way_points).as_bytes())?;
     folder.write("curve.csv", table::curve_csv(tour).as_bytes())?;
     folder.write("coefficients.csv", table::coefficients_csv(tour).as_bytes())?;
@@ -95,7 +95,7 @@ fn write_refusal(
 #[derive(Debug, Clone, Copy)]
 struct Spent {
     all: f64,
-    stages: StageTimes,
+    stages: PlanningTimes,
 }
 
 /// The wall clock, s.

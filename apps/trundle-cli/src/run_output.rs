@@ -64,7 +64,7 @@ fn report(setup: &RunSetup, run: &Run, numbers: &RunNumbers) -> RunReport {
         cards: cards(numbers),
         grid: Some(robot.grid().clone()),
         landmarks: picture::landmarks_in_map(robot),
-        way_points: plan.map(|plan| plan.way_points.points().to_vec()).unwrap_or_default(),
+        way_points: plan.map(|plan| plan.waypoints.points().to_vec()).unwrap_or_default(),
         curve: curve.unwrap_or_default(),
         estimated_path: run.log.estimates.iter().map(|(_, pose)| *pose).collect(),
         true_path: run.log.truths.iter().map(|(_, pose)| *pose).collect(),

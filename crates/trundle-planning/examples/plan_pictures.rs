@@ -9,7 +9,7 @@ mod support;
 use std::fmt::Write as _;
 use trundle_core::{Cell, DifferentialDrive, DriveLimits, Footprint, OccupancyGrid, Pose2, Twist2, Vector2};
 use trundle_planning::{
-    Curve, DistanceField, HalfPlane, Mover, PlanResult, Planner, PlannerConfig, PotentialConfig,
+    Curve, DistanceField, HalfPlane, MovingObstacle, PlanResult, Planner, PlannerConfig, PotentialConfig,
     PotentialField, UnknownIs,
 };
 
@@ -121,7 +121,7 @@ fn main() {
     way(&grid, &plan);
     speeds(&plan);
     outline();
-    movers();
+    obstacles();
 }
 
 fn field(grid: &OccupancyGrid) {
@@ -170,8 +170,8 @@ fn way(grid: &OccupancyGrid, plan: &PlanResult) {
     }
     picture.walls(grid);
     picture.line(plan.raw.points(), "stroke='#9aa5b1' stroke-width='3' stroke-dasharray='4 6'");
-    picture.line(plan.way_points.points(), "stroke='#2a6fb0' stroke-width='2'");
-    plan.way_points.points().to_vec().into_iter().for_each(|p| picture.disc(p, 0.04, "fill='#2a6fb0'"));
+    picture.line(plan.waypoints.points(), "stroke='#2a6fb0' stroke-width='2'");
+    plan.waypoints.points().to_vec().into_iter().for_each(|p| picture.disc(p, 0.04, "fill='#2a6fb0'"));
     for curve in plan.curves() {
         picture.line(&along(curve), "stroke='#d1495b' stroke-width='5'");
         for row in curve.active() {
@@ -275,20 +275,20 @@ fn outline() {
 }
 
 /// Someone crosses; the robot waits. Places of both, half a second apart.
-fn movers() {
+fn obstacles() {
     let wall = "#".repeat(60);
     let art = format!("{wall}\n{}\n{wall}", vec![".".repeat(60); 24].join("\n"));
     let grid = OccupancyGrid::from_ascii(0.1, &art).unwrap();
     let (start, goal) = (Pose2::new(0.8, 1.3, 0.0), Pose2::new(5.0, 1.3, 0.0));
-    let mover = Mover::new(Vector2::new(1.7, 0.3), Vector2::new(0.0, 0.7), 0.3).unwrap();
+    let obstacle = MovingObstacle::new(Vector2::new(1.7, 0.3), Vector2::new(0.0, 0.7), 0.3).unwrap();
     let mut planner = support::planner(support::at_home(), 0.1755);
-    let plan = support::found(planner.plan_among(&grid, &[mover], start, Twist2::ZERO, goal));
+    let plan = support::found(planner.plan_among_moving(&grid, &[obstacle], start, Twist2::ZERO, goal));
     let mut picture = Picture::of(&grid);
     picture.walls(&grid);
     for step in 0..=4 {
         let (time, shade) = (f64::from(step) * 0.5, 0.2 + 0.2 * f64::from(step));
         picture.disc(
-            mover.at(time),
+            obstacle.at(time),
             0.3,
             &format!("fill='none' stroke='#d1495b' stroke-opacity='{shade}' stroke-width='3'"),
         );
@@ -300,5 +300,5 @@ fn movers() {
         );
     }
     plan.curves().for_each(|curve| picture.line(&along(curve), "stroke='#9aa5b1' stroke-width='2'"));
-    picture.save("movers");
+    picture.save("obstacles");
 }

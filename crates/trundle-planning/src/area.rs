@@ -1,16 +1,16 @@
-//! The part of the plane in which a way is sought: the grid, and what must be added to it.
+//! The rectangle in which a path is searched: the grid, extended to start and goal.
 
 use trundle_core::{GridGeometry, Invalid, Vector2};
 
-/// The most cells that an area may have: beyond, memory and time are out of proportion.
-const MOST_CELLS: f64 = 4.0e7;
-/// Room around a start or goal that lies off the grid, m.
-const AROUND: f64 = 1.0;
+/// Largest number of cells of an area. Larger ones are refused: memory and time grow with the cells. Source: ours.
+const MAX_AREA_CELLS: f64 = 4.0e7;
+/// Margin around a start or goal off the grid, m. A smaller one leaves no path around the robot. Source: ours.
+const OFF_GRID_MARGIN_M: f64 = 1.0;
 
-/// The smallest area on the grid's lattice that holds the grid, the start and the goal, then grown by `beyond` m.
+/// The smallest rectangle on the grid's lattice that holds the grid, the start and the goal, extended by `beyond` m.
 ///
 /// # Errors
-/// When it would have too many cells.
+/// When it would have more than [`MAX_AREA_CELLS`] cells.
 pub(crate) fn area(
     grid: &GridGeometry,
     start: Vector2,
@@ -23,16 +23,16 @@ pub(crate) fn area(
     for point in [start, goal] {
         if grid.cell_at(point).is_none() {
             let at = (point - grid.origin) / res;
-            low = low.inf(&at.map(|c| (c - AROUND / res).floor()));
-            high = high.sup(&at.map(|c| (c + AROUND / res).ceil()));
+            low = low.inf(&at.map(|c| (c - OFF_GRID_MARGIN_M / res).floor()));
+            high = high.sup(&at.map(|c| (c + OFF_GRID_MARGIN_M / res).ceil()));
         }
     }
     let grown = (beyond / res).ceil();
     let (low, high) = (low - Vector2::repeat(grown), high + Vector2::repeat(grown));
     let size = high - low;
-    if size.x * size.y > MOST_CELLS {
+    if size.x * size.y > MAX_AREA_CELLS {
         let value = format!("{} x {}", size.x, size.y);
-        return Err(Invalid::new("area to plan in", value, "cells", format!("at most {MOST_CELLS}")));
+        return Err(Invalid::new("planning area", value, "cells", format!("at most {MAX_AREA_CELLS}")));
     }
     GridGeometry::new(res, grid.origin + low * res, size.x as usize, size.y as usize)
 }
@@ -42,7 +42,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_grid_is_kept_where_it_suffices_and_grown_on_its_lattice() {
+    fn the_grid_is_kept_where_it_suffices_and_extended_on_its_lattice() {
         let grid = GridGeometry::new(0.1, Vector2::new(-1.0, 0.0), 20, 10).unwrap();
         let inside = Vector2::new(0.0, 0.5);
         assert_eq!(area(&grid, inside, inside, 0.0), Ok(grid));

@@ -1,25 +1,31 @@
-use crate::{CurveConfig, PotentialConfig, RoomConfig, TimingConfig, UnknownIs};
+//! Configuration of the planner.
+
+use crate::curve::fit::config::CurveConfig;
+use crate::field::UnknownIs;
+use crate::search::clearance_cost::ClearanceCostConfig;
+use crate::search::potential::PotentialConfig;
+use crate::timing::config::TimingConfig;
 use serde::{Deserialize, Serialize};
 use trundle_core::{Invalid, require_in};
 
-/// Everything that the planner can be told.
+/// Parameters of the planner.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct PlannerConfig {
     /// What unknown space counts as. Default free: a robot that explores must enter it.
     pub unknown: UnknownIs,
-    /// How far beyond the grid, the start and the goal a way may lead where unknown is free, m, 0 to 100. 0: never off
-    /// the grid. Default 5 (ours). It is tried only when there is no way within.
+    /// Distance beyond the grid, the start and the goal in which a path may run where unknown is free, m, 0 to 100. 0: never off
+    /// the grid. Default 5 (ours). It is used only when there is no path on the grid.
     pub beyond: f64,
-    /// How far from a goal that is blocked the robot may stop instead, m, 0 to 100. Default 0: nowhere else.
+    /// Distance from a blocked goal at which the robot may stop instead, m, 0 to 100. Default 0: only the goal itself.
     pub goal_tolerance: f64,
-    /// Room around the footprint.
-    pub room: RoomConfig,
-    /// Way-points.
+    /// Cost of low clearance.
+    pub room: ClearanceCostConfig,
+    /// Search for waypoints.
     pub potential: PotentialConfig,
-    /// The curve through them.
+    /// The curve through the waypoints.
     pub curve: CurveConfig,
-    /// Its timing.
+    /// Timing of the curve.
     pub timing: TimingConfig,
 }
 
@@ -29,7 +35,7 @@ impl Default for PlannerConfig {
             unknown: UnknownIs::Free,
             beyond: 5.0,
             goal_tolerance: 0.0,
-            room: RoomConfig::default(),
+            room: ClearanceCostConfig::default(),
             potential: PotentialConfig::default(),
             curve: CurveConfig::default(),
             timing: TimingConfig::default(),
@@ -38,7 +44,7 @@ impl Default for PlannerConfig {
 }
 
 impl PlannerConfig {
-    /// Passes a valid configuration through.
+    /// Returns a valid configuration unchanged.
     ///
     /// # Errors
     /// When a number is outside its range.

@@ -34,7 +34,7 @@ pub(crate) fn segment_to_square(a: Vector2, b: Vector2, centre: Vector2, half: f
     best
 }
 
-/// The length of straight pieces through `points`, m.
+/// The length of a polyline, m.
 pub(crate) fn polyline_length(points: &[Vector2]) -> f64 {
     points.windows(2).map(|pair| (pair[1] - pair[0]).norm()).sum()
 }

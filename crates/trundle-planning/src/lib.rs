@@ -1,63 +1,64 @@
-//! From a grid, a pose and a goal to a path and a trajectory.
+//! Paths and trajectories on occupancy grids: from a grid, a pose and a goal to a verified curve with its timing.
 //!
-//! [`Planner`] is the door: [`DistanceField`] says how much room there is, the potential ([`PotentialConfig`]) leads to
-//! way-points, a quadratic programme lays a [`Curve`] through them inside a convex free corridor, and timing turns it into
-//! a [`Trajectory`](trundle_core::Trajectory) within the drive's limits. docs/methods.md A4 and A5; `docs/algorithms/planning.md`.
+//! [`Planner`] is the entry point. A geodesic search on the grid finds waypoints; a quadratic program fits a [`Curve`] through
+//! them inside a convex free corridor; timing turns the curve into a [`Trajectory`](trundle_core::Trajectory) within the drive's
+//! limits. Equations, parameters and limits are in `docs/algorithms/planning.md`; definitions in docs/methods.md, A4 and A5.
+//!
+//! ```
+//! use trundle_core::{DifferentialDrive, DriveLimits, Footprint, OccupancyGrid, Pose2, Twist2};
+//! use trundle_planning::{Plan, Planner, PlannerConfig};
+//!
+//! // A wall with an opening at the top, cells of 0.25 m.
+//! let art = "........\n........\n....#...\n....#...\n....#...\n....#...";
+//! let grid = OccupancyGrid::from_ascii(0.25, art)?;
+//! let footprint = Footprint::Disc { radius: 0.17 };
+//! let (limits, drive) = (DriveLimits::KOBUKI, DifferentialDrive::KOBUKI);
+//! let mut planner = Planner::new(PlannerConfig::default(), &footprint, limits, drive)?;
+//! let (start, goal) = (Pose2::new(0.4, 0.4, 0.0), Pose2::new(1.7, 0.4, 0.0));
+//! let Plan::Found(plan) = planner.plan(&grid, start, Twist2::ZERO, goal) else { panic!("no path") };
+//! assert!(plan.trajectory.end().distance(&goal) < 1e-6);
+//! assert!(plan.min_clearance > 0.0 && plan.length > 2.0, "around the wall");
+//! # Ok::<(), trundle_core::Invalid>(())
+//! ```
 
 mod area;
-mod bezier;
-mod body;
 mod config;
-mod corridor;
 mod curve;
-mod dial;
-mod escape;
-mod explore;
+mod exploration;
 mod field;
-mod finer;
-mod fit;
 mod geometry;
-mod graph;
-mod guide;
-mod halt;
-mod lattice;
-mod maneuver;
 mod masks;
-mod movers;
-mod outline;
+mod moving_obstacles;
+mod multi_goal;
+mod path_validation;
 mod plan;
 mod planner;
-mod potential;
-mod pull;
-mod room;
-mod route;
-mod space;
-mod stopwatch;
-mod task;
+mod polygon;
+mod query;
+mod search;
 mod timing;
-mod tour;
-mod tracking;
-mod watch;
-mod wave;
-mod way;
 
-pub use bezier::BezierPiece;
 pub use config::PlannerConfig;
-pub use corridor::HalfPlane;
-pub use curve::{ActiveRow, Curve, CurveSample};
-pub use explore::{Exploration, ExploreConfig, Explorer, Frontier, Viewpoint};
+pub use curve::analytic_curve::{ActiveRow, Curve, CurveSample};
+pub use curve::bezier::BezierPiece;
+pub use curve::fit::config::CurveConfig;
+pub use curve::half_plane::HalfPlane;
+pub use curve::phase::Phase;
+pub use exploration::config::ExploreConfig;
+pub use exploration::explorer::{Exploration, Explorer, Viewpoint};
+pub use exploration::frontier::Frontier;
 pub use field::{DistanceField, FAR, UnknownIs};
-pub use fit::CurveConfig;
-pub use graph::WayPointGraph;
-pub use masks::{DearMask, SpeedMask};
-pub use movers::Mover;
-pub use plan::{Plan, PlanResult, ROOM_CAP, room_in_words};
-pub use planner::Planner;
-pub use potential::{PotentialConfig, PotentialField, PotentialKind, PotentialOutcome};
-pub use room::RoomConfig;
-pub use route::Phase;
-pub use stopwatch::StageTimes;
-pub use timing::TimingConfig;
-pub use tour::{Replan, Tour};
-pub use tracking::{MoverTracker, TrackerConfig};
-pub use watch::Obstruction;
+pub use masks::cost_mask::CostMask;
+pub use masks::speed_mask::SpeedMask;
+pub use moving_obstacles::config::ObstacleTrackerConfig;
+pub use moving_obstacles::forecast::MovingObstacle;
+pub use moving_obstacles::tracker::MovingObstacleTracker;
+pub use multi_goal::MultiGoalPlan;
+pub use path_validation::Obstruction;
+pub use plan::{MAX_CLEARANCE_M, Plan, PlanResult, Replan, clearance_text};
+pub use planner::api::Planner;
+pub use query::stage_timer::PlanningTimes;
+pub use search::clearance_cost::ClearanceCostConfig;
+pub use search::potential::{PotentialConfig, PotentialField, PotentialKind, PotentialOutcome};
+pub use search::waypoint_graph::WaypointGraph;
+pub use timing::config::TimingConfig;

@@ -9,7 +9,7 @@ use crate::{
 };
 use trundle_control::{MotionSense, SafetyScan};
 use trundle_core::{Footprint, Invalid, OccupancyGrid, Pose2, PoseEstimate, Scan, Stamp, Vector2};
-use trundle_planning::Mover;
+use trundle_planning::MovingObstacle;
 
 /// Whoever decides: the mission's goals, plans, and the twist towards them.
 #[derive(Debug)]
@@ -79,7 +79,7 @@ pub(crate) struct Around {
     seen: Option<Stamp>,
     unplaced: f64,
     motion: MotionSense,
-    movers: Vec<Mover>,
+    movers: Vec<MovingObstacle>,
     lately: Vec<Vector2>,
     still: Option<OccupancyGrid>,
 }

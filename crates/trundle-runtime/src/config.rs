@@ -7,7 +7,7 @@ use trundle_control::{FollowerConfig, SafetyConfig};
 use trundle_core::{DifferentialDrive, DriveLimits, Footprint, Invalid, PinholeCamera, Vector2};
 use trundle_localization::{LocalizerConfig, OdometryConfig};
 use trundle_mapping::{DepthScanConfig, MapperConfig, ScanMatchConfig};
-use trundle_planning::{PlannerConfig, TrackerConfig};
+use trundle_planning::{ObstacleTrackerConfig, PlannerConfig};
 use trundle_slam::SlamConfig;
 
 /// Everything that can be set about the robot: one `robot.toml`. Unknown keys are errors.
@@ -43,7 +43,7 @@ pub struct RobotConfig {
     /// Occupancy grid.
     pub mapping: MapperConfig,
     /// Who moves near by, found in the scans.
-    pub movers: TrackerConfig,
+    pub movers: ObstacleTrackerConfig,
     /// Planning.
     pub planning: PlannerConfig,
     /// Following trajectories and settling.
@@ -73,7 +73,7 @@ impl Default for RobotConfig {
             scan_match: ScanMatchConfig::default(),
             localization: LocalizerConfig::default(),
             mapping: MapperConfig::default(),
-            movers: TrackerConfig::default(),
+            movers: ObstacleTrackerConfig::default(),
             planning: PlannerConfig::default(),
             control: FollowerConfig::default(),
             docking: LastStageConfig::default(),

@@ -22,7 +22,7 @@ use crate::{
 };
 use trundle_control::{FollowPhase, FollowReport, Follower, MotionSense, SafetyMonitor, SafetyScan};
 use trundle_core::{Footprint, Invalid, OccupancyGrid, Pose2, PoseEstimate, Stamp, Twist2, Vector2};
-use trundle_planning::{Mover, PlanResult, Planner};
+use trundle_planning::{MovingObstacle, PlanResult, Planner};
 use unseen::Unseen;
 use vantage::Vantage;
 use view::View;
@@ -47,7 +47,7 @@ pub(crate) struct Surroundings<'a> {
 /// What moves near by.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Traffic<'a> {
-    pub(crate) movers: &'a [Mover],
+    pub(crate) movers: &'a [MovingObstacle],
     /// Hits of what came near by lately and has not been seen to go, map frame, m.
     pub(crate) lately: &'a [Vector2],
     /// The map without them; none where nothing moves.

@@ -28,7 +28,7 @@ use trundle_core::{
 };
 use trundle_localization::{Correction, Localizer, OdometryState, VisualPose, VisualQuality, WheelOdometry};
 use trundle_mapping::{LiveMapper, MapperConfig, ScanMatcher};
-use trundle_planning::{Mover, MoverTracker, PlanResult};
+use trundle_planning::{MovingObstacle, MovingObstacleTracker, PlanResult};
 use trundle_slam::{RgbdSlam, TrackReport, Tracking};
 
 /// The whole robot: sensor events in; pose, map, plan and twist out.
@@ -52,7 +52,7 @@ pub struct Robot {
     /// None while it looks in the background.
     lookout: Option<Box<Lookout>>,
     matcher: ScanMatcher,
-    traffic: MoverTracker,
+    traffic: MovingObstacleTracker,
     localizer: Localizer,
     mapper: LiveMapper,
     drawn: DrawnPoses,
@@ -87,7 +87,7 @@ struct Latest {
     /// How far the mission had come when it said so last.
     mission: MissionState,
     /// What moved near by when the last scan was taken.
-    movers: Vec<Mover>,
+    movers: Vec<MovingObstacle>,
     /// The map without it; none where nothing moves.
     still: Option<OccupancyGrid>,
     /// Hits of what came near by lately and has not been seen to go, map frame, m.
@@ -129,7 +129,7 @@ impl Robot {
             odometry: WheelOdometry::new(config.drive, config.odometry.clone())?,
             lookout: Some(Box::new(lookout)),
             matcher: ScanMatcher::new(config.scan_match.clone())?,
-            traffic: MoverTracker::new(config.movers)?,
+            traffic: MovingObstacleTracker::new(config.movers)?,
             localizer: Localizer::new(config.localization.clone(), base_from_camera)?,
             map_due: Ticker::new(config.schedule.validated()?.map_hz),
             mapper,
@@ -330,7 +330,7 @@ impl Robot {
 
     /// What stands seems to have moved.
     fn forget_traffic(&mut self) {
-        self.traffic.forget();
+        self.traffic.clear();
         self.latest.lately.clear();
         self.latest.forget_movers();
     }
@@ -358,16 +358,16 @@ impl Robot {
         if !self.knows_its_place(now) {
             // What came lately is where the map is, and expires.
             let here = self.localizer.estimate().pose.position();
-            self.latest.lately = self.traffic.not_gone(now, here, NEAR_BY);
+            self.latest.lately = self.traffic.unconfirmed_hits(now, here, NEAR_BY);
             return self.latest.forget_movers();
         }
         let Ok(pose) = self.localizer.pose_at(now) else { return };
         let (times, traffic, latest) = (&mut self.times, &mut self.traffic, &mut self.latest);
         times.measure(Stage::Traffic, || {
-            traffic.see(pose, scan);
-            latest.movers = traffic.movers(now);
-            latest.lately = traffic.not_gone(now, pose.position(), NEAR_BY);
-            latest.still = (!latest.movers.is_empty()).then(|| traffic.without_movers(self.mapper.grid()));
+            traffic.add_scan(pose, scan);
+            latest.movers = traffic.moving_obstacles(now);
+            latest.lately = traffic.unconfirmed_hits(now, pose.position(), NEAR_BY);
+            latest.still = (!latest.movers.is_empty()).then(|| traffic.static_grid(self.mapper.grid()));
         });
     }
 
@@ -488,11 +488,11 @@ impl Robot {
 
 impl Latest {
     /// What moves is where it will have come to by `now`; without scans nobody knows.
-    fn movers_go_on(&mut self, traffic: &MoverTracker, now: Stamp) {
+    fn movers_go_on(&mut self, traffic: &MovingObstacleTracker, now: Stamp) {
         if self.movers.is_empty() {
             return;
         }
-        self.movers = traffic.movers(now);
+        self.movers = traffic.moving_obstacles(now);
         if self.movers.is_empty() || self.scan.as_ref().is_none_or(|scan| now - scan.stamp() > MOVERS_LAST) {
             self.forget_movers();
         }

@@ -166,7 +166,7 @@ impl Supervisor {
             return None;
         }
         match explorer.next(s.grid, s.estimate.pose) {
-            Exploration::Look(view) => {
+            Exploration::Next(view) => {
                 let is_old = |old: &Frontier| view.frontier.is_that_at(old.middle);
                 if !over && frontier.as_ref().is_some_and(is_old) {
                     return None;
@@ -188,7 +188,7 @@ impl Supervisor {
         match &mut self.current {
             Some(Current { work: Work::Exploring { explorer, frontier, views, .. }, .. }) => {
                 if let Some(frontier) = frontier.take() {
-                    explorer.looked_at(&frontier);
+                    explorer.mark_viewed(&frontier);
                     *views += 1;
                 }
             }
@@ -204,7 +204,7 @@ impl Supervisor {
             *failure = Some(reason.to_owned());
             // What cannot be driven to now may be later, but not without end.
             if let Some(frontier) = frontier.take() {
-                explorer.looked_at(&frontier);
+                explorer.mark_viewed(&frontier);
             }
             return;
         }

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use trundle::core::{Cell, Footprint, GridGeometry, OccupancyGrid, Pose2, Twist2, Vector2};
 use trundle::io::{read_graph, read_keep_out_mask, read_map, read_places, read_speed_mask};
-use trundle::planning::{DearMask, Plan, Planner, PlannerConfig, SpeedMask, Tour, WayPointGraph};
+use trundle::planning::{CostMask, MultiGoalPlan, Plan, Planner, PlannerConfig, SpeedMask, WaypointGraph};
 use trundle::runtime::RobotConfig;
 use trundle::viz::MaskShares;
 
@@ -35,7 +35,7 @@ pub struct Errand {
     pub keep_out: Option<MaskShares>,
     /// For pictures: 1 less the share of the full speed.
     pub slow: Option<MaskShares>,
-    graph: Option<WayPointGraph>,
+    graph: Option<WaypointGraph>,
     /// A planner that knows no keep-out mask: asked what that changes.
     unmasked: Planner,
 }
@@ -98,7 +98,7 @@ impl Errand {
     }
 
     /// The plan through all goals, or which of them has none.
-    pub fn plan(&mut self) -> Result<Tour, Refusal> {
+    pub fn plan(&mut self) -> Result<MultiGoalPlan, Refusal> {
         let goals: Vec<Pose2> = self.goals.iter().map(|goal| goal.pose).collect();
         self.tour(&goals).map_err(|(goal, why)| {
             let before = (goal > 0).then(|| self.tour(&goals[..goal]).ok()).flatten();
@@ -107,16 +107,16 @@ impl Errand {
         })
     }
 
-    fn tour(&mut self, goals: &[Pose2]) -> Result<Tour, (usize, Plan)> {
+    fn tour(&mut self, goals: &[Pose2]) -> Result<MultiGoalPlan, (usize, Plan)> {
         let (start, grid) = (self.start.pose, &self.grid);
         match &self.graph {
-            Some(graph) => self.planner.plan_tour_on_graph(grid, graph, start, Twist2::ZERO, goals),
-            None => self.planner.plan_tour(grid, start, Twist2::ZERO, goals),
+            Some(graph) => self.planner.plan_multi_goal_on_graph(grid, graph, start, Twist2::ZERO, goals),
+            None => self.planner.plan_multi_goal(grid, start, Twist2::ZERO, goals),
         }
     }
 
     /// Of each goal that another place was taken for: how far off that is, and why.
-    pub fn goals_moved(&mut self, tour: &Tour) -> Vec<Moved> {
+    pub fn goals_moved(&mut self, tour: &MultiGoalPlan) -> Vec<Moved> {
         let mut found = Vec::new();
         for (goal, leg) in tour.legs.iter().enumerate() {
             let Some(instead_of) = &leg.instead_of else { continue };
@@ -134,7 +134,7 @@ impl Errand {
 
     /// The lanes of the way-point graph, end to end; none without one.
     pub fn lanes(&self) -> Vec<[Vector2; 2]> {
-        let of = |graph: &WayPointGraph| {
+        let of = |graph: &WaypointGraph| {
             graph.lanes().iter().map(|(a, b)| [graph.nodes()[*a], graph.nodes()[*b]]).collect()
         };
         self.graph.as_ref().map(of).unwrap_or_default()
@@ -234,7 +234,7 @@ fn keep_out(path: &Path, grid: &OccupancyGrid, planner: &mut Planner) -> Result<
     let shares = mask.forbidden.cells().iter().zip(&mask.dear).map(share).collect();
     planner.set_keep_out(Some(mask.forbidden));
     if mask.dear.iter().any(|value| *value > 0) {
-        planner.set_dear(Some(DearMask::new(geometry, mask.dear)?));
+        planner.set_cost_mask(Some(CostMask::new(geometry, mask.dear)?));
     }
     Ok(MaskShares { geometry, shares })
 }
@@ -257,9 +257,9 @@ fn slow(path: &Path, full: f64, grid: &OccupancyGrid, planner: &mut Planner) -> 
     Ok(MaskShares { geometry: mask.geometry, shares })
 }
 
-fn graph(path: &Path) -> Result<WayPointGraph, Failure> {
+fn graph(path: &Path) -> Result<WaypointGraph, Failure> {
     let file = read_graph(path)?;
-    WayPointGraph::one_way(file.nodes, file.lanes)
+    WaypointGraph::one_way(file.nodes, file.lanes)
         .map_err(|error| Failure::Input(format!("{}: {error}", path.display())))
 }
 

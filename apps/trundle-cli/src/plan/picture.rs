@@ -4,7 +4,7 @@ use super::Spent;
 use super::errand::{Errand, Moved, Refusal};
 use super::table::{curves, points, rows};
 use trundle::core::{DriveLimits, Pose2, Vector2};
-use trundle::planning::{HalfPlane, Plan, Tour};
+use trundle::planning::{HalfPlane, MultiGoalPlan, Plan};
 use trundle::viz::{
     Figure, PlanParts, PlanScene, Report, Table, no_plan_picture, plan_part_pictures, plan_picture,
     speed_charts,
@@ -19,12 +19,18 @@ pub struct Pictures {
 }
 
 /// Draws everything.
-pub fn draw(errand: &Errand, tour: &Tour, limits: DriveLimits, moved: &[Moved], spent: Spent) -> Pictures {
+pub fn draw(
+    errand: &Errand,
+    tour: &MultiGoalPlan,
+    limits: DriveLimits,
+    moved: &[Moved],
+    spent: Spent,
+) -> Pictures {
     let join = |of: fn(&trundle::planning::PlanResult) -> &[Vector2]| -> Vec<Vector2> {
         tour.legs.iter().flat_map(|leg| of(leg).iter().copied()).collect()
     };
     let (raw, way_points, curve) =
-        (join(|leg| leg.raw.points()), join(|leg| leg.way_points.points()), points(tour));
+        (join(|leg| leg.raw.points()), join(|leg| leg.waypoints.points()), points(tour));
     let goals: Vec<Pose2> = tour.legs.iter().map(|leg| leg.trajectory.end()).collect();
     let replaced: Vec<Pose2> = moved.iter().map(|moved| errand.goals[moved.goal].pose).collect();
     let scene = PlanScene {
@@ -82,7 +88,7 @@ pub fn without_plan(errand: &Errand, refusal: &Refusal) -> Vec<u8> {
     no_plan_picture(&scene, &nearest)
 }
 
-fn page(pictures: [&[u8]; 3], tour: &Tour, limits: DriveLimits, numbers: &[Vec<String>]) -> String {
+fn page(pictures: [&[u8]; 3], tour: &MultiGoalPlan, limits: DriveLimits, numbers: &[Vec<String>]) -> String {
     let [plan, field, corridors] = pictures;
     let figure = |title: &str, png: &[u8], caption: &str| Figure::png(title, png).caption(caption).wide();
     let table = numbers

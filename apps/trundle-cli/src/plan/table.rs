@@ -6,23 +6,23 @@ use super::errand::{Errand, Moved, Refusal};
 use crate::console;
 use trundle::core::Vector2;
 use trundle::io::{Summary, table_csv};
-use trundle::planning::{Curve, Plan, ROOM_CAP, Tour, room_in_words};
+use trundle::planning::{Curve, MAX_CLEARANCE_M, MultiGoalPlan, Plan, clearance_text};
 
 /// Distance of two points of the curve in `curve.csv` and in pictures, m.
 const SPACING: f64 = 0.02;
 
 /// All curves, in order.
-pub fn curves(tour: &Tour) -> impl Iterator<Item = &Curve> {
+pub fn curves(tour: &MultiGoalPlan) -> impl Iterator<Item = &Curve> {
     tour.legs.iter().flat_map(|leg| leg.curves())
 }
 
 /// Points along all curves, close together.
-pub fn points(tour: &Tour) -> Vec<Vector2> {
+pub fn points(tour: &MultiGoalPlan) -> Vec<Vector2> {
     curves(tour).flat_map(|curve| curve.samples(SPACING)).map(|sample| sample.pose.position()).collect()
 }
 
 /// Points along the curves: piece of the plan, way along it, pose, curvature.
-pub fn curve_csv(tour: &Tour) -> String {
+pub fn curve_csv(tour: &MultiGoalPlan) -> String {
     let points = curves(tour).enumerate().flat_map(|(i, curve)| {
         let row = move |p: trundle::planning::CurveSample| {
             [i as f64, p.arc, p.pose.x, p.pose.y, p.pose.theta, p.curvature]
@@ -33,7 +33,7 @@ pub fn curve_csv(tour: &Tour) -> String {
 }
 
 /// Of each piece, the coefficients of u^k, u from 0 to 1 along the piece: curve, piece, power, x, y.
-fn coefficients(tour: &Tour) -> Vec<[f64; 5]> {
+fn coefficients(tour: &MultiGoalPlan) -> Vec<[f64; 5]> {
     let mut rows = Vec::new();
     for (i, curve) in curves(tour).enumerate() {
         for (j, piece) in curve.pieces().iter().enumerate() {
@@ -45,7 +45,7 @@ fn coefficients(tour: &Tour) -> Vec<[f64; 5]> {
 }
 
 /// The corridors' sides that shape the curves: curve, piece, control point, normal, offset, multiplier.
-fn constraints(tour: &Tour) -> Vec<[f64; 7]> {
+fn constraints(tour: &MultiGoalPlan) -> Vec<[f64; 7]> {
     let mut rows = Vec::new();
     for (i, curve) in curves(tour).enumerate() {
         rows.extend(curve.active().iter().map(|row| {
@@ -58,18 +58,18 @@ fn constraints(tour: &Tour) -> Vec<[f64; 7]> {
 }
 
 /// The polynomials: of each piece, the coefficients of u^k, u from 0 to 1 along the piece.
-pub fn coefficients_csv(tour: &Tour) -> String {
+pub fn coefficients_csv(tour: &MultiGoalPlan) -> String {
     table_csv(["curve", "piece", "power", "x_m", "y_m"], coefficients(tour))
 }
 
 /// The active constraints: normal . control point <= offset, and what a metre of room would gain.
-pub fn constraints_csv(tour: &Tour) -> String {
+pub fn constraints_csv(tour: &MultiGoalPlan) -> String {
     let head = ["curve", "piece", "control", "normal_x", "normal_y", "offset_m", "multiplier"];
     table_csv(head, constraints(tour))
 }
 
 /// Prints polynomials and active constraints.
-pub fn print_curves(tour: &Tour) {
+pub fn print_curves(tour: &MultiGoalPlan) {
     for (i, curve) in curves(tour).enumerate() {
         for (j, piece) in curve.pieces().iter().enumerate() {
             console::say(&format!("curve {i}, piece {j}, {:.3} m, u = 0 to 1:", piece.span()));
@@ -102,7 +102,7 @@ fn polynomial(coefficients: impl Iterator<Item = f64>) -> String {
 }
 
 /// What the terminal shows.
-pub fn rows(tour: &Tour, Spent { all, stages }: Spent) -> Vec<Vec<String>> {
+pub fn rows(tour: &MultiGoalPlan, Spent { all, stages }: Spent) -> Vec<Vec<String>> {
     let row = |name: &str, value: String| vec![name.to_owned(), value];
     let ms = |seconds: f64| format!("{:.2} ms", seconds * 1e3);
     let mut rows = Vec::new();
@@ -115,29 +115,29 @@ pub fn rows(tour: &Tour, Spent { all, stages }: Spent) -> Vec<Vec<String>> {
         row("way-points", way_points(tour).to_string()),
         row("curve pieces", pieces(tour).to_string()),
         row("active constraints", constraints(tour).len().to_string()),
-        row("least room beside the robot", room_in_words(least_room(tour))),
+        row("least room beside the robot", clearance_text(least_room(tour))),
         row("planning", ms(all)),
         row("  distance field", ms(stages.field)),
-        row("  way-points", ms(stages.way_points)),
+        row("  way-points", ms(stages.waypoints)),
         row("  curve", ms(stages.curve)),
         row("  timing", ms(stages.timing)),
     ]);
     rows
 }
 
-fn length(tour: &Tour) -> f64 {
+fn length(tour: &MultiGoalPlan) -> f64 {
     tour.legs.iter().map(|leg| leg.length).sum()
 }
 
-fn way_points(tour: &Tour) -> usize {
-    tour.legs.iter().map(|leg| leg.way_points.points().len()).sum()
+fn way_points(tour: &MultiGoalPlan) -> usize {
+    tour.legs.iter().map(|leg| leg.waypoints.points().len()).sum()
 }
 
-fn pieces(tour: &Tour) -> usize {
+fn pieces(tour: &MultiGoalPlan) -> usize {
     curves(tour).map(|curve| curve.pieces().len()).sum()
 }
 
-fn least_room(tour: &Tour) -> f64 {
+fn least_room(tour: &MultiGoalPlan) -> f64 {
     tour.legs.iter().map(|leg| leg.min_clearance).fold(f64::INFINITY, f64::min)
 }
 
@@ -159,7 +159,13 @@ pub fn no_summary(args: &PlanArgs, errand: &Errand, refusal: &Refusal, why: &str
 }
 
 /// `summary.json`.
-pub fn summary(args: &PlanArgs, errand: &Errand, tour: &Tour, moved: &[Moved], spent: Spent) -> Summary {
+pub fn summary(
+    args: &PlanArgs,
+    errand: &Errand,
+    tour: &MultiGoalPlan,
+    moved: &[Moved],
+    spent: Spent,
+) -> Summary {
     let goals: Vec<_> = errand.goals.iter().map(|goal| goal.pose).collect();
     let moved: Vec<_> = moved
         .iter()
@@ -181,14 +187,14 @@ pub fn summary(args: &PlanArgs, errand: &Errand, tour: &Tour, moved: &[Moved], s
         .set("curve_pieces", pieces(tour))
         .set("active_constraints", constraints(tour).len())
         .set("min_clearance_m", least_room(tour))
-        .set("min_clearance_is_a_limit", least_room(tour) >= ROOM_CAP)
+        .set("min_clearance_is_a_limit", least_room(tour) >= MAX_CLEARANCE_M)
         .set("fell_back", tour.legs.iter().any(|leg| leg.fell_back))
         .set(
             "wall_clock",
             serde_json::json!({
                 "planning_s": spent.all,
                 "field_s": spent.stages.field,
-                "way_points_s": spent.stages.way_points,
+                "way_points_s": spent.stages.waypoints,
                 "curve_s": spent.stages.curve,
                 "timing_s": spent.stages.timing,
             }),

@@ -26,7 +26,7 @@ use std::sync::OnceLock;
 use std::time::Instant;
 use trundle_core::{Cell, CellIndex, GridGeometry, OccupancyGrid, Pose2, Twist2, Vector2};
 use trundle_planning::{
-    DistanceField, Plan, PlannerConfig, PotentialConfig, PotentialKind, StageTimes, UnknownIs,
+    DistanceField, Plan, PlannerConfig, PlanningTimes, PotentialConfig, PotentialKind, UnknownIs,
 };
 
 /// The robot of the comparison with Nav2's planners, m.
@@ -47,7 +47,7 @@ struct Row {
     /// The same for the room that the plan keeps, up to the margin.
     roomy: f64,
     curves: usize,
-    stages: StageTimes,
+    stages: PlanningTimes,
 }
 
 fn main() {
@@ -116,7 +116,7 @@ fn measure(grid: &OccupancyGrid, pairs: &[(Pose2, Pose2)]) -> Vec<Result<Row, f6
     planner.set_clock(Some(seconds));
     planner.plan(grid, pairs[0].0, Twist2::ZERO, pairs[0].1);
     let ask = |(start, goal): &(Pose2, Pose2)| {
-        let (mut last, mut ms, mut stages) = (None, f64::INFINITY, StageTimes::default());
+        let (mut last, mut ms, mut stages) = (None, f64::INFINITY, PlanningTimes::default());
         for _ in 0..ROUNDS {
             let begin = support::cpu_ms();
             last = Some(planner.plan(grid, *start, Twist2::ZERO, *goal));
@@ -132,7 +132,7 @@ fn measure(grid: &OccupancyGrid, pairs: &[(Pose2, Pose2)]) -> Vec<Result<Row, f6
         support::judge(grid, &result, *start, *goal, RADIUS);
         let by = |room: f64| shortest::shortest(&field, RADIUS + room, start.position(), goal.position());
         let (shortest, roomy) = (by(0.0), by(result.min_clearance.clamp(0.0, MARGIN)));
-        let (curves, way) = (result.curves().count(), result.way_points.length());
+        let (curves, way) = (result.curves().count(), result.waypoints.length());
         Ok(Row { ms, length: result.length, way, shortest, roomy, curves, stages })
     };
     pairs.iter().map(ask).collect()
@@ -146,8 +146,8 @@ fn seconds() -> f64 {
 
 /// What each stage takes of all the time.
 fn shares_of(rows: &[&Row]) -> String {
-    let sum = |of: fn(&StageTimes) -> f64| rows.iter().map(|row| of(&row.stages)).sum::<f64>();
-    let stages = [sum(|s| s.field), sum(|s| s.way_points), sum(|s| s.curve), sum(|s| s.timing)];
+    let sum = |of: fn(&PlanningTimes) -> f64| rows.iter().map(|row| of(&row.stages)).sum::<f64>();
+    let stages = [sum(|s| s.field), sum(|s| s.waypoints), sum(|s| s.curve), sum(|s| s.timing)];
     let total: f64 = stages.iter().sum();
     let share = |i: usize| 100.0 * stages[i] / total;
     format!(

@@ -1,20 +1,22 @@
+//! Configuration of the timing.
+
 use serde::{Deserialize, Serialize};
 use trundle_core::{Invalid, require_in};
 
-/// How fast, beside the drive's own limits.
+/// Speed limits in addition to the drive's own.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct TimingConfig {
-    /// Time between samples of the trajectory, s, 0.001 to 1. Default 0.02: the control loop's.
+    /// Time between samples of the trajectory, s, 0.001 to 1. Default 0.02: the control period.
     pub period: f64,
-    /// Highest speed without any clearance, m/s, 0.01 to 10. Default 0.15 (ours).
+    /// Largest speed without any clearance, m/s, 0.01 to 10. Default 0.15 (ours).
     pub slow_speed: f64,
-    /// Clearance from which on the full speed is allowed, m, 0 to 10; linear below. Default 0.3 (ours).
+    /// Clearance above which the full speed is allowed, m, 0 to 10; linear below. Default 0.3 (ours).
     pub full_speed_clearance: f64,
-    /// Highest speed where the robot's front comes to what was never seen, m/s, 0.01 to 10. Default 0.35 (ours): a Kobuki
-    /// stops from it within 0.13 m.
+    /// Largest speed where the space at the robot's front is unknown, m/s, 0.01 to 10. Default 0.35 (ours): a Kobuki stops from it
+    /// within 0.13 m.
     pub unknown_speed: f64,
-    /// Highest change of acceleration, m/s^3, 0.01 to 1000. Default none.
+    /// Largest jerk, m/s^3, 0.01 to 1000. Default none.
     pub jerk: Option<f64>,
 }
 
@@ -25,7 +27,7 @@ impl Default for TimingConfig {
 }
 
 impl TimingConfig {
-    /// Passes a valid configuration through.
+    /// Returns a valid configuration unchanged.
     ///
     /// # Errors
     /// When a number is outside its range.

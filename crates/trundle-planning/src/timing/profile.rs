@@ -1,21 +1,20 @@
-//! Speed over time along one curve, with bounded jerk where that is asked for.
+//! Speed over time along one curve, with an optional bound of the jerk.
 //!
-//! Problem: the fastest speeds change their acceleration at once. Idea: average the motion over a window of T = 2 a / jerk
-//! seconds. The mean of motions whose acceleration is at most a changes its acceleration by at most 2 a / T; it is never
-//! faster than the fastest in its window, so limits that hold for as far as the robot comes in T hold for the mean; and it
-//! ends in the same place, T later. Cost: O(samples).
+//! Problem: the fastest speed profile jumps in acceleration. Idea: average the motion over a window of T = 2 a / jerk seconds. The
+//! mean of motions with acceleration at most a has a jerk of at most 2 a / T. It is never faster than the fastest in its window,
+//! so limits that hold for the distance covered in T hold for the mean. It ends in the same place, T later. Cost: O(samples).
 
-use super::speeds::{Drive, speeds};
-use crate::curve::CurveSample;
+use crate::curve::analytic_curve::CurveSample;
+use crate::timing::speeds::{DriveModel, speeds};
 use trundle_core::Pose2;
 
-/// Where the robot is on a curve, and how fast, at any time.
+/// Position on a curve and speed at any time.
 #[derive(Debug)]
-pub(super) struct Profile {
+pub(super) struct SpeedProfile {
     knots: Vec<Knot>,
     /// Length of the averaging window, s; 0: none.
     window: f64,
-    /// Where the window begins, before the time asked for, s.
+    /// Start of the window before the time asked for, s.
     lead: f64,
 }
 
@@ -24,55 +23,56 @@ struct Knot {
     time: f64,
     arc: f64,
     v: f64,
-    /// Acceleration from here on, m/s^2.
+    /// Acceleration after the knot, m/s^2.
     a: f64,
     /// The integral of `arc` over time.
     area: f64,
 }
 
-impl Profile {
-    /// From `v_start` m/s to rest. A motion under way that has not the room to go on as it is for half a window is timed
-    /// without regard to the jerk.
+impl SpeedProfile {
+    /// From `v_start` m/s to rest. A motion under distance without the space to hold its speed for half a window is timed without a bound
+    /// of the jerk.
     pub(super) fn new(
         samples: &[CurveSample],
         v_start: f64,
-        drive: &Drive,
+        drive: &DriveModel,
         ceiling: impl Fn(Pose2) -> f64,
     ) -> Self {
         let Some(jerk) = drive.config.jerk else {
-            return Self::steep(samples, &speeds(samples, v_start, drive, ceiling, 0.0));
+            return Self::without_jerk_bound(samples, &speeds(samples, v_start, drive, ceiling, 0.0));
         };
         let window = 2.0 * drive.limits.acceleration / jerk;
         let reach = drive.limits.v.max(v_start) * window;
         if v_start == 0.0 {
-            let steep = Self::steep(samples, &speeds(samples, 0.0, drive, ceiling, reach));
-            return Self { window, lead: window, ..steep };
+            let without_jerk_bound =
+                Self::without_jerk_bound(samples, &speeds(samples, 0.0, drive, ceiling, reach));
+            return Self { window, lead: window, ..without_jerk_bound };
         }
         let hold = v_start * window / 2.0;
         let from = samples.partition_point(|sample| sample.arc < samples[0].arc + hold);
         if from + 1 < samples.len() {
             let after = speeds(&samples[from..], v_start, drive, &ceiling, reach);
             let free = speeds(samples, v_start, drive, &ceiling, reach);
-            // Held for the first stretch, if nothing slows there.
+            // The speed is held for the first segment, if nothing slows there.
             if free[..=from].iter().all(|v| *v >= v_start - 1e-9) {
                 let held = std::iter::repeat_n(v_start, from).chain(after).collect::<Vec<_>>();
-                return Self { window, lead: window / 2.0, ..Self::steep(samples, &held) };
+                return Self { window, lead: window / 2.0, ..Self::without_jerk_bound(samples, &held) };
             }
         }
-        Self::steep(samples, &speeds(samples, v_start, drive, ceiling, 0.0))
+        Self::without_jerk_bound(samples, &speeds(samples, v_start, drive, ceiling, 0.0))
     }
 
-    /// Evenly accelerated from sample to sample.
-    fn steep(samples: &[CurveSample], speeds: &[f64]) -> Self {
+    /// Constant acceleration between samples.
+    fn without_jerk_bound(samples: &[CurveSample], speeds: &[f64]) -> Self {
         let first = Knot { time: 0.0, arc: samples[0].arc, v: speeds[0], a: 0.0, area: 0.0 };
         let mut knots = Vec::with_capacity(samples.len());
         knots.push(first);
         for (pair, v) in samples.windows(2).zip(speeds.windows(2)) {
-            let way = pair[1].arc - pair[0].arc;
-            if way <= 0.0 || v[0] + v[1] <= 0.0 {
+            let distance = pair[1].arc - pair[0].arc;
+            if distance <= 0.0 || v[0] + v[1] <= 0.0 {
                 continue;
             }
-            let duration = 2.0 * way / (v[0] + v[1]);
+            let duration = 2.0 * distance / (v[0] + v[1]);
             let last = knots.last_mut().expect("invariant: there is a first knot");
             last.a = (v[1] - v[0]) / duration;
             let area = last.area_after(duration);
@@ -82,12 +82,12 @@ impl Profile {
         Self { knots, window: 0.0, lead: 0.0 }
     }
 
-    /// When it is at rest, s.
+    /// Time of rest, s.
     pub(super) fn duration(&self) -> f64 {
         self.knots[self.knots.len() - 1].time + self.lead
     }
 
-    /// The way done, m, and the speed, m/s.
+    /// Distance, m, and speed, m/s.
     pub(super) fn at(&self, time: f64) -> (f64, f64) {
         if self.window == 0.0 {
             let (knot, t) = self.knot(time);
@@ -99,7 +99,7 @@ impl Profile {
         (arc, ((b.arc_after(t) - a.arc_after(s)) / self.window).max(0.0))
     }
 
-    /// The knot before a time, and the time since: steady motion before the first, rest after the last.
+    /// The knot before a time, and the time since: constant speed before the first, rest after the last.
     fn knot(&self, time: f64) -> (Knot, f64) {
         let after = self.knots.partition_point(|knot| knot.time <= time);
         if after == 0 {

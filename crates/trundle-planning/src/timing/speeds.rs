@@ -1,32 +1,34 @@
 //! The highest allowed speed along a curve.
 
-use super::TimingConfig;
-use crate::curve::CurveSample;
+use crate::curve::analytic_curve::CurveSample;
+use crate::timing::config::TimingConfig;
 use trundle_core::{DriveLimits, Pose2};
 
-/// What bounds speeds.
+/// Limits of the speed.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Drive {
+pub(crate) struct DriveModel {
     pub(crate) limits: DriveLimits,
     /// Half the distance between the wheels, m.
     pub(crate) half_base: f64,
     pub(crate) config: TimingConfig,
 }
 
-/// A speed that is none, m/s.
-const ROUNDING: f64 = 1e-6;
-/// How far a motion under way may be above a ceiling: a reference on a curve of ours is never above, a measured twist
-/// may be by its noise.
-const SLACK: f64 = 1.05;
+/// Smallest time between two samples, s. Source: ours.
+pub(super) const MIN_SAMPLE_PERIOD_S: f64 = 1e-4;
+/// Speed that counts as rest, m/s. Source: rounding.
+const REST_SPEED_M_S: f64 = 1e-6;
+/// Largest ratio of the speed of a motion under distance to a ceiling: the noise of a measured twist. A reference on a planned curve
+/// never exceeds its ceiling. Source: ours.
+const MAX_CEILING_RATIO: f64 = 1.05;
 
-impl Drive {
-    /// The highest change of speed at a curvature, m/s^2: half the angular acceleration is for it.
+impl DriveModel {
+    /// The largest acceleration at a curvature, m/s^2: half of the angular acceleration is available for it.
     pub(crate) fn acceleration(&self, curvature: f64) -> f64 {
         let turning = self.limits.angular_acceleration / 2.0 / curvature.abs().max(1e-9);
         self.limits.acceleration.min(turning)
     }
 
-    /// The speed allowed at a clearance, m/s.
+    /// The largest speed at a clearance, m/s.
     pub(crate) fn near_obstacles(&self, clearance: f64) -> f64 {
         let TimingConfig { slow_speed, full_speed_clearance, .. } = self.config;
         if clearance >= full_speed_clearance {
@@ -37,23 +39,22 @@ impl Drive {
     }
 }
 
-/// The speed at each sample, m/s: `v_start` at the first, 0 at the last. Where `v_start` is above a ceiling, it is
-/// braked from as hard as allowed, and harder only where the curve is too short to stop on. Limits hold for `window` m
-/// around where they apply.
+/// The speed at each sample, m/s: `v_start` at the first, 0 at the last. Where `v_start` exceeds a ceiling, the robot brakes as
+/// hard as allowed, and harder only where the curve is too short to stop on. Limits hold for `window` m around where they apply.
 pub(super) fn speeds(
     samples: &[CurveSample],
     v_start: f64,
-    drive: &Drive,
+    drive: &DriveModel,
     ceiling: impl Fn(Pose2) -> f64,
     window: f64,
 ) -> Vec<f64> {
     let mut v = ceilings(samples, drive, ceiling);
     let mut gain = gains(samples, drive);
     if window > 0.0 {
-        v = least_around(samples, &v, window);
+        v = minimum_around(samples, &v, window);
         let accelerations: Vec<f64> = samples.windows(2).map(|pair| acceleration(pair, drive)).collect();
-        let least = least_around(&samples[1..], &accelerations, window);
-        gain = samples.windows(2).zip(least).map(|(pair, a)| 2.0 * way(pair) * a).collect();
+        let least = minimum_around(&samples[1..], &accelerations, window);
+        gain = samples.windows(2).zip(least).map(|(pair, a)| 2.0 * distance(pair) * a).collect();
     }
     let last = v.len() - 1;
     v[last] = 0.0;
@@ -65,15 +66,15 @@ pub(super) fn speeds(
         let squared = v[i - 1] * v[i - 1];
         v[i] = v[i].min((squared + gain[i - 1]).sqrt()).max((squared - gain[i - 1]).max(0.0).sqrt());
     }
-    if v[last] > ROUNDING {
-        stop_short(&mut v, samples);
+    if v[last] > REST_SPEED_M_S {
+        stop_at_end(&mut v, samples);
     }
     v[last] = 0.0;
     v
 }
 
-/// Of each value, the least of those within `window` m.
-fn least_around(samples: &[CurveSample], values: &[f64], window: f64) -> Vec<f64> {
+/// For each value the minimum of those within `window` m.
+fn minimum_around(samples: &[CurveSample], values: &[f64], window: f64) -> Vec<f64> {
     let mut first = 0;
     let least = |i: usize| {
         while samples[first].arc < samples[i].arc - window {
@@ -87,32 +88,32 @@ fn least_around(samples: &[CurveSample], values: &[f64], window: f64) -> Vec<f64
 }
 
 /// Whether braking as hard as allowed from `v_start` stays below every ceiling of the drive, and ends at rest.
-pub(super) fn can_follow(samples: &[CurveSample], v_start: f64, drive: &Drive) -> bool {
+pub(super) fn can_follow_samples(samples: &[CurveSample], v_start: f64, drive: &DriveModel) -> bool {
     let ceilings = ceilings(samples, drive, |_| f64::INFINITY);
     let mut squared = v_start * v_start;
     for (gain, ceiling) in gains(samples, drive).iter().zip(&ceilings) {
-        if squared > (SLACK * ceiling).powi(2) {
+        if squared > (MAX_CEILING_RATIO * ceiling).powi(2) {
             return false;
         }
         squared = (squared - gain).max(0.0);
     }
-    squared <= ROUNDING
+    squared <= REST_SPEED_M_S
 }
 
-/// What the squared speed may change between neighbouring samples, m^2/s^2.
-fn gains(samples: &[CurveSample], drive: &Drive) -> Vec<f64> {
-    samples.windows(2).map(|pair| 2.0 * way(pair) * acceleration(pair, drive)).collect()
+/// Largest change of the squared speed between neighbouring samples, m^2/s^2.
+fn gains(samples: &[CurveSample], drive: &DriveModel) -> Vec<f64> {
+    samples.windows(2).map(|pair| 2.0 * distance(pair) * acceleration(pair, drive)).collect()
 }
 
-fn way(pair: &[CurveSample]) -> f64 {
+fn distance(pair: &[CurveSample]) -> f64 {
     pair[1].arc - pair[0].arc
 }
 
-fn acceleration(pair: &[CurveSample], drive: &Drive) -> f64 {
+fn acceleration(pair: &[CurveSample], drive: &DriveModel) -> f64 {
     drive.acceleration(pair[0].curvature.abs().max(pair[1].curvature.abs()))
 }
 
-fn ceilings(samples: &[CurveSample], drive: &Drive, ceiling: impl Fn(Pose2) -> f64) -> Vec<f64> {
+fn ceilings(samples: &[CurveSample], drive: &DriveModel, ceiling: impl Fn(Pose2) -> f64) -> Vec<f64> {
     let around: Vec<f64> = samples.iter().map(|sample| ceiling(sample.pose)).collect();
     let mut v: Vec<f64> = samples
         .iter()
@@ -129,7 +130,7 @@ fn ceilings(samples: &[CurveSample], drive: &Drive, ceiling: impl Fn(Pose2) -> f
         })
         .collect();
     for (i, pair) in samples.windows(2).enumerate() {
-        let change = (pair[1].curvature - pair[0].curvature).abs() / way(pair);
+        let change = (pair[1].curvature - pair[0].curvature).abs() / distance(pair);
         let ceiling = (drive.limits.angular_acceleration / 2.0 / change.max(1e-9)).sqrt();
         v[i] = v[i].min(ceiling);
         v[i + 1] = v[i + 1].min(ceiling);
@@ -137,8 +138,8 @@ fn ceilings(samples: &[CurveSample], drive: &Drive, ceiling: impl Fn(Pose2) -> f
     v
 }
 
-/// Evenly from the first speed to rest at the end.
-fn stop_short(v: &mut [f64], samples: &[CurveSample]) {
+/// Constant deceleration from the first speed to rest at the end.
+fn stop_at_end(v: &mut [f64], samples: &[CurveSample]) {
     let begin = samples[0].arc;
     let length = samples[samples.len() - 1].arc - begin;
     let first = v[0];

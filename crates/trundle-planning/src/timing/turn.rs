@@ -1,12 +1,12 @@
-//! Turning on the spot: up to speed, and down again.
+//! Timing of a turn in place.
 
-use super::{LEAST_GAP, speeds::Drive};
+use crate::timing::speeds::{DriveModel, MIN_SAMPLE_PERIOD_S};
 use trundle_core::{Pose2, TrajectoryPoint, Twist2};
 
 /// Appends a turn by `angle` rad from `from`, a period apart, the last sample exactly at its end.
-pub(super) fn time_turn(from: Pose2, angle: f64, drive: &Drive, points: &mut Vec<TrajectoryPoint>) {
+pub(super) fn time_turn(from: Pose2, angle: f64, drive: &DriveModel, points: &mut Vec<TrajectoryPoint>) {
     let begin = points.last().map_or(0.0, |point| point.time);
-    let profile = Profile::new(angle.abs(), drive);
+    let profile = TurnProfile::new(angle.abs(), drive);
     let sign = angle.signum();
     let at = |turned: f64, rate: f64, time: f64| TrajectoryPoint {
         time: begin + time,
@@ -16,7 +16,7 @@ pub(super) fn time_turn(from: Pose2, angle: f64, drive: &Drive, points: &mut Vec
     points.pop();
     points.push(at(0.0, 0.0, 0.0));
     let duration = profile.duration();
-    let count = ((duration - LEAST_GAP) / drive.config.period).floor().max(0.0) as usize;
+    let count = ((duration - MIN_SAMPLE_PERIOD_S) / drive.config.period).floor().max(0.0) as usize;
     for k in 1..=count {
         let time = k as f64 * drive.config.period;
         let (turned, rate) = profile.at(time);
@@ -26,14 +26,14 @@ pub(super) fn time_turn(from: Pose2, angle: f64, drive: &Drive, points: &mut Vec
 }
 
 /// A trapezoid of turn rate over time.
-struct Profile {
+struct TurnProfile {
     angle: f64,
     rate: f64,
     acceleration: f64,
 }
 
-impl Profile {
-    fn new(angle: f64, drive: &Drive) -> Self {
+impl TurnProfile {
+    fn new(angle: f64, drive: &DriveModel) -> Self {
         let acceleration = drive.limits.angular_acceleration;
         let rate = drive.limits.omega.min(drive.limits.wheel_speed / drive.half_base);
         Self { angle, rate: rate.min((angle * acceleration).sqrt()), acceleration }
@@ -43,7 +43,7 @@ impl Profile {
         self.angle / self.rate + self.rate / self.acceleration
     }
 
-    /// Turned so far and turn rate, rad and rad/s.
+    /// Angle, rad, and turn rate, rad/s.
     fn at(&self, time: f64) -> (f64, f64) {
         let left = self.duration() - time;
         let ramp = self.rate / self.acceleration;

@@ -34,7 +34,7 @@ fn drawn(grid: &OccupancyGrid, art: &str, plan: &trundle_planning::PlanResult) -
     for point in plan.trajectory.points() {
         put(point.pose.position(), '*');
     }
-    for point in plan.way_points.points() {
+    for point in plan.waypoints.points() {
         put(*point, 'o');
     }
     picture.into_iter().map(|row| row.into_iter().collect::<String>() + "\n").collect()
@@ -156,8 +156,8 @@ fn a_known_way_is_preferred_to_the_unknown() {
     let (start, goal) = (Pose2::new(1.2, 0.9, 0.0), Pose2::new(4.4, 0.9, 0.0));
     let through = found(planner(at_home(), 0.17).plan(&grid, start, Twist2::ZERO, goal));
     assert!(through.length < 3.4, "{}", through.length);
-    let room = trundle_planning::RoomConfig { unknown_weight: 3.0, ..Default::default() };
+    let room = trundle_planning::ClearanceCostConfig { unknown_weight: 3.0, ..Default::default() };
     let around =
         found(planner(PlannerConfig { room, ..at_home() }, 0.17).plan(&grid, start, Twist2::ZERO, goal));
-    assert!(around.way_points.points().iter().any(|p| p.y > 1.0), "{:?}", around.way_points);
+    assert!(around.waypoints.points().iter().any(|p| p.y > 1.0), "{:?}", around.waypoints);
 }

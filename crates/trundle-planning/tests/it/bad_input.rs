@@ -4,7 +4,9 @@ use crate::support::{at_home, found, judge, planner, room};
 use trundle_core::{
     Cell, CellIndex, DifferentialDrive, DriveLimits, Footprint, OccupancyGrid, Pose2, Twist2, Vector2,
 };
-use trundle_planning::{Mover, Plan, Planner, PlannerConfig, Replan, RoomConfig, UnknownIs, WayPointGraph};
+use trundle_planning::{
+    ClearanceCostConfig, MovingObstacle, Plan, Planner, PlannerConfig, Replan, UnknownIs, WaypointGraph,
+};
 
 const MAP: &str = "
     ????????????
@@ -64,8 +66,8 @@ fn every_answer_is_a_sentence() {
     assert_eq!(
         sentences,
         [
-            "the robot does not fit at the goal: 0.170 m are missing",
-            "the robot does not fit at the goal: 0.070 m are missing",
+            "the robot does not fit at the goal: 0.170 m of clearance are missing",
+            "the robot does not fit at the goal: 0.070 m of clearance are missing",
             "the goal is off the map",
             "goal x is NaN m, expected a finite number",
         ]
@@ -129,7 +131,7 @@ fn unknown_space_is_allowed_dear_or_forbidden() {
     let ask = |unknown_weight: f64, unknown: UnknownIs| {
         let config = PlannerConfig {
             unknown,
-            room: RoomConfig { unknown_weight, ..RoomConfig::default() },
+            room: ClearanceCostConfig { unknown_weight, ..ClearanceCostConfig::default() },
             ..at_home()
         };
         let plan = found(planner(config, 0.17).plan(&grid, start, Twist2::ZERO, goal));
@@ -190,18 +192,18 @@ fn numbers_that_are_none_are_refused_at_every_door() {
     let mut planner = planner(at_home(), 0.17);
     let first = found(planner.plan(&grid, here, Twist2::ZERO, there));
     let refused = |plan: &Plan| matches!(plan, Plan::Refused(invalid) if invalid.field == "goal x");
-    assert!(refused(&planner.plan_among(&grid, &[], here, Twist2::ZERO, nowhere)));
-    let (at, why) = planner.plan_tour(&grid, here, Twist2::ZERO, &[there, nowhere]).unwrap_err();
+    assert!(refused(&planner.plan_among_moving(&grid, &[], here, Twist2::ZERO, nowhere)));
+    let (at, why) = planner.plan_multi_goal(&grid, here, Twist2::ZERO, &[there, nowhere]).unwrap_err();
     assert!(at == 1 && refused(&why));
-    let graph = WayPointGraph::new(vec![Vector2::new(1.0, 1.0)], vec![]).unwrap();
+    let graph = WaypointGraph::new(vec![Vector2::new(1.0, 1.0)], vec![]).unwrap();
     assert!(refused(&planner.plan_on_graph(&grid, &graph, here, Twist2::ZERO, nowhere)));
     let replan = planner.replan(&grid, &[], &first, 1.0, nowhere);
     assert!(matches!(replan, Replan::New(plan) if refused(&plan)));
     // A time that is none, or after the end, is no panic.
     for time in [f64::NAN, -5.0, 1e9] {
-        let _ = planner.still_free(&grid, &first.trajectory, time);
+        let _ = planner.validate_trajectory(&grid, &first.trajectory, time);
         let _ = planner.replan(&grid, &[], &first, time, there);
     }
-    let still = Mover::new(here.position(), Vector2::zeros(), 0.3).unwrap();
-    let _ = planner.plan_among(&grid, &[still], here, Twist2::ZERO, there);
+    let still = MovingObstacle::new(here.position(), Vector2::zeros(), 0.3).unwrap();
+    let _ = planner.plan_among_moving(&grid, &[still], here, Twist2::ZERO, there);
 }

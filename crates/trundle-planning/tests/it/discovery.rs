@@ -63,7 +63,7 @@ fn the_goal_is_reached_through_a_house_never_seen() {
             (pose, twist) = (at.pose, at.twist);
             least = least.min(room(&world, pose.position()));
             look(&world, pose.position(), &mut map);
-            if planner.still_free(&map, &plan.trajectory, now).is_err() {
+            if planner.validate_trajectory(&map, &plan.trajectory, now).is_err() {
                 break;
             }
         }

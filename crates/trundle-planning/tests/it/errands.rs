@@ -2,7 +2,7 @@
 
 use crate::support::{at_home, found, judge, least_room, planner};
 use trundle_core::{Cell, GridGeometry, OccupancyGrid, Pose2, Twist2, Vector2};
-use trundle_planning::{DearMask, Plan, PlanResult, PlannerConfig, Replan, SpeedMask, WayPointGraph};
+use trundle_planning::{CostMask, Plan, PlanResult, PlannerConfig, Replan, SpeedMask, WaypointGraph};
 
 const RADIUS: f64 = 0.1755;
 
@@ -42,14 +42,14 @@ fn a_plan_is_no_longer_free_where_a_mask_forbids_it_since() {
         Cell::Occupied,
     );
     planner.set_keep_out(Some(strip.clone()));
-    let hit = planner.still_free(&grid, &plan.trajectory, 0.0).unwrap_err();
+    let hit = planner.validate_trajectory(&grid, &plan.trajectory, 0.0).unwrap_err();
     assert!((hit.pose.x - (5.0 - RADIUS)).abs() < 0.02, "{hit}");
     let Replan::New(Plan::Found(around)) = planner.replan(&grid, &[], &plan, 2.0, goal) else {
         panic!("kept")
     };
-    assert!(around.is_continuous && planner.still_free(&grid, &around.trajectory, 0.0).is_ok());
+    assert!(around.is_continuous && planner.validate_trajectory(&grid, &around.trajectory, 0.0).is_ok());
     planner.set_keep_out(None);
-    assert!(planner.still_free(&grid, &plan.trajectory, 0.0).is_ok());
+    assert!(planner.validate_trajectory(&grid, &plan.trajectory, 0.0).is_ok());
     // Seen from another frame: beside everything, it forbids nothing.
     let elsewhere = GridGeometry::new(0.03, Vector2::new(500.0, -80.0), 9, 9).unwrap();
     planner.set_keep_out(Some(OccupancyGrid::filled(elsewhere, Cell::Occupied)));
@@ -106,7 +106,7 @@ fn a_tour_rests_at_each_goal() {
     ];
     let start = Pose2::new(1.0, 1.0, 0.0);
     let mut planner = planner(at_home(), RADIUS);
-    let tour = planner.plan_tour(&hall(), start, Twist2::ZERO, &goals).unwrap();
+    let tour = planner.plan_multi_goal(&hall(), start, Twist2::ZERO, &goals).unwrap();
     assert_eq!(tour.legs.len(), 4);
     let mut from = start;
     let mut time = 0.0;
@@ -117,23 +117,24 @@ fn a_tour_rests_at_each_goal() {
         assert!(there.pose.distance(&goal) < 1.1e-3 && there.twist.v.abs() < 1e-6, "{there:?}");
     }
     assert!((tour.trajectory.duration() - time).abs() < 1e-9);
-    let (at, why) =
-        planner.plan_tour(&hall(), start, Twist2::ZERO, &[goals[0], Pose2::new(99.0, 0.0, 0.0)]).unwrap_err();
+    let (at, why) = planner
+        .plan_multi_goal(&hall(), start, Twist2::ZERO, &[goals[0], Pose2::new(99.0, 0.0, 0.0)])
+        .unwrap_err();
     assert!(at == 1 && why == Plan::GoalOutside, "{at} {why}");
-    assert!(planner.plan_tour(&hall(), start, Twist2::ZERO, &[]).is_err());
+    assert!(planner.plan_multi_goal(&hall(), start, Twist2::ZERO, &[]).is_err());
 }
 
 #[test]
 fn lanes_are_kept_to_and_blocked_ones_avoided() {
     let at = |x: f64, y: f64| Vector2::new(x, y);
     let nodes = vec![at(2.0, 1.0), at(8.0, 1.0), at(2.0, 5.0), at(8.0, 5.0)];
-    let graph = WayPointGraph::new(nodes, vec![(0, 1), (0, 2), (2, 3), (3, 1)]).unwrap();
+    let graph = WaypointGraph::new(nodes, vec![(0, 1), (0, 2), (2, 3), (3, 1)]).unwrap();
     let (start, goal) = (Pose2::new(1.0, 1.2, 0.0), Pose2::new(9.0, 1.2, 0.0));
     let mut grid = hall();
     let mut planner = planner(at_home(), RADIUS);
     let direct = found(planner.plan_on_graph(&grid, &graph, start, Twist2::ZERO, goal));
     judge(&grid, &direct, start, goal, RADIUS);
-    assert!(direct.way_points.points().contains(&at(2.0, 1.0)) && direct.length < 8.3);
+    assert!(direct.waypoints.points().contains(&at(2.0, 1.0)) && direct.length < 8.3);
     let off_the_lane = |plan: &PlanResult| -> f64 {
         let beside = |p: Vector2| {
             (p.y - 1.0).abs().min((p.y - 5.0).abs()).min((p.x - 2.0).abs()).min((p.x - 8.0).abs())
@@ -144,7 +145,7 @@ fn lanes_are_kept_to_and_blocked_ones_avoided() {
     (0..30).for_each(|row| grid.set(trundle_core::CellIndex { col: 50, row }, Cell::Occupied));
     let around = found(planner.plan_on_graph(&grid, &graph, start, Twist2::ZERO, goal));
     judge(&grid, &around, start, goal, RADIUS);
-    assert!(around.way_points.points().contains(&at(8.0, 5.0)));
+    assert!(around.waypoints.points().contains(&at(8.0, 5.0)));
     assert!(off_the_lane(&around) < 0.3, "{}", off_the_lane(&around));
     (0..60).for_each(|row| grid.set(trundle_core::CellIndex { col: 50, row }, Cell::Occupied));
     let blocked = planner.plan_on_graph(&grid, &graph, start, Twist2::ZERO, goal);
@@ -155,7 +156,7 @@ fn lanes_are_kept_to_and_blocked_ones_avoided() {
 fn where_no_lanes_lead_to_the_goal_the_robot_does_not_cross_the_room() {
     let at = |x: f64, y: f64| Vector2::new(x, y);
     let nodes = vec![at(1.0, 1.0), at(8.0, 1.0), at(8.0, 5.0)];
-    let there = WayPointGraph::one_way(nodes, vec![(0, 1), (1, 2)]).unwrap();
+    let there = WaypointGraph::one_way(nodes, vec![(0, 1), (1, 2)]).unwrap();
     let (here, goal) = (Pose2::new(1.2, 1.0, 0.0), Pose2::new(8.0, 4.8, 1.6));
     let mut planner = planner(at_home(), RADIUS);
     found(planner.plan_on_graph(&hall(), &there, here, Twist2::ZERO, goal));
@@ -167,13 +168,13 @@ fn where_no_lanes_lead_to_the_goal_the_robot_does_not_cross_the_room() {
 fn a_tour_keeps_to_lanes_that_are_one_way() {
     let at = |x: f64, y: f64| Vector2::new(x, y);
     let nodes = vec![at(2.0, 1.0), at(8.0, 1.0), at(8.0, 5.0), at(2.0, 5.0)];
-    let ring = WayPointGraph::one_way(nodes, vec![(0, 1), (1, 2), (2, 3), (3, 0)]).unwrap();
+    let ring = WaypointGraph::one_way(nodes, vec![(0, 1), (1, 2), (2, 3), (3, 0)]).unwrap();
     let start = Pose2::new(1.8, 1.0, 0.0);
     let goals = [Pose2::new(8.3, 1.0, 0.0), Pose2::new(1.7, 1.0, 3.0)];
     let mut planner = planner(at_home(), RADIUS);
-    let tour = planner.plan_tour_on_graph(&hall(), &ring, start, Twist2::ZERO, &goals).unwrap();
+    let tour = planner.plan_multi_goal_on_graph(&hall(), &ring, start, Twist2::ZERO, &goals).unwrap();
     assert!(tour.legs[0].length < 7.0 && tour.legs[1].length > 13.0, "back the long way round");
-    assert!(tour.legs[1].way_points.points().contains(&at(2.0, 5.0)));
+    assert!(tour.legs[1].waypoints.points().contains(&at(2.0, 5.0)));
 }
 
 #[test]
@@ -201,7 +202,7 @@ fn what_is_dear_is_avoided_where_that_is_no_great_detour() {
     let geometry = GridGeometry::new(0.25, Vector2::new(4.0, 1.0), 8, 10).unwrap();
     let within = |value: u8| {
         let mut planner = planner(at_home(), RADIUS);
-        planner.set_dear(Some(DearMask::new(geometry, vec![value; geometry.len()]).unwrap()));
+        planner.set_cost_mask(Some(CostMask::new(geometry, vec![value; geometry.len()]).unwrap()));
         let plan = found(planner.plan(&grid, start, Twist2::ZERO, goal));
         judge(&grid, &plan, start, goal, RADIUS);
         let inside = |p: Vector2| (4.1..5.9).contains(&p.x) && (1.1..3.4).contains(&p.y);
@@ -215,9 +216,9 @@ fn what_is_dear_is_avoided_where_that_is_no_great_detour() {
     // Where there is no way around, it is no wall.
     let everywhere = GridGeometry::new(1.0, Vector2::zeros(), 10, 6).unwrap();
     let mut planner = planner(at_home(), RADIUS);
-    planner.set_dear(Some(DearMask::new(everywhere, vec![99; 60]).unwrap()));
+    planner.set_cost_mask(Some(CostMask::new(everywhere, vec![99; 60]).unwrap()));
     assert!((found(planner.plan(&grid, start, Twist2::ZERO, goal)).length - 8.0).abs() < 0.01);
-    assert!(DearMask::new(everywhere, vec![101; 60]).is_err() && DearMask::new(everywhere, vec![1]).is_err());
+    assert!(CostMask::new(everywhere, vec![101; 60]).is_err() && CostMask::new(everywhere, vec![1]).is_err());
 }
 
 #[test]

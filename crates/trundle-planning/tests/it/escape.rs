@@ -91,7 +91,7 @@ proptest! {
         let mut planner = planner(at_home(), RADIUS);
         if let Plan::Found(plan) = planner.plan(&grid, start, Twist2::ZERO, Pose2::new(end.x, end.y, 0.3)) {
             judge_escape(&grid, &plan, start);
-            prop_assert_eq!(planner.still_free(&grid, &plan.trajectory, 0.0), Ok(()));
+            prop_assert_eq!(planner.validate_trajectory(&grid, &plan.trajectory, 0.0), Ok(()));
         }
     }
 
@@ -104,7 +104,7 @@ proptest! {
         let end = grid.geometry().center(grid.geometry().cell(to));
         let mut planner = cart();
         if let Plan::Found(plan) = planner.plan(&grid, start, Twist2::ZERO, Pose2::new(end.x, end.y, 0.3)) {
-            prop_assert_eq!(planner.still_free(&grid, &plan.trajectory, 0.0), Ok(()));
+            prop_assert_eq!(planner.validate_trajectory(&grid, &plan.trajectory, 0.0), Ok(()));
         }
     }
 }

@@ -175,11 +175,11 @@ fn an_outline_may_touch_a_wall_and_go_along_it() {
     let mut planner = cart_planner(at_home());
     let result = found(planner.plan(&grid, start, Twist2::ZERO, goal));
     judge_cart(&grid, &result, start, goal);
-    assert!(planner.still_free(&grid, &result.trajectory, 0.0).is_ok());
+    assert!(planner.validate_trajectory(&grid, &result.trajectory, 0.0).is_ok());
     // A wall that it would drive into is seen although it touches one.
     let mut barred = grid.clone();
     (20..29).for_each(|row| barred.set(trundle_core::CellIndex { col: 18, row }, Cell::Occupied));
-    assert!(planner.still_free(&barred, &result.trajectory, 0.0).is_err());
+    assert!(planner.validate_trajectory(&barred, &result.trajectory, 0.0).is_err());
 }
 
 #[test]
@@ -199,7 +199,7 @@ fn an_outline_within_a_wall_is_planned_out_of_it_or_refused_with_the_depth() {
         let slim = [(long, wide), (-long, wide), (-long, -wide), (long, -wide)]
             .map(|(x, y)| Vector2::new(0.2 + x, y));
         assert!(result.trajectory.points().iter().all(|p| !touches(&grid, &slim, p.pose)), "{depth}");
-        assert!(planner.still_free(&grid, &result.trajectory, 0.0).is_ok(), "{depth}");
+        assert!(planner.validate_trajectory(&grid, &result.trajectory, 0.0).is_ok(), "{depth}");
     }
     // Its side in the wall, it can neither turn nor back out.
     let wedged = Pose2::new(0.8, 2.71, 0.0);

@@ -3,7 +3,7 @@
 use crate::nav_data::{data, mrpb_pairs, pairs, read_map};
 use crate::support::{at_home, cpu_ms, judge, planner};
 use trundle_core::{OccupancyGrid, Pose2, Twist2};
-use trundle_planning::{Plan, PlannerConfig, PotentialConfig, PotentialKind, RoomConfig};
+use trundle_planning::{ClearanceCostConfig, Plan, PlannerConfig, PotentialConfig, PotentialKind};
 
 #[derive(Default, Debug)]
 struct Tally {
@@ -37,11 +37,11 @@ fn run(
                 judge(grid, &result, *start, *goal, radius);
                 tally.found += 1;
                 tally.lengths.push(result.length);
-                tally.way_lengths.push(result.way_points.length());
+                tally.way_lengths.push(result.waypoints.length());
                 tally.fell_back += usize::from(result.fell_back);
                 tally.drives += result.curves().count();
                 tally.one_curve += usize::from(result.curves().count() == 1);
-                tally.worst_stretch = tally.worst_stretch.max(result.length / result.way_points.length());
+                tally.worst_stretch = tally.worst_stretch.max(result.length / result.waypoints.length());
             }
             Plan::Blocked { .. } => tally.blocked += 1,
             _ => tally.refused += 1,
@@ -72,7 +72,7 @@ fn nav2_pairs_are_all_found() {
         let tally = run(&format!("{map} {radius}"), &grid, &pairs, at_home(), radius);
         assert_eq!(tally.found, pairs.len());
         // Against the shortest way that the search finds when room costs nothing.
-        let room = RoomConfig { margin: 0.0, comfort: 0.0, ..RoomConfig::default() };
+        let room = ClearanceCostConfig { margin: 0.0, comfort: 0.0, ..ClearanceCostConfig::default() };
         let tight = run("  without comfort", &grid, &pairs, PlannerConfig { room, ..at_home() }, radius);
         let ratio = |i: usize| tally.lengths[i] / tight.way_lengths[i];
         let worst = (0..pairs.len()).map(ratio).fold(0.0, f64::max);

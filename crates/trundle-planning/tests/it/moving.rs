@@ -2,7 +2,7 @@
 
 use crate::support::{at_home, found, judge, planner};
 use trundle_core::{OccupancyGrid, Pose2, Trajectory, Twist2, Vector2};
-use trundle_planning::{Mover, Plan, Replan};
+use trundle_planning::{MovingObstacle, Plan, Replan};
 
 const RADIUS: f64 = 0.1755;
 const PERSON: f64 = 0.3;
@@ -36,11 +36,11 @@ fn someone_who_crosses_is_let_pass_or_gone_around() {
         let (start, goal) =
             if height == 12 { (Pose2::new(1.0, 0.7, 0.0), Pose2::new(5.0, 0.7, 0.0)) } else { (start, goal) };
         let (from, velocity) = (Vector2::new(from.0, from.1), Vector2::new(velocity.0, velocity.1));
-        let mover = Mover::new(from, velocity, PERSON).unwrap();
+        let obstacle = MovingObstacle::new(from, velocity, PERSON).unwrap();
         let mut planner = planner(at_home(), RADIUS);
         let alone = found(planner.plan(&grid, start, Twist2::ZERO, goal));
         assert!(least_gap(&alone.trajectory, from, velocity) < 0.0, "no encounter: {from} {velocity}");
-        let plan = found(planner.plan_among(&grid, &[mover], start, Twist2::ZERO, goal));
+        let plan = found(planner.plan_among_moving(&grid, &[obstacle], start, Twist2::ZERO, goal));
         assert!(least_gap(&plan.trajectory, from, velocity) >= -2e-3, "{} s of wait", plan.wait);
         judge(&grid, &plan, start, goal, RADIUS);
         eprintln!("{:?}: {:.1} s of wait, {:.2} m", from.as_slice(), plan.wait, plan.length);
@@ -59,12 +59,12 @@ fn a_robot_that_moves_stops_for_someone_who_crosses_and_goes_on() {
     let mut waits = 0;
     for (y, speed) in [(-0.6, 0.6), (0.0, 0.4), (-1.0, 0.9), (2.0, -0.6)] {
         let (from, velocity) = (Vector2::new(3.2, y), Vector2::new(0.0, speed));
-        let mover = Mover::new(from, velocity, PERSON).unwrap();
+        let obstacle = MovingObstacle::new(from, velocity, PERSON).unwrap();
         let twist = Twist2::new(0.5, 0.0);
         let mut planner = planner(at_home(), RADIUS);
         let alone = found(planner.plan(&grid, start, twist, goal));
         assert!(least_gap_within(&alone.trajectory, from, velocity) < 0.0, "no encounter at {y}");
-        let plan = found(planner.plan_among(&grid, &[mover], start, twist, goal));
+        let plan = found(planner.plan_among_moving(&grid, &[obstacle], start, twist, goal));
         assert!(plan.is_continuous && plan.trajectory.points()[0].twist.v == 0.5);
         assert!(least_gap_within(&plan.trajectory, from, velocity) >= -2e-3, "{y}: {} s of wait", plan.wait);
         judge(&grid, &plan, start, goal, RADIUS);
@@ -82,11 +82,11 @@ fn a_plan_is_kept_while_it_holds() {
     let mut planner = planner(at_home(), RADIUS);
     let first = found(planner.plan(&grid, start, Twist2::ZERO, goal));
     assert_eq!(planner.replan(&grid, &[], &first, 3.0, goal), Replan::Keep);
-    let away = Mover::new(Vector2::new(2.0, 3.5), Vector2::new(0.0, 1.0), PERSON).unwrap();
+    let away = MovingObstacle::new(Vector2::new(2.0, 3.5), Vector2::new(0.0, 1.0), PERSON).unwrap();
     assert_eq!(planner.replan(&grid, &[away], &first, 3.0, goal), Replan::Keep);
     let now = first.trajectory.at(3.0);
     let ahead = now.pose.position() + Vector2::new(1.4, -0.1);
-    let standing = Mover::new(ahead, Vector2::zeros(), PERSON).unwrap();
+    let standing = MovingObstacle::new(ahead, Vector2::zeros(), PERSON).unwrap();
     let Replan::New(Plan::Found(second)) = planner.replan(&grid, &[standing], &first, 3.0, goal) else {
         panic!("kept, or nothing")
     };
@@ -101,7 +101,7 @@ fn a_plan_is_kept_while_it_holds() {
 #[test]
 fn no_mover_is_nowhere() {
     let zero = Vector2::zeros();
-    assert!(Mover::new(Vector2::new(f64::NAN, 0.0), zero, 0.3).is_err());
-    assert!(Mover::new(zero, Vector2::new(0.0, f64::INFINITY), 0.3).is_err());
-    assert!(Mover::new(zero, zero, -0.1).is_err());
+    assert!(MovingObstacle::new(Vector2::new(f64::NAN, 0.0), zero, 0.3).is_err());
+    assert!(MovingObstacle::new(zero, Vector2::new(0.0, f64::INFINITY), 0.3).is_err());
+    assert!(MovingObstacle::new(zero, zero, -0.1).is_err());
 }

@@ -54,15 +54,15 @@ fn something_new_in_the_way_is_noticed_and_planned_around() {
     let mut planner = planner(at_home(), 0.1755);
     let (start, goal) = (Pose2::new(1.0, 3.0, 0.0), Pose2::new(9.0, 3.0, 0.0));
     let plan = found(planner.plan(&grid, start, Twist2::ZERO, goal));
-    assert!(planner.still_free(&grid, &plan.trajectory, 0.0).is_ok());
+    assert!(planner.validate_trajectory(&grid, &plan.trajectory, 0.0).is_ok());
     (25..35).for_each(|row| grid.set(CellIndex { col: 50, row }, Cell::Occupied));
-    let hit = planner.still_free(&grid, &plan.trajectory, 0.0).unwrap_err();
+    let hit = planner.validate_trajectory(&grid, &plan.trajectory, 0.0).unwrap_err();
     assert!(hit.time > 3.0 && (hit.pose.x - 4.8245).abs() < 0.02, "{hit}");
     let now = plan.trajectory.at(4.0);
     let around = found(planner.plan(&grid, now.pose, now.twist, goal));
     assert!(around.is_continuous);
     judge(&grid, &around, now.pose, goal, 0.1755);
-    assert!(planner.still_free(&grid, &around.trajectory, 0.0).is_ok());
+    assert!(planner.validate_trajectory(&grid, &around.trajectory, 0.0).is_ok());
 }
 
 #[test]

@@ -25,7 +25,7 @@ fn across(size: usize) {
     eprintln!(
         "{size} x {size}: {spent:.0} ms CPU for {:.0} m, {} way-points",
         result.length,
-        result.way_points.points().len()
+        result.waypoints.points().len()
     );
     judge(&grid, &result, start, goal, 0.1755);
 }

@@ -4,7 +4,7 @@ use crate::support::{LIMITS, at_home, found, judge, planner};
 use trundle_core::{
     Cell, CellIndex, DifferentialDrive, Footprint, GridGeometry, OccupancyGrid, Pose2, Twist2, Vector2,
 };
-use trundle_planning::{DistanceField, Plan, Planner, PlannerConfig, UnknownIs, WayPointGraph};
+use trundle_planning::{DistanceField, Plan, Planner, PlannerConfig, UnknownIs, WaypointGraph};
 
 struct Dice(u64);
 
@@ -239,13 +239,13 @@ fn a_tight_gap_is_passed_whatever_else_is_allowed() {
     assert_eq!(plan.instead_of, None);
     judge(&grid, &plan, start, goal, radius);
     let at = |x: f64, y: f64| Vector2::new(x, y);
-    let graph = WayPointGraph::new(vec![at(1.5, 0.5)], vec![]).unwrap();
-    let along = WayPointGraph::new(vec![at(4.0, 1.0), at(5.0, 1.0)], vec![(0, 1)]).unwrap();
+    let graph = WaypointGraph::new(vec![at(1.5, 0.5)], vec![]).unwrap();
+    let along = WaypointGraph::new(vec![at(4.0, 1.0), at(5.0, 1.0)], vec![(0, 1)]).unwrap();
     let plan = planner(at_home(), radius).plan_on_graph(&grid, &graph, start, Twist2::ZERO, goal);
     judge(&grid, &found(plan), start, goal, radius);
     let plan = found(planner(at_home(), radius).plan_on_graph(&grid, &along, start, Twist2::ZERO, goal));
     judge(&grid, &plan, start, goal, radius);
-    assert!(plan.way_points.points().contains(&at(4.0, 1.0)));
+    assert!(plan.waypoints.points().contains(&at(4.0, 1.0)));
     (48..52).for_each(|col| grid.set(CellIndex { col, row: 20 }, Cell::Occupied));
     let some = PlannerConfig { goal_tolerance: 0.6, ..at_home() };
     let plan = found(planner(some, radius).plan(&grid, start, Twist2::ZERO, goal));

@@ -2,7 +2,7 @@
 
 use crate::support::{at_home, cpu_ms, found, judge, planner};
 use trundle_core::{Beam, Cell, CellIndex, GridGeometry, OccupancyGrid, Pose2, Scan, Stamp, Twist2, Vector2};
-use trundle_planning::{Mover, MoverTracker, TrackerConfig};
+use trundle_planning::{MovingObstacle, MovingObstacleTracker, ObstacleTrackerConfig};
 
 const PERSON: f64 = 0.25;
 const RADIUS: f64 = 0.1755;
@@ -67,24 +67,24 @@ fn stamp(time: f64) -> Stamp {
 const CAMERA: (usize, f64) = (320, 1.0);
 const LASER: (usize, f64) = (360, std::f64::consts::TAU);
 
-fn tracker() -> MoverTracker {
-    MoverTracker::new(TrackerConfig::default()).unwrap()
+fn tracker() -> MovingObstacleTracker {
+    MovingObstacleTracker::new(ObstacleTrackerConfig::default()).unwrap()
 }
 
 /// So many seconds of scans, ten a second, from where the robot stands.
 fn watched(
-    tracker: &mut MoverTracker,
+    tracker: &mut MovingObstacleTracker,
     world: &mut World,
     pose: Pose2,
     seconds: f64,
     sensor: (usize, f64),
-) -> Vec<Mover> {
+) -> Vec<MovingObstacle> {
     let looks = (seconds * 10.0).round() as i32;
     for k in 0..=looks {
         let time = f64::from(k) * 0.1;
-        tracker.see(pose, &world.scan(pose, time, sensor));
+        tracker.add_scan(pose, &world.scan(pose, time, sensor));
     }
-    tracker.movers(stamp(seconds))
+    tracker.moving_obstacles(stamp(seconds))
 }
 
 fn at(x: f64, y: f64) -> Vector2 {
@@ -96,14 +96,14 @@ fn two_people_are_found_where_they_are_and_will_be() {
     for sensor in [LASER, CAMERA] {
         let things = [(at(4.0, 3.2), at(-0.1, -0.5)), (at(6.5, 4.2), at(-0.5, -0.2))];
         let mut world = World::new(&things);
-        let movers = watched(&mut tracker(), &mut world, Pose2::new(1.0, 3.0, 0.0), 2.5, sensor);
-        assert_eq!(movers.len(), 2, "{sensor:?} {movers:?}");
+        let obstacles = watched(&mut tracker(), &mut world, Pose2::new(1.0, 3.0, 0.0), 2.5, sensor);
+        assert_eq!(obstacles.len(), 2, "{sensor:?} {obstacles:?}");
         for (from, v) in things {
             // Where it is, and where it will be in two seconds.
             for (ahead, near) in [(0.0, 0.12), (2.0, 0.4)] {
                 let true_place = from + v * (2.5 + ahead);
-                let off = movers.iter().map(|m| (m.at(ahead) - true_place).norm()).fold(9.0, f64::min);
-                assert!(off < near, "{off} m off {ahead} s ahead: {movers:?}");
+                let off = obstacles.iter().map(|m| (m.at(ahead) - true_place).norm()).fold(9.0, f64::min);
+                assert!(off < near, "{off} m off {ahead} s ahead: {obstacles:?}");
             }
         }
     }
@@ -116,8 +116,8 @@ fn someone_who_comes_straight_at_the_robot_is_seen_soon() {
     let pose = Pose2::new(1.0, 3.0, 0.0);
     let first = (0..30).find(|k| {
         let time = f64::from(*k) * 0.1;
-        tracker.see(pose, &world.scan(pose, time, CAMERA));
-        !tracker.movers(stamp(time)).is_empty()
+        tracker.add_scan(pose, &world.scan(pose, time, CAMERA));
+        !tracker.moving_obstacles(stamp(time)).is_empty()
     });
     // Who was there from the beginning is first seen to be new where it comes to.
     assert!(first.is_some_and(|k| k <= 12), "{first:?}");
@@ -141,9 +141,9 @@ fn what_stands_appears_or_comes_into_view_is_no_mover() {
                 truth.y + world.noise(0.007),
                 truth.theta + world.noise(0.006),
             );
-            tracker.see(believed, &scan);
-            let movers = tracker.movers(stamp(time));
-            assert!(movers.is_empty(), "{time} s: {movers:?}");
+            tracker.add_scan(believed, &scan);
+            let obstacles = tracker.moving_obstacles(stamp(time));
+            assert!(obstacles.is_empty(), "{time} s: {obstacles:?}");
         }
     }
 }
@@ -158,18 +158,18 @@ fn who_stops_may_go_on_for_a_while() {
     let mut looks_on = |from: i32, to: i32| {
         (from..=to).for_each(|k| {
             let time = 2.0 + f64::from(k) * 0.1;
-            tracker.see(pose, &stands.scan(pose, time, LASER));
+            tracker.add_scan(pose, &stands.scan(pose, time, LASER));
         });
-        tracker.movers(stamp(2.0 + f64::from(to) * 0.1))
+        tracker.moving_obstacles(stamp(2.0 + f64::from(to) * 0.1))
     };
-    for movers in [looks_on(1, 20), looks_on(21, 80)] {
+    for obstacles in [looks_on(1, 20), looks_on(21, 80)] {
         for ahead in [0.5, 1.0, 2.0] {
             let place = stop + walks.1 * ahead;
-            let off = movers.iter().map(|m| (m.at(0.0) - place).norm().max((m.at(2.0) - place).norm()));
-            assert!(off.fold(9.0, f64::min) < 0.25, "it may be at {place} any moment: {movers:?}");
+            let off = obstacles.iter().map(|m| (m.at(0.0) - place).norm().max((m.at(2.0) - place).norm()));
+            assert!(off.fold(9.0, f64::min) < 0.25, "it may be at {place} any moment: {obstacles:?}");
         }
         let behind = stop - walks.1 * 0.5;
-        assert!(movers.iter().all(|m| (m.at(0.0) - behind).norm() > 0.4), "but not behind: {movers:?}");
+        assert!(obstacles.iter().all(|m| (m.at(0.0) - behind).norm() > 0.4), "but not behind: {obstacles:?}");
     }
     assert_eq!(looks_on(81, 110), [], "who stands for ten seconds stays");
 }
@@ -185,9 +185,9 @@ fn who_stopped_and_is_gone_is_none() {
     for k in 1..=35 {
         let (time, is_there) = (2.0 + f64::from(k) * 0.1, k <= 20);
         let world = if is_there { &mut stands } else { &mut empty };
-        tracker.see(pose, &world.scan(pose, time, LASER));
+        tracker.add_scan(pose, &world.scan(pose, time, LASER));
     }
-    assert_eq!(tracker.movers(stamp(5.5)), []);
+    assert_eq!(tracker.moving_obstacles(stamp(5.5)), []);
 }
 
 #[test]
@@ -199,10 +199,13 @@ fn who_stops_before_a_wall_does_not_go_on_through_it() {
     let mut stands = World::new(&[(walks.0 + walks.1 * 2.0, Vector2::zeros())]);
     (1..=20).for_each(|k| {
         let time = 2.0 + f64::from(k) * 0.1;
-        tracker.see(pose, &stands.scan(pose, time, LASER));
+        tracker.add_scan(pose, &stands.scan(pose, time, LASER));
     });
-    let movers = tracker.movers(stamp(4.0));
-    assert!(!movers.is_empty() && movers.iter().all(|m| m.at(0.0).y < 6.0), "the wall is at 6: {movers:?}");
+    let obstacles = tracker.moving_obstacles(stamp(4.0));
+    assert!(
+        !obstacles.is_empty() && obstacles.iter().all(|m| m.at(0.0).y < 6.0),
+        "the wall is at 6: {obstacles:?}"
+    );
 }
 
 #[test]
@@ -216,11 +219,11 @@ fn who_is_lost_from_sight_soon_after_they_stopped_is_remembered() {
     for k in 1..=40 {
         let time = 2.0 + f64::from(k) * 0.1;
         let pose = if k <= 7 { ahead } else { away };
-        tracker.see(pose, &stands.scan(pose, time, CAMERA));
+        tracker.add_scan(pose, &stands.scan(pose, time, CAMERA));
     }
     let on = stop + walks.1;
-    let movers = tracker.movers(stamp(6.0));
-    assert!(movers.iter().any(|m| (m.at(0.0) - on).norm() < 0.3), "they may go on to {on}: {movers:?}");
+    let obstacles = tracker.moving_obstacles(stamp(6.0));
+    assert!(obstacles.iter().any(|m| (m.at(0.0) - on).norm() < 0.3), "they may go on to {on}: {obstacles:?}");
 }
 
 /// Somebody came from the right, stopped in the way and may go on to the left: the robot passes behind, and when another comes along
@@ -230,7 +233,7 @@ fn whoever_passes_one_who_stopped_goes_behind() {
     let grid = OccupancyGrid::filled(GridGeometry::new(0.05, at(0.0, 0.0), 200, 120).unwrap(), Cell::Free);
     for side in [1.0, -1.0] {
         let ways_on = [0.45, 0.9, 1.35, 1.8].map(|on| at(5.0, 3.0 + on * side));
-        let ways_on = ways_on.map(|at| Mover::new(at, Vector2::zeros(), 0.25).unwrap());
+        let ways_on = ways_on.map(|at| MovingObstacle::new(at, Vector2::zeros(), 0.25).unwrap());
         let mut with_them = grid.clone();
         for row in 0..120 {
             for col in 0..200 {
@@ -241,7 +244,8 @@ fn whoever_passes_one_who_stopped_goes_behind() {
             }
         }
         let (from, goal) = (Pose2::new(4.3, 3.0, 0.0), Pose2::new(8.0, 3.0, 0.0));
-        let plan = planner(at_home(), RADIUS).plan_among(&with_them, &ways_on, from, Twist2::ZERO, goal);
+        let plan =
+            planner(at_home(), RADIUS).plan_among_moving(&with_them, &ways_on, from, Twist2::ZERO, goal);
         let plan = found(plan);
         let beside = plan.trajectory.points().iter().find(|p| p.pose.x >= 5.0).unwrap().pose.y - 3.0;
         assert!(beside * side < -0.3, "{beside} m to the left of who goes to {side}");
@@ -250,11 +254,11 @@ fn whoever_passes_one_who_stopped_goes_behind() {
 
 /// A camera that is blind nearer than `blind` (m) looks on, ten times a second, at those who walk until `stop` (s).
 fn dim(
-    tracker: &mut MoverTracker,
+    tracker: &mut MovingObstacleTracker,
     world: &mut World,
     (from, to, stop): (f64, f64, f64),
     blind: f64,
-) -> Vec<Mover> {
+) -> Vec<MovingObstacle> {
     let pose = Pose2::new(1.0, 3.0, 0.0);
     for k in (from * 10.0).round() as i32..=(to * 10.0).round() as i32 {
         let time = f64::from(k) * 0.1;
@@ -265,14 +269,14 @@ fn dim(
         };
         let beams = seen.beams().iter().map(dim).collect();
         let (first, step) = (seen.angle(0), seen.angle_increment());
-        tracker.see(pose, &Scan::new(stamp(time), seen.origin(), first, step, beams).unwrap());
+        tracker.add_scan(pose, &Scan::new(stamp(time), seen.origin(), first, step, beams).unwrap());
     }
-    tracker.movers(stamp(to))
+    tracker.moving_obstacles(stamp(to))
 }
 
 /// What came lately within 2 m.
-fn lately(tracker: &MoverTracker, now: f64) -> Vec<Vector2> {
-    tracker.not_gone(stamp(now), at(1.0, 3.0), 2.0)
+fn lately(tracker: &MovingObstacleTracker, now: f64) -> Vec<Vector2> {
+    tracker.unconfirmed_hits(stamp(now), at(1.0, 3.0), 2.0)
 }
 
 #[test]
@@ -282,8 +286,11 @@ fn who_steps_to_where_the_camera_is_blind_stands_there_until_seen_to_leave() {
     let mut world = World::new(&[(at(1.5, 4.2), at(0.0, -0.8))]);
     dim(&mut tracker, &mut world, (0.0, 1.5, 1.5), 0.5);
     for (from, until) in [(1.6, 2.0), (2.1, 3.5), (3.6, 9.0)] {
-        let movers = dim(&mut tracker, &mut world, (from, until, 1.5), 0.5);
-        assert!(movers.iter().any(|m| (m.at(0.0) - at(1.5, 3.0)).norm() < 0.4), "{until} s: {movers:?}");
+        let obstacles = dim(&mut tracker, &mut world, (from, until, 1.5), 0.5);
+        assert!(
+            obstacles.iter().any(|m| (m.at(0.0) - at(1.5, 3.0)).norm() < 0.4),
+            "{until} s: {obstacles:?}"
+        );
     }
     // Nobody is there any more: seen free, it is free.
     assert!(!lately(&tracker, 9.0).is_empty());
@@ -299,8 +306,8 @@ fn who_hides_is_as_large_as_they_ever_looked() {
     dim(&mut tracker, &mut world, (0.0, 1.5, 1.5), 0.5);
     for k in 16..80 {
         let now = 0.1 * f64::from(k);
-        for mover in dim(&mut tracker, &mut world, (now, now, 1.5), 0.5) {
-            assert!(mover.radius() >= 0.2, "{now} s: {mover:?}");
+        for obstacle in dim(&mut tracker, &mut world, (now, now, 1.5), 0.5) {
+            assert!(obstacle.radius() >= 0.2, "{now} s: {obstacle:?}");
         }
     }
 }
@@ -326,12 +333,18 @@ fn who_stood_where_the_camera_is_blind_now_still_stands_there() {
     assert!(dim(&mut tracker, &mut world, (1.1, 1.8, 0.0), 0.3).is_empty(), "nobody was seen to move");
     let is_theirs = |hit: &Vector2| ((hit - at(1.8, 3.0)).norm() - PERSON).abs() < 0.03;
     for until in [2.4, 4.0, 9.0] {
-        let movers = dim(&mut tracker, &mut world, (until - 0.4, until, 0.0), 0.9);
-        assert!(movers.iter().any(|m| (m.at(0.0) - at(1.8, 3.0)).norm() < 0.3), "{until} s: {movers:?}");
-        assert!(movers.iter().all(|m| m.at(0.0) == m.at(9.0)), "they stand");
+        let obstacles = dim(&mut tracker, &mut world, (until - 0.4, until, 0.0), 0.9);
+        assert!(
+            obstacles.iter().any(|m| (m.at(0.0) - at(1.8, 3.0)).norm() < 0.3),
+            "{until} s: {obstacles:?}"
+        );
+        assert!(obstacles.iter().all(|m| m.at(0.0) == m.at(9.0)), "they stand");
         let hits = lately(&tracker, until);
         assert!(hits.len() > 3 && hits.iter().all(is_theirs), "{until} s: {hits:?}");
-        assert!(tracker.not_gone(stamp(until), at(1.0, 3.0), 0.4).is_empty(), "they are farther away");
+        assert!(
+            tracker.unconfirmed_hits(stamp(until), at(1.0, 3.0), 0.4).is_empty(),
+            "they are farther away"
+        );
     }
     assert!(dim(&mut tracker, &mut world, (12.0, 12.4, 0.0), 0.9).is_empty(), "nobody waits for ever");
     assert!(lately(&tracker, 12.4).is_empty());
@@ -345,7 +358,7 @@ fn what_came_is_not_kept_when_scans_end_or_the_clock_is_set_back() {
     let mut world = World::new(&[(at(1.8, 3.0), at(0.0, 0.0))]);
     dim(&mut tracker, &mut nobody, (100.0, 101.0, 0.0), 0.3);
     dim(&mut tracker, &mut world, (101.1, 101.8, 0.0), 0.3);
-    let count = |tracker: &MoverTracker, now: f64| lately(tracker, now).len();
+    let count = |tracker: &MovingObstacleTracker, now: f64| lately(tracker, now).len();
     assert!(count(&tracker, 101.8) > 3 && count(&tracker, 111.0) == count(&tracker, 101.8));
     assert_eq!(count(&tracker, 112.0), 0, "no scan came for 10 s");
     dim(&mut tracker, &mut nobody, (0.0, 1.0, 0.0), 0.3);
@@ -353,29 +366,44 @@ fn what_came_is_not_kept_when_scans_end_or_the_clock_is_set_back() {
     dim(&mut tracker, &mut world, (1.1, 1.8, 0.0), 0.3);
     assert!(count(&tracker, 1.8) > 3);
     for (x, reach) in [(f64::NAN, 2.0), (f64::INFINITY, 2.0), (-1e300, 2.0), (1.0, f64::NAN), (1.0, -1.0)] {
-        assert!(tracker.not_gone(stamp(1.8), at(x, 3.0), reach).is_empty(), "{reach} m about {x}");
+        assert!(tracker.unconfirmed_hits(stamp(1.8), at(x, 3.0), reach).is_empty(), "{reach} m about {x}");
     }
-    assert!(tracker.not_gone(stamp(1.8), at(1.0, 3.0), f64::INFINITY).len() > 3);
+    assert!(tracker.unconfirmed_hits(stamp(1.8), at(1.0, 3.0), f64::INFINITY).len() > 3);
 }
 
 #[test]
 fn scans_from_the_past_and_wrong_numbers_change_nothing() {
     let (mut tracker, pose) = (tracker(), Pose2::new(1.0, 3.0, 0.0));
     let mut world = World::new(&[(at(4.0, 2.0), at(0.0, 0.7))]);
-    let movers = watched(&mut tracker, &mut world, pose, 2.0, LASER);
-    assert_eq!(movers.len(), 1);
-    tracker.see(pose, &world.scan(pose, 1.0, LASER));
-    tracker.see(Pose2 { x: f64::NAN, ..pose }, &world.scan(pose, 2.1, LASER));
-    tracker.see(Pose2 { y: 1e300, ..pose }, &world.scan(pose, 2.1, LASER));
+    let obstacles = watched(&mut tracker, &mut world, pose, 2.0, LASER);
+    assert_eq!(obstacles.len(), 1);
+    tracker.add_scan(pose, &world.scan(pose, 1.0, LASER));
+    tracker.add_scan(Pose2 { x: f64::NAN, ..pose }, &world.scan(pose, 2.1, LASER));
+    tracker.add_scan(Pose2 { y: 1e300, ..pose }, &world.scan(pose, 2.1, LASER));
     let since = Stamp::default().after(-60.0);
     let old = world.scan(pose, 2.1, LASER);
     let old =
         Scan::new(since, old.origin(), old.angle(0), old.angle_increment(), old.beams().to_vec()).unwrap();
-    tracker.see(Pose2 { x: f64::NAN, ..pose }, &old);
-    assert_eq!(tracker.movers(stamp(2.0)), movers);
-    assert!(MoverTracker::new(TrackerConfig { memory: f64::NAN, ..TrackerConfig::default() }).is_err());
-    assert!(MoverTracker::new(TrackerConfig { sightings: 1, ..TrackerConfig::default() }).is_err());
-    assert!(MoverTracker::new(TrackerConfig { reach: 1e9, ..TrackerConfig::default() }).is_err());
+    tracker.add_scan(Pose2 { x: f64::NAN, ..pose }, &old);
+    assert_eq!(tracker.moving_obstacles(stamp(2.0)), obstacles);
+    assert!(
+        MovingObstacleTracker::new(ObstacleTrackerConfig {
+            memory: f64::NAN,
+            ..ObstacleTrackerConfig::default()
+        })
+        .is_err()
+    );
+    assert!(
+        MovingObstacleTracker::new(ObstacleTrackerConfig {
+            sightings: 1,
+            ..ObstacleTrackerConfig::default()
+        })
+        .is_err()
+    );
+    assert!(
+        MovingObstacleTracker::new(ObstacleTrackerConfig { reach: 1e9, ..ObstacleTrackerConfig::default() })
+            .is_err()
+    );
 }
 
 /// The room as the map has it, with what the map drew of people.
@@ -398,21 +426,21 @@ fn someone_seen_to_cross_is_let_pass() {
     let (pose, goal) = (Pose2::new(1.0, 3.0, 0.0), Pose2::new(6.0, 3.0, 0.0));
     let crosses = (at(2.2, 0.9), at(0.0, 0.7));
     let (mut tracker, mut world) = (tracker(), World::new(&[crosses]));
-    let movers = watched(&mut tracker, &mut world, pose, 2.0, LASER);
-    assert_eq!(movers.len(), 1);
+    let obstacles = watched(&mut tracker, &mut world, pose, 2.0, LASER);
+    assert_eq!(obstacles.len(), 1);
     let now = crosses.0 + crosses.1 * 2.0;
     // The map has drawn them where they are, and still shows where they were.
     let seen = map(&[(now, PERSON), (now - at(0.0, 0.5), PERSON)]);
-    let still = tracker.without_movers(&seen);
+    let still = tracker.static_grid(&seen);
     let left = still.cells().iter().zip(map(&[]).cells()).filter(|(a, b)| a != b).count();
     assert!(left <= 12, "{left} cells of someone who has left");
     let twist = Twist2::new(0.4, 0.0);
     let mut planner = planner(at_home(), RADIUS);
     let direct = found(planner.plan(&still, pose, twist, goal));
-    assert!(planner.meets(&direct.trajectory, 0.0, &movers).is_some_and(|time| time < 2.0));
-    let plan = found(planner.plan_among(&still, &movers, pose, twist, goal));
+    assert!(planner.first_encounter(&direct.trajectory, 0.0, &obstacles).is_some_and(|time| time < 2.0));
+    let plan = found(planner.plan_among_moving(&still, &obstacles, pose, twist, goal));
     judge(&still, &plan, pose, goal, RADIUS);
-    assert!(plan.is_continuous && planner.meets(&plan.trajectory, 0.0, &movers).is_none());
+    assert!(plan.is_continuous && planner.first_encounter(&plan.trajectory, 0.0, &obstacles).is_none());
     let gap = |k: i32| {
         let time = f64::from(k) * 0.01;
         (plan.trajectory.at(time).pose.position() - now - crosses.1 * time).norm() - PERSON - RADIUS
@@ -427,7 +455,7 @@ fn a_wall_beside_someone_stays() {
     // Along the upper wall, 5 cm from it.
     let walks = (at(3.0, 5.7), at(0.8, 0.0));
     assert_eq!(watched(&mut tracker, &mut World::new(&[walks]), pose, 2.0, LASER).len(), 1);
-    let still = tracker.without_movers(&map(&[]));
+    let still = tracker.static_grid(&map(&[]));
     let gone: Vec<_> =
         (0..still.cells().len()).filter(|i| still.cells()[*i] != map(&[]).cells()[*i]).collect();
     assert!(gone.is_empty(), "{:?}", gone.iter().map(|i| still.geometry().cell(*i)).collect::<Vec<_>>());
@@ -441,10 +469,10 @@ fn a_scan_costs_little() {
     for k in 0..30 {
         let scan = world.scan(pose, f64::from(k) * 0.1, (640, 1.0));
         let begin = cpu_ms();
-        tracker.see(pose, &scan);
+        tracker.add_scan(pose, &scan);
         least = least.min(cpu_ms() - begin);
     }
-    eprintln!("movers: a scan of 640 beams {least:.3} ms CPU");
+    eprintln!("obstacles: a scan of 640 beams {least:.3} ms CPU");
     // A debug build is ten times slower.
     assert!(least < 5.0, "{least}");
 }

@@ -44,7 +44,8 @@ impl Navigator {
     fn plan_holds(&self, s: &Surroundings<'_>) -> bool {
         match (&self.plan, self.follower.reference()) {
             (Some(plan), Some(reference)) => {
-                let meets = || self.planner.meets(&plan.trajectory, reference.time, s.traffic.movers);
+                let meets =
+                    || self.planner.first_encounter(&plan.trajectory, reference.time, s.traffic.movers);
                 self.is_still_good(&plan.trajectory, reference.time, s) && meets().is_none()
             }
             (Some(_), None) => true,
@@ -161,7 +162,7 @@ impl Navigator {
         }
         let planner = &mut self.planner;
         let plan = times.measure(Stage::Planning, || {
-            planner.plan_among(s.floor(), s.traffic.movers, reference.pose, reference.twist, goal)
+            planner.plan_among_moving(s.floor(), s.traffic.movers, reference.pose, reference.twist, goal)
         });
         match plan {
             // What the way of now keeps off because it was not seen, a quicker one must keep off too.

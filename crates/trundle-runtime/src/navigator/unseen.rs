@@ -141,7 +141,7 @@ impl Navigator {
         let best = {
             let floor = self.walled(s.floor(), &bars, ends);
             let floor = floor.as_ref().unwrap_or(s.floor());
-            self.planner.plan_among(floor, s.traffic.movers, from, twist, goal)
+            self.planner.plan_among_moving(floor, s.traffic.movers, from, twist, goal)
         };
         let Plan::Found(best) = best else { return self.found(InView::Plan(best)) };
         let Some(unseen) = self.first_unseen(best.trajectory.points(), s.floor()) else {
@@ -154,7 +154,8 @@ impl Navigator {
         let Some(floor) = self.walled(s.floor(), &walls, ends) else {
             return self.found(InView::Unseen(unseen, None));
         };
-        let Plan::Found(plan) = self.planner.plan_among(&floor, s.traffic.movers, from, twist, goal) else {
+        let Plan::Found(plan) = self.planner.plan_among_moving(&floor, s.traffic.movers, from, twist, goal)
+        else {
             return self.found(InView::Unseen(unseen, None));
         };
         match self.first_unseen(plan.trajectory.points(), s.floor()) {
@@ -183,7 +184,8 @@ impl Navigator {
     /// Whether the rest of a way, from `time` on (s of the way), is free on the newest map, and what it leads onto was seen or will be.
     pub(super) fn is_still_good(&self, way: &Trajectory, time: f64, s: &Surroundings<'_>) -> bool {
         let rest = &way.points()[way.points().partition_point(|point| point.time < time)..];
-        self.planner.still_free(s.floor(), way, time).is_ok() && self.first_unseen(rest, s.floor()).is_none()
+        self.planner.validate_trajectory(s.floor(), way, time).is_ok()
+            && self.first_unseen(rest, s.floor()).is_none()
     }
 
     /// The floor with no way over what is unknown about these places, but for what is under the ends of the way; none without places.

@@ -4,7 +4,7 @@ use trundle::control::{FollowerConfig, SafetyConfig};
 use trundle::core::{DifferentialDrive, DriveLimits, Invalid};
 use trundle::localization::OdometryConfig;
 use trundle::mapping::MapperConfig;
-use trundle::planning::{PlannerConfig, RoomConfig, TimingConfig};
+use trundle::planning::{ClearanceCostConfig, PlannerConfig, TimingConfig};
 use trundle::runtime::{RobotConfig, Schedule, Sight, SupervisorConfig};
 use trundle::sim::{FaultSchedule, SimConfig};
 
@@ -34,7 +34,7 @@ pub fn robot() -> RobotConfig {
         planning: PlannerConfig {
             // A laser sees what it comes to: it stops from this within 0.2 m.
             timing: TimingConfig { slow_speed: 0.5, unknown_speed: 1.0, ..TimingConfig::default() },
-            room: RoomConfig::default(),
+            room: ClearanceCostConfig::default(),
             ..PlannerConfig::default()
         },
         control: FollowerConfig { wait_from: 0.1, wait_at: 0.3, ..FollowerConfig::default() },

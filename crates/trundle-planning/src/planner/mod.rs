@@ -1,0 +1,4 @@
+//! The planner.
+
+pub(crate) mod api;
+mod core;

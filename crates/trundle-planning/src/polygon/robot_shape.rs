@@ -1,0 +1,325 @@
+//! The robot's footprint among the occupied cells: exact gaps, and motions without contact.
+//!
+//! Problem: is a motion free of contact, also between the poses that are checked? Idea: a footprint with a gap g may move until
+//! one of its points has moved by g (conservative advancement, \[Mirtich96\]). Steps below [`MIN_ADVANCE_M`] are not taken, so an
+//! overlap deeper than half of it is never missed. Cost: O(cells near the footprint) per check.
+
+use crate::field::DistanceField;
+use crate::geometry::{box_gap, segment_to_square};
+use crate::search::escape::Escape;
+use trundle_core::{Footprint, Pose2, Vector2};
+
+/// Shortest advance between two checks, m. An overlap of less than half of it may be missed. Source: ours.
+const MIN_ADVANCE_M: f64 = 4e-4;
+
+/// Overlap of a polygon that still counts as contact without collision, m: rounding of a pose. Source: ours.
+const CONTACT_TOLERANCE_M: f64 = 1e-4;
+
+/// Largest overlap that is measured for a polygon, m; or to the axle. A deeper one is not planned out of. Source: ours.
+pub(crate) const MAX_OVERLAP_M: f64 = 0.2;
+
+/// The robot's footprint in the base frame.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct RobotShape {
+    /// Corners counter-clockwise; none for a disc.
+    corners: Vec<Vector2>,
+    /// Largest distance of a point of the footprint from the axle, m.
+    pub(crate) radius: f64,
+    /// Smallest distance of the boundary from the axle, m; 0 where the axle is outside.
+    pub(crate) inner: f64,
+    /// Centre and radius of the largest disc inside the footprint, base frame, m.
+    pub(crate) inscribed: (Vector2, f64),
+    leaving: Option<Box<Leaving>>,
+}
+
+/// A footprint that leaves what it overlaps at the start.
+#[derive(Debug, Clone, PartialEq)]
+struct Leaving {
+    escape: Escape,
+    /// The footprint, shrunk until it touches nothing at the start.
+    slim: RobotShape,
+}
+
+impl RobotShape {
+    /// The shape of a footprint; a polygon may touch obstacles.
+    pub(crate) fn new(footprint: &Footprint) -> Self {
+        let radius = footprint.circumscribed_radius();
+        match footprint {
+            Footprint::Disc { .. } => Self {
+                corners: vec![],
+                radius,
+                inner: radius,
+                inscribed: (Vector2::zeros(), radius),
+                leaving: None,
+            },
+            Footprint::Polygon { corners } => {
+                let inner = depth_within(corners, Vector2::zeros()).max(0.0);
+                let whole = Self {
+                    corners: corners.clone(),
+                    radius,
+                    inner,
+                    inscribed: inscribed(corners),
+                    leaving: None,
+                };
+                whole.shrunk(CONTACT_TOLERANCE_M).unwrap_or(whole)
+            }
+        }
+    }
+
+    /// The shape with its boundary `by` m further in; `None` where nothing remains, or a side vanishes.
+    pub(crate) fn shrunk(&self, by: f64) -> Option<Self> {
+        if self.is_disc() {
+            let radius = self.radius - by;
+            return (radius > 0.0).then(|| Self { radius, inner: radius, ..self.clone() });
+        }
+        let count = self.corners.len();
+        let side = |i: usize| (self.corners[(i + 1) % count] - self.corners[i % count]).try_normalize(1e-12);
+        let corner = |i: usize| {
+            let (before, after) = (side(i + count - 1)?, side(i)?);
+            let inward = |along: Vector2| Vector2::new(-along.y, along.x);
+            let sum = inward(before) + inward(after);
+            let opening = 1.0 + before.dot(&after);
+            (opening > 1e-6).then(|| self.corners[i] + sum * (by / opening))
+        };
+        let corners: Vec<Vector2> = (0..count).map(corner).collect::<Option<_>>()?;
+        let stands = (0..count)
+            .all(|i| (corners[(i + 1) % count] - corners[i]).dot(&(side(i).unwrap_or_default())) > 0.0);
+        stands.then(|| Self { corners, inner: (self.inner - by).max(0.0), ..self.clone() })
+    }
+
+    /// Depth of the overlap at a pose, m: the amount by which the shape must shrink to be free; at most `cap`.
+    pub(crate) fn overlap(&self, field: &DistanceField, pose: Pose2, cap: f64) -> f64 {
+        const ROUNDS: usize = 12;
+        if self.is_disc() {
+            return (self.radius - field.clearance(pose.position(), self.radius)).min(cap);
+        }
+        // A shape that has vanished is free everywhere.
+        let fits = |by: f64| self.shrunk(by).is_none_or(|shape| shape.gap(field, pose, 1e-3) > 0.0);
+        if !fits(cap) {
+            return cap;
+        }
+        let halve = |(low, high): (f64, f64), _| {
+            let half = f64::midpoint(low, high);
+            if fits(half) { (low, half) } else { (half, high) }
+        };
+        (0..ROUNDS).fold((0.0, cap), halve).1
+    }
+
+    /// The same shape, treated as `by` m smaller near `start` against what it overlaps there: it may leave that, and come no deeper.
+    pub(crate) fn leaving(&self, field: &DistanceField, start: Pose2, by: f64) -> Option<Self> {
+        let slim = self.shrunk(by)?;
+        let (outline, half) = (self.outline(start), field.geometry().resolution / 2.0);
+        let escape = Escape::new(start.position(), by, half * 2.0);
+        let escape = escape.with_clearance_from_others(field, self.radius, |centre| match outline[..] {
+            [] => (box_gap(start.position(), centre, half).norm() - self.radius).max(0.0),
+            _ => outline_to_square(&outline, centre, half, f64::INFINITY),
+        });
+        Some(Self { leaving: Some(Box::new(Leaving { escape, slim })), ..self.clone() })
+    }
+
+    /// Depth inside what it leaves, m; 0 where it leaves nothing.
+    pub(crate) fn depth(&self) -> f64 {
+        self.leaving.as_ref().map_or(0.0, |leaving| leaving.escape.depth)
+    }
+
+    /// Whether a pose is still near the overlap at the start.
+    pub(crate) fn is_leaving(&self, pose: Pose2) -> bool {
+        self.leaving.as_ref().is_some_and(|leaving| leaving.escape.covers(pose.position()))
+    }
+
+    pub(crate) fn is_disc(&self) -> bool {
+        self.corners.is_empty()
+    }
+
+    /// Distance from obstacles that counts as free, m: of the axle for a disc, of the boundary for a polygon.
+    pub(crate) fn needs(&self) -> f64 {
+        if self.is_disc() { self.radius } else { MIN_ADVANCE_M }
+    }
+
+    /// The polygon at a pose, map frame; empty for a disc.
+    pub(crate) fn outline(&self, pose: Pose2) -> Vec<Vector2> {
+        let along = pose.direction();
+        let across = Vector2::new(-along.y, along.x);
+        self.corners.iter().map(|c| pose.position() + along * c.x + across * c.y).collect()
+    }
+
+    /// The exact distance between the footprint at a pose and the nearest obstacle, at most `cap` m; 0 where they meet. While it
+    /// leaves an overlap: the distance that it may still come nearer.
+    pub(crate) fn gap(&self, field: &DistanceField, pose: Pose2, cap: f64) -> f64 {
+        match &self.leaving {
+            Some(leaving) if leaving.escape.covers(pose.position()) => {
+                let cap = leaving.slim.gap_to(field, pose, cap);
+                leaving.escape.others().map_or(cap, |others| self.gap_to(others, pose, cap))
+            }
+            _ => self.gap_to(field, pose, cap),
+        }
+    }
+
+    fn gap_to(&self, field: &DistanceField, pose: Pose2, cap: f64) -> f64 {
+        let at = pose.position();
+        if self.is_disc() {
+            return (field.clearance(at, self.radius + cap) - self.radius).max(0.0);
+        }
+        let surely = field.distance(at) - field.overestimate(self.radius) - self.radius;
+        if surely >= cap {
+            return cap;
+        }
+        let outline = self.outline(pose);
+        if field.clearance(centre_of(&outline), 1.0) <= 0.0 || (self.inner > 0.0 && field.distance(at) <= 0.0)
+        {
+            return 0.0;
+        }
+        let low = outline.iter().fold(at, |low, c| low.inf(c)) - Vector2::repeat(cap);
+        let high = outline.iter().fold(at, |high, c| high.sup(c)) + Vector2::repeat(cap);
+        let half = field.geometry().resolution / 2.0;
+        let grown = Vector2::repeat(half);
+        let mut best = outline.iter().map(|c| field.border_gap(*c)).fold(cap, f64::min);
+        field.for_obstacle_rims_in(low - grown, high + grown, |centre| {
+            if best > 0.0 {
+                best = best.min(outline_to_square(&outline, centre, half, best));
+            }
+        });
+        best
+    }
+
+    /// Whether the robot can move from `from` by `step` (map frame, m) while it turns evenly by `turn` rad, without contact.
+    pub(crate) fn may_move(&self, field: &DistanceField, from: Pose2, step: Vector2, turn: f64) -> bool {
+        let length = step.norm() + if self.is_disc() { 0.0 } else { self.radius * turn.abs() };
+        let mut done = 0.0;
+        loop {
+            let share = if length > 0.0 { done / length } else { 0.0 };
+            let pose =
+                Pose2::new(from.x + step.x * share, from.y + step.y * share, from.theta + turn * share);
+            let left = length - done;
+            let gap = self.gap(field, pose, left.max(MIN_ADVANCE_M));
+            if gap <= 0.0 {
+                return false;
+            }
+            if left <= 0.0 {
+                return true;
+            }
+            done = (done + gap.max(MIN_ADVANCE_M)).min(length);
+        }
+    }
+
+    /// A turn in place from one heading to another without contact, rad: the shorter way round where that is free.
+    pub(crate) fn turn(&self, field: &DistanceField, from: Pose2, to: f64) -> Option<f64> {
+        let short = trundle_core::difference_of_angles(to, from.theta);
+        let long = short - std::f64::consts::TAU.copysign(short);
+        let free = |turn: &f64| self.is_disc() || self.may_move(field, from, Vector2::zeros(), *turn);
+        [short, long].into_iter().find(free)
+    }
+}
+
+fn sides(corners: &[Vector2]) -> impl Iterator<Item = (Vector2, Vector2)> + '_ {
+    corners.iter().copied().zip(corners.iter().copied().cycle().skip(1))
+}
+
+/// Depth of a point inside a convex polygon, m; negative outside.
+fn depth_within(corners: &[Vector2], point: Vector2) -> f64 {
+    let to_side = |(a, b): (Vector2, Vector2)| (b - a).perp(&(point - a)) / (b - a).norm();
+    sides(corners).map(to_side).fold(f64::INFINITY, f64::min)
+}
+
+/// Centre and radius of the largest disc in a convex polygon. The depth is concave: a grid search about the maximum, refined, finds it.
+fn inscribed(corners: &[Vector2]) -> (Vector2, f64) {
+    const ROUNDS: usize = 12;
+    const SAMPLES: i32 = 4;
+    let mut best = (centre_of(corners), depth_within(corners, centre_of(corners)));
+    let mut reach = corners.iter().map(|c| (c - best.0).norm()).fold(0.0, f64::max);
+    for _ in 0..ROUNDS {
+        let around = best.0;
+        for (i, j) in (-SAMPLES..=SAMPLES).flat_map(|i| (-SAMPLES..=SAMPLES).map(move |j| (i, j))) {
+            let at = around + Vector2::new(f64::from(i), f64::from(j)) * (reach / f64::from(SAMPLES));
+            let depth = depth_within(corners, at);
+            if depth > best.1 {
+                best = (at, depth);
+            }
+        }
+        reach /= 2.0;
+    }
+    best
+}
+
+fn centre_of(points: &[Vector2]) -> Vector2 {
+    points.iter().sum::<Vector2>() / points.len() as f64
+}
+
+/// The distance between a convex polygon and a square, or `cap` if that is less; 0 where they overlap or touch.
+pub(crate) fn outline_to_square(outline: &[Vector2], centre: Vector2, half: f64, cap: f64) -> f64 {
+    // Separating axes: those of the square, then those of the polygon's sides.
+    let low = outline.iter().fold(outline[0], |low, c| low.inf(c));
+    let high = outline.iter().fold(outline[0], |high, c| high.sup(c));
+    let apart = box_gap(centre, (low + high) / 2.0, 0.0).abs() - (high - low) / 2.0 - Vector2::repeat(half);
+    let mut axis = apart.x.max(apart.y);
+    for (a, b) in sides(outline) {
+        let Some(normal) = Vector2::new(b.y - a.y, a.x - b.x).try_normalize(1e-12) else { continue };
+        axis = axis.max(normal.dot(&(centre - a)) - half * (normal.x.abs() + normal.y.abs()));
+    }
+    if axis >= cap {
+        return cap;
+    }
+    if axis <= 0.0 {
+        return 0.0;
+    }
+    let to_side = |(a, b): (Vector2, Vector2)| {
+        let (p, q) = segment_to_square(a, b, centre, half);
+        (p - q).norm()
+    };
+    sides(outline).map(to_side).fold(cap, f64::min)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::field::UnknownIs;
+    use trundle_core::OccupancyGrid;
+
+    /// 0.6 x 0.4 m, the axle 0.15 m behind the centre.
+    fn cart() -> RobotShape {
+        let at = |x, y| Vector2::new(x, y);
+        let corners = vec![at(0.45, 0.2), at(-0.15, 0.2), at(-0.15, -0.2), at(0.45, -0.2)];
+        RobotShape::new(&Footprint::polygon(corners).unwrap())
+    }
+
+    #[test]
+    fn the_largest_inscribed_disc_is_found() {
+        let (at, radius) = cart().inscribed;
+        assert!(
+            (radius - 0.2).abs() < 1e-4 && at.y.abs() < 1e-3 && (0.04..0.26).contains(&at.x),
+            "{at} {radius}"
+        );
+        let triangle = [(0.0, 0.0), (3.0, 0.0), (0.0, 4.0)].map(|(x, y)| Vector2::new(x, y)).to_vec();
+        let (at, radius) = RobotShape::new(&Footprint::polygon(triangle).unwrap()).inscribed;
+        assert!((radius - 1.0).abs() < 1e-3 && (at - Vector2::new(1.0, 1.0)).norm() < 5e-3, "{at} {radius}");
+    }
+
+    #[test]
+    fn gaps_are_those_of_the_polygon() {
+        let grid = OccupancyGrid::from_ascii(
+            0.1,
+            &format!("{}\n{}", "#".repeat(20), vec![".".repeat(20); 19].join("\n")),
+        );
+        let field = DistanceField::from_grid(&grid.unwrap(), UnknownIs::Free);
+        let shape = cart();
+        assert!((shape.inner - 0.15).abs() < 2e-4 && (shape.radius - 0.4925).abs() < 1e-3);
+        for (theta, reach) in
+            [(0.0_f64, 0.2), (90.0, 0.45), (180.0, 0.2), (-90.0, 0.15), (45.0, 0.65 / 2f64.sqrt())]
+        {
+            let gap = shape.gap(&field, Pose2::new(1.0, 1.4, theta.to_radians()), 1.0);
+            assert!((gap - (0.5 - reach)).abs() < 2e-4, "{theta}: {gap}");
+        }
+        assert_eq!(shape.gap(&field, Pose2::new(1.0, 1.5, std::f64::consts::FRAC_PI_2), 1.0), 0.0);
+        let aside = Pose2::new(1.0, 1.6, 0.0);
+        assert!(shape.may_move(&field, aside, Vector2::new(0.3, 0.0), 0.0));
+        assert!(!shape.may_move(&field, aside, Vector2::new(0.0, 0.11), 0.0));
+        let long = shape.turn(&field, aside, 3.0).unwrap();
+        assert!(
+            (long - (3.0 - std::f64::consts::TAU)).abs() < 1e-12,
+            "the shorter way round sweeps the wall: {long}"
+        );
+        let down = Pose2::new(1.0, 1.5, -1.9);
+        let turn = shape.turn(&field, down, -0.2).unwrap();
+        assert!((turn - 1.7).abs() < 1e-12);
+    }
+}
