@@ -188,7 +188,7 @@ impl RgbdSlam {
 
     /// Goes on with the search for loops; whether there was anything to do. A closed loop moves the camera along with the map.
     fn detect_loops(&mut self) -> bool {
-        let seed = self.seed();
+        let seed = self.trajectory.seed(self.config.seed);
         let active = &mut self.atlas.active;
         let closer = LoopCloser {
             place_index: &active.place_index,
@@ -218,11 +218,6 @@ impl RgbdSlam {
         let correction = pose * self.tracking.belief.visual_from_camera.inverse();
         self.tracking.belief.visual_from_camera = pose;
         Some(correction)
-    }
-
-    /// Seed of the random samples drawn for this frame.
-    fn seed(&self) -> u64 {
-        self.config.seed.wrapping_add(self.trajectory.frame_count())
     }
 
     /// Pose of every frame that was not lost, of the newest [`SlamConfig::kept_frames`] that were not dropped, in the order of

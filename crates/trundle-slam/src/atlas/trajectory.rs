@@ -46,6 +46,11 @@ impl Trajectory {
         self.frame_count
     }
 
+    /// Seed of the random samples drawn for the next frame.
+    pub fn seed(&self, seed: u64) -> u64 {
+        seed.wrapping_add(self.frame_count)
+    }
+
     /// `visual_from_camera` of every frame of the active map that was not lost, by the map as it is now.
     pub fn poses(&self, active: &SubMap) -> Vec<(Stamp, Pose3)> {
         let is_in_map = |record: &&FrameRecord| record.map == active.id && record.tracking != Tracking::Lost;

@@ -7,7 +7,7 @@ use crate::ids::{KeyframeId, LandmarkId};
 use crate::local_mapping::config::MappingConfig;
 use crate::local_mapping::reference_patch_storage::store_reference_patches;
 use crate::local_mapping::triangulation::triangulate_new;
-use crate::map::covisibility::MIN_SHARED_LANDMARKS;
+use crate::map::covisibility::{MIN_SHARED_LANDMARKS, keyframes_around};
 use crate::map::landmark::Landmark;
 use crate::map::landmark_map::LandmarkMap;
 use crate::map::odometry_factor::OdometryFactor;
@@ -146,7 +146,7 @@ impl<'a> LocalMapper<'a> {
             l.visible >= trial_frames && f64::from(l.found) < found_ratio * f64::from(l.visible)
         };
         let is_gone = |id: LandmarkId| map.landmark(id).is_some_and(|l| alone(l) || seldom(l));
-        let near = map.around(map.keyframe(new).visual_from_camera);
+        let near = keyframes_around(map, map.keyframe(new).visual_from_camera);
         let seen = |id: KeyframeId| map.keyframe(id).landmarks.iter().flatten().copied();
         let gone: Vec<LandmarkId> =
             near.into_iter().chain(judged).flat_map(seen).filter(|id| is_gone(*id)).collect();

@@ -1,61 +1,32 @@
 //! Which keyframes see the same landmarks.
 
-use crate::ids::{KeyframeId, LandmarkId};
+use crate::ids::KeyframeId;
 use crate::map::landmark_map::LandmarkMap;
 use trundle_core::Pose3;
 
 /// Fewest landmarks that two keyframes share to count as neighbours: 15. Source: \[MurArtal17\].
 pub(crate) const MIN_SHARED_LANDMARKS: usize = 15;
 
-impl LandmarkMap {
-    /// The keyframes that see any of these landmarks, and how many each; the largest number first, then the newest.
-    pub fn keyframes_seeing(&self, landmarks: impl Iterator<Item = LandmarkId>) -> Vec<(KeyframeId, usize)> {
-        let mut counts = vec![0; self.keyframe_bound()];
-        for landmark in landmarks.filter_map(|id| self.landmark(id)) {
-            for (keyframe, _) in &landmark.observations {
-                counts[keyframe.index()] += 1;
-            }
-        }
-        let mut seeing: Vec<(KeyframeId, usize)> = counts
-            .into_iter()
-            .enumerate()
-            .filter(|(_, count)| *count > 0)
-            .map(|(i, count)| (KeyframeId::from_index(i), count))
-            .collect();
-        seeing.sort_by_key(|(id, count)| std::cmp::Reverse((*count, *id)));
-        seeing
+/// The keyframes that a camera at a pose may share landmarks with: those near by with a similar direction, the nearest
+/// first, and the keyframes covisible with the first of them.
+pub(crate) fn keyframes_around(map: &LandmarkMap, visual_from_camera: Pose3) -> Vec<KeyframeId> {
+    let inverse = visual_from_camera.inverse();
+    let rank = |id: KeyframeId| {
+        let offset = inverse * map.keyframe(id).visual_from_camera;
+        (offset.translation.norm() / NEAR_KEYFRAME_M + offset.angle() / NEAR_KEYFRAME_RAD, id)
+    };
+    let near = map.keyframes_near(visual_from_camera.translation, NEAR_KEYFRAME_M);
+    let mut ranked: Vec<(f64, KeyframeId)> = near.into_iter().map(rank).filter(|(r, _)| *r <= 2.0).collect();
+    ranked.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    let nearest = |most: usize| ranked.iter().take(most).map(|(_, id)| *id);
+    let mut around: Vec<KeyframeId> = nearest(MAX_NEAR_KEYFRAMES).collect();
+    for id in nearest(EXPANDED_KEYFRAMES) {
+        let neighbours = map.covisible(id, MIN_SHARED_LANDMARKS).into_iter().map(|(id, _)| id);
+        around.extend(neighbours.take(MAX_NEIGHBOURS));
     }
-
-    /// The other keyframes that share at least `least` landmarks with `keyframe`, the largest number first: its neighbours in
-    /// the covisibility graph.
-    pub fn covisible(&self, keyframe: KeyframeId, least: usize) -> Vec<(KeyframeId, usize)> {
-        let mut others = self.keyframes_seeing(self.keyframe(keyframe).landmarks.iter().flatten().copied());
-        others.retain(|(id, shared)| *id != keyframe && *shared >= least);
-        others
-    }
-
-    /// The keyframes that a camera at a pose may share landmarks with: those near by with a similar direction, the nearest
-    /// first, and the keyframes covisible with the first of them.
-    pub fn around(&self, visual_from_camera: Pose3) -> Vec<KeyframeId> {
-        let inverse = visual_from_camera.inverse();
-        let rank = |id: KeyframeId| {
-            let offset = inverse * self.keyframe(id).visual_from_camera;
-            (offset.translation.norm() / NEAR_KEYFRAME_M + offset.angle() / NEAR_KEYFRAME_RAD, id)
-        };
-        let near = self.keyframes_near(visual_from_camera.translation, NEAR_KEYFRAME_M);
-        let mut ranked: Vec<(f64, KeyframeId)> =
-            near.into_iter().map(rank).filter(|(r, _)| *r <= 2.0).collect();
-        ranked.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        let nearest = |most: usize| ranked.iter().take(most).map(|(_, id)| *id);
-        let mut around: Vec<KeyframeId> = nearest(MAX_NEAR_KEYFRAMES).collect();
-        for id in nearest(EXPANDED_KEYFRAMES) {
-            let neighbours = self.covisible(id, MIN_SHARED_LANDMARKS).into_iter().map(|(id, _)| id);
-            around.extend(neighbours.take(MAX_NEIGHBOURS));
-        }
-        around.sort_unstable();
-        around.dedup();
-        around
-    }
+    around.sort_unstable();
+    around.dedup();
+    around
 }
 
 /// Largest distance of a keyframe that may show the same landmarks: 3 m, most of a room. A keyframe that is nearer may be turned by
@@ -101,8 +72,8 @@ mod tests {
             let landmark = map.add_landmark(Vector3::zeros());
             assert!(map.observe(landmark, near, feature) && map.observe(landmark, connected, feature));
         }
-        assert_eq!(map.around(Pose3::identity()), vec![near, connected]);
-        assert!(!map.around(Pose3::identity()).contains(&behind));
-        assert_eq!(map.around(map.keyframe(far).visual_from_camera), vec![near, far, connected]);
+        assert_eq!(keyframes_around(&map, Pose3::identity()), vec![near, connected]);
+        assert!(!keyframes_around(&map, Pose3::identity()).contains(&behind));
+        assert_eq!(keyframes_around(&map, map.keyframe(far).visual_from_camera), vec![near, far, connected]);
     }
 }

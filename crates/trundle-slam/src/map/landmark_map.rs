@@ -218,6 +218,32 @@ impl LandmarkMap {
         }
     }
 
+    /// The keyframes that see any of these landmarks, and how many each; the largest number first, then the newest.
+    pub fn keyframes_seeing(&self, landmarks: impl Iterator<Item = LandmarkId>) -> Vec<(KeyframeId, usize)> {
+        let mut counts = vec![0; self.keyframe_bound()];
+        for landmark in landmarks.filter_map(|id| self.landmark(id)) {
+            for (keyframe, _) in &landmark.observations {
+                counts[keyframe.index()] += 1;
+            }
+        }
+        let mut seeing: Vec<(KeyframeId, usize)> = counts
+            .into_iter()
+            .enumerate()
+            .filter(|(_, count)| *count > 0)
+            .map(|(i, count)| (KeyframeId::from_index(i), count))
+            .collect();
+        seeing.sort_by_key(|(id, count)| std::cmp::Reverse((*count, *id)));
+        seeing
+    }
+
+    /// The other keyframes that share at least `least` landmarks with `keyframe`, the largest number first: its neighbours in
+    /// the covisibility graph.
+    pub fn covisible(&self, keyframe: KeyframeId, least: usize) -> Vec<(KeyframeId, usize)> {
+        let mut others = self.keyframes_seeing(self.keyframe(keyframe).landmarks.iter().flatten().copied());
+        others.retain(|(id, shared)| *id != keyframe && *shared >= least);
+        others
+    }
+
     /// Brings descriptor, direction and scale of a landmark up to date with its observations.
     pub fn refresh(&mut self, id: LandmarkId, model: &ObservationModel) {
         if let Some(landmark) = self.landmarks.get_mut(id.index()) {

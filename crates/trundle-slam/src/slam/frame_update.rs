@@ -6,15 +6,17 @@ use super::map_start::{MapStart, MapStartQuery, Visibility};
 use crate::atlas::map_merger::{MapMerger, Merged};
 use crate::atlas::trajectory::FrameRecord;
 use crate::frame::rgbd_frame::Frame;
-use crate::ids::{KeyframeId, LandmarkId, MapId};
+use crate::ids::{KeyframeId, LandmarkId};
 use crate::local_mapping::keyframe_culling::cull_keyframes;
 use crate::local_mapping::local_mapper::LocalMapper;
 use crate::map::anchored_pose::AnchoredPose;
+use crate::map::landmark_map::LandmarkMap;
 use crate::motion::uncertain_pose::{UncertainPose, carried};
 use crate::report::{MapMerge, Mode, SeenFeature, TrackReport};
 use crate::tracking::last_frame::LastFrame;
 use crate::tracking::local_map::LocalMapQuery;
 use crate::tracking::localized_frame::LocalizedFrame;
+use crate::tracking::tracking_state::TrackingState;
 use crate::tracking::tracking_status::Tracking;
 use nalgebra::Matrix6;
 use trundle_core::{CameraMotion, DepthImage, Pose3, Stamp};
@@ -32,17 +34,21 @@ impl RgbdSlam {
         let is_continuous = self.tracking.lost_frames == 0 && map == self.atlas.active.id;
         let last = self.tracking.last.as_ref().filter(|_| is_continuous);
         let before = last.map(|last| last.anchored.visual_from_camera(&self.atlas.active.map));
-        self.enter(map);
+        if self.atlas.enter(map) {
+            self.tracking.last = None;
+            self.loops.drop_pending();
+            self.leave_keyframe();
+        }
         if localized.contradicts_odometry() {
             // The wheels slipped, or the robot was carried.
             self.odometry.interrupt();
         }
         let mut landmarks = localized.landmarks(frame.len());
         let frame = frame.with_aligned(localized.aligned_features(), &self.front_end.model);
-        self.record_features(&frame, &landmarks);
+        record_features(&mut self.features, &frame, &landmarks);
         let mut pose = localized.pose.visual_from_camera();
-        let mut reference = self.reference_keyframe(&landmarks);
-        let mut covariance = self.covariance(&localized, reference);
+        let mut reference = reference_keyframe(&self.atlas.active.map, &self.tracking, &landmarks);
+        let mut covariance = pose_covariance(&self.atlas.active.map, &localized, reference);
         let inserted = self.update_map(&frame, &localized, &landmarks, covariance);
         if let Some(inserted) = &inserted {
             reference = inserted.id;
@@ -79,7 +85,7 @@ impl RgbdSlam {
         tracking.belief.missed(frame.stamp, prior, &self.config.motion);
         tracking.lost_frames += 1;
         tracking.motion_unknown |= prior.is_none();
-        self.record_features(&frame, &vec![None; frame.len()]);
+        record_features(&mut self.features, &frame, &vec![None; frame.len()]);
         let start = self.map_start(&frame, depth, prior.is_some());
         if start == MapStart::NewMap {
             self.start_new_map();
@@ -118,15 +124,6 @@ impl RgbdSlam {
         let expected = || query.landmarks(map, tracking.belief.visual_from_camera).len();
         let visibility = Visibility { frame, expected: &expected };
         MapStartQuery { visibility, config, map, tracking, has_prior }.decide()
-    }
-
-    /// Makes `map` the active one.
-    fn enter(&mut self, map: MapId) {
-        if self.atlas.enter(map) {
-            self.tracking.last = None;
-            self.loops.drop_pending();
-            self.leave_keyframe();
-        }
     }
 
     /// Drops what belongs to the newest keyframes: they are of another map, or far away.
@@ -176,7 +173,7 @@ impl RgbdSlam {
             mapper: LocalMapper::new(&self.front_end.model, &self.config.mapping, &self.config.tracking),
             config: &self.config.loops,
             tracking: &self.config.tracking,
-            seed: self.seed(),
+            seed: self.trajectory.seed(self.config.seed),
         };
         let Merged { report, absorbed, ids, into_from_absorbed } = merger.merge(&mut self.atlas, keyframe)?;
         self.leave_keyframe();
@@ -219,35 +216,11 @@ impl RgbdSlam {
         id
     }
 
-    /// Covariance of a found pose: of the pose against the points, and of the points around the reference keyframe.
-    fn covariance(&self, localized: &LocalizedFrame, reference: KeyframeId) -> Matrix6<f64> {
-        let keyframe = self.atlas.active.map.keyframe(reference);
-        let offset = keyframe.visual_from_camera.inverse() * localized.pose.visual_from_camera();
-        let local = localized.pose.solution.covariance.unwrap_or_else(Matrix6::identity);
-        carried(&keyframe.map_covariance, offset) + local
-    }
-
-    /// The keyframe that shares most landmarks with the frame; the last frame's reference where no keyframe does.
-    fn reference_keyframe(&self, landmarks: &[Option<LandmarkId>]) -> KeyframeId {
-        let map = &self.atlas.active.map;
-        let seeing = map.keyframes_seeing(landmarks.iter().flatten().copied());
-        let last = || Some(map.resolve(self.tracking.last.as_ref()?.anchored.reference?).0);
-        let newest =
-            || map.newest_keyframe().expect("invariant: a frame is tracked only in a map with keyframes");
-        seeing.first().map(|(id, _)| *id).or_else(last).unwrap_or_else(newest)
-    }
-
     /// Goes on from a located frame; the one before leaves its buffers to the next image's features.
     fn set_last(&mut self, located: LastFrame) {
         if let Some(before) = self.tracking.last.replace(located) {
             self.front_end.reuse(before.frame);
         }
-    }
-
-    fn record_features(&mut self, frame: &Frame, landmarks: &[Option<LandmarkId>]) {
-        self.features.clear();
-        let keypoints = frame.features.keypoints.iter().zip(landmarks);
-        self.features.extend(keypoints.map(|(k, l)| SeenFeature { keypoint: *k, tracked: l.is_some() }));
     }
 
     fn record_pose(
@@ -283,4 +256,31 @@ impl RgbdSlam {
             landmarks: self.atlas.active.map.landmark_count(),
         }
     }
+}
+
+/// Covariance of a found pose: of the pose against the points, and of the points around the reference keyframe.
+fn pose_covariance(map: &LandmarkMap, localized: &LocalizedFrame, reference: KeyframeId) -> Matrix6<f64> {
+    let keyframe = map.keyframe(reference);
+    let offset = keyframe.visual_from_camera.inverse() * localized.pose.visual_from_camera();
+    let local = localized.pose.solution.covariance.unwrap_or_else(Matrix6::identity);
+    carried(&keyframe.map_covariance, offset) + local
+}
+
+/// The keyframe that shares most landmarks with the frame; the last frame's reference where no keyframe does.
+fn reference_keyframe(
+    map: &LandmarkMap,
+    tracking: &TrackingState,
+    landmarks: &[Option<LandmarkId>],
+) -> KeyframeId {
+    let seeing = map.keyframes_seeing(landmarks.iter().flatten().copied());
+    let last = || Some(map.resolve(tracking.last.as_ref()?.anchored.reference?).0);
+    let newest =
+        || map.newest_keyframe().expect("invariant: a frame is tracked only in a map with keyframes");
+    seeing.first().map(|(id, _)| *id).or_else(last).unwrap_or_else(newest)
+}
+
+fn record_features(features: &mut Vec<SeenFeature>, frame: &Frame, landmarks: &[Option<LandmarkId>]) {
+    features.clear();
+    let keypoints = frame.features.keypoints.iter().zip(landmarks);
+    features.extend(keypoints.map(|(k, l)| SeenFeature { keypoint: *k, tracked: l.is_some() }));
 }

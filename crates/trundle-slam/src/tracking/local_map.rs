@@ -3,6 +3,7 @@
 use crate::frame::depth::DepthConfig;
 use crate::frame::observation_model::ObservationModel;
 use crate::ids::LandmarkId;
+use crate::map::covisibility::keyframes_around;
 use crate::map::landmark::Landmark;
 use crate::map::landmark_map::LandmarkMap;
 use crate::matching::projection_search::Projection;
@@ -95,7 +96,7 @@ impl<'a> LocalMapQuery<'a> {
 /// What the keyframes around a pose see, by rising id.
 fn landmarks_around(map: &LandmarkMap, visual_from_camera: Pose3) -> Vec<LandmarkId> {
     let mut is_seen = vec![0_u64; map.landmark_bound() / 64 + 1];
-    for keyframe in map.around(visual_from_camera) {
+    for keyframe in keyframes_around(map, visual_from_camera) {
         for id in map.keyframe(keyframe).landmarks.iter().flatten() {
             is_seen[id.index() / 64] |= 1 << (id.index() % 64);
         }

@@ -1,8 +1,8 @@
 //! One level of the image pyramid.
 
 use super::{
-    Described, OrbConfig, blur::Blur, brief, corner::Corner, distribute, fast, orientation, patch,
-    resize::Resize, subpixel, texture,
+    blur::Blur, brief, config::OrbConfig, corner::Corner, described_corner::DescribedCorner, distribute,
+    fast, orientation, patch, resize::Resize, subpixel, texture,
 };
 use crate::ImagePatch;
 use trundle_core::GrayImage;
@@ -17,7 +17,7 @@ pub(crate) struct Level {
     detector: fast::Detector,
     corners: Vec<Corner>,
     chosen: Vec<Corner>,
-    features: Vec<Described>,
+    features: Vec<DescribedCorner>,
 }
 
 impl Level {
@@ -30,7 +30,7 @@ impl Level {
     }
 
     /// What was found, in the order of the distribution.
-    pub fn features(&self) -> &[Described] {
+    pub fn features(&self) -> &[DescribedCorner] {
         &self.features
     }
 
@@ -89,7 +89,7 @@ impl Level {
             let direction = orientation::direction(&patch);
             let descriptor = brief::describe(&patch, direction);
             let (dx, dy) = subpixel::offset(self.detector.scores(), self.image.width(), corner);
-            Described {
+            DescribedCorner {
                 x: f32::from(corner.x) + dx,
                 y: f32::from(corner.y) + dy,
                 score: corner.score,

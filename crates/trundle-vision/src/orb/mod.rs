@@ -18,6 +18,7 @@ mod blur;
 mod brief;
 mod config;
 mod corner;
+mod described_corner;
 mod distribute;
 mod fast;
 mod level;
@@ -30,7 +31,7 @@ mod texture;
 
 pub use config::OrbConfig;
 
-use crate::{Descriptor, Features, ImagePatch, Keypoint};
+use crate::{Features, Keypoint};
 use level::Level;
 use rayon::prelude::*;
 use trundle_core::{GrayImage, Invalid};
@@ -128,15 +129,4 @@ impl OrbExtractor {
             }
         }
     }
-}
-
-/// A corner with what its surroundings say; its place in px of its level.
-#[derive(Debug, Clone, Copy)]
-struct Described {
-    x: f32,
-    y: f32,
-    score: u8,
-    angle: f32,
-    descriptor: Descriptor,
-    patch: ImagePatch,
 }

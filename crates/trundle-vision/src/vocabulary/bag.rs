@@ -1,6 +1,6 @@
 //! The weighted words of an image.
 
-use super::NodeId;
+use super::node_id::NodeId;
 
 /// The words of an image with their weights: term frequency times inverse document frequency, L1 norm 1.
 #[derive(Debug, Clone, PartialEq, Default)]

@@ -21,12 +21,14 @@ mod dbow2;
 mod hamming;
 mod listed;
 mod majority;
+mod node_id;
 mod place_index;
 mod train;
 mod tree;
 
 pub use bag::BagOfWords;
 pub use compact::VocabularyError;
+pub use node_id::NodeId;
 pub use place_index::PlaceIndex;
 pub use train::VocabularyConfig;
-pub use tree::{NodeId, Vocabulary};
+pub use tree::Vocabulary;

@@ -1,12 +1,10 @@
 //! The tree of a vocabulary, and the words of an image.
 
-use super::BagOfWords;
+use super::bag::BagOfWords;
 use super::hamming::nearest;
+use super::node_id::NodeId;
 use crate::Descriptor;
 use trundle_core::Invalid;
-
-/// A node of a [`Vocabulary`]'s tree; a leaf is a word. The root is 0, and parents come before their children.
-pub type NodeId = u32;
 
 /// A tree of binary words: each node holds the bitwise median of the descriptors below it.
 ///
