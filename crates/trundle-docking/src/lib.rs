@@ -5,7 +5,6 @@ mod cloud;
 mod config;
 pub mod corridor;
 mod flood;
-pub mod geometry;
 mod limits;
 mod manoeuvre;
 mod margin;

@@ -4,7 +4,6 @@
 //! two legs are looked for with less and less margin first; more legs are looked for with the whole margin, and are taken
 //! when they are not much slower than what less margin allows. Cost: counted, not timed, so that the answer is one everywhere.
 
-use crate::geometry::Hull;
 use crate::manoeuvre::Manoeuvre;
 use crate::optimal::{self, Certificate, Effort, Outcome, Task, Timed};
 use crate::pace::Meter;
@@ -12,6 +11,7 @@ use crate::plan::{Impossible, Limit, Plan, Solution};
 use crate::scene::{Blocker, Scene};
 use crate::space::Space;
 use std::sync::Arc;
+use trundle_collision::RoundedHull;
 use trundle_core::Footprint;
 
 /// A manoeuvre of more than so many times the bound is compared with those of less margin.
@@ -98,7 +98,7 @@ impl<'a> Margins<'a> {
     }
 
     fn space(&self, margin: f64) -> Space<'a> {
-        Space::metered(Hull::new(self.footprint, margin), self.scene, Arc::clone(self.meter))
+        Space::metered(RoundedHull::new(self.footprint, margin), self.scene, Arc::clone(self.meter))
     }
 
     async fn one_or_two(&self, margin: f64) -> Option<Found<'a>> {

@@ -1,6 +1,5 @@
 use crate::cloud::FEW;
 use crate::config::{BESIDE, DockingConfig, Method, WIDER};
-use crate::geometry::Hull;
 use crate::margins::Margins;
 use crate::optimal::{self, Certificate, Effort, Task};
 use crate::pace::{Meter, Planning, at_once};
@@ -9,6 +8,7 @@ use crate::plan::{Impossible, Limit, Plan, Refusal, Solution};
 use crate::scene::{Blocker, Scene};
 use crate::space::Space;
 use std::sync::Arc;
+use trundle_collision::RoundedHull;
 use trundle_core::{Footprint, Invalid, Pose2};
 
 /// Pieces of a scene above which the bound is sought with fewer boxes.
@@ -117,7 +117,7 @@ impl Docker {
         let margin = self.checked(margin, footprint, scene, &pose, &goal)?;
         let scene = around(footprint, scene, &self.task(pose, goal));
         let (hull, limits, config) =
-            (Hull::new(footprint, margin), self.config.limits, self.config.paper.clone());
+            (RoundedHull::new(footprint, margin), self.config.limits, self.config.paper.clone());
         let meter = Meter::rationed(self.most_of(&scene));
         let counted = Arc::clone(&meter);
         Ok(Planning::new(meter, async move {
@@ -192,7 +192,7 @@ impl Docker {
         let (config, near) = (&self.config, around(footprint, scene, &task));
         let margins = if most > 0.0 { vec![most, most / 3.0, 0.0] } else { vec![most] };
         for margin in margins {
-            let space = Space::metered(Hull::new(footprint, margin), &near, Arc::clone(meter));
+            let space = Space::metered(RoundedHull::new(footprint, margin), &near, Arc::clone(meter));
             let found = paper::plan(&space, task.start, task.goal, &config.limits, &config.paper).await;
             if let Some(manoeuvre) = found {
                 return Plan::Found(Solution { manoeuvre, bound: 0.0, margin });
@@ -248,7 +248,7 @@ impl Docker {
             return Err(Refusal::TooFar { distance, most });
         }
         let (mut margin, overlap) = (margin, self.config.overlap);
-        let least = Hull::new(footprint, -overlap);
+        let least = RoundedHull::new(footprint, -overlap);
         let ends = [(start, Refusal::StartBlocked as fn(Blocker) -> Refusal), (goal, Refusal::GoalBlocked)];
         for (pose, refusal) in ends {
             if let Some((clearance, by)) = scene.clearance_of(&least, pose, margin + overlap + 2e-4) {

@@ -1,10 +1,10 @@
 use crate::cloud::{DriveQuestion, FEW, HeadingsQuestion, TurnQuestion, join};
-use crate::geometry::{Arc, Hull, InTheWay, Profile, Segment};
 use crate::manoeuvre::Motion;
 use crate::pace::{Meter, Rest};
 use crate::scene::{Blocker, Scene};
 use std::f64::consts::TAU;
 use std::sync::Arc as Shared;
+use trundle_collision::{HeadingArc, HullProfile, RoundedHull, Segment, StraightContact};
 use trundle_core::{Footprint, Pose2, Vector2};
 
 /// Motions stop this much before a contact, m or rad, so that the next one begins where nothing touches.
@@ -31,18 +31,18 @@ impl FreeTurn {
     /// Less, where a piece stands in the way of a hull at a pose. The last two are scratch space.
     pub(crate) fn meet(
         &mut self,
-        hull: &Hull,
+        hull: &RoundedHull,
         segment: &Segment,
         number: u32,
         pose: &Pose2,
         angles: &mut Vec<f64>,
-        arcs: &mut Vec<Arc>,
+        arcs: &mut Vec<HeadingArc>,
     ) {
         arcs.clear();
         let center = pose.position();
-        hull.blocked_headings(&segment.seen_from(center, 1.0, 0.0), angles, arcs);
+        hull.blocked_headings(&segment.in_frame(center, 1.0, 0.0), angles, arcs);
         for arc in arcs.iter() {
-            let (left, right) = arc.room_from(pose.theta);
+            let (left, right) = arc.free_turn_from(pose.theta);
             let blocker = || Some(Blocker::listed(number, segment.nearest(center)));
             if left < self.left {
                 (self.left, self.left_by) = (left, blocker());
@@ -80,14 +80,18 @@ pub struct FreeDrive {
 
 impl FreeDrive {
     /// Less, where a piece seen from a hull stands in its way; `blocker` says which piece it is, and where.
-    pub(crate) fn meet(&mut self, hull: &Hull, seen: &Segment, blocker: impl Fn() -> (u32, Vector2)) {
+    pub(crate) fn meet(&mut self, hull: &RoundedHull, seen: &Segment, blocker: impl Fn() -> (u32, Vector2)) {
         let by = || {
             let (number, at) = blocker();
             Some(Blocker::listed(number, at))
         };
-        match hull.stop_by(seen) {
-            Some(InTheWay::Ahead(way)) if way < self.ahead => (self.ahead, self.ahead_by) = (way, by()),
-            Some(InTheWay::Behind(way)) if way < self.behind => (self.behind, self.behind_by) = (way, by()),
+        match hull.straight_contact(seen) {
+            Some(StraightContact::Ahead(way)) if way < self.ahead => {
+                (self.ahead, self.ahead_by) = (way, by())
+            }
+            Some(StraightContact::Behind(way)) if way < self.behind => {
+                (self.behind, self.behind_by) = (way, by())
+            }
             _ => {}
         }
     }
@@ -102,11 +106,11 @@ impl FreeDrive {
 #[derive(Debug, Clone)]
 pub struct Space<'a> {
     scene: &'a Scene,
-    hull: Hull,
+    hull: RoundedHull,
     /// Where there are many points.
-    profile: Option<Profile>,
+    profile: Option<HullProfile>,
     angles: Vec<f64>,
-    arcs: Vec<Arc>,
+    arcs: Vec<HeadingArc>,
     meter: Shared<Meter>,
     /// Among many points: blocked headings that may be left out, rad.
     little: f64,
@@ -121,19 +125,19 @@ const WAY_COST: u64 = 5;
 impl<'a> Space<'a> {
     /// A footprint grown by `margin` (m, at least 0.1 mm) among obstacles.
     pub fn new(footprint: &Footprint, margin: f64, scene: &'a Scene) -> Self {
-        Self::metered(Hull::new(footprint, margin), scene, Meter::endless(u64::MAX))
+        Self::metered(RoundedHull::new(footprint, margin), scene, Meter::endless(u64::MAX))
     }
 
     /// A hull among obstacles, the work counted by `meter`.
-    pub(crate) fn metered(hull: Hull, scene: &'a Scene, meter: Shared<Meter>) -> Self {
+    pub(crate) fn metered(hull: RoundedHull, scene: &'a Scene, meter: Shared<Meter>) -> Self {
         let points = scene.points().len();
-        let profile = (points > FEW).then(|| Profile::new(&hull, points));
-        meter.spend(profile.as_ref().map_or(0, Profile::cost));
+        let profile = (points > FEW).then(|| HullProfile::new(&hull, points));
+        meter.spend(profile.as_ref().map_or(0, HullProfile::cost));
         Self { scene, hull, profile, angles: Vec::new(), arcs: Vec::new(), meter, little: LITTLE }
     }
 
     /// The same obstacles for another hull; their work is counted together.
-    pub(crate) fn with_hull(&self, hull: Hull) -> Self {
+    pub(crate) fn with_hull(&self, hull: RoundedHull) -> Self {
         Self::metered(hull, self.scene, Shared::clone(&self.meter))
     }
 
@@ -143,7 +147,7 @@ impl<'a> Space<'a> {
     }
 
     /// The footprint with its margin.
-    pub fn hull(&self) -> &Hull {
+    pub fn hull(&self) -> &RoundedHull {
         &self.hull
     }
 
@@ -242,7 +246,7 @@ impl<'a> Space<'a> {
         let mut work = self.scene.pieces().len() as u64;
         let mut look = |segment: &Segment, number: u32| {
             work += WAY_COST;
-            let seen = segment.seen_from(center, direction.x, direction.y);
+            let seen = segment.in_frame(center, direction.x, direction.y);
             if seen.a.y.min(seen.b.y) <= outer && seen.a.y.max(seen.b.y) >= -outer {
                 free.meet(hull, &seen, || (number, segment.nearest(center)));
             }
@@ -260,12 +264,12 @@ impl<'a> Space<'a> {
 
     /// Adds the headings at which a base at `position` overlaps something, sorted and joined; among many points some
     /// hundredths of a radian of them may be left out.
-    pub fn blocked_headings(&mut self, position: Vector2, blocked: &mut Vec<Arc>) {
+    pub fn blocked_headings(&mut self, position: Vector2, blocked: &mut Vec<HeadingArc>) {
         let (hull, angles) = (&self.hull, &mut self.angles);
         let (first, half) = (blocked.len(), Vector2::repeat(hull.outer_radius()));
         let mut work = self.scene.pieces().len() as u64;
         self.scene.visit_pieces(position, half, |segment, _| {
-            hull.blocked_headings(&segment.seen_from(position, 1.0, 0.0), angles, blocked);
+            hull.blocked_headings(&segment.in_frame(position, 1.0, 0.0), angles, blocked);
             work += HEADINGS_COST;
         });
         match &self.profile {
@@ -277,7 +281,7 @@ impl<'a> Space<'a> {
                 work += self.scene.ask(&mut question);
             }
             None => self.scene.visit_points(position, half, |p, _| {
-                let segment = Segment::point(p).seen_from(position, 1.0, 0.0);
+                let segment = Segment::point(p).in_frame(position, 1.0, 0.0);
                 hull.blocked_headings(&segment, angles, blocked);
                 work += HEADINGS_COST;
             }),

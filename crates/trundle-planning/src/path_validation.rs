@@ -1,9 +1,9 @@
 //! Validation of a plan on a newer map.
 
 use crate::field::{DistanceField, UnknownIs};
-use crate::geometry::box_gap;
-use crate::polygon::robot_shape::{MAX_OVERLAP_M, RobotShape, outline_to_square};
+use crate::polygon::robot_shape::{MAX_OVERLAP_M, RobotShape};
 use thiserror::Error;
+use trundle_collision::square::{point_to_square, polygon_to_square};
 use trundle_core::{Cell, OccupancyGrid, Pose2, Trajectory, Vector2};
 
 /// First contact along a trajectory.
@@ -124,8 +124,8 @@ fn clearance((grid, unknown): Layer<'_>, pose: Pose2, shape: &RobotShape) -> f64
                 let centre =
                     geometry.origin + Vector2::new(c as f64 + 0.5, r as f64 + 0.5) * geometry.resolution;
                 let gap = match outline[..] {
-                    [] => box_gap(point, centre, half).norm(),
-                    _ => outline_to_square(&outline, centre, half, cap),
+                    [] => point_to_square(point, centre, half).norm(),
+                    _ => polygon_to_square(&outline, centre, half, cap),
                 };
                 best = best.min(gap);
             }

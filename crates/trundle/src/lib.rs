@@ -31,6 +31,7 @@
 //! tight places, [`sim`]
 //! plays the world, [`eval`] judges, [`io`] reads and writes, [`viz`] draws.
 
+pub use trundle_collision as collision;
 pub use trundle_control as control;
 pub use trundle_core as core;
 pub use trundle_docking as docking;

@@ -68,6 +68,7 @@ fn is_known(name: &str) -> bool {
         || EDGES.contains(&name)
         || [
             "trundle-core",
+            "trundle-collision",
             "trundle-optim",
             "trundle-runtime",
             "trundle",
@@ -80,10 +81,10 @@ fn is_known(name: &str) -> bool {
 
 /// The arrows of the design.
 fn may_know(from: &str, to: &str) -> bool {
-    let base = ["trundle-core", "trundle-optim"].contains(&to);
+    let base = ["trundle-core", "trundle-collision", "trundle-optim"].contains(&to);
     match from {
         "trundle-core" | "xtask" => false,
-        "trundle-optim" => to == "trundle-core",
+        "trundle-collision" | "trundle-optim" => to == "trundle-core",
         "trundle-slam" => base || to == "trundle-vision",
         "trundle-runtime" => base || ROOMS.contains(&to),
         "trundle" => !["trundle", "trundle-cli"].contains(&to),

@@ -12,7 +12,6 @@
 mod config;
 mod monitor;
 mod obstacles;
-mod outline;
 mod reason;
 
 pub use config::SafetyConfig;

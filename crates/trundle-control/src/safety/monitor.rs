@@ -1,16 +1,16 @@
 use super::{
     SafetyConfig,
     obstacles::{Obstacle, SafetyMemory, SafetyScan, collect_memory, collect_scan},
-    outline::Outline,
     reason::{SafetyAction, SlowReason, StopReason},
 };
+use trundle_collision::SweptFootprint;
 use trundle_core::{Footprint, Invalid, Stamp, Twist2, Vector2};
 
 /// Lets only twists through from which the robot can still stop.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SafetyMonitor {
     config: SafetyConfig,
-    outline: Outline,
+    footprint: SweptFootprint,
     /// From the newest image to the wheels obeying, s.
     latency: f64,
     /// Reused from call to call: what stands near by.
@@ -81,8 +81,8 @@ impl SafetyMonitor {
     /// # Errors
     /// When a number of the configuration is outside its range.
     pub fn new(config: SafetyConfig, footprint: &Footprint) -> Result<Self, Invalid> {
-        let (config, outline) = (config.validated()?, Outline::new(footprint));
-        Ok(Self { latency: config.latency, config, outline, obstacles: Vec::new() })
+        let (config, footprint) = (config.validated()?, SweptFootprint::new(footprint));
+        Ok(Self { latency: config.latency, config, footprint, obstacles: Vec::new() })
     }
 
     /// Judges a command.
@@ -146,7 +146,7 @@ impl SafetyMonitor {
 
     /// Whether only the way back is open: not for a disc that turns on the spot against what it touches.
     fn must_back_out(&self, input: &SafetyInput<'_>) -> bool {
-        let turns = input.twist.v == 0.0 && input.twist.omega != 0.0 && self.outline.is_disc();
+        let turns = input.twist.v == 0.0 && input.twist.omega != 0.0 && self.footprint.is_disc();
         input.over_edge || input.touched && !turns
     }
 
@@ -162,7 +162,7 @@ impl SafetyMonitor {
         self.obstacles.clear();
         let v = input.twist.v.abs();
         let braking = v * self.latency + v * v / (2.0 * self.config.deceleration);
-        let body = self.outline.reach() + self.config.slow_margin.max(self.config.stop_margin);
+        let body = self.footprint.reach() + self.config.slow_margin.max(self.config.stop_margin);
         if let Some(scan) = &input.scan {
             collect_scan(scan, braking + self.config.stop_margin + body, &mut self.obstacles);
         }
@@ -181,20 +181,21 @@ impl SafetyMonitor {
 
     /// The first obstacle that comes within `margin` m of the outline: way (of a turn on the spot, angle) until then, and where.
     fn first(&self, twist: Twist2, margin: f64) -> Option<(f64, Vector2)> {
-        let way = |o: &Obstacle| Some((self.outline.way_to_contact(twist, o.at, margin + o.extent)?, o.at));
+        let way =
+            |o: &Obstacle| Some((self.footprint.distance_to_contact(twist, o.at, margin + o.extent)?, o.at));
         self.obstacles.iter().filter_map(way).min_by(|a, b| a.0.total_cmp(&b.0))
     }
 
     /// The rim about the outline that nothing may enter, m. A robot that is already nearer to something than the margin asks
     /// may go on as long as it comes no nearer, give or take `slack`: else it could never leave a wall.
     fn contact_margin(&self, slack: f64) -> f64 {
-        let gaps = self.obstacles.iter().map(|o| self.outline.gap(o.at) - o.extent);
+        let gaps = self.obstacles.iter().map(|o| self.footprint.gap(o.at) - o.extent);
         (gaps.fold(f64::INFINITY, f64::min) - slack).clamp(0.0, self.config.side_margin)
     }
 
     /// Whether a turn on the spot need not be looked at.
     fn may_turn(&self, turn: Twist2) -> bool {
-        turn.omega == 0.0 || self.outline.is_disc()
+        turn.omega == 0.0 || self.footprint.is_disc()
     }
 
     fn within_the_free_turn(&self, turn: Twist2) -> SafetyReport {
@@ -416,7 +417,7 @@ mod tests {
             rate = twist.omega.clamp(rate - 3.0 * 0.02, rate + 3.0 * 0.02);
             theta += rate * 0.02;
             let at = Pose2::new(0.0, 0.0, theta).inverse().transform(post);
-            least = least.min(cart().outline.gap(at));
+            least = least.min(cart().footprint.gap(at));
         }
         assert!(least > 0.005 && theta > 0.5, "{least} m left after {theta} rad");
     }

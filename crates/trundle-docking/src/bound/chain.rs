@@ -1,9 +1,9 @@
 use super::boxes::Place;
 use super::ranges::{Heading, LegRange};
-use crate::geometry::Arc;
 use crate::optimal::Task;
 use crate::space::{BACK_OFF, FreeTurn};
 use std::f64::consts::PI;
+use trundle_collision::HeadingArc;
 
 /// Legs of manoeuvres whose turning places are split into boxes, at most.
 pub const MOST_LEGS: usize = 4;
@@ -46,7 +46,7 @@ impl Chain<'_> {
     ///
     /// Each leg's headings are cut into sectors, and the least sum runs over one sector a leg: a leg that could point
     /// anywhere must still point somewhere, so that turns before and after it add up.
-    pub fn least_time(&self, ends: &Ends<'_>, gaps: [&[Arc]; MOST_LEGS - 1]) -> Option<f64> {
+    pub fn least_time(&self, ends: &Ends<'_>, gaps: [&[HeadingArc]; MOST_LEGS - 1]) -> Option<f64> {
         let (limits, pause) = (&ends.task.limits, ends.task.limits.switch_time);
         let mut before = Sectors::default();
         for i in 0..self.legs {

@@ -2,11 +2,11 @@ use super::boxes::{Place, Region, Square};
 use super::chain::{Chain, Ends, MOST_LEGS};
 use super::ranges::LegRange;
 use super::tests_of_legs::Shrunk;
-use crate::geometry::Arc;
 use crate::optimal::{Legs, Task};
 use crate::space::{FreeTurn, Space};
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
+use trundle_collision::HeadingArc;
 use trundle_core::wrap_angle;
 
 /// Squares of this level are not split: 2 mm of a region of 4 m.
@@ -198,7 +198,7 @@ impl Bounding<'_, '_> {
 
     /// A lower bound of the time of every manoeuvre of a family, s; contacts only of the first and the last turn.
     fn bound(&self, family: &Family) -> f64 {
-        let open: &[Arc] = &[Arc::FULL];
+        let open: &[HeadingArc] = &[HeadingArc::FULL];
         let ends = Ends { task: self.task, start: &self.start, goal: &self.goal };
         let chain =
             Chain { places: &self.places(family)[..], legs: family.turns + 1, free: [[true; 2]; MOST_LEGS] };
@@ -218,7 +218,7 @@ impl Bounding<'_, '_> {
         for square in &family.squares[..family.turns] {
             shrunk.find_gaps(&self.region, *square);
         }
-        let mut gaps: [&[Arc]; MOST_LEGS - 1] = [&[]; MOST_LEGS - 1];
+        let mut gaps: [&[HeadingArc]; MOST_LEGS - 1] = [&[]; MOST_LEGS - 1];
         for (gaps, square) in gaps.iter_mut().zip(&family.squares[..family.turns]) {
             *gaps = shrunk.gaps(*square);
         }

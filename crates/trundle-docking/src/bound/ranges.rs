@@ -1,6 +1,6 @@
 use super::boxes::Place;
-use crate::geometry::Arc;
 use std::f64::consts::{PI, TAU};
+use trundle_collision::HeadingArc;
 use trundle_core::wrap_angle;
 
 /// What is known of a leg between two places.
@@ -60,9 +60,9 @@ impl Heading {
 
     /// The least turn from this range into another without contact, where `gaps` are the free headings; `None` when no gap
     /// holds a heading of both.
-    pub fn least_turn_to(&self, other: &Self, gaps: &[Arc]) -> Option<f64> {
+    pub fn least_turn_to(&self, other: &Self, gaps: &[HeadingArc]) -> Option<f64> {
         let direct = (wrap_angle(other.middle - self.middle).abs() - self.spread - other.spread).max(0.0);
-        let within = |gap: &Arc| {
+        let within = |gap: &HeadingArc| {
             if gap.length >= TAU {
                 return Some(direct);
             }
@@ -76,7 +76,7 @@ impl Heading {
     }
 
     /// The parts of the range that lie in a gap, counted from the gap's beginning.
-    fn within(&self, gap: &Arc) -> [Option<(f64, f64)>; 2] {
+    fn within(&self, gap: &HeadingArc) -> [Option<(f64, f64)>; 2] {
         let from = (self.middle - self.spread - gap.start).rem_euclid(TAU);
         let part = |from: f64| {
             let (low, high) = (from.max(0.0), (from + 2.0 * self.spread).min(gap.length));
@@ -94,7 +94,7 @@ mod tests {
     #[test]
     fn turns_stay_within_gaps() {
         let range = |middle, spread| Heading { middle, spread };
-        let gap = Arc { start: 0.0, length: 4.0 };
+        let gap = HeadingArc { start: 0.0, length: 4.0 };
         let turn = range(0.1, 0.1).least_turn_to(&range(wrap_angle(3.8), 0.1), &[gap]).unwrap();
         assert!((turn - 3.5).abs() < 1e-12, "the short way is blocked: {turn}");
         assert!(range(5.0, 0.1).least_turn_to(&range(1.0, 0.1), &[gap]).is_none());

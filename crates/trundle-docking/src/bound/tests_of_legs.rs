@@ -1,9 +1,9 @@
 use super::boxes::{Place, Region, Square};
 use super::ranges::LegRange;
-use crate::geometry::Arc;
 use crate::space::Space;
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
+use trundle_collision::HeadingArc;
 use trundle_core::Pose2;
 
 /// Shrunk hulls, each a root of two smaller than the next: for places that are known to within so much.
@@ -12,8 +12,8 @@ pub struct Shrunk<'a> {
     whole: Space<'a>,
     /// Made when they are asked for; `None` of what nothing is left.
     spaces: [Option<Option<Space<'a>>>; STEPS],
-    gaps: BTreeMap<Square, Vec<Arc>>,
-    blocked: Vec<Arc>,
+    gaps: BTreeMap<Square, Vec<HeadingArc>>,
+    blocked: Vec<HeadingArc>,
 }
 
 /// The least shrinking, m.
@@ -46,11 +46,11 @@ impl<'a> Shrunk<'a> {
     }
 
     /// What [`Shrunk::find_gaps`] found.
-    pub fn gaps(&self, square: Square) -> &[Arc] {
+    pub fn gaps(&self, square: Square) -> &[HeadingArc] {
         self.gaps.get(&square).map_or(&[], Vec::as_slice)
     }
 
-    fn gaps_at(&mut self, place: &Place) -> Vec<Arc> {
+    fn gaps_at(&mut self, place: &Place) -> Vec<HeadingArc> {
         let mut blocked = std::mem::take(&mut self.blocked);
         blocked.clear();
         if let Some(space) = self.space(place.radius()) {
@@ -58,12 +58,13 @@ impl<'a> Shrunk<'a> {
         }
         let after =
             |i: usize| if i + 1 < blocked.len() { blocked[i + 1].start } else { blocked[0].start + TAU };
-        let gap = |(i, arc): (usize, &Arc)| {
+        let gap = |(i, arc): (usize, &HeadingArc)| {
             let start = arc.start + arc.length;
-            Arc { start: start.rem_euclid(TAU), length: after(i) - start }
+            HeadingArc { start: start.rem_euclid(TAU), length: after(i) - start }
         };
-        let gaps: Vec<Arc> = blocked.iter().enumerate().map(gap).filter(|gap| gap.length > 0.0).collect();
-        let gaps = if blocked.is_empty() { vec![Arc::FULL] } else { gaps };
+        let gaps: Vec<HeadingArc> =
+            blocked.iter().enumerate().map(gap).filter(|gap| gap.length > 0.0).collect();
+        let gaps = if blocked.is_empty() { vec![HeadingArc::FULL] } else { gaps };
         self.blocked = blocked;
         gaps
     }

@@ -1,16 +1,16 @@
-use crate::geometry::{Arc, Hull, Profile, Segment, once_round};
-use crate::scene::{Patch, Question};
+use crate::scene::Question;
 use std::f64::consts::TAU;
+use trundle_collision::{HeadingArc, HullProfile, OrientedBox, RoundedHull, Segment, wrap_positive};
 use trundle_core::Vector2;
 
 /// At which headings a hull overlaps something: all that are told do, of those that do a little at either end may be left out.
 /// It is asked where a heading too many that counts as free does no harm: for bounds, proofs and guides.
 pub struct HeadingsQuestion<'q> {
-    hull: &'q Hull,
-    profile: &'q Profile,
+    hull: &'q RoundedHull,
+    profile: &'q HullProfile,
     position: Vector2,
     angles: &'q mut Vec<f64>,
-    blocked: &'q mut Vec<Arc>,
+    blocked: &'q mut Vec<HeadingArc>,
     first: usize,
     /// Headings that are not worth a look, rad.
     little: f64,
@@ -19,10 +19,10 @@ pub struct HeadingsQuestion<'q> {
 impl<'q> HeadingsQuestion<'q> {
     /// What is known so far is in `blocked` from `first` on, joined.
     pub fn new(
-        (hull, profile): (&'q Hull, &'q Profile),
+        (hull, profile): (&'q RoundedHull, &'q HullProfile),
         position: Vector2,
         angles: &'q mut Vec<f64>,
-        blocked: &'q mut Vec<Arc>,
+        blocked: &'q mut Vec<HeadingArc>,
         (first, little): (usize, f64),
     ) -> Self {
         Self { hull, profile, position, angles, blocked, first, little }
@@ -32,28 +32,28 @@ impl<'q> HeadingsQuestion<'q> {
 impl Question for HeadingsQuestion<'_> {
     const COST: u64 = 50;
 
-    fn promise(&self, patch: &Patch) -> Option<f64> {
+    fn promise(&self, patch: &OrientedBox) -> Option<f64> {
         let arcs = &self.blocked[self.first..];
-        let inside = |arc: &Arc, from: f64, length: f64| {
+        let inside = |arc: &HeadingArc, from: f64, length: f64| {
             let core = (length - 2.0 * self.little).max(0.0);
             arc.length >= TAU
-                || once_round(from + self.little.min(length / 2.0) - arc.start) + core <= arc.length
+                || wrap_positive(from + self.little.min(length / 2.0) - arc.start) + core <= arc.length
         };
-        let seen = patch.seen_from(self.position, Vector2::x());
+        let seen = patch.in_frame(self.position, Vector2::x());
         let known = |from, length| arcs.iter().any(|arc| inside(arc, from, length));
         // Near ones forbid most.
         (!self.profile.all_known(&seen, known)).then(|| seen.center.norm_squared())
     }
 
     fn look(&mut self, p: Vector2, _: u32) {
-        let segment = Segment::point(p).seen_from(self.position, 1.0, 0.0);
+        let segment = Segment::point(p).in_frame(self.position, 1.0, 0.0);
         self.hull.blocked_headings(&segment, self.angles, self.blocked);
         join(self.blocked, self.first);
     }
 }
 
 /// Sorts arcs from `first` on and joins those that meet; an arc may reach over 2 pi.
-pub fn join(arcs: &mut Vec<Arc>, first: usize) {
+pub fn join(arcs: &mut Vec<HeadingArc>, first: usize) {
     arcs[first..].sort_unstable_by(|a, b| a.start.total_cmp(&b.start));
     let mut kept = first;
     for i in first..arcs.len() {
@@ -81,6 +81,6 @@ pub fn join(arcs: &mut Vec<Arc>, first: usize) {
     }
     if arcs[first..].iter().any(|arc| arc.length >= TAU - 1e-12) {
         arcs.truncate(first);
-        arcs.push(Arc::FULL);
+        arcs.push(HeadingArc::FULL);
     }
 }

@@ -1,7 +1,7 @@
 //! Questions about contact among very many points.
 //!
 //! Problem: a hundred thousand points, and a plan asks ten thousand questions. Idea: the points are in a tree of boxes; a box
-//! that the hull's rough outline ([`crate::geometry::Profile`]) cannot touch, or not before what is known already, is passed over whole. What
+//! that the hull's rough outline ([`HullProfile`]) cannot touch, or not before what is known already, is passed over whole. What
 //! is left, some ten points a question, goes through the closed forms: the answers are those of all points, but for a ten-millionth, a hundredth of what motions back off by.
 
 mod drive;

@@ -1,10 +1,10 @@
-use crate::geometry::{Hull, Segment};
-use crate::scene::{Blocker, Patch, Question};
+use crate::scene::{Blocker, Question};
+use trundle_collision::{OrientedBox, RoundedHull, Segment};
 use trundle_core::{Pose2, Vector2};
 
 /// What is nearest to a hull that stands, and how near (m).
 pub struct StandQuestion<'q> {
-    hull: &'q Hull,
+    hull: &'q RoundedHull,
     at: Vector2,
     direction: (f64, f64),
     /// Nothing farther is asked for, m.
@@ -14,25 +14,30 @@ pub struct StandQuestion<'q> {
 
 impl<'q> StandQuestion<'q> {
     /// What is known so far is in `best`.
-    pub fn new(hull: &'q Hull, pose: &Pose2, reach: f64, best: &'q mut Option<(f64, Blocker)>) -> Self {
+    pub fn new(
+        hull: &'q RoundedHull,
+        pose: &Pose2,
+        reach: f64,
+        best: &'q mut Option<(f64, Blocker)>,
+    ) -> Self {
         let (sin, cos) = pose.theta.sin_cos();
         Self { hull, at: pose.position(), direction: (cos, sin), reach, best }
     }
 
     fn distance(&self, piece: &Segment) -> f64 {
         let (cos, sin) = self.direction;
-        self.hull.distance(&piece.seen_from(self.at, cos, sin))
+        self.hull.distance(&piece.in_frame(self.at, cos, sin))
     }
 }
 
 impl Question for StandQuestion<'_> {
-    fn promise(&self, patch: &Patch) -> Option<f64> {
-        let away = patch.seen_from(self.at, Vector2::x()).nearest() - self.hull.outer_radius();
+    fn promise(&self, patch: &OrientedBox) -> Option<f64> {
+        let away = patch.in_frame(self.at, Vector2::x()).distance_from_origin() - self.hull.outer_radius();
         let known = self.best.map_or(self.reach, |(least, _)| least);
         if away >= known || known <= 0.0 {
             return None;
         }
-        let least = self.distance(&patch.spine()) - patch.half.y;
+        let least = self.distance(&patch.centre_line()) - patch.half.y;
         (least < known).then_some(least)
     }
 

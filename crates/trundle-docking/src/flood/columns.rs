@@ -1,6 +1,6 @@
-use crate::geometry::Arc;
 use crate::space::Space;
 use std::f64::consts::TAU;
+use trundle_collision::HeadingArc;
 use trundle_core::{Pose2, Vector2};
 
 /// What a node costs besides its headings, in units of [`Space::work`].
@@ -27,8 +27,8 @@ pub struct Columns<'s, 'a> {
     count: usize,
     /// Where a cell's gaps begin, and how many; `u32::MAX` when not yet asked for.
     ranges: Vec<(u32, u32)>,
-    gaps: Vec<Arc>,
-    blocked: Vec<Arc>,
+    gaps: Vec<HeadingArc>,
+    blocked: Vec<HeadingArc>,
 }
 
 impl<'s, 'a> Columns<'s, 'a> {
@@ -52,7 +52,7 @@ impl<'s, 'a> Columns<'s, 'a> {
     }
 
     /// The headings of a gap.
-    pub fn gap(&self, node: Node) -> Arc {
+    pub fn gap(&self, node: Node) -> HeadingArc {
         self.gaps[node.gap as usize]
     }
 
@@ -137,11 +137,11 @@ impl<'s, 'a> Columns<'s, 'a> {
             };
             let start = arc.start + arc.length;
             if next - start > 1e-9 {
-                self.gaps.push(Arc { start: start.rem_euclid(TAU), length: next - start });
+                self.gaps.push(HeadingArc { start: start.rem_euclid(TAU), length: next - start });
             }
         }
         if self.blocked.is_empty() {
-            self.gaps.push(Arc::FULL);
+            self.gaps.push(HeadingArc::FULL);
         }
         self.ranges[cell as usize] = (first as u32, (self.gaps.len() - first) as u32);
         self.ranges[cell as usize]
@@ -149,6 +149,6 @@ impl<'s, 'a> Columns<'s, 'a> {
 }
 
 /// Whether headings from `start` on over `length` share one with `gap`.
-fn meets(gap: &Arc, start: f64, length: f64) -> bool {
+fn meets(gap: &HeadingArc, start: f64, length: f64) -> bool {
     (start - gap.start).rem_euclid(TAU) <= gap.length || (gap.start - start).rem_euclid(TAU) <= length
 }

@@ -1,9 +1,9 @@
 use super::columns::{Columns, Node};
-use crate::geometry::Arc;
 use crate::space::Space;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 use std::f64::consts::TAU;
+use trundle_collision::HeadingArc;
 use trundle_core::{Pose2, Vector2, wrap_angle};
 
 /// How far each reachable pose is from the goal, by a rough count of seconds: a guide for a search, not a bound.
@@ -111,7 +111,7 @@ impl<'s, 'a> Guide<'s, 'a> {
 }
 
 /// The heading nearest to `heading` that lies in both gaps, and well within where there is room.
-fn shared(a: Arc, b: Arc, heading: f64) -> f64 {
+fn shared(a: HeadingArc, b: HeadingArc, heading: f64) -> f64 {
     let mut best = (f64::INFINITY, heading);
     let offset = (b.start - a.start).rem_euclid(TAU);
     // b may begin within a, or before it and reach over its beginning.

@@ -3,17 +3,15 @@
 mod blocker;
 mod cells;
 mod outline;
-mod patch;
 mod points;
 
 use crate::cloud::StandQuestion;
-use crate::geometry::{Hull, Segment};
 pub use blocker::{Blocker, Thing};
 use cells::Cells;
-pub(crate) use patch::Patch;
 use points::PointIndex;
 pub(crate) use points::Question;
 use std::sync::Arc;
+use trundle_collision::{RoundedHull, Segment};
 use trundle_core::{Cell, CellIndex, Footprint, GridGeometry, Invalid, OccupancyGrid, Pose2, Vector2};
 
 /// Something that stands in the way, map frame, m.
@@ -136,21 +134,31 @@ impl Scene {
     /// How far a footprint at a pose is from the nearest obstacle, m, 0 when it overlaps one, and from which;
     /// `None` when nothing is within `reach` (m).
     pub fn clearance(&self, footprint: &Footprint, pose: &Pose2, reach: f64) -> Option<(f64, Blocker)> {
-        self.clearance_of(&Hull::new(footprint, 0.0), pose, reach)
+        self.clearance_of(&RoundedHull::new(footprint, 0.0), pose, reach)
     }
 
-    pub(crate) fn clearance_of(&self, hull: &Hull, pose: &Pose2, reach: f64) -> Option<(f64, Blocker)> {
+    pub(crate) fn clearance_of(
+        &self,
+        hull: &RoundedHull,
+        pose: &Pose2,
+        reach: f64,
+    ) -> Option<(f64, Blocker)> {
         self.nearest(hull, pose, reach).0
     }
 
     /// The nearest obstacle as [`Scene::clearance`] has it, and what it cost to find it.
-    pub(crate) fn nearest(&self, hull: &Hull, pose: &Pose2, reach: f64) -> (Option<(f64, Blocker)>, u64) {
+    pub(crate) fn nearest(
+        &self,
+        hull: &RoundedHull,
+        pose: &Pose2,
+        reach: f64,
+    ) -> (Option<(f64, Blocker)>, u64) {
         let (sin, cos) = pose.theta.sin_cos();
         let mut best: Option<(f64, Blocker)> = None;
         let mut work = self.pieces.len() as u64;
         let half = Vector2::repeat(hull.outer_radius() + reach);
         self.visit_pieces(pose.position(), half, |segment, number| {
-            let distance = hull.distance(&segment.seen_from(pose.position(), cos, sin));
+            let distance = hull.distance(&segment.in_frame(pose.position(), cos, sin));
             offer(&mut best, reach, distance, || Blocker::listed(number, segment.nearest(pose.position())));
             work += DISTANCE_COST;
         });

@@ -1,5 +1,5 @@
 use super::cells::Cells;
-use crate::geometry::Segment;
+use trundle_collision::Segment;
 use trundle_core::{GridGeometry, Vector2};
 
 /// The outlines of the cells that stand in the way, as long as they run straight: between such a cell and one that is not.

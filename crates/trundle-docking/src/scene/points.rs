@@ -1,5 +1,5 @@
-use super::patch::Patch;
 use std::collections::HashSet;
+use trundle_collision::OrientedBox;
 use trundle_core::Vector2;
 
 /// Points in a tree of boxes, so that what matters to a question is found without looking at all.
@@ -13,7 +13,7 @@ pub struct PointIndex {
 /// Points within a box.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Node {
-    patch: Patch,
+    patch: OrientedBox,
     from: u32,
     to: u32,
     /// The first of its halves; 0 for none.
@@ -36,7 +36,7 @@ pub trait Question {
 
     /// Whether points in a box may matter: those that promise most, by the least number, are looked at first. `None` when they
     /// cannot matter, by what is known so far.
-    fn promise(&self, patch: &Patch) -> Option<f64>;
+    fn promise(&self, patch: &OrientedBox) -> Option<f64>;
 
     /// Looks at a point, whose number is given.
     fn look(&mut self, p: Vector2, number: u32);
@@ -90,7 +90,7 @@ impl PointIndex {
             if node.halves == 0 {
                 for &(p, number) in &self.points[node.from as usize..node.to as usize] {
                     work += PROMISE;
-                    if question.promise(&Patch::point(p)).is_some() {
+                    if question.promise(&OrientedBox::point(p)).is_some() {
                         question.look(p, number);
                         work += Q::COST;
                     }
@@ -98,7 +98,7 @@ impl PointIndex {
                 continue;
             }
             let (p, number) = self.points[(node.from + node.to) as usize / 2];
-            if Q::SAMPLES && question.promise(&Patch::point(p)).is_some() {
+            if Q::SAMPLES && question.promise(&OrientedBox::point(p)).is_some() {
                 question.look(p, number);
                 work += Q::COST;
             }
@@ -118,7 +118,7 @@ impl PointIndex {
 }
 
 fn node(points: &[(Vector2, u32)], from: usize, to: usize) -> Node {
-    let patch = Patch::about(points[from..to].iter().map(|(p, _)| *p));
+    let patch = OrientedBox::around(points[from..to].iter().map(|(p, _)| *p));
     Node { patch, from: from as u32, to: to as u32, halves: 0 }
 }
 
@@ -139,7 +139,7 @@ struct InBox<F> {
 impl<F: FnMut(Vector2, u32)> Question for InBox<F> {
     const SAMPLES: bool = false;
 
-    fn promise(&self, patch: &Patch) -> Option<f64> {
+    fn promise(&self, patch: &OrientedBox) -> Option<f64> {
         let off = (patch.center - self.center).abs() - patch.extent();
         (off.x <= self.half.x && off.y <= self.half.y).then_some(0.0)
     }

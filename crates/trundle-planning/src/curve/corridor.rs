@@ -6,8 +6,9 @@
 //! with its control points inside keeps the clearance as a whole, by the convex hull property.
 
 use crate::curve::half_plane::HalfPlane;
-use crate::geometry::{nearest_on_segment, segment_to_square};
 use crate::search::configuration_space::ConfigurationSpace;
+use trundle_collision::Segment;
+use trundle_collision::square::segment_to_square;
 use trundle_core::Vector2;
 
 /// The polygon around the free segment `a`-`b` within `reach` m of its bounding box. It keeps a clearance of `want` m wherever
@@ -83,7 +84,7 @@ fn obstacles(
     let wide = Vector2::repeat(want + half);
     let mut found = Vec::new();
     space.field.for_obstacle_rims_in(low - wide, high + wide, |centre| {
-        found.push(((centre - nearest_on_segment(centre, a, b)).norm_squared(), centre));
+        found.push(((centre - Segment { a, b }.nearest(centre)).norm_squared(), centre));
     });
     found
 }

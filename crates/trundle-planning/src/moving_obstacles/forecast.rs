@@ -1,5 +1,6 @@
 //! Moving obstacles: their forecast over two seconds, and encounters with a trajectory.
 
+use trundle_collision::Segment;
 use trundle_core::{
     Cell, Invalid, OccupancyGrid, Trajectory, TrajectoryPoint, Twist2, Vector2, require_finite,
 };
@@ -98,7 +99,7 @@ pub(crate) fn close_cells(closed: &mut OccupancyGrid, obstacles: &[MovingObstacl
             for col in index(low.x, geometry.width)..=index(high.x, geometry.width) {
                 let cell = trundle_core::CellIndex { col, row };
                 let centre = geometry.center(cell);
-                let off = (centre - crate::geometry::nearest_on_segment(centre, a, b)).norm();
+                let off = (centre - Segment { a, b }.nearest(centre)).norm();
                 if off < obstacle.radius + geometry.resolution * std::f64::consts::FRAC_1_SQRT_2 {
                     closed.set(cell, Cell::Occupied);
                 }

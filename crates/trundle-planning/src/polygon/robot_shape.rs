@@ -5,8 +5,9 @@
 //! overlap deeper than half of it is never missed. Cost: O(cells near the footprint) per check.
 
 use crate::field::DistanceField;
-use crate::geometry::{box_gap, segment_to_square};
 use crate::search::escape::Escape;
+use trundle_collision::convex_polygon::{centre_of, depth_within, inscribed_disc, inset};
+use trundle_collision::square::{point_to_square, polygon_to_square};
 use trundle_core::{Footprint, Pose2, Vector2};
 
 /// Shortest advance between two checks, m. An overlap of less than half of it may be missed. Source: ours.
@@ -58,7 +59,7 @@ impl RobotShape {
                     corners: corners.clone(),
                     radius,
                     inner,
-                    inscribed: inscribed(corners),
+                    inscribed: inscribed_disc(corners),
                     leaving: None,
                 };
                 whole.shrunk(CONTACT_TOLERANCE_M).unwrap_or(whole)
@@ -72,19 +73,11 @@ impl RobotShape {
             let radius = self.radius - by;
             return (radius > 0.0).then(|| Self { radius, inner: radius, ..self.clone() });
         }
-        let count = self.corners.len();
-        let side = |i: usize| (self.corners[(i + 1) % count] - self.corners[i % count]).try_normalize(1e-12);
-        let corner = |i: usize| {
-            let (before, after) = (side(i + count - 1)?, side(i)?);
-            let inward = |along: Vector2| Vector2::new(-along.y, along.x);
-            let sum = inward(before) + inward(after);
-            let opening = 1.0 + before.dot(&after);
-            (opening > 1e-6).then(|| self.corners[i] + sum * (by / opening))
-        };
-        let corners: Vec<Vector2> = (0..count).map(corner).collect::<Option<_>>()?;
-        let stands = (0..count)
-            .all(|i| (corners[(i + 1) % count] - corners[i]).dot(&(side(i).unwrap_or_default())) > 0.0);
-        stands.then(|| Self { corners, inner: (self.inner - by).max(0.0), ..self.clone() })
+        inset(&self.corners, by).map(|corners| Self {
+            corners,
+            inner: (self.inner - by).max(0.0),
+            ..self.clone()
+        })
     }
 
     /// Depth of the overlap at a pose, m: the amount by which the shape must shrink to be free; at most `cap`.
@@ -111,8 +104,8 @@ impl RobotShape {
         let (outline, half) = (self.outline(start), field.geometry().resolution / 2.0);
         let escape = Escape::new(start.position(), by, half * 2.0);
         let escape = escape.with_clearance_from_others(field, self.radius, |centre| match outline[..] {
-            [] => (box_gap(start.position(), centre, half).norm() - self.radius).max(0.0),
-            _ => outline_to_square(&outline, centre, half, f64::INFINITY),
+            [] => (point_to_square(start.position(), centre, half).norm() - self.radius).max(0.0),
+            _ => polygon_to_square(&outline, centre, half, f64::INFINITY),
         });
         Some(Self { leaving: Some(Box::new(Leaving { escape, slim })), ..self.clone() })
     }
@@ -176,7 +169,7 @@ impl RobotShape {
         let mut best = outline.iter().map(|c| field.border_gap(*c)).fold(cap, f64::min);
         field.for_obstacle_rims_in(low - grown, high + grown, |centre| {
             if best > 0.0 {
-                best = best.min(outline_to_square(&outline, centre, half, best));
+                best = best.min(polygon_to_square(&outline, centre, half, best));
             }
         });
         best
@@ -209,64 +202,6 @@ impl RobotShape {
         let free = |turn: &f64| self.is_disc() || self.may_move(field, from, Vector2::zeros(), *turn);
         [short, long].into_iter().find(free)
     }
-}
-
-fn sides(corners: &[Vector2]) -> impl Iterator<Item = (Vector2, Vector2)> + '_ {
-    corners.iter().copied().zip(corners.iter().copied().cycle().skip(1))
-}
-
-/// Depth of a point inside a convex polygon, m; negative outside.
-fn depth_within(corners: &[Vector2], point: Vector2) -> f64 {
-    let to_side = |(a, b): (Vector2, Vector2)| (b - a).perp(&(point - a)) / (b - a).norm();
-    sides(corners).map(to_side).fold(f64::INFINITY, f64::min)
-}
-
-/// Centre and radius of the largest disc in a convex polygon. The depth is concave: a grid search about the maximum, refined, finds it.
-fn inscribed(corners: &[Vector2]) -> (Vector2, f64) {
-    const ROUNDS: usize = 12;
-    const SAMPLES: i32 = 4;
-    let mut best = (centre_of(corners), depth_within(corners, centre_of(corners)));
-    let mut reach = corners.iter().map(|c| (c - best.0).norm()).fold(0.0, f64::max);
-    for _ in 0..ROUNDS {
-        let around = best.0;
-        for (i, j) in (-SAMPLES..=SAMPLES).flat_map(|i| (-SAMPLES..=SAMPLES).map(move |j| (i, j))) {
-            let at = around + Vector2::new(f64::from(i), f64::from(j)) * (reach / f64::from(SAMPLES));
-            let depth = depth_within(corners, at);
-            if depth > best.1 {
-                best = (at, depth);
-            }
-        }
-        reach /= 2.0;
-    }
-    best
-}
-
-fn centre_of(points: &[Vector2]) -> Vector2 {
-    points.iter().sum::<Vector2>() / points.len() as f64
-}
-
-/// The distance between a convex polygon and a square, or `cap` if that is less; 0 where they overlap or touch.
-pub(crate) fn outline_to_square(outline: &[Vector2], centre: Vector2, half: f64, cap: f64) -> f64 {
-    // Separating axes: those of the square, then those of the polygon's sides.
-    let low = outline.iter().fold(outline[0], |low, c| low.inf(c));
-    let high = outline.iter().fold(outline[0], |high, c| high.sup(c));
-    let apart = box_gap(centre, (low + high) / 2.0, 0.0).abs() - (high - low) / 2.0 - Vector2::repeat(half);
-    let mut axis = apart.x.max(apart.y);
-    for (a, b) in sides(outline) {
-        let Some(normal) = Vector2::new(b.y - a.y, a.x - b.x).try_normalize(1e-12) else { continue };
-        axis = axis.max(normal.dot(&(centre - a)) - half * (normal.x.abs() + normal.y.abs()));
-    }
-    if axis >= cap {
-        return cap;
-    }
-    if axis <= 0.0 {
-        return 0.0;
-    }
-    let to_side = |(a, b): (Vector2, Vector2)| {
-        let (p, q) = segment_to_square(a, b, centre, half);
-        (p - q).norm()
-    };
-    sides(outline).map(to_side).fold(cap, f64::min)
 }
 
 #[cfg(test)]

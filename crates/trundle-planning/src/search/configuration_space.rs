@@ -1,10 +1,10 @@
 //! The configuration space: free positions of the robot, and their costs. Search, potential and curve share it.
 
 use crate::field::DistanceField;
-use crate::geometry::box_gap;
 use crate::masks::cost_mask::CostMask;
 use crate::search::clearance_cost::ClearanceCostConfig;
 use crate::search::escape::Escape;
+use trundle_collision::square::point_to_square;
 use trundle_core::{Cell, OccupancyGrid, Vector2};
 
 /// Difference of two clearances that counts as rounding, m. Source: ours.
@@ -88,7 +88,7 @@ impl<'a> ConfigurationSpace<'a> {
     /// The same space for a robot that is this disc: leaving `start`, it keeps its radius from all that it does not overlap there.
     pub(crate) fn with_clearance_from_others(self, start: Vector2) -> Self {
         let (radius, half) = (self.radius, self.field.geometry().resolution / 2.0);
-        let gap = |centre| (box_gap(start, centre, half).norm() - radius).max(0.0);
+        let gap = |centre| (point_to_square(start, centre, half).norm() - radius).max(0.0);
         let escape = self.escape.map(|escape| escape.with_clearance_from_others(self.field, radius, gap));
         Self { escape, ..self }
     }

@@ -125,7 +125,7 @@ fn neighbours(geometry: &GridGeometry, cell: usize) -> impl Iterator<Item = usiz
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::box_gap;
+    use trundle_collision::square::point_to_square;
 
     /// A wall below, overlapped; a separate box; a bar on the wall, farther along.
     const AROUND: &str = "
@@ -144,7 +144,7 @@ mod tests {
         let grid = OccupancyGrid::from_ascii(0.1, AROUND).unwrap();
         let field = DistanceField::from_grid(&grid, UnknownIs::Obstacle);
         let (start, radius) = (Vector2::new(0.65, 0.35), 0.2);
-        let gap = |centre| (box_gap(start, centre, 0.05).norm() - radius).max(0.0);
+        let gap = |centre| (point_to_square(start, centre, 0.05).norm() - radius).max(0.0);
         let escape = Escape::new(start, 0.05, 0.1).with_clearance_from_others(&field, radius, gap);
         let away = |x: f64, y: f64| escape.others().unwrap().distance(Vector2::new(x, y));
         assert!(away(0.65, 0.15) > 0.15 && away(0.45, 0.15) > 0.0, "the overlapped wall");

@@ -8,6 +8,7 @@ const PULLING_ROUNDS: usize = 3;
 /// Relative increase of the cost that a skipped point may cause. Source: ours.
 const MAX_COST_INCREASE: f64 = 2e-3;
 
+use trundle_collision::Segment;
 use trundle_core::Vector2;
 
 /// The waypoints of a dense free path: same ends, free straight segments, and at most a slightly higher cost.
@@ -73,7 +74,7 @@ fn halve(from: usize, mut good: usize, mut bad: usize, skips: impl Fn(usize, usi
 fn relax(space: &ConfigurationSpace<'_>, points: &mut [Vector2]) {
     for i in 1..points.len().saturating_sub(1) {
         let (before, here, after) = (points[i - 1], points[i], points[i + 1]);
-        let target = crate::geometry::nearest_on_segment(here, before, after);
+        let target = Segment { a: before, b: after }.nearest(here);
         let cost = space.cost(before, here) + space.cost(here, after);
         let gains = |point: Vector2| {
             space.cost(before, point) + space.cost(point, after) < cost - 1e-6

@@ -1,19 +1,21 @@
+//! Contact of a footprint that moves along an arc with a point, in closed form.
+
 use std::f64::consts::TAU;
 use trundle_core::{Footprint, Twist2, Vector2};
 
-/// The robot's outline as a convex hull with a rim about it: a disc is a point with a rim, a polygon has none.
+/// A footprint as a convex hull with a margin about it: a disc is a point with a margin, a polygon has none.
 ///
-/// How far until a moving outline touches a point? Seen from the base the point moves instead: on a straight line, or on a
-/// circle about the pole, the point of the floor that does not move. The outline grown by a margin is bounded by its sides
-/// moved outward and by arcs about its corners, so the first contact is the first crossing of the point's line or circle
-/// with one of those: closed formulas, no sampling.
+/// Problem: the distance that a moving footprint travels until it touches a point. Idea: in the base frame the point moves
+/// instead, on a line, or on a circle about the centre of rotation. The footprint grown by a margin is bounded by its sides moved
+/// outward and by arcs about its corners. The first contact is the first crossing of the point's line or circle with one of
+/// those: closed forms, no sampling. Cost: O(corners).
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Outline {
+pub struct SweptFootprint {
     /// Corners, counter-clockwise.
     corners: Vec<Vector2>,
     sides: Vec<Side>,
-    /// m.
-    rim: f64,
+    /// Margin, m.
+    margin: f64,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -24,38 +26,39 @@ struct Side {
     length: f64,
 }
 
-/// Points nearer to contact than this touch, m.
-const TOUCH: f64 = 1e-9;
-/// A curvature that is none over the ways of interest, 1/m.
-const STRAIGHT: f64 = 1e-4;
+/// Distance that counts as contact, m. Source: rounding of f64.
+const CONTACT_TOLERANCE_M: f64 = 1e-9;
+/// Curvature below which a motion counts as straight, 1/m. Source: ours.
+const MAX_STRAIGHT_CURVATURE_PER_M: f64 = 1e-4;
 
-impl Outline {
-    pub(super) fn new(footprint: &Footprint) -> Self {
-        let (corners, rim) = match footprint {
+impl SweptFootprint {
+    /// The hull of a footprint, without a further margin.
+    pub fn new(footprint: &Footprint) -> Self {
+        let (corners, margin) = match footprint {
             Footprint::Disc { radius } => (vec![Vector2::zeros()], *radius),
             Footprint::Polygon { corners } => (corners.clone(), 0.0),
         };
         let ends = corners.iter().zip(corners.iter().cycle().skip(1));
         let sides = ends.filter_map(|(a, b)| Side::between(*a, *b)).collect();
-        Self { corners, sides, rim }
+        Self { corners, sides, margin }
     }
 
-    /// A disc may always turn on the spot.
-    pub(super) fn is_disc(&self) -> bool {
+    /// Whether the footprint is a disc: a disc turns in place without contact.
+    pub fn is_disc(&self) -> bool {
         self.sides.is_empty()
     }
 
-    /// The greatest distance of any of its points from the base's origin, m.
-    pub(super) fn reach(&self) -> f64 {
-        self.rim + self.corners.iter().map(Vector2::norm).fold(0.0, f64::max)
+    /// Largest distance of a point from the base's origin, m.
+    pub fn reach(&self) -> f64 {
+        self.margin + self.corners.iter().map(Vector2::norm).fold(0.0, f64::max)
     }
 
-    /// How far a point is outside, m; negative within.
-    pub(super) fn gap(&self, p: Vector2) -> f64 {
-        self.nearest(p).0 - self.rim
+    /// Distance of a point from the footprint, m; negative inside.
+    pub fn gap(&self, p: Vector2) -> f64 {
+        self.nearest(p).0 - self.margin
     }
 
-    /// Distance from the hull, negative within, and the direction away from it.
+    /// Distance from the hull, negative inside, and the direction away from it.
     fn nearest(&self, p: Vector2) -> (f64, Vector2) {
         let inside = self.sides.iter().map(|side| ((p - side.from).dot(&side.outward), side.outward));
         match inside.max_by(|a, b| a.0.total_cmp(&b.0)) {
@@ -69,36 +72,36 @@ impl Outline {
         }
     }
 
-    /// The way along the arc of `twist` until the outline grown by `margin` m touches the point `p` (base frame, m): of the
-    /// base's origin, m, or for a turn on the spot the angle, rad. `None` when it never does, 0 when it touches already and
-    /// the motion presses on.
+    /// The distance along the arc of `twist` until the footprint grown by `margin` m touches the point `p` (base frame, m): of the
+    /// base's origin, m, or for a turn in place the angle, rad. `None` when it never does, 0 when it touches already and the motion
+    /// presses on.
     ///
-    /// What touches already may move on when that takes it away from the point, or along it.
-    pub(super) fn way_to_contact(&self, twist: Twist2, p: Vector2, margin: f64) -> Option<f64> {
-        let radius = self.rim + margin;
+    /// A footprint that touches already may move away from the point, or along it.
+    pub fn distance_to_contact(&self, twist: Twist2, p: Vector2, margin: f64) -> Option<f64> {
+        let radius = self.margin + margin;
         if twist.v == 0.0 && (twist.omega == 0.0 || self.is_disc()) {
             return None;
         }
         let (distance, away) = self.nearest(p);
-        if distance <= radius + TOUCH {
+        if distance <= radius + CONTACT_TOLERANCE_M {
             let motion = Vector2::new(twist.omega * p.y - twist.v, -twist.omega * p.x);
             return (away == Vector2::zeros() || motion.dot(&away) < 0.0).then_some(0.0);
         }
-        if twist.omega.abs() <= STRAIGHT * twist.v.abs() {
-            return self.along_a_line(Vector2::new(twist.v.signum(), 0.0), p, radius);
+        if twist.omega.abs() <= MAX_STRAIGHT_CURVATURE_PER_M * twist.v.abs() {
+            return self.distance_along(Vector2::new(twist.v.signum(), 0.0), p, radius);
         }
         let pole = Vector2::new(0.0, twist.v / twist.omega);
-        let angle = self.about_a_pole(pole, -twist.omega.signum(), p, radius)?;
+        let angle = self.angle_about(pole, -twist.omega.signum(), p, radius)?;
         Some(if twist.v == 0.0 { angle } else { angle * pole.y.abs() })
     }
 
-    /// The base moves along `ahead`.
-    fn along_a_line(&self, ahead: Vector2, p: Vector2, radius: f64) -> Option<f64> {
+    /// Distance along `ahead`, m.
+    fn distance_along(&self, ahead: Vector2, p: Vector2, radius: f64) -> Option<f64> {
         let of_side = |side: &Side| {
             let closing = ahead.dot(&side.outward);
-            let way = ((p - side.from).dot(&side.outward) - radius) / closing;
-            let along = (p - ahead * way - side.from).dot(&side.along);
-            (closing > 0.0 && way >= 0.0 && (0.0..=side.length).contains(&along)).then_some(way)
+            let distance = ((p - side.from).dot(&side.outward) - radius) / closing;
+            let along = (p - ahead * distance - side.from).dot(&side.along);
+            (closing > 0.0 && distance >= 0.0 && (0.0..=side.length).contains(&along)).then_some(distance)
         };
         let of_corner = |corner: &Vector2| {
             let to = p - corner;
@@ -110,12 +113,15 @@ impl Outline {
         ways.min_by(f64::total_cmp)
     }
 
-    /// The point goes around `pole` in the direction `sense`: the angle, rad.
-    fn about_a_pole(&self, pole: Vector2, sense: f64, p: Vector2, radius: f64) -> Option<f64> {
+    /// Angle of the point's rotation about `pole` in the direction `sense`, rad.
+    fn angle_about(&self, pole: Vector2, sense: f64, p: Vector2, radius: f64) -> Option<f64> {
         let arm = p - pole;
         let turn = arm.norm();
         let is_far = |corner: &Vector2| (corner - pole).norm() + radius < turn;
-        if turn < TOUCH || self.corners.iter().all(is_far) || self.nearest(pole).0 - radius > turn {
+        if turn < CONTACT_TOLERANCE_M
+            || self.corners.iter().all(is_far)
+            || self.nearest(pole).0 - radius > turn
+        {
             return None;
         }
         let of_sides = self.sides.iter().flat_map(|side| side.crossings(pole, turn, radius));
@@ -136,20 +142,20 @@ impl Side {
         self.from + self.along * (p - self.from).dot(&self.along).clamp(0.0, self.length)
     }
 
-    /// Where the circle of radius `turn` about `pole` crosses the side moved outward by `radius`, from the pole.
+    /// Crossings of the circle of radius `turn` about `pole` with the side moved outward by `radius`, relative to the pole.
     fn crossings(&self, pole: Vector2, turn: f64, radius: f64) -> impl Iterator<Item = Vector2> {
         let to_side = self.from + self.outward * radius - pole;
         let height = to_side.dot(&self.outward);
         let half = (turn * turn - height * height).sqrt();
         let start = to_side.dot(&self.along);
         let (along, outward, length) = (self.along, self.outward, self.length);
-        // Without a crossing the root is not a number, and nothing contains it.
+        // Without a crossing the root is NaN, and no range contains it.
         let is_on = move |at: &f64| (0.0..=length).contains(&(at - start));
         [-half, half].into_iter().filter(is_on).map(move |at| outward * height + along * at)
     }
 }
 
-/// Where the circle of radius `turn` about `pole` crosses the one of `radius` about `corner`, from the pole.
+/// Crossings of the circle of radius `turn` about `pole` with that of `radius` about `corner`, relative to the pole.
 fn crossings(pole: Vector2, turn: f64, corner: Vector2, radius: f64) -> impl Iterator<Item = Vector2> {
     let to = corner - pole;
     let distance = to.norm();
@@ -157,7 +163,7 @@ fn crossings(pole: Vector2, turn: f64, corner: Vector2, radius: f64) -> impl Ite
     let half = (turn * turn - ahead * ahead).sqrt();
     let along = to / distance;
     let across = Vector2::new(-along.y, along.x);
-    let is_there = half.is_finite() && distance > TOUCH;
+    let is_there = half.is_finite() && distance > CONTACT_TOLERANCE_M;
     [-half, half].into_iter().filter(move |_| is_there).map(move |at| along * ahead + across * at)
 }
 
@@ -167,25 +173,25 @@ mod tests {
     use proptest::prelude::*;
     use trundle_core::Pose2;
 
-    /// 0.6 x 0.4 m, the axle behind the middle.
-    fn cart() -> Outline {
+    /// 0.6 x 0.4 m, the axle behind the centre.
+    fn cart() -> SweptFootprint {
         let corners = [(0.4, 0.2), (-0.2, 0.2), (-0.2, -0.2), (0.4, -0.2)];
         let corners = corners.iter().map(|&(x, y)| Vector2::new(x, y)).collect();
-        Outline::new(&Footprint::polygon(corners).unwrap())
+        SweptFootprint::new(&Footprint::polygon(corners).unwrap())
     }
 
-    fn disc(radius: f64) -> Outline {
-        Outline::new(&Footprint::Disc { radius })
+    fn disc(radius: f64) -> SweptFootprint {
+        SweptFootprint::new(&Footprint::Disc { radius })
     }
 
-    /// The distance of a world point from the cart at `pose`, by the box formula: nothing of the code above.
+    /// The distance of a point from the cart at `pose` by the formula of a box, independent of the code above.
     fn box_distance(pose: Pose2, p: Vector2) -> f64 {
         let q = pose.inverse().transform(p) - Vector2::new(0.1, 0.0);
         let beyond = Vector2::new(q.x.abs() - 0.3, q.y.abs() - 0.2);
         beyond.sup(&Vector2::zeros()).norm() + beyond.x.max(beyond.y).min(0.0)
     }
 
-    /// By driving (or, without speed, turning) in small steps.
+    /// The contact found by driving (or, without speed, turning) in small steps.
     fn by_driving(twist: Twist2, reach: f64, distance: impl Fn(Pose2) -> f64) -> Option<f64> {
         let (step, rate) = (5e-4, if twist.v == 0.0 { twist.omega.abs() } else { twist.v.abs() });
         let mut ways = (0..(reach / step) as usize).map(|i| i as f64 * step);
@@ -203,7 +209,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn the_formulas_agree_with_driving_a_box(
+        fn closed_forms_agree_with_a_sampled_box(
             (x, y) in (-1.5..1.5, -1.5..1.5),
             (v, curvature) in (-1_i32..=1, -5.0..5.0),
             margin in 0.0..0.2,
@@ -216,11 +222,11 @@ mod tests {
             prop_assume!(driven(0.004).is_some() == driven(-0.004).is_some());
             let slides = driven(0.002).zip(driven(-0.002)).is_some_and(|(a, b)| (a - b).abs() > 0.008);
             prop_assume!(!slides);
-            agree(cart().way_to_contact(twist, p, margin), driven(0.0), reach)?;
+            agree(cart().distance_to_contact(twist, p, margin), driven(0.0), reach)?;
         }
 
         #[test]
-        fn the_formulas_agree_with_driving_a_disc(
+        fn closed_forms_agree_with_a_sampled_disc(
             (x, y) in (-1.5..1.5, -1.5..1.5),
             (v, curvature) in (prop::bool::ANY, -5.0..5.0),
             radius in 0.05..0.4,
@@ -232,7 +238,7 @@ mod tests {
             let reach = 1.2_f64.min(TAU / curvature.abs().max(1e-9));
             let driven = |grown: f64| by_driving(twist, reach, |pose| (pose.position() - p).norm() - radius - grown);
             prop_assume!(driven(0.004).is_some() == driven(-0.004).is_some());
-            agree(disc(radius).way_to_contact(twist, p, 0.0), driven(0.0), reach)?;
+            agree(disc(radius).distance_to_contact(twist, p, 0.0), driven(0.0), reach)?;
         }
 
         #[test]
@@ -243,36 +249,38 @@ mod tests {
     }
 
     #[test]
-    fn turning_on_the_spot_a_disc_touches_nothing_and_a_box_swings_its_corners() {
+    fn a_disc_turns_without_contact_and_a_box_swings_its_corners() {
         let turn = Twist2::new(0.0, 2.0);
-        assert_eq!(disc(0.2).way_to_contact(turn, Vector2::new(0.1, 0.0), 0.0), None);
-        let angle = cart().way_to_contact(turn, Vector2::new(0.0, 0.3), 0.0).unwrap();
+        assert_eq!(disc(0.2).distance_to_contact(turn, Vector2::new(0.1, 0.0), 0.0), None);
+        let angle = cart().distance_to_contact(turn, Vector2::new(0.0, 0.3), 0.0).unwrap();
         // The left side of the front comes around to it, 0.3 m from the axle.
         assert!((angle - (std::f64::consts::FRAC_PI_2 - (0.2_f64 / 0.3).asin())).abs() < 1e-9, "{angle}");
-        assert_eq!(cart().way_to_contact(turn, Vector2::new(0.0, 0.46), 0.0), None);
+        assert_eq!(cart().distance_to_contact(turn, Vector2::new(0.0, 0.46), 0.0), None);
     }
 
     #[test]
-    fn from_a_touch_it_may_go_away_but_not_on() {
+    fn from_contact_it_may_move_away_but_not_press_on() {
         let p = Vector2::new(0.15, 0.05);
-        assert_eq!(disc(0.2).way_to_contact(Twist2::new(0.1, 0.0), p, 0.0), Some(0.0));
-        assert_eq!(disc(0.2).way_to_contact(Twist2::new(-0.1, 0.0), p, 0.0), None);
+        assert_eq!(disc(0.2).distance_to_contact(Twist2::new(0.1, 0.0), p, 0.0), Some(0.0));
+        assert_eq!(disc(0.2).distance_to_contact(Twist2::new(-0.1, 0.0), p, 0.0), None);
         let behind = Vector2::new(-0.01, 0.19);
-        assert_eq!(disc(0.2).way_to_contact(Twist2::new(0.1, 0.0), behind, 0.0), None);
+        assert_eq!(disc(0.2).distance_to_contact(Twist2::new(0.1, 0.0), behind, 0.0), None);
         let left = Vector2::new(0.1, 0.2);
-        assert_eq!(cart().way_to_contact(Twist2::new(0.0, 0.5), left, 0.0), Some(0.0));
-        assert_eq!(cart().way_to_contact(Twist2::new(0.0, -0.5), left, 0.0), None);
-        assert_eq!(cart().way_to_contact(Twist2::new(0.5, 0.0), left, 0.0), None, "along it");
+        assert_eq!(cart().distance_to_contact(Twist2::new(0.0, 0.5), left, 0.0), Some(0.0));
+        assert_eq!(cart().distance_to_contact(Twist2::new(0.0, -0.5), left, 0.0), None);
+        assert_eq!(cart().distance_to_contact(Twist2::new(0.5, 0.0), left, 0.0), None, "along it");
     }
 
     #[test]
-    fn a_wall_beside_is_never_met_a_wall_ahead_is() {
+    fn a_wall_beside_is_never_met_and_a_wall_ahead_is() {
         let ahead = Twist2::new(0.5, 0.0);
         let mut beside = (-20..=20).map(|i| Vector2::new(f64::from(i) * 0.1, 0.25));
-        assert!(beside.all(|p| disc(0.2).way_to_contact(ahead, p, 0.0).is_none()));
+        assert!(beside.all(|p| disc(0.2).distance_to_contact(ahead, p, 0.0).is_none()));
         let mut beside = (-20..=20).map(|i| Vector2::new(f64::from(i) * 0.1, 0.205));
-        assert!(beside.all(|p| cart().way_to_contact(ahead, p, 0.0).is_none()));
-        let way = |outline: Outline| outline.way_to_contact(ahead, Vector2::new(1.0, 0.0), 0.0).unwrap();
+        assert!(beside.all(|p| cart().distance_to_contact(ahead, p, 0.0).is_none()));
+        let way = |outline: SweptFootprint| {
+            outline.distance_to_contact(ahead, Vector2::new(1.0, 0.0), 0.0).unwrap()
+        };
         assert!((way(disc(0.2)) - 0.8).abs() < 1e-12 && (way(cart()) - 0.6).abs() < 1e-12);
     }
 }

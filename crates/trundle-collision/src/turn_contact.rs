@@ -1,30 +1,30 @@
-//! Turns on the spot: which headings a piece of the surroundings forbids, in closed form.
+//! Turns in place: the headings at which the hull overlaps a segment, in closed form.
 //!
-//! A footprint that turns sweeps annulus sectors. Contact begins or ends in one of two ways only: an end of the piece lies
-//! on the hull's boundary (a circle about the axle meets an offset side or a round corner), or a corner of the core is a
-//! radius away from the piece (the corner's circle meets a line). Between neighbouring such headings nothing changes, so
-//! one test in the middle of each gap decides it.
+//! A footprint that turns sweeps annulus sectors. Contact begins or ends in one of two events only. An end of the segment lies
+//! on the hull's boundary: a circle about the axle meets an offset side or a rounded corner. Or a corner of the core is a radius
+//! away from the segment: the corner's circle meets a line. Between neighbouring events nothing changes, so one overlap test in
+//! the middle of each interval decides it.
 
-use super::hull::Hull;
-use super::segment::Segment;
+use crate::rounded_hull::RoundedHull;
+use crate::segment::Segment;
 use std::f64::consts::TAU;
 use trundle_core::Vector2;
 
-/// Headings from `start` on, counter-clockwise over `length`, rad; `start` in [0, 2 pi), `length` up to 2 pi.
+/// An interval of headings from `start`, counter-clockwise over `length`, rad; `start` in [0, 2 pi), `length` up to 2 pi.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Arc {
+pub struct HeadingArc {
     /// The first heading.
     pub start: f64,
-    /// How far it reaches.
+    /// Length of the interval.
     pub length: f64,
 }
 
-impl Arc {
-    /// Every heading.
+impl HeadingArc {
+    /// All headings.
     pub const FULL: Self = Self { start: 0.0, length: TAU };
 
-    /// How far counter-clockwise and how far clockwise one may turn from `heading` until the arc begins; zeros inside.
-    pub fn room_from(&self, heading: f64) -> (f64, f64) {
+    /// Free turn from `heading` until the interval begins, counter-clockwise and clockwise, rad; zeros inside.
+    pub fn free_turn_from(&self, heading: f64) -> (f64, f64) {
         let left = (self.start - heading).rem_euclid(TAU);
         if self.length >= TAU || left + self.length > TAU {
             (0.0, 0.0)
@@ -34,31 +34,31 @@ impl Arc {
     }
 }
 
-/// Slack of the span tests, m: a candidate too many costs one test, a candidate too few a contact.
-const SPAN_SLACK: f64 = 1e-7;
+/// Slack of the range tests, m: an additional candidate costs one test, a missing one a contact. Source: ours.
+const RANGE_SLACK_M: f64 = 1e-7;
 
-impl Hull {
-    /// Adds the headings at which a piece overlaps the hull. The piece is given relative to the base's origin, in the
-    /// axes that headings count from. `angles` is scratch space.
-    pub fn blocked_headings(&self, piece: &Segment, angles: &mut Vec<f64>, blocked: &mut Vec<Arc>) {
-        if piece.is_point() && piece.a.norm_squared() >= self.outer * self.outer {
+impl RoundedHull {
+    /// Adds the headings at which a segment overlaps the hull. The segment is relative to the base's origin, in the axes in which
+    /// headings are measured. `angles` is a buffer.
+    pub fn blocked_headings(&self, segment: &Segment, angles: &mut Vec<f64>, blocked: &mut Vec<HeadingArc>) {
+        if segment.is_point() && segment.a.norm_squared() >= self.outer * self.outer {
             return;
         }
-        let nearest = piece.distance(Vector2::zeros());
+        let nearest = segment.distance(Vector2::zeros());
         if nearest >= self.outer {
             return;
         }
         if nearest < self.inner {
-            blocked.push(Arc::FULL);
+            blocked.push(HeadingArc::FULL);
             return;
         }
         angles.clear();
-        self.contacts_of_end(piece.a, angles);
-        if !piece.is_point() {
-            self.contacts_of_end(piece.b, angles);
-            self.contacts_of_corners(piece, angles);
+        self.contacts_of_end(segment.a, angles);
+        if !segment.is_point() {
+            self.contacts_of_end(segment.b, angles);
+            self.contacts_of_corners(segment, angles);
         }
-        self.decide(piece, angles, blocked);
+        self.decide(segment, angles, blocked);
     }
 
     /// Headings at which the point `p` lies on the boundary.
@@ -79,7 +79,7 @@ impl Hull {
             let (low, high) = (unit.dot(&edge.side.a), unit.dot(&edge.side.a) + along.norm());
             for sign in [-1.0, 1.0] {
                 let at = sign * distance * sine;
-                if at > low - SPAN_SLACK && at < high + SPAN_SLACK {
+                if at > low - RANGE_SLACK_M && at < high + RANGE_SLACK_M {
                     angles.push(bearing - edge.normal_bearing - sign * cosine.acos());
                 }
             }
@@ -95,19 +95,19 @@ impl Hull {
         }
     }
 
-    /// Headings at which a corner of the core is a radius away from the inner part of the piece.
-    fn contacts_of_corners(&self, piece: &Segment, angles: &mut Vec<f64>) {
-        let along = (piece.b - piece.a).normalize();
+    /// Headings at which a corner of the core is a radius away from the inner part of the segment.
+    fn contacts_of_corners(&self, segment: &Segment, angles: &mut Vec<f64>) {
+        let along = (segment.b - segment.a).normalize();
         let mut normal = Vector2::new(along.y, -along.x);
-        let mut offset = normal.dot(&piece.a);
+        let mut offset = normal.dot(&segment.a);
         if offset < 0.0 {
             (normal, offset) = (-normal, -offset);
         }
         let unit = Vector2::new(-normal.y, normal.x);
-        let (p, q) = (unit.dot(&piece.a), unit.dot(&piece.b));
-        let (low, high) = (p.min(q) - SPAN_SLACK, p.max(q) + SPAN_SLACK);
+        let (p, q) = (unit.dot(&segment.a), unit.dot(&segment.b));
+        let (low, high) = (p.min(q) - RANGE_SLACK_M, p.max(q) + RANGE_SLACK_M);
         let normal_bearing = normal.y.atan2(normal.x);
-        // With the axle inside, a corner beyond the piece leaves a side across it: no contact begins or ends there.
+        // With the axle inside, a side still crosses the segment when a corner is beyond it: no event.
         let sides: &[f64] = if self.inner > 0.0 && offset > self.radius { &[-1.0] } else { &[-1.0, 1.0] };
         for corner in self.core.iter().filter(|c| c.distance > 0.0) {
             for side in sides {
@@ -126,15 +126,15 @@ impl Hull {
         }
     }
 
-    /// Tests the middle of every gap between neighbouring contacts.
-    fn decide(&self, piece: &Segment, angles: &mut [f64], blocked: &mut Vec<Arc>) {
+    /// Tests the middle of every interval between neighbouring events.
+    fn decide(&self, segment: &Segment, angles: &mut [f64], blocked: &mut Vec<HeadingArc>) {
         let overlaps_at = |heading: f64| {
             let (sin, cos) = heading.sin_cos();
-            self.overlaps(&piece.seen_from(Vector2::zeros(), cos, sin))
+            self.overlaps(&segment.in_frame(Vector2::zeros(), cos, sin))
         };
         if angles.is_empty() {
             if overlaps_at(0.0) {
-                blocked.push(Arc::FULL);
+                blocked.push(HeadingArc::FULL);
             }
             return;
         }
@@ -149,7 +149,7 @@ impl Hull {
             if length > 1e-12 && overlaps_at(start + length / 2.0) {
                 match blocked[first_new..].last_mut() {
                     Some(last) if last.start + last.length >= start - 1e-12 => last.length = end - last.start,
-                    _ => blocked.push(Arc { start, length }),
+                    _ => blocked.push(HeadingArc { start, length }),
                 }
             }
         }

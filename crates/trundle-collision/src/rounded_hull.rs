@@ -1,26 +1,28 @@
-use super::segment::Segment;
+//! A convex hull with rounded corners: the shape of a footprint with a margin.
+
+use crate::segment::Segment;
 use trundle_core::{Footprint, Pose2, Vector2};
 
-/// Hulls are at least this round, m: a corner of no radius has no inside that a closed form could count.
-pub const LEAST_RADIUS: f64 = 1e-4;
+/// Smallest radius of the corners, m: the closed forms need corners with a radius. Smaller margins are raised to it. Source: ours.
+pub const MIN_CORNER_RADIUS_M: f64 = 1e-4;
 
-/// A footprint grown by a margin: a convex core and everything within `radius` of it, base frame, m.
+/// A footprint with a margin: a convex core and every point within `radius` of it, base frame, m.
 ///
-/// A disc is a core of one point. What lies at exactly `radius` touches and does not overlap.
+/// A disc is a core of one point. A point at exactly `radius` touches and does not overlap.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Hull {
-    pub(super) core: Vec<Corner>,
-    pub(super) edges: Vec<Edge>,
-    pub(super) radius: f64,
-    /// Farthest point from the base's origin.
-    pub(super) outer: f64,
-    /// Everything nearer to the base's origin is inside; 0 when the origin is outside.
-    pub(super) inner: f64,
+pub struct RoundedHull {
+    pub(crate) core: Vec<Corner>,
+    pub(crate) edges: Vec<Edge>,
+    pub(crate) radius: f64,
+    /// Largest distance of a point from the base's origin, m.
+    pub(crate) outer: f64,
+    /// Radius around the base's origin that is inside, m; 0 when the origin is outside.
+    pub(crate) inner: f64,
 }
 
 /// A corner of the core.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Corner {
+pub(crate) struct Corner {
     pub at: Vector2,
     /// Distance from the base's origin, m.
     pub distance: f64,
@@ -30,7 +32,7 @@ pub(super) struct Corner {
 
 /// A side of the core, counter-clockwise.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Edge {
+pub(crate) struct Edge {
     pub side: Segment,
     /// Unit, outward.
     pub normal: Vector2,
@@ -39,48 +41,48 @@ pub(super) struct Edge {
     pub offset: f64,
 }
 
-impl Hull {
-    /// A footprint grown by `margin` (m, taken as at least 0.1 mm), or shrunk when it is negative; what shrinks to nothing
-    /// is a point at the axle.
+impl RoundedHull {
+    /// A footprint grown by `margin` (m, at least 0.1 mm), or shrunk when the margin is negative. A footprint that shrinks to nothing
+    /// becomes a point at the axle.
     pub fn new(footprint: &Footprint, margin: f64) -> Self {
         if margin < 0.0 {
             let whole = Self::new(footprint, 0.0);
             return whole
                 .shrunk(-margin)
-                .unwrap_or_else(|| Self::from_core(&[Vector2::zeros()], LEAST_RADIUS));
+                .unwrap_or_else(|| Self::from_core(&[Vector2::zeros()], MIN_CORNER_RADIUS_M));
         }
-        let margin = margin.max(LEAST_RADIUS);
+        let margin = margin.max(MIN_CORNER_RADIUS_M);
         match footprint {
             Footprint::Disc { radius } => Self::from_core(&[Vector2::zeros()], radius + margin),
-            Footprint::Polygon { corners } => Self::from_core(&without_doubles(corners), margin),
+            Footprint::Polygon { corners } => Self::from_core(&without_duplicates(corners), margin),
         }
     }
 
-    /// Everything within `by` (m) of this hull.
-    pub(super) fn grown(&self, by: f64) -> Self {
+    /// The set of points within `by` (m) of this hull.
+    pub(crate) fn grown(&self, by: f64) -> Self {
         let core: Vec<Vector2> = self.core.iter().map(|c| c.at).collect();
         Self::from_core(&core, self.radius + by)
     }
 
-    /// A part of this hull no point of which is nearer than `depth` (m) to the outside; `None` when none is left.
+    /// The part of this hull with no point nearer than `depth` (m) to the outside; `None` when nothing is left.
     ///
-    /// The part is exact on the sides and leaves 0.1 mm at the corners: it never holds a point too many.
+    /// The part is exact along the sides and 0.1 mm too small at the corners: it never contains a point too many.
     pub fn shrunk(&self, depth: f64) -> Option<Self> {
         let core: Vec<Vector2> = self.core.iter().map(|c| c.at).collect();
-        if self.radius - depth >= LEAST_RADIUS {
+        if self.radius - depth >= MIN_CORNER_RADIUS_M {
             return Some(Self::from_core(&core, self.radius - depth));
         }
-        let inset = depth - self.radius + LEAST_RADIUS;
+        let inset = depth - self.radius + MIN_CORNER_RADIUS_M;
         let left = self.edges.iter().fold(core, |core, edge| cut(&core, edge.normal, edge.offset - inset));
-        (left.len() >= 3).then(|| Self::from_core(&without_doubles(&left), LEAST_RADIUS))
+        (left.len() >= 3).then(|| Self::from_core(&without_duplicates(&left), MIN_CORNER_RADIUS_M))
     }
 
-    /// The least of its kind that holds this hull and the axle.
-    pub(super) fn with_axle(&self) -> Self {
+    /// The smallest such hull that contains this hull and the axle.
+    pub(crate) fn with_axle(&self) -> Self {
         if self.edges.is_empty() || self.edges.iter().all(|edge| edge.offset >= 0.0) {
             return self.clone();
         }
-        // Sides that face the axle give way to two that end on it.
+        // Sides that face the axle are replaced by two that end on it.
         let n = self.edges.len();
         let faces = |i: usize| self.edges[i % n].offset < 0.0;
         let first = (0..n).find(|&i| faces(i) && !faces(i + n - 1)).unwrap_or(0);
@@ -100,75 +102,75 @@ impl Hull {
         let mut hull = Self { core, edges, radius, outer, inner: 0.0 };
         hull.inner = if hull.edges.is_empty() {
             radius
-        } else if hull.core_holds(Vector2::zeros()) {
+        } else if hull.core_contains(Vector2::zeros()) {
             hull.edges.iter().map(|e| e.offset + radius).fold(f64::INFINITY, f64::min)
         } else {
-            // An axle outside the core lies in its rim, or outside of all.
+            // An axle outside the core lies in the margin, or outside the hull.
             (radius - hull.core_distance(&Segment::point(Vector2::zeros()))).max(0.0)
         };
         hull
     }
 
-    /// The farthest of its points from the base's origin, m.
+    /// Largest distance of a point from the base's origin, m.
     pub fn outer_radius(&self) -> f64 {
         self.outer
     }
 
-    /// Whether a piece, given in the base frame, overlaps the hull.
-    pub fn overlaps(&self, piece: &Segment) -> bool {
+    /// Whether a segment, in the base frame, overlaps the hull.
+    pub fn overlaps(&self, segment: &Segment) -> bool {
         let mut gap = f64::NEG_INFINITY;
         for edge in &self.edges {
-            gap = gap.max(edge.normal.dot(&piece.a).min(edge.normal.dot(&piece.b)) - edge.offset);
+            gap = gap.max(edge.normal.dot(&segment.a).min(edge.normal.dot(&segment.b)) - edge.offset);
         }
         if gap >= self.radius {
             return false;
         }
-        let along = piece.b - piece.a;
+        let along = segment.b - segment.a;
         if along.norm_squared() > 0.0 {
             let normal = Vector2::new(-along.y, along.x).normalize();
             let (low, high) = self.core_extent(normal);
-            let at = normal.dot(&piece.a);
+            let at = normal.dot(&segment.a);
             gap = gap.max(low - at).max(at - high);
         }
         if gap >= self.radius {
             return false;
         }
-        // Separating axes are complete for a polygon and a piece: no gap, so they meet.
-        (gap < 0.0 && !self.edges.is_empty()) || self.core_distance(piece) < self.radius
+        // Separating axes are complete for a polygon and a segment: without a gap they meet.
+        (gap < 0.0 && !self.edges.is_empty()) || self.core_distance(segment) < self.radius
     }
 
-    /// The distance from the hull of a piece given in the base frame, m; 0 when they overlap.
-    pub fn distance(&self, piece: &Segment) -> f64 {
-        (self.core_distance(piece) - self.radius).max(0.0)
+    /// The distance between the hull and a segment in the base frame, m; 0 when they overlap.
+    pub fn distance(&self, segment: &Segment) -> f64 {
+        (self.core_distance(segment) - self.radius).max(0.0)
     }
 
-    /// Whether a point of the base frame lies within the hull's core.
-    pub fn core_holds(&self, p: Vector2) -> bool {
+    /// Whether a point of the base frame lies inside the core.
+    pub fn core_contains(&self, p: Vector2) -> bool {
         !self.edges.is_empty() && self.edges.iter().all(|e| e.normal.dot(&p) <= e.offset)
     }
 
-    /// The core's corners at a pose of the base, map frame.
+    /// The corners of the core at a pose of the base, map frame.
     pub fn corners_at(&self, pose: &Pose2) -> impl Iterator<Item = Vector2> + '_ {
         let pose = *pose;
         self.core.iter().map(move |c| pose.transform(c.at))
     }
 
-    /// The distance of a piece from the core, m.
-    pub fn core_distance(&self, piece: &Segment) -> f64 {
+    /// The distance between the core and a segment, m.
+    pub fn core_distance(&self, segment: &Segment) -> f64 {
         if self.edges.is_empty() {
-            return piece.distance(self.core[0].at);
+            return segment.distance(self.core[0].at);
         }
-        if self.core_holds(piece.a) || self.core_holds(piece.b) {
+        if self.core_contains(segment.a) || self.core_contains(segment.b) {
             return 0.0;
         }
-        if piece.is_point() {
-            return self.edges.iter().map(|e| e.side.distance(piece.a)).fold(f64::INFINITY, f64::min);
+        if segment.is_point() {
+            return self.edges.iter().map(|e| e.side.distance(segment.a)).fold(f64::INFINITY, f64::min);
         }
-        self.edges.iter().map(|e| e.side.distance_to(piece)).fold(f64::INFINITY, f64::min)
+        self.edges.iter().map(|e| e.side.distance_to(segment)).fold(f64::INFINITY, f64::min)
     }
 
-    /// The least and the greatest of `normal . x` over the core.
-    pub(super) fn core_extent(&self, normal: Vector2) -> (f64, f64) {
+    /// Minimum and maximum of `normal . x` over the core.
+    pub(crate) fn core_extent(&self, normal: Vector2) -> (f64, f64) {
         let along = self.core.iter().map(|c| normal.dot(&c.at));
         along.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)))
     }
@@ -180,7 +182,7 @@ fn edge(a: Vector2, b: Vector2) -> Edge {
     Edge { side: Segment { a, b }, normal, normal_bearing: normal.y.atan2(normal.x), offset: normal.dot(&a) }
 }
 
-/// What of a convex polygon lies where `normal . x <= offset`.
+/// The part of a convex polygon where `normal . x <= offset`.
 fn cut(corners: &[Vector2], normal: Vector2, offset: f64) -> Vec<Vector2> {
     let mut kept = Vec::with_capacity(corners.len() + 1);
     for (i, &a) in corners.iter().enumerate() {
@@ -196,7 +198,7 @@ fn cut(corners: &[Vector2], normal: Vector2, offset: f64) -> Vec<Vector2> {
     kept
 }
 
-fn without_doubles(corners: &[Vector2]) -> Vec<Vector2> {
+fn without_duplicates(corners: &[Vector2]) -> Vec<Vector2> {
     let n = corners.len();
     (0..n).filter(|&i| (corners[i] - corners[(i + 1) % n]).norm() > 1e-9).map(|i| corners[i]).collect()
 }
@@ -205,14 +207,14 @@ fn without_doubles(corners: &[Vector2]) -> Vec<Vector2> {
 mod tests {
     use super::*;
 
-    fn box_hull(margin: f64) -> Hull {
+    fn box_hull(margin: f64) -> RoundedHull {
         let corners = [(0.3, 0.2), (-0.3, 0.2), (-0.3, -0.2), (0.3, -0.2)];
         let corners = corners.map(|(x, y)| Vector2::new(x, y)).to_vec();
-        Hull::new(&Footprint::polygon(corners).unwrap(), margin)
+        RoundedHull::new(&Footprint::polygon(corners).unwrap(), margin)
     }
 
     #[test]
-    fn corners_are_round_and_sides_are_straight() {
+    fn corners_are_rounded_and_sides_are_straight() {
         let hull = box_hull(0.1);
         let touches = |x, y| hull.overlaps(&Segment::point(Vector2::new(x, y)));
         assert!(touches(0.399, 0.0) && !touches(0.401, 0.0));
@@ -223,7 +225,7 @@ mod tests {
     }
 
     #[test]
-    fn shrinking_takes_from_margin_and_then_from_the_core() {
+    fn shrinking_reduces_the_margin_first_and_then_the_core() {
         assert!((box_hull(0.1).shrunk(0.05).unwrap().outer - (0.13_f64.sqrt() + 0.05)).abs() < 1e-12);
         let small = box_hull(0.01).shrunk(0.05).unwrap();
         let touches = |x, y| small.overlaps(&Segment::point(Vector2::new(x, y)));

@@ -1,6 +1,8 @@
+//! Line segments and points.
+
 use trundle_core::Vector2;
 
-/// A straight piece between two points, m; a point when both are equal.
+/// A line segment between two points, m; a point when both are equal.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Segment {
     /// One end.
@@ -10,12 +12,12 @@ pub struct Segment {
 }
 
 impl Segment {
-    /// Both ends in one place.
+    /// A segment of one point.
     pub fn point(at: Vector2) -> Self {
         Self { a: at, b: at }
     }
 
-    /// Whether both ends are one point.
+    /// Whether both ends are equal.
     pub fn is_point(&self) -> bool {
         self.a == self.b
     }
@@ -30,12 +32,12 @@ impl Segment {
         self.a + along * ((p - self.a).dot(&along) / squared).clamp(0.0, 1.0)
     }
 
-    /// The distance of `p`, m.
+    /// The distance to a point, m.
     pub fn distance(&self, p: Vector2) -> f64 {
         (self.nearest(p) - p).norm()
     }
 
-    /// The distance of another piece, m; 0 where they cross.
+    /// The distance to another segment, m; 0 where they cross.
     pub fn distance_to(&self, other: &Self) -> f64 {
         if self.crosses(other) {
             return 0.0;
@@ -49,8 +51,8 @@ impl Segment {
         side(self, other.a) * side(self, other.b) < 0.0 && side(other, self.a) * side(other, self.b) < 0.0
     }
 
-    /// The same piece seen from an origin at `origin`, turned by the angle whose cosine and sine are given, clockwise.
-    pub fn seen_from(&self, origin: Vector2, cos: f64, sin: f64) -> Self {
+    /// The segment in a frame at `origin` that is turned counter-clockwise by the angle with this cosine and sine.
+    pub fn in_frame(&self, origin: Vector2, cos: f64, sin: f64) -> Self {
         let turn = |p: Vector2| {
             let d = p - origin;
             Vector2::new(cos * d.x + sin * d.y, cos * d.y - sin * d.x)
@@ -64,7 +66,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn distances_between_pieces() {
+    fn distances_between_segments() {
         let s = |ax, ay, bx, by| Segment { a: Vector2::new(ax, ay), b: Vector2::new(bx, by) };
         assert_eq!(s(0., 0., 2., 0.).distance_to(&s(1., -1., 1., 1.)), 0.0);
         assert_eq!(s(0., 0., 2., 0.).distance_to(&s(1., 0.5, 1., 1.)), 0.5);

@@ -1,29 +1,31 @@
-use crate::geometry::Segment;
+//! Oriented boxes around points.
+
+use crate::segment::Segment;
 use trundle_core::Vector2;
 
-/// More than rounding can take from the half sides, m, and a part of them.
-const SLACK: f64 = 1e-11;
+/// Enlargement of the half sides against rounding, m, and ratio. Source: rounding of f64.
+const ROUNDING_SLACK: f64 = 1e-11;
 
-/// A box along the points in it, which may lie askew: points of a wall fill it well.
+/// A box of any orientation around points: a tight bound for points of a wall.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Patch {
-    /// Its middle.
+pub struct OrientedBox {
+    /// Centre.
     pub center: Vector2,
-    /// Along its longer sides, unit.
+    /// Unit vector along the longer sides.
     pub axis: Vector2,
-    /// Half its sides, along the axis (0 for a point only) and across, m.
+    /// Half sides along the axis (0 for a point only) and across, m.
     pub half: Vector2,
 }
 
-impl Patch {
-    /// One point.
+impl OrientedBox {
+    /// A box of one point.
     pub fn point(at: Vector2) -> Self {
         Self { center: at, axis: Vector2::x(), half: Vector2::zeros() }
     }
 
-    /// About some points, along the direction in which they differ most.
-    pub fn about(points: impl Iterator<Item = Vector2> + Clone) -> Self {
-        // Sums from a point among them: places may be far from the origin.
+    /// The box around points, along their principal direction.
+    pub fn around(points: impl Iterator<Item = Vector2> + Clone) -> Self {
+        // Sums relative to one of the points: coordinates may be large.
         let first = points.clone().next().unwrap_or_default();
         let (mut count, mut sum, mut xx, mut xy, mut yy) = (0.0, Vector2::zeros(), 0.0, 0.0, 0.0);
         for p in points.clone() {
@@ -44,38 +46,38 @@ impl Patch {
         }
         let middle = (low + high) / 2.0;
         let center = mean + axis * middle.x + across * middle.y;
-        let slack = SLACK * (1.0 + center.amax());
-        let half = ((high - low) / 2.0 * (1.0 + SLACK)).add_scalar(slack);
+        let slack = ROUNDING_SLACK * (1.0 + center.amax());
+        let half = ((high - low) / 2.0 * (1.0 + ROUNDING_SLACK)).add_scalar(slack);
         Self { center, axis, half }
     }
 
-    /// The same seen from an origin, in axes turned so that `direction` (unit) becomes x.
-    pub fn seen_from(&self, origin: Vector2, direction: Vector2) -> Self {
+    /// The box in a frame at `origin` whose x axis is `direction` (unit).
+    pub fn in_frame(&self, origin: Vector2, direction: Vector2) -> Self {
         let turn = |d: Vector2| Vector2::new(direction.dot(&d), direction.perp(&d));
         Self { center: turn(self.center - origin), axis: turn(self.axis), half: self.half }
     }
 
-    /// How far it reaches from its middle along x and along y, m.
+    /// Half extents along x and y, m.
     pub fn extent(&self) -> Vector2 {
         let (along, across) = (self.axis.abs(), self.half);
         Vector2::new(along.x * across.x + along.y * across.y, along.y * across.x + along.x * across.y)
     }
 
-    /// Its middle line; all of it is within `half.y` of that.
-    pub fn spine(&self) -> Segment {
+    /// The centre line; every point is within `half.y` of it.
+    pub fn centre_line(&self) -> Segment {
         let along = self.axis * self.half.x;
         Segment { a: self.center - along, b: self.center + along }
     }
 
-    /// How far the origin is from it, m; 0 inside.
-    pub fn nearest(&self) -> f64 {
+    /// Distance of the origin, m; 0 inside.
+    pub fn distance_from_origin(&self) -> f64 {
         let beyond = |at: f64, half: f64| (at.abs() - half).max(0.0);
         let along = beyond(self.axis.dot(&self.center), self.half.x);
         let across = beyond(self.axis.perp(&self.center), self.half.y);
         (along * along + across * across).sqrt()
     }
 
-    /// Half the angle at most that it takes up about the bearing of its middle, seen from the origin, rad.
+    /// Upper bound of half the angle that the box subtends at the origin, about the bearing of its centre, rad.
     pub fn half_angle(&self) -> f64 {
         if self.half.x == 0.0 {
             return 0.0;
@@ -84,7 +86,7 @@ impl Patch {
         if distance == 0.0 {
             return std::f64::consts::PI;
         }
-        let seen = self.seen_from(Vector2::zeros(), self.center / distance).extent();
+        let seen = self.in_frame(Vector2::zeros(), self.center / distance).extent();
         let nearest = distance - seen.x;
         if nearest > 0.0 { seen.y.atan2(nearest) } else { std::f64::consts::PI }
     }
@@ -98,17 +100,17 @@ mod tests {
 
     proptest! {
         #[test]
-        fn no_point_is_outside(points in prop::collection::vec((-2.0..2.0_f64, -2.0..2.0_f64), 1..9), turn in 0.0..6.3_f64) {
+        fn every_point_is_inside_in_every_frame(points in prop::collection::vec((-2.0..2.0_f64, -2.0..2.0_f64), 1..9), turn in 0.0..6.3_f64) {
             let points: Vec<Vector2> = points.into_iter().map(|(x, y)| Vector2::new(x, y)).collect();
-            let whole = Patch::about(points.iter().copied());
+            let whole = OrientedBox::around(points.iter().copied());
             let (origin, direction) = (Vector2::new(0.3, -0.2), Vector2::new(turn.cos(), turn.sin()));
-            let seen = whole.seen_from(origin, direction);
+            let seen = whole.in_frame(origin, direction);
             for p in points {
-                let p = Patch::point(p).seen_from(origin, direction).center;
+                let p = OrientedBox::point(p).in_frame(origin, direction).center;
                 let off = (p - seen.center).abs() - seen.extent();
                 prop_assert!(off.max() <= 1e-9, "{off}");
-                prop_assert!(seen.nearest() <= p.norm() + 1e-9);
-                prop_assert!(seen.spine().distance(p) <= seen.half.y + 1e-9);
+                prop_assert!(seen.distance_from_origin() <= p.norm() + 1e-9);
+                prop_assert!(seen.centre_line().distance(p) <= seen.half.y + 1e-9);
                 let bearing = wrap_angle(p.y.atan2(p.x) - seen.center.y.atan2(seen.center.x));
                 prop_assert!(bearing.abs() <= seen.half_angle() + 1e-9);
             }
@@ -116,9 +118,9 @@ mod tests {
     }
 
     #[test]
-    fn a_slanted_wall_is_thin() {
+    fn the_box_of_a_slanted_wall_is_thin() {
         let points = (0..50).map(|i| Vector2::new(0.1, 0.2) * f64::from(i));
-        let patch = Patch::about(points);
-        assert!(patch.half.y < 1e-9 && (patch.half.x - 49.0 * 0.05_f64.sqrt() / 2.0).abs() < 1e-6);
+        let bounds = OrientedBox::around(points);
+        assert!(bounds.half.y < 1e-9 && (bounds.half.x - 49.0 * 0.05_f64.sqrt() / 2.0).abs() < 1e-6);
     }
 }

@@ -1,0 +1,86 @@
+//! Straight moves: the free distance until the swept hull meets a segment, in closed form.
+//!
+//! Along x the distance to a segment is X(y) - F(y) over their common y. The segment is a line X and the hull's front F is
+//! concave, so the distance is convex in y: its minimum lies where the front is parallel to the segment, or at the nearest end
+//! of the common range.
+
+use crate::rounded_hull::RoundedHull;
+use crate::segment::Segment;
+use trundle_core::Vector2;
+
+/// Common range of y below which a contact is a graze along a side, m: no contact. Source: rounding.
+const MIN_COMMON_RANGE_M: f64 = 1e-9;
+
+/// Contact of a straight move with a segment.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum StraightContact {
+    /// Free distance forward, m.
+    Ahead(f64),
+    /// Free distance backward, m.
+    Behind(f64),
+}
+
+impl RoundedHull {
+    /// Where a segment, in the base frame and without overlap, stops a straight move; `None` when it does not.
+    pub fn straight_contact(&self, segment: &Segment) -> Option<StraightContact> {
+        let (bottom, top) = self.core_extent(Vector2::y());
+        let low = segment.a.y.min(segment.b.y).max(bottom - self.radius + MIN_COMMON_RANGE_M);
+        let high = segment.a.y.max(segment.b.y).min(top + self.radius - MIN_COMMON_RANGE_M);
+        if low > high {
+            return None;
+        }
+        let middle = (low + high) / 2.0;
+        let ahead = x_at(segment, middle) > (self.front(middle, 1.0) - self.front(middle, -1.0)) / 2.0;
+        let sign = if ahead { 1.0 } else { -1.0 };
+        let y = self.parallel_y(segment, sign).map_or(middle, |y| y.clamp(low, high));
+        let x = if segment.a.y == segment.b.y { nearer_end(segment, sign) } else { x_at(segment, y) };
+        let distance = (sign * x - self.front(y, sign)).max(0.0);
+        Some(if ahead { StraightContact::Ahead(distance) } else { StraightContact::Behind(distance) })
+    }
+
+    /// Extent of the hull at `y`: along x for `sign` 1, against x for -1.
+    pub(crate) fn front(&self, y: f64, sign: f64) -> f64 {
+        let mut reach = f64::NEG_INFINITY;
+        for corner in &self.core {
+            let up = y - corner.at.y;
+            if up.abs() <= self.radius {
+                reach = reach.max(sign * corner.at.x + (self.radius * self.radius - up * up).sqrt());
+            }
+        }
+        for edge in self.edges.iter().filter(|e| sign * e.normal.x > 0.0) {
+            let shift = edge.normal * self.radius;
+            let (a, b) = (edge.side.a + shift, edge.side.b + shift);
+            if y >= a.y.min(b.y) && y <= a.y.max(b.y) {
+                reach = reach.max(sign * x_at(&Segment { a, b }, y));
+            }
+        }
+        reach
+    }
+
+    /// The y of the front point whose tangent is parallel to the segment; `None` for a point or a segment along x.
+    fn parallel_y(&self, segment: &Segment, sign: f64) -> Option<f64> {
+        let along = segment.b - segment.a;
+        if along.y == 0.0 {
+            return None;
+        }
+        let normal = Vector2::new(along.y, -along.x).normalize();
+        let normal = if normal.x * sign < 0.0 { -normal } else { normal };
+        let foremost = self.core.iter().max_by(|p, q| normal.dot(&p.at).total_cmp(&normal.dot(&q.at)));
+        foremost.map(|corner| corner.at.y + self.radius * normal.y)
+    }
+}
+
+/// The x of a segment at `y`; of its first end when it runs along x.
+fn x_at(segment: &Segment, y: f64) -> f64 {
+    let rise = segment.b.y - segment.a.y;
+    if rise == 0.0 {
+        segment.a.x
+    } else {
+        segment.a.x + (segment.b.x - segment.a.x) * ((y - segment.a.y) / rise).clamp(0.0, 1.0)
+    }
+}
+
+/// The end of a segment along x that a move along x (`sign` 1) or against it (-1) meets first.
+fn nearer_end(segment: &Segment, sign: f64) -> f64 {
+    if sign > 0.0 { segment.a.x.min(segment.b.x) } else { segment.a.x.max(segment.b.x) }
+}
