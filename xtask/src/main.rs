@@ -9,6 +9,7 @@ mod program;
 mod replay_check;
 mod results;
 mod seeds;
+mod settings;
 mod tidy;
 mod workspace;
 
@@ -58,6 +59,8 @@ enum Chore {
         #[arg(long, value_name = "NAME")]
         measure: Vec<String>,
     },
+    /// Write the reference of settings from the doc comments of the configuration structs.
+    Settings,
     /// Demo on one thread, on two, and replayed: all three must write the same bytes.
     ReplayCheck {
         /// Seed of the demo.
@@ -90,6 +93,7 @@ fn main() -> ExitCode {
             golden::run(&root, &golden::Options { update, only, profile })
         }
         Chore::Results { measure } => results::run(&root, &measure),
+        Chore::Settings => settings::run(&root, false),
         Chore::ReplayCheck { seed } => replay_check::run(&root, seed),
         Chore::BadDays => bad_days::run(&root),
         Chore::DemoSeeds { seeds, first, explore } => {

@@ -21,13 +21,21 @@ pub struct Distortion {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "Unchecked")]
 pub struct PinholeCamera {
+    /// Width of the image, px, 1 or more.
     width: usize,
+    /// Height of the image, px, 1 or more.
     height: usize,
+    /// Focal length along x, px, above 0.
     fx: f64,
+    /// Focal length along y, px, above 0.
     fy: f64,
+    /// Principal point along x, px, from the centre of the left column.
     cx: f64,
+    /// Principal point along y, px, from the centre of the top row.
     cy: f64,
+    /// Lens distortion.
     distortion: Distortion,
+    /// Readout time of the rolling shutter from the first to the last row, s, 0 or more. Default 0: a global shutter.
     #[serde(skip_serializing_if = "is_zero")]
     readout: f64,
 }

@@ -84,14 +84,6 @@ impl Default for RobotConfig {
 }
 
 impl RobotConfig {
-    /// Reads a robot file: TOML, gaps filled with the defaults.
-    ///
-    /// # Errors
-    /// One sentence with line and key when the text is not TOML, a key is unknown, or a value is of the wrong kind.
-    pub fn from_toml(text: &str) -> Result<Self, toml::de::Error> {
-        toml::from_str(text)
-    }
-
     /// Passes a valid configuration through.
     ///
     /// # Errors
@@ -108,11 +100,6 @@ impl RobotConfig {
             return Err(Invalid::new("odometry.max_speed", self.odometry.max_speed, "m/s", expected));
         }
         Ok(())
-    }
-
-    /// The whole robot file.
-    pub fn to_toml(&self) -> String {
-        toml::to_string(self).expect("invariant: the configuration is plain data")
     }
 
     /// The same robot with every seed of its random sampling drawn from `seed`.

@@ -28,6 +28,7 @@ mod report;
 mod robot;
 mod saving;
 mod schedule;
+pub mod settings;
 mod sight;
 mod sight_watch;
 mod stage;

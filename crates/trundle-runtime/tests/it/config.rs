@@ -1,17 +1,22 @@
+use trundle_runtime::settings::{RobotFile, to_commented_toml};
 use trundle_runtime::{RobotConfig, Schedule};
+
+fn read(text: &str) -> Result<RobotConfig, String> {
+    RobotFile::parse(text, &[]).map(|file| file.config).map_err(|error| error.to_string())
+}
 
 #[test]
 fn the_printed_file_reads_back_the_same() {
     let mut config = RobotConfig { footprint_radius: 0.2, ..RobotConfig::default() };
     config.schedule = Schedule { map_hz: 3.0, ..Schedule::default() };
-    assert_eq!(RobotConfig::from_toml(&config.to_toml()).unwrap(), config);
-    assert_eq!(RobotConfig::from_toml("").unwrap(), RobotConfig::default());
+    assert_eq!(read(&to_commented_toml(&config)).unwrap(), config);
+    assert_eq!(read("").unwrap(), RobotConfig::default());
 }
 
 #[test]
 fn the_defaults_are_valid_and_wrong_keys_are_named() {
     RobotConfig::default().validated().unwrap();
-    let error = RobotConfig::from_toml("[schedule]\nmap_rate = 5.0\n").unwrap_err().to_string();
+    let error = read("[schedule]\nmap_rate = 5.0\n").unwrap_err();
     assert!(error.contains("map_rate") && error.contains("line 2"), "{error}");
 }
 
@@ -26,5 +31,5 @@ fn outlines_are_checked_and_a_base_is_not_faster_than_its_odometry_believes() {
     fast.odometry.max_speed = 5.0;
     fast.footprint = Some(vec![[0.2, 0.2], [-0.2, 0.2], [-0.2, -0.2]]);
     let fast = fast.validated().unwrap();
-    assert_eq!(RobotConfig::from_toml(&fast.to_toml()).unwrap(), fast);
+    assert_eq!(read(&to_commented_toml(&fast)).unwrap(), fast);
 }

@@ -1,0 +1,254 @@
+//! Reads a robot file: translates keys, names unknown ones, applies overrides, and validates.
+
+use super::plausibility::require_plausible;
+use super::reference::{Setting, reference};
+use crate::RobotConfig;
+use serde::Deserialize;
+use std::borrow::Cow;
+use thiserror::Error;
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+/// A robot file that was read.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RobotFile {
+    /// The robot, gaps filled with the defaults.
+    pub config: RobotConfig,
+    /// One sentence for each key that is deprecated.
+    pub warnings: Vec<String>,
+}
+
+/// Why a robot file cannot be used.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[error("{}{message}", line.map_or(String::new(), |line| format!("line {line}: ")))]
+pub struct SettingsError {
+    /// The line in the file, from 1, where it is known.
+    pub line: Option<usize>,
+    /// What is wrong, and what is expected.
+    pub message: String,
+}
+
+impl SettingsError {
+    fn new(line: Option<usize>, message: impl Into<String>) -> Self {
+        Self { line, message: message.into() }
+    }
+}
+
+impl RobotFile {
+    /// Reads the text of a robot file, TOML, then applies `overrides`, each `key=value`.
+    ///
+    /// # Errors
+    /// When the text is no TOML, a key is unknown or stands twice, a value is of the wrong kind, outside its range or implausible.
+    pub fn parse(text: &str, overrides: &[String]) -> Result<Self, SettingsError> {
+        let mut warnings = Vec::new();
+        let mut config = read(text, &mut warnings)?;
+        if !overrides.is_empty() {
+            config = overridden(&config, overrides, &mut warnings)?;
+        }
+        let config = require_plausible(&config).and_then(|()| config.validated()).map_err(|error| {
+            let unit = error.unit;
+            let key =
+                reference().iter().find(|setting| setting.path == error.field).map(|setting| setting.key);
+            let field = key.unwrap_or(&error.field).to_owned();
+            SettingsError::new(None, trundle_core::Invalid { field, unit, ..error }.to_string())
+        })?;
+        Ok(Self { config, warnings })
+    }
+}
+
+/// Reads without checking ranges.
+fn read(text: &str, warnings: &mut Vec<String>) -> Result<RobotConfig, SettingsError> {
+    let line = |at: usize| 1 + text[..at.min(text.len())].matches('\n').count();
+    let failed = |error: toml::de::Error| {
+        SettingsError::new(error.span().map(|span| line(span.start)), error.message().replace('\n', " "))
+    };
+    let table = DeTable::parse(text).map_err(failed)?;
+    let span = table.span();
+    let mut problem = None;
+    let translated = translate(table.into_inner(), "", warnings, &mut |at, message| {
+        problem.get_or_insert_with(|| SettingsError::new(Some(line(at)), message));
+    });
+    match problem {
+        Some(problem) => Err(problem),
+        None => {
+            let deserializer = toml::Deserializer::from(Spanned::new(span, translated));
+            RobotConfig::deserialize(deserializer).map_err(failed)
+        }
+    }
+}
+
+/// The table with the names of fields in place of keys; reports unknown keys, and keys that stand twice, to `refuse`.
+fn translate<'i>(
+    table: DeTable<'i>,
+    prefix: &str,
+    warnings: &mut Vec<String>,
+    refuse: &mut impl FnMut(usize, String),
+) -> DeTable<'i> {
+    let mut translated = DeTable::new();
+    for (key, value) in table {
+        let full = if prefix.is_empty() { key.to_string() } else { format!("{prefix}.{}", key.get_ref()) };
+        let (span, value_span) = (key.span(), value.span());
+        let field: Cow<'i, str> = match find(&full) {
+            Some(Found::Key(setting)) => setting.field().into(),
+            Some(Found::OldKey(setting)) => {
+                warnings.push(format!("{full} is deprecated: write {}", setting.key));
+                setting.field().into()
+            }
+            Some(Found::Table) => key.into_inner(),
+            None => {
+                refuse(span.start, unknown(&full, prefix));
+                continue;
+            }
+        };
+        let value = match value.into_inner() {
+            DeValue::Table(inner) => DeValue::Table(translate(inner, &full, warnings, refuse)),
+            other => other,
+        };
+        if translated.insert(Spanned::new(span.clone(), field), Spanned::new(value_span, value)).is_some() {
+            refuse(span.start, format!("{full} is set twice, once under its old name"));
+        }
+    }
+    translated
+}
+
+/// What a dotted key is.
+enum Found {
+    Key(&'static Setting),
+    OldKey(&'static Setting),
+    Table,
+}
+
+fn find(full: &str) -> Option<Found> {
+    let inside = |setting: &Setting| setting.key.strip_prefix(full).is_some_and(|rest| rest.starts_with('.'));
+    let settings = reference();
+    let key = settings.iter().find(|setting| setting.key == full).map(Found::Key);
+    let old = || settings.iter().find(|setting| setting.path == full).map(Found::OldKey);
+    key.or_else(old).or_else(|| settings.iter().any(inside).then_some(Found::Table))
+}
+
+fn unknown(full: &str, prefix: &str) -> String {
+    let mut names: Vec<&str> = reference()
+        .iter()
+        .filter_map(|setting| {
+            let inner = if prefix.is_empty() {
+                Some(setting.key)
+            } else {
+                setting.key.strip_prefix(prefix)?.strip_prefix('.')
+            };
+            inner.and_then(|inner| inner.split('.').next())
+        })
+        .collect();
+    names.dedup();
+    let place = if prefix.is_empty() { "the robot file".to_owned() } else { format!("[{prefix}]") };
+    format!("unknown key {full}; {place} has {}", names.join(", "))
+}
+
+/// The same robot with `key=value` pairs on top.
+fn overridden(
+    config: &RobotConfig,
+    overrides: &[String],
+    warnings: &mut Vec<String>,
+) -> Result<RobotConfig, SettingsError> {
+    let mut table = toml::Table::try_from(config).expect("invariant: the configuration is plain data");
+    for pair in overrides {
+        let refused = |message: String| SettingsError::new(None, format!("--set {pair}: {message}"));
+        let (key, value) = pair.split_once('=').ok_or_else(|| refused("expected key=value".into()))?;
+        let (key, value) = (key.trim(), value.trim());
+        let setting = match find(key) {
+            Some(Found::Key(setting)) => setting,
+            Some(Found::OldKey(setting)) => {
+                warnings.push(format!("{key} is deprecated: write {}", setting.key));
+                setting
+            }
+            Some(Found::Table) => return Err(refused(format!("[{key}] is a table; set one of its keys"))),
+            None => return Err(refused(unknown(key, key.rsplit_once('.').map_or("", |(table, _)| table)))),
+        };
+        let parsed =
+            format!("value = {value}").parse::<toml::Table>().ok().and_then(|mut t| t.remove("value"));
+        let parsed = parsed.unwrap_or_else(|| toml::Value::String(value.to_owned()));
+        set(&mut table, setting.path, as_kind(parsed, setting.kind));
+        RobotConfig::deserialize(toml::Value::Table(table.clone()))
+            .map_err(|error| refused(error.message().replace('\n', " ")))?;
+    }
+    Ok(RobotConfig::deserialize(toml::Value::Table(table)).expect("invariant: read after every override"))
+}
+
+/// A whole number for a number with a point.
+fn as_kind(value: toml::Value, kind: &str) -> toml::Value {
+    match value {
+        toml::Value::Integer(i) if kind == "number" => toml::Value::Float(i as f64),
+        other => other,
+    }
+}
+
+fn set(table: &mut toml::Table, path: &str, value: toml::Value) {
+    match path.split_once('.') {
+        None => {
+            table.insert(path.to_owned(), value);
+        }
+        Some((head, rest)) => {
+            let inner =
+                table.entry(head.to_owned()).or_insert_with(|| toml::Value::Table(toml::Table::new()));
+            if let Some(inner) = inner.as_table_mut() {
+                set(inner, rest, value);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn parse(text: &str) -> Result<RobotFile, SettingsError> {
+        RobotFile::parse(text, &[])
+    }
+
+    #[test]
+    fn keys_with_units_and_old_keys_are_read() {
+        let new =
+            parse("[drive]\nwheel_radius_m = 0.036\nwheelbase_m = 0.24\nticks_per_turn = 2578.33\n").unwrap();
+        let old =
+            parse("[drive]\nwheel_radius = 0.036\nwheelbase = 0.24\nticks_per_turn = 2578.33\n").unwrap();
+        assert_eq!(new.config, old.config);
+        assert!(new.warnings.is_empty());
+        assert_eq!(old.warnings[0], "drive.wheel_radius is deprecated: write drive.wheel_radius_m");
+        assert_eq!(parse("").unwrap().config, RobotConfig::default());
+    }
+
+    #[test]
+    fn unknown_and_doubled_keys_name_their_line() {
+        let error = parse("[safety]\nlatency_s = 0.2\nlatency_ms = 200\n").unwrap_err();
+        assert_eq!(error.line, Some(3));
+        assert!(
+            error.message.starts_with("unknown key safety.latency_ms; [safety] has deceleration_m_s2"),
+            "{error}"
+        );
+        let error = parse("[safety]\nlatency_s = 0.2\nlatency = 0.2\n").unwrap_err();
+        assert!(error.line.is_some() && error.message.contains("set twice"), "{error}");
+        let error = parse("[safety]\nlatency_s = \"soon\"\n").unwrap_err();
+        assert_eq!(error.line, Some(2), "{error}");
+        assert_eq!(parse("x").unwrap_err().line, Some(1));
+    }
+
+    #[test]
+    fn overrides_come_last_and_fill_nothing_else() {
+        let set = |pairs: &[&str]| {
+            let pairs: Vec<String> = pairs.iter().map(|pair| (*pair).to_owned()).collect();
+            RobotFile::parse("[control]\nlead_s = 0.05\n", &pairs)
+        };
+        let file = set(&["control.lead_s=0.04", "camera.fx_px=360", "sight=depth_camera"]).unwrap();
+        assert_eq!(file.config.control.lead, 0.04);
+        assert_eq!(file.config.camera.fx(), 360.0);
+        assert!(set(&["control.lead_s"]).unwrap_err().message.contains("expected key=value"));
+        assert!(set(&["control=1"]).unwrap_err().message.contains("is a table"));
+        assert!(set(&["control.speed=1"]).unwrap_err().message.contains("unknown key control.speed"));
+        assert!(set(&["control.lead_s=fast"]).unwrap_err().message.starts_with("--set control.lead_s=fast"));
+    }
+
+    #[test]
+    fn errors_of_range_name_the_key_of_the_file() {
+        let error = parse("[odometry]\nmax_speed_m_s = 0.3\n").unwrap_err().to_string();
+        assert!(error.contains("odometry.max_speed_m_s is 0.3 m/s"), "{error}");
+    }
+}

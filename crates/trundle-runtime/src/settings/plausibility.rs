@@ -1,0 +1,102 @@
+//! Numbers that are possible but no robot has: millimetres for metres, degrees for radians.
+
+use crate::RobotConfig;
+use trundle_core::Invalid;
+
+/// A number with the range that indoor robots have, and the unit that a number outside was probably meant in.
+struct Plausible {
+    path: &'static str,
+    value: f64,
+    unit: &'static str,
+    low: f64,
+    high: f64,
+    meant: &'static str,
+}
+
+/// Largest wheel radius of an indoor robot [m]; ours: three times a wheelchair's.
+const MAX_WHEEL_RADIUS_M: f64 = 0.5;
+/// Largest wheelbase of an indoor robot [m]; ours: wider than a double door.
+const MAX_WHEELBASE_M: f64 = 2.0;
+/// Largest footprint radius [m]; ours.
+const MAX_FOOTPRINT_RADIUS_M: f64 = 3.0;
+/// Largest forward speed [m/s]; ours: a running person.
+const MAX_SPEED_M_S: f64 = 5.0;
+/// Largest turn rate [rad/s]; ours: two turns a second.
+const MAX_TURN_RATE_RAD_S: f64 = 15.0;
+/// Range of focal lengths, as a multiple of the image's width: views of 160 and of 3 degrees; ours.
+const FOCAL_LENGTH_PER_WIDTH: (f64, f64) = (0.09, 20.0);
+
+/// Refuses numbers that no robot has, with the unit they were probably meant in.
+///
+/// # Errors
+/// Names the first such number.
+pub fn require_plausible(config: &RobotConfig) -> Result<(), Invalid> {
+    for check in lengths_and_speeds(config).into_iter().chain(camera(config)) {
+        let Plausible { path, value, unit, low, high, meant } = check;
+        if !(low..=high).contains(&value) {
+            let expected = format!("{low} to {high} {unit}; is it in {meant}?");
+            return Err(Invalid::new(path, value, unit, expected));
+        }
+    }
+    Ok(())
+}
+
+fn lengths_and_speeds(config: &RobotConfig) -> [Plausible; 6] {
+    let below = |path, value, unit, high, meant| Plausible { path, value, unit, low: 0.0, high, meant };
+    let (drive, limits) = (&config.drive, &config.limits);
+    [
+        below("footprint_radius", config.footprint_radius, "m", MAX_FOOTPRINT_RADIUS_M, "millimetres"),
+        below("drive.wheel_radius", drive.wheel_radius, "m", MAX_WHEEL_RADIUS_M, "millimetres"),
+        below("drive.wheelbase", drive.wheelbase, "m", MAX_WHEELBASE_M, "millimetres"),
+        below("limits.wheel_speed", limits.wheel_speed, "m/s", MAX_SPEED_M_S, "mm/s"),
+        below("limits.v", limits.v, "m/s", MAX_SPEED_M_S, "mm/s"),
+        below("limits.omega", limits.omega, "rad/s", MAX_TURN_RATE_RAD_S, "degrees per second"),
+    ]
+}
+
+fn camera(config: &RobotConfig) -> [Plausible; 4] {
+    let camera = &config.camera;
+    let (width, height) = (camera.width() as f64, camera.height() as f64);
+    let (low, high) = (width * FOCAL_LENGTH_PER_WIDTH.0, width * FOCAL_LENGTH_PER_WIDTH.1);
+    let focal =
+        |path, value| Plausible { path, value, unit: "px", low, high, meant: "another unit than pixels" };
+    let centre = |path, value, high| Plausible {
+        path,
+        value,
+        unit: "px",
+        low: 0.0,
+        high,
+        meant: "the image of another size",
+    };
+    [
+        focal("camera.fx", camera.fx()),
+        focal("camera.fy", camera.fy()),
+        centre("camera.cx", camera.cx(), width - 1.0),
+        centre("camera.cy", camera.cy(), height - 1.0),
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::settings::RobotFile;
+
+    fn refused(pair: &str) -> String {
+        RobotFile::parse("", &[pair.to_owned()]).unwrap_err().to_string()
+    }
+
+    #[test]
+    fn millimetres_degrees_and_wrong_images_are_refused() {
+        assert!(
+            refused("drive.wheel_radius_m=35").contains("drive.wheel_radius_m is 35 m"),
+            "{}",
+            refused("drive.wheel_radius_m=35")
+        );
+        assert!(refused("drive.wheel_radius_m=35").contains("millimetres?"));
+        assert!(refused("drive.wheelbase_m=230").contains("millimetres?"));
+        assert!(refused("limits.v_m_s=700").contains("mm/s?"));
+        assert!(refused("limits.omega_rad_s=180").contains("degrees per second?"));
+        assert!(refused("camera.fx_px=36100").contains("camera.fx_px is 36100 px"));
+        assert!(refused("camera.cx_px=600").contains("the image of another size?"));
+        assert!(refused("camera.cy_px=-3").contains("camera.cy_px is -3 px"));
+    }
+}
