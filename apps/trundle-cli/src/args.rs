@@ -11,6 +11,9 @@ use trundle::core::Pose2;
 #[derive(Debug, Parser)]
 #[command(name = "trundle", version, about, arg_required_else_help = true)]
 pub struct Cli {
+    /// Log state changes and pose corrections; twice (-vv): everything. TRUNDLE_LOG=trundle_runtime=debug filters by crate.
+    #[arg(long, short, global = true, action = clap::ArgAction::Count)]
+    pub verbose: u8,
     /// What to do.
     #[command(subcommand)]
     pub command: Command,
@@ -80,13 +83,13 @@ pub struct DemoArgs {
     /// By the clock on the wall: simulator and robot in threads of their own, camera at 30 Hz; Ctrl-C stops the robot and ends the run.
     #[arg(long)]
     pub real_time: bool,
-    /// Keep maps and how far the mission has come in FILE, every 3 to 10 s: what `--wake` goes on with after a run that was broken off.
-    #[arg(long, value_name = "FILE")]
-    pub memory: Option<PathBuf>,
-    /// Wake up with what the file of --memory holds, standing here in the room (m, m, deg): the robot recognises where it is, or finds it by
-    /// its scans, and goes on with its mission. The map's frame stays that of --start.
-    #[arg(long, value_name = "X,Y,DEG", allow_hyphen_values = true, requires = "memory", conflicts_with_all = ["goal", "direct"])]
-    pub wake: Option<PoseArg>,
+    /// Write the robot's maps and the state of its mission to FILE, every 3 to 10 s: `--resume` goes on from there.
+    #[arg(long, value_name = "FILE", alias = "memory")]
+    pub checkpoint: Option<PathBuf>,
+    /// Resume from the file of --checkpoint, standing here in the room (m, m, deg): the robot localizes itself in its maps and goes on
+    /// with its mission. The map's frame stays that of --start.
+    #[arg(long, value_name = "X,Y,DEG", alias = "wake", allow_hyphen_values = true, requires = "checkpoint", conflicts_with_all = ["goal", "direct"])]
+    pub resume: Option<PoseArg>,
     /// What breaks, and when: a TOML file as for `trundle sim --faults`.
     #[arg(long, value_name = "FILE")]
     pub faults: Option<PathBuf>,

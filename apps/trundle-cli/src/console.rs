@@ -1,29 +1,29 @@
 //! What the user sees in the terminal. The only place of the program that prints.
 #![expect(clippy::print_stderr, reason = "this is the program's voice")]
 
-use crate::failure::Failure;
 use std::io::Write;
+use trundle::app::{AppError, Progress};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 /// Says why the command ended, on standard error.
-pub fn complain(failure: &Failure) {
-    eprintln!("trundle: {failure}");
+pub fn print_error(error: &AppError) {
+    eprintln!("trundle: {error}");
 }
 
-/// Says something that the user should know, on standard error; the run goes on.
+/// Logs a warning, which the terminal shows; the run goes on.
 pub fn warn(message: &str) {
-    eprintln!("trundle: warning: {message}");
+    tracing::warn!("{message}");
 }
 
 /// Prints a result on standard output.
-pub fn say(text: &str) {
+pub fn print(text: &str) {
     // A reader that has gone away is no failure of the run.
     let _ = writeln!(std::io::stdout(), "{text}");
 }
 
 /// Prints a table of two columns or more on standard output, columns aligned.
-pub fn table(rows: &[Vec<String>]) {
+pub fn print_table(rows: &[Vec<String>]) {
     let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
     let width = |c: usize| {
         rows.iter().filter_map(|row| row.get(c)).map(|cell| cell.chars().count()).max().unwrap_or(0)
@@ -34,11 +34,25 @@ pub fn table(rows: &[Vec<String>]) {
         let line: Vec<String> = cells
             .map(|(c, (cell, &w))| if c == 0 { format!("{cell:<w$}") } else { format!("{cell:>w$}") })
             .collect();
-        say(format!("  {}", line.join("  ")).trim_end());
+        print(format!("  {}", line.join("  ")).trim_end());
     }
 }
 
-/// One line that lives: a spinner with a message.
+/// A line of progress: a spinner with a message, and the progress that sets it. Clear the line when the work has ended.
+pub fn progress(quiet: bool) -> (ProgressBar, Progress) {
+    let line = live_line(quiet);
+    if line.is_hidden() {
+        return (line, Progress::hidden());
+    }
+    let shown = line.clone();
+    let show = move |text: &str| {
+        shown.set_message(text.to_owned());
+        shown.tick();
+    };
+    (line, Progress::new(show))
+}
+
+/// A spinner with a message.
 pub fn live_line(quiet: bool) -> ProgressBar {
     let bar = ProgressBar::new_spinner();
     bar.set_style(ProgressStyle::with_template("{spinner} {msg}").expect("invariant: the template is valid"));

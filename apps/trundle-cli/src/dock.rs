@@ -1,15 +1,15 @@
 //! `trundle dock`: a manoeuvre of turns and straight moves onto a goal pose in a tight place.
 
 mod args;
-mod picture;
-mod table;
 
-use crate::{Outcome, console, failure::Failure, robot_file};
+use crate::{Outcome, console};
 pub use args::DockArgs;
-pub(crate) use picture::{Surroundings, manoeuvre_picture, step_pictures, view};
 use std::path::Path;
 use std::time::Instant;
-pub(crate) use table::{motions, steps_csv};
+use trundle::app::dock::{
+    DockingObstacles, manoeuvre_picture, motions, rows, step_pictures, steps_csv, verdict,
+};
+use trundle::app::{AppError, load_robot};
 use trundle::core::{Footprint, OccupancyGrid, Pose2};
 use trundle::docking::corridor::{Problem, Scenario, parse, write};
 use trundle::docking::{
@@ -63,7 +63,7 @@ impl Source {
     }
 
     /// Refuses options that mean nothing here.
-    fn checked(self, args: &DockArgs) -> Result<Self, Failure> {
+    fn checked(self, args: &DockArgs) -> Result<Self, AppError> {
         let options = [
             ("--scan", args.scan.is_some(), Self::Log),
             ("--problem", args.problem.is_some(), Self::File),
@@ -79,7 +79,7 @@ impl Source {
 }
 
 /// `trundle dock MAP.yaml --from --to`, `trundle dock SCANS.log --to`, `trundle dock PROBLEM.txt`, or a built-in problem by name.
-pub fn run(args: &DockArgs) -> Result<Outcome, Failure> {
+pub fn run(args: &DockArgs) -> Result<Outcome, AppError> {
     let task = match Source::of(args).checked(args)? {
         Source::Map => on_map(args)?,
         Source::Log => task_of(args, in_scan(args)?)?,
@@ -92,10 +92,10 @@ pub fn run(args: &DockArgs) -> Result<Outcome, Failure> {
     let clock = Instant::now();
     let plan = docker
         .plan(&task.footprint, &task.scene, task.start, task.goal)
-        .map_err(|refusal| Failure::Input(format!("{}: {refusal}", args.place.display())))?;
+        .map_err(|refusal| AppError::Input(format!("{}: {refusal}", args.place.display())))?;
     let seconds = clock.elapsed().as_secs_f64();
     let folder = OutputFolder::create(&args.out)?.instead_of(&["steps.csv", "steps.png"]);
-    let surroundings = Surroundings { grid: task.grid.as_ref(), problem: task.problem.as_ref() };
+    let surroundings = DockingObstacles { grid: task.grid.as_ref(), problem: task.problem.as_ref() };
     let found = match &plan {
         Plan::Found(found) => Some(found),
         Plan::Impossible(_) => None,
@@ -116,7 +116,7 @@ pub fn run(args: &DockArgs) -> Result<Outcome, Failure> {
     let place = folder.commit()?;
     if !args.common.quiet {
         tell(&plan, seconds);
-        console::say(&format!("See {}", place.join("dock.png").display()));
+        console::print(&format!("See {}", place.join("dock.png").display()));
     }
     Ok(if found.is_some() { Outcome::Reached } else { Outcome::Missed })
 }
@@ -127,9 +127,9 @@ fn columns(motions: usize) -> usize {
 }
 
 /// The robot file's `[docking.planner]`, where one is given, else the planner's own defaults; method and margin as asked for.
-fn planner(args: &DockArgs) -> Result<DockingConfig, Failure> {
+fn planner(args: &DockArgs) -> Result<DockingConfig, AppError> {
     let config = match &args.config {
-        Some(file) => robot_file::load(Some(file))?.docking.planner,
+        Some(file) => load_robot(Some(file))?.docking.planner,
         None => DockingConfig::default(),
     };
     let method = args.method.map_or(config.method, Into::into);
@@ -137,7 +137,7 @@ fn planner(args: &DockArgs) -> Result<DockingConfig, Failure> {
 }
 
 /// Writes what would be solved to a file of its own.
-fn write_problem(args: &DockArgs, task: Task, file: &Path) -> Result<Outcome, Failure> {
+fn write_problem(args: &DockArgs, task: Task, file: &Path) -> Result<Outcome, AppError> {
     let Task { name, footprint, start, goal, .. } = task;
     let obstacles = match task.problem {
         Some(problem) => problem.obstacles,
@@ -145,23 +145,23 @@ fn write_problem(args: &DockArgs, task: Task, file: &Path) -> Result<Outcome, Fa
     };
     let text = write(&[Problem { name, footprint, start, goal, obstacles }]);
     std::fs::write(file, text)
-        .map_err(|error| Failure::Input(format!("{}: cannot write it: {error}", file.display())))?;
+        .map_err(|error| AppError::Input(format!("{}: cannot write it: {error}", file.display())))?;
     if !args.common.quiet {
-        console::say(&format!("See {}", file.display()));
+        console::print(&format!("See {}", file.display()));
     }
     Ok(Outcome::Reached)
 }
 
-fn on_map(args: &DockArgs) -> Result<Task, Failure> {
+fn on_map(args: &DockArgs) -> Result<Task, AppError> {
     let grid = read_map(&args.place)?;
     let (Some(start), Some(goal)) = (args.from, args.to) else {
-        return Err(Failure::Input(format!("{}: a map needs --from and --to", args.place.display())));
+        return Err(AppError::Input(format!("{}: a map needs --from and --to", args.place.display())));
     };
     let (start, goal) = (start.0, goal.0);
     for (name, pose) in [("start", start), ("goal", goal)] {
         if grid.geometry().cell_at(pose.position()).is_none() {
             let (file, Pose2 { x, y, .. }) = (args.place.display(), pose);
-            return Err(Failure::Input(format!("{file}: the {name} ({x:.2}, {y:.2}) m is off the map")));
+            return Err(AppError::Input(format!("{file}: the {name} ({x:.2}, {y:.2}) m is off the map")));
         }
     }
     let footprint = footprint(args)?;
@@ -180,19 +180,19 @@ fn on_map(args: &DockArgs) -> Result<Task, Failure> {
 }
 
 /// The outline that was asked for, else the robot file's.
-fn footprint(args: &DockArgs) -> Result<Footprint, Failure> {
+fn footprint(args: &DockArgs) -> Result<Footprint, AppError> {
     match &args.footprint {
         Some(footprint) => Ok(footprint.0.clone()),
-        None => Ok(robot_file::load(args.config.as_deref())?.footprint()?),
+        None => Ok(load_robot(args.config.as_deref())?.footprint()?),
     }
 }
 
-fn named(args: &DockArgs, problem: &dyn std::fmt::Display) -> Failure {
-    Failure::Input(format!("{}: {problem}", args.place.display()))
+fn named(args: &DockArgs, problem: &dyn std::fmt::Display) -> AppError {
+    AppError::Input(format!("{}: {problem}", args.place.display()))
 }
 
 /// Among the points of a scan, in the frame of the robot that made it.
-fn in_scan(args: &DockArgs) -> Result<Problem, Failure> {
+fn in_scan(args: &DockArgs) -> Result<Problem, AppError> {
     let log = read_carmen(&args.place, &LaserLogOptions::default())?;
     let count = log.scans.len();
     let number = args.scan.map_or(count, |number| number as usize);
@@ -212,7 +212,7 @@ fn built_in(place: &Path) -> Option<Problem> {
     Scenario::ALL.map(Scenario::problem).into_iter().find(|problem| place == Path::new(&problem.name))
 }
 
-fn of_file(args: &DockArgs) -> Result<Problem, Failure> {
+fn of_file(args: &DockArgs) -> Result<Problem, AppError> {
     let named = |problem: &dyn std::fmt::Display| named(args, problem);
     if let Some(problem) = built_in(&args.place).filter(|_| !args.place.exists()) {
         return Ok(problem);
@@ -230,7 +230,7 @@ fn of_file(args: &DockArgs) -> Result<Problem, Failure> {
     })
 }
 
-fn task_of(args: &DockArgs, problem: Problem) -> Result<Task, Failure> {
+fn task_of(args: &DockArgs, problem: Problem) -> Result<Task, AppError> {
     let footprint =
         args.footprint.as_ref().map_or_else(|| problem.footprint.clone(), |given| given.0.clone());
     Ok(Task {
@@ -247,13 +247,13 @@ fn task_of(args: &DockArgs, problem: Problem) -> Result<Task, Failure> {
 fn tell(plan: &Plan, seconds: f64) {
     match plan {
         Plan::Found(found) if found.manoeuvre.steps().is_empty() => {
-            console::say("Already there: nothing to do.");
+            console::print("Already there: nothing to do.");
         }
         Plan::Found(found) => {
-            console::table(&table::rows(&found.manoeuvre));
-            console::say(&format!("\n{}; planned in {:.1} ms.", table::verdict(found), seconds * 1e3));
+            console::print_table(&rows(&found.manoeuvre));
+            console::print(&format!("\n{}; planned in {:.1} ms.", verdict(found), seconds * 1e3));
         }
-        Plan::Impossible(impossible) => console::say(&reason(impossible)),
+        Plan::Impossible(impossible) => console::print(&reason(impossible)),
     }
 }
 

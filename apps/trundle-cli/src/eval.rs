@@ -3,9 +3,10 @@
 mod maps;
 mod relations;
 
-use crate::{Outcome, args::Common, args::PoseArg, failure::Failure};
+use crate::{Outcome, args::Common, args::PoseArg};
 use clap::{Args, Subcommand};
 use std::path::{Path, PathBuf};
+use trundle::app::AppError;
 use trundle::eval::{EvalError, Side};
 
 /// `trundle eval`
@@ -90,9 +91,9 @@ impl EvalArgs {
 }
 
 /// What is wrong, by the name of the file that it is about.
-fn wrong(error: &EvalError, reference: &Path, estimate: &Path) -> Failure {
+fn wrong(error: &EvalError, reference: &Path, estimate: &Path) -> AppError {
     let (reference, estimate) = (reference.display(), estimate.display());
-    Failure::Input(match error.side() {
+    AppError::Input(match error.side() {
         Some(Side::Reference) => format!("{reference}: {error}"),
         Some(Side::Estimate) => format!("{estimate}: {error}"),
         None => format!("{estimate} against {reference}: {error}"),
@@ -100,7 +101,7 @@ fn wrong(error: &EvalError, reference: &Path, estimate: &Path) -> Failure {
 }
 
 /// Judges what was asked for.
-pub fn run(args: &EvalArgs) -> Result<Outcome, Failure> {
+pub fn run(args: &EvalArgs) -> Result<Outcome, AppError> {
     match &args.which {
         Which::Relations(args) => relations::run(args),
         Which::Map(args) => maps::run(args),

@@ -1,22 +1,15 @@
 //! `trundle experiment`: the papers' experiments as commands; exit code 1 where a limit is missed.
 
-mod barn;
-mod corridor;
-mod cpu_clock;
-mod faults;
-mod laser_run;
-mod missions;
-mod mrpb;
-mod people;
-mod poses;
-mod real_time;
-mod rows;
-mod trial;
-
-use crate::{Outcome, args::Common, failure::Failure};
+use crate::{Outcome, args::Common, console, logging};
 use clap::{Args, Subcommand};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
+use trundle::app::{AppError, Progress, load_robot};
+use trundle::experiments::{
+    ExperimentReport, RunsRequest, barn, corridor, fault_scenarios, missions, mrpb, people, poses, real_time,
+};
+use trundle::io::OutputFolder;
+use trundle::runtime::RobotConfig;
 
 /// `trundle experiment`
 #[derive(Debug, Args)]
@@ -212,16 +205,82 @@ impl ExperimentArgs {
 }
 
 /// Runs the experiment that was asked for.
-pub fn run(args: &ExperimentArgs) -> Result<Outcome, Failure> {
+pub fn run(args: &ExperimentArgs) -> Result<Outcome, AppError> {
     match &args.which {
-        Which::Poses(args) => poses::run(args),
-        Which::Obstacles(args) => missions::obstacles(args),
-        Which::House(args) => missions::house(&args.runs, &args.mesh),
-        Which::Barn(args) => barn::run(args),
-        Which::Mrpb(args) => mrpb::run(args),
-        Which::Faults(args) => faults::run(args),
-        Which::People(args) => people::run(args),
-        Which::RealTime(args) => real_time::run(args),
-        Which::Corridor(args) => corridor::run(args),
+        Which::Poses(args) => runs(args, poses::run),
+        Which::Obstacles(args) => runs(args, missions::run_obstacles),
+        Which::House(args) => {
+            runs(&args.runs, |request, progress| missions::run_house(request, &args.mesh, progress))
+        }
+        Which::Faults(args) => runs(args, fault_scenarios::run),
+        Which::People(args) => runs(args, people::run),
+        Which::Barn(args) => run_barn(args),
+        Which::Mrpb(args) => run_mrpb(args),
+        Which::RealTime(args) => run_real_time(args),
+        Which::Corridor(args) => in_folder(&args.out, &args.common, |_, _| corridor::run()),
     }
+}
+
+/// An experiment of closed-loop runs.
+fn runs<R: ExperimentReport>(
+    args: &RunsArgs,
+    experiment: impl FnOnce(&RunsRequest, &Progress) -> Result<R, AppError>,
+) -> Result<Outcome, AppError> {
+    let robot = load_robot(args.config.as_deref())?;
+    let request = RunsRequest { seeds: args.seeds, only: args.only.clone(), robot };
+    in_folder(&args.out, &args.common, |_, progress| experiment(&request, progress))
+}
+
+fn run_barn(args: &BarnArgs) -> Result<Outcome, AppError> {
+    let request = barn::BarnRequest {
+        data: args.data.clone(),
+        worlds: args.worlds.map(|range| (range.first, range.last)),
+        seeds: args.seeds,
+        robot: own_robot(args.config.as_deref())?,
+    };
+    in_folder(&args.out, &args.common, |_, progress| barn::run(&request, progress))
+}
+
+fn run_mrpb(args: &MrpbArgs) -> Result<Outcome, AppError> {
+    let request = mrpb::MrpbRequest {
+        data: args.data.clone(),
+        only: args.only.clone(),
+        seeds: args.seeds,
+        robot: own_robot(args.config.as_deref())?,
+    };
+    in_folder(&args.out, &args.common, |_, progress| mrpb::run(&request, progress))
+}
+
+fn run_real_time(args: &RealTimeArgs) -> Result<Outcome, AppError> {
+    let robot = load_robot(args.config.as_deref())?;
+    let request = real_time::RealTimeRequest { minutes: args.minutes, seed: args.seed, robot };
+    in_folder(&args.out, &args.common, |folder, progress| real_time::run(&request, folder, progress))
+}
+
+/// The robot of a robot file, in place of the experiment's own.
+fn own_robot(file: Option<&Path>) -> Result<Option<RobotConfig>, AppError> {
+    file.map(|file| load_robot(Some(file))).transpose()
+}
+
+/// Runs an experiment, writes its folder and prints its table.
+fn in_folder<R: ExperimentReport>(
+    out: &Path,
+    common: &Common,
+    experiment: impl FnOnce(&OutputFolder, &Progress) -> Result<R, AppError>,
+) -> Result<Outcome, AppError> {
+    let folder = OutputFolder::create(out)?;
+    let (line, progress) = console::progress(common.quiet);
+    let report = experiment(&folder, &progress);
+    line.finish_and_clear();
+    let report = report?;
+    report.write(&folder)?;
+    logging::write(&folder)?;
+    let place = folder.commit()?.join("report.html");
+    if !common.quiet {
+        let table = report.table();
+        console::print_table(&table);
+        let gap = if table.is_empty() { "" } else { "\n" };
+        console::print(&format!("{gap}{}\nSee {}", report.verdict(), place.display()));
+    }
+    Ok(if report.is_success() { Outcome::Reached } else { Outcome::Missed })
 }

@@ -1,42 +1,29 @@
 //! The program `trundle`: a thin door to the crates. Exit codes: 0 done, 1 the run missed its aim, 2 bad input.
 
 mod args;
-mod body;
 mod console;
 mod demo;
 mod dock;
 mod eval;
 mod experiment;
-mod failure;
-mod goals;
-mod keeper;
-mod logbook;
+mod logging;
 mod map;
 mod map_input;
 mod map_output;
-mod pace;
-mod picture;
 mod plan;
-mod real_time;
 mod replay;
 mod robot_file;
-mod run;
 mod run_output;
-mod run_table;
-mod settings;
 mod sim;
 mod slam;
 mod slam_output;
 mod slam_recorder;
-mod tape;
-mod timing_page;
-mod view;
 mod vocabulary;
 
 use args::{Cli, Command, Common};
 use clap::{CommandFactory, FromArgMatches};
-use failure::Failure;
 use std::process::ExitCode;
+use trundle::app::AppError;
 
 /// What a command that ran to its end says of its aim.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -45,13 +32,17 @@ enum Outcome {
     Missed,
 }
 
+/// Exit code of every error: the input or the place to write to has to change first.
+const BAD_INPUT: u8 = 2;
+
 fn main() -> ExitCode {
-    match run(read_arguments()) {
+    let arguments = read_arguments();
+    match logging::start(arguments.verbose).and_then(|()| run(arguments)) {
         Ok(Outcome::Reached) => ExitCode::SUCCESS,
         Ok(Outcome::Missed) => ExitCode::from(1),
-        Err(failure) => {
-            console::complain(&failure);
-            ExitCode::from(failure.exit_code())
+        Err(error) => {
+            console::print_error(&error);
+            ExitCode::from(BAD_INPUT)
         }
     }
 }
@@ -69,7 +60,7 @@ fn with_negative_numbers(command: clap::Command) -> clap::Command {
     command.mut_args(takes_numbers).mut_subcommands(with_negative_numbers)
 }
 
-fn run(cli: Cli) -> Result<Outcome, Failure> {
+fn run(cli: Cli) -> Result<Outcome, AppError> {
     match cli.command {
         Command::Demo(args) => with_threads(&args.common, || demo::run(&args)),
         Command::Replay(args) => with_threads(&args.common, || replay::run(&args)),
@@ -91,10 +82,10 @@ fn run(cli: Cli) -> Result<Outcome, Failure> {
 /// Runs `work` on a pool of the asked number of threads.
 fn with_threads<T: Send>(
     common: &Common,
-    work: impl FnOnce() -> Result<T, Failure> + Send,
-) -> Result<T, Failure> {
+    work: impl FnOnce() -> Result<T, AppError> + Send,
+) -> Result<T, AppError> {
     let Some(threads) = common.threads else { return work() };
     let pool = rayon::ThreadPoolBuilder::new().num_threads(usize::from(threads)).build();
-    pool.map_err(|error| Failure::Environment(format!("cannot start {threads} threads: {error}")))?
+    pool.map_err(|error| AppError::Environment(format!("cannot start {threads} threads: {error}")))?
         .install(work)
 }

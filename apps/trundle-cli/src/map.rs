@@ -1,8 +1,9 @@
 use crate::map_output::{Counts, map_picture, rows, summary, trajectory_text};
-use crate::{Outcome, args::Common, console, failure::Failure, map_input};
+use crate::{Outcome, args::Common, console, map_input};
 use clap::Args;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
+use trundle::app::AppError;
 use trundle::core::{Pose2, Stamp};
 use trundle::io::{LaserLog, LaserLogOptions, OutputFolder, read_map, write_map};
 use trundle::mapping::{
@@ -62,7 +63,7 @@ pub struct MapArgs {
 }
 
 /// `trundle map LOG`.
-pub fn run(args: &MapArgs) -> Result<Outcome, Failure> {
+pub fn run(args: &MapArgs) -> Result<Outcome, AppError> {
     let log = map_input::read(args, &args.log_options())?;
     let folder = OutputFolder::create(&args.out)?;
     let odometry: Vec<(Stamp, Pose2)> =
@@ -104,8 +105,8 @@ pub fn run(args: &MapArgs) -> Result<Outcome, Failure> {
         ));
     }
     if !args.common.quiet {
-        console::table(&rows(&log, &counts, megabytes, seconds));
-        console::say(&format!("See {}", place.join("overview.png").display()));
+        console::print_table(&rows(&log, &counts, megabytes, seconds));
+        console::print(&format!("See {}", place.join("overview.png").display()));
     }
     if counts.processed == 0 {
         console::warn("no scan was put into the map or found in it");
@@ -135,7 +136,7 @@ impl MapArgs {
         given.into_iter().filter(|(_, given)| *given).map(|(name, _)| name).collect()
     }
 
-    fn config(&self) -> Result<ParticleConfig, Failure> {
+    fn config(&self) -> Result<ParticleConfig, AppError> {
         let default = ParticleConfig::default();
         let config = ParticleConfig {
             particles: usize::from(self.particles),
@@ -147,7 +148,7 @@ impl MapArgs {
 }
 
 /// The filter that was asked for: a new one, or one that goes on with a saved map.
-fn begin(args: &MapArgs) -> Result<ParticleMapper, Failure> {
+fn begin(args: &MapArgs) -> Result<ParticleMapper, AppError> {
     let Some(file) = &args.map else { return Ok(ParticleMapper::new(args.config()?, args.seed)?) };
     let bytes = std::fs::read(file).map_err(|error| refused(file, &error))?;
     let mut mapper = ParticleMapper::load(&bytes, args.config()?).map_err(|error| refused(file, &error))?;
@@ -155,8 +156,8 @@ fn begin(args: &MapArgs) -> Result<ParticleMapper, Failure> {
     Ok(mapper)
 }
 
-fn refused(file: &Path, problem: &dyn std::fmt::Display) -> Failure {
-    Failure::Input(format!("{}: {problem}", file.display()))
+fn refused(file: &Path, problem: &dyn std::fmt::Display) -> AppError {
+    AppError::Input(format!("{}: {problem}", file.display()))
 }
 
 fn map(args: &MapArgs, log: &LaserLog, mapper: &mut ParticleMapper) -> Counts {
@@ -188,7 +189,7 @@ fn localise(args: &MapArgs, log: &LaserLog, localizer: &mut MapLocalizer) -> (Co
 }
 
 /// The map to be localised in: a saved filter, or a grid by its YAML.
-fn localizer(args: &MapArgs, file: &Path) -> Result<MapLocalizer, Failure> {
+fn localizer(args: &MapArgs, file: &Path) -> Result<MapLocalizer, AppError> {
     if file.extension().is_some_and(|ext| ext == "yaml") {
         let grid = read_map(file)?;
         let resolution = grid.geometry().resolution;

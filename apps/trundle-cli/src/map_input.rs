@@ -2,18 +2,19 @@
 
 mod depth_folder;
 
-use crate::{failure::Failure, map::MapArgs};
+use crate::map::MapArgs;
 use std::path::Path;
+use trundle::app::AppError;
 use trundle::io::{LaserLog, LaserLogOptions, read_laser_log};
 use trundle::mapping::{MapperConfig, MotionConfig, ParticleConfig, PosePriorConfig};
 use trundle::runtime::RobotConfig;
 
 /// Reads the log: a folder with `rgb.txt` is a TUM RGB-D folder, else a ROS 2 bag or a CARMEN log.
-pub fn read(args: &MapArgs, options: &LaserLogOptions) -> Result<LaserLog, Failure> {
+pub fn read(args: &MapArgs, options: &LaserLogOptions) -> Result<LaserLog, AppError> {
     if !is_depth_folder(&args.log) {
         if args.poses.is_some() {
             let log = args.log.display();
-            return Err(Failure::Input(format!(
+            return Err(AppError::Input(format!(
                 "--poses is about the camera of an RGB-D folder, and {log} is none (it has no rgb.txt)"
             )));
         }
@@ -21,7 +22,7 @@ pub fn read(args: &MapArgs, options: &LaserLogOptions) -> Result<LaserLog, Failu
     }
     if let Some(first) = args.given_laser_options().first() {
         let folder = args.log.display();
-        return Err(Failure::Input(format!(
+        return Err(AppError::Input(format!(
             "{first} is about a laser, but {folder} is an RGB-D folder: its camera.toml says what the camera is, and the camera \
              sits as on the default robot, or where groundtruth.txt says"
         )));
@@ -31,7 +32,7 @@ pub fn read(args: &MapArgs, options: &LaserLogOptions) -> Result<LaserLog, Failu
 
 /// The filter's settings for what is read: those of a laser, or the reach, the noise and the blind range of a depth camera, and
 /// the errors of its motion.
-pub fn tuned(args: &MapArgs, config: ParticleConfig) -> Result<ParticleConfig, Failure> {
+pub fn tuned(args: &MapArgs, config: ParticleConfig) -> Result<ParticleConfig, AppError> {
     let path = &args.log;
     if !is_depth_folder(path) {
         return Ok(config);

@@ -5,10 +5,11 @@ mod table;
 
 pub use args::PlanArgs;
 
-use crate::{Outcome, console, failure::Failure, robot_file};
+use crate::{Outcome, console};
 use errand::{Errand, Refusal};
 use std::sync::OnceLock;
 use std::time::Instant;
+use trundle::app::{AppError, load_robot};
 use trundle::core::{DriveLimits, Vector2};
 use trundle::io::{OutputFolder, trajectory_csv, waypoints_csv};
 use trundle::planning::{MultiGoalPlan, PlanningTimes};
@@ -28,8 +29,8 @@ const FILES: [&str; 10] = [
 ];
 
 /// `trundle plan MAP.yaml --from --goal`.
-pub fn run(args: &PlanArgs) -> Result<Outcome, Failure> {
-    let robot = robot_file::load(args.config.as_deref())?;
+pub fn run(args: &PlanArgs) -> Result<Outcome, AppError> {
+    let robot = load_robot(args.config.as_deref())?;
     let mut errand = Errand::read(args, &robot)?;
     errand.planner.set_clock(Some(seconds));
     let start = seconds();
@@ -49,7 +50,7 @@ fn write_tour(
     limits: DriveLimits,
     spent: Spent,
     folder: OutputFolder,
-) -> Result<Outcome, Failure> {
+) -> Result<Outcome, AppError> {
     let moved = errand.goals_moved(tour);
     let way_points: Vec<Vector2> =
         tour.legs.iter().flat_map(|leg| leg.waypoints.points().iter().copied()).collect();
@@ -69,9 +70,9 @@ fn write_tour(
         table::print_curves(tour);
     }
     if !args.common.quiet {
-        moved.iter().for_each(|moved| console::say(&moved.note()));
-        console::table(&table::rows(tour, spent));
-        console::say(&format!("See {}", place.join("plan.html").display()));
+        moved.iter().for_each(|moved| console::print(&moved.note()));
+        console::print_table(&table::rows(tour, spent));
+        console::print(&format!("See {}", place.join("plan.html").display()));
     }
     Ok(Outcome::Reached)
 }
@@ -82,12 +83,12 @@ fn write_refusal(
     errand: &mut Errand,
     refusal: &Refusal,
     folder: OutputFolder,
-) -> Result<Outcome, Failure> {
+) -> Result<Outcome, AppError> {
     let why = errand.explain(refusal);
     folder.write("plan.png", &picture::without_plan(errand, refusal))?;
     folder.write("summary.json", table::no_summary(args, errand, refusal, &why).to_json().as_bytes())?;
     folder.commit()?;
-    console::complain(&Failure::Input(format!("{}: {why}", args.map.display())));
+    console::print_error(&AppError::Input(format!("{}: {why}", args.map.display())));
     Ok(Outcome::Missed)
 }
 

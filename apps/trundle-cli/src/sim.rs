@@ -3,37 +3,29 @@
 pub mod args;
 mod data_set;
 mod driver;
-pub mod faults;
-mod files;
 mod hand;
 mod journey;
 pub mod map;
-pub mod scene;
-mod start;
 mod table;
 
 pub use args::SimArgs;
 
-use crate::{Outcome, console, failure::Failure};
+use crate::{Outcome, console};
 use args::LaserArg;
 use data_set::DataSet;
 use driver::Driver;
 use hand::Hand;
 use journey::Journey;
 use std::path::Path;
+use trundle::app::AppError;
+use trundle::experiments::simulated::{list_scenes, load_scene, read_faults};
 use trundle::io::OutputFolder;
-use trundle::sim::{HeightBand, SimConfig, SimError, Simulator};
-
-impl From<SimError> for Failure {
-    fn from(error: SimError) -> Self {
-        Self::Input(error.to_string())
-    }
-}
+use trundle::sim::{HeightBand, SimConfig, Simulator};
 
 /// `trundle sim`.
-pub fn run(args: &SimArgs) -> Result<Outcome, Failure> {
+pub fn run(args: &SimArgs) -> Result<Outcome, AppError> {
     let Some(name) = args.scene.as_deref().filter(|_| !args.list) else {
-        console::table(&scene::list()?);
+        console::print_table(&list_scenes()?);
         return Ok(Outcome::Reached);
     };
     let config = configured(args)?;
@@ -43,7 +35,7 @@ pub fn run(args: &SimArgs) -> Result<Outcome, Failure> {
     };
     let mut driver = Driver::read(args)?;
     let folder = args.record.as_deref().map(new_recording).transpose()?;
-    let scene = scene::load(name, args.scene_options())?;
+    let scene = load_scene(name, args.scene_options())?;
     let grid = args.needs_map().then(|| map::truth(&scene, args.resolution, band)).transpose()?;
     if let (Some(file), Some(grid)) = (&args.map, &grid) {
         map::write(file, grid)?;
@@ -52,7 +44,7 @@ pub fn run(args: &SimArgs) -> Result<Outcome, Failure> {
         return Ok(Outcome::Reached);
     }
     let mut robot = Simulator::new(scene, config, args.seed)
-        .map_err(|error| Failure::Input(format!("{name}: {error}")))?;
+        .map_err(|error| AppError::Input(format!("{name}: {error}")))?;
     if let (Driver::Hand(hand), Some(grid)) = (&mut driver, &grid) {
         hand.begin(grid.clone(), args.common.quiet)?;
     }
@@ -64,27 +56,27 @@ pub fn run(args: &SimArgs) -> Result<Outcome, Failure> {
     }
     let place = folder.map(OutputFolder::commit).transpose()?;
     if !args.common.quiet {
-        journey.say(&robot.scene().name, place.as_deref(), &robot);
+        journey.print(&robot.scene().name, place.as_deref(), &robot);
     }
     Ok(if journey.is_complete { Outcome::Reached } else { Outcome::Missed })
 }
 
 /// The folder of a recording; one that holds a recording already is refused: two in one folder could not be told apart.
-fn new_recording(place: &Path) -> Result<OutputFolder, Failure> {
+fn new_recording(place: &Path) -> Result<OutputFolder, AppError> {
     if place.join("rgb.txt").exists() {
         let problem = "a recording is there already (rgb.txt), choose another folder or remove it";
-        return Err(Failure::Input(format!("{}: {problem}", place.display())));
+        return Err(AppError::Input(format!("{}: {problem}", place.display())));
     }
     Ok(OutputFolder::create(place)?)
 }
 
 /// The simulated robot that the arguments ask for.
-fn configured(args: &SimArgs) -> Result<SimConfig, Failure> {
+fn configured(args: &SimArgs) -> Result<SimConfig, AppError> {
     let mut config = args.camera.robot();
     config.camera_rate_hz = args.rate.unwrap_or(config.camera_rate_hz);
     config.laser = args.laser.map(LaserArg::laser);
     if let Some(file) = &args.faults {
-        config.faults = faults::read(file)?;
+        config.faults = read_faults(file)?;
     }
     let config = if args.no_noise { config.without_noise() } else { config };
     Ok(config.validated()?)

@@ -1,7 +1,8 @@
 use crate::slam_recorder::SlamRecorder;
-use crate::{Outcome, args::SlamArgs, console, failure::Failure, slam_output};
+use crate::{Outcome, args::SlamArgs, console, slam_output};
 use indicatif::ProgressBar;
 use std::time::Instant;
+use trundle::app::AppError;
 use trundle::core::{CameraMotion, Pose2, Pose3, RgbdImage, Stamp};
 use trundle::io::{CameraModel, EncodedRgbd, FrameError, IoError, OutputFolder, TumSequence};
 use trundle::localization::OdometryConfig;
@@ -15,7 +16,7 @@ pub struct SlamRun {
     /// The floor map's scans.
     pub map: LevelMap,
     /// What tracking said of the frames.
-    pub counts: crate::logbook::TrackCounts,
+    pub counts: trundle::app::TrackCounts,
     /// The last frame that could be read.
     pub last_image: Option<RgbdImage>,
     /// How many calibration issues were printed.
@@ -33,7 +34,7 @@ pub struct SlamRun {
 }
 
 /// `trundle slam DIR`.
-pub fn run(args: &SlamArgs) -> Result<Outcome, Failure> {
+pub fn run(args: &SlamArgs) -> Result<Outcome, AppError> {
     let camera = CameraModel::named(&args.camera())?;
     let scale = args.depth_scale.unwrap_or(camera.depth_scale);
     let sequence = TumSequence::open(&args.dir, scale, TumSequence::MAX_DIFFERENCE)?
@@ -48,7 +49,7 @@ fn track(
     camera: &CameraModel,
     sequence: &TumSequence,
     folder: &OutputFolder,
-) -> Result<SlamRun, Failure> {
+) -> Result<SlamRun, AppError> {
     let robot = RobotConfig::default();
     let mut run = SlamRun {
         slam: begin(args, camera)?,
@@ -85,7 +86,7 @@ fn track(
     if let (None, Some(first)) = (&run.last_image, run.unreadable.first()) {
         let (dir, camera) = (args.dir.display(), args.camera());
         let problem = format!("{dir}: no frame can be read as one of camera {camera} (--camera); {first}");
-        return Err(Failure::Input(problem));
+        return Err(AppError::Input(problem));
     }
     if sequence.odometry().is_some() && run.told == 0 && frames > 1 {
         console::warn("odometry.txt tells of no motion between images: is it empty, or of another clock?");
@@ -95,7 +96,7 @@ fn track(
 }
 
 /// An empty map, or the one that was asked for.
-fn begin(args: &SlamArgs, model: &CameraModel) -> Result<RgbdSlam, Failure> {
+fn begin(args: &SlamArgs, model: &CameraModel) -> Result<RgbdSlam, AppError> {
     // A recording is judged whole.
     let config = SlamConfig { seed: args.seed, kept_frames: usize::MAX, ..SlamConfig::default() };
     let camera = model.camera;
@@ -103,15 +104,15 @@ fn begin(args: &SlamArgs, model: &CameraModel) -> Result<RgbdSlam, Failure> {
         let level_from_camera = level_from_first_camera(args.height, args.tilt, args.roll)?;
         return Ok(RgbdSlam::new(camera, config)?.starting_at(level_from_camera));
     };
-    let refused = |problem: &dyn std::fmt::Display| Failure::Input(format!("{}: {problem}", file.display()));
+    let refused = |problem: &dyn std::fmt::Display| AppError::Input(format!("{}: {problem}", file.display()));
     let bytes = std::fs::read(file).map_err(|error| refused(&error))?;
     let mut slam = RgbdSlam::load(&bytes, camera, config).map_err(|error| refused(&error))?;
     slam.set_mode(if args.localise { Mode::Localisation } else { Mode::Mapping });
     Ok(slam)
 }
 
-fn encoded(image: &RgbdImage) -> Result<EncodedRgbd, Failure> {
-    EncodedRgbd::encode(image).map_err(|error| Failure::Input(error.to_string()))
+fn encoded(image: &RgbdImage) -> Result<EncodedRgbd, AppError> {
+    EncodedRgbd::encode(image).map_err(|error| AppError::Input(error.to_string()))
 }
 
 impl SlamRun {

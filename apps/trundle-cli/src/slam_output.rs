@@ -1,6 +1,7 @@
-use crate::run_table::{stage_rows, wall_clock};
 use crate::slam_recorder::Links;
-use crate::{Outcome, args::SlamArgs, console, failure::Failure, picture, slam::SlamRun};
+use crate::{Outcome, args::SlamArgs, console, slam::SlamRun};
+use trundle::app::AppError;
+use trundle::app::report::{camera_view, stage_rows, wall_clock};
 use trundle::core::{OccupancyGrid, Pose3, Stamp, Vector3};
 use trundle::eval::{
     AbsoluteConfig, AbsoluteError, RelativeConfig, RelativeError, absolute_trajectory_error,
@@ -28,7 +29,7 @@ pub fn write(
     sequence: &TumSequence,
     run: &SlamRun,
     folder: OutputFolder,
-) -> Result<Outcome, Failure> {
+) -> Result<Outcome, AppError> {
     let trajectory = run.slam.trajectory();
     let judged = sequence.ground_truth().and_then(|truth| judge(args, truth, &trajectory));
     let grid = run.map.draw(&trajectory, RobotConfig::default().mapping)?;
@@ -46,10 +47,10 @@ pub fn write(
     folder.write("summary.json", summary(args, sequence, run, judged.as_ref()).to_json().as_bytes())?;
     let place = folder.commit()?;
     if !args.common.quiet {
-        console::table(&rows);
-        console::table(&[vec!["wall clock".to_owned(), format!("{:.1} s", run.seconds)]]);
-        console::table(&stage_rows(&run.times));
-        console::say(&format!("See {}", place.join("report.html").display()));
+        console::print_table(&rows);
+        console::print_table(&[vec!["wall clock".to_owned(), format!("{:.1} s", run.seconds)]]);
+        console::print_table(&stage_rows(&run.times));
+        console::print(&format!("See {}", place.join("report.html").display()));
     }
     Ok(if run.is_located() { Outcome::Reached } else { Outcome::Missed })
 }
@@ -150,7 +151,7 @@ fn report(
         grid: Some(grid),
         landmarks: run.slam.landmarks().collect(),
         estimated_path: trajectory.iter().map(|(_, pose)| pose.to_pose2()).collect(),
-        camera: run.last_image.as_ref().map(|image| picture::camera_view(image, run.slam.last_features())),
+        camera: run.last_image.as_ref().map(|image| camera_view(image, run.slam.last_features())),
         depth: run.last_image.as_ref().map(|image| image.depth().clone()),
         figures: vec![visual_map(run, trajectory)],
         charts,

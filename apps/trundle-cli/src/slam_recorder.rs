@@ -1,7 +1,7 @@
-use crate::failure::Failure;
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::BufWriter;
+use trundle::app::AppError;
 use trundle::core::{Stamp, Vector2, Vector3};
 use trundle::io::{
     EncodedEvent, EncodedRgbd, FeatureMarks, KeyframeGraph, LandmarkCloud, PoseInFrame, Recorder,
@@ -27,7 +27,12 @@ impl SlamRecorder {
     }
 
     /// Takes down an image and what became of it.
-    pub fn note(&mut self, image: EncodedRgbd, report: &TrackReport, slam: &RgbdSlam) -> Result<(), Failure> {
+    pub fn note(
+        &mut self,
+        image: EncodedRgbd,
+        report: &TrackReport,
+        slam: &RgbdSlam,
+    ) -> Result<(), AppError> {
         self.now = report.stamp;
         self.recorder.record_event(&EncodedEvent::Rgbd(image))?;
         let mark = |feature: &trundle::slam::SeenFeature| {
@@ -42,13 +47,13 @@ impl SlamRecorder {
     }
 
     /// Takes down the final map and closes the recording.
-    pub fn finish(mut self, slam: &RgbdSlam) -> Result<(), Failure> {
+    pub fn finish(mut self, slam: &RgbdSlam) -> Result<(), AppError> {
         self.note_map(slam)?;
         self.recorder.finish()?;
         Ok(())
     }
 
-    fn note_map(&mut self, slam: &RgbdSlam) -> Result<(), Failure> {
+    fn note_map(&mut self, slam: &RgbdSlam) -> Result<(), AppError> {
         let cloud = LandmarkCloud::new(self.now, FRAME, slam.landmarks());
         self.recorder.record_json("/slam/landmarks", LandmarkCloud::SCHEMA, self.now, &cloud)?;
         let links = Links::of(slam);

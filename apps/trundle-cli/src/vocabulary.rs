@@ -7,17 +7,18 @@ mod recall;
 mod scenery;
 mod shots;
 
-use crate::{Outcome, console, failure::Failure};
+use crate::{Outcome, console};
 use args::{ExportArgs, ImportArgs, InfoArgs, TrainArgs};
 pub use args::{VocabularyArgs, VocabularyCommand};
 use std::time::Instant;
+use trundle::app::AppError;
 use trundle::vision::{Descriptor, Vocabulary, VocabularyConfig};
 
 /// Fewer descriptors than this a word make words of chance.
 const FEWEST_A_WORD: usize = 2;
 
 /// `trundle vocabulary ...`.
-pub fn run(args: &VocabularyArgs) -> Result<Outcome, Failure> {
+pub fn run(args: &VocabularyArgs) -> Result<Outcome, AppError> {
     match &args.command {
         VocabularyCommand::Train(args) => train(args)?,
         VocabularyCommand::Info(args) => info(args)?,
@@ -28,7 +29,7 @@ pub fn run(args: &VocabularyArgs) -> Result<Outcome, Failure> {
     Ok(Outcome::Reached)
 }
 
-fn train(args: &TrainArgs) -> Result<(), Failure> {
+fn train(args: &TrainArgs) -> Result<(), AppError> {
     let config = VocabularyConfig { branching: args.branching, depth: args.depth, ..Default::default() };
     let config = config.validated()?;
     let images = images(args)?;
@@ -37,7 +38,7 @@ fn train(args: &TrainArgs) -> Result<(), Failure> {
         let wanted = FEWEST_A_WORD * config.branching;
         let problem =
             format!("{descriptors} descriptors in {} images, expected {wanted} or more", images.len());
-        return Err(Failure::Input(problem));
+        return Err(AppError::Input(problem));
     }
     let clock = Instant::now();
     let vocabulary = Vocabulary::train(&images, &config, args.seed)?;
@@ -45,16 +46,16 @@ fn train(args: &TrainArgs) -> Result<(), Failure> {
     file::write(&args.out, &vocabulary.to_bytes())?;
     if !args.common.quiet {
         let (images, words) = (images.len(), vocabulary.word_count());
-        console::say(&format!(
+        console::print(&format!(
             "{words} words from {descriptors} descriptors of {images} images, trained in {seconds:.1} s"
         ));
-        console::say(&format!("See {}", args.out.display()));
+        console::print(&format!("See {}", args.out.display()));
     }
     Ok(())
 }
 
 /// The descriptors of every image to train on.
-fn images(args: &TrainArgs) -> Result<Vec<Vec<Descriptor>>, Failure> {
+fn images(args: &TrainArgs) -> Result<Vec<Vec<Descriptor>>, AppError> {
     let mut images = args.descriptors.as_deref().map_or(Ok(Vec::new()), file::read_descriptors)?;
     if args.descriptors.is_none() || shots::check(&args.sources).is_ok() {
         let shots = shots::of(&args.sources, args.common.quiet)?;
@@ -63,12 +64,12 @@ fn images(args: &TrainArgs) -> Result<Vec<Vec<Descriptor>>, Failure> {
     Ok(images)
 }
 
-fn info(args: &InfoArgs) -> Result<(), Failure> {
+fn info(args: &InfoArgs) -> Result<(), AppError> {
     let clock = Instant::now();
     let vocabulary = file::read_or_builtin(args.file.as_deref())?;
     let milliseconds = clock.elapsed().as_secs_f64() * 1e3;
     let row = |name: &str, value: String| vec![name.to_owned(), value];
-    console::table(&[
+    console::print_table(&[
         row("words", vocabulary.word_count().to_string()),
         row("children of a node, at most", vocabulary.branching().to_string()),
         row("levels below the root, at most", vocabulary.depth().to_string()),
@@ -78,16 +79,16 @@ fn info(args: &InfoArgs) -> Result<(), Failure> {
     Ok(())
 }
 
-fn export(args: &ExportArgs) -> Result<(), Failure> {
+fn export(args: &ExportArgs) -> Result<(), AppError> {
     let vocabulary = file::read_or_builtin(args.file.as_deref())?;
     file::write(&args.dbow2, vocabulary.to_dbow2_text().as_bytes())?;
-    console::say(&format!("{} words, see {}", vocabulary.word_count(), args.dbow2.display()));
+    console::print(&format!("{} words, see {}", vocabulary.word_count(), args.dbow2.display()));
     Ok(())
 }
 
-fn import(args: &ImportArgs) -> Result<(), Failure> {
+fn import(args: &ImportArgs) -> Result<(), AppError> {
     let vocabulary = file::read_dbow2(&args.text)?;
     file::write(&args.out, &vocabulary.to_bytes())?;
-    console::say(&format!("{} words, see {}", vocabulary.word_count(), args.out.display()));
+    console::print(&format!("{} words, see {}", vocabulary.word_count(), args.out.display()));
     Ok(())
 }

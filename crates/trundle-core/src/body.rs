@@ -74,4 +74,10 @@ pub trait RobotBody {
     /// # Errors
     /// When the base cannot be reached.
     fn command(&mut self, twist: Twist2) -> Result<(), Self::Error>;
+
+    /// Separate contacts of the body with an obstacle so far, in truth, for judges only. `None` (the default) where only the bumper
+    /// reports contacts.
+    fn contact_count(&self) -> Option<u32> {
+        None
+    }
 }

@@ -354,4 +354,8 @@ impl RobotBody for Simulator {
         self.body.command(Twist2::ZERO);
         Err(SimError::CommandNotFinite { stamp: self.stamp(), v: twist.v, omega: twist.omega })
     }
+
+    fn contact_count(&self) -> Option<u32> {
+        Some(self.contacts())
+    }
 }

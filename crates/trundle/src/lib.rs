@@ -31,11 +31,13 @@
 //! tight places, [`sim`]
 //! plays the world, [`eval`] judges, [`io`] reads and writes, [`viz`] draws.
 
+pub use trundle_app as app;
 pub use trundle_collision as collision;
 pub use trundle_control as control;
 pub use trundle_core as core;
 pub use trundle_docking as docking;
 pub use trundle_eval as eval;
+pub use trundle_experiments as experiments;
 pub use trundle_io as io;
 pub use trundle_localization as localization;
 pub use trundle_mapping as mapping;

@@ -17,7 +17,8 @@ pub const ROOMS: [&str; 7] = [
 pub const EDGES: [&str; 6] =
     ["trundle-sim", "trundle-io", "trundle-drivers", "trundle-ros2", "trundle-viz", "trundle-eval"];
 /// Who may know TOML or command lines.
-const KNOW_FILES_OF_SETTINGS: [&str; 4] = ["trundle-runtime", "trundle-cli", "trundle-io", "xtask"];
+const KNOW_FILES_OF_SETTINGS: [&str; 5] =
+    ["trundle-runtime", "trundle-app", "trundle-cli", "trundle-io", "xtask"];
 
 /// Checks every arrow between packages.
 pub fn check(tree: &Tree) -> Vec<Finding> {
@@ -42,7 +43,7 @@ fn check_package(tree: &Tree, package: &Package) -> Vec<Finding> {
             file.text.lines().position(|line| line.trim() == format!("[{kind}]")).map_or(1, |i| i + 1);
         for dependency in dependencies.keys() {
             let line = line_of(file, dependency, header);
-            if is_ours(dependency) && !may_know(name, dependency) {
+            if is_ours(dependency) && !may_know(name, dependency) && !may_test_with(name, dependency, kind) {
                 let message =
                     format!("{name} must not depend on {dependency} ({kind}): no such arrow in the design");
                 findings.push(Finding::error(&path, line, message));
@@ -71,12 +72,19 @@ fn is_known(name: &str) -> bool {
             "trundle-collision",
             "trundle-optim",
             "trundle-runtime",
+            "trundle-app",
+            "trundle-experiments",
             "trundle",
             "trundle-cli",
             "xtask",
             "trundle-bench",
         ]
         .contains(&name)
+}
+
+/// The simulator as the body of the app's examples and tests.
+fn may_test_with(from: &str, to: &str, kind: &str) -> bool {
+    kind == "dev-dependencies" && from == "trundle-app" && to == "trundle-sim"
 }
 
 /// The arrows of the design.
@@ -87,6 +95,15 @@ fn may_know(from: &str, to: &str) -> bool {
         "trundle-collision" | "trundle-optim" => to == "trundle-core",
         "trundle-slam" => base || to == "trundle-vision",
         "trundle-runtime" => base || ROOMS.contains(&to),
+        "trundle-app" => {
+            let edges = ["trundle-io", "trundle-viz", "trundle-eval"];
+            base || ROOMS.contains(&to) || edges.contains(&to) || to == "trundle-runtime"
+        }
+        "trundle-experiments" => {
+            base || ROOMS.contains(&to)
+                || EDGES.contains(&to)
+                || ["trundle-runtime", "trundle-app"].contains(&to)
+        }
         "trundle" => !["trundle", "trundle-cli"].contains(&to),
         "trundle-cli" => to == "trundle",
         "trundle-bench" => to != "trundle-cli",

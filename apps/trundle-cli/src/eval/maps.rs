@@ -1,11 +1,12 @@
 use super::MapsArgs;
-use crate::{Outcome, console, failure::Failure};
+use crate::{Outcome, console};
+use trundle::app::AppError;
 use trundle::core::Pose2;
 use trundle::eval::{EvalError, MapAgreement, MapAgreementConfig, align_maps, map_agreement};
 use trundle::io::{OutputFolder, Summary, read_map};
 
 /// `trundle eval map`.
-pub fn run(args: &MapsArgs) -> Result<Outcome, Failure> {
+pub fn run(args: &MapsArgs) -> Result<Outcome, AppError> {
     let (truth, map) = (read_map(&args.truth)?, read_map(&args.map)?);
     let config = MapAgreementConfig { within: args.within, ..MapAgreementConfig::default() };
     let config = config.validated()?;
@@ -18,7 +19,7 @@ pub fn run(args: &MapsArgs) -> Result<Outcome, Failure> {
         folder.commit()?;
     }
     if !args.common.quiet {
-        console::table(&rows(&found, pose, args.within));
+        console::print_table(&rows(&found, pose, args.within));
     }
     Ok(Outcome::Reached)
 }

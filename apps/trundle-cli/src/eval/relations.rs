@@ -1,6 +1,7 @@
 use super::RelationsArgs;
-use crate::{Outcome, console, failure::Failure};
+use crate::{Outcome, console};
 use std::path::Path;
+use trundle::app::AppError;
 use trundle::core::{Pose3, Stamp};
 use trundle::eval::{
     EvalError, Relation, RelationConfig, RelationError, RelationSets, RelationSetsConfig, relation_error,
@@ -9,7 +10,7 @@ use trundle::eval::{
 use trundle::io::{OutputFolder, Summary, read_odometry, read_trajectory};
 
 /// `trundle eval relations`.
-pub fn run(args: &RelationsArgs) -> Result<Outcome, Failure> {
+pub fn run(args: &RelationsArgs) -> Result<Outcome, AppError> {
     let sets = sets(args)?;
     let estimate = trajectory(&args.estimate)?;
     let config = RelationConfig { max_difference: args.max_difference }.validated()?;
@@ -22,7 +23,7 @@ pub fn run(args: &RelationsArgs) -> Result<Outcome, Failure> {
     }
     if judged.is_empty() {
         let problem = format!("{}: no relation in it", args.reference.display());
-        return Err(Failure::Input(problem));
+        return Err(AppError::Input(problem));
     }
     if let Some(out) = &args.out {
         let folder = OutputFolder::create(out)?;
@@ -30,29 +31,29 @@ pub fn run(args: &RelationsArgs) -> Result<Outcome, Failure> {
         folder.commit()?;
     }
     if !args.common.quiet {
-        console::table(&rows(&judged));
+        console::print_table(&rows(&judged));
     }
     Ok(Outcome::Reached)
 }
 
 /// The relations with their names, the last all of them.
-fn sets(args: &RelationsArgs) -> Result<Vec<(&'static str, Vec<Relation>)>, Failure> {
+fn sets(args: &RelationsArgs) -> Result<Vec<(&'static str, Vec<Relation>)>, AppError> {
     let path = &args.reference;
     if args.file {
         let text = std::fs::read_to_string(path)
-            .map_err(|error| Failure::Input(format!("{}: {error}", path.display())))?;
+            .map_err(|error| AppError::Input(format!("{}: {error}", path.display())))?;
         let relations = relations_from_text(&text)
-            .map_err(|error| Failure::Input(format!("{}, {error}", path.display())))?;
+            .map_err(|error| AppError::Input(format!("{}, {error}", path.display())))?;
         return Ok(vec![("all", relations)]);
     }
-    let named = |problem| Failure::Input(format!("{}: {problem}", path.display()));
+    let named = |problem| AppError::Input(format!("{}: {problem}", path.display()));
     let sets = RelationSets::of(&trajectory(path)?, &RelationSetsConfig::default()).map_err(named)?;
     let all = sets.all();
     Ok(vec![("1 m", sets.near), ("10 m", sets.far), ("loops", sets.loops), ("all", all)])
 }
 
 /// Lines of `t x y theta`, or a TUM trajectory.
-fn trajectory(path: &Path) -> Result<Vec<(Stamp, Pose3)>, Failure> {
+fn trajectory(path: &Path) -> Result<Vec<(Stamp, Pose3)>, AppError> {
     let text = std::fs::read_to_string(path).unwrap_or_default();
     let first = text.lines().map(str::trim).find(|line| !line.is_empty() && !line.starts_with('#'));
     if first.is_some_and(|line| line.split_whitespace().count() == 4) {

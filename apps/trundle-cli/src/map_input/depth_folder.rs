@@ -1,5 +1,6 @@
-use crate::{console, failure::Failure};
+use crate::console;
 use std::path::Path;
+use trundle::app::AppError;
 use trundle::core::{Pose2, Pose3, Stamp, Vector3};
 use trundle::io::{CameraModel, LaserLog, LaserLogScan, LaserLogSkip, TumSequence, read_trajectory};
 use trundle::mapping::DepthScanner;
@@ -15,7 +16,7 @@ const LONGEST_GAP: f64 = 1.0;
 /// The motion is `tracked`, a TUM trajectory of the camera, or `odometry.txt`, both with the camera mounted as on the default
 /// robot; else `groundtruth.txt`, whose frame must be level with the floor at z = 0, and each image is cut under the tilt and
 /// height that its pose says.
-pub fn read(dir: &Path, tracked: Option<&Path>, quiet: bool) -> Result<LaserLog, Failure> {
+pub fn read(dir: &Path, tracked: Option<&Path>, quiet: bool) -> Result<LaserLog, AppError> {
     let (mut scanner, model) = scanner(dir)?;
     let camera = model.camera;
     let sequence = TumSequence::open(dir, model.depth_scale, TumSequence::MAX_DIFFERENCE)?
@@ -46,14 +47,14 @@ pub fn read(dir: &Path, tracked: Option<&Path>, quiet: bool) -> Result<LaserLog,
     bar.finish_and_clear();
     match log.skipped.first() {
         Some(first) if log.scans.is_empty() => {
-            Err(Failure::Input(format!("{}: no frame can be used; {}", dir.display(), first.problem)))
+            Err(AppError::Input(format!("{}: no frame can be used; {}", dir.display(), first.problem)))
         }
         _ => Ok(log),
     }
 }
 
 /// The scanner of the folder's camera, mounted as on the default robot.
-pub fn scanner(dir: &Path) -> Result<(DepthScanner, CameraModel), Failure> {
+pub fn scanner(dir: &Path) -> Result<(DepthScanner, CameraModel), AppError> {
     let own = dir.join("camera.toml");
     let model = if own.exists() { CameraModel::read(&own)? } else { CameraModel::named("freiburg1")? };
     let robot = RobotConfig::default();
@@ -86,11 +87,11 @@ enum Poses<'a> {
 }
 
 impl<'a> Poses<'a> {
-    fn of(dir: &Path, sequence: &'a TumSequence) -> Result<Self, Failure> {
+    fn of(dir: &Path, sequence: &'a TumSequence) -> Result<Self, AppError> {
         match (sequence.odometry(), sequence.ground_truth()) {
             (Some(odometry), _) => Ok(Self::Base(odometry)),
             (None, Some(camera)) => Ok(Self::Camera(camera)),
-            (None, None) => Err(Failure::Input(format!(
+            (None, None) => Err(AppError::Input(format!(
                 "{}: neither odometry.txt nor groundtruth.txt, expected poses for a map",
                 dir.display()
             ))),
@@ -118,16 +119,16 @@ impl<'a> Poses<'a> {
 const FARTHEST: f64 = 1e6;
 
 /// The base's way from a TUM trajectory of the camera, whatever its frame: about the first pose, seen from above.
-fn base_poses(file: &Path) -> Result<Vec<(Stamp, Pose2)>, Failure> {
+fn base_poses(file: &Path) -> Result<Vec<(Stamp, Pose2)>, AppError> {
     let camera = read_trajectory(file)?;
     let Some((_, first)) = camera.first() else {
-        return Err(Failure::Input(format!("{}: no pose, expected those of the camera", file.display())));
+        return Err(AppError::Input(format!("{}: no pose, expected those of the camera", file.display())));
     };
     let is_far = |pose: &Pose3| pose.translation.norm() > FARTHEST;
     if let Some((stamp, pose)) = camera.iter().find(|(_, pose)| is_far(pose)) {
         let (file, off) = (file.display(), pose.translation.norm());
         let problem = format!("{file}: the pose at {stamp} s is {off} m off, expected at most {FARTHEST} m");
-        return Err(Failure::Input(problem));
+        return Err(AppError::Input(problem));
     }
     let base_from_camera = RobotConfig::default().mount.base_from_camera();
     let (first_from_frame, camera_from_base) = (first.inverse(), base_from_camera.inverse());

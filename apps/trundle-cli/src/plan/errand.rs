@@ -1,9 +1,10 @@
 //! What is asked: the files and poses of the command line.
 
 use super::args::{PlaceArg, PlanArgs};
-use crate::{console, failure::Failure};
+use crate::console;
 use std::collections::BTreeMap;
 use std::path::Path;
+use trundle::app::AppError;
 use trundle::core::{Cell, Footprint, GridGeometry, OccupancyGrid, Pose2, Twist2, Vector2};
 use trundle::io::{read_graph, read_keep_out_mask, read_map, read_places, read_speed_mask};
 use trundle::planning::{CostMask, MultiGoalPlan, Plan, Planner, PlannerConfig, SpeedMask, WaypointGraph};
@@ -75,7 +76,7 @@ impl Moved {
 
 impl Errand {
     /// Reads and checks what the command line names.
-    pub fn read(args: &PlanArgs, robot: &RobotConfig) -> Result<Self, Failure> {
+    pub fn read(args: &PlanArgs, robot: &RobotConfig) -> Result<Self, AppError> {
         let grid = read_map(&args.map)?;
         let places = args.places.as_deref().map(read_places).transpose()?;
         let resolve = |place: &PlaceArg| resolve(place, args.places.as_deref(), places.as_ref());
@@ -203,27 +204,27 @@ fn resolve(
     place: &PlaceArg,
     file: Option<&Path>,
     places: Option<&BTreeMap<String, Pose2>>,
-) -> Result<Place, Failure> {
+) -> Result<Place, AppError> {
     let name = match place {
         PlaceArg::Pose(pose) => return Ok(Place { pose: pose.0, name: None }),
         PlaceArg::Name(name) => name,
     };
     let (Some(file), Some(places)) = (file, places) else {
         let message = format!("'{name}' is no pose X,Y,DEG; to name a place, give its file with --places");
-        return Err(Failure::Input(message));
+        return Err(AppError::Input(message));
     };
     match places.get(name) {
         Some(pose) => Ok(Place { pose: *pose, name: Some(name.clone()) }),
         None => {
             let known: Vec<&str> = places.keys().map(String::as_str).collect();
             let message = format!("{}: no place '{name}'; there are: {}", file.display(), known.join(", "));
-            Err(Failure::Input(message))
+            Err(AppError::Input(message))
         }
     }
 }
 
 /// Reads a keep-out mask into the planner; what it says, for pictures.
-fn keep_out(path: &Path, grid: &OccupancyGrid, planner: &mut Planner) -> Result<MaskShares, Failure> {
+fn keep_out(path: &Path, grid: &OccupancyGrid, planner: &mut Planner) -> Result<MaskShares, AppError> {
     let mask = read_keep_out_mask(path)?;
     let geometry = *mask.forbidden.geometry();
     on_the_map(path, &geometry, grid.geometry())?;
@@ -240,7 +241,7 @@ fn keep_out(path: &Path, grid: &OccupancyGrid, planner: &mut Planner) -> Result<
 }
 
 /// Reads a speed mask into the planner; what it says, for pictures. `full`: the robot's highest speed, m/s.
-fn slow(path: &Path, full: f64, grid: &OccupancyGrid, planner: &mut Planner) -> Result<MaskShares, Failure> {
+fn slow(path: &Path, full: f64, grid: &OccupancyGrid, planner: &mut Planner) -> Result<MaskShares, AppError> {
     let mask = read_speed_mask(path, full)?;
     on_the_map(path, &mask.geometry, grid.geometry())?;
     if mask.out_of_range > 0 {
@@ -257,14 +258,14 @@ fn slow(path: &Path, full: f64, grid: &OccupancyGrid, planner: &mut Planner) -> 
     Ok(MaskShares { geometry: mask.geometry, shares })
 }
 
-fn graph(path: &Path) -> Result<WaypointGraph, Failure> {
+fn graph(path: &Path) -> Result<WaypointGraph, AppError> {
     let file = read_graph(path)?;
     WaypointGraph::one_way(file.nodes, file.lanes)
-        .map_err(|error| Failure::Input(format!("{}: {error}", path.display())))
+        .map_err(|error| AppError::Input(format!("{}: {error}", path.display())))
 }
 
 /// A mask that lies wholly beside the map was made for another one, or another frame.
-fn on_the_map(path: &Path, mask: &GridGeometry, map: &GridGeometry) -> Result<(), Failure> {
+fn on_the_map(path: &Path, mask: &GridGeometry, map: &GridGeometry) -> Result<(), AppError> {
     let span = |g: &GridGeometry, axis: usize, cells: usize| {
         (g.origin[axis], g.origin[axis] + cells as f64 * g.resolution)
     };
@@ -282,7 +283,7 @@ fn on_the_map(path: &Path, mask: &GridGeometry, map: &GridGeometry) -> Result<()
             y.0,
             y.1
         );
-        return Err(Failure::Input(message));
+        return Err(AppError::Input(message));
     }
     Ok(())
 }

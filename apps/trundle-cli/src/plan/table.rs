@@ -72,20 +72,20 @@ pub fn constraints_csv(tour: &MultiGoalPlan) -> String {
 pub fn print_curves(tour: &MultiGoalPlan) {
     for (i, curve) in curves(tour).enumerate() {
         for (j, piece) in curve.pieces().iter().enumerate() {
-            console::say(&format!("curve {i}, piece {j}, {:.3} m, u = 0 to 1:", piece.span()));
+            console::print(&format!("curve {i}, piece {j}, {:.3} m, u = 0 to 1:", piece.span()));
             let c = piece.monomials();
             for (axis, name) in ["x", "y"].into_iter().enumerate() {
-                console::say(&format!("  {name}(u) = {}", polynomial(c.iter().map(|c| c[axis]))));
+                console::print(&format!("  {name}(u) = {}", polynomial(c.iter().map(|c| c[axis]))));
             }
         }
     }
     let active = constraints(tour);
-    console::say(&format!(
+    console::print(&format!(
         "active constraints, normal . control point <= offset, multiplier in m^2: {}",
         active.len()
     ));
     for [curve, piece, control, x, y, offset, multiplier] in active {
-        console::say(&format!(
+        console::print(&format!(
             "  curve {curve}, piece {piece}, control point {control}: {x:+.4} x {y:+.4} y <= {offset:.4} m, \
              multiplier {multiplier:.2e}"
         ));

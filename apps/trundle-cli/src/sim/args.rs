@@ -1,7 +1,7 @@
-use super::scene::SceneOptions;
 use crate::args::{Common, PoseArg};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
+use trundle::experiments::simulated::SceneOptions;
 use trundle::sim::import::UpAxis;
 use trundle::sim::{LaserConfig, SimConfig};
 

@@ -1,5 +1,5 @@
-use crate::failure::Failure;
 use rayon::prelude::*;
+use trundle::app::AppError;
 use trundle::core::{OccupancyGrid, Pose2, Pose3, RgbdImage, SensorEvent, Stamp, Vector2};
 use trundle::io::{CarmenLog, OutputFolder, Summary, TumFrame, TumWriter, write_map};
 use trundle::localization::{OdometryConfig, WheelOdometry};
@@ -25,7 +25,7 @@ pub struct DataSet<'f> {
 
 impl<'f> DataSet<'f> {
     /// An empty set of what `robot` will say.
-    pub fn new(folder: &'f OutputFolder, robot: &Simulator) -> Result<Self, Failure> {
+    pub fn new(folder: &'f OutputFolder, robot: &Simulator) -> Result<Self, AppError> {
         let config = robot.config();
         Ok(Self {
             folder,
@@ -40,7 +40,7 @@ impl<'f> DataSet<'f> {
     }
 
     /// Takes in what the robot said.
-    pub fn note(&mut self, event: SensorEvent) -> Result<(), Failure> {
+    pub fn note(&mut self, event: SensorEvent) -> Result<(), AppError> {
         match event {
             SensorEvent::Wheels(ticks) => {
                 let odometry = self.wheels.step_wheels(&ticks);
@@ -68,7 +68,7 @@ impl<'f> DataSet<'f> {
     }
 
     /// Writes all that is still to be written, with the true map; the folder is yet to be committed.
-    pub fn finish(mut self, grid: &OccupancyGrid, start: Pose2, summary: &Summary) -> Result<(), Failure> {
+    pub fn finish(mut self, grid: &OccupancyGrid, start: Pose2, summary: &Summary) -> Result<(), AppError> {
         self.flush()?;
         write_map(self.folder, "map", grid)?;
         self.folder.write("overview.png", &self.overview(grid, start))?;
@@ -79,9 +79,9 @@ impl<'f> DataSet<'f> {
         Ok(self.tum.finish()?)
     }
 
-    fn flush(&mut self) -> Result<(), Failure> {
+    fn flush(&mut self) -> Result<(), AppError> {
         let encoded: Result<Vec<_>, _> = self.waiting.par_iter().map(TumFrame::encode).collect();
-        for frame in encoded.map_err(|error| Failure::Input(error.to_string()))? {
+        for frame in encoded.map_err(|error| AppError::Input(error.to_string()))? {
             self.tum.frame(&frame)?;
         }
         self.waiting.clear();

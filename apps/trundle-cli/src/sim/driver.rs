@@ -1,6 +1,6 @@
 use super::{Hand, SimArgs};
-use crate::{failure::Failure, settings};
 use std::path::Path;
+use trundle::app::{AppError, read_text};
 use trundle::core::{Invalid, Pose2, Stamp, Twist2};
 use trundle::sim::{CommandScript, Following, WaypointFollower};
 
@@ -27,7 +27,7 @@ impl Driver {
     ///
     /// # Errors
     /// When its file cannot be read, a line of it is wrong, or there is no keyboard.
-    pub fn read(args: &SimArgs) -> Result<Self, Failure> {
+    pub fn read(args: &SimArgs) -> Result<Self, AppError> {
         if let Some(file) = &args.drive {
             return Ok(Self::Script(parsed(file, CommandScript::parse)?));
         }
@@ -41,7 +41,7 @@ impl Driver {
     ///
     /// # Errors
     /// When there is no keyboard any more.
-    pub fn twist(&mut self, stamp: Stamp, pose: Pose2) -> Result<Twist2, Failure> {
+    pub fn twist(&mut self, stamp: Stamp, pose: Pose2) -> Result<Twist2, AppError> {
         Ok(match self {
             Self::Nobody => Twist2::ZERO,
             Self::Script(script) => script.at(stamp.as_secs()),
@@ -77,7 +77,7 @@ impl Driver {
     }
 }
 
-fn parsed<T>(file: &Path, parse: impl Fn(&str) -> Result<T, Invalid>) -> Result<T, Failure> {
-    let text = settings::text_of(file)?;
-    parse(&text).map_err(|invalid| Failure::Input(format!("{}: {invalid}", file.display())))
+fn parsed<T>(file: &Path, parse: impl Fn(&str) -> Result<T, Invalid>) -> Result<T, AppError> {
+    let text = read_text(file)?;
+    parse(&text).map_err(|invalid| AppError::Input(format!("{}: {invalid}", file.display())))
 }

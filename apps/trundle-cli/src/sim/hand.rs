@@ -5,12 +5,13 @@ mod server;
 mod steering;
 mod terminal;
 
-use crate::pace::Pace;
-use crate::{console, failure::Failure};
+use crate::console;
 use page::{Page, Sight};
 use server::Server;
 use steering::Steering;
 use terminal::RawTerminal;
+use trundle::app::AppError;
+use trundle::app::real_time::RealTimePacer;
 use trundle::core::{OccupancyGrid, RgbdImage, Stamp, Twist2};
 use trundle::sim::Simulator;
 
@@ -24,7 +25,7 @@ pub struct Hand {
 struct Live {
     terminal: RawTerminal,
     server: Server,
-    pace: Pace,
+    pacer: RealTimePacer,
 }
 
 impl Hand {
@@ -32,7 +33,7 @@ impl Hand {
     ///
     /// # Errors
     /// When there is no terminal to read keys from.
-    pub fn ready() -> Result<Self, Failure> {
+    pub fn ready() -> Result<Self, AppError> {
         terminal::require()?;
         Ok(Self { steering: Steering::default(), live: None })
     }
@@ -41,13 +42,13 @@ impl Hand {
     ///
     /// # Errors
     /// When the page cannot be served or the terminal gives no keys.
-    pub fn begin(&mut self, grid: OccupancyGrid, quiet: bool) -> Result<(), Failure> {
+    pub fn begin(&mut self, grid: OccupancyGrid, quiet: bool) -> Result<(), AppError> {
         let server = Server::start(Page::new(grid))?;
         if !quiet {
-            console::say(&format!("See {} for what the robot sees.", server.url()));
-            console::say("Arrows or WASD: faster, slower, left, right. Space: stop. Q: quit.");
+            console::print(&format!("See {} for what the robot sees.", server.url()));
+            console::print("Arrows or WASD: faster, slower, left, right. Space: stop. Q: quit.");
         }
-        self.live = Some(Live { terminal: RawTerminal::new()?, server, pace: Pace::start() });
+        self.live = Some(Live { terminal: RawTerminal::new()?, server, pacer: RealTimePacer::start() });
         Ok(())
     }
 
@@ -55,9 +56,9 @@ impl Hand {
     ///
     /// # Errors
     /// When the terminal gives no keys any more.
-    pub fn twist(&mut self, stamp: Stamp) -> Result<Twist2, Failure> {
+    pub fn twist(&mut self, stamp: Stamp) -> Result<Twist2, AppError> {
         if let Some(live) = &mut self.live {
-            live.pace.wait_for(stamp.as_secs());
+            live.pacer.wait_for(stamp.as_secs());
             for key in live.terminal.pressed()? {
                 self.steering.press(key);
             }

@@ -1,7 +1,8 @@
 use super::{DataSet, Driver, SimArgs};
-use crate::{console, failure::Failure};
+use crate::console;
 use indicatif::ProgressBar;
 use std::time::Instant;
+use trundle::app::AppError;
 use trundle::core::{RobotBody, SensorEvent};
 use trundle::sim::Simulator;
 
@@ -32,12 +33,12 @@ impl Journey {
         robot: &mut Simulator,
         driver: &mut Driver,
         mut data: Option<&mut DataSet<'_>>,
-    ) -> Result<Self, Failure> {
+    ) -> Result<Self, AppError> {
         let begun = Instant::now();
         let bar = progress(args, robot, driver);
         let (mut images, mut scans) = (0, 0);
         let mut now = 0.0;
-        while let Some(event) = robot.next_event()? {
+        while let Some(event) = robot.next_event().map_err(AppError::input)? {
             let stamp = event.stamp();
             if is_over(stamp.as_secs(), args, driver) {
                 break;
@@ -46,7 +47,7 @@ impl Journey {
             match &event {
                 SensorEvent::Wheels(_) => {
                     let twist = driver.twist(stamp, robot.true_pose())?;
-                    robot.command(twist)?;
+                    robot.command(twist).map_err(AppError::input)?;
                 }
                 SensorEvent::Rgbd(image) => {
                     images += 1;

@@ -6,14 +6,14 @@ use trundle::sim::Simulator;
 
 impl Journey {
     /// Prints what happened, and what to do with the data.
-    pub fn say(&self, scene: &str, place: Option<&Path>, robot: &Simulator) {
-        console::say(&format!("{scene}: {}", self.verdict()));
-        console::table(&self.rows());
+    pub fn print(&self, scene: &str, place: Option<&Path>, robot: &Simulator) {
+        console::print(&format!("{scene}: {}", self.verdict()));
+        console::print_table(&self.rows());
         if let Some(place) = place {
             let height = robot.config().base_from_camera.translation.z;
             let ahead = robot.config().base_from_camera.rotate(trundle::core::Vector3::z());
             let tilt = (-ahead.z).asin().to_degrees();
-            console::say(&format!(
+            console::print(&format!(
                 "Wrote {0}; try: trundle slam {0} --height {height:.2} --tilt {tilt:.0}",
                 place.display()
             ));

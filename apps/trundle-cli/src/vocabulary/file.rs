@@ -1,28 +1,28 @@
-use crate::failure::Failure;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use trundle::app::AppError;
 use trundle::io::OutputFolder;
 use trundle::vision::{Descriptor, Vocabulary};
 
 /// The vocabulary of a file, else the program's own.
-pub fn read_or_builtin(path: Option<&Path>) -> Result<Arc<Vocabulary>, Failure> {
+pub fn read_or_builtin(path: Option<&Path>) -> Result<Arc<Vocabulary>, AppError> {
     path.map_or_else(|| Ok(Vocabulary::builtin()), |path| read(path).map(Arc::new))
 }
 
 /// A vocabulary in our own form.
-pub fn read(path: &Path) -> Result<Vocabulary, Failure> {
+pub fn read(path: &Path) -> Result<Vocabulary, AppError> {
     let bytes = std::fs::read(path).map_err(|error| unreadable(path, &error))?;
     Vocabulary::from_bytes(&bytes).map_err(|error| about(path, &error))
 }
 
 /// A vocabulary in the text form of DBoW2.
-pub fn read_dbow2(path: &Path) -> Result<Vocabulary, Failure> {
+pub fn read_dbow2(path: &Path) -> Result<Vocabulary, AppError> {
     let text = std::fs::read_to_string(path).map_err(|error| unreadable(path, &error))?;
     Vocabulary::from_dbow2_text(&text).map_err(|error| about(path, &error))
 }
 
 /// The descriptors of a folder, image by image in the order of the files' names.
-pub fn read_descriptors(folder: &Path) -> Result<Vec<Vec<Descriptor>>, Failure> {
+pub fn read_descriptors(folder: &Path) -> Result<Vec<Vec<Descriptor>>, AppError> {
     let entries = std::fs::read_dir(folder).and_then(Iterator::collect::<Result<Vec<_>, _>>);
     let mut paths: Vec<PathBuf> =
         entries.map_err(|error| unreadable(folder, &error))?.iter().map(std::fs::DirEntry::path).collect();
@@ -30,11 +30,11 @@ pub fn read_descriptors(folder: &Path) -> Result<Vec<Vec<Descriptor>>, Failure> 
     paths.iter().map(|path| of_image(path)).collect()
 }
 
-fn of_image(path: &Path) -> Result<Vec<Descriptor>, Failure> {
+fn of_image(path: &Path) -> Result<Vec<Descriptor>, AppError> {
     let bytes = std::fs::read(path).map_err(|error| unreadable(path, &error))?;
     if bytes.len() % 32 != 0 {
         let problem = format!("{} bytes, expected 32 a descriptor", bytes.len());
-        return Err(Failure::Input(format!("{}: {problem}", path.display())));
+        return Err(AppError::Input(format!("{}: {problem}", path.display())));
     }
     let word = |eight: &[u8]| eight.iter().rev().fold(0, |word, byte| word << 8 | u64::from(*byte));
     let descriptor = |bytes: &[u8]| Descriptor(std::array::from_fn(|i| word(&bytes[8 * i..8 * i + 8])));
@@ -42,11 +42,11 @@ fn of_image(path: &Path) -> Result<Vec<Descriptor>, Failure> {
 }
 
 /// Writes a file whole or not at all.
-pub fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
+pub fn write(path: &Path, bytes: &[u8]) -> Result<(), AppError> {
     let name = path.file_name().and_then(|name| name.to_str());
-    let name = name.ok_or_else(|| Failure::Input(format!("{} names no file to write", path.display())))?;
+    let name = name.ok_or_else(|| AppError::Input(format!("{} names no file to write", path.display())))?;
     if path.is_dir() {
-        return Err(Failure::Input(format!("{} is a folder, expected the name of a file", path.display())));
+        return Err(AppError::Input(format!("{} is a folder, expected the name of a file", path.display())));
     }
     let parent = path.parent().filter(|parent| !parent.as_os_str().is_empty());
     let folder = OutputFolder::create(parent.unwrap_or(Path::new(".")))?;
@@ -55,10 +55,10 @@ pub fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     Ok(())
 }
 
-fn unreadable(path: &Path, error: &std::io::Error) -> Failure {
-    Failure::Input(format!("cannot read {}: {error}", path.display()))
+fn unreadable(path: &Path, error: &std::io::Error) -> AppError {
+    AppError::Input(format!("cannot read {}: {error}", path.display()))
 }
 
-fn about(path: &Path, error: &impl std::fmt::Display) -> Failure {
-    Failure::Input(format!("{}: {error}", path.display()))
+fn about(path: &Path, error: &impl std::fmt::Display) -> AppError {
+    AppError::Input(format!("{}: {error}", path.display()))
 }

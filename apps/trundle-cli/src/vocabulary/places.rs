@@ -1,6 +1,6 @@
-use crate::failure::Failure;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use trundle::app::AppError;
 use trundle::core::{Footprint, Pose2, Pose3};
 use trundle::sim::{HeightBand, Obstacles, World, camera_mount};
 
@@ -48,7 +48,7 @@ impl Place {
 
 impl Places {
     /// The places of a world, the same ones in the same order for the same seed.
-    pub fn of(world: &World, seed: u64) -> Result<Self, Failure> {
+    pub fn of(world: &World, seed: u64) -> Result<Self, AppError> {
         let (low, high) = world.bounds();
         Ok(Self {
             obstacles: world.obstacles(HeightBand::new(IN_THE_WAY.0, IN_THE_WAY.1)?),

@@ -2,8 +2,9 @@ use super::args::{RecallArgs, Sources};
 use super::file;
 use super::scenery::Scenery;
 use super::shots::{self, Photographer, Shot};
-use crate::{console, failure::Failure};
+use crate::console;
 use std::sync::Arc;
+use trundle::app::AppError;
 use trundle::core::Pose3;
 use trundle::vision::{PlaceIndex, Vocabulary};
 
@@ -21,7 +22,7 @@ struct Album {
 }
 
 /// `trundle vocabulary recall`: a row for each album, a column for each vocabulary.
-pub fn run(args: &RecallArgs) -> Result<(), Failure> {
+pub fn run(args: &RecallArgs) -> Result<(), AppError> {
     shots::check(&args.sources)?;
     let vocabularies = vocabularies(args)?;
     let mut head = vec!["recall at 1".to_owned(), "places".to_owned()];
@@ -34,11 +35,11 @@ pub fn run(args: &RecallArgs) -> Result<(), Failure> {
         row.extend(vocabularies.iter().map(|(_, vocabulary)| share(vocabulary)));
         rows.push(row);
     }
-    console::table(&rows);
+    console::print_table(&rows);
     Ok(())
 }
 
-fn vocabularies(args: &RecallArgs) -> Result<Vec<(String, Arc<Vocabulary>)>, Failure> {
+fn vocabularies(args: &RecallArgs) -> Result<Vec<(String, Arc<Vocabulary>)>, AppError> {
     if args.vocabularies.is_empty() {
         return Ok(vec![("built in".to_owned(), Vocabulary::builtin())]);
     }
@@ -46,13 +47,13 @@ fn vocabularies(args: &RecallArgs) -> Result<Vec<(String, Arc<Vocabulary>)>, Fai
     args.vocabularies.iter().map(|path| Ok((name(path), Arc::new(file::read(path)?)))).collect()
 }
 
-fn albums(sources: &Sources, quiet: bool) -> Result<Vec<Album>, Failure> {
+fn albums(sources: &Sources, quiet: bool) -> Result<Vec<Album>, AppError> {
     let mut albums = Vec::new();
     for folder in &sources.folders {
         let frames = shots::of_folder(folder, sources, quiet)?;
         if frames.len() <= STRIDE || frames.iter().any(|frame| frame.pose.is_none()) {
             let problem = format!("expected more than {STRIDE} frames with groundtruth.txt");
-            return Err(Failure::Input(format!("{}: {problem}", folder.display())));
+            return Err(AppError::Input(format!("{}: {problem}", folder.display())));
         }
         albums.push(of_frames(folder.display().to_string(), frames));
     }
@@ -74,7 +75,7 @@ fn of_frames(name: String, frames: Vec<Shot>) -> Album {
     album
 }
 
-fn of_scene(scenery: &Scenery, seed: u64, sources: &Sources, quiet: bool) -> Result<Album, Failure> {
+fn of_scene(scenery: &Scenery, seed: u64, sources: &Sources, quiet: bool) -> Result<Album, AppError> {
     let mut camera = Photographer::new(scenery, seed, sources.features_per_image as usize)?;
     let mut album = Album { name: scenery.name.clone(), places: Vec::new(), looks: Vec::new() };
     let bar = console::bar(quiet, sources.views as usize);

@@ -1,5 +1,5 @@
-use crate::failure::Failure;
 use std::path::Path;
+use trundle::app::AppError;
 use trundle::sim::import::{GltfOptions, gltf};
 use trundle::sim::{Lights, Scene, Stage, World};
 
@@ -17,12 +17,12 @@ impl Scenery {
     ///
     /// # Errors
     /// When there is no such scene, or the file is none.
-    pub fn open(name: &str, seed: u64, z_up: bool) -> Result<Self, Failure> {
+    pub fn open(name: &str, seed: u64, z_up: bool) -> Result<Self, AppError> {
         let file = Path::new(name);
         let extension = file.extension();
         if extension.is_some_and(|e| e.eq_ignore_ascii_case("glb") || e.eq_ignore_ascii_case("gltf")) {
             let options = if z_up { GltfOptions::z_up() } else { GltfOptions::default() };
-            let mesh = gltf(file, &options).map_err(|error| Failure::Input(error.to_string()))?;
+            let mesh = gltf(file, &options).map_err(|error| AppError::Input(error.to_string()))?;
             let world = World::with_meshes(Vec::new(), vec![mesh], seed)?;
             let name = file.file_stem().unwrap_or_default().to_string_lossy();
             return Ok(Self { name: format!("{name} {seed}"), world, lights: Lights::default() });

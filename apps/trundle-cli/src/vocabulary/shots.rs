@@ -1,8 +1,9 @@
 use super::args::Sources;
 use super::places::{Place, Places};
 use super::scenery::Scenery;
-use crate::{console, failure::Failure};
+use crate::console;
 use std::path::Path;
+use trundle::app::AppError;
 use trundle::core::{Pose3, Stamp, gray_from_color};
 use trundle::io::{TUM_DEPTH_SCALE, TumSequence};
 use trundle::sim::{Renderer, RgbdSensor, SimConfig, View};
@@ -29,7 +30,7 @@ pub struct Shot {
 ///
 /// # Errors
 /// When there is no source, a folder or scene cannot be read, or a scene has no place to look from.
-pub fn of(sources: &Sources, quiet: bool) -> Result<Vec<Shot>, Failure> {
+pub fn of(sources: &Sources, quiet: bool) -> Result<Vec<Shot>, AppError> {
     check(sources)?;
     let mut shots = Vec::new();
     for folder in &sources.folders {
@@ -50,9 +51,9 @@ pub fn of(sources: &Sources, quiet: bool) -> Result<Vec<Shot>, Failure> {
 }
 
 /// Says when there is nothing to look at.
-pub fn check(sources: &Sources) -> Result<(), Failure> {
+pub fn check(sources: &Sources) -> Result<(), AppError> {
     if sources.folders.is_empty() && sources.scenes.is_empty() {
-        return Err(Failure::Input("no images: name a TUM RGB-D folder or a --scene".to_owned()));
+        return Err(AppError::Input("no images: name a TUM RGB-D folder or a --scene".to_owned()));
     }
     Ok(())
 }
@@ -64,19 +65,19 @@ pub fn scenes(sources: &Sources) -> impl Iterator<Item = (&str, u64)> {
 }
 
 /// The frames asked for of a TUM RGB-D folder.
-pub fn of_folder(folder: &Path, sources: &Sources, quiet: bool) -> Result<Vec<Shot>, Failure> {
+pub fn of_folder(folder: &Path, sources: &Sources, quiet: bool) -> Result<Vec<Shot>, AppError> {
     // The depth is not looked at: its scale does not matter.
     let sequence = TumSequence::open(folder, TUM_DEPTH_SCALE, TumSequence::MAX_DIFFERENCE)?;
     let first = sources.frames.map_or(0, |span| span.first as usize);
     let end = sources.frames.map_or(sequence.len(), |span| sequence.len().min(span.last as usize + 1));
     if first >= end {
         let problem = format!("{}: no frame {first}, it has {} frames", folder.display(), sequence.len());
-        return Err(Failure::Input(problem));
+        return Err(AppError::Input(problem));
     }
     let mut orb = extractor(sources.features_per_image as usize)?;
     let bar = console::bar(quiet, end - first);
     let shot = |i: usize| {
-        let image = sequence.load(i).map_err(|error| Failure::Input(error.to_string()))?;
+        let image = sequence.load(i).map_err(|error| AppError::Input(error.to_string()))?;
         let descriptors = orb.extract(&gray_from_color(image.color())).descriptors;
         bar.inc(1);
         Ok(Shot { pose: true_pose(&sequence, image.stamp()), descriptors })
@@ -92,7 +93,7 @@ fn true_pose(sequence: &TumSequence, stamp: Stamp) -> Option<Pose3> {
     nearest.map(|(_, pose)| *pose)
 }
 
-fn extractor(features: usize) -> Result<OrbExtractor, Failure> {
+fn extractor(features: usize) -> Result<OrbExtractor, AppError> {
     Ok(OrbExtractor::new(OrbConfig { features, ..OrbConfig::default() })?)
 }
 
@@ -116,22 +117,22 @@ struct Camera {
 
 impl<'s> Photographer<'s> {
     /// The pictures, places and noise depend on the seed alone.
-    pub fn new(scenery: &'s Scenery, seed: u64, features: usize) -> Result<Self, Failure> {
+    pub fn new(scenery: &'s Scenery, seed: u64, features: usize) -> Result<Self, AppError> {
         let camera = |config: SimConfig| {
             let renderer = Renderer::new(config.camera)?;
             let sensor = RgbdSensor::new(config.depth_noise, config.color_noise, seed)?;
             Ok(Camera { view: renderer.blank(), renderer, sensor, orb: extractor(features)? })
         };
-        let cameras: Result<Vec<Camera>, Failure> =
+        let cameras: Result<Vec<Camera>, AppError> =
             [SimConfig::kinect_v2(), SimConfig::kinect_v1()].map(camera).into_iter().collect();
         let places = Places::of(&scenery.world, seed)?;
         Ok(Self { scenery, places, cameras: cameras?, turn: 0, taken: 0 })
     }
 
     /// A picture from a chance place where there is something to see, by the next camera.
-    pub fn anywhere(&mut self) -> Result<(Place, Shot), Failure> {
+    pub fn anywhere(&mut self) -> Result<(Place, Shot), AppError> {
         let nowhere =
-            || Failure::Input(format!("{}: found no place with something to see", self.scenery.name));
+            || AppError::Input(format!("{}: found no place with something to see", self.scenery.name));
         self.turn = (self.turn + 1) % self.cameras.len();
         for _ in 0..MOST_DRAWN {
             let place = self.places.draw().ok_or_else(nowhere)?;
@@ -144,12 +145,12 @@ impl<'s> Photographer<'s> {
     }
 
     /// A second look at a place, by the same camera.
-    pub fn again(&mut self, place: Place) -> Result<Shot, Failure> {
+    pub fn again(&mut self, place: Place) -> Result<Shot, AppError> {
         let near = self.places.near(place);
         self.at(near)
     }
 
-    fn at(&mut self, place: Place) -> Result<Shot, Failure> {
+    fn at(&mut self, place: Place) -> Result<Shot, AppError> {
         let Camera { renderer, sensor, view, orb } = &mut self.cameras[self.turn];
         let pose = place.camera();
         renderer.render(&self.scenery.stage(), &pose, view);

@@ -1,10 +1,10 @@
 use super::page::Page;
-use crate::failure::Failure;
 use std::io::{Read, Write};
 use std::net::{Ipv4Addr, SocketAddr, TcpListener, TcpStream};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
+use trundle::app::AppError;
 
 /// So many visitors at a time; others are sent away.
 const MOST_VISITORS: usize = 16;
@@ -27,8 +27,8 @@ impl Server {
     ///
     /// # Errors
     /// When the machine refuses a port.
-    pub fn start(page: Page) -> Result<Self, Failure> {
-        let refused = |error| Failure::Environment(format!("cannot serve a page at 127.0.0.1: {error}"));
+    pub fn start(page: Page) -> Result<Self, AppError> {
+        let refused = |error| AppError::Environment(format!("cannot serve a page at 127.0.0.1: {error}"));
         let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).map_err(refused)?;
         let address = listener.local_addr().map_err(refused)?;
         let page = Arc::new(page);

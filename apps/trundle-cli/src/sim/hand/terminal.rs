@@ -1,19 +1,19 @@
-use crate::failure::Failure;
 use crossterm::event::{Event, KeyEvent, KeyEventKind, poll, read};
 use crossterm::terminal::{disable_raw_mode, enable_raw_mode};
 use std::io::IsTerminal;
 use std::time::Duration;
+use trundle::app::AppError;
 
 /// The terminal while it hands over each key at once, unseen; dropped, it is as before.
 #[derive(Debug)]
 pub struct RawTerminal(());
 
 /// Refuses to go on where nobody can press a key.
-pub fn require() -> Result<(), Failure> {
+pub fn require() -> Result<(), AppError> {
     if std::io::stdin().is_terminal() {
         Ok(())
     } else {
-        Err(Failure::Input("--keys reads the keyboard, but standard input is no terminal".to_owned()))
+        Err(AppError::Input("--keys reads the keyboard, but standard input is no terminal".to_owned()))
     }
 }
 
@@ -22,7 +22,7 @@ impl RawTerminal {
     ///
     /// # Errors
     /// When it refuses.
-    pub fn new() -> Result<Self, Failure> {
+    pub fn new() -> Result<Self, AppError> {
         enable_raw_mode().map(|()| Self(())).map_err(refused)
     }
 
@@ -30,7 +30,7 @@ impl RawTerminal {
     ///
     /// # Errors
     /// When the terminal has gone away.
-    pub fn pressed(&mut self) -> Result<Vec<KeyEvent>, Failure> {
+    pub fn pressed(&mut self) -> Result<Vec<KeyEvent>, AppError> {
         let mut keys = Vec::new();
         while poll(Duration::ZERO).map_err(refused)? {
             match read().map_err(refused)? {
@@ -48,6 +48,6 @@ impl Drop for RawTerminal {
     }
 }
 
-fn refused(error: std::io::Error) -> Failure {
-    Failure::Environment(format!("the terminal gives no keys: {error}"))
+fn refused(error: std::io::Error) -> AppError {
+    AppError::Environment(format!("the terminal gives no keys: {error}"))
 }

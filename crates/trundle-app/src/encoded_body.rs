@@ -1,0 +1,64 @@
+//! A body whose events arrive encoded, as a recording holds them: any [`RobotBody`], a recording, or live hardware.
+
+use crate::AppError;
+use trundle_core::{RobotBody, Twist2};
+use trundle_io::EncodedEvent;
+use trundle_runtime::{Answer, Helper, Job};
+
+/// What a run is fed.
+#[non_exhaustive]
+pub enum RunInput {
+    /// A sensor's event, encoded as it is recorded.
+    Event(EncodedEvent),
+    /// The result of a background job.
+    Answer(Answer),
+    /// The user ends the run.
+    Interrupted,
+}
+
+/// A body whose events arrive encoded, as they are recorded. Background jobs of the robot run beside it.
+pub trait EncodedBody {
+    /// The next input; `None` at the end.
+    ///
+    /// # Errors
+    /// When a sensor, the connection or the recording failed for good.
+    fn next_input(&mut self) -> Result<Option<RunInput>, AppError>;
+
+    /// Asks the base to move with `twist` until the next command.
+    ///
+    /// # Errors
+    /// When the base cannot be reached or refuses the command.
+    fn send_command(&mut self, twist: Twist2) -> Result<(), AppError>;
+
+    /// Starts a background job of the robot.
+    fn start_job(&mut self, job: Job);
+
+    /// The result of the job that is still under way at the end of a run; `None` where there is none.
+    fn finish_job(&mut self, helper: Helper) -> Option<Answer>;
+
+    /// Separate contacts so far, in truth; `None` where only the bumper reports contacts.
+    fn true_contacts(&self) -> Option<u32>;
+}
+
+/// Every body that works in the data's time: the robot's long work is done within its steps.
+impl<B: RobotBody> EncodedBody for B {
+    fn next_input(&mut self) -> Result<Option<RunInput>, AppError> {
+        let event = self.next_event().map_err(|error| AppError::Input(error.to_string()))?;
+        let event = event.map(|event| EncodedEvent::encode(&event)).transpose();
+        Ok(event.map_err(|error| AppError::Input(error.to_string()))?.map(RunInput::Event))
+    }
+
+    fn send_command(&mut self, twist: Twist2) -> Result<(), AppError> {
+        self.command(twist).map_err(|error| AppError::Input(error.to_string()))
+    }
+
+    fn start_job(&mut self, _job: Job) {}
+
+    fn finish_job(&mut self, _helper: Helper) -> Option<Answer> {
+        None
+    }
+
+    fn true_contacts(&self) -> Option<u32> {
+        self.contact_count()
+    }
+}

@@ -1,0 +1,40 @@
+//! Why a run or a command cannot go on, in one sentence for a person.
+
+use thiserror::Error;
+use trundle_core::Invalid;
+use trundle_io::IoError;
+
+/// Why a run or a command cannot go on, in one sentence for a person.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum AppError {
+    /// A file or folder cannot be read, understood or written.
+    #[error(transparent)]
+    Io(#[from] IoError),
+    /// A value cannot be accepted.
+    #[error("{0}")]
+    Invalid(#[from] Invalid),
+    /// An argument, a file's content or a body's event cannot be accepted.
+    #[error("{0}")]
+    Input(String),
+    /// The machine refused a thread, a device or a signal.
+    #[error("{0}")]
+    Environment(String),
+}
+
+impl AppError {
+    /// An error about input: an argument, a file's content or a body's event.
+    #[must_use]
+    pub fn input(problem: impl std::fmt::Display) -> Self {
+        Self::Input(problem.to_string())
+    }
+
+    /// The same error with the name of the file or part that it concerns in front, where it has none.
+    #[must_use]
+    pub fn in_context(self, context: &dyn std::fmt::Display) -> Self {
+        match self {
+            Self::Input(problem) => Self::Input(format!("{context}: {problem}")),
+            other => other,
+        }
+    }
+}

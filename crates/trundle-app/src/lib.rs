@@ -1,0 +1,58 @@
+//! A run of the robot on any body: what every front end shares.
+//!
+//! A [`RunSetup`] names the robot and its mission. [`run_on_body`] feeds the robot from a body ([`trundle_core::RobotBody`]: simulator
+//! or hardware; [`RunReplayer`]: a recording), records each input, and ends when the mission is over. [`report::write_run`] writes the
+//! folder with map, trajectories, report and summary.
+//!
+//! ```
+//! use trundle_app::{Progress, RunLog, RunRecorder, RunSetup, run_on_body};
+//! use trundle_core::Pose2;
+//! use trundle_io::OutputFolder;
+//! use trundle_runtime::{Mission, RobotConfig, Task};
+//! use trundle_sim::{Scene, SimConfig, Simulator};
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! # let place = tempfile::tempdir()?;
+//! let mut body = Simulator::new(Scene::by_name("demo", 1)?, SimConfig::default(), 1)?; // or a driver of yours
+//! let mission = Mission::new(vec![Task::Go(Pose2::new(0.5, 0.0, 0.0))])?;
+//! let setup = RunSetup::new("demo", mission, RobotConfig::default()).with_time_limit(1.0);
+//! let folder = OutputFolder::create(&place.path().join("run"))?;
+//! let recorder = RunRecorder::to_folder(&folder)?;
+//! let run = run_on_body(&setup, &mut body, recorder, RunLog::default(), Progress::hidden())?;
+//! folder.commit()?;
+//! assert_eq!(run.log.contacts(), 0);
+//! # Ok(()) }
+//! ```
+
+mod best_view;
+mod checkpoint_writer;
+pub mod dock;
+mod encoded_body;
+mod error;
+mod progress;
+pub mod real_time;
+mod recorder;
+mod replayer;
+pub mod report;
+mod robot_file;
+mod run;
+mod run_log;
+mod run_mark;
+mod session;
+mod settings;
+mod setup;
+
+pub use best_view::BestView;
+pub use checkpoint_writer::CheckpointWriter;
+pub use encoded_body::{EncodedBody, RunInput};
+pub use error::AppError;
+pub use progress::Progress;
+pub use recorder::{FileRecorder, RunRecorder};
+pub use replayer::RunReplayer;
+pub use robot_file::load_robot;
+pub use run::{AFTER_ARRIVAL_S, FinishedRun, RecordingCost, run_on_body};
+pub use run_log::{RunLog, StateChange, TrackCounts};
+pub use run_mark::{RunMark, RunMarkMessage};
+pub use session::RunSession;
+pub use settings::{read_text, read_toml};
+pub use setup::RunSetup;

@@ -1,0 +1,63 @@
+//! Where a run shows its progress: a line that a front end replaces each time.
+
+use std::fmt;
+use std::sync::Arc;
+
+/// Shows one line of progress; the newest replaces the one shown. Hidden unless a front end gives a function.
+#[derive(Clone, Default)]
+pub struct Progress(Option<Arc<dyn Fn(&str) + Send + Sync>>);
+
+impl Progress {
+    /// Shows nothing.
+    #[must_use]
+    pub fn hidden() -> Self {
+        Self(None)
+    }
+
+    /// Calls `show` with each line, from any thread.
+    #[must_use]
+    pub fn new(show: impl Fn(&str) + Send + Sync + 'static) -> Self {
+        Self(Some(Arc::new(show)))
+    }
+
+    /// Whether nobody looks: the line need not be made.
+    #[must_use]
+    pub fn is_hidden(&self) -> bool {
+        self.0.is_none()
+    }
+
+    /// Shows a line.
+    pub fn show(&self, line: &str) {
+        if let Some(show) = &self.0 {
+            show(line);
+        }
+    }
+}
+
+impl fmt::Debug for Progress {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_tuple("Progress").field(&if self.is_hidden() { "hidden" } else { "shown" }).finish()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::Mutex;
+
+    #[test]
+    fn each_line_reaches_the_front_end_in_order() {
+        let lines = Arc::new(Mutex::new(Vec::new()));
+        let sink = Arc::clone(&lines);
+        let progress = Progress::new(move |line| sink.lock().unwrap().push(line.to_owned()));
+        progress.show("1 of 2");
+        progress.clone().show("2 of 2");
+        assert_eq!(*lines.lock().unwrap(), ["1 of 2", "2 of 2"]);
+    }
+
+    #[test]
+    fn hidden_progress_asks_for_no_line() {
+        assert!(Progress::hidden().is_hidden() && Progress::default().is_hidden());
+        assert!(!Progress::new(|_| {}).is_hidden());
+    }
+}

@@ -1,0 +1,75 @@
+//! A run in real time: the body in threads of its own on one core, the robot on another.
+//!
+//! | thread | core | work |
+//! |---|---|---|
+//! | the body's | first | sensors and base |
+//! | control | last | the robot's steps |
+//! | perception, decision | last | the robot's long work |
+//! | recorder | last | the recording |
+
+mod background_body;
+mod interrupt;
+mod memory_usage;
+mod pacer;
+mod report;
+mod threaded_body;
+
+pub use background_body::{BackgroundBody, BodyTiming, TimedEvent};
+pub use memory_usage::MemoryUsage;
+pub use pacer::RealTimePacer;
+pub use report::{QueueLength, RealTimeReport, ThreadLoad};
+
+use crate::{AppError, FinishedRun, Progress, RunLog, RunRecorder, RunSetup, run_on_body};
+use rayon::ThreadPoolBuilder;
+use std::path::Path;
+use threaded_body::ThreadedBody;
+use trundle_io::OutputFolder;
+use trundle_runtime::real_time::{InboxDoor, Place, PulseConfig, thread_time};
+
+/// Image rate of a run in real time [Hz]. Source: ours, the rate of a Kinect.
+pub const CAMERA_HZ: f64 = 30.0;
+/// Time without a command after which the base stops by itself [s]. Source: ours.
+pub const COMMAND_TIMEOUT_S: f64 = 0.2;
+/// Niceness of the worker threads above that of control. Source: ours.
+const WORKER_NICENESS: i32 = 5;
+/// Niceness of the recorder's thread above that of control. Source: ours.
+const RECORDER_NICENESS: i32 = 10;
+
+/// Runs the robot of `setup` in real time beside the body that `start_body` starts, until its mission is over or the user
+/// interrupts; records everything into `folder`.
+///
+/// # Errors
+/// When the system refuses a thread, the body cannot be started, or the robot cannot be accepted.
+pub fn run_in_real_time<B: BackgroundBody>(
+    setup: &RunSetup,
+    start_body: impl FnOnce(InboxDoor<TimedEvent>, Place) -> Result<B, AppError> + Send,
+    folder: &OutputFolder,
+    checkpoint_file: Option<&Path>,
+    log: RunLog,
+    progress: Progress,
+) -> Result<(FinishedRun, RealTimeReport), AppError> {
+    let stop = interrupt::flag()?;
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let (outside, inside) = if cores > 1 { (Some(0), Some(cores - 1)) } else { (None, None) };
+    let at = move |nice| Place { core: inside, nice, is_first: false };
+    let recorder =
+        RunRecorder::threaded(folder, at(RECORDER_NICENESS))?.with_checkpoint_file(checkpoint_file)?;
+    let pool = ThreadPoolBuilder::new()
+        .num_threads(1)
+        .thread_name(|_| "control".to_owned())
+        .start_handler(move |_| _ = Place { is_first: true, ..at(0) }.take())
+        .build()
+        .map_err(|error| AppError::Environment(format!("cannot start a thread: {error}")))?;
+    pool.install(|| {
+        let mut live = ThreadedBody::start(PulseConfig::default(), at(WORKER_NICENESS), stop)?;
+        let body = start_body(live.event_sender(), Place { core: outside, ..Place::default() })?;
+        live.connect(body.commands(), body.contacts());
+        let before = thread_time().unwrap_or_default();
+        let result = run_on_body(setup, &mut live, recorder, log, progress);
+        let control = thread_time().unwrap_or_default().saturating_sub(before);
+        let body = body.stop();
+        let run = result?;
+        let report = live.report(&run, control, body?);
+        Ok((run, report))
+    })
+}

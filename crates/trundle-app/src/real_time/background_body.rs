@@ -1,0 +1,55 @@
+//! A body that runs in threads of its own and sends its events into the run's inbox.
+
+use super::MemoryUsage;
+use crate::AppError;
+use serde::Serialize;
+use std::sync::Arc;
+use std::sync::atomic::AtomicU32;
+use std::sync::mpsc::Sender;
+use std::time::Instant;
+use trundle_core::Twist2;
+use trundle_io::EncodedEvent;
+
+/// An event and the instant of its arrival.
+pub struct TimedEvent {
+    /// The event.
+    pub event: EncodedEvent,
+    /// The instant of its arrival.
+    pub at: Instant,
+}
+
+/// A body that runs in threads of its own: it sends its events into the inbox that it was started with.
+pub trait BackgroundBody {
+    /// Where commands go.
+    fn commands(&self) -> Sender<Twist2>;
+
+    /// The count of separate contacts, in truth.
+    fn contacts(&self) -> Arc<AtomicU32>;
+
+    /// Ends the body's threads.
+    ///
+    /// # Errors
+    /// When the body failed during the run.
+    fn stop(self) -> Result<BodyTiming, AppError>;
+}
+
+/// How the body kept time. Where a simulated body did not, the robot's figures are not the robot's alone.
+#[derive(Debug, Clone, Default, Serialize)]
+pub struct BodyTiming {
+    /// Lateness of the base's readings, 99.9th percentile [ms].
+    pub lateness_p999_ms: f64,
+    /// Lateness of the base's readings, maximum [ms].
+    #[serde(rename = "lateness_most_ms")]
+    pub lateness_max_ms: f64,
+    /// Images that the camera had no time to take.
+    pub images_not_taken: u64,
+    /// Images due.
+    pub images: u64,
+    /// Age of an image at its arrival, median [ms].
+    pub image_age_median_ms: f64,
+    /// Age of an image at its arrival, 99th percentile [ms].
+    pub image_age_p99_ms: f64,
+    /// Resident memory of the program.
+    #[serde(skip)]
+    pub memory: MemoryUsage,
+}

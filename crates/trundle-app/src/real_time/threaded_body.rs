@@ -1,0 +1,151 @@
+//! A background body as the control thread receives it: events and answers through the inbox, jobs to the worker threads.
+
+use super::{BodyTiming, QueueLength, RealTimeReport, ThreadLoad, TimedEvent};
+use crate::{AppError, EncodedBody, FinishedRun, RunInput};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
+use std::sync::mpsc::Sender;
+use std::time::{Duration, Instant};
+use trundle_core::Twist2;
+use trundle_io::EncodedEvent;
+use trundle_runtime::real_time::{Crew, Inbox, InboxDoor, Input as Got, Place, Post, Pulse, PulseConfig};
+use trundle_runtime::{Answer, Helper, Histogram, Job};
+
+/// A background body as the control thread receives it: events and answers come through the inbox, jobs go to the worker threads.
+pub struct ThreadedBody {
+    inbox: Inbox<TimedEvent>,
+    crew: Option<Crew>,
+    pulse: Pulse,
+    commands: Option<Sender<Twist2>>,
+    stop: Arc<AtomicBool>,
+    /// Arrival of the newest reading of the wheels, until its command leaves.
+    reading: Option<Instant>,
+    /// Workers that have a job, and since when.
+    busy: BTreeMap<Helper, Instant>,
+    /// Time from the start of a job to the use of its result [ms].
+    waits: BTreeMap<Helper, Histogram>,
+    costs: Vec<ThreadLoad>,
+    /// Separate contacts, in truth.
+    contacts: Arc<AtomicU32>,
+}
+
+/// Largest number of events that wait for the control thread: some seconds. Later events are refused. Source: ours.
+const INBOX_CAPACITY: usize = 1024;
+/// Time without any event after which the body counts as gone. Source: ours.
+const BODY_TIMEOUT: Duration = Duration::from_secs(5);
+
+impl ThreadedBody {
+    /// Starts the worker threads at `helpers`.
+    pub fn start(config: PulseConfig, helpers: Place, stop: Arc<AtomicBool>) -> Result<Self, AppError> {
+        let inbox = Inbox::new(INBOX_CAPACITY);
+        let door: InboxDoor<TimedEvent> = inbox.door();
+        let crew = Crew::start(helpers, move |answer| _ = door.hand_in(Post::Answer(answer)));
+        let crew = crew.map_err(|error| AppError::Environment(format!("cannot start a thread: {error}")))?;
+        Ok(Self {
+            inbox,
+            crew: Some(crew),
+            pulse: Pulse::new(config.validated()?),
+            commands: None,
+            stop,
+            reading: None,
+            busy: BTreeMap::new(),
+            waits: BTreeMap::new(),
+            costs: Vec::new(),
+            contacts: Arc::default(),
+        })
+    }
+
+    /// Where the body's threads send events.
+    pub fn event_sender(&self) -> InboxDoor<TimedEvent> {
+        self.inbox.door()
+    }
+
+    /// Sends commands to `commands` from now on, and reads the contacts from `contacts`.
+    pub fn connect(&mut self, commands: Sender<Twist2>, contacts: Arc<AtomicU32>) {
+        self.commands = Some(commands);
+        self.contacts = contacts;
+    }
+
+    fn wait_for_input(&mut self) -> Option<RunInput> {
+        match self.inbox.next(&self.pulse, BODY_TIMEOUT)? {
+            Got::Event(TimedEvent { event, at }) => {
+                if matches!(event, EncodedEvent::Wheels(_)) {
+                    self.pulse.begin();
+                    self.reading = Some(at);
+                }
+                Some(RunInput::Event(event))
+            }
+            Got::Answer(answer) => {
+                self.on_answer(answer.helper());
+                Some(RunInput::Answer(answer))
+            }
+        }
+    }
+
+    fn on_answer(&mut self, helper: Helper) {
+        if let Some(since) = self.busy.remove(&helper) {
+            self.waits.entry(helper).or_default().note(since.elapsed().as_secs_f64() * 1e3);
+        }
+    }
+
+    /// How the run kept time, when it is over.
+    pub fn report(mut self, run: &FinishedRun, control: Duration, body: BodyTiming) -> RealTimeReport {
+        let part = |spent: Duration| spent.as_secs_f64() / run.seconds;
+        let mut load = vec![ThreadLoad { thread: "control".to_owned(), part: part(control) }];
+        for cost in self.crew.take().map(Crew::dismiss).unwrap_or_default() {
+            let thread = format!("{:?}", cost.helper).to_lowercase();
+            load.push(ThreadLoad { thread, part: part(cost.spent) });
+        }
+        load.push(ThreadLoad { thread: "recorder".to_owned(), part: part(run.recording.cpu_time) });
+        load.append(&mut self.costs);
+        let queues = [("control", self.inbox.lengths()), ("recorder", &run.recording.queue_lengths)];
+        RealTimeReport {
+            control: self.pulse.report(),
+            load_total: load.iter().map(|load| load.part).sum(),
+            load,
+            queues: queues.iter().filter_map(|(name, lengths)| QueueLength::of(name, lengths)).collect(),
+            refused: self.inbox.refused(),
+            lines_lost: run.recording.lines_lost,
+            memory: body.memory.clone(),
+            body,
+            interrupted: self.stop.load(Ordering::Relaxed),
+        }
+    }
+}
+
+impl EncodedBody for ThreadedBody {
+    fn next_input(&mut self) -> Result<Option<RunInput>, AppError> {
+        if self.stop.load(Ordering::Relaxed) {
+            return Ok(Some(RunInput::Interrupted));
+        }
+        Ok(self.wait_for_input())
+    }
+
+    fn send_command(&mut self, twist: Twist2) -> Result<(), AppError> {
+        // A base that is gone takes no commands; the missing readings tell.
+        let _ = self.commands.as_ref().map(|commands| commands.send(twist));
+        if let Some(arrival) = self.reading.take() {
+            self.pulse.end(arrival);
+        }
+        Ok(())
+    }
+
+    fn start_job(&mut self, job: Job) {
+        self.busy.insert(job.helper(), Instant::now());
+        if let Some(crew) = &self.crew {
+            crew.give(job);
+        }
+    }
+
+    fn finish_job(&mut self, helper: Helper) -> Option<Answer> {
+        self.busy.get(&helper)?;
+        let answer = self.inbox.next_answer(helper, BODY_TIMEOUT)?;
+        self.on_answer(helper);
+        Some(answer)
+    }
+
+    fn true_contacts(&self) -> Option<u32> {
+        Some(self.contacts.load(Ordering::Relaxed))
+    }
+}

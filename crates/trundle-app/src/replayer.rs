@@ -1,0 +1,101 @@
+//! A recording as the robot's body: each event and each job's result at the place where the recording holds it.
+
+use crate::encoded_body::{EncodedBody, RunInput};
+use crate::run_mark::{RunMark, RunMarkMessage};
+use crate::{AppError, RunSetup};
+use std::collections::BTreeMap;
+use std::path::Path;
+use trundle_core::Twist2;
+use trundle_io::{RecordedMessage, RecordingReader};
+use trundle_runtime::{Answer, Helper, Job};
+
+/// A recording fed again. Each job runs where the recording says that its result was applied.
+pub struct RunReplayer {
+    reader: RecordingReader,
+    jobs: BTreeMap<Helper, Job>,
+    contacts: Option<u32>,
+}
+
+impl RunReplayer {
+    /// Opens a recording of a run; the setup that it begins with.
+    ///
+    /// # Errors
+    /// When the file is no recording of a run, or its robot cannot be accepted. Names the file.
+    pub fn open(file: &Path) -> Result<(Self, RunSetup), AppError> {
+        let name = file.display();
+        let reader = RecordingReader::open(file)?;
+        let config = reader.config().ok_or_else(|| {
+            AppError::Input(format!(
+                "{name}: no trundle.Config message comes first, so this is no recording of a trundle run"
+            ))
+        })?;
+        let setup: RunSetup = serde_json::from_value(config.clone())
+            .map_err(|error| AppError::Input(format!("{name}: the configuration cannot be used: {error}")))?;
+        setup.robot.clone().validated().map_err(|error| AppError::Input(format!("{name}: {error}")))?;
+        Ok((Self { reader, jobs: BTreeMap::new(), contacts: None }, setup))
+    }
+
+    /// Reads the rest of the recording, which the run did not need.
+    ///
+    /// # Errors
+    /// When the rest is broken.
+    pub fn read_to_end(&mut self) -> Result<(), AppError> {
+        while self.reader.next_message()?.is_some() {}
+        Ok(())
+    }
+
+    fn read_mark(value: serde_json::Value) -> Result<RunMark, AppError> {
+        let message: RunMarkMessage = serde_json::from_value(value)
+            .map_err(|error| AppError::Input(format!("message on {}: {error}", RunMark::TOPIC)))?;
+        Ok(message.mark)
+    }
+
+    /// The result of the worker's job, which runs now.
+    fn run_job(&mut self, helper: Helper) -> Result<Option<RunInput>, AppError> {
+        let answer = self.finish_job(helper).ok_or_else(|| {
+            AppError::Input(format!("message on {}: {helper:?} has nothing to do here", RunMark::TOPIC))
+        })?;
+        Ok(Some(RunInput::Answer(answer)))
+    }
+
+    fn read_input(&mut self) -> Result<Option<RunInput>, AppError> {
+        loop {
+            match self.reader.next_message()? {
+                Some(RecordedMessage::Event(event)) => return Ok(Some(RunInput::Event(event))),
+                Some(RecordedMessage::Json { schema, value, .. }) if schema == RunMark::SCHEMA => {
+                    match Self::read_mark(value)? {
+                        RunMark::Contacts(count) => self.contacts = Some(count),
+                        RunMark::Applied(helper) => return self.run_job(helper),
+                        RunMark::Interrupted => return Ok(Some(RunInput::Interrupted)),
+                        RunMark::End => return Ok(None),
+                    }
+                }
+                Some(RecordedMessage::Json { .. }) => {}
+                None => return Ok(None),
+            }
+        }
+    }
+}
+
+impl EncodedBody for RunReplayer {
+    fn next_input(&mut self) -> Result<Option<RunInput>, AppError> {
+        self.read_input()
+    }
+
+    /// A recorded body does not move.
+    fn send_command(&mut self, _twist: Twist2) -> Result<(), AppError> {
+        Ok(())
+    }
+
+    fn start_job(&mut self, job: Job) {
+        self.jobs.insert(job.helper(), job);
+    }
+
+    fn finish_job(&mut self, helper: Helper) -> Option<Answer> {
+        self.jobs.remove(&helper).map(Job::run)
+    }
+
+    fn true_contacts(&self) -> Option<u32> {
+        self.contacts
+    }
+}

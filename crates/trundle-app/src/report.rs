@@ -1,0 +1,12 @@
+//! The outputs of a run: numbers, tables, pages and the folder that holds them.
+
+mod camera_picture;
+mod goal_outcome;
+mod run_folder;
+mod run_numbers;
+mod timing_page;
+
+pub use camera_picture::{camera_view, landmarks_in_map};
+pub use goal_outcome::GoalOutcome;
+pub use run_folder::{RunOutput, mission_text, write_run};
+pub use run_numbers::{RunNumbers, stage_rows, wall_clock};

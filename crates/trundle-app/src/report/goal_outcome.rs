@@ -1,0 +1,74 @@
+//! The outcome of each task that has a goal.
+
+use crate::{FinishedRun, RunSetup};
+use serde::Serialize;
+use trundle_core::Pose2;
+use trundle_eval::{GoalError, goal_error};
+use trundle_runtime::{TaskEnd, TaskRecord};
+
+/// What became of a task that has a goal.
+#[derive(Debug, Clone, Serialize)]
+pub struct GoalOutcome {
+    /// Its place in the mission, from 0.
+    pub task: usize,
+    /// Where to, map frame.
+    pub goal: Pose2,
+    /// How it ended.
+    pub end: TaskEnd,
+    /// When it ended, s since the start.
+    pub at_s: f64,
+    /// Where the robot stood in truth then, against the goal; `None` without truth.
+    pub error: Option<GoalError>,
+    /// Where it believed to stand.
+    pub believed: Option<GoalError>,
+    /// Whether the robot was switched off and on again since: the time is of the run before.
+    pub before_restart: bool,
+}
+
+impl GoalOutcome {
+    /// The outcomes of a run, in the order in which they came.
+    pub fn all(run: &FinishedRun) -> Vec<Self> {
+        run.robot.tasks_ended().iter().filter_map(|record| Self::of(record, run)).collect()
+    }
+
+    fn of(record: &TaskRecord, run: &FinishedRun) -> Option<Self> {
+        let goal = RunSetup::goal_of(&record.task)?;
+        let log = &run.log;
+        // The truth of an earlier run is not known to this one.
+        let truth = log.truth_at(record.to).filter(|_| !record.before_restart);
+        Some(Self {
+            task: record.index,
+            goal,
+            end: record.end.clone(),
+            at_s: log.start.map_or(0.0, |start| record.to - start),
+            error: truth.and_then(|truth| goal_error(goal, truth).ok()),
+            believed: goal_error(goal, record.pose).ok(),
+            before_restart: record.before_restart,
+        })
+    }
+
+    /// Whether the robot came to the goal, in truth, within these of it: m and rad. Of one before a restart nothing but its word is known.
+    pub fn is_reached(&self, distance: f64, turn: f64) -> bool {
+        let near = |error: GoalError| error.distance < distance && error.dtheta.abs() < turn;
+        let error = if self.before_restart { self.believed } else { self.error };
+        self.end == TaskEnd::Done && error.is_some_and(near)
+    }
+
+    /// A row for people.
+    pub fn row(&self) -> Vec<String> {
+        let Pose2 { x, y, theta } = self.goal;
+        let error = |e: &Option<GoalError>| {
+            e.map_or_else(String::new, |e| {
+                format!("{:.1} cm, {:.2} deg", e.distance * 100.0, e.dtheta.to_degrees())
+            })
+        };
+        vec![
+            format!("goal {} at ({x:.2} m, {y:.2} m, {:.0} deg)", self.task + 1, theta.to_degrees()),
+            if self.before_restart {
+                format!("{}, before it was switched off; believed {}", self.end, error(&self.believed))
+            } else {
+                format!("{:.1} s: {}, {}", self.at_s, self.end, error(&self.error))
+            },
+        ]
+    }
+}

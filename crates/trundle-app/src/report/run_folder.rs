@@ -1,0 +1,129 @@
+//! The output folder of a run: map, trajectories, report, timing page, summary.
+
+use super::{RunNumbers, camera_view, landmarks_in_map, timing_page};
+use crate::real_time::RealTimeReport;
+use crate::{AppError, FinishedRun, RunSetup};
+use std::path::PathBuf;
+use trundle_core::{Footprint, Pose2};
+use trundle_io::{OutputFolder, trajectory_text_from_planar, write_map};
+use trundle_runtime::Mission;
+use trundle_viz::{Card, Chart, Color, Figure, RunReport, Table, Verdict};
+
+/// What a run's folder holds.
+pub struct RunOutput {
+    /// The figures of the run.
+    pub numbers: RunNumbers,
+    /// The folder.
+    pub folder: PathBuf,
+    /// Why the folder holds no recording, if it holds none.
+    pub recording_error: Option<AppError>,
+}
+
+/// Writes the folder of a run. A recording that could not be written to its end is left out.
+///
+/// # Errors
+/// When a file cannot be written.
+pub fn write_run(
+    setup: &RunSetup,
+    run: &mut FinishedRun,
+    timing: Option<&RealTimeReport>,
+    folder: OutputFolder,
+) -> Result<RunOutput, AppError> {
+    let recording_error = run.recording.error.take();
+    if recording_error.is_some() {
+        _ = std::fs::remove_file(folder.staged("recording.mcap"));
+    }
+    let run = &*run;
+    let numbers = RunNumbers::of(setup, run);
+    write_map(&folder, "map", run.robot.grid())?;
+    folder.write("trajectory.txt", trajectory_text_from_planar(&run.log.estimates).as_bytes())?;
+    folder.write("groundtruth.txt", trajectory_text_from_planar(&run.log.truths).as_bytes())?;
+    let report = report(setup, run, &numbers);
+    folder.write("map.png", &report.map_png())?;
+    folder.write("report.html", report.to_html().as_bytes())?;
+    folder.write("timing.html", timing_page::html(run, &numbers, timing).as_bytes())?;
+    folder.write("summary.json", numbers.summary(setup, run, timing).to_json().as_bytes())?;
+    Ok(RunOutput { numbers, folder: folder.commit()?, recording_error })
+}
+
+fn report(setup: &RunSetup, run: &FinishedRun, numbers: &RunNumbers) -> RunReport {
+    let robot = &run.robot;
+    let image = run.view.image();
+    let verdict = numbers.verdict();
+    let plan = robot.plan();
+    let curve = plan.map(|plan| plan.trajectory.points().iter().map(|p| p.pose.position()).collect());
+    let pose = robot.estimate().pose;
+    RunReport {
+        title: format!("trundle in the room '{}'", setup.scene),
+        subtitle: format!(
+            "Seed {}. A simulated Kobuki with a Kinect V2 started with an empty map and did its mission ({}) on its \
+             camera, wheels and gyro alone.",
+            setup.seed,
+            mission_text(&setup.mission)
+        ),
+        verdict: Some(if numbers.is_success() { Verdict::Ok(verdict) } else { Verdict::Failed(verdict) }),
+        cards: cards(numbers),
+        grid: Some(robot.grid().clone()),
+        landmarks: landmarks_in_map(robot),
+        way_points: plan.map(|plan| plan.waypoints.points().to_vec()).unwrap_or_default(),
+        curve: curve.unwrap_or_default(),
+        estimated_path: run.log.estimates.iter().map(|(_, pose)| *pose).collect(),
+        true_path: run.log.truths.iter().map(|(_, pose)| *pose).collect(),
+        start: Some(Pose2::IDENTITY),
+        goal: setup.last_goal(),
+        footprint: Footprint::disc(setup.robot.footprint_radius).ok(),
+        scan: robot.scan().map(|scan| (pose, scan.clone())),
+        camera: image.as_ref().map(|image| camera_view(image, &run.view.features)),
+        depth: image.as_ref().map(|image| image.depth().clone()),
+        charts: vec![error_chart(run), speed_chart(run)],
+        figures: Vec::new(),
+        tables: vec![table(numbers)],
+    }
+}
+
+/// A mission in words.
+#[must_use]
+pub fn mission_text(mission: &Mission) -> String {
+    mission.tasks().iter().map(ToString::to_string).collect::<Vec<_>>().join(", ")
+}
+
+fn cards(numbers: &RunNumbers) -> Vec<Card> {
+    let mut cards = Vec::new();
+    if let Some(error) = numbers.goal_error {
+        let (cm, deg) = (error.distance * 100.0, error.dtheta.abs().to_degrees());
+        cards.push(Card::new("from the goal", &format!("{cm:.1}")).unit("cm").good(numbers.is_near()));
+        cards.push(Card::new("off its heading", &format!("{deg:.2}")).unit("deg").good(numbers.is_aligned()));
+    }
+    let contacts = numbers.contacts.to_string();
+    cards.push(Card::new("contacts", &contacts).good(numbers.contacts == 0));
+    cards.push(Card::new("driven", &format!("{:.1}", numbers.path_length)).unit("m"));
+    cards.push(Card::new("time", &format!("{:.0}", numbers.duration)).unit("s"));
+    cards
+}
+
+fn table(numbers: &RunNumbers) -> Table {
+    let empty = Table::new("The run", ["what", "value"]);
+    numbers.run_rows().into_iter().fold(empty, Table::row)
+}
+
+/// Position error of the estimate against truth, over time.
+fn error_chart(run: &FinishedRun) -> Figure {
+    let start = run.log.start.unwrap_or_default();
+    let errors = run.log.estimates.iter().filter_map(|(stamp, pose)| {
+        let truth = run.log.truth_at(*stamp)?;
+        Some((*stamp - start, pose.distance(&truth) * 100.0))
+    });
+    let chart = Chart::new("How well the robot knew its place", "time, s", "error, cm");
+    Figure::chart(&chart.line("position error", Color::BLUE, errors.collect()))
+}
+
+fn speed_chart(run: &FinishedRun) -> Figure {
+    let start = run.log.start.unwrap_or_default();
+    let series = |value: fn(&trundle_core::Twist2) -> f64| {
+        run.log.twists.iter().map(|(stamp, twist)| (*stamp - start, value(twist))).collect::<Vec<_>>()
+    };
+    let chart = Chart::new("What the wheels were asked for", "time, s", "m/s, rad/s")
+        .line("speed", Color::BLUE, series(|twist| twist.v))
+        .line("turn rate", Color::VERMILLION, series(|twist| twist.omega));
+    Figure::chart(&chart)
+}

@@ -1,0 +1,228 @@
+//! The figures of a run, and their table and summary.
+
+use super::GoalOutcome;
+use crate::real_time::RealTimeReport;
+use crate::{FinishedRun, RunSetup, TrackCounts};
+use serde_json::{Map, Value, json};
+use trundle_eval::{GoalError, goal_error};
+use trundle_io::Summary;
+use trundle_runtime::{DriveState, LastStageReport, Stage, StageTimes, TaskEnd};
+
+/// The numbers of a run, all but the wall clock's.
+pub struct RunNumbers {
+    /// The goals of the mission, as they came.
+    pub goals: Vec<GoalOutcome>,
+    /// How many goals the mission has.
+    pub goals_asked: usize,
+    /// Where the robot stands in truth at the end, against the last goal; `None` without truth.
+    pub goal_error: Option<GoalError>,
+    /// Where it believes to stand, against the last goal.
+    pub believed_error: Option<GoalError>,
+    /// The estimate's distance from truth over the run: root of the mean square, m.
+    pub estimate_rmse: Option<f64>,
+    /// Times that something was touched: in truth, where that is known.
+    pub contacts: usize,
+    /// The way driven, m.
+    pub path_length: f64,
+    /// Time of the robot, s.
+    pub duration: f64,
+    /// Plans made.
+    pub plans: usize,
+    /// Images by what tracking said.
+    pub tracked: TrackCounts,
+    /// Landmarks and keyframes in the visual map.
+    pub landmarks: usize,
+    /// Keyframes in the visual map.
+    pub keyframes: usize,
+    /// When images were taken that were dropped because newer ones came before they were looked at, s since the start.
+    pub images_dropped: Vec<f64>,
+    /// What turns and straight moves did for the last goal that they were asked about; `None` where they never were.
+    pub docking: Option<LastStageReport>,
+    /// How it ended.
+    pub state: DriveState,
+}
+
+fn docking_text(docking: &LastStageReport) -> String {
+    let LastStageReport { plans, motions, restarts, waits, time, ended, .. } = docking;
+    let end = ended.as_deref().unwrap_or("not taken up");
+    format!("{motions} motions, {plans} plans, {restarts} broken off, {waits} waits, {time:.1} s; {end}")
+}
+
+/// The goal counts as reached within this, m.
+const NEAR: f64 = 0.05;
+/// And within this, deg.
+const ALIGNED_DEG: f64 = 3.0;
+
+impl RunNumbers {
+    /// The numbers of a run that has ended.
+    pub fn of(setup: &RunSetup, run: &FinishedRun) -> Self {
+        let log = &run.log;
+        let against_goal = |pose| goal_error(setup.last_goal()?, pose).ok();
+        Self {
+            goals: GoalOutcome::all(run),
+            goals_asked: setup.mission.tasks().iter().filter_map(RunSetup::goal_of).count(),
+            goal_error: log.truths.last().and_then(|(_, truth)| against_goal(*truth)),
+            believed_error: against_goal(run.robot.estimate().pose),
+            estimate_rmse: log.estimate_rmse(),
+            contacts: log.contacts(),
+            path_length: log.path_length(),
+            duration: log.elapsed(),
+            plans: log.plans,
+            tracked: log.tracked,
+            landmarks: run.robot.slam().map_or(0, |slam| slam.landmarks().count()),
+            keyframes: run.robot.slam().map_or(0, |slam| slam.keyframes().count()),
+            images_dropped: log.seconds_of(run.robot.dropped_images()),
+            docking: run.robot.docking().filter(|docking| docking.plans > 0).cloned(),
+            state: log.state.clone(),
+        }
+    }
+
+    /// Whether the end is near enough to the last goal, if there is one.
+    pub fn is_near(&self) -> bool {
+        self.goal_error.is_none_or(|error| error.distance < NEAR)
+    }
+
+    /// Whether the heading is near enough to the last goal's, if there is one.
+    pub fn is_aligned(&self) -> bool {
+        self.goal_error.is_none_or(|error| error.dtheta.abs().to_degrees() < ALIGNED_DEG)
+    }
+
+    /// Arrived at every goal, in truth, without touching anything.
+    pub fn is_success(&self) -> bool {
+        let all = self.goals_missed() == 0;
+        self.state == DriveState::Arrived && all && self.is_near() && self.is_aligned() && self.contacts == 0
+    }
+
+    /// Goals that were not reached in truth, though the robot believes so.
+    fn goals_missed(&self) -> usize {
+        let believed = self.goals.iter().filter(|goal| goal.end == TaskEnd::Done);
+        believed.filter(|goal| !goal.is_reached(NEAR, ALIGNED_DEG.to_radians())).count()
+    }
+
+    /// How it went, in a sentence.
+    pub fn verdict(&self) -> String {
+        if self.is_success() {
+            return match self.goals.iter().filter(|goal| goal.end == TaskEnd::Done).count() {
+                0 => "Mission done, nothing touched.".to_owned(),
+                1 => "Goal reached, nothing touched.".to_owned(),
+                n => format!("All {n} goals reached, nothing touched."),
+            };
+        }
+        let mut faults = Vec::new();
+        if self.state != DriveState::Arrived {
+            faults.push(format!("the robot did not arrive ({})", self.state));
+        }
+        if let Some(error) = self.goal_error.filter(|_| !(self.is_near() && self.is_aligned())) {
+            let (cm, deg) = (error.distance * 100.0, error.dtheta.to_degrees());
+            faults.push(format!("it stands {cm:.1} cm and {deg:.1} deg off the goal"));
+        }
+        if self.goals_missed() > 0 && self.is_near() && self.is_aligned() {
+            faults.push(format!("at {} goals it stood too far off", self.goals_missed()));
+        }
+        if self.contacts > 0 {
+            faults.push(format!("it touched something {} times", self.contacts));
+        }
+        format!("Failed: {}.", faults.join("; "))
+    }
+
+    /// The table without the wall clock's part.
+    pub fn run_rows(&self) -> Vec<Vec<String>> {
+        let row = |name: &str, value: String| vec![name.to_owned(), value];
+        let error = |e: &GoalError| format!("{:.1} cm, {:.2} deg", e.distance * 100.0, e.dtheta.to_degrees());
+        let mut rows = Vec::new();
+        if self.goals.len() > 1 {
+            rows.extend(self.goals.iter().map(GoalOutcome::row));
+        }
+        rows.extend(self.goal_error.as_ref().map(|e| row("goal error against truth", error(e))));
+        rows.extend(self.believed_error.as_ref().map(|e| row("goal error as believed", error(e))));
+        rows.extend(
+            self.estimate_rmse.map(|e| row("estimate against truth, rmse", format!("{:.1} cm", e * 100.0))),
+        );
+        rows.push(row("path length", format!("{:.2} m", self.path_length)));
+        rows.push(row("contacts", self.contacts.to_string()));
+        rows.push(row("time", format!("{:.1} s", self.duration)));
+        rows.push(row("plans", self.plans.to_string()));
+        let TrackCounts { ok, weak, dead_reckoned, lost } = self.tracked;
+        rows.push(row(
+            "images ok / weak / dead reckoned / lost",
+            format!("{ok} / {weak} / {dead_reckoned} / {lost}"),
+        ));
+        rows.extend(
+            self.docking.as_ref().map(|docking| row("turns and straight moves", docking_text(docking))),
+        );
+        rows.push(row("images dropped", self.images_dropped.len().to_string()));
+        rows.push(row("keyframes, landmarks", format!("{}, {}", self.keyframes, self.landmarks)));
+        rows
+    }
+
+    /// The whole table for the terminal.
+    pub fn rows(&self, run: &FinishedRun) -> Vec<Vec<String>> {
+        let mut rows = self.run_rows();
+        rows.push(vec!["wall clock".to_owned(), format!("{:.1} s", run.seconds)]);
+        rows.push(["stage, ms", "median", "p99", "p99.9", "most", "runs"].map(str::to_owned).to_vec());
+        rows.extend(stage_rows(run.robot.times()));
+        rows
+    }
+
+    /// `summary.json`: the numbers of the table; the wall clock's under `wall_clock`.
+    pub fn summary(&self, setup: &RunSetup, run: &FinishedRun, timing: Option<&RealTimeReport>) -> Summary {
+        // A replay's summary is the run's, byte for byte, so it bears the run's name.
+        let mut summary = Summary::new("demo");
+        summary
+            .set("scene", &setup.scene)
+            .set("seed", setup.seed)
+            .set("success", self.is_success())
+            .set("state", self.state.to_string())
+            .set("goals", &self.goals)
+            .set("goal_error_m", self.goal_error.map(|e| e.distance))
+            .set("goal_error_dx_m", self.goal_error.map(|e| e.dx))
+            .set("goal_error_dy_m", self.goal_error.map(|e| e.dy))
+            .set("goal_error_heading_rad", self.goal_error.map(|e| e.dtheta))
+            .set("believed_error_m", self.believed_error.map(|e| e.distance))
+            .set("believed_error_heading_rad", self.believed_error.map(|e| e.dtheta))
+            .set("estimate_rmse_m", self.estimate_rmse)
+            .set("path_length_m", self.path_length)
+            .set("contacts", self.contacts)
+            .set("duration_s", self.duration)
+            .set("plans", self.plans)
+            .set("images_ok", self.tracked.ok)
+            .set("images_weak", self.tracked.weak)
+            .set("images_dead_reckoned", self.tracked.dead_reckoned)
+            .set("images_lost", self.tracked.lost)
+            .set("keyframes", self.keyframes)
+            .set("landmarks", self.landmarks)
+            .set("docking", &self.docking)
+            .set("images_dropped", self.images_dropped.len())
+            .set("images_dropped_at_s", &self.images_dropped)
+            .set("wall_clock", wall_clock(run.seconds, run.robot.times(), timing));
+        summary
+    }
+}
+
+/// What the clock on the wall said: the only part of any output that differs between two equal runs.
+pub fn wall_clock(seconds: f64, times: &StageTimes, timing: Option<&RealTimeReport>) -> Value {
+    let mut stages = Map::new();
+    for stage in Stage::ALL {
+        if let Some(cost) = times.cost(stage) {
+            stages.insert(stage.name().to_owned(), json!(cost));
+        }
+    }
+    let mut all = json!({ "total_s": seconds, "stages": stages });
+    if let Some(timing) = timing {
+        all["real_time"] = json!(timing);
+    }
+    all
+}
+
+/// A row a stage: name, median, 99th percentile, runs.
+pub fn stage_rows(times: &StageTimes) -> Vec<Vec<String>> {
+    let costs = Stage::ALL.into_iter().filter_map(|stage| Some((stage, times.cost(stage)?)));
+    costs
+        .map(|(stage, cost)| {
+            let numbers =
+                [cost.median_ms, cost.p99_ms, cost.p999_ms, cost.most_ms].map(|ms| format!("{ms:.3}"));
+            let runs = cost.runs.to_string();
+            std::iter::once(stage.name().to_owned()).chain(numbers).chain([runs]).collect()
+        })
+        .collect()
+}

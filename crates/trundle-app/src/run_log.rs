@@ -1,0 +1,191 @@
+//! The log of a run for judges and pictures: poses, truth, commands, states.
+
+use trundle_core::{Pose2, SensorEvent, Stamp, Twist2};
+use trundle_runtime::{DriveState, StepReport};
+use trundle_slam::Tracking;
+
+/// The log of a run for judges and pictures. All of it comes from the data: no wall clock.
+#[derive(Debug, Default)]
+pub struct RunLog {
+    /// First stamp of the run.
+    pub start: Option<Stamp>,
+    /// Newest stamp of the run.
+    pub now: Stamp,
+    /// `map_from_base` as estimated, at every image.
+    pub estimates: Vec<(Stamp, Pose2)>,
+    /// `map_from_base` in truth, at every truth event.
+    pub truths: Vec<(Stamp, Pose2)>,
+    /// Commands by time.
+    pub twists: Vec<(Stamp, Twist2)>,
+    /// Times that the bumper says it was pressed.
+    pub presses: usize,
+    /// Times that the body touched something in truth, where that is known.
+    pub true_contacts: Option<u32>,
+    /// Plans made.
+    pub plans: usize,
+    /// Images by tracking state.
+    pub tracked: TrackCounts,
+    /// The newest state.
+    pub state: DriveState,
+    /// Each change of the state.
+    pub changes: Vec<StateChange>,
+    /// Whether only the last minute is kept.
+    is_brief: bool,
+}
+
+/// Time that a brief log goes back [s]. Older entries are dropped. Source: ours.
+const BRIEF_LOG_S: f64 = 60.0;
+/// Old entries of a list that are dropped at once. Fewer stay, so that dropping is rare. Source: ours.
+const MIN_DROPPED_ENTRIES: usize = 1000;
+
+/// A change of the robot's state.
+#[derive(Debug, Clone)]
+pub struct StateChange {
+    /// Seconds since the first event.
+    pub at: f64,
+    /// The new state.
+    pub state: DriveState,
+    /// The estimated pose, map frame.
+    pub pose: Pose2,
+}
+
+/// Images by the tracking state.
+#[derive(Debug, Default, Clone, Copy)]
+pub struct TrackCounts {
+    /// Well tracked.
+    pub ok: usize,
+    /// Tracked on few features.
+    pub weak: usize,
+    /// Carried on by wheels and gyro, or by constant velocity.
+    pub dead_reckoned: usize,
+    /// Without a pose.
+    pub lost: usize,
+}
+
+impl TrackCounts {
+    /// Counts one image.
+    pub fn count(&mut self, tracking: Tracking) {
+        match tracking {
+            Tracking::Ok => self.ok += 1,
+            Tracking::Weak => self.weak += 1,
+            Tracking::DeadReckoning => self.dead_reckoned += 1,
+            Tracking::Lost => self.lost += 1,
+        }
+    }
+}
+
+impl RunLog {
+    /// A log that keeps the last minute of poses, commands and states only: it does not grow in a run of hours.
+    pub fn brief() -> Self {
+        Self { is_brief: true, ..Self::default() }
+    }
+
+    /// Drops what a brief log does not keep.
+    fn drop_old(&mut self) {
+        let (now, end) = (self.now, self.elapsed());
+        let is_old = |stamp: &Stamp| now - *stamp > BRIEF_LOG_S;
+        drop_first(&mut self.estimates, |(stamp, _)| is_old(stamp));
+        drop_first(&mut self.truths, |(stamp, _)| is_old(stamp));
+        drop_first(&mut self.twists, |(stamp, _)| is_old(stamp));
+        drop_first(&mut self.changes, |change| end - change.at > BRIEF_LOG_S);
+    }
+
+    /// Logs the report of a step.
+    pub fn on_report(&mut self, now: Stamp, report: &StepReport) {
+        self.start.get_or_insert(now);
+        self.now = now;
+        if let Some(estimate) = &report.estimate
+            && self.changes.last().is_none_or(|last| last.state.name() != report.state.name())
+        {
+            let (at, state, pose) = (self.elapsed(), report.state.clone(), estimate.pose);
+            self.changes.push(StateChange { at, state, pose });
+        }
+        self.state = report.state.clone();
+        self.plans += usize::from(report.replanned);
+        if let Some(track) = &report.track {
+            self.tracked.count(track.tracking);
+            self.estimates.extend(report.estimate.map(|estimate| (estimate.stamp, estimate.pose)));
+        }
+        self.twists.extend(report.twist.map(|twist| (now, twist)));
+        if self.is_brief {
+            self.drop_old();
+        }
+    }
+
+    /// Seconds since the first event.
+    pub fn elapsed(&self) -> f64 {
+        self.start.map_or(0.0, |start| self.now - start)
+    }
+
+    /// Stamps as seconds since the first event.
+    pub fn seconds_of(&self, stamps: &[Stamp]) -> Vec<f64> {
+        stamps.iter().map(|stamp| self.start.map_or(0.0, |start| *stamp - start)).collect()
+    }
+
+    /// Length of the true path, or of the estimated one where truth is not known [m].
+    pub fn path_length(&self) -> f64 {
+        let path = if self.truths.is_empty() { &self.estimates } else { &self.truths };
+        path.windows(2).map(|pair| pair[1].1.distance(&pair[0].1)).sum()
+    }
+
+    /// Truth at the newest truth event up to `stamp`, map frame.
+    pub fn truth_at(&self, stamp: Stamp) -> Option<Pose2> {
+        let after = self.truths.partition_point(|(at, _)| *at <= stamp);
+        self.truths.get(after.checked_sub(1)?).map(|(_, pose)| *pose)
+    }
+
+    /// At every image of which truth is known: time since the first event [s], estimated pose, true pose, map frame.
+    pub fn pose_pairs(&self) -> Vec<(f64, Pose2, Pose2)> {
+        let start = self.start.unwrap_or_default();
+        let pair = |(stamp, pose): &(Stamp, Pose2)| Some((*stamp - start, *pose, self.truth_at(*stamp)?));
+        self.estimates.iter().filter_map(pair).collect()
+    }
+
+    /// Distance of the estimate from truth: root of the mean square, m.
+    pub fn estimate_rmse(&self) -> Option<f64> {
+        let pairs = self.pose_pairs();
+        let square = |(_, estimate, truth): &(f64, Pose2, Pose2)| estimate.distance(truth).powi(2);
+        let sum: f64 = pairs.iter().map(square).sum();
+        (!pairs.is_empty()).then(|| (sum / pairs.len() as f64).sqrt())
+    }
+
+    /// Contacts: in truth where it is known, else the bumper's presses.
+    pub fn contacts(&self) -> usize {
+        self.true_contacts.map_or(self.presses, |count| count as usize)
+    }
+
+    /// Logs truth (moved into the map frame) and bumper presses, which only judges may read.
+    pub fn on_event(&mut self, event: &SensorEvent, map_from_world: Pose2) {
+        match event {
+            SensorEvent::Truth { stamp, pose } => self.truths.push((*stamp, map_from_world * *pose)),
+            SensorEvent::Touch(touch) => self.presses += usize::from(touch.pressed),
+            _ => {}
+        }
+    }
+}
+
+/// Drops what is old from the front of a list in the order of time, many at once.
+fn drop_first<T>(list: &mut Vec<T>, is_old: impl Fn(&T) -> bool) {
+    if list.get(MIN_DROPPED_ENTRIES).is_some_and(&is_old) {
+        list.drain(..list.partition_point(is_old));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_brief_log_does_not_grow() {
+        let mut log = RunLog::brief();
+        for i in 0..20_000 {
+            let stamp = Stamp::from_nanos(i * 20_000_000);
+            log.on_event(&SensorEvent::Truth { stamp, pose: Pose2::IDENTITY }, Pose2::IDENTITY);
+            log.on_report(stamp, &StepReport { twist: Some(Twist2::ZERO), ..StepReport::default() });
+        }
+        for length in [log.truths.len(), log.twists.len()] {
+            assert!((3000..=3001 + MIN_DROPPED_ENTRIES).contains(&length), "{length}");
+        }
+        assert!(log.truth_at(log.now).is_some());
+    }
+}

@@ -1,0 +1,47 @@
+//! Marks that a recording holds between the events, so that a replay feeds the robot in the same order.
+
+use serde::{Deserialize, Serialize};
+use trundle_runtime::Helper;
+
+/// A mark of a recording, between the events.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+#[non_exhaustive]
+pub enum RunMark {
+    /// The result of this worker's job was applied here.
+    #[serde(rename = "taken_up")]
+    Applied(Helper),
+    /// Separate contacts so far, in truth, before the event that follows.
+    Contacts(u32),
+    /// The user ended the run.
+    Interrupted,
+    /// The run was over; what follows was still under way.
+    End,
+}
+
+impl RunMark {
+    /// The topic of marks.
+    pub const TOPIC: &str = "/mark";
+    /// The name of their schema.
+    pub const SCHEMA: &str = "trundle.Mark";
+}
+
+/// A mark as it is recorded.
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
+pub struct RunMarkMessage {
+    /// The mark.
+    pub mark: RunMark,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn marks_keep_their_names_in_recordings() {
+        let text = |mark| serde_json::to_string(&RunMarkMessage { mark }).unwrap();
+        assert_eq!(text(RunMark::Contacts(2)), r#"{"mark":{"contacts":2}}"#);
+        assert_eq!(text(RunMark::End), r#"{"mark":"end"}"#);
+        assert!(text(RunMark::Applied(Helper::ALL[0])).starts_with(r#"{"mark":{"taken_up":""#));
+    }
+}

@@ -1,0 +1,217 @@
+//! A run under way: feeds the robot and records each input and output.
+
+use crate::encoded_body::{EncodedBody, RunInput};
+use crate::run_mark::{RunMark, RunMarkMessage};
+use crate::{AppError, BestView, FinishedRun, Progress, RecordingCost, RunLog, RunRecorder, RunSetup};
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+use trundle_core::{FrameId, Pose2, Stamp, Twist2};
+use trundle_io::{EncodedEvent, PoseInFrame, PosesInFrame};
+use trundle_runtime::{Answer, DriveState, Helper, LazyImage, Robot, Stage, StepReport};
+
+/// A run under way: feeds the robot and records each input and output.
+pub struct RunSession<'s> {
+    setup: &'s RunSetup,
+    robot: Robot,
+    recorder: RunRecorder,
+    log: RunLog,
+    view: BestView,
+    progress: Progress,
+    start: Instant,
+    is_interrupted: bool,
+}
+
+impl<'s> RunSession<'s> {
+    /// Starts the robot of `setup` and records the setup.
+    ///
+    /// # Errors
+    /// When the robot or the checkpoint cannot be accepted.
+    pub fn new(
+        setup: &'s RunSetup,
+        mut recorder: RunRecorder,
+        log: RunLog,
+        progress: Progress,
+    ) -> Result<Self, AppError> {
+        let mut robot = setup.start_robot()?;
+        if setup.real_time {
+            robot = robot.deferring();
+        }
+        if recorder.writes_checkpoints() {
+            robot = robot.remembering();
+        }
+        let config = setup.clone();
+        recorder.write(move |file| file.record_json("/config", "trundle.Config", Stamp::default(), &config));
+        let view = BestView::default();
+        let start = Instant::now();
+        Ok(Self { setup, robot, recorder, log, view, progress, start, is_interrupted: false })
+    }
+
+    /// The log so far.
+    #[must_use]
+    pub fn log(&self) -> &RunLog {
+        &self.log
+    }
+
+    /// Whether the user ended the run.
+    #[must_use]
+    pub fn is_interrupted(&self) -> bool {
+        self.is_interrupted
+    }
+
+    /// Feeds the robot one input; whether its mission is over.
+    ///
+    /// # Errors
+    /// When an event cannot be decoded or the body refuses the command.
+    pub fn step(&mut self, input: RunInput, body: &mut dyn EncodedBody) -> Result<bool, AppError> {
+        self.record_contacts(body);
+        let (stamp, report) = match input {
+            RunInput::Event(event) => (event.stamp(), self.on_event(event)?),
+            RunInput::Answer(answer) => (self.log.now, self.apply_answer(answer)),
+            RunInput::Interrupted => return self.interrupt(body),
+        };
+        if let Some(twist) = report.twist {
+            body.send_command(twist)?;
+        }
+        if let Some(problem) = &report.broken_image {
+            let at = stamp.as_secs();
+            return Err(AppError::Input(format!("the image that came at {at:.3} s is broken: {problem}")));
+        }
+        self.record(stamp, &report);
+        self.log.on_report(stamp, &report);
+        if let Some(checkpoint) = &report.memory {
+            self.recorder.write_checkpoint(Arc::clone(checkpoint));
+        }
+        if let Some(image) = report.image {
+            self.show_status();
+            self.view.on_tracked(image, &self.robot, &report);
+        }
+        while let Some(job) = self.robot.next_job() {
+            body.start_job(job);
+        }
+        Ok(report.finished)
+    }
+
+    /// Records the body's contacts, where it counts them.
+    fn record_contacts(&mut self, body: &dyn EncodedBody) {
+        if let contacts @ Some(count) = body.true_contacts()
+            && contacts != self.log.true_contacts
+        {
+            self.log.true_contacts = contacts;
+            self.record_mark(RunMark::Contacts(count));
+        }
+    }
+
+    /// The user ends the run: the robot stops.
+    fn interrupt(&mut self, body: &mut dyn EncodedBody) -> Result<bool, AppError> {
+        body.send_command(Twist2::ZERO)?;
+        self.record_mark(RunMark::Interrupted);
+        self.is_interrupted = true;
+        Ok(true)
+    }
+
+    /// Applies the results of jobs that are still under way, in a fixed order, and closes the recording.
+    ///
+    /// # Errors
+    /// None today; a body that fails at the end may be reported here.
+    pub fn finish(mut self, body: &mut dyn EncodedBody) -> Result<FinishedRun, AppError> {
+        if self.setup.real_time {
+            self.record_mark(RunMark::End);
+            self.robot.drop_waiting_image();
+            for helper in Helper::ALL {
+                if let Some(answer) = body.finish_job(helper) {
+                    let report = self.apply_answer(answer);
+                    let stamp = self.log.now;
+                    self.record(stamp, &report);
+                    self.log.on_report(stamp, &report);
+                }
+            }
+        }
+        if self.is_interrupted {
+            self.log.state = DriveState::Stopped { reason: "the user ended the run".to_owned() };
+        }
+        let (queue_lengths, lines_lost) = (self.recorder.queue_lengths.clone(), self.recorder.lines_lost);
+        let last = if self.recorder.writes_checkpoints() { self.robot.memory() } else { None };
+        let (cpu_time, error) = match self.recorder.finish(last) {
+            Ok(spent) => (spent, None),
+            Err(error) => (Duration::ZERO, Some(error)),
+        };
+        let recording = RecordingCost { queue_lengths, lines_lost, cpu_time, error };
+        let seconds = self.start.elapsed().as_secs_f64();
+        Ok(FinishedRun { robot: self.robot, log: self.log, view: self.view, seconds, recording })
+    }
+
+    fn on_event(&mut self, event: EncodedEvent) -> Result<StepReport, AppError> {
+        let recorded = event.clone();
+        self.recorder.write(move |file| file.record_event(&recorded));
+        if let EncodedEvent::Rgbd(image) = event {
+            self.view.on_image(&image);
+            let stamp = image.stamp;
+            let load = move || image.decode().map_err(|error| error.to_string());
+            return Ok(self.robot.leave_image(LazyImage::new(stamp, load)));
+        }
+        let event = event.decode().map_err(|error| AppError::Input(error.to_string()))?;
+        self.log.on_event(&event, self.setup.map_from_world);
+        Ok(self.robot.step(&event))
+    }
+
+    fn apply_answer(&mut self, answer: Answer) -> StepReport {
+        self.record_mark(RunMark::Applied(answer.helper()));
+        self.robot.take_up(answer)
+    }
+
+    fn record_mark(&mut self, mark: RunMark) {
+        let (stamp, message) = (self.log.now, RunMarkMessage { mark });
+        self.recorder.write(move |file| file.record_json(RunMark::TOPIC, RunMark::SCHEMA, stamp, &message));
+    }
+
+    fn record(&mut self, stamp: Stamp, report: &StepReport) {
+        if let Some(twist) = report.twist {
+            self.recorder.write(move |file| file.record_json("/twist", "trundle.Twist", stamp, &twist));
+        }
+        let frame = || FrameId::Map.to_string();
+        if let (Some(estimate), Some(_)) = (report.estimate, &report.track) {
+            self.recorder.write(move |file| {
+                let pose = PoseInFrame::planar(stamp, &frame(), estimate.pose);
+                file.record_json("/pose", PoseInFrame::SCHEMA, stamp, &pose)
+            });
+        }
+        if let (true, Some(plan)) = (report.replanned, self.robot.plan()) {
+            let poses: Vec<Pose2> = plan.trajectory.points().iter().map(|point| point.pose).collect();
+            self.recorder.write(move |file| {
+                let poses = PosesInFrame::planar(stamp, &frame(), poses);
+                file.record_json("/trajectory", PosesInFrame::SCHEMA, stamp, &poses)
+            });
+        }
+    }
+
+    fn show_status(&mut self) {
+        if self.progress.is_hidden() {
+            return;
+        }
+        let (line, progress) = (self.status_line(), self.progress.clone());
+        // A slow terminal delays the recorder, not control.
+        self.recorder.write(move |_| {
+            progress.show(&line);
+            Ok(())
+        });
+    }
+
+    fn status_line(&self) -> String {
+        let (log, robot) = (&self.log, &self.robot);
+        let pose = robot.estimate().pose;
+        let wall = self.start.elapsed().as_secs_f64();
+        let rate = |stage: Stage| robot.times().runs(stage) as f64 / log.elapsed().max(0.1);
+        format!(
+            "{:5.1} s ({:.1}x)  pose {:6.2} {:6.2} m {:6.1} deg  {:<10}  slam {:4.1} Hz  map {:3.1} Hz  control {:4.1} Hz",
+            log.elapsed(),
+            log.elapsed() / wall.max(1e-3),
+            pose.x,
+            pose.y,
+            pose.theta.to_degrees(),
+            log.state.to_string(),
+            rate(Stage::Slam),
+            rate(Stage::Mapping),
+            rate(Stage::Control),
+        )
+    }
+}

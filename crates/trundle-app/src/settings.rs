@@ -1,0 +1,27 @@
+//! Reading of TOML files, with the line in each message.
+
+use crate::AppError;
+use serde::de::DeserializeOwned;
+use std::path::Path;
+use trundle_io::IoError;
+
+/// Reads a TOML file.
+///
+/// # Errors
+/// Names the file and why it cannot be read, or the line and what is wrong there.
+pub fn read_toml<T: DeserializeOwned>(file: &Path) -> Result<T, AppError> {
+    let text = read_text(file)?;
+    toml::from_str(&text).map_err(|error| {
+        let line = error.span().map_or(1, |span| 1 + text[..span.start].matches('\n').count());
+        AppError::Input(format!("{}, line {line}: {}", file.display(), error.message().replace('\n', " ")))
+    })
+}
+
+/// The text of a file.
+///
+/// # Errors
+/// Names the file and why it cannot be read.
+pub fn read_text(file: &Path) -> Result<String, AppError> {
+    std::fs::read_to_string(file)
+        .map_err(|source| AppError::Io(IoError::System { path: file.to_owned(), action: "read", source }))
+}

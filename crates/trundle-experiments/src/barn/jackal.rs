@@ -1,0 +1,65 @@
+use crate::laser_run::hokuyo;
+use crate::simulated::simulated_body;
+use trundle_control::{FollowerConfig, SafetyConfig};
+use trundle_core::{DifferentialDrive, DriveLimits, Invalid};
+use trundle_localization::OdometryConfig;
+use trundle_mapping::MapperConfig;
+use trundle_planning::{ClearanceCostConfig, PlannerConfig, TimingConfig};
+use trundle_runtime::{RobotConfig, Schedule, Sight, SupervisorConfig};
+use trundle_sim::{FaultSchedule, SimConfig};
+
+/// Half of the robot's length and width, m.
+const HALF: (f64, f64) = (0.254, 0.215);
+/// What it is asked to accelerate by, m/s^2; its own controller allows 20.
+const ACCELERATION: f64 = 3.0;
+
+/// The challenge's robot, a Clearpath Jackal, as the autonomy knows it: two-wheeled, 2 m/s, 0.508 x 0.430 m, a laser.
+pub fn robot() -> RobotConfig {
+    let (x, y) = HALF;
+    RobotConfig {
+        footprint_radius: x.hypot(y),
+        footprint: Some(vec![[x, y], [-x, y], [-x, -y], [x, -y]]),
+        sight: Sight::Laser,
+        drive: DifferentialDrive { wheel_radius: 0.098, wheelbase: 0.3765, ..DifferentialDrive::KOBUKI },
+        limits: DriveLimits {
+            wheel_speed: 2.4,
+            v: 2.0,
+            omega: 4.0,
+            acceleration: ACCELERATION,
+            angular_acceleration: 10.0,
+        },
+        schedule: Schedule { map_hz: 20.0, check_hz: 20.0, improve_hz: 4.0 },
+        odometry: OdometryConfig { max_speed: 5.0, ..OdometryConfig::default() },
+        mapping: MapperConfig { max_range: 10.0, ..MapperConfig::default() },
+        planning: PlannerConfig {
+            // A laser sees what it comes to: it stops from this within 0.2 m.
+            timing: TimingConfig { slow_speed: 0.5, unknown_speed: 1.0, ..TimingConfig::default() },
+            room: ClearanceCostConfig::default(),
+            ..PlannerConfig::default()
+        },
+        control: FollowerConfig { wait_from: 0.1, wait_at: 0.3, ..FollowerConfig::default() },
+        safety: SafetyConfig {
+            deceleration: ACCELERATION,
+            angular_deceleration: 10.0,
+            latency: 0.08,
+            slow_margin: 0.02,
+            creep_speed: 0.4,
+            ..SafetyConfig::default()
+        },
+        // Long enough to measure the gyro's bias; the laser's first scan is a first view.
+        supervisor: SupervisorConfig { opening: 0.6, ..SupervisorConfig::default() },
+        ..RobotConfig::default()
+    }
+}
+
+/// Its body in the simulator.
+pub fn body(robot: &RobotConfig) -> Result<SimConfig, Invalid> {
+    let mut config = simulated_body(robot, FaultSchedule::default())?;
+    config.has_camera = false;
+    config.laser = Some(hokuyo(0.12));
+    config.kobuki.wheel_speed = robot.limits.wheel_speed;
+    config.kobuki.wheel_acceleration = 2.0 * ACCELERATION;
+    config.kobuki.cliff_sensors = Vec::new();
+    config.kobuki.height = 0.35;
+    config.validated()
+}

@@ -1,0 +1,225 @@
+use super::{BarnTrial, SCORE, SUCCESS};
+use trundle_core::{Pose2, Vector2};
+use trundle_io::{Summary, table_csv};
+use trundle_viz::{
+    BarChart, Color, DotStyle, Figure, LineStyle, MapPicture, PoseStyle, Report, Table, Verdict,
+};
+
+/// What the runs came to as a whole.
+pub(super) struct Means {
+    runs: usize,
+    worlds: usize,
+    success: f64,
+    score: f64,
+    time: f64,
+    contacts: usize,
+    cycle_ms: (f64, f64),
+}
+
+impl Means {
+    pub(super) fn of(trials: &[BarnTrial]) -> Self {
+        let n = trials.len().max(1) as f64;
+        let good: Vec<&BarnTrial> = trials.iter().filter(|trial| trial.success).collect();
+        let mut worlds: Vec<usize> = trials.iter().map(|trial| trial.world.id).collect();
+        worlds.dedup();
+        let mut medians: Vec<f64> = trials.iter().map(|trial| trial.cycle_ms.0).collect();
+        medians.sort_by(f64::total_cmp);
+        Self {
+            runs: trials.len(),
+            worlds: worlds.len(),
+            success: good.len() as f64 / n,
+            score: trials.iter().map(|trial| trial.score).sum::<f64>() / n,
+            time: good.iter().map(|trial| trial.time).sum::<f64>() / good.len().max(1) as f64,
+            contacts: trials.iter().filter(|trial| trial.contacts > 0).count(),
+            cycle_ms: (
+                medians.get(medians.len() / 2).copied().unwrap_or(0.0),
+                trials.iter().map(|trial| trial.cycle_ms.1).fold(0.0, f64::max),
+            ),
+        }
+    }
+
+    pub(super) fn within(&self) -> bool {
+        self.success >= SUCCESS && self.score >= SCORE
+    }
+
+    pub(super) fn verdict(&self) -> String {
+        let head = if self.within() { "Within the limits" } else { "Missed" };
+        format!(
+            "{head}: {:.1} % of {} runs in {} worlds reached the goal (at least {:.0}), mean score {:.4} (at least {SCORE}), \
+             {:.1} s on average, {} runs with a contact. In trundle's own simulator, with a laser that measures all beams at \
+             once; stock DWA reaches 88 % in the challenge's.",
+            self.success * 100.0,
+            self.runs,
+            self.worlds,
+            SUCCESS * 100.0,
+            self.score,
+            self.time,
+            self.contacts
+        )
+    }
+}
+
+/// Worlds that the table shows: the worst.
+const SHOWN: usize = 15;
+
+/// The worst first, then by time over optimal time.
+fn worst_first(trials: &[BarnTrial]) -> Vec<&BarnTrial> {
+    let mut sorted: Vec<&BarnTrial> = trials.iter().collect();
+    let slowness = |trial: &BarnTrial| trial.time / trial.world.optimal_time;
+    sorted.sort_by(|a, b| a.success.cmp(&b.success).then(slowness(b).total_cmp(&slowness(a))));
+    sorted
+}
+
+const HEADER: [&str; 9] = [
+    "world",
+    "seed",
+    "what",
+    "time, s",
+    "optimal, s",
+    "score",
+    "way, m",
+    "least room, cm",
+    "estimate off, cm",
+];
+
+fn row(trial: &BarnTrial) -> Vec<String> {
+    vec![
+        trial.world.id.to_string(),
+        trial.seed.to_string(),
+        trial.told(),
+        format!("{:.1}", trial.time),
+        format!("{:.1}", trial.world.optimal_time),
+        format!("{:.3}", trial.score),
+        format!("{:.1}", trial.length),
+        format!("{:.1}", trial.least_clearance * 100.0),
+        format!("{:.1}", trial.worst_estimate * 100.0),
+    ]
+}
+
+/// The worst worlds and the mean, for the terminal.
+pub(super) fn rows(trials: &[BarnTrial], means: &Means) -> Vec<Vec<String>> {
+    let mut rows = vec![HEADER.map(str::to_owned).to_vec()];
+    rows.extend(worst_first(trials).into_iter().take(SHOWN).map(row));
+    let mean = ["mean", "", &format!("{:.1} % reached", means.success * 100.0)].map(str::to_owned);
+    let numbers = [format!("{:.1}", means.time), String::new(), format!("{:.4}", means.score)];
+    rows.push(mean.into_iter().chain(numbers).chain(vec![String::new(); 3]).collect());
+    rows
+}
+
+/// The worst worlds and typical ones.
+fn shown(trials: &[BarnTrial]) -> Vec<(String, &BarnTrial)> {
+    let sorted = worst_first(trials);
+    let worst = sorted.iter().take(6).enumerate().map(|(i, t)| (format!("worst-{}", i + 1), *t));
+    let middle = [sorted.len() / 2, sorted.len() * 3 / 4];
+    let typical = middle.iter().enumerate().filter_map(|(i, at)| {
+        let place = if i == 0 { "median" } else { "good" };
+        Some((place.to_owned(), *sorted.get(*at)?))
+    });
+    worst.chain(typical).collect()
+}
+
+pub(super) fn pictures(trials: &[BarnTrial]) -> Vec<(String, Vec<u8>)> {
+    shown(trials).into_iter().map(|(name, trial)| (format!("{name}.png"), picture(trial))).collect()
+}
+
+/// The world as it is, over what the robot knew of it, with the way driven.
+fn picture(trial: &BarnTrial) -> Vec<u8> {
+    let start = super::BarnWorld::start();
+    let map_from_world = start.inverse();
+    let moved = |points: &[Vector2]| points.iter().map(|&p| map_from_world.transform(p)).collect::<Vec<_>>();
+    let goal = map_from_world * super::BarnWorld::goal();
+    MapPicture::over(&trial.grid)
+        .axes("x, m", "y, m")
+        .dots("cylinders", &moved(&trial.world.cylinders), DotStyle::crowd(Color::VERMILLION))
+        .polyline("driven", &moved(&trial.driven), LineStyle::solid(Color::BLUE))
+        .pose("start", Pose2::IDENTITY, PoseStyle::named(Color::GREEN))
+        .pose("goal", goal, PoseStyle::named(Color::VERMILLION))
+        .window(Vector2::new(4.5, 0.0), 7.5)
+        .to_png()
+}
+
+/// How many runs had a value in each of a row of bins.
+fn histogram(title: &str, bins: &[(f64, f64)], values: impl Iterator<Item = f64>) -> Figure {
+    let values: Vec<f64> = values.collect();
+    let chart = bins.iter().fold(BarChart::new(title, "runs", "runs", ""), |chart, (low, high)| {
+        let count = values.iter().filter(|value| (*low..*high).contains(*value)).count() as f64;
+        chart.row(&format!("{low:.2} to {high:.2}"), count, count)
+    });
+    Figure::bars(&chart)
+}
+
+pub(super) fn report(trials: &[BarnTrial], means: &Means) -> Report {
+    let told = means.verdict();
+    let verdict = if means.within() { Verdict::Ok(told) } else { Verdict::Failed(told) };
+    let worst = worst_first(trials).into_iter().take(SHOWN).map(row);
+    let scores =
+        [(0.0, 0.01), (0.01, 0.2), (0.2, 0.3), (0.3, 0.4), (0.4, 0.45), (0.45, 0.4999), (0.4999, 1.0)];
+    let ratios = [(0.0, 1.5), (1.5, 2.0), (2.0, 2.5), (2.5, 3.0), (3.0, 4.0), (4.0, 8.0), (8.0, 100.0)];
+    let slowness = trials.iter().filter(|t| t.success).map(|trial| trial.time / trial.world.optimal_time);
+    let mut report = Report::new("The BARN challenge")
+        .subtitle(
+            "250 worlds of cylinders, a robot of 0.508 x 0.430 m at up to 2 m/s from an empty map, on a laser of 270 deg and \
+             720 beams, wheels and gyro; in trundle's simulator. The clock starts when the robot has gone 0.1 m.",
+        )
+        .verdict(verdict)
+        .table(worst.fold(Table::new("The worst worlds", HEADER), Table::row))
+        .section("All runs", "The score is at most 0.5, for a time of twice the optimal one or less.")
+        .figure(histogram("Score", &scores, trials.iter().map(|trial| trial.score)))
+        .figure(histogram("Time over optimal time, goal reached", &ratios, slowness))
+        .section("Ways", "The six worst worlds, the median one and a good one.");
+    for (name, trial) in shown(trials) {
+        let title = format!("World {} ({name})", trial.world.id);
+        let caption = format!("{}, {:.1} s, score {:.3}", trial.told(), trial.time, trial.score);
+        report = report.figure(Figure::png(&title, &picture(trial)).caption(&caption));
+    }
+    report
+}
+
+pub(super) fn csv(trials: &[BarnTrial]) -> String {
+    let header = [
+        "world",
+        "seed",
+        "success",
+        "contacts",
+        "time_s",
+        "optimal_time_s",
+        "score",
+        "way_m",
+        "least_clearance_m",
+        "worst_estimate_m",
+        "plans",
+    ];
+    let row = |trial: &BarnTrial| {
+        [
+            trial.world.id as f64,
+            trial.seed as f64,
+            f64::from(u8::from(trial.success)),
+            f64::from(trial.contacts),
+            trial.time,
+            trial.world.optimal_time,
+            trial.score,
+            trial.length,
+            trial.least_clearance,
+            trial.worst_estimate,
+            trial.plans as f64,
+        ]
+    };
+    table_csv(header, trials.iter().map(row))
+}
+
+pub(super) fn summary(trials: &[BarnTrial], means: &Means) -> Summary {
+    let mut summary = Summary::new("experiment barn");
+    summary
+        .set("success", means.within())
+        .set("runs", trials.len())
+        .set("worlds", means.worlds)
+        .set("reached", means.success)
+        .set("mean_score", means.score)
+        .set("mean_time_s", means.time)
+        .set("runs_with_contact", means.contacts)
+        .set(
+            "wall_clock",
+            serde_json::json!({ "cycle_median_ms": means.cycle_ms.0, "cycle_most_ms": means.cycle_ms.1 }),
+        );
+    summary
+}

@@ -1,0 +1,34 @@
+//! What experiments have in common: the request of closed-loop runs, and the report of an outcome.
+
+use trundle_app::AppError;
+use trundle_io::OutputFolder;
+use trundle_runtime::RobotConfig;
+
+/// The request of an experiment of closed-loop runs.
+#[derive(Debug, Clone)]
+pub struct RunsRequest {
+    /// Seeds of noise and scene: 1 to this.
+    pub seeds: u32,
+    /// Only runs whose name and seed ("lights out, seed 2") contain this.
+    pub only: Option<String>,
+    /// The robot.
+    pub robot: RobotConfig,
+}
+
+/// The report of an experiment's outcome.
+pub trait ExperimentReport {
+    /// Whether every limit is kept.
+    fn is_success(&self) -> bool;
+
+    /// The table for the terminal, header first; empty where the verdict says all.
+    fn table(&self) -> Vec<Vec<String>>;
+
+    /// The outcome in a sentence or two.
+    fn verdict(&self) -> String;
+
+    /// Writes report, tables and pictures into a folder.
+    ///
+    /// # Errors
+    /// When a file cannot be written.
+    fn write(&self, folder: &OutputFolder) -> Result<(), AppError>;
+}

@@ -1,0 +1,124 @@
+//! A run of a robot with a laser and without a camera.
+
+use crate::cpu_clock;
+use trundle_app::AppError;
+use trundle_core::{OccupancyGrid, Pose2, RobotBody, SensorEvent, Twist2};
+use trundle_runtime::{DriveState, Mission, Robot, RobotConfig};
+use trundle_sim::{LaserConfig, Scene, SimConfig, Simulator};
+
+/// A robot with a laser and without a camera, in a scene, on its own senses.
+pub struct LaserPlan {
+    /// The robot.
+    pub robot: RobotConfig,
+    /// Its simulated body.
+    pub body: SimConfig,
+    /// The place, with the robot's start.
+    pub scene: Scene,
+    /// What it shall do, map frame.
+    pub mission: Mission,
+    /// The map that it brings along; none: it begins with an empty one.
+    pub known: Option<OccupancyGrid>,
+    /// Of all noise.
+    pub seed: u64,
+    /// Seconds of the robot's time after which it is given up.
+    pub time_limit: f64,
+}
+
+/// What a judge sees of it, 50 times a second.
+#[derive(Debug, Clone, Copy)]
+pub struct Moment {
+    /// Since the start, s.
+    pub time: f64,
+    /// In truth, world frame.
+    pub pose: Pose2,
+    /// How far the estimate is from that, m.
+    pub estimate_error: f64,
+    /// The command.
+    pub twist: Twist2,
+    /// Beside the outline, in truth, m.
+    pub clearance: f64,
+    /// Separate touches so far.
+    pub contacts: u32,
+}
+
+/// What it came to.
+pub struct LaserRun {
+    /// From start to end.
+    pub moments: Vec<Moment>,
+    /// The robot, with its map.
+    pub robot: Robot,
+    /// What it was doing at the end.
+    pub state: DriveState,
+    /// Plans made.
+    pub plans: usize,
+    /// What each control cycle took (odometry, supervision, planning, control and safety), processor time, ms.
+    pub cycles_ms: Vec<f64>,
+}
+
+/// A Hokuyo-like laser, as in the BARN challenge: 270 deg, 720 beams, 30 m; all beams at once, as in Gazebo.
+pub fn hokuyo(forward: f64) -> LaserConfig {
+    LaserConfig {
+        x: forward,
+        z: 0.25,
+        field_of_view: 270_f64.to_radians(),
+        beams: 720,
+        rate_hz: 40.0,
+        range_min: 0.06,
+        range_max: 30.0,
+        noise: 0.01,
+        ..LaserConfig::default()
+    }
+}
+
+/// Lets the robot live until `is_over` says so, its mission is over, or its time is.
+///
+/// # Errors
+/// When a number of the plan is outside its range, or the start is not free.
+pub fn drive(plan: LaserPlan, is_over: impl Fn(&Moment) -> bool) -> Result<LaserRun, AppError> {
+    let config = plan.robot.with_seed(plan.seed);
+    let mut robot = match &plan.known {
+        Some(known) => Robot::on_map(config, known)?,
+        None => Robot::new(config)?,
+    };
+    robot.begin(&plan.mission);
+    let map_from_world = plan.scene.start.inverse();
+    let mut body = Simulator::new(plan.scene, plan.body, plan.seed).map_err(AppError::input)?;
+    let (mut moments, mut cycles_ms, mut plans) = (Vec::new(), Vec::new(), 0);
+    let mut state = DriveState::Idle;
+    while let Some(event) = RobotBody::next_event(&mut body).map_err(AppError::input)? {
+        let before = cpu_clock::now();
+        let report = robot.step(&event);
+        let elapsed = (cpu_clock::now() - before).as_secs_f64() * 1e3;
+        plans += usize::from(report.replanned);
+        state = report.state;
+        let (SensorEvent::Wheels(_), Some(twist)) = (&event, report.twist) else { continue };
+        cycles_ms.push(elapsed);
+        RobotBody::command(&mut body, twist).map_err(AppError::input)?;
+        let (time, pose) = (body.stamp().as_secs(), body.true_pose());
+        let (clearance, contacts) = (body.clearance(), body.contacts());
+        let estimate_error = robot.estimate().pose.distance(&(map_from_world * pose));
+        let moment = Moment { time, pose, estimate_error, twist, clearance, contacts };
+        moments.push(moment);
+        if report.finished || is_over(&moment) || time > plan.time_limit {
+            break;
+        }
+    }
+    Ok(LaserRun { moments, state, robot, plans, cycles_ms })
+}
+
+impl LaserRun {
+    /// The last moment.
+    pub fn end(&self) -> &Moment {
+        self.moments.last().expect("invariant: a run begins with a reading of the wheels")
+    }
+
+    /// The estimate's greatest distance from truth, m.
+    pub fn worst_estimate(&self) -> f64 {
+        self.moments.iter().map(|moment| moment.estimate_error).fold(0.0, f64::max)
+    }
+
+    /// The way driven in truth, m.
+    pub fn path_length(&self) -> f64 {
+        self.moments.windows(2).map(|pair| pair[1].pose.distance(&pair[0].pose)).sum()
+    }
+}

@@ -1,0 +1,31 @@
+//! The experiments of the papers and benchmarks, in the simulator: each takes a request and returns typed outcomes.
+//!
+//! An outcome holds a row for each run ([`Trial`] or the experiment's own type). [`ExperimentReport`] judges the outcome, makes its
+//! table and writes its folder; a front end prints the table.
+//!
+//! ```
+//! use trundle_experiments::{ExperimentReport, corridor};
+//!
+//! let outcome = corridor::run()?; // the four corridor scenarios of Hong (2024), by two methods
+//! assert_eq!(outcome.trials.len(), 8);
+//! assert!(outcome.is_success());
+//! # Ok::<(), trundle_app::AppError>(())
+//! ```
+
+pub mod barn;
+pub mod corridor;
+mod cpu_clock;
+mod csv_rows;
+mod experiment_report;
+pub mod fault_scenarios;
+mod laser_run;
+pub mod missions;
+pub mod mrpb;
+pub mod people;
+pub mod poses;
+pub mod real_time;
+pub mod simulated;
+mod trial;
+
+pub use experiment_report::{ExperimentReport, RunsRequest};
+pub use trial::{ComputerFault, Trial, TrialPlan, run_all, run_one};

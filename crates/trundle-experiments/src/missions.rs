@@ -1,0 +1,255 @@
+//! Missions through unknown places: a room with obstacles crossed while it is mapped, and a house with ten goals.
+
+use crate::simulated::{SceneOptions, load_scene, require_free};
+use crate::trial::{self, Trial, TrialPlan};
+use crate::{ExperimentReport, RunsRequest};
+use std::path::Path;
+use trundle_app::report::GoalOutcome;
+use trundle_app::{AppError, Progress};
+use trundle_core::{Pose2, Vector2};
+use trundle_io::{OutputFolder, Summary, table_csv, write_map};
+use trundle_runtime::{Mission, Task, TaskEnd};
+use trundle_sim::import::UpAxis;
+use trundle_sim::{FaultSchedule, Scene};
+use trundle_viz::{Color, Figure, LineStyle, MapPicture, PoseStyle, Report, Table, Verdict};
+
+/// An experiment of this kind.
+struct Story {
+    /// Its name on the command line.
+    name: &'static str,
+    /// What the report is called.
+    title: &'static str,
+    /// What is asked for, in a sentence.
+    subtitle: &'static str,
+}
+
+/// The room of [Li18] with obstacles: to the other end of it, mapping on the way.
+const OBSTACLES: Story = Story {
+    name: "obstacles",
+    title: "An unknown room with obstacles",
+    subtitle: "The second experiment of Li, Wang, Yu: a room with obstacles is crossed while it is mapped.",
+};
+
+/// The furnished house of AWS RoboMaker: ten goals in six rooms.
+const HOUSE: Story = Story {
+    name: "house",
+    title: "Ten goals in a furnished house",
+    subtitle: "From an empty map to ten goals in six rooms of small_house (AWS RoboMaker).",
+};
+
+/// The runs through an unknown place.
+pub struct MissionsOutcome {
+    story: &'static Story,
+    /// A run for each seed.
+    pub trials: Vec<Trial>,
+}
+
+/// Crosses the room of obstacles, with each seed.
+///
+/// # Errors
+/// When a run cannot be made, or no run has the name asked for.
+pub fn run_obstacles(request: &RunsRequest, progress: &Progress) -> Result<MissionsOutcome, AppError> {
+    run_story(&OBSTACLES, request, progress, |seed| {
+        let scene = Scene::by_name("obstacles", seed)?;
+        let mission = Mission::new(vec![Task::Go(scene.start_from_goal())])?;
+        Ok((scene, mission))
+    })
+}
+
+/// The robot's start in the house, world frame: m, m, deg.
+const HOUSE_START: (f64, f64, f64) = (0.0, 0.0, 0.0);
+/// The goals, world frame: m, m, deg; by rooms.
+const HOUSE_GOALS: [(f64, f64, f64); 10] = [
+    (3.0, -1.0, 0.0),
+    (6.2, -2.6, -90.0),
+    (6.8, 2.5, 90.0),
+    (3.0, 1.3, 180.0),
+    (0.5, 2.6, 90.0),
+    (-3.2, 0.0, 180.0),
+    (-7.6, -0.6, 180.0),
+    (-6.6, -2.8, -90.0),
+    (-4.2, -4.0, 0.0),
+    (1.0, -4.1, 0.0),
+];
+
+/// Drives to the ten goals of the house, whose mesh is the file `mesh` (z up), with each seed.
+///
+/// # Errors
+/// When the mesh is not there, a run cannot be made, or no run has the name asked for.
+pub fn run_house(
+    request: &RunsRequest,
+    mesh: &Path,
+    progress: &Progress,
+) -> Result<MissionsOutcome, AppError> {
+    if !mesh.exists() {
+        let problem = "is not there: the house does not come with trundle, --mesh names its file";
+        return Err(AppError::Input(format!("{} {problem}", mesh.display())));
+    }
+    let pose = |(x, y, degrees): (f64, f64, f64)| Pose2::new(x, y, degrees.to_radians());
+    let start = pose(HOUSE_START);
+    run_story(&HOUSE, request, progress, |seed| {
+        let options = SceneOptions { seed, up: UpAxis::Z, start: Some(start) };
+        let scene = load_scene(&mesh.display().to_string(), options)?;
+        for goal in HOUSE_GOALS {
+            require_free("goal", &scene, pose(goal), &request.robot)?;
+        }
+        let goals = HOUSE_GOALS.map(|goal| Task::Go(start.inverse() * pose(goal)));
+        Ok((scene, Mission::new(goals.to_vec())?))
+    })
+}
+
+/// A run for each seed, of the scene and the mission that `story_of` has for it.
+fn run_story(
+    story: &'static Story,
+    request: &RunsRequest,
+    progress: &Progress,
+    story_of: impl Fn(u64) -> Result<(Scene, Mission), AppError>,
+) -> Result<MissionsOutcome, AppError> {
+    let plan = |seed| -> Result<TrialPlan, AppError> {
+        let (scene, mission) = story_of(seed)?;
+        let (name, robot) = (format!("seed {seed}"), request.robot.clone());
+        Ok(TrialPlan {
+            name,
+            seed,
+            scene,
+            mission,
+            robot,
+            faults: FaultSchedule::default(),
+            computer_fault: None,
+        })
+    };
+    let plans = (1..=u64::from(request.seeds)).map(plan).collect::<Result<Vec<_>, _>>()?;
+    Ok(MissionsOutcome { story, trials: trial::run_all(plans, request, progress)? })
+}
+
+impl ExperimentReport for MissionsOutcome {
+    fn is_success(&self) -> bool {
+        self.trials.iter().all(|trial| trial.numbers.is_success())
+    }
+
+    fn table(&self) -> Vec<Vec<String>> {
+        std::iter::once(HEADER.map(str::to_owned).to_vec()).chain(self.trials.iter().map(row)).collect()
+    }
+
+    fn verdict(&self) -> String {
+        verdict(&self.trials)
+    }
+
+    fn write(&self, folder: &OutputFolder) -> Result<(), AppError> {
+        let (story, trials, success) = (self.story, &self.trials, self.is_success());
+        let text = self.verdict();
+        let verdict = if success { Verdict::Ok(text) } else { Verdict::Failed(text) };
+        let table = trials.iter().map(row).fold(Table::new("Runs", HEADER), Table::row);
+        let mut report = Report::new(story.title).subtitle(story.subtitle).verdict(verdict).table(table);
+        for trial in trials {
+            let png = picture(trial);
+            folder.write(&format!("seed-{}.png", trial.seed), &png)?;
+            write_map(folder, &format!("seed-{}", trial.seed), &trial.grid)?;
+            folder.write(&format!("seed-{}.csv", trial.seed), poses_csv(trial).as_bytes())?;
+            let figure = Figure::png(&trial.name, &png).caption(&trial.numbers.verdict());
+            report = report.figure(figure).table(trial.state_table());
+        }
+        folder.write(&format!("{}.csv", story.name), csv(trials).as_bytes())?;
+        folder.write("report.html", report.to_html().as_bytes())?;
+        folder.write("summary.json", summary(story, trials, success).to_json().as_bytes())?;
+        Ok(())
+    }
+}
+
+/// Estimated and true pose at every image, map frame.
+fn poses_csv(trial: &Trial) -> String {
+    let header = ["t_s", "x_m", "y_m", "theta_rad", "true_x_m", "true_y_m", "true_theta_rad"];
+    let row = |(time, here, truth): &(f64, Pose2, Pose2)| {
+        [*time, here.x, here.y, here.theta, truth.x, truth.y, truth.theta]
+    };
+    table_csv(header, trial.pose_pairs.iter().map(row))
+}
+
+const HEADER: [&str; 7] =
+    ["run", "goals reached", "worst goal, cm", "contacts", "driven, m", "time, s", "estimate rmse, cm"];
+
+/// The goals that the robot came to, of all.
+fn reached(trial: &Trial) -> (usize, usize) {
+    let there = trial.numbers.goals.iter().filter(|goal| goal.is_reached(0.05, 3_f64.to_radians()));
+    (there.count(), trial.numbers.goals_asked)
+}
+
+fn worst(trial: &Trial) -> f64 {
+    let done = trial.numbers.goals.iter().filter(|goal: &&GoalOutcome| goal.end == TaskEnd::Done);
+    done.filter_map(|goal| Some(goal.error?.distance)).fold(0.0, f64::max)
+}
+
+fn row(trial: &Trial) -> Vec<String> {
+    let (good, all) = reached(trial);
+    let numbers = &trial.numbers;
+    vec![
+        trial.name.clone(),
+        format!("{good} of {all}"),
+        format!("{:.1}", worst(trial) * 100.0),
+        numbers.contacts.to_string(),
+        format!("{:.1}", numbers.path_length),
+        format!("{:.1}", numbers.duration),
+        numbers.estimate_rmse.map_or_else(String::new, |e| format!("{:.1}", e * 100.0)),
+    ]
+}
+
+fn verdict(trials: &[Trial]) -> String {
+    let good = trials.iter().filter(|trial| trial.numbers.is_success()).count();
+    let failed: Vec<String> = trials
+        .iter()
+        .filter(|trial| !trial.numbers.is_success())
+        .map(|trial| format!("{}: {}", trial.name, trial.numbers.verdict()))
+        .collect();
+    let head = format!("{good} of {} runs reached every goal and touched nothing.", trials.len());
+    std::iter::once(head).chain(failed).collect::<Vec<_>>().join("\n")
+}
+
+/// The map with the way driven and the goals.
+pub(super) fn picture(trial: &Trial) -> Vec<u8> {
+    let map_from_world = trial.world_from_map.inverse();
+    let line = |points: &[Vector2]| points.iter().map(|&p| map_from_world.transform(p)).collect::<Vec<_>>();
+    let mut picture = MapPicture::over(&trial.grid)
+        .axes("x, m", "y, m")
+        .polyline("planned last", &line(&trial.planned), LineStyle::dashed(Color::VERMILLION))
+        .polyline("driven", &line(&trial.driven), LineStyle::solid(Color::BLUE))
+        .pose("start", Pose2::IDENTITY, PoseStyle::named(Color::GREEN));
+    for goal in &trial.numbers.goals {
+        picture = picture.pose(&format!("{}", goal.task + 1), goal.goal, PoseStyle::named(Color::VERMILLION));
+    }
+    picture.to_png()
+}
+
+fn csv(trials: &[Trial]) -> String {
+    let header =
+        ["seed", "goal", "done", "dx_m", "dy_m", "distance_m", "dtheta_rad", "at_s", "contacts_of_run"];
+    let rows = trials.iter().flat_map(|trial| {
+        trial.numbers.goals.iter().map(move |goal| {
+            let number =
+                |value: fn(&trundle_eval::GoalError) -> f64| goal.error.as_ref().map_or(f64::NAN, value);
+            [
+                trial.seed as f64,
+                (goal.task + 1) as f64,
+                f64::from(u8::from(goal.end == TaskEnd::Done)),
+                number(|e| e.dx),
+                number(|e| e.dy),
+                number(|e| e.distance),
+                number(|e| e.dtheta),
+                goal.at_s,
+                trial.numbers.contacts as f64,
+            ]
+        })
+    });
+    table_csv(header, rows)
+}
+
+fn summary(story: &Story, trials: &[Trial], success: bool) -> Summary {
+    let mut summary = Summary::new(&format!("experiment {}", story.name));
+    let good = trials.iter().filter(|trial| trial.numbers.is_success()).count();
+    summary
+        .set("success", success)
+        .set("runs", trials.len())
+        .set("runs_without_fault", good)
+        .set("contacts", trials.iter().map(|trial| trial.numbers.contacts).sum::<usize>())
+        .set("worst_goal_m", trials.iter().map(worst).fold(0.0, f64::max));
+    summary
+}

@@ -1,0 +1,207 @@
+//! The local-planning benchmark MRPB 1.0 in trundle's simulator: every pair of start and goal, with and without people. As there,
+//! the robot has the map, and knows where on it it starts.
+
+mod course;
+mod metrics;
+mod report;
+
+use crate::ExperimentReport;
+use crate::laser_run::{LaserPlan, LaserRun, drive, hokuyo};
+use crate::simulated::simulated_body;
+use course::Course;
+use metrics::Metrics;
+use rayon::prelude::*;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use trundle_app::{AppError, Progress};
+use trundle_control::{FollowerConfig, SettleConfig};
+use trundle_core::{DriveLimits, Invalid, OccupancyGrid, Vector2, difference_of_angles};
+use trundle_io::{OutputFolder, write_map};
+use trundle_localization::LocalizerConfig;
+use trundle_mapping::MapperConfig;
+use trundle_runtime::{DriveState, Mission, RobotConfig, Schedule, Sight, Task};
+use trundle_sim::{FaultSchedule, SimConfig};
+
+/// The benchmark's robot, m, and what it adds for its planners.
+const RADIUS: f64 = 0.25;
+const INFLATION: f64 = 0.01;
+/// Of its laser, m.
+const REACH: f64 = 30.0;
+/// Its highest speed, m/s.
+const SPEED: f64 = 0.55;
+/// Its tolerance at the goal, m and rad.
+const NEAR: f64 = 0.2;
+const ALIGNED: f64 = 0.1;
+/// A control cycle may take so long on average, ms.
+const CYCLE_MS: f64 = 2.0;
+/// After so long a run is given up, s.
+const TIME_LIMIT: f64 = 600.0;
+
+/// A course driven, or not.
+pub struct MrpbTrial {
+    course: Course,
+    seed: u64,
+    metrics: Metrics,
+    contacts: u32,
+    /// In truth, at the end: m and rad from the goal.
+    distance: f64,
+    turn: f64,
+    worst_estimate: f64,
+    state: DriveState,
+    /// World frame.
+    driven: Vec<Vector2>,
+    /// Map frame.
+    grid: OccupancyGrid,
+}
+
+/// What to run of the benchmark's courses.
+pub struct MrpbRequest {
+    /// The folder with start_goal.csv, actors.csv and maps.
+    pub data: PathBuf,
+    /// Only the courses whose name contains this.
+    pub only: Option<String>,
+    /// Seeds of noise for each course: 1 to this.
+    pub seeds: u32,
+    /// A robot in place of the benchmark's own.
+    pub robot: Option<RobotConfig>,
+}
+
+/// The runs over the benchmark's courses.
+pub struct MrpbOutcome {
+    /// A run for each course and seed.
+    pub trials: Vec<MrpbTrial>,
+}
+
+/// Drives every course asked for, with each seed.
+///
+/// # Errors
+/// When the data cannot be read, no course has the name asked for, or a run cannot be made.
+pub fn run(request: &MrpbRequest, progress: &Progress) -> Result<MrpbOutcome, AppError> {
+    let robot = request.robot.clone().unwrap_or_else(robot);
+    let chosen =
+        |course: &Course| request.only.as_ref().is_none_or(|only| course.name().contains(only.as_str()));
+    let all = course::read(&request.data)?;
+    let names = all.iter().map(Course::name).collect::<Vec<_>>().join(", ");
+    let courses: Vec<Course> = all.into_iter().filter(chosen).collect();
+    if courses.is_empty() {
+        let only = request.only.as_deref().unwrap_or("");
+        return Err(AppError::Input(format!("--only '{only}': no course of that name; there are {names}")));
+    }
+    let plans: Vec<(Course, u64)> = courses
+        .into_iter()
+        .flat_map(|course| (1..=u64::from(request.seeds)).map(move |seed| (course.clone(), seed)))
+        .collect();
+    let (done, total) = (AtomicUsize::new(0), plans.len());
+    let trials = plans.into_par_iter().map(|(course, seed)| {
+        let trial = one(&request.data, &robot, course, seed)?;
+        let done = 1 + done.fetch_add(1, Ordering::Relaxed);
+        progress.show(&format!("{done} of {total} runs"));
+        Ok(trial)
+    });
+    Ok(MrpbOutcome { trials: trials.collect::<Result<_, AppError>>()? })
+}
+
+impl ExperimentReport for MrpbOutcome {
+    fn is_success(&self) -> bool {
+        self.trials.iter().all(MrpbTrial::success)
+    }
+
+    fn table(&self) -> Vec<Vec<String>> {
+        report::rows(&self.trials)
+    }
+
+    fn verdict(&self) -> String {
+        report::verdict(&self.trials, self.is_success())
+    }
+
+    fn write(&self, folder: &OutputFolder) -> Result<(), AppError> {
+        let (trials, success) = (&self.trials, self.is_success());
+        for trial in trials {
+            folder.write(&format!("{}.png", report::file_name(trial)), &report::picture(trial))?;
+            write_map(folder, &report::file_name(trial), &trial.grid)?;
+        }
+        folder.write("mrpb.csv", report::csv(trials).as_bytes())?;
+        folder.write("report.html", report::report(trials, success).to_html().as_bytes())?;
+        folder.write("summary.json", report::summary(trials, success).to_json().as_bytes())?;
+        Ok(())
+    }
+}
+
+/// The benchmark's robot as the autonomy knows it: a round two-wheeled base with a laser.
+fn robot() -> RobotConfig {
+    let defaults = RobotConfig::default();
+    RobotConfig {
+        footprint_radius: RADIUS + INFLATION,
+        sight: Sight::Laser,
+        limits: DriveLimits { v: SPEED, ..DriveLimits::KOBUKI },
+        schedule: Schedule { map_hz: 10.0, check_hz: 10.0, improve_hz: 1.0 },
+        // The ends of a long corridor are what tells how far along it the robot is.
+        mapping: MapperConfig { max_range: REACH, ..MapperConfig::default() },
+        // Scans of a laser err less alike than images: less of the heading is left to each.
+        localization: LocalizerConfig {
+            least_position_sigma: 0.005,
+            least_heading_sigma_deg: 0.1,
+            scan_heading_sigma_deg: 0.3,
+            ..LocalizerConfig::default()
+        },
+        // A tenth of the benchmark's tolerance in position, a quarter in heading: the estimate has errors of its own.
+        control: FollowerConfig {
+            settling: SettleConfig {
+                position_tolerance: 0.1 * NEAR,
+                heading_tolerance: 0.25 * ALIGNED,
+                ..SettleConfig::default()
+            },
+            ..FollowerConfig::default()
+        },
+        ..defaults
+    }
+}
+
+/// Its body in the simulator.
+fn body(robot: &RobotConfig) -> Result<SimConfig, Invalid> {
+    let mut config = simulated_body(robot, FaultSchedule::default())?;
+    config.has_camera = false;
+    config.laser = Some(hokuyo(0.0));
+    config.kobuki.footprint_radius = RADIUS;
+    config.validated()
+}
+
+fn one(data: &Path, robot: &RobotConfig, course: Course, seed: u64) -> Result<MrpbTrial, AppError> {
+    let plan = LaserPlan {
+        robot: robot.clone(),
+        body: body(robot)?,
+        scene: course.scene(data)?,
+        mission: Mission::new(vec![Task::Go(course.start.inverse() * course.goal)])?,
+        known: course.known(data, robot.mapping.resolution)?,
+        seed,
+        time_limit: TIME_LIMIT,
+    };
+    Ok(MrpbTrial::of(course, seed, drive(plan, |_| false)?))
+}
+
+impl MrpbTrial {
+    fn of(course: Course, seed: u64, run: LaserRun) -> Self {
+        let end = *run.end();
+        Self {
+            metrics: Metrics::of(&run),
+            contacts: end.contacts,
+            distance: end.pose.distance(&course.goal),
+            turn: difference_of_angles(end.pose.theta, course.goal.theta).abs(),
+            worst_estimate: run.worst_estimate(),
+            driven: run.moments.iter().map(|m| m.pose.position()).collect(),
+            grid: run.robot.grid().clone(),
+            state: run.state,
+            course,
+            seed,
+        }
+    }
+
+    fn reached(&self) -> bool {
+        self.state == DriveState::Arrived && self.distance <= NEAR && self.turn <= ALIGNED
+    }
+
+    /// At the goal, nothing touched, cycles short enough.
+    fn success(&self) -> bool {
+        self.reached() && self.contacts == 0 && self.metrics.cycle_ms[0] <= CYCLE_MS
+    }
+}

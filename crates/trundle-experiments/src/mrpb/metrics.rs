@@ -1,0 +1,71 @@
+use crate::laser_run::{LaserRun, Moment};
+
+/// The benchmark's metrics of one run (Wen et al., MRPB 1.0, IROS 2021), in four groups.
+#[derive(Debug, Clone, Copy)]
+pub struct Metrics {
+    /// Safety: the least distance from an obstacle, m.
+    pub least_room: f64,
+    /// Safety: the part of the time spent nearer to one than [`NEAR`], 0 to 1.
+    pub time_near: f64,
+    /// Efficiency: from start to goal, s.
+    pub time: f64,
+    /// Efficiency: the way driven, m.
+    pub length: f64,
+    /// Smoothness of the path: mean square of the second difference of the position, m^2.
+    pub path_roughness: f64,
+    /// Smoothness of the speed: mean change of the commanded speed over time, m/s^2.
+    pub speed_roughness: f64,
+    /// Computation: a control cycle (odometry, supervision, planning, control, safety), processor time, ms: mean, median, 99th percentile, most.
+    pub cycle_ms: [f64; 4],
+}
+
+/// Nearer than this to an obstacle is dangerous, m (ours).
+pub const NEAR: f64 = 0.1;
+/// Smoothness is measured on every second moment: 25 a second.
+const STRIDE: usize = 2;
+
+impl Metrics {
+    /// Of a run that has ended.
+    pub fn of(run: &LaserRun) -> Self {
+        let thin: Vec<&Moment> = run.moments.iter().step_by(STRIDE).collect();
+        let second = |m: &[&Moment]| {
+            let (a, b, c) = (m[0].pose.position(), m[1].pose.position(), m[2].pose.position());
+            (c - b - (b - a)).norm_squared()
+        };
+        let change = |m: &[&Moment]| (m[1].twist.v - m[0].twist.v).abs() / (m[1].time - m[0].time).max(1e-9);
+        let near = run.moments.iter().filter(|m| m.clearance < NEAR).count();
+        Self {
+            least_room: run.moments.iter().map(|m| m.clearance).fold(f64::INFINITY, f64::min),
+            time_near: near as f64 / run.moments.len() as f64,
+            time: run.end().time,
+            length: run.path_length(),
+            path_roughness: mean(thin.windows(3).map(second)),
+            speed_roughness: mean(thin.windows(2).map(change)),
+            cycle_ms: cycle(&run.cycles_ms),
+        }
+    }
+}
+
+fn mean(values: impl Iterator<Item = f64>) -> f64 {
+    let (sum, n) = values.fold((0.0, 0_u32), |(sum, n), value| (sum + value, n + 1));
+    sum / f64::from(n.max(1))
+}
+
+fn cycle(cycles: &[f64]) -> [f64; 4] {
+    let mut sorted = cycles.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let last = sorted.len().saturating_sub(1);
+    let at = |part: f64| sorted.get((last as f64 * part).round() as usize).copied().unwrap_or(0.0);
+    [mean(cycles.iter().copied()), at(0.5), at(0.99), at(1.0)]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn means_and_quantiles() {
+        assert_eq!(cycle(&[1.0, 3.0, 2.0, 10.0]), [4.0, 3.0, 10.0, 10.0]);
+        assert_eq!(cycle(&[]), [0.0; 4]);
+    }
+}

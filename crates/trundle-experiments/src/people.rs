@@ -1,0 +1,208 @@
+//! People who step into the robot's way a metre before it: it stops, waits or goes around, and touches nobody.
+
+use crate::trial::{self, Trial, TrialPlan};
+use crate::{ExperimentReport, RunsRequest};
+use trundle_app::{AppError, Progress};
+use trundle_core::{Pose2, Vector2};
+use trundle_io::{OutputFolder, Summary, table_csv};
+use trundle_runtime::{Mission, RobotConfig, Task};
+use trundle_sim::{FaultSchedule, Person, Scene};
+use trundle_viz::{Report, Table, Verdict};
+
+/// The robot crosses the room from here to there, world frame, m.
+const FROM: (f64, f64) = (-2.4, 0.0);
+const TO: (f64, f64) = (2.0, 0.0);
+/// Somebody is on its way when its front is so far before them, m.
+const AHEAD: f64 = 1.0;
+/// Where on the way that is, m from its start: it drives at full speed there.
+const WHERE: (f64, f64) = (1.9, 3.6);
+/// From so far beside the way they come, m.
+const BESIDE: (f64, f64) = (0.8, 1.2);
+/// How fast, m/s.
+const SPEED: (f64, f64) = (0.7, 1.6);
+/// They stand on the way for so long, s, then walk on.
+const STAY: (f64, f64) = (0.0, 4.0);
+
+/// Somebody who steps out: where on the way, from how far beside it (left is positive), m; m/s; s.
+#[derive(Debug, Clone, Copy)]
+struct StepOut {
+    x: f64,
+    beside: f64,
+    speed: f64,
+    stay: f64,
+}
+
+impl StepOut {
+    /// One of a row of numbers without gaps and clusters: the additive recurrence of the plastic number's powers (Roberts 2018).
+    fn of(seed: u64) -> Self {
+        let draw = |power: i32, (low, high): (f64, f64)| {
+            let part = (seed as f64 * 1.167_303_978_261_418_7_f64.powi(-power)).fract();
+            low + (high - low) * part
+        };
+        let side = if seed.is_multiple_of(2) { 1.0 } else { -1.0 };
+        Self {
+            x: FROM.0 + draw(1, WHERE),
+            beside: side * draw(2, BESIDE),
+            speed: draw(3, SPEED),
+            stay: draw(4, STAY),
+        }
+    }
+
+    /// The person who is on the way when the robot, by `timetable`, is [`AHEAD`] of them.
+    fn person(&self, timetable: &[(f64, Vector2)], radius: f64) -> Person {
+        let robot_at = self.x - AHEAD - radius;
+        let on_the_way = timetable.iter().find(|(_, at)| at.x >= robot_at).map_or(0.0, |(time, _)| *time);
+        Person {
+            waypoints: vec![[self.x, self.beside], [self.x, 0.0], [self.x, -self.beside]],
+            speed: self.speed,
+            delay: (on_the_way - self.beside.abs() / self.speed).max(0.0),
+            pause: self.stay,
+            once: true,
+            ..Person::default()
+        }
+    }
+}
+
+/// The runs in which somebody steps into the robot's path.
+pub struct PeopleOutcome {
+    /// A run for each person.
+    pub trials: Vec<Trial>,
+}
+
+/// Runs with one person who steps out, a person a seed.
+///
+/// # Errors
+/// When a run cannot be made, or no run has the name asked for.
+pub fn run(request: &RunsRequest, progress: &Progress) -> Result<PeopleOutcome, AppError> {
+    let robot = &request.robot;
+    let radius = robot.footprint()?.circumscribed_radius();
+    let alone = trial::run_one(plan("alone", 1, robot)?)?;
+    let timetable: Vec<(f64, Vector2)> = alone.times.iter().copied().zip(alone.driven).collect();
+    let mut plans = Vec::new();
+    for seed in 1..=u64::from(request.seeds) {
+        let mut plan = plan(&format!("run {seed}"), seed, robot)?;
+        plan.scene.people.push(StepOut::of(seed).person(&timetable, radius));
+        plans.push(plan);
+    }
+    Ok(PeopleOutcome { trials: trial::run_all(plans, request, progress)? })
+}
+
+impl ExperimentReport for PeopleOutcome {
+    fn is_success(&self) -> bool {
+        self.trials.iter().all(is_good)
+    }
+
+    fn table(&self) -> Vec<Vec<String>> {
+        Vec::new()
+    }
+
+    fn verdict(&self) -> String {
+        verdict(&self.trials)
+    }
+
+    fn write(&self, folder: &OutputFolder) -> Result<(), AppError> {
+        let (trials, success) = (&self.trials, self.is_success());
+        folder.write("people.csv", csv(trials).as_bytes())?;
+        folder.write("report.html", report(trials, success).to_html().as_bytes())?;
+        folder.write("summary.json", summary(trials, success).to_json().as_bytes())?;
+        Ok(())
+    }
+}
+
+/// Across the room, with nobody in it yet.
+fn plan(name: &str, seed: u64, robot: &RobotConfig) -> Result<TrialPlan, AppError> {
+    let mut scene = Scene::by_name("room", seed)?;
+    scene.start = Pose2::new(FROM.0, FROM.1, 0.0);
+    scene.goal = Pose2::new(TO.0, TO.1, 0.0);
+    let mission = Mission::new(vec![Task::Go(scene.start_from_goal())])?;
+    let (name, robot) = (name.to_owned(), robot.clone());
+    Ok(TrialPlan {
+        name,
+        seed,
+        scene,
+        mission,
+        robot,
+        faults: FaultSchedule::default(),
+        computer_fault: None,
+    })
+}
+
+fn is_good(trial: &Trial) -> bool {
+    trial.numbers.is_success()
+}
+
+fn verdict(trials: &[Trial]) -> String {
+    let contacts = trials.iter().filter(|trial| trial.numbers.contacts > 0).count();
+    let arrived = trials.iter().filter(|trial| is_good(trial)).count();
+    let bad: Vec<&str> =
+        trials.iter().filter(|trial| !is_good(trial)).map(|trial| trial.name.as_str()).take(20).collect();
+    let which = if bad.is_empty() { String::new() } else { format!(" Not so: {}.", bad.join(", ")) };
+    format!(
+        "In {} runs somebody stepped out {AHEAD} m before the robot: {contacts} with a contact, {arrived} arrived untouched.{which}",
+        trials.len()
+    )
+}
+
+fn csv(trials: &[Trial]) -> String {
+    let header = ["run", "x_m", "beside_m", "speed_m_s", "stay_s", "contacts", "arrived", "time_s"];
+    let rows = trials.iter().map(|trial| {
+        let StepOut { x, beside, speed, stay } = StepOut::of(trial.seed);
+        let numbers = &trial.numbers;
+        let arrived = f64::from(u8::from(is_good(trial)));
+        [trial.seed as f64, x, beside, speed, stay, numbers.contacts as f64, arrived, numbers.duration]
+    });
+    table_csv(header, rows)
+}
+
+const HEADER: [&str; 6] = ["run", "on the way at x, m", "from the side, m", "speed, m/s", "contacts", "end"];
+
+fn report(trials: &[Trial], success: bool) -> Report {
+    let verdict = if success { Verdict::Ok(verdict(trials)) } else { Verdict::Failed(verdict(trials)) };
+    let row = |trial: &Trial| {
+        let StepOut { x, beside, speed, .. } = StepOut::of(trial.seed);
+        let numbers = [format!("{x:.2}"), format!("{beside:.2}"), format!("{speed:.2}")];
+        let [x, beside, speed] = numbers;
+        vec![
+            trial.name.clone(),
+            x,
+            beside,
+            speed,
+            trial.numbers.contacts.to_string(),
+            trial.numbers.state.to_string(),
+        ]
+    };
+    let bad = trials.iter().filter(|trial| !is_good(trial));
+    let table = bad.map(row).fold(Table::new("Runs that did not end as they should", HEADER), Table::row);
+    Report::new("People who step out")
+        .subtitle("A robot crosses a room at full speed; somebody steps into its way a metre before it.")
+        .verdict(verdict)
+        .table(table.wide())
+}
+
+fn summary(trials: &[Trial], success: bool) -> Summary {
+    let mut summary = Summary::new("experiment people");
+    summary.set("success", success).set("runs", trials.len());
+    summary.set("runs_with_contact", trials.iter().filter(|trial| trial.numbers.contacts > 0).count());
+    summary.set("arrived", trials.iter().filter(|trial| is_good(trial)).count());
+    summary
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn they_are_on_the_way_when_the_robot_is_a_metre_before_them() {
+        // A robot that drives 1 m in 2 s.
+        let point = |i: i32| (f64::from(i) * 0.1, Vector2::new(FROM.0 + f64::from(i) * 0.05, 0.0));
+        let timetable: Vec<_> = (0..100).map(point).collect();
+        for seed in 1..50 {
+            let step = StepOut::of(seed);
+            let person = step.person(&timetable, 0.2);
+            let there = person.delay + step.beside.abs() / step.speed;
+            let robot = FROM.0 + there * 0.5;
+            assert!((step.x - robot - 0.2 - AHEAD).abs() < 0.06, "{step:?} {person:?}");
+            assert!((FROM.0..=TO.0).contains(&step.x));
+        }
+    }
+}

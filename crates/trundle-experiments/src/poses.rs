@@ -1,0 +1,221 @@
+//! The point stabilisation of [Li18]: eight start poses about one goal, from an empty map, on the robot's own senses.
+
+use crate::trial::{self, Trial, TrialPlan};
+use crate::{ExperimentReport, RunsRequest};
+use trundle_app::{AppError, Progress};
+use trundle_core::{Footprint, Pose2, Vector2};
+use trundle_io::{OutputFolder, Summary, table_csv};
+use trundle_runtime::{Mission, Task};
+use trundle_sim::{FaultSchedule, Scene};
+use trundle_viz::{BarChart, Color, Figure, LineStyle, MapPicture, PoseStyle, Report, Table, Verdict};
+
+/// Their start poses, m; each with heading 0.
+const STARTS: [(f64, f64); 8] =
+    [(0.0, 2.4), (2.4, 2.4), (2.4, 0.0), (2.4, -2.4), (0.0, -2.4), (-2.4, -2.4), (-2.4, 0.0), (-2.4, 2.4)];
+
+/// What is asked for: the mean of |dx| and of |dy|, m.
+const MEAN_OFFSET: f64 = 0.004;
+/// Every distance, m.
+const DISTANCE: f64 = 0.015;
+/// The mean of |dtheta|, rad.
+const MEAN_TURN: f64 = 0.8 * std::f64::consts::PI / 180.0;
+
+/// Means of a set of runs: |dx|, |dy|, the largest distance, |dtheta| (m, rad); runs that did not arrive or touched something.
+struct Means {
+    dx: f64,
+    dy: f64,
+    most: f64,
+    dtheta: f64,
+    failed: usize,
+}
+
+/// The runs from the eight start poses.
+pub struct PosesOutcome {
+    /// A run for each start pose and seed.
+    pub trials: Vec<Trial>,
+}
+
+/// Runs the eight start poses, with each seed.
+///
+/// # Errors
+/// When a run cannot be made, or no run has the name asked for.
+pub fn run(request: &RunsRequest, progress: &Progress) -> Result<PosesOutcome, AppError> {
+    let mut plans = Vec::new();
+    for (i, (x, y)) in STARTS.into_iter().enumerate() {
+        for seed in 1..=u64::from(request.seeds) {
+            let mut scene = Scene::by_name("room", seed)?;
+            scene.start = Pose2::new(x, y, 0.0);
+            let mission = Mission::new(vec![Task::Go(scene.start_from_goal())])?;
+            plans.push(TrialPlan {
+                name: format!("{}", i + 1),
+                seed,
+                scene,
+                mission,
+                robot: request.robot.clone(),
+                faults: FaultSchedule::default(),
+                computer_fault: None,
+            });
+        }
+    }
+    Ok(PosesOutcome { trials: trial::run_all(plans, request, progress)? })
+}
+
+impl ExperimentReport for PosesOutcome {
+    fn is_success(&self) -> bool {
+        Means::of(&self.trials).within()
+    }
+
+    fn table(&self) -> Vec<Vec<String>> {
+        std::iter::once(HEADER.map(str::to_owned).to_vec()).chain(rows(&self.trials)).collect()
+    }
+
+    fn verdict(&self) -> String {
+        Means::of(&self.trials).verdict()
+    }
+
+    fn write(&self, folder: &OutputFolder) -> Result<(), AppError> {
+        let (trials, whole) = (&self.trials, Means::of(&self.trials));
+        let paths = paths(trials);
+        folder.write("paths.png", &paths)?;
+        folder.write("poses.csv", csv(trials).as_bytes())?;
+        folder.write("report.html", report(trials, &whole, &paths).to_html().as_bytes())?;
+        folder.write("summary.json", summary(trials, &whole).to_json().as_bytes())?;
+        Ok(())
+    }
+}
+
+const HEADER: [&str; 6] =
+    ["start", "mean |dx|, cm", "mean |dy|, cm", "most distance, cm", "mean |dtheta|, deg", "failed"];
+
+impl Means {
+    fn of<'a>(trials: impl IntoIterator<Item = &'a Trial>) -> Self {
+        let (mut sums, mut most, mut failed, mut n) = ([0.0; 3], 0.0_f64, 0, 0);
+        for trial in trials {
+            failed += usize::from(!trial.numbers.is_success());
+            if let Some(error) = &trial.numbers.goal_error {
+                n += 1;
+                most = most.max(error.distance);
+                for (sum, value) in sums.iter_mut().zip([error.dx, error.dy, error.dtheta]) {
+                    *sum += value.abs();
+                }
+            }
+        }
+        let [dx, dy, dtheta] = sums.map(|sum| sum / f64::from(n.max(1)));
+        Self { dx, dy, most, dtheta, failed }
+    }
+
+    fn within(&self) -> bool {
+        let near = self.dx <= MEAN_OFFSET && self.dy <= MEAN_OFFSET && self.most < DISTANCE;
+        near && self.dtheta <= MEAN_TURN && self.failed == 0
+    }
+
+    fn row(&self, name: &str) -> Vec<String> {
+        let mut row = vec![name.to_owned()];
+        row.extend([self.dx, self.dy, self.most].map(|m| format!("{:.2}", m * 100.0)));
+        row.extend([format!("{:.2}", self.dtheta.to_degrees()), self.failed.to_string()]);
+        row
+    }
+
+    fn verdict(&self) -> String {
+        let head = if self.within() { "Within the limits" } else { "Missed" };
+        format!(
+            "{head}: mean |dx| {:.2} cm and |dy| {:.2} cm (at most 0.40), distance at most {:.2} cm (below 1.50), mean |dtheta| {:.2} \
+             deg (at most 0.80), {} failed. [Li18] measured 0.43 cm, 1.12 cm, 3 cm, 2.16 deg on their robot.",
+            self.dx * 100.0,
+            self.dy * 100.0,
+            self.most * 100.0,
+            self.dtheta.to_degrees(),
+            self.failed
+        )
+    }
+}
+
+/// The trials of start `i`.
+fn of_start(trials: &[Trial], i: usize) -> impl Iterator<Item = &Trial> {
+    let name = (i + 1).to_string();
+    trials.iter().filter(move |trial| trial.name == name)
+}
+
+fn rows(trials: &[Trial]) -> Vec<Vec<String>> {
+    let mut rows: Vec<_> = STARTS
+        .iter()
+        .enumerate()
+        .filter(|(i, _)| of_start(trials, *i).next().is_some())
+        .map(|(i, (x, y))| Means::of(of_start(trials, i)).row(&format!("{} ({x}, {y})", i + 1)))
+        .collect();
+    rows.push(Means::of(trials).row("all"));
+    rows
+}
+
+/// As their figure 5: the ways driven against the ones planned, of the first seed.
+fn paths(trials: &[Trial]) -> Vec<u8> {
+    let mut picture = MapPicture::blank().axes("x, m", "y, m").window(Vector2::zeros(), 3.1);
+    for trial in trials.iter().filter(|trial| trial.seed == 1) {
+        picture = picture.polyline("planned", &trial.planned, LineStyle::dashed(Color::VERMILLION));
+        picture = picture.polyline("driven", &trial.driven, LineStyle::solid(Color::BLUE));
+    }
+    for (i, (x, y)) in STARTS.into_iter().enumerate() {
+        let style = PoseStyle::named(Color::GREEN).with_footprint(Footprint::KOBUKI);
+        picture = picture.pose(&format!("{}", i + 1), Pose2::new(x, y, 0.0), style);
+    }
+    let goal = Pose2::new(0.0, 0.0, std::f64::consts::FRAC_PI_2);
+    picture.pose("goal", goal, PoseStyle::named(Color::VERMILLION).with_footprint(Footprint::KOBUKI)).to_png()
+}
+
+fn report(trials: &[Trial], whole: &Means, paths: &[u8]) -> Report {
+    let text = whole.verdict();
+    let table = rows(trials).into_iter().fold(Table::new("Errors at the goal", HEADER), Table::row);
+    let chart = |title: &str, unit: &str, value: fn(&Means) -> (f64, f64)| {
+        let bars = BarChart::new(title, unit, "mean", "most");
+        let bar = |chart: BarChart, i: usize| {
+            let (mean, most) = value(&Means::of(of_start(trials, i)));
+            chart.row(&format!("start {}", i + 1), mean, most)
+        };
+        Figure::bars(&(0..STARTS.len()).fold(bars, bar))
+    };
+    Report::new("Point stabilisation from eight start poses")
+        .subtitle("The experiment of Li, Wang, Yu: a simulated Kobuki with a Kinect V2 and their noise, an empty map each time.")
+        .verdict(if whole.within() { Verdict::Ok(text) } else { Verdict::Failed(text) })
+        .table(table)
+        .section("Ways", "As figure 5 of the paper: planned and driven, of seed 1.")
+        .figure(Figure::png("Ways to the goal", paths).wide())
+        .section("Errors", "As figure 6 of the paper.")
+        .figure(chart("Position: mean of |dx| and |dy|, and the largest distance", "cm", |m| {
+            ((m.dx + m.dy) * 50.0, m.most * 100.0)
+        }))
+        .figure(chart("Heading: mean |dtheta|", "deg", |m| (m.dtheta.to_degrees(), m.dtheta.to_degrees())))
+}
+
+fn csv(trials: &[Trial]) -> String {
+    let header =
+        ["start", "seed", "dx_m", "dy_m", "distance_m", "dtheta_rad", "time_s", "contacts", "success"];
+    let row = |trial: &Trial| {
+        let error = trial.numbers.goal_error.as_ref();
+        let number = |value: fn(&trundle_eval::GoalError) -> f64| error.map_or(f64::NAN, value);
+        [
+            trial.name.parse().unwrap_or(f64::NAN),
+            trial.seed as f64,
+            number(|e| e.dx),
+            number(|e| e.dy),
+            number(|e| e.distance),
+            number(|e| e.dtheta),
+            trial.numbers.duration,
+            trial.numbers.contacts as f64,
+            f64::from(u8::from(trial.numbers.is_success())),
+        ]
+    };
+    table_csv(header, trials.iter().map(row))
+}
+
+fn summary(trials: &[Trial], whole: &Means) -> Summary {
+    let mut summary = Summary::new("experiment poses");
+    summary
+        .set("success", whole.within())
+        .set("runs", trials.len())
+        .set("failed", whole.failed)
+        .set("mean_abs_dx_m", whole.dx)
+        .set("mean_abs_dy_m", whole.dy)
+        .set("most_distance_m", whole.most)
+        .set("mean_abs_dtheta_rad", whole.dtheta);
+    summary
+}

@@ -1,0 +1,226 @@
+//! By the clock on the wall for many minutes: how evenly the robot is steered, what it costs of a core, and whether memory stays flat.
+
+use crate::ExperimentReport;
+use crate::simulated::{SimulatedRealTimeBody, simulated_real_time_body};
+use trundle_app::real_time::{RealTimeReport, run_in_real_time};
+use trundle_app::{AppError, FinishedRun, Progress, RunLog, RunSetup};
+use trundle_io::{OutputFolder, Summary, table_csv};
+use trundle_runtime::{Mission, RobotConfig, Task, TaskEnd, TaskRecord};
+use trundle_sim::{FaultSchedule, Scene, Simulator};
+use trundle_viz::{Chart, Color, Figure, Report, Table, Verdict};
+
+/// 999 of 1000 commands come within this of their time, ms.
+const JITTER_MS: f64 = 5.0;
+/// Of the robot's core, all its threads together.
+const LOAD: f64 = 0.6;
+/// Robot and simulator may grow by so much once maps and buffers have their size, MB an hour.
+const GROWTH: f64 = 10.0;
+/// Before this, s, memory may grow: the rooms are not yet known.
+const SETTLED: f64 = 600.0;
+/// Runs shorter than this, s, do not tell how it grows.
+const JUDGED: f64 = 2.0 * SETTLED;
+/// A goal and the way back take at least so long, s.
+const SHORTEST_TASK: f64 = 10.0;
+
+/// A figure and its limit.
+pub struct Limit {
+    /// The figure's name.
+    pub name: &'static str,
+    /// The figure; none: it could not be measured.
+    pub value: Option<f64>,
+    /// The limit.
+    pub max: f64,
+    /// The unit of both.
+    pub unit: &'static str,
+}
+
+impl Limit {
+    /// Whether the figure is within its limit. A figure that could not be measured is not.
+    #[must_use]
+    pub fn is_kept(&self) -> bool {
+        self.value.is_some_and(|value| value <= self.max)
+    }
+
+    fn row(&self) -> Vec<String> {
+        let value = self.value.map_or_else(|| "not measured".to_owned(), |v| format!("{v:.2} {}", self.unit));
+        let kept = if self.is_kept() { "yes" } else { "NO" };
+        vec![self.name.to_owned(), value, format!("{} {}", self.max, self.unit), kept.to_owned()]
+    }
+}
+
+/// The request of a run in real time.
+#[derive(Debug, Clone)]
+pub struct RealTimeRequest {
+    /// Duration of the run [min].
+    pub minutes: u32,
+    /// Seed of noise and scene.
+    pub seed: u64,
+    /// The robot.
+    pub robot: RobotConfig,
+}
+
+/// The outcome of a run in real time.
+pub struct RealTimeOutcome {
+    /// The figures judged against their limits.
+    pub limits: Vec<Limit>,
+    /// How the run kept time.
+    pub timing: RealTimeReport,
+    /// Goals reached.
+    pub goals: usize,
+    /// Contacts.
+    pub contacts: usize,
+    /// Images dropped.
+    pub images_dropped: usize,
+    /// Whether an exploration did not end.
+    pub is_unexplored: bool,
+    /// Wall-clock time of the run [s].
+    pub seconds: f64,
+}
+
+/// Drives to and fro in the demo's scene, and records into `folder`. A run in which memory is judged explores the scene first: two
+/// equally long paths lead past its obstacles, and a robot that knows only one maps the other when it first takes it.
+///
+/// # Errors
+/// When the system refuses a thread, or the robot cannot be accepted.
+pub fn run(
+    request: &RealTimeRequest,
+    folder: &OutputFolder,
+    progress: &Progress,
+) -> Result<RealTimeOutcome, AppError> {
+    let robot = request.robot.clone().with_seed(request.seed);
+    let scene = Scene::by_name("demo", request.seed)?;
+    let seconds = 60.0 * f64::from(request.minutes);
+    let before = if seconds >= JUDGED { vec![Task::Explore] } else { vec![] };
+    let pair = [Task::Go(scene.start_from_goal()), Task::Return];
+    let setup = RunSetup {
+        scene: scene.name.clone(),
+        seed: request.seed,
+        map_from_world: scene.start.inverse(),
+        time_limit: seconds,
+        mission: Mission::new([before, pair.repeat((seconds / SHORTEST_TASK) as usize)].concat())?,
+        robot,
+        real_time: true,
+        checkpoint: None,
+    };
+    let config = simulated_real_time_body(&setup.robot, FaultSchedule::default())?;
+    let body = Simulator::new(scene, config, request.seed).map_err(AppError::input)?;
+    let start = |events, place| SimulatedRealTimeBody::start(body, events, place);
+    let (run, timing) = run_in_real_time(&setup, start, folder, None, RunLog::brief(), progress.clone())?;
+    Ok(RealTimeOutcome::of(&run, timing))
+}
+
+/// What is judged; the growth of memory only where the run goes on for long enough after the rooms are known.
+fn limits(timing: &RealTimeReport) -> Vec<Limit> {
+    let end = timing.memory.samples.last().map_or(0.0, |(time, _)| *time);
+    let growth = Limit {
+        name: "growth of memory",
+        value: timing.memory.growth_mb_an_hour(SETTLED),
+        max: GROWTH,
+        unit: "MB/h",
+    };
+    let all = [
+        Limit {
+            name: "control jitter, p99.9",
+            value: timing.control.as_ref().map(|control| control.jitter_p999_ms),
+            max: JITTER_MS,
+            unit: "ms",
+        },
+        Limit {
+            name: "load of the robot's core",
+            value: Some(timing.load_total * 100.0),
+            max: LOAD * 100.0,
+            unit: "%",
+        },
+    ];
+    all.into_iter().chain((end >= JUDGED).then_some(growth)).collect()
+}
+
+impl RealTimeOutcome {
+    fn of(run: &FinishedRun, timing: RealTimeReport) -> Self {
+        let tasks = run.robot.tasks_ended();
+        let is_reached = |record: &&TaskRecord| record.task != Task::Explore && record.end == TaskEnd::Done;
+        let is_left = |record: &TaskRecord| record.task == Task::Explore && record.end != TaskEnd::Done;
+        Self {
+            limits: limits(&timing),
+            timing,
+            goals: tasks.iter().filter(is_reached).count(),
+            contacts: run.log.contacts(),
+            images_dropped: run.robot.dropped_images().len(),
+            is_unexplored: tasks.iter().any(is_left),
+            seconds: run.seconds,
+        }
+    }
+
+    fn limit_table(&self) -> Table {
+        self.limits.iter().map(Limit::row).fold(Table::new("Limits", HEADER), Table::row)
+    }
+}
+
+impl ExperimentReport for RealTimeOutcome {
+    fn is_success(&self) -> bool {
+        let driven = self.contacts == 0 && self.goals > 0 && !self.is_unexplored && !self.timing.interrupted;
+        driven && self.limits.iter().all(Limit::is_kept)
+    }
+
+    fn table(&self) -> Vec<Vec<String>> {
+        std::iter::once(HEADER.map(str::to_owned).to_vec())
+            .chain(self.limits.iter().map(Limit::row))
+            .collect()
+    }
+
+    fn verdict(&self) -> String {
+        let kept = self.limits.iter().filter(|limit| limit.is_kept()).count();
+        format!(
+            "{kept} of {} limits kept over {:.1} min; {} goals, {} contacts, {} of {} images dropped{}.",
+            self.limits.len(),
+            self.seconds / 60.0,
+            self.goals,
+            self.contacts,
+            self.images_dropped,
+            self.timing.body.images,
+            if self.is_unexplored { "; the room could not be explored" } else { "" }
+        )
+    }
+
+    fn write(&self, folder: &OutputFolder) -> Result<(), AppError> {
+        let (timing, text) = (&self.timing, self.verdict());
+        let verdict = if self.is_success() { Verdict::Ok(text) } else { Verdict::Failed(text) };
+        let rows = timing.rows().into_iter().fold(Table::new("Figures", ["what", "figure"]), Table::row);
+        let chart = Chart::new("Memory", "time, s", "MB").line(
+            "resident, robot and simulator",
+            Color::BLUE,
+            timing.memory.samples.clone(),
+        );
+        let report = Report::new("Real time")
+            .subtitle("To and fro in the demo's room (explored first, where memory is judged): control at 50 Hz, camera at 30 Hz, the robot on a core of its own.")
+            .verdict(verdict)
+            .table(self.limit_table())
+            .figure(Figure::chart(&chart))
+            .table(rows.wide());
+        folder.write("report.html", report.to_html().as_bytes())?;
+        folder.write("memory.csv", minutes(timing).as_bytes())?;
+        let mut summary = Summary::new("experiment real-time");
+        summary
+            .set("success", self.is_success())
+            .set("contacts", self.contacts)
+            .set("images_dropped", self.images_dropped)
+            .set("wall_clock", serde_json::json!({ "total_s": self.seconds, "real_time": timing }));
+        folder.write("summary.json", summary.to_json().as_bytes())?;
+        Ok(())
+    }
+}
+
+const HEADER: [&str; 4] = ["what", "measured", "at most", "kept"];
+
+/// Resident memory at each minute.
+fn minutes(timing: &RealTimeReport) -> String {
+    let mut next = 0.0;
+    let samples = timing.memory.samples.iter().filter(|(time, _)| {
+        let is_due = *time >= next;
+        if is_due {
+            next += 60.0;
+        }
+        is_due
+    });
+    table_csv(["time_s", "resident_mb"], samples.map(|(time, mb)| [*time, *mb]))
+}

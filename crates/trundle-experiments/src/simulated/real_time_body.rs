@@ -1,0 +1,163 @@
+//! The simulator in real time beside the robot: a thread for the base, one for the camera.
+
+use rayon::{ThreadPool, ThreadPoolBuilder};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicU32, AtomicU64, Ordering};
+use std::sync::mpsc::{Receiver, Sender, SyncSender, channel, sync_channel};
+use std::time::{Duration, Instant};
+use trundle_app::AppError;
+use trundle_app::real_time::{BackgroundBody, BodyTiming, MemoryUsage, RealTimePacer, TimedEvent};
+use trundle_core::{RobotBody, SensorEvent, Twist2};
+use trundle_io::EncodedEvent;
+use trundle_runtime::Histogram;
+use trundle_runtime::real_time::{InboxDoor, Place, Post};
+use trundle_sim::{CameraAside, Shot, Simulator};
+
+/// The simulator in real time beside the robot: a thread for the base, one for the camera.
+pub struct SimulatedRealTimeBody {
+    commands: Sender<Twist2>,
+    stop: Arc<AtomicBool>,
+    contacts: Arc<AtomicU32>,
+    ended: Receiver<Result<BodyTiming, AppError>>,
+    _pools: [ThreadPool; 2],
+}
+
+/// What the two threads share.
+#[derive(Clone)]
+struct Shared {
+    events: InboxDoor<TimedEvent>,
+    stop: Arc<AtomicBool>,
+    not_taken: Arc<AtomicU64>,
+    /// What the body has touched by now.
+    contacts: Arc<AtomicU32>,
+    /// The moment of simulated time 0.
+    origin: Instant,
+}
+
+impl SimulatedRealTimeBody {
+    /// Starts the threads of `body` at `place`; its events go to `events`.
+    ///
+    /// # Errors
+    /// When the system refuses a thread.
+    pub fn start(mut body: Simulator, events: InboxDoor<TimedEvent>, place: Place) -> Result<Self, AppError> {
+        // The base is hardware to the robot: it keeps its time whatever the camera does.
+        let pools = [pool("camera", place)?, pool("base", Place { is_first: true, ..place })?];
+        let stop = Arc::<AtomicBool>::default();
+        let contacts = Arc::<AtomicU32>::default();
+        let shared = Shared {
+            events,
+            stop: Arc::clone(&stop),
+            not_taken: Arc::default(),
+            contacts: Arc::clone(&contacts),
+            origin: Instant::now(),
+        };
+        let (commands, orders) = channel();
+        let (shots, to_take) = sync_channel(1);
+        let (ages, aged) = channel();
+        if let Some(camera) = body.detach_camera() {
+            let shared = shared.clone();
+            pools[0].spawn(move || _ = ages.send(take(camera, &to_take, &shared)));
+        }
+        let (end, ended) = channel();
+        pools[1].spawn(move || {
+            let base = live(body, &orders, shots, &shared);
+            // Without a camera there are no ages.
+            let ages = aged.recv().unwrap_or_else(|_| Ok(Histogram::default()));
+            let report = base.and_then(|report| with_ages(report, &ages?));
+            let _ = end.send(report);
+        });
+        Ok(Self { commands, stop, contacts, ended, _pools: pools })
+    }
+}
+
+impl BackgroundBody for SimulatedRealTimeBody {
+    fn commands(&self) -> Sender<Twist2> {
+        self.commands.clone()
+    }
+
+    fn contacts(&self) -> Arc<AtomicU32> {
+        Arc::clone(&self.contacts)
+    }
+
+    fn stop(self) -> Result<BodyTiming, AppError> {
+        self.stop.store(true, Ordering::Relaxed);
+        let gone = |_| AppError::Environment("the simulator's thread has died".to_owned());
+        self.ended.recv().map_err(gone)?
+    }
+}
+
+fn pool(name: &'static str, place: Place) -> Result<ThreadPool, AppError> {
+    let pool = ThreadPoolBuilder::new()
+        .num_threads(1)
+        .thread_name(move |_| name.to_owned())
+        .start_handler(move |_| _ = place.take())
+        .build();
+    pool.map_err(|error| AppError::Environment(format!("cannot start a thread: {error}")))
+}
+
+/// The base: a millisecond at a time.
+fn live(
+    mut body: Simulator,
+    orders: &Receiver<Twist2>,
+    shots: SyncSender<Shot>,
+    shared: &Shared,
+) -> Result<BodyTiming, AppError> {
+    let refused = |error: trundle_sim::SimError| AppError::Input(error.to_string());
+    let mut pacer = RealTimePacer::start_at(shared.origin);
+    let (mut lateness, mut images, mut memory) = (Histogram::default(), 0, MemoryUsage::default());
+    while !shared.stop.load(Ordering::Relaxed) {
+        let time = body.stamp().as_secs();
+        let late = pacer.wait_for(time);
+        for twist in orders.try_iter() {
+            body.command(twist).map_err(refused)?;
+        }
+        let events = body.advance().map_err(refused)?;
+        shared.contacts.store(body.contacts(), Ordering::Relaxed);
+        for event in events {
+            if matches!(event, SensorEvent::Wheels(_)) {
+                lateness.note(late * 1e3);
+                memory.sample(time);
+            }
+            send(&event, &shared.events)?;
+        }
+        for shot in body.shots() {
+            images += 1;
+            shared.not_taken.fetch_add(u64::from(shots.try_send(shot).is_err()), Ordering::Relaxed);
+        }
+    }
+    Ok(BodyTiming {
+        lateness_p999_ms: lateness.quantile(0.999).unwrap_or_default(),
+        lateness_max_ms: lateness.most().unwrap_or_default(),
+        images_not_taken: shared.not_taken.load(Ordering::Relaxed),
+        images,
+        memory,
+        ..BodyTiming::default()
+    })
+}
+
+fn send(event: &SensorEvent, events: &InboxDoor<TimedEvent>) -> Result<(), AppError> {
+    let is_image = matches!(event, SensorEvent::Rgbd(_));
+    let event = EncodedEvent::encode(event).map_err(|error| AppError::Input(error.to_string()))?;
+    let arrived = TimedEvent { event, at: Instant::now() };
+    events.put(if is_image { Post::Patient(arrived) } else { Post::Urgent(arrived) });
+    Ok(())
+}
+
+/// The camera: an image at a time; how old they were when they left, ms.
+fn take(mut camera: CameraAside, shots: &Receiver<Shot>, shared: &Shared) -> Result<Histogram, AppError> {
+    let mut ages = Histogram::default();
+    for shot in shots {
+        let image = camera.take(&shot).map_err(|error| AppError::Input(error.to_string()))?;
+        let taken = shared.origin + Duration::from_secs_f64(shot.stamp().as_secs());
+        let arrival = taken + Duration::from_secs_f64(shot.delay());
+        std::thread::sleep(arrival.saturating_duration_since(Instant::now()));
+        send(&SensorEvent::Rgbd(image), &shared.events)?;
+        ages.note(taken.elapsed().as_secs_f64() * 1e3);
+    }
+    Ok(ages)
+}
+
+fn with_ages(report: BodyTiming, ages: &Histogram) -> Result<BodyTiming, AppError> {
+    let age = |fraction| ages.quantile(fraction).unwrap_or_default();
+    Ok(BodyTiming { image_age_median_ms: age(0.5), image_age_p99_ms: age(0.99), ..report })
+}

@@ -1,0 +1,98 @@
+//! Scenes by name: built in, or from a file.
+
+use super::free_start::free_start;
+use super::scene_files::SceneFiles;
+use std::path::{Path, PathBuf};
+use trundle_app::{AppError, read_toml};
+use trundle_core::Pose2;
+use trundle_sim::import::{GltfOptions, RaisedMap, UpAxis};
+use trundle_sim::scenes::file::{BaseLoader, SceneFile};
+use trundle_sim::{Lights, Scene, World};
+
+/// Files that the command line names are relative to where the program runs.
+const HERE: SceneFiles = SceneFiles { folder: PathBuf::new() };
+
+/// How a scene is made of its name.
+#[derive(Debug, Clone, Copy)]
+pub struct SceneOptions {
+    /// Of everything that is drawn by chance.
+    pub seed: u64,
+    /// The axis of a mesh that points up.
+    pub up: UpAxis,
+    /// Where the robot starts, world frame, if not where the scene says.
+    pub start: Option<Pose2>,
+}
+
+/// The scene of a name: built in, or from a file.
+///
+/// # Errors
+/// When there is none of that name, or a file is not what it should be; names the file and the item.
+pub fn load_scene(name: &str, args: SceneOptions) -> Result<Scene, AppError> {
+    let file = Path::new(name);
+    let kind = file.extension().and_then(|extension| extension.to_str()).map(str::to_ascii_lowercase);
+    let mut scene = match kind.as_deref() {
+        Some("toml") => described(file, args.seed)?,
+        Some("glb" | "gltf") => {
+            let options = GltfOptions { up: args.up, ..GltfOptions::default() };
+            let mesh = HERE.gltf(file, &options).map_err(|error| AppError::Input(error.to_string()))?;
+            let world = World::with_meshes(Vec::new(), vec![mesh], args.seed)?;
+            warn_of_tall_scene(file, &world);
+            bare(args, file, world)?
+        }
+        Some("yaml" | "yml") => {
+            let walls = HERE.map(file, RaisedMap::default().wall_height);
+            let walls = walls.map_err(|error| AppError::Input(error.to_string()))?;
+            bare(args, file, World::new(walls, args.seed)?)?
+        }
+        _ => Scene::by_name(name, args.seed)?,
+    };
+    if let Some(start) = args.start {
+        scene.start = start;
+    }
+    Ok(scene)
+}
+
+/// The built-in scenes, a row each: name and size.
+///
+/// # Errors
+/// When a built-in scene cannot be made.
+pub fn list_scenes() -> Result<Vec<Vec<String>>, AppError> {
+    let row = |name: &&str| {
+        let (low, high) = Scene::by_name(name, 1)?.world.bounds();
+        let size = high - low;
+        Ok(vec![(*name).to_owned(), format!("{:.1} x {:.1} m", size.x, size.y)])
+    };
+    Scene::NAMES.iter().map(row).collect()
+}
+
+/// A scene file's scene.
+fn described(file: &Path, seed: u64) -> Result<Scene, AppError> {
+    let description: SceneFile = read_toml(file)?;
+    let files = SceneFiles { folder: file.parent().unwrap_or(Path::new("")).to_owned() };
+    description.build(&files, seed).map_err(|error| AppError::Input(format!("{}: {error}", file.display())))
+}
+
+/// A scene that is higher than wide has probably been imported with the wrong up axis.
+fn warn_of_tall_scene(file: &Path, world: &World) {
+    let (low, high) = world.bounds();
+    let size = high - low;
+    if size.z > size.x.min(size.y) {
+        let (name, x, y, z) = (file.display(), size.x, size.y, size.z);
+        tracing::warn!("{name} is {x:.1} x {y:.1} m and {z:.1} m high; if it lies on its side, say --up");
+    }
+}
+
+/// The scene of a file that says nothing of the robot: where the arguments say no start, it starts where there is room.
+fn bare(args: SceneOptions, file: &Path, world: World) -> Result<Scene, AppError> {
+    let start = match args.start {
+        Some(start) => start,
+        None => free_start(&world)?.ok_or_else(|| {
+            let problem =
+                "no place with room for the robot was found, say where it starts with --start X,Y,DEG";
+            AppError::Input(format!("{}: {problem}", file.display()))
+        })?,
+    };
+    let name = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    let lights = Lights::default();
+    Ok(Scene { name, world, lights, people: Vec::new(), start, goal: start })
+}

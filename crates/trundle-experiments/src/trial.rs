@@ -1,0 +1,222 @@
+//! Closed-loop runs of robot and simulator, many at once.
+
+use crate::RunsRequest;
+use crate::simulated::{simulated_body, time_limit};
+use rayon::prelude::*;
+use std::collections::BTreeSet;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::Instant;
+use trundle_app::report::RunNumbers;
+use trundle_app::{
+    AFTER_ARRIVAL_S, AppError, BestView, FinishedRun, Progress, RecordingCost, RunLog, RunRecorder, RunSetup,
+    StateChange, run_on_body,
+};
+use trundle_core::{OccupancyGrid, Pose2, RobotBody, Vector2};
+use trundle_runtime::{Memory, Mission, Robot, RobotConfig};
+use trundle_sim::{FaultSchedule, Scene, Simulator};
+use trundle_viz::Table;
+
+/// Largest number of names of runs in a message. The rest is left out. Source: ours.
+const MAX_LISTED_NAMES: usize = 30;
+
+/// A closed-loop run to be made: robot and simulator, with noise, and no truth in the loop.
+pub struct TrialPlan {
+    /// What it is called in tables.
+    pub name: String,
+    /// The seed of all noise and of the scene.
+    pub seed: u64,
+    /// The room, with the robot's start.
+    pub scene: Scene,
+    /// What the robot shall do, in its map frame.
+    pub mission: Mission,
+    /// The robot.
+    pub robot: RobotConfig,
+    /// What breaks.
+    pub faults: FaultSchedule,
+    /// What happens to the computer.
+    pub computer_fault: Option<ComputerFault>,
+}
+
+/// What happens to the robot's computer.
+#[derive(Debug, Clone, Copy)]
+pub enum ComputerFault {
+    /// Killed after so many seconds, and switched on again with what it kept last, which may be seconds old.
+    Restart(f64),
+    /// Its disk takes no more.
+    FullDisk,
+}
+
+/// What it came to.
+pub struct Trial {
+    /// What it is called in tables.
+    pub name: String,
+    /// The seed.
+    pub seed: u64,
+    /// Moves the map frame into the world's.
+    pub world_from_map: Pose2,
+    /// The numbers.
+    pub numbers: RunNumbers,
+    /// The way driven in truth, world frame.
+    pub driven: Vec<Vector2>,
+    /// When it was at each of these points, s since the beginning.
+    pub times: Vec<f64>,
+    /// At every image: s since the beginning, where the robot believed to be, and where it was, map frame.
+    pub pose_pairs: Vec<(f64, Pose2, Pose2)>,
+    /// The trajectory planned last, world frame.
+    pub planned: Vec<Vector2>,
+    /// The map, map frame.
+    pub grid: OccupancyGrid,
+    /// What the robot did, one after the other.
+    pub changes: Vec<StateChange>,
+}
+
+impl Trial {
+    /// What the robot did, one after the other.
+    pub fn state_table(&self) -> Table {
+        let row = |change: &StateChange| {
+            let Pose2 { x, y, theta } = change.pose;
+            let place = format!("({x:.2} m, {y:.2} m, {:.0} deg)", theta.to_degrees());
+            vec![format!("{:.1}", change.at), place, change.state.to_string()]
+        };
+        let title = format!("{}, seed {}", self.name, self.seed);
+        let table = Table::new(&title, ["time, s", "believed place", "what it began to do"]);
+        self.changes.iter().map(row).fold(table, Table::row).wide()
+    }
+}
+
+/// Makes the runs, as many at once as there are threads; the results are in the order of the plans.
+///
+/// # Errors
+/// The first plan that cannot be carried out.
+pub fn run_all(
+    mut plans: Vec<TrialPlan>,
+    request: &RunsRequest,
+    progress: &Progress,
+) -> Result<Vec<Trial>, AppError> {
+    let names: BTreeSet<String> = plans.iter().map(|plan| plan.name.clone()).collect();
+    if let Some(word) = &request.only {
+        plans.retain(|plan| format!("{}, seed {}", plan.name, plan.seed).contains(word.as_str()));
+    }
+    if plans.is_empty() {
+        let word = request.only.as_deref().unwrap_or_default();
+        let first = names.iter().take(MAX_LISTED_NAMES).cloned().collect::<Vec<_>>().join("', '");
+        let more = if names.len() > MAX_LISTED_NAMES { ", ..." } else { "" };
+        let problem = format!("--only {word}: no run has a name that holds this; there are '{first}'{more}");
+        return Err(AppError::Input(problem));
+    }
+    let (done, total) = (AtomicUsize::new(0), plans.len());
+    let trials = plans.into_par_iter().map(|plan| {
+        let trial = run_one(plan)?;
+        let done = 1 + done.fetch_add(1, Ordering::Relaxed);
+        progress.show(&format!("{done} of {total} runs"));
+        Ok(trial)
+    });
+    trials.collect()
+}
+
+/// Makes one run.
+///
+/// # Errors
+/// When the plan cannot be carried out.
+pub fn run_one(plan: TrialPlan) -> Result<Trial, AppError> {
+    let TrialPlan { name, seed, scene, mission, robot, faults, computer_fault } = plan;
+    let world_from_map = scene.start;
+    let setup = RunSetup {
+        scene: scene.name.clone(),
+        seed,
+        map_from_world: world_from_map.inverse(),
+        time_limit: time_limit(&mission),
+        mission,
+        robot: robot.with_seed(seed),
+        real_time: false,
+        checkpoint: None,
+    };
+    let config = simulated_body(&setup.robot, faults)?;
+    let mut body = Simulator::new(scene, config, seed).map_err(|error| AppError::Input(error.to_string()))?;
+    let run = match computer_fault {
+        None => run_unrecorded(&setup, &mut body, None),
+        Some(ComputerFault::Restart(at)) => run_unrecorded(&setup, &mut body, Some(at))
+            .map_err(|error| AppError::Input(format!("{name}, seed {seed}: {error}"))),
+        Some(ComputerFault::FullDisk) => run_on_body(
+            &setup,
+            &mut body,
+            RunRecorder::onto_full_disk()?,
+            RunLog::default(),
+            Progress::hidden(),
+        ),
+    }?;
+    let planned = planned(&run);
+    Ok(Trial {
+        name,
+        seed,
+        world_from_map,
+        numbers: RunNumbers::of(&setup, &run),
+        times: run.log.truths.iter().map(|(stamp, _)| *stamp - run.log.start.unwrap_or_default()).collect(),
+        pose_pairs: run.log.pose_pairs(),
+        driven: run.log.truths.iter().map(|(_, pose)| world_from_map.transform(pose.position())).collect(),
+        planned: planned.into_iter().map(|point| world_from_map.transform(point)).collect(),
+        grid: run.robot.grid().clone(),
+        changes: run.log.changes.clone(),
+    })
+}
+
+fn planned(run: &FinishedRun) -> Vec<Vector2> {
+    let points = run.robot.plan().map(|plan| plan.trajectory.points());
+    points.unwrap_or_default().iter().map(|point| point.pose.position()).collect()
+}
+
+/// Runs the robot of `setup` in the simulator without recording and without encoding of images. After `restart` s the robot is
+/// switched off and on again where it stands, with nothing but its last checkpoint.
+///
+/// # Errors
+/// When the robot has made no checkpoint by then, or the run is over before.
+fn run_unrecorded(
+    setup: &RunSetup,
+    body: &mut Simulator,
+    mut restart: Option<f64>,
+) -> Result<FinishedRun, AppError> {
+    let start = Instant::now();
+    let mut robot = setup.start_robot()?;
+    if restart.is_some() {
+        robot = robot.remembering();
+    }
+    let mut checkpoint = None;
+    let mut log = RunLog::default();
+    let mut finished = None;
+    while let Some(event) = RobotBody::next_event(body).map_err(AppError::input)? {
+        log.on_event(&event, setup.map_from_world);
+        log.true_contacts = Some(body.contacts());
+        let report = robot.step(&event);
+        if let Some(twist) = report.twist {
+            RobotBody::command(body, twist).map_err(AppError::input)?;
+        }
+        log.on_report(event.stamp(), &report);
+        let is_over = report.finished && log.now - *finished.get_or_insert(log.now) >= AFTER_ARRIVAL_S;
+        if is_over || log.elapsed() > setup.time_limit {
+            break;
+        }
+        checkpoint = report.memory.or(checkpoint);
+        if let Some(at) = restart.take_if(|at| log.elapsed() >= *at) {
+            robot = resumed_after_kill(setup, checkpoint.as_deref(), at)?;
+        }
+    }
+    if let Some(at) = restart {
+        let ended = log.elapsed();
+        return Err(AppError::Input(format!("the restart at {at} s: the run was over after {ended:.1} s")));
+    }
+    Ok(FinishedRun {
+        robot,
+        log,
+        view: BestView::default(),
+        seconds: start.elapsed().as_secs_f64(),
+        recording: RecordingCost::default(),
+    })
+}
+
+/// The robot that is switched on after a kill at `at` s, with its last checkpoint.
+fn resumed_after_kill(setup: &RunSetup, checkpoint: Option<&Memory>, at: f64) -> Result<Robot, AppError> {
+    let checkpoint = checkpoint.ok_or_else(|| {
+        AppError::Input(format!("the restart at {at} s: no checkpoint had been made by then"))
+    })?;
+    setup.clone().resumed_from(&checkpoint.to_bytes()).start_robot()
+}
