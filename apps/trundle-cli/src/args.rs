@@ -5,7 +5,9 @@ use crate::sim::args::UpArg;
 use clap::{Args, Parser, Subcommand};
 use std::path::PathBuf;
 use std::str::FromStr;
+use trundle::app::{AppError, load_robot};
 use trundle::core::Pose2;
+use trundle::runtime::RobotConfig;
 
 /// Autonomy for a two-wheeled indoor robot with one RGB-D camera.
 #[derive(Debug, Parser)]
@@ -57,6 +59,35 @@ pub struct Common {
     pub threads: Option<u16>,
 }
 
+/// What every command that has a robot takes.
+#[derive(Debug, Clone, Args)]
+pub struct RobotArgs {
+    /// Robot file (see `trundle config`).
+    #[arg(long, value_name = "FILE")]
+    pub config: Option<PathBuf>,
+    /// Set one key on top of the robot file, as `--set control.settling.speed_m_s=0.2`; may be given again.
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub set: Vec<String>,
+}
+
+impl RobotArgs {
+    /// The robot: the file's or the default one, with the keys set on top.
+    ///
+    /// # Errors
+    /// Names the file or the key, and what is wrong with it.
+    pub fn robot(&self) -> Result<RobotConfig, AppError> {
+        load_robot(self.config.as_deref(), &self.set)
+    }
+
+    /// The robot where a file or a key is given, else nothing.
+    ///
+    /// # Errors
+    /// As [`RobotArgs::robot`].
+    pub fn robot_if_given(&self) -> Result<Option<RobotConfig>, AppError> {
+        if self.config.is_none() && self.set.is_empty() { Ok(None) } else { self.robot().map(Some) }
+    }
+}
+
 /// `trundle demo`
 #[derive(Debug, Args)]
 #[command(after_help = "Example: trundle demo --seed 3 --direct --out out/demo3\n\n\
@@ -96,9 +127,9 @@ pub struct DemoArgs {
     /// Give the run up after this much of the robot's time, s [default: 600 a goal, 1800 for exploring]
     #[arg(long, value_name = "S", value_parser = positive_seconds)]
     pub time_limit: Option<f64>,
-    /// Robot file (see `trundle config`).
-    #[arg(long, value_name = "FILE")]
-    pub config: Option<PathBuf>,
+    /// The robot's settings.
+    #[command(flatten)]
+    pub robot: RobotArgs,
     /// Folder for the results.
     #[arg(long, value_name = "DIR", default_value = "out/demo")]
     pub out: PathBuf,
@@ -179,7 +210,13 @@ impl SlamArgs {
 pub struct ConfigArgs {
     /// Check this robot file and print it whole, its gaps filled with the defaults.
     pub file: Option<PathBuf>,
-    /// Write robot.toml and summary.json into this folder too.
+    /// Set one key on top of the file; may be given again.
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub set: Vec<String>,
+    /// Print the JSON schema of robot files instead, for editors.
+    #[arg(long)]
+    pub schema: bool,
+    /// Write robot.toml, robot.schema.json and summary.json into this folder too.
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// Print nothing.

@@ -5,7 +5,7 @@ use std::fmt::Display;
 use std::path::Path;
 use trundle::app::real_time::run_in_real_time;
 use trundle::app::report::mission_text;
-use trundle::app::{AppError, RunLog, RunRecorder, RunSetup, load_robot, run_on_body};
+use trundle::app::{AppError, RunLog, RunRecorder, RunSetup, run_on_body};
 use trundle::core::Invalid;
 use trundle::experiments::simulated::{
     SceneOptions, SimulatedRealTimeBody, load_scene, read_faults, require_free, simulated_body,
@@ -19,7 +19,7 @@ use trundle::sim::{Scene, Simulator};
 pub fn run(args: &DemoArgs) -> Result<Outcome, AppError> {
     let options =
         SceneOptions { seed: args.seed, up: args.up.axis(), start: args.start.map(|start| start.0) };
-    let robot = load_robot(args.config.as_deref())?;
+    let robot = args.robot.robot()?;
     let mut scene = load_scene(&args.scene, options)?;
     let faults = args.faults.as_deref().map(read_faults).transpose()?.unwrap_or_default();
     let resumed = args.resume.and(args.checkpoint.as_deref()).map(read_checkpoint).transpose()?;

@@ -6,10 +6,10 @@ use crate::{Outcome, console};
 pub use args::DockArgs;
 use std::path::Path;
 use std::time::Instant;
+use trundle::app::AppError;
 use trundle::app::dock::{
     DockingObstacles, manoeuvre_picture, motions, rows, step_pictures, steps_csv, verdict,
 };
-use trundle::app::{AppError, load_robot};
 use trundle::core::{Footprint, OccupancyGrid, Pose2};
 use trundle::docking::corridor::{Problem, Scenario, parse, write};
 use trundle::docking::{
@@ -128,10 +128,8 @@ fn columns(motions: usize) -> usize {
 
 /// The robot file's `[docking.planner]`, where one is given, else the planner's own defaults; method and margin as asked for.
 fn planner(args: &DockArgs) -> Result<DockingConfig, AppError> {
-    let config = match &args.config {
-        Some(file) => load_robot(Some(file))?.docking.planner,
-        None => DockingConfig::default(),
-    };
+    let config =
+        args.robot.robot_if_given()?.map_or_else(DockingConfig::default, |robot| robot.docking.planner);
     let method = args.method.map_or(config.method, Into::into);
     Ok(DockingConfig { method, margin: args.margin.unwrap_or(config.margin), ..config })
 }
@@ -183,7 +181,7 @@ fn on_map(args: &DockArgs) -> Result<Task, AppError> {
 fn footprint(args: &DockArgs) -> Result<Footprint, AppError> {
     match &args.footprint {
         Some(footprint) => Ok(footprint.0.clone()),
-        None => Ok(load_robot(args.config.as_deref())?.footprint()?),
+        None => Ok(args.robot.robot()?.footprint()?),
     }
 }
 

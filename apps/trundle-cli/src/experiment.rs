@@ -1,15 +1,18 @@
 //! `trundle experiment`: the papers' experiments as commands; exit code 1 where a limit is missed.
 
-use crate::{Outcome, args::Common, console, logging};
+use crate::{
+    Outcome,
+    args::{Common, RobotArgs},
+    console, logging,
+};
 use clap::{Args, Subcommand};
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
-use trundle::app::{AppError, Progress, load_robot};
+use trundle::app::{AppError, Progress};
 use trundle::experiments::{
     ExperimentReport, RunsRequest, barn, corridor, fault_scenarios, missions, mrpb, people, poses, real_time,
 };
 use trundle::io::OutputFolder;
-use trundle::runtime::RobotConfig;
 
 /// `trundle experiment`
 #[derive(Debug, Args)]
@@ -52,9 +55,9 @@ pub struct RunsArgs {
     /// Only runs whose name and seed ("lights out, seed 2") hold this.
     #[arg(long, value_name = "WORD")]
     pub only: Option<String>,
-    /// Robot file (see `trundle config`).
-    #[arg(long, value_name = "FILE")]
-    pub config: Option<PathBuf>,
+    /// The robot's settings.
+    #[command(flatten)]
+    pub robot: RobotArgs,
     /// Folder for the results.
     #[arg(long, value_name = "DIR", default_value = "out/experiment")]
     pub out: PathBuf,
@@ -89,9 +92,9 @@ pub struct BarnArgs {
     /// Folder with worlds.csv and obstacles.csv.
     #[arg(long, value_name = "DIR", default_value = "../shared/data/nav/barn")]
     pub data: PathBuf,
-    /// Robot file in place of the experiment's own robot.
-    #[arg(long, value_name = "FILE")]
-    pub config: Option<PathBuf>,
+    /// The robot's settings.
+    #[command(flatten)]
+    pub robot: RobotArgs,
     /// Folder for the results.
     #[arg(long, value_name = "DIR", default_value = "out/barn")]
     pub out: PathBuf,
@@ -115,9 +118,9 @@ pub struct MrpbArgs {
     /// Folder with start_goal.csv, actors.csv and maps.
     #[arg(long, value_name = "DIR", default_value = "../shared/data/nav/mrpb")]
     pub data: PathBuf,
-    /// Robot file in place of the experiment's own robot.
-    #[arg(long, value_name = "FILE")]
-    pub config: Option<PathBuf>,
+    /// The robot's settings.
+    #[command(flatten)]
+    pub robot: RobotArgs,
     /// Folder for the results.
     #[arg(long, value_name = "DIR", default_value = "out/mrpb")]
     pub out: PathBuf,
@@ -139,9 +142,9 @@ pub struct RealTimeArgs {
     /// Seed of noise and room.
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,
-    /// Robot file (see `trundle config`).
-    #[arg(long, value_name = "FILE")]
-    pub config: Option<PathBuf>,
+    /// The robot's settings.
+    #[command(flatten)]
+    pub robot: RobotArgs,
     /// Folder for the results.
     #[arg(long, value_name = "DIR", default_value = "out/real-time")]
     pub out: PathBuf,
@@ -226,7 +229,7 @@ fn runs<R: ExperimentReport>(
     args: &RunsArgs,
     experiment: impl FnOnce(&RunsRequest, &Progress) -> Result<R, AppError>,
 ) -> Result<Outcome, AppError> {
-    let robot = load_robot(args.config.as_deref())?;
+    let robot = args.robot.robot()?;
     let request = RunsRequest { seeds: args.seeds, only: args.only.clone(), robot };
     in_folder(&args.out, &args.common, |_, progress| experiment(&request, progress))
 }
@@ -236,7 +239,7 @@ fn run_barn(args: &BarnArgs) -> Result<Outcome, AppError> {
         data: args.data.clone(),
         worlds: args.worlds.map(|range| (range.first, range.last)),
         seeds: args.seeds,
-        robot: own_robot(args.config.as_deref())?,
+        robot: args.robot.robot_if_given()?,
     };
     in_folder(&args.out, &args.common, |_, progress| barn::run(&request, progress))
 }
@@ -246,20 +249,15 @@ fn run_mrpb(args: &MrpbArgs) -> Result<Outcome, AppError> {
         data: args.data.clone(),
         only: args.only.clone(),
         seeds: args.seeds,
-        robot: own_robot(args.config.as_deref())?,
+        robot: args.robot.robot_if_given()?,
     };
     in_folder(&args.out, &args.common, |_, progress| mrpb::run(&request, progress))
 }
 
 fn run_real_time(args: &RealTimeArgs) -> Result<Outcome, AppError> {
-    let robot = load_robot(args.config.as_deref())?;
+    let robot = args.robot.robot()?;
     let request = real_time::RealTimeRequest { minutes: args.minutes, seed: args.seed, robot };
     in_folder(&args.out, &args.common, |folder, progress| real_time::run(&request, folder, progress))
-}
-
-/// The robot of a robot file, in place of the experiment's own.
-fn own_robot(file: Option<&Path>) -> Result<Option<RobotConfig>, AppError> {
-    file.map(|file| load_robot(Some(file))).transpose()
 }
 
 /// Runs an experiment, writes its folder and prints its table.

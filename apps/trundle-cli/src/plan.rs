@@ -9,7 +9,7 @@ use crate::{Outcome, console};
 use errand::{Errand, Refusal};
 use std::sync::OnceLock;
 use std::time::Instant;
-use trundle::app::{AppError, load_robot};
+use trundle::app::AppError;
 use trundle::core::{DriveLimits, Vector2};
 use trundle::io::{OutputFolder, trajectory_csv, waypoints_csv};
 use trundle::planning::{MultiGoalPlan, PlanningTimes};
@@ -30,7 +30,7 @@ const FILES: [&str; 10] = [
 
 /// `trundle plan MAP.yaml --from --goal`.
 pub fn run(args: &PlanArgs) -> Result<Outcome, AppError> {
-    let robot = load_robot(args.config.as_deref())?;
+    let robot = args.robot.robot()?;
     let mut errand = Errand::read(args, &robot)?;
     errand.planner.set_clock(Some(seconds));
     let start = seconds();

@@ -1,20 +1,25 @@
 //! Reading of robot files.
 
 use crate::{AppError, settings::read_text};
+use std::fmt::Display;
 use std::path::Path;
 use trundle_runtime::RobotConfig;
 use trundle_runtime::settings::RobotFile;
 
-/// The robot of a robot file; without a file, the default robot.
+/// The robot of a robot file, or the default robot, with `overrides` (each `key=value`) on top. Deprecated keys are logged as
+/// warnings.
 ///
 /// # Errors
 /// Names the file, and the line or the value that cannot be accepted.
-pub fn load_robot(file: Option<&Path>) -> Result<RobotConfig, AppError> {
-    let Some(file) = file else { return Ok(RobotConfig::default()) };
-    let read = RobotFile::parse(&read_text(file)?, &[])
-        .map_err(|error| AppError::Input(format!("{}, {error}", file.display())))?;
+pub fn load_robot(file: Option<&Path>, overrides: &[String]) -> Result<RobotConfig, AppError> {
+    let text = file.map(read_text).transpose()?.unwrap_or_default();
+    let named = |problem: &dyn Display| match file {
+        Some(file) => format!("{}: {problem}", file.display()),
+        None => problem.to_string(),
+    };
+    let read = RobotFile::parse(&text, overrides).map_err(|error| AppError::Input(named(&error)))?;
     for warning in &read.warnings {
-        tracing::warn!("{}: {warning}", file.display());
+        tracing::warn!("{}", named(warning));
     }
     Ok(read.config)
 }

@@ -1,4 +1,4 @@
-use crate::args::{Common, PoseArg};
+use crate::args::{Common, PoseArg, RobotArgs};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -45,9 +45,9 @@ pub struct DockArgs {
     /// Kept from every obstacle, m [default: the robot file's docking.planner.margin, which is 0.05; without a robot file 0.01]
     #[arg(long, value_name = "M")]
     pub margin: Option<f64>,
-    /// Robot file (see `trundle config`): footprint, and the settings of [docking.planner], with which the robot itself plans.
-    #[arg(long, value_name = "FILE")]
-    pub config: Option<PathBuf>,
+    /// The robot: its footprint, and the settings of [docking.planner], with which the robot itself plans.
+    #[command(flatten)]
+    pub robot: RobotArgs,
     /// Folder for the results.
     #[arg(long, value_name = "DIR", default_value = "out/dock")]
     pub out: PathBuf,

@@ -1,4 +1,4 @@
-use crate::args::{Common, PoseArg};
+use crate::args::{Common, PoseArg, RobotArgs};
 use clap::Args;
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -43,9 +43,9 @@ pub struct PlanArgs {
     /// Print the curve's polynomials and the constraints that shape it.
     #[arg(long)]
     pub coefficients: bool,
-    /// Robot file (see `trundle config`).
-    #[arg(long, value_name = "FILE")]
-    pub config: Option<PathBuf>,
+    /// The robot's settings.
+    #[command(flatten)]
+    pub robot: RobotArgs,
     /// Folder for the results.
     #[arg(long, value_name = "DIR", default_value = "out/plan")]
     pub out: PathBuf,
