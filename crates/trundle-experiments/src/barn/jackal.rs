@@ -1,3 +1,5 @@
+//! The robot of the BARN challenge: a Clearpath Jackal with a 2-D laser, and its simulated body.
+
 use crate::laser_run::hokuyo;
 use crate::simulated::simulated_body;
 use trundle_control::{FollowerConfig, SafetyConfig};

@@ -1,3 +1,5 @@
+//! The report of the BARN experiment: table, scores, pictures of single worlds.
+
 use super::{BarnTrial, SCORE, SUCCESS};
 use trundle_core::{Pose2, Vector2};
 use trundle_io::{Summary, table_csv};

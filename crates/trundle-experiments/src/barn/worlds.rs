@@ -1,3 +1,5 @@
+//! The worlds of the BARN challenge, read from its tables and built as scenes.
+
 use crate::csv_rows::rows;
 use std::path::Path;
 use trundle_app::AppError;

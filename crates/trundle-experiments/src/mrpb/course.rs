@@ -1,3 +1,5 @@
+//! The courses of the MRPB benchmark: start, goal, map and walking people, built as scenes.
+
 use crate::csv_rows::rows;
 use std::path::{Path, PathBuf};
 use trundle_app::AppError;

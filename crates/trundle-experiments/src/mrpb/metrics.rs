@@ -1,3 +1,5 @@
+//! The MRPB benchmark's metrics of one run: safety, efficiency, smoothness, and what the planner costs.
+
 use crate::laser_run::{LaserRun, Moment};
 
 /// The benchmark's metrics of one run (Wen et al., MRPB 1.0, IROS 2021), in four groups.

@@ -1,3 +1,5 @@
+//! The report of the MRPB experiment: one row a run, with the benchmark's metrics and pictures.
+
 use super::{ALIGNED, CYCLE_MS, MrpbTrial, NEAR, metrics};
 use trundle_core::{Pose2, Vector2};
 use trundle_io::{Summary, table_csv};
