@@ -8,7 +8,7 @@ mod clock;
 mod clouds;
 
 use clock::timed;
-use trundle_docking::{Docker, DockingConfig, Plan};
+use trundle_docking::{DockingConfig, DockingPlan, DockingPlanner};
 
 /// Plans of each scene; the fastest counts.
 const TIMES: usize = 3;
@@ -17,23 +17,23 @@ fn main() {
     let standard = DockingConfig::default();
     let points_work = std::env::args().nth(2).map_or(standard.points_work, |n| n.parse().expect("a number"));
     let plan_work = standard.plan_work.max(points_work);
-    let docker = Docker::new(DockingConfig { points_work, plan_work, ..standard }).expect("valid");
+    let planner = DockingPlanner::new(DockingConfig { points_work, plan_work, ..standard }).expect("valid");
     let mut worst = (0.0, String::new());
     let word = std::env::args().nth(1).unwrap_or_default();
     for problem in clouds::scenes().into_iter().filter(|problem| problem.name.contains(&word)) {
         let (scene, preparing) = timed(|| clouds::scene_of(&problem));
-        let plan = || docker.plan(&problem.footprint, &scene, problem.start, problem.goal);
+        let plan = || planner.plan(&problem.footprint, &scene, problem.start, problem.goal);
         let runs: Vec<_> = (0..TIMES).map(|_| timed(plan)).collect();
         let least = runs.iter().map(|(_, ms)| *ms).fold(f64::INFINITY, f64::min);
         let told = match &runs[0].0 {
-            Ok(Plan::Found(found)) => format!(
+            Ok(DockingPlan::Found(found)) => format!(
                 "{} motions, {:.2} s, bound {:.2} s, margin {:.1} mm",
                 found.manoeuvre.steps().len(),
                 found.manoeuvre.duration(),
                 found.bound,
                 1e3 * found.margin
             ),
-            Ok(Plan::Impossible(none)) => format!(
+            Ok(DockingPlan::Impossible(none)) => format!(
                 "impossible within {} m: {:?}, ended by {:?}",
                 none.within, none.certificate, none.limit
             ),

@@ -5,7 +5,7 @@ use rand_chacha::ChaCha8Rng;
 use std::f64::consts::{PI, TAU};
 use trundle_core::{Footprint, Pose2, Vector2};
 use trundle_docking::corridor::{Problem, generate};
-use trundle_docking::{Obstacle, Scene};
+use trundle_docking::{Obstacle, ObstacleScene};
 
 /// Points of a scene.
 pub const COUNT: usize = 100_000;
@@ -133,6 +133,6 @@ fn of_corridor(i: usize, rng: &mut ChaCha8Rng) -> Problem {
 }
 
 /// The obstacles, prepared.
-pub fn scene_of(problem: &Problem) -> Scene {
+pub fn scene_of(problem: &Problem) -> ObstacleScene {
     problem.scene().expect("valid")
 }

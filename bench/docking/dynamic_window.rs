@@ -6,7 +6,7 @@
 
 use trundle_core::{Footprint, Pose2, Twist2, wrap_angle};
 use trundle_docking::corridor::Problem;
-use trundle_docking::{MotionLimits, Scene};
+use trundle_docking::{MotionLimits, ObstacleScene};
 
 /// The period of control, s.
 pub const DT: f64 = 0.1;
@@ -17,7 +17,7 @@ const PLACE: f64 = 0.008;
 /// What it decides in the next tenth of a second, and whether it is on the goal's place.
 pub struct DynamicWindow<'a> {
     pub problem: &'a Problem,
-    pub scene: &'a Scene,
+    pub scene: &'a ObstacleScene,
     pub limits: MotionLimits,
     pub last: Twist2,
     pub turning: bool,
@@ -94,11 +94,11 @@ impl DynamicWindow<'_> {
 
 /// What a baseline keeps from obstacles in closed loop, m: three standard deviations of the pose's noise, or half of what there
 /// is where it stands.
-pub fn kept(footprint: &Footprint, scene: &Scene, pose: &Pose2) -> f64 {
+pub fn kept(footprint: &Footprint, scene: &ObstacleScene, pose: &Pose2) -> f64 {
     scene.clearance(footprint, pose, 0.012).map_or(0.006, |(distance, _)| distance / 2.0)
 }
 
 /// Whether a footprint at a pose comes nearer to something than `kept` (m).
-pub fn is_near(footprint: &Footprint, scene: &Scene, pose: &Pose2, kept: f64) -> bool {
+pub fn is_near(footprint: &Footprint, scene: &ObstacleScene, pose: &Pose2, kept: f64) -> bool {
     scene.clearance(footprint, pose, kept + 1e-3).is_some_and(|(distance, _)| distance <= kept)
 }

@@ -11,7 +11,7 @@ use std::collections::{BTreeMap, BinaryHeap};
 use std::f64::consts::{PI, TAU};
 use trundle_core::{Pose2, Vector2, wrap_angle};
 use trundle_docking::corridor::Problem;
-use trundle_docking::{MotionLimits, Scene};
+use trundle_docking::{MotionLimits, ObstacleScene};
 
 /// Least radius, m: what a base that prefers to roll takes in a corridor.
 const RADIUS: f64 = 0.25;
@@ -21,12 +21,17 @@ const SAMPLE: f64 = 0.005;
 const MOST_NODES: usize = 20_000;
 
 /// An arc: curvature (1/m) and signed way (m).
-pub type Piece = (f64, f64);
+pub type PathPiece = (f64, f64);
 
 /// A path to the goal that keeps `kept` (m) from everything; `None` when none was found.
-pub fn plan(problem: &Problem, scene: &Scene, limits: &MotionLimits, kept: f64) -> Option<Vec<Piece>> {
+pub fn plan(
+    problem: &Problem,
+    scene: &ObstacleScene,
+    limits: &MotionLimits,
+    kept: f64,
+) -> Option<Vec<PathPiece>> {
     let free = |pose: &Pose2| !is_near(&problem.footprint, scene, pose, kept);
-    let mut nodes: Vec<(Pose2, f64, usize, Piece)> = vec![(problem.start, 0.0, 0, (0.0, 0.0))];
+    let mut nodes: Vec<(Pose2, f64, usize, PathPiece)> = vec![(problem.start, 0.0, 0, (0.0, 0.0))];
     let mut seen: BTreeMap<(i32, i32, i32), f64> = BTreeMap::new();
     let mut queue = BinaryHeap::from([(Reverse(0_u64), 0_usize)]);
     let mut expanded = 0;
@@ -79,7 +84,7 @@ pub fn roll(pose: &Pose2, curvature: f64, way: f64) -> Pose2 {
     pose.advance(trundle_core::Twist2::new(way, way * curvature), 1.0)
 }
 
-fn pieces_to(nodes: &[(Pose2, f64, usize, Piece)], mut index: usize) -> Vec<Piece> {
+fn pieces_to(nodes: &[(Pose2, f64, usize, PathPiece)], mut index: usize) -> Vec<PathPiece> {
     let mut pieces = Vec::new();
     while index > 0 {
         pieces.push(nodes[index].3);
@@ -90,8 +95,8 @@ fn pieces_to(nodes: &[(Pose2, f64, usize, Piece)], mut index: usize) -> Vec<Piec
 }
 
 /// Neighbours of one arc as one piece.
-fn joined(pieces: &[Piece]) -> Vec<Piece> {
-    let mut list: Vec<Piece> = Vec::new();
+fn joined(pieces: &[PathPiece]) -> Vec<PathPiece> {
+    let mut list: Vec<PathPiece> = Vec::new();
     for &(curvature, way) in pieces {
         match list.last_mut() {
             Some(last) if last.0 == curvature && last.1 * way > 0.0 => last.1 += way,
@@ -102,8 +107,8 @@ fn joined(pieces: &[Piece]) -> Vec<Piece> {
 }
 
 /// The shortest free word of three pieces, each a curve of least radius or a straight, all ways round.
-fn reeds_shepp(from: &Pose2, to: &Pose2, free: &impl Fn(&Pose2) -> bool) -> Option<Vec<Piece>> {
-    let mut words: Vec<Vec<Piece>> = Vec::new();
+fn reeds_shepp(from: &Pose2, to: &Pose2, free: &impl Fn(&Pose2) -> bool) -> Option<Vec<PathPiece>> {
+    let mut words: Vec<Vec<PathPiece>> = Vec::new();
     let local = from.inverse() * *to;
     let goal = Pose2 { x: local.x / RADIUS, y: local.y / RADIUS, theta: local.theta };
     for mirrored in [false, true] {
@@ -118,17 +123,17 @@ fn reeds_shepp(from: &Pose2, to: &Pose2, free: &impl Fn(&Pose2) -> bool) -> Opti
             }
         }
     }
-    let length = |word: &[Piece]| word.iter().map(|piece| piece.1.abs()).sum::<f64>();
+    let length = |word: &[PathPiece]| word.iter().map(|piece| piece.1.abs()).sum::<f64>();
     words.retain(|word| length(word) < 2.0 && ends(from, word).distance(to) < 1e-3);
     words.sort_by(|a, b| length(a).total_cmp(&length(b)));
     words.into_iter().find(|word| is_free(from, word, free))
 }
 
-fn ends(from: &Pose2, word: &[Piece]) -> Pose2 {
+fn ends(from: &Pose2, word: &[PathPiece]) -> Pose2 {
     word.iter().fold(*from, |pose, &(curvature, way)| roll(&pose, curvature, way))
 }
 
-fn is_free(from: &Pose2, word: &[Piece], free: &impl Fn(&Pose2) -> bool) -> bool {
+fn is_free(from: &Pose2, word: &[PathPiece], free: &impl Fn(&Pose2) -> bool) -> bool {
     let mut pose = *from;
     word.iter().all(|&(curvature, way)| {
         let samples = (way.abs() / SAMPLE).ceil().max(1.0) as usize;

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use trundle_core::{Pose2, wrap_angle};
 use trundle_docking::MotionLimits;
-use trundle_docking::corridor::{Answer, Piece, Problem, time_of};
+use trundle_docking::corridor::{PathPiece, Problem, ProblemAnswer, time_of};
 
 /// How far a point of the robot moves from one sample to the next at most, m.
 const STEP: f64 = 0.001;
@@ -15,7 +15,7 @@ const HEADING: f64 = std::f64::consts::PI / 180.0;
 const ROUNDING: f64 = 1e-9;
 
 /// The path's time (s) when it touches nothing and ends on the goal, within 1 cm of distance and 1 deg; else what is wrong.
-pub fn time(problem: &Problem, path: &[Piece]) -> Result<f64, String> {
+pub fn time(problem: &Problem, path: &[PathPiece]) -> Result<f64, String> {
     let scene = problem.scene().expect("valid");
     let arm = problem.footprint.circumscribed_radius();
     let touches =
@@ -52,8 +52,8 @@ pub struct Judged {
 }
 
 /// Judges answers to problems; refuses two answers to one problem, and one to a problem that there is not.
-pub fn judge(problems: &[Problem], answers: &[Answer]) -> Result<Judged, String> {
-    let mut open: BTreeMap<&str, &Answer> = BTreeMap::new();
+pub fn judge(problems: &[Problem], answers: &[ProblemAnswer]) -> Result<Judged, String> {
+    let mut open: BTreeMap<&str, &ProblemAnswer> = BTreeMap::new();
     for answer in answers {
         if open.insert(&answer.problem, answer).is_some() {
             return Err(format!("two answers to problem `{}`", answer.problem));

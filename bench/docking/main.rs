@@ -24,10 +24,10 @@ use std::process::ExitCode;
 use table::{Row, Track};
 use trundle_core::Invalid;
 use trundle_docking::corridor::{
-    Answer, Piece, Problem, generate, parse, parse_answers, write, write_answers,
+    PathPiece, Problem, ProblemAnswer, generate, parse, parse_answers, write, write_answers,
 };
-use trundle_docking::paper::PaperConfig;
-use trundle_docking::{Certificate, Docker, DockingConfig, Method, MotionLimits, Plan};
+use trundle_docking::hong24::Hong24Config;
+use trundle_docking::{Certificate, DockingConfig, DockingPlan, DockingPlanner, Method, MotionLimits};
 
 fn main() -> ExitCode {
     match run() {
@@ -93,10 +93,11 @@ fn optimal(problems: &[Problem], boxes: usize) -> Row {
     let nodes = number("--nodes", DockingConfig::default().search_nodes);
     let margin = argument("--margin").map_or(0.0, |value| value.parse().expect("metres"));
     let base = DockingConfig { margin, search_nodes: nodes, ..DockingConfig::default() };
-    let mut row = plan_all("trundle, optimal", problems, &Docker::new(base.clone()).expect("valid"));
+    let mut row = plan_all("trundle, optimal", problems, &DockingPlanner::new(base.clone()).expect("valid"));
     // Many boxes only where a few leave more than 15 %, and only until they do not.
     let judge = |bound_boxes, gap| {
-        Docker::new(DockingConfig { bound_boxes, gap, search_nodes: 0, ..base.clone() }).expect("valid")
+        DockingPlanner::new(DockingConfig { bound_boxes, gap, search_nodes: 0, ..base.clone() })
+            .expect("valid")
     };
     let judges = [judge(boxes / 20, 0.02), judge(boxes, 0.125)];
     let bound = |problem: &Problem, time: f64| {
@@ -118,9 +119,9 @@ fn by_paper(problems: &[Problem]) -> Row {
     // A distance of 1 cm is asked for: each axis gets its part of it.
     let part = number("--paper-mm", 7) as f64 * 1e-3;
     let paper =
-        PaperConfig { lateral_threshold: part, longitudinal_threshold: part, ..PaperConfig::default() };
-    let config = DockingConfig { method: Method::Paper, margin: 0.0, paper, ..DockingConfig::default() };
-    plan_all("[Hong24]", problems, &Docker::new(config).expect("valid"))
+        Hong24Config { lateral_threshold: part, longitudinal_threshold: part, ..Hong24Config::default() };
+    let config = DockingConfig { method: Method::Hong24, margin: 0.0, paper, ..DockingConfig::default() };
+    plan_all("[Hong24]", problems, &DockingPlanner::new(config).expect("valid"))
 }
 
 /// What the path planner keeps from obstacles, m: a millimetre for what lies between its samples.
@@ -132,8 +133,9 @@ fn by_hybrid(problems: &[Problem]) -> Row {
         let scene = problem.scene().expect("valid");
         let limits = MotionLimits::default();
         let (path, ms) = clock::timed(|| hybrid::plan(problem, &scene, &limits, KEPT));
-        let path = path
-            .map(|path| path.iter().map(|&(curvature, way)| Piece { way, turn: curvature * way }).collect());
+        let path = path.map(|path| {
+            path.iter().map(|&(curvature, way)| PathPiece { way, turn: curvature * way }).collect()
+        });
         row.planning_ms.push(ms);
         row.note(problem, path);
     }
@@ -142,7 +144,7 @@ fn by_hybrid(problems: &[Problem]) -> Row {
 
 /// Solvable problems with noise and lag: the first `most` by the positioner, the first `few` by the others.
 fn closed_loop(problems: &[&Problem], most: usize, few: usize) {
-    let paper = DockingConfig { method: Method::Paper, ..DockingConfig::default() };
+    let paper = DockingConfig { method: Method::Hong24, ..DockingConfig::default() };
     let run = |docking: &DockingConfig, problem: &Problem, i: usize| world::run(problem, docking, i as u64);
     let scene = |problem: &Problem| problem.scene().expect("valid");
     let mut tracks = vec![Track::new("trundle, optimal"), Track::new("[Hong24]")];
@@ -158,25 +160,29 @@ fn closed_loop(problems: &[&Problem], most: usize, few: usize) {
     table::print_closed_loop(&tracks);
 }
 
-fn plan_all(name: &'static str, problems: &[Problem], docker: &Docker) -> Row {
+fn plan_all(name: &'static str, problems: &[Problem], planner: &DockingPlanner) -> Row {
     let mut row = Row::new(name);
     for problem in problems {
         let scene = problem.scene().expect("valid");
         let plan =
-            || docker.plan(&problem.footprint, &scene, problem.start, problem.goal).expect("free ends");
+            || planner.plan(&problem.footprint, &scene, problem.start, problem.goal).expect("free ends");
         let (plan, ms) = clock::timed(plan);
         row.planning_ms.push(ms);
-        row.steps.push(if let Plan::Found(solution) = &plan { solution.manoeuvre.steps().len() } else { 0 });
+        row.steps.push(if let DockingPlan::Found(solution) = &plan {
+            solution.manoeuvre.steps().len()
+        } else {
+            0
+        });
         match plan {
-            Plan::Found(solution) => row.note(problem, Some(Piece::all_of(&solution.manoeuvre))),
-            Plan::Impossible(impossible) => {
+            DockingPlan::Found(solution) => row.note(problem, Some(PathPiece::all_of(&solution.manoeuvre))),
+            DockingPlan::Impossible(impossible) => {
                 match (impossible.certificate, impossible.limit) {
                     (Certificate::Never, None) => row.never += 1,
                     (Certificate::AtResolution, None) => row.at_resolution += 1,
                     _ => row.unsolved.push(problem.name.clone()),
                 }
                 row.times.push(None);
-                row.answers.push(Answer { problem: problem.name.clone(), path: None });
+                row.answers.push(ProblemAnswer { problem: problem.name.clone(), path: None });
             }
         }
     }

@@ -1,11 +1,11 @@
 //! The baselines in the same small world as the positioner: noise on the pose, wheels that lag.
 
 use crate::dynamic_window::{DT as WINDOW_DT, DynamicWindow, is_near, kept};
-use crate::hybrid::{Piece, plan, roll};
+use crate::hybrid::{PathPiece, plan, roll};
 use crate::world::{DT, Run, World};
 use trundle_core::{Pose2, Twist2, wrap_angle};
 use trundle_docking::corridor::Problem;
-use trundle_docking::{MotionLimits, Scene};
+use trundle_docking::{MotionLimits, ObstacleScene};
 
 /// The dynamic window gives up after this, s, ...
 const PATIENCE: f64 = 60.0;
@@ -17,14 +17,14 @@ const PLANS: usize = 6;
 /// A world, and what is noted in it.
 struct Race<'a> {
     problem: &'a Problem,
-    scene: &'a Scene,
+    scene: &'a ObstacleScene,
     world: World,
     time: f64,
     contact: bool,
 }
 
 impl<'a> Race<'a> {
-    fn new(problem: &'a Problem, scene: &'a Scene, seed: u64) -> Self {
+    fn new(problem: &'a Problem, scene: &'a ObstacleScene, seed: u64) -> Self {
         Self { problem, scene, world: World::new(problem.start, seed), time: 0.0, contact: false }
     }
 
@@ -61,7 +61,7 @@ impl<'a> Race<'a> {
 }
 
 /// The dynamic window, ten times a second.
-pub fn by_window(problem: &Problem, scene: &Scene, seed: u64) -> Run {
+pub fn by_window(problem: &Problem, scene: &ObstacleScene, seed: u64) -> Run {
     let mut race = Race::new(problem, scene, seed);
     let limits = MotionLimits::default();
     let mut window = DynamicWindow { problem, scene, limits, last: Twist2::ZERO, turning: false, kept: 0.0 };
@@ -89,7 +89,7 @@ pub fn by_window(problem: &Problem, scene: &Scene, seed: u64) -> Run {
 }
 
 /// Hybrid A* with Reeds-Shepp words, followed by a plain tracking law, planned again when the end is beside the goal.
-pub fn by_hybrid(problem: &Problem, scene: &Scene, seed: u64) -> Run {
+pub fn by_hybrid(problem: &Problem, scene: &ObstacleScene, seed: u64) -> Run {
     let mut race = Race::new(problem, scene, seed);
     for _ in 0..PLANS {
         let start = race.measure(0.4);
@@ -110,7 +110,7 @@ pub fn by_hybrid(problem: &Problem, scene: &Scene, seed: u64) -> Run {
 }
 
 /// Every piece from rest to rest.
-fn follow(race: &mut Race<'_>, mut from: Pose2, pieces: &[Piece]) {
+fn follow(race: &mut Race<'_>, mut from: Pose2, pieces: &[PathPiece]) {
     let limits = MotionLimits::default();
     let mut last = 0.0;
     for &(curvature, way) in pieces {

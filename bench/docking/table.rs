@@ -3,7 +3,7 @@
 use crate::judge;
 use crate::world::Run;
 use std::fmt::Write;
-use trundle_docking::corridor::{Answer, Piece, Problem};
+use trundle_docking::corridor::{PathPiece, Problem, ProblemAnswer};
 
 /// What one method did with all problems.
 pub struct Row {
@@ -26,7 +26,7 @@ pub struct Row {
     /// A time that no manoeuvre beats, s, where one was settled.
     pub bounds: Vec<Option<f64>>,
     /// What it says of each problem.
-    pub answers: Vec<Answer>,
+    pub answers: Vec<ProblemAnswer>,
 }
 
 impl Row {
@@ -47,7 +47,7 @@ impl Row {
     }
 
     /// Has a path judged; none is no answer.
-    pub fn note(&mut self, problem: &Problem, path: Option<Vec<Piece>>) {
+    pub fn note(&mut self, problem: &Problem, path: Option<Vec<PathPiece>>) {
         let judged = path.as_ref().map(|path| judge::time(problem, path));
         match &judged {
             None => self.unsolved.push(problem.name.clone()),
@@ -55,7 +55,7 @@ impl Row {
             Some(Ok(_)) => {}
         }
         self.times.push(judged.and_then(Result::ok));
-        self.answers.push(Answer { problem: problem.name.clone(), path });
+        self.answers.push(ProblemAnswer { problem: problem.name.clone(), path });
     }
 }
 

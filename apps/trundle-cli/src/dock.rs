@@ -13,7 +13,8 @@ use trundle::app::dock::{
 use trundle::core::{Footprint, OccupancyGrid, Pose2};
 use trundle::docking::corridor::{Problem, Scenario, parse, write};
 use trundle::docking::{
-    Certificate, Docker, DockingConfig, Impossible, Limit, Obstacle, Plan, Scene, Solution,
+    Certificate, DockingConfig, DockingPlan, DockingPlanner, Impossible, Obstacle, ObstacleScene,
+    SearchLimit, Solution,
 };
 use trundle::io::{LaserLogOptions, OutputFolder, Summary, read_carmen, read_map};
 use trundle::viz::tiles;
@@ -24,7 +25,7 @@ struct Task {
     footprint: Footprint,
     start: Pose2,
     goal: Pose2,
-    scene: Scene,
+    scene: ObstacleScene,
     grid: Option<OccupancyGrid>,
     problem: Option<Problem>,
 }
@@ -88,7 +89,7 @@ pub fn run(args: &DockArgs) -> Result<Outcome, AppError> {
     if let Some(file) = &args.write_problem {
         return write_problem(args, task, file);
     }
-    let docker = Docker::new(planner(args)?)?;
+    let docker = DockingPlanner::new(planner(args)?)?;
     let clock = Instant::now();
     let plan = docker
         .plan(&task.footprint, &task.scene, task.start, task.goal)
@@ -97,12 +98,12 @@ pub fn run(args: &DockArgs) -> Result<Outcome, AppError> {
     let folder = OutputFolder::create(&args.out)?.instead_of(&["steps.csv", "steps.png"]);
     let surroundings = DockingObstacles { grid: task.grid.as_ref(), problem: task.problem.as_ref() };
     let found = match &plan {
-        Plan::Found(found) => Some(found),
-        Plan::Impossible(_) => None,
+        DockingPlan::Found(found) => Some(found),
+        DockingPlan::Impossible(_) => None,
     };
     let in_the_way = match &plan {
-        Plan::Impossible(impossible) => impossible.by.map(|by| by.at),
-        Plan::Found(_) => None,
+        DockingPlan::Impossible(impossible) => impossible.by.map(|by| by.at),
+        DockingPlan::Found(_) => None,
     };
     let ends = (task.start, task.goal);
     if let Some(found) = found.filter(|found| !found.manoeuvre.steps().is_empty()) {
@@ -165,7 +166,7 @@ fn on_map(args: &DockArgs) -> Result<Task, AppError> {
     let footprint = footprint(args)?;
     let config = planner(args)?;
     let (center, half) = config.view(&footprint, &start, &goal);
-    let scene = Scene::from_grid(&grid, center, half, !args.through_unknown);
+    let scene = ObstacleScene::from_grid(&grid, center, half, !args.through_unknown);
     Ok(Task {
         name: args.place.display().to_string(),
         footprint,
@@ -242,23 +243,23 @@ fn task_of(args: &DockArgs, problem: Problem) -> Result<Task, AppError> {
     })
 }
 
-fn tell(plan: &Plan, seconds: f64) {
+fn tell(plan: &DockingPlan, seconds: f64) {
     match plan {
-        Plan::Found(found) if found.manoeuvre.steps().is_empty() => {
+        DockingPlan::Found(found) if found.manoeuvre.steps().is_empty() => {
             console::print("Already there: nothing to do.");
         }
-        Plan::Found(found) => {
+        DockingPlan::Found(found) => {
             console::print_table(&rows(&found.manoeuvre));
             console::print(&format!("\n{}; planned in {:.1} ms.", verdict(found), seconds * 1e3));
         }
-        Plan::Impossible(impossible) => console::print(&reason(impossible)),
+        DockingPlan::Impossible(impossible) => console::print(&reason(impossible)),
     }
 }
 
 /// Why there is no manoeuvre, in one sentence.
 fn reason(impossible: &Impossible) -> String {
     let by = impossible.by.as_ref().map_or_else(String::new, |by| format!(": {by} is in the way"));
-    let ended = |limit: Limit| {
+    let ended = |limit: SearchLimit| {
         format!("the search ended at docking.planner.{}, more of it searches longer", limit.setting())
     };
     let proof = match (impossible.certificate, impossible.limit) {
@@ -276,17 +277,17 @@ fn reason(impossible: &Impossible) -> String {
     format!("No manoeuvre within {:.1} m{by} ({proof}).", impossible.within)
 }
 
-fn summary(task: &Task, plan: &Plan, seconds: f64) -> Summary {
+fn summary(task: &Task, plan: &DockingPlan, seconds: f64) -> Summary {
     let mut summary = Summary::new("dock");
     summary.set("task", &task.name).set("from", task.start).set("to", task.goal);
     match plan {
-        Plan::Found(Solution { manoeuvre, bound, margin }) => summary
+        DockingPlan::Found(Solution { manoeuvre, bound, margin }) => summary
             .set("success", true)
             .set("motions", motions(manoeuvre))
             .set("duration_s", manoeuvre.duration())
             .set("bound_s", *bound)
             .set("margin_m", *margin),
-        Plan::Impossible(impossible) => {
+        DockingPlan::Impossible(impossible) => {
             let proven = impossible.certificate != Certificate::None;
             summary.set("success", false).set("proven", proven).set("reason", reason(impossible))
         }

@@ -1,37 +1,47 @@
-use crate::cloud::FEW;
-use crate::config::{BESIDE, DockingConfig, Method, WIDER};
-use crate::margins::Margins;
-use crate::optimal::{self, Certificate, Effort, Task};
-use crate::pace::{Meter, Planning, at_once};
-use crate::paper::{self, Decision, PaperMethod};
-use crate::plan::{Impossible, Limit, Plan, Refusal, Solution};
-use crate::scene::{Blocker, Scene};
-use crate::space::Space;
+//! The docking planner.
+
+use crate::certificate::{Certificate, SearchLimit};
+use crate::contact_space::ContactSpace;
+use crate::docking_config::{DockingConfig, Method, OBSTACLE_MARGIN_M, WIDER_REACH_FACTOR};
+use crate::docking_plan::{DockingPlan, DockingRefusal, Impossible, Solution};
+use crate::hong24;
+use crate::hong24::decide::{Decision, Hong24Method};
+use crate::legs::query::DockingQuery;
+use crate::margin_selection::MarginSelection;
+use crate::point_queries::limits::FEW_POINTS;
+use crate::scene::blocker::Blocker;
+use crate::scene::obstacle_scene::ObstacleScene;
+use crate::search::min_time;
+use crate::search::min_time::Effort;
+use crate::work_budget::{PlanningJob, WorkBudget, run_to_end};
 use std::sync::Arc;
 use trundle_collision::RoundedHull;
 use trundle_core::{Footprint, Invalid, Pose2};
 
-/// Pieces of a scene above which the bound is sought with fewer boxes.
-const MANY_PIECES: usize = 200;
+/// Number of segments of a scene above which fewer boxes are used for the lower bound. Source: ours.
+const MANY_SEGMENTS: usize = 200;
 
 /// Plans manoeuvres onto a goal pose.
 #[derive(Debug, Clone)]
-pub struct Docker {
+pub struct DockingPlanner {
     config: DockingConfig,
 }
 
-/// What is searched for.
+/// A search for a whole plan, in parts.
+pub type DockingJob = PlanningJob<DockingPlan>;
+
+/// One search.
 #[derive(Clone, Copy)]
-struct Question<'a> {
-    /// A margin that start and goal leave, m.
+struct SearchRequest<'a> {
+    /// A margin that start and goal allow, m.
     most: f64,
     footprint: &'a Footprint,
-    scene: &'a Scene,
-    task: Task,
-    meter: &'a Arc<Meter>,
+    scene: &'a ObstacleScene,
+    query: DockingQuery,
+    budget: &'a Arc<WorkBudget>,
 }
 
-impl Docker {
+impl DockingPlanner {
     /// A planner.
     ///
     /// # Errors
@@ -52,191 +62,199 @@ impl Docker {
     pub fn plan(
         &self,
         footprint: &Footprint,
-        scene: &Scene,
+        scene: &ObstacleScene,
         start: Pose2,
         goal: Pose2,
-    ) -> Result<Plan, Refusal> {
-        self.plan_keeping(self.config.margin, footprint, scene, start, goal)
+    ) -> Result<DockingPlan, DockingRefusal> {
+        self.plan_with_margin(self.config.margin, footprint, scene, start, goal)
     }
 
-    /// As [`Docker::plan`], with another margin (m) than the configuration's: of a pose that is known so well (see
+    /// Like [`DockingPlanner::plan`] with another margin (m) than the configuration's, for a pose of known uncertainty (see
     /// [`crate::margin_of`]).
     ///
     /// # Errors
-    /// As [`Docker::plan`].
-    pub fn plan_keeping(
+    /// As [`DockingPlanner::plan`].
+    pub fn plan_with_margin(
         &self,
         margin: f64,
         footprint: &Footprint,
-        scene: &Scene,
+        scene: &ObstacleScene,
         start: Pose2,
         goal: Pose2,
-    ) -> Result<Plan, Refusal> {
+    ) -> Result<DockingPlan, DockingRefusal> {
         let most = self.checked(margin, footprint, scene, &start, &goal)?;
-        let meter = &Meter::endless(self.most_of(scene));
-        let task = self.task(start, goal);
-        Ok(at_once(self.search(Question { most, footprint, scene, task, meter })))
+        let budget = &WorkBudget::endless(self.most_of(scene));
+        let query = self.query(start, goal);
+        Ok(run_to_end(self.search(SearchRequest { most, footprint, scene, query, budget })))
     }
 
-    /// Begins what [`Docker::plan_keeping`] does at once: the search then goes on in parts ([`Planning::go_on`]).
+    /// Starts the search of [`DockingPlanner::plan_with_margin`]; it continues in parts ([`PlanningJob::advance`]).
     ///
     /// # Errors
-    /// As [`Docker::plan`].
+    /// As [`DockingPlanner::plan`].
     pub fn begin(
         &self,
         margin: f64,
         footprint: &Footprint,
-        scene: &Scene,
+        scene: &ObstacleScene,
         start: Pose2,
         goal: Pose2,
-    ) -> Result<Planning, Refusal> {
+    ) -> Result<DockingJob, DockingRefusal> {
         let most = self.checked(margin, footprint, scene, &start, &goal)?;
-        let (docker, footprint, task) = (self.clone(), footprint.clone(), self.task(start, goal));
-        let scene = around(&footprint, scene, &wider(task));
-        let meter = Meter::rationed(self.most_of(&scene));
-        let counted = Arc::clone(&meter);
+        let (planner, footprint, query) = (self.clone(), footprint.clone(), self.query(start, goal));
+        let scene = around(&footprint, scene, &wider(query));
+        let budget = WorkBudget::rationed(self.most_of(&scene));
+        let counted = Arc::clone(&budget);
         let search = async move {
-            let (footprint, scene, meter) = (&footprint, &scene, &counted);
-            docker.search(Question { most, footprint, scene, task, meter }).await
+            let (footprint, scene, budget) = (&footprint, &scene, &counted);
+            planner.search(SearchRequest { most, footprint, scene, query, budget }).await
         };
-        Ok(Planning::new(meter, search))
+        Ok(PlanningJob::new(budget, search))
     }
 
-    /// Begins one decision of the paper's method from `pose`, with so many recovery moves behind it; it goes on in parts.
+    /// Starts one decision of \[Hong24\] from `pose`, after `recoveries` recovery moves; it continues in parts.
     ///
     /// # Errors
-    /// As [`Docker::plan`].
-    pub(crate) fn begin_decision(
+    /// As [`DockingPlanner::plan`].
+    pub(crate) fn start_decision(
         &self,
         margin: f64,
         footprint: &Footprint,
-        scene: &Scene,
+        scene: &ObstacleScene,
         (pose, goal): (Pose2, Pose2),
         recoveries: usize,
-    ) -> Result<Planning<Decision>, Refusal> {
+    ) -> Result<PlanningJob<Decision>, DockingRefusal> {
         let margin = self.checked(margin, footprint, scene, &pose, &goal)?;
-        let scene = around(footprint, scene, &self.task(pose, goal));
+        let scene = around(footprint, scene, &self.query(pose, goal));
         let (hull, limits, config) =
             (RoundedHull::new(footprint, margin), self.config.limits, self.config.paper.clone());
-        let meter = Meter::rationed(self.most_of(&scene));
-        let counted = Arc::clone(&meter);
-        Ok(Planning::new(meter, async move {
-            let space = Space::metered(hull, &scene, counted);
-            let method = PaperMethod { space: &space, limits, config: &config };
+        let budget = WorkBudget::rationed(self.most_of(&scene));
+        let counted = Arc::clone(&budget);
+        Ok(PlanningJob::new(budget, async move {
+            let space = ContactSpace::metered(hull, &scene, counted);
+            let method = Hong24Method { space: &space, limits, config: &config };
             method.decide(&pose, &goal, recoveries).await
         }))
     }
 
     /// The search.
-    async fn search(&self, question: Question<'_>) -> Plan {
+    async fn search(&self, request: SearchRequest<'_>) -> DockingPlan {
         match self.config.method {
-            Method::Paper => self.by_paper(question).await,
-            Method::Optimal => self.by_search(question).await,
+            Method::Hong24 => self.by_paper(request).await,
+            Method::Optimal => self.by_search(request).await,
         }
     }
 
-    /// By the optimal method: first near the ends, then farther about.
-    async fn by_search(&self, Question { most, footprint, scene, task, meter }: Question<'_>) -> Plan {
-        let near = around(footprint, scene, &task);
+    /// The optimal method: first near the ends, then in a wider region.
+    async fn by_search(
+        &self,
+        SearchRequest { most, footprint, scene, query, budget }: SearchRequest<'_>,
+    ) -> DockingPlan {
+        let near = around(footprint, scene, &query);
         let least = most.min(0.0);
         let (effort, saving) = (self.effort(&near), self.config.margin_saving);
-        let close = Margins { footprint, scene: &near, task, most, least, effort, saving, meter };
+        let close = MarginSelection { footprint, scene: &near, query, most, least, effort, saving, budget };
         let nearby = match close.plan().await {
-            Plan::Impossible(nearby) => nearby,
+            DockingPlan::Impossible(nearby) => nearby,
             found => return found,
         };
-        let task = wider(task);
-        let far = around(footprint, scene, &task);
+        let query = wider(query);
+        let far = around(footprint, scene, &query);
         let effort = self.effort(&far);
-        let wide = Margins { footprint, scene: &far, task, most: least, least, effort, saving, meter };
+        let wide =
+            MarginSelection { footprint, scene: &far, query, most: least, least, effort, saving, budget };
         match wide.plan().await {
-            Plan::Impossible(none) if none.certificate == Certificate::None => {
-                let limit = if meter.is_spent() { Some(self.limit_of(scene).1) } else { none.limit };
-                // What was shown near the ends stands.
+            DockingPlan::Impossible(none) if none.certificate == Certificate::None => {
+                let limit = if budget.is_spent() { Some(self.limit_of(scene).1) } else { none.limit };
+                // A proof near the ends stands.
                 let shown = if nearby.certificate == Certificate::None { none } else { nearby };
-                Plan::Impossible(Impossible { limit, ..shown })
+                DockingPlan::Impossible(Impossible { limit, ..shown })
             }
             plan => plan,
         }
     }
 
-    /// What a plan may cost as a whole.
-    fn most_of(&self, scene: &Scene) -> u64 {
+    /// Cost limit of a whole plan.
+    fn most_of(&self, scene: &ObstacleScene) -> u64 {
         self.limit_of(scene).0
     }
 
-    /// The same, and which setting says so.
-    fn limit_of(&self, scene: &Scene) -> (u64, Limit) {
+    /// Cost limit of a whole plan, and the setting it comes from.
+    fn limit_of(&self, scene: &ObstacleScene) -> (u64, SearchLimit) {
         let (plan, points) = (self.config.plan_work, self.config.points_work);
-        if scene.points().len() > FEW && points < plan {
-            (points, Limit::PointsWork)
+        if scene.points().len() > FEW_POINTS && points < plan {
+            (points, SearchLimit::PointsWork)
         } else {
-            (plan, Limit::PlanWork)
+            (plan, SearchLimit::PlanWork)
         }
     }
 
-    fn effort(&self, scene: &Scene) -> Effort {
+    fn effort(&self, scene: &ObstacleScene) -> Effort {
         let config = &self.config;
         Effort {
             nodes: config.search_nodes,
-            // A box costs as many looks as there are pieces.
-            boxes: config.bound_boxes.min(config.bound_boxes * MANY_PIECES / scene.pieces().len().max(1)),
+            // A box tests every segment.
+            boxes: config.bound_boxes.min(config.bound_boxes * MANY_SEGMENTS / scene.pieces().len().max(1)),
             gap: config.gap,
             cell: config.position_tolerance,
             work: config.most_work,
         }
     }
 
-    /// By the paper's method, with the whole margin, a third of it, or none.
-    async fn by_paper(&self, Question { most, footprint, scene, task, meter }: Question<'_>) -> Plan {
-        let (config, near) = (&self.config, around(footprint, scene, &task));
+    /// The method of \[Hong24\], with the full margin, a third of it, or none.
+    async fn by_paper(
+        &self,
+        SearchRequest { most, footprint, scene, query, budget }: SearchRequest<'_>,
+    ) -> DockingPlan {
+        let (config, near) = (&self.config, around(footprint, scene, &query));
         let margins = if most > 0.0 { vec![most, most / 3.0, 0.0] } else { vec![most] };
         for margin in margins {
-            let space = Space::metered(RoundedHull::new(footprint, margin), &near, Arc::clone(meter));
-            let found = paper::plan(&space, task.start, task.goal, &config.limits, &config.paper).await;
+            let space = ContactSpace::metered(RoundedHull::new(footprint, margin), &near, Arc::clone(budget));
+            let found =
+                hong24::plan::plan(&space, query.start, query.goal, &config.limits, &config.paper).await;
             if let Some(manoeuvre) = found {
-                return Plan::Found(Solution { manoeuvre, bound: 0.0, margin });
+                return DockingPlan::Found(Solution { manoeuvre, bound: 0.0, margin });
             }
         }
-        let limit = meter.is_spent().then(|| self.limit_of(scene).1);
-        let (certificate, within) = (Certificate::None, task.reach);
-        Plan::Impossible(Impossible { by: None, certificate, limit, within })
+        let limit = budget.is_spent().then(|| self.limit_of(scene).1);
+        let (certificate, within) = (Certificate::None, query.reach);
+        DockingPlan::Impossible(Impossible { by: None, certificate, limit, within })
     }
 
-    fn task(&self, start: Pose2, goal: Pose2) -> Task {
-        Task { start, goal, limits: self.config.limits, reach: self.config.reach }
+    fn query(&self, start: Pose2, goal: Pose2) -> DockingQuery {
+        DockingQuery { start, goal, limits: self.config.limits, reach: self.config.reach }
     }
 
-    /// A time (s) that no manoeuvre from `start` to `goal` beats, sought with the effort of the configuration; at most
-    /// `known`, the time of a manoeuvre.
+    /// A lower bound (s) of the time of any manoeuvre from `start` to `goal`, with the effort of the configuration; at most `known`,
+    /// the time of a manoeuvre.
     ///
     /// # Errors
-    /// As [`Docker::plan`].
+    /// As [`DockingPlanner::plan`].
     pub fn bound(
         &self,
         footprint: &Footprint,
-        scene: &Scene,
+        scene: &ObstacleScene,
         start: Pose2,
         goal: Pose2,
         known: f64,
-    ) -> Result<f64, Refusal> {
+    ) -> Result<f64, DockingRefusal> {
         let margin = self.checked(self.config.margin, footprint, scene, &start, &goal)?;
-        let task = self.task(start, goal);
-        let near = around(footprint, scene, &task);
-        let mut space = Space::new(footprint, margin, &near);
+        let query = self.query(start, goal);
+        let near = around(footprint, scene, &query);
+        let mut space = ContactSpace::new(footprint, margin, &near);
         let (gap, boxes) = (self.config.gap, self.config.bound_boxes);
-        Ok(at_once(optimal::bound(&task, &mut space, known, gap, boxes)))
+        Ok(run_to_end(min_time::bound(&query, &mut space, known, gap, boxes)))
     }
 
-    /// The margin that start and goal leave, m.
+    /// The margin that start and goal allow, m.
     pub(crate) fn checked(
         &self,
         margin: f64,
         footprint: &Footprint,
-        scene: &Scene,
+        scene: &ObstacleScene,
         start: &Pose2,
         goal: &Pose2,
-    ) -> Result<f64, Refusal> {
+    ) -> Result<f64, DockingRefusal> {
         for (name, pose) in [("start", start), ("goal", goal)] {
             if !pose.is_finite() {
                 let value = format!("({}, {}, {})", pose.x, pose.y, pose.theta);
@@ -245,11 +263,14 @@ impl Docker {
         }
         let (distance, most) = (start.distance(goal), self.config.max_distance);
         if distance > most {
-            return Err(Refusal::TooFar { distance, most });
+            return Err(DockingRefusal::TooFar { distance, most });
         }
         let (mut margin, overlap) = (margin, self.config.overlap);
         let least = RoundedHull::new(footprint, -overlap);
-        let ends = [(start, Refusal::StartBlocked as fn(Blocker) -> Refusal), (goal, Refusal::GoalBlocked)];
+        let ends = [
+            (start, DockingRefusal::StartBlocked as fn(Blocker) -> DockingRefusal),
+            (goal, DockingRefusal::GoalBlocked),
+        ];
         for (pose, refusal) in ends {
             if let Some((clearance, by)) = scene.clearance_of(&least, pose, margin + overlap + 2e-4) {
                 if clearance <= 1e-9 {
@@ -262,13 +283,13 @@ impl Docker {
     }
 }
 
-/// The same task, farther about.
-fn wider(task: Task) -> Task {
-    Task { reach: WIDER * task.reach, ..task }
+/// The same query in a wider region.
+fn wider(query: DockingQuery) -> DockingQuery {
+    DockingQuery { reach: WIDER_REACH_FACTOR * query.reach, ..query }
 }
 
-/// The part of a scene that a manoeuvre may meet.
-fn around(footprint: &Footprint, scene: &Scene, task: &Task) -> Scene {
-    let half = task.half() + footprint.circumscribed_radius() + BESIDE;
-    scene.around(task.center(), half)
+/// The part of a scene that a manoeuvre can meet.
+fn around(footprint: &Footprint, scene: &ObstacleScene, query: &DockingQuery) -> ObstacleScene {
+    let half = query.half() + footprint.circumscribed_radius() + OBSTACLE_MARGIN_M;
+    scene.around(query.center(), half)
 }

@@ -5,7 +5,7 @@ use trundle_app::AppError;
 use trundle_app::dock::{DockingObstacles, manoeuvre_picture, motions, step_pictures, steps_csv, view};
 use trundle_core::{Pose2, Vector2, difference_of_angles};
 use trundle_docking::corridor::{Problem, Scenario};
-use trundle_docking::{Docker, DockingConfig, Method, Plan, Solution};
+use trundle_docking::{DockingConfig, DockingPlan, DockingPlanner, Method, Solution};
 use trundle_io::{OutputFolder, Summary, table_csv};
 use trundle_viz::{Figure, MapPicture, Report, Table, Verdict, tiles};
 
@@ -14,7 +14,7 @@ pub struct CorridorTrial {
     scenario: Scenario,
     method: &'static str,
     problem: Problem,
-    plan: Plan,
+    plan: DockingPlan,
 }
 
 /// The four scenarios, each by both methods.
@@ -74,8 +74,8 @@ const HEADER: [&str; 5] = ["scenario", "method", "time", "bound", "motions"];
 fn trials() -> Result<Vec<CorridorTrial>, AppError> {
     let mut trials = Vec::new();
     for scenario in Scenario::ALL {
-        for (method, name) in [(Method::Paper, "paper"), (Method::Optimal, "optimal")] {
-            let docker = Docker::new(DockingConfig { method, ..DockingConfig::default() })?;
+        for (method, name) in [(Method::Hong24, "paper"), (Method::Optimal, "optimal")] {
+            let docker = DockingPlanner::new(DockingConfig { method, ..DockingConfig::default() })?;
             let problem = scenario.problem();
             let plan = docker
                 .plan(&problem.footprint, &problem.scene()?, problem.start, problem.goal)
@@ -89,8 +89,8 @@ fn trials() -> Result<Vec<CorridorTrial>, AppError> {
 impl CorridorTrial {
     fn found(&self) -> Option<&Solution> {
         match &self.plan {
-            Plan::Found(found) => Some(found),
-            Plan::Impossible(_) => None,
+            DockingPlan::Found(found) => Some(found),
+            DockingPlan::Impossible(_) => None,
         }
     }
 

@@ -14,7 +14,10 @@ use report::Notes;
 use serde::{Deserialize, Serialize};
 use trundle_control::SettlePreview;
 use trundle_core::{Footprint, Invalid, Pose2, Stamp, Twist2, require_in};
-use trundle_docking::{Docker, DockingConfig, Positioner, PositionerConfig, PositionerInput, Reason, Scene};
+use trundle_docking::{
+    DockingConfig, DockingPlanner, ObstacleScene, Positioner, PositionerConfig, PositionerInput,
+    PositionerReason,
+};
 
 /// How the robot settles on its goal.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -70,11 +73,11 @@ const STANDING: (f64, f64) = (0.02, 0.05);
 #[derive(Debug)]
 pub(crate) struct LastStage {
     config: LastStageConfig,
-    docker: Docker,
+    docker: DockingPlanner,
     footprint: Footprint,
     choice: Option<Choice>,
     positioner: Option<Positioner>,
-    scene: Option<Scene>,
+    scene: Option<ObstacleScene>,
     scene_due: Ticker,
     began: Option<Stamp>,
     goal: Option<Pose2>,
@@ -98,7 +101,7 @@ impl LastStage {
         // Its settings are checked here, once; later positioners are of the same.
         Positioner::new(config.planner.clone(), config.positioner, footprint.clone(), Pose2::IDENTITY)?;
         Ok(Self {
-            docker: Docker::new(config.positioner.planner(config.planner.clone()))?,
+            docker: DockingPlanner::new(config.positioner.planner(config.planner.clone()))?,
             config: config.clone(),
             footprint: footprint.clone(),
             choice: None,
@@ -196,9 +199,9 @@ impl LastStage {
     }
 
     /// What stands around, and what is unknown: no camera looks where a manoeuvre backs up.
-    fn drawn(&self, s: &Surroundings<'_>, goal: &Pose2) -> Scene {
+    fn drawn(&self, s: &Surroundings<'_>, goal: &Pose2) -> ObstacleScene {
         let (center, half) = self.config.planner.view(&self.footprint, &s.estimate.pose, goal);
-        Scene::from_grid(s.grid, center, half, true)
+        ObstacleScene::from_grid(s.grid, center, half, true)
     }
 
     /// One control step of the manoeuvre.
@@ -253,17 +256,21 @@ fn stands(twist: Twist2) -> bool {
 }
 
 /// Why it stands, for a person.
-fn told(reason: &Reason) -> String {
+fn told(reason: &PositionerReason) -> String {
     match reason {
-        Reason::Obstacle(by) => format!("{by} is in the way while settling"),
-        Reason::NoWay(Some(by)) => {
+        PositionerReason::Obstacle(by) => format!("{by} is in the way while settling"),
+        PositionerReason::NoWay(Some(by)) => {
             format!("no turns and straight moves lead to the goal: {by} is in the way")
         }
-        Reason::NoWay(None) => "no turns and straight moves to the goal were found".to_owned(),
-        Reason::Refused(refusal) => refusal.to_string(),
-        Reason::BadPose => "the pose is not a number".to_owned(),
-        Reason::Planning => "the search for turns and straight moves did not come to an end".to_owned(),
-        Reason::Measuring | Reason::Moving(_) | Reason::Settled => "stopped again and again".to_owned(),
+        PositionerReason::NoWay(None) => "no turns and straight moves to the goal were found".to_owned(),
+        PositionerReason::Refused(refusal) => refusal.to_string(),
+        PositionerReason::BadPose => "the pose is not a number".to_owned(),
+        PositionerReason::Planning => {
+            "the search for turns and straight moves did not come to an end".to_owned()
+        }
+        PositionerReason::Measuring | PositionerReason::Moving(_) | PositionerReason::Settled => {
+            "stopped again and again".to_owned()
+        }
     }
 }
 

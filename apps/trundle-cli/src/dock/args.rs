@@ -69,7 +69,7 @@ impl From<MethodArg> for Method {
     fn from(method: MethodArg) -> Self {
         match method {
             MethodArg::Optimal => Self::Optimal,
-            MethodArg::Paper => Self::Paper,
+            MethodArg::Paper => Self::Hong24,
         }
     }
 }

@@ -1,33 +1,33 @@
-//! Answers of any program to corridor problems, as text.
+//! Answers to corridor problems, as text.
 
-use super::format::{floats, refused};
-use crate::limits::MotionLimits;
-use crate::manoeuvre::{Manoeuvre, Motion};
+use crate::corridor::format::{floats, refused};
+use crate::motion::limits::MotionLimits;
+use crate::motion::manoeuvre::{Manoeuvre, Motion};
 use std::fmt::Write;
 use trundle_core::{Invalid, Pose2, Twist2};
 
 /// The first line of a file.
 const HEADER: &str = "trundle-answers 1";
 
-/// What a program says of a problem.
+/// An answer to a problem.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Answer {
+pub struct ProblemAnswer {
     /// The problem's name.
     pub problem: String,
-    /// What to do, from the problem's start on; `None` when the program says that it is impossible.
-    pub path: Option<Vec<Piece>>,
+    /// The motions from the problem's start; `None` for the answer "impossible".
+    pub path: Option<Vec<PathPiece>>,
 }
 
-/// A part of a path, from rest to rest: a turn on the spot, a straight, an arc.
+/// A part of a path, from rest to rest: a turn in place, a straight move, an arc.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Piece {
-    /// Along the path, m, backward negative; 0 for a turn on the spot.
+pub struct PathPiece {
+    /// Along the path, m, backward negative; 0 for a turn in place.
     pub way: f64,
     /// Change of heading, rad, counter-clockwise positive; 0 for a straight.
     pub turn: f64,
 }
 
-impl From<Motion> for Piece {
+impl From<Motion> for PathPiece {
     fn from(motion: Motion) -> Self {
         match motion {
             Motion::Turn(turn) => Self { way: 0.0, turn },
@@ -36,31 +36,31 @@ impl From<Motion> for Piece {
     }
 }
 
-impl Piece {
+impl PathPiece {
     /// The pieces of a manoeuvre.
     pub fn all_of(manoeuvre: &Manoeuvre) -> Vec<Self> {
         manoeuvre.steps().iter().map(|step| step.motion.into()).collect()
     }
 
-    /// Where a base at `from` stands after `part` (0 to 1) of it.
+    /// Pose of a base that started at `from`, after `part` (0 to 1) of the piece.
     pub fn after(&self, from: &Pose2, part: f64) -> Pose2 {
         from.advance(Twist2::new(self.way * part, self.turn * part), 1.0)
     }
 
-    /// The least time from rest to rest, s: of its way or of its turn, whichever takes longer.
+    /// Minimum time from rest to rest, s: of its distance or of its turn, whichever takes longer.
     pub fn time(&self, limits: &MotionLimits) -> f64 {
         limits.drive_time(self.way).max(limits.turn_time(self.turn))
     }
 }
 
-/// The time of a path, s: every piece from rest to rest, a pause (`switch_time`) between two, none where it rolls on the same way.
-pub fn time_of(path: &[Piece], limits: &MotionLimits) -> f64 {
+/// Time of a path, s: every piece from rest to rest, with a pause (`switch_time`) between two, except where it rolls on in the same direction.
+pub fn time_of(path: &[PathPiece], limits: &MotionLimits) -> f64 {
     let pauses = path.windows(2).filter(|pair| pair[0].way * pair[1].way <= 0.0).count();
     path.iter().map(|piece| piece.time(limits)).sum::<f64>() + pauses as f64 * limits.switch_time
 }
 
 /// Answers as text, metres and degrees. Numbers are exact.
-pub fn write_answers(answers: &[Answer]) -> String {
+pub fn write_answers(answers: &[ProblemAnswer]) -> String {
     let mut text = format!("{HEADER}\n");
     for answer in answers {
         one(answer, &mut text).expect("invariant: a string takes all that is written");
@@ -68,7 +68,7 @@ pub fn write_answers(answers: &[Answer]) -> String {
     text
 }
 
-fn one(answer: &Answer, text: &mut String) -> std::fmt::Result {
+fn one(answer: &ProblemAnswer, text: &mut String) -> std::fmt::Result {
     writeln!(text, "\nproblem {}", answer.problem)?;
     let Some(path) = &answer.path else { return writeln!(text, "impossible") };
     path.iter().try_for_each(|piece| match (piece.way, piece.turn) {
@@ -81,8 +81,8 @@ fn one(answer: &Answer, text: &mut String) -> std::fmt::Result {
 /// Answers from text; `#` begins a comment.
 ///
 /// # Errors
-/// When a line is not of the format; names the line.
-pub fn parse_answers(text: &str) -> Result<Vec<Answer>, Invalid> {
+/// When a line does not match the format; the error contains the line.
+pub fn parse_answers(text: &str) -> Result<Vec<ProblemAnswer>, Invalid> {
     let lines =
         text.lines().enumerate().map(|(i, line)| (i + 1, line.split('#').next().unwrap_or("").trim()));
     let mut lines = lines.filter(|(_, line)| !line.is_empty());
@@ -90,20 +90,20 @@ pub fn parse_answers(text: &str) -> Result<Vec<Answer>, Invalid> {
         Some((_, HEADER)) => {}
         other => return Err(refused(1, other.map_or("", |(_, line)| line), HEADER)),
     }
-    let mut answers: Vec<Answer> = Vec::new();
+    let mut answers: Vec<ProblemAnswer> = Vec::new();
     for (number, line) in lines {
         let (word, rest) = line.split_once(' ').unwrap_or((line, ""));
         if word == "problem" {
-            answers.push(Answer { problem: rest.to_owned(), path: Some(Vec::new()) });
+            answers.push(ProblemAnswer { problem: rest.to_owned(), path: Some(Vec::new()) });
             continue;
         }
         let answer = answers.last_mut().ok_or_else(|| refused(number, word, "`problem NAME` first"))?;
         let piece = match word {
-            "turn" => Piece { way: 0.0, turn: floats(number, rest, 1)?[0].to_radians() },
-            "drive" => Piece { way: floats(number, rest, 1)?[0], turn: 0.0 },
+            "turn" => PathPiece { way: 0.0, turn: floats(number, rest, 1)?[0].to_radians() },
+            "drive" => PathPiece { way: floats(number, rest, 1)?[0], turn: 0.0 },
             "arc" => {
                 let n = floats(number, rest, 2)?;
-                Piece { way: n[0], turn: n[1].to_radians() }
+                PathPiece { way: n[0], turn: n[1].to_radians() }
             }
             "impossible" => {
                 answer.path = None;
@@ -124,22 +124,22 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_written_is_read() {
+    fn written_answers_are_read_back() {
         let path = vec![
-            Piece { way: 0.0, turn: 0.5 },
-            Piece { way: -0.25, turn: 0.0 },
-            Piece { way: 0.1, turn: -0.2 },
+            PathPiece { way: 0.0, turn: 0.5 },
+            PathPiece { way: -0.25, turn: 0.0 },
+            PathPiece { way: 0.1, turn: -0.2 },
         ];
         let answers = [
-            Answer { problem: "a".to_owned(), path: Some(path) },
-            Answer { problem: "b".to_owned(), path: None },
-            Answer { problem: "c".to_owned(), path: Some(Vec::new()) },
+            ProblemAnswer { problem: "a".to_owned(), path: Some(path) },
+            ProblemAnswer { problem: "b".to_owned(), path: None },
+            ProblemAnswer { problem: "c".to_owned(), path: Some(Vec::new()) },
         ];
         let read = parse_answers(&write_answers(&answers)).unwrap();
         assert_eq!(read.len(), 3);
         for (a, b) in answers.iter().zip(&read) {
             assert_eq!((&a.problem, a.path.is_some()), (&b.problem, b.path.is_some()));
-            let pieces = |answer: &Answer| answer.path.clone().unwrap_or_default();
+            let pieces = |answer: &ProblemAnswer| answer.path.clone().unwrap_or_default();
             for (p, q) in pieces(a).iter().zip(&pieces(b)) {
                 assert!(p.way == q.way && (p.turn - q.turn).abs() < 1e-15);
             }
@@ -147,7 +147,7 @@ mod tests {
     }
 
     #[test]
-    fn bad_lines_are_refused_by_number() {
+    fn invalid_lines_are_refused_with_their_number() {
         let message = |text: &str| parse_answers(text).unwrap_err().to_string();
         assert!(message("answers").starts_with("line 1 is `answers`"));
         assert!(message("trundle-answers 1\nturn 3").starts_with("line 2"));
@@ -157,10 +157,10 @@ mod tests {
     }
 
     #[test]
-    fn time_is_that_of_the_manoeuvre() {
+    fn the_time_of_a_path_is_that_of_its_manoeuvre() {
         let limits = MotionLimits::default();
         let motions = [Motion::Turn(0.4), Motion::Drive(0.3), Motion::Turn(-1.0), Motion::Drive(-0.02)];
         let manoeuvre = Manoeuvre::new(Pose2::IDENTITY, &motions, limits);
-        assert!((time_of(&Piece::all_of(&manoeuvre), &limits) - manoeuvre.duration()).abs() < 1e-12);
+        assert!((time_of(&PathPiece::all_of(&manoeuvre), &limits) - manoeuvre.duration()).abs() < 1e-12);
     }
 }

@@ -1,15 +1,17 @@
-use super::Problem;
-use crate::scene::Obstacle;
+//! Corridor problems as text.
+
+use crate::corridor::problem::Problem;
+use crate::scene::obstacle_scene::Obstacle;
 use std::fmt::Write;
 use trundle_core::{Footprint, Invalid, Pose2, Vector2};
 
-/// So many characters of a wrong line are shown.
-const SHOWN: usize = 60;
+/// Number of characters of an invalid line in a message. Source: ours.
+const MAX_SHOWN_CHARACTERS: usize = 60;
 
 /// The first line of a file.
 const HEADER: &str = "trundle-corridors 1";
 
-/// Problems as text: one word a line says what it is, numbers follow, metres and degrees. Numbers are exact.
+/// Problems as text, metres and degrees: the first word of a line is its kind, numbers follow. Numbers are exact.
 pub fn write(problems: &[Problem]) -> String {
     let mut text = format!("{HEADER}\n");
     for problem in problems {
@@ -44,7 +46,7 @@ fn numbers(points: &[Vector2]) -> String {
 /// Problems from text; `#` begins a comment.
 ///
 /// # Errors
-/// When a line is not of the format; names the line.
+/// When a line does not match the format; the error contains the line.
 pub fn parse(text: &str) -> Result<Vec<Problem>, Invalid> {
     let mut lines =
         text.lines().enumerate().map(|(i, line)| (i + 1, line.split('#').next().unwrap_or("").trim()));
@@ -97,7 +99,7 @@ pub fn parse(text: &str) -> Result<Vec<Problem>, Invalid> {
     Ok(problems)
 }
 
-/// What has been said of a problem so far.
+/// Parts of a problem that have been read.
 #[derive(Debug, Clone, Copy, Default)]
 struct Given {
     footprint: bool,
@@ -156,7 +158,7 @@ pub(super) fn floats(number: usize, text: &str, count: usize) -> Result<Vec<f64>
 }
 
 pub(super) fn refused(number: usize, value: &str, expected: &str) -> Invalid {
-    let mut shown: String = value.chars().take(SHOWN).collect();
+    let mut shown: String = value.chars().take(MAX_SHOWN_CHARACTERS).collect();
     if shown.len() < value.len() {
         shown.push_str("...");
     }
@@ -166,12 +168,12 @@ pub(super) fn refused(number: usize, value: &str, expected: &str) -> Invalid {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::corridor::generate;
+    use crate::corridor::generate::generate;
     use rand::SeedableRng;
     use rand_chacha::ChaCha8Rng;
 
     #[test]
-    fn what_is_written_is_read() {
+    fn written_problems_are_read_back() {
         let mut rng = ChaCha8Rng::seed_from_u64(3);
         let problems: Vec<_> = (0..20).map(|i| generate(format!("p{i}"), &mut rng)).collect();
         let read = parse(&write(&problems)).unwrap();
@@ -182,7 +184,7 @@ mod tests {
     }
 
     #[test]
-    fn bad_lines_are_refused_by_number() {
+    fn invalid_lines_are_refused_with_their_number() {
         let message = |text: &str| parse(text).unwrap_err().to_string();
         assert!(message("corridors").starts_with("line 1 is `corridors`"));
         assert!(message("trundle-corridors 1\nwall 0 0 1 1").starts_with("line 2"));
@@ -192,9 +194,9 @@ mod tests {
         let whole = "trundle-corridors 1\nproblem a\ndisc 0.2\nstart 0 0 0\ngoal 1 0 0\n";
         assert!(parse(whole).is_ok());
         for part in ["disc 0.2\n", "start 0 0 0\n", "goal 1 0 0\n"] {
-            let said = message(&whole.replace(part, ""));
+            let error = message(&whole.replace(part, ""));
             let word = part.split(' ').next().unwrap();
-            assert!(said.starts_with("line 2 is `a`") && said.contains(word), "{said}");
+            assert!(error.starts_with("line 2 is `a`") && error.contains(word), "{error}");
         }
     }
 }

@@ -1,25 +1,27 @@
-use super::Problem;
-use crate::scene::{Obstacle, Scene};
+//! Random corridor problems.
+
+use crate::corridor::problem::Problem;
+use crate::scene::obstacle_scene::{Obstacle, ObstacleScene};
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 use std::f64::consts::PI;
 use trundle_core::{Footprint, Pose2, Vector2};
 
-/// Start and goal are at least this far from everything, m.
-const LEAST_CLEARANCE: f64 = 0.01;
+/// Smallest clearance of start and goal, m. Source: ours.
+const MIN_CLEARANCE_M: f64 = 0.01;
 
-/// A corridor problem by chance: walls along x about y = 0, 0.55 to 1.10 m apart, with dead ends, boxes, a niche behind a
-/// door; the goal along the corridor, the start a hand's breadth beside it. All obstacles are solid or walls.
+/// A random corridor problem: walls along x about y = 0, 0.55 to 1.10 m apart, with dead ends, boxes, and a niche behind an
+/// opening; the goal along the corridor, the start a few decimetres beside it. All obstacles are solid or walls.
 pub fn generate(name: impl Into<String>, rng: &mut ChaCha8Rng) -> Problem {
     let name = name.into();
     loop {
         let footprint = footprint(rng);
         let width = rng.random_range(0.55..1.10);
         let obstacles = surroundings(width, rng);
-        let Ok(scene) = Scene::new(&obstacles) else { continue };
+        let Ok(scene) = ObstacleScene::new(&obstacles) else { continue };
         for _ in 0..60 {
             let (start, goal) = start_and_goal(width, rng);
-            let clear = |pose| scene.clearance(&footprint, pose, LEAST_CLEARANCE).is_none();
+            let clear = |pose| scene.clearance(&footprint, pose, MIN_CLEARANCE_M).is_none();
             if clear(&goal) && clear(&start) {
                 return Problem { name, footprint, start, goal, obstacles };
             }
@@ -56,7 +58,7 @@ fn surroundings(width: f64, rng: &mut ChaCha8Rng) -> Vec<Obstacle> {
     obstacles
 }
 
-/// The wall above: whole, or with a door that leads to a niche.
+/// The upper wall: whole, or with an opening that leads to a niche.
 fn upper_wall(left: f64, right: f64, half: f64, rng: &mut ChaCha8Rng, obstacles: &mut Vec<Obstacle>) {
     if rng.random_bool(0.7) {
         obstacles.push(wall(left, half, right, half));
@@ -73,7 +75,7 @@ fn upper_wall(left: f64, right: f64, half: f64, rng: &mut ChaCha8Rng, obstacles:
     obstacles.extend([wall(from, half, from, half + depth), wall(to, half, to, half + depth)]);
 }
 
-/// A box against one of the walls, or somewhere, turned.
+/// A box at one of the walls, or anywhere and turned.
 fn block(left: f64, right: f64, half: f64, rng: &mut ChaCha8Rng) -> Obstacle {
     let (long, deep) = (rng.random_range(0.08..0.5), rng.random_range(0.03..0.3));
     let along = rng.random_range(left..right);

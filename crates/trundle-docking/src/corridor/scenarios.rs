@@ -1,15 +1,17 @@
-use super::Problem;
-use crate::scene::Obstacle;
+//! The four scenarios of \[Hong24\].
+
+use crate::corridor::problem::Problem;
+use crate::scene::obstacle_scene::Obstacle;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::FRAC_PI_2;
 use trundle_core::{Footprint, Pose2, Vector2};
 
-/// The corridor scenarios of \[Hong24\], its figure 6: the goal's heading is up. The paper gives no measures; ours are a
-/// corridor of 1.0 m and a robot of 0.6 x 0.4 m.
+/// The corridor scenarios of \[Hong24\], figure 6: the goal's heading is up. The paper gives no measures; ours are a corridor of
+/// 1.0 m and a robot of 0.6 x 0.4 m.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Scenario {
-    /// (a) Nothing in the way, the goal to the right.
+    /// (a) No obstacle, the goal to the right.
     Free,
     /// (b) The front is blocked.
     FrontBlocked,
@@ -34,7 +36,7 @@ impl Scenario {
         }
     }
 
-    /// The motions that the paper reports, as [`crate::Motion::word`] says them.
+    /// The motions that the paper reports, as words of [`crate::Motion::word`].
     pub fn reported(self) -> [&'static str; 4] {
         match self {
             Self::Free | Self::LeftFrontBlocked => ["clockwise", "forward", "counter-clockwise", "back"],
@@ -75,16 +77,18 @@ fn at(x: f64, y: f64) -> Vector2 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Docker, DockingConfig, Method, Plan};
+    use crate::docking_config::{DockingConfig, Method};
+    use crate::docking_plan::DockingPlan;
+    use crate::planner::DockingPlanner;
 
     #[test]
-    fn the_papers_method_makes_the_papers_motions() {
-        let config = DockingConfig { method: Method::Paper, ..DockingConfig::default() };
-        let docker = Docker::new(config).unwrap();
+    fn the_method_of_hong24_makes_the_reported_motions() {
+        let config = DockingConfig { method: Method::Hong24, ..DockingConfig::default() };
+        let planner = DockingPlanner::new(config).unwrap();
         for scenario in Scenario::ALL {
             let Problem { footprint, start, goal, .. } = scenario.problem();
-            let plan = docker.plan(&footprint, &scenario.problem().scene().unwrap(), start, goal).unwrap();
-            let Plan::Found(solution) = plan else { panic!("{scenario:?}: {plan:?}") };
+            let plan = planner.plan(&footprint, &scenario.problem().scene().unwrap(), start, goal).unwrap();
+            let DockingPlan::Found(solution) = plan else { panic!("{scenario:?}: {plan:?}") };
             let words: Vec<_> = solution.manoeuvre.steps().iter().map(|step| step.motion.word()).collect();
             assert_eq!(words, scenario.reported(), "{scenario:?}");
         }

@@ -1,44 +1,44 @@
-use crate::config::DockingConfig;
+//! Configuration of the positioner.
+
+use crate::docking_config::DockingConfig;
 use serde::{Deserialize, Serialize};
 use trundle_core::{Invalid, require_in};
 
-/// How motions are carried out on measured poses.
+/// Parameters of closed-loop positioning.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct PositionerConfig {
-    /// Standing still before every decision while the pose is averaged, s, 0.02 to 10. Default 0.4, which with coming to
-    /// rest is the planner's `switch_time`.
+    /// Time at rest before every decision while the pose is averaged, s, 0.02 to 10. Default 0.4: with the time to come to rest it
+    /// is the planner's `switch_time`.
     pub measure_time: f64,
-    /// Part of the tolerances that motions aim to stay within, 0.05 to 1. Default 0.7: what is measured at rest as settled
-    /// is settled.
+    /// Part of the tolerances within which motions aim to end, 0.05 to 1. Default 0.7: the pose measured at rest is then within them.
     pub aim: f64,
-    /// A settled robot moves again when an error grows beyond this many tolerances, 1 to 100. Default 2.
+    /// Number of tolerances beyond which a robot at its goal moves again, 1 to 100. Default 2.
     pub release: f64,
-    /// Decisions to move again after the goal was first met within `release` tolerances, 0 to 100; then it is accepted.
-    /// Default 6.
+    /// Number of further motions within `release` tolerances of the goal before the pose is accepted, 0 to 100. Default 6.
     pub attempts: u32,
-    /// Slowest straight command, m/s, 0.001 to 0.2: motors stick below. Default 0.02.
+    /// Smallest speed command, m/s, 0.001 to 0.2: motors stick below. Default 0.02.
     pub creep_speed: f64,
-    /// Slowest turn command, rad/s, 0.001 to 1. Default 0.06.
+    /// Smallest turn rate command, rad/s, 0.001 to 1. Default 0.06.
     pub creep_rate: f64,
-    /// From command to motion, s, 0 to 1: braking begins that much earlier. Default 0.08.
+    /// Delay from command to motion, s, 0 to 1: braking begins that much earlier. Default 0.08.
     pub delay: f64,
-    /// Part of the acceleration that braking counts on, 0.1 to 1. Default 0.7.
+    /// Part of the acceleration used for braking, 0.1 to 1. Default 0.7.
     pub braking: f64,
-    /// Turn rate by heading error while driving straight, 1/s, 0 to 10. Default 1.5.
+    /// Turn rate per heading error during a straight move, 1/s, 0 to 10. Default 1.5.
     pub heading_gain: f64,
-    /// Overlap with an obstacle that is taken for an error of the pose, m, 0 to 0.02. Default 0.005: twice a
-    /// localisation of 2 mm, and more.
+    /// Overlap with an obstacle that counts as an error of the pose, m, 0 to 0.02. Default 0.005: more than twice the error of a
+    /// localisation of 2 mm.
     pub overlap: f64,
-    /// Standard deviations of the pose that the margin covers, 0 to 10: it is what [`crate::margin_of`] says, at least the
-    /// planner's own, at most `most_margin`. Default 3.
+    /// Standard deviations of the pose that the margin covers, 0 to 10: the margin is [`crate::margin_of`], at least the planner's
+    /// own, at most `most_margin`. Default 3.
     pub sigmas: f64,
-    /// The margin that a pose known badly may ask for, m, 0 to 0.5. Default 0.05 (ours).
+    /// Largest margin for an uncertain pose, m, 0 to 0.5. Default 0.05 (ours).
     pub most_margin: f64,
-    /// Waiting before planning again when there is no way, s, 0.1 to 100. Default 1.
+    /// Wait before the next plan when there is no manoeuvre, s, 0.1 to 100. Default 1.
     pub patience: f64,
-    /// What a step may spend on planning, about, in counted steps of some 10 ns ([`crate::Space::work`]), 10^4 to 10^11: the
-    /// robot stands until the plan is complete. Default 2 * 10^6 (ours: 20 ms, a fifth of a step at 10 Hz).
+    /// Work of planning per step, in counted steps of some 10 ns ([`crate::ContactSpace::work`]), 10^4 to 10^11: the robot is at rest until
+    /// the plan is complete. Default 2 * 10^6 (ours: 20 ms, a fifth of a step at 10 Hz).
     pub step_work: u64,
 }
 
@@ -64,13 +64,13 @@ impl Default for PositionerConfig {
 }
 
 impl PositionerConfig {
-    /// The planner's settings as they count in closed loop: poses are noisy, so that an overlap may be an error, and less margin
-    /// is kept only where there is no other way.
+    /// The planner's configuration for closed loop: poses are noisy, so that an overlap may be an error, and a smaller margin is kept
+    /// only where there is no other manoeuvre.
     pub fn planner(&self, docking: DockingConfig) -> DockingConfig {
         DockingConfig { overlap: self.overlap, margin_saving: 1.0, ..docking }
     }
 
-    /// Passes a valid configuration through.
+    /// Returns a valid configuration unchanged.
     ///
     /// # Errors
     /// When a number is outside its range.

@@ -1,21 +1,23 @@
+//! The blocking cells of a grid in a box.
+
 use trundle_core::{Cell, CellIndex, GridGeometry, Vector2};
 
-/// The cells of a grid within a box, and which of them stand in the way.
+/// The cells of a grid in a box, and which of them block.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Cells {
     geometry: GridGeometry,
     /// First and one past the last, columns and rows.
     pub cols: (usize, usize),
     pub rows: (usize, usize),
-    /// Row by row; free is what does not stand in the way.
+    /// Row by row; free cells do not block.
     kinds: Vec<Cell>,
-    /// Whether what is off the grid stands in the way too.
+    /// Whether the space outside the grid blocks too.
     beyond: bool,
 }
 
 impl Cells {
-    /// The cells of a grid that reach into the box of half side `half` (m) about `center`; `kind` says what each
-    /// counts as: all but free ones stand in the way.
+    /// The cells of a grid that overlap the box of half side `half` (m) about `center`; `kind` gives the state of each: all but free
+    /// ones block.
     pub fn new(
         geometry: GridGeometry,
         center: Vector2,
@@ -36,12 +38,12 @@ impl Cells {
         Self { geometry, cols, rows, kinds, beyond }
     }
 
-    /// Of which grid.
+    /// The geometry of the grid.
     pub fn geometry(&self) -> &GridGeometry {
         &self.geometry
     }
 
-    /// Whether a cell stands in the way; none beyond the box does.
+    /// Whether a cell blocks; no cell outside the box does.
     pub fn blocks(&self, col: usize, row: usize) -> bool {
         self.kind(col, row) != Cell::Free
     }
@@ -52,7 +54,7 @@ impl Cells {
         if inside { self.kinds[index()] } else { Cell::Free }
     }
 
-    /// The cell that stands in the way at a point of its outline or within: what it is, and its middle, m; `None` at the rim.
+    /// The blocking cell at a point of its outline or inside: its state, and its centre, m; `None` at the grid's border.
     pub fn at(&self, p: Vector2) -> Option<(Cell, Vector2)> {
         let off = 1e-3 * self.geometry.resolution;
         let about = [(0.0, 0.0), (off, off), (-off, off), (-off, -off), (off, -off)];
@@ -63,7 +65,7 @@ impl Cells {
         })
     }
 
-    /// Whether a point lies in a cell that stands in the way, or off the grid where that counts.
+    /// Whether a point lies in a blocking cell, or outside the grid where that counts.
     pub fn hold(&self, p: Vector2) -> bool {
         self.geometry.cell_at(p).map_or(self.beyond, |cell| self.blocks(cell.col, cell.row))
     }
@@ -74,7 +76,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn only_what_is_in_the_box_blocks_and_what_is_off_the_grid_where_it_counts() {
+    fn only_cells_in_the_box_block_and_the_outside_where_it_counts() {
         let geometry = GridGeometry::new(0.1, Vector2::zeros(), 20, 10).unwrap();
         let at = |x: f64, y: f64| Vector2::new(x, y);
         let kind = |cell: CellIndex| if cell.col.is_multiple_of(2) { Cell::Occupied } else { Cell::Free };

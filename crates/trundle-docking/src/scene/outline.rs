@@ -1,8 +1,10 @@
-use super::cells::Cells;
+//! Outlines of blocking cells.
+
+use crate::scene::cells::Cells;
 use trundle_collision::Segment;
 use trundle_core::{GridGeometry, Vector2};
 
-/// The outlines of the cells that stand in the way, as long as they run straight: between such a cell and one that is not.
+/// The outlines of blocking cells, as long as they run straight: between a blocking cell and one that does not block.
 pub fn outlines(cells: &Cells) -> Vec<Segment> {
     let (geometry, (left, right), (low, high)) = (cells.geometry(), cells.cols, cells.rows);
     let at = |col: isize, row: isize| col >= 0 && row >= 0 && cells.blocks(col as usize, row as usize);

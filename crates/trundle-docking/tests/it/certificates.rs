@@ -7,7 +7,7 @@ use rand_chacha::ChaCha8Rng;
 use std::collections::BTreeSet;
 use std::f64::consts::TAU;
 use trundle_core::{Footprint, Pose2, Vector2};
-use trundle_docking::{Certificate, Docker, DockingConfig, Obstacle, Plan, Scene};
+use trundle_docking::{Certificate, DockingConfig, DockingPlan, DockingPlanner, Obstacle, ObstacleScene};
 
 /// Proofs that are put to the test.
 const PROOFS: usize = 6;
@@ -75,12 +75,12 @@ fn what_is_proven_impossible_is_not_reached_by_brute_force() {
     let mut rng = ChaCha8Rng::seed_from_u64(33);
     let config =
         DockingConfig { reach: 0.2, most_work: 2_000_000, bound_boxes: 0, ..DockingConfig::default() };
-    let docker = Docker::new(config).unwrap();
+    let planner = DockingPlanner::new(config).unwrap();
     let (mut proofs, mut found, mut reached) = (0, 0, 0);
     while proofs < PROOFS {
         let footprint = footprint(&mut rng);
         let obstacles: Vec<Obstacle> = (0..rng.random_range(4..16)).map(|_| obstacle(&mut rng)).collect();
-        let (scene, pieces) = (Scene::new(&obstacles).unwrap(), sides(&obstacles));
+        let (scene, pieces) = (ObstacleScene::new(&obstacles).unwrap(), sides(&obstacles));
         let free = |pose: &Pose2| scene.clearance(&footprint, pose, 0.03).is_none();
         let Some((start, goal)) = ends(&mut rng, free) else { continue };
         let middle = (start.position() + goal.position()) / 2.0;
@@ -88,20 +88,20 @@ fn what_is_proven_impossible_is_not_reached_by_brute_force() {
             let square = (middle, within + start.distance(&goal) / 2.0);
             Lattice { footprint: &footprint, pieces: &pieces, start, square }
         };
-        match docker.plan(&footprint, &scene, start, goal).unwrap() {
-            Plan::Impossible(none) if none.certificate == Certificate::Never => {
+        match planner.plan(&footprint, &scene, start, goal).unwrap() {
+            DockingPlan::Impossible(none) if none.certificate == Certificate::Never => {
                 proofs += 1;
                 assert!(
                     !lattice(none.within).leads_to(&goal),
                     "proof {proofs}: {none:?} {footprint:?} {obstacles:?}"
                 );
             }
-            Plan::Found(_) if found < PROOFS => {
+            DockingPlan::Found(_) if found < PROOFS => {
                 (found, reached) = (found + 1, reached + usize::from(lattice(0.4).leads_to(&goal)));
             }
             _ => {}
         }
     }
     eprintln!("{proofs} proofs hold; of {found} that were found, brute force reaches {reached}");
-    assert!(3 * reached > found, "brute force sees too little: {reached} of {found}");
+    assert!(3 * reached > found, "brute force sees too missing_heading: {reached} of {found}");
 }

@@ -6,21 +6,21 @@ use rand_chacha::ChaCha8Rng;
 use trundle_core::{Footprint, Pose2, Stamp, Twist2, Vector2};
 use trundle_docking::corridor::{Scenario, generate};
 use trundle_docking::{
-    Docker, DockingConfig, Manoeuvre, Method, Obstacle, Plan, Positioner, PositionerConfig, PositionerInput,
-    Reason, Scene,
+    DockingConfig, DockingPlan, DockingPlanner, Manoeuvre, Method, Obstacle, ObstacleScene, Positioner,
+    PositionerConfig, PositionerInput, PositionerReason,
 };
 
 /// Solvable problems settle within 1 cm and 1 deg, and none touches anything; the benchmark does 500 of them.
 #[test]
 fn settles_under_noise() {
     let mut rng = ChaCha8Rng::seed_from_u64(77);
-    let docker = Docker::new(DockingConfig { bound_boxes: 0, ..DockingConfig::default() }).unwrap();
+    let planner = DockingPlanner::new(DockingConfig { bound_boxes: 0, ..DockingConfig::default() }).unwrap();
     let (mut count, mut good, mut contacts, mut motions) = (0_u64, 0, 0, 0);
     while count < 40 {
         let problem = generate("closed", &mut rng);
         let scene = problem.scene().unwrap();
-        let plan = docker.plan(&problem.footprint, &scene, problem.start, problem.goal).unwrap();
-        if !matches!(plan, Plan::Found(_)) {
+        let plan = planner.plan(&problem.footprint, &scene, problem.start, problem.goal).unwrap();
+        if !matches!(plan, DockingPlan::Found(_)) {
             continue;
         }
         count += 1;
@@ -54,7 +54,7 @@ fn stops_and_starts_again(method: Method) {
     ];
     let mut blocked = walls.clone();
     blocked.push(Obstacle::Polygon(vec![at(0.48, -0.2), at(0.56, -0.2), at(0.56, 0.2), at(0.48, 0.2)]));
-    let (open, blocked) = (Scene::new(&walls).unwrap(), Scene::new(&blocked).unwrap());
+    let (open, blocked) = (ObstacleScene::new(&walls).unwrap(), ObstacleScene::new(&blocked).unwrap());
     let docking = DockingConfig { method, ..DockingConfig::default() };
     let mut positioner =
         Positioner::new(docking, PositionerConfig::default(), footprint.clone(), goal).unwrap();
@@ -70,7 +70,7 @@ fn stops_and_starts_again(method: Method) {
         let stamp = Stamp::default().after(time);
         let input = PositionerInput { stamp, pose: world.measured(), covariance: covariance(), scene };
         let report = positioner.step(&input);
-        if there && stopped.is_none() && matches!(report.reason, Reason::Obstacle(_)) {
+        if there && stopped.is_none() && matches!(report.reason, PositionerReason::Obstacle(_)) {
             assert_eq!(report.twist, Twist2::ZERO);
             stopped = Some(time);
         }
@@ -107,14 +107,14 @@ fn stops_for_what_comes_in_the_way_and_starts_again() {
 
 #[test]
 fn the_papers_method_stops_and_starts_again_too() {
-    stops_and_starts_again(Method::Paper);
+    stops_and_starts_again(Method::Hong24);
 }
 
 /// A positioner in a search of many steps: at which of them it begins to move; pose and scene by step.
 fn begins<'s>(
     method: Method,
-    at: impl Fn(usize) -> (Pose2, &'s Scene),
-) -> (Vec<Reason>, Option<(usize, Manoeuvre)>) {
+    at: impl Fn(usize) -> (Pose2, &'s ObstacleScene),
+) -> (Vec<PositionerReason>, Option<(usize, Manoeuvre)>) {
     let docking = DockingConfig { method, ..DockingConfig::default() };
     let config = PositionerConfig { step_work: 10_000, ..PositionerConfig::default() };
     let goal = Pose2::new(0.1, 0.9, 0.2);
@@ -125,7 +125,7 @@ fn begins<'s>(
         let stamp = Stamp::default().after(i as f64 * DT);
         let report = positioner.step(&PositionerInput { stamp, pose, covariance: covariance(), scene });
         reasons.push(report.reason.clone());
-        if matches!(report.reason, Reason::Moving(_)) {
+        if matches!(report.reason, PositionerReason::Moving(_)) {
             began = Some((i, positioner.manoeuvre().expect("planned").clone()));
             break;
         }
@@ -144,8 +144,8 @@ fn far_off() -> Vec<Obstacle> {
 }
 
 /// The step in the middle of the first search.
-fn amid(reasons: &[Reason]) -> usize {
-    let planning = |i: &usize| reasons[*i] == Reason::Planning;
+fn amid(reasons: &[PositionerReason]) -> usize {
+    let planning = |i: &usize| reasons[*i] == PositionerReason::Planning;
     let steps: Vec<usize> = (0..reasons.len()).filter(planning).collect();
     assert!(steps.len() > 3, "a search of {} steps", steps.len());
     steps[steps.len() / 2]
@@ -154,14 +154,14 @@ fn amid(reasons: &[Reason]) -> usize {
 /// Who is pushed while it plans plans anew from where it stands then.
 #[test]
 fn a_plan_from_where_it_no_longer_stands_is_not_carried_out() {
-    let scene = Scene::new(&far_off()).unwrap();
+    let scene = ObstacleScene::new(&far_off()).unwrap();
     let (here, there) = (Pose2::IDENTITY, Pose2::new(0.0, 0.05, 0.0));
-    for method in [Method::Optimal, Method::Paper] {
+    for method in [Method::Optimal, Method::Hong24] {
         let (reasons, began) = begins(method, |_| (here, &scene));
         assert!(began.unwrap().1.start().distance(&here) < 1e-9, "{method:?}");
         let pushed = amid(&reasons);
         let (again, began) = begins(method, |i| (if i < pushed { here } else { there }, &scene));
-        assert_eq!(again[pushed], Reason::Measuring, "{method:?}");
+        assert_eq!(again[pushed], PositionerReason::Measuring, "{method:?}");
         assert!(began.unwrap().1.start().distance(&there) < 1e-9, "{method:?}");
     }
 }
@@ -171,14 +171,14 @@ fn a_plan_from_where_it_no_longer_stands_is_not_carried_out() {
 #[test]
 fn a_plan_through_what_has_come_meanwhile_is_not_carried_out() {
     let mut around = far_off();
-    let open = Scene::new(&around).unwrap();
+    let open = ObstacleScene::new(&around).unwrap();
     around.push(Obstacle::Point(Vector2::new(0.05, 0.45)));
-    let shut = Scene::new(&around).unwrap();
-    for method in [Method::Optimal, Method::Paper] {
+    let shut = ObstacleScene::new(&around).unwrap();
+    for method in [Method::Optimal, Method::Hong24] {
         let (reasons, began) = begins(method, |_| (Pose2::IDENTITY, &open));
         let (came, (first, _)) = (amid(&reasons), began.unwrap());
         let (again, began) = begins(method, |i| (Pose2::IDENTITY, if i < came { &open } else { &shut }));
-        assert!(matches!(again[first], Reason::Obstacle(_)), "{method:?}: {:?}", again[first]);
+        assert!(matches!(again[first], PositionerReason::Obstacle(_)), "{method:?}: {:?}", again[first]);
         let (_, manoeuvre) = began.expect("another way");
         for i in 0..=200 {
             let (pose, _) = manoeuvre.at(manoeuvre.duration() * f64::from(i) / 200.0);
@@ -190,7 +190,7 @@ fn a_plan_through_what_has_come_meanwhile_is_not_carried_out() {
 /// The paper's four scenarios in closed loop, by its own method: settled within its thresholds, nothing touched.
 #[test]
 fn the_papers_method_settles_its_scenarios_under_noise() {
-    let docking = DockingConfig { method: Method::Paper, ..DockingConfig::default() };
+    let docking = DockingConfig { method: Method::Hong24, ..DockingConfig::default() };
     for scenario in Scenario::ALL {
         let run = run(&scenario.problem(), &docking, 3);
         assert!(run.settled && !run.contact, "{scenario:?}: settled {} contact {}", run.settled, run.contact);
@@ -200,7 +200,8 @@ fn the_papers_method_settles_its_scenarios_under_noise() {
 /// A pose known badly keeps farther from the wall than one known well.
 #[test]
 fn the_margin_follows_the_covariance() {
-    let wall = Scene::new(&[Obstacle::Segment(Vector2::new(-2.0, 0.36), Vector2::new(2.0, 0.36))]).unwrap();
+    let wall =
+        ObstacleScene::new(&[Obstacle::Segment(Vector2::new(-2.0, 0.36), Vector2::new(2.0, 0.36))]).unwrap();
     let footprint = Footprint::KOBUKI;
     let (start, goal) = (Pose2::IDENTITY, Pose2::new(0.1, 0.08, 0.0));
     let nearest = |sigma: f64| {

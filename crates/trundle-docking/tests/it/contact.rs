@@ -4,14 +4,14 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::f64::consts::{PI, TAU};
 use trundle_core::{Cell, Footprint, GridGeometry, OccupancyGrid, Pose2, Vector2};
-use trundle_docking::{Blocker, Motion, Obstacle, Scene, Space};
+use trundle_docking::{Blocker, ContactSpace, Motion, Obstacle, ObstacleScene};
 
 const CASES: usize = 100_000;
 /// Part of the cases among the cells of a grid.
 const AMONG_CELLS: f64 = 0.2;
 /// Samples of a motion: no point of a robot moves more than about a centimetre from one to the next, and a contact between two would
 /// have to begin and end there.
-const SAMPLES: u32 = 400;
+const VISITS_SAMPLES: u32 = 400;
 
 /// A convex footprint, often with the axle off its middle, sometimes with the axle outside; or a disc.
 pub fn footprint(rng: &mut ChaCha8Rng) -> Footprint {
@@ -50,7 +50,7 @@ pub fn obstacle(rng: &mut ChaCha8Rng) -> Obstacle {
 }
 
 /// A few occupied cells of a grid, as a scene and as squares.
-fn cells(rng: &mut ChaCha8Rng) -> (Scene, Vec<Obstacle>) {
+fn cells(rng: &mut ChaCha8Rng) -> (ObstacleScene, Vec<Obstacle>) {
     let (side, count) = (rng.random_range(0.02..0.1), 24_usize);
     let origin = Vector2::repeat(-0.5 * side * count as f64);
     let geometry = GridGeometry::new(side, origin, count, count).expect("a geometry");
@@ -67,7 +67,7 @@ fn cells(rng: &mut ChaCha8Rng) -> (Scene, Vec<Obstacle>) {
     };
     let squares = (0..grid.len()).filter(|&i| grid[i] == Cell::Occupied).map(square).collect();
     let grid = OccupancyGrid::new(geometry, grid).expect("a grid");
-    (Scene::from_grid(&grid, Vector2::zeros(), 5.0, false), squares)
+    (ObstacleScene::from_grid(&grid, Vector2::zeros(), 5.0, false), squares)
 }
 
 /// Brute force, on its own: the least distance of the footprint from any side; 0 where they cross or one holds the other.
@@ -126,7 +126,7 @@ fn motions_are_safe_and_not_too_careful() {
             cells(&mut rng)
         } else {
             let list: Vec<Obstacle> = (0..rng.random_range(1..4)).map(|_| obstacle(&mut rng)).collect();
-            (Scene::new(&list).unwrap(), list)
+            (ObstacleScene::new(&list).unwrap(), list)
         };
         let start =
             Pose2::new(rng.random_range(-0.5..0.5), rng.random_range(-0.5..0.5), rng.random_range(-PI..PI));
@@ -136,7 +136,7 @@ fn motions_are_safe_and_not_too_careful() {
         if distance(&start) <= kept + 1e-4 {
             continue;
         }
-        let mut space = Space::new(&footprint, margin, &scene);
+        let mut space = ContactSpace::new(&footprint, margin, &scene);
         let (turn, drive) = (space.turn(&start), space.drive(&start, 1.0));
         let bound = |room: f64| room.min(TAU);
         let motions: [(Motion, Option<Blocker>); 4] = [
@@ -149,10 +149,10 @@ fn motions_are_safe_and_not_too_careful() {
             cases += 1;
             // No point of the robot moves farther than this from a sample to the next.
             let arm = if matches!(motion, Motion::Turn(_)) { footprint.circumscribed_radius() } else { 1.0 };
-            let moves = arm * motion.amount().abs() / f64::from(SAMPLES);
+            let moves = arm * motion.amount().abs() / f64::from(VISITS_SAMPLES);
             let mut i = 0;
-            while i <= SAMPLES {
-                let pose = motion.after(start, motion.amount() * f64::from(i) / f64::from(SAMPLES));
+            while i <= VISITS_SAMPLES {
+                let pose = motion.after(start, motion.amount() * f64::from(i) / f64::from(VISITS_SAMPLES));
                 let left = distance(&pose) - kept;
                 assert!(
                     left >= -1e-9,
@@ -191,22 +191,24 @@ fn many_points_answer_as_all_of_them() {
                 points.push(Obstacle::Point(p));
             }
         }
-        let all = Scene::new(&points).unwrap();
-        let groups: Vec<Scene> = points.chunks(150).map(|group| Scene::new(group).unwrap()).collect();
+        let all = ObstacleScene::new(&points).unwrap();
+        let groups: Vec<ObstacleScene> =
+            points.chunks(150).map(|group| ObstacleScene::new(group).unwrap()).collect();
         for _ in 0..10 {
             let at = |rng: &mut ChaCha8Rng| rng.random_range(-0.3..0.3);
             let pose = Pose2::new(at(&mut rng), at(&mut rng), rng.random_range(-PI..PI));
-            let clearance = |scene: &Scene| scene.clearance(&footprint, &pose, 0.3).map_or(0.3, |(d, _)| d);
+            let clearance =
+                |scene: &ObstacleScene| scene.clearance(&footprint, &pose, 0.3).map_or(0.3, |(d, _)| d);
             let least = groups.iter().map(clearance).fold(0.3, f64::min);
             assert_eq!(clearance(&all), least, "{footprint:?} {pose:?}");
             if least <= margin.max(1e-4) + 1e-4 {
                 continue;
             }
-            let mut space = Space::new(&footprint, margin, &all);
+            let mut space = ContactSpace::new(&footprint, margin, &all);
             let (turn, drive) = (space.turn(&pose), space.drive(&pose, 1.0));
             let (mut room, mut way) = ((f64::INFINITY, f64::INFINITY), (1.0_f64, 1.0_f64));
             for group in &groups {
-                let mut space = Space::new(&footprint, margin, group);
+                let mut space = ContactSpace::new(&footprint, margin, group);
                 let (turn, drive) = (space.turn(&pose), space.drive(&pose, 1.0));
                 room = (room.0.min(turn.left), room.1.min(turn.right));
                 way = (way.0.min(drive.ahead), way.1.min(drive.behind));

@@ -6,7 +6,8 @@ use rand_chacha::ChaCha8Rng;
 use trundle_core::{Cell, Footprint, GridGeometry, OccupancyGrid, Pose2, Vector2};
 use trundle_docking::corridor::{Problem, Scenario, generate, parse};
 use trundle_docking::{
-    Certificate, Docker, DockingConfig, Method, Motion, Obstacle, Plan, Refusal, Scene, Space, Thing,
+    Certificate, ContactSpace, DockingConfig, DockingPlan, DockingPlanner, DockingRefusal, Method, Motion,
+    Obstacle, ObstacleKind, ObstacleScene,
 };
 
 fn at(x: f64, y: f64) -> Vector2 {
@@ -18,14 +19,14 @@ fn robot() -> Footprint {
         .expect("convex")
 }
 
-fn docker() -> Docker {
-    Docker::new(DockingConfig::default()).expect("valid")
+fn planner() -> DockingPlanner {
+    DockingPlanner::new(DockingConfig::default()).expect("valid")
 }
 
 /// Each with what is wrong, where, and what to do.
 #[test]
 fn bad_input_is_refused_with_a_reason() {
-    let wall = Scene::new(&[Obstacle::Segment(at(0.25, -1.0), at(0.25, 1.0))]).unwrap();
+    let wall = ObstacleScene::new(&[Obstacle::Segment(at(0.25, -1.0), at(0.25, 1.0))]).unwrap();
     let (here, there) = (Pose2::IDENTITY, Pose2::new(-0.5, 0.0, 0.0));
     let far = Pose2::new(-50.5, 0.0, 0.0);
     let nowhere = Pose2 { x: f64::NAN, ..there };
@@ -36,12 +37,12 @@ fn bad_input_is_refused_with_a_reason() {
         (nowhere, there, "start is (NaN, 0, 0), expected finite numbers"),
         (there, nowhere, "goal is (NaN, 0, 0), expected finite numbers"),
     ];
-    for method in [Method::Optimal, Method::Paper] {
-        let docker = Docker::new(DockingConfig { method, ..DockingConfig::default() }).unwrap();
+    for method in [Method::Optimal, Method::Hong24] {
+        let planner = DockingPlanner::new(DockingConfig { method, ..DockingConfig::default() }).unwrap();
         for (start, goal, expected) in cases {
-            let said = docker.plan(&robot(), &wall, start, goal).unwrap_err().to_string();
+            let said = planner.plan(&robot(), &wall, start, goal).unwrap_err().to_string();
             assert!(said.contains(expected), "{said}");
-            let begun = docker.begin(0.01, &robot(), &wall, start, goal).unwrap_err().to_string();
+            let begun = planner.begin(0.01, &robot(), &wall, start, goal).unwrap_err().to_string();
             assert_eq!(said, begun);
         }
     }
@@ -52,7 +53,7 @@ fn bad_input_is_refused_with_a_reason() {
     assert!(shape(&[(0.0, 0.0), (1.0, 0.0), (2.0, 0.0)]).contains("area is 0 m^2"));
     assert!(Footprint::disc(0.0).is_err() && Footprint::disc(f64::NAN).is_err());
     let list = [Obstacle::Point(at(0.0, 0.0)), Obstacle::Segment(at(0.0, 1.0), at(f64::NAN, 0.0))];
-    let said = Scene::new(&list).unwrap_err().to_string();
+    let said = ObstacleScene::new(&list).unwrap_err().to_string();
     assert!(said.contains("obstacle 1") && said.contains("finite"), "{said}");
 }
 
@@ -64,13 +65,13 @@ fn a_closed_wall_is_named_as_what_forbids_it() {
     let mut obstacles: Vec<Obstacle> =
         ends.map(|(a, b, c, d)| Obstacle::Segment(at(a, b), at(c, d))).to_vec();
     obstacles.push(wall);
-    let scene = Scene::new(&obstacles).unwrap();
+    let scene = ObstacleScene::new(&obstacles).unwrap();
     let plan =
-        docker().plan(&robot(), &scene, Pose2::new(-0.6, 0.0, 0.0), Pose2::new(0.6, 0.0, 0.0)).unwrap();
-    let Plan::Impossible(impossible) = plan else { panic!("{plan:?}") };
+        planner().plan(&robot(), &scene, Pose2::new(-0.6, 0.0, 0.0), Pose2::new(0.6, 0.0, 0.0)).unwrap();
+    let DockingPlan::Impossible(impossible) = plan else { panic!("{plan:?}") };
     assert_eq!(
         (impossible.certificate, impossible.by.unwrap().thing),
-        (Certificate::Never, Thing::Listed(4))
+        (Certificate::Never, ObstacleKind::Listed(4))
     );
 }
 
@@ -78,22 +79,25 @@ fn a_closed_wall_is_named_as_what_forbids_it() {
 #[test]
 fn a_corridor_too_narrow_to_turn_is_certified() {
     let walls = [(-0.3, 0.3), (0.3, 0.3)].map(|(y, _)| Obstacle::Segment(at(-9.0, y), at(9.0, y)));
-    let scene = Scene::new(&walls).unwrap();
-    let plan =
-        docker().plan(&robot(), &scene, Pose2::IDENTITY, Pose2::new(0.1, 0.0, std::f64::consts::PI)).unwrap();
-    assert!(matches!(plan, Plan::Impossible(i) if i.certificate == Certificate::Never && i.by.is_some()));
+    let scene = ObstacleScene::new(&walls).unwrap();
+    let plan = planner()
+        .plan(&robot(), &scene, Pose2::IDENTITY, Pose2::new(0.1, 0.0, std::f64::consts::PI))
+        .unwrap();
+    assert!(
+        matches!(plan, DockingPlan::Impossible(i) if i.certificate == Certificate::Never && i.by.is_some())
+    );
 }
 
 /// A wall with ends: no way round within the first reach, one in the wider look.
 #[test]
 fn a_way_round_a_wall_is_found_farther_off() {
-    let wall = Scene::new(&[Obstacle::Polygon(
+    let wall = ObstacleScene::new(&[Obstacle::Polygon(
         [(-0.05, -2.2), (0.05, -2.2), (0.05, 2.2), (-0.05, 2.2)].map(|(x, y)| at(x, y)).to_vec(),
     )])
     .unwrap();
     let (start, goal) = (Pose2::new(-0.4, 0.0, 1.57), Pose2::new(0.4, 0.0, 1.57));
-    let plan = docker().plan(&robot(), &wall, start, goal).unwrap();
-    let Plan::Found(solution) = plan else { panic!("{plan:?}") };
+    let plan = planner().plan(&robot(), &wall, start, goal).unwrap();
+    let DockingPlan::Found(solution) = plan else { panic!("{plan:?}") };
     assert!(solution.manoeuvre.end().distance(&goal) < 1e-9);
 }
 
@@ -108,9 +112,9 @@ fn no_turn_leads_through_the_walls_of_a_map() {
     for turned in [120.0_f64, 150.0, 179.9] {
         let (start, goal) = (Pose2::new(7.0, y, 0.0), Pose2::new(9.0, y, turned.to_radians()));
         let (center, half) = config.view(&robot(), &start, &goal);
-        let scene = Scene::from_grid(&grid, center, half, true);
-        match docker().plan(&robot(), &scene, start, goal) {
-            Ok(Plan::Impossible(_)) | Err(Refusal::GoalBlocked(_)) => {}
+        let scene = ObstacleScene::from_grid(&grid, center, half, true);
+        match planner().plan(&robot(), &scene, start, goal) {
+            Ok(DockingPlan::Impossible(_)) | Err(DockingRefusal::GoalBlocked(_)) => {}
             other => panic!("{turned}: {other:?}"),
         }
     }
@@ -120,8 +124,8 @@ fn no_turn_leads_through_the_walls_of_a_map() {
 fn the_default_method_solves_the_papers_scenarios_and_knows_how_well() {
     for scenario in Scenario::ALL {
         let Problem { footprint, start, goal, .. } = scenario.problem();
-        let plan = docker().plan(&footprint, &scenario.problem().scene().unwrap(), start, goal).unwrap();
-        let Plan::Found(solution) = plan else { panic!("{scenario:?}: {plan:?}") };
+        let plan = planner().plan(&footprint, &scenario.problem().scene().unwrap(), start, goal).unwrap();
+        let DockingPlan::Found(solution) = plan else { panic!("{scenario:?}: {plan:?}") };
         assert!(solution.manoeuvre.end().distance(&goal) < 1e-9);
         assert!(
             solution.bound <= solution.manoeuvre.duration()
@@ -137,8 +141,8 @@ fn manoeuvres_are_free_and_end_exactly() {
     for i in 0..60 {
         let problem = generate(format!("{i}"), &mut rng);
         let scene = problem.scene().unwrap();
-        let Plan::Found(solution) =
-            docker().plan(&problem.footprint, &scene, problem.start, problem.goal).unwrap()
+        let DockingPlan::Found(solution) =
+            planner().plan(&problem.footprint, &scene, problem.start, problem.goal).unwrap()
         else {
             continue;
         };
@@ -148,7 +152,7 @@ fn manoeuvres_are_free_and_end_exactly() {
                 && (manoeuvre.end().theta - problem.goal.theta).abs() < 1e-9
         );
         assert!(solution.bound <= manoeuvre.duration() + 1e-9);
-        let mut space = Space::new(&problem.footprint, solution.margin, &scene);
+        let mut space = ContactSpace::new(&problem.footprint, solution.margin, &scene);
         for step in manoeuvre.steps() {
             let free = match step.motion {
                 Motion::Turn(angle) => {
@@ -169,11 +173,11 @@ fn manoeuvres_are_free_and_end_exactly() {
 #[test]
 fn hardly_any_room_takes_many_motions_and_is_solved() {
     let problems = parse(include_str!("../data/hard.txt")).unwrap();
-    let docker = Docker::new(DockingConfig { margin: 0.0, ..DockingConfig::default() }).unwrap();
+    let planner = DockingPlanner::new(DockingConfig { margin: 0.0, ..DockingConfig::default() }).unwrap();
     for problem in problems.iter().filter(|p| p.name == "1-297" || p.name == "1-1385") {
         let scene = problem.scene().unwrap();
-        let plan = docker.plan(&problem.footprint, &scene, problem.start, problem.goal).unwrap();
-        let Plan::Found(solution) = plan else { panic!("{}: {plan:?}", problem.name) };
+        let plan = planner.plan(&problem.footprint, &scene, problem.start, problem.goal).unwrap();
+        let DockingPlan::Found(solution) = plan else { panic!("{}: {plan:?}", problem.name) };
         let manoeuvre = &solution.manoeuvre;
         assert!(manoeuvre.end().distance(&problem.goal) < 1e-9 && manoeuvre.steps().len() > 6);
         for i in 0..=2000 {
@@ -190,18 +194,18 @@ fn on_a_map_the_cell_that_is_in_the_way_is_told() {
     let wall = "#".repeat(30) + "\n";
     let row = "...............#..........????\n";
     let grid = OccupancyGrid::from_ascii(0.1, &(wall.clone() + &row.repeat(16) + &wall)).unwrap();
-    let scene = Scene::from_grid(&grid, at(1.5, 0.9), 5.0, true);
+    let scene = ObstacleScene::from_grid(&grid, at(1.5, 0.9), 5.0, true);
     let (free, disc) = (Pose2::new(0.8, 0.9, 0.0), Footprint::disc(0.2).unwrap());
-    let said = |goal: Pose2| docker().plan(&disc, &scene, free, goal).unwrap_err().to_string();
+    let said = |goal: Pose2| planner().plan(&disc, &scene, free, goal).unwrap_err().to_string();
     let goal = |x: f64, y: f64| Pose2::new(x, y, 0.0);
     assert_eq!(said(goal(1.38, 0.93)), "the goal overlaps the occupied cell at (1.550, 0.950) m");
     assert_eq!(said(goal(1.55, 0.93)), "the goal overlaps the occupied cell at (1.550, 0.950) m");
     assert_eq!(said(goal(2.75, 0.85)), "the goal overlaps the unknown cell at (2.650, 0.850) m");
     assert!(said(goal(-0.05, 0.93)).contains("the goal overlaps the end of the map at ("));
-    let Plan::Impossible(none) = docker().plan(&disc, &scene, free, goal(2.1, 0.9)).unwrap() else {
+    let DockingPlan::Impossible(none) = planner().plan(&disc, &scene, free, goal(2.1, 0.9)).unwrap() else {
         panic!("through a wall")
     };
-    assert_eq!((none.certificate, none.by.unwrap().thing), (Certificate::Never, Thing::Occupied));
+    assert_eq!((none.certificate, none.by.unwrap().thing), (Certificate::Never, ObstacleKind::Occupied));
 }
 
 #[test]
@@ -209,9 +213,10 @@ fn a_grid_is_a_scene() {
     let (wall, free) = ("#".repeat(20) + "\n", ".".repeat(20) + "\n");
     let art = wall.clone() + &free.repeat(7) + &wall;
     let grid = OccupancyGrid::from_ascii(0.1, &art).unwrap();
-    let scene = Scene::from_grid(&grid, at(1.0, 0.45), 3.0, false);
-    let plan = docker().plan(&robot(), &scene, Pose2::new(0.7, 0.4, 0.0), Pose2::new(0.9, 0.5, 0.0)).unwrap();
-    assert!(matches!(plan, Plan::Found(_)));
+    let scene = ObstacleScene::from_grid(&grid, at(1.0, 0.45), 3.0, false);
+    let plan =
+        planner().plan(&robot(), &scene, Pose2::new(0.7, 0.4, 0.0), Pose2::new(0.9, 0.5, 0.0)).unwrap();
+    assert!(matches!(plan, DockingPlan::Found(_)));
 }
 
 /// A hundred thousand points on two noisy walls: in less than 100 ms of one core.
@@ -222,13 +227,13 @@ fn a_hundred_thousand_points_are_planned() {
         Obstacle::Point(at(rng.random_range(-1.6..1.6), side * (0.42 + rng.random_range(0.0..0.02))))
     };
     let points: Vec<Obstacle> = (0..100_000).map(|i| point(if i % 2 == 0 { 1.0 } else { -1.0 })).collect();
-    let scene = Scene::new(&points).unwrap();
+    let scene = ObstacleScene::new(&points).unwrap();
     let (start, goal) = (Pose2::new(0.0, -0.1, 0.1), Pose2::new(0.1, 0.12, 0.0));
-    let plan = || docker().plan(&robot(), &scene, start, goal).unwrap();
+    let plan = || planner().plan(&robot(), &scene, start, goal).unwrap();
     let (found, ms) = timed(plan);
-    let Plan::Found(solution) = found else { panic!("{found:?}") };
+    let DockingPlan::Found(solution) = found else { panic!("{found:?}") };
     // Asked of every point: exact though it was planned among a few.
-    let mut space = Space::new(&robot(), solution.margin, &scene);
+    let mut space = ContactSpace::new(&robot(), solution.margin, &scene);
     for step in solution.manoeuvre.steps() {
         let free = match step.motion {
             Motion::Turn(angle) => space.turn(&step.from).way(angle) == Some(angle),

@@ -6,7 +6,9 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use trundle_core::{Footprint, Pose2, Vector2};
 use trundle_docking::corridor::{generate, parse};
-use trundle_docking::{Certificate, Docker, DockingConfig, Limit, Method, Obstacle, Plan, Scene};
+use trundle_docking::{
+    Certificate, DockingConfig, DockingPlan, DockingPlanner, Method, Obstacle, ObstacleScene, SearchLimit,
+};
 
 /// More than a part may cost beyond its grant: what lies between two rests.
 const BEYOND: u64 = 60_000;
@@ -14,25 +16,25 @@ const BEYOND: u64 = 60_000;
 /// The same plan however it is cut, and no part much beyond its grant.
 #[test]
 fn a_plan_in_parts_is_the_plan_at_once() {
-    let docker = Docker::new(DockingConfig { margin: 0.0, ..DockingConfig::default() }).unwrap();
+    let planner = DockingPlanner::new(DockingConfig { margin: 0.0, ..DockingConfig::default() }).unwrap();
     let mut rng = ChaCha8Rng::seed_from_u64(12);
     let mut problems: Vec<_> = (0..25).map(|i| generate(format!("{i}"), &mut rng)).collect();
     problems.extend(parse(include_str!("../data/hard.txt")).unwrap().into_iter().take(1));
     let (mut most, mut parts) = (0, 0);
     for problem in &problems {
         let scene = problem.scene().unwrap();
-        let at_once = docker.plan(&problem.footprint, &scene, problem.start, problem.goal).unwrap();
+        let run_to_end = planner.plan(&problem.footprint, &scene, problem.start, problem.goal).unwrap();
         let mut planning =
-            docker.begin(0.0, &problem.footprint, &scene, problem.start, problem.goal).unwrap();
+            planner.begin(0.0, &problem.footprint, &scene, problem.start, problem.goal).unwrap();
         let in_parts = loop {
             let before = planning.work();
-            let plan = planning.go_on(100_000);
+            let plan = planning.advance(100_000);
             (most, parts) = (most.max(planning.work() - before), parts + 1);
             if let Some(plan) = plan {
                 break plan;
             }
         };
-        assert_eq!(at_once, in_parts, "problem {}", problem.name);
+        assert_eq!(run_to_end, in_parts, "problem {}", problem.name);
     }
     eprintln!("{parts} parts of 100000, the largest {most}");
     assert!(parts > 3 * problems.len() && most <= 100_000 + BEYOND, "{parts} parts, the largest {most}");
@@ -42,11 +44,11 @@ fn a_plan_in_parts_is_the_plan_at_once() {
 /// reach.
 #[test]
 fn a_hundred_thousand_points_of_any_kind_stay_under_a_tenth_of_a_second() {
-    let docker = Docker::new(DockingConfig::default()).unwrap();
+    let planner = DockingPlanner::new(DockingConfig::default()).unwrap();
     let (mut found, mut worst) = (0, 0.0_f64);
     for problem in clouds::scenes() {
         let scene = clouds::scene_of(&problem);
-        let plan = || docker.plan(&problem.footprint, &scene, problem.start, problem.goal).unwrap();
+        let plan = || planner.plan(&problem.footprint, &scene, problem.start, problem.goal).unwrap();
         let mut runs = vec![timed(plan), timed(plan)];
         if runs.iter().all(|(_, ms)| *ms >= 100.0) {
             runs.extend((0..4).map(|_| timed(plan)));
@@ -55,10 +57,10 @@ fn a_hundred_thousand_points_of_any_kind_stay_under_a_tenth_of_a_second() {
         assert!(least < 100.0, "{}: {least:.0} ms", problem.name);
         assert_eq!(runs[0].0, runs[1].0, "{}", problem.name);
         match &runs[0].0 {
-            Plan::Found(_) => found += 1,
-            Plan::Impossible(none) => {
+            DockingPlan::Found(_) => found += 1,
+            DockingPlan::Impossible(none) => {
                 assert_eq!(none.certificate, Certificate::Never, "{}", problem.name);
-                assert!(none.within >= docker.config().reach && none.by.is_some(), "{}", problem.name);
+                assert!(none.within >= planner.config().reach && none.by.is_some(), "{}", problem.name);
             }
         }
         worst = worst.max(least);
@@ -72,13 +74,18 @@ fn a_hundred_thousand_points_of_any_kind_stay_under_a_tenth_of_a_second() {
 fn a_whole_plan_has_a_limit_and_names_it() {
     let hard = &parse(include_str!("../data/hard.txt")).unwrap()[0];
     let scene = hard.scene().unwrap();
-    for method in [Method::Optimal, Method::Paper] {
+    for method in [Method::Optimal, Method::Hong24] {
         let plan_work = 300_000;
-        let docker = Docker::new(DockingConfig { method, plan_work, ..DockingConfig::default() }).unwrap();
-        let mut planning = docker.begin(0.01, &hard.footprint, &scene, hard.start, hard.goal).unwrap();
-        let plan = planning.go_on(u64::MAX).expect("all at once");
-        let Plan::Impossible(none) = plan else { panic!("{method:?}: {plan:?}") };
-        assert_eq!((none.certificate, none.limit), (Certificate::None, Some(Limit::PlanWork)), "{method:?}");
+        let planner =
+            DockingPlanner::new(DockingConfig { method, plan_work, ..DockingConfig::default() }).unwrap();
+        let mut planning = planner.begin(0.01, &hard.footprint, &scene, hard.start, hard.goal).unwrap();
+        let plan = planning.advance(u64::MAX).expect("all at once");
+        let DockingPlan::Impossible(none) = plan else { panic!("{method:?}: {plan:?}") };
+        assert_eq!(
+            (none.certificate, none.limit),
+            (Certificate::None, Some(SearchLimit::PlanWork)),
+            "{method:?}"
+        );
         assert!(planning.work() <= plan_work + BEYOND, "{method:?}: {}", planning.work());
     }
 }
@@ -86,21 +93,21 @@ fn a_whole_plan_has_a_limit_and_names_it() {
 /// One decision of the paper's method looks at tens of thousands of poses: it rests between them.
 #[test]
 fn the_papers_method_rests_too() {
-    let config = DockingConfig { method: Method::Paper, ..DockingConfig::default() };
-    let docker = Docker::new(config).unwrap();
-    let scene = Scene::new(&[Obstacle::Point(Vector2::new(0.0, 1.0))]).unwrap();
+    let config = DockingConfig { method: Method::Hong24, ..DockingConfig::default() };
+    let planner = DockingPlanner::new(config).unwrap();
+    let scene = ObstacleScene::new(&[Obstacle::Point(Vector2::new(0.0, 1.0))]).unwrap();
     let (start, goal) = (Pose2::IDENTITY, Pose2::new(0.1, 0.3, 0.2));
-    let at_once = docker.plan(&Footprint::KOBUKI, &scene, start, goal).unwrap();
-    let mut planning = docker.begin(0.01, &Footprint::KOBUKI, &scene, start, goal).unwrap();
+    let run_to_end = planner.plan(&Footprint::KOBUKI, &scene, start, goal).unwrap();
+    let mut planning = planner.begin(0.01, &Footprint::KOBUKI, &scene, start, goal).unwrap();
     let (mut parts, mut most) = (0, 0);
     let in_parts = loop {
         let before = planning.work();
-        let plan = planning.go_on(10_000);
+        let plan = planning.advance(10_000);
         (parts, most) = (parts + 1, most.max(planning.work() - before));
         if let Some(plan) = plan {
             break plan;
         }
     };
-    assert_eq!(at_once, in_parts);
+    assert_eq!(run_to_end, in_parts);
     assert!(parts > 5 && most <= 11_000, "{parts} parts, the largest {most}");
 }

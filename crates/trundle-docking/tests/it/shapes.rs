@@ -5,7 +5,9 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::f64::consts::PI;
 use trundle_core::{Footprint, Pose2, Vector2};
-use trundle_docking::{Certificate, Docker, DockingConfig, Manoeuvre, Method, Obstacle, Plan, Scene};
+use trundle_docking::{
+    Certificate, DockingConfig, DockingPlan, DockingPlanner, Manoeuvre, Method, Obstacle, ObstacleScene,
+};
 
 const PROBLEMS: usize = 100;
 /// What is kept where a margin of 0 is asked for, m, less what a motion may be off by.
@@ -43,19 +45,20 @@ fn least_on_the_way(footprint: &Footprint, manoeuvre: &Manoeuvre, pieces: &[(Vec
 fn any_shape_is_safe_and_nothing_possible_is_called_impossible() {
     let mut rng = ChaCha8Rng::seed_from_u64(21);
     let config = DockingConfig { most_work: 4_000_000, bound_boxes: 100, ..DockingConfig::default() };
-    let dockers = [0.0, 0.01].map(|margin| Docker::new(DockingConfig { margin, ..config.clone() }).unwrap());
-    let by_paper = DockingConfig { method: Method::Paper, margin: 0.0, ..config };
-    let greedy = Docker::new(by_paper).unwrap();
+    let dockers =
+        [0.0, 0.01].map(|margin| DockingPlanner::new(DockingConfig { margin, ..config.clone() }).unwrap());
+    let by_paper = DockingConfig { method: Method::Hong24, margin: 0.0, ..config };
+    let greedy = DockingPlanner::new(by_paper).unwrap();
     let (mut count, mut found, mut never, mut least) = (0, 0, 0, f64::INFINITY);
     while count < PROBLEMS {
         let footprint = footprint(&mut rng);
         let obstacles: Vec<Obstacle> = (0..rng.random_range(4..16)).map(|_| obstacle(&mut rng)).collect();
-        let (scene, pieces) = (Scene::new(&obstacles).unwrap(), sides(&obstacles));
+        let (scene, pieces) = (ObstacleScene::new(&obstacles).unwrap(), sides(&obstacles));
         let free = |pose: &Pose2| scene.clearance(&footprint, pose, 0.005).is_none();
         let Some((start, goal)) = ends(&mut rng, free) else { continue };
         count += 1;
         match dockers[count % 2].plan(&footprint, &scene, start, goal).unwrap() {
-            Plan::Found(solution) => {
+            DockingPlan::Found(solution) => {
                 found += 1;
                 let manoeuvre = &solution.manoeuvre;
                 assert!(manoeuvre.end().distance(&goal) < 1e-9, "problem {count}");
@@ -65,8 +68,8 @@ fn any_shape_is_safe_and_nothing_possible_is_called_impossible() {
                 assert!(solution.bound <= manoeuvre.duration() + 1e-9);
                 least = least.min(on_the_way);
             }
-            Plan::Impossible(none) => {
-                let Plan::Found(other) = greedy.plan(&footprint, &scene, start, goal).unwrap() else {
+            DockingPlan::Impossible(none) => {
+                let DockingPlan::Found(other) = greedy.plan(&footprint, &scene, start, goal).unwrap() else {
                     never += i32::from(none.certificate == Certificate::Never);
                     continue;
                 };

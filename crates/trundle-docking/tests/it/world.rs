@@ -5,7 +5,7 @@ use rand::{Rng, RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use trundle_core::{Pose2, Stamp, Twist2, wrap_angle};
 use trundle_docking::corridor::Problem;
-use trundle_docking::{DockingConfig, Positioner, PositionerConfig, PositionerInput, Reason};
+use trundle_docking::{DockingConfig, Positioner, PositionerConfig, PositionerInput, PositionerReason};
 
 /// A control step, s.
 pub const DT: f64 = 0.05;
@@ -90,8 +90,8 @@ pub fn run(problem: &Problem, docking: &DockingConfig, seed: u64) -> Run {
             scene: &scene,
         };
         let report = positioner.step(&input);
-        motions += usize::from(matches!(report.reason, Reason::Moving(_)) && !moving);
-        moving = matches!(report.reason, Reason::Moving(_));
+        motions += usize::from(matches!(report.reason, PositionerReason::Moving(_)) && !moving);
+        moving = matches!(report.reason, PositionerReason::Moving(_));
         world.advance(report.twist);
         contact |= scene.clearance(&problem.footprint, &world.pose, 1e-3).is_some_and(|(d, _)| d == 0.0);
         if positioner.is_settled() {

@@ -3,7 +3,7 @@
 use crate::navigator::Surroundings;
 use trundle_control::SettlePreview;
 use trundle_core::{Footprint, Pose2};
-use trundle_docking::{Docker, Plan, Planning, Scene};
+use trundle_docking::{DockingJob, DockingPlan, DockingPlanner, ObstacleScene};
 
 /// Poses of an arc that are looked at in a step.
 const POSES: usize = 100;
@@ -16,8 +16,8 @@ pub(super) struct Choice {
     /// The arc, and how far it is looked at; none where there is no arc to go on with.
     arc: Option<(SettlePreview, usize)>,
     /// What stands about the arc.
-    scene: Option<Scene>,
-    planning: Option<Planning>,
+    scene: Option<ObstacleScene>,
+    planning: Option<DockingJob>,
 }
 
 /// What came of a part of it.
@@ -33,7 +33,7 @@ pub(super) enum Verdict {
 
 /// With what both are looked at.
 pub(super) struct Means<'a> {
-    pub docker: &'a Docker,
+    pub docker: &'a DockingPlanner,
     pub footprint: &'a Footprint,
     /// What an arc must keep from obstacles, m.
     pub arc_margin: f64,
@@ -65,7 +65,7 @@ impl Choice {
         &mut self,
         s: &Surroundings<'_>,
         means: &Means<'_>,
-        drawn: impl Fn() -> Scene,
+        drawn: impl Fn() -> ObstacleScene,
     ) -> Verdict {
         if !self.is_arc_looked_at(s, means) {
             return Verdict::Open;
@@ -78,13 +78,13 @@ impl Choice {
             }
         };
         let Ok(mut planning) = planning else { return Verdict::Arc };
-        let Some(plan) = planning.go_on(means.work) else {
+        let Some(plan) = planning.advance(means.work) else {
             self.planning = Some(planning);
             return Verdict::Open;
         };
         let manoeuvre = match plan {
-            Plan::Found(found) => Some(found.manoeuvre.duration() + means.standing),
-            Plan::Impossible(_) => None,
+            DockingPlan::Found(found) => Some(found.manoeuvre.duration() + means.standing),
+            DockingPlan::Impossible(_) => None,
         };
         let arc = self.arc.as_ref().and_then(|(arc, _)| arc.time);
         if arc_wins(arc, manoeuvre) { Verdict::Arc } else { Verdict::Manoeuvre }
@@ -108,11 +108,11 @@ impl Choice {
 }
 
 /// What the map holds about an arc.
-fn about(s: &Surroundings<'_>, arc: &SettlePreview, means: &Means<'_>) -> Scene {
+fn about(s: &Surroundings<'_>, arc: &SettlePreview, means: &Means<'_>) -> ObstacleScene {
     let here = s.estimate.pose;
     let reach = arc.poses.iter().map(|p| p.distance(&here)).fold(0.0, f64::max);
     let half = reach + means.footprint.circumscribed_radius() + means.arc_margin + 0.1;
-    Scene::from_grid(s.grid, here.position(), half, false)
+    ObstacleScene::from_grid(s.grid, here.position(), half, false)
 }
 
 /// The rule: an arc that is free (its time, s), when no manoeuvre was found or none that is faster.

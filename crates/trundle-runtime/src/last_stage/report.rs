@@ -1,6 +1,6 @@
 use serde::Serialize;
 use trundle_core::Pose2;
-use trundle_docking::{PositionerReport, Reason};
+use trundle_docking::{PositionerReason, PositionerReport};
 
 /// What turns and straight moves came to at the end of a mission.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
@@ -57,30 +57,35 @@ impl Notes {
     /// Counts what a step did.
     pub fn note(&mut self, step: &PositionerReport) {
         let doing = match step.reason {
-            Reason::Moving(_) => Doing::Moving,
-            Reason::Planning => Doing::Planning,
-            Reason::NoWay(_) | Reason::Refused(_) | Reason::BadPose => Doing::Waiting,
-            Reason::Measuring | Reason::Obstacle(_) | Reason::Settled => Doing::Standing,
+            PositionerReason::Moving(_) => Doing::Moving,
+            PositionerReason::Planning => Doing::Planning,
+            PositionerReason::NoWay(_) | PositionerReason::Refused(_) | PositionerReason::BadPose => {
+                Doing::Waiting
+            }
+            PositionerReason::Measuring | PositionerReason::Obstacle(_) | PositionerReason::Settled => {
+                Doing::Standing
+            }
         };
         let began = |what| doing == what && self.last != what;
         let (plans, moves, waits) = (began(Doing::Planning), began(Doing::Moving), began(Doing::Waiting));
         // A plan that was ready in the step that began it shows in what came of it.
-        let at_once = (moves || (waits && step.reason != Reason::BadPose)) && self.last != Doing::Planning;
+        let at_once =
+            (moves || (waits && step.reason != PositionerReason::BadPose)) && self.last != Doing::Planning;
         self.report.plans += u32::from(plans || at_once);
         self.report.motions += u32::from(moves);
         self.report.waits += u32::from(waits);
         self.stops += u32::from(waits);
         match (&step.reason, self.last) {
-            (Reason::Obstacle(_), _) => {
+            (PositionerReason::Obstacle(_), _) => {
                 self.report.restarts += 1;
                 self.stops += 1;
             }
             // It came to its end.
-            (Reason::Measuring, Doing::Moving) => self.stops = 0,
+            (PositionerReason::Measuring, Doing::Moving) => self.stops = 0,
             _ => {}
         }
         self.last = doing;
-        if step.reason != Reason::BadPose {
+        if step.reason != PositionerReason::BadPose {
             self.report.deviation = Some(step.error);
         }
     }

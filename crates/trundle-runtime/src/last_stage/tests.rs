@@ -158,7 +158,7 @@ fn the_way_that_is_chosen_is_the_faster_one_when_both_are_driven() {
         let (mut stage, s) = (stage(), surroundings(&grid, start, 0.0));
         let arc = follower.preview_settling(start, goal);
         let manoeuvre_wins = chosen(&mut stage, &s, goal, arc.clone());
-        let scene = Scene::from_grid(&grid, goal.position(), 3.0, false);
+        let scene = ObstacleScene::from_grid(&grid, goal.position(), 3.0, false);
         let kept = LastStageConfig::default().arc_margin;
         let touches = |pose: &Pose2| scene.clearance(&Footprint::KOBUKI, pose, kept).is_some();
         let arc = arc.time.filter(|_| !arc.poses.iter().any(touches));
@@ -217,7 +217,7 @@ fn no_step_takes_longer_than_two_milliseconds() {
     let open = [posts.repeat(20), free.repeat(40), posts.repeat(20)].concat();
     let open = OccupancyGrid::from_ascii(0.05, &open).unwrap();
     let beside = (Pose2::new(2.0, 1.9, 0.0), Pose2::new(2.1, 2.2, 0.2));
-    for (method, grid, ends) in [(Method::Optimal, &narrow, turned), (Method::Paper, &open, beside)] {
+    for (method, grid, ends) in [(Method::Optimal, &narrow, turned), (Method::Hong24, &open, beside)] {
         let standard = LastStageConfig::default();
         let planner = DockingConfig { method, ..standard.planner.clone() };
         let config = LastStageConfig { planner, ..standard };

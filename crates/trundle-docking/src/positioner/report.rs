@@ -1,0 +1,53 @@
+//! Input and report of a step of the positioner.
+
+use crate::docking_plan::DockingRefusal;
+use crate::motion::manoeuvre::Motion;
+use crate::scene::blocker::Blocker;
+use crate::scene::obstacle_scene::ObstacleScene;
+use nalgebra::Matrix3;
+use trundle_core::{Pose2, Stamp, Twist2};
+
+/// Input of a step.
+#[derive(Debug, Clone, Copy)]
+pub struct PositionerInput<'a> {
+    /// Time of the step.
+    pub stamp: Stamp,
+    /// The measured `map_from_base`.
+    pub pose: Pose2,
+    /// Its covariance (x m, y m, heading rad), right perturbation: it determines the margin.
+    pub covariance: Matrix3<f64>,
+    /// Obstacles now, map frame.
+    pub scene: &'a ObstacleScene,
+}
+
+/// Reason for a command.
+#[derive(Debug, Clone, PartialEq)]
+pub enum PositionerReason {
+    /// At rest, averaging the pose.
+    Measuring,
+    /// At rest, planning: [`PositionerConfig::step_work`] per step.
+    Planning,
+    /// Carrying out a motion.
+    Moving(Motion),
+    /// At the goal, within tolerance.
+    Settled,
+    /// An obstacle is in the way of the motion, or of a new plan: stopped, and planning again from here.
+    Obstacle(Blocker),
+    /// There is no manoeuvre; planned again after a wait.
+    NoWay(Option<Blocker>),
+    /// The query cannot be planned; tried again after a wait.
+    Refused(DockingRefusal),
+    /// The pose is not finite.
+    BadPose,
+}
+
+/// Result of a step.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PositionerReport {
+    /// The twist to command.
+    pub twist: Twist2,
+    /// The reason.
+    pub reason: PositionerReason,
+    /// `goal_from_base`: the error, of the averaged pose while at rest.
+    pub error: Pose2,
+}

@@ -1,0 +1,110 @@
+//! Counted work, done in parts.
+//!
+//! Problem: a search of some tens of milliseconds does not fit into a control step of twenty. Idea: the search is a future that
+//! yields when it has used its grant, and continues with the next grant. Only counted work decides where it yields, so that the
+//! answer and the number of grants are the same on every machine.
+
+use std::fmt;
+use std::pin::{Pin, pin};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::task::{Context, Poll, Waker};
+
+/// Counts the cost of queries, and the cost allowed before the next yield.
+#[derive(Debug)]
+pub struct WorkBudget {
+    work: AtomicU64,
+    granted: AtomicU64,
+    /// Total work at which everything ends.
+    pub most: u64,
+}
+
+impl WorkBudget {
+    /// A budget that never yields.
+    pub fn endless(most: u64) -> Arc<Self> {
+        Arc::new(Self { work: AtomicU64::new(0), granted: AtomicU64::new(u64::MAX), most })
+    }
+
+    /// A budget that yields at once, until work is granted.
+    pub fn rationed(most: u64) -> Arc<Self> {
+        Arc::new(Self { work: AtomicU64::new(0), granted: AtomicU64::new(0), most })
+    }
+
+    /// Work so far.
+    pub fn work(&self) -> u64 {
+        self.work.load(Ordering::Relaxed)
+    }
+
+    /// Whether the total limit is reached.
+    pub fn is_spent(&self) -> bool {
+        self.work() >= self.most
+    }
+
+    /// Adds work. A plan runs on one thread.
+    pub fn spend(&self, work: u64) {
+        self.work.store(self.work().saturating_add(work), Ordering::Relaxed);
+    }
+
+    /// Grants work from now on.
+    fn grant(&self, work: u64) {
+        self.granted.store(self.work().saturating_add(work), Ordering::Relaxed);
+    }
+}
+
+/// A future that is ready when granted work is left.
+#[derive(Debug, Clone, Copy)]
+pub struct BudgetYield<'m>(pub &'m WorkBudget);
+
+impl Future for BudgetYield<'_> {
+    type Output = ();
+
+    fn poll(self: Pin<&mut Self>, _: &mut Context<'_>) -> Poll<()> {
+        let left = self.0.work() < self.0.granted.load(Ordering::Relaxed);
+        if left { Poll::Ready(()) } else { Poll::Pending }
+    }
+}
+
+/// The result of a search with a budget that never yields.
+pub fn run_to_end<T>(search: impl Future<Output = T>) -> T {
+    match pin!(search).poll(&mut Context::from_waker(Waker::noop())) {
+        Poll::Ready(result) => result,
+        Poll::Pending => unreachable!("invariant: an endless budget never yields"),
+    }
+}
+
+/// A search in parts: see [`crate::DockingPlanner::begin`].
+pub struct PlanningJob<T> {
+    budget: Arc<WorkBudget>,
+    search: Pin<Box<dyn Future<Output = T> + Send + Sync>>,
+}
+
+impl<T> PlanningJob<T> {
+    pub(crate) fn new(
+        budget: Arc<WorkBudget>,
+        search: impl Future<Output = T> + Send + Sync + 'static,
+    ) -> Self {
+        Self { budget, search: Box::pin(search) }
+    }
+
+    /// Continues the search for about `work` steps of about ten nanoseconds each ([`crate::ContactSpace::work`]): it yields at the first
+    /// possible place beyond. Returns the result once it is complete, the same as [`crate::DockingPlanner::plan_with_margin`]'s for any division
+    /// into parts. Must not be called again after that.
+    pub fn advance(&mut self, work: u64) -> Option<T> {
+        self.budget.grant(work);
+        match self.search.as_mut().poll(&mut Context::from_waker(Waker::noop())) {
+            Poll::Ready(found) => Some(found),
+            Poll::Pending => None,
+        }
+    }
+
+    /// Work so far, in the same steps.
+    pub fn work(&self) -> u64 {
+        self.budget.work()
+    }
+}
+
+impl<T> fmt::Debug for PlanningJob<T> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("PlanningJob").field("work", &self.work()).finish_non_exhaustive()
+    }
+}
