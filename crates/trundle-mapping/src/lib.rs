@@ -24,27 +24,22 @@
 //! ```
 
 mod depth_scan;
-mod evidence;
-mod filter;
-mod kept;
-mod live_grid;
-mod live_mapper;
-mod mapper;
-mod mapper_config;
-mod packed_scan;
-mod ray;
-mod scan_cells;
+mod global_localization;
+mod grid_mapper;
+mod loop_closing;
+mod particle_config;
+mod persist;
+mod pose_graph;
+mod rbpf;
+mod scan_log;
 mod scan_match;
-mod tiles;
 
 pub use depth_scan::{DepthScanConfig, DepthScanner, FloorFit, ScanFusion, ScanFusionConfig};
-pub use evidence::{Evidence, GridCell, LogOddsGrid};
-pub use filter::{
-    FilterFileError, Localized, Lost, MapLocalizer, MotionConfig, ParticleConfig, ParticleMapper,
-    PosePriorConfig, Processed, Refusal, ScanUpdate, carry_trajectory,
-};
-pub use live_mapper::{LiveMapper, Redrawn};
-pub use mapper::{GridMapper, Insertion};
-pub use mapper_config::MapperConfig;
-pub use ray::{RayCells, ray_cells};
-pub use scan_match::{ScanMatch, ScanMatchConfig, ScanMatcher};
+pub use global_localization::{Localized, MapLocalizer};
+pub use grid_mapper::{GridMapper, Insertion};
+pub use particle_config::{MotionConfig, ParticleConfig, PosePriorConfig};
+pub use persist::FilterFileError;
+pub use rbpf::{ParticleMapper, Processed, Refusal, ScanUpdate, carry_trajectory};
+pub use scan_log::{LiveMapper, Redrawn};
+pub use scan_match::{Lost, ScanMatch, ScanMatchConfig, ScanMatcher};
+pub use trundle_grid::{Evidence, GridCell, LogOddsGrid, MapperConfig, RayCells, ray_cells};

@@ -1,8 +1,8 @@
 use super::{
-    model::SortModel,
     mount::{BeamView, Mount},
-    row::{SortedRow, kind},
-    span_bits::{BELOW, BINS, SpanBits, bins, bridged, spans},
+    pixel_model::SortModel,
+    pixel_row::{SortedRow, kind},
+    range_bins::{BELOW, BINS, SpanBits, bins, bridged, spans},
 };
 use trundle_core::{Beam, FreeSpan, ObstacleKind, ScanParts};
 

@@ -1,4 +1,4 @@
-use super::{DepthScanConfig, model::SortModel, pixel_rays::LensRays};
+use super::{DepthScanConfig, pixel_model::SortModel, pixel_rays::LensRays};
 use nalgebra::{Cholesky, Matrix3, Vector3 as Column};
 use trundle_core::{DepthImage, Pose3};
 

@@ -3,15 +3,15 @@
 mod bearings;
 mod config;
 mod floor_fit;
-mod fusion;
-mod model;
 mod mount;
+mod pixel_model;
 mod pixel_rays;
-mod row;
+mod pixel_row;
+mod range_bins;
+mod scan_fusion;
 mod scanner;
-mod span_bits;
 
 pub use config::DepthScanConfig;
 pub use floor_fit::FloorFit;
-pub use fusion::{ScanFusion, ScanFusionConfig};
+pub use scan_fusion::{ScanFusion, ScanFusionConfig};
 pub use scanner::DepthScanner;

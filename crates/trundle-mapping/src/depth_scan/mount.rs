@@ -1,9 +1,9 @@
 use super::{
     DepthScanConfig,
     floor_fit::FloorSamples,
-    model::SortModel,
+    pixel_model::SortModel,
     pixel_rays::{Fan, LensRays},
-    span_bits::{BELOW, BINS, SpanBits, bins},
+    range_bins::{BELOW, BINS, SpanBits, bins},
 };
 use trundle_core::{Invalid, Pose3, Vector2, Vector3};
 

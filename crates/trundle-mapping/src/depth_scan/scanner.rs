@@ -1,10 +1,10 @@
 use super::{
     DepthScanConfig, FloorFit,
     bearings::Bearings,
-    model::SortModel,
     mount::Mount,
+    pixel_model::SortModel,
     pixel_rays::LensRays,
-    row::{RowInput, SortedRow},
+    pixel_row::{RowInput, SortedRow},
 };
 use trundle_core::{DepthImage, Invalid, PinholeCamera, Pose3, RgbdImage, Scan, ScanParts, Stamp, Vector2};
 

@@ -1,12 +1,14 @@
-//! Where a scan fits the map best: correlative search, then refinement, with the directions nobody can tell left alone.
+//! Alignment of a scan with a map: searches, likelihoods, refinement, and the directions without information.
 
-mod config;
-mod degeneracy;
-mod field;
-mod matcher;
-mod refine;
-mod search;
-mod sites;
+pub(crate) mod branch_and_bound;
+pub(crate) mod cloud_match;
+pub(crate) mod coarse_search;
+pub(crate) mod global_search;
+pub(crate) mod held_directions;
+mod kernel_density;
+pub(crate) mod likelihood;
+pub(crate) mod motion_prior;
+pub(crate) mod scan_points;
 
-pub use config::ScanMatchConfig;
-pub use matcher::{ScanMatch, ScanMatcher};
+pub use global_search::Lost;
+pub use kernel_density::{ScanMatch, ScanMatchConfig, ScanMatcher};

@@ -1,0 +1,49 @@
+//! Grids of the floor: occupancy as log-odds, ray updates, and the distance to the nearest obstacle.
+//!
+//! - [`LogOddsGrid`] and [`ScanCells`]: log-odds of each cell, and the cells that one scan hits or sees free.
+//! - [`PublishedGrid`]: three-valued occupancy grid, updated in place, with a revision number for each tile.
+//! - [`ray_cells`]: exact traversal of the cells along a line.
+//! - [`tiles`]: compact maps in bytes that share tiles between clones, for the many maps of a particle filter.
+//!
+//! ```
+//! use trundle_core::{Cell, Vector2};
+//! use trundle_grid::{GridCell, LogOddsGrid, PublishedGrid, Thresholds, ray_cells};
+//!
+//! // A ray of a range sensor from (0.5, 0.5) to an obstacle at (6.5, 2.5), in cells.
+//! let (from, to) = (Vector2::new(0.5, 0.5), Vector2::new(6.5, 2.5));
+//! let mut log_odds = LogOddsGrid::default();
+//! for cell in ray_cells(from, to) {
+//!     log_odds.entry(cell).log_odds -= 0.4;
+//! }
+//! log_odds.entry(GridCell::containing(to)).log_odds = 0.85;
+//!
+//! // The three-valued grid that planners read, with cells of 0.1 m.
+//! let thresholds = Thresholds { occupied_above: 0.6, free_below: -0.3 };
+//! let mut published = PublishedGrid::new(0.1, LogOddsGrid::TILE_SIDE, (0, 0), (1, 1));
+//! published.begin_revision();
+//! for cell in ray_cells(from, to) {
+//!     published.set(cell, thresholds.classify(log_odds.log_odds(cell)));
+//! }
+//! assert_eq!(published.grid().at(Vector2::new(0.65, 0.25)), Cell::Occupied);
+//! assert_eq!(published.grid().at(Vector2::new(0.05, 0.05)), Cell::Free);
+//! assert_eq!(published.grid().at(Vector2::new(0.05, 0.25)), Cell::Unknown);
+//! assert_eq!(published.changes_since(0).count(), 1, "one tile changed");
+//! ```
+
+mod cell;
+mod config;
+mod log_odds;
+mod log_odds_grid;
+mod published_grid;
+mod ray_cells;
+mod scan_cells;
+mod tile_directory;
+pub mod tiles;
+
+pub use cell::GridCell;
+pub use config::MapperConfig;
+pub use log_odds::{log_odds, probability};
+pub use log_odds_grid::{Evidence, LogOddsGrid};
+pub use published_grid::{PublishedGrid, Thresholds};
+pub use ray_cells::{RayCells, ray_cells};
+pub use scan_cells::{HitCell, ScanCells};

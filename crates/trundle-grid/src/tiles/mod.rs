@@ -1,0 +1,20 @@
+//! Compact map of tiles for many particles: log-odds in bytes, and the nearest obstacle of each cell.
+
+mod cell_mask;
+mod free_update;
+mod nearest_field;
+mod ray_update;
+mod scan_rays;
+mod tile;
+mod tile_map;
+mod tile_pools;
+mod tile_ray;
+mod tile_window;
+
+pub use nearest_field::NearestField;
+pub use ray_update::{RayUpdate, RayUpdateScratch};
+pub use scan_rays::{RaySpan, ScanRay, ScanRays};
+pub use tile::{NearestObstacle, Tile};
+pub use tile_map::{TileMap, tile_bytes};
+pub use tile_pools::{ChunkParts, TilePools, assemble};
+pub use tile_window::TileWindow;

@@ -1,0 +1,173 @@
+use super::range_bins::{BELOW, BINS, SpanBits, bins, bridged, spans};
+use serde::{Deserialize, Serialize};
+use std::f64::consts::{PI, TAU};
+use trundle_core::{
+    Beam, FreeSpan, Invalid, ObstacleKind, Pose2, Scan, ScanParts, Stamp, Vector2, require_in, wrap_angle,
+};
+
+/// How scans are fused.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct ScanFusionConfig {
+    /// Beams of the full circle, 16 to 7200. Default 720: half a degree, some columns of a Kinect.
+    pub beams: usize,
+    /// Greatest range, m, 0.5 to 100. Default 6, as of [`crate::DepthScanConfig`].
+    pub max_range: f64,
+    /// Hits of one beam so near behind the nearest are one surface, m, 0 to 1. Default 0.1.
+    pub surface: f64,
+}
+
+impl Default for ScanFusionConfig {
+    fn default() -> Self {
+        Self { beams: 720, max_range: 6.0, surface: 0.1 }
+    }
+}
+
+impl ScanFusionConfig {
+    /// Passes a valid configuration through.
+    ///
+    /// # Errors
+    /// When a number is out of the range that its field names.
+    pub fn validated(self) -> Result<Self, Invalid> {
+        require_in("beams", self.beams as f64, "", 16.0, 7200.0)?;
+        require_in("max_range", self.max_range, "m", 0.5, 100.0)?;
+        require_in("surface", self.surface, "m", 0.0, 1.0)?;
+        Ok(self)
+    }
+}
+
+/// Fuses the scans of several sensors into one of the full circle about the base's origin.
+///
+/// Of each bearing the nearest obstacle that any sensor saw; free is what any of them saw free and none a nearer obstacle in.
+/// Beams of sensors that sit elsewhere cross the fused ones, so what they cleared is laid out point by point. Cost: the
+/// number of beams times bins of range.
+#[derive(Debug, Clone)]
+pub struct ScanFusion {
+    config: ScanFusionConfig,
+    nearest: Vec<Nearest>,
+    free: Vec<SpanBits>,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Nearest {
+    range: f64,
+    sum: f64,
+    count: u32,
+    sigma: f32,
+    kind: ObstacleKind,
+}
+
+const NOTHING: Nearest =
+    Nearest { range: f64::INFINITY, sum: 0.0, count: 0, sigma: 0.0, kind: ObstacleKind::Standing };
+
+impl ScanFusion {
+    /// A fusion of any number of sensors.
+    ///
+    /// # Errors
+    /// When the configuration is out of range.
+    pub fn new(config: ScanFusionConfig) -> Result<Self, Invalid> {
+        Ok(Self { config: config.validated()?, nearest: Vec::new(), free: Vec::new() })
+    }
+
+    /// One scan of several, with the newest one's stamp. Each comes with where the base was when it was taken, seen from
+    /// where it was at that stamp: the identity for sensors that look at once. A pose that is not finite leaves its scan out.
+    pub fn fuse<'a>(&mut self, scans: impl IntoIterator<Item = (Pose2, &'a Scan)>) -> Scan {
+        let beams = self.config.beams;
+        self.nearest.clear();
+        self.nearest.resize(beams, NOTHING);
+        self.free.clear();
+        self.free.resize(beams, 0);
+        let mut stamp: Option<Stamp> = None;
+        let usable: Vec<(Pose2, &Scan)> = scans.into_iter().filter(|(pose, _)| pose.is_finite()).collect();
+        for (pose, scan) in &usable {
+            stamp = stamp.max(Some(scan.stamp()));
+            self.note_hits(*pose, scan);
+            self.note_free(*pose, scan);
+        }
+        for (pose, scan) in &usable {
+            self.average(*pose, scan);
+        }
+        let step = TAU / beams as f64;
+        let parts = self.tell();
+        Scan::from_parts(stamp.unwrap_or_default(), Vector2::zeros(), (-PI + step / 2.0, step), parts)
+            .expect("invariant: ranges are norms of finite points, spans come from rising bins")
+    }
+
+    fn beam(&self, point: Vector2) -> usize {
+        let turn = (wrap_angle(point.y.atan2(point.x)) + PI) / TAU;
+        ((turn * self.config.beams as f64) as usize).min(self.config.beams - 1)
+    }
+
+    fn note_hits(&mut self, pose: Pose2, scan: &Scan) {
+        for (i, point) in hits(pose, scan) {
+            let range = point.norm();
+            let at = self.beam(point);
+            if range < self.nearest[at].range && range <= self.config.max_range {
+                let sigma = scan.sigma(i).unwrap_or(0.0) as f32;
+                let kind = scan.obstacle(i).unwrap_or_default();
+                self.nearest[at] = Nearest { range, sigma, kind, ..NOTHING };
+            }
+        }
+    }
+
+    fn average(&mut self, pose: Pose2, scan: &Scan) {
+        for (_, point) in hits(pose, scan) {
+            let (range, at) = (point.norm(), self.beam(point));
+            let nearest = &mut self.nearest[at];
+            if range <= nearest.range + self.config.surface {
+                (nearest.sum, nearest.count) = (nearest.sum + range, nearest.count + 1);
+            }
+        }
+    }
+
+    fn note_free(&mut self, pose: Pose2, scan: &Scan) {
+        let bin = self.config.max_range / BINS as f64;
+        for i in 0..scan.beams().len() {
+            for (from, to) in scan.free_spans(i) {
+                let steps = ((to.min(2.0 * self.config.max_range) - from) / bin).floor().max(0.0) as usize;
+                for k in 0..=steps {
+                    let point =
+                        pose.transform(scan.point(i, from + (k as f64 + 0.5).min(steps as f64) * bin));
+                    let range = (point.norm() / bin) as usize;
+                    let at = self.beam(point);
+                    self.free[at] |= bins(range, range + 1);
+                }
+            }
+        }
+    }
+
+    fn tell(&self) -> ScanParts {
+        let bin = self.config.max_range / BINS as f64;
+        let mut parts = ScanParts { free: Some(Vec::new()), ..ScanParts::default() };
+        for (i, (nearest, bits)) in self.nearest.iter().zip(&self.free).enumerate() {
+            let hit = (nearest.count > 0).then(|| nearest.sum / f64::from(nearest.count));
+            let limit = hit.unwrap_or(f64::INFINITY);
+            let seen = bridged(*bits)
+                & hit.map_or(SpanBits::MAX, |range| BELOW[((range / bin) as usize + 1).min(BINS)]);
+            let mut end = 0.0;
+            for (from, to) in spans(seen) {
+                let (from, to) = (from as f64 * bin, (to as f64 * bin).min(limit));
+                if to > from {
+                    parts.free.get_or_insert_default().push(FreeSpan { beam: i as u32, from, to });
+                    end = to;
+                }
+            }
+            parts.beams.push(match hit {
+                Some(range) => Beam::Hit { range },
+                None if end > 0.0 => Beam::Free { range: end },
+                None => Beam::Unseen,
+            });
+            parts.sigmas.push(nearest.sigma);
+            parts.obstacles.push(nearest.kind);
+        }
+        parts
+    }
+}
+
+/// The obstacle points of a scan with their beams, moved.
+fn hits<'a>(pose: Pose2, scan: &'a Scan) -> impl Iterator<Item = (usize, Vector2)> + 'a {
+    scan.beams().iter().enumerate().filter_map(move |(i, beam)| match beam {
+        Beam::Hit { range } => Some((i, pose.transform(scan.point(i, *range)))),
+        _ => None,
+    })
+}

@@ -1,0 +1,249 @@
+use crate::particle_config::ParticleConfig;
+use crate::persist::FilterFileError;
+use crate::rbpf::map_publisher::Publisher;
+use crate::rbpf::mapper::{ParticleMapper, USUAL, USUAL_RATE, metres, scaled};
+use crate::rbpf::motion_model::{motion_covariance, unknown_motion_covariance};
+use crate::rbpf::proposal::{Proposal, Proposer};
+use crate::rbpf::resampling::{effective, low_variance};
+use crate::rbpf::rng::Chance;
+use crate::rbpf::update_gate::Gate;
+use crate::scan_match::branch_and_bound::Pyramid;
+use crate::scan_match::coarse_search::CoarseSearch;
+use crate::scan_match::global_search::{GlobalSearch, Lost};
+use crate::scan_match::likelihood::Likelihood;
+use crate::scan_match::scan_points::ScanShape;
+use nalgebra::{Matrix3, Vector3};
+use trundle_core::{Invalid, OccupancyGrid, Pose2, Scan, wrap_angle};
+use trundle_grid::tiles::TileMap;
+
+/// Where the robot is in a map that never changes: found anywhere in it by search, then followed by a particle filter with the
+/// mapper's own proposal.
+///
+/// Found means proved: the best place in the whole map (branch and bound, no place of the lattice is missed) must be better than the
+/// second best and than none. Cost: a search is linear in the map's area, following a scan is not.
+#[derive(Debug)]
+pub struct MapLocalizer {
+    config: ParticleConfig,
+    seed: u64,
+    updates: u64,
+    likelihood: Likelihood,
+    map: TileMap,
+    pyramid: Option<Pyramid>,
+    shape: ScanShape,
+    coarse: CoarseSearch,
+    gate: Gate,
+    usual: f64,
+    state: State,
+}
+
+#[derive(Debug)]
+enum State {
+    Lost(GlobalSearch),
+    /// Poses (cells) with the logarithms of their weights; scans in a row that the map does not explain.
+    Known {
+        particles: Vec<(Pose2, f64)>,
+        strange: usize,
+    },
+}
+
+/// What is known after a scan.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Localized {
+    /// The robot has hardly moved: the scan was not looked at.
+    Still,
+    /// The scan was refused.
+    Refused(crate::Refusal),
+    /// Nobody knows where the robot is.
+    Lost(Lost),
+    /// The robot is here.
+    Known {
+        /// Mean of the particles.
+        map_from_base: Pose2,
+        /// Their covariance with that of the last match: m, m, rad, map frame.
+        covariance: Matrix3<f64>,
+        /// Part of the hits that the map explains, 0 to 1.
+        explained: f64,
+        /// Directions left to the odometry, 0 to 3.
+        degenerate: usize,
+    },
+}
+
+/// So many scans in a row that fit worse than unknown ground would: lost.
+const STRANGE_SCANS: usize = 5;
+
+impl MapLocalizer {
+    /// In the map of a saved filter ([`ParticleMapper::save`]).
+    ///
+    /// # Errors
+    /// As [`ParticleMapper::load`].
+    pub fn load(bytes: &[u8], config: ParticleConfig, seed: u64) -> Result<Self, FilterFileError> {
+        let mapper = ParticleMapper::load(bytes, config)?;
+        Ok(Self::of(&mapper, seed))
+    }
+
+    /// In the best particle's map of a filter as it is now.
+    pub fn of(mapper: &ParticleMapper, seed: u64) -> Self {
+        Self::new(mapper.config.clone(), mapper.best_map().clone(), seed)
+    }
+
+    /// In a three-valued map, as from a PGM and YAML.
+    ///
+    /// # Errors
+    /// When the configuration is out of range, or the grid's cells are not its `map.resolution`.
+    pub fn from_grid(grid: &OccupancyGrid, config: ParticleConfig, seed: u64) -> Result<Self, Invalid> {
+        let config = config.validated()?;
+        let found = grid.geometry().resolution;
+        if (found - config.map.resolution).abs() > 1e-9 {
+            return Err(Invalid::new(
+                "map.resolution",
+                config.map.resolution,
+                "m",
+                format!("the map's {found} m"),
+            ));
+        }
+        let map = ParticleMapper::new(ParticleConfig { particles: 1, ..config.clone() }, 0)?.map_of(grid);
+        Ok(Self::new(config, map, seed))
+    }
+
+    fn new(config: ParticleConfig, map: TileMap, seed: u64) -> Self {
+        Self {
+            likelihood: Likelihood::new(&config),
+            pyramid: Pyramid::new(&map),
+            map,
+            seed,
+            updates: 0,
+            shape: ScanShape::default(),
+            coarse: CoarseSearch::default(),
+            gate: Gate::default(),
+            usual: USUAL,
+            state: State::Lost(GlobalSearch::default()),
+            config,
+        }
+    }
+
+    /// The map as a three-valued grid.
+    pub fn grid(&self) -> OccupancyGrid {
+        let mut publisher = Publisher::new(&self.config.map);
+        publisher.show(&self.map);
+        publisher.grid().clone()
+    }
+
+    /// Tells where the base is: no search.
+    pub fn start_at(&mut self, map_from_base: Pose2) {
+        let per_metre = 1.0 / self.config.map.resolution;
+        let pose = Pose2 { x: map_from_base.x * per_metre, y: map_from_base.y * per_metre, ..map_from_base };
+        self.state = State::Known { particles: vec![(pose, 0.0); self.config.particles], strange: 0 };
+    }
+
+    /// Tells that the robot was carried away: it is looked for anew.
+    pub fn kidnapped(&mut self) {
+        self.state = State::Lost(GlobalSearch::default());
+    }
+
+    /// Takes in a scan taken with the base at `odom_from_base` by the odometry.
+    pub fn update(&mut self, odom_from_base: Pose2, scan: &Scan) -> Localized {
+        let step = match self.gate.pass(&self.config, false, odom_from_base, scan) {
+            Ok(Some(step)) => step,
+            Ok(None) => return Localized::Still,
+            Err(refusal) => return Localized::Refused(refusal),
+        };
+        self.shape.set(&self.config, scan);
+        self.updates += 1;
+        match &mut self.state {
+            State::Lost(_) => self.search(odom_from_base),
+            State::Known { .. } if step.jumped => {
+                self.kidnapped();
+                self.search(odom_from_base)
+            }
+            State::Known { .. } => self.follow(step.motion),
+        }
+    }
+
+    fn search(&mut self, odom_from_base: Pose2) -> Localized {
+        let State::Lost(search) = &mut self.state else { return Localized::Still };
+        let per_metre = 1.0 / self.config.map.resolution;
+        search.push(
+            &self.shape,
+            Pose2 { x: odom_from_base.x * per_metre, y: odom_from_base.y * per_metre, ..odom_from_base },
+        );
+        let Some(pyramid) = &self.pyramid else { return Localized::Lost(Lost::NothingToSee) };
+        let found = match search.look((&self.config, &self.likelihood), &self.map, pyramid) {
+            Ok(found) => found,
+            Err(lost) => return Localized::Lost(lost),
+        };
+        let covariance = found.information.try_inverse().unwrap_or_else(unknown_motion_covariance);
+        self.state = State::Known { particles: vec![(found.pose, 0.0); self.config.particles], strange: 0 };
+        Localized::Known {
+            map_from_base: metres(&self.config, found.pose),
+            covariance: scaled(covariance, self.config.map.resolution),
+            explained: found.explained,
+            degenerate: found.degenerate,
+        }
+    }
+
+    fn follow(&mut self, motion: Pose2) -> Localized {
+        let State::Known { particles, strange } = &mut self.state else { return Localized::Still };
+        let per_metre = 1.0 / self.config.map.resolution;
+        let covariance = motion_covariance(&self.config.motion, motion);
+        let proposer = Proposer {
+            config: &self.config,
+            likelihood: &self.likelihood,
+            shape: &self.shape,
+            motion_covariance: scaled(covariance, per_metre),
+            anchor: None,
+            usual: self.usual,
+        };
+        let motion = Pose2 { x: motion.x * per_metre, y: motion.y * per_metre, ..motion };
+        let lead =
+            particles.iter().fold(particles[0], |best, next| if next.1 > best.1 { *next } else { best }).0;
+        let far = proposer.far(&self.map, &mut self.coarse, (lead, lead * motion));
+        let mut best: Option<(f64, Proposal)> = None;
+        for (i, (pose, log_weight)) in particles.iter_mut().enumerate() {
+            let mut chance = Chance::new(self.seed, self.updates, i);
+            let places = (*pose, *pose * motion);
+            let found = proposer.propose((&self.map, &far), &mut self.coarse, places, &mut chance);
+            *pose = found.pose;
+            *log_weight += found.log_weight * proposer.weight_scale();
+            if best.is_none_or(|(greatest, _)| *log_weight > greatest) {
+                best = Some((*log_weight, found));
+            }
+        }
+        let (greatest, found) = best.expect("invariant: there is at least one particle");
+        let unseen = 0.5 * self.config.outliers.ln();
+        *strange = if found.per_point < unseen { *strange + 1 } else { 0 };
+        if *strange >= STRANGE_SCANS {
+            self.kidnapped();
+            return Localized::Lost(Lost::NothingFits);
+        }
+        self.usual += USUAL_RATE * (found.per_point - self.usual);
+        particles.iter_mut().for_each(|(_, log_weight)| *log_weight -= greatest);
+        let (mean, spread) = moments(particles);
+        let weights: Vec<f64> = particles.iter().map(|(_, log_weight)| log_weight.exp()).collect();
+        if effective(&weights) < self.config.resample_below * weights.len() as f64 {
+            let uniform = Chance::new(self.seed, self.updates, weights.len()).uniform();
+            let parents = low_variance(&weights, uniform);
+            let old = particles.clone();
+            *particles = parents.iter().map(|&parent| (old[usize::from(parent)].0, 0.0)).collect();
+        }
+        Localized::Known {
+            map_from_base: metres(&self.config, mean),
+            covariance: scaled(spread + found.covariance, self.config.map.resolution),
+            explained: found.explained,
+            degenerate: found.degenerate,
+        }
+    }
+}
+
+/// Weighted mean and covariance.
+fn moments(particles: &[(Pose2, f64)]) -> (Pose2, Matrix3<f64>) {
+    let first = particles[0].0;
+    let off =
+        |pose: &Pose2| Vector3::new(pose.x - first.x, pose.y - first.y, wrap_angle(pose.theta - first.theta));
+    let total: f64 = particles.iter().map(|(_, log)| log.exp()).sum();
+    let mean: Vector3<f64> = particles.iter().map(|(pose, log)| off(pose) * (log.exp() / total)).sum();
+    let spread = particles
+        .iter()
+        .map(|(pose, log)| (off(pose) - mean) * (off(pose) - mean).transpose() * (log.exp() / total))
+        .sum();
+    (Pose2::new(first.x + mean.x, first.y + mean.y, first.theta + mean.z), spread)
+}

@@ -1,0 +1,60 @@
+use crate::pose_graph::Reached;
+use nalgebra::Matrix2;
+use std::ops::Range;
+use trundle_core::Pose2;
+
+/// An earlier stretch of the way that the robot may be near now.
+#[derive(Debug, Clone)]
+pub(crate) struct Candidate {
+    /// Poses of the stretch.
+    pub(crate) range: Range<usize>,
+    /// The one that is most likely near.
+    pub(crate) nearest: usize,
+    /// How far it is, in standard deviations.
+    pub(crate) distance: f64,
+    /// How surely the robot is known from there.
+    pub(crate) reached: Reached,
+}
+
+/// Less of a way than this is no loop: the map of the particle holds it, m.
+const LEAST_WAY: f64 = 20.0;
+/// As far as a place may be from where another was seen well, m.
+const VIEW: f64 = 4.0;
+/// Widest search, m: what a minute of failing odometry may amount to.
+pub(crate) const WIDEST: f64 = 40.0;
+
+/// The stretches that the last pose may be near, the likeliest first. `ways` is the way up to each pose, m.
+pub(crate) fn candidates(poses: &[Pose2], ways: &[f64], reached: &[Option<Reached>]) -> Vec<Candidate> {
+    let last = poses.len() - 1;
+    let mut found: Vec<Candidate> = Vec::new();
+    for k in 0..last {
+        if ways[last] - ways[k] < LEAST_WAY {
+            break;
+        }
+        let Some((distance, reached)) = feasible(poses[k], poses[last], reached[k]) else { continue };
+        match found.last_mut().filter(|c| c.range.end == k) {
+            Some(stretch) => {
+                stretch.range.end = k + 1;
+                if distance < stretch.distance {
+                    (stretch.nearest, stretch.distance, stretch.reached) = (k, distance, reached);
+                }
+            }
+            None => found.push(Candidate { range: k..k + 1, nearest: k, distance, reached }),
+        }
+    }
+    found.sort_by(|a, b| a.distance.total_cmp(&b.distance).then(b.nearest.cmp(&a.nearest)));
+    found
+}
+
+/// How far a pose is in standard deviations, when that is little enough.
+fn feasible(pose: Pose2, last: Pose2, reached: Option<Reached>) -> Option<(f64, Reached)> {
+    let reached = reached?;
+    let off = last.position() - pose.position();
+    if off.norm() > WIDEST {
+        return None;
+    }
+    let drift: Matrix2<f64> = reached.covariance.fixed_view::<2, 2>(0, 0).into();
+    let spread = drift + Matrix2::identity() * (VIEW / 3.0_f64).powi(2);
+    let distance = off.dot(&(spread.try_inverse()? * off)).sqrt();
+    (distance < 3.0).then_some((distance, reached))
+}

@@ -1,0 +1,127 @@
+use crate::loop_closing::stored_scan::StoredScan;
+use crate::pose_graph::Tie;
+use nalgebra::Matrix3;
+use trundle_core::{Pose2, Stamp};
+
+/// What is kept of the run: every processed scan, how surely each step was measured, and the loops that were closed.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct History {
+    pub(crate) scans: Vec<StoredScan>,
+    /// Covariance of the step to each pose, in that pose's frame: m, m, rad.
+    pub(crate) steps: Vec<Matrix3<f64>>,
+    /// The steps as they were measured, up to the last correction: a correction must not count as measured.
+    pub(crate) measured: Vec<Pose2>,
+    pub(crate) loops: Vec<Tie>,
+}
+
+impl History {
+    pub(crate) fn push(&mut self, scan: StoredScan, step: Matrix3<f64>) {
+        self.scans.push(scan);
+        self.steps.push(step);
+    }
+
+    /// Notes the steps of a trajectory that were not noted before.
+    pub(crate) fn measure(&mut self, poses: &[Pose2]) {
+        for k in self.measured.len().max(1)..poses.len() {
+            if self.measured.is_empty() {
+                self.measured.push(Pose2::IDENTITY);
+            }
+            self.measured.push(poses[k - 1].inverse() * poses[k]);
+        }
+    }
+
+    /// The steps and the loops as ties between the poses of a trajectory.
+    pub(crate) fn ties(&self, poses: &[Pose2]) -> Vec<Tie> {
+        let step = |k: usize| Tie {
+            from: k as u32 - 1,
+            to: k as u32,
+            from_to: self.measured.get(k).copied().unwrap_or_else(|| poses[k - 1].inverse() * poses[k]),
+            covariance: self.steps[k],
+        };
+        (1..poses.len()).map(step).chain(self.loops.iter().copied()).collect()
+    }
+
+    /// Lets every second of the first `count` scans go (not the first), with the poses of the trajectory that belong to them.
+    /// Their steps are composed; loops that end at one end at the one before, at the same place as well as the trajectory tells.
+    pub(crate) fn thin(&mut self, trajectory: &mut Vec<(Stamp, Pose2)>, count: usize) {
+        let poses: Vec<Pose2> = trajectory.iter().map(|(_, pose)| *pose).collect();
+        self.measure(&poses);
+        let goes = |k: usize| k % 2 == 1 && k + 1 < count;
+        let number = |k: usize| if k < count { k.div_ceil(2) } else { k - (count.max(1) - 1) / 2 };
+        let renamed = |k: u32| {
+            let k = k as usize;
+            if goes(k) {
+                (number(k - 1) as u32, poses[k - 1].inverse() * poses[k])
+            } else {
+                (number(k) as u32, Pose2::IDENTITY)
+            }
+        };
+        for tie in &mut self.loops {
+            let ((from, to_old_from), (to, to_old_to)) = (renamed(tie.from), renamed(tie.to));
+            let from_to = to_old_from * tie.from_to * to_old_to.inverse();
+            *tie = Tie { from, to, from_to, covariance: tie.covariance };
+        }
+        self.loops.retain(|tie| tie.from != tie.to);
+        for k in (1..self.steps.len().min(count)).filter(|&k| goes(k)) {
+            self.measured[k + 1] = self.measured[k] * self.measured[k + 1];
+            let step = self.steps[k];
+            self.steps[k + 1] += step;
+        }
+        keep(&mut self.scans, |k| !goes(k));
+        keep(&mut self.steps, |k| !goes(k));
+        keep(&mut self.measured, |k| !goes(k));
+        keep(trajectory, |k| !goes(k));
+    }
+
+    /// Bytes that it holds.
+    pub(crate) fn bytes(&self) -> usize {
+        self.scans.iter().map(StoredScan::bytes).sum::<usize>()
+            + self.steps.capacity() * size_of::<Matrix3<f64>>()
+            + self.measured.capacity() * size_of::<Pose2>()
+            + self.loops.capacity() * size_of::<Tie>()
+    }
+}
+
+/// Keeps the elements whose number says so.
+fn keep<T>(all: &mut Vec<T>, stays: impl Fn(usize) -> bool) {
+    let mut k = 0;
+    all.retain(|_| {
+        k += 1;
+        stays(k - 1)
+    });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scan_match::scan_points::ScanShape;
+
+    #[test]
+    fn thinning_keeps_the_way_and_its_loops() {
+        let step = Pose2::new(0.5, 0.1, 0.2);
+        let mut history = History::default();
+        let mut way = vec![(Stamp::default(), Pose2::IDENTITY)];
+        for k in 0..41 {
+            history.push(StoredScan::new(&ScanShape::default()), Matrix3::identity() * 1e-4);
+            if k > 0 {
+                way.push((Stamp::from_nanos(k), way.last().unwrap().1 * step));
+            }
+        }
+        let tie = |from: u32, to: u32| Tie {
+            from,
+            to,
+            from_to: way[from as usize].1.inverse() * way[to as usize].1,
+            covariance: Matrix3::identity() * 1e-4,
+        };
+        history.loops = vec![tie(3, 37), tie(4, 15), tie(8, 40)];
+        let mut thinned = way.clone();
+        history.thin(&mut thinned, 20);
+        assert_eq!((history.scans.len(), thinned.len(), history.measured.len()), (32, 32, 32));
+        assert_eq!(thinned[0], way[0]);
+        assert_eq!(thinned.last(), way.last());
+        let poses: Vec<Pose2> = thinned.iter().map(|(_, pose)| *pose).collect();
+        for tie in history.ties(&poses) {
+            assert!(tie.residual(poses[tie.from as usize], poses[tie.to as usize]).norm() < 1e-9, "{tie:?}");
+        }
+    }
+}

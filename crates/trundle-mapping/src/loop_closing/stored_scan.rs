@@ -1,0 +1,144 @@
+use crate::scan_match::scan_points::ScanShape;
+use trundle_grid::tiles::{RaySpan, ScanRay};
+
+/// A processed scan, packed: 5 bytes a beam, 6 where the sensor says how sure its ranges are, and 8 for each stretch that was seen
+/// to be free of a beam that was not seen whole.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct StoredScan {
+    /// Where the beams begin, base frame, cells.
+    pub(crate) origin: (f32, f32),
+    pub(crate) rays: Box<[PackedRay]>,
+    /// One sigma of each ray's range, mm; empty where the sensor does not say.
+    pub(crate) sigmas: Box<[u8]>,
+    pub(crate) spans: Box<[PackedSpan]>,
+}
+
+/// The end of a beam in 1/16 cells, and how it relates to the ray before.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(C, packed)]
+pub(crate) struct PackedRay {
+    pub(crate) x: i16,
+    pub(crate) y: i16,
+    /// 1: a hit; 2: on one surface with the ray before; 4: seen whole; 8 and up: beams since the ray before.
+    pub(crate) what: u8,
+}
+
+/// A stretch of a ray, its ends in parts of 65,535.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct PackedSpan {
+    pub(crate) ray: u32,
+    pub(crate) from: u16,
+    pub(crate) to: u16,
+}
+
+/// A ray with the number of its beam, counted from the first ray's.
+pub(crate) struct StoredRay {
+    pub(crate) ray: ScanRay,
+    pub(crate) beam: usize,
+    /// One sigma of its range, m; 0 where the sensor does not say.
+    pub(crate) sigma: f32,
+}
+
+/// Units a cell.
+const PER_CELL: f32 = 16.0;
+const HIT: u8 = 1;
+const JOINED: u8 = 2;
+const WHOLE: u8 = 4;
+const SKIPPED_BITS: u32 = 3;
+const MOST_SKIPPED: usize = 31;
+const SIGMA_UNIT: f32 = 0.001;
+
+impl StoredScan {
+    /// Packs a scan. Ends farther than 2047 cells are left out: a ray of a laser at 5 cm reaches 102 m.
+    pub(crate) fn new(shape: &ScanShape) -> Self {
+        let pack = |v: f32| {
+            let scaled = (v * PER_CELL).round();
+            (scaled.abs() <= f32::from(i16::MAX)).then_some(scaled as i16)
+        };
+        let (mut rays, mut sigmas, mut spans) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut last, mut next_span) = (None, 0);
+        for (k, (ray, &beam)) in shape.rays.rays.iter().zip(&shape.beams).enumerate() {
+            let first =
+                next_span + shape.rays.spans[next_span..].iter().take_while(|s| (s.ray as usize) < k).count();
+            next_span = first + shape.rays.spans[first..].iter().take_while(|s| s.ray as usize == k).count();
+            let (Some(x), Some(y)) = (pack(ray.x), pack(ray.y)) else { continue };
+            let skipped = last.map_or(0, |last| beam - last).min(MOST_SKIPPED) as u8;
+            last = Some(beam);
+            let what = (skipped << SKIPPED_BITS)
+                | if ray.hit { HIT } else { 0 }
+                | if ray.joined && skipped == 1 { JOINED } else { 0 }
+                | if ray.whole { WHOLE } else { 0 };
+            let part = |v: f32| (v * f32::from(u16::MAX)).round() as u16;
+            let number = rays.len() as u32;
+            spans.extend(shape.rays.spans[first..next_span].iter().map(|span| PackedSpan {
+                ray: number,
+                from: part(span.from),
+                to: part(span.to),
+            }));
+            sigmas.extend(shape.sigmas.get(k).map(|sigma| (sigma / SIGMA_UNIT).round().min(255.0) as u8));
+            rays.push(PackedRay { x, y, what });
+        }
+        Self { origin: shape.rays.origin, rays: rays.into(), sigmas: sigmas.into(), spans: spans.into() }
+    }
+
+    /// The rays, in order.
+    pub(crate) fn rays(&self) -> impl Iterator<Item = StoredRay> {
+        let mut beam = 0;
+        self.rays.iter().enumerate().map(move |(k, packed)| {
+            beam += usize::from(packed.what >> SKIPPED_BITS);
+            let ray = ScanRay {
+                x: f32::from(packed.x) / PER_CELL,
+                y: f32::from(packed.y) / PER_CELL,
+                hit: packed.what & HIT != 0,
+                joined: packed.what & JOINED != 0,
+                whole: packed.what & WHOLE != 0,
+                hit_weight: 1.0,
+            };
+            let sigma = self.sigmas.get(k).map_or(0.0, |sigma| f32::from(*sigma) * SIGMA_UNIT);
+            StoredRay { ray, beam, sigma }
+        })
+    }
+
+    /// What was seen to be free of the rays that were not seen whole.
+    pub(crate) fn spans(&self) -> impl Iterator<Item = RaySpan> {
+        let part = |v: u16| f32::from(v) / f32::from(u16::MAX);
+        self.spans.iter().map(move |span| RaySpan { ray: span.ray, from: part(span.from), to: part(span.to) })
+    }
+
+    /// Bytes that it holds.
+    pub(crate) fn bytes(&self) -> usize {
+        size_of::<Self>() + size_of_val(&*self.rays) + self.sigmas.len() + size_of_val(&*self.spans)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::particle_config::ParticleConfig;
+    use trundle_core::{Beam, FreeSpan, Scan, ScanParts, Stamp, Vector2};
+
+    #[test]
+    fn packing_keeps_what_a_scan_says_of_its_beams() {
+        let beams =
+            vec![Beam::Hit { range: 2.0 }, Beam::Unseen, Beam::Free { range: 3.0 }, Beam::Hit { range: 1.0 }];
+        let span = |beam, from, to| FreeSpan { beam, from, to };
+        let free = Some(vec![span(0, 0.0, 2.0), span(2, 0.5, 1.0), span(2, 1.5, 3.0)]);
+        let parts = ScanParts { beams, free, sigmas: vec![0.01, 0.0, 0.0, 0.3], ..ScanParts::default() };
+        let scan = Scan::from_parts(Stamp::default(), Vector2::zeros(), (0.0, 0.1), parts).unwrap();
+        let (config, mut shape, mut again) =
+            (ParticleConfig::default(), ScanShape::default(), ScanShape::default());
+        shape.set(&config, &scan);
+        again.set_stored(&config, &StoredScan::new(&shape));
+        let whole = |shape: &ScanShape| shape.rays.rays.iter().map(|ray| ray.whole).collect::<Vec<_>>();
+        assert_eq!(whole(&shape), [true, false, false]);
+        assert_eq!(whole(&again), whole(&shape));
+        assert_eq!(again.rays.spans.len(), 2);
+        for (a, b) in again.rays.spans.iter().zip(&shape.rays.spans) {
+            assert!(a.ray == 1 && b.ray == 1 && (a.from - b.from).abs() < 1e-4 && (a.to - b.to).abs() < 1e-4);
+        }
+        let sigma = |shape: &ScanShape| shape.points.iter().map(|p| p.information).collect::<Vec<_>>();
+        let (told, kept) = (sigma(&shape), sigma(&again));
+        assert!((told[0] - kept[0]).abs() < 1e-3 * told[0], "{told:?} {kept:?}");
+        assert!((0.05 / 0.255_f32.hypot(0.015)).powi(2) - kept[1] < 1e-4, "a sigma is kept up to 255 mm");
+    }
+}

@@ -1,0 +1,176 @@
+use serde::{Deserialize, Serialize};
+use trundle_core::{Invalid, require_in};
+use trundle_grid::MapperConfig;
+
+/// The settings of [`crate::ParticleMapper`].
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct ParticleConfig {
+    /// Particles, 1 to 1000. Default 30 (\[Grisetti07\] closes its loops with 15 to 80).
+    pub particles: usize,
+    /// The maps. Default: that of a laser, which sees to 80 m and has no blind range.
+    pub map: MapperConfig,
+    /// The odometry's errors.
+    pub motion: MotionConfig,
+    /// Odometry that does not drift, as the poses of a SLAM that has closed its loops: each of them is believed, not its steps alone, and
+    /// loops are not looked for. Default: none, dead reckoning. After [`crate::ParticleMapper::kidnapped`] the steps alone are taken: where
+    /// that odometry begins in the map is not known as well.
+    pub pose_prior: Option<PosePriorConfig>,
+    /// A scan is processed when the robot moved this far since the last one, m, 0 to 5. Default 0.3.
+    pub move_gate: f64,
+    /// Or turned this far, deg, 0 to 180. Default 10.
+    pub turn_gate_deg: f64,
+    /// Or this long ago, s, 0 to 3600. Default 2: wheels may turn unseen, and stand while the robot is pushed.
+    pub wait_gate: f64,
+    /// Odometry that jumps farther than this between two scans is not motion, m, 0.5 to 1000. Default 5.
+    pub jump: f64,
+    /// One sigma of a range, m, 0.001 to 0.5. Default 0.02 (SICK LMS 200: 0.01 to 0.02).
+    pub range_noise: f64,
+    /// Its growth with the square of the range, m/m^2, 0 to 0.1. Default 0: a laser; 0.0015 for a Kinect.
+    pub range_noise_growth: f64,
+    /// Part of the beams that fit nothing (people, glass), 0.001 to 0.5. Default 0.05.
+    pub outliers: f64,
+    /// How many beams err alike, 1 to 100: the log-likelihood of a scan is divided by it. Default 4.
+    pub correlation: f64,
+    /// The same for the weights of the particles, on top, 1 to 100. Default 9.
+    pub weight_correlation: f64,
+    /// Most scans that are kept for redrawing after a loop, 100 to 1,000,000: beyond, every second one of the older half is let
+    /// go, with its pose. Default 20,000: 10 km of way, 20 MB at 180 beams.
+    pub most_scans: usize,
+    /// Poses sampled about the match, 8 to 500. Default 30.
+    pub samples: usize,
+    /// Resample when the effective number of particles falls below this part of their number, 0 to 1. Default 0.5
+    /// \[Grisetti07\].
+    pub resample_below: f64,
+    /// Part of the steps of which the odometry tells nothing true: wheels slip, messages are lost; 1e-6 to 0.5. Default 0.01.
+    pub slip_rate: f64,
+    /// There the robot is somewhere about the way told of, within this (one sigma), m, 0.01 to 2. Default 0.3.
+    pub slip_shift: f64,
+    /// And this, rad, 0.01 to 1. Default 0.5.
+    pub slip_turn: f64,
+    /// A direction is degenerate when it is held by less than this part of the hits, 0 to 1. Default 0.01.
+    pub degenerate_below: f64,
+}
+
+impl Default for ParticleConfig {
+    fn default() -> Self {
+        Self {
+            particles: 30,
+            map: MapperConfig { max_range: 80.0, blind_range: 0.0, ..MapperConfig::default() },
+            motion: MotionConfig::default(),
+            pose_prior: None,
+            move_gate: 0.3,
+            turn_gate_deg: 10.0,
+            wait_gate: 2.0,
+            jump: 5.0,
+            range_noise: 0.02,
+            range_noise_growth: 0.0,
+            outliers: 0.05,
+            correlation: 4.0,
+            weight_correlation: 9.0,
+            most_scans: 20_000,
+            samples: 30,
+            resample_below: 0.5,
+            slip_rate: 0.01,
+            slip_shift: 0.3,
+            slip_turn: 0.5,
+            degenerate_below: 0.01,
+        }
+    }
+}
+
+impl ParticleConfig {
+    /// Passes a valid configuration through.
+    ///
+    /// # Errors
+    /// When a number is out of the range that its field names.
+    pub fn validated(self) -> Result<Self, Invalid> {
+        require_in("particles", self.particles as f64, "", 1.0, 1000.0)?;
+        require_in("move_gate", self.move_gate, "m", 0.0, 5.0)?;
+        require_in("turn_gate_deg", self.turn_gate_deg, "deg", 0.0, 180.0)?;
+        require_in("wait_gate", self.wait_gate, "s", 0.0, 3600.0)?;
+        require_in("jump", self.jump, "m", 0.5, 1000.0)?;
+        require_in("range_noise", self.range_noise, "m", 0.001, 0.5)?;
+        require_in("range_noise_growth", self.range_noise_growth, "m/m^2", 0.0, 0.1)?;
+        require_in("outliers", self.outliers, "", 0.001, 0.5)?;
+        require_in("correlation", self.correlation, "", 1.0, 100.0)?;
+        require_in("weight_correlation", self.weight_correlation, "", 1.0, 100.0)?;
+        require_in("most_scans", self.most_scans as f64, "", 100.0, 1e6)?;
+        require_in("samples", self.samples as f64, "", 8.0, 500.0)?;
+        require_in("resample_below", self.resample_below, "", 0.0, 1.0)?;
+        require_in("slip_rate", self.slip_rate, "", 1e-6, 0.5)?;
+        require_in("slip_shift", self.slip_shift, "m", 0.01, 2.0)?;
+        require_in("slip_turn", self.slip_turn, "rad", 0.01, 1.0)?;
+        require_in("degenerate_below", self.degenerate_below, "", 0.0, 1.0)?;
+        let pose_prior = self.pose_prior.map(PosePriorConfig::validated).transpose()?;
+        Ok(Self { map: self.map.validated()?, motion: self.motion.validated()?, pose_prior, ..self })
+    }
+}
+
+/// One sigma of odometry that does not drift.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct PosePriorConfig {
+    /// Each way, m, 0.001 to 1. Default 0.01: our own SLAM is 0.2 to 1.2 cm off (docs/results.md).
+    pub shift: f64,
+    /// Heading, rad, 0.0001 to 1. Default 0.003.
+    pub turn: f64,
+}
+
+impl Default for PosePriorConfig {
+    fn default() -> Self {
+        Self { shift: 0.01, turn: 0.003 }
+    }
+}
+
+impl PosePriorConfig {
+    fn validated(self) -> Result<Self, Invalid> {
+        require_in("pose_prior.shift", self.shift, "m", 0.001, 1.0)?;
+        require_in("pose_prior.turn", self.turn, "rad", 0.0001, 1.0)?;
+        Ok(self)
+    }
+}
+
+/// One sigma of the odometry's error over a motion, by what was driven and turned (\[Thrun05\], sec. 5.4). The defaults
+/// are the customary ones of grid mapping: cheap wheels on tiles and carpets.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct MotionConfig {
+    /// Way, m for each m driven, 0 to 2. Default 0.2.
+    pub shift_per_metre: f64,
+    /// Way, m for each rad turned, 0 to 2. Default 0.1.
+    pub shift_per_radian: f64,
+    /// Heading, rad for each m driven, 0 to 2. Default 0.1.
+    pub turn_per_metre: f64,
+    /// Heading, rad for each rad turned, 0 to 2. Default 0.2.
+    pub turn_per_radian: f64,
+    /// Way even when nothing moved, m, 0.0001 to 1. Default 0.02.
+    pub least_shift: f64,
+    /// Heading even when nothing moved, rad, 0.0001 to 1. Default 0.01.
+    pub least_turn: f64,
+}
+
+impl Default for MotionConfig {
+    fn default() -> Self {
+        Self {
+            shift_per_metre: 0.2,
+            shift_per_radian: 0.1,
+            turn_per_metre: 0.1,
+            turn_per_radian: 0.2,
+            least_shift: 0.02,
+            least_turn: 0.01,
+        }
+    }
+}
+
+impl MotionConfig {
+    fn validated(self) -> Result<Self, Invalid> {
+        require_in("shift_per_metre", self.shift_per_metre, "m/m", 0.0, 2.0)?;
+        require_in("shift_per_radian", self.shift_per_radian, "m/rad", 0.0, 2.0)?;
+        require_in("turn_per_metre", self.turn_per_metre, "rad/m", 0.0, 2.0)?;
+        require_in("turn_per_radian", self.turn_per_radian, "rad/rad", 0.0, 2.0)?;
+        require_in("least_shift", self.least_shift, "m", 0.0001, 1.0)?;
+        require_in("least_turn", self.least_turn, "rad", 0.0001, 1.0)?;
+        Ok(self)
+    }
+}

@@ -1,0 +1,10 @@
+//! Pose graph of one trajectory: constraints, their least-squares solution, and the uncertainty of each pose.
+
+mod constraint;
+mod solver;
+mod sparse_blocks;
+mod uncertainty_paths;
+
+pub(crate) use constraint::Tie;
+pub(crate) use solver::solve;
+pub(crate) use uncertainty_paths::{Reached, reach};

@@ -1,0 +1,25 @@
+use crate::particle_config::ParticleConfig;
+use crate::rbpf::mapper::scaled;
+use nalgebra::{Matrix3, Vector3};
+use trundle_core::Pose2;
+
+/// What odometry that does not drift says of where the robot is.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Anchor {
+    /// map_from_base, cells and rad.
+    pub(crate) pose: Pose2,
+    /// Cells, cells, rad; map frame.
+    pub(crate) covariance: Matrix3<f64>,
+}
+
+impl Anchor {
+    /// With the base at `map_from_base` by the odometry, m and rad; none where the odometry is not told to be of this kind.
+    pub(crate) fn new(config: &ParticleConfig, map_from_base: Pose2) -> Option<Self> {
+        let prior = config.pose_prior.as_ref()?;
+        let sigma = Vector3::new(prior.shift, prior.shift, prior.turn);
+        let per_metre = 1.0 / config.map.resolution;
+        let pose = Pose2 { x: map_from_base.x * per_metre, y: map_from_base.y * per_metre, ..map_from_base };
+        let covariance = Matrix3::from_diagonal(&sigma.component_mul(&sigma));
+        Some(Self { pose, covariance: scaled(covariance, per_metre) })
+    }
+}

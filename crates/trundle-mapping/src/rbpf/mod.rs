@@ -1,0 +1,21 @@
+//! Rao-Blackwellised particle filter: each particle is a trajectory with its own map.
+
+pub(crate) mod absolute_pose;
+pub(crate) mod ancestry;
+pub(crate) mod map_publisher;
+pub(crate) mod map_redraw;
+pub(crate) mod mapper;
+pub(crate) mod motion_model;
+pub(crate) mod odometry_bias;
+pub(crate) mod odometry_noise;
+mod propagate;
+pub(crate) mod proposal;
+mod relocalization;
+pub(crate) mod resampling;
+pub(crate) mod rng;
+pub(crate) mod scan_update;
+pub(crate) mod update_gate;
+
+pub use mapper::ParticleMapper;
+pub use propagate::carry_trajectory;
+pub use scan_update::{Processed, Refusal, ScanUpdate};

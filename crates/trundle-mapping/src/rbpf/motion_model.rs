@@ -1,0 +1,19 @@
+use crate::particle_config::MotionConfig;
+use nalgebra::Matrix3;
+use trundle_core::Pose2;
+
+/// The covariance of an odometry's motion in its own frame (x, y in m, heading in rad).
+///
+/// Along x the way's error; along y too, as a turn on the way moves the end aside by half of it.
+pub(crate) fn motion_covariance(config: &MotionConfig, motion: Pose2) -> Matrix3<f64> {
+    let (way, turn) = (motion.position().norm(), motion.theta.abs());
+    let shift = config.least_shift + config.shift_per_metre * way + config.shift_per_radian * turn;
+    let heading = config.least_turn + config.turn_per_metre * way + config.turn_per_radian * turn;
+    let aside = 0.5 * shift + 0.5 * way * heading;
+    Matrix3::from_diagonal(&nalgebra::Vector3::new(shift * shift, aside * aside, heading * heading))
+}
+
+/// The covariance of a motion of which the odometry says nothing, as when it jumped: m, rad.
+pub(crate) fn unknown_motion_covariance() -> Matrix3<f64> {
+    Matrix3::from_diagonal(&nalgebra::Vector3::new(0.16, 0.16, 0.04))
+}

@@ -1,0 +1,120 @@
+use crate::rbpf::odometry_noise::Innovation;
+use nalgebra::{Matrix2, Vector2, Vector3};
+use trundle_core::Pose2;
+
+/// What the odometry has wrong on every metre and every turn, learnt from what the matches make of it.
+///
+/// Wheels of unequal size, a base that is not as wide as believed, a gyro's drift: such errors are the same at every step, add up with
+/// the way where noise adds up with its root, and are the larger part on smooth floors \[Borenstein96\]. The heading's error
+/// is taken for a |way| + b turn, the way's for c way; a, b and c are the least squares of the last steps under a prior that they are
+/// 0, as the means of \[Eliazar04\]'s motion model are.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(crate) struct OdometryBias {
+    /// Normal equations of (a, b): upper triangle, right side.
+    turn: [f64; 5],
+    /// Of c.
+    way: [f64; 2],
+}
+
+/// How large a (rad/m), b and c may be, one sigma: the worst wheels of \[Borenstein96\].
+const TURN_PER_WAY: f64 = 0.02;
+const TURN_PER_TURN: f64 = 0.03;
+const WAY_PER_WAY: f64 = 0.03;
+/// Steps that the sums remember: tyres and floors change slowly.
+const MEMORY: f64 = 300.0;
+
+impl OdometryBias {
+    /// A motion by the odometry (m, rad) as it will have been.
+    pub(crate) fn corrected(&self, motion: Pose2) -> Pose2 {
+        let [_, _, turn] = self.error(motion).into();
+        let stretch = 1.0 + self.stretch();
+        Pose2::new(motion.x * stretch, motion.y * stretch, motion.theta + turn)
+    }
+
+    /// Takes in what a match says of a step; `motion`: what the odometry said (m, rad); `innovation` is against the corrected motion,
+    /// `noise` the variances of a step's errors, both in units of `unit` m.
+    pub(crate) fn learn(&mut self, motion: Pose2, innovation: &Innovation, noise: Vector3<f64>, unit: f64) {
+        let (way, forward) = (motion.position().norm(), motion.x);
+        let applied = self.error(motion);
+        let keep = 1.0 - 1.0 / MEMORY;
+        self.turn.iter_mut().chain(&mut self.way).for_each(|sum| *sum *= keep);
+        // An error beyond three sigmas is no matter of every step.
+        let told = |k: usize| {
+            let variance = noise[k] + innovation.open[k];
+            let most = 3.0 * variance.sqrt();
+            (innovation.off[k].clamp(-most, most), 1.0 / variance)
+        };
+        let (off, weight) = told(2);
+        let error = off + applied.z;
+        let parts =
+            [way * way, way * motion.theta, motion.theta * motion.theta, way * error, motion.theta * error];
+        self.turn.iter_mut().zip(parts).for_each(|(sum, part)| *sum += weight * part);
+        let (off, weight) = told(0);
+        let (error, weight) = (off * unit + applied.x, weight / (unit * unit));
+        let parts = [forward * forward, forward * error];
+        self.way.iter_mut().zip(parts).for_each(|(sum, part)| *sum += weight * part);
+    }
+
+    /// The errors of a motion: x, y (m), heading.
+    fn error(&self, motion: Pose2) -> Vector3<f64> {
+        let [aa, ab, bb, ra, rb] = self.turn;
+        let information = Matrix2::new(aa + TURN_PER_WAY.powi(-2), ab, ab, bb + TURN_PER_TURN.powi(-2));
+        let rates =
+            information.try_inverse().map_or(Vector2::zeros(), |inverse| inverse * Vector2::new(ra, rb));
+        let turn = rates.x * motion.position().norm() + rates.y * motion.theta;
+        Vector3::new(self.stretch() * motion.x, self.stretch() * motion.y, turn)
+    }
+
+    fn stretch(&self) -> f64 {
+        self.way[1] / (self.way[0] + WAY_PER_WAY.powi(-2))
+    }
+
+    /// The numbers it consists of, for saving.
+    pub(crate) fn numbers(&self) -> [f64; 7] {
+        let ([a, b, c, d, e], [f, g]) = (self.turn, self.way);
+        [a, b, c, d, e, f, g]
+    }
+
+    /// From its numbers; those that cannot be begin anew.
+    pub(crate) fn from_numbers([a, b, c, d, e, f, g]: [f64; 7]) -> Self {
+        let fair = [a, b, c, d, e, f, g].iter().all(|v| v.is_finite()) && a >= 0.0 && c >= 0.0 && f >= 0.0;
+        if fair { Self { turn: [a, b, c, d, e], way: [f, g] } } else { Self::default() }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rbpf::rng::Chance;
+
+    #[test]
+    fn learns_what_is_wrong_at_every_step_among_noise() {
+        let (mut bias, mut chance) = (OdometryBias::default(), Chance::new(1, 0, 0));
+        for i in 0..400 {
+            let turn = [0.0, 0.2, -0.15, 0.0][i % 4];
+            let motion = Pose2::new(if turn == 0.0 { 0.3 } else { 0.1 }, 0.0, turn);
+            let truth = Pose2::new(motion.x * 1.02, 0.0, turn * 0.98 + 0.006 * motion.x);
+            let said = bias.corrected(motion);
+            let noise = Vector3::new(0.2, 0.2, 0.004);
+            let off = Vector3::new((truth.x - said.x) / 0.05, 0.0, truth.theta - said.theta);
+            let off = off + noise.component_mul(&chance.normal3());
+            let open = Vector3::new(0.01, 0.01, 1e-6);
+            bias.learn(motion, &Innovation { off, open }, noise.component_mul(&noise), 0.05);
+        }
+        let ahead = bias.corrected(Pose2::new(1.0, 0.0, 0.0));
+        assert!((ahead.x - 1.02).abs() < 0.01 && (ahead.theta - 0.006).abs() < 0.003, "{ahead:?}");
+        let turned = bias.corrected(Pose2::new(0.0, 0.0, 1.0));
+        assert!((turned.theta - 0.98).abs() < 0.01, "{turned:?}");
+        assert_eq!(OdometryBias::from_numbers(bias.numbers()), bias);
+        assert_eq!(OdometryBias::from_numbers([f64::NAN; 7]), OdometryBias::default());
+    }
+
+    #[test]
+    fn a_single_wild_step_teaches_next_to_nothing() {
+        let mut bias = OdometryBias::default();
+        let wild = Innovation { off: Vector3::new(20.0, 0.0, 0.5), open: Vector3::repeat(1e-4) };
+        bias.learn(Pose2::new(0.3, 0.0, 0.1), &wild, Vector3::new(0.04, 0.04, 1e-4), 0.05);
+        let ahead = bias.corrected(Pose2::new(0.3, 0.0, 0.0));
+        assert!(ahead.theta.abs() < 0.02 && (ahead.x - 0.3).abs() < 0.02, "{ahead:?}");
+    }
+}

@@ -1,0 +1,398 @@
+use crate::particle_config::ParticleConfig;
+use crate::rbpf::absolute_pose::Anchor;
+use crate::rbpf::odometry_noise::Innovation;
+use crate::rbpf::rng::Chance;
+use crate::scan_match::branch_and_bound::{Pyramid, Query};
+use crate::scan_match::coarse_search::{CoarseSearch, SearchPrior};
+use crate::scan_match::held_directions::Directions;
+use crate::scan_match::likelihood::{Likelihood, Vote};
+use crate::scan_match::motion_prior::Prior;
+use crate::scan_match::scan_points::ScanShape;
+use nalgebra::{Cholesky, Matrix3, Vector3};
+use trundle_core::{Pose2, wrap_angle};
+use trundle_grid::tiles::{Tile, TileMap, TileWindow};
+
+/// The improved proposal of \[Grisetti07\] for one particle.
+///
+/// The pose is looked for by correlation, coarse to fine, then by Gauss-Newton on the field of nearest obstacles with
+/// the odometry as prior; about the optimum poses are sampled in an ellipsoid as wide as the two together allow;
+/// weighted by p(z | m, x) p(x | x', u) they give mean, covariance and, summed up, the particle's new weight. The pose is drawn
+/// from that Gaussian. Directions that the scan does not hold stay with the odometry's Gaussian.
+#[derive(Debug)]
+pub(crate) struct Proposer<'a> {
+    pub(crate) config: &'a ParticleConfig,
+    pub(crate) likelihood: &'a Likelihood,
+    pub(crate) shape: &'a ScanShape,
+    /// Covariance of the motion, base frame before it: cells, rad.
+    pub(crate) motion_covariance: Matrix3<f64>,
+    /// Where the robot is by odometry that does not drift.
+    pub(crate) anchor: Option<Anchor>,
+    /// Mean ln p(z | m, x) of a point in the last scans.
+    pub(crate) usual: f64,
+}
+
+/// Where a particle goes.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Proposal {
+    /// Cells, rad.
+    pub(crate) pose: Pose2,
+    /// ln of the sum of the samples' weights.
+    pub(crate) log_weight: f64,
+    /// Part of the points that the map explains, 0 to 1.
+    pub(crate) explained: f64,
+    /// Part of the points on free ground with no obstacle near, 0 to 1.
+    pub(crate) contradicted: f64,
+    /// Mean ln p(z | m, x) of the points at the optimum.
+    pub(crate) per_point: f64,
+    /// Whether the odometry was not believed.
+    pub(crate) slipped: bool,
+    /// Directions left to the odometry, 0 to 3.
+    pub(crate) degenerate: usize,
+    /// Covariance of the drawn Gaussian (cells, cells, rad), map frame.
+    pub(crate) covariance: Matrix3<f64>,
+    /// What the match says of the odometry, where it holds all directions.
+    pub(crate) innovation: Option<Innovation>,
+}
+
+const MOST_STEPS: usize = 10;
+/// Steps shorter than this are none, cells.
+const STILL: f64 = 0.01;
+/// A start of the climb is another one when it is this far from the best, cells.
+const ELSEWHERE: f64 = 5.0;
+/// And is worth it when it is less than this much worse, nats.
+const RIVAL: f64 = 2.0;
+/// Radius of the ellipsoid of samples, sigmas.
+const SPREAD: f64 = 2.5;
+/// Most points of a wide search, and how far it reaches, sigmas.
+const MOST_POINTS: usize = 80;
+const REACH: f64 = 3.0;
+/// Less than this part of the points on known obstacles: there is nothing to match.
+const LEAST_EXPLAINED: f64 = 0.1;
+
+/// An optimum with the tiles in which it was looked for.
+struct Attempt<'m> {
+    window: TileWindow<'m>,
+    /// The window's corner, cells of the map.
+    corner: (f64, f64),
+    prior: Prior,
+    optimum: Optimum,
+    contradicted: f64,
+}
+
+/// An optimum of the posterior.
+pub(crate) struct Optimum {
+    pub(crate) pose: Pose2,
+    pub(crate) vote: Vote,
+    pub(crate) directions: Directions,
+    log_posterior: f64,
+}
+
+impl Proposer<'_> {
+    /// What of a log-weight counts for the particle.
+    pub(crate) fn weight_scale(&self) -> f64 {
+        1.0 / self.config.weight_correlation
+    }
+
+    /// Draws the pose of a particle that stood at `before` and should have come to `guess` (cells, rad, of the map).
+    ///
+    /// Two things may have happened: the odometry erred as its covariance says, or its wheels slipped or its words were
+    /// lost (`slip_rate`), and the robot is somewhere about the way that it tells of. The second is looked into where it
+    /// would be the likelier one if the scan fitted there as scans usually do: at `far`, what [`Proposer::far`] found for one
+    /// particle of those that share most of their past.
+    pub(crate) fn propose(
+        &self,
+        (map, far): (&TileMap, &[Pose2]),
+        search: &mut CoarseSearch,
+        (before, guess): (Pose2, Pose2),
+        chance: &mut Chance,
+    ) -> Proposal {
+        let near = self.attempt(map, search, self.near(before, guess));
+        let slip = self.slip(before, guess);
+        let rate = self.config.slip_rate.ln();
+        if !far.is_empty() && self.needed(&near, &slip).is_some() {
+            let far = self.climb_far(map, slip, far.iter().map(|place| before * *place));
+            if far.optimum.log_posterior + rate > near.optimum.log_posterior {
+                return self.sample(&far, rate, chance);
+            }
+        }
+        self.sample(&near, 0.0, chance)
+    }
+
+    /// Places far from where the odometry leads that a particle at `before` may have come to, in the frame of `before`; none
+    /// where the scan fits near the odometry, or nowhere.
+    pub(crate) fn far(
+        &self,
+        map: &TileMap,
+        search: &mut CoarseSearch,
+        (before, guess): (Pose2, Pose2),
+    ) -> Vec<Pose2> {
+        let near = self.attempt(map, search, self.near(before, guess));
+        let slip = self.slip(before, guess);
+        let Some(needed) = self.needed(&near, &slip) else { return Vec::new() };
+        let back = before.inverse();
+        self.search_far(map, &slip, needed).into_iter().map(|place| back * place).collect()
+    }
+
+    fn near(&self, before: Pose2, guess: Pose2) -> Prior {
+        let prior = Prior::new(guess, before.theta, &self.motion_covariance);
+        match &self.anchor {
+            Some(anchor) => prior.fused(anchor.pose, &anchor.covariance),
+            None => prior,
+        }
+    }
+
+    fn slip(&self, before: Pose2, guess: Pose2) -> Prior {
+        let config = self.config;
+        Prior::slipped(before, guess, config.slip_shift / config.map.resolution, config.slip_turn)
+    }
+
+    /// The log-posterior (but for the normalisation of the slip's prior) above which a place far away is the likelier one; `None`
+    /// where no scan as usual reaches it.
+    fn needed(&self, near: &Attempt<'_>, slip: &Prior) -> Option<f64> {
+        let usual = self.usual * self.shape.points.len() as f64 / self.config.correlation;
+        let needed = near.optimum.log_posterior - self.config.slip_rate.ln() - 0.5 * slip.log_determinant;
+        (usual > needed).then_some(needed)
+    }
+
+    /// The best poses under a wide prior, by branch and bound: those that can have the log-posterior `needed` (but for the
+    /// prior's normalisation), at most two.
+    fn search_far(&self, map: &TileMap, prior: &Prior, needed: f64) -> Vec<Pose2> {
+        let window = self.window(map, prior);
+        let (cols, rows) = window.size();
+        let low = (window.corner.0 >> Tile::BITS, window.corner.1 >> Tile::BITS);
+        let high = (low.0 + cols as i32 - 1, low.1 + rows as i32 - 1);
+        let Some(pyramid) = Pyramid::of(map, low, high) else { return Vec::new() };
+        let every = self.shape.points.len().div_ceil(MOST_POINTS).max(1);
+        let points: Vec<_> = self.shape.points.iter().step_by(every).map(|p| (p.x, p.y)).collect();
+        let sigma = |k: usize| prior.covariance[(k, k)].sqrt();
+        let query = Query {
+            points: &points,
+            guess: prior.guess,
+            reach: (REACH * sigma(0), REACH * sigma(1)),
+            turn_reach: (REACH * sigma(2)).min(std::f64::consts::PI),
+            turn_step: (2.0 / self.shape.lever).clamp(0.01, 0.05),
+            sigma: (sigma(0), sigma(1), sigma(2)),
+            gain: -self.config.outliers.ln() / self.config.correlation * every as f64,
+        };
+        // A point that fits nothing is no better than one on unknown ground.
+        let unseen =
+            0.5 * self.config.outliers.ln() * self.shape.points.len() as f64 / self.config.correlation;
+        let least = (needed - unseen).max(0.0);
+        let mut places = Vec::new();
+        while places.len() < 2
+            && let Some(place) = pyramid.search(&query, &places, (2.0 * ELSEWHERE, 0.2), least)
+        {
+            places.push(place);
+        }
+        places.into_iter().map(|place| place.pose).collect()
+    }
+
+    /// The best top near one of these places, of which there is one.
+    fn climb_far<'m>(
+        &self,
+        map: &'m TileMap,
+        prior: Prior,
+        places: impl Iterator<Item = Pose2>,
+    ) -> Attempt<'m> {
+        let window = self.window(map, &prior);
+        let corner = (f64::from(window.corner.0), f64::from(window.corner.1));
+        let local = |pose: Pose2| Pose2 { x: pose.x - corner.0, y: pose.y - corner.1, ..pose };
+        let prior = Prior { guess: local(prior.guess), ..prior };
+        let optimum = places
+            .map(|place| self.climb(&window, &prior, local(place)))
+            .reduce(|best, next| if next.log_posterior > best.log_posterior { next } else { best })
+            .expect("invariant: there is a place");
+        self.attempted(window, corner, prior, optimum)
+    }
+
+    /// The best pose under a prior (cells of the map).
+    fn attempt<'m>(&self, map: &'m TileMap, search: &mut CoarseSearch, prior: Prior) -> Attempt<'m> {
+        let window = self.window(map, &prior);
+        let corner = (f64::from(window.corner.0), f64::from(window.corner.1));
+        let guess = Pose2 { x: prior.guess.x - corner.0, y: prior.guess.y - corner.1, ..prior.guess };
+        let prior = Prior { guess, ..prior };
+        let optimum = self.optimum(&window, search, &prior);
+        self.attempted(window, corner, prior, optimum)
+    }
+
+    fn attempted<'m>(
+        &self,
+        window: TileWindow<'m>,
+        corner: (f64, f64),
+        prior: Prior,
+        optimum: Optimum,
+    ) -> Attempt<'m> {
+        let contradicted = optimum.vote.contradicted / self.shape.points.len().max(1) as f64;
+        Attempt { window, corner, prior, optimum, contradicted }
+    }
+
+    /// The tiles that the scan can reach under a prior.
+    fn window<'m>(&self, map: &'m TileMap, prior: &Prior) -> TileWindow<'m> {
+        let guess = prior.guess;
+        let (mut low, mut high) = ((guess.x, guess.y), (guess.x, guess.y));
+        let turns = prior.covariance[(2, 2)] > 0.1;
+        let (s, c) = guess.theta.sin_cos();
+        for p in &self.shape.points {
+            let (px, py) = (f64::from(p.x), f64::from(p.y));
+            let (dx, dy) = (c * px - s * py, s * px + c * py);
+            let far = px.hypot(py);
+            let (right, up) = if turns { (far, far) } else { (dx, dy) };
+            let (left, down) = if turns { (-far, -far) } else { (dx, dy) };
+            low = (low.0.min(guess.x + left), low.1.min(guess.y + down));
+            high = (high.0.max(guess.x + right), high.1.max(guess.y + up));
+        }
+        const MARGIN: f64 = 16.0;
+        let cell = |v: f64| v.floor() as i32;
+        TileWindow::new(
+            map,
+            (cell(low.0 - MARGIN), cell(low.1 - MARGIN)),
+            (cell(high.0 + MARGIN), cell(high.1 + MARGIN)),
+        )
+    }
+
+    fn optimum(&self, window: &TileWindow<'_>, search: &mut CoarseSearch, prior: &Prior) -> Optimum {
+        let about = SearchPrior {
+            information: prior.information,
+            sigma: prior.covariance[(0, 0)].max(prior.covariance[(1, 1)]).sqrt(),
+            sigma_turn: prior.covariance[(2, 2)].sqrt(),
+            gain: -self.config.outliers.ln() / self.config.correlation,
+        };
+        let starts = search.search(window, self.shape, prior.guess, (&about, RIVAL));
+        let (first, top) = starts[0];
+        // Another start is worth climbing from when it is nearly as good and somewhere else.
+        let elsewhere = |p: &Pose2| {
+            let off = difference(*p, top);
+            off.xy().amax() > ELSEWHERE || off.z.abs() * self.shape.lever > ELSEWHERE
+        };
+        let second = starts.iter().find(|(score, p)| first - score < RIVAL && elsewhere(p)).map(|s| s.1);
+        let best = self.climb(window, prior, top);
+        let rival = second.map(|start| self.climb(window, prior, start));
+        match rival {
+            Some(rival) if rival.log_posterior > best.log_posterior => rival,
+            _ => best,
+        }
+    }
+
+    /// Gauss-Newton on hits and odometry together.
+    pub(crate) fn climb(&self, window: &TileWindow<'_>, prior: &Prior, start: Pose2) -> Optimum {
+        let mut pose = start;
+        let mut vote = self.likelihood.vote(window, self.shape, pose);
+        let directions = Directions::new(self.shape, pose, &vote, self.config.degenerate_below);
+        for _ in 0..MOST_STEPS {
+            let scale = 1.0 / self.config.correlation;
+            let information = directions.information(&vote) * scale + directions.in_y(&prior.information);
+            let back = prior.information * difference(prior.guess, pose);
+            let pull = directions.pull(&vote) * scale + directions.pose_from_y.transpose() * back;
+            let Some(factor) = Cholesky::new(information) else { break };
+            let step = factor.solve(&pull);
+            let x = directions.pose_from_y * step;
+            pose = Pose2 { x: pose.x + x.x, y: pose.y + x.y, theta: pose.theta + x.z };
+            vote = self.likelihood.vote(window, self.shape, pose);
+            if step.amax() < STILL {
+                break;
+            }
+        }
+        let directions = Directions::new(self.shape, pose, &vote, self.config.degenerate_below);
+        Optimum { log_posterior: self.log_posterior(window, prior, pose), pose, vote, directions }
+    }
+
+    /// ln p(z | m, x) p(x | x', u), but for a constant.
+    fn log_posterior(&self, window: &TileWindow<'_>, prior: &Prior, pose: Pose2) -> f64 {
+        let off = difference(pose, prior.guess);
+        self.likelihood.log_likelihood(window, self.shape, pose) / self.config.correlation
+            - 0.5 * off.dot(&(prior.information * off))
+            + 0.5 * prior.log_determinant
+    }
+
+    fn sample(&self, attempt: &Attempt<'_>, log_rate: f64, chance: &mut Chance) -> Proposal {
+        let Attempt { window, corner, prior, optimum, .. } = attempt;
+        let Optimum { pose: top, vote, directions, .. } = optimum;
+        let explained = vote.explained / self.shape.points.len().max(1) as f64;
+        let lost = explained < LEAST_EXPLAINED;
+        let held = if lost { Matrix3::zeros() } else { directions.held };
+        let centre = if lost { prior.guess } else { *top };
+        let odometry = directions.in_y(&prior.information);
+        let hits =
+            if lost { Matrix3::zeros() } else { directions.information(vote) / self.config.correlation };
+        let shape =
+            Cholesky::new(hits + odometry).expect("invariant: the odometry's information is positive");
+        // Columns of `spread` are one sigma long.
+        let spread = shape.inverse().cholesky().expect("invariant: the inverse of a positive matrix").l();
+        let moved = |y: Vector3<f64>| {
+            let x = directions.pose_from_y * y;
+            Pose2 { x: centre.x + x.x, y: centre.y + x.y, theta: centre.theta + x.z }
+        };
+
+        let mut samples = [(0.0, Vector3::zeros()); MOST_SAMPLES];
+        let count = self.config.samples.min(MOST_SAMPLES);
+        let mut greatest = f64::NEG_INFINITY;
+        for pair in samples[..count].chunks_mut(2) {
+            let y = spread * chance.in_ball() * SPREAD;
+            for (sample, y) in pair.iter_mut().zip([y, -y]) {
+                *sample = (self.log_posterior(window, prior, moved(y)), y);
+                greatest = greatest.max(sample.0);
+            }
+        }
+        let samples = &samples[..count];
+        let (mut sum, mut mean) = (0.0, Vector3::zeros());
+        for (log, y) in samples {
+            let w = (log - greatest).exp();
+            sum += w;
+            mean += y * w;
+        }
+        mean /= sum;
+        let mut covariance = Matrix3::zeros();
+        for (log, y) in samples {
+            let off = y - mean;
+            covariance += off * off.transpose() * ((log - greatest).exp() / sum);
+        }
+        // What is not held stays with the odometry, whatever the samples feign.
+        let free = Matrix3::identity() - held;
+        let mean = held * mean;
+        let odometry_covariance =
+            odometry.try_inverse().expect("invariant: the odometry's covariance exists");
+        let covariance = held * covariance * held + free * odometry_covariance * free;
+        let least = shape.inverse() * LEAST_COVARIANCE;
+        let covariance = covariance + least;
+        let draw = Cholesky::new(covariance).expect("invariant: a sum with a positive matrix").l();
+        let to_pose = directions.pose_from_y;
+        let pose = moved(mean + draw * chance.normal3());
+        Proposal {
+            pose: Pose2::new(pose.x + corner.0, pose.y + corner.1, pose.theta),
+            log_weight: log_rate + greatest + (sum / count as f64).ln() + spread.determinant().ln(),
+            explained,
+            contradicted: attempt.contradicted,
+            per_point: self.likelihood.log_likelihood(window, self.shape, *top)
+                / self.shape.points.len().max(1) as f64,
+            slipped: log_rate < 0.0,
+            degenerate: if lost { 3 } else { directions.degenerate },
+            covariance: to_pose * covariance * to_pose.transpose(),
+            innovation: self.innovation(attempt).filter(|_| !lost && log_rate == 0.0),
+        }
+    }
+
+    /// What the hits alone say of the odometry's step. At the optimum x of hits (information H) and odometry (P, at g) the pulls are
+    /// even: H (m - x) = P (x - g) gives the hits' own optimum m.
+    fn innovation(&self, attempt: &Attempt<'_>) -> Option<Innovation> {
+        let Attempt { prior, optimum, .. } = attempt;
+        if optimum.directions.degenerate > 0 {
+            return None;
+        }
+        let hits = (optimum.vote.information / self.config.correlation).try_inverse()?;
+        let off = difference(optimum.pose, prior.guess);
+        let off = off + hits * (prior.information * off);
+        let (s, c) = prior.guess.theta.sin_cos();
+        let turn = Matrix3::new(c, s, 0.0, -s, c, 0.0, 0.0, 0.0, 1.0);
+        let open = (turn * hits * turn.transpose()).diagonal();
+        Some(Innovation { off: turn * off, open })
+    }
+}
+
+/// Most samples.
+const MOST_SAMPLES: usize = 500;
+/// Part of the Laplace covariance that is drawn from at least: a fit to few samples may be flat.
+const LEAST_COVARIANCE: f64 = 0.05;
+
+fn difference(to: Pose2, from: Pose2) -> Vector3<f64> {
+    Vector3::new(to.x - from.x, to.y - from.y, wrap_angle(to.theta - from.theta))
+}

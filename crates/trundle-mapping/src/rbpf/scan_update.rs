@@ -1,0 +1,54 @@
+use crate::scan_match::global_search::Lost;
+use nalgebra::Matrix3;
+use trundle_core::Pose2;
+
+/// What became of a scan.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum ScanUpdate {
+    /// The robot has hardly moved: the scan was not looked at.
+    Still,
+    /// Refused: what is wrong with it.
+    Refused(Refusal),
+    /// The scan moved the particles and is in their maps.
+    Processed(Processed),
+    /// Where the robot is in the map is not known yet, after [`crate::ParticleMapper::kidnapped`]: the map does not change.
+    Lost(Lost),
+    /// It is known from now on.
+    Found(Pose2),
+}
+
+/// Why a scan was not used.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Refusal {
+    /// The odometry is not finite.
+    NotFinite,
+    /// The scan is older than the last one.
+    TimeGoesBack,
+    /// The odometry's pose is more than 1000 km from its origin; or, of odometry that does not drift (`pose_prior`), farther from the
+    /// last one than it can have got: `jump` a second. Five such poses in a row that agree with each other are believed.
+    OutOfReach,
+}
+
+/// A processed scan.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Processed {
+    /// Part of the hits that the best particle's map explains, 0 to 1.
+    pub explained: f64,
+    /// Part of them that lies on free ground of it with no obstacle near, 0 to 1.
+    pub contradicted: f64,
+    /// Directions that the best particle left to the odometry, 0 to 3: 3 is no overlap with the map.
+    pub degenerate: usize,
+    /// Covariance of the Gaussian that the best particle's pose was drawn from: m, m, rad, map frame.
+    pub covariance: Matrix3<f64>,
+    /// Effective number of particles before resampling.
+    pub effective: f64,
+    /// Whether particles were resampled.
+    pub resampled: bool,
+    /// Whether the odometry jumped farther than `jump`: the pose is then held where it was, or, while a `pose_prior` holds, where it says.
+    pub jumped: bool,
+    /// Whether the scan said that the odometry told nothing true: slipping wheels, lost messages.
+    pub slipped: bool,
+    /// When the way and the map were bent by a loop that was closed some scans before: how far the pose went that went
+    /// farthest, m.
+    pub bent: Option<f64>,
+}

@@ -1,0 +1,102 @@
+use crate::particle_config::ParticleConfig;
+use crate::rbpf::motion_model::{motion_covariance, unknown_motion_covariance};
+use crate::rbpf::scan_update::Refusal;
+use nalgebra::Matrix3;
+use trundle_core::{Pose2, Scan, Stamp};
+
+/// Farther from its origin no odometry tells of anything true, m.
+const FARTHEST: f64 = 1e6;
+
+/// Which scans are looked at: those after some motion or time.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Gate {
+    /// The last scan that was processed.
+    pub(crate) last: Option<Last>,
+    /// A wild pose that was refused, and how many in a row have said the same.
+    doubted: Option<(Last, usize)>,
+}
+
+/// So many wild poses in a row that agree with each other are believed: a frame that has moved for good.
+const SAID: usize = 5;
+
+/// When and where by the odometry.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Last {
+    pub(crate) stamp: Stamp,
+    pub(crate) odom_from_base: Pose2,
+}
+
+impl Last {
+    /// Whether the robot cannot have got from here to there at `jump` m a second.
+    fn is_out_of_reach(&self, there: &Self, jump: f64) -> bool {
+        let way = self.odom_from_base.distance(&there.odom_from_base);
+        way > jump * (there.stamp - self.stamp).max(1.0)
+    }
+}
+
+/// What the odometry says since the last processed scan.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Step {
+    pub(crate) first: bool,
+    pub(crate) motion: Pose2,
+    /// m, m, rad, in the base's frame.
+    pub(crate) covariance: Matrix3<f64>,
+    /// It jumped: its step says nothing.
+    pub(crate) jumped: bool,
+}
+
+impl Gate {
+    /// The step to a scan that is to be processed; `None` when the robot has hardly moved. Where each pose counts, not the steps
+    /// alone, wild ones are refused.
+    pub(crate) fn pass(
+        &mut self,
+        config: &ParticleConfig,
+        poses_count: bool,
+        odom_from_base: Pose2,
+        scan: &Scan,
+    ) -> Result<Option<Step>, Refusal> {
+        if !odom_from_base.is_finite() {
+            return Err(Refusal::NotFinite);
+        }
+        if odom_from_base.position().amax() > FARTHEST {
+            return Err(Refusal::OutOfReach);
+        }
+        let now = Last { stamp: scan.stamp(), odom_from_base };
+        let Some(last) = self.last else {
+            self.last = Some(now);
+            let covariance = motion_covariance(&config.motion, Pose2::IDENTITY);
+            return Ok(Some(Step { first: true, motion: Pose2::IDENTITY, covariance, jumped: false }));
+        };
+        if scan.stamp() < last.stamp {
+            return Err(Refusal::TimeGoesBack);
+        }
+        if poses_count && self.is_wild(&last, now, config.jump) {
+            return Err(Refusal::OutOfReach);
+        }
+        let motion = last.odom_from_base.inverse() * odom_from_base;
+        let still = scan.stamp() - last.stamp < config.wait_gate
+            && motion.position().norm() < config.move_gate
+            && motion.theta.abs() < config.turn_gate_deg.to_radians();
+        if still {
+            return Ok(None);
+        }
+        let jumped = motion.position().norm() > config.jump;
+        self.last = Some(now);
+        let covariance =
+            if jumped { unknown_motion_covariance() } else { motion_covariance(&config.motion, motion) };
+        let motion = if jumped && !poses_count { Pose2::IDENTITY } else { motion };
+        Ok(Some(Step { first: false, motion, covariance, jumped }))
+    }
+
+    /// Whether a pose is farther off than the robot can have got, and not yet said by enough others in a row.
+    fn is_wild(&mut self, last: &Last, now: Last, jump: f64) -> bool {
+        let doubted = self.doubted.take();
+        if !last.is_out_of_reach(&now, jump) {
+            return false;
+        }
+        let said = doubted.filter(|(wild, _)| !wild.is_out_of_reach(&now, jump));
+        let times = 1 + said.map_or(0, |(_, times)| times);
+        self.doubted = (times < SAID).then_some((now, times));
+        times < SAID
+    }
+}

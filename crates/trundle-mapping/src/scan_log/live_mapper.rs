@@ -1,0 +1,260 @@
+use crate::grid_mapper::{GridMapper, Insertion};
+use crate::scan_log::entry::{Kept, Kind, What, halve_the_older_half, thin};
+use std::sync::Arc;
+use trundle_core::{CellIndex, Invalid, OccupancyGrid, Pose2, Scan, Stamp, Vector2};
+use trundle_grid::{LogOddsGrid, MapperConfig};
+
+/// A live map that follows corrections of the way it was drawn along.
+///
+/// Problem: a loop closure moves poses at which scans were drawn minutes ago. The scans are kept; [`LiveMapper::correct`] tells
+/// where they were taken by now, and [`LiveMapper::work`] draws what was bent anew, beside the map in use, in slices as large
+/// as the caller likes, counted in cells. Drawing begins at the last snapshot before the first scan that moved (snapshots
+/// share their tiles, so they cost what changed since), not at the beginning. When it has caught up, the new map takes the
+/// place of the old one. Cost of a call: its budget, and two passes over the grid for a whole redrawing.
+#[derive(Debug, Clone)]
+pub struct LiveMapper {
+    front: GridMapper,
+    /// What was known before the first scan.
+    known: LogOddsGrid,
+    kept: Vec<Kept>,
+    snapshots: Vec<Snapshot>,
+    /// Kept things between snapshots.
+    every: usize,
+    /// So many kept things are thinned.
+    thin_at: usize,
+    redrawing: Option<Redrawing>,
+}
+
+/// The evidence when so many kept things were drawn.
+#[derive(Debug, Clone)]
+struct Snapshot {
+    drawn: usize,
+    evidence: LogOddsGrid,
+}
+
+#[derive(Debug, Clone)]
+struct Redrawing {
+    back: GridMapper,
+    drawn: usize,
+}
+
+/// What a slice of work did.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Redrawn {
+    /// Cells told.
+    pub cells: usize,
+    /// Scans that are still to be drawn; 0: the map is that of the corrected poses.
+    pub left: usize,
+}
+
+/// What is kept is thinned when there is so much of it, and then when it has doubled.
+const THIN_AT: usize = 1024;
+/// Most things kept, in whatever many places: beyond, every second of the older half goes.
+const MOST_KEPT: usize = 30_000;
+const SNAPSHOT_EVERY: usize = 64;
+const MOST_SNAPSHOTS: usize = 16;
+
+impl LiveMapper {
+    /// An empty map.
+    ///
+    /// # Errors
+    /// When the configuration is out of range.
+    pub fn new(config: MapperConfig) -> Result<Self, Invalid> {
+        Ok(Self::over(GridMapper::new(config)?))
+    }
+
+    /// A map that goes on from a saved one, which no correction moves.
+    ///
+    /// # Errors
+    /// As [`GridMapper::from_grid`].
+    pub fn from_grid(config: MapperConfig, grid: &OccupancyGrid) -> Result<Self, Invalid> {
+        Ok(Self::over(GridMapper::from_grid(config, grid)?))
+    }
+
+    fn over(front: GridMapper) -> Self {
+        let known = front.evidence().clone();
+        Self {
+            front,
+            known,
+            kept: Vec::new(),
+            snapshots: Vec::new(),
+            every: SNAPSHOT_EVERY,
+            thin_at: THIN_AT,
+            redrawing: None,
+        }
+    }
+
+    /// Draws `scan`, taken with the base at `map_from_base`, and keeps it when it is from somewhere else than the last one.
+    pub fn insert(&mut self, map_from_base: Pose2, scan: &Scan) -> Insertion {
+        let insertion = self.front.insert(map_from_base, scan);
+        self.keep(scan.stamp(), map_from_base, Kind::Scan, || What::Scan(Arc::new(scan.into())));
+        insertion
+    }
+
+    /// As [`GridMapper::mark_free_disc`]; it moves with the scan before it.
+    pub fn mark_free_disc(&mut self, map_from_base: Pose2, radius: f64) {
+        self.front.mark_free_disc(map_from_base, radius);
+        self.keep(self.last_stamp(), map_from_base, Kind::FreeDisc, || What::FreeDisc { radius });
+    }
+
+    /// As [`GridMapper::mark_occupied`]; it moves with the scan before it.
+    pub fn mark_occupied(&mut self, map_from_base: Pose2, points: &[Vector2]) {
+        self.front.mark_occupied(map_from_base, points);
+        self.keep(self.last_stamp(), map_from_base, Kind::Touched, || What::Touched {
+            points: points.into(),
+        });
+    }
+
+    /// Takes over corrected poses: `pose` gives, for the stamp of a scan and the pose at which it was drawn, where it was taken
+    /// by now. How many scans have moved; [`LiveMapper::work`] redraws them.
+    pub fn correct(&mut self, pose: impl Fn(Stamp, Pose2) -> Pose2) -> usize {
+        let (mut moved, mut first) = (0, None);
+        for (i, kept) in self.kept.iter_mut().enumerate() {
+            let now = pose(kept.stamp, kept.map_from_base);
+            let off = kept.map_from_base.inverse() * now;
+            if now.is_finite() && (off.position().norm() > STILL || off.theta.abs() > STILL) {
+                kept.shift(now);
+                moved += 1;
+                first = first.or(Some(i));
+            }
+        }
+        if let Some(first) = first {
+            self.redraw_from(first);
+        }
+        moved
+    }
+
+    /// Redraws for about `budget` cells.
+    pub fn work(&mut self, budget: usize) -> Redrawn {
+        self.work_within(budget, usize::MAX)
+    }
+
+    /// Redraws for about `budget` cells, and at least so much of what is left that it is done in `calls` such calls.
+    pub fn work_within(&mut self, budget: usize, calls: usize) -> Redrawn {
+        let mut cells = 0;
+        let Some(mut redrawing) = self.redrawing.take() else { return Redrawn { cells, left: 0 } };
+        let due = redrawing.drawn + (self.kept.len() - redrawing.drawn).div_ceil(calls.max(1));
+        while redrawing.drawn < self.kept.len() && (cells < budget || redrawing.drawn < due) {
+            cells += self.kept[redrawing.drawn].draw(&mut redrawing.back);
+            redrawing.drawn += 1;
+            self.note(redrawing.drawn, redrawing.back.evidence());
+        }
+        let left = self.kept.len() - redrawing.drawn;
+        if left == 0 {
+            self.front.replace_with(redrawing.back);
+        } else {
+            self.redrawing = Some(redrawing);
+        }
+        Redrawn { cells, left }
+    }
+
+    /// Whether work is left.
+    pub fn is_redrawing(&self) -> bool {
+        self.redrawing.is_some()
+    }
+
+    /// The map in use.
+    pub fn mapper(&self) -> &GridMapper {
+        &self.front
+    }
+
+    /// Its three-valued grid.
+    pub fn grid(&self) -> &OccupancyGrid {
+        self.front.grid()
+    }
+
+    /// As [`GridMapper::revision`].
+    pub fn revision(&self) -> u64 {
+        self.front.revision()
+    }
+
+    /// As [`GridMapper::changes_since`].
+    pub fn changes_since(&self, revision: u64) -> impl Iterator<Item = (CellIndex, (usize, usize))> {
+        self.front.changes_since(revision)
+    }
+
+    /// Log-odds at a point of the map frame (m).
+    pub fn log_odds_at(&self, point: Vector2) -> f64 {
+        self.front.log_odds_at(point)
+    }
+
+    /// When the scans were taken that are kept for redrawing: others no correction moves.
+    pub fn kept_stamps(&self) -> impl Iterator<Item = Stamp> {
+        self.kept.iter().map(|kept| kept.stamp)
+    }
+
+    /// Scans and free discs kept for redrawing.
+    pub fn kept(&self) -> usize {
+        self.kept.len()
+    }
+
+    /// Keeps what was just drawn; what is from where the last of its kind is, in its place, while no snapshot holds that.
+    fn keep(&mut self, stamp: Stamp, map_from_base: Pose2, kind: Kind, what: impl FnOnce() -> What) {
+        if !map_from_base.is_finite() {
+            return;
+        }
+        let new = |anchor| Kept { stamp, map_from_base, anchor, what: what() };
+        if let Some(last) = Kept::repeated(&self.kept, map_from_base, kind) {
+            if !self.is_drawn_elsewhere(last) {
+                self.kept[last] = new(self.kept[last].anchor);
+            }
+            return;
+        }
+        self.kept.push(new(map_from_base));
+        if self.redrawing.is_none() {
+            self.note(self.kept.len(), &self.front.evidence().clone());
+        }
+        // A redrawing would have to begin again.
+        if self.kept.len() >= self.thin_at && self.redrawing.is_none() {
+            self.thin();
+        }
+    }
+
+    /// Whether a snapshot, or the map that is being redrawn, holds one of the kept things.
+    fn is_drawn_elsewhere(&self, kept: usize) -> bool {
+        self.snapshots.last().is_some_and(|snapshot| snapshot.drawn > kept)
+            || self.redrawing.as_ref().is_some_and(|redrawing| redrawing.drawn > kept)
+    }
+
+    fn last_stamp(&self) -> Stamp {
+        self.kept.last().map_or(Stamp::default(), |kept| kept.stamp)
+    }
+
+    /// Takes a snapshot when it is time.
+    fn note(&mut self, drawn: usize, evidence: &LogOddsGrid) {
+        if drawn.is_multiple_of(self.every) {
+            self.snapshots.push(Snapshot { drawn, evidence: evidence.clone() });
+            if self.snapshots.len() > MOST_SNAPSHOTS {
+                self.every *= 2;
+                let every = self.every;
+                self.snapshots.retain(|snapshot| snapshot.drawn.is_multiple_of(every));
+            }
+        }
+    }
+
+    fn redraw_from(&mut self, first: usize) {
+        // A redrawing that had not come so far goes on as it is.
+        if let Some(redrawing) = self.redrawing.as_mut().filter(|redrawing| redrawing.drawn <= first) {
+            debug_assert!(redrawing.drawn <= self.kept.len(), "what was drawn was kept");
+            return;
+        }
+        self.snapshots.retain(|snapshot| snapshot.drawn <= first);
+        let (evidence, drawn) = match self.snapshots.last() {
+            Some(snapshot) => (snapshot.evidence.clone(), snapshot.drawn),
+            None => (self.known.clone(), 0),
+        };
+        self.redrawing = Some(Redrawing { back: self.front.with_evidence(evidence), drawn });
+    }
+
+    /// Lets go what newer things of the same place show too. Snapshots, which count the things before them, go with it.
+    fn thin(&mut self) {
+        thin(&mut self.kept);
+        while self.kept.len() > MOST_KEPT / 2 && halve_the_older_half(&mut self.kept) {}
+        self.thin_at = (2 * self.kept.len()).clamp(THIN_AT, MOST_KEPT);
+        self.snapshots.clear();
+        self.every = SNAPSHOT_EVERY;
+    }
+}
+
+/// Poses nearer than this are the same, m and rad.
+const STILL: f64 = 1e-4;

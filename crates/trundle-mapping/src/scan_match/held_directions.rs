@@ -1,0 +1,56 @@
+use crate::scan_match::likelihood::Vote;
+use crate::scan_match::scan_points::ScanShape;
+use nalgebra::{Matrix3, Vector3};
+use trundle_core::Pose2;
+
+/// The directions that a scan holds and those that it does not, as along a bare corridor (\[Zhang16\]).
+///
+/// Displacements y are those of the hits' centroid, with turns in cells at the hits' mean distance from it, so that
+/// directions can be compared; x = `pose_from_y` * y is the displacement of the base (cells, cells, rad) in the map.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Directions {
+    pub(crate) pose_from_y: Matrix3<f64>,
+    /// Onto the directions that are held.
+    pub(crate) held: Matrix3<f64>,
+    /// How many are not.
+    pub(crate) degenerate: usize,
+}
+
+impl Directions {
+    /// The directions at `pose`: degenerate is what less than `least` (a part) of the hits' information holds.
+    pub(crate) fn new(shape: &ScanShape, pose: Pose2, vote: &Vote, least: f64) -> Self {
+        let (s, c) = pose.theta.sin_cos();
+        let (cx, cy) =
+            (c * shape.centroid.0 - s * shape.centroid.1, s * shape.centroid.0 + c * shape.centroid.1);
+        let lever = shape.lever;
+        let pose_from_y = Matrix3::new(1.0, 0.0, cy / lever, 0.0, 1.0, -cx / lever, 0.0, 0.0, 1.0 / lever);
+        let information = pose_from_y.transpose() * vote.information * pose_from_y;
+        let eigen = information.symmetric_eigen();
+        let threshold = (least * vote.weight).max(1e-9);
+        let (mut held, mut degenerate) = (Matrix3::zeros(), 0);
+        for (value, vector) in eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter()) {
+            if *value >= threshold {
+                held += vector * vector.transpose();
+            } else {
+                degenerate += 1;
+            }
+        }
+        Self { pose_from_y, held, degenerate }
+    }
+
+    /// The information that the hits give, in y, without its degenerate part.
+    pub(crate) fn information(&self, vote: &Vote) -> Matrix3<f64> {
+        let in_y = self.pose_from_y.transpose() * vote.information * self.pose_from_y;
+        self.held * in_y * self.held
+    }
+
+    /// The pull of the hits, in y, without its degenerate part.
+    pub(crate) fn pull(&self, vote: &Vote) -> Vector3<f64> {
+        self.held * (self.pose_from_y.transpose() * vote.pull)
+    }
+
+    /// An information about poses, in y.
+    pub(crate) fn in_y(&self, information: &Matrix3<f64>) -> Matrix3<f64> {
+        self.pose_from_y.transpose() * information * self.pose_from_y
+    }
+}

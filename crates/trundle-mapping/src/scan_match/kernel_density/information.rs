@@ -1,0 +1,77 @@
+use super::{ScanMatchConfig, refinement::Vote};
+use nalgebra::{Matrix3, SymmetricEigen, U3, Vector3};
+use trundle_core::Vector2;
+
+/// The information of a match by direction, the degenerate ones known (Zhang, Kaess and Singh, On degeneracy of
+/// optimization-based state estimation problems, ICRA 2016).
+///
+/// Displacements are those of the hits' centroid, and turns are measured in metres at the hits' mean distance from it, so
+/// that directions can be compared.
+#[derive(Debug, Clone)]
+pub(crate) struct Information {
+    /// B of displacement of the base = B * displacement of the centroid, turns in metres.
+    base_from_centroid: Matrix3<f64>,
+    /// Its inverse.
+    centroid_from_base: Matrix3<f64>,
+    eigen: SymmetricEigen<f64, U3>,
+    least: f64,
+}
+
+impl Information {
+    pub(crate) fn new(config: &ScanMatchConfig, vote: &Vote, points: &[Vector2]) -> Self {
+        let count = points.len().max(1) as f64;
+        let centroid = points.iter().sum::<Vector2>() / count;
+        let mean_square = points.iter().map(|p| (p - centroid).norm_squared()).sum::<f64>() / count;
+        let lever = mean_square.sqrt().max(0.1);
+        let (cx, cy) = (centroid.x, centroid.y);
+        let centroid_from_base = Matrix3::new(1.0, 0.0, -cy, 0.0, 1.0, cx, 0.0, 0.0, lever);
+        let base_from_centroid =
+            Matrix3::new(1.0, 0.0, cy / lever, 0.0, 1.0, -cx / lever, 0.0, 0.0, 1.0 / lever);
+        let information = base_from_centroid.transpose() * vote.information * base_from_centroid;
+        let least = config.degenerate_below * vote.explained / config.kernel_sigma.powi(2);
+        Self {
+            base_from_centroid,
+            centroid_from_base,
+            eigen: information.symmetric_eigen(),
+            least: least.max(1e-9),
+        }
+    }
+
+    /// Whether any direction is degenerate.
+    pub(crate) fn is_degenerate(&self) -> bool {
+        self.eigen.eigenvalues.min() < self.least
+    }
+
+    /// The step that the pull asks for, without its degenerate part.
+    pub(crate) fn solve(&self, pull: &Vector3<f64>) -> Vector3<f64> {
+        self.by_direction(|value| if value < self.least { 0.0 } else { 1.0 / value }) * pull
+    }
+
+    /// A displacement (right perturbation) without its degenerate part.
+    pub(crate) fn held(&self, displacement: &Vector3<f64>) -> Vector3<f64> {
+        let vectors = &self.eigen.eigenvectors;
+        let mut along = vectors.transpose() * self.centroid_from_base * displacement;
+        for (part, value) in along.iter_mut().zip(self.eigen.eigenvalues.iter()) {
+            if *value < self.least {
+                *part = 0.0;
+            }
+        }
+        self.base_from_centroid * vectors * along
+    }
+
+    /// The covariance, right perturbation.
+    pub(crate) fn covariance(&self, config: &ScanMatchConfig) -> Matrix3<f64> {
+        let variance = |value: f64| {
+            if value < self.least { config.unknown_sigma.powi(2) } else { config.inflation.powi(2) / value }
+        };
+        let covariance = self.by_direction(variance);
+        (covariance + covariance.transpose()) * 0.5
+    }
+
+    /// The matrix with the same directions whose eigenvalues are a function of the information's, in m and rad.
+    fn by_direction(&self, function: impl Fn(f64) -> f64) -> Matrix3<f64> {
+        let directions = self.base_from_centroid * self.eigen.eigenvectors;
+        let values = Matrix3::from_diagonal(&self.eigen.eigenvalues.map(function));
+        directions * values * directions.transpose()
+    }
+}

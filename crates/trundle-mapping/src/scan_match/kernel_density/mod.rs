@@ -1,0 +1,12 @@
+//! Scan matching against the hits of an occupancy map: window search on a likelihood field, then refinement.
+
+mod config;
+mod information;
+mod likelihood_field;
+mod matcher;
+mod refinement;
+mod surface_points;
+mod window_search;
+
+pub use config::ScanMatchConfig;
+pub use matcher::{ScanMatch, ScanMatcher};

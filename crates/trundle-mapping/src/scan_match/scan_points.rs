@@ -1,0 +1,271 @@
+use crate::loop_closing::stored_scan::StoredScan;
+use crate::particle_config::ParticleConfig;
+use std::collections::BTreeSet;
+use trundle_core::{Beam, Pose2, Scan, Vector2};
+use trundle_grid::tiles::{RaySpan, ScanRay, ScanRays};
+
+/// A scan made ready for many particles: in cells, in the base frame, with surfaces and their normals.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct ScanShape {
+    /// Origin, rays and free spans of the scan, for the update of a map.
+    pub(crate) rays: ScanRays,
+    /// The hits, thinned, for matching.
+    pub(crate) points: Vec<ScanPoint>,
+    /// The same, in groups for vector code; the last is filled up.
+    pub(crate) groups: Vec<PointGroup>,
+    /// Mean of the points, cells.
+    pub(crate) centroid: (f64, f64),
+    /// Their root mean square distance from it, cells.
+    pub(crate) lever: f64,
+    /// Number of the beam, end, and one sigma of the range where the sensor says it (else 0).
+    hits: Vec<(usize, Vector2, f64)>,
+    /// The numbers of the rays' beams.
+    pub(crate) beams: Vec<usize>,
+    /// One sigma of each ray's range, m; empty where the sensor does not say.
+    pub(crate) sigmas: Vec<f32>,
+}
+
+/// A hit to be matched.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct ScanPoint {
+    pub(crate) x: f32,
+    pub(crate) y: f32,
+    /// The normal of its surface; zero where there is none.
+    pub(crate) normal: (f32, f32),
+    /// 1 / sigma^2, 1 / cells^2.
+    pub(crate) information: f32,
+}
+
+/// Points whose arithmetic is done together.
+pub(crate) const LANES: usize = 8;
+
+/// Eight points of a scan.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct PointGroup {
+    pub(crate) x: [f32; LANES],
+    pub(crate) y: [f32; LANES],
+    pub(crate) normal_x: [f32; LANES],
+    pub(crate) normal_y: [f32; LANES],
+    /// 1 where there is a normal, else 0.
+    pub(crate) wall: [f32; LANES],
+    pub(crate) information: [f32; LANES],
+    /// How many of them are points.
+    pub(crate) count: usize,
+}
+
+impl PointGroup {
+    fn new(points: &[ScanPoint]) -> Self {
+        // What fills up repeats the last point.
+        let at = |k: usize| points[k.min(points.len() - 1)];
+        let lanes = |f: fn(ScanPoint) -> f32| std::array::from_fn(|k| f(at(k)));
+        Self {
+            x: lanes(|p| p.x),
+            y: lanes(|p| p.y),
+            normal_x: lanes(|p| p.normal.0),
+            normal_y: lanes(|p| p.normal.1),
+            wall: lanes(|p| if p.normal == (0.0, 0.0) { 0.0 } else { 1.0 }),
+            information: lanes(|p| p.information),
+            count: points.len(),
+        }
+    }
+}
+
+/// Points of one surface are looked for as far as this, m: a wall's normal from less is noise.
+const BASELINE: f64 = 0.2;
+/// Hits nearer to each other than this count once, cells.
+const SPACING_CELLS: f64 = 1.5;
+/// Deviation from a line, in sigmas, above which points are no wall.
+const STRAIGHT: f64 = 3.0;
+
+impl ScanShape {
+    /// Takes over a scan.
+    pub(crate) fn set(&mut self, config: &ParticleConfig, scan: &Scan) {
+        let cells = 1.0 / config.map.resolution;
+        self.clear();
+        self.rays.origin = ((scan.origin().x * cells) as f32, (scan.origin().y * cells) as f32);
+        let mut last: Option<(usize, Vector2)> = None;
+        for (i, beam) in scan.beams().iter().enumerate() {
+            let (range, hit) = match *beam {
+                Beam::Hit { range } => (range.min(config.map.max_range), range <= config.map.max_range),
+                Beam::Free { range } => (range.min(config.map.max_range), false),
+                Beam::Unseen => continue,
+            };
+            let end = scan.point(i, range);
+            let joined =
+                hit && last.is_some_and(|(j, p)| j + 1 == i && (p - end).norm() <= config.map.surface_gap);
+            let whole = self.take_spans(scan, i, range);
+            let ends = ((end.x * cells) as f32, (end.y * cells) as f32);
+            let sigma = scan.sigma(i).map(|sigma| sigma as f32);
+            let hit_weight = sureness(sigma.unwrap_or(0.0) * cells as f32);
+            self.rays.rays.push(ScanRay { x: ends.0, y: ends.1, hit, joined, whole, hit_weight });
+            self.sigmas.extend(sigma);
+            self.beams.push(i);
+            last = hit.then_some((i, end));
+            if hit {
+                self.hits.push((i, end, scan.sigma(i).unwrap_or(0.0)));
+            }
+        }
+        self.find_points(config, scan.origin());
+    }
+
+    /// Takes over a scan from the store.
+    pub(crate) fn set_stored(&mut self, config: &ParticleConfig, stored: &StoredScan) {
+        self.clear();
+        self.rays.origin = stored.origin;
+        let metres = config.map.resolution;
+        let cells = (1.0 / metres) as f32;
+        let origin = Vector2::new(f64::from(stored.origin.0), f64::from(stored.origin.1)) * metres;
+        for ray in stored.rays() {
+            if ray.ray.hit {
+                let end = Vector2::new(f64::from(ray.ray.x), f64::from(ray.ray.y)) * metres;
+                self.hits.push((ray.beam, end, f64::from(ray.sigma)));
+            }
+            self.rays.rays.push(ScanRay { hit_weight: sureness(ray.sigma * cells), ..ray.ray });
+        }
+        self.rays.spans.extend(stored.spans());
+        self.find_points(config, origin);
+    }
+
+    /// Notes what was seen to be free of beam `i`, the next ray, up to `range`; whether that is all of it.
+    fn take_spans(&mut self, scan: &Scan, i: usize, range: f64) -> bool {
+        let (ray, first) = (self.rays.rays.len() as u32, self.rays.spans.len());
+        for (from, to) in scan.free_spans(i).filter(|(from, _)| *from < range) {
+            self.rays.spans.push(RaySpan {
+                ray,
+                from: (from / range) as f32,
+                to: (to / range).min(1.0) as f32,
+            });
+        }
+        let whole = matches!(self.rays.spans[first..], [RaySpan { from: 0.0, to: 1.0, .. }]);
+        if whole {
+            self.rays.spans.truncate(first);
+        }
+        whole
+    }
+
+    /// Takes over the hits of several scans, each moved by its pose (cells), of which at most one counts in each square of
+    /// `spacing` cells.
+    pub(crate) fn gather<'a>(
+        &mut self,
+        parts: impl Iterator<Item = (&'a Self, Pose2)>,
+        spacing: f64,
+        taken: &mut BTreeSet<(i32, i32)>,
+    ) {
+        for (part, pose) in parts {
+            let (s, c) = pose.theta.sin_cos();
+            let turn = |x: f64, y: f64| (c * x - s * y, s * x + c * y);
+            for point in &part.points {
+                let (x, y) = turn(f64::from(point.x), f64::from(point.y));
+                let (x, y) = (x + pose.x, y + pose.y);
+                if taken.insert(((x / spacing).floor() as i32, (y / spacing).floor() as i32)) {
+                    let (nx, ny) = turn(f64::from(point.normal.0), f64::from(point.normal.1));
+                    let normal = (nx as f32, ny as f32);
+                    self.points.push(ScanPoint { x: x as f32, y: y as f32, normal, ..*point });
+                }
+            }
+        }
+    }
+
+    /// Forgets everything.
+    pub(crate) fn clear(&mut self) {
+        self.rays.clear();
+        self.beams.clear();
+        self.sigmas.clear();
+        self.points.clear();
+        self.groups.clear();
+        self.hits.clear();
+    }
+
+    /// Makes gathered points ready for matching.
+    pub(crate) fn finish(&mut self) {
+        self.measure_spread();
+        self.groups.clear();
+        self.groups.extend(self.points.chunks(LANES).map(PointGroup::new));
+    }
+
+    fn find_points(&mut self, config: &ParticleConfig, origin: Vector2) {
+        let cells = 1.0 / config.map.resolution;
+        let spacing = SPACING_CELLS * config.map.resolution;
+        let mut kept: Option<Vector2> = None;
+        for k in 0..self.hits.len() {
+            let hit = self.hits[k].1;
+            if kept.is_some_and(|kept| (kept - hit).norm() < spacing) {
+                continue;
+            }
+            kept = Some(hit);
+            let range = (hit - origin).norm();
+            let told = self.hits[k].2;
+            let usual = config.range_noise + config.range_noise_growth * range * range;
+            let range_sigma = if told > 0.0 { told } else { usual };
+            // A cell's obstacle is known to about a fifth of the cell.
+            let sigma = range_sigma.hypot(0.3 * config.map.resolution);
+            let normal = self.normal(k, sigma).map_or((0.0, 0.0), |n| (n.x as f32, n.y as f32));
+            self.points.push(ScanPoint {
+                x: (hit.x * cells) as f32,
+                y: (hit.y * cells) as f32,
+                normal,
+                information: (1.0 / (sigma * cells).powi(2)) as f32,
+            });
+        }
+        self.finish();
+    }
+
+    /// The normal of the straight surface about hit `k`, if there is one.
+    fn normal(&self, k: usize, sigma: f64) -> Option<Vector2> {
+        let (_, here, _) = self.hits[k];
+        let reach = |step: isize| {
+            let mut at = k;
+            loop {
+                let next = at.checked_add_signed(step).filter(|&next| next < self.hits.len())?;
+                let gap = (self.hits[next].1 - self.hits[at].1).norm();
+                let neighbours = self.hits[next].0.abs_diff(self.hits[at].0) <= 2;
+                let span = (self.hits[next].1 - here).norm();
+                if !neighbours || gap > 1.5 {
+                    return None;
+                }
+                at = next;
+                if span >= BASELINE {
+                    return Some(at);
+                }
+            }
+        };
+        // At the end of a surface its one side says how it lies.
+        let (first, last) = match (reach(-1), reach(1)) {
+            (None, None) => return None,
+            (first, last) => (first.unwrap_or(k), last.unwrap_or(k)),
+        };
+        let points = self.hits[first..=last].iter().map(|(_, p, _)| *p);
+        let count = (last - first + 1) as f64;
+        let mean = points.clone().sum::<Vector2>() / count;
+        let (mut xx, mut xy, mut yy) = (0.0, 0.0, 0.0);
+        for d in points.map(|p| p - mean) {
+            xx += d.x * d.x;
+            xy += d.x * d.y;
+            yy += d.y * d.y;
+        }
+        // Direction of the larger eigenvector of the 2 x 2 scatter.
+        let angle = 0.5 * (2.0 * xy).atan2(xx - yy);
+        let across = Vector2::new(-angle.sin(), angle.cos());
+        let off =
+            (across.x * across.x * xx + 2.0 * across.x * across.y * xy + across.y * across.y * yy) / count;
+        (off.sqrt() <= STRAIGHT * sigma).then_some(across)
+    }
+
+    fn measure_spread(&mut self) {
+        let count = self.points.len().max(1) as f64;
+        let (x, y) =
+            self.points.iter().fold((0.0, 0.0), |(x, y), p| (x + f64::from(p.x), y + f64::from(p.y)));
+        let (x, y) = (x / count, y / count);
+        let square = |p: &ScanPoint| (f64::from(p.x) - x).powi(2) + (f64::from(p.y) - y).powi(2);
+        self.centroid = (x, y);
+        self.lever = (self.points.iter().map(square).sum::<f64>() / count).sqrt().max(2.0);
+    }
+}
+
+/// The part of a Gaussian of `sigma` cells that lies within half a cell of its middle, against that of half a cell's sigma: a
+/// hit that is as likely to lie in the cells beside its own says less of it.
+fn sureness(sigma: f32) -> f32 {
+    // Within h sigmas: tanh(0.8 h) to 0.02.
+    let within = |sigma: f32| (0.4 / sigma).tanh();
+    if sigma <= 0.5 { 1.0 } else { within(sigma) / within(0.5) }
+}
