@@ -38,6 +38,7 @@ pub use trundle_core as core;
 pub use trundle_docking as docking;
 pub use trundle_eval as eval;
 pub use trundle_experiments as experiments;
+pub use trundle_grid as grid;
 pub use trundle_io as io;
 pub use trundle_localization as localization;
 pub use trundle_mapping as mapping;

@@ -70,6 +70,7 @@ fn is_known(name: &str) -> bool {
         || [
             "trundle-core",
             "trundle-collision",
+            "trundle-grid",
             "trundle-optim",
             "trundle-runtime",
             "trundle-app",
@@ -89,10 +90,10 @@ fn may_test_with(from: &str, to: &str, kind: &str) -> bool {
 
 /// The arrows of the design.
 fn may_know(from: &str, to: &str) -> bool {
-    let base = ["trundle-core", "trundle-collision", "trundle-optim"].contains(&to);
+    let base = ["trundle-core", "trundle-collision", "trundle-grid", "trundle-optim"].contains(&to);
     match from {
         "trundle-core" | "xtask" => false,
-        "trundle-collision" | "trundle-optim" => to == "trundle-core",
+        "trundle-collision" | "trundle-grid" | "trundle-optim" => to == "trundle-core",
         "trundle-slam" => base || to == "trundle-vision",
         "trundle-runtime" => base || ROOMS.contains(&to),
         "trundle-app" => {

@@ -41,8 +41,8 @@ pub fn check(tree: &Tree) -> Vec<Finding> {
     let mut findings = Vec::new();
     for package in &tree.packages {
         let name = package.name.as_str();
-        let inner =
-            ROOMS.contains(&name) || ["trundle-core", "trundle-collision", "trundle-optim"].contains(&name);
+        let inner = ROOMS.contains(&name)
+            || ["trundle-core", "trundle-collision", "trundle-grid", "trundle-optim"].contains(&name);
         if !inner && !EDGES.contains(&name) {
             continue;
         }

@@ -1,4 +1,4 @@
-//! Rao-Blackwellised particle filter: each particle is a trajectory with its own map.
+//! Rao-Blackwellised particle filter: each particle is a trajectory with its own map (docs/methods.md A3).
 
 pub(crate) mod absolute_pose;
 pub(crate) mod ancestry;
