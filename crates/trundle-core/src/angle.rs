@@ -1,3 +1,5 @@
+//! Angles in rad: wrapping into (-pi, pi] and the signed difference of two angles.
+
 use std::f64::consts::{PI, TAU};
 
 /// The same angle in (-pi, pi], rad. NaN stays NaN.

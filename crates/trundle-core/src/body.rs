@@ -1,3 +1,5 @@
+//! The trait of a robot's body, and the sensor events that a body yields.
+
 use crate::{GyroRate, Pose2, RgbdImage, Scan, Stamp, Twist2, WheelTicks};
 use serde::{Deserialize, Serialize};
 

@@ -1,3 +1,5 @@
+//! The pinhole camera model: intrinsics, Brown-Conrady distortion, rolling-shutter readout, and presets.
+
 use crate::{Invalid, Vector2, Vector3, require_finite, require_in, require_positive};
 use serde::{Deserialize, Serialize};
 

@@ -1,3 +1,5 @@
+//! The camera's motion between two images as wheels and gyro measure it, with its covariance.
+
 use crate::{Pose2, Pose3};
 use nalgebra::{Matrix3, Matrix6, Vector6};
 

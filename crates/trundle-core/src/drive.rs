@@ -1,3 +1,5 @@
+//! Geometry and limits of a differential drive: wheel speeds from a twist, and saturation of a twist.
+
 use crate::{Invalid, Twist2, require_positive};
 use serde::{Deserialize, Serialize};
 

@@ -1,3 +1,5 @@
+//! The pose estimate that planning and control use: stamp, pose, twist and covariance.
+
 use crate::{Pose2, Stamp, Twist2};
 use nalgebra::Matrix3;
 

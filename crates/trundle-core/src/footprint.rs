@@ -1,3 +1,5 @@
+//! The robot's footprint on the floor: a disc or a convex polygon in the base frame.
+
 use crate::{Invalid, Vector2, require_positive};
 
 /// The robot's outline on the floor, base frame.

@@ -1,3 +1,5 @@
+//! Names of the coordinate frames.
+
 use serde::{Deserialize, Serialize};
 use std::fmt;
 

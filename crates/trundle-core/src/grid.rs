@@ -1,3 +1,5 @@
+//! The occupancy grid: its cells, its geometry, and conversion between cells and points of the map frame.
+
 use crate::{Invalid, Vector2, require_finite, require_positive};
 use serde::{Deserialize, Serialize};
 

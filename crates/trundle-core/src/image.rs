@@ -1,3 +1,5 @@
+//! Images as arrays of pixels: grey, colour and depth.
+
 use crate::Invalid;
 
 /// An image: row by row from the top left, `data[y * width + x]`.

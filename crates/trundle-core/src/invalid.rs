@@ -1,3 +1,5 @@
+//! The error of a refused value, and the checks that constructors share.
+
 use thiserror::Error;
 
 /// A value that a constructor refuses: which field, what it was, in which unit, and what would be accepted.

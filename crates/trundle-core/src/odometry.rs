@@ -1,3 +1,5 @@
+//! The readings of wheel encoders and gyro, and the odometry computed from both.
+
 use crate::{Pose2, Stamp, Twist2};
 use nalgebra::Matrix3;
 use serde::{Deserialize, Serialize};

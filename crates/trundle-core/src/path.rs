@@ -1,3 +1,5 @@
+//! A path: a polyline in the map frame, without time.
+
 use crate::{Invalid, Vector2};
 
 /// A path: geometry without time. Straight pieces between points of the map frame, m.

@@ -1,3 +1,5 @@
+//! Poses in the plane, SE(2): composition, inverse, exponential and logarithm.
+
 use crate::{Twist2, Vector2, Vector3, wrap_angle};
 use serde::{Deserialize, Serialize};
 use std::ops::Mul;

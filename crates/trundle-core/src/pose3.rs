@@ -1,3 +1,5 @@
+//! Poses in space, SE(3): composition, inverse, exponential, logarithm, and conversion from and to SE(2).
+
 use crate::{Pose2, Vector3};
 use nalgebra::{Isometry3, Matrix3, Matrix6, Rotation3, Translation3, UnitQuaternion, Vector6};
 use serde::{Deserialize, Serialize};

@@ -1,3 +1,5 @@
+//! An RGB-D image: a colour image and the depth image registered to it.
+
 use crate::{ColorImage, DepthImage, Invalid, Stamp};
 
 /// One RGB-D frame: a colour image and the depth image registered to it, pixel for pixel.

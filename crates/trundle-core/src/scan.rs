@@ -1,3 +1,5 @@
+//! A planar range scan: beams, free spans and kinds of obstacles, all in the base frame.
+
 use crate::{Invalid, Stamp, Vector2};
 
 /// What one bearing of a scan says.

@@ -1,3 +1,5 @@
+//! Time stamps on the sensors' clock, in nanoseconds.
+
 use serde::{Deserialize, Serialize};
 use std::{fmt, ops::Sub};
 

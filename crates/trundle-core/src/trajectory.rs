@@ -1,3 +1,5 @@
+//! A trajectory: poses and twists over time, and their interpolation.
+
 use crate::{Invalid, Pose2, Twist2};
 
 /// Where the robot should be at a time, and how it should be moving.

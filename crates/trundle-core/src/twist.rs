@@ -1,3 +1,5 @@
+//! The velocity of a differential drive: forward speed and turn rate.
+
 use serde::{Deserialize, Serialize};
 
 /// What a differential drive can do: speed along x and turn rate about z, in the base frame.

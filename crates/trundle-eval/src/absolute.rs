@@ -1,3 +1,5 @@
+//! The absolute trajectory error (ATE) of an estimate against a reference.
+
 use crate::{Alignment, ErrorStatistics, EvalError, Similarity, align, associate};
 use serde::{Deserialize, Serialize};
 use trundle_core::{Invalid, Pose3, Stamp, Vector3, require_finite};

@@ -1,3 +1,5 @@
+//! Alignment of two trajectories by Horn's closed form: rigid, or with scale.
+
 use crate::{EvalError, Side};
 use nalgebra::{Matrix3, Matrix4, Quaternion, SymmetricEigen, UnitQuaternion};
 use serde::{Deserialize, Serialize};

@@ -1,3 +1,5 @@
+//! Association of two trajectories by time stamp.
+
 use crate::{EvalError, Side};
 use trundle_core::{Stamp, require_finite};
 

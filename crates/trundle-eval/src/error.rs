@@ -1,3 +1,5 @@
+//! Errors of the evaluation: reasons why two trajectories or maps cannot be compared.
+
 use std::fmt;
 use thiserror::Error;
 use trundle_core::{Invalid, Stamp};

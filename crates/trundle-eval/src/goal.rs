@@ -1,3 +1,5 @@
+//! Distance and heading error of the robot at its goal pose.
+
 use serde::{Deserialize, Serialize};
 use trundle_core::{Invalid, Pose2, difference_of_angles};
 

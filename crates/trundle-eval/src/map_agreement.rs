@@ -1,3 +1,5 @@
+//! Agreement of an estimated occupancy grid with the true grid.
+
 use crate::{ErrorStatistics, EvalError, Side, occupied_cells::OccupiedCells};
 use serde::{Deserialize, Serialize};
 use trundle_core::{Cell, CellIndex, Invalid, OccupancyGrid, Pose2, Vector2, require_in};

@@ -1,3 +1,5 @@
+//! Registration of an estimated grid on the true grid by iterated closest points.
+
 use crate::{EvalError, Side, occupied_cells::OccupiedCells};
 use trundle_core::{Invalid, OccupancyGrid, Pose2, Vector2};
 

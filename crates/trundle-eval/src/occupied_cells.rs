@@ -1,3 +1,5 @@
+//! The occupied cells of a grid, with a search for the nearest one.
+
 use trundle_core::{Cell, CellIndex, GridGeometry, OccupancyGrid, Vector2};
 
 /// The occupied cells of a grid, to be asked for the nearest one.

@@ -1,3 +1,5 @@
+//! Pairs of poses for relative errors: a fixed time, number of poses or distance apart.
+
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use trundle_core::{Invalid, Pose3, Stamp, require_positive};

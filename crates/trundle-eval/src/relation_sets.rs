@@ -1,3 +1,5 @@
+//! Selection of the pose relations of a reference trajectory that an estimate is compared with.
+
 use crate::Relation;
 use serde::{Deserialize, Serialize};
 use trundle_core::{Invalid, Pose3, Stamp, require_in};

@@ -1,3 +1,5 @@
+//! Reader and writer of relation files in the text format of the SLAM benchmark of \[Kuemmerle09\].
+
 use crate::Relation;
 use std::fmt::Write;
 use thiserror::Error;

@@ -1,3 +1,5 @@
+//! Errors of an estimate's relative poses against given relations.
+
 use crate::{ErrorStatistics, EvalError, Side, absolute::of_finite, absolute::require_max_difference};
 use serde::{Deserialize, Serialize};
 use trundle_core::{Invalid, Pose3, Stamp};

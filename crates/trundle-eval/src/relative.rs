@@ -1,3 +1,5 @@
+//! The relative pose error (RPE) of an estimate against a reference.
+
 use crate::absolute::{associated, of_finite, require_max_difference};
 use crate::{Delta, ErrorStatistics, EvalError};
 use serde::{Deserialize, Serialize};

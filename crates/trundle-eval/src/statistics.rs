@@ -1,3 +1,5 @@
+//! Statistics of a list of errors: mean, root mean square, median and extremes.
+
 use serde::{Deserialize, Serialize};
 
 /// What is said about a list of errors, in their unit.

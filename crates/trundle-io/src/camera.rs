@@ -1,3 +1,5 @@
+//! Camera files and presets: intrinsics and the unit of the depth images.
+
 use crate::IoError;
 use crate::files::read_text;
 use serde::{Deserialize, Serialize};

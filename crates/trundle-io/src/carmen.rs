@@ -1,3 +1,5 @@
+//! Writer and reader of laser logs in the CARMEN format.
+
 mod line;
 mod log;
 

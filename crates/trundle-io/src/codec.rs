@@ -1,3 +1,5 @@
+//! Encoding and decoding of colour and depth images: JPEG and PNG.
+
 mod event;
 mod png_color;
 mod png_depth;

@@ -1,3 +1,5 @@
+//! Tables, way-points, paths and trajectories as CSV text.
+
 use std::fmt::Write;
 use trundle_core::{Path, Trajectory, Vector2};
 

@@ -1,3 +1,5 @@
+//! The error of reading or writing a file; every message names the file.
+
 use crate::CodecError;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};

@@ -1,3 +1,5 @@
+//! Reading of whole files, and splitting of text files into lines and fields.
+
 use crate::IoError;
 use std::path::Path;
 

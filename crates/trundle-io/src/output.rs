@@ -1,3 +1,5 @@
+//! An output folder that appears complete or not at all.
+
 use crate::{IoError, Recorder};
 use std::fs::{self, File};
 use std::io::BufWriter;

@@ -1,3 +1,5 @@
+//! Atomic replacement of a file.
+
 use crate::IoError;
 use std::io::Write;
 use std::path::Path;

@@ -1,3 +1,5 @@
+//! Exact conversion between stamps and decimal text in seconds.
+
 use crate::files::excerpt;
 use trundle_core::{Invalid, Stamp};
 

@@ -1,3 +1,5 @@
+//! The file `summary.json`: the numbers of a run for scripts.
+
 use serde::Serialize;
 use serde_json::Value;
 use std::collections::BTreeMap;

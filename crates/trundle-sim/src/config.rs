@@ -1,3 +1,5 @@
+//! Configuration of the simulated robot: body, sensors, noise and faults.
+
 use crate::camera::{ColorNoise, DepthNoise};
 use crate::faults::FaultSchedule;
 use crate::kobuki::KobukiConfig;

@@ -1,3 +1,5 @@
+//! The simulator: a Kobuki with camera and laser in a scene, as a robot body.
+
 mod camera;
 mod clock;
 mod error;

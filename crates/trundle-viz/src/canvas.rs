@@ -1,3 +1,5 @@
+//! A raster canvas: lines, discs, polygons and the PNG that it becomes.
+
 use crate::clip::{Px, visible_runs};
 use crate::color::Color;
 use png::{BitDepth, ColorType, Compression, Encoder, Filter};

@@ -1,3 +1,5 @@
+//! Colours and the palette.
+
 /// An sRGB colour with straight alpha.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Color {

@@ -1,3 +1,5 @@
+//! Escaping of text and colours for HTML.
+
 use crate::color::Color;
 
 /// Text made safe between tags and within double quotes. Control characters that HTML forbids become a replacement sign.

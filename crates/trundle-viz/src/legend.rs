@@ -1,3 +1,5 @@
+//! Legends: marks, labels and their drawing.
+
 use crate::canvas::{Canvas, Pen};
 use crate::color::Color;
 use crate::map::{draw_badge, radius_of};

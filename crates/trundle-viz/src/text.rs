@@ -1,3 +1,5 @@
+//! Lettering on a canvas with the built-in typeface.
+
 use crate::canvas::Canvas;
 use crate::color::Color;
 use crate::font::{DESCENT, HEIGHT, glyph};

@@ -1,3 +1,5 @@
+//! Round tick values along an axis and their labels.
+
 /// Round numbers along an axis.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Ticks {

@@ -1,3 +1,5 @@
+//! Parser of one line of a CARMEN log.
+
 use crate::{files::excerpt, parse_stamp};
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::str::SplitAsciiWhitespace;

@@ -1,3 +1,5 @@
+//! A laser log as read: scans with odometry, options, and skipped lines.
+
 use super::line::{LaserLine, Line, parse};
 use crate::IoError;
 use crate::files::{content_lines, read_text};

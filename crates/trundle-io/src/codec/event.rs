@@ -1,3 +1,5 @@
+//! Sensor events with compressed images, as they are sent and recorded.
+
 use super::{CodecError, JPEG_QUALITY, decode_color, decode_depth, encode_color, encode_depth};
 use trundle_core::{Cliff, GyroRate, Pose2, RgbdImage, Scan, SensorEvent, Stamp, Touch, WheelTicks};
 

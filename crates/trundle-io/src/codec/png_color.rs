@@ -1,3 +1,5 @@
+//! Colour images as 8-bit RGB PNG.
+
 use super::CodecError;
 use super::png_writer::{PngFormat, encode_png};
 use png::{BitDepth, ColorType, Filter};

@@ -1,3 +1,5 @@
+//! Depth images as 16-bit grey PNG in millimetres.
+
 use super::png_writer::{PngFormat, encode_png};
 use super::{CodecError, MAX_PIXELS};
 use png::{BitDepth, ColorType, Decoder, Filter, Limits};

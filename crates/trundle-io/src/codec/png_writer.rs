@@ -1,3 +1,5 @@
+//! The PNG encoder that colour and depth images share.
+
 use super::CodecError;
 use png::{BitDepth, ColorType, Compression, Encoder, Filter};
 

@@ -1,3 +1,5 @@
+//! Parser of PGM pictures, the cells of a map_server map.
+
 use crate::IoError;
 use crate::files::excerpt;
 use std::path::Path;

@@ -1,3 +1,5 @@
+//! Parser of the YAML file of a map_server map.
+
 use crate::IoError;
 use serde::Deserialize;
 use std::path::Path;

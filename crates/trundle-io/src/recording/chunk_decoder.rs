@@ -1,3 +1,5 @@
+//! Decompression of MCAP chunks: lz4 and zstd.
+
 use mcap::sans_io::decompressor::{DecompressResult, Decompressor};
 use mcap::{McapError, McapResult};
 use std::io::{self, Read};

@@ -1,3 +1,5 @@
+//! The JSON messages of a recording for wheels, gyro, bumper, cliff sensors, scans and images.
+
 use super::poses::PoseInFrame;
 use super::time::Time;
 use crate::codec::{EncodedEvent, EncodedRgbd};

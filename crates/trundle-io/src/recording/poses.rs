@@ -1,3 +1,5 @@
+//! The JSON messages of a recording for poses and lists of poses.
+
 use super::time::Time;
 use crate::EncodedEvent;
 use serde::{Deserialize, Serialize};

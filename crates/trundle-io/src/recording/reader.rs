@@ -1,3 +1,5 @@
+//! Reader of a recording, message by message.
+
 use super::messages::{
     self, CliffMessage, CompressedImage, GyroRateMessage, ScanMessage, TouchMessage, WheelTicksMessage,
 };

@@ -1,3 +1,5 @@
+//! Writer of a recording: an MCAP file with JSON messages.
+
 use super::messages::EventMessages;
 use super::poses::PoseInFrame;
 use super::schemas::json_schema;

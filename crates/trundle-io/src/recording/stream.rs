@@ -1,3 +1,5 @@
+//! Sequential reader of the messages of any MCAP file, with bounded memory.
+
 use super::chunk_decoder::ChunkDecoder;
 use crate::IoError;
 use mcap::McapError;

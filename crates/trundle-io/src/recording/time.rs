@@ -1,3 +1,5 @@
+//! Time stamps in the form of the Foxglove schemas.
+
 use serde::{Deserialize, Serialize};
 use trundle_core::{Invalid, Stamp};
 

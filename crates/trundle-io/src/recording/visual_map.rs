@@ -1,3 +1,5 @@
+//! The JSON messages of a recording for image features and landmarks.
+
 use super::time::Time;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;

@@ -1,3 +1,5 @@
+//! ROS 2 bags: their files, storage formats and messages.
+
 use super::database::BagDatabase;
 use crate::IoError;
 use crate::files::read_text;

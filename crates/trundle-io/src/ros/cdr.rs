@@ -1,3 +1,5 @@
+//! Reader of the CDR encoding of ROS 2 messages.
+
 use thiserror::Error;
 
 /// Why a message cannot be read.

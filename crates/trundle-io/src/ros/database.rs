@@ -1,3 +1,5 @@
+//! Reader of rosbag2 files in the SQLite storage format.
+
 use super::sqlite::{Sqlite, TableRows, Value};
 use crate::IoError;
 use crate::recording::RawMessage;

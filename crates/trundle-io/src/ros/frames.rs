@@ -1,3 +1,5 @@
+//! The tree of static transforms of a ROS 2 bag.
+
 use super::messages::Transform;
 use std::collections::BTreeMap;
 use trundle_core::Pose3;

@@ -1,3 +1,5 @@
+//! Conversion of a ROS 2 bag into a laser log.
+
 use super::bag::{Bag, is_bag};
 use super::frames::Frames;
 use super::laser_scan::convert;

@@ -1,3 +1,5 @@
+//! Conversion of a `LaserScan` message into a scan in the base frame.
+
 use super::messages::LaserScan;
 use trundle_core::{Beam, Pose3, Scan, Vector3};
 

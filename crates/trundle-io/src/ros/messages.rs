@@ -1,3 +1,5 @@
+//! The ROS 2 message types that are read: laser scan, odometry and transforms.
+
 use super::cdr::{CdrError, CdrReader};
 use nalgebra::{Quaternion, UnitQuaternion};
 use trundle_core::{Pose3, Stamp, Vector3};

@@ -1,3 +1,5 @@
+//! Interpolation of the odometry of a ROS 2 bag over time.
+
 use trundle_core::{Pose2, Stamp};
 
 /// Where the base was by odometry, over time.

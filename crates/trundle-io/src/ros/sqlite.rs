@@ -1,3 +1,5 @@
+//! Reader of the tables of an SQLite file, without SQL.
+
 use crate::IoError;
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};

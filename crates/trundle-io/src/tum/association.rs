@@ -1,3 +1,5 @@
+//! Association of colour and depth images by time stamp.
+
 use trundle_core::Stamp;
 
 /// Pairs (index of colour, index of depth) by rising time: each colour image with the depth image nearest in time, the

@@ -1,3 +1,5 @@
+//! Encoding of one RGB-D image as the two image files of a TUM folder.
+
 use crate::codec::encode_grey16;
 use crate::{CodecError, TUM_DEPTH_SCALE, encode_color_png};
 use trundle_core::{RgbdImage, Stamp};

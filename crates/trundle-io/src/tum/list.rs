@@ -1,3 +1,5 @@
+//! Parser of the image lists `rgb.txt` and `depth.txt` of a TUM folder.
+
 use crate::IoError;
 use crate::files::{content_lines, excerpt};
 use std::path::{Path, PathBuf};

@@ -1,3 +1,5 @@
+//! Reader and writer of odometry text files beside a TUM sequence.
+
 use crate::IoError;
 use crate::files::{content_lines, read_text, stamped_numbers};
 use std::fmt::Write;

@@ -1,3 +1,5 @@
+//! Settings files with which ORB-SLAM2 and ORB-SLAM3 run on a TUM folder.
+
 use crate::CameraModel;
 use trundle_core::Distortion;
 

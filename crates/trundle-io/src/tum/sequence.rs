@@ -1,3 +1,5 @@
+//! Reader of an RGB-D sequence in the TUM format.
+
 use super::association::pair_nearest;
 use super::list::{ListedImage, parse_list};
 use super::{read_odometry, read_trajectory};

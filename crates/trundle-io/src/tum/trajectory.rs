@@ -1,3 +1,5 @@
+//! Reader and writer of trajectories in the TUM format.
+
 use crate::IoError;
 use crate::files::{content_lines, read_text, stamped_numbers};
 use nalgebra::Quaternion;

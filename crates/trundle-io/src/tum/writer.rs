@@ -1,3 +1,5 @@
+//! Writer of an RGB-D sequence in the TUM format.
+
 use super::{TumFrame, odometry_text, orb_slam_yaml, trajectory_text};
 use crate::{CameraModel, IoError, OutputFolder, TUM_DEPTH_SCALE};
 use std::fmt::Write;

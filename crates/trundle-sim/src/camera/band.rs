@@ -1,3 +1,5 @@
+//! Drawing of a band of image rows: visible surfaces, textures, light and depth.
+
 use super::eye::Eye;
 use super::footprint::Footprints;
 use super::lamps::Lamps;

@@ -1,3 +1,5 @@
+//! Motion blur: the mean of several views in linear light.
+
 use super::View;
 use super::tone::{linear_from_srgb, srgb};
 use std::sync::LazyLock;

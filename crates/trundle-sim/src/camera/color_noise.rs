@@ -1,3 +1,5 @@
+//! The noise model of the colour image: exposure, photon noise and read noise.
+
 use super::Exposure;
 use serde::{Deserialize, Serialize};
 use trundle_core::{Invalid, require_in};

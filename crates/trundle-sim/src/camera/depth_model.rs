@@ -1,3 +1,5 @@
+//! The depth noise model in tables, for evaluation at every pixel.
+
 use super::DepthNoise;
 use super::round::{nearest, nearest_f32};
 use crate::chance::{NormalTable, mix};

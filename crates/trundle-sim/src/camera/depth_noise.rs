@@ -1,3 +1,5 @@
+//! Parameters of the depth noise, with presets for Kinect v1 and v2.
+
 use serde::{Deserialize, Serialize};
 use std::f64::consts::FRAC_PI_2;
 use trundle_core::{Invalid, require_in, require_positive};

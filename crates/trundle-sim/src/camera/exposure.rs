@@ -1,3 +1,5 @@
+//! Exposure of the colour image: fixed gain or auto exposure.
+
 use super::View;
 use super::tone::linear_from_srgb;
 use serde::{Deserialize, Serialize};

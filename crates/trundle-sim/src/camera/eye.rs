@@ -1,3 +1,5 @@
+//! Visibility of a world from one camera pose: nearest surfaces for a tile of pixels.
+
 use super::meet_cuboid::meet_cuboid;
 use super::meet_cylinder::meet_cylinder;
 use super::meet_triangle::meet_block;

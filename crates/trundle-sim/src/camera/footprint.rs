@@ -1,3 +1,5 @@
+//! The area of a texture that each pixel of a row covers.
+
 use super::patch::Patch;
 use super::tile::{COLUMNS, Row};
 

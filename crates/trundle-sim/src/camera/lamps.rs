@@ -1,3 +1,5 @@
+//! Light on a surface by Lambert's law, in f32.
+
 use super::rays::dot;
 use crate::world::Lights;
 

@@ -1,3 +1,5 @@
+//! Intersection of a tile's rays with a box.
+
 use super::rays::{Linear, Rays};
 use super::tile::{COLUMNS, ROWS, Tile, larger, mask, smaller};
 

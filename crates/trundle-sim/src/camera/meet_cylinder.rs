@@ -1,3 +1,5 @@
+//! Intersection of a tile's rays with an upright cylinder.
+
 use super::rays::{Linear, Rays};
 use super::tile::{COLUMNS, ROWS, Tile, larger, mask};
 

@@ -1,3 +1,5 @@
+//! Intersection of a tile's rays with triangles.
+
 #![expect(clippy::needless_range_loop, reason = "loops over lanes by number become SIMD")]
 
 use super::rays::{Linear, Rays};

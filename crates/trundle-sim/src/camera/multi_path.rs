@@ -1,3 +1,5 @@
+//! The multi-path error of a time-of-flight camera in concave corners.
+
 use super::View;
 
 /// How far, px, the light of a neighbouring wall reaches.

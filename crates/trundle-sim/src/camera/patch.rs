@@ -1,3 +1,5 @@
+//! A plane textured surface under the pixels of a tile.
+
 use super::rays::{Linear, Rays, dot};
 use crate::paint::Texture;
 

@@ -1,3 +1,5 @@
+//! The view pyramid of a tile, tested against bounding boxes.
+
 #![expect(clippy::needless_range_loop, reason = "loops over lanes by number become SIMD")]
 
 use super::rays::{Rays, cross};

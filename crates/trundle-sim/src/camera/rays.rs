@@ -1,3 +1,5 @@
+//! The rays of a tile and affine functions of its pixels.
+
 #![expect(clippy::needless_range_loop, reason = "loops over lanes by number become SIMD")]
 
 use super::tile::{COLUMNS, ROWS, Row};

@@ -1,3 +1,5 @@
+//! The renderer: an ideal RGB-D image of a scene.
+
 use super::band::{Band, Picture};
 use super::eye::Eye;
 use super::lamps::Lamps;

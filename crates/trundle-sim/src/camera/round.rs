@@ -1,3 +1,5 @@
+//! Fast rounding of f32 to the nearest whole number.
+
 /// 2^23: f32 has no digits behind the point from here on.
 const WHOLE: f32 = 8_388_608.0;
 

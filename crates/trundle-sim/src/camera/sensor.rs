@@ -1,3 +1,5 @@
+//! The RGB-D sensor: ideal images to noisy images.
+
 use super::depth_model::{DepthModel, DepthTruth};
 use super::exposure::Meter;
 use super::tone::Tone;

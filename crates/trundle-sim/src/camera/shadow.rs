@@ -1,3 +1,5 @@
+//! Depth shadows: pixels that the projector does not light.
+
 /// Takes away the depths of a row that a projector to the right of the camera does not light; `px_m` is focal length times
 /// their distance, px m (negative: to the left).
 ///

@@ -1,3 +1,5 @@
+//! Texture planes of the faces of boxes, cylinders and triangles.
+
 use super::eye::{Eye, single};
 use super::lamps::Lamps;
 use super::meet_cylinder::LID;

@@ -1,3 +1,5 @@
+//! A tile of pixels with the nearest surface and inverse depth of each.
+
 #![expect(clippy::needless_range_loop, reason = "loops over lanes by number become SIMD")]
 
 /// Columns of a tile.

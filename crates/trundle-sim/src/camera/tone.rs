@@ -1,3 +1,5 @@
+//! Tone tables: from ideal sRGB levels to mean and standard deviation of the measured level.
+
 use super::ColorNoise;
 use super::round::nearest;
 use crate::chance::NormalTable;

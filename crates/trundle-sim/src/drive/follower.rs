@@ -1,3 +1,5 @@
+//! A way-point follower that drives the simulated robot by its true pose.
+
 use super::FollowerConfig;
 use super::rows::rows;
 use trundle_core::{Invalid, Pose2, Stamp, Twist2, Vector2, difference_of_angles};

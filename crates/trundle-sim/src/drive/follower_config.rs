@@ -1,3 +1,5 @@
+//! Parameters of the way-point follower.
+
 use serde::{Deserialize, Serialize};
 use trundle_core::{Invalid, require_in};
 

@@ -1,3 +1,5 @@
+//! Parser of text files with a fixed number of columns.
+
 use trundle_core::Invalid;
 
 /// Lines of `N` finite numbers between blanks, each with its line number from 1; `#` starts a comment, empty lines do not

@@ -1,3 +1,5 @@
+//! Open-loop command scripts: twists by time.
+
 use super::rows::rows;
 use trundle_core::{Invalid, Twist2};
 

@@ -1,3 +1,5 @@
+//! The kinds of faults and the schedule of their start and end.
+
 use serde::{Deserialize, Serialize};
 use trundle_core::{Invalid, Pose2, require_finite, require_in};
 

@@ -1,3 +1,5 @@
+//! The faults that are active at the present time.
+
 use super::{FaultKind, FaultSchedule, WheelSide};
 use crate::chance::{hash, unit};
 use trundle_core::Pose2;

@@ -1,3 +1,5 @@
+//! Decomposition of a grid's occupied cells into rectangles.
+
 use trundle_core::{Cell, GridGeometry, OccupancyGrid};
 
 /// A rectangle of cells: first and one past the last.

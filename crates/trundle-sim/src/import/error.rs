@@ -1,3 +1,5 @@
+//! Errors of importing a world from a file.
+
 use trundle_core::Invalid;
 
 /// Why a file makes no world.

@@ -1,3 +1,5 @@
+//! A three-dimensional world extruded from an occupancy grid.
+
 use super::blocks::{Block, blocks};
 use super::{ImportError, ImportFault};
 use crate::paint::{Finish, Paint};

@@ -1,3 +1,5 @@
+//! The bumper: contact of the body with the world, and the touch event.
+
 use super::Surroundings;
 use trundle_core::{Footprint, Pose2};
 

@@ -1,3 +1,5 @@
+//! The cliff sensors under the base.
+
 use crate::world::World;
 use trundle_core::{Pose2, Vector2, Vector3};
 

@@ -1,3 +1,5 @@
+//! True parameters of the simulated Kobuki base.
+
 use serde::{Deserialize, Serialize};
 use trundle_core::{DifferentialDrive, DriveLimits, Footprint, Invalid, Vector2, require_in};
 

@@ -1,3 +1,5 @@
+//! The drivetrain: wheel speeds from commanded twists, with delay, saturation, ramp and lag.
+
 use super::{KobukiConfig, STEP, STEPS_PER_SECOND};
 use std::collections::VecDeque;
 use trundle_core::{DifferentialDrive, Twist2};

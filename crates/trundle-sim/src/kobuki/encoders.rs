@@ -1,3 +1,5 @@
+//! The wheel encoders.
+
 use trundle_core::DifferentialDrive;
 
 /// Counters of the wheels' turning, wrapping at 2^16 as the Kobuki's.

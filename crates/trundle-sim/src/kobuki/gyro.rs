@@ -1,3 +1,5 @@
+//! The gyro: scale error, bias random walk and white noise.
+
 use super::KobukiConfig;
 use crate::chance::normal;
 use rand::Rng;

@@ -1,3 +1,5 @@
+//! Wheel slip as two Ornstein-Uhlenbeck processes.
+
 use super::{KobukiConfig, STEP};
 use crate::chance::normal;
 use rand::Rng;

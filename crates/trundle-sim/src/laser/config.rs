@@ -1,3 +1,5 @@
+//! Parameters of a simulated 2-D laser range finder.
+
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{FRAC_PI_2, TAU};
 use trundle_core::{Invalid, require_in};

@@ -1,3 +1,5 @@
+//! Presets of laser range finders from their data sheets.
+
 use super::LaserConfig;
 use std::f64::consts::TAU;
 

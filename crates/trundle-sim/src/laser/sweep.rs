@@ -1,3 +1,5 @@
+//! Measurement of a scan by the simulated laser.
+
 use super::LaserConfig;
 use crate::chance::{GOLDEN, hash, mix, normal, unit};
 use crate::world::Stage;

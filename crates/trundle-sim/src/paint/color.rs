@@ -1,3 +1,5 @@
+//! Colours, the palette, and changes of brightness.
+
 use super::noise::lattice;
 
 /// Red, green, blue, 0 to 255, sRGB.

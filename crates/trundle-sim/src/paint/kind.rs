@@ -1,3 +1,5 @@
+//! The kinds of surface appearance: plain colours, prints, wood and others.
+
 /// A kind of surface. Colours are sRGB.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Paint {

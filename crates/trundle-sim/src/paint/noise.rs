@@ -1,3 +1,5 @@
+//! Value noise for textures, deterministic from a seed.
+
 use std::sync::LazyLock;
 
 /// A hash of a lattice point, in [0, 1). Integer mixing after the "lowbias32" finaliser (Wellons 2018).

@@ -1,3 +1,5 @@
+//! Textures of all faces of a world's solids.
+
 use super::{Finish, Texture, bake_solid, texels_of_solid};
 use crate::world::{Shape, Solid};
 use rayon::prelude::*;

@@ -1,3 +1,5 @@
+//! Prints on walls, doors and cartons.
+
 use super::color::{Rgb, lifted, mixed, pick, scaled};
 use super::noise::{Fractal, lattice};
 

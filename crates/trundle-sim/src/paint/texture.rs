@@ -1,3 +1,5 @@
+//! Textures with mip levels.
+
 mod light;
 mod shrink;
 

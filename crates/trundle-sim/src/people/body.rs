@@ -1,3 +1,5 @@
+//! Body measures of a person, as cylinders.
+
 use crate::paint::{Finish, Paint};
 use crate::world::{Cylinder, HeightBand, Obstacles, Shape, Solid, World};
 use trundle_core::{Invalid, Vector3};

@@ -1,3 +1,5 @@
+//! All people of a scene: motion, waiting and contact with the robot.
+
 use super::body::{Body, Part};
 use super::gait::{KNEE_SHARE, THIGH_SHARE};
 use super::person::Person;

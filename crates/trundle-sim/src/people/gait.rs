@@ -1,3 +1,5 @@
+//! The gait of a walking person: positions of both feet.
+
 use trundle_core::Pose2;
 
 /// Step length over cadence, m s: the walk ratio, 0.0064 m/(step/min), is the same at all speeds \[Sekiya98\].

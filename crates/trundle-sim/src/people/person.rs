@@ -1,3 +1,5 @@
+//! A person as a scene defines one: way-points, speed and timing.
+
 use serde::{Deserialize, Serialize};
 use trundle_core::{Invalid, require_finite, require_in};
 

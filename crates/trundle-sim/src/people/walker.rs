@@ -1,3 +1,5 @@
+//! The state of one walking person along the way-points.
+
 use super::Person;
 use super::gait::Gait;
 use trundle_core::{Pose2, Vector2, difference_of_angles};

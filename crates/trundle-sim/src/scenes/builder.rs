@@ -1,3 +1,5 @@
+//! Construction of scenes: boxes, cylinders and seeded jitter.
+
 use crate::chance::hash;
 use crate::paint::{Finish, Paint};
 use crate::world::{Cuboid, Cylinder, Shape, Solid};

@@ -1,3 +1,5 @@
+//! Scenes: the narrow corridors of \[Hong24\].
+
 use super::Scene;
 use super::builder::{Builder, Side, WALL};
 use crate::paint::{Finish, Paint};

@@ -1,3 +1,5 @@
+//! Scene: two furnished rooms with a door.
+
 use super::Scene;
 use super::builder::{Builder, ROOM_HEIGHT, Side, UNSEEN, WALL};
 use crate::paint::{Finish, Paint};

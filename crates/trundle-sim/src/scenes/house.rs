@@ -1,3 +1,5 @@
+//! Scene: a furnished flat of six rooms.
+
 use super::Scene;
 use super::builder::{Builder, Side, WALL};
 use super::partition::{Along, DOOR_WIDTH, Partition};

@@ -1,3 +1,5 @@
+//! Scene: a room with obstacles after \[Li18\].
+
 use super::Scene;
 use super::builder::{Builder, Side, WALL};
 use crate::paint::Paint;

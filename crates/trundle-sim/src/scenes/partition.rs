@@ -1,3 +1,5 @@
+//! Walls with door openings, and door leaves.
+
 use super::builder::{Builder, ROOM_HEIGHT, Side};
 use crate::paint::{Finish, Paint};
 use trundle_core::Pose2;

@@ -1,3 +1,5 @@
+//! Scene: the empty room of the point stabilisation of \[Li18\].
+
 use super::Scene;
 use super::builder::{Builder, Side, WALL};
 use crate::paint::Paint;

@@ -1,3 +1,5 @@
+//! Scene: a warehouse with racks, aisles and goods.
+
 use super::Scene;
 use super::builder::{Builder, Side};
 use super::storage::PALLET;

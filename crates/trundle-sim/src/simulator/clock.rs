@@ -1,3 +1,5 @@
+//! The clock of a sensor with a fixed rate.
+
 use crate::kobuki::STEPS_PER_SECOND;
 
 /// When a sensor is due: the n-th reading at the step nearest to n / rate.

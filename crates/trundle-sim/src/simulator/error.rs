@@ -1,3 +1,5 @@
+//! Errors of setting up the simulated robot.
+
 use trundle_core::{Invalid, Stamp};
 
 /// What can go wrong with a simulated robot.

@@ -1,3 +1,5 @@
+//! The camera on the simulated robot, with motion blur and faults.
+
 use super::track::Track;
 use crate::camera::{Renderer, RgbdSensor, View, blend};
 use crate::config::SimConfig;

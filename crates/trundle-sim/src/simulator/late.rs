@@ -1,3 +1,5 @@
+//! Sensor events that a fault delays.
+
 use crate::kobuki::STEPS_PER_SECOND;
 use std::collections::VecDeque;
 use trundle_core::SensorEvent;

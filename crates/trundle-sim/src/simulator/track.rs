@@ -1,3 +1,5 @@
+//! The recent true poses of the base, one for each simulation step.
+
 use crate::kobuki::STEPS_PER_SECOND;
 use std::collections::VecDeque;
 use trundle_core::Pose2;

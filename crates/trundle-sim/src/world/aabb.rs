@@ -1,3 +1,5 @@
+//! Axis-aligned bounding boxes.
+
 use trundle_core::Vector3;
 
 /// An axis-aligned box, world frame, m.

@@ -1,3 +1,5 @@
+//! The obstacle height band and the outlines of what reaches into it.
+
 use super::outline::fill_hull;
 use super::region::Region;
 use super::{Mesh, World};

@@ -1,3 +1,5 @@
+//! A bounding volume hierarchy with eight boxes in each node.
+
 #![expect(clippy::needless_range_loop, reason = "loops over lanes by number become SIMD")]
 
 mod build;

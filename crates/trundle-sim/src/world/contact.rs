@@ -1,3 +1,5 @@
+//! Clearance of a footprint to a world's obstacles, exact.
+
 use super::outline::Outline;
 use super::outline_index::OutlineIndex;
 use super::region::Region;

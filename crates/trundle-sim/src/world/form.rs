@@ -1,3 +1,5 @@
+//! Solids with sine and cosine of their heading computed once.
+
 use super::Shape;
 
 /// A solid as the camera meets it: its sine and cosine taken once.

@@ -1,3 +1,5 @@
+//! The true occupancy grid of a world.
+
 use super::region::Region;
 use super::{HeightBand, World};
 use trundle_core::{Cell, CellIndex, GridGeometry, Invalid, OccupancyGrid, require_positive};

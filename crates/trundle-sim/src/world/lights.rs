@@ -1,3 +1,5 @@
+//! The lighting of a scene: ambient light and directional lamps.
+
 use serde::{Deserialize, Serialize};
 use trundle_core::{Invalid, require_finite, require_in};
 

@@ -1,3 +1,5 @@
+//! Intersection of a ray with a box or a cylinder.
+
 use super::ray::turned;
 use super::{Cuboid, Cylinder, Shape};
 use trundle_core::{Vector2, Vector3};

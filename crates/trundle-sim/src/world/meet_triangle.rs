@@ -1,3 +1,5 @@
+//! Intersection of a ray with a block of triangles.
+
 use super::triangles::{BLOCK, Block};
 use trundle_core::Vector3;
 

@@ -1,3 +1,5 @@
+//! Triangle meshes with textured materials.
+
 use trundle_core::{ColorImage, Invalid, Vector2};
 
 /// A surface of triangles with textured materials, world frame, m, z up.

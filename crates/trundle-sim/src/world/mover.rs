@@ -1,3 +1,5 @@
+//! Moving solids, such as the parts of a walking person.
+
 use super::World;
 use trundle_core::Pose2;
 

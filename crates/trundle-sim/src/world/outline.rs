@@ -1,3 +1,5 @@
+//! Outlines of solids and footprints on the floor, and convex hulls.
+
 use super::region::Region;
 use trundle_core::{Footprint, Pose2, Vector2};
 

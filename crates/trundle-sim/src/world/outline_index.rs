@@ -1,3 +1,5 @@
+//! A hierarchy over many outlines for the nearest one.
+
 use super::region::Region;
 use trundle_core::Vector2;
 

@@ -1,3 +1,5 @@
+//! Ray against bounding boxes, in f32 with a safe margin.
+
 #![expect(clippy::needless_range_loop, reason = "loops over lanes by number become SIMD")]
 
 use super::bvh::{Node, Probe, WIDTH};

@@ -1,3 +1,5 @@
+//! Ray casting: the first surface that a ray meets.
+
 use super::meet_triangle::{meet_block, normal_towards};
 use super::probe::RayProbe;
 use super::{Mover, Stage, World};

@@ -1,3 +1,5 @@
+//! Convex regions of the plane and their exact clearance.
+
 use trundle_core::Vector2;
 
 /// A convex region of the plane: a point, a segment or a counter-clockwise polygon, grown by a radius.

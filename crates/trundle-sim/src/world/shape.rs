@@ -1,3 +1,5 @@
+//! The solids of a world: boxes and upright cylinders.
+
 use super::aabb::Aabb;
 use super::outline::Outline;
 use trundle_core::{Invalid, Vector2, Vector3};

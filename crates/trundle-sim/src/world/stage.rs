@@ -1,3 +1,5 @@
+//! A world with its moving solids at one moment, as camera and laser see it.
+
 use super::{Lights, Mover, World};
 
 /// All that a camera or a laser may see at one moment.

@@ -1,3 +1,5 @@
+//! Triangles of a world's meshes in the order of the hierarchy's leaves.
+
 use super::mesh::Mesh;
 use super::{Aabb, Bvh};
 use trundle_core::Vector3;

@@ -1,3 +1,5 @@
+//! Picture of a depth image in colours, with a scale.
+
 use super::photo::{Photo, no_image};
 use crate::canvas::Canvas;
 use crate::color::Color;

@@ -1,3 +1,5 @@
+//! Picture of a camera image with its features.
+
 use super::photo::{Photo, no_image};
 use crate::canvas::{Canvas, Pen};
 use crate::color::Color;

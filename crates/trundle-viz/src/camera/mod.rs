@@ -1,3 +1,5 @@
+//! Pictures of camera images: depth and features.
+
 mod depth;
 mod feature;
 mod photo;

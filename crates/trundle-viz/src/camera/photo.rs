@@ -1,3 +1,5 @@
+//! A camera image on a canvas, enlarged or shrunk by a whole number.
+
 use crate::canvas::{Canvas, Pen};
 use crate::color::Color;
 use crate::text::{TextStyle, line_height, text_width};

@@ -1,3 +1,5 @@
+//! Axes and coordinates of a chart.
+
 use crate::ticks::Ticks;
 
 /// Size of a chart's own coordinates; the page scales it.

@@ -1,3 +1,5 @@
+//! Bar charts with whiskers as SVG.
+
 use super::axes::Axis;
 use super::line::{open_svg, put, text_width};
 use crate::color::Color;

@@ -1,3 +1,5 @@
+//! Line charts as SVG.
+
 use super::axes::{Axis, HEIGHT, PLOT, WIDTH};
 use super::thin::pieces;
 use crate::color::Color;

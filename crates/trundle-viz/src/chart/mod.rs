@@ -1,3 +1,5 @@
+//! Charts as inline SVG: lines and bars.
+
 mod axes;
 mod bars;
 mod line;

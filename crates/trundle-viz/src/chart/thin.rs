@@ -1,3 +1,5 @@
+//! Reduction of a long series to the points that a chart can show; peaks are kept.
+
 /// More points than this in a series are thinned.
 const ENOUGH: usize = 1500;
 

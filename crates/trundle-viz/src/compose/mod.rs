@@ -1,3 +1,5 @@
+//! Complete pictures and pages: plan, run, trajectory and visual map.
+
 mod palette;
 mod plan;
 mod plan_parts;

@@ -1,3 +1,5 @@
+//! Picture of a plan on its map.
+
 use super::palette::{DEAR, FORBIDDEN, GOAL, PLAN, SLOW, START, SWEPT, way_point_dots};
 use crate::color::Color;
 use crate::map::{DotStyle, LineStyle, MapPicture, PoseStyle};

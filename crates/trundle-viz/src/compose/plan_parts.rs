@@ -1,3 +1,5 @@
+//! Pictures of the steps of a plan: distance field, grid path, corridors and curve.
+
 use super::palette::{FORBIDDEN, PLAN, way_point_dots};
 use super::plan::PlanScene;
 use crate::chart::Chart;

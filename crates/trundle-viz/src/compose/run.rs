@@ -1,3 +1,5 @@
+//! The report page of a run.
+
 use super::palette::*;
 use crate::camera::{FeatureMark, depth_picture, feature_picture};
 use crate::color::Color;

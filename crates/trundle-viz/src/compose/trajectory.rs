@@ -1,3 +1,5 @@
+//! Picture of an estimated trajectory with the true one.
+
 use super::palette::{estimate_line, truth_line};
 use crate::color::Color;
 use crate::map::{DotStyle, LineStyle, MapPicture};

@@ -1,3 +1,5 @@
+//! Picture of a visual map: landmarks, keyframes and their links.
+
 use super::palette::{ESTIMATE, GOAL, LANDMARKS, estimate_line};
 use super::trajectory::principal_axes;
 use crate::color::Color;

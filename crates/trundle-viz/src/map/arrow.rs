@@ -1,3 +1,5 @@
+//! Arrows and leader lines on a map.
+
 use super::draw::draw_line;
 use super::style::LineStyle;
 use super::view::View;

@@ -1,3 +1,5 @@
+//! Short labels in circles on a map, placed without overlap.
+
 use super::arrow::draw_leader;
 use super::view::View;
 use crate::canvas::Canvas;

@@ -1,3 +1,5 @@
+//! Upright rectangles of the map frame.
+
 use trundle_core::Vector2;
 
 /// Beyond this, a coordinate is taken for an accident and not drawn, m.

@@ -1,3 +1,5 @@
+//! Blocks of grid cells and the drawing of an occupancy grid.
+
 use super::bounds::Bounds;
 use super::view::{View, Zoom};
 use crate::canvas::Canvas;

@@ -1,3 +1,5 @@
+//! Drawing of lines, dots, poses, outlines and areas on a map.
+
 use super::style::{DotStyle, LineStyle, PoseStyle};
 use super::view::View;
 use crate::canvas::{Canvas, Pen};

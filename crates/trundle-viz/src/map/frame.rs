@@ -1,3 +1,5 @@
+//! The frame of a plot: ticks, axis names, scale bar and legend.
+
 use super::view::View;
 use crate::canvas::Canvas;
 use crate::color::Color;

@@ -1,3 +1,5 @@
+//! The layers that are drawn over a map.
+
 use super::arrow::draw_arrow;
 use super::badge::draw_badges;
 use super::draw::{draw_area, draw_dot, draw_line, draw_outline, draw_pose, draw_swept};

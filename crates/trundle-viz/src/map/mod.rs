@@ -1,3 +1,5 @@
+//! Pictures of a map from above, with layers drawn over the grid.
+
 mod arrow;
 mod badge;
 mod bounds;

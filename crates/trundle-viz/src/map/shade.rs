@@ -1,3 +1,5 @@
+//! Translucent tints by cell: distances, masks and shares.
+
 use super::view::View;
 use crate::canvas::Canvas;
 use crate::color::Color;

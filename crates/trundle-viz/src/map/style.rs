@@ -1,3 +1,5 @@
+//! Styles of lines, dots and poses.
+
 use crate::color::Color;
 use trundle_core::Footprint;
 

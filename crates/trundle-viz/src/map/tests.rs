@@ -1,3 +1,5 @@
+//! Tests of map pictures: extent, legend, places of layers and determinism.
+
 use super::*;
 
 const ROOM: &str = "

@@ -1,3 +1,5 @@
+//! Several map pictures side by side in one PNG.
+
 use super::MapPicture;
 use crate::canvas::Canvas;
 use crate::color::Color;

@@ -1,3 +1,5 @@
+//! The view of a plot: conversion between metres of the map frame and pixels.
+
 use super::bounds::Bounds;
 use super::cells::CellBox;
 use crate::clip::Px;

@@ -1,3 +1,5 @@
+//! Sections of a report.
+
 use crate::html::escape;
 
 /// A part of a report: a title, an introduction, and blocks of HTML that is safe already.

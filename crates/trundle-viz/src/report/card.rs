@@ -1,3 +1,5 @@
+//! The verdict and the key numbers of a report.
+
 use crate::html::escape;
 
 /// How it went, in one sentence.

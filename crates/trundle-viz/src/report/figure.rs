@@ -1,3 +1,5 @@
+//! Figures of a report: a picture or a chart with legend and caption.
+
 use crate::chart::{BarChart, Chart};
 use crate::color::Color;
 use crate::html::escape;

@@ -1,3 +1,5 @@
+//! Reports: one HTML page with its figures and tables, without scripts or external files.
+
 mod block;
 mod card;
 mod figure;

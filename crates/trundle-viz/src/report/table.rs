@@ -1,3 +1,5 @@
+//! Tables of a report.
+
 use crate::html::escape;
 
 /// A table of texts. A column whose cells all begin as numbers do is set flush right.

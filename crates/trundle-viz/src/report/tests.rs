@@ -1,3 +1,5 @@
+//! Tests of the report page: escaping, self-containment and determinism.
+
 use super::*;
 use crate::{BarChart, Chart, Color, LegendItem, Mark};
 

@@ -1,3 +1,5 @@
+//! glTF accessors: vectors and indices out of buffers.
+
 use super::buffers::{Buffers, require_length};
 use super::schema::at;
 use crate::import::ImportFault;

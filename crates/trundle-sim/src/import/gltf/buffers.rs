@@ -1,3 +1,5 @@
+//! glTF buffers, embedded or in files beside.
+
 use super::container::Container;
 use super::schema::at;
 use crate::import::ImportFault;

@@ -1,3 +1,5 @@
+//! Assembly of all glTF surfaces into one mesh.
+
 use super::buffers::Buffers;
 use super::primitive::Surface;
 use super::schema::at;

@@ -1,3 +1,5 @@
+//! The binary glTF container (GLB).
+
 use crate::import::ImportFault;
 
 const MAGIC: &[u8] = b"glTF";

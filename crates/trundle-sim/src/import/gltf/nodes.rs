@@ -1,3 +1,5 @@
+//! The glTF scene graph: every mesh instance with its transform.
+
 use super::schema::at;
 use crate::import::ImportFault;
 use gltf::json::{Index, Node, Root, mesh};

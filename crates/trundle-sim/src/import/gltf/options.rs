@@ -1,3 +1,5 @@
+//! Options of a glTF import: up axis, scale and pose.
+
 use nalgebra::{Matrix4, Rotation3};
 use serde::{Deserialize, Serialize};
 use trundle_core::{Invalid, Pose3, Vector3, require_in};

@@ -1,3 +1,5 @@
+//! glTF primitives: triangles with texture coordinates.
+
 use super::accessor;
 use super::buffers::Buffers;
 use super::schema::at;

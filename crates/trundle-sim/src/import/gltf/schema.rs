@@ -1,3 +1,5 @@
+//! The glTF description: parsing, versions and extensions.
+
 use crate::import::ImportFault;
 use gltf::json::validation::Validate;
 use gltf::json::{Index, Root};

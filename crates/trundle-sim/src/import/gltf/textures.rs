@@ -1,3 +1,5 @@
+//! Decoding of glTF textures.
+
 use super::buffers::Buffers;
 use super::schema::at;
 use crate::import::ImportFault;

@@ -1,3 +1,5 @@
+//! Fixed-point colour arithmetic for texture filtering.
+
 /// A colour as three 8.8 fixed-point numbers in one word: red at bit 0, blue at 16, green at 32. Arithmetic works on all
 /// three at once.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,3 +1,5 @@
+//! Mip levels: a texture at half its size.
+
 use super::light::spread;
 
 /// Half as many texels each way (rounded down, at least one), each the mean of what it covers: of 2 x 2 texels when both

@@ -1,3 +1,5 @@
+//! The base of a scene file: a built-in scene, a glTF file or a map.
+
 use super::SceneError;
 use crate::import::{GltfOptions, UpAxis};
 use crate::people::Person;

@@ -1,3 +1,5 @@
+//! Errors of a scene file.
+
 use super::LoadError;
 use std::path::Path;
 use trundle_core::Invalid;

@@ -1,3 +1,5 @@
+//! An object of a scene file: kind, pose, size and appearance.
+
 use super::{PaintName, PropKind, REACH, SceneError};
 use crate::chance::hash;
 use crate::paint::Finish;

@@ -1,3 +1,5 @@
+//! The kinds of objects and surface appearances that a scene file can name.
+
 use crate::paint::Paint;
 use serde::{Deserialize, Serialize};
 

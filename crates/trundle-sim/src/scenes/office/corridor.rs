@@ -1,3 +1,5 @@
+//! The ring corridor of the office scene.
+
 use super::super::builder::{Builder, ROOM_HEIGHT, Side, UNSEEN};
 use super::super::partition::{Along, Partition};
 use super::{CORE, DOOR, HALF_WALL, NORTH, ROOM};

@@ -1,3 +1,5 @@
+//! Scene: an office with a ring corridor and look-alike rooms.
+
 mod corridor;
 mod rooms;
 

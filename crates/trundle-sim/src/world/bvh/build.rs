@@ -1,3 +1,5 @@
+//! Construction of the hierarchy by the surface area heuristic.
+
 use super::{Bvh, LEAF, Node, WIDTH};
 use crate::world::Aabb;
 use trundle_core::Vector3;

@@ -1,3 +1,5 @@
+//! The traversal stack of the hierarchy.
+
 /// Entries that need no memory from the heap.
 const FIXED: usize = 64;
 
