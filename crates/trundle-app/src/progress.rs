@@ -3,9 +3,12 @@
 use std::fmt;
 use std::sync::Arc;
 
+/// A front end's function that shows a line.
+type ShowLine = dyn Fn(&str) + Send + Sync;
+
 /// Shows one line of progress; the newest replaces the one shown. Hidden unless a front end gives a function.
 #[derive(Clone, Default)]
-pub struct Progress(Option<Arc<dyn Fn(&str) + Send + Sync>>);
+pub struct Progress(Option<Arc<ShowLine>>);
 
 impl Progress {
     /// Shows nothing.
