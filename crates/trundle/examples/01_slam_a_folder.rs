@@ -2,6 +2,8 @@
 //!
 //! `cargo run --release --example 01_slam_a_folder -- FOLDER`; without a folder, five simulated images of a room.
 
+#![expect(clippy::print_stdout, reason = "an example prints its result")]
+
 use std::error::Error;
 use std::path::Path;
 use trundle::core::{RgbdImage, RobotBody, SensorEvent};

@@ -2,6 +2,8 @@
 //!
 //! `cargo run --release --example 02_map_a_laser_log -- LOG`; without a log, a simulated drive with an RPLIDAR.
 
+#![expect(clippy::print_stdout, reason = "an example prints its result")]
+
 use std::error::Error;
 use std::path::Path;
 use trundle::core::{Pose2, RobotBody, Scan, SensorEvent, Twist2};

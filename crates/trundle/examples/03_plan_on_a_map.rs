@@ -2,6 +2,8 @@
 //!
 //! `cargo run --release --example 03_plan_on_a_map`
 
+#![expect(clippy::print_stdout, reason = "an example prints its result")]
+
 use std::error::Error;
 use trundle::core::{DifferentialDrive, DriveLimits, Footprint, OccupancyGrid, Pose2, Twist2};
 use trundle::planning::{Plan, Planner, PlannerConfig};

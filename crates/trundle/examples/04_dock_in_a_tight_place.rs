@@ -2,6 +2,8 @@
 //!
 //! `cargo run --release --example 04_dock_in_a_tight_place`
 
+#![expect(clippy::print_stdout, reason = "an example prints its result")]
+
 use std::error::Error;
 use trundle::core::{Footprint, Pose2, Vector2};
 use trundle::docking::{DockingConfig, DockingPlan, DockingPlanner, Obstacle, ObstacleScene};

@@ -2,6 +2,8 @@
 //!
 //! `cargo run --release --example 05_drive_in_the_simulator`
 
+#![expect(clippy::print_stdout, reason = "an example prints its result")]
+
 use std::error::Error;
 use trundle::core::{Pose2, RobotBody};
 use trundle::runtime::{Robot, RobotConfig};

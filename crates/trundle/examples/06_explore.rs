@@ -2,6 +2,8 @@
 //!
 //! `cargo run --release --example 06_explore -- SECONDS`; without an argument, three seconds.
 
+#![expect(clippy::print_stdout, reason = "an example prints its result")]
+
 use std::error::Error;
 use trundle::core::RobotBody;
 use trundle::runtime::{Mission, Robot, RobotConfig, Task};

@@ -2,6 +2,8 @@
 //!
 //! `cargo run --release --example 07_replay_a_recording -- RECORDING.mcap`; without a recording, one is written first.
 
+#![expect(clippy::print_stdout, reason = "an example prints its result")]
+
 use std::error::Error;
 use std::path::{Path, PathBuf};
 use trundle::core::{RobotBody, SensorEvent};

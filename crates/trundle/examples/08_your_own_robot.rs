@@ -3,6 +3,8 @@
 //! `cargo run --release --example 08_your_own_robot`. The body here is a model that reads its wheels without noise; replace
 //! `MyRobot` by the driver of your base and camera.
 
+#![expect(clippy::print_stdout, reason = "an example prints its result")]
+
 use std::convert::Infallible;
 use std::error::Error;
 use trundle::core::{DifferentialDrive, GyroRate, Pose2, RobotBody, SensorEvent, Stamp, Twist2, WheelTicks};
