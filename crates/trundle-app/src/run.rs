@@ -13,7 +13,7 @@ pub struct FinishedRun {
     pub log: RunLog,
     /// The view with the largest number of tracked features.
     pub view: BestView,
-    /// Wall-clock time of the run [s].
+    /// Wall-clock time of the run \[s\].
     pub seconds: f64,
     /// The cost of recording.
     pub recording: RecordingCost,
@@ -32,7 +32,7 @@ pub struct RecordingCost {
     pub error: Option<AppError>,
 }
 
-/// Time that a run goes on after the robot has arrived [s]. A longer roll is not seen. Source: ours.
+/// Time that a run goes on after the robot has arrived \[s\]. A longer roll is not seen. Source: ours.
 pub const AFTER_ARRIVAL_S: f64 = 0.5;
 
 /// Runs the robot of `setup` on `body` until its mission is over, its time is over or the user interrupts; records everything.

@@ -33,7 +33,7 @@ pub struct RunLog {
     is_brief: bool,
 }
 
-/// Time that a brief log goes back [s]. Older entries are dropped. Source: ours.
+/// Time that a brief log goes back \[s\]. Older entries are dropped. Source: ours.
 const BRIEF_LOG_S: f64 = 60.0;
 /// Old entries of a list that are dropped at once. Fewer stay, so that dropping is rare. Source: ours.
 const MIN_DROPPED_ENTRIES: usize = 1000;
@@ -122,7 +122,7 @@ impl RunLog {
         stamps.iter().map(|stamp| self.start.map_or(0.0, |start| *stamp - start)).collect()
     }
 
-    /// Length of the true path, or of the estimated one where truth is not known [m].
+    /// Length of the true path, or of the estimated one where truth is not known \[m\].
     pub fn path_length(&self) -> f64 {
         let path = if self.truths.is_empty() { &self.estimates } else { &self.truths };
         path.windows(2).map(|pair| pair[1].1.distance(&pair[0].1)).sum()
@@ -134,7 +134,7 @@ impl RunLog {
         self.truths.get(after.checked_sub(1)?).map(|(_, pose)| *pose)
     }
 
-    /// At every image of which truth is known: time since the first event [s], estimated pose, true pose, map frame.
+    /// At every image of which truth is known: time since the first event \[s\], estimated pose, true pose, map frame.
     pub fn pose_pairs(&self) -> Vec<(f64, Pose2, Pose2)> {
         let start = self.start.unwrap_or_default();
         let pair = |(stamp, pose): &(Stamp, Pose2)| Some((*stamp - start, *pose, self.truth_at(*stamp)?));

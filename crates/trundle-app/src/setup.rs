@@ -18,7 +18,7 @@ pub struct RunSetup {
     pub mission: Mission,
     /// Moves truth into the map frame; for judges only.
     pub map_from_world: Pose2,
-    /// Time of the robot after which the run is given up [s].
+    /// Time of the robot after which the run is given up \[s\].
     pub time_limit: f64,
     /// The robot.
     pub robot: RobotConfig,
@@ -46,7 +46,7 @@ impl RunSetup {
         }
     }
 
-    /// The same run, given up after `time_limit` of the robot's time [s].
+    /// The same run, given up after `time_limit` of the robot's time \[s\].
     #[must_use]
     pub fn with_time_limit(self, time_limit: f64) -> Self {
         Self { time_limit, ..self }

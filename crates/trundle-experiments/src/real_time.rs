@@ -51,7 +51,7 @@ impl Limit {
 /// The request of a run in real time.
 #[derive(Debug, Clone)]
 pub struct RealTimeRequest {
-    /// Duration of the run [min].
+    /// Duration of the run \[min\].
     pub minutes: u32,
     /// Seed of noise and scene.
     pub seed: u64,
@@ -73,7 +73,7 @@ pub struct RealTimeOutcome {
     pub images_dropped: usize,
     /// Whether an exploration did not end.
     pub is_unexplored: bool,
-    /// Wall-clock time of the run [s].
+    /// Wall-clock time of the run \[s\].
     pub seconds: f64,
 }
 

@@ -76,7 +76,7 @@ impl MapperConfig {
     }
 }
 
-/// Maximum width of a map [cells]. A wider map could have 2^31 cells or more, beyond `GridGeometry`'s limit. Source: ours.
+/// Maximum width of a map \[cells\]. A wider map could have 2^31 cells or more, beyond `GridGeometry`'s limit. Source: ours.
 const MAX_CELLS_ACROSS: f64 = 46_000.0;
 
 #[cfg(test)]

@@ -13,7 +13,7 @@ pub struct Evidence {
     hit: [f32; 2],
 }
 
-/// Weight of a new scan in the running mean of a cell's hits [1]. The mean covers about the last ten scans. Source: ours.
+/// Weight of a new scan in the running mean of a cell's hits \[1\]. The mean covers about the last ten scans. Source: ours.
 const MEAN_HIT_RATE: f32 = 0.2;
 
 impl Evidence {

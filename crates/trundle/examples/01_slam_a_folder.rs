@@ -11,7 +11,7 @@ use trundle::io::{CameraModel, TumSequence};
 use trundle::sim::{Scene, SimConfig, Simulator};
 use trundle::slam::{RgbdSlam, SlamConfig};
 
-/// Largest difference between the stamps of a colour and a depth image that belong together [s]; that of TUM's tools.
+/// Largest difference between the stamps of a colour and a depth image that belong together \[s\]; that of TUM's tools.
 const MAX_STAMP_DIFFERENCE_S: f64 = 0.02;
 
 /// Tracks the images and prints a pose each.

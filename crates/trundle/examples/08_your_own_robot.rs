@@ -12,7 +12,7 @@ use trundle::runtime::{Robot, RobotConfig};
 
 /// Time between two readings of wheels and gyro [s]: 50 Hz.
 const PERIOD_S: f64 = 0.02;
-/// Time after which this example ends [s].
+/// Time after which this example ends \[s\].
 const DURATION_S: f64 = 2.0;
 
 /// A base that does exactly what it is commanded. A real one reads its serial port here.
@@ -20,7 +20,7 @@ struct MyRobot {
     drive: DifferentialDrive,
     twist: Twist2,
     time: f64,
-    /// Rotation of the left and the right wheel [ticks].
+    /// Rotation of the left and the right wheel \[ticks\].
     ticks: [f64; 2],
     gyro_is_next: bool,
 }

@@ -36,18 +36,18 @@ pub trait BackgroundBody {
 /// How the body kept time. Where a simulated body did not, the robot's figures are not the robot's alone.
 #[derive(Debug, Clone, Default, Serialize)]
 pub struct BodyTiming {
-    /// Lateness of the base's readings, 99.9th percentile [ms].
+    /// Lateness of the base's readings, 99.9th percentile \[ms\].
     pub lateness_p999_ms: f64,
-    /// Lateness of the base's readings, maximum [ms].
+    /// Lateness of the base's readings, maximum \[ms\].
     #[serde(rename = "lateness_most_ms")]
     pub lateness_max_ms: f64,
     /// Images that the camera had no time to take.
     pub images_not_taken: u64,
     /// Images due.
     pub images: u64,
-    /// Age of an image at its arrival, median [ms].
+    /// Age of an image at its arrival, median \[ms\].
     pub image_age_median_ms: f64,
-    /// Age of an image at its arrival, 99th percentile [ms].
+    /// Age of an image at its arrival, 99th percentile \[ms\].
     pub image_age_p99_ms: f64,
     /// Resident memory of the program.
     #[serde(skip)]

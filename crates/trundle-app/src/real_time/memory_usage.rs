@@ -9,7 +9,7 @@ pub struct MemoryUsage {
     pub samples: Vec<(f64, f64)>,
 }
 
-/// Time between two samples [s]. Source: ours.
+/// Time between two samples \[s\]. Source: ours.
 const SAMPLE_PERIOD_S: f64 = 5.0;
 
 impl MemoryUsage {

@@ -23,7 +23,7 @@ pub struct ThreadedBody {
     reading: Option<Instant>,
     /// Workers that have a job, and since when.
     busy: BTreeMap<Helper, Instant>,
-    /// Time from the start of a job to the use of its result [ms].
+    /// Time from the start of a job to the use of its result \[ms\].
     waits: BTreeMap<Helper, Histogram>,
     costs: Vec<ThreadLoad>,
     /// Separate contacts, in truth.

@@ -6,13 +6,13 @@ use trundle_core::{Invalid, Pose2};
 use trundle_runtime::{Mission, RobotConfig, Task};
 use trundle_sim::{FaultSchedule, HeightBand, Scene, SimConfig};
 
-/// Time of the robot after which a task is given up [s]. A search for another path through seven rooms takes 300 s, and then the
+/// Time of the robot after which a task is given up \[s\]. A search for another path through seven rooms takes 300 s, and then the
 /// robot waits. Source: ours.
 const TASK_LIMIT_S: f64 = 600.0;
-/// Time of the robot after which an exploration is given up [s]. Source: ours.
+/// Time of the robot after which an exploration is given up \[s\]. Source: ours.
 const EXPLORE_LIMIT_S: f64 = 1800.0;
 
-/// Time of the robot after which a mission is given up [s].
+/// Time of the robot after which a mission is given up \[s\].
 #[must_use]
 pub fn time_limit(mission: &Mission) -> f64 {
     let limit = |task: &Task| if *task == Task::Explore { EXPLORE_LIMIT_S } else { TASK_LIMIT_S };

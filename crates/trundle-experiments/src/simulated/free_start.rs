@@ -4,10 +4,10 @@ use trundle_app::AppError;
 use trundle_core::{Footprint, Pose2, Vector2};
 use trundle_sim::{HeightBand, SimConfig, World};
 
-/// Clearance of a robot's start [m]. A start with less is not taken. Source: ours.
+/// Clearance of a robot's start \[m\]. A start with less is not taken. Source: ours.
 const START_CLEARANCE: f64 = 0.3;
 
-/// Step of the search [m]. Source: ours.
+/// Step of the search \[m\]. Source: ours.
 const SEARCH_STEP: f64 = 0.25;
 
 /// Largest number of positions that are tried. Source: ours.

@@ -18,7 +18,7 @@ pub struct NearestField {
 }
 
 impl NearestField {
-    /// Maximum reach [cells]. A larger offset does not fit a byte. Source: ours.
+    /// Maximum reach \[cells\]. A larger offset does not fit a byte. Source: ours.
     pub const MAX_REACH_CELLS: i32 = 6;
 
     /// Field with a reach of `reach` cells. The coarse likelihood is a Gaussian with a sigma of `sigma` cells.

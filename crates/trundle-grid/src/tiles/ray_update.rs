@@ -158,7 +158,7 @@ impl RayUpdate {
     }
 }
 
-/// Weight of a new hit in the mean of a cell at the upper clamp [1]. The mean covers about the last ten hits. Source: ours.
+/// Weight of a new hit in the mean of a cell at the upper clamp \[1\]. The mean covers about the last ten hits. Source: ours.
 const MEAN_HIT_RATE: f64 = 0.1;
 
 impl RayUpdateScratch {
