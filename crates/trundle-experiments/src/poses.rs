@@ -1,4 +1,4 @@
-//! The point stabilisation of [Li18]: eight start poses about one goal, from an empty map, on the robot's own senses.
+//! The point stabilisation of \[Li18\]: eight start poses about one goal, from an empty map, on the robot's own senses.
 
 use crate::trial::{self, Trial, TrialPlan};
 use crate::{ExperimentReport, RunsRequest};

@@ -60,7 +60,7 @@ pub struct BundleObservation {
     pub seen: PointObservation,
 }
 
-/// Poses and points to be refined together; [`BundleSolver`] does it.
+/// Poses and points to be refined together; `BundleSolver` does it.
 #[derive(Debug, Clone)]
 pub struct BundleProblem {
     pub(crate) camera: PinholeCamera,

@@ -25,7 +25,7 @@ pub struct PositionerInput<'a> {
 pub enum PositionerReason {
     /// At rest, averaging the pose.
     Measuring,
-    /// At rest, planning: [`PositionerConfig::step_work`] per step.
+    /// At rest, planning: `PositionerConfig::step_work` per step.
     Planning,
     /// Carrying out a motion.
     Moving(Motion),
