@@ -1,15 +1,15 @@
 //! From a trajectory and a pose to a twist: tracking, point stabilisation, limits, safe stop.
 //!
-//! [`Follower`] is the door: it drives along a trajectory with [`Tracker`] (docs/methods.md A6), its reference clock waiting
-//! for the robot, and settles at the goal with [`Stabilizer`] (A7). [`SafetyMonitor`] comes after it, knows nothing of plans,
-//! and lets only twists through from which the robot can still stop. Every command obeys [`Limiter`].
-//! The laws, their gains and their limits stand in `docs/algorithms/control.md`.
+//! Start with [`Follower`]. It follows a trajectory with [`PathTracker`] (docs/methods.md A6) and stabilises the goal pose with
+//! [`Stabilizer`] (A7). The clock of its reference waits for a robot that falls behind. [`SafetyMonitor`] checks each twist after
+//! that, without any plan, and passes only twists from which the robot can still stop. Every command keeps the limits of [`Limiter`].
+//! `docs/algorithms/control.md` has the laws, their gains and their limits.
 //!
 //! ```
-//! use trundle_control::{Tracker, TrackingConfig};
+//! use trundle_control::{PathTracker, PathTrackingConfig};
 //! use trundle_core::{DifferentialDrive, DriveLimits, Pose2, PoseEstimate, Stamp, TrajectoryPoint, Twist2};
 //!
-//! let mut tracker = Tracker::new(TrackingConfig::default(), DifferentialDrive::KOBUKI, DriveLimits::KOBUKI)?;
+//! let mut tracker = PathTracker::new(PathTrackingConfig::default(), DifferentialDrive::KOBUKI, DriveLimits::KOBUKI)?;
 //! let estimate = PoseEstimate {
 //!     stamp: Stamp::default(),
 //!     pose: Pose2::IDENTITY,
@@ -24,15 +24,20 @@
 
 mod following;
 mod limiter;
+mod path_tracking;
 mod safety;
-mod settling;
-mod tracking;
+mod stabilization;
 
-pub use following::{FollowPhase, FollowReport, Follower, FollowerConfig};
+pub use following::follower::{FollowPhase, FollowReport, Follower};
+pub use following::follower_config::FollowerConfig;
 pub use limiter::{Limited, Limiter};
-pub use safety::{
-    MotionSense, SafetyAction, SafetyConfig, SafetyInput, SafetyMemory, SafetyMonitor, SafetyReport,
-    SafetyScan, SlowReason, StopReason,
-};
-pub use settling::{SettleConfig, SettlePreview, SettleReport, SettleState, Stabilizer};
-pub use tracking::{ControlReport, Tracker, TrackingConfig, TrackingError};
+pub use path_tracking::path_tracker::{PathTracker, TrackingReport};
+pub use path_tracking::path_tracking_config::PathTrackingConfig;
+pub use path_tracking::tracking_error::TrackingError;
+pub use safety::obstacles::{SafetyMemory, SafetyScan};
+pub use safety::safety_action::{SafetyAction, SlowReason, StopReason};
+pub use safety::safety_config::SafetyConfig;
+pub use safety::safety_monitor::{MotionSense, SafetyInput, SafetyMonitor, SafetyReport};
+pub use stabilization::stabilizer::{Stabilizer, StabilizerPhase, StabilizerReport};
+pub use stabilization::stabilizer_config::StabilizerConfig;
+pub use stabilization::stabilizer_preview::StabilizerPreview;

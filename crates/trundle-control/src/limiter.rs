@@ -1,4 +1,4 @@
-//! What the base can do, made of what a law wants.
+//! Limits a wanted twist to the speeds and accelerations of the base.
 //!
 //! Problem: a law asks for any twist; wheels have a top speed and a top acceleration. Idea: a twist that is too fast is
 //! slowed along its own curve; while the robot speeds up, the turn rate waits for the speed, so that it is on the wanted
@@ -24,8 +24,8 @@ pub struct Limited {
     pub saturated: bool,
 }
 
-/// Below this a difference of twists is rounding.
-const ROUNDING: f64 = 1e-9;
+/// Largest difference of two twists that counts as rounding, m/s and rad/s. Larger: small saturations go unreported. Source: ours.
+const ROUNDING_TOLERANCE: f64 = 1e-9;
 
 impl Limiter {
     /// A limiter for a base at rest.
@@ -46,33 +46,33 @@ impl Limiter {
         self.last
     }
 
-    /// Says what the base was really asked for, where that differs from the last command (a safety stop, say).
+    /// Sets the twist that was really sent, if it differs from the last command (after a safety stop).
     pub fn sent(&mut self, twist: Twist2) {
         self.last =
             if twist.is_finite() { self.limits.saturate(twist, self.wheelbase) } else { Twist2::ZERO };
     }
 
     /// The command nearest in kind to `wanted` that is allowed `dt` seconds after the last one: within the speed limits,
-    /// and no component changed by more than its acceleration times `dt`. What is not finite counts as a wish to stop.
+    /// and no component changed by more than its acceleration times `dt`. A wanted twist that is not finite counts as a stop.
     pub fn limit(&mut self, wanted: Twist2, dt: f64) -> Limited {
         let finite = if wanted.is_finite() { wanted } else { Twist2::ZERO };
         let target = self.limits.saturate(finite, self.wheelbase);
         let dt = if dt.is_finite() { dt.max(0.0) } else { 0.0 };
         let step = Twist2::new(self.limits.acceleration * dt, self.limits.angular_acceleration * dt);
-        let curved = self.along_the_curve(target, step);
+        let curved = self.step_along_curve(target, step);
         let twist = if self.limits.saturate(curved, self.wheelbase) == curved {
             curved
         } else {
-            self.straight_towards(target, step)
+            self.step_straight(target, step)
         };
         self.last = twist;
-        let saturated =
-            !((twist.v - wanted.v).abs() < ROUNDING && (twist.omega - wanted.omega).abs() < ROUNDING);
+        let saturated = !((twist.v - wanted.v).abs() < ROUNDING_TOLERANCE
+            && (twist.omega - wanted.omega).abs() < ROUNDING_TOLERANCE);
         Limited { twist, saturated }
     }
 
-    /// The speed goes as far as it may; the turn rate goes where the curve wants it at that speed, as far as it may.
-    fn along_the_curve(&self, target: Twist2, step: Twist2) -> Twist2 {
+    /// The speed changes as far as its limit allows; the turn rate follows the curve at that speed, within its own limit.
+    fn step_along_curve(&self, target: Twist2, step: Twist2) -> Twist2 {
         let last = self.last;
         let v = last.v + (target.v - last.v).clamp(-step.v, step.v);
         let omega = if v == target.v {
@@ -87,8 +87,8 @@ impl Limiter {
         Twist2::new(v, last.omega + (omega - last.omega).clamp(-step.omega, step.omega))
     }
 
-    /// On the segment from the last twist to the target: the allowed twists are a convex set that holds both.
-    fn straight_towards(&self, target: Twist2, step: Twist2) -> Twist2 {
+    /// A step on the segment from the last twist to the target: the allowed twists are a convex set with both in it.
+    fn step_straight(&self, target: Twist2, step: Twist2) -> Twist2 {
         let last = self.last;
         let part = |gap: f64, step: f64| if gap.abs() > step { step / gap.abs() } else { 1.0 };
         let part = part(target.v - last.v, step.v).min(part(target.omega - last.omega, step.omega));
@@ -111,7 +111,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn no_limit_is_ever_exceeded(wishes in prop::collection::vec((any_twist(), 0.0..0.1), 1..60)) {
+        fn limits_hold_for_every_sequence_of_wishes(wishes in prop::collection::vec((any_twist(), 0.0..0.1), 1..60)) {
             let mut limiter = kobuki();
             let limits = DriveLimits::KOBUKI;
             for (wish, dt) in wishes {
@@ -125,7 +125,7 @@ mod tests {
         }
 
         #[test]
-        fn every_wish_is_reached(first in any_twist(), wish in any_twist()) {
+        fn every_wanted_twist_is_reached(first in any_twist(), wish in any_twist()) {
             let mut limiter = kobuki();
             limiter.sent(first);
             let target = DriveLimits::KOBUKI.saturate(wish, 0.230);
@@ -134,7 +134,7 @@ mod tests {
         }
 
         #[test]
-        fn curvature_is_kept_from_rest_and_to_rest(v in 0.1..2.0, curvature in -4.0..4.0) {
+        fn curvature_is_constant_from_rest_and_to_rest(v in 0.1..2.0, curvature in -4.0..4.0) {
             let (v, curvature): (f64, f64) = (v, curvature);
             let mut limiter = kobuki();
             for i in 0..200 {
@@ -147,7 +147,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_finite_brakes() {
+    fn a_twist_that_is_not_finite_brakes() {
         let mut limiter = kobuki();
         limiter.sent(Twist2::new(0.3, 0.0));
         let limited = limiter.limit(Twist2::new(f64::NAN, 0.0), 0.02);

@@ -14,7 +14,7 @@ use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use trundle_app::{AppError, Progress};
-use trundle_control::{FollowerConfig, SettleConfig};
+use trundle_control::{FollowerConfig, StabilizerConfig};
 use trundle_core::{DriveLimits, Invalid, OccupancyGrid, Vector2, difference_of_angles};
 use trundle_io::{OutputFolder, write_map};
 use trundle_localization::LocalizerConfig;
@@ -146,10 +146,10 @@ fn robot() -> RobotConfig {
         },
         // A tenth of the benchmark's tolerance in position, a quarter in heading: the estimate has errors of its own.
         control: FollowerConfig {
-            settling: SettleConfig {
+            settling: StabilizerConfig {
                 position_tolerance: 0.1 * NEAR,
                 heading_tolerance: 0.25 * ALIGNED,
-                ..SettleConfig::default()
+                ..StabilizerConfig::default()
             },
             ..FollowerConfig::default()
         },

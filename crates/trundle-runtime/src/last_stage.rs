@@ -12,7 +12,7 @@ use choice::{Choice, Means, Verdict};
 pub use report::LastStageReport;
 use report::Notes;
 use serde::{Deserialize, Serialize};
-use trundle_control::SettlePreview;
+use trundle_control::StabilizerPreview;
 use trundle_core::{Footprint, Invalid, Pose2, Stamp, Twist2, require_in};
 use trundle_docking::{
     DockingConfig, DockingPlanner, ObstacleScene, Positioner, PositionerConfig, PositionerInput,
@@ -134,7 +134,7 @@ impl LastStage {
 
     /// At the end of the trajectory: begins to look whether turns and straight moves take over from the arc that `preview`
     /// shows. [`LastStage::takes_over`] tells.
-    pub(crate) fn consider(&mut self, s: &Surroundings<'_>, goal: Pose2, preview: SettlePreview) {
+    pub(crate) fn consider(&mut self, s: &Surroundings<'_>, goal: Pose2, preview: StabilizerPreview) {
         self.choice = None;
         if self.config.enabled {
             self.look_into(Choice::new(s.estimate.pose, goal, Some(preview)), goal);

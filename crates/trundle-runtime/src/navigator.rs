@@ -339,7 +339,7 @@ impl Navigator {
             self.follower.halt();
             return;
         };
-        let preview = self.follower.preview_settling(s.estimate.pose, goal);
+        let preview = self.follower.preview_stabilization(s.estimate.pose, goal);
         self.last_stage.consider(s, goal, preview);
         self.choose(s);
     }

@@ -1,5 +1,12 @@
-use super::{FollowerConfig, clock::ReferenceClock};
-use crate::{Limiter, SettlePreview, SettleState, Stabilizer, Tracker, TrackingError};
+//! The follower: one step from an estimate to a twist.
+
+use crate::following::follower_config::FollowerConfig;
+use crate::following::reference_clock::ReferenceClock;
+use crate::limiter::Limiter;
+use crate::path_tracking::path_tracker::PathTracker;
+use crate::path_tracking::tracking_error::TrackingError;
+use crate::stabilization::stabilizer::{Stabilizer, StabilizerPhase};
+use crate::stabilization::stabilizer_preview::StabilizerPreview;
 use std::fmt;
 use trundle_core::{
     DifferentialDrive, DriveLimits, Invalid, Pose2, PoseEstimate, Stamp, Trajectory, TrajectoryPoint, Twist2,
@@ -9,21 +16,21 @@ use trundle_core::{
 #[derive(Debug, Clone, PartialEq)]
 pub struct Follower {
     config: FollowerConfig,
-    tracker: Tracker,
+    tracker: PathTracker,
     stabilizer: Stabilizer,
-    brake: Limiter,
-    task: Option<Task>,
-    last: Option<Stamp>,
+    limiter: Limiter,
+    task: Option<FollowTask>,
+    last_step: Option<Stamp>,
 }
 
 #[derive(Debug, Clone, PartialEq)]
-struct Task {
+struct FollowTask {
     clock: ReferenceClock,
     goal: Pose2,
     settling: bool,
 }
 
-/// What the follower is at.
+/// Phase of following.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FollowPhase {
     /// Nothing to follow: it brakes and stands.
@@ -55,24 +62,24 @@ impl fmt::Display for FollowPhase {
 pub struct FollowReport {
     /// The twist to send.
     pub twist: Twist2,
-    /// What it is for.
+    /// The phase.
     pub phase: FollowPhase,
     /// Where the robot should be, and how it should be moving; the goal at rest once the trajectory has arrived.
     pub reference: Option<TrajectoryPoint>,
-    /// Where that is, seen from the robot; zero when idle.
+    /// Error to the reference in the robot's frame; zero when idle.
     pub error: TrackingError,
     /// Whether a limit of the base changed what the law wanted.
     pub saturated: bool,
-    /// Whether the robot is too far from its reference to trust the trajectory's room: plan again.
+    /// Whether the robot is so far from its reference that the clearance of the trajectory no longer holds: plan again.
     pub off_track: bool,
     /// Whether the robot stands at the goal, within the tolerances.
     pub done: bool,
 }
 
-/// Longer pauses between two steps count as this, s.
-const LONGEST_STEP: f64 = 0.1;
-/// An older estimate is not extrapolated further than this, s.
-const LONGEST_EXTRAPOLATION: f64 = 0.2;
+/// Longest time between two steps that is counted, s. Larger: the reference jumps farther after a pause. Source: ours.
+const MAX_STEP_S: f64 = 0.1;
+/// Longest extrapolation of an estimate by its own twist, s. Larger: more trust in an old twist. Source: ours.
+const MAX_EXTRAPOLATION_S: f64 = 0.2;
 
 impl Follower {
     /// A follower without a trajectory, of a base at rest.
@@ -86,35 +93,35 @@ impl Follower {
     ) -> Result<Self, Invalid> {
         let config = config.validated()?;
         Ok(Self {
-            tracker: Tracker::new(config.tracking.clone(), drive, limits)?,
+            tracker: PathTracker::new(config.tracking.clone(), drive, limits)?,
             stabilizer: Stabilizer::new(config.settling.clone(), drive, limits)?,
-            brake: Limiter::new(drive, limits)?,
+            limiter: Limiter::new(drive, limits)?,
             config,
             task: None,
-            last: None,
+            last_step: None,
         })
     }
 
-    /// Takes up a trajectory (map frame), from its beginning, and the goal to settle at: the trajectory's end, or where
-    /// the map has moved it since, some centimetres away. The way between the two is not checked for obstacles.
+    /// Follows a trajectory (map frame) from its beginning, then settles at `goal`: the end of the trajectory, or where a map correction
+    /// has moved it, some centimetres away. The motion between the two is not checked for obstacles.
     pub fn follow(&mut self, trajectory: Trajectory, goal: Pose2) {
         self.stabilizer.restart();
-        self.task = Some(Task { clock: ReferenceClock::new(trajectory), goal, settling: false });
+        self.task = Some(FollowTask { clock: ReferenceClock::new(trajectory), goal, settling: false });
     }
 
-    /// Forgets the trajectory: the robot brakes and stands.
+    /// Drops the trajectory: the robot brakes to rest.
     pub fn halt(&mut self) {
         self.task = None;
     }
 
-    /// Says what the base was really asked for, where that is not the last twist reported (a safety stop, say).
+    /// Sets the twist that was really sent, if it differs from the last one reported (after a safety stop).
     pub fn sent(&mut self, twist: Twist2) {
         self.tracker.sent(twist);
         self.stabilizer.sent(twist);
-        self.brake.sent(twist);
+        self.limiter.sent(twist);
     }
 
-    /// The reference of now, where a new trajectory should begin so that nothing jumps; `None` when idle or settling.
+    /// The reference of now: a new trajectory that begins here causes no jump. `None` when idle or settling.
     pub fn reference(&self) -> Option<TrajectoryPoint> {
         self.task.as_ref().filter(|task| !task.settling).map(|task| task.clock.reference())
     }
@@ -125,19 +132,19 @@ impl Follower {
     }
 
     /// How settling from `from` at `goal` would go.
-    pub fn preview_settling(&self, from: Pose2, goal: Pose2) -> SettlePreview {
+    pub fn preview_stabilization(&self, from: Pose2, goal: Pose2) -> StabilizerPreview {
         self.stabilizer.preview(from, goal)
     }
 
     /// The command for `now`. An estimate that is older is carried forward by its own twist.
     pub fn step(&mut self, estimate: &PoseEstimate, now: Stamp) -> FollowReport {
-        let dt = self.last.map_or(0.0, |last| (now - last).clamp(0.0, LONGEST_STEP));
-        self.last = Some(now);
-        let age = (now - estimate.stamp).clamp(0.0, LONGEST_EXTRAPOLATION);
+        let dt = self.last_step.map_or(0.0, |last| (now - last).clamp(0.0, MAX_STEP_S));
+        self.last_step = Some(now);
+        let age = (now - estimate.stamp).clamp(0.0, MAX_EXTRAPOLATION_S);
         let estimate =
             PoseEstimate { stamp: now, pose: estimate.pose.advance(estimate.twist, age), ..*estimate };
         let report = match &mut self.task {
-            None => idle(&mut self.brake, dt),
+            None => idle(&mut self.limiter, dt),
             Some(task) => {
                 if !task.settling {
                     task.clock.advance(dt, estimate.pose, &self.config);
@@ -155,9 +162,9 @@ impl Follower {
     }
 }
 
-fn idle(brake: &mut Limiter, dt: f64) -> FollowReport {
+fn idle(limiter: &mut Limiter, dt: f64) -> FollowReport {
     FollowReport {
-        twist: brake.limit(Twist2::ZERO, dt).twist,
+        twist: limiter.limit(Twist2::ZERO, dt).twist,
         phase: FollowPhase::Idle,
         reference: None,
         error: TrackingError::default(),
@@ -168,9 +175,9 @@ fn idle(brake: &mut Limiter, dt: f64) -> FollowReport {
 }
 
 fn track(
-    tracker: &mut Tracker,
+    tracker: &mut PathTracker,
     estimate: &PoseEstimate,
-    task: &Task,
+    task: &FollowTask,
     dt: f64,
     config: &FollowerConfig,
 ) -> FollowReport {
@@ -186,12 +193,12 @@ fn track(
     }
 }
 
-fn settle(stabilizer: &mut Stabilizer, estimate: &PoseEstimate, task: &Task, dt: f64) -> FollowReport {
+fn settle(stabilizer: &mut Stabilizer, estimate: &PoseEstimate, task: &FollowTask, dt: f64) -> FollowReport {
     let report = stabilizer.step(estimate, task.goal, dt);
-    let phase = match report.state {
-        SettleState::Approaching => FollowPhase::Approaching,
-        SettleState::Turning => FollowPhase::Turning,
-        SettleState::Settled => FollowPhase::Settled,
+    let phase = match report.phase {
+        StabilizerPhase::Approaching => FollowPhase::Approaching,
+        StabilizerPhase::Turning => FollowPhase::Turning,
+        StabilizerPhase::Settled => FollowPhase::Settled,
     };
     FollowReport {
         twist: report.twist,
@@ -200,6 +207,6 @@ fn settle(stabilizer: &mut Stabilizer, estimate: &PoseEstimate, task: &Task, dt:
         error: report.error,
         saturated: report.saturated,
         off_track: false,
-        done: report.state == SettleState::Settled,
+        done: report.phase == StabilizerPhase::Settled,
     }
 }

@@ -5,9 +5,6 @@
 //! where the trajectory arrives, point stabilisation takes over (the goal check has two tiers: arrived, settled).
 //! Cost: O(log samples).
 
-mod clock;
-mod config;
-mod follower;
-
-pub use config::FollowerConfig;
-pub use follower::{FollowPhase, FollowReport, Follower};
+pub(crate) mod follower;
+pub(crate) mod follower_config;
+pub(crate) mod reference_clock;

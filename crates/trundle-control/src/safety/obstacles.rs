@@ -1,6 +1,8 @@
+//! What stands near the robot: hits of the scan and cells of the map.
+
 use trundle_core::{Cell, OccupancyGrid, Pose2, Scan, Vector2};
 
-/// The newest scan, and how the robot moved since.
+/// The newest scan, and the motion since.
 #[derive(Debug, Clone, Copy)]
 pub struct SafetyScan<'a> {
     /// The scan.
@@ -11,23 +13,23 @@ pub struct SafetyScan<'a> {
     pub odom_now: Pose2,
 }
 
-/// What the map remembers, and where the robot is on it.
+/// The map, and the pose of the robot in it.
 #[derive(Debug, Clone, Copy)]
 pub struct SafetyMemory<'a> {
     /// The map.
     pub grid: &'a OccupancyGrid,
-    /// What came lately and has not been seen to go, map frame, m: the map does not hold it yet.
-    pub lately: &'a [Vector2],
+    /// Obstacles seen recently and not yet in the map, map frame, m.
+    pub unconfirmed: &'a [Vector2],
     /// `map_from_base` now.
     pub map_from_base: Pose2,
 }
 
-/// Something round that stands near the robot.
+/// A round obstacle near the robot.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Obstacle {
-    /// Its middle, base frame, m.
+    /// Its centre, base frame, m.
     pub(super) at: Vector2,
-    /// Its radius, m: 0 for what a beam hit, half a side for a cell.
+    /// Its radius, m: 0 for a hit of a beam, half a side for a cell.
     pub(super) extent: f64,
 }
 
@@ -38,12 +40,12 @@ pub(super) fn collect_scan(view: &SafetyScan<'_>, reach: f64, found: &mut Vec<Ob
     found.extend(hits.filter(|p| p.norm() <= reach).map(|at| Obstacle { at, extent: 0.0 }));
 }
 
-/// Appends what came lately and the occupied cells within `reach` of the base, base frame, m.
+/// Appends the unconfirmed obstacles and the occupied cells within `reach` of the base, base frame, m.
 pub(super) fn collect_memory(memory: &SafetyMemory<'_>, reach: f64, found: &mut Vec<Obstacle>) {
     let geometry = memory.grid.geometry();
     let base_from_map = memory.map_from_base.inverse();
-    let lately = memory.lately.iter().map(|at| base_from_map.transform(*at));
-    found.extend(lately.filter(|at| at.norm() <= reach).map(|at| Obstacle { at, extent: 0.0 }));
+    let unconfirmed = memory.unconfirmed.iter().map(|at| base_from_map.transform(*at));
+    found.extend(unconfirmed.filter(|at| at.norm() <= reach).map(|at| Obstacle { at, extent: 0.0 }));
     let at = (memory.map_from_base.position() - geometry.origin) / geometry.resolution;
     let extent = geometry.resolution / 2.0;
     let cells = reach / geometry.resolution + 0.5;
@@ -86,25 +88,25 @@ mod tests {
     }
 
     #[test]
-    fn the_map_is_seen_from_the_base_and_off_it_is_nothing() {
+    fn cells_and_unconfirmed_obstacles_come_in_the_base_frame() {
         let mut grid = OccupancyGrid::from_ascii(0.1, &vec![".".repeat(30); 30].join("\n")).unwrap();
         grid.set(trundle_core::CellIndex { col: 14, row: 19 }, Cell::Occupied);
         let mut points = Vec::new();
         let memory =
-            SafetyMemory { grid: &grid, lately: &[], map_from_base: Pose2::new(1.45, 1.45, FRAC_PI_2) };
+            SafetyMemory { grid: &grid, unconfirmed: &[], map_from_base: Pose2::new(1.45, 1.45, FRAC_PI_2) };
         collect_memory(&memory, 0.6, &mut points);
         assert_eq!(points.len(), 1);
         assert!((points[0].at - Vector2::new(0.5, 0.0)).norm() < 1e-12);
         points.clear();
         collect_memory(&memory, 0.4, &mut points);
         assert!(points.is_empty());
-        // Somebody who came 0.3 m ahead stands there, though the map has nothing; who came 1 m ahead is too far off.
-        let lately = [Vector2::new(1.45, 1.75), Vector2::new(1.45, 2.45)];
-        collect_memory(&SafetyMemory { lately: &lately, ..memory }, 0.4, &mut points);
+        // An unconfirmed obstacle 0.3 m ahead counts although the map is free; one 1 m ahead is out of reach.
+        let unconfirmed = [Vector2::new(1.45, 1.75), Vector2::new(1.45, 2.45)];
+        collect_memory(&SafetyMemory { unconfirmed: &unconfirmed, ..memory }, 0.4, &mut points);
         assert_eq!(points.len(), 1);
         assert!((points[0].at - Vector2::new(0.3, 0.0)).norm() < 1e-12);
         points.clear();
-        let far = SafetyMemory { grid: &grid, lately: &[], map_from_base: Pose2::new(-90.0, 1e9, 0.0) };
+        let far = SafetyMemory { grid: &grid, unconfirmed: &[], map_from_base: Pose2::new(-90.0, 1e9, 0.0) };
         collect_memory(&far, 0.6, &mut points);
         assert!(points.is_empty());
     }

@@ -39,20 +39,15 @@ struct Run {
     phases: Vec<FollowPhase>,
 }
 
-/// Follows; `meddle` may change the command at a time (a safety stop).
-fn run(
-    mut plant: Plant,
-    trajectory: &Trajectory,
-    goal: Pose2,
-    meddle: impl Fn(f64, Twist2) -> Twist2,
-) -> Run {
+/// Follows; `alter` may change the command at a time (a safety stop).
+fn run(mut plant: Plant, trajectory: &Trajectory, goal: Pose2, alter: impl Fn(f64, Twist2) -> Twist2) -> Run {
     let mut follower = follower();
     follower.follow(trajectory.clone(), goal);
     let mut run =
         Run { seconds: 0.0, done: false, worst: 0.0, position: 0.0, heading_deg: 0.0, phases: vec![] };
     while !run.done && run.seconds < 90.0 {
         let report = follower.step(&plant.estimate(), plant.now);
-        let sent = meddle(run.seconds, report.twist);
+        let sent = alter(run.seconds, report.twist);
         follower.sent(sent);
         plant.drive(sent);
         if report.phase == FollowPhase::Tracking {
@@ -69,12 +64,12 @@ fn run(
     run
 }
 
-fn as_told(_: f64, twist: Twist2) -> Twist2 {
+fn unchanged(_: f64, twist: Twist2) -> Twist2 {
     twist
 }
 
 #[test]
-fn it_follows_straights_curves_and_turns_and_settles() {
+fn straights_curves_and_turns_end_within_the_tolerances() {
     let routes: [&[(f64, f64)]; 4] = [
         &[(2.0, 0.0)],
         &[(0.0, 2.0), (1.5, 1.2), (1.0, -1.5)],
@@ -84,7 +79,7 @@ fn it_follows_straights_curves_and_turns_and_settles() {
     for route in routes {
         for offset in [Pose2::IDENTITY, Pose2::new(-0.03, 0.04, 0.1)] {
             let trajectory = legs(route);
-            let run = run(Plant::at(offset), &trajectory, trajectory.end(), as_told);
+            let run = run(Plant::at(offset), &trajectory, trajectory.end(), unchanged);
             eprintln!(
                 "{route:?} from {offset:?}: {:.1} s for {:.1} s, worst {:.3} m, end {:.4} m {:.2} deg",
                 run.seconds,
@@ -101,17 +96,17 @@ fn it_follows_straights_curves_and_turns_and_settles() {
 }
 
 #[test]
-fn noise_and_a_moved_goal_are_settled_too() {
+fn it_settles_with_noise_and_with_a_moved_goal() {
     let trajectory = legs(&[(1.5, 0.5)]);
     let mut plant = Plant::at(Pose2::new(0.0, 0.03, 0.0));
     plant.noise = (0.003, 0.003);
     let goal = trajectory.end() * Pose2::new(0.02, -0.04, 0.1);
-    let run = run(plant, &trajectory, goal, as_told);
+    let run = run(plant, &trajectory, goal, unchanged);
     assert!(run.done && run.position < 0.02 && run.heading_deg < 1.0, "{run:?}");
 }
 
 #[test]
-fn the_reference_waits_for_a_robot_that_is_held() {
+fn the_reference_waits_for_a_stopped_robot() {
     let trajectory = legs(&[(1.5, 0.5), (0.8, -0.8)]);
     let held = |time: f64, twist| if (2.0..5.0).contains(&time) { Twist2::ZERO } else { twist };
     let run = run(Plant::at(Pose2::IDENTITY), &trajectory, trajectory.end(), held);
@@ -121,7 +116,7 @@ fn the_reference_waits_for_a_robot_that_is_held() {
 }
 
 #[test]
-fn a_robot_that_may_only_creep_arrives() {
+fn a_robot_limited_to_a_low_speed_arrives() {
     let trajectory = legs(&[(1.0, 0.5)]);
     let creeping = |_: f64, twist: Twist2| {
         let part = (0.08 / twist.v.abs()).min(1.0);
@@ -132,7 +127,7 @@ fn a_robot_that_may_only_creep_arrives() {
 }
 
 #[test]
-fn a_new_trajectory_from_the_reference_changes_nothing() {
+fn a_new_trajectory_from_the_reference_causes_no_jump() {
     let trajectory = legs(&[(2.0, 0.5)]);
     let (mut plant, mut follower) = (Plant::at(Pose2::IDENTITY), follower());
     follower.follow(trajectory.clone(), trajectory.end());
@@ -161,7 +156,7 @@ fn assert_continues(mut follower: Follower, mut plant: Plant, last: Twist2) {
 }
 
 #[test]
-fn halted_it_brakes_within_the_limits() {
+fn after_halt_it_brakes_within_the_limits() {
     let trajectory = legs(&[(2.0, 0.5)]);
     let (mut plant, mut follower) = (Plant::at(Pose2::IDENTITY), follower());
     assert_eq!(follower.step(&plant.estimate(), plant.now).phase, FollowPhase::Idle);
@@ -183,7 +178,7 @@ fn halted_it_brakes_within_the_limits() {
 }
 
 #[test]
-fn far_from_its_reference_it_asks_for_a_new_plan() {
+fn far_from_its_reference_it_reports_off_track() {
     let trajectory = legs(&[(2.0, 0.0)]);
     let mut follower = follower();
     follower.follow(trajectory.clone(), trajectory.end());

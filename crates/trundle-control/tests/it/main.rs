@@ -2,7 +2,7 @@
 #![expect(clippy::unwrap_used, reason = "these are tests")]
 
 mod following;
+mod path_tracking;
 mod plant;
 mod safety;
-mod settling;
-mod tracking;
+mod stabilization;

@@ -84,7 +84,7 @@ fn drive(world: &World, mut plant: Plant, command: Twist2, seconds: f64, with_ma
             images.push((world.scan(plant.pose, plant.now), plant.pose));
         }
         let (scan, odom_at_scan) = &images[images.len() - 2];
-        let memory = SafetyMemory { grid: &grid, lately: &[], map_from_base: plant.pose };
+        let memory = SafetyMemory { grid: &grid, unconfirmed: &[], map_from_base: plant.pose };
         last = monitor.check(&SafetyInput {
             now: plant.now,
             twist: command,
@@ -151,7 +151,7 @@ fn a_gap_of_70_cm_is_passed() {
 }
 
 #[test]
-fn what_the_camera_is_too_near_to_see_the_map_remembers() {
+fn the_map_covers_the_blind_zone_of_the_camera() {
     let box_ahead = empty().segment((0.45, -0.1), (0.45, 0.1));
     let command = Twist2::new(0.3, 0.0);
     let start = || Plant::at(Pose2::IDENTITY);
@@ -163,14 +163,14 @@ fn what_the_camera_is_too_near_to_see_the_map_remembers() {
 }
 
 #[test]
-fn behind_it_only_the_map_warns() {
+fn the_map_stops_driving_backward_into_a_wall() {
     let wall = empty().segment((-0.8, -1.0), (-0.8, 1.0));
     let drive = drive(&wall, Plant::at(Pose2::IDENTITY), Twist2::new(-0.4, 0.2), 8.0, true);
     assert!(drive.least_clearance > 0.0 && drive.last.twist.v > -0.02, "{}", drive.last.action);
 }
 
 #[test]
-fn in_the_open_nothing_is_touched() {
+fn without_obstacles_the_command_passes() {
     let command = Twist2::new(0.7, 0.0);
     let drive = drive(&empty(), Plant::at(Pose2::IDENTITY).moving(command), command, 2.0, true);
     assert_eq!(drive.last, SafetyReport { twist: command, action: SafetyAction::Pass });

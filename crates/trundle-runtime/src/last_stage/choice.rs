@@ -1,7 +1,7 @@
 //! An arc, or turns and straight moves: looked into a part a control step, while the robot is on the arc already.
 
 use crate::navigator::Surroundings;
-use trundle_control::SettlePreview;
+use trundle_control::StabilizerPreview;
 use trundle_core::{Footprint, Pose2};
 use trundle_docking::{DockingJob, DockingPlan, DockingPlanner, ObstacleScene};
 
@@ -14,7 +14,7 @@ pub(super) struct Choice {
     goal: Pose2,
     from: Pose2,
     /// The arc, and how far it is looked at; none where there is no arc to go on with.
-    arc: Option<(SettlePreview, usize)>,
+    arc: Option<(StabilizerPreview, usize)>,
     /// What stands about the arc.
     scene: Option<ObstacleScene>,
     planning: Option<DockingJob>,
@@ -45,7 +45,7 @@ pub(super) struct Means<'a> {
 
 impl Choice {
     /// Between an arc, where there is one, and turns and straight moves from `from`.
-    pub(super) fn new(from: Pose2, goal: Pose2, arc: Option<SettlePreview>) -> Self {
+    pub(super) fn new(from: Pose2, goal: Pose2, arc: Option<StabilizerPreview>) -> Self {
         Self { goal, from, arc: arc.map(|arc| (arc, 0)), scene: None, planning: None }
     }
 
@@ -108,7 +108,7 @@ impl Choice {
 }
 
 /// What the map holds about an arc.
-fn about(s: &Surroundings<'_>, arc: &SettlePreview, means: &Means<'_>) -> ObstacleScene {
+fn about(s: &Surroundings<'_>, arc: &StabilizerPreview, means: &Means<'_>) -> ObstacleScene {
     let here = s.estimate.pose;
     let reach = arc.poses.iter().map(|p| p.distance(&here)).fold(0.0, f64::max);
     let half = reach + means.footprint.circumscribed_radius() + means.arc_margin + 0.1;

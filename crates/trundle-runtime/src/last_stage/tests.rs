@@ -28,7 +28,7 @@ fn surroundings(grid: &OccupancyGrid, pose: Pose2, time: f64) -> Surroundings<'_
 }
 
 /// Whether turns and straight moves take over, when that is known.
-fn chosen(stage: &mut LastStage, s: &Surroundings<'_>, goal: Pose2, preview: SettlePreview) -> bool {
+fn chosen(stage: &mut LastStage, s: &Surroundings<'_>, goal: Pose2, preview: StabilizerPreview) -> bool {
     stage.consider(s, goal, preview);
     (0..1000).any(|_| stage.takes_over(s))
 }
@@ -47,9 +47,9 @@ fn stage() -> LastStage {
 fn a_free_arc_stays_and_one_through_a_wall_is_taken_over_and_settles() {
     let (grid, mut stage) = (corridor(), stage());
     let (start, goal) = (Pose2::new(1.2, 0.32, 0.0), Pose2::new(1.5, 0.38, 0.0));
-    let free = SettlePreview { time: Some(2.0), poses: vec![start, goal] };
+    let free = StabilizerPreview { time: Some(2.0), poses: vec![start, goal] };
     assert!(!chosen(&mut stage, &surroundings(&grid, start, 0.0), goal, free));
-    let swinging = SettlePreview { time: Some(2.0), poses: vec![start, Pose2::new(1.3, 0.2, 0.0), goal] };
+    let swinging = StabilizerPreview { time: Some(2.0), poses: vec![start, Pose2::new(1.3, 0.2, 0.0), goal] };
     assert!(chosen(&mut stage, &surroundings(&grid, start, 0.0), goal, swinging));
     let (mut pose, mut settled) = (start, None);
     for i in 1..3000 {
@@ -125,7 +125,7 @@ fn switched_off_or_far_away_it_never_takes_over() {
     let config = LastStageConfig { enabled: false, ..LastStageConfig::default() };
     let mut off = LastStage::new(&config, &Footprint::KOBUKI).unwrap();
     let near = Pose2::new(0.8, 0.35, 0.0);
-    let touching = SettlePreview { time: None, poses: vec![start, near] };
+    let touching = StabilizerPreview { time: None, poses: vec![start, near] };
     assert!(!chosen(&mut off, &surroundings(&grid, start, 0.0), near, touching));
     assert!(!off.begin_if_possible(&surroundings(&grid, start, 0.0), near));
 }
@@ -156,7 +156,7 @@ fn the_way_that_is_chosen_is_the_faster_one_when_both_are_driven() {
             if i % 2 == 0 { (corridor(), goal) } else { (open.clone(), Pose2::new(1.5, 1.5, 0.0)) };
         let start = Pose2::new(goal.x + 0.7 * part(5), goal.y + 0.12 * part(7), 0.9 * part(11));
         let (mut stage, s) = (stage(), surroundings(&grid, start, 0.0));
-        let arc = follower.preview_settling(start, goal);
+        let arc = follower.preview_stabilization(start, goal);
         let manoeuvre_wins = chosen(&mut stage, &s, goal, arc.clone());
         let scene = ObstacleScene::from_grid(&grid, goal.position(), 3.0, false);
         let kept = LastStageConfig::default().arc_margin;
@@ -192,7 +192,7 @@ fn times_of_steps(
         goes_on
     };
     let s = surroundings(grid, start, 0.0);
-    stage.consider(&s, goal, SettlePreview { time: None, poses: vec![start, goal] });
+    stage.consider(&s, goal, StabilizerPreview { time: None, poses: vec![start, goal] });
     while clock(&mut || !stage.takes_over(&s) && stage.choice.is_some()) {}
     begin(&mut stage, goal);
     for i in 1..400 {

@@ -1,3 +1,5 @@
+//! Margins, time-outs and speeds of the safety monitor.
+
 use serde::{Deserialize, Serialize};
 use trundle_core::{Invalid, require_in};
 
@@ -40,10 +42,10 @@ pub struct SafetyConfig {
     pub wheels_timeout: f64,
 }
 
-/// From a command to the wheels obeying, s: delay and lag of the motors, and a control period.
-const OBEYING: f64 = 0.12;
-/// The highest speed by images that are older than usual, m/s.
-const LATE_SPEED: f64 = 0.7;
+/// Time from a command to the response of the wheels, s. Larger: slower by late images. Source: delay and lag of the Kobuki, and a control period.
+const COMMAND_RESPONSE_S: f64 = 0.12;
+/// Highest speed by images older than the latency, m/s. Larger: less slowing. Source: the top speed of the Kobuki.
+const LATE_IMAGE_SPEED_M_PER_S: f64 = 0.7;
 
 impl Default for SafetyConfig {
     fn default() -> Self {
@@ -94,37 +96,36 @@ impl SafetyConfig {
         Ok(self)
     }
 
-    /// From an image of this age to the wheels obeying, s: late images cost speed, not safety.
+    /// Time from an image of this age to the response of the wheels, s: late images cost speed, not safety.
     pub(super) fn latency_for(&self, age: f64) -> f64 {
-        self.latency.max(age + OBEYING)
+        self.latency.max(age + COMMAND_RESPONSE_S)
     }
 
-    /// How fast a robot may be that last saw something `age` s ago, m/s: any speed up to the usual latency, then from
-    /// [`LATE_SPEED`] down to none at the time-out. A limit, not a part of what was asked for: that would shrink from command
-    /// to command.
+    /// Highest speed with an image of `age` s, m/s: unlimited up to the latency, then from [`LATE_IMAGE_SPEED_M_PER_S`] down to zero at the
+    /// time-out. It is a limit and not a factor on the command, because a factor would compound from command to command.
     pub(super) fn speed_at_age(&self, age: f64) -> f64 {
         let span = (self.image_timeout - self.latency).max(1e-3);
         if age <= self.latency {
             f64::INFINITY
         } else {
-            LATE_SPEED * ((self.image_timeout - age) / span).max(0.0)
+            LATE_IMAGE_SPEED_M_PER_S * ((self.image_timeout - age) / span).max(0.0)
         }
     }
 
-    /// The highest speed from which the robot stops within `way` metres, `latency` s after what it sees.
-    pub(super) fn speed_for(&self, way: f64, latency: f64) -> f64 {
-        braked(self.deceleration, latency, way)
+    /// The highest speed from which the robot stops within `distance` m, `latency` s after the image.
+    pub(super) fn speed_for(&self, distance: f64, latency: f64) -> f64 {
+        braking_speed(self.deceleration, latency, distance)
     }
 
-    /// The highest turn rate from which it stops within `angle` rad, `latency` s after what it sees.
+    /// The highest turn rate from which it stops within `angle` rad, `latency` s after the image.
     pub(super) fn turn_rate_for(&self, angle: f64, latency: f64) -> f64 {
-        braked(self.angular_deceleration, latency, angle)
+        braking_speed(self.angular_deceleration, latency, angle)
     }
 }
 
-fn braked(deceleration: f64, latency: f64, way: f64) -> f64 {
+fn braking_speed(deceleration: f64, latency: f64, distance: f64) -> f64 {
     let reaction = deceleration * latency;
-    (reaction * reaction + 2.0 * deceleration * way.max(0.0)).sqrt() - reaction
+    (reaction * reaction + 2.0 * deceleration * distance.max(0.0)).sqrt() - reaction
 }
 
 #[cfg(test)]
@@ -132,7 +133,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_way_is_just_used_up() {
+    fn reaction_and_braking_use_exactly_the_free_distance() {
         let config = SafetyConfig::default().validated().unwrap();
         let v = config.speed_for(0.8, config.latency);
         assert!((v * config.latency + v * v / (2.0 * config.deceleration) - 0.8).abs() < 1e-12);

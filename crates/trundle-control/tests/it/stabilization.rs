@@ -1,6 +1,6 @@
 use crate::plant::{DT, Plant};
 use proptest::prelude::*;
-use trundle_control::{SettleConfig, SettleState, Stabilizer};
+use trundle_control::{Stabilizer, StabilizerConfig, StabilizerPhase};
 use trundle_core::{DifferentialDrive, DriveLimits, Pose2};
 
 /// What came of a run.
@@ -18,7 +18,7 @@ struct Outcome {
 
 fn settle(mut plant: Plant, goal: Pose2) -> Outcome {
     let mut stabilizer =
-        Stabilizer::new(SettleConfig::default(), DifferentialDrive::KOBUKI, DriveLimits::KOBUKI).unwrap();
+        Stabilizer::new(StabilizerConfig::default(), DifferentialDrive::KOBUKI, DriveLimits::KOBUKI).unwrap();
     let (mut settled_for, mut steps, mut reversals, mut sign, mut farthest) = (0, 0, 0, 0.0, 0.0_f64);
     while settled_for < 100 && steps < 2000 {
         let estimate = plant.estimate();
@@ -29,7 +29,7 @@ fn settle(mut plant: Plant, goal: Pose2) -> Outcome {
             reversals += usize::from(sign * report.twist.v < 0.0);
             sign = report.twist.v.signum();
         }
-        settled_for = if report.state == SettleState::Settled { settled_for + 1 } else { 0 };
+        settled_for = if report.phase == StabilizerPhase::Settled { settled_for + 1 } else { 0 };
         steps += 1;
     }
     let heading = trundle_core::difference_of_angles(plant.pose.theta, goal.theta).abs().to_degrees();
@@ -54,7 +54,7 @@ fn starts() -> impl Iterator<Item = Pose2> {
 }
 
 #[test]
-fn from_anywhere_near_it_settles_within_the_tolerances() {
+fn every_near_start_settles_within_the_tolerances() {
     let goal = Pose2::new(1.0, -2.0, 1.2);
     let (mut slowest, mut total, mut count) = (0.0_f64, 0.0, 0);
     for delay in [0.02, 0.04] {
@@ -79,7 +79,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
     #[test]
-    fn noise_does_not_make_it_hunt(
+    fn it_settles_with_noise(
         (x, y, theta) in (-0.3..0.3, -0.3..0.3, -3.1..3.1),
         noise in 0.0..0.004,
     ) {
@@ -93,21 +93,21 @@ proptest! {
 }
 
 #[test]
-fn on_the_goal_it_does_nothing() {
+fn on_the_goal_it_stays_at_rest() {
     let goal = Pose2::new(1.0, 2.0, 3.0);
     let outcome = settle(Plant::at(goal), goal);
     assert!(outcome.settled && outcome.error == (0.0, 0.0) && outcome.seconds < 0.1, "{outcome:?}");
 }
 
 #[test]
-fn another_goal_is_another_beginning() {
+fn a_new_goal_restarts_the_approach() {
     let mut stabilizer =
-        Stabilizer::new(SettleConfig::default(), DifferentialDrive::KOBUKI, DriveLimits::KOBUKI).unwrap();
+        Stabilizer::new(StabilizerConfig::default(), DifferentialDrive::KOBUKI, DriveLimits::KOBUKI).unwrap();
     let estimate = Plant::at(Pose2::IDENTITY).estimate();
     for _ in 0..3 {
         stabilizer.step(&estimate, Pose2::IDENTITY, DT);
     }
-    assert_eq!(stabilizer.step(&estimate, Pose2::IDENTITY, DT).state, SettleState::Settled);
+    assert_eq!(stabilizer.step(&estimate, Pose2::IDENTITY, DT).phase, StabilizerPhase::Settled);
     let elsewhere = Pose2::new(0.4, 0.0, 0.0);
-    assert_eq!(stabilizer.step(&estimate, elsewhere, DT).state, SettleState::Approaching);
+    assert_eq!(stabilizer.step(&estimate, elsewhere, DT).phase, StabilizerPhase::Approaching);
 }

@@ -1,12 +1,13 @@
 use crate::plant::{DT, Plant};
 use proptest::prelude::*;
-use trundle_control::{Tracker, TrackingConfig, TrackingError};
+use trundle_control::{PathTracker, PathTrackingConfig, TrackingError};
 use trundle_core::{DifferentialDrive, DriveLimits, Pose2, TrajectoryPoint, Twist2};
 
 /// Runs after a reference that moves with `twist_at(time)` from the origin; the error at each step.
-fn chase(mut plant: Plant, seconds: f64, twist_at: impl Fn(f64) -> Twist2) -> Vec<TrackingError> {
+fn track(mut plant: Plant, seconds: f64, twist_at: impl Fn(f64) -> Twist2) -> Vec<TrackingError> {
     let mut tracker =
-        Tracker::new(TrackingConfig::default(), DifferentialDrive::KOBUKI, DriveLimits::KOBUKI).unwrap();
+        PathTracker::new(PathTrackingConfig::default(), DifferentialDrive::KOBUKI, DriveLimits::KOBUKI)
+            .unwrap();
     tracker.sent(plant.twist());
     let mut reference = Pose2::IDENTITY;
     let steps = (seconds / DT) as usize;
@@ -58,41 +59,41 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(48))]
 
     #[test]
-    fn it_comes_onto_moving_references(
+    fn moving_references_are_reached(
         (x, y, theta) in (-0.2..0.2, -0.2..0.2, -0.7..0.7),
         delay in 0.02..0.04,
     ) {
         for (name, twist_at) in [("straight", straight as fn(f64) -> Twist2), ("arc", arc), ("S", s_curve), ("backward", backward)] {
             let mut plant = Plant::at(Pose2::new(x, y, theta)).moving(Twist2::ZERO);
             plant.delay = delay;
-            let (distance, heading) = tail(&chase(plant, 15.0, twist_at));
+            let (distance, heading) = tail(&track(plant, 15.0, twist_at));
             prop_assert!(distance < 0.02 && heading < 0.06, "{}: {} m, {} rad", name, distance, heading);
         }
     }
 }
 
 #[test]
-fn an_error_beside_the_path_goes_within_a_metre_of_way() {
+fn a_lateral_error_decays_within_a_metre_of_path() {
     let start = Pose2::new(0.0, 0.10, 0.0);
-    let errors = chase(Plant::at(start).moving(straight(0.0)), 3.0, straight);
+    let errors = track(Plant::at(start).moving(straight(0.0)), 3.0, straight);
     let gone = errors.iter().position(|e| e.cross.abs() < 0.02).unwrap();
-    let way = gone as f64 * DT * 0.4;
+    let distance = gone as f64 * DT * 0.4;
     let overshoot = errors.iter().map(|e| e.cross).fold(0.0, f64::max);
-    eprintln!("10 cm beside became 2 cm after {way:.2} m, overshoot {:.1} mm", overshoot * 1e3);
-    assert!(way < 0.9 && overshoot < 0.005, "{way} m, {overshoot} m");
+    eprintln!("10 cm beside became 2 cm after {distance:.2} m, overshoot {:.1} mm", overshoot * 1e3);
+    assert!(distance < 0.9 && overshoot < 0.005, "{distance} m, {overshoot} m");
 }
 
 #[test]
-fn steady_references_are_met_exactly() {
+fn constant_twists_leave_no_error() {
     for twist_at in [straight as fn(f64) -> Twist2, arc, on_the_spot] {
-        let error = last(&chase(Plant::at(Pose2::IDENTITY), 12.0, twist_at));
+        let error = last(&track(Plant::at(Pose2::IDENTITY), 12.0, twist_at));
         assert!(error.distance() < 0.003 && error.heading.abs() < 0.01, "{error:?}");
     }
 }
 
 #[test]
 fn a_turn_on_the_spot_stays_on_the_spot() {
-    let errors = chase(Plant::at(Pose2::new(0.01, -0.01, 0.0)), 5.0, on_the_spot);
+    let errors = track(Plant::at(Pose2::new(0.01, -0.01, 0.0)), 5.0, on_the_spot);
     assert!(errors.iter().all(|e| e.distance() < 0.02));
     assert!(last(&errors).heading.abs() < 0.01);
 }

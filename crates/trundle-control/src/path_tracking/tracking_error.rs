@@ -1,6 +1,8 @@
+//! The error of a pose in the robot's frame.
+
 use trundle_core::{Pose2, difference_of_angles};
 
-/// Where the reference is, seen from the robot: A6's (e_x, e_y, e_theta).
+/// The reference in the robot's frame: (e_x, e_y, e_theta) of A6.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct TrackingError {
     /// Ahead of the robot, m.
@@ -35,7 +37,7 @@ mod tests {
     use std::f64::consts::FRAC_PI_2;
 
     #[test]
-    fn it_is_seen_from_the_robot() {
+    fn the_error_is_in_the_robots_frame() {
         let robot = Pose2::new(1.0, 1.0, FRAC_PI_2);
         let error = TrackingError::between(robot, Pose2::new(0.5, 1.2, 0.0));
         assert!((error.along - 0.2).abs() < 1e-12);

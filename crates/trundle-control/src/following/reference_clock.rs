@@ -1,5 +1,7 @@
-use super::FollowerConfig;
-use crate::TrackingError;
+//! The clock of the reference, which waits for the robot.
+
+use crate::following::follower_config::FollowerConfig;
+use crate::path_tracking::tracking_error::TrackingError;
 use trundle_core::{Pose2, Trajectory, TrajectoryPoint, Twist2};
 
 /// A trajectory with a clock of its own.
@@ -8,22 +10,22 @@ pub(super) struct ReferenceClock {
     trajectory: Trajectory,
     time: f64,
     rate: f64,
-    arrival: f64,
+    arrival_time: f64,
 }
 
-/// The trajectory has arrived when it stays this near to its end position, m.
-const ARRIVED: f64 = 1e-3;
+/// Distance to the end position within which the trajectory has arrived, m. Larger: point stabilisation begins earlier. Source: ours.
+const ARRIVAL_DISTANCE_M: f64 = 1e-3;
 
 impl ReferenceClock {
     pub(super) fn new(trajectory: Trajectory) -> Self {
-        let arrival = arrival(&trajectory);
-        Self { trajectory, time: 0.0, rate: 1.0, arrival }
+        let arrival_time = arrival_time(&trajectory);
+        Self { trajectory, time: 0.0, rate: 1.0, arrival_time }
     }
 
-    /// Lets `dt` seconds pass for the robot, fewer for the reference where the robot is behind.
+    /// Advances the reference by `dt` seconds, or by fewer when the robot is behind it.
     pub(super) fn advance(&mut self, dt: f64, pose: Pose2, config: &FollowerConfig) {
         let error = TrackingError::between(pose, self.trajectory.at(self.time).pose);
-        self.rate = rate(error, self.trajectory.at(self.time).twist, config);
+        self.rate = clock_rate(error, self.trajectory.at(self.time).twist, config);
         self.time = (self.time + self.rate * dt).min(self.trajectory.duration());
     }
 
@@ -37,13 +39,13 @@ impl ReferenceClock {
         self.trajectory.end()
     }
 
-    /// Where the robot should be now, and how it should be moving: as fast as the clock goes.
+    /// The pose the robot should have now; its twist is scaled by the clock's rate.
     pub(super) fn reference(&self) -> TrajectoryPoint {
         let point = self.trajectory.at(self.time);
         TrajectoryPoint { twist: scaled(point.twist, self.rate), ..point }
     }
 
-    /// The reference for the law: its twist the one that a command of now will meet, `lead` seconds later.
+    /// The reference for the tracking law: the pose of now with the twist of `lead` seconds later, when the command takes effect.
     pub(super) fn reference_ahead(&self, lead: f64) -> TrajectoryPoint {
         let point = self.trajectory.at(self.time);
         let then = self.trajectory.at(self.time + lead * self.rate);
@@ -52,7 +54,7 @@ impl ReferenceClock {
 
     /// Whether only a turn on the spot, or nothing, is left.
     pub(super) fn has_arrived(&self) -> bool {
-        self.time >= self.arrival
+        self.time >= self.arrival_time
     }
 }
 
@@ -60,23 +62,23 @@ fn scaled(twist: Twist2, factor: f64) -> Twist2 {
     Twist2::new(twist.v * factor, twist.omega * factor)
 }
 
-/// From when on the trajectory's position stays at its end, s.
-fn arrival(trajectory: &Trajectory) -> f64 {
+/// The time from which the position stays at its end, s.
+fn arrival_time(trajectory: &Trajectory) -> f64 {
     let end = trajectory.end();
     let points = trajectory.points();
-    let away = points.iter().rposition(|point| point.pose.distance(&end) > ARRIVED);
+    let away = points.iter().rposition(|point| point.pose.distance(&end) > ARRIVAL_DISTANCE_M);
     away.map_or(0.0, |i| points[i + 1].time)
 }
 
-/// How fast the reference's clock goes, 0 to 1.
+/// Rate of the reference clock, 0 to 1.
 ///
-/// It may stand for what A6 regulates at rest: being behind, and heading. An error beside the path only slows it.
-fn rate(error: TrackingError, reference: Twist2, config: &FollowerConfig) -> f64 {
-    let room = |error: f64, from: f64, to: f64| ((to - error) / (to - from)).clamp(0.0, 1.0);
+/// The clock may stop for errors that A6 regulates at rest: along the path, and in heading. An error beside the path only slows it.
+fn clock_rate(error: TrackingError, reference: Twist2, config: &FollowerConfig) -> f64 {
+    let remaining = |error: f64, from: f64, to: f64| ((to - error) / (to - from)).clamp(0.0, 1.0);
     let behind = if reference.v < 0.0 { -error.along } else { error.along };
-    let along = room(behind, config.wait_from, config.wait_at);
-    let cross = room(error.cross.abs(), config.wait_from, config.wait_at).max(config.least_rate);
-    let heading = room(error.heading.abs(), 0.5 * config.wait_heading, config.wait_heading);
+    let along = remaining(behind, config.wait_from, config.wait_at);
+    let cross = remaining(error.cross.abs(), config.wait_from, config.wait_at).max(config.least_rate);
+    let heading = remaining(error.heading.abs(), 0.5 * config.wait_heading, config.wait_heading);
     along.min(cross).min(heading)
 }
 
@@ -100,7 +102,7 @@ mod tests {
     }
 
     #[test]
-    fn the_clock_waits_for_a_robot_that_stands() {
+    fn the_clock_stops_for_a_robot_at_rest() {
         let mut clock = ReferenceClock::new(straight_and_turn());
         let config = FollowerConfig::default();
         for _ in 0..1000 {
@@ -112,14 +114,14 @@ mod tests {
     }
 
     #[test]
-    fn beside_the_path_it_still_moves() {
+    fn an_error_beside_the_path_only_slows_the_clock() {
         let mut clock = ReferenceClock::new(straight_and_turn());
         clock.advance(1.0, Pose2::new(0.0, 0.5, 0.0), &FollowerConfig::default());
         assert!((clock.time() - 0.4).abs() < 1e-12);
     }
 
     #[test]
-    fn it_arrives_where_only_a_turn_is_left() {
+    fn the_trajectory_arrives_where_only_a_turn_is_left() {
         let mut clock = ReferenceClock::new(straight_and_turn());
         let config = FollowerConfig::default();
         clock.advance(1.9, Pose2::IDENTITY, &config);

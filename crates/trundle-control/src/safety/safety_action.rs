@@ -1,3 +1,5 @@
+//! What the monitor did to a command, and why.
+
 use std::fmt;
 use trundle_core::Vector2;
 
@@ -12,24 +14,24 @@ pub enum SafetyAction {
     Stop(StopReason),
 }
 
-/// Why the robot goes slower than it was told.
+/// Why the robot drives slower than commanded.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum SlowReason {
-    /// An obstacle on the way, still far enough.
+    /// An obstacle ahead, still far enough.
     ObstacleAhead {
-        /// Way until contact, m.
-        way: f64,
+        /// Path length until contact, m.
+        distance: f64,
         /// The obstacle, base frame, m.
         at: Vector2,
     },
-    /// An obstacle in the way of a turn on the spot, still far enough.
+    /// An obstacle beside a turn on the spot, still far enough.
     ObstacleBeside {
         /// Angle until contact, rad.
         angle: f64,
         /// The obstacle, base frame, m.
         at: Vector2,
     },
-    /// An obstacle close beside the way.
+    /// An obstacle close beside the path.
     NarrowGap {
         /// The obstacle, base frame, m.
         at: Vector2,
@@ -41,7 +43,7 @@ pub enum SlowReason {
     },
     /// The wheels are told to roll and count nothing.
     WheelsCountNothing,
-    /// Backward is where no camera looks.
+    /// Driving backward, out of view.
     Reversing,
     /// The bumper is pressed or an edge is below, and the robot backs out.
     BackingOut,
@@ -52,12 +54,12 @@ pub enum SlowReason {
 pub enum StopReason {
     /// An obstacle nearer than the braking distance.
     ObstacleAhead {
-        /// Way until contact, m.
-        way: f64,
+        /// Path length until contact, m.
+        distance: f64,
         /// The obstacle, base frame, m.
         at: Vector2,
     },
-    /// An obstacle that a turn on the spot would swing into.
+    /// An obstacle that a turn on the spot would touch.
     ObstacleBeside {
         /// Angle until contact, rad.
         angle: f64,
@@ -93,7 +95,7 @@ pub enum StopReason {
 impl fmt::Display for SlowReason {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::ObstacleAhead { way, .. } => write!(f, "an obstacle {way:.2} m ahead"),
+            Self::ObstacleAhead { distance, .. } => write!(f, "an obstacle {distance:.2} m ahead"),
             Self::ObstacleBeside { angle, .. } => {
                 write!(f, "an obstacle after {:.0} deg", angle.to_degrees())
             }
@@ -109,8 +111,8 @@ impl fmt::Display for SlowReason {
 impl fmt::Display for StopReason {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::ObstacleAhead { way, at } => {
-                write!(f, "an obstacle in the way, {way:.2} m to contact, {side}", side = side(*at))
+            Self::ObstacleAhead { distance, at } => {
+                write!(f, "an obstacle in the way, {distance:.2} m to contact, {side}", side = side(*at))
             }
             Self::ObstacleBeside { at, .. } => write!(f, "no room to turn, an obstacle {}", side(*at)),
             Self::Touched => f.write_str("the bumper is pressed"),
@@ -152,7 +154,8 @@ mod tests {
     fn every_reason_says_why_in_numbers() {
         let stop = SafetyAction::Stop(StopReason::StaleImage { age: 0.712 });
         assert_eq!(stop.to_string(), "stop: the newest image or scan that shows something is 0.71 s old");
-        let slow = SafetyAction::Slow(SlowReason::ObstacleAhead { way: 0.5, at: Vector2::new(1.0, 0.0) });
+        let slow =
+            SafetyAction::Slow(SlowReason::ObstacleAhead { distance: 0.5, at: Vector2::new(1.0, 0.0) });
         assert_eq!(slow.to_string(), "slow: an obstacle 0.50 m ahead");
     }
 }

@@ -1,3 +1,5 @@
+//! Gains and tolerances of point stabilisation.
+
 use serde::{Deserialize, Serialize};
 use trundle_core::{Invalid, require_in};
 
@@ -7,7 +9,7 @@ use trundle_core::{Invalid, require_in};
 /// overshoot, and slowly enough for a base that answers within 0.1 s.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
-pub struct SettleConfig {
+pub struct StabilizerConfig {
     /// Speed by distance, 1/s, 0.05 to 10. Default 1 (ours).
     pub k_rho: f64,
     /// Turn rate by bearing, 1/s, above `k_rho`, to 20. Default 3 (ours).
@@ -38,7 +40,7 @@ pub struct SettleConfig {
     pub attempts: u32,
 }
 
-impl Default for SettleConfig {
+impl Default for StabilizerConfig {
     fn default() -> Self {
         Self {
             k_rho: 1.0,
@@ -58,7 +60,7 @@ impl Default for SettleConfig {
     }
 }
 
-impl SettleConfig {
+impl StabilizerConfig {
     /// Passes a valid configuration through.
     ///
     /// # Errors
@@ -96,10 +98,10 @@ mod tests {
 
     #[test]
     fn bad_numbers_are_refused_by_name() {
-        assert!(SettleConfig::default().validated().is_ok());
-        let error = SettleConfig { k_alpha: 1.0, ..SettleConfig::default() }.validated().unwrap_err();
+        assert!(StabilizerConfig::default().validated().is_ok());
+        let error = StabilizerConfig { k_alpha: 1.0, ..StabilizerConfig::default() }.validated().unwrap_err();
         assert_eq!(error.field, "settling.k_alpha");
-        let error = SettleConfig { k_beta: 1.0, ..SettleConfig::default() }.validated().unwrap_err();
+        let error = StabilizerConfig { k_beta: 1.0, ..StabilizerConfig::default() }.validated().unwrap_err();
         assert_eq!(error.field, "settling.k_beta");
     }
 }

@@ -1,16 +1,18 @@
-use super::law::Gains;
+//! Gains of the tracking law.
+
+use crate::path_tracking::tracking_law::Gains;
 use serde::{Deserialize, Serialize};
 use trundle_core::{Invalid, Twist2, require_in};
 
-/// How hard the tracking law pulls.
+/// Gains of the tracking law.
 ///
 /// The gains follow the reference: k1 = k2 = 2 `damping` sqrt(omega_d^2 + `k_cross` v_d^2), within
 /// [`gain_min`](Self::gain_min) and [`gain_max`](Self::gain_max). Linearised about a straight reference, the error
 /// beside the path then obeys s^2 + k2 s + k_cross v_d^2: with that gain it has the chosen damping at every speed, and
-/// decays over 1 / sqrt(k_cross) metres of way, however slow the robot is \[DeLuca01\].
+/// decays over 1 / sqrt(k_cross) metres of path at every speed \[DeLuca01\].
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
-pub struct TrackingConfig {
+pub struct PathTrackingConfig {
     /// Gain of the error beside the path, 1/m^2, 0.01 to 100. \[Li18\] prints 1: an error then takes metres to go. Default 16:
     /// a quarter of a metre to 1/e (ours, measured in `tests/it/tracking.rs`).
     pub k_cross: f64,
@@ -23,13 +25,13 @@ pub struct TrackingConfig {
     pub gain_max: f64,
 }
 
-impl Default for TrackingConfig {
+impl Default for PathTrackingConfig {
     fn default() -> Self {
         Self { k_cross: 16.0, damping: 1.0, gain_min: 2.0, gain_max: 4.0 }
     }
 }
 
-impl TrackingConfig {
+impl PathTrackingConfig {
     /// Passes a valid configuration through.
     ///
     /// # Errors
@@ -56,7 +58,7 @@ mod tests {
 
     #[test]
     fn gains_follow_the_speed_between_their_bounds() {
-        let config = TrackingConfig::default().validated().unwrap();
+        let config = PathTrackingConfig::default().validated().unwrap();
         assert_eq!(config.gains(Twist2::ZERO).k2, 2.0);
         assert!((config.gains(Twist2::new(-0.4, 0.0)).k2 - 3.2).abs() < 1e-12);
         assert_eq!(config.gains(Twist2::new(0.7, 1.0)).k2, 4.0);
@@ -64,8 +66,11 @@ mod tests {
 
     #[test]
     fn bad_numbers_are_refused_by_name() {
-        let error = TrackingConfig { gain_min: 5.0, ..TrackingConfig::default() }.validated().unwrap_err();
+        let error =
+            PathTrackingConfig { gain_min: 5.0, ..PathTrackingConfig::default() }.validated().unwrap_err();
         assert_eq!(error.field, "tracking.gain_min");
-        assert!(TrackingConfig { k_cross: f64::NAN, ..TrackingConfig::default() }.validated().is_err());
+        assert!(
+            PathTrackingConfig { k_cross: f64::NAN, ..PathTrackingConfig::default() }.validated().is_err()
+        );
     }
 }

@@ -1,18 +1,20 @@
-use super::SettleConfig;
+//! The law in polar coordinates about the goal.
+
+use crate::stabilization::stabilizer_config::StabilizerConfig;
 use std::f64::consts::{FRAC_PI_2, PI};
 use trundle_core::{Pose2, Twist2, difference_of_angles, wrap_angle};
 
-/// Which end of the robot leads.
+/// Direction of driving.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Gear {
     Forward,
     Backward,
 }
 
-/// By how much the goal must lie behind (ahead) before the robot changes into the other gear, rad.
-const GEAR_HYSTERESIS: f64 = 0.3;
+/// Angle beyond abeam at which the gear changes, rad. Larger: fewer gear changes, longer detours. Source: ours.
+const GEAR_HYSTERESIS_RAD: f64 = 0.3;
 
-/// A pose in polar coordinates about the goal; driving backward, both headings are turned round.
+/// A pose in polar coordinates about the goal; for driving backward both headings are turned by pi.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Polar {
     /// rho, m.
@@ -37,20 +39,20 @@ impl Polar {
 }
 
 /// The gear for a goal, given the one engaged.
-pub(super) fn gear(goal: Pose2, pose: Pose2, engaged: Option<Gear>) -> Gear {
+pub(super) fn select_gear(goal: Pose2, pose: Pose2, engaged: Option<Gear>) -> Gear {
     let gap = goal.position() - pose.position();
     let bearing = difference_of_angles(gap.y.atan2(gap.x), pose.theta).abs();
     match engaged {
-        Some(Gear::Forward) if bearing < FRAC_PI_2 + GEAR_HYSTERESIS => Gear::Forward,
-        Some(Gear::Backward) if bearing > FRAC_PI_2 - GEAR_HYSTERESIS => Gear::Backward,
+        Some(Gear::Forward) if bearing < FRAC_PI_2 + GEAR_HYSTERESIS_RAD => Gear::Forward,
+        Some(Gear::Backward) if bearing > FRAC_PI_2 - GEAR_HYSTERESIS_RAD => Gear::Backward,
         _ if bearing <= FRAC_PI_2 => Gear::Forward,
         _ => Gear::Backward,
     }
 }
 
-/// A7 with v = k_rho rho cos(alpha) \[Aicardi95\]: the same as k_rho rho to first order, and it never drives away.
-/// Too fast a turn is slowed along its own curve.
-pub(super) fn polar_law(polar: Polar, gear: Gear, config: &SettleConfig) -> Twist2 {
+/// A7 with v = k_rho rho cos(alpha) \[Aicardi95\]: equal to k_rho rho to first order, and never away from the goal.
+/// A turn above the limit is slowed along its own curve.
+pub(super) fn polar_law(polar: Polar, gear: Gear, config: &StabilizerConfig) -> Twist2 {
     let shaping = (polar.distance / config.shaping_distance).min(1.0);
     let beta = polar.approach.clamp(-config.max_approach, config.max_approach);
     let omega = config.k_alpha * polar.bearing + shaping * config.k_beta * beta;
@@ -67,13 +69,13 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    fn free() -> SettleConfig {
-        SettleConfig { creep_speed: 0.0, speed: 10.0, turn_rate: 20.0, ..SettleConfig::default() }
+    fn free() -> StabilizerConfig {
+        StabilizerConfig { creep_speed: 0.0, speed: 10.0, turn_rate: 20.0, ..StabilizerConfig::default() }
     }
 
     proptest! {
         #[test]
-        fn backward_is_forward_seen_in_a_mirror(x in -1.0..1.0, y in -1.0..1.0, t in -3.0..3.0, g in -3.0..3.0) {
+        fn backward_is_forward_with_both_headings_turned(x in -1.0..1.0, y in -1.0..1.0, t in -3.0..3.0, g in -3.0..3.0) {
             let (goal, pose) = (Pose2::new(0.0, 0.0, g), Pose2::new(x, y, t));
             let round = |p: Pose2| Pose2::new(p.x, p.y, p.theta + PI);
             let back = polar_law(Polar::about(goal, pose, Gear::Backward), Gear::Backward, &free());
@@ -82,17 +84,17 @@ mod tests {
         }
 
         #[test]
-        fn the_distance_never_grows(x in -1.0..1.0, y in -1.0..1.0, t in -3.0..3.0, g in -3.0..3.0) {
+        fn the_distance_to_the_goal_never_grows(x in -1.0..1.0, y in -1.0..1.0, t in -3.0..3.0, g in -3.0..3.0) {
             let (goal, pose) = (Pose2::new(0.0, 0.0, g), Pose2::new(x, y, t));
-            let gear = gear(goal, pose, None);
-            let twist = polar_law(Polar::about(goal, pose, gear), gear, &SettleConfig::default());
+            let gear = select_gear(goal, pose, None);
+            let twist = polar_law(Polar::about(goal, pose, gear), gear, &StabilizerConfig::default());
             prop_assert!(pose.rotate(trundle_core::Vector2::new(twist.v, 0.0)).dot(&-pose.position()) >= 0.0);
         }
     }
 
     #[test]
-    fn exact_integration_reaches_the_pose_itself() {
-        let config = SettleConfig { shaping_distance: 0.001, ..free() };
+    fn the_integrated_law_reaches_the_pose() {
+        let config = StabilizerConfig { shaping_distance: 0.001, ..free() };
         let goal = Pose2::new(1.0, 0.5, 0.7);
         let mut pose = Pose2::new(0.0, 0.4, 0.3);
         for _ in 0..12_000 {
@@ -104,11 +106,11 @@ mod tests {
     }
 
     #[test]
-    fn the_gear_does_not_chatter() {
+    fn the_gear_has_hysteresis() {
         let goal = Pose2::new(0.0, 1.0, 0.0);
         let slightly_behind = Pose2::new(0.0, 0.0, -0.1);
-        assert_eq!(gear(goal, slightly_behind, None), Gear::Backward);
-        assert_eq!(gear(goal, slightly_behind, Some(Gear::Forward)), Gear::Forward);
-        assert_eq!(gear(goal, Pose2::new(0.0, 0.0, -0.5), Some(Gear::Forward)), Gear::Backward);
+        assert_eq!(select_gear(goal, slightly_behind, None), Gear::Backward);
+        assert_eq!(select_gear(goal, slightly_behind, Some(Gear::Forward)), Gear::Forward);
+        assert_eq!(select_gear(goal, Pose2::new(0.0, 0.0, -0.5), Some(Gear::Forward)), Gear::Backward);
     }
 }

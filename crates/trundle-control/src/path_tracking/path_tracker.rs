@@ -1,50 +1,54 @@
-use super::{TrackingConfig, TrackingError, law::tracking_law};
-use crate::Limiter;
+//! The tracking law within the limits of the base.
+
+use crate::limiter::Limiter;
+use crate::path_tracking::path_tracking_config::PathTrackingConfig;
+use crate::path_tracking::tracking_error::TrackingError;
+use crate::path_tracking::tracking_law::tracking_law;
 use trundle_core::{DifferentialDrive, DriveLimits, Invalid, PoseEstimate, TrajectoryPoint, Twist2};
 
 /// Drives the base along a moving reference by the law of A6, within the limits of the base.
 ///
-/// Once the reference stands, the error beside it is no longer regulated: that is for [`Stabilizer`](crate::Stabilizer).
+/// When the reference is at rest, its lateral error is not regulated: [`Stabilizer`](crate::Stabilizer) does that.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Tracker {
-    config: TrackingConfig,
+pub struct PathTracker {
+    config: PathTrackingConfig,
     limiter: Limiter,
 }
 
 /// One step of tracking.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ControlReport {
+pub struct TrackingReport {
     /// The twist to send.
     pub twist: Twist2,
-    /// Where the reference is, seen from the robot.
+    /// Error to the reference in the robot's frame.
     pub error: TrackingError,
     /// Whether a limit of the base changed what the law wanted.
     pub saturated: bool,
 }
 
-impl Tracker {
+impl PathTracker {
     /// A tracker for a base at rest.
     ///
     /// # Errors
     /// When a number of the configuration, the drive or the limits is outside its range.
     pub fn new(
-        config: TrackingConfig,
+        config: PathTrackingConfig,
         drive: DifferentialDrive,
         limits: DriveLimits,
     ) -> Result<Self, Invalid> {
         Ok(Self { config: config.validated()?, limiter: Limiter::new(drive, limits)? })
     }
 
-    /// Says what the base was really asked for, where that is not the last twist reported.
+    /// Sets the twist that was really sent, if it differs from the last one reported.
     pub fn sent(&mut self, twist: Twist2) {
         self.limiter.sent(twist);
     }
 
     /// The command for now, `dt` seconds after the last one; poses of estimate and reference in one frame.
-    pub fn step(&mut self, estimate: &PoseEstimate, reference: &TrajectoryPoint, dt: f64) -> ControlReport {
+    pub fn step(&mut self, estimate: &PoseEstimate, reference: &TrajectoryPoint, dt: f64) -> TrackingReport {
         let error = TrackingError::between(estimate.pose, reference.pose);
         let wanted = tracking_law(error, reference.twist, self.config.gains(reference.twist));
         let limited = self.limiter.limit(wanted, dt);
-        ControlReport { twist: limited.twist, error, saturated: limited.saturated }
+        TrackingReport { twist: limited.twist, error, saturated: limited.saturated }
     }
 }

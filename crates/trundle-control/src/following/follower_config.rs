@@ -1,4 +1,7 @@
-use crate::{SettleConfig, TrackingConfig};
+//! Configuration of the follower.
+
+use crate::path_tracking::path_tracking_config::PathTrackingConfig;
+use crate::stabilization::stabilizer_config::StabilizerConfig;
 use serde::{Deserialize, Serialize};
 use trundle_core::{Invalid, require_in};
 
@@ -7,9 +10,9 @@ use trundle_core::{Invalid, require_in};
 #[serde(default, deny_unknown_fields)]
 pub struct FollowerConfig {
     /// The tracking law.
-    pub tracking: TrackingConfig,
+    pub tracking: PathTrackingConfig,
     /// Settling at the goal.
-    pub settling: SettleConfig,
+    pub settling: StabilizerConfig,
     /// The reference starts to wait when it is this far ahead of the robot, m, 0 to 1. Default 0.04: what the lag of the
     /// motors costs when starting.
     pub wait_from: f64,
@@ -30,8 +33,8 @@ pub struct FollowerConfig {
 impl Default for FollowerConfig {
     fn default() -> Self {
         Self {
-            tracking: TrackingConfig::default(),
-            settling: SettleConfig::default(),
+            tracking: PathTrackingConfig::default(),
+            settling: StabilizerConfig::default(),
             wait_from: 0.04,
             wait_at: 0.12,
             least_rate: 0.4,
@@ -74,7 +77,7 @@ mod tests {
         assert!(FollowerConfig::default().validated().is_ok());
         let error = FollowerConfig { wait_at: 0.01, ..FollowerConfig::default() }.validated().unwrap_err();
         assert_eq!(error.field, "wait_at");
-        let settling = SettleConfig { speed: 0.0, ..SettleConfig::default() };
+        let settling = StabilizerConfig { speed: 0.0, ..StabilizerConfig::default() };
         let error = FollowerConfig { settling, ..FollowerConfig::default() }.validated().unwrap_err();
         assert_eq!(error.field, "settling.speed");
     }

@@ -1,4 +1,6 @@
-use super::TrackingError;
+//! The tracking law, without limits.
+
+use crate::path_tracking::tracking_error::TrackingError;
 use trundle_core::Twist2;
 
 /// A6's gains at one moment.
@@ -12,7 +14,7 @@ pub(super) struct Gains {
     pub(super) k_cross: f64,
 }
 
-/// The twist that A6 wants, without any limit.
+/// The twist of A6, without limits.
 ///
 /// V = 1/2 (e_x^2 + e_y^2 + e_theta^2 / k_cross) falls by k1 e_x^2 + k2 / k_cross e_theta^2.
 pub(super) fn tracking_law(error: TrackingError, reference: Twist2, gains: Gains) -> Twist2 {
@@ -44,7 +46,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn the_lyapunov_function_falls_as_proven(
+        fn the_lyapunov_function_falls_at_the_proven_rate(
             (along, cross, heading) in (-2.0..2.0, -2.0..2.0, -3.1..3.1),
             (v, omega) in (-0.7..0.7, -3.0..3.0),
             (k1, k2, k_cross) in (0.1..9.0, 0.1..9.0, 0.1..20.0),
@@ -56,14 +58,14 @@ mod tests {
         }
 
         #[test]
-        fn the_series_meets_the_quotient(x in 1e-5..1e-3) {
+        fn series_and_quotient_agree(x in 1e-5..1e-3) {
             let x: f64 = x;
             prop_assert!((sin_over(x) - x.sin() / x).abs() < 1e-15);
         }
     }
 
     #[test]
-    fn without_error_the_reference_is_driven() {
+    fn without_error_the_twist_is_the_reference() {
         let gains = Gains { k1: 1.0, k2: 1.0, k_cross: 1.0 };
         let reference = Twist2::new(0.3, -0.4);
         assert_eq!(tracking_law(TrackingError::default(), reference, gains), reference);

@@ -1,23 +1,23 @@
-use super::{
-    SafetyConfig,
-    obstacles::{Obstacle, SafetyMemory, SafetyScan, collect_memory, collect_scan},
-    reason::{SafetyAction, SlowReason, StopReason},
-};
+//! The safety monitor: judges one command.
+
+use crate::safety::obstacles::{Obstacle, SafetyMemory, SafetyScan, collect_memory, collect_scan};
+use crate::safety::safety_action::{SafetyAction, SlowReason, StopReason};
+use crate::safety::safety_config::SafetyConfig;
 use trundle_collision::SweptFootprint;
 use trundle_core::{Footprint, Invalid, Stamp, Twist2, Vector2};
 
-/// Lets only twists through from which the robot can still stop.
+/// Passes only twists from which the robot can still stop.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SafetyMonitor {
     config: SafetyConfig,
     footprint: SweptFootprint,
-    /// From the newest image to the wheels obeying, s.
+    /// Time from the newest image to the response of the wheels, s.
     latency: f64,
-    /// Reused from call to call: what stands near by.
+    /// Obstacles near by, reused from call to call.
     obstacles: Vec<Obstacle>,
 }
 
-/// What the monitor judges by.
+/// What the monitor decides by.
 #[derive(Debug, Clone, Copy)]
 pub struct SafetyInput<'a> {
     /// The moment of the command.
@@ -26,7 +26,7 @@ pub struct SafetyInput<'a> {
     pub twist: Twist2,
     /// The newest scan.
     pub scan: Option<SafetyScan<'a>>,
-    /// The map near by: what the camera is too near to see, or no longer looks at.
+    /// The map near by: obstacles too near for the camera, or out of its view.
     pub memory: Option<SafetyMemory<'a>>,
     /// Whether the bumper is pressed.
     pub touched: bool,
@@ -40,7 +40,7 @@ pub struct SafetyInput<'a> {
     pub motion: MotionSense,
 }
 
-/// What tells how far the robot has come since the scan, and since it knew its place.
+/// Sensor of the motion since the scan.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum MotionSense {
     /// The wheels count it.
@@ -61,17 +61,18 @@ pub struct SafetyReport {
     pub action: SafetyAction,
 }
 
-/// Distances from a wall that differ by less are the same, m: a row of round cells is wavy by 1.5 mm.
-const SAME_DISTANCE: f64 = 3e-3;
+/// Difference of two distances to a wall that counts as none, m. Larger: the robot may drift towards a wall. Source: a row of round cells
+/// varies by 1.5 mm; ours.
+const SAME_DISTANCE_M: f64 = 3e-3;
 
-/// A slower turn on the spot is none, rad/s.
-const LEAST_TURN_RATE: f64 = 0.02;
+/// Slowest turn on the spot, rad/s: a slower one is a stop. Source: ours.
+const MIN_TURN_RATE_RAD_PER_S: f64 = 0.02;
 
-/// The free way along the arc.
-struct FreeWay {
-    /// Until contact, m, and with what.
+/// Free path along the arc.
+struct FreePath {
+    /// Distance to contact, m, and the obstacle.
     contact: Option<(f64, Vector2)>,
-    /// The first obstacle close beside the way: way until abreast, m, and what.
+    /// The first obstacle close beside the distance: way until abreast, m, and what.
     beside: Option<(f64, Vector2)>,
 }
 
@@ -85,36 +86,39 @@ impl SafetyMonitor {
         Ok(Self { latency: config.latency, config, footprint, obstacles: Vec::new() })
     }
 
-    /// Judges a command.
+    /// Checks a command.
     pub fn check(&mut self, input: &SafetyInput<'_>) -> SafetyReport {
-        if let Some(reason) = self.broken(input) {
+        if let Some(reason) = self.missing_input(input) {
             return stop(reason);
         }
-        // No camera looks backward: what it no longer sees does not keep the robot from leaving what it touches.
+        // No camera looks backward, so an old image does not forbid to back out of a contact.
         if self.must_back_out(input) && input.image.is_some() {
             return self.back_out(input);
         }
-        if let Some(reason) = self.blind(input) {
-            // A disc may always turn on the spot, where that is what was asked for: so it comes to see again.
+        if let Some(reason) = self.lost_perception(input) {
+            // A disc may always turn on the spot if that was commanded: so it finds something in view again.
             let turns = input.twist.v == 0.0 && reason != StopReason::NoImage;
             let omega = if turns { input.twist.omega } else { 0.0 };
             return SafetyReport { twist: Twist2::new(0.0, omega), action: SafetyAction::Stop(reason) };
         }
-        if input.twist.v == 0.0 && self.may_turn(input.twist) {
+        if input.twist.v == 0.0 && self.needs_no_turn_check(input.twist) {
             return SafetyReport { twist: input.twist, action: SafetyAction::Pass };
         }
         let age = input.image.map_or(0.0, |image| input.now - image);
         self.latency = self.config.latency_for(age);
-        self.gather(input);
+        self.collect_obstacles(input);
         if input.twist.v == 0.0 {
-            return self.within_the_free_turn(input.twist);
+            return self.limited_by_free_turn(input.twist);
         }
-        let slowed = slow_to(input.twist, self.config.speed_at_age(age), SlowReason::OldImage { age });
-        slower(self.within_the_free_way(input.twist), slower(slowed, self.uncounted(input)))
+        let slowed = slowed_to(input.twist, self.config.speed_at_age(age), SlowReason::OldImage { age });
+        slower_of(
+            self.limited_by_free_path(input.twist),
+            slower_of(slowed, self.limited_by_uncounted_wheels(input)),
+        )
     }
 
-    /// Whether a number or the wheels are missing: then nothing may move.
-    fn broken(&self, input: &SafetyInput<'_>) -> Option<StopReason> {
+    /// Why the input is unusable, if a number is not finite or wheel readings are missing.
+    fn missing_input(&self, input: &SafetyInput<'_>) -> Option<StopReason> {
         let poses = input.scan.iter().flat_map(|s| [s.odom_at_scan, s.odom_now]);
         let mut poses = poses.chain(input.memory.iter().map(|m| m.map_from_base));
         if !input.twist.is_finite() || !poses.all(|pose| pose.is_finite()) {
@@ -125,8 +129,8 @@ impl SafetyMonitor {
         (age > self.config.wheels_timeout).then_some(StopReason::StaleWheels { age })
     }
 
-    /// Whether what the monitor sees by is missing.
-    fn blind(&self, input: &SafetyInput<'_>) -> Option<StopReason> {
+    /// Why perception is lost, if images are missing or nothing measures the motion.
+    fn lost_perception(&self, input: &SafetyInput<'_>) -> Option<StopReason> {
         let Some(image) = input.image else {
             return Some(if input.scan.is_some() { StopReason::NothingSeen } else { StopReason::NoImage });
         };
@@ -137,14 +141,14 @@ impl SafetyMonitor {
         (input.motion == MotionSense::Nothing).then_some(StopReason::NothingTellsMotion)
     }
 
-    /// A robot whose wheels count nothing goes slowly.
-    fn uncounted(&self, input: &SafetyInput<'_>) -> SafetyReport {
+    /// Limits the speed of a robot whose wheels count nothing.
+    fn limited_by_uncounted_wheels(&self, input: &SafetyInput<'_>) -> SafetyReport {
         let speed =
             if input.motion == MotionSense::Wheels { f64::INFINITY } else { self.config.uncounted_speed };
-        slow_to(input.twist, speed, SlowReason::WheelsCountNothing)
+        slowed_to(input.twist, speed, SlowReason::WheelsCountNothing)
     }
 
-    /// Whether only the way back is open: not for a disc that turns on the spot against what it touches.
+    /// Whether only backing out is allowed; a disc may still turn on the spot in contact.
     fn must_back_out(&self, input: &SafetyInput<'_>) -> bool {
         let turns = input.twist.v == 0.0 && input.twist.omega != 0.0 && self.footprint.is_disc();
         input.over_edge || input.touched && !turns
@@ -152,13 +156,13 @@ impl SafetyMonitor {
 
     fn back_out(&self, input: &SafetyInput<'_>) -> SafetyReport {
         if input.twist.v < 0.0 {
-            slow_to(input.twist, self.config.back_out_speed, SlowReason::BackingOut)
+            slowed_to(input.twist, self.config.back_out_speed, SlowReason::BackingOut)
         } else {
             stop(if input.touched { StopReason::Touched } else { StopReason::Cliff })
         }
     }
 
-    fn gather(&mut self, input: &SafetyInput<'_>) {
+    fn collect_obstacles(&mut self, input: &SafetyInput<'_>) {
         self.obstacles.clear();
         let v = input.twist.v.abs();
         let braking = v * self.latency + v * v / (2.0 * self.config.deceleration);
@@ -172,42 +176,46 @@ impl SafetyMonitor {
         }
     }
 
-    fn free_way(&self, twist: Twist2) -> FreeWay {
-        FreeWay {
-            contact: self.first(twist, self.contact_margin(SAME_DISTANCE)),
-            beside: self.first(twist, self.config.slow_margin),
+    fn free_path(&self, twist: Twist2) -> FreePath {
+        FreePath {
+            contact: self.first_contact(twist, self.contact_margin(SAME_DISTANCE_M)),
+            beside: self.first_contact(twist, self.config.slow_margin),
         }
     }
 
-    /// The first obstacle that comes within `margin` m of the outline: way (of a turn on the spot, angle) until then, and where.
-    fn first(&self, twist: Twist2, margin: f64) -> Option<(f64, Vector2)> {
-        let way =
+    /// First obstacle that comes within `margin` m of the footprint: distance (for a turn on the spot, angle) and position.
+    fn first_contact(&self, twist: Twist2, margin: f64) -> Option<(f64, Vector2)> {
+        let contact =
             |o: &Obstacle| Some((self.footprint.distance_to_contact(twist, o.at, margin + o.extent)?, o.at));
-        self.obstacles.iter().filter_map(way).min_by(|a, b| a.0.total_cmp(&b.0))
+        self.obstacles.iter().filter_map(contact).min_by(|a, b| a.0.total_cmp(&b.0))
     }
 
-    /// The rim about the outline that nothing may enter, m. A robot that is already nearer to something than the margin asks
-    /// may go on as long as it comes no nearer, give or take `slack`: else it could never leave a wall.
+    /// Margin about the footprint that nothing may enter, m. A robot already nearer than the configured margin may move as long as it comes
+    /// no nearer than `slack`: otherwise it could never leave a wall.
     fn contact_margin(&self, slack: f64) -> f64 {
         let gaps = self.obstacles.iter().map(|o| self.footprint.gap(o.at) - o.extent);
         (gaps.fold(f64::INFINITY, f64::min) - slack).clamp(0.0, self.config.side_margin)
     }
 
-    /// Whether a turn on the spot need not be looked at.
-    fn may_turn(&self, turn: Twist2) -> bool {
+    /// Whether a turn on the spot needs no check.
+    fn needs_no_turn_check(&self, turn: Twist2) -> bool {
         turn.omega == 0.0 || self.footprint.is_disc()
     }
 
-    fn within_the_free_turn(&self, turn: Twist2) -> SafetyReport {
-        // No slack: a turn keeps no stop margin, so slack would be used up again with every step.
-        let contact = if self.may_turn(turn) { None } else { self.first(turn, self.contact_margin(0.0)) };
+    fn limited_by_free_turn(&self, turn: Twist2) -> SafetyReport {
+        // No slack: a turn has no stop margin, so every step would use the slack again.
+        let contact = if self.needs_no_turn_check(turn) {
+            None
+        } else {
+            self.first_contact(turn, self.contact_margin(0.0))
+        };
         let Some((angle, at)) = contact else {
             return SafetyReport { twist: turn, action: SafetyAction::Pass };
         };
         let rate = self.config.turn_rate_for(angle, self.latency);
         if rate >= turn.omega.abs() {
             SafetyReport { twist: turn, action: SafetyAction::Pass }
-        } else if rate < LEAST_TURN_RATE {
+        } else if rate < MIN_TURN_RATE_RAD_PER_S {
             stop(StopReason::ObstacleBeside { angle, at })
         } else {
             let twist = Twist2::new(0.0, rate.copysign(turn.omega));
@@ -215,24 +223,24 @@ impl SafetyMonitor {
         }
     }
 
-    fn within_the_free_way(&self, twist: Twist2) -> SafetyReport {
-        let free = self.free_way(twist);
+    fn limited_by_free_path(&self, twist: Twist2) -> SafetyReport {
+        let free = self.free_path(twist);
         let mut report = SafetyReport { twist, action: SafetyAction::Pass };
         if twist.v < 0.0 {
-            report = slow_to(twist, self.config.reverse_speed, SlowReason::Reversing);
+            report = slowed_to(twist, self.config.reverse_speed, SlowReason::Reversing);
         }
-        if let Some((way, at)) = free.beside {
-            let speed = self.config.speed_for(way, self.latency).max(self.config.creep_speed);
-            report = slower(report, slow_to(twist, speed, SlowReason::NarrowGap { at }));
+        if let Some((distance, at)) = free.beside {
+            let speed = self.config.speed_for(distance, self.latency).max(self.config.creep_speed);
+            report = slower_of(report, slowed_to(twist, speed, SlowReason::NarrowGap { at }));
         }
-        if let Some((way, at)) = free.contact {
-            let speed = self.config.speed_for(way - self.config.stop_margin, self.latency);
+        if let Some((distance, at)) = free.contact {
+            let speed = self.config.speed_for(distance - self.config.stop_margin, self.latency);
             if speed < self.config.least_speed.min(twist.v.abs()) {
-                let turn = self.within_the_free_turn(Twist2::new(0.0, twist.omega)).twist;
-                let action = SafetyAction::Stop(StopReason::ObstacleAhead { way, at });
+                let turn = self.limited_by_free_turn(Twist2::new(0.0, twist.omega)).twist;
+                let action = SafetyAction::Stop(StopReason::ObstacleAhead { distance, at });
                 return SafetyReport { twist: turn, action };
             }
-            report = slower(report, slow_to(twist, speed, SlowReason::ObstacleAhead { way, at }));
+            report = slower_of(report, slowed_to(twist, speed, SlowReason::ObstacleAhead { distance, at }));
         }
         report
     }
@@ -243,7 +251,7 @@ fn stop(reason: StopReason) -> SafetyReport {
 }
 
 /// The twist at most this fast, m/s, on its own curve.
-fn slow_to(twist: Twist2, speed: f64, reason: SlowReason) -> SafetyReport {
+fn slowed_to(twist: Twist2, speed: f64, reason: SlowReason) -> SafetyReport {
     let part = speed / twist.v.abs();
     if part >= 1.0 {
         return SafetyReport { twist, action: SafetyAction::Pass };
@@ -252,7 +260,7 @@ fn slow_to(twist: Twist2, speed: f64, reason: SlowReason) -> SafetyReport {
     SafetyReport { twist, action: SafetyAction::Slow(reason) }
 }
 
-fn slower(a: SafetyReport, b: SafetyReport) -> SafetyReport {
+fn slower_of(a: SafetyReport, b: SafetyReport) -> SafetyReport {
     if b.twist.v.abs() < a.twist.v.abs() { b } else { a }
 }
 
@@ -291,7 +299,7 @@ mod tests {
     }
 
     #[test]
-    fn without_eyes_or_wheels_it_stops_and_says_so() {
+    fn without_images_or_wheels_it_stops_with_a_reason() {
         let twist = Twist2::new(0.3, 0.1);
         let now = Stamp::default().after(10.0);
         let reason = |input: SafetyInput<'_>| match monitor().check(&input) {
@@ -338,7 +346,7 @@ mod tests {
     }
 
     #[test]
-    fn blind_it_leaves_what_it_touches_backward_and_turns_but_goes_no_further_on() {
+    fn lost_perception_it_leaves_what_it_touches_backward_and_turns_but_goes_no_further_on() {
         let now = Stamp::default().after(10.0);
         let old = SafetyInput { now, wheels: Some(now), touched: true, ..fresh(Twist2::new(-0.05, 0.0)) };
         assert_eq!(monitor().check(&old).twist, Twist2::new(-0.05, 0.0));
@@ -356,7 +364,7 @@ mod tests {
     }
 
     #[test]
-    fn before_an_obstacle_it_still_turns() {
+    fn a_disc_turns_before_an_obstacle() {
         let wall = scan(-0.1, 0.01, &[0.2; 21]);
         let report = monitor().check(&SafetyInput { scan: seen(&wall), ..fresh(Twist2::new(0.3, 0.7)) });
         assert_eq!(report.twist, Twist2::new(0.0, 0.7));
@@ -366,7 +374,7 @@ mod tests {
     }
 
     #[test]
-    fn it_leaves_a_wall_that_it_stands_too_near_to() {
+    fn it_leaves_a_wall_within_the_margin() {
         // A wall along x, 5 mm beside the disc.
         let distance: f64 = 0.1755 + 0.005;
         let bearing = |i: i32| (10.0 + 2.0 * f64::from(i)).to_radians();
@@ -386,7 +394,7 @@ mod tests {
     }
 
     #[test]
-    fn an_outline_goes_through_a_gap_that_its_disc_would_not_and_does_not_turn_there() {
+    fn a_polygon_passes_a_gap_that_stops_its_disc_and_does_not_turn_there() {
         let half = 0.26_f64;
         let bearing = |i: i32| (-170.0 + 2.0 * f64::from(i)).to_radians();
         let ranges: Vec<f64> = (0..171).map(|i| half / bearing(i).sin().abs().max(1e-3)).collect();
@@ -403,7 +411,7 @@ mod tests {
     }
 
     #[test]
-    fn a_turn_ends_before_the_corner_meets_the_wall() {
+    fn a_turn_stops_before_the_corner_meets_the_wall() {
         // A post that the front left corner comes to after some 30 deg.
         let (mut theta, mut rate) = (0.0_f64, 0.0_f64);
         let post = Vector2::new(0.0, 0.44);
@@ -424,7 +432,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn a_command_is_never_made_faster_nor_bent(
+        fn a_command_is_only_slowed_on_its_own_curve(
             (v, omega) in (-0.7..0.7, -3.0..3.0),
             ranges in prop::collection::vec(0.1..4.0, 40),
         ) {
