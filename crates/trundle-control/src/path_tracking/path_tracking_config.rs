@@ -14,7 +14,7 @@ use trundle_core::{Invalid, Twist2, require_in};
 #[serde(default, deny_unknown_fields)]
 pub struct PathTrackingConfig {
     /// Gain of the error beside the path, 1/m^2, 0.01 to 100. \[Li18\] prints 1: an error then takes metres to go. Default 16:
-    /// a quarter of a metre to 1/e (ours, measured in `tests/it/tracking.rs`).
+    /// a quarter of a metre to 1/e (ours, measured in `tests/it/path_tracking.rs`).
     pub k_cross: f64,
     /// Damping ratio, 0.3 to 3. Default 1: no overshoot.
     pub damping: f64,
