@@ -152,7 +152,11 @@ pub(crate) fn safety_input<'a>(
         now: s.now,
         twist,
         scan: s.scan,
-        memory: Some(SafetyMemory { grid: s.grid, unconfirmed: s.traffic.lately, map_from_base: s.estimate.pose }),
+        memory: Some(SafetyMemory {
+            grid: s.grid,
+            unconfirmed: s.traffic.lately,
+            map_from_base: s.estimate.pose,
+        }),
         touched,
         over_edge,
         image: s.seen,
