@@ -36,7 +36,7 @@ fn a_killed_robot_wakes_up_and_goes_on_with_its_mission() {
     running.wait().unwrap();
     assert!(!first.exists(), "no half results");
 
-    let again = ["demo", "--seed", "2", "--quiet", "--wake", "1.5,1.3,60", "--memory", text(&memory)];
+    let again = ["demo", "--seed", "2", "--quiet", "--wake", "1.5,1.3,60", "--checkpoint", text(&memory)];
     let output = trundle(&[again.as_slice(), &["--out", text(&second)]].concat());
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let numbers = summary(&second);
@@ -49,10 +49,10 @@ fn a_memory_that_is_none_is_refused_by_its_name() {
     let scratch = tempfile::tempdir().unwrap();
     let memory = scratch.path().join("memory");
     std::fs::write(&memory, b"TRUNDLEM but no more").unwrap();
-    let sentence = refusal(&["demo", "--wake", "1,1,0", "--memory", text(&memory)]);
+    let sentence = refusal(&["demo", "--wake", "1,1,0", "--checkpoint", text(&memory)]);
     assert!(sentence.contains(text(&memory)) && sentence.contains("version"), "{sentence}");
     let sentence = refusal(&["demo", "--wake", "1,1,0"]);
-    assert!(sentence.contains("--memory"), "{sentence}");
+    assert!(sentence.contains("--checkpoint"), "{sentence}");
 }
 
 /// A file that may not grow is as a disk that is full: the recording ends, the robot does not.

@@ -121,7 +121,7 @@ fn masks_forbid_and_slow_down() {
     let complaint =
         room.plan(&["--from=desk", "--goal=far door", "--keepout", text(&forbidden)]).unwrap_err();
     assert!(
-        complaint.contains("from 'desk' at (1, 1) m to 'far door' at (5, 1) m: no way to the goal"),
+        complaint.contains("from 'desk' at (1, 1) m to 'far door' at (5, 1) m: no path to the goal"),
         "{complaint}"
     );
     let within = room.plan(&["--from=desk", "--goal=4,3.5,0", "--keepout", text(&forbidden)]).unwrap_err();
@@ -188,7 +188,7 @@ fn no_plan_leaves_its_reason_and_nothing_of_an_earlier_plan() {
     let summary = room.summary();
     assert_eq!(summary["success"], false);
     assert!(
-        summary["why"].as_str().unwrap().contains("no way to the goal")
+        summary["why"].as_str().unwrap().contains("no path to the goal")
             && summary["nearest_reachable_m"][0].is_f64()
     );
     let (code, why) = ask(&["--goal=4,3.5,0", "--keepout", text(&mask)]);

@@ -33,16 +33,20 @@ const FOCAL_LENGTH_PER_WIDTH: (f64, f64) = (0.09, 20.0);
 pub fn require_plausible(config: &RobotConfig) -> Result<(), Invalid> {
     for check in lengths_and_speeds(config).into_iter().chain(camera(config)) {
         let Plausible { path, value, unit, low, high, meant } = check;
-        if !(low..=high).contains(&value) {
-            let expected = format!("{low} to {high} {unit}; is it in {meant}?");
-            return Err(Invalid::new(path, value, unit, expected));
-        }
+        let expected = match value {
+            value if value > high => format!("at most {high} {unit}; is it in {meant}?"),
+            value if value < low => format!("at least {low} {unit}; is it in {meant}?"),
+            _ => continue,
+        };
+        return Err(Invalid::new(path, value, unit, expected));
     }
     Ok(())
 }
 
 fn lengths_and_speeds(config: &RobotConfig) -> [Plausible; 6] {
-    let below = |path, value, unit, high, meant| Plausible { path, value, unit, low: 0.0, high, meant };
+    // Numbers below 0 are left to the ranges of `Robot::new`: they are no matter of units.
+    let low = f64::NEG_INFINITY;
+    let below = |path, value, unit, high, meant| Plausible { path, value, unit, low, high, meant };
     let (drive, limits) = (&config.drive, &config.limits);
     [
         below("footprint_radius", config.footprint_radius, "m", MAX_FOOTPRINT_RADIUS_M, "millimetres"),
