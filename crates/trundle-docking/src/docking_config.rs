@@ -5,7 +5,7 @@ use crate::motion::limits::MotionLimits;
 use serde::{Deserialize, Serialize};
 use trundle_core::{Footprint, Invalid, Pose2, Vector2, require_in};
 
-/// PlanningJob method.
+/// Planning method.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Method {
@@ -13,7 +13,7 @@ pub enum Method {
     #[default]
     Optimal,
     /// The greedy method of \[Hong24\].
-    #[serde(rename = "paper")]
+    #[serde(rename = "paper", alias = "hong24")]
     Hong24,
 }
 
@@ -21,7 +21,7 @@ pub enum Method {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct DockingConfig {
-    /// PlanningJob method. Default: the optimal one.
+    /// Planning method. Default: the optimal one.
     pub method: Method,
     /// Speeds, and the pause between two motions.
     pub limits: MotionLimits,

@@ -13,6 +13,7 @@ mod inputs;
 #[allow(dead_code, reason = "the benchmark prints with it")]
 #[path = "../../../../bench/docking/judge.rs"]
 mod judge;
+mod laws;
 mod parts;
 mod shapes;
 mod world;
