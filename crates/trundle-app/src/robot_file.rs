@@ -13,13 +13,16 @@ use trundle_runtime::settings::RobotFile;
 /// Names the file, and the line or the value that cannot be accepted.
 pub fn load_robot(file: Option<&Path>, overrides: &[String]) -> Result<RobotConfig, AppError> {
     let text = file.map(read_text).transpose()?.unwrap_or_default();
-    let named = |problem: &dyn Display| match file {
-        Some(file) => format!("{}: {problem}", file.display()),
+    let named = |mark: &str, problem: &dyn Display| match file {
+        Some(file) => format!("{}{mark} {problem}", file.display()),
         None => problem.to_string(),
     };
-    let read = RobotFile::parse(&text, overrides).map_err(|error| AppError::Input(named(&error)))?;
+    let read = RobotFile::parse(&text, overrides).map_err(|error| {
+        let mark = if error.line.is_some() { "," } else { ":" };
+        AppError::Input(named(mark, &error))
+    })?;
     for warning in &read.warnings {
-        tracing::warn!("{}", named(warning));
+        tracing::warn!("{}", named(":", warning));
     }
     Ok(read.config)
 }
