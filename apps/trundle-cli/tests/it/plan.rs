@@ -192,9 +192,15 @@ fn no_plan_leaves_its_reason_and_nothing_of_an_earlier_plan() {
             && summary["nearest_reachable_m"][0].is_f64()
     );
     let (code, why) = ask(&["--goal=4,3.5,0", "--keepout", text(&mask)]);
-    assert!(code == 1 && why.contains("m of clearance are missing; it would without the keep-out mask"), "{code} {why}");
+    assert!(
+        code == 1 && why.contains("m of clearance are missing; it would without the keep-out mask"),
+        "{code} {why}"
+    );
     let (code, why) = ask(&["--goal=3,1,0", "--keepout", text(&mask)]);
-    assert!(code == 1 && why.ends_with("m of clearance are missing\n"), "in a wall, mask or not: {code} {why}");
+    assert!(
+        code == 1 && why.ends_with("m of clearance are missing\n"),
+        "in a wall, mask or not: {code} {why}"
+    );
 }
 
 /// Rows of numbers of a CSV file.
