@@ -71,7 +71,7 @@ fn robot_files_with_wrong_keys_and_values() {
     assert_eq!(sentence.lines().count(), 1, "{sentence}");
     assert!(config("footprint_radius = -1.0\n").contains("footprint radius is -1 m"));
     assert!(config("[schedule]\nmap_hz = 0.0\n").contains("schedule.map_hz is 0 1/s"));
-    assert!(config("[mount]\nz = nan\n").contains("mount.z is NaN m"));
+    assert!(config("[mount]\nz_m = nan\n").contains("mount.z_m is NaN m"));
     assert!(config("footprint_radius = \"wide\"\n").contains("robot.toml"));
 }
 
