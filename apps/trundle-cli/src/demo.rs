@@ -12,7 +12,7 @@ use trundle::experiments::simulated::{
     simulated_real_time_body, time_limit,
 };
 use trundle::io::OutputFolder;
-use trundle::runtime::{Memory, Mission, Task};
+use trundle::runtime::{Checkpoint, Mission, Task};
 use trundle::sim::{Scene, Simulator};
 
 /// `trundle demo`.
@@ -68,10 +68,10 @@ fn drive(args: &DemoArgs, setup: &RunSetup, mut body: Simulator) -> Result<Outco
 }
 
 /// The checkpoint in this file, and its bytes.
-fn read_checkpoint(file: &Path) -> Result<(Memory, Vec<u8>), AppError> {
+fn read_checkpoint(file: &Path) -> Result<(Checkpoint, Vec<u8>), AppError> {
     let refused = |error: &dyn Display| AppError::Input(format!("{}: {error}", file.display()));
     let bytes = std::fs::read(file).map_err(|error| refused(&error))?;
-    let checkpoint = Memory::from_bytes(&bytes).map_err(|error| refused(&error))?;
+    let checkpoint = Checkpoint::from_bytes(&bytes).map_err(|error| refused(&error))?;
     if checkpoint.mission.left.tasks().is_empty() {
         return Err(refused(&"nothing is left of its mission: the run that wrote it came to its end"));
     }

@@ -6,12 +6,12 @@ use std::sync::Arc;
 use std::sync::mpsc::{SyncSender, sync_channel};
 use std::thread::JoinHandle;
 use trundle_io::replace_file;
-use trundle_runtime::Memory;
+use trundle_runtime::Checkpoint;
 
 /// Writes the robot's newest checkpoint into a file, in a thread of its own: a slow disk does not delay control, and the file is
 /// whole at any instant.
 pub struct CheckpointWriter {
-    inbox: SyncSender<Arc<Memory>>,
+    inbox: SyncSender<Arc<Checkpoint>>,
     thread: JoinHandle<()>,
 }
 
@@ -21,7 +21,7 @@ impl CheckpointWriter {
     /// # Errors
     /// When the thread cannot be started. A checkpoint that cannot be written is logged as a warning; the next one is tried again.
     pub fn new(path: &Path) -> Result<Self, AppError> {
-        let (inbox, checkpoints) = sync_channel::<Arc<Memory>>(1);
+        let (inbox, checkpoints) = sync_channel::<Arc<Checkpoint>>(1);
         let path = path.to_owned();
         let keep = move || {
             let mut is_failing = false;
@@ -41,12 +41,12 @@ impl CheckpointWriter {
     }
 
     /// Writes `checkpoint` in place of the one before; skips `checkpoint` while two others wait.
-    pub fn write(&self, checkpoint: Arc<Memory>) {
+    pub fn write(&self, checkpoint: Arc<Checkpoint>) {
         let _ = self.inbox.try_send(checkpoint);
     }
 
     /// Writes the last checkpoint, and waits until the file is written.
-    pub fn finish(self, last: Option<Memory>) {
+    pub fn finish(self, last: Option<Checkpoint>) {
         if let Some(last) = last {
             let _ = self.inbox.send(Arc::new(last));
         }

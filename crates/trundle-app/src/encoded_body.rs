@@ -3,7 +3,7 @@
 use crate::AppError;
 use trundle_core::{RobotBody, Twist2};
 use trundle_io::EncodedEvent;
-use trundle_runtime::{Answer, Helper, Job};
+use trundle_runtime::{Answer, Job, Worker};
 
 /// What a run is fed.
 #[non_exhaustive]
@@ -34,7 +34,7 @@ pub trait EncodedBody {
     fn start_job(&mut self, job: Job);
 
     /// The result of the job that is still under way at the end of a run; `None` where there is none.
-    fn finish_job(&mut self, helper: Helper) -> Option<Answer>;
+    fn finish_job(&mut self, helper: Worker) -> Option<Answer>;
 
     /// Separate contacts so far, in truth; `None` where only the bumper reports contacts.
     fn true_contacts(&self) -> Option<u32>;
@@ -54,7 +54,7 @@ impl<B: RobotBody> EncodedBody for B {
 
     fn start_job(&mut self, _job: Job) {}
 
-    fn finish_job(&mut self, _helper: Helper) -> Option<Answer> {
+    fn finish_job(&mut self, _helper: Worker) -> Option<Answer> {
         None
     }
 

@@ -24,7 +24,7 @@ use rayon::ThreadPoolBuilder;
 use std::path::Path;
 use threaded_body::ThreadedBody;
 use trundle_io::OutputFolder;
-use trundle_runtime::real_time::{InboxDoor, Place, PulseConfig, thread_time};
+use trundle_runtime::real_time::{InboxSender, LoopTimerConfig, ThreadPlacement, thread_time};
 
 /// Image rate of a run in real time \[Hz\]. Source: ours, the rate of a Kinect.
 pub const CAMERA_HZ: f64 = 30.0;
@@ -42,7 +42,7 @@ const RECORDER_NICENESS: i32 = 10;
 /// When the system refuses a thread, the body cannot be started, or the robot cannot be accepted.
 pub fn run_in_real_time<B: BackgroundBody>(
     setup: &RunSetup,
-    start_body: impl FnOnce(InboxDoor<TimedEvent>, Place) -> Result<B, AppError> + Send,
+    start_body: impl FnOnce(InboxSender<TimedEvent>, ThreadPlacement) -> Result<B, AppError> + Send,
     folder: &OutputFolder,
     checkpoint_file: Option<&Path>,
     log: RunLog,
@@ -51,18 +51,19 @@ pub fn run_in_real_time<B: BackgroundBody>(
     let stop = interrupt::flag()?;
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let (outside, inside) = if cores > 1 { (Some(0), Some(cores - 1)) } else { (None, None) };
-    let at = move |nice| Place { core: inside, nice, is_first: false };
+    let at = move |nice| ThreadPlacement { core: inside, nice, is_first: false };
     let recorder =
         RunRecorder::threaded(folder, at(RECORDER_NICENESS))?.with_checkpoint_file(checkpoint_file)?;
     let pool = ThreadPoolBuilder::new()
         .num_threads(1)
         .thread_name(|_| "control".to_owned())
-        .start_handler(move |_| _ = Place { is_first: true, ..at(0) }.take())
+        .start_handler(move |_| _ = ThreadPlacement { is_first: true, ..at(0) }.take())
         .build()
         .map_err(|error| AppError::Environment(format!("cannot start a thread: {error}")))?;
     pool.install(|| {
-        let mut live = ThreadedBody::start(PulseConfig::default(), at(WORKER_NICENESS), stop)?;
-        let body = start_body(live.event_sender(), Place { core: outside, ..Place::default() })?;
+        let mut live = ThreadedBody::start(LoopTimerConfig::default(), at(WORKER_NICENESS), stop)?;
+        let body =
+            start_body(live.event_sender(), ThreadPlacement { core: outside, ..ThreadPlacement::default() })?;
         live.connect(body.commands(), body.contacts());
         let before = thread_time().unwrap_or_default();
         let result = run_on_body(setup, &mut live, recorder, log, progress);

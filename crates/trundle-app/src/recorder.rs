@@ -10,8 +10,8 @@ use std::sync::mpsc::{SyncSender, TrySendError, sync_channel};
 use std::thread::JoinHandle;
 use std::time::Duration;
 use trundle_io::{IoError, OutputFolder, Recorder};
-use trundle_runtime::real_time::{Place, thread_time};
-use trundle_runtime::{Histogram, Memory};
+use trundle_runtime::real_time::{ThreadPlacement, thread_time};
+use trundle_runtime::{Checkpoint, Histogram};
 
 /// A recording into a file.
 pub type FileRecorder = Recorder<BufWriter<File>>;
@@ -80,7 +80,7 @@ impl RunRecorder {
     ///
     /// # Errors
     /// When the file cannot be created or the thread cannot be started.
-    pub fn threaded(folder: &OutputFolder, place: Place) -> Result<Self, AppError> {
+    pub fn threaded(folder: &OutputFolder, place: ThreadPlacement) -> Result<Self, AppError> {
         let mut recorder = folder.recorder("recording.mcap")?;
         let (lines, inbox) = sync_channel::<Line>(MAX_WAITING_LINES);
         let waiting = Arc::<AtomicUsize>::default();
@@ -122,7 +122,7 @@ impl RunRecorder {
     }
 
     /// Writes a checkpoint, where a file for checkpoints is given.
-    pub fn write_checkpoint(&self, checkpoint: Arc<Memory>) {
+    pub fn write_checkpoint(&self, checkpoint: Arc<Checkpoint>) {
         if let Some(writer) = &self.checkpoints {
             writer.write(checkpoint);
         }
@@ -157,7 +157,7 @@ impl RunRecorder {
     ///
     /// # Errors
     /// When the recording could not be written to its end.
-    pub fn finish(self, last: Option<Memory>) -> Result<Duration, AppError> {
+    pub fn finish(self, last: Option<Checkpoint>) -> Result<Duration, AppError> {
         if let Some(writer) = self.checkpoints {
             writer.finish(last);
         }

@@ -7,12 +7,12 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use trundle_core::Twist2;
 use trundle_io::{RecordedMessage, RecordingReader};
-use trundle_runtime::{Answer, Helper, Job};
+use trundle_runtime::{Answer, Job, Worker};
 
 /// A recording fed again. Each job runs where the recording says that its result was applied.
 pub struct RunReplayer {
     reader: RecordingReader,
-    jobs: BTreeMap<Helper, Job>,
+    jobs: BTreeMap<Worker, Job>,
     contacts: Option<u32>,
 }
 
@@ -51,7 +51,7 @@ impl RunReplayer {
     }
 
     /// The result of the worker's job, which runs now.
-    fn run_job(&mut self, helper: Helper) -> Result<Option<RunInput>, AppError> {
+    fn run_job(&mut self, helper: Worker) -> Result<Option<RunInput>, AppError> {
         let answer = self.finish_job(helper).ok_or_else(|| {
             AppError::Input(format!("message on {}: {helper:?} has nothing to do here", RunMark::TOPIC))
         })?;
@@ -88,10 +88,10 @@ impl EncodedBody for RunReplayer {
     }
 
     fn start_job(&mut self, job: Job) {
-        self.jobs.insert(job.helper(), job);
+        self.jobs.insert(job.worker(), job);
     }
 
-    fn finish_job(&mut self, helper: Helper) -> Option<Answer> {
+    fn finish_job(&mut self, helper: Worker) -> Option<Answer> {
         self.jobs.remove(&helper).map(Job::run)
     }
 

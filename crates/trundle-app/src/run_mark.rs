@@ -1,7 +1,7 @@
 //! Marks that a recording holds between the events, so that a replay feeds the robot in the same order.
 
 use serde::{Deserialize, Serialize};
-use trundle_runtime::Helper;
+use trundle_runtime::Worker;
 
 /// A mark of a recording, between the events.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -10,7 +10,7 @@ use trundle_runtime::Helper;
 pub enum RunMark {
     /// The result of this worker's job was applied here.
     #[serde(rename = "taken_up")]
-    Applied(Helper),
+    Applied(Worker),
     /// Separate contacts so far, in truth, before the event that follows.
     Contacts(u32),
     /// The user ended the run.
@@ -42,6 +42,6 @@ mod tests {
         let text = |mark| serde_json::to_string(&RunMarkMessage { mark }).unwrap();
         assert_eq!(text(RunMark::Contacts(2)), r#"{"mark":{"contacts":2}}"#);
         assert_eq!(text(RunMark::End), r#"{"mark":"end"}"#);
-        assert!(text(RunMark::Applied(Helper::ALL[0])).starts_with(r#"{"mark":{"taken_up":""#));
+        assert!(text(RunMark::Applied(Worker::ALL[0])).starts_with(r#"{"mark":{"taken_up":""#));
     }
 }

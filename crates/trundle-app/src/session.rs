@@ -7,7 +7,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 use trundle_core::{FrameId, Pose2, Stamp, Twist2};
 use trundle_io::{EncodedEvent, PoseInFrame, PosesInFrame};
-use trundle_runtime::{Answer, DriveState, Helper, LazyImage, Robot, Stage, StepReport};
+use trundle_runtime::{Answer, DriveState, LazyImage, Robot, Stage, StepReport, Worker};
 
 /// A run under way: feeds the robot and records each input and output.
 pub struct RunSession<'s> {
@@ -34,10 +34,10 @@ impl<'s> RunSession<'s> {
     ) -> Result<Self, AppError> {
         let mut robot = setup.start_robot()?;
         if setup.real_time {
-            robot = robot.deferring();
+            robot = robot.with_background_jobs();
         }
         if recorder.writes_checkpoints() {
-            robot = robot.remembering();
+            robot = robot.with_checkpoints();
         }
         let config = setup.clone();
         recorder.write(move |file| file.record_json("/config", "trundle.Config", Stamp::default(), &config));
@@ -116,8 +116,8 @@ impl<'s> RunSession<'s> {
     pub fn finish(mut self, body: &mut dyn EncodedBody) -> Result<FinishedRun, AppError> {
         if self.setup.real_time {
             self.record_mark(RunMark::End);
-            self.robot.drop_waiting_image();
-            for helper in Helper::ALL {
+            self.robot.drop_queued_image();
+            for helper in Worker::ALL {
                 if let Some(answer) = body.finish_job(helper) {
                     let report = self.apply_answer(answer);
                     let stamp = self.log.now;
@@ -147,7 +147,7 @@ impl<'s> RunSession<'s> {
             self.view.on_image(&image);
             let stamp = image.stamp;
             let load = move || image.decode().map_err(|error| error.to_string());
-            return Ok(self.robot.leave_image(LazyImage::new(stamp, load)));
+            return Ok(self.robot.queue_image(LazyImage::new(stamp, load)));
         }
         let event = event.decode().map_err(|error| AppError::Input(error.to_string()))?;
         self.log.on_event(&event, self.setup.map_from_world);
@@ -155,8 +155,8 @@ impl<'s> RunSession<'s> {
     }
 
     fn apply_answer(&mut self, answer: Answer) -> StepReport {
-        self.record_mark(RunMark::Applied(answer.helper()));
-        self.robot.take_up(answer)
+        self.record_mark(RunMark::Applied(answer.worker()));
+        self.robot.apply_answer(answer)
     }
 
     fn record_mark(&mut self, mark: RunMark) {

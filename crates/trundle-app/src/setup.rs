@@ -4,7 +4,7 @@ use crate::AppError;
 use base64::prelude::{BASE64_STANDARD, Engine};
 use serde::{Deserialize, Serialize};
 use trundle_core::Pose2;
-use trundle_runtime::{Memory, Mission, Robot, RobotConfig, Task};
+use trundle_runtime::{Checkpoint, Mission, Robot, RobotConfig, Task};
 
 /// The setup of a run: recorded first, and all that a replay needs besides the events.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -70,8 +70,8 @@ impl RunSetup {
         };
         let unusable = |error: String| AppError::Input(format!("the checkpoint cannot be used: {error}"));
         let bytes = BASE64_STANDARD.decode(checkpoint).map_err(|error| unusable(error.to_string()))?;
-        let checkpoint = Memory::from_bytes(&bytes).map_err(|error| unusable(error.to_string()))?;
-        Robot::waking(self.robot.clone(), &checkpoint).map_err(|error| unusable(error.to_string()))
+        let checkpoint = Checkpoint::from_bytes(&bytes).map_err(|error| unusable(error.to_string()))?;
+        Robot::resume(self.robot.clone(), &checkpoint).map_err(|error| unusable(error.to_string()))
     }
 
     /// The goal of a task, map frame; `None` for a task without a goal.

@@ -19,7 +19,7 @@ use trundle_core::{DriveLimits, Invalid, OccupancyGrid, Vector2, difference_of_a
 use trundle_io::{OutputFolder, write_map};
 use trundle_localization::LocalizerConfig;
 use trundle_mapping::MapperConfig;
-use trundle_runtime::{DriveState, Mission, RobotConfig, Schedule, Sight, Task};
+use trundle_runtime::{DriveState, Mission, RangeSource, RobotConfig, Schedule, Task};
 use trundle_sim::{FaultSchedule, SimConfig};
 
 /// The benchmark's robot, m, and what it adds for its planners.
@@ -132,7 +132,7 @@ fn robot() -> RobotConfig {
     let defaults = RobotConfig::default();
     RobotConfig {
         footprint_radius: RADIUS + INFLATION,
-        sight: Sight::Laser,
+        sight: RangeSource::Laser,
         limits: DriveLimits { v: SPEED, ..DriveLimits::KOBUKI },
         schedule: Schedule { map_hz: 10.0, check_hz: 10.0, improve_hz: 1.0 },
         // The ends of a long corridor are what tells how far along it the robot is.

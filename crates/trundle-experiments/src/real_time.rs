@@ -186,7 +186,7 @@ impl ExperimentReport for RealTimeOutcome {
         let (timing, text) = (&self.timing, self.verdict());
         let verdict = if self.is_success() { Verdict::Ok(text) } else { Verdict::Failed(text) };
         let rows = timing.rows().into_iter().fold(Table::new("Figures", ["what", "figure"]), Table::row);
-        let chart = Chart::new("Memory", "time, s", "MB").line(
+        let chart = Chart::new("Checkpoint", "time, s", "MB").line(
             "resident, robot and simulator",
             Color::BLUE,
             timing.memory.samples.clone(),

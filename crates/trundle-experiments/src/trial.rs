@@ -12,7 +12,7 @@ use trundle_app::{
     StateChange, run_on_body,
 };
 use trundle_core::{OccupancyGrid, Pose2, RobotBody, Vector2};
-use trundle_runtime::{Memory, Mission, Robot, RobotConfig};
+use trundle_runtime::{Checkpoint, Mission, Robot, RobotConfig};
 use trundle_sim::{FaultSchedule, Scene, Simulator};
 use trundle_viz::Table;
 
@@ -178,7 +178,7 @@ fn run_unrecorded(
     let start = Instant::now();
     let mut robot = setup.start_robot()?;
     if restart.is_some() {
-        robot = robot.remembering();
+        robot = robot.with_checkpoints();
     }
     let mut checkpoint = None;
     let mut log = RunLog::default();
@@ -214,7 +214,7 @@ fn run_unrecorded(
 }
 
 /// The robot that is switched on after a kill at `at` s, with its last checkpoint.
-fn resumed_after_kill(setup: &RunSetup, checkpoint: Option<&Memory>, at: f64) -> Result<Robot, AppError> {
+fn resumed_after_kill(setup: &RunSetup, checkpoint: Option<&Checkpoint>, at: f64) -> Result<Robot, AppError> {
     let checkpoint = checkpoint.ok_or_else(|| {
         AppError::Input(format!("the restart at {at} s: no checkpoint had been made by then"))
     })?;

@@ -1,3 +1,5 @@
+//! What the bumper says about the map.
+
 use trundle_core::{Footprint, Vector2};
 
 /// Half of the bearings at which the bumper may have met something, deg: those that the robot drives to.

@@ -1,3 +1,5 @@
+//! The camera's pose on the robot.
+
 use nalgebra::Matrix3;
 use serde::{Deserialize, Serialize};
 use trundle_core::{Invalid, Pose3, Vector3, require_in};

@@ -1,6 +1,9 @@
+//! The configuration of the robot.
+
 use crate::{
-    camera_mount::CameraMount, last_stage::LastStageConfig, robot::Robot, schedule::Schedule, sight::Sight,
-    supervisor_config::SupervisorConfig,
+    camera_mount::CameraMount, goal_approach::GoalApproachConfig,
+    mission::executor_config::MissionExecutorConfig, range_source::RangeSource, robot::Robot,
+    schedule::Schedule,
 };
 use serde::{Deserialize, Serialize};
 use trundle_control::{FollowerConfig, SafetyConfig};
@@ -19,7 +22,7 @@ pub struct RobotConfig {
     /// Corners of a convex outline in place of the disc, base frame, m. Default none.
     pub footprint: Option<Vec<[f64; 2]>>,
     /// What the map is drawn from and what safety watches. Default the depth camera.
-    pub sight: Sight,
+    pub sight: RangeSource,
     /// Geometry of the base. Default: the Kobuki.
     pub drive: DifferentialDrive,
     /// What the base may be asked for. Default: the Kobuki.
@@ -49,11 +52,11 @@ pub struct RobotConfig {
     /// Following trajectories and settling.
     pub control: FollowerConfig,
     /// Turns and straight moves onto the goal where it is tight.
-    pub docking: LastStageConfig,
+    pub docking: GoalApproachConfig,
     /// Safety.
     pub safety: SafetyConfig,
     /// Missions, exploration, patience.
-    pub supervisor: SupervisorConfig,
+    pub supervisor: MissionExecutorConfig,
 }
 
 impl Default for RobotConfig {
@@ -61,7 +64,7 @@ impl Default for RobotConfig {
         Self {
             footprint_radius: Footprint::KOBUKI.circumscribed_radius(),
             footprint: None,
-            sight: Sight::DepthCamera,
+            sight: RangeSource::DepthCamera,
             drive: DifferentialDrive::KOBUKI,
             limits: DriveLimits::KOBUKI,
             camera: PinholeCamera::kinect_v2(),
@@ -76,9 +79,9 @@ impl Default for RobotConfig {
             movers: ObstacleTrackerConfig::default(),
             planning: PlannerConfig::default(),
             control: FollowerConfig::default(),
-            docking: LastStageConfig::default(),
+            docking: GoalApproachConfig::default(),
             safety: SafetyConfig::default(),
-            supervisor: SupervisorConfig::default(),
+            supervisor: MissionExecutorConfig::default(),
         }
     }
 }

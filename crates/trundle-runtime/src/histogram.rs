@@ -1,3 +1,5 @@
+//! A histogram with bounded relative error.
+
 /// Quantiles of a stream of positive numbers in constant memory: bins of equal width in the logarithm.
 ///
 /// A quantile is right to 1 %; count, sum and the largest number are exact. Numbers below a millionth count as a millionth,

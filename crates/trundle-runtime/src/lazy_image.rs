@@ -1,3 +1,5 @@
+//! An image that is decoded when it is needed.
+
 use std::fmt;
 use trundle_core::{RgbdImage, Stamp};
 

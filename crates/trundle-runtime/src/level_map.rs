@@ -1,3 +1,5 @@
+//! The grid map of a camera that is not on a robot: scans levelled by the camera pose.
+
 use crate::{camera_mount::CameraMount, schedule::Ticker};
 use std::collections::BTreeMap;
 use trundle_core::{Invalid, OccupancyGrid, PinholeCamera, Pose2, Pose3, RgbdImage, Scan, Stamp, Vector3};

@@ -1,3 +1,8 @@
+//! Missions: tasks in order, and how they ended.
+
+pub(crate) mod executor;
+pub(crate) mod executor_config;
+
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use trundle_core::{Invalid, Pose2, Stamp};

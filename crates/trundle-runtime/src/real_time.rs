@@ -1,6 +1,6 @@
 //! The robot beside the clock on the wall: threads, queues, cores.
 //!
-//! The control thread feeds a deferring [`crate::Robot`] from an [`Inbox`]; a [`Crew`] does its long work, a thread a helper. Whatever
+//! The control thread feeds a deferring [`crate::Robot`] from an [`Inbox`]; a [`WorkerThreads`] does its long work, a thread a helper. Whatever
 //! order the threads come to is the order in which the robot was fed, so who writes down events and answers in that order can
 //! feed them again and gets the same reports.
 //!
@@ -9,29 +9,29 @@
 //! ```no_run
 //! use std::time::Duration;
 //! use trundle_core::{SensorEvent, Twist2};
-//! use trundle_runtime::real_time::{Crew, Inbox, Input, Place, Post, Pulse, PulseConfig};
+//! use trundle_runtime::real_time::{WorkerThreads, Inbox, Input, ThreadPlacement, Post, LoopTimer, LoopTimerConfig};
 //! use trundle_runtime::{LazyImage, Robot, RobotConfig};
 //!
 //! # fn drive(base: impl Fn(Twist2)) -> Result<(), Box<dyn std::error::Error>> {
-//! let mut robot = Robot::new(RobotConfig::default())?.deferring();
+//! let mut robot = Robot::new(RobotConfig::default())?.with_background_jobs();
 //! let mut inbox: Inbox<SensorEvent> = Inbox::new(1024);
 //! let door = inbox.door(); // for the driver's threads: door.put(Post::Urgent(wheels)), door.put(Post::Patient(image))
 //! let answers = inbox.door();
-//! let helpers = Place { core: Some(1), nice: 5, is_first: false };
-//! let crew = Crew::start(helpers, move |answer| _ = answers.hand_in(Post::Answer(answer)))?;
-//! Place { core: Some(1), nice: 0, is_first: true }.take();
-//! let mut pulse = Pulse::new(PulseConfig::default());
+//! let helpers = ThreadPlacement { core: Some(1), nice: 5, is_first: false };
+//! let crew = WorkerThreads::start(helpers, move |answer| _ = answers.hand_in(Post::Answer(answer)))?;
+//! ThreadPlacement { core: Some(1), nice: 0, is_first: true }.take();
+//! let mut pulse = LoopTimer::new(LoopTimerConfig::default());
 //! while let Some(input) = inbox.next(&pulse, Duration::from_millis(200)) {
 //!     let arrival = std::time::Instant::now();
 //!     let report = match input {
-//!         Input::Event(SensorEvent::Rgbd(image)) => robot.leave_image(LazyImage::from(image)),
+//!         Input::Event(SensorEvent::Rgbd(image)) => robot.queue_image(LazyImage::from(image)),
 //!         Input::Event(event) => {
 //!             if matches!(event, SensorEvent::Wheels(_)) {
 //!                 pulse.begin();
 //!             }
 //!             robot.step(&event)
 //!         }
-//!         Input::Answer(answer) => robot.take_up(answer),
+//!         Input::Answer(answer) => robot.apply_answer(answer),
 //!     };
 //!     if let Some(twist) = report.twist {
 //!         base(twist);
@@ -46,12 +46,12 @@
 //! # Ok(()) }
 //! ```
 
-mod crew;
 mod inbox;
-mod place;
-mod pulse;
+mod loop_timer;
+mod thread_placement;
+mod worker_threads;
 
-pub use crew::{Crew, CrewCost};
-pub use inbox::{Inbox, InboxDoor, Input, Post};
-pub use place::{Place, thread_time};
-pub use pulse::{Pulse, PulseConfig, PulseReport};
+pub use inbox::{Inbox, InboxSender, Input, Post};
+pub use loop_timer::{LoopTimer, LoopTimerConfig, LoopTimerReport};
+pub use thread_placement::{ThreadPlacement, thread_time};
+pub use worker_threads::{WorkerCost, WorkerThreads};

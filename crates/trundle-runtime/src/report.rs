@@ -1,4 +1,6 @@
-use crate::{memory::Memory, state::DriveState};
+//! The report of a step.
+
+use crate::{behaviour::drive_state::DriveState, checkpoint::Checkpoint};
 use std::sync::Arc;
 use trundle_core::{PoseEstimate, Stamp, Twist2};
 use trundle_slam::TrackReport;
@@ -17,7 +19,7 @@ pub struct StepReport {
     /// What the visual tracker said, on images.
     pub track: Option<TrackReport>,
     /// What the robot would take along through a restart, now and then, where it remembers ([`crate::Robot::remembering`]).
-    pub memory: Option<Arc<Memory>>,
+    pub memory: Option<Arc<Checkpoint>>,
     /// What the robot is doing.
     pub state: DriveState,
     /// Whether the step made a new plan.

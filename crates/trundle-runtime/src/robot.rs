@@ -1,23 +1,26 @@
-mod background;
-mod placing;
-mod waking;
+//! The whole robot: a sensor event in, a report out.
 
+mod background;
+mod pose_monitor;
+mod restore;
+
+use crate::world_state::{DynamicObstacles, WorldState};
 use crate::{
+    behaviour::drive_state::DriveState,
+    behaviour::navigator::position_sigma,
     bumper,
-    captain::Captain,
     config::RobotConfig,
-    drawn::DrawnPoses,
-    eye::EyeWatch,
-    last_stage::LastStageReport,
-    lookout::{Lookout, Sighting},
-    map_watch::MapWatch,
+    goal_approach::GoalApproachReport,
     mission::{Mission, MissionState, Task, TaskRecord},
-    navigator::{Surroundings, Traffic, position_sigma},
+    monitors::camera_health::CameraHealth,
+    monitors::scan_map_consistency::ScanMapConsistency,
+    range_source::RangeSource,
     report::StepReport,
+    scan_pose_log::ScanPoseLog,
     schedule::Ticker,
-    sight::Sight,
     stage::{Stage, StageTimes},
-    state::DriveState,
+    workers::decision_worker::DecisionWorker,
+    workers::perception_worker::{PerceptionResult, PerceptionWorker},
 };
 use background::Background;
 use std::sync::Arc;
@@ -40,7 +43,7 @@ use trundle_slam::{RgbdSlam, TrackReport, Tracking};
 /// up their answers when they are there, between two events: the same events and answers in the same order give the same reports.
 #[derive(Debug)]
 pub struct Robot {
-    sight: Sight,
+    sight: RangeSource,
     base_from_camera: Pose3,
     /// A position less sure than this is none, m.
     lost_sigma: f64,
@@ -50,17 +53,17 @@ pub struct Robot {
     bumper: Vec<Vector2>,
     odometry: WheelOdometry,
     /// None while it looks in the background.
-    lookout: Option<Box<Lookout>>,
+    perception: Option<Box<PerceptionWorker>>,
     matcher: ScanMatcher,
     traffic: MovingObstacleTracker,
     localizer: Localizer,
     mapper: LiveMapper,
-    drawn: DrawnPoses,
+    scan_poses: ScanPoseLog,
     /// What is bent is to be redrawn within so many commands.
     redrawn_within: usize,
     map_due: Ticker,
     /// None while it thinks in the background.
-    captain: Option<Box<Captain>>,
+    decision_worker: Option<Box<DecisionWorker>>,
     background: Background,
     latest: Latest,
     times: StageTimes,
@@ -74,12 +77,12 @@ struct Latest {
     scan: Option<Scan>,
     /// `odom_from_base` when it was taken.
     scan_odometry: Option<Pose2>,
-    eye: EyeWatch,
+    camera_health: CameraHealth,
     /// Since when images that show enough have not been located.
     unplaced: Option<Stamp>,
     /// Stamp of the newest image that was located.
     located: Option<Stamp>,
-    map_watch: MapWatch,
+    scan_map_consistency: ScanMapConsistency,
     /// Images that were left out because the camera was frozen.
     frozen: usize,
     /// What the captain said last of what the robot does, and whether the mission is over.
@@ -91,7 +94,7 @@ struct Latest {
     /// The map without it; none where nothing moves.
     still: Option<OccupancyGrid>,
     /// Hits of what came near by lately and has not been seen to go, map frame, m.
-    lately: Vec<Vector2>,
+    unconfirmed: Vec<Vector2>,
 }
 
 /// Images that show enough and have not been located for so long, s, are of another place than the odometry says.
@@ -117,8 +120,8 @@ impl Robot {
         let base_from_camera = config.mount.validated()?.base_from_camera();
         let footprint = config.footprint()?;
         config.require_believable_speeds()?;
-        let lookout = Lookout::new(&config, base_from_camera)?;
-        let blind_range = lookout.blind_range();
+        let perception = PerceptionWorker::new(&config, base_from_camera)?;
+        let blind_range = perception.blind_range();
         let mapper = LiveMapper::new(MapperConfig { blind_range, ..config.mapping.clone() })?;
         Ok(Self {
             sight: config.sight,
@@ -127,15 +130,15 @@ impl Robot {
             inscribed_radius: inscribed_radius(&footprint),
             bumper: bumper::ahead_of(&footprint),
             odometry: WheelOdometry::new(config.drive, config.odometry.clone())?,
-            lookout: Some(Box::new(lookout)),
+            perception: Some(Box::new(perception)),
             matcher: ScanMatcher::new(config.scan_match.clone())?,
             traffic: MovingObstacleTracker::new(config.movers)?,
             localizer: Localizer::new(config.localization.clone(), base_from_camera)?,
             map_due: Ticker::new(config.schedule.validated()?.map_hz),
             mapper,
-            drawn: DrawnPoses::default(),
+            scan_poses: ScanPoseLog::default(),
             redrawn_within: REDRAWING.1,
-            captain: Some(Box::new(Captain::new(&config, &footprint)?)),
+            decision_worker: Some(Box::new(DecisionWorker::new(&config, &footprint)?)),
             background: Background::default(),
             latest: Latest::default(),
             times: StageTimes::default(),
@@ -145,14 +148,14 @@ impl Robot {
     /// Gives the robot a mission in place of what is left of its old one. It begins with the next reading of the wheels; an
     /// empty one lets the robot stand.
     pub fn begin(&mut self, mission: &Mission) {
-        self.go_on(MissionState::new(mission.clone()));
+        self.restore_mission(MissionState::new(mission.clone()));
     }
 
     /// Takes up a mission where it was left.
-    fn go_on(&mut self, mission: MissionState) {
-        match &mut self.captain {
-            Some(captain) => captain.begin(&mission),
-            None => self.background.give_orders(&mission),
+    fn restore_mission(&mut self, mission: MissionState) {
+        match &mut self.decision_worker {
+            Some(decision_worker) => decision_worker.begin(&mission),
+            None => self.background.set_mission(&mission),
         }
         self.latest.mission = mission;
     }
@@ -170,12 +173,12 @@ impl Robot {
     pub fn step(&mut self, event: &SensorEvent) -> StepReport {
         let mut report = StepReport::default();
         match event {
-            SensorEvent::Gyro(gyro) => self.feel(gyro),
-            SensorEvent::Wheels(wheels) => self.roll(wheels, &mut report),
+            SensorEvent::Gyro(gyro) => self.on_gyro(gyro),
+            SensorEvent::Wheels(wheels) => self.on_wheels(wheels, &mut report),
             SensorEvent::Rgbd(image) => self.look(image, &mut report),
             SensorEvent::Touch(touch) => self.touch(touch.pressed),
             SensorEvent::Cliff(cliff) => self.cliff(cliff.over_edge),
-            SensorEvent::Scan(scan) if self.sight == Sight::Laser => self.sweep(scan),
+            SensorEvent::Scan(scan) if self.sight == RangeSource::Laser => self.on_laser(scan),
             // The map is drawn from the depth image alone; a laser beside it is for other programs.
             SensorEvent::Scan(_) | SensorEvent::Truth { .. } => {}
         }
@@ -186,48 +189,49 @@ impl Robot {
     /// Every report ends with what holds after the step.
     fn close(&mut self, report: &mut StepReport) {
         report.estimate = Some(self.localizer.estimate());
-        if let Some(captain) = &self.captain {
-            self.latest.state = captain.state();
+        if let Some(decision_worker) = &self.decision_worker {
+            self.latest.state = decision_worker.state();
         }
         (report.state, report.finished) = self.latest.state.clone();
     }
 
     /// A gyro reading: into the odometry.
-    fn feel(&mut self, gyro: &GyroRate) {
+    fn on_gyro(&mut self, gyro: &GyroRate) {
         self.times.measure(Stage::Odometry, || self.odometry.step_gyro(gyro));
     }
 
     /// A wheel reading: odometry, prediction, then navigation: a twist leaves.
-    fn roll(&mut self, wheels: &WheelTicks, report: &mut StepReport) {
+    fn on_wheels(&mut self, wheels: &WheelTicks, report: &mut StepReport) {
         let odometry = self.times.measure(Stage::Odometry, || self.odometry.step_wheels(wheels));
         self.times.measure(Stage::Localization, || self.localizer.predict(&odometry));
         self.latest.odometry = Some(odometry);
         self.latest.movers_go_on(&self.traffic, wheels.stamp);
-        let surroundings = Surroundings {
+        let surroundings = WorldState {
             now: wheels.stamp,
             estimate: self.localizer.estimate(),
             grid: self.mapper.grid(),
             scan: self.latest.carried_scan(),
-            seen: self.latest.eye.seen(),
+            seen: self.latest.camera_health.seen(),
             unplaced: self.latest.unplaced.map_or(0.0, |since| wheels.stamp - since),
             motion: self.motion_sense(wheels.stamp),
-            traffic: Traffic {
+            traffic: DynamicObstacles {
                 movers: &self.latest.movers,
-                lately: &self.latest.lately,
+                unconfirmed: &self.latest.unconfirmed,
                 still: self.latest.still.as_ref(),
             },
         };
-        match self.captain.take() {
-            Some(mut captain) if !self.background.is_for(&captain, &surroundings) => {
-                let decision = captain.step(&surroundings, &mut self.times);
-                self.captain = Some(captain);
+        match self.decision_worker.take() {
+            Some(mut decision_worker) if !self.background.is_for(&decision_worker, &surroundings) => {
+                let decision = decision_worker.step(&surroundings, &mut self.times);
+                self.decision_worker = Some(decision_worker);
                 report.twist = Some(decision.twist);
                 report.replanned = decision.replanned;
             }
-            captain => {
+            decision_worker => {
                 let times = &mut self.times;
                 let background = &mut self.background;
-                report.twist = times.measure(Stage::Control, || background.steer(captain, &surroundings));
+                report.twist =
+                    times.measure(Stage::Control, || background.steer(decision_worker, &surroundings));
             }
         }
         report.twist.into_iter().for_each(|twist| self.odometry.set_command(twist));
@@ -239,8 +243,8 @@ impl Robot {
         let is_seen = || self.latest.located.is_some_and(|located| now - located <= MOTION_SEEN);
         match self.sight {
             _ if !self.odometry.wheels_are_unresponsive() => MotionSense::Wheels,
-            Sight::DepthCamera if !is_seen() => MotionSense::Nothing,
-            Sight::DepthCamera | Sight::Laser => MotionSense::Sight,
+            RangeSource::DepthCamera if !is_seen() => MotionSense::Nothing,
+            RangeSource::DepthCamera | RangeSource::Laser => MotionSense::Sight,
         }
     }
 
@@ -268,17 +272,17 @@ impl Robot {
             return self.background.leave(image.clone().into());
         }
         let Some(odometer) = self.odometry_at(image.stamp()) else { return };
-        let Some(lookout) = &mut self.lookout else { return };
+        let Some(perception) = &mut self.perception else { return };
         report.image = Some(image.stamp());
-        match lookout.look(image, odometer, &mut self.times) {
-            Some(sighting) => self.take_in(sighting, report),
+        match perception.look(image, odometer, &mut self.times) {
+            Some(sighting) => self.apply_perception(sighting, report),
             None => self.latest.frozen += 1,
         }
     }
 
     /// What an image showed: the visual pose corrects the estimate; at the map's rate the scan does too, and enters the map.
-    fn take_in(&mut self, sighting: Sighting, report: &mut StepReport) {
-        let Sighting { odom_from_base, track, scan, place, unplaced, is_carried_away, bent, saved } =
+    fn apply_perception(&mut self, sighting: PerceptionResult, report: &mut StepReport) {
+        let PerceptionResult { odom_from_base, track, scan, place, unplaced, is_carried_away, bent, saved } =
             sighting;
         self.latest.unplaced = unplaced;
         if track.tracking.is_located() {
@@ -293,7 +297,7 @@ impl Robot {
             times.measure(Stage::Localization, || correct_by_sight(localizer, &track, bent.is_some()));
         if correction == Some(Correction::Reanchored) {
             // Scans drawn so far stay where they are: their visual poses are in a frame that has moved.
-            self.drawn = DrawnPoses::default();
+            self.scan_poses = ScanPoseLog::default();
         }
         let goes_on = track.tracking == Tracking::Ok && bent.is_none() && !track.relocalised;
         let goes_on = goes_on && matches!(correction, Some(Correction::Applied { .. }));
@@ -316,9 +320,9 @@ impl Robot {
             let is_drawn = self.see(scan);
             if is_drawn
                 && track.tracking.is_located()
-                && self.drawn.note(stamp, track.visual_from_camera, || self.mapper.kept_stamps())
+                && self.scan_poses.note(stamp, track.visual_from_camera, || self.mapper.kept_stamps())
             {
-                self.lookout.iter_mut().for_each(|lookout| lookout.forget_frames(&self.drawn));
+                self.perception.iter_mut().for_each(|perception| perception.forget_frames(&self.scan_poses));
             }
         }
         // A grid that has not yet followed the visual map does not fit it.
@@ -331,7 +335,7 @@ impl Robot {
     /// What stands seems to have moved.
     fn forget_traffic(&mut self) {
         self.traffic.clear();
-        self.latest.lately.clear();
+        self.latest.unconfirmed.clear();
         self.latest.forget_movers();
     }
 
@@ -345,7 +349,7 @@ impl Robot {
         }
         self.watch_traffic(&scan);
         // One that shows nothing does not make safety forget what the last one showed.
-        if self.latest.eye.note(&scan) || self.latest.eye.seen().is_none() {
+        if self.latest.camera_health.note(&scan) || self.latest.camera_health.seen().is_none() {
             self.latest.scan_odometry = self.odometry_at(scan.stamp()).map(|odometer| odometer.pose);
             self.latest.scan = Some(scan);
         }
@@ -358,15 +362,15 @@ impl Robot {
         if !self.knows_its_place(now) {
             // What came lately is where the map is, and expires.
             let here = self.localizer.estimate().pose.position();
-            self.latest.lately = self.traffic.unconfirmed_hits(now, here, NEAR_BY);
+            self.latest.unconfirmed = self.traffic.unconfirmed_hits(now, here, NEAR_BY);
             return self.latest.forget_movers();
         }
         let Ok(pose) = self.localizer.pose_at(now) else { return };
         let (times, traffic, latest) = (&mut self.times, &mut self.traffic, &mut self.latest);
-        times.measure(Stage::Traffic, || {
+        times.measure(Stage::DynamicObstacles, || {
             traffic.add_scan(pose, scan);
             latest.movers = traffic.moving_obstacles(now);
-            latest.lately = traffic.unconfirmed_hits(now, pose.position(), NEAR_BY);
+            latest.unconfirmed = traffic.unconfirmed_hits(now, pose.position(), NEAR_BY);
             latest.still = (!latest.movers.is_empty()).then(|| traffic.static_grid(self.mapper.grid()));
         });
     }
@@ -405,16 +409,16 @@ impl Robot {
 
     /// The visual map was bent: the grid is redrawn from where its scans were taken by now.
     fn follow_the_visual_map(&mut self, trajectory: &[(Stamp, Pose3)]) {
-        let mut drawn = std::mem::take(&mut self.drawn);
-        let moved = drawn.follow(trajectory, |pose| self.visual_base(pose));
-        self.drawn = drawn;
+        let mut scan_poses = std::mem::take(&mut self.scan_poses);
+        let moved = scan_poses.follow(trajectory, |pose| self.visual_base(pose));
+        self.scan_poses = scan_poses;
         let bent = self.times.measure(Stage::Mapping, || {
             self.mapper.correct(|stamp, pose| moved.get(&stamp).map_or(pose, |moved| *moved * pose))
         });
         if bent > 0 {
             self.redrawn_within = REDRAWING.1;
             // What was looked for in the old one is looked for anew.
-            self.lookout.iter_mut().for_each(|lookout| lookout.whereabouts.end());
+            self.perception.iter_mut().for_each(|perception| perception.global_localization.end());
         }
     }
 
@@ -441,7 +445,7 @@ impl Robot {
 
     /// The visual tracker with its landmark map; none while it looks in the background.
     pub fn slam(&self) -> Option<&RgbdSlam> {
-        self.lookout.as_ref().map(|lookout| lookout.slam())
+        self.perception.as_ref().map(|perception| perception.slam())
     }
 
     /// The visual tracker's frame in the map.
@@ -451,23 +455,23 @@ impl Robot {
 
     /// The tasks of the mission that have ended; nothing is told while a decision is made in the background.
     pub fn tasks_ended(&self) -> &[TaskRecord] {
-        self.captain.as_ref().map_or(&[], |captain| captain.supervisor.records())
+        self.decision_worker.as_ref().map_or(&[], |decision_worker| decision_worker.executor.records())
     }
 
     /// What turns and straight moves did for the goal of now, or the last one they were asked about; none while a decision is
     /// made in the background.
-    pub fn docking(&self) -> Option<&LastStageReport> {
-        Some(self.captain.as_ref()?.navigator.docking())
+    pub fn docking(&self) -> Option<&GoalApproachReport> {
+        Some(self.decision_worker.as_ref()?.navigator.docking())
     }
 
     /// The task at hand; none while a decision is made in the background.
     pub fn task(&self) -> Option<Task> {
-        self.captain.as_ref()?.supervisor.task()
+        self.decision_worker.as_ref()?.executor.task()
     }
 
     /// The newest plan; none while a decision is made in the background.
     pub fn plan(&self) -> Option<&PlanResult> {
-        self.captain.as_ref()?.navigator.plan()
+        self.decision_worker.as_ref()?.navigator.plan()
     }
 
     /// The newest scan.

@@ -1,3 +1,5 @@
+//! The rates of the stages.
+
 use serde::{Deserialize, Serialize};
 use trundle_core::{Invalid, Stamp, require_in};
 

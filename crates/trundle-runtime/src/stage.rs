@@ -1,3 +1,5 @@
+//! The stages of a step and their wall-clock times.
+
 use crate::histogram::Histogram;
 use serde::Serialize;
 use std::time::{Duration, Instant};
@@ -15,7 +17,7 @@ pub enum Stage {
     /// Depth image to scan.
     Scan,
     /// Visual maps to bytes, for a restart.
-    Saving,
+    CheckpointSchedule,
     /// Scan against map.
     ScanMatch,
     /// A robot that does not know its place: its scans against the whole map.
@@ -25,7 +27,7 @@ pub enum Stage {
     /// Scan into the grid.
     Mapping,
     /// Who moves near by.
-    Traffic,
+    DynamicObstacles,
     /// Mission to goal: where to go or to look next.
     Supervision,
     /// Grid to path, curve and trajectory.
@@ -43,12 +45,12 @@ impl Stage {
         Self::Decoding,
         Self::Slam,
         Self::Scan,
-        Self::Saving,
+        Self::CheckpointSchedule,
         Self::ScanMatch,
         Self::Search,
         Self::Localization,
         Self::Mapping,
-        Self::Traffic,
+        Self::DynamicObstacles,
         Self::Supervision,
         Self::Planning,
         Self::Control,
@@ -62,12 +64,12 @@ impl Stage {
             Self::Decoding => "decoding",
             Self::Slam => "slam",
             Self::Scan => "scan",
-            Self::Saving => "saving",
+            Self::CheckpointSchedule => "saving",
             Self::ScanMatch => "scan_match",
             Self::Search => "search",
             Self::Localization => "localization",
             Self::Mapping => "mapping",
-            Self::Traffic => "traffic",
+            Self::DynamicObstacles => "traffic",
             Self::Supervision => "supervision",
             Self::Planning => "planning",
             Self::Control => "control",

@@ -6,7 +6,7 @@ mod steering;
 mod terminal;
 
 use crate::console;
-use page::{Page, Sight};
+use page::{Page, RangeSource};
 use server::Server;
 use steering::Steering;
 use terminal::RawTerminal;
@@ -69,7 +69,7 @@ impl Hand {
     /// Shows on the page what the robot sees.
     pub fn show(&self, image: &RgbdImage, robot: &Simulator) {
         if let Some(live) = &self.live {
-            live.server.page().show(Sight::of(image, robot, self.steering.twist()));
+            live.server.page().show(RangeSource::of(image, robot, self.steering.twist()));
         }
     }
 

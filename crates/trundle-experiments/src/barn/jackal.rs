@@ -7,7 +7,7 @@ use trundle_core::{DifferentialDrive, DriveLimits, Invalid};
 use trundle_localization::OdometryConfig;
 use trundle_mapping::MapperConfig;
 use trundle_planning::{ClearanceCostConfig, PlannerConfig, TimingConfig};
-use trundle_runtime::{RobotConfig, Schedule, Sight, SupervisorConfig};
+use trundle_runtime::{MissionExecutorConfig, RangeSource, RobotConfig, Schedule};
 use trundle_sim::{FaultSchedule, SimConfig};
 
 /// Half of the robot's length and width, m.
@@ -21,7 +21,7 @@ pub fn robot() -> RobotConfig {
     RobotConfig {
         footprint_radius: x.hypot(y),
         footprint: Some(vec![[x, y], [-x, y], [-x, -y], [x, -y]]),
-        sight: Sight::Laser,
+        sight: RangeSource::Laser,
         drive: DifferentialDrive { wheel_radius: 0.098, wheelbase: 0.3765, ..DifferentialDrive::KOBUKI },
         limits: DriveLimits {
             wheel_speed: 2.4,
@@ -49,7 +49,7 @@ pub fn robot() -> RobotConfig {
             ..SafetyConfig::default()
         },
         // Long enough to measure the gyro's bias; the laser's first scan is a first view.
-        supervisor: SupervisorConfig { opening: 0.6, ..SupervisorConfig::default() },
+        supervisor: MissionExecutorConfig { opening: 0.6, ..MissionExecutorConfig::default() },
         ..RobotConfig::default()
     }
 }

@@ -10,7 +10,7 @@ use trundle_app::real_time::{BackgroundBody, BodyTiming, MemoryUsage, RealTimePa
 use trundle_core::{RobotBody, SensorEvent, Twist2};
 use trundle_io::EncodedEvent;
 use trundle_runtime::Histogram;
-use trundle_runtime::real_time::{InboxDoor, Place, Post};
+use trundle_runtime::real_time::{InboxSender, Post, ThreadPlacement};
 use trundle_sim::{CameraAside, Shot, Simulator};
 
 /// The simulator in real time beside the robot: a thread for the base, one for the camera.
@@ -25,7 +25,7 @@ pub struct SimulatedRealTimeBody {
 /// What the two threads share.
 #[derive(Clone)]
 struct Shared {
-    events: InboxDoor<TimedEvent>,
+    events: InboxSender<TimedEvent>,
     stop: Arc<AtomicBool>,
     not_taken: Arc<AtomicU64>,
     /// What the body has touched by now.
@@ -39,9 +39,13 @@ impl SimulatedRealTimeBody {
     ///
     /// # Errors
     /// When the system refuses a thread.
-    pub fn start(mut body: Simulator, events: InboxDoor<TimedEvent>, place: Place) -> Result<Self, AppError> {
+    pub fn start(
+        mut body: Simulator,
+        events: InboxSender<TimedEvent>,
+        place: ThreadPlacement,
+    ) -> Result<Self, AppError> {
         // The base is hardware to the robot: it keeps its time whatever the camera does.
-        let pools = [pool("camera", place)?, pool("base", Place { is_first: true, ..place })?];
+        let pools = [pool("camera", place)?, pool("base", ThreadPlacement { is_first: true, ..place })?];
         let stop = Arc::<AtomicBool>::default();
         let contacts = Arc::<AtomicU32>::default();
         let shared = Shared {
@@ -86,7 +90,7 @@ impl BackgroundBody for SimulatedRealTimeBody {
     }
 }
 
-fn pool(name: &'static str, place: Place) -> Result<ThreadPool, AppError> {
+fn pool(name: &'static str, place: ThreadPlacement) -> Result<ThreadPool, AppError> {
     let pool = ThreadPoolBuilder::new()
         .num_threads(1)
         .thread_name(move |_| name.to_owned())
@@ -135,7 +139,7 @@ fn live(
     })
 }
 
-fn send(event: &SensorEvent, events: &InboxDoor<TimedEvent>) -> Result<(), AppError> {
+fn send(event: &SensorEvent, events: &InboxSender<TimedEvent>) -> Result<(), AppError> {
     let is_image = matches!(event, SensorEvent::Rgbd(_));
     let event = EncodedEvent::encode(event).map_err(|error| AppError::Input(error.to_string()))?;
     let arrived = TimedEvent { event, at: Instant::now() };

@@ -1,7 +1,9 @@
-use super::pulse::Pulse;
+//! The inbox of the control thread: events and answers by urgency.
+
+use super::loop_timer::LoopTimer;
 use crate::{
     Histogram,
-    job::{Answer, Helper},
+    workers::job::{Answer, Worker},
 };
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -16,13 +18,13 @@ pub struct Inbox<E> {
     receiver: Receiver<Post<E>>,
     urgent: VecDeque<E>,
     patient: VecDeque<Input<E>>,
-    door: InboxDoor<E>,
+    door: InboxSender<E>,
     lengths: Histogram,
 }
 
 /// Where others put in what the control thread shall get.
 #[derive(Debug)]
-pub struct InboxDoor<E> {
+pub struct InboxSender<E> {
     sender: SyncSender<Post<E>>,
     refused: Arc<AtomicU64>,
 }
@@ -47,13 +49,13 @@ pub enum Input<E> {
     Answer(Answer),
 }
 
-impl<E> Clone for InboxDoor<E> {
+impl<E> Clone for InboxSender<E> {
     fn clone(&self) -> Self {
         Self { sender: self.sender.clone(), refused: Arc::clone(&self.refused) }
     }
 }
 
-impl<E> InboxDoor<E> {
+impl<E> InboxSender<E> {
     /// Puts something in, without waiting: when the queue is full, because nobody has emptied it for seconds, it is refused and
     /// counted; false then, or when nobody is there any more.
     pub fn put(&self, post: Post<E>) -> bool {
@@ -77,7 +79,7 @@ impl<E> Inbox<E> {
     /// An empty one for at most `capacity` things.
     pub fn new(capacity: usize) -> Self {
         let (sender, receiver) = sync_channel(capacity);
-        let door = InboxDoor { sender, refused: Arc::default() };
+        let door = InboxSender { sender, refused: Arc::default() };
         Self {
             receiver,
             urgent: VecDeque::new(),
@@ -88,12 +90,12 @@ impl<E> Inbox<E> {
     }
 
     /// A way in.
-    pub fn door(&self) -> InboxDoor<E> {
+    pub fn door(&self) -> InboxSender<E> {
         self.door.clone()
     }
 
     /// The next thing; none when nothing has come for `patience`. Things of a kind come in the order in which they were put in.
-    pub fn next(&mut self, pulse: &Pulse, patience: Duration) -> Option<Input<E>> {
+    pub fn next(&mut self, pulse: &LoopTimer, patience: Duration) -> Option<Input<E>> {
         let start = Instant::now();
         loop {
             self.empty();
@@ -114,12 +116,12 @@ impl<E> Inbox<E> {
     }
 
     /// The next answer of a helper, whatever else is there: that is let go. None when it does not come within `patience`.
-    pub fn next_answer(&mut self, helper: Helper, patience: Duration) -> Option<Answer> {
+    pub fn next_answer(&mut self, helper: Worker, patience: Duration) -> Option<Answer> {
         let start = Instant::now();
         loop {
             self.urgent.clear();
             let is_it =
-                |input: &Input<E>| matches!(input, Input::Answer(answer) if answer.helper() == helper);
+                |input: &Input<E>| matches!(input, Input::Answer(answer) if answer.worker() == helper);
             if let Some(at) = self.patient.iter().position(is_it)
                 && let Some(Input::Answer(answer)) = self.patient.remove(at)
             {
@@ -158,10 +160,10 @@ impl<E> Inbox<E> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::PulseConfig;
+    use super::super::LoopTimerConfig;
     use super::*;
 
-    fn events(inbox: &mut Inbox<u32>, pulse: &Pulse) -> Vec<u32> {
+    fn events(inbox: &mut Inbox<u32>, pulse: &LoopTimer) -> Vec<u32> {
         let mut events = Vec::new();
         while let Some(Input::Event(event)) = inbox.next(pulse, Duration::ZERO) {
             events.push(event);
@@ -176,7 +178,7 @@ mod tests {
         for post in [Post::Patient(1), Post::Urgent(2), Post::Patient(3), Post::Urgent(4)] {
             assert!(door.put(post));
         }
-        assert_eq!(events(&mut inbox, &Pulse::new(PulseConfig::default())), [2, 4, 1, 3]);
+        assert_eq!(events(&mut inbox, &LoopTimer::new(LoopTimerConfig::default())), [2, 4, 1, 3]);
     }
 
     #[test]
@@ -186,6 +188,6 @@ mod tests {
         let put: Vec<bool> = (0..4).map(|i| door.put(Post::Urgent(i))).collect();
         assert_eq!(put, [true, true, false, false]);
         assert_eq!(inbox.refused(), 2);
-        assert_eq!(events(&mut inbox, &Pulse::new(PulseConfig::default())), [0, 1]);
+        assert_eq!(events(&mut inbox, &LoopTimer::new(LoopTimerConfig::default())), [0, 1]);
     }
 }

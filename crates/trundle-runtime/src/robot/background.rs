@@ -1,15 +1,15 @@
 //! Long work given out, and its answers taken up.
 
 use super::Robot;
+use crate::world_state::{OwnedWorldState, WorldState};
 use crate::{
-    captain::{Around, Captain},
-    helm::Helm,
-    job::{Answer, Job, Outcome, Work},
     lazy_image::LazyImage,
     mission::MissionState,
-    navigator::Surroundings,
     report::StepReport,
     stage::Stage,
+    workers::decision_worker::DecisionWorker,
+    workers::fallback_controller::FallbackController,
+    workers::job::{Answer, Job, Outcome, Work},
 };
 use trundle_core::{Stamp, Twist2};
 
@@ -20,7 +20,7 @@ pub(super) struct Background {
     /// The captain's job, not yet fetched.
     decision: Option<Job>,
     /// While the captain thinks.
-    helm: Option<Helm>,
+    fallback: Option<FallbackController>,
     /// A mission given meanwhile.
     orders: Option<MissionState>,
     /// What bumper and cliff sensors said meanwhile.
@@ -43,23 +43,28 @@ impl Background {
     }
 
     /// Whether the next decision is to be made here.
-    pub(super) fn is_for(&self, captain: &Captain, s: &Surroundings<'_>) -> bool {
-        self.is_used && captain.may_take_long(s)
+    pub(super) fn is_for(&self, decision_worker: &DecisionWorker, s: &WorldState<'_>) -> bool {
+        self.is_used && decision_worker.may_take_long(s)
     }
 
     /// A control step while the captain thinks, which is from now on where one is given.
-    pub(super) fn steer(&mut self, captain: Option<Box<Captain>>, s: &Surroundings<'_>) -> Option<Twist2> {
-        if let Some(captain) = captain {
-            self.helm = Some(captain.helm());
-            self.decision = Some(Job(Work::Decide { captain, around: Box::new(Around::from(s)) }));
+    pub(super) fn steer(
+        &mut self,
+        decision_worker: Option<Box<DecisionWorker>>,
+        s: &WorldState<'_>,
+    ) -> Option<Twist2> {
+        if let Some(decision_worker) = decision_worker {
+            self.fallback = Some(decision_worker.fallback());
+            self.decision =
+                Some(Job(Work::Decide { decision_worker, around: Box::new(OwnedWorldState::from(s)) }));
         }
-        self.helm.as_mut().map(|helm| helm.step(s))
+        self.fallback.as_mut().map(|fallback| fallback.step(s))
     }
 
     /// A mission for the captain when it is back; to stand is done at once.
-    pub(super) fn give_orders(&mut self, mission: &MissionState) {
-        if let (true, Some(helm)) = (mission.left.tasks().is_empty(), &mut self.helm) {
-            helm.wanted = Some(Twist2::ZERO);
+    pub(super) fn set_mission(&mut self, mission: &MissionState) {
+        if let (true, Some(fallback)) = (mission.left.tasks().is_empty(), &mut self.fallback) {
+            fallback.wanted = Some(Twist2::ZERO);
         }
         self.orders = Some(mission.clone());
     }
@@ -75,14 +80,14 @@ impl Robot {
     /// The robot with its long work given out: fetch it with [`Robot::next_job`], run it anywhere, give the answers to
     /// [`Robot::take_up`].
     #[must_use]
-    pub fn deferring(mut self) -> Self {
+    pub fn with_background_jobs(mut self) -> Self {
         self.background.is_used = true;
         self
     }
 
     /// An image to be looked at in the background. Of those that arrive while one is looked at only the newest is kept: the
     /// others are dropped, see [`Robot::dropped_images`]. A robot that does not defer looks at it at once.
-    pub fn leave_image(&mut self, image: LazyImage) -> StepReport {
+    pub fn queue_image(&mut self, image: LazyImage) -> StepReport {
         let mut report = StepReport::default();
         if self.background.is_used() {
             self.background.leave(image);
@@ -102,40 +107,40 @@ impl Robot {
         if let Some(job) = self.background.decision.take() {
             return Some(job);
         }
-        self.lookout.as_ref()?;
+        self.perception.as_ref()?;
         let image = self.background.waiting.take()?;
         let Some(odometer) = self.odometry_at(image.stamp()) else {
             // Before the wheels have said anything an image is of no use.
             self.background.dropped.push(image.stamp());
             return None;
         };
-        let lookout = self.lookout.take()?;
+        let perception = self.perception.take()?;
         let odometer = Box::new(odometer);
-        Some(Job(Work::Look { lookout, image, odometer }))
+        Some(Job(Work::Look { perception, image, odometer }))
     }
 
     /// Takes up what a job came to, between two events.
     ///
     /// The report has a twist where the decision is for the newest reading of the wheels; a later one has been overtaken, and
     /// the next control step acts by it.
-    pub fn take_up(&mut self, answer: Answer) -> StepReport {
+    pub fn apply_answer(&mut self, answer: Answer) -> StepReport {
         let mut report = StepReport::default();
         self.times.add(&answer.times);
         match answer.result {
-            Outcome::Looked { lookout, stamp, sighting } => {
-                self.lookout = Some(lookout);
+            Outcome::Looked { perception, stamp, sighting } => {
+                self.perception = Some(perception);
                 report.image = Some(stamp);
                 match sighting {
-                    Ok(Some(sighting)) => self.take_in(*sighting, &mut report),
+                    Ok(Some(sighting)) => self.apply_perception(*sighting, &mut report),
                     Ok(None) => self.latest.frozen += 1,
                     Err(problem) => report.broken_image = Some(problem),
                 }
             }
-            Outcome::Decided { captain, decision, asked } => {
+            Outcome::Decided { decision_worker, decision, asked } => {
                 let is_newest = self.latest.odometry.is_some_and(|odometry| odometry.stamp == asked);
                 report.twist = (is_newest && self.background.felt.is_empty()).then_some(decision.twist);
                 report.twist.into_iter().for_each(|twist| self.odometry.set_command(twist));
-                self.take_back(captain, report.twist);
+                self.take_back(decision_worker, report.twist);
                 report.replanned = decision.replanned;
             }
         }
@@ -149,49 +154,49 @@ impl Robot {
     }
 
     /// Drops the image that waits to be looked at, if there is one: the run is over.
-    pub fn drop_waiting_image(&mut self) {
+    pub fn drop_queued_image(&mut self) {
         let waiting = self.background.waiting.take();
         self.background.dropped.extend(waiting.map(|image| image.stamp()));
     }
 
     /// The captain is back: it learns what happened meanwhile, and what the base was asked for last.
-    fn take_back(&mut self, mut captain: Box<Captain>, sent: Option<Twist2>) {
-        let helm = self.background.helm.take();
-        if let Some(sent) = sent.or(helm.map(|helm| helm.sent)) {
-            captain.navigator.sent(sent);
+    fn take_back(&mut self, mut decision_worker: Box<DecisionWorker>, sent: Option<Twist2>) {
+        let fallback = self.background.fallback.take();
+        if let Some(sent) = sent.or(fallback.map(|fallback| fallback.sent)) {
+            decision_worker.navigator.sent(sent);
         }
         for felt in self.background.felt.drain(..) {
             match felt {
-                Felt::Touched(pressed) => captain.navigator.touch(pressed),
-                Felt::OverEdge(over_edge) => captain.navigator.cliff(over_edge),
+                Felt::Touched(pressed) => decision_worker.navigator.touch(pressed),
+                Felt::OverEdge(over_edge) => decision_worker.navigator.cliff(over_edge),
             }
         }
         if let Some(mission) = self.background.orders.take() {
-            captain.begin(&mission);
+            decision_worker.begin(&mission);
         }
-        self.latest.mission = captain.supervisor.mission();
-        self.captain = Some(captain);
+        self.latest.mission = decision_worker.executor.mission();
+        self.decision_worker = Some(decision_worker);
     }
 
     /// What the bumper says.
     pub(super) fn tell_touch(&mut self, pressed: bool) {
-        match &mut self.captain {
-            Some(captain) => captain.navigator.touch(pressed),
+        match &mut self.decision_worker {
+            Some(decision_worker) => decision_worker.navigator.touch(pressed),
             None => self.background.felt.push(Felt::Touched(pressed)),
         }
-        if let Some(helm) = &mut self.background.helm {
-            helm.touched = pressed;
+        if let Some(fallback) = &mut self.background.fallback {
+            fallback.touched = pressed;
         }
     }
 
     /// What the cliff sensors say.
     pub(super) fn cliff(&mut self, over_edge: bool) {
-        match &mut self.captain {
-            Some(captain) => captain.navigator.cliff(over_edge),
+        match &mut self.decision_worker {
+            Some(decision_worker) => decision_worker.navigator.cliff(over_edge),
             None => self.background.felt.push(Felt::OverEdge(over_edge)),
         }
-        if let Some(helm) = &mut self.background.helm {
-            helm.over_edge = over_edge;
+        if let Some(fallback) = &mut self.background.fallback {
+            fallback.over_edge = over_edge;
         }
     }
 }

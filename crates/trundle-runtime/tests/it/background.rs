@@ -2,7 +2,7 @@
 
 use crate::robot::{Base, robot, wall};
 use trundle_core::{Pose2, SensorEvent, Stamp, Touch, Twist2, WheelTicks};
-use trundle_runtime::{Answer, DriveState, Helper, Job, LazyImage, Robot, StepReport};
+use trundle_runtime::{Answer, DriveState, Job, LazyImage, Robot, StepReport, Worker};
 
 /// The goal of all these drives.
 const GOAL: Pose2 = Pose2 { x: 1.5, y: 0.0, theta: 0.0 };
@@ -18,13 +18,13 @@ fn live(
     let (mut reports, mut base) = (Vec::new(), Base::default());
     for i in 0..(seconds * 50.0) as i64 {
         let stamp = Stamp::from_nanos(i * 20_000_000);
-        let [gyro, wheels] = base.roll(stamp);
+        let [gyro, wheels] = base.on_wheels(stamp);
         let mut step = robot.step(&gyro);
         step = StepReport { twist: None, ..step };
         for event in [wheels, wall(stamp, base.to_wall())] {
             let report = match event {
                 SensorEvent::Rgbd(_) if i % 5 != 0 || stamp.as_secs() >= until => continue,
-                SensorEvent::Rgbd(image) => robot.leave_image(LazyImage::from(image)),
+                SensorEvent::Rgbd(image) => robot.queue_image(LazyImage::from(image)),
                 event => robot.step(&event),
             };
             step = StepReport { twist: report.twist.or(step.twist), ..report };
@@ -35,7 +35,7 @@ fn live(
                     break;
                 }
                 for answer in answers {
-                    let report = robot.take_up(answer);
+                    let report = robot.apply_answer(answer);
                     step = StepReport { twist: report.twist.or(step.twist), ..report };
                     jobs.extend(std::iter::from_fn(|| robot.next_job()));
                 }
@@ -51,8 +51,8 @@ fn at_once(_now: Stamp, jobs: Vec<Job>) -> Vec<Answer> {
     jobs.into_iter().map(Job::run).collect()
 }
 
-fn deferring() -> Robot {
-    robot(GOAL).deferring()
+fn with_background_jobs() -> Robot {
+    robot(GOAL).with_background_jobs()
 }
 
 /// Jobs done so long after they were given, s, by helper.
@@ -60,7 +60,7 @@ fn after(look: f64, think: f64) -> impl FnMut(Stamp, Vec<Job>) -> Vec<Answer> {
     let mut open: Vec<(Stamp, Job)> = Vec::new();
     move |now, jobs| {
         for job in jobs {
-            let takes = if job.helper() == Helper::Lookout { look } else { think };
+            let takes = if job.worker() == Worker::Perception { look } else { think };
             open.push((now.after(takes), job));
         }
         let (ready, rest): (Vec<_>, Vec<_>) = open.drain(..).partition(|(due, _)| *due <= now);
@@ -79,7 +79,7 @@ fn work_done_at_once_is_work_done_within_the_step() {
         assert!(jobs.is_empty(), "a robot that does not defer gives nothing out");
         Vec::new()
     });
-    let mut robot = deferring();
+    let mut robot = with_background_jobs();
     let beside = live(&mut robot, 4.0, 3.0, at_once);
     assert_eq!(twists(&within), twists(&beside));
     assert!(within.iter().zip(&beside).all(|(a, b)| a.state == b.state && a.estimate == b.estimate));
@@ -90,7 +90,7 @@ fn work_done_at_once_is_work_done_within_the_step() {
 #[test]
 fn answers_in_the_same_places_give_the_same_reports() {
     let run = || {
-        let mut robot = deferring();
+        let mut robot = with_background_jobs();
         let reports = live(&mut robot, 4.0, 4.0, after(0.13, 0.07));
         (twists(&reports), robot.dropped_images().to_vec())
     };
@@ -100,12 +100,12 @@ fn answers_in_the_same_places_give_the_same_reports() {
 
 #[test]
 fn of_images_that_nobody_has_time_for_the_newest_is_kept() {
-    let mut robot = deferring();
+    let mut robot = with_background_jobs();
     // Images at 0, 0.1, ... 0.9 s; that of 0 is looked at until 0.52 s, then that of 0.5 until 1.04 s.
     live(&mut robot, 1.0, 1.0, after(0.52, 0.0));
     let dropped: Vec<i64> = robot.dropped_images().iter().map(|stamp| stamp.nanos / 1_000_000).collect();
     assert_eq!(dropped, [100, 200, 300, 400, 600, 700, 800]);
-    robot.drop_waiting_image();
+    robot.drop_queued_image();
     assert_eq!(robot.dropped_images().last().unwrap().nanos, 900_000_000);
 }
 
@@ -113,12 +113,12 @@ fn of_images_that_nobody_has_time_for_the_newest_is_kept() {
 fn a_lookout_that_does_not_come_back_stops_the_robot() {
     let mut looks = 0;
     let mut lost = Vec::new();
-    let reports = live(&mut deferring(), 6.0, 6.0, |_, jobs| {
+    let reports = live(&mut with_background_jobs(), 6.0, 6.0, |_, jobs| {
         let mut answers = Vec::new();
         for job in jobs {
-            looks += u32::from(job.helper() == Helper::Lookout);
+            looks += u32::from(job.worker() == Worker::Perception);
             // From the 25th on nobody comes back.
-            if job.helper() == Helper::Lookout && looks >= 25 {
+            if job.worker() == Worker::Perception && looks >= 25 {
                 lost.push(job)
             } else {
                 answers.push(job.run())
@@ -135,12 +135,12 @@ fn a_lookout_that_does_not_come_back_stops_the_robot() {
 #[test]
 fn a_captain_who_thinks_for_long_leaves_a_robot_that_brakes_for_the_bumper() {
     let mut lost = Vec::new();
-    let mut robot = deferring();
+    let mut robot = with_background_jobs();
     let drives = |report: &StepReport| report.twist.is_some_and(|twist| twist.v > 0.05);
     let reports = live(&mut robot, 2.6, 2.6, |now, jobs| {
         let mut answers = Vec::new();
         for job in jobs {
-            let is_gone = now.as_secs() > 2.4 && job.helper() == Helper::Captain;
+            let is_gone = now.as_secs() > 2.4 && job.worker() == Worker::Decision;
             if is_gone { lost.push(job) } else { answers.push(job.run()) }
         }
         answers
@@ -152,7 +152,7 @@ fn a_captain_who_thinks_for_long_leaves_a_robot_that_brakes_for_the_bumper() {
     let report = robot.step(&SensorEvent::Wheels(WheelTicks { stamp, left: 0, right: 0 }));
     assert_eq!(report.twist, Some(Twist2::ZERO));
     // Back again, the captain has heard of the bumper; what was decided half a second ago is not sent any more.
-    let report = robot.take_up(lost.remove(0).run());
+    let report = robot.apply_answer(lost.remove(0).run());
     assert_eq!(report.twist, None);
     let stamp = stamp.after(0.02);
     let report = robot.step(&SensorEvent::Wheels(WheelTicks { stamp, left: 0, right: 0 }));
@@ -162,11 +162,11 @@ fn a_captain_who_thinks_for_long_leaves_a_robot_that_brakes_for_the_bumper() {
 
 #[test]
 fn an_image_that_is_none_is_said_to_be_none() {
-    let mut robot = deferring();
+    let mut robot = with_background_jobs();
     robot.step(&SensorEvent::Wheels(WheelTicks { stamp: Stamp::default(), left: 0, right: 0 }));
-    robot.leave_image(LazyImage::new(Stamp::default(), || Err("no JPEG".to_owned())));
+    robot.queue_image(LazyImage::new(Stamp::default(), || Err("no JPEG".to_owned())));
     let mut jobs = std::iter::from_fn(|| robot.next_job());
-    let job = jobs.find(|job| job.helper() == Helper::Lookout).unwrap();
-    let report = robot.take_up(job.run());
+    let job = jobs.find(|job| job.worker() == Worker::Perception).unwrap();
+    let report = robot.apply_answer(job.run());
     assert_eq!((report.broken_image.as_deref(), report.image), (Some("no JPEG"), Some(Stamp::default())));
 }

@@ -3,15 +3,17 @@
 use crate::robot::{robot, wall};
 use std::time::Duration;
 use trundle_core::{GyroRate, Pose2, RgbdImage, SensorEvent, Stamp, Twist2, WheelTicks};
-use trundle_runtime::real_time::{Crew, Inbox, Input, Place, Post, Pulse, PulseConfig};
-use trundle_runtime::{Helper, Job, LazyImage, Robot};
+use trundle_runtime::real_time::{
+    Inbox, Input, LoopTimer, LoopTimerConfig, Post, ThreadPlacement, WorkerThreads,
+};
+use trundle_runtime::{Job, LazyImage, Robot, Worker};
 
 /// What the robot was fed, in order.
 #[derive(Debug, Clone)]
 enum Fed {
     Event(SensorEvent),
     Image(RgbdImage),
-    Answer(Helper),
+    Answer(Worker),
 }
 
 fn events(seconds: i64) -> Vec<SensorEvent> {
@@ -28,26 +30,28 @@ fn events(seconds: i64) -> Vec<SensorEvent> {
 fn live(robot: &mut Robot) -> (Vec<Fed>, Vec<Twist2>) {
     let mut inbox: Inbox<SensorEvent> = Inbox::new(100_000);
     let door = inbox.door();
-    let crew = Crew::start(Place::default(), move |answer| _ = door.put(Post::Answer(answer))).unwrap();
+    let crew =
+        WorkerThreads::start(ThreadPlacement::default(), move |answer| _ = door.put(Post::Answer(answer)))
+            .unwrap();
     for event in events(4) {
         let is_image = matches!(event, SensorEvent::Rgbd(_));
         inbox.door().put(if is_image { Post::Patient(event) } else { Post::Urgent(event) });
     }
-    let pulse = Pulse::new(PulseConfig::default());
+    let pulse = LoopTimer::new(LoopTimerConfig::default());
     let (mut fed, mut twists) = (Vec::new(), Vec::new());
     while let Some(input) = inbox.next(&pulse, Duration::from_secs(1)) {
         let report = match input {
             Input::Event(SensorEvent::Rgbd(image)) => {
                 fed.push(Fed::Image(image.clone()));
-                robot.leave_image(LazyImage::from(image))
+                robot.queue_image(LazyImage::from(image))
             }
             Input::Event(event) => {
                 fed.push(Fed::Event(event.clone()));
                 robot.step(&event)
             }
             Input::Answer(answer) => {
-                fed.push(Fed::Answer(answer.helper()));
-                robot.take_up(answer)
+                fed.push(Fed::Answer(answer.worker()));
+                robot.apply_answer(answer)
             }
         };
         twists.extend(report.twist);
@@ -55,7 +59,7 @@ fn live(robot: &mut Robot) -> (Vec<Fed>, Vec<Twist2>) {
             crew.give(job);
         }
     }
-    assert_eq!(crew.dismiss().len(), Helper::ALL.len());
+    assert_eq!(crew.dismiss().len(), Worker::ALL.len());
     (fed, twists)
 }
 
@@ -65,10 +69,10 @@ fn again(robot: &mut Robot, fed: Vec<Fed>) -> Vec<Twist2> {
     for fed in fed {
         let report = match fed {
             Fed::Event(event) => robot.step(&event),
-            Fed::Image(image) => robot.leave_image(LazyImage::from(image)),
+            Fed::Image(image) => robot.queue_image(LazyImage::from(image)),
             Fed::Answer(helper) => {
-                let at = jobs.iter().position(|job| job.helper() == helper).unwrap();
-                robot.take_up(jobs.remove(at).run())
+                let at = jobs.iter().position(|job| job.worker() == helper).unwrap();
+                robot.apply_answer(jobs.remove(at).run())
             }
         };
         twists.extend(report.twist);
@@ -79,11 +83,11 @@ fn again(robot: &mut Robot, fed: Vec<Fed>) -> Vec<Twist2> {
 
 #[test]
 fn what_threads_did_can_be_done_again_without_them() {
-    let robot = || robot(Pose2::new(1.0, 0.5, 1.0)).deferring();
+    let robot = || robot(Pose2::new(1.0, 0.5, 1.0)).with_background_jobs();
     let (mut first, mut second) = (robot(), robot());
     let (fed, twists) = live(&mut first);
-    assert!(fed.iter().any(|fed| matches!(fed, Fed::Answer(Helper::Lookout))));
-    assert!(fed.iter().any(|fed| matches!(fed, Fed::Answer(Helper::Captain))));
+    assert!(fed.iter().any(|fed| matches!(fed, Fed::Answer(Worker::Perception))));
+    assert!(fed.iter().any(|fed| matches!(fed, Fed::Answer(Worker::Decision))));
     assert_eq!(twists, again(&mut second, fed));
     assert_eq!(first.dropped_images(), second.dropped_images());
     assert_eq!(first.grid(), second.grid());

@@ -2,7 +2,9 @@ use trundle_core::{
     Beam, DepthImage, DifferentialDrive, GyroRate, Image, PinholeCamera, Pose2, RgbdImage, Scan, SensorEvent,
     Stamp, Touch, Twist2, Vector2, WheelTicks,
 };
-use trundle_runtime::{DriveState, Memory, MemoryError, Robot, RobotConfig, Sight, StepReport, Task};
+use trundle_runtime::{
+    Checkpoint, CheckpointError, DriveState, RangeSource, Robot, RobotConfig, StepReport, Task,
+};
 
 /// A wall of one colour across the view, `distance` m ahead of the base, and the floor before it, as the default mount sees them.
 pub fn wall(stamp: Stamp, distance: f64) -> SensorEvent {
@@ -31,7 +33,7 @@ pub struct Base {
 
 impl Base {
     /// A step of 20 ms on, to `stamp`: what gyro and wheels say.
-    pub fn roll(&mut self, stamp: Stamp) -> [SensorEvent; 2] {
+    pub fn on_wheels(&mut self, stamp: Stamp) -> [SensorEvent; 2] {
         let drive = DifferentialDrive::KOBUKI;
         let (left, right) = drive.wheel_speeds(self.told);
         self.pose = self.pose.advance(self.told, 0.02);
@@ -57,7 +59,7 @@ fn drive(robot: &mut Robot, base: &mut Base, (from, to): (f64, f64), until: f64)
     let steps = (from * 50.0) as i64..(to * 50.0) as i64;
     let step = |i: i64| {
         let stamp = Stamp::from_nanos(i * 20_000_000);
-        let [gyro, wheels] = base.roll(stamp);
+        let [gyro, wheels] = base.on_wheels(stamp);
         robot.step(&gyro);
         let report = robot.step(&wheels);
         base.tell(report.twist);
@@ -96,7 +98,7 @@ pub fn robot(goal: Pose2) -> Robot {
 fn a_blind_robot_does_not_move() {
     let reports = stand(&mut robot(Pose2::new(1.0, 0.0, 0.0)), 5.0, |_| None);
     assert!(reports.iter().all(|report| report.twist == Some(Twist2::ZERO)));
-    assert!(reports.iter().all(|report| report.state == DriveState::Mapping));
+    assert!(reports.iter().all(|report| report.state == DriveState::Initializing));
 }
 
 #[test]
@@ -166,7 +168,7 @@ fn the_same_events_give_the_same_reports() {
 }
 
 /// A laser's sweep of a wall across the view, `distance` m ahead.
-fn sweep(stamp: Stamp, distance: f64) -> SensorEvent {
+fn on_laser(stamp: Stamp, distance: f64) -> SensorEvent {
     let beam = |i: i32| {
         let range = distance / (f64::from(i).to_radians()).cos();
         if i.abs() < 80 && range < 10.0 { Beam::Hit { range } } else { Beam::Free { range: 10.0 } }
@@ -180,7 +182,7 @@ fn sweep(stamp: Stamp, distance: f64) -> SensorEvent {
 /// A robot of 0.5 x 0.4 m that sees with a laser.
 fn box_with_laser() -> RobotConfig {
     let footprint = Some(vec![[0.25, 0.2], [-0.25, 0.2], [-0.25, -0.2], [0.25, -0.2]]);
-    RobotConfig { sight: Sight::Laser, footprint, ..RobotConfig::default() }
+    RobotConfig { sight: RangeSource::Laser, footprint, ..RobotConfig::default() }
 }
 
 #[test]
@@ -188,7 +190,7 @@ fn with_a_laser_it_needs_no_camera_and_stops_when_the_scans_stop() {
     let mut robot = Robot::new(box_with_laser()).unwrap();
     robot.drive_to(Pose2::new(1.0, 0.0, 0.0)).unwrap();
     let until = Stamp::from_nanos(3_000_000_000);
-    let reports = stand(&mut robot, 5.0, |stamp| (stamp < until).then(|| sweep(stamp, 3.0)));
+    let reports = stand(&mut robot, 5.0, |stamp| (stamp < until).then(|| on_laser(stamp, 3.0)));
     assert!(reports[120..150].iter().any(|report| report.twist.unwrap().v > 0.05));
     let last = reports.last().unwrap();
     assert_eq!(last.twist, Some(Twist2::ZERO));
@@ -199,13 +201,13 @@ fn with_a_laser_it_needs_no_camera_and_stops_when_the_scans_stop() {
 #[test]
 fn a_camera_robot_takes_no_scan_for_sight() {
     let mut robot = robot(Pose2::new(1.0, 0.0, 0.0));
-    let reports = stand(&mut robot, 3.0, |stamp| Some(sweep(stamp, 3.0)));
+    let reports = stand(&mut robot, 3.0, |stamp| Some(on_laser(stamp, 3.0)));
     assert!(reports.iter().all(|report| report.twist == Some(Twist2::ZERO)));
 }
 
 #[test]
 fn a_robot_that_wakes_up_knows_the_rooms_and_not_its_place_and_draws_nothing_meanwhile() {
-    let mut first = robot(Pose2::new(1.0, 0.0, 0.0)).remembering();
+    let mut first = robot(Pose2::new(1.0, 0.0, 0.0)).with_checkpoints();
     let memory = (0..300)
         .filter_map(|i| {
             let stamp = Stamp::from_nanos(i * 50_000_000);
@@ -216,8 +218,8 @@ fn a_robot_that_wakes_up_knows_the_rooms_and_not_its_place_and_draws_nothing_mea
         .unwrap();
     assert_eq!(memory.grid.at(Vector2::new(3.01, 0.0)), trundle_core::Cell::Occupied);
     assert_eq!(memory.mission.left.tasks(), [Task::Go(Pose2::new(1.0, 0.0, 0.0))]);
-    let memory = Memory::from_bytes(&memory.to_bytes()).unwrap();
-    let mut second = Robot::waking(RobotConfig::default(), &memory).unwrap();
+    let memory = Checkpoint::from_bytes(&memory.to_bytes()).unwrap();
+    let mut second = Robot::resume(RobotConfig::default(), &memory).unwrap();
     assert_eq!(second.grid().at(Vector2::new(3.01, 0.0)), trundle_core::Cell::Occupied);
     let reports = stand(&mut second, 3.0, |stamp| Some(wall(stamp, 1.5)));
     assert!(
@@ -225,6 +227,6 @@ fn a_robot_that_wakes_up_knows_the_rooms_and_not_its_place_and_draws_nothing_mea
     );
     assert!(reports.iter().all(|report| report.twist.unwrap().v == 0.0));
     assert_ne!(second.grid().at(Vector2::new(1.51, 0.0)), trundle_core::Cell::Occupied);
-    let broken = Memory { visual: vec![1, 2, 3], ..memory };
-    assert!(matches!(Robot::waking(RobotConfig::default(), &broken), Err(MemoryError::Visual(_))));
+    let broken = Checkpoint { visual: vec![1, 2, 3], ..memory };
+    assert!(matches!(Robot::resume(RobotConfig::default(), &broken), Err(CheckpointError::Visual(_))));
 }

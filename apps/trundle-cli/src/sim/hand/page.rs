@@ -10,14 +10,14 @@ const TRAIL: f64 = 0.05;
 
 /// What the robot sees at one moment.
 #[derive(Debug, Clone)]
-pub struct Sight {
+pub struct RangeSource {
     image: RgbdImage,
     /// `world_from_base`.
     pose: Pose2,
     state: serde_json::Value,
 }
 
-impl Sight {
+impl RangeSource {
     /// What `robot`, asked to drive `twist`, sees in `image`.
     pub fn of(image: &RgbdImage, robot: &Simulator, twist: Twist2) -> Self {
         let pose = robot.true_pose();
@@ -48,7 +48,7 @@ pub struct Content {
 #[derive(Debug)]
 pub struct Page {
     grid: OccupancyGrid,
-    now: Mutex<Option<Arc<Sight>>>,
+    now: Mutex<Option<Arc<RangeSource>>>,
     trail: Mutex<Vec<Vector2>>,
 }
 
@@ -59,7 +59,7 @@ impl Page {
     }
 
     /// Shows something new.
-    pub fn show(&self, sight: Sight) {
+    pub fn show(&self, sight: RangeSource) {
         let place = sight.pose.position();
         let mut trail = self.trail.lock().unwrap_or_else(PoisonError::into_inner);
         if trail.last().is_none_or(|last| (last - place).norm() > TRAIL) {
@@ -108,7 +108,7 @@ mod tests {
         assert_eq!(page.get("/color.jpg"), None);
         let (color, depth) = (ColorImage::filled(64, 48, [9, 99, 199]), DepthImage::filled(64, 48, 2.0));
         let image = RgbdImage::new(Stamp::default(), color, depth).unwrap();
-        page.show(Sight { image, pose: Pose2::new(0.7, 0.7, 1.0), state: json!({"contacts": 0}) });
+        page.show(RangeSource { image, pose: Pose2::new(0.7, 0.7, 1.0), state: json!({"contacts": 0}) });
         let html = String::from_utf8(page.get("/").unwrap().bytes).unwrap();
         for path in ["/color.jpg", "/depth.png", "/map.png", "/state.json"] {
             assert!(html.contains(path), "{path} is not on the page");

@@ -1,0 +1,7 @@
+//! What the robot does next: the state machine from a goal and the world state to a twist.
+
+pub(crate) mod drive_state;
+pub(crate) mod navigator;
+pub(crate) mod progress_checker;
+pub(crate) mod sight_recovery;
+pub(crate) mod spin;

@@ -1,0 +1,351 @@
+//! The navigator: from a goal and the world state to a safe twist.
+
+mod camera_fov;
+mod commands;
+mod known_floor;
+mod long_decision;
+mod plans;
+mod viewpoint;
+mod visibility_constraint;
+
+pub(crate) use commands::safety_input;
+
+use crate::world_state::WorldState;
+use crate::{
+    behaviour::drive_state::DriveState,
+    behaviour::progress_checker::ProgressChecker,
+    behaviour::sight_recovery::SightRecovery,
+    behaviour::spin::Spin,
+    config::RobotConfig,
+    goal_approach::{GoalApproach, GoalApproachReport},
+    mission::executor_config::MissionExecutorConfig,
+    schedule::Ticker,
+    stage::{Stage, StageTimes},
+    workers::perception_worker::UNPLACED,
+};
+use camera_fov::CameraFov;
+use trundle_control::{FollowPhase, FollowReport, Follower, MotionSense, SafetyMonitor};
+use trundle_core::{Footprint, Invalid, Pose2, PoseEstimate, Stamp, Twist2, Vector2};
+use trundle_planning::{PlanResult, Planner};
+use viewpoint::Viewpoint;
+use visibility_constraint::VisibilityConstraint;
+
+/// What it decides.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Decision {
+    pub(crate) twist: Twist2,
+    pub(crate) replanned: bool,
+}
+
+/// What the robot is asked for, map frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Goal {
+    /// Stand exactly here.
+    Exact(Pose2),
+    /// Come here to see something: a hand's breadth off is as good, and what is blocked is not waited for.
+    Viewpoint(Pose2),
+    /// Turn on the spot once.
+    Spin,
+    /// Stand where you are.
+    Stay,
+}
+
+impl Goal {
+    fn pose(self) -> Option<Pose2> {
+        match self {
+            Self::Exact(pose) | Self::Viewpoint(pose) => Some(pose),
+            Self::Spin | Self::Stay => None,
+        }
+    }
+}
+
+/// From a goal and the surroundings to a safe twist: plans when it must, follows, settles, looks around when no way is
+/// known, waits, and asks the safety monitor last. Where it is tight, turns and straight moves settle instead.
+#[derive(Debug)]
+pub(crate) struct Navigator {
+    config: MissionExecutorConfig,
+    planner: Planner,
+    /// What a camera sees; none where a laser sees all.
+    view: Option<CameraFov>,
+    follower: Follower,
+    goal_approach: GoalApproach,
+    safety: SafetyMonitor,
+    check_due: Ticker,
+    improve_due: Ticker,
+    goal: Goal,
+    plan: Option<Box<PlanResult>>,
+    state: DriveState,
+    touched: bool,
+    /// Since the goal was taken up.
+    touches: u32,
+    over_edge: bool,
+    started: Option<Stamp>,
+    held_since: Option<Stamp>,
+    look: Spin,
+    sight_recovery: SightRecovery,
+    /// Where the way to the goal ends, when there is none.
+    blocked_at: Option<Vector2>,
+    viewpoint: Viewpoint,
+    unseen: VisibilityConstraint,
+    /// A disc can always turn away.
+    is_polygon: bool,
+    /// The outline stands too near to something to turn: it backs out, as far as safety lets it.
+    is_wedged: bool,
+    /// Whether the robot is too far from its reference to go on from it.
+    is_off_track: bool,
+    progress: ProgressChecker,
+    /// Of the safety monitor, s.
+    image_timeout: f64,
+    /// Of the disc about the robot, m.
+    radius: f64,
+    /// What was wanted in the last step, before safety's word on it.
+    wanted: Twist2,
+}
+
+/// A goal is given up after so many touches.
+const MOST_TOUCHES: u32 = 3;
+/// A position that is known no better is not known at all, m.
+const ANYWHERE: f64 = 50.0;
+/// Held by safety for so long, it plans anew from where it stands, s.
+const PAUSE: f64 = 1.0;
+
+impl Navigator {
+    pub(crate) fn new(config: &RobotConfig, footprint: &Footprint) -> Result<Self, Invalid> {
+        Ok(Self {
+            config: config.supervisor.validated()?,
+            planner: Planner::new(config.planning, footprint, config.limits, config.drive)?,
+            view: CameraFov::of(config)?,
+            follower: Follower::new(config.control.clone(), config.drive, config.limits)?,
+            goal_approach: GoalApproach::new(&config.docking, footprint)?,
+            safety: SafetyMonitor::new(config.safety.clone(), footprint)?,
+            check_due: Ticker::new(config.schedule.validated()?.check_hz),
+            improve_due: Ticker::new(config.schedule.improve_hz),
+            goal: Goal::Stay,
+            plan: None,
+            state: DriveState::Idle,
+            touched: false,
+            touches: 0,
+            over_edge: false,
+            started: None,
+            held_since: None,
+            look: Spin::default(),
+            sight_recovery: SightRecovery::default(),
+            blocked_at: None,
+            viewpoint: Viewpoint::Unknown,
+            unseen: VisibilityConstraint::default(),
+            is_polygon: matches!(footprint, Footprint::Polygon { .. }),
+            is_wedged: false,
+            is_off_track: false,
+            progress: ProgressChecker::default(),
+            image_timeout: config.safety.image_timeout,
+            radius: footprint.circumscribed_radius(),
+            wanted: Twist2::ZERO,
+        })
+    }
+
+    /// Takes up a goal. From a trajectory that is being driven it goes over to the next one without a stop.
+    pub(crate) fn apply_answer(&mut self, goal: Goal) {
+        let rolls_on = self.state == DriveState::Driving && goal.pose().is_some();
+        self.goal = goal;
+        self.plan = None;
+        self.held_since = None;
+        self.blocked_at = None;
+        self.viewpoint = Viewpoint::Unknown;
+        self.unseen.restart();
+        self.is_off_track = false;
+        self.touches = 0;
+        self.sight_recovery = SightRecovery::default();
+        self.look = Spin::default();
+        self.goal_approach.reset();
+        self.progress.restart();
+        self.check_due.hurry();
+        if !rolls_on {
+            self.follower.halt();
+        }
+        self.state = match goal {
+            Goal::Stay => DriveState::Idle,
+            Goal::Exact(_) | Goal::Viewpoint(_) if rolls_on => DriveState::Driving,
+            _ => DriveState::Initializing,
+        };
+    }
+
+    /// What the bumper says.
+    pub(crate) fn touch(&mut self, pressed: bool) {
+        self.touches += u32::from(pressed && !self.touched);
+        self.touched = pressed;
+        if self.touches >= MOST_TOUCHES && !self.state.is_over() {
+            // What is touched again and again the map does not show, or not where it is.
+            self.follower.halt();
+            self.goal_approach.reset();
+            let reason = format!("touched something {} times on the way", self.touches);
+            self.state = DriveState::Stopped { reason };
+        }
+    }
+
+    /// What the cliff sensors say.
+    pub(crate) fn cliff(&mut self, over_edge: bool) {
+        self.over_edge = over_edge;
+    }
+
+    pub(crate) fn state(&self) -> &DriveState {
+        &self.state
+    }
+
+    /// What turns and straight moves did for the goal.
+    pub(crate) fn docking(&self) -> &GoalApproachReport {
+        self.goal_approach.report()
+    }
+
+    pub(crate) fn plan(&self) -> Option<&PlanResult> {
+        self.plan.as_deref()
+    }
+
+    /// One control step: maybe a new plan, then a command, then safety's word on it.
+    pub(crate) fn step(&mut self, s: &WorldState<'_>, times: &mut StageTimes) -> Decision {
+        self.open(s);
+        self.watch(s);
+        self.watch_sight(s);
+        let goal = self.goal.pose().filter(|_| self.wants_plan(s));
+        let replanned = goal.is_some_and(|goal| times.measure(Stage::Planning, || self.replan(goal, s)));
+        let replanned = replanned || self.improved(s, times);
+        let follow = times.measure(Stage::Control, || self.follower.step(&s.estimate, s.now));
+        self.note_progress(&follow, s, times);
+        self.wanted = self.wanted(&follow, s, times);
+        let twist = times.measure(Stage::Safety, || self.guard(self.wanted, s));
+        self.follower.sent(twist);
+        Decision { twist, replanned }
+    }
+
+    /// The opening: nothing moves before there is a first view.
+    fn open(&mut self, s: &WorldState<'_>) {
+        self.started.get_or_insert(s.now);
+        if self.state == DriveState::Initializing && self.is_open(s) && self.goal.pose().is_some() {
+            self.unseen.home.get_or_insert(s.estimate.pose.position());
+            self.state = DriveState::Planning;
+        }
+    }
+
+    /// Whether the opening is over: the robot has stood for long enough, and there is a view.
+    fn is_open(&self, s: &WorldState<'_>) -> bool {
+        s.scan.is_some() && self.started.is_some_and(|started| s.now - started >= self.config.opening)
+    }
+
+    /// Whether the robot knows where it is, and whether it gets on.
+    fn watch(&mut self, s: &WorldState<'_>) {
+        if self.state.is_over() {
+            return;
+        }
+        let is_lost = matches!(self.state, DriveState::Lost { .. });
+        match self.why_lost(s) {
+            Some(reason) if !is_lost => {
+                self.follower.halt();
+                self.goal_approach.reset();
+                self.plan = None;
+                self.state = DriveState::Lost { reason };
+            }
+            None if is_lost && position_sigma(&s.estimate) < 0.5 * self.config.lost_sigma => {
+                self.look = Spin::default();
+                // It may have been carried here.
+                self.unseen.home = None;
+                self.state = DriveState::Initializing;
+            }
+            _ => {}
+        }
+        let turns_count = matches!(self.state, DriveState::FinalApproach | DriveState::Maneuvering)
+            || self.state == DriveState::Driving
+            || self.goal == Goal::Spin && self.state == DriveState::Initializing;
+        let stood = self.progress.standing_for(s.now, s.estimate.pose, turns_count);
+        if stood > self.config.patience {
+            self.give_up(stood);
+        }
+    }
+
+    /// Whether the robot sees again, which saw nothing. Where a turn on the spot brings its sight back twice at one place on the way to a
+    /// viewpoint, the way leads so near to something that the camera is blind there: no place to look from.
+    fn watch_sight(&mut self, s: &WorldState<'_>) {
+        if self.is_blind(s) {
+            return;
+        }
+        let is_in_vain = self.sight_recovery.sees(s.estimate.pose.position());
+        let waits = matches!(self.state, DriveState::Waiting { .. });
+        if is_in_vain && waits && matches!(self.goal, Goal::Viewpoint(_)) {
+            self.follower.halt();
+            self.state =
+                DriveState::Stopped { reason: "the camera sees nothing on the way there".to_owned() };
+        }
+    }
+
+    /// Why the robot does not know where it is, when it does not.
+    fn why_lost(&self, s: &WorldState<'_>) -> Option<String> {
+        let sigma = position_sigma(&s.estimate);
+        if sigma > ANYWHERE {
+            let reason =
+                "nothing tells where the robot is: it was carried away, or the map is of another place";
+            return Some(reason.to_owned());
+        }
+        if sigma > self.config.lost_sigma {
+            let why = if s.motion != MotionSense::Wheels {
+                ": the wheels are told to roll and count nothing"
+            } else {
+                ""
+            };
+            return Some(format!("the position is only known to {sigma:.2} m{why}"));
+        }
+        (s.unplaced > UNPLACED).then(|| "what the camera sees is not what is there on the map".to_owned())
+    }
+
+    fn give_up(&mut self, stood: f64) {
+        let why = self.state.reason().map_or_else(|| self.state.name().to_owned(), str::to_owned);
+        self.follower.halt();
+        self.goal_approach.reset();
+        self.state = DriveState::Stopped { reason: format!("no progress for {stood:.0} s: {why}") };
+    }
+
+    /// At the end of the trajectory: an arc, or turns and straight moves; or it is near enough.
+    fn begin_to_settle(&mut self, s: &WorldState<'_>) {
+        self.state = DriveState::FinalApproach;
+        let Goal::Exact(goal) = self.goal else {
+            self.follower.halt();
+            return;
+        };
+        let preview = self.follower.preview_stabilization(s.estimate.pose, goal);
+        self.goal_approach.consider(s, goal, preview);
+        self.choose(s);
+    }
+
+    /// A part of choosing how to settle.
+    fn choose(&mut self, s: &WorldState<'_>) {
+        if self.goal_approach.takes_over(s) {
+            self.start_docking();
+        }
+    }
+
+    /// What the follower's phase means for the state.
+    fn note_progress(&mut self, follow: &FollowReport, s: &WorldState<'_>, times: &mut StageTimes) {
+        self.note_viewpoint(follow, s.now);
+        let moving = matches!(self.state, DriveState::Driving | DriveState::FinalApproach);
+        match follow.phase {
+            _ if !moving => {}
+            FollowPhase::Settled => self.state = DriveState::Arrived,
+            FollowPhase::Approaching | FollowPhase::Turning if self.state == DriveState::Driving => {
+                times.measure(Stage::Planning, || self.begin_to_settle(s));
+            }
+            FollowPhase::Approaching | FollowPhase::Turning => {
+                self.state = DriveState::FinalApproach;
+                times.measure(Stage::Planning, || self.choose(s));
+            }
+            FollowPhase::Tracking if follow.off_track => {
+                self.is_off_track = true;
+                self.plan = None;
+            }
+            FollowPhase::Tracking | FollowPhase::Idle => {}
+        }
+    }
+}
+
+/// The larger standard deviation of the position, m.
+pub(crate) fn position_sigma(estimate: &PoseEstimate) -> f64 {
+    let block = estimate.covariance.fixed_view::<2, 2>(0, 0);
+    let (mean, half) = ((block[(0, 0)] + block[(1, 1)]) / 2.0, (block[(0, 0)] - block[(1, 1)]) / 2.0);
+    (mean + half.hypot(block[(0, 1)])).max(0.0).sqrt()
+}

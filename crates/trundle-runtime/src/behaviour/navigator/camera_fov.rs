@@ -1,0 +1,173 @@
+//! What a camera sees of the floor, and what it will not have seen before a way leads onto it.
+
+use super::known_floor::{cells_about, is_in_sight};
+use super::visibility_constraint::VisibilityConstraint;
+use crate::{config::RobotConfig, range_source::RangeSource};
+use std::collections::HashSet;
+use trundle_core::{Cell, CellIndex, Invalid, OccupancyGrid, Pose2, TrajectoryPoint, Vector2, Vector3};
+use trundle_mapping::DepthScanner;
+
+/// What a camera sees of the floor: a sector.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct CameraFov {
+    /// Where it stands on the base and looks to.
+    pub(super) base_from_sector: Pose2,
+    /// Half its angle, rad.
+    pub(super) half_angle: f64,
+    /// Where it begins, m.
+    pub(super) nearest: f64,
+}
+
+/// The edge of the image, rad, and of the blind zone, m, do not count as seen.
+const RIM: (f64, f64) = (0.1, 0.1);
+/// Things farther off are not seen well, m.
+const FARTHEST: f64 = 3.0;
+/// The way is looked at where it has gone on so far, m and rad.
+const STEP: (f64, f64) = (0.05, 0.1);
+/// So much unseen floor under the robot counts, m^2: scans leave slivers.
+const SLIVER: f64 = 0.02;
+/// Where it was set down the robot stands in what it cannot see, m about that place.
+const HOME: f64 = 0.8;
+
+impl CameraFov {
+    /// That of the robot's camera; none for a laser, which has no blind zone to speak of, and for a lens too narrow to look by.
+    pub(super) fn of(config: &RobotConfig) -> Result<Option<Self>, Invalid> {
+        let base_from_camera = config.mount.validated()?.base_from_camera();
+        let scanner = DepthScanner::new(config.camera, base_from_camera, config.scan.clone())?;
+        let half_angle = (config.camera.width() as f64 / 2.0 / config.camera.fx()).atan() - RIM.0;
+        let (at, axis) = (base_from_camera.translation, base_from_camera.rotate(Vector3::z()));
+        let base_from_sector = Pose2::new(at.x, at.y, axis.y.atan2(axis.x));
+        let view = Self { base_from_sector, half_angle, nearest: scanner.blind_range() + RIM.1 };
+        Ok((config.sight == RangeSource::DepthCamera && half_angle > 0.0).then_some(view))
+    }
+
+    /// A place where the way first leads the disc of `radius` onto floor that was never seen and is not seen on the way either, or was
+    /// looked at in vain.
+    pub(super) fn first_unseen(
+        self,
+        way: &[TrajectoryPoint],
+        grid: &OccupancyGrid,
+        radius: f64,
+        unseen: &VisibilityConstraint,
+    ) -> Option<Vector2> {
+        let mut passed: Vec<Pose2> = Vec::new();
+        let mut judged = HashSet::new();
+        let least = SLIVER / grid.geometry().resolution.powi(2);
+        for pose in way.iter().map(|point| point.pose) {
+            if passed.last().is_some_and(|last| is_near(*last, pose)) {
+                continue;
+            }
+            let under = unknown_about(grid, pose.position(), radius, unseen.home);
+            let under: Vec<_> = under.filter(|cell| !judged.contains(cell)).collect();
+            if under.len() as f64 >= least {
+                let middle = middle(grid, &under);
+                let is_shown = || passed.iter().any(|from| self.shows(grid, *from, middle));
+                if unseen.was_looked_at(middle) || !is_shown() {
+                    return Some(middle);
+                }
+                judged.extend(under);
+            }
+            passed.push(pose);
+        }
+        None
+    }
+
+    /// Whether the camera, the base at `from`, looks at a point, and nothing on the map stands between.
+    pub(super) fn shows(self, grid: &OccupancyGrid, from: Pose2, at: Vector2) -> bool {
+        let sector = from * self.base_from_sector;
+        let to = sector.inverse().transform(at);
+        (self.nearest..FARTHEST).contains(&to.norm())
+            && to.y.atan2(to.x).abs() < self.half_angle
+            && is_in_sight(grid, sector.position(), at, 0.0)
+    }
+}
+
+/// The cells within `radius` of a point that nothing is known of, but for those where the robot was set down.
+pub(super) fn unknown_about(
+    grid: &OccupancyGrid,
+    at: Vector2,
+    radius: f64,
+    home: Option<Vector2>,
+) -> impl Iterator<Item = CellIndex> {
+    let is_off =
+        move |cell: CellIndex| home.is_none_or(|home| (grid.geometry().center(cell) - home).norm() > HOME);
+    cells_about(grid, at, radius).filter(move |cell| grid.get(*cell) == Cell::Unknown && is_off(*cell))
+}
+
+/// Of these cells the one nearest to the middle of all.
+fn middle(grid: &OccupancyGrid, cells: &[CellIndex]) -> Vector2 {
+    let centers = || cells.iter().map(|cell| grid.geometry().center(*cell));
+    let mean = centers().sum::<Vector2>() / cells.len().max(1) as f64;
+    centers().min_by(|a, b| (a - mean).norm().total_cmp(&(b - mean).norm())).unwrap_or(mean)
+}
+
+fn is_near(a: Pose2, b: Pose2) -> bool {
+    let step = a.inverse() * b;
+    step.position().norm() < STEP.0 && step.theta.abs() < STEP.1
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::*;
+    use trundle_core::{Stamp, Trajectory, Twist2};
+
+    const VIEW: CameraFov = CameraFov { base_from_sector: Pose2::IDENTITY, half_angle: 0.5, nearest: 0.6 };
+
+    /// Known floor, 6 x 4 m about (3, 2), with unknown floor where `hidden` says so.
+    pub(in crate::behaviour::navigator) fn floor(hidden: impl Fn(Vector2) -> bool) -> OccupancyGrid {
+        let mut grid = OccupancyGrid::from_ascii(0.05, &vec![".".repeat(120); 80].join("\n")).unwrap();
+        let geometry = *grid.geometry();
+        for k in 0..geometry.len() {
+            let cell = geometry.cell(k);
+            if hidden(geometry.center(cell)) {
+                grid.set(cell, Cell::Unknown);
+            }
+        }
+        grid
+    }
+
+    fn way(poses: impl Iterator<Item = Pose2>) -> Trajectory {
+        let point =
+            |(i, pose): (usize, Pose2)| TrajectoryPoint { time: 0.1 * i as f64, pose, twist: Twist2::ZERO };
+        Trajectory::new(poses.enumerate().map(point).collect()).unwrap()
+    }
+
+    #[test]
+    fn what_lies_ahead_is_seen_before_it_is_driven_on() {
+        let ahead = floor(|at| at.x > 4.0);
+        let straight = way((0..60).map(|i| Pose2::new(2.0 + 0.05 * f64::from(i), 2.0, 0.0)));
+        let mut in_vain = VisibilityConstraint::default();
+        in_vain.note_look(Vector2::new(4.1, 2.0), Vector2::new(3.0, 2.0), Stamp::default());
+        assert!(VIEW.first_unseen(straight.points(), &ahead, 0.2, &in_vain).is_some());
+        assert_eq!(VIEW.first_unseen(straight.points(), &ahead, 0.2, &VisibilityConstraint::default()), None);
+    }
+
+    #[test]
+    fn what_lies_round_a_tight_bend_is_not() {
+        let beside = floor(|at| at.y > 2.3);
+        // Along the edge of what is known, then a turn on the spot, and on.
+        let along = (0..8).map(|i| Pose2::new(3.6 + 0.05 * f64::from(i), 2.0, 0.0));
+        let turn = || (0..16).map(|i| Pose2::new(3.95, 2.0, 0.1 * f64::from(i)));
+        let on = || (0..20).map(|i| Pose2::new(3.95, 2.0 + 0.05 * f64::from(i), 1.57));
+        let bend = way(along.chain(turn()).chain(on()));
+        let at = VIEW.first_unseen(bend.points(), &beside, 0.2, &VisibilityConstraint::default()).unwrap();
+        assert!((at - Vector2::new(3.95, 2.35)).norm() < 0.1, "{at}");
+        assert_eq!(beside.at(at), Cell::Unknown);
+        // There it was set down: it stands in what it cannot see.
+        let mut set_down = VisibilityConstraint::default();
+        set_down.home = Some(at);
+        assert_eq!(VIEW.first_unseen(bend.points(), &beside, 0.2, &set_down), None);
+        // The same over known floor, and over a sliver of unknown floor.
+        for grid in [floor(|_| false), floor(|at| (at.y - 2.4).abs() < 0.03 && at.x < 3.9)] {
+            assert_eq!(
+                VIEW.first_unseen(
+                    way(turn().chain(on())).points(),
+                    &grid,
+                    0.2,
+                    &VisibilityConstraint::default()
+                ),
+                None
+            );
+        }
+    }
+}

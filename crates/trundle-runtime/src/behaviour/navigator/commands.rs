@@ -1,0 +1,253 @@
+//! The command of each state, and safety's word on it.
+
+use super::{Goal, Navigator, PAUSE, known_floor::cells_about, viewpoint::Viewpoint};
+use crate::world_state::WorldState;
+use crate::{
+    behaviour::drive_state::DriveState,
+    behaviour::spin::{ONE_TURN, face, turn_to},
+    goal_approach::Progress,
+    stage::{Stage, StageTimes},
+};
+use trundle_control::{FollowReport, MotionSense, SafetyAction, SafetyInput, SafetyMemory};
+use trundle_core::{Cell, Twist2, Vector2};
+
+/// Speed of leaving what presses on the bumper, m/s, and how far behind must be free, m.
+const BACK_OUT: f64 = 0.05;
+const BACK_OUT_WAY: f64 = 0.15;
+/// And for so long, s, twice that way: a bumper that is still pressed then is broken, or something pushes.
+const BACK_OUT_TIME: f64 = 6.0;
+/// Without sight for so long, it turns to find some, s.
+const BLIND_PAUSE: f64 = 3.0;
+/// So fast it backs out where it has no room to turn, m/s.
+const BACKING_OUT: f64 = 0.1;
+
+impl Navigator {
+    /// The command before safety's word on it.
+    pub(super) fn wanted(
+        &mut self,
+        follow: &FollowReport,
+        s: &WorldState<'_>,
+        times: &mut StageTimes,
+    ) -> Twist2 {
+        let pose = s.estimate.pose;
+        match &self.state {
+            DriveState::Initializing if self.goal == Goal::Spin => self.look_once(s),
+            DriveState::Recovering { .. } if self.is_wedged => Twist2::new(-BACKING_OUT, 0.0),
+            DriveState::Recovering { .. } if matches!(self.viewpoint, Viewpoint::Going(..)) => follow.twist,
+            DriveState::Recovering { .. } if self.looks_still() => Twist2::ZERO,
+            // The gyro's bias is measured at rest.
+            DriveState::Lost { .. } if !self.is_open(s) => Twist2::ZERO,
+            DriveState::Recovering { .. } | DriveState::Lost { .. } => self.look.twist(pose),
+            DriveState::Waiting { .. } if self.backs_out(s) => Twist2::new(-BACK_OUT, 0.0),
+            DriveState::Waiting { .. } if self.is_blind(s) => self.look_for_sight(s),
+            DriveState::Waiting { .. } => match self.blocked_at.filter(|_| self.plan.is_none()) {
+                Some(at) => face(pose, at),
+                None => follow.twist,
+            },
+            DriveState::FinalApproach if matches!(self.goal, Goal::Viewpoint(_)) => self.turn_to_view(s),
+            DriveState::FinalApproach if self.goal_approach.holds() => Twist2::ZERO,
+            DriveState::Maneuvering if self.is_blind(s) => Twist2::ZERO,
+            DriveState::Maneuvering => times.measure(Stage::Control, || self.dock(s)),
+            _ => follow.twist,
+        }
+    }
+
+    /// At a viewpoint only the heading is taken up, and roughly: the view is wide.
+    fn turn_to_view(&mut self, s: &WorldState<'_>) -> Twist2 {
+        let Goal::Viewpoint(view) = self.goal else { return Twist2::ZERO };
+        let twist = turn_to(s.estimate.pose, view.theta);
+        if twist == Twist2::ZERO {
+            self.state = DriveState::Arrived;
+        }
+        twist
+    }
+
+    /// Whether it is time to leave what presses on the bumper, or an edge, backward, and the map has nothing there.
+    fn backs_out(&self, s: &WorldState<'_>) -> bool {
+        let backs = PAUSE..PAUSE + BACK_OUT_TIME;
+        let waited = self.held_since.is_some_and(|since| backs.contains(&(s.now - since)));
+        (self.touched || self.over_edge) && waited && is_free_behind(s, self.radius)
+    }
+
+    /// Whether no image has shown anything for a while, or none how the robot moves, which nothing else tells.
+    pub(super) fn is_blind(&self, s: &WorldState<'_>) -> bool {
+        s.motion == MotionSense::Nothing || s.seen.is_none_or(|seen| s.now - seen > self.image_timeout)
+    }
+
+    /// A camera too near to a wall sees nothing: after a while one turn on the spot shows whether that is it.
+    fn look_for_sight(&mut self, s: &WorldState<'_>) -> Twist2 {
+        // Images that show something, but not how it moves, are no sight.
+        let seen = s.seen.filter(|_| s.motion != MotionSense::Nothing);
+        let since = self.held_since.max(seen);
+        let is_long = since.is_some_and(|since| s.now - since >= BLIND_PAUSE);
+        if is_long { self.sight_recovery.turn(s.estimate.pose) } else { Twist2::ZERO }
+    }
+
+    /// A turn on the spot, and what is around has been seen.
+    fn look_once(&mut self, s: &WorldState<'_>) -> Twist2 {
+        if !self.is_open(s) {
+            return Twist2::ZERO;
+        }
+        if self.look.has_turned(ONE_TURN) {
+            self.state = DriveState::Arrived;
+            return Twist2::ZERO;
+        }
+        self.look.twist(s.estimate.pose)
+    }
+
+    /// One step of turns and straight moves.
+    fn dock(&mut self, s: &WorldState<'_>) -> Twist2 {
+        match self.goal_approach.step(s) {
+            Progress::Moving(twist) => return twist,
+            Progress::Settled => self.state = DriveState::Arrived,
+            Progress::GivenUp(reason) => self.state = DriveState::Stopped { reason },
+        }
+        Twist2::ZERO
+    }
+
+    /// Safety's word on a command.
+    pub(super) fn guard(&mut self, twist: Twist2, s: &WorldState<'_>) -> Twist2 {
+        let report = self.safety.check(&safety_input(s, twist, self.touched, self.over_edge));
+        match (report.action, &self.state) {
+            (
+                SafetyAction::Stop(reason),
+                DriveState::Driving | DriveState::FinalApproach | DriveState::Waiting { .. },
+            ) => {
+                if !matches!(self.state, DriveState::Waiting { .. }) {
+                    self.sight_recovery.held(twist);
+                }
+                self.held_since.get_or_insert(s.now);
+                self.state = DriveState::Waiting { reason: reason.to_string() };
+            }
+            (SafetyAction::Stop(reason), DriveState::Recovering { .. })
+                if matches!(self.viewpoint, Viewpoint::Going(..)) =>
+            {
+                self.viewpoint = Viewpoint::Settled;
+                self.follower.halt();
+                self.held_since.get_or_insert(s.now);
+                self.state = DriveState::Waiting { reason: reason.to_string() };
+            }
+            (SafetyAction::Stop(_), DriveState::Maneuvering)
+                if twist != Twist2::ZERO && !self.is_blind(s) =>
+            {
+                self.goal_approach.interrupted(s);
+            }
+            (SafetyAction::Pass | SafetyAction::Slow(_), DriveState::Waiting { .. })
+                if self.follower.end().is_some() && !(self.touched || self.over_edge) =>
+            {
+                self.held_since = None;
+                self.state = DriveState::Driving;
+            }
+            _ => {}
+        }
+        report.twist
+    }
+}
+
+/// What safety judges a twist by.
+pub(crate) fn safety_input<'a>(
+    s: &WorldState<'a>,
+    twist: Twist2,
+    touched: bool,
+    over_edge: bool,
+) -> SafetyInput<'a> {
+    SafetyInput {
+        now: s.now,
+        twist,
+        scan: s.scan,
+        memory: Some(SafetyMemory {
+            grid: s.grid,
+            unconfirmed: s.traffic.unconfirmed,
+            map_from_base: s.estimate.pose,
+        }),
+        touched,
+        over_edge,
+        image: s.seen,
+        wheels: Some(s.now),
+        motion: s.motion,
+    }
+}
+
+/// Whether the map has nothing occupied where a disc of `radius` goes that backs out.
+fn is_free_behind(s: &WorldState<'_>, radius: f64) -> bool {
+    let geometry = s.grid.geometry();
+    let (here, ahead) = (s.estimate.pose.position(), s.estimate.pose.inverse());
+    let is_in_the_way = |at: Vector2| {
+        let at = ahead.transform(at);
+        // What is beside or before the robot it has come past, or touches.
+        at.x < -0.5 * radius && (at - Vector2::new(at.x.max(-BACK_OUT_WAY), 0.0)).norm() < radius
+    };
+    let mut cells = cells_about(s.grid, here, radius + BACK_OUT_WAY);
+    geometry.cell_at(here).is_some()
+        && !cells.any(|cell| s.grid.get(cell) == Cell::Occupied && is_in_the_way(geometry.center(cell)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{
+        camera_fov::tests::floor,
+        visibility_constraint::tests::{at_rest, navigator},
+    };
+    use super::*;
+    use trundle_core::{OccupancyGrid, Pose2, Stamp};
+
+    /// Blind for so long, s; a control step, s.
+    const BLIND: f64 = 5.0;
+    const STEP: f64 = 0.02;
+
+    /// It waits without sight, as it turns in vain, and then sees again; when that is.
+    fn lose_sight_and_find_it(navigator: &mut Navigator, grid: &OccupancyGrid, from: Stamp) -> Stamp {
+        let mut times = StageTimes::default();
+        let mut pose = Pose2::new(3.0, 2.0, 0.0);
+        navigator.state = DriveState::Waiting { reason: "the newest image is old".to_owned() };
+        navigator.held_since = Some(from);
+        for i in 1..=(BLIND / STEP) as i32 {
+            let now = from.after(STEP * f64::from(i));
+            let s = WorldState { seen: Some(from.after(-1.0)), ..at_rest(grid, now, pose) };
+            let twist = navigator.step(&s, &mut times).twist;
+            pose = pose.advance(twist, STEP);
+        }
+        assert!(pose.theta > 0.5, "it turns to find its sight: {}", pose.theta);
+        let sees = |after: f64| from.after(BLIND + after);
+        for now in (1..50).map(|i| sees(STEP * f64::from(i))) {
+            navigator.state = match &navigator.state {
+                over if over.is_over() => over.clone(),
+                _ => DriveState::Waiting { reason: "a way is looked for".to_owned() },
+            };
+            navigator.step(&WorldState { seen: Some(now), ..at_rest(grid, now, pose) }, &mut times);
+        }
+        sees(1.0)
+    }
+
+    #[test]
+    fn it_turns_only_after_it_has_seen_nothing_for_a_while_however_long_it_was_held() {
+        let (grid, mut navigator, pose) = (floor(|_| false), navigator(), Pose2::new(3.0, 2.0, 0.0));
+        navigator.apply_answer(Goal::Viewpoint(Pose2::new(4.0, 2.0, 0.0)));
+        let (held, mut times) = (Stamp::default().after(10.0), StageTimes::default());
+        let seen = held.after(20.0);
+        for (blind, turns) in [(1.0, false), (2.9, false), (3.1, true)] {
+            navigator.state = DriveState::Waiting { reason: "somebody is on the move".to_owned() };
+            navigator.held_since = Some(held);
+            let s = WorldState { seen: Some(seen), ..at_rest(&grid, seen.after(blind), pose) };
+            let twist = navigator.step(&s, &mut times).twist;
+            assert_eq!(twist.omega != 0.0, turns, "blind for {blind} s: {twist:?}");
+        }
+    }
+
+    #[test]
+    fn a_viewpoint_on_whose_way_the_camera_goes_blind_twice_is_given_up_and_a_goal_is_not() {
+        let (grid, ahead) = (floor(|_| false), Pose2::new(4.0, 2.0, 0.0));
+        for (goal, given_up) in [(Goal::Viewpoint(ahead), true), (Goal::Exact(ahead), false)] {
+            let mut navigator = navigator();
+            navigator.apply_answer(goal);
+            let once = lose_sight_and_find_it(&mut navigator, &grid, Stamp::default().after(10.0));
+            assert!(!navigator.state().is_over(), "the camera may have failed: {:?}", navigator.state());
+            let twice = lose_sight_and_find_it(&mut navigator, &grid, once);
+            assert_eq!(navigator.state().is_over(), given_up, "{goal:?}: {:?}", navigator.state());
+            // For the next goal it counts anew.
+            navigator.apply_answer(goal);
+            lose_sight_and_find_it(&mut navigator, &grid, twice);
+            assert!(!navigator.state().is_over(), "{:?}", navigator.state());
+        }
+    }
+}

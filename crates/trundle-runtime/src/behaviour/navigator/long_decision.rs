@@ -1,0 +1,58 @@
+//! What is asked of the navigator when it may be away for a while.
+
+use super::{Goal, Navigator, viewpoint::Viewpoint};
+use crate::world_state::WorldState;
+use crate::{behaviour::drive_state::DriveState, workers::fallback_controller::FallbackController};
+use trundle_core::{Stamp, Twist2};
+
+/// So near to the end of the trajectory, s, settling may begin with the next step.
+const NEARLY_THERE: f64 = 0.1;
+
+impl Navigator {
+    /// Whether the next step may plan, look for turns and straight moves, or check what is left of a way.
+    pub(crate) fn may_take_long(&self, s: &WorldState<'_>) -> bool {
+        if self.goal.pose().is_none() {
+            return false;
+        }
+        match &self.state {
+            DriveState::Idle | DriveState::Arrived | DriveState::Stopped { .. } => false,
+            DriveState::Lost { .. } | DriveState::FinalApproach => false,
+            DriveState::Maneuvering => true,
+            DriveState::Initializing | DriveState::Planning => true,
+            DriveState::Recovering { .. } | DriveState::Waiting { .. } => self.is_check_due(s.now),
+            DriveState::Driving => self.is_check_due(s.now) || self.is_nearly_there(),
+        }
+    }
+
+    fn is_check_due(&self, now: Stamp) -> bool {
+        self.check_due.will_be_due(now) || self.improve_due.will_be_due(now)
+    }
+
+    fn is_nearly_there(&self) -> bool {
+        let left = self.plan.as_ref().zip(self.follower.reference());
+        left.is_none_or(|(plan, reference)| plan.trajectory.duration() - reference.time < NEARLY_THERE)
+    }
+
+    /// What goes on as was decided last.
+    pub(crate) fn fallback(&self) -> FallbackController {
+        let follows = match &self.state {
+            DriveState::Driving => true,
+            DriveState::Recovering { .. } => matches!(self.viewpoint, Viewpoint::Going(..)),
+            DriveState::FinalApproach => !matches!(self.goal, Goal::Viewpoint(_)),
+            _ => false,
+        };
+        FallbackController {
+            follower: self.follower.clone(),
+            safety: self.safety.clone(),
+            wanted: (!follows).then_some(self.wanted),
+            touched: self.touched,
+            over_edge: self.over_edge,
+            sent: Twist2::ZERO,
+        }
+    }
+
+    /// What the base was asked for while the navigator was away.
+    pub(crate) fn sent(&mut self, twist: Twist2) {
+        self.follower.sent(twist);
+    }
+}

@@ -1,0 +1,254 @@
+//! When to plan, from where, and what to do when there is no way.
+
+use super::{Goal, Navigator, PAUSE, viewpoint::Viewpoint, visibility_constraint::InView};
+use crate::world_state::WorldState;
+use crate::{
+    behaviour::drive_state::DriveState,
+    behaviour::spin::Spin,
+    stage::{Stage, StageTimes},
+};
+use trundle_core::{Pose2, Stamp, Twist2, Vector2};
+use trundle_planning::{Plan, PlanResult};
+
+/// What is left of a way is driven as planned when it takes less, s.
+const WORTH_IMPROVING: f64 = 0.5;
+/// A new way replaces a good one when it arrives so much sooner, s.
+const SOONER: f64 = 0.05;
+/// Slower than this the robot stands, m/s.
+const STANDING: f64 = 0.02;
+/// So many turns see everything around twice.
+const TURNS: f64 = 2.0;
+
+impl Navigator {
+    /// Whether it is time to plan: at the beginning, or when a check finds the old plan wanting.
+    pub(super) fn wants_plan(&mut self, s: &WorldState<'_>) -> bool {
+        match &self.state {
+            DriveState::Idle | DriveState::Arrived | DriveState::Stopped { .. } => false,
+            DriveState::Initializing
+            | DriveState::FinalApproach
+            | DriveState::Maneuvering
+            | DriveState::Lost { .. } => false,
+            DriveState::Recovering { .. } if !self.looks_for_news(s) => {
+                if self.check_due.due(s.now) {
+                    self.watch_path_to_viewpoint(s);
+                }
+                false
+            }
+            DriveState::Planning | DriveState::Recovering { .. } => self.check_due.due(s.now),
+            DriveState::Waiting { .. } if self.touched || self.over_edge || self.is_blind(s) => false,
+            DriveState::Waiting { .. } if self.held_since.is_some_and(|since| s.now - since < PAUSE) => false,
+            DriveState::Waiting { .. } => self.check_due.due(s.now),
+            DriveState::Driving => self.check_due.due(s.now) && !self.plan_holds(s),
+        }
+    }
+
+    /// Whether the rest of the trajectory is still free on the newest map, shows what it leads onto, and meets nothing that moves.
+    fn plan_holds(&self, s: &WorldState<'_>) -> bool {
+        match (&self.plan, self.follower.reference()) {
+            (Some(plan), Some(reference)) => {
+                let meets =
+                    || self.planner.first_encounter(&plan.trajectory, reference.time, s.traffic.movers);
+                self.is_still_good(&plan.trajectory, reference.time, s) && meets().is_none()
+            }
+            (Some(_), None) => true,
+            (None, _) => false,
+        }
+    }
+
+    /// Plans from the reference where the robot is on it, else from where it stands; true when there is a new plan.
+    pub(super) fn replan(&mut self, goal: Pose2, s: &WorldState<'_>) -> bool {
+        if matches!(self.state, DriveState::Waiting { .. }) && self.turned_to_docking(goal, s) {
+            return false;
+        }
+        let from = match (&self.state, self.follower.reference()) {
+            (DriveState::Driving, Some(_)) if self.is_off_track => (s.estimate.pose, s.estimate.twist),
+            (DriveState::Driving, Some(reference)) => (reference.pose, reference.twist),
+            // On the way to a vantage it rolls as well.
+            (DriveState::Recovering { .. }, Some(reference))
+                if matches!(self.viewpoint, Viewpoint::Going(..)) =>
+            {
+                (reference.pose, reference.twist)
+            }
+            _ => (s.estimate.pose, Twist2::ZERO),
+        };
+        let plan = match self.plan_in_view(s, from, goal) {
+            InView::Plan(plan) => plan,
+            InView::Asking => return self.stands_to_look(s),
+            InView::Unseen(at, long) => match self.first_looks_at(at, long, s) {
+                Some(long) => Plan::Found(long),
+                None => return false,
+            },
+        };
+        match plan {
+            Plan::Found(plan) if plan.is_continuous || s.estimate.twist.v.abs() < STANDING => {
+                self.follower.follow(plan.trajectory.clone(), goal);
+                self.plan = Some(plan);
+                self.state = DriveState::Driving;
+                self.held_since = None;
+                self.blocked_at = None;
+                self.viewpoint = Viewpoint::Unknown;
+                self.is_off_track = false;
+                self.look = Spin::default();
+                true
+            }
+            Plan::Found(_) => {
+                self.hold("stopping to plan anew", s.now);
+                false
+            }
+            Plan::Blocked { .. } if self.is_free_but_for_movers(s, from, goal) => {
+                self.hold("somebody is on the move in the way", s.now);
+                false
+            }
+            refused => {
+                if !self.turned_to_docking(goal, s) {
+                    self.no_way(&refused, s);
+                }
+                false
+            }
+        }
+    }
+
+    /// Before a way that leads onto floor at `at` that no image has shown it goes to where that is seen; where that cannot be, the
+    /// `long` way is taken.
+    fn first_looks_at(
+        &mut self,
+        at: Vector2,
+        long: Option<Box<PlanResult>>,
+        s: &WorldState<'_>,
+    ) -> Option<Box<PlanResult>> {
+        if self.state == DriveState::Driving {
+            self.stands_to_look(s);
+            return None;
+        }
+        if self.seeks_sight_of(at, s) {
+            if !matches!(self.viewpoint, Viewpoint::Going(..)) {
+                self.follower.halt();
+                self.plan = None;
+            }
+            let reason = format!("first to see what the way leads onto at ({:.2}, {:.2}) m", at.x, at.y);
+            self.state = DriveState::Recovering { reason };
+            self.held_since = None;
+            return None;
+        }
+        self.viewpoint = Viewpoint::Unknown;
+        if long.is_none() && self.unseen.bar(at, s.now) {
+            // The next plan keeps off it.
+            self.stands_to_look(s);
+        } else if long.is_none() {
+            self.no_way(&Plan::Blocked { nearest: at }, s);
+        }
+        long
+    }
+
+    /// What it drives on does not show where it leads: it stops until there is a plan that does. Never a new plan.
+    fn stands_to_look(&mut self, s: &WorldState<'_>) -> bool {
+        if self.state == DriveState::Driving {
+            self.hold("looking for a way that shows where it leads", s.now);
+        }
+        false
+    }
+
+    /// Whether what moves alone bars the way.
+    fn is_free_but_for_movers(&mut self, s: &WorldState<'_>, from: (Pose2, Twist2), goal: Pose2) -> bool {
+        !s.traffic.movers.is_empty()
+            && matches!(self.planner.plan(s.floor(), from.0, from.1, goal), Plan::Found(_))
+    }
+
+    /// While it drives: a new plan that goes on from the reference and arrives sooner replaces the old one.
+    pub(super) fn improved(&mut self, s: &WorldState<'_>, times: &mut StageTimes) -> bool {
+        let (Some(goal), DriveState::Driving) = (self.goal.pose(), &self.state) else { return false };
+        let (Some(old), Some(reference)) = (&self.plan, self.follower.reference()) else { return false };
+        let left = old.trajectory.duration() - reference.time;
+        if left < WORTH_IMPROVING || !self.improve_due.due(s.now) {
+            return false;
+        }
+        let planner = &mut self.planner;
+        let plan = times.measure(Stage::Planning, || {
+            planner.plan_among_moving(s.floor(), s.traffic.movers, reference.pose, reference.twist, goal)
+        });
+        match plan {
+            // What the way of now keeps off because it was not seen, a quicker one must keep off too.
+            Plan::Found(plan)
+                if plan.is_continuous
+                    && plan.trajectory.duration() < left - SOONER
+                    && self.first_unseen(plan.trajectory.points(), s.floor()).is_none() =>
+            {
+                self.follower.follow(plan.trajectory.clone(), goal);
+                self.plan = Some(plan);
+                true
+            }
+            _ => false,
+        }
+    }
+
+    /// No way is known: stop, turn on the spot until everything around has been seen, then go where what bars the way is seen, and
+    /// wait there, looking at it.
+    fn no_way(&mut self, refused: &Plan, s: &WorldState<'_>) {
+        let reason = self.why(refused);
+        if matches!(self.viewpoint, Viewpoint::Going(..)) {
+            self.state = DriveState::Recovering { reason };
+            return;
+        }
+        self.is_wedged = self.is_polygon && matches!(refused, Plan::StartInObstacle { .. });
+        self.follower.halt();
+        self.plan = None;
+        self.blocked_at = match refused {
+            Plan::Blocked { nearest } => Some(*nearest),
+            _ => self.goal.pose().map(|goal| goal.position()),
+        };
+        let has_looked = self.look.has_turned(TURNS) && !self.is_wedged;
+        self.state = if matches!(self.goal, Goal::Viewpoint(_)) {
+            DriveState::Stopped { reason }
+        } else if has_looked && !self.seeks_viewpoint(s) {
+            DriveState::Waiting { reason }
+        } else {
+            DriveState::Recovering { reason }
+        };
+    }
+
+    /// Near the goal, where no path is found or safety holds the robot: by turns and straight moves, if there are such.
+    fn turned_to_docking(&mut self, goal: Pose2, s: &WorldState<'_>) -> bool {
+        let stands = s.estimate.twist.v.abs() < STANDING;
+        let is_exact = matches!(self.goal, Goal::Exact(_));
+        let turned = is_exact && stands && !self.is_blind(s) && self.goal_approach.begin_if_possible(s, goal);
+        if turned {
+            self.start_docking();
+        }
+        turned
+    }
+
+    pub(super) fn start_docking(&mut self) {
+        self.follower.halt();
+        self.held_since = None;
+        self.state = DriveState::Maneuvering;
+    }
+
+    /// Why there is no plan, for a person, and what no way was looked for over.
+    fn why(&self, plan: &Plan) -> String {
+        match self.unseen.barred() {
+            Some(at) => format!("{}; what is at ({:.2}, {:.2}) m could not be seen", why(plan), at.x, at.y),
+            None => why(plan),
+        }
+    }
+
+    fn hold(&mut self, reason: &str, now: Stamp) {
+        self.follower.halt();
+        self.held_since.get_or_insert(now);
+        self.state = DriveState::Waiting { reason: reason.to_owned() };
+    }
+}
+
+/// Why there is no plan, for a person.
+fn why(plan: &Plan) -> String {
+    match plan {
+        Plan::Found(_) => "there is a way".to_owned(),
+        Plan::Blocked { nearest } => {
+            format!("no way to the goal is free; the nearest point is ({:.2}, {:.2}) m", nearest.x, nearest.y)
+        }
+        Plan::StartInObstacle { clearance } => format!("{:.3} m too little room here", -clearance),
+        Plan::GoalInObstacle { clearance } => format!("{:.3} m too little room at the goal", -clearance),
+        Plan::StartOutside => "the robot is off the map".to_owned(),
+        Plan::GoalOutside => "the goal is off the map".to_owned(),
+        Plan::Refused(invalid) => invalid.to_string(),
+    }
+}

@@ -1,0 +1,83 @@
+//! Whether the robot makes progress.
+
+use trundle_core::{Pose2, Stamp, difference_of_angles};
+
+/// Notes when the robot last got on.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct ProgressChecker {
+    last: Option<(Stamp, Pose2)>,
+    /// Turns that counted, since it last came to another place.
+    turns: u32,
+}
+
+/// It has got on when it is so far from where it last had, m.
+const STEP: f64 = 0.15;
+/// Or when a turn to the goal's heading has come so far, rad. A turn that looks for a way does not count.
+const TURN: f64 = 0.2;
+/// Turns that count at one place: one whole turn, each of which begins patience anew. Who turns on and on there does not get on.
+const MOST_TURNS: u32 = 32;
+
+impl ProgressChecker {
+    /// Begins anew.
+    pub(crate) fn restart(&mut self) {
+        *self = Self::default();
+    }
+
+    /// How long the robot has not got on, s; `turns_count` where turning leads to the goal.
+    pub(crate) fn standing_for(&mut self, now: Stamp, pose: Pose2, turns_count: bool) -> f64 {
+        let (since, at) = *self.last.get_or_insert((now, pose));
+        let has_turned = difference_of_angles(at.theta, pose.theta).abs() > TURN;
+        if at.distance(&pose) > STEP {
+            (self.last, self.turns) = (Some((now, pose)), 0);
+            0.0
+        } else if turns_count && has_turned && self.turns < MOST_TURNS {
+            // Where it stands is where it came to.
+            (self.last, self.turns) = (Some((now, Pose2 { theta: pose.theta, ..at })), self.turns + 1);
+            0.0
+        } else {
+            now - since
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn turning_on_the_spot_is_no_progress_unless_it_is_the_way() {
+        let mut watch = ProgressChecker::default();
+        let at = |i: i32| (Stamp::default().after(f64::from(i)), Pose2::new(0.0, 0.0, f64::from(i)));
+        let stood: Vec<f64> = (0..5).map(|i| watch.standing_for(at(i).0, at(i).1, false)).collect();
+        assert_eq!(stood, [0.0, 1.0, 2.0, 3.0, 4.0]);
+        assert_eq!(watch.standing_for(at(5).0, at(5).1, true), 0.0);
+        assert_eq!(watch.standing_for(at(6).0, Pose2::new(0.2, 0.0, 5.0), false), 0.0);
+    }
+
+    #[test]
+    fn to_turn_to_and_fro_on_the_spot_is_no_progress() {
+        let mut watch = ProgressChecker::default();
+        let turned = |i: i32| Pose2::new(1e-3 * f64::from(i), 0.0, f64::from(i % 2));
+        let stood = |watch: &mut ProgressChecker, i: i32| {
+            watch.standing_for(Stamp::default().after(f64::from(i)), turned(i), true)
+        };
+        (0..=32).for_each(|i| assert_eq!(stood(&mut watch, i), 0.0, "{i}"));
+        (33..90).for_each(|i| assert!((stood(&mut watch, i) - f64::from(i - 32)).abs() < 1e-6, "{i}"));
+        // At another place it may turn again.
+        watch.standing_for(Stamp::default().after(90.0), Pose2::new(0.5, 0.0, 0.0), true);
+        assert_eq!(watch.standing_for(Stamp::default().after(91.0), Pose2::new(0.5, 0.0, 1.0), true), 0.0);
+        // And for another goal.
+        (91..200).for_each(|i| _ = stood(&mut watch, i));
+        watch.restart();
+        (200..=232).for_each(|i| assert_eq!(stood(&mut watch, i), 0.0, "{i}"));
+    }
+
+    #[test]
+    fn to_creep_while_turning_is_to_get_on() {
+        let mut watch = ProgressChecker::default();
+        for i in 0..200 {
+            let pose = Pose2::new(6e-3 * f64::from(i), 0.0, f64::from(i % 2));
+            assert_eq!(watch.standing_for(Stamp::default().after(f64::from(i)), pose, true), 0.0, "{i}");
+        }
+    }
+}

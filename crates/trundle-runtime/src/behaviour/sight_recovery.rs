@@ -1,0 +1,95 @@
+//! Recovery of lost sight by a turn on the spot.
+
+use crate::behaviour::spin::{ONE_TURN, Spin};
+use trundle_core::{Pose2, Twist2, Vector2};
+
+/// The turns on the spot of a robot that sees nothing, and whether they bring its sight back.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct SightRecovery {
+    look: Spin,
+    /// The turn rate that the robot wanted when it lost its sight, rad/s.
+    wanted: f64,
+    /// Where a turn last brought sight back, map frame, and how often it has there.
+    found: Option<(Vector2, u32)>,
+}
+
+/// Sight that comes back after less than so much of a turn did not come back by turning.
+const TURNED_AWAY: f64 = 0.02;
+/// Sight that comes back by turning so often at one place does not stay: the way leads where there is none.
+const MOST_FOUND: u32 = 2;
+/// One place, m.
+const PLACE: f64 = 0.5;
+
+impl SightRecovery {
+    /// Sight may be lost from now on: the robot wants this.
+    pub(crate) fn held(&mut self, wanted: Twist2) {
+        self.wanted = wanted.omega;
+    }
+
+    /// The command of a robot that has been blind for long enough: one turn, on to where it wanted to turn, then rest.
+    pub(crate) fn turn(&mut self, pose: Pose2) -> Twist2 {
+        if self.look.has_turned(ONE_TURN) { Twist2::ZERO } else { self.look.twist_towards(self.wanted, pose) }
+    }
+
+    /// The robot sees, at this place (map frame, m); whether a turn has brought its sight back there, and not for the first time. A whole
+    /// turn in vain shows that it is the camera: when that sees again, turning had nothing to do with it.
+    pub(crate) fn sees(&mut self, at: Vector2) -> bool {
+        let look = std::mem::take(&mut self.look);
+        if !look.has_turned(TURNED_AWAY) || look.has_turned(ONE_TURN) {
+            return false;
+        }
+        let before = self.found.filter(|(place, _)| (at - place).norm() <= PLACE);
+        let (place, times) = before.map_or((at, 1), |(place, times)| (place, times + 1));
+        self.found = Some((place, times));
+        times >= MOST_FOUND
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const STEP: f64 = 0.02;
+
+    /// Turns blindly for so long, s, and then sees; what it makes of that, and how far it had turned.
+    fn blind_for(watch: &mut SightRecovery, seconds: f64, at: Vector2) -> (bool, f64) {
+        let mut pose = Pose2::new(at.x, at.y, 0.0);
+        let mut turned = 0.0;
+        for _ in 0..(seconds / STEP) as usize {
+            let twist = watch.turn(pose);
+            pose = pose.advance(twist, STEP);
+            turned += twist.omega * STEP;
+        }
+        (watch.sees(at), turned)
+    }
+
+    #[test]
+    fn sight_that_a_turn_brings_back_twice_at_one_place_does_not_stay() {
+        let (mut watch, here) = (SightRecovery::default(), Vector2::new(1.0, 2.0));
+        assert!(!blind_for(&mut watch, 2.0, here).0);
+        assert!(!watch.sees(here), "it was the same turn");
+        assert!(blind_for(&mut watch, 2.0, here + Vector2::new(0.2, 0.0)).0);
+        let elsewhere = here + Vector2::new(1.5, 0.0);
+        assert!(!blind_for(&mut watch, 2.0, elsewhere).0, "a wall there has nothing to do with one here");
+    }
+
+    #[test]
+    fn sight_that_comes_back_by_itself_was_not_brought_back() {
+        let (mut watch, here) = (SightRecovery::default(), Vector2::new(1.0, 2.0));
+        for _ in 0..3 {
+            assert!(!blind_for(&mut watch, 0.1, here).0, "it had hardly begun to turn");
+            let (stays, turned) = blind_for(&mut watch, 30.0, here);
+            assert!(!stays && (6.4..6.5).contains(&turned), "once around in vain, and no more: {turned}");
+        }
+    }
+
+    #[test]
+    fn it_turns_on_to_where_it_wanted() {
+        for (wanted, sign) in [(-0.4, -1.0), (0.3, 1.0), (0.0, 1.0)] {
+            let mut watch = SightRecovery::default();
+            watch.held(Twist2::new(0.1, wanted));
+            let (_, turned) = blind_for(&mut watch, 2.0, Vector2::zeros());
+            assert!((sign * turned - 1.2).abs() < 0.02, "{wanted}: {turned}");
+        }
+    }
+}

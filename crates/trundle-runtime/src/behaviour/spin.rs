@@ -1,0 +1,87 @@
+//! A turn on the spot to observe the surroundings.
+
+use std::f64::consts::TAU;
+use trundle_core::{Pose2, Twist2, Vector2, wrap_angle};
+
+/// Turning on the spot to see what is around.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Spin {
+    last: Option<f64>,
+    turned: f64,
+    /// The commands so far.
+    told: u32,
+}
+
+/// Turn rate, rad/s: slow enough for features to be tracked.
+const RATE: f64 = 0.6;
+/// One turn, and a little more, sees all around.
+pub(crate) const ONE_TURN: f64 = 1.02;
+/// A turn that nobody counts is over after so many times the commands that it takes, at 50 a second.
+const UNCOUNTED: f64 = 1.5;
+const PERIOD: f64 = 0.02;
+/// Turning to something, it is near enough to the middle of the view, rad.
+const FACED: f64 = 0.05;
+
+impl Spin {
+    /// The command, and a note of how far it has turned: to the left.
+    pub(crate) fn twist(&mut self, pose: Pose2) -> Twist2 {
+        self.twist_towards(RATE, pose)
+    }
+
+    /// The same to the side that this turn rate (rad/s) is of.
+    pub(crate) fn twist_towards(&mut self, side: f64, pose: Pose2) -> Twist2 {
+        let last = self.last.replace(pose.theta).unwrap_or(pose.theta);
+        self.turned += wrap_angle(pose.theta - last).abs();
+        self.told = self.told.saturating_add(1);
+        Twist2::new(0.0, RATE.copysign(side))
+    }
+
+    /// Whether it has turned so many times.
+    pub(crate) fn has_turned(&self, turns: f64) -> bool {
+        self.turned.max(f64::from(self.told) * PERIOD * RATE / UNCOUNTED) > turns * TAU
+    }
+}
+
+/// The turn on the spot that brings `at` (map frame, m) into the middle of the view.
+pub(crate) fn face(pose: Pose2, at: Vector2) -> Twist2 {
+    let ahead = at - pose.position();
+    if ahead.norm() < 1e-3 { Twist2::ZERO } else { turn_to(pose, ahead.y.atan2(ahead.x)) }
+}
+
+/// The turn on the spot towards a heading; none where it is near enough.
+pub(crate) fn turn_to(pose: Pose2, heading: f64) -> Twist2 {
+    let off = wrap_angle(heading - pose.theta);
+    Twist2::new(0.0, if off.abs() < FACED { 0.0 } else { (2.0 * off).clamp(-RATE, RATE) })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn two_turns_are_two_turns() {
+        let mut look = Spin::default();
+        let mut steps = 0;
+        while !look.has_turned(2.0) {
+            assert_eq!(look.twist(Pose2::new(0.0, 0.0, 0.1 * f64::from(steps))).v, 0.0);
+            steps += 1;
+        }
+        assert!((f64::from(steps) * 0.1 - 2.0 * TAU).abs() < 0.3, "{steps} steps");
+    }
+
+    #[test]
+    fn a_turn_that_nobody_counts_comes_to_an_end() {
+        let mut look = Spin::default();
+        let steps =
+            (0..10_000).take_while(|_| !look.has_turned(1.0) && look.twist(Pose2::IDENTITY).omega > 0.0);
+        let seconds = steps.count() as f64 * PERIOD;
+        assert!((seconds - 1.5 * TAU / RATE).abs() < 0.1, "{seconds} s");
+    }
+
+    #[test]
+    fn it_turns_the_shorter_way_to_what_it_faces() {
+        let right = Vector2::new(0.0, -1.0);
+        assert!(face(Pose2::IDENTITY, right).omega < 0.0);
+        assert_eq!(face(Pose2::new(0.0, 0.0, -std::f64::consts::FRAC_PI_2), right), Twist2::ZERO);
+    }
+}

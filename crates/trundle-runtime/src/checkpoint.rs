@@ -1,0 +1,210 @@
+//! Checkpoints: maps and mission in a file, to resume from after a restart.
+
+pub(crate) mod schedule;
+
+use crate::mission::MissionState;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use trundle_core::{Cell, GridGeometry, Invalid, OccupancyGrid, Vector2};
+use trundle_localization::VisualAnchor;
+use trundle_slam::MapFileError;
+
+/// What a robot takes along through a restart: its maps, where they lie, and how far its mission has come.
+///
+/// As bytes: `TRUNDLEM`, version (u32), checksum (CRC-32 of the rest), length of the notes (u32), the notes as JSON, a byte for
+/// each cell of the floor map (0 unknown, 1 free, 2 occupied), and the visual maps; numbers little endian.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Checkpoint {
+    /// The visual maps, as [`trundle_slam::RgbdSlam::save`] gives them.
+    pub visual: Vec<u8>,
+    /// Where each of them lies in the map, and how surely, by its number.
+    pub visual_maps: BTreeMap<u32, VisualAnchor>,
+    /// The floor map.
+    pub grid: OccupancyGrid,
+    /// What was done, and what is left to be done.
+    pub mission: MissionState,
+}
+
+/// Why a memory was not taken up.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum CheckpointError {
+    /// The bytes are something else.
+    #[error("no memory of trundle")]
+    Foreign,
+    /// Made by a version that this one does not read.
+    #[error("memory of version {found}, expected {VERSION}")]
+    Version {
+        /// Its version.
+        found: u32,
+    },
+    /// Cut off, or changed since it was written.
+    #[error("memory is damaged: {what}")]
+    Damaged {
+        /// What does not fit.
+        what: &'static str,
+    },
+    /// The notes are none.
+    #[error("notes of the memory: {0}")]
+    Notes(String),
+    /// The visual maps are refused.
+    #[error("visual maps of the memory: {0}")]
+    Visual(#[from] MapFileError),
+    /// A number is out of range, in the memory or in the robot's configuration.
+    #[error(transparent)]
+    Invalid(#[from] Invalid),
+}
+
+/// All but the bulk.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Notes {
+    visual_maps: BTreeMap<u32, VisualAnchor>,
+    mission: MissionState,
+    /// Of the floor map, m.
+    resolution: f64,
+    /// Lower left corner of the floor map, map frame, m.
+    origin: [f64; 2],
+    /// Columns and rows of the floor map.
+    cells: [usize; 2],
+}
+
+const MAGIC: &[u8; 8] = b"TRUNDLEM";
+const VERSION: u32 = 2;
+
+impl Checkpoint {
+    /// The memory as bytes.
+    pub fn to_bytes(&self) -> Vec<u8> {
+        let GridGeometry { resolution, origin, width, height } = *self.grid.geometry();
+        let notes = Notes {
+            visual_maps: self.visual_maps.clone(),
+            mission: self.mission.clone(),
+            resolution,
+            origin: origin.into(),
+            cells: [width, height],
+        };
+        let notes = serde_json::to_vec(&notes).expect("invariant: notes are plain data");
+        let length = u32::try_from(notes.len()).expect("invariant: a mission of less than 4 GB");
+        let cells = self.grid.cells().iter().map(|cell| code(*cell)).collect();
+        let rest = [length.to_le_bytes().to_vec(), notes, cells, self.visual.clone()].concat();
+        let checksum = crc32fast::hash(&rest).to_le_bytes();
+        [MAGIC.as_slice(), &VERSION.to_le_bytes(), &checksum, &rest].concat()
+    }
+
+    /// The memory of these bytes. The visual maps are looked into when the robot wakes up.
+    ///
+    /// # Errors
+    /// When the bytes are no memory, of another version, damaged or cut off, or contradict themselves. No bytes make it panic.
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self, CheckpointError> {
+        let rest = bytes.strip_prefix(MAGIC).ok_or(CheckpointError::Foreign)?;
+        let (version, rest) = number(rest)?;
+        if version != VERSION {
+            return Err(CheckpointError::Version { found: version });
+        }
+        let (checksum, rest) = number(rest)?;
+        require(crc32fast::hash(rest) == checksum, "its checksum is another")?;
+        let (length, rest) = number(rest)?;
+        let (notes, rest) = split(rest, length as usize)?;
+        let notes: Notes =
+            serde_json::from_slice(notes).map_err(|error| CheckpointError::Notes(error.to_string()))?;
+        let [width, height] = notes.cells;
+        let geometry = GridGeometry::new(notes.resolution, Vector2::from(notes.origin), width, height)?;
+        let (cells, visual) = split(rest, geometry.len())?;
+        let cells = cells.iter().map(|code| cell(*code)).collect::<Result<Vec<_>, _>>()?;
+        require(notes.visual_maps.values().all(VisualAnchor::is_valid), "a visual map lies nowhere")?;
+        Ok(Self {
+            visual: visual.to_vec(),
+            visual_maps: notes.visual_maps,
+            grid: OccupancyGrid::new(geometry, cells)?,
+            mission: notes.mission.validated()?,
+        })
+    }
+}
+
+fn code(cell: Cell) -> u8 {
+    match cell {
+        Cell::Unknown => 0,
+        Cell::Free => 1,
+        Cell::Occupied => 2,
+    }
+}
+
+fn cell(code: u8) -> Result<Cell, CheckpointError> {
+    match code {
+        0 => Ok(Cell::Unknown),
+        1 => Ok(Cell::Free),
+        2 => Ok(Cell::Occupied),
+        _ => Err(CheckpointError::Damaged { what: "a cell is none" }),
+    }
+}
+
+fn require(holds: bool, what: &'static str) -> Result<(), CheckpointError> {
+    if holds { Ok(()) } else { Err(CheckpointError::Damaged { what }) }
+}
+
+fn number(bytes: &[u8]) -> Result<(u32, &[u8]), CheckpointError> {
+    let (number, rest) =
+        bytes.split_first_chunk().ok_or(CheckpointError::Damaged { what: "it is cut off" })?;
+    Ok((u32::from_le_bytes(*number), rest))
+}
+
+fn split(bytes: &[u8], at: usize) -> Result<(&[u8], &[u8]), CheckpointError> {
+    bytes.split_at_checked(at).ok_or(CheckpointError::Damaged { what: "it is cut off" })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mission::{Mission, Task, TaskEnd, TaskRecord};
+    use proptest::prelude::*;
+    use trundle_core::{Pose2, Pose3, Stamp};
+
+    fn anchor(variance: f64) -> VisualAnchor {
+        let covariance = nalgebra::Matrix3::from_diagonal_element(variance).into();
+        VisualAnchor { map_from_visual: Pose3::identity(), covariance }
+    }
+
+    fn memory() -> Checkpoint {
+        let mission = Mission::new(vec![Task::Explore, Task::Go(Pose2::new(1.5, -2.0, 0.25)), Task::Return]);
+        let mission = MissionState::new(mission.unwrap());
+        let ended = TaskRecord {
+            index: 1,
+            task: Task::Go(Pose2::new(0.1, 0.2, 0.3)),
+            end: TaskEnd::Done,
+            from: Stamp::from_nanos(5),
+            to: Stamp::from_nanos(7),
+            pose: Pose2::new(0.1, 0.21, 0.3),
+            before_restart: false,
+        };
+        Checkpoint {
+            visual: vec![7; 100],
+            visual_maps: BTreeMap::from([(0, anchor(0.0)), (3, anchor(1e-4))]),
+            grid: OccupancyGrid::from_ascii(0.05, "#.#\n?..\n").unwrap(),
+            mission: MissionState { places: vec![0, 2, 3], ended: vec![ended], ..mission },
+        }
+    }
+
+    #[test]
+    fn it_comes_back_as_it_was() {
+        assert_eq!(Checkpoint::from_bytes(&memory().to_bytes()), Ok(memory()));
+    }
+
+    #[test]
+    fn what_is_none_is_refused_with_the_reason() {
+        let error = |bytes: &[u8]| Checkpoint::from_bytes(bytes).unwrap_err().to_string();
+        assert_eq!(error(b"P5 3 3 255"), "no memory of trundle");
+        let mut bytes = memory().to_bytes();
+        bytes[8] = 9;
+        assert_eq!(error(&bytes), "memory of version 9, expected 2");
+    }
+
+    proptest! {
+        #[test]
+        fn a_flipped_bit_or_a_missing_end_is_noticed(at in 0..300_usize, bit in 0..8_u8) {
+            let whole = memory().to_bytes();
+            let (at, mut flipped) = (at % whole.len(), whole.clone());
+            flipped[at] ^= 1 << bit;
+            prop_assert!(Checkpoint::from_bytes(&flipped).is_err());
+            prop_assert!(Checkpoint::from_bytes(&whole[..at]).is_err());
+        }
+    }
+}

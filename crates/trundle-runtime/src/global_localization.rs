@@ -1,0 +1,240 @@
+//! Global localization: the pose by scans alone, anywhere on the map.
+
+use crate::{config::RobotConfig, range_source::RangeSource};
+use nalgebra::Matrix3;
+use trundle_core::{Invalid, OccupancyGrid, Pose2, Scan, Stamp};
+use trundle_mapping::{Localized, MapLocalizer, MapperConfig, ParticleConfig};
+
+/// Where a robot is that does not know its place and whose camera recognises none: looked for in the map by its scans.
+///
+/// Scans taken on the way are laid together by the odometry and looked for in the whole map ([`MapLocalizer`]); a place that is proved
+/// better than every other must then explain some more scans before it is told.
+#[derive(Debug)]
+pub(crate) struct GlobalLocalization {
+    config: ParticleConfig,
+    /// Searches so far: each draws its own chances.
+    searches: u64,
+    search: Search,
+}
+
+/// How far the search has come.
+#[derive(Debug)]
+enum Search {
+    /// The place is known.
+    None,
+    /// It is to be looked for in this map.
+    Begun(OccupancyGrid),
+    UnderWay {
+        localizer: Box<MapLocalizer>,
+        /// Scans in a row that the place found explains.
+        explained: usize,
+    },
+    /// In a map that cannot be searched.
+    Hopeless,
+}
+
+/// A place that was found.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct LocalizedPose {
+    /// Of the scan.
+    pub(crate) stamp: Stamp,
+    pub(crate) map_from_base: Pose2,
+    /// As a right perturbation (m, m, rad).
+    pub(crate) covariance: Matrix3<f64>,
+}
+
+/// So many scans after the first, each 10 deg or 0.3 m farther on, must fit the place as well: in the dark, and where images show
+/// enough to be recognised and are not, which speaks against every place of the map.
+const CONFIRMED: (usize, usize) = (6, 18);
+/// A robot that stands shows the same again and again, s: as long as it likes.
+const STANDING: f64 = 3600.0;
+/// A scan that the map explains less of does not fit the place.
+const LEAST_EXPLAINED: f64 = 0.75;
+/// Standard deviation of a depth camera's range at 0 m, at least: cells have corners.
+const DEPTH_NOISE: f64 = 0.01;
+
+impl GlobalLocalization {
+    /// Nothing is looked for yet.
+    pub(crate) fn new(config: &RobotConfig, blind_range: f64) -> Result<Self, Invalid> {
+        let map = MapperConfig { blind_range, ..config.mapping.clone() };
+        let laser = ParticleConfig { map, wait_gate: STANDING, ..ParticleConfig::default() };
+        let config = match config.sight {
+            RangeSource::Laser => laser,
+            RangeSource::DepthCamera => {
+                let range_noise_growth = config.scan.noise_growth;
+                let range_noise = config.scan.noise_base.max(DEPTH_NOISE);
+                ParticleConfig { range_noise, range_noise_growth, ..laser }
+            }
+        };
+        Ok(Self { config: config.validated()?, searches: 0, search: Search::None })
+    }
+
+    /// Whether a place is looked for.
+    pub(crate) fn is_sought(&self) -> bool {
+        !matches!(self.search, Search::None)
+    }
+
+    /// Begins to look in a map.
+    pub(crate) fn search_pose(&mut self, grid: OccupancyGrid) {
+        self.search = Search::Begun(grid);
+    }
+
+    /// The place is known.
+    pub(crate) fn end(&mut self) {
+        self.search = Search::None;
+    }
+
+    /// Takes in a scan, `in_the_dark` where images show too little to be recognised; the place once it is certain.
+    /// Cost: linear in the map's area for each scan 10 deg or 0.3 m farther on, until a place is found.
+    pub(crate) fn look(
+        &mut self,
+        odom_from_base: Pose2,
+        scan: &Scan,
+        in_the_dark: bool,
+    ) -> Option<LocalizedPose> {
+        self.get_ready();
+        let confirmed = if in_the_dark { CONFIRMED.0 } else { CONFIRMED.1 };
+        let Search::UnderWay { localizer, explained: times } = &mut self.search else { return None };
+        match localizer.update(odom_from_base, scan) {
+            Localized::Known { map_from_base, covariance, explained, degenerate } => {
+                let fits = explained >= LEAST_EXPLAINED;
+                // One that shows a bare wall alone says little either way.
+                *times = if fits { *times + usize::from(degenerate == 0) } else { 0 };
+                let place = || LocalizedPose {
+                    stamp: scan.stamp(),
+                    map_from_base,
+                    covariance: seen_from(map_from_base, covariance),
+                };
+                (fits && *times > confirmed).then(place)
+            }
+            Localized::Lost(_) | Localized::Refused(_) => {
+                *times = 0;
+                None
+            }
+            Localized::Still => None,
+        }
+    }
+
+    /// Makes of a map what can be searched.
+    fn get_ready(&mut self) {
+        let Search::Begun(grid) = &self.search else { return };
+        self.searches += 1;
+        let localizer = MapLocalizer::from_grid(grid, self.config.clone(), self.searches);
+        self.search = match localizer {
+            Ok(localizer) => Search::UnderWay { localizer: Box::new(localizer), explained: 0 },
+            Err(_) => Search::Hopeless,
+        };
+    }
+}
+
+/// The covariance of a pose in the map's directions as one in its own.
+fn seen_from(pose: Pose2, covariance: Matrix3<f64>) -> Matrix3<f64> {
+    let (sin, cos) = pose.theta.sin_cos();
+    let turn = Matrix3::new(cos, sin, 0.0, -sin, cos, 0.0, 0.0, 0.0, 1.0);
+    turn * covariance * turn.transpose()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use trundle_core::{Beam, Cell, CellIndex, GridGeometry, Vector2};
+
+    /// A room of so many cells of 5 cm, with boxes (first and last column, first and last row) in it; its corner at the origin.
+    fn room(width: usize, height: usize, boxes: &[[usize; 4]]) -> OccupancyGrid {
+        let geometry = GridGeometry::new(0.05, Vector2::zeros(), width, height).unwrap();
+        let mut grid = OccupancyGrid::filled(geometry, Cell::Free);
+        for (col, row) in (0..width).flat_map(|col| (0..height).map(move |row| (col, row))) {
+            let is_wall = col == 0 || row == 0 || col == width - 1 || row == height - 1;
+            let is_in = |b: &[usize; 4]| (b[0]..=b[1]).contains(&col) && (b[2]..=b[3]).contains(&row);
+            if is_wall || boxes.iter().any(is_in) {
+                grid.set(CellIndex { col, row }, Cell::Occupied);
+            }
+        }
+        grid
+    }
+
+    /// What a depth camera's scan shows of a room from a pose.
+    fn scan(grid: &OccupancyGrid, at: Pose2, stamp: Stamp) -> Scan {
+        let beam = |i: i32| {
+            let bearing = at.theta + f64::from(i).to_radians();
+            let along = |steps: u32| f64::from(steps) * 0.01;
+            let is_there = |range: f64| {
+                grid.at(at.position() + Vector2::new(bearing.cos(), bearing.sin()) * range) == Cell::Occupied
+            };
+            let range = (0..500).map(along).find(|range| is_there(*range));
+            range.map_or(Beam::Free { range: 5.0 }, |range| Beam::Hit { range })
+        };
+        let (first, step) = ((-35_f64).to_radians(), 1_f64.to_radians());
+        Scan::new(stamp, Vector2::zeros(), first, step, (-35..=35).map(beam).collect()).unwrap()
+    }
+
+    /// Where a robot that turns three times at `at` is believed to be in `map`, by the scans of `truth`, and after how many.
+    fn found(
+        map: &OccupancyGrid,
+        truth: &OccupancyGrid,
+        (at, in_the_dark): (Pose2, bool),
+    ) -> Option<(Pose2, usize)> {
+        let mut global_localization = GlobalLocalization::new(&RobotConfig::default(), 0.5).unwrap();
+        assert!(
+            global_localization.look(at, &scan(truth, at, Stamp::default()), true).is_none(),
+            "nothing is looked for"
+        );
+        global_localization.search_pose(map.clone());
+        (0..108).find_map(|i: u32| {
+            let turned = Pose2::new(0.0, 0.0, 0.175 * f64::from(i));
+            let seen = scan(truth, at * turned, Stamp::from_nanos(i64::from(i) * 300_000_000));
+            let place = global_localization.look(turned, &seen, in_the_dark)?;
+            assert!(place.covariance.symmetric_eigenvalues().min() > 0.0);
+            Some((place.map_from_base * turned.inverse(), i as usize))
+        })
+    }
+
+    #[test]
+    fn a_robot_that_turns_on_the_spot_finds_its_place() {
+        let map = room(90, 60, &[[60, 75, 1, 20], [1, 12, 40, 58]]);
+        for at in [Pose2::new(1.5, 1.0, 0.3), Pose2::new(2.5, 2.2, -2.0), Pose2::new(3.9, 1.8, 1.5)] {
+            let (place, scans) = found(&map, &map, (at, true)).unwrap();
+            let (_, in_the_light) = found(&map, &map, (at, false)).unwrap();
+            assert!(scans >= CONFIRMED.0 && in_the_light >= scans + CONFIRMED.1 - CONFIRMED.0, "{scans}");
+            let off = at.inverse() * place;
+            assert!(off.position().norm() < 0.05 && off.theta.abs() < 0.02, "{place:?} for {at:?}");
+        }
+    }
+
+    #[test]
+    fn of_two_places_that_look_alike_it_takes_neither() {
+        let square = room(60, 60, &[]);
+        assert_eq!(found(&square, &square, (Pose2::new(1.2, 0.9, 0.4), true)), None);
+    }
+
+    #[test]
+    fn in_a_room_that_is_not_on_the_map_it_is_nowhere() {
+        let (map, other) =
+            (room(90, 60, &[[60, 75, 1, 20], [1, 12, 40, 58]]), room(50, 110, &[[1, 20, 50, 55]]));
+        assert_eq!(found(&map, &other, (Pose2::new(1.2, 1.5, 0.4), true)), None);
+        let unknown = OccupancyGrid::filled(*map.geometry(), Cell::Unknown);
+        assert_eq!(found(&unknown, &map, (Pose2::new(1.5, 1.0, 0.3), true)), None);
+    }
+
+    #[test]
+    fn a_robot_that_stands_is_no_surer_for_it() {
+        let map = room(90, 60, &[[60, 75, 1, 20], [1, 12, 40, 58]]);
+        let at = Pose2::new(1.5, 1.0, 0.3);
+        let mut global_localization = GlobalLocalization::new(&RobotConfig::default(), 0.5).unwrap();
+        global_localization.search_pose(map.clone());
+        for i in 0..40 {
+            let seen = scan(&map, at, Stamp::from_nanos(i * 3_000_000_000));
+            assert_eq!(global_localization.look(Pose2::IDENTITY, &seen, true), None);
+        }
+    }
+
+    #[test]
+    fn a_covariance_is_turned_into_the_robots_directions() {
+        let along_y = Matrix3::from_diagonal(&nalgebra::Vector3::new(1.0, 4.0, 0.1));
+        let facing = Pose2::new(3.0, 1.0, std::f64::consts::FRAC_PI_6);
+        let own = seen_from(facing, along_y);
+        // Most of it to the side, and to the left more when it lies ahead.
+        assert!((own[(0, 0)] - 1.75).abs() < 1e-12 && (own[(1, 1)] - 3.25).abs() < 1e-12);
+        assert!((own[(0, 1)] - 3.0 * 0.75_f64.sqrt() / 2.0).abs() < 1e-12 && own[(2, 2)] == 0.1);
+    }
+}

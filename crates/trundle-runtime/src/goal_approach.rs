@@ -1,0 +1,279 @@
+//! The last stage of a mission: which way the robot settles on its goal.
+//!
+//! Where there is room, an arc is faster; where it is tight, turns on the spot and straight moves get there, footprint-exact.
+//! The rule: an arc, when the law's own run from here is free and takes no longer than the manoeuvre that was found. Both are
+//! known to the end before one is taken: neither looking nor planning takes more than a part of a control step.
+
+mod report;
+mod selection;
+
+use crate::schedule::Ticker;
+use crate::world_state::WorldState;
+pub use report::GoalApproachReport;
+use report::Notes;
+use selection::{ApproachContext, ApproachSelection, Verdict};
+use serde::{Deserialize, Serialize};
+use trundle_control::StabilizerPreview;
+use trundle_core::{Footprint, Invalid, Pose2, Stamp, Twist2, require_in};
+use trundle_docking::{
+    DockingConfig, DockingPlanner, ObstacleScene, Positioner, PositionerConfig, PositionerInput,
+    PositionerReason,
+};
+
+/// How the robot settles on its goal.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct GoalApproachConfig {
+    /// Whether turns and straight moves may take over near the goal. Default true.
+    pub enabled: bool,
+    /// Nearer to the goal than this they may take over where no path is found or the safety monitor holds the robot, m, 0.05
+    /// to 5. Default 0.6 (ours).
+    pub near: f64,
+    /// What an arc must keep from obstacles of the map, m, 0 to 0.5. Default 0.02 (ours).
+    pub arc_margin: f64,
+    /// Turns and straight moves end, with a reason, when they have taken this, s, 1 to 3600. Default 120 (ours: the longest of
+    /// 500 corridor problems took half of it).
+    pub time_limit: f64,
+    /// They end after so many stops and waits for a way without a motion between that came to its end, 1 to 1000. Default 10
+    /// (ours: at a second each, somebody who passes by has passed).
+    pub most_stops: u32,
+    /// Planning of turns and straight moves. Default: as it comes, but a margin of 0.05, so that the safety monitor, which
+    /// stops 0.04 m before an obstacle, does not hold what was planned; and a tenth of the work, because the robot stands
+    /// meanwhile: a whole plan takes 2 * 10^7 counted steps at most, 7 s at 50 Hz.
+    pub planner: DockingConfig,
+    /// Carrying them out. Default: as it comes, but a control step is granted 60,000 counted steps of planning, 0.6 to 1 ms.
+    pub positioner: PositionerConfig,
+}
+
+impl Default for GoalApproachConfig {
+    fn default() -> Self {
+        Self {
+            enabled: true,
+            near: 0.6,
+            arc_margin: 0.02,
+            time_limit: 120.0,
+            most_stops: 10,
+            planner: DockingConfig {
+                margin: 0.05,
+                most_work: 5_000_000,
+                plan_work: 20_000_000,
+                ..DockingConfig::default()
+            },
+            positioner: PositionerConfig { step_work: 60_000, ..PositionerConfig::default() },
+        }
+    }
+}
+
+/// The scene is drawn anew so often, 1/s.
+const SCENE_HZ: f64 = 10.0;
+/// Slower than this the robot stands, m/s and rad/s.
+const STANDING: (f64, f64) = (0.02, 0.05);
+
+/// Chooses between an arc and a manoeuvre, and carries the manoeuvre out. A step plans for about
+/// [`PositionerConfig::step_work`]: no more than as much again beyond it.
+#[derive(Debug)]
+pub(crate) struct GoalApproach {
+    config: GoalApproachConfig,
+    docker: DockingPlanner,
+    footprint: Footprint,
+    choice: Option<ApproachSelection>,
+    positioner: Option<Positioner>,
+    scene: Option<ObstacleScene>,
+    scene_due: Ticker,
+    began: Option<Stamp>,
+    goal: Option<Pose2>,
+    notes: Notes,
+}
+
+/// What a step of the manoeuvre came to.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Progress {
+    Moving(Twist2),
+    Settled,
+    GivenUp(String),
+}
+
+impl GoalApproach {
+    pub(crate) fn new(config: &GoalApproachConfig, footprint: &Footprint) -> Result<Self, Invalid> {
+        require_in("docking.near", config.near, "m", 0.05, 5.0)?;
+        require_in("docking.arc_margin", config.arc_margin, "m", 0.0, 0.5)?;
+        require_in("docking.time_limit", config.time_limit, "s", 1.0, 3600.0)?;
+        require_in("docking.most_stops", f64::from(config.most_stops), "", 1.0, 1000.0)?;
+        // Its settings are checked here, once; later positioners are of the same.
+        Positioner::new(config.planner.clone(), config.positioner, footprint.clone(), Pose2::IDENTITY)?;
+        Ok(Self {
+            docker: DockingPlanner::new(config.positioner.planner(config.planner.clone()))?,
+            config: config.clone(),
+            footprint: footprint.clone(),
+            choice: None,
+            positioner: None,
+            scene: None,
+            scene_due: Ticker::new(SCENE_HZ),
+            began: None,
+            goal: None,
+            notes: Notes::default(),
+        })
+    }
+
+    /// What turns and straight moves have done for the goal of now, or the last one they were asked about.
+    pub(crate) fn report(&self) -> &GoalApproachReport {
+        &self.notes.report
+    }
+
+    /// Forgets the goal; what was done for it can still be told.
+    pub(crate) fn reset(&mut self) {
+        if self.positioner.take().is_some() {
+            self.notes.report.ended.get_or_insert_with(|| "broken off".to_owned());
+        }
+        self.choice = None;
+    }
+
+    /// Whether a goal is so near that turns and straight moves may replace a path.
+    pub(crate) fn is_near(&self, pose: &Pose2, goal: &Pose2) -> bool {
+        self.config.enabled && pose.distance(goal) <= self.config.near
+    }
+
+    /// At the end of the trajectory: begins to look whether turns and straight moves take over from the arc that `preview`
+    /// shows. [`GoalApproach::takes_over`] tells.
+    pub(crate) fn consider(&mut self, s: &WorldState<'_>, goal: Pose2, preview: StabilizerPreview) {
+        self.choice = None;
+        if self.config.enabled {
+            self.look_into(ApproachSelection::new(s.estimate.pose, goal, Some(preview)), goal);
+        }
+    }
+
+    /// Whether the robot had better stand until it is known: the arc is not free.
+    pub(crate) fn holds(&self) -> bool {
+        self.choice.as_ref().is_some_and(ApproachSelection::is_arc_lost)
+    }
+
+    /// A part of what [`GoalApproach::consider`] began: whether turns and straight moves take over now. A robot that still rolls is
+    /// brought to a stand first, by [`GoalApproach::step`], and measured there.
+    pub(crate) fn takes_over(&mut self, s: &WorldState<'_>) -> bool {
+        self.verdict(s) == Verdict::Manoeuvre && self.begin()
+    }
+
+    /// Turns and straight moves, if there are such: no path was found. It may take some calls to know.
+    pub(crate) fn begin_if_possible(&mut self, s: &WorldState<'_>, goal: Pose2) -> bool {
+        let pose = s.estimate.pose;
+        if !self.is_near(&pose, &goal) {
+            return false;
+        }
+        if !self.choice.as_ref().is_some_and(|choice| choice.is_about(&pose, &goal)) {
+            self.look_into(ApproachSelection::new(pose, goal, None), goal);
+        }
+        self.takes_over(s)
+    }
+
+    fn look_into(&mut self, choice: ApproachSelection, goal: Pose2) {
+        if self.goal != Some(goal) {
+            (self.goal, self.notes) = (Some(goal), Notes::default());
+        }
+        self.notes.report.plans += 1;
+        self.choice = Some(choice);
+    }
+
+    fn verdict(&mut self, s: &WorldState<'_>) -> Verdict {
+        let (Some(mut choice), Some(goal)) = (self.choice.take(), self.goal) else { return Verdict::Arc };
+        let means = ApproachContext {
+            docker: &self.docker,
+            footprint: &self.footprint,
+            arc_margin: self.config.arc_margin,
+            // The pose is measured before the first motion and after the last one too.
+            standing: 2.0 * self.config.positioner.measure_time,
+            work: self.config.positioner.step_work,
+        };
+        let verdict = choice.step(s, &means, || self.scene_around(s, &goal));
+        if verdict == Verdict::Open {
+            self.choice = Some(choice);
+        }
+        verdict
+    }
+
+    fn begin(&mut self) -> bool {
+        let Some(goal) = self.goal else { return false };
+        let (planner, config) = (self.config.planner.clone(), self.config.positioner);
+        self.positioner = Positioner::new(planner, config, self.footprint.clone(), goal).ok();
+        (self.choice, self.began, self.scene) = (None, None, None);
+        self.notes.restart();
+        self.positioner.is_some()
+    }
+
+    /// What stands around, and what is unknown: no camera looks where a manoeuvre backs up.
+    fn scene_around(&self, s: &WorldState<'_>, goal: &Pose2) -> ObstacleScene {
+        let (center, half) = self.config.planner.view(&self.footprint, &s.estimate.pose, goal);
+        ObstacleScene::from_grid(s.grid, center, half, true)
+    }
+
+    /// One control step of the manoeuvre.
+    pub(crate) fn step(&mut self, s: &WorldState<'_>) -> Progress {
+        let Some(goal) = self.positioner.as_ref().map(Positioner::goal) else {
+            return Progress::GivenUp("no goal to settle on".to_owned());
+        };
+        let began = *self.began.get_or_insert(s.now);
+        self.notes.report.time = s.now - began;
+        if self.notes.report.time > self.config.time_limit {
+            return self.given_up(format!("not settled within {:.0} s", self.config.time_limit));
+        }
+        if self.notes.report.motions == 0 && !stands(s.estimate.twist) {
+            return Progress::Moving(Twist2::ZERO);
+        }
+        if self.scene_due.due(s.now) || self.scene.is_none() {
+            self.scene = Some(self.scene_around(s, &goal));
+        }
+        let (Some(positioner), Some(scene)) = (&mut self.positioner, &self.scene) else {
+            return Progress::Moving(Twist2::ZERO);
+        };
+        let (pose, covariance) = (s.estimate.pose, s.estimate.covariance);
+        let report = positioner.step(&PositionerInput { stamp: s.now, pose, covariance, scene });
+        self.notes.note(&report);
+        if positioner.is_settled() {
+            self.notes.report.ended = Some("settled".to_owned());
+            return Progress::Settled;
+        }
+        if self.notes.stops > self.config.most_stops {
+            return self.given_up(told(&report.reason));
+        }
+        Progress::Moving(report.twist)
+    }
+
+    fn given_up(&mut self, reason: String) -> Progress {
+        self.positioner = None;
+        self.notes.report.ended = Some(reason.clone());
+        Progress::GivenUp(reason)
+    }
+
+    /// The safety monitor stopped the robot.
+    pub(crate) fn interrupted(&mut self, s: &WorldState<'_>) {
+        if let Some(positioner) = &mut self.positioner {
+            positioner.interrupted(s.now);
+            self.notes.interrupted();
+        }
+    }
+}
+
+fn stands(twist: Twist2) -> bool {
+    twist.v.abs() < STANDING.0 && twist.omega.abs() < STANDING.1
+}
+
+/// Why it stands, for a person.
+fn told(reason: &PositionerReason) -> String {
+    match reason {
+        PositionerReason::Obstacle(by) => format!("{by} is in the way while settling"),
+        PositionerReason::NoWay(Some(by)) => {
+            format!("no turns and straight moves lead to the goal: {by} is in the way")
+        }
+        PositionerReason::NoWay(None) => "no turns and straight moves to the goal were found".to_owned(),
+        PositionerReason::Refused(refusal) => refusal.to_string(),
+        PositionerReason::BadPose => "the pose is not a number".to_owned(),
+        PositionerReason::Planning => {
+            "the search for turns and straight moves did not come to an end".to_owned()
+        }
+        PositionerReason::Measuring | PositionerReason::Moving(_) | PositionerReason::Settled => {
+            "stopped again and again".to_owned()
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

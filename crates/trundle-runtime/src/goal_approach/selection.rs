@@ -1,0 +1,139 @@
+//! An arc, or turns and straight moves: looked into a part a control step, while the robot is on the arc already.
+
+use crate::world_state::WorldState;
+use trundle_control::StabilizerPreview;
+use trundle_core::{Footprint, Pose2};
+use trundle_docking::{DockingJob, DockingPlan, DockingPlanner, ObstacleScene};
+
+/// Poses of an arc that are looked at in a step.
+const POSES: usize = 100;
+
+/// What is known of the two ways of settling on a goal.
+#[derive(Debug)]
+pub(super) struct ApproachSelection {
+    goal: Pose2,
+    from: Pose2,
+    /// The arc, and how far it is looked at; none where there is no arc to go on with.
+    arc: Option<(StabilizerPreview, usize)>,
+    /// What stands about the arc.
+    scene: Option<ObstacleScene>,
+    planning: Option<DockingJob>,
+}
+
+/// What came of a part of it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Verdict {
+    /// Not known yet.
+    Open,
+    /// The arc stays.
+    Arc,
+    /// Turns and straight moves.
+    Manoeuvre,
+}
+
+/// With what both are looked at.
+pub(super) struct ApproachContext<'a> {
+    pub docker: &'a DockingPlanner,
+    pub footprint: &'a Footprint,
+    /// What an arc must keep from obstacles, m.
+    pub arc_margin: f64,
+    /// Standing before the first motion and after the last, s.
+    pub standing: f64,
+    /// For planning, in a step.
+    pub work: u64,
+}
+
+impl ApproachSelection {
+    /// Between an arc, where there is one, and turns and straight moves from `from`.
+    pub(super) fn new(from: Pose2, goal: Pose2, arc: Option<StabilizerPreview>) -> Self {
+        Self { goal, from, arc: arc.map(|arc| (arc, 0)), scene: None, planning: None }
+    }
+
+    /// Whether it is about settling from about here on this goal.
+    pub(super) fn is_about(&self, pose: &Pose2, goal: &Pose2) -> bool {
+        const HERE: f64 = 0.02;
+        self.goal == *goal && self.from.distance(pose) < HERE
+    }
+
+    /// Whether the arc is known to touch something, or to take for ever.
+    pub(super) fn is_arc_lost(&self) -> bool {
+        self.arc.as_ref().is_none_or(|(arc, _)| arc.time.is_none())
+    }
+
+    /// A part of it. `drawn` is what stands about the manoeuvre, asked for once.
+    pub(super) fn step(
+        &mut self,
+        s: &WorldState<'_>,
+        means: &ApproachContext<'_>,
+        scene: impl Fn() -> ObstacleScene,
+    ) -> Verdict {
+        if !self.is_arc_looked_at(s, means) {
+            return Verdict::Open;
+        }
+        let planning = match self.planning.take() {
+            Some(planning) => Ok(planning),
+            None => {
+                let margin = means.docker.config().margin;
+                means.docker.begin(margin, means.footprint, &scene(), self.from, self.goal)
+            }
+        };
+        let Ok(mut planning) = planning else { return Verdict::Arc };
+        let Some(plan) = planning.advance(means.work) else {
+            self.planning = Some(planning);
+            return Verdict::Open;
+        };
+        let manoeuvre = match plan {
+            DockingPlan::Found(found) => Some(found.manoeuvre.duration() + means.standing),
+            DockingPlan::Impossible(_) => None,
+        };
+        let arc = self.arc.as_ref().and_then(|(arc, _)| arc.time);
+        if arc_wins(arc, manoeuvre) { Verdict::Arc } else { Verdict::Manoeuvre }
+    }
+
+    /// Looks at a part of the arc; whether all of it has been looked at. An arc that is not free has no time.
+    fn is_arc_looked_at(&mut self, s: &WorldState<'_>, means: &ApproachContext<'_>) -> bool {
+        let Some((arc, looked)) = &mut self.arc else { return true };
+        if arc.time.is_none() || *looked == arc.poses.len() {
+            return true;
+        }
+        let scene = self.scene.get_or_insert_with(|| about(s, arc, means));
+        let end = (*looked + POSES).min(arc.poses.len());
+        let clear = |pose: &Pose2| scene.clearance(means.footprint, pose, means.arc_margin).is_none();
+        if !arc.poses[*looked..end].iter().all(clear) {
+            arc.time = None;
+        }
+        *looked = end;
+        false
+    }
+}
+
+/// What the map holds about an arc.
+fn about(s: &WorldState<'_>, arc: &StabilizerPreview, means: &ApproachContext<'_>) -> ObstacleScene {
+    let here = s.estimate.pose;
+    let reach = arc.poses.iter().map(|p| p.distance(&here)).fold(0.0, f64::max);
+    let half = reach + means.footprint.circumscribed_radius() + means.arc_margin + 0.1;
+    ObstacleScene::from_grid(s.grid, here.position(), half, false)
+}
+
+/// The rule: an arc that is free (its time, s), when no manoeuvre was found or none that is faster.
+pub(super) fn arc_wins(arc: Option<f64>, manoeuvre: Option<f64>) -> bool {
+    match (arc, manoeuvre) {
+        (Some(arc), Some(manoeuvre)) => arc <= manoeuvre,
+        // Without either the arc is tried: the safety monitor watches it.
+        (_, None) => true,
+        (None, Some(_)) => false,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_faster_of_two_free_ways_is_taken() {
+        assert!(arc_wins(Some(3.0), Some(5.0)));
+        assert!(!arc_wins(Some(6.0), Some(5.0)));
+        assert!(!arc_wins(None, Some(5.0)), "an arc that touches something");
+        assert!(arc_wins(None, None) && arc_wins(Some(1.0), None));
+    }
+}

@@ -1,0 +1,339 @@
+//! The mission executor: one goal at a time from the tasks of a mission.
+
+use crate::world_state::WorldState;
+use crate::{
+    behaviour::drive_state::DriveState,
+    behaviour::navigator::Goal,
+    mission::executor_config::MissionExecutorConfig,
+    mission::{Mission, MissionState, Task, TaskEnd, TaskRecord},
+    schedule::Ticker,
+};
+use std::collections::VecDeque;
+use trundle_core::{Invalid, Pose2, Stamp};
+use trundle_planning::{Exploration, Explorer, Frontier};
+
+/// Works through a mission: gives the navigator its goals, and notes what became of them.
+///
+/// | task | what it gives the navigator | ends when |
+/// |---|---|---|
+/// | go, return | the goal | it has arrived, or given up |
+/// | explore | a turn on the spot, then viewpoint after viewpoint | no frontier is left to look at |
+#[derive(Debug)]
+pub(crate) struct MissionExecutor {
+    explore: trundle_planning::ExploreConfig,
+    radius: f64,
+    queue: VecDeque<Entry>,
+    current: Option<Current>,
+    records: Vec<TaskRecord>,
+    look_due: Ticker,
+}
+
+/// A task that waits.
+#[derive(Debug, Clone, Copy)]
+struct Entry {
+    index: usize,
+    task: Task,
+    is_second_try: bool,
+}
+
+/// The task at hand.
+#[derive(Debug)]
+struct Current {
+    entry: Entry,
+    from: Stamp,
+    work: Work,
+}
+
+/// What is being done for it.
+#[derive(Debug)]
+enum Work {
+    /// Driving to its goal.
+    Going,
+    /// Looking around, or on the way to a viewpoint.
+    Exploring {
+        explorer: Box<Explorer>,
+        /// What it is on the way to look at.
+        frontier: Option<Frontier>,
+        /// Viewpoints that it came to.
+        views: usize,
+        /// Why it did not come to the last one that it did not come to.
+        failure: Option<String>,
+    },
+}
+
+/// So often an explorer asks whether what it drives to is still unknown, 1/s.
+const LOOK_HZ: f64 = 1.0;
+
+impl MissionExecutor {
+    /// A supervisor without a mission; the robot explores keeping `radius` m from things.
+    pub(crate) fn new(config: &MissionExecutorConfig, radius: f64) -> Result<Self, Invalid> {
+        // Its settings are checked here, once.
+        Explorer::new(config.explore, radius)?;
+        Ok(Self {
+            explore: config.explore,
+            radius,
+            queue: VecDeque::new(),
+            current: None,
+            records: Vec::new(),
+            look_due: Ticker::new(LOOK_HZ),
+        })
+    }
+
+    /// Takes up a mission, as far as it has come, in place of what is left of the old one.
+    pub(crate) fn begin(&mut self, mission: &MissionState) {
+        let was_put_off = |index: usize| {
+            mission.ended.iter().any(|r| r.index == index && matches!(r.end, TaskEnd::PutOff { .. }))
+        };
+        let entry = |(&index, &task)| Entry { index, task, is_second_try: was_put_off(index) };
+        self.queue = mission.places.iter().zip(mission.left.tasks()).map(entry).collect();
+        self.current = None;
+        self.records.clone_from(&mission.ended);
+    }
+
+    /// The tasks that have ended.
+    pub(crate) fn records(&self) -> &[TaskRecord] {
+        &self.records
+    }
+
+    /// The task at hand.
+    pub(crate) fn task(&self) -> Option<Task> {
+        self.current.as_ref().map(|current| current.entry.task)
+    }
+
+    /// How far the mission has come.
+    pub(crate) fn mission(&self) -> MissionState {
+        let entries = self.current.iter().map(|current| &current.entry).chain(&self.queue);
+        let (places, tasks) = entries.map(|entry| (entry.index, entry.task)).unzip();
+        let left = Mission::new(tasks).expect("invariant: these tasks are of a mission");
+        MissionState { left, places, ended: self.records.clone() }
+    }
+
+    /// Whether there is nothing left to do.
+    pub(crate) fn is_idle(&self) -> bool {
+        self.current.is_none() && self.queue.is_empty()
+    }
+
+    /// Why the mission is not done as a whole, once it is over.
+    pub(crate) fn failure(&self) -> Option<String> {
+        let lost: Vec<String> = self.records.iter().filter_map(told).collect();
+        (!lost.is_empty()).then(|| lost.join("; "))
+    }
+
+    /// Whether the next step may look for frontiers, or give a goal that is planned for at once.
+    pub(crate) fn may_take_long(&self, s: &WorldState<'_>, state: &DriveState) -> bool {
+        let explores = matches!(&self.current, Some(Current { work: Work::Exploring { .. }, .. }));
+        let driving = matches!(state, DriveState::Driving | DriveState::Waiting { .. });
+        state.is_over() && !self.is_idle() || explores && driving && self.look_due.will_be_due(s.now)
+    }
+
+    /// What the navigator, which is in `state`, shall do next; `None` to go on.
+    pub(crate) fn step(&mut self, s: &WorldState<'_>, state: &DriveState) -> Option<Goal> {
+        match state {
+            DriveState::Arrived => self.reached(s),
+            DriveState::Stopped { reason } => self.failed(reason, s),
+            _ => {}
+        }
+        if self.current.is_none() {
+            return self.apply_answer(s);
+        }
+        self.look_on(s, state)
+    }
+
+    /// Begins the next task.
+    fn apply_answer(&mut self, s: &WorldState<'_>) -> Option<Goal> {
+        let entry = self.queue.pop_front()?;
+        let (work, goal) = match entry.task {
+            Task::Go(pose) => (Work::Going, Goal::Exact(pose)),
+            Task::Return => (Work::Going, Goal::Exact(Pose2::IDENTITY)),
+            Task::Explore => {
+                let explorer = Explorer::new(self.explore, self.radius)
+                    .expect("invariant: the same settings were checked when the supervisor was made");
+                let explorer = Box::new(explorer);
+                (Work::Exploring { explorer, frontier: None, views: 0, failure: None }, Goal::Spin)
+            }
+        };
+        self.current = Some(Current { entry, from: s.now, work });
+        Some(goal)
+    }
+
+    /// While it explores: where to look next, when what it drives to has been seen or has come to an end.
+    fn look_on(&mut self, s: &WorldState<'_>, state: &DriveState) -> Option<Goal> {
+        let over = matches!(state, DriveState::Arrived | DriveState::Stopped { .. });
+        let driving = matches!(state, DriveState::Driving | DriveState::Waiting { .. });
+        let Some(Current { work: Work::Exploring { explorer, frontier, views, failure }, .. }) =
+            &mut self.current
+        else {
+            return None;
+        };
+        if !(over || driving && self.look_due.due(s.now)) {
+            return None;
+        }
+        match explorer.next(s.grid, s.estimate.pose) {
+            Exploration::Next(view) => {
+                let is_old = |old: &Frontier| view.frontier.is_that_at(old.middle);
+                if !over && frontier.as_ref().is_some_and(is_old) {
+                    return None;
+                }
+                *frontier = Some(view.frontier);
+                Some(Goal::Viewpoint(view.pose))
+            }
+            Exploration::Complete { .. } => {
+                // Where nothing could be driven to, nothing was explored.
+                let reason = failure.take().filter(|_| *views == 0);
+                self.end(reason.map_or(TaskEnd::Done, |reason| TaskEnd::GivenUp { reason }), s);
+                self.apply_answer(s).or(Some(Goal::Stay))
+            }
+        }
+    }
+
+    /// The navigator has arrived.
+    fn reached(&mut self, s: &WorldState<'_>) {
+        match &mut self.current {
+            Some(Current { work: Work::Exploring { explorer, frontier, views, .. }, .. }) => {
+                if let Some(frontier) = frontier.take() {
+                    explorer.mark_viewed(&frontier);
+                    *views += 1;
+                }
+            }
+            Some(_) => self.end(TaskEnd::Done, s),
+            None => {}
+        }
+    }
+
+    /// The navigator has given up.
+    fn failed(&mut self, reason: &str, s: &WorldState<'_>) {
+        let Some(current) = &mut self.current else { return };
+        if let Work::Exploring { explorer, frontier, failure, .. } = &mut current.work {
+            *failure = Some(reason.to_owned());
+            // What cannot be driven to now may be later, but not without end.
+            if let Some(frontier) = frontier.take() {
+                explorer.mark_viewed(&frontier);
+            }
+            return;
+        }
+        let (entry, reason) = (current.entry, reason.to_owned());
+        if entry.is_second_try || self.queue.is_empty() {
+            return self.end(TaskEnd::GivenUp { reason }, s);
+        }
+        let returns = matches!(self.queue.back(), Some(Entry { task: Task::Return, .. }));
+        let place = self.queue.len() - usize::from(returns);
+        self.queue.insert(place, Entry { is_second_try: true, ..entry });
+        self.end(TaskEnd::PutOff { reason }, s);
+    }
+
+    fn end(&mut self, end: TaskEnd, s: &WorldState<'_>) {
+        if let Some(Current { entry, from, .. }) = self.current.take() {
+            let Entry { index, task, .. } = entry;
+            let (to, pose) = (s.now, s.estimate.pose);
+            self.records.push(TaskRecord { index, task, end, from, to, pose, before_restart: false });
+        }
+    }
+}
+
+fn told(record: &TaskRecord) -> Option<String> {
+    match &record.end {
+        TaskEnd::GivenUp { reason } => Some(format!("task {} ({}): {reason}", record.index + 1, record.task)),
+        TaskEnd::Done | TaskEnd::PutOff { .. } => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use trundle_core::{OccupancyGrid, PoseEstimate, Twist2};
+
+    fn surroundings(grid: &OccupancyGrid) -> WorldState<'_> {
+        let (stamp, covariance) = (Stamp::default(), nalgebra::Matrix3::zeros());
+        let estimate =
+            PoseEstimate { stamp, pose: Pose2::new(0.35, 0.35, 0.0), twist: Twist2::ZERO, covariance };
+        WorldState {
+            now: stamp,
+            estimate,
+            grid,
+            scan: None,
+            seen: None,
+            unplaced: 0.0,
+            motion: trundle_control::MotionSense::Wheels,
+            traffic: crate::world_state::DynamicObstacles::default(),
+        }
+    }
+
+    fn room() -> OccupancyGrid {
+        OccupancyGrid::from_ascii(
+            0.1,
+            "########\n#......#\n#......#\n#......#\n#......#\n#......#\n########\n",
+        )
+        .unwrap()
+    }
+
+    fn executor(tasks: &[Task]) -> MissionExecutor {
+        let mut executor = MissionExecutor::new(&MissionExecutorConfig::default(), 0.17).unwrap();
+        executor.begin(&MissionState::new(Mission::new(tasks.to_vec()).unwrap()));
+        executor
+    }
+
+    #[test]
+    fn goals_come_one_after_the_other_and_what_fails_comes_again_before_the_return() {
+        let (grid, [a, b]) = (room(), [1.0, 2.0].map(|x| Pose2::new(x, 0.0, 0.0)));
+        let mut executor = executor(&[Task::Go(a), Task::Go(b), Task::Return]);
+        let s = surroundings(&grid);
+        let stopped = DriveState::Stopped { reason: "a closed door".to_owned() };
+        assert!(executor.may_take_long(&s, &DriveState::Idle), "a goal is planned for at once");
+        assert_eq!(executor.step(&s, &DriveState::Idle), Some(Goal::Exact(a)));
+        assert!(!executor.may_take_long(&s, &DriveState::Driving));
+        assert_eq!(executor.step(&s, &DriveState::Driving), None);
+        assert_eq!(executor.step(&s, &stopped), Some(Goal::Exact(b)));
+        assert_eq!(executor.step(&s, &DriveState::Arrived), Some(Goal::Exact(a)), "once more");
+        assert_eq!(executor.step(&s, &stopped), Some(Goal::Exact(Pose2::IDENTITY)));
+        assert_eq!(executor.step(&s, &DriveState::Arrived), None);
+        assert!(executor.is_idle());
+        assert_eq!(executor.records().len(), 4);
+        assert!(
+            executor.failure().unwrap().contains("task 1 (go to (1.00 m, 0.00 m, 0 deg)): a closed door")
+        );
+    }
+
+    #[test]
+    fn switched_off_on_the_way_it_goes_on_and_what_was_done_stays_done() {
+        let (grid, [a, b]) = (room(), [1.0, 2.0].map(|x| Pose2::new(x, 0.0, 0.0)));
+        let mut first = executor(&[Task::Go(a), Task::Go(b), Task::Return]);
+        let s = surroundings(&grid);
+        first.step(&s, &DriveState::Idle);
+        assert_eq!(first.step(&s, &DriveState::Arrived), Some(Goal::Exact(b)));
+        let mut second = executor(&[]);
+        second.begin(&first.mission().woken());
+        assert_eq!(second.step(&s, &DriveState::Idle), Some(Goal::Exact(b)));
+        assert_eq!(second.step(&s, &DriveState::Arrived), Some(Goal::Exact(Pose2::IDENTITY)));
+        let ended: Vec<_> = second.records().iter().map(|r| (r.index, r.before_restart)).collect();
+        assert_eq!(ended, [(0, true), (1, false)]);
+    }
+
+    #[test]
+    fn where_no_view_can_be_driven_to_nothing_was_explored() {
+        let mut grid = room();
+        for row in 1..6 {
+            grid.set(trundle_core::CellIndex { col: 7, row }, trundle_core::Cell::Unknown);
+        }
+        let mut executor = executor(&[Task::Explore]);
+        let s = surroundings(&grid);
+        assert_eq!(executor.step(&s, &DriveState::Idle), Some(Goal::Spin));
+        let mut next = executor.step(&s, &DriveState::Arrived);
+        let stopped = DriveState::Stopped { reason: "no way".to_owned() };
+        while let Some(Goal::Viewpoint(_)) = next {
+            next = executor.step(&s, &stopped);
+        }
+        assert!(executor.is_idle());
+        assert!(executor.failure().unwrap().contains("no way"));
+    }
+
+    #[test]
+    fn a_room_that_is_all_known_is_explored_with_one_turn() {
+        let grid = room();
+        let mut executor = executor(&[Task::Explore]);
+        let s = surroundings(&grid);
+        assert_eq!(executor.step(&s, &DriveState::Idle), Some(Goal::Spin));
+        assert_eq!(executor.step(&s, &DriveState::Initializing), None);
+        assert_eq!(executor.step(&s, &DriveState::Arrived), Some(Goal::Stay));
+        assert!(executor.is_idle() && executor.failure().is_none());
+    }
+}

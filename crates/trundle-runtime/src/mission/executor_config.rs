@@ -1,0 +1,41 @@
+//! Configuration of the mission executor.
+
+use serde::{Deserialize, Serialize};
+use trundle_core::{Invalid, require_in};
+use trundle_planning::ExploreConfig;
+
+/// How missions are carried out, and when the robot loses patience.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct MissionExecutorConfig {
+    /// The robot stands so long before its first plan, s, 0 to 60: the gyro's bias is measured and the first map drawn.
+    /// Default 1.5 (ours).
+    pub opening: f64,
+    /// Without getting on for so long a goal is given up, s, 1 to 3600. Default 75: longer than a person stands in a door.
+    /// What counts is way, and turns while it drives or settles, at one place up to one whole turn.
+    pub patience: f64,
+    /// A position less sure than this (one sigma) is no position: the robot is lost, m, 0.1 to 10. Default 0.7 (ours).
+    pub lost_sigma: f64,
+    /// Exploration.
+    pub explore: ExploreConfig,
+}
+
+impl Default for MissionExecutorConfig {
+    fn default() -> Self {
+        Self { opening: 1.5, patience: 75.0, lost_sigma: 0.7, explore: ExploreConfig::default() }
+    }
+}
+
+impl MissionExecutorConfig {
+    /// Passes a valid configuration through.
+    ///
+    /// # Errors
+    /// When a number is outside its range.
+    pub fn validated(self) -> Result<Self, Invalid> {
+        require_in("supervisor.opening", self.opening, "s", 0.0, 60.0)?;
+        require_in("supervisor.patience", self.patience, "s", 1.0, 3600.0)?;
+        require_in("supervisor.lost_sigma", self.lost_sigma, "m", 0.1, 10.0)?;
+        self.explore.validated()?;
+        Ok(self)
+    }
+}

@@ -1,0 +1,204 @@
+//! Whether scans and map are of one place: where no image says so, a robot that was carried away finds out by what does not fit.
+
+use trundle_core::{Beam, Cell, CellIndex, OccupancyGrid, Pose2, Scan, Stamp, Vector2};
+
+/// Watches scans that contradict the map.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct ScanMapConsistency {
+    /// Since when they all have.
+    since: Option<Stamp>,
+    /// When the last scan was taken, and how much of it contradicts the map.
+    last: Option<(Stamp, f64)>,
+}
+
+/// What the map says of a scan.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Fit {
+    /// It may be of this place.
+    Fits,
+    /// It is not, or much has changed: it does not belong on the map.
+    Contradicts,
+    /// All scans have contradicted the map for so long that the robot is elsewhere.
+    Elsewhere,
+}
+
+/// A hit so near to something on the map, m, is that: what estimate and map err by.
+const NEAR: f64 = 0.25;
+/// A scan contradicts the map when so much of what the map knows of it does. Somebody who comes near hides less.
+const MUCH: f64 = 0.45;
+/// Or so much at once, where the scan before fitted: what is new comes into view bit by bit.
+const AT_ONCE: f64 = 0.15;
+/// A scan fits when no more than this contradicts the map.
+const FITS: f64 = 0.03;
+/// The scan before, s: one at the map's rate, or the one before that.
+const JUST_NOW: f64 = 0.5;
+/// And the map knows so much of its hits at least.
+const KNOWN: f64 = 0.15;
+/// Scans that contradict the map for so long are of another place, s.
+const LASTS: f64 = 1.5;
+
+impl ScanMapConsistency {
+    /// Judges a scan taken at `map_from_base`, as believed.
+    pub(crate) fn judge(&mut self, grid: &OccupancyGrid, map_from_base: Pose2, scan: &Scan) -> Fit {
+        let part = contradicted(grid, map_from_base, scan);
+        let before = self.last.replace((scan.stamp(), part));
+        let before = before.filter(|(at, _)| scan.stamp() - *at <= JUST_NOW);
+        if before.is_none() {
+            // What was before a gap says nothing of what lasts.
+            self.since = None;
+        }
+        let fitted = before.is_some_and(|(_, part)| part <= FITS);
+        let enough = if fitted || self.since.is_some() { AT_ONCE } else { MUCH };
+        if part < enough {
+            self.since = None;
+            return Fit::Fits;
+        }
+        let since = *self.since.get_or_insert(scan.stamp());
+        if scan.stamp() - since < LASTS {
+            return Fit::Contradicts;
+        }
+        self.forget();
+        Fit::Elsewhere
+    }
+
+    /// Something else tells the place.
+    pub(crate) fn forget(&mut self) {
+        *self = Self::default();
+    }
+}
+
+/// The part of the hits that the map knows of which are where it has nothing, or behind what it has; 0 where it knows too few.
+fn contradicted(grid: &OccupancyGrid, map_from_base: Pose2, scan: &Scan) -> f64 {
+    let origin = map_from_base.transform(scan.origin());
+    let ends = scan.beams().iter().enumerate().filter_map(|(i, beam)| match beam {
+        Beam::Hit { range } => Some(map_from_base.transform(scan.point(i, *range))),
+        _ => None,
+    });
+    let (mut agree, mut contradict, mut unknown) = (0_usize, 0_usize, 0_usize);
+    for end in ends {
+        match judged(grid, origin, end) {
+            Some(true) => agree += 1,
+            Some(false) => contradict += 1,
+            None => unknown += 1,
+        }
+    }
+    let known = agree + contradict;
+    let is_enough = known > 0 && known as f64 >= KNOWN * (known + unknown) as f64;
+    if is_enough { contradict as f64 / known as f64 } else { 0.0 }
+}
+
+/// Whether the map has something where a beam ends; `None` where it does not know.
+fn judged(grid: &OccupancyGrid, origin: Vector2, end: Vector2) -> Option<bool> {
+    let about = |at| around(grid, at);
+    if about(end).any(|cell| cell == Cell::Occupied) {
+        return Some(true);
+    }
+    let (way, step) = (end - origin, grid.geometry().resolution);
+    let count = ((way.norm() - NEAR).max(0.0) / step) as usize;
+    let mut on_the_way = (0..count).map(|i| origin + way * (i as f64 * step / way.norm()));
+    let is_behind = on_the_way.any(|point| grid.at(point) == Cell::Occupied);
+    // Beside what nobody has seen a wall may begin.
+    let is_clear = || grid.at(end) == Cell::Free && about(end).all(|cell| cell == Cell::Free);
+    (is_behind || is_clear()).then_some(false)
+}
+
+/// The cells within [`NEAR`] of a point, as a square; those off the map are unknown.
+fn around(grid: &OccupancyGrid, at: Vector2) -> impl Iterator<Item = Cell> + '_ {
+    let geometry = grid.geometry();
+    let reach = (NEAR / geometry.resolution).ceil() as i64;
+    let middle = (at - geometry.origin) / geometry.resolution;
+    let (col, row) = (middle.x.floor() as i64, middle.y.floor() as i64);
+    let get = move |col: i64, row: i64| match (usize::try_from(col), usize::try_from(row)) {
+        (Ok(col), Ok(row)) if col < geometry.width && row < geometry.height => {
+            grid.get(CellIndex { col, row })
+        }
+        _ => Cell::Unknown,
+    };
+    (row - reach..=row + reach).flat_map(move |r| (col - reach..=col + reach).map(move |c| get(c, r)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use trundle_core::GridGeometry;
+
+    /// A room of 6 x 4 m with a box in it, as far as `known` says (m along x); its corner at the origin.
+    fn room(known: f64) -> OccupancyGrid {
+        let geometry = GridGeometry::new(0.05, Vector2::zeros(), 120, 80).unwrap();
+        let mut grid = OccupancyGrid::filled(geometry, Cell::Free);
+        for k in 0..geometry.len() {
+            let cell = geometry.cell(k);
+            let is_wall = [0, 119].contains(&cell.col) || [0, 79].contains(&cell.row);
+            let is_box = (70..90).contains(&cell.col) && cell.row < 30;
+            if geometry.center(cell).x > known {
+                grid.set(cell, Cell::Unknown);
+            } else if is_wall || is_box {
+                grid.set(cell, Cell::Occupied);
+            }
+        }
+        grid
+    }
+
+    /// What a camera sees of the room from a pose; `before`: nothing farther than this, as behind somebody, in part of the view.
+    fn scan(at: Pose2, time: f64, before: Option<f64>) -> Scan {
+        let grid = room(f64::INFINITY);
+        let beam = |i: i32| {
+            let bearing = at.theta + f64::from(i).to_radians();
+            let along = |k: u32| f64::from(k) * 0.02;
+            let is_there = |r: f64| {
+                grid.at(at.position() + Vector2::new(bearing.cos(), bearing.sin()) * r) == Cell::Occupied
+            };
+            let range = (0..400).map(along).find(|r| is_there(*r)).unwrap_or(8.0);
+            let hidden = before.filter(|_| (-10..20).contains(&i));
+            Beam::Hit { range: hidden.map_or(range, |near| range.min(near)) }
+        };
+        let step = 1_f64.to_radians();
+        let beams = (-35..=35).map(beam).collect();
+        Scan::new(Stamp::default().after(time), Vector2::zeros(), -35.0 * step, step, beams).unwrap()
+    }
+
+    /// What becomes of scans taken at `truth` every 0.2 s by a robot that believes to stand elsewhere.
+    fn told(grid: &OccupancyGrid, truth: Pose2, believed: Pose2, before: Option<f64>) -> Vec<Fit> {
+        let mut watch = ScanMapConsistency::default();
+        (0..9).map(|i| watch.judge(grid, believed, &scan(truth, 0.2 * f64::from(i), before))).collect()
+    }
+
+    #[test]
+    fn a_robot_that_was_carried_away_finds_out_by_what_does_not_fit() {
+        let here = Pose2::new(1.0, 2.0, 0.0);
+        for truth in [Pose2::new(4.8, 2.0, -2.0), Pose2::new(5.3, 3.3, 1.5), Pose2::new(1.0, 2.0, 3.0)] {
+            let told = told(&room(f64::INFINITY), truth, here, None);
+            assert_eq!(told[0], Fit::Contradicts, "{truth:?}");
+            assert_eq!(told[8], Fit::Elsewhere, "{truth:?}: {told:?}");
+        }
+    }
+
+    #[test]
+    fn errors_people_and_what_nobody_has_seen_contradict_nothing() {
+        let here = Pose2::new(1.0, 2.0, 0.2);
+        let off = here * Pose2::new(0.1, -0.08, 0.05);
+        for (known, before) in [(9.0, None), (9.0, Some(0.8)), (2.0, None)] {
+            let told = told(&room(known), here, off, before);
+            assert!(told.iter().all(|fit| *fit == Fit::Fits), "{known} {before:?}: {told:?}");
+        }
+        // In a map of nothing nothing can be contradicted.
+        let told = told(&room(-1.0), here, Pose2::new(3.0, 1.0, 2.0), None);
+        assert!(told.iter().all(|fit| *fit == Fit::Fits));
+    }
+
+    #[test]
+    fn what_changes_at_once_needs_less() {
+        let (grid, here) = (room(f64::INFINITY), Pose2::new(1.0, 2.0, 0.0));
+        let fits = |before: &[Option<f64>]| {
+            let mut watch = ScanMapConsistency::default();
+            let scans = before.iter().zip(0..).map(|(before, i)| scan(here, 0.2 * f64::from(i), *before));
+            scans.map(|scan| watch.judge(&grid, here, &scan)).collect::<Vec<_>>()
+        };
+        let hidden = Some(1.0);
+        assert_eq!(fits(&[None, hidden])[1], Fit::Contradicts, "30 of 71 deg at once");
+        assert_eq!(fits(&[hidden, hidden])[1], Fit::Fits, "it stood there before");
+        let lasts = [[None].as_slice(), &[hidden; 9]].concat();
+        assert_eq!(fits(&lasts)[9], Fit::Elsewhere);
+        assert_eq!(fits(&[None, hidden, None, None])[3], Fit::Fits, "it has gone");
+    }
+}

@@ -1,0 +1,14 @@
+//! The sensor that gives the scans.
+
+use serde::{Deserialize, Serialize};
+
+/// What the robot sees its surroundings with: what its map is drawn from and what its safety monitor watches.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum RangeSource {
+    /// The depth camera, its images cut to a scan.
+    #[default]
+    DepthCamera,
+    /// A 2-D laser's own scans. A camera, where there is one, still corrects the pose.
+    Laser,
+}

@@ -1,0 +1,166 @@
+//! Timing of the control loop: jitter, response, missed deadlines.
+
+use crate::Histogram;
+use serde::Serialize;
+use std::time::{Duration, Instant};
+use trundle_core::{Invalid, require_in};
+
+/// When control is due.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LoopTimerConfig {
+    /// Between two readings of the wheels, s, 0.001 to 1. Default 0.02: the Kobuki's 50 Hz.
+    pub period: f64,
+    /// So long before the next reading is due nothing else is begun, s, 0 to `period`. Default 0.006: taking up an image takes
+    /// 1 to 5 ms.
+    pub reserve: f64,
+    /// A command that comes so much later than it should is a missed deadline, s, above 0 to 10. Default 0.1: at 0.7 m/s the robot is
+    /// 7 cm on.
+    pub deadline: f64,
+}
+
+impl Default for LoopTimerConfig {
+    fn default() -> Self {
+        Self { period: 0.02, reserve: 0.006, deadline: 0.1 }
+    }
+}
+
+impl LoopTimerConfig {
+    /// Passes a valid configuration through.
+    ///
+    /// # Errors
+    /// When a number is outside its range.
+    pub fn validated(self) -> Result<Self, Invalid> {
+        require_in("period", self.period, "s", 1e-3, 1.0)?;
+        require_in("reserve", self.reserve, "s", 0.0, self.period)?;
+        require_in("deadline", self.deadline, "s", 1e-3, 10.0)?;
+        Ok(self)
+    }
+}
+
+/// The beat of the control loop: notes when commands leave, and says when there is time for other things.
+#[derive(Debug)]
+pub struct LoopTimer {
+    config: LoopTimerConfig,
+    /// When the last reading was taken up.
+    beat: Option<Instant>,
+    /// When the last command left.
+    command: Option<Instant>,
+    intervals: Histogram,
+    jitter: Histogram,
+    responses: Histogram,
+    missed: u64,
+}
+
+/// How control kept time. Milliseconds; quantiles to 1 %.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct LoopTimerReport {
+    /// Control steps.
+    pub steps: u64,
+    /// Between two commands, median.
+    pub interval_median_ms: f64,
+    /// How far the time between two commands is from the period, median.
+    pub jitter_median_ms: f64,
+    /// Of the same, 99 of 100 are at most.
+    pub jitter_p99_ms: f64,
+    /// Of the same, 999 of 1000 are at most.
+    pub jitter_p999_ms: f64,
+    /// Of the same, the largest.
+    pub jitter_most_ms: f64,
+    /// From a reading of the wheels to its command, median.
+    pub response_median_ms: f64,
+    /// Of the same, 999 of 1000 are at most.
+    pub response_p999_ms: f64,
+    /// Of the same, the largest.
+    pub response_most_ms: f64,
+    /// Times between two commands that were longer than period and deadline: a base with a time-out stops by itself.
+    pub missed_deadlines: u64,
+}
+
+impl LoopTimer {
+    /// A loop that has not begun.
+    pub fn new(config: LoopTimerConfig) -> Self {
+        Self {
+            config,
+            beat: None,
+            command: None,
+            intervals: Histogram::default(),
+            jitter: Histogram::default(),
+            responses: Histogram::default(),
+            missed: 0,
+        }
+    }
+
+    /// A reading of the wheels, which arrived a moment ago, is taken up.
+    pub fn begin(&mut self) {
+        self.beat = Some(Instant::now());
+    }
+
+    /// The command for a reading that arrived at `arrival` has left.
+    pub fn end(&mut self, arrival: Instant) {
+        let now = Instant::now();
+        self.responses.note((now - arrival).as_secs_f64() * 1e3);
+        if let Some(last) = self.command.replace(now) {
+            let interval = (now - last).as_secs_f64();
+            self.intervals.note(interval * 1e3);
+            self.jitter.note((interval - self.config.period).abs() * 1e3);
+            self.missed += u64::from(interval > self.config.period + self.config.deadline);
+        }
+    }
+
+    /// None when there is time for other things; else in how long there will be, unless a reading comes first.
+    pub fn time_for_others(&self) -> Option<Duration> {
+        let LoopTimerConfig { period, reserve, .. } = self.config;
+        let since = self.beat?.elapsed().as_secs_f64();
+        let is_busy = since > period - reserve && since < period + reserve;
+        is_busy.then(|| Duration::from_secs_f64(period + reserve - since))
+    }
+
+    /// How it kept time; none before the second command.
+    pub fn report(&self) -> Option<LoopTimerReport> {
+        Some(LoopTimerReport {
+            steps: self.responses.count(),
+            interval_median_ms: self.intervals.quantile(0.5)?,
+            jitter_median_ms: self.jitter.quantile(0.5)?,
+            jitter_p99_ms: self.jitter.quantile(0.99)?,
+            jitter_p999_ms: self.jitter.quantile(0.999)?,
+            jitter_most_ms: self.jitter.most()?,
+            response_median_ms: self.responses.quantile(0.5)?,
+            response_p999_ms: self.responses.quantile(0.999)?,
+            response_most_ms: self.responses.most()?,
+            missed_deadlines: self.missed,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn before_the_first_reading_there_is_time() {
+        let mut pulse = LoopTimer::new(LoopTimerConfig::default().validated().unwrap());
+        assert!(pulse.time_for_others().is_none() && pulse.report().is_none());
+        let always = LoopTimerConfig { reserve: 0.02, ..LoopTimerConfig::default() };
+        pulse.config = always;
+        pulse.begin();
+        assert!(pulse.time_for_others().is_some_and(|wait| wait <= Duration::from_millis(40)));
+    }
+
+    #[test]
+    fn a_late_command_is_a_missed_deadline() {
+        let config = LoopTimerConfig { period: 0.001, reserve: 0.0, deadline: 0.001 };
+        let mut pulse = LoopTimer::new(config);
+        pulse.end(Instant::now());
+        std::thread::sleep(Duration::from_millis(5));
+        pulse.end(Instant::now());
+        let report = pulse.report().unwrap();
+        assert_eq!((report.steps, report.missed_deadlines), (2, 1));
+        assert!(report.jitter_most_ms > 2.0);
+    }
+
+    #[test]
+    fn numbers_are_checked() {
+        let bad = LoopTimerConfig { reserve: 0.03, ..LoopTimerConfig::default() };
+        assert_eq!(bad.validated().unwrap_err().field, "reserve");
+    }
+}

@@ -1,0 +1,105 @@
+//! Placement of a thread: core, niceness, real-time rank.
+
+use std::time::Duration;
+
+/// Where a thread runs, and how urgently.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct ThreadPlacement {
+    /// The processor core, from 0; none: any.
+    pub core: Option<usize>,
+    /// So much nicer to others than the thread that starts it, 0 to 39. Default 0.
+    pub nice: i32,
+    /// Whether it runs before every thread that is not, whatever their niceness, where the system allows it (Linux: `SCHED_FIFO`).
+    /// For threads that compute little. Default false.
+    pub is_first: bool,
+}
+
+impl ThreadPlacement {
+    /// Puts the calling thread there; whether the system granted all of it. Elsewhere than on Linux nothing is granted.
+    pub fn take(self) -> bool {
+        let pinned = self.core.is_none_or(pin);
+        let ranked = self.nice == 0 || rank(self.nice);
+        let is_first = !self.is_first || go_first();
+        pinned && ranked && is_first
+    }
+}
+
+#[cfg(target_os = "linux")]
+fn pin(core: usize) -> bool {
+    use rustix::thread::{CpuSet, sched_setaffinity};
+    let mut set = CpuSet::new();
+    if core >= CpuSet::MAX_CPU {
+        return false;
+    }
+    set.set(core);
+    sched_setaffinity(None, &set).is_ok()
+}
+
+/// Linux counts niceness by thread; none is the calling one.
+#[cfg(target_os = "linux")]
+fn rank(nicer: i32) -> bool {
+    use rustix::process::{getpriority_process, setpriority_process};
+    getpriority_process(None).and_then(|now| setpriority_process(None, now + nicer)).is_ok()
+}
+
+/// Of the ranks 1 to 99 of real-time threads: below those of the kernel's own.
+#[cfg(target_os = "linux")]
+const RANK: i32 = 10;
+
+#[cfg(target_os = "linux")]
+fn go_first() -> bool {
+    let rank = libc::sched_param { sched_priority: RANK };
+    // What such a thread starts is not first itself.
+    let policy = libc::SCHED_FIFO | libc::SCHED_RESET_ON_FORK;
+    // SAFETY: the call reads one valid structure and changes nothing but how the calling thread (0) is scheduled.
+    unsafe { libc::sched_setscheduler(0, policy, &rank) == 0 }
+}
+
+#[cfg(not(target_os = "linux"))]
+fn go_first() -> bool {
+    false
+}
+
+#[cfg(not(target_os = "linux"))]
+fn pin(_core: usize) -> bool {
+    false
+}
+
+#[cfg(not(target_os = "linux"))]
+fn rank(_nice: i32) -> bool {
+    false
+}
+
+/// What the calling thread has computed so far; none where threads have no clock of their own.
+#[cfg(unix)]
+pub fn thread_time() -> Option<Duration> {
+    let time = rustix::time::clock_gettime(rustix::time::ClockId::ThreadCPUTime);
+    Some(Duration::new(time.tv_sec.unsigned_abs(), u32::try_from(time.tv_nsec).ok()?))
+}
+
+/// What the calling thread has computed so far; none where threads have no clock of their own.
+#[cfg(not(unix))]
+pub fn thread_time() -> Option<Duration> {
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn a_thread_can_be_pinned_and_made_nicer() {
+        let place = ThreadPlacement { core: Some(0), nice: 5, is_first: false };
+        assert!(std::thread::spawn(move || place.take()).join().unwrap());
+        let nowhere = ThreadPlacement { core: Some(100_000), ..ThreadPlacement::default() };
+        assert!(!std::thread::spawn(move || nowhere.take()).join().unwrap());
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn the_clock_of_a_thread_never_goes_back() {
+        let before = thread_time().unwrap();
+        assert!(thread_time().unwrap() >= before);
+    }
+}

@@ -1,0 +1,73 @@
+//! A robot that does not know its place, and where its scans put it.
+
+use super::{MOTION_SEEN, Robot};
+use crate::{
+    behaviour::navigator::position_sigma, global_localization::LocalizedPose,
+    monitors::scan_map_consistency::Fit, range_source::RangeSource,
+};
+use trundle_core::Scan;
+use trundle_localization::{Correction, Localizer};
+
+impl Robot {
+    /// A scan of a laser that the robot sees by.
+    pub(super) fn on_laser(&mut self, scan: &Scan) {
+        let odometer = self.odometry_at(scan.stamp());
+        if let (Some(perception), Some(odometer)) = (&mut self.perception, odometer) {
+            let place = perception.search_pose(odometer.pose, scan, true, &mut self.times);
+            self.note_place(place);
+        }
+        self.see(scan.clone());
+    }
+
+    /// A robot that does not know its place is where its scans fit the map alone; where that is still to be found, it is looked for.
+    pub(super) fn note_place(&mut self, place: Option<LocalizedPose>) {
+        let is_lost = |localizer: &Localizer| position_sigma(&localizer.estimate()) >= self.lost_sigma;
+        if let Some(LocalizedPose { stamp, map_from_base, covariance }) = place
+            && is_lost(&self.localizer)
+        {
+            match self.localizer.correct_scan(stamp, map_from_base, &covariance) {
+                Correction::Applied { .. } => {
+                    self.latest.unplaced = None;
+                    self.perception.iter_mut().for_each(|perception| perception.localized_by_scans());
+                }
+                // It is elsewhere than it was believed to be, however unsurely: the next scan tells where.
+                _ => self.localizer.set_pose_unknown(),
+            }
+        }
+        let is_lost = is_lost(&self.localizer);
+        let Some(perception) = &mut self.perception else { return };
+        match (is_lost, perception.global_localization.is_sought()) {
+            (true, false) if self.mapper.is_redrawing() => {}
+            (true, false) => perception.global_localization.search_pose(self.mapper.grid().clone()),
+            (false, true) => perception.global_localization.end(),
+            _ => {}
+        }
+    }
+
+    /// Whether a scan may be of the place where the robot believes to be. Where images tell, they are believed; where none has for a
+    /// while, a robot whose scans contradict the map must have been carried away.
+    pub(super) fn is_of_this_place(&mut self, scan: &Scan) -> bool {
+        let (now, watch) = (scan.stamp(), &mut self.latest.scan_map_consistency);
+        if self.sight == RangeSource::Laser {
+            return true;
+        }
+        if self.latest.located.is_some_and(|located| now - located <= MOTION_SEEN) {
+            watch.forget();
+            return true;
+        }
+        let Ok(pose) = self.localizer.pose_at(now) else { return true };
+        let fit = watch.judge(self.mapper.grid(), pose, scan);
+        if fit == Fit::Elsewhere {
+            self.lose_place();
+            self.perception.iter_mut().for_each(|perception| perception.kidnapped());
+        }
+        fit == Fit::Fits
+    }
+
+    /// It was carried away.
+    pub(super) fn lose_place(&mut self) {
+        self.localizer.set_pose_unknown();
+        self.latest.scan_map_consistency.forget();
+        self.forget_traffic();
+    }
+}

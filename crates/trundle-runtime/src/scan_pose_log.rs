@@ -1,0 +1,97 @@
+//! Poses of the scans that were drawn into the grid, for a redraw after a correction.
+
+use std::collections::{BTreeMap, BTreeSet};
+use trundle_core::{Pose2, Pose3, Stamp};
+
+/// Where the visual map said that the camera was when each scan was drawn, so that the grid can follow when it says otherwise.
+#[derive(Debug, Default)]
+pub(crate) struct ScanPoseLog {
+    visual: BTreeMap<Stamp, Pose3>,
+    /// So many are looked over for what is not kept any more; 0: the first number.
+    most: usize,
+}
+
+/// So many are noted before any is let go.
+const FEW: usize = 2048;
+
+impl ScanPoseLog {
+    /// Notes a scan that was drawn while the visual map had the camera at `visual_from_camera`. Those that the map has not `kept` are let
+    /// go from time to time, and then it says so: what is noted grows with what is kept.
+    pub(crate) fn note<I: Iterator<Item = Stamp>>(
+        &mut self,
+        stamp: Stamp,
+        visual_from_camera: Pose3,
+        kept: impl FnOnce() -> I,
+    ) -> bool {
+        let is_thinned = self.visual.len() >= self.most.max(FEW);
+        if is_thinned {
+            let kept: BTreeSet<Stamp> = kept().collect();
+            self.visual.retain(|stamp, _| kept.contains(stamp));
+            self.most = 2 * self.visual.len();
+        }
+        self.visual.insert(stamp, visual_from_camera);
+        is_thinned
+    }
+
+    /// Whether a scan of then may still move.
+    pub(crate) fn has(&self, stamp: Stamp) -> bool {
+        self.visual.contains_key(&stamp)
+    }
+
+    /// Takes over where the visual map has the camera by now: `new_from_old` (map frame) of every scan drawn that it still knows;
+    /// `base` says where a camera pose has the base, map frame.
+    pub(crate) fn follow(
+        &mut self,
+        now: &[(Stamp, Pose3)],
+        base: impl Fn(&Pose3) -> Option<Pose2>,
+    ) -> BTreeMap<Stamp, Pose2> {
+        let mut moved = BTreeMap::new();
+        for (stamp, new) in now {
+            let Some(old) = self.visual.get_mut(stamp) else { continue };
+            if let (Some(new_base), Some(old_base)) = (base(new), base(old)) {
+                moved.insert(*stamp, new_base * old_base.inverse());
+                *old = *new;
+            }
+        }
+        moved
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_not_kept_is_let_go() {
+        let mut scan_poses = ScanPoseLog::default();
+        let at = Stamp::from_nanos;
+        let thinned = (0..20_000)
+            .filter(|i| {
+                let is_thinned =
+                    scan_poses.note(at(*i), Pose3::identity(), || (0..20_000).step_by(100).map(at));
+                assert!(scan_poses.visual.len() <= FEW);
+                is_thinned
+            })
+            .count();
+        assert!((9..=12).contains(&thinned), "{thinned} times");
+        assert!((0..20_000).step_by(100).all(|i| scan_poses.has(at(i))));
+    }
+
+    #[test]
+    fn a_scan_moves_as_its_visual_pose_does_and_only_once() {
+        let mut scan_poses = ScanPoseLog::default();
+        let (stamp, forgotten) = (Stamp::from_nanos(1), Stamp::from_nanos(2));
+        let (old, new) = (Pose2::new(1.0, 0.0, 0.0), Pose2::new(1.0, 0.5, 0.1));
+        let base = |pose: &Pose3| Some(pose.to_pose2());
+        scan_poses.note(stamp, Pose3::from_pose2(old), std::iter::empty);
+        scan_poses.note(forgotten, Pose3::from_pose2(old), std::iter::empty);
+        let moved = scan_poses.follow(&[(stamp, Pose3::from_pose2(new))], base);
+        assert_eq!(moved.len(), 1);
+        // The scan was drawn 2 cm beside where the visual map had the base; it stays so.
+        let beside = Pose2::new(0.0, 0.02, 0.0);
+        let off = (moved[&stamp] * (old * beside)).inverse() * (new * beside);
+        assert!(off.log().norm() < 1e-12, "{off:?}");
+        let again = scan_poses.follow(&[(stamp, Pose3::from_pose2(new))], base);
+        assert!(again[&stamp].log().norm() < 1e-12);
+    }
+}

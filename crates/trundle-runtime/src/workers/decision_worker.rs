@@ -1,0 +1,70 @@
+//! The decision worker: mission executor and navigator.
+
+use crate::world_state::WorldState;
+use crate::{
+    behaviour::drive_state::DriveState,
+    behaviour::navigator::{Decision, Goal, Navigator},
+    config::RobotConfig,
+    mission::MissionState,
+    mission::executor::MissionExecutor,
+    stage::{Stage, StageTimes},
+    workers::fallback_controller::FallbackController,
+};
+use trundle_core::{Footprint, Invalid};
+
+/// Whoever decides: the mission's goals, plans, and the twist towards them.
+#[derive(Debug)]
+pub(crate) struct DecisionWorker {
+    pub(crate) navigator: Navigator,
+    pub(crate) executor: MissionExecutor,
+}
+
+/// Exploring, the robot keeps so much more from things than its footprint needs, m: a view is not worth a squeeze.
+const EXPLORING: f64 = 0.03;
+
+impl DecisionWorker {
+    pub(crate) fn new(config: &RobotConfig, footprint: &Footprint) -> Result<Self, Invalid> {
+        Ok(Self {
+            navigator: Navigator::new(config, footprint)?,
+            executor: MissionExecutor::new(&config.supervisor, footprint.circumscribed_radius() + EXPLORING)?,
+        })
+    }
+
+    pub(crate) fn begin(&mut self, mission: &MissionState) {
+        self.executor.begin(mission);
+        if mission.left.tasks().is_empty() {
+            self.navigator.apply_answer(Goal::Stay);
+        }
+    }
+
+    /// One decision.
+    pub(crate) fn step(&mut self, s: &WorldState<'_>, times: &mut StageTimes) -> Decision {
+        let (executor, navigator) = (&mut self.executor, &mut self.navigator);
+        if let Some(goal) = times.measure(Stage::Supervision, || executor.step(s, navigator.state())) {
+            navigator.apply_answer(goal);
+        }
+        navigator.step(s, times)
+    }
+
+    /// Whether the next decision may take longer than a control step has time: a plan, a look for frontiers, a search for turns
+    /// and straight moves. One that is believed long and is short costs little.
+    pub(crate) fn may_take_long(&self, s: &WorldState<'_>) -> bool {
+        self.executor.may_take_long(s, self.navigator.state()) || self.navigator.may_take_long(s)
+    }
+
+    /// What goes on as was decided last.
+    pub(crate) fn fallback(&self) -> FallbackController {
+        self.navigator.fallback()
+    }
+
+    /// What the robot is doing, and whether its mission is over: then the state is that of the whole mission.
+    pub(crate) fn state(&self) -> (DriveState, bool) {
+        let finished = self.executor.is_idle() && !self.executor.records().is_empty();
+        let state = match self.executor.failure() {
+            Some(reason) if finished => DriveState::Stopped { reason },
+            None if finished => DriveState::Arrived,
+            _ => self.navigator.state().clone(),
+        };
+        (state, finished)
+    }
+}

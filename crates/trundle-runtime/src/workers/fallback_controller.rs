@@ -1,0 +1,32 @@
+//! The fallback controller: steers while a decision is under way.
+
+use crate::behaviour::navigator::safety_input;
+use crate::world_state::WorldState;
+use trundle_control::{Follower, SafetyMonitor};
+use trundle_core::Twist2;
+
+/// Goes on as was decided last, control step by control step, while the captain thinks: along the trajectory, or with the
+/// last twist; safety has the last word as ever.
+#[derive(Debug)]
+pub(crate) struct FallbackController {
+    pub(crate) follower: Follower,
+    pub(crate) safety: SafetyMonitor,
+    /// What was wanted last; `None`: what the follower says.
+    pub(crate) wanted: Option<Twist2>,
+    pub(crate) touched: bool,
+    pub(crate) over_edge: bool,
+    /// What the base was asked for last.
+    pub(crate) sent: Twist2,
+}
+
+impl FallbackController {
+    /// One control step.
+    pub(crate) fn step(&mut self, s: &WorldState<'_>) -> Twist2 {
+        let follow = self.follower.step(&s.estimate, s.now);
+        let wanted = self.wanted.unwrap_or(follow.twist);
+        let report = self.safety.check(&safety_input(s, wanted, self.touched, self.over_edge));
+        self.follower.sent(report.twist);
+        self.sent = report.twist;
+        report.twist
+    }
+}

@@ -1,0 +1,103 @@
+//! Jobs and their results.
+
+use crate::world_state::OwnedWorldState;
+use crate::{
+    behaviour::navigator::Decision,
+    lazy_image::LazyImage,
+    stage::{Stage, StageTimes},
+    workers::decision_worker::DecisionWorker,
+    workers::perception_worker::{PerceptionResult, PerceptionWorker},
+};
+use serde::{Deserialize, Serialize};
+use trundle_core::Stamp;
+use trundle_localization::OdometryState;
+
+/// The worker of a job. Each worker runs one job at a time.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Worker {
+    /// Processes an image: camera pose and scan.
+    #[serde(alias = "lookout")]
+    Perception,
+    /// Decides what may take long: plans, frontiers, turns and straight moves.
+    #[serde(alias = "captain")]
+    Decision,
+}
+
+impl Worker {
+    /// All of them.
+    pub const ALL: [Self; 2] = [Worker::Perception, Worker::Decision];
+}
+
+/// Work that takes longer than a control step has time. It bears all that it needs: run it where you like, then give the
+/// answer to [`crate::Robot::take_up`].
+#[derive(Debug)]
+pub struct Job(pub(crate) Work);
+
+#[derive(Debug)]
+pub(crate) enum Work {
+    Look { perception: Box<PerceptionWorker>, image: LazyImage, odometer: Box<OdometryState> },
+    Decide { decision_worker: Box<DecisionWorker>, around: Box<OwnedWorldState> },
+}
+
+/// What a job came to.
+#[derive(Debug)]
+pub struct Answer {
+    pub(crate) result: Outcome,
+    pub(crate) times: Box<StageTimes>,
+}
+
+#[derive(Debug)]
+pub(crate) enum Outcome {
+    Looked {
+        perception: Box<PerceptionWorker>,
+        /// Of the image.
+        stamp: Stamp,
+        /// None: a frozen camera's; an error: no image.
+        sighting: Result<Option<Box<PerceptionResult>>, String>,
+    },
+    Decided {
+        decision_worker: Box<DecisionWorker>,
+        decision: Decision,
+        asked: Stamp,
+    },
+}
+
+impl Job {
+    /// Whose it is.
+    pub fn worker(&self) -> Worker {
+        match &self.0 {
+            Work::Look { .. } => Worker::Perception,
+            Work::Decide { .. } => Worker::Decision,
+        }
+    }
+
+    /// Does the work.
+    pub fn run(self) -> Answer {
+        let mut times = Box::<StageTimes>::default();
+        let result = match self.0 {
+            Work::Look { mut perception, image, odometer } => {
+                let stamp = image.stamp();
+                let image = times.measure(Stage::Decoding, || image.load());
+                let sighting =
+                    image.map(|image| perception.look(&image, *odometer, &mut times).map(Box::new));
+                Outcome::Looked { perception, stamp, sighting }
+            }
+            Work::Decide { mut decision_worker, around } => {
+                let decision = decision_worker.step(&around.surroundings(), &mut times);
+                Outcome::Decided { decision_worker, decision, asked: around.now() }
+            }
+        };
+        Answer { result, times }
+    }
+}
+
+impl Answer {
+    /// Whose it is.
+    pub fn worker(&self) -> Worker {
+        match &self.result {
+            Outcome::Looked { .. } => Worker::Perception,
+            Outcome::Decided { .. } => Worker::Decision,
+        }
+    }
+}

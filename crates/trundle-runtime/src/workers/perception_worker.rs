@@ -1,0 +1,218 @@
+//! The perception worker: camera pose by SLAM and scan, from an image.
+
+use crate::{
+    checkpoint::schedule::CheckpointSchedule,
+    config::RobotConfig,
+    global_localization::{GlobalLocalization, LocalizedPose},
+    monitors::camera_health::CameraHealth,
+    range_source::RangeSource,
+    scan_pose_log::ScanPoseLog,
+    stage::{Stage, StageTimes},
+};
+use trundle_core::{CameraMotion, Invalid, Pose2, Pose3, RgbdImage, Scan, Stamp};
+use trundle_localization::OdometryState;
+use trundle_mapping::DepthScanner;
+use trundle_slam::{MapFileError, RgbdSlam, TrackReport};
+
+/// All that is done with an image alone: the camera's pose by SLAM, and the scan.
+///
+/// What it finds depends on the images and the odometry that it was given, in their order, and on nothing else: it may work
+/// beside the control loop.
+#[derive(Debug)]
+pub(crate) struct PerceptionWorker {
+    sight: RangeSource,
+    base_from_camera: Pose3,
+    slam: RgbdSlam,
+    scanner: DepthScanner,
+    watch: CameraHealth,
+    /// The place by scans, while it is not known.
+    pub(crate) global_localization: GlobalLocalization,
+    /// Whether the place was last told by scans.
+    is_placed_by_scans: bool,
+    /// What the odometry said at the last image.
+    last: Option<OdometryState>,
+    /// Since when images that show enough have not been located.
+    unplaced: Option<Stamp>,
+    /// When the place was last looked for everywhere, since then.
+    searched: Option<Stamp>,
+    /// When the visual maps are to be saved; none: never.
+    pub(crate) saving: Option<CheckpointSchedule>,
+}
+
+/// What an image showed.
+#[derive(Debug)]
+pub(crate) struct PerceptionResult {
+    /// When the image was taken.
+    pub(crate) odom_from_base: Pose2,
+    pub(crate) track: TrackReport,
+    /// Where the robot sees by its camera.
+    pub(crate) scan: Option<Scan>,
+    /// Where its scans fit the map alone, while it does not know its place.
+    pub(crate) place: Option<LocalizedPose>,
+    /// Since when images that show enough have not been located.
+    pub(crate) unplaced: Option<Stamp>,
+    /// All poses of the visual map, when it was corrected by more than tracking goes along with.
+    pub(crate) bent: Option<Vec<(Stamp, Pose3)>>,
+    /// The robot must have been carried away: its place is looked for everywhere.
+    pub(crate) is_carried_away: bool,
+    /// The visual maps, when it was time to save them.
+    pub(crate) saved: Option<Vec<u8>>,
+}
+
+/// A correction of the visual map by more than this bends the grid, m and rad.
+const BENT: f64 = 0.02;
+/// An image with so many features shows enough to be located by.
+const ENOUGH_FEATURES: usize = 200;
+/// Images that show enough and are not located for so long, s, are of another place than the odometry says.
+const CARRIED_AWAY: f64 = 1.5;
+/// Not located for so long, s, the robot is not where it believes, and images that show less do not change that.
+pub(crate) const UNPLACED: f64 = 0.7;
+
+impl PerceptionWorker {
+    pub(crate) fn new(config: &RobotConfig, base_from_camera: Pose3) -> Result<Self, Invalid> {
+        let scanner = DepthScanner::new(config.camera, base_from_camera, config.scan.clone())?;
+        let blind_range = blind_range(config.sight, &scanner);
+        Ok(Self {
+            sight: config.sight,
+            base_from_camera,
+            slam: RgbdSlam::new(config.camera, config.slam.clone())?,
+            scanner,
+            global_localization: GlobalLocalization::new(config, blind_range)?,
+            watch: CameraHealth::default(),
+            is_placed_by_scans: false,
+            last: None,
+            unplaced: None,
+            searched: None,
+            saving: None,
+        })
+    }
+
+    /// Goes on with saved visual maps; where in them the camera is it has to recognise.
+    pub(crate) fn recall(&mut self, config: &RobotConfig, visual: &[u8]) -> Result<(), MapFileError> {
+        self.slam = RgbdSlam::load(visual, config.camera, config.slam.clone())?;
+        Ok(())
+    }
+
+    pub(crate) fn slam(&self) -> &RgbdSlam {
+        &self.slam
+    }
+
+    /// Nearer than this its scans show nothing, m.
+    pub(crate) fn blind_range(&self) -> f64 {
+        blind_range(self.sight, &self.scanner)
+    }
+
+    /// Looks at an image taken when the odometry said this; none when it is the last one again though the robot has moved.
+    pub(crate) fn look(
+        &mut self,
+        image: &RgbdImage,
+        odometer: OdometryState,
+        times: &mut StageTimes,
+    ) -> Option<PerceptionResult> {
+        let odom_from_base = odometer.pose;
+        if self.watch.is_frozen(image, odom_from_base) {
+            return None;
+        }
+        let prior = self.camera_motion_since_last_image(odometer);
+        let track = times.measure(Stage::Slam, || self.slam.step(image, prior));
+        let is_carried_away = self.is_carried_away(&track);
+        if is_carried_away {
+            self.slam.kidnapped();
+        }
+        let bent = is_bent(&track).then(|| self.slam.trajectory());
+        let scan = match self.sight {
+            RangeSource::DepthCamera => Some(times.measure(Stage::Scan, || self.scanner.scan(image))),
+            RangeSource::Laser => None,
+        };
+        let in_the_dark = track.features < ENOUGH_FEATURES;
+        let place = scan.as_ref().and_then(|scan| self.search_pose(odom_from_base, scan, in_the_dark, times));
+        let saved = self.save(image.stamp(), times);
+        let unplaced = self.unplaced;
+        Some(PerceptionResult { odom_from_base, track, scan, place, unplaced, is_carried_away, bent, saved })
+    }
+
+    /// Poses are wanted from now on of frames whose scans may still move.
+    pub(crate) fn forget_frames(&mut self, scan_poses: &ScanPoseLog) {
+        self.slam.forget_frames(|stamp| scan_poses.has(stamp));
+    }
+
+    /// The visual maps, when it is time to save them.
+    fn save(&mut self, now: Stamp, times: &mut StageTimes) -> Option<Vec<u8>> {
+        let saving = self.saving.as_mut().filter(|saving| saving.is_due(now))?;
+        let saved = times.measure(Stage::CheckpointSchedule, || self.slam.save());
+        saving.saved(now, saved.len());
+        Some(saved)
+    }
+
+    /// Looks for the place by a scan, while it is not known.
+    pub(crate) fn search_pose(
+        &mut self,
+        odom_from_base: Pose2,
+        scan: &Scan,
+        in_the_dark: bool,
+        times: &mut StageTimes,
+    ) -> Option<LocalizedPose> {
+        let global_localization = &mut self.global_localization;
+        let is_sought = global_localization.is_sought();
+        let look = || global_localization.look(odom_from_base, scan, in_the_dark);
+        is_sought.then(|| times.measure(Stage::Search, look)).flatten()
+    }
+
+    /// It was carried away, as others have found out: where images show the place again, it may be anywhere.
+    pub(crate) fn kidnapped(&mut self) {
+        self.slam.kidnapped();
+    }
+
+    /// Its scans tell the place: images that are not recognised do not take it back, until one is located again.
+    pub(crate) fn localized_by_scans(&mut self) {
+        self.is_placed_by_scans = true;
+        (self.unplaced, self.searched) = (None, None);
+    }
+
+    /// `previous_camera_from_camera` by wheels and gyro.
+    fn camera_motion_since_last_image(&mut self, odometer: OdometryState) -> Option<CameraMotion> {
+        let previous = self.last.replace(odometer)?;
+        Some(CameraMotion::of_base(odometer.since(&previous), self.base_from_camera))
+    }
+
+    /// Whether it is time to look for the place everywhere: the odometry's has not been recognised for a while.
+    fn is_carried_away(&mut self, track: &TrackReport) -> bool {
+        let shows_enough = track.features >= ENOUGH_FEATURES;
+        self.is_placed_by_scans &= !track.tracking.is_located();
+        if self.is_placed_by_scans {
+            return false;
+        }
+        if track.tracking.is_located() || !shows_enough && !self.has_been_unplaced(track.stamp) {
+            (self.unplaced, self.searched) = (None, None);
+        }
+        if track.tracking.is_located() || !shows_enough {
+            return false;
+        }
+        let since = *self.unplaced.get_or_insert(track.stamp);
+        let is_time = track.stamp - self.searched.unwrap_or(since) > CARRIED_AWAY;
+        if is_time {
+            self.searched = Some(track.stamp);
+        }
+        is_time
+    }
+
+    /// A robot that does not know its place does not know it before a bare wall either.
+    fn has_been_unplaced(&self, now: Stamp) -> bool {
+        self.unplaced.is_some_and(|since| now - since > UNPLACED)
+    }
+}
+
+/// Nearer than this its scans show nothing, m.
+fn blind_range(sight: RangeSource, scanner: &DepthScanner) -> f64 {
+    match sight {
+        RangeSource::DepthCamera => scanner.blind_range(),
+        RangeSource::Laser => 0.0,
+    }
+}
+
+/// Whether the visual map was corrected by more than tracking goes along with.
+fn is_bent(track: &TrackReport) -> bool {
+    let is_large =
+        |correction: &Pose3| correction.translation.norm() > BENT || correction.log().norm() > BENT;
+    track.closed_loop.is_some() || track.merged.is_some() || track.refined.as_ref().is_some_and(is_large)
+}

@@ -1,0 +1,100 @@
+//! The world state: what a decision needs, by reference and as a copy for a decision that runs beside the control loop.
+
+use trundle_control::{MotionSense, SafetyScan};
+use trundle_core::{OccupancyGrid, Pose2, PoseEstimate, Scan, Stamp, Vector2};
+use trundle_planning::MovingObstacle;
+
+/// What the robot knows of its surroundings when it decides.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct WorldState<'a> {
+    pub(crate) now: Stamp,
+    pub(crate) estimate: PoseEstimate,
+    pub(crate) grid: &'a OccupancyGrid,
+    /// The newest scan, carried by odometry.
+    pub(crate) scan: Option<SafetyScan<'a>>,
+    /// Stamp of the newest scan that shows something.
+    pub(crate) seen: Option<Stamp>,
+    /// For how long images that show enough have not been located, s.
+    pub(crate) unplaced: f64,
+    /// What tells how the robot moves.
+    pub(crate) motion: MotionSense,
+    pub(crate) traffic: DynamicObstacles<'a>,
+}
+
+/// What moves near by.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct DynamicObstacles<'a> {
+    pub(crate) movers: &'a [MovingObstacle],
+    /// Hits of what came near by lately and has not been seen to go, map frame, m.
+    pub(crate) unconfirmed: &'a [Vector2],
+    /// The map without them; none where nothing moves.
+    pub(crate) still: Option<&'a OccupancyGrid>,
+}
+
+impl<'a> WorldState<'a> {
+    /// The map that plans are made on: what moves is not part of it.
+    pub(crate) fn floor(&self) -> &'a OccupancyGrid {
+        self.traffic.still.unwrap_or(self.grid)
+    }
+}
+
+/// [`WorldState`] that can be taken elsewhere.
+#[derive(Debug)]
+pub(crate) struct OwnedWorldState {
+    now: Stamp,
+    estimate: PoseEstimate,
+    grid: OccupancyGrid,
+    /// With `odom_from_base` when it was taken, and now.
+    scan: Option<(Scan, Pose2, Pose2)>,
+    seen: Option<Stamp>,
+    unplaced: f64,
+    motion: MotionSense,
+    movers: Vec<MovingObstacle>,
+    unconfirmed: Vec<Vector2>,
+    still: Option<OccupancyGrid>,
+}
+
+impl From<&WorldState<'_>> for OwnedWorldState {
+    fn from(s: &WorldState<'_>) -> Self {
+        Self {
+            now: s.now,
+            estimate: s.estimate,
+            grid: s.grid.clone(),
+            scan: s.scan.map(|seen| (seen.scan.clone(), seen.odom_at_scan, seen.odom_now)),
+            seen: s.seen,
+            unplaced: s.unplaced,
+            motion: s.motion,
+            movers: s.traffic.movers.to_vec(),
+            unconfirmed: s.traffic.unconfirmed.to_vec(),
+            still: s.traffic.still.cloned(),
+        }
+    }
+}
+
+impl OwnedWorldState {
+    pub(crate) fn now(&self) -> Stamp {
+        self.now
+    }
+
+    pub(crate) fn surroundings(&self) -> WorldState<'_> {
+        let scan = self.scan.as_ref();
+        WorldState {
+            now: self.now,
+            estimate: self.estimate,
+            grid: &self.grid,
+            scan: scan.map(|(scan, odom_at_scan, odom_now)| SafetyScan {
+                scan,
+                odom_at_scan: *odom_at_scan,
+                odom_now: *odom_now,
+            }),
+            seen: self.seen,
+            unplaced: self.unplaced,
+            motion: self.motion,
+            traffic: DynamicObstacles {
+                movers: &self.movers,
+                unconfirmed: &self.unconfirmed,
+                still: self.still.as_ref(),
+            },
+        }
+    }
+}
