@@ -7,7 +7,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 use trundle_core::{FrameId, Pose2, Stamp, Twist2};
 use trundle_io::{EncodedEvent, PoseInFrame, PosesInFrame};
-use trundle_runtime::{Answer, DriveState, LazyImage, Robot, Stage, StepReport, Worker};
+use trundle_runtime::{Answer, DriveState, LazyImage, Reason, Robot, Stage, StepReport, Worker};
 
 /// A run under way: feeds the robot and records each input and output.
 pub struct RunSession<'s> {
@@ -127,7 +127,7 @@ impl<'s> RunSession<'s> {
             }
         }
         if self.is_interrupted {
-            self.log.state = DriveState::Stopped { reason: "the user ended the run".to_owned() };
+            self.log.state = DriveState::Stopped { reason: Reason::Interrupted };
         }
         let (queue_lengths, lines_lost) = (self.recorder.queue_lengths.clone(), self.recorder.lines_lost);
         let last = if self.recorder.writes_checkpoints() { self.robot.memory() } else { None };

@@ -7,7 +7,7 @@ use trundle_app::{AppError, Progress};
 use trundle_core::{Pose2, Vector2};
 use trundle_eval::GoalError;
 use trundle_io::{OutputFolder, Summary};
-use trundle_runtime::{DriveState, Mission, RobotConfig, Task};
+use trundle_runtime::{DriveState, Mission, ReasonKind, RobotConfig, Task};
 use trundle_sim::{Fault, FaultKind, FaultSchedule, Person, Scene, WheelSide};
 use trundle_viz::{Figure, Report, Table, Verdict};
 
@@ -16,10 +16,10 @@ use trundle_viz::{Figure, Report, Table, Verdict};
 enum End {
     /// At the goal, within 5 cm and 3 deg.
     Arrived,
-    /// Standing, with a reason that holds this word.
-    Stopped(&'static str),
+    /// At rest, with a reason of one of these kinds.
+    Stopped(&'static [ReasonKind]),
     /// Standing with such a reason, or at the goal within 15 cm and 5 deg: it has found its place again by scans alone.
-    FoundOrStopped(&'static str),
+    FoundOrStopped(&'static [ReasonKind]),
 }
 
 /// A fault scenario.
@@ -68,11 +68,11 @@ fn scenarios() -> Vec<FaultScenario> {
             8.0,
             FOREVER,
             FaultKind::CameraDropped { probability: 1.0 },
-            End::Stopped("image"),
+            End::Stopped(&[ReasonKind::ImageMissing]),
         ),
         broken("lights out", 8.0, FOREVER, FaultKind::LightsOut, End::Arrived),
         broken("depth gone for 10 s", 8.0, 18.0, FaultKind::DepthGone, End::Arrived),
-        broken("depth gone", 8.0, FOREVER, FaultKind::DepthGone, End::Stopped("image")),
+        broken("depth gone", 8.0, FOREVER, FaultKind::DepthGone, End::Stopped(&[ReasonKind::ImageMissing])),
         broken("frames late by 500 ms", 0.0, FOREVER, FaultKind::CameraLate { delay_s: 0.5 }, End::Arrived),
         broken("a wheel slips on a carpet", 8.0, 11.0, slips, End::Arrived),
         broken("gyro stuck", 8.0, FOREVER, FaultKind::GyroStuck, End::Arrived),
@@ -82,7 +82,7 @@ fn scenarios() -> Vec<FaultScenario> {
         two(
             "in the dark, encoders stuck",
             [(8.0, FOREVER, FaultKind::LightsOut), (8.0, FOREVER, FaultKind::EncodersStuck)],
-            End::Stopped("count nothing"),
+            End::Stopped(&[ReasonKind::WheelsUnresponsive, ReasonKind::MotionUnknown]),
         ),
         two(
             "dark for 10 s, encoders stuck",
@@ -97,7 +97,7 @@ fn scenarios() -> Vec<FaultScenario> {
         two(
             "carried away in the dark",
             [(8.0, FOREVER, FaultKind::LightsOut), (12.0, 12.1, carried)],
-            End::FoundOrStopped("where the robot is"),
+            End::FoundOrStopped(&[ReasonKind::PoseUnknown]),
         ),
         FaultScenario {
             person: Some(in_the_door(60.0)),
@@ -105,12 +105,12 @@ fn scenarios() -> Vec<FaultScenario> {
         },
         FaultScenario {
             person: Some(in_the_door(3600.0)),
-            ..plain("the door stays closed", "house", End::Stopped("no way"))
+            ..plain("the door stays closed", "house", End::Stopped(&[ReasonKind::PathBlocked]))
         },
         FaultScenario {
             person: Some(onto_the_goal()),
             at_goal: true,
-            ..plain("the goal becomes unreachable", "demo", End::Stopped("no progress"))
+            ..plain("the goal becomes unreachable", "demo", End::Stopped(&[ReasonKind::NoProgress]))
         },
         FaultScenario {
             computer_fault: Some(ComputerFault::FullDisk),
@@ -214,8 +214,8 @@ fn is_good(trial: &Trial) -> bool {
         scenarios().into_iter().find(|scenario| scenario.name == trial.name).map(|scenario| scenario.end);
     let as_it_should = match (end, &numbers.state) {
         (Some(End::Arrived), _) => numbers.is_success(),
-        (Some(End::Stopped(word) | End::FoundOrStopped(word)), DriveState::Stopped { reason }) => {
-            reason.contains(word)
+        (Some(End::Stopped(kinds) | End::FoundOrStopped(kinds)), DriveState::Stopped { reason }) => {
+            kinds.iter().any(|kind| reason.is_due_to(*kind))
         }
         (Some(End::FoundOrStopped(_)), DriveState::Arrived) => numbers.goal_error.is_some_and(has_found),
         _ => false,

@@ -4,11 +4,13 @@
 //! The rule: an arc, when the law's own run from here is free and takes no longer than the manoeuvre that was found. Both are
 //! known to the end before one is taken: neither looking nor planning takes more than a part of a control step.
 
+mod end;
 mod report;
 mod selection;
 
 use crate::schedule::Ticker;
 use crate::world_state::WorldState;
+pub use end::{ApproachEnd, ApproachFailure};
 pub use report::GoalApproachReport;
 use report::Notes;
 use selection::{ApproachContext, ApproachSelection, Verdict};
@@ -17,7 +19,6 @@ use trundle_control::StabilizerPreview;
 use trundle_core::{Footprint, Invalid, Pose2, Stamp, Twist2, require_in};
 use trundle_docking::{
     DockingConfig, DockingPlanner, ObstacleScene, Positioner, PositionerConfig, PositionerInput,
-    PositionerReason,
 };
 
 /// How the robot settles on its goal.
@@ -90,7 +91,7 @@ pub(crate) struct GoalApproach {
 pub(crate) enum Progress {
     Moving(Twist2),
     Settled,
-    GivenUp(String),
+    GivenUp(ApproachFailure),
 }
 
 impl GoalApproach {
@@ -123,7 +124,7 @@ impl GoalApproach {
     /// Forgets the goal; what was done for it can still be told.
     pub(crate) fn reset(&mut self) {
         if self.positioner.take().is_some() {
-            self.notes.report.ended.get_or_insert_with(|| "broken off".to_owned());
+            self.notes.report.ended.get_or_insert(ApproachEnd::BrokenOff);
         }
         self.choice = None;
     }
@@ -208,12 +209,12 @@ impl GoalApproach {
     /// One control step of the manoeuvre.
     pub(crate) fn step(&mut self, s: &WorldState<'_>) -> Progress {
         let Some(goal) = self.positioner.as_ref().map(Positioner::goal) else {
-            return Progress::GivenUp("no goal to settle on".to_owned());
+            return Progress::GivenUp(ApproachFailure::NoGoal);
         };
         let began = *self.began.get_or_insert(s.now);
         self.notes.report.time = s.now - began;
         if self.notes.report.time > self.config.time_limit {
-            return self.given_up(format!("not settled within {:.0} s", self.config.time_limit));
+            return self.given_up(ApproachFailure::Timeout { limit: self.config.time_limit });
         }
         if self.notes.report.motions == 0 && !stands(s.estimate.twist) {
             return Progress::Moving(Twist2::ZERO);
@@ -228,19 +229,19 @@ impl GoalApproach {
         let report = positioner.step(&PositionerInput { stamp: s.now, pose, covariance, scene });
         self.notes.note(&report);
         if positioner.is_settled() {
-            self.notes.report.ended = Some("settled".to_owned());
+            self.notes.report.ended = Some(ApproachEnd::Settled);
             return Progress::Settled;
         }
         if self.notes.stops > self.config.most_stops {
-            return self.given_up(told(&report.reason));
+            return self.given_up(ApproachFailure::Positioner(report.reason));
         }
         Progress::Moving(report.twist)
     }
 
-    fn given_up(&mut self, reason: String) -> Progress {
+    fn given_up(&mut self, failure: ApproachFailure) -> Progress {
         self.positioner = None;
-        self.notes.report.ended = Some(reason.clone());
-        Progress::GivenUp(reason)
+        self.notes.report.ended = Some(ApproachEnd::GivenUp(failure.clone()));
+        Progress::GivenUp(failure)
     }
 
     /// The safety monitor stopped the robot.
@@ -254,25 +255,6 @@ impl GoalApproach {
 
 fn stands(twist: Twist2) -> bool {
     twist.v.abs() < STANDING.0 && twist.omega.abs() < STANDING.1
-}
-
-/// Why it stands, for a person.
-fn told(reason: &PositionerReason) -> String {
-    match reason {
-        PositionerReason::Obstacle(by) => format!("{by} is in the way while settling"),
-        PositionerReason::NoWay(Some(by)) => {
-            format!("no turns and straight moves lead to the goal: {by} is in the way")
-        }
-        PositionerReason::NoWay(None) => "no turns and straight moves to the goal were found".to_owned(),
-        PositionerReason::Refused(refusal) => refusal.to_string(),
-        PositionerReason::BadPose => "the pose is not a number".to_owned(),
-        PositionerReason::Planning => {
-            "the search for turns and straight moves did not come to an end".to_owned()
-        }
-        PositionerReason::Measuring | PositionerReason::Moving(_) | PositionerReason::Settled => {
-            "stopped again and again".to_owned()
-        }
-    }
 }
 
 #[cfg(test)]

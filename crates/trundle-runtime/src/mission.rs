@@ -2,34 +2,13 @@
 
 pub(crate) mod executor;
 pub(crate) mod executor_config;
+pub(crate) mod task;
 
+use crate::reason::Reason;
 use serde::{Deserialize, Serialize};
 use std::fmt;
+pub use task::Task;
 use trundle_core::{Invalid, Pose2, Stamp};
-
-/// One thing to do.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Task {
-    /// Drive to a pose (map frame) and settle on it.
-    Go(Pose2),
-    /// Look behind every frontier that can be reached, until the map is complete.
-    Explore,
-    /// Drive back to where the robot was switched on, and settle there.
-    Return,
-}
-
-impl fmt::Display for Task {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Go(pose) => {
-                write!(f, "go to ({:.2} m, {:.2} m, {:.0} deg)", pose.x, pose.y, pose.theta.to_degrees())
-            }
-            Self::Explore => f.write_str("explore"),
-            Self::Return => f.write_str("return to the start"),
-        }
-    }
-}
 
 /// Tasks in a row. A goal that cannot be reached while others wait is put off to the end, but before a return, and tried once
 /// more.
@@ -103,18 +82,21 @@ impl MissionState {
 /// How a task ended.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum TaskEnd {
     /// As it should.
     Done,
     /// Not done, for now: it comes once more at the end of the mission.
     PutOff {
         /// Why.
-        reason: String,
+        #[serde(flatten)]
+        reason: Reason,
     },
     /// Not done.
     GivenUp {
         /// Why.
-        reason: String,
+        #[serde(flatten)]
+        reason: Reason,
     },
 }
 

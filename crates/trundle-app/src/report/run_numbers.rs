@@ -6,7 +6,7 @@ use crate::{FinishedRun, RunSetup, TrackCounts};
 use serde_json::{Map, Value, json};
 use trundle_eval::{GoalError, goal_error};
 use trundle_io::Summary;
-use trundle_runtime::{DriveState, GoalApproachReport, Stage, StageTimes, TaskEnd};
+use trundle_runtime::{DriveState, GoalApproachReport, Reason, Stage, StageTimes, TaskEnd};
 
 /// The numbers of a run, all but the wall clock's.
 pub struct RunNumbers {
@@ -44,7 +44,7 @@ pub struct RunNumbers {
 
 fn docking_text(docking: &GoalApproachReport) -> String {
     let GoalApproachReport { plans, motions, restarts, waits, time, ended, .. } = docking;
-    let end = ended.as_deref().unwrap_or("not taken up");
+    let end = ended.as_ref().map_or_else(|| "unused".to_owned(), ToString::to_string);
     format!("{motions} motions, {plans} plans, {restarts} broken off, {waits} waits, {time:.1} s; {end}")
 }
 
@@ -173,6 +173,7 @@ impl RunNumbers {
             .set("seed", setup.seed)
             .set("success", self.is_success())
             .set("state", self.state.to_string())
+            .set("reason_kinds", self.state.reason().map(Reason::kinds).unwrap_or_default())
             .set("goals", &self.goals)
             .set("goal_error_m", self.goal_error.map(|e| e.distance))
             .set("goal_error_dx_m", self.goal_error.map(|e| e.dx))

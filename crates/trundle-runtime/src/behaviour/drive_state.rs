@@ -1,64 +1,66 @@
 //! The states of the robot.
 
+use crate::reason::Reason;
 use std::fmt;
 
-/// What the robot is doing, and why where it is not moving on.
+/// State of the robot, with the reason where the robot does not move on.
 ///
 /// From any state a new goal leads to `Initializing` (before the first plan) or `Planning`, a stop by the safety monitor to
 /// `Waiting`, and an estimate that is too unsure to `Lost`.
 ///
 /// | state | leads to |
 /// |---|---|
-/// | idle | planning, mapping |
-/// | mapping | planning; arrived, when only looking around was asked for |
-/// | planning | driving, docking, recovering |
-/// | driving | settling, docking, planning, waiting |
-/// | settling, docking | arrived, waiting, stopped |
-/// | waiting | driving, planning, docking, stopped |
+/// | idle | initializing, planning |
+/// | initializing | planning; arrived, when the goal is a turn on the spot |
+/// | planning | driving, maneuvering, recovering |
+/// | driving | final approach, maneuvering, planning, waiting |
+/// | final approach, maneuvering | arrived, waiting, stopped |
+/// | waiting | driving, planning, maneuvering, stopped |
 /// | recovering | driving, waiting |
-/// | lost | planning, stopped |
-/// | arrived, stopped | the next goal's |
+/// | lost | initializing, stopped |
+/// | arrived, stopped | initializing, with the next goal |
 #[derive(Debug, Clone, PartialEq, Default)]
+#[non_exhaustive]
 pub enum DriveState {
     /// No goal.
     #[default]
     Idle,
-    /// Seeing the surroundings: standing until the first view is drawn, or turning on the spot.
+    /// Observing the surroundings: at rest until the first scan is in the grid, or turning on the spot.
     Initializing,
     /// About to plan.
     Planning,
-    /// On its way along a trajectory.
+    /// Following a trajectory.
     Driving,
-    /// Near the goal: taking up the exact pose.
+    /// Near the goal: point stabilisation onto the exact pose.
     FinalApproach,
-    /// Near the goal where it is tight: taking up the exact pose by turns on the spot and straight moves.
+    /// Near the goal in a narrow space: turns on the spot and straight moves onto the exact pose.
     Maneuvering,
-    /// Held by the safety monitor, or until a way is free.
+    /// Held by the safety monitor, or until a path is free.
     Waiting {
-        /// For what.
-        reason: String,
+        /// What the robot waits for.
+        reason: Reason,
     },
-    /// No free way is known: turning on the spot to see more.
+    /// No free path is known: observing more of the surroundings.
     Recovering {
-        /// What the planner said.
-        reason: String,
+        /// What the planner reports.
+        reason: Reason,
     },
-    /// Not knowing where it is: standing, then turning on the spot to recognise something.
+    /// Pose unknown or too uncertain: at rest, then turning on the spot to relocalise.
     Lost {
-        /// How unsure it is.
-        reason: String,
+        /// What is known of the pose.
+        reason: Reason,
     },
-    /// At the goal, standing.
+    /// At rest at the goal.
     Arrived,
-    /// Given up.
+    /// The goal is given up.
     Stopped {
         /// Why.
-        reason: String,
+        reason: Reason,
     },
 }
 
 impl DriveState {
-    /// One word.
+    /// The state in one or two words.
     pub fn name(&self) -> &'static str {
         match self {
             Self::Idle => "idle",
@@ -75,8 +77,8 @@ impl DriveState {
         }
     }
 
-    /// Why it does not move on, where it does not.
-    pub fn reason(&self) -> Option<&str> {
+    /// Why the robot does not move on; none in a state without a reason.
+    pub fn reason(&self) -> Option<&Reason> {
         match self {
             Self::Waiting { reason }
             | Self::Recovering { reason }

@@ -19,6 +19,7 @@ use crate::{
     config::RobotConfig,
     goal_approach::{GoalApproach, GoalApproachReport},
     mission::executor_config::MissionExecutorConfig,
+    reason::Reason,
     schedule::Ticker,
     stage::{Stage, StageTimes},
     workers::perception_worker::UNPLACED,
@@ -177,8 +178,7 @@ impl Navigator {
             // What is touched again and again the map does not show, or not where it is.
             self.follower.halt();
             self.goal_approach.reset();
-            let reason = format!("touched something {} times on the way", self.touches);
-            self.state = DriveState::Stopped { reason };
+            self.state = DriveState::Stopped { reason: Reason::RepeatedContact { contacts: self.touches } };
         }
     }
 
@@ -270,35 +270,32 @@ impl Navigator {
         let waits = matches!(self.state, DriveState::Waiting { .. });
         if is_in_vain && waits && matches!(self.goal, Goal::Viewpoint(_)) {
             self.follower.halt();
-            self.state =
-                DriveState::Stopped { reason: "the camera sees nothing on the way there".to_owned() };
+            self.state = DriveState::Stopped { reason: Reason::NoSightOnPath };
         }
     }
 
     /// Why the robot does not know where it is, when it does not.
-    fn why_lost(&self, s: &WorldState<'_>) -> Option<String> {
+    fn why_lost(&self, s: &WorldState<'_>) -> Option<Reason> {
         let sigma = position_sigma(&s.estimate);
         if sigma > ANYWHERE {
-            let reason =
-                "nothing tells where the robot is: it was carried away, or the map is of another place";
-            return Some(reason.to_owned());
+            return Some(Reason::PoseUnknown);
         }
         if sigma > self.config.lost_sigma {
-            let why = if s.motion != MotionSense::Wheels {
-                ": the wheels are told to roll and count nothing"
+            let is_unresponsive = s.motion != MotionSense::Wheels;
+            return Some(if is_unresponsive {
+                Reason::WheelsUnresponsive { sigma }
             } else {
-                ""
-            };
-            return Some(format!("the position is only known to {sigma:.2} m{why}"));
+                Reason::PoseUncertain { sigma }
+            });
         }
-        (s.unplaced > UNPLACED).then(|| "what the camera sees is not what is there on the map".to_owned())
+        (s.unplaced > UNPLACED).then_some(Reason::ViewContradictsMap)
     }
 
     fn give_up(&mut self, stood: f64) {
-        let why = self.state.reason().map_or_else(|| self.state.name().to_owned(), str::to_owned);
+        let (state, cause) = (self.state.name(), self.state.reason().cloned().map(Box::new));
         self.follower.halt();
         self.goal_approach.reset();
-        self.state = DriveState::Stopped { reason: format!("no progress for {stood:.0} s: {why}") };
+        self.state = DriveState::Stopped { reason: Reason::NoProgress { time: stood, state, cause } };
     }
 
     /// At the end of the trajectory: an arc, or turns and straight moves; or it is near enough.

@@ -1,5 +1,6 @@
 //! Report of a goal approach.
 
+use super::end::ApproachEnd;
 use serde::Serialize;
 use trundle_core::Pose2;
 use trundle_docking::{PositionerReason, PositionerReport};
@@ -20,7 +21,7 @@ pub struct GoalApproachReport {
     /// `goal_from_base` when last looked at: longitudinal and lateral deviation (m), and of heading (rad).
     pub deviation: Option<Pose2>,
     /// How it ended; `None` while it goes on.
-    pub ended: Option<String>,
+    pub ended: Option<ApproachEnd>,
 }
 
 /// What the positioner did in the last step.

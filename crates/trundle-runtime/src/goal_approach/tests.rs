@@ -68,7 +68,7 @@ fn a_free_arc_stays_and_one_through_a_wall_is_taken_over_and_settles() {
     assert!(pose.distance(&goal) < 0.01 && (pose.theta - goal.theta).abs() < 0.0175, "{pose:?}");
     let report = stage.report();
     assert!(report.motions > 0 && report.plans > 0 && report.restarts == 0, "{report:?}");
-    assert_eq!(report.ended.as_deref(), Some("settled"));
+    assert_eq!(report.ended, Some(ApproachEnd::Settled));
     assert!(report.deviation.unwrap().position().norm() < 0.01);
 }
 
@@ -84,7 +84,7 @@ fn until_given_up(
         match stage.step(&now) {
             Progress::Moving(_) if held => stage.interrupted(&now),
             Progress::Moving(twist) => pose = pose.advance(twist, 0.02),
-            Progress::GivenUp(reason) => return (0.02 * f64::from(i), reason),
+            Progress::GivenUp(failure) => return (0.02 * f64::from(i), failure.to_string()),
             Progress::Settled => return (f64::NAN, "settled".to_owned()),
         }
     }

@@ -6,6 +6,7 @@ use crate::{
     behaviour::navigator::Goal,
     mission::executor_config::MissionExecutorConfig,
     mission::{Mission, MissionState, Task, TaskEnd, TaskRecord},
+    reason::{Reason, TaskFailure},
     schedule::Ticker,
 };
 use std::collections::VecDeque;
@@ -57,7 +58,7 @@ enum Work {
         /// Viewpoints that it came to.
         views: usize,
         /// Why it did not come to the last one that it did not come to.
-        failure: Option<String>,
+        failure: Option<Reason>,
     },
 }
 
@@ -114,9 +115,9 @@ impl MissionExecutor {
     }
 
     /// Why the mission is not done as a whole, once it is over.
-    pub(crate) fn failure(&self) -> Option<String> {
-        let lost: Vec<String> = self.records.iter().filter_map(told).collect();
-        (!lost.is_empty()).then(|| lost.join("; "))
+    pub(crate) fn failure(&self) -> Option<Reason> {
+        let failures: Vec<TaskFailure> = self.records.iter().filter_map(failure_of).collect();
+        (!failures.is_empty()).then_some(Reason::TasksFailed(failures))
     }
 
     /// Whether the next step may look for frontiers, or give a goal that is planned for at once.
@@ -201,17 +202,17 @@ impl MissionExecutor {
     }
 
     /// The navigator has given up.
-    fn failed(&mut self, reason: &str, s: &WorldState<'_>) {
+    fn failed(&mut self, reason: &Reason, s: &WorldState<'_>) {
         let Some(current) = &mut self.current else { return };
         if let Work::Exploring { explorer, frontier, failure, .. } = &mut current.work {
-            *failure = Some(reason.to_owned());
+            *failure = Some(reason.clone());
             // What cannot be driven to now may be later, but not without end.
             if let Some(frontier) = frontier.take() {
                 explorer.mark_viewed(&frontier);
             }
             return;
         }
-        let (entry, reason) = (current.entry, reason.to_owned());
+        let (entry, reason) = (current.entry, reason.clone());
         if entry.is_second_try || self.queue.is_empty() {
             return self.end(TaskEnd::GivenUp { reason }, s);
         }
@@ -230,9 +231,12 @@ impl MissionExecutor {
     }
 }
 
-fn told(record: &TaskRecord) -> Option<String> {
+/// The failure of a task that is given up.
+fn failure_of(record: &TaskRecord) -> Option<TaskFailure> {
     match &record.end {
-        TaskEnd::GivenUp { reason } => Some(format!("task {} ({}): {reason}", record.index + 1, record.task)),
+        TaskEnd::GivenUp { reason } => {
+            Some(TaskFailure { index: record.index, task: record.task, reason: reason.clone() })
+        }
         TaskEnd::Done | TaskEnd::PutOff { .. } => None,
     }
 }
@@ -240,6 +244,7 @@ fn told(record: &TaskRecord) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::reason::ReasonKind;
     use trundle_core::{OccupancyGrid, PoseEstimate, Twist2};
 
     fn surroundings(grid: &OccupancyGrid) -> WorldState<'_> {
@@ -277,7 +282,7 @@ mod tests {
         let (grid, [a, b]) = (room(), [1.0, 2.0].map(|x| Pose2::new(x, 0.0, 0.0)));
         let mut executor = executor(&[Task::Go(a), Task::Go(b), Task::Return]);
         let s = surroundings(&grid);
-        let stopped = DriveState::Stopped { reason: "a closed door".to_owned() };
+        let stopped = DriveState::Stopped { reason: Reason::MovingObstacle };
         assert!(executor.may_take_long(&s, &DriveState::Idle), "a goal is planned for at once");
         assert_eq!(executor.step(&s, &DriveState::Idle), Some(Goal::Exact(a)));
         assert!(!executor.may_take_long(&s, &DriveState::Driving));
@@ -289,7 +294,8 @@ mod tests {
         assert!(executor.is_idle());
         assert_eq!(executor.records().len(), 4);
         assert!(
-            executor.failure().unwrap().contains("task 1 (go to (1.00 m, 0.00 m, 0 deg)): a closed door")
+            executor.failure().unwrap().to_string()
+                == "task 1 (go to (1.00 m, 0.00 m, 0 deg)): somebody is on the move in the way"
         );
     }
 
@@ -318,12 +324,12 @@ mod tests {
         let s = surroundings(&grid);
         assert_eq!(executor.step(&s, &DriveState::Idle), Some(Goal::Spin));
         let mut next = executor.step(&s, &DriveState::Arrived);
-        let stopped = DriveState::Stopped { reason: "no way".to_owned() };
+        let stopped = DriveState::Stopped { reason: Reason::PathOutOfView };
         while let Some(Goal::Viewpoint(_)) = next {
             next = executor.step(&s, &stopped);
         }
         assert!(executor.is_idle());
-        assert!(executor.failure().unwrap().contains("no way"));
+        assert!(executor.failure().unwrap().is_due_to(ReasonKind::PathOutOfView));
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use crate::robot::{Base, robot, wall};
 use trundle_core::{Pose2, SensorEvent, Stamp, Touch, Twist2, WheelTicks};
-use trundle_runtime::{Answer, DriveState, Job, LazyImage, Robot, StepReport, Worker};
+use trundle_runtime::{Answer, DriveState, Job, LazyImage, ReasonKind, Robot, StepReport, Worker};
 
 /// The goal of all these drives.
 const GOAL: Pose2 = Pose2 { x: 1.5, y: 0.0, theta: 0.0 };
@@ -129,7 +129,11 @@ fn a_lookout_that_does_not_come_back_stops_the_robot() {
     assert!(reports.iter().any(|report| report.twist.is_some_and(|twist| twist.v > 0.05)), "it drove");
     let last = reports.last().unwrap();
     assert_eq!(last.twist, Some(Twist2::ZERO));
-    assert!(last.state.reason().is_some_and(|reason| reason.contains("image")), "{:?}", last.state);
+    assert!(
+        last.state.reason().is_some_and(|reason| reason.is_due_to(ReasonKind::ImageMissing)),
+        "{:?}",
+        last.state
+    );
 }
 
 #[test]

@@ -6,6 +6,7 @@ use crate::{
     behaviour::drive_state::DriveState,
     behaviour::spin::{ONE_TURN, face, turn_to},
     goal_approach::Progress,
+    reason::Reason,
     stage::{Stage, StageTimes},
 };
 use trundle_control::{FollowReport, MotionSense, SafetyAction, SafetyInput, SafetyMemory};
@@ -100,7 +101,9 @@ impl Navigator {
         match self.goal_approach.step(s) {
             Progress::Moving(twist) => return twist,
             Progress::Settled => self.state = DriveState::Arrived,
-            Progress::GivenUp(reason) => self.state = DriveState::Stopped { reason },
+            Progress::GivenUp(failure) => {
+                self.state = DriveState::Stopped { reason: Reason::FinalApproach(failure) };
+            }
         }
         Twist2::ZERO
     }
@@ -117,7 +120,7 @@ impl Navigator {
                     self.sight_recovery.held(twist);
                 }
                 self.held_since.get_or_insert(s.now);
-                self.state = DriveState::Waiting { reason: reason.to_string() };
+                self.state = DriveState::Waiting { reason: Reason::Safety(reason) };
             }
             (SafetyAction::Stop(reason), DriveState::Recovering { .. })
                 if matches!(self.viewpoint, Viewpoint::Going(..)) =>
@@ -125,7 +128,7 @@ impl Navigator {
                 self.viewpoint = Viewpoint::Settled;
                 self.follower.halt();
                 self.held_since.get_or_insert(s.now);
-                self.state = DriveState::Waiting { reason: reason.to_string() };
+                self.state = DriveState::Waiting { reason: Reason::Safety(reason) };
             }
             (SafetyAction::Stop(_), DriveState::Maneuvering)
                 if twist != Twist2::ZERO && !self.is_blind(s) =>
@@ -189,6 +192,7 @@ mod tests {
         visibility_constraint::tests::{at_rest, navigator},
     };
     use super::*;
+    use trundle_control::StopReason;
     use trundle_core::{OccupancyGrid, Pose2, Stamp};
 
     /// Blind for so long, s; a control step, s.
@@ -199,7 +203,7 @@ mod tests {
     fn lose_sight_and_find_it(navigator: &mut Navigator, grid: &OccupancyGrid, from: Stamp) -> Stamp {
         let mut times = StageTimes::default();
         let mut pose = Pose2::new(3.0, 2.0, 0.0);
-        navigator.state = DriveState::Waiting { reason: "the newest image is old".to_owned() };
+        navigator.state = DriveState::Waiting { reason: Reason::Safety(StopReason::StaleImage { age: 1.0 }) };
         navigator.held_since = Some(from);
         for i in 1..=(BLIND / STEP) as i32 {
             let now = from.after(STEP * f64::from(i));
@@ -212,7 +216,7 @@ mod tests {
         for now in (1..50).map(|i| sees(STEP * f64::from(i))) {
             navigator.state = match &navigator.state {
                 over if over.is_over() => over.clone(),
-                _ => DriveState::Waiting { reason: "a way is looked for".to_owned() },
+                _ => DriveState::Waiting { reason: Reason::PathOutOfView },
             };
             navigator.step(&WorldState { seen: Some(now), ..at_rest(grid, now, pose) }, &mut times);
         }
@@ -226,7 +230,7 @@ mod tests {
         let (held, mut times) = (Stamp::default().after(10.0), StageTimes::default());
         let seen = held.after(20.0);
         for (blind, turns) in [(1.0, false), (2.9, false), (3.1, true)] {
-            navigator.state = DriveState::Waiting { reason: "somebody is on the move".to_owned() };
+            navigator.state = DriveState::Waiting { reason: Reason::MovingObstacle };
             navigator.held_since = Some(held);
             let s = WorldState { seen: Some(seen), ..at_rest(&grid, seen.after(blind), pose) };
             let twist = navigator.step(&s, &mut times).twist;

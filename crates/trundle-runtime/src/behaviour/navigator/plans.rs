@@ -5,6 +5,7 @@ use crate::world_state::WorldState;
 use crate::{
     behaviour::drive_state::DriveState,
     behaviour::spin::Spin,
+    reason::{NoPath, Reason},
     stage::{Stage, StageTimes},
 };
 use trundle_core::{Pose2, Stamp, Twist2, Vector2};
@@ -92,16 +93,18 @@ impl Navigator {
                 true
             }
             Plan::Found(_) => {
-                self.hold("stopping to plan anew", s.now);
+                self.hold(Reason::StoppingToReplan, s.now);
                 false
             }
             Plan::Blocked { .. } if self.is_free_but_for_movers(s, from, goal) => {
-                self.hold("somebody is on the move in the way", s.now);
+                self.hold(Reason::MovingObstacle, s.now);
                 false
             }
             refused => {
-                if !self.turned_to_docking(goal, s) {
-                    self.no_way(&refused, s);
+                if !self.turned_to_docking(goal, s)
+                    && let Some(cause) = NoPath::of(&refused)
+                {
+                    self.no_way(cause, s);
                 }
                 false
             }
@@ -125,8 +128,7 @@ impl Navigator {
                 self.follower.halt();
                 self.plan = None;
             }
-            let reason = format!("first to see what the way leads onto at ({:.2}, {:.2}) m", at.x, at.y);
-            self.state = DriveState::Recovering { reason };
+            self.state = DriveState::Recovering { reason: Reason::UnseenFloor { at } };
             self.held_since = None;
             return None;
         }
@@ -135,7 +137,7 @@ impl Navigator {
             // The next plan keeps off it.
             self.stands_to_look(s);
         } else if long.is_none() {
-            self.no_way(&Plan::Blocked { nearest: at }, s);
+            self.no_way(NoPath::Blocked { nearest: at }, s);
         }
         long
     }
@@ -143,7 +145,7 @@ impl Navigator {
     /// What it drives on does not show where it leads: it stops until there is a plan that does. Never a new plan.
     fn stands_to_look(&mut self, s: &WorldState<'_>) -> bool {
         if self.state == DriveState::Driving {
-            self.hold("looking for a way that shows where it leads", s.now);
+            self.hold(Reason::PathOutOfView, s.now);
         }
         false
     }
@@ -183,19 +185,19 @@ impl Navigator {
 
     /// No way is known: stop, turn on the spot until everything around has been seen, then go where what bars the way is seen, and
     /// wait there, looking at it.
-    fn no_way(&mut self, refused: &Plan, s: &WorldState<'_>) {
-        let reason = self.why(refused);
+    fn no_way(&mut self, cause: NoPath, s: &WorldState<'_>) {
         if matches!(self.viewpoint, Viewpoint::Going(..)) {
-            self.state = DriveState::Recovering { reason };
+            self.state = DriveState::Recovering { reason: self.no_path(cause) };
             return;
         }
-        self.is_wedged = self.is_polygon && matches!(refused, Plan::StartInObstacle { .. });
+        self.is_wedged = self.is_polygon && matches!(cause, NoPath::StartInObstacle { .. });
         self.follower.halt();
         self.plan = None;
-        self.blocked_at = match refused {
-            Plan::Blocked { nearest } => Some(*nearest),
+        self.blocked_at = match &cause {
+            NoPath::Blocked { nearest } => Some(*nearest),
             _ => self.goal.pose().map(|goal| goal.position()),
         };
+        let reason = self.no_path(cause);
         let has_looked = self.look.has_turned(TURNS) && !self.is_wedged;
         self.state = if matches!(self.goal, Goal::Viewpoint(_)) {
             DriveState::Stopped { reason }
@@ -223,32 +225,14 @@ impl Navigator {
         self.state = DriveState::Maneuvering;
     }
 
-    /// Why there is no plan, for a person, and what no way was looked for over.
-    fn why(&self, plan: &Plan) -> String {
-        match self.unseen.barred() {
-            Some(at) => format!("{}; what is at ({:.2}, {:.2}) m could not be seen", why(plan), at.x, at.y),
-            None => why(plan),
-        }
+    /// The reason for a missing path, with the floor that was kept out of the search.
+    fn no_path(&self, cause: NoPath) -> Reason {
+        Reason::NoPath { cause, unseen: self.unseen.barred() }
     }
 
-    fn hold(&mut self, reason: &str, now: Stamp) {
+    fn hold(&mut self, reason: Reason, now: Stamp) {
         self.follower.halt();
         self.held_since.get_or_insert(now);
-        self.state = DriveState::Waiting { reason: reason.to_owned() };
-    }
-}
-
-/// Why there is no plan, for a person.
-fn why(plan: &Plan) -> String {
-    match plan {
-        Plan::Found(_) => "there is a way".to_owned(),
-        Plan::Blocked { nearest } => {
-            format!("no way to the goal is free; the nearest point is ({:.2}, {:.2}) m", nearest.x, nearest.y)
-        }
-        Plan::StartInObstacle { clearance } => format!("{:.3} m too little room here", -clearance),
-        Plan::GoalInObstacle { clearance } => format!("{:.3} m too little room at the goal", -clearance),
-        Plan::StartOutside => "the robot is off the map".to_owned(),
-        Plan::GoalOutside => "the goal is off the map".to_owned(),
-        Plan::Refused(invalid) => invalid.to_string(),
+        self.state = DriveState::Waiting { reason };
     }
 }

@@ -386,7 +386,7 @@ pub(super) mod tests {
             }
         }
         assert!((1..=MOST_LOOKS_IN_VAIN).contains(&looks), "{looks} looks");
-        let reason = navigator.state.reason().unwrap();
+        let reason = navigator.state.reason().unwrap().to_string();
         assert!(reason.contains("no way") && reason.contains("could not be seen"), "{reason}");
     }
 

@@ -1,0 +1,76 @@
+//! How a final approach by turns and straight moves ends.
+
+use serde::{Serialize, Serializer};
+use std::fmt;
+use trundle_docking::PositionerReason;
+
+/// How a final approach by turns and straight moves ends. In files it is its text.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum ApproachEnd {
+    /// The robot is at the goal, within tolerance.
+    Settled,
+    /// Another decision replaced the approach.
+    BrokenOff,
+    /// The approach is given up.
+    GivenUp(ApproachFailure),
+}
+
+/// Why a final approach by turns and straight moves is given up.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum ApproachFailure {
+    /// No goal was given.
+    NoGoal,
+    /// The time limit is over.
+    Timeout {
+        /// The time limit \[s\].
+        limit: f64,
+    },
+    /// The number of stops is over its limit; the reason is that of the last stop.
+    Positioner(PositionerReason),
+}
+
+impl Serialize for ApproachEnd {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
+    }
+}
+
+impl fmt::Display for ApproachEnd {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Settled => f.write_str("settled"),
+            Self::BrokenOff => f.write_str("broken off"),
+            Self::GivenUp(failure) => failure.fmt(f),
+        }
+    }
+}
+
+impl fmt::Display for ApproachFailure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NoGoal => f.write_str("no goal to settle on"),
+            Self::Timeout { limit } => write!(f, "not settled within {limit:.0} s"),
+            Self::Positioner(reason) => write_positioner_reason(reason, f),
+        }
+    }
+}
+
+fn write_positioner_reason(reason: &PositionerReason, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+    match reason {
+        PositionerReason::Obstacle(by) => write!(f, "{by} is in the way while settling"),
+        PositionerReason::NoWay(Some(by)) => {
+            write!(f, "no turns and straight moves lead to the goal: {by} is in the way")
+        }
+        PositionerReason::NoWay(None) => f.write_str("no turns and straight moves to the goal were found"),
+        PositionerReason::Refused(refusal) => write!(f, "{refusal}"),
+        PositionerReason::BadPose => f.write_str("the pose is not a number"),
+        PositionerReason::Planning => {
+            f.write_str("the search for turns and straight moves did not come to an end")
+        }
+        PositionerReason::Measuring | PositionerReason::Moving(_) | PositionerReason::Settled => {
+            f.write_str("stopped again and again")
+        }
+    }
+}

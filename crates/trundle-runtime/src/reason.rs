@@ -1,0 +1,211 @@
+//! Reasons: why the robot does not move on, and why a task ended undone.
+
+mod kind;
+mod no_path;
+mod recorded;
+
+use crate::goal_approach::ApproachFailure;
+use crate::mission::task::Task;
+pub use kind::ReasonKind;
+pub use no_path::NoPath;
+use recorded::RecordedReason;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use std::fmt;
+use trundle_control::StopReason;
+use trundle_core::Vector2;
+
+/// Why the robot does not move on, or why a task ended undone. `Display` gives the reason in words.
+///
+/// In files a reason is its text (`reason`) and the names of its kinds (`kinds`). A reason that is read back keeps both, as
+/// [`Reason::Restored`].
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum Reason {
+    /// The safety monitor stops the robot.
+    Safety(StopReason),
+    /// The robot stops, because the new plan starts from rest.
+    StoppingToReplan,
+    /// A dynamic obstacle blocks the only path.
+    MovingObstacle,
+    /// The path crosses floor that the camera will not show in time; another path is searched.
+    PathOutOfView,
+    /// The path crosses floor that was never observed; the robot observes this floor first.
+    UnseenFloor {
+        /// The floor, map frame \[m\].
+        at: Vector2,
+    },
+    /// The planner finds no path.
+    NoPath {
+        /// What the planner reports.
+        cause: NoPath,
+        /// Floor that was kept out of the search because it could not be observed, map frame \[m\].
+        unseen: Option<Vector2>,
+    },
+    /// The pose is unknown everywhere on the map.
+    PoseUnknown,
+    /// The position is too uncertain.
+    PoseUncertain {
+        /// Standard deviation of the position \[m\].
+        sigma: f64,
+    },
+    /// The position is too uncertain, and the wheels do not respond to commands.
+    WheelsUnresponsive {
+        /// Standard deviation of the position \[m\].
+        sigma: f64,
+    },
+    /// Images with enough features do not match the visual map at the estimated pose.
+    ViewContradictsMap,
+    /// The bumper was pressed too often on the way to one goal.
+    RepeatedContact {
+        /// Contacts since the goal was given.
+        contacts: u32,
+    },
+    /// The camera becomes blind again and again on the path to a viewpoint.
+    NoSightOnPath,
+    /// The robot makes no progress.
+    NoProgress {
+        /// Time without progress \[s\].
+        time: f64,
+        /// The state, in one word.
+        state: &'static str,
+        /// The reason of that state, where the state has one.
+        cause: Option<Box<Reason>>,
+    },
+    /// The final approach by turns and straight moves fails.
+    FinalApproach(ApproachFailure),
+    /// The mission is over, and these tasks are undone.
+    TasksFailed(Vec<TaskFailure>),
+    /// The user ended the run.
+    Interrupted,
+    /// A reason that was read from a file.
+    Restored {
+        /// The text.
+        text: String,
+        /// The kinds, outermost first.
+        kinds: Vec<ReasonKind>,
+    },
+}
+
+/// A task that ended undone.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TaskFailure {
+    /// Index of the task in the mission, from 0.
+    pub index: usize,
+    /// The task.
+    pub task: Task,
+    /// Why it is undone.
+    pub reason: Reason,
+}
+
+impl Reason {
+    /// The kinds of this reason and of the reasons behind it, outermost first.
+    pub fn kinds(&self) -> Vec<ReasonKind> {
+        if let Self::Restored { kinds, .. } = self {
+            return kinds.clone();
+        }
+        std::iter::once(self.kind()).chain(self.causes().iter().flat_map(|cause| cause.kinds())).collect()
+    }
+
+    /// Whether this reason, or a reason behind it, is of a kind.
+    pub fn is_due_to(&self, kind: ReasonKind) -> bool {
+        self.kinds().contains(&kind)
+    }
+
+    /// The reasons directly behind this one.
+    fn causes(&self) -> Vec<&Self> {
+        match self {
+            Self::NoProgress { cause: Some(cause), .. } => vec![cause],
+            Self::TasksFailed(failures) => failures.iter().map(|failure| &failure.reason).collect(),
+            _ => Vec::new(),
+        }
+    }
+
+    /// The kind of this reason alone.
+    pub fn kind(&self) -> ReasonKind {
+        match self {
+            Self::Safety(stop) => ReasonKind::of_stop(stop),
+            Self::StoppingToReplan => ReasonKind::StoppingToReplan,
+            Self::MovingObstacle => ReasonKind::MovingObstacle,
+            Self::PathOutOfView => ReasonKind::PathOutOfView,
+            Self::UnseenFloor { .. } => ReasonKind::UnseenFloor,
+            Self::NoPath { cause, .. } => ReasonKind::of_no_path(cause),
+            Self::PoseUnknown => ReasonKind::PoseUnknown,
+            Self::PoseUncertain { .. } => ReasonKind::PoseUncertain,
+            Self::WheelsUnresponsive { .. } => ReasonKind::WheelsUnresponsive,
+            Self::ViewContradictsMap => ReasonKind::ViewContradictsMap,
+            Self::RepeatedContact { .. } => ReasonKind::RepeatedContact,
+            Self::NoSightOnPath => ReasonKind::NoSightOnPath,
+            Self::NoProgress { .. } => ReasonKind::NoProgress,
+            Self::FinalApproach(_) => ReasonKind::FinalApproach,
+            Self::TasksFailed(_) => ReasonKind::TasksFailed,
+            Self::Interrupted => ReasonKind::Interrupted,
+            Self::Restored { kinds, .. } => kinds.first().copied().unwrap_or(ReasonKind::Unknown),
+        }
+    }
+}
+
+impl fmt::Display for Reason {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Safety(stop) => stop.fmt(f),
+            Self::StoppingToReplan => f.write_str("stopping to plan anew"),
+            Self::MovingObstacle => f.write_str("somebody is on the move in the way"),
+            Self::PathOutOfView => f.write_str("looking for a way that shows where it leads"),
+            Self::UnseenFloor { at } => {
+                write!(f, "first to see what the way leads onto at ({:.2}, {:.2}) m", at.x, at.y)
+            }
+            Self::NoPath { cause, unseen: None } => cause.fmt(f),
+            Self::NoPath { cause, unseen: Some(at) } => {
+                write!(f, "{cause}; what is at ({:.2}, {:.2}) m could not be seen", at.x, at.y)
+            }
+            Self::PoseUnknown => f.write_str(
+                "nothing tells where the robot is: it was carried away, or the map is of another place",
+            ),
+            Self::PoseUncertain { sigma } => write!(f, "the position is only known to {sigma:.2} m"),
+            Self::WheelsUnresponsive { sigma } => write!(
+                f,
+                "the position is only known to {sigma:.2} m: the wheels are told to roll and count nothing"
+            ),
+            Self::ViewContradictsMap => f.write_str("what the camera sees is not what is there on the map"),
+            Self::RepeatedContact { contacts } => {
+                write!(f, "touched something {contacts} times on the way")
+            }
+            Self::NoSightOnPath => f.write_str("the camera sees nothing on the way there"),
+            Self::NoProgress { time, cause: Some(cause), .. } => {
+                write!(f, "no progress for {time:.0} s: {cause}")
+            }
+            Self::NoProgress { time, state, cause: None } => {
+                write!(f, "no progress for {time:.0} s: {state}")
+            }
+            Self::FinalApproach(failure) => failure.fmt(f),
+            Self::TasksFailed(failures) => {
+                let texts: Vec<String> = failures.iter().map(ToString::to_string).collect();
+                f.write_str(&texts.join("; "))
+            }
+            Self::Interrupted => f.write_str("the user ended the run"),
+            Self::Restored { text, .. } => f.write_str(text),
+        }
+    }
+}
+
+impl Serialize for Reason {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        RecordedReason { reason: self.to_string(), kinds: self.kinds() }.serialize(serializer)
+    }
+}
+
+impl<'de> Deserialize<'de> for Reason {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let RecordedReason { reason, kinds } = RecordedReason::deserialize(deserializer)?;
+        Ok(Self::Restored { text: reason, kinds })
+    }
+}
+
+impl fmt::Display for TaskFailure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "task {} ({}): {}", self.index + 1, self.task, self.reason)
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,92 @@
+//! The kinds of reasons: what a program judges by, without the numbers.
+
+use super::no_path::NoPath;
+use serde::{Deserialize, Serialize};
+use trundle_control::StopReason;
+
+/// The kind of a reason, without its numbers. Its name in files is the variant's in `snake_case`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+#[non_exhaustive]
+pub enum ReasonKind {
+    /// An obstacle is within the braking distance.
+    Obstacle,
+    /// The bumper is pressed.
+    Contact,
+    /// A cliff sensor reports no floor.
+    Cliff,
+    /// No image or scan with content is recent enough.
+    ImageMissing,
+    /// Neither wheels nor images show how the robot moves.
+    MotionUnknown,
+    /// No wheel reading is recent enough.
+    WheelsMissing,
+    /// A command is not a number.
+    CommandInvalid,
+    /// The robot stops before the next plan.
+    StoppingToReplan,
+    /// A dynamic obstacle blocks the path.
+    MovingObstacle,
+    /// Another path is searched that the camera shows in time.
+    PathOutOfView,
+    /// Unobserved floor on the path is observed first.
+    UnseenFloor,
+    /// Known obstacles block all paths.
+    PathBlocked,
+    /// The footprint does not fit at the start or at the goal.
+    TooLittleRoom,
+    /// Start or goal is off the map.
+    OffTheMap,
+    /// The planner refuses the query.
+    PlanRefused,
+    /// The pose is unknown.
+    PoseUnknown,
+    /// The position is too uncertain.
+    PoseUncertain,
+    /// The position is too uncertain, and the wheels do not respond.
+    WheelsUnresponsive,
+    /// Images contradict the map.
+    ViewContradictsMap,
+    /// The bumper was pressed too often.
+    RepeatedContact,
+    /// The camera is blind on the path to a viewpoint.
+    NoSightOnPath,
+    /// No progress.
+    NoProgress,
+    /// The final approach fails.
+    FinalApproach,
+    /// Tasks of the mission are undone.
+    TasksFailed,
+    /// The user ended the run.
+    Interrupted,
+    /// A file that names no kind, or a kind that this version does not know.
+    #[serde(other)]
+    Unknown,
+}
+
+impl ReasonKind {
+    /// The kind of a stop by the safety monitor.
+    pub(super) fn of_stop(stop: &StopReason) -> Self {
+        match stop {
+            StopReason::ObstacleAhead { .. } | StopReason::ObstacleBeside { .. } => Self::Obstacle,
+            StopReason::Touched => Self::Contact,
+            StopReason::Cliff => Self::Cliff,
+            StopReason::NoImage | StopReason::NothingSeen | StopReason::StaleImage { .. } => {
+                Self::ImageMissing
+            }
+            StopReason::NothingTellsMotion => Self::MotionUnknown,
+            StopReason::NoWheels | StopReason::StaleWheels { .. } => Self::WheelsMissing,
+            StopReason::NotFinite => Self::CommandInvalid,
+        }
+    }
+
+    /// The kind of a failed search for a path.
+    pub(super) fn of_no_path(cause: &NoPath) -> Self {
+        match cause {
+            NoPath::Blocked { .. } => Self::PathBlocked,
+            NoPath::StartInObstacle { .. } | NoPath::GoalInObstacle { .. } => Self::TooLittleRoom,
+            NoPath::StartOutside | NoPath::GoalOutside => Self::OffTheMap,
+            NoPath::Refused(_) => Self::PlanRefused,
+        }
+    }
+}

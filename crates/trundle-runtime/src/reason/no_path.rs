@@ -1,0 +1,64 @@
+//! Why the planner finds no path.
+
+use std::fmt;
+use trundle_core::{Invalid, Vector2};
+use trundle_planning::Plan;
+
+/// Why the planner finds no path.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum NoPath {
+    /// The free space does not connect start and goal.
+    Blocked {
+        /// The reachable point nearest to the goal, map frame \[m\].
+        nearest: Vector2,
+    },
+    /// The footprint at the start overlaps an obstacle.
+    StartInObstacle {
+        /// The missing distance \[m\].
+        missing: f64,
+    },
+    /// The footprint at the goal overlaps an obstacle.
+    GoalInObstacle {
+        /// The missing distance \[m\].
+        missing: f64,
+    },
+    /// The start is off the map.
+    StartOutside,
+    /// The goal is off the map.
+    GoalOutside,
+    /// The query is invalid.
+    Refused(Invalid),
+}
+
+impl NoPath {
+    /// Why a plan holds no path; none where the plan holds one.
+    pub(crate) fn of(plan: &Plan) -> Option<Self> {
+        match plan {
+            Plan::Found(_) => None,
+            Plan::Blocked { nearest } => Some(Self::Blocked { nearest: *nearest }),
+            Plan::StartInObstacle { clearance } => Some(Self::StartInObstacle { missing: -clearance }),
+            Plan::GoalInObstacle { clearance } => Some(Self::GoalInObstacle { missing: -clearance }),
+            Plan::StartOutside => Some(Self::StartOutside),
+            Plan::GoalOutside => Some(Self::GoalOutside),
+            Plan::Refused(invalid) => Some(Self::Refused(invalid.clone())),
+        }
+    }
+}
+
+impl fmt::Display for NoPath {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Blocked { nearest } => write!(
+                f,
+                "no way to the goal is free; the nearest point is ({:.2}, {:.2}) m",
+                nearest.x, nearest.y
+            ),
+            Self::StartInObstacle { missing } => write!(f, "{missing:.3} m too little room here"),
+            Self::GoalInObstacle { missing } => write!(f, "{missing:.3} m too little room at the goal"),
+            Self::StartOutside => f.write_str("the robot is off the map"),
+            Self::GoalOutside => f.write_str("the goal is off the map"),
+            Self::Refused(invalid) => invalid.fmt(f),
+        }
+    }
+}
