@@ -2,8 +2,7 @@
 
 use crate::{
     camera_mount::CameraMount, goal_approach::GoalApproachConfig,
-    mission::executor_config::MissionExecutorConfig, range_source::RangeSource, robot::Robot,
-    schedule::Schedule,
+    mission::executor_config::MissionExecutorConfig, range_source::RangeSource, schedule::Schedule,
 };
 use serde::{Deserialize, Serialize};
 use trundle_control::{FollowerConfig, SafetyConfig};
@@ -87,14 +86,6 @@ impl Default for RobotConfig {
 }
 
 impl RobotConfig {
-    /// Passes a valid configuration through.
-    ///
-    /// # Errors
-    /// Names the first number that is outside its range.
-    pub fn validated(self) -> Result<Self, Invalid> {
-        Robot::new(self.clone()).map(|_| self)
-    }
-
     /// Refuses a base that may be faster than its odometry believes: it would lose its way at full speed.
     pub(crate) fn require_believable_speeds(&self) -> Result<(), Invalid> {
         let least = self.limits.wheel_speed;

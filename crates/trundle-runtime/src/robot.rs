@@ -1,8 +1,11 @@
 //! The whole robot: a sensor event in, a report out.
 
 mod background;
+mod deferred_work;
+mod event_log;
 mod pose_monitor;
 mod restore;
+mod validation;
 
 use crate::world_state::{DynamicObstacles, WorldState};
 use crate::{
@@ -23,6 +26,7 @@ use crate::{
     workers::perception_worker::{PerceptionResult, PerceptionWorker},
 };
 use background::Background;
+use event_log::DroppedImage;
 use std::sync::Arc;
 use trundle_control::{MotionSense, SafetyScan};
 use trundle_core::{
@@ -190,7 +194,9 @@ impl Robot {
     fn close(&mut self, report: &mut StepReport) {
         report.estimate = Some(self.localizer.estimate());
         if let Some(decision_worker) = &self.decision_worker {
-            self.latest.state = decision_worker.state();
+            let state = decision_worker.state();
+            event_log::state(self.localizer.estimate().stamp, &self.latest.state.0, &state.0);
+            self.latest.state = state;
         }
         (report.state, report.finished) = self.latest.state.clone();
     }
@@ -276,7 +282,7 @@ impl Robot {
         report.image = Some(image.stamp());
         match perception.look(image, odometer, &mut self.times) {
             Some(sighting) => self.apply_perception(sighting, report),
-            None => self.latest.frozen += 1,
+            None => self.drop_frozen(image.stamp()),
         }
     }
 
@@ -295,6 +301,7 @@ impl Robot {
         let before = localizer.estimate().pose;
         let correction =
             times.measure(Stage::Localization, || correct_by_sight(localizer, &track, bent.is_some()));
+        event_log::correction(track.stamp, "the visual pose", before, self.localizer.estimate().pose);
         if correction == Some(Correction::Reanchored) {
             // Scans drawn so far stay where they are: their visual poses are in a frame that has moved.
             self.scan_poses = ScanPoseLog::default();
@@ -330,6 +337,12 @@ impl Robot {
         let saved = saved.filter(|_| fits);
         report.memory = saved.map(|visual| Arc::new(self.remember(visual)));
         report.track = Some(track);
+    }
+
+    /// Counts an image of a frozen camera.
+    fn drop_frozen(&mut self, stamp: Stamp) {
+        self.latest.frozen += 1;
+        event_log::dropped_image(stamp, DroppedImage::Frozen);
     }
 
     /// What stands seems to have moved.
@@ -387,7 +400,9 @@ impl Robot {
         let found =
             self.times.measure(Stage::ScanMatch, || self.matcher.refine(self.mapper.mapper(), scan, guess));
         if let Some(found) = found {
+            let before = self.localizer.estimate().pose;
             self.localizer.correct_scan(scan.stamp(), found.pose, &found.covariance);
+            event_log::correction(scan.stamp(), "the scan match", before, self.localizer.estimate().pose);
         }
     }
 

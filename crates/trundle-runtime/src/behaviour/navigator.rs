@@ -4,7 +4,11 @@ mod camera_fov;
 mod commands;
 mod known_floor;
 mod long_decision;
+mod plan_in_view;
 mod plans;
+mod seek_viewpoint;
+#[cfg(test)]
+mod testing;
 mod viewpoint;
 mod visibility_constraint;
 

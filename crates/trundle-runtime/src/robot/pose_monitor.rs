@@ -1,6 +1,6 @@
 //! A robot that does not know its place, and where its scans put it.
 
-use super::{MOTION_SEEN, Robot};
+use super::{MOTION_SEEN, Robot, event_log};
 use crate::{
     behaviour::navigator::position_sigma, global_localization::LocalizedPose,
     monitors::scan_map_consistency::Fit, range_source::RangeSource,
@@ -25,7 +25,10 @@ impl Robot {
         if let Some(LocalizedPose { stamp, map_from_base, covariance }) = place
             && is_lost(&self.localizer)
         {
-            match self.localizer.correct_scan(stamp, map_from_base, &covariance) {
+            let before = self.localizer.estimate().pose;
+            let correction = self.localizer.correct_scan(stamp, map_from_base, &covariance);
+            event_log::correction(stamp, "global localization", before, self.localizer.estimate().pose);
+            match correction {
                 Correction::Applied { .. } => {
                     self.latest.unplaced = None;
                     self.perception.iter_mut().for_each(|perception| perception.localized_by_scans());

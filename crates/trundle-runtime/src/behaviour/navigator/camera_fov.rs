@@ -107,24 +107,12 @@ fn is_near(a: Pose2, b: Pose2) -> bool {
 }
 
 #[cfg(test)]
-pub(super) mod tests {
+mod tests {
+    use super::super::testing::floor;
     use super::*;
     use trundle_core::{Stamp, Trajectory, Twist2};
 
     const VIEW: CameraFov = CameraFov { base_from_sector: Pose2::IDENTITY, half_angle: 0.5, nearest: 0.6 };
-
-    /// Known floor, 6 x 4 m about (3, 2), with unknown floor where `hidden` says so.
-    pub(in crate::behaviour::navigator) fn floor(hidden: impl Fn(Vector2) -> bool) -> OccupancyGrid {
-        let mut grid = OccupancyGrid::from_ascii(0.05, &vec![".".repeat(120); 80].join("\n")).unwrap();
-        let geometry = *grid.geometry();
-        for k in 0..geometry.len() {
-            let cell = geometry.cell(k);
-            if hidden(geometry.center(cell)) {
-                grid.set(cell, Cell::Unknown);
-            }
-        }
-        grid
-    }
 
     fn way(poses: impl Iterator<Item = Pose2>) -> Trajectory {
         let point =

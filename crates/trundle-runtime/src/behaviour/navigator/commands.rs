@@ -187,10 +187,7 @@ fn is_free_behind(s: &WorldState<'_>, radius: f64) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{
-        camera_fov::tests::floor,
-        visibility_constraint::tests::{at_rest, navigator},
-    };
+    use super::super::testing::{at_rest, floor, navigator};
     use super::*;
     use trundle_control::StopReason;
     use trundle_core::{OccupancyGrid, Pose2, Stamp};

@@ -1,6 +1,6 @@
 //! When to plan, from where, and what to do when there is no way.
 
-use super::{Goal, Navigator, PAUSE, viewpoint::Viewpoint, visibility_constraint::InView};
+use super::{Goal, Navigator, PAUSE, plan_in_view::InView, viewpoint::Viewpoint};
 use crate::world_state::WorldState;
 use crate::{
     behaviour::drive_state::DriveState,

@@ -1,11 +1,6 @@
-//! Ways that show the camera what they lead onto before the robot is too near to see it.
+//! Floor that was never observed, and what the robot did about it on the way to one goal.
 
-use super::{Navigator, camera_fov::unknown_about};
-use crate::world_state::WorldState;
-use trundle_core::{
-    Cell, CellIndex, OccupancyGrid, Pose2, Stamp, Trajectory, TrajectoryPoint, Twist2, Vector2,
-};
-use trundle_planning::{Plan, PlanResult};
+use trundle_core::{Cell, OccupancyGrid, Stamp, Vector2};
 
 /// What the robot did about floor that was never seen, on the way to the goal of now.
 #[derive(Debug, Clone, Default)]
@@ -13,7 +8,7 @@ pub(super) struct VisibilityConstraint {
     /// Where it was set down, map frame.
     pub(super) home: Option<Vector2>,
     /// Where the ways looked over so far led onto what was never seen.
-    walls: Vec<Vector2>,
+    pub(super) walls: Vec<Vector2>,
     /// What it set out to look at of late.
     looks: Vec<Look>,
     /// How often it set out to look and has not seen, since the goal was given.
@@ -31,27 +26,14 @@ struct Look {
     is_in_vain: bool,
 }
 
-/// What looking for a way that shows where it leads came to.
-#[derive(Debug)]
-pub(super) enum InView {
-    /// A way to drive, or none.
-    Plan(Plan),
-    /// Where the best way leads onto what was never seen; and a way that shows all and is long, where there is one.
-    Unseen(Vector2, Option<Box<PlanResult>>),
-    /// There is more to be asked, in the next step.
-    Asking,
-}
-
 /// What a way must not lead onto is walled off so far about, m, and so many times a search.
-const WALL: f64 = 0.3;
-const MOST_WALLS: usize = 3;
-/// A way that shows all may take so many times as long as the best, and so many seconds more.
-const WORTH: (f64, f64) = (1.5, 10.0);
+pub(super) const WALL: f64 = 0.3;
+pub(super) const MOST_WALLS: usize = 3;
 /// The same place is looked at so many times, from places so far apart, m; and so many looks are taken for a goal that show
 /// nothing: those that show what they were for explore, which has an end of its own.
 const MOST_LOOKS: usize = 2;
 const APART: f64 = 0.4;
-const MOST_LOOKS_IN_VAIN: usize = 12;
+pub(super) const MOST_LOOKS_IN_VAIN: usize = 12;
 /// What was looked at in vain may be seen after so long, s: somebody stood before it, and has gone.
 const AGAIN: f64 = 20.0;
 
@@ -117,7 +99,7 @@ impl VisibilityConstraint {
     }
 
     /// Where no way is to lead.
-    fn bars(&self) -> Vec<Vector2> {
+    pub(super) fn bars(&self) -> Vec<Vector2> {
         self.barred.iter().map(|(at, _)| *at).collect()
     }
 
@@ -127,106 +109,10 @@ impl VisibilityConstraint {
     }
 }
 
-impl Navigator {
-    /// A plan that shows the camera what it leads onto, where there is one that is worth it. Asks for two plans at most.
-    pub(super) fn plan_in_view(
-        &mut self,
-        s: &WorldState<'_>,
-        (from, twist): (Pose2, Twist2),
-        goal: Pose2,
-    ) -> InView {
-        self.unseen.note_seen(s.floor());
-        self.unseen.forget(s.now);
-        let ends = [from, goal].map(|pose| pose.position());
-        let bars = self.unseen.bars();
-        let best = {
-            let floor = self.walled(s.floor(), &bars, ends);
-            let floor = floor.as_ref().unwrap_or(s.floor());
-            self.planner.plan_among_moving(floor, s.traffic.movers, from, twist, goal)
-        };
-        let Plan::Found(best) = best else { return self.found(InView::Plan(best)) };
-        let Some(unseen) = self.first_unseen(best.trajectory.points(), s.floor()) else {
-            return self.found(InView::Plan(Plan::Found(best)));
-        };
-        if self.unseen.walls.is_empty() {
-            self.unseen.walls.push(unseen);
-        }
-        let walls = [bars, self.unseen.walls.clone()].concat();
-        let Some(floor) = self.walled(s.floor(), &walls, ends) else {
-            return self.found(InView::Unseen(unseen, None));
-        };
-        let Plan::Found(plan) = self.planner.plan_among_moving(&floor, s.traffic.movers, from, twist, goal)
-        else {
-            return self.found(InView::Unseen(unseen, None));
-        };
-        match self.first_unseen(plan.trajectory.points(), s.floor()) {
-            Some(next) if self.unseen.walls.len() < MOST_WALLS => {
-                self.unseen.walls.push(next);
-                InView::Asking
-            }
-            Some(_) => self.found(InView::Unseen(unseen, None)),
-            None if !goes_on(&plan, &best, &floor) => self.found(InView::Unseen(unseen, None)),
-            None if is_worth(&plan, &best) => self.found(InView::Plan(Plan::Found(plan))),
-            None => self.found(InView::Unseen(unseen, Some(plan))),
-        }
-    }
-
-    /// The end of a search.
-    fn found(&mut self, found: InView) -> InView {
-        self.unseen.walls.clear();
-        found
-    }
-
-    /// Where a way first leads onto what the camera will not have seen.
-    pub(super) fn first_unseen(&self, way: &[TrajectoryPoint], floor: &OccupancyGrid) -> Option<Vector2> {
-        self.view?.first_unseen(way, floor, self.radius, &self.unseen)
-    }
-
-    /// Whether the rest of a way, from `time` on (s of the way), is free on the newest map, and what it leads onto was seen or will be.
-    pub(super) fn is_still_good(&self, way: &Trajectory, time: f64, s: &WorldState<'_>) -> bool {
-        let rest = &way.points()[way.points().partition_point(|point| point.time < time)..];
-        self.planner.validate_trajectory(s.floor(), way, time).is_ok()
-            && self.first_unseen(rest, s.floor()).is_none()
-    }
-
-    /// The floor with no way over what is unknown about these places, but for what is under the ends of the way; none without places.
-    fn walled(&self, floor: &OccupancyGrid, places: &[Vector2], ends: [Vector2; 2]) -> Option<OccupancyGrid> {
-        let mut walled = (!places.is_empty()).then(|| floor.clone())?;
-        for at in places {
-            wall_off(&mut walled, *at, ends, self.radius, self.unseen.home);
-        }
-        Some(walled)
-    }
-}
-
-/// Whether a way goes on from where the robot is as smoothly as the best, and stays on the map.
-fn goes_on(plan: &PlanResult, best: &PlanResult, floor: &OccupancyGrid) -> bool {
-    let stays =
-        plan.trajectory.points().iter().all(|p| floor.geometry().cell_at(p.pose.position()).is_some());
-    stays && (plan.is_continuous || !best.is_continuous)
-}
-
-/// Whether a way takes hardly longer than the best.
-fn is_worth(plan: &PlanResult, best: &PlanResult) -> bool {
-    plan.trajectory.duration() < WORTH.0 * best.trajectory.duration() + WORTH.1
-}
-
-fn wall_off(floor: &mut OccupancyGrid, at: Vector2, ends: [Vector2; 2], radius: f64, home: Option<Vector2>) {
-    let geometry = *floor.geometry();
-    let is_off_the_ends = |cell: &CellIndex| {
-        ends.iter().all(|end| (geometry.center(*cell) - end).norm() > radius + geometry.resolution)
-    };
-    let cells: Vec<_> = unknown_about(floor, at, WALL, home).filter(is_off_the_ends).collect();
-    for cell in cells {
-        floor.set(cell, Cell::Occupied);
-    }
-}
-
 #[cfg(test)]
-pub(super) mod tests {
+mod tests {
+    use super::super::testing::floor;
     use super::*;
-    use crate::{behaviour::navigator::camera_fov::tests::floor, config::RobotConfig};
-    use trundle_core::PoseEstimate;
 
     #[test]
     fn what_was_looked_at_in_vain_is_looked_at_again_after_a_while() {
@@ -267,153 +153,5 @@ pub(super) mod tests {
             unseen.forget(time(30.0 * i as f64 + 25.0));
         }
         assert!(!unseen.is_worth_a_look(Vector2::new(4.0, 2.0)));
-    }
-
-    #[test]
-    fn walls_are_put_on_the_unknown_alone() {
-        let mut grid = floor(|at| at.y > 2.3);
-        wall_off(&mut grid, Vector2::new(4.0, 2.4), [Vector2::new(3.9, 2.6), Vector2::zeros()], 0.1, None);
-        assert_eq!(grid.at(Vector2::new(3.9, 2.6)), Cell::Unknown, "an end of the way");
-        assert_eq!(grid.at(Vector2::new(4.0, 2.45)), Cell::Occupied);
-        assert_eq!(grid.at(Vector2::new(4.0, 2.2)), Cell::Free);
-        assert_eq!(grid.at(Vector2::new(5.0, 2.4)), Cell::Unknown);
-    }
-
-    /// A robot beside a bed whose far side was never seen, and a goal behind it.
-    fn beside_a_bed() -> OccupancyGrid {
-        let mut grid = floor(|at| (1.5..4.0).contains(&at.x) && (1.2..2.0).contains(&at.y));
-        let geometry = *grid.geometry();
-        for k in 0..geometry.len() {
-            let at = geometry.center(geometry.cell(k));
-            let is_side = (at.x - 4.025).abs() < 0.03 && (1.6..2.0).contains(&at.y);
-            if is_side || (1.5..4.0).contains(&at.x) && (at.y - 2.025).abs() < 0.03 {
-                grid.set(geometry.cell(k), Cell::Occupied);
-            }
-        }
-        grid
-    }
-
-    pub(in crate::behaviour::navigator) fn navigator() -> Navigator {
-        let config = RobotConfig::default();
-        let footprint = config.footprint().unwrap();
-        Navigator::new(&config, &footprint).unwrap()
-    }
-
-    pub(in crate::behaviour::navigator) fn at_rest(
-        grid: &OccupancyGrid,
-        now: Stamp,
-        pose: Pose2,
-    ) -> WorldState<'_> {
-        let covariance = nalgebra::Matrix3::from_diagonal_element(1e-6);
-        WorldState {
-            now,
-            estimate: PoseEstimate { stamp: now, pose, twist: Twist2::ZERO, covariance },
-            grid,
-            scan: None,
-            seen: None,
-            unplaced: 0.0,
-            motion: trundle_control::MotionSense::Wheels,
-            traffic: crate::world_state::DynamicObstacles::default(),
-        }
-    }
-
-    fn asked(navigator: &mut Navigator, s: &WorldState<'_>, goal: Pose2) -> InView {
-        let ask = |_| navigator.plan_in_view(s, (s.estimate.pose, Twist2::ZERO), goal);
-        (0..=MOST_WALLS).map(ask).find(|found| !matches!(found, InView::Asking)).unwrap()
-    }
-
-    #[test]
-    fn a_way_is_taken_that_shows_what_it_leads_onto() {
-        let (grid, mut navigator) = (beside_a_bed(), navigator());
-        let (from, goal) = (Pose2::new(4.45, 1.75, -1.57), Pose2::new(2.75, 0.7, 3.1));
-        let s = at_rest(&grid, Stamp::default(), from);
-        let found = |plan: Plan| match plan {
-            Plan::Found(plan) => plan.trajectory,
-            other => panic!("{other:?}"),
-        };
-        let best = found(navigator.planner.plan(&grid, from, Twist2::ZERO, goal));
-        assert!(
-            navigator.first_unseen(best.points(), &grid).is_some(),
-            "the best way cuts the unseen corner"
-        );
-        let InView::Plan(shown) = asked(&mut navigator, &s, goal) else { panic!("there is one in view") };
-        let shown = found(shown);
-        assert_eq!(navigator.first_unseen(shown.points(), &grid), None);
-        assert!(shown.duration() < WORTH.0 * best.duration() + WORTH.1);
-        navigator.view = None;
-        let InView::Plan(any) = asked(&mut navigator, &s, goal) else { panic!("a laser sees all") };
-        assert_eq!(found(any), best);
-    }
-
-    /// A lane along x whose bend into a side lane along y, at x from 2.6 to 3.2 m, was never seen.
-    fn unseen_bend() -> OccupancyGrid {
-        let mut grid = floor(|at| at.y > 1.4 && at.y < 2.2);
-        let geometry = *grid.geometry();
-        for k in 0..geometry.len() {
-            let at = geometry.center(geometry.cell(k));
-            let is_lane = (0.8..1.4).contains(&at.y) && (0.3..3.2).contains(&at.x);
-            let is_side_lane = (2.6..3.2).contains(&at.x) && (0.8..3.7).contains(&at.y);
-            if !is_lane && !is_side_lane {
-                grid.set(geometry.cell(k), Cell::Occupied);
-            }
-        }
-        grid
-    }
-
-    #[test]
-    fn where_no_way_shows_it_the_floor_is_looked_at_first_and_never_driven_on_unseen() {
-        let (grid, mut navigator) = (unseen_bend(), navigator());
-        let goal = Pose2::new(2.9, 3.2, 1.57);
-        let mut pose = Pose2::new(2.6, 1.1, 0.0);
-        let s = at_rest(&grid, Stamp::default(), pose);
-        let InView::Unseen(at, _) = asked(&mut navigator, &s, goal) else { panic!("the bend hides it") };
-        assert_eq!(grid.at(at), Cell::Unknown);
-        // It stays unseen: every look is in vain, and then there is no way, and the reason is told.
-        navigator.apply_answer(super::super::Goal::Exact(goal));
-        navigator.state = crate::behaviour::drive_state::DriveState::Planning;
-        let mut looks = 0;
-        for i in 1..600 {
-            let s = at_rest(&grid, Stamp::default().after(0.2 * f64::from(i)), pose);
-            navigator.replan(goal, &s);
-            assert!(navigator.plan.is_none(), "no way is driven that leads there");
-            if let Some(end) = navigator.follower.end() {
-                // At once there.
-                pose = end;
-                navigator.follower.halt();
-                navigator.viewpoint = super::super::viewpoint::Viewpoint::Settled;
-                looks += 1;
-                assert!(navigator.view.unwrap().shows(&grid, pose, navigator.blocked_at.unwrap()));
-            }
-        }
-        assert!((1..=MOST_LOOKS_IN_VAIN).contains(&looks), "{looks} looks");
-        let reason = navigator.state.reason().unwrap().to_string();
-        assert!(reason.contains("no way") && reason.contains("could not be seen"), "{reason}");
-    }
-
-    #[test]
-    fn the_way_to_look_ends_where_it_is_barred_or_not_shown_what_it_leads_onto() {
-        use super::super::viewpoint::{ViewTarget, Viewpoint};
-        let ends_on = |floor_by_now: &OccupancyGrid| {
-            let (grid, mut navigator) = (floor(|_| false), navigator());
-            let (from, place) = (Pose2::new(1.0, 2.0, 0.0), Pose2::new(4.0, 2.0, 0.0));
-            let Plan::Found(plan) = navigator.planner.plan(&grid, from, Twist2::ZERO, place) else {
-                panic!("nothing is in the way")
-            };
-            navigator.follower.follow(plan.trajectory.clone(), place);
-            navigator.viewpoint = Viewpoint::Going(ViewTarget::UnknownFloor, plan.trajectory);
-            let s = at_rest(floor_by_now, Stamp::default(), from);
-            navigator.follower.step(&s.estimate, s.now);
-            navigator.watch_path_to_viewpoint(&s);
-            let halts = navigator.follower.reference().is_none();
-            assert_eq!(halts, matches!(navigator.viewpoint, Viewpoint::Looking(_)));
-            halts
-        };
-        assert!(!ends_on(&floor(|_| false)), "all is as it was");
-        assert!(!ends_on(&floor(|at| at.x > 5.0)), "unseen beyond the place");
-        // A chair that hides its own side: what is beside the robot it will not see on the way.
-        assert!(ends_on(&floor(|at| at.x < 1.6 && at.y > 2.05)));
-        let mut barred = floor(|_| false);
-        (0..80).for_each(|row| barred.set(CellIndex { col: 50, row }, Cell::Occupied));
-        assert!(ends_on(&barred));
     }
 }

@@ -1,0 +1,32 @@
+//! A run that has ended, and the cost of its recording.
+
+use crate::{AppError, BestView, RunLog};
+use std::time::Duration;
+use trundle_runtime::{Histogram, Robot};
+
+/// A run that has ended.
+pub struct FinishedRun {
+    /// The robot, with its map and plan.
+    pub robot: Robot,
+    /// The log.
+    pub log: RunLog,
+    /// The view with the largest number of tracked features.
+    pub view: BestView,
+    /// Wall-clock time of the run \[s\].
+    pub seconds: f64,
+    /// The cost of recording.
+    pub recording: RecordingCost,
+}
+
+/// The cost of recording a run.
+#[derive(Debug, Default)]
+pub struct RecordingCost {
+    /// Lines that waited for the disk, counted each time a line was written.
+    pub queue_lengths: Histogram,
+    /// Lines left out because the disk could not follow.
+    pub lines_lost: u64,
+    /// Processor time of the recorder's thread, where there is one.
+    pub cpu_time: Duration,
+    /// Why the recording is not whole, if it is not.
+    pub error: Option<AppError>,
+}

@@ -1,0 +1,40 @@
+//! Maps, robots and world states for the tests of the navigator.
+
+use super::Navigator;
+use crate::config::RobotConfig;
+use crate::world_state::{DynamicObstacles, WorldState};
+use trundle_control::MotionSense;
+use trundle_core::{Cell, OccupancyGrid, Pose2, PoseEstimate, Stamp, Twist2, Vector2};
+
+/// Known floor, 6 x 4 m about (3, 2), with unknown floor where `hidden` says so.
+pub(super) fn floor(hidden: impl Fn(Vector2) -> bool) -> OccupancyGrid {
+    let mut grid = OccupancyGrid::from_ascii(0.05, &vec![".".repeat(120); 80].join("\n")).unwrap();
+    let geometry = *grid.geometry();
+    for k in 0..geometry.len() {
+        let cell = geometry.cell(k);
+        if hidden(geometry.center(cell)) {
+            grid.set(cell, Cell::Unknown);
+        }
+    }
+    grid
+}
+
+pub(super) fn navigator() -> Navigator {
+    let config = RobotConfig::default();
+    let footprint = config.footprint().unwrap();
+    Navigator::new(&config, &footprint).unwrap()
+}
+
+pub(super) fn at_rest(grid: &OccupancyGrid, now: Stamp, pose: Pose2) -> WorldState<'_> {
+    let covariance = nalgebra::Matrix3::from_diagonal_element(1e-6);
+    WorldState {
+        now,
+        estimate: PoseEstimate { stamp: now, pose, twist: Twist2::ZERO, covariance },
+        grid,
+        scan: None,
+        seen: None,
+        unplaced: 0.0,
+        motion: MotionSense::Wheels,
+        traffic: DynamicObstacles::default(),
+    }
+}

@@ -1,0 +1,54 @@
+//! Log events of the robot: changes of state, corrections of the pose, dropped images. Times are those of the data.
+
+use crate::behaviour::drive_state::DriveState;
+use crate::reason::Reason;
+use trundle_core::{Pose2, Stamp, difference_of_angles};
+
+/// Correction of the pose estimate \[m\] above which the correction is logged. Source: ours, the size of a grid cell.
+const LOGGED_CORRECTION_M: f64 = 0.05;
+
+/// Why an image was dropped.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum DroppedImage {
+    /// A newer image came before a worker was free.
+    Replaced,
+    /// No wheel reading came before the image.
+    NoOdometry,
+    /// The camera repeats its last image.
+    Frozen,
+    /// The run is over.
+    RunOver,
+}
+
+impl DroppedImage {
+    fn text(self) -> &'static str {
+        match self {
+            Self::Replaced => "a newer image replaces it",
+            Self::NoOdometry => "no wheel reading came before it",
+            Self::Frozen => "the camera repeats its last image",
+            Self::RunOver => "the run is over",
+        }
+    }
+}
+
+/// Logs a state that differs from the last one, or has a reason of another kind.
+pub(super) fn state(at: Stamp, last: &DriveState, new: &DriveState) {
+    let kind = |state: &DriveState| state.reason().map(Reason::kind);
+    if last.name() != new.name() || kind(last) != kind(new) {
+        tracing::info!("{:.3} s: {} -> {new}", at.as_secs(), last.name());
+    }
+}
+
+/// Logs a correction of the pose estimate by `source`, from `old` to `new`, where it is large.
+pub(super) fn correction(at: Stamp, source: &str, old: Pose2, new: Pose2) {
+    let distance = old.distance(&new);
+    if distance > LOGGED_CORRECTION_M {
+        let turn = difference_of_angles(new.theta, old.theta).to_degrees();
+        tracing::info!("{:.3} s: {source} corrects the pose by {distance:.3} m, {turn:.2} deg", at.as_secs());
+    }
+}
+
+/// Logs an image that is dropped.
+pub(super) fn dropped_image(stamp: Stamp, why: DroppedImage) {
+    tracing::debug!("image of {:.3} s dropped: {}", stamp.as_secs(), why.text());
+}

@@ -1,0 +1,15 @@
+//! Validation of a robot's configuration: a configuration is valid when a robot can be made of it.
+
+use super::Robot;
+use crate::config::RobotConfig;
+use trundle_core::Invalid;
+
+impl RobotConfig {
+    /// Passes a valid configuration through.
+    ///
+    /// # Errors
+    /// Names the first number that is outside its range.
+    pub fn validated(self) -> Result<Self, Invalid> {
+        Robot::new(self.clone()).map(|_| self)
+    }
+}
