@@ -51,6 +51,6 @@ pub use pose_margin::margin_of;
 pub use positioner::config::PositionerConfig;
 pub use positioner::positioner_loop::Positioner;
 pub use positioner::report::{PositionerInput, PositionerReason, PositionerReport};
-pub use scene::blocker::{Blocker, ObstacleKind};
+pub use scene::blocker::{Blocker, BlockerKind};
 pub use scene::obstacle_scene::{Obstacle, ObstacleScene};
 pub use work_budget::PlanningJob;

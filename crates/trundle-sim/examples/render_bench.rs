@@ -11,7 +11,7 @@ use std::path::Path;
 use std::time::Instant;
 use trundle_core::{PinholeCamera, Pose2, Pose3, Stamp, Vector2};
 use trundle_sim::import::{GltfOptions, gltf};
-use trundle_sim::{ColorNoise, DepthNoise, Lights, Renderer, RgbdSensor, Stage, World, camera_mount};
+use trundle_sim::{ColorNoise, DepthNoise, Lights, Renderer, RgbdSensor, SceneSnapshot, World, camera_mount};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -22,7 +22,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mesh = gltf(Path::new(scene), &GltfOptions::z_up())?;
     let world = World::with_meshes(Vec::new(), vec![mesh], 1)?;
     world.paint();
-    let stage = Stage { world: &world, movers: &[], lights: &Lights::default() };
+    let stage = SceneSnapshot { world: &world, movers: &[], lights: &Lights::default() };
     let renderer = Renderer::new(PinholeCamera::kinect_v2())?;
     let sensor = RgbdSensor::new(DepthNoise::default(), ColorNoise::default(), 1)?;
     let alone = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;

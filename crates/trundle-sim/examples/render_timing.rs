@@ -23,7 +23,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             let along = if i % 2 == 0 { scene.start } else { scene.goal };
             let pose = Pose2::new(along.x, along.y, i as f64 * 0.11);
             let begun = Instant::now();
-            renderer.render(&scene.stage(), &(Pose3::from_pose2(pose) * mount), &mut view);
+            renderer.render(&scene.snapshot(), &(Pose3::from_pose2(pose) * mount), &mut view);
             draw.push(begun.elapsed().as_secs_f64() * 1e3);
             let begun = Instant::now();
             sensor.expose(&view, Stamp::default(), i as u64)?;

@@ -69,7 +69,7 @@ fn view(scene: &Scene, pose: Pose2, (width, height): (u32, u32)) -> Result<RgbIm
     let renderer = Renderer::new(camera)?;
     let mut view = renderer.blank();
     let mount = camera_mount(0.05, 0.45, 8_f64.to_radians());
-    renderer.render(&scene.stage(), &(Pose3::from_pose2(pose) * mount), &mut view);
+    renderer.render(&scene.snapshot(), &(Pose3::from_pose2(pose) * mount), &mut view);
     // Five bits a colour: half the file, and no eye sees it at this size.
     let bytes = view.color.iter().flatten().map(|byte| byte & 0xF8 | byte >> 5).collect();
     RgbImage::from_raw(width, height, bytes).ok_or_else(|| "image size".into())

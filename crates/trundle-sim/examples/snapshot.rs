@@ -19,7 +19,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let renderer = Renderer::new(config.camera)?;
     let mut view = renderer.blank();
     let world_from_camera = Pose3::from_pose2(Pose2::new(x, y, deg.to_radians())) * config.base_from_camera;
-    renderer.render(&scene.stage(), &world_from_camera, &mut view);
+    renderer.render(&scene.snapshot(), &world_from_camera, &mut view);
     let image =
         RgbdSensor::new(config.depth_noise, config.color_noise, 1)?.expose(&view, Stamp::default(), 0)?;
     let color: Vec<u8> = image.color().data().iter().flatten().copied().collect();

@@ -16,30 +16,30 @@
 //! ```
 
 mod camera;
-mod chance;
 mod config;
 mod drive;
 mod faults;
 pub mod import;
 mod kobuki;
 mod laser;
-mod paint;
+mod materials;
 mod people;
+mod rng;
 pub mod scenes;
 mod simulator;
 mod world;
 
 pub use camera::{ColorNoise, DepthNoise, Exposure, Renderer, RgbdSensor, View, blend};
 pub use config::{SimConfig, camera_mount};
-pub use drive::{CommandScript, FollowerConfig, Following, TimedCommand, WaypointFollower};
+pub use drive::{CommandScript, Following, TimedCommand, WaypointFollower, WaypointFollowerConfig};
 pub use faults::{Fault, FaultKind, FaultSchedule, WheelSide};
 pub use kobuki::{KobukiConfig, TrueWheels};
 pub use laser::LaserConfig;
-pub use paint::{Finish, Paint};
+pub use materials::{Finish, Paint};
 pub use people::Person;
 pub use scenes::Scene;
 pub use simulator::{CameraAside, Shot, SimError, Simulator};
 pub use world::{
-    Cuboid, Cylinder, HeightBand, Hit, Lamp, Lights, Material, Mesh, Mover, Obstacles, Shape, Solid, Stage,
-    Target, Triangle, World,
+    Cuboid, Cylinder, HeightBand, Hit, Lamp, Lights, Material, Mesh, Mover, Obstacles, SceneSnapshot, Shape,
+    Solid, Target, Triangle, World,
 };

@@ -1,24 +1,24 @@
 //! The simulator: a Kobuki with camera and laser in a scene, as a robot body.
 
 mod camera;
+mod camera_rig;
 mod clock;
 mod error;
-mod eye;
-mod late;
+mod latency_queue;
 mod track;
 
 use crate::config::SimConfig;
 use crate::faults::Faults;
-use crate::kobuki::{Kobuki, STEP, Surroundings, TrueWheels};
+use crate::kobuki::{ContactScene, Kobuki, STEP, TrueWheels};
 use crate::laser::Laser;
 use crate::people::Crowd;
 use crate::scenes::Scene;
-use crate::world::{HeightBand, Obstacles, Stage};
+use crate::world::{HeightBand, Obstacles, SceneSnapshot};
 pub use camera::{CameraAside, Shot};
+use camera_rig::CameraRig;
 use clock::Clock;
 pub use error::SimError;
-use eye::Eye;
-use late::Late;
+use latency_queue::LatencyQueue;
 use std::collections::VecDeque;
 use std::sync::Arc;
 use track::Track;
@@ -43,7 +43,7 @@ pub struct Simulator {
     crowd: Crowd,
     body: Kobuki,
     /// None when the camera is aside.
-    eye: Option<Eye>,
+    rig: Option<CameraRig>,
     /// What the camera aside has not taken yet.
     shots: Vec<Shot>,
     laser: Option<Laser>,
@@ -52,9 +52,9 @@ pub struct Simulator {
     /// Steps of 1 ms since the start.
     now: u64,
     clocks: Clocks,
-    said: Said,
+    last_readings: LastReadings,
     queue: VecDeque<SensorEvent>,
-    late: Late,
+    latency: LatencyQueue,
     refused_commands: u32,
 }
 
@@ -67,9 +67,9 @@ struct Clocks {
     laser: Clock,
 }
 
-/// What sensors said last, where that matters.
+/// The last reading of each sensor that reports changes only.
 #[derive(Debug, Default)]
-struct Said {
+struct LastReadings {
     /// Whether the bumper truly is pressed.
     is_touching: bool,
     is_pressed: bool,
@@ -107,16 +107,16 @@ impl Simulator {
             obstacles,
             crowd,
             body: Kobuki::new(&config.kobuki, scene.start, seed)?,
-            eye: Some(Eye::new(&config, seed)?),
+            rig: Some(CameraRig::new(&config, seed)?),
             shots: Vec::new(),
             laser: config.laser.clone().map(|laser| Laser::new(laser, seed)),
             faults: Faults::new(config.faults.clone(), seed),
             track: Track::new(scene.start, config.memory()),
             now: 0,
             clocks,
-            said: Said::default(),
+            last_readings: LastReadings::default(),
             queue: VecDeque::new(),
-            late: Late::default(),
+            latency: LatencyQueue::default(),
             refused_commands: 0,
             scene: Arc::new(scene),
             config,
@@ -186,9 +186,9 @@ impl Simulator {
         self.now += 1;
         self.break_things();
         self.crowd.step(STEP, self.body.footprint(), self.body.pose());
-        let around = Surroundings { fixed: &self.obstacles, moving: &self.crowd };
+        let around = ContactScene { fixed: &self.obstacles, moving: &self.crowd };
         if let Some(is_touching) = self.body.step(&around) {
-            self.said.is_touching = is_touching;
+            self.last_readings.is_touching = is_touching;
         }
         self.track.add(self.body.pose());
     }
@@ -236,32 +236,32 @@ impl Simulator {
         if let Some(frame) = image {
             self.read_camera(stamp, frame)?;
         }
-        self.late.arrive(self.now, &mut self.queue);
+        self.latency.arrive(self.now, &mut self.queue);
         Ok(())
     }
 
     fn read_wheels(&mut self, stamp: Stamp) {
         let mut ticks = self.body.read_wheels(stamp);
         if self.faults.are_encoders_stuck() {
-            (ticks.left, ticks.right) = self.said.counters.unwrap_or((ticks.left, ticks.right));
+            (ticks.left, ticks.right) = self.last_readings.counters.unwrap_or((ticks.left, ticks.right));
         }
-        self.said.counters = Some((ticks.left, ticks.right));
+        self.last_readings.counters = Some((ticks.left, ticks.right));
         self.queue.push_back(SensorEvent::Wheels(ticks));
     }
 
     fn read_gyro(&mut self, stamp: Stamp) {
         let mut rate = self.body.read_gyro(stamp);
         if self.faults.is_gyro_stuck() {
-            rate.omega = self.said.turn_rate.unwrap_or(rate.omega);
+            rate.omega = self.last_readings.turn_rate.unwrap_or(rate.omega);
         }
-        self.said.turn_rate = Some(rate.omega);
+        self.last_readings.turn_rate = Some(rate.omega);
         self.queue.push_back(SensorEvent::Gyro(rate));
     }
 
     fn read_bumper(&mut self, stamp: Stamp) {
-        let pressed = self.faults.bumper().unwrap_or(self.said.is_touching);
-        if pressed != self.said.is_pressed {
-            self.said.is_pressed = pressed;
+        let pressed = self.faults.bumper().unwrap_or(self.last_readings.is_touching);
+        if pressed != self.last_readings.is_pressed {
+            self.last_readings.is_pressed = pressed;
             self.queue.push_back(SensorEvent::Touch(Touch { stamp, pressed }));
         }
     }
@@ -269,8 +269,9 @@ impl Simulator {
     fn read_laser(&mut self, stamp: Stamp, scan: u64) -> Result<(), SimError> {
         let Some(laser) = self.laser.as_ref().filter(|_| !self.faults.is_laser_gone()) else { return Ok(()) };
         let movers = self.crowd.movers();
-        let stage = Stage { world: &self.scene.world, movers: &movers, lights: &self.scene.lights };
-        let scan = laser.measure(&stage, |age| self.track.back(age), stamp, scan)?;
+        let snapshot =
+            SceneSnapshot { world: &self.scene.world, movers: &movers, lights: &self.scene.lights };
+        let scan = laser.measure(&snapshot, |age| self.track.back(age), stamp, scan)?;
         self.queue.push_back(SensorEvent::Scan(scan));
         Ok(())
     }
@@ -281,12 +282,12 @@ impl Simulator {
             return Ok(());
         }
         let shot = Shot { people: self.crowd.view(), track: self.track.clone(), stamp, frame, fault };
-        let Some(eye) = &mut self.eye else {
+        let Some(rig) = &mut self.rig else {
             self.shots.push(shot);
             return Ok(());
         };
-        let image = shot.expose(eye, &self.scene)?;
-        self.late.send(SensorEvent::Rgbd(image), self.now, fault.delay, &mut self.queue);
+        let image = shot.expose(rig, &self.scene)?;
+        self.latency.send(SensorEvent::Rgbd(image), self.now, fault.delay, &mut self.queue);
         Ok(())
     }
 }

@@ -1,10 +1,10 @@
 //! All settings of the RGB-D SLAM.
 
 use crate::frame::depth::DepthConfig;
-use crate::local_mapping::config::MappingConfig;
+use crate::local_mapping::config::LocalMappingConfig;
 use crate::local_mapping::keyframe_policy::KeyframeConfig;
 use crate::loop_closing::config::LoopConfig;
-use crate::motion::motion_model::MotionConfig;
+use crate::motion::motion_model::MotionModelConfig;
 use crate::tracking::config::TrackingConfig;
 use serde::{Deserialize, Serialize};
 use trundle_core::Invalid;
@@ -21,11 +21,11 @@ pub struct SlamConfig {
     /// Finding the pose of a frame.
     pub tracking: TrackingConfig,
     /// Uncertainty of what is not seen.
-    pub motion: MotionConfig,
+    pub motion: MotionModelConfig,
     /// When a frame becomes a keyframe.
     pub keyframes: KeyframeConfig,
     /// The landmark map.
-    pub mapping: MappingConfig,
+    pub mapping: LocalMappingConfig,
     /// Places seen again.
     pub loops: LoopConfig,
     /// Seed of the random samples. Default 0.
@@ -40,9 +40,9 @@ impl Default for SlamConfig {
             orb: OrbConfig::default(),
             depth: DepthConfig::default(),
             tracking: TrackingConfig::default(),
-            motion: MotionConfig::default(),
+            motion: MotionModelConfig::default(),
             keyframes: KeyframeConfig::default(),
-            mapping: MappingConfig::default(),
+            mapping: LocalMappingConfig::default(),
             loops: LoopConfig::default(),
             seed: 0,
             kept_frames: 108_000,

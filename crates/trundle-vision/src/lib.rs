@@ -47,7 +47,7 @@ mod orb;
 mod rotation_consistency;
 mod vocabulary;
 
-pub use alignment::{Alignment, ImagePatch, Template};
+pub use alignment::{ImagePatch, PatchAlignment, Template};
 pub use feature_grid::FeatureGrid;
 pub use features::{Descriptor, Features, Keypoint};
 pub use matching::{Match, match_mutual};

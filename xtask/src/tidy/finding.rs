@@ -47,11 +47,13 @@ pub enum Rule {
     Glossary,
     /// A document names a file that is not there.
     MissingFile,
+    /// Two crates have a public type of one name.
+    TypeName,
 }
 
 impl Rule {
     /// All rules with an allow-list.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::ModuleCycle,
         Self::StructFields,
         Self::ImplMethods,
@@ -61,6 +63,7 @@ impl Rule {
         Self::ProcessWord,
         Self::Glossary,
         Self::MissingFile,
+        Self::TypeName,
     ];
 
     /// The rule's name in the allow-list.
@@ -75,6 +78,7 @@ impl Rule {
             Self::ProcessWord => "process-word",
             Self::Glossary => "glossary",
             Self::MissingFile => "missing-file",
+            Self::TypeName => "type-name",
         }
     }
 }

@@ -18,6 +18,7 @@ mod purity;
 mod shape;
 mod source;
 mod tree;
+mod type_names;
 mod types;
 mod use_paths;
 
@@ -71,6 +72,7 @@ fn all_findings(root: &Path) -> Result<Vec<Finding>, String> {
         lockfile::check,
         markdown::check,
         modules::check,
+        type_names::check,
         types::check,
         prose::check,
     ];

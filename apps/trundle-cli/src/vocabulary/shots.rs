@@ -153,7 +153,7 @@ impl<'s> Photographer<'s> {
     fn at(&mut self, place: Place) -> Result<Shot, AppError> {
         let Camera { renderer, sensor, view, orb } = &mut self.cameras[self.turn];
         let pose = place.camera();
-        renderer.render(&self.scenery.stage(), &pose, view);
+        renderer.render(&self.scenery.snapshot(), &pose, view);
         let image = sensor.expose(view, Stamp::default(), self.taken)?;
         self.taken += 1;
         let descriptors = orb.extract(&gray_from_color(image.color())).descriptors;

@@ -8,14 +8,14 @@ use trundle_core::{Cell, Vector2};
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Blocker {
     /// Its kind.
-    pub thing: ObstacleKind,
+    pub thing: BlockerKind,
     /// Its nearest point; of a cell, its centre. Map frame, m.
     pub at: Vector2,
 }
 
 /// Kind of an obstacle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum ObstacleKind {
+pub enum BlockerKind {
     /// One of a list of obstacles, by its number; of a grid, while a search goes on, a segment of an outline.
     Listed(u32),
     /// An occupied cell of a grid.
@@ -29,15 +29,15 @@ pub enum ObstacleKind {
 impl Blocker {
     /// One of a list.
     pub(crate) fn listed(number: u32, at: Vector2) -> Self {
-        Self { thing: ObstacleKind::Listed(number), at }
+        Self { thing: BlockerKind::Listed(number), at }
     }
 
     /// The cell whose outline was met.
     pub(super) fn among(self, cells: &Cells) -> Self {
         match cells.at(self.at) {
-            Some((Cell::Unknown, at)) => Self { thing: ObstacleKind::Unknown, at },
-            Some((_, at)) => Self { thing: ObstacleKind::Occupied, at },
-            None => Self { thing: ObstacleKind::OffMap, ..self },
+            Some((Cell::Unknown, at)) => Self { thing: BlockerKind::Unknown, at },
+            Some((_, at)) => Self { thing: BlockerKind::Occupied, at },
+            None => Self { thing: BlockerKind::OffMap, ..self },
         }
     }
 }
@@ -45,10 +45,10 @@ impl Blocker {
 impl fmt::Display for Blocker {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.thing {
-            ObstacleKind::Listed(number) => write!(f, "obstacle {number} at")?,
-            ObstacleKind::Occupied => write!(f, "the occupied cell at")?,
-            ObstacleKind::Unknown => write!(f, "the unknown cell at")?,
-            ObstacleKind::OffMap => write!(f, "the end of the map at")?,
+            BlockerKind::Listed(number) => write!(f, "obstacle {number} at")?,
+            BlockerKind::Occupied => write!(f, "the occupied cell at")?,
+            BlockerKind::Unknown => write!(f, "the unknown cell at")?,
+            BlockerKind::OffMap => write!(f, "the end of the map at")?,
         }
         write!(f, " ({:.3}, {:.3}) m", self.at.x, self.at.y)
     }

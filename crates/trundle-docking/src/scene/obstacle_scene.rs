@@ -241,7 +241,7 @@ fn rim_of(geometry: &GridGeometry) -> [Segment; 4] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::blocker::ObstacleKind;
+    use crate::scene::blocker::BlockerKind;
 
     #[test]
     fn invalid_obstacles_are_refused_with_their_number() {
@@ -269,7 +269,7 @@ mod tests {
         let corners = [(-5., -5.), (5., -5.), (5., 5.), (-5., 5.)].map(|(x, y)| Vector2::new(x, y)).to_vec();
         let scene = ObstacleScene::new(&[Obstacle::Polygon(corners)]).unwrap();
         let (distance, blocker) = scene.clearance(&Footprint::KOBUKI, &Pose2::IDENTITY, 1.0).unwrap();
-        assert_eq!((distance, blocker.thing), (0.0, ObstacleKind::Listed(0)));
+        assert_eq!((distance, blocker.thing), (0.0, BlockerKind::Listed(0)));
         let grid = OccupancyGrid::from_ascii(1.0, "####\n####\n####\n####").unwrap();
         let scene = ObstacleScene::from_grid(&grid, Vector2::new(2.0, 2.0), 3.0, false);
         assert_eq!(scene.clearance(&Footprint::KOBUKI, &Pose2::new(1.5, 1.5, 0.0), 1.0).unwrap().0, 0.0);

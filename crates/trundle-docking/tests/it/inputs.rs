@@ -6,8 +6,8 @@ use rand_chacha::ChaCha8Rng;
 use trundle_core::{Cell, Footprint, GridGeometry, OccupancyGrid, Pose2, Vector2};
 use trundle_docking::corridor::{Problem, Scenario, generate, parse};
 use trundle_docking::{
-    Certificate, ContactSpace, DockingConfig, DockingPlan, DockingPlanner, DockingRefusal, Method, Motion,
-    Obstacle, ObstacleKind, ObstacleScene,
+    BlockerKind, Certificate, ContactSpace, DockingConfig, DockingPlan, DockingPlanner, DockingRefusal,
+    Method, Motion, Obstacle, ObstacleScene,
 };
 
 fn at(x: f64, y: f64) -> Vector2 {
@@ -71,7 +71,7 @@ fn a_closed_wall_is_named_as_what_forbids_it() {
     let DockingPlan::Impossible(impossible) = plan else { panic!("{plan:?}") };
     assert_eq!(
         (impossible.certificate, impossible.by.unwrap().thing),
-        (Certificate::Never, ObstacleKind::Listed(4))
+        (Certificate::Never, BlockerKind::Listed(4))
     );
 }
 
@@ -205,7 +205,7 @@ fn on_a_map_the_cell_that_is_in_the_way_is_told() {
     let DockingPlan::Impossible(none) = planner().plan(&disc, &scene, free, goal(2.1, 0.9)).unwrap() else {
         panic!("through a wall")
     };
-    assert_eq!((none.certificate, none.by.unwrap().thing), (Certificate::Never, ObstacleKind::Occupied));
+    assert_eq!((none.certificate, none.by.unwrap().thing), (Certificate::Never, BlockerKind::Occupied));
 }
 
 #[test]

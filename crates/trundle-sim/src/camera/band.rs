@@ -1,11 +1,11 @@
 //! Drawing of a band of image rows: visible surfaces, textures, light and depth.
 
-use super::eye::Eye;
 use super::footprint::Footprints;
 use super::lamps::Lamps;
 use super::patch::Patch;
 use super::rays::Rays;
 use super::tile::{COLUMNS, NOTHING, Row, Tile};
+use super::world_view::WorldView;
 use trundle_core::PinholeCamera;
 
 /// Cosines of incidence are not said to be less than this.
@@ -15,7 +15,7 @@ const LEAST_COSINE: f32 = 1e-3;
 pub(super) struct Picture<'a> {
     pub(super) camera: &'a PinholeCamera,
     /// What stands still, then what moves.
-    pub(super) eyes: &'a [Eye<'a>],
+    pub(super) views: &'a [WorldView<'a>],
     pub(super) lamps: &'a Lamps,
 }
 
@@ -51,10 +51,10 @@ impl Picture<'_> {
         for left in (0..width).step_by(COLUMNS) {
             let columns = COLUMNS.min(width - left);
             let mut tile = Tile::empty(columns, rows);
-            for eye in self.eyes.iter().rev() {
-                eye.draw(self.camera, (left, top), &mut tile);
+            for view in self.views.iter().rev() {
+                view.draw(self.camera, (left, top), &mut tile);
             }
-            let rays = self.eyes[0].rays(self.camera, left, top);
+            let rays = self.views[0].rays(self.camera, left, top);
             for row in 0..rows {
                 let at = row * width + left;
                 let mut line = Band {
@@ -80,12 +80,12 @@ impl Picture<'_> {
                 at += 1;
                 continue;
             }
-            let eye = self.eye_of(id);
-            let is_alone = eye.is_curved(id);
+            let view = self.view_of(id);
+            let is_alone = view.is_curved(id);
             let end =
                 (at + 1..line.depth.len()).find(|&i| is_alone || ids[i] != id).unwrap_or(line.depth.len());
-            let rays = if eye.first_id == 0 { *still } else { eye.rays(self.camera, left, top) };
-            let patch = eye.patch(&rays, self.lamps, id, (row, at, 1.0 / inverse_depth[at]));
+            let rays = if view.first_id == 0 { *still } else { view.rays(self.camera, left, top) };
+            let patch = view.patch(&rays, self.lamps, id, (row, at, 1.0 / inverse_depth[at]));
             let seen = Footprints::new(&patch, inverse_depth, row, &length);
             for (i, w) in inverse_depth.iter().enumerate().take(end).skip(at) {
                 line.depth[i] = 1.0 / w;
@@ -111,12 +111,12 @@ impl Picture<'_> {
     }
 
     #[inline(always)]
-    fn eye_of(&self, id: u32) -> &Eye<'_> {
-        if id < self.eyes[0].end_id() {
-            return &self.eyes[0];
+    fn view_of(&self, id: u32) -> &WorldView<'_> {
+        if id < self.views[0].end_id() {
+            return &self.views[0];
         }
-        let next = self.eyes.partition_point(|eye| eye.first_id <= id);
-        &self.eyes[next - 1]
+        let next = self.views.partition_point(|view| view.first_id <= id);
+        &self.views[next - 1]
     }
 }
 
@@ -134,7 +134,7 @@ fn color(patch: &Patch, seen: &Footprints, i: usize) -> [u8; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::paint::{Finish, Paint};
+    use crate::materials::{Finish, Paint};
     use crate::world::{Cuboid, Cylinder, Lights, Material, Mesh, Shape, Solid, Triangle, World};
     use trundle_core::{ColorImage, Pose2, Pose3, Vector3};
 
@@ -163,8 +163,8 @@ mod tests {
         // Looking along x: right is -y, down is -z.
         let turn = nalgebra::Matrix3::new(0.0, 0.0, 1.0, -1.0, 0.0, 0.0, 0.0, -1.0, 0.0);
         let pose = Pose3::from_matrix(turn, Vector3::new(0.1, 0.2, 0.3));
-        let eyes = [Eye::new(&world, Pose2::IDENTITY, &camera, &pose, 0)];
-        let picture = Picture { camera: &camera, eyes: &eyes, lamps: &lamps };
+        let views = [WorldView::new(&world, Pose2::IDENTITY, &camera, &pose, 0)];
+        let picture = Picture { camera: &camera, views: &views, lamps: &lamps };
         let drawn = |is_plain: bool| {
             let (mut depth, mut color, mut cosine) = (vec![0.0; 600], vec![[0; 3]; 600], vec![0.0; 600]);
             let mut band = Band { depth: &mut depth, color: &mut color, cosine: &mut cosine };

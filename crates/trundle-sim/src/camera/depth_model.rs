@@ -2,7 +2,7 @@
 
 use super::DepthNoise;
 use super::round::{nearest, nearest_f32};
-use crate::chance::{NormalTable, mix};
+use crate::rng::{NormalTable, mix};
 use std::f64::consts::FRAC_PI_2;
 
 /// Entries of the tables over depth, a power of two.
@@ -152,7 +152,7 @@ fn chance(bits: u64, nth: u32) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::chance::hash;
+    use crate::rng::hash;
 
     fn measured(noise: &DepthNoise, truth: DepthTruth) -> Vec<f64> {
         let model = DepthModel::new(noise);

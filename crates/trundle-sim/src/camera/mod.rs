@@ -6,7 +6,6 @@ mod color_noise;
 mod depth_model;
 mod depth_noise;
 mod exposure;
-mod eye;
 mod footprint;
 mod lamps;
 mod meet_cuboid;
@@ -23,6 +22,7 @@ mod shadow;
 mod surface;
 mod tile;
 mod tone;
+mod world_view;
 
 pub use blur::blend;
 pub use color_noise::ColorNoise;

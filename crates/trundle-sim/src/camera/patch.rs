@@ -1,7 +1,7 @@
 //! A plane textured surface under the pixels of a tile.
 
 use super::rays::{Linear, Rays, dot};
-use crate::paint::Texture;
+use crate::materials::Texture;
 
 /// A flat piece of surface under the pixels of a tile.
 pub(super) struct Patch<'w> {

@@ -1,10 +1,10 @@
 //! The renderer: an ideal RGB-D image of a scene.
 
 use super::band::{Band, Picture};
-use super::eye::Eye;
 use super::lamps::Lamps;
 use super::tile::ROWS;
-use crate::world::Stage;
+use super::world_view::WorldView;
+use crate::world::SceneSnapshot;
 use rayon::prelude::*;
 use trundle_core::{Distortion, Invalid, PinholeCamera, Pose2, Pose3};
 
@@ -23,7 +23,7 @@ pub struct View {
     pub cosine: Vec<f32>,
 }
 
-/// Draws a [`Stage`] as a rectified pinhole camera sees it: exact perspective depth, filtered textures, Lambert's law.
+/// Draws a [`SceneSnapshot`] as a rectified pinhole camera sees it: exact perspective depth, filtered textures, Lambert's law.
 ///
 /// The image is cut into tiles of 16 x 8 pixels. For each, the hierarchies are walked with the tile's pyramid, the nearest
 /// boxes first, until all pixels see something nearer than the next box begins. The pixels do not depend on the number
@@ -62,16 +62,17 @@ impl Renderer {
         View { width, height, depth: vec![0.0; n], color: vec![[0; 3]; n], cosine: vec![0.0; n] }
     }
 
-    /// Draws the stage as seen from `world_from_camera` into `view`, an image of [`Renderer::blank`].
-    pub fn render(&self, stage: &Stage<'_>, world_from_camera: &Pose3, view: &mut View) {
-        let eye = |world, pose, first_id| Eye::new(world, pose, &self.camera, world_from_camera, first_id);
-        let mut eyes = Vec::with_capacity(1 + stage.movers.len());
-        eyes.push(eye(stage.world, Pose2::IDENTITY, 0));
-        for mover in stage.movers {
-            let first_id = eyes.last().map_or(0, Eye::end_id);
-            eyes.push(eye(mover.body, mover.pose, first_id));
+    /// Draws the scene as seen from `world_from_camera` into `view`, an image of [`Renderer::blank`].
+    pub fn render(&self, snapshot: &SceneSnapshot<'_>, world_from_camera: &Pose3, view: &mut View) {
+        let view_of =
+            |world, pose, first_id| WorldView::new(world, pose, &self.camera, world_from_camera, first_id);
+        let mut views = Vec::with_capacity(1 + snapshot.movers.len());
+        views.push(view_of(snapshot.world, Pose2::IDENTITY, 0));
+        for mover in snapshot.movers {
+            let first_id = views.last().map_or(0, WorldView::end_id);
+            views.push(view_of(mover.body, mover.pose, first_id));
         }
-        let picture = Picture { camera: &self.camera, eyes: &eyes, lamps: &Lamps::new(stage.lights) };
+        let picture = Picture { camera: &self.camera, views: &views, lamps: &Lamps::new(snapshot.lights) };
         let band = ROWS * view.width;
         view.depth
             .par_chunks_mut(band)

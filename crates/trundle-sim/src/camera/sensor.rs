@@ -4,7 +4,7 @@ use super::depth_model::{DepthModel, DepthTruth};
 use super::exposure::Meter;
 use super::tone::Tone;
 use super::{ColorNoise, DepthNoise, View, multi_path, shadow};
-use crate::chance::{GOLDEN, NormalTable, hash, mix};
+use crate::rng::{GOLDEN, NormalTable, hash, mix};
 use rayon::prelude::*;
 use trundle_core::{ColorImage, DepthImage, Invalid, RgbdImage, Stamp};
 

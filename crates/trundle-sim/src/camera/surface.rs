@@ -1,13 +1,13 @@
 //! Texture planes of the faces of boxes, cylinders and triangles.
 
-use super::eye::{Eye, single};
 use super::lamps::Lamps;
 use super::meet_cylinder::LID;
 use super::patch::{Patch, Plane};
 use super::rays::{Rays, dot};
+use super::world_view::{WorldView, single};
 use crate::world::{Form, Kind};
 
-impl<'w> Eye<'w> {
+impl<'w> WorldView<'w> {
     /// What is painted where the tile's pixel (row, column) sees the surface `id` at `depth` m.
     #[inline(always)]
     pub(super) fn patch(
@@ -30,7 +30,7 @@ impl<'w> Eye<'w> {
                 face_of_cylinder(form.own(self.apex), (radius, height), number % 4, ray, depth)
             }
         };
-        let light = lamps.on(self.in_stage(plane.normal));
+        let light = lamps.on(self.in_scene(plane.normal));
         Patch::new(rays, &plane, &self.paintings[number / 4][face], light)
     }
 
@@ -50,7 +50,7 @@ impl<'w> Eye<'w> {
         let start =
             [surface.uv[0] + dot(surface.across, to_apex), surface.uv[1] + dot(surface.down, to_apex)];
         let sign = if dot(surface.normal, to_apex) < 0.0 { -1.0 } else { 1.0 };
-        let light = lamps.on(self.in_stage([
+        let light = lamps.on(self.in_scene([
             sign * surface.normal[0],
             sign * surface.normal[1],
             sign * surface.normal[2],
@@ -59,9 +59,9 @@ impl<'w> Eye<'w> {
         Patch::new(rays, &plane, &self.pictures[surface.material as usize], light)
     }
 
-    /// A direction of this world in the stage.
+    /// A direction of this world in the frame of the scene.
     #[inline(always)]
-    fn in_stage(&self, v: [f32; 3]) -> [f32; 3] {
+    fn in_scene(&self, v: [f32; 3]) -> [f32; 3] {
         let (s, c) = self.heading;
         [c * v[0] - s * v[1], s * v[0] + c * v[1], v[2]]
     }

@@ -19,7 +19,7 @@ pub(super) type Row<T> = [T; COLUMNS];
 #[derive(Debug, Clone)]
 pub(super) struct Tile {
     pub(super) inverse_depth: [Row<f32>; ROWS],
-    /// What is there: see [`super::eye::Eye`]; or [`NOTHING`].
+    /// What is there: see [`super::world_view::WorldView`]; or [`NOTHING`].
     pub(super) ids: [Row<u32>; ROWS],
 }
 

@@ -2,7 +2,7 @@
 
 use super::ColorNoise;
 use super::round::nearest;
-use crate::chance::NormalTable;
+use crate::rng::NormalTable;
 use std::sync::LazyLock;
 
 /// From the level of a channel (sRGB) to the mean and the standard deviation of what the camera says: a table an image.
@@ -56,7 +56,7 @@ pub(super) fn srgb(light: f64) -> f64 {
 mod tests {
     use super::*;
     use crate::camera::Exposure;
-    use crate::chance::hash;
+    use crate::rng::hash;
 
     fn said(noise: &ColorNoise, gain: f64, color: [u8; 3]) -> Vec<[f64; 3]> {
         let (tone, normals) = (Tone::new(noise, gain), NormalTable::shared());

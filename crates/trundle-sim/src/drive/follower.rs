@@ -1,6 +1,6 @@
 //! A way-point follower that drives the simulated robot by its true pose.
 
-use super::FollowerConfig;
+use super::WaypointFollowerConfig;
 use super::rows::rows;
 use trundle_core::{Invalid, Pose2, Stamp, Twist2, Vector2, difference_of_angles};
 
@@ -47,7 +47,7 @@ pub enum Following {
 /// (heading error steers, distance from the line bends the heading); speeds ramp up, and fall with the distance left.
 #[derive(Debug, Clone)]
 pub struct WaypointFollower {
-    config: FollowerConfig,
+    config: WaypointFollowerConfig,
     waypoints: Vec<Pose2>,
     state: Following,
     phase: Phase,
@@ -81,7 +81,7 @@ impl WaypointFollower {
     ///
     /// # Errors
     /// When there is none, one is not finite, or a number of the configuration is outside its range.
-    pub fn new(waypoints: Vec<Pose2>, config: FollowerConfig) -> Result<Self, Invalid> {
+    pub fn new(waypoints: Vec<Pose2>, config: WaypointFollowerConfig) -> Result<Self, Invalid> {
         if waypoints.is_empty() {
             return Err(Invalid::new("way-points", 0, "", "1 or more"));
         }
@@ -106,7 +106,7 @@ impl WaypointFollower {
     pub fn parse(text: &str) -> Result<Self, Invalid> {
         let rows = rows(text, ["x", "y", "heading_deg"])?;
         let waypoints = rows.iter().map(|(_, [x, y, deg])| Pose2::new(*x, *y, deg.to_radians())).collect();
-        Self::new(waypoints, FollowerConfig::default())
+        Self::new(waypoints, WaypointFollowerConfig::default())
     }
 
     /// Where it goes, `world_from_base`.

@@ -6,7 +6,7 @@ use trundle_core::{Invalid, require_in};
 /// How a [`super::WaypointFollower`] drives.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
-pub struct FollowerConfig {
+pub struct WaypointFollowerConfig {
     /// Cruising speed, m/s, 0.01 to 2. Default 0.3: images overlap well at 15 Hz.
     pub v: f64,
     /// Highest turn rate, rad/s, 0.05 to 5. Default 0.8.
@@ -19,13 +19,13 @@ pub struct FollowerConfig {
     pub patience: f64,
 }
 
-impl Default for FollowerConfig {
+impl Default for WaypointFollowerConfig {
     fn default() -> Self {
         Self { v: 0.3, omega: 0.8, acceleration: 0.4, angular_acceleration: 1.5, patience: 10.0 }
     }
 }
 
-impl FollowerConfig {
+impl WaypointFollowerConfig {
     /// Passes a valid configuration through.
     ///
     /// # Errors

@@ -6,5 +6,5 @@ mod rows;
 mod script;
 
 pub use follower::{Following, WaypointFollower};
-pub use follower_config::FollowerConfig;
+pub use follower_config::WaypointFollowerConfig;
 pub use script::{CommandScript, TimedCommand};

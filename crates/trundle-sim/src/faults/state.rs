@@ -1,7 +1,7 @@
 //! The faults that are active at the present time.
 
 use super::{FaultKind, FaultSchedule, WheelSide};
-use crate::chance::{hash, unit};
+use crate::rng::{hash, unit};
 use trundle_core::Pose2;
 
 /// What is broken now.

@@ -2,7 +2,7 @@
 
 use super::blocks::{Block, blocks};
 use super::{ImportError, ImportFault};
-use crate::paint::{Finish, Paint};
+use crate::materials::{Finish, Paint};
 use crate::world::{Cuboid, Shape, Solid};
 use serde::{Deserialize, Serialize};
 use trundle_core::{Cell, CellIndex, GridGeometry, Invalid, OccupancyGrid, Vector2, Vector3, require_in};

@@ -1,6 +1,6 @@
 //! The bumper: contact of the body with the world, and the touch event.
 
-use super::Surroundings;
+use super::ContactScene;
 use trundle_core::{Footprint, Pose2};
 
 /// A touch ends when the gap is wider than this, m.
@@ -31,7 +31,7 @@ impl Bumper {
         &mut self,
         from: Pose2,
         to: Pose2,
-        around: &Surroundings<'_>,
+        around: &ContactScene<'_>,
     ) -> (Pose2, Option<bool>) {
         let turn = trundle_core::difference_of_angles(to.theta, from.theta).abs();
         self.free_way -= from.distance(&to) + turn * self.reach;
@@ -66,7 +66,7 @@ impl Bumper {
     }
 
     /// Metres to the nearest thing at `pose`, at least while that is near; measures what stands only where it might be near.
-    fn gap(&mut self, pose: Pose2, around: &Surroundings<'_>) -> f64 {
+    fn gap(&mut self, pose: Pose2, around: &ContactScene<'_>) -> f64 {
         if self.free_way <= RELEASE {
             self.free_way = around.fixed.clearance(&self.footprint, pose);
         }

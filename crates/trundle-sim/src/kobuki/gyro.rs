@@ -1,7 +1,7 @@
 //! The gyro: scale error, bias random walk and white noise.
 
 use super::KobukiConfig;
-use crate::chance::normal;
+use crate::rng::normal;
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 use trundle_core::Stamp;

@@ -10,8 +10,8 @@ mod slip;
 
 pub use config::KobukiConfig;
 
-use crate::chance::normal;
 use crate::people::Crowd;
+use crate::rng::normal;
 use crate::world::{Obstacles, World};
 use bumper::Bumper;
 use cliff::CliffSensors;
@@ -50,7 +50,7 @@ fn tolerance(rng: &mut ChaCha8Rng) -> f64 {
 
 /// What the base can run into.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Surroundings<'a> {
+pub(crate) struct ContactScene<'a> {
     /// What stands.
     pub(crate) fixed: &'a Obstacles,
     /// Who walks.
@@ -123,7 +123,7 @@ impl Kobuki {
     }
 
     /// Goes on by [`STEP`]; returns the bumper's state when it changed.
-    pub(crate) fn step(&mut self, around: &Surroundings<'_>) -> Option<bool> {
+    pub(crate) fn step(&mut self, around: &ContactScene<'_>) -> Option<bool> {
         let (left, right) = self.drivetrain.step();
         let (left, right) = (left * STEP, right * STEP);
         self.encoders.roll(left, right);

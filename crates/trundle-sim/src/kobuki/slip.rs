@@ -1,7 +1,7 @@
 //! Wheel slip as two Ornstein-Uhlenbeck processes.
 
 use super::{KobukiConfig, STEP};
-use crate::chance::normal;
+use crate::rng::normal;
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 

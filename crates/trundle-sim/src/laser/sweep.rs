@@ -1,8 +1,8 @@
 //! Measurement of a scan by the simulated laser.
 
 use super::LaserConfig;
-use crate::chance::{GOLDEN, hash, mix, normal, unit};
-use crate::world::Stage;
+use crate::rng::{GOLDEN, hash, mix, normal, unit};
+use crate::world::SceneSnapshot;
 use rayon::prelude::*;
 use trundle_core::{Beam, Invalid, Pose2, Scan, Stamp, Vector2, Vector3};
 
@@ -28,7 +28,7 @@ impl Laser {
     /// Never for a valid configuration; the type is that of a scan's constructor.
     pub(crate) fn measure(
         &self,
-        stage: &Stage<'_>,
+        snapshot: &SceneSnapshot<'_>,
         world_from_base: impl Fn(f64) -> Pose2 + Sync,
         stamp: Stamp,
         scan: u64,
@@ -37,7 +37,7 @@ impl Laser {
         let key = hash(self.seed, scan);
         let beam = |i: usize| {
             let bits = mix(key.wrapping_add((i as u64).wrapping_mul(GOLDEN)));
-            self.beam(stage, &world_from_base(self.age(i)), i, bits)
+            self.beam(snapshot, &world_from_base(self.age(i)), i, bits)
         };
         let beams = (0..c.beams).into_par_iter().with_min_len(SHARE).map(beam).collect();
         Scan::new(stamp, Vector2::new(c.x, c.y), c.angle_min(), c.increment(), beams)
@@ -50,13 +50,13 @@ impl Laser {
         if c.sweeps { turn / c.rate_hz } else { 0.0 }
     }
 
-    fn beam(&self, stage: &Stage<'_>, world_from_base: &Pose2, i: usize, bits: u64) -> Beam {
+    fn beam(&self, snapshot: &SceneSnapshot<'_>, world_from_base: &Pose2, i: usize, bits: u64) -> Beam {
         let c = &self.config;
         let angle = c.angle_min() + i as f64 * c.increment();
         let origin = world_from_base.transform(Vector2::new(c.x, c.y));
         let direction = world_from_base.rotate(Vector2::new(angle.cos(), angle.sin()));
         let direction = Vector3::new(direction.x, direction.y, 0.0);
-        let hit = stage.cast(Vector3::new(origin.x, origin.y, c.z), direction, c.range_max);
+        let hit = snapshot.cast(Vector3::new(origin.x, origin.y, c.z), direction, c.range_max);
         let seen = hit.filter(|hit| hit.normal.dot(&direction).abs() >= c.most_incidence.cos());
         self.reading(seen.map(|hit| hit.distance), bits)
     }

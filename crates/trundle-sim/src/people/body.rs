@@ -1,6 +1,6 @@
 //! Body measures of a person, as cylinders.
 
-use crate::paint::{Finish, Paint};
+use crate::materials::{Finish, Paint};
 use crate::world::{Cylinder, HeightBand, Obstacles, Shape, Solid, World};
 use trundle_core::{Invalid, Vector3};
 

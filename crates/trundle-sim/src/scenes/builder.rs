@@ -1,7 +1,7 @@
 //! Construction of scenes: boxes, cylinders and seeded jitter.
 
-use crate::chance::hash;
-use crate::paint::{Finish, Paint};
+use crate::materials::{Finish, Paint};
+use crate::rng::hash;
 use crate::world::{Cuboid, Cylinder, Shape, Solid};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;

@@ -2,7 +2,7 @@
 
 use super::Scene;
 use super::builder::{Builder, Side, WALL};
-use crate::paint::{Finish, Paint};
+use crate::materials::{Finish, Paint};
 use crate::world::{Lights, World};
 use std::f64::consts::FRAC_PI_2;
 use trundle_core::{Invalid, Pose2};

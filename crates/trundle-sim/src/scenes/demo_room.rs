@@ -2,7 +2,7 @@
 
 use super::Scene;
 use super::builder::{Builder, ROOM_HEIGHT, Side, UNSEEN, WALL};
-use crate::paint::{Finish, Paint};
+use crate::materials::{Finish, Paint};
 use crate::world::{Lights, World};
 use std::f64::consts::{FRAC_PI_2, PI};
 use trundle_core::{Invalid, Pose2};

@@ -2,7 +2,7 @@
 
 use super::builder::Builder;
 use super::partition::{DOOR_HEIGHT, DOOR_WIDTH};
-use crate::paint::{Finish, Paint};
+use crate::materials::{Finish, Paint};
 use trundle_core::Pose2;
 
 impl Builder {

@@ -1,7 +1,7 @@
 //! Pieces of furniture, each placed by the pose of its middle on the floor.
 
 use super::builder::Builder;
-use crate::paint::{Finish, Paint};
+use crate::materials::{Finish, Paint};
 use trundle_core::Pose2;
 
 const WOODS: [[u8; 3]; 4] = [[176, 128, 80], [120, 80, 52], [204, 170, 120], [92, 66, 50]];

@@ -1,7 +1,7 @@
 //! Furniture of bedrooms, kitchens and baths, each placed by the pose of its middle on the floor; fronts toward +x.
 
 use super::builder::Builder;
-use crate::paint::{Finish, Paint};
+use crate::materials::{Finish, Paint};
 use trundle_core::Pose2;
 
 /// Glazed ware.

@@ -3,7 +3,7 @@
 use super::Scene;
 use super::builder::{Builder, Side, WALL};
 use super::partition::{Along, DOOR_WIDTH, Partition};
-use crate::paint::Paint;
+use crate::materials::Paint;
 use crate::world::{Lights, World};
 use std::f64::consts::{FRAC_PI_2, PI};
 use trundle_core::{Invalid, Pose2};

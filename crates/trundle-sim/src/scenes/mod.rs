@@ -16,7 +16,7 @@ mod storage;
 mod warehouse;
 
 use crate::people::Person;
-use crate::world::{Lights, Stage, World};
+use crate::world::{Lights, SceneSnapshot, World};
 pub use corridors::{Corridor, corridor};
 pub use demo_room::demo_room;
 pub use house::house;
@@ -79,8 +79,8 @@ impl Scene {
     }
 
     /// What a camera sees of it while nothing moves.
-    pub fn stage(&self) -> Stage<'_> {
-        Stage { world: &self.world, movers: &[], lights: &self.lights }
+    pub fn snapshot(&self) -> SceneSnapshot<'_> {
+        SceneSnapshot { world: &self.world, movers: &[], lights: &self.lights }
     }
 
     /// The goal as the robot is given it, in a frame that starts at the robot: `start_from_goal`.

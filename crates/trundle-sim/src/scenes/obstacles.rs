@@ -2,7 +2,7 @@
 
 use super::Scene;
 use super::builder::{Builder, Side, WALL};
-use crate::paint::Paint;
+use crate::materials::Paint;
 use crate::world::{Lights, World};
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 use trundle_core::{Invalid, Pose2};

@@ -1,7 +1,7 @@
 //! Walls with door openings, and door leaves.
 
 use super::builder::{Builder, ROOM_HEIGHT, Side};
-use crate::paint::{Finish, Paint};
+use crate::materials::{Finish, Paint};
 use trundle_core::Pose2;
 
 /// Clear width and height of doors, m.

@@ -2,7 +2,7 @@
 
 use super::Scene;
 use super::builder::{Builder, Side, WALL};
-use crate::paint::Paint;
+use crate::materials::Paint;
 use crate::world::{Lights, World};
 use std::f64::consts::FRAC_PI_2;
 use trundle_core::{Invalid, Pose2};
@@ -10,7 +10,7 @@ use trundle_core::{Invalid, Pose2};
 /// Half of the room's inner side, m.
 const HALF: f64 = 3.0;
 
-/// An empty room, 6 x 6 m, its middle the origin of the world frame: the stage of the point stabilisation of \[Li18\].
+/// An empty room, 6 x 6 m, its middle the origin of the world frame: the scene of the point stabilisation of \[Li18\].
 ///
 /// The goal is theirs, (0, 0, 90 deg), the start that of their eight which looks across the room, (-2.4, 2.4, 0); at
 /// the others, too, a Kobuki stands 0.42 m from the wall. The walls are rich in texture. `seed` varies textures and colours.

@@ -1,7 +1,7 @@
 //! What stands in warehouses, each placed by the pose of its middle on the floor.
 
 use super::builder::Builder;
-use crate::paint::{Finish, Paint};
+use crate::materials::{Finish, Paint};
 use trundle_core::Pose2;
 
 /// Colours of packed goods: as many paintings a size, however many pallets there are.

@@ -3,7 +3,7 @@
 use super::Scene;
 use super::builder::{Builder, Side};
 use super::storage::PALLET;
-use crate::paint::{Finish, Paint};
+use crate::materials::{Finish, Paint};
 use crate::world::{Lights, World};
 use std::f64::consts::{FRAC_PI_2, PI};
 use trundle_core::{Invalid, Pose2};

@@ -1,19 +1,19 @@
 //! A camera that works beside the dynamics, as a real one does.
 
-use super::eye::Eye;
+use super::camera_rig::CameraRig;
 use super::track::Track;
 use super::{SimError, Simulator};
 use crate::faults::CameraFault;
 use crate::people::CrowdView;
 use crate::scenes::Scene;
-use crate::world::Stage;
+use crate::world::SceneSnapshot;
 use std::sync::Arc;
 use trundle_core::{Invalid, RgbdImage, SensorEvent, Stamp};
 
 /// The simulated camera taken out of its [`Simulator`], for another thread: it makes images of [`Shot`]s.
 #[derive(Debug)]
 pub struct CameraAside {
-    eye: Eye,
+    rig: CameraRig,
     scene: Arc<Scene>,
 }
 
@@ -33,7 +33,7 @@ impl CameraAside {
     /// # Errors
     /// Never for a valid configuration.
     pub fn take(&mut self, shot: &Shot) -> Result<RgbdImage, SimError> {
-        Ok(shot.expose(&mut self.eye, &self.scene)?)
+        Ok(shot.expose(&mut self.rig, &self.scene)?)
     }
 }
 
@@ -48,17 +48,17 @@ impl Shot {
         self.fault.delay
     }
 
-    pub(super) fn expose(&self, eye: &mut Eye, scene: &Scene) -> Result<RgbdImage, Invalid> {
+    pub(super) fn expose(&self, rig: &mut CameraRig, scene: &Scene) -> Result<RgbdImage, Invalid> {
         let movers = self.people.movers();
-        let stage = Stage { world: &scene.world, movers: &movers, lights: &scene.lights };
-        eye.take(&stage, &self.track, self.stamp, self.frame, self.fault)
+        let snapshot = SceneSnapshot { world: &scene.world, movers: &movers, lights: &scene.lights };
+        rig.take(&snapshot, &self.track, self.stamp, self.frame, self.fault)
     }
 }
 
 impl Simulator {
     /// Takes the camera out: from now on there are no images among the events, but [`Simulator::shots`]. None the second time.
     pub fn detach_camera(&mut self) -> Option<CameraAside> {
-        Some(CameraAside { eye: self.eye.take()?, scene: Arc::clone(&self.scene) })
+        Some(CameraAside { rig: self.rig.take()?, scene: Arc::clone(&self.scene) })
     }
 
     /// Goes on by a millisecond: what the sensors say meanwhile, in order.

@@ -3,7 +3,7 @@
 use super::outline::Outline;
 use super::outline_index::OutlineIndex;
 use super::region::Region;
-use super::{HeightBand, Stage, World};
+use super::{HeightBand, SceneSnapshot, World};
 use trundle_core::{Footprint, Invalid, Pose2, require_finite, require_in};
 
 /// What of a world a robot of some height can touch, seen from above: made once, asked often.
@@ -70,7 +70,7 @@ impl World {
     }
 }
 
-impl Stage<'_> {
+impl SceneSnapshot<'_> {
     /// As [`World::clearance`], of what stands and of what moves.
     ///
     /// # Errors

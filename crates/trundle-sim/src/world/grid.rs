@@ -74,7 +74,7 @@ fn run(low: f64, high: f64, count: usize) -> std::ops::Range<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::paint::{Finish, Paint};
+    use crate::materials::{Finish, Paint};
     use crate::world::{Cuboid, Cylinder, Shape, Solid};
     use trundle_core::Vector3;
 

@@ -72,7 +72,7 @@ impl Cylinder {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::paint::{Finish, Paint};
+    use crate::materials::{Finish, Paint};
     use crate::world::{Solid, World};
 
     fn world(shape: Shape) -> World {

@@ -2,7 +2,7 @@
 
 use super::meet_triangle::{meet_block, normal_towards};
 use super::probe::RayProbe;
-use super::{Mover, Stage, World};
+use super::{Mover, SceneSnapshot, World};
 use trundle_core::Vector3;
 
 /// What a ray meets first.
@@ -13,9 +13,9 @@ pub struct Hit {
     pub distance: f64,
     /// What.
     pub target: Target,
-    /// Which of a stage's movers; `None` of what stands still.
+    /// Which of a snapshot's movers; `None` of what stands still.
     pub mover: Option<usize>,
-    /// The normal there on the side that the ray comes from, unit length, frame of the world or stage.
+    /// The normal there on the side that the ray comes from, unit length, frame of the world or snapshot.
     pub normal: Vector3,
 }
 
@@ -33,7 +33,7 @@ pub enum Target {
     },
 }
 
-impl Stage<'_> {
+impl SceneSnapshot<'_> {
     /// The first thing along a ray from `origin` (world frame, m), nearer than `limit` lengths of `direction`; movers included.
     pub fn cast(&self, origin: Vector3, direction: Vector3, limit: f64) -> Option<Hit> {
         let mut nearest = self.world.cast(origin, direction, limit);

@@ -2,7 +2,9 @@ use crate::{block, shared_data};
 use proptest::prelude::*;
 use trundle_core::{Cell, Footprint, Pose2, Vector2};
 use trundle_sim::import::{GltfOptions, gltf};
-use trundle_sim::{HeightBand, Lights, Material, Mesh, Mover, Obstacles, Solid, Stage, Triangle, World};
+use trundle_sim::{
+    HeightBand, Lights, Material, Mesh, Mover, Obstacles, SceneSnapshot, Solid, Triangle, World,
+};
 
 fn band(low: f64, high: f64) -> HeightBand {
     HeightBand::new(low, high).unwrap()
@@ -73,7 +75,7 @@ fn movers_are_met_where_they_stand() {
     let body = world(vec![block([0.5, 0.0, 0.5], [0.2, 0.2, 1.0], 0.0)], vec![]);
     let mover = Mover { body: &body, pose: Pose2::new(1.0, 0.0, std::f64::consts::FRAC_PI_2) };
     let lights = Lights::default();
-    let stage = Stage { world: &hall, movers: &[mover], lights: &lights };
+    let stage = SceneSnapshot { world: &hall, movers: &[mover], lights: &lights };
     let disc = Footprint::disc(0.2).unwrap();
     let gap = |x: f64, y: f64| stage.clearance(&disc, Pose2::new(x, y, 0.0), band(0.1, 0.6)).unwrap();
     assert!((gap(1.0, 1.0) - 0.2).abs() < 1e-9, "turned, the body reaches to y = 0.6");

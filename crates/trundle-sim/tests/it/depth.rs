@@ -1,15 +1,15 @@
 use super::{block, hall};
 use trundle_core::{PinholeCamera, Pose2, Pose3, Stamp, Vector2, Vector3};
 use trundle_sim::{
-    ColorNoise, Cylinder, DepthNoise, Finish, Lights, Paint, Renderer, RgbdSensor, Scene, Shape, Solid,
-    Stage, View, World, camera_mount,
+    ColorNoise, Cylinder, DepthNoise, Finish, Lights, Paint, Renderer, RgbdSensor, Scene, SceneSnapshot,
+    Shape, Solid, View, World, camera_mount,
 };
 
 fn seen(world: &World, world_from_camera: &Pose3) -> View {
     let renderer = Renderer::new(PinholeCamera::kinect_v2()).unwrap();
     let mut view = renderer.blank();
     let lights = Lights::default();
-    renderer.render(&Stage { world, movers: &[], lights: &lights }, world_from_camera, &mut view);
+    renderer.render(&SceneSnapshot { world, movers: &[], lights: &lights }, world_from_camera, &mut view);
     view
 }
 

@@ -5,12 +5,13 @@ use std::path::Path;
 use trundle_core::{PinholeCamera, Pose2, Pose3, Vector2, Vector3};
 use trundle_sim::import::{GltfOptions, gltf};
 use trundle_sim::{
-    Lights, Material, Mesh, Mover, Renderer, Scene, Stage, Target, Triangle, View, World, camera_mount,
+    Lights, Material, Mesh, Mover, Renderer, Scene, SceneSnapshot, Target, Triangle, View, World,
+    camera_mount,
 };
 
 fn look(renderer: &Renderer, world: &World, movers: &[Mover<'_>], pose: &Pose3) -> View {
     let mut view = renderer.blank();
-    renderer.render(&Stage { world, movers, lights: &Lights::default() }, pose, &mut view);
+    renderer.render(&SceneSnapshot { world, movers, lights: &Lights::default() }, pose, &mut view);
     view
 }
 
@@ -141,7 +142,7 @@ fn what_moves_looks_like_what_stands() {
         |i: usize| (moved.depth[i] - stood.depth[i]).abs() > 1e-4 || moved.color[i] != stood.color[i];
     let wrong = (0..moved.depth.len()).filter(|&i| differ(i)).count();
     assert!(wrong < 100, "{wrong}");
-    let stage = Stage { world: &scene.world, movers: &movers, lights: &scene.lights };
+    let stage = SceneSnapshot { world: &scene.world, movers: &movers, lights: &scene.lights };
     let mut on_mover = 0;
     for i in (0..moved.depth.len()).step_by(13) {
         let pixel = Vector2::new((i % moved.width) as f64, (i / moved.width) as f64);

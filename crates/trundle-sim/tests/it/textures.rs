@@ -1,5 +1,7 @@
 use trundle_core::{ColorImage, PinholeCamera, Pose2, Pose3};
-use trundle_sim::{Lights, Material, Mesh, Renderer, Scene, Stage, Triangle, View, World, camera_mount};
+use trundle_sim::{
+    Lights, Material, Mesh, Renderer, Scene, SceneSnapshot, Triangle, View, World, camera_mount,
+};
 
 fn gray(view: &View) -> Vec<f64> {
     view.color.iter().map(|c| c.iter().map(|&c| f64::from(c)).sum::<f64>() / 3.0).collect()
@@ -8,7 +10,7 @@ fn gray(view: &View) -> Vec<f64> {
 fn look(renderer: &Renderer, scene: &Scene, pose: Pose2, pitch: f64) -> Vec<f64> {
     let mut view = renderer.blank();
     let camera = Pose3::from_pose2(pose) * camera_mount(0.0, 1.0, pitch);
-    renderer.render(&scene.stage(), &camera, &mut view);
+    renderer.render(&scene.snapshot(), &camera, &mut view);
     gray(&view)
 }
 
@@ -79,7 +81,7 @@ fn pictured_wall() -> World {
 fn pictures_do_not_flicker() {
     let renderer = Renderer::new(PinholeCamera::kinect_v2()).unwrap();
     let world = pictured_wall();
-    let stage = Stage { world: &world, movers: &[], lights: &Lights::default() };
+    let stage = SceneSnapshot { world: &world, movers: &[], lights: &Lights::default() };
     for heading in [std::f64::consts::PI, 2.0] {
         let at = |step: u32| {
             let way = 0.0005 * f64::from(step);

@@ -7,7 +7,7 @@ use trundle_optim::BundleConfig;
 /// How the landmark map grows and is refined.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
-pub struct MappingConfig {
+pub struct LocalMappingConfig {
     /// Features with depth that a first keyframe needs, 10 or more. Default 50: fewer do not make a map.
     pub min_points: usize,
     /// Keyframes that a local bundle adjustment moves, 1 or more. Default 10: enough to see a landmark age.
@@ -29,7 +29,7 @@ pub struct MappingConfig {
     pub work_per_frame: usize,
 }
 
-impl Default for MappingConfig {
+impl Default for LocalMappingConfig {
     fn default() -> Self {
         Self {
             min_points: 50,
@@ -45,7 +45,7 @@ impl Default for MappingConfig {
     }
 }
 
-impl MappingConfig {
+impl LocalMappingConfig {
     /// Passes a valid configuration through.
     ///
     /// # Errors

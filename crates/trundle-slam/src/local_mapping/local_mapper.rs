@@ -4,7 +4,7 @@ use crate::frame::depth::MAX_RELATIVE_SIGMA;
 use crate::frame::observation_model::ObservationModel;
 use crate::frame::rgbd_frame::Frame;
 use crate::ids::{KeyframeId, LandmarkId};
-use crate::local_mapping::config::MappingConfig;
+use crate::local_mapping::config::LocalMappingConfig;
 use crate::local_mapping::reference_patch_storage::store_reference_patches;
 use crate::local_mapping::triangulation::triangulate_new;
 use crate::map::covisibility::{MIN_SHARED_LANDMARKS, keyframes_around};
@@ -19,7 +19,7 @@ use trundle_core::Pose3;
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct LocalMapper<'a> {
     pub model: &'a ObservationModel,
-    pub config: &'a MappingConfig,
+    pub config: &'a LocalMappingConfig,
     /// For the search of new landmarks in other keyframes.
     pub thresholds: MatchThresholds,
     /// Half size of its window at octave 0, px.
@@ -27,7 +27,11 @@ pub(crate) struct LocalMapper<'a> {
 }
 
 impl<'a> LocalMapper<'a> {
-    pub fn new(model: &'a ObservationModel, config: &'a MappingConfig, tracking: &TrackingConfig) -> Self {
+    pub fn new(
+        model: &'a ObservationModel,
+        config: &'a LocalMappingConfig,
+        tracking: &TrackingConfig,
+    ) -> Self {
         let (thresholds, window_px) = (tracking.windowed_thresholds(), tracking.map_window_px);
         Self { model, config, thresholds, window_px }
     }
@@ -138,7 +142,7 @@ impl<'a> LocalMapper<'a> {
     /// Removes landmarks that no second keyframe saw in time, or that were seldom found where they should have been seen.
     /// Checks the landmarks of the keyframes around the new one, and of the keyframe whose trial ends.
     fn cull(&self, map: &mut LandmarkMap, new: KeyframeId) {
-        let MappingConfig { trial_keyframes, trial_frames, found_ratio, .. } = *self.config;
+        let LocalMappingConfig { trial_keyframes, trial_frames, found_ratio, .. } = *self.config;
         let Some(oldest_on_trial) = map.keyframe_ids().rev().nth(trial_keyframes) else { return };
         let judged = map.keyframe_ids().rev().nth(trial_keyframes + 1);
         let alone = |l: &Landmark| l.observations.len() == 1 && l.observations[0].0 < oldest_on_trial;

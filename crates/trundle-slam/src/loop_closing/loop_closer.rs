@@ -2,7 +2,7 @@
 
 use crate::frame::observation_model::ObservationModel;
 use crate::ids::KeyframeId;
-use crate::local_mapping::config::MappingConfig;
+use crate::local_mapping::config::LocalMappingConfig;
 use crate::local_mapping::local_mapper::LocalMapper;
 use crate::loop_closing::candidates::{DriftBound, loop_candidates};
 use crate::loop_closing::config::LoopConfig;
@@ -24,7 +24,7 @@ pub(crate) struct LoopCloser<'a> {
     pub model: &'a ObservationModel,
     pub config: &'a LoopConfig,
     pub tracking: &'a TrackingConfig,
-    pub mapping: &'a MappingConfig,
+    pub mapping: &'a LocalMappingConfig,
     pub seed: u64,
 }
 

@@ -1,7 +1,7 @@
 //! The motion between two keyframes by wheels and gyro.
 
 use crate::ids::KeyframeId;
-use crate::motion::motion_model::MotionConfig;
+use crate::motion::motion_model::MotionModelConfig;
 use crate::motion::uncertain_pose::{UncertainPose, of_sigmas};
 use nalgebra::Matrix6;
 use trundle_core::{CameraMotion, Pose3};
@@ -31,7 +31,7 @@ impl OdometryFactor {
     }
 
     /// After another step of so many seconds; `None` once the factor is too long or too uncertain to be of use.
-    pub fn extended_by(&self, step: CameraMotion, seconds: f64, config: &MotionConfig) -> Option<Self> {
+    pub fn extended_by(&self, step: CameraMotion, seconds: f64, config: &MotionModelConfig) -> Option<Self> {
         let step = UncertainPose { pose: step.motion, covariance: config.covariance_of(&step, seconds) };
         let from_to = self.from_to.then(&step);
         let is_useful = from_to.pose.translation.norm() < MAX_FACTOR_EXTENT
@@ -76,7 +76,7 @@ mod tests {
 
     #[test]
     fn two_factors_compose_to_the_factor_of_the_whole_motion() {
-        let config = MotionConfig::default();
+        let config = MotionModelConfig::default();
         let step = Pose3::exp(Vector6::new(0.0, 0.0, 0.05, 0.0, 0.02, 0.0));
         let start = KeyframeId::from_index(0);
         let go = |from: OdometryFactor, steps: usize| {

@@ -4,7 +4,7 @@ use crate::ids::KeyframeId;
 use crate::map::landmark_map::LandmarkMap;
 use crate::map::odometry_factor::OdometryFactor;
 use crate::motion::floor_axis::FloorAxis;
-use crate::motion::motion_model::MotionConfig;
+use crate::motion::motion_model::MotionModelConfig;
 use trundle_core::CameraMotion;
 
 /// Odometry that is summed up between keyframes.
@@ -17,7 +17,7 @@ pub(crate) struct OdometryTrack {
 
 impl OdometryTrack {
     /// Takes the motion prior of a frame, over so many seconds.
-    pub fn extend(&mut self, prior: Option<CameraMotion>, seconds: f64, config: &MotionConfig) {
+    pub fn extend(&mut self, prior: Option<CameraMotion>, seconds: f64, config: &MotionModelConfig) {
         let extended =
             |(factor, step): (OdometryFactor, CameraMotion)| factor.extended_by(step, seconds, config);
         self.since_keyframe = self.since_keyframe.zip(prior).and_then(extended);

@@ -8,7 +8,7 @@ use trundle_core::{CameraMotion, Invalid, PinholeCamera, Pose3, require_in};
 /// How uncertain a pose becomes while the image does not give it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
-pub struct MotionConfig {
+pub struct MotionModelConfig {
     /// Standard deviation of a motion prior after a motion of 1 m, m, and after a rotation of 1 rad, rad, 0 to 1. Errors of steps are
     /// independent \[Chong97\], so that it grows with the root of the length, however that is cut into steps. Default 0.05: wheels that
     /// slip now and then.
@@ -27,13 +27,13 @@ fn is_zero(value: &f64) -> bool {
     *value == 0.0
 }
 
-impl Default for MotionConfig {
+impl Default for MotionModelConfig {
     fn default() -> Self {
         Self { prior_part: 0.05, prior_drift: 0.01, unseen: 1.0, readout: 0.0 }
     }
 }
 
-impl MotionConfig {
+impl MotionModelConfig {
     /// Standard deviations of a motion prior's translation (m) and rotation (rad) over so many seconds.
     pub fn sigmas(&self, motion: Pose3, seconds: f64) -> (f64, f64) {
         let drift = self.prior_drift * seconds.sqrt();
@@ -81,7 +81,7 @@ mod tests {
 
     #[test]
     fn the_variance_does_not_depend_on_how_a_motion_is_cut_into_steps() {
-        let config = MotionConfig::default();
+        let config = MotionModelConfig::default();
         let ahead = |metres: f64| Pose3::exp(Vector6::new(metres, 0.0, 0.0, 0.0, 0.0, 0.0));
         let (whole, _) = config.sigmas(ahead(1.0), 2.0);
         let (part, _) = config.sigmas(ahead(0.1), 0.2);
@@ -90,7 +90,7 @@ mod tests {
 
     #[test]
     fn an_invalid_covariance_is_replaced_by_the_settings() {
-        let config = MotionConfig::default();
+        let config = MotionModelConfig::default();
         let step = Pose3::exp(Vector6::repeat(0.01));
         let with = |matrix: Matrix6<f64>| CameraMotion { motion: step, covariance: Some(matrix) };
         let own = config.covariance_of(&step.into(), 0.1);
@@ -111,11 +111,11 @@ mod tests {
 
     #[test]
     fn the_deprecated_readout_fills_in_for_a_camera_without_one() {
-        let config = MotionConfig { readout: 0.02, ..MotionConfig::default() };
+        let config = MotionModelConfig { readout: 0.02, ..MotionModelConfig::default() };
         let camera = PinholeCamera::kinect_v2();
         assert_eq!(config.with_readout_of(camera).unwrap().readout(), 0.02);
         let rolling = camera.with_readout(0.026).unwrap();
         assert_eq!(config.with_readout_of(rolling).unwrap().readout(), 0.026);
-        assert_eq!(MotionConfig::default().with_readout_of(rolling).unwrap().readout(), 0.026);
+        assert_eq!(MotionModelConfig::default().with_readout_of(rolling).unwrap().readout(), 0.026);
     }
 }

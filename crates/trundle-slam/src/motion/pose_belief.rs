@@ -1,6 +1,6 @@
 //! Where the camera is believed to be between located frames.
 
-use crate::motion::motion_model::MotionConfig;
+use crate::motion::motion_model::MotionModelConfig;
 use crate::motion::uncertain_pose::{UncertainPose, of_sigmas};
 use nalgebra::{Matrix6, Vector6};
 use trundle_core::{CameraMotion, Pose3, Stamp, Vector3};
@@ -58,7 +58,7 @@ impl PoseBelief {
     }
 
     /// The frame at `stamp` was not located: moves by the prior, or holds the pose, and grows uncertain.
-    pub fn missed(&mut self, stamp: Stamp, prior: Option<CameraMotion>, config: &MotionConfig) {
+    pub fn missed(&mut self, stamp: Stamp, prior: Option<CameraMotion>, config: &MotionModelConfig) {
         let elapsed = self.seconds_until(stamp);
         let motion = self.since_last(prior.map(|prior| prior.motion)).unwrap_or_default();
         let covariance = match prior {
@@ -102,7 +102,7 @@ mod tests {
     #[test]
     fn uncertainty_grows_while_nothing_is_seen() {
         let mut belief = PoseBelief::at(Pose3::identity());
-        let config = MotionConfig::default();
+        let config = MotionModelConfig::default();
         let mut last = 0.0;
         belief.missed(
             Stamp::from_secs(-0.1).unwrap(),

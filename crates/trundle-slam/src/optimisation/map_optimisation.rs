@@ -2,7 +2,7 @@
 
 use crate::frame::observation_model::ObservationModel;
 use crate::ids::KeyframeId;
-use crate::local_mapping::config::MappingConfig;
+use crate::local_mapping::config::LocalMappingConfig;
 use crate::map::landmark_map::LandmarkMap;
 use crate::optimisation::global_bundle::GlobalBundle;
 use crate::optimisation::local_bundle::{BundleSize, apply, bundle_around};
@@ -39,7 +39,7 @@ impl MapOptimisation {
         map: &mut LandmarkMap,
         centre: KeyframeId,
         model: &ObservationModel,
-        config: &MappingConfig,
+        config: &LocalMappingConfig,
     ) {
         if let Some(bundle) = self.local.take() {
             apply(map, &bundle, model);
@@ -67,7 +67,7 @@ impl MapOptimisation {
         &mut self,
         map: &mut LandmarkMap,
         model: &ObservationModel,
-        config: &MappingConfig,
+        config: &LocalMappingConfig,
         work: usize,
     ) -> bool {
         match self.local.take() {
@@ -97,7 +97,7 @@ impl MapOptimisation {
         &mut self,
         map: &mut LandmarkMap,
         model: &ObservationModel,
-        config: &MappingConfig,
+        config: &LocalMappingConfig,
         work: usize,
     ) -> bool {
         if self.global.is_none() && self.is_global_due && map.keyframe_count() > 1 {

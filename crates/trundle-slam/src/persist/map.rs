@@ -181,7 +181,7 @@ fn read_observation(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::motion::motion_model::MotionConfig;
+    use crate::motion::motion_model::MotionModelConfig;
     use crate::testing::{blank_frame, model};
     use nalgebra::Vector6;
     use trundle_core::{Pose3, Vector3};
@@ -193,7 +193,7 @@ mod tests {
             .map(|x| map.add_keyframe(blank_frame(3), Pose3::exp(Vector6::new(x, 0.0, 0.0, 0.0, 0.0, 0.0))));
         let step = Pose3::exp(Vector6::new(0.1, 0.0, 0.02, 0.0, 0.3, 0.0));
         let odometry =
-            OdometryFactor::at(ids[0]).extended_by(step.into(), 0.1, &MotionConfig::default()).unwrap();
+            OdometryFactor::at(ids[0]).extended_by(step.into(), 0.1, &MotionModelConfig::default()).unwrap();
         map.keyframe_mut(ids[1]).odometry = Some(odometry);
         map.floor = Some(Vector3::y());
         (map, odometry)

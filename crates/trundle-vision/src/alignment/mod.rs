@@ -16,4 +16,4 @@ mod patch;
 mod template;
 
 pub use patch::ImagePatch;
-pub use template::{Alignment, Template};
+pub use template::{PatchAlignment, Template};

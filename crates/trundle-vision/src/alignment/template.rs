@@ -42,7 +42,7 @@ pub struct Template {
 
 /// Where a template was found.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Alignment {
+pub struct PatchAlignment {
     /// Where it is, px of the patch's level right and down of the patch's own feature.
     pub offset: Vector2<f32>,
     /// Standard deviation of that in its least certain direction, by what is left of the differences, px of the level.
@@ -95,7 +95,7 @@ impl Template {
 
     /// Where in `patch` it is, looked for from `start` on, px of the patch's level right and down of the patch's own feature;
     /// `None` where nothing within it is like it.
-    pub fn find(&self, patch: &ImagePatch, start: Vector2<f32>) -> Option<Alignment> {
+    pub fn find(&self, patch: &ImagePatch, start: Vector2<f32>) -> Option<PatchAlignment> {
         #[cfg(target_arch = "x86_64")]
         if std::arch::is_x86_feature_detected!("avx2") {
             // SAFETY: the processor has the one feature that the function is compiled for.
@@ -107,12 +107,12 @@ impl Template {
     /// The same as [`Template::find_plainly`], more numbers an instruction.
     #[cfg(target_arch = "x86_64")]
     #[target_feature(enable = "avx2")]
-    fn find_by_avx2(&self, patch: &ImagePatch, start: Vector2<f32>) -> Option<Alignment> {
+    fn find_by_avx2(&self, patch: &ImagePatch, start: Vector2<f32>) -> Option<PatchAlignment> {
         self.find_plainly(patch, start)
     }
 
     #[inline(always)]
-    fn find_plainly(&self, patch: &ImagePatch, start: Vector2<f32>) -> Option<Alignment> {
+    fn find_plainly(&self, patch: &ImagePatch, start: Vector2<f32>) -> Option<PatchAlignment> {
         let feature = Vector2::from(patch.feature());
         let mut at = feature + start;
         let mut seen = [0.0; PADDED_LENGTH];
@@ -131,7 +131,7 @@ impl Template {
 
     /// The place, unless what is `seen` there is something else.
     #[inline(always)]
-    fn judged(&self, seen: &Pixels, gain: f32, offset: Vector2<f32>) -> Option<Alignment> {
+    fn judged(&self, seen: &Pixels, gain: f32, offset: Vector2<f32>) -> Option<PatchAlignment> {
         let count = (TEMPLATE_SIDE_PX * TEMPLATE_SIDE_PX) as f32;
         let mean = sum(seen) / count;
         let contrast = dot(seen, seen) - count * mean * mean;
@@ -142,7 +142,7 @@ impl Template {
         let sigma = (variance * widest).sqrt();
         let is_like = unlike <= MAX_RESIDUAL_RATIO * contrast
             && (1.0 / MAX_CONTRAST_RATIO..=MAX_CONTRAST_RATIO).contains(&gain);
-        is_like.then_some(Alignment { offset, sigma })
+        is_like.then_some(PatchAlignment { offset, sigma })
     }
 }
 

@@ -46,15 +46,15 @@ pub struct SceneFile {
 #[serde(default, deny_unknown_fields)]
 pub struct RobotPlaces {
     /// Default: the built-in scene's; needed for a base from a file.
-    pub start: Option<Place>,
+    pub start: Option<ScenePose>,
     /// Default: the built-in scene's, or the start.
-    pub goal: Option<Place>,
+    pub goal: Option<ScenePose>,
 }
 
 /// A pose in the world frame.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Place {
+pub struct ScenePose {
     /// Metres.
     pub x: f64,
     /// Metres.
@@ -72,32 +72,32 @@ impl SceneFile {
     /// Names the item that is wrong (`props[3].size`), or the file and what its reader says.
     pub fn build(&self, loader: &dyn BaseLoader, seed: u64) -> Result<Scene, SceneError> {
         let seed = self.base.seed.unwrap_or(seed);
-        let mut stage = self.base.load(loader, seed)?;
+        let mut base = self.base.load(loader, seed)?;
         for (i, prop) in self.props.iter().enumerate() {
-            stage.solids.extend(prop.solids(&format!("props[{i}]"), seed, i)?);
+            base.solids.extend(prop.solids(&format!("props[{i}]"), seed, i)?);
         }
         for (i, person) in self.people.iter().enumerate() {
             let person =
                 person.clone().validated().map_err(|error| within(&format!("people[{i}]"), error))?;
-            stage.people.push(person);
+            base.people.push(person);
         }
-        let lights = self.lights.clone().map_or(Ok(stage.lights), Lights::validated)?;
-        let place = |field: &str, place: Option<Place>| place.map(|place| place.pose(field)).transpose();
-        let start = place("robot.start", self.robot.start)?.or(stage.start);
+        let lights = self.lights.clone().map_or(Ok(base.lights), Lights::validated)?;
+        let place = |field: &str, place: Option<ScenePose>| place.map(|place| place.pose(field)).transpose();
+        let start = place("robot.start", self.robot.start)?.or(base.start);
         let start = start.ok_or_else(|| SceneError::missing("robot.start", "x, y and heading_deg"))?;
-        let goal = place("robot.goal", self.robot.goal)?.or(stage.goal).unwrap_or(start);
+        let goal = place("robot.goal", self.robot.goal)?.or(base.goal).unwrap_or(start);
         Ok(Scene {
-            name: self.name.clone().unwrap_or(stage.name),
-            world: World::with_meshes(stage.solids, stage.meshes, seed)?,
+            name: self.name.clone().unwrap_or(base.name),
+            world: World::with_meshes(base.solids, base.meshes, seed)?,
             lights,
-            people: stage.people,
+            people: base.people,
             start,
             goal,
         })
     }
 }
 
-impl Place {
+impl ScenePose {
     fn pose(self, field: &str) -> Result<Pose2, SceneError> {
         require_in(&format!("{field}.x"), self.x, "m", -REACH, REACH)?;
         require_in(&format!("{field}.y"), self.y, "m", -REACH, REACH)?;

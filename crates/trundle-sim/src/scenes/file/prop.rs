@@ -1,8 +1,8 @@
 //! An object of a scene file: kind, pose, size and appearance.
 
 use super::{PaintName, PropKind, REACH, SceneError};
-use crate::chance::hash;
-use crate::paint::Finish;
+use crate::materials::Finish;
+use crate::rng::hash;
 use crate::scenes::builder::Builder;
 use crate::world::Solid;
 use serde::{Deserialize, Serialize};

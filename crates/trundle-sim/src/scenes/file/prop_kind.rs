@@ -1,6 +1,6 @@
 //! The kinds of objects and surface appearances that a scene file can name.
 
-use crate::paint::Paint;
+use crate::materials::Paint;
 use serde::{Deserialize, Serialize};
 
 /// A thing to place.

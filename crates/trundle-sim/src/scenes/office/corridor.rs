@@ -3,7 +3,7 @@
 use super::super::builder::{Builder, ROOM_HEIGHT, Side, UNSEEN};
 use super::super::partition::{Along, Partition};
 use super::{CORE, DOOR, HALF_WALL, NORTH, ROOM};
-use crate::paint::Paint;
+use crate::materials::Paint;
 use std::f64::consts::{FRAC_PI_2, PI};
 use trundle_core::Pose2;
 

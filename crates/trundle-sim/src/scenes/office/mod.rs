@@ -5,7 +5,7 @@ mod rooms;
 
 use super::Scene;
 use super::builder::Builder;
-use crate::chance::hash;
+use crate::rng::hash;
 use crate::world::{Lights, World};
 use std::f64::consts::PI;
 use trundle_core::{Invalid, Pose2};

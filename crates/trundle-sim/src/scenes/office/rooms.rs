@@ -3,7 +3,7 @@
 use super::super::builder::{Builder, Side, UNSEEN};
 use super::super::partition::{Along, DOOR_WIDTH, Partition};
 use super::{DOOR, HALF_WALL, ROOM};
-use crate::paint::{Finish, Paint};
+use crate::materials::{Finish, Paint};
 use std::f64::consts::{FRAC_PI_2, PI};
 use trundle_core::Pose2;
 

@@ -40,7 +40,7 @@ fn the_ring_is_40_m_around_in_the_middle_of_its_corridor_and_free() {
 fn look(renderer: &Renderer, scene: &Scene, pose: Pose2) -> View {
     let mut view = renderer.blank();
     let camera = Pose3::from_pose2(pose) * camera_mount(0.05, 0.45, 0.14);
-    renderer.render(&scene.stage(), &camera, &mut view);
+    renderer.render(&scene.snapshot(), &camera, &mut view);
     view
 }
 

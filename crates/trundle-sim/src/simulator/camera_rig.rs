@@ -4,12 +4,12 @@ use super::track::Track;
 use crate::camera::{Renderer, RgbdSensor, View, blend};
 use crate::config::SimConfig;
 use crate::faults::CameraFault;
-use crate::world::Stage;
+use crate::world::SceneSnapshot;
 use trundle_core::{ColorImage, DepthImage, Invalid, Pose3, RgbdImage, Stamp};
 
 /// The camera on the robot, with what may be wrong with it.
 #[derive(Debug)]
-pub(super) struct Eye {
+pub(super) struct CameraRig {
     renderer: Renderer,
     sensor: RgbdSensor,
     view: View,
@@ -23,7 +23,7 @@ pub(super) struct Eye {
     may_freeze: bool,
 }
 
-impl Eye {
+impl CameraRig {
     /// The camera of a valid configuration.
     ///
     /// # Errors
@@ -49,7 +49,7 @@ impl Eye {
     /// Never for a valid configuration; the type is that of an image's constructor.
     pub(super) fn take(
         &mut self,
-        stage: &Stage<'_>,
+        snapshot: &SceneSnapshot<'_>,
         track: &Track,
         stamp: Stamp,
         frame: u64,
@@ -60,7 +60,7 @@ impl Eye {
         }
         let image = match self.last.take().filter(|_| fault.is_frozen) {
             Some(frozen) => RgbdImage::new(stamp, frozen.color().clone(), frozen.depth().clone())?,
-            None => self.look(stage, track, stamp, frame)?,
+            None => self.look(snapshot, track, stamp, frame)?,
         };
         self.last = self.may_freeze.then(|| image.clone());
         let image = if fault.is_dark { without_light(&image)? } else { image };
@@ -69,19 +69,19 @@ impl Eye {
 
     fn look(
         &mut self,
-        stage: &Stage<'_>,
+        snapshot: &SceneSnapshot<'_>,
         track: &Track,
         stamp: Stamp,
         frame: u64,
     ) -> Result<RgbdImage, Invalid> {
         let world_from_camera = |age| Pose3::from_pose2(track.back(age)) * self.base_from_camera;
         if self.moments.is_empty() {
-            self.renderer.render(stage, &world_from_camera(0.0), &mut self.view);
+            self.renderer.render(snapshot, &world_from_camera(0.0), &mut self.view);
         } else {
             let n = self.moments.len() as f64;
             for (i, moment) in self.moments.iter_mut().enumerate() {
                 let age = ((n - 1.0) / 2.0 - i as f64) / n * self.shutter;
-                self.renderer.render(stage, &world_from_camera(age), moment);
+                self.renderer.render(snapshot, &world_from_camera(age), moment);
             }
             blend(&self.moments, &mut self.view)?;
         }

@@ -15,7 +15,7 @@ mod poster;
 mod surfaces;
 mod texture;
 
-use crate::chance::hash;
+use crate::rng::hash;
 use crate::world::{Shape, Solid};
 use color::{Rgb, packed};
 pub use kind::Paint;

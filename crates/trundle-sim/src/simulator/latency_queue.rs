@@ -6,12 +6,12 @@ use trundle_core::SensorEvent;
 
 /// Events that are under way longer than they should be.
 #[derive(Debug, Default)]
-pub(super) struct Late {
+pub(super) struct LatencyQueue {
     /// The step at which each arrives, in the order of sending.
     waiting: Vec<(u64, SensorEvent)>,
 }
 
-impl Late {
+impl LatencyQueue {
     /// Puts an event into the queue, or lets it wait for `delay` s.
     pub(super) fn send(
         &mut self,

@@ -4,7 +4,7 @@ use super::{Lights, Mover, World};
 
 /// All that a camera or a laser may see at one moment.
 #[derive(Debug, Clone, Copy)]
-pub struct Stage<'w> {
+pub struct SceneSnapshot<'w> {
     /// What stands still.
     pub world: &'w World,
     /// What moves, where it is now.

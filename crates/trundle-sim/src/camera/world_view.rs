@@ -6,7 +6,7 @@ use super::meet_triangle::meet_block;
 use super::pyramid::Pyramid;
 use super::rays::Rays;
 use super::tile::{COLUMNS, ROWS, Tile};
-use crate::paint::{Paintings, Texture};
+use crate::materials::{Paintings, Texture};
 use crate::world::{Kind, World};
 use trundle_core::{PinholeCamera, Pose2, Pose3, Vector3};
 
@@ -14,7 +14,7 @@ use trundle_core::{PinholeCamera, Pose2, Pose3, Vector3};
 ///
 /// What it draws has numbers: from `first_id` on, four a solid (the axis of a box's face, or a part of a cylinder), then one a
 /// triangle.
-pub(super) struct Eye<'w> {
+pub(super) struct WorldView<'w> {
     pub(super) world: &'w World,
     pub(super) paintings: &'w Paintings,
     pub(super) pictures: &'w [Texture],
@@ -22,7 +22,7 @@ pub(super) struct Eye<'w> {
     pub(super) apex: [f64; 3],
     /// Axes of the camera: right, down, forward.
     axes: [[f64; 3]; 3],
-    /// How the world is turned in the stage: sine and cosine.
+    /// How the world is turned in the scene: sine and cosine.
     pub(super) heading: (f32, f32),
     pub(super) first_id: u32,
     /// No coordinate is larger, m.
@@ -31,8 +31,8 @@ pub(super) struct Eye<'w> {
     window: [[f64; 2]; 2],
 }
 
-impl<'w> Eye<'w> {
-    /// The view of a world that stands at `pose` in the stage.
+impl<'w> WorldView<'w> {
+    /// The view of a world that stands at `pose` in the scene.
     pub(super) fn new(
         world: &'w World,
         pose: Pose2,

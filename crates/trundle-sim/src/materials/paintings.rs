@@ -89,7 +89,7 @@ fn size_bits(shape: &Shape) -> [u64; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::paint::{Paint, texels_of_face};
+    use crate::materials::{Paint, texels_of_face};
     use crate::world::Cuboid;
     use trundle_core::Vector3;
 
