@@ -8,7 +8,8 @@
 use crate::oriented_box::OrientedBox;
 use crate::rounded_hull::RoundedHull;
 use crate::segment::Segment;
-use crate::straight_contact::StraightContact;
+use crate::straight_contact::{StraightContact, front_extent, straight_contact};
+use crate::turn_contact::blocked_headings;
 use std::f64::consts::TAU;
 use trundle_core::Vector2;
 
@@ -58,7 +59,7 @@ impl HullProfile {
             let ring = inner + (outer - inner) * k as f64 / rings as f64 - ROUNDING_SLACK;
             blocked.clear();
             let point = Segment::point(Vector2::new(ring.max(0.0), 0.0));
-            whole.blocked_headings(&point, &mut angles, &mut blocked);
+            blocked_headings(&whole, &point, &mut angles, &mut blocked);
             runs.extend(
                 blocked
                     .iter()
@@ -178,7 +179,7 @@ impl HullProfile {
         if grown.overlaps(&line) {
             return None;
         }
-        Some(match grown.straight_contact(&line) {
+        Some(match straight_contact(grown, &line) {
             Some(StraightContact::Ahead(distance)) => (distance - ROUNDING_SLACK, f64::INFINITY),
             Some(StraightContact::Behind(distance)) => (f64::INFINITY, distance - ROUNDING_SLACK),
             None => (f64::INFINITY, f64::INFINITY),
@@ -212,7 +213,7 @@ fn front_in(hull: &RoundedHull, low: f64, high: f64, sign: f64) -> f64 {
     let (_, most) = hull.core_extent(Vector2::x() * sign);
     let foremost = hull.core.iter().find(|corner| sign * corner.at.x >= most);
     let apex = foremost.map_or(low, |corner| corner.at.y);
-    let reach = hull.front(apex.clamp(low, high), sign);
+    let reach = front_extent(hull, apex.clamp(low, high), sign);
     let is_known = reach.is_finite() && !(low..=high).contains(&apex);
     if is_known { reach + ROUNDING_SLACK } else { most + hull.radius + ROUNDING_SLACK }
 }
@@ -245,7 +246,7 @@ mod tests {
             let bounds = OrientedBox { center, axis, half: Vector2::new(half.0, half.1 * 10_f64.powf(thin)) };
             let p = center + axis * (half.0 * part.0) + Vector2::new(-axis.y, axis.x) * (bounds.half.y * part.1);
             let (mut angles, mut blocked) = (Vec::new(), Vec::<HeadingArc>::new());
-            hull.blocked_headings(&Segment::point(p), &mut angles, &mut blocked);
+            blocked_headings(&hull, &Segment::point(p), &mut angles, &mut blocked);
             let turns = profile.free_turns(&bounds);
             for arc in &blocked {
                 let (left, right) = arc.free_turn_from(0.0);
@@ -261,7 +262,7 @@ mod tests {
             }
             if !hull.overlaps(&Segment::point(p)) {
                 let (ahead, behind) = profile.free_distances(&bounds);
-                match hull.straight_contact(&Segment::point(p)) {
+                match straight_contact(&hull, &Segment::point(p)) {
                     Some(StraightContact::Ahead(way)) => prop_assert!(ahead <= way + 1e-9, "{ahead} {way}"),
                     Some(StraightContact::Behind(way)) => prop_assert!(behind <= way + 1e-9, "{behind} {way}"),
                     None => {}

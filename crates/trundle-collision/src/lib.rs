@@ -1,14 +1,14 @@
 //! Exact contact of a robot's footprint with points, segments and cells.
 //!
-//! - [`RoundedHull`]: a footprint with a margin. Overlap and distance of a segment; headings at which a turn in place meets a
-//!   segment ([`HeadingArc`]); free distance of a straight move ([`StraightContact`]).
+//! - [`RoundedHull`]: a footprint with a margin. Overlap and distance of a segment, signed distance of a point.
+//! - [`blocked_headings`]: the headings at which a turn in place meets a segment. [`straight_contact`]: the free distance of a
+//!   straight move. [`arc_contact`]: the free distance along an arc until the hull meets a point.
 //! - [`HullProfile`]: a lookup table of a hull. It yields lower bounds of the free motion for boxes of points ([`OrientedBox`]), so
 //!   that most of a point cloud is skipped.
-//! - [`SweptFootprint`]: distance along an arc until a footprint with a margin meets a point.
 //! - [`square`] and [`convex_polygon`]: distances of points, segments and convex polygons from the cells of a grid.
 //!
 //! ```
-//! use trundle_collision::{RoundedHull, Segment, StraightContact, SweptFootprint};
+//! use trundle_collision::{RoundedHull, Segment, StraightContact, arc_contact, straight_contact};
 //! use trundle_core::{Footprint, Twist2, Vector2};
 //!
 //! let corners = [(0.3, 0.2), (-0.3, 0.2), (-0.3, -0.2), (0.3, -0.2)].map(|(x, y)| Vector2::new(x, y));
@@ -16,15 +16,15 @@
 //! let hull = RoundedHull::new(&footprint, 0.01);
 //! let wall = Segment { a: Vector2::new(1.0, -1.0), b: Vector2::new(1.0, 1.0) };
 //! assert!((hull.distance(&wall) - 0.69).abs() < 1e-9);
-//! let Some(StraightContact::Ahead(free)) = hull.straight_contact(&wall) else { panic!("the wall is ahead") };
+//! let Some(StraightContact::Ahead(free)) = straight_contact(&hull, &wall) else { panic!("the wall is ahead") };
 //! assert!((free - 0.69).abs() < 1e-9);
 //!
-//! let swept = SweptFootprint::new(&footprint);
-//! let distance = swept.distance_to_contact(Twist2::new(0.3, 0.0), Vector2::new(1.0, 0.0), 0.01);
+//! let distance = arc_contact(&RoundedHull::exact(&footprint), Twist2::new(0.3, 0.0), Vector2::new(1.0, 0.0), 0.01);
 //! assert!((distance.unwrap() - 0.69).abs() < 1e-9);
 //! # Ok::<(), trundle_core::Invalid>(())
 //! ```
 
+mod arc_contact;
 pub mod convex_polygon;
 mod hull_profile;
 mod oriented_box;
@@ -32,13 +32,12 @@ mod rounded_hull;
 mod segment;
 pub mod square;
 mod straight_contact;
-mod swept_footprint;
 mod turn_contact;
 
+pub use arc_contact::arc_contact;
 pub use hull_profile::{HullProfile, wrap_positive};
 pub use oriented_box::OrientedBox;
 pub use rounded_hull::{MIN_CORNER_RADIUS_M, RoundedHull};
 pub use segment::Segment;
-pub use straight_contact::StraightContact;
-pub use swept_footprint::SweptFootprint;
-pub use turn_contact::HeadingArc;
+pub use straight_contact::{StraightContact, straight_contact};
+pub use turn_contact::{HeadingArc, blocked_headings};

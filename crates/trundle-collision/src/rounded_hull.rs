@@ -39,6 +39,15 @@ pub(crate) struct Edge {
     pub normal_bearing: f64,
     /// The core lies where `normal . x <= offset`.
     pub offset: f64,
+    /// Length, m.
+    pub length: f64,
+}
+
+impl Edge {
+    /// Unit, from the side's first end to its second.
+    pub fn along(&self) -> Vector2 {
+        Vector2::new(-self.normal.y, self.normal.x)
+    }
 }
 
 impl RoundedHull {
@@ -55,6 +64,39 @@ impl RoundedHull {
         match footprint {
             Footprint::Disc { radius } => Self::from_core(&[Vector2::zeros()], radius + margin),
             Footprint::Polygon { corners } => Self::from_core(&without_duplicates(corners), margin),
+        }
+    }
+
+    /// The footprint itself: the corners of a polygon are sharp. For [`RoundedHull::signed_distance`] and
+    /// [`arc_contact`](crate::arc_contact), which need no rounded corners.
+    pub fn exact(footprint: &Footprint) -> Self {
+        match footprint {
+            Footprint::Disc { radius } => Self::from_core(&[Vector2::zeros()], *radius),
+            Footprint::Polygon { corners } => Self::from_core(&without_duplicates(corners), 0.0),
+        }
+    }
+
+    /// Whether the hull is a disc about the base's origin: a disc turns in place without contact.
+    pub fn is_disc(&self) -> bool {
+        self.edges.is_empty()
+    }
+
+    /// Distance of a point of the base frame from the boundary, m; negative inside.
+    pub fn signed_distance(&self, p: Vector2) -> f64 {
+        self.core_offset(p).0 - self.radius
+    }
+
+    /// Distance of a point from the core, m, negative inside, and the unit direction away from the core.
+    pub(crate) fn core_offset(&self, p: Vector2) -> (f64, Vector2) {
+        let inside = self.edges.iter().map(|edge| ((p - edge.side.a).dot(&edge.normal), edge.normal));
+        match inside.max_by(|a, b| a.0.total_cmp(&b.0)) {
+            Some((depth, outward)) if depth <= 0.0 => (depth, outward),
+            _ => {
+                let ends = self.edges.iter().map(|edge| edge.side.nearest(p)).chain([self.core[0].at]);
+                let away = ends.map(|at| p - at).min_by(|a, b| a.norm().total_cmp(&b.norm()));
+                let away = away.unwrap_or(p);
+                (away.norm(), away.try_normalize(1e-12).unwrap_or(Vector2::zeros()))
+            }
         }
     }
 
@@ -179,7 +221,8 @@ impl RoundedHull {
 fn edge(a: Vector2, b: Vector2) -> Edge {
     let along = (b - a).normalize();
     let normal = Vector2::new(along.y, -along.x);
-    Edge { side: Segment { a, b }, normal, normal_bearing: normal.y.atan2(normal.x), offset: normal.dot(&a) }
+    let (normal_bearing, offset, length) = (normal.y.atan2(normal.x), normal.dot(&a), (b - a).norm());
+    Edge { side: Segment { a, b }, normal, normal_bearing, offset, length }
 }
 
 /// The part of a convex polygon where `normal . x <= offset`.

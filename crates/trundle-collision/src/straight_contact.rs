@@ -20,54 +20,53 @@ pub enum StraightContact {
     Behind(f64),
 }
 
-impl RoundedHull {
-    /// Where a segment, in the base frame and without overlap, stops a straight move; `None` when it does not.
-    pub fn straight_contact(&self, segment: &Segment) -> Option<StraightContact> {
-        let (bottom, top) = self.core_extent(Vector2::y());
-        let low = segment.a.y.min(segment.b.y).max(bottom - self.radius + MIN_COMMON_RANGE_M);
-        let high = segment.a.y.max(segment.b.y).min(top + self.radius - MIN_COMMON_RANGE_M);
-        if low > high {
-            return None;
-        }
-        let middle = (low + high) / 2.0;
-        let ahead = x_at(segment, middle) > (self.front(middle, 1.0) - self.front(middle, -1.0)) / 2.0;
-        let sign = if ahead { 1.0 } else { -1.0 };
-        let y = self.parallel_y(segment, sign).map_or(middle, |y| y.clamp(low, high));
-        let x = if segment.a.y == segment.b.y { nearer_end(segment, sign) } else { x_at(segment, y) };
-        let distance = (sign * x - self.front(y, sign)).max(0.0);
-        Some(if ahead { StraightContact::Ahead(distance) } else { StraightContact::Behind(distance) })
+/// Where a segment, in the base frame and without overlap, stops a straight move; `None` when it does not.
+pub fn straight_contact(hull: &RoundedHull, segment: &Segment) -> Option<StraightContact> {
+    let (bottom, top) = hull.core_extent(Vector2::y());
+    let low = segment.a.y.min(segment.b.y).max(bottom - hull.radius + MIN_COMMON_RANGE_M);
+    let high = segment.a.y.max(segment.b.y).min(top + hull.radius - MIN_COMMON_RANGE_M);
+    if low > high {
+        return None;
     }
+    let middle = (low + high) / 2.0;
+    let ahead =
+        x_at(segment, middle) > (front_extent(hull, middle, 1.0) - front_extent(hull, middle, -1.0)) / 2.0;
+    let sign = if ahead { 1.0 } else { -1.0 };
+    let y = parallel_y(hull, segment, sign).map_or(middle, |y| y.clamp(low, high));
+    let x = if segment.a.y == segment.b.y { nearer_end(segment, sign) } else { x_at(segment, y) };
+    let distance = (sign * x - front_extent(hull, y, sign)).max(0.0);
+    Some(if ahead { StraightContact::Ahead(distance) } else { StraightContact::Behind(distance) })
+}
 
-    /// Extent of the hull at `y`: along x for `sign` 1, against x for -1.
-    pub(crate) fn front(&self, y: f64, sign: f64) -> f64 {
-        let mut reach = f64::NEG_INFINITY;
-        for corner in &self.core {
-            let up = y - corner.at.y;
-            if up.abs() <= self.radius {
-                reach = reach.max(sign * corner.at.x + (self.radius * self.radius - up * up).sqrt());
-            }
+/// Extent of the hull at `y`: along x for `sign` 1, against x for -1.
+pub(crate) fn front_extent(hull: &RoundedHull, y: f64, sign: f64) -> f64 {
+    let mut reach = f64::NEG_INFINITY;
+    for corner in &hull.core {
+        let up = y - corner.at.y;
+        if up.abs() <= hull.radius {
+            reach = reach.max(sign * corner.at.x + (hull.radius * hull.radius - up * up).sqrt());
         }
-        for edge in self.edges.iter().filter(|e| sign * e.normal.x > 0.0) {
-            let shift = edge.normal * self.radius;
-            let (a, b) = (edge.side.a + shift, edge.side.b + shift);
-            if y >= a.y.min(b.y) && y <= a.y.max(b.y) {
-                reach = reach.max(sign * x_at(&Segment { a, b }, y));
-            }
-        }
-        reach
     }
+    for edge in hull.edges.iter().filter(|e| sign * e.normal.x > 0.0) {
+        let shift = edge.normal * hull.radius;
+        let (a, b) = (edge.side.a + shift, edge.side.b + shift);
+        if y >= a.y.min(b.y) && y <= a.y.max(b.y) {
+            reach = reach.max(sign * x_at(&Segment { a, b }, y));
+        }
+    }
+    reach
+}
 
-    /// The y of the front point whose tangent is parallel to the segment; `None` for a point or a segment along x.
-    fn parallel_y(&self, segment: &Segment, sign: f64) -> Option<f64> {
-        let along = segment.b - segment.a;
-        if along.y == 0.0 {
-            return None;
-        }
-        let normal = Vector2::new(along.y, -along.x).normalize();
-        let normal = if normal.x * sign < 0.0 { -normal } else { normal };
-        let foremost = self.core.iter().max_by(|p, q| normal.dot(&p.at).total_cmp(&normal.dot(&q.at)));
-        foremost.map(|corner| corner.at.y + self.radius * normal.y)
+/// The y of the front point whose tangent is parallel to the segment; `None` for a point or a segment along x.
+fn parallel_y(hull: &RoundedHull, segment: &Segment, sign: f64) -> Option<f64> {
+    let along = segment.b - segment.a;
+    if along.y == 0.0 {
+        return None;
     }
+    let normal = Vector2::new(along.y, -along.x).normalize();
+    let normal = if normal.x * sign < 0.0 { -normal } else { normal };
+    let foremost = hull.core.iter().max_by(|p, q| normal.dot(&p.at).total_cmp(&normal.dot(&q.at)));
+    foremost.map(|corner| corner.at.y + hull.radius * normal.y)
 }
 
 /// The x of a segment at `y`; of its first end when it runs along x.

@@ -10,7 +10,7 @@ use crate::scene::blocker::Blocker;
 use crate::scene::obstacle_scene::ObstacleScene;
 use crate::work_budget::{BudgetYield, WorkBudget};
 use std::sync::Arc as Shared;
-use trundle_collision::{HeadingArc, HullProfile, RoundedHull, Segment};
+use trundle_collision::{HeadingArc, HullProfile, RoundedHull, Segment, blocked_headings};
 use trundle_core::{Footprint, Pose2, Vector2};
 
 /// A hull among obstacles: contact queries in closed form.
@@ -189,7 +189,7 @@ impl<'a> ContactSpace<'a> {
         let (first, half) = (blocked.len(), Vector2::repeat(hull.outer_radius()));
         let mut work = self.scene.pieces().len() as u64;
         self.scene.visit_pieces(position, half, |segment, _| {
-            hull.blocked_headings(&segment.in_frame(position, 1.0, 0.0), angles, blocked);
+            blocked_headings(hull, &segment.in_frame(position, 1.0, 0.0), angles, blocked);
             work += HEADINGS_COST;
         });
         match &self.profile {
@@ -202,7 +202,7 @@ impl<'a> ContactSpace<'a> {
             }
             None => self.scene.visit_points(position, half, |p, _| {
                 let segment = Segment::point(p).in_frame(position, 1.0, 0.0);
-                hull.blocked_headings(&segment, angles, blocked);
+                blocked_headings(hull, &segment, angles, blocked);
                 work += HEADINGS_COST;
             }),
         }

@@ -2,7 +2,9 @@
 
 use crate::scene::blocker::Blocker;
 use std::f64::consts::TAU;
-use trundle_collision::{HeadingArc, RoundedHull, Segment, StraightContact};
+use trundle_collision::{
+    HeadingArc, RoundedHull, Segment, StraightContact, blocked_headings, straight_contact,
+};
 use trundle_core::{Pose2, Vector2};
 
 /// Distance before a contact at which motions stop, m or rad, so that the next one begins without contact. Source: ours.
@@ -39,7 +41,7 @@ impl FreeTurn {
     ) {
         arcs.clear();
         let center = pose.position();
-        hull.blocked_headings(&segment.in_frame(center, 1.0, 0.0), angles, arcs);
+        blocked_headings(hull, &segment.in_frame(center, 1.0, 0.0), angles, arcs);
         for arc in arcs.iter() {
             let (left, right) = arc.free_turn_from(pose.theta);
             let blocker = || Some(Blocker::listed(number, segment.nearest(center)));
@@ -84,7 +86,7 @@ impl FreeDrive {
             let (number, at) = blocker();
             Some(Blocker::listed(number, at))
         };
-        match hull.straight_contact(seen) {
+        match straight_contact(hull, seen) {
             Some(StraightContact::Ahead(way)) if way < self.ahead => {
                 (self.ahead, self.ahead_by) = (way, by())
             }

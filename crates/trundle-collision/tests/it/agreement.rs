@@ -4,7 +4,10 @@ use crate::support::{any_point, any_pose, corners, hull, polygon};
 use proptest::prelude::*;
 use trundle_collision::convex_polygon::{depth_within, inscribed_disc, inset};
 use trundle_collision::square::{point_to_square, polygon_to_square, segment_to_square};
-use trundle_collision::{MIN_CORNER_RADIUS_M, RoundedHull, Segment, StraightContact, SweptFootprint};
+use trundle_collision::{
+    MIN_CORNER_RADIUS_M, RoundedHull, Segment, StraightContact, arc_contact, blocked_headings,
+    straight_contact,
+};
 use trundle_core::{Twist2, Vector2};
 
 fn square_sides(centre: Vector2, half: f64) -> [Segment; 4] {
@@ -16,7 +19,7 @@ fn square_sides(centre: Vector2, half: f64) -> [Segment; 4] {
 proptest! {
     #[test]
     fn gaps_from_a_point_agree(point in any_point()) {
-        let (swept, hull) = (SweptFootprint::new(&polygon()).gap(point), hull(0.0));
+        let (swept, hull) = (RoundedHull::exact(&polygon()).signed_distance(point), hull(0.0));
         let by_hull = hull.core_distance(&Segment::point(point));
         prop_assert!((swept.max(0.0) - by_hull).abs() < 1e-12, "{swept} {by_hull}");
     }
@@ -26,8 +29,8 @@ proptest! {
         let (hull, piece) = (hull(margin), Segment::point(point));
         prop_assume!(!hull.overlaps(&piece) && hull.distance(&piece) > 1e-6);
         let twist = Twist2::new(if forward { 0.3 } else { -0.3 }, 0.0);
-        let swept = SweptFootprint::new(&polygon()).distance_to_contact(twist, point, margin);
-        let by_hull = match hull.straight_contact(&piece) {
+        let swept = arc_contact(&RoundedHull::exact(&polygon()), twist, point, margin);
+        let by_hull = match straight_contact(&hull, &piece) {
             Some(StraightContact::Ahead(free)) if forward => Some(free),
             Some(StraightContact::Behind(free)) if !forward => Some(free),
             _ => None,
@@ -44,11 +47,11 @@ proptest! {
         let (hull, piece) = (hull(margin), Segment::point(point));
         prop_assume!(hull.distance(&piece) > 1e-6);
         let (mut angles, mut blocked) = (Vec::new(), Vec::new());
-        hull.blocked_headings(&piece, &mut angles, &mut blocked);
+        blocked_headings(&hull, &piece, &mut angles, &mut blocked);
         let by_hull = blocked.iter().map(|arc| arc.free_turn_from(0.0)).map(|(l, r)| if left { l } else { r });
         let by_hull = by_hull.min_by(f64::total_cmp);
         let twist = Twist2::new(0.0, if left { 1.0 } else { -1.0 });
-        let swept = SweptFootprint::new(&polygon()).distance_to_contact(twist, point, margin);
+        let swept = arc_contact(&RoundedHull::exact(&polygon()), twist, point, margin);
         match (swept, by_hull) {
             (Some(a), Some(b)) => prop_assert!((a - b).abs() < 1e-6, "{a} {b}"),
             (a, b) => prop_assert!(a.is_none() && b.is_none(), "{a:?} {b:?}"),
@@ -90,7 +93,7 @@ proptest! {
 /// Whether a point lies within rounding of the lines along which the hull's sides move.
 fn grazes(hull: &RoundedHull, point: Vector2) -> bool {
     let ends =
-        |offset: f64| hull.straight_contact(&Segment::point(point + Vector2::new(0.0, offset))).is_some();
+        |offset: f64| straight_contact(hull, &Segment::point(point + Vector2::new(0.0, offset))).is_some();
     ends(1e-6) != ends(-1e-6)
 }
 

@@ -3,7 +3,7 @@
 use crate::support::{any_point, any_pose, any_segment, corners, hull, seen_from};
 use proptest::prelude::*;
 use std::f64::consts::TAU;
-use trundle_collision::{RoundedHull, Segment, StraightContact};
+use trundle_collision::{RoundedHull, Segment, StraightContact, blocked_headings, straight_contact};
 use trundle_core::{Footprint, Pose2, Vector2};
 
 /// Slack of a sampled contact, m.
@@ -44,7 +44,7 @@ proptest! {
     #[test]
     fn every_sampled_heading_of_a_free_turn_is_free(segment in any_segment(), heading in -3.1..3.1_f64) {
         let (hull, mut angles, mut blocked) = (hull(0.02), Vec::new(), Vec::new());
-        hull.blocked_headings(&segment, &mut angles, &mut blocked);
+        blocked_headings(&hull, &segment, &mut angles, &mut blocked);
         let free = |at: f64| blocked.iter().all(|arc| (at - arc.start).rem_euclid(TAU) > arc.length);
         let (left, right) = blocked.iter().fold((TAU, TAU), |(left, right), arc| {
             let (l, r) = arc.free_turn_from(heading);
@@ -71,7 +71,7 @@ proptest! {
     fn every_sampled_pose_of_a_free_straight_move_is_free_and_its_end_touches(segment in any_segment()) {
         let hull = hull(0.02);
         prop_assume!(!hull.overlaps(&segment));
-        let (sign, free) = match hull.straight_contact(&segment) {
+        let (sign, free) = match straight_contact(&hull, &segment) {
             Some(StraightContact::Ahead(free)) => (1.0, free),
             Some(StraightContact::Behind(free)) => (-1.0, free),
             None => (1.0, 3.0),
@@ -82,7 +82,7 @@ proptest! {
             prop_assert!(!hull.overlaps(&seen) || hull.core_distance(&seen) > 0.02 - SLACK_M, "{i}");
         }
         let end = seen_from(Pose2::new(sign * free, 0.0, 0.0), &segment);
-        prop_assert!(hull.straight_contact(&segment).is_none() || hull.distance(&end) < 1e-6);
+        prop_assert!(straight_contact(&hull, &segment).is_none() || hull.distance(&end) < 1e-6);
     }
 
     #[test]

@@ -3,14 +3,14 @@
 use crate::safety::obstacles::{Obstacle, SafetyMemory, SafetyScan, collect_memory, collect_scan};
 use crate::safety::safety_action::{SafetyAction, SlowReason, StopReason};
 use crate::safety::safety_config::SafetyConfig;
-use trundle_collision::SweptFootprint;
+use trundle_collision::{RoundedHull, arc_contact};
 use trundle_core::{Footprint, Invalid, Stamp, Twist2, Vector2};
 
 /// Passes only twists from which the robot can still stop.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SafetyMonitor {
     config: SafetyConfig,
-    footprint: SweptFootprint,
+    footprint: RoundedHull,
     /// Time from the newest image to the response of the wheels, s.
     latency: f64,
     /// Obstacles near by, reused from call to call.
@@ -82,7 +82,7 @@ impl SafetyMonitor {
     /// # Errors
     /// When a number of the configuration is outside its range.
     pub fn new(config: SafetyConfig, footprint: &Footprint) -> Result<Self, Invalid> {
-        let (config, footprint) = (config.validated()?, SweptFootprint::new(footprint));
+        let (config, footprint) = (config.validated()?, RoundedHull::exact(footprint));
         Ok(Self { latency: config.latency, config, footprint, obstacles: Vec::new() })
     }
 
@@ -166,7 +166,7 @@ impl SafetyMonitor {
         self.obstacles.clear();
         let v = input.twist.v.abs();
         let braking = v * self.latency + v * v / (2.0 * self.config.deceleration);
-        let body = self.footprint.reach() + self.config.slow_margin.max(self.config.stop_margin);
+        let body = self.footprint.outer_radius() + self.config.slow_margin.max(self.config.stop_margin);
         if let Some(scan) = &input.scan {
             collect_scan(scan, braking + self.config.stop_margin + body, &mut self.obstacles);
         }
@@ -186,14 +186,14 @@ impl SafetyMonitor {
     /// First obstacle that comes within `margin` m of the footprint: distance (for a turn on the spot, angle) and position.
     fn first_contact(&self, twist: Twist2, margin: f64) -> Option<(f64, Vector2)> {
         let contact =
-            |o: &Obstacle| Some((self.footprint.distance_to_contact(twist, o.at, margin + o.extent)?, o.at));
+            |o: &Obstacle| Some((arc_contact(&self.footprint, twist, o.at, margin + o.extent)?, o.at));
         self.obstacles.iter().filter_map(contact).min_by(|a, b| a.0.total_cmp(&b.0))
     }
 
     /// Margin about the footprint that nothing may enter, m. A robot already nearer than the configured margin may move as long as it comes
     /// no nearer than `slack`: otherwise it could never leave a wall.
     fn contact_margin(&self, slack: f64) -> f64 {
-        let gaps = self.obstacles.iter().map(|o| self.footprint.gap(o.at) - o.extent);
+        let gaps = self.obstacles.iter().map(|o| self.footprint.signed_distance(o.at) - o.extent);
         (gaps.fold(f64::INFINITY, f64::min) - slack).clamp(0.0, self.config.side_margin)
     }
 
@@ -425,7 +425,7 @@ mod tests {
             rate = twist.omega.clamp(rate - 3.0 * 0.02, rate + 3.0 * 0.02);
             theta += rate * 0.02;
             let at = Pose2::new(0.0, 0.0, theta).inverse().transform(post);
-            least = least.min(cart().footprint.gap(at));
+            least = least.min(cart().footprint.signed_distance(at));
         }
         assert!(least > 0.005 && theta > 0.5, "{least} m left after {theta} rad");
     }

@@ -2,7 +2,9 @@
 
 use crate::scene::point_index::PointQuery;
 use std::f64::consts::TAU;
-use trundle_collision::{HeadingArc, HullProfile, OrientedBox, RoundedHull, Segment, wrap_positive};
+use trundle_collision::{
+    HeadingArc, HullProfile, OrientedBox, RoundedHull, Segment, blocked_headings, wrap_positive,
+};
 use trundle_core::Vector2;
 
 /// The headings at which a hull overlaps points. All reported headings overlap; a small part at either end may be missing. It is
@@ -50,7 +52,7 @@ impl PointQuery for HeadingsQuery<'_> {
 
     fn visit(&mut self, p: Vector2, _: u32) {
         let segment = Segment::point(p).in_frame(self.position, 1.0, 0.0);
-        self.hull.blocked_headings(&segment, self.angles, self.blocked);
+        blocked_headings(self.hull, &segment, self.angles, self.blocked);
         join(self.blocked, self.first);
     }
 }
