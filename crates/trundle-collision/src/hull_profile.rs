@@ -22,7 +22,7 @@ const MAX_RINGS: usize = 512;
 /// Counted cost of a ring, in steps of about 10 ns. Source: ours.
 const RING_COST: u64 = 100;
 /// Number of strips along x: a fraction of a millimetre each, as their rounding delays every point. Source: ours.
-const STRIPS: usize = 512;
+const STRIP_COUNT: usize = 512;
 /// Half thicknesses below which a box counts as its centre line, m: a slanted box is otherwise met by its corner. Source: ours.
 const THIN_HALF_THICKNESS_M: [f64; 3] = [1e-8, 1e-5, 1e-3];
 /// Smallest ratio of length to thickness of such a box. Source: ours.
@@ -69,8 +69,8 @@ impl HullProfile {
         }
         let (low, high) = hull.core_extent(Vector2::y());
         let (bottom, top) = (low - hull.radius, high + hull.radius);
-        let strip = (top - bottom) / STRIPS as f64;
-        let fronts = (0..STRIPS).map(|i| {
+        let strip = (top - bottom) / STRIP_COUNT as f64;
+        let fronts = (0..STRIP_COUNT).map(|i| {
             let (y0, y1) = (bottom + strip * i as f64, bottom + strip * (i + 1) as f64);
             (front_in(hull, y0, y1, 1.0), front_in(hull, y0, y1, -1.0))
         });
@@ -155,14 +155,14 @@ impl HullProfile {
         let (p, extent) = (bounds.center, bounds.extent().add_scalar(ROUNDING_SLACK));
         let at = |y: f64| (y - self.bottom) / self.strip;
         let (low, high) = (at(p.y - extent.y) - ROUNDING_SLACK, at(p.y + extent.y) + ROUNDING_SLACK);
-        if high < 0.0 || low > STRIPS as f64 {
+        if high < 0.0 || low > STRIP_COUNT as f64 {
             return never;
         }
         if let Some(distances) = self.free_distances_of_line(bounds) {
             return distances;
         }
-        let (first, last) = (low.max(0.0) as usize, (high as usize).min(STRIPS - 1));
-        let reach = self.reach(first.min(STRIPS - 1), last);
+        let (first, last) = (low.max(0.0) as usize, (high as usize).min(STRIP_COUNT - 1));
+        let reach = self.reach(first.min(STRIP_COUNT - 1), last);
         // A box entirely behind the hull is not ahead of it.
         let is_behind = p.x + extent.x < -reach.1;
         let ahead = if is_behind { f64::INFINITY } else { (p.x - extent.x - reach.0).max(0.0) };

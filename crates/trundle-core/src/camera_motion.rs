@@ -3,10 +3,12 @@
 use crate::{Pose2, Pose3};
 use nalgebra::{Matrix3, Matrix6, Vector6};
 
-/// How far a floor leads a robot out of its plane: m / sqrt(m) and rad / sqrt(m); 1 cm over 4 m and 4 mm over 1 m \[DIN18202, table 3\].
-const UNEVEN: (f64, f64) = (0.005, 0.004);
-/// The way of a wheel's rim while the base turns by 1 rad, m: half a wheelbase.
-const RIM: f64 = 0.115;
+/// Standard deviation of the floor's height, m per sqrt(m) of path: 1 cm over 4 m \[DIN18202, table 3\].
+const FLOOR_HEIGHT_NOISE: f64 = 0.005;
+/// Standard deviation of the floor's tilt, rad per sqrt(m) of path: 4 mm over 1 m \[DIN18202, table 3\].
+const FLOOR_TILT_NOISE: f64 = 0.004;
+/// Path of a wheel while the base turns by 1 rad, m: half of the Kobuki's wheelbase.
+const HALF_WHEELBASE_M: f64 = 0.115;
 /// Rows of x, y and yaw.
 const IN_PLANE: [usize; 3] = [0, 1, 5];
 
@@ -46,8 +48,8 @@ impl From<Pose3> for CameraMotion {
 
 /// Of the base's motion in space: in the plane as given, out of it by the floor.
 fn in_space(motion: &Pose2, planar: &Matrix3<f64>) -> Matrix6<f64> {
-    let way = motion.x.hypot(motion.y) + RIM * motion.theta.abs();
-    let (up, tilt) = (UNEVEN.0.powi(2) * way, UNEVEN.1.powi(2) * way);
+    let path = motion.x.hypot(motion.y) + HALF_WHEELBASE_M * motion.theta.abs();
+    let (up, tilt) = (FLOOR_HEIGHT_NOISE.powi(2) * path, FLOOR_TILT_NOISE.powi(2) * path);
     let mut covariance = Matrix6::from_diagonal(&Vector6::new(0.0, 0.0, up, tilt, tilt, 0.0));
     for (i, row) in IN_PLANE.into_iter().enumerate() {
         for (j, column) in IN_PLANE.into_iter().enumerate() {

@@ -56,7 +56,7 @@ pub struct ScanParts {
 }
 
 /// No sensor of a robot is farther from its base, m.
-const FARTHEST: f64 = 20.0;
+const MAX_SENSOR_OFFSET_M: f64 = 20.0;
 
 /// A laser-like scan in a horizontal plane: beam i looks along `angle_min + i * angle_increment` from the sensor.
 ///
@@ -103,8 +103,8 @@ impl Scan {
         (angle_min, angle_increment): (f64, f64),
         parts: ScanParts,
     ) -> Result<Self, Invalid> {
-        crate::require_in("scan origin x", origin.x, "m", -FARTHEST, FARTHEST)?;
-        crate::require_in("scan origin y", origin.y, "m", -FARTHEST, FARTHEST)?;
+        crate::require_in("scan origin x", origin.x, "m", -MAX_SENSOR_OFFSET_M, MAX_SENSOR_OFFSET_M)?;
+        crate::require_in("scan origin y", origin.y, "m", -MAX_SENSOR_OFFSET_M, MAX_SENSOR_OFFSET_M)?;
         crate::require_finite("angle_min", angle_min, "rad")?;
         crate::require_positive("angle_increment", angle_increment, "rad")?;
         parts.check()?;

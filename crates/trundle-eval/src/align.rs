@@ -40,7 +40,7 @@ impl Similarity {
 }
 
 /// Least gap between the best rotation and the next, relative: below it the rotation is noise of the arithmetic.
-const DEGENERATE: f64 = 1e-12;
+const MIN_ROTATION_GAP_RATIO: f64 = 1e-12;
 
 /// The transform T that minimises `sum |reference[i] - T estimate[i]|^2`; positions in m, pair by pair.
 ///
@@ -107,7 +107,7 @@ fn best_rotation(s: &Matrix3<f64>, poses: usize) -> Result<(UnitQuaternion<f64>,
     order.sort_by(|&a, &b| eigen.eigenvalues[b].total_cmp(&eigen.eigenvalues[a]));
     let (largest, next) = (eigen.eigenvalues[order[0]], eigen.eigenvalues[order[1]]);
     let spread = if largest > 0.0 { (largest - next) / largest } else { 0.0 };
-    if spread.partial_cmp(&DEGENERATE) != Some(std::cmp::Ordering::Greater) {
+    if spread.partial_cmp(&MIN_ROTATION_GAP_RATIO) != Some(std::cmp::Ordering::Greater) {
         return Err(EvalError::Degenerate { poses, spread });
     }
     let q = eigen.eigenvectors.column(order[0]);

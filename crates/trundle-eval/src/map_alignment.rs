@@ -4,9 +4,9 @@ use crate::{EvalError, Side, occupied_cells::OccupiedCells};
 use trundle_core::{Invalid, OccupancyGrid, Pose2, Vector2};
 
 /// Rounds of pairing and moving.
-const ROUNDS: usize = 60;
+const ALIGNMENT_ROUNDS: usize = 60;
 /// Cells are paired as far as this at first, m, and in the end.
-const REACH: (f64, f64) = (0.8, 0.15);
+const PAIRING_RADII_M: (f64, f64) = (0.8, 0.15);
 
 /// Lays a map over the true one: `truth_from_estimate` near `guess` (to about 0.5 m and 5 degrees) that brings its occupied
 /// cells nearest to truly occupied ones. By iterated closest points \[Besl92\], the reach of the pairs shrinking.
@@ -25,9 +25,9 @@ pub fn align_maps(truth: &OccupancyGrid, estimate: &OccupancyGrid, guess: Pose2)
         return Err(EvalError::NoObstacle { side: Side::Estimate });
     }
     let mut pose = guess;
-    for round in 0..ROUNDS {
-        let shrunk = (round as f64 / (ROUNDS as f64 * 0.7)).min(1.0);
-        let reach = REACH.0 + (REACH.1 - REACH.0) * shrunk;
+    for round in 0..ALIGNMENT_ROUNDS {
+        let shrunk = (round as f64 / (ALIGNMENT_ROUNDS as f64 * 0.7)).min(1.0);
+        let reach = PAIRING_RADII_M.0 + (PAIRING_RADII_M.1 - PAIRING_RADII_M.0) * shrunk;
         let pair = |p: &Vector2| Some((*p, true_cells.nearest(pose.transform(*p), reach)?));
         let pairs: Vec<(Vector2, Vector2)> = points.iter().filter_map(pair).collect();
         if pairs.len() < 3 {

@@ -20,11 +20,11 @@ use trundle_core::{Cell, CellIndex, GridGeometry, OccupancyGrid};
 use yaml::MapYaml;
 
 /// Grey of a free cell, as `map_saver` writes it.
-const FREE: u8 = 254;
+const FREE_GREY: u8 = 254;
 /// Grey of an occupied cell.
-const OCCUPIED: u8 = 0;
+const OCCUPIED_GREY: u8 = 0;
 /// Grey of an unknown cell: its occupancy of 0.19608 lies just above the usual `free_thresh`.
-const UNKNOWN: u8 = 205;
+const UNKNOWN_GREY: u8 = 205;
 
 /// A map from its YAML file and the PGM picture that it names.
 ///
@@ -78,9 +78,9 @@ pub fn map_pgm(grid: &OccupancyGrid) -> Vec<u8> {
     let mut bytes = format!("P5\n# trundle {resolution} m/px\n{width} {height}\n255\n").into_bytes();
     for row in (0..height).rev() {
         bytes.extend((0..width).map(|col| match grid.get(CellIndex { col, row }) {
-            Cell::Free => FREE,
-            Cell::Occupied => OCCUPIED,
-            Cell::Unknown => UNKNOWN,
+            Cell::Free => FREE_GREY,
+            Cell::Occupied => OCCUPIED_GREY,
+            Cell::Unknown => UNKNOWN_GREY,
         }));
     }
     bytes

@@ -47,7 +47,7 @@ pub use curve::phase::Phase;
 pub use exploration::config::ExploreConfig;
 pub use exploration::explorer::{Exploration, Explorer, Viewpoint};
 pub use exploration::frontier::Frontier;
-pub use field::{DistanceField, FAR, UnknownIs};
+pub use field::{DistanceField, NO_OBSTACLE_DISTANCE_M, UnknownIs};
 pub use masks::cost_mask::CostMask;
 pub use masks::speed_mask::SpeedMask;
 pub use moving_obstacles::config::ObstacleTrackerConfig;

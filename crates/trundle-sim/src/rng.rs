@@ -9,7 +9,7 @@ use std::sync::LazyLock;
 pub(crate) const NORMAL_BITS: u32 = 12;
 
 /// 2^64 over the golden ratio: steps that fill the circle evenly.
-pub(crate) const GOLDEN: u64 = 0x9E37_79B9_7F4A_7C15;
+pub(crate) const GOLDEN_RATIO_STEP: u64 = 0x9E37_79B9_7F4A_7C15;
 
 /// A bijective scrambling of 64 bits: the finaliser of SplitMix64 (Steele, Lea, Flood 2014).
 pub(crate) fn mix(x: u64) -> u64 {
@@ -20,7 +20,7 @@ pub(crate) fn mix(x: u64) -> u64 {
 
 /// The hash of a seed and a counter.
 pub(crate) fn hash(seed: u64, counter: u64) -> u64 {
-    mix(seed ^ mix(counter.wrapping_add(1).wrapping_mul(GOLDEN)))
+    mix(seed ^ mix(counter.wrapping_add(1).wrapping_mul(GOLDEN_RATIO_STEP)))
 }
 
 /// A number in (0, 1) from the upper bits of a hash, or of a word of a generator.

@@ -9,7 +9,7 @@ mod track;
 
 use crate::config::SimConfig;
 use crate::faults::Faults;
-use crate::kobuki::{ContactScene, Kobuki, STEP, TrueWheels};
+use crate::kobuki::{ContactScene, Kobuki, STEP_S, TrueWheels};
 use crate::laser::Laser;
 use crate::people::Crowd;
 use crate::scenes::Scene;
@@ -27,7 +27,7 @@ use trundle_core::{
 };
 
 /// Between these heights, m, people need room to walk.
-const PEOPLE: (f64, f64) = (0.05, 1.75);
+const PERSON_HEIGHT_BAND_M: (f64, f64) = (0.05, 1.75);
 
 /// A Kobuki with an RGB-D camera and, if wished, a laser in a scene, behind the trait that hardware is behind.
 ///
@@ -89,7 +89,9 @@ impl Simulator {
         let band = HeightBand::new(config.kobuki.step_over, config.kobuki.height)?;
         let crowd = Crowd::new(&scene.people, band)?;
         if !scene.people.is_empty() {
-            crowd.check_ways(&scene.world.obstacles(HeightBand::new(PEOPLE.0, PEOPLE.1)?))?;
+            crowd.check_ways(
+                &scene.world.obstacles(HeightBand::new(PERSON_HEIGHT_BAND_M.0, PERSON_HEIGHT_BAND_M.1)?),
+            )?;
         }
         let obstacles = scene.world.obstacles(band);
         require_free(&scene, &config, &obstacles, &crowd)?;
@@ -185,7 +187,7 @@ impl Simulator {
     fn step(&mut self) {
         self.now += 1;
         self.break_things();
-        self.crowd.step(STEP, self.body.footprint(), self.body.pose());
+        self.crowd.step(STEP_S, self.body.footprint(), self.body.pose());
         let around = ContactScene { fixed: &self.obstacles, moving: &self.crowd };
         if let Some(is_touching) = self.body.step(&around) {
             self.last_readings.is_touching = is_touching;

@@ -5,14 +5,14 @@ pub(crate) const HEIGHT: usize = 7;
 /// Columns of the widest glyph.
 pub(crate) const WIDTH: usize = 5;
 /// Rows below the base line that a descender may take.
-pub(crate) const DESCENT: usize = 2;
+pub(crate) const DESCENT_ROWS: usize = 2;
 
 /// One letter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Glyph {
     /// Rows from the top; the highest of [`WIDTH`] bits is the leftmost column in use.
     pub rows: [u8; HEIGHT],
-    /// Rows that the whole glyph hangs below the base line, at most [`DESCENT`].
+    /// Rows that the whole glyph hangs below the base line, at most [`DESCENT_ROWS`].
     pub drop: usize,
     /// Columns in use.
     pub width: usize,
@@ -167,7 +167,7 @@ mod tests {
         for (character, drop, _) in GLYPHS {
             let glyph = glyph(character);
             let used = glyph.rows.iter().fold(0, |all, row| all | row);
-            assert!(drop <= DESCENT && (1..=WIDTH).contains(&glyph.width), "{character}");
+            assert!(drop <= DESCENT_ROWS && (1..=WIDTH).contains(&glyph.width), "{character}");
             assert_eq!(used & ((1 << (WIDTH - glyph.width)) - 1), 0, "{character} is wider than it says");
         }
     }

@@ -2,7 +2,7 @@
 
 use crate::canvas::Canvas;
 use crate::color::Color;
-use crate::font::{DESCENT, HEIGHT, glyph};
+use crate::font::{DESCENT_ROWS, HEIGHT, glyph};
 
 /// How text is set.
 #[derive(Debug, Clone, Copy)]
@@ -27,7 +27,7 @@ pub(crate) fn cap_height(scale: i64) -> i64 {
 
 /// Height of a line of text with descenders, px.
 pub(crate) fn line_height(scale: i64) -> i64 {
-    (HEIGHT + DESCENT) as i64 * scale
+    (HEIGHT + DESCENT_ROWS) as i64 * scale
 }
 
 /// Width of a text, px.

@@ -49,11 +49,13 @@ pub enum Rule {
     MissingFile,
     /// Two crates have a public type of one name.
     TypeName,
+    /// A constant's name does not say its quantity.
+    ConstantName,
 }
 
 impl Rule {
     /// All rules with an allow-list.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::ModuleCycle,
         Self::StructFields,
         Self::ImplMethods,
@@ -64,6 +66,7 @@ impl Rule {
         Self::Glossary,
         Self::MissingFile,
         Self::TypeName,
+        Self::ConstantName,
     ];
 
     /// The rule's name in the allow-list.
@@ -79,6 +82,7 @@ impl Rule {
             Self::Glossary => "glossary",
             Self::MissingFile => "missing-file",
             Self::TypeName => "type-name",
+            Self::ConstantName => "constant-name",
         }
     }
 }

@@ -7,6 +7,7 @@ mod allowed;
 mod arrows;
 mod citations;
 mod cited_files;
+mod constants;
 mod finding;
 mod glossary;
 mod leftovers;
@@ -65,6 +66,7 @@ fn all_findings(root: &Path) -> Result<Vec<Finding>, String> {
         arrows::check,
         citations::check,
         cited_files::check,
+        constants::check,
         glossary::check,
         purity::check,
         shape::check,

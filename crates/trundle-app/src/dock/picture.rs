@@ -7,9 +7,9 @@ use trundle_docking::{Manoeuvre, Motion, Obstacle, Solution, Step};
 use trundle_viz::{Color, DotStyle, LineStyle, MapPicture, PoseStyle};
 
 /// Seconds between two of the outlines that show the floor that is covered.
-const EVERY: f64 = 0.1;
+const OUTLINE_PERIOD_S: f64 = 0.1;
 /// Outlines of a long manoeuvre at most.
-const OUTLINES: f64 = 400.0;
+const MAX_OUTLINES: f64 = 400.0;
 /// Boxes and other solid things.
 const SOLID: Color = Color::rgb(0x9a_a1_a9);
 
@@ -156,7 +156,7 @@ fn beside(trail: &[Vector2], by: f64) -> Vector2 {
 
 /// Poses close together over so many seconds.
 fn between(seconds: f64, at: impl Fn(f64) -> Pose2) -> Vec<Pose2> {
-    let count = (seconds / EVERY).clamp(1.0, OUTLINES).round();
+    let count = (seconds / OUTLINE_PERIOD_S).clamp(1.0, MAX_OUTLINES).round();
     (0..=count as usize).map(|i| at(seconds * i as f64 / count)).collect()
 }
 

@@ -19,14 +19,14 @@ pub fn camera_view(image: &RgbdImage, features: &[SeenFeature]) -> CameraView {
 
 /// The side of a feature's patch on the full-size level, px, and what each level of the pyramid multiplies it by.
 const PATCH_PX: f64 = 31.0;
-const LEVEL: f64 = 1.2;
+const OCTAVE_SCALE: f64 = 1.2;
 
 fn mark(feature: &SeenFeature) -> FeatureMark {
     let keypoint = feature.keypoint;
     FeatureMark {
         x: f64::from(keypoint.x),
         y: f64::from(keypoint.y),
-        size: PATCH_PX * LEVEL.powi(i32::from(keypoint.octave)),
+        size: PATCH_PX * OCTAVE_SCALE.powi(i32::from(keypoint.octave)),
         angle: f64::from(keypoint.angle),
         tracked: feature.tracked,
     }

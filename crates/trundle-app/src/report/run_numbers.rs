@@ -49,7 +49,7 @@ fn docking_text(docking: &GoalApproachReport) -> String {
 }
 
 /// The goal counts as reached within this, m.
-const NEAR: f64 = 0.05;
+const GOAL_TOLERANCE_M: f64 = 0.05;
 /// And within this, deg.
 const ALIGNED_DEG: f64 = 3.0;
 
@@ -79,7 +79,7 @@ impl RunNumbers {
 
     /// Whether the end is near enough to the last goal, if there is one.
     pub fn is_near(&self) -> bool {
-        self.goal_error.is_none_or(|error| error.distance < NEAR)
+        self.goal_error.is_none_or(|error| error.distance < GOAL_TOLERANCE_M)
     }
 
     /// Whether the heading is near enough to the last goal's, if there is one.
@@ -96,7 +96,7 @@ impl RunNumbers {
     /// Goals that were not reached in truth, though the robot believes so.
     fn goals_missed(&self) -> usize {
         let believed = self.goals.iter().filter(|goal| goal.end == TaskEnd::Done);
-        believed.filter(|goal| !goal.is_reached(NEAR, ALIGNED_DEG.to_radians())).count()
+        believed.filter(|goal| !goal.is_reached(GOAL_TOLERANCE_M, ALIGNED_DEG.to_radians())).count()
     }
 
     /// How it went, in a sentence.

@@ -10,7 +10,7 @@ use std::path::Path;
 use trundle_core::{Cell, GridGeometry, Invalid, OccupancyGrid, require_in};
 
 /// A mask's value that forbids.
-const LETHAL: u8 = 100;
+const LETHAL_VALUE: u8 = 100;
 
 /// What the values of a speed mask mean, as Nav2's filter-info server says it: limit = base + multiplier * value.
 ///
@@ -84,8 +84,8 @@ pub struct SpeedFile {
 /// As [`read_map`](crate::read_map).
 pub fn read_keep_out_mask(yaml_path: &Path) -> Result<KeepOutFile, IoError> {
     let (geometry, values) = values(yaml_path)?;
-    let cell = |value: &Option<u8>| if *value == Some(LETHAL) { Cell::Occupied } else { Cell::Free };
-    let dear = values.iter().map(|value| value.filter(|value| *value < LETHAL).unwrap_or(0)).collect();
+    let cell = |value: &Option<u8>| if *value == Some(LETHAL_VALUE) { Cell::Occupied } else { Cell::Free };
+    let dear = values.iter().map(|value| value.filter(|value| *value < LETHAL_VALUE).unwrap_or(0)).collect();
     let forbidden = OccupancyGrid::new(geometry, values.iter().map(cell).collect());
     Ok(KeepOutFile { forbidden: forbidden.map_err(IoError::field(yaml_path))?, dear })
 }
@@ -122,7 +122,7 @@ fn values(yaml_path: &Path) -> Result<(GridGeometry, Vec<Option<u8>>), IoError> 
     let rows = pgm.values.chunks_exact(pgm.width).rev();
     let values = rows.flatten().map(|&value| yaml.value(value, pgm.maxval)).collect();
     // Of a turned picture, what a cell touches that is darkest.
-    let rank = |value: Option<u8>| value.map_or(u8::MAX, |value| LETHAL - value.min(LETHAL));
+    let rank = |value: Option<u8>| value.map_or(u8::MAX, |value| LETHAL_VALUE - value.min(LETHAL_VALUE));
     straightened(geometry, values, yaml.yaw, None, rank).map_err(IoError::field(yaml_path))
 }
 

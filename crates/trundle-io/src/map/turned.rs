@@ -3,9 +3,9 @@
 use trundle_core::{GridGeometry, Invalid, Vector2};
 
 /// Looks along a cell's side.
-const LOOKS: usize = 3;
+const SAMPLES_PER_SIDE: usize = 3;
 /// Turns below this are none, rad: 1 um at 10 km.
-const STRAIGHT: f64 = 1e-10;
+const MAX_STRAIGHT_TURN_RAD: f64 = 1e-10;
 
 /// The values of a picture with this geometry, turned by `yaw` rad about its origin: along the axes, as fine as before. Of the values
 /// that a new cell touches, the one that is first by `rank` counts: walls stay closed, and become up to a cell thicker. Cells
@@ -20,7 +20,7 @@ pub(super) fn straightened<T: Copy>(
     beyond: T,
     rank: impl Fn(T) -> u8,
 ) -> Result<(GridGeometry, Vec<T>), Invalid> {
-    if yaw.abs() < STRAIGHT {
+    if yaw.abs() < MAX_STRAIGHT_TURN_RAD {
         return Ok((geometry, values));
     }
     let GridGeometry { resolution, origin, width, height } = geometry;
@@ -37,9 +37,12 @@ pub(super) fn straightened<T: Copy>(
     let picture = GridGeometry { origin: Vector2::zeros(), ..geometry };
     let value = |linear: usize| {
         let cell = new.cell(linear);
-        let looks = (0..LOOKS * LOOKS).filter_map(|k| {
-            let part = |k: usize| (k as f64 + 0.5) / LOOKS as f64;
-            let at = Vector2::new(cell.col as f64 + part(k % LOOKS), cell.row as f64 + part(k / LOOKS));
+        let looks = (0..SAMPLES_PER_SIDE * SAMPLES_PER_SIDE).filter_map(|k| {
+            let part = |k: usize| (k as f64 + 0.5) / SAMPLES_PER_SIDE as f64;
+            let at = Vector2::new(
+                cell.col as f64 + part(k % SAMPLES_PER_SIDE),
+                cell.row as f64 + part(k / SAMPLES_PER_SIDE),
+            );
             let at = (low + at) * resolution;
             let back = Vector2::new(cos * at.x + sin * at.y, cos * at.y - sin * at.x);
             picture.cell_at(back).map(|cell| values[picture.linear(cell)])

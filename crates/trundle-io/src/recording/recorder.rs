@@ -16,7 +16,7 @@ use trundle_core::{Invalid, Stamp};
 
 /// So many bytes make a chunk, which the recorder remembers for the index at the end: an hour of 30 images a second is 9,000 chunks
 /// and some 2 MB of index. A program that is killed loses the chunk that it was writing.
-const CHUNK: u64 = 4 << 20;
+const CHUNK_BYTES: u64 = 4 << 20;
 
 /// Writes a recording: MCAP in uncompressed chunks (images are compressed already), messages in JSON.
 ///
@@ -51,8 +51,11 @@ impl<W: Write + Seek> Recorder<W> {
     /// # Errors
     /// When nothing can be written.
     pub fn new(writer: W, path: &Path) -> Result<Self, IoError> {
-        let options =
-            WriteOptions::new().chunk_size(Some(CHUNK)).compression(None).profile("").library("trundle");
+        let options = WriteOptions::new()
+            .chunk_size(Some(CHUNK_BYTES))
+            .compression(None)
+            .profile("")
+            .library("trundle");
         let writer = options.create(writer).map_err(|error| failed(path, error))?;
         Ok(Self { writer, path: path.to_owned(), channels: BTreeMap::new(), buffer: Vec::new() })
     }

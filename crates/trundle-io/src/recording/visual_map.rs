@@ -25,7 +25,7 @@ impl FeatureMarks {
         let group = |marks: Vec<(Vector2, bool)>, color: Value| {
             let points: Vec<Value> = marks.iter().map(|(p, _)| json!({"x": p.x, "y": p.y})).collect();
             json!({
-                "timestamp": Time::from(stamp), "type": POINTS, "points": points, "outline_color": color,
+                "timestamp": Time::from(stamp), "type": POINTS_TYPE, "points": points, "outline_color": color,
                 "outline_colors": [], "fill_color": color, "thickness": 3.0,
             })
         };
@@ -34,8 +34,8 @@ impl FeatureMarks {
     }
 }
 
-/// `PointsAnnotation.Type.POINTS`.
-const POINTS: u8 = 1;
+/// `PointsAnnotation.Type.POINTS_TYPE`.
+const POINTS_TYPE: u8 = 1;
 /// `LinePrimitive.Type.LINE_LIST`.
 const LINE_LIST: u8 = 2;
 
@@ -58,7 +58,7 @@ impl LandmarkCloud {
     pub fn new(stamp: Stamp, frame_id: &str, points: impl IntoIterator<Item = Vector3>) -> Self {
         let bytes = |p: Vector3| [p.x, p.y, p.z].into_iter().flat_map(|v| (v as f32).to_le_bytes());
         let data: Vec<u8> = points.into_iter().flat_map(bytes).collect();
-        let field = |(i, name)| json!({"name": name, "offset": 4 * i, "type": FLOAT32});
+        let field = |(i, name)| json!({"name": name, "offset": 4 * i, "type": FLOAT32_TYPE});
         let fields = ["x", "y", "z"].into_iter().enumerate().map(field).collect();
         Self {
             timestamp: stamp.into(),
@@ -71,8 +71,8 @@ impl LandmarkCloud {
     }
 }
 
-/// `PackedElementField.NumericType.FLOAT32`.
-const FLOAT32: u8 = 7;
+/// `PackedElementField.NumericType.FLOAT32_TYPE`.
+const FLOAT32_TYPE: u8 = 7;
 
 /// What ties keyframes together: a message of the schema `foxglove.SceneUpdate` with the covisibility graph and the closed
 /// loops as lines.

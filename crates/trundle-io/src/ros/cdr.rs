@@ -30,13 +30,13 @@ pub(super) struct CdrReader<'a> {
 }
 
 /// Bytes of the header that says how the rest is encoded.
-const HEADER: usize = 4;
+const HEADER_BYTES: usize = 4;
 
 impl<'a> CdrReader<'a> {
     /// A reader of a message of type `message`.
     pub(super) fn new(message: &'static str, bytes: &'a [u8]) -> Result<Self, CdrError> {
         let mut reader = Self { message, bytes, at: 0, little: false, most_aligned: 8 };
-        let [high, kind, ..] = *reader.take("encapsulation", HEADER)? else {
+        let [high, kind, ..] = *reader.take("encapsulation", HEADER_BYTES)? else {
             return Err(reader.error("encapsulation", 0, "too short".to_owned()));
         };
         // CDR 0 and 1, CDR2 6 and 7: even is big endian.
@@ -113,7 +113,7 @@ impl<'a> CdrReader<'a> {
 
     fn number<const N: usize>(&mut self, field: &'static str) -> Result<[u8; N], CdrError> {
         let align = N.min(self.most_aligned);
-        let off = (self.at - HEADER) % align;
+        let off = (self.at - HEADER_BYTES) % align;
         if off != 0 {
             self.take(field, align - off)?;
         }

@@ -12,7 +12,7 @@ pub(super) struct Frames {
 }
 
 /// A robot has no longer chain of frames; a longer one is a ring.
-const LONGEST: usize = 100;
+const MAX_FRAME_CHAIN: usize = 100;
 
 impl Frames {
     pub(super) fn insert(&mut self, transform: Transform) {
@@ -33,7 +33,7 @@ impl Frames {
     /// A frame and all above it, each with its pose `above_from_frame`.
     fn chain(&self, frame: &str) -> Vec<(String, Pose3)> {
         let mut chain = vec![(frame.to_owned(), Pose3::identity())];
-        while let Some((last, pose)) = chain.last().filter(|_| chain.len() < LONGEST) {
+        while let Some((last, pose)) = chain.last().filter(|_| chain.len() < MAX_FRAME_CHAIN) {
             let Some((parent, parent_from_last)) = self.parents.get(last) else { break };
             let next = (parent.clone(), *parent_from_last * *pose);
             chain.push(next);

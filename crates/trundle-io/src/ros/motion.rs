@@ -11,7 +11,7 @@ pub(super) struct Motion {
 /// Between two poses that are farther apart in time nothing is known, s.
 const LONGEST_GAP: f64 = 1.0;
 /// A pose holds for so long before and after it, s.
-const HOLDS: f64 = 0.1;
+const POSE_HOLD_S: f64 = 0.1;
 
 impl Motion {
     /// Adds a pose.
@@ -50,7 +50,7 @@ impl Motion {
     pub(super) fn at(&self, stamp: Stamp) -> Result<Pose2, String> {
         let after = self.poses.partition_point(|(at, _)| *at < stamp);
         let (before, next) = (after.checked_sub(1).and_then(|i| self.poses.get(i)), self.poses.get(after));
-        let near = |pose: &&(Stamp, Pose2)| (pose.0 - stamp).abs() <= HOLDS;
+        let near = |pose: &&(Stamp, Pose2)| (pose.0 - stamp).abs() <= POSE_HOLD_S;
         match (before, next) {
             (Some((t0, a)), Some((t1, b))) if *t1 - *t0 <= LONGEST_GAP => {
                 Ok(a.interpolate(b, (stamp - *t0) / (*t1 - *t0)))

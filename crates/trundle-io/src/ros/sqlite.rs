@@ -42,9 +42,9 @@ impl TableRows {
 }
 
 /// No tree is deeper.
-const DEEPEST: usize = 20;
+const MAX_TREE_DEPTH: usize = 20;
 /// Longest value, bytes: bounds what a broken file can ask for.
-const LONGEST: u64 = 1 << 28;
+const MAX_VALUE_BYTES: u64 = 1 << 28;
 
 impl Sqlite {
     pub(super) fn open(path: &Path) -> Result<Self, IoError> {
@@ -93,7 +93,7 @@ impl Sqlite {
     pub(super) fn next_row(&mut self, rows: &mut TableRows) -> Result<Option<(i64, Vec<Value>)>, IoError> {
         loop {
             if let Some(page) = rows.next_page.take() {
-                if rows.path_down.len() >= DEEPEST {
+                if rows.path_down.len() >= MAX_TREE_DEPTH {
                     return Err(self.broken(page, "the tree does not end"));
                 }
                 rows.path_down.push((self.page(page)?, page, 0));
@@ -113,7 +113,8 @@ impl Sqlite {
     fn row(&mut self, page: &[u8], number: u32, offset: usize) -> Result<(i64, Vec<Value>), IoError> {
         let short = || IoError::malformed(&self.path, format!("page {number}: a row ends early"));
         let mut at = offset;
-        let length = varint(page, &mut at).filter(|l| (0..LONGEST as i64).contains(l)).ok_or_else(short)?;
+        let length =
+            varint(page, &mut at).filter(|l| (0..MAX_VALUE_BYTES as i64).contains(l)).ok_or_else(short)?;
         let id = varint(page, &mut at).ok_or_else(short)?;
         let length = length as usize;
         let local = local_bytes(length, self.usable);

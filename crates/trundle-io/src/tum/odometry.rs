@@ -7,7 +7,7 @@ use std::path::Path;
 use trundle_core::{Pose2, Stamp};
 
 /// Farther off no robot gets, m, and rad.
-const FARTHEST: f64 = 1e6;
+const MAX_COORDINATE_M: f64 = 1e6;
 
 /// Odometry beside a TUM sequence: lines of `timestamp x y theta` (s, m, m, rad), the pose `odom_from_base`, `#` for
 /// comments. Stamps rise.
@@ -28,8 +28,10 @@ fn parse_odometry(path: &Path, text: &str) -> Result<Vec<(Stamp, Pose2)>, IoErro
             return Err(IoError::line(path, line.0, problem));
         }
         let all = [("x", x, "m"), ("y", y, "m"), ("theta", theta, "rad")];
-        if let Some((name, value, unit)) = all.into_iter().find(|(_, value, _)| value.abs() > FARTHEST) {
-            let problem = format!("{name} is {value} {unit}, expected at most {FARTHEST} {unit}");
+        if let Some((name, value, unit)) =
+            all.into_iter().find(|(_, value, _)| value.abs() > MAX_COORDINATE_M)
+        {
+            let problem = format!("{name} is {value} {unit}, expected at most {MAX_COORDINATE_M} {unit}");
             return Err(IoError::line(path, line.0, problem));
         }
         poses.push((stamp, Pose2::new(x, y, theta)));

@@ -4,7 +4,7 @@ use crate::CameraModel;
 use trundle_core::Distortion;
 
 /// The baseline at which ORB-SLAM takes a depth camera for a stereo one, m: that of its TUM settings, 40 px / 525 px.
-const BASELINE: f64 = 40.0 / 525.0;
+const STEREO_BASELINE_M: f64 = 40.0 / 525.0;
 
 /// Depths above this many baselines are "far" to ORB-SLAM, as in its TUM settings.
 const FAR_BASELINES: f64 = 40.0;
@@ -42,8 +42,8 @@ pub(super) fn orb_slam_yaml(model: &CameraModel, rate_hz: f64) -> String {
     set("Camera.height", model.camera.height().to_string());
     set("Camera.fps", format!("{:.0}", rate_hz.max(1.0)));
     set("Camera.RGB", "1".to_owned());
-    set("Camera.bf", format!("{:?}", BASELINE * model.camera.fx()));
-    set("Stereo.b", format!("{BASELINE:?}"));
+    set("Camera.bf", format!("{:?}", STEREO_BASELINE_M * model.camera.fx()));
+    set("Stereo.b", format!("{STEREO_BASELINE_M:?}"));
     set("ThDepth", format!("{FAR_BASELINES:?}"));
     set("Stereo.ThDepth", format!("{FAR_BASELINES:?}"));
     set("DepthMapFactor", format!("{:?}", model.depth_scale));

@@ -9,9 +9,9 @@
 use std::ops::Range;
 
 /// Cells that are looked at together.
-const BLOCK: usize = 32;
+const CELLS_PER_BLOCK: usize = 32;
 /// Edges looked at before the next look whether that was enough.
-const STRIDE: usize = 4;
+const EDGES_PER_CHECK: usize = 4;
 
 /// The memory of a row.
 #[derive(Debug, Default)]
@@ -41,12 +41,12 @@ impl Erosion {
         let most = self.squared.iter().fold(0.0_f32, |most, own| if *own > most { *own } else { most });
         let farthest = height(gaps.none - 1, gaps.none);
         let reach = looks(most.min(farthest), gaps.of.len() + 1);
-        let blocks = cols.len().div_ceil(BLOCK);
-        self.squared.resize(blocks * BLOCK, 0.0);
-        self.fill_edges(gaps, cols.start, blocks * BLOCK, reach);
-        for (i, block) in self.squared.chunks_exact_mut(BLOCK).enumerate() {
-            let block: &mut [f32; BLOCK] = block.try_into().expect("invariant: a whole block");
-            erode_block(block, &self.edge, i * BLOCK + reach, reach);
+        let blocks = cols.len().div_ceil(CELLS_PER_BLOCK);
+        self.squared.resize(blocks * CELLS_PER_BLOCK, 0.0);
+        self.fill_edges(gaps, cols.start, blocks * CELLS_PER_BLOCK, reach);
+        for (i, block) in self.squared.chunks_exact_mut(CELLS_PER_BLOCK).enumerate() {
+            let block: &mut [f32; CELLS_PER_BLOCK] = block.try_into().expect("invariant: a whole block");
+            erode_block(block, &self.edge, i * CELLS_PER_BLOCK + reach, reach);
         }
     }
 
@@ -87,24 +87,25 @@ impl Erosion {
 /// Edges to look at on either side before the foot of a parabola, 2k + 1, is as far as `squared`.
 fn looks(squared: f32, at_most: usize) -> usize {
     let looks = (squared.sqrt() / 2.0).ceil();
-    ((looks as usize).min(at_most) + 1).next_multiple_of(STRIDE)
+    ((looks as usize).min(at_most) + 1).next_multiple_of(EDGES_PER_CHECK)
 }
 
 /// Of the cells from the one with the left edge `edge[at]` on, that have `reach` more edges on either side.
-fn erode_block(block: &mut [f32; BLOCK], edge: &[f32], at: usize, reach: usize) {
+fn erode_block(block: &mut [f32; CELLS_PER_BLOCK], edge: &[f32], at: usize, reach: usize) {
     let mut best = *block;
-    for begin in (0..reach).step_by(STRIDE) {
-        for k in begin..begin + STRIDE {
+    for begin in (0..reach).step_by(EDGES_PER_CHECK) {
+        for k in begin..begin + EDGES_PER_CHECK {
             let foot = ((2 * k + 1) * (2 * k + 1)) as f32;
-            let left: &[f32; BLOCK] = edge[at - k..][..BLOCK].try_into().expect("invariant: edges around");
-            let right: &[f32; BLOCK] =
-                edge[at + 1 + k..][..BLOCK].try_into().expect("invariant: edges around");
-            for i in 0..BLOCK {
+            let left: &[f32; CELLS_PER_BLOCK] =
+                edge[at - k..][..CELLS_PER_BLOCK].try_into().expect("invariant: edges around");
+            let right: &[f32; CELLS_PER_BLOCK] =
+                edge[at + 1 + k..][..CELLS_PER_BLOCK].try_into().expect("invariant: edges around");
+            for i in 0..CELLS_PER_BLOCK {
                 let lower = if left[i] < right[i] { left[i] } else { right[i] } + foot;
                 best[i] = if lower < best[i] { lower } else { best[i] };
             }
         }
-        let next = ((2 * (begin + STRIDE) + 1) * (2 * (begin + STRIDE) + 1)) as f32;
+        let next = ((2 * (begin + EDGES_PER_CHECK) + 1) * (2 * (begin + EDGES_PER_CHECK) + 1)) as f32;
         if best.iter().fold(0.0_f32, |most, b| if *b > most { *b } else { most }) <= next {
             break;
         }

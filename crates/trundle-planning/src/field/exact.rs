@@ -4,7 +4,7 @@ use super::{DistanceField, UnknownIs};
 use trundle_core::{GridGeometry, Vector2};
 
 /// Rounding of the stored distances (f32) that a comparison forgives, m.
-const ROUNDING: f64 = 1e-6;
+const FIELD_ROUNDING_M: f64 = 1e-6;
 
 impl DistanceField {
     /// The exact distance from a point to the nearest obstacle's square, or `cap` if that is less, m; never more than
@@ -22,7 +22,7 @@ impl DistanceField {
                 return cap;
             }
             if centre < self.reach {
-                best = best.min(centre + off + ROUNDING);
+                best = best.min(centre + off + FIELD_ROUNDING_M);
             }
         }
         self.nearest_square(point, best).min(self.border_gap(point))
@@ -35,7 +35,8 @@ impl DistanceField {
             return true;
         }
         let resolution = self.geometry.resolution;
-        quick + resolution >= radius && self.clearance(point, radius + resolution) >= radius - ROUNDING
+        quick + resolution >= radius
+            && self.clearance(point, radius + resolution) >= radius - FIELD_ROUNDING_M
     }
 
     /// By how much [`DistanceField::distance`] may exceed the truth where that is near `radius`: a distance's second

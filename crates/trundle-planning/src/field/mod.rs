@@ -21,7 +21,7 @@ use trundle_core::{Cell, CellIndex, GridGeometry, OccupancyGrid, Vector2};
 use window::Window;
 
 /// The distance given where a map has no obstacle at all, m.
-pub const FAR: f64 = 1e6;
+pub const NO_OBSTACLE_DISTANCE_M: f64 = 1e6;
 
 /// What unknown cells, and everything outside the grid, count as.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -86,7 +86,7 @@ pub struct DistanceField {
 impl DistanceField {
     /// The field of a grid. Outside the grid counts as unknown.
     pub fn from_grid(grid: &OccupancyGrid, unknown: UnknownIs) -> Self {
-        Self::over(*grid.geometry(), grid, unknown, FAR)
+        Self::over(*grid.geometry(), grid, unknown, NO_OBSTACLE_DISTANCE_M)
     }
 
     /// [`DistanceField::from_grid`] that tells distances apart up to `reach` m only, a few cells at least: what is further away
@@ -99,10 +99,10 @@ impl DistanceField {
     /// `reach` m; cells that the grid does not reach are unknown.
     pub(crate) fn over(geometry: GridGeometry, grid: &OccupancyGrid, unknown: UnknownIs, reach: f64) -> Self {
         /// Fewer cells a blocks' middle, and a step of the search, would not see.
-        const LEAST: f64 = 4.0;
+        const MIN_REACH_CELLS: f64 = 4.0;
         let (distance, gap) = (vec![0.0; geometry.len()], vec![0; geometry.len()]);
         let per_metre = geometry.resolution.recip();
-        let reach = reach.max(LEAST * geometry.resolution).min(FAR);
+        let reach = reach.max(MIN_REACH_CELLS * geometry.resolution).min(NO_OBSTACLE_DISTANCE_M);
         // Saturates where columns are longer than anything that is told apart.
         let none = ((reach * per_metre).ceil() as u16).saturating_add(2);
         let blocks = Blocks::default();
@@ -291,7 +291,7 @@ mod tests {
 
     fn brute_force(grid: &OccupancyGrid, unknown: UnknownIs, point: Vector2) -> f64 {
         let geometry = grid.geometry();
-        let mut best = FAR;
+        let mut best = NO_OBSTACLE_DISTANCE_M;
         for (i, cell) in grid.cells().iter().enumerate() {
             if *cell == Cell::Occupied || (*cell == Cell::Unknown && unknown == UnknownIs::Obstacle) {
                 let off = (point - geometry.center(geometry.cell(i))).abs();
@@ -331,7 +331,7 @@ mod tests {
 
         #[test]
         fn an_update_is_what_a_new_field_would_be(
-            grid in any_grid(), obstacle in any::<bool>(), reach in prop::sample::select(vec![0.0, 0.45, 0.8, FAR]),
+            grid in any_grid(), obstacle in any::<bool>(), reach in prop::sample::select(vec![0.0, 0.45, 0.8, NO_OBSTACLE_DISTANCE_M]),
             changes in prop::collection::vec((0usize..17, 0usize..17, 0u8..3), 1..9),
         ) {
             let unknown = if obstacle { UnknownIs::Obstacle } else { UnknownIs::Free };
@@ -390,7 +390,7 @@ mod tests {
             let unknown = if obstacle { UnknownIs::Obstacle } else { UnknownIs::Free };
             let field = DistanceField::from_grid(&grid, unknown);
             let at = |dx: f64, dy: f64| field.distance(Vector2::new(x + dx, y + dy));
-            prop_assume!(at(0.0, 0.0) < FAR / 2.0);
+            prop_assume!(at(0.0, 0.0) < NO_OBSTACLE_DISTANCE_M / 2.0);
             let h = 1e-6;
             let numeric = Vector2::new(at(h, 0.0) - at(-h, 0.0), at(0.0, h) - at(0.0, -h)) / (2.0 * h);
             let kink = |p: f64, o: f64| (((p - o) / 0.1 - 0.5).rem_euclid(1.0) - 0.5).abs() > 0.5 - 1e-3;
@@ -404,7 +404,7 @@ mod tests {
         let grid = OccupancyGrid::from_ascii(0.5, "....\n....").unwrap();
         let free = DistanceField::from_grid(&grid, UnknownIs::Free);
         let walled = DistanceField::from_grid(&grid, UnknownIs::Obstacle);
-        assert_eq!(free.distance(Vector2::new(9.0, 9.0)), FAR);
+        assert_eq!(free.distance(Vector2::new(9.0, 9.0)), NO_OBSTACLE_DISTANCE_M);
         assert_eq!(walled.distance(Vector2::new(9.0, 9.0)), 0.0);
         assert_eq!(free.distance(Vector2::new(f64::NAN, 0.0)), 0.0);
         assert!((walled.distance(Vector2::new(1.0, 0.2)) - 0.2).abs() < 1e-6);

@@ -11,7 +11,7 @@ const STATIC_MARGIN_CELLS: i32 = 2;
 /// Distance within which a hit belongs to an object that was put down, cells. Source: ours.
 const SAME_OBJECT_CELLS: i32 = 4;
 /// Time of an event that has not occurred.
-const NEVER: f64 = f64::NEG_INFINITY;
+const NEVER_S: f64 = f64::NEG_INFINITY;
 
 /// A cell's column and row; cell (0, 0) begins at the map's origin.
 type CellKey = (i32, i32);
@@ -35,7 +35,7 @@ struct Observed {
 impl Observed {
     /// No observation.
     fn of(key: CellKey) -> Self {
-        Self { key, free_at: NEVER, hit_at: NEVER, since: NEVER, arrived: false, hit: Vector2::zeros() }
+        Self { key, free_at: NEVER_S, hit_at: NEVER_S, since: NEVER_S, arrived: false, hit: Vector2::zeros() }
     }
 
     /// Whether the newest observation is a hit.
@@ -75,7 +75,7 @@ impl CellHistory {
         let memory = self.memory;
         let seen = self.slot_mut(key_of(point));
         let is_new =
-            seen.hit_at == NEVER || (seen.free_at > seen.hit_at && time - seen.hit_at > MAX_FLICKER_S);
+            seen.hit_at == NEVER_S || (seen.free_at > seen.hit_at && time - seen.hit_at > MAX_FLICKER_S);
         if is_new {
             (seen.since, seen.arrived) = (time, time - seen.free_at <= memory);
         }
@@ -147,7 +147,7 @@ impl CellHistory {
     fn is_static(&self, key: CellKey, time: f64) -> bool {
         self.observed(key).is_some_and(|seen| {
             let is_there = seen.hit_at > seen.free_at || time - seen.hit_at <= MAX_FLICKER_S;
-            seen.hit_at > NEVER && is_there && (!seen.arrived || time - seen.since > self.memory)
+            seen.hit_at > NEVER_S && is_there && (!seen.arrived || time - seen.since > self.memory)
         })
     }
 

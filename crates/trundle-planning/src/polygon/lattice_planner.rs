@@ -14,20 +14,20 @@ use crate::search::lattice::{STEPS, length};
 use trundle_core::{Pose2, Vector2};
 
 /// Number of headings.
-const HEADINGS: usize = 16;
+const HEADING_COUNT: usize = 16;
 /// The steps of the lattice by rising direction, counter-clockwise from +x.
-const BY_HEADING: [usize; HEADINGS] = [0, 8, 4, 12, 2, 14, 6, 10, 1, 11, 7, 15, 3, 13, 5, 9];
+const BY_HEADING: [usize; HEADING_COUNT] = [0, 8, 4, 12, 2, 14, 6, 10, 1, 11, 7, 15, 3, 13, 5, 9];
 /// Cost of a turn to the next heading, in lattice units. A lower one makes paths with many turns. Source: ours.
 const TURN_COST: u32 = 2 * SIDE;
 const UNREACHED: u32 = u32::MAX;
 /// Mark of states reached from the start directly.
-const SEED: u8 = 3;
+const SEED_MARK: u8 = 3;
 
 /// The search with its buffers, reused from plan to plan.
 #[derive(Debug, Default)]
 pub(crate) struct LatticePlanner {
     cost: Vec<u32>,
-    /// How a state was reached. 0: by a step; 1, 2: by a turn to the left, to the right; [`SEED`].
+    /// How a state was reached. 0: by a step; 1, 2: by a turn to the left, to the right; [`SEED_MARK`].
     arrival: Vec<u8>,
     queue: BucketQueue,
     heuristic: CoarseHeuristic,
@@ -58,9 +58,9 @@ impl LatticePlanner {
             lattice_entry(space, shape, goal, -1.0, |pose, state| link(space, shape, state, pose).is_some());
         self.heuristic.prepare(space, first[0], last[0]);
         self.cost.clear();
-        self.cost.resize(space.field.geometry().len() * HEADINGS, UNREACHED);
+        self.cost.resize(space.field.geometry().len() * HEADING_COUNT, UNREACHED);
         self.arrival.clear();
-        self.arrival.resize(self.cost.len(), SEED);
+        self.arrival.resize(self.cost.len(), SEED_MARK);
         self.queue.reset(self.heuristic.ahead(first[0]), 1 << 16);
         for place in first {
             self.seed(space, shape, away, place);
@@ -76,7 +76,7 @@ impl LatticePlanner {
             if off < least {
                 (least, nearest) = (off, pose.position());
             }
-            if last.contains(&space.place(state / HEADINGS))
+            if last.contains(&space.place(state / HEADING_COUNT))
                 && let Some(arrival) = link(space, shape, pose, before)
             {
                 let mut poses = vec![start, away];
@@ -94,36 +94,38 @@ impl LatticePlanner {
     /// Adds the states reachable from the start by a turn, a straight move and a turn.
     fn seed(&mut self, space: &ConfigurationSpace<'_>, shape: &RobotShape, start: Pose2, place: (u32, u32)) {
         let cell = place.1 as usize * space.field.geometry().width + place.0 as usize;
-        for heading in 0..HEADINGS {
-            let state = cell * HEADINGS + heading;
+        for heading in 0..HEADING_COUNT {
+            let state = cell * HEADING_COUNT + heading;
             if link(space, shape, start, pose_of(space, state)).is_some() {
                 let path = (space.center(cell) - start.position()).norm() / space.field.geometry().resolution;
-                self.reach(space, state, (path * f64::from(SIDE)) as u32, SEED);
+                self.reach(space, state, (path * f64::from(SIDE)) as u32, SEED_MARK);
             }
         }
     }
 
     fn reach(&mut self, space: &ConfigurationSpace<'_>, state: usize, cost: u32, arrival: u8) {
         (self.cost[state], self.arrival[state]) = (cost, arrival);
-        let key = cost.saturating_add(self.heuristic.ahead(space.place(state / HEADINGS)));
+        let key = cost.saturating_add(self.heuristic.ahead(space.place(state / HEADING_COUNT)));
         self.queue.push_near(key, Entry { cell: state as u32, cost });
     }
 
     fn spread(&mut self, space: &ConfigurationSpace<'_>, shape: &RobotShape, state: usize, pose: Pose2) {
-        let (cell, heading) = (state / HEADINGS, state % HEADINGS);
+        let (cell, heading) = (state / HEADING_COUNT, state % HEADING_COUNT);
         let so_far = self.cost[state];
         let step = BY_HEADING[heading];
         if let Some(to) = stepped(space, cell, STEPS[step]) {
             let price = u32::from(space.cell_price(cell)) + u32::from(space.cell_price(to));
             let cost = so_far.saturating_add((length(step) * price) >> 9);
-            let target = to * HEADINGS + heading;
+            let target = to * HEADING_COUNT + heading;
             let by = space.center(to) - space.center(cell);
             if cost < self.cost[target] && shape.may_move(space.field, pose, by, 0.0) {
                 self.reach(space, target, cost, 0);
             }
         }
-        for (arrival, next) in [(1, (heading + 1) % HEADINGS), (2, (heading + HEADINGS - 1) % HEADINGS)] {
-            let target = cell * HEADINGS + next;
+        for (arrival, next) in
+            [(1, (heading + 1) % HEADING_COUNT), (2, (heading + HEADING_COUNT - 1) % HEADING_COUNT)]
+        {
+            let target = cell * HEADING_COUNT + next;
             let cost = so_far.saturating_add(TURN_COST);
             let turn = trundle_core::difference_of_angles(angle(next), angle(heading));
             if cost < self.cost[target] && shape.may_move(space.field, pose, Vector2::zeros(), turn) {
@@ -136,14 +138,14 @@ impl LatticePlanner {
         let width = space.field.geometry().width as i64;
         let mut poses = vec![pose_of(space, last)];
         let mut state = last;
-        while self.arrival[state] != SEED {
-            let (cell, heading) = (state / HEADINGS, state % HEADINGS);
+        while self.arrival[state] != SEED_MARK {
+            let (cell, heading) = (state / HEADING_COUNT, state % HEADING_COUNT);
             state = match self.arrival[state] {
-                1 => cell * HEADINGS + (heading + HEADINGS - 1) % HEADINGS,
-                2 => cell * HEADINGS + (heading + 1) % HEADINGS,
+                1 => cell * HEADING_COUNT + (heading + HEADING_COUNT - 1) % HEADING_COUNT,
+                2 => cell * HEADING_COUNT + (heading + 1) % HEADING_COUNT,
                 _ => {
                     let (dx, dy) = STEPS[BY_HEADING[heading]];
-                    (cell as i64 - i64::from(dy) * width - i64::from(dx)) as usize * HEADINGS + heading
+                    (cell as i64 - i64::from(dy) * width - i64::from(dx)) as usize * HEADING_COUNT + heading
                 }
             };
             poses.push(pose_of(space, state));
@@ -220,7 +222,7 @@ fn lattice_entry(
     let width = space.field.geometry().width;
     let states = |place: &(u32, u32)| {
         let cell = place.1 as usize * width + place.0 as usize;
-        (0..HEADINGS).map(move |heading| cell * HEADINGS + heading)
+        (0..HEADING_COUNT).map(move |heading| cell * HEADING_COUNT + heading)
     };
     let opens = |from: Pose2, places: &[(u32, u32)]| {
         places.iter().flat_map(states).any(|state| links(from, pose_of(space, state)))
@@ -269,8 +271,8 @@ fn angle(heading: usize) -> f64 {
 }
 
 fn pose_of(space: &ConfigurationSpace<'_>, state: usize) -> Pose2 {
-    let at = space.center(state / HEADINGS);
-    Pose2::new(at.x, at.y, angle(state % HEADINGS))
+    let at = space.center(state / HEADING_COUNT);
+    Pose2::new(at.x, at.y, angle(state % HEADING_COUNT))
 }
 
 #[cfg(test)]
@@ -279,8 +281,9 @@ mod tests {
 
     #[test]
     fn headings_rise_around_the_circle() {
-        for heading in 0..HEADINGS {
-            let turn = trundle_core::difference_of_angles(angle((heading + 1) % HEADINGS), angle(heading));
+        for heading in 0..HEADING_COUNT {
+            let turn =
+                trundle_core::difference_of_angles(angle((heading + 1) % HEADING_COUNT), angle(heading));
             assert!(turn > 0.3 && turn < 0.5, "{heading}: {turn}");
         }
     }

@@ -8,7 +8,7 @@
 use crate::field::{BLOCK, Blocks};
 use crate::search::bucket_queue::{BucketQueue, Entry};
 use crate::search::configuration_space::ConfigurationSpace;
-use crate::search::lattice::{self, LONGEST, STEPS};
+use crate::search::lattice::{self, LONGEST_STEP, STEPS};
 
 const UNREACHED: u32 = u32::MAX;
 const BLOCK_LENGTH: u32 = BLOCK as u32;
@@ -44,7 +44,7 @@ impl CoarseHeuristic {
             |(col, row): (u32, u32)| (row / BLOCK_LENGTH) as usize * width + (col / BLOCK_LENGTH) as usize;
         self.towards = (start.0 / BLOCK_LENGTH, start.1 / BLOCK_LENGTH);
         // A step's own cost, and as much again for the change of the remaining distance.
-        let reach = LONGEST * BLOCK_LENGTH * (u32::from(space.highest_price()) + 256);
+        let reach = LONGEST_STEP * BLOCK_LENGTH * (u32::from(space.highest_price()) + 256);
         self.queue.reset(self.remaining(block(target)), reach >> 8);
         self.reach(block(target), 0);
         self.spread(block(start));
@@ -63,7 +63,7 @@ impl CoarseHeuristic {
 
     /// Runs until every block has its cost through which the path to the block `last` costs little more than the cheapest.
     fn spread(&mut self, last: usize) {
-        let beyond = 4 * LONGEST * BLOCK_LENGTH;
+        let beyond = 4 * LONGEST_STEP * BLOCK_LENGTH;
         let mut limit = UNREACHED;
         (self.found, self.frontier) = (false, 0);
         while let Some((key, Entry { cell, cost })) = self.queue.pop() {

@@ -9,7 +9,7 @@
 use crate::search::bucket_queue::{BucketQueue, Entry};
 use crate::search::coarse_heuristic::CoarseHeuristic;
 use crate::search::configuration_space::ConfigurationSpace;
-use crate::search::lattice::{LONGEST, SIDE, STEPS, length};
+use crate::search::lattice::{LONGEST_STEP, SIDE, STEPS, length};
 use trundle_core::Vector2;
 
 /// Result of the geodesic search.
@@ -26,15 +26,15 @@ pub(crate) enum SearchOutcome {
 pub(crate) struct GeodesicSearch {
     /// Lowest cost so far, in units; [`UNREACHED`] where the search has not been.
     cost: Vec<u32>,
-    /// The step of [`STEPS`] that led here, [`SEED`] for the first entry_cells.
+    /// The step of [`STEPS`] that led here, [`SEED_MARK`] for the first entry_cells.
     step: Vec<u8>,
     queue: BucketQueue,
     heuristic: CoarseHeuristic,
 }
 
-const SEED: u8 = 16;
+const SEED_MARK: u8 = 16;
 /// Mark of a cell in [`GeodesicSearch::step`] that has been expanded: it is not entered again.
-const CLOSED: u8 = 128;
+const CLOSED_MARK: u8 = 128;
 /// Inverse of the weight on the heuristic: of equal paths one is followed to its end. A path costs at most 1 / this more than the
 /// cheapest. Source: ours.
 const HEURISTIC_WEIGHT_INVERSE: u32 = 32;
@@ -58,10 +58,10 @@ impl GeodesicSearch {
         let ends = entry_cells(space, goal);
         while let Some((_, Entry { cell, cost })) = self.queue.pop() {
             let cell = cell as usize;
-            if cost > self.cost[cell] || self.step[cell] & CLOSED != 0 {
+            if cost > self.cost[cell] || self.step[cell] & CLOSED_MARK != 0 {
                 continue;
             }
-            self.step[cell] |= CLOSED;
+            self.step[cell] |= CLOSED_MARK;
             if ends.contains(&cell) {
                 return SearchOutcome::Found(self.follow_back(space, cell, start, goal));
             }
@@ -74,7 +74,7 @@ impl GeodesicSearch {
         self.cost.clear();
         self.cost.resize(space.field.geometry().len(), UNREACHED);
         self.step.clear();
-        self.step.resize(self.cost.len(), SEED);
+        self.step.resize(self.cost.len(), SEED_MARK);
         let seeds: Vec<_> = entry_cells(space, start)
             .into_iter()
             .map(|cell| (cell, entry_cost(space, start, cell)))
@@ -82,10 +82,10 @@ impl GeodesicSearch {
             .collect();
         let first = seeds.iter().map(|seed| seed.2).min().unwrap_or(0);
         // The heuristic is smooth: a step changes it by little more than the step's own cost.
-        let reach = (16 * ((LONGEST * u32::from(space.highest_price())) >> 8)).min(1 << 18);
+        let reach = (16 * ((LONGEST_STEP * u32::from(space.highest_price())) >> 8)).min(1 << 18);
         self.queue.reset(first, reach);
         for (cell, cost, key) in seeds {
-            self.reach(cell, cost, SEED, key);
+            self.reach(cell, cost, SEED_MARK, key);
         }
     }
 
@@ -113,7 +113,7 @@ impl GeodesicSearch {
             }
             let to = r as usize * width as usize + c as usize;
             if self.cost[to] <= so_far.saturating_add(length(step))
-                || self.step[to] & CLOSED != 0
+                || self.step[to] & CLOSED_MARK != 0
                 || !space.is_free_cell(to)
             {
                 continue;
@@ -138,8 +138,8 @@ impl GeodesicSearch {
         let mut cell = last;
         loop {
             points.push(space.center(cell));
-            let step = self.step[cell] & !CLOSED;
-            if step == SEED {
+            let step = self.step[cell] & !CLOSED_MARK;
+            if step == SEED_MARK {
                 break;
             }
             let (dx, dy) = STEPS[usize::from(step)];

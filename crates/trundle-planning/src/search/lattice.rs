@@ -2,9 +2,9 @@
 /// Length of a step to a side neighbour, in units of 1/256 of a cell's side.
 pub(crate) const SIDE: u32 = 256;
 /// Length of a diagonal step, in the same units.
-const DIAGONAL: u32 = 362;
+const DIAGONAL_STEP: u32 = 362;
 /// Length of a knight's move, in the same units.
-const KNIGHT: u32 = 572;
+const KNIGHT_STEP: u32 = 572;
 
 /// Columns and rows of each step: sides, diagonals, knight's moves. 16 directions make a path at most 2.8 % longer than a straight
 /// line, 8 directions 8.2 %.
@@ -31,21 +31,21 @@ pub(crate) const STEPS: [(i32, i32); 16] = [
 pub(crate) const fn length(step: usize) -> u32 {
     match step {
         0..4 => SIDE,
-        4..8 => DIAGONAL,
-        _ => KNIGHT,
+        4..8 => DIAGONAL_STEP,
+        _ => KNIGHT_STEP,
     }
 }
 
 /// The longest step.
-pub(crate) const LONGEST: u32 = KNIGHT;
+pub(crate) const LONGEST_STEP: u32 = KNIGHT_STEP;
 
 /// The length of the shortest path by these steps over `(x, y)` free cells.
 pub(crate) fn between((x, y): (u32, u32)) -> u32 {
     let (long, short) = (x.max(y), x.min(y));
     if long >= 2 * short {
-        KNIGHT * short + SIDE * (long - 2 * short)
+        KNIGHT_STEP * short + SIDE * (long - 2 * short)
     } else {
-        KNIGHT * (long - short) + DIAGONAL * (2 * short - long)
+        KNIGHT_STEP * (long - short) + DIAGONAL_STEP * (2 * short - long)
     }
 }
 

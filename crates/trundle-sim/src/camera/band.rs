@@ -4,7 +4,7 @@ use super::footprint::Footprints;
 use super::lamps::Lamps;
 use super::patch::Patch;
 use super::rays::Rays;
-use super::tile::{COLUMNS, NOTHING, Row, Tile};
+use super::tile::{NO_SURFACE_ID, Row, TILE_COLUMNS, Tile};
 use super::world_view::WorldView;
 use trundle_core::PinholeCamera;
 
@@ -48,8 +48,8 @@ impl Picture<'_> {
     pub(super) fn draw_plainly(&self, top: usize, band: &mut Band) {
         let width = self.camera.width();
         let rows = band.depth.len() / width;
-        for left in (0..width).step_by(COLUMNS) {
-            let columns = COLUMNS.min(width - left);
+        for left in (0..width).step_by(TILE_COLUMNS) {
+            let columns = TILE_COLUMNS.min(width - left);
             let mut tile = Tile::empty(columns, rows);
             for view in self.views.iter().rev() {
                 view.draw(self.camera, (left, top), &mut tile);
@@ -75,7 +75,7 @@ impl Picture<'_> {
         let mut at = 0;
         while at < line.depth.len() {
             let id = ids[at];
-            if id == NOTHING {
+            if id == NO_SURFACE_ID {
                 (line.depth[at], line.color[at], line.cosine[at]) = (0.0, [0; 3], 0.0);
                 at += 1;
                 continue;
@@ -102,7 +102,7 @@ impl Picture<'_> {
         let camera = self.camera;
         let y = ((y as f64 - camera.cy()) / camera.fy()) as f32;
         let (x, step) = (((left as f64 - camera.cx()) / camera.fx()) as f32, (1.0 / camera.fx()) as f32);
-        let mut lengths = [0.0; COLUMNS];
+        let mut lengths = [0.0; TILE_COLUMNS];
         for (i, length) in lengths.iter_mut().enumerate() {
             let x = x + i as f32 * step;
             *length = (x * x + y * y + 1.0).sqrt();

@@ -6,7 +6,7 @@ use std::sync::LazyLock;
 use trundle_core::Invalid;
 
 /// Steps of linear light between black and white when it is turned back into levels: less than half a level each.
-const STEPS: usize = 1 << 13;
+const LINEAR_STEPS: usize = 1 << 13;
 
 /// What a camera collects that moves while its shutter is open: the mean of `views` in linear light.
 ///
@@ -16,8 +16,9 @@ const STEPS: usize = 1 << 13;
 /// # Errors
 /// When there is no view or they differ in size.
 pub fn blend(views: &[View], out: &mut View) -> Result<(), Invalid> {
-    static LEVELS: LazyLock<Vec<u8>> =
-        LazyLock::new(|| (0..=STEPS).map(|i| (srgb(i as f64 / STEPS as f64) + 0.5) as u8).collect());
+    static LEVELS: LazyLock<Vec<u8>> = LazyLock::new(|| {
+        (0..=LINEAR_STEPS).map(|i| (srgb(i as f64 / LINEAR_STEPS as f64) + 0.5) as u8).collect()
+    });
     let Some(middle) = views.get(views.len() / 2) else {
         return Err(Invalid::new("number of views to blend", 0, "", "1 or more"));
     };
@@ -30,11 +31,11 @@ pub fn blend(views: &[View], out: &mut View) -> Result<(), Invalid> {
     if views.len() == 1 {
         return Ok(());
     }
-    let scale = STEPS as f32 / views.len() as f32;
+    let scale = LINEAR_STEPS as f32 / views.len() as f32;
     for (i, color) in out.color.iter_mut().enumerate() {
         *color = [0, 1, 2].map(|k| {
             let light: f32 = views.iter().map(|view| linear_from_srgb(view.color[i][k])).sum();
-            LEVELS[((light * scale + 0.5) as usize).min(STEPS)]
+            LEVELS[((light * scale + 0.5) as usize).min(LINEAR_STEPS)]
         });
     }
     Ok(())

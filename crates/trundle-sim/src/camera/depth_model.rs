@@ -6,7 +6,7 @@ use crate::rng::{NormalTable, mix};
 use std::f64::consts::FRAC_PI_2;
 
 /// Entries of the tables over depth, a power of two.
-const STEPS: usize = 1024;
+const TABLE_STEPS: usize = 1024;
 
 /// What a pixel's depth is measured from.
 #[derive(Debug, Clone, Copy)]
@@ -41,7 +41,7 @@ pub(super) struct DepthModel {
     /// Table entries a metre.
     steps_a_metre: f32,
     /// Sigma without slant, m, and z^p, by depth.
-    by_depth: Box<[(f32, f32); STEPS]>,
+    by_depth: Box<[(f32, f32); TABLE_STEPS]>,
     /// Slant term of sigma and probability of a grazing loss, by cosine of incidence in 255 steps.
     by_cosine: Box<[(f32, f32); 256]>,
 }
@@ -54,7 +54,7 @@ impl DepthModel {
             let loss = (theta - grazing) / (FRAC_PI_2 - grazing).max(1e-6);
             ((noise.axial_factor * noise.slant(theta)) as f32, loss.clamp(0.0, 1.0) as f32)
         };
-        let steps_a_metre = (STEPS - 1) as f64 / noise.farthest.max(1e-3);
+        let steps_a_metre = (TABLE_STEPS - 1) as f64 / noise.farthest.max(1e-3);
         let depth = |i: usize| {
             let z = i.max(1) as f64 / steps_a_metre;
             let sigma = noise.axial_factor * noise.sigma_head_on(z);
@@ -119,7 +119,8 @@ impl DepthModel {
             return 0.0;
         }
         let within = if z < self.farthest { z } else { self.farthest };
-        let (head_on, power) = self.by_depth[nearest(within * self.steps_a_metre) as usize & (STEPS - 1)];
+        let (head_on, power) =
+            self.by_depth[nearest(within * self.steps_a_metre) as usize & (TABLE_STEPS - 1)];
         z += (head_on + slant * power) * normals.pick(bits, 0);
         if self.disparities > 0.0 {
             z = self.disparities / nearest_f32(self.disparities / z.max(1e-3)).max(1.0);

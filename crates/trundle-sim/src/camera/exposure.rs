@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use trundle_core::{Invalid, Stamp, require_in};
 
 /// Columns and rows between the pixels that auto exposure looks at.
-const STRIDE: usize = 7;
+const METERING_STRIDE_PX: usize = 7;
 
 /// How bright images become: a gain on linear light, fixed or following the scene.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -90,9 +90,9 @@ impl Meter {
 
 /// Mean of the channels in linear light, white = 1.
 fn mean_light(view: &View) -> f64 {
-    let rows = view.color.chunks(view.width.max(1)).step_by(STRIDE);
+    let rows = view.color.chunks(view.width.max(1)).step_by(METERING_STRIDE_PX);
     let (mut sum, mut count) = (0.0_f64, 0_u32);
-    for color in rows.flat_map(|row| row.iter().step_by(STRIDE)) {
+    for color in rows.flat_map(|row| row.iter().step_by(METERING_STRIDE_PX)) {
         sum += color.iter().map(|&level| f64::from(linear_from_srgb(level))).sum::<f64>();
         count += 3;
     }

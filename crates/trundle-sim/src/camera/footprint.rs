@@ -1,10 +1,10 @@
 //! The area of a texture that each pixel of a row covers.
 
 use super::patch::Patch;
-use super::tile::{COLUMNS, Row};
+use super::tile::{Row, TILE_COLUMNS};
 
 /// Where the footprint of a pixel is longer than this many times its width, it is looked at in two places along it.
-const SLANT: f32 = 2.0;
+const MAX_ANISOTROPY: f32 = 2.0;
 
 /// What the pixels of a row cover of a patch.
 pub(super) struct Footprints {
@@ -28,15 +28,15 @@ impl Footprints {
     #[inline(always)]
     pub(super) fn new(patch: &Patch, inverse_depth: &Row<f32>, row: usize, length: &Row<f32>) -> Self {
         let mut all = Self {
-            x: [0.0; COLUMNS],
-            y: [0.0; COLUMNS],
-            shift_x: [0.0; COLUMNS],
-            shift_y: [0.0; COLUMNS],
-            level: [0.0; COLUMNS],
-            cosine: [0.0; COLUMNS],
+            x: [0.0; TILE_COLUMNS],
+            y: [0.0; TILE_COLUMNS],
+            shift_x: [0.0; TILE_COLUMNS],
+            shift_y: [0.0; TILE_COLUMNS],
+            level: [0.0; TILE_COLUMNS],
+            cosine: [0.0; TILE_COLUMNS],
         };
         let (facing, across, down) = (patch.facing.row(row), patch.across.row(row), patch.down.row(row));
-        for i in 0..COLUMNS {
+        for i in 0..TILE_COLUMNS {
             let depth = 1.0 / inverse_depth[i];
             all.x[i] = patch.start[0] + depth * across[i];
             all.y[i] = patch.start[1] + depth * down[i];
@@ -51,7 +51,7 @@ impl Footprints {
             let radius = (half * half + q * q).sqrt();
             let long = (mean + radius).sqrt() + 1e-20;
             let short = (ax * by - ay * bx).abs() / long;
-            let is_slanted = long > SLANT * short;
+            let is_slanted = long > MAX_ANISOTROPY * short;
             // The eigenvector of the greater eigenvalue, by the form that does not cancel.
             let (ex, ey) = if half >= 0.0 { (half + radius, q) } else { (q, radius - half) };
             let quarter = 0.25 * depth * long / ((ex * ex + ey * ey).sqrt() + 1e-30);

@@ -1,7 +1,7 @@
 //! Intersection of a tile's rays with a box.
 
 use super::rays::{Linear, Rays};
-use super::tile::{COLUMNS, ROWS, Tile, larger, mask, smaller};
+use super::tile::{ROWS, TILE_COLUMNS, Tile, larger, mask, smaller};
 
 /// Keeps the faces of a box where they are nearest; `origin` is the camera's centre in the box's frame, `rays` are in the frame
 /// in which `axes` are the box's. Of the id the last two bits become the axis of the face.
@@ -37,8 +37,8 @@ pub(super) fn meet_cuboid(
         let (x, y, z) = (x.row(row), y.row(row), z.row(row));
         let (f0, f1, f2) = (f0.row(row), f1.row(row), f2.row(row));
         let (f3, f4, f5) = (f3.row(row), f4.row(row), f5.row(row));
-        let (mut entries, mut is_met, mut ids) = ([0.0; COLUMNS], [0; COLUMNS], [0; COLUMNS]);
-        for i in 0..COLUMNS {
+        let (mut entries, mut is_met, mut ids) = ([0.0; TILE_COLUMNS], [0; TILE_COLUMNS], [0; TILE_COLUMNS]);
+        for i in 0..TILE_COLUMNS {
             let entry = smaller(smaller(x[i], y[i]), z[i]);
             let exit = larger(larger(larger(f0[i], f1[i]), larger(f2[i], f3[i])), larger(f4[i], f5[i]));
             // Of equal axes the first. From inside there is no entry: infinite.

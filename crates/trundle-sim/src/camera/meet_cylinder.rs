@@ -1,11 +1,11 @@
 //! Intersection of a tile's rays with an upright cylinder.
 
 use super::rays::{Linear, Rays};
-use super::tile::{COLUMNS, ROWS, Tile, larger, mask};
+use super::tile::{ROWS, TILE_COLUMNS, Tile, larger, mask};
 
 /// Parts of a cylinder in the last two bits of an id.
-pub(super) const SIDE: u32 = 0;
-pub(super) const LID: u32 = 1;
+pub(super) const SIDE_PART: u32 = 0;
+pub(super) const LID_PART: u32 = 1;
 
 /// Keeps the side and the lids of an upright cylinder where they are nearest; `o` is the camera's centre from the middle of
 /// the lower disc.
@@ -38,9 +38,9 @@ pub(super) fn meet_cylinder(
     };
     for row in 0..ROWS {
         let (dx, dy, dz, across) = (axes[0].row(row), axes[1].row(row), axes[2].row(row), across.row(row));
-        let (mut sides, mut is_side) = ([0.0; COLUMNS], [0; COLUMNS]);
-        let (mut lids, mut is_lid) = ([0.0; COLUMNS], [0; COLUMNS]);
-        for i in 0..COLUMNS {
+        let (mut sides, mut is_side) = ([0.0; TILE_COLUMNS], [0; TILE_COLUMNS]);
+        let (mut lids, mut is_lid) = ([0.0; TILE_COLUMNS], [0; TILE_COLUMNS]);
+        for i in 0..TILE_COLUMNS {
             let root2 = (dx[i] * dx[i] + dy[i] * dy[i]) * radius * radius - across[i] * across[i];
             let side = (larger(root2, 0.0).sqrt() - (x * dx[i] + y * dy[i])) * inverse;
             let rise = z * side + dz[i];
@@ -51,7 +51,7 @@ pub(super) fn meet_cylinder(
             is_lid[i] = mask(u * u + v * v <= radius * radius * lid * lid);
             lids[i] = lid;
         }
-        tile.keep(row, &sides, &is_side, &[id + SIDE; COLUMNS]);
-        tile.keep(row, &lids, &is_lid, &[id + LID; COLUMNS]);
+        tile.keep(row, &sides, &is_side, &[id + SIDE_PART; TILE_COLUMNS]);
+        tile.keep(row, &lids, &is_lid, &[id + LID_PART; TILE_COLUMNS]);
     }
 }

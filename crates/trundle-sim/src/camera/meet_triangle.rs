@@ -3,7 +3,7 @@
 #![expect(clippy::needless_range_loop, reason = "loops over lanes by number become SIMD")]
 
 use super::rays::{Linear, Rays};
-use super::tile::{COLUMNS, ROWS, Tile, mask, smaller};
+use super::tile::{ROWS, TILE_COLUMNS, Tile, mask, smaller};
 use crate::world::{BLOCK, Block};
 
 /// Keeps the triangles of a block where they are nearest; `apex` is the camera's centre in their frame, ids are `id` and what
@@ -46,11 +46,11 @@ fn meet_one(a: Linear, b: Linear, c: Linear, inverse_depth: Linear, id: u32, til
             continue;
         }
         let (a, b, c, w) = (a.row(row), b.row(row), c.row(row), inverse_depth.row(row));
-        let mut is_met = [0; COLUMNS];
-        for i in 0..COLUMNS {
+        let mut is_met = [0; TILE_COLUMNS];
+        for i in 0..TILE_COLUMNS {
             is_met[i] = mask(smaller(smaller(a[i], b[i]), c[i]) >= 0.0);
         }
-        tile.keep(row, &w, &is_met, &[id; COLUMNS]);
+        tile.keep(row, &w, &is_met, &[id; TILE_COLUMNS]);
     }
 }
 

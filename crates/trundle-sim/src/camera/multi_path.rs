@@ -3,7 +3,7 @@
 use super::View;
 
 /// How far, px, the light of a neighbouring wall reaches.
-const REACH: usize = 24;
+const REACH_PX: usize = 24;
 
 /// Neighbours whose depth differs by more than this share belong to another surface.
 const OTHER_SURFACE: f32 = 0.2;
@@ -11,7 +11,7 @@ const OTHER_SURFACE: f32 = 0.2;
 /// The depths of row `y` as multi-path makes them: in concave corners the light that comes by way of the other wall makes
 /// the measured way longer.
 ///
-/// The corner's sagitta over [`REACH`] px to either side, times `strength`, is added; planes and convex edges stay. The shape
+/// The corner's sagitta over [`REACH_PX`] px to either side, times `strength`, is added; planes and convex edges stay. The shape
 /// (rounded corners, centimetres deep) is that of measured corners \[Sarbolandi15, Wasenmueller16\]; the model is ours.
 pub(super) fn lengthen(view: &View, y: usize, strength: f32, out: &mut Vec<f32>) {
     let at = |x: usize, y: usize| view.depth[y * view.width + x];
@@ -19,11 +19,11 @@ pub(super) fn lengthen(view: &View, y: usize, strength: f32, out: &mut Vec<f32>)
     out.extend((0..view.width).map(|x| {
         let z = at(x, y);
         let mut sagitta = 0.0_f32;
-        if x >= REACH && x + REACH < view.width {
-            sagitta = sagitta.max(concave(at(x - REACH, y), z, at(x + REACH, y)));
+        if x >= REACH_PX && x + REACH_PX < view.width {
+            sagitta = sagitta.max(concave(at(x - REACH_PX, y), z, at(x + REACH_PX, y)));
         }
-        if y >= REACH && y + REACH < view.height {
-            sagitta = sagitta.max(concave(at(x, y - REACH), z, at(x, y + REACH)));
+        if y >= REACH_PX && y + REACH_PX < view.height {
+            sagitta = sagitta.max(concave(at(x, y - REACH_PX), z, at(x, y + REACH_PX)));
         }
         z + strength * sagitta
     }));

@@ -3,14 +3,14 @@
 #![expect(clippy::needless_range_loop, reason = "loops over lanes by number become SIMD")]
 
 use super::rays::{Rays, cross};
-use super::tile::{COLUMNS, ROWS};
+use super::tile::{ROWS, TILE_COLUMNS};
 use crate::world::{Node, Probe, WIDTH};
 
 /// How far a pyramid reaches beyond the centres of its outer pixels, px: more than any rounding.
-const MARGIN: f32 = 0.02;
+const OUTER_MARGIN_PX: f32 = 0.02;
 
 /// Relative slack of places against the camera's.
-const ROUNDING: f32 = 8.0 / (1 << 23) as f32;
+const RELATIVE_ROUNDING: f32 = 8.0 / (1 << 23) as f32;
 
 /// A pyramid from the camera through the pixels of a tile, in the frame of a world.
 pub(super) struct Pyramid {
@@ -28,10 +28,15 @@ impl Pyramid {
         let corner = |column: f32, row: f32| {
             [0, 1, 2].map(|k| rays.start[k] + column * rays.right[k] + row * rays.down[k])
         };
-        let (x1, y1) = ((COLUMNS - 1) as f32 + MARGIN, (ROWS - 1) as f32 + MARGIN);
+        let (x1, y1) = ((TILE_COLUMNS - 1) as f32 + OUTER_MARGIN_PX, (ROWS - 1) as f32 + OUTER_MARGIN_PX);
         // Clockwise in the image: each side's normal, edge x next edge, points inward.
-        let edges = [corner(-MARGIN, -MARGIN), corner(x1, -MARGIN), corner(x1, y1), corner(-MARGIN, y1)];
-        let slack = ROUNDING * (extent + apex.iter().fold(0.0, |most, x| x.abs().max(most)));
+        let edges = [
+            corner(-OUTER_MARGIN_PX, -OUTER_MARGIN_PX),
+            corner(x1, -OUTER_MARGIN_PX),
+            corner(x1, y1),
+            corner(-OUTER_MARGIN_PX, y1),
+        ];
+        let slack = RELATIVE_ROUNDING * (extent + apex.iter().fold(0.0, |most, x| x.abs().max(most)));
         let sides = [0, 1, 2, 3].map(|i| {
             let normal = cross(edges[i], edges[(i + 1) % 4]);
             (normal, slack * (normal[0].abs() + normal[1].abs() + normal[2].abs()))

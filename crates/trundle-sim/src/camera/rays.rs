@@ -2,7 +2,7 @@
 
 #![expect(clippy::needless_range_loop, reason = "loops over lanes by number become SIMD")]
 
-use super::tile::{COLUMNS, ROWS, Row};
+use super::tile::{ROWS, Row, TILE_COLUMNS};
 
 /// The rays through the pixels of a tile in some frame: start + column * right + row * down. Their part along the optical
 /// axis is 1.
@@ -59,8 +59,8 @@ impl Linear {
     #[inline(always)]
     pub(super) fn row(&self, row: usize) -> Row<f32> {
         let left = self.left(row);
-        let mut values = [0.0; COLUMNS];
-        for column in 0..COLUMNS {
+        let mut values = [0.0; TILE_COLUMNS];
+        for column in 0..TILE_COLUMNS {
             values[column] = left + column as f32 * self.right;
         }
         values
@@ -69,7 +69,7 @@ impl Linear {
     /// The most in a row.
     #[inline(always)]
     pub(super) fn most_in_row(&self, row: usize) -> f32 {
-        let (left, right) = (self.left(row), self.left(row) + (COLUMNS - 1) as f32 * self.right);
+        let (left, right) = (self.left(row), self.left(row) + (TILE_COLUMNS - 1) as f32 * self.right);
         if left > right { left } else { right }
     }
 

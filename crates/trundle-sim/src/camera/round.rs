@@ -1,17 +1,17 @@
 //! Fast rounding of f32 to the nearest whole number.
 
 /// 2^23: f32 has no digits behind the point from here on.
-const WHOLE: f32 = 8_388_608.0;
+const FIRST_WHOLE_F32: f32 = 8_388_608.0;
 
 /// The whole number nearest to `x`, 0 to 2^22 (a tie goes to the even one): an addition, where a conversion costs seven
 /// instructions for numbers that do not occur here.
 pub(super) fn nearest(x: f32) -> u32 {
-    (x + WHOLE).to_bits() & 0x7F_FFFF
+    (x + FIRST_WHOLE_F32).to_bits() & 0x7F_FFFF
 }
 
 /// [`nearest`] as f32; beyond 2^22 `x` itself.
 pub(super) fn nearest_f32(x: f32) -> f32 {
-    if x < WHOLE / 2.0 { (x + WHOLE) - WHOLE } else { x }
+    if x < FIRST_WHOLE_F32 / 2.0 { (x + FIRST_WHOLE_F32) - FIRST_WHOLE_F32 } else { x }
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@ use super::depth_model::{DepthModel, DepthTruth};
 use super::exposure::Meter;
 use super::tone::Tone;
 use super::{ColorNoise, DepthNoise, View, multi_path, shadow};
-use crate::rng::{GOLDEN, NormalTable, hash, mix};
+use crate::rng::{GOLDEN_RATIO_STEP, NormalTable, hash, mix};
 use rayon::prelude::*;
 use trundle_core::{ColorImage, DepthImage, Invalid, RgbdImage, Stamp};
 
@@ -96,7 +96,7 @@ impl RgbdSensor {
         let (colors, cosines) = (&view.color[row.clone()][..n], &view.cosine[row.clone()][..n]);
         let (depth, color) = (&mut depth[..n], &mut color[..n]);
         for x in 0..n {
-            let bits = mix(key.wrapping_add(((row.start + x) as u64).wrapping_mul(GOLDEN)));
+            let bits = mix(key.wrapping_add(((row.start + x) as u64).wrapping_mul(GOLDEN_RATIO_STEP)));
             let luminance = luminance(colors[x]);
             let truth = DepthTruth { depth: truth[x], beyond: beyond[x], cosine: cosines[x], luminance };
             depth[x] = self.depth.measure(truth, bits, normals);
@@ -115,7 +115,7 @@ fn luminance([r, g, b]: [u8; 3]) -> f32 {
 }
 
 /// Stands for the depth of "nothing there", m.
-const FAR: f32 = 1e6;
+const NO_SURFACE_DEPTH_M: f32 = 1e6;
 
 /// For every pixel of row `y` the depth on the other side of the edge it lies at, m; 0 where there is no edge of at
 /// least `step` m.
@@ -140,8 +140,8 @@ fn find_edges(view: &View, y: usize, step: f32, beyond: &mut [f32]) {
 /// Which of a pixel's two neighbours lies beyond an edge, its depth; 0 when neither does. No branch, no division: a
 /// row of them is SIMD.
 fn step_to(before: f32, z: f32, after: f32, step: f32) -> f32 {
-    let a = if before > 0.0 { before } else { FAR };
-    let b = if after > 0.0 { after } else { FAR };
+    let a = if before > 0.0 { before } else { NO_SURFACE_DEPTH_M };
+    let b = if after > 0.0 { after } else { NO_SURFACE_DEPTH_M };
     // z |z/a + z/b - 2| > step
     let product = a * b;
     let is_edge = (z > 0.0) & (z * (z * (a + b) - 2.0 * product).abs() > step * product);

@@ -1,7 +1,7 @@
 //! Texture planes of the faces of boxes, cylinders and triangles.
 
 use super::lamps::Lamps;
-use super::meet_cylinder::LID;
+use super::meet_cylinder::LID_PART;
 use super::patch::{Patch, Plane};
 use super::rays::{Rays, dot};
 use super::world_view::{WorldView, single};
@@ -39,7 +39,7 @@ impl<'w> WorldView<'w> {
     pub(super) fn is_curved(&self, id: u32) -> bool {
         let number = (id - self.first_id) as usize;
         let form = self.world.forms().get(number / 4);
-        number % 4 != LID as usize && form.is_some_and(|form| matches!(form.kind, Kind::Cylinder(..)))
+        number % 4 != LID_PART as usize && form.is_some_and(|form| matches!(form.kind, Kind::Cylinder(..)))
     }
 
     #[inline(always)]
@@ -97,7 +97,7 @@ fn face_of_cylinder(
 ) -> (usize, Plane) {
     let own = single(own);
     let (radius, height) = (radius as f32, height as f32);
-    if part == LID as usize {
+    if part == LID_PART as usize {
         let sign = if own[2] > height / 2.0 { 1.0 } else { -1.0 };
         let plane = Plane {
             normal: [0.0, 0.0, sign],

@@ -3,15 +3,15 @@
 #![expect(clippy::needless_range_loop, reason = "loops over lanes by number become SIMD")]
 
 /// Columns of a tile.
-pub(super) const COLUMNS: usize = 16;
+pub(super) const TILE_COLUMNS: usize = 16;
 /// Rows of a tile.
 pub(super) const ROWS: usize = 8;
 
 /// "Nothing" among the ids of a [`Tile`].
-pub(super) const NOTHING: u32 = u32::MAX;
+pub(super) const NO_SURFACE_ID: u32 = u32::MAX;
 
 /// A row of numbers, one a pixel: plain loops over it become SIMD.
-pub(super) type Row<T> = [T; COLUMNS];
+pub(super) type Row<T> = [T; TILE_COLUMNS];
 
 /// The nearest surface of every pixel of a small rectangle of the image so far.
 ///
@@ -19,7 +19,7 @@ pub(super) type Row<T> = [T; COLUMNS];
 #[derive(Debug, Clone)]
 pub(super) struct Tile {
     pub(super) inverse_depth: [Row<f32>; ROWS],
-    /// What is there: see [`super::world_view::WorldView`]; or [`NOTHING`].
+    /// What is there: see [`super::world_view::WorldView`]; or [`NO_SURFACE_ID`].
     pub(super) ids: [Row<u32>; ROWS],
 }
 
@@ -27,8 +27,9 @@ impl Tile {
     /// Nothing seen yet. Pixels beyond `columns` and `rows` are not in the image: nothing will be nearer there.
     #[inline(always)]
     pub(super) fn empty(columns: usize, rows: usize) -> Self {
-        let mut tile = Self { inverse_depth: [[0.0; COLUMNS]; ROWS], ids: [[NOTHING; COLUMNS]; ROWS] };
-        if columns < COLUMNS || rows < ROWS {
+        let mut tile =
+            Self { inverse_depth: [[0.0; TILE_COLUMNS]; ROWS], ids: [[NO_SURFACE_ID; TILE_COLUMNS]; ROWS] };
+        if columns < TILE_COLUMNS || rows < ROWS {
             for (row, line) in tile.inverse_depth.iter_mut().enumerate() {
                 let inside = if row < rows { columns } else { 0 };
                 line[inside..].fill(f32::INFINITY);
@@ -42,13 +43,13 @@ impl Tile {
     pub(super) fn reach(&self) -> f32 {
         let mut least = self.inverse_depth[0];
         for row in 1..ROWS {
-            for i in 0..COLUMNS {
+            for i in 0..TILE_COLUMNS {
                 let w = self.inverse_depth[row][i];
                 least[i] = if w < least[i] { w } else { least[i] };
             }
         }
         // Halves, so that this is SIMD too.
-        let mut width = COLUMNS / 2;
+        let mut width = TILE_COLUMNS / 2;
         while width > 0 {
             for i in 0..width {
                 least[i] = if least[i + width] < least[i] { least[i + width] } else { least[i] };
@@ -62,7 +63,7 @@ impl Tile {
     #[inline(always)]
     pub(super) fn keep(&mut self, row: usize, inverse_depth: &Row<f32>, is_met: &Row<u32>, id: &Row<u32>) {
         let (known, ids) = (&mut self.inverse_depth[row], &mut self.ids[row]);
-        for i in 0..COLUMNS {
+        for i in 0..TILE_COLUMNS {
             let nearer = f32::from_bits(inverse_depth[i].to_bits() & is_met[i]);
             // Written so that it becomes a plain store: masked ones are slow.
             ids[i] ^= (ids[i] ^ id[i]) & mask(nearer > known[i]);

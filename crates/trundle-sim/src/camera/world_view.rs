@@ -5,7 +5,7 @@ use super::meet_cylinder::meet_cylinder;
 use super::meet_triangle::meet_block;
 use super::pyramid::Pyramid;
 use super::rays::Rays;
-use super::tile::{COLUMNS, ROWS, Tile};
+use super::tile::{ROWS, TILE_COLUMNS, Tile};
 use crate::materials::{Paintings, Texture};
 use crate::world::{Kind, World};
 use trundle_core::{PinholeCamera, Pose2, Pose3, Vector3};
@@ -91,7 +91,7 @@ impl<'w> WorldView<'w> {
     fn may_be_in(&self, left: usize, top: usize) -> bool {
         let [[x0, x1], [y0, y1]] = self.window;
         let (left, top) = (left as f64, top as f64);
-        x0 <= left + COLUMNS as f64 && left <= x1 && y0 <= top + ROWS as f64 && top <= y1
+        x0 <= left + TILE_COLUMNS as f64 && left <= x1 && y0 <= top + ROWS as f64 && top <= y1
     }
 
     #[inline(always)]

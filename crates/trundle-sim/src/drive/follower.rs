@@ -5,24 +5,24 @@ use super::rows::rows;
 use trundle_core::{Invalid, Pose2, Stamp, Twist2, Vector2, difference_of_angles};
 
 /// Way-points are reached within this, m and rad: half of what is promised, the rest is for coasting.
-const NEAR: f64 = 0.004;
-const ALIGNED: f64 = 0.004;
+const POSITION_TOLERANCE_M: f64 = 0.004;
+const HEADING_TOLERANCE_RAD: f64 = 0.004;
 
 /// Nearer than this, m, a way-point behind the robot is backed up to.
-const BACK_UP: f64 = 0.1;
+const BACK_UP_M: f64 = 0.1;
 
 /// Speed over distance left, 1/s: slow enough for motors that lag by a tenth of a second.
-const APPROACH: f64 = 2.5;
+const APPROACH_GAIN_PER_S: f64 = 2.5;
 
 /// Steering: rate over heading error, 1/s, and heading over distance from the line, rad/m.
-const STEER: f64 = 3.0;
-const RETURN: f64 = 4.0;
+const STEERING_GAIN_PER_S: f64 = 3.0;
+const LINE_RETURN_GAIN_RAD_PER_M: f64 = 4.0;
 
 /// What counts as getting somewhere, m and rad.
-const PROGRESS: f64 = 0.02;
+const MIN_PROGRESS: f64 = 0.02;
 
 /// How often a way-point is gone for again when turning at it led away from it.
-const ATTEMPTS: u32 = 5;
+const MAX_WAYPOINT_ATTEMPTS: u32 = 5;
 
 /// How a [`WaypointFollower`] is doing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -143,7 +143,7 @@ impl WaypointFollower {
             }
             Phase::Turn { heading, then } => {
                 let error = difference_of_angles(heading, pose.theta);
-                if error.abs() > ALIGNED {
+                if error.abs() > HEADING_TOLERANCE_RAD {
                     let c = &self.config;
                     return Twist2::new(0.0, approach(error, c.omega, c.angular_acceleration));
                 }
@@ -155,7 +155,7 @@ impl WaypointFollower {
             }
             Phase::Straight(line) => {
                 let left = line.direction.dot(&(goal.position() - pose.position()));
-                if left < NEAR {
+                if left < POSITION_TOLERANCE_M {
                     self.phase = Phase::Turn { heading: goal.theta, then: None };
                     return Twist2::ZERO;
                 }
@@ -167,20 +167,20 @@ impl WaypointFollower {
     /// Along a line with `left` m to go.
     fn along(&self, line: Line, left: f64, pose: Pose2, goal: Pose2) -> Twist2 {
         let aside = line.direction.perp(&(pose.position() - goal.position()));
-        let course = line.direction.y.atan2(line.direction.x) - (RETURN * aside).atan();
+        let course = line.direction.y.atan2(line.direction.x) - (LINE_RETURN_GAIN_RAD_PER_M * aside).atan();
         let heading = if line.sense > 0.0 { course } else { course + std::f64::consts::PI };
         let error = difference_of_angles(heading, pose.theta);
         let c = &self.config;
         let v = line.sense * approach(left, c.v, c.acceleration) * error.cos().max(0.0);
-        Twist2::new(v, (STEER * error).clamp(-c.omega, c.omega))
+        Twist2::new(v, (STEERING_GAIN_PER_S * error).clamp(-c.omega, c.omega))
     }
 
     fn at_waypoint(&mut self, pose: Pose2, goal: Pose2) {
         let Following::Driving { waypoint } = self.state else { return };
         self.phase = Phase::Plan;
-        if pose.distance(&goal) > 2.0 * NEAR {
+        if pose.distance(&goal) > 2.0 * POSITION_TOLERANCE_M {
             self.attempts += 1;
-            if self.attempts >= ATTEMPTS {
+            if self.attempts >= MAX_WAYPOINT_ATTEMPTS {
                 self.state = Following::Blocked { waypoint };
             }
             return;
@@ -193,7 +193,7 @@ impl WaypointFollower {
     fn is_stuck(&mut self, stamp: Stamp, pose: Pose2) -> bool {
         let (since, place) = *self.anchor.get_or_insert((stamp, pose));
         let turned = difference_of_angles(pose.theta, place.theta).abs();
-        if pose.distance(&place) > PROGRESS || turned > PROGRESS {
+        if pose.distance(&place) > MIN_PROGRESS || turned > MIN_PROGRESS {
             self.anchor = Some((stamp, pose));
             return false;
         }
@@ -217,11 +217,11 @@ impl WaypointFollower {
 fn plan(pose: Pose2, goal: Pose2) -> Phase {
     let way = goal.position() - pose.position();
     let distance = way.norm();
-    if distance < NEAR {
+    if distance < POSITION_TOLERANCE_M {
         return Phase::Turn { heading: goal.theta, then: None };
     }
     let direction = way / distance;
-    let is_behind = distance < BACK_UP && direction.dot(&pose.direction()) < 0.0;
+    let is_behind = distance < BACK_UP_M && direction.dot(&pose.direction()) < 0.0;
     let sense = if is_behind { -1.0 } else { 1.0 };
     let heading = (sense * direction.y).atan2(sense * direction.x);
     Phase::Turn { heading, then: Some(Line { direction, sense }) }
@@ -229,7 +229,7 @@ fn plan(pose: Pose2, goal: Pose2) -> Phase {
 
 /// The speed to cover `left` (signed) at, at most `most`, that braking by `rate` can still stop.
 fn approach(left: f64, most: f64, rate: f64) -> f64 {
-    let brake = (2.0 * rate * left.abs()).sqrt().min(APPROACH * left.abs());
+    let brake = (2.0 * rate * left.abs()).sqrt().min(APPROACH_GAIN_PER_S * left.abs());
     left.signum() * brake.min(most)
 }
 

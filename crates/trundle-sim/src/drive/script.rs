@@ -13,7 +13,7 @@ pub struct TimedCommand {
 }
 
 /// No drive takes longer than this, s: eleven days.
-const LONGEST: f64 = 1e6;
+const MAX_DRIVE_DURATION_S: f64 = 1e6;
 
 /// Commands by the clock: each holds until the next one, nothing moves before the first, and the last one's time is the
 /// script's end (so a script ends with a line `t 0 0`).
@@ -31,12 +31,12 @@ impl CommandScript {
         let mut commands: Vec<TimedCommand> = Vec::new();
         for (line, [time, v, omega]) in rows(text, ["t", "v", "omega"])? {
             let before = commands.last().map(|command| command.time);
-            if time > LONGEST {
+            if time > MAX_DRIVE_DURATION_S {
                 return Err(Invalid::new(
                     format!("t in line {line}"),
                     time,
                     "s",
-                    format!("at most {LONGEST}"),
+                    format!("at most {MAX_DRIVE_DURATION_S}"),
                 ));
             }
             if time < 0.0 || before.is_some_and(|before| time <= before) {

@@ -8,10 +8,10 @@ use serde::{Deserialize, Serialize};
 use trundle_core::{Cell, CellIndex, GridGeometry, Invalid, OccupancyGrid, Vector2, Vector3, require_in};
 
 /// Side of a slab of floor or ceiling, m: what one painting covers at full sharpness.
-const SLAB: f64 = 10.0;
+const SLAB_SIDE_M: f64 = 10.0;
 
 /// Thickness of floor and ceiling, m.
-const THICKNESS: f64 = 0.1;
+const SLAB_THICKNESS_M: f64 = 0.1;
 
 /// Bytes of a texel with its smaller levels, and texels a metre: those of the paints.
 const TEXEL_BYTES: f64 = 16.0 / 3.0;
@@ -78,14 +78,14 @@ pub fn raise_map(file: &str, grid: &OccupancyGrid, options: &RaisedMap) -> Resul
 }
 
 /// Farther from the world's origin nothing is told apart to the tenth of a millimetre, m.
-const FARTHEST: f64 = 1e5;
+const MAX_COORDINATE_M: f64 = 1e5;
 
 fn raise(grid: &OccupancyGrid, options: &RaisedMap) -> Result<Vec<Solid>, Invalid> {
     let options = options.clone().validated()?;
     for (name, value) in
         [("origin x of the map", grid.geometry().origin.x), ("origin y of the map", grid.geometry().origin.y)]
     {
-        require_in(name, value, "m", -FARTHEST, FARTHEST)?;
+        require_in(name, value, "m", -MAX_COORDINATE_M, MAX_COORDINATE_M)?;
     }
     let slabs = slabs(grid);
     if slabs.is_empty() {
@@ -102,12 +102,12 @@ fn raise(grid: &OccupancyGrid, options: &RaisedMap) -> Result<Vec<Solid>, Invali
     let mut solids: Vec<Solid> = blocks.iter().enumerate().map(|(i, b)| wall(grid, b, i, &options)).collect();
     for (low, high) in slabs {
         let floor = finish([HIDDEN; 4], Paint::Tiles { color: [176, 170, 158] }, HIDDEN);
-        solids.push(solid((low, high), (-THICKNESS, 0.0), floor));
+        solids.push(solid((low, high), (-SLAB_THICKNESS_M, 0.0), floor));
         if options.ceiling {
             let top = options.wall_height;
             solids.push(solid(
                 (low, high),
-                (top, top + THICKNESS),
+                (top, top + SLAB_THICKNESS_M),
                 finish([HIDDEN; 4], HIDDEN, Paint::Ceiling),
             ));
         }
@@ -118,7 +118,7 @@ fn raise(grid: &OccupancyGrid, options: &RaisedMap) -> Result<Vec<Solid>, Invali
 /// Squares of the plane that hold a known cell, cut to the map.
 fn slabs(grid: &OccupancyGrid) -> Vec<(Vector2, Vector2)> {
     let geometry = grid.geometry();
-    let cells = ((SLAB / geometry.resolution).ceil() as usize).max(1);
+    let cells = ((SLAB_SIDE_M / geometry.resolution).ceil() as usize).max(1);
     let mut slabs = Vec::new();
     for row in (0..geometry.height).step_by(cells) {
         for col in (0..geometry.width).step_by(cells) {
@@ -173,7 +173,8 @@ fn memory(grid: &OccupancyGrid, blocks: &[Block], slabs: usize, options: &Raised
         let [right, left, up, down] = visible_sides(grid, block).map(f64::from);
         texels(options.wall_height) * ((right + left) * side(block.rows) + (up + down) * side(block.cols))
     };
-    let floor = slabs as f64 * (SLAB * TEXELS_A_METRE).powi(2) * if options.ceiling { 1.25 } else { 1.0 };
+    let floor =
+        slabs as f64 * (SLAB_SIDE_M * TEXELS_A_METRE).powi(2) * if options.ceiling { 1.25 } else { 1.0 };
     (blocks.iter().map(face).sum::<f64>() + floor) * TEXEL_BYTES
 }
 

@@ -4,7 +4,7 @@ use super::ContactScene;
 use trundle_core::{Footprint, Pose2};
 
 /// A touch ends when the gap is wider than this, m.
-const RELEASE: f64 = 2e-3;
+const RELEASE_GAP_M: f64 = 2e-3;
 
 /// Keeps the body out of what stands and walks around it, and notes when it touches something.
 #[derive(Debug)]
@@ -37,7 +37,7 @@ impl Bumper {
         self.free_way -= from.distance(&to) + turn * self.reach;
         let gap = self.gap(to, around);
         if gap > 0.0 {
-            let is_released = self.is_pressed && gap > RELEASE;
+            let is_released = self.is_pressed && gap > RELEASE_GAP_M;
             self.is_pressed &= !is_released;
             return (to, is_released.then_some(false));
         }
@@ -67,7 +67,7 @@ impl Bumper {
 
     /// Metres to the nearest thing at `pose`, at least while that is near; measures what stands only where it might be near.
     fn gap(&mut self, pose: Pose2, around: &ContactScene<'_>) -> f64 {
-        if self.free_way <= RELEASE {
+        if self.free_way <= RELEASE_GAP_M {
             self.free_way = around.fixed.clearance(&self.footprint, pose);
         }
         self.free_way.min(around.moving.clearance(&self.footprint, pose))

@@ -1,6 +1,6 @@
 //! The drivetrain: wheel speeds from commanded twists, with delay, saturation, ramp and lag.
 
-use super::{KobukiConfig, STEP, STEPS_PER_SECOND};
+use super::{KobukiConfig, STEP_S, STEPS_PER_SECOND};
 use std::collections::VecDeque;
 use trundle_core::{DifferentialDrive, Twist2};
 
@@ -31,8 +31,8 @@ impl Drivetrain {
         Self {
             drive: config.drive,
             wheel_speed: config.wheel_speed,
-            ramp: config.wheel_acceleration * STEP,
-            closing: if config.motor_lag > 0.0 { 1.0 - (-STEP / config.motor_lag).exp() } else { 1.0 },
+            ramp: config.wheel_acceleration * STEP_S,
+            closing: if config.motor_lag > 0.0 { 1.0 - (-STEP_S / config.motor_lag).exp() } else { 1.0 },
             delay_steps: steps(config.command_delay),
             timeout_steps: (config.command_timeout > 0.0).then(|| steps(config.command_timeout)),
             heard: 0,
@@ -122,7 +122,7 @@ mod tests {
         // 0.1 m/s is one step's ramp: from then on the lag alone acts.
         let speeds = run_as(&config, Twist2::new(0.1, 0.0), 600);
         for (i, (left, right)) in speeds.iter().enumerate() {
-            let since = (i as f64 + 1.0) * STEP - 0.037;
+            let since = (i as f64 + 1.0) * STEP_S - 0.037;
             let expected = if since > 0.0 { 0.1 * (1.0 - (-since / lag).exp()) } else { 0.0 };
             assert!((left - expected).abs() < 1e-12 && left == right, "{left} {expected} at {i}");
         }
@@ -150,7 +150,7 @@ mod tests {
             ..KobukiConfig::default()
         };
         for (i, (left, _)) in run_as(&config, Twist2::new(0.5, 0.0), 1000).into_iter().enumerate() {
-            assert!((left - (0.8 * (i as f64 + 1.0) * STEP).min(0.5)).abs() < 1e-12);
+            assert!((left - (0.8 * (i as f64 + 1.0) * STEP_S).min(0.5)).abs() < 1e-12);
         }
     }
 

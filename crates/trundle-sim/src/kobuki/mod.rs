@@ -24,7 +24,7 @@ use slip::Slip;
 use trundle_core::{Footprint, GyroRate, Invalid, Pose2, Stamp, Twist2, WheelTicks};
 
 /// Length of a step of the dynamics, s.
-pub(crate) const STEP: f64 = 1e-3;
+pub(crate) const STEP_S: f64 = 1e-3;
 
 /// Steps a second.
 pub(crate) const STEPS_PER_SECOND: f64 = 1e3;
@@ -122,10 +122,10 @@ impl Kobuki {
         self.drivetrain.command(twist);
     }
 
-    /// Goes on by [`STEP`]; returns the bumper's state when it changed.
+    /// Goes on by [`STEP_S`]; returns the bumper's state when it changed.
     pub(crate) fn step(&mut self, around: &ContactScene<'_>) -> Option<bool> {
         let (left, right) = self.drivetrain.step();
-        let (left, right) = (left * STEP, right * STEP);
+        let (left, right) = (left * STEP_S, right * STEP_S);
         self.encoders.roll(left, right);
         let (slip_left, slip_right) = self.slip.step();
         let left = left * self.radius_ratio.0 * self.grip.0 * (1.0 + slip_left);

@@ -1,6 +1,6 @@
 //! Wheel slip as two Ornstein-Uhlenbeck processes.
 
-use super::{KobukiConfig, STEP};
+use super::{KobukiConfig, STEP_S};
 use crate::rng::normal;
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
@@ -19,7 +19,7 @@ pub(super) struct Slip {
 
 impl Slip {
     pub(super) fn new(config: &KobukiConfig, rng: ChaCha8Rng) -> Self {
-        let keep = (-STEP / config.slip_time).exp();
+        let keep = (-STEP_S / config.slip_time).exp();
         Self { rng, keep, kick: config.slip * (1.0 - keep * keep).sqrt(), now: [0.0; 2] }
     }
 

@@ -1,13 +1,13 @@
 //! Measurement of a scan by the simulated laser.
 
 use super::LaserConfig;
-use crate::rng::{GOLDEN, hash, mix, normal, unit};
+use crate::rng::{GOLDEN_RATIO_STEP, hash, mix, normal, unit};
 use crate::world::SceneSnapshot;
 use rayon::prelude::*;
 use trundle_core::{Beam, Invalid, Pose2, Scan, Stamp, Vector2, Vector3};
 
 /// Fewest beams that one thread takes.
-const SHARE: usize = 64;
+const MIN_BEAMS_PER_THREAD: usize = 64;
 
 /// Measures scans. Noise is a hash of (seed, scan, beam): the same on any number of threads.
 #[derive(Debug)]
@@ -36,10 +36,10 @@ impl Laser {
         let c = &self.config;
         let key = hash(self.seed, scan);
         let beam = |i: usize| {
-            let bits = mix(key.wrapping_add((i as u64).wrapping_mul(GOLDEN)));
+            let bits = mix(key.wrapping_add((i as u64).wrapping_mul(GOLDEN_RATIO_STEP)));
             self.beam(snapshot, &world_from_base(self.age(i)), i, bits)
         };
-        let beams = (0..c.beams).into_par_iter().with_min_len(SHARE).map(beam).collect();
+        let beams = (0..c.beams).into_par_iter().with_min_len(MIN_BEAMS_PER_THREAD).map(beam).collect();
         Scan::new(stamp, Vector2::new(c.x, c.y), c.angle_min(), c.increment(), beams)
     }
 

@@ -26,7 +26,7 @@ use rayon::prelude::*;
 pub(crate) use texture::Texture;
 
 /// Sides of textures are multiples of this, so that five levels halve exactly.
-const TEXELS: usize = 16;
+const TEXEL_MULTIPLE: usize = 16;
 
 /// Grain of every size, so that corners are found from 1 m as from 6 m.
 const GRAIN: Fractal = Fractal { wavelength: 0.64, octaves: 7, gain: 0.82 };
@@ -101,7 +101,8 @@ fn texels_of_face(paint: Paint, (width, height): (f64, f64), coarse: f64) -> (us
         return (1, 1);
     }
     let texel = (texel_of(paint) * coarse).max((width * height / MOST_TEXELS).sqrt());
-    let texels = |length: f64| ((length / texel / TEXELS as f64).ceil() as usize).max(1) * TEXELS;
+    let texels =
+        |length: f64| ((length / texel / TEXEL_MULTIPLE as f64).ceil() as usize).max(1) * TEXEL_MULTIPLE;
     (texels(width), texels(height))
 }
 

@@ -11,11 +11,11 @@ pub(super) fn lattice(seed: u32, x: i32, y: i32) -> f32 {
 }
 
 /// Side of the table of lattice values: value noise repeats after so many wavelengths.
-const PERIOD: usize = 256;
+const LATTICE_PERIOD: usize = 256;
 
 /// Lattice values -128 to 127, drawn once: a look-up costs a third of a hash.
-static VALUES: LazyLock<Box<[i8; PERIOD * PERIOD]>> = LazyLock::new(|| {
-    let mut values = Box::new([0; PERIOD * PERIOD]);
+static VALUES: LazyLock<Box<[i8; LATTICE_PERIOD * LATTICE_PERIOD]>> = LazyLock::new(|| {
+    let mut values = Box::new([0; LATTICE_PERIOD * LATTICE_PERIOD]);
     for (i, value) in values.iter_mut().enumerate() {
         *value = (lattice(0x5EED, i as i32, 0) * 256.0 - 128.0) as i8;
     }
@@ -23,8 +23,8 @@ static VALUES: LazyLock<Box<[i8; PERIOD * PERIOD]>> = LazyLock::new(|| {
 });
 
 /// The lattice value at (x, y) in the table, -128 to 127.
-fn table(values: &[i8; PERIOD * PERIOD], x: u32, y: u32) -> f32 {
-    let mask = PERIOD as u32 - 1;
+fn table(values: &[i8; LATTICE_PERIOD * LATTICE_PERIOD], x: u32, y: u32) -> f32 {
+    let mask = LATTICE_PERIOD as u32 - 1;
     f32::from(values[((y & mask) << 8 | x & mask) as usize])
 }
 
@@ -40,7 +40,7 @@ fn smooth(t: f32) -> f32 {
 
 /// Value noise of unit wavelength, in [-1, 1]: lattice values, smoothly between them; `seed` shifts the lattice.
 pub(super) fn value(seed: u32, x: f32, y: f32) -> f32 {
-    let values: &[i8; PERIOD * PERIOD] = &VALUES;
+    let values: &[i8; LATTICE_PERIOD * LATTICE_PERIOD] = &VALUES;
     let (ix, iy) = (floor(x), floor(y));
     let (tx, ty) = (smooth(x - ix as f32), smooth(y - iy as f32));
     let shift = shift_of(seed);
@@ -96,7 +96,7 @@ impl Fractal {
 
 /// Adds value noise of unit wavelength at y and x = (i + 1/2) step.
 fn add_octave_row(seed: u32, strength: f32, y: f32, step: f32, row: &mut [f32]) {
-    let values: &[i8; PERIOD * PERIOD] = &VALUES;
+    let values: &[i8; LATTICE_PERIOD * LATTICE_PERIOD] = &VALUES;
     let iy = floor(y);
     let ty = smooth(y - iy as f32);
     let shift = shift_of(seed);

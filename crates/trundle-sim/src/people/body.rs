@@ -6,20 +6,20 @@ use trundle_core::{Invalid, Vector3};
 
 /// Heights of the joints of a leg of three upright pieces, m: below and above the knee of a person of 1.75 m (Drillis and
 /// Contini 1966: knee at 0.285, hip at 0.53 of the height).
-const CALF: f64 = 0.32;
-const LAP: f64 = 0.62;
-const HIP: f64 = 0.92;
+const CALF_HEIGHT_M: f64 = 0.32;
+const LAP_HEIGHT_M: f64 = 0.62;
+const HIP_HEIGHT_M: f64 = 0.92;
 
 /// Radii of shin, knee, thigh, trunk and head, m.
-const SHIN: f64 = 0.055;
-const KNEE: f64 = 0.065;
-const THIGH: f64 = 0.08;
-const TRUNK: f64 = 0.16;
-const HEAD: f64 = 0.095;
+const SHIN_RADIUS_M: f64 = 0.055;
+const KNEE_RADIUS_M: f64 = 0.065;
+const THIGH_RADIUS_M: f64 = 0.08;
+const TRUNK_RADIUS_M: f64 = 0.16;
+const HEAD_RADIUS_M: f64 = 0.095;
 
 /// Top of trunk and head, m.
-const SHOULDER: f64 = 1.48;
-const CROWN: f64 = 1.75;
+const SHOULDER_HEIGHT_M: f64 = 1.48;
+const CROWN_HEIGHT_M: f64 = 1.75;
 
 /// What people wear: trousers and jumper, sRGB.
 const CLOTHES: [([u8; 3], [u8; 3]); 4] = [
@@ -62,12 +62,12 @@ impl Body {
             Ok::<_, Invalid>(Part { obstacles: world.obstacles(band), world })
         };
         Ok(Self {
-            shin: part(vec![upright(0.0, CALF, SHIN, cloth(trousers))])?,
-            knee: part(vec![upright(CALF, LAP, KNEE, cloth(trousers))])?,
-            thigh: part(vec![upright(LAP, HIP, THIGH, cloth(trousers))])?,
+            shin: part(vec![upright(0.0, CALF_HEIGHT_M, SHIN_RADIUS_M, cloth(trousers))])?,
+            knee: part(vec![upright(CALF_HEIGHT_M, LAP_HEIGHT_M, KNEE_RADIUS_M, cloth(trousers))])?,
+            thigh: part(vec![upright(LAP_HEIGHT_M, HIP_HEIGHT_M, THIGH_RADIUS_M, cloth(trousers))])?,
             trunk: part(vec![
-                upright(HIP, SHOULDER, TRUNK, cloth(jumper)),
-                upright(SHOULDER, CROWN, HEAD, Paint::Flat { color: SKIN }),
+                upright(HIP_HEIGHT_M, SHOULDER_HEIGHT_M, TRUNK_RADIUS_M, cloth(jumper)),
+                upright(SHOULDER_HEIGHT_M, CROWN_HEIGHT_M, HEAD_RADIUS_M, Paint::Flat { color: SKIN }),
             ])?,
         })
     }

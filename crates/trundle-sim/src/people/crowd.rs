@@ -9,17 +9,17 @@ use std::sync::Arc;
 use trundle_core::{Footprint, Invalid, Pose2};
 
 /// A person waits while the robot reaches into a disc this far ahead, of this radius, m.
-const AHEAD: f64 = 0.5;
+const YIELD_DISTANCE_M: f64 = 0.5;
 const ELBOW_ROOM: f64 = 0.3;
 
 /// Nobody sets a foot nearer to the robot than this, m.
 const KEEP_OFF: f64 = 0.03;
 
 /// Farther from a person's middle than this, m, nothing of the person can be.
-const SPREAD: f64 = 0.85;
+const MAX_PERSON_EXTENT_M: f64 = 0.85;
 
 /// How much room a person needs to walk, radius, m.
-const SHOULDERS: f64 = 0.2;
+const SHOULDER_RADIUS_M: f64 = 0.2;
 
 /// Everybody who walks about.
 #[derive(Debug)]
@@ -63,7 +63,7 @@ impl Crowd {
     /// # Errors
     /// Names the person and the leg.
     pub(crate) fn check_ways(&self, fixed: &Obstacles) -> Result<(), Invalid> {
-        let shoulders = Footprint::Disc { radius: SHOULDERS };
+        let shoulders = Footprint::Disc { radius: SHOULDER_RADIUS_M };
         for (i, person) in self.people.iter().enumerate() {
             for (from, to) in person.legs() {
                 let (a, b) = (person.waypoints[from], person.waypoints[to]);
@@ -89,11 +89,11 @@ impl Crowd {
     pub(crate) fn step(&mut self, elapsed: f64, footprint: &Footprint, robot: Pose2) {
         let reach = footprint.circumscribed_radius();
         for ((person, walker), body) in self.people.iter().zip(&mut self.walkers).zip(self.bodies.iter()) {
-            if walker.pose.distance(&robot) > reach + SPREAD + AHEAD {
+            if walker.pose.distance(&robot) > reach + MAX_PERSON_EXTENT_M + YIELD_DISTANCE_M {
                 *walker = walker.after(person, elapsed, true);
                 continue;
             }
-            let to_robot = (walker.before(AHEAD) - robot.position()).norm();
+            let to_robot = (walker.before(YIELD_DISTANCE_M) - robot.position()).norm();
             let next = walker.after(person, elapsed, to_robot > reach + ELBOW_ROOM);
             let room = clearance(body, &next, footprint, robot);
             if room > KEEP_OFF || room >= clearance(body, walker, footprint, robot) {
@@ -103,9 +103,9 @@ impl Crowd {
     }
 
     /// Metres between a footprint standing at `pose` and the nearest person, infinite when all are farther than
-    /// [`SPREAD`] from it.
+    /// [`MAX_PERSON_EXTENT_M`] from it.
     pub(crate) fn clearance(&self, footprint: &Footprint, pose: Pose2) -> f64 {
-        let reach = footprint.circumscribed_radius() + SPREAD;
+        let reach = footprint.circumscribed_radius() + MAX_PERSON_EXTENT_M;
         let near =
             self.walkers.iter().zip(self.bodies.iter()).filter(|(w, _)| w.pose.distance(&pose) < reach);
         near.map(|(walker, body)| clearance(body, walker, footprint, pose)).fold(f64::INFINITY, f64::min)

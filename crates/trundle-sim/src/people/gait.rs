@@ -13,7 +13,7 @@ pub(super) const KNEE_SHARE: f64 = 0.65;
 pub(super) const THIGH_SHARE: f64 = 0.3;
 
 /// Seconds in which a walk begins and ends.
-const EASE: f64 = 0.35;
+const EASE_DURATION_S: f64 = 0.35;
 
 /// How legs swing: the foot on the floor stays where it is, the other overtakes it.
 #[derive(Debug, Clone, Copy)]
@@ -39,7 +39,7 @@ impl Gait {
 
     /// A moment later: `elapsed` s in which `way` m were walked, wanting to walk on or not.
     pub(super) fn after(self, elapsed: f64, way: f64, is_walking: bool) -> Self {
-        let change = if is_walking { elapsed / EASE } else { -elapsed / EASE };
+        let change = if is_walking { elapsed / EASE_DURATION_S } else { -elapsed / EASE_DURATION_S };
         Self {
             phase: (self.phase + way / (2.0 * self.step)).fract(),
             swing: (self.swing + change).clamp(0.0, 1.0),

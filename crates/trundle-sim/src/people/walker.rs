@@ -8,7 +8,7 @@ use trundle_core::{Pose2, Vector2, difference_of_angles};
 const TURN_RATE: f64 = 2.5;
 
 /// Where they are and where they look, m and rad, to be there.
-const NEAR: f64 = 1e-6;
+const ARRIVAL_TOLERANCE: f64 = 1e-6;
 
 /// One person on the way.
 #[derive(Debug, Clone, Copy)]
@@ -47,11 +47,11 @@ impl Walker {
         }
         let way = point(person, self.target) - self.pose.position();
         let distance = way.norm();
-        if distance < NEAR {
+        if distance < ARRIVAL_TOLERANCE {
             return self.arrive(person).stand(elapsed);
         }
         let turn = difference_of_angles(way.y.atan2(way.x), self.pose.theta);
-        if turn.abs() > NEAR {
+        if turn.abs() > ARRIVAL_TOLERANCE {
             let most = TURN_RATE * elapsed;
             let Pose2 { x, y, theta } = self.pose;
             return Self { pose: Pose2::new(x, y, theta + turn.clamp(-most, most)), ..self.stand(elapsed) };

@@ -14,7 +14,7 @@ pub(super) const UNSEEN: Paint = Paint::Flat { color: [120, 118, 114] };
 pub(super) const ROOM_HEIGHT: f64 = 2.5;
 
 /// Thickness of walls, m.
-pub(super) const WALL: f64 = 0.1;
+pub(super) const WALL_THICKNESS_M: f64 = 0.1;
 
 /// Sides of a box in the order of [`Finish::faces`].
 #[derive(Debug, Clone, Copy)]

@@ -1,7 +1,7 @@
 //! Scenes: the narrow corridors of \[Hong24\].
 
 use super::Scene;
-use super::builder::{Builder, Side, WALL};
+use super::builder::{Builder, Side, WALL_THICKNESS_M};
 use crate::materials::{Finish, Paint};
 use crate::world::{Lights, World};
 use std::f64::consts::FRAC_PI_2;
@@ -9,13 +9,13 @@ use trundle_core::{Invalid, Pose2};
 
 /// Clear width, m: the paper's robot (0.6 x 0.4 m, 0.72 m across its corners) can turn round in the middle, and away from
 /// it only so far; a Kobuki (0.351 m) can anywhere.
-const WIDTH: f64 = 1.0;
+const CORRIDOR_WIDTH_M: f64 = 1.0;
 
 /// Half of the corridor's length, m.
-const REACH: f64 = 3.0;
+const HALF_LENGTH_M: f64 = 3.0;
 
 /// How far to the left of the goal the robot starts, m.
-const ASIDE: f64 = 0.38;
+const START_OFFSET_M: f64 = 0.38;
 
 /// The corridors of \[Hong24\], section 4.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -42,7 +42,7 @@ pub fn corridor(kind: Corridor, seed: u64) -> Result<Scene, Invalid> {
     let mut build = Builder::new(seed);
     shell(&mut build);
     let ahead = 0.44 + build.jitter(0.02);
-    let half = WIDTH / 2.0;
+    let half = CORRIDOR_WIDTH_M / 2.0;
     match kind {
         Corridor::Free => {}
         Corridor::FrontBlocked => crate_over(&mut build, [-half, half], ahead),
@@ -50,7 +50,7 @@ pub fn corridor(kind: Corridor, seed: u64) -> Result<Scene, Invalid> {
         Corridor::RightFrontBlocked => crate_over(&mut build, [0.05, half], ahead),
     }
     let back = if kind == Corridor::RightFrontBlocked { 0.5 } else { 0.0 };
-    let (name, x) = (kind.name(), ASIDE / 2.0);
+    let (name, x) = (kind.name(), START_OFFSET_M / 2.0);
     Ok(Scene {
         name: name.into(),
         world: World::new(build.solids, seed)?,
@@ -74,15 +74,15 @@ impl Corridor {
 }
 
 fn shell(build: &mut Builder) {
-    let half = WIDTH / 2.0;
-    let (out, end) = (half + WALL, REACH + WALL);
+    let half = CORRIDOR_WIDTH_M / 2.0;
+    let (out, end) = (half + WALL_THICKNESS_M, HALF_LENGTH_M + WALL_THICKNESS_M);
     build.floor_and_ceiling([-out, -end, out, end], Paint::Tiles { color: [176, 170, 158] });
     let left = Paint::Plaster { color: build.choose(&[[196, 188, 170], [176, 186, 180]]), prints: 0.7 };
     let right = Paint::Wallpaper { color: build.choose(&[[188, 180, 160], [170, 176, 190]]) };
     build.wall([-out, -end, -half, end], &[(Side::East, left)]);
     build.wall([half, -end, out, end], &[(Side::West, right)]);
-    build.wall([-half, REACH, half, end], &[(Side::South, Paint::Bricks)]);
-    build.wall([-half, -end, half, -REACH], &[(Side::North, Paint::Bricks)]);
+    build.wall([-half, HALF_LENGTH_M, half, end], &[(Side::South, Paint::Bricks)]);
+    build.wall([-half, -end, half, -HALF_LENGTH_M], &[(Side::North, Paint::Bricks)]);
 }
 
 /// A crate over `across` (x, m), its near side `ahead` of the origin.

@@ -1,18 +1,18 @@
 //! Scene: two furnished rooms with a door.
 
 use super::Scene;
-use super::builder::{Builder, ROOM_HEIGHT, Side, UNSEEN, WALL};
+use super::builder::{Builder, ROOM_HEIGHT, Side, UNSEEN, WALL_THICKNESS_M};
 use crate::materials::{Finish, Paint};
 use crate::world::{Lights, World};
 use std::f64::consts::{FRAC_PI_2, PI};
 use trundle_core::{Invalid, Pose2};
 
 /// Inner size of both rooms together, m.
-const LENGTH: f64 = 8.0;
-const WIDTH: f64 = 6.0;
+const ROOM_LENGTH_M: f64 = 8.0;
+const ROOM_WIDTH_M: f64 = 6.0;
 
 /// West face of the wall between the rooms, m.
-const PARTITION: f64 = 4.35;
+const PARTITION_X_M: f64 = 4.35;
 
 /// The door: clear width and height, m.
 const DOOR_WIDTH: f64 = 1.0;
@@ -50,33 +50,48 @@ pub fn demo_room(seed: u64) -> Result<Scene, Invalid> {
 }
 
 fn shell(build: &mut Builder) {
-    let middle = PARTITION + WALL / 2.0;
+    let middle = PARTITION_X_M + WALL_THICKNESS_M / 2.0;
     let wood = Paint::Boards { color: build.choose(&[[178, 134, 88], [150, 104, 66], [196, 160, 112]]) };
     let stone = Paint::Tiles { color: build.choose(&[[188, 180, 166], [164, 176, 178], [190, 166, 144]]) };
-    build.floor_and_ceiling([-WALL, -WALL, middle, WIDTH + WALL], wood);
-    build.floor_and_ceiling([middle, -WALL, LENGTH + WALL, WIDTH + WALL], stone);
+    build.floor_and_ceiling(
+        [-WALL_THICKNESS_M, -WALL_THICKNESS_M, middle, ROOM_WIDTH_M + WALL_THICKNESS_M],
+        wood,
+    );
+    build.floor_and_ceiling(
+        [middle, -WALL_THICKNESS_M, ROOM_LENGTH_M + WALL_THICKNESS_M, ROOM_WIDTH_M + WALL_THICKNESS_M],
+        stone,
+    );
     let cool = Paint::Plaster { color: build.choose(&[[168, 184, 190], [180, 186, 170]]), prints: 0.75 };
     let warm = Paint::Plaster { color: build.choose(&[[204, 186, 160], [198, 176, 172]]), prints: 0.75 };
     let paper =
         Paint::Wallpaper { color: build.choose(&[[176, 190, 164], [196, 180, 150], [170, 172, 192]]) };
-    build.wall([-WALL, -WALL, 0.0, WIDTH + WALL], &[(Side::East, Paint::Bricks)]);
-    build.wall([LENGTH, -WALL, LENGTH + WALL, WIDTH + WALL], &[(Side::West, paper)]);
-    build.wall([0.0, -WALL, middle, 0.0], &[(Side::North, paper)]);
-    build.wall([middle, -WALL, LENGTH, 0.0], &[(Side::North, warm)]);
-    build.wall([0.0, WIDTH, middle, WIDTH + WALL], &[(Side::South, cool)]);
-    build.wall([middle, WIDTH, LENGTH, WIDTH + WALL], &[(Side::South, Paint::Bricks)]);
+    build.wall(
+        [-WALL_THICKNESS_M, -WALL_THICKNESS_M, 0.0, ROOM_WIDTH_M + WALL_THICKNESS_M],
+        &[(Side::East, Paint::Bricks)],
+    );
+    build.wall(
+        [ROOM_LENGTH_M, -WALL_THICKNESS_M, ROOM_LENGTH_M + WALL_THICKNESS_M, ROOM_WIDTH_M + WALL_THICKNESS_M],
+        &[(Side::West, paper)],
+    );
+    build.wall([0.0, -WALL_THICKNESS_M, middle, 0.0], &[(Side::North, paper)]);
+    build.wall([middle, -WALL_THICKNESS_M, ROOM_LENGTH_M, 0.0], &[(Side::North, warm)]);
+    build.wall([0.0, ROOM_WIDTH_M, middle, ROOM_WIDTH_M + WALL_THICKNESS_M], &[(Side::South, cool)]);
+    build.wall(
+        [middle, ROOM_WIDTH_M, ROOM_LENGTH_M, ROOM_WIDTH_M + WALL_THICKNESS_M],
+        &[(Side::South, Paint::Bricks)],
+    );
 }
 
 /// The wall between the rooms with its door in the middle of `door` (y, m), the leaf open into the east room.
 fn partition(build: &mut Builder, door: f64) {
-    let (x0, x1) = (PARTITION, PARTITION + WALL);
+    let (x0, x1) = (PARTITION_X_M, PARTITION_X_M + WALL_THICKNESS_M);
     let (south, north) = (door - DOOR_WIDTH / 2.0, door + DOOR_WIDTH / 2.0);
     let frame = Paint::Veneer { color: [214, 208, 196] };
     let west = Paint::Plaster { color: [206, 190, 150], prints: 0.8 };
     let east = Paint::Plaster { color: [160, 178, 186], prints: 0.8 };
     let sides = [(Side::West, west), (Side::East, east), (Side::South, frame), (Side::North, frame)];
     build.wall([x0, 0.0, x1, south], &sides);
-    build.wall([x0, north, x1, WIDTH], &sides);
+    build.wall([x0, north, x1, ROOM_WIDTH_M], &sides);
     let lintel = [(Side::West, west), (Side::East, east), (Side::Bottom, frame)];
     build.slab([x0, south, DOOR_HEIGHT], [x1, north, ROOM_HEIGHT], &lintel);
     let hinge = Pose2::new(x1 + 0.01, north + 0.03, 0.2 + build.jitter(0.1));
@@ -88,7 +103,7 @@ fn partition(build: &mut Builder, door: f64) {
 
 fn west_room(build: &mut Builder) {
     let along = build.jitter(0.12);
-    build.bookcase(Pose2::new(1.5 + along, WIDTH - 0.17, 0.0), [1.8, 0.32, 1.9]);
+    build.bookcase(Pose2::new(1.5 + along, ROOM_WIDTH_M - 0.17, 0.0), [1.8, 0.32, 1.9]);
     let along = build.jitter(0.1);
     build.sofa(Pose2::new(0.45, 3.7 + along, 0.0), [0.85, 1.7, 0.82]);
     let place = build.jittered(Pose2::new(2.3, 2.75, 0.0), 0.05, 0.08);
@@ -102,19 +117,19 @@ fn west_room(build: &mut Builder) {
     let place = build.jittered(Pose2::new(2.6, 0.4, -0.1), 0.05, 0.1);
     build.carton(place, [0.45, 0.35, 0.38]);
     let along = build.jitter(0.08);
-    build.bin(Pose2::new(PARTITION - 0.2, 2.5 + along, 0.0));
+    build.bin(Pose2::new(PARTITION_X_M - 0.2, 2.5 + along, 0.0));
 }
 
 fn east_room(build: &mut Builder) {
     let place = build.jittered(Pose2::new(5.85, 2.6, 0.3), 0.05, 0.08);
     build.table(place, [0.8, 0.6, LOW_TABLE]);
     let along = build.jitter(0.1);
-    build.table(Pose2::new(LENGTH - 0.37, 4.2 + along, 0.0), [0.7, 1.4, HIGH_TABLE]);
+    build.table(Pose2::new(ROOM_LENGTH_M - 0.37, 4.2 + along, 0.0), [0.7, 1.4, HIGH_TABLE]);
     let along = build.jitter(0.1);
     build.bookcase(Pose2::new(6.3 + along, 0.17, PI), [1.5, 0.32, 1.8]);
-    build.cabinet(Pose2::new(PARTITION + WALL + 0.24, 0.8, 0.0), [0.46, 0.9, 1.15]);
+    build.cabinet(Pose2::new(PARTITION_X_M + WALL_THICKNESS_M + 0.24, 0.8, 0.0), [0.46, 0.9, 1.15]);
     let along = build.jitter(0.1);
-    build.sofa(Pose2::new(6.4 + along, WIDTH - 0.43, -FRAC_PI_2), [0.8, 1.5, 0.82]);
+    build.sofa(Pose2::new(6.4 + along, ROOM_WIDTH_M - 0.43, -FRAC_PI_2), [0.8, 1.5, 0.82]);
     let place = build.jittered(Pose2::new(7.6, 0.42, 0.2), 0.05, 0.1);
     build.cartons(place, [0.5, 0.42, 0.45]);
     let place = build.jittered(Pose2::new(4.95, 5.55, -0.1), 0.05, 0.1);

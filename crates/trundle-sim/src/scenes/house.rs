@@ -1,7 +1,7 @@
 //! Scene: a furnished flat of six rooms.
 
 use super::Scene;
-use super::builder::{Builder, Side, WALL};
+use super::builder::{Builder, Side, WALL_THICKNESS_M};
 use super::partition::{Along, DOOR_WIDTH, Partition};
 use crate::materials::Paint;
 use crate::world::{Lights, World};
@@ -9,16 +9,16 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use trundle_core::{Invalid, Pose2};
 
 /// Inner size of the flat, m.
-const SIZE: [f64; 2] = [10.0, 8.0];
+const FLAT_SIZE_M: [f64; 2] = [10.0, 8.0];
 
 /// South and north face of the hall, m.
-const HALL: [f64; 2] = [3.7, 4.9];
+const HALL_FACES_Y_M: [f64; 2] = [3.7, 4.9];
 
 /// West face of the wall between hall and living room, m.
-const MIDDLE: f64 = 5.5;
+const LIVING_ROOM_WALL_X_M: f64 = 5.5;
 
 /// West face of the wall between bath and study, m.
-const BATH: f64 = 2.6;
+const BATH_WALL_X_M: f64 = 2.6;
 
 /// What rooms look like.
 struct Look {
@@ -77,50 +77,81 @@ fn look(build: &mut Builder) -> Look {
 fn floors(build: &mut Builder) {
     let wood = Paint::Boards { color: build.choose(&[[178, 134, 88], [150, 104, 66], [196, 160, 112]]) };
     let tiles = |color| Paint::Tiles { color };
-    let ([x1, y1], half) = (SIZE, WALL / 2.0);
-    let (north, middle) = (HALL[1] + half, MIDDLE + half);
-    build.floor_and_ceiling([-WALL, -WALL, middle, north], wood);
-    build.floor_and_ceiling([-WALL, north, BATH + half, y1 + WALL], tiles([184, 190, 190]));
-    build.floor_and_ceiling([BATH + half, north, middle, y1 + WALL], wood);
-    build.floor_and_ceiling([middle, -WALL, x1 + WALL, north], wood);
-    build.floor_and_ceiling([middle, north, x1 + WALL, y1 + WALL], tiles([192, 178, 160]));
+    let ([x1, y1], half) = (FLAT_SIZE_M, WALL_THICKNESS_M / 2.0);
+    let (north, middle) = (HALL_FACES_Y_M[1] + half, LIVING_ROOM_WALL_X_M + half);
+    build.floor_and_ceiling([-WALL_THICKNESS_M, -WALL_THICKNESS_M, middle, north], wood);
+    build.floor_and_ceiling(
+        [-WALL_THICKNESS_M, north, BATH_WALL_X_M + half, y1 + WALL_THICKNESS_M],
+        tiles([184, 190, 190]),
+    );
+    build.floor_and_ceiling([BATH_WALL_X_M + half, north, middle, y1 + WALL_THICKNESS_M], wood);
+    build.floor_and_ceiling([middle, -WALL_THICKNESS_M, x1 + WALL_THICKNESS_M, north], wood);
+    build.floor_and_ceiling(
+        [middle, north, x1 + WALL_THICKNESS_M, y1 + WALL_THICKNESS_M],
+        tiles([192, 178, 160]),
+    );
 }
 
 /// The outer walls, room by room.
 fn outer_walls(build: &mut Builder, look: &Look) {
-    let ([x1, y1], half) = (SIZE, WALL / 2.0);
-    let (south, north) = (HALL[0] - half, HALL[1] + half);
-    build.wall([-WALL, -WALL, 0.0, south], &[(Side::East, look.bedroom)]);
-    build.wall([-WALL, south, 0.0, north], &[(Side::East, look.hall)]);
-    build.wall([-WALL, north, 0.0, y1 + WALL], &[(Side::East, look.bath)]);
-    build.wall([0.0, -WALL, MIDDLE + half, 0.0], &[(Side::North, look.bedroom)]);
-    build.wall([MIDDLE + half, -WALL, x1, 0.0], &[(Side::North, look.living)]);
-    build.wall([x1, -WALL, x1 + WALL, north], &[(Side::West, Paint::Bricks)]);
-    build.wall([x1, north, x1 + WALL, y1 + WALL], &[(Side::West, look.kitchen)]);
-    build.wall([0.0, y1, BATH + half, y1 + WALL], &[(Side::South, look.bath)]);
-    build.wall([BATH + half, y1, MIDDLE + half, y1 + WALL], &[(Side::South, look.study)]);
-    build.wall([MIDDLE + half, y1, x1, y1 + WALL], &[(Side::South, look.kitchen)]);
+    let ([x1, y1], half) = (FLAT_SIZE_M, WALL_THICKNESS_M / 2.0);
+    let (south, north) = (HALL_FACES_Y_M[0] - half, HALL_FACES_Y_M[1] + half);
+    build.wall([-WALL_THICKNESS_M, -WALL_THICKNESS_M, 0.0, south], &[(Side::East, look.bedroom)]);
+    build.wall([-WALL_THICKNESS_M, south, 0.0, north], &[(Side::East, look.hall)]);
+    build.wall([-WALL_THICKNESS_M, north, 0.0, y1 + WALL_THICKNESS_M], &[(Side::East, look.bath)]);
+    build.wall([0.0, -WALL_THICKNESS_M, LIVING_ROOM_WALL_X_M + half, 0.0], &[(Side::North, look.bedroom)]);
+    build.wall([LIVING_ROOM_WALL_X_M + half, -WALL_THICKNESS_M, x1, 0.0], &[(Side::North, look.living)]);
+    build.wall([x1, -WALL_THICKNESS_M, x1 + WALL_THICKNESS_M, north], &[(Side::West, Paint::Bricks)]);
+    build.wall([x1, north, x1 + WALL_THICKNESS_M, y1 + WALL_THICKNESS_M], &[(Side::West, look.kitchen)]);
+    build.wall([0.0, y1, BATH_WALL_X_M + half, y1 + WALL_THICKNESS_M], &[(Side::South, look.bath)]);
+    build.wall(
+        [BATH_WALL_X_M + half, y1, LIVING_ROOM_WALL_X_M + half, y1 + WALL_THICKNESS_M],
+        &[(Side::South, look.study)],
+    );
+    build.wall([LIVING_ROOM_WALL_X_M + half, y1, x1, y1 + WALL_THICKNESS_M], &[(Side::South, look.kitchen)]);
 }
 
 /// The walls between rooms with their doors, and the doors' leaves.
 fn inner_walls(build: &mut Builder, look: &Look) {
     let jamb = Paint::Plain { color: [224, 220, 210] };
-    let wall =
-        |along, span, low: f64, paints| Partition { along, span, faces: [low, low + WALL], paints, jamb };
-    let (south, north) = (HALL[0] - WALL, HALL[1]);
-    build.partition(&wall(Along::X, [0.0, MIDDLE], south, [look.bedroom, look.hall]), &[4.4]);
-    build.partition(&wall(Along::X, [0.0, BATH], north, [look.hall, look.bath]), &[1.3]);
-    build.partition(&wall(Along::X, [BATH, MIDDLE], north, [look.hall, look.study]), &[4.3]);
-    build.partition(&wall(Along::X, [MIDDLE + WALL, SIZE[0]], north, [look.living, look.kitchen]), &[7.4]);
-    build.partition(&wall(Along::Y, [north + WALL, SIZE[1]], BATH, [look.bath, look.study]), &[]);
-    build.partition(&wall(Along::Y, [0.0, south], MIDDLE, [look.bedroom, look.living]), &[]);
-    build.partition(&wall(Along::Y, [south, north], MIDDLE, [look.hall, look.living]), &[4.3]);
-    build.partition(&wall(Along::Y, [north, SIZE[1]], MIDDLE, [look.study, look.kitchen]), &[]);
+    let wall = |along, span, low: f64, paints| Partition {
+        along,
+        span,
+        faces: [low, low + WALL_THICKNESS_M],
+        paints,
+        jamb,
+    };
+    let (south, north) = (HALL_FACES_Y_M[0] - WALL_THICKNESS_M, HALL_FACES_Y_M[1]);
+    build.partition(&wall(Along::X, [0.0, LIVING_ROOM_WALL_X_M], south, [look.bedroom, look.hall]), &[4.4]);
+    build.partition(&wall(Along::X, [0.0, BATH_WALL_X_M], north, [look.hall, look.bath]), &[1.3]);
+    build.partition(
+        &wall(Along::X, [BATH_WALL_X_M, LIVING_ROOM_WALL_X_M], north, [look.hall, look.study]),
+        &[4.3],
+    );
+    build.partition(
+        &wall(
+            Along::X,
+            [LIVING_ROOM_WALL_X_M + WALL_THICKNESS_M, FLAT_SIZE_M[0]],
+            north,
+            [look.living, look.kitchen],
+        ),
+        &[7.4],
+    );
+    build.partition(
+        &wall(Along::Y, [north + WALL_THICKNESS_M, FLAT_SIZE_M[1]], BATH_WALL_X_M, [look.bath, look.study]),
+        &[],
+    );
+    build.partition(&wall(Along::Y, [0.0, south], LIVING_ROOM_WALL_X_M, [look.bedroom, look.living]), &[]);
+    build.partition(&wall(Along::Y, [south, north], LIVING_ROOM_WALL_X_M, [look.hall, look.living]), &[4.3]);
+    build.partition(
+        &wall(Along::Y, [north, FLAT_SIZE_M[1]], LIVING_ROOM_WALL_X_M, [look.study, look.kitchen]),
+        &[],
+    );
     let half = DOOR_WIDTH / 2.0;
     let hinges = [
         Pose2::new(4.4 + half + 0.03, south - 0.02, -FRAC_PI_2),
-        Pose2::new(1.3 - half - 0.03, north + WALL + 0.02, FRAC_PI_2),
-        Pose2::new(4.3 + half + 0.03, north + WALL + 0.02, FRAC_PI_2),
+        Pose2::new(1.3 - half - 0.03, north + WALL_THICKNESS_M + 0.02, FRAC_PI_2),
+        Pose2::new(4.3 + half + 0.03, north + WALL_THICKNESS_M + 0.02, FRAC_PI_2),
     ];
     for hinge in hinges {
         let swing = build.jitter(0.06);
@@ -140,24 +171,29 @@ fn bedroom(build: &mut Builder) {
     let chair = build.jittered(Pose2::new(5.15, 1.6, PI), 0.05, 0.3);
     build.chair(chair, [0.45, 0.45, 0.88]);
     build.window(Pose2::new(0.0, 1.6, 0.0), (1.6, 1.2));
-    build.board(Pose2::new(1.9, HALL[0] - WALL, -FRAC_PI_2), 1.5, (0.9, 0.7), Paint::Print);
+    build.board(
+        Pose2::new(1.9, HALL_FACES_Y_M[0] - WALL_THICKNESS_M, -FRAC_PI_2),
+        1.5,
+        (0.9, 0.7),
+        Paint::Print,
+    );
     build.plant(Pose2::new(2.75, 0.4, 0.0));
 }
 
 fn bath(build: &mut Builder) {
     build.tub(Pose2::new(0.92, 7.6, 0.0), [1.75, 0.75, 0.58]);
     build.toilet(Pose2::new(0.4, 6.55, 0.0));
-    build.basin(Pose2::new(BATH - 0.25, 6.3, PI));
-    build.board(Pose2::new(BATH, 6.3, PI), 1.5, (0.6, 0.8), Paint::Screen);
-    build.washer(Pose2::new(BATH - 0.32, 7.62, PI));
+    build.basin(Pose2::new(BATH_WALL_X_M - 0.25, 6.3, PI));
+    build.board(Pose2::new(BATH_WALL_X_M, 6.3, PI), 1.5, (0.6, 0.8), Paint::Screen);
+    build.washer(Pose2::new(BATH_WALL_X_M - 0.32, 7.62, PI));
 }
 
 fn study(build: &mut Builder) {
     let along = build.jitter(0.1);
-    build.desk(Pose2::new(4.4 + along, SIZE[1] - 0.38, -FRAC_PI_2), (0.7, 1.5));
+    build.desk(Pose2::new(4.4 + along, FLAT_SIZE_M[1] - 0.38, -FRAC_PI_2), (0.7, 1.5));
     let chair = build.jittered(Pose2::new(4.4, 6.9, FRAC_PI_2), 0.06, 0.5);
     build.chair(chair, [0.46, 0.46, 0.92]);
-    build.bookcase(Pose2::new(BATH + WALL + 0.17, 6.9, FRAC_PI_2), [1.8, 0.32, 2.0]);
+    build.bookcase(Pose2::new(BATH_WALL_X_M + WALL_THICKNESS_M + 0.17, 6.9, FRAC_PI_2), [1.8, 0.32, 2.0]);
     let place = build.jittered(Pose2::new(3.05, 5.35, 0.0), 0.04, 0.2);
     build.cartons(place, [0.5, 0.42, 0.4]);
     build.bin(Pose2::new(5.25, 7.75, 0.0));
@@ -166,23 +202,27 @@ fn study(build: &mut Builder) {
 fn hall(build: &mut Builder) {
     build.closed_door(Pose2::new(0.0, 4.3, 0.0), [110, 74, 52]);
     let along = build.jitter(0.15);
-    build.fitted(Pose2::new(2.3 + along, HALL[0] + 0.13, FRAC_PI_2), [0.24, 1.1, 0.95], [196, 186, 166]);
-    build.board(Pose2::new(2.3 + along, HALL[0], FRAC_PI_2), 1.55, (0.7, 0.9), Paint::Print);
-    build.board(Pose2::new(2.7, HALL[1], -FRAC_PI_2), 1.5, (0.8, 0.6), Paint::Print);
+    build.fitted(
+        Pose2::new(2.3 + along, HALL_FACES_Y_M[0] + 0.13, FRAC_PI_2),
+        [0.24, 1.1, 0.95],
+        [196, 186, 166],
+    );
+    build.board(Pose2::new(2.3 + along, HALL_FACES_Y_M[0], FRAC_PI_2), 1.55, (0.7, 0.9), Paint::Print);
+    build.board(Pose2::new(2.7, HALL_FACES_Y_M[1], -FRAC_PI_2), 1.5, (0.8, 0.6), Paint::Print);
 }
 
 fn living(build: &mut Builder) {
-    let west = MIDDLE + WALL;
+    let west = LIVING_ROOM_WALL_X_M + WALL_THICKNESS_M;
     let along = build.jitter(0.1);
     build.rug(Pose2::new(7.3, 1.7, 0.0), (1.9, 2.3));
     build.sofa(Pose2::new(west + 0.47, 1.7 + along, 0.0), [0.9, 2.1, 0.82]);
     let place = build.jittered(Pose2::new(7.3, 1.7, 0.0), 0.06, 0.1);
     build.table(place, [0.6, 1.1, 0.42]);
-    build.cabinet(Pose2::new(SIZE[0] - 0.25, 1.7 + along, 0.0), [0.44, 1.7, 0.5]);
-    build.board(Pose2::new(SIZE[0], 1.7 + along, PI), 1.1, (1.25, 0.72), Paint::Screen);
+    build.cabinet(Pose2::new(FLAT_SIZE_M[0] - 0.25, 1.7 + along, 0.0), [0.44, 1.7, 0.5]);
+    build.board(Pose2::new(FLAT_SIZE_M[0], 1.7 + along, PI), 1.1, (1.25, 0.72), Paint::Screen);
     build.bookcase(Pose2::new(8.1 + along, 0.17, PI), [1.6, 0.32, 2.0]);
     build.floor_lamp(Pose2::new(west + 0.3, 0.35, 0.0));
-    build.plant(Pose2::new(SIZE[0] - 0.4, 0.45, 0.0));
+    build.plant(Pose2::new(FLAT_SIZE_M[0] - 0.4, 0.45, 0.0));
     let dining = build.jittered(Pose2::new(9.1, 3.85, 0.0), 0.03, 0.03);
     build.table(dining, [0.85, 1.3, 0.74]);
     for (x, y, heading) in [(-0.55, 0.3, 0.0), (-0.55, -0.3, 0.0), (0.5, 0.3, PI), (0.5, -0.3, PI)] {
@@ -194,10 +234,14 @@ fn living(build: &mut Builder) {
 
 fn kitchen(build: &mut Builder) {
     let color = build.choose(&[[206, 198, 180], [92, 116, 120], [176, 150, 116], [186, 74, 62]]);
-    build.counter(Pose2::new(7.5, SIZE[1] - 0.32, -FRAC_PI_2), [0.6, 2.7, 0.92], color);
-    build.counter(Pose2::new(MIDDLE + WALL + 0.32, 6.9, 0.0), [0.6, 2.1, 0.92], color);
-    build.fridge(Pose2::new(9.3, SIZE[1] - 0.34, -FRAC_PI_2));
-    build.window(Pose2::new(7.2, SIZE[1], -FRAC_PI_2), (1.3, 1.0));
+    build.counter(Pose2::new(7.5, FLAT_SIZE_M[1] - 0.32, -FRAC_PI_2), [0.6, 2.7, 0.92], color);
+    build.counter(
+        Pose2::new(LIVING_ROOM_WALL_X_M + WALL_THICKNESS_M + 0.32, 6.9, 0.0),
+        [0.6, 2.1, 0.92],
+        color,
+    );
+    build.fridge(Pose2::new(9.3, FLAT_SIZE_M[1] - 0.34, -FRAC_PI_2));
+    build.window(Pose2::new(7.2, FLAT_SIZE_M[1], -FRAC_PI_2), (1.3, 1.0));
     let table = build.jittered(Pose2::new(9.35, 6.1, 0.0), 0.03, 0.04);
     build.table(table, [0.75, 0.9, 0.74]);
     let chair = build.jittered(Pose2::new(8.85, 6.1, 0.0), 0.04, 0.3);

@@ -1,14 +1,14 @@
 //! Scene: a room with obstacles after \[Li18\].
 
 use super::Scene;
-use super::builder::{Builder, Side, WALL};
+use super::builder::{Builder, Side, WALL_THICKNESS_M};
 use crate::materials::Paint;
 use crate::world::{Lights, World};
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 use trundle_core::{Invalid, Pose2};
 
 /// Inner side of the room, m.
-const SIDE: f64 = 6.0;
+const ROOM_SIDE_M: f64 = 6.0;
 
 /// Middles of the obstacles, m: spaced so that, however they turn, ways of 0.8 m stay open between them.
 const PLACES: [(f64, f64); 8] =
@@ -44,12 +44,12 @@ pub fn obstacles(seed: u64) -> Result<Scene, Invalid> {
 }
 
 fn walls(build: &mut Builder) {
-    let (low, high) = (-WALL, SIDE + WALL);
+    let (low, high) = (-WALL_THICKNESS_M, ROOM_SIDE_M + WALL_THICKNESS_M);
     build.floor_and_ceiling([low, low, high, high], Paint::Boards { color: [170, 140, 104] });
     let paper = Paint::Wallpaper { color: [180, 186, 170] };
     let plaster = |color| Paint::Plaster { color, prints: 0.75 };
     build.wall([low, low, 0.0, high], &[(Side::East, plaster([190, 176, 156]))]);
-    build.wall([SIDE, low, high, high], &[(Side::West, Paint::Bricks)]);
-    build.wall([0.0, low, SIDE, 0.0], &[(Side::North, paper)]);
-    build.wall([0.0, SIDE, SIDE, high], &[(Side::South, plaster([170, 184, 196]))]);
+    build.wall([ROOM_SIDE_M, low, high, high], &[(Side::West, Paint::Bricks)]);
+    build.wall([0.0, low, ROOM_SIDE_M, 0.0], &[(Side::North, paper)]);
+    build.wall([0.0, ROOM_SIDE_M, ROOM_SIDE_M, high], &[(Side::South, plaster([170, 184, 196]))]);
 }

@@ -9,24 +9,24 @@ const GOODS: [[u8; 3]; 6] =
     [[182, 140, 92], [166, 122, 76], [196, 160, 112], [120, 134, 150], [214, 210, 200], [96, 122, 104]];
 
 /// Height of an empty pallet, m.
-pub(super) const PALLET: f64 = 0.144;
+pub(super) const PALLET_HEIGHT_M: f64 = 0.144;
 
 impl Builder {
     /// An empty pallet of (x, y) m: boards over three skids along x.
     pub(super) fn pallet(&mut self, place: Pose2, (x, y): (f64, f64), bottom: f64) {
         let wood = Finish::all(Paint::Boards { color: [188, 152, 104] }).seeded(1);
         for offset in [-1.0, 0.0, 1.0] {
-            let skid = [x, 0.1, PALLET - 0.03];
+            let skid = [x, 0.1, PALLET_HEIGHT_M - 0.03];
             self.block(place, (0.0, offset * (y / 2.0 - 0.05)), bottom, skid, wood.clone());
         }
-        self.block(place, (0.0, 0.0), bottom + PALLET - 0.03, [x, y, 0.03], wood);
+        self.block(place, (0.0, 0.0), bottom + PALLET_HEIGHT_M - 0.03, [x, y, 0.03], wood);
     }
 
     /// A pallet of `size` (x, y, height with its load, m).
     pub(super) fn loaded_pallet(&mut self, place: Pose2, [x, y, height]: [f64; 3]) {
         self.pallet(place, (x, y), 0.0);
-        if height > PALLET + 0.01 {
-            self.goods(place, (0.0, 0.0), PALLET, [x - 0.06, y - 0.06, height - PALLET]);
+        if height > PALLET_HEIGHT_M + 0.01 {
+            self.goods(place, (0.0, 0.0), PALLET_HEIGHT_M, [x - 0.06, y - 0.06, height - PALLET_HEIGHT_M]);
         }
     }
 

@@ -2,30 +2,30 @@
 
 use super::Scene;
 use super::builder::{Builder, Side};
-use super::storage::PALLET;
+use super::storage::PALLET_HEIGHT_M;
 use crate::materials::{Finish, Paint};
 use crate::world::{Lights, World};
 use std::f64::consts::{FRAC_PI_2, PI};
 use trundle_core::{Invalid, Pose2};
 
 /// Inner side of the hall and its height, m.
-const SIDE: f64 = 30.0;
-const HEIGHT: f64 = 5.5;
+const HALL_SIDE_M: f64 = 30.0;
+const HALL_HEIGHT_M: f64 = 5.5;
 
 /// Middles of the double rows of racks, x, m: aisles of 2.8 m between them.
-const ROWS: [f64; 4] = [4.6, 10.0, 15.4, 20.8];
+const ROW_CENTRES_X_M: [f64; 4] = [4.6, 10.0, 15.4, 20.8];
 
 /// Where racks begin, their bays and the bays' length, y, m.
-const FIRST: f64 = 5.0;
-const BAYS: usize = 7;
-const BAY: f64 = 2.7;
+const FIRST_BAY_Y_M: f64 = 5.0;
+const BAYS_PER_RACK: usize = 7;
+const BAY_LENGTH_M: f64 = 2.7;
 
 /// Depth of a rack, and from a double row's middle to the middles of its two racks, m.
-const DEPTH: f64 = 1.1;
-const APART: f64 = 0.65;
+const RACK_DEPTH_M: f64 = 1.1;
+const HALF_RACK_SPACING_M: f64 = 0.65;
 
 /// Heights of the shelves, m.
-const SHELVES: [f64; 2] = [1.7, 3.3];
+const SHELF_HEIGHTS_M: [f64; 2] = [1.7, 3.3];
 
 const STEEL: Paint = Paint::Slotted { color: [38, 72, 128] };
 const BEAM: Finish = Finish { faces: [Paint::Flat { color: [214, 104, 30] }; 6], seed: Some(11) };
@@ -43,9 +43,9 @@ pub fn warehouse(seed: u64) -> Result<Scene, Invalid> {
     let mut build = Builder::new(seed);
     shell(&mut build);
     columns(&mut build);
-    for (nth, x) in ROWS.into_iter().enumerate() {
+    for (nth, x) in ROW_CENTRES_X_M.into_iter().enumerate() {
         for side in [-1.0, 1.0] {
-            rack(&mut build, x + side * APART, side);
+            rack(&mut build, x + side * HALF_RACK_SPACING_M, side);
         }
         row_ends(&mut build, x, nth);
     }
@@ -63,21 +63,25 @@ pub fn warehouse(seed: u64) -> Result<Scene, Invalid> {
 
 fn shell(build: &mut Builder) {
     let thick = 0.2;
-    let (low, high) = (-thick, SIDE + thick);
+    let (low, high) = (-thick, HALL_SIDE_M + thick);
     let floor = Paint::Concrete { color: [148, 146, 140] };
     let sheets =
         Paint::Corrugated { color: build.choose(&[[176, 184, 190], [188, 184, 170], [164, 176, 168]]) };
     build.slab([low, low, -0.1], [high, high, 0.0], &[(Side::Top, floor)]);
-    build.slab([low, low, HEIGHT], [high, high, HEIGHT + 0.1], &[(Side::Bottom, Paint::Ceiling)]);
-    build.slab([low, low, 0.0], [0.0, high, HEIGHT], &[(Side::East, sheets)]);
-    build.slab([SIDE, low, 0.0], [high, high, HEIGHT], &[(Side::West, sheets)]);
-    build.slab([0.0, low, 0.0], [SIDE, 0.0, HEIGHT], &[(Side::North, sheets)]);
-    build.slab([0.0, SIDE, 0.0], [SIDE, high, HEIGHT], &[(Side::South, sheets)]);
+    build.slab(
+        [low, low, HALL_HEIGHT_M],
+        [high, high, HALL_HEIGHT_M + 0.1],
+        &[(Side::Bottom, Paint::Ceiling)],
+    );
+    build.slab([low, low, 0.0], [0.0, high, HALL_HEIGHT_M], &[(Side::East, sheets)]);
+    build.slab([HALL_SIDE_M, low, 0.0], [high, high, HALL_HEIGHT_M], &[(Side::West, sheets)]);
+    build.slab([0.0, low, 0.0], [HALL_SIDE_M, 0.0, HALL_HEIGHT_M], &[(Side::North, sheets)]);
+    build.slab([0.0, HALL_SIDE_M, 0.0], [HALL_SIDE_M, high, HALL_HEIGHT_M], &[(Side::South, sheets)]);
     for x in [3.0, 9.0, 15.0, 21.0] {
         let place = build.jittered(Pose2::new(x, 0.0, FRAC_PI_2), 0.0, 0.0);
         build.board(place, 1.7, (1.4, 1.0), Paint::Print);
         build.board(
-            Pose2::new(x + 2.5, SIDE, -FRAC_PI_2),
+            Pose2::new(x + 2.5, HALL_SIDE_M, -FRAC_PI_2),
             1.9,
             (0.9, 0.6),
             Paint::Sign { color: [30, 110, 60] },
@@ -88,10 +92,10 @@ fn shell(build: &mut Builder) {
 /// Columns in the middle of the double rows' ends and in the open area, each with its number.
 fn columns(build: &mut Builder) {
     let concrete = Finish::all(Paint::Concrete { color: [170, 168, 160] }).seeded(21);
-    let in_rows = ROWS.into_iter().flat_map(|x| [(x, 3.2), (x, 26.2)]);
+    let in_rows = ROW_CENTRES_X_M.into_iter().flat_map(|x| [(x, 3.2), (x, 26.2)]);
     for (x, y) in in_rows.chain([(25.8, 9.0), (25.8, 20.0)]) {
         let place = Pose2::new(x, y, 0.0);
-        build.block(place, (0.0, 0.0), 0.0, [0.4, 0.4, HEIGHT], concrete.clone());
+        build.block(place, (0.0, 0.0), 0.0, [0.4, 0.4, HALL_HEIGHT_M], concrete.clone());
         for heading in [0.0, FRAC_PI_2, PI, -FRAC_PI_2] {
             let face = Pose2::new(x, y, heading) * Pose2::new(0.2, 0.0, 0.0);
             build.board(face, 1.5, (0.32, 0.24), Paint::Sign { color: [40, 60, 130] });
@@ -101,21 +105,25 @@ fn columns(build: &mut Builder) {
 
 /// A rack along y with its middle at `x`; `side` is +1 where its goods face east.
 fn rack(build: &mut Builder, x: f64, side: f64) {
-    for frame in 0..=BAYS {
-        let place = Pose2::new(x, FIRST + BAY * frame as f64, 0.0);
+    for frame in 0..=BAYS_PER_RACK {
+        let place = Pose2::new(x, FIRST_BAY_Y_M + BAY_LENGTH_M * frame as f64, 0.0);
         let post = Finish::all(STEEL).seeded(10);
         for across in [-1.0, 1.0] {
-            let offset = (across * (DEPTH / 2.0 - 0.05), 0.0);
+            let offset = (across * (RACK_DEPTH_M / 2.0 - 0.05), 0.0);
             build.block(place, offset, 0.0, [0.1, 0.09, 4.6], post.clone());
         }
     }
-    for bay in 0..BAYS {
-        let place = Pose2::new(x, FIRST + BAY * (bay as f64 + 0.5), if side > 0.0 { 0.0 } else { PI });
-        for shelf in SHELVES {
-            build.block(place, (0.0, 0.0), shelf - 0.12, [DEPTH, BAY - 0.1, 0.12], BEAM);
+    for bay in 0..BAYS_PER_RACK {
+        let place = Pose2::new(
+            x,
+            FIRST_BAY_Y_M + BAY_LENGTH_M * (bay as f64 + 0.5),
+            if side > 0.0 { 0.0 } else { PI },
+        );
+        for shelf in SHELF_HEIGHTS_M {
+            build.block(place, (0.0, 0.0), shelf - 0.12, [RACK_DEPTH_M, BAY_LENGTH_M - 0.1, 0.12], BEAM);
         }
         floor_bay(build, place);
-        for shelf in SHELVES {
+        for shelf in SHELF_HEIGHTS_M {
             shelf_bay(build, place, shelf);
         }
     }
@@ -126,7 +134,7 @@ fn floor_bay(build: &mut Builder, place: Pose2) {
     for along in [-0.62, 0.62] {
         if build.happens(0.8) {
             let pallet = place * Pose2::new(0.0, along + build.jitter(0.04), build.jitter(0.02));
-            let height = build.choose(&[PALLET, 0.9, 1.2, 1.4]);
+            let height = build.choose(&[PALLET_HEIGHT_M, 0.9, 1.2, 1.4]);
             build.loaded_pallet(pallet, [0.95, 1.1, height]);
         }
     }
@@ -145,8 +153,8 @@ fn shelf_bay(build: &mut Builder, place: Pose2, shelf: f64) {
 
 /// Guards and an aisle's sign at both ends of a double row.
 fn row_ends(build: &mut Builder, x: f64, nth: usize) {
-    let last = FIRST + BAY * BAYS as f64;
-    for (y, heading) in [(FIRST - 0.25, -FRAC_PI_2), (last + 0.25, FRAC_PI_2)] {
+    let last = FIRST_BAY_Y_M + BAY_LENGTH_M * BAYS_PER_RACK as f64;
+    for (y, heading) in [(FIRST_BAY_Y_M - 0.25, -FRAC_PI_2), (last + 0.25, FRAC_PI_2)] {
         for across in [-1.1, 1.1] {
             build.guard(Pose2::new(x + across, y, 0.0));
         }
@@ -158,10 +166,10 @@ fn row_ends(build: &mut Builder, x: f64, nth: usize) {
 
 /// Painted lines along the aisles and around the open area, 1 mm thick.
 fn markings(build: &mut Builder) {
-    let last = FIRST + BAY * BAYS as f64;
+    let last = FIRST_BAY_Y_M + BAY_LENGTH_M * BAYS_PER_RACK as f64;
     let line = |[x0, y0, x1, y1]: [f64; 4]| ([x0, y0, 0.0], [x1, y1, 0.001], [(Side::Top, YELLOW)]);
-    for x in ROWS.into_iter().flat_map(|x| [x - 1.35, x + 1.35]) {
-        let (low, high, seen) = line([x - 0.05, FIRST - 0.6, x + 0.05, last + 0.6]);
+    for x in ROW_CENTRES_X_M.into_iter().flat_map(|x| [x - 1.35, x + 1.35]) {
+        let (low, high, seen) = line([x - 0.05, FIRST_BAY_Y_M - 0.6, x + 0.05, last + 0.6]);
         build.slab(low, high, &seen);
     }
     for rectangle in [[1.0, 0.9, 29.0, 1.0], [1.0, 28.9, 29.0, 29.0], [23.4, 4.4, 23.5, 25.0]] {
@@ -179,14 +187,19 @@ fn markings(build: &mut Builder) {
 fn open_area(build: &mut Builder) {
     for y in [7.0, 15.0, 23.0] {
         let gate = Paint::Corrugated { color: [214, 120, 40] };
-        build.board(Pose2::new(SIDE, y, PI), 1.8, (3.2, 3.6), gate);
-        build.board(Pose2::new(SIDE, y + 2.2, PI), 2.0, (0.7, 0.9), Paint::Sign { color: [30, 60, 120] });
+        build.board(Pose2::new(HALL_SIDE_M, y, PI), 1.8, (3.2, 3.6), gate);
+        build.board(
+            Pose2::new(HALL_SIDE_M, y + 2.2, PI),
+            2.0,
+            (0.7, 0.9),
+            Paint::Sign { color: [30, 60, 120] },
+        );
     }
     for (x, y) in
         [(24.8, 6.2), (27.4, 5.2), (25.2, 12.3), (27.8, 11.0), (25.0, 16.8), (27.2, 19.0), (25.3, 23.2)]
     {
         let place = build.jittered(Pose2::new(x, y, 0.0), 0.2, 0.6);
-        let height = build.choose(&[PALLET, 0.7, 1.1, 1.5]);
+        let height = build.choose(&[PALLET_HEIGHT_M, 0.7, 1.1, 1.5]);
         build.loaded_pallet(place, [1.2, 0.8, height]);
     }
     for (x, y) in [(29.3, 2.0), (28.6, 2.1), (29.2, 2.8), (29.3, 28.0)] {

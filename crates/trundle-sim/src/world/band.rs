@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use trundle_core::{Invalid, Vector2, Vector3, require_finite};
 
 /// Triangles that a thread clips at a time.
-const CHUNK: usize = 4096;
+const TRIANGLES_PER_CHUNK: usize = 4096;
 
 /// The heights between which something is in the way.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -74,9 +74,11 @@ impl World {
         let mut lists = vec![solids];
         for mesh in &self.meshes {
             let count = mesh.triangles().len();
-            let starts: Vec<usize> = (0..count).step_by(CHUNK).collect();
+            let starts: Vec<usize> = (0..count).step_by(TRIANGLES_PER_CHUNK).collect();
             lists.par_extend(
-                starts.par_iter().map(|&start| clip(mesh, start..(start + CHUNK).min(count), band)),
+                starts
+                    .par_iter()
+                    .map(|&start| clip(mesh, start..(start + TRIANGLES_PER_CHUNK).min(count), band)),
             );
         }
         lists

@@ -5,7 +5,7 @@ use super::{HeightBand, World};
 use trundle_core::{Cell, CellIndex, GridGeometry, Invalid, OccupancyGrid, require_positive};
 
 /// Cells are shrunk by this share of their side, so that a wall that ends on a cell's border does not fill the cell.
-const SHRINK: f64 = 1e-6;
+const CELL_SHRINK_RATIO: f64 = 1e-6;
 
 /// Most cells of a grid: one byte each.
 const MOST_CELLS: f64 = (1_u64 << 31) as f64;
@@ -53,7 +53,7 @@ fn fill(grid: &mut OccupancyGrid, outline: &Region<'_>) {
     let is_flat = rows.len() == 1;
     for row in rows {
         let line = |row: f64| origin.y + row * resolution;
-        let slice = (line(row as f64 + SHRINK), line(row as f64 + 1.0 - SHRINK));
+        let slice = (line(row as f64 + CELL_SHRINK_RATIO), line(row as f64 + 1.0 - CELL_SHRINK_RATIO));
         let (from, to) = if is_flat { (bottom, top) } else { slice };
         let Some((left, right)) = outline.span_between(from, to) else { continue };
         for col in run((left - origin.x) / resolution, (right - origin.x) / resolution, width) {
@@ -65,7 +65,7 @@ fn fill(grid: &mut OccupancyGrid, outline: &Region<'_>) {
 /// Which of `count` cells the stretch from `low` to `high` (in cells) reaches into; what lies on a border and nowhere
 /// else belongs to one side of it.
 fn run(low: f64, high: f64, count: usize) -> std::ops::Range<usize> {
-    let (first, last) = ((low - 1.0 + SHRINK).ceil(), (high - SHRINK).floor());
+    let (first, last) = ((low - 1.0 + CELL_SHRINK_RATIO).ceil(), (high - CELL_SHRINK_RATIO).floor());
     let seam = ((low + high) / 2.0).floor();
     let (first, last) = if first <= last { (first, last) } else { (seam, seam) };
     first.max(0.0) as usize..((last + 1.0).max(0.0) as usize).min(count)

@@ -106,27 +106,27 @@ impl OutlineIndex {
 }
 
 /// Most sides of a robot that serve as bounds; any are right, more are tighter.
-const MOST_SIDES: usize = 8;
+const MAX_SIDES: usize = 8;
 
 /// Bounds stay this far, m, below what they bound, so that rounding does not matter.
-const SLACK: f64 = 1e-9;
+const BOUND_SLACK_M: f64 = 1e-9;
 
 /// The box and the sides of a robot: lower bounds of the distance of whatever lies beyond one of them.
 struct Walls {
     low: Vector2,
     high: Vector2,
     /// Outward normal of a side and its distance from the origin along it.
-    sides: [(Vector2, f64); MOST_SIDES],
+    sides: [(Vector2, f64); MAX_SIDES],
     count: usize,
 }
 
 impl Walls {
     fn new(robot: Region<'_>) -> Self {
         let (low, high) = robot.box_of_corners();
-        let mut walls = Self { low, high, sides: [(Vector2::zeros(), 0.0); MOST_SIDES], count: 0 };
+        let mut walls = Self { low, high, sides: [(Vector2::zeros(), 0.0); MAX_SIDES], count: 0 };
         if robot.corners.len() > 2 {
             let next = robot.corners.iter().cycle().skip(1);
-            for (a, b) in robot.corners.iter().zip(next).take(MOST_SIDES) {
+            for (a, b) in robot.corners.iter().zip(next).take(MAX_SIDES) {
                 if let Some(out) = Vector2::new(b.y - a.y, a.x - b.x).try_normalize(0.0) {
                     walls.sides[walls.count] = (out, out.dot(a));
                     walls.count += 1;
@@ -153,7 +153,7 @@ impl Walls {
     fn beyond(&self, low: Vector2, high: Vector2, least: impl Fn(&Vector2) -> f64) -> f64 {
         let gap = (low - self.high).sup(&(self.low - high)).sup(&Vector2::zeros()).norm();
         let sides = self.sides[..self.count].iter().map(|(out, offset)| least(out) - offset);
-        (sides.fold(gap, f64::max) - SLACK).max(0.0)
+        (sides.fold(gap, f64::max) - BOUND_SLACK_M).max(0.0)
     }
 }
 

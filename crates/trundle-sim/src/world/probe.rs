@@ -6,7 +6,7 @@ use super::bvh::{Node, Probe, WIDTH};
 use trundle_core::Vector3;
 
 /// Relative slack of distances: more than the roundings of a subtraction and a product.
-const ROUNDING: f32 = 4.0 / (1 << 23) as f32;
+const RELATIVE_ROUNDING: f32 = 4.0 / (1 << 23) as f32;
 
 /// A ray among boxes, in f32: slabs (Kay and Kajiya 1986), wider by more than any rounding.
 pub(super) struct RayProbe {
@@ -22,7 +22,7 @@ impl RayProbe {
         Self {
             origin: [origin.x as f32, origin.y as f32, origin.z as f32],
             inverse: [inverse(direction.x), inverse(direction.y), inverse(direction.z)],
-            slack: origin.amax() as f32 * ROUNDING,
+            slack: origin.amax() as f32 * RELATIVE_ROUNDING,
         }
     }
 }
@@ -35,8 +35,8 @@ impl Probe for RayProbe {
             let (near_x, far_x) = self.slab(0, node.low[0][i], node.high[0][i]);
             let (near_y, far_y) = self.slab(1, node.low[1][i], node.high[1][i]);
             let (near_z, far_z) = self.slab(2, node.low[2][i], node.high[2][i]);
-            let near = larger(larger(near_x, near_y), larger(near_z, 0.0)) * (1.0 - ROUNDING);
-            let far = smaller(smaller(far_x, far_y), far_z) * (1.0 + ROUNDING);
+            let near = larger(larger(near_x, near_y), larger(near_z, 0.0)) * (1.0 - RELATIVE_ROUNDING);
+            let far = smaller(smaller(far_x, far_y), far_z) * (1.0 + RELATIVE_ROUNDING);
             distances[i] = if near <= far { near } else { f32::INFINITY };
         }
         distances

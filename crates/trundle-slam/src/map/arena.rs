@@ -6,14 +6,14 @@
 /// each one ever made.
 #[derive(Debug, Clone)]
 pub(crate) struct Arena<T> {
-    /// Where each thing ever made stands, [`REMOVED`] once it is removed.
+    /// Where each thing ever made stands, [`REMOVED_SLOT`] once it is removed.
     places: Vec<u32>,
     things: Vec<Option<T>>,
     free: Vec<u32>,
 }
 
 /// The slot of a removed item.
-const REMOVED: u32 = u32::MAX;
+const REMOVED_SLOT: u32 = u32::MAX;
 
 impl<T> Default for Arena<T> {
     fn default() -> Self {
@@ -35,7 +35,7 @@ impl<T> Arena<T> {
 
     /// Takes a thing out; `None` when it is gone already.
     pub fn remove(&mut self, number: usize) -> Option<T> {
-        let place = std::mem::replace(self.places.get_mut(number)?, REMOVED);
+        let place = std::mem::replace(self.places.get_mut(number)?, REMOVED_SLOT);
         let thing = self.things.get_mut(place as usize)?.take();
         self.free.push(place);
         thing

@@ -12,7 +12,7 @@ use trundle_core::PinholeCamera;
 /// First bytes of a map file.
 const MAGIC: &[u8; 7] = b"trundlM";
 /// Version of the format.
-const VERSION: u8 = 3;
+const FORMAT_VERSION: u8 = 3;
 /// Bytes before those that the checksum covers.
 const HEAD_BYTES: usize = 16;
 
@@ -24,7 +24,7 @@ pub(crate) fn save<'a>(
 ) -> Vec<u8> {
     let mut out = Writer::default();
     out.0.extend(MAGIC);
-    out.u8(VERSION);
+    out.u8(FORMAT_VERSION);
     out.u64(0);
     settings::write(&mut out, camera, &config.orb);
     out.count(maps.len());
@@ -67,8 +67,8 @@ fn checked_body(bytes: &[u8]) -> Result<Reader<'_>, MapFileError> {
     let _ = magic;
     let mut head = Reader::new(rest, "head");
     let found = head.u8()?;
-    if found != VERSION {
-        return Err(MapFileError::Version { found, expected: VERSION });
+    if found != FORMAT_VERSION {
+        return Err(MapFileError::Version { found, expected: FORMAT_VERSION });
     }
     let sum = head.u64()?;
     let body = &bytes[HEAD_BYTES..];

@@ -7,12 +7,12 @@ use trundle_core::GrayImage;
 /// Weights of a Gaussian of standard deviation 2 px over 7 px, in 1/256: middle first. BRIEF compares single pixels, so
 /// that it needs a smoothed image \[Calonder10, sec. 3.1\].
 const KERNEL: [u32; 4] = [56, 49, 34, 17];
-const RADIUS: usize = KERNEL.len() - 1;
+const KERNEL_RADIUS_PX: usize = KERNEL.len() - 1;
 
 /// Gaussian smoothing, rounded to whole grey values after each of the two passes; the border is continued.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Blur {
-    /// A row smoothed downwards, with `RADIUS` px more at either end.
+    /// A row smoothed downwards, with `KERNEL_RADIUS_PX` px more at either end.
     row: Vec<u8>,
 }
 
@@ -20,20 +20,21 @@ impl Blur {
     /// Smooths `from` into `to`, an image of the same size, at least 1 x 1.
     pub fn run(&mut self, from: &GrayImage, to: &mut GrayImage) {
         let (width, height) = (from.width(), from.height());
-        self.row.resize(width + 2 * RADIUS, 0);
+        self.row.resize(width + 2 * KERNEL_RADIUS_PX, 0);
         for y in 0..height {
-            let rows = std::array::from_fn(|k| from.row((y + k).saturating_sub(RADIUS).min(height - 1)));
-            smooth(rows, &mut self.row[RADIUS..RADIUS + width]);
-            let (first, last) = (self.row[RADIUS], self.row[RADIUS + width - 1]);
-            self.row[..RADIUS].fill(first);
-            self.row[RADIUS + width..].fill(last);
+            let rows =
+                std::array::from_fn(|k| from.row((y + k).saturating_sub(KERNEL_RADIUS_PX).min(height - 1)));
+            smooth(rows, &mut self.row[KERNEL_RADIUS_PX..KERNEL_RADIUS_PX + width]);
+            let (first, last) = (self.row[KERNEL_RADIUS_PX], self.row[KERNEL_RADIUS_PX + width - 1]);
+            self.row[..KERNEL_RADIUS_PX].fill(first);
+            self.row[KERNEL_RADIUS_PX + width..].fill(last);
             smooth(std::array::from_fn(|k| &self.row[k..k + width]), to.row_mut(y));
         }
     }
 }
 
 /// The weighted mean of seven slices, element by element.
-fn smooth(from: [&[u8]; 2 * RADIUS + 1], to: &mut [u8]) {
+fn smooth(from: [&[u8]; 2 * KERNEL_RADIUS_PX + 1], to: &mut [u8]) {
     #[cfg(target_arch = "x86_64")]
     if to.len() >= 2 * BLOCK_PX && std::arch::is_x86_feature_detected!("avx2") {
         // SAFETY: the processor has the one feature that the function is compiled for.
@@ -42,7 +43,7 @@ fn smooth(from: [&[u8]; 2 * RADIUS + 1], to: &mut [u8]) {
     smooth_plainly(from, to);
 }
 
-fn smooth_plainly([a, b, c, d, e, f, g]: [&[u8]; 2 * RADIUS + 1], to: &mut [u8]) {
+fn smooth_plainly([a, b, c, d, e, f, g]: [&[u8]; 2 * KERNEL_RADIUS_PX + 1], to: &mut [u8]) {
     for (i, out) in to.iter_mut().enumerate() {
         let value = |slice: &[u8]| u32::from(slice[i]);
         let sum = value(d) * KERNEL[0]
@@ -56,14 +57,14 @@ fn smooth_plainly([a, b, c, d, e, f, g]: [&[u8]; 2 * RADIUS + 1], to: &mut [u8])
 /// [`smooth_plainly`] of two [`BLOCK_PX`]s of pixels or more. No sum of two products exceeds 15 bits, nor that of all 16.
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2")]
-fn smooth_by_avx2(from: [&[u8]; 2 * RADIUS + 1], to: &mut [u8]) {
+fn smooth_by_avx2(from: [&[u8]; 2 * KERNEL_RADIUS_PX + 1], to: &mut [u8]) {
     use std::arch::x86_64::*;
     let both = |weight: u32| _mm256_set1_epi8(weight as i8);
     let (next, second, third) = (both(KERNEL[1]), both(KERNEL[2]), both(KERNEL[3]));
     // The middle is paired with twos: 64 of these make the half that rounds.
     let (twos, middle) = (both(2), _mm256_set1_epi16(64 << 8 | KERNEL[0] as i16));
     for x in starts(to.len(), 2 * BLOCK_PX) {
-        let mut windows = [&[0; 2 * BLOCK_PX]; 2 * RADIUS + 1];
+        let mut windows = [&[0; 2 * BLOCK_PX]; 2 * KERNEL_RADIUS_PX + 1];
         for (window, slice) in windows.iter_mut().zip(from) {
             *window = block(slice, x);
         }

@@ -11,7 +11,7 @@ pub(crate) struct Resize {
     columns: Vec<Tap>,
     /// The same columns, four at a time; empty where four need more samples than a register has.
     quads: Vec<Quad>,
-    /// A row of the larger image, interpolated downwards, in 1/128, with [`SAMPLES`] more after its end.
+    /// A row of the larger image, interpolated downwards, in 1/128, with [`SAMPLES_PER_REGISTER`] more after its end.
     row: Vec<i16>,
 }
 
@@ -24,9 +24,9 @@ struct Tap {
 }
 
 /// Samples of 16 bits in half a register of AVX2.
-const SAMPLES: usize = 8;
+const SAMPLES_PER_REGISTER: usize = 8;
 
-/// Four neighbouring columns: from [`SAMPLES`] samples on from `first`, which bytes make the pairs of samples between which each
+/// Four neighbouring columns: from [`SAMPLES_PER_REGISTER`] samples on from `first`, which bytes make the pairs of samples between which each
 /// is interpolated, and their weights.
 #[derive(Debug, Clone, Copy)]
 #[cfg_attr(not(target_arch = "x86_64"), expect(dead_code, reason = "only AVX2 takes four at a time"))]
@@ -60,7 +60,7 @@ impl Resize {
         self.sizes = sizes;
         let [width, _, to_width, _] = sizes;
         self.columns = (0..to_width).map(|x| tap(x, width, to_width)).collect();
-        self.row = vec![0; width + SAMPLES];
+        self.row = vec![0; width + SAMPLES_PER_REGISTER];
         let quads: Option<Vec<Quad>> = self.columns.as_chunks().0.iter().map(quad).collect();
         self.quads = quads.unwrap_or_default();
     }
@@ -76,7 +76,7 @@ fn tap(i: usize, from: usize, to: usize) -> Tap {
 /// `None` when the columns span too many samples.
 fn quad(columns: &[Tap; 4]) -> Option<Quad> {
     let first = columns[0].first;
-    (columns[3].first + 2 - first <= SAMPLES as u32).then_some(())?;
+    (columns[3].first + 2 - first <= SAMPLES_PER_REGISTER as u32).then_some(())?;
     let (mut bytes, mut weights) = ([0; 16], [0; 16]);
     for (tap, (bytes, weights)) in
         columns.iter().zip(bytes.as_chunks_mut::<4>().0.iter_mut().zip(weights.as_chunks_mut::<4>().0))

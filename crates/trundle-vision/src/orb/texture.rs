@@ -5,12 +5,12 @@ use trundle_core::GrayImage;
 
 /// Pixels around a corner in which its texture is measured: 7. Source: ours.
 const TEXTURE_RADIUS_PX: usize = 7;
-const SIDE: usize = 2 * TEXTURE_RADIUS_PX + 1;
+const TEXTURE_SIDE_PX: usize = 2 * TEXTURE_RADIUS_PX + 1;
 /// Columns that are read: a power of two; the last is not counted.
-const TEXTURE_STRIDE: usize = SIDE + 1;
-const COUNTS: [i16; TEXTURE_STRIDE] = {
+const TEXTURE_STRIDE: usize = TEXTURE_SIDE_PX + 1;
+const COUNT_WEIGHTS: [i16; TEXTURE_STRIDE] = {
     let mut counts = [1; TEXTURE_STRIDE];
-    counts[SIDE] = 0;
+    counts[TEXTURE_SIDE_PX] = 0;
     counts
 };
 
@@ -23,7 +23,7 @@ pub(crate) fn least_gradient(image: &GrayImage, corner: Corner) -> f32 {
     let middle = (across + down) / 2.0;
     let least = (middle - ((across - down) / 2.0).hypot(both)).max(0.0);
     // The differences are over two pixels.
-    (least / (4 * SIDE * SIDE) as f64).sqrt() as f32
+    (least / (4 * TEXTURE_SIDE_PX * TEXTURE_SIDE_PX) as f64).sqrt() as f32
 }
 
 fn tensor(image: &GrayImage, corner: Corner) -> [i32; 3] {
@@ -48,10 +48,10 @@ fn tensor_plainly(image: &GrayImage, corner: Corner) -> [i32; 3] {
     let (left, top) = (usize::from(corner.x) - TEXTURE_RADIUS_PX, usize::from(corner.y) - TEXTURE_RADIUS_PX);
     let mut sums = [[0_i32; TEXTURE_STRIDE]; 3];
     let row = |y: usize| &image.row(y)[left - 1..][..TEXTURE_STRIDE + 2];
-    for y in top..top + SIDE {
+    for y in top..top + TEXTURE_SIDE_PX {
         let (above, here, below) = (row(y - 1), row(y), row(y + 1));
         for x in 0..TEXTURE_STRIDE {
-            let difference = |a: u8, b: u8| (i16::from(a) - i16::from(b)) * COUNTS[x];
+            let difference = |a: u8, b: u8| (i16::from(a) - i16::from(b)) * COUNT_WEIGHTS[x];
             let across = i32::from(difference(here[x + 2], here[x]));
             let down = i32::from(difference(below[x + 1], above[x + 1]));
             sums[0][x] += across * across;

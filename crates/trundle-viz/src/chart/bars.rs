@@ -15,9 +15,9 @@ pub struct BarChart {
     rows: Vec<(String, f64, f64)>,
 }
 
-const WIDTH: f64 = 540.0;
-const PITCH: f64 = 28.0;
-const TOP: f64 = 40.0;
+const CHART_WIDTH: f64 = 540.0;
+const BAR_PITCH: f64 = 28.0;
+const PLOT_TOP: f64 = 40.0;
 
 impl BarChart {
     /// An empty chart of values in `unit`; `bar` and `whisker` name what the two ends mean.
@@ -35,15 +35,16 @@ impl BarChart {
 
     /// The chart as an `<svg>` element, all text escaped. Same content, same bytes.
     pub fn to_svg(&self) -> String {
-        let height = TOP + PITCH * self.rows.len() as f64 + 34.0;
-        let widest = self.rows.iter().map(|row| text_width(&row.0)).fold(40.0, f64::max).min(WIDTH / 3.0);
-        let (left, right) = (widest + 12.0, WIDTH - 104.0);
+        let height = PLOT_TOP + BAR_PITCH * self.rows.len() as f64 + 34.0;
+        let widest =
+            self.rows.iter().map(|row| text_width(&row.0)).fold(40.0, f64::max).min(CHART_WIDTH / 3.0);
+        let (left, right) = (widest + 12.0, CHART_WIDTH - 104.0);
         let values = self.rows.iter().flat_map(|row| [row.1, row.2]).chain([0.0]);
         let axis = Axis::over(values, false, 0.0, (left, right));
-        let mut svg = open_svg(&self.title, WIDTH, height);
+        let mut svg = open_svg(&self.title, CHART_WIDTH, height);
         self.draw_ground(&mut svg, &axis, left, height);
         for (i, row) in self.rows.iter().enumerate() {
-            draw_row(&mut svg, &axis, left, TOP + PITCH * i as f64, row);
+            draw_row(&mut svg, &axis, left, PLOT_TOP + BAR_PITCH * i as f64, row);
         }
         svg + "</svg>"
     }
@@ -54,7 +55,7 @@ impl BarChart {
             put(
                 svg,
                 format_args!(
-                    "<path class=\"rule\" d=\"M{at:.1} {TOP}V{bottom:.1}\"/>\
+                    "<path class=\"rule\" d=\"M{at:.1} {PLOT_TOP}V{bottom:.1}\"/>\
                  <text class=\"tick\" x=\"{at:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{label}</text>",
                     bottom + 17.0,
                 ),
@@ -66,7 +67,7 @@ impl BarChart {
             format_args!(
                 "<rect x=\"{left:.1}\" y=\"14\" width=\"22\" height=\"11\" rx=\"2\" style=\"fill:{bar}\"/>\
              <text x=\"{:.1}\" y=\"24\">{}</text><path class=\"whisker\" d=\"M{:.1} 19.5h22m0 -5v10\"/>\
-             <text x=\"{:.1}\" y=\"24\">{}</text><text class=\"tick\" x=\"{WIDTH}\" y=\"24\" text-anchor=\"end\">{}</text>",
+             <text x=\"{:.1}\" y=\"24\">{}</text><text class=\"tick\" x=\"{CHART_WIDTH}\" y=\"24\" text-anchor=\"end\">{}</text>",
                 left + 28.0,
                 escape(&self.names[0]),
                 left + 48.0 + text_width(&self.names[0]),
@@ -80,7 +81,7 @@ impl BarChart {
 
 fn draw_row(svg: &mut String, axis: &Axis, left: f64, top: f64, (label, bar, whisker): &(String, f64, f64)) {
     let place = |value: f64| axis.place(value).unwrap_or(left);
-    let (middle, bar_end, end) = (top + PITCH / 2.0, place(*bar), place(*whisker));
+    let (middle, bar_end, end) = (top + BAR_PITCH / 2.0, place(*bar), place(*whisker));
     let text = |value: f64| number(value, if value < 1.0 { 0.01 } else { 0.1 });
     put(
         svg,
@@ -88,7 +89,7 @@ fn draw_row(svg: &mut String, axis: &Axis, left: f64, top: f64, (label, bar, whi
             "<text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"end\">{}</text>\
          <rect x=\"{left:.1}\" y=\"{:.1}\" width=\"{:.1}\" height=\"14\" rx=\"2\" style=\"fill:{}\"/>\
          <path class=\"whisker\" d=\"M{bar_end:.1} {middle:.1}H{end:.1}m0 -5v10\"/>\
-         <text class=\"tick\" x=\"{WIDTH}\" y=\"{:.1}\" text-anchor=\"end\">{} / {}</text>",
+         <text class=\"tick\" x=\"{CHART_WIDTH}\" y=\"{:.1}\" text-anchor=\"end\">{} / {}</text>",
             left - 8.0,
             middle + 4.5,
             escape(label),

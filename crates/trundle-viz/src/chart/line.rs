@@ -1,6 +1,6 @@
 //! Line charts as SVG.
 
-use super::axes::{Axis, HEIGHT, PLOT, WIDTH};
+use super::axes::{Axis, HEIGHT, PLOT_RECTANGLE, WIDTH};
 use super::thin::pieces;
 use crate::color::Color;
 use crate::html::{escape, ink};
@@ -74,8 +74,8 @@ impl Chart {
         let finite =
             || self.series.iter().flat_map(|s| &s.points).filter(|p| p.0.is_finite() && p.1.is_finite());
         let heights = finite().map(|p| p.1).chain(self.limits.iter().map(|limit| limit.1));
-        let x = Axis::over(finite().map(|p| p.0), false, 0.0, (PLOT[0], PLOT[2]));
-        let y = Axis::over(heights, self.log_y, 0.06, (PLOT[3], PLOT[1]));
+        let x = Axis::over(finite().map(|p| p.0), false, 0.0, (PLOT_RECTANGLE[0], PLOT_RECTANGLE[2]));
+        let y = Axis::over(heights, self.log_y, 0.06, (PLOT_RECTANGLE[3], PLOT_RECTANGLE[1]));
         let mut svg = open_svg(&self.title, WIDTH, HEIGHT);
         draw_axes(&mut svg, &x, &y, &self.x_name, &self.y_name);
         self.limits.iter().for_each(|(label, level)| draw_limit(&mut svg, &y, label, *level));
@@ -86,7 +86,7 @@ impl Chart {
 
     /// Names and short strokes, from the right end of the line above the plot.
     fn draw_legend(&self, svg: &mut String) {
-        let mut right = PLOT[2];
+        let mut right = PLOT_RECTANGLE[2];
         for series in self.series.iter().rev() {
             let start = right - text_width(&series.label);
             let style = stroke(series.color, series.dashed);
@@ -127,7 +127,7 @@ fn stroke(color: Color, dashed: bool) -> String {
 }
 
 fn draw_axes(svg: &mut String, x: &Axis, y: &Axis, x_name: &str, y_name: &str) {
-    let [left, _, right, bottom] = PLOT;
+    let [left, _, right, bottom] = PLOT_RECTANGLE;
     for (at, label) in y.ticks(5) {
         put(
             svg,
@@ -170,10 +170,10 @@ fn draw_limit(svg: &mut String, y: &Axis, label: &str, level: f64) {
         format_args!(
             "<path d=\"M{} {at:.1}H{}\" style=\"fill:none;stroke:{};stroke-width:1.5;stroke-dasharray:2 4\"/>\
          <text x=\"{}\" y=\"{:.1}\" text-anchor=\"end\" style=\"fill:{}\">{}</text>",
-            PLOT[0],
-            PLOT[2],
+            PLOT_RECTANGLE[0],
+            PLOT_RECTANGLE[2],
             ink(Color::VERMILLION),
-            PLOT[2] - 4.0,
+            PLOT_RECTANGLE[2] - 4.0,
             at - 6.0,
             ink(Color::VERMILLION),
             escape(label),

@@ -1,7 +1,7 @@
 //! Reduction of a long series to the points that a chart can show; peaks are kept.
 
 /// More points than this in a series are thinned.
-const ENOUGH: usize = 1500;
+const MAX_SERIES_POINTS: usize = 1500;
 
 /// A series with few enough points to draw: where it is long and runs to the right, each of many columns keeps its lowest
 /// and its highest point, so that no peak is lost. Gaps (points that are not finite) end a piece.
@@ -16,10 +16,10 @@ fn runs_right(points: &[(f64, f64)]) -> bool {
 }
 
 fn thin(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
-    if points.len() <= ENOUGH {
+    if points.len() <= MAX_SERIES_POINTS {
         return points.to_vec();
     }
-    let column = points.len().div_ceil(ENOUGH / 2);
+    let column = points.len().div_ceil(MAX_SERIES_POINTS / 2);
     let by_height = |a: &&(f64, f64), b: &&(f64, f64)| a.1.total_cmp(&b.1);
     let mut kept = vec![points[0]];
     for chunk in points.chunks(column) {

@@ -21,7 +21,7 @@ pub struct PlanParts<'a> {
 }
 
 /// Distances are told apart up to this, m.
-const FAR: f32 = 1.0;
+const MAX_SHOWN_DISTANCE_M: f32 = 1.0;
 
 /// The pictures of how a plan was made: the distance field with the way that the search found, and the corridors with the
 /// curve that was fitted into them. 8-bit RGB PNGs.
@@ -32,7 +32,7 @@ pub fn plan_part_pictures(scene: &PlanScene, parts: &PlanParts) -> [Vec<u8>; 2] 
         "distance to the nearest obstacle, dark from 1 m on",
         parts.geometry,
         distances,
-        FAR,
+        MAX_SHOWN_DISTANCE_M,
     );
     let field = scene
         .forbidden(shaded, FORBIDDEN.alpha(255))

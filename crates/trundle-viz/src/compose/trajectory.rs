@@ -6,7 +6,7 @@ use crate::map::{DotStyle, LineStyle, MapPicture};
 use trundle_core::{Vector2, Vector3};
 
 /// At most this many ties between estimate and truth.
-const TIES: usize = 400;
+const MAX_ERROR_LINES: usize = 400;
 
 /// The picture of `trundle slam`: a trajectory, and the true one where there is one, both in the same frame (aligned), m.
 ///
@@ -57,7 +57,7 @@ fn ties(estimate: &[Vector2], truth: &[Vector2]) -> Vec<Vector2> {
         return Vec::new();
     }
     let gap = Vector2::new(f64::NAN, f64::NAN);
-    let stride = estimate.len().div_ceil(TIES).max(1);
+    let stride = estimate.len().div_ceil(MAX_ERROR_LINES).max(1);
     estimate.iter().zip(truth).step_by(stride).flat_map(|(a, b)| [*a, *b, gap]).collect()
 }
 

@@ -53,7 +53,7 @@ fn is_way(way: &[Vector3]) -> bool {
 }
 
 /// Part of the points at either end of each axis that the picture need not show.
-const STRAY: f64 = 0.02;
+const OUTLIER_SHARE: f64 = 0.02;
 
 /// Middle and half side of the square that shows nearly all points.
 fn middle_of(points: [Vec<Vector2>; 3]) -> (Vector2, f64) {
@@ -61,7 +61,7 @@ fn middle_of(points: [Vec<Vector2>; 3]) -> (Vector2, f64) {
         let part = |points: &Vec<Vector2>| {
             let mut values: Vec<f64> = points.iter().map(|p| p[axis]).collect();
             values.sort_unstable_by(f64::total_cmp);
-            let skipped = (values.len() as f64 * STRAY) as usize;
+            let skipped = (values.len() as f64 * OUTLIER_SHARE) as usize;
             Some((*values.get(skipped)?, *values.get(values.len() - 1 - skipped)?))
         };
         let parts = points.iter().filter_map(part);

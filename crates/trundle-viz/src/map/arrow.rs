@@ -9,13 +9,13 @@ use crate::color::Color;
 use trundle_core::Vector2;
 
 /// Length of a head in line widths, and half its breadth.
-const HEAD: (f64, f64) = (4.6, 2.3);
+const HEAD_SIZE_LINE_WIDTHS: (f64, f64) = (4.6, 2.3);
 
 /// A line with a head at its end; one that is shorter than its head is all head.
 pub(super) fn draw_arrow(canvas: &mut Canvas, view: &View, points: &[Vector2], style: &LineStyle) {
     let Some(&end) = points.last() else { return };
     let tip = view.px(end);
-    let length = HEAD.0 * style.width * view.unit as f64;
+    let length = HEAD_SIZE_LINE_WIDTHS.0 * style.width * view.unit as f64;
     // The direction in which the last part of the line arrives, as long as the head.
     let away = |p: &&Vector2| distance(view.px(**p), tip) >= length;
     let Some(from) = points.iter().rev().find(away).or(points.first()).map(|p| view.px(*p)) else { return };
@@ -29,7 +29,7 @@ pub(super) fn draw_arrow(canvas: &mut Canvas, view: &View, points: &[Vector2], s
 }
 
 fn head(canvas: &mut Canvas, tip: Px, (x, y): Px, length: f64, color: Color) {
-    let half = length * HEAD.1 / HEAD.0;
+    let half = length * HEAD_SIZE_LINE_WIDTHS.1 / HEAD_SIZE_LINE_WIDTHS.0;
     let foot = (tip.0 - x * length, tip.1 - y * length);
     let side = |s: f64| (foot.0 - y * half * s, foot.1 + x * half * s);
     canvas.polygon(&[tip, side(1.0), side(-1.0)], color);

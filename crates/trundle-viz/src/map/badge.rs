@@ -9,11 +9,11 @@ use crate::text::{TextStyle, cap_height, text_width};
 use trundle_core::Vector2;
 
 /// Space about a text within its badge, in dots of the typeface.
-const PADDING: f64 = 2.5;
+const PADDING_DOTS: f64 = 2.5;
 /// How far from their places badges are moved at most, in their own diameters.
-const FARTHEST: u32 = 6;
+const MAX_SHIFT_DIAMETERS: u32 = 6;
 /// Bearings tried at each distance.
-const BEARINGS: u32 = 12;
+const BEARINGS_PER_DISTANCE: u32 = 12;
 
 /// Short texts in circles at their places, none over another: one that would be is moved aside, with a line to its place.
 pub(super) fn draw_badges(canvas: &mut Canvas, view: &View, badges: &[(String, Vector2)], color: Color) {
@@ -44,7 +44,7 @@ pub(crate) fn draw_badge(canvas: &mut Canvas, center: Px, radius: f64, text: &st
 
 /// The circle about a text, px.
 pub(crate) fn radius_of(text: &str, scale: i64) -> f64 {
-    (text_width(text, scale) as f64).hypot(cap_height(scale) as f64) / 2.0 + PADDING * scale as f64 / 2.0
+    (text_width(text, scale) as f64).hypot(cap_height(scale) as f64) / 2.0 + PADDING_DOTS * scale as f64 / 2.0
 }
 
 /// Where circles are drawn that belong at `places`: there, or as near as no other is in the way, within a picture of `size`.
@@ -57,10 +57,11 @@ fn spread(places: &[Px], radius: f64, size: Px) -> Vec<Px> {
                 && inside(p.1, size.1)
                 && placed.iter().all(|q| (p.0 - q.0).hypot(p.1 - q.1) > 2.0 * radius + 1.0)
         };
-        let beside = (1..=2 * FARTHEST).flat_map(|step| {
+        let beside = (1..=2 * MAX_SHIFT_DIAMETERS).flat_map(|step| {
             let distance = f64::from(step) * radius;
-            (0..BEARINGS).map(move |i| {
-                let (sin, cos) = (std::f64::consts::TAU * f64::from(i) / f64::from(BEARINGS)).sin_cos();
+            (0..BEARINGS_PER_DISTANCE).map(move |i| {
+                let (sin, cos) =
+                    (std::f64::consts::TAU * f64::from(i) / f64::from(BEARINGS_PER_DISTANCE)).sin_cos();
                 (place.0 + distance * cos, place.1 - distance * sin)
             })
         });

@@ -3,7 +3,7 @@
 use trundle_core::Vector2;
 
 /// Beyond this, a coordinate is taken for an accident and not drawn, m.
-const ABSURD: f64 = 1e9;
+const MAX_COORDINATE_M: f64 = 1e9;
 
 /// An upright rectangle of the map frame, m.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -15,7 +15,7 @@ pub(crate) struct Bounds {
 impl Bounds {
     /// The least rectangle around all points with sensible coordinates; none when there is no such point.
     pub(crate) fn around(points: impl IntoIterator<Item = Vector2>) -> Option<Self> {
-        let sensible = |p: &Vector2| p.x.abs() < ABSURD && p.y.abs() < ABSURD;
+        let sensible = |p: &Vector2| p.x.abs() < MAX_COORDINATE_M && p.y.abs() < MAX_COORDINATE_M;
         points.into_iter().filter(sensible).fold(None, |bounds: Option<Self>, p| {
             let b = bounds.unwrap_or(Self { min: p, max: p });
             Some(Self { min: b.min.inf(&p), max: b.max.sup(&p) })

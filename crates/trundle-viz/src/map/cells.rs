@@ -7,7 +7,7 @@ use crate::color::Color;
 use trundle_core::{Cell, CellIndex, GridGeometry, OccupancyGrid};
 
 /// Cells further out than this are not thought of.
-const FAR: f64 = 1e14;
+const MAX_CELL_INDEX: f64 = 1e14;
 
 /// A block of cells, which may reach beyond the grid: columns and rows from `low`, up to but without `high`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -32,7 +32,9 @@ impl CellBox {
 
     /// The cells that a rectangle of the map frame touches.
     pub(crate) fn touching(geometry: &GridGeometry, bounds: Bounds) -> Self {
-        let cell = |metres: f64| (metres / geometry.resolution).clamp(-FAR, FAR).floor() as i64;
+        let cell = |metres: f64| {
+            (metres / geometry.resolution).clamp(-MAX_CELL_INDEX, MAX_CELL_INDEX).floor() as i64
+        };
         let (low, high) = (bounds.min - geometry.origin, bounds.max - geometry.origin);
         Self { low: [cell(low.x), cell(low.y)], high: [cell(high.x) + 1, cell(high.y) + 1] }
     }

@@ -34,7 +34,7 @@ impl Paint {
 }
 
 /// Opacity of the tint.
-const ALPHA: u8 = 150;
+const TINT_ALPHA: u8 = 150;
 
 impl Shade {
     /// The tint that stands for it in a legend.
@@ -74,5 +74,5 @@ impl Shade {
 
 fn tint(share: f64) -> Color {
     let [r, g, b] = color_at(share);
-    Color { r, g, b, a: ALPHA }
+    Color { r, g, b, a: TINT_ALPHA }
 }

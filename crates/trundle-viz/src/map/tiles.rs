@@ -7,16 +7,16 @@ use crate::legend::paint_legend;
 use crate::text::{TextStyle, line_height};
 
 /// The longer side of a tile, as a part of a picture's own.
-const PART: f64 = 0.4;
+const TILE_SIDE_SHARE: f64 = 0.4;
 /// The unit of lettering, px.
-const UNIT: i64 = 2;
+const LETTER_UNIT_PX: i64 = 2;
 
 /// Pictures side by side, `columns` in a row, each below its title, with one legend: as an 8-bit RGB PNG. Without axes. Same
 /// content, same bytes.
 pub fn tiles(pictures: &[(String, MapPicture<'_>)], columns: usize) -> Vec<u8> {
     let plots: Vec<Canvas> = pictures.iter().map(|(_, picture)| plot(picture)).collect();
     let columns = columns.clamp(1, plots.len().max(1));
-    let (gap, title) = (8 * UNIT, line_height(UNIT) + 6 * UNIT);
+    let (gap, title) = (8 * LETTER_UNIT_PX, line_height(LETTER_UNIT_PX) + 6 * LETTER_UNIT_PX);
     let width = plots.iter().map(Canvas::width).max().unwrap_or(1) + gap;
     let height = plots.iter().map(Canvas::height).max().unwrap_or(1) + title + gap;
     let rows = plots.len().div_ceil(columns) as i64;
@@ -27,7 +27,7 @@ pub fn tiles(pictures: &[(String, MapPicture<'_>)], columns: usize) -> Vec<u8> {
         }
     }
     let whole = width * columns as i64;
-    let legend = paint_legend(&items, whole - 2 * gap, UNIT);
+    let legend = paint_legend(&items, whole - 2 * gap, LETTER_UNIT_PX);
     let mut canvas = Canvas::new(
         whole.max(legend.width() + gap) + gap,
         rows * height + legend.height() + gap,
@@ -35,7 +35,7 @@ pub fn tiles(pictures: &[(String, MapPicture<'_>)], columns: usize) -> Vec<u8> {
     );
     for (i, (plot, (name, _))) in plots.iter().zip(pictures).enumerate() {
         let (left, top) = (gap + width * (i % columns) as i64, height * (i / columns) as i64);
-        canvas.text(left, top + 4 * UNIT, name, TextStyle::new(UNIT, Color::INK));
+        canvas.text(left, top + 4 * LETTER_UNIT_PX, name, TextStyle::new(LETTER_UNIT_PX, Color::INK));
         canvas.paste(plot, left, top + title);
         canvas.frame_rect(left, top + title, plot.width(), plot.height(), 1, Color::FAINT_INK);
     }
@@ -44,7 +44,7 @@ pub fn tiles(pictures: &[(String, MapPicture<'_>)], columns: usize) -> Vec<u8> {
 }
 
 fn plot(picture: &MapPicture<'_>) -> Canvas {
-    let view = picture.view().scaled(PART);
+    let view = picture.view().scaled(TILE_SIDE_SHARE);
     let mut canvas = picture.ground(&view);
     picture.draw_layers(&mut canvas, &view);
     canvas

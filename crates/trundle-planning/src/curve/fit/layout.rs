@@ -3,10 +3,10 @@
 use clarabel::algebra::CscMatrix;
 
 /// Number of unknown vectors of a knot (a joint, or an end): position, first and second derivative by chord length.
-pub(super) const KNOT: usize = 3;
+pub(super) const KNOT_UNKNOWNS: usize = 3;
 
 /// A control point as a sum of unknown vectors.
-pub(super) type Terms = ([(usize, f64); KNOT], usize);
+pub(super) type Terms = ([(usize, f64); KNOT_UNKNOWNS], usize);
 
 /// Neighbouring pieces share the vectors of their common knot, so they meet in position, heading and curvature by construction. A
 /// degree above 5 adds free control points in the middle of each piece.
@@ -19,7 +19,7 @@ pub(super) struct Layout {
 impl Layout {
     /// The number of unknown vectors.
     pub(super) fn vectors(self) -> usize {
-        self.pieces * self.stride() + KNOT
+        self.pieces * self.stride() + KNOT_UNKNOWNS
     }
 
     /// The unknown that is the `order`-th derivative at a knot.
@@ -30,9 +30,9 @@ impl Layout {
     /// Control point `k` of a piece of `span` m: P1 = p + h p', P2 = p + 2h p' + span^2 / n(n - 1) p'', h = span / n.
     pub(super) fn control(self, piece: usize, k: usize, span: f64) -> Terms {
         let n = self.degree;
-        let (knot, order, side) = if k < KNOT {
+        let (knot, order, side) = if k < KNOT_UNKNOWNS {
             (piece, k, 1.0)
-        } else if n - k < KNOT {
+        } else if n - k < KNOT_UNKNOWNS {
             (piece + 1, n - k, -1.0)
         } else {
             return ([(self.knot(piece, k), 1.0), (0, 0.0), (0, 0.0)], 1);
@@ -53,7 +53,7 @@ impl Layout {
     }
 
     fn stride(self) -> usize {
-        KNOT + self.degree + 1 - 2 * KNOT
+        KNOT_UNKNOWNS + self.degree + 1 - 2 * KNOT_UNKNOWNS
     }
 }
 

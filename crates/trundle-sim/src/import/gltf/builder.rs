@@ -13,7 +13,7 @@ use std::collections::BTreeMap;
 use trundle_core::{ColorImage, Invalid};
 
 /// Farthest coordinate, m: a file beyond it is in another unit or broken.
-const FARTHEST: f64 = 1e5;
+const MAX_COORDINATE_M: f64 = 1e5;
 
 /// Most triangles of a file with all its instances.
 const MOST_TRIANGLES: usize = 50_000_000;
@@ -71,8 +71,8 @@ impl<'a> Builder<'a> {
         let first = self.positions.len();
         for (i, position) in surface.positions.iter().enumerate() {
             let placed = world_from_mesh.transform_point(&Point3::from(position.map(f64::from)));
-            if !placed.iter().all(|x| x.abs() <= FARTHEST) {
-                let expected = format!("within {FARTHEST} m of the origin; is the scale right?");
+            if !placed.iter().all(|x| x.abs() <= MAX_COORDINATE_M) {
+                let expected = format!("within {MAX_COORDINATE_M} m of the origin; is the scale right?");
                 let value = format!("({}, {}, {})", placed.x, placed.y, placed.z);
                 return Err(Invalid::new(format!("position {i} of {}", name()), value, "m", expected).into());
             }

@@ -18,7 +18,7 @@ use serde::{Deserialize, Serialize};
 use trundle_core::{Pose2, require_finite, require_in};
 
 /// Farthest from the origin that anything may be placed, m.
-const REACH: f64 = 1000.0;
+const MAX_COORDINATE_M: f64 = 1000.0;
 
 /// A scene as a file describes it: a base, and what is added to it. The format stands in `docs/formats.md`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -99,8 +99,8 @@ impl SceneFile {
 
 impl ScenePose {
     fn pose(self, field: &str) -> Result<Pose2, SceneError> {
-        require_in(&format!("{field}.x"), self.x, "m", -REACH, REACH)?;
-        require_in(&format!("{field}.y"), self.y, "m", -REACH, REACH)?;
+        require_in(&format!("{field}.x"), self.x, "m", -MAX_COORDINATE_M, MAX_COORDINATE_M)?;
+        require_in(&format!("{field}.y"), self.y, "m", -MAX_COORDINATE_M, MAX_COORDINATE_M)?;
         require_finite(&format!("{field}.heading_deg"), self.heading_deg, "deg")?;
         Ok(Pose2::new(self.x, self.y, self.heading_deg.to_radians()))
     }

@@ -1,6 +1,6 @@
 //! An object of a scene file: kind, pose, size and appearance.
 
-use super::{PaintName, PropKind, REACH, SceneError};
+use super::{MAX_COORDINATE_M, PaintName, PropKind, SceneError};
 use crate::materials::Finish;
 use crate::rng::hash;
 use crate::scenes::builder::Builder;
@@ -53,8 +53,8 @@ impl Prop {
     }
 
     fn check(&self, item: &str) -> Result<(), Invalid> {
-        require_in(&format!("{item}.x"), self.x, "m", -REACH, REACH)?;
-        require_in(&format!("{item}.y"), self.y, "m", -REACH, REACH)?;
+        require_in(&format!("{item}.x"), self.x, "m", -MAX_COORDINATE_M, MAX_COORDINATE_M)?;
+        require_in(&format!("{item}.y"), self.y, "m", -MAX_COORDINATE_M, MAX_COORDINATE_M)?;
         require_finite(&format!("{item}.heading_deg"), self.heading_deg, "deg")?;
         require_in(&format!("{item}.bottom"), self.bottom, "m", 0.0, 20.0)?;
         if self.paint.is_some() && !self.kind.takes_paint() {

@@ -2,7 +2,7 @@
 
 use super::super::builder::{Builder, Side, UNSEEN};
 use super::super::partition::{Along, DOOR_WIDTH, Partition};
-use super::{DOOR, HALF_WALL, ROOM};
+use super::{DOOR_CENTRE_X_M, HALF_WALL, ROOM_SIZE_M};
 use crate::materials::{Finish, Paint};
 use std::f64::consts::{FRAC_PI_2, PI};
 use trundle_core::Pose2;
@@ -29,8 +29,8 @@ pub(super) fn office(build: &mut Builder, corner: Pose2) {
     build.plant(at(4.55, 0.45, 0.0));
     build.bin(at(0.3, 2.1, 0.0));
     build.window(at(1.1, HALF_WALL, FRAC_PI_2), (1.3, 1.15));
-    build.board(at(1.6, ROOM[1] - HALF_WALL, -FRAC_PI_2), 1.5, (1.4, 0.95), Paint::Print);
-    build.board(at(ROOM[0] - HALF_WALL, 2.75, PI), 1.5, (0.6, 0.85), Paint::Print);
+    build.board(at(1.6, ROOM_SIZE_M[1] - HALF_WALL, -FRAC_PI_2), 1.5, (1.4, 0.95), Paint::Print);
+    build.board(at(ROOM_SIZE_M[0] - HALF_WALL, 2.75, PI), 1.5, (0.6, 0.85), Paint::Print);
 }
 
 /// A meeting room: a table with six chairs, door in the south.
@@ -48,7 +48,7 @@ pub(super) fn meeting(build: &mut Builder, corner: Pose2) {
     }
     build.cabinet(at(4.68, 3.4, 0.0), [0.46, 1.4, 0.8]);
     build.plant(at(0.4, 0.4, 0.0));
-    build.window(at(2.4, ROOM[1] - HALF_WALL, -FRAC_PI_2), (2.2, 1.15));
+    build.window(at(2.4, ROOM_SIZE_M[1] - HALF_WALL, -FRAC_PI_2), (2.2, 1.15));
     build.board(at(HALF_WALL, 2.6, 0.0), 1.4, (1.8, 1.1), Paint::Print);
     build.board(at(1.5, HALF_WALL, FRAC_PI_2), 1.5, (0.9, 0.65), Paint::Print);
 }
@@ -91,19 +91,24 @@ pub(super) fn store(build: &mut Builder, corner: Pose2) {
         let place = build.jittered(at(x, y, 0.0), 0.05, 0.3);
         build.cartons(place, [0.55, 0.45, 0.45]);
     }
-    build.board(at(ROOM[0] - HALF_WALL, 2.4, PI), 1.6, (0.5, 0.35), Paint::Sign { color: [168, 120, 20] });
+    build.board(
+        at(ROOM_SIZE_M[0] - HALF_WALL, 2.4, PI),
+        1.6,
+        (0.5, 0.35),
+        Paint::Sign { color: [168, 120, 20] },
+    );
 }
 
 fn shell(build: &mut Builder, corner: Pose2, door_in: DoorIn, floor: Paint, color: [u8; 3]) {
     let (x0, y0) = (corner.x, corner.y);
-    let (x1, y1) = (x0 + ROOM[0], y0 + ROOM[1]);
+    let (x1, y1) = (x0 + ROOM_SIZE_M[0], y0 + ROOM_SIZE_M[1]);
     build.floor_and_ceiling([x0, y0, x1, y1], floor);
     let wall = Paint::Plaster { color, prints: 0.12 };
     build.wall([x0, y0, x0 + HALF_WALL, y1], &[(Side::East, wall)]);
     build.wall([x1 - HALF_WALL, y0, x1, y1], &[(Side::West, wall)]);
     let south = long_wall(corner, [y0, y0 + HALF_WALL], [UNSEEN, wall]);
     let north = long_wall(corner, [y1 - HALF_WALL, y1], [wall, UNSEEN]);
-    let door = [x0 + DOOR];
+    let door = [x0 + DOOR_CENTRE_X_M];
     let (with_door, without, way) = match door_in {
         DoorIn::South => (south, north, 1.0),
         DoorIn::North => (north, south, -1.0),
@@ -111,12 +116,13 @@ fn shell(build: &mut Builder, corner: Pose2, door_in: DoorIn, floor: Paint, colo
     build.partition(&with_door, &door);
     build.partition(&without, &[]);
     let inner = if door_in == DoorIn::South { y0 + HALF_WALL } else { y1 - HALF_WALL };
-    let hinge = Pose2::new(x0 + DOOR + DOOR_WIDTH / 2.0 + 0.03125, inner + way * 0.03125, way * FRAC_PI_2);
+    let hinge =
+        Pose2::new(x0 + DOOR_CENTRE_X_M + DOOR_WIDTH / 2.0 + 0.03125, inner + way * 0.03125, way * FRAC_PI_2);
     build.door_leaf(hinge, [158, 120, 80]);
 }
 
 fn long_wall(corner: Pose2, faces: [f64; 2], paints: [Paint; 2]) -> Partition {
-    let span = [corner.x + HALF_WALL, corner.x + ROOM[0] - HALF_WALL];
+    let span = [corner.x + HALF_WALL, corner.x + ROOM_SIZE_M[0] - HALF_WALL];
     let jamb = Paint::Plain { color: [206, 204, 198] };
     Partition { along: Along::X, span, faces, paints, jamb }
 }

@@ -5,10 +5,10 @@ use crate::world::Aabb;
 use trundle_core::Vector3;
 
 /// Bins of the surface area heuristic, an axis.
-const BINS: usize = 16;
+const SAH_BINS: usize = 16;
 
 /// Levels after which items are halved by number: no tree gets deeper than this and 32.
-const DEEP: usize = 24;
+const MAX_SAH_DEPTH: usize = 24;
 
 pub(super) fn build(boxes: &[Aabb], most: usize) -> Bvh {
     let centers = boxes.iter().map(Aabb::center).collect();
@@ -84,7 +84,7 @@ impl Builder<'_> {
         let items = &mut self.bvh.items[part.first..part.end];
         let scale = Scale::over(items, &self.centers);
         let axis_and_bin =
-            if depth < DEEP { best_plane(items, self.boxes, &self.centers, &scale) } else { None };
+            if depth < MAX_SAH_DEPTH { best_plane(items, self.boxes, &self.centers, &scale) } else { None };
         let (axis, bin) = axis_and_bin?;
         let mut left = 0;
         for i in 0..items.len() {
@@ -111,12 +111,12 @@ impl Scale {
             let center = centers[item as usize];
             (low, high) = (low.inf(&center), high.sup(&center));
         }
-        let bins = |extent: f64| if extent > 0.0 { BINS as f64 * (1.0 - 1e-9) / extent } else { 0.0 };
+        let bins = |extent: f64| if extent > 0.0 { SAH_BINS as f64 * (1.0 - 1e-9) / extent } else { 0.0 };
         Self { low, bins_per_metre: (high - low).map(bins) }
     }
 
     fn bin(&self, center: &Vector3, axis: usize) -> usize {
-        (((center[axis] - self.low[axis]) * self.bins_per_metre[axis]) as usize).min(BINS - 1)
+        (((center[axis] - self.low[axis]) * self.bins_per_metre[axis]) as usize).min(SAH_BINS - 1)
     }
 }
 
@@ -124,7 +124,7 @@ impl Scale {
 fn best_plane(items: &[u32], boxes: &[Aabb], centers: &[Vector3], scale: &Scale) -> Option<(usize, usize)> {
     let mut best = (f64::INFINITY, None);
     for axis in (0..3).filter(|&axis| scale.bins_per_metre[axis] > 0.0) {
-        let mut bins: [(usize, Option<Aabb>); BINS] = [(0, None); BINS];
+        let mut bins: [(usize, Option<Aabb>); SAH_BINS] = [(0, None); SAH_BINS];
         for &item in items {
             let (count, bounds) = &mut bins[scale.bin(&centers[item as usize], axis)];
             *count += 1;
@@ -133,7 +133,7 @@ fn best_plane(items: &[u32], boxes: &[Aabb], centers: &[Vector3], scale: &Scale)
         }
         let costs_right = costs_from_the_end(&bins);
         let (mut count, mut bounds) = (0, None);
-        for bin in 1..BINS {
+        for bin in 1..SAH_BINS {
             count += bins[bin - 1].0;
             bounds = union(bounds, bins[bin - 1].1);
             if count > 0 && count < items.len() {
@@ -148,10 +148,10 @@ fn best_plane(items: &[u32], boxes: &[Aabb], centers: &[Vector3], scale: &Scale)
 }
 
 /// Area times number of all bins from each one on.
-fn costs_from_the_end(bins: &[(usize, Option<Aabb>); BINS]) -> [f64; BINS] {
-    let mut costs = [0.0; BINS];
+fn costs_from_the_end(bins: &[(usize, Option<Aabb>); SAH_BINS]) -> [f64; SAH_BINS] {
+    let mut costs = [0.0; SAH_BINS];
     let (mut count, mut bounds) = (0, None);
-    for bin in (0..BINS).rev() {
+    for bin in (0..SAH_BINS).rev() {
         count += bins[bin].0;
         bounds = union(bounds, bins[bin].1);
         costs[bin] = bounds.map_or(0.0, |b| area(&b)) * count as f64;

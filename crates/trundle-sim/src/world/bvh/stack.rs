@@ -1,14 +1,14 @@
 //! The traversal stack of the hierarchy.
 
 /// Entries that need no memory from the heap.
-const FIXED: usize = 64;
+const INLINE_ENTRIES: usize = 64;
 
 /// (distance, link).
 type Entry = (f32, u32);
 
-/// A stack of what is still to be visited. Up to [`FIXED`] entries, more than any reasonable tree needs, cost no allocation.
+/// A stack of what is still to be visited. Up to [`INLINE_ENTRIES`] entries, more than any reasonable tree needs, cost no allocation.
 pub(super) struct Stack {
-    fixed: [Entry; FIXED],
+    fixed: [Entry; INLINE_ENTRIES],
     len: usize,
     rest: Vec<Entry>,
 }
@@ -16,7 +16,7 @@ pub(super) struct Stack {
 impl Stack {
     #[inline(always)]
     pub(super) fn new() -> Self {
-        Self { fixed: [(0.0, 0); FIXED], len: 0, rest: Vec::new() }
+        Self { fixed: [(0.0, 0); INLINE_ENTRIES], len: 0, rest: Vec::new() }
     }
 
     #[inline(always)]
@@ -26,7 +26,7 @@ impl Stack {
 
     #[inline(always)]
     pub(super) fn push(&mut self, entry: Entry) {
-        if self.len < FIXED {
+        if self.len < INLINE_ENTRIES {
             self.fixed[self.len] = entry;
         } else {
             self.rest.push(entry);
@@ -39,7 +39,7 @@ impl Stack {
     pub(super) fn push_sorted(&mut self, bottom: usize, entry: Entry) {
         let mut at = self.len;
         self.push(entry);
-        while at > bottom && at < FIXED && self.fixed[at - 1].0 < entry.0 {
+        while at > bottom && at < INLINE_ENTRIES && self.fixed[at - 1].0 < entry.0 {
             self.fixed.swap(at, at - 1);
             at -= 1;
         }
@@ -48,7 +48,7 @@ impl Stack {
     #[inline(always)]
     pub(super) fn pop(&mut self) -> Option<Entry> {
         self.len = self.len.checked_sub(1)?;
-        if self.len < FIXED { Some(self.fixed[self.len]) } else { self.rest.pop() }
+        if self.len < INLINE_ENTRIES { Some(self.fixed[self.len]) } else { self.rest.pop() }
     }
 }
 

@@ -1,0 +1,62 @@
+//! Names of constants: the name of a number says its quantity, so one word is not enough; a tuple has no one unit.
+
+use super::finding::{Finding, Rule};
+use super::tree::Tree;
+
+/// Types of a constant that is a number, or a row of numbers.
+const NUMBERS: [&str; 13] =
+    ["f64", "f32", "u8", "u16", "u32", "u64", "usize", "i8", "i16", "i32", "i64", "isize", "Duration"];
+
+/// Words that name a number by themselves, by use in their field.
+const ONE_WORD_NAMES: [&str; 11] =
+    ["COLUMNS", "ROWS", "SIDE", "WIDTH", "HEIGHT", "LANES", "UNREACHED", "BLOCK", "LEAF", "FREE", "KERNEL"];
+
+/// Checks the constants of every package at the top level of their modules.
+pub fn check(tree: &Tree) -> Vec<Finding> {
+    let mut findings = Vec::new();
+    for package in &tree.packages {
+        for source in tree.sources(package) {
+            for (line, text) in source.code.text().lines().enumerate() {
+                if let Some(fault) = fault(text) {
+                    findings.push(Finding::ruled(Rule::ConstantName, &source.file.path, line + 1, fault));
+                }
+            }
+        }
+    }
+    findings
+}
+
+/// What is wrong with the constant that a line declares.
+fn fault(line: &str) -> Option<String> {
+    let visible = ["pub(crate) ", "pub(super) ", "pub "].iter().find_map(|v| line.strip_prefix(v));
+    let (name, rest) = visible.unwrap_or(line).strip_prefix("const ")?.split_once(": ")?;
+    let kind = rest.split(" =").next()?;
+    if kind.starts_with("(f64, ") || kind.starts_with("(f32, ") {
+        let is_one_unit = name.contains("RANGE") || name.contains("BAND") || name.contains("_XY_");
+        let is_one_unit =
+            is_one_unit || name.contains("SIZE") || name.contains("_PER_") || name.contains("RADII");
+        return (!is_one_unit)
+            .then(|| format!("constant {name} is a tuple: give each quantity a constant of its own"));
+    }
+    let is_number =
+        NUMBERS.contains(&kind) || NUMBERS[..2].iter().any(|f| kind.starts_with(&format!("[{f};")));
+    let is_one_word = !name.contains('_') && !ONE_WORD_NAMES.contains(&name);
+    (is_number && is_one_word)
+        .then(|| format!("constant {name} has one word: name its quantity, and its unit where it has one"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::fault;
+
+    #[test]
+    fn numbers_need_a_quantity_and_tuples_one_unit() {
+        assert!(fault("const NEAR: f64 = 0.1;").is_some());
+        assert!(fault("pub(super) const REACH: [f64; 2] = [0.1, 0.2];").is_some());
+        assert!(fault("const FAR_OFF: (f64, f64) = (0.1, 0.2);").is_some());
+        assert!(fault("const MAX_RANGE_M: f64 = 8.0;").is_none());
+        assert!(fault("const SPEED_RANGE_M_S: (f64, f64) = (0.7, 1.6);").is_none());
+        assert!(fault("const MAGIC: &[u8; 4] = b\"abcd\";").is_none());
+        assert!(fault("    const A: f64 = 1.0;").is_none(), "inside a function");
+    }
+}
