@@ -1,7 +1,7 @@
 use std::path::Path;
 use trundle::app::AppError;
 use trundle::sim::import::{GltfOptions, gltf};
-use trundle::sim::{Lights, Scene, Stage, World};
+use trundle::sim::{Lights, Scene, SceneSnapshot, World};
 
 /// A world to take pictures of.
 pub struct Scenery {
@@ -32,7 +32,7 @@ impl Scenery {
     }
 
     /// What a camera sees of it.
-    pub fn stage(&self) -> Stage<'_> {
-        Stage { world: &self.world, movers: &[], lights: &self.lights }
+    pub fn snapshot(&self) -> SceneSnapshot<'_> {
+        SceneSnapshot { world: &self.world, movers: &[], lights: &self.lights }
     }
 }
