@@ -5,7 +5,9 @@ use crate::frame::observation_model::ObservationModel;
 use crate::frame::rgbd_frame::Frame;
 use crate::ids::KeyframeId;
 use crate::map::landmark_map::LandmarkMap;
-use trundle_core::{DepthImage, PinholeCamera, Pose3, Stamp, Vector2, Vector3};
+use crate::place_recognition::place_hypothesis::PlaceHypothesis;
+use nalgebra::Vector6;
+use trundle_core::{DepthImage, PinholeCamera, Pose2, Pose3, Stamp, Vector2, Vector3};
 use trundle_vision::{Descriptor, Features, ImagePatch, Keypoint};
 
 /// A small camera without distortion.
@@ -101,4 +103,42 @@ pub(crate) fn painted_map() -> (LandmarkMap, KeyframeId) {
         map.observe(landmark, keyframe, feature);
     }
     (map, keyframe)
+}
+
+/// How certain a hypothesis is.
+#[derive(Debug, Clone, Copy, PartialEq, PartialOrd)]
+pub(crate) enum Certainty {
+    Implausible,
+    Plausible,
+    Certain,
+}
+
+/// A hypothesis on a line: x \[m\], number of points, certainty.
+impl PlaceHypothesis for (f64, usize, Certainty) {
+    fn pose(&self) -> Pose3 {
+        Pose3::new(nalgebra::UnitQuaternion::identity(), Vector3::x() * self.0)
+    }
+
+    fn points(&self) -> usize {
+        self.1
+    }
+
+    fn is_plausible(&self) -> bool {
+        self.2 >= Certainty::Plausible
+    }
+
+    fn is_certain(&self) -> bool {
+        self.2 == Certainty::Certain
+    }
+}
+
+/// A camera 0.4 m above the floor, turned and tilted on its robot.
+pub(crate) fn camera_on_floor() -> Pose3 {
+    Pose3::exp(Vector6::new(0.1, 0.02, 0.4, -1.4, 1.1, -1.2))
+}
+
+/// The pose of that camera after `i` steps of 0.2 m along a bend.
+pub(crate) fn camera_along_floor(i: usize) -> Pose3 {
+    let along = 0.2 * i as f64;
+    Pose3::from_pose2(Pose2::new(along.sin(), 0.5 * along, 0.3 * along)) * camera_on_floor()
 }

@@ -76,38 +76,41 @@ impl FloorPlane {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::testing::blank_frame;
+    use crate::testing::{blank_frame, camera_along_floor, camera_on_floor};
     use nalgebra::Vector6;
-    use trundle_core::Pose2;
-
-    /// A camera 0.4 m above the floor, turned and tilted on its robot.
-    fn mount() -> Pose3 {
-        Pose3::exp(Vector6::new(0.1, 0.02, 0.4, -1.4, 1.1, -1.2))
-    }
-
-    fn at(i: usize) -> Pose3 {
-        let along = 0.2 * i as f64;
-        Pose3::from_pose2(Pose2::new(along.sin(), 0.5 * along, 0.3 * along)) * mount()
-    }
 
     #[test]
     fn keyframes_are_constrained_to_the_common_plane_unless_they_are_off_it() {
         let mut map = LandmarkMap::default();
         let bent = Pose3::exp(Vector6::new(0.01, -0.02, 0.02, 0.01, 0.02, 0.01));
         let ids: Vec<KeyframeId> = (0..10)
-            .map(|i| map.add_keyframe(blank_frame(1), if i == 4 { at(i) * bent } else { at(i) }))
+            .map(|i| {
+                map.add_keyframe(
+                    blank_frame(1),
+                    if i == 4 { camera_along_floor(i) * bent } else { camera_along_floor(i) },
+                )
+            })
             .collect();
-        let axis = mount().inverse().rotate(Vector3::z());
+        let axis = camera_on_floor().inverse().rotate(Vector3::z());
         let plane = FloorPlane::of(&map, axis).unwrap();
         let tie = plane.constraint(&map, ids[4], 7, 4).unwrap();
-        assert!((tie.from_to.translation.z - mount().translation.z).abs() < 1e-9);
+        assert!((tie.from_to.translation.z - camera_on_floor().translation.z).abs() < 1e-9);
         assert!(tie.from_to.rotate(axis).angle(&Vector3::z()) < 1e-9);
         let along = |pose: Pose3| pose.translation.xy();
-        assert!((along(tie.from_to) - along(at(4) * bent)).norm() < 1e-9, "it is free to go along the floor");
-        map.move_keyframe(ids[5], Pose3::exp(Vector6::new(0.0, 0.0, 0.5, 0.0, 0.0, 0.0)) * at(5));
+        assert!(
+            (along(tie.from_to) - along(camera_along_floor(4) * bent)).norm() < 1e-9,
+            "it is free to go along the floor"
+        );
+        map.move_keyframe(
+            ids[5],
+            Pose3::exp(Vector6::new(0.0, 0.0, 0.5, 0.0, 0.0, 0.0)) * camera_along_floor(5),
+        );
         assert_eq!(FloorPlane::of(&map, axis).unwrap().constraint(&map, ids[5], 7, 5), None);
         (0..5).for_each(|i| {
-            map.move_keyframe(ids[i], Pose3::exp(Vector6::new(0.0, 0.0, i as f64, 0.0, 0.0, 0.0)) * at(i));
+            map.move_keyframe(
+                ids[i],
+                Pose3::exp(Vector6::new(0.0, 0.0, i as f64, 0.0, 0.0, 0.0)) * camera_along_floor(i),
+            );
         });
         assert_eq!(FloorPlane::of(&map, axis), None, "stairs");
     }

@@ -38,28 +38,21 @@ impl FloorAxis {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::testing::{camera_along_floor, camera_on_floor};
     use nalgebra::Vector6;
     use trundle_core::Pose2;
-
-    /// A camera 0.4 m above the floor, turned and tilted on its robot.
-    fn mount() -> Pose3 {
-        Pose3::exp(Vector6::new(0.1, 0.02, 0.4, -1.4, 1.1, -1.2))
-    }
-
-    fn at(i: usize) -> Pose3 {
-        let along = 0.2 * i as f64;
-        Pose3::from_pose2(Pose2::new(along.sin(), 0.5 * along, 0.3 * along)) * mount()
-    }
 
     #[test]
     fn planar_priors_determine_the_axis_and_priors_of_a_hand_do_not() {
         let mut floor = FloorAxis::default();
-        floor.record(mount().inverse() * Pose3::from_pose2(Pose2::new(0.1, 0.0, 0.0)) * mount());
+        floor.record(
+            camera_on_floor().inverse() * Pose3::from_pose2(Pose2::new(0.1, 0.0, 0.0)) * camera_on_floor(),
+        );
         assert_eq!(floor.axis_after(None), None);
         assert_eq!(floor.axis_after(Some(Vector3::y())), Some(Vector3::y()), "it has not turned yet");
-        (1..20).for_each(|i| floor.record(at(i - 1).inverse() * at(i)));
+        (1..20).for_each(|i| floor.record(camera_along_floor(i - 1).inverse() * camera_along_floor(i)));
         let axis = floor.axis_after(None).unwrap();
-        assert!(mount().rotate(axis).z.abs() > 1.0 - 1e-9);
+        assert!(camera_on_floor().rotate(axis).z.abs() > 1.0 - 1e-9);
         floor.record(Pose3::exp(Vector6::new(0.0, 0.0, 0.01, 0.001, 0.002, 0.003)));
         assert_eq!(floor.axis_after(Some(Vector3::y())), None);
     }

@@ -45,35 +45,7 @@ pub(crate) fn is_same_place(a: Pose3, b: Pose3) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use trundle_core::Vector3;
-
-    /// How certain a hypothesis is.
-    #[derive(Debug, Clone, Copy, PartialEq, PartialOrd)]
-    enum Certainty {
-        Implausible,
-        Plausible,
-        Certain,
-    }
-    use Certainty::{Certain, Implausible, Plausible};
-
-    /// Where along a line, and how many points.
-    impl PlaceHypothesis for (f64, usize, Certainty) {
-        fn pose(&self) -> Pose3 {
-            Pose3::new(nalgebra::UnitQuaternion::identity(), Vector3::x() * self.0)
-        }
-
-        fn points(&self) -> usize {
-            self.1
-        }
-
-        fn is_plausible(&self) -> bool {
-            self.2 >= Plausible
-        }
-
-        fn is_certain(&self) -> bool {
-            self.2 == Certain
-        }
-    }
+    use crate::testing::Certainty::{self, Certain, Implausible, Plausible};
 
     #[test]
     fn the_hypothesis_with_most_points_wins_unless_a_rival_elsewhere_has_nearly_as_many() {

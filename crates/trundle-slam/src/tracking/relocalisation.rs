@@ -63,36 +63,7 @@ fn try_groups<T: PlaceHypothesis>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::place_recognition::place_hypothesis::PlaceHypothesis;
-    use trundle_core::{Pose3, Vector3};
-
-    /// How certain a hypothesis is.
-    #[derive(Debug, Clone, Copy, PartialEq, PartialOrd)]
-    enum Certainty {
-        Implausible,
-        Plausible,
-        Certain,
-    }
-    use Certainty::{Certain, Implausible, Plausible};
-
-    /// Where along a line, and how many points.
-    impl PlaceHypothesis for (f64, usize, Certainty) {
-        fn pose(&self) -> Pose3 {
-            Pose3::new(nalgebra::UnitQuaternion::identity(), Vector3::x() * self.0)
-        }
-
-        fn points(&self) -> usize {
-            self.1
-        }
-
-        fn is_plausible(&self) -> bool {
-            self.2 >= Plausible
-        }
-
-        fn is_certain(&self) -> bool {
-            self.2 == Certain
-        }
-    }
+    use crate::testing::Certainty::{Certain, Implausible};
 
     #[test]
     fn a_group_is_tried_again_before_a_much_less_similar_one() {
