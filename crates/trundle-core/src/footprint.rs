@@ -1,6 +1,7 @@
 //! The robot's footprint on the floor: a disc or a convex polygon in the base frame.
 
 use crate::{Invalid, Vector2, require_positive};
+use std::f64::consts::TAU;
 
 /// The robot's outline on the floor, base frame.
 #[derive(Debug, Clone, PartialEq)]
@@ -53,10 +54,14 @@ impl Footprint {
         if area < 0.0 {
             corners.reverse();
         }
-        match (0..corners.len()).find(|&i| turn_at(&corners, i) < -1e-12) {
-            Some(i) => Err(Invalid::new("footprint", format!("turned inward at corner {i}"), "", "convex")),
-            None => Ok(Self::Polygon { corners }),
+        if let Some(i) = (0..corners.len()).find(|&i| turn_at(&corners, i) < -1e-12) {
+            return Err(Invalid::new("footprint", format!("turned inward at corner {i}"), "", "convex"));
         }
+        let turns = (total_turn(&corners) / TAU).round();
+        if turns > 1.0 {
+            return Err(Invalid::new("footprint", format!("a star of {turns} turns"), "", "convex"));
+        }
+        Ok(Self::Polygon { corners })
     }
 
     /// The greatest distance of any of its points from the base's origin, m.
@@ -71,6 +76,12 @@ impl Footprint {
 fn signed_area(corners: &[Vector2]) -> f64 {
     let next = corners.iter().cycle().skip(1);
     corners.iter().zip(next).map(|(a, b)| a.perp(b)).sum::<f64>() / 2.0
+}
+
+/// Sum of the changes of direction at all corners, rad: one whole turn, and more where sides cross.
+fn total_turn(corners: &[Vector2]) -> f64 {
+    let side = |i: usize| corners[(i + 1) % corners.len()] - corners[i % corners.len()];
+    (0..corners.len()).map(|i| side(i).perp(&side(i + 1)).atan2(side(i).dot(&side(i + 1)))).sum()
 }
 
 fn turn_at(corners: &[Vector2], i: usize) -> f64 {
