@@ -74,8 +74,13 @@ pub fn parse(text: &str) -> Result<Vec<Problem>, Invalid> {
         let points = || points_of(number, rest);
         given.note(word);
         match word {
-            "disc" => problem.footprint = Footprint::disc(floats(number, rest, 1)?[0])?,
-            "footprint" => problem.footprint = Footprint::polygon(points()?)?,
+            "disc" => {
+                let radius = floats(number, rest, 1)?[0];
+                problem.footprint = Footprint::disc(radius).map_err(|e| in_line(number, e))?;
+            }
+            "footprint" => {
+                problem.footprint = Footprint::polygon(points()?).map_err(|e| in_line(number, e))?;
+            }
             "start" => problem.start = pose(number, rest)?,
             "goal" => problem.goal = pose(number, rest)?,
             "point" => problem.obstacles.extend(points()?.into_iter().map(Obstacle::Point)),
@@ -155,6 +160,11 @@ pub(super) fn floats(number: usize, text: &str, count: usize) -> Result<Vec<f64>
         Some(list) if count == 0 || list.len() == count => Ok(list),
         _ => Err(refused(number, text, "finite numbers, as many as the word takes")),
     }
+}
+
+/// The error with the number of its line.
+fn in_line(number: usize, error: Invalid) -> Invalid {
+    Invalid { field: format!("line {number}: {}", error.field), ..error }
 }
 
 pub(super) fn refused(number: usize, value: &str, expected: &str) -> Invalid {

@@ -50,7 +50,7 @@ pub fn obstacle(rng: &mut ChaCha8Rng) -> Obstacle {
 }
 
 /// A few occupied cells of a grid, as a scene and as squares.
-fn cells(rng: &mut ChaCha8Rng) -> (ObstacleScene, Vec<Obstacle>) {
+pub fn cells(rng: &mut ChaCha8Rng) -> (ObstacleScene, Vec<Obstacle>) {
     let (side, count) = (rng.random_range(0.02..0.1), 24_usize);
     let origin = Vector2::repeat(-0.5 * side * count as f64);
     let geometry = GridGeometry::new(side, origin, count, count).expect("a geometry");

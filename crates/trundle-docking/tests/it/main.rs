@@ -8,12 +8,17 @@ mod closed_loop;
 #[allow(dead_code, reason = "the benchmark names them all")]
 #[path = "../../../../bench/docking/clouds.rs"]
 mod clouds;
+mod common;
 mod contact;
+mod corridors;
 mod inputs;
 #[allow(dead_code, reason = "the benchmark prints with it")]
 #[path = "../../../../bench/docking/judge.rs"]
 mod judge;
 mod laws;
+mod manoeuvres;
 mod parts;
+mod refusals;
+mod scenes;
 mod shapes;
 mod world;
