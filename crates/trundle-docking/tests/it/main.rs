@@ -1,6 +1,7 @@
 //! Laws and closed loops of trundle-docking.
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
+mod budgets;
 mod certificates;
 #[path = "../../../../bench/docking/clock.rs"]
 mod clock;
@@ -10,6 +11,7 @@ mod closed_loop;
 mod clouds;
 mod common;
 mod contact;
+mod contact_laws;
 mod corridors;
 mod inputs;
 #[allow(dead_code, reason = "the benchmark prints with it")]
@@ -18,6 +20,8 @@ mod judge;
 mod laws;
 mod manoeuvres;
 mod parts;
+mod positioner_laws;
+mod random_walks;
 mod refusals;
 mod scenes;
 mod shapes;
