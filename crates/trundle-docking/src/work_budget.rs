@@ -108,3 +108,48 @@ impl<T> fmt::Debug for PlanningJob<T> {
         f.debug_struct("PlanningJob").field("work", &self.work()).finish_non_exhaustive()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Work of `steps` steps of ten, with a yield before each.
+    async fn steps(budget: Arc<WorkBudget>, steps: u32) -> u32 {
+        for _ in 0..steps {
+            BudgetYield(&budget).await;
+            budget.spend(10);
+        }
+        steps
+    }
+
+    #[test]
+    fn a_job_does_what_is_granted_and_at_most_one_step_more() {
+        let budget = WorkBudget::rationed(u64::MAX);
+        let mut job = PlanningJob::new(Arc::clone(&budget), steps(budget, 10));
+        assert_eq!((job.advance(0), job.work()), (None, 0));
+        assert_eq!((job.advance(25), job.work()), (None, 30));
+        assert_eq!((job.advance(20), job.work()), (None, 50));
+        assert_eq!((job.advance(u64::MAX), job.work()), (Some(10), 100));
+    }
+
+    #[test]
+    fn unused_grants_are_not_saved() {
+        let budget = WorkBudget::rationed(u64::MAX);
+        let mut job = PlanningJob::new(Arc::clone(&budget), steps(budget, 3));
+        for _ in 0..5 {
+            job.advance(0);
+        }
+        assert_eq!((job.advance(1), job.work()), (None, 10));
+    }
+
+    #[test]
+    fn an_endless_budget_runs_to_its_end_and_is_spent_at_its_limit() {
+        let budget = WorkBudget::endless(25);
+        assert_eq!(run_to_end(steps(Arc::clone(&budget), 2)), 2);
+        assert!(!budget.is_spent());
+        assert_eq!(run_to_end(steps(Arc::clone(&budget), 1)), 1);
+        assert!(budget.is_spent());
+        budget.spend(u64::MAX);
+        assert_eq!(budget.work(), u64::MAX);
+    }
+}

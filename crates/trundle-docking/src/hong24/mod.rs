@@ -5,3 +5,6 @@ pub(crate) mod decide;
 pub(crate) mod plan;
 
 pub use config::Hong24Config;
+
+#[cfg(test)]
+mod tests;

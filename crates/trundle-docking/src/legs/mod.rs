@@ -2,3 +2,6 @@
 
 pub(crate) mod leg_sequence;
 pub(crate) mod query;
+
+#[cfg(test)]
+mod tests;

@@ -12,3 +12,6 @@ pub(crate) mod branch_and_bound;
 pub(crate) mod chain;
 pub(crate) mod leg_feasibility;
 pub(crate) mod ranges;
+
+#[cfg(test)]
+mod tests;
