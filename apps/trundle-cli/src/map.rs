@@ -7,7 +7,7 @@ use trundle::app::AppError;
 use trundle::core::{Pose2, Stamp};
 use trundle::io::{LaserLog, LaserLogOptions, OutputFolder, read_map, write_map};
 use trundle::mapping::{
-    Localized, MapLocalizer, MapperConfig, ParticleConfig, ParticleMapper, carry_trajectory,
+    Localized, MapLocalizer, MapperConfig, ParticleConfig, ParticleMapper, propagate_trajectory,
 };
 
 /// `trundle map`
@@ -87,7 +87,7 @@ pub fn run(args: &MapArgs) -> Result<Outcome, AppError> {
         }
     };
     let seconds = start.elapsed().as_secs_f64();
-    let trajectory = carry_trajectory(&poses, &odometry);
+    let trajectory = propagate_trajectory(&poses, &odometry);
     folder.write("trajectory.txt", trajectory_text(&trajectory).as_bytes())?;
     folder.write("summary.json", summary(args, &log, &counts, megabytes, seconds).to_json().as_bytes())?;
     let place = folder.commit()?;

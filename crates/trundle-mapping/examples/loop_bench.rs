@@ -9,7 +9,7 @@ mod building;
 
 use building::Building;
 use trundle_core::Stamp;
-use trundle_mapping::{ParticleConfig, ParticleMapper, ScanUpdate, carry_trajectory};
+use trundle_mapping::{ParticleConfig, ParticleMapper, ScanUpdate, propagate_trajectory};
 
 fn main() {
     let number = |n: usize| std::env::args().nth(n).and_then(|v| v.parse::<u64>().ok());
@@ -30,7 +30,7 @@ fn main() {
                 stamps.push((scan.stamp(), *odom));
             }
             mapper.finish();
-            let found: Vec<(Stamp, _)> = carry_trajectory(&mapper.trajectory(), &stamps);
+            let found: Vec<(Stamp, _)> = propagate_trajectory(&mapper.trajectory(), &stamps);
             let origin = drive.truth[0].inverse();
             let errors: Vec<f64> =
                 found.iter().zip(&drive.truth).map(|(f, t)| f.1.distance(&(origin * *t))).collect();

@@ -1,3 +1,5 @@
+//! Settings of the particle filter.
+
 use serde::{Deserialize, Serialize};
 use trundle_core::{Invalid, require_in};
 use trundle_grid::MapperConfig;

@@ -327,7 +327,7 @@ impl Robot {
             let is_drawn = self.see(scan);
             if is_drawn
                 && track.tracking.is_located()
-                && self.scan_poses.note(stamp, track.visual_from_camera, || self.mapper.kept_stamps())
+                && self.scan_poses.note(stamp, track.visual_from_camera, || self.mapper.logged_stamps())
             {
                 self.perception.iter_mut().for_each(|perception| perception.forget_frames(&self.scan_poses));
             }

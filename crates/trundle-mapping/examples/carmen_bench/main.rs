@@ -10,7 +10,7 @@ mod relations;
 
 use relations::{Agreement, Relation, relations};
 use trundle_core::{Cell, OccupancyGrid, Pose2, Stamp};
-use trundle_mapping::{ParticleConfig, ParticleMapper, ScanUpdate, carry_trajectory};
+use trundle_mapping::{ParticleConfig, ParticleMapper, ScanUpdate, propagate_trajectory};
 
 /// Time on the processor, ms: others may be at work too.
 fn processor_ms() -> f64 {
@@ -63,7 +63,7 @@ fn run(log: &log::Log, config: &ParticleConfig, seed: u64) -> Run {
         }
     }
     mapper.finish();
-    let trajectory = carry_trajectory(&mapper.trajectory(), &odometry);
+    let trajectory = propagate_trajectory(&mapper.trajectory(), &odometry);
     let megabytes = mapper.bytes() as f64 / 1e6;
     let grid = mapper.grid().clone();
     Run { trajectory, scans_ms, resamplings, degenerate, bends, megabytes, grid }

@@ -4,7 +4,7 @@
 use trundle_core::{Pose2, Stamp, Vector2, wrap_angle};
 
 #[derive(Clone, Copy, PartialEq)]
-pub enum Kind {
+pub enum EntryKind {
     /// About 1 m of way apart.
     Near,
     /// About 10 m of way apart.
@@ -14,7 +14,7 @@ pub enum Kind {
 }
 
 pub struct Relation {
-    kind: Kind,
+    kind: EntryKind,
     from: Stamp,
     to: Stamp,
     relative: Pose2,
@@ -31,7 +31,7 @@ pub fn relations(reference: &[(Stamp, Pose2)]) -> Vec<Relation> {
     };
     for i in 0..reference.len() {
         let mut way = 0.0;
-        let mut next = [(1.0, Kind::Near), (10.0, Kind::Far)].into_iter().peekable();
+        let mut next = [(1.0, EntryKind::Near), (10.0, EntryKind::Far)].into_iter().peekable();
         for j in i + 1..reference.len() {
             way += reference[j].1.distance(&reference[j - 1].1);
             while next
@@ -58,7 +58,7 @@ pub fn relations(reference: &[(Stamp, Pose2)]) -> Vec<Relation> {
                     nearest = Some((distance, j));
                 }
             } else if let Some((_, j)) = nearest.take() {
-                found.push(relation(Kind::Loop, i, j));
+                found.push(relation(EntryKind::Loop, i, j));
             }
         }
     }
@@ -103,7 +103,8 @@ impl Agreement {
         let pairs: Vec<(Vector2, Vector2)> =
             reference.iter().filter_map(|(s, p)| Some((p.position(), at(*s)?.position()))).collect();
         (!relations.is_empty()).then(|| Self {
-            by_kind: [Kind::Near, Kind::Far, Kind::Loop].map(|kind| errors(&|r| r.kind == kind)),
+            by_kind: [EntryKind::Near, EntryKind::Far, EntryKind::Loop]
+                .map(|kind| errors(&|r| r.kind == kind)),
             all: errors(&|_| true),
             rest: but.map(|(from, to)| {
                 let out = |pose: usize| (from..to).contains(&pose);

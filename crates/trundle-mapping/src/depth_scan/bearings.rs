@@ -1,3 +1,5 @@
+//! Findings along each bearing of one depth image, and the scan made of them.
+
 use super::{
     mount::{BeamView, Mount},
     pixel_model::SortModel,

@@ -1,3 +1,5 @@
+//! Settings of the scan from depth.
+
 use serde::{Deserialize, Serialize};
 use trundle_core::{Invalid, require_in};
 

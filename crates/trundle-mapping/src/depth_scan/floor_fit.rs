@@ -1,3 +1,5 @@
+//! Plane of the floor fitted to a depth image.
+
 use super::{DepthScanConfig, pixel_model::SortModel, pixel_rays::LensRays};
 use nalgebra::{Cholesky, Matrix3, Vector3 as Column};
 use trundle_core::{DepthImage, Pose3};

@@ -1,3 +1,5 @@
+//! Geometry that follows from the mount of the camera.
+
 use super::{
     DepthScanConfig,
     floor_fit::FloorSamples,

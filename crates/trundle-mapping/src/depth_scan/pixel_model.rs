@@ -1,3 +1,5 @@
+//! Coefficients that classify the pixels of a depth image.
+
 use super::{DepthScanConfig, FloorFit, range_bins::BINS};
 use trundle_core::Pose3;
 

@@ -1,3 +1,5 @@
+//! Rays of the pixels, and the fan of beams they fall into.
+
 use trundle_core::{PinholeCamera, Pose3, Vector2, Vector3, wrap_angle};
 
 /// The rays of a camera's pixels in its own frame, row by row: (u, v, 1) m at one m of depth, its lens distortion undone.

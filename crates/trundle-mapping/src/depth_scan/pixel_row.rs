@@ -1,3 +1,5 @@
+//! Classification of one row of pixels.
+
 use super::pixel_model::{SURFACE_LEAST, SURFACE_SIGMAS, SortModel};
 
 /// What the pixels of a row say, column by column.

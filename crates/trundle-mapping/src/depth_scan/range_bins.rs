@@ -1,3 +1,5 @@
+//! Set of free stretches of a beam, as bits of range bins.
+
 /// A set of stretches of a beam, as 128 bins of equal length up to the greatest range.
 pub(super) type SpanBits = u128;
 

@@ -1,3 +1,5 @@
+//! Fusion of the scans of several sensors into one scan.
+
 use super::range_bins::{BELOW, BINS, SpanBits, bins, bridged, spans};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{PI, TAU};

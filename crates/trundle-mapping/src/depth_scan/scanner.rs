@@ -1,3 +1,5 @@
+//! Scan from a depth image.
+
 use super::{
     DepthScanConfig, FloorFit,
     bearings::Bearings,

@@ -1,17 +1,21 @@
+//! Global localization in a fixed map, then tracking by particles.
+
 use crate::particle_config::ParticleConfig;
 use crate::persist::FilterFileError;
-use crate::rbpf::map_publisher::Publisher;
-use crate::rbpf::mapper::{ParticleMapper, USUAL, USUAL_RATE, metres, scaled};
+use crate::rbpf::map_publisher::MapPublisher;
+use crate::rbpf::mapper::{
+    EXPECTED_LOG_LIKELIHOOD, EXPECTED_LOG_LIKELIHOOD_RATE, ParticleMapper, in_metres, scaled,
+};
 use crate::rbpf::motion_model::{motion_covariance, unknown_motion_covariance};
 use crate::rbpf::proposal::{Proposal, Proposer};
 use crate::rbpf::resampling::{effective, low_variance};
-use crate::rbpf::rng::Chance;
-use crate::rbpf::update_gate::Gate;
+use crate::rbpf::rng::ParticleRng;
+use crate::rbpf::update_gate::UpdateGate;
 use crate::scan_match::branch_and_bound::Pyramid;
 use crate::scan_match::coarse_search::CoarseSearch;
 use crate::scan_match::global_search::{GlobalSearch, Lost};
 use crate::scan_match::likelihood::Likelihood;
-use crate::scan_match::scan_points::ScanShape;
+use crate::scan_match::scan_points::ScanPoints;
 use nalgebra::{Matrix3, Vector3};
 use trundle_core::{Invalid, OccupancyGrid, Pose2, Scan, wrap_angle};
 use trundle_grid::tiles::TileMap;
@@ -29,10 +33,10 @@ pub struct MapLocalizer {
     likelihood: Likelihood,
     map: TileMap,
     pyramid: Option<Pyramid>,
-    shape: ScanShape,
+    shape: ScanPoints,
     coarse: CoarseSearch,
-    gate: Gate,
-    usual: f64,
+    gate: UpdateGate,
+    expected_log_likelihood: f64,
     state: State,
 }
 
@@ -68,8 +72,8 @@ pub enum Localized {
     },
 }
 
-/// So many scans in a row that fit worse than unknown ground would: lost.
-const STRANGE_SCANS: usize = 5;
+/// Number of successive scans that fit worse than unknown ground after which the robot is lost. Source: ours.
+const MAX_MISMATCHED_SCANS: usize = 5;
 
 impl MapLocalizer {
     /// In the map of a saved filter ([`ParticleMapper::save`]).
@@ -112,10 +116,10 @@ impl MapLocalizer {
             map,
             seed,
             updates: 0,
-            shape: ScanShape::default(),
+            shape: ScanPoints::default(),
             coarse: CoarseSearch::default(),
-            gate: Gate::default(),
-            usual: USUAL,
+            gate: UpdateGate::default(),
+            expected_log_likelihood: EXPECTED_LOG_LIKELIHOOD,
             state: State::Lost(GlobalSearch::default()),
             config,
         }
@@ -123,7 +127,7 @@ impl MapLocalizer {
 
     /// The map as a three-valued grid.
     pub fn grid(&self) -> OccupancyGrid {
-        let mut publisher = Publisher::new(&self.config.map);
+        let mut publisher = MapPublisher::new(&self.config.map);
         publisher.show(&self.map);
         publisher.grid().clone()
     }
@@ -174,7 +178,7 @@ impl MapLocalizer {
         let covariance = found.information.try_inverse().unwrap_or_else(unknown_motion_covariance);
         self.state = State::Known { particles: vec![(found.pose, 0.0); self.config.particles], strange: 0 };
         Localized::Known {
-            map_from_base: metres(&self.config, found.pose),
+            map_from_base: in_metres(&self.config, found.pose),
             covariance: scaled(covariance, self.config.map.resolution),
             explained: found.explained,
             degenerate: found.degenerate,
@@ -191,7 +195,7 @@ impl MapLocalizer {
             shape: &self.shape,
             motion_covariance: scaled(covariance, per_metre),
             anchor: None,
-            usual: self.usual,
+            expected_log_likelihood: self.expected_log_likelihood,
         };
         let motion = Pose2 { x: motion.x * per_metre, y: motion.y * per_metre, ..motion };
         let lead =
@@ -199,9 +203,9 @@ impl MapLocalizer {
         let far = proposer.far(&self.map, &mut self.coarse, (lead, lead * motion));
         let mut best: Option<(f64, Proposal)> = None;
         for (i, (pose, log_weight)) in particles.iter_mut().enumerate() {
-            let mut chance = Chance::new(self.seed, self.updates, i);
+            let mut rng = ParticleRng::new(self.seed, self.updates, i);
             let places = (*pose, *pose * motion);
-            let found = proposer.propose((&self.map, &far), &mut self.coarse, places, &mut chance);
+            let found = proposer.propose((&self.map, &far), &mut self.coarse, places, &mut rng);
             *pose = found.pose;
             *log_weight += found.log_weight * proposer.weight_scale();
             if best.is_none_or(|(greatest, _)| *log_weight > greatest) {
@@ -211,22 +215,23 @@ impl MapLocalizer {
         let (greatest, found) = best.expect("invariant: there is at least one particle");
         let unseen = 0.5 * self.config.outliers.ln();
         *strange = if found.per_point < unseen { *strange + 1 } else { 0 };
-        if *strange >= STRANGE_SCANS {
+        if *strange >= MAX_MISMATCHED_SCANS {
             self.kidnapped();
             return Localized::Lost(Lost::NothingFits);
         }
-        self.usual += USUAL_RATE * (found.per_point - self.usual);
+        self.expected_log_likelihood +=
+            EXPECTED_LOG_LIKELIHOOD_RATE * (found.per_point - self.expected_log_likelihood);
         particles.iter_mut().for_each(|(_, log_weight)| *log_weight -= greatest);
         let (mean, spread) = moments(particles);
         let weights: Vec<f64> = particles.iter().map(|(_, log_weight)| log_weight.exp()).collect();
         if effective(&weights) < self.config.resample_below * weights.len() as f64 {
-            let uniform = Chance::new(self.seed, self.updates, weights.len()).uniform();
+            let uniform = ParticleRng::new(self.seed, self.updates, weights.len()).uniform();
             let parents = low_variance(&weights, uniform);
             let old = particles.clone();
             *particles = parents.iter().map(|&parent| (old[usize::from(parent)].0, 0.0)).collect();
         }
         Localized::Known {
-            map_from_base: metres(&self.config, mean),
+            map_from_base: in_metres(&self.config, mean),
             covariance: scaled(spread + found.covariance, self.config.map.resolution),
             explained: found.explained,
             degenerate: found.degenerate,

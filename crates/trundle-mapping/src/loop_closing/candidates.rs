@@ -1,4 +1,6 @@
-use crate::pose_graph::Reached;
+//! Earlier stretches of the trajectory that the robot may have returned to.
+
+use crate::pose_graph::RelativeUncertainty;
 use nalgebra::Matrix2;
 use std::ops::Range;
 use trundle_core::Pose2;
@@ -13,22 +15,26 @@ pub(crate) struct Candidate {
     /// How far it is, in standard deviations.
     pub(crate) distance: f64,
     /// How surely the robot is known from there.
-    pub(crate) reached: Reached,
+    pub(crate) reached: RelativeUncertainty,
 }
 
-/// Less of a way than this is no loop: the map of the particle holds it, m.
-const LEAST_WAY: f64 = 20.0;
-/// As far as a place may be from where another was seen well, m.
-const VIEW: f64 = 4.0;
-/// Widest search, m: what a minute of failing odometry may amount to.
-pub(crate) const WIDEST: f64 = 40.0;
+/// Minimum path length of a loop [m]. Shorter loops lie within the map of one particle. Source: ours.
+const MIN_LOOP_LENGTH_M: f64 = 20.0;
+/// Distance between two poses that observe the same place [m]. Source: ours.
+const VIEW_RADIUS_M: f64 = 4.0;
+/// Maximum radius of a loop search [m]: the drift of one minute of failing odometry. Source: ours.
+pub(crate) const MAX_SEARCH_RADIUS_M: f64 = 40.0;
 
 /// The stretches that the last pose may be near, the likeliest first. `ways` is the way up to each pose, m.
-pub(crate) fn candidates(poses: &[Pose2], ways: &[f64], reached: &[Option<Reached>]) -> Vec<Candidate> {
+pub(crate) fn candidates(
+    poses: &[Pose2],
+    ways: &[f64],
+    reached: &[Option<RelativeUncertainty>],
+) -> Vec<Candidate> {
     let last = poses.len() - 1;
     let mut found: Vec<Candidate> = Vec::new();
     for k in 0..last {
-        if ways[last] - ways[k] < LEAST_WAY {
+        if ways[last] - ways[k] < MIN_LOOP_LENGTH_M {
             break;
         }
         let Some((distance, reached)) = feasible(poses[k], poses[last], reached[k]) else { continue };
@@ -47,14 +53,18 @@ pub(crate) fn candidates(poses: &[Pose2], ways: &[f64], reached: &[Option<Reache
 }
 
 /// How far a pose is in standard deviations, when that is little enough.
-fn feasible(pose: Pose2, last: Pose2, reached: Option<Reached>) -> Option<(f64, Reached)> {
+fn feasible(
+    pose: Pose2,
+    last: Pose2,
+    reached: Option<RelativeUncertainty>,
+) -> Option<(f64, RelativeUncertainty)> {
     let reached = reached?;
     let off = last.position() - pose.position();
-    if off.norm() > WIDEST {
+    if off.norm() > MAX_SEARCH_RADIUS_M {
         return None;
     }
     let drift: Matrix2<f64> = reached.covariance.fixed_view::<2, 2>(0, 0).into();
-    let spread = drift + Matrix2::identity() * (VIEW / 3.0_f64).powi(2);
+    let spread = drift + Matrix2::identity() * (VIEW_RADIUS_M / 3.0_f64).powi(2);
     let distance = off.dot(&(spread.try_inverse()? * off)).sqrt();
     (distance < 3.0).then_some((distance, reached))
 }

@@ -1,19 +1,21 @@
+//! Search, proof and correction of loops along the trajectory.
+
 use super::{
-    candidates::{Candidate, WIDEST, candidates},
+    candidates::{Candidate, MAX_SEARCH_RADIUS_M, candidates},
     submap::{Submaps, cells, thinned},
 };
-use crate::loop_closing::scan_history::History;
+use crate::loop_closing::scan_history::ScanHistory;
 use crate::particle_config::ParticleConfig;
-use crate::pose_graph::{Tie, reach, solve};
-use crate::scan_match::cloud_match::{Finder, Found};
+use crate::pose_graph::{Constraint, reach, solve};
+use crate::scan_match::cloud_match::{CloudMatch, CloudMatcher};
 use crate::scan_match::likelihood::Likelihood;
-use crate::scan_match::scan_points::ScanShape;
+use crate::scan_match::scan_points::ScanPoints;
 use nalgebra::{Matrix3, Vector3};
 use trundle_core::Pose2;
 use trundle_grid::tiles::{RayUpdate, TileMap};
 
 /// What loop closing works with.
-pub(crate) struct Tools<'a> {
+pub(crate) struct LoopTools<'a> {
     pub(crate) config: &'a ParticleConfig,
     pub(crate) ray_update: &'a RayUpdate,
     pub(crate) likelihood: &'a Likelihood,
@@ -21,42 +23,45 @@ pub(crate) struct Tools<'a> {
 
 /// Looks for loops along the way, and bends it where one is proved.
 #[derive(Debug, Default)]
-pub(crate) struct Closer {
+pub(crate) struct LoopCloser {
     /// What was driven since the last look, m.
     pub(crate) driven: f64,
-    pub(crate) pending: Vec<Tie>,
+    pub(crate) pending: Vec<Constraint>,
     submaps: Submaps,
 }
 
 /// What became of a look for loops.
 #[derive(Debug)]
-pub(crate) struct Closing {
+pub(crate) struct LoopCorrection {
     /// The poses, bent.
     pub(crate) poses: Vec<Pose2>,
     /// How far the farthest went, m.
     pub(crate) farthest: f64,
 }
 
-/// The way whose scans are matched together, m.
-const SUBMAP_WAY: f64 = 8.0;
-const MOST_SCANS: usize = 24;
-/// Scans so near to a candidate, and within what the robot may be off, make the map to match against, m.
-const REFERENCE: f64 = 10.0;
-const MOST_REFERENCE: usize = 48;
-/// Candidates looked at in one go.
-const MOST_CANDIDATES: usize = 2;
+/// Path length of the newest scans that are matched together [m]. Source: ours.
+const SUBMAP_LENGTH_M: f64 = 8.0;
+/// Maximum number of scans of the newest submap. Source: ours.
+const MAX_SUBMAP_SCANS: usize = 24;
+/// Radius about a candidate of the scans that form the reference map [m], plus twice the drift. Source: ours.
+const REFERENCE_RADIUS_M: f64 = 10.0;
+/// Maximum number of scans of the reference map. Source: ours.
+const MAX_REFERENCE_SCANS: usize = 48;
+/// Maximum number of candidates matched in one search. Source: ours.
+const MAX_CANDIDATES: usize = 2;
 
-/// By so much a place must be better than every other one, and than none, nats: 1 in 3000.
-pub(crate) const PROOF: f64 = 16.0;
+/// Minimum log-likelihood ratio of a place to the second-best place and to unknown ground [nats]. A lower ratio proves no
+/// place. Source: ours.
+pub(crate) const MIN_PROOF_NATS: f64 = 16.0;
 
-impl Closer {
+impl LoopCloser {
     /// Looks whether the end of `poses` (m) has come back to an earlier part of them.
     pub(crate) fn look(
         &mut self,
-        tools: &Tools<'_>,
-        history: &mut History,
+        tools: &LoopTools<'_>,
+        history: &mut ScanHistory,
         poses: &[Pose2],
-    ) -> Option<Closing> {
+    ) -> Option<LoopCorrection> {
         let ways: Vec<f64> = std::iter::once(0.0)
             .chain(poses.windows(2).scan(0.0, |way, pair| {
                 *way += pair[0].distance(&pair[1]);
@@ -64,41 +69,42 @@ impl Closer {
             }))
             .collect();
         let way = *ways.last()?;
-        let ties = history.ties(poses);
+        let constraints = history.constraints(poses);
         let last = poses.len() - 1;
-        let reached = reach(poses, &ties, last);
+        let reached = reach(poses, &constraints, last);
         let found = candidates(poses, &ways, &reached);
         let own: Vec<usize> = {
-            let from = ways.partition_point(|w| *w < way - SUBMAP_WAY);
-            thinned(poses, (from..=last).rev(), 0.3, MOST_SCANS)
+            let from = ways.partition_point(|w| *w < way - SUBMAP_LENGTH_M);
+            thinned(poses, (from..=last).rev(), 0.3, MAX_SUBMAP_SCANS)
         };
         let now = poses[last];
         let own_map =
             self.submaps.draw((tools.config, tools.ray_update), history, &own, |k| now.inverse() * poses[k]);
-        for candidate in found.iter().take(MOST_CANDIDATES) {
-            let Some(tie) = self.match_candidate(tools, history, poses, candidate, &own_map) else {
+        for candidate in found.iter().take(MAX_CANDIDATES) {
+            let Some(constraint) = self.match_candidate(tools, history, poses, candidate, &own_map) else {
                 continue;
             };
-            return self.accept(history, poses, tie);
+            return self.accept(history, poses, constraint);
         }
         None
     }
 
     fn match_candidate(
         &mut self,
-        tools: &Tools<'_>,
-        history: &History,
+        tools: &LoopTools<'_>,
+        history: &ScanHistory,
         poses: &[Pose2],
         candidate: &Candidate,
-        (own_map, own_cloud): &(TileMap, ScanShape),
-    ) -> Option<Tie> {
+        (own_map, own_cloud): &(TileMap, ScanPoints),
+    ) -> Option<Constraint> {
         let (config, last) = (tools.config, poses.len() - 1);
         let drift = candidate.reached.covariance;
-        let far = (REFERENCE + 2.0 * drift[(0, 0)].max(drift[(1, 1)]).sqrt()).min(WIDEST);
+        let far =
+            (REFERENCE_RADIUS_M + 2.0 * drift[(0, 0)].max(drift[(1, 1)]).sqrt()).min(MAX_SEARCH_RADIUS_M);
         let near = |&k: &usize| poses[k].distance(&poses[candidate.nearest]) < far;
-        let apart = (2.0 * far / MOST_REFERENCE as f64).max(0.4);
+        let apart = (2.0 * far / MAX_REFERENCE_SCANS as f64).max(0.4);
         let half = |range: &mut dyn Iterator<Item = usize>| {
-            thinned(poses, range.filter(near), apart, MOST_REFERENCE / 2)
+            thinned(poses, range.filter(near), apart, MAX_REFERENCE_SCANS / 2)
         };
         let onward = half(&mut (candidate.nearest..candidate.range.end));
         let back = half(&mut (candidate.range.start..candidate.nearest).rev());
@@ -109,30 +115,35 @@ impl Closer {
         let scale = Matrix3::from_diagonal(&Vector3::new(per_metre, per_metre, 1.0));
         let least = Matrix3::from_diagonal(&Vector3::new(4.0, 4.0, 0.02 * 0.02));
         let covariance = scale * candidate.reached.covariance * scale + least;
-        let reach = |k: usize| (3.0 * covariance[(k, k)].sqrt()).clamp(10.0, WIDEST * per_metre);
+        let reach = |k: usize| (3.0 * covariance[(k, k)].sqrt()).clamp(10.0, MAX_SEARCH_RADIUS_M * per_metre);
         let turn = (3.0 * covariance[(2, 2)].sqrt()).clamp(0.05, 0.8);
-        let finder = Finder { config, likelihood: tools.likelihood, cloud: own_cloud };
+        let finder = CloudMatcher { config, likelihood: tools.likelihood, cloud: own_cloud };
         let found =
             finder.find(&map, cells(config, poses[last]), &covariance, ((reach(0), reach(1)), turn), 2);
         let best = *found.first()?;
         let rival = found.get(1).map_or(f64::NEG_INFINITY, |rival| rival.log_likelihood);
-        let back = Finder { config, likelihood: tools.likelihood, cloud: &cloud };
+        let back = CloudMatcher { config, likelihood: tools.likelihood, cloud: &cloud };
         let (back_explained, back_contradicted) = back.fit(own_map, best.pose.inverse());
         // Against a place that was never seen, where every hit would lie on unknown ground.
         let unseen = 0.5 * config.outliers.ln() * own_cloud.points.len() as f64 / config.correlation;
-        let proved = best.log_likelihood - rival.max(unseen) > PROOF
+        let proved = best.log_likelihood - rival.max(unseen) > MIN_PROOF_NATS
             && back_contradicted < 0.5 * back_explained
             && best.degenerate == 0;
-        proved.then(|| tie(config, poses, &which, &best))
+        proved.then(|| constraint(config, poses, &which, &best))
     }
 
     /// Takes a tie in when another one, some way before, says the same; bends the way where it must.
-    fn accept(&mut self, history: &mut History, poses: &[Pose2], tie: Tie) -> Option<Closing> {
+    fn accept(
+        &mut self,
+        history: &mut ScanHistory,
+        poses: &[Pose2],
+        constraint: Constraint,
+    ) -> Option<LoopCorrection> {
         let last = poses.len() - 1;
-        let now = poses[tie.from as usize] * tie.from_to;
+        let now = poses[constraint.from as usize] * constraint.from_to;
         let off = now.inverse() * poses[last];
         let known = off.position().norm() < 0.3 && off.theta.abs() < 0.05;
-        let agrees = |other: &Tie| {
+        let agrees = |other: &Constraint| {
             let then = poses[other.from as usize] * other.from_to;
             let step = poses[other.to as usize].inverse() * poses[last];
             let off = (then * step).inverse() * now;
@@ -140,26 +151,27 @@ impl Closer {
             off.position().norm() < 0.2 + 0.04 * way && off.theta.abs() < 0.05
         };
         if !known && !self.pending.iter().any(agrees) {
-            self.pending.push(tie);
+            self.pending.push(constraint);
             let excess = self.pending.len().saturating_sub(4);
             self.pending.drain(..excess);
             return None;
         }
         let ties_before = history.loops.len();
         if !known {
-            let agreeing: Vec<Tie> = self.pending.drain(..).filter(|other| agrees(other)).collect();
+            let agreeing: Vec<Constraint> = self.pending.drain(..).filter(|other| agrees(other)).collect();
             history.loops.extend(agreeing);
         }
-        history.loops.push(tie);
+        history.loops.push(constraint);
         history.measure(poses);
         if known && off.position().norm() < 0.05 && off.theta.abs() < 0.01 {
             return None;
         }
-        let ties = history.ties(poses);
-        let bent = solve(poses.to_vec(), &ties);
+        let constraints = history.constraints(poses);
+        let bent = solve(poses.to_vec(), &constraints);
         let fits = |bent: &Vec<Pose2>| {
-            history.loops.iter().all(|tie| {
-                let residual = tie.residual(bent[tie.from as usize], bent[tie.to as usize]);
+            history.loops.iter().all(|constraint| {
+                let residual =
+                    constraint.residual(bent[constraint.from as usize], bent[constraint.to as usize]);
                 residual.xy().norm() < 1.0 && residual.z.abs() < 0.2
             })
         };
@@ -168,12 +180,12 @@ impl Closer {
             return None;
         };
         let farthest = bent.iter().zip(poses).map(|(a, b)| a.distance(b)).fold(0.0, f64::max);
-        Some(Closing { poses: bent, farthest })
+        Some(LoopCorrection { poses: bent, farthest })
     }
 }
 
 /// From the pose that is nearest to where the last one was found.
-fn tie(config: &ParticleConfig, poses: &[Pose2], which: &[usize], found: &Found) -> Tie {
+fn constraint(config: &ParticleConfig, poses: &[Pose2], which: &[usize], found: &CloudMatch) -> Constraint {
     let metre = config.map.resolution;
     let pose = Pose2 { x: found.pose.x * metre, y: found.pose.y * metre, ..found.pose };
     let nearest =
@@ -185,7 +197,7 @@ fn tie(config: &ParticleConfig, poses: &[Pose2], which: &[usize], found: &Found)
     let weak = Matrix3::from_diagonal(&Vector3::new(1e-4, 1e-4, 1.0));
     let covariance = (found.information + weak).try_inverse().expect("invariant: a positive matrix");
     let floor = Matrix3::from_diagonal(&Vector3::new(0.03 * 0.03, 0.03 * 0.03, 0.005 * 0.005));
-    Tie {
+    Constraint {
         from: from as u32,
         to: poses.len() as u32 - 1,
         from_to: poses[from].inverse() * pose,

@@ -1,20 +1,22 @@
+//! Stored scans, step covariances and closed loops of a run.
+
 use crate::loop_closing::stored_scan::StoredScan;
-use crate::pose_graph::Tie;
+use crate::pose_graph::Constraint;
 use nalgebra::Matrix3;
 use trundle_core::{Pose2, Stamp};
 
 /// What is kept of the run: every processed scan, how surely each step was measured, and the loops that were closed.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct History {
+pub(crate) struct ScanHistory {
     pub(crate) scans: Vec<StoredScan>,
     /// Covariance of the step to each pose, in that pose's frame: m, m, rad.
     pub(crate) steps: Vec<Matrix3<f64>>,
     /// The steps as they were measured, up to the last correction: a correction must not count as measured.
     pub(crate) measured: Vec<Pose2>,
-    pub(crate) loops: Vec<Tie>,
+    pub(crate) loops: Vec<Constraint>,
 }
 
-impl History {
+impl ScanHistory {
     pub(crate) fn push(&mut self, scan: StoredScan, step: Matrix3<f64>) {
         self.scans.push(scan);
         self.steps.push(step);
@@ -31,8 +33,8 @@ impl History {
     }
 
     /// The steps and the loops as ties between the poses of a trajectory.
-    pub(crate) fn ties(&self, poses: &[Pose2]) -> Vec<Tie> {
-        let step = |k: usize| Tie {
+    pub(crate) fn constraints(&self, poses: &[Pose2]) -> Vec<Constraint> {
+        let step = |k: usize| Constraint {
             from: k as u32 - 1,
             to: k as u32,
             from_to: self.measured.get(k).copied().unwrap_or_else(|| poses[k - 1].inverse() * poses[k]),
@@ -56,12 +58,12 @@ impl History {
                 (number(k) as u32, Pose2::IDENTITY)
             }
         };
-        for tie in &mut self.loops {
-            let ((from, to_old_from), (to, to_old_to)) = (renamed(tie.from), renamed(tie.to));
-            let from_to = to_old_from * tie.from_to * to_old_to.inverse();
-            *tie = Tie { from, to, from_to, covariance: tie.covariance };
+        for constraint in &mut self.loops {
+            let ((from, to_old_from), (to, to_old_to)) = (renamed(constraint.from), renamed(constraint.to));
+            let from_to = to_old_from * constraint.from_to * to_old_to.inverse();
+            *constraint = Constraint { from, to, from_to, covariance: constraint.covariance };
         }
-        self.loops.retain(|tie| tie.from != tie.to);
+        self.loops.retain(|constraint| constraint.from != constraint.to);
         for k in (1..self.steps.len().min(count)).filter(|&k| goes(k)) {
             self.measured[k + 1] = self.measured[k] * self.measured[k + 1];
             let step = self.steps[k];
@@ -78,7 +80,7 @@ impl History {
         self.scans.iter().map(StoredScan::bytes).sum::<usize>()
             + self.steps.capacity() * size_of::<Matrix3<f64>>()
             + self.measured.capacity() * size_of::<Pose2>()
-            + self.loops.capacity() * size_of::<Tie>()
+            + self.loops.capacity() * size_of::<Constraint>()
     }
 }
 
@@ -94,34 +96,38 @@ fn keep<T>(all: &mut Vec<T>, stays: impl Fn(usize) -> bool) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scan_match::scan_points::ScanShape;
+    use crate::scan_match::scan_points::ScanPoints;
 
     #[test]
     fn thinning_keeps_the_way_and_its_loops() {
         let step = Pose2::new(0.5, 0.1, 0.2);
-        let mut history = History::default();
+        let mut history = ScanHistory::default();
         let mut way = vec![(Stamp::default(), Pose2::IDENTITY)];
         for k in 0..41 {
-            history.push(StoredScan::new(&ScanShape::default()), Matrix3::identity() * 1e-4);
+            history.push(StoredScan::new(&ScanPoints::default()), Matrix3::identity() * 1e-4);
             if k > 0 {
                 way.push((Stamp::from_nanos(k), way.last().unwrap().1 * step));
             }
         }
-        let tie = |from: u32, to: u32| Tie {
+        let constraint = |from: u32, to: u32| Constraint {
             from,
             to,
             from_to: way[from as usize].1.inverse() * way[to as usize].1,
             covariance: Matrix3::identity() * 1e-4,
         };
-        history.loops = vec![tie(3, 37), tie(4, 15), tie(8, 40)];
+        history.loops = vec![constraint(3, 37), constraint(4, 15), constraint(8, 40)];
         let mut thinned = way.clone();
         history.thin(&mut thinned, 20);
         assert_eq!((history.scans.len(), thinned.len(), history.measured.len()), (32, 32, 32));
         assert_eq!(thinned[0], way[0]);
         assert_eq!(thinned.last(), way.last());
         let poses: Vec<Pose2> = thinned.iter().map(|(_, pose)| *pose).collect();
-        for tie in history.ties(&poses) {
-            assert!(tie.residual(poses[tie.from as usize], poses[tie.to as usize]).norm() < 1e-9, "{tie:?}");
+        for constraint in history.constraints(&poses) {
+            assert!(
+                constraint.residual(poses[constraint.from as usize], poses[constraint.to as usize]).norm()
+                    < 1e-9,
+                "{constraint:?}"
+            );
         }
     }
 }

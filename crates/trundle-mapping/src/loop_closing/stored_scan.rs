@@ -1,4 +1,6 @@
-use crate::scan_match::scan_points::ScanShape;
+//! Packed scan, for redrawing a map after a loop closure.
+
+use crate::scan_match::scan_points::ScanPoints;
 use trundle_grid::tiles::{RaySpan, ScanRay};
 
 /// A processed scan, packed: 5 bytes a beam, 6 where the sensor says how sure its ranges are, and 8 for each stretch that was seen
@@ -39,20 +41,26 @@ pub(crate) struct StoredRay {
     pub(crate) sigma: f32,
 }
 
-/// Units a cell.
-const PER_CELL: f32 = 16.0;
-const HIT: u8 = 1;
-const JOINED: u8 = 2;
-const WHOLE: u8 = 4;
-const SKIPPED_BITS: u32 = 3;
-const MOST_SKIPPED: usize = 31;
-const SIGMA_UNIT: f32 = 0.001;
+/// Units of a stored coordinate per cell.
+const UNITS_PER_CELL: f32 = 16.0;
+/// Bit of a ray that ends at an obstacle.
+const HIT_BIT: u8 = 1;
+/// Bit of a ray whose end lies on one surface with the ray before.
+const JOINED_BIT: u8 = 2;
+/// Bit of a ray that was seen free over its whole length.
+const WHOLE_BIT: u8 = 4;
+/// Bits below the number of skipped beams.
+const SKIPPED_SHIFT: u32 = 3;
+/// Maximum number of skipped beams that five bits hold. Larger gaps are stored as this number.
+const MAX_SKIPPED_BEAMS: usize = 31;
+/// Unit of a stored sigma [m].
+const SIGMA_UNIT_M: f32 = 0.001;
 
 impl StoredScan {
     /// Packs a scan. Ends farther than 2047 cells are left out: a ray of a laser at 5 cm reaches 102 m.
-    pub(crate) fn new(shape: &ScanShape) -> Self {
+    pub(crate) fn new(shape: &ScanPoints) -> Self {
         let pack = |v: f32| {
-            let scaled = (v * PER_CELL).round();
+            let scaled = (v * UNITS_PER_CELL).round();
             (scaled.abs() <= f32::from(i16::MAX)).then_some(scaled as i16)
         };
         let (mut rays, mut sigmas, mut spans) = (Vec::new(), Vec::new(), Vec::new());
@@ -62,12 +70,12 @@ impl StoredScan {
                 next_span + shape.rays.spans[next_span..].iter().take_while(|s| (s.ray as usize) < k).count();
             next_span = first + shape.rays.spans[first..].iter().take_while(|s| s.ray as usize == k).count();
             let (Some(x), Some(y)) = (pack(ray.x), pack(ray.y)) else { continue };
-            let skipped = last.map_or(0, |last| beam - last).min(MOST_SKIPPED) as u8;
+            let skipped = last.map_or(0, |last| beam - last).min(MAX_SKIPPED_BEAMS) as u8;
             last = Some(beam);
-            let what = (skipped << SKIPPED_BITS)
-                | if ray.hit { HIT } else { 0 }
-                | if ray.joined && skipped == 1 { JOINED } else { 0 }
-                | if ray.whole { WHOLE } else { 0 };
+            let what = (skipped << SKIPPED_SHIFT)
+                | if ray.hit { HIT_BIT } else { 0 }
+                | if ray.joined && skipped == 1 { JOINED_BIT } else { 0 }
+                | if ray.whole { WHOLE_BIT } else { 0 };
             let part = |v: f32| (v * f32::from(u16::MAX)).round() as u16;
             let number = rays.len() as u32;
             spans.extend(shape.rays.spans[first..next_span].iter().map(|span| PackedSpan {
@@ -75,7 +83,7 @@ impl StoredScan {
                 from: part(span.from),
                 to: part(span.to),
             }));
-            sigmas.extend(shape.sigmas.get(k).map(|sigma| (sigma / SIGMA_UNIT).round().min(255.0) as u8));
+            sigmas.extend(shape.sigmas.get(k).map(|sigma| (sigma / SIGMA_UNIT_M).round().min(255.0) as u8));
             rays.push(PackedRay { x, y, what });
         }
         Self { origin: shape.rays.origin, rays: rays.into(), sigmas: sigmas.into(), spans: spans.into() }
@@ -85,16 +93,16 @@ impl StoredScan {
     pub(crate) fn rays(&self) -> impl Iterator<Item = StoredRay> {
         let mut beam = 0;
         self.rays.iter().enumerate().map(move |(k, packed)| {
-            beam += usize::from(packed.what >> SKIPPED_BITS);
+            beam += usize::from(packed.what >> SKIPPED_SHIFT);
             let ray = ScanRay {
-                x: f32::from(packed.x) / PER_CELL,
-                y: f32::from(packed.y) / PER_CELL,
-                hit: packed.what & HIT != 0,
-                joined: packed.what & JOINED != 0,
-                whole: packed.what & WHOLE != 0,
+                x: f32::from(packed.x) / UNITS_PER_CELL,
+                y: f32::from(packed.y) / UNITS_PER_CELL,
+                hit: packed.what & HIT_BIT != 0,
+                joined: packed.what & JOINED_BIT != 0,
+                whole: packed.what & WHOLE_BIT != 0,
                 hit_weight: 1.0,
             };
-            let sigma = self.sigmas.get(k).map_or(0.0, |sigma| f32::from(*sigma) * SIGMA_UNIT);
+            let sigma = self.sigmas.get(k).map_or(0.0, |sigma| f32::from(*sigma) * SIGMA_UNIT_M);
             StoredRay { ray, beam, sigma }
         })
     }
@@ -126,17 +134,17 @@ mod tests {
         let parts = ScanParts { beams, free, sigmas: vec![0.01, 0.0, 0.0, 0.3], ..ScanParts::default() };
         let scan = Scan::from_parts(Stamp::default(), Vector2::zeros(), (0.0, 0.1), parts).unwrap();
         let (config, mut shape, mut again) =
-            (ParticleConfig::default(), ScanShape::default(), ScanShape::default());
+            (ParticleConfig::default(), ScanPoints::default(), ScanPoints::default());
         shape.set(&config, &scan);
         again.set_stored(&config, &StoredScan::new(&shape));
-        let whole = |shape: &ScanShape| shape.rays.rays.iter().map(|ray| ray.whole).collect::<Vec<_>>();
+        let whole = |shape: &ScanPoints| shape.rays.rays.iter().map(|ray| ray.whole).collect::<Vec<_>>();
         assert_eq!(whole(&shape), [true, false, false]);
         assert_eq!(whole(&again), whole(&shape));
         assert_eq!(again.rays.spans.len(), 2);
         for (a, b) in again.rays.spans.iter().zip(&shape.rays.spans) {
             assert!(a.ray == 1 && b.ray == 1 && (a.from - b.from).abs() < 1e-4 && (a.to - b.to).abs() < 1e-4);
         }
-        let sigma = |shape: &ScanShape| shape.points.iter().map(|p| p.information).collect::<Vec<_>>();
+        let sigma = |shape: &ScanPoints| shape.points.iter().map(|p| p.information).collect::<Vec<_>>();
         let (told, kept) = (sigma(&shape), sigma(&again));
         assert!((told[0] - kept[0]).abs() < 1e-3 * told[0], "{told:?} {kept:?}");
         assert!((0.05 / 0.255_f32.hypot(0.015)).powi(2) - kept[1] < 1e-4, "a sigma is kept up to 255 mm");

@@ -1,6 +1,8 @@
-use crate::loop_closing::scan_history::History;
+//! Small map and cloud of points from some scans of the history.
+
+use crate::loop_closing::scan_history::ScanHistory;
 use crate::particle_config::ParticleConfig;
-use crate::scan_match::scan_points::ScanShape;
+use crate::scan_match::scan_points::ScanPoints;
 use std::collections::BTreeSet;
 use trundle_core::Pose2;
 use trundle_grid::tiles::{RayUpdate, RayUpdateScratch, TileMap};
@@ -8,30 +10,30 @@ use trundle_grid::tiles::{RayUpdate, RayUpdateScratch, TileMap};
 /// Parts of the way as small maps and as clouds of hits.
 #[derive(Debug, Default)]
 pub(crate) struct Submaps {
-    shape: ScanShape,
+    shape: ScanPoints,
     draw: RayUpdateScratch,
     taken: BTreeSet<(i32, i32)>,
 }
 
-/// Hits nearer to each other than this count once, cells.
-const SPACING: f64 = 3.0;
+/// Minimum distance of two points of a cloud [cells]. A nearer point is dropped. Source: ours.
+const POINT_SPACING_CELLS: f64 = 3.0;
 
 impl Submaps {
     /// The map that the scans `which` give at `poses` (m), with all hits of them, map frame.
     pub(crate) fn draw(
         &mut self,
         (config, ray_update): (&ParticleConfig, &RayUpdate),
-        history: &History,
+        history: &ScanHistory,
         which: &[usize],
         pose: impl Fn(usize) -> Pose2,
-    ) -> (TileMap, ScanShape) {
+    ) -> (TileMap, ScanPoints) {
         let mut map = TileMap::default();
-        let mut cloud = ScanShape::default();
+        let mut cloud = ScanPoints::default();
         self.taken.clear();
         for &k in which {
             let pose = cells(config, pose(k));
             self.shape.set_stored(config, &history.scans[k]);
-            cloud.gather(std::iter::once((&self.shape, pose)), SPACING, &mut self.taken);
+            cloud.gather(std::iter::once((&self.shape, pose)), POINT_SPACING_CELLS, &mut self.taken);
             ray_update.apply(&mut map, &mut self.draw, pose, &self.shape.rays);
         }
         cloud.finish();

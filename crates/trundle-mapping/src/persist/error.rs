@@ -1,3 +1,5 @@
+//! Errors of loading a saved filter.
+
 use trundle_core::Invalid;
 
 /// Why a saved filter was not loaded.

@@ -15,15 +15,15 @@ mod error;
 mod scans;
 mod tiles;
 
-use crate::loop_closing::scan_history::History;
+use crate::loop_closing::scan_history::ScanHistory;
 use crate::particle_config::ParticleConfig;
-use crate::pose_graph::Tie;
+use crate::pose_graph::Constraint;
 use crate::rbpf::ancestry::Ancestry;
-use crate::rbpf::map_redraw::Bending;
+use crate::rbpf::map_redraw::MapRedraw;
 use crate::rbpf::mapper::{Particle, ParticleMapper};
 use crate::rbpf::odometry_bias::OdometryBias;
-use crate::rbpf::odometry_noise::OdometryTrust;
-use crate::rbpf::update_gate::Last;
+use crate::rbpf::odometry_noise::OdometryNoise;
+use crate::rbpf::update_gate::LastScan;
 use bytes::{Reader, Writer, checksum};
 pub use error::FilterFileError;
 use trundle_core::Stamp;
@@ -31,8 +31,8 @@ use trundle_grid::tiles::{TileMap, TilePools, assemble};
 
 const MAGIC: &[u8; 7] = b"trundlF";
 const VERSION: u8 = 4;
-/// Bytes before those that the checksum is of.
-const HEAD: usize = 16;
+/// Bytes before those that the checksum covers.
+const HEADER_BYTES: usize = 16;
 
 /// What a map must have been made with to be gone on with.
 fn settings(config: &ParticleConfig) -> [(&'static str, f64); 5] {
@@ -57,10 +57,14 @@ impl ParticleMapper {
         settings(&self.config).iter().for_each(|(_, value)| out.f64(*value));
         out.u64(self.seed);
         out.u64(self.updates);
-        out.f64(self.usual);
-        self.trust.numbers().into_iter().chain(self.bias.numbers()).for_each(|v| out.f64(v));
-        out.f64(self.closer.driven);
-        out.count(self.session);
+        out.f64(self.expected_log_likelihood);
+        self.odometry_noise
+            .numbers()
+            .into_iter()
+            .chain(self.odometry_bias.numbers())
+            .for_each(|v| out.f64(v));
+        out.f64(self.loop_closer.driven);
+        out.count(self.first_pose_of_run);
         let last = self.gate.last.unwrap_or_default();
         out.u8(u8::from(self.gate.last.is_some()));
         out.u64(last.stamp.nanos as u64);
@@ -73,14 +77,14 @@ impl ParticleMapper {
             out.f64(particle.log_weight);
             out.u16(*parent);
         }
-        let bending = self.bending.iter().map(|bending| &bending.map);
+        let bending = self.redraw.iter().map(|bending| &bending.map);
         tiles::write(&mut out, &TilePools::new(self.particles.iter().map(|p| &p.map).chain(bending)));
         write_ancestry(&mut out, &self.ancestry);
-        write_history(&mut out, &self.history, &self.closer.pending);
-        write_bending(&mut out, self.bending.as_ref());
+        write_history(&mut out, &self.history, &self.loop_closer.pending);
+        write_redraw(&mut out, self.redraw.as_ref());
         let mut bytes = out.0;
-        let sum = checksum(&bytes[HEAD..]);
-        bytes[HEAD - 8..HEAD].copy_from_slice(&sum.to_le_bytes());
+        let sum = checksum(&bytes[HEADER_BYTES..]);
+        bytes[HEADER_BYTES - 8..HEADER_BYTES].copy_from_slice(&sum.to_le_bytes());
         bytes
     }
 
@@ -102,17 +106,17 @@ impl ParticleMapper {
         body.within = "particles";
         mapper.seed = body.u64()?;
         mapper.updates = body.u64()?;
-        mapper.usual = body.f64("the usual likelihood")?;
+        mapper.expected_log_likelihood = body.f64("the expected_log_likelihood likelihood")?;
         let trust = [(); 6].map(|()| body.f64("what is known of the odometry"));
         let [a, b, c, d, e, f] = trust;
-        mapper.trust = OdometryTrust::from_numbers([a?, b?, c?, d?, e?, f?]);
+        mapper.odometry_noise = OdometryNoise::from_numbers([a?, b?, c?, d?, e?, f?]);
         let bias = [(); 7].map(|()| body.f64("what the odometry has wrong"));
         let [a, b, c, d, e, f, g] = bias;
-        mapper.bias = OdometryBias::from_numbers([a?, b?, c?, d?, e?, f?, g?]);
-        mapper.closer.driven = body.f64("the way since the last look")?;
-        mapper.session = body.u32()? as usize;
+        mapper.odometry_bias = OdometryBias::from_numbers([a?, b?, c?, d?, e?, f?, g?]);
+        mapper.loop_closer.driven = body.f64("the way since the last look")?;
+        mapper.first_pose_of_run = body.u32()? as usize;
         let known = body.u8()? == 1;
-        let last = Last {
+        let last = LastScan {
             stamp: Stamp::from_nanos(body.u64()? as i64),
             odom_from_base: body.pose("the last odometry")?,
         };
@@ -137,10 +141,10 @@ impl ParticleMapper {
         let column = mapper.ancestry.columns.last().map_or(usize::MAX, |column| column.poses.len());
         body.require(states.iter().all(|s| usize::from(s.2) < column), "the parent of a particle")?;
         let length = mapper.ancestry.len();
-        (mapper.history, mapper.closer.pending) = read_history(&mut body, length)?;
-        body.require(mapper.session <= length, "the beginning of the run")?;
+        (mapper.history, mapper.loop_closer.pending) = read_history(&mut body, length)?;
+        body.require(mapper.first_pose_of_run <= length, "the beginning of the run")?;
         if let Some(map) = bent_map {
-            mapper.bending = Some(read_bending(&mut body, length, map)?);
+            mapper.redraw = Some(read_redraw(&mut body, length, map)?);
         }
         body.end()?;
         let log_weights: Vec<f64> = states.iter().map(|state| state.1).collect();
@@ -225,7 +229,7 @@ fn read_ancestry(bytes: &mut Reader<'_>) -> Result<Ancestry, FilterFileError> {
     Ok(ancestry)
 }
 
-fn write_history(out: &mut Writer, history: &History, pending: &[Tie]) {
+fn write_history(out: &mut Writer, history: &ScanHistory, pending: &[Constraint]) {
     out.count(history.scans.len());
     for (scan, step) in history.scans.iter().zip(&history.steps) {
         out.matrix(step);
@@ -233,20 +237,23 @@ fn write_history(out: &mut Writer, history: &History, pending: &[Tie]) {
     }
     out.count(history.measured.len());
     history.measured.iter().for_each(|pose| out.pose(*pose));
-    for ties in [&history.loops[..], pending] {
-        out.count(ties.len());
-        for tie in ties {
-            out.u32(tie.from);
-            out.u32(tie.to);
-            out.pose(tie.from_to);
-            out.matrix(&tie.covariance);
+    for constraints in [&history.loops[..], pending] {
+        out.count(constraints.len());
+        for constraint in constraints {
+            out.u32(constraint.from);
+            out.u32(constraint.to);
+            out.pose(constraint.from_to);
+            out.matrix(&constraint.covariance);
         }
     }
 }
 
-fn read_history(bytes: &mut Reader<'_>, poses: usize) -> Result<(History, Vec<Tie>), FilterFileError> {
+fn read_history(
+    bytes: &mut Reader<'_>,
+    poses: usize,
+) -> Result<(ScanHistory, Vec<Constraint>), FilterFileError> {
     bytes.within = "scans";
-    let mut history = History::default();
+    let mut history = ScanHistory::default();
     let count = bytes.count(92)?;
     bytes.require(count == poses, "the number of scans")?;
     for _ in 0..count {
@@ -264,7 +271,7 @@ fn read_history(bytes: &mut Reader<'_>, poses: usize) -> Result<(History, Vec<Ti
     Ok((history, read_ties(bytes, poses)?))
 }
 
-fn write_bending(out: &mut Writer, bending: Option<&Bending>) {
+fn write_redraw(out: &mut Writer, bending: Option<&MapRedraw>) {
     let Some(bending) = bending else { return };
     out.f64(bending.farthest);
     out.count(bending.drawn);
@@ -272,13 +279,13 @@ fn write_bending(out: &mut Writer, bending: Option<&Bending>) {
     bending.poses.iter().for_each(|pose| out.pose(*pose));
 }
 
-fn read_bending(bytes: &mut Reader<'_>, poses: usize, map: TileMap) -> Result<Bending, FilterFileError> {
+fn read_redraw(bytes: &mut Reader<'_>, poses: usize, map: TileMap) -> Result<MapRedraw, FilterFileError> {
     bytes.within = "bent way";
     let farthest = bytes.f64("how far a loop bent the way")?;
     let drawn = bytes.u32()? as usize;
     let count = bytes.count(24)?;
     bytes.require((1..=poses).contains(&count) && drawn <= count, "the length of the bent way")?;
-    let mut bending = Bending::default();
+    let mut bending = MapRedraw::default();
     (bending.farthest, bending.drawn, bending.map) = (farthest, drawn, map);
     for _ in 0..count {
         bending.poses.push(bytes.pose("a pose of the bent way")?);
@@ -286,16 +293,21 @@ fn read_bending(bytes: &mut Reader<'_>, poses: usize, map: TileMap) -> Result<Be
     Ok(bending)
 }
 
-fn read_ties(bytes: &mut Reader<'_>, poses: usize) -> Result<Vec<Tie>, FilterFileError> {
-    let mut ties = Vec::new();
+fn read_ties(bytes: &mut Reader<'_>, poses: usize) -> Result<Vec<Constraint>, FilterFileError> {
+    let mut constraints = Vec::new();
     for _ in 0..bytes.count(104)? {
         let from = bytes.index(poses, "the first pose of a loop")? as u32;
         let to = bytes.index(poses, "the second pose of a loop")? as u32;
         bytes.require(from != to, "the poses of a loop")?;
         let from_to = bytes.pose("a loop")?;
-        ties.push(Tie { from, to, from_to, covariance: bytes.covariance("the covariance of a loop")? });
+        constraints.push(Constraint {
+            from,
+            to,
+            from_to,
+            covariance: bytes.covariance("the covariance of a loop")?,
+        });
     }
-    Ok(ties)
+    Ok(constraints)
 }
 
 #[cfg(test)]

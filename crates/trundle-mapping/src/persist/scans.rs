@@ -1,3 +1,5 @@
+//! Bytes of the stored scans.
+
 use super::{
     bytes::{Reader, Writer},
     error::FilterFileError,

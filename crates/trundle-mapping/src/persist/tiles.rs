@@ -1,3 +1,5 @@
+//! Bytes of the tiles of all maps, run-length coded.
+
 use super::{
     bytes::{Reader, Writer},
     error::FilterFileError,
@@ -34,8 +36,8 @@ pub(crate) struct ReadPools {
     pub(crate) maps: Vec<Vec<u32>>,
 }
 
-/// So far from the origin (tiles) no map reaches.
-const FARTHEST: i32 = 1 << 20;
+/// Maximum tile coordinate of a valid map.
+const MAX_TILE_COORDINATE: i32 = 1 << 20;
 
 pub(crate) fn read(bytes: &mut Reader<'_>) -> Result<ReadPools, FilterFileError> {
     bytes.within = "tiles";
@@ -43,7 +45,7 @@ pub(crate) fn read(bytes: &mut Reader<'_>) -> Result<ReadPools, FilterFileError>
     let mut chunks = Vec::new();
     for _ in 0..bytes.count(12)? {
         let corner = (bytes.u32()? as i32, bytes.u32()? as i32);
-        let fair = |v: i32| v.abs() <= FARTHEST && v % 16 == 0;
+        let fair = |v: i32| v.abs() <= MAX_TILE_COORDINATE && v % 16 == 0;
         bytes.require(fair(corner.0) && fair(corner.1), "the corner of a chunk of tiles")?;
         let mut of = Vec::new();
         for _ in 0..bytes.count(6)? {

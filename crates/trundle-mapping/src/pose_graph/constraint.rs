@@ -1,9 +1,11 @@
+//! Measured relative pose between two poses of the graph.
+
 use nalgebra::{Matrix3, Vector3};
 use trundle_core::{Pose2, wrap_angle};
 
 /// A measured relation of two poses.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Tie {
+pub(crate) struct Constraint {
     /// Number of the first pose.
     pub(crate) from: u32,
     /// Number of the second pose.
@@ -14,7 +16,7 @@ pub(crate) struct Tie {
     pub(crate) covariance: Matrix3<f64>,
 }
 
-impl Tie {
+impl Constraint {
     /// How far the poses are from the measurement, in the measured second pose's frame: m, m, rad.
     pub(crate) fn residual(&self, from: Pose2, to: Pose2) -> Vector3<f64> {
         let off = self.from_to.inverse() * (from.inverse() * to);
@@ -23,7 +25,7 @@ impl Tie {
 
     /// Inverse covariance.
     pub(crate) fn information(&self) -> Matrix3<f64> {
-        self.covariance.try_inverse().expect("invariant: ties have positive covariances")
+        self.covariance.try_inverse().expect("invariant: constraints have positive covariances")
     }
 
     /// Derivatives of the residual by right perturbations of the two poses.
@@ -45,16 +47,20 @@ mod tests {
     #[test]
     fn jacobians_are_the_differences() {
         let (from, to) = (Pose2::new(1.0, -2.0, 0.7), Pose2::new(2.5, 0.3, -1.1));
-        let tie =
-            Tie { from: 0, to: 1, from_to: Pose2::new(2.0, 1.0, -1.5), covariance: Matrix3::identity() };
-        let (by_from, by_to) = tie.jacobians(from, to);
+        let constraint = Constraint {
+            from: 0,
+            to: 1,
+            from_to: Pose2::new(2.0, 1.0, -1.5),
+            covariance: Matrix3::identity(),
+        };
+        let (by_from, by_to) = constraint.jacobians(from, to);
         for k in 0..3 {
             let mut step = Vector3::zeros();
             step[k] = 1e-6;
             let moved = |pose: Pose2| pose * Pose2::new(step.x, step.y, step.z);
-            let before = tie.residual(from, to);
-            let numeric_from = (tie.residual(moved(from), to) - before) / 1e-6;
-            let numeric_to = (tie.residual(from, moved(to)) - before) / 1e-6;
+            let before = constraint.residual(from, to);
+            let numeric_from = (constraint.residual(moved(from), to) - before) / 1e-6;
+            let numeric_to = (constraint.residual(from, moved(to)) - before) / 1e-6;
             assert!((numeric_from - by_from.column(k)).norm() < 1e-4);
             assert!((numeric_to - by_to.column(k)).norm() < 1e-4);
         }

@@ -5,6 +5,6 @@ mod solver;
 mod sparse_blocks;
 mod uncertainty_paths;
 
-pub(crate) use constraint::Tie;
+pub(crate) use constraint::Constraint;
 pub(crate) use solver::solve;
-pub(crate) use uncertainty_paths::{Reached, reach};
+pub(crate) use uncertainty_paths::{RelativeUncertainty, reach};

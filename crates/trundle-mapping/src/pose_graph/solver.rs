@@ -1,14 +1,16 @@
-use super::{Tie, sparse_blocks::SparseBlocks};
+//! Gauss-Newton solution of the pose graph.
+
+use super::{Constraint, sparse_blocks::SparseBlocks};
 use nalgebra::{Matrix3, Vector3};
 use trundle_core::Pose2;
 
 /// The poses that agree best with the ties, the first held: Gauss-Newton on the squared residuals (\[Grisetti10\]).
 ///
 /// `None` where the ties do not hold all poses, or a number overflows.
-pub(crate) fn solve(mut poses: Vec<Pose2>, ties: &[Tie]) -> Option<Vec<Pose2>> {
-    let information: Vec<Matrix3<f64>> = ties.iter().map(Tie::information).collect();
-    for _ in 0..MOST_STEPS {
-        let step = step(&poses, ties, &information)?;
+pub(crate) fn solve(mut poses: Vec<Pose2>, constraints: &[Constraint]) -> Option<Vec<Pose2>> {
+    let information: Vec<Matrix3<f64>> = constraints.iter().map(Constraint::information).collect();
+    for _ in 0..MAX_ITERATIONS {
+        let step = step(&poses, constraints, &information)?;
         let mut longest = 0.0_f64;
         for (pose, step) in poses.iter_mut().zip(&step) {
             *pose = *pose * Pose2::new(step.x, step.y, step.z);
@@ -17,25 +19,29 @@ pub(crate) fn solve(mut poses: Vec<Pose2>, ties: &[Tie]) -> Option<Vec<Pose2>> {
         if !longest.is_finite() {
             return None;
         }
-        if longest < STILL {
+        if longest < MIN_STEP {
             break;
         }
     }
     Some(poses)
 }
 
-/// Steps at most.
-const MOST_STEPS: usize = 12;
-/// Steps shorter than this end it, m and rad.
-const STILL: f64 = 1e-3;
+/// Maximum number of Gauss-Newton steps. The last poses are returned beyond it. Source: ours.
+const MAX_ITERATIONS: usize = 12;
+/// Step length at which the iteration ends [m, rad]. Source: ours.
+const MIN_STEP: f64 = 1e-3;
 
-fn step(poses: &[Pose2], ties: &[Tie], information: &[Matrix3<f64>]) -> Option<Vec<Vector3<f64>>> {
+fn step(
+    poses: &[Pose2],
+    constraints: &[Constraint],
+    information: &[Matrix3<f64>],
+) -> Option<Vec<Vector3<f64>>> {
     let mut matrix = SparseBlocks::new(poses.len());
     let mut right = vec![Vector3::zeros(); poses.len()];
-    for (tie, information) in ties.iter().zip(information) {
-        let (i, j) = (tie.from as usize, tie.to as usize);
-        let residual = tie.residual(poses[i], poses[j]);
-        let (by_from, by_to) = tie.jacobians(poses[i], poses[j]);
+    for (constraint, information) in constraints.iter().zip(information) {
+        let (i, j) = (constraint.from as usize, constraint.to as usize);
+        let residual = constraint.residual(poses[i], poses[j]);
+        let (by_from, by_to) = constraint.jacobians(poses[i], poses[j]);
         let (wi, wj) = (by_from.transpose() * information, by_to.transpose() * information);
         matrix.add_diagonal(i, &(wi * by_from));
         matrix.add_diagonal(j, &(wj * by_to));
@@ -43,12 +49,12 @@ fn step(poses: &[Pose2], ties: &[Tie], information: &[Matrix3<f64>]) -> Option<V
         right[i] -= wi * residual;
         right[j] -= wj * residual;
     }
-    matrix.add_diagonal(0, &Matrix3::from_diagonal_element(HELD));
+    matrix.add_diagonal(0, &Matrix3::from_diagonal_element(FIRST_POSE_INFORMATION));
     matrix.solve(right)
 }
 
-/// Information that holds the first pose.
-const HELD: f64 = 1e9;
+/// Information that fixes the first pose [1/m^2, 1/rad^2]. Source: ours.
+const FIRST_POSE_INFORMATION: f64 = 1e9;
 
 #[cfg(test)]
 mod tests {
@@ -66,8 +72,8 @@ mod tests {
             .collect();
         let covariance = Matrix3::from_diagonal(&Vector3::new(1e-3, 1e-3, 1e-4));
         let wrong = Pose2::new(0.01, 0.0, 0.06);
-        let mut ties: Vec<Tie> = (0..8)
-            .map(|i| Tie {
+        let mut constraints: Vec<Constraint> = (0..8)
+            .map(|i| Constraint {
                 from: i as u32,
                 to: i as u32 + 1,
                 from_to: truth[i].inverse() * truth[i + 1] * wrong,
@@ -75,12 +81,12 @@ mod tests {
             })
             .collect();
         let mut poses = vec![Pose2::IDENTITY];
-        for tie in &ties {
-            poses.push(*poses.last().unwrap() * tie.from_to);
+        for constraint in &constraints {
+            poses.push(*poses.last().unwrap() * constraint.from_to);
         }
         assert!(poses[8].distance(&truth[8]) > 0.5);
-        ties.push(Tie { from: 0, to: 8, from_to: truth[8], covariance: covariance * 1e-3 });
-        let solved = solve(poses, &ties).unwrap();
+        constraints.push(Constraint { from: 0, to: 8, from_to: truth[8], covariance: covariance * 1e-3 });
+        let solved = solve(poses, &constraints).unwrap();
         for (found, truth) in solved.iter().zip(&truth) {
             assert!(found.distance(truth) < 0.25, "{found:?} {truth:?}");
         }

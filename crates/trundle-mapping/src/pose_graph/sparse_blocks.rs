@@ -1,3 +1,5 @@
+//! Sparse symmetric matrix of 3 x 3 blocks and its elimination.
+
 use nalgebra::{Matrix3, Vector3};
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -1,4 +1,6 @@
-use crate::pose_graph::Tie;
+//! Covariance of each pose relative to one pose, along the least uncertain path.
+
+use crate::pose_graph::Constraint;
 use nalgebra::{Matrix2, Matrix3, Vector2};
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -6,7 +8,7 @@ use trundle_core::Pose2;
 
 /// How surely a pose is known relative to another.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Reached {
+pub(crate) struct RelativeUncertainty {
     /// Covariance (m, m, rad) in the map's axes.
     pub(crate) covariance: Matrix3<f64>,
     /// Length of the way along the ties, m.
@@ -15,21 +17,27 @@ pub(crate) struct Reached {
 
 /// The covariance of every pose relative to pose `from`, composed along the surest way through the ties (\[Olson09b\]): an upper
 /// bound of the true one. `None` where nothing leads there. Cost: n log n.
-pub(crate) fn reach(poses: &[Pose2], ties: &[Tie], from: usize) -> Vec<Option<Reached>> {
-    let starts = first_ties(poses.len(), ties);
-    let mut best: Vec<Option<Reached>> = vec![None; poses.len()];
-    let mut heap = BinaryHeap::from([Entry { cost: 0.0, pose: from as u32, reached: Reached::HERE }]);
+pub(crate) fn reach(
+    poses: &[Pose2],
+    constraints: &[Constraint],
+    from: usize,
+) -> Vec<Option<RelativeUncertainty>> {
+    let starts = first_ties(poses.len(), constraints);
+    let mut best: Vec<Option<RelativeUncertainty>> = vec![None; poses.len()];
+    let mut heap =
+        BinaryHeap::from([Entry { cost: 0.0, pose: from as u32, reached: RelativeUncertainty::HERE }]);
     while let Some(Entry { pose, reached, .. }) = heap.pop() {
         let here = pose as usize;
         if best[here].is_some() {
             continue;
         }
         best[here] = Some(reached);
-        for &k in &starts.ties[starts.first[here]..starts.first[here + 1]] {
-            let tie = &ties[k as usize];
-            let there = if tie.from == pose { tie.to } else { tie.from };
+        for &k in &starts.constraints[starts.first[here]..starts.first[here + 1]] {
+            let constraint = &constraints[k as usize];
+            let there = if constraint.from == pose { constraint.to } else { constraint.from };
             if best[there as usize].is_none() {
-                let next = reached.through(poses[here], poses[there as usize], tie, tie.from == pose);
+                let next =
+                    reached.through(poses[here], poses[there as usize], constraint, constraint.from == pose);
                 heap.push(Entry { cost: next.cost(), pose: there, reached: next });
             }
         }
@@ -37,7 +45,7 @@ pub(crate) fn reach(poses: &[Pose2], ties: &[Tie], from: usize) -> Vec<Option<Re
     best
 }
 
-impl Reached {
+impl RelativeUncertainty {
     const HERE: Self =
         Self { covariance: Matrix3::new(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), way: 0.0 };
 
@@ -46,7 +54,7 @@ impl Reached {
         self.covariance.trace()
     }
 
-    fn through(&self, here: Pose2, there: Pose2, tie: &Tie, forward: bool) -> Self {
+    fn through(&self, here: Pose2, there: Pose2, constraint: &Constraint, forward: bool) -> Self {
         let way = there.position() - here.position();
         let lever = Matrix3::new(1.0, 0.0, -way.y, 0.0, 1.0, way.x, 0.0, 0.0, 1.0);
         // The measurement's covariance is that of a perturbation at its second pose.
@@ -56,11 +64,11 @@ impl Reached {
         let mut noise = Matrix3::zeros();
         noise
             .fixed_view_mut::<2, 2>(0, 0)
-            .copy_from(&(turn * tie.covariance.fixed_view::<2, 2>(0, 0) * turn.transpose()));
-        let cross: Vector2<f64> = turn * tie.covariance.fixed_view::<2, 1>(0, 2);
+            .copy_from(&(turn * constraint.covariance.fixed_view::<2, 2>(0, 0) * turn.transpose()));
+        let cross: Vector2<f64> = turn * constraint.covariance.fixed_view::<2, 1>(0, 2);
         noise.fixed_view_mut::<2, 1>(0, 2).copy_from(&cross);
         noise.fixed_view_mut::<1, 2>(2, 0).copy_from(&cross.transpose());
-        noise[(2, 2)] = tie.covariance[(2, 2)];
+        noise[(2, 2)] = constraint.covariance[(2, 2)];
         if !forward {
             noise = lever * noise * lever.transpose();
         }
@@ -70,34 +78,34 @@ impl Reached {
 
 struct FirstTies {
     first: Vec<usize>,
-    ties: Vec<u32>,
+    constraints: Vec<u32>,
 }
 
 /// Which ties touch each pose.
-fn first_ties(count: usize, ties: &[Tie]) -> FirstTies {
+fn first_ties(count: usize, constraints: &[Constraint]) -> FirstTies {
     let mut first = vec![0; count + 1];
-    for tie in ties {
-        first[tie.from as usize + 1] += 1;
-        first[tie.to as usize + 1] += 1;
+    for constraint in constraints {
+        first[constraint.from as usize + 1] += 1;
+        first[constraint.to as usize + 1] += 1;
     }
     for i in 0..count {
         first[i + 1] += first[i];
     }
     let mut next = first.clone();
-    let mut of = vec![0; 2 * ties.len()];
-    for (k, tie) in ties.iter().enumerate() {
-        for end in [tie.from as usize, tie.to as usize] {
+    let mut of = vec![0; 2 * constraints.len()];
+    for (k, constraint) in constraints.iter().enumerate() {
+        for end in [constraint.from as usize, constraint.to as usize] {
             of[next[end]] = k as u32;
             next[end] += 1;
         }
     }
-    FirstTies { first, ties: of }
+    FirstTies { first, constraints: of }
 }
 
 struct Entry {
     cost: f64,
     pose: u32,
-    reached: Reached,
+    reached: RelativeUncertainty,
 }
 
 impl PartialEq for Entry {
@@ -130,18 +138,18 @@ mod tests {
     fn a_shortcut_is_surer_than_the_way_around() {
         let poses: Vec<Pose2> = (0..11).map(|i| Pose2::new(f64::from(i), 0.0, 0.0)).collect();
         let covariance = Matrix3::from_diagonal(&Vector3::new(0.01, 0.01, 0.001));
-        let tie = |from: usize, to: usize| Tie {
+        let constraint = |from: usize, to: usize| Constraint {
             from: from as u32,
             to: to as u32,
             from_to: poses[from].inverse() * poses[to],
             covariance,
         };
-        let mut ties: Vec<Tie> = (0..10).map(|i| tie(i, i + 1)).collect();
-        let around = reach(&poses, &ties, 10)[0].unwrap();
+        let mut constraints: Vec<Constraint> = (0..10).map(|i| constraint(i, i + 1)).collect();
+        let around = reach(&poses, &constraints, 10)[0].unwrap();
         assert!((around.covariance[(0, 0)] - 0.1).abs() < 1e-9, "along: ten steps");
         assert!(around.covariance[(1, 1)] > 0.3, "across: the headings' error with their levers");
-        ties.push(tie(0, 10));
-        let across = reach(&poses, &ties, 10)[0].unwrap();
+        constraints.push(constraint(0, 10));
+        let across = reach(&poses, &constraints, 10)[0].unwrap();
         assert!(across.covariance.trace() < 0.5 * around.covariance.trace());
     }
 }

@@ -1,3 +1,5 @@
+//! Absolute pose prior from odometry without drift.
+
 use crate::particle_config::ParticleConfig;
 use crate::rbpf::mapper::scaled;
 use nalgebra::{Matrix3, Vector3};
@@ -5,14 +7,14 @@ use trundle_core::Pose2;
 
 /// What odometry that does not drift says of where the robot is.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Anchor {
+pub(crate) struct AbsolutePose {
     /// map_from_base, cells and rad.
     pub(crate) pose: Pose2,
     /// Cells, cells, rad; map frame.
     pub(crate) covariance: Matrix3<f64>,
 }
 
-impl Anchor {
+impl AbsolutePose {
     /// With the base at `map_from_base` by the odometry, m and rad; none where the odometry is not told to be of this kind.
     pub(crate) fn new(config: &ParticleConfig, map_from_base: Pose2) -> Option<Self> {
         let prior = config.pose_prior.as_ref()?;

@@ -1,3 +1,5 @@
+//! Trajectories of all particles as a tree.
+
 use trundle_core::{Pose2, Stamp};
 
 /// The poses of all particles through time, with who descends from whom.
@@ -18,14 +20,14 @@ pub(crate) struct Column {
     pub(crate) parents: Vec<u16>,
 }
 
-/// Columns between two looks for a common ancestor.
-const SETTLE_EVERY: usize = 64;
+/// Columns between two searches for a common ancestor. Source: ours.
+const FOLD_INTERVAL_COLUMNS: usize = 64;
 
 impl Ancestry {
     /// Notes the poses of all particles; `parents` as of the resampling before.
     pub(crate) fn push(&mut self, stamp: Stamp, poses: impl Iterator<Item = Pose2>, parents: &[u16]) {
         self.columns.push(Column { stamp, poses: poses.collect(), parents: parents.to_vec() });
-        if self.columns.len().is_multiple_of(SETTLE_EVERY) {
+        if self.columns.len().is_multiple_of(FOLD_INTERVAL_COLUMNS) {
             self.settle();
         }
     }

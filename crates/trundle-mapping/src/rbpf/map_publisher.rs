@@ -1,3 +1,5 @@
+//! Published occupancy grid of the best particle, updated tile by tile.
+
 use trundle_core::{Cell, CellIndex, GridGeometry, OccupancyGrid, Vector2};
 use trundle_grid::tiles::{Tile, TileMap};
 use trundle_grid::{MapperConfig, log_odds};
@@ -7,7 +9,7 @@ use trundle_grid::{MapperConfig, log_odds};
 /// It remembers the map that it showed last: what that map still shares with the one to show has not changed, so
 /// only tiles that were written are looked at, though another particle may be the best now.
 #[derive(Debug, Clone)]
-pub(crate) struct Publisher {
+pub(crate) struct MapPublisher {
     shown: TileMap,
     grid: OccupancyGrid,
     /// Lower-left tile and size in tiles of the grid.
@@ -21,7 +23,7 @@ pub(crate) struct Publisher {
     changed: Vec<u64>,
 }
 
-impl Publisher {
+impl MapPublisher {
     pub(crate) fn new(config: &MapperConfig) -> Self {
         let units = |probability: f64| (log_odds(probability) / Tile::LOG_ODDS_UNIT) as i8;
         let (first, size) = ((-1, -1), (2, 2));

@@ -1,14 +1,16 @@
-use crate::loop_closing::loop_closer::Tools;
-use crate::rbpf::mapper::{ParticleMapper, metres, scaled};
+//! Redraw of the map along a trajectory that a loop closure corrected.
+
+use crate::loop_closing::loop_closer::LoopTools;
+use crate::rbpf::mapper::{ParticleMapper, in_metres, scaled};
 use crate::rbpf::proposal::Proposal;
-use crate::scan_match::scan_points::ScanShape;
+use crate::scan_match::scan_points::ScanPoints;
 use nalgebra::{Matrix3, Vector3};
 use trundle_core::Pose2;
 use trundle_grid::tiles::{RayUpdateScratch, TileMap};
 
 /// The map along a way that a loop has bent, in the making: drawn a little with each scan, beside the map in use.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Bending {
+pub(crate) struct MapRedraw {
     /// The bent poses, m, of the first scans kept.
     pub(crate) poses: Vec<Pose2>,
     /// How far the pose went that went farthest, m.
@@ -16,17 +18,17 @@ pub(crate) struct Bending {
     /// How many scans are drawn.
     pub(crate) drawn: usize,
     pub(crate) map: TileMap,
-    shape: ScanShape,
+    shape: ScanPoints,
     draw: RayUpdateScratch,
 }
 
-/// Cells told anew with one scan: some ten times as many as thirty particles' maps take of one. Fewer would leave the robot in the
-/// unbent map for longer, where it matches what is double.
-const CELLS: usize = 4_000_000;
-/// What a scan costs at least, cells.
-const SCAN_COST: usize = 500;
-/// A look for loops each so many metres.
-const LOOK_EVERY: f64 = 2.0;
+/// Cells redrawn with one scan: about ten times the cells that thirty particles update. A smaller number leaves the robot
+/// longer in the uncorrected map. Source: ours.
+const CELLS_PER_SCAN: usize = 4_000_000;
+/// Minimum cost of a redrawn scan [cells]. Source: ours.
+const MIN_SCAN_COST_CELLS: usize = 500;
+/// Path length between two loop searches [m]. Source: ours.
+const LOOP_SEARCH_INTERVAL_M: f64 = 2.0;
 
 /// The part of the filter that closes loops.
 impl ParticleMapper {
@@ -42,63 +44,64 @@ impl ParticleMapper {
     /// Looks for loops each 2 m of way; where one is closed, the best particle's way and map are bent, some scans with each
     /// call, and all go on from there: then how far the farthest pose went, m.
     pub(crate) fn close_loops(&mut self, driven: f64) -> Option<f64> {
-        self.closer.driven += driven;
-        if self.bending.is_some() {
-            return self.go_on_bending(CELLS).1;
+        self.loop_closer.driven += driven;
+        if self.redraw.is_some() {
+            return self.advance_redraw(CELLS_PER_SCAN).1;
         }
-        if self.closer.driven < LOOK_EVERY {
+        if self.loop_closer.driven < LOOP_SEARCH_INTERVAL_M {
             return None;
         }
-        self.closer.driven = 0.0;
-        let poses: Vec<Pose2> = self.way().into_iter().map(|(_, pose)| pose).collect();
+        self.loop_closer.driven = 0.0;
+        let poses: Vec<Pose2> = self.full_trajectory().into_iter().map(|(_, pose)| pose).collect();
         let tools =
-            Tools { config: &self.config, ray_update: &self.ray_update, likelihood: &self.likelihood };
-        let closing = self.closer.look(&tools, &mut self.history, &poses)?;
+            LoopTools { config: &self.config, ray_update: &self.ray_update, likelihood: &self.likelihood };
+        let closing = self.loop_closer.look(&tools, &mut self.history, &poses)?;
         if closing.farthest >= self.config.map.resolution {
-            self.bending =
-                Some(Bending { poses: closing.poses, farthest: closing.farthest, ..Bending::default() });
+            self.redraw =
+                Some(MapRedraw { poses: closing.poses, farthest: closing.farthest, ..MapRedraw::default() });
         }
         None
     }
 
     /// Finishes what is under way, as after the last scan of a log: a map that a loop bends is drawn to its end.
     pub fn finish(&mut self) {
-        self.go_on_bending(usize::MAX);
+        self.advance_redraw(usize::MAX);
     }
 
     /// Draws scans at their bent poses for about `budget` cells, and goes over to the new map when all are drawn. How many cells
     /// were told, and how far the farthest pose went when it is done.
-    pub(crate) fn go_on_bending(&mut self, budget: usize) -> (usize, Option<f64>) {
-        let Some(mut bending) = self.bending.take() else { return (0, None) };
+    pub(crate) fn advance_redraw(&mut self, budget: usize) -> (usize, Option<f64>) {
+        let Some(mut bending) = self.redraw.take() else { return (0, None) };
         let mut cells = 0;
         while cells < budget && bending.drawn < bending.poses.len() {
             let pose = bending.poses[bending.drawn];
-            cells += self.draw_again(&mut bending, pose);
+            cells += self.redraw_scan(&mut bending, pose);
         }
         if bending.drawn < bending.poses.len() {
-            self.bending = Some(bending);
+            self.redraw = Some(bending);
             return (cells, None);
         }
-        (cells, Some(self.take_over(bending)))
+        (cells, Some(self.apply_redraw(bending)))
     }
 
-    fn draw_again(&self, bending: &mut Bending, pose: Pose2) -> usize {
+    fn redraw_scan(&self, bending: &mut MapRedraw, pose: Pose2) -> usize {
         bending.shape.set_stored(&self.config, &self.history.scans[bending.drawn]);
         bending.drawn += 1;
         let pose = self.cells(pose);
-        self.ray_update.apply(&mut bending.map, &mut bending.draw, pose, &bending.shape.rays) + SCAN_COST
+        self.ray_update.apply(&mut bending.map, &mut bending.draw, pose, &bending.shape.rays)
+            + MIN_SCAN_COST_CELLS
     }
 
     /// All particles go on from the bent way, behind which the best one's scans since then follow as they were.
-    fn take_over(&mut self, mut bending: Bending) -> f64 {
-        let way = self.way();
+    fn apply_redraw(&mut self, mut bending: MapRedraw) -> f64 {
+        let way = self.full_trajectory();
         let bent = bending.poses.len();
         let moved = bending.poses[bent - 1] * way[bent - 1].1.inverse();
         let mut trajectory = way;
         for (k, (_, pose)) in trajectory.iter_mut().enumerate() {
             *pose = if k < bent { bending.poses[k] } else { moved * *pose };
             if k >= bent {
-                self.draw_again(&mut bending, *pose);
+                self.redraw_scan(&mut bending, *pose);
             }
         }
         let last = trajectory.last().expect("invariant: a way that is bent has poses").1;
@@ -110,7 +113,7 @@ impl ParticleMapper {
             particle.map = bending.map.clone();
         }
         self.parents = vec![0; self.particles.len()];
-        debug_assert!(metres(&self.config, pose).distance(&last) < 1e-6, "cells and metres agree");
+        debug_assert!(in_metres(&self.config, pose).distance(&last) < 1e-6, "cells and metres agree");
         bending.farthest
     }
 
@@ -120,12 +123,16 @@ impl ParticleMapper {
             // Scans that are being drawn must not be renumbered.
             self.finish();
             let (count, before) = (self.config.most_scans / 2, self.history.scans.len());
-            let mut way = self.way();
+            let mut way = self.full_trajectory();
             self.history.thin(&mut way, count);
             self.ancestry.thin(count);
             let gone = before - self.history.scans.len();
-            self.session = if self.session < count { self.session.div_ceil(2) } else { self.session - gone };
-            self.closer.pending.clear();
+            self.first_pose_of_run = if self.first_pose_of_run < count {
+                self.first_pose_of_run.div_ceil(2)
+            } else {
+                self.first_pose_of_run - gone
+            };
+            self.loop_closer.pending.clear();
         }
     }
 }
@@ -143,7 +150,7 @@ mod tests {
         let mut mapper = ParticleMapper::new(config, 1).unwrap();
         let beams = (0..90).map(|k| Beam::Hit { range: 3.0 + 0.01 * f64::from(k % 7) }).collect();
         let scan = Scan::new(Stamp::default(), Vector2::zeros(), -1.5, 0.03, beams).unwrap();
-        let mut shape = ScanShape::default();
+        let mut shape = ScanPoints::default();
         shape.set(&mapper.config, &scan);
         let way: Vec<_> = (0..scans)
             .map(|k| (Stamp::from_nanos(k as i64), Pose2::new(0.05 * k as f64, 0.0, 0.0)))
@@ -152,7 +159,7 @@ mod tests {
         let turn = |pose: Pose2| Pose2::new(0.0, 0.0, 0.1) * pose;
         let poses = way[..scans - 5].iter().map(|(_, pose)| turn(*pose)).collect();
         mapper.ancestry.replace(way);
-        mapper.bending = Some(Bending { poses, farthest: 1.0, ..Bending::default() });
+        mapper.redraw = Some(MapRedraw { poses, farthest: 1.0, ..MapRedraw::default() });
         mapper
     }
 
@@ -163,7 +170,7 @@ mod tests {
             let (mut sliced, mut once) = (bent(scans), bent(scans));
             let (mut most, mut slices, mut all) = (0, 0, 0);
             loop {
-                let (cells, done) = sliced.go_on_bending(BUDGET);
+                let (cells, done) = sliced.advance_redraw(BUDGET);
                 (most, slices, all) = (most.max(cells), slices + 1, all + cells);
                 if done.is_some() {
                     break;
@@ -172,7 +179,7 @@ mod tests {
             once.finish();
             assert!(most < BUDGET + 5_000, "{most} cells in one slice");
             assert!(slices >= all / (BUDGET + 5_000), "{slices} slices");
-            assert!(once.bending.is_none() && once.grid() == sliced.grid());
+            assert!(once.redraw.is_none() && once.grid() == sliced.grid());
             // What came after the bent part is carried along as it was.
             let end = Pose2::new(0.0, 0.0, 0.1) * Pose2::new(0.05 * (scans - 1) as f64, 0.0, 0.0);
             assert!(sliced.pose().distance(&end) < 1e-6);

@@ -1,22 +1,24 @@
-use crate::loop_closing::loop_closer::Closer;
-use crate::loop_closing::scan_history::History;
+//! Rao-Blackwellised particle filter for grid mapping.
+
+use crate::loop_closing::loop_closer::LoopCloser;
+use crate::loop_closing::scan_history::ScanHistory;
 use crate::loop_closing::stored_scan::StoredScan;
 use crate::particle_config::ParticleConfig;
-use crate::rbpf::absolute_pose::Anchor;
+use crate::rbpf::absolute_pose::AbsolutePose;
 use crate::rbpf::ancestry::Ancestry;
-use crate::rbpf::map_publisher::Publisher;
-use crate::rbpf::map_redraw::Bending;
+use crate::rbpf::map_publisher::MapPublisher;
+use crate::rbpf::map_redraw::MapRedraw;
 use crate::rbpf::odometry_bias::OdometryBias;
-use crate::rbpf::odometry_noise::OdometryTrust;
+use crate::rbpf::odometry_noise::OdometryNoise;
 use crate::rbpf::proposal::{Proposal, Proposer};
 use crate::rbpf::resampling::{effective, low_variance};
-use crate::rbpf::rng::Chance;
+use crate::rbpf::rng::ParticleRng;
 use crate::rbpf::scan_update::{Processed, ScanUpdate};
-use crate::rbpf::update_gate::{Gate, Step};
+use crate::rbpf::update_gate::{OdometryStep, UpdateGate};
 use crate::scan_match::coarse_search::CoarseSearch;
 use crate::scan_match::global_search::GlobalSearch;
 use crate::scan_match::likelihood::Likelihood;
-use crate::scan_match::scan_points::ScanShape;
+use crate::scan_match::scan_points::ScanPoints;
 use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;
 use trundle_core::{CellIndex, Invalid, OccupancyGrid, Pose2, Scan, Stamp};
@@ -38,30 +40,30 @@ pub struct ParticleMapper {
     pub(crate) updates: u64,
     pub(crate) ray_update: RayUpdate,
     pub(crate) likelihood: Likelihood,
-    pub(crate) shape: ScanShape,
+    pub(crate) shape: ScanPoints,
     pub(crate) particles: Vec<Particle>,
     /// Whose copy each particle is since the last column of the ancestry.
     pub(crate) parents: Vec<u16>,
     pub(crate) ancestry: Ancestry,
     scratch: Vec<Scratch>,
-    publisher: Publisher,
-    pub(crate) history: History,
-    pub(crate) closer: Closer,
+    publisher: MapPublisher,
+    pub(crate) history: ScanHistory,
+    pub(crate) loop_closer: LoopCloser,
     /// The map that a loop bends, while it is drawn.
-    pub(crate) bending: Option<Bending>,
-    pub(crate) gate: Gate,
+    pub(crate) redraw: Option<MapRedraw>,
+    pub(crate) gate: UpdateGate,
     /// map_from_odom of odometry that does not drift, m and rad: its first pose is the map's origin.
     pub(crate) map_from_odom: Option<Pose2>,
     /// The search for the robot in a map that was there before it.
-    pub(crate) lost: Option<GlobalSearch>,
+    pub(crate) global_search: Option<GlobalSearch>,
     /// At which pose of the trajectory this run began.
-    pub(crate) session: usize,
+    pub(crate) first_pose_of_run: usize,
     /// Mean ln p(z | m, x) of a point in the last scans.
-    pub(crate) usual: f64,
+    pub(crate) expected_log_likelihood: f64,
     /// How good the odometry is.
-    pub(crate) trust: OdometryTrust,
+    pub(crate) odometry_noise: OdometryNoise,
     /// What it has wrong at every step.
-    pub(crate) bias: OdometryBias,
+    pub(crate) odometry_bias: OdometryBias,
 }
 
 #[derive(Debug, Clone)]
@@ -87,7 +89,7 @@ impl ParticleMapper {
     /// When the configuration is out of range.
     pub fn new(config: ParticleConfig, seed: u64) -> Result<Self, Invalid> {
         let config = config.validated()?;
-        let reach = (FIELD_REACH / config.map.resolution).ceil() as i32;
+        let reach = (FIELD_REACH_M / config.map.resolution).ceil() as i32;
         let particle =
             Particle { pose: Pose2::IDENTITY, log_weight: 0.0, map: TileMap::default(), proposal: None };
         Ok(Self {
@@ -95,22 +97,22 @@ impl ParticleMapper {
             updates: 0,
             ray_update: RayUpdate::new(&config.map, NearestField::new(reach, COARSE_SIGMA_CELLS)),
             likelihood: Likelihood::new(&config),
-            shape: ScanShape::default(),
+            shape: ScanPoints::default(),
             particles: vec![particle; config.particles],
             parents: (0..config.particles as u16).collect(),
             ancestry: Ancestry::default(),
             scratch: Vec::new(),
-            publisher: Publisher::new(&config.map),
-            history: History::default(),
-            closer: Closer::default(),
-            bending: None,
-            gate: Gate::default(),
+            publisher: MapPublisher::new(&config.map),
+            history: ScanHistory::default(),
+            loop_closer: LoopCloser::default(),
+            redraw: None,
+            gate: UpdateGate::default(),
             map_from_odom: None,
-            lost: None,
-            session: 0,
-            usual: USUAL,
-            trust: OdometryTrust::default(),
-            bias: OdometryBias::default(),
+            global_search: None,
+            first_pose_of_run: 0,
+            expected_log_likelihood: EXPECTED_LOG_LIKELIHOOD,
+            odometry_noise: OdometryNoise::default(),
+            odometry_bias: OdometryBias::default(),
             config,
         })
     }
@@ -125,7 +127,7 @@ impl ParticleMapper {
         };
         self.shape.set(&self.config, scan);
         let odom_cells = self.cells(odom_from_base);
-        if let Some(search) = &mut self.lost {
+        if let Some(search) = &mut self.global_search {
             search.push(&self.shape, odom_cells);
             return self.search(scan.stamp());
         }
@@ -133,21 +135,23 @@ impl ParticleMapper {
         if first && self.config.pose_prior.is_some() {
             self.map_from_odom = Some(odom_from_base.inverse());
         }
-        let anchor = self.map_from_odom.and_then(|origin| Anchor::new(&self.config, origin * odom_from_base));
+        let anchor =
+            self.map_from_odom.and_then(|origin| AbsolutePose::new(&self.config, origin * odom_from_base));
         let jumped = step.jumped;
-        let covariance = if jumped { step.covariance } else { self.trust.scaled(&step.covariance) };
-        let motion = if jumped { step.motion } else { self.bias.corrected(step.motion) };
+        let covariance = if jumped { step.covariance } else { self.odometry_noise.scaled(&step.covariance) };
+        let motion = if jumped { step.motion } else { self.odometry_bias.corrected(step.motion) };
         self.move_and_draw((motion, covariance), anchor, first);
         let (effective, resampled) = self.weigh();
         self.ancestry.push(
             scan.stamp(),
-            self.particles.iter().map(|p| metres(&self.config, p.pose)),
+            self.particles.iter().map(|p| in_metres(&self.config, p.pose)),
             &self.parents,
         );
         let best = self.best();
         let proposal = self.particles[best].proposal;
         if let Some(proposal) = proposal.filter(|p| p.degenerate < 3) {
-            self.usual += USUAL_RATE * (proposal.per_point - self.usual);
+            self.expected_log_likelihood +=
+                EXPECTED_LOG_LIKELIHOOD_RATE * (proposal.per_point - self.expected_log_likelihood);
         }
         if anchor.is_none() {
             self.learn_odometry(&step, proposal.as_ref());
@@ -177,16 +181,16 @@ impl ParticleMapper {
 
     /// map_from_base of the best particle at the last processed scan.
     pub fn pose(&self) -> Pose2 {
-        metres(&self.config, self.particles[self.best()].pose)
+        in_metres(&self.config, self.particles[self.best()].pose)
     }
 
     /// The best particle's poses at the processed scans of this run.
     pub fn trajectory(&self) -> Vec<(Stamp, Pose2)> {
-        self.way().split_off(self.session)
+        self.full_trajectory().split_off(self.first_pose_of_run)
     }
 
     /// The same from the first run on.
-    pub(crate) fn way(&self) -> Vec<(Stamp, Pose2)> {
+    pub(crate) fn full_trajectory(&self) -> Vec<(Stamp, Pose2)> {
         // The last resampling is not in the ancestry yet: parents lead from the particles to its last column.
         let best = self.best();
         self.ancestry.trajectory(usize::from(self.parents[best]))
@@ -201,7 +205,7 @@ impl ParticleMapper {
 
     /// Bytes that maps, ancestry and buffers hold; tiles that particles share count once.
     pub fn bytes(&self) -> usize {
-        let bending = self.bending.iter().map(|bending| &bending.map);
+        let bending = self.redraw.iter().map(|bending| &bending.map);
         let maps = tile_bytes(self.particles.iter().map(|p| &p.map).chain(bending));
         maps + self.ancestry.bytes() + self.history.bytes()
     }
@@ -220,7 +224,7 @@ impl ParticleMapper {
     fn move_and_draw(
         &mut self,
         (motion, covariance): (Pose2, Matrix3<f64>),
-        anchor: Option<Anchor>,
+        anchor: Option<AbsolutePose>,
         first: bool,
     ) {
         let per_metre = 1.0 / self.config.map.resolution;
@@ -230,7 +234,7 @@ impl ParticleMapper {
             shape: &self.shape,
             motion_covariance: scaled(covariance, per_metre),
             anchor,
-            usual: self.usual,
+            expected_log_likelihood: self.expected_log_likelihood,
         };
         let motion = Pose2 { x: motion.x * per_metre, y: motion.y * per_metre, ..motion };
         let (seed, updates, ray_update, shape) = (self.seed, self.updates, &self.ray_update, &self.shape);
@@ -246,13 +250,13 @@ impl ParticleMapper {
         shares.for_each(|(worker, (particles, scratch))| {
             for (i, particle) in particles.iter_mut().enumerate() {
                 if !first {
-                    let mut chance = Chance::new(seed, updates, worker * share + i);
+                    let mut rng = ParticleRng::new(seed, updates, worker * share + i);
                     let guess = particle.pose * motion;
                     let found = proposer.propose(
                         (&particle.map, &far),
                         &mut scratch.search,
                         (particle.pose, guess),
-                        &mut chance,
+                        &mut rng,
                     );
                     particle.pose = found.pose;
                     particle.log_weight += found.log_weight * proposer.weight_scale();
@@ -263,15 +267,15 @@ impl ParticleMapper {
         });
     }
 
-    fn learn_odometry(&mut self, step: &Step, proposal: Option<&Proposal>) {
+    fn learn_odometry(&mut self, step: &OdometryStep, proposal: Option<&Proposal>) {
         let Some(proposal) = proposal.filter(|_| !step.jumped) else { return };
         if proposal.slipped {
-            self.trust.doubt();
+            self.odometry_noise.doubt();
         } else if let Some(innovation) = proposal.innovation {
             let (unit, configured) = (self.config.map.resolution, step.covariance);
-            let noise = scaled(self.trust.scaled(&configured), 1.0 / unit).diagonal();
-            self.bias.learn(step.motion, &innovation, noise, unit);
-            self.trust.learn(&innovation, &scaled(configured, 1.0 / unit));
+            let noise = scaled(self.odometry_noise.scaled(&configured), 1.0 / unit).diagonal();
+            self.odometry_bias.learn(step.motion, &innovation, noise, unit);
+            self.odometry_noise.learn(&innovation, &scaled(configured, 1.0 / unit));
         }
     }
 
@@ -301,7 +305,7 @@ impl ParticleMapper {
 
     fn resample(&mut self) {
         // One past the particles' own streams.
-        let uniform = Chance::new(self.seed, self.updates, self.particles.len()).uniform();
+        let uniform = ParticleRng::new(self.seed, self.updates, self.particles.len()).uniform();
         self.parents = low_variance(&self.weights(), uniform);
         for i in 0..self.particles.len() {
             let parent = usize::from(self.parents[i]);
@@ -325,16 +329,19 @@ fn best_of(particles: &[Particle]) -> usize {
     (1..particles.len()).fold(0, better)
 }
 
-/// What a point of a scan is like before any was seen, nats: half of the points at obstacles, half on unknown ground.
-pub(crate) const USUAL: f64 = -1.0;
-/// Weight of a new scan in what is usual: about the last twenty count.
-pub(crate) const USUAL_RATE: f64 = 0.05;
-/// How far the field of nearest obstacles reaches, m: eight sigmas of a laser's hits, four of a depth camera's at 4 m.
-const FIELD_REACH: f64 = 0.2;
-/// Sigma of the coarse search, cells: one step of it.
+/// Mean log-likelihood of a point before the first scan [nats]: half of the points at obstacles, half on unknown ground.
+/// Source: ours.
+pub(crate) const EXPECTED_LOG_LIKELIHOOD: f64 = -1.0;
+/// Weight of a new scan in the running mean log-likelihood [1]. The mean covers about the last twenty scans. Source:
+/// ours.
+pub(crate) const EXPECTED_LOG_LIKELIHOOD_RATE: f64 = 0.05;
+/// Reach of the field of nearest obstacles [m]: eight sigmas of a laser's hits, four of a depth camera's at 4 m. Source:
+/// ours.
+const FIELD_REACH_M: f64 = 0.2;
+/// Sigma of the coarse likelihood [cells]: one step of the coarse search. Source: ours.
 const COARSE_SIGMA_CELLS: f64 = 2.0;
 
-pub(crate) fn metres(config: &ParticleConfig, pose: Pose2) -> Pose2 {
+pub(crate) fn in_metres(config: &ParticleConfig, pose: Pose2) -> Pose2 {
     Pose2 { x: pose.x * config.map.resolution, y: pose.y * config.map.resolution, ..pose }
 }
 

@@ -17,5 +17,5 @@ pub(crate) mod scan_update;
 pub(crate) mod update_gate;
 
 pub use mapper::ParticleMapper;
-pub use propagate::carry_trajectory;
+pub use propagate::propagate_trajectory;
 pub use scan_update::{Processed, Refusal, ScanUpdate};

@@ -1,3 +1,5 @@
+//! Covariance of an odometry step.
+
 use crate::particle_config::MotionConfig;
 use nalgebra::Matrix3;
 use trundle_core::Pose2;

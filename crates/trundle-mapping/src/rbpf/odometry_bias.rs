@@ -1,3 +1,5 @@
+//! Systematic errors of the odometry, estimated from the scan matches.
+
 use crate::rbpf::odometry_noise::Innovation;
 use nalgebra::{Matrix2, Vector2, Vector3};
 use trundle_core::Pose2;
@@ -16,12 +18,14 @@ pub(crate) struct OdometryBias {
     way: [f64; 2],
 }
 
-/// How large a (rad/m), b and c may be, one sigma: the worst wheels of \[Borenstein96\].
-const TURN_PER_WAY: f64 = 0.02;
-const TURN_PER_TURN: f64 = 0.03;
-const WAY_PER_WAY: f64 = 0.03;
-/// Steps that the sums remember: tyres and floors change slowly.
-const MEMORY: f64 = 300.0;
+/// Prior sigma of the heading bias per distance [rad/m]: the worst wheels of \[Borenstein96\].
+const HEADING_BIAS_SIGMA_PER_M: f64 = 0.02;
+/// Prior sigma of the heading bias per turn [rad/rad]: the worst wheels of \[Borenstein96\].
+const HEADING_BIAS_SIGMA_PER_RAD: f64 = 0.03;
+/// Prior sigma of the distance bias per distance [m/m]: the worst wheels of \[Borenstein96\].
+const DISTANCE_BIAS_SIGMA_PER_M: f64 = 0.03;
+/// Number of steps that the sums cover: tyres and floors change slowly. Source: ours.
+const MEMORY_STEPS: f64 = 300.0;
 
 impl OdometryBias {
     /// A motion by the odometry (m, rad) as it will have been.
@@ -36,7 +40,7 @@ impl OdometryBias {
     pub(crate) fn learn(&mut self, motion: Pose2, innovation: &Innovation, noise: Vector3<f64>, unit: f64) {
         let (way, forward) = (motion.position().norm(), motion.x);
         let applied = self.error(motion);
-        let keep = 1.0 - 1.0 / MEMORY;
+        let keep = 1.0 - 1.0 / MEMORY_STEPS;
         self.turn.iter_mut().chain(&mut self.way).for_each(|sum| *sum *= keep);
         // An error beyond three sigmas is no matter of every step.
         let told = |k: usize| {
@@ -58,7 +62,12 @@ impl OdometryBias {
     /// The errors of a motion: x, y (m), heading.
     fn error(&self, motion: Pose2) -> Vector3<f64> {
         let [aa, ab, bb, ra, rb] = self.turn;
-        let information = Matrix2::new(aa + TURN_PER_WAY.powi(-2), ab, ab, bb + TURN_PER_TURN.powi(-2));
+        let information = Matrix2::new(
+            aa + HEADING_BIAS_SIGMA_PER_M.powi(-2),
+            ab,
+            ab,
+            bb + HEADING_BIAS_SIGMA_PER_RAD.powi(-2),
+        );
         let rates =
             information.try_inverse().map_or(Vector2::zeros(), |inverse| inverse * Vector2::new(ra, rb));
         let turn = rates.x * motion.position().norm() + rates.y * motion.theta;
@@ -66,7 +75,7 @@ impl OdometryBias {
     }
 
     fn stretch(&self) -> f64 {
-        self.way[1] / (self.way[0] + WAY_PER_WAY.powi(-2))
+        self.way[1] / (self.way[0] + DISTANCE_BIAS_SIGMA_PER_M.powi(-2))
     }
 
     /// The numbers it consists of, for saving.
@@ -85,11 +94,11 @@ impl OdometryBias {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rbpf::rng::Chance;
+    use crate::rbpf::rng::ParticleRng;
 
     #[test]
     fn learns_what_is_wrong_at_every_step_among_noise() {
-        let (mut bias, mut chance) = (OdometryBias::default(), Chance::new(1, 0, 0));
+        let (mut bias, mut rng) = (OdometryBias::default(), ParticleRng::new(1, 0, 0));
         for i in 0..400 {
             let turn = [0.0, 0.2, -0.15, 0.0][i % 4];
             let motion = Pose2::new(if turn == 0.0 { 0.3 } else { 0.1 }, 0.0, turn);
@@ -97,7 +106,7 @@ mod tests {
             let said = bias.corrected(motion);
             let noise = Vector3::new(0.2, 0.2, 0.004);
             let off = Vector3::new((truth.x - said.x) / 0.05, 0.0, truth.theta - said.theta);
-            let off = off + noise.component_mul(&chance.normal3());
+            let off = off + noise.component_mul(&rng.normal3());
             let open = Vector3::new(0.01, 0.01, 1e-6);
             bias.learn(motion, &Innovation { off, open }, noise.component_mul(&noise), 0.05);
         }

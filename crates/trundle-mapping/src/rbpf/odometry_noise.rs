@@ -1,3 +1,5 @@
+//! Scale of the random errors of the odometry, estimated from the scan matches.
+
 use nalgebra::{Matrix3, Vector3};
 
 /// How good the odometry is, learnt from what the matches make of it.
@@ -8,7 +10,7 @@ use nalgebra::{Matrix3, Vector3};
 /// itself leaves open; the ratio of the two sums, each forgetting, is the scale (a moment estimate of the motion model's
 /// parameters, after \[Eliazar04\]).
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct OdometryTrust {
+pub(crate) struct OdometryNoise {
     shift: Moments,
     turn: Moments,
 }
@@ -30,32 +32,32 @@ pub(crate) struct Innovation {
     pub(crate) open: Vector3<f64>,
 }
 
-/// Errors larger than this many sigmas of what the configuration and the match allow count as that.
-const MOST_SIGMAS: f64 = 3.0;
-/// Steps that the sums remember.
-const MEMORY: f64 = 60.0;
-/// Steps at the configured errors that it begins with.
-const FIRST: f64 = 4.0;
-/// Errors are taken for so much larger than they were: tomorrow's floor may be worse, and errors of steps one after another are
-/// alike. In drawn buildings (`loop_bench 3`) 3 is better than 1.5: 0.13 m off on average, not 0.18.
-const CAUTION: f64 = 3.0;
-/// The odometry is never believed to be better than this part of the configured errors.
-const LEAST: f64 = 0.15;
+/// Maximum error of a step [sigmas of configuration and match]. A larger error counts as this one. Source: ours.
+const MAX_ERROR_SIGMAS: f64 = 3.0;
+/// Number of steps that the sums cover. Source: ours.
+const MEMORY_STEPS: f64 = 60.0;
+/// Number of steps with the configured errors that the sums begin with. Source: ours.
+const PRIOR_STEPS: f64 = 4.0;
+/// Factor on the learnt scale of the errors [1]: errors of successive steps are correlated. Source:
+/// docs/experiments/mapping-odometry.md.
+const ERROR_SCALE_FACTOR: f64 = 3.0;
+/// Minimum scale of the errors relative to the configured ones [1]. Source: ours.
+const MIN_ERROR_SCALE: f64 = 0.15;
 
-impl Default for OdometryTrust {
+impl Default for OdometryNoise {
     fn default() -> Self {
-        let moments = Moments { errors: FIRST, weights: FIRST, steps: FIRST };
+        let moments = Moments { errors: PRIOR_STEPS, weights: PRIOR_STEPS, steps: PRIOR_STEPS };
         Self { shift: moments, turn: moments }
     }
 }
 
-impl OdometryTrust {
+impl OdometryNoise {
     /// Takes a step in; `covariance`: the configured one of its motion.
     pub(crate) fn learn(&mut self, step: &Innovation, covariance: &Matrix3<f64>) {
         for k in 0..3 {
             let variance = covariance[(k, k)];
             let open = step.open[k] / variance;
-            let most = MOST_SIGMAS * MOST_SIGMAS * (1.0 + open);
+            let most = MAX_ERROR_SIGMAS * MAX_ERROR_SIGMAS * (1.0 + open);
             let error = (step.off[k] * step.off[k] / variance).min(most) - open;
             // A match that leaves more open than the odometry says next to nothing.
             let weight = (1.0 + open).powi(-2);
@@ -66,8 +68,8 @@ impl OdometryTrust {
 
     /// Takes in a step of which the odometry told nothing true.
     pub(crate) fn doubt(&mut self) {
-        self.shift.add(MOST_SIGMAS * MOST_SIGMAS, 1.0);
-        self.turn.add(MOST_SIGMAS * MOST_SIGMAS, 1.0);
+        self.shift.add(MAX_ERROR_SIGMAS * MAX_ERROR_SIGMAS, 1.0);
+        self.turn.add(MAX_ERROR_SIGMAS * MAX_ERROR_SIGMAS, 1.0);
     }
 
     /// A configured covariance of a motion made what it is by now.
@@ -96,8 +98,8 @@ impl OdometryTrust {
 
 impl Moments {
     fn add(&mut self, error: f64, weight: f64) {
-        let keep = 1.0 - 1.0 / MEMORY;
-        if self.steps < MEMORY {
+        let keep = 1.0 - 1.0 / MEMORY_STEPS;
+        if self.steps < MEMORY_STEPS {
             self.steps += weight;
         } else {
             (self.errors, self.weights) = (self.errors * keep, self.weights * keep);
@@ -107,21 +109,21 @@ impl Moments {
     }
 
     fn scale(&self) -> f64 {
-        (CAUTION * (self.errors / self.weights).max(0.0).sqrt()).clamp(LEAST, 1.0)
+        (ERROR_SCALE_FACTOR * (self.errors / self.weights).max(0.0).sqrt()).clamp(MIN_ERROR_SCALE, 1.0)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rbpf::rng::Chance;
+    use crate::rbpf::rng::ParticleRng;
 
-    fn learnt(good: f64, steps: usize) -> OdometryTrust {
+    fn learnt(good: f64, steps: usize) -> OdometryNoise {
         let covariance = Matrix3::from_diagonal(&Vector3::new(2.0, 1.0, 0.01));
-        let (mut trust, mut chance) = (OdometryTrust::default(), Chance::new(1, 0, 0));
+        let (mut trust, mut rng) = (OdometryNoise::default(), ParticleRng::new(1, 0, 0));
         let open = Vector3::new(0.02, 0.02, 1e-4);
         for _ in 0..steps {
-            let (error, noise) = (chance.normal3() * good, chance.normal3());
+            let (error, noise) = (rng.normal3() * good, rng.normal3());
             let off = Vector3::from_fn(|k, _| {
                 error[k] * f64::sqrt(covariance[(k, k)]) + noise[k] * f64::sqrt(open[k])
             });
@@ -134,10 +136,10 @@ mod tests {
     fn learns_how_good_the_odometry_is_and_forgets_it() {
         for good in [0.1, 0.2, 0.3] {
             let trust = learnt(good, 300);
-            assert!((trust.shift.scale() - CAUTION * good).abs() < 0.2, "{good}: {trust:?}");
-            assert!((trust.turn.scale() - CAUTION * good).abs() < 0.25, "{good}: {trust:?}");
+            assert!((trust.shift.scale() - ERROR_SCALE_FACTOR * good).abs() < 0.2, "{good}: {trust:?}");
+            assert!((trust.turn.scale() - ERROR_SCALE_FACTOR * good).abs() < 0.25, "{good}: {trust:?}");
         }
-        assert_eq!(learnt(0.0, 400).turn.scale(), LEAST);
+        assert_eq!(learnt(0.0, 400).turn.scale(), MIN_ERROR_SCALE);
         assert_eq!(learnt(3.0, 50).shift.scale(), 1.0);
         let mut trust = learnt(0.2, 300);
         let covariance = Matrix3::identity();
@@ -146,12 +148,12 @@ mod tests {
             trust.learn(&wild, &covariance);
         }
         assert!(trust.turn.scale() > 0.8, "eight wild steps are believed: {trust:?}");
-        assert_eq!(OdometryTrust::from_numbers(trust.numbers()), trust);
+        assert_eq!(OdometryNoise::from_numbers(trust.numbers()), trust);
     }
 
     #[test]
     fn a_match_that_holds_little_teaches_little() {
-        let (covariance, mut trust) = (Matrix3::identity(), OdometryTrust::default());
+        let (covariance, mut trust) = (Matrix3::identity(), OdometryNoise::default());
         for _ in 0..30 {
             let off = Vector3::repeat(10.0_f64.sqrt());
             trust.learn(&Innovation { off, open: Vector3::repeat(10.0) }, &covariance);

@@ -1,10 +1,15 @@
+//! Propagation of sparse filter poses to all odometry stamps.
+
 use trundle_core::{Pose2, Stamp};
 
 /// The poses at all stamps of `odometry` (odom_from_base, by rising stamps), from those of some of them.
 ///
 /// Between two processed scans the odometry's way is followed, and what it misses the second by is spread over
 /// the way in between, by time; after the last the odometry leads on. Stamps before the first processed one are left out.
-pub fn carry_trajectory(processed: &[(Stamp, Pose2)], odometry: &[(Stamp, Pose2)]) -> Vec<(Stamp, Pose2)> {
+pub fn propagate_trajectory(
+    processed: &[(Stamp, Pose2)],
+    odometry: &[(Stamp, Pose2)],
+) -> Vec<(Stamp, Pose2)> {
     let odometry_at = |stamp: Stamp| {
         let i = odometry.partition_point(|(s, _)| *s < stamp);
         odometry.get(i).filter(|(s, _)| *s == stamp).map(|(_, pose)| *pose)
@@ -39,7 +44,7 @@ mod tests {
         let stamp = |i: i64| Stamp::from_nanos(i * 100_000_000);
         let odometry: Vec<_> = (0..10).map(|i| (stamp(i), Pose2::new(0.1 * i as f64, 0.0, 0.0))).collect();
         let processed = [(stamp(2), Pose2::new(5.0, 0.0, 0.0)), (stamp(6), Pose2::new(5.4, 0.04, 0.0))];
-        let carried = carry_trajectory(&processed, &odometry);
+        let carried = propagate_trajectory(&processed, &odometry);
         assert_eq!(carried.len(), 8);
         for known in processed {
             let found = carried.iter().find(|c| c.0 == known.0).unwrap();

@@ -1,13 +1,15 @@
+//! Improved proposal distribution of one particle.
+
 use crate::particle_config::ParticleConfig;
-use crate::rbpf::absolute_pose::Anchor;
+use crate::rbpf::absolute_pose::AbsolutePose;
 use crate::rbpf::odometry_noise::Innovation;
-use crate::rbpf::rng::Chance;
+use crate::rbpf::rng::ParticleRng;
 use crate::scan_match::branch_and_bound::{Pyramid, Query};
 use crate::scan_match::coarse_search::{CoarseSearch, SearchPrior};
-use crate::scan_match::held_directions::Directions;
-use crate::scan_match::likelihood::{Likelihood, Vote};
-use crate::scan_match::motion_prior::Prior;
-use crate::scan_match::scan_points::ScanShape;
+use crate::scan_match::held_directions::HeldDirections;
+use crate::scan_match::likelihood::{Likelihood, NormalEquations};
+use crate::scan_match::motion_prior::MotionPrior;
+use crate::scan_match::scan_points::ScanPoints;
 use nalgebra::{Cholesky, Matrix3, Vector3};
 use trundle_core::{Pose2, wrap_angle};
 use trundle_grid::tiles::{Tile, TileMap, TileWindow};
@@ -22,13 +24,13 @@ use trundle_grid::tiles::{Tile, TileMap, TileWindow};
 pub(crate) struct Proposer<'a> {
     pub(crate) config: &'a ParticleConfig,
     pub(crate) likelihood: &'a Likelihood,
-    pub(crate) shape: &'a ScanShape,
+    pub(crate) shape: &'a ScanPoints,
     /// Covariance of the motion, base frame before it: cells, rad.
     pub(crate) motion_covariance: Matrix3<f64>,
     /// Where the robot is by odometry that does not drift.
-    pub(crate) anchor: Option<Anchor>,
+    pub(crate) anchor: Option<AbsolutePose>,
     /// Mean ln p(z | m, x) of a point in the last scans.
-    pub(crate) usual: f64,
+    pub(crate) expected_log_likelihood: f64,
 }
 
 /// Where a particle goes.
@@ -54,27 +56,29 @@ pub(crate) struct Proposal {
     pub(crate) innovation: Option<Innovation>,
 }
 
-const MOST_STEPS: usize = 10;
-/// Steps shorter than this are none, cells.
-const STILL: f64 = 0.01;
-/// A start of the climb is another one when it is this far from the best, cells.
-const ELSEWHERE: f64 = 5.0;
-/// And is worth it when it is less than this much worse, nats.
-const RIVAL: f64 = 2.0;
-/// Radius of the ellipsoid of samples, sigmas.
-const SPREAD: f64 = 2.5;
-/// Most points of a wide search, and how far it reaches, sigmas.
-const MOST_POINTS: usize = 80;
-const REACH: f64 = 3.0;
-/// Less than this part of the points on known obstacles: there is nothing to match.
-const LEAST_EXPLAINED: f64 = 0.1;
+/// Maximum number of Gauss-Newton steps. The last pose is used beyond it. Source: ours.
+const MAX_ITERATIONS: usize = 10;
+/// Step length at which the iteration ends [cells]. Source: ours.
+const MIN_STEP_CELLS: f64 = 0.01;
+/// Minimum distance of two starts of the optimisation [cells]. Nearer starts count as one. Source: ours.
+const MIN_START_DISTANCE_CELLS: f64 = 5.0;
+/// Maximum score deficit of a second start against the best [nats]. A worse start is not optimised. Source: ours.
+const MAX_START_DEFICIT_NATS: f64 = 2.0;
+/// Radius of the ellipsoid of samples [sigmas]. Source: ours.
+const SAMPLE_RADIUS_SIGMAS: f64 = 2.5;
+/// Maximum number of points of a wide search. Larger scans are subsampled. Source: ours.
+const MAX_SEARCH_POINTS: usize = 80;
+/// Reach of a wide search [sigmas]. Source: ours.
+const WIDE_SEARCH_SIGMAS: f64 = 3.0;
+/// Minimum fraction of points at known obstacles [1]. Below it the pose follows the odometry alone. Source: ours.
+const MIN_EXPLAINED: f64 = 0.1;
 
 /// An optimum with the tiles in which it was looked for.
 struct Attempt<'m> {
     window: TileWindow<'m>,
     /// The window's corner, cells of the map.
     corner: (f64, f64),
-    prior: Prior,
+    prior: MotionPrior,
     optimum: Optimum,
     contradicted: f64,
 }
@@ -82,8 +86,8 @@ struct Attempt<'m> {
 /// An optimum of the posterior.
 pub(crate) struct Optimum {
     pub(crate) pose: Pose2,
-    pub(crate) vote: Vote,
-    pub(crate) directions: Directions,
+    pub(crate) equations: NormalEquations,
+    pub(crate) directions: HeldDirections,
     log_posterior: f64,
 }
 
@@ -104,7 +108,7 @@ impl Proposer<'_> {
         (map, far): (&TileMap, &[Pose2]),
         search: &mut CoarseSearch,
         (before, guess): (Pose2, Pose2),
-        chance: &mut Chance,
+        rng: &mut ParticleRng,
     ) -> Proposal {
         let near = self.attempt(map, search, self.near(before, guess));
         let slip = self.slip(before, guess);
@@ -112,10 +116,10 @@ impl Proposer<'_> {
         if !far.is_empty() && self.needed(&near, &slip).is_some() {
             let far = self.climb_far(map, slip, far.iter().map(|place| before * *place));
             if far.optimum.log_posterior + rate > near.optimum.log_posterior {
-                return self.sample(&far, rate, chance);
+                return self.sample(&far, rate, rng);
             }
         }
-        self.sample(&near, 0.0, chance)
+        self.sample(&near, 0.0, rng)
     }
 
     /// Places far from where the odometry leads that a particle at `before` may have come to, in the frame of `before`; none
@@ -133,43 +137,44 @@ impl Proposer<'_> {
         self.search_far(map, &slip, needed).into_iter().map(|place| back * place).collect()
     }
 
-    fn near(&self, before: Pose2, guess: Pose2) -> Prior {
-        let prior = Prior::new(guess, before.theta, &self.motion_covariance);
+    fn near(&self, before: Pose2, guess: Pose2) -> MotionPrior {
+        let prior = MotionPrior::new(guess, before.theta, &self.motion_covariance);
         match &self.anchor {
             Some(anchor) => prior.fused(anchor.pose, &anchor.covariance),
             None => prior,
         }
     }
 
-    fn slip(&self, before: Pose2, guess: Pose2) -> Prior {
+    fn slip(&self, before: Pose2, guess: Pose2) -> MotionPrior {
         let config = self.config;
-        Prior::slipped(before, guess, config.slip_shift / config.map.resolution, config.slip_turn)
+        MotionPrior::slipped(before, guess, config.slip_shift / config.map.resolution, config.slip_turn)
     }
 
     /// The log-posterior (but for the normalisation of the slip's prior) above which a place far away is the likelier one; `None`
-    /// where no scan as usual reaches it.
-    fn needed(&self, near: &Attempt<'_>, slip: &Prior) -> Option<f64> {
-        let usual = self.usual * self.shape.points.len() as f64 / self.config.correlation;
+    /// where no scan as expected_log_likelihood reaches it.
+    fn needed(&self, near: &Attempt<'_>, slip: &MotionPrior) -> Option<f64> {
+        let expected_log_likelihood =
+            self.expected_log_likelihood * self.shape.points.len() as f64 / self.config.correlation;
         let needed = near.optimum.log_posterior - self.config.slip_rate.ln() - 0.5 * slip.log_determinant;
-        (usual > needed).then_some(needed)
+        (expected_log_likelihood > needed).then_some(needed)
     }
 
     /// The best poses under a wide prior, by branch and bound: those that can have the log-posterior `needed` (but for the
     /// prior's normalisation), at most two.
-    fn search_far(&self, map: &TileMap, prior: &Prior, needed: f64) -> Vec<Pose2> {
+    fn search_far(&self, map: &TileMap, prior: &MotionPrior, needed: f64) -> Vec<Pose2> {
         let window = self.window(map, prior);
         let (cols, rows) = window.size();
         let low = (window.corner.0 >> Tile::BITS, window.corner.1 >> Tile::BITS);
         let high = (low.0 + cols as i32 - 1, low.1 + rows as i32 - 1);
         let Some(pyramid) = Pyramid::of(map, low, high) else { return Vec::new() };
-        let every = self.shape.points.len().div_ceil(MOST_POINTS).max(1);
+        let every = self.shape.points.len().div_ceil(MAX_SEARCH_POINTS).max(1);
         let points: Vec<_> = self.shape.points.iter().step_by(every).map(|p| (p.x, p.y)).collect();
         let sigma = |k: usize| prior.covariance[(k, k)].sqrt();
         let query = Query {
             points: &points,
             guess: prior.guess,
-            reach: (REACH * sigma(0), REACH * sigma(1)),
-            turn_reach: (REACH * sigma(2)).min(std::f64::consts::PI),
+            reach: (WIDE_SEARCH_SIGMAS * sigma(0), WIDE_SEARCH_SIGMAS * sigma(1)),
+            turn_reach: (WIDE_SEARCH_SIGMAS * sigma(2)).min(std::f64::consts::PI),
             turn_step: (2.0 / self.shape.lever).clamp(0.01, 0.05),
             sigma: (sigma(0), sigma(1), sigma(2)),
             gain: -self.config.outliers.ln() / self.config.correlation * every as f64,
@@ -180,7 +185,7 @@ impl Proposer<'_> {
         let least = (needed - unseen).max(0.0);
         let mut places = Vec::new();
         while places.len() < 2
-            && let Some(place) = pyramid.search(&query, &places, (2.0 * ELSEWHERE, 0.2), least)
+            && let Some(place) = pyramid.search(&query, &places, (2.0 * MIN_START_DISTANCE_CELLS, 0.2), least)
         {
             places.push(place);
         }
@@ -191,13 +196,13 @@ impl Proposer<'_> {
     fn climb_far<'m>(
         &self,
         map: &'m TileMap,
-        prior: Prior,
+        prior: MotionPrior,
         places: impl Iterator<Item = Pose2>,
     ) -> Attempt<'m> {
         let window = self.window(map, &prior);
         let corner = (f64::from(window.corner.0), f64::from(window.corner.1));
         let local = |pose: Pose2| Pose2 { x: pose.x - corner.0, y: pose.y - corner.1, ..pose };
-        let prior = Prior { guess: local(prior.guess), ..prior };
+        let prior = MotionPrior { guess: local(prior.guess), ..prior };
         let optimum = places
             .map(|place| self.climb(&window, &prior, local(place)))
             .reduce(|best, next| if next.log_posterior > best.log_posterior { next } else { best })
@@ -206,11 +211,11 @@ impl Proposer<'_> {
     }
 
     /// The best pose under a prior (cells of the map).
-    fn attempt<'m>(&self, map: &'m TileMap, search: &mut CoarseSearch, prior: Prior) -> Attempt<'m> {
+    fn attempt<'m>(&self, map: &'m TileMap, search: &mut CoarseSearch, prior: MotionPrior) -> Attempt<'m> {
         let window = self.window(map, &prior);
         let corner = (f64::from(window.corner.0), f64::from(window.corner.1));
         let guess = Pose2 { x: prior.guess.x - corner.0, y: prior.guess.y - corner.1, ..prior.guess };
-        let prior = Prior { guess, ..prior };
+        let prior = MotionPrior { guess, ..prior };
         let optimum = self.optimum(&window, search, &prior);
         self.attempted(window, corner, prior, optimum)
     }
@@ -219,15 +224,15 @@ impl Proposer<'_> {
         &self,
         window: TileWindow<'m>,
         corner: (f64, f64),
-        prior: Prior,
+        prior: MotionPrior,
         optimum: Optimum,
     ) -> Attempt<'m> {
-        let contradicted = optimum.vote.contradicted / self.shape.points.len().max(1) as f64;
+        let contradicted = optimum.equations.contradicted / self.shape.points.len().max(1) as f64;
         Attempt { window, corner, prior, optimum, contradicted }
     }
 
     /// The tiles that the scan can reach under a prior.
-    fn window<'m>(&self, map: &'m TileMap, prior: &Prior) -> TileWindow<'m> {
+    fn window<'m>(&self, map: &'m TileMap, prior: &MotionPrior) -> TileWindow<'m> {
         let guess = prior.guess;
         let (mut low, mut high) = ((guess.x, guess.y), (guess.x, guess.y));
         let turns = prior.covariance[(2, 2)] > 0.1;
@@ -250,21 +255,25 @@ impl Proposer<'_> {
         )
     }
 
-    fn optimum(&self, window: &TileWindow<'_>, search: &mut CoarseSearch, prior: &Prior) -> Optimum {
+    fn optimum(&self, window: &TileWindow<'_>, search: &mut CoarseSearch, prior: &MotionPrior) -> Optimum {
         let about = SearchPrior {
             information: prior.information,
             sigma: prior.covariance[(0, 0)].max(prior.covariance[(1, 1)]).sqrt(),
             sigma_turn: prior.covariance[(2, 2)].sqrt(),
             gain: -self.config.outliers.ln() / self.config.correlation,
         };
-        let starts = search.search(window, self.shape, prior.guess, (&about, RIVAL));
+        let starts = search.search(window, self.shape, prior.guess, (&about, MAX_START_DEFICIT_NATS));
         let (first, top) = starts[0];
         // Another start is worth climbing from when it is nearly as good and somewhere else.
         let elsewhere = |p: &Pose2| {
             let off = difference(*p, top);
-            off.xy().amax() > ELSEWHERE || off.z.abs() * self.shape.lever > ELSEWHERE
+            off.xy().amax() > MIN_START_DISTANCE_CELLS
+                || off.z.abs() * self.shape.lever > MIN_START_DISTANCE_CELLS
         };
-        let second = starts.iter().find(|(score, p)| first - score < RIVAL && elsewhere(p)).map(|s| s.1);
+        let second = starts
+            .iter()
+            .find(|(score, p)| first - score < MAX_START_DEFICIT_NATS && elsewhere(p))
+            .map(|s| s.1);
         let best = self.climb(window, prior, top);
         let rival = second.map(|start| self.climb(window, prior, start));
         match rival {
@@ -274,46 +283,47 @@ impl Proposer<'_> {
     }
 
     /// Gauss-Newton on hits and odometry together.
-    pub(crate) fn climb(&self, window: &TileWindow<'_>, prior: &Prior, start: Pose2) -> Optimum {
+    pub(crate) fn climb(&self, window: &TileWindow<'_>, prior: &MotionPrior, start: Pose2) -> Optimum {
         let mut pose = start;
-        let mut vote = self.likelihood.vote(window, self.shape, pose);
-        let directions = Directions::new(self.shape, pose, &vote, self.config.degenerate_below);
-        for _ in 0..MOST_STEPS {
+        let mut equations = self.likelihood.equations(window, self.shape, pose);
+        let directions = HeldDirections::new(self.shape, pose, &equations, self.config.degenerate_below);
+        for _ in 0..MAX_ITERATIONS {
             let scale = 1.0 / self.config.correlation;
-            let information = directions.information(&vote) * scale + directions.in_y(&prior.information);
+            let information =
+                directions.information(&equations) * scale + directions.in_y(&prior.information);
             let back = prior.information * difference(prior.guess, pose);
-            let pull = directions.pull(&vote) * scale + directions.pose_from_y.transpose() * back;
+            let rhs = directions.rhs(&equations) * scale + directions.pose_from_y.transpose() * back;
             let Some(factor) = Cholesky::new(information) else { break };
-            let step = factor.solve(&pull);
+            let step = factor.solve(&rhs);
             let x = directions.pose_from_y * step;
             pose = Pose2 { x: pose.x + x.x, y: pose.y + x.y, theta: pose.theta + x.z };
-            vote = self.likelihood.vote(window, self.shape, pose);
-            if step.amax() < STILL {
+            equations = self.likelihood.equations(window, self.shape, pose);
+            if step.amax() < MIN_STEP_CELLS {
                 break;
             }
         }
-        let directions = Directions::new(self.shape, pose, &vote, self.config.degenerate_below);
-        Optimum { log_posterior: self.log_posterior(window, prior, pose), pose, vote, directions }
+        let directions = HeldDirections::new(self.shape, pose, &equations, self.config.degenerate_below);
+        Optimum { log_posterior: self.log_posterior(window, prior, pose), pose, equations, directions }
     }
 
     /// ln p(z | m, x) p(x | x', u), but for a constant.
-    fn log_posterior(&self, window: &TileWindow<'_>, prior: &Prior, pose: Pose2) -> f64 {
+    fn log_posterior(&self, window: &TileWindow<'_>, prior: &MotionPrior, pose: Pose2) -> f64 {
         let off = difference(pose, prior.guess);
         self.likelihood.log_likelihood(window, self.shape, pose) / self.config.correlation
             - 0.5 * off.dot(&(prior.information * off))
             + 0.5 * prior.log_determinant
     }
 
-    fn sample(&self, attempt: &Attempt<'_>, log_rate: f64, chance: &mut Chance) -> Proposal {
+    fn sample(&self, attempt: &Attempt<'_>, log_rate: f64, rng: &mut ParticleRng) -> Proposal {
         let Attempt { window, corner, prior, optimum, .. } = attempt;
-        let Optimum { pose: top, vote, directions, .. } = optimum;
-        let explained = vote.explained / self.shape.points.len().max(1) as f64;
-        let lost = explained < LEAST_EXPLAINED;
+        let Optimum { pose: top, equations, directions, .. } = optimum;
+        let explained = equations.explained / self.shape.points.len().max(1) as f64;
+        let lost = explained < MIN_EXPLAINED;
         let held = if lost { Matrix3::zeros() } else { directions.held };
         let centre = if lost { prior.guess } else { *top };
         let odometry = directions.in_y(&prior.information);
         let hits =
-            if lost { Matrix3::zeros() } else { directions.information(vote) / self.config.correlation };
+            if lost { Matrix3::zeros() } else { directions.information(equations) / self.config.correlation };
         let shape =
             Cholesky::new(hits + odometry).expect("invariant: the odometry's information is positive");
         // Columns of `spread` are one sigma long.
@@ -323,11 +333,11 @@ impl Proposer<'_> {
             Pose2 { x: centre.x + x.x, y: centre.y + x.y, theta: centre.theta + x.z }
         };
 
-        let mut samples = [(0.0, Vector3::zeros()); MOST_SAMPLES];
-        let count = self.config.samples.min(MOST_SAMPLES);
+        let mut samples = [(0.0, Vector3::zeros()); MAX_SAMPLES];
+        let count = self.config.samples.min(MAX_SAMPLES);
         let mut greatest = f64::NEG_INFINITY;
         for pair in samples[..count].chunks_mut(2) {
-            let y = spread * chance.in_ball() * SPREAD;
+            let y = spread * rng.in_ball() * SAMPLE_RADIUS_SIGMAS;
             for (sample, y) in pair.iter_mut().zip([y, -y]) {
                 *sample = (self.log_posterior(window, prior, moved(y)), y);
                 greatest = greatest.max(sample.0);
@@ -352,11 +362,11 @@ impl Proposer<'_> {
         let odometry_covariance =
             odometry.try_inverse().expect("invariant: the odometry's covariance exists");
         let covariance = held * covariance * held + free * odometry_covariance * free;
-        let least = shape.inverse() * LEAST_COVARIANCE;
+        let least = shape.inverse() * MIN_COVARIANCE_FRACTION;
         let covariance = covariance + least;
         let draw = Cholesky::new(covariance).expect("invariant: a sum with a positive matrix").l();
         let to_pose = directions.pose_from_y;
-        let pose = moved(mean + draw * chance.normal3());
+        let pose = moved(mean + draw * rng.normal3());
         Proposal {
             pose: Pose2::new(pose.x + corner.0, pose.y + corner.1, pose.theta),
             log_weight: log_rate + greatest + (sum / count as f64).ln() + spread.determinant().ln(),
@@ -378,7 +388,7 @@ impl Proposer<'_> {
         if optimum.directions.degenerate > 0 {
             return None;
         }
-        let hits = (optimum.vote.information / self.config.correlation).try_inverse()?;
+        let hits = (optimum.equations.information / self.config.correlation).try_inverse()?;
         let off = difference(optimum.pose, prior.guess);
         let off = off + hits * (prior.information * off);
         let (s, c) = prior.guess.theta.sin_cos();
@@ -388,10 +398,11 @@ impl Proposer<'_> {
     }
 }
 
-/// Most samples.
-const MOST_SAMPLES: usize = 500;
-/// Part of the Laplace covariance that is drawn from at least: a fit to few samples may be flat.
-const LEAST_COVARIANCE: f64 = 0.05;
+/// Maximum number of samples. Source: range of `samples`.
+const MAX_SAMPLES: usize = 500;
+/// Minimum covariance of the drawn Gaussian, as a fraction of the Laplace covariance [1]. A covariance from few samples
+/// may be singular. Source: ours.
+const MIN_COVARIANCE_FRACTION: f64 = 0.05;
 
 fn difference(to: Pose2, from: Pose2) -> Vector3<f64> {
     Vector3::new(to.x - from.x, to.y - from.y, wrap_angle(to.theta - from.theta))

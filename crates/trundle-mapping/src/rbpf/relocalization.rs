@@ -1,7 +1,9 @@
+//! Global localization of the filter in the map it was loaded with.
+
 use crate::loop_closing::stored_scan::StoredScan;
-use crate::rbpf::mapper::{Particle, ParticleMapper, metres};
+use crate::rbpf::mapper::{Particle, ParticleMapper, in_metres};
 use crate::rbpf::scan_update::ScanUpdate;
-use crate::rbpf::update_gate::Gate;
+use crate::rbpf::update_gate::UpdateGate;
 use crate::scan_match::branch_and_bound::Pyramid;
 use crate::scan_match::global_search::{GlobalSearch, Lost};
 use nalgebra::{Matrix3, Vector3};
@@ -14,10 +16,10 @@ impl ParticleMapper {
     /// found the map does not change. The trajectory begins anew.
     pub fn kidnapped(&mut self) {
         self.finish();
-        self.lost = Some(GlobalSearch::default());
-        self.gate = Gate::default();
+        self.global_search = Some(GlobalSearch::default());
+        self.gate = UpdateGate::default();
         self.map_from_odom = None;
-        self.session = self.history.scans.len();
+        self.first_pose_of_run = self.history.scans.len();
     }
 
     /// Looks for the robot in the best particle's map; all particles go on from where it is found.
@@ -25,14 +27,14 @@ impl ParticleMapper {
         let best = self.best();
         let map = self.particles[best].map.clone();
         let Some(pyramid) = Pyramid::new(&map) else { return ScanUpdate::Lost(Lost::NothingToSee) };
-        let Some(search) = &self.lost else { return ScanUpdate::Still };
+        let Some(search) = &self.global_search else { return ScanUpdate::Still };
         let found = match search.look((&self.config, &self.likelihood), &map, &pyramid) {
             Ok(found) => found,
             Err(lost) => return ScanUpdate::Lost(lost),
         };
-        self.lost = None;
-        let way = self.way();
-        let pose = metres(&self.config, found.pose);
+        self.global_search = None;
+        let way = self.full_trajectory();
+        let pose = in_metres(&self.config, found.pose);
         self.history.measure(&way.iter().map(|(_, pose)| *pose).collect::<Vec<_>>());
         // The old way and the new are tied by the map: as well as its parts are known to each other.
         self.history
@@ -40,7 +42,7 @@ impl ParticleMapper {
         for particle in &mut self.particles {
             *particle = Particle { pose: found.pose, log_weight: 0.0, map: map.clone(), proposal: None };
         }
-        self.session = way.len();
+        self.first_pose_of_run = way.len();
         self.ancestry.replace(way.into_iter().chain([(stamp, pose)]).collect());
         self.parents = vec![0; self.particles.len()];
         self.updates += 1;

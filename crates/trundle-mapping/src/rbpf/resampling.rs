@@ -1,3 +1,5 @@
+//! Low-variance resampling and the effective number of particles.
+
 /// Which particles live on: `parents[i]` is whose copy particle i becomes. `uniform` in [0, 1).
 ///
 /// Low-variance resampling (\[Thrun05\], table 4.4): one random number, equal strides through the weights. Survivors

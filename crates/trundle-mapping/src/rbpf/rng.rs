@@ -1,12 +1,14 @@
+//! Random numbers that do not depend on the order of the work.
+
 use nalgebra::Vector3;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 /// Random numbers that depend on seed, update and particle alone, so not on the order of the work.
 #[derive(Debug)]
-pub(crate) struct Chance(ChaCha8Rng);
+pub(crate) struct ParticleRng(ChaCha8Rng);
 
-impl Chance {
+impl ParticleRng {
     /// The numbers of a particle in an update; `particle` up to 2^16.
     pub(crate) fn new(seed: u64, update: u64, particle: usize) -> Self {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);

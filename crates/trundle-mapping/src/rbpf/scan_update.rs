@@ -1,3 +1,5 @@
+//! Result of processing one scan.
+
 use crate::scan_match::global_search::Lost;
 use nalgebra::Matrix3;
 use trundle_core::Pose2;

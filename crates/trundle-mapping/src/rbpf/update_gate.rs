@@ -1,32 +1,35 @@
+//! Choice of the scans to process, and checks of the odometry.
+
 use crate::particle_config::ParticleConfig;
 use crate::rbpf::motion_model::{motion_covariance, unknown_motion_covariance};
 use crate::rbpf::scan_update::Refusal;
 use nalgebra::Matrix3;
 use trundle_core::{Pose2, Scan, Stamp};
 
-/// Farther from its origin no odometry tells of anything true, m.
-const FARTHEST: f64 = 1e6;
+/// Maximum distance of the odometry from its origin [m]. A farther pose is refused. Source: ours.
+const MAX_ODOMETRY_DISTANCE_M: f64 = 1e6;
 
 /// Which scans are looked at: those after some motion or time.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Gate {
+pub(crate) struct UpdateGate {
     /// The last scan that was processed.
-    pub(crate) last: Option<Last>,
+    pub(crate) last: Option<LastScan>,
     /// A wild pose that was refused, and how many in a row have said the same.
-    doubted: Option<(Last, usize)>,
+    doubted: Option<(LastScan, usize)>,
 }
 
-/// So many wild poses in a row that agree with each other are believed: a frame that has moved for good.
-const SAID: usize = 5;
+/// Number of successive implausible poses that agree with each other after which the odometry's frame counts as moved.
+/// Source: ours.
+const MIN_AGREEING_POSES: usize = 5;
 
 /// When and where by the odometry.
 #[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Last {
+pub(crate) struct LastScan {
     pub(crate) stamp: Stamp,
     pub(crate) odom_from_base: Pose2,
 }
 
-impl Last {
+impl LastScan {
     /// Whether the robot cannot have got from here to there at `jump` m a second.
     fn is_out_of_reach(&self, there: &Self, jump: f64) -> bool {
         let way = self.odom_from_base.distance(&there.odom_from_base);
@@ -36,7 +39,7 @@ impl Last {
 
 /// What the odometry says since the last processed scan.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Step {
+pub(crate) struct OdometryStep {
     pub(crate) first: bool,
     pub(crate) motion: Pose2,
     /// m, m, rad, in the base's frame.
@@ -45,7 +48,7 @@ pub(crate) struct Step {
     pub(crate) jumped: bool,
 }
 
-impl Gate {
+impl UpdateGate {
     /// The step to a scan that is to be processed; `None` when the robot has hardly moved. Where each pose counts, not the steps
     /// alone, wild ones are refused.
     pub(crate) fn pass(
@@ -54,18 +57,23 @@ impl Gate {
         poses_count: bool,
         odom_from_base: Pose2,
         scan: &Scan,
-    ) -> Result<Option<Step>, Refusal> {
+    ) -> Result<Option<OdometryStep>, Refusal> {
         if !odom_from_base.is_finite() {
             return Err(Refusal::NotFinite);
         }
-        if odom_from_base.position().amax() > FARTHEST {
+        if odom_from_base.position().amax() > MAX_ODOMETRY_DISTANCE_M {
             return Err(Refusal::OutOfReach);
         }
-        let now = Last { stamp: scan.stamp(), odom_from_base };
+        let now = LastScan { stamp: scan.stamp(), odom_from_base };
         let Some(last) = self.last else {
             self.last = Some(now);
             let covariance = motion_covariance(&config.motion, Pose2::IDENTITY);
-            return Ok(Some(Step { first: true, motion: Pose2::IDENTITY, covariance, jumped: false }));
+            return Ok(Some(OdometryStep {
+                first: true,
+                motion: Pose2::IDENTITY,
+                covariance,
+                jumped: false,
+            }));
         };
         if scan.stamp() < last.stamp {
             return Err(Refusal::TimeGoesBack);
@@ -85,18 +93,18 @@ impl Gate {
         let covariance =
             if jumped { unknown_motion_covariance() } else { motion_covariance(&config.motion, motion) };
         let motion = if jumped && !poses_count { Pose2::IDENTITY } else { motion };
-        Ok(Some(Step { first: false, motion, covariance, jumped }))
+        Ok(Some(OdometryStep { first: false, motion, covariance, jumped }))
     }
 
     /// Whether a pose is farther off than the robot can have got, and not yet said by enough others in a row.
-    fn is_wild(&mut self, last: &Last, now: Last, jump: f64) -> bool {
+    fn is_wild(&mut self, last: &LastScan, now: LastScan, jump: f64) -> bool {
         let doubted = self.doubted.take();
         if !last.is_out_of_reach(&now, jump) {
             return false;
         }
         let said = doubted.filter(|(wild, _)| !wild.is_out_of_reach(&now, jump));
         let times = 1 + said.map_or(0, |(_, times)| times);
-        self.doubted = (times < SAID).then_some((now, times));
-        times < SAID
+        self.doubted = (times < MIN_AGREEING_POSES).then_some((now, times));
+        times < MIN_AGREEING_POSES
     }
 }

@@ -1,5 +1,7 @@
+//! Map that follows corrections of the trajectory by redrawing logged scans.
+
 use crate::grid_mapper::{GridMapper, Insertion};
-use crate::scan_log::entry::{Kept, Kind, What, halve_the_older_half, thin};
+use crate::scan_log::entry::{EntryData, EntryKind, LogEntry, halve_the_older_half, thin};
 use std::sync::Arc;
 use trundle_core::{CellIndex, Invalid, OccupancyGrid, Pose2, Scan, Stamp, Vector2};
 use trundle_grid::{LogOddsGrid, MapperConfig};
@@ -16,7 +18,7 @@ pub struct LiveMapper {
     front: GridMapper,
     /// What was known before the first scan.
     known: LogOddsGrid,
-    kept: Vec<Kept>,
+    kept: Vec<LogEntry>,
     snapshots: Vec<Snapshot>,
     /// Kept things between snapshots.
     every: usize,
@@ -47,12 +49,14 @@ pub struct Redrawn {
     pub left: usize,
 }
 
-/// What is kept is thinned when there is so much of it, and then when it has doubled.
-const THIN_AT: usize = 1024;
-/// Most things kept, in whatever many places: beyond, every second of the older half goes.
-const MOST_KEPT: usize = 30_000;
-const SNAPSHOT_EVERY: usize = 64;
-const MOST_SNAPSHOTS: usize = 16;
+/// Number of log entries at which the log is thinned first, and then each time it has doubled. Source: ours.
+const MIN_THINNING_SIZE: usize = 1024;
+/// Maximum number of log entries. Beyond it, every second entry of the older half is dropped. Source: ours.
+const MAX_LOG_ENTRIES: usize = 30_000;
+/// Number of log entries between two snapshots. Source: ours.
+const SNAPSHOT_INTERVAL: usize = 64;
+/// Maximum number of snapshots. Beyond it, the interval doubles. Source: ours.
+const MAX_SNAPSHOTS: usize = 16;
 
 impl LiveMapper {
     /// An empty map.
@@ -78,8 +82,8 @@ impl LiveMapper {
             known,
             kept: Vec::new(),
             snapshots: Vec::new(),
-            every: SNAPSHOT_EVERY,
-            thin_at: THIN_AT,
+            every: SNAPSHOT_INTERVAL,
+            thin_at: MIN_THINNING_SIZE,
             redrawing: None,
         }
     }
@@ -87,20 +91,20 @@ impl LiveMapper {
     /// Draws `scan`, taken with the base at `map_from_base`, and keeps it when it is from somewhere else than the last one.
     pub fn insert(&mut self, map_from_base: Pose2, scan: &Scan) -> Insertion {
         let insertion = self.front.insert(map_from_base, scan);
-        self.keep(scan.stamp(), map_from_base, Kind::Scan, || What::Scan(Arc::new(scan.into())));
+        self.keep(scan.stamp(), map_from_base, EntryKind::Scan, || EntryData::Scan(Arc::new(scan.into())));
         insertion
     }
 
     /// As [`GridMapper::mark_free_disc`]; it moves with the scan before it.
     pub fn mark_free_disc(&mut self, map_from_base: Pose2, radius: f64) {
         self.front.mark_free_disc(map_from_base, radius);
-        self.keep(self.last_stamp(), map_from_base, Kind::FreeDisc, || What::FreeDisc { radius });
+        self.keep(self.last_stamp(), map_from_base, EntryKind::FreeDisc, || EntryData::FreeDisc { radius });
     }
 
     /// As [`GridMapper::mark_occupied`]; it moves with the scan before it.
     pub fn mark_occupied(&mut self, map_from_base: Pose2, points: &[Vector2]) {
         self.front.mark_occupied(map_from_base, points);
-        self.keep(self.last_stamp(), map_from_base, Kind::Touched, || What::Touched {
+        self.keep(self.last_stamp(), map_from_base, EntryKind::Contact, || EntryData::Contact {
             points: points.into(),
         });
     }
@@ -112,7 +116,8 @@ impl LiveMapper {
         for (i, kept) in self.kept.iter_mut().enumerate() {
             let now = pose(kept.stamp, kept.map_from_base);
             let off = kept.map_from_base.inverse() * now;
-            if now.is_finite() && (off.position().norm() > STILL || off.theta.abs() > STILL) {
+            if now.is_finite() && (off.position().norm() > MIN_CORRECTION || off.theta.abs() > MIN_CORRECTION)
+            {
                 kept.shift(now);
                 moved += 1;
                 first = first.or(Some(i));
@@ -179,7 +184,7 @@ impl LiveMapper {
     }
 
     /// When the scans were taken that are kept for redrawing: others no correction moves.
-    pub fn kept_stamps(&self) -> impl Iterator<Item = Stamp> {
+    pub fn logged_stamps(&self) -> impl Iterator<Item = Stamp> {
         self.kept.iter().map(|kept| kept.stamp)
     }
 
@@ -189,12 +194,18 @@ impl LiveMapper {
     }
 
     /// Keeps what was just drawn; what is from where the last of its kind is, in its place, while no snapshot holds that.
-    fn keep(&mut self, stamp: Stamp, map_from_base: Pose2, kind: Kind, what: impl FnOnce() -> What) {
+    fn keep(
+        &mut self,
+        stamp: Stamp,
+        map_from_base: Pose2,
+        kind: EntryKind,
+        data: impl FnOnce() -> EntryData,
+    ) {
         if !map_from_base.is_finite() {
             return;
         }
-        let new = |anchor| Kept { stamp, map_from_base, anchor, what: what() };
-        if let Some(last) = Kept::repeated(&self.kept, map_from_base, kind) {
+        let new = |anchor| LogEntry { stamp, map_from_base, anchor, data: data() };
+        if let Some(last) = LogEntry::repeated(&self.kept, map_from_base, kind) {
             if !self.is_drawn_elsewhere(last) {
                 self.kept[last] = new(self.kept[last].anchor);
             }
@@ -224,7 +235,7 @@ impl LiveMapper {
     fn note(&mut self, drawn: usize, evidence: &LogOddsGrid) {
         if drawn.is_multiple_of(self.every) {
             self.snapshots.push(Snapshot { drawn, evidence: evidence.clone() });
-            if self.snapshots.len() > MOST_SNAPSHOTS {
+            if self.snapshots.len() > MAX_SNAPSHOTS {
                 self.every *= 2;
                 let every = self.every;
                 self.snapshots.retain(|snapshot| snapshot.drawn.is_multiple_of(every));
@@ -249,12 +260,12 @@ impl LiveMapper {
     /// Lets go what newer things of the same place show too. Snapshots, which count the things before them, go with it.
     fn thin(&mut self) {
         thin(&mut self.kept);
-        while self.kept.len() > MOST_KEPT / 2 && halve_the_older_half(&mut self.kept) {}
-        self.thin_at = (2 * self.kept.len()).clamp(THIN_AT, MOST_KEPT);
+        while self.kept.len() > MAX_LOG_ENTRIES / 2 && halve_the_older_half(&mut self.kept) {}
+        self.thin_at = (2 * self.kept.len()).clamp(MIN_THINNING_SIZE, MAX_LOG_ENTRIES);
         self.snapshots.clear();
-        self.every = SNAPSHOT_EVERY;
+        self.every = SNAPSHOT_INTERVAL;
     }
 }
 
-/// Poses nearer than this are the same, m and rad.
-const STILL: f64 = 1e-4;
+/// Smallest correction of a pose that is applied [m, rad]. Source: ours.
+const MIN_CORRECTION: f64 = 1e-4;

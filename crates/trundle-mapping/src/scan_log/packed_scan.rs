@@ -1,3 +1,5 @@
+//! Scan in single precision, for the scan log.
+
 use trundle_core::{Beam, FreeSpan, Scan, ScanParts, Stamp, Vector2};
 
 /// What a map needs of a scan to draw it again, in a third of its room: ranges to seven digits, neither sigmas nor kinds.

@@ -1,16 +1,18 @@
+//! Match of a cloud of points with a map within a search region.
+
 use crate::particle_config::ParticleConfig;
 use crate::rbpf::proposal::Proposer;
 use crate::scan_match::branch_and_bound::{Place, Pyramid, Query};
 use crate::scan_match::likelihood::Likelihood;
-use crate::scan_match::motion_prior::Prior;
-use crate::scan_match::scan_points::ScanShape;
+use crate::scan_match::motion_prior::MotionPrior;
+use crate::scan_match::scan_points::ScanPoints;
 use nalgebra::Matrix3;
 use trundle_core::Pose2;
 use trundle_grid::tiles::{TileMap, TileWindow};
 
 /// A place where a cloud of hits fits a map.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Found {
+pub(crate) struct CloudMatch {
     /// Cells, rad.
     pub(crate) pose: Pose2,
     /// Inverse covariance from the hits (cells, rad), map frame; directions that they do not hold are zero.
@@ -23,19 +25,21 @@ pub(crate) struct Found {
     pub(crate) log_likelihood: f64,
 }
 
-/// Most points of a search.
-const MOST_POINTS: usize = 120;
-/// Places that are nearer to each other than this are one: cells and rad.
-const APART: (f64, f64) = (12.0, 0.12);
+/// Maximum number of points of the search. Larger clouds are subsampled. Source: ours.
+const MAX_SEARCH_POINTS: usize = 120;
+/// Minimum distance of two places [cells]. Nearer places of similar heading count as one. Source: ours.
+const MIN_PLACE_DISTANCE_CELLS: f64 = 12.0;
+/// Minimum difference of heading of two places [rad]. Source: ours.
+const MIN_PLACE_TURN_RAD: f64 = 0.12;
 
 /// Looks for a cloud in a map.
-pub(crate) struct Finder<'a> {
+pub(crate) struct CloudMatcher<'a> {
     pub(crate) config: &'a ParticleConfig,
     pub(crate) likelihood: &'a Likelihood,
-    pub(crate) cloud: &'a ScanShape,
+    pub(crate) cloud: &'a ScanPoints,
 }
 
-impl Finder<'_> {
+impl CloudMatcher<'_> {
     /// The best places within `reach` (cells) and `turn_reach` of a guess, the best first, climbed to their tops.
     pub(crate) fn find(
         &self,
@@ -44,7 +48,7 @@ impl Finder<'_> {
         covariance: &Matrix3<f64>,
         (reach, turn_reach): ((f64, f64), f64),
         most: usize,
-    ) -> Vec<Found> {
+    ) -> Vec<CloudMatch> {
         let Some(pyramid) = Pyramid::new(map) else { return Vec::new() };
         self.find_in(&pyramid, map, guess, covariance, (reach, turn_reach), most)
     }
@@ -58,8 +62,8 @@ impl Finder<'_> {
         covariance: &Matrix3<f64>,
         (reach, turn_reach): ((f64, f64), f64),
         most: usize,
-    ) -> Vec<Found> {
-        let every = self.cloud.points.len().div_ceil(MOST_POINTS).max(1);
+    ) -> Vec<CloudMatch> {
+        let every = self.cloud.points.len().div_ceil(MAX_SEARCH_POINTS).max(1);
         let points: Vec<_> = self.cloud.points.iter().step_by(every).map(|p| (p.x, p.y)).collect();
         if points.is_empty() {
             return Vec::new();
@@ -77,37 +81,41 @@ impl Finder<'_> {
         while places.len() < most {
             // A place with half of the best one's score is no rival.
             let least = places.first().map_or(0.0, |best| 0.5 * best.score);
-            let Some(place) = pyramid.search(&query, &places, APART, least) else { break };
+            let Some(place) =
+                pyramid.search(&query, &places, (MIN_PLACE_DISTANCE_CELLS, MIN_PLACE_TURN_RAD), least)
+            else {
+                break;
+            };
             places.push(place);
         }
-        let mut found: Vec<Found> =
+        let mut found: Vec<CloudMatch> =
             places.iter().map(|place| self.climb(map, place.pose, covariance)).collect();
         found.sort_by(|a, b| b.log_likelihood.total_cmp(&a.log_likelihood));
         found
     }
 
     /// The top near a pose.
-    pub(crate) fn climb(&self, map: &TileMap, start: Pose2, covariance: &Matrix3<f64>) -> Found {
+    pub(crate) fn climb(&self, map: &TileMap, start: Pose2, covariance: &Matrix3<f64>) -> CloudMatch {
         let proposer = Proposer {
             config: self.config,
             likelihood: self.likelihood,
             shape: self.cloud,
             motion_covariance: Matrix3::identity(),
             anchor: None,
-            usual: 0.0,
+            expected_log_likelihood: 0.0,
         };
         let window = self.window(map, start);
         let corner = (f64::from(window.corner.0), f64::from(window.corner.1));
         let start = Pose2 { x: start.x - corner.0, y: start.y - corner.1, ..start };
-        let prior = Prior::with(start, *covariance);
+        let prior = MotionPrior::with(start, *covariance);
         let optimum = proposer.climb(&window, &prior, start);
         let pose = Pose2::new(optimum.pose.x + corner.0, optimum.pose.y + corner.1, optimum.pose.theta);
         let all = self.cloud.points.len().max(1) as f64;
         let to_y = optimum.directions.pose_from_y.try_inverse().expect("invariant: a lever is positive");
-        let in_y = optimum.directions.information(&optimum.vote) / self.config.correlation;
-        Found {
+        let in_y = optimum.directions.information(&optimum.equations) / self.config.correlation;
+        CloudMatch {
             information: to_y.transpose() * in_y * to_y,
-            explained: optimum.vote.explained / all,
+            explained: optimum.equations.explained / all,
             degenerate: optimum.directions.degenerate,
             log_likelihood: self.likelihood.log_likelihood(&window, self.cloud, optimum.pose)
                 / self.config.correlation,
@@ -119,13 +127,13 @@ impl Finder<'_> {
     pub(crate) fn fit(&self, map: &TileMap, pose: Pose2) -> (f64, f64) {
         let window = self.window(map, pose);
         let corner = (f64::from(window.corner.0), f64::from(window.corner.1));
-        let vote = self.likelihood.vote(
+        let equations = self.likelihood.equations(
             &window,
             self.cloud,
             Pose2 { x: pose.x - corner.0, y: pose.y - corner.1, ..pose },
         );
         let all = self.cloud.points.len().max(1) as f64;
-        (vote.explained / all, vote.contradicted / all)
+        (equations.explained / all, equations.contradicted / all)
     }
 
     fn window<'m>(&self, map: &'m TileMap, pose: Pose2) -> TileWindow<'m> {

@@ -1,5 +1,7 @@
-use crate::scan_match::likelihood::{Placed, floor};
-use crate::scan_match::scan_points::ScanShape;
+//! Correlative search about a guess on the coarse likelihood.
+
+use crate::scan_match::likelihood::{RotatedPose, floor};
+use crate::scan_match::scan_points::ScanPoints;
 use nalgebra::Matrix3;
 use trundle_core::Pose2;
 use trundle_grid::tiles::{Tile, TileWindow};
@@ -7,14 +9,14 @@ use trundle_grid::tiles::{Tile, TileWindow};
 /// Side of the coarse field of a tile [cells of two].
 const HALF: usize = Tile::COARSE_SIDE;
 
-/// Cells between samples.
-const STEP: f64 = 2.0;
-/// Widest search, samples to each side.
-const MOST_REACH: usize = 7;
+/// Distance of the samples of the coarse likelihood [cells]. Source: ours.
+const SAMPLE_STEP_CELLS: f64 = 2.0;
+/// Maximum reach of the search to each side [samples]. A wider prior is searched up to this reach. Source: ours.
+const MAX_REACH_SAMPLES: usize = 7;
 const LANES: usize = 16;
-const _: () = assert!(HALF == LANES && 2 * MOST_REACH < LANES);
-/// Points that the coarse search looks at, at most.
-const MOST_POINTS: usize = 80;
+const _: () = assert!(HALF == LANES && 2 * MAX_REACH_SAMPLES < LANES);
+/// Maximum number of points of the search. Larger scans are subsampled. Source: ours.
+const MAX_SEARCH_POINTS: usize = 80;
 
 /// The correlative search: all poses of a lattice about a guess, on the coarse field (\[Olson09\]).
 #[derive(Debug, Clone, Default)]
@@ -46,8 +48,8 @@ pub(crate) struct SearchPrior {
 }
 
 /// Sums of likelihoods: row by row, 16 columns each, of which those beyond the reach say nothing.
-type Sums = [[u16; LANES]; 2 * MOST_REACH + 1];
-const NO_SUMS: Sums = [[0; LANES]; 2 * MOST_REACH + 1];
+type Sums = [[u16; LANES]; 2 * MAX_REACH_SAMPLES + 1];
+const NO_SUMS: Sums = [[0; LANES]; 2 * MAX_REACH_SAMPLES + 1];
 
 impl CoarseSearch {
     /// The best poses, at most one for each heading, the best first; all that are less than `margin` nats worse than it.
@@ -55,17 +57,17 @@ impl CoarseSearch {
     pub(crate) fn search(
         &mut self,
         window: &TileWindow<'_>,
-        shape: &ScanShape,
+        shape: &ScanPoints,
         guess: Pose2,
         (prior, margin): (&SearchPrior, f64),
     ) -> &[(f64, Pose2)] {
         self.cover(window);
         self.best.clear();
-        let reach = ((3.0 * prior.sigma / STEP).ceil() as usize).clamp(2, MOST_REACH);
-        let turn_step = (STEP / shape.lever).clamp(0.004, 0.05);
+        let reach = ((3.0 * prior.sigma / SAMPLE_STEP_CELLS).ceil() as usize).clamp(2, MAX_REACH_SAMPLES);
+        let turn_step = (SAMPLE_STEP_CELLS / shape.lever).clamp(0.004, 0.05);
         let turns = ((3.0 * prior.sigma_turn / turn_step).ceil() as i32)
             .clamp(1, (std::f64::consts::PI / turn_step) as i32);
-        let every = shape.points.len().div_ceil(MOST_POINTS).max(1);
+        let every = shape.points.len().div_ceil(MAX_SEARCH_POINTS).max(1);
         self.points.clear();
         self.points.extend(shape.points.iter().step_by(every).map(|p| (p.x, p.y)));
         let gain = prior.gain * every as f64 / 255.0;
@@ -146,7 +148,7 @@ impl CoarseSearch {
             4 => self.sum_rows::<9>(window, pose, &mut sums),
             5 => self.sum_rows::<11>(window, pose, &mut sums),
             6 => self.sum_rows::<13>(window, pose, &mut sums),
-            _ => self.sum_rows::<{ 2 * MOST_REACH + 1 }>(window, pose, &mut sums),
+            _ => self.sum_rows::<{ 2 * MAX_REACH_SAMPLES + 1 }>(window, pose, &mut sums),
         }
         sums
     }
@@ -175,7 +177,7 @@ impl CoarseSearch {
     #[inline(always)]
     fn sum_rows_each<const ROWS: usize>(&mut self, window: &TileWindow<'_>, pose: Pose2, all: &mut Sums) {
         let reach = (ROWS / 2) as i32;
-        let (place, tile_cols) = (Placed::new(pose), window.size().0 + 2);
+        let (place, tile_cols) = (RotatedPose::new(pose), window.size().0 + 2);
         let (most_col, most_row) = (self.stride as i32 - LANES as i32, self.rows as i32 - ROWS as i32);
         // Samples are at the middles of even cells: 0.5, 2.5 and so on.
         let sample = |v: f32| floor((v + 0.5) * 0.5) + HALF as i32 - reach;
@@ -214,7 +216,7 @@ struct Turned<'a> {
 /// The best score at a heading, and its shift, cells.
 fn best_shift(sums: &Sums, reach: usize, gain: f64, turned: &Turned<'_>) -> (f64, f64, f64) {
     let Turned { prior, theta } = turned;
-    let shift = |k: usize| (k as f64 - reach as f64) * STEP;
+    let shift = |k: usize| (k as f64 - reach as f64) * SAMPLE_STEP_CELLS;
     let mut best = (f64::NEG_INFINITY, 0.0, 0.0);
     for (j, row) in sums.iter().enumerate().take(2 * reach + 1) {
         // The quadratic form as one of x alone.
@@ -252,7 +254,7 @@ mod tests {
             }
             let beams = ranges.iter().map(|&range| Beam::Hit { range }).collect();
             let scan = Scan::new(Stamp::default(), Vector2::zeros(), -1.5, 0.03, beams).unwrap();
-            let mut shape = ScanShape::default();
+            let mut shape = ScanPoints::default();
             shape.set(&config, &scan);
             let window = TileWindow::new(&map, (0, 0), (191, 127));
             let guess = Pose2::new(x, 60.0, theta);

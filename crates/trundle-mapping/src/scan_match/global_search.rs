@@ -1,9 +1,11 @@
-use crate::loop_closing::loop_closer::PROOF;
+//! Search of the newest scans in a whole map.
+
+use crate::loop_closing::loop_closer::MIN_PROOF_NATS;
 use crate::particle_config::ParticleConfig;
 use crate::scan_match::branch_and_bound::Pyramid;
-use crate::scan_match::cloud_match::{Finder, Found};
+use crate::scan_match::cloud_match::{CloudMatch, CloudMatcher};
 use crate::scan_match::likelihood::Likelihood;
-use crate::scan_match::scan_points::ScanShape;
+use crate::scan_match::scan_points::ScanPoints;
 use nalgebra::{Matrix3, Vector3};
 use std::collections::BTreeSet;
 use trundle_core::Pose2;
@@ -24,25 +26,27 @@ pub enum Lost {
 #[derive(Debug, Clone, Default)]
 pub(crate) struct GlobalSearch {
     /// Scans and where the odometry says they were taken (cells).
-    scans: Vec<(ScanShape, Pose2)>,
+    scans: Vec<(ScanPoints, Pose2)>,
 }
 
-/// Scans that are looked for together.
-const MOST_SCANS: usize = 20;
-/// Hits nearer to each other than this count once, cells.
-const SPACING: f64 = 2.0;
-/// Fewer hits than this are next to nothing.
-const LEAST_POINTS: usize = 30;
-/// A place that leaves more of the hits unexplained is in another building, or one rebuilt: among all places of a large map
-/// some always explains half of them.
-const LEAST_EXPLAINED: f64 = 0.75;
-/// Standard deviation of a place that may be anywhere: cells, rad.
-const ANYWHERE: (f64, f64) = (1e5, 100.0);
+/// Maximum number of scans that are matched together. The oldest scan is dropped beyond it. Source: ours.
+const MAX_SCANS: usize = 20;
+/// Minimum distance of two points of the cloud [cells]. A nearer point is dropped. Source: ours.
+const POINT_SPACING_CELLS: f64 = 2.0;
+/// Minimum number of points of the cloud. Fewer points are not matched. Source: ours.
+const MIN_POINTS: usize = 30;
+/// Minimum fraction of points that the map explains [1]. A lower fraction is another or a changed building: some place of
+/// a large map always explains half of the points. Source: ours.
+const MIN_EXPLAINED: f64 = 0.75;
+/// Sigma of the position of a robot that may be anywhere [cells]. Source: ours.
+const UNKNOWN_POSITION_SIGMA_CELLS: f64 = 1e5;
+/// Sigma of the heading of a robot that may be anywhere [rad]. Source: ours.
+const UNKNOWN_HEADING_SIGMA_RAD: f64 = 100.0;
 
 impl GlobalSearch {
     /// Adds a scan taken with the base at `odom_from_base` (cells).
-    pub(crate) fn push(&mut self, shape: &ScanShape, odom_from_base: Pose2) {
-        if self.scans.len() == MOST_SCANS {
+    pub(crate) fn push(&mut self, shape: &ScanPoints, odom_from_base: Pose2) {
+        if self.scans.len() == MAX_SCANS {
             self.scans.remove(0);
         }
         self.scans.push((shape.clone(), odom_from_base));
@@ -54,18 +58,22 @@ impl GlobalSearch {
         (config, likelihood): (&ParticleConfig, &Likelihood),
         map: &TileMap,
         pyramid: &Pyramid,
-    ) -> Result<Found, Lost> {
+    ) -> Result<CloudMatch, Lost> {
         let Some((_, last)) = self.scans.last() else { return Err(Lost::NothingToSee) };
-        let (mut cloud, mut taken) = (ScanShape::default(), BTreeSet::new());
+        let (mut cloud, mut taken) = (ScanPoints::default(), BTreeSet::new());
         let parts = self.scans.iter().rev().map(|(shape, odom)| (shape, last.inverse() * *odom));
-        cloud.gather(parts, SPACING, &mut taken);
+        cloud.gather(parts, POINT_SPACING_CELLS, &mut taken);
         cloud.finish();
-        if cloud.points.len() < LEAST_POINTS {
+        if cloud.points.len() < MIN_POINTS {
             return Err(Lost::NothingToSee);
         }
         let (middle, half) = pyramid.bounds();
-        let finder = Finder { config, likelihood, cloud: &cloud };
-        let sigma = Vector3::new(ANYWHERE.0, ANYWHERE.0, ANYWHERE.1);
+        let finder = CloudMatcher { config, likelihood, cloud: &cloud };
+        let sigma = Vector3::new(
+            UNKNOWN_POSITION_SIGMA_CELLS,
+            UNKNOWN_POSITION_SIGMA_CELLS,
+            UNKNOWN_HEADING_SIGMA_RAD,
+        );
         let covariance = Matrix3::from_diagonal(&sigma.component_mul(&sigma));
         let found = finder.find_in(
             pyramid,
@@ -76,13 +84,15 @@ impl GlobalSearch {
             3,
         );
         let unseen = 0.5 * config.outliers.ln() * cloud.points.len() as f64 / config.correlation;
-        let is_proved = |best: &&Found| best.log_likelihood - unseen > PROOF && best.degenerate == 0;
-        let best = found.first().filter(is_proved).filter(|best| best.explained >= LEAST_EXPLAINED);
+        let is_proved =
+            |best: &&CloudMatch| best.log_likelihood - unseen > MIN_PROOF_NATS && best.degenerate == 0;
+        let best = found.first().filter(is_proved).filter(|best| best.explained >= MIN_EXPLAINED);
         let best = best.ok_or(Lost::NothingFits)?;
         let rival = found.get(1).map_or(f64::NEG_INFINITY, |rival| rival.log_likelihood);
-        if best.log_likelihood - rival > RIVAL { Ok(*best) } else { Err(Lost::SeveralPlaces) }
+        if best.log_likelihood - rival > MIN_MARGIN_NATS { Ok(*best) } else { Err(Lost::SeveralPlaces) }
     }
 }
 
-/// By so much the best place must be better than the second, nats: 1 in 3000.
-const RIVAL: f64 = 8.0;
+/// Minimum log-likelihood ratio of the best to the second-best place [nats], 1 in 3000. Below it the places are
+/// ambiguous. Source: ours.
+const MIN_MARGIN_NATS: f64 = 8.0;

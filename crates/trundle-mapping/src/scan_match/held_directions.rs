@@ -1,5 +1,7 @@
-use crate::scan_match::likelihood::Vote;
-use crate::scan_match::scan_points::ScanShape;
+//! Directions of a pose that a scan constrains, and degenerate directions.
+
+use crate::scan_match::likelihood::NormalEquations;
+use crate::scan_match::scan_points::ScanPoints;
 use nalgebra::{Matrix3, Vector3};
 use trundle_core::Pose2;
 
@@ -8,7 +10,7 @@ use trundle_core::Pose2;
 /// Displacements y are those of the hits' centroid, with turns in cells at the hits' mean distance from it, so that
 /// directions can be compared; x = `pose_from_y` * y is the displacement of the base (cells, cells, rad) in the map.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Directions {
+pub(crate) struct HeldDirections {
     pub(crate) pose_from_y: Matrix3<f64>,
     /// Onto the directions that are held.
     pub(crate) held: Matrix3<f64>,
@@ -16,17 +18,17 @@ pub(crate) struct Directions {
     pub(crate) degenerate: usize,
 }
 
-impl Directions {
+impl HeldDirections {
     /// The directions at `pose`: degenerate is what less than `least` (a part) of the hits' information holds.
-    pub(crate) fn new(shape: &ScanShape, pose: Pose2, vote: &Vote, least: f64) -> Self {
+    pub(crate) fn new(shape: &ScanPoints, pose: Pose2, equations: &NormalEquations, least: f64) -> Self {
         let (s, c) = pose.theta.sin_cos();
         let (cx, cy) =
             (c * shape.centroid.0 - s * shape.centroid.1, s * shape.centroid.0 + c * shape.centroid.1);
         let lever = shape.lever;
         let pose_from_y = Matrix3::new(1.0, 0.0, cy / lever, 0.0, 1.0, -cx / lever, 0.0, 0.0, 1.0 / lever);
-        let information = pose_from_y.transpose() * vote.information * pose_from_y;
+        let information = pose_from_y.transpose() * equations.information * pose_from_y;
         let eigen = information.symmetric_eigen();
-        let threshold = (least * vote.weight).max(1e-9);
+        let threshold = (least * equations.weight).max(1e-9);
         let (mut held, mut degenerate) = (Matrix3::zeros(), 0);
         for (value, vector) in eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter()) {
             if *value >= threshold {
@@ -39,14 +41,14 @@ impl Directions {
     }
 
     /// The information that the hits give, in y, without its degenerate part.
-    pub(crate) fn information(&self, vote: &Vote) -> Matrix3<f64> {
-        let in_y = self.pose_from_y.transpose() * vote.information * self.pose_from_y;
+    pub(crate) fn information(&self, equations: &NormalEquations) -> Matrix3<f64> {
+        let in_y = self.pose_from_y.transpose() * equations.information * self.pose_from_y;
         self.held * in_y * self.held
     }
 
     /// The pull of the hits, in y, without its degenerate part.
-    pub(crate) fn pull(&self, vote: &Vote) -> Vector3<f64> {
-        self.held * (self.pose_from_y.transpose() * vote.pull)
+    pub(crate) fn rhs(&self, equations: &NormalEquations) -> Vector3<f64> {
+        self.held * (self.pose_from_y.transpose() * equations.rhs)
     }
 
     /// An information about poses, in y.

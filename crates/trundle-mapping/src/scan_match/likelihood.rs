@@ -1,5 +1,7 @@
+//! Likelihood of scan points in a map of tiles, and the normal equations of a pose.
+
 use crate::particle_config::ParticleConfig;
-use crate::scan_match::scan_points::{LANES, PointGroup, ScanShape};
+use crate::scan_match::scan_points::{LANES, PointGroup, ScanPoints};
 use nalgebra::{Matrix3, Vector3};
 use trundle_core::Pose2;
 use trundle_grid::tiles::{NearestObstacle, TileWindow};
@@ -23,9 +25,9 @@ const PER_UNIT: f32 = 16.0;
 
 /// What all hits say at a pose: information (1 / cells^2, 1 / cells, 1), pull and log-likelihood.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub(crate) struct Vote {
+pub(crate) struct NormalEquations {
     pub(crate) information: Matrix3<f64>,
-    pub(crate) pull: Vector3<f64>,
+    pub(crate) rhs: Vector3<f64>,
     /// How many hits the map explains.
     pub(crate) explained: f64,
     /// Their information.
@@ -67,21 +69,26 @@ impl Likelihood {
     }
 
     /// ln p(z | m, x) of all points at a pose (cells of the window, rad).
-    pub(crate) fn log_likelihood(&self, window: &TileWindow<'_>, shape: &ScanShape, pose: Pose2) -> f64 {
+    pub(crate) fn log_likelihood(&self, window: &TileWindow<'_>, shape: &ScanPoints, pose: Pose2) -> f64 {
         let mut sum = 0.0_f32;
         self.tell(&mut sum, window, shape, pose);
         f64::from(sum)
     }
 
     /// What the points say about where to go from a pose.
-    pub(crate) fn vote(&self, window: &TileWindow<'_>, shape: &ScanShape, pose: Pose2) -> Vote {
+    pub(crate) fn equations(
+        &self,
+        window: &TileWindow<'_>,
+        shape: &ScanPoints,
+        pose: Pose2,
+    ) -> NormalEquations {
         let mut sums = Sums::default();
         self.tell(&mut sums, window, shape, pose);
-        sums.vote()
+        sums.equations()
     }
 
     /// Tells a listener of all points, eight by eight.
-    fn tell<L: Listener>(&self, to: &mut L, window: &TileWindow<'_>, shape: &ScanShape, pose: Pose2) {
+    fn tell<L: PointSink>(&self, to: &mut L, window: &TileWindow<'_>, shape: &ScanPoints, pose: Pose2) {
         #[cfg(target_arch = "x86_64")]
         if std::arch::is_x86_feature_detected!("avx2") {
             // SAFETY: the processor has the one feature that the function is compiled for.
@@ -93,17 +100,29 @@ impl Likelihood {
     /// The same arithmetic in vectors of eight, no sum reordered: the same bits.
     #[cfg(target_arch = "x86_64")]
     #[target_feature(enable = "avx2")]
-    fn tell_by_avx2<L: Listener>(&self, to: &mut L, window: &TileWindow<'_>, shape: &ScanShape, pose: Pose2) {
+    fn tell_by_avx2<L: PointSink>(
+        &self,
+        to: &mut L,
+        window: &TileWindow<'_>,
+        shape: &ScanPoints,
+        pose: Pose2,
+    ) {
         self.tell_each(to, window, shape, pose);
     }
 
-    fn tell_plainly<L: Listener>(&self, to: &mut L, window: &TileWindow<'_>, shape: &ScanShape, pose: Pose2) {
+    fn tell_plainly<L: PointSink>(
+        &self,
+        to: &mut L,
+        window: &TileWindow<'_>,
+        shape: &ScanPoints,
+        pose: Pose2,
+    ) {
         self.tell_each(to, window, shape, pose);
     }
 
     #[inline(always)]
-    fn tell_each<L: Listener>(&self, to: &mut L, window: &TileWindow<'_>, shape: &ScanShape, pose: Pose2) {
-        let place = Placed::new(pose);
+    fn tell_each<L: PointSink>(&self, to: &mut L, window: &TileWindow<'_>, shape: &ScanPoints, pose: Pose2) {
+        let place = RotatedPose::new(pose);
         for group in &shape.groups {
             to.take(self, group, &self.look(window, group, &place));
         }
@@ -111,7 +130,7 @@ impl Likelihood {
 
     /// Looks eight hits up: arithmetic lane by lane, which the compiler makes vector code, and one load for each.
     #[inline(always)]
-    fn look(&self, window: &TileWindow<'_>, group: &PointGroup, place: &Placed) -> Residuals {
+    fn look(&self, window: &TileWindow<'_>, group: &PointGroup, place: &RotatedPose) -> Residuals {
         let mut r = Residuals {
             rx: [0.0; LANES],
             ry: [0.0; LANES],
@@ -162,12 +181,12 @@ impl Likelihood {
 const FAR: f32 = (STEPS - 1) as f32;
 
 /// What becomes of the hits that were looked up.
-trait Listener {
+trait PointSink {
     fn take(&mut self, likelihood: &Likelihood, group: &PointGroup, found: &Residuals);
 }
 
 /// The sum of their ln p.
-impl Listener for f32 {
+impl PointSink for f32 {
     #[inline(always)]
     fn take(&mut self, likelihood: &Likelihood, group: &PointGroup, found: &Residuals) {
         for k in 0..group.count {
@@ -177,7 +196,7 @@ impl Listener for f32 {
 }
 
 /// Where they pull.
-impl Listener for Sums {
+impl PointSink for Sums {
     #[inline(always)]
     fn take(&mut self, likelihood: &Likelihood, group: &PointGroup, r: &Residuals) {
         for k in 0..group.count {
@@ -228,11 +247,11 @@ impl Sums {
         }
     }
 
-    fn vote(&self) -> Vote {
+    fn equations(&self) -> NormalEquations {
         let (a, b) = (self.a.map(f64::from), self.b.map(f64::from));
-        Vote {
+        NormalEquations {
             information: Matrix3::new(a[0], a[1], a[2], a[1], a[3], a[4], a[2], a[4], a[5]),
-            pull: Vector3::from(b),
+            rhs: Vector3::from(b),
             explained: f64::from(self.explained),
             weight: f64::from(self.weight),
             contradicted: f64::from(self.contradicted),
@@ -248,14 +267,14 @@ pub(crate) fn floor(v: f32) -> i32 {
 }
 
 /// A pose with its sine and cosine.
-pub(crate) struct Placed {
+pub(crate) struct RotatedPose {
     pub(crate) x: f32,
     pub(crate) y: f32,
     s: f32,
     c: f32,
 }
 
-impl Placed {
+impl RotatedPose {
     pub(crate) fn new(pose: Pose2) -> Self {
         let (s, c) = pose.theta.sin_cos();
         Self { x: pose.x as f32, y: pose.y as f32, s: s as f32, c: c as f32 }
@@ -286,14 +305,14 @@ mod tests {
             }
             let beams = ranges.iter().map(|&range| Beam::Hit { range }).collect();
             let scan = Scan::new(Stamp::default(), Vector2::zeros(), -1.5, 0.03, beams).unwrap();
-            let (mut shape, likelihood) = (ScanShape::default(), Likelihood::new(&config));
+            let (mut shape, likelihood) = (ScanPoints::default(), Likelihood::new(&config));
             shape.set(&config, &scan);
             let (window, pose) = (TileWindow::new(&map, (0, 0), (191, 127)), Pose2::new(x, 60.0, theta));
             let (mut sum, mut sums) = (0.0_f32, Sums::default());
             likelihood.tell_plainly(&mut sum, &window, &shape, pose);
             likelihood.tell_plainly(&mut sums, &window, &shape, pose);
             prop_assert_eq!(likelihood.log_likelihood(&window, &shape, pose).to_bits(), f64::from(sum).to_bits());
-            prop_assert_eq!(likelihood.vote(&window, &shape, pose), sums.vote());
+            prop_assert_eq!(likelihood.equations(&window, &shape, pose), sums.equations());
         }
     }
 }

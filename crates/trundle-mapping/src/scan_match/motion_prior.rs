@@ -1,9 +1,11 @@
+//! Gaussian prior of a pose.
+
 use nalgebra::{Matrix3, Vector3};
 use trundle_core::{Pose2, wrap_angle};
 
 /// What the odometry says of where the particle is: cells, rad, map frame.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Prior {
+pub(crate) struct MotionPrior {
     pub(crate) guess: Pose2,
     pub(crate) covariance: Matrix3<f64>,
     pub(crate) information: Matrix3<f64>,
@@ -11,7 +13,7 @@ pub(crate) struct Prior {
     pub(crate) log_determinant: f64,
 }
 
-impl Prior {
+impl MotionPrior {
     /// Of a motion with this covariance in the base's frame, begun at `heading`.
     pub(crate) fn new(guess: Pose2, heading: f64, covariance: &Matrix3<f64>) -> Self {
         let (s, c) = heading.sin_cos();

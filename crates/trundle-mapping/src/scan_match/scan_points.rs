@@ -1,3 +1,5 @@
+//! Scan prepared for matching: thinned points with normals, and rays.
+
 use crate::loop_closing::stored_scan::StoredScan;
 use crate::particle_config::ParticleConfig;
 use std::collections::BTreeSet;
@@ -6,7 +8,7 @@ use trundle_grid::tiles::{RaySpan, ScanRay, ScanRays};
 
 /// A scan made ready for many particles: in cells, in the base frame, with surfaces and their normals.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct ScanShape {
+pub(crate) struct ScanPoints {
     /// Origin, rays and free spans of the scan, for the update of a map.
     pub(crate) rays: ScanRays,
     /// The hits, thinned, for matching.
@@ -70,14 +72,15 @@ impl PointGroup {
     }
 }
 
-/// Points of one surface are looked for as far as this, m: a wall's normal from less is noise.
-const BASELINE: f64 = 0.2;
-/// Hits nearer to each other than this count once, cells.
-const SPACING_CELLS: f64 = 1.5;
-/// Deviation from a line, in sigmas, above which points are no wall.
-const STRAIGHT: f64 = 3.0;
+/// Distance to each side over which a surface normal is fitted [m]. A shorter baseline gives the normal of the noise.
+/// Source: ours.
+const NORMAL_BASELINE_M: f64 = 0.2;
+/// Minimum distance of two points of a scan [cells]. A nearer point is dropped. Source: ours.
+const POINT_SPACING_CELLS: f64 = 1.5;
+/// Maximum RMS distance from a fitted line [sigmas]. Points beyond it have no normal. Source: ours.
+const MAX_LINE_RESIDUAL_SIGMAS: f64 = 3.0;
 
-impl ScanShape {
+impl ScanPoints {
     /// Takes over a scan.
     pub(crate) fn set(&mut self, config: &ParticleConfig, scan: &Scan) {
         let cells = 1.0 / config.map.resolution;
@@ -185,7 +188,7 @@ impl ScanShape {
 
     fn find_points(&mut self, config: &ParticleConfig, origin: Vector2) {
         let cells = 1.0 / config.map.resolution;
-        let spacing = SPACING_CELLS * config.map.resolution;
+        let spacing = POINT_SPACING_CELLS * config.map.resolution;
         let mut kept: Option<Vector2> = None;
         for k in 0..self.hits.len() {
             let hit = self.hits[k].1;
@@ -224,7 +227,7 @@ impl ScanShape {
                     return None;
                 }
                 at = next;
-                if span >= BASELINE {
+                if span >= NORMAL_BASELINE_M {
                     return Some(at);
                 }
             }
@@ -248,7 +251,7 @@ impl ScanShape {
         let across = Vector2::new(-angle.sin(), angle.cos());
         let off =
             (across.x * across.x * xx + 2.0 * across.x * across.y * xy + across.y * across.y * yy) / count;
-        (off.sqrt() <= STRAIGHT * sigma).then_some(across)
+        (off.sqrt() <= MAX_LINE_RESIDUAL_SIGMAS * sigma).then_some(across)
     }
 
     fn measure_spread(&mut self) {

@@ -2,7 +2,7 @@ use crate::flat_room::FlatRoom;
 use std::f64::consts::{FRAC_PI_2, PI};
 use trundle_core::{Beam, Cell, Pose2, Scan, Stamp, Vector2, wrap_angle};
 use trundle_mapping::{
-    ParticleConfig, ParticleMapper, PosePriorConfig, Processed, Refusal, ScanUpdate, carry_trajectory,
+    ParticleConfig, ParticleMapper, PosePriorConfig, Processed, Refusal, ScanUpdate, propagate_trajectory,
 };
 
 /// In [-0.5, 0.5), from a hash.
@@ -120,7 +120,7 @@ fn a_lap_of_corridors_ends_where_it_began() {
     for seed in 1..=3 {
         let (mapper, _) = run(&room, &poses, &odom, config(10), seed);
         let stamps: Vec<_> = (0..poses.len()).map(|i| (laser(&room, poses[0], i).stamp(), odom[i])).collect();
-        let found = carry_trajectory(&mapper.trajectory(), &stamps);
+        let found = propagate_trajectory(&mapper.trajectory(), &stamps);
         assert_eq!(found.len(), poses.len());
         let mut worst = 0.0_f64;
         for ((_, pose), truth) in found.iter().zip(&poses) {

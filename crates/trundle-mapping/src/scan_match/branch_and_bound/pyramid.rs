@@ -1,12 +1,15 @@
+//! Pyramid of maxima of the coarse likelihood of a map.
+
 use trundle_grid::tiles::{Tile, TileMap};
 
-/// Levels above the finest: squares of 2, 4, 8 and 16 samples.
-pub(crate) const LEVELS: usize = 4;
+/// Levels above the finest: squares of 2, 4, 8 and 16 samples. Source: ours.
+pub(crate) const PYRAMID_LEVELS: usize = 4;
 /// Samples of a tile's side.
 const HALF: usize = Tile::SIDE / 2;
-const MARGIN: usize = 1 << LEVELS;
-/// Most samples of a pyramid: 2 km x 2 km at 5 cm would be more.
-const MOST_SAMPLES: usize = 64_000_000;
+/// Margin about the map [samples]: side of the largest square.
+const MARGIN_SAMPLES: usize = 1 << PYRAMID_LEVELS;
+/// Maximum number of samples. A larger map (2 km x 2 km at 5 cm) has no pyramid. Source: ours.
+const MAX_SAMPLES: usize = 64_000_000;
 
 /// The coarse likelihood of a map, and for each power of two the greatest within the square that begins at a sample.
 #[derive(Debug, Clone)]
@@ -27,24 +30,26 @@ impl Pyramid {
 
     /// Of the tiles from `low` to `high`.
     pub(crate) fn of(map: &TileMap, low: (i32, i32), high: (i32, i32)) -> Option<Self> {
-        let size = |low: i32, high: i32| (high - low + 1) as usize * HALF + 2 * MARGIN;
+        let size = |low: i32, high: i32| (high - low + 1) as usize * HALF + 2 * MARGIN_SAMPLES;
         let (width, height) = (size(low.0, high.0), size(low.1, high.1));
-        if width.saturating_mul(height) > MOST_SAMPLES {
+        if width.saturating_mul(height) > MAX_SAMPLES {
             return None;
         }
-        let corner = |tile: i32| tile * HALF as i32 - MARGIN as i32;
+        let corner = |tile: i32| tile * HALF as i32 - MARGIN_SAMPLES as i32;
         let mut finest = vec![0; width * height];
         let places = (low.1..=high.1).flat_map(|y| (low.0..=high.0).map(move |x| (x, y)));
         for (at, tile) in places.map(|at| (at, map.tile(at))) {
-            let (col, row) =
-                ((at.0 - low.0) as usize * HALF + MARGIN, (at.1 - low.1) as usize * HALF + MARGIN);
+            let (col, row) = (
+                (at.0 - low.0) as usize * HALF + MARGIN_SAMPLES,
+                (at.1 - low.1) as usize * HALF + MARGIN_SAMPLES,
+            );
             for (k, line) in tile.coarse.chunks_exact(HALF).enumerate() {
                 let to = (row + k) * width + col;
                 finest[to..to + HALF].copy_from_slice(line);
             }
         }
         let mut levels = vec![finest];
-        for level in 1..=LEVELS {
+        for level in 1..=PYRAMID_LEVELS {
             levels.push(coarser(&levels[level - 1], width, height, 1 << (level - 1)));
         }
         Some(Self { first: (corner(low.0), corner(low.1)), width, height, levels })

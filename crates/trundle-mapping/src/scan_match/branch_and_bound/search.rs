@@ -1,4 +1,6 @@
-use super::pyramid::{LEVELS, Pyramid};
+//! Branch-and-bound search for the best pose in a pyramid.
+
+use super::pyramid::{PYRAMID_LEVELS, Pyramid};
 use trundle_core::{Pose2, wrap_angle};
 
 /// What is looked for, and where.
@@ -67,12 +69,12 @@ impl Pyramid {
         let turns = ((query.turn_reach / query.turn_step).ceil() as i32).max(0);
         let all: Vec<Turned> = (-turns..=turns).map(|turn| self.turned(query, turn, reach)).collect();
         let search = Search { pyramid: self, query, known, apart, reach, all };
-        let side = 1 << LEVELS;
+        let side = 1 << PYRAMID_LEVELS;
         let mut squares = Vec::new();
         for turn in 0..search.all.len() as i32 {
             for y in (0..=2 * reach.1).step_by(side) {
                 for x in (0..=2 * reach.0).step_by(side) {
-                    squares.push(search.square(LEVELS, turn, x, y));
+                    squares.push(search.square(PYRAMID_LEVELS, turn, x, y));
                 }
             }
         }
@@ -80,7 +82,7 @@ impl Pyramid {
         squares.sort_by(|a, b| b.bound.total_cmp(&a.bound).then((a.turn, a.y, a.x).cmp(&(b.turn, b.y, b.x))));
         let mut best = (least, None);
         for square in squares {
-            search.descend(LEVELS, square, &mut best);
+            search.descend(PYRAMID_LEVELS, square, &mut best);
         }
         best.1
     }

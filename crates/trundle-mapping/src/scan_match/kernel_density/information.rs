@@ -1,4 +1,6 @@
-use super::{ScanMatchConfig, refinement::Vote};
+//! Information of a match by direction, with its degenerate directions.
+
+use super::{ScanMatchConfig, refinement::NormalEquations};
 use nalgebra::{Matrix3, SymmetricEigen, U3, Vector3};
 use trundle_core::Vector2;
 
@@ -18,7 +20,7 @@ pub(crate) struct Information {
 }
 
 impl Information {
-    pub(crate) fn new(config: &ScanMatchConfig, vote: &Vote, points: &[Vector2]) -> Self {
+    pub(crate) fn new(config: &ScanMatchConfig, equations: &NormalEquations, points: &[Vector2]) -> Self {
         let count = points.len().max(1) as f64;
         let centroid = points.iter().sum::<Vector2>() / count;
         let mean_square = points.iter().map(|p| (p - centroid).norm_squared()).sum::<f64>() / count;
@@ -27,8 +29,8 @@ impl Information {
         let centroid_from_base = Matrix3::new(1.0, 0.0, -cy, 0.0, 1.0, cx, 0.0, 0.0, lever);
         let base_from_centroid =
             Matrix3::new(1.0, 0.0, cy / lever, 0.0, 1.0, -cx / lever, 0.0, 0.0, 1.0 / lever);
-        let information = base_from_centroid.transpose() * vote.information * base_from_centroid;
-        let least = config.degenerate_below * vote.explained / config.kernel_sigma.powi(2);
+        let information = base_from_centroid.transpose() * equations.information * base_from_centroid;
+        let least = config.degenerate_below * equations.explained / config.kernel_sigma.powi(2);
         Self {
             base_from_centroid,
             centroid_from_base,
@@ -43,8 +45,8 @@ impl Information {
     }
 
     /// The step that the pull asks for, without its degenerate part.
-    pub(crate) fn solve(&self, pull: &Vector3<f64>) -> Vector3<f64> {
-        self.by_direction(|value| if value < self.least { 0.0 } else { 1.0 / value }) * pull
+    pub(crate) fn solve(&self, rhs: &Vector3<f64>) -> Vector3<f64> {
+        self.by_direction(|value| if value < self.least { 0.0 } else { 1.0 / value }) * rhs
     }
 
     /// A displacement (right perturbation) without its degenerate part.

@@ -1,18 +1,20 @@
-use super::surface_points::Sites;
+//! Likelihood field over the surface points of a map.
+
+use super::surface_points::SurfacePoints;
 use trundle_core::Vector2;
 
 /// A likelihood field (Thrun, Probabilistic Robotics, sec. 6.4): exp(-d^2 / (2 sigma^2)) of the distance d to the nearest
 /// obstacle, at the middles of cells; 0 beyond three sigmas.
 #[derive(Debug, Clone)]
 pub(crate) struct LikelihoodField<'a> {
-    sites: &'a Sites,
+    sites: &'a SurfacePoints,
     corner: Vector2,
     cells_per_metre: f64,
     values: Vec<f32>,
 }
 
 impl<'a> LikelihoodField<'a> {
-    pub(crate) fn new(sites: &'a Sites, sigma: f64) -> Self {
+    pub(crate) fn new(sites: &'a SurfacePoints, sigma: f64) -> Self {
         let mut field = Self {
             sites,
             corner: sites.center(0, 0) - Vector2::repeat(sites.resolution / 2.0),

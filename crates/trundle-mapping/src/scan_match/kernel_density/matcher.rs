@@ -1,6 +1,8 @@
+//! Scan matcher against a grid map.
+
 use super::{
     ScanMatchConfig, information::Information, likelihood_field::LikelihoodField, refinement::refine,
-    surface_points::Sites, window_search::search,
+    surface_points::SurfacePoints, window_search::search,
 };
 use crate::grid_mapper::GridMapper;
 use nalgebra::Matrix3;
@@ -60,13 +62,13 @@ impl ScanMatcher {
         }
         let sites = self.sites(mapper, &points, guess)?;
         let start = search(config, &LikelihoodField::new(&sites, config.search_sigma), &points, guess);
-        let (end, vote) = refine(config, &sites, &points, start);
+        let (end, equations) = refine(config, &sites, &points, start);
 
-        let information = Information::new(config, &vote, &points);
+        let information = Information::new(config, &equations, &points);
         let displacement = information.held(&(guess.inverse() * end).log());
         let pose = guess * Pose2::exp(displacement);
         let known = points.iter().filter(|&&p| mapper.log_odds_at(pose.transform(p)) != 0.0).count();
-        let score = (vote.explained / known.max(1) as f64).min(1.0);
+        let score = (equations.explained / known.max(1) as f64).min(1.0);
         let (shift, turn) = (displacement.xy().norm(), displacement.z.abs());
         let in_window = shift <= 2.0 * config.window && turn <= 1.5 * config.window_deg.to_radians();
         (known >= config.min_points && score >= config.min_score && in_window).then(|| ScanMatch {
@@ -77,13 +79,13 @@ impl ScanMatcher {
         })
     }
 
-    fn sites(&self, mapper: &GridMapper, points: &[Vector2], guess: Pose2) -> Option<Sites> {
+    fn sites(&self, mapper: &GridMapper, points: &[Vector2], guess: Pose2) -> Option<SurfacePoints> {
         let config = &self.config;
         let there: Vec<Vector2> = points.iter().map(|&p| guess.transform(p)).collect();
         let farthest = points.iter().map(Vector2::norm).fold(0.0, f64::max);
         let swing = farthest * config.window_deg.to_radians();
         let margin = 2.0 * config.window + 1.5 * swing + 3.0 * config.search_sigma;
-        Sites::around(mapper, &there, margin)
+        SurfacePoints::around(mapper, &there, margin)
     }
 }
 

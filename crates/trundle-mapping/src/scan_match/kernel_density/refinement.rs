@@ -1,20 +1,25 @@
-use super::{ScanMatchConfig, information::Information, surface_points::Sites};
+//! Refinement of a pose by Gauss-Newton on a kernel density.
+
+use super::{ScanMatchConfig, information::Information, surface_points::SurfacePoints};
 use nalgebra::{Matrix2, Matrix2x3, Matrix3, Vector3};
 use trundle_core::{Pose2, Vector2};
 
-/// A kernel density of this at a hit explains it as well as chance does; a hit on a wall has about 3.
-const CHANCE: f64 = 0.3;
-/// Curvature along a wall below this part of that across it is the unevenness of its cells.
-const UNEVENNESS: f64 = 0.15;
-const MOST_STEPS: usize = 12;
-/// Steps shorter than this are none, m and rad.
-const STILL: f64 = 1e-5;
+/// Kernel density of an outlier [1]. A hit with this density is explained with probability 0.5; a hit on a wall has a
+/// density of about 3. Source: ours.
+const OUTLIER_DENSITY: f64 = 0.3;
+/// Curvature along a wall relative to that across it [1]. A smaller curvature is the unevenness of the wall's cells and
+/// counts as zero. Source: ours.
+const MIN_RELATIVE_CURVATURE: f64 = 0.15;
+/// Maximum number of Gauss-Newton steps. The last pose is returned beyond it. Source: ours.
+const MAX_ITERATIONS: usize = 12;
+/// Step length at which the iteration ends [m, rad]. Source: ours.
+const MIN_STEP: f64 = 1e-5;
 
 /// What all hits say at a pose: information matrix, right-hand side, and how many hits the map explains.
 #[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Vote {
+pub(crate) struct NormalEquations {
     pub(crate) information: Matrix3<f64>,
-    pub(crate) pull: Vector3<f64>,
+    pub(crate) rhs: Vector3<f64>,
     pub(crate) explained: f64,
 }
 
@@ -23,29 +28,34 @@ pub(crate) struct Vote {
 /// not moved in.
 pub(crate) fn refine(
     config: &ScanMatchConfig,
-    sites: &Sites,
+    sites: &SurfacePoints,
     points: &[Vector2],
     start: Pose2,
-) -> (Pose2, Vote) {
+) -> (Pose2, NormalEquations) {
     let mut pose = start;
-    for _ in 0..MOST_STEPS {
-        let vote = vote(config, sites, points, pose);
-        let step = Information::new(config, &vote, points).solve(&vote.pull);
+    for _ in 0..MAX_ITERATIONS {
+        let equations = equations(config, sites, points, pose);
+        let step = Information::new(config, &equations, points).solve(&equations.rhs);
         pose = pose * Pose2::exp(step);
-        if step.amax() < STILL {
+        if step.amax() < MIN_STEP {
             break;
         }
     }
-    (pose, vote(config, sites, points, pose))
+    (pose, equations(config, sites, points, pose))
 }
 
-fn vote(config: &ScanMatchConfig, sites: &Sites, points: &[Vector2], pose: Pose2) -> Vote {
-    let mut sum = Vote::default();
+fn equations(
+    config: &ScanMatchConfig,
+    sites: &SurfacePoints,
+    points: &[Vector2],
+    pose: Pose2,
+) -> NormalEquations {
+    let mut sum = NormalEquations::default();
     let (s, c) = pose.theta.sin_cos();
     let map_from_base = Matrix2::new(c, -s, s, c);
     let per_variance = 1.0 / config.kernel_sigma.powi(2);
     for &point in points {
-        let Some(pull) = pull(config, sites, pose.transform(point)) else { continue };
+        let Some(rhs) = rhs(config, sites, pose.transform(point)) else { continue };
         // d(hit) / d(pose), right perturbation.
         let across = map_from_base * Vector2::new(-point.y, point.x);
         let jacobian = Matrix2x3::from_columns(&[
@@ -53,15 +63,15 @@ fn vote(config: &ScanMatchConfig, sites: &Sites, points: &[Vector2], pose: Pose2
             map_from_base.column(1).into_owned(),
             across,
         ]);
-        let weighted = jacobian.transpose() * pull.stiffness * (pull.explained * per_variance);
+        let weighted = jacobian.transpose() * rhs.stiffness * (rhs.explained * per_variance);
         sum.information += weighted * jacobian;
-        sum.pull += weighted * pull.shift;
-        sum.explained += pull.explained;
+        sum.rhs += weighted * rhs.shift;
+        sum.explained += rhs.explained;
     }
     sum
 }
 
-struct Pull {
+struct PointResidual {
     /// To the mean of the sites, m.
     shift: Vector2,
     /// How much of it counts, by direction: 1 across a wall, 0 along it.
@@ -70,7 +80,7 @@ struct Pull {
     explained: f64,
 }
 
-fn pull(config: &ScanMatchConfig, sites: &Sites, hit: Vector2) -> Option<Pull> {
+fn rhs(config: &ScanMatchConfig, sites: &SurfacePoints, hit: Vector2) -> Option<PointResidual> {
     let variance = config.kernel_sigma.powi(2);
     let reach = (3.0 * config.kernel_sigma / sites.resolution).ceil() as i32;
     let (mut density, mut first, mut second) = (0.0, Vector2::zeros(), Matrix2::zeros());
@@ -88,12 +98,18 @@ fn pull(config: &ScanMatchConfig, sites: &Sites, hit: Vector2) -> Option<Pull> {
     let spread = second / density - shift * shift.transpose();
     // The Hessian of -ln(density), in units of 1 / variance.
     let curvature = Matrix2::identity() - spread / variance;
-    Some(Pull { shift, stiffness: steadied(curvature), explained: density / (density + CHANCE) })
+    Some(PointResidual {
+        shift,
+        stiffness: steadied(curvature),
+        explained: density / (density + OUTLIER_DENSITY),
+    })
 }
 
 /// Without what the unevenness of a straight wall's cells feigns, and without negative curvature.
 fn steadied(curvature: Matrix2<f64>) -> Matrix2<f64> {
     let mut eigen = curvature.symmetric_eigen();
-    eigen.eigenvalues.apply(|v| *v = ((*v - UNEVENNESS) / (1.0 - UNEVENNESS)).clamp(0.0, 1.0));
+    eigen
+        .eigenvalues
+        .apply(|v| *v = ((*v - MIN_RELATIVE_CURVATURE) / (1.0 - MIN_RELATIVE_CURVATURE)).clamp(0.0, 1.0));
     eigen.recompose()
 }

@@ -1,10 +1,12 @@
+//! Surface points of the occupied cells of a part of the map.
+
 use crate::grid_mapper::GridMapper;
 use trundle_core::{Cell, Vector2};
 use trundle_grid::GridCell;
 
 /// The obstacles of a part of the map: of each occupied cell the mean of its hits, map frame, m.
 #[derive(Debug, Clone)]
-pub(crate) struct Sites {
+pub(crate) struct SurfacePoints {
     pub(crate) resolution: f64,
     pub(crate) corner: GridCell,
     pub(crate) width: usize,
@@ -12,7 +14,7 @@ pub(crate) struct Sites {
     cells: Vec<Option<Vector2>>,
 }
 
-impl Sites {
+impl SurfacePoints {
     /// Those within `margin` m of the bounding box of `points` (map frame, m); `None` when there is no point.
     pub(crate) fn around(mapper: &GridMapper, points: &[Vector2], margin: f64) -> Option<Self> {
         let resolution = mapper.config().resolution;

@@ -1,8 +1,11 @@
+//! Exhaustive search of a small window of poses.
+
 use super::{ScanMatchConfig, likelihood_field::LikelihoodField};
 use trundle_core::{Pose2, Vector2};
 
-/// What a pose at the window's edge loses against the guess: enough to decide between poses that fit alike.
-const LOYALTY: f64 = 0.02;
+/// Score that a pose at the edge of the window loses against the guess [1]. It decides between poses of equal likelihood.
+/// Source: ours.
+const MAX_PRIOR_PENALTY: f64 = 0.02;
 
 /// The pose of the window about `guess` whose hits lie best in the field: all poses in coarse steps, then their
 /// neighbours in half steps (Olson, Real-time correlative scan matching, ICRA 2009).
@@ -73,5 +76,5 @@ fn outward(reach: i32) -> impl Iterator<Item = i32> {
 fn disloyalty(config: &ScanMatchConfig, pose: Pose2, guess: Pose2) -> f64 {
     let away = (guess.inverse() * pose).log();
     let part = |off: f64, window: f64| (off / window.max(1e-6)).powi(2);
-    LOYALTY * (part(away.xy().norm(), config.window) + part(away.z, config.window_deg.to_radians()))
+    MAX_PRIOR_PENALTY * (part(away.xy().norm(), config.window) + part(away.z, config.window_deg.to_radians()))
 }
