@@ -3,13 +3,13 @@
 use crate::particle_config::ParticleConfig;
 use crate::persist::FilterFileError;
 use crate::rbpf::map_publisher::MapPublisher;
-use crate::rbpf::mapper::{
-    EXPECTED_LOG_LIKELIHOOD, EXPECTED_LOG_LIKELIHOOD_RATE, ParticleMapper, in_metres, scaled,
-};
+use crate::rbpf::mapper::{EXPECTED_LOG_LIKELIHOOD, EXPECTED_LOG_LIKELIHOOD_RATE, ParticleMapper};
 use crate::rbpf::motion_model::{motion_covariance, unknown_motion_covariance};
 use crate::rbpf::proposal::{Proposal, Proposer};
 use crate::rbpf::resampling::{effective, low_variance};
 use crate::rbpf::rng::ParticleRng;
+use crate::rbpf::scan_update::Refusal;
+use crate::rbpf::units::{in_metres, scaled};
 use crate::rbpf::update_gate::UpdateGate;
 use crate::scan_match::branch_and_bound::Pyramid;
 use crate::scan_match::coarse_search::CoarseSearch;
@@ -56,7 +56,7 @@ pub enum Localized {
     /// The robot has hardly moved: the scan was not looked at.
     Still,
     /// The scan was refused.
-    Refused(crate::Refusal),
+    Refused(Refusal),
     /// Nobody knows where the robot is.
     Lost(Lost),
     /// The robot is here.

@@ -7,7 +7,7 @@ use super::{
 use crate::loop_closing::scan_history::ScanHistory;
 use crate::particle_config::ParticleConfig;
 use crate::pose_graph::{Constraint, reach, solve};
-use crate::scan_match::cloud_match::{CloudMatch, CloudMatcher};
+use crate::scan_match::cloud_match::{CloudMatch, CloudMatcher, MIN_PROOF_NATS};
 use crate::scan_match::likelihood::Likelihood;
 use crate::scan_match::scan_points::ScanPoints;
 use nalgebra::{Matrix3, Vector3};
@@ -49,10 +49,6 @@ const REFERENCE_RADIUS_M: f64 = 10.0;
 const MAX_REFERENCE_SCANS: usize = 48;
 /// Maximum number of candidates matched in one search. Source: ours.
 const MAX_CANDIDATES: usize = 2;
-
-/// Minimum log-likelihood ratio of a place to the second-best place and to unknown ground [nats]. A lower ratio proves no
-/// place. Source: ours.
-pub(crate) const MIN_PROOF_NATS: f64 = 16.0;
 
 impl LoopCloser {
     /// Looks whether the end of `poses` (m) has come back to an earlier part of them.

@@ -1,5 +1,6 @@
 //! Packed scan, for redrawing a map after a loop closure.
 
+use crate::particle_config::ParticleConfig;
 use crate::scan_match::scan_points::ScanPoints;
 use trundle_grid::tiles::{RaySpan, ScanRay};
 
@@ -89,6 +90,12 @@ impl StoredScan {
         Self { origin: shape.rays.origin, rays: rays.into(), sigmas: sigmas.into(), spans: spans.into() }
     }
 
+    /// Unpacks the scan into `points`.
+    pub(crate) fn unpack_into(&self, config: &ParticleConfig, points: &mut ScanPoints) {
+        let rays = self.rays().map(|StoredRay { ray, beam, sigma }| (ray, beam, sigma));
+        points.set_rays(config, self.origin, rays, self.spans());
+    }
+
     /// The rays, in order.
     pub(crate) fn rays(&self) -> impl Iterator<Item = StoredRay> {
         let mut beam = 0;
@@ -122,7 +129,6 @@ impl StoredScan {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::particle_config::ParticleConfig;
     use trundle_core::{Beam, FreeSpan, Scan, ScanParts, Stamp, Vector2};
 
     #[test]
@@ -136,7 +142,7 @@ mod tests {
         let (config, mut shape, mut again) =
             (ParticleConfig::default(), ScanPoints::default(), ScanPoints::default());
         shape.set(&config, &scan);
-        again.set_stored(&config, &StoredScan::new(&shape));
+        StoredScan::new(&shape).unpack_into(&config, &mut again);
         let whole = |shape: &ScanPoints| shape.rays.rays.iter().map(|ray| ray.whole).collect::<Vec<_>>();
         assert_eq!(whole(&shape), [true, false, false]);
         assert_eq!(whole(&again), whole(&shape));

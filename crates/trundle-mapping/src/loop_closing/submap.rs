@@ -32,7 +32,7 @@ impl Submaps {
         self.taken.clear();
         for &k in which {
             let pose = cells(config, pose(k));
-            self.shape.set_stored(config, &history.scans[k]);
+            history.scans[k].unpack_into(config, &mut self.shape);
             cloud.gather(std::iter::once((&self.shape, pose)), POINT_SPACING_CELLS, &mut self.taken);
             ray_update.apply(&mut map, &mut self.draw, pose, &self.shape.rays);
         }

@@ -1,7 +1,7 @@
 //! Absolute pose prior from odometry without drift.
 
 use crate::particle_config::ParticleConfig;
-use crate::rbpf::mapper::scaled;
+use crate::rbpf::units::scaled;
 use nalgebra::{Matrix3, Vector3};
 use trundle_core::Pose2;
 

@@ -14,12 +14,13 @@ use crate::rbpf::proposal::{Proposal, Proposer};
 use crate::rbpf::resampling::{effective, low_variance};
 use crate::rbpf::rng::ParticleRng;
 use crate::rbpf::scan_update::{Processed, ScanUpdate};
+use crate::rbpf::units::{in_metres, scaled};
 use crate::rbpf::update_gate::{OdometryStep, UpdateGate};
 use crate::scan_match::coarse_search::CoarseSearch;
 use crate::scan_match::global_search::GlobalSearch;
 use crate::scan_match::likelihood::Likelihood;
 use crate::scan_match::scan_points::ScanPoints;
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Matrix3;
 use rayon::prelude::*;
 use trundle_core::{CellIndex, Invalid, OccupancyGrid, Pose2, Scan, Stamp};
 use trundle_grid::tiles::{NearestField, RayUpdate, RayUpdateScratch, TileMap, tile_bytes};
@@ -340,13 +341,3 @@ pub(crate) const EXPECTED_LOG_LIKELIHOOD_RATE: f64 = 0.05;
 const FIELD_REACH_M: f64 = 0.2;
 /// Sigma of the coarse likelihood [cells]: one step of the coarse search. Source: ours.
 const COARSE_SIGMA_CELLS: f64 = 2.0;
-
-pub(crate) fn in_metres(config: &ParticleConfig, pose: Pose2) -> Pose2 {
-    Pose2 { x: pose.x * config.map.resolution, y: pose.y * config.map.resolution, ..pose }
-}
-
-/// A covariance of a pose whose lengths are given in units of `unit` m: m, m, rad.
-pub(crate) fn scaled(covariance: Matrix3<f64>, unit: f64) -> Matrix3<f64> {
-    let scale = Matrix3::from_diagonal(&Vector3::new(unit, unit, 1.0));
-    scale * covariance * scale
-}

@@ -2,6 +2,7 @@
 
 pub(crate) mod absolute_pose;
 pub(crate) mod ancestry;
+mod loop_correction;
 pub(crate) mod map_publisher;
 pub(crate) mod map_redraw;
 pub(crate) mod mapper;
@@ -14,6 +15,7 @@ mod relocalization;
 pub(crate) mod resampling;
 pub(crate) mod rng;
 pub(crate) mod scan_update;
+pub(crate) mod units;
 pub(crate) mod update_gate;
 
 pub use mapper::ParticleMapper;

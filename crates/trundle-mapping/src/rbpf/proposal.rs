@@ -6,12 +6,12 @@ use crate::rbpf::odometry_noise::Innovation;
 use crate::rbpf::rng::ParticleRng;
 use crate::scan_match::branch_and_bound::{Pyramid, Query};
 use crate::scan_match::coarse_search::{CoarseSearch, SearchPrior};
-use crate::scan_match::held_directions::HeldDirections;
-use crate::scan_match::likelihood::{Likelihood, NormalEquations};
+use crate::scan_match::likelihood::Likelihood;
 use crate::scan_match::motion_prior::MotionPrior;
+use crate::scan_match::pose_optimizer::{Optimum, PoseOptimizer, difference};
 use crate::scan_match::scan_points::ScanPoints;
 use nalgebra::{Cholesky, Matrix3, Vector3};
-use trundle_core::{Pose2, wrap_angle};
+use trundle_core::Pose2;
 use trundle_grid::tiles::{Tile, TileMap, TileWindow};
 
 /// The improved proposal of \[Grisetti07\] for one particle.
@@ -56,10 +56,6 @@ pub(crate) struct Proposal {
     pub(crate) innovation: Option<Innovation>,
 }
 
-/// Maximum number of Gauss-Newton steps. The last pose is used beyond it. Source: ours.
-const MAX_ITERATIONS: usize = 10;
-/// Step length at which the iteration ends [cells]. Source: ours.
-const MIN_STEP_CELLS: f64 = 0.01;
 /// Minimum distance of two starts of the optimisation [cells]. Nearer starts count as one. Source: ours.
 const MIN_START_DISTANCE_CELLS: f64 = 5.0;
 /// Maximum score deficit of a second start against the best [nats]. A worse start is not optimised. Source: ours.
@@ -81,14 +77,6 @@ struct Attempt<'m> {
     prior: MotionPrior,
     optimum: Optimum,
     contradicted: f64,
-}
-
-/// An optimum of the posterior.
-pub(crate) struct Optimum {
-    pub(crate) pose: Pose2,
-    pub(crate) equations: NormalEquations,
-    pub(crate) directions: HeldDirections,
-    log_posterior: f64,
 }
 
 impl Proposer<'_> {
@@ -135,6 +123,10 @@ impl Proposer<'_> {
         let Some(needed) = self.needed(&near, &slip) else { return Vec::new() };
         let back = before.inverse();
         self.search_far(map, &slip, needed).into_iter().map(|place| back * place).collect()
+    }
+
+    fn optimizer(&self) -> PoseOptimizer<'_> {
+        PoseOptimizer { config: self.config, likelihood: self.likelihood, points: self.shape }
     }
 
     fn near(&self, before: Pose2, guess: Pose2) -> MotionPrior {
@@ -204,7 +196,7 @@ impl Proposer<'_> {
         let local = |pose: Pose2| Pose2 { x: pose.x - corner.0, y: pose.y - corner.1, ..pose };
         let prior = MotionPrior { guess: local(prior.guess), ..prior };
         let optimum = places
-            .map(|place| self.climb(&window, &prior, local(place)))
+            .map(|place| self.optimizer().optimize(&window, &prior, local(place)))
             .reduce(|best, next| if next.log_posterior > best.log_posterior { next } else { best })
             .expect("invariant: there is a place");
         self.attempted(window, corner, prior, optimum)
@@ -274,44 +266,12 @@ impl Proposer<'_> {
             .iter()
             .find(|(score, p)| first - score < MAX_START_DEFICIT_NATS && elsewhere(p))
             .map(|s| s.1);
-        let best = self.climb(window, prior, top);
-        let rival = second.map(|start| self.climb(window, prior, start));
+        let best = self.optimizer().optimize(window, prior, top);
+        let rival = second.map(|start| self.optimizer().optimize(window, prior, start));
         match rival {
             Some(rival) if rival.log_posterior > best.log_posterior => rival,
             _ => best,
         }
-    }
-
-    /// Gauss-Newton on hits and odometry together.
-    pub(crate) fn climb(&self, window: &TileWindow<'_>, prior: &MotionPrior, start: Pose2) -> Optimum {
-        let mut pose = start;
-        let mut equations = self.likelihood.equations(window, self.shape, pose);
-        let directions = HeldDirections::new(self.shape, pose, &equations, self.config.degenerate_below);
-        for _ in 0..MAX_ITERATIONS {
-            let scale = 1.0 / self.config.correlation;
-            let information =
-                directions.information(&equations) * scale + directions.in_y(&prior.information);
-            let back = prior.information * difference(prior.guess, pose);
-            let rhs = directions.rhs(&equations) * scale + directions.pose_from_y.transpose() * back;
-            let Some(factor) = Cholesky::new(information) else { break };
-            let step = factor.solve(&rhs);
-            let x = directions.pose_from_y * step;
-            pose = Pose2 { x: pose.x + x.x, y: pose.y + x.y, theta: pose.theta + x.z };
-            equations = self.likelihood.equations(window, self.shape, pose);
-            if step.amax() < MIN_STEP_CELLS {
-                break;
-            }
-        }
-        let directions = HeldDirections::new(self.shape, pose, &equations, self.config.degenerate_below);
-        Optimum { log_posterior: self.log_posterior(window, prior, pose), pose, equations, directions }
-    }
-
-    /// ln p(z | m, x) p(x | x', u), but for a constant.
-    fn log_posterior(&self, window: &TileWindow<'_>, prior: &MotionPrior, pose: Pose2) -> f64 {
-        let off = difference(pose, prior.guess);
-        self.likelihood.log_likelihood(window, self.shape, pose) / self.config.correlation
-            - 0.5 * off.dot(&(prior.information * off))
-            + 0.5 * prior.log_determinant
     }
 
     fn sample(&self, attempt: &Attempt<'_>, log_rate: f64, rng: &mut ParticleRng) -> Proposal {
@@ -333,13 +293,14 @@ impl Proposer<'_> {
             Pose2 { x: centre.x + x.x, y: centre.y + x.y, theta: centre.theta + x.z }
         };
 
+        let optimizer = self.optimizer();
         let mut samples = [(0.0, Vector3::zeros()); MAX_SAMPLES];
         let count = self.config.samples.min(MAX_SAMPLES);
         let mut greatest = f64::NEG_INFINITY;
         for pair in samples[..count].chunks_mut(2) {
             let y = spread * rng.in_ball() * SAMPLE_RADIUS_SIGMAS;
             for (sample, y) in pair.iter_mut().zip([y, -y]) {
-                *sample = (self.log_posterior(window, prior, moved(y)), y);
+                *sample = (optimizer.log_posterior(window, prior, moved(y)), y);
                 greatest = greatest.max(sample.0);
             }
         }
@@ -403,7 +364,3 @@ const MAX_SAMPLES: usize = 500;
 /// Minimum covariance of the drawn Gaussian, as a fraction of the Laplace covariance [1]. A covariance from few samples
 /// may be singular. Source: ours.
 const MIN_COVARIANCE_FRACTION: f64 = 0.05;
-
-fn difference(to: Pose2, from: Pose2) -> Vector3<f64> {
-    Vector3::new(to.x - from.x, to.y - from.y, wrap_angle(to.theta - from.theta))
-}

@@ -1,8 +1,9 @@
 //! Global localization of the filter in the map it was loaded with.
 
 use crate::loop_closing::stored_scan::StoredScan;
-use crate::rbpf::mapper::{Particle, ParticleMapper, in_metres};
+use crate::rbpf::mapper::{Particle, ParticleMapper};
 use crate::rbpf::scan_update::ScanUpdate;
+use crate::rbpf::units::in_metres;
 use crate::rbpf::update_gate::UpdateGate;
 use crate::scan_match::branch_and_bound::Pyramid;
 use crate::scan_match::global_search::{GlobalSearch, Lost};

@@ -1,10 +1,10 @@
 //! Match of a cloud of points with a map within a search region.
 
 use crate::particle_config::ParticleConfig;
-use crate::rbpf::proposal::Proposer;
 use crate::scan_match::branch_and_bound::{Place, Pyramid, Query};
 use crate::scan_match::likelihood::Likelihood;
 use crate::scan_match::motion_prior::MotionPrior;
+use crate::scan_match::pose_optimizer::PoseOptimizer;
 use crate::scan_match::scan_points::ScanPoints;
 use nalgebra::Matrix3;
 use trundle_core::Pose2;
@@ -31,6 +31,10 @@ const MAX_SEARCH_POINTS: usize = 120;
 const MIN_PLACE_DISTANCE_CELLS: f64 = 12.0;
 /// Minimum difference of heading of two places [rad]. Source: ours.
 const MIN_PLACE_TURN_RAD: f64 = 0.12;
+
+/// Minimum log-likelihood ratio of a place to the second-best place and to unknown ground [nats]. A lower ratio proves no
+/// place. Source: ours.
+pub(crate) const MIN_PROOF_NATS: f64 = 16.0;
 
 /// Looks for a cloud in a map.
 pub(crate) struct CloudMatcher<'a> {
@@ -96,19 +100,13 @@ impl CloudMatcher<'_> {
 
     /// The top near a pose.
     pub(crate) fn climb(&self, map: &TileMap, start: Pose2, covariance: &Matrix3<f64>) -> CloudMatch {
-        let proposer = Proposer {
-            config: self.config,
-            likelihood: self.likelihood,
-            shape: self.cloud,
-            motion_covariance: Matrix3::identity(),
-            anchor: None,
-            expected_log_likelihood: 0.0,
-        };
+        let optimizer =
+            PoseOptimizer { config: self.config, likelihood: self.likelihood, points: self.cloud };
         let window = self.window(map, start);
         let corner = (f64::from(window.corner.0), f64::from(window.corner.1));
         let start = Pose2 { x: start.x - corner.0, y: start.y - corner.1, ..start };
         let prior = MotionPrior::with(start, *covariance);
-        let optimum = proposer.climb(&window, &prior, start);
+        let optimum = optimizer.optimize(&window, &prior, start);
         let pose = Pose2::new(optimum.pose.x + corner.0, optimum.pose.y + corner.1, optimum.pose.theta);
         let all = self.cloud.points.len().max(1) as f64;
         let to_y = optimum.directions.pose_from_y.try_inverse().expect("invariant: a lever is positive");

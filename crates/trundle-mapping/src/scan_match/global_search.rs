@@ -1,9 +1,8 @@
 //! Search of the newest scans in a whole map.
 
-use crate::loop_closing::loop_closer::MIN_PROOF_NATS;
 use crate::particle_config::ParticleConfig;
 use crate::scan_match::branch_and_bound::Pyramid;
-use crate::scan_match::cloud_match::{CloudMatch, CloudMatcher};
+use crate::scan_match::cloud_match::{CloudMatch, CloudMatcher, MIN_PROOF_NATS};
 use crate::scan_match::likelihood::Likelihood;
 use crate::scan_match::scan_points::ScanPoints;
 use nalgebra::{Matrix3, Vector3};

@@ -8,6 +8,7 @@ pub(crate) mod held_directions;
 mod kernel_density;
 pub(crate) mod likelihood;
 pub(crate) mod motion_prior;
+pub(crate) mod pose_optimizer;
 pub(crate) mod scan_points;
 
 pub use global_search::Lost;

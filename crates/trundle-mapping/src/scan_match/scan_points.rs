@@ -1,6 +1,5 @@
 //! Scan prepared for matching: thinned points with normals, and rays.
 
-use crate::loop_closing::stored_scan::StoredScan;
 use crate::particle_config::ParticleConfig;
 use std::collections::BTreeSet;
 use trundle_core::{Beam, Pose2, Scan, Vector2};
@@ -99,7 +98,7 @@ impl ScanPoints {
             let whole = self.take_spans(scan, i, range);
             let ends = ((end.x * cells) as f32, (end.y * cells) as f32);
             let sigma = scan.sigma(i).map(|sigma| sigma as f32);
-            let hit_weight = sureness(sigma.unwrap_or(0.0) * cells as f32);
+            let hit_weight = hit_weight(sigma.unwrap_or(0.0) * cells as f32);
             self.rays.rays.push(ScanRay { x: ends.0, y: ends.1, hit, joined, whole, hit_weight });
             self.sigmas.extend(sigma);
             self.beams.push(i);
@@ -111,21 +110,27 @@ impl ScanPoints {
         self.find_points(config, scan.origin());
     }
 
-    /// Takes over a scan from the store.
-    pub(crate) fn set_stored(&mut self, config: &ParticleConfig, stored: &StoredScan) {
+    /// Sets the scan to rays with their beam numbers and range sigmas (m, 0: unknown), to free spans, and to an origin in cells.
+    pub(crate) fn set_rays(
+        &mut self,
+        config: &ParticleConfig,
+        origin: (f32, f32),
+        rays: impl Iterator<Item = (ScanRay, usize, f32)>,
+        spans: impl Iterator<Item = RaySpan>,
+    ) {
         self.clear();
-        self.rays.origin = stored.origin;
+        self.rays.origin = origin;
         let metres = config.map.resolution;
         let cells = (1.0 / metres) as f32;
-        let origin = Vector2::new(f64::from(stored.origin.0), f64::from(stored.origin.1)) * metres;
-        for ray in stored.rays() {
-            if ray.ray.hit {
-                let end = Vector2::new(f64::from(ray.ray.x), f64::from(ray.ray.y)) * metres;
-                self.hits.push((ray.beam, end, f64::from(ray.sigma)));
+        let origin = Vector2::new(f64::from(origin.0), f64::from(origin.1)) * metres;
+        for (ray, beam, sigma) in rays {
+            if ray.hit {
+                let end = Vector2::new(f64::from(ray.x), f64::from(ray.y)) * metres;
+                self.hits.push((beam, end, f64::from(sigma)));
             }
-            self.rays.rays.push(ScanRay { hit_weight: sureness(ray.sigma * cells), ..ray.ray });
+            self.rays.rays.push(ScanRay { hit_weight: hit_weight(sigma * cells), ..ray });
         }
-        self.rays.spans.extend(stored.spans());
+        self.rays.spans.extend(spans);
         self.find_points(config, origin);
     }
 
@@ -267,7 +272,7 @@ impl ScanPoints {
 
 /// The part of a Gaussian of `sigma` cells that lies within half a cell of its middle, against that of half a cell's sigma: a
 /// hit that is as likely to lie in the cells beside its own says less of it.
-fn sureness(sigma: f32) -> f32 {
+fn hit_weight(sigma: f32) -> f32 {
     // Within h sigmas: tanh(0.8 h) to 0.02.
     let within = |sigma: f32| (0.4 / sigma).tanh();
     if sigma <= 0.5 { 1.0 } else { within(sigma) / within(0.5) }
