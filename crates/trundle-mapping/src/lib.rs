@@ -24,6 +24,7 @@
 //! ```
 
 mod depth_scan;
+mod filter_models;
 mod global_localization;
 mod grid_mapper;
 mod loop_closing;
@@ -33,6 +34,7 @@ mod pose_graph;
 mod rbpf;
 mod scan_log;
 mod scan_match;
+mod units;
 
 pub use depth_scan::{DepthScanConfig, DepthScanner, FloorFit, ScanFusion, ScanFusionConfig};
 pub use global_localization::{Localized, MapLocalizer};

@@ -2,13 +2,13 @@
 
 use super::{
     mount::{BeamView, Mount},
-    pixel_model::SortModel,
-    pixel_row::{SortedRow, kind},
+    pixel_model::PixelModel,
+    pixel_row::{ClassifiedRow, kind},
     range_bins::{BELOW, BINS, SpanBits, bins, bridged, spans},
 };
 use trundle_core::{Beam, FreeSpan, ObstacleKind, ScanParts};
 
-/// What has been found along each bearing of one image.
+/// Findings along each bearing of one image.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Bearings {
     /// Nearest certain obstacle, m.
@@ -42,10 +42,10 @@ impl Surface {
     const EMPTY: Self = Self { sum: 0.0, count: 0, lowest: f32::INFINITY };
 }
 
-/// What hangs must leave so much free above what may be floor, m.
-const LEAST_GAP: f32 = 0.05;
-/// Floor up to so many bins before an obstacle is floor up to it.
-const FOOT_BINS: usize = 2;
+/// Minimum clearance under an overhang above the highest floor point [m]. A lower surface counts as standing. Source: ours.
+const MIN_CLEARANCE_M: f32 = 0.05;
+/// Maximum gap between seen floor and the foot of an obstacle [bins]. A gap up to this size counts as free. Source: ours.
+const FOOT_GAP_BINS: usize = 2;
 
 impl Bearings {
     pub(super) fn reset(&mut self, beams: usize) {
@@ -66,8 +66,8 @@ impl Bearings {
         self.points.reserve(pixels);
     }
 
-    /// Takes a row in. `beams`: of its pixels.
-    pub(super) fn take(&mut self, row: &SortedRow, beams: &[u16]) {
+    /// Adds a row; `beams` are the beams of its pixels.
+    pub(super) fn add_row(&mut self, row: &ClassifiedRow, beams: &[u16]) {
         let inner = 1..row.marks.len().saturating_sub(1);
         for i in inner {
             let mark = row.marks[i];
@@ -91,7 +91,7 @@ impl Bearings {
     }
 
     /// The nearest of many noisy points is too near: the range is the mean of the surface that it belongs to.
-    pub(super) fn average_surfaces(&mut self, model: &SortModel) {
+    pub(super) fn average_surfaces(&mut self, model: &PixelModel) {
         for point in &self.points {
             let beam = usize::from(point.beam);
             let nearest = self.nearest[beam];
@@ -104,8 +104,8 @@ impl Bearings {
         }
     }
 
-    /// What the bearings say, into the lists of a scan.
-    pub(super) fn tell(&self, mount: &Mount, model: &SortModel, parts: &mut ScanParts) {
+    /// Writes hits, free spans and sigmas of all bearings into the lists of a scan.
+    pub(super) fn write_parts(&self, mount: &Mount, model: &PixelModel, parts: &mut ScanParts) {
         let ScanParts { beams, free, sigmas, obstacles } = parts;
         let free = free.get_or_insert_default();
         beams.clear();
@@ -136,7 +136,7 @@ impl Bearings {
     }
 
     /// The obstacle of a bearing, if there is one.
-    fn hit(&self, i: usize, model: &SortModel) -> Option<(f64, ObstacleKind)> {
+    fn hit(&self, i: usize, model: &PixelModel) -> Option<(f64, ObstacleKind)> {
         let surface = self.surfaces[i];
         let drop = self.drop[i];
         if surface.count == 0 || drop < self.nearest[i] {
@@ -149,9 +149,9 @@ impl Bearings {
     }
 
     /// Whether the floor goes on under the obstacle of a bearing: rays below its lowest point reached the floor behind it.
-    fn hangs(&self, i: usize, range: f32, model: &SortModel) -> bool {
+    fn hangs(&self, i: usize, range: f32, model: &PixelModel) -> bool {
         let lowest = self.surfaces[i].lowest;
-        if lowest < model.floor_edge(1.0, range, range) + LEAST_GAP {
+        if lowest < model.floor_edge(1.0, range, range) + MIN_CLEARANCE_M {
             return false;
         }
         let over = model.camera_height - lowest;
@@ -161,8 +161,8 @@ impl Bearings {
         (self.floor[i] & under).count_ones() >= 2
     }
 
-    /// Where a bearing was seen to be free, up to its obstacle.
-    fn cleared(&self, i: usize, view: &BeamView, model: &SortModel, hit: Option<f64>) -> SpanBits {
+    /// Free bins of a bearing up to its obstacle.
+    fn cleared(&self, i: usize, view: &BeamView, model: &PixelModel, hit: Option<f64>) -> SpanBits {
         let before_hit = hit.map(|range| ((range as f32 * model.bins_per_metre) as usize + 1).min(BINS));
         let below_band = model.camera_height < model.high;
         // On its way to what it hit, a ray passed through the band.
@@ -171,18 +171,18 @@ impl Bearings {
         if view.floor == 0 {
             bits |= passed;
         }
-        // What is too near or too low to be seen is as free as where the view begins.
+        // Floor too near to be seen counts as free when the first visible floor is.
         if bits & bins(view.begin, view.begin + 2) != 0 {
             bits |= BELOW[(view.begin + 1).min(BINS)];
         }
         let Some(to) = before_hit else { return bits };
-        let foot = bins(to.saturating_sub(FOOT_BINS + 1), to);
-        let touched = bits & bins(to.saturating_sub(FOOT_BINS + 1), to) != 0;
+        let foot = bins(to.saturating_sub(FOOT_GAP_BINS + 1), to);
+        let touched = bits & bins(to.saturating_sub(FOOT_GAP_BINS + 1), to) != 0;
         (if touched { bits | bins((bits & foot).trailing_zeros() as usize, to) } else { bits }) & BELOW[to]
     }
 }
 
 /// One sigma of a range, m: the noise of its depth over the floor.
-fn sigma(range: f32, view: &BeamView, model: &SortModel) -> f32 {
-    if view.run > 0.0 { view.run * model.noise(range / view.run) } else { model.noise(range) }
+fn sigma(range: f32, view: &BeamView, model: &PixelModel) -> f32 {
+    if view.run > 0.0 { view.run * model.noise.sigma(range / view.run) } else { model.noise.sigma(range) }
 }

@@ -3,6 +3,7 @@
 mod bearings;
 mod config;
 mod floor_fit;
+mod floor_samples;
 mod mount;
 mod pixel_model;
 mod pixel_rays;

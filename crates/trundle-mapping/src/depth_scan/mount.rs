@@ -2,8 +2,8 @@
 
 use super::{
     DepthScanConfig,
-    floor_fit::FloorSamples,
-    pixel_model::SortModel,
+    floor_samples::FloorSamples,
+    pixel_model::PixelModel,
     pixel_rays::{Fan, LensRays},
     range_bins::{BELOW, BINS, SpanBits, bins},
 };
@@ -14,7 +14,7 @@ use trundle_core::{Invalid, Pose3, Vector2, Vector3};
 pub(super) struct Mount {
     pub(super) origin: Vector2,
     pub(super) fan: Fan,
-    pub(super) model: SortModel,
+    pub(super) model: PixelModel,
     pub(super) views: Vec<BeamView>,
     pub(super) samples: FloorSamples,
     pub(super) blind_range: f64,
@@ -48,7 +48,7 @@ impl Mount {
         let survey = Survey::new(lens, base_from_camera, config, &fan);
         Ok(Self {
             origin: position.xy(),
-            model: SortModel::new(config, base_from_camera),
+            model: PixelModel::new(config, base_from_camera),
             samples: FloorSamples::new(lens, base_from_camera, config),
             blind_range: survey.blind_range(config.max_range),
             passes_matter: survey.passes_matter(),

@@ -57,10 +57,10 @@ pub(super) struct Fan {
     pub(super) angle_increment: f64,
 }
 
-/// Coarsest beam, rad: for a camera that looks straight down, whose pixels have no bearing of their own.
-const COARSEST_BEAM: f64 = 0.035;
-/// Finest beam, rad: a full circle of them can be counted in 16 bits.
-const FINEST_BEAM: f64 = 1e-4;
+/// Maximum angle between neighbouring beams [rad]. It is reached by a camera that looks straight down. Source: ours.
+const MAX_BEAM_INCREMENT_RAD: f64 = 0.035;
+/// Minimum angle between neighbouring beams [rad]. A full circle of beams is counted in 16 bits. Source: ours.
+const MIN_BEAM_INCREMENT_RAD: f64 = 1e-4;
 
 impl Fan {
     pub(super) fn new(lens: &LensRays, base_from_camera: &Pose3) -> Self {
@@ -75,7 +75,8 @@ impl Fan {
             bearings.iter().fold((f64::MAX, f64::MIN), |(lo, hi), b| (lo.min(*b), hi.max(*b)));
 
         let bearing_at = |x: f64, y: f64| bearing(ray_through(&lens.camera, x, y));
-        let widest = widest_pixel(&lens.camera, bearing_at).clamp(FINEST_BEAM, COARSEST_BEAM);
+        let widest =
+            widest_pixel(&lens.camera, bearing_at).clamp(MIN_BEAM_INCREMENT_RAD, MAX_BEAM_INCREMENT_RAD);
         let beams = (((left - right) / widest).floor() as usize).max(1);
         let angle_increment = ((left - right) / beams as f64).max(1e-5);
         let beam = |bearing: &f64| (((bearing - right) / angle_increment) as usize).min(beams - 1) as u16;

@@ -1,25 +1,25 @@
 //! Classification of one row of pixels.
 
-use super::pixel_model::{SURFACE_LEAST, SURFACE_SIGMAS, SortModel};
+use super::pixel_model::{MIN_SURFACE_DEPTH_M, PixelModel, SURFACE_SIGMAS};
 
-/// What the pixels of a row say, column by column.
+/// Classification of the pixels of a row, column by column.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub(super) struct SortedRow {
-    /// A [`kind`], and the bins of the beam that the pixel clears: from `mark >> 8 & 255` up to `mark >> 16`.
+pub(super) struct ClassifiedRow {
+    /// A [`kind`], and the bins of the beam that the pixel clears: from `mark >> 8 & 255` to below `mark >> 16`.
     pub(super) marks: Vec<u32>,
-    /// Over the floor, m; of a hole, where its edge is at the latest.
+    /// Range over the floor, m; of a hole, the farthest position of its edge.
     pub(super) ranges: Vec<f32>,
-    /// Above the floor, m.
+    /// Height above the floor, m.
     pub(super) heights: Vec<f32>,
 }
 
-/// What a pixel is.
+/// Classes of pixels.
 pub(super) mod kind {
-    /// Nothing can be said, or no depth.
+    /// Unknown, or no depth.
     pub const NOTHING: u32 = 0;
     /// In the height band.
     pub const OBSTACLE: u32 = 1;
-    /// In the height band, but its neighbours say otherwise.
+    /// In the height band, with too few neighbours on its surface.
     pub const DOUBTFUL: u32 = 2;
     /// The floor.
     pub const FLOOR: u32 = 3;
@@ -37,38 +37,37 @@ pub(super) struct RowInput<'a> {
     pub(super) v: &'a [f32],
 }
 
-impl SortedRow {
+impl ClassifiedRow {
     pub(super) fn resize(&mut self, width: usize) {
         self.marks.resize(width, kind::NOTHING);
         self.ranges.resize(width, 0.0);
         self.heights.resize(width, 0.0);
     }
 
-    /// Sorts the pixels of a row but its first and last. `PASSES`: whether rays that pass through the band are told.
-    pub(super) fn sort<const PASSES: bool>(&mut self, model: &SortModel, input: &RowInput<'_>) {
+    /// Classifies the pixels of a row except its first and last. `PASSES`: whether rays that pass through the band are a class.
+    pub(super) fn classify<const PASSES: bool>(&mut self, model: &PixelModel, input: &RowInput<'_>) {
         #[cfg(target_arch = "x86_64")]
         if std::arch::is_x86_feature_detected!("avx2") {
             // SAFETY: the processor has the one feature that the function is compiled for.
-            return unsafe { self.sort_by_avx2::<PASSES>(model, input) };
+            return unsafe { self.classify_avx2::<PASSES>(model, input) };
         }
-        self.sort_plainly::<PASSES>(model, input);
+        self.classify_scalar::<PASSES>(model, input);
     }
 
-    /// The same arithmetic in vectors of eight.
+    /// The arithmetic of [`Self::classify_scalar`] in vectors of eight.
     #[cfg(target_arch = "x86_64")]
     #[target_feature(enable = "avx2")]
-    fn sort_by_avx2<const PASSES: bool>(&mut self, model: &SortModel, input: &RowInput<'_>) {
-        self.sort_each::<PASSES>(model, input);
+    fn classify_avx2<const PASSES: bool>(&mut self, model: &PixelModel, input: &RowInput<'_>) {
+        self.classify_all::<PASSES>(model, input);
     }
 
-    fn sort_plainly<const PASSES: bool>(&mut self, model: &SortModel, input: &RowInput<'_>) {
-        self.sort_each::<PASSES>(model, input);
+    fn classify_scalar<const PASSES: bool>(&mut self, model: &PixelModel, input: &RowInput<'_>) {
+        self.classify_all::<PASSES>(model, input);
     }
 
-    /// Without a branch in the loop, so that a compiler can take several columns at a time. No sum is reordered: both ways
-    /// give the same bits.
+    /// Loop without a branch, so that the compiler can vectorise it. No sum is reordered: vector and scalar code give the same bits.
     #[inline(always)]
-    fn sort_each<const PASSES: bool>(&mut self, m: &SortModel, input: &RowInput<'_>) {
+    fn classify_all<const PASSES: bool>(&mut self, m: &PixelModel, input: &RowInput<'_>) {
         let inner = self.marks.len().saturating_sub(2);
         let [above, here, below] =
             input.depths.map(|row| [&row[..inner], &row[1..=inner], &row[2..inner + 2]]);
@@ -78,12 +77,12 @@ impl SortedRow {
         for i in 0..inner {
             let z = here[1][i];
             let along = |form: &[f32; 3]| form[0] * u[i] + form[1] * v[i] + form[2];
-            let (ahead, left, rise) = (along(&m.ahead), along(&m.left), along(&m.rise));
+            let (ahead, left, rise) = (along(&m.ray.ahead), along(&m.ray.left), along(&m.ray.rise));
             let run = (ahead * ahead + left * left).sqrt();
             let (range, height) = (run * z, m.camera_height + rise * z);
-            let noise = m.noise_base + m.noise_growth * z * z;
+            let noise = m.noise.sigma(z);
             let edge = greater(m.floor_sigmas * rise.abs() * noise + m.tilt * range, m.low);
-            let window = greater(SURFACE_SIGMAS * noise, SURFACE_LEAST);
+            let window = greater(SURFACE_SIGMAS * noise, MIN_SURFACE_DEPTH_M);
             let agrees = |other: f32| u32::from((other - z).abs() <= window);
             let support = agrees(above[0][i])
                 + agrees(above[1][i])
@@ -93,16 +92,16 @@ impl SortedRow {
                 + agrees(below[0][i])
                 + agrees(below[1][i])
                 + agrees(below[2][i]);
-            let (hit, seen) = (support >= m.hit_support, support >= m.free_support);
+            let (hit, seen) = (support >= m.min_support.hit, support >= m.min_support.free);
 
             let valid = (z >= m.min_depth) & (z <= m.max_depth);
             let near = range <= m.max_range;
             let in_band = valid & near & (height > edge) & (height <= m.high);
             let floor = valid & (height <= m.low) & (height >= -edge) & seen;
-            // Where the ray crossed the floor.
+            // Range at which the ray crosses the floor.
             let fall = m.camera_height - height;
             let crossing = range * m.camera_height / fall;
-            // No pixel flies below the floor: what is down there was seen.
+            // Flying pixels lie between two surfaces, so none lies below the floor.
             let drop = valid & (height < -greater(edge, m.drop_depth)) & (crossing <= m.max_range) & seen;
 
             let mut mark = pick(in_band, pick(hit, kind::OBSTACLE, kind::DOUBTFUL), kind::NOTHING);
@@ -122,7 +121,7 @@ impl SortedRow {
 
 /// Whether a ray that ended above or behind the band passed through it, and from where to where.
 #[inline(always)]
-fn passage(m: &SortModel, rise: f32, (range, height): (f32, f32), run: f32) -> (bool, f32, f32) {
+fn passage(m: &PixelModel, rise: f32, (range, height): (f32, f32), run: f32) -> (bool, f32, f32) {
     let headroom = m.high - m.camera_height;
     let end = if range < m.max_range { range } else { m.max_range };
     let end_height = m.camera_height + (height - m.camera_height) * end / range;
@@ -140,7 +139,7 @@ fn passage(m: &SortModel, rise: f32, (range, height): (f32, f32), run: f32) -> (
 
 /// The bin that holds a range: the last but one is 127, what is farther 128.
 #[inline(always)]
-fn bin(range: f32, m: &SortModel) -> u32 {
+fn bin(range: f32, m: &PixelModel) -> u32 {
     // Rounding down by the rounding of floating-point addition, as no instruction does it for whole vectors.
     const MAGIC: f32 = 8_388_608.0;
     let scaled = range * m.bins_per_metre - 0.5;
@@ -168,21 +167,21 @@ mod tests {
     use trundle_core::{Pose3, Vector3};
 
     /// A camera that looks ahead, level, at this height; v is how far a ray falls a metre of depth.
-    fn model(height: f64) -> SortModel {
+    fn model(height: f64) -> PixelModel {
         let ahead = nalgebra::Matrix3::new(0.0, 0.0, 1.0, -1.0, 0.0, 0.0, 0.0, -1.0, 0.0);
-        SortModel::new(
+        PixelModel::new(
             &DepthScanConfig::default(),
             &Pose3::from_matrix(ahead, Vector3::new(0.0, 0.0, height)),
         )
     }
 
     /// What a pixel is whose neighbours are like it, its range, and the bins that it clears.
-    fn sorted(height: f64, rise: f32, z: f32) -> (u32, f32, (u32, u32)) {
-        let mut row = SortedRow::default();
+    fn classified(height: f64, rise: f32, z: f32) -> (u32, f32, (u32, u32)) {
+        let mut row = ClassifiedRow::default();
         row.resize(3);
         let (depths, u, v) = ([z; 3], [0.0; 3], [-rise; 3]);
         let input = RowInput { depths: [&depths; 3], u: &u, v: &v };
-        row.sort::<true>(&model(height), &input);
+        row.classify::<true>(&model(height), &input);
         let mark = row.marks[1];
         (mark & 255, row.ranges[1], (mark >> 8 & 255, mark >> 16))
     }
@@ -194,34 +193,34 @@ mod tests {
 
     #[test]
     fn the_band_is_an_obstacle_and_the_floor_is_not() {
-        assert_eq!(sorted(0.4, 0.0, 2.0).0, kind::OBSTACLE);
+        assert_eq!(classified(0.4, 0.0, 2.0).0, kind::OBSTACLE);
         // The floor: what is 0.05 m high hides it from 7/8 of its range on.
-        assert_eq!(sorted(0.4, -0.2, 2.0), (kind::FLOOR, 2.0, (at(1.75), at(2.0))));
-        let (kind, range, _) = sorted(0.4, -0.4, 2.0);
+        assert_eq!(classified(0.4, -0.2, 2.0), (kind::FLOOR, 2.0, (at(1.75), at(2.0))));
+        let (kind, range, _) = classified(0.4, -0.4, 2.0);
         assert_eq!((kind, range), (kind::DROP, 1.0), "a hole 0.4 m deep, from 1 m on at the latest");
-        assert_eq!(sorted(0.4, -0.24, 2.0).0, kind::NOTHING, "neither floor nor hole");
+        assert_eq!(classified(0.4, -0.24, 2.0).0, kind::NOTHING, "neither floor nor hole");
     }
 
     #[test]
     fn far_floor_that_rises_within_the_tilt_error_is_neither() {
-        assert_eq!(sorted(0.4, -0.4 / 5.0 + 0.0145, 5.0).0, kind::NOTHING);
+        assert_eq!(classified(0.4, -0.4 / 5.0 + 0.0145, 5.0).0, kind::NOTHING);
     }
 
     #[test]
     fn rays_that_leave_the_band_clear_what_they_crossed() {
-        assert_eq!(sorted(0.4, 0.1, 4.0).0, kind::PASSING);
-        assert_eq!(sorted(0.4, 0.1, 4.0).2, (0, at(2.49)));
-        assert_eq!(sorted(0.4, 0.1, 1.0).0, kind::OBSTACLE);
-        assert_eq!(sorted(0.4, 0.0, 7.0).2, (0, 128), "beyond the greatest range");
-        assert_eq!(sorted(1.0, 0.1, 4.0).0, kind::NOTHING, "over the band");
-        assert_eq!(sorted(1.0, -0.1, 3.0).0, kind::NOTHING, "a table top higher than the robot");
-        assert_eq!(sorted(1.0, -0.1, 7.0).2, (at(3.5), 128), "into the band at 3.5 m");
+        assert_eq!(classified(0.4, 0.1, 4.0).0, kind::PASSING);
+        assert_eq!(classified(0.4, 0.1, 4.0).2, (0, at(2.49)));
+        assert_eq!(classified(0.4, 0.1, 1.0).0, kind::OBSTACLE);
+        assert_eq!(classified(0.4, 0.0, 7.0).2, (0, 128), "beyond the greatest range");
+        assert_eq!(classified(1.0, 0.1, 4.0).0, kind::NOTHING, "over the band");
+        assert_eq!(classified(1.0, -0.1, 3.0).0, kind::NOTHING, "a table top higher than the robot");
+        assert_eq!(classified(1.0, -0.1, 7.0).2, (at(3.5), 128), "into the band at 3.5 m");
     }
 
     #[test]
     fn no_depth_says_nothing() {
         for z in [0.0, f32::NAN, f32::INFINITY, -1.0, 0.2, 8.1] {
-            assert_eq!(sorted(0.4, -0.1, z).0, kind::NOTHING, "{z} m");
+            assert_eq!(classified(0.4, -0.1, z).0, kind::NOTHING, "{z} m");
         }
     }
 
@@ -235,18 +234,18 @@ mod tests {
             let near: Vec<f32> = z.iter().map(|z| z + 0.01).collect();
             let (u, v): (Vec<f32>, Vec<f32>) = pixels.iter().map(|p| (p.1, p.2)).unzip();
             let input = RowInput { depths: [&near, &z, &z], u: &u, v: &v };
-            let (mut one, mut other) = (SortedRow::default(), SortedRow::default());
+            let (mut one, mut other) = (ClassifiedRow::default(), ClassifiedRow::default());
             one.resize(z.len());
             other.resize(z.len());
-            one.sort::<true>(&model(height), &input);
-            other.sort_plainly::<true>(&model(height), &input);
-            let bits = |row: &SortedRow| {
+            one.classify::<true>(&model(height), &input);
+            other.classify_scalar::<true>(&model(height), &input);
+            let bits = |row: &ClassifiedRow| {
                 let bits = |v: &[f32]| v.iter().map(|f| f.to_bits()).collect::<Vec<_>>();
                 (row.marks.clone(), bits(&row.ranges), bits(&row.heights))
             };
             prop_assert_eq!(bits(&one), bits(&other));
-            one.sort::<false>(&model(height), &input);
-            other.sort_plainly::<false>(&model(height), &input);
+            one.classify::<false>(&model(height), &input);
+            other.classify_scalar::<false>(&model(height), &input);
             prop_assert_eq!(bits(&one), bits(&other));
         }
     }

@@ -4,9 +4,9 @@ use super::{
     DepthScanConfig, FloorFit,
     bearings::Bearings,
     mount::Mount,
-    pixel_model::SortModel,
+    pixel_model::PixelModel,
     pixel_rays::LensRays,
-    pixel_row::{RowInput, SortedRow},
+    pixel_row::{ClassifiedRow, RowInput},
 };
 use trundle_core::{DepthImage, Invalid, PinholeCamera, Pose3, RgbdImage, Scan, ScanParts, Stamp, Vector2};
 
@@ -29,7 +29,7 @@ pub struct DepthScanner {
     lens: LensRays,
     mount: Mount,
     floor: Option<FloorFit>,
-    row: SortedRow,
+    row: ClassifiedRow,
     bearings: Bearings,
 }
 
@@ -46,7 +46,7 @@ impl DepthScanner {
         let config = config.validated()?;
         let lens = LensRays::new(camera);
         let mount = Mount::new(&lens, &base_from_camera, &config)?;
-        let mut row = SortedRow::default();
+        let mut row = ClassifiedRow::default();
         row.resize(camera.width());
         let mut bearings = Bearings::default();
         bearings.reserve(lens.len());
@@ -86,13 +86,13 @@ impl DepthScanner {
             self.floor = self.mount.samples.fit(depth, &model);
             model = self.floor.map_or(model, |floor| model.above(&floor));
             if self.mount.passes_matter {
-                self.sort_rows::<true>(depth, &model);
+                self.classify_rows::<true>(depth, &model);
             } else {
-                self.sort_rows::<false>(depth, &model);
+                self.classify_rows::<false>(depth, &model);
             }
             self.bearings.average_surfaces(&model);
         }
-        self.bearings.tell(&self.mount, &model, &mut parts);
+        self.bearings.write_parts(&self.mount, &model, &mut parts);
         let angles = (self.mount.fan.angle_min, self.mount.fan.angle_increment);
         *scan = Scan::from_parts(image.stamp(), self.mount.origin, angles, parts)
             .expect("invariant: ranges come from finite depths and rays, spans from rising bins");
@@ -109,13 +109,13 @@ impl DepthScanner {
         self.floor
     }
 
-    fn sort_rows<const PASSES: bool>(&mut self, depth: &DepthImage, model: &SortModel) {
+    fn classify_rows<const PASSES: bool>(&mut self, depth: &DepthImage, model: &PixelModel) {
         let width = depth.width();
         for y in 1..depth.height().saturating_sub(1) {
             let (u, v) = self.lens.row(y);
             let depths = [depth.row(y - 1), depth.row(y), depth.row(y + 1)];
-            self.row.sort::<PASSES>(model, &RowInput { depths, u, v });
-            self.bearings.take(&self.row, &self.mount.fan.beam_of[y * width..(y + 1) * width]);
+            self.row.classify::<PASSES>(model, &RowInput { depths, u, v });
+            self.bearings.add_row(&self.row, &self.mount.fan.beam_of[y * width..(y + 1) * width]);
         }
     }
 }

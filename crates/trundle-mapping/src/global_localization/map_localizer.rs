@@ -1,5 +1,6 @@
 //! Global localization in a fixed map, then tracking by particles.
 
+use crate::filter_models::FilterModels;
 use crate::particle_config::ParticleConfig;
 use crate::persist::FilterFileError;
 use crate::rbpf::map_publisher::MapPublisher;
@@ -9,13 +10,13 @@ use crate::rbpf::proposal::{Proposal, Proposer};
 use crate::rbpf::resampling::{effective, low_variance};
 use crate::rbpf::rng::ParticleRng;
 use crate::rbpf::scan_update::Refusal;
-use crate::rbpf::units::{in_metres, scaled};
 use crate::rbpf::update_gate::UpdateGate;
 use crate::scan_match::branch_and_bound::Pyramid;
 use crate::scan_match::coarse_search::CoarseSearch;
 use crate::scan_match::global_search::{GlobalSearch, Lost};
 use crate::scan_match::likelihood::Likelihood;
 use crate::scan_match::scan_points::ScanPoints;
+use crate::units::{in_cells, in_metres, scaled};
 use nalgebra::{Matrix3, Vector3};
 use trundle_core::{Invalid, OccupancyGrid, Pose2, Scan, wrap_angle};
 use trundle_grid::tiles::TileMap;
@@ -33,7 +34,7 @@ pub struct MapLocalizer {
     likelihood: Likelihood,
     map: TileMap,
     pyramid: Option<Pyramid>,
-    shape: ScanPoints,
+    points: ScanPoints,
     coarse: CoarseSearch,
     gate: UpdateGate,
     expected_log_likelihood: f64,
@@ -87,7 +88,7 @@ impl MapLocalizer {
 
     /// In the best particle's map of a filter as it is now.
     pub fn of(mapper: &ParticleMapper, seed: u64) -> Self {
-        Self::new(mapper.config.clone(), mapper.best_map().clone(), seed)
+        Self::new(mapper.models.config.clone(), mapper.best_map().clone(), seed)
     }
 
     /// In a three-valued map, as from a PGM and YAML.
@@ -95,18 +96,18 @@ impl MapLocalizer {
     /// # Errors
     /// When the configuration is out of range, or the grid's cells are not its `map.resolution`.
     pub fn from_grid(grid: &OccupancyGrid, config: ParticleConfig, seed: u64) -> Result<Self, Invalid> {
-        let config = config.validated()?;
+        let models = FilterModels::new(config)?;
         let found = grid.geometry().resolution;
-        if (found - config.map.resolution).abs() > 1e-9 {
+        if (found - models.config.map.resolution).abs() > 1e-9 {
             return Err(Invalid::new(
                 "map.resolution",
-                config.map.resolution,
+                models.config.map.resolution,
                 "m",
                 format!("the map's {found} m"),
             ));
         }
-        let map = ParticleMapper::new(ParticleConfig { particles: 1, ..config.clone() }, 0)?.map_of(grid);
-        Ok(Self::new(config, map, seed))
+        let map = models.map_from_grid(grid);
+        Ok(Self::new(models.config, map, seed))
     }
 
     fn new(config: ParticleConfig, map: TileMap, seed: u64) -> Self {
@@ -116,7 +117,7 @@ impl MapLocalizer {
             map,
             seed,
             updates: 0,
-            shape: ScanPoints::default(),
+            points: ScanPoints::default(),
             coarse: CoarseSearch::default(),
             gate: UpdateGate::default(),
             expected_log_likelihood: EXPECTED_LOG_LIKELIHOOD,
@@ -134,8 +135,7 @@ impl MapLocalizer {
 
     /// Tells where the base is: no search.
     pub fn start_at(&mut self, map_from_base: Pose2) {
-        let per_metre = 1.0 / self.config.map.resolution;
-        let pose = Pose2 { x: map_from_base.x * per_metre, y: map_from_base.y * per_metre, ..map_from_base };
+        let pose = in_cells(&self.config, map_from_base);
         self.state = State::Known { particles: vec![(pose, 0.0); self.config.particles], strange: 0 };
     }
 
@@ -151,7 +151,7 @@ impl MapLocalizer {
             Ok(None) => return Localized::Still,
             Err(refusal) => return Localized::Refused(refusal),
         };
-        self.shape.set(&self.config, scan);
+        self.points.set(&self.config, scan);
         self.updates += 1;
         match &mut self.state {
             State::Lost(_) => self.search(odom_from_base),
@@ -165,13 +165,9 @@ impl MapLocalizer {
 
     fn search(&mut self, odom_from_base: Pose2) -> Localized {
         let State::Lost(search) = &mut self.state else { return Localized::Still };
-        let per_metre = 1.0 / self.config.map.resolution;
-        search.push(
-            &self.shape,
-            Pose2 { x: odom_from_base.x * per_metre, y: odom_from_base.y * per_metre, ..odom_from_base },
-        );
+        search.push(&self.points, in_cells(&self.config, odom_from_base));
         let Some(pyramid) = &self.pyramid else { return Localized::Lost(Lost::NothingToSee) };
-        let found = match search.look((&self.config, &self.likelihood), &self.map, pyramid) {
+        let found = match search.search((&self.config, &self.likelihood), &self.map, pyramid) {
             Ok(found) => found,
             Err(lost) => return Localized::Lost(lost),
         };
@@ -192,12 +188,12 @@ impl MapLocalizer {
         let proposer = Proposer {
             config: &self.config,
             likelihood: &self.likelihood,
-            shape: &self.shape,
+            points: &self.points,
             motion_covariance: scaled(covariance, per_metre),
             anchor: None,
             expected_log_likelihood: self.expected_log_likelihood,
         };
-        let motion = Pose2 { x: motion.x * per_metre, y: motion.y * per_metre, ..motion };
+        let motion = in_cells(&self.config, motion);
         let lead =
             particles.iter().fold(particles[0], |best, next| if next.1 > best.1 { *next } else { best }).0;
         let far = proposer.far(&self.map, &mut self.coarse, (lead, lead * motion));

@@ -2,40 +2,34 @@
 
 use super::{
     candidates::{Candidate, MAX_SEARCH_RADIUS_M, candidates},
-    submap::{Submaps, cells, thinned},
+    submap::{Submaps, thinned},
 };
+use crate::filter_models::FilterModels;
 use crate::loop_closing::scan_history::ScanHistory;
 use crate::particle_config::ParticleConfig;
 use crate::pose_graph::{Constraint, reach, solve};
 use crate::scan_match::cloud_match::{CloudMatch, CloudMatcher, MIN_PROOF_NATS};
-use crate::scan_match::likelihood::Likelihood;
 use crate::scan_match::scan_points::ScanPoints;
+use crate::units::{in_cells, in_metres};
 use nalgebra::{Matrix3, Vector3};
 use trundle_core::Pose2;
-use trundle_grid::tiles::{RayUpdate, TileMap};
+use trundle_grid::tiles::TileMap;
 
-/// What loop closing works with.
-pub(crate) struct LoopTools<'a> {
-    pub(crate) config: &'a ParticleConfig,
-    pub(crate) ray_update: &'a RayUpdate,
-    pub(crate) likelihood: &'a Likelihood,
-}
-
-/// Looks for loops along the way, and bends it where one is proved.
+/// Searches for loops along the trajectory, and corrects the trajectory where one is proved.
 #[derive(Debug, Default)]
 pub(crate) struct LoopCloser {
-    /// What was driven since the last look, m.
+    /// Path length since the last search, m.
     pub(crate) driven: f64,
     pub(crate) pending: Vec<Constraint>,
     submaps: Submaps,
 }
 
-/// What became of a look for loops.
+/// Correction of the trajectory by a closed loop.
 #[derive(Debug)]
 pub(crate) struct LoopCorrection {
-    /// The poses, bent.
+    /// Corrected poses, m.
     pub(crate) poses: Vec<Pose2>,
-    /// How far the farthest went, m.
+    /// Largest displacement of a pose, m.
     pub(crate) farthest: f64,
 }
 
@@ -51,10 +45,10 @@ const MAX_REFERENCE_SCANS: usize = 48;
 const MAX_CANDIDATES: usize = 2;
 
 impl LoopCloser {
-    /// Looks whether the end of `poses` (m) has come back to an earlier part of them.
-    pub(crate) fn look(
+    /// Searches for an earlier part of the trajectory that the end of `poses` (m) has returned to.
+    pub(crate) fn search(
         &mut self,
-        tools: &LoopTools<'_>,
+        models: &FilterModels,
         history: &mut ScanHistory,
         poses: &[Pose2],
     ) -> Option<LoopCorrection> {
@@ -74,10 +68,9 @@ impl LoopCloser {
             thinned(poses, (from..=last).rev(), 0.3, MAX_SUBMAP_SCANS)
         };
         let now = poses[last];
-        let own_map =
-            self.submaps.draw((tools.config, tools.ray_update), history, &own, |k| now.inverse() * poses[k]);
+        let own_map = self.submaps.draw(models, history, &own, |k| now.inverse() * poses[k]);
         for candidate in found.iter().take(MAX_CANDIDATES) {
-            let Some(constraint) = self.match_candidate(tools, history, poses, candidate, &own_map) else {
+            let Some(constraint) = self.match_candidate(models, history, poses, candidate, &own_map) else {
                 continue;
             };
             return self.accept(history, poses, constraint);
@@ -87,13 +80,13 @@ impl LoopCloser {
 
     fn match_candidate(
         &mut self,
-        tools: &LoopTools<'_>,
+        models: &FilterModels,
         history: &ScanHistory,
         poses: &[Pose2],
         candidate: &Candidate,
         (own_map, own_cloud): &(TileMap, ScanPoints),
     ) -> Option<Constraint> {
-        let (config, last) = (tools.config, poses.len() - 1);
+        let (config, last) = (&models.config, poses.len() - 1);
         let drift = candidate.reached.covariance;
         let far =
             (REFERENCE_RADIUS_M + 2.0 * drift[(0, 0)].max(drift[(1, 1)]).sqrt()).min(MAX_SEARCH_RADIUS_M);
@@ -106,19 +99,19 @@ impl LoopCloser {
         let back = half(&mut (candidate.range.start..candidate.nearest).rev());
         let mut which: Vec<usize> = back.into_iter().chain(onward).collect();
         which.sort_unstable();
-        let (map, cloud) = self.submaps.draw((config, tools.ray_update), history, &which, |k| poses[k]);
+        let (map, cloud) = self.submaps.draw(models, history, &which, |k| poses[k]);
         let per_metre = 1.0 / config.map.resolution;
         let scale = Matrix3::from_diagonal(&Vector3::new(per_metre, per_metre, 1.0));
         let least = Matrix3::from_diagonal(&Vector3::new(4.0, 4.0, 0.02 * 0.02));
         let covariance = scale * candidate.reached.covariance * scale + least;
         let reach = |k: usize| (3.0 * covariance[(k, k)].sqrt()).clamp(10.0, MAX_SEARCH_RADIUS_M * per_metre);
         let turn = (3.0 * covariance[(2, 2)].sqrt()).clamp(0.05, 0.8);
-        let finder = CloudMatcher { config, likelihood: tools.likelihood, cloud: own_cloud };
+        let finder = CloudMatcher { config, likelihood: &models.likelihood, cloud: own_cloud };
         let found =
-            finder.find(&map, cells(config, poses[last]), &covariance, ((reach(0), reach(1)), turn), 2);
+            finder.find(&map, in_cells(config, poses[last]), &covariance, ((reach(0), reach(1)), turn), 2);
         let best = *found.first()?;
         let rival = found.get(1).map_or(f64::NEG_INFINITY, |rival| rival.log_likelihood);
-        let back = CloudMatcher { config, likelihood: tools.likelihood, cloud: &cloud };
+        let back = CloudMatcher { config, likelihood: &models.likelihood, cloud: &cloud };
         let (back_explained, back_contradicted) = back.fit(own_map, best.pose.inverse());
         // Against a place that was never seen, where every hit would lie on unknown ground.
         let unseen = 0.5 * config.outliers.ln() * own_cloud.points.len() as f64 / config.correlation;
@@ -183,7 +176,7 @@ impl LoopCloser {
 /// From the pose that is nearest to where the last one was found.
 fn constraint(config: &ParticleConfig, poses: &[Pose2], which: &[usize], found: &CloudMatch) -> Constraint {
     let metre = config.map.resolution;
-    let pose = Pose2 { x: found.pose.x * metre, y: found.pose.y * metre, ..found.pose };
+    let pose = in_metres(config, found.pose);
     let nearest =
         which.iter().copied().min_by(|&a, &b| poses[a].distance(&pose).total_cmp(&poses[b].distance(&pose)));
     let from = nearest.expect("invariant: a map is drawn from scans");

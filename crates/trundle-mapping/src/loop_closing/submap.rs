@@ -1,17 +1,18 @@
 //! Small map and cloud of points from some scans of the history.
 
+use crate::filter_models::FilterModels;
 use crate::loop_closing::scan_history::ScanHistory;
-use crate::particle_config::ParticleConfig;
 use crate::scan_match::scan_points::ScanPoints;
+use crate::units::in_cells;
 use std::collections::BTreeSet;
 use trundle_core::Pose2;
-use trundle_grid::tiles::{RayUpdate, RayUpdateScratch, TileMap};
+use trundle_grid::tiles::{RayUpdateScratch, TileMap};
 
 /// Parts of the way as small maps and as clouds of hits.
 #[derive(Debug, Default)]
 pub(crate) struct Submaps {
-    shape: ScanPoints,
-    draw: RayUpdateScratch,
+    points: ScanPoints,
+    scratch: RayUpdateScratch,
     taken: BTreeSet<(i32, i32)>,
 }
 
@@ -22,7 +23,7 @@ impl Submaps {
     /// The map that the scans `which` give at `poses` (m), with all hits of them, map frame.
     pub(crate) fn draw(
         &mut self,
-        (config, ray_update): (&ParticleConfig, &RayUpdate),
+        models: &FilterModels,
         history: &ScanHistory,
         which: &[usize],
         pose: impl Fn(usize) -> Pose2,
@@ -31,10 +32,10 @@ impl Submaps {
         let mut cloud = ScanPoints::default();
         self.taken.clear();
         for &k in which {
-            let pose = cells(config, pose(k));
-            history.scans[k].unpack_into(config, &mut self.shape);
-            cloud.gather(std::iter::once((&self.shape, pose)), POINT_SPACING_CELLS, &mut self.taken);
-            ray_update.apply(&mut map, &mut self.draw, pose, &self.shape.rays);
+            let pose = in_cells(&models.config, pose(k));
+            history.scans[k].unpack_into(&models.config, &mut self.points);
+            cloud.gather(std::iter::once((&self.points, pose)), POINT_SPACING_CELLS, &mut self.taken);
+            models.ray_update.apply(&mut map, &mut self.scratch, pose, &self.points.rays);
         }
         cloud.finish();
         (map, cloud)
@@ -62,10 +63,4 @@ pub(crate) fn thinned(
         }
     }
     kept
-}
-
-/// A pose in m in cells.
-pub(crate) fn cells(config: &ParticleConfig, pose: Pose2) -> Pose2 {
-    let per_metre = 1.0 / config.map.resolution;
-    Pose2 { x: pose.x * per_metre, y: pose.y * per_metre, ..pose }
 }

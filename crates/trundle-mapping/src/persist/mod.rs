@@ -20,9 +20,10 @@ use crate::particle_config::ParticleConfig;
 use crate::pose_graph::Constraint;
 use crate::rbpf::ancestry::Ancestry;
 use crate::rbpf::map_redraw::MapRedraw;
-use crate::rbpf::mapper::{Particle, ParticleMapper};
+use crate::rbpf::mapper::ParticleMapper;
 use crate::rbpf::odometry_bias::OdometryBias;
 use crate::rbpf::odometry_noise::OdometryNoise;
+use crate::rbpf::particle_set::Particle;
 use crate::rbpf::update_gate::LastScan;
 use bytes::{Reader, Writer, checksum};
 pub use error::FilterFileError;
@@ -54,34 +55,35 @@ impl ParticleMapper {
         out.0.extend(MAGIC);
         out.u8(VERSION);
         out.u64(0);
-        settings(&self.config).iter().for_each(|(_, value)| out.f64(*value));
+        settings(&self.models.config).iter().for_each(|(_, value)| out.f64(*value));
         out.u64(self.seed);
         out.u64(self.updates);
         out.f64(self.expected_log_likelihood);
-        self.odometry_noise
+        self.odometry
+            .noise
             .numbers()
             .into_iter()
-            .chain(self.odometry_bias.numbers())
+            .chain(self.odometry.bias.numbers())
             .for_each(|v| out.f64(v));
-        out.f64(self.loop_closer.driven);
-        out.count(self.first_pose_of_run);
+        out.f64(self.loops.closer.driven);
+        out.count(self.set.first_pose_of_run);
         let last = self.gate.last.unwrap_or_default();
         out.u8(u8::from(self.gate.last.is_some()));
         out.u64(last.stamp.nanos as u64);
         out.pose(last.odom_from_base);
-        out.u8(u8::from(self.map_from_odom.is_some()));
-        out.pose(self.map_from_odom.unwrap_or_default());
-        out.count(self.particles.len());
-        for (particle, parent) in self.particles.iter().zip(&self.parents) {
+        out.u8(u8::from(self.odometry.map_from_odom.is_some()));
+        out.pose(self.odometry.map_from_odom.unwrap_or_default());
+        out.count(self.set.particles.len());
+        for (particle, parent) in self.set.particles.iter().zip(&self.set.parents) {
             out.pose(particle.pose);
             out.f64(particle.log_weight);
             out.u16(*parent);
         }
-        let bending = self.redraw.iter().map(|bending| &bending.map);
-        tiles::write(&mut out, &TilePools::new(self.particles.iter().map(|p| &p.map).chain(bending)));
-        write_ancestry(&mut out, &self.ancestry);
-        write_history(&mut out, &self.history, &self.loop_closer.pending);
-        write_redraw(&mut out, self.redraw.as_ref());
+        let bending = self.loops.redraw.iter().map(|bending| &bending.map);
+        tiles::write(&mut out, &TilePools::new(self.set.particles.iter().map(|p| &p.map).chain(bending)));
+        write_ancestry(&mut out, &self.set.ancestry);
+        write_history(&mut out, &self.loops.history, &self.loops.closer.pending);
+        write_redraw(&mut out, self.loops.redraw.as_ref());
         let mut bytes = out.0;
         let sum = checksum(&bytes[HEADER_BYTES..]);
         bytes[HEADER_BYTES - 8..HEADER_BYTES].copy_from_slice(&sum.to_le_bytes());
@@ -97,7 +99,7 @@ impl ParticleMapper {
     pub fn load(bytes: &[u8], config: ParticleConfig) -> Result<Self, FilterFileError> {
         let mut body = checked_body(bytes)?;
         let mut mapper = Self::new(config, 0)?;
-        for (name, given) in settings(&mapper.config) {
+        for (name, given) in settings(&mapper.models.config) {
             let saved = body.f64(name)?;
             if saved != given {
                 return Err(FilterFileError::Mismatch { name, saved, given });
@@ -109,12 +111,12 @@ impl ParticleMapper {
         mapper.expected_log_likelihood = body.f64("the expected_log_likelihood likelihood")?;
         let trust = [(); 6].map(|()| body.f64("what is known of the odometry"));
         let [a, b, c, d, e, f] = trust;
-        mapper.odometry_noise = OdometryNoise::from_numbers([a?, b?, c?, d?, e?, f?]);
+        mapper.odometry.noise = OdometryNoise::from_numbers([a?, b?, c?, d?, e?, f?]);
         let bias = [(); 7].map(|()| body.f64("what the odometry has wrong"));
         let [a, b, c, d, e, f, g] = bias;
-        mapper.odometry_bias = OdometryBias::from_numbers([a?, b?, c?, d?, e?, f?, g?]);
-        mapper.loop_closer.driven = body.f64("the way since the last look")?;
-        mapper.first_pose_of_run = body.u32()? as usize;
+        mapper.odometry.bias = OdometryBias::from_numbers([a?, b?, c?, d?, e?, f?, g?]);
+        mapper.loops.closer.driven = body.f64("the way since the last look")?;
+        mapper.set.first_pose_of_run = body.u32()? as usize;
         let known = body.u8()? == 1;
         let last = LastScan {
             stamp: Stamp::from_nanos(body.u64()? as i64),
@@ -123,7 +125,7 @@ impl ParticleMapper {
         mapper.gate.last = known.then_some(last);
         let known = body.u8()? == 1;
         let map_from_odom = body.pose("where the odometry begins")?;
-        mapper.map_from_odom = known.then_some(map_from_odom);
+        mapper.odometry.map_from_odom = known.then_some(map_from_odom);
         let count = body.count(34)?;
         body.require((1..=1000).contains(&count), "the number of particles")?;
         let mut states = Vec::new();
@@ -134,29 +136,29 @@ impl ParticleMapper {
         }
         let mut pools = tiles::read(&mut body)?;
         body.require((count..=count + 1).contains(&pools.maps.len()), "the number of maps")?;
-        pools.tiles.iter_mut().for_each(|tile| mapper.ray_update.nearest.fill_coarse(tile));
+        pools.tiles.iter_mut().for_each(|tile| mapper.models.ray_update.nearest.fill_coarse(tile));
         let mut maps = assemble(pools.tiles, &pools.chunks, &pools.maps);
         let bent_map = if maps.len() > count { maps.pop() } else { None };
-        mapper.ancestry = read_ancestry(&mut body)?;
-        let column = mapper.ancestry.columns.last().map_or(usize::MAX, |column| column.poses.len());
+        mapper.set.ancestry = read_ancestry(&mut body)?;
+        let column = mapper.set.ancestry.columns.last().map_or(usize::MAX, |column| column.poses.len());
         body.require(states.iter().all(|s| usize::from(s.2) < column), "the parent of a particle")?;
-        let length = mapper.ancestry.len();
-        (mapper.history, mapper.loop_closer.pending) = read_history(&mut body, length)?;
-        body.require(mapper.first_pose_of_run <= length, "the beginning of the run")?;
+        let length = mapper.set.ancestry.len();
+        (mapper.loops.history, mapper.loops.closer.pending) = read_history(&mut body, length)?;
+        body.require(mapper.set.first_pose_of_run <= length, "the beginning of the run")?;
         if let Some(map) = bent_map {
-            mapper.redraw = Some(read_redraw(&mut body, length, map)?);
+            mapper.loops.redraw = Some(read_redraw(&mut body, length, map)?);
         }
         body.end()?;
         let log_weights: Vec<f64> = states.iter().map(|state| state.1).collect();
-        let chosen = chosen(&log_weights, mapper.particles.len());
+        let chosen = chosen(&log_weights, mapper.set.particles.len());
         let particle = |&i: &usize| Particle {
             pose: states[i].0,
             log_weight: states[i].1,
             map: maps[i].clone(),
             proposal: None,
         };
-        mapper.particles = chosen.iter().map(particle).collect();
-        mapper.parents = chosen.iter().map(|&i| states[i].2).collect();
+        mapper.set.particles = chosen.iter().map(particle).collect();
+        mapper.set.parents = chosen.iter().map(|&i| states[i].2).collect();
         Ok(mapper)
     }
 }

@@ -1,7 +1,7 @@
 //! Absolute pose prior from odometry without drift.
 
 use crate::particle_config::ParticleConfig;
-use crate::rbpf::units::scaled;
+use crate::units::{in_cells, scaled};
 use nalgebra::{Matrix3, Vector3};
 use trundle_core::Pose2;
 
@@ -20,7 +20,7 @@ impl AbsolutePose {
         let prior = config.pose_prior.as_ref()?;
         let sigma = Vector3::new(prior.shift, prior.shift, prior.turn);
         let per_metre = 1.0 / config.map.resolution;
-        let pose = Pose2 { x: map_from_base.x * per_metre, y: map_from_base.y * per_metre, ..map_from_base };
+        let pose = in_cells(config, map_from_base);
         let covariance = Matrix3::from_diagonal(&sigma.component_mul(&sigma));
         Some(Self { pose, covariance: scaled(covariance, per_metre) })
     }

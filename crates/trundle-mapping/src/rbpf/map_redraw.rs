@@ -15,6 +15,6 @@ pub(crate) struct MapRedraw {
     pub(crate) drawn: usize,
     /// Map of the redrawn scans.
     pub(crate) map: TileMap,
-    pub(super) shape: ScanPoints,
-    pub(super) draw: RayUpdateScratch,
+    pub(super) points: ScanPoints,
+    pub(super) scratch: RayUpdateScratch,
 }

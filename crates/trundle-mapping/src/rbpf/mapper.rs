@@ -1,343 +1,281 @@
 //! Rao-Blackwellised particle filter for grid mapping.
 
-use crate::loop_closing::loop_closer::LoopCloser;
-use crate::loop_closing::scan_history::ScanHistory;
+use crate::filter_models::FilterModels;
 use crate::loop_closing::stored_scan::StoredScan;
 use crate::particle_config::ParticleConfig;
 use crate::rbpf::absolute_pose::AbsolutePose;
-use crate::rbpf::ancestry::Ancestry;
+use crate::rbpf::loop_correction::LoopCorrector;
 use crate::rbpf::map_publisher::MapPublisher;
-use crate::rbpf::map_redraw::MapRedraw;
-use crate::rbpf::odometry_bias::OdometryBias;
-use crate::rbpf::odometry_noise::OdometryNoise;
+use crate::rbpf::odometry_model::OdometryModel;
+use crate::rbpf::particle_set::ParticleSet;
 use crate::rbpf::proposal::{Proposal, Proposer};
-use crate::rbpf::resampling::{effective, low_variance};
 use crate::rbpf::rng::ParticleRng;
 use crate::rbpf::scan_update::{Processed, ScanUpdate};
-use crate::rbpf::units::{in_metres, scaled};
 use crate::rbpf::update_gate::{OdometryStep, UpdateGate};
+use crate::scan_match::branch_and_bound::Pyramid;
 use crate::scan_match::coarse_search::CoarseSearch;
-use crate::scan_match::global_search::GlobalSearch;
-use crate::scan_match::likelihood::Likelihood;
+use crate::scan_match::global_search::{GlobalSearch, Lost};
 use crate::scan_match::scan_points::ScanPoints;
-use nalgebra::Matrix3;
+use crate::units::{in_cells, in_metres, scaled};
+use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;
 use trundle_core::{CellIndex, Invalid, OccupancyGrid, Pose2, Scan, Stamp};
-use trundle_grid::tiles::{NearestField, RayUpdate, RayUpdateScratch, TileMap, tile_bytes};
+use trundle_grid::tiles::{RayUpdateScratch, TileMap, tile_bytes};
 
 /// Grid maps from laser scans and odometry by a Rao-Blackwellised particle filter \[Grisetti07\].
 ///
-/// Problem: trajectory and map at once. Each particle is a trajectory with the map that follows from it; a scan moves
-/// every particle by the improved proposal (odometry and scan match), draws its map on, and weighs it by how well its
-/// map foretold the scan; when few particles hold the weight, the others give way to their copies. Copies share their
-/// maps' tiles until one writes. What the particles cannot span, a loop after a long way, is searched for and proved, and
-/// the way is bent. Cost: per scan and particle one match (linear in the beams) and one drawing (linear in the cells that
-/// the beams pass); per 2 m a look for loops, n log n in the scans kept (at most `most_scans`). A loop that bends the way has
-/// the map drawn anew, four million cells with each scan: nothing else grows with the length of the run.
+/// Problem: estimate trajectory and map together. Each particle is a trajectory with the map that follows from it. A scan moves
+/// each particle by the improved proposal (odometry and scan match), updates its map, and weights it by the likelihood of the scan
+/// in that map. Particles are resampled when few of them hold the weight. Copies share the tiles of their maps until one writes.
+/// Loops longer than the particles can span are searched for, verified, and corrected in trajectory and map.
+///
+/// Cost: for each scan and particle one match (linear in the beams) and one ray update (linear in the cells that the beams cross);
+/// for each 2 m of path one loop search, n log n in the stored scans (at most `most_scans`). After a loop closure the map is redrawn,
+/// four million cells with each scan. Nothing else grows with the length of the run.
 #[derive(Debug)]
 pub struct ParticleMapper {
-    pub(crate) config: ParticleConfig,
+    pub(crate) models: FilterModels,
     pub(crate) seed: u64,
+    /// Number of processed scans.
     pub(crate) updates: u64,
-    pub(crate) ray_update: RayUpdate,
-    pub(crate) likelihood: Likelihood,
-    pub(crate) shape: ScanPoints,
-    pub(crate) particles: Vec<Particle>,
-    /// Whose copy each particle is since the last column of the ancestry.
-    pub(crate) parents: Vec<u16>,
-    pub(crate) ancestry: Ancestry,
+    points: ScanPoints,
+    pub(crate) set: ParticleSet,
     scratch: Vec<Scratch>,
     publisher: MapPublisher,
-    pub(crate) history: ScanHistory,
-    pub(crate) loop_closer: LoopCloser,
-    /// The map that a loop bends, while it is drawn.
-    pub(crate) redraw: Option<MapRedraw>,
+    pub(crate) loops: LoopCorrector,
     pub(crate) gate: UpdateGate,
-    /// map_from_odom of odometry that does not drift, m and rad: its first pose is the map's origin.
-    pub(crate) map_from_odom: Option<Pose2>,
-    /// The search for the robot in a map that was there before it.
-    pub(crate) global_search: Option<GlobalSearch>,
-    /// At which pose of the trajectory this run began.
-    pub(crate) first_pose_of_run: usize,
-    /// Mean ln p(z | m, x) of a point in the last scans.
+    pub(crate) odometry: OdometryModel,
+    /// Search for the robot in a loaded map, until it is found.
+    global_search: Option<GlobalSearch>,
+    /// Running mean of ln p(z | m, x) of a point over the last scans, nats.
     pub(crate) expected_log_likelihood: f64,
-    /// How good the odometry is.
-    pub(crate) odometry_noise: OdometryNoise,
-    /// What it has wrong at every step.
-    pub(crate) odometry_bias: OdometryBias,
 }
 
-#[derive(Debug, Clone)]
-pub(crate) struct Particle {
-    /// map_from_base, cells and rad.
-    pub(crate) pose: Pose2,
-    pub(crate) log_weight: f64,
-    pub(crate) map: TileMap,
-    pub(crate) proposal: Option<Proposal>,
-}
-
-/// What one worker needs.
+/// Buffers of one worker thread.
 #[derive(Debug, Clone, Default)]
 struct Scratch {
     search: CoarseSearch,
-    draw: RayUpdateScratch,
+    rays: RayUpdateScratch,
 }
 
-impl ParticleMapper {
-    /// A filter that has seen nothing; the first scan's base pose is the map's origin.
-    ///
-    /// # Errors
-    /// When the configuration is out of range.
-    pub fn new(config: ParticleConfig, seed: u64) -> Result<Self, Invalid> {
-        let config = config.validated()?;
-        let reach = (FIELD_REACH_M / config.map.resolution).ceil() as i32;
-        let particle =
-            Particle { pose: Pose2::IDENTITY, log_weight: 0.0, map: TileMap::default(), proposal: None };
-        Ok(Self {
-            seed,
-            updates: 0,
-            ray_update: RayUpdate::new(&config.map, NearestField::new(reach, COARSE_SIGMA_CELLS)),
-            likelihood: Likelihood::new(&config),
-            shape: ScanPoints::default(),
-            particles: vec![particle; config.particles],
-            parents: (0..config.particles as u16).collect(),
-            ancestry: Ancestry::default(),
-            scratch: Vec::new(),
-            publisher: MapPublisher::new(&config.map),
-            history: ScanHistory::default(),
-            loop_closer: LoopCloser::default(),
-            redraw: None,
-            gate: UpdateGate::default(),
-            map_from_odom: None,
-            global_search: None,
-            first_pose_of_run: 0,
-            expected_log_likelihood: EXPECTED_LOG_LIKELIHOOD,
-            odometry_noise: OdometryNoise::default(),
-            odometry_bias: OdometryBias::default(),
-            config,
-        })
-    }
-
-    /// Takes in a scan taken with the base at `odom_from_base` by the odometry.
-    pub fn update(&mut self, odom_from_base: Pose2, scan: &Scan) -> ScanUpdate {
-        let poses_count = self.map_from_odom.is_some();
-        let step = match self.gate.pass(&self.config, poses_count, odom_from_base, scan) {
-            Ok(Some(step)) => step,
-            Ok(None) => return ScanUpdate::Still,
-            Err(refusal) => return ScanUpdate::Refused(refusal),
-        };
-        self.shape.set(&self.config, scan);
-        let odom_cells = self.cells(odom_from_base);
-        if let Some(search) = &mut self.global_search {
-            search.push(&self.shape, odom_cells);
-            return self.search(scan.stamp());
-        }
-        let first = step.first && self.updates == 0;
-        if first && self.config.pose_prior.is_some() {
-            self.map_from_odom = Some(odom_from_base.inverse());
-        }
-        let anchor =
-            self.map_from_odom.and_then(|origin| AbsolutePose::new(&self.config, origin * odom_from_base));
-        let jumped = step.jumped;
-        let covariance = if jumped { step.covariance } else { self.odometry_noise.scaled(&step.covariance) };
-        let motion = if jumped { step.motion } else { self.odometry_bias.corrected(step.motion) };
-        self.move_and_draw((motion, covariance), anchor, first);
-        let (effective, resampled) = self.weigh();
-        self.ancestry.push(
-            scan.stamp(),
-            self.particles.iter().map(|p| in_metres(&self.config, p.pose)),
-            &self.parents,
-        );
-        let best = self.best();
-        let proposal = self.particles[best].proposal;
-        if let Some(proposal) = proposal.filter(|p| p.degenerate < 3) {
-            self.expected_log_likelihood +=
-                EXPECTED_LOG_LIKELIHOOD_RATE * (proposal.per_point - self.expected_log_likelihood);
-        }
-        if anchor.is_none() {
-            self.learn_odometry(&step, proposal.as_ref());
-        }
-        self.history.push(StoredScan::new(&self.shape), self.step_covariance(proposal.as_ref()));
-        if resampled {
-            self.resample();
-        } else {
-            self.parents = (0..self.particles.len() as u16).collect();
-        }
-        let bent = if anchor.is_none() { self.close_loops(step.motion.position().norm()) } else { None };
-        self.thin_history();
-        self.updates += 1;
-        ScanUpdate::Processed(Processed {
-            explained: proposal.map_or(0.0, |p| p.explained),
-            contradicted: proposal.map_or(0.0, |p| p.contradicted),
-            degenerate: proposal.map_or(0, |p| p.degenerate),
-            covariance: proposal
-                .map_or(Matrix3::zeros(), |p| scaled(p.covariance, self.config.map.resolution)),
-            effective,
-            resampled,
-            jumped,
-            slipped: proposal.is_some_and(|p| p.slipped),
-            bent,
-        })
-    }
-
-    /// map_from_base of the best particle at the last processed scan.
-    pub fn pose(&self) -> Pose2 {
-        in_metres(&self.config, self.particles[self.best()].pose)
-    }
-
-    /// The best particle's poses at the processed scans of this run.
-    pub fn trajectory(&self) -> Vec<(Stamp, Pose2)> {
-        self.full_trajectory().split_off(self.first_pose_of_run)
-    }
-
-    /// The same from the first run on.
-    pub(crate) fn full_trajectory(&self) -> Vec<(Stamp, Pose2)> {
-        // The last resampling is not in the ancestry yet: parents lead from the particles to its last column.
-        let best = self.best();
-        self.ancestry.trajectory(usize::from(self.parents[best]))
-    }
-
-    /// The map of the best particle, brought up to date in place: only what was written since the last call is touched.
-    pub fn grid(&mut self) -> &OccupancyGrid {
-        let best = self.best();
-        self.publisher.show(&self.particles[best].map);
-        self.publisher.grid()
-    }
-
-    /// Bytes that maps, ancestry and buffers hold; tiles that particles share count once.
-    pub fn bytes(&self) -> usize {
-        let bending = self.redraw.iter().map(|bending| &bending.map);
-        let maps = tile_bytes(self.particles.iter().map(|p| &p.map).chain(bending));
-        maps + self.ancestry.bytes() + self.history.bytes()
-    }
-
-    /// Counts the changes that [`ParticleMapper::grid`] has shown.
-    pub fn revision(&self) -> u64 {
-        self.publisher.revision()
-    }
-
-    /// The parts of the last grid that changed after `revision`: lowest cell and (columns, rows) of each.
-    pub fn changes_since(&self, revision: u64) -> impl Iterator<Item = (CellIndex, (usize, usize))> {
-        self.publisher.changes_since(revision)
-    }
-
-    /// Moves every particle by the proposal, and draws the scan into its map.
-    fn move_and_draw(
-        &mut self,
-        (motion, covariance): (Pose2, Matrix3<f64>),
-        anchor: Option<AbsolutePose>,
-        first: bool,
-    ) {
-        let per_metre = 1.0 / self.config.map.resolution;
-        let proposer = Proposer {
-            config: &self.config,
-            likelihood: &self.likelihood,
-            shape: &self.shape,
-            motion_covariance: scaled(covariance, per_metre),
-            anchor,
-            expected_log_likelihood: self.expected_log_likelihood,
-        };
-        let motion = Pose2 { x: motion.x * per_metre, y: motion.y * per_metre, ..motion };
-        let (seed, updates, ray_update, shape) = (self.seed, self.updates, &self.ray_update, &self.shape);
-        let workers = rayon::current_num_threads().clamp(1, self.particles.len());
-        let share = self.particles.len().div_ceil(workers);
-        self.scratch.resize_with(workers, Scratch::default);
-        // Where the odometry failed it did so for all particles: the best one looks for where they are.
-        let best = &self.particles[best_of(&self.particles)];
-        let places = (best.pose, best.pose * motion);
-        let far =
-            if first { Vec::new() } else { proposer.far(&best.map, &mut self.scratch[0].search, places) };
-        let shares = self.particles.par_chunks_mut(share).zip(&mut self.scratch).enumerate();
-        shares.for_each(|(worker, (particles, scratch))| {
-            for (i, particle) in particles.iter_mut().enumerate() {
-                if !first {
-                    let mut rng = ParticleRng::new(seed, updates, worker * share + i);
-                    let guess = particle.pose * motion;
-                    let found = proposer.propose(
-                        (&particle.map, &far),
-                        &mut scratch.search,
-                        (particle.pose, guess),
-                        &mut rng,
-                    );
-                    particle.pose = found.pose;
-                    particle.log_weight += found.log_weight * proposer.weight_scale();
-                    particle.proposal = Some(found);
-                }
-                ray_update.apply(&mut particle.map, &mut scratch.draw, particle.pose, &shape.rays);
-            }
-        });
-    }
-
-    fn learn_odometry(&mut self, step: &OdometryStep, proposal: Option<&Proposal>) {
-        let Some(proposal) = proposal.filter(|_| !step.jumped) else { return };
-        if proposal.slipped {
-            self.odometry_noise.doubt();
-        } else if let Some(innovation) = proposal.innovation {
-            let (unit, configured) = (self.config.map.resolution, step.covariance);
-            let noise = scaled(self.odometry_noise.scaled(&configured), 1.0 / unit).diagonal();
-            self.odometry_bias.learn(step.motion, &innovation, noise, unit);
-            self.odometry_noise.learn(&innovation, &scaled(configured, 1.0 / unit));
-        }
-    }
-
-    pub(crate) fn cells(&self, pose: Pose2) -> Pose2 {
-        let per_metre = 1.0 / self.config.map.resolution;
-        Pose2 { x: pose.x * per_metre, y: pose.y * per_metre, ..pose }
-    }
-
-    /// The best particle's map.
-    pub(crate) fn best_map(&self) -> &TileMap {
-        &self.particles[self.best()].map
-    }
-
-    /// Normalises the weights; the effective number of particles, and whether it is too low.
-    fn weigh(&mut self) -> (f64, bool) {
-        let greatest = self.particles.iter().map(|p| p.log_weight).fold(f64::NEG_INFINITY, f64::max);
-        for particle in &mut self.particles {
-            particle.log_weight -= greatest;
-        }
-        let effective = effective(&self.weights());
-        (effective, effective < self.config.resample_below * self.particles.len() as f64)
-    }
-
-    fn weights(&self) -> Vec<f64> {
-        self.particles.iter().map(|p| p.log_weight.exp()).collect()
-    }
-
-    fn resample(&mut self) {
-        // One past the particles' own streams.
-        let uniform = ParticleRng::new(self.seed, self.updates, self.particles.len()).uniform();
-        self.parents = low_variance(&self.weights(), uniform);
-        for i in 0..self.particles.len() {
-            let parent = usize::from(self.parents[i]);
-            if parent != i {
-                self.particles[i] = self.particles[parent].clone();
-            }
-        }
-        self.particles.iter_mut().for_each(|p| p.log_weight = 0.0);
-    }
-
-    /// The particle of the greatest weight, the first of equals.
-    pub(crate) fn best(&self) -> usize {
-        best_of(&self.particles)
-    }
-}
-
-fn best_of(particles: &[Particle]) -> usize {
-    let better = |best: usize, i: usize| {
-        if particles[i].log_weight > particles[best].log_weight { i } else { best }
-    };
-    (1..particles.len()).fold(0, better)
-}
-
-/// Mean log-likelihood of a point before the first scan [nats]: half of the points at obstacles, half on unknown ground.
-/// Source: ours.
+/// Initial mean log-likelihood of a point [nats]: half of the points at obstacles, half on unknown ground. Source: ours.
 pub(crate) const EXPECTED_LOG_LIKELIHOOD: f64 = -1.0;
 /// Weight of a new scan in the running mean log-likelihood [1]. The mean covers about the last twenty scans. Source:
 /// ours.
 pub(crate) const EXPECTED_LOG_LIKELIHOOD_RATE: f64 = 0.05;
-/// Reach of the field of nearest obstacles [m]: eight sigmas of a laser's hits, four of a depth camera's at 4 m. Source:
-/// ours.
-const FIELD_REACH_M: f64 = 0.2;
-/// Sigma of the coarse likelihood [cells]: one step of the coarse search. Source: ours.
-const COARSE_SIGMA_CELLS: f64 = 2.0;
+/// Variance of the constraint between the last pose of a loaded run and the first of the next, along x and y [m^2]. Source: ours.
+const NEXT_RUN_VARIANCE_M2: f64 = 0.01;
+/// Variance of the heading of that constraint [rad^2]. Source: ours.
+const NEXT_RUN_VARIANCE_RAD2: f64 = 4e-4;
+
+impl ParticleMapper {
+    /// Filter without a scan. The base pose of the first scan is the map's origin.
+    ///
+    /// # Errors
+    /// When the configuration is out of range.
+    pub fn new(config: ParticleConfig, seed: u64) -> Result<Self, Invalid> {
+        let models = FilterModels::new(config)?;
+        Ok(Self {
+            seed,
+            updates: 0,
+            points: ScanPoints::default(),
+            set: ParticleSet::new(models.config.particles),
+            scratch: Vec::new(),
+            publisher: MapPublisher::new(&models.config.map),
+            loops: LoopCorrector::default(),
+            gate: UpdateGate::default(),
+            odometry: OdometryModel::default(),
+            global_search: None,
+            expected_log_likelihood: EXPECTED_LOG_LIKELIHOOD,
+            models,
+        })
+    }
+
+    /// Processes a scan taken with the base at `odom_from_base` by the odometry.
+    pub fn update(&mut self, odom_from_base: Pose2, scan: &Scan) -> ScanUpdate {
+        let has_absolute_pose = self.odometry.map_from_odom.is_some();
+        let step = match self.gate.pass(&self.models.config, has_absolute_pose, odom_from_base, scan) {
+            Ok(Some(step)) => step,
+            Ok(None) => return ScanUpdate::Still,
+            Err(refusal) => return ScanUpdate::Refused(refusal),
+        };
+        self.points.set(&self.models.config, scan);
+        if let Some(search) = &mut self.global_search {
+            search.push(&self.points, in_cells(&self.models.config, odom_from_base));
+            return self.relocalize(scan.stamp());
+        }
+        let first = step.first && self.updates == 0;
+        if first && self.models.config.pose_prior.is_some() {
+            self.odometry.map_from_odom = Some(odom_from_base.inverse());
+        }
+        let absolute = self.odometry.absolute_pose(&self.models.config, odom_from_base);
+        self.move_and_draw(&step, absolute, first);
+        ScanUpdate::Processed(self.finish_update(scan.stamp(), &step, absolute.is_none()))
+    }
+
+    /// Weights, trajectories, learnt odometry, resampling and loops after the particles moved.
+    fn finish_update(&mut self, stamp: Stamp, step: &OdometryStep, dead_reckoning: bool) -> Processed {
+        let effective = self.set.normalize();
+        let resampled = effective < self.models.config.resample_below * self.set.len() as f64;
+        self.set.record(&self.models.config, stamp);
+        let proposal = self.set.best().proposal;
+        if let Some(proposal) = proposal.filter(|p| p.degenerate < 3) {
+            self.expected_log_likelihood +=
+                EXPECTED_LOG_LIKELIHOOD_RATE * (proposal.per_point - self.expected_log_likelihood);
+        }
+        let resolution = self.models.config.map.resolution;
+        if dead_reckoning {
+            self.odometry.learn(step, proposal.as_ref(), resolution);
+        }
+        let covariance = step_covariance(proposal.as_ref(), resolution);
+        self.loops.history.push(StoredScan::new(&self.points), covariance);
+        if resampled {
+            // One past the particles' own streams.
+            let mut rng = ParticleRng::new(self.seed, self.updates, self.set.len());
+            self.set.resample(rng.uniform());
+        }
+        let driven = step.motion.position().norm();
+        let bent =
+            if dead_reckoning { self.loops.close_loops(&self.models, &mut self.set, driven) } else { None };
+        self.loops.thin_history(&self.models, &mut self.set);
+        self.updates += 1;
+        Processed {
+            explained: proposal.map_or(0.0, |p| p.explained),
+            contradicted: proposal.map_or(0.0, |p| p.contradicted),
+            degenerate: proposal.map_or(0, |p| p.degenerate),
+            covariance: proposal.map_or(Matrix3::zeros(), |p| scaled(p.covariance, resolution)),
+            effective,
+            resampled,
+            jumped: step.jumped,
+            slipped: proposal.is_some_and(|p| p.slipped),
+            bent,
+        }
+    }
+
+    /// Moves each particle by the proposal, and updates its map with the scan.
+    fn move_and_draw(&mut self, step: &OdometryStep, absolute: Option<AbsolutePose>, first: bool) {
+        let (motion, covariance) = self.odometry.motion(step);
+        let motion = in_cells(&self.models.config, motion);
+        let proposer = Proposer {
+            config: &self.models.config,
+            likelihood: &self.models.likelihood,
+            points: &self.points,
+            motion_covariance: scaled(covariance, 1.0 / self.models.config.map.resolution),
+            anchor: absolute,
+            expected_log_likelihood: self.expected_log_likelihood,
+        };
+        let (seed, updates) = (self.seed, self.updates);
+        let (ray_update, rays) = (&self.models.ray_update, &self.points.rays);
+        let workers = rayon::current_num_threads().clamp(1, self.set.len());
+        let share = self.set.len().div_ceil(workers);
+        self.scratch.resize_with(workers, Scratch::default);
+        // Failed odometry failed for all particles: the best one searches for the new place.
+        let best = self.set.best();
+        let places = (best.pose, best.pose * motion);
+        let far =
+            if first { Vec::new() } else { proposer.far(&best.map, &mut self.scratch[0].search, places) };
+        let shares = self.set.particles.par_chunks_mut(share).zip(&mut self.scratch).enumerate();
+        shares.for_each(|(worker, (particles, scratch))| {
+            for (i, particle) in particles.iter_mut().enumerate() {
+                if !first {
+                    let mut rng = ParticleRng::new(seed, updates, worker * share + i);
+                    let places = (particle.pose, particle.pose * motion);
+                    let proposal =
+                        proposer.propose((&particle.map, &far), &mut scratch.search, places, &mut rng);
+                    particle.pose = proposal.pose;
+                    particle.log_weight += proposal.log_weight * proposer.weight_scale();
+                    particle.proposal = Some(proposal);
+                }
+                ray_update.apply(&mut particle.map, &mut scratch.rays, particle.pose, rays);
+            }
+        });
+    }
+
+    /// Declares the pose in the map unknown, as after loading the map for another run. The robot is searched for, and the map does
+    /// not change until it is found. The trajectory of a new run begins.
+    pub fn kidnapped(&mut self) {
+        self.finish();
+        self.global_search = Some(GlobalSearch::default());
+        self.gate = UpdateGate::default();
+        self.odometry.map_from_odom = None;
+        self.set.first_pose_of_run = self.loops.history.scans.len();
+    }
+
+    /// Searches the best particle's map for the robot; all particles continue from where it is found.
+    fn relocalize(&mut self, stamp: Stamp) -> ScanUpdate {
+        let map = self.set.best().map.clone();
+        let Some(pyramid) = Pyramid::new(&map) else { return ScanUpdate::Lost(Lost::NothingToSee) };
+        let Some(search) = &self.global_search else { return ScanUpdate::Still };
+        let found = match search.search((&self.models.config, &self.models.likelihood), &map, &pyramid) {
+            Ok(found) => found,
+            Err(lost) => return ScanUpdate::Lost(lost),
+        };
+        self.global_search = None;
+        let mut trajectory = self.set.trajectory();
+        let pose = in_metres(&self.models.config, found.pose);
+        let history = &mut self.loops.history;
+        history.measure(&trajectory.iter().map(|(_, pose)| *pose).collect::<Vec<_>>());
+        // The map constrains the two runs to each other.
+        let variances = Vector3::new(NEXT_RUN_VARIANCE_M2, NEXT_RUN_VARIANCE_M2, NEXT_RUN_VARIANCE_RAD2);
+        let covariance = Matrix3::from_diagonal(&variances);
+        history.push(StoredScan::new(&self.points), covariance);
+        self.set.first_pose_of_run = trajectory.len();
+        trajectory.push((stamp, pose));
+        self.set.collapse(trajectory, found.pose, &map);
+        self.set.particles.iter_mut().for_each(|particle| particle.proposal = None);
+        self.updates += 1;
+        ScanUpdate::Found(pose)
+    }
+
+    /// Completes work in progress, as after the last scan of a log: the redraw of a corrected map.
+    pub fn finish(&mut self) {
+        self.loops.finish(&self.models, &mut self.set);
+    }
+
+    /// map_from_base of the best particle at the last processed scan.
+    pub fn pose(&self) -> Pose2 {
+        in_metres(&self.models.config, self.set.best().pose)
+    }
+
+    /// The best particle's poses at the processed scans of this run.
+    pub fn trajectory(&self) -> Vec<(Stamp, Pose2)> {
+        self.set.trajectory().split_off(self.set.first_pose_of_run)
+    }
+
+    /// Map of the best particle. Only tiles written since the last call are updated.
+    pub fn grid(&mut self) -> &OccupancyGrid {
+        self.publisher.show(&self.set.best().map);
+        self.publisher.grid()
+    }
+
+    /// Bytes of maps, ancestry and buffers; tiles that particles share count once.
+    pub fn bytes(&self) -> usize {
+        let redraw = self.loops.redraw.iter().map(|redraw| &redraw.map);
+        let maps = tile_bytes(self.set.particles.iter().map(|p| &p.map).chain(redraw));
+        maps + self.set.ancestry.bytes() + self.loops.history.bytes()
+    }
+
+    /// Number of changes that [`ParticleMapper::grid`] has published.
+    pub fn revision(&self) -> u64 {
+        self.publisher.revision()
+    }
+
+    /// Parts of the last grid that changed after `revision`: lowest cell and (columns, rows) of each.
+    pub fn changes_since(&self, revision: u64) -> impl Iterator<Item = (CellIndex, (usize, usize))> {
+        self.publisher.changes_since(revision)
+    }
+
+    /// The best particle's map.
+    pub(crate) fn best_map(&self) -> &TileMap {
+        &self.set.best().map
+    }
+}
+
+/// Covariance of the step to the last pose in its frame: m, m, rad.
+fn step_covariance(proposal: Option<&Proposal>, resolution: f64) -> Matrix3<f64> {
+    let floor = Matrix3::from_diagonal(&Vector3::new(1e-4, 1e-4, 2e-5));
+    let Some(proposal) = proposal else { return floor };
+    let (s, c) = proposal.pose.theta.sin_cos();
+    let base_from_map = Matrix3::new(c, s, 0.0, -s, c, 0.0, 0.0, 0.0, 1.0);
+    floor + base_from_map * scaled(proposal.covariance, resolution) * base_from_map.transpose()
+}

@@ -2,20 +2,20 @@
 
 pub(crate) mod absolute_pose;
 pub(crate) mod ancestry;
-mod loop_correction;
+pub(crate) mod loop_correction;
 pub(crate) mod map_publisher;
 pub(crate) mod map_redraw;
 pub(crate) mod mapper;
 pub(crate) mod motion_model;
 pub(crate) mod odometry_bias;
+pub(crate) mod odometry_model;
 pub(crate) mod odometry_noise;
+pub(crate) mod particle_set;
 mod propagate;
 pub(crate) mod proposal;
-mod relocalization;
 pub(crate) mod resampling;
 pub(crate) mod rng;
 pub(crate) mod scan_update;
-pub(crate) mod units;
 pub(crate) mod update_gate;
 
 pub use mapper::ParticleMapper;

@@ -24,7 +24,7 @@ use trundle_grid::tiles::{Tile, TileMap, TileWindow};
 pub(crate) struct Proposer<'a> {
     pub(crate) config: &'a ParticleConfig,
     pub(crate) likelihood: &'a Likelihood,
-    pub(crate) shape: &'a ScanPoints,
+    pub(crate) points: &'a ScanPoints,
     /// Covariance of the motion, base frame before it: cells, rad.
     pub(crate) motion_covariance: Matrix3<f64>,
     /// Where the robot is by odometry that does not drift.
@@ -126,7 +126,7 @@ impl Proposer<'_> {
     }
 
     fn optimizer(&self) -> PoseOptimizer<'_> {
-        PoseOptimizer { config: self.config, likelihood: self.likelihood, points: self.shape }
+        PoseOptimizer { config: self.config, likelihood: self.likelihood, points: self.points }
     }
 
     fn near(&self, before: Pose2, guess: Pose2) -> MotionPrior {
@@ -146,7 +146,7 @@ impl Proposer<'_> {
     /// where no scan as expected_log_likelihood reaches it.
     fn needed(&self, near: &Attempt<'_>, slip: &MotionPrior) -> Option<f64> {
         let expected_log_likelihood =
-            self.expected_log_likelihood * self.shape.points.len() as f64 / self.config.correlation;
+            self.expected_log_likelihood * self.points.points.len() as f64 / self.config.correlation;
         let needed = near.optimum.log_posterior - self.config.slip_rate.ln() - 0.5 * slip.log_determinant;
         (expected_log_likelihood > needed).then_some(needed)
     }
@@ -159,21 +159,21 @@ impl Proposer<'_> {
         let low = (window.corner.0 >> Tile::BITS, window.corner.1 >> Tile::BITS);
         let high = (low.0 + cols as i32 - 1, low.1 + rows as i32 - 1);
         let Some(pyramid) = Pyramid::of(map, low, high) else { return Vec::new() };
-        let every = self.shape.points.len().div_ceil(MAX_SEARCH_POINTS).max(1);
-        let points: Vec<_> = self.shape.points.iter().step_by(every).map(|p| (p.x, p.y)).collect();
+        let every = self.points.points.len().div_ceil(MAX_SEARCH_POINTS).max(1);
+        let points: Vec<_> = self.points.points.iter().step_by(every).map(|p| (p.x, p.y)).collect();
         let sigma = |k: usize| prior.covariance[(k, k)].sqrt();
         let query = Query {
             points: &points,
             guess: prior.guess,
             reach: (WIDE_SEARCH_SIGMAS * sigma(0), WIDE_SEARCH_SIGMAS * sigma(1)),
             turn_reach: (WIDE_SEARCH_SIGMAS * sigma(2)).min(std::f64::consts::PI),
-            turn_step: (2.0 / self.shape.lever).clamp(0.01, 0.05),
+            turn_step: (2.0 / self.points.lever).clamp(0.01, 0.05),
             sigma: (sigma(0), sigma(1), sigma(2)),
             gain: -self.config.outliers.ln() / self.config.correlation * every as f64,
         };
         // A point that fits nothing is no better than one on unknown ground.
         let unseen =
-            0.5 * self.config.outliers.ln() * self.shape.points.len() as f64 / self.config.correlation;
+            0.5 * self.config.outliers.ln() * self.points.points.len() as f64 / self.config.correlation;
         let least = (needed - unseen).max(0.0);
         let mut places = Vec::new();
         while places.len() < 2
@@ -219,7 +219,7 @@ impl Proposer<'_> {
         prior: MotionPrior,
         optimum: Optimum,
     ) -> Attempt<'m> {
-        let contradicted = optimum.equations.contradicted / self.shape.points.len().max(1) as f64;
+        let contradicted = optimum.equations.contradicted / self.points.points.len().max(1) as f64;
         Attempt { window, corner, prior, optimum, contradicted }
     }
 
@@ -229,7 +229,7 @@ impl Proposer<'_> {
         let (mut low, mut high) = ((guess.x, guess.y), (guess.x, guess.y));
         let turns = prior.covariance[(2, 2)] > 0.1;
         let (s, c) = guess.theta.sin_cos();
-        for p in &self.shape.points {
+        for p in &self.points.points {
             let (px, py) = (f64::from(p.x), f64::from(p.y));
             let (dx, dy) = (c * px - s * py, s * px + c * py);
             let far = px.hypot(py);
@@ -254,13 +254,13 @@ impl Proposer<'_> {
             sigma_turn: prior.covariance[(2, 2)].sqrt(),
             gain: -self.config.outliers.ln() / self.config.correlation,
         };
-        let starts = search.search(window, self.shape, prior.guess, (&about, MAX_START_DEFICIT_NATS));
+        let starts = search.search(window, self.points, prior.guess, (&about, MAX_START_DEFICIT_NATS));
         let (first, top) = starts[0];
         // Another start is worth climbing from when it is nearly as good and somewhere else.
         let elsewhere = |p: &Pose2| {
             let off = difference(*p, top);
             off.xy().amax() > MIN_START_DISTANCE_CELLS
-                || off.z.abs() * self.shape.lever > MIN_START_DISTANCE_CELLS
+                || off.z.abs() * self.points.lever > MIN_START_DISTANCE_CELLS
         };
         let second = starts
             .iter()
@@ -277,7 +277,7 @@ impl Proposer<'_> {
     fn sample(&self, attempt: &Attempt<'_>, log_rate: f64, rng: &mut ParticleRng) -> Proposal {
         let Attempt { window, corner, prior, optimum, .. } = attempt;
         let Optimum { pose: top, equations, directions, .. } = optimum;
-        let explained = equations.explained / self.shape.points.len().max(1) as f64;
+        let explained = equations.explained / self.points.points.len().max(1) as f64;
         let lost = explained < MIN_EXPLAINED;
         let held = if lost { Matrix3::zeros() } else { directions.held };
         let centre = if lost { prior.guess } else { *top };
@@ -333,8 +333,8 @@ impl Proposer<'_> {
             log_weight: log_rate + greatest + (sum / count as f64).ln() + spread.determinant().ln(),
             explained,
             contradicted: attempt.contradicted,
-            per_point: self.likelihood.log_likelihood(window, self.shape, *top)
-                / self.shape.points.len().max(1) as f64,
+            per_point: self.likelihood.log_likelihood(window, self.points, *top)
+                / self.points.points.len().max(1) as f64,
             slipped: log_rate < 0.0,
             degenerate: if lost { 3 } else { directions.degenerate },
             covariance: to_pose * covariance * to_pose.transpose(),

@@ -52,7 +52,7 @@ impl GlobalSearch {
     }
 
     /// Where in the map the base was at the last scan.
-    pub(crate) fn look(
+    pub(crate) fn search(
         &self,
         (config, likelihood): (&ParticleConfig, &Likelihood),
         map: &TileMap,

@@ -1,6 +1,6 @@
 //! Information of a match by direction, with its degenerate directions.
 
-use super::{ScanMatchConfig, refinement::NormalEquations};
+use super::{ScanMatchConfig, normal_equations::NormalEquations};
 use nalgebra::{Matrix3, SymmetricEigen, U3, Vector3};
 use trundle_core::Vector2;
 

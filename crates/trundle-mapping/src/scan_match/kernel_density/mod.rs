@@ -4,6 +4,7 @@ mod config;
 mod information;
 mod likelihood_field;
 mod matcher;
+mod normal_equations;
 mod refinement;
 mod surface_points;
 mod window_search;

@@ -1,7 +1,10 @@
 //! Refinement of a pose by Gauss-Newton on a kernel density.
 
-use super::{ScanMatchConfig, information::Information, surface_points::SurfacePoints};
-use nalgebra::{Matrix2, Matrix2x3, Matrix3, Vector3};
+use super::{
+    ScanMatchConfig, information::Information, normal_equations::NormalEquations,
+    surface_points::SurfacePoints,
+};
+use nalgebra::{Matrix2, Matrix2x3};
 use trundle_core::{Pose2, Vector2};
 
 /// Kernel density of an outlier [1]. A hit with this density is explained with probability 0.5; a hit on a wall has a
@@ -14,14 +17,6 @@ const MIN_RELATIVE_CURVATURE: f64 = 0.15;
 const MAX_ITERATIONS: usize = 12;
 /// Step length at which the iteration ends [m, rad]. Source: ours.
 const MIN_STEP: f64 = 1e-5;
-
-/// What all hits say at a pose: information matrix, right-hand side, and how many hits the map explains.
-#[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct NormalEquations {
-    pub(crate) information: Matrix3<f64>,
-    pub(crate) rhs: Vector3<f64>,
-    pub(crate) explained: f64,
-}
 
 /// Gauss-Newton on the kernel density of the sites: every hit is pulled to the kernel-weighted mean of the sites about it
 /// (mean shift), across walls but not along them, as the spread of those sites tells. Directions that no hit holds are

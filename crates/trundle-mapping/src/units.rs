@@ -4,6 +4,12 @@ use crate::particle_config::ParticleConfig;
 use nalgebra::{Matrix3, Vector3};
 use trundle_core::Pose2;
 
+/// Pose in cells of a pose in m.
+pub(crate) fn in_cells(config: &ParticleConfig, pose: Pose2) -> Pose2 {
+    let per_metre = 1.0 / config.map.resolution;
+    Pose2 { x: pose.x * per_metre, y: pose.y * per_metre, ..pose }
+}
+
 /// Pose in m of a pose in cells.
 pub(crate) fn in_metres(config: &ParticleConfig, pose: Pose2) -> Pose2 {
     Pose2 { x: pose.x * config.map.resolution, y: pose.y * config.map.resolution, ..pose }
@@ -18,6 +24,15 @@ pub(crate) fn scaled(covariance: Matrix3<f64>, unit: f64) -> Matrix3<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn cells_and_metres_are_inverse_and_keep_the_heading() {
+        let config = ParticleConfig::default();
+        let pose = Pose2::new(3.21, -0.07, 2.5);
+        let there = in_cells(&config, pose);
+        assert!((there.x - 64.2).abs() < 1e-9 && there.theta == pose.theta);
+        assert!(in_metres(&config, there).distance(&pose) < 1e-12);
+    }
 
     #[test]
     fn a_covariance_scales_with_the_square_of_the_unit_and_the_heading_keeps_its_own() {
