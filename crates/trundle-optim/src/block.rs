@@ -1,16 +1,20 @@
-//! 6 x 6 blocks and the few operations on them that take the time of a bundle adjustment.
+//! Square blocks and the few operations on them that take the time of a sparse factorisation.
 //!
 //! All of them are written column by column, so that each line is one vector operation, and are inlined into callers that
 //! are compiled twice: plainly and for AVX. Neither compilation reorders or fuses what is written: the bits are the same.
 
-/// Six rows.
-pub(crate) type Column = [f64; 6];
-/// By columns.
-pub(crate) type Block = [Column; 6];
+/// Column of N rows; six for a pose in space, three for one in the plane.
+pub(crate) type Column<const N: usize = 6> = [f64; N];
+/// Block of N columns.
+pub(crate) type Block<const N: usize = 6> = [Column<N>; N];
 
 /// `block -= left right'`, both of K columns.
 #[inline(always)]
-pub(crate) fn subtract_outer<const K: usize>(block: &mut Block, left: &[Column; K], right: &[Column; K]) {
+pub(crate) fn subtract_outer<const N: usize, const K: usize>(
+    block: &mut Block<N>,
+    left: &[Column<N>; K],
+    right: &[Column<N>; K],
+) {
     for (column, sum) in block.iter_mut().enumerate() {
         for k in 0..K {
             let factor = right[k][column];
@@ -23,7 +27,7 @@ pub(crate) fn subtract_outer<const K: usize>(block: &mut Block, left: &[Column; 
 
 /// `vector -= block x`.
 #[inline(always)]
-pub(crate) fn subtract_product(vector: &mut Column, block: &Block, x: &Column) {
+pub(crate) fn subtract_product<const N: usize>(vector: &mut Column<N>, block: &Block<N>, x: &Column<N>) {
     for (column, factor) in block.iter().zip(x) {
         for (sum, value) in vector.iter_mut().zip(column) {
             *sum -= value * factor;
@@ -33,7 +37,11 @@ pub(crate) fn subtract_product(vector: &mut Column, block: &Block, x: &Column) {
 
 /// `vector -= block' x`.
 #[inline(always)]
-pub(crate) fn subtract_transposed_product(vector: &mut Column, block: &Block, x: &Column) {
+pub(crate) fn subtract_transposed_product<const N: usize>(
+    vector: &mut Column<N>,
+    block: &Block<N>,
+    x: &Column<N>,
+) {
     for (sum, column) in vector.iter_mut().zip(block) {
         *sum -= column.iter().zip(x).map(|(a, b)| a * b).sum::<f64>();
     }
@@ -41,8 +49,8 @@ pub(crate) fn subtract_transposed_product(vector: &mut Column, block: &Block, x:
 
 /// Turns a symmetric block, of which the lower half counts, into its lower Cholesky factor; whether it is positive definite.
 #[inline(always)]
-pub(crate) fn factorise(block: &mut Block) -> bool {
-    for j in 0..6 {
+pub(crate) fn factorise<const N: usize>(block: &mut Block<N>) -> bool {
+    for j in 0..N {
         for k in 0..j {
             let (known, factor) = (block[k], block[k][j]);
             for (sum, value) in block[j][j..].iter_mut().zip(&known[j..]) {
@@ -62,8 +70,8 @@ pub(crate) fn factorise(block: &mut Block) -> bool {
 
 /// `block L'^-1` in place, for a lower factor L.
 #[inline(always)]
-pub(crate) fn divide_by_transposed(block: &mut Block, lower: &Block) {
-    for j in 0..6 {
+pub(crate) fn divide_by_transposed<const N: usize>(block: &mut Block<N>, lower: &Block<N>) {
+    for j in 0..N {
         for k in 0..j {
             let (known, factor) = (block[k], lower[k][j]);
             for (sum, value) in block[j].iter_mut().zip(&known) {
@@ -77,10 +85,10 @@ pub(crate) fn divide_by_transposed(block: &mut Block, lower: &Block) {
 
 /// `L^-1 x` in place.
 #[inline(always)]
-pub(crate) fn solve_lower(lower: &Block, x: &mut Column) {
-    for j in 0..6 {
+pub(crate) fn solve_lower<const N: usize>(lower: &Block<N>, x: &mut Column<N>) {
+    for j in 0..N {
         x[j] /= lower[j][j];
-        for row in j + 1..6 {
+        for row in j + 1..N {
             x[row] -= lower[j][row] * x[j];
         }
     }
@@ -88,9 +96,9 @@ pub(crate) fn solve_lower(lower: &Block, x: &mut Column) {
 
 /// `L'^-1 x` in place.
 #[inline(always)]
-pub(crate) fn solve_upper(lower: &Block, x: &mut Column) {
-    for j in (0..6).rev() {
-        for row in j + 1..6 {
+pub(crate) fn solve_upper<const N: usize>(lower: &Block<N>, x: &mut Column<N>) {
+    for j in (0..N).rev() {
+        for row in j + 1..N {
             x[j] -= lower[j][row] * x[row];
         }
         x[j] /= lower[j][j];

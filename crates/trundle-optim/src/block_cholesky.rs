@@ -1,53 +1,73 @@
-//! The Cholesky factor of a sparse symmetric matrix of 6 x 6 blocks.
+//! Cholesky factor of a sparse symmetric matrix of square blocks.
 
 use crate::block::{
     Block, Column, divide_by_transposed, factorise, solve_lower, solve_upper, subtract_outer,
     subtract_product, subtract_transposed_product,
 };
 use crate::narrow_order::narrow_order;
-use nalgebra::{ArrayStorage, Matrix6, Vector6};
+use nalgebra::{ArrayStorage, SMatrix, SVector};
 
-const ZERO: Block = [[0.0; 6]; 6];
-
-/// A symmetric positive definite matrix of 6 x 6 blocks in profile storage, and its Cholesky factor in place.
+/// Symmetric positive definite matrix of N x N blocks in profile storage, and its Cholesky factor in place.
 ///
-/// Block rows hold their lower half from the first block that is not zero on; that is all a factor can fill. Ordered by
-/// reverse Cuthill-McKee, whose profile of a chain with few loops is a few blocks wide: O(n) work and memory for it.
+/// Block rows hold the lower half from their first non-zero block on. A factor fills nothing else. Rows are ordered by reverse
+/// Cuthill-McKee. The profile of a chain with few loops is a few blocks wide: O(n) work and memory.
+///
+/// ```
+/// use nalgebra::{Matrix3, Vector3};
+/// use trundle_optim::BlockMatrix;
+///
+/// let mut matrix = BlockMatrix::<3>::new(2, &[(0, 1)]);
+/// matrix.add(0, 0, &(Matrix3::identity() * 2.0));
+/// matrix.add(1, 1, &Matrix3::identity());
+/// matrix.add(0, 1, &Matrix3::identity());
+/// let mut solution = vec![Vector3::repeat(3.0), Vector3::repeat(2.0)];
+/// assert!(matrix.factorise() && matrix.solve(&mut solution));
+/// assert!((solution[0] - Vector3::repeat(1.0)).norm() < 1e-12);
+/// assert!((solution[1] - Vector3::repeat(1.0)).norm() < 1e-12);
+/// ```
 #[derive(Debug, Clone, Default)]
-pub(crate) struct BlockMatrix {
+pub struct BlockMatrix<const N: usize = 6> {
     /// Place of node i among the rows.
     row_of: Vec<usize>,
     /// First block column of each row.
     first: Vec<usize>,
     /// Where each row's first block stands.
     start: Vec<usize>,
-    blocks: Vec<Block>,
+    blocks: Vec<Block<N>>,
     /// The unknowns while solving, by row.
-    unknowns: Vec<Column>,
+    unknowns: Vec<Column<N>>,
     /// The inverse within the profile, as far as it was asked for.
-    inverse: Vec<Block>,
+    inverse: Vec<Block<N>>,
     /// The column of the inverse that is being worked out.
-    column: InverseColumn,
+    column: InverseColumn<N>,
 }
 
 /// A column of the inverse on the way.
-#[derive(Debug, Clone, Default)]
-struct InverseColumn {
+#[derive(Debug, Clone)]
+struct InverseColumn<const N: usize> {
     /// How many columns are left, this one included.
     left: usize,
     /// The rows below its diagonal that the profile has.
     below: Vec<usize>,
     /// Their blocks of the factor, divided by that of the diagonal.
-    factors: Vec<Block>,
+    factors: Vec<Block<N>>,
     /// How many of these rows are done.
     done: usize,
     /// The block on the diagonal as far as they say.
-    diagonal: Block,
+    diagonal: Block<N>,
 }
 
-impl BlockMatrix {
+impl<const N: usize> Default for InverseColumn<N> {
+    fn default() -> Self {
+        Self { left: 0, below: Vec::new(), factors: Vec::new(), done: 0, diagonal: [[0.0; N]; N] }
+    }
+}
+
+impl<const N: usize> BlockMatrix<N> {
+    const ZERO: Block<N> = [[0.0; N]; N];
+
     /// Zeros for `count` nodes that are coupled by `pairs`.
-    pub(crate) fn new(count: usize, pairs: &[(usize, usize)]) -> Self {
+    pub fn new(count: usize, pairs: &[(usize, usize)]) -> Self {
         let mut matrix = Self::default();
         matrix.shape(count, pairs);
         matrix
@@ -82,7 +102,7 @@ impl BlockMatrix {
             size += row - first + 1;
         }
         self.blocks.clear();
-        self.blocks.resize(size, ZERO);
+        self.blocks.resize(size, Self::ZERO);
     }
 
     /// How many nodes there are.
@@ -95,12 +115,13 @@ impl BlockMatrix {
         self.row_of[node]
     }
 
-    pub(crate) fn clear(&mut self) {
-        self.blocks.fill(ZERO);
+    /// Sets all blocks to zero.
+    pub fn clear(&mut self) {
+        self.blocks.fill(Self::ZERO);
     }
 
     /// Adds a block at (a, b), and its transpose at (b, a) where these differ.
-    pub(crate) fn add(&mut self, a: usize, b: usize, block: &Matrix6<f64>) {
+    pub fn add(&mut self, a: usize, b: usize, block: &SMatrix<f64, N, N>) {
         let (i, j) = (self.row_of[a], self.row_of[b]);
         let sum = self.block_mut(i.max(j), i.min(j));
         for (column, sum) in sum.iter_mut().enumerate() {
@@ -112,7 +133,7 @@ impl BlockMatrix {
 
     /// The block at a row and a column up to it, which is within the profile.
     #[inline(always)]
-    pub(crate) fn block_mut(&mut self, row: usize, column: usize) -> &mut Block {
+    pub(crate) fn block_mut(&mut self, row: usize, column: usize) -> &mut Block<N> {
         &mut self.blocks[self.start[row] + column - self.first[row]]
     }
 
@@ -172,14 +193,14 @@ impl BlockMatrix {
     }
 
     /// Turns the whole matrix into its Cholesky factor; `false` when it is not positive definite.
-    pub(crate) fn factorise(&mut self) -> bool {
+    pub fn factorise(&mut self) -> bool {
         (0..self.count()).all(|row| self.factorise_row(row))
     }
 
     /// Starts the inverse, once every row is factorised.
     pub(crate) fn begin_inverse(&mut self) {
         self.inverse.clear();
-        self.inverse.resize(self.blocks.len(), ZERO);
+        self.inverse.resize(self.blocks.len(), Self::ZERO);
         self.column.left = self.count();
         self.begin_column();
     }
@@ -205,8 +226,8 @@ impl BlockMatrix {
         column.factors.clear();
         column.done = 0;
         let Some(j) = column.left.checked_sub(1) else { return };
-        let at = |row: usize| Matrix6::from_data(ArrayStorage(blocks[start[row] + j - first[row]]));
-        let own: Matrix6<f64> = at(j).try_inverse().unwrap_or_else(Matrix6::zeros);
+        let at = |row: usize| SMatrix::from_data(ArrayStorage(blocks[start[row] + j - first[row]]));
+        let own: SMatrix<f64, N, N> = at(j).try_inverse().unwrap_or_else(SMatrix::zeros);
         column.below.extend((j + 1..first.len()).filter(|row| first[*row] <= j));
         column.factors.extend(column.below.iter().map(|row| (at(*row) * own).data.0));
         column.diagonal = (own.transpose() * own).data.0;
@@ -232,7 +253,7 @@ impl BlockMatrix {
     fn invert_row_plainly(&mut self, j: usize) {
         let Self { column, inverse, start, first, .. } = self;
         let i = column.below[column.done];
-        let mut sum = ZERO;
+        let mut sum = Self::ZERO;
         for (&k, factor) in column.below.iter().zip(&column.factors) {
             let (high, low) = (i.max(k), i.min(k));
             let known = &inverse[start[high] + low - first[high]];
@@ -252,16 +273,16 @@ impl BlockMatrix {
     }
 
     /// The diagonal block of the inverse of a node, once its column is there.
-    pub(crate) fn inverse_of(&self, node: usize) -> Matrix6<f64> {
+    pub(crate) fn inverse_of(&self, node: usize) -> SMatrix<f64, N, N> {
         let row = self.row_of[node];
-        Matrix6::from_data(ArrayStorage(self.inverse[self.start[row] + row - self.first[row]]))
+        SMatrix::from_data(ArrayStorage(self.inverse[self.start[row] + row - self.first[row]]))
     }
 
     /// Solves in place for a right-hand side of one block a node, once every row is factorised; whether the solution is
     /// finite.
-    pub(crate) fn solve(&mut self, rhs: &mut [Vector6<f64>]) -> bool {
+    pub fn solve(&mut self, rhs: &mut [SVector<f64, N>]) -> bool {
         self.unknowns.clear();
-        self.unknowns.resize(rhs.len(), [0.0; 6]);
+        self.unknowns.resize(rhs.len(), [0.0; N]);
         self.row_of.iter().zip(rhs.iter()).for_each(|(&row, b)| self.unknowns[row] = b.data.0[0]);
         let x = &mut self.unknowns;
         for i in 0..x.len() {
@@ -280,7 +301,7 @@ impl BlockMatrix {
                 subtract_transposed_product(above, block, &rest[0]);
             }
         }
-        self.row_of.iter().zip(rhs.iter_mut()).for_each(|(&row, b)| *b = Vector6::from(self.unknowns[row]));
+        self.row_of.iter().zip(rhs.iter_mut()).for_each(|(&row, b)| *b = SVector::from(self.unknowns[row]));
         rhs.iter().all(|b| b.iter().all(|value| value.is_finite()))
     }
 }
@@ -292,59 +313,64 @@ fn ordered(a: usize, b: usize) -> (usize, usize) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use nalgebra::{DMatrix, DVector};
+    use nalgebra::{DMatrix, DVector, Matrix6};
     use rand::{RngExt, SeedableRng};
     use rand_chacha::ChaCha8Rng;
 
-    #[test]
-    fn the_block_solver_agrees_with_a_dense_solver() {
-        let mut rng = ChaCha8Rng::seed_from_u64(4);
+    /// Solution and inverse of a random chain with loops against the dense factorisation.
+    fn agrees_with_a_dense_solver<const N: usize>(seed: u64) {
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
         let count = 15;
         let mut pairs: Vec<(usize, usize)> = (1..count).map(|i| (i - 1, i)).collect();
         pairs.extend([(14, 0), (3, 11), (7, 2)]);
-        let mut blocks = BlockMatrix::new(count, &pairs);
-        let mut dense = DMatrix::zeros(6 * count, 6 * count);
+        let mut blocks = BlockMatrix::<N>::new(count, &pairs);
+        let mut dense = DMatrix::zeros(N * count, N * count);
+        let mut random = || SMatrix::<f64, N, N>::from_fn(|_, _| rng.random_range(-1.0..1.0));
         for &(a, b) in &pairs {
-            // J'J of a random coupling, and something on the diagonal.
-            let (ja, jb) = (
-                Matrix6::from_fn(|_, _| rng.random_range(-1.0..1.0)),
-                Matrix6::from_fn(|_, _| rng.random_range(-1.0..1.0)),
-            );
+            // J'J of a random coupling, and the identity on the diagonal.
+            let (ja, jb) = (random(), random());
             for (i, j, block) in [
-                (a, a, ja.transpose() * ja + Matrix6::identity()),
-                (b, b, jb.transpose() * jb + Matrix6::identity()),
+                (a, a, ja.transpose() * ja + SMatrix::identity()),
+                (b, b, jb.transpose() * jb + SMatrix::identity()),
                 (a, b, ja.transpose() * jb),
             ] {
                 blocks.add(i, j, &block);
-                let mut view = dense.fixed_view_mut::<6, 6>(6 * i, 6 * j);
+                let mut view = dense.fixed_view_mut::<N, N>(N * i, N * j);
                 view += block;
                 if i != j {
-                    let mut view = dense.fixed_view_mut::<6, 6>(6 * j, 6 * i);
+                    let mut view = dense.fixed_view_mut::<N, N>(N * j, N * i);
                     view += block.transpose();
                 }
             }
         }
-        let rhs: Vec<Vector6<f64>> =
-            (0..count).map(|_| Vector6::from_fn(|_, _| rng.random_range(-1.0..1.0))).collect();
-        let flat = DVector::from_iterator(6 * count, rhs.iter().flat_map(|v| v.iter().copied()));
+        let rhs: Vec<SVector<f64, N>> = (0..count).map(|_| random().column(0).into_owned()).collect();
+        let flat = DVector::from_iterator(N * count, rhs.iter().flat_map(|v| v.iter().copied()));
         let expected = dense.clone().cholesky().unwrap().solve(&flat);
         let mut found = rhs.clone();
         assert!(blocks.factorise() && blocks.solve(&mut found));
         for (i, v) in found.iter().enumerate() {
-            assert!((v - expected.fixed_rows::<6>(6 * i)).norm() < 1e-10);
+            assert!((v - expected.fixed_rows::<N>(N * i)).norm() < 1e-10);
         }
         blocks.begin_inverse();
         while blocks.invert_on().is_some() {}
         let inverse = dense.try_inverse().unwrap();
         for i in 0..count {
-            assert!((blocks.inverse_of(i) - inverse.fixed_view::<6, 6>(6 * i, 6 * i)).norm() < 1e-10);
+            assert!((blocks.inverse_of(i) - inverse.fixed_view::<N, N>(N * i, N * i)).norm() < 1e-10);
         }
+    }
+
+    #[test]
+    fn the_block_solver_agrees_with_a_dense_solver_for_every_block_size() {
+        agrees_with_a_dense_solver::<6>(4);
+        agrees_with_a_dense_solver::<3>(4);
+        agrees_with_a_dense_solver::<2>(4);
+        agrees_with_a_dense_solver::<1>(4);
     }
 
     #[test]
     fn four_numbers_to_an_operation_change_nothing() {
         let mut rng = ChaCha8Rng::seed_from_u64(5);
-        let mut plain = BlockMatrix::default();
+        let mut plain = BlockMatrix::<6>::default();
         plain.shape_full(6);
         for i in 0..6 {
             for j in 0..=i {
@@ -362,7 +388,7 @@ mod tests {
     #[test]
     fn a_ring_is_stored_narrowly_and_what_is_not_definite_is_refused() {
         let ring: Vec<(usize, usize)> = (0..100).map(|i| (i, (i + 1) % 100)).collect();
-        let mut blocks = BlockMatrix::new(100, &ring);
+        let mut blocks = BlockMatrix::<6>::new(100, &ring);
         assert!(blocks.blocks.len() < 310, "{}", blocks.blocks.len());
         assert!(!blocks.factorise());
     }

@@ -41,6 +41,7 @@ mod pose;
 mod pose_graph;
 mod pose_prior;
 
+pub use block_cholesky::BlockMatrix;
 pub use bundle::{BundleConfig, BundleObservation, BundlePose, BundleProblem, BundleSolution};
 pub use bundle_solver::BundleSolver;
 pub use huber::Huber;

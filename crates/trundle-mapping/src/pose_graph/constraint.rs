@@ -17,6 +17,11 @@ pub(crate) struct Constraint {
 }
 
 impl Constraint {
+    /// Numbers of the two poses.
+    pub(crate) fn poses(&self) -> (usize, usize) {
+        (self.from as usize, self.to as usize)
+    }
+
     /// How far the poses are from the measurement, in the measured second pose's frame: m, m, rad.
     pub(crate) fn residual(&self, from: Pose2, to: Pose2) -> Vector3<f64> {
         let off = self.from_to.inverse() * (from.inverse() * to);

@@ -2,7 +2,6 @@
 
 mod constraint;
 mod solver;
-mod sparse_blocks;
 mod uncertainty_paths;
 
 pub(crate) use constraint::Constraint;
