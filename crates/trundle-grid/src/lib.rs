@@ -1,5 +1,6 @@
 //! Grids of the floor: occupancy as log-odds, ray updates, and the distance to the nearest obstacle.
 //!
+//! - [`TileGrid`]: unbounded grid of tiles that clones share; [`LogOddsGrid`] and [`tiles::TileMap`] are its two kinds.
 //! - [`LogOddsGrid`] and [`ScanCells`]: log-odds of each cell, and the cells that one scan hits or sees free.
 //! - [`PublishedGrid`]: three-valued occupancy grid, updated in place, with a revision number for each tile.
 //! - [`ray_cells`]: exact traversal of the cells along a line.
@@ -38,12 +39,14 @@ mod published_grid;
 mod ray_cells;
 mod scan_cells;
 mod tile_directory;
+mod tile_grid;
 pub mod tiles;
 
 pub use cell::GridCell;
 pub use config::MapperConfig;
 pub use log_odds::{log_odds, probability};
-pub use log_odds_grid::{Evidence, LogOddsGrid};
+pub use log_odds_grid::{Evidence, EvidenceTile, LogOddsGrid};
 pub use published_grid::{PublishedGrid, Thresholds};
 pub use ray_cells::{RayCells, ray_cells};
 pub use scan_cells::{HitCell, ScanCells};
+pub use tile_grid::{TileData, TileGrid, TileIndex};

@@ -1,7 +1,7 @@
 //! Log-odds and mean hit of each cell of an unbounded grid.
 
-use crate::{GridCell, tile_directory::TileDirectory};
-use std::sync::Arc;
+use crate::GridCell;
+use crate::tile_grid::{TileData, TileGrid, TileIndex};
 use trundle_core::Vector2;
 
 /// Accumulated evidence about one cell.
@@ -34,13 +34,18 @@ impl Evidence {
     }
 }
 
-/// Evidence in tiles of 64 x 64 cells. A tile is allocated at its first write, and shared between clones until one writes.
-///
-/// Reading and writing a cell is O(1). Memory: 48 kB for each allocated tile and 16 bytes for each tile of the bounding box.
-#[derive(Debug, Clone, Default)]
-pub struct LogOddsGrid {
-    tiles: TileDirectory<[Evidence]>,
+/// Evidence of 64 x 64 cells: 48 kB.
+#[derive(Debug, Clone)]
+pub struct EvidenceTile([Evidence; LogOddsGrid::TILE_SIDE * LogOddsGrid::TILE_SIDE]);
+
+impl TileData for EvidenceTile {
+    const EMPTY: Self = Self([Evidence::NONE; LogOddsGrid::TILE_SIDE * LogOddsGrid::TILE_SIDE]);
 }
+
+/// Log-odds and mean hit of each cell, in tiles of 64 x 64 cells.
+///
+/// Reading and writing a cell is O(1). Memory: 48 kB for each stored tile.
+pub type LogOddsGrid = TileGrid<EvidenceTile>;
 
 const TILE_BITS: i32 = 6;
 const TILE_MASK: i32 = LogOddsGrid::TILE_SIDE as i32 - 1;
@@ -49,60 +54,49 @@ impl LogOddsGrid {
     /// Side of a tile, cells.
     pub const TILE_SIDE: usize = 1 << TILE_BITS;
 
-    /// Evidence about a cell; `None` where no tile is allocated.
+    /// Evidence about a cell; `None` where no tile is stored.
     pub fn get(&self, cell: GridCell) -> Option<&Evidence> {
-        self.tiles.get(tile_of(cell)).map(|tile| &tile[index_in_tile(cell)])
+        self.stored(tile_of(cell)).map(|tile| &tile.0[index_in_tile(cell)])
     }
 
-    /// Log-odds of a cell; 0 where no tile is allocated.
+    /// Log-odds of a cell; 0 where no tile is stored.
     pub fn log_odds(&self, cell: GridCell) -> f32 {
         self.get(cell).map_or(0.0, |evidence| evidence.log_odds)
     }
 
     /// Bounding box of all tiles: lowest cell and (columns, rows) of cells.
     pub fn bounds(&self) -> (GridCell, (usize, usize)) {
-        let (first, (cols, rows)) = self.tiles.bounds();
+        let (first, (cols, rows)) = self.tile_bounds();
         let corner = GridCell { x: first.0 << TILE_BITS, y: first.1 << TILE_BITS };
         (corner, (cols * Self::TILE_SIDE, rows * Self::TILE_SIDE))
     }
 
     /// Bounding box of all tiles: lowest tile and (columns, rows) of tiles.
-    pub fn tile_bounds(&self) -> ((i32, i32), (usize, usize)) {
-        self.tiles.bounds()
-    }
-
-    /// Number of allocated tiles.
-    pub fn tiles(&self) -> usize {
-        self.tiles.iter().count()
+    pub fn tile_bounds(&self) -> (TileIndex, (usize, usize)) {
+        let Some((low, high)) = self.extent() else { return ((0, 0), (0, 0)) };
+        (low, ((high.0 - low.0 + 1) as usize, (high.1 - low.1 + 1) as usize))
     }
 
     /// Evidence to write to. Allocates the tile if there is none, and copies it if a clone shares it.
     pub fn entry(&mut self, cell: GridCell) -> &mut Evidence {
-        &mut self.tile_mut(cell)[index_in_tile(cell)]
+        &mut self.tile_mut(tile_of(cell)).0[index_in_tile(cell)]
     }
 
     /// Evidence of many cells to write to. Successive cells of one tile cost one tile lookup.
     pub fn each_entry(&mut self, cells: &[GridCell], mut each: impl FnMut(GridCell, &mut Evidence)) {
         for run in cells.chunk_by(|a, b| tile_of(*a) == tile_of(*b)) {
-            let tile = self.tile_mut(run[0]);
-            run.iter().for_each(|cell| each(*cell, &mut tile[index_in_tile(*cell)]));
+            let tile = self.tile_mut(tile_of(run[0]));
+            run.iter().for_each(|cell| each(*cell, &mut tile.0[index_in_tile(*cell)]));
         }
     }
 
     /// Grows the bounding box to contain `cell`.
     pub fn reach(&mut self, cell: GridCell) {
-        self.tiles.reach(tile_of(cell));
-    }
-
-    fn tile_mut(&mut self, cell: GridCell) -> &mut [Evidence] {
-        let slot = self.tiles.slot_mut(tile_of(cell));
-        Arc::make_mut(
-            slot.get_or_insert_with(|| Arc::new([Evidence::NONE; Self::TILE_SIDE * Self::TILE_SIDE])),
-        )
+        self.reach_tile(tile_of(cell));
     }
 }
 
-fn tile_of(cell: GridCell) -> (i32, i32) {
+fn tile_of(cell: GridCell) -> TileIndex {
     (cell.x >> TILE_BITS, cell.y >> TILE_BITS)
 }
 

@@ -6,7 +6,7 @@ use std::sync::Arc;
 ///
 /// Lookup is O(1). Memory: one reference for each slot of the bounding box.
 #[derive(Debug)]
-pub(crate) struct TileDirectory<T: ?Sized> {
+pub(crate) struct TileDirectory<T> {
     /// Lowest slot of the bounding box.
     first: (i32, i32),
     cols: usize,
@@ -14,19 +14,19 @@ pub(crate) struct TileDirectory<T: ?Sized> {
     slots: Vec<Option<Arc<T>>>,
 }
 
-impl<T: ?Sized> Default for TileDirectory<T> {
+impl<T> Default for TileDirectory<T> {
     fn default() -> Self {
         Self { first: (0, 0), cols: 0, rows: 0, slots: Vec::new() }
     }
 }
 
-impl<T: ?Sized> Clone for TileDirectory<T> {
+impl<T> Clone for TileDirectory<T> {
     fn clone(&self) -> Self {
         Self { slots: self.slots.clone(), ..*self }
     }
 }
 
-impl<T: ?Sized> TileDirectory<T> {
+impl<T> TileDirectory<T> {
     /// Tile at a slot; `None` where no tile was stored.
     pub(crate) fn get(&self, at: (i32, i32)) -> Option<&Arc<T>> {
         self.index(at).and_then(|index| self.slots[index].as_ref())
@@ -52,6 +52,7 @@ impl<T: ?Sized> TileDirectory<T> {
     }
 
     /// Lowest slot of the bounding box, with its columns and rows.
+    #[cfg(test)]
     pub(crate) fn bounds(&self) -> ((i32, i32), (usize, usize)) {
         (self.first, (self.cols, self.rows))
     }

@@ -1,74 +1,92 @@
-//! Unbounded map of tiles, shared between clones.
+//! Unbounded grid of tiles, shared between clones.
 
-use super::tile::Tile;
 use crate::tile_directory::TileDirectory;
 use std::{collections::BTreeSet, sync::Arc};
+
+/// Content of one tile of a [`TileGrid`]: a square of cells.
+pub trait TileData: Clone + 'static {
+    /// Tile of cells without evidence.
+    const EMPTY: Self;
+}
 
 const CHUNK_BITS: i32 = 4;
 const CHUNK_SIDE: usize = 1 << CHUNK_BITS;
 
-/// Tile of every place where nothing is known.
-pub(super) static UNKNOWN_TILE: Tile = Tile::EMPTY;
+/// Tile coordinates.
+pub type TileIndex = (i32, i32);
 
-/// Unbounded map of tiles in chunks of 16 x 16. Clones share chunks and tiles until one of them writes.
+/// Unbounded grid of tiles in chunks of 16 x 16. Clones share chunks and tiles until one of them writes.
 ///
-/// A clone costs one reference for each chunk (26 x 26 m at 5 cm). The cost of a read or a write does not depend on the size of the
-/// map. Reference counts are atomic, so clones may live in different threads.
-#[derive(Debug, Clone, Default)]
-pub struct TileMap {
-    chunks: TileDirectory<Chunk>,
+/// A clone costs one reference for each chunk (26 x 26 m with tiles of 32 cells of 5 cm). The cost of a read or a write does not
+/// depend on the size of the grid. Reference counts are atomic, so clones may live in different threads.
+#[derive(Debug, Clone)]
+pub struct TileGrid<T> {
+    chunks: TileDirectory<Chunk<T>>,
+    /// Lowest and highest tile of the bounding box.
+    extent: Option<(TileIndex, TileIndex)>,
+}
+
+impl<T> Default for TileGrid<T> {
+    fn default() -> Self {
+        Self { chunks: TileDirectory::default(), extent: None }
+    }
 }
 
 /// 16 x 16 tiles.
 #[derive(Debug, Clone)]
-pub(super) struct Chunk {
-    tiles: [Option<Arc<Tile>>; CHUNK_SIDE * CHUNK_SIDE],
+pub(crate) struct Chunk<T> {
+    tiles: [Option<Arc<T>>; CHUNK_SIDE * CHUNK_SIDE],
 }
 
-impl Chunk {
+impl<T> Chunk<T> {
     const EMPTY: Self = Self { tiles: [const { None }; CHUNK_SIDE * CHUNK_SIDE] };
 
     /// Stored tiles with their indices.
-    pub(super) fn tiles(&self) -> impl Iterator<Item = (usize, &Arc<Tile>)> {
+    pub(crate) fn tiles(&self) -> impl Iterator<Item = (usize, &Arc<T>)> {
         self.tiles.iter().enumerate().filter_map(|(i, tile)| Some((i, tile.as_ref()?)))
     }
 
     /// Chunk with tiles at these indices.
-    pub(super) fn with(tiles: impl Iterator<Item = (usize, Arc<Tile>)>) -> Self {
+    pub(crate) fn with(tiles: impl Iterator<Item = (usize, Arc<T>)>) -> Self {
         let mut chunk = Self::EMPTY;
         tiles.for_each(|(index, tile)| chunk.tiles[index] = Some(tile));
         chunk
     }
 
-    fn index(tile: (i32, i32)) -> usize {
+    fn index(tile: TileIndex) -> usize {
         const MASK: i32 = CHUNK_SIDE as i32 - 1;
         (((tile.1 & MASK) << CHUNK_BITS) | (tile.0 & MASK)) as usize
     }
 }
 
-impl TileMap {
-    /// Tile at these tile coordinates; a tile of unknown cells where none is stored.
-    pub fn tile(&self, tile: (i32, i32)) -> &Tile {
-        self.get(tile).map_or(&UNKNOWN_TILE, |tile| tile)
+impl<T: TileData> TileGrid<T> {
+    /// Stored tile at these tile coordinates.
+    pub fn stored(&self, tile: TileIndex) -> Option<&T> {
+        self.chunk(tile)?.tiles[Chunk::<T>::index(tile)].as_deref()
     }
 
     /// Tile to write to. Allocates the tile if there is none, and copies it if a clone shares it.
-    pub fn tile_mut(&mut self, tile: (i32, i32)) -> &mut Tile {
+    pub fn tile_mut(&mut self, tile: TileIndex) -> &mut T {
         let slot = self.chunks.slot_mut(chunk_of(tile));
         let chunk = Arc::make_mut(slot.get_or_insert_with(|| Arc::new(Chunk::EMPTY)));
-        Arc::make_mut(chunk.tiles[Chunk::index(tile)].get_or_insert_with(|| Arc::new(Tile::EMPTY)))
+        let extent = &mut self.extent;
+        let stored = chunk.tiles[Chunk::<T>::index(tile)].get_or_insert_with(|| {
+            grow(extent, tile);
+            Arc::new(T::EMPTY)
+        });
+        Arc::make_mut(stored)
     }
 
-    /// Visits the tiles that differ from `before`, an earlier clone of this map or of a relative. A tile that only `before` holds is
+    /// Visits the tiles that differ from `before`, an earlier clone of this grid or of a relative. A tile that only `before` holds is
     /// visited as `None`. Shared chunks and tiles are skipped by reference.
-    pub fn changed_tiles(&self, before: &Self, mut visit: impl FnMut((i32, i32), Option<&Tile>)) {
+    pub fn changed_tiles(&self, before: &Self, mut visit: impl FnMut(TileIndex, Option<&T>)) {
         for (corner, chunk) in self.chunks() {
             let old = before.chunk(corner);
             if old.is_some_and(|old| Arc::ptr_eq(old, chunk)) {
                 continue;
             }
             for (at, tile) in tiles_of(corner, chunk) {
-                let same = old.and_then(|old| old.tiles[Chunk::index(at)].as_ref());
+                let same = old.and_then(|old| old.tiles[Chunk::<T>::index(at)].as_ref());
                 if !same.is_some_and(|same| Arc::ptr_eq(same, tile)) {
                     visit(at, Some(tile));
                 }
@@ -80,65 +98,75 @@ impl TileMap {
                 continue;
             }
             for (at, _) in tiles_of(corner, old) {
-                if chunk.is_none_or(|chunk| chunk.tiles[Chunk::index(at)].is_none()) {
+                if chunk.is_none_or(|chunk| chunk.tiles[Chunk::<T>::index(at)].is_none()) {
                     visit(at, None);
                 }
             }
         }
     }
 
-    /// Lowest and highest coordinates of the stored tiles; `None` of an empty map.
-    pub fn extent(&self) -> Option<((i32, i32), (i32, i32))> {
-        let tiles = self.chunks().flat_map(|(corner, chunk)| tiles_of(corner, chunk));
-        tiles.fold(None, |bounds, (at, _)| {
-            let (low, high): ((i32, i32), (i32, i32)) = bounds.unwrap_or((at, at));
-            Some(((low.0.min(at.0), low.1.min(at.1)), (high.0.max(at.0), high.1.max(at.1))))
-        })
+    /// Lowest and highest tile of the bounding box of all stored and reached tiles; `None` of an empty grid.
+    pub fn extent(&self) -> Option<(TileIndex, TileIndex)> {
+        self.extent
+    }
+
+    /// Grows the bounding box to contain a tile, without storing it.
+    pub fn reach_tile(&mut self, tile: TileIndex) {
+        grow(&mut self.extent, tile);
+    }
+
+    /// Number of stored tiles.
+    pub fn tile_count(&self) -> usize {
+        self.chunks().map(|(_, chunk)| chunk.tiles().count()).sum()
     }
 
     /// Stores a chunk at the place of the tile `corner`.
-    pub(super) fn put(&mut self, corner: (i32, i32), chunk: Arc<Chunk>) {
+    pub(crate) fn put(&mut self, corner: TileIndex, chunk: Arc<Chunk<T>>) {
+        tiles_of(corner, &chunk).for_each(|(at, _)| grow(&mut self.extent, at));
         *self.chunks.slot_mut(chunk_of(corner)) = Some(chunk);
     }
 
     /// Chunks with their lowest tiles.
-    pub(super) fn chunks(&self) -> impl Iterator<Item = ((i32, i32), &Arc<Chunk>)> {
+    pub(crate) fn chunks(&self) -> impl Iterator<Item = (TileIndex, &Arc<Chunk<T>>)> {
         self.chunks.iter().map(|((x, y), chunk)| ((x << CHUNK_BITS, y << CHUNK_BITS), chunk))
     }
 
-    fn get(&self, tile: (i32, i32)) -> Option<&Arc<Tile>> {
-        self.chunk(tile)?.tiles[Chunk::index(tile)].as_ref()
-    }
-
-    fn chunk(&self, tile: (i32, i32)) -> Option<&Arc<Chunk>> {
+    fn chunk(&self, tile: TileIndex) -> Option<&Arc<Chunk<T>>> {
         self.chunks.get(chunk_of(tile))
     }
 }
 
-fn chunk_of(tile: (i32, i32)) -> (i32, i32) {
+/// Grows a bounding box to contain a tile.
+fn grow(extent: &mut Option<(TileIndex, TileIndex)>, tile: TileIndex) {
+    let (low, high) = extent.unwrap_or((tile, tile));
+    *extent = Some(((low.0.min(tile.0), low.1.min(tile.1)), (high.0.max(tile.0), high.1.max(tile.1))));
+}
+
+fn chunk_of(tile: TileIndex) -> (i32, i32) {
     (tile.0 >> CHUNK_BITS, tile.1 >> CHUNK_BITS)
 }
 
-fn tiles_of(corner: (i32, i32), chunk: &Chunk) -> impl Iterator<Item = ((i32, i32), &Arc<Tile>)> {
+fn tiles_of<T>(corner: TileIndex, chunk: &Chunk<T>) -> impl Iterator<Item = (TileIndex, &Arc<T>)> {
     let at = move |i: usize| (corner.0 + (i % CHUNK_SIDE) as i32, corner.1 + (i / CHUNK_SIDE) as i32);
     chunk.tiles().map(move |(i, tile)| (at(i), tile))
 }
 
-/// Bytes of the tiles and directories of several maps. Shared tiles and chunks count once.
-pub fn tile_bytes<'a>(maps: impl Iterator<Item = &'a TileMap>) -> usize {
+/// Bytes of the tiles and directories of several grids. Shared tiles and chunks count once.
+pub fn tile_bytes<'a, T: TileData>(grids: impl Iterator<Item = &'a TileGrid<T>>) -> usize {
     let (mut chunks, mut tiles, mut directories) = (BTreeSet::new(), BTreeSet::new(), 0);
-    for map in maps {
-        directories += map.chunks.bytes();
-        for (_, chunk) in map.chunks.iter().filter(|(_, chunk)| chunks.insert(Arc::as_ptr(chunk))) {
+    for grid in grids {
+        directories += grid.chunks.bytes();
+        for (_, chunk) in grid.chunks.iter().filter(|(_, chunk)| chunks.insert(Arc::as_ptr(chunk))) {
             tiles.extend(chunk.tiles().map(|(_, tile)| Arc::as_ptr(tile)));
         }
     }
-    directories + chunks.len() * size_of::<Chunk>() + tiles.len() * size_of::<Tile>()
+    directories + chunks.len() * size_of::<Chunk<T>>() + tiles.len() * size_of::<T>()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::tiles::{Tile, TileMap};
     use proptest::prelude::*;
     use std::collections::BTreeMap;
 
@@ -173,6 +201,16 @@ mod tests {
             let only_second: Vec<_> = second.keys().filter(|at| !first.contains_key(at)).copied().collect();
             prop_assert_eq!(gone, only_second);
         }
+    }
+
+    #[test]
+    fn a_reached_tile_is_in_the_extent_and_is_not_stored() {
+        let mut map = TileMap::default();
+        write(&mut map, (0, 0), 1);
+        map.reach_tile((-20, 7));
+        assert_eq!(map.extent(), Some(((-20, 0), (0, 7))));
+        assert!(map.stored((-20, 7)).is_none() && map.stored((0, 0)).is_some());
+        assert_eq!(map.tile_count(), 1);
     }
 
     #[test]

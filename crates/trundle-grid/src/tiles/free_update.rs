@@ -2,8 +2,7 @@
 
 use super::{
     cell_mask::{CellMask, TileMask},
-    tile::Tile,
-    tile_map::TileMap,
+    tile::{Tile, TileMap},
 };
 
 /// Subtracts the log-odds of a free ray from the cells of a mask, a row of a tile at a time.
@@ -159,7 +158,7 @@ mod tests {
             values in prop::collection::vec(any::<i8>(), Tile::SIDE), word in any::<u32>(), most in any::<i8>(),
         ) {
             let update = FreeUpdate::new(13, -64, -26);
-            let mut tile = Tile::EMPTY;
+            let mut tile = Tile::UNKNOWN;
             tile.log_odds[32..64].copy_from_slice(&values);
             // Every second cell contains an obstacle.
             tile.own[1] = 0x5555_5555;

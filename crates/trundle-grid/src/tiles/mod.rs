@@ -6,15 +6,14 @@ mod nearest_field;
 mod ray_update;
 mod scan_rays;
 mod tile;
-mod tile_map;
 mod tile_pools;
 mod tile_ray;
 mod tile_window;
 
+pub use crate::tile_grid::tile_bytes;
 pub use nearest_field::NearestField;
 pub use ray_update::{RayUpdate, RayUpdateScratch};
 pub use scan_rays::{RaySpan, ScanRay, ScanRays};
-pub use tile::{NearestObstacle, Tile};
-pub use tile_map::{TileMap, tile_bytes};
+pub use tile::{NearestObstacle, Tile, TileMap};
 pub use tile_pools::{ChunkParts, TilePools, assemble};
 pub use tile_window::TileWindow;

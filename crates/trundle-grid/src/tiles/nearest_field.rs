@@ -1,9 +1,6 @@
 //! Incremental field of nearest obstacles.
 
-use super::{
-    tile::{NearestObstacle, Tile},
-    tile_map::TileMap,
-};
+use super::tile::{NearestObstacle, Tile, TileMap};
 use std::ops::RangeInclusive;
 
 /// Field of nearest obstacles, updated as obstacles appear and disappear. Matching a point against it costs one lookup.
@@ -260,7 +257,7 @@ mod tests {
             obstacles in prop::collection::vec(((0..32_i32, 0..32_i32), (-7..=7_i32, -7..=7_i32)), 1..40),
         ) {
             let model = NearestField::new(4, 2.0);
-            let (mut portable, mut vectors) = (Tile::EMPTY, Tile::EMPTY);
+            let (mut portable, mut vectors) = (Tile::UNKNOWN, Tile::UNKNOWN);
             for (cell, (x, y)) in obstacles {
                 let part = |c: i32| (c - 4).max(0)..=(c + 4).min(31);
                 let part = (part(cell.0), part(cell.1));

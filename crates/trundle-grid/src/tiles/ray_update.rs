@@ -5,8 +5,7 @@ use super::{
     free_update::FreeUpdate,
     nearest_field::NearestField,
     scan_rays::{RaySpan, ScanRays},
-    tile::{NearestObstacle, Tile},
-    tile_map::TileMap,
+    tile::{NearestObstacle, Tile, TileMap},
     tile_ray::TileRay,
 };
 use crate::MapperConfig;

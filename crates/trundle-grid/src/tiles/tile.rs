@@ -1,4 +1,6 @@
-//! One tile of 32 x 32 cells: log-odds, nearest obstacles and a coarse likelihood.
+//! Tile of 32 x 32 cells: log-odds, nearest obstacles and a coarse likelihood.
+
+use crate::tile_grid::{TileData, TileGrid, TileIndex};
 
 /// Vector from the centre of a cell to the nearest obstacle point, in 1/16 cells.
 ///
@@ -68,6 +70,23 @@ impl NearestObstacle {
     }
 }
 
+/// Map of one particle: log-odds in bytes, with the nearest obstacle of each cell.
+pub type TileMap = TileGrid<Tile>;
+
+/// Tile of every place where nothing is known.
+pub(super) static UNKNOWN_TILE: Tile = Tile::UNKNOWN;
+
+impl TileMap {
+    /// Tile at these tile coordinates; a tile of unknown cells where none is stored.
+    pub fn tile(&self, tile: TileIndex) -> &Tile {
+        self.stored(tile).unwrap_or(&UNKNOWN_TILE)
+    }
+}
+
+impl TileData for Tile {
+    const EMPTY: Self = Self::UNKNOWN;
+}
+
 /// Tile of 32 x 32 cells: 3.5 kB.
 #[derive(Debug, Clone)]
 pub struct Tile {
@@ -94,7 +113,7 @@ impl Tile {
     pub const LOG_ODDS_UNIT: f64 = 1.0 / 32.0;
 
     /// Tile of unknown cells.
-    pub const EMPTY: Self = Self {
+    pub const UNKNOWN: Self = Self {
         log_odds: [0; Self::CELLS],
         nearest: [NearestObstacle::NONE; Self::CELLS],
         coarse: [0; Self::COARSE_SIDE * Self::COARSE_SIDE],
@@ -110,7 +129,7 @@ impl Tile {
 
     /// Tile from its bytes, 3 a cell, with an empty coarse likelihood. Panics on fewer bytes.
     pub fn from_bytes(bytes: &[u8]) -> Self {
-        let mut tile = Self::EMPTY;
+        let mut tile = Self::UNKNOWN;
         for i in 0..Self::CELLS {
             tile.log_odds[i] = bytes[i] as i8;
             tile.nearest[i] =

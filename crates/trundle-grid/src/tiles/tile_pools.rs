@@ -1,13 +1,11 @@
 //! Several maps taken apart into unique tiles and chunks, for files.
 
-use super::{
-    tile::Tile,
-    tile_map::{Chunk, TileMap},
-};
+use super::tile::{Tile, TileMap};
+use crate::tile_grid::{Chunk, TileIndex};
 use std::{collections::BTreeMap, sync::Arc};
 
 /// Lowest tile of a chunk, and the indices of its tiles in the chunk with their numbers in the pool.
-pub type ChunkParts = ((i32, i32), Vec<(u16, u32)>);
+pub type ChunkParts = (TileIndex, Vec<(u16, u32)>);
 
 /// Tiles and chunks of several maps, each once, referred to by number.
 #[derive(Debug)]

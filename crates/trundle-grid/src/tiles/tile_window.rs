@@ -1,9 +1,6 @@
 //! Direct access to the tiles of a rectangle of a map.
 
-use super::{
-    tile::Tile,
-    tile_map::{TileMap, UNKNOWN_TILE},
-};
+use super::tile::{Tile, TileMap, UNKNOWN_TILE};
 
 /// References to the tiles of a rectangle of a map, for many lookups.
 #[derive(Debug)]
