@@ -2,19 +2,21 @@
 
 use trundle_core::{Footprint, Vector2};
 
-/// Half of the bearings at which the bumper may have met something, deg: those that the robot drives to.
-const HALF_WIDTH: i32 = 30;
-/// A point each so many deg: closer than the cells of a map.
-const STEP: i32 = 6;
-/// What pressed the bumper is so far beyond the outline, m: in the next cell.
-const BEYOND: f64 = 0.03;
+/// Half of the bumper's angle \[deg\]: contact is assumed at bearings within it. Source: the Kobuki's front bumper.
+const BUMPER_HALF_ANGLE_DEG: i32 = 30;
+/// Angle between neighbouring contact points \[deg\]: closer than the cells of a map. Source: ours.
+const CONTACT_POINT_STEP_DEG: i32 = 6;
+/// Distance of a contact point from the footprint's outline \[m\]: it falls into the next cell. Source: ours.
+const CONTACT_POINT_OFFSET_M: f64 = 0.03;
 
 /// Where something that presses the bumper of a robot of this outline may stand: points ahead of it, base frame, m.
 pub(crate) fn ahead_of(footprint: &Footprint) -> Vec<Vector2> {
-    let bearings = (-HALF_WIDTH..=HALF_WIDTH).step_by(STEP as usize).map(|deg| f64::from(deg).to_radians());
+    let bearings = (-BUMPER_HALF_ANGLE_DEG..=BUMPER_HALF_ANGLE_DEG)
+        .step_by(CONTACT_POINT_STEP_DEG as usize)
+        .map(|deg| f64::from(deg).to_radians());
     let point = |bearing: f64| {
         let direction = Vector2::new(bearing.cos(), bearing.sin());
-        direction * (way_out(footprint, direction) + BEYOND)
+        direction * (way_out(footprint, direction) + CONTACT_POINT_OFFSET_M)
     };
     bearings.map(point).collect()
 }

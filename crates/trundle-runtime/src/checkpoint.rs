@@ -32,7 +32,7 @@ pub enum CheckpointError {
     #[error("no memory of trundle")]
     Foreign,
     /// Made by a version that this one does not read.
-    #[error("memory of version {found}, expected {VERSION}")]
+    #[error("memory of version {found}, expected {FORMAT_VERSION}")]
     Version {
         /// Its version.
         found: u32,
@@ -69,7 +69,8 @@ struct Notes {
 }
 
 const MAGIC: &[u8; 8] = b"TRUNDLEM";
-const VERSION: u32 = 2;
+/// Version of the file format.
+const FORMAT_VERSION: u32 = 2;
 
 impl Checkpoint {
     /// The memory as bytes.
@@ -87,7 +88,7 @@ impl Checkpoint {
         let cells = self.grid.cells().iter().map(|cell| code(*cell)).collect();
         let rest = [length.to_le_bytes().to_vec(), notes, cells, self.visual.clone()].concat();
         let checksum = crc32fast::hash(&rest).to_le_bytes();
-        [MAGIC.as_slice(), &VERSION.to_le_bytes(), &checksum, &rest].concat()
+        [MAGIC.as_slice(), &FORMAT_VERSION.to_le_bytes(), &checksum, &rest].concat()
     }
 
     /// The memory of these bytes. The visual maps are looked into when the robot wakes up.
@@ -97,7 +98,7 @@ impl Checkpoint {
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, CheckpointError> {
         let rest = bytes.strip_prefix(MAGIC).ok_or(CheckpointError::Foreign)?;
         let (version, rest) = number(rest)?;
-        if version != VERSION {
+        if version != FORMAT_VERSION {
             return Err(CheckpointError::Version { found: version });
         }
         let (checksum, rest) = number(rest)?;

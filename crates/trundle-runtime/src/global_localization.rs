@@ -43,26 +43,27 @@ pub(crate) struct LocalizedPose {
     pub(crate) covariance: Matrix3<f64>,
 }
 
-/// So many scans after the first, each 10 deg or 0.3 m farther on, must fit the place as well: in the dark, and where images show
-/// enough to be recognised and are not, which speaks against every place of the map.
-const CONFIRMED: (usize, usize) = (6, 18);
-/// A robot that stands shows the same again and again, s: as long as it likes.
-const STANDING: f64 = 3600.0;
-/// A scan that the map explains less of does not fit the place.
-const LEAST_EXPLAINED: f64 = 0.75;
-/// Standard deviation of a depth camera's range at 0 m, at least: cells have corners.
-const DEPTH_NOISE: f64 = 0.01;
+/// Number of scans after the first that must fit a candidate pose, each 10 deg or 0.3 m farther on, where no image can be recognised. Source: ours.
+const MIN_CONFIRMING_SCANS: usize = 6;
+/// The same number where images have enough features and are not recognised: that is evidence against every pose in the map. Source: ours.
+const MIN_CONFIRMING_SCANS_SEEN: usize = 18;
+/// Longest time between two scans of a standing robot that still count as consecutive \[s\]. Source: ours.
+const MAX_STANDING_GAP_S: f64 = 3600.0;
+/// Smallest share of a scan that the map must explain. A pose with less is rejected. Source: ours.
+const MIN_EXPLAINED_SHARE: f64 = 0.75;
+/// Smallest standard deviation of a depth camera's range \[m\]: cells have corners. Source: ours.
+const MIN_RANGE_SIGMA_M: f64 = 0.01;
 
 impl GlobalLocalization {
     /// Nothing is looked for yet.
     pub(crate) fn new(config: &RobotConfig, blind_range: f64) -> Result<Self, Invalid> {
         let map = MapperConfig { blind_range, ..config.mapping.clone() };
-        let laser = ParticleConfig { map, wait_gate: STANDING, ..ParticleConfig::default() };
+        let laser = ParticleConfig { map, wait_gate: MAX_STANDING_GAP_S, ..ParticleConfig::default() };
         let config = match config.sight {
             RangeSource::Laser => laser,
             RangeSource::DepthCamera => {
                 let range_noise_growth = config.scan.noise_growth;
-                let range_noise = config.scan.noise_base.max(DEPTH_NOISE);
+                let range_noise = config.scan.noise_base.max(MIN_RANGE_SIGMA_M);
                 ParticleConfig { range_noise, range_noise_growth, ..laser }
             }
         };
@@ -93,11 +94,11 @@ impl GlobalLocalization {
         in_the_dark: bool,
     ) -> Option<LocalizedPose> {
         self.get_ready();
-        let confirmed = if in_the_dark { CONFIRMED.0 } else { CONFIRMED.1 };
+        let confirmed = if in_the_dark { MIN_CONFIRMING_SCANS } else { MIN_CONFIRMING_SCANS_SEEN };
         let Search::UnderWay { localizer, explained: times } = &mut self.search else { return None };
         match localizer.update(odom_from_base, scan) {
             Localized::Known { map_from_base, covariance, explained, degenerate } => {
-                let fits = explained >= LEAST_EXPLAINED;
+                let fits = explained >= MIN_EXPLAINED_SHARE;
                 // One that shows a bare wall alone says little either way.
                 *times = if fits { *times + usize::from(degenerate == 0) } else { 0 };
                 let place = || LocalizedPose {
@@ -195,7 +196,11 @@ mod tests {
         for at in [Pose2::new(1.5, 1.0, 0.3), Pose2::new(2.5, 2.2, -2.0), Pose2::new(3.9, 1.8, 1.5)] {
             let (place, scans) = found(&map, &map, (at, true)).unwrap();
             let (_, in_the_light) = found(&map, &map, (at, false)).unwrap();
-            assert!(scans >= CONFIRMED.0 && in_the_light >= scans + CONFIRMED.1 - CONFIRMED.0, "{scans}");
+            assert!(
+                scans >= MIN_CONFIRMING_SCANS
+                    && in_the_light >= scans + MIN_CONFIRMING_SCANS_SEEN - MIN_CONFIRMING_SCANS,
+                "{scans}"
+            );
             let off = at.inverse() * place;
             assert!(off.position().norm() < 0.05 && off.theta.abs() < 0.02, "{place:?} for {at:?}");
         }

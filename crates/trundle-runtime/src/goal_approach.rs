@@ -65,10 +65,12 @@ impl Default for GoalApproachConfig {
     }
 }
 
-/// The scene is drawn anew so often, 1/s.
-const SCENE_HZ: f64 = 10.0;
-/// Slower than this the robot stands, m/s and rad/s.
-const STANDING: (f64, f64) = (0.02, 0.05);
+/// Rate at which the obstacle scene is rebuilt \[1/s\]. Source: ours.
+const SCENE_RATE_HZ: f64 = 10.0;
+/// Speed below which the robot counts as standing \[m/s\]. Source: ours.
+const STANDING_SPEED_M_S: f64 = 0.02;
+/// Turn rate below which the robot counts as standing \[rad/s\]. Source: ours.
+const STANDING_TURN_RATE_RAD_S: f64 = 0.05;
 
 /// Chooses between an arc and a manoeuvre, and carries the manoeuvre out. A step plans for about
 /// [`PositionerConfig::step_work`]: no more than as much again beyond it.
@@ -109,7 +111,7 @@ impl GoalApproach {
             choice: None,
             positioner: None,
             scene: None,
-            scene_due: Ticker::new(SCENE_HZ),
+            scene_due: Ticker::new(SCENE_RATE_HZ),
             began: None,
             goal: None,
             notes: Notes::default(),
@@ -254,7 +256,7 @@ impl GoalApproach {
 }
 
 fn stands(twist: Twist2) -> bool {
-    twist.v.abs() < STANDING.0 && twist.omega.abs() < STANDING.1
+    twist.v.abs() < STANDING_SPEED_M_S && twist.omega.abs() < STANDING_TURN_RATE_RAD_S
 }
 
 #[cfg(test)]

@@ -13,12 +13,12 @@ pub struct Histogram {
     most: f64,
 }
 
-/// The lower end of the first bin.
-const LEAST: f64 = 1e-6;
-/// Each bin reaches so much farther than it begins: quantiles are in the middle, so within 1 %.
-const RATIO: f64 = 1.02;
-/// Up to a million.
-const BINS: usize = 1396;
+/// Lower end of the first bin.
+const FIRST_BIN_START: f64 = 1e-6;
+/// Ratio of a bin's upper to its lower end: a quantile is the middle of its bin, so within 1 %.
+const BIN_RATIO: f64 = 1.02;
+/// Number of bins: they end at 10^6.
+const BIN_COUNT: usize = 1396;
 
 impl Histogram {
     /// Counts a number; one that is not finite is left out.
@@ -26,9 +26,9 @@ impl Histogram {
         if !value.is_finite() {
             return;
         }
-        self.bins.resize(BINS, 0);
-        let bin = ((value.max(LEAST) / LEAST).ln() / RATIO.ln()) as usize;
-        self.bins[bin.min(BINS - 1)] += 1;
+        self.bins.resize(BIN_COUNT, 0);
+        let bin = ((value.max(FIRST_BIN_START) / FIRST_BIN_START).ln() / BIN_RATIO.ln()) as usize;
+        self.bins[bin.min(BIN_COUNT - 1)] += 1;
         self.count += 1;
         self.sum += value;
         self.most = self.most.max(value);
@@ -39,7 +39,7 @@ impl Histogram {
         if other.count == 0 {
             return;
         }
-        self.bins.resize(BINS, 0);
+        self.bins.resize(BIN_COUNT, 0);
         self.bins.iter_mut().zip(&other.bins).for_each(|(mine, theirs)| *mine += theirs);
         self.count += other.count;
         self.sum += other.sum;
@@ -69,7 +69,7 @@ impl Histogram {
             below += u64::from(n);
             below > rank
         })?;
-        Some((LEAST * RATIO.powf(bin as f64 + 0.5)).min(self.most))
+        Some((FIRST_BIN_START * BIN_RATIO.powf(bin as f64 + 0.5)).min(self.most))
     }
 }
 

@@ -101,19 +101,22 @@ struct Latest {
     unconfirmed: Vec<Vector2>,
 }
 
-/// Images that show enough and have not been located for so long, s, are of another place than the odometry says.
-const UNPLACED: f64 = 0.3;
-/// An image located so long ago, s, no longer tells how the robot moves.
-const MOTION_SEEN: f64 = 0.8;
-/// A correction by more than this is a jump: what moves is not told from scans on both sides of it, m and rad.
-const JUMP: (f64, f64) = (0.1, 0.1);
-/// What came within so many m lately is minded until it is seen to go: more than a robot needs to brake.
-const NEAR_BY: f64 = 1.5;
-/// So long after the last scan what moved may be anywhere, s.
-const MOVERS_LAST: f64 = 1.0;
-/// After each command at least so many cells of a bent grid are redrawn, about 1.5 ms of a camera's scans; and so much of what is
-/// left that all is done after so many commands, which is 1.8 s.
-const REDRAWING: (usize, usize) = (60_000, 90);
+/// Time without a located image \[s\] after which images with enough features count as images of another place than odometry says. Source: ours.
+const UNLOCATED_WITH_FEATURES_S: f64 = 0.3;
+/// Largest age of a located image \[s\] that still measures the robot's motion. Source: ours.
+const MAX_VISUAL_MOTION_AGE_S: f64 = 0.8;
+/// Correction of the pose \[m\] above which obstacle tracks restart: motion is not measured from scans on both sides of a jump. Source: ours.
+const JUMP_M: f64 = 0.1;
+/// The same for the heading \[rad\]. Source: ours.
+const JUMP_RAD: f64 = 0.1;
+/// Distance \[m\] within which a new obstacle is kept until a scan shows it gone: more than the braking distance. Source: ours.
+const NEARBY_OBSTACLE_M: f64 = 1.5;
+/// Age of the last scan \[s\] beyond which the position of a moving obstacle is unknown. Source: ours.
+const MAX_TRACK_AGE_S: f64 = 1.0;
+/// Smallest number of cells of a corrected grid that are redrawn after each command: about 1.5 ms of depth scans. Source: ours.
+const MIN_REDRAWN_CELLS: usize = 60_000;
+/// Number of commands over which the rest of a corrected grid is redrawn: 1.8 s. Source: ours.
+const REDRAW_COMMANDS: usize = 90;
 
 impl Robot {
     /// A robot that has just been switched on: where it stands is the map's origin.
@@ -141,7 +144,7 @@ impl Robot {
             map_due: Ticker::new(config.schedule.validated()?.map_hz),
             mapper,
             scan_poses: ScanPoseLog::default(),
-            redrawn_within: REDRAWING.1,
+            redrawn_within: REDRAW_COMMANDS,
             decision_worker: Some(Box::new(DecisionWorker::new(&config, &footprint)?)),
             background: Background::default(),
             latest: Latest::default(),
@@ -246,7 +249,7 @@ impl Robot {
 
     /// What tells how the robot moves.
     fn motion_sense(&self, now: Stamp) -> MotionSense {
-        let is_seen = || self.latest.located.is_some_and(|located| now - located <= MOTION_SEEN);
+        let is_seen = || self.latest.located.is_some_and(|located| now - located <= MAX_VISUAL_MOTION_AGE_S);
         match self.sight {
             _ if !self.odometry.wheels_are_unresponsive() => MotionSense::Wheels,
             RangeSource::DepthCamera if !is_seen() => MotionSense::Nothing,
@@ -257,7 +260,7 @@ impl Robot {
     /// A slice of redrawing what a loop bent.
     fn redraw(&mut self) {
         if self.mapper.is_redrawing() {
-            let (cells, within) = (REDRAWING.0, self.redrawn_within);
+            let (cells, within) = (MIN_REDRAWN_CELLS, self.redrawn_within);
             self.times.measure(Stage::Mapping, || self.mapper.work_within(cells, within));
             self.redrawn_within = within.saturating_sub(1).max(1);
         }
@@ -319,7 +322,7 @@ impl Robot {
         }
         self.note_place(place);
         let jump = before.inverse() * self.localizer.estimate().pose;
-        if jump.position().norm() > JUMP.0 || jump.theta.abs() > JUMP.1 {
+        if jump.position().norm() > JUMP_M || jump.theta.abs() > JUMP_RAD {
             self.forget_traffic();
         }
         if let Some(scan) = scan {
@@ -375,7 +378,7 @@ impl Robot {
         if !self.knows_its_place(now) {
             // What came lately is where the map is, and expires.
             let here = self.localizer.estimate().pose.position();
-            self.latest.unconfirmed = self.traffic.unconfirmed_hits(now, here, NEAR_BY);
+            self.latest.unconfirmed = self.traffic.unconfirmed_hits(now, here, NEARBY_OBSTACLE_M);
             return self.latest.forget_movers();
         }
         let Ok(pose) = self.localizer.pose_at(now) else { return };
@@ -383,14 +386,14 @@ impl Robot {
         times.measure(Stage::DynamicObstacles, || {
             traffic.add_scan(pose, scan);
             latest.movers = traffic.moving_obstacles(now);
-            latest.unconfirmed = traffic.unconfirmed_hits(now, pose.position(), NEAR_BY);
+            latest.unconfirmed = traffic.unconfirmed_hits(now, pose.position(), NEARBY_OBSTACLE_M);
             latest.still = (!latest.movers.is_empty()).then(|| traffic.static_grid(self.mapper.grid()));
         });
     }
 
     /// Whether a scan can be laid on the map.
     fn knows_its_place(&self, now: Stamp) -> bool {
-        let is_unplaced = self.latest.unplaced.is_some_and(|since| now - since > UNPLACED);
+        let is_unplaced = self.latest.unplaced.is_some_and(|since| now - since > UNLOCATED_WITH_FEATURES_S);
         !is_unplaced && position_sigma(&self.localizer.estimate()) < self.lost_sigma
     }
 
@@ -431,7 +434,7 @@ impl Robot {
             self.mapper.correct(|stamp, pose| moved.get(&stamp).map_or(pose, |moved| *moved * pose))
         });
         if bent > 0 {
-            self.redrawn_within = REDRAWING.1;
+            self.redrawn_within = REDRAW_COMMANDS;
             // What was looked for in the old one is looked for anew.
             self.perception.iter_mut().for_each(|perception| perception.global_localization.end());
         }
@@ -512,7 +515,9 @@ impl Latest {
             return;
         }
         self.movers = traffic.moving_obstacles(now);
-        if self.movers.is_empty() || self.scan.as_ref().is_none_or(|scan| now - scan.stamp() > MOVERS_LAST) {
+        if self.movers.is_empty()
+            || self.scan.as_ref().is_none_or(|scan| now - scan.stamp() > MAX_TRACK_AGE_S)
+        {
             self.forget_movers();
         }
     }

@@ -11,8 +11,8 @@ pub(crate) struct ScanPoseLog {
     most: usize,
 }
 
-/// So many are noted before any is let go.
-const FEW: usize = 2048;
+/// Number of scan poses that are kept before the log is thinned. Source: ours.
+const MIN_KEPT_POSES: usize = 2048;
 
 impl ScanPoseLog {
     /// Notes a scan that was drawn while the visual map had the camera at `visual_from_camera`. Those that the map has not `kept` are let
@@ -23,7 +23,7 @@ impl ScanPoseLog {
         visual_from_camera: Pose3,
         kept: impl FnOnce() -> I,
     ) -> bool {
-        let is_thinned = self.visual.len() >= self.most.max(FEW);
+        let is_thinned = self.visual.len() >= self.most.max(MIN_KEPT_POSES);
         if is_thinned {
             let kept: BTreeSet<Stamp> = kept().collect();
             self.visual.retain(|stamp, _| kept.contains(stamp));
@@ -69,7 +69,7 @@ mod tests {
             .filter(|i| {
                 let is_thinned =
                     scan_poses.note(at(*i), Pose3::identity(), || (0..20_000).step_by(100).map(at));
-                assert!(scan_poses.visual.len() <= FEW);
+                assert!(scan_poses.visual.len() <= MIN_KEPT_POSES);
                 is_thinned
             })
             .count();

@@ -26,7 +26,7 @@ use crate::{
     reason::Reason,
     schedule::Ticker,
     stage::{Stage, StageTimes},
-    workers::perception_worker::UNPLACED,
+    workers::perception_worker::POSE_UNKNOWN_AFTER_S,
 };
 use camera_fov::CameraFov;
 use trundle_control::{FollowPhase, FollowReport, Follower, MotionSense, SafetyMonitor};
@@ -107,12 +107,12 @@ pub(crate) struct Navigator {
     wanted: Twist2,
 }
 
-/// A goal is given up after so many touches.
-const MOST_TOUCHES: u32 = 3;
-/// A position that is known no better is not known at all, m.
-const ANYWHERE: f64 = 50.0;
-/// Held by safety for so long, it plans anew from where it stands, s.
-const PAUSE: f64 = 1.0;
+/// Number of bumper contacts after which a goal is given up. Source: ours.
+const MAX_BUMPER_CONTACTS: u32 = 3;
+/// Standard deviation of the position \[m\] above which the position is unknown. Source: ours.
+const UNKNOWN_POSITION_SIGMA_M: f64 = 50.0;
+/// Time that safety holds the robot before it plans again from where it stands \[s\]. Source: ours.
+const SAFETY_HOLD_BEFORE_REPLAN_S: f64 = 1.0;
 
 impl Navigator {
     pub(crate) fn new(config: &RobotConfig, footprint: &Footprint) -> Result<Self, Invalid> {
@@ -178,7 +178,7 @@ impl Navigator {
     pub(crate) fn touch(&mut self, pressed: bool) {
         self.touches += u32::from(pressed && !self.touched);
         self.touched = pressed;
-        if self.touches >= MOST_TOUCHES && !self.state.is_over() {
+        if self.touches >= MAX_BUMPER_CONTACTS && !self.state.is_over() {
             // What is touched again and again the map does not show, or not where it is.
             self.follower.halt();
             self.goal_approach.reset();
@@ -281,7 +281,7 @@ impl Navigator {
     /// Why the robot does not know where it is, when it does not.
     fn why_lost(&self, s: &WorldState<'_>) -> Option<Reason> {
         let sigma = position_sigma(&s.estimate);
-        if sigma > ANYWHERE {
+        if sigma > UNKNOWN_POSITION_SIGMA_M {
             return Some(Reason::PoseUnknown);
         }
         if sigma > self.config.lost_sigma {
@@ -292,7 +292,7 @@ impl Navigator {
                 Reason::PoseUncertain { sigma }
             });
         }
-        (s.unplaced > UNPLACED).then_some(Reason::ViewContradictsMap)
+        (s.unplaced > POSE_UNKNOWN_AFTER_S).then_some(Reason::ViewContradictsMap)
     }
 
     fn give_up(&mut self, stood: f64) {

@@ -10,12 +10,12 @@ pub(crate) struct ProgressChecker {
     turns: u32,
 }
 
-/// It has got on when it is so far from where it last had, m.
-const STEP: f64 = 0.15;
-/// Or when a turn to the goal's heading has come so far, rad. A turn that looks for a way does not count.
-const TURN: f64 = 0.2;
-/// Turns that count at one place: one whole turn, each of which begins patience anew. Who turns on and on there does not get on.
-const MOST_TURNS: u32 = 32;
+/// Distance from the last position of progress that counts as progress \[m\]. Source: ours.
+const PROGRESS_DISTANCE_M: f64 = 0.15;
+/// Turn towards the goal's heading that counts as progress \[rad\]. A turn in search of a path does not count. Source: ours.
+const PROGRESS_TURN_RAD: f64 = 0.2;
+/// Number of turns that count as progress at one place: one whole turn. More of them are no progress. Source: ours.
+const MAX_TURNS_AT_ONE_PLACE: u32 = 32;
 
 impl ProgressChecker {
     /// Begins anew.
@@ -26,11 +26,11 @@ impl ProgressChecker {
     /// How long the robot has not got on, s; `turns_count` where turning leads to the goal.
     pub(crate) fn standing_for(&mut self, now: Stamp, pose: Pose2, turns_count: bool) -> f64 {
         let (since, at) = *self.last.get_or_insert((now, pose));
-        let has_turned = difference_of_angles(at.theta, pose.theta).abs() > TURN;
-        if at.distance(&pose) > STEP {
+        let has_turned = difference_of_angles(at.theta, pose.theta).abs() > PROGRESS_TURN_RAD;
+        if at.distance(&pose) > PROGRESS_DISTANCE_M {
             (self.last, self.turns) = (Some((now, pose)), 0);
             0.0
-        } else if turns_count && has_turned && self.turns < MOST_TURNS {
+        } else if turns_count && has_turned && self.turns < MAX_TURNS_AT_ONE_PLACE {
             // Where it stands is where it came to.
             (self.last, self.turns) = (Some((now, Pose2 { theta: pose.theta, ..at })), self.turns + 1);
             0.0

@@ -1,6 +1,6 @@
 //! Recovery of lost sight by a turn on the spot.
 
-use crate::behaviour::spin::{ONE_TURN, Spin};
+use crate::behaviour::spin::{SPIN_TURNS, Spin};
 use trundle_core::{Pose2, Twist2, Vector2};
 
 /// The turns on the spot of a robot that sees nothing, and whether they bring its sight back.
@@ -13,12 +13,12 @@ pub(crate) struct SightRecovery {
     found: Option<(Vector2, u32)>,
 }
 
-/// Sight that comes back after less than so much of a turn did not come back by turning.
-const TURNED_AWAY: f64 = 0.02;
-/// Sight that comes back by turning so often at one place does not stay: the way leads where there is none.
-const MOST_FOUND: u32 = 2;
-/// One place, m.
-const PLACE: f64 = 0.5;
+/// Smallest share of a turn after which regained sight is credited to the turn. Source: ours.
+const MIN_RECOVERY_TURN: f64 = 0.02;
+/// Number of times that sight may return by turning at one place. Beyond it the path leads out of sight, and the goal is given up. Source: ours.
+const MAX_RECOVERIES_AT_ONE_PLACE: u32 = 2;
+/// Distance within which two recoveries count as one place \[m\]. Source: ours.
+const ONE_PLACE_M: f64 = 0.5;
 
 impl SightRecovery {
     /// Sight may be lost from now on: the robot wants this.
@@ -28,20 +28,24 @@ impl SightRecovery {
 
     /// The command of a robot that has been blind for long enough: one turn, on to where it wanted to turn, then rest.
     pub(crate) fn turn(&mut self, pose: Pose2) -> Twist2 {
-        if self.look.has_turned(ONE_TURN) { Twist2::ZERO } else { self.look.twist_towards(self.wanted, pose) }
+        if self.look.has_turned(SPIN_TURNS) {
+            Twist2::ZERO
+        } else {
+            self.look.twist_towards(self.wanted, pose)
+        }
     }
 
     /// The robot sees, at this place (map frame, m); whether a turn has brought its sight back there, and not for the first time. A whole
     /// turn in vain shows that it is the camera: when that sees again, turning had nothing to do with it.
     pub(crate) fn sees(&mut self, at: Vector2) -> bool {
         let look = std::mem::take(&mut self.look);
-        if !look.has_turned(TURNED_AWAY) || look.has_turned(ONE_TURN) {
+        if !look.has_turned(MIN_RECOVERY_TURN) || look.has_turned(SPIN_TURNS) {
             return false;
         }
-        let before = self.found.filter(|(place, _)| (at - place).norm() <= PLACE);
+        let before = self.found.filter(|(place, _)| (at - place).norm() <= ONE_PLACE_M);
         let (place, times) = before.map_or((at, 1), |(place, times)| (place, times + 1));
         self.found = Some((place, times));
-        times >= MOST_FOUND
+        times >= MAX_RECOVERIES_AT_ONE_PLACE
     }
 }
 

@@ -12,20 +12,21 @@ pub(crate) struct Spin {
     told: u32,
 }
 
-/// Turn rate, rad/s: slow enough for features to be tracked.
-const RATE: f64 = 0.6;
-/// One turn, and a little more, sees all around.
-pub(crate) const ONE_TURN: f64 = 1.02;
-/// A turn that nobody counts is over after so many times the commands that it takes, at 50 a second.
-const UNCOUNTED: f64 = 1.5;
-const PERIOD: f64 = 0.02;
-/// Turning to something, it is near enough to the middle of the view, rad.
-const FACED: f64 = 0.05;
+/// Turn rate \[rad/s\]: slow enough for features to be tracked. Source: ours.
+const SPIN_RATE_RAD_S: f64 = 0.6;
+/// Length of a spin in turns: a little more than one, so that the views overlap. Source: ours.
+pub(crate) const SPIN_TURNS: f64 = 1.02;
+/// A spin that no sensor measures ends after this multiple of the commands that it needs. Source: ours.
+const UNMEASURED_SPIN_FACTOR: f64 = 1.5;
+/// Time between two commands \[s\].
+const COMMAND_PERIOD_S: f64 = 0.02;
+/// Bearing of a target below which the robot faces it \[rad\]. Source: ours.
+const FACING_TOLERANCE_RAD: f64 = 0.05;
 
 impl Spin {
     /// The command, and a note of how far it has turned: to the left.
     pub(crate) fn twist(&mut self, pose: Pose2) -> Twist2 {
-        self.twist_towards(RATE, pose)
+        self.twist_towards(SPIN_RATE_RAD_S, pose)
     }
 
     /// The same to the side that this turn rate (rad/s) is of.
@@ -33,12 +34,13 @@ impl Spin {
         let last = self.last.replace(pose.theta).unwrap_or(pose.theta);
         self.turned += wrap_angle(pose.theta - last).abs();
         self.told = self.told.saturating_add(1);
-        Twist2::new(0.0, RATE.copysign(side))
+        Twist2::new(0.0, SPIN_RATE_RAD_S.copysign(side))
     }
 
     /// Whether it has turned so many times.
     pub(crate) fn has_turned(&self, turns: f64) -> bool {
-        self.turned.max(f64::from(self.told) * PERIOD * RATE / UNCOUNTED) > turns * TAU
+        self.turned.max(f64::from(self.told) * COMMAND_PERIOD_S * SPIN_RATE_RAD_S / UNMEASURED_SPIN_FACTOR)
+            > turns * TAU
     }
 }
 
@@ -51,7 +53,14 @@ pub(crate) fn face(pose: Pose2, at: Vector2) -> Twist2 {
 /// The turn on the spot towards a heading; none where it is near enough.
 pub(crate) fn turn_to(pose: Pose2, heading: f64) -> Twist2 {
     let off = wrap_angle(heading - pose.theta);
-    Twist2::new(0.0, if off.abs() < FACED { 0.0 } else { (2.0 * off).clamp(-RATE, RATE) })
+    Twist2::new(
+        0.0,
+        if off.abs() < FACING_TOLERANCE_RAD {
+            0.0
+        } else {
+            (2.0 * off).clamp(-SPIN_RATE_RAD_S, SPIN_RATE_RAD_S)
+        },
+    )
 }
 
 #[cfg(test)]
@@ -74,8 +83,8 @@ mod tests {
         let mut look = Spin::default();
         let steps =
             (0..10_000).take_while(|_| !look.has_turned(1.0) && look.twist(Pose2::IDENTITY).omega > 0.0);
-        let seconds = steps.count() as f64 * PERIOD;
-        assert!((seconds - 1.5 * TAU / RATE).abs() < 0.1, "{seconds} s");
+        let seconds = steps.count() as f64 * COMMAND_PERIOD_S;
+        assert!((seconds - 1.5 * TAU / SPIN_RATE_RAD_S).abs() < 0.1, "{seconds} s");
     }
 
     #[test]

@@ -8,10 +8,12 @@ pub(crate) struct CheckpointSchedule {
     due: Option<Stamp>,
 }
 
-/// So much is saved a second, bytes: small maps are no load, large ones (an hour: some 20 MB) are saved seldom.
-const RATE: f64 = 3e5;
-/// At least and at most so long from one save to the next, s. The longest is what a robot that is killed may have forgotten.
-const PERIOD: (f64, f64) = (3.0, 10.0);
+/// Mean rate of writing \[bytes/s\]: small maps are no load; a large map (20 MB after an hour) is saved seldom. Source: ours.
+const WRITE_RATE_BYTES_PER_S: f64 = 3e5;
+/// Shortest time between two checkpoints \[s\]. Source: ours.
+const MIN_PERIOD_S: f64 = 3.0;
+/// Longest time between two checkpoints \[s\]: what a killed robot can lose. Source: ours.
+const MAX_PERIOD_S: f64 = 10.0;
 
 impl CheckpointSchedule {
     /// Whether it is time to save.
@@ -21,7 +23,7 @@ impl CheckpointSchedule {
 
     /// So many bytes were saved.
     pub(crate) fn saved(&mut self, now: Stamp, bytes: usize) {
-        self.due = Some(now.after((bytes as f64 / RATE).clamp(PERIOD.0, PERIOD.1)));
+        self.due = Some(now.after((bytes as f64 / WRITE_RATE_BYTES_PER_S).clamp(MIN_PERIOD_S, MAX_PERIOD_S)));
     }
 }
 

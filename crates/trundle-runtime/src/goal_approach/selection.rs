@@ -5,8 +5,8 @@ use trundle_control::StabilizerPreview;
 use trundle_core::{Footprint, Pose2};
 use trundle_docking::{DockingJob, DockingPlan, DockingPlanner, ObstacleScene};
 
-/// Poses of an arc that are looked at in a step.
-const POSES: usize = 100;
+/// Number of poses of an arc that are checked in one step. Source: ours.
+const POSES_PER_STEP: usize = 100;
 
 /// What is known of the two ways of settling on a goal.
 #[derive(Debug)]
@@ -97,7 +97,7 @@ impl ApproachSelection {
             return true;
         }
         let scene = self.scene.get_or_insert_with(|| about(s, arc, means));
-        let end = (*looked + POSES).min(arc.poses.len());
+        let end = (*looked + POSES_PER_STEP).min(arc.poses.len());
         let clear = |pose: &Pose2| scene.clearance(means.footprint, pose, means.arc_margin).is_none();
         if !arc.poses[*looked..end].iter().all(clear) {
             arc.time = None;

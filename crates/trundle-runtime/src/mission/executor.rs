@@ -62,8 +62,8 @@ enum Work {
     },
 }
 
-/// So often an explorer asks whether what it drives to is still unknown, 1/s.
-const LOOK_HZ: f64 = 1.0;
+/// Rate at which exploration checks whether its target is still unknown \[1/s\]. Source: ours.
+const FRONTIER_CHECK_RATE_HZ: f64 = 1.0;
 
 impl MissionExecutor {
     /// A supervisor without a mission; the robot explores keeping `radius` m from things.
@@ -76,7 +76,7 @@ impl MissionExecutor {
             queue: VecDeque::new(),
             current: None,
             records: Vec::new(),
-            look_due: Ticker::new(LOOK_HZ),
+            look_due: Ticker::new(FRONTIER_CHECK_RATE_HZ),
         })
     }
 

@@ -18,12 +18,12 @@ struct Look {
     odom_from_base: Pose2,
 }
 
-/// A robot that rests may see the same for so long, s: a true camera's noise never lets it.
-const SAME_FOR: f64 = 1.0;
-/// The robot has moved when it is so far from where it was, m, or has turned by so many rad.
-const MOVED: f64 = 0.01;
-/// A scan that shows so little of its bearings shows nothing.
-const LEAST_SEEN: f64 = 0.05;
+/// Time for which a resting robot may get identical images \[s\]: the noise of a working camera prevents it. Source: ours.
+const MAX_IDENTICAL_IMAGES_S: f64 = 1.0;
+/// Motion above which the robot has moved \[m, rad\]. Source: ours.
+const MOTION_THRESHOLD: f64 = 0.01;
+/// Share of bearings with a measurement below which a scan is empty. Source: ours.
+const MIN_SEEN_SHARE: f64 = 0.05;
 
 impl CameraHealth {
     /// Whether this image, taken at `odom_from_base`, is bit for bit the last one though the robot has moved, or again and again:
@@ -35,14 +35,14 @@ impl CameraHealth {
             return false;
         };
         let motion = first.odom_from_base.inverse() * odom_from_base;
-        let has_moved = motion.position().norm() > MOVED || motion.theta.abs() > MOVED;
-        has_moved || now.stamp - first.stamp > SAME_FOR
+        let has_moved = motion.position().norm() > MOTION_THRESHOLD || motion.theta.abs() > MOTION_THRESHOLD;
+        has_moved || now.stamp - first.stamp > MAX_IDENTICAL_IMAGES_S
     }
 
     /// Notes a scan of an image that is not frozen; whether it shows something.
     pub(crate) fn note(&mut self, scan: &Scan) -> bool {
         let seen = scan.beams().iter().filter(|beam| **beam != Beam::Unseen).count();
-        let shows = seen as f64 >= LEAST_SEEN * scan.beams().len() as f64 && seen > 0;
+        let shows = seen as f64 >= MIN_SEEN_SHARE * scan.beams().len() as f64 && seen > 0;
         if shows {
             self.seen = self.seen.max(Some(scan.stamp()));
         }

@@ -22,39 +22,40 @@ pub(crate) enum Fit {
     Elsewhere,
 }
 
-/// A hit so near to something on the map, m, is that: what estimate and map err by.
-const NEAR: f64 = 0.25;
-/// A scan contradicts the map when so much of what the map knows of it does. Somebody who comes near hides less.
-const MUCH: f64 = 0.45;
-/// Or so much at once, where the scan before fitted: what is new comes into view bit by bit.
-const AT_ONCE: f64 = 0.15;
-/// A scan fits when no more than this contradicts the map.
-const FITS: f64 = 0.03;
-/// The scan before, s: one at the map's rate, or the one before that.
-const JUST_NOW: f64 = 0.5;
-/// And the map knows so much of its hits at least.
-const KNOWN: f64 = 0.15;
-/// Scans that contradict the map for so long are of another place, s.
-const LASTS: f64 = 1.5;
+/// Distance between a hit and an occupied cell that counts as agreement \[m\]: the error of pose and map. Source: ours.
+const HIT_TOLERANCE_M: f64 = 0.25;
+/// Share of a scan's known hits that contradict the map, above which the scan contradicts it. A person nearby hides less. Source: ours.
+const CONTRADICTING_SHARE: f64 = 0.45;
+/// The same share where the scan before agreed with the map: new things come into view gradually. Source: ours.
+const SUDDEN_CONTRADICTING_SHARE: f64 = 0.15;
+/// Share of contradicting hits up to which a scan agrees with the map. Source: ours.
+const AGREEING_SHARE: f64 = 0.03;
+/// Largest age of the scan before \[s\]: two periods of the map. Source: ours.
+const MAX_PREVIOUS_SCAN_AGE_S: f64 = 0.5;
+/// Smallest share of hits in known cells for a verdict. Source: ours.
+const MIN_KNOWN_SHARE: f64 = 0.15;
+/// Time of contradiction \[s\] after which the scans show another place. Source: ours.
+const CONTRADICTION_DURATION_S: f64 = 1.5;
 
 impl ScanMapConsistency {
     /// Judges a scan taken at `map_from_base`, as believed.
     pub(crate) fn judge(&mut self, grid: &OccupancyGrid, map_from_base: Pose2, scan: &Scan) -> Fit {
         let part = contradicted(grid, map_from_base, scan);
         let before = self.last.replace((scan.stamp(), part));
-        let before = before.filter(|(at, _)| scan.stamp() - *at <= JUST_NOW);
+        let before = before.filter(|(at, _)| scan.stamp() - *at <= MAX_PREVIOUS_SCAN_AGE_S);
         if before.is_none() {
             // What was before a gap says nothing of what lasts.
             self.since = None;
         }
-        let fitted = before.is_some_and(|(_, part)| part <= FITS);
-        let enough = if fitted || self.since.is_some() { AT_ONCE } else { MUCH };
+        let fitted = before.is_some_and(|(_, part)| part <= AGREEING_SHARE);
+        let enough =
+            if fitted || self.since.is_some() { SUDDEN_CONTRADICTING_SHARE } else { CONTRADICTING_SHARE };
         if part < enough {
             self.since = None;
             return Fit::Fits;
         }
         let since = *self.since.get_or_insert(scan.stamp());
-        if scan.stamp() - since < LASTS {
+        if scan.stamp() - since < CONTRADICTION_DURATION_S {
             return Fit::Contradicts;
         }
         self.forget();
@@ -83,7 +84,7 @@ fn contradicted(grid: &OccupancyGrid, map_from_base: Pose2, scan: &Scan) -> f64 
         }
     }
     let known = agree + contradict;
-    let is_enough = known > 0 && known as f64 >= KNOWN * (known + unknown) as f64;
+    let is_enough = known > 0 && known as f64 >= MIN_KNOWN_SHARE * (known + unknown) as f64;
     if is_enough { contradict as f64 / known as f64 } else { 0.0 }
 }
 
@@ -94,7 +95,7 @@ fn judged(grid: &OccupancyGrid, origin: Vector2, end: Vector2) -> Option<bool> {
         return Some(true);
     }
     let (way, step) = (end - origin, grid.geometry().resolution);
-    let count = ((way.norm() - NEAR).max(0.0) / step) as usize;
+    let count = ((way.norm() - HIT_TOLERANCE_M).max(0.0) / step) as usize;
     let mut on_the_way = (0..count).map(|i| origin + way * (i as f64 * step / way.norm()));
     let is_behind = on_the_way.any(|point| grid.at(point) == Cell::Occupied);
     // Beside what nobody has seen a wall may begin.
@@ -102,10 +103,10 @@ fn judged(grid: &OccupancyGrid, origin: Vector2, end: Vector2) -> Option<bool> {
     (is_behind || is_clear()).then_some(false)
 }
 
-/// The cells within [`NEAR`] of a point, as a square; those off the map are unknown.
+/// The cells within [`HIT_TOLERANCE_M`] of a point, as a square; those off the map are unknown.
 fn around(grid: &OccupancyGrid, at: Vector2) -> impl Iterator<Item = Cell> + '_ {
     let geometry = grid.geometry();
-    let reach = (NEAR / geometry.resolution).ceil() as i64;
+    let reach = (HIT_TOLERANCE_M / geometry.resolution).ceil() as i64;
     let middle = (at - geometry.origin) / geometry.resolution;
     let (col, row) = (middle.x.floor() as i64, middle.y.floor() as i64);
     let get = move |col: i64, row: i64| match (usize::try_from(col), usize::try_from(row)) {

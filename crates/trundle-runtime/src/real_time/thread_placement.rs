@@ -44,11 +44,11 @@ fn rank(nicer: i32) -> bool {
 
 /// Of the ranks 1 to 99 of real-time threads: below those of the kernel's own.
 #[cfg(target_os = "linux")]
-const RANK: i32 = 10;
+const THREAD_PRIORITY: i32 = 10;
 
 #[cfg(target_os = "linux")]
 fn go_first() -> bool {
-    let rank = libc::sched_param { sched_priority: RANK };
+    let rank = libc::sched_param { sched_priority: THREAD_PRIORITY };
     // What such a thread starts is not first itself.
     let policy = libc::SCHED_FIFO | libc::SCHED_RESET_ON_FORK;
     // SAFETY: the call reads one valid structure and changes nothing but how the calling thread (0) is scheduled.

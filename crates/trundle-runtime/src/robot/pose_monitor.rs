@@ -1,6 +1,6 @@
 //! A robot that does not know its place, and where its scans put it.
 
-use super::{MOTION_SEEN, Robot, event_log};
+use super::{MAX_VISUAL_MOTION_AGE_S, Robot, event_log};
 use crate::{
     behaviour::navigator::position_sigma, global_localization::LocalizedPose,
     monitors::scan_map_consistency::Fit, range_source::RangeSource,
@@ -54,7 +54,7 @@ impl Robot {
         if self.sight == RangeSource::Laser {
             return true;
         }
-        if self.latest.located.is_some_and(|located| now - located <= MOTION_SEEN) {
+        if self.latest.located.is_some_and(|located| now - located <= MAX_VISUAL_MOTION_AGE_S) {
             watch.forget();
             return true;
         }

@@ -18,12 +18,12 @@ pub struct Setting {
 }
 
 /// Generated from the doc comments of the configuration structs by `cargo xtask settings`.
-const LIST: &str = include_str!("reference.tsv");
+const REFERENCE_TSV: &str = include_str!("reference.tsv");
 
 /// All settings, in the order of the fields.
 pub fn reference() -> &'static [Setting] {
     static SETTINGS: OnceLock<Vec<Setting>> = OnceLock::new();
-    SETTINGS.get_or_init(|| LIST.lines().filter_map(parse).collect())
+    SETTINGS.get_or_init(|| REFERENCE_TSV.lines().filter_map(parse).collect())
 }
 
 fn parse(line: &'static str) -> Option<Setting> {
@@ -56,7 +56,7 @@ mod tests {
     #[test]
     fn every_key_has_a_meaning_and_stands_once() {
         let mut keys: Vec<&str> = reference().iter().map(|setting| setting.key).collect();
-        assert_eq!(keys.len(), LIST.lines().count());
+        assert_eq!(keys.len(), REFERENCE_TSV.lines().count());
         assert!(reference().iter().all(|setting| !setting.doc.is_empty()));
         keys.sort_unstable();
         keys.dedup();

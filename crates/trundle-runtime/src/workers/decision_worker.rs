@@ -19,14 +19,17 @@ pub(crate) struct DecisionWorker {
     pub(crate) executor: MissionExecutor,
 }
 
-/// Exploring, the robot keeps so much more from things than its footprint needs, m: a view is not worth a squeeze.
-const EXPLORING: f64 = 0.03;
+/// Additional clearance of paths to viewpoints while exploring \[m\]. Source: ours.
+const EXPLORATION_CLEARANCE_M: f64 = 0.03;
 
 impl DecisionWorker {
     pub(crate) fn new(config: &RobotConfig, footprint: &Footprint) -> Result<Self, Invalid> {
         Ok(Self {
             navigator: Navigator::new(config, footprint)?,
-            executor: MissionExecutor::new(&config.supervisor, footprint.circumscribed_radius() + EXPLORING)?,
+            executor: MissionExecutor::new(
+                &config.supervisor,
+                footprint.circumscribed_radius() + EXPLORATION_CLEARANCE_M,
+            )?,
         })
     }
 

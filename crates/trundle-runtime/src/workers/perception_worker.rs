@@ -59,14 +59,14 @@ pub(crate) struct PerceptionResult {
     pub(crate) saved: Option<Vec<u8>>,
 }
 
-/// A correction of the visual map by more than this bends the grid, m and rad.
-const BENT: f64 = 0.02;
-/// An image with so many features shows enough to be located by.
-const ENOUGH_FEATURES: usize = 200;
-/// Images that show enough and are not located for so long, s, are of another place than the odometry says.
-const CARRIED_AWAY: f64 = 1.5;
-/// Not located for so long, s, the robot is not where it believes, and images that show less do not change that.
-pub(crate) const UNPLACED: f64 = 0.7;
+/// Correction of the visual map \[m, rad\] above which the grid is corrected. Source: ours.
+const GRID_CORRECTION_THRESHOLD: f64 = 0.02;
+/// Number of features of an image that suffices to locate it. Source: ours.
+const MIN_FEATURES_TO_LOCATE: usize = 200;
+/// Time without a located image \[s\] after which images with enough features show another place than odometry says. Source: ours.
+const KIDNAPPED_AFTER_S: f64 = 1.5;
+/// Time without a located image \[s\] after which the pose is unknown; images with few features do not change that. Source: ours.
+pub(crate) const POSE_UNKNOWN_AFTER_S: f64 = 0.7;
 
 impl PerceptionWorker {
     pub(crate) fn new(config: &RobotConfig, base_from_camera: Pose3) -> Result<Self, Invalid> {
@@ -124,7 +124,7 @@ impl PerceptionWorker {
             RangeSource::DepthCamera => Some(times.measure(Stage::Scan, || self.scanner.scan(image))),
             RangeSource::Laser => None,
         };
-        let in_the_dark = track.features < ENOUGH_FEATURES;
+        let in_the_dark = track.features < MIN_FEATURES_TO_LOCATE;
         let place = scan.as_ref().and_then(|scan| self.search_pose(odom_from_base, scan, in_the_dark, times));
         let saved = self.save(image.stamp(), times);
         let unplaced = self.unplaced;
@@ -177,7 +177,7 @@ impl PerceptionWorker {
 
     /// Whether it is time to look for the place everywhere: the odometry's has not been recognised for a while.
     fn is_carried_away(&mut self, track: &TrackReport) -> bool {
-        let shows_enough = track.features >= ENOUGH_FEATURES;
+        let shows_enough = track.features >= MIN_FEATURES_TO_LOCATE;
         self.is_placed_by_scans &= !track.tracking.is_located();
         if self.is_placed_by_scans {
             return false;
@@ -189,7 +189,7 @@ impl PerceptionWorker {
             return false;
         }
         let since = *self.unplaced.get_or_insert(track.stamp);
-        let is_time = track.stamp - self.searched.unwrap_or(since) > CARRIED_AWAY;
+        let is_time = track.stamp - self.searched.unwrap_or(since) > KIDNAPPED_AFTER_S;
         if is_time {
             self.searched = Some(track.stamp);
         }
@@ -198,7 +198,7 @@ impl PerceptionWorker {
 
     /// A robot that does not know its place does not know it before a bare wall either.
     fn has_been_unplaced(&self, now: Stamp) -> bool {
-        self.unplaced.is_some_and(|since| now - since > UNPLACED)
+        self.unplaced.is_some_and(|since| now - since > POSE_UNKNOWN_AFTER_S)
     }
 }
 
@@ -212,7 +212,9 @@ fn blind_range(sight: RangeSource, scanner: &DepthScanner) -> f64 {
 
 /// Whether the visual map was corrected by more than tracking goes along with.
 fn is_bent(track: &TrackReport) -> bool {
-    let is_large =
-        |correction: &Pose3| correction.translation.norm() > BENT || correction.log().norm() > BENT;
+    let is_large = |correction: &Pose3| {
+        correction.translation.norm() > GRID_CORRECTION_THRESHOLD
+            || correction.log().norm() > GRID_CORRECTION_THRESHOLD
+    };
     track.closed_loop.is_some() || track.merged.is_some() || track.refined.as_ref().is_some_and(is_large)
 }

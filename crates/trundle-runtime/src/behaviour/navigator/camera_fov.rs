@@ -18,26 +18,30 @@ pub(super) struct CameraFov {
     pub(super) nearest: f64,
 }
 
-/// The edge of the image, rad, and of the blind zone, m, do not count as seen.
-const RIM: (f64, f64) = (0.1, 0.1);
-/// Things farther off are not seen well, m.
-const FARTHEST: f64 = 3.0;
-/// The way is looked at where it has gone on so far, m and rad.
-const STEP: (f64, f64) = (0.05, 0.1);
-/// So much unseen floor under the robot counts, m^2: scans leave slivers.
-const SLIVER: f64 = 0.02;
-/// Where it was set down the robot stands in what it cannot see, m about that place.
-const HOME: f64 = 0.8;
+/// Angle at the edge of the image that does not count as seen \[rad\]. Source: ours.
+const IMAGE_EDGE_RAD: f64 = 0.1;
+/// Distance at the edge of the blind zone that does not count as seen \[m\]. Source: ours.
+const BLIND_EDGE_M: f64 = 0.1;
+/// Range beyond which the floor does not count as seen \[m\]. Source: ours.
+const MAX_SEEN_RANGE_M: f64 = 3.0;
+/// Distance between two poses of a path at which the view is checked \[m\]. Source: ours.
+const PATH_STEP_M: f64 = 0.05;
+/// Turn between two poses of a path at which the view is checked \[rad\]. Source: ours.
+const PATH_STEP_RAD: f64 = 0.1;
+/// Area of unseen floor under the footprint that is accepted \[m^2\]: scans leave slivers. Source: ours.
+const MAX_UNSEEN_AREA_M2: f64 = 0.02;
+/// Radius about the start pose whose unseen floor is accepted \[m\]: the robot stands in its own blind zone. Source: ours.
+const START_RADIUS_M: f64 = 0.8;
 
 impl CameraFov {
     /// That of the robot's camera; none for a laser, which has no blind zone to speak of, and for a lens too narrow to look by.
     pub(super) fn of(config: &RobotConfig) -> Result<Option<Self>, Invalid> {
         let base_from_camera = config.mount.validated()?.base_from_camera();
         let scanner = DepthScanner::new(config.camera, base_from_camera, config.scan.clone())?;
-        let half_angle = (config.camera.width() as f64 / 2.0 / config.camera.fx()).atan() - RIM.0;
+        let half_angle = (config.camera.width() as f64 / 2.0 / config.camera.fx()).atan() - IMAGE_EDGE_RAD;
         let (at, axis) = (base_from_camera.translation, base_from_camera.rotate(Vector3::z()));
         let base_from_sector = Pose2::new(at.x, at.y, axis.y.atan2(axis.x));
-        let view = Self { base_from_sector, half_angle, nearest: scanner.blind_range() + RIM.1 };
+        let view = Self { base_from_sector, half_angle, nearest: scanner.blind_range() + BLIND_EDGE_M };
         Ok((config.sight == RangeSource::DepthCamera && half_angle > 0.0).then_some(view))
     }
 
@@ -52,7 +56,7 @@ impl CameraFov {
     ) -> Option<Vector2> {
         let mut passed: Vec<Pose2> = Vec::new();
         let mut judged = HashSet::new();
-        let least = SLIVER / grid.geometry().resolution.powi(2);
+        let least = MAX_UNSEEN_AREA_M2 / grid.geometry().resolution.powi(2);
         for pose in way.iter().map(|point| point.pose) {
             if passed.last().is_some_and(|last| is_near(*last, pose)) {
                 continue;
@@ -76,7 +80,7 @@ impl CameraFov {
     pub(super) fn shows(self, grid: &OccupancyGrid, from: Pose2, at: Vector2) -> bool {
         let sector = from * self.base_from_sector;
         let to = sector.inverse().transform(at);
-        (self.nearest..FARTHEST).contains(&to.norm())
+        (self.nearest..MAX_SEEN_RANGE_M).contains(&to.norm())
             && to.y.atan2(to.x).abs() < self.half_angle
             && is_in_sight(grid, sector.position(), at, 0.0)
     }
@@ -89,8 +93,9 @@ pub(super) fn unknown_about(
     radius: f64,
     home: Option<Vector2>,
 ) -> impl Iterator<Item = CellIndex> {
-    let is_off =
-        move |cell: CellIndex| home.is_none_or(|home| (grid.geometry().center(cell) - home).norm() > HOME);
+    let is_off = move |cell: CellIndex| {
+        home.is_none_or(|home| (grid.geometry().center(cell) - home).norm() > START_RADIUS_M)
+    };
     cells_about(grid, at, radius).filter(move |cell| grid.get(*cell) == Cell::Unknown && is_off(*cell))
 }
 
@@ -103,7 +108,7 @@ fn middle(grid: &OccupancyGrid, cells: &[CellIndex]) -> Vector2 {
 
 fn is_near(a: Pose2, b: Pose2) -> bool {
     let step = a.inverse() * b;
-    step.position().norm() < STEP.0 && step.theta.abs() < STEP.1
+    step.position().norm() < PATH_STEP_M && step.theta.abs() < PATH_STEP_RAD
 }
 
 #[cfg(test)]

@@ -1,10 +1,10 @@
 //! The command of each state, and safety's word on it.
 
-use super::{Goal, Navigator, PAUSE, known_floor::cells_about, viewpoint::Viewpoint};
+use super::{Goal, Navigator, SAFETY_HOLD_BEFORE_REPLAN_S, known_floor::cells_about, viewpoint::Viewpoint};
 use crate::world_state::WorldState;
 use crate::{
     behaviour::drive_state::DriveState,
-    behaviour::spin::{ONE_TURN, face, turn_to},
+    behaviour::spin::{SPIN_TURNS, face, turn_to},
     goal_approach::Progress,
     reason::Reason,
     stage::{Stage, StageTimes},
@@ -12,15 +12,16 @@ use crate::{
 use trundle_control::{FollowReport, MotionSense, SafetyAction, SafetyInput, SafetyMemory};
 use trundle_core::{Cell, Twist2, Vector2};
 
-/// Speed of leaving what presses on the bumper, m/s, and how far behind must be free, m.
-const BACK_OUT: f64 = 0.05;
-const BACK_OUT_WAY: f64 = 0.15;
-/// And for so long, s, twice that way: a bumper that is still pressed then is broken, or something pushes.
-const BACK_OUT_TIME: f64 = 6.0;
-/// Without sight for so long, it turns to find some, s.
-const BLIND_PAUSE: f64 = 3.0;
-/// So fast it backs out where it has no room to turn, m/s.
-const BACKING_OUT: f64 = 0.1;
+/// Speed of backing out of a bumper contact \[m/s\]. Source: ours.
+const BACK_OUT_SPEED_M_S: f64 = 0.05;
+/// Free distance behind the robot that backing out needs \[m\]. Source: ours.
+const BACK_OUT_CLEARANCE_M: f64 = 0.15;
+/// Longest time of backing out \[s\]: twice the clearance. A bumper still pressed then is broken, or something pushes. Source: ours.
+const BACK_OUT_DURATION_S: f64 = 6.0;
+/// Time without sight \[s\] after which the robot turns to regain it. Source: ours.
+const BLIND_PAUSE_S: f64 = 3.0;
+/// Speed of backing out of a place with no room to turn \[m/s\]. Source: ours.
+const REVERSE_SPEED_M_S: f64 = 0.1;
 
 impl Navigator {
     /// The command before safety's word on it.
@@ -33,13 +34,13 @@ impl Navigator {
         let pose = s.estimate.pose;
         match &self.state {
             DriveState::Initializing if self.goal == Goal::Spin => self.look_once(s),
-            DriveState::Recovering { .. } if self.is_wedged => Twist2::new(-BACKING_OUT, 0.0),
+            DriveState::Recovering { .. } if self.is_wedged => Twist2::new(-REVERSE_SPEED_M_S, 0.0),
             DriveState::Recovering { .. } if matches!(self.viewpoint, Viewpoint::Going(..)) => follow.twist,
             DriveState::Recovering { .. } if self.looks_still() => Twist2::ZERO,
             // The gyro's bias is measured at rest.
             DriveState::Lost { .. } if !self.is_open(s) => Twist2::ZERO,
             DriveState::Recovering { .. } | DriveState::Lost { .. } => self.look.twist(pose),
-            DriveState::Waiting { .. } if self.backs_out(s) => Twist2::new(-BACK_OUT, 0.0),
+            DriveState::Waiting { .. } if self.backs_out(s) => Twist2::new(-BACK_OUT_SPEED_M_S, 0.0),
             DriveState::Waiting { .. } if self.is_blind(s) => self.look_for_sight(s),
             DriveState::Waiting { .. } => match self.blocked_at.filter(|_| self.plan.is_none()) {
                 Some(at) => face(pose, at),
@@ -65,7 +66,7 @@ impl Navigator {
 
     /// Whether it is time to leave what presses on the bumper, or an edge, backward, and the map has nothing there.
     fn backs_out(&self, s: &WorldState<'_>) -> bool {
-        let backs = PAUSE..PAUSE + BACK_OUT_TIME;
+        let backs = SAFETY_HOLD_BEFORE_REPLAN_S..SAFETY_HOLD_BEFORE_REPLAN_S + BACK_OUT_DURATION_S;
         let waited = self.held_since.is_some_and(|since| backs.contains(&(s.now - since)));
         (self.touched || self.over_edge) && waited && is_free_behind(s, self.radius)
     }
@@ -80,7 +81,7 @@ impl Navigator {
         // Images that show something, but not how it moves, are no sight.
         let seen = s.seen.filter(|_| s.motion != MotionSense::Nothing);
         let since = self.held_since.max(seen);
-        let is_long = since.is_some_and(|since| s.now - since >= BLIND_PAUSE);
+        let is_long = since.is_some_and(|since| s.now - since >= BLIND_PAUSE_S);
         if is_long { self.sight_recovery.turn(s.estimate.pose) } else { Twist2::ZERO }
     }
 
@@ -89,7 +90,7 @@ impl Navigator {
         if !self.is_open(s) {
             return Twist2::ZERO;
         }
-        if self.look.has_turned(ONE_TURN) {
+        if self.look.has_turned(SPIN_TURNS) {
             self.state = DriveState::Arrived;
             return Twist2::ZERO;
         }
@@ -178,9 +179,9 @@ fn is_free_behind(s: &WorldState<'_>, radius: f64) -> bool {
     let is_in_the_way = |at: Vector2| {
         let at = ahead.transform(at);
         // What is beside or before the robot it has come past, or touches.
-        at.x < -0.5 * radius && (at - Vector2::new(at.x.max(-BACK_OUT_WAY), 0.0)).norm() < radius
+        at.x < -0.5 * radius && (at - Vector2::new(at.x.max(-BACK_OUT_CLEARANCE_M), 0.0)).norm() < radius
     };
-    let mut cells = cells_about(s.grid, here, radius + BACK_OUT_WAY);
+    let mut cells = cells_about(s.grid, here, radius + BACK_OUT_CLEARANCE_M);
     geometry.cell_at(here).is_some()
         && !cells.any(|cell| s.grid.get(cell) == Cell::Occupied && is_in_the_way(geometry.center(cell)))
 }

@@ -5,8 +5,8 @@ use crate::world_state::WorldState;
 use crate::{behaviour::drive_state::DriveState, workers::fallback_controller::FallbackController};
 use trundle_core::{Stamp, Twist2};
 
-/// So near to the end of the trajectory, s, settling may begin with the next step.
-const NEARLY_THERE: f64 = 0.1;
+/// Time before the end of the trajectory \[s\] from which the final approach may begin. Source: ours.
+const APPROACH_LEAD_S: f64 = 0.1;
 
 impl Navigator {
     /// Whether the next step may plan, look for turns and straight moves, or check what is left of a way.
@@ -30,7 +30,7 @@ impl Navigator {
 
     fn is_nearly_there(&self) -> bool {
         let left = self.plan.as_ref().zip(self.follower.reference());
-        left.is_none_or(|(plan, reference)| plan.trajectory.duration() - reference.time < NEARLY_THERE)
+        left.is_none_or(|(plan, reference)| plan.trajectory.duration() - reference.time < APPROACH_LEAD_S)
     }
 
     /// What goes on as was decided last.

@@ -2,7 +2,7 @@
 
 use super::Navigator;
 use super::camera_fov::unknown_about;
-use super::visibility_constraint::{MOST_WALLS, WALL};
+use super::visibility_constraint::{MAX_VIRTUAL_OBSTACLES, VIRTUAL_OBSTACLE_RADIUS_M};
 use crate::world_state::WorldState;
 use trundle_core::{Cell, CellIndex, OccupancyGrid, Pose2, Trajectory, TrajectoryPoint, Twist2, Vector2};
 use trundle_planning::{Plan, PlanResult};
@@ -18,8 +18,10 @@ pub(super) enum InView {
     Asking,
 }
 
-/// A way that shows all may take so many times as long as the best, and so many seconds more.
-const WORTH: (f64, f64) = (1.5, 10.0);
+/// Largest duration of a path over seen floor alone, as a multiple of the fastest path's. Source: ours.
+const MAX_SEEN_PATH_RATIO: f64 = 1.5;
+/// Duration that is allowed in addition \[s\]. Source: ours.
+const MAX_SEEN_PATH_EXTRA_S: f64 = 10.0;
 
 impl Navigator {
     /// A plan that shows the camera what it leads onto, where there is one that is worth it. Asks for two plans at most.
@@ -54,7 +56,7 @@ impl Navigator {
             return self.found(InView::Unseen(unseen, None));
         };
         match self.first_unseen(plan.trajectory.points(), s.floor()) {
-            Some(next) if self.unseen.walls.len() < MOST_WALLS => {
+            Some(next) if self.unseen.walls.len() < MAX_VIRTUAL_OBSTACLES => {
                 self.unseen.walls.push(next);
                 InView::Asking
             }
@@ -102,7 +104,7 @@ fn goes_on(plan: &PlanResult, best: &PlanResult, floor: &OccupancyGrid) -> bool 
 
 /// Whether a way takes hardly longer than the best.
 fn is_worth(plan: &PlanResult, best: &PlanResult) -> bool {
-    plan.trajectory.duration() < WORTH.0 * best.trajectory.duration() + WORTH.1
+    plan.trajectory.duration() < MAX_SEEN_PATH_RATIO * best.trajectory.duration() + MAX_SEEN_PATH_EXTRA_S
 }
 
 fn wall_off(floor: &mut OccupancyGrid, at: Vector2, ends: [Vector2; 2], radius: f64, home: Option<Vector2>) {
@@ -110,7 +112,8 @@ fn wall_off(floor: &mut OccupancyGrid, at: Vector2, ends: [Vector2; 2], radius: 
     let is_off_the_ends = |cell: &CellIndex| {
         ends.iter().all(|end| (geometry.center(*cell) - end).norm() > radius + geometry.resolution)
     };
-    let cells: Vec<_> = unknown_about(floor, at, WALL, home).filter(is_off_the_ends).collect();
+    let cells: Vec<_> =
+        unknown_about(floor, at, VIRTUAL_OBSTACLE_RADIUS_M, home).filter(is_off_the_ends).collect();
     for cell in cells {
         floor.set(cell, Cell::Occupied);
     }
@@ -119,7 +122,7 @@ fn wall_off(floor: &mut OccupancyGrid, at: Vector2, ends: [Vector2; 2], radius: 
 #[cfg(test)]
 mod tests {
     use super::super::testing::{at_rest, floor, navigator};
-    use super::super::visibility_constraint::MOST_LOOKS_IN_VAIN;
+    use super::super::visibility_constraint::MAX_VAIN_VIEWS;
     use super::*;
     use trundle_core::Stamp;
 
@@ -149,7 +152,7 @@ mod tests {
 
     fn asked(navigator: &mut Navigator, s: &WorldState<'_>, goal: Pose2) -> InView {
         let ask = |_| navigator.plan_in_view(s, (s.estimate.pose, Twist2::ZERO), goal);
-        (0..=MOST_WALLS).map(ask).find(|found| !matches!(found, InView::Asking)).unwrap()
+        (0..=MAX_VIRTUAL_OBSTACLES).map(ask).find(|found| !matches!(found, InView::Asking)).unwrap()
     }
 
     #[test]
@@ -169,7 +172,7 @@ mod tests {
         let InView::Plan(shown) = asked(&mut navigator, &s, goal) else { panic!("there is one in view") };
         let shown = found(shown);
         assert_eq!(navigator.first_unseen(shown.points(), &grid), None);
-        assert!(shown.duration() < WORTH.0 * best.duration() + WORTH.1);
+        assert!(shown.duration() < MAX_SEEN_PATH_RATIO * best.duration() + MAX_SEEN_PATH_EXTRA_S);
         navigator.view = None;
         let InView::Plan(any) = asked(&mut navigator, &s, goal) else { panic!("a laser sees all") };
         assert_eq!(found(any), best);
@@ -215,7 +218,7 @@ mod tests {
                 assert!(navigator.view.unwrap().shows(&grid, pose, navigator.blocked_at.unwrap()));
             }
         }
-        assert!((1..=MOST_LOOKS_IN_VAIN).contains(&looks), "{looks} looks");
+        assert!((1..=MAX_VAIN_VIEWS).contains(&looks), "{looks} looks");
         let reason = navigator.state.reason().unwrap().to_string();
         assert!(reason.contains("no way") && reason.contains("could not be seen"), "{reason}");
     }

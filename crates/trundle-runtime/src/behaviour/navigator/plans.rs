@@ -1,6 +1,6 @@
 //! When to plan, from where, and what to do when there is no way.
 
-use super::{Goal, Navigator, PAUSE, plan_in_view::InView, viewpoint::Viewpoint};
+use super::{Goal, Navigator, SAFETY_HOLD_BEFORE_REPLAN_S, plan_in_view::InView, viewpoint::Viewpoint};
 use crate::world_state::WorldState;
 use crate::{
     behaviour::drive_state::DriveState,
@@ -11,14 +11,14 @@ use crate::{
 use trundle_core::{Pose2, Stamp, Twist2, Vector2};
 use trundle_planning::{Plan, PlanResult};
 
-/// What is left of a way is driven as planned when it takes less, s.
-const WORTH_IMPROVING: f64 = 0.5;
-/// A new way replaces a good one when it arrives so much sooner, s.
-const SOONER: f64 = 0.05;
-/// Slower than this the robot stands, m/s.
-const STANDING: f64 = 0.02;
-/// So many turns see everything around twice.
-const TURNS: f64 = 2.0;
+/// Remaining duration of a trajectory \[s\] below which it is driven as planned. Source: ours.
+const MIN_IMPROVABLE_S: f64 = 0.5;
+/// Time that a new trajectory must save to replace a good one \[s\]. Source: ours.
+const MIN_TIME_GAIN_S: f64 = 0.05;
+/// Speed below which the robot counts as standing \[m/s\]. Source: ours.
+const STANDING_SPEED_M_S: f64 = 0.02;
+/// Number of turns of a search for sight: each bearing is seen twice. Source: ours.
+const MAX_SPINS: f64 = 2.0;
 
 impl Navigator {
     /// Whether it is time to plan: at the beginning, or when a check finds the old plan wanting.
@@ -37,7 +37,11 @@ impl Navigator {
             }
             DriveState::Planning | DriveState::Recovering { .. } => self.check_due.due(s.now),
             DriveState::Waiting { .. } if self.touched || self.over_edge || self.is_blind(s) => false,
-            DriveState::Waiting { .. } if self.held_since.is_some_and(|since| s.now - since < PAUSE) => false,
+            DriveState::Waiting { .. }
+                if self.held_since.is_some_and(|since| s.now - since < SAFETY_HOLD_BEFORE_REPLAN_S) =>
+            {
+                false
+            }
             DriveState::Waiting { .. } => self.check_due.due(s.now),
             DriveState::Driving => self.check_due.due(s.now) && !self.plan_holds(s),
         }
@@ -81,7 +85,7 @@ impl Navigator {
             },
         };
         match plan {
-            Plan::Found(plan) if plan.is_continuous || s.estimate.twist.v.abs() < STANDING => {
+            Plan::Found(plan) if plan.is_continuous || s.estimate.twist.v.abs() < STANDING_SPEED_M_S => {
                 self.follower.follow(plan.trajectory.clone(), goal);
                 self.plan = Some(plan);
                 self.state = DriveState::Driving;
@@ -161,7 +165,7 @@ impl Navigator {
         let (Some(goal), DriveState::Driving) = (self.goal.pose(), &self.state) else { return false };
         let (Some(old), Some(reference)) = (&self.plan, self.follower.reference()) else { return false };
         let left = old.trajectory.duration() - reference.time;
-        if left < WORTH_IMPROVING || !self.improve_due.due(s.now) {
+        if left < MIN_IMPROVABLE_S || !self.improve_due.due(s.now) {
             return false;
         }
         let planner = &mut self.planner;
@@ -172,7 +176,7 @@ impl Navigator {
             // What the way of now keeps off because it was not seen, a quicker one must keep off too.
             Plan::Found(plan)
                 if plan.is_continuous
-                    && plan.trajectory.duration() < left - SOONER
+                    && plan.trajectory.duration() < left - MIN_TIME_GAIN_S
                     && self.first_unseen(plan.trajectory.points(), s.floor()).is_none() =>
             {
                 self.follower.follow(plan.trajectory.clone(), goal);
@@ -198,7 +202,7 @@ impl Navigator {
             _ => self.goal.pose().map(|goal| goal.position()),
         };
         let reason = self.no_path(cause);
-        let has_looked = self.look.has_turned(TURNS) && !self.is_wedged;
+        let has_looked = self.look.has_turned(MAX_SPINS) && !self.is_wedged;
         self.state = if matches!(self.goal, Goal::Viewpoint(_)) {
             DriveState::Stopped { reason }
         } else if has_looked && !self.seeks_viewpoint(s) {
@@ -210,7 +214,7 @@ impl Navigator {
 
     /// Near the goal, where no path is found or safety holds the robot: by turns and straight moves, if there are such.
     fn turned_to_docking(&mut self, goal: Pose2, s: &WorldState<'_>) -> bool {
-        let stands = s.estimate.twist.v.abs() < STANDING;
+        let stands = s.estimate.twist.v.abs() < STANDING_SPEED_M_S;
         let is_exact = matches!(self.goal, Goal::Exact(_));
         let turned = is_exact && stands && !self.is_blind(s) && self.goal_approach.begin_if_possible(s, goal);
         if turned {

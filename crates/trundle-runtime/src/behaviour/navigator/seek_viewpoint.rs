@@ -9,12 +9,12 @@ use trundle_control::{FollowPhase, FollowReport};
 use trundle_core::{Cell, Stamp, Twist2, Vector2};
 use trundle_planning::Plan;
 
-/// From so far what bars the way is seen whole and well, m.
-const GOOD: std::ops::RangeInclusive<f64> = 0.8..=2.5;
-/// A place in what bars the way is hidden by that itself, m; one before it is not.
-const OWN_SIZE: f64 = 0.35;
-/// So long it looks, s: several scans are drawn.
-const LOOK: f64 = 1.0;
+/// Distances from which a blockage is seen whole and well \[m\]. Source: ours.
+const VIEWING_RANGE_M: std::ops::RangeInclusive<f64> = 0.8..=2.5;
+/// Depth of a blockage \[m\]: a point inside it is hidden by it, a point before it is not. Source: ours.
+const BLOCKAGE_DEPTH_M: f64 = 0.35;
+/// Duration of a view \[s\]: several scans are integrated. Source: ours.
+const VIEWING_DURATION_S: f64 = 1.0;
 
 impl Navigator {
     /// Whether it is about to go to a place from where it sees what bars the way; not when it stands at such a place.
@@ -25,8 +25,8 @@ impl Navigator {
             Viewpoint::Choosing(ViewTarget::Blockage, _) | Viewpoint::Going(..) | Viewpoint::Settled
         ) {
             let here = s.estimate.pose;
-            let own_size = if s.grid.at(at) == Cell::Free { 0.0 } else { OWN_SIZE };
-            let stands_well = GOOD.contains(&(at - here.position()).norm())
+            let own_size = if s.grid.at(at) == Cell::Free { 0.0 } else { BLOCKAGE_DEPTH_M };
+            let stands_well = VIEWING_RANGE_M.contains(&(at - here.position()).norm())
                 && is_in_sight(s.grid, here.position(), at, own_size);
             let places = if stands_well { Vec::new() } else { places(s.grid, here, at, own_size, self.view) };
             self.viewpoint = Viewpoint::Choosing(ViewTarget::Blockage, best_last(places));
@@ -118,7 +118,7 @@ impl Navigator {
         self.viewpoint = match self.viewpoint {
             Viewpoint::Going(ViewTarget::UnknownFloor, _) => {
                 self.unseen.note_arrival(now);
-                Viewpoint::Looking(now.after(LOOK))
+                Viewpoint::Looking(now.after(VIEWING_DURATION_S))
             }
             _ => Viewpoint::Settled,
         };

@@ -29,15 +29,15 @@ pub(super) enum ViewTarget {
     UnknownFloor,
 }
 
-/// So far from it a place is looked for, m.
-const AWAY: [f64; 2] = [1.2, 0.9];
-/// Bearings of the places that are looked at.
-const BEARINGS: usize = 16;
-/// Of these the nearest are asked for a way there, one a step.
-const MOST_PLANS: usize = 4;
+/// Distances from the target at which viewpoints are sought \[m\]. Source: ours.
+const VIEWPOINT_DISTANCES_M: [f64; 2] = [1.2, 0.9];
+/// Number of bearings at which viewpoints are sought. Source: ours.
+const VIEWPOINT_BEARINGS: usize = 16;
+/// Number of viewpoints, the nearest first, to which a path is planned, one a step. Source: ours.
+const MAX_VIEWPOINT_PLANS: usize = 4;
 /// The nearest of these, the first to be asked for last.
 pub(super) fn best_last(mut places: Vec<Pose2>) -> Vec<Pose2> {
-    places.truncate(MOST_PLANS);
+    places.truncate(MAX_VIEWPOINT_PLANS);
     places.reverse();
     places
 }
@@ -50,9 +50,10 @@ pub(super) fn places(
     own_size: f64,
     view: Option<CameraFov>,
 ) -> Vec<Pose2> {
-    let around = (0..BEARINGS).map(|i| TAU * i as f64 / BEARINGS as f64);
-    let around =
-        around.flat_map(|bearing| AWAY.map(|away| at - away * Vector2::new(bearing.cos(), bearing.sin())));
+    let around = (0..VIEWPOINT_BEARINGS).map(|i| TAU * i as f64 / VIEWPOINT_BEARINGS as f64);
+    let around = around.flat_map(|bearing| {
+        VIEWPOINT_DISTANCES_M.map(|away| at - away * Vector2::new(bearing.cos(), bearing.sin()))
+    });
     let stands =
         around.filter(|stand| grid.at(*stand) == Cell::Free && is_in_sight(grid, *stand, at, own_size));
     let mut places: Vec<Pose2> = stands.map(|stand| facing(stand, at, view)).collect();

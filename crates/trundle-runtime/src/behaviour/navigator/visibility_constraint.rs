@@ -26,16 +26,18 @@ struct Look {
     is_in_vain: bool,
 }
 
-/// What a way must not lead onto is walled off so far about, m, and so many times a search.
-pub(super) const WALL: f64 = 0.3;
-pub(super) const MOST_WALLS: usize = 3;
-/// The same place is looked at so many times, from places so far apart, m; and so many looks are taken for a goal that show
-/// nothing: those that show what they were for explore, which has an end of its own.
-const MOST_LOOKS: usize = 2;
-const APART: f64 = 0.4;
-pub(super) const MOST_LOOKS_IN_VAIN: usize = 12;
-/// What was looked at in vain may be seen after so long, s: somebody stood before it, and has gone.
-const AGAIN: f64 = 20.0;
+/// Radius of a virtual obstacle about a point that the path must not reach unseen \[m\]. Source: ours.
+pub(super) const VIRTUAL_OBSTACLE_RADIUS_M: f64 = 0.3;
+/// Number of virtual obstacles of one search. Source: ours.
+pub(super) const MAX_VIRTUAL_OBSTACLES: usize = 3;
+/// Number of views of one place. Source: ours.
+const MAX_VIEWS_PER_PLACE: usize = 2;
+/// Smallest distance between two viewpoints of one place \[m\]. Source: ours.
+const MIN_VIEWPOINT_SPACING_M: f64 = 0.4;
+/// Number of views per goal that show nothing new. Views that show something explore, which has a limit of its own. Source: ours.
+pub(super) const MAX_VAIN_VIEWS: usize = 12;
+/// Time after which a place viewed in vain may be viewed again \[s\]: a person in front of it may have left. Source: ours.
+const VAIN_VIEW_RETRY_S: f64 = 20.0;
 
 impl VisibilityConstraint {
     /// For the next goal.
@@ -65,13 +67,16 @@ impl VisibilityConstraint {
 
     /// Looks that were long ago tell nothing of what may be seen now.
     pub(super) fn forget(&mut self, now: Stamp) {
-        self.looks.retain(|look| now - look.since < AGAIN);
-        self.barred.retain(|(_, since)| now - *since < AGAIN);
+        self.looks.retain(|look| now - look.since < VAIN_VIEW_RETRY_S);
+        self.barred.retain(|(_, since)| now - *since < VAIN_VIEW_RETRY_S);
     }
 
     /// From where it has looked at this.
     fn looks_at(&self, at: Vector2) -> impl Iterator<Item = Vector2> + '_ {
-        self.looks.iter().filter(move |look| (look.at - at).norm() < WALL).map(|look| look.from)
+        self.looks
+            .iter()
+            .filter(move |look| (look.at - at).norm() < VIRTUAL_OBSTACLE_RADIUS_M)
+            .map(|look| look.from)
     }
 
     /// Whether it has looked at this: if nothing is known of it still, driving will not show it either.
@@ -81,17 +86,17 @@ impl VisibilityConstraint {
 
     /// Whether looking at `at` once more may help.
     pub(super) fn is_worth_a_look(&self, at: Vector2) -> bool {
-        self.looks_at(at).count() < MOST_LOOKS && self.in_vain < MOST_LOOKS_IN_VAIN
+        self.looks_at(at).count() < MAX_VIEWS_PER_PLACE && self.in_vain < MAX_VAIN_VIEWS
     }
 
     /// Whether `from` is another place to look at `at` from than it was before.
     pub(super) fn is_elsewhere(&self, at: Vector2, from: Vector2) -> bool {
-        self.looks_at(at).all(|old| (old - from).norm() > APART)
+        self.looks_at(at).all(|old| (old - from).norm() > MIN_VIEWPOINT_SPACING_M)
     }
 
     /// No way is to lead there for a while. Whether that is new.
     pub(super) fn bar(&mut self, at: Vector2, now: Stamp) -> bool {
-        let is_new = self.barred.iter().all(|(old, _)| (old - at).norm() > WALL / 2.0);
+        let is_new = self.barred.iter().all(|(old, _)| (old - at).norm() > VIRTUAL_OBSTACLE_RADIUS_M / 2.0);
         if is_new {
             self.barred.push((at, now));
         }
@@ -130,7 +135,7 @@ mod tests {
         );
         unseen.forget(time(28.0));
         assert!(!unseen.was_looked_at(at) && unseen.barred().is_none() && unseen.is_worth_a_look(at));
-        (1..MOST_LOOKS_IN_VAIN).for_each(|i| unseen.note_look(at, Vector2::zeros(), time(30.0 * i as f64)));
+        (1..MAX_VAIN_VIEWS).for_each(|i| unseen.note_look(at, Vector2::zeros(), time(30.0 * i as f64)));
         unseen.forget(time(1000.0));
         assert!(!unseen.is_worth_a_look(at), "not for ever");
     }
@@ -139,14 +144,14 @@ mod tests {
     fn looks_that_showed_what_they_were_for_may_be_as_many_as_there_is_floor() {
         let (mut unseen, time) = (VisibilityConstraint::default(), |s: f64| Stamp::default().after(s));
         let known = floor(|at| at.x > 3.0);
-        for i in 0..3 * MOST_LOOKS_IN_VAIN {
+        for i in 0..3 * MAX_VAIN_VIEWS {
             let at = Vector2::new(0.1 * (1 + i % 20) as f64, 2.0);
             assert!(unseen.is_worth_a_look(at), "{i}");
             unseen.note_look(at, Vector2::zeros(), time(30.0 * i as f64));
             (0..2).for_each(|_| unseen.note_seen(&known));
             unseen.forget(time(30.0 * i as f64 + 25.0));
         }
-        for i in 0..MOST_LOOKS_IN_VAIN {
+        for i in 0..MAX_VAIN_VIEWS {
             assert!(unseen.is_worth_a_look(Vector2::new(4.0, 2.0)), "{i}");
             unseen.note_look(Vector2::new(4.0, 2.0), Vector2::zeros(), time(30.0 * i as f64));
             unseen.note_seen(&known);
