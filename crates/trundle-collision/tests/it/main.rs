@@ -3,5 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "tests")]
 
 mod agreement;
+mod arcs;
 mod motions;
+mod segments;
 mod support;
