@@ -66,6 +66,7 @@ impl BucketQueue {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use proptest::prelude::*;
 
     #[test]
     fn entries_come_by_rising_key_around_the_ring() {
@@ -81,5 +82,31 @@ mod tests {
             }
         }
         assert_eq!(keys, [100, 103, 110, 110, 113, 120, 120, 123, 130, 130, 133]);
+    }
+
+    proptest! {
+        #[test]
+        fn every_entry_comes_out_once_and_by_rising_key(first in 0_u32..1000, above in prop::collection::vec(0_u32..64, 0..100)) {
+            let mut queue = BucketQueue::default();
+            queue.reset(first, 64);
+            for (cell, above) in above.iter().enumerate() {
+                queue.push(first + above, Entry { cell: cell as u32, cost: *above });
+            }
+            let popped: Vec<(u32, Entry)> = std::iter::from_fn(|| queue.pop()).collect();
+            prop_assert!(popped.windows(2).all(|pair| pair[0].0 <= pair[1].0));
+            prop_assert!(popped.iter().all(|(key, entry)| *key == first + entry.cost && above[entry.cell as usize] == entry.cost));
+            let mut cells: Vec<u32> = popped.iter().map(|(_, entry)| entry.cell).collect();
+            cells.sort_unstable();
+            prop_assert!(cells.into_iter().eq(0..above.len() as u32));
+        }
+    }
+
+    #[test]
+    fn a_reset_queue_is_empty() {
+        let mut queue = BucketQueue::default();
+        queue.reset(0, 4);
+        queue.push(3, Entry { cell: 1, cost: 2 });
+        queue.reset(0, 4);
+        assert_eq!(queue.pop(), None);
     }
 }
