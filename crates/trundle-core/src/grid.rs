@@ -37,7 +37,7 @@ pub struct GridGeometry {
     pub height: usize,
 }
 
-/// 2^40: a cell so far off is told from its neighbours to 1/4096 of it.
+/// 2^40: f64 resolves the position in such a cell to 1/4096 of its side.
 const FARTHEST_CELLS: f64 = 1_099_511_627_776.0;
 
 impl GridGeometry {

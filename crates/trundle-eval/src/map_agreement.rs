@@ -8,9 +8,9 @@ use trundle_core::{Cell, CellIndex, Invalid, OccupancyGrid, Pose2, Vector2, requ
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct MapAgreementConfig {
-    /// Occupied cells agree when their centres are at most so far apart, m, 0.001 to 10. Default 0.05.
+    /// Largest distance between the centres of occupied cells that agree, m, 0.001 to 10. Default 0.05.
     pub within: f64,
-    /// A true obstacle was there to be seen when the map knows something within so much of it, m, 0 to 10. Default 0.1.
+    /// A true obstacle is judged where the map has known cells within this distance, m, 0 to 10. Default 0.1.
     pub seen_within: f64,
     /// Distances are cut at this, m, 0.01 to 100. Default 2.
     pub reach: f64,

@@ -12,9 +12,9 @@ pub struct RelationSetsConfig {
     pub near: f64,
     /// Way between the poses of a far relation, m, 0.01 to 10000. Default 10.
     pub far: f64,
-    /// A place was left and visited again when so much way lies between, m, 0.1 to 100000. Default 40.
+    /// Path length between two visits of one place, m, 0.1 to 100000. Default 40.
     pub loop_way: f64,
-    /// And the poses are so near to each other, m, 0.01 to 100. Default 2.
+    /// Distance between the poses of two visits of one place, m, 0.01 to 100. Default 2.
     pub loop_distance: f64,
 }
 

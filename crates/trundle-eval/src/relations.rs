@@ -19,7 +19,7 @@ pub struct Relation {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct RelationConfig {
-    /// A pose of the estimate stands for a time at most so far away, s; 0 or more; 0.01 as for [`crate::AbsoluteConfig`].
+    /// Largest difference of stamps between a pose of the estimate and a time, s; 0 or more; 0.01 as for [`crate::AbsoluteConfig`].
     pub max_difference: f64,
 }
 

@@ -41,7 +41,7 @@ pub enum SlowReason {
         /// Its age, s.
         age: f64,
     },
-    /// The wheels are told to roll and count nothing.
+    /// The wheels are commanded and the encoders count nothing.
     WheelsCountNothing,
     /// Driving backward, out of view.
     Reversing,
@@ -79,7 +79,7 @@ pub enum StopReason {
         /// Its age, s.
         age: f64,
     },
-    /// The wheels are told to roll and count nothing, and no image tells how the robot moves.
+    /// The wheels are commanded and the encoders count nothing, and no image measures the motion.
     NothingTellsMotion,
     /// No wheel reading has come yet.
     NoWheels,
@@ -123,7 +123,7 @@ impl fmt::Display for StopReason {
                 write!(f, "the newest image or scan that shows something is {age:.2} s old")
             }
             Self::NothingTellsMotion => f.write_str(
-                "the wheels are told to roll and count nothing, and no image tells how the robot moves",
+                "the wheels are told to roll and count nothing, and no image measures the motion",
             ),
             Self::NoWheels => f.write_str("no wheel reading yet"),
             Self::StaleWheels { age } => write!(f, "the newest wheel reading is {age:.2} s old"),

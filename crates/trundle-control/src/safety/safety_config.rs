@@ -27,7 +27,7 @@ pub struct SafetyConfig {
     pub reverse_speed: f64,
     /// Speed of backing out while the bumper is pressed, m/s, 0.01 to 0.5. Default 0.05 (ours).
     pub back_out_speed: f64,
-    /// Highest speed while the wheels are told to roll and count nothing, m/s, 0.02 to 2. Default 0.15 (ours): 1 cm from image to
+    /// Highest speed while the wheels are commanded and the encoders count nothing, m/s, 0.02 to 2. Default 0.15 (ours): 1 cm from image to
     /// image.
     pub uncounted_speed: f64,
     /// A slower command than this is no motion but a stop, m/s, 0.001 to 0.1. Default 0.01 (ours).

@@ -36,7 +36,7 @@ pub struct SafetyInput<'a> {
     pub image: Option<Stamp>,
     /// Stamp of the newest wheel reading.
     pub wheels: Option<Stamp>,
-    /// What tells how the robot moves.
+    /// The source that measures the robot's motion.
     pub motion: MotionSense,
 }
 
@@ -46,7 +46,7 @@ pub enum MotionSense {
     /// The wheels count it.
     #[default]
     Wheels,
-    /// The wheels are told to roll and count nothing; images or scans tell, later.
+    /// The wheels are commanded and the encoders count nothing; images or scans measure the motion, later.
     Sight,
     /// Nothing does.
     Nothing,

@@ -30,7 +30,7 @@ impl GyroFault {
         self.last = Some(*rate);
     }
 
-    /// Whether the output has been unchanged for so long that the gyro may be frozen.
+    /// Whether the output has been unchanged long enough for a frozen gyro.
     pub(crate) fn is_suspect(&self) -> bool {
         self.unchanged_for > MAX_UNCHANGED_S
     }

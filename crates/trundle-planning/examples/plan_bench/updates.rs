@@ -91,7 +91,7 @@ fn timed<T>(work: impl FnOnce() -> T) -> f64 {
     spent
 }
 
-/// A hall with nothing in it but a pillar, so many cells square.
+/// A hall with nothing in it but a pillar of a number of cells square.
 pub fn hall(size: usize, resolution: f64) -> OccupancyGrid {
     let geometry = GridGeometry::new(resolution, Vector2::zeros(), size, size).unwrap();
     let mut grid = OccupancyGrid::filled(geometry, Cell::Free);

@@ -78,7 +78,7 @@ proptest! {
         let occupied: Vec<_> = squares(&grid, Vector2::new(-0.5, 1.0)).iter().map(|(i, _)| *i).collect();
         prop_assume!(!occupied.is_empty());
         let beside = grid.geometry().center(grid.geometry().cell(occupied[which % occupied.len()]));
-        // Straight off a square, until so much is missing.
+        // Straight off a square, until that clearance is missing.
         let along = Vector2::new(f64::cos(bearing), f64::sin(bearing));
         let off = |t: f64| beside + along * t;
         let steps = (0..2000).map(|k| f64::from(k) * 1e-3);

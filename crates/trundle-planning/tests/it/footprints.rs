@@ -69,7 +69,7 @@ fn judge_cart(grid: &OccupancyGrid, result: &PlanResult, start: Pose2, goal: Pos
     }
 }
 
-/// Two rooms of 1.5 x 1.7 m and a corridor between them, so many cells of 0.1 m wide.
+/// Two rooms of 1.5 x 1.7 m and a corridor between them, its width in cells of 0.1 m.
 fn two_rooms(corridor: usize) -> OccupancyGrid {
     let row = |r: usize| {
         let open = r > 0 && r < 18;
@@ -194,7 +194,7 @@ fn an_outline_within_a_wall_is_planned_out_of_it_or_refused_with_the_depth() {
         assert!(result.trajectory.end().distance(&goal) < 1.1e-3);
         let left = result.trajectory.points().iter().filter(|p| p.pose.distance(&start) > depth + 0.31);
         assert_eq!(left.filter(|p| touches(&grid, &cart(), p.pose)).count(), 0, "{depth}");
-        // Never deeper than at the start: what is so much smaller touches nothing.
+        // Never deeper than at the start: a footprint smaller by that depth touches nothing.
         let (long, wide) = (0.3 - depth - 5e-4, 0.2 - depth - 5e-4);
         let slim = [(long, wide), (-long, wide), (-long, -wide), (long, -wide)]
             .map(|(x, y)| Vector2::new(0.2 + x, y));

@@ -6,7 +6,7 @@ use trundle_planning::{PlanResult, PlannerConfig, PotentialConfig, PotentialKind
 
 const RADIUS: f64 = 0.1755;
 
-/// A corridor 12 m long along x, so many cells of 5 cm wide, its walls rough: a cell of it sticks out here and there.
+/// A corridor 12 m long along x, its width in cells of 5 cm, its walls rough: a cell of it sticks out here and there.
 fn corridor(wide: usize, rough: bool) -> OccupancyGrid {
     let geometry = GridGeometry::new(0.05, Vector2::zeros(), 240, wide + 4).unwrap();
     let mut grid = OccupancyGrid::filled(geometry, Cell::Free);

@@ -220,7 +220,7 @@ fn the_tiniest_and_the_thinnest_maps_have_answers() {
     }
 }
 
-/// A hall with a wall across, and a gap of so many cells in it.
+/// A hall with a wall across, and a gap of a number of cells in it.
 fn gap(wide: usize) -> (OccupancyGrid, Pose2, Pose2) {
     let geometry = GridGeometry::new(0.1, Vector2::zeros(), 60, 30).unwrap();
     let mut grid = OccupancyGrid::filled(geometry, Cell::Free);

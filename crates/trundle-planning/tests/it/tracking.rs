@@ -282,7 +282,7 @@ fn lately(tracker: &MovingObstacleTracker, now: f64) -> Vec<Vector2> {
 #[test]
 fn who_steps_to_where_the_camera_is_blind_stands_there_until_seen_to_leave() {
     let mut tracker = tracker();
-    // At 1.5 s somebody stops before the camera, so near that it sees nothing of them, 0.4 m.
+    // At 1.5 s somebody stops before the camera, at 0.4 m, within the blind range.
     let mut world = World::new(&[(at(1.5, 4.2), at(0.0, -0.8))]);
     dim(&mut tracker, &mut world, (0.0, 1.5, 1.5), 0.5);
     for (from, until) in [(1.6, 2.0), (2.1, 3.5), (3.6, 9.0)] {

@@ -33,7 +33,7 @@ pub(super) struct Builder {
     pub(super) solids: Vec<Solid>,
     /// Colour of furniture in place of one drawn by chance.
     pub(super) tint: Option<[u8; 3]>,
-    /// What is placed on the floor stands so much higher, m.
+    /// Height above the floor of what is placed next, m.
     pub(super) lift: f64,
     rng: ChaCha8Rng,
     /// Inside [`Builder::alike`]: what paintings are drawn from, and how many solids have one.

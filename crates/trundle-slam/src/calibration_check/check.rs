@@ -12,7 +12,7 @@ use crate::frame::rgbd_frame::Frame;
 use trundle_core::{DepthImage, GrayImage, PinholeCamera, Pose3, Vector2, Vector3};
 use trundle_vision::{RansacConfig, estimate_rigid_motion, match_mutual};
 
-/// Every so many frames one is checked: 5. Source: ours.
+/// Number of frames between two checks: 5. Source: ours.
 const FRAME_STRIDE: usize = 5;
 /// Rotation between two frames from which they are compared: 0.08 rad. Source: ours.
 const MIN_PAIR_TURN_RAD: f64 = 0.08;
@@ -49,7 +49,7 @@ pub(crate) struct CalibrationCheck {
 }
 
 impl CalibrationCheck {
-    /// What was found so far.
+    /// The issues found.
     pub fn issues(&self) -> &[CalibrationIssue] {
         &self.calibration_issues
     }

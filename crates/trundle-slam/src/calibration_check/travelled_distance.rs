@@ -19,7 +19,7 @@ pub(crate) struct TravelledDistance {
 }
 
 impl TravelledDistance {
-    /// Takes a step of so many metres by the camera and by the wheels; decides once.
+    /// Takes the length of a step by the camera and by the wheels, m; decides once.
     pub fn record(&mut self, seen: f64, said: f64) -> Option<CalibrationIssue> {
         self.seen += seen;
         self.said += said;

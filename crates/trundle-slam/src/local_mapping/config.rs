@@ -16,7 +16,7 @@ pub struct LocalMappingConfig {
     pub fixed_keyframes: usize,
     /// Keyframes in which new landmarks are searched at once. Default 10 \[MurArtal17\].
     pub fused_keyframes: usize,
-    /// A landmark that only one keyframe sees is removed after so many more keyframes. Default 3 \[MurArtal17\].
+    /// Number of further keyframes after which a landmark seen by only one keyframe is removed. Default 3 \[MurArtal17\].
     pub trial_keyframes: usize,
     /// Frames in which a landmark should have been seen before it is judged. Default 10.
     pub trial_frames: u32,

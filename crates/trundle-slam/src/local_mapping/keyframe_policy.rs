@@ -89,7 +89,7 @@ impl KeyframeConfig {
     }
 }
 
-/// Whether a keyframe other than `except` is within so many m and rad of a pose.
+/// Whether a keyframe other than `except` is within a distance \[m\] and an angle \[rad\] of a pose.
 fn is_near_one(
     map: &LandmarkMap,
     pose: Pose3,

@@ -30,7 +30,7 @@ impl OdometryFactor {
         Self { from, from_to: UncertainPose::identity() }
     }
 
-    /// After another step of so many seconds; `None` once the factor is too long or too uncertain to be of use.
+    /// After another step and its duration, s; `None` once the factor is too long or too uncertain to be of use.
     pub fn extended_by(&self, step: CameraMotion, seconds: f64, config: &MotionModelConfig) -> Option<Self> {
         let step = UncertainPose { pose: step.motion, covariance: config.covariance_of(&step, seconds) };
         let from_to = self.from_to.then(&step);

@@ -16,7 +16,7 @@ pub(crate) struct OdometryTrack {
 }
 
 impl OdometryTrack {
-    /// Takes the motion prior of a frame, over so many seconds.
+    /// Takes the motion prior of a frame and its duration, s.
     pub fn extend(&mut self, prior: Option<CameraMotion>, seconds: f64, config: &MotionModelConfig) {
         let extended =
             |(factor, step): (OdometryFactor, CameraMotion)| factor.extended_by(step, seconds, config);

@@ -26,7 +26,7 @@ impl MotionLimits {
     /// Of a motion prior by wheels and gyro.
     pub const PRIOR: Self = Self { speed: MAX_PRIOR_SPEED_M_S, turn_rate: MAX_PRIOR_TURN_RATE_RAD_S };
 
-    /// Whether a motion is possible within so many seconds, with a tolerance (m and rad) besides.
+    /// Whether a motion is possible within a time (s), with a tolerance (m and rad).
     pub fn allow(self, motion: Pose3, tolerance: f64, seconds: f64) -> bool {
         motion.translation.norm() <= tolerance + self.speed * seconds
             && motion.angle() <= tolerance + self.turn_rate * seconds

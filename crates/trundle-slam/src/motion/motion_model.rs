@@ -34,14 +34,14 @@ impl Default for MotionModelConfig {
 }
 
 impl MotionModelConfig {
-    /// Standard deviations of a motion prior's translation (m) and rotation (rad) over so many seconds.
+    /// Standard deviations of a motion prior's translation (m) and rotation (rad) over a time, s.
     pub fn sigmas(&self, motion: Pose3, seconds: f64) -> (f64, f64) {
         let drift = self.prior_drift * seconds.sqrt();
         let grown = |length: f64| (self.prior_part * length.sqrt()).hypot(drift);
         (grown(motion.translation.norm()), grown(motion.angle()))
     }
 
-    /// The covariance of a motion prior over so many seconds: its own, if that is a valid one, else by these settings.
+    /// The covariance of a motion prior over a time, s: its own, if that is a valid one, else by these settings.
     pub(crate) fn covariance_of(&self, prior: &CameraMotion, seconds: f64) -> Matrix6<f64> {
         prior.covariance.filter(is_covariance).unwrap_or_else(|| {
             let (translation_sigma, rotation_sigma) = self.sigmas(prior.motion, seconds);

@@ -235,7 +235,7 @@ impl RgbdSlam {
         anchored
     }
 
-    /// The report of the frame recorded last, with so many features.
+    /// The report of the last frame, with the number of its features.
     fn report(&self, features: usize) -> TrackReport {
         let record = self.trajectory.last().expect("invariant: the frame was recorded");
         TrackReport {

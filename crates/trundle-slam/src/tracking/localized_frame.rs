@@ -122,7 +122,7 @@ impl LocalizedFrame {
         self.pose.solution.contradicts_prior || self.recognized.is_some()
     }
 
-    /// Which landmark each of so many features is of.
+    /// The landmark of each feature.
     pub fn landmarks(&self, features: usize) -> Vec<Option<LandmarkId>> {
         let mut landmarks = vec![None; features];
         for seen in &self.seen {

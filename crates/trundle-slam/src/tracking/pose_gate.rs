@@ -19,7 +19,7 @@ pub(crate) enum PoseGate {
     Open,
     /// Poses within the covariance of the prediction: odometry measured the motion.
     Covariance,
-    /// Poses that the camera can reach in so many seconds.
+    /// Poses that the camera can reach in a time, s.
     Elapsed(f64),
 }
 

@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use trundle_core::{PinholeCamera, Pose3, RgbdImage, Stamp};
 use trundle_slam::{RgbdSlam, SlamConfig};
 
-/// The trajectory and the map after all images, with the features found by so many threads.
+/// The trajectory and the map after all images, with the features found by a number of threads.
 fn run(
     threads: usize,
     camera: PinholeCamera,

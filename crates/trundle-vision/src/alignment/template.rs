@@ -146,7 +146,7 @@ impl Template {
     }
 }
 
-/// The patch around its feature, an offset of a px being one of `here_from_there`; `None` where it does not reach so far.
+/// The patch around its feature, an offset of a px being one of `here_from_there`; `None` where the patch is too small.
 fn warp(
     patch: &ImagePatch,
     here_from_there: Matrix2<f32>,
@@ -165,7 +165,7 @@ fn warp(
     Some(warped)
 }
 
-/// What `patch` shows in the square around `at`, px from its middle; `None` where it does not reach so far.
+/// What `patch` shows in the square around `at`, px from its middle; `None` where the patch is too small.
 #[inline(always)]
 fn sample(patch: &ImagePatch, at: Vector2<f32>, seen: &mut Pixels) -> Option<()> {
     let corner = at.add_scalar((PATCH_RADIUS_PX - TEMPLATE_RADIUS_PX) as f32);

@@ -56,7 +56,7 @@ mod tests {
     use rand::{RngExt, SeedableRng};
     use rand_chacha::ChaCha8Rng;
 
-    /// Half bare, half full of edges, with noise of so many grey values.
+    /// Half bare, half full of edges, with noise of a given amplitude, grey values.
     fn image(noise: f32) -> GrayImage {
         let mut rng = ChaCha8Rng::seed_from_u64(4);
         let mut normal = || (0..12).map(|_| rng.random_range(-0.5_f32..0.5)).sum::<f32>();

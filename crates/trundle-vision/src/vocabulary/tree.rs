@@ -37,7 +37,7 @@ pub(super) struct Tree {
 }
 
 impl Tree {
-    /// Room for so many nodes besides the root.
+    /// Capacity for a number of nodes besides the root.
     pub fn with_capacity(nodes: usize) -> Self {
         Self {
             descriptors: Vec::with_capacity(nodes),
