@@ -3,6 +3,8 @@
 //! - [`TileGrid`]: unbounded grid of tiles that clones share; [`LogOddsGrid`] and [`tiles::TileMap`] are its two kinds.
 //! - [`LogOddsGrid`] and [`ScanCells`]: log-odds of each cell, and the cells that one scan hits or sees free.
 //! - [`PublishedGrid`]: three-valued occupancy grid, updated in place, with a revision number for each tile.
+//! - [`DistanceField`]: exact distance to the nearest obstacle, updated where the grid changed.
+//! - [`LikelihoodField`] over [`SurfacePoints`]: likelihood of a hit near the mean hits of occupied cells.
 //! - [`ray_cells`]: exact traversal of the cells along a line.
 //! - [`tiles`]: compact maps in bytes that share tiles between clones, for the many maps of a particle filter.
 //!
@@ -33,20 +35,26 @@
 
 mod cell;
 mod config;
+mod distance_field;
+mod likelihood_field;
 mod log_odds;
 mod log_odds_grid;
 mod published_grid;
 mod ray_cells;
 mod scan_cells;
+mod surface_points;
 mod tile_directory;
 mod tile_grid;
 pub mod tiles;
 
 pub use cell::GridCell;
 pub use config::MapperConfig;
+pub use distance_field::{BLOCK_SIDE_CELLS, BlockMaxima, DistanceField, NO_OBSTACLE_DISTANCE_M, UnknownIs};
+pub use likelihood_field::LikelihoodField;
 pub use log_odds::{log_odds, probability};
 pub use log_odds_grid::{Evidence, EvidenceTile, LogOddsGrid};
 pub use published_grid::{PublishedGrid, Thresholds};
 pub use ray_cells::{RayCells, ray_cells};
 pub use scan_cells::{HitCell, ScanCells};
+pub use surface_points::SurfacePoints;
 pub use tile_grid::{TileData, TileGrid, TileIndex};

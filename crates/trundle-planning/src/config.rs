@@ -1,12 +1,12 @@
 //! Configuration of the planner.
 
 use crate::curve::fit::config::CurveConfig;
-use crate::field::UnknownIs;
 use crate::search::clearance_cost::ClearanceCostConfig;
 use crate::search::potential::PotentialConfig;
 use crate::timing::config::TimingConfig;
 use serde::{Deserialize, Serialize};
 use trundle_core::{Invalid, require_in};
+use trundle_grid::UnknownIs;
 
 /// Parameters of the planner.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]

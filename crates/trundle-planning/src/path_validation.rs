@@ -1,10 +1,10 @@
 //! Validation of a plan on a newer map.
 
-use crate::field::{DistanceField, UnknownIs};
 use crate::polygon::robot_shape::{MAX_OVERLAP_M, RobotShape};
 use thiserror::Error;
 use trundle_collision::square::{point_to_square, polygon_to_square};
 use trundle_core::{Cell, OccupancyGrid, Pose2, Trajectory, Vector2};
+use trundle_grid::{DistanceField, UnknownIs};
 
 /// First contact along a trajectory.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]

@@ -189,9 +189,9 @@ impl GridMapper {
         (0..cols * rows).map(|i| probability(f64::from(self.evidence.log_odds(cell(i)))) as f32).collect()
     }
 
-    /// Class of a cell with these log-odds.
-    pub(crate) fn classify(&self, log_odds: f32) -> Cell {
-        self.thresholds.classify(log_odds)
+    /// Thresholds of the published classes.
+    pub(crate) fn thresholds(&self) -> Thresholds<f32> {
+        self.thresholds
     }
 
     /// Lowest and highest cell of the bounding box.
@@ -399,7 +399,7 @@ mod tests {
         let geometry = *mapper.grid().geometry();
         for (i, (&cell, &p)) in mapper.grid().cells().iter().zip(&mapper.probabilities()).enumerate() {
             let log_odds = mapper.log_odds_at(geometry.center(geometry.cell(i)));
-            assert_eq!(cell, mapper.classify(log_odds as f32));
+            assert_eq!(cell, mapper.thresholds().classify(log_odds as f32));
             assert!((probability(log_odds) as f32 - p).abs() < 1e-6);
         }
     }

@@ -8,8 +8,8 @@
 use crate::exploration::config::ExploreConfig;
 use crate::exploration::frontier::{Frontier, frontiers};
 use crate::exploration::travel_distance::{TravelDistances, disc};
-use crate::field::{DistanceField, UnknownIs};
 use trundle_core::{Cell, CellIndex, Invalid, OccupancyGrid, Pose2, Vector2, require_in};
+use trundle_grid::{DistanceField, UnknownIs};
 
 /// A pose from which a frontier can be viewed.
 #[derive(Debug, Clone, PartialEq)]

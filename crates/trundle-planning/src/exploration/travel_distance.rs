@@ -1,9 +1,9 @@
 //! Path lengths from one place to every cell that a disc can travel.
 
-use crate::field::DistanceField;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 use trundle_core::{Cell, CellIndex, GridGeometry, OccupancyGrid, Vector2};
+use trundle_grid::DistanceField;
 
 /// Path lengths from one place to every cell that a disc can reach, mm; [`UNREACHED`] elsewhere.
 pub(super) struct TravelDistances {

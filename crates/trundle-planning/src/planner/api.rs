@@ -1,6 +1,5 @@
 use crate::config::PlannerConfig;
 use crate::curve::fit::config::CurveConfig;
-use crate::field::{DistanceField, UnknownIs};
 use crate::masks::cost_mask::CostMask;
 use crate::masks::keep_out::{cut, kept_out};
 use crate::masks::speed_mask::SpeedMask;
@@ -21,6 +20,7 @@ use crate::timing::speeds::DriveModel;
 use trundle_core::{
     DifferentialDrive, DriveLimits, Footprint, Invalid, OccupancyGrid, Pose2, Trajectory, Twist2,
 };
+use trundle_grid::{DistanceField, UnknownIs};
 
 /// Largest distance of a corridor's side from a lane, m: a robot on a lane is expected on the lane. Source: ours.
 const LANE_HALF_WIDTH_M: f64 = 0.2;

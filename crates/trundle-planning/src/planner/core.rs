@@ -2,7 +2,6 @@
 
 use crate::area::area;
 use crate::config::PlannerConfig;
-use crate::field::{DistanceField, UnknownIs};
 use crate::masks::cost_mask::CostMask;
 use crate::masks::keep_out::kept_out;
 use crate::masks::speed_mask::SpeedMask;
@@ -16,6 +15,7 @@ use crate::search::potential::PotentialKind;
 use crate::search::waypoint_graph::WaypointGraph;
 use crate::timing::speeds::DriveModel;
 use trundle_core::{GridGeometry, Invalid, OccupancyGrid, Pose2, Twist2};
+use trundle_grid::{DistanceField, UnknownIs};
 
 /// A planning request.
 #[derive(Clone, Copy)]

@@ -4,11 +4,11 @@
 //! one of its points has moved by g (conservative advancement, \[Mirtich96\]). Steps below [`MIN_ADVANCE_M`] are not taken, so an
 //! overlap deeper than half of it is never missed. Cost: O(cells near the footprint) per check.
 
-use crate::field::DistanceField;
 use crate::search::escape::Escape;
 use trundle_collision::convex_polygon::{centre_of, depth_within, inscribed_disc, inset};
 use trundle_collision::square::{point_to_square, polygon_to_square};
 use trundle_core::{Footprint, Pose2, Vector2};
+use trundle_grid::DistanceField;
 
 /// Shortest advance between two checks, m. An overlap of less than half of it may be missed. Source: ours.
 const MIN_ADVANCE_M: f64 = 4e-4;
@@ -207,8 +207,8 @@ impl RobotShape {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::field::UnknownIs;
     use trundle_core::OccupancyGrid;
+    use trundle_grid::UnknownIs;
 
     /// 0.6 x 0.4 m, the axle 0.15 m behind the centre.
     fn cart() -> RobotShape {

@@ -4,7 +4,6 @@ use crate::config::PlannerConfig;
 use crate::curve::analytic_curve::Curve;
 use crate::curve::phase::Phase;
 use crate::curve::route::{RouteContext, route};
-use crate::field::DistanceField;
 use crate::masks::cost_mask::CostMask;
 use crate::masks::keep_out::is_unknown_ahead;
 use crate::masks::speed_mask::SpeedMask;
@@ -19,6 +18,7 @@ use crate::search::waypoint_graph::WaypointGraph;
 use crate::timing::speeds::DriveModel;
 use crate::timing::trajectory::trajectory;
 use trundle_core::{OccupancyGrid, Path, Pose2, Trajectory, Twist2, Vector2};
+use trundle_grid::DistanceField;
 
 /// Distance of two positions that still are the same place, m. Source: ours.
 pub(crate) const SAME_PLACE_M: f64 = 1e-3;

@@ -5,13 +5,13 @@
 //! the true ones that includes walls and dead ends. It runs from the goal towards the start (A*) and a little farther, so that it
 //! covers all blocks that the fine search may reach. Cost: O(blocks between start and goal).
 
-use crate::field::{BLOCK, Blocks};
 use crate::search::bucket_queue::{BucketQueue, Entry};
 use crate::search::configuration_space::ConfigurationSpace;
 use crate::search::lattice::{self, LONGEST_STEP, STEPS};
+use trundle_grid::{BLOCK_SIDE_CELLS, BlockMaxima};
 
 const UNREACHED: u32 = u32::MAX;
-const BLOCK_LENGTH: u32 = BLOCK as u32;
+const BLOCK_LENGTH: u32 = BLOCK_SIDE_CELLS as u32;
 
 /// The heuristic with its buffers, reused from plan to plan.
 #[derive(Debug, Default)]
@@ -34,7 +34,7 @@ pub(crate) struct CoarseHeuristic {
 impl CoarseHeuristic {
     /// Prepares the heuristic for a search from cell `start` to cell `target` (columns and rows).
     pub(crate) fn prepare(&mut self, space: &ConfigurationSpace<'_>, start: (u32, u32), target: (u32, u32)) {
-        let Blocks { width, height, room } = space.field.blocks();
+        let BlockMaxima { width, height, distance: room } = space.field.blocks();
         (self.width, self.height, self.target) = (*width, *height, target);
         self.price.clear();
         self.price.extend(room.iter().map(|room| space.price_of_room(*room)));
@@ -125,9 +125,9 @@ impl CoarseHeuristic {
     fn interpolated(&self, col: u32, row: u32) -> u32 {
         // In eighths of a block, from the middle of the one to the lower left.
         let place = |at: u32, size: usize| {
-            let eighths = (2 * at + 1) as i32 - BLOCK as i32;
-            let low = eighths.div_euclid(2 * BLOCK as i32);
-            let part = eighths.rem_euclid(2 * BLOCK as i32) as u64;
+            let eighths = (2 * at + 1) as i32 - BLOCK_SIDE_CELLS as i32;
+            let low = eighths.div_euclid(2 * BLOCK_SIDE_CELLS as i32);
+            let part = eighths.rem_euclid(2 * BLOCK_SIDE_CELLS as i32) as u64;
             let clamp = |index: i32| index.clamp(0, size as i32 - 1) as usize;
             (clamp(low), clamp(low + 1), part)
         };
@@ -145,7 +145,7 @@ impl CoarseHeuristic {
             return 0;
         }
         let [a, b, c, d] = costs.map(|cost| u64::from(if cost == UNREACHED { least } else { cost }));
-        let side = 2 * BLOCK as u64;
+        let side = 2 * BLOCK_SIDE_CELLS as u64;
         let (below, above) = (a * (side - u) + b * u, c * (side - u) + d * u);
         let middle = (below * (side - v) + above * v) / (side * side);
         middle.saturating_sub(u64::from(lattice::SIDE * BLOCK_LENGTH / 2)) as u32

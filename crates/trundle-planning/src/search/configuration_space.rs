@@ -1,11 +1,11 @@
 //! The configuration space: free positions of the robot, and their costs. Search, potential and curve share it.
 
-use crate::field::DistanceField;
 use crate::masks::cost_mask::CostMask;
 use crate::search::clearance_cost::ClearanceCostConfig;
 use crate::search::escape::Escape;
 use trundle_collision::square::point_to_square;
 use trundle_core::{Cell, OccupancyGrid, Vector2};
+use trundle_grid::DistanceField;
 
 /// Difference of two clearances that counts as rounding, m. Source: ours.
 const CLEARANCE_TOLERANCE_M: f64 = 1e-6;

@@ -4,8 +4,8 @@
 //! farther away from all obstacles. What it overlaps is more than the cells that it covers: a wall continues on both sides, so
 //! connected obstacle cells belong to it, up to two cells beside the robot. Cost: a distance field of the cells around.
 
-use crate::field::{DistanceField, UnknownIs};
 use trundle_core::{Cell, GridGeometry, OccupancyGrid, Vector2};
+use trundle_grid::{DistanceField, UnknownIs};
 
 /// Distance within which the robot must have left the overlap, m, in addition to its depth. Source: ours.
 const ESCAPE_ZONE_M: f64 = 0.2;

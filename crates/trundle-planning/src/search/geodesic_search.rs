@@ -194,9 +194,9 @@ fn entry_cells(space: &ConfigurationSpace<'_>, point: Vector2) -> Vec<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::field::{DistanceField, UnknownIs};
     use crate::search::clearance_cost::ClearanceCostConfig;
     use trundle_core::OccupancyGrid;
+    use trundle_grid::{DistanceField, UnknownIs};
 
     #[test]
     fn the_search_goes_around_walls_and_reports_the_nearest_reachable_point() {

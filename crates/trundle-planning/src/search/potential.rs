@@ -11,10 +11,10 @@
 //! | epsilon, eta | `attraction`, `repulsion` | 1 |
 //! | rho_0 | `reach` | m |
 
-use crate::field::DistanceField;
 use crate::search::configuration_space::ConfigurationSpace;
 use serde::{Deserialize, Serialize};
 use trundle_core::{Invalid, Vector2, require_in, require_positive};
+use trundle_grid::DistanceField;
 
 /// Method that finds the waypoints.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -158,10 +158,10 @@ fn free_step(space: &ConfigurationSpace<'_>, from: Vector2, step: Vector2) -> Op
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::field::UnknownIs;
     use crate::search::clearance_cost::ClearanceCostConfig;
     use proptest::prelude::*;
     use trundle_core::OccupancyGrid;
+    use trundle_grid::UnknownIs;
 
     const BOX: &str = "
         ####################

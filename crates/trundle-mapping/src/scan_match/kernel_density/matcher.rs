@@ -1,12 +1,10 @@
 //! Scan matcher against a grid map.
 
-use super::{
-    ScanMatchConfig, information::Information, likelihood_field::LikelihoodField, refinement::refine,
-    surface_points::SurfacePoints, window_search::search,
-};
+use super::{ScanMatchConfig, information::Information, refinement::refine, window_search::search};
 use crate::grid_mapper::GridMapper;
 use nalgebra::Matrix3;
 use trundle_core::{Invalid, Pose2, Scan, Vector2};
+use trundle_grid::{LikelihoodField, SurfacePoints};
 
 /// Lays scans onto the map.
 ///
@@ -85,7 +83,8 @@ impl ScanMatcher {
         let farthest = points.iter().map(Vector2::norm).fold(0.0, f64::max);
         let swing = farthest * config.window_deg.to_radians();
         let margin = 2.0 * config.window + 1.5 * swing + 3.0 * config.search_sigma;
-        SurfacePoints::around(mapper, &there, margin)
+        let resolution = mapper.config().resolution;
+        SurfacePoints::around(mapper.evidence(), mapper.thresholds(), resolution, &there, margin)
     }
 }
 

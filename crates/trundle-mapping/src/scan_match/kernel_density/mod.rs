@@ -2,11 +2,9 @@
 
 mod config;
 mod information;
-mod likelihood_field;
 mod matcher;
 mod normal_equations;
 mod refinement;
-mod surface_points;
 mod window_search;
 
 pub use config::ScanMatchConfig;

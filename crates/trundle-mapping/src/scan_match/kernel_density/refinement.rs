@@ -1,11 +1,9 @@
 //! Refinement of a pose by Gauss-Newton on a kernel density.
 
-use super::{
-    ScanMatchConfig, information::Information, normal_equations::NormalEquations,
-    surface_points::SurfacePoints,
-};
+use super::{ScanMatchConfig, information::Information, normal_equations::NormalEquations};
 use nalgebra::{Matrix2, Matrix2x3};
 use trundle_core::{Pose2, Vector2};
+use trundle_grid::SurfacePoints;
 
 /// Kernel density of an outlier [1]. A hit with this density is explained with probability 0.5; a hit on a wall has a
 /// density of about 3. Source: ours.

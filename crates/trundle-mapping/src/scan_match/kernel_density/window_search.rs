@@ -1,7 +1,8 @@
 //! Exhaustive search of a small window of poses.
 
-use super::{ScanMatchConfig, likelihood_field::LikelihoodField};
+use super::ScanMatchConfig;
 use trundle_core::{Pose2, Vector2};
+use trundle_grid::LikelihoodField;
 
 /// Score that a pose at the edge of the window loses against the guess [1]. It decides between poses of equal likelihood.
 /// Source: ours.

@@ -1,7 +1,9 @@
+//! Rectangle of cells.
+
 use std::ops::Range;
 use trundle_core::GridGeometry;
 
-/// A box of cells.
+/// Rectangle of cells.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Window {
     pub(crate) cols: Range<usize>,

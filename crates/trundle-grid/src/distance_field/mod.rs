@@ -1,10 +1,10 @@
-//! How far it is to the nearest obstacle, exactly, everywhere.
+//! Distance to the nearest obstacle, exact at the centres of all cells.
 //!
-//! Problem: every step of planning asks for the room at a point, and for the direction in which it grows. Idea: the
-//! distance from each cell's centre to the nearest occupied square is computed exactly, by columns and then by rows as in
-//! \[Felzenszwalb12\]; between centres it is interpolated bilinearly; where a promise hangs on it, the squares themselves are
-//! measured ([`DistanceField::clearance`]). A field may tell distances apart up to a reach only: then a change reaches no further.
-//! Cost: O(cells x distance told apart) once a map, the same for the cells near a change, O(1) a look.
+//! Problem: each step of planning needs the distance to the nearest obstacle at a point, and its gradient. Idea: the distance from
+//! the centre of each cell to the nearest occupied square is computed exactly, first along columns and then along rows \[Felzenszwalb12\].
+//! Between centres it is interpolated bilinearly. Where a guarantee is needed, the squares themselves are measured
+//! ([`DistanceField::clearance`]). A field can be limited to a reach, which bounds the effect of a change. Cost: O(cells x reach) for a
+//! map, the same for the cells near a change, O(1) for a lookup.
 
 mod blocks;
 mod erosion;
@@ -12,7 +12,7 @@ mod exact;
 mod transform;
 mod window;
 
-pub(crate) use blocks::{Blocks, SIDE as BLOCK};
+pub use blocks::{BLOCK_SIDE_CELLS, BlockMaxima};
 
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
@@ -35,7 +35,7 @@ pub enum UnknownIs {
 
 impl UnknownIs {
     /// Whether a cell of this value is an obstacle.
-    pub(crate) fn blocks(self, cell: Cell) -> bool {
+    pub fn blocks(self, cell: Cell) -> bool {
         match cell {
             Cell::Occupied => true,
             Cell::Unknown => self == Self::Obstacle,
@@ -80,7 +80,7 @@ pub struct DistanceField {
     none: u16,
     /// The longest distance told apart, m.
     reach: f64,
-    blocks: Blocks,
+    blocks: BlockMaxima,
 }
 
 impl DistanceField {
@@ -97,7 +97,7 @@ impl DistanceField {
 
     /// The field of `grid` over another `geometry` of the same lattice (same resolution, origins whole cells apart), up to
     /// `reach` m; cells that the grid does not reach are unknown.
-    pub(crate) fn over(geometry: GridGeometry, grid: &OccupancyGrid, unknown: UnknownIs, reach: f64) -> Self {
+    pub fn over(geometry: GridGeometry, grid: &OccupancyGrid, unknown: UnknownIs, reach: f64) -> Self {
         /// Fewer cells a blocks' middle, and a step of the search, would not see.
         const MIN_REACH_CELLS: f64 = 4.0;
         let (distance, gap) = (vec![0.0; geometry.len()], vec![0; geometry.len()]);
@@ -105,7 +105,7 @@ impl DistanceField {
         let reach = reach.max(MIN_REACH_CELLS * geometry.resolution).min(NO_OBSTACLE_DISTANCE_M);
         // Saturates where columns are longer than anything that is told apart.
         let none = ((reach * per_metre).ceil() as u16).saturating_add(2);
-        let blocks = Blocks::default();
+        let blocks = BlockMaxima::default();
         let is_obstacle = vec![false; geometry.len()];
         let mut field =
             Self { geometry, per_metre, unknown, is_obstacle, distance, gap, none, reach, blocks };
@@ -123,6 +123,7 @@ impl DistanceField {
     }
 
     /// The longest distance that is told apart, m.
+    #[inline]
     pub fn reach(&self) -> f64 {
         self.reach
     }
@@ -169,22 +170,27 @@ impl DistanceField {
         })
     }
 
-    pub(crate) fn blocks(&self) -> &Blocks {
+    /// Maximum distances of blocks of 4 x 4 cells.
+    #[inline]
+    pub fn blocks(&self) -> &BlockMaxima {
         &self.blocks
     }
 
     /// Where the cells lie.
+    #[inline]
     pub fn geometry(&self) -> &GridGeometry {
         &self.geometry
     }
 
     /// The exact distance from a cell's centre to the nearest obstacle's square, m; 0 in obstacles. Panics outside.
+    #[inline]
     pub fn at_cell(&self, cell: CellIndex) -> f64 {
         f64::from(self.distance[self.geometry.linear(cell)])
     }
 
     /// [`DistanceField::at_cell`] by the place in row-major storage.
-    pub(crate) fn at_linear(&self, linear: usize) -> f64 {
+    #[inline]
+    pub fn at_linear(&self, linear: usize) -> f64 {
         f64::from(self.distance[linear])
     }
 
@@ -285,128 +291,4 @@ fn place(at: f64, size: usize) -> (usize, f64, f64) {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use proptest::prelude::*;
-
-    fn brute_force(grid: &OccupancyGrid, unknown: UnknownIs, point: Vector2) -> f64 {
-        let geometry = grid.geometry();
-        let mut best = NO_OBSTACLE_DISTANCE_M;
-        for (i, cell) in grid.cells().iter().enumerate() {
-            if *cell == Cell::Occupied || (*cell == Cell::Unknown && unknown == UnknownIs::Obstacle) {
-                let off = (point - geometry.center(geometry.cell(i))).abs();
-                let gap = off.map(|d| (d - geometry.resolution / 2.0).max(0.0));
-                best = best.min(gap.norm());
-            }
-        }
-        if unknown == UnknownIs::Obstacle {
-            let p = (point - geometry.origin) / geometry.resolution;
-            let (w, h) = (geometry.width as f64, geometry.height as f64);
-            let border = p.x.min(p.y).min(w - p.x).min(h - p.y).max(0.0);
-            best = best.min(border * geometry.resolution);
-        }
-        best
-    }
-
-    prop_compose! {
-        fn any_grid()(w in 1usize..17, h in 1usize..17)
-            (w in Just(w), h in Just(h), cells in prop::collection::vec(0u8..12, w * h)) -> OccupancyGrid {
-            let geometry = GridGeometry::new(0.1, Vector2::new(-0.3, 0.7), w, h).unwrap();
-            let cell = |c: u8| match c { 0 => Cell::Occupied, 1 => Cell::Unknown, _ => Cell::Free };
-            OccupancyGrid::new(geometry, cells.into_iter().map(cell).collect()).unwrap()
-        }
-    }
-
-    proptest! {
-        #[test]
-        fn centres_agree_with_brute_force(grid in any_grid(), obstacle in any::<bool>()) {
-            let unknown = if obstacle { UnknownIs::Obstacle } else { UnknownIs::Free };
-            let field = DistanceField::from_grid(&grid, unknown);
-            for i in 0..grid.geometry().len() {
-                let cell = grid.geometry().cell(i);
-                let truth = brute_force(&grid, unknown, grid.geometry().center(cell));
-                prop_assert!((field.at_cell(cell) - truth).abs() <= 1e-6 * truth.max(1.0));
-            }
-        }
-
-        #[test]
-        fn an_update_is_what_a_new_field_would_be(
-            grid in any_grid(), obstacle in any::<bool>(), reach in prop::sample::select(vec![0.0, 0.45, 0.8, NO_OBSTACLE_DISTANCE_M]),
-            changes in prop::collection::vec((0usize..17, 0usize..17, 0u8..3), 1..9),
-        ) {
-            let unknown = if obstacle { UnknownIs::Obstacle } else { UnknownIs::Free };
-            let mut field = DistanceField::up_to(reach, &grid, unknown);
-            let mut grid = grid;
-            for part in changes.chunks(3) {
-                for (col, row, value) in part {
-                    let cell = CellIndex { col: col % grid.geometry().width, row: row % grid.geometry().height };
-                    grid.set(cell, [Cell::Occupied, Cell::Unknown, Cell::Free][usize::from(*value)]);
-                }
-                field.update(&grid);
-                prop_assert_eq!(&field, &DistanceField::up_to(reach, &grid, unknown));
-            }
-        }
-
-        #[test]
-        fn what_is_told_apart_is_exact(grid in any_grid(), reach in 0.4..2.0, x in -0.3..1.3, y in 0.7..2.3) {
-            let whole = DistanceField::from_grid(&grid, UnknownIs::Free);
-            let field = DistanceField::up_to(reach, &grid, UnknownIs::Free);
-            for i in 0..grid.geometry().len() {
-                let cell = grid.geometry().cell(i);
-                prop_assert_eq!(field.at_cell(cell), f64::from(whole.at_cell(cell).min(reach) as f32));
-            }
-            let point = Vector2::new(x, y);
-            let truth = brute_force(&grid, UnknownIs::Free, point).min(5.0).min(reach);
-            prop_assert!((field.clearance(point, 5.0) - truth).abs() < 1e-6);
-        }
-
-        /// Rows longer than a block.
-        #[test]
-        fn long_rows_agree_with_brute_force(
-            w in 60usize..140, h in 1usize..9, obstacle in any::<bool>(),
-            marks in prop::collection::vec((0usize..140, 0usize..9), 1..12),
-        ) {
-            let unknown = if obstacle { UnknownIs::Obstacle } else { UnknownIs::Free };
-            let geometry = GridGeometry::new(0.1, Vector2::new(-0.3, 0.7), w, h).unwrap();
-            let mut grid = OccupancyGrid::filled(geometry, Cell::Free);
-            marks.iter().for_each(|(c, r)| grid.set(CellIndex { col: c % w, row: r % h }, Cell::Occupied));
-            let field = DistanceField::from_grid(&grid, unknown);
-            for i in 0..geometry.len() {
-                let truth = brute_force(&grid, unknown, geometry.center(geometry.cell(i)));
-                prop_assert!((field.at_linear(i) - truth).abs() <= 1e-6 * truth.max(1.0));
-            }
-        }
-
-        #[test]
-        fn clearance_is_exact_anywhere(grid in any_grid(), x in -0.3..1.3, y in 0.7..2.3) {
-            let field = DistanceField::from_grid(&grid, UnknownIs::Free);
-            let point = Vector2::new(x, y);
-            let truth = brute_force(&grid, UnknownIs::Free, point).min(0.5);
-            prop_assert!((field.clearance(point, 0.5) - truth).abs() < 1e-9);
-        }
-
-        #[test]
-        fn gradient_agrees_with_differences(grid in any_grid(), x in -0.5..1.5, y in 0.5..2.5, obstacle in any::<bool>()) {
-            let unknown = if obstacle { UnknownIs::Obstacle } else { UnknownIs::Free };
-            let field = DistanceField::from_grid(&grid, unknown);
-            let at = |dx: f64, dy: f64| field.distance(Vector2::new(x + dx, y + dy));
-            prop_assume!(at(0.0, 0.0) < NO_OBSTACLE_DISTANCE_M / 2.0);
-            let h = 1e-6;
-            let numeric = Vector2::new(at(h, 0.0) - at(-h, 0.0), at(0.0, h) - at(0.0, -h)) / (2.0 * h);
-            let kink = |p: f64, o: f64| (((p - o) / 0.1 - 0.5).rem_euclid(1.0) - 0.5).abs() > 0.5 - 1e-3;
-            prop_assume!(!kink(x, -0.3) && !kink(y, 0.7) && (!obstacle || at(0.0, 0.0) > 1e-3));
-            prop_assert!((numeric - field.gradient(Vector2::new(x, y))).norm() < 1e-4);
-        }
-    }
-
-    #[test]
-    fn nowhere_and_outside_follow_the_policy() {
-        let grid = OccupancyGrid::from_ascii(0.5, "....\n....").unwrap();
-        let free = DistanceField::from_grid(&grid, UnknownIs::Free);
-        let walled = DistanceField::from_grid(&grid, UnknownIs::Obstacle);
-        assert_eq!(free.distance(Vector2::new(9.0, 9.0)), NO_OBSTACLE_DISTANCE_M);
-        assert_eq!(walled.distance(Vector2::new(9.0, 9.0)), 0.0);
-        assert_eq!(free.distance(Vector2::new(f64::NAN, 0.0)), 0.0);
-        assert!((walled.distance(Vector2::new(1.0, 0.2)) - 0.2).abs() < 1e-6);
-    }
-}
+mod tests;

@@ -29,7 +29,8 @@ impl DistanceField {
     }
 
     /// Whether a disc of `radius` about `point` touches no obstacle: interpolation where it is sure, squares else.
-    pub(crate) fn keeps(&self, point: Vector2, radius: f64) -> bool {
+    #[inline]
+    pub fn keeps(&self, point: Vector2, radius: f64) -> bool {
         let quick = self.distance(point);
         if quick >= radius + self.overestimate(radius) {
             return true;
@@ -41,25 +42,27 @@ impl DistanceField {
 
     /// By how much [`DistanceField::distance`] may exceed the truth where that is near `radius`: a distance's second
     /// derivative is at most 1 / distance, and bilinear interpolation errs by res^2 / 8 of it along either axis.
-    pub(crate) fn overestimate(&self, radius: f64) -> f64 {
+    #[inline]
+    pub fn overestimate(&self, radius: f64) -> f64 {
         let resolution = self.geometry.resolution;
         let diagonal = resolution * std::f64::consts::FRAC_1_SQRT_2;
         if radius > 2.0 * diagonal { resolution * resolution / (4.0 * (radius - diagonal)) } else { diagonal }
     }
 
     /// The lower and the upper corner of the grid, map frame, m.
-    pub(crate) fn extent(&self) -> (Vector2, Vector2) {
+    pub fn extent(&self) -> (Vector2, Vector2) {
         let GridGeometry { resolution, origin, width, height } = self.geometry;
         (origin, origin + Vector2::new(width as f64, height as f64) * resolution)
     }
 
     /// Whether everything outside the grid is an obstacle.
-    pub(crate) fn is_walled(&self) -> bool {
+    #[inline]
+    pub fn is_walled(&self) -> bool {
         self.unknown == UnknownIs::Obstacle
     }
 
     /// Whether the cell in this column and row of the lattice is an obstacle, inside the grid or outside.
-    pub(crate) fn blocks_at(&self, col: i64, row: i64) -> bool {
+    pub fn blocks_at(&self, col: i64, row: i64) -> bool {
         let (width, height) = (self.geometry.width as i64, self.geometry.height as i64);
         let inside = (0..width).contains(&col) && (0..height).contains(&row);
         if inside { self.distance[(row * width + col) as usize] == 0.0 } else { self.is_walled() }
@@ -67,7 +70,7 @@ impl DistanceField {
 
     /// Visits the centres of obstacle cells that lie in the box (`low`, `high`) and have a free neighbour: the nearest
     /// square to anything free is one of them.
-    pub(crate) fn for_obstacle_rims_in(&self, low: Vector2, high: Vector2, mut visit: impl FnMut(Vector2)) {
+    pub fn for_obstacle_rims_in(&self, low: Vector2, high: Vector2, mut visit: impl FnMut(Vector2)) {
         let (width, cells) = (self.geometry.width, self.distance.len());
         self.for_obstacles_in(low, high, |linear| {
             let col = linear % width;
@@ -122,7 +125,8 @@ impl DistanceField {
     }
 
     /// How far the point is inside the grid where outside counts as an obstacle, m.
-    pub(crate) fn border_gap(&self, point: Vector2) -> f64 {
+    #[inline]
+    pub fn border_gap(&self, point: Vector2) -> f64 {
         if self.unknown == UnknownIs::Free {
             return f64::INFINITY;
         }

@@ -1,30 +1,40 @@
 //! Surface points of the occupied cells of a part of the map.
 
-use crate::grid_mapper::GridMapper;
+use crate::{GridCell, LogOddsGrid, Thresholds};
 use trundle_core::{Cell, Vector2};
-use trundle_grid::GridCell;
 
-/// The obstacles of a part of the map: of each occupied cell the mean of its hits, map frame, m.
+/// Surface points of a part of a map: the mean of the hits of each occupied cell, map frame, m.
 #[derive(Debug, Clone)]
-pub(crate) struct SurfacePoints {
-    pub(crate) resolution: f64,
-    pub(crate) corner: GridCell,
-    pub(crate) width: usize,
-    pub(crate) height: usize,
+pub struct SurfacePoints {
+    /// Side of a cell, m.
+    pub resolution: f64,
+    /// Lowest cell of the part.
+    pub corner: GridCell,
+    /// Columns of the part.
+    pub width: usize,
+    /// Rows of the part.
+    pub height: usize,
     cells: Vec<Option<Vector2>>,
 }
 
 impl SurfacePoints {
-    /// Those within `margin` m of the bounding box of `points` (map frame, m); `None` when there is no point.
-    pub(crate) fn around(mapper: &GridMapper, points: &[Vector2], margin: f64) -> Option<Self> {
-        let resolution = mapper.config().resolution;
+    /// Surface points within `margin` m of the bounding box of `points` (map frame, m); `None` when there is no point. `resolution` is the
+    /// side of a cell of the map, m.
+    pub fn around(
+        map: &LogOddsGrid,
+        thresholds: Thresholds<f32>,
+        resolution: f64,
+        points: &[Vector2],
+        margin: f64,
+    ) -> Option<Self> {
         let first = *points.first()?;
         let (low, high) = points.iter().fold((first, first), |(low, high), p| (low.inf(p), high.sup(p)));
         let low = GridCell::containing((low - Vector2::repeat(margin)) / resolution);
         let high = GridCell::containing((high + Vector2::repeat(margin)) / resolution);
         let site = |cell: GridCell| {
-            let evidence = mapper.evidence().get(cell)?;
-            let within = evidence.hit().filter(|_| mapper.classify(evidence.log_odds) == Cell::Occupied)?;
+            let evidence = map.get(cell)?;
+            let within =
+                evidence.hit().filter(|_| thresholds.classify(evidence.log_odds) == Cell::Occupied)?;
             Some((Vector2::new(f64::from(cell.x), f64::from(cell.y)) + within) * resolution)
         };
         let row = |y: i32| (low.x..=high.x).map(move |x| GridCell { x, y });
@@ -37,13 +47,13 @@ impl SurfacePoints {
         })
     }
 
-    /// All sites, by rising y, then x of their cells.
-    pub(crate) fn iter(&self) -> impl Iterator<Item = Vector2> {
+    /// All surface points, by rising y, then x of their cells.
+    pub fn iter(&self) -> impl Iterator<Item = Vector2> {
         self.cells.iter().flatten().copied()
     }
 
-    /// The sites whose cells are at most `reach` cells away from the cell of `point`.
-    pub(crate) fn near(&self, point: Vector2, reach: i32) -> impl Iterator<Item = Vector2> {
+    /// Surface points whose cells are at most `reach` cells away from the cell of `point`.
+    pub fn near(&self, point: Vector2, reach: i32) -> impl Iterator<Item = Vector2> {
         let (col, row) = self.column_and_row(point);
         let span = |at: i32, size: usize| (at - reach).max(0)..(at + reach + 1).min(size as i32);
         let cols = span(col, self.width);
@@ -52,14 +62,14 @@ impl SurfacePoints {
             .filter_map(|(row, col)| self.cells[row as usize * self.width + col as usize])
     }
 
-    /// Column and row of the cell that holds `point`, which may lie outside.
-    pub(crate) fn column_and_row(&self, point: Vector2) -> (i32, i32) {
+    /// Column and row of the cell that contains `point`, which may lie outside the part.
+    pub fn column_and_row(&self, point: Vector2) -> (i32, i32) {
         let cell = GridCell::containing(point / self.resolution);
         (cell.x - self.corner.x, cell.y - self.corner.y)
     }
 
-    /// The middle of a cell, map frame, m.
-    pub(crate) fn center(&self, col: i32, row: i32) -> Vector2 {
+    /// Centre of a cell, map frame, m.
+    pub fn center(&self, col: i32, row: i32) -> Vector2 {
         GridCell { x: self.corner.x + col, y: self.corner.y + row }.center_cells() * self.resolution
     }
 }
