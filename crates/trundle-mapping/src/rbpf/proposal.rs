@@ -167,7 +167,7 @@ impl Proposer<'_> {
             guess: prior.guess,
             reach: (WIDE_SEARCH_SIGMAS * sigma(0), WIDE_SEARCH_SIGMAS * sigma(1)),
             turn_reach: (WIDE_SEARCH_SIGMAS * sigma(2)).min(std::f64::consts::PI),
-            turn_step: (2.0 / self.points.lever).clamp(0.01, 0.05),
+            turn_step: (2.0 / self.points.spread.lever).clamp(0.01, 0.05),
             sigma: (sigma(0), sigma(1), sigma(2)),
             gain: -self.config.outliers.ln() / self.config.correlation * every as f64,
         };
@@ -260,7 +260,7 @@ impl Proposer<'_> {
         let elsewhere = |p: &Pose2| {
             let off = difference(*p, top);
             off.xy().amax() > MIN_START_DISTANCE_CELLS
-                || off.z.abs() * self.points.lever > MIN_START_DISTANCE_CELLS
+                || off.z.abs() * self.points.spread.lever > MIN_START_DISTANCE_CELLS
         };
         let second = starts
             .iter()
@@ -277,7 +277,7 @@ impl Proposer<'_> {
     fn sample(&self, attempt: &Attempt<'_>, log_rate: f64, rng: &mut ParticleRng) -> Proposal {
         let Attempt { window, corner, prior, optimum, .. } = attempt;
         let Optimum { pose: top, equations, directions, .. } = optimum;
-        let explained = equations.explained / self.points.points.len().max(1) as f64;
+        let explained = equations.normal.explained / self.points.points.len().max(1) as f64;
         let lost = explained < MIN_EXPLAINED;
         let held = if lost { Matrix3::zeros() } else { directions.held };
         let centre = if lost { prior.guess } else { *top };
@@ -349,7 +349,7 @@ impl Proposer<'_> {
         if optimum.directions.degenerate > 0 {
             return None;
         }
-        let hits = (optimum.equations.information / self.config.correlation).try_inverse()?;
+        let hits = (optimum.equations.normal.information / self.config.correlation).try_inverse()?;
         let off = difference(optimum.pose, prior.guess);
         let off = off + hits * (prior.information * off);
         let (s, c) = prior.guess.theta.sin_cos();

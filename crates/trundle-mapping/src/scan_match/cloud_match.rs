@@ -78,7 +78,7 @@ impl CloudMatcher<'_> {
             guess,
             reach,
             turn_reach,
-            turn_step: (2.0 / self.cloud.lever).clamp(0.004, 0.05),
+            turn_step: (2.0 / self.cloud.spread.lever).clamp(0.004, 0.05),
             sigma: (covariance[(0, 0)].sqrt(), covariance[(1, 1)].sqrt(), covariance[(2, 2)].sqrt()),
         };
         let mut places: Vec<Place> = Vec::new();
@@ -113,7 +113,7 @@ impl CloudMatcher<'_> {
         let in_y = optimum.directions.information(&optimum.equations) / self.config.correlation;
         CloudMatch {
             information: to_y.transpose() * in_y * to_y,
-            explained: optimum.equations.explained / all,
+            explained: optimum.equations.normal.explained / all,
             degenerate: optimum.directions.degenerate,
             log_likelihood: self.likelihood.log_likelihood(&window, self.cloud, optimum.pose)
                 / self.config.correlation,
@@ -131,7 +131,7 @@ impl CloudMatcher<'_> {
             Pose2 { x: pose.x - corner.0, y: pose.y - corner.1, ..pose },
         );
         let all = self.cloud.points.len().max(1) as f64;
-        (equations.explained / all, equations.contradicted / all)
+        (equations.normal.explained / all, equations.contradicted / all)
     }
 
     fn window<'m>(&self, map: &'m TileMap, pose: Pose2) -> TileWindow<'m> {

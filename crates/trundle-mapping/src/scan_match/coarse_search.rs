@@ -64,7 +64,7 @@ impl CoarseSearch {
         self.cover(window);
         self.best.clear();
         let reach = ((3.0 * prior.sigma / SAMPLE_STEP_CELLS).ceil() as usize).clamp(2, MAX_REACH_SAMPLES);
-        let turn_step = (SAMPLE_STEP_CELLS / shape.lever).clamp(0.004, 0.05);
+        let turn_step = (SAMPLE_STEP_CELLS / shape.spread.lever).clamp(0.004, 0.05);
         let turns = ((3.0 * prior.sigma_turn / turn_step).ceil() as i32)
             .clamp(1, (std::f64::consts::PI / turn_step) as i32);
         let every = shape.points.len().div_ceil(MAX_SEARCH_POINTS).max(1);

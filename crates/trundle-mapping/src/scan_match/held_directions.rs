@@ -1,9 +1,9 @@
 //! Directions of a pose that a scan constrains, and degenerate directions.
 
-use crate::scan_match::likelihood::NormalEquations;
+use crate::scan_match::likelihood::ScanEquations;
 use crate::scan_match::scan_points::ScanPoints;
 use nalgebra::{Matrix3, Vector3};
-use trundle_core::Pose2;
+use trundle_core::{Pose2, Vector2};
 
 /// The directions that a scan holds and those that it does not, as along a bare corridor (\[Zhang16\]).
 ///
@@ -20,13 +20,12 @@ pub(crate) struct HeldDirections {
 
 impl HeldDirections {
     /// The directions at `pose`: degenerate is what less than `least` (a part) of the hits' information holds.
-    pub(crate) fn new(shape: &ScanPoints, pose: Pose2, equations: &NormalEquations, least: f64) -> Self {
+    pub(crate) fn new(shape: &ScanPoints, pose: Pose2, equations: &ScanEquations, least: f64) -> Self {
         let (s, c) = pose.theta.sin_cos();
-        let (cx, cy) =
-            (c * shape.centroid.0 - s * shape.centroid.1, s * shape.centroid.0 + c * shape.centroid.1);
-        let lever = shape.lever;
-        let pose_from_y = Matrix3::new(1.0, 0.0, cy / lever, 0.0, 1.0, -cx / lever, 0.0, 0.0, 1.0 / lever);
-        let information = pose_from_y.transpose() * equations.information * pose_from_y;
+        let at = shape.spread.centroid;
+        let centroid = Vector2::new(c * at.x - s * at.y, s * at.x + c * at.y);
+        let pose_from_y = shape.spread.pose_from_centroid(centroid);
+        let information = pose_from_y.transpose() * equations.normal.information * pose_from_y;
         let eigen = information.symmetric_eigen();
         let threshold = (least * equations.weight).max(1e-9);
         let (mut held, mut degenerate) = (Matrix3::zeros(), 0);
@@ -41,14 +40,14 @@ impl HeldDirections {
     }
 
     /// The information that the hits give, in y, without its degenerate part.
-    pub(crate) fn information(&self, equations: &NormalEquations) -> Matrix3<f64> {
-        let in_y = self.pose_from_y.transpose() * equations.information * self.pose_from_y;
+    pub(crate) fn information(&self, equations: &ScanEquations) -> Matrix3<f64> {
+        let in_y = self.pose_from_y.transpose() * equations.normal.information * self.pose_from_y;
         self.held * in_y * self.held
     }
 
     /// The pull of the hits, in y, without its degenerate part.
-    pub(crate) fn rhs(&self, equations: &NormalEquations) -> Vector3<f64> {
-        self.held * (self.pose_from_y.transpose() * equations.rhs)
+    pub(crate) fn rhs(&self, equations: &ScanEquations) -> Vector3<f64> {
+        self.held * (self.pose_from_y.transpose() * equations.normal.rhs)
     }
 
     /// An information about poses, in y.

@@ -1,6 +1,7 @@
 //! Likelihood of scan points in a map of tiles, and the normal equations of a pose.
 
 use crate::particle_config::ParticleConfig;
+use crate::scan_match::normal_equations::NormalEquations;
 use crate::scan_match::scan_points::{LANES, PointGroup, ScanPoints};
 use nalgebra::{Matrix3, Vector3};
 use trundle_core::Pose2;
@@ -23,16 +24,13 @@ pub(crate) struct Likelihood {
 const STEPS: usize = 257;
 const PER_UNIT: f32 = 16.0;
 
-/// What all hits say at a pose: information (1 / cells^2, 1 / cells, 1), pull and log-likelihood.
+/// Normal equations of a pose in a map of tiles (cells, rad), with the agreement of the hits.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub(crate) struct NormalEquations {
-    pub(crate) information: Matrix3<f64>,
-    pub(crate) rhs: Vector3<f64>,
-    /// How many hits the map explains.
-    pub(crate) explained: f64,
-    /// Their information.
+pub(crate) struct ScanEquations {
+    pub(crate) normal: NormalEquations,
+    /// Sum of the information of the explained hits, 1 / cells^2.
     pub(crate) weight: f64,
-    /// How many hits lie on free ground with no obstacle near.
+    /// Number of hits on free ground with no obstacle near.
     pub(crate) contradicted: f64,
 }
 
@@ -81,7 +79,7 @@ impl Likelihood {
         window: &TileWindow<'_>,
         shape: &ScanPoints,
         pose: Pose2,
-    ) -> NormalEquations {
+    ) -> ScanEquations {
         let mut sums = Sums::default();
         self.tell(&mut sums, window, shape, pose);
         sums.equations()
@@ -247,12 +245,14 @@ impl Sums {
         }
     }
 
-    fn equations(&self) -> NormalEquations {
+    fn equations(&self) -> ScanEquations {
         let (a, b) = (self.a.map(f64::from), self.b.map(f64::from));
-        NormalEquations {
-            information: Matrix3::new(a[0], a[1], a[2], a[1], a[3], a[4], a[2], a[4], a[5]),
-            rhs: Vector3::from(b),
-            explained: f64::from(self.explained),
+        ScanEquations {
+            normal: NormalEquations {
+                information: Matrix3::new(a[0], a[1], a[2], a[1], a[3], a[4], a[2], a[4], a[5]),
+                rhs: Vector3::from(b),
+                explained: f64::from(self.explained),
+            },
             weight: f64::from(self.weight),
             contradicted: f64::from(self.contradicted),
         }

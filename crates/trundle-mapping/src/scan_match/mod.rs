@@ -8,6 +8,8 @@ pub(crate) mod held_directions;
 mod kernel_density;
 pub(crate) mod likelihood;
 pub(crate) mod motion_prior;
+pub(crate) mod normal_equations;
+pub(crate) mod point_spread;
 pub(crate) mod pose_optimizer;
 pub(crate) mod scan_points;
 

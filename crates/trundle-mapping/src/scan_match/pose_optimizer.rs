@@ -2,7 +2,7 @@
 
 use crate::particle_config::ParticleConfig;
 use crate::scan_match::held_directions::HeldDirections;
-use crate::scan_match::likelihood::{Likelihood, NormalEquations};
+use crate::scan_match::likelihood::{Likelihood, ScanEquations};
 use crate::scan_match::motion_prior::MotionPrior;
 use crate::scan_match::scan_points::ScanPoints;
 use nalgebra::{Cholesky, Vector3};
@@ -24,7 +24,7 @@ pub(crate) struct PoseOptimizer<'a> {
 pub(crate) struct Optimum {
     /// Cells of the window, rad.
     pub(crate) pose: Pose2,
-    pub(crate) equations: NormalEquations,
+    pub(crate) equations: ScanEquations,
     pub(crate) directions: HeldDirections,
     /// Log-posterior up to a constant, nats.
     pub(crate) log_posterior: f64,

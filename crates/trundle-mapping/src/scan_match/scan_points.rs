@@ -1,6 +1,7 @@
 //! Scan prepared for matching: thinned points with normals, and rays.
 
 use crate::particle_config::ParticleConfig;
+use crate::scan_match::point_spread::{PointSpread, thinned};
 use std::collections::BTreeSet;
 use trundle_core::{Beam, Pose2, Scan, Vector2};
 use trundle_grid::tiles::{RaySpan, ScanRay, ScanRays};
@@ -14,10 +15,8 @@ pub(crate) struct ScanPoints {
     pub(crate) points: Vec<ScanPoint>,
     /// The same, in groups for vector code; the last is filled up.
     pub(crate) groups: Vec<PointGroup>,
-    /// Mean of the points, cells.
-    pub(crate) centroid: (f64, f64),
-    /// Their root mean square distance from it, cells.
-    pub(crate) lever: f64,
+    /// Spread of the points, cells.
+    pub(crate) spread: PointSpread,
     /// Number of the beam, end, and one sigma of the range where the sensor says it (else 0).
     hits: Vec<(usize, Vector2, f64)>,
     /// The numbers of the rays' beams.
@@ -76,6 +75,8 @@ impl PointGroup {
 const NORMAL_BASELINE_M: f64 = 0.2;
 /// Minimum distance of two points of a scan [cells]. A nearer point is dropped. Source: ours.
 const POINT_SPACING_CELLS: f64 = 1.5;
+/// Minimum lever of the points [cells]. Points nearer to each other tell no heading. Source: ours.
+const MIN_LEVER_CELLS: f64 = 2.0;
 /// Maximum RMS distance from a fitted line [sigmas]. Points beyond it have no normal. Source: ours.
 const MAX_LINE_RESIDUAL_SIGMAS: f64 = 3.0;
 
@@ -186,7 +187,8 @@ impl ScanPoints {
 
     /// Makes gathered points ready for matching.
     pub(crate) fn finish(&mut self) {
-        self.measure_spread();
+        let points = self.points.iter().map(|p| Vector2::new(f64::from(p.x), f64::from(p.y)));
+        self.spread = PointSpread::new(points, MIN_LEVER_CELLS);
         self.groups.clear();
         self.groups.extend(self.points.chunks(LANES).map(PointGroup::new));
     }
@@ -194,13 +196,9 @@ impl ScanPoints {
     fn find_points(&mut self, config: &ParticleConfig, origin: Vector2) {
         let cells = 1.0 / config.map.resolution;
         let spacing = POINT_SPACING_CELLS * config.map.resolution;
-        let mut kept: Option<Vector2> = None;
-        for k in 0..self.hits.len() {
+        let kept: Vec<usize> = thinned(self.hits.iter().map(|hit| hit.1), spacing).collect();
+        for k in kept {
             let hit = self.hits[k].1;
-            if kept.is_some_and(|kept| (kept - hit).norm() < spacing) {
-                continue;
-            }
-            kept = Some(hit);
             let range = (hit - origin).norm();
             let told = self.hits[k].2;
             let usual = config.range_noise + config.range_noise_growth * range * range;
@@ -257,16 +255,6 @@ impl ScanPoints {
         let off =
             (across.x * across.x * xx + 2.0 * across.x * across.y * xy + across.y * across.y * yy) / count;
         (off.sqrt() <= MAX_LINE_RESIDUAL_SIGMAS * sigma).then_some(across)
-    }
-
-    fn measure_spread(&mut self) {
-        let count = self.points.len().max(1) as f64;
-        let (x, y) =
-            self.points.iter().fold((0.0, 0.0), |(x, y), p| (x + f64::from(p.x), y + f64::from(p.y)));
-        let (x, y) = (x / count, y / count);
-        let square = |p: &ScanPoint| (f64::from(p.x) - x).powi(2) + (f64::from(p.y) - y).powi(2);
-        self.centroid = (x, y);
-        self.lever = (self.points.iter().map(square).sum::<f64>() / count).sqrt().max(2.0);
     }
 }
 

@@ -1,8 +1,9 @@
 //! Information of a match by direction, with its degenerate directions.
 
-use super::{ScanMatchConfig, normal_equations::NormalEquations};
+use super::ScanMatchConfig;
+use crate::scan_match::normal_equations::NormalEquations;
+use crate::scan_match::point_spread::PointSpread;
 use nalgebra::{Matrix3, SymmetricEigen, U3, Vector3};
-use trundle_core::Vector2;
 
 /// The information of a match by direction, the degenerate ones known (Zhang, Kaess and Singh, On degeneracy of
 /// optimization-based state estimation problems, ICRA 2016).
@@ -20,15 +21,10 @@ pub(crate) struct Information {
 }
 
 impl Information {
-    pub(crate) fn new(config: &ScanMatchConfig, equations: &NormalEquations, points: &[Vector2]) -> Self {
-        let count = points.len().max(1) as f64;
-        let centroid = points.iter().sum::<Vector2>() / count;
-        let mean_square = points.iter().map(|p| (p - centroid).norm_squared()).sum::<f64>() / count;
-        let lever = mean_square.sqrt().max(0.1);
-        let (cx, cy) = (centroid.x, centroid.y);
-        let centroid_from_base = Matrix3::new(1.0, 0.0, -cy, 0.0, 1.0, cx, 0.0, 0.0, lever);
-        let base_from_centroid =
-            Matrix3::new(1.0, 0.0, cy / lever, 0.0, 1.0, -cx / lever, 0.0, 0.0, 1.0 / lever);
+    pub(crate) fn new(config: &ScanMatchConfig, equations: &NormalEquations, spread: &PointSpread) -> Self {
+        let (centroid, lever) = (spread.centroid, spread.lever);
+        let centroid_from_base = Matrix3::new(1.0, 0.0, -centroid.y, 0.0, 1.0, centroid.x, 0.0, 0.0, lever);
+        let base_from_centroid = spread.pose_from_centroid(centroid);
         let information = base_from_centroid.transpose() * equations.information * base_from_centroid;
         let least = config.degenerate_below * equations.explained / config.kernel_sigma.powi(2);
         Self {

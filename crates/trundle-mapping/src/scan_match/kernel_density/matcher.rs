@@ -1,7 +1,13 @@
 //! Scan matcher against a grid map.
 
-use super::{ScanMatchConfig, information::Information, refinement::refine, window_search::search};
+use super::{
+    ScanMatchConfig,
+    information::Information,
+    refinement::{MIN_LEVER_M, refine},
+    window_search::search,
+};
 use crate::grid_mapper::GridMapper;
+use crate::scan_match::point_spread::{PointSpread, thinned};
 use nalgebra::Matrix3;
 use trundle_core::{Invalid, Pose2, Scan, Vector2};
 use trundle_grid::{LikelihoodField, SurfacePoints};
@@ -54,7 +60,8 @@ impl ScanMatcher {
             return None;
         }
         let config = &self.config;
-        let points = thinned(scan, config.spacing);
+        let hits: Vec<Vector2> = scan.hits().collect();
+        let points: Vec<Vector2> = thinned(hits.iter().copied(), config.spacing).map(|k| hits[k]).collect();
         if points.len() < config.min_points {
             return None;
         }
@@ -62,7 +69,8 @@ impl ScanMatcher {
         let start = search(config, &LikelihoodField::new(&sites, config.search_sigma), &points, guess);
         let (end, equations) = refine(config, &sites, &points, start);
 
-        let information = Information::new(config, &equations, &points);
+        let spread = PointSpread::new(points.iter().copied(), MIN_LEVER_M);
+        let information = Information::new(config, &equations, &spread);
         let displacement = information.held(&(guess.inverse() * end).log());
         let pose = guess * Pose2::exp(displacement);
         let known = points.iter().filter(|&&p| mapper.log_odds_at(pose.transform(p)) != 0.0).count();
@@ -86,16 +94,4 @@ impl ScanMatcher {
         let resolution = mapper.config().resolution;
         SurfacePoints::around(mapper.evidence(), mapper.thresholds(), resolution, &there, margin)
     }
-}
-
-/// The hits of a scan, base frame, m, none nearer than `spacing` to the one kept before it: near walls count no more
-/// than far ones.
-fn thinned(scan: &Scan, spacing: f64) -> Vec<Vector2> {
-    let mut kept: Vec<Vector2> = Vec::new();
-    for hit in scan.hits() {
-        if kept.last().is_none_or(|last| (hit - last).norm() >= spacing) {
-            kept.push(hit);
-        }
-    }
-    kept
 }

@@ -3,7 +3,6 @@
 mod config;
 mod information;
 mod matcher;
-mod normal_equations;
 mod refinement;
 mod window_search;
 

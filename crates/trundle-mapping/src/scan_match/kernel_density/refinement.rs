@@ -1,6 +1,8 @@
 //! Refinement of a pose by Gauss-Newton on a kernel density.
 
-use super::{ScanMatchConfig, information::Information, normal_equations::NormalEquations};
+use super::{ScanMatchConfig, information::Information};
+use crate::scan_match::normal_equations::NormalEquations;
+use crate::scan_match::point_spread::PointSpread;
 use nalgebra::{Matrix2, Matrix2x3};
 use trundle_core::{Pose2, Vector2};
 use trundle_grid::SurfacePoints;
@@ -16,6 +18,9 @@ const MAX_ITERATIONS: usize = 12;
 /// Step length at which the iteration ends [m, rad]. Source: ours.
 const MIN_STEP: f64 = 1e-5;
 
+/// Minimum lever of the hits [m]. Hits nearer to each other tell no heading. Source: ours.
+pub(crate) const MIN_LEVER_M: f64 = 0.1;
+
 /// Gauss-Newton on the kernel density of the sites: every hit is pulled to the kernel-weighted mean of the sites about it
 /// (mean shift), across walls but not along them, as the spread of those sites tells. Directions that no hit holds are
 /// not moved in.
@@ -26,9 +31,10 @@ pub(crate) fn refine(
     start: Pose2,
 ) -> (Pose2, NormalEquations) {
     let mut pose = start;
+    let spread = PointSpread::new(points.iter().copied(), MIN_LEVER_M);
     for _ in 0..MAX_ITERATIONS {
         let equations = equations(config, sites, points, pose);
-        let step = Information::new(config, &equations, points).solve(&equations.rhs);
+        let step = Information::new(config, &equations, &spread).solve(&equations.rhs);
         pose = pose * Pose2::exp(step);
         if step.amax() < MIN_STEP {
             break;
