@@ -58,3 +58,6 @@ pub use ray_cells::{RayCells, ray_cells};
 pub use scan_cells::{HitCell, ScanCells};
 pub use surface_points::SurfacePoints;
 pub use tile_grid::{TileData, TileGrid, TileIndex};
+
+#[cfg(test)]
+mod tests;

@@ -17,3 +17,6 @@ pub use scan_rays::{RaySpan, ScanRay, ScanRays};
 pub use tile::{NearestObstacle, Tile, TileMap};
 pub use tile_pools::{ChunkParts, TilePools, assemble};
 pub use tile_window::TileWindow;
+
+#[cfg(test)]
+mod tests;

@@ -21,3 +21,6 @@ pub(crate) mod update_gate;
 pub use mapper::ParticleMapper;
 pub use propagate::propagate_trajectory;
 pub use scan_update::{Processed, Refusal, ScanUpdate};
+
+#[cfg(test)]
+mod tests;

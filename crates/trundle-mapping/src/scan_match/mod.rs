@@ -15,3 +15,6 @@ pub(crate) mod scan_points;
 
 pub use global_search::Lost;
 pub use kernel_density::{ScanMatch, ScanMatchConfig, ScanMatcher};
+
+#[cfg(test)]
+mod tests;
