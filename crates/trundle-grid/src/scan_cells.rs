@@ -53,10 +53,10 @@ struct MarkWindow {
     marks: Vec<u32>,
 }
 
-const UNTOUCHED: u32 = 0;
-const FREE: u32 = 1;
-const SURFACE: u32 = 2;
-const FIRST_HIT: u32 = 3;
+const UNTOUCHED_MARK: u32 = 0;
+const FREE_MARK: u32 = 1;
+const SURFACE_MARK: u32 = 2;
+const FIRST_HIT_MARK: u32 = 3;
 
 impl ScanCells {
     /// Finds the cells of `scan`, taken at `map_from_base`. `is_obstacle` tells whether a cell of the blind range may hide the cells
@@ -143,11 +143,11 @@ impl ScanCells {
     fn mark_hit(&mut self, end: Vector2) {
         let cell = GridCell::containing(end);
         let mark = self.marks.at(cell);
-        if *mark == UNTOUCHED {
-            *mark = FIRST_HIT + self.hits.len() as u32;
+        if *mark == UNTOUCHED_MARK {
+            *mark = FIRST_HIT_MARK + self.hits.len() as u32;
             self.hits.push(HitCell { cell, sum: end, count: 1 });
         } else {
-            let hit = &mut self.hits[(*mark - FIRST_HIT) as usize];
+            let hit = &mut self.hits[(*mark - FIRST_HIT_MARK) as usize];
             hit.sum += end;
             hit.count += 1;
         }
@@ -161,8 +161,8 @@ impl ScanCells {
             if neighbours && (b.end - a.end).norm() <= gap_cells {
                 for cell in ray_cells(a.end, b.end) {
                     let mark = self.marks.at(cell);
-                    if *mark == UNTOUCHED {
-                        *mark = SURFACE;
+                    if *mark == UNTOUCHED_MARK {
+                        *mark = SURFACE_MARK;
                     }
                 }
             }
@@ -172,8 +172,8 @@ impl ScanCells {
     fn mark_free(&mut self, (start, end): (Vector2, Vector2)) {
         for cell in ray_cells(start, end) {
             let mark = self.marks.at(cell);
-            if *mark == UNTOUCHED {
-                *mark = FREE;
+            if *mark == UNTOUCHED_MARK {
+                *mark = FREE_MARK;
                 self.free.push(cell);
             }
         }
@@ -192,7 +192,7 @@ impl MarkWindow {
         let (low, high) = (GridCell::containing(low), GridCell::containing(high));
         self.corner = (low.x, low.y);
         self.width = (high.x - low.x + 1) as usize;
-        self.marks.resize(self.width * (high.y - low.y + 1) as usize, UNTOUCHED);
+        self.marks.resize(self.width * (high.y - low.y + 1) as usize, UNTOUCHED_MARK);
     }
 
     fn at(&mut self, cell: GridCell) -> &mut u32 {

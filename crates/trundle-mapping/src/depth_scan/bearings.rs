@@ -4,7 +4,7 @@ use super::{
     mount::{BeamView, Mount},
     pixel_model::PixelModel,
     pixel_row::{ClassifiedRow, kind},
-    range_bins::{BELOW, BINS, SpanBits, bins, bridged, spans},
+    range_bins::{BELOW, BIN_COUNT, SpanBits, bins, bridged, spans},
 };
 use trundle_core::{Beam, FreeSpan, ObstacleKind, ScanParts};
 
@@ -156,24 +156,24 @@ impl Bearings {
         }
         let over = model.camera_height - lowest;
         let shadow = if over > 0.0 { range * model.camera_height / over } else { f32::INFINITY };
-        let bin = |range: f32| (range * model.bins_per_metre).min(BINS as f32) as usize;
+        let bin = |range: f32| (range * model.bins_per_metre).min(BIN_COUNT as f32) as usize;
         let under = bins(bin(range) + 2, bin(shadow).max(bin(range) + 4));
         (self.floor[i] & under).count_ones() >= 2
     }
 
     /// Free bins of a bearing up to its obstacle.
     fn cleared(&self, i: usize, view: &BeamView, model: &PixelModel, hit: Option<f64>) -> SpanBits {
-        let before_hit = hit.map(|range| ((range as f32 * model.bins_per_metre) as usize + 1).min(BINS));
+        let before_hit = hit.map(|range| ((range as f32 * model.bins_per_metre) as usize + 1).min(BIN_COUNT));
         let below_band = model.camera_height < model.high;
         // On its way to what it hit, a ray passed through the band.
         let passed = self.passed[i] | before_hit.filter(|_| below_band).map_or(0, |to| BELOW[to]);
-        let mut bits = bridged(self.floor[i] | passed & !view.floor & !BELOW[view.begin.min(BINS)]);
+        let mut bits = bridged(self.floor[i] | passed & !view.floor & !BELOW[view.begin.min(BIN_COUNT)]);
         if view.floor == 0 {
             bits |= passed;
         }
         // Floor too near to be seen counts as free when the first visible floor is.
         if bits & bins(view.begin, view.begin + 2) != 0 {
-            bits |= BELOW[(view.begin + 1).min(BINS)];
+            bits |= BELOW[(view.begin + 1).min(BIN_COUNT)];
         }
         let Some(to) = before_hit else { return bits };
         let foot = bins(to.saturating_sub(FOOT_GAP_BINS + 1), to);

@@ -5,7 +5,7 @@ use super::{
     floor_samples::FloorSamples,
     pixel_model::PixelModel,
     pixel_rays::{Fan, LensRays},
-    range_bins::{BELOW, BINS, SpanBits, bins},
+    range_bins::{BELOW, BIN_COUNT, SpanBits, bins},
 };
 use trundle_core::{Invalid, Pose3, Vector2, Vector3};
 
@@ -83,7 +83,7 @@ impl Survey {
         let height = base_from_camera.translation.z;
         let empty = SurveyedBeam { floor: 0, band: 0, first: f64::INFINITY, runs: 0.0, count: 0 };
         let mut beams = vec![empty; fan.beams];
-        let bin = |range: f64| (range.max(0.0) * BINS as f64 / config.max_range) as usize;
+        let bin = |range: f64| (range.max(0.0) * BIN_COUNT as f64 / config.max_range) as usize;
         for (i, &at) in fan.beam_of.iter().enumerate() {
             let ray: Vector3 = base_from_lens * lens.ray(i);
             let run = ray.xy().norm();
@@ -102,7 +102,7 @@ impl Survey {
                 beam.first = beam.first.min(first.max(config.min_depth) * run);
             } else if height < config.band_high {
                 let to = if ray.z > 0.0 { at_height(config.band_high) } else { config.max_range };
-                beam.band |= BELOW[bin(to).min(BINS)];
+                beam.band |= BELOW[bin(to).min(BIN_COUNT)];
             }
         }
         Self { beams }
@@ -121,7 +121,7 @@ impl Survey {
     fn passes_matter(&self) -> bool {
         let gaps = self.beams.iter().filter(|SurveyedBeam { floor, band, .. }| {
             let first = floor.trailing_zeros() as usize;
-            band & !(floor | BELOW[first.min(BINS)]) != 0 || (*floor == 0 && *band != 0)
+            band & !(floor | BELOW[first.min(BIN_COUNT)]) != 0 || (*floor == 0 && *band != 0)
         });
         gaps.count() * 50 > self.beams.len()
     }

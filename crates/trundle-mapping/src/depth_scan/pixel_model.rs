@@ -1,6 +1,6 @@
 //! Coefficients that classify the pixels of a depth image.
 
-use super::{DepthScanConfig, FloorFit, range_bins::BINS};
+use super::{DepthScanConfig, FloorFit, range_bins::BIN_COUNT};
 use trundle_core::Pose3;
 
 /// Coefficients that classify pixels, in f32 as the depths of an image.
@@ -71,7 +71,7 @@ impl PixelModel {
             floor_sigmas: config.floor_sigmas as f32,
             tilt: config.tilt_error_deg.to_radians().tan() as f32,
             drop_depth: config.drop_depth as f32,
-            bins_per_metre: (BINS as f64 / config.max_range) as f32,
+            bins_per_metre: (BIN_COUNT as f64 / config.max_range) as f32,
             min_support: NeighbourSupport {
                 hit: u32::from(config.hit_support_px),
                 free: u32::from(config.free_support_px),

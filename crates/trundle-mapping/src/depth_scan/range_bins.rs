@@ -4,13 +4,13 @@
 pub(super) type SpanBits = u128;
 
 /// How many bins a beam has.
-pub(super) const BINS: usize = 128;
+pub(super) const BIN_COUNT: usize = 128;
 
 /// `BELOW[n]`: the first `n` bins.
-pub(super) const BELOW: [SpanBits; BINS + 1] = {
-    let mut table = [0; BINS + 1];
+pub(super) const BELOW: [SpanBits; BIN_COUNT + 1] = {
+    let mut table = [0; BIN_COUNT + 1];
     let mut n = 1;
-    while n <= BINS {
+    while n <= BIN_COUNT {
         table[n] = (table[n - 1] << 1) | 1;
         n += 1;
     }
@@ -20,7 +20,7 @@ pub(super) const BELOW: [SpanBits; BINS + 1] = {
 /// The bins from `from` up to, but without, `to`.
 #[inline]
 pub(super) fn bins(from: usize, to: usize) -> SpanBits {
-    BELOW[to.min(BINS)] & !BELOW[from.min(BINS)]
+    BELOW[to.min(BIN_COUNT)] & !BELOW[from.min(BIN_COUNT)]
 }
 
 /// Closes gaps of one bin.
@@ -38,7 +38,7 @@ pub(super) fn spans(mut bits: SpanBits) -> impl Iterator<Item = (usize, usize)> 
         let gap = bits.trailing_zeros() as usize;
         bits >>= gap;
         let length = bits.trailing_ones() as usize;
-        bits = if length == BINS { 0 } else { bits >> length };
+        bits = if length == BIN_COUNT { 0 } else { bits >> length };
         let from = shifted + gap;
         shifted = from + length;
         Some((from, shifted))

@@ -1,6 +1,6 @@
 //! Fusion of the scans of several sensors into one scan.
 
-use super::range_bins::{BELOW, BINS, SpanBits, bins, bridged, spans};
+use super::range_bins::{BELOW, BIN_COUNT, SpanBits, bins, bridged, spans};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{PI, TAU};
 use trundle_core::{
@@ -123,7 +123,7 @@ impl ScanFusion {
     }
 
     fn note_free(&mut self, pose: Pose2, scan: &Scan) {
-        let bin = self.config.max_range / BINS as f64;
+        let bin = self.config.max_range / BIN_COUNT as f64;
         for i in 0..scan.beams().len() {
             for (from, to) in scan.free_spans(i) {
                 let steps = ((to.min(2.0 * self.config.max_range) - from) / bin).floor().max(0.0) as usize;
@@ -139,13 +139,13 @@ impl ScanFusion {
     }
 
     fn tell(&self) -> ScanParts {
-        let bin = self.config.max_range / BINS as f64;
+        let bin = self.config.max_range / BIN_COUNT as f64;
         let mut parts = ScanParts { free: Some(Vec::new()), ..ScanParts::default() };
         for (i, (nearest, bits)) in self.nearest.iter().zip(&self.free).enumerate() {
             let hit = (nearest.count > 0).then(|| nearest.sum / f64::from(nearest.count));
             let limit = hit.unwrap_or(f64::INFINITY);
             let seen = bridged(*bits)
-                & hit.map_or(SpanBits::MAX, |range| BELOW[((range / bin) as usize + 1).min(BINS)]);
+                & hit.map_or(SpanBits::MAX, |range| BELOW[((range / bin) as usize + 1).min(BIN_COUNT)]);
             let mut end = 0.0;
             for (from, to) in spans(seen) {
                 let (from, to) = (from as f64 * bin, (to as f64 * bin).min(limit));

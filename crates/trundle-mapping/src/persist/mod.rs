@@ -31,7 +31,7 @@ use trundle_core::Stamp;
 use trundle_grid::tiles::{TileMap, TilePools, assemble};
 
 const MAGIC: &[u8; 7] = b"trundlF";
-const VERSION: u8 = 4;
+const FORMAT_VERSION: u8 = 4;
 /// Bytes before those that the checksum covers.
 const HEADER_BYTES: usize = 16;
 
@@ -53,7 +53,7 @@ impl ParticleMapper {
     pub fn save(&self) -> Vec<u8> {
         let mut out = Writer::default();
         out.0.extend(MAGIC);
-        out.u8(VERSION);
+        out.u8(FORMAT_VERSION);
         out.u64(0);
         settings(&self.models.config).iter().for_each(|(_, value)| out.f64(*value));
         out.u64(self.seed);
@@ -178,8 +178,8 @@ fn checked_body(bytes: &[u8]) -> Result<Reader<'_>, FilterFileError> {
         return Err(FilterFileError::Foreign);
     };
     let Some((&found, rest)) = rest.split_first() else { return Err(FilterFileError::Foreign) };
-    if found != VERSION {
-        return Err(FilterFileError::Version { found, expected: VERSION });
+    if found != FORMAT_VERSION {
+        return Err(FilterFileError::Version { found, expected: FORMAT_VERSION });
     }
     let Some((sum, body)) = rest.split_first_chunk::<8>() else {
         return Err(FilterFileError::Cut { within: "head" });

@@ -7,14 +7,14 @@ use trundle_core::Pose2;
 use trundle_grid::tiles::{Tile, TileWindow};
 
 /// Side of the coarse field of a tile [cells of two].
-const HALF: usize = Tile::COARSE_SIDE;
+const SAMPLES_PER_TILE_SIDE: usize = Tile::COARSE_SIDE;
 
 /// Distance of the samples of the coarse likelihood [cells]. Source: ours.
 const SAMPLE_STEP_CELLS: f64 = 2.0;
 /// Maximum reach of the search to each side [samples]. A wider prior is searched up to this reach. Source: ours.
 const MAX_REACH_SAMPLES: usize = 7;
 const LANES: usize = 16;
-const _: () = assert!(HALF == LANES && 2 * MAX_REACH_SAMPLES < LANES);
+const _: () = assert!(SAMPLES_PER_TILE_SIDE == LANES && 2 * MAX_REACH_SAMPLES < LANES);
 /// Maximum number of points of the search. Larger scans are subsampled. Source: ours.
 const MAX_SEARCH_POINTS: usize = 80;
 
@@ -94,12 +94,12 @@ impl CoarseSearch {
     /// Begins anew for a window: nothing is laid out.
     fn cover(&mut self, window: &TileWindow<'_>) {
         for first in self.firsts.drain(..) {
-            for k in 0..HALF {
-                self.field[first + k * self.stride..][..HALF].fill(0);
+            for k in 0..SAMPLES_PER_TILE_SIDE {
+                self.field[first + k * self.stride..][..SAMPLES_PER_TILE_SIDE].fill(0);
             }
         }
         let (cols, rows) = window.size();
-        (self.stride, self.rows) = ((cols + 2) * HALF, (rows + 2) * HALF);
+        (self.stride, self.rows) = ((cols + 2) * SAMPLES_PER_TILE_SIDE, (rows + 2) * SAMPLES_PER_TILE_SIDE);
         if self.field.len() < self.stride * self.rows {
             self.field.resize(self.stride * self.rows, 0);
         }
@@ -118,10 +118,10 @@ impl CoarseSearch {
         }
         *laid = true;
         if (1..=cols).contains(&col) && (1..=rows).contains(&row) {
-            let first = row * HALF * self.stride + col * HALF;
+            let first = row * SAMPLES_PER_TILE_SIDE * self.stride + col * SAMPLES_PER_TILE_SIDE;
             let tile = window.tiles()[(row - 1) * cols + col - 1];
-            for (k, line) in tile.coarse.chunks_exact(HALF).enumerate() {
-                self.field[first + k * self.stride..][..HALF].copy_from_slice(line);
+            for (k, line) in tile.coarse.chunks_exact(SAMPLES_PER_TILE_SIDE).enumerate() {
+                self.field[first + k * self.stride..][..SAMPLES_PER_TILE_SIDE].copy_from_slice(line);
             }
             self.firsts.push(first);
         }
@@ -180,7 +180,7 @@ impl CoarseSearch {
         let (place, tile_cols) = (RotatedPose::new(pose), window.size().0 + 2);
         let (most_col, most_row) = (self.stride as i32 - LANES as i32, self.rows as i32 - ROWS as i32);
         // Samples are at the middles of even cells: 0.5, 2.5 and so on.
-        let sample = |v: f32| floor((v + 0.5) * 0.5) + HALF as i32 - reach;
+        let sample = |v: f32| floor((v + 0.5) * 0.5) + SAMPLES_PER_TILE_SIDE as i32 - reach;
         let mut sums = [[0_u16; LANES]; ROWS];
         for i in 0..self.points.len() {
             let (rx, ry) = place.rotate(self.points[i].0, self.points[i].1);
@@ -189,7 +189,7 @@ impl CoarseSearch {
                 continue;
             }
             let (col, row) = (col as usize, row as usize);
-            let block = (col / HALF, row / HALF);
+            let block = (col / SAMPLES_PER_TILE_SIDE, row / SAMPLES_PER_TILE_SIDE);
             if !self.blocks[block.1 * tile_cols + block.0] {
                 self.lay_out_block(window, block);
             }

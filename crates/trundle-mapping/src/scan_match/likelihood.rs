@@ -14,14 +14,14 @@ use trundle_grid::tiles::{NearestObstacle, TileWindow};
 #[derive(Debug, Clone)]
 pub(crate) struct Likelihood {
     /// ln p on free and on unknown ground, in steps of 1/16.
-    log: [[f32; STEPS]; 2],
+    log: [[f32; TABLE_STEPS]; 2],
     /// The Gaussian's part of p.
-    share: [f32; STEPS],
+    share: [f32; TABLE_STEPS],
     /// Hits may lie this far along a wall from the next obstacle point of it, cells.
     slack: f32,
 }
 
-const STEPS: usize = 257;
+const TABLE_STEPS: usize = 257;
 const PER_UNIT: f32 = 16.0;
 
 /// Normal equations of a pose in a map of tiles (cells, rad), with the agreement of the hits.
@@ -53,11 +53,12 @@ struct Residuals {
 
 impl Likelihood {
     pub(crate) fn new(config: &ParticleConfig) -> Self {
-        let mut log = [[0.0; STEPS]; 2];
-        let mut share = [0.0; STEPS];
+        let mut log = [[0.0; TABLE_STEPS]; 2];
+        let mut share = [0.0; TABLE_STEPS];
         let unknown = config.outliers.sqrt();
-        for i in 0..STEPS {
-            let kernel = if i + 1 == STEPS { 0.0 } else { (-0.5 * i as f64 / f64::from(PER_UNIT)).exp() };
+        for i in 0..TABLE_STEPS {
+            let kernel =
+                if i + 1 == TABLE_STEPS { 0.0 } else { (-0.5 * i as f64 / f64::from(PER_UNIT)).exp() };
             let hit = (1.0 - config.outliers) * kernel;
             log[0][i] = (config.outliers + hit).ln() as f32;
             log[1][i] = (unknown + (1.0 - unknown) * kernel).ln() as f32;
@@ -166,9 +167,9 @@ impl Likelihood {
             let on_wall = across * across + over * over;
             let square = on_wall * group.wall[k] + (dx * dx + dy * dy) * (1.0 - group.wall[k]);
             // No obstacle within reach: -128 sixteenths.
-            let none = if near_x[k] == i32::from(i8::MIN) { FAR } else { 0.0 };
+            let none = if near_x[k] == i32::from(i8::MIN) { LAST_TABLE_STEP } else { 0.0 };
             let steps = square * group.information[k] * PER_UNIT + none;
-            let steps = if steps < FAR { steps } else { FAR };
+            let steps = if steps < LAST_TABLE_STEP { steps } else { LAST_TABLE_STEP };
             (r.dx[k], r.dy[k], r.step[k]) = (dx, dy, floor(steps) as u32);
         }
         r
@@ -176,7 +177,7 @@ impl Likelihood {
 }
 
 /// The last entry of the tables.
-const FAR: f32 = (STEPS - 1) as f32;
+const LAST_TABLE_STEP: f32 = (TABLE_STEPS - 1) as f32;
 
 /// What becomes of the hits that were looked up.
 trait PointSink {

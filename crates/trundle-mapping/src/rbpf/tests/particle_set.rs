@@ -28,15 +28,15 @@ proptest! {
         weights in prop::collection::vec(0.01..1.0_f64, 1..40),
         values in prop::collection::vec(-5.0..5.0_f64, 40),
     ) {
-        const DRAWS: usize = 400;
+        const DRAW_COUNT: usize = 400;
         let total: f64 = weights.iter().sum();
         let expected: f64 = weights.iter().zip(&values).map(|(w, x)| w / total * x).sum();
         let mean = |k: usize| {
-            let parents = low_variance(&weights, (k as f64 + 0.5) / DRAWS as f64);
+            let parents = low_variance(&weights, (k as f64 + 0.5) / DRAW_COUNT as f64);
             parents.iter().map(|&p| values[usize::from(p)]).sum::<f64>() / weights.len() as f64
         };
-        let found = (0..DRAWS).map(mean).sum::<f64>() / DRAWS as f64;
-        prop_assert!((found - expected).abs() < 10.0 / DRAWS as f64 + 1e-9, "{found}, expected {expected}");
+        let found = (0..DRAW_COUNT).map(mean).sum::<f64>() / DRAW_COUNT as f64;
+        prop_assert!((found - expected).abs() < 10.0 / DRAW_COUNT as f64 + 1e-9, "{found}, expected {expected}");
     }
 
     #[test]

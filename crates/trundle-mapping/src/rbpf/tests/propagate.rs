@@ -4,6 +4,8 @@ use crate::rbpf::propagate_trajectory;
 use proptest::prelude::*;
 use trundle_core::{Pose2, Stamp, wrap_angle};
 
+type Trajectory = Vec<(Stamp, Pose2)>;
+
 fn stamp(i: usize) -> Stamp {
     Stamp::from_nanos(i as i64 * 50_000_000)
 }
@@ -13,7 +15,7 @@ fn any_pose() -> impl Strategy<Value = Pose2> {
 }
 
 /// Odometry of 20 small steps, and corrected poses at some of its stamps.
-fn any_run() -> impl Strategy<Value = (Vec<(Stamp, Pose2)>, Vec<(Stamp, Pose2)>)> {
+fn any_run() -> impl Strategy<Value = (Trajectory, Trajectory)> {
     let step = (0.0..0.3_f64, -0.1..0.1_f64, -0.3..0.3_f64);
     let steps = prop::collection::vec(step, 20);
     let errors = prop::collection::vec((-0.05..0.05_f64, -0.05..0.05_f64, -0.05..0.05_f64), 4);
@@ -31,7 +33,7 @@ fn any_run() -> impl Strategy<Value = (Vec<(Stamp, Pose2)>, Vec<(Stamp, Pose2)>)
     })
 }
 
-fn moved(by: Pose2, trajectory: &[(Stamp, Pose2)]) -> Vec<(Stamp, Pose2)> {
+fn moved(by: Pose2, trajectory: &[(Stamp, Pose2)]) -> Trajectory {
     trajectory.iter().map(|(at, pose)| (*at, by * *pose)).collect()
 }
 

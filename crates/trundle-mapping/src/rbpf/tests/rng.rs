@@ -3,13 +3,13 @@
 use crate::rbpf::rng::ParticleRng;
 use nalgebra::{Matrix3, Vector3};
 
-const DRAWS: usize = 8_000;
+const DRAW_COUNT: usize = 8_000;
 
 fn moments(draw: impl FnMut(usize) -> Vector3<f64>) -> (Vector3<f64>, Matrix3<f64>) {
-    let all: Vec<Vector3<f64>> = (0..DRAWS).map(draw).collect();
-    let mean = all.iter().sum::<Vector3<f64>>() / DRAWS as f64;
+    let all: Vec<Vector3<f64>> = (0..DRAW_COUNT).map(draw).collect();
+    let mean = all.iter().sum::<Vector3<f64>>() / DRAW_COUNT as f64;
     let covariance = all.iter().map(|v| (v - mean) * (v - mean).transpose()).sum::<Matrix3<f64>>();
-    (mean, covariance / DRAWS as f64)
+    (mean, covariance / DRAW_COUNT as f64)
 }
 
 #[test]

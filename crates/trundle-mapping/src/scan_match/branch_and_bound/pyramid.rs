@@ -5,7 +5,7 @@ use trundle_grid::tiles::{Tile, TileMap};
 /// Levels above the finest: squares of 2, 4, 8 and 16 samples. Source: ours.
 pub(crate) const PYRAMID_LEVELS: usize = 4;
 /// Samples of a tile's side.
-const HALF: usize = Tile::SIDE / 2;
+const SAMPLES_PER_TILE_SIDE: usize = Tile::SIDE / 2;
 /// Margin about the map [samples]: side of the largest square.
 const MARGIN_SAMPLES: usize = 1 << PYRAMID_LEVELS;
 /// Maximum number of samples. A larger map (2 km x 2 km at 5 cm) has no pyramid. Source: ours.
@@ -30,22 +30,23 @@ impl Pyramid {
 
     /// Of the tiles from `low` to `high`.
     pub(crate) fn of(map: &TileMap, low: (i32, i32), high: (i32, i32)) -> Option<Self> {
-        let size = |low: i32, high: i32| (high - low + 1) as usize * HALF + 2 * MARGIN_SAMPLES;
+        let size =
+            |low: i32, high: i32| (high - low + 1) as usize * SAMPLES_PER_TILE_SIDE + 2 * MARGIN_SAMPLES;
         let (width, height) = (size(low.0, high.0), size(low.1, high.1));
         if width.saturating_mul(height) > MAX_SAMPLES {
             return None;
         }
-        let corner = |tile: i32| tile * HALF as i32 - MARGIN_SAMPLES as i32;
+        let corner = |tile: i32| tile * SAMPLES_PER_TILE_SIDE as i32 - MARGIN_SAMPLES as i32;
         let mut finest = vec![0; width * height];
         let places = (low.1..=high.1).flat_map(|y| (low.0..=high.0).map(move |x| (x, y)));
         for (at, tile) in places.map(|at| (at, map.tile(at))) {
             let (col, row) = (
-                (at.0 - low.0) as usize * HALF + MARGIN_SAMPLES,
-                (at.1 - low.1) as usize * HALF + MARGIN_SAMPLES,
+                (at.0 - low.0) as usize * SAMPLES_PER_TILE_SIDE + MARGIN_SAMPLES,
+                (at.1 - low.1) as usize * SAMPLES_PER_TILE_SIDE + MARGIN_SAMPLES,
             );
-            for (k, line) in tile.coarse.chunks_exact(HALF).enumerate() {
+            for (k, line) in tile.coarse.chunks_exact(SAMPLES_PER_TILE_SIDE).enumerate() {
                 let to = (row + k) * width + col;
-                finest[to..to + HALF].copy_from_slice(line);
+                finest[to..to + SAMPLES_PER_TILE_SIDE].copy_from_slice(line);
             }
         }
         let mut levels = vec![finest];
