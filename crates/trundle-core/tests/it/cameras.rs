@@ -118,3 +118,12 @@ fn fields_of_view_of_nothing_or_half_a_turn_are_refused() {
         assert_eq!((across.unit, across.expected.as_str()), ("rad", "0 to pi, exclusive"));
     }
 }
+
+/// Worked out by hand from the formulas of OpenCV for the normalised point (0.2, -0.1), r^2 = 0.05.
+#[test]
+fn the_five_lens_terms_are_those_of_opencv_in_its_order() {
+    let lens = Distortion { k1: 0.1, k2: 0.01, p1: 0.002, p2: -0.003, k3: 0.5 };
+    let camera = PinholeCamera::new((100, 100), (100.0, 100.0), (50.0, 50.0), lens).unwrap();
+    let raw = camera.distort(Vector2::new(70.0, 40.0));
+    assert!((raw - Vector2::new(70.05475, 39.975125)).norm() < 1e-9, "{raw}");
+}
