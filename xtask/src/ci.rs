@@ -1,7 +1,7 @@
 //! Everything that must hold before a change is merged.
 
 use crate::workspace::Verdict;
-use crate::{bad_days, golden, program, replay_check, tidy};
+use crate::{fault_scenarios, golden, program, replay_check, tidy};
 use std::path::Path;
 use std::time::Instant;
 
@@ -38,7 +38,7 @@ const REST: [Step; 9] = [
     Step { name: "cargo xtask golden", check: golden_net },
     Step { name: "trundle demo", check: demo },
     Step { name: "cargo xtask replay-check", check: |root| replay_check::run(root, 1) },
-    Step { name: "cargo xtask bad-days", check: bad_days::run },
+    Step { name: "cargo xtask fault-scenarios", check: fault_scenarios::run },
 ];
 
 /// Nothing has changed that was not meant to change.

@@ -1,9 +1,9 @@
-//! Chores of the workspace: `cargo xtask ci | tidy | golden | results | replay-check | bad-days | demo-seeds`.
+//! Chores of the workspace: `cargo xtask ci | tidy | golden | results | replay-check | fault-scenarios | demo-seeds`.
 #![expect(clippy::print_stdout, clippy::print_stderr, reason = "this is a program that talks")]
 
-mod bad_days;
 mod ci;
 mod compare;
+mod fault_scenarios;
 mod golden;
 mod program;
 mod replay_check;
@@ -67,8 +67,8 @@ enum Chore {
         #[arg(long, default_value_t = 1)]
         seed: u64,
     },
-    /// Sensors that break, wheels that slip, people in the way: every day must end as it should.
-    BadDays,
+    /// Failing sensors, slipping wheels, people in the way: each run must end as its scenario expects.
+    FaultScenarios,
     /// Run the demo on many seeds and print a table of their summaries.
     DemoSeeds {
         /// How many seeds, from the first on.
@@ -95,7 +95,7 @@ fn main() -> ExitCode {
         Chore::Results { measure } => results::run(&root, &measure),
         Chore::Settings => settings::run(&root, false),
         Chore::ReplayCheck { seed } => replay_check::run(&root, seed),
-        Chore::BadDays => bad_days::run(&root),
+        Chore::FaultScenarios => fault_scenarios::run(&root),
         Chore::DemoSeeds { seeds, first, explore } => {
             seeds::run(&root, first..first.saturating_add(seeds), explore)
         }

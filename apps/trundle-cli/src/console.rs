@@ -1,12 +1,12 @@
-//! What the user sees in the terminal. The only place of the program that prints.
-#![expect(clippy::print_stderr, reason = "this is the program's voice")]
+//! Output on the terminal: results, tables, errors, progress. The only module of the program that prints.
+#![expect(clippy::print_stderr, reason = "errors go to standard error")]
 
 use std::io::Write;
-use trundle::app::{AppError, Progress};
+use trundle::app::{AppError, Progress, StepProgress};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
-/// Says why the command ended, on standard error.
+/// Prints the reason of a failure on standard error.
 pub fn print_error(error: &AppError) {
     eprintln!("trundle: {error}");
 }
@@ -52,19 +52,58 @@ pub fn progress(quiet: bool) -> (ProgressBar, Progress) {
     (line, Progress::new(show))
 }
 
-/// A spinner with a message.
-pub fn live_line(quiet: bool) -> ProgressBar {
-    let bar = ProgressBar::new_spinner();
-    bar.set_style(ProgressStyle::with_template("{spinner} {msg}").expect("invariant: the template is valid"));
-    hidden_if(quiet, bar)
+/// The progress of work in steps: a bar where their number is known, else a spinner.
+pub struct StepDisplay {
+    bar: ProgressBar,
 }
 
-/// A bar with the time that is left.
-pub fn bar(quiet: bool, length: usize) -> ProgressBar {
-    let style = "{bar:30} {pos}/{len} frames  {per_sec}  ETA {eta}  {msg}";
-    let bar = ProgressBar::new(length as u64);
-    bar.set_style(ProgressStyle::with_template(style).expect("invariant: the template is valid"));
-    hidden_if(quiet, bar)
+impl StepDisplay {
+    /// A display that appears when the work begins; none where `quiet`.
+    pub fn new(quiet: bool) -> Self {
+        Self { bar: hidden_if(quiet, ProgressBar::new_spinner()) }
+    }
+}
+
+impl StepProgress for StepDisplay {
+    fn begin(&self, steps: Option<usize>) {
+        self.bar.reset();
+        let template = match steps {
+            Some(steps) => {
+                self.bar.set_length(steps as u64);
+                "{bar:30} {pos}/{len} frames  {per_sec}  ETA {eta}  {msg}"
+            }
+            None => SPINNER,
+        };
+        self.bar.set_style(style(template));
+    }
+
+    fn advance(&self) {
+        self.bar.inc(1);
+    }
+
+    fn message(&self, line: &str) {
+        self.bar.set_message(line.to_owned());
+    }
+
+    fn pause(&self, work: &dyn Fn()) {
+        self.bar.suspend(work);
+    }
+
+    fn end(&self) {
+        self.bar.finish_and_clear();
+    }
+}
+
+/// The template of a spinner with a message.
+const SPINNER: &str = "{spinner} {msg}";
+
+fn style(template: &str) -> ProgressStyle {
+    ProgressStyle::with_template(template).expect("invariant: the template is valid")
+}
+
+/// A spinner with a message.
+fn live_line(quiet: bool) -> ProgressBar {
+    hidden_if(quiet, ProgressBar::new_spinner().with_style(style(SPINNER)))
 }
 
 fn hidden_if(quiet: bool, bar: ProgressBar) -> ProgressBar {

@@ -1,6 +1,11 @@
 //! `trundle demo`: a mission in a simulated scene, in simulated or in real time.
 
-use crate::{Outcome, args::DemoArgs, console, run_output};
+mod args;
+
+pub use args::DemoArgs;
+
+use crate::outcome::Outcome;
+use crate::{console, run_output};
 use std::fmt::Display;
 use std::path::Path;
 use trundle::app::real_time::run_in_real_time;

@@ -1,10 +1,8 @@
 //! `trundle experiment`: the papers' experiments as commands; exit code 1 where a limit is missed.
 
-use crate::{
-    Outcome,
-    args::{Common, RobotArgs},
-    console, logging,
-};
+use crate::common_args::{Common, RobotArgs};
+use crate::outcome::Outcome;
+use crate::{console, logging};
 use clap::{Args, Subcommand};
 use std::path::{Path, PathBuf};
 use std::str::FromStr;

@@ -1,6 +1,7 @@
-//! The program `trundle`: a thin door to the crates. Exit codes: 0 done, 1 the run missed its aim, 2 bad input.
+//! The program `trundle`: command line of the crates. Exit codes: 0 done, 1 the run missed its aim, 2 bad input.
 
-mod args;
+mod command_line;
+mod common_args;
 mod console;
 mod demo;
 mod dock;
@@ -8,29 +9,21 @@ mod eval;
 mod experiment;
 mod logging;
 mod map;
-mod map_input;
-mod map_output;
+mod outcome;
 mod plan;
 mod replay;
 mod robot_file;
 mod run_output;
 mod sim;
 mod slam;
-mod slam_output;
-mod slam_recorder;
 mod vocabulary;
 
-use args::{Cli, Command, Common};
 use clap::{CommandFactory, FromArgMatches};
+use command_line::{Cli, Command};
+use common_args::Common;
+use outcome::Outcome;
 use std::process::ExitCode;
 use trundle::app::AppError;
-
-/// What a command that ran to its end says of its aim.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Outcome {
-    Reached,
-    Missed,
-}
 
 /// Exit code of every error: the input or the place to write to has to change first.
 const BAD_INPUT: u8 = 2;

@@ -1,14 +1,13 @@
-use crate::map_output::{Counts, map_picture, rows, summary, trajectory_text};
-use crate::{Outcome, args::Common, console, map_input};
+//! `trundle map`: the map of a laser log, a ROS 2 bag or an RGB-D folder.
+
+use crate::common_args::Common;
+use crate::console;
+use crate::outcome::Outcome;
 use clap::Args;
-use std::path::{Path, PathBuf};
-use std::time::Instant;
+use std::path::PathBuf;
 use trundle::app::AppError;
-use trundle::core::{Pose2, Stamp};
-use trundle::io::{LaserLog, LaserLogOptions, OutputFolder, read_map, write_map};
-use trundle::mapping::{
-    Localized, MapLocalizer, MapperConfig, ParticleConfig, ParticleMapper, propagate_trajectory,
-};
+use trundle::app::laser_map::{LaserMapRequest, is_depth_folder, map_log, map_rows, read_log};
+use trundle::io::{LaserLog, LaserLogOptions, OutputFolder};
 
 /// `trundle map`
 #[derive(Debug, Args)]
@@ -64,139 +63,90 @@ pub struct MapArgs {
 
 /// `trundle map LOG`.
 pub fn run(args: &MapArgs) -> Result<Outcome, AppError> {
-    let log = map_input::read(args, &args.log_options())?;
+    args.refuse_wrong_options()?;
+    let request = args.request();
+    let display = console::StepDisplay::new(args.common.quiet);
+    let log = read_log(&request, &display)?;
     let folder = OutputFolder::create(&args.out)?;
-    let odometry: Vec<(Stamp, Pose2)> =
-        log.scans.iter().map(|s| (s.scan.stamp(), s.odom_from_base)).collect();
-    let start = Instant::now();
-    let (counts, poses, megabytes) = match (&args.map, args.localise) {
-        (Some(file), true) => {
-            let mut localizer = localizer(args, file)?;
-            let (counts, poses) = localise(args, &log, &mut localizer);
-            folder.write("overview.png", &map_picture(&localizer.grid(), &poses))?;
-            (counts, poses, 0.0)
-        }
-        _ => {
-            let mut mapper = begin(args)?;
-            let counts = map(args, &log, &mut mapper);
-            write_map(&folder, "map", mapper.grid())?;
-            let way = mapper.trajectory();
-            folder.write("overview.png", &map_picture(mapper.grid(), &way))?;
-            folder.write("filter.map", &mapper.save())?;
-            (counts, way, mapper.bytes() as f64 / 1e6)
-        }
-    };
-    let seconds = start.elapsed().as_secs_f64();
-    let trajectory = propagate_trajectory(&poses, &odometry);
-    folder.write("trajectory.txt", trajectory_text(&trajectory).as_bytes())?;
-    folder.write("summary.json", summary(args, &log, &counts, megabytes, seconds).to_json().as_bytes())?;
+    let run = map_log(&request, args.localise, &log, &folder, &display)?;
     let place = folder.commit()?;
-    if let Some(first) = log.skipped.first() {
-        let (count, file) = (log.skipped.len(), args.log.display());
-        console::warn(&format!(
-            "{file}: {count} entries skipped, the first {}: {}",
-            first.line, first.problem
-        ));
-    }
-    if let Some(first) = log.first_bad_range {
-        let (count, file) = (log.bad_ranges, args.log.display());
-        console::warn(&format!(
-            "{file}: {count} ranges are negative, zero, infinite or no number, the first in entry {first}: nothing is taken to be seen there"
-        ));
-    }
+    warn_of_log(args, &log);
     if !args.common.quiet {
-        console::print_table(&rows(&log, &counts, megabytes, seconds));
+        console::print_table(&map_rows(&log, &run));
         console::print(&format!("See {}", place.join("overview.png").display()));
     }
-    if counts.processed == 0 {
+    if run.counts.processed == 0 {
         console::warn("no scan was put into the map or found in it");
         return Ok(Outcome::Missed);
     }
     Ok(Outcome::Reached)
 }
 
+/// Logs entries that were skipped and ranges that cannot be.
+fn warn_of_log(args: &MapArgs, log: &LaserLog) {
+    let file = args.log.display();
+    if let Some(first) = log.skipped.first() {
+        let count = log.skipped.len();
+        console::warn(&format!(
+            "{file}: {count} entries skipped, the first {}: {}",
+            first.line, first.problem
+        ));
+    }
+    if let Some(first) = log.first_bad_range {
+        let count = log.bad_ranges;
+        console::warn(&format!(
+            "{file}: {count} ranges are negative, zero, infinite or no number, the first in entry {first}: nothing is taken to be seen there"
+        ));
+    }
+}
+
 impl MapArgs {
-    fn log_options(&self) -> LaserLogOptions {
-        LaserLogOptions {
-            laser_x: self.laser_x,
-            laser_turn: self.laser_turn.map(f64::to_radians),
-            upside_down: self.upside_down,
-            max_range: self.max_range,
+    fn request(&self) -> LaserMapRequest {
+        LaserMapRequest {
+            log: self.log.clone(),
+            poses: self.poses.clone(),
+            poses_drift: self.poses_drift,
+            particles: usize::from(self.particles),
+            seed: self.seed,
+            resolution: self.resolution,
+            laser: LaserLogOptions {
+                laser_x: self.laser_x,
+                laser_turn: self.laser_turn.map(f64::to_radians),
+                upside_down: self.upside_down,
+                max_range: self.max_range,
+            },
+            map: self.map.clone(),
         }
     }
 
-    /// The options of those given that say something about a laser.
-    pub fn given_laser_options(&self) -> Vec<&'static str> {
-        let given = [
+    /// Refuses options of a laser beside an RGB-D folder, and options of a camera beside a laser log.
+    fn refuse_wrong_options(&self) -> Result<(), AppError> {
+        let log = self.log.display();
+        if !is_depth_folder(&self.log) {
+            return match self.poses {
+                Some(_) => Err(AppError::Input(format!(
+                    "--poses is about the camera of an RGB-D folder, and {log} is none (it has no rgb.txt)"
+                ))),
+                None => Ok(()),
+            };
+        }
+        match self.laser_option() {
+            Some(option) => Err(AppError::Input(format!(
+                "{option} is about a laser, but {log} is an RGB-D folder: its camera.toml says what the camera is, and the camera \
+                 sits as on the default robot, or where groundtruth.txt says"
+            ))),
+            None => Ok(()),
+        }
+    }
+
+    /// The first given option of a laser.
+    fn laser_option(&self) -> Option<&'static str> {
+        let options = [
             ("--laser-x", self.laser_x.is_some()),
             ("--laser-turn", self.laser_turn.is_some()),
             ("--upside-down", self.upside_down),
             ("--max-range", self.max_range.is_some()),
         ];
-        given.into_iter().filter(|(_, given)| *given).map(|(name, _)| name).collect()
+        options.into_iter().find(|(_, is_given)| *is_given).map(|(name, _)| name)
     }
-
-    fn config(&self) -> Result<ParticleConfig, AppError> {
-        let default = ParticleConfig::default();
-        let config = ParticleConfig {
-            particles: usize::from(self.particles),
-            map: MapperConfig { resolution: self.resolution, ..default.map },
-            ..default
-        };
-        map_input::tuned(self, config)
-    }
-}
-
-/// The filter that was asked for: a new one, or one that goes on with a saved map.
-fn begin(args: &MapArgs) -> Result<ParticleMapper, AppError> {
-    let Some(file) = &args.map else { return Ok(ParticleMapper::new(args.config()?, args.seed)?) };
-    let bytes = std::fs::read(file).map_err(|error| refused(file, &error))?;
-    let mut mapper = ParticleMapper::load(&bytes, args.config()?).map_err(|error| refused(file, &error))?;
-    mapper.kidnapped();
-    Ok(mapper)
-}
-
-fn refused(file: &Path, problem: &dyn std::fmt::Display) -> AppError {
-    AppError::Input(format!("{}: {problem}", file.display()))
-}
-
-fn map(args: &MapArgs, log: &LaserLog, mapper: &mut ParticleMapper) -> Counts {
-    let mut counts = Counts::default();
-    let bar = console::bar(args.common.quiet, log.scans.len());
-    for entry in &log.scans {
-        counts.count(&mapper.update(entry.odom_from_base, &entry.scan));
-        bar.inc(1);
-    }
-    mapper.finish();
-    bar.finish_and_clear();
-    counts
-}
-
-/// The trajectory of the log in a map that does not change.
-fn localise(args: &MapArgs, log: &LaserLog, localizer: &mut MapLocalizer) -> (Counts, Vec<(Stamp, Pose2)>) {
-    let (mut counts, mut known) = (Counts::default(), Vec::new());
-    let bar = console::bar(args.common.quiet, log.scans.len());
-    for entry in &log.scans {
-        let localized = localizer.update(entry.odom_from_base, &entry.scan);
-        counts.count_localized(&localized);
-        if let Localized::Known { map_from_base, .. } = localized {
-            known.push((entry.scan.stamp(), map_from_base));
-        }
-        bar.inc(1);
-    }
-    bar.finish_and_clear();
-    (counts, known)
-}
-
-/// The map to be localised in: a saved filter, or a grid by its YAML.
-fn localizer(args: &MapArgs, file: &Path) -> Result<MapLocalizer, AppError> {
-    if file.extension().is_some_and(|ext| ext == "yaml") {
-        let grid = read_map(file)?;
-        let resolution = grid.geometry().resolution;
-        let config = args.config()?;
-        let config = ParticleConfig { map: MapperConfig { resolution, ..config.map }, ..config };
-        return Ok(MapLocalizer::from_grid(&grid, config, args.seed)?);
-    }
-    let bytes = std::fs::read(file).map_err(|error| refused(file, &error))?;
-    MapLocalizer::load(&bytes, args.config()?, args.seed).map_err(|error| refused(file, &error))
 }

@@ -1,105 +1,128 @@
+//! `trundle plan`: way-points, curve and trajectory through goals on a map.
+
 mod args;
-mod errand;
-mod picture;
-mod table;
 
 pub use args::PlanArgs;
 
-use crate::{Outcome, console};
-use errand::{Errand, Refusal};
+use crate::console;
+use crate::outcome::Outcome;
+use args::PlaceArg;
+use std::collections::BTreeMap;
+use std::path::Path;
 use std::sync::OnceLock;
 use std::time::Instant;
 use trundle::app::AppError;
-use trundle::core::{DriveLimits, Vector2};
-use trundle::io::{OutputFolder, trajectory_csv, waypoints_csv};
-use trundle::planning::{MultiGoalPlan, PlanningTimes};
-
-/// Everything that a plan may write: what an earlier one left behind is removed.
-const FILES: [&str; 10] = [
-    "waypoints.csv",
-    "curve.csv",
-    "coefficients.csv",
-    "constraints.csv",
-    "trajectory.csv",
-    "plan.png",
-    "field.png",
-    "corridors.png",
-    "plan.html",
-    "summary.json",
-];
+use trundle::app::plan::{
+    GoalRefusal, NamedPose, PLAN_FILES, PlanFiles, PlanRequest, PlanTimes, curve_lines, plan_rows,
+    write_plan, write_refusal,
+};
+use trundle::core::{DriveLimits, Pose2};
+use trundle::io::{OutputFolder, read_places};
+use trundle::planning::MultiGoalPlan;
 
 /// `trundle plan MAP.yaml --from --goal`.
 pub fn run(args: &PlanArgs) -> Result<Outcome, AppError> {
     let robot = args.robot.robot()?;
-    let mut errand = Errand::read(args, &robot)?;
-    errand.planner.set_clock(Some(seconds));
+    let mut request = PlanRequest::read(&args.files(), args.ends()?, args.near, &robot)?;
+    warn_of_speed_mask(args, &request);
+    request.planner.set_clock(Some(seconds));
     let start = seconds();
-    let tour = errand.plan();
-    let spent = Spent { all: seconds() - start, stages: errand.planner.stage_times() };
-    let folder = OutputFolder::create(&args.out)?.instead_of(&FILES);
-    match tour {
-        Ok(tour) => write_tour(args, &mut errand, &tour, robot.limits, spent, folder),
-        Err(refusal) => write_refusal(args, &mut errand, &refusal, folder),
+    let plan = request.plan();
+    let times = PlanTimes { all: seconds() - start, stages: request.planner.stage_times() };
+    let folder = OutputFolder::create(&args.out)?.instead_of(&PLAN_FILES);
+    match plan {
+        Ok(plan) => report_plan(args, &mut request, &plan, robot.limits, times, folder),
+        Err(refusal) => report_refusal(args, &mut request, &refusal, folder),
     }
 }
 
-fn write_tour(
+fn report_plan(
     args: &PlanArgs,
-    errand: &mut Errand,
-    tour: &MultiGoalPlan,
+    request: &mut PlanRequest,
+    plan: &MultiGoalPlan,
     limits: DriveLimits,
-    spent: Spent,
+    times: PlanTimes,
     folder: OutputFolder,
 ) -> Result<Outcome, AppError> {
-    let moved = errand.goals_moved(tour);
-    let way_points: Vec<Vector2> =
-        tour.legs.iter().flat_map(|leg| leg.waypoints.points().iter().copied()).collect();
-    folder.write("waypoints.csv", waypoints_csv(&way_points).as_bytes())?;
-    folder.write("curve.csv", table::curve_csv(tour).as_bytes())?;
-    folder.write("coefficients.csv", table::coefficients_csv(tour).as_bytes())?;
-    folder.write("constraints.csv", table::constraints_csv(tour).as_bytes())?;
-    folder.write("trajectory.csv", trajectory_csv(&tour.trajectory).as_bytes())?;
-    let pictures = picture::draw(errand, tour, limits, &moved, spent);
-    folder.write("plan.png", &pictures.plan)?;
-    folder.write("field.png", &pictures.field)?;
-    folder.write("corridors.png", &pictures.corridors)?;
-    folder.write("plan.html", pictures.page.as_bytes())?;
-    folder.write("summary.json", table::summary(args, errand, tour, &moved, spent).to_json().as_bytes())?;
-    let place = folder.commit()?;
+    let moved = request.goals_moved(plan);
+    let place = write_plan(request, plan, limits, &moved, times, folder)?;
     if args.coefficients {
-        table::print_curves(tour);
+        curve_lines(plan).iter().for_each(|line| console::print(line));
     }
     if !args.common.quiet {
         moved.iter().for_each(|moved| console::print(&moved.note()));
-        console::print_table(&table::rows(tour, spent));
+        console::print_table(&plan_rows(plan, times));
         console::print(&format!("See {}", place.join("plan.html").display()));
     }
     Ok(Outcome::Reached)
 }
 
-/// Says why there is no plan, and writes that and a picture of it.
-fn write_refusal(
+fn report_refusal(
     args: &PlanArgs,
-    errand: &mut Errand,
-    refusal: &Refusal,
+    request: &mut PlanRequest,
+    refusal: &GoalRefusal,
     folder: OutputFolder,
 ) -> Result<Outcome, AppError> {
-    let why = errand.explain(refusal);
-    folder.write("plan.png", &picture::without_plan(errand, refusal))?;
-    folder.write("summary.json", table::no_summary(args, errand, refusal, &why).to_json().as_bytes())?;
-    folder.commit()?;
+    let why = request.explain(refusal);
+    write_refusal(request, refusal, &why, folder)?;
     console::print_error(&AppError::Input(format!("{}: {why}", args.map.display())));
     Ok(Outcome::Missed)
 }
 
-/// Time that planning took, s.
-#[derive(Debug, Clone, Copy)]
-struct Spent {
-    all: f64,
-    stages: PlanningTimes,
+fn warn_of_speed_mask(args: &PlanArgs, request: &PlanRequest) {
+    let (Some(path), Some(limits)) = (&args.speed_mask, request.speed_limits) else { return };
+    if limits.out_of_range > 0 {
+        let (count, all) = (limits.out_of_range, limits.cells);
+        console::warn(&format!(
+            "{}: {count} of {all} cells stand for a speed that is not above 0, or above 100 %: they set no limit, as in Nav2. \
+             Black does so by default; to forbid a place, use --keepout",
+            path.display()
+        ));
+    }
 }
 
-/// The wall clock, s.
+impl PlanArgs {
+    fn files(&self) -> PlanFiles {
+        PlanFiles {
+            map: self.map.clone(),
+            keep_out: self.keepout.clone(),
+            speed_mask: self.speed_mask.clone(),
+            graph: self.graph.clone(),
+        }
+    }
+
+    /// Start and goals, named places looked up in the file of places.
+    fn ends(&self) -> Result<(NamedPose, Vec<NamedPose>), AppError> {
+        let places = self.places.as_deref().map(read_places).transpose()?;
+        let look_up = |place: &PlaceArg| look_up(place, self.places.as_deref(), places.as_ref());
+        Ok((look_up(&self.from)?, self.goal.iter().map(look_up).collect::<Result<_, _>>()?))
+    }
+}
+
+fn look_up(
+    place: &PlaceArg,
+    file: Option<&Path>,
+    places: Option<&BTreeMap<String, Pose2>>,
+) -> Result<NamedPose, AppError> {
+    let name = match place {
+        PlaceArg::Pose(pose) => return Ok(NamedPose { pose: pose.0, name: None }),
+        PlaceArg::Name(name) => name,
+    };
+    let (Some(file), Some(places)) = (file, places) else {
+        let message = format!("'{name}' is no pose X,Y,DEG; to name a place, give its file with --places");
+        return Err(AppError::Input(message));
+    };
+    match places.get(name) {
+        Some(pose) => Ok(NamedPose { pose: *pose, name: Some(name.clone()) }),
+        None => {
+            let known: Vec<&str> = places.keys().map(String::as_str).collect();
+            let message = format!("{}: no place '{name}'; there are: {}", file.display(), known.join(", "));
+            Err(AppError::Input(message))
+        }
+    }
+}
+
+/// Wall-clock time since the first call, s.
 fn seconds() -> f64 {
     static BEGIN: OnceLock<Instant> = OnceLock::new();
     BEGIN.get_or_init(Instant::now).elapsed().as_secs_f64()

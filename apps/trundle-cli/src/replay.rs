@@ -1,8 +1,26 @@
 //! `trundle replay`: the robot again, on a recording.
 
-use crate::{Outcome, args::ReplayArgs, console, run_output};
+use crate::common_args::Common;
+use crate::outcome::Outcome;
+use crate::{console, run_output};
+use clap::Args;
+use std::path::PathBuf;
 use trundle::app::{AppError, RunLog, RunRecorder, RunReplayer, run_on_body};
 use trundle::io::OutputFolder;
+
+/// `trundle replay`
+#[derive(Debug, Args)]
+#[command(after_help = "Example: trundle replay out/demo/recording.mcap --out out/replay")]
+pub struct ReplayArgs {
+    /// A recording made by trundle.
+    pub recording: PathBuf,
+    /// Folder for the results.
+    #[arg(long, value_name = "DIR", default_value = "out/replay")]
+    pub out: PathBuf,
+    /// What every command takes.
+    #[command(flatten)]
+    pub common: Common,
+}
 
 /// `trundle replay RECORDING`.
 pub fn run(args: &ReplayArgs) -> Result<Outcome, AppError> {

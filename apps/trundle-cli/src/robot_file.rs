@@ -1,9 +1,32 @@
 //! `trundle config`: prints the whole robot file.
 
-use crate::{Outcome, args::ConfigArgs, console};
+use crate::console;
+use crate::outcome::Outcome;
+use clap::Args;
+use std::path::PathBuf;
 use trundle::app::{AppError, load_robot};
 use trundle::io::{OutputFolder, Summary};
 use trundle::runtime::settings::{json_schema, to_commented_toml};
+
+/// `trundle config`
+#[derive(Debug, Args)]
+#[command(after_help = "Example: trundle config > robot.toml && trundle demo --config robot.toml")]
+pub struct ConfigArgs {
+    /// Check this robot file and print it whole, its gaps filled with the defaults.
+    pub file: Option<PathBuf>,
+    /// Set one key on top of the file; may be given again.
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub set: Vec<String>,
+    /// Print the JSON schema of robot files instead, for editors.
+    #[arg(long)]
+    pub schema: bool,
+    /// Write robot.toml, robot.schema.json and summary.json into this folder too.
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Print nothing.
+    #[arg(long, short)]
+    pub quiet: bool,
+}
 
 /// `trundle config [FILE]`: the whole robot file.
 pub fn print(args: &ConfigArgs) -> Result<Outcome, AppError> {

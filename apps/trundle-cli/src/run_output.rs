@@ -1,6 +1,7 @@
 //! The end of a run: its folder is written, its table printed.
 
-use crate::{Outcome, console, logging};
+use crate::outcome::Outcome;
+use crate::{console, logging};
 use trundle::app::real_time::RealTimeReport;
 use trundle::app::report::write_run;
 use trundle::app::{AppError, FinishedRun, RunSetup};

@@ -1,26 +1,24 @@
-//! `trundle sim`: drives through a simulated scene and records what the robot saw.
+//! `trundle sim`: drives through a simulated scene and records the robot's sensors.
 
-pub mod args;
-mod data_set;
-mod driver;
-mod hand;
-mod journey;
-pub mod map;
-mod table;
+mod args;
+mod map;
+mod teleop;
 
 pub use args::SimArgs;
 
-use crate::{Outcome, console};
-use args::LaserArg;
-use data_set::DataSet;
-use driver::Driver;
-use hand::Hand;
-use journey::Journey;
+use crate::console;
+use crate::outcome::Outcome;
 use std::path::Path;
+use teleop::{TeleopDriver, require_terminal};
 use trundle::app::AppError;
-use trundle::experiments::simulated::{list_scenes, load_scene, read_faults};
+use trundle::core::{OccupancyGrid, Vector3};
+use trundle::experiments::sim_drive::{
+    DriveRecording, ScriptDriver, SimDrive, SimDriver, Standing, WaypointDriver, drive_rows, drive_simulator,
+    drive_summary, drive_verdict, true_map,
+};
+use trundle::experiments::simulated::{list_scenes, load_scene};
 use trundle::io::OutputFolder;
-use trundle::sim::{HeightBand, SimConfig, Simulator};
+use trundle::sim::{HeightBand, Simulator};
 
 /// `trundle sim`.
 pub fn run(args: &SimArgs) -> Result<Outcome, AppError> {
@@ -28,15 +26,15 @@ pub fn run(args: &SimArgs) -> Result<Outcome, AppError> {
         console::print_table(&list_scenes()?);
         return Ok(Outcome::Reached);
     };
-    let config = configured(args)?;
+    let config = args.sensors.config()?;
     let band = match args.band.as_deref() {
         Some(&[low, high]) => HeightBand::new(low, high)?,
         _ => HeightBand::new(config.kobuki.step_over, config.kobuki.height)?,
     };
-    let mut driver = Driver::read(args)?;
+    let driver = driver(args)?;
     let folder = args.record.as_deref().map(new_recording).transpose()?;
     let scene = load_scene(name, args.scene_options())?;
-    let grid = args.needs_map().then(|| map::truth(&scene, args.resolution, band)).transpose()?;
+    let grid = args.needs_map().then(|| true_map(&scene, args.resolution, band)).transpose()?;
     if let (Some(file), Some(grid)) = (&args.map, &grid) {
         map::write(file, grid)?;
     }
@@ -45,39 +43,69 @@ pub fn run(args: &SimArgs) -> Result<Outcome, AppError> {
     }
     let mut robot = Simulator::new(scene, config, args.seed)
         .map_err(|error| AppError::Input(format!("{name}: {error}")))?;
-    if let (Driver::Hand(hand), Some(grid)) = (&mut driver, &grid) {
-        hand.begin(grid.clone(), args.common.quiet)?;
-    }
-    let mut data = folder.as_ref().map(|folder| DataSet::new(folder, &robot)).transpose()?;
-    let journey = Journey::drive(args, &mut robot, &mut driver, data.as_mut())?;
-    drop(driver); // whoever was at the keys gives the terminal back
-    if let (Some(data), Some(grid)) = (data, &grid) {
-        data.finish(grid, robot.scene().start, &journey.summary(args, &robot.scene().name))?;
-    }
+    let drive = drive(args, &mut robot, driver, grid.as_ref(), folder.as_ref())?;
     let place = folder.map(OutputFolder::commit).transpose()?;
     if !args.common.quiet {
-        journey.print(&robot.scene().name, place.as_deref(), &robot);
+        print(&drive, place.as_deref(), &robot);
     }
-    Ok(if journey.is_complete { Outcome::Reached } else { Outcome::Missed })
+    Ok(if drive.is_complete { Outcome::Reached } else { Outcome::Missed })
 }
 
-/// The folder of a recording; one that holds a recording already is refused: two in one folder could not be told apart.
+/// The driver that the arguments name; `None` for one at the keys, who starts when the robot is there.
+fn driver(args: &SimArgs) -> Result<Option<Box<dyn SimDriver>>, AppError> {
+    Ok(match (&args.drive, &args.follow) {
+        (Some(file), _) => Some(Box::new(ScriptDriver::read(file)?)),
+        (None, Some(file)) => Some(Box::new(WaypointDriver::read(file)?)),
+        (None, None) if args.keys => {
+            require_terminal()?;
+            None
+        }
+        (None, None) => Some(Box::new(Standing::new(args.duration))),
+    })
+}
+
+fn drive(
+    args: &SimArgs,
+    robot: &mut Simulator,
+    driver: Option<Box<dyn SimDriver>>,
+    grid: Option<&OccupancyGrid>,
+    folder: Option<&OutputFolder>,
+) -> Result<SimDrive, AppError> {
+    let mut driver: Box<dyn SimDriver> = match (driver, grid) {
+        (None, Some(grid)) => Box::new(TeleopDriver::start(grid.clone(), args.common.quiet)?),
+        (driver, _) => driver.unwrap_or_else(|| Box::new(Standing::new(args.duration))),
+    };
+    let mut recording = folder.map(|folder| DriveRecording::new(folder, robot)).transpose()?;
+    let display = console::StepDisplay::new(args.common.quiet);
+    let drive = drive_simulator(robot, driver.as_mut(), args.duration, recording.as_mut(), &display)?;
+    drop(driver); // a driver at the keys gives the terminal back
+    if let (Some(recording), Some(grid)) = (recording, grid) {
+        let scene = robot.scene();
+        recording.finish(grid, scene.start, &drive_summary(&drive, &scene.name, args.seed))?;
+    }
+    Ok(drive)
+}
+
+/// Prints the numbers, and what to do with the recording.
+fn print(drive: &SimDrive, place: Option<&Path>, robot: &Simulator) {
+    console::print(&format!("{}: {}", robot.scene().name, drive_verdict(drive)));
+    console::print_table(&drive_rows(drive));
+    if let Some(place) = place {
+        let base_from_camera = robot.config().base_from_camera;
+        let height = base_from_camera.translation.z;
+        let tilt = (-base_from_camera.rotate(Vector3::z()).z).asin().to_degrees();
+        console::print(&format!(
+            "Wrote {0}; try: trundle slam {0} --height {height:.2} --tilt {tilt:.0}",
+            place.display()
+        ));
+    }
+}
+
+/// The folder of a recording. A folder that holds a recording is refused: two in one folder could not be kept apart.
 fn new_recording(place: &Path) -> Result<OutputFolder, AppError> {
     if place.join("rgb.txt").exists() {
         let problem = "a recording is there already (rgb.txt), choose another folder or remove it";
         return Err(AppError::Input(format!("{}: {problem}", place.display())));
     }
     Ok(OutputFolder::create(place)?)
-}
-
-/// The simulated robot that the arguments ask for.
-fn configured(args: &SimArgs) -> Result<SimConfig, AppError> {
-    let mut config = args.camera.robot();
-    config.camera_rate_hz = args.rate.unwrap_or(config.camera_rate_hz);
-    config.laser = args.laser.map(LaserArg::laser);
-    if let Some(file) = &args.faults {
-        config.faults = read_faults(file)?;
-    }
-    let config = if args.no_noise { config.without_noise() } else { config };
-    Ok(config.validated()?)
 }

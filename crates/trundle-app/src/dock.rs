@@ -1,7 +1,11 @@
-//! Pictures and tables of a manoeuvre of turns and straight moves.
+//! A manoeuvre of turns and straight moves outside a run: the task, its pictures, tables and folder.
 
+mod output;
 mod picture;
 mod table;
+mod task;
 
+pub use output::{STEP_FILES, impossible_text, write_docking};
 pub use picture::{DockingObstacles, manoeuvre_picture, step_pictures, view};
 pub use table::{motions, rows, steps_csv, verdict};
+pub use task::{DockingTask, built_in_problem, file_problem, scan_problem};

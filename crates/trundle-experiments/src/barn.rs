@@ -2,51 +2,21 @@
 
 mod jackal;
 mod report;
+mod trial;
 mod worlds;
 
+pub use trial::BarnTrial;
+
 use crate::ExperimentReport;
-use crate::laser_run::{LaserPlan, LaserRun, Moment, drive};
+use crate::laser_run::{LaserPlan, drive};
 use rayon::prelude::*;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicUsize, Ordering};
+use trial::{TIME_LIMIT_S, is_at_goal};
 use trundle_app::{AppError, Progress};
-use trundle_core::{OccupancyGrid, Vector2};
 use trundle_io::{OutputFolder, write_map};
-use trundle_runtime::{DriveState, Mission, RobotConfig, Task};
+use trundle_runtime::{Mission, RobotConfig, Task};
 use worlds::BarnWorld;
-
-/// The challenge's time limit, s.
-const TIME_LIMIT: f64 = 100.0;
-/// The goal is reached within this, m.
-const NEAR: f64 = 1.0;
-/// The clock starts when the robot has gone so far, as the challenge's does, m.
-const SET_OUT: f64 = 0.1;
-/// What is asked for: the part of worlds crossed, and the mean score.
-const SUCCESS: f64 = 0.97;
-const SCORE: f64 = 0.45;
-
-/// A world crossed, or not.
-pub struct BarnTrial {
-    world: BarnWorld,
-    seed: u64,
-    success: bool,
-    /// From setting out to the goal or the end, s.
-    time: f64,
-    score: f64,
-    contacts: u32,
-    length: f64,
-    least_clearance: f64,
-    /// The estimate's greatest distance from truth, m.
-    worst_estimate: f64,
-    plans: usize,
-    /// Control cycle: median and most, ms.
-    cycle_ms: (f64, f64),
-    state: DriveState,
-    /// World frame.
-    driven: Vec<Vector2>,
-    /// Map frame.
-    grid: OccupancyGrid,
-}
 
 /// What to run of the BARN worlds.
 pub struct BarnRequest {
@@ -94,19 +64,19 @@ pub fn run(request: &BarnRequest, progress: &Progress) -> Result<BarnOutcome, Ap
 
 impl ExperimentReport for BarnOutcome {
     fn is_success(&self) -> bool {
-        report::Means::of(&self.trials).within()
+        report::BarnMeans::of(&self.trials).within()
     }
 
     fn table(&self) -> Vec<Vec<String>> {
-        report::rows(&self.trials, &report::Means::of(&self.trials))
+        report::rows(&self.trials, &report::BarnMeans::of(&self.trials))
     }
 
     fn verdict(&self) -> String {
-        report::Means::of(&self.trials).verdict()
+        report::BarnMeans::of(&self.trials).verdict()
     }
 
     fn write(&self, folder: &OutputFolder) -> Result<(), AppError> {
-        let (trials, means) = (&self.trials, report::Means::of(&self.trials));
+        let (trials, means) = (&self.trials, report::BarnMeans::of(&self.trials));
         for (name, png) in report::pictures(trials) {
             folder.write(&name, &png)?;
         }
@@ -120,10 +90,6 @@ impl ExperimentReport for BarnOutcome {
     }
 }
 
-fn is_at_goal(moment: &Moment) -> bool {
-    moment.pose.distance(&BarnWorld::goal()) < NEAR
-}
-
 fn one(robot: &RobotConfig, world: BarnWorld, seed: u64) -> Result<BarnTrial, AppError> {
     let robot = robot.clone();
     let plan = LaserPlan {
@@ -133,63 +99,8 @@ fn one(robot: &RobotConfig, world: BarnWorld, seed: u64) -> Result<BarnTrial, Ap
         mission: Mission::new(vec![Task::Go(BarnWorld::start().inverse() * BarnWorld::goal())])?,
         known: None,
         seed,
-        time_limit: TIME_LIMIT,
+        time_limit: TIME_LIMIT_S,
     };
     let run = drive(plan, |moment| is_at_goal(moment) || moment.contacts > 0)?;
     Ok(BarnTrial::of(world, seed, run))
-}
-
-impl BarnTrial {
-    fn of(world: BarnWorld, seed: u64, run: LaserRun) -> Self {
-        let end = *run.end();
-        let set_out = run.moments.iter().find(|m| m.pose.distance(&BarnWorld::start()) > SET_OUT);
-        let time = end.time - set_out.map_or(0.0, |moment| moment.time);
-        let success = is_at_goal(&end) && end.contacts == 0;
-        let score = if success { score(world.optimal_time, time) } else { 0.0 };
-        let mut cycles = run.cycles_ms.clone();
-        cycles.sort_by(f64::total_cmp);
-        Self {
-            success,
-            time,
-            score,
-            contacts: end.contacts,
-            length: run.path_length(),
-            least_clearance: run.moments.iter().map(|m| m.clearance).fold(f64::INFINITY, f64::min),
-            worst_estimate: run.worst_estimate(),
-            plans: run.plans,
-            cycle_ms: (cycles[cycles.len() / 2], cycles[cycles.len() - 1]),
-            driven: run.moments.iter().map(|m| m.pose.position()).collect(),
-            grid: run.robot.grid().clone(),
-            state: run.state,
-            world,
-            seed,
-        }
-    }
-
-    /// What became of it, in a word or two.
-    fn told(&self) -> String {
-        match self.success {
-            true => "goal reached".to_owned(),
-            false if self.contacts > 0 => "contact".to_owned(),
-            false if self.time >= TIME_LIMIT - 1.0 => format!("out of time, {}", self.state),
-            false => self.state.to_string(),
-        }
-    }
-}
-
-/// The challenge's score of a world crossed: OT / clip(AT, 2 OT, 8 OT).
-fn score(optimal: f64, actual: f64) -> f64 {
-    optimal / actual.clamp(2.0 * optimal, 8.0 * optimal)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_score_is_the_challenges() {
-        assert_eq!(score(6.0, 3.0), 0.5);
-        assert_eq!(score(6.0, 24.0), 0.25);
-        assert_eq!(score(6.0, 90.0), 0.125);
-    }
 }

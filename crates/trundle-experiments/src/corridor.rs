@@ -205,3 +205,36 @@ fn summary(trials: &[CorridorTrial], success: bool) -> Summary {
     }
     summary
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_optimal_method_takes_no_longer_than_the_papers() {
+        let outcome = run().unwrap();
+        let seconds = |trial: &CorridorTrial| trial.found().unwrap().manoeuvre.duration();
+        for pair in outcome.trials.chunks(2) {
+            assert_eq!((pair[0].method, pair[1].method), ("paper", "optimal"));
+            let is_bounded = pair[1].found().unwrap().bound <= seconds(&pair[1]) + 1e-9;
+            assert!(seconds(&pair[1]) <= seconds(&pair[0]) + 1e-9 && is_bounded, "{}", pair[1].name());
+        }
+    }
+
+    #[test]
+    fn another_manoeuvre_than_the_papers_fails() {
+        let mut outcome = run().unwrap();
+        assert!(outcome.is_success());
+        let other = outcome.trials.remove(3).plan;
+        outcome.trials[0].plan = other;
+        assert!(!outcome.is_success() && outcome.verdict() == verdict(false));
+    }
+
+    #[test]
+    fn the_table_names_scenario_and_method() {
+        let table = run().unwrap().table();
+        assert_eq!(table.len(), 9);
+        assert_eq!((table[1][0].as_str(), table[1][1].as_str()), ("a", "paper"));
+        assert_eq!(table[1][3], "-", "the paper's method has no bound");
+    }
+}

@@ -55,3 +55,36 @@ pub fn rows(file: &Path, columns: usize) -> Result<Vec<Row>, AppError> {
     };
     text.lines().enumerate().skip(1).filter(|(_, line)| !line.trim().is_empty()).map(row).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read(text: &str, columns: usize) -> Result<Vec<Row>, AppError> {
+        let file = tempfile::NamedTempFile::new().unwrap();
+        fs::write(file.path(), text).unwrap();
+        rows(file.path(), columns)
+    }
+
+    #[test]
+    fn the_first_line_and_blank_lines_are_left_out() {
+        let rows = read("a,b\n1,x\n\n2,y\n", 2).unwrap();
+        assert_eq!(rows.len(), 2);
+        assert_eq!((rows[1].number::<f64>(0).unwrap(), rows[1].text(1)), (2.0, "y"));
+    }
+
+    #[test]
+    fn an_error_names_line_and_column() {
+        let rows = read("a,b\n1,x\n", 2).unwrap();
+        let error = rows[0].number::<f64>(1).unwrap_err().to_string();
+        assert!(error.ends_with("line 2, column 2: 'x' is not a number"), "{error}");
+        let short = read("a,b\n1\n", 2).err().unwrap().to_string();
+        assert!(short.ends_with("line 2: 1 columns, expected 2 or more"), "{short}");
+        let gone = rows_of_missing();
+        assert!(gone.starts_with("no/file.csv is not there"), "{gone}");
+    }
+
+    fn rows_of_missing() -> String {
+        rows(Path::new("no/file.csv"), 1).err().unwrap().to_string()
+    }
+}

@@ -274,3 +274,64 @@ fn summary(trials: &[Trial], success: bool) -> Summary {
     }
     summary
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::trial::fixtures::{arrived, under_way};
+    use std::collections::BTreeSet;
+
+    #[test]
+    fn every_scenario_has_a_name_of_its_own_and_a_valid_plan() {
+        let names: BTreeSet<&str> = scenarios().iter().map(|scenario| scenario.name).collect();
+        assert_eq!(names.len(), scenarios().len());
+        for scenario in scenarios() {
+            let plan = scenario.plan(1, &RobotConfig::default()).unwrap();
+            plan.faults.validated().unwrap();
+            assert_eq!(plan.name, scenario.name);
+        }
+    }
+
+    #[test]
+    fn an_arrival_counts_only_without_contact_and_near_the_goal() {
+        let name = "gyro stuck";
+        assert!(is_good(&arrived(name, 1, (0.01, 0.0, 0.0), 0)));
+        assert!(!is_good(&arrived(name, 1, (0.01, 0.0, 0.0), 1)), "a contact");
+        assert!(!is_good(&arrived(name, 1, (0.2, 0.0, 0.0), 0)), "far from the goal");
+        assert!(!is_good(&under_way(name, 1)), "not arrived");
+        assert!(!is_good(&arrived("no such scenario", 1, (0.0, 0.0, 0.0), 0)));
+    }
+
+    #[test]
+    fn a_robot_that_must_stop_must_not_arrive() {
+        assert!(!is_good(&arrived("camera gone", 1, (0.0, 0.0, 0.0), 0)));
+        assert!(
+            is_good(&arrived("carried away in the dark", 1, (0.1, 0.0, 0.05), 0)),
+            "it may arrive or stop"
+        );
+        assert!(!is_good(&arrived("carried away in the dark", 1, (0.2, 0.0, 0.0), 0)));
+    }
+
+    #[test]
+    fn verdict_and_table_agree() {
+        let good = arrived("gyro stuck", 1, (0.0, 0.0, 0.0), 0);
+        let outcome = FaultsOutcome { trials: vec![good, arrived("lights out", 1, (0.0, 0.0, 0.0), 2)] };
+        assert!(outcome.verdict().starts_with("1 of 2") && outcome.verdict().contains("2 contacts"));
+        let marks: Vec<String> = outcome.table().into_iter().map(|row| row[2].clone()).collect();
+        assert_eq!(marks[1..], ["yes", "NO"]);
+        assert!(!outcome.is_success());
+    }
+
+    #[test]
+    fn persons_and_kidnappings_move_with_their_frame() {
+        let frame = Pose2::new(1.0, 2.0, std::f64::consts::FRAC_PI_2);
+        let person = placed(onto_the_goal(), frame);
+        let [x, y] = person.waypoints[0];
+        assert!((x - 1.0).abs() < 1e-9 && (y - 2.6).abs() < 1e-9, "{person:?}");
+        let mut scene = Scene::by_name("room", 1).unwrap();
+        scene.start = frame;
+        let kind = in_world(FaultKind::Kidnapped { x: 1.0, y: 0.0, heading_deg: 0.0 }, &scene);
+        let FaultKind::Kidnapped { x, y, heading_deg } = kind else { panic!("{kind:?}") };
+        assert!((x - 1.0).abs() < 1e-9 && (y - 3.0).abs() < 1e-9 && (heading_deg - 90.0).abs() < 1e-9);
+    }
+}

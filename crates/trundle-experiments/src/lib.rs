@@ -24,8 +24,11 @@ pub mod mrpb;
 pub mod people;
 pub mod poses;
 pub mod real_time;
+pub mod sim_drive;
 pub mod simulated;
+pub mod teleop;
 mod trial;
+pub mod vocabulary;
 
 pub use experiment_report::{ExperimentReport, RunsRequest};
 pub use trial::{ComputerFault, Trial, TrialPlan, run_all, run_one};

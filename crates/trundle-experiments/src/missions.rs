@@ -253,3 +253,51 @@ fn summary(story: &Story, trials: &[Trial], success: bool) -> Summary {
         .set("worst_goal_m", trials.iter().map(worst).fold(0.0, f64::max));
     summary
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::trial::fixtures::{arrived, under_way};
+
+    fn outcome(trials: Vec<Trial>) -> MissionsOutcome {
+        MissionsOutcome { story: &OBSTACLES, trials }
+    }
+
+    #[test]
+    fn the_verdict_gives_the_reason_of_each_failed_run() {
+        let outcome = outcome(vec![arrived("seed 1", 1, (0.0, 0.0, 0.0), 0), under_way("seed 2", 2)]);
+        assert!(!outcome.is_success());
+        let text = outcome.verdict();
+        let lines: Vec<&str> = text.lines().collect();
+        assert!(lines[0].starts_with("1 of 2 runs"), "{text}");
+        assert_eq!(lines.len(), 2);
+        assert!(lines[1].starts_with("seed 2: "), "{text}");
+    }
+
+    #[test]
+    fn the_table_has_a_row_for_each_run() {
+        let outcome = outcome(vec![arrived("seed 1", 1, (0.0, 0.0, 0.0), 0), under_way("seed 2", 2)]);
+        let table = outcome.table();
+        assert!(table.len() == 3 && table.iter().all(|row| row.len() == HEADER.len()));
+        assert_eq!(table[1][1], "0 of 1");
+    }
+
+    #[test]
+    fn a_house_that_is_not_there_is_named() {
+        let request = RunsRequest { seeds: 1, only: None, robot: trundle_runtime::RobotConfig::default() };
+        let refused = run_house(&request, Path::new("no/house.glb"), &Progress::hidden());
+        assert!(refused.err().unwrap().to_string().starts_with("no/house.glb is not there"));
+    }
+
+    #[test]
+    fn the_folder_holds_map_poses_and_page_of_each_run() {
+        let scratch = tempfile::tempdir().unwrap();
+        let folder = OutputFolder::create(&scratch.path().join("out")).unwrap();
+        outcome(vec![arrived("seed 7", 7, (0.0, 0.0, 0.0), 0)]).write(&folder).unwrap();
+        let place = folder.commit().unwrap();
+        for name in ["seed-7.png", "seed-7.pgm", "seed-7.csv", "obstacles.csv", "report.html", "summary.json"]
+        {
+            assert!(place.join(name).exists(), "{name}");
+        }
+    }
+}

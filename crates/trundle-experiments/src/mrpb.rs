@@ -4,55 +4,37 @@
 mod course;
 mod metrics;
 mod report;
+mod trial;
+
+pub use trial::MrpbTrial;
 
 use crate::ExperimentReport;
-use crate::laser_run::{LaserPlan, LaserRun, drive, hokuyo};
+use crate::laser_run::{LaserPlan, drive, hokuyo};
 use crate::simulated::simulated_body;
 use course::Course;
-use metrics::Metrics;
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
+use trial::{GOAL_TOLERANCE_M, GOAL_TOLERANCE_RAD};
 use trundle_app::{AppError, Progress};
 use trundle_control::{FollowerConfig, StabilizerConfig};
-use trundle_core::{DriveLimits, Invalid, OccupancyGrid, Vector2, difference_of_angles};
+use trundle_core::{DriveLimits, Invalid};
 use trundle_io::{OutputFolder, write_map};
 use trundle_localization::LocalizerConfig;
 use trundle_mapping::MapperConfig;
-use trundle_runtime::{DriveState, Mission, RangeSource, RobotConfig, Schedule, Task};
+use trundle_runtime::{Mission, RangeSource, RobotConfig, Schedule, Task};
 use trundle_sim::{FaultSchedule, SimConfig};
 
-/// The benchmark's robot, m, and what it adds for its planners.
-const RADIUS: f64 = 0.25;
-const INFLATION: f64 = 0.01;
-/// Of its laser, m.
-const REACH: f64 = 30.0;
-/// Its highest speed, m/s.
-const SPEED: f64 = 0.55;
-/// Its tolerance at the goal, m and rad.
-const NEAR: f64 = 0.2;
-const ALIGNED: f64 = 0.1;
-/// A control cycle may take so long on average, ms.
-const CYCLE_MS: f64 = 2.0;
-/// After so long a run is given up, s.
-const TIME_LIMIT: f64 = 600.0;
-
-/// A course driven, or not.
-pub struct MrpbTrial {
-    course: Course,
-    seed: u64,
-    metrics: Metrics,
-    contacts: u32,
-    /// In truth, at the end: m and rad from the goal.
-    distance: f64,
-    turn: f64,
-    worst_estimate: f64,
-    state: DriveState,
-    /// World frame.
-    driven: Vec<Vector2>,
-    /// Map frame.
-    grid: OccupancyGrid,
-}
+/// Radius of the benchmark's robot \[m\]. Source: MRPB 1.0.
+const ROBOT_RADIUS_M: f64 = 0.25;
+/// Distance that the benchmark adds to the radius for its planners \[m\]. Source: MRPB 1.0.
+const INFLATION_M: f64 = 0.01;
+/// Range of its laser \[m\]. Source: MRPB 1.0.
+const LASER_RANGE_M: f64 = 30.0;
+/// Its highest speed \[m/s\]. Source: MRPB 1.0.
+const MAX_SPEED_M_S: f64 = 0.55;
+/// Time limit of a run \[s\]; afterwards it is given up. Source: ours.
+const TIME_LIMIT_S: f64 = 600.0;
 
 /// What to run of the benchmark's courses.
 pub struct MrpbRequest {
@@ -127,17 +109,17 @@ impl ExperimentReport for MrpbOutcome {
     }
 }
 
-/// The benchmark's robot as the autonomy knows it: a round two-wheeled base with a laser.
+/// The benchmark's robot as the autonomy's settings: a round two-wheeled base with a laser.
 fn robot() -> RobotConfig {
     let defaults = RobotConfig::default();
     RobotConfig {
-        footprint_radius: RADIUS + INFLATION,
+        footprint_radius: ROBOT_RADIUS_M + INFLATION_M,
         sight: RangeSource::Laser,
-        limits: DriveLimits { v: SPEED, ..DriveLimits::KOBUKI },
+        limits: DriveLimits { v: MAX_SPEED_M_S, ..DriveLimits::KOBUKI },
         schedule: Schedule { map_hz: 10.0, check_hz: 10.0, improve_hz: 1.0 },
-        // The ends of a long corridor are what tells how far along it the robot is.
-        mapping: MapperConfig { max_range: REACH, ..MapperConfig::default() },
-        // Scans of a laser err less alike than images: less of the heading is left to each.
+        // Only the ends of a long corridor give the position along it.
+        mapping: MapperConfig { max_range: LASER_RANGE_M, ..MapperConfig::default() },
+        // Errors of laser scans are less correlated than those of images: each scan corrects less of the heading.
         localization: LocalizerConfig {
             least_position_sigma: 0.005,
             least_heading_sigma_deg: 0.1,
@@ -147,8 +129,8 @@ fn robot() -> RobotConfig {
         // A tenth of the benchmark's tolerance in position, a quarter in heading: the estimate has errors of its own.
         control: FollowerConfig {
             settling: StabilizerConfig {
-                position_tolerance: 0.1 * NEAR,
-                heading_tolerance: 0.25 * ALIGNED,
+                position_tolerance: 0.1 * GOAL_TOLERANCE_M,
+                heading_tolerance: 0.25 * GOAL_TOLERANCE_RAD,
                 ..StabilizerConfig::default()
             },
             ..FollowerConfig::default()
@@ -162,7 +144,7 @@ fn body(robot: &RobotConfig) -> Result<SimConfig, Invalid> {
     let mut config = simulated_body(robot, FaultSchedule::default())?;
     config.has_camera = false;
     config.laser = Some(hokuyo(0.0));
-    config.kobuki.footprint_radius = RADIUS;
+    config.kobuki.footprint_radius = ROBOT_RADIUS_M;
     config.validated()
 }
 
@@ -174,34 +156,7 @@ fn one(data: &Path, robot: &RobotConfig, course: Course, seed: u64) -> Result<Mr
         mission: Mission::new(vec![Task::Go(course.start.inverse() * course.goal)])?,
         known: course.known(data, robot.mapping.resolution)?,
         seed,
-        time_limit: TIME_LIMIT,
+        time_limit: TIME_LIMIT_S,
     };
     Ok(MrpbTrial::of(course, seed, drive(plan, |_| false)?))
-}
-
-impl MrpbTrial {
-    fn of(course: Course, seed: u64, run: LaserRun) -> Self {
-        let end = *run.end();
-        Self {
-            metrics: Metrics::of(&run),
-            contacts: end.contacts,
-            distance: end.pose.distance(&course.goal),
-            turn: difference_of_angles(end.pose.theta, course.goal.theta).abs(),
-            worst_estimate: run.worst_estimate(),
-            driven: run.moments.iter().map(|m| m.pose.position()).collect(),
-            grid: run.robot.grid().clone(),
-            state: run.state,
-            course,
-            seed,
-        }
-    }
-
-    fn reached(&self) -> bool {
-        self.state == DriveState::Arrived && self.distance <= NEAR && self.turn <= ALIGNED
-    }
-
-    /// At the goal, nothing touched, cycles short enough.
-    fn success(&self) -> bool {
-        self.reached() && self.contacts == 0 && self.metrics.cycle_ms[0] <= CYCLE_MS
-    }
 }

@@ -190,6 +190,7 @@ fn summary(trials: &[Trial], success: bool) -> Summary {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::trial::fixtures::arrived;
 
     #[test]
     fn they_are_on_the_way_when_the_robot_is_a_metre_before_them() {
@@ -204,5 +205,34 @@ mod tests {
             assert!((step.x - robot - 0.2 - AHEAD).abs() < 0.06, "{step:?} {person:?}");
             assert!((FROM.0..=TO.0).contains(&step.x));
         }
+    }
+
+    #[test]
+    fn people_come_from_both_sides_within_their_ranges() {
+        let steps: Vec<StepOut> = (1..=40).map(StepOut::of).collect();
+        assert_eq!(steps.iter().filter(|step| step.beside > 0.0).count(), 20);
+        for step in steps {
+            assert!((BESIDE.0..=BESIDE.1).contains(&step.beside.abs()), "{step:?}");
+            assert!((SPEED.0..=SPEED.1).contains(&step.speed), "{step:?}");
+            assert!((STAY.0..=STAY.1).contains(&step.stay), "{step:?}");
+        }
+    }
+
+    #[test]
+    fn the_verdict_names_the_runs_that_failed() {
+        let good = arrived("run 1", 1, (0.0, 0.0, 0.0), 0);
+        let touched = arrived("run 2", 2, (0.0, 0.0, 0.0), 1);
+        let outcome = PeopleOutcome { trials: vec![good, touched] };
+        assert!(!outcome.is_success());
+        let text = outcome.verdict();
+        assert!(text.contains("In 2 runs") && text.contains("1 with a contact, 1 arrived"), "{text}");
+        assert!(text.contains("run 2") && !text.contains("run 1,"), "{text}");
+        assert_eq!(csv(&outcome.trials).lines().count(), 3);
+    }
+
+    #[test]
+    fn a_run_without_contact_is_a_success() {
+        let outcome = PeopleOutcome { trials: vec![arrived("run 1", 1, (0.0, 0.0, 0.0), 0)] };
+        assert!(outcome.is_success() && !outcome.verdict().contains("run 1"), "{}", outcome.verdict());
     }
 }

@@ -219,3 +219,54 @@ fn summary(trials: &[Trial], whole: &Means) -> Summary {
         .set("mean_abs_dtheta_rad", whole.dtheta);
     summary
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::trial::fixtures::{arrived, under_way};
+
+    #[test]
+    fn errors_count_by_their_size_not_by_their_sign() {
+        let signed = [arrived("1", 1, (0.002, -0.003, 0.01), 0), arrived("2", 1, (-0.002, 0.003, -0.01), 0)];
+        let means = Means::of(&signed);
+        assert!((means.dx - 0.002).abs() < 1e-12 && (means.dy - 0.003).abs() < 1e-12);
+        assert!((means.dtheta - 0.01).abs() < 1e-12 && means.within());
+    }
+
+    #[test]
+    fn one_run_beyond_a_limit_fails_the_experiment() {
+        let good = || arrived("1", 1, (0.001, 0.001, 0.001), 0);
+        assert!(Means::of(&[good(), good()]).within());
+        for bad in [
+            arrived("1", 2, (0.02, 0.0, 0.0), 0),
+            arrived("1", 2, (0.0, 0.0, 0.05), 0),
+            arrived("1", 2, (0.0, 0.0, 0.0), 1),
+            under_way("1", 2),
+        ] {
+            let means = Means::of(&[good(), bad]);
+            assert!(!means.within() && means.verdict().starts_with("Missed"), "{}", means.verdict());
+        }
+    }
+
+    #[test]
+    fn the_table_has_a_row_for_each_start_that_was_run_and_one_for_all() {
+        let outcome = PosesOutcome {
+            trials: vec![arrived("2", 1, (0.01, 0.0, 0.0), 0), arrived("8", 1, (0.03, 0.0, 0.0), 0)],
+        };
+        let names: Vec<String> = outcome.table().into_iter().map(|row| row[0].clone()).collect();
+        assert_eq!(names, ["start", "2 (2.4, 2.4)", "8 (-2.4, 2.4)", "all"]);
+        assert_eq!(outcome.table()[3][1], "2.00", "the mean of 1 cm and 3 cm");
+    }
+
+    #[test]
+    fn the_folder_holds_table_page_and_summary() {
+        let scratch = tempfile::tempdir().unwrap();
+        let folder = OutputFolder::create(&scratch.path().join("poses")).unwrap();
+        PosesOutcome { trials: vec![arrived("1", 1, (0.0, 0.0, 0.0), 0)] }.write(&folder).unwrap();
+        let place = folder.commit().unwrap();
+        let csv = std::fs::read_to_string(place.join("poses.csv")).unwrap();
+        assert_eq!(csv.lines().count(), 2);
+        let summary = std::fs::read_to_string(place.join("summary.json")).unwrap();
+        assert!(summary.contains("\"success\": true"), "{summary}");
+    }
+}

@@ -224,3 +224,16 @@ fn minutes(timing: &RealTimeReport) -> String {
     });
     table_csv(["time_s", "resident_mb"], samples.map(|(time, mb)| [*time, *mb]))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_limit_is_kept_up_to_its_value_and_never_without_a_measurement() {
+        let limit = |value| Limit { name: "load", value, max: 60.0, unit: "%" };
+        assert!(limit(Some(60.0)).is_kept() && !limit(Some(60.1)).is_kept() && !limit(None).is_kept());
+        assert_eq!(limit(Some(12.345)).row(), ["load", "12.35 %", "60 %", "yes"]);
+        assert_eq!(limit(None).row(), ["load", "not measured", "60 %", "NO"]);
+    }
+}

@@ -220,3 +220,86 @@ fn resumed_after_kill(setup: &RunSetup, checkpoint: Option<&Checkpoint>, at: f64
     })?;
     setup.clone().resumed_from(&checkpoint.to_bytes()).start_robot()
 }
+
+#[cfg(test)]
+pub(crate) mod fixtures {
+    //! Finished runs for the tests of verdicts and tables.
+
+    use super::*;
+    use trundle_app::TrackCounts;
+    use trundle_eval::goal_error;
+    use trundle_runtime::DriveState;
+
+    /// A run that arrived this far from its goal (m, m, rad), with a number of contacts.
+    pub fn arrived(name: &str, seed: u64, (dx, dy, dtheta): (f64, f64, f64), contacts: usize) -> Trial {
+        let error = goal_error(Pose2::IDENTITY, Pose2::new(dx, dy, dtheta)).unwrap();
+        let numbers = RunNumbers {
+            goals: Vec::new(),
+            goals_asked: 1,
+            goal_error: Some(error),
+            believed_error: Some(error),
+            estimate_rmse: Some(0.01),
+            contacts,
+            path_length: 3.0,
+            duration: 20.0,
+            plans: 1,
+            tracked: TrackCounts::default(),
+            landmarks: 0,
+            keyframes: 0,
+            images_dropped: Vec::new(),
+            docking: None,
+            state: DriveState::Arrived,
+        };
+        let line = vec![Vector2::zeros(), Vector2::new(1.0, 0.0)];
+        Trial {
+            name: name.to_owned(),
+            seed,
+            world_from_map: Pose2::IDENTITY,
+            numbers,
+            driven: line.clone(),
+            times: vec![0.0, 2.0],
+            pose_pairs: vec![(0.0, Pose2::IDENTITY, Pose2::IDENTITY)],
+            planned: line,
+            grid: OccupancyGrid::from_ascii(0.5, "..\n..").unwrap(),
+            changes: Vec::new(),
+        }
+    }
+
+    /// A run that did not arrive.
+    pub fn under_way(name: &str, seed: u64) -> Trial {
+        let mut trial = arrived(name, seed, (1.0, 0.0, 0.0), 0);
+        trial.numbers.state = DriveState::Idle;
+        trial
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_word_that_no_run_holds_is_refused_with_the_names() {
+        let plan = |name: &str| {
+            let scene = Scene::by_name("room", 1).unwrap();
+            let mission = Mission::new(vec![trundle_runtime::Task::Return]).unwrap();
+            let (robot, faults) = (RobotConfig::default(), FaultSchedule::default());
+            TrialPlan { name: name.to_owned(), seed: 1, scene, mission, robot, faults, computer_fault: None }
+        };
+        let only = Some("no such run".to_owned());
+        let request = RunsRequest { seeds: 1, only, robot: RobotConfig::default() };
+        let refused = run_all(vec![plan("one"), plan("two")], &request, &Progress::hidden());
+        let text = refused.err().unwrap().to_string();
+        assert!(text.contains("no such run") && text.ends_with("there are 'one', 'two'"), "{text}");
+    }
+
+    #[test]
+    fn the_table_of_states_has_a_row_for_each_change() {
+        let mut trial = fixtures::arrived("1", 4, (0.0, 0.0, 0.0), 0);
+        let state = trundle_runtime::DriveState::Arrived;
+        trial.changes = vec![StateChange { at: 12.5, state, pose: Pose2::new(1.0, 2.0, 0.0) }];
+        let html = trundle_viz::Report::new("x").table(trial.state_table()).to_html();
+        assert!(
+            html.contains("1, seed 4") && html.contains("12.5") && html.contains("(1.00 m, 2.00 m, 0 deg)")
+        );
+    }
+}

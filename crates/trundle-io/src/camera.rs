@@ -146,7 +146,7 @@ fn located(path: &Path, text: &str, error: &toml::de::Error) -> IoError {
     let content = text.lines().nth(line - 1).unwrap_or_default();
     let key = content.split_once('=').map_or("", |(key, _)| key.trim());
     let names_it = key.is_empty() || message.contains(&format!("`{key}`"));
-    let problem = if names_it { message } else { format!("{}: {message}", crate::files::excerpt(key)) };
+    let problem = if names_it { message } else { format!("{}: {message}", crate::excerpt::excerpt(key)) };
     IoError::line(path, line, problem)
 }
 

@@ -1,6 +1,7 @@
 //! Reading of whole files, and splitting of text files into lines and fields.
 
 use crate::IoError;
+use crate::excerpt::excerpt;
 use std::path::Path;
 
 /// The whole file.
@@ -49,12 +50,6 @@ pub(crate) fn stamped_numbers<const N: usize>(
         *slot = value.ok_or_else(|| IoError::line(path, number, problem()))?;
     }
     Ok((stamp, numbers))
-}
-
-/// The text for a message: its first 40 characters, nothing unprintable.
-pub(crate) fn excerpt(text: &str) -> String {
-    let short: String = text.chars().take(40).map(|c| if c.is_control() { '?' } else { c }).collect();
-    if short.len() < text.len() { format!("{short}...") } else { short }
 }
 
 #[cfg(test)]

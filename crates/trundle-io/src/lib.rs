@@ -28,6 +28,7 @@ mod carmen;
 mod codec;
 mod csv;
 mod error;
+mod excerpt;
 mod files;
 mod map;
 mod output;

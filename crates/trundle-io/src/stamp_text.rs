@@ -1,6 +1,6 @@
 //! Exact conversion between stamps and decimal text in seconds.
 
-use crate::files::excerpt;
+use crate::excerpt::excerpt;
 use trundle_core::{Invalid, Stamp};
 
 /// A stamp from decimal text in seconds, exact: `1305031229.528748`, `-0.5`, `1.305031229528748e9`.

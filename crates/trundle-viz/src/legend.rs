@@ -4,6 +4,7 @@ use crate::canvas::{Canvas, Pen};
 use crate::color::Color;
 use crate::map::{draw_badge, radius_of};
 use crate::text::{TextStyle, cap_height, line_height, text_width};
+use crate::wedge::wedge;
 
 /// The sign that stands for something in a legend.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -113,14 +114,6 @@ fn paint_mark(canvas: &mut Canvas, item: &LegendItem, (x, y): (i64, i64), scale:
             canvas.frame_rect(x + 3 * scale, y, 8 * scale, height, (scale / 2).max(1), Color::FAINT_INK);
         }
     }
-}
-
-/// A wedge about `center`, its tip `radius` px away along `angle` (picture axes: y down).
-pub(crate) fn wedge(center: (f64, f64), radius: f64, angle: f64) -> [(f64, f64); 4] {
-    [(1.0, 0.0), (0.8, 2.45), (0.35, std::f64::consts::PI), (0.8, -2.45)].map(|(length, turn)| {
-        let (sin, cos) = (angle + turn).sin_cos();
-        (center.0 + radius * length * cos, center.1 + radius * length * sin)
-    })
 }
 
 #[cfg(test)]

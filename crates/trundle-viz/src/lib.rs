@@ -24,12 +24,13 @@ mod map;
 mod report;
 mod text;
 mod ticks;
+mod wedge;
 
 pub use camera::{FeatureMark, depth_picture, feature_picture};
 pub use chart::{BarChart, Chart};
 pub use color::Color;
 pub use compose::{
-    CameraView, MaskShares, PlanParts, PlanScene, RunReport, VisualMapScene, no_plan_picture,
+    CameraView, MaskShares, PlanParts, PlanScene, RunMap, RunReport, VisualMapScene, no_plan_picture,
     plan_part_pictures, plan_picture, speed_charts, trajectory_picture, visual_map_picture,
 };
 pub use legend::{LegendItem, Mark};

@@ -1,10 +1,10 @@
-//! Who may depend on whom, and who may read TOML and command lines.
+//! Which crate may depend on which, and which may read TOML and command lines.
 
 use super::finding::Finding;
 use super::tree::{File, Package, Tree};
 
-/// The rooms of the middle: they know nothing of each other.
-pub const ROOMS: [&str; 7] = [
+/// The crates of algorithms: none depends on another.
+pub const ALGORITHM_CRATES: [&str; 7] = [
     "trundle-vision",
     "trundle-slam",
     "trundle-mapping",
@@ -13,12 +13,11 @@ pub const ROOMS: [&str; 7] = [
     "trundle-control",
     "trundle-docking",
 ];
-/// The edges: they know only core.
+/// The edges: they depend on core alone.
 pub const EDGES: [&str; 6] =
     ["trundle-sim", "trundle-io", "trundle-drivers", "trundle-ros2", "trundle-viz", "trundle-eval"];
-/// Who may know TOML or command lines.
-const KNOW_FILES_OF_SETTINGS: [&str; 5] =
-    ["trundle-runtime", "trundle-app", "trundle-cli", "trundle-io", "xtask"];
+/// Crates that may read TOML or command lines.
+const SETTINGS_CRATES: [&str; 5] = ["trundle-runtime", "trundle-app", "trundle-cli", "trundle-io", "xtask"];
 
 /// Checks every arrow between packages.
 pub fn check(tree: &Tree) -> Vec<Finding> {
@@ -34,7 +33,7 @@ fn check_package(tree: &Tree, package: &Package) -> Vec<Finding> {
         findings.push(Finding::error(
             &path,
             line_of(file, "name", 1),
-            format!("{name} is in no room of the design"),
+            format!("{name} is no crate of the design"),
         ));
     }
     for kind in ["dependencies", "dev-dependencies", "build-dependencies"] {
@@ -48,11 +47,10 @@ fn check_package(tree: &Tree, package: &Package) -> Vec<Finding> {
                     format!("{name} must not depend on {dependency} ({kind}): no such arrow in the design");
                 findings.push(Finding::error(&path, line, message));
             }
-            if ["toml", "clap"].contains(&dependency.as_str())
-                && !KNOW_FILES_OF_SETTINGS.contains(&name.as_str())
-            {
-                let message =
-                    format!("{name} must not know {dependency}: only runtime, cli, io and xtask do");
+            if ["toml", "clap"].contains(&dependency.as_str()) && !SETTINGS_CRATES.contains(&name.as_str()) {
+                let message = format!(
+                    "{name} must not depend on {dependency}: only runtime, app, cli, io and xtask do"
+                );
                 findings.push(Finding::error(&path, line, message));
             }
         }
@@ -65,7 +63,7 @@ fn is_ours(name: &str) -> bool {
 }
 
 fn is_known(name: &str) -> bool {
-    ROOMS.contains(&name)
+    ALGORITHM_CRATES.contains(&name)
         || EDGES.contains(&name)
         || [
             "trundle-core",
@@ -95,20 +93,20 @@ fn may_know(from: &str, to: &str) -> bool {
         "trundle-core" | "xtask" => false,
         "trundle-collision" | "trundle-grid" | "trundle-optim" => to == "trundle-core",
         "trundle-slam" => base || to == "trundle-vision",
-        "trundle-runtime" => base || ROOMS.contains(&to),
+        "trundle-runtime" => base || ALGORITHM_CRATES.contains(&to),
         "trundle-app" => {
             let edges = ["trundle-io", "trundle-viz", "trundle-eval"];
-            base || ROOMS.contains(&to) || edges.contains(&to) || to == "trundle-runtime"
+            base || ALGORITHM_CRATES.contains(&to) || edges.contains(&to) || to == "trundle-runtime"
         }
         "trundle-experiments" => {
-            base || ROOMS.contains(&to)
+            base || ALGORITHM_CRATES.contains(&to)
                 || EDGES.contains(&to)
                 || ["trundle-runtime", "trundle-app"].contains(&to)
         }
         "trundle" => !["trundle", "trundle-cli"].contains(&to),
         "trundle-cli" => to == "trundle",
         "trundle-bench" => to != "trundle-cli",
-        room if ROOMS.contains(&room) => base,
+        algorithm if ALGORITHM_CRATES.contains(&algorithm) => base,
         edge if EDGES.contains(&edge) => to == "trundle-core",
         _ => false,
     }
@@ -153,7 +151,7 @@ mod tests {
     }
 
     #[test]
-    fn settings_files_are_for_the_outer_rooms() {
+    fn settings_files_are_for_the_outer_crates() {
         assert_eq!(messages("trundle-planning", "toml.workspace = true").len(), 1);
         assert_eq!(messages("trundle-viz", "clap.workspace = true").len(), 1);
         assert!(messages("trundle-io", "toml.workspace = true").is_empty());
@@ -161,6 +159,6 @@ mod tests {
 
     #[test]
     fn a_package_must_be_in_the_design() {
-        assert!(messages("trundle-kitchen", "")[0].contains("in no room of the design"));
+        assert!(messages("trundle-unknown", "")[0].contains("no crate of the design"));
     }
 }

@@ -1,6 +1,6 @@
 //! No file, socket, thread, clock or global random generator below the edges and the runtime.
 
-use super::arrows::{EDGES, ROOMS};
+use super::arrows::{ALGORITHM_CRATES, EDGES};
 use super::finding::Finding;
 use super::tree::Tree;
 
@@ -24,7 +24,7 @@ const OUTSIDE: [(&str, &str); 14] = [
 /// Members of `std` that do.
 const OUTSIDE_OF_STD: [&str; 5] = ["fs", "net", "thread", "process", "env"];
 /// Words that make a result depend on when and where it was computed.
-const CHANCE: [(&str, &str); 9] = [
+const NONDETERMINISM: [(&str, &str); 9] = [
     ("Instant", "the clock"),
     ("SystemTime", "the clock"),
     ("thread_rng", "the global random generator"),
@@ -36,19 +36,19 @@ const CHANCE: [(&str, &str); 9] = [
     ("RandomState", "the global random generator"),
 ];
 
-/// Checks the sources of all rooms, and of the edges for clocks and chance.
+/// Checks the sources of all crates of algorithms, and of the edges for clocks and randomness.
 pub fn check(tree: &Tree) -> Vec<Finding> {
     let mut findings = Vec::new();
     for package in &tree.packages {
         let name = package.name.as_str();
-        let inner = ROOMS.contains(&name)
+        let inner = ALGORITHM_CRATES.contains(&name)
             || ["trundle-core", "trundle-collision", "trundle-grid", "trundle-optim"].contains(&name);
         if !inner && !EDGES.contains(&name) {
             continue;
         }
         for source in tree.sources(package) {
             let path = &source.file.path;
-            let words = CHANCE.iter().chain(if inner { &OUTSIDE[..] } else { &[] });
+            let words = NONDETERMINISM.iter().chain(if inner { &OUTSIDE[..] } else { &[] });
             for (word, what) in words {
                 let at = source.code.lines_with(word);
                 findings.extend(at.map(|line| Finding::error(path, line, forbidden(name, word, what))));
@@ -96,7 +96,7 @@ mod tests {
     }
 
     #[test]
-    fn clocks_and_chance_are_for_nobody_but_the_runtime() {
+    fn clocks_and_randomness_are_for_nobody_but_the_runtime() {
         assert_eq!(findings("trundle-sim", "let t = std::time::Instant::now();").len(), 1);
         assert_eq!(findings("trundle-slam", "let r = rand::rng();").len(), 1);
         assert!(findings("trundle-slam", "let r = rand_chacha::ChaCha8Rng::seed_from_u64(1);").is_empty());

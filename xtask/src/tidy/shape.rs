@@ -1,17 +1,23 @@
-//! Files that fit a head, and crates that say what they are.
+//! Sizes of files and of the command line, and crates that begin with their documentation.
 
 use super::finding::Finding;
-use super::tree::Tree;
+use super::tree::{Package, Tree};
 
 /// Lines of code above which a file is warned of.
 const MANY_LINES: usize = 400;
 /// Lines of code above which a file is an error.
 const TOO_MANY_LINES: usize = 600;
 
-/// Checks sizes of files and the crates' own words.
+/// The crate of the command line.
+const COMMAND_LINE: &str = "trundle-cli";
+/// Lines of code of the command line: what is more belongs into a crate that every front end shares.
+const MAX_COMMAND_LINE_LINES: usize = 3000;
+
+/// Checks sizes of files and of the command line, and the crates' own documentation.
 pub fn check(tree: &Tree) -> Vec<Finding> {
     let mut findings = Vec::new();
     for package in &tree.packages {
+        findings.extend(large_command_line(tree, package));
         for source in tree.sources(package) {
             let (path, lines) = (&source.file.path, source.code.len());
             let message = format!("{lines} lines of code; files have about 100 to 150");
@@ -31,6 +37,16 @@ pub fn check(tree: &Tree) -> Vec<Finding> {
     findings
 }
 
+/// An error where the command line holds more than command line.
+fn large_command_line(tree: &Tree, package: &Package) -> Option<Finding> {
+    let lines: usize = tree.sources(package).map(|source| source.code.len()).sum();
+    let message = format!(
+        "{lines} lines of code, {MAX_COMMAND_LINE_LINES} at most: move what is no command line to app"
+    );
+    let is_large = package.name == COMMAND_LINE && lines > MAX_COMMAND_LINE_LINES;
+    is_large.then(|| Finding::error(&format!("{}/src", package.folder), 1, message))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -48,5 +64,20 @@ mod tests {
         assert!(findings(&lib(401))[0].contains("warning: 401 lines"));
         assert!(findings(&lib(601))[0].starts_with("x/src/lib.rs:1: 601 lines"));
         assert!(findings("fn f() {}")[0].contains("begins with its documentation"));
+    }
+
+    #[test]
+    fn the_command_line_is_small() {
+        let tree = |name: &str, lines: usize| {
+            let manifest = format!("[package]\nname = \"{name}\"");
+            let file = format!("//! X.\n{}", "f();\n".repeat(lines / 10));
+            let names: Vec<String> = (0..10).map(|i| format!("x/src/f{i}.rs")).collect();
+            let sources = names.iter().map(|name| (name.as_str(), file.as_str()));
+            tree(&std::iter::once(("x/Cargo.toml", manifest.as_str())).chain(sources).collect::<Vec<_>>())
+        };
+        assert!(check(&tree(COMMAND_LINE, MAX_COMMAND_LINE_LINES)).is_empty());
+        assert!(check(&tree("trundle-io", MAX_COMMAND_LINE_LINES + 10)).is_empty());
+        let found = check(&tree(COMMAND_LINE, MAX_COMMAND_LINE_LINES + 10));
+        assert!(found[0].message.starts_with("3010 lines of code"), "{found:?}");
     }
 }

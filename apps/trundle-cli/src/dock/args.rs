@@ -1,4 +1,6 @@
-use crate::args::{Common, PoseArg, RobotArgs};
+//! The command line of `trundle dock`.
+
+use crate::common_args::{Common, PoseArg, RobotArgs};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -36,7 +38,7 @@ pub struct DockArgs {
     /// Which method plans [default: the robot file's, or optimal]
     #[arg(long, value_enum)]
     pub method: Option<MethodArg>,
-    /// Only write what would be solved to a file, as text to change: with --from, --to and --footprint where they are given; a map's outlines as walls.
+    /// Only write the problem to a file, as text to change: with --from, --to and --footprint where they are given; a map's outlines as walls.
     #[arg(long, value_name = "FILE")]
     pub write_problem: Option<PathBuf>,
     /// Take unknown cells of the map, and what is off it, for free rather than blocked. With a map only.

@@ -1,5 +1,9 @@
-use super::MapsArgs;
-use crate::{Outcome, console};
+//! `trundle eval map`: the occupied cells of a map against those of the true map.
+
+use super::args::MapsArgs;
+use super::named_error::named_error;
+use crate::console;
+use crate::outcome::Outcome;
 use trundle::app::AppError;
 use trundle::core::Pose2;
 use trundle::eval::{EvalError, MapAgreement, MapAgreementConfig, align_maps, map_agreement};
@@ -10,7 +14,7 @@ pub fn run(args: &MapsArgs) -> Result<Outcome, AppError> {
     let (truth, map) = (read_map(&args.truth)?, read_map(&args.map)?);
     let config = MapAgreementConfig { within: args.within, ..MapAgreementConfig::default() };
     let config = config.validated()?;
-    let wrong = |error: EvalError| super::wrong(&error, &args.truth, &args.map);
+    let wrong = |error: EvalError| named_error(&error, &args.truth, &args.map);
     let pose = if args.exact { args.at.0 } else { align_maps(&truth, &map, args.at.0).map_err(wrong)? };
     let found = map_agreement(&truth, &map, pose, &config).map_err(wrong)?;
     if let Some(out) = &args.out {

@@ -1,5 +1,9 @@
-use super::RelationsArgs;
-use crate::{Outcome, console};
+//! `trundle eval relations`: a trajectory against the relations of a reference.
+
+use super::args::RelationsArgs;
+use super::named_error::named_error;
+use crate::console;
+use crate::outcome::Outcome;
 use std::path::Path;
 use trundle::app::AppError;
 use trundle::core::{Pose3, Stamp};
@@ -14,7 +18,7 @@ pub fn run(args: &RelationsArgs) -> Result<Outcome, AppError> {
     let sets = sets(args)?;
     let estimate = trajectory(&args.estimate)?;
     let config = RelationConfig { max_difference: args.max_difference }.validated()?;
-    let wrong = |error: EvalError| super::wrong(&error, &args.reference, &args.estimate);
+    let wrong = |error: EvalError| named_error(&error, &args.reference, &args.estimate);
     let mut judged = Vec::new();
     for (name, relations) in sets {
         if !relations.is_empty() {

@@ -1,4 +1,6 @@
-use crate::args::{Common, PoseArg, RobotArgs};
+//! The command line of `trundle plan`.
+
+use crate::common_args::{Common, PoseArg, RobotArgs};
 use clap::Args;
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -28,7 +30,7 @@ pub struct PlanArgs {
     /// Named places: TOML, a table a place with x, y, heading_deg.
     #[arg(long, value_name = "FILE")]
     pub places: Option<PathBuf>,
-    /// Keep-out mask, as Nav2's: what is black is forbidden, greys (mode scale) are dear.
+    /// Keep-out mask, as Nav2's: what is black is forbidden, greys (mode scale) cost extra.
     #[arg(long, value_name = "MASK.yaml")]
     pub keepout: Option<PathBuf>,
     /// Speed mask, as Nav2's: the darker the slower; black sets no limit.

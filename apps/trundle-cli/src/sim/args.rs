@@ -1,8 +1,10 @@
-use crate::args::{Common, PoseArg};
+//! The command line of `trundle sim`.
+
+use crate::common_args::{Common, PoseArg, UpArg};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
-use trundle::experiments::simulated::SceneOptions;
-use trundle::sim::import::UpAxis;
+use trundle::app::AppError;
+use trundle::experiments::simulated::{SceneOptions, read_faults};
 use trundle::sim::{LaserConfig, SimConfig};
 
 /// `trundle sim`
@@ -49,6 +51,17 @@ pub struct SimArgs {
     /// Heights between which something is in the way, m, for the map [default: the robot's]
     #[arg(long, num_args = 2, value_names = ["LOW", "HIGH"], value_parser = number, allow_negative_numbers = true)]
     pub band: Option<Vec<f64>>,
+    /// Sensors, their faults and their noise.
+    #[command(flatten)]
+    pub sensors: SensorArgs,
+    /// What every command takes.
+    #[command(flatten)]
+    pub common: Common,
+}
+
+/// The sensors of the simulated robot.
+#[derive(Debug, Args)]
+pub struct SensorArgs {
     /// The camera.
     #[arg(long, value_enum, default_value_t = CameraArg::KinectV2)]
     pub camera: CameraArg,
@@ -64,9 +77,23 @@ pub struct SimArgs {
     /// No noise in the sensors, perfect wheels.
     #[arg(long)]
     pub no_noise: bool,
-    /// What every command takes.
-    #[command(flatten)]
-    pub common: Common,
+}
+
+impl SensorArgs {
+    /// The simulated robot.
+    ///
+    /// # Errors
+    /// When the fault file cannot be read or a value is outside its range.
+    pub fn config(&self) -> Result<SimConfig, AppError> {
+        let mut config = self.camera.robot();
+        config.camera_rate_hz = self.rate.unwrap_or(config.camera_rate_hz);
+        config.laser = self.laser.map(LaserArg::laser);
+        if let Some(file) = &self.faults {
+            config.faults = read_faults(file)?;
+        }
+        let config = if self.no_noise { config.without_noise() } else { config };
+        Ok(config.validated()?)
+    }
 }
 
 /// A camera that can be simulated.
@@ -116,29 +143,10 @@ impl LaserArg {
     }
 }
 
-/// The axis of a file that points up.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum UpArg {
-    /// As glTF has it.
-    Y,
-    /// As robots have it.
-    Z,
-}
-
 impl SimArgs {
     /// How the scene is made.
     pub fn scene_options(&self) -> SceneOptions {
         SceneOptions { seed: self.seed, up: self.up.axis(), start: self.start.map(|start| start.0) }
-    }
-}
-
-impl UpArg {
-    /// The axis.
-    pub fn axis(self) -> UpAxis {
-        match self {
-            Self::Y => UpAxis::Y,
-            Self::Z => UpAxis::Z,
-        }
     }
 }
 

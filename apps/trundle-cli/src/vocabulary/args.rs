@@ -1,7 +1,10 @@
-use crate::args::Common;
+//! The command line of `trundle vocabulary`.
+
+use crate::common_args::Common;
 use clap::{Args, Subcommand};
 use std::path::PathBuf;
 use std::str::FromStr;
+use trundle::experiments::vocabulary::{ImageSources, IndexRange};
 
 /// `trundle vocabulary`
 #[derive(Debug, Args)]
@@ -61,6 +64,21 @@ pub struct Sources {
     /// ORB features of an image, at most.
     #[arg(long, value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub features_per_image: u32,
+}
+
+impl Sources {
+    /// The sources that the arguments name.
+    pub fn sources(&self) -> ImageSources {
+        ImageSources {
+            folders: self.folders.clone(),
+            frames: self.frames.map(|span| span.0),
+            scenes: self.scenes.clone(),
+            seeds: self.seeds.0,
+            views: self.views as usize,
+            z_up: self.z_up,
+            features_per_image: self.features_per_image as usize,
+        }
+    }
 }
 
 /// `trundle vocabulary train`
@@ -137,14 +155,9 @@ pub struct RecallArgs {
     pub common: Common,
 }
 
-/// Numbers from a first to a last one: `FIRST-LAST`.
+/// Numbers from a first to a last one on the command line: `FIRST-LAST`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Span {
-    /// The first.
-    pub first: u64,
-    /// The last, which is one of them.
-    pub last: u64,
-}
+pub struct Span(pub IndexRange);
 
 impl FromStr for Span {
     type Err = String;
@@ -153,7 +166,7 @@ impl FromStr for Span {
         let number = |text: &str| text.trim().parse::<u64>().ok();
         let (first, last) = text.split_once('-').unwrap_or((text, text));
         match (number(first), number(last)) {
-            (Some(first), Some(last)) if first <= last => Ok(Self { first, last }),
+            (Some(first), Some(last)) if first <= last => Ok(Self(IndexRange { first, last })),
             _ => Err(format!("'{text}', expected FIRST-LAST, whole numbers, the last not below the first")),
         }
     }
@@ -165,8 +178,8 @@ mod tests {
 
     #[test]
     fn spans_are_two_rising_numbers_or_one() {
-        assert_eq!("3-7".parse(), Ok(Span { first: 3, last: 7 }));
-        assert_eq!("5".parse(), Ok(Span { first: 5, last: 5 }));
+        assert_eq!("3-7".parse(), Ok(Span(IndexRange { first: 3, last: 7 })));
+        assert_eq!("5".parse(), Ok(Span(IndexRange { first: 5, last: 5 })));
         for wrong in ["7-3", "a-3", "", "-1", "1-2-3"] {
             assert!(wrong.parse::<Span>().unwrap_err().contains("expected FIRST-LAST"), "{wrong}");
         }

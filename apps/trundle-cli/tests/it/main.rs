@@ -1,11 +1,11 @@
 //! The program as its users meet it: arguments in, files, sentences and exit codes out.
 #![allow(clippy::unwrap_used, clippy::print_stderr, reason = "helpers of tests")]
 
-mod bad_days;
 mod bad_input;
 mod demo;
 mod dock;
 mod experiments;
+mod fault_scenarios;
 mod inputs;
 mod map;
 mod missions;
@@ -15,5 +15,5 @@ mod real_time;
 mod sim;
 mod sim_files;
 mod slam;
-mod slam_bad_days;
+mod slam_degraded_input;
 mod vocabulary;

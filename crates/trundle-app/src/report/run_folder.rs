@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use trundle_core::{Footprint, Pose2};
 use trundle_io::{OutputFolder, trajectory_text_from_planar, write_map};
 use trundle_runtime::Mission;
-use trundle_viz::{Card, Chart, Color, Figure, RunReport, Table, Verdict};
+use trundle_viz::{Card, Chart, Color, Figure, RunMap, RunReport, Table, Verdict};
 
 /// What a run's folder holds.
 pub struct RunOutput {
@@ -39,7 +39,7 @@ pub fn write_run(
     folder.write("trajectory.txt", trajectory_text_from_planar(&run.log.estimates).as_bytes())?;
     folder.write("groundtruth.txt", trajectory_text_from_planar(&run.log.truths).as_bytes())?;
     let report = report(setup, run, &numbers);
-    folder.write("map.png", &report.map_png())?;
+    folder.write("map.png", &report.map.to_png())?;
     folder.write("report.html", report.to_html().as_bytes())?;
     folder.write("timing.html", timing_page::html(run, &numbers, timing).as_bytes())?;
     folder.write("summary.json", numbers.summary(setup, run, timing).to_json().as_bytes())?;
@@ -63,16 +63,18 @@ fn report(setup: &RunSetup, run: &FinishedRun, numbers: &RunNumbers) -> RunRepor
         ),
         verdict: Some(if numbers.is_success() { Verdict::Ok(verdict) } else { Verdict::Failed(verdict) }),
         cards: cards(numbers),
-        grid: Some(robot.grid().clone()),
-        landmarks: landmarks_in_map(robot),
-        way_points: plan.map(|plan| plan.waypoints.points().to_vec()).unwrap_or_default(),
-        curve: curve.unwrap_or_default(),
-        estimated_path: run.log.estimates.iter().map(|(_, pose)| *pose).collect(),
-        true_path: run.log.truths.iter().map(|(_, pose)| *pose).collect(),
-        start: Some(Pose2::IDENTITY),
-        goal: setup.last_goal(),
-        footprint: Footprint::disc(setup.robot.footprint_radius).ok(),
-        scan: robot.scan().map(|scan| (pose, scan.clone())),
+        map: RunMap {
+            grid: Some(robot.grid().clone()),
+            landmarks: landmarks_in_map(robot),
+            way_points: plan.map(|plan| plan.waypoints.points().to_vec()).unwrap_or_default(),
+            curve: curve.unwrap_or_default(),
+            estimated_path: run.log.estimates.iter().map(|(_, pose)| *pose).collect(),
+            true_path: run.log.truths.iter().map(|(_, pose)| *pose).collect(),
+            start: Some(Pose2::IDENTITY),
+            goal: setup.last_goal(),
+            footprint: Footprint::disc(setup.robot.footprint_radius).ok(),
+            scan: robot.scan().map(|scan| (pose, scan.clone())),
+        },
         camera: image.as_ref().map(|image| camera_view(image, &run.view.features)),
         depth: image.as_ref().map(|image| image.depth().clone()),
         charts: vec![error_chart(run), speed_chart(run)],

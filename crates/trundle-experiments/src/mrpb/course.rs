@@ -50,6 +50,13 @@ pub fn read(folder: &Path) -> Result<Vec<Course>, AppError> {
 }
 
 impl Course {
+    /// A course on the open floor, for tests.
+    #[cfg(test)]
+    pub fn between(scenario: &str, start: Pose2, goal: Pose2) -> Self {
+        let (scenario, map) = (scenario.to_owned(), OPEN.to_owned());
+        Self { scenario, map, test: 1, start, goal, people: Vec::new() }
+    }
+
     /// Scenario, number, and whether people are there.
     pub fn name(&self) -> String {
         let with = if self.people.is_empty() { "" } else { ", with people" };

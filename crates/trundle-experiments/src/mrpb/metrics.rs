@@ -5,39 +5,39 @@ use crate::laser_run::{LaserRun, Moment};
 /// The benchmark's metrics of one run (Wen et al., MRPB 1.0, IROS 2021), in four groups.
 #[derive(Debug, Clone, Copy)]
 pub struct Metrics {
-    /// Safety: the least distance from an obstacle, m.
-    pub least_room: f64,
-    /// Safety: the part of the time spent nearer to one than [`NEAR`], 0 to 1.
+    /// Safety: minimum clearance, m.
+    pub min_clearance: f64,
+    /// Safety: the part of the time spent nearer to an obstacle than [`NEAR_OBSTACLE_M`], 0 to 1.
     pub time_near: f64,
-    /// Efficiency: from start to goal, s.
+    /// Efficiency: time from start to goal, s.
     pub time: f64,
-    /// Efficiency: the way driven, m.
+    /// Efficiency: distance driven, m.
     pub length: f64,
     /// Smoothness of the path: mean square of the second difference of the position, m^2.
     pub path_roughness: f64,
     /// Smoothness of the speed: mean change of the commanded speed over time, m/s^2.
     pub speed_roughness: f64,
-    /// Computation: a control cycle (odometry, supervision, planning, control, safety), processor time, ms: mean, median, 99th percentile, most.
+    /// Computation: a control cycle (odometry, supervision, planning, control, safety), processor time, ms: mean, median, 99th percentile, maximum.
     pub cycle_ms: [f64; 4],
 }
 
-/// Nearer than this to an obstacle is dangerous, m (ours).
-pub const NEAR: f64 = 0.1;
-/// Smoothness is measured on every second moment: 25 a second.
-const STRIDE: usize = 2;
+/// Clearance below which the robot counts as near an obstacle \[m\]. Source: ours.
+pub const NEAR_OBSTACLE_M: f64 = 0.1;
+/// Smoothness uses every second moment: 25 Hz of 50 Hz. Source: MRPB 1.0.
+const SMOOTHNESS_STRIDE: usize = 2;
 
 impl Metrics {
-    /// Of a run that has ended.
+    /// The metrics of a finished run.
     pub fn of(run: &LaserRun) -> Self {
-        let thin: Vec<&Moment> = run.moments.iter().step_by(STRIDE).collect();
+        let thin: Vec<&Moment> = run.moments.iter().step_by(SMOOTHNESS_STRIDE).collect();
         let second = |m: &[&Moment]| {
             let (a, b, c) = (m[0].pose.position(), m[1].pose.position(), m[2].pose.position());
             (c - b - (b - a)).norm_squared()
         };
         let change = |m: &[&Moment]| (m[1].twist.v - m[0].twist.v).abs() / (m[1].time - m[0].time).max(1e-9);
-        let near = run.moments.iter().filter(|m| m.clearance < NEAR).count();
+        let near = run.moments.iter().filter(|m| m.clearance < NEAR_OBSTACLE_M).count();
         Self {
-            least_room: run.moments.iter().map(|m| m.clearance).fold(f64::INFINITY, f64::min),
+            min_clearance: run.moments.iter().map(|m| m.clearance).fold(f64::INFINITY, f64::min),
             time_near: near as f64 / run.moments.len() as f64,
             time: run.end().time,
             length: run.path_length(),

@@ -1,6 +1,6 @@
 //! Parser of one line of a CARMEN log.
 
-use crate::{files::excerpt, parse_stamp};
+use crate::{excerpt::excerpt, parse_stamp};
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::str::SplitAsciiWhitespace;
 use trundle_core::{Pose2, Stamp};

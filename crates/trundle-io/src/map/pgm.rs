@@ -1,7 +1,7 @@
 //! Parser of PGM pictures, the cells of a map_server map.
 
 use crate::IoError;
-use crate::files::excerpt;
+use crate::excerpt::excerpt;
 use std::path::Path;
 
 /// Most pixels of a map: 2^28, 819 m a side at 5 cm.

@@ -1,7 +1,8 @@
 //! Parser of the image lists `rgb.txt` and `depth.txt` of a TUM folder.
 
 use crate::IoError;
-use crate::files::{content_lines, excerpt};
+use crate::excerpt::excerpt;
+use crate::files::content_lines;
 use std::path::{Path, PathBuf};
 use trundle_core::Stamp;
 

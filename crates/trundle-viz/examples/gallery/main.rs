@@ -7,8 +7,8 @@ mod room;
 use std::{env, fs, io, path::Path};
 use trundle_core::{Footprint, Pose2, Vector2, Vector3};
 use trundle_viz::{
-    CameraView, Card, Color, LineStyle, MapPicture, PlanScene, RunReport, Table, Verdict, depth_picture,
-    feature_picture, plan_picture, trajectory_picture,
+    CameraView, Card, Color, LineStyle, MapPicture, PlanScene, RunMap, RunReport, Table, Verdict,
+    depth_picture, feature_picture, plan_picture, trajectory_picture,
 };
 
 fn main() -> io::Result<()> {
@@ -19,7 +19,7 @@ fn main() -> io::Result<()> {
     let view = camera::view();
     let save = |name: &str, bytes: &[u8]| fs::write(folder.join(name), bytes);
     save("report.html", run.to_html().as_bytes())?;
-    save("map.png", &run.map_png())?;
+    save("map.png", &run.map.to_png())?;
     save("plan.png", &plan())?;
     save("trajectory.png", &trajectory())?;
     save("features.png", &feature_picture(&view.color, &view.features))?;
@@ -46,21 +46,23 @@ fn run_report() -> RunReport {
             Card::new("time to the goal", "21.4").unit("s"),
             Card::new("worst pose error", "6.2").unit("cm").remark("limit 5 cm").good(false),
         ],
-        grid: Some(room::grid()),
-        landmarks: room::landmarks(),
-        way_points: room::curve().iter().copied().step_by(24).collect(),
-        curve: room::curve(),
-        start: Some(estimate[0]),
-        goal: Some(Pose2::new(end.x + 0.015, end.y - 0.01, end.theta + 0.01)),
-        footprint: Some(Footprint::KOBUKI),
-        scan: Some((end, room::scan(end))),
+        map: RunMap {
+            grid: Some(room::grid()),
+            landmarks: room::landmarks(),
+            way_points: room::curve().iter().copied().step_by(24).collect(),
+            curve: room::curve(),
+            start: Some(estimate[0]),
+            goal: Some(Pose2::new(end.x + 0.015, end.y - 0.01, end.theta + 0.01)),
+            footprint: Some(Footprint::KOBUKI),
+            scan: Some((end, room::scan(end))),
+            estimated_path: estimate.clone(),
+            true_path: truth.clone(),
+        },
         camera: Some(CameraView { ..camera::view() }),
         depth: Some(camera::depth()),
         figures: Vec::new(),
         charts: charts::all(&estimate, &truth),
         tables: tables(),
-        estimated_path: estimate,
-        true_path: truth,
     }
 }
 

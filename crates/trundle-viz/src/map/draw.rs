@@ -5,8 +5,8 @@ use super::view::View;
 use crate::canvas::{Canvas, Pen};
 use crate::clip::{Px, visible_runs};
 use crate::color::Color;
-use crate::legend::wedge;
 use crate::text::{TextStyle, cap_height, text_width};
+use crate::wedge::wedge;
 use trundle_core::{Footprint, Pose2, Vector2};
 
 pub(super) fn draw_line(canvas: &mut Canvas, view: &View, points: &[Vector2], style: &LineStyle) {

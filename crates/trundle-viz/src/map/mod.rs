@@ -3,6 +3,7 @@
 mod arrow;
 mod badge;
 mod bounds;
+mod cell_box;
 mod cells;
 mod draw;
 mod frame;
@@ -20,7 +21,8 @@ use crate::canvas::Canvas;
 use crate::color::Color;
 use crate::legend::{LegendItem, Mark, paint_legend};
 use bounds::Bounds;
-use cells::{CellBox, paint_cells};
+use cell_box::CellBox;
+use cells::paint_cells;
 use frame::{paint_frame, paint_lattice};
 use layer::{Layer, Shape};
 use shade::{Paint, Shade};

@@ -1,7 +1,7 @@
 //! The view of a plot: conversion between metres of the map frame and pixels.
 
 use super::bounds::Bounds;
-use super::cells::CellBox;
+use super::cell_box::CellBox;
 use crate::clip::Px;
 use trundle_core::{GridGeometry, Vector2};
 

@@ -1,0 +1,72 @@
+//! The commands of `trundle`.
+
+use crate::demo::DemoArgs;
+use crate::dock::DockArgs;
+use crate::eval::EvalArgs;
+use crate::experiment::ExperimentArgs;
+use crate::map::MapArgs;
+use crate::plan::PlanArgs;
+use crate::replay::ReplayArgs;
+use crate::robot_file::ConfigArgs;
+use crate::sim::SimArgs;
+use crate::slam::SlamArgs;
+use crate::vocabulary::VocabularyArgs;
+use clap::{Parser, Subcommand};
+
+/// Autonomy for a two-wheeled indoor robot with one RGB-D camera.
+#[derive(Debug, Parser)]
+#[command(name = "trundle", version, about, arg_required_else_help = true)]
+pub struct Cli {
+    /// Log state changes and pose corrections; twice (-vv): everything. TRUNDLE_LOG=trundle_runtime=debug filters by crate.
+    #[arg(long, short, global = true, action = clap::ArgAction::Count)]
+    pub verbose: u8,
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// The commands.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Drive through a simulated room on camera, wheels and gyro alone.
+    Demo(DemoArgs),
+    /// Run the robot again on a recording: same recording, same bytes.
+    Replay(ReplayArgs),
+    /// Track a recorded RGB-D sequence and draw its map.
+    Slam(SlamArgs),
+    /// Draw the map of a laser log, a ROS 2 bag or an RGB-D folder.
+    Map(MapArgs),
+    /// Judge a trajectory or a map against the truth.
+    Eval(EvalArgs),
+    /// Plan on a map: way-points, curve and trajectory.
+    Plan(PlanArgs),
+    /// Drive a simulated robot through a scene and record its sensors.
+    Sim(SimArgs),
+    /// Plan a manoeuvre of turns and straight moves onto a goal in a tight place.
+    Dock(DockArgs),
+    /// The papers' experiments, each with its table and pictures.
+    Experiment(ExperimentArgs),
+    /// Train, inspect and exchange the visual vocabulary by which places are recognised.
+    Vocabulary(VocabularyArgs),
+    /// Print the whole robot file with its defaults, or check one.
+    Config(ConfigArgs),
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_command_line_is_consistent() {
+        Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn every_help_fits_a_screen() {
+        for command in Cli::command().get_subcommands_mut() {
+            let lines = command.render_help().to_string().lines().count();
+            assert!(lines <= 40, "{} has {lines} lines of help", command.get_name());
+        }
+    }
+}

@@ -1,0 +1,111 @@
+//! Arguments that several commands take: quiet, threads, robot file, poses, up axis.
+
+use clap::{Args, ValueEnum};
+use std::path::PathBuf;
+use std::str::FromStr;
+use trundle::app::{AppError, load_robot};
+use trundle::core::Pose2;
+use trundle::runtime::RobotConfig;
+use trundle::sim::import::UpAxis;
+
+/// What every command takes.
+#[derive(Debug, Clone, Args)]
+pub struct Common {
+    /// Print nothing but warnings and errors: no progress, no table.
+    #[arg(long, short)]
+    pub quiet: bool,
+    /// Threads to use; the results are the same for any number [default: one a core]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=256))]
+    pub threads: Option<u16>,
+}
+
+/// What every command that has a robot takes.
+#[derive(Debug, Clone, Args)]
+pub struct RobotArgs {
+    /// Robot file (see `trundle config`).
+    #[arg(long, value_name = "FILE")]
+    pub config: Option<PathBuf>,
+    /// Set one key on top of the robot file, as `--set control.settling.speed_m_s=0.2`; may be given again.
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub set: Vec<String>,
+}
+
+impl RobotArgs {
+    /// The robot: the file's or the default one, with the keys set on top.
+    ///
+    /// # Errors
+    /// Names the file or the key, and what is wrong with it.
+    pub fn robot(&self) -> Result<RobotConfig, AppError> {
+        load_robot(self.config.as_deref(), &self.set)
+    }
+
+    /// The robot where a file or a key is given, else nothing.
+    ///
+    /// # Errors
+    /// As [`RobotArgs::robot`].
+    pub fn robot_if_given(&self) -> Result<Option<RobotConfig>, AppError> {
+        if self.config.is_none() && self.set.is_empty() { Ok(None) } else { self.robot().map(Some) }
+    }
+}
+
+/// A pose on the command line: `X,Y,DEG`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PoseArg(pub Pose2);
+
+impl FromStr for PoseArg {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let parts: Vec<&str> = text.split(',').collect();
+        let [x, y, degrees] = parts[..] else {
+            return Err(format!("{} numbers, expected 3: X,Y,DEG (m, m, deg)", parts.len()));
+        };
+        let x = coordinate("X", x, "m", 1e6)?;
+        let y = coordinate("Y", y, "m", 1e6)?;
+        let degrees = coordinate("DEG", degrees, "deg", 1e6)?;
+        Ok(Self(Pose2::new(x, y, degrees.to_radians())))
+    }
+}
+
+/// The axis of a file that points up.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum UpArg {
+    /// As glTF has it.
+    Y,
+    /// As robots have it.
+    Z,
+}
+
+impl UpArg {
+    /// The axis.
+    pub fn axis(self) -> UpAxis {
+        match self {
+            Self::Y => UpAxis::Y,
+            Self::Z => UpAxis::Z,
+        }
+    }
+}
+
+fn coordinate(name: &str, text: &str, unit: &str, limit: f64) -> Result<f64, String> {
+    let value: f64 =
+        text.trim().parse().map_err(|_| format!("{name} is '{text}', expected a number in {unit}"))?;
+    if value.abs() <= limit {
+        Ok(value)
+    } else {
+        Err(format!("{name} is {value} {unit}, expected a number between -{limit} and {limit}"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn poses_are_three_finite_numbers() {
+        let pose: PoseArg = "1.5,-2,90".parse().unwrap();
+        assert_eq!(pose.0, Pose2::new(1.5, -2.0, std::f64::consts::FRAC_PI_2));
+        assert!("1,2".parse::<PoseArg>().unwrap_err().contains("expected 3"));
+        assert!("NaN,2,3".parse::<PoseArg>().unwrap_err().contains("X is NaN m"));
+        assert!("1,2,east".parse::<PoseArg>().unwrap_err().contains("DEG is 'east'"));
+    }
+}

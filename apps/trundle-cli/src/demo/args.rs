@@ -1,0 +1,76 @@
+//! The command line of `trundle demo`.
+
+use crate::common_args::{Common, PoseArg, RobotArgs, UpArg};
+use clap::Args;
+use std::path::PathBuf;
+
+/// `trundle demo`
+#[derive(Debug, Args)]
+#[command(after_help = "Example: trundle demo --seed 3 --direct --out out/demo3\n\n\
+    Exit code: 0 goal reached and nothing touched, 1 otherwise, 2 bad input.")]
+pub struct DemoArgs {
+    /// Seed of the room's furniture and textures and of all noise.
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub seed: u64,
+    /// The room: a built-in scene (`trundle sim --list`), a scene file, a .glb or .gltf, or a map (.yaml) raised to walls.
+    #[arg(long, value_name = "SCENE", default_value = "demo")]
+    pub scene: String,
+    /// Where the robot starts in the room: m, m, deg [default: the room's own]
+    #[arg(long, value_name = "X,Y,DEG", allow_hyphen_values = true)]
+    pub start: Option<PoseArg>,
+    /// The axis that points up in a .glb or .gltf.
+    #[arg(long, value_enum, value_name = "AXIS", default_value_t = UpArg::Y)]
+    pub up: UpArg,
+    /// Goal in the map frame, which starts at the robot: m, m, deg; may be said again for the next one [default: the room's own]
+    #[arg(long, value_name = "X,Y,DEG", allow_hyphen_values = true)]
+    pub goal: Vec<PoseArg>,
+    /// Drive straight to the goal: the map is drawn on the way [default: explore until the map is complete, do the goals, come back]
+    #[arg(long)]
+    pub direct: bool,
+    /// By the clock on the wall: simulator and robot in threads of their own, camera at 30 Hz; Ctrl-C stops the robot and ends the run.
+    #[arg(long)]
+    pub real_time: bool,
+    /// Write the robot's maps and the state of its mission to FILE, every 3 to 10 s: `--resume` goes on from there.
+    #[arg(long, value_name = "FILE", alias = "memory")]
+    pub checkpoint: Option<PathBuf>,
+    /// Resume from the file of --checkpoint, standing here in the room (m, m, deg): the robot localizes itself in its maps and goes on
+    /// with its mission. The map's frame stays that of --start.
+    #[arg(long, value_name = "X,Y,DEG", alias = "wake", allow_hyphen_values = true, requires = "checkpoint", conflicts_with_all = ["goal", "direct"])]
+    pub resume: Option<PoseArg>,
+    /// What breaks, and when: a TOML file as for `trundle sim --faults`.
+    #[arg(long, value_name = "FILE")]
+    pub faults: Option<PathBuf>,
+    /// Give the run up after this much of the robot's time, s [default: 600 a goal, 1800 for exploring]
+    #[arg(long, value_name = "S", value_parser = positive_seconds)]
+    pub time_limit: Option<f64>,
+    /// The robot's settings.
+    #[command(flatten)]
+    pub robot: RobotArgs,
+    /// Folder for the results.
+    #[arg(long, value_name = "DIR", default_value = "out/demo")]
+    pub out: PathBuf,
+    /// What every command takes.
+    #[command(flatten)]
+    pub common: Common,
+}
+
+/// A time span on the command line: a finite number of seconds above 0.
+fn positive_seconds(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(seconds) if seconds > 0.0 && seconds.is_finite() => Ok(seconds),
+        _ => Err("expected a finite number of seconds above 0".to_owned()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_time_limit_is_a_finite_number_above_zero() {
+        assert_eq!(positive_seconds("2.5"), Ok(2.5));
+        for wrong in ["0", "-1", "inf", "NaN", "soon"] {
+            assert!(positive_seconds(wrong).is_err(), "{wrong}");
+        }
+    }
+}

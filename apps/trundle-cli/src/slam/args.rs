@@ -1,0 +1,57 @@
+//! The command line of `trundle slam`.
+
+use crate::common_args::Common;
+use clap::Args;
+use std::path::PathBuf;
+
+/// `trundle slam`
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Example: trundle slam ../shared/data/tum_fr1_rpy_400 --height 1.57 --tilt 33 --roll=-37"
+)]
+pub struct SlamArgs {
+    /// A TUM RGB-D folder: rgb.txt, depth.txt, optional groundtruth.txt and odometry.txt.
+    pub dir: PathBuf,
+    /// Preset freiburg1, freiburg2, freiburg3, kinect_v2, or a TOML file [default: DIR/camera.toml, else freiburg1]
+    #[arg(long, value_name = "PRESET|FILE")]
+    pub camera: Option<String>,
+    /// Depth units a metre [default: the camera's]
+    #[arg(long, value_name = "N")]
+    pub depth_scale: Option<f64>,
+    /// Stop after this many frames.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub frames: Option<u32>,
+    /// Height of the first camera above the floor, m, for the map.
+    #[arg(long, value_name = "M", default_value_t = 1.0)]
+    pub height: f64,
+    /// Downward tilt of the first camera, deg, for the map.
+    #[arg(long, value_name = "DEG", default_value_t = 0.0, allow_hyphen_values = true)]
+    pub tilt: f64,
+    /// Roll of the first camera to its right, deg, for the map.
+    #[arg(long, value_name = "DEG", default_value_t = 0.0, allow_hyphen_values = true)]
+    pub roll: f64,
+    /// Begin with the visual map of an earlier run (its visual.map): the camera is localized in it
+    #[arg(long, value_name = "FILE")]
+    pub map: Option<PathBuf>,
+    /// Only locate the camera in the map given: it stays as it is
+    #[arg(long, requires = "map")]
+    pub localise: bool,
+    /// Seed of the random sampling.
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub seed: u64,
+    /// Folder for the results.
+    #[arg(long, value_name = "DIR", default_value = "out/slam")]
+    pub out: PathBuf,
+    /// What every command takes.
+    #[command(flatten)]
+    pub common: Common,
+}
+
+impl SlamArgs {
+    /// The camera that was asked for, else the sequence's own, else freiburg1.
+    pub fn camera(&self) -> String {
+        let own = self.dir.join("camera.toml");
+        let brought = || own.exists().then(|| own.display().to_string());
+        self.camera.clone().or_else(brought).unwrap_or_else(|| "freiburg1".to_owned())
+    }
+}

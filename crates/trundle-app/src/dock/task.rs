@@ -1,0 +1,154 @@
+//! What is to be planned: footprint, start, goal and the obstacles of a map, a scan or a list.
+
+use crate::AppError;
+use std::path::Path;
+use trundle_core::{Footprint, Invalid, OccupancyGrid, Pose2};
+use trundle_docking::corridor::{Problem, Scenario, parse, write};
+use trundle_docking::{DockingConfig, Obstacle, ObstacleScene};
+use trundle_io::{LaserLogOptions, read_carmen, read_map};
+
+/// A docking task.
+pub struct DockingTask {
+    /// Its name, for the summary.
+    pub name: String,
+    /// The robot's outline.
+    pub footprint: Footprint,
+    /// `map_from_base` at the start.
+    pub start: Pose2,
+    /// `map_from_base` at the goal.
+    pub goal: Pose2,
+    /// The obstacles, for the planner.
+    pub scene: ObstacleScene,
+    /// The map, where the obstacles are a map's.
+    pub grid: Option<OccupancyGrid>,
+    /// The list, where the obstacles are a list's.
+    pub problem: Option<Problem>,
+}
+
+impl DockingTask {
+    /// A task on a map file, between two poses on it. `unknown_is_free`: whether unknown cells are no obstacles.
+    ///
+    /// # Errors
+    /// When the map cannot be read, or start or goal is off the map.
+    pub fn on_map(
+        file: &Path,
+        footprint: Footprint,
+        (start, goal): (Pose2, Pose2),
+        config: &DockingConfig,
+        unknown_is_free: bool,
+    ) -> Result<Self, AppError> {
+        let grid = read_map(file)?;
+        for (name, pose) in [("start", start), ("goal", goal)] {
+            if grid.geometry().cell_at(pose.position()).is_none() {
+                let (file, Pose2 { x, y, .. }) = (file.display(), pose);
+                return Err(AppError::Input(format!("{file}: the {name} ({x:.2}, {y:.2}) m is off the map")));
+            }
+        }
+        let (center, half) = config.view(&footprint, &start, &goal);
+        let scene = ObstacleScene::from_grid(&grid, center, half, !unknown_is_free);
+        let name = file.display().to_string();
+        Ok(Self { name, footprint, start, goal, scene, grid: Some(grid), problem: None })
+    }
+
+    /// A task among the obstacles of a list, with the list's footprint, start and goal.
+    ///
+    /// # Errors
+    /// When the obstacles cannot be accepted.
+    pub fn of_problem(problem: Problem) -> Result<Self, Invalid> {
+        Ok(Self {
+            name: problem.name.clone(),
+            footprint: problem.footprint.clone(),
+            start: problem.start,
+            goal: problem.goal,
+            scene: problem.scene()?,
+            grid: None,
+            problem: Some(problem),
+        })
+    }
+
+    /// The task as the text of a file of problems; the obstacles of a map become walls.
+    #[must_use]
+    pub fn to_text(&self) -> String {
+        let walls =
+            || self.scene.pieces().iter().map(|p| Obstacle::Segment(p.segment.a, p.segment.b)).collect();
+        let obstacles = self.problem.as_ref().map_or_else(walls, |problem| problem.obstacles.clone());
+        let (name, footprint) = (self.name.clone(), self.footprint.clone());
+        write(&[Problem { name, footprint, start: self.start, goal: self.goal, obstacles }])
+    }
+}
+
+/// The built-in problem of this name.
+#[must_use]
+pub fn built_in_problem(name: &Path) -> Option<Problem> {
+    Scenario::ALL.map(Scenario::problem).into_iter().find(|problem| name == Path::new(&problem.name))
+}
+
+/// The problem among the points of one scan of a CARMEN log, in the frame of the robot that made it. `number` counts from 1; `None`
+/// for the last scan.
+///
+/// # Errors
+/// When the log cannot be read or has no such scan.
+pub fn scan_problem(
+    file: &Path,
+    number: Option<usize>,
+    footprint: Footprint,
+    goal: Pose2,
+) -> Result<Problem, AppError> {
+    let log = read_carmen(file, &LaserLogOptions::default())?;
+    let count = log.scans.len();
+    let number = number.unwrap_or(count);
+    let scan = number.checked_sub(1).and_then(|i| log.scans.get(i));
+    let scan = scan.ok_or_else(|| in_file(file, &format!("it has no scan {number}, only 1 to {count}")))?;
+    Ok(Problem {
+        name: format!("scan-{number}"),
+        footprint,
+        start: Pose2::default(),
+        goal,
+        obstacles: scan.scan.hits().map(Obstacle::Point).collect(),
+    })
+}
+
+/// The problem of this name in a file of problems; `None` for the first.
+///
+/// # Errors
+/// When the file cannot be read or has no such problem.
+pub fn file_problem(file: &Path, name: Option<&str>) -> Result<Problem, AppError> {
+    let text =
+        std::fs::read_to_string(file).map_err(|error| in_file(file, &format!("cannot read it: {error}")))?;
+    let mut problems = parse(&text).map_err(|invalid| in_file(file, &invalid))?.into_iter();
+    let chosen = match name {
+        Some(name) => problems.find(|problem| problem.name == name),
+        None => problems.next(),
+    };
+    chosen.ok_or_else(|| match name {
+        Some(name) => in_file(file, &format!("it has no problem '{name}'")),
+        None => in_file(file, &"it has no problem"),
+    })
+}
+
+fn in_file(file: &Path, problem: &dyn std::fmt::Display) -> AppError {
+    AppError::Input(format!("{}: {problem}", file.display()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_task_is_the_same_after_writing_and_reading() {
+        let task = DockingTask::of_problem(built_in_problem(Path::new("hong24-a")).unwrap()).unwrap();
+        let scratch = tempfile::tempdir().unwrap();
+        let file = scratch.path().join("problem.txt");
+        std::fs::write(&file, task.to_text()).unwrap();
+        let read = DockingTask::of_problem(file_problem(&file, Some("hong24-a")).unwrap()).unwrap();
+        assert_eq!((read.start, read.goal), (task.start, task.goal));
+        assert_eq!(read.scene.pieces().len(), task.scene.pieces().len());
+        assert!(file_problem(&file, Some("other")).unwrap_err().to_string().contains("no problem 'other'"));
+    }
+
+    #[test]
+    fn only_known_names_are_built_in() {
+        assert!(built_in_problem(Path::new("hong24-d")).is_some());
+        assert!(built_in_problem(Path::new("hong24-e")).is_none());
+    }
+}

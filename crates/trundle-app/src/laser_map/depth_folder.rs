@@ -1,0 +1,153 @@
+//! The depth images of a TUM RGB-D folder as scans, with the base's poses beside them.
+
+use super::depth_scanner::depth_scanner;
+use crate::{AppError, StepProgress};
+use std::path::Path;
+use trundle_core::{Pose2, Pose3, Stamp, Vector3};
+use trundle_io::{LaserLog, LaserLogScan, LaserLogSkip, TumSequence, read_trajectory};
+use trundle_mapping::DepthScanner;
+use trundle_runtime::RobotConfig;
+
+/// Time between two scans \[s\]; images that come sooner make no scan. A little under 1 / 5 Hz. Source: ours.
+const MIN_SCAN_PERIOD_S: f64 = 0.19;
+/// Time between two poses that are interpolated \[s\]. Across a longer gap the pose is unknown. Source: ours.
+const MAX_POSE_GAP_S: f64 = 1.0;
+/// Time after the last pose for which that pose still counts \[s\]. Later the pose is unknown. Source: ours.
+const MAX_POSE_AGE_S: f64 = 0.1;
+/// Distance of a camera pose from the first \[m\]. Beyond it the file is refused. Source: ours.
+const MAX_POSE_DISTANCE_M: f64 = 1e6;
+/// Angle between the optical axis and the vertical \[deg\]. Below it the camera has no heading. Source: ours.
+const MIN_AXIS_TILT_DEG: f64 = 20.0;
+
+/// The scans of a TUM RGB-D folder at 5 Hz.
+///
+/// The motion is `tracked`, a TUM trajectory of the camera, or `odometry.txt`, both with the camera mounted as on the default
+/// robot; else `groundtruth.txt`, whose frame must be level with the floor at z = 0, and each image is cut under the tilt and
+/// height that its pose says.
+pub fn read(dir: &Path, tracked: Option<&Path>, progress: &dyn StepProgress) -> Result<LaserLog, AppError> {
+    let (mut scanner, model) = depth_scanner(dir)?;
+    let camera = model.camera;
+    let sequence = TumSequence::open(dir, model.depth_scale, TumSequence::MAX_DIFFERENCE)?
+        .with_size(camera.width(), camera.height());
+    let tracked = tracked.map(base_poses).transpose()?;
+    let poses = match &tracked {
+        Some(poses) => Poses::Base(poses),
+        None => Poses::of(dir, &sequence)?,
+    };
+    let (mut log, mut last) = (LaserLog::default(), None);
+    log.max_range = Some(RobotConfig::default().scan.max_range);
+    progress.begin(Some(sequence.len()));
+    for i in 0..sequence.len() {
+        progress.advance();
+        let stamp = sequence.stamp(i);
+        if last.is_some_and(|last| stamp - last < MIN_SCAN_PERIOD_S) {
+            continue;
+        }
+        match scan(&sequence, i, &poses, &mut scanner) {
+            Ok(scan) => {
+                log.odometry.push((stamp, scan.odom_from_base));
+                log.scans.push(scan);
+                last = Some(stamp);
+            }
+            Err(problem) => log.skipped.push(LaserLogSkip { line: i + 1, problem }),
+        }
+    }
+    progress.end();
+    match log.skipped.first() {
+        Some(first) if log.scans.is_empty() => {
+            Err(AppError::Input(format!("{}: no frame can be used; {}", dir.display(), first.problem)))
+        }
+        _ => Ok(log),
+    }
+}
+
+fn scan(
+    sequence: &TumSequence,
+    i: usize,
+    poses: &Poses<'_>,
+    scanner: &mut DepthScanner,
+) -> Result<LaserLogScan, String> {
+    let stamp = sequence.stamp(i);
+    let (odom_from_base, base_from_camera) = poses
+        .at(stamp)
+        .ok_or_else(|| format!("frame {i}: no pose about {stamp} s, or one that looks up or down"))?;
+    if let Some(mount) = base_from_camera {
+        scanner.remount(mount).map_err(|invalid| format!("frame {i}: {invalid}"))?;
+    }
+    let image = sequence.load(i).map_err(|error| error.to_string())?;
+    Ok(LaserLogScan { odom_from_base, scan: scanner.scan(&image) })
+}
+
+/// The source of the base's poses.
+enum Poses<'a> {
+    /// odom_from_base.
+    Base(&'a [(Stamp, Pose2)]),
+    /// level_from_camera.
+    Camera(&'a [(Stamp, Pose3)]),
+}
+
+impl<'a> Poses<'a> {
+    fn of(dir: &Path, sequence: &'a TumSequence) -> Result<Self, AppError> {
+        match (sequence.odometry(), sequence.ground_truth()) {
+            (Some(odometry), _) => Ok(Self::Base(odometry)),
+            (None, Some(camera)) => Ok(Self::Camera(camera)),
+            (None, None) => Err(AppError::Input(format!(
+                "{}: neither odometry.txt nor groundtruth.txt, expected poses for a map",
+                dir.display()
+            ))),
+        }
+    }
+
+    /// The base at a time, and the camera's mount where it changes.
+    fn at(&self, stamp: Stamp) -> Option<(Pose2, Option<Pose3>)> {
+        match self {
+            Self::Base(poses) => {
+                let (a, b, part) = about(poses, stamp)?;
+                Some((a.interpolate(&b, part), None))
+            }
+            Self::Camera(poses) => {
+                let (a, b, part) = about(poses, stamp)?;
+                let camera = a.interpolate(&b, part);
+                let base = base_below(&camera)?;
+                Some((base, Some(Pose3::from_pose2(base).inverse() * camera)))
+            }
+        }
+    }
+}
+
+/// The base's trajectory from a TUM trajectory of the camera in any frame, relative to the first pose, projected onto the floor.
+fn base_poses(file: &Path) -> Result<Vec<(Stamp, Pose2)>, AppError> {
+    let camera = read_trajectory(file)?;
+    let Some((_, first)) = camera.first() else {
+        return Err(AppError::Input(format!("{}: no pose, expected those of the camera", file.display())));
+    };
+    let is_far = |pose: &Pose3| pose.translation.norm() > MAX_POSE_DISTANCE_M;
+    if let Some((stamp, pose)) = camera.iter().find(|(_, pose)| is_far(pose)) {
+        let (file, off) = (file.display(), pose.translation.norm());
+        let problem =
+            format!("{file}: the pose at {stamp} s is {off} m off, expected at most {MAX_POSE_DISTANCE_M} m");
+        return Err(AppError::Input(problem));
+    }
+    let base_from_camera = RobotConfig::default().mount.base_from_camera();
+    let (first_from_frame, camera_from_base) = (first.inverse(), base_from_camera.inverse());
+    let base = |pose: &Pose3| (base_from_camera * first_from_frame * *pose * camera_from_base).to_pose2();
+    Ok(camera.iter().map(|(stamp, pose)| (*stamp, base(pose))).collect())
+}
+
+/// The poses before and after a time, and its share of the time between them.
+fn about<T: Copy>(poses: &[(Stamp, T)], stamp: Stamp) -> Option<(T, T, f64)> {
+    let after = poses.partition_point(|(at, _)| *at <= stamp);
+    let (t0, a) = *poses.get(after.checked_sub(1)?)?;
+    match poses.get(after) {
+        Some((t1, b)) if *t1 - t0 <= MAX_POSE_GAP_S => Some((a, *b, (stamp - t0) / (*t1 - t0))),
+        _ => (stamp - t0 < MAX_POSE_AGE_S).then_some((a, a, 0.0)),
+    }
+}
+
+/// A base under the camera, its heading that of the optical axis; `None` where the axis is nearly vertical.
+fn base_below(level_from_camera: &Pose3) -> Option<Pose2> {
+    let axis = level_from_camera.rotate(Vector3::z());
+    let at = level_from_camera.translation;
+    (axis.x.hypot(axis.y) > MIN_AXIS_TILT_DEG.to_radians().sin())
+        .then(|| Pose2::new(at.x, at.y, axis.y.atan2(axis.x)))
+}

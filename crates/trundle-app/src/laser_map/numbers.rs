@@ -1,0 +1,84 @@
+//! The numbers and the picture of a mapped log.
+
+use super::request::LaserMapRequest;
+use super::run_result::LaserMapRun;
+use std::fmt::Write;
+use trundle_core::{OccupancyGrid, Pose2, Stamp};
+use trundle_io::{LaserLog, Summary};
+use trundle_viz::{Color, LineStyle, MapPicture, PoseStyle};
+
+/// Share of the map's side below which start and end of a trajectory have one label in the picture. Source: ours.
+const MIN_LABEL_DISTANCE_SHARE: f64 = 0.12;
+
+/// The map with the trajectory and its ends. A PNG.
+pub fn map_picture(grid: &OccupancyGrid, poses: &[(Stamp, Pose2)]) -> Vec<u8> {
+    let path: Vec<_> = poses.iter().map(|(_, pose)| pose.position()).collect();
+    let picture = MapPicture::over(grid).polyline("path", &path, LineStyle::solid(Color::BLUE));
+    let (Some((_, start)), Some((_, end))) = (poses.first(), poses.last()) else { return picture.to_png() };
+    let (first, last) = (PoseStyle::named(Color::GREEN), PoseStyle::named(Color::VERMILLION));
+    // Two labels at one position would lie over each other.
+    let geometry = grid.geometry();
+    let side = geometry.width.max(geometry.height) as f64 * geometry.resolution;
+    if start.distance(end) < MIN_LABEL_DISTANCE_SHARE * side {
+        return picture.pose("start", *start, first.nameless()).pose("start and end", *end, last).to_png();
+    }
+    picture.pose("start", *start, first).pose("end", *end, last).to_png()
+}
+
+/// `t x y theta` lines: s, m, m, rad.
+#[must_use]
+pub fn trajectory_lines(trajectory: &[(Stamp, Pose2)]) -> String {
+    let mut text = String::new();
+    for (stamp, pose) in trajectory {
+        writeln!(text, "{stamp} {:.6} {:.6} {:.6}", pose.x, pose.y, pose.theta).expect("invariant: a String");
+    }
+    text
+}
+
+/// The table of a mapped log.
+#[must_use]
+pub fn map_rows(log: &LaserLog, run: &LaserMapRun) -> Vec<Vec<String>> {
+    let row = |name: &str, value: String| vec![name.to_owned(), value];
+    let counts = &run.counts;
+    vec![
+        row("scans", log.scans.len().to_string()),
+        row("ranges that are negative, zero, infinite or no number", log.bad_ranges.to_string()),
+        row("processed", counts.processed.to_string()),
+        row("odometry jumps", counts.jumps.to_string()),
+        row("steps where the odometry was not believed", counts.slips.to_string()),
+        row("scans without overlap with the map", counts.without_overlap.to_string()),
+        row("scans with a direction left to the odometry", counts.degenerate.to_string()),
+        row("scans while the pose was not known", counts.lost.to_string()),
+        row("resamplings", counts.resamplings.to_string()),
+        row("loop closures that corrected the trajectory", counts.corrections.to_string()),
+        row("memory of maps, scans and trajectories", format!("{:.1} MB", run.megabytes)),
+        row("time for a processed scan", format!("{:.2} ms", run.scan_ms())),
+    ]
+}
+
+/// `summary.json`.
+pub fn summary(request: &LaserMapRequest, log: &LaserLog, run: &LaserMapRun) -> Summary {
+    let mut summary = Summary::new("map");
+    let counts = &run.counts;
+    summary
+        .set("success", counts.processed > 0)
+        .set("log", request.log.display().to_string())
+        .set("particles", request.particles)
+        .set("seed", request.seed)
+        .set("scans", log.scans.len())
+        .set("processed", counts.processed)
+        .set("refused_scans", counts.refused)
+        .set("skipped_lines", log.skipped.len())
+        .set("bad_ranges", log.bad_ranges)
+        .set("max_range_m", log.max_range)
+        .set("odometry_jumps", counts.jumps)
+        .set("odometry_not_believed", counts.slips)
+        .set("scans_without_overlap", counts.without_overlap)
+        .set("degenerate_scans", counts.degenerate)
+        .set("lost_scans", counts.lost)
+        .set("resamplings", counts.resamplings)
+        .set("bending_loops", counts.corrections)
+        .set("memory_mb", run.megabytes)
+        .set("wall_clock", serde_json::json!({ "total_s": run.seconds, "processed_scan_ms": run.scan_ms() }));
+    summary
+}

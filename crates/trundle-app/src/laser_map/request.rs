@@ -1,0 +1,101 @@
+//! What a log is mapped with: filter, laser, a map to begin with.
+
+use super::depth_scanner::depth_scanner;
+use crate::AppError;
+use std::path::{Path, PathBuf};
+use trundle_io::{LaserLogOptions, read_map};
+use trundle_mapping::{
+    MapLocalizer, MapperConfig, MotionConfig, ParticleConfig, ParticleMapper, PosePriorConfig,
+};
+use trundle_runtime::RobotConfig;
+
+/// A log and how to map it.
+#[derive(Debug, Clone)]
+pub struct LaserMapRequest {
+    /// A CARMEN log, a ROS 2 bag or a TUM RGB-D folder.
+    pub log: PathBuf,
+    /// The motion of an RGB-D folder: a TUM trajectory of the camera; `None` for the folder's own.
+    pub poses: Option<PathBuf>,
+    /// Whether these poses drift: only their steps are believed, and loops are closed.
+    pub poses_drift: bool,
+    /// Particles of the filter.
+    pub particles: usize,
+    /// Seed of the filter.
+    pub seed: u64,
+    /// Side of a cell, m.
+    pub resolution: f64,
+    /// The laser, where the log does not hold it.
+    pub laser: LaserLogOptions,
+    /// The map of an earlier run, in which the robot is localized first.
+    pub map: Option<PathBuf>,
+}
+
+impl LaserMapRequest {
+    /// A new filter, or one that goes on with the saved map.
+    pub(super) fn mapper(&self, is_depth: bool) -> Result<ParticleMapper, AppError> {
+        let config = self.config(is_depth)?;
+        let Some(file) = &self.map else { return Ok(ParticleMapper::new(config, self.seed)?) };
+        let bytes = std::fs::read(file).map_err(|error| refused(file, &error))?;
+        let mut mapper = ParticleMapper::load(&bytes, config).map_err(|error| refused(file, &error))?;
+        mapper.kidnapped();
+        Ok(mapper)
+    }
+
+    /// A localizer in the map `file`: a saved filter, or a grid by its YAML.
+    pub(super) fn localizer(&self, file: &Path, is_depth: bool) -> Result<MapLocalizer, AppError> {
+        if file.extension().is_some_and(|ext| ext == "yaml") {
+            let grid = read_map(file)?;
+            let resolution = grid.geometry().resolution;
+            let config = self.config(is_depth)?;
+            let config = ParticleConfig { map: MapperConfig { resolution, ..config.map }, ..config };
+            return Ok(MapLocalizer::from_grid(&grid, config, self.seed)?);
+        }
+        let bytes = std::fs::read(file).map_err(|error| refused(file, &error))?;
+        MapLocalizer::load(&bytes, self.config(is_depth)?, self.seed).map_err(|error| refused(file, &error))
+    }
+
+    fn config(&self, is_depth: bool) -> Result<ParticleConfig, AppError> {
+        let default = ParticleConfig::default();
+        let config = ParticleConfig {
+            particles: self.particles,
+            map: MapperConfig { resolution: self.resolution, ..default.map },
+            ..default
+        };
+        if is_depth { self.depth_config(config) } else { Ok(config) }
+    }
+
+    /// The filter's settings for a depth camera: its range, noise and blind range, and the errors of its motion.
+    fn depth_config(&self, config: ParticleConfig) -> Result<ParticleConfig, AppError> {
+        let by_wheels = self.poses.is_none() && self.log.join("odometry.txt").exists();
+        let scan = RobotConfig::default().scan;
+        let blind_range = depth_scanner(&self.log)?.0.blind_range();
+        Ok(ParticleConfig {
+            map: MapperConfig { max_range: scan.max_range, blind_range, ..config.map },
+            motion: if by_wheels { MotionConfig::default() } else { tracked_camera_motion() },
+            pose_prior: (!by_wheels && !self.poses_drift).then(PosePriorConfig::default),
+            range_noise: DEPTH_RANGE_NOISE_M,
+            range_noise_growth: scan.noise_growth,
+            ..config
+        })
+    }
+}
+
+/// Standard deviation of a range of the depth camera at short distance \[m\]. Source: ours.
+const DEPTH_RANGE_NOISE_M: f64 = 0.01;
+
+/// The motion of a tracked camera: ten times as exact as that of wheels alone. The wheels' own values cannot be that small: the
+/// drift of their heading is the same on every metre, and a filter that trusts them bends its map.
+fn tracked_camera_motion() -> MotionConfig {
+    MotionConfig {
+        shift_per_metre: 0.05,
+        shift_per_radian: 0.02,
+        turn_per_metre: 0.02,
+        turn_per_radian: 0.04,
+        least_shift: 0.005,
+        least_turn: 0.003,
+    }
+}
+
+fn refused(file: &Path, problem: &dyn std::fmt::Display) -> AppError {
+    AppError::Input(format!("{}: {problem}", file.display()))
+}

@@ -1,0 +1,84 @@
+//! Mapping of a log, or localization of it in a map that does not change.
+
+use super::counts::ScanCounts;
+use super::input::is_depth_folder;
+use super::numbers::{map_picture, summary, trajectory_lines};
+use super::request::LaserMapRequest;
+use super::run_result::LaserMapRun;
+use crate::{AppError, StepProgress};
+use std::time::Instant;
+use trundle_core::{Pose2, Stamp};
+use trundle_io::{LaserLog, OutputFolder, write_map};
+use trundle_mapping::{Localized, MapLocalizer, ParticleMapper, propagate_trajectory};
+
+/// Maps a log, or with `localize_only` follows the robot in the map asked for; writes trajectory, map, picture and summary.
+///
+/// # Errors
+/// When the map cannot be read, a setting cannot be accepted or a file cannot be written.
+pub fn map_log(
+    request: &LaserMapRequest,
+    localize_only: bool,
+    log: &LaserLog,
+    folder: &OutputFolder,
+    progress: &dyn StepProgress,
+) -> Result<LaserMapRun, AppError> {
+    let is_depth = is_depth_folder(&request.log);
+    let odometry: Vec<(Stamp, Pose2)> =
+        log.scans.iter().map(|s| (s.scan.stamp(), s.odom_from_base)).collect();
+    let start = Instant::now();
+    let (counts, poses, megabytes) = match &request.map {
+        Some(file) if localize_only => {
+            let mut localizer = request.localizer(file, is_depth)?;
+            let (counts, poses) = localize(log, &mut localizer, progress);
+            folder.write("overview.png", &map_picture(&localizer.grid(), &poses))?;
+            (counts, poses, 0.0)
+        }
+        _ => {
+            let mut mapper = request.mapper(is_depth)?;
+            let counts = map(log, &mut mapper, progress);
+            write_map(folder, "map", mapper.grid())?;
+            let poses = mapper.trajectory();
+            folder.write("overview.png", &map_picture(mapper.grid(), &poses))?;
+            folder.write("filter.map", &mapper.save())?;
+            (counts, poses, mapper.bytes() as f64 / 1e6)
+        }
+    };
+    let seconds = start.elapsed().as_secs_f64();
+    let trajectory = propagate_trajectory(&poses, &odometry);
+    folder.write("trajectory.txt", trajectory_lines(&trajectory).as_bytes())?;
+    let run = LaserMapRun { counts, megabytes, seconds };
+    folder.write("summary.json", summary(request, log, &run).to_json().as_bytes())?;
+    Ok(run)
+}
+
+fn map(log: &LaserLog, mapper: &mut ParticleMapper, progress: &dyn StepProgress) -> ScanCounts {
+    let mut counts = ScanCounts::default();
+    progress.begin(Some(log.scans.len()));
+    for entry in &log.scans {
+        counts.count(&mapper.update(entry.odom_from_base, &entry.scan));
+        progress.advance();
+    }
+    mapper.finish();
+    progress.end();
+    counts
+}
+
+/// The trajectory of the log in a map that does not change.
+fn localize(
+    log: &LaserLog,
+    localizer: &mut MapLocalizer,
+    progress: &dyn StepProgress,
+) -> (ScanCounts, Vec<(Stamp, Pose2)>) {
+    let (mut counts, mut known) = (ScanCounts::default(), Vec::new());
+    progress.begin(Some(log.scans.len()));
+    for entry in &log.scans {
+        let localized = localizer.update(entry.odom_from_base, &entry.scan);
+        counts.count_localized(&localized);
+        if let Localized::Known { map_from_base, .. } = localized {
+            known.push((entry.scan.stamp(), map_from_base));
+        }
+        progress.advance();
+    }
+    progress.end();
+    (counts, known)
+}

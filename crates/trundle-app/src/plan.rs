@@ -1,0 +1,15 @@
+//! A plan on a map, outside a run: the files that shape it, the planner's answer, its numbers, pictures and folder.
+
+mod explanation;
+mod goal_refusal;
+mod masks;
+mod numbers;
+mod output;
+mod picture;
+mod request;
+
+pub use goal_refusal::{GoalRefusal, MovedGoal};
+pub use masks::SpeedMaskLimits;
+pub use numbers::{PlanTimes, curve_lines, plan_rows};
+pub use output::{PLAN_FILES, write_plan, write_refusal};
+pub use request::{NamedPose, PlanFiles, PlanRequest};

@@ -1,0 +1,80 @@
+//! Sentences that say why a goal has no plan or was moved.
+
+use super::goal_refusal::{GoalRefusal, MovedGoal};
+use super::request::{NamedPose, PlanRequest};
+use trundle_core::{Pose2, Twist2};
+use trundle_planning::{MultiGoalPlan, Plan};
+
+/// Distance below which two positions count as the same \[m\]. Beyond it a message names the position. Source: ours.
+const MAX_SAME_POSITION_M: f64 = 0.01;
+
+impl PlanRequest {
+    /// The goals for which another pose was taken, with distance and reason.
+    pub fn goals_moved(&mut self, plan: &MultiGoalPlan) -> Vec<MovedGoal> {
+        let mut found = Vec::new();
+        for (goal, leg) in plan.legs.iter().enumerate() {
+            let Some(instead_of) = &leg.instead_of else { continue };
+            let why = match instead_of {
+                Plan::Blocked { .. } => "no path leads there".to_owned(),
+                refusal => refusal.to_string(),
+            };
+            let from = leg.trajectory.points()[0].pose;
+            let why = format!("{why}{}", self.without_the_mask(instead_of, from, goal));
+            let to = leg.trajectory.end();
+            found.push(MovedGoal { goal, to, off: to.distance(&self.goals[goal].pose), why });
+        }
+        found
+    }
+
+    /// One sentence: which leg has no plan, and why.
+    pub fn explain(&mut self, refusal: &GoalRefusal) -> String {
+        let GoalRefusal { goal, why, .. } = refusal;
+        let from = self.leg_start(refusal);
+        let mut whole = format!("from {} to {}", from.describe(), self.goals[*goal].describe());
+        if self.goals.len() > 1 {
+            whole = format!("goal {}, {whole}", goal + 1);
+        }
+        if matches!(why, Plan::Blocked { .. }) && self.graph.is_some() {
+            whole = format!("{whole} along the graph");
+        }
+        format!("{whole}: {why}{}", self.without_the_mask(why, refusal.from, *goal))
+    }
+
+    /// The pose at which a leg begins: the start or the goal before, by name where the robot stands there.
+    fn leg_start(&self, refusal: &GoalRefusal) -> NamedPose {
+        let asked = if refusal.goal == 0 { &self.start } else { &self.goals[refusal.goal - 1] };
+        let is_there = asked.pose.distance(&refusal.from) < MAX_SAME_POSITION_M;
+        let round = |value: f64| (value * 100.0).round() / 100.0;
+        let Pose2 { x, y, theta } = refusal.from;
+        if is_there {
+            asked.clone()
+        } else {
+            NamedPose { pose: Pose2::new(round(x), round(y), theta), name: None }
+        }
+    }
+
+    /// What the keep-out mask has to do with a refusal; empty where the answer is the same without it.
+    fn without_the_mask(&mut self, why: &Plan, from: Pose2, goal: usize) -> &'static str {
+        if self.keep_out.is_none() {
+            return "";
+        }
+        let goal = self.goals[goal].pose;
+        let bare = match &self.graph {
+            Some(graph) => self.unmasked.plan_on_graph(&self.grid, graph, from, Twist2::ZERO, goal),
+            None => self.unmasked.plan(&self.grid, from, Twist2::ZERO, goal),
+        };
+        let same = |of: fn(&Plan) -> bool| of(why) && of(&bare);
+        match why {
+            Plan::StartInObstacle { .. } if !same(|plan| matches!(plan, Plan::StartInObstacle { .. })) => {
+                "; it would without the keep-out mask"
+            }
+            Plan::GoalInObstacle { .. } if !same(|plan| matches!(plan, Plan::GoalInObstacle { .. })) => {
+                "; it would without the keep-out mask"
+            }
+            Plan::Blocked { .. } if matches!(bare, Plan::Found(_)) => {
+                "; without the keep-out mask there is one"
+            }
+            _ => "",
+        }
+    }
+}

@@ -1,0 +1,139 @@
+//! What is to be planned: a map, a start, goals, and a planner with the masks and lanes of their files.
+
+use super::goal_refusal::GoalRefusal;
+use super::masks::{SpeedMaskLimits, read_lanes, set_keep_out, set_speed_mask};
+use crate::AppError;
+use std::path::PathBuf;
+use trundle_core::{Footprint, OccupancyGrid, Pose2, Twist2, Vector2};
+use trundle_io::read_map;
+use trundle_planning::{MultiGoalPlan, Plan, Planner, PlannerConfig, WaypointGraph};
+use trundle_runtime::RobotConfig;
+use trundle_viz::MaskShares;
+
+/// The files that shape a plan.
+#[derive(Debug, Clone)]
+pub struct PlanFiles {
+    /// The map, in map_server's form.
+    pub map: PathBuf,
+    /// A keep-out mask, as Nav2's.
+    pub keep_out: Option<PathBuf>,
+    /// A speed mask, as Nav2's.
+    pub speed_mask: Option<PathBuf>,
+    /// A way-point graph, GeoJSON as Nav2's route server has it.
+    pub graph: Option<PathBuf>,
+}
+
+/// A pose in the map frame, with its name where it has one.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NamedPose {
+    /// `map_from_base`.
+    pub pose: Pose2,
+    /// Its name, for messages.
+    pub name: Option<String>,
+}
+
+impl NamedPose {
+    /// Name and position, for messages.
+    pub(super) fn describe(&self) -> String {
+        let at = format!("({}, {}) m", self.pose.x, self.pose.y);
+        self.name.as_ref().map_or(at.clone(), |name| format!("'{name}' at {at}"))
+    }
+}
+
+/// A map, a planner with the masks, a start and goals.
+pub struct PlanRequest {
+    /// The map's file, for messages.
+    pub map: PathBuf,
+    /// The map.
+    pub grid: OccupancyGrid,
+    /// The robot's outline.
+    pub footprint: Footprint,
+    /// Plans with all masks.
+    pub planner: Planner,
+    /// Where the robot stands.
+    pub start: NamedPose,
+    /// Goals, in order.
+    pub goals: Vec<NamedPose>,
+    /// For pictures: 1 is forbidden, less is high-cost.
+    pub keep_out: Option<MaskShares>,
+    /// For pictures: 1 less the share of the full speed.
+    pub slow: Option<MaskShares>,
+    /// How many cells of the speed mask set a limit.
+    pub speed_limits: Option<SpeedMaskLimits>,
+    pub(super) graph: Option<WaypointGraph>,
+    /// Plans without the keep-out mask, to say what the mask changes.
+    pub(super) unmasked: Planner,
+}
+
+impl PlanRequest {
+    /// Reads and checks the files. `goal_tolerance_m`: distance from a blocked goal that still counts; `None` for the robot's own.
+    ///
+    /// # Errors
+    /// Names the file or value that cannot be accepted.
+    pub fn read(
+        files: &PlanFiles,
+        (start, goals): (NamedPose, Vec<NamedPose>),
+        goal_tolerance_m: Option<f64>,
+        robot: &RobotConfig,
+    ) -> Result<Self, AppError> {
+        let grid = read_map(&files.map)?;
+        let graph = files.graph.as_deref().map(read_lanes).transpose()?;
+        let footprint = robot.footprint()?;
+        // No path leads beyond the edge of a given map.
+        let goal_tolerance = goal_tolerance_m.unwrap_or(robot.planning.goal_tolerance);
+        let config = PlannerConfig { beyond: 0.0, goal_tolerance, ..robot.planning };
+        let mut planner = Planner::new(config, &footprint, robot.limits, robot.drive)?;
+        let keep_out = files.keep_out.as_deref();
+        let keep_out = keep_out.map(|path| set_keep_out(path, &grid, &mut planner)).transpose()?;
+        let slow = files.speed_mask.as_deref();
+        let slow = slow.map(|path| set_speed_mask(path, robot.limits.v, &grid, &mut planner)).transpose()?;
+        let (slow, speed_limits) = slow.unzip();
+        // The comparison is for the goal itself, not for a pose nearby.
+        let exact = PlannerConfig { goal_tolerance: 0.0, ..config };
+        let unmasked = Planner::new(exact, &footprint, robot.limits, robot.drive)?;
+        let map = files.map.clone();
+        Ok(Self {
+            map,
+            grid,
+            footprint,
+            planner,
+            start,
+            goals,
+            keep_out,
+            slow,
+            speed_limits,
+            graph,
+            unmasked,
+        })
+    }
+
+    /// The plan through all goals.
+    ///
+    /// # Errors
+    /// Which goal has none.
+    pub fn plan(&mut self) -> Result<MultiGoalPlan, GoalRefusal> {
+        let goals: Vec<Pose2> = self.goals.iter().map(|goal| goal.pose).collect();
+        self.plan_through(&goals).map_err(|(goal, why)| {
+            let before = (goal > 0).then(|| self.plan_through(&goals[..goal]).ok()).flatten();
+            let from = before.map_or(self.start.pose, |plan| plan.trajectory.end());
+            GoalRefusal { goal, from, why }
+        })
+    }
+
+    fn plan_through(&mut self, goals: &[Pose2]) -> Result<MultiGoalPlan, (usize, Plan)> {
+        let (start, grid) = (self.start.pose, &self.grid);
+        match &self.graph {
+            Some(graph) => self.planner.plan_multi_goal_on_graph(grid, graph, start, Twist2::ZERO, goals),
+            None => self.planner.plan_multi_goal(grid, start, Twist2::ZERO, goals),
+        }
+    }
+
+    /// The lanes of the way-point graph, end to end; none without one.
+    #[must_use]
+    pub fn lanes(&self) -> Vec<[Vector2; 2]> {
+        let of = |graph: &WaypointGraph| {
+            graph.lanes().iter().map(|(a, b)| [graph.nodes()[*a], graph.nodes()[*b]]).collect()
+        };
+        self.graph.as_ref().map(of).unwrap_or_default()
+    }
+}

@@ -1,0 +1,15 @@
+//! SLAM on a recorded RGB-D sequence: tracking, the comparison with ground truth, and the folder of results.
+
+mod comparison;
+mod numbers;
+mod odometry_prior;
+mod output;
+mod recorder;
+mod report;
+mod request;
+mod run;
+
+pub use numbers::sequence_rows;
+pub use output::{SequenceOutput, write_sequence};
+pub use request::SequenceRequest;
+pub use run::{SequenceRun, track_sequence};

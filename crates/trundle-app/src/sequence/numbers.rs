@@ -1,0 +1,73 @@
+//! The numbers of a tracked sequence: table and summary.
+
+use super::comparison::TruthComparison;
+use super::request::SequenceRequest;
+use super::run::SequenceRun;
+use crate::report::wall_clock;
+use trundle_io::{Summary, TumSequence};
+
+/// The table of a tracked sequence, all but the wall clock's part.
+#[must_use]
+pub fn sequence_rows(
+    sequence: &TumSequence,
+    run: &SequenceRun,
+    comparison: Option<&TruthComparison>,
+) -> Vec<Vec<String>> {
+    let row = |name: &str, value: String| vec![name.to_owned(), value];
+    let c = run.counts;
+    let mut rows = vec![
+        row("frames read", (c.ok + c.weak + c.dead_reckoned + c.lost).to_string()),
+        row("frames unreadable, without depth", format!("{}, {}", run.unreadable.len(), sequence.unpaired())),
+        row(
+            "ok / weak / dead reckoned / lost",
+            format!("{} / {} / {} / {}", c.ok, c.weak, c.dead_reckoned, c.lost),
+        ),
+        row("motions by odometry.txt", run.odometry_priors.to_string()),
+        row("keyframes", run.slam.keyframes().count().to_string()),
+        row("landmarks", run.slam.landmarks().count().to_string()),
+        row("loops closed", run.slam.loops().len().to_string()),
+    ];
+    if let Some(TruthComparison { absolute, relative, .. }) = comparison {
+        let s = &absolute.statistics;
+        rows.push(row(
+            "ATE rmse (median, max)",
+            format!("{:.2} cm ({:.2}, {:.2})", s.rmse * 1e2, s.median * 1e2, s.max * 1e2),
+        ));
+        rows.push(row("RPE rmse, frame to frame", format!("{:.2} cm", relative.translation.rmse * 1e2)));
+        rows.push(row("RPE rmse, rotation", format!("{:.3} deg", relative.rotation.rmse.to_degrees())));
+    }
+    rows
+}
+
+/// `summary.json`.
+pub fn summary(
+    request: &SequenceRequest,
+    sequence: &TumSequence,
+    run: &SequenceRun,
+    comparison: Option<&TruthComparison>,
+) -> Summary {
+    let mut summary = Summary::new("slam");
+    let c = run.counts;
+    summary
+        .set("success", run.is_located())
+        .set("camera", &request.camera)
+        .set("seed", request.seed)
+        .set("frames", c.ok + c.weak + c.dead_reckoned + c.lost)
+        .set("frames_unreadable", &run.unreadable)
+        .set("frames_without_depth", sequence.unpaired())
+        .set("frames_ok", c.ok)
+        .set("frames_weak", c.weak)
+        .set("frames_dead_reckoned", c.dead_reckoned)
+        .set("frames_lost", c.lost)
+        .set("keyframes", run.slam.keyframes().count())
+        .set("landmarks", run.slam.landmarks().count())
+        .set("loops_closed", run.slam.loops().len())
+        .set("warnings", run.slam.calibration_issues().iter().map(ToString::to_string).collect::<Vec<_>>())
+        .set("ate_rmse_m", comparison.map(|c| c.absolute.statistics.rmse))
+        .set("ate_max_m", comparison.map(|c| c.absolute.statistics.max))
+        .set("ate_pairs", comparison.map(|c| c.absolute.pairs.len()))
+        .set("rpe_translation_rmse_m", comparison.map(|c| c.relative.translation.rmse))
+        .set("rpe_rotation_rmse_rad", comparison.map(|c| c.relative.rotation.rmse))
+        .set("wall_clock", wall_clock(run.seconds, &run.times, None));
+    summary
+}

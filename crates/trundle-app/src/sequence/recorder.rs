@@ -1,0 +1,92 @@
+//! The recording of a tracked sequence, and the links between keyframes that it shows.
+
+use crate::AppError;
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::io::BufWriter;
+use trundle_core::{Stamp, Vector2, Vector3};
+use trundle_io::{
+    EncodedEvent, EncodedRgbd, FeatureMarks, KeyframeGraph, LandmarkCloud, PoseInFrame, Recorder,
+};
+use trundle_slam::{KeyframeId, RgbdSlam, TrackReport};
+
+/// Shared landmarks from which two keyframes are drawn as covisible; with fewer they are not linked. Source: ours.
+const MIN_SHARED_LANDMARKS: usize = 30;
+
+/// The frame that camera poses, landmarks and keyframes are in.
+const FRAME: &str = "visual";
+
+/// Records a tracked sequence: every image with its features and the camera's pose; landmarks and keyframe graph when a
+/// loop was closed, and at the end.
+pub struct SequenceRecorder {
+    recorder: Recorder<BufWriter<File>>,
+    now: Stamp,
+}
+
+impl SequenceRecorder {
+    /// Records into `recorder`.
+    pub fn new(recorder: Recorder<BufWriter<File>>) -> Self {
+        Self { recorder, now: Stamp::default() }
+    }
+
+    /// Records an image and its tracking.
+    pub fn record(
+        &mut self,
+        image: EncodedRgbd,
+        report: &TrackReport,
+        slam: &RgbdSlam,
+    ) -> Result<(), AppError> {
+        self.now = report.stamp;
+        self.recorder.record_event(&EncodedEvent::Rgbd(image))?;
+        let mark = |feature: &trundle_slam::SeenFeature| {
+            let keypoint = feature.keypoint;
+            (Vector2::new(f64::from(keypoint.x), f64::from(keypoint.y)), feature.tracked)
+        };
+        let marks = FeatureMarks::new(self.now, slam.last_features().iter().map(mark));
+        self.recorder.record_json("/slam/features", FeatureMarks::SCHEMA, self.now, &marks)?;
+        let pose = PoseInFrame::new(self.now, FRAME, report.visual_from_camera);
+        self.recorder.record_json("/slam/pose", PoseInFrame::SCHEMA, self.now, &pose)?;
+        if report.closed_loop.is_some() { self.record_map(slam) } else { Ok(()) }
+    }
+
+    /// Records the final map and closes the recording.
+    pub fn finish(mut self, slam: &RgbdSlam) -> Result<(), AppError> {
+        self.record_map(slam)?;
+        self.recorder.finish()?;
+        Ok(())
+    }
+
+    fn record_map(&mut self, slam: &RgbdSlam) -> Result<(), AppError> {
+        let cloud = LandmarkCloud::new(self.now, FRAME, slam.landmarks());
+        self.recorder.record_json("/slam/landmarks", LandmarkCloud::SCHEMA, self.now, &cloud)?;
+        let links = KeyframeLinks::of(slam);
+        let graph = KeyframeGraph::new(self.now, FRAME, links.covisible, links.loops);
+        self.recorder.record_json("/slam/graph", KeyframeGraph::SCHEMA, self.now, &graph)?;
+        Ok(())
+    }
+}
+
+/// Links between keyframes, by their positions in the visual frame, m.
+pub struct KeyframeLinks {
+    /// Those that share landmarks.
+    pub covisible: Vec<(Vector3, Vector3)>,
+    /// Those that closed a loop.
+    pub loops: Vec<(Vector3, Vector3)>,
+}
+
+impl KeyframeLinks {
+    /// The links of the map of `slam`.
+    pub fn of(slam: &RgbdSlam) -> Self {
+        let positions: BTreeMap<KeyframeId, Vector3> =
+            slam.keyframes().map(|(id, _, pose)| (id, pose.translation)).collect();
+        let pair = |a: KeyframeId, b: KeyframeId| Some((*positions.get(&a)?, *positions.get(&b)?));
+        Self {
+            covisible: slam
+                .covisibility(MIN_SHARED_LANDMARKS)
+                .into_iter()
+                .filter_map(|(a, b, _)| pair(a, b))
+                .collect(),
+            loops: slam.loops().into_iter().filter_map(|(a, b)| pair(a, b)).collect(),
+        }
+    }
+}

@@ -1,0 +1,81 @@
+//! Files of visual vocabularies and of the descriptors that train them.
+
+use crate::AppError;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use trundle_io::OutputFolder;
+use trundle_vision::{Descriptor, Vocabulary};
+
+/// The vocabulary of a file, else the program's own.
+///
+/// # Errors
+/// Names the file and why it cannot be read.
+pub fn vocabulary_or_builtin(path: Option<&Path>) -> Result<Arc<Vocabulary>, AppError> {
+    path.map_or_else(|| Ok(Vocabulary::builtin()), |path| read_vocabulary(path).map(Arc::new))
+}
+
+/// A vocabulary in our own form.
+///
+/// # Errors
+/// Names the file and why it cannot be read.
+pub fn read_vocabulary(path: &Path) -> Result<Vocabulary, AppError> {
+    let bytes = std::fs::read(path).map_err(|error| unreadable(path, &error))?;
+    Vocabulary::from_bytes(&bytes).map_err(|error| about(path, &error))
+}
+
+/// A vocabulary in the text form of DBoW2.
+///
+/// # Errors
+/// Names the file and why it cannot be read.
+pub fn read_dbow2_vocabulary(path: &Path) -> Result<Vocabulary, AppError> {
+    let text = std::fs::read_to_string(path).map_err(|error| unreadable(path, &error))?;
+    Vocabulary::from_dbow2_text(&text).map_err(|error| about(path, &error))
+}
+
+/// The descriptors of a folder, image by image in the order of the files' names.
+///
+/// # Errors
+/// Names the file and why it cannot be read.
+pub fn read_descriptors(folder: &Path) -> Result<Vec<Vec<Descriptor>>, AppError> {
+    let entries = std::fs::read_dir(folder).and_then(Iterator::collect::<Result<Vec<_>, _>>);
+    let mut paths: Vec<PathBuf> =
+        entries.map_err(|error| unreadable(folder, &error))?.iter().map(std::fs::DirEntry::path).collect();
+    paths.sort();
+    paths.iter().map(|path| of_image(path)).collect()
+}
+
+fn of_image(path: &Path) -> Result<Vec<Descriptor>, AppError> {
+    let bytes = std::fs::read(path).map_err(|error| unreadable(path, &error))?;
+    if bytes.len() % 32 != 0 {
+        let problem = format!("{} bytes, expected 32 a descriptor", bytes.len());
+        return Err(AppError::Input(format!("{}: {problem}", path.display())));
+    }
+    let word = |eight: &[u8]| eight.iter().rev().fold(0, |word, byte| word << 8 | u64::from(*byte));
+    let descriptor = |bytes: &[u8]| Descriptor(std::array::from_fn(|i| word(&bytes[8 * i..8 * i + 8])));
+    Ok(bytes.chunks_exact(32).map(descriptor).collect())
+}
+
+/// Writes a file whole or not at all.
+///
+/// # Errors
+/// When the path names no file or the file cannot be written.
+pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), AppError> {
+    let name = path.file_name().and_then(|name| name.to_str());
+    let name = name.ok_or_else(|| AppError::Input(format!("{} names no file to write", path.display())))?;
+    if path.is_dir() {
+        return Err(AppError::Input(format!("{} is a folder, expected the name of a file", path.display())));
+    }
+    let parent = path.parent().filter(|parent| !parent.as_os_str().is_empty());
+    let folder = OutputFolder::create(parent.unwrap_or(Path::new(".")))?;
+    folder.write(name, bytes)?;
+    folder.commit()?;
+    Ok(())
+}
+
+fn unreadable(path: &Path, error: &std::io::Error) -> AppError {
+    AppError::Input(format!("cannot read {}: {error}", path.display()))
+}
+
+fn about(path: &Path, error: &impl std::fmt::Display) -> AppError {
+    AppError::Input(format!("{}: {error}", path.display()))
+}

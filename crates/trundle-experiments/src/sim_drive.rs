@@ -1,0 +1,13 @@
+//! A drive of the simulated robot without autonomy: by a script, to way-points or by a driver of the front end, with its recording.
+
+mod drive;
+mod driver;
+mod numbers;
+mod recording;
+mod true_map;
+
+pub use drive::{SimDrive, drive_simulator};
+pub use driver::{ScriptDriver, SimDriver, Standing, WaypointDriver};
+pub use numbers::{drive_rows, drive_summary, drive_verdict};
+pub use recording::DriveRecording;
+pub use true_map::true_map;

@@ -1,0 +1,122 @@
+//! The loop of a drive: events in, twists out.
+
+use super::driver::SimDriver;
+use super::recording::DriveRecording;
+use std::time::Instant;
+use trundle_app::{AppError, StepProgress};
+use trundle_core::{RobotBody, SensorEvent};
+use trundle_sim::Simulator;
+
+/// The result of a drive.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SimDrive {
+    /// Time of the robot, s.
+    pub time: f64,
+    /// Images taken.
+    pub images: usize,
+    /// Sweeps of the laser.
+    pub scans: usize,
+    /// Distance driven, m.
+    pub distance: f64,
+    /// Number of contacts.
+    pub contacts: u32,
+    /// Way-points reached, and all of them.
+    pub waypoints: Option<(usize, usize)>,
+    /// Whether every way-point was reached.
+    pub is_complete: bool,
+    /// Wall-clock time, s.
+    pub seconds: f64,
+}
+
+/// Drives `robot` until the driver or the `duration` (s) ends; every event goes into `recording`.
+///
+/// # Errors
+/// When the simulator, the driver or the recording fails.
+pub fn drive_simulator(
+    robot: &mut Simulator,
+    driver: &mut dyn SimDriver,
+    duration: Option<f64>,
+    mut recording: Option<&mut DriveRecording<'_>>,
+    progress: &dyn StepProgress,
+) -> Result<SimDrive, AppError> {
+    let begun = Instant::now();
+    let images_until = |end: f64| (end * robot.config().camera_rate_hz).ceil() as usize;
+    progress.begin(end_s(duration, driver).map(images_until));
+    let (mut images, mut scans) = (0, 0);
+    let mut now = 0.0;
+    while let Some(event) = robot.next_event().map_err(AppError::input)? {
+        let stamp = event.stamp();
+        if end_s(duration, driver).is_some_and(|end| end <= stamp.as_secs()) {
+            break;
+        }
+        now = stamp.as_secs().max(now);
+        match &event {
+            SensorEvent::Wheels(_) => {
+                let twist = driver.twist(stamp, robot.true_pose())?;
+                robot.command(twist).map_err(AppError::input)?;
+            }
+            SensorEvent::Rgbd(image) => {
+                images += 1;
+                driver.show(image, robot);
+                show(progress, robot, now, begun);
+            }
+            SensorEvent::Scan(_) => scans += 1,
+            _ => {}
+        }
+        if let Some(recording) = recording.as_deref_mut() {
+            recording.on_event(event)?;
+        }
+    }
+    progress.end();
+    let waypoints = driver.waypoints();
+    Ok(SimDrive {
+        time: now,
+        images,
+        scans,
+        distance: robot.path_length(),
+        contacts: robot.contacts(),
+        waypoints,
+        is_complete: waypoints.is_none_or(|(reached, all)| reached == all),
+        seconds: begun.elapsed().as_secs_f64(),
+    })
+}
+
+/// When the drive is over, s, where that is known: at the driver's end or the duration, the sooner of both.
+fn end_s(duration: Option<f64>, driver: &dyn SimDriver) -> Option<f64> {
+    duration.into_iter().chain(driver.end_s()).reduce(f64::min)
+}
+
+fn show(progress: &dyn StepProgress, robot: &Simulator, now: f64, begun: Instant) {
+    let pose = robot.true_pose();
+    progress.advance();
+    progress.message(&format!(
+        "{now:6.1} s ({:.1}x)  at {:6.2} {:6.2} m {:6.1} deg  {:6.2} m driven",
+        now / begun.elapsed().as_secs_f64().max(1e-3),
+        pose.x,
+        pose.y,
+        pose.theta.to_degrees(),
+        robot.path_length(),
+    ));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::driver::Standing;
+    use super::*;
+    use trundle_sim::{Scene, SimConfig};
+
+    #[test]
+    fn a_drive_ends_at_the_sooner_of_duration_and_driver() {
+        assert_eq!(end_s(Some(1.0), &Standing::new(Some(3.0))), Some(1.0));
+        assert_eq!(end_s(None, &Standing::new(Some(3.0))), Some(3.0));
+    }
+
+    #[test]
+    fn a_standing_robot_takes_images_and_touches_nothing() {
+        let scene = Scene::by_name("room", 1).unwrap();
+        let mut robot = Simulator::new(scene, SimConfig::default(), 1).unwrap();
+        let drive = drive_simulator(&mut robot, &mut Standing::new(Some(0.3)), None, None, &()).unwrap();
+        assert!(drive.images > 0 && drive.is_complete && drive.contacts == 0, "{drive:?}");
+        assert!(drive.time < 0.3 && drive.distance < 1e-6, "{drive:?}");
+    }
+}

@@ -1,0 +1,7 @@
+//! The page for driving by hand: image, depth, map and state of the simulated robot, served to browsers on the same machine.
+
+mod page;
+mod server;
+
+pub use page::{RobotView, TeleopPage};
+pub use server::TeleopServer;

@@ -1,0 +1,40 @@
+//! A world with its lights, for rendering.
+
+use std::path::Path;
+use trundle_app::AppError;
+use trundle_sim::import::{GltfOptions, gltf};
+use trundle_sim::{Lights, Scene, SceneSnapshot, World};
+
+/// A world and its lights.
+pub struct RenderedScene {
+    /// Its name, with its seed where it has one.
+    pub name: String,
+    /// The solids and meshes.
+    pub world: World,
+    lights: Lights,
+}
+
+impl RenderedScene {
+    /// A built-in scene by its name and seed, or a glTF file.
+    ///
+    /// # Errors
+    /// When there is no such scene, or the file cannot be read as glTF.
+    pub fn open(name: &str, seed: u64, z_up: bool) -> Result<Self, AppError> {
+        let file = Path::new(name);
+        let extension = file.extension();
+        if extension.is_some_and(|e| e.eq_ignore_ascii_case("glb") || e.eq_ignore_ascii_case("gltf")) {
+            let options = if z_up { GltfOptions::z_up() } else { GltfOptions::default() };
+            let mesh = gltf(file, &options).map_err(|error| AppError::Input(error.to_string()))?;
+            let world = World::with_meshes(Vec::new(), vec![mesh], seed)?;
+            let name = file.file_stem().unwrap_or_default().to_string_lossy();
+            return Ok(Self { name: format!("{name} {seed}"), world, lights: Lights::default() });
+        }
+        let Scene { world, lights, .. } = Scene::by_name(name, seed)?;
+        Ok(Self { name: format!("{name} {seed}"), world, lights })
+    }
+
+    /// The renderer's input.
+    pub fn snapshot(&self) -> SceneSnapshot<'_> {
+        SceneSnapshot { world: &self.world, movers: &[], lights: &self.lights }
+    }
+}
