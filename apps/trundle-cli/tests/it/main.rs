@@ -2,10 +2,12 @@
 #![allow(clippy::unwrap_used, clippy::print_stderr, reason = "helpers of tests")]
 
 mod bad_input;
+mod config;
 mod demo;
 mod dock;
 mod experiments;
 mod fault_scenarios;
+mod help;
 mod inputs;
 mod map;
 mod missions;
