@@ -122,9 +122,9 @@ impl fmt::Display for StopReason {
             Self::StaleImage { age } => {
                 write!(f, "the newest image or scan that shows something is {age:.2} s old")
             }
-            Self::NothingTellsMotion => f.write_str(
-                "the wheels are told to roll and count nothing, and no image measures the motion",
-            ),
+            Self::NothingTellsMotion => {
+                f.write_str("the wheels are told to roll and count nothing, and no image measures the motion")
+            }
             Self::NoWheels => f.write_str("no wheel reading yet"),
             Self::StaleWheels { age } => write!(f, "the newest wheel reading is {age:.2} s old"),
             Self::NotFinite => f.write_str("the command is not a number"),

@@ -1,7 +1,7 @@
 //! Motion blur: the mean of several views in linear light.
 
 use super::View;
-use super::tone::{linear_from_srgb, srgb};
+use super::srgb::{linear_from_srgb, srgb};
 use std::sync::LazyLock;
 use trundle_core::Invalid;
 

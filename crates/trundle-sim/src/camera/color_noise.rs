@@ -1,6 +1,6 @@
 //! The noise model of the colour image: exposure, photon noise and read noise.
 
-use super::Exposure;
+use super::exposure::Exposure;
 use serde::{Deserialize, Serialize};
 use trundle_core::{Invalid, require_in};
 

@@ -1,7 +1,7 @@
 //! Exposure of the colour image: fixed gain or auto exposure.
 
 use super::View;
-use super::tone::linear_from_srgb;
+use super::srgb::linear_from_srgb;
 use serde::{Deserialize, Serialize};
 use trundle_core::{Invalid, Stamp, require_in};
 

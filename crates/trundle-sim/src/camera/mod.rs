@@ -19,6 +19,7 @@ mod renderer;
 mod round;
 mod sensor;
 mod shadow;
+mod srgb;
 mod surface;
 mod tile;
 mod tone;

@@ -1,9 +1,9 @@
 //! Tone tables: from ideal sRGB levels to mean and standard deviation of the measured level.
 
-use super::ColorNoise;
+use super::color_noise::ColorNoise;
 use super::round::nearest;
+use super::srgb::{linear_from_srgb, srgb};
 use crate::rng::NormalTable;
-use std::sync::LazyLock;
 
 /// From the level of a channel (sRGB) to the mean and the standard deviation of what the camera says: a table an image.
 #[derive(Debug, Clone)]
@@ -32,24 +32,6 @@ impl Tone {
         };
         [channel(0), channel(1), channel(2)]
     }
-}
-
-/// A level of sRGB (IEC 61966-2-1) as linear light, white = 1.
-pub(super) fn linear_from_srgb(level: u8) -> f32 {
-    static TABLE: LazyLock<[f32; 256]> = LazyLock::new(|| {
-        std::array::from_fn(|level| {
-            let x = level as f64 / 255.0;
-            let light = if x <= 0.040_45 { x / 12.92 } else { ((x + 0.055) / 1.055).powf(2.4) };
-            light as f32
-        })
-    });
-    TABLE[usize::from(level)]
-}
-
-/// Linear light as a level of sRGB, 0 to 255, clipped, not rounded.
-pub(super) fn srgb(light: f64) -> f64 {
-    let x = light.clamp(0.0, 1.0);
-    255.0 * if x <= 0.003_130_8 { 12.92 * x } else { 1.055 * x.powf(1.0 / 2.4) - 0.055 }
 }
 
 #[cfg(test)]

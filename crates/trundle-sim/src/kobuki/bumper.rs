@@ -1,6 +1,6 @@
 //! The bumper: contact of the body with the world, and the touch event.
 
-use super::ContactScene;
+use super::contact_scene::ContactScene;
 use trundle_core::{Footprint, Pose2};
 
 /// A touch ends when the gap is wider than this, m.

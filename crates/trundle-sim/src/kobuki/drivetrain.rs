@@ -1,6 +1,7 @@
 //! The drivetrain: wheel speeds from commanded twists, with delay, saturation, ramp and lag.
 
-use super::{KobukiConfig, STEP_S, STEPS_PER_SECOND};
+use super::config::KobukiConfig;
+use super::dynamics_step::{STEP_S, STEPS_PER_SECOND};
 use std::collections::VecDeque;
 use trundle_core::{DifferentialDrive, Twist2};
 

@@ -1,6 +1,7 @@
 //! The gyro: scale error, bias random walk and white noise.
 
-use super::KobukiConfig;
+use super::config::KobukiConfig;
+use super::tolerance::tolerance;
 use crate::rng::normal;
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
@@ -21,8 +22,8 @@ pub(super) struct Gyro {
 impl Gyro {
     pub(super) fn new(config: &KobukiConfig, mut rng: ChaCha8Rng) -> Self {
         Self {
-            scale: 1.0 + config.gyro_scale_error * super::tolerance(&mut rng),
-            bias: config.gyro_bias * super::tolerance(&mut rng),
+            scale: 1.0 + config.gyro_scale_error * tolerance(&mut rng),
+            bias: config.gyro_bias * tolerance(&mut rng),
             bias_walk: config.gyro_bias_walk,
             noise: config.gyro_noise,
             last: None,

@@ -3,16 +3,19 @@
 mod bumper;
 mod cliff;
 mod config;
+mod contact_scene;
 mod drivetrain;
+mod dynamics_step;
 mod encoders;
 mod gyro;
 mod slip;
+mod tolerance;
 
 pub use config::KobukiConfig;
+pub(crate) use contact_scene::ContactScene;
+pub(crate) use dynamics_step::{STEP_S, STEPS_PER_SECOND};
 
-use crate::people::Crowd;
-use crate::rng::normal;
-use crate::world::{Obstacles, World};
+use crate::world::World;
 use bumper::Bumper;
 use cliff::CliffSensors;
 use drivetrain::Drivetrain;
@@ -21,13 +24,8 @@ use gyro::Gyro;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use slip::Slip;
+use tolerance::tolerance;
 use trundle_core::{Footprint, GyroRate, Invalid, Pose2, Stamp, Twist2, WheelTicks};
-
-/// Length of a step of the dynamics, s.
-pub(crate) const STEP_S: f64 = 1e-3;
-
-/// Steps a second.
-pub(crate) const STEPS_PER_SECOND: f64 = 1e3;
 
 /// Streams of the one seed, so that each kind of noise is independent of how often the others are drawn.
 #[derive(Clone, Copy)]
@@ -41,20 +39,6 @@ fn generator(seed: u64, stream: Stream) -> ChaCha8Rng {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     rng.set_stream(stream as u64);
     rng
-}
-
-/// A deviate of a standard normal, cut at 2.5 sigma: what leaves a factory.
-fn tolerance(rng: &mut ChaCha8Rng) -> f64 {
-    normal(rng.next_u64()).clamp(-2.5, 2.5)
-}
-
-/// What the base can run into.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct ContactScene<'a> {
-    /// What stands.
-    pub(crate) fixed: &'a Obstacles,
-    /// Who walks.
-    pub(crate) moving: &'a Crowd,
 }
 
 /// The true geometry of a base, which a calibration looks for: only judges know it.

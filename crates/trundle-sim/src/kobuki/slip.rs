@@ -1,6 +1,7 @@
 //! Wheel slip as two Ornstein-Uhlenbeck processes.
 
-use super::{KobukiConfig, STEP_S};
+use super::config::KobukiConfig;
+use super::dynamics_step::STEP_S;
 use crate::rng::normal;
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;

@@ -12,36 +12,19 @@ mod obstacles;
 mod office;
 mod partition;
 mod room;
+mod scene;
 mod storage;
 mod warehouse;
 
-use crate::people::Person;
-use crate::world::{Lights, SceneSnapshot, World};
 pub use corridors::{Corridor, corridor};
 pub use demo_room::demo_room;
 pub use house::house;
 pub use obstacles::obstacles;
 pub use office::{OFFICE_RING, OFFICE_TWINS, office};
 pub use room::room;
-use trundle_core::{Invalid, Pose2};
+pub use scene::Scene;
+use trundle_core::Invalid;
 pub use warehouse::warehouse;
-
-/// A world with a task in it.
-#[derive(Debug)]
-pub struct Scene {
-    /// Its name, as in [`Scene::NAMES`].
-    pub name: String,
-    /// What stands there.
-    pub world: World,
-    /// How it is lit.
-    pub lights: Lights,
-    /// Who walks about.
-    pub people: Vec<Person>,
-    /// Where the robot starts, `world_from_base`.
-    pub start: Pose2,
-    /// Where the robot shall go, `world_from_base`.
-    pub goal: Pose2,
-}
 
 impl Scene {
     /// The built-in scenes.
@@ -76,15 +59,5 @@ impl Scene {
             "warehouse" => warehouse(seed),
             _ => Err(Invalid::new("scene", name, "", format!("one of {}", Self::NAMES.join(", ")))),
         }
-    }
-
-    /// What a camera sees of it while nothing moves.
-    pub fn snapshot(&self) -> SceneSnapshot<'_> {
-        SceneSnapshot { world: &self.world, movers: &[], lights: &self.lights }
-    }
-
-    /// The goal as the robot is given it, in a frame that starts at the robot: `start_from_goal`.
-    pub fn start_from_goal(&self) -> Pose2 {
-        self.start.inverse() * self.goal
     }
 }

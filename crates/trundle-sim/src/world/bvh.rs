@@ -3,16 +3,15 @@
 #![expect(clippy::needless_range_loop, reason = "loops over lanes by number become SIMD")]
 
 mod build;
+mod node;
 mod stack;
 
+pub(crate) use node::{Node, WIDTH};
+
 use super::aabb::Aabb;
+use build::{Tree, build};
+use node::LEAF;
 use stack::Stack;
-
-/// Boxes side by side in a node.
-pub(crate) const WIDTH: usize = 8;
-
-/// Marks a [`Node`]'s link to a leaf.
-const LEAF: u32 = 1 << 31;
 
 /// A bounding volume hierarchy over boxes: eight boxes a node, tested together (Wald et al. 2008, "Getting rid of packets").
 ///
@@ -27,18 +26,6 @@ pub(crate) struct Bvh {
     leaves: Vec<(u32, u32)>,
 }
 
-/// Up to eight boxes: axis by axis, box by box.
-#[derive(Debug, Clone)]
-#[repr(C, align(64))]
-pub(crate) struct Node {
-    pub(crate) low: [[f32; WIDTH]; 3],
-    pub(crate) high: [[f32; WIDTH]; 3],
-    /// A node, or with [`LEAF`] a leaf.
-    links: [u32; WIDTH],
-    /// How many there are; the boxes of the others are empty.
-    count: u32,
-}
-
 /// What is looked for among the boxes.
 pub(crate) trait Probe {
     /// A lower bound of the distance of whatever is in each box; infinite for boxes that are not met.
@@ -48,7 +35,8 @@ pub(crate) trait Probe {
 impl Bvh {
     /// Over `boxes`, with at most `most` of them a leaf.
     pub(crate) fn new(boxes: &[Aabb], most: usize) -> Self {
-        build::build(boxes, most)
+        let Tree { nodes, items, leaves } = build(boxes, most);
+        Self { nodes, items, leaves }
     }
 
     /// Where the items of a leaf begin in [`Bvh::items`], and where they end.

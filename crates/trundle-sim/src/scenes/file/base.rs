@@ -1,12 +1,11 @@
 //! The base of a scene file: a built-in scene, a glTF file or a map.
 
-use super::SceneError;
+use super::error::{LoadError, SceneError};
 use crate::import::{GltfOptions, UpAxis};
 use crate::people::Person;
 use crate::scenes::Scene;
 use crate::world::{Lights, Mesh, Solid};
 use serde::{Deserialize, Serialize};
-use std::error::Error;
 use std::path::{Path, PathBuf};
 use trundle_core::{Invalid, Pose2, require_in};
 
@@ -29,9 +28,6 @@ pub struct Base {
     /// Height that occupied cells of the map are raised to, m, 0.1 to 20. Default 2.5.
     pub wall_height: Option<f64>,
 }
-
-/// Why a file that a scene file names could not be loaded, for people.
-pub type LoadError = Box<dyn Error + Send + Sync>;
 
 /// Reads the files that a scene file names, relative to it: where that lies is the caller's to know.
 pub trait BaseLoader {

@@ -1,8 +1,10 @@
 //! Errors of a scene file.
 
-use super::LoadError;
 use std::path::Path;
 use trundle_core::Invalid;
+
+/// Why a file that a scene file names could not be loaded.
+pub type LoadError = Box<dyn std::error::Error + Send + Sync>;
 
 /// What can be wrong with a scene file.
 #[derive(Debug, thiserror::Error)]

@@ -5,8 +5,8 @@ mod error;
 mod prop;
 mod prop_kind;
 
-pub use base::{Base, BaseLoader, LoadError};
-pub use error::SceneError;
+pub use base::{Base, BaseLoader};
+pub use error::{LoadError, SceneError};
 pub use prop::Prop;
 pub use prop_kind::{PaintName, PropKind};
 

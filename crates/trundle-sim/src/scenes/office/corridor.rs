@@ -2,7 +2,7 @@
 
 use super::super::builder::{Builder, ROOM_HEIGHT, Side, UNSEEN};
 use super::super::partition::{Along, Partition};
-use super::{CORE, DOOR_CENTRE_X_M, HALF_WALL, NORTH_ROOMS_Y_M, ROOM_SIZE_M};
+use super::layout::{CORE, DOOR_CENTRE_X_M, HALF_WALL, NORTH_ROOMS_Y_M, ROOM_SIZE_M};
 use crate::materials::Paint;
 use std::f64::consts::{FRAC_PI_2, PI};
 use trundle_core::Pose2;

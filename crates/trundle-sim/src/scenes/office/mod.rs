@@ -1,39 +1,19 @@
 //! Scene: an office with a ring corridor and look-alike rooms.
 
 mod corridor;
+mod layout;
 mod rooms;
+
+pub use layout::{OFFICE_RING, OFFICE_TWINS};
 
 use super::Scene;
 use super::builder::Builder;
+use layout::{DOOR_CENTRE_X_M, NORTH_ROOMS_Y_M, ROOM_SIZE_M};
+
 use crate::rng::hash;
 use crate::world::{Lights, World};
 use std::f64::consts::PI;
 use trundle_core::{Invalid, Pose2};
-
-/// Half of the thickness of walls between rooms and the corridor, m. All measures of the office are sums of few powers of
-/// two, so that a room placed elsewhere is the same to the last bit.
-const HALF_WALL: f64 = 0.0625;
-
-/// Outer size of a room, m.
-const ROOM_SIZE_M: [f64; 2] = [5.0, 4.5];
-
-/// Middle of a room's door, from its west side, m.
-const DOOR_CENTRE_X_M: f64 = 3.75;
-
-/// The closed core inside the ring: low and high corner, m.
-const CORE: [[f64; 2]; 2] = [[1.625, 6.125], [13.375, 12.125]];
-
-/// South side of the northern rooms, m.
-const NORTH_ROOMS_Y_M: f64 = 13.75;
-
-/// Way-points around the office's ring corridor, its centre line, m: 41.8 m around.
-pub const OFFICE_RING: [[f64; 2]; 4] =
-    [[0.84375, 5.34375], [14.15625, 5.34375], [14.15625, 12.90625], [0.84375, 12.90625]];
-
-/// Corresponding places of the office's look-alike rooms, m: the south-west corners of two equal offices, and of two equal
-/// meeting rooms.
-pub const OFFICE_TWINS: [[[f64; 2]; 2]; 2] =
-    [[[0.0, 0.0], [10.0, 0.0]], [[0.0, NORTH_ROOMS_Y_M], [5.0, NORTH_ROOMS_Y_M]]];
 
 /// Six rooms, 5 x 4.5 m each, outside a ring corridor 1.56 m wide that runs 41.8 m around a closed core (world frame: x 0 to
 /// 15, y 0 to 18.25).

@@ -2,7 +2,7 @@
 
 use super::super::builder::{Builder, Side, UNSEEN};
 use super::super::partition::{Along, DOOR_WIDTH, Partition};
-use super::{DOOR_CENTRE_X_M, HALF_WALL, ROOM_SIZE_M};
+use super::layout::{DOOR_CENTRE_X_M, HALF_WALL, ROOM_SIZE_M};
 use crate::materials::{Finish, Paint};
 use std::f64::consts::{FRAC_PI_2, PI};
 use trundle_core::Pose2;

@@ -1,6 +1,6 @@
 //! Construction of the hierarchy by the surface area heuristic.
 
-use super::{Bvh, LEAF, Node, WIDTH};
+use super::node::{LEAF, Node, WIDTH};
 use crate::world::Aabb;
 use trundle_core::Vector3;
 
@@ -10,22 +10,30 @@ const SAH_BINS: usize = 16;
 /// Levels after which items are halved by number: no tree gets deeper than this and 32.
 const MAX_SAH_DEPTH: usize = 24;
 
-pub(super) fn build(boxes: &[Aabb], most: usize) -> Bvh {
+/// The nodes of a hierarchy, its items in the order of the leaves, and begin and end of each leaf among the items.
+pub(super) struct Tree {
+    pub(super) nodes: Vec<Node>,
+    pub(super) items: Vec<u32>,
+    pub(super) leaves: Vec<(u32, u32)>,
+}
+
+/// The hierarchy over `boxes`, with at most `most` of them a leaf.
+pub(super) fn build(boxes: &[Aabb], most: usize) -> Tree {
     let centers = boxes.iter().map(Aabb::center).collect();
     let items = (0..boxes.len() as u32).collect();
-    let bvh = Bvh { nodes: Vec::new(), items, leaves: Vec::new() };
-    let mut builder = Builder { boxes, centers, most, bvh };
+    let tree = Tree { nodes: Vec::new(), items, leaves: Vec::new() };
+    let mut builder = Builder { boxes, centers, most, tree };
     if !boxes.is_empty() {
         builder.add_node(0, boxes.len(), 0);
     }
-    builder.bvh
+    builder.tree
 }
 
 struct Builder<'a> {
     boxes: &'a [Aabb],
     centers: Vec<Vector3>,
     most: usize,
-    bvh: Bvh,
+    tree: Tree,
 }
 
 /// A range of items.
@@ -55,12 +63,12 @@ impl Builder<'_> {
             parts[largest] = left;
             parts.push(right);
         }
-        let index = self.bvh.nodes.len();
-        self.bvh.nodes.push(node_over(&parts));
+        let index = self.tree.nodes.len();
+        self.tree.nodes.push(node_over(&parts));
         for (i, part) in parts.iter().enumerate() {
-            self.bvh.nodes[index].links[i] = if part.len() <= self.most {
-                self.bvh.leaves.push((part.first as u32, part.end as u32));
-                LEAF | (self.bvh.leaves.len() as u32 - 1)
+            self.tree.nodes[index].links[i] = if part.len() <= self.most {
+                self.tree.leaves.push((part.first as u32, part.end as u32));
+                LEAF | (self.tree.leaves.len() as u32 - 1)
             } else {
                 self.add_node(part.first, part.end, depth + 1)
             };
@@ -69,7 +77,7 @@ impl Builder<'_> {
     }
 
     fn part(&self, first: usize, end: usize) -> Part {
-        let boxes = self.bvh.items[first..end].iter().map(|&i| self.boxes[i as usize]);
+        let boxes = self.tree.items[first..end].iter().map(|&i| self.boxes[i as usize]);
         let bounds = boxes.reduce(Aabb::union).expect("invariant: a part holds an item");
         Part { first, end, bounds }
     }
@@ -81,7 +89,7 @@ impl Builder<'_> {
 
     /// Orders the items by the best plane; where its right side begins. `None` when no plane parts them.
     fn partition(&mut self, part: Part, depth: usize) -> Option<usize> {
-        let items = &mut self.bvh.items[part.first..part.end];
+        let items = &mut self.tree.items[part.first..part.end];
         let scale = Scale::over(items, &self.centers);
         let axis_and_bin =
             if depth < MAX_SAH_DEPTH { best_plane(items, self.boxes, &self.centers, &scale) } else { None };

@@ -1,0 +1,13 @@
+//! What the base can touch.
+
+use crate::people::Crowd;
+use crate::world::Obstacles;
+
+/// What the base can touch.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct ContactScene<'a> {
+    /// Solids.
+    pub(crate) fixed: &'a Obstacles,
+    /// People.
+    pub(crate) moving: &'a Crowd,
+}

@@ -1,0 +1,34 @@
+//! A scene: a world with lights, people, start and goal.
+
+use crate::people::Person;
+use crate::world::{Lights, SceneSnapshot, World};
+use trundle_core::Pose2;
+
+/// A world with a task in it.
+#[derive(Debug)]
+pub struct Scene {
+    /// The name, as in [`Scene::NAMES`].
+    pub name: String,
+    /// Solids and meshes.
+    pub world: World,
+    /// The lights.
+    pub lights: Lights,
+    /// People who walk.
+    pub people: Vec<Person>,
+    /// Where the robot starts, `world_from_base`.
+    pub start: Pose2,
+    /// Where the robot shall go, `world_from_base`.
+    pub goal: Pose2,
+}
+
+impl Scene {
+    /// What a camera sees of it while nothing moves.
+    pub fn snapshot(&self) -> SceneSnapshot<'_> {
+        SceneSnapshot { world: &self.world, movers: &[], lights: &self.lights }
+    }
+
+    /// The goal as the robot is given it, in a frame that starts at the robot: `start_from_goal`.
+    pub fn start_from_goal(&self) -> Pose2 {
+        self.start.inverse() * self.goal
+    }
+}
