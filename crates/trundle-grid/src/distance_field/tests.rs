@@ -123,3 +123,109 @@ fn nowhere_and_outside_follow_the_policy() {
     assert_eq!(free.distance(Vector2::new(f64::NAN, 0.0)), 0.0);
     assert!((walled.distance(Vector2::new(1.0, 0.2)) - 0.2).abs() < 1e-6);
 }
+
+proptest! {
+    /// A distance changes by no more than the way between two cells.
+    #[test]
+    fn distances_of_cells_differ_by_no_more_than_the_cells_are_apart(
+        grid in any_grid(), obstacle in any::<bool>(), a: prop::sample::Index, b: prop::sample::Index,
+    ) {
+        let unknown = if obstacle { UnknownIs::Obstacle } else { UnknownIs::Free };
+        let field = DistanceField::from_grid(&grid, unknown);
+        let cell = |index: prop::sample::Index| grid.geometry().cell(index.index(grid.geometry().len()));
+        let (a, b) = (cell(a), cell(b));
+        let apart = (grid.geometry().center(a) - grid.geometry().center(b)).norm();
+        let (x, y) = (field.at_cell(a), field.at_cell(b));
+        prop_assume!(x < NO_OBSTACLE_DISTANCE_M / 2.0);
+        prop_assert!((x - y).abs() <= apart + 1e-5, "{x} m and {y} m, {apart} m apart");
+    }
+
+    /// A further obstacle makes no distance longer, and its own cell gets distance 0.
+    #[test]
+    fn a_further_obstacle_makes_no_distance_longer(grid in any_grid(), at: prop::sample::Index) {
+        let before = DistanceField::from_grid(&grid, UnknownIs::Free);
+        let mut more = grid;
+        let cell = more.geometry().cell(at.index(more.geometry().len()));
+        more.set(cell, Cell::Occupied);
+        let after = DistanceField::from_grid(&more, UnknownIs::Free);
+        prop_assert_eq!(after.at_cell(cell), 0.0);
+        for i in 0..more.geometry().len() {
+            prop_assert!(after.at_linear(i) <= before.at_linear(i));
+        }
+    }
+
+    /// Unknown cells as obstacles make no distance longer than unknown cells as free floor.
+    #[test]
+    fn unknown_cells_as_obstacles_shorten_distances(grid in any_grid(), x in -0.3..1.3, y in 0.7..2.3) {
+        let free = DistanceField::from_grid(&grid, UnknownIs::Free);
+        let walled = DistanceField::from_grid(&grid, UnknownIs::Obstacle);
+        for i in 0..grid.geometry().len() {
+            prop_assert!(walled.at_linear(i) <= free.at_linear(i));
+        }
+        let point = Vector2::new(x, y);
+        prop_assert!(walled.clearance(point, 0.5) <= free.clearance(point, 0.5) + 1e-9);
+        prop_assert!(walled.is_walled() && !free.is_walled());
+        prop_assert!(free.border_gap(point).is_infinite());
+    }
+
+    /// A disc that keeps clear is one whose clearance is its radius.
+    #[test]
+    fn a_disc_keeps_clear_exactly_when_its_clearance_reaches_its_radius(
+        grid in any_grid(), x in -0.3..1.3, y in 0.7..2.3, radius in 0.02..0.6_f64,
+    ) {
+        let field = DistanceField::from_grid(&grid, UnknownIs::Obstacle);
+        let point = Vector2::new(x, y);
+        let clearance = field.clearance(point, 1.0);
+        prop_assume!((clearance - radius).abs() > 1e-5);
+        prop_assert_eq!(field.keeps(point, radius), clearance > radius, "{} m", clearance);
+    }
+
+    /// Interpolated distances are at most the documented excess above the truth.
+    #[test]
+    fn an_interpolated_distance_exceeds_the_truth_by_no_more_than_its_bound(
+        grid in any_grid(), x in -0.2..1.2, y in 0.8..2.2,
+    ) {
+        let field = DistanceField::from_grid(&grid, UnknownIs::Free);
+        let point = Vector2::new(x, y);
+        prop_assume!(grid.geometry().cell_at(point).is_some());
+        let truth = brute_force(&grid, UnknownIs::Free, point);
+        prop_assume!(truth < 100.0);
+        prop_assert!(field.distance(point) <= truth + field.overestimate(truth) + 1e-6);
+    }
+
+    /// The maximum of a block is the greatest distance of its cells.
+    #[test]
+    fn the_maximum_of_a_block_is_that_of_its_cells(grid in any_grid(), obstacle in any::<bool>()) {
+        let unknown = if obstacle { UnknownIs::Obstacle } else { UnknownIs::Free };
+        let field = DistanceField::from_grid(&grid, unknown);
+        let BlockMaxima { width, height, distance } = field.blocks();
+        let mut expected = vec![0.0_f64; width * height];
+        for i in 0..grid.geometry().len() {
+            let cell = grid.geometry().cell(i);
+            let block = cell.row / BLOCK_SIDE_CELLS * width + cell.col / BLOCK_SIDE_CELLS;
+            expected[block] = expected[block].max(field.at_linear(i));
+        }
+        prop_assert!(distance.iter().zip(&expected).all(|(found, expected)| f64::from(*found) == *expected));
+    }
+
+    /// Rims are the obstacle cells of the box that have a free neighbour.
+    #[test]
+    fn rims_are_obstacles_with_a_free_neighbour(grid in any_grid()) {
+        let field = DistanceField::from_grid(&grid, UnknownIs::Free);
+        let (low, high) = field.extent();
+        let mut found = Vec::new();
+        field.for_obstacle_rims_in(low, high, |center| found.push(grid.geometry().cell_at(center)));
+        let is_obstacle = |col: i64, row: i64| field.blocks_at(col, row);
+        let (width, height) = (grid.geometry().width as i64, grid.geometry().height as i64);
+        let mut expected = Vec::new();
+        for (row, col) in (0..height).flat_map(|row| (0..width).map(move |col| (row, col))) {
+            let sides = [(col - 1, row), (col + 1, row), (col, row - 1), (col, row + 1)];
+            let inside = |(c, r): &(i64, i64)| (0..width).contains(c) && (0..height).contains(r);
+            let free = sides.iter().filter(|side| inside(side)).any(|(c, r)| !is_obstacle(*c, *r));
+            if is_obstacle(col, row) && free {
+                expected.push(Some(CellIndex { col: col as usize, row: row as usize }));
+            }
+        }
+        prop_assert_eq!(found, expected);
+    }
+}

@@ -5,3 +5,6 @@ pub(crate) mod loop_closer;
 pub(crate) mod scan_history;
 pub(crate) mod stored_scan;
 mod submap;
+
+#[cfg(test)]
+mod tests;

@@ -313,15 +313,4 @@ fn read_ties(bytes: &mut Reader<'_>, poses: usize) -> Result<Vec<Constraint>, Fi
 }
 
 #[cfg(test)]
-mod tests {
-    use super::chosen;
-
-    #[test]
-    fn fewer_particles_are_the_heaviest_and_more_are_all_in_turn() {
-        let log_weights = [-3.0, 0.0, -1.0, -9.0, -2.0];
-        assert_eq!(chosen(&log_weights, 3), [1, 2, 4]);
-        assert_eq!(chosen(&log_weights, 1), [1]);
-        assert_eq!(chosen(&log_weights, 5), [0, 1, 2, 3, 4]);
-        assert_eq!(chosen(&log_weights, 7), [0, 1, 2, 3, 4, 0, 1]);
-    }
-}
+mod tests;
