@@ -164,7 +164,7 @@ impl fmt::Display for Reason {
             Self::PoseUncertain { sigma } => write!(f, "the position is only known to {sigma:.2} m"),
             Self::WheelsUnresponsive { sigma } => write!(
                 f,
-                "the position is only known to {sigma:.2} m: the wheels are told to roll and count nothing"
+                "the position is only known to {sigma:.2} m: the wheels are commanded and count nothing"
             ),
             Self::ViewContradictsMap => f.write_str("what the camera sees is not what is there on the map"),
             Self::RepeatedContact { contacts } => {
