@@ -35,7 +35,8 @@ struct FaultScenario {
     end: End,
 }
 
-const FOREVER: f64 = f64::INFINITY;
+/// End of a fault that never ends, s.
+const FOREVER_S: f64 = f64::INFINITY;
 
 /// The fault scenarios.
 fn scenarios() -> Vec<FaultScenario> {
@@ -66,37 +67,37 @@ fn scenarios() -> Vec<FaultScenario> {
         broken(
             "camera gone",
             8.0,
-            FOREVER,
+            FOREVER_S,
             FaultKind::CameraDropped { probability: 1.0 },
             End::Stopped(&[ReasonKind::ImageMissing]),
         ),
-        broken("lights out", 8.0, FOREVER, FaultKind::LightsOut, End::Arrived),
+        broken("lights out", 8.0, FOREVER_S, FaultKind::LightsOut, End::Arrived),
         broken("depth gone for 10 s", 8.0, 18.0, FaultKind::DepthGone, End::Arrived),
-        broken("depth gone", 8.0, FOREVER, FaultKind::DepthGone, End::Stopped(&[ReasonKind::ImageMissing])),
-        broken("frames late by 500 ms", 0.0, FOREVER, FaultKind::CameraLate { delay_s: 0.5 }, End::Arrived),
+        broken("depth gone", 8.0, FOREVER_S, FaultKind::DepthGone, End::Stopped(&[ReasonKind::ImageMissing])),
+        broken("frames late by 500 ms", 0.0, FOREVER_S, FaultKind::CameraLate { delay_s: 0.5 }, End::Arrived),
         broken("a wheel slips on a carpet", 8.0, 11.0, slips, End::Arrived),
-        broken("gyro stuck", 8.0, FOREVER, FaultKind::GyroStuck, End::Arrived),
-        broken("encoders stuck", 8.0, FOREVER, FaultKind::EncodersStuck, End::Arrived),
+        broken("gyro stuck", 8.0, FOREVER_S, FaultKind::GyroStuck, End::Arrived),
+        broken("encoders stuck", 8.0, FOREVER_S, FaultKind::EncodersStuck, End::Arrived),
         broken("odometry jumps 1 m", 10.0, 10.1, jump, End::Arrived),
         broken("kidnapped while driving", 12.0, 12.1, carried, End::Arrived),
         two(
             "in the dark, encoders stuck",
-            [(8.0, FOREVER, FaultKind::LightsOut), (8.0, FOREVER, FaultKind::EncodersStuck)],
+            [(8.0, FOREVER_S, FaultKind::LightsOut), (8.0, FOREVER_S, FaultKind::EncodersStuck)],
             End::Stopped(&[ReasonKind::WheelsUnresponsive, ReasonKind::MotionUnknown]),
         ),
         two(
             "dark for 10 s, encoders stuck",
-            [(8.0, 18.0, FaultKind::LightsOut), (8.0, FOREVER, FaultKind::EncodersStuck)],
+            [(8.0, 18.0, FaultKind::LightsOut), (8.0, FOREVER_S, FaultKind::EncodersStuck)],
             End::Arrived,
         ),
         two(
             "gyro stuck, encoders for 14 s",
-            [(5.0, FOREVER, FaultKind::GyroStuck), (6.0, 20.0, FaultKind::EncodersStuck)],
+            [(5.0, FOREVER_S, FaultKind::GyroStuck), (6.0, 20.0, FaultKind::EncodersStuck)],
             End::Arrived,
         ),
         two(
             "carried away in the dark",
-            [(8.0, FOREVER, FaultKind::LightsOut), (12.0, 12.1, carried)],
+            [(8.0, FOREVER_S, FaultKind::LightsOut), (12.0, 12.1, carried)],
             End::FoundOrStopped(&[ReasonKind::PoseUnknown]),
         ),
         FaultScenario {

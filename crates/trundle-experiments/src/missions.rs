@@ -57,7 +57,7 @@ pub fn run_obstacles(request: &RunsRequest, progress: &Progress) -> Result<Missi
 }
 
 /// The robot's start in the house, world frame: m, m, deg.
-const HOUSE_START: (f64, f64, f64) = (0.0, 0.0, 0.0);
+const HOUSE_START_XY_DEG: (f64, f64, f64) = (0.0, 0.0, 0.0);
 /// The goals, world frame: m, m, deg; by rooms.
 const HOUSE_GOALS: [(f64, f64, f64); 10] = [
     (3.0, -1.0, 0.0),
@@ -86,7 +86,7 @@ pub fn run_house(
         return Err(AppError::Input(format!("{} {problem}", mesh.display())));
     }
     let pose = |(x, y, degrees): (f64, f64, f64)| Pose2::new(x, y, degrees.to_radians());
-    let start = pose(HOUSE_START);
+    let start = pose(HOUSE_START_XY_DEG);
     run_story(&HOUSE, request, progress, |seed| {
         let options = SceneOptions { seed, up: UpAxis::Z, start: Some(start) };
         let scene = load_scene(&mesh.display().to_string(), options)?;

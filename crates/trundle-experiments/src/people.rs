@@ -9,19 +9,20 @@ use trundle_runtime::{Mission, RobotConfig, Task};
 use trundle_sim::{FaultSchedule, Person, Scene};
 use trundle_viz::{Report, Table, Verdict};
 
-/// The robot crosses the room from here to there, world frame, m.
-const FROM: (f64, f64) = (-2.4, 0.0);
-const TO: (f64, f64) = (2.0, 0.0);
-/// Somebody is on its way when its front is so far before them, m.
-const AHEAD: f64 = 1.0;
-/// Where on the way that is, m from its start: it drives at full speed there.
-const WHERE: (f64, f64) = (1.9, 3.6);
-/// From so far beside the way they come, m.
-const BESIDE: (f64, f64) = (0.8, 1.2);
-/// How fast, m/s.
-const SPEED: (f64, f64) = (0.7, 1.6);
-/// They stand on the way for so long, s, then walk on.
-const STAY: (f64, f64) = (0.0, 4.0);
+/// Start of the robot's crossing, world frame, m.
+const START_XY_M: (f64, f64) = (-2.4, 0.0);
+/// Goal of the robot's crossing, world frame, m.
+const GOAL_XY_M: (f64, f64) = (2.0, 0.0);
+/// Distance between the robot's front and a person who steps onto its path, m.
+const ENCOUNTER_DISTANCE_M: f64 = 1.0;
+/// Range of the encounter along the path from its start, m: the robot drives at full speed there.
+const ENCOUNTER_PATH_RANGE_M: (f64, f64) = (1.9, 3.6);
+/// Range of the person's start beside the path, m.
+const SIDE_OFFSET_RANGE_M: (f64, f64) = (0.8, 1.2);
+/// Range of walking speeds, m/s.
+const WALKING_SPEED_RANGE_M_S: (f64, f64) = (0.7, 1.6);
+/// Range of the time that the person stands on the path, s.
+const STAY_RANGE_S: (f64, f64) = (0.0, 4.0);
 
 /// Somebody who steps out: where on the way, from how far beside it (left is positive), m; m/s; s.
 #[derive(Debug, Clone, Copy)]
@@ -41,16 +42,16 @@ impl StepOut {
         };
         let side = if seed.is_multiple_of(2) { 1.0 } else { -1.0 };
         Self {
-            x: FROM.0 + draw(1, WHERE),
-            beside: side * draw(2, BESIDE),
-            speed: draw(3, SPEED),
-            stay: draw(4, STAY),
+            x: START_XY_M.0 + draw(1, ENCOUNTER_PATH_RANGE_M),
+            beside: side * draw(2, SIDE_OFFSET_RANGE_M),
+            speed: draw(3, WALKING_SPEED_RANGE_M_S),
+            stay: draw(4, STAY_RANGE_S),
         }
     }
 
-    /// The person who is on the way when the robot, by `timetable`, is [`AHEAD`] of them.
+    /// The person who is on the way when the robot, by `timetable`, is [`ENCOUNTER_DISTANCE_M`] of them.
     fn person(&self, timetable: &[(f64, Vector2)], radius: f64) -> Person {
-        let robot_at = self.x - AHEAD - radius;
+        let robot_at = self.x - ENCOUNTER_DISTANCE_M - radius;
         let on_the_way = timetable.iter().find(|(_, at)| at.x >= robot_at).map_or(0.0, |(time, _)| *time);
         Person {
             waypoints: vec![[self.x, self.beside], [self.x, 0.0], [self.x, -self.beside]],
@@ -112,8 +113,8 @@ impl ExperimentReport for PeopleOutcome {
 /// Across the room, with nobody in it yet.
 fn plan(name: &str, seed: u64, robot: &RobotConfig) -> Result<TrialPlan, AppError> {
     let mut scene = Scene::by_name("room", seed)?;
-    scene.start = Pose2::new(FROM.0, FROM.1, 0.0);
-    scene.goal = Pose2::new(TO.0, TO.1, 0.0);
+    scene.start = Pose2::new(START_XY_M.0, START_XY_M.1, 0.0);
+    scene.goal = Pose2::new(GOAL_XY_M.0, GOAL_XY_M.1, 0.0);
     let mission = Mission::new(vec![Task::Go(scene.start_from_goal())])?;
     let (name, robot) = (name.to_owned(), robot.clone());
     Ok(TrialPlan {
@@ -138,7 +139,7 @@ fn verdict(trials: &[Trial]) -> String {
         trials.iter().filter(|trial| !is_good(trial)).map(|trial| trial.name.as_str()).take(20).collect();
     let which = if bad.is_empty() { String::new() } else { format!(" Not so: {}.", bad.join(", ")) };
     format!(
-        "In {} runs somebody stepped out {AHEAD} m before the robot: {contacts} with a contact, {arrived} arrived untouched.{which}",
+        "In {} runs somebody stepped out {ENCOUNTER_DISTANCE_M} m before the robot: {contacts} with a contact, {arrived} arrived untouched.{which}",
         trials.len()
     )
 }
@@ -195,15 +196,15 @@ mod tests {
     #[test]
     fn they_are_on_the_way_when_the_robot_is_a_metre_before_them() {
         // A robot that drives 1 m in 2 s.
-        let point = |i: i32| (f64::from(i) * 0.1, Vector2::new(FROM.0 + f64::from(i) * 0.05, 0.0));
+        let point = |i: i32| (f64::from(i) * 0.1, Vector2::new(START_XY_M.0 + f64::from(i) * 0.05, 0.0));
         let timetable: Vec<_> = (0..100).map(point).collect();
         for seed in 1..50 {
             let step = StepOut::of(seed);
             let person = step.person(&timetable, 0.2);
             let there = person.delay + step.beside.abs() / step.speed;
-            let robot = FROM.0 + there * 0.5;
-            assert!((step.x - robot - 0.2 - AHEAD).abs() < 0.06, "{step:?} {person:?}");
-            assert!((FROM.0..=TO.0).contains(&step.x));
+            let robot = START_XY_M.0 + there * 0.5;
+            assert!((step.x - robot - 0.2 - ENCOUNTER_DISTANCE_M).abs() < 0.06, "{step:?} {person:?}");
+            assert!((START_XY_M.0..=GOAL_XY_M.0).contains(&step.x));
         }
     }
 
@@ -212,9 +213,12 @@ mod tests {
         let steps: Vec<StepOut> = (1..=40).map(StepOut::of).collect();
         assert_eq!(steps.iter().filter(|step| step.beside > 0.0).count(), 20);
         for step in steps {
-            assert!((BESIDE.0..=BESIDE.1).contains(&step.beside.abs()), "{step:?}");
-            assert!((SPEED.0..=SPEED.1).contains(&step.speed), "{step:?}");
-            assert!((STAY.0..=STAY.1).contains(&step.stay), "{step:?}");
+            assert!((SIDE_OFFSET_RANGE_M.0..=SIDE_OFFSET_RANGE_M.1).contains(&step.beside.abs()), "{step:?}");
+            assert!(
+                (WALKING_SPEED_RANGE_M_S.0..=WALKING_SPEED_RANGE_M_S.1).contains(&step.speed),
+                "{step:?}"
+            );
+            assert!((STAY_RANGE_S.0..=STAY_RANGE_S.1).contains(&step.stay), "{step:?}");
         }
     }
 

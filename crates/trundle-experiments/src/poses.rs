@@ -15,8 +15,8 @@ const STARTS: [(f64, f64); 8] =
 
 /// What is asked for: the mean of |dx| and of |dy|, m.
 const MEAN_OFFSET: f64 = 0.004;
-/// Every distance, m.
-const DISTANCE: f64 = 0.015;
+/// Largest distance from the goal in any run, m.
+const MAX_GOAL_DISTANCE_M: f64 = 0.015;
 /// The mean of |dtheta|, rad.
 const MEAN_TURN: f64 = 0.8 * std::f64::consts::PI / 180.0;
 
@@ -105,7 +105,7 @@ impl Means {
     }
 
     fn within(&self) -> bool {
-        let near = self.dx <= MEAN_OFFSET && self.dy <= MEAN_OFFSET && self.most < DISTANCE;
+        let near = self.dx <= MEAN_OFFSET && self.dy <= MEAN_OFFSET && self.most < MAX_GOAL_DISTANCE_M;
         near && self.dtheta <= MEAN_TURN && self.failed == 0
     }
 

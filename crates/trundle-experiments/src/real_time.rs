@@ -11,14 +11,14 @@ use trundle_viz::{Chart, Color, Figure, Report, Table, Verdict};
 
 /// 999 of 1000 commands come within this of their time, ms.
 const JITTER_MS: f64 = 5.0;
-/// Of the robot's core, all its threads together.
-const LOAD: f64 = 0.6;
-/// Robot and simulator may grow by so much once maps and buffers have their size, MB an hour.
-const GROWTH: f64 = 10.0;
-/// Before this, s, memory may grow: the rooms are not yet known.
-const SETTLED: f64 = 600.0;
-/// Runs shorter than this, s, do not tell how it grows.
-const JUDGED: f64 = 2.0 * SETTLED;
+/// Largest load of the robot's core by all its threads.
+const MAX_CPU_LOAD: f64 = 0.6;
+/// Largest growth of memory once maps and buffers have their size, MB/h.
+const MAX_MEMORY_GROWTH_MB_PER_H: f64 = 10.0;
+/// Time before which memory may grow, s: maps and buffers reach their size.
+const MEMORY_SETTLING_S: f64 = 600.0;
+/// Shortest run whose growth is judged, s.
+const MIN_JUDGED_RUN_S: f64 = 2.0 * MEMORY_SETTLING_S;
 /// A goal and the way back take at least so long, s.
 const SHORTEST_TASK: f64 = 10.0;
 
@@ -90,7 +90,7 @@ pub fn run(
     let robot = request.robot.clone().with_seed(request.seed);
     let scene = Scene::by_name("demo", request.seed)?;
     let seconds = 60.0 * f64::from(request.minutes);
-    let before = if seconds >= JUDGED { vec![Task::Explore] } else { vec![] };
+    let before = if seconds >= MIN_JUDGED_RUN_S { vec![Task::Explore] } else { vec![] };
     let pair = [Task::Go(scene.start_from_goal()), Task::Return];
     let setup = RunSetup {
         scene: scene.name.clone(),
@@ -114,8 +114,8 @@ fn limits(timing: &RealTimeReport) -> Vec<Limit> {
     let end = timing.memory.samples.last().map_or(0.0, |(time, _)| *time);
     let growth = Limit {
         name: "growth of memory",
-        value: timing.memory.growth_mb_an_hour(SETTLED),
-        max: GROWTH,
+        value: timing.memory.growth_mb_an_hour(MEMORY_SETTLING_S),
+        max: MAX_MEMORY_GROWTH_MB_PER_H,
         unit: "MB/h",
     };
     let all = [
@@ -128,11 +128,11 @@ fn limits(timing: &RealTimeReport) -> Vec<Limit> {
         Limit {
             name: "load of the robot's core",
             value: Some(timing.load_total * 100.0),
-            max: LOAD * 100.0,
+            max: MAX_CPU_LOAD * 100.0,
             unit: "%",
         },
     ];
-    all.into_iter().chain((end >= JUDGED).then_some(growth)).collect()
+    all.into_iter().chain((end >= MIN_JUDGED_RUN_S).then_some(growth)).collect()
 }
 
 impl RealTimeOutcome {

@@ -18,7 +18,7 @@ use std::sync::Mutex;
 const GOLDEN_FILE: &str = "data/golden/expected.txt";
 
 /// Cases run side by side.
-const THREADS: usize = 2;
+const CASES_AT_ONCE: usize = 2;
 
 /// What the user asks of the golden net.
 pub struct Options {
@@ -92,13 +92,13 @@ impl Net<'_> {
         case.needs.is_none_or(|needs| self.root.join(needs).exists())
     }
 
-    /// Runs the cases on [`THREADS`] threads; the digests by key.
+    /// Runs the cases on [`CASES_AT_ONCE`] threads; the digests by key.
     fn run_all(&self, cases: &[&Case]) -> Result<Digests, String> {
         let queue = Mutex::new(cases.iter());
         let results = Mutex::new(Vec::new());
         let next = || queue.lock().ok().and_then(|mut queue| queue.next().copied());
         std::thread::scope(|scope| {
-            for _ in 0..THREADS {
+            for _ in 0..CASES_AT_ONCE {
                 scope.spawn(|| {
                     while let Some(case) = next() {
                         let result = self.run_case(case);

@@ -10,14 +10,14 @@ use trundle_planning::{ClearanceCostConfig, PlannerConfig, TimingConfig};
 use trundle_runtime::{MissionExecutorConfig, RangeSource, RobotConfig, Schedule};
 use trundle_sim::{FaultSchedule, SimConfig};
 
-/// Half of the robot's length and width, m.
-const HALF: (f64, f64) = (0.254, 0.215);
+/// Half of the robot's length and width, m. Source: the Jackal's data sheet.
+const HALF_SIZE_M: (f64, f64) = (0.254, 0.215);
 /// What it is asked to accelerate by, m/s^2; its own controller allows 20.
-const ACCELERATION: f64 = 3.0;
+const ACCELERATION_M_S2: f64 = 3.0;
 
 /// The challenge's robot, a Clearpath Jackal, as the autonomy knows it: two-wheeled, 2 m/s, 0.508 x 0.430 m, a laser.
 pub fn robot() -> RobotConfig {
-    let (x, y) = HALF;
+    let (x, y) = HALF_SIZE_M;
     RobotConfig {
         footprint_radius: x.hypot(y),
         footprint: Some(vec![[x, y], [-x, y], [-x, -y], [x, -y]]),
@@ -27,7 +27,7 @@ pub fn robot() -> RobotConfig {
             wheel_speed: 2.4,
             v: 2.0,
             omega: 4.0,
-            acceleration: ACCELERATION,
+            acceleration: ACCELERATION_M_S2,
             angular_acceleration: 10.0,
         },
         schedule: Schedule { map_hz: 20.0, check_hz: 20.0, improve_hz: 4.0 },
@@ -41,7 +41,7 @@ pub fn robot() -> RobotConfig {
         },
         control: FollowerConfig { wait_from: 0.1, wait_at: 0.3, ..FollowerConfig::default() },
         safety: SafetyConfig {
-            deceleration: ACCELERATION,
+            deceleration: ACCELERATION_M_S2,
             angular_deceleration: 10.0,
             latency: 0.08,
             slow_margin: 0.02,
@@ -60,7 +60,7 @@ pub fn body(robot: &RobotConfig) -> Result<SimConfig, Invalid> {
     config.has_camera = false;
     config.laser = Some(hokuyo(0.12));
     config.kobuki.wheel_speed = robot.limits.wheel_speed;
-    config.kobuki.wheel_acceleration = 2.0 * ACCELERATION;
+    config.kobuki.wheel_acceleration = 2.0 * ACCELERATION_M_S2;
     config.kobuki.cliff_sensors = Vec::new();
     config.kobuki.height = 0.35;
     config.validated()

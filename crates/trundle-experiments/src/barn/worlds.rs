@@ -18,9 +18,9 @@ pub struct BarnWorld {
 }
 
 /// Radius of every cylinder, m.
-const RADIUS: f64 = 0.075;
+const CYLINDER_RADIUS_M: f64 = 0.075;
 /// Height of every cylinder, m.
-const HEIGHT: f64 = 1.0;
+const CYLINDER_HEIGHT_M: f64 = 1.0;
 
 impl BarnWorld {
     /// Start of the challenge, world frame.
@@ -41,7 +41,8 @@ impl BarnWorld {
         let mut solids = vec![Solid { shape: Shape::Cuboid(floor), finish: finish() }];
         solids.extend(self.cylinders.iter().map(|at| {
             let base = Vector3::new(at.x, at.y, 0.0);
-            let shape = Shape::Cylinder(Cylinder { base, radius: RADIUS, height: HEIGHT });
+            let shape =
+                Shape::Cylinder(Cylinder { base, radius: CYLINDER_RADIUS_M, height: CYLINDER_HEIGHT_M });
             Solid { shape, finish: finish() }
         }));
         Ok(Scene {
