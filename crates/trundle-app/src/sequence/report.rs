@@ -42,7 +42,6 @@ pub fn page(
         figures: vec![visual_map(run, trajectory)],
         charts,
         tables: vec![rows.iter().cloned().fold(Table::new("The sequence", ["what", "value"]), Table::row)],
-        ..RunReport::default()
     }
 }
 
