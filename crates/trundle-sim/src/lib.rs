@@ -27,6 +27,7 @@ mod people;
 mod rng;
 pub mod scenes;
 mod simulator;
+mod solid;
 mod world;
 
 pub use camera::{ColorNoise, DepthNoise, Exposure, Renderer, RgbdSensor, View, blend};

@@ -1,7 +1,10 @@
 //! Textures of all faces of a world's solids.
 
-use super::{Finish, Texture, bake_solid, texels_of_solid};
-use crate::world::{Shape, Solid};
+use super::bake::{bake_solid, texels_of_solid};
+use super::finish::Finish;
+use super::texture::Texture;
+use crate::solid::Solid;
+use crate::world::shape::Shape;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::ops::Index;
@@ -89,8 +92,9 @@ fn size_bits(shape: &Shape) -> [u64; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::materials::{Paint, texels_of_face};
-    use crate::world::Cuboid;
+    use crate::materials::bake::texels_of_face;
+    use crate::materials::kind::Paint;
+    use crate::world::shape::Cuboid;
     use trundle_core::Vector3;
 
     #[test]

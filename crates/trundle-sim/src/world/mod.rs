@@ -17,10 +17,11 @@ mod probe;
 mod ray;
 mod region;
 mod scene_snapshot;
-mod shape;
+pub(crate) mod shape;
 mod triangles;
 
-use crate::materials::{Finish, Paintings, Texture};
+use crate::materials::{Paintings, Texture};
+pub use crate::solid::Solid;
 pub(crate) use aabb::Aabb;
 pub use band::HeightBand;
 pub(crate) use bvh::{Bvh, Node, Probe, WIDTH};
@@ -37,15 +38,6 @@ pub use shape::{Cuboid, Cylinder, Shape};
 use std::sync::OnceLock;
 pub(crate) use triangles::{BLOCK, Block, Triangles};
 use trundle_core::{Invalid, Vector3};
-
-/// A shape and how its faces look.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Solid {
-    /// Where it is.
-    pub shape: Shape,
-    /// What is painted on it.
-    pub finish: Finish,
-}
 
 /// A static scene: frame `world`, z up, the floor's top at z = 0, metres.
 ///
