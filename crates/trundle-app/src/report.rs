@@ -6,7 +6,8 @@ mod run_folder;
 mod run_numbers;
 mod timing_page;
 
+pub use crate::setup::mission_text;
 pub use camera_picture::{camera_view, landmarks_in_map};
 pub use goal_outcome::GoalOutcome;
-pub use run_folder::{RunOutput, mission_text, write_run};
+pub use run_folder::{RunOutput, write_run};
 pub use run_numbers::{RunNumbers, stage_rows, wall_clock};

@@ -181,7 +181,9 @@ mod tests {
         for i in 0..20_000 {
             let stamp = Stamp::from_nanos(i * 20_000_000);
             log.on_event(&SensorEvent::Truth { stamp, pose: Pose2::IDENTITY }, Pose2::IDENTITY);
-            log.on_report(stamp, &StepReport { twist: Some(Twist2::ZERO), ..StepReport::default() });
+            let mut report = StepReport::default();
+            report.twist = Some(Twist2::ZERO);
+            log.on_report(stamp, &report);
         }
         for length in [log.truths.len(), log.twists.len()] {
             assert!((3000..=3001 + MIN_DROPPED_ENTRIES).contains(&length), "{length}");

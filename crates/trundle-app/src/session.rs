@@ -2,6 +2,7 @@
 
 use crate::encoded_body::{EncodedBody, RunInput};
 use crate::run_mark::{RunMark, RunMarkMessage};
+use crate::setup::mission_text;
 use crate::{AppError, BestView, FinishedRun, Progress, RecordingCost, RunLog, RunRecorder, RunSetup};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -41,6 +42,7 @@ impl<'s> RunSession<'s> {
         }
         let config = setup.clone();
         recorder.write(move |file| file.record_json("/config", "trundle.Config", Stamp::default(), &config));
+        tracing::info!("run in '{}', seed {}: {}", setup.scene, setup.seed, mission_text(&setup.mission));
         let view = BestView::default();
         let start = Instant::now();
         Ok(Self { setup, robot, recorder, log, view, progress, start, is_interrupted: false })
@@ -129,6 +131,7 @@ impl<'s> RunSession<'s> {
         if self.is_interrupted {
             self.log.state = DriveState::Stopped { reason: Reason::Interrupted };
         }
+        tracing::info!("run over after {:.1} s: {}", self.log.elapsed(), self.log.state);
         let (queue_lengths, lines_lost) = (self.recorder.queue_lengths.clone(), self.recorder.lines_lost);
         let last = if self.recorder.writes_checkpoints() { self.robot.memory() } else { None };
         let (cpu_time, error) = match self.recorder.finish(last) {

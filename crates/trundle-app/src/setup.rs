@@ -9,6 +9,7 @@ use trundle_runtime::{Checkpoint, Mission, Robot, RobotConfig, Task};
 /// The setup of a run: recorded first, and all that a replay needs besides the events.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
+#[non_exhaustive]
 pub struct RunSetup {
     /// The scene's name, for reports.
     pub scene: String,
@@ -89,6 +90,12 @@ impl RunSetup {
     pub fn last_goal(&self) -> Option<Pose2> {
         self.mission.tasks().iter().rev().find_map(Self::goal_of)
     }
+}
+
+/// A mission in words.
+#[must_use]
+pub fn mission_text(mission: &Mission) -> String {
+    mission.tasks().iter().map(ToString::to_string).collect::<Vec<_>>().join(", ")
 }
 
 #[cfg(test)]

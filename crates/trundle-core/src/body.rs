@@ -23,6 +23,7 @@ pub struct Cliff {
 
 /// What comes out of a robot's body, in the order of its stamps.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub enum SensorEvent {
     /// Wheel encoders.
     Wheels(WheelTicks),

@@ -6,6 +6,7 @@ use std::fmt;
 /// A coordinate frame. "Frame" alone means an image; this is the other kind.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum FrameId {
     /// THE map frame: the occupancy grid's. x and y in the floor plane, z up.
     Map,

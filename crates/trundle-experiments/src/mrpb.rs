@@ -22,7 +22,7 @@ use trundle_core::{DriveLimits, Invalid};
 use trundle_io::{OutputFolder, write_map};
 use trundle_localization::LocalizerConfig;
 use trundle_mapping::MapperConfig;
-use trundle_runtime::{Mission, RangeSource, RobotConfig, Schedule, Task};
+use trundle_runtime::{Mission, RangeSource, RobotConfig, Task};
 use trundle_sim::{FaultSchedule, SimConfig};
 
 /// Radius of the benchmark's robot \[m\]. Source: MRPB 1.0.
@@ -111,32 +111,32 @@ impl ExperimentReport for MrpbOutcome {
 
 /// The benchmark's robot as the autonomy's settings: a round two-wheeled base with a laser.
 fn robot() -> RobotConfig {
-    let defaults = RobotConfig::default();
-    RobotConfig {
-        footprint_radius: ROBOT_RADIUS_M + INFLATION_M,
-        sight: RangeSource::Laser,
-        limits: DriveLimits { v: MAX_SPEED_M_S, ..DriveLimits::KOBUKI },
-        schedule: Schedule { map_hz: 10.0, check_hz: 10.0, improve_hz: 1.0 },
-        // Only the ends of a long corridor give the position along it.
-        mapping: MapperConfig { max_range: LASER_RANGE_M, ..MapperConfig::default() },
-        // Errors of laser scans are less correlated than those of images: each scan corrects less of the heading.
-        localization: LocalizerConfig {
-            least_position_sigma: 0.005,
-            least_heading_sigma_deg: 0.1,
-            scan_heading_sigma_deg: 0.3,
-            ..LocalizerConfig::default()
+    let mut robot = RobotConfig::default();
+    robot.footprint_radius = ROBOT_RADIUS_M + INFLATION_M;
+    robot.sight = RangeSource::Laser;
+    robot.limits = DriveLimits { v: MAX_SPEED_M_S, ..DriveLimits::KOBUKI };
+    robot.schedule.map_hz = 10.0;
+    robot.schedule.check_hz = 10.0;
+    robot.schedule.improve_hz = 1.0;
+    // Only the ends of a long corridor give the position along it.
+    robot.mapping = MapperConfig { max_range: LASER_RANGE_M, ..MapperConfig::default() };
+    // Errors of laser scans are less correlated than those of images: each scan corrects less of the heading.
+    robot.localization = LocalizerConfig {
+        least_position_sigma: 0.005,
+        least_heading_sigma_deg: 0.1,
+        scan_heading_sigma_deg: 0.3,
+        ..LocalizerConfig::default()
+    };
+    // A tenth of the benchmark's tolerance in position, a quarter in heading: the estimate has errors of its own.
+    robot.control = FollowerConfig {
+        settling: StabilizerConfig {
+            position_tolerance: 0.1 * GOAL_TOLERANCE_M,
+            heading_tolerance: 0.25 * GOAL_TOLERANCE_RAD,
+            ..StabilizerConfig::default()
         },
-        // A tenth of the benchmark's tolerance in position, a quarter in heading: the estimate has errors of its own.
-        control: FollowerConfig {
-            settling: StabilizerConfig {
-                position_tolerance: 0.1 * GOAL_TOLERANCE_M,
-                heading_tolerance: 0.25 * GOAL_TOLERANCE_RAD,
-                ..StabilizerConfig::default()
-            },
-            ..FollowerConfig::default()
-        },
-        ..defaults
-    }
+        ..FollowerConfig::default()
+    };
+    robot
 }
 
 /// Its body in the simulator.

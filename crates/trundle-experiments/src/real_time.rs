@@ -92,16 +92,11 @@ pub fn run(
     let seconds = 60.0 * f64::from(request.minutes);
     let before = if seconds >= MIN_JUDGED_RUN_S { vec![Task::Explore] } else { vec![] };
     let pair = [Task::Go(scene.start_from_goal()), Task::Return];
-    let setup = RunSetup {
-        scene: scene.name.clone(),
-        seed: request.seed,
-        map_from_world: scene.start.inverse(),
-        time_limit: seconds,
-        mission: Mission::new([before, pair.repeat((seconds / SHORTEST_TASK) as usize)].concat())?,
-        robot,
-        real_time: true,
-        checkpoint: None,
-    };
+    let mission = Mission::new([before, pair.repeat((seconds / SHORTEST_TASK) as usize)].concat())?;
+    let mut setup = RunSetup::new(&scene.name, mission, robot).with_time_limit(seconds);
+    setup.seed = request.seed;
+    setup.map_from_world = scene.start.inverse();
+    setup.real_time = true;
     let config = simulated_real_time_body(&setup.robot, FaultSchedule::default())?;
     let body = Simulator::new(scene, config, request.seed).map_err(AppError::input)?;
     let start = |events, place| SimulatedRealTimeBody::start(body, events, place);

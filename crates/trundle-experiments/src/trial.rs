@@ -121,16 +121,10 @@ pub fn run_all(
 pub fn run_one(plan: TrialPlan) -> Result<Trial, AppError> {
     let TrialPlan { name, seed, scene, mission, robot, faults, computer_fault } = plan;
     let world_from_map = scene.start;
-    let setup = RunSetup {
-        scene: scene.name.clone(),
-        seed,
-        map_from_world: world_from_map.inverse(),
-        time_limit: time_limit(&mission),
-        mission,
-        robot: robot.with_seed(seed),
-        real_time: false,
-        checkpoint: None,
-    };
+    let limit = time_limit(&mission);
+    let mut setup = RunSetup::new(&scene.name, mission, robot.with_seed(seed)).with_time_limit(limit);
+    setup.seed = seed;
+    setup.map_from_world = world_from_map.inverse();
     let config = simulated_body(&setup.robot, faults)?;
     let mut body = Simulator::new(scene, config, seed).map_err(|error| AppError::Input(error.to_string()))?;
     let run = match computer_fault {

@@ -49,6 +49,12 @@ pub enum CodecError {
         /// For example `8-bit RGB`.
         found: String,
     },
+    /// A kind of event that recordings do not hold.
+    #[error("the event of {:.3} s is of a kind that recordings do not hold", stamp.as_secs())]
+    UnknownEvent {
+        /// Stamp of the event.
+        stamp: trundle_core::Stamp,
+    },
     /// Colour and depth do not fit together, or a size is not accepted.
     #[error(transparent)]
     Invalid(#[from] Invalid),

@@ -67,4 +67,30 @@ mod tests {
         let right = mount.base_from_camera().rotate(Vector3::x());
         assert!((right + Vector3::y()).norm() < 1e-12);
     }
+
+    #[test]
+    fn each_number_is_checked_by_name() {
+        let field = |mount: CameraMount| mount.validated().unwrap_err().field;
+        let good = CameraMount::default();
+        assert_eq!(good.validated(), Ok(good));
+        for (mount, name) in [
+            (CameraMount { x: 3.0, ..good }, "mount.x"),
+            (CameraMount { y: -3.0, ..good }, "mount.y"),
+            (CameraMount { z: -0.1, ..good }, "mount.z"),
+            (CameraMount { yaw_deg: 200.0, ..good }, "mount.yaw_deg"),
+            (CameraMount { pitch_deg: 90.0, ..good }, "mount.pitch_deg"),
+            (CameraMount { roll_deg: f64::NAN, ..good }, "mount.roll_deg"),
+        ] {
+            assert_eq!(field(mount), name);
+        }
+    }
+
+    #[test]
+    fn a_camera_that_is_turned_left_looks_left() {
+        let mount = CameraMount { yaw_deg: 90.0, pitch_deg: 0.0, ..CameraMount::default() };
+        let optical_axis = mount.base_from_camera().rotate(Vector3::z());
+        assert!((optical_axis - Vector3::y()).norm() < 1e-12, "{optical_axis}");
+        let at = mount.base_from_camera().translation;
+        assert_eq!((at.x, at.y, at.z), (mount.x, mount.y, mount.z));
+    }
 }

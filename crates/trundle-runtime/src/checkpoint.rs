@@ -27,6 +27,7 @@ pub struct Checkpoint {
 
 /// Why a memory was not taken up.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum CheckpointError {
     /// The bytes are something else.
     #[error("no memory of trundle")]

@@ -15,6 +15,7 @@ use trundle_slam::SlamConfig;
 /// Everything that can be set about the robot: one `robot.toml`. Unknown keys are errors.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
+#[non_exhaustive]
 pub struct RobotConfig {
     /// Radius of the disc about the base that the robot stays within, m, above 0. Default 0.1755: the Kobuki.
     pub footprint_radius: f64,

@@ -24,6 +24,7 @@ use trundle_docking::{
 /// How the robot settles on its goal.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
+#[non_exhaustive]
 pub struct GoalApproachConfig {
     /// Whether turns and straight moves may take over near the goal. Default true.
     pub enabled: bool,

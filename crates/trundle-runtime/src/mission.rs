@@ -139,4 +139,48 @@ mod tests {
         let error = Mission::new(vec![Task::Explore, Task::Go(Pose2::new(f64::NAN, 0.0, 0.0))]).unwrap_err();
         assert_eq!(error.field, "goal of task 1");
     }
+
+    #[test]
+    fn each_task_has_a_text_and_a_name_in_files() {
+        let go = Task::Go(Pose2::new(1.0, -2.0, std::f64::consts::FRAC_PI_2));
+        let tasks = [
+            (go, "go to (1.00 m, -2.00 m, 90 deg)", "go"),
+            (Task::Explore, "explore", "explore"),
+            (Task::Return, "return to the start", "return"),
+        ];
+        for (task, text, name) in tasks {
+            assert_eq!(task.to_string(), text);
+            let file = serde_json::to_string(&task).unwrap();
+            assert!(file.contains(name), "{file}");
+            assert_eq!(serde_json::from_str::<Task>(&file).unwrap(), task);
+        }
+    }
+
+    #[test]
+    fn a_mission_is_a_list_in_files() {
+        let mission = Mission::new(vec![Task::Explore, Task::Return]).unwrap();
+        let file = serde_json::to_string(&mission).unwrap();
+        assert_eq!(file, r#"["explore","return"]"#);
+        assert_eq!(serde_json::from_str::<Mission>(&file).unwrap(), mission);
+    }
+
+    #[test]
+    fn a_state_from_a_file_needs_a_place_for_each_task_and_finite_goals() {
+        let new = |tasks| MissionState::new(Mission { tasks });
+        assert_eq!(new(vec![Task::Explore, Task::Return]).places, [0, 1]);
+        assert!(new(vec![Task::Explore]).validated().is_ok());
+        let missing = MissionState { places: Vec::new(), ..new(vec![Task::Explore]) };
+        assert_eq!(missing.validated().unwrap_err().field, "places of tasks");
+        let infinite = new(vec![Task::Go(Pose2::new(f64::INFINITY, 0.0, 0.0))]);
+        assert_eq!(infinite.validated().unwrap_err().field, "goal of task 0");
+    }
+
+    #[test]
+    fn ends_say_what_became_of_a_task() {
+        let reason = || Reason::PoseUnknown;
+        assert_eq!(TaskEnd::Done.to_string(), "done");
+        assert!(TaskEnd::PutOff { reason: reason() }.to_string().starts_with("put off: nothing tells"));
+        assert!(TaskEnd::GivenUp { reason: reason() }.to_string().starts_with("given up: nothing tells"));
+        assert_eq!(serde_json::to_string(&TaskEnd::Done).unwrap(), r#""done""#);
+    }
 }

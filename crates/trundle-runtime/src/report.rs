@@ -7,6 +7,7 @@ use trundle_slam::TrackReport;
 
 /// What one step of the robot tells the outside.
 #[derive(Debug, Clone, Default)]
+#[non_exhaustive]
 pub struct StepReport {
     /// The command for the base, on control steps.
     pub twist: Option<Twist2>,

@@ -186,8 +186,8 @@ impl Robot {
             SensorEvent::Touch(touch) => self.touch(touch.pressed),
             SensorEvent::Cliff(cliff) => self.cliff(cliff.over_edge),
             SensorEvent::Scan(scan) if self.sight == RangeSource::Laser => self.on_laser(scan),
-            // The map is drawn from the depth image alone; a laser beside it is for other programs.
-            SensorEvent::Scan(_) | SensorEvent::Truth { .. } => {}
+            // The grid of a robot with a depth camera ignores lasers; truth is for evaluation alone.
+            _ => {}
         }
         self.close(&mut report);
         report

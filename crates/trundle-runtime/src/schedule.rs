@@ -6,6 +6,7 @@ use trundle_core::{Invalid, Stamp, require_in};
 /// How often the stages run that do not run with every reading of their sensor.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
+#[non_exhaustive]
 pub struct Schedule {
     /// Scans put into the map, 1/s, 0.5 to 30. Default 5: the rate of \[Li18\].
     pub map_hz: f64,
@@ -82,5 +83,38 @@ mod tests {
     #[test]
     fn rates_are_checked() {
         assert!(Schedule { map_hz: f64::NAN, ..Schedule::default() }.validated().is_err());
+    }
+
+    #[test]
+    fn the_number_of_ticks_is_rate_times_time_whatever_the_input_rate() {
+        for (hz, input_hz) in [(1.0, 50.0), (5.0, 15.0), (5.0, 30.0), (10.0, 50.0), (30.0, 30.0)] {
+            let mut ticker = Ticker::new(hz);
+            let stamps =
+                (0..(20.0 * input_hz) as u32).map(|i| Stamp::default().after(f64::from(i) / input_hz));
+            let ticks = stamps.filter(|&stamp| ticker.due(stamp)).count();
+            assert_eq!(ticks, (20.0 * hz) as usize, "{hz} Hz of {input_hz} Hz");
+        }
+    }
+
+    #[test]
+    fn a_rate_of_zero_is_never_due_and_a_question_changes_nothing() {
+        let mut never = Ticker::new(0.0);
+        assert!((0..100).all(|i| !never.due(Stamp::default().after(f64::from(i)))));
+        let mut ticker = Ticker::new(5.0);
+        assert!((0..3).all(|_| ticker.will_be_due(Stamp::default())));
+        assert!(ticker.due(Stamp::default()) && !ticker.due(Stamp::default().after(0.1)));
+        ticker.hurry();
+        assert!(ticker.due(Stamp::default().after(0.11)));
+        assert!(!ticker.will_be_due(Stamp::default().after(0.3)), "counted from the last time");
+    }
+
+    #[test]
+    fn each_rate_is_checked_by_name() {
+        let field = |schedule: Schedule| schedule.validated().unwrap_err().field;
+        let good = Schedule::default();
+        assert_eq!(field(Schedule { map_hz: 0.1, ..good }), "schedule.map_hz");
+        assert_eq!(field(Schedule { check_hz: 31.0, ..good }), "schedule.check_hz");
+        assert_eq!(field(Schedule { improve_hz: -1.0, ..good }), "schedule.improve_hz");
+        assert_eq!(good.validated(), Ok(good));
     }
 }

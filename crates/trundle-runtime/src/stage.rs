@@ -7,6 +7,7 @@ use std::time::{Duration, Instant};
 /// A stage of the robot, for the table of times.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum Stage {
     /// Wheels and gyro to odometry.
     Odometry,
@@ -17,7 +18,7 @@ pub enum Stage {
     /// Depth image to scan.
     Scan,
     /// Visual maps to bytes, for a restart.
-    CheckpointSchedule,
+    Checkpoint,
     /// Scan against map.
     ScanMatch,
     /// A robot that does not know its place: its scans against the whole map.
@@ -45,7 +46,7 @@ impl Stage {
         Self::Decoding,
         Self::Slam,
         Self::Scan,
-        Self::CheckpointSchedule,
+        Self::Checkpoint,
         Self::ScanMatch,
         Self::Search,
         Self::Localization,
@@ -64,7 +65,7 @@ impl Stage {
             Self::Decoding => "decoding",
             Self::Slam => "slam",
             Self::Scan => "scan",
-            Self::CheckpointSchedule => "saving",
+            Self::Checkpoint => "saving",
             Self::ScanMatch => "scan_match",
             Self::Search => "search",
             Self::Localization => "localization",
@@ -87,6 +88,7 @@ pub struct StageTimes {
 
 /// The cost of one stage over a run.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct StageCost {
     /// How often it ran.
     pub runs: u64,
@@ -160,5 +162,23 @@ mod tests {
         for (i, stage) in Stage::ALL.into_iter().enumerate() {
             assert_eq!(stage as usize, i, "{}", stage.name());
         }
+    }
+
+    #[test]
+    fn times_of_workers_are_added_to_those_of_the_control_thread() {
+        let (mut all, mut worker) = (StageTimes::default(), StageTimes::default());
+        assert_eq!(all.measure(Stage::Control, || 7), 7);
+        worker.note(Stage::Slam, Duration::from_millis(20));
+        worker.note(Stage::Slam, Duration::from_millis(30));
+        all.add(&worker);
+        assert_eq!((all.runs(Stage::Control), all.runs(Stage::Slam), all.runs(Stage::Safety)), (1, 2, 0));
+        let cost = all.cost(Stage::Slam).unwrap();
+        assert!((cost.total_s - 0.05).abs() < 1e-9 && (cost.most_ms - 30.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn names_differ() {
+        let names: std::collections::BTreeSet<_> = Stage::ALL.iter().map(|stage| stage.name()).collect();
+        assert_eq!(names.len(), Stage::ALL.len());
     }
 }

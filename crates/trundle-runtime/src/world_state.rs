@@ -98,3 +98,53 @@ impl OwnedWorldState {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use trundle_core::{Beam, CellIndex, Twist2};
+
+    fn estimate() -> PoseEstimate {
+        let (pose, covariance) = (Pose2::new(1.0, 2.0, 0.3), nalgebra::Matrix3::identity());
+        PoseEstimate { stamp: Stamp::from_nanos(7), pose, twist: Twist2::new(0.1, 0.2), covariance }
+    }
+
+    #[test]
+    fn a_copy_for_another_thread_holds_what_the_original_held() {
+        let grid = OccupancyGrid::from_ascii(0.1, "#.#\n...\n").unwrap();
+        let mut still = grid.clone();
+        still.set(CellIndex { col: 0, row: 0 }, trundle_core::Cell::Occupied);
+        let scan =
+            Scan::new(Stamp::from_nanos(5), Vector2::zeros(), 0.0, 0.1, vec![Beam::Unseen; 4]).unwrap();
+        let hits = [Vector2::new(0.5, 0.5)];
+        let original = WorldState {
+            now: Stamp::from_nanos(9),
+            estimate: estimate(),
+            grid: &grid,
+            scan: Some(SafetyScan {
+                scan: &scan,
+                odom_at_scan: Pose2::new(0.1, 0.0, 0.0),
+                odom_now: Pose2::new(0.2, 0.0, 0.0),
+            }),
+            seen: Some(Stamp::from_nanos(4)),
+            unplaced: 0.4,
+            motion: MotionSense::Sight,
+            traffic: DynamicObstacles { movers: &[], unconfirmed: &hits, still: Some(&still) },
+        };
+        let owned = OwnedWorldState::from(&original);
+        let copy = owned.surroundings();
+        assert_eq!((copy.now, copy.estimate, copy.grid), (original.now, original.estimate, original.grid));
+        assert_eq!(
+            (copy.seen, copy.unplaced, copy.motion),
+            (original.seen, original.unplaced, original.motion)
+        );
+        let (carried, kept) = (copy.scan.unwrap(), original.scan.unwrap());
+        assert_eq!(carried.scan, kept.scan);
+        assert_eq!((carried.odom_at_scan, carried.odom_now), (kept.odom_at_scan, kept.odom_now));
+        assert_eq!((copy.traffic.unconfirmed, copy.traffic.still), (&hits[..], Some(&still)));
+        assert_eq!(owned.now(), original.now);
+        assert_eq!(copy.floor(), &still, "plans are made without what moves");
+        let alone = WorldState { traffic: DynamicObstacles::default(), ..copy };
+        assert_eq!(alone.floor(), &grid);
+    }
+}

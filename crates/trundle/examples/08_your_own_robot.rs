@@ -60,7 +60,9 @@ impl RobotBody for MyRobot {
 pub fn run() -> Result<(), Box<dyn Error>> {
     let drive = DifferentialDrive { wheel_radius: 0.04, wheelbase: 0.30, ticks_per_turn: 4096.0 };
     let mut body = MyRobot { drive, twist: Twist2::ZERO, time: 0.0, ticks: [0.0; 2], gyro_is_next: false };
-    let mut robot = Robot::new(RobotConfig { drive, ..RobotConfig::default() })?;
+    let mut config = RobotConfig::default();
+    config.drive = drive;
+    let mut robot = Robot::new(config)?;
     robot.drive_to(Pose2::new(1.0, 0.0, 0.0))?;
     while let Some(event) = body.next_event()? {
         if let Some(twist) = robot.step(&event).twist {

@@ -9,6 +9,7 @@ mod experiments;
 mod fault_scenarios;
 mod help;
 mod inputs;
+mod logs;
 mod map;
 mod missions;
 mod plan;

@@ -2,11 +2,11 @@
 
 use super::{RunNumbers, camera_view, landmarks_in_map, timing_page};
 use crate::real_time::RealTimeReport;
+use crate::setup::mission_text;
 use crate::{AppError, FinishedRun, RunSetup};
 use std::path::PathBuf;
 use trundle_core::{Footprint, Pose2};
 use trundle_io::{OutputFolder, trajectory_text_from_planar, write_map};
-use trundle_runtime::Mission;
 use trundle_viz::{Card, Chart, Color, Figure, RunMap, RunReport, Table, Verdict};
 
 /// What a run's folder holds.
@@ -81,12 +81,6 @@ fn report(setup: &RunSetup, run: &FinishedRun, numbers: &RunNumbers) -> RunRepor
         figures: Vec::new(),
         tables: vec![table(numbers)],
     }
-}
-
-/// A mission in words.
-#[must_use]
-pub fn mission_text(mission: &Mission) -> String {
-    mission.tasks().iter().map(ToString::to_string).collect::<Vec<_>>().join(", ")
 }
 
 fn cards(numbers: &RunNumbers) -> Vec<Card> {

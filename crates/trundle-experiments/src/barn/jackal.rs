@@ -7,7 +7,7 @@ use trundle_core::{DifferentialDrive, DriveLimits, Invalid};
 use trundle_localization::OdometryConfig;
 use trundle_mapping::MapperConfig;
 use trundle_planning::{ClearanceCostConfig, PlannerConfig, TimingConfig};
-use trundle_runtime::{MissionExecutorConfig, RangeSource, RobotConfig, Schedule};
+use trundle_runtime::{RangeSource, RobotConfig};
 use trundle_sim::{FaultSchedule, SimConfig};
 
 /// Half of the robot's length and width, m. Source: the Jackal's data sheet.
@@ -18,40 +18,41 @@ const ACCELERATION_M_S2: f64 = 3.0;
 /// The challenge's robot, a Clearpath Jackal, as the autonomy knows it: two-wheeled, 2 m/s, 0.508 x 0.430 m, a laser.
 pub fn robot() -> RobotConfig {
     let (x, y) = HALF_SIZE_M;
-    RobotConfig {
-        footprint_radius: x.hypot(y),
-        footprint: Some(vec![[x, y], [-x, y], [-x, -y], [x, -y]]),
-        sight: RangeSource::Laser,
-        drive: DifferentialDrive { wheel_radius: 0.098, wheelbase: 0.3765, ..DifferentialDrive::KOBUKI },
-        limits: DriveLimits {
-            wheel_speed: 2.4,
-            v: 2.0,
-            omega: 4.0,
-            acceleration: ACCELERATION_M_S2,
-            angular_acceleration: 10.0,
-        },
-        schedule: Schedule { map_hz: 20.0, check_hz: 20.0, improve_hz: 4.0 },
-        odometry: OdometryConfig { max_speed: 5.0, ..OdometryConfig::default() },
-        mapping: MapperConfig { max_range: 10.0, ..MapperConfig::default() },
-        planning: PlannerConfig {
-            // A laser sees what it comes to: it stops from this within 0.2 m.
-            timing: TimingConfig { slow_speed: 0.5, unknown_speed: 1.0, ..TimingConfig::default() },
-            room: ClearanceCostConfig::default(),
-            ..PlannerConfig::default()
-        },
-        control: FollowerConfig { wait_from: 0.1, wait_at: 0.3, ..FollowerConfig::default() },
-        safety: SafetyConfig {
-            deceleration: ACCELERATION_M_S2,
-            angular_deceleration: 10.0,
-            latency: 0.08,
-            slow_margin: 0.02,
-            creep_speed: 0.4,
-            ..SafetyConfig::default()
-        },
-        // Long enough to measure the gyro's bias; the laser's first scan is a first view.
-        supervisor: MissionExecutorConfig { opening: 0.6, ..MissionExecutorConfig::default() },
-        ..RobotConfig::default()
-    }
+    let mut robot = RobotConfig::default();
+    robot.footprint_radius = x.hypot(y);
+    robot.footprint = Some(vec![[x, y], [-x, y], [-x, -y], [x, -y]]);
+    robot.sight = RangeSource::Laser;
+    robot.drive = DifferentialDrive { wheel_radius: 0.098, wheelbase: 0.3765, ..DifferentialDrive::KOBUKI };
+    robot.limits = DriveLimits {
+        wheel_speed: 2.4,
+        v: 2.0,
+        omega: 4.0,
+        acceleration: ACCELERATION_M_S2,
+        angular_acceleration: 10.0,
+    };
+    robot.schedule.map_hz = 20.0;
+    robot.schedule.check_hz = 20.0;
+    robot.schedule.improve_hz = 4.0;
+    robot.odometry = OdometryConfig { max_speed: 5.0, ..OdometryConfig::default() };
+    robot.mapping = MapperConfig { max_range: 10.0, ..MapperConfig::default() };
+    robot.planning = PlannerConfig {
+        // A laser sees what it comes to: it stops from this within 0.2 m.
+        timing: TimingConfig { slow_speed: 0.5, unknown_speed: 1.0, ..TimingConfig::default() },
+        room: ClearanceCostConfig::default(),
+        ..PlannerConfig::default()
+    };
+    robot.control = FollowerConfig { wait_from: 0.1, wait_at: 0.3, ..FollowerConfig::default() };
+    robot.safety = SafetyConfig {
+        deceleration: ACCELERATION_M_S2,
+        angular_deceleration: 10.0,
+        latency: 0.08,
+        slow_margin: 0.02,
+        creep_speed: 0.4,
+        ..SafetyConfig::default()
+    };
+    // Long enough to measure the gyro's bias; the laser's first scan is a first view.
+    robot.supervisor.opening = 0.6;
+    robot
 }
 
 /// Its body in the simulator.

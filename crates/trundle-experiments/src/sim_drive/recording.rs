@@ -70,7 +70,7 @@ impl<'f> DriveRecording<'f> {
                 self.truth.push((stamp, pose));
             }
             SensorEvent::Scan(scan) => self.laser.iter_mut().for_each(|log| log.scan(&scan)),
-            SensorEvent::Touch(_) | SensorEvent::Cliff(_) => {}
+            _ => {}
         }
         Ok(())
     }

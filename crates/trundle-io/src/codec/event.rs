@@ -76,6 +76,7 @@ impl EncodedEvent {
             SensorEvent::Cliff(cliff) => Self::Cliff(*cliff),
             SensorEvent::Scan(scan) => Self::Scan(scan.clone()),
             SensorEvent::Truth { stamp, pose } => Self::Truth { stamp: *stamp, pose: *pose },
+            other => return Err(CodecError::UnknownEvent { stamp: other.stamp() }),
         })
     }
 

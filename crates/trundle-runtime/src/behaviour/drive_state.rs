@@ -102,3 +102,52 @@ impl fmt::Display for DriveState {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeSet;
+
+    /// Every state.
+    fn states() -> [DriveState; 11] {
+        let reason = Reason::MovingObstacle;
+        [
+            DriveState::Idle,
+            DriveState::Initializing,
+            DriveState::Planning,
+            DriveState::Driving,
+            DriveState::FinalApproach,
+            DriveState::Maneuvering,
+            DriveState::Waiting { reason: reason.clone() },
+            DriveState::Recovering { reason: reason.clone() },
+            DriveState::Lost { reason: reason.clone() },
+            DriveState::Arrived,
+            DriveState::Stopped { reason },
+        ]
+    }
+
+    #[test]
+    fn each_state_has_a_name_of_its_own() {
+        let names: BTreeSet<_> = states().iter().map(DriveState::name).collect();
+        assert_eq!(names.len(), states().len());
+    }
+
+    #[test]
+    fn a_state_with_a_reason_shows_it_and_another_is_its_name() {
+        for state in states() {
+            let expected = match state.reason() {
+                Some(reason) => format!("{}: {reason}", state.name()),
+                None => state.name().to_owned(),
+            };
+            assert_eq!(state.to_string(), expected);
+        }
+        assert_eq!(states().iter().filter(|state| state.reason().is_some()).count(), 4);
+    }
+
+    #[test]
+    fn three_states_need_a_new_goal() {
+        let over: Vec<_> = states().iter().filter(|state| state.is_over()).map(DriveState::name).collect();
+        assert_eq!(over, ["idle", "arrived", "stopped"]);
+        assert_eq!(DriveState::default(), DriveState::Idle);
+    }
+}

@@ -80,4 +80,17 @@ mod tests {
             assert_eq!(watch.standing_for(Stamp::default().after(f64::from(i)), pose, true), 0.0, "{i}");
         }
     }
+
+    #[test]
+    fn a_robot_that_drives_makes_progress_at_any_speed_above_step_over_patience() {
+        for speed in [0.01, 0.05, 0.5] {
+            let mut checker = ProgressChecker::default();
+            let stood = (0..3000).map(|i| {
+                let time = 0.1 * f64::from(i);
+                checker.standing_for(Stamp::default().after(time), Pose2::new(speed * time, 0.0, 0.0), false)
+            });
+            let longest = stood.fold(0.0, f64::max);
+            assert!(longest <= STEP / speed + 0.2, "{speed} m/s: {longest} s");
+        }
+    }
 }

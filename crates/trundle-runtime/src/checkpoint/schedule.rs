@@ -41,4 +41,13 @@ mod tests {
             assert!(!saving.is_due(at(period - 0.1)) && saving.is_due(at(period)), "{bytes} bytes");
         }
     }
+
+    #[test]
+    fn the_longest_period_bounds_what_a_restart_loses() {
+        let mut saving = CheckpointSchedule::default();
+        saving.saved(Stamp::default(), usize::MAX);
+        assert!(saving.is_due(Stamp::default().after(10.0)));
+        saving.saved(Stamp::default(), 0);
+        assert!(!saving.is_due(Stamp::default().after(2.9)) && saving.is_due(Stamp::default().after(3.0)));
+    }
 }

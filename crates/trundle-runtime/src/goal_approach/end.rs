@@ -74,3 +74,35 @@ fn write_positioner_reason(reason: &PositionerReason, f: &mut fmt::Formatter<'_>
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use trundle_docking::Motion;
+
+    #[test]
+    fn each_end_is_a_text_in_files() {
+        let timeout = ApproachFailure::Timeout { limit: 120.0 };
+        let ends = [
+            (ApproachEnd::Settled, "settled"),
+            (ApproachEnd::BrokenOff, "broken off"),
+            (ApproachEnd::GivenUp(timeout), "not settled within 120 s"),
+            (ApproachEnd::GivenUp(ApproachFailure::NoGoal), "no goal to settle on"),
+        ];
+        for (end, text) in ends {
+            assert_eq!(end.to_string(), text);
+            assert_eq!(serde_json::to_value(&end).unwrap(), text);
+        }
+    }
+
+    #[test]
+    fn the_last_stop_of_the_positioner_is_the_reason() {
+        let text = |reason| ApproachFailure::Positioner(reason).to_string();
+        assert_eq!(text(PositionerReason::BadPose), "the pose is not a number");
+        assert_eq!(text(PositionerReason::NoWay(None)), "no turns and straight moves to the goal were found");
+        let standing = [PositionerReason::Measuring, PositionerReason::Settled];
+        for reason in standing.into_iter().chain([PositionerReason::Moving(Motion::Drive(0.1))]) {
+            assert_eq!(text(reason), "stopped again and again");
+        }
+    }
+}

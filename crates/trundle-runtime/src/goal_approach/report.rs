@@ -7,6 +7,7 @@ use trundle_docking::{PositionerReason, PositionerReport};
 
 /// What turns and straight moves came to at the end of a mission.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
+#[non_exhaustive]
 pub struct GoalApproachReport {
     /// How often a manoeuvre was planned, the looks beforehand included.
     pub plans: u32,
@@ -92,5 +93,76 @@ impl Notes {
         if step.reason != PositionerReason::BadPose {
             self.report.deviation = Some(step.error);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use trundle_core::{Twist2, Vector2};
+    use trundle_docking::{Blocker, Motion, ObstacleKind};
+
+    fn step(reason: PositionerReason) -> PositionerReport {
+        PositionerReport { twist: Twist2::ZERO, reason, error: Pose2::new(0.1, 0.02, 0.0) }
+    }
+
+    fn noted(reasons: &[PositionerReason]) -> Notes {
+        let mut notes = Notes::default();
+        reasons.iter().for_each(|reason| notes.note(&step(reason.clone())));
+        notes
+    }
+
+    fn moving() -> PositionerReason {
+        PositionerReason::Moving(Motion::Turn(0.3))
+    }
+
+    fn obstacle() -> PositionerReason {
+        PositionerReason::Obstacle(Blocker { thing: ObstacleKind::Occupied, at: Vector2::new(1.0, 0.0) })
+    }
+
+    #[test]
+    fn a_plan_and_its_motion_count_once_however_many_steps_they_take() {
+        use PositionerReason::{Measuring, Planning, Settled};
+        let notes = noted(&[Measuring, Planning, Planning, moving(), moving(), Measuring, Settled]);
+        assert_eq!((notes.report.plans, notes.report.motions, notes.report.restarts), (1, 1, 0));
+        assert_eq!((notes.report.waits, notes.stops), (0, 0));
+        assert_eq!(notes.report.deviation, Some(Pose2::new(0.1, 0.02, 0.0)));
+    }
+
+    #[test]
+    fn a_plan_that_is_ready_at_once_counts_as_well() {
+        let notes = noted(&[PositionerReason::Measuring, moving(), PositionerReason::Measuring, moving()]);
+        assert_eq!((notes.report.plans, notes.report.motions), (2, 2));
+    }
+
+    #[test]
+    fn stops_in_a_row_end_with_a_motion_that_comes_to_its_end() {
+        let mut notes = noted(&[moving(), obstacle(), moving(), obstacle()]);
+        assert_eq!((notes.stops, notes.report.restarts), (2, 2));
+        notes.interrupted();
+        assert_eq!((notes.stops, notes.report.restarts), (3, 3));
+        notes.note(&step(moving()));
+        notes.note(&step(PositionerReason::Measuring));
+        assert_eq!((notes.stops, notes.report.restarts), (0, 3), "the report keeps what happened");
+    }
+
+    #[test]
+    fn a_wait_counts_once_and_a_pose_that_is_no_number_leaves_the_deviation() {
+        let notes = noted(&[PositionerReason::NoWay(None), PositionerReason::NoWay(None)]);
+        assert_eq!((notes.report.waits, notes.stops), (1, 1));
+        let mut notes = noted(&[PositionerReason::Measuring]);
+        let bad =
+            PositionerReport { error: Pose2::new(f64::NAN, 0.0, 0.0), ..step(PositionerReason::BadPose) };
+        notes.note(&bad);
+        assert_eq!((notes.report.waits, notes.report.plans), (1, 0));
+        assert_eq!(notes.report.deviation, Some(Pose2::new(0.1, 0.02, 0.0)));
+    }
+
+    #[test]
+    fn a_second_approach_keeps_the_number_of_plans_alone() {
+        let mut notes = noted(&[PositionerReason::Planning, moving(), obstacle()]);
+        notes.restart();
+        assert_eq!(notes.report, GoalApproachReport { plans: 1, ..GoalApproachReport::default() });
+        assert_eq!(notes.stops, 0);
     }
 }

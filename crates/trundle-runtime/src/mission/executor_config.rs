@@ -7,6 +7,7 @@ use trundle_planning::ExploreConfig;
 /// How missions are carried out, and when the robot loses patience.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
+#[non_exhaustive]
 pub struct MissionExecutorConfig {
     /// The robot stands so long before its first plan, s, 0 to 60: the gyro's bias is measured and the first map drawn.
     /// Default 1.5 (ours).
@@ -37,5 +38,28 @@ impl MissionExecutorConfig {
         require_in("supervisor.lost_sigma", self.lost_sigma, "m", 0.1, 10.0)?;
         self.explore.validated()?;
         Ok(self)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_number_is_checked_by_name() {
+        let field = |config: MissionExecutorConfig| config.validated().unwrap_err().field;
+        let good = MissionExecutorConfig::default();
+        assert_eq!(good.validated(), Ok(good));
+        assert_eq!(field(MissionExecutorConfig { opening: -0.1, ..good }), "supervisor.opening");
+        assert_eq!(field(MissionExecutorConfig { patience: 0.0, ..good }), "supervisor.patience");
+        assert_eq!(field(MissionExecutorConfig { patience: f64::NAN, ..good }), "supervisor.patience");
+        assert_eq!(field(MissionExecutorConfig { lost_sigma: 11.0, ..good }), "supervisor.lost_sigma");
+    }
+
+    #[test]
+    fn a_file_names_wrong_keys() {
+        let read = |text| toml::from_str::<MissionExecutorConfig>(text).map_err(|error| error.to_string());
+        assert_eq!(read("patience = 5.0").unwrap().patience, 5.0);
+        assert!(read("patiense = 5.0").unwrap_err().contains("patiense"));
     }
 }

@@ -62,7 +62,8 @@ impl<E> InboxSender<E> {
         match self.sender.try_send(post) {
             Ok(()) => true,
             Err(TrySendError::Full(_)) => {
-                self.refused.fetch_add(1, Ordering::Relaxed);
+                let refused = self.refused.fetch_add(1, Ordering::Relaxed) + 1;
+                tracing::debug!("the inbox is full: an input is refused, {refused} so far");
                 false
             }
             Err(TrySendError::Disconnected(_)) => false,
@@ -189,5 +190,58 @@ mod tests {
         assert_eq!(put, [true, true, false, false]);
         assert_eq!(inbox.refused(), 2);
         assert_eq!(events(&mut inbox, &LoopTimer::new(LoopTimerConfig::default())), [0, 1]);
+    }
+
+    #[test]
+    fn in_any_mix_nothing_is_lost_and_each_kind_keeps_its_order() {
+        // A linear congruential generator: another mix in each round.
+        let mut state = 7_u32;
+        for _ in 0..50 {
+            let mut inbox = Inbox::new(64);
+            let door = inbox.door();
+            let urgent: Vec<bool> = (0..40)
+                .map(|i| {
+                    state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+                    let is_urgent = state >> 31 == 1;
+                    assert!(door.put(if is_urgent { Post::Urgent(i) } else { Post::Patient(i) }));
+                    is_urgent
+                })
+                .collect();
+            let of = |kind: bool| (0..40).filter(|i| urgent[*i as usize] == kind).collect::<Vec<u32>>();
+            let taken = events(&mut inbox, &LoopTimer::new(LoopTimerConfig::default()));
+            assert_eq!(taken, [of(true), of(false)].concat());
+            assert_eq!((inbox.refused(), inbox.lengths().count() > 0), (0, true));
+        }
+    }
+
+    #[test]
+    fn images_wait_while_the_next_reading_is_about_to_come() {
+        let config = LoopTimerConfig { period: 0.04, reserve: 0.04, deadline: 0.1 };
+        let (mut inbox, mut timer) = (Inbox::new(4), LoopTimer::new(config));
+        inbox.door().put(Post::Patient(1));
+        timer.begin();
+        std::thread::sleep(Duration::from_millis(1));
+        let start = Instant::now();
+        let Some(Input::Event(1)) = inbox.next(&timer, Duration::ZERO) else {
+            panic!("it is handed out in the end")
+        };
+        assert!(start.elapsed() >= Duration::from_millis(50), "{:?}", start.elapsed());
+    }
+
+    #[test]
+    fn without_any_input_the_wait_ends_after_its_patience() {
+        let mut inbox: Inbox<u32> = Inbox::new(4);
+        let start = Instant::now();
+        assert!(inbox.next(&LoopTimer::new(LoopTimerConfig::default()), Duration::from_millis(20)).is_none());
+        assert!(start.elapsed() >= Duration::from_millis(20));
+        assert!(inbox.next_answer(Worker::Decision, Duration::ZERO).is_none());
+    }
+
+    #[test]
+    fn nobody_takes_what_is_put_in_after_the_control_thread_has_gone() {
+        let inbox: Inbox<u32> = Inbox::new(4);
+        let door = inbox.door();
+        drop(inbox);
+        assert!(!door.put(Post::Urgent(1)) && !door.hand_in(Post::Patient(2)));
     }
 }

@@ -7,6 +7,7 @@ use trundle_core::{Invalid, require_in};
 
 /// When control is due.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct LoopTimerConfig {
     /// Between two readings of the wheels, s, 0.001 to 1. Default 0.02: the Kobuki's 50 Hz.
     pub period: f64,
@@ -162,5 +163,29 @@ mod tests {
     fn numbers_are_checked() {
         let bad = LoopTimerConfig { reserve: 0.03, ..LoopTimerConfig::default() };
         assert_eq!(bad.validated().unwrap_err().field, "reserve");
+    }
+
+    #[test]
+    fn shortly_before_the_next_reading_nothing_else_is_begun() {
+        let config = LoopTimerConfig { period: 0.05, reserve: 0.02, deadline: 0.1 };
+        let mut timer = LoopTimer::new(config);
+        timer.begin();
+        assert!(timer.time_for_others().is_none(), "30 ms are left");
+        std::thread::sleep(Duration::from_millis(35));
+        if let Some(wait) = timer.time_for_others() {
+            assert!(wait <= Duration::from_millis(35), "until period and reserve are over: {wait:?}");
+        }
+        std::thread::sleep(Duration::from_millis(40));
+        assert!(timer.time_for_others().is_none(), "the reading is overdue: others are not held up");
+    }
+
+    #[test]
+    fn each_number_is_checked_by_name() {
+        let field = |config: LoopTimerConfig| config.validated().unwrap_err().field;
+        let good = LoopTimerConfig::default();
+        assert_eq!(good.validated(), Ok(good));
+        assert_eq!(field(LoopTimerConfig { period: 2.0, ..good }), "period");
+        assert_eq!(field(LoopTimerConfig { deadline: 0.0, ..good }), "deadline");
+        assert_eq!(field(LoopTimerConfig { reserve: -0.001, ..good }), "reserve");
     }
 }

@@ -139,7 +139,7 @@ impl PerceptionWorker {
     /// The visual maps, when it is time to save them.
     fn save(&mut self, now: Stamp, times: &mut StageTimes) -> Option<Vec<u8>> {
         let saving = self.saving.as_mut().filter(|saving| saving.is_due(now))?;
-        let saved = times.measure(Stage::CheckpointSchedule, || self.slam.save());
+        let saved = times.measure(Stage::Checkpoint, || self.slam.save());
         saving.saved(now, saved.len());
         Some(saved)
     }

@@ -20,14 +20,14 @@ fn live(
         let stamp = Stamp::from_nanos(i * 20_000_000);
         let [gyro, wheels] = base.on_wheels(stamp);
         let mut step = robot.step(&gyro);
-        step = StepReport { twist: None, ..step };
+        step.twist = None;
         for event in [wheels, wall(stamp, base.to_wall())] {
             let report = match event {
                 SensorEvent::Rgbd(_) if i % 5 != 0 || stamp.as_secs() >= until => continue,
                 SensorEvent::Rgbd(image) => robot.queue_image(LazyImage::from(image)),
                 event => robot.step(&event),
             };
-            step = StepReport { twist: report.twist.or(step.twist), ..report };
+            step = followed_by(&step, report);
             let mut jobs: Vec<Job> = std::iter::from_fn(|| robot.next_job()).collect();
             loop {
                 let answers = work(stamp, std::mem::take(&mut jobs));
@@ -36,7 +36,7 @@ fn live(
                 }
                 for answer in answers {
                     let report = robot.apply_answer(answer);
-                    step = StepReport { twist: report.twist.or(step.twist), ..report };
+                    step = followed_by(&step, report);
                     jobs.extend(std::iter::from_fn(|| robot.next_job()));
                 }
             }
@@ -45,6 +45,12 @@ fn live(
         reports.push(step);
     }
     reports
+}
+
+/// The report of a step of several inputs: the last one, with the last command.
+fn followed_by(earlier: &StepReport, mut report: StepReport) -> StepReport {
+    report.twist = report.twist.or(earlier.twist);
+    report
 }
 
 fn at_once(_now: Stamp, jobs: Vec<Job>) -> Vec<Answer> {

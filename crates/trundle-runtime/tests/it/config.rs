@@ -1,5 +1,5 @@
+use trundle_runtime::RobotConfig;
 use trundle_runtime::settings::{RobotFile, to_commented_toml};
-use trundle_runtime::{RobotConfig, Schedule};
 
 fn read(text: &str) -> Result<RobotConfig, String> {
     RobotFile::parse(text, &[]).map(|file| file.config).map_err(|error| error.to_string())
@@ -7,8 +7,9 @@ fn read(text: &str) -> Result<RobotConfig, String> {
 
 #[test]
 fn the_printed_file_reads_back_the_same() {
-    let mut config = RobotConfig { footprint_radius: 0.2, ..RobotConfig::default() };
-    config.schedule = Schedule { map_hz: 3.0, ..Schedule::default() };
+    let mut config = RobotConfig::default();
+    config.footprint_radius = 0.2;
+    config.schedule.map_hz = 3.0;
     assert_eq!(read(&to_commented_toml(&config)).unwrap(), config);
     assert_eq!(read("").unwrap(), RobotConfig::default());
 }
@@ -23,7 +24,8 @@ fn the_defaults_are_valid_and_wrong_keys_are_named() {
 #[test]
 fn outlines_are_checked_and_a_base_is_not_faster_than_its_odometry_believes() {
     let field = |config: RobotConfig| config.validated().unwrap_err().field;
-    let flat = RobotConfig { footprint: Some(vec![[0.0, 0.0], [1.0, 0.0]]), ..RobotConfig::default() };
+    let mut flat = RobotConfig::default();
+    flat.footprint = Some(vec![[0.0, 0.0], [1.0, 0.0]]);
     assert_eq!(field(flat), "footprint corners");
     let mut fast = RobotConfig::default();
     fast.limits.wheel_speed = 2.4;

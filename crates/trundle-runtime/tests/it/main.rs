@@ -2,6 +2,9 @@
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
 mod background;
+mod checkpoint;
 mod config;
 mod crew;
+mod logs;
 mod robot;
+mod states;

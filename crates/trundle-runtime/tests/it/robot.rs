@@ -185,8 +185,10 @@ fn on_laser(stamp: Stamp, distance: f64) -> SensorEvent {
 
 /// A robot of 0.5 x 0.4 m that sees with a laser.
 fn box_with_laser() -> RobotConfig {
-    let footprint = Some(vec![[0.25, 0.2], [-0.25, 0.2], [-0.25, -0.2], [0.25, -0.2]]);
-    RobotConfig { sight: RangeSource::Laser, footprint, ..RobotConfig::default() }
+    let mut config = RobotConfig::default();
+    config.sight = RangeSource::Laser;
+    config.footprint = Some(vec![[0.25, 0.2], [-0.25, 0.2], [-0.25, -0.2], [0.25, -0.2]]);
+    config
 }
 
 #[test]

@@ -11,6 +11,7 @@ fn rank(event: &SensorEvent) -> u8 {
         SensorEvent::Truth { .. } => 4,
         SensorEvent::Scan(_) => 5,
         SensorEvent::Rgbd(_) => 6,
+        other => panic!("an event without a rank: {other:?}"),
     }
 }
 

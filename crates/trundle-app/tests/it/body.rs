@@ -1,0 +1,134 @@
+//! Bodies for tests: a base that stands still, and one whose user ends the run.
+
+use std::io;
+use trundle_app::{
+    AppError, EncodedBody, FinishedRun, Progress, RunInput, RunLog, RunRecorder, RunSetup, run_on_body,
+};
+use trundle_core::{GyroRate, Pose2, RobotBody, SensorEvent, Stamp, Touch, Twist2, WheelTicks};
+use trundle_io::OutputFolder;
+use trundle_runtime::{Answer, Job, Mission, RobotConfig, Task, Worker};
+
+/// The goal of all runs, map frame.
+pub const GOAL: Pose2 = Pose2 { x: 1.0, y: 0.0, theta: 0.0 };
+
+/// A base that stands still whatever it is asked for: gyro, wheels and truth at 50 Hz, no camera.
+#[derive(Debug, Default)]
+pub struct StillBody {
+    /// Events left.
+    pub events: std::collections::VecDeque<SensorEvent>,
+    /// Commands so far.
+    pub commands: Vec<Twist2>,
+    /// Contacts in truth; none where they are not counted.
+    pub contacts: Option<u32>,
+    /// Whether the sensors fail once the events are used up.
+    pub fails: bool,
+    /// Whether the base refuses commands.
+    pub refuses: bool,
+}
+
+/// Stamp of step `i` at 50 Hz.
+pub fn stamp(i: i64) -> Stamp {
+    Stamp::from_nanos(i * 20_000_000)
+}
+
+/// Events of a base at rest in steps `from` to `to`.
+pub fn at_rest(from: i64, to: i64) -> impl Iterator<Item = SensorEvent> {
+    (from..to).flat_map(|i| {
+        let stamp = stamp(i);
+        [
+            SensorEvent::Gyro(GyroRate { stamp, omega: 0.0 }),
+            SensorEvent::Wheels(WheelTicks { stamp, left: 0, right: 0 }),
+            SensorEvent::Truth { stamp, pose: Pose2::IDENTITY },
+        ]
+    })
+}
+
+impl StillBody {
+    /// A body with events of so many steps at 50 Hz.
+    pub fn new(steps: i64) -> Self {
+        Self { events: at_rest(0, steps).collect(), ..Self::default() }
+    }
+
+    /// A body whose bumper is pressed and released three times from step 10 on, with events for 4 s in all.
+    pub fn touched() -> Self {
+        let touch = |i: i64, pressed| SensorEvent::Touch(Touch { stamp: stamp(i), pressed });
+        let touches = (10..13).flat_map(|i| at_rest(i, i + 1).chain([touch(i, true), touch(i, false)]));
+        Self { events: at_rest(0, 10).chain(touches).chain(at_rest(13, 200)).collect(), ..Self::default() }
+    }
+}
+
+impl RobotBody for StillBody {
+    type Error = io::Error;
+
+    fn next_event(&mut self) -> io::Result<Option<SensorEvent>> {
+        match self.events.pop_front() {
+            None if self.fails => Err(io::Error::other("the sensor bus is gone")),
+            event => Ok(event),
+        }
+    }
+
+    fn command(&mut self, twist: Twist2) -> io::Result<()> {
+        if self.refuses {
+            return Err(io::Error::other("the base is in charge mode"));
+        }
+        self.commands.push(twist);
+        Ok(())
+    }
+
+    fn contact_count(&self) -> Option<u32> {
+        self.contacts
+    }
+}
+
+/// A still body whose user ends the run after so many inputs.
+pub struct InterruptedBody {
+    /// The body.
+    pub body: StillBody,
+    /// Inputs until the user ends the run.
+    pub inputs: usize,
+}
+
+impl EncodedBody for InterruptedBody {
+    fn next_input(&mut self) -> Result<Option<RunInput>, AppError> {
+        let Some(left) = self.inputs.checked_sub(1) else { return Ok(Some(RunInput::Interrupted)) };
+        self.inputs = left;
+        self.body.next_input()
+    }
+
+    fn send_command(&mut self, twist: Twist2) -> Result<(), AppError> {
+        self.body.send_command(twist)
+    }
+
+    fn start_job(&mut self, job: Job) {
+        self.body.start_job(job);
+    }
+
+    fn finish_job(&mut self, worker: Worker) -> Option<Answer> {
+        self.body.finish_job(worker)
+    }
+
+    fn true_contacts(&self) -> Option<u32> {
+        self.body.true_contacts()
+    }
+}
+
+/// A run to [`GOAL`] by the default robot.
+pub fn setup() -> RunSetup {
+    RunSetup::new("nowhere", Mission::new(vec![Task::Go(GOAL)]).unwrap(), RobotConfig::default())
+}
+
+/// Runs `setup` on `body`, recorded into a folder that is not kept.
+pub fn run(setup: &RunSetup, body: &mut dyn EncodedBody) -> Result<FinishedRun, AppError> {
+    let scratch = tempfile::tempdir().unwrap();
+    let folder = OutputFolder::create(&scratch.path().join("run")).unwrap();
+    run_into(setup, body, &folder)
+}
+
+/// Runs `setup` on `body`, recorded into `folder`.
+pub fn run_into(
+    setup: &RunSetup,
+    body: &mut dyn EncodedBody,
+    folder: &OutputFolder,
+) -> Result<FinishedRun, AppError> {
+    run_on_body(setup, body, RunRecorder::to_folder(folder)?, RunLog::default(), Progress::hidden())
+}

@@ -1,0 +1,48 @@
+//! The checkpoint writer: the newest checkpoint is in the file, whole, when the writer has ended.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+use trundle_app::CheckpointWriter;
+use trundle_core::OccupancyGrid;
+use trundle_runtime::{Checkpoint, Mission, MissionState, Task};
+
+/// A checkpoint that `number` tells from others.
+fn checkpoint(number: u8) -> Checkpoint {
+    Checkpoint {
+        visual: vec![number; 1000],
+        visual_maps: BTreeMap::new(),
+        grid: OccupancyGrid::from_ascii(0.05, "#.#\n").unwrap(),
+        mission: MissionState::new(Mission::new(vec![Task::Explore]).unwrap()),
+    }
+}
+
+#[test]
+fn the_last_checkpoint_is_in_the_file() {
+    let scratch = tempfile::tempdir().unwrap();
+    let file = scratch.path().join("robot.checkpoint");
+    let writer = CheckpointWriter::new(&file).unwrap();
+    (0..20).for_each(|number| writer.write(Arc::new(checkpoint(number))));
+    writer.finish(Some(checkpoint(99)));
+    assert_eq!(Checkpoint::from_bytes(&std::fs::read(&file).unwrap()).unwrap(), checkpoint(99));
+    let files = std::fs::read_dir(scratch.path()).unwrap().count();
+    assert_eq!(files, 1, "no temporary file is left");
+}
+
+#[test]
+fn a_writer_without_checkpoints_leaves_the_file_as_it_was() {
+    let scratch = tempfile::tempdir().unwrap();
+    let file = scratch.path().join("robot.checkpoint");
+    std::fs::write(&file, "an earlier run").unwrap();
+    CheckpointWriter::new(&file).unwrap().finish(None);
+    assert_eq!(std::fs::read_to_string(&file).unwrap(), "an earlier run");
+}
+
+#[test]
+fn a_place_that_cannot_be_written_does_not_stop_the_robot() {
+    let scratch = tempfile::tempdir().unwrap();
+    let file = scratch.path().join("no-such-folder").join("robot.checkpoint");
+    let writer = CheckpointWriter::new(&file).unwrap();
+    (0..3).for_each(|number| writer.write(Arc::new(checkpoint(number))));
+    writer.finish(Some(checkpoint(9)));
+    assert!(!file.exists());
+}

@@ -1,0 +1,10 @@
+//! Runs on a body without a camera: session, recorder, replayer, checkpoint writer, report.
+#![allow(clippy::unwrap_used, reason = "helpers of tests")]
+
+mod body;
+mod checkpoint_writer;
+mod files;
+mod recording;
+mod report;
+mod run_log;
+mod session;

@@ -1,0 +1,105 @@
+//! Recorder and replayer: a replay feeds the robot what the run fed it.
+
+use crate::body::{InterruptedBody, StillBody, run_into, setup};
+use std::path::{Path, PathBuf};
+use trundle_app::{EncodedBody, FinishedRun, Progress, RunLog, RunRecorder, RunReplayer, run_on_body};
+use trundle_core::Stamp;
+use trundle_io::OutputFolder;
+use trundle_runtime::real_time::ThreadPlacement;
+
+/// Records a run on `body`; the run and its recording.
+fn record(body: &mut dyn EncodedBody, scratch: &Path) -> (FinishedRun, PathBuf) {
+    let folder = OutputFolder::create(&scratch.join("live")).unwrap();
+    let run = run_into(&setup(), body, &folder).unwrap();
+    (run, folder.commit().unwrap().join("recording.mcap"))
+}
+
+/// Replays a recording into the folder `again`.
+fn replay(recording: &Path, scratch: &Path) -> (FinishedRun, PathBuf) {
+    let (mut body, setup) = RunReplayer::open(recording).unwrap();
+    let folder = OutputFolder::create(&scratch.join("again")).unwrap();
+    let run = run_into(&setup, &mut body, &folder).unwrap();
+    body.read_to_end().unwrap();
+    (run, folder.commit().unwrap().join("recording.mcap"))
+}
+
+#[test]
+fn a_replay_commands_the_same_and_records_the_same_bytes() {
+    let scratch = tempfile::tempdir().unwrap();
+    let body = StillBody { contacts: Some(1), ..StillBody::touched() };
+    let (live, recording) = record(&mut { body }, scratch.path());
+    let (again, second) = replay(&recording, scratch.path());
+    assert_eq!(live.log.twists, again.log.twists);
+    assert_eq!(live.log.state, again.log.state);
+    assert_eq!((live.log.contacts(), again.log.contacts()), (1, 1), "contacts are marks of the recording");
+    assert!(std::fs::read(recording).unwrap() == std::fs::read(second).unwrap());
+}
+
+#[test]
+fn a_replay_ends_where_the_user_ended_the_run() {
+    let scratch = tempfile::tempdir().unwrap();
+    let mut body = InterruptedBody { body: StillBody::new(1000), inputs: 100 };
+    let (live, recording) = record(&mut body, scratch.path());
+    let (again, _) = replay(&recording, scratch.path());
+    assert_eq!(live.log.state, again.log.state);
+    assert_eq!((live.log.now, live.log.twists.len()), (again.log.now, again.log.twists.len()));
+}
+
+#[test]
+fn a_thread_records_the_same_lines() {
+    let scratch = tempfile::tempdir().unwrap();
+    let (_, inline) = record(&mut StillBody::new(50), scratch.path());
+    let folder = OutputFolder::create(&scratch.path().join("threaded")).unwrap();
+    let recorder = RunRecorder::threaded(&folder, ThreadPlacement::default()).unwrap();
+    let run = run_on_body(&setup(), &mut StillBody::new(50), recorder, RunLog::default(), Progress::hidden())
+        .unwrap();
+    assert_eq!(run.recording.lines_lost, 0);
+    assert!(run.recording.queue_lengths.count() > 50, "a length for each line");
+    let threaded = folder.commit().unwrap().join("recording.mcap");
+    assert!(std::fs::read(inline).unwrap() == std::fs::read(threaded).unwrap());
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_ends_the_recording_and_not_the_run() {
+    let recorder = RunRecorder::onto_full_disk().unwrap();
+    let mut body = StillBody::new(50);
+    let run = run_on_body(&setup(), &mut body, recorder, RunLog::default(), Progress::hidden()).unwrap();
+    assert_eq!(body.commands.len(), 50);
+    let error = run.recording.error.unwrap().to_string();
+    assert!(error.contains("/dev/full"), "{error}");
+}
+
+#[test]
+fn a_recorder_that_failed_takes_no_more_lines() {
+    let scratch = tempfile::tempdir().unwrap();
+    let folder = OutputFolder::create(&scratch.path().join("run")).unwrap();
+    let mut recorder = RunRecorder::to_folder(&folder).unwrap();
+    let fail = || trundle_io::IoError::System {
+        path: "recording.mcap".into(),
+        action: "write",
+        source: std::io::Error::other("no space left"),
+    };
+    recorder.write(move |_| Err(fail()));
+    recorder.write(|_| panic!("a line after the failure"));
+    let error = recorder.finish(None).unwrap_err().to_string();
+    assert!(error.contains("no space left"), "{error}");
+}
+
+#[test]
+fn files_that_are_no_recording_of_a_run_are_refused_by_name() {
+    let scratch = tempfile::tempdir().unwrap();
+    let refusal = |file: &Path| RunReplayer::open(file).err().unwrap().to_string();
+    let missing = scratch.path().join("missing.mcap");
+    assert!(refusal(&missing).contains("missing.mcap"), "{}", refusal(&missing));
+    let text = scratch.path().join("text.mcap");
+    std::fs::write(&text, "no recording").unwrap();
+    assert!(refusal(&text).contains("text.mcap"), "{}", refusal(&text));
+
+    let folder = OutputFolder::create(&scratch.path().join("other")).unwrap();
+    let mut recorder = RunRecorder::to_folder(&folder).unwrap();
+    recorder.write(|file| file.record_json("/note", "note", Stamp::default(), &1));
+    recorder.finish(None).unwrap();
+    let other = folder.commit().unwrap().join("recording.mcap");
+    assert!(refusal(&other).contains("no trundle.Config message comes first"), "{}", refusal(&other));
+}
