@@ -100,7 +100,7 @@ impl Notes {
 mod tests {
     use super::*;
     use trundle_core::{Twist2, Vector2};
-    use trundle_docking::{Blocker, Motion, ObstacleKind};
+    use trundle_docking::{Blocker, BlockerKind, Motion};
 
     fn step(reason: PositionerReason) -> PositionerReport {
         PositionerReport { twist: Twist2::ZERO, reason, error: Pose2::new(0.1, 0.02, 0.0) }
@@ -117,7 +117,7 @@ mod tests {
     }
 
     fn obstacle() -> PositionerReason {
-        PositionerReason::Obstacle(Blocker { thing: ObstacleKind::Occupied, at: Vector2::new(1.0, 0.0) })
+        PositionerReason::Obstacle(Blocker { thing: BlockerKind::Occupied, at: Vector2::new(1.0, 0.0) })
     }
 
     #[test]
