@@ -80,7 +80,7 @@ impl<'s> RunSession<'s> {
         }
         self.record(stamp, &report);
         self.log.on_report(stamp, &report);
-        if let Some(checkpoint) = &report.memory {
+        if let Some(checkpoint) = &report.checkpoint {
             self.recorder.write_checkpoint(Arc::clone(checkpoint));
         }
         if let Some(image) = report.image {
@@ -133,7 +133,7 @@ impl<'s> RunSession<'s> {
         }
         tracing::info!("run over after {:.1} s: {}", self.log.elapsed(), self.log.state);
         let (queue_lengths, lines_lost) = (self.recorder.queue_lengths.clone(), self.recorder.lines_lost);
-        let last = if self.recorder.writes_checkpoints() { self.robot.memory() } else { None };
+        let last = if self.recorder.writes_checkpoints() { self.robot.checkpoint() } else { None };
         let (cpu_time, error) = match self.recorder.finish(last) {
             Ok(spent) => (spent, None),
             Err(error) => (Duration::ZERO, Some(error)),

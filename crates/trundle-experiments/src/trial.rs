@@ -189,7 +189,7 @@ fn run_unrecorded(
         if is_over || log.elapsed() > setup.time_limit {
             break;
         }
-        checkpoint = report.memory.or(checkpoint);
+        checkpoint = report.checkpoint.or(checkpoint);
         if let Some(at) = restart.take_if(|at| log.elapsed() >= *at) {
             robot = resumed_after_kill(setup, checkpoint.as_deref(), at)?;
         }

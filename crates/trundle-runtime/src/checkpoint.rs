@@ -9,7 +9,7 @@ use trundle_core::{Cell, GridGeometry, Invalid, OccupancyGrid, Vector2};
 use trundle_localization::VisualAnchor;
 use trundle_slam::MapFileError;
 
-/// What a robot takes along through a restart: its maps, where they lie, and how far its mission has come.
+/// What a robot keeps through a restart: its maps, their poses, and the state of its mission.
 ///
 /// As bytes: `TRUNDLEM`, version (u32), checksum (CRC-32 of the rest), length of the notes (u32), the notes as JSON, a byte for
 /// each cell of the floor map (0 unknown, 1 free, 2 occupied), and the visual maps; numbers little endian.
@@ -25,7 +25,7 @@ pub struct Checkpoint {
     pub mission: MissionState,
 }
 
-/// Why a memory was not taken up.
+/// Why a checkpoint is refused.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum CheckpointError {
@@ -74,7 +74,7 @@ const MAGIC: &[u8; 8] = b"TRUNDLEM";
 const FORMAT_VERSION: u32 = 2;
 
 impl Checkpoint {
-    /// The memory as bytes.
+    /// The checkpoint as bytes.
     pub fn to_bytes(&self) -> Vec<u8> {
         let GridGeometry { resolution, origin, width, height } = *self.grid.geometry();
         let notes = Notes {
@@ -92,10 +92,10 @@ impl Checkpoint {
         [MAGIC.as_slice(), &FORMAT_VERSION.to_le_bytes(), &checksum, &rest].concat()
     }
 
-    /// The memory of these bytes. The visual maps are looked into when the robot wakes up.
+    /// Reads a checkpoint. The visual maps are decoded when the robot resumes.
     ///
     /// # Errors
-    /// When the bytes are no memory, of another version, damaged or cut off, or contradict themselves. No bytes make it panic.
+    /// When the bytes are no checkpoint, of another version, damaged or cut off, or contradict themselves. No bytes make it panic.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, CheckpointError> {
         let rest = bytes.strip_prefix(MAGIC).ok_or(CheckpointError::Foreign)?;
         let (version, rest) = number(rest)?;

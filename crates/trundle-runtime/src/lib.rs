@@ -1,8 +1,8 @@
-//! The whole robot: the loop, its schedule, its states, its configuration.
+//! The whole robot: loop, schedule, states, configuration.
 //!
-//! [`Robot`] is one value with one `step`: a sensor event in, a [`StepReport`] out. It is the only place where the rooms
-//! (SLAM, mapping, localization, planning, control, docking) meet, as core types. It runs on the data's time: which stage runs
-//! when follows from the stamps and the [`Schedule`], so a recording fed again gives the same reports.
+//! [`Robot`] is one value with one `step`: a sensor event in, a [`StepReport`] out. Here alone SLAM, mapping, localization,
+//! planning, control and docking meet, as core types. Time is the data's: the stamps and the [`Schedule`] decide which stage
+//! runs when, so a recording that is fed again gives the same reports.
 
 mod behaviour;
 mod bumper;

@@ -73,7 +73,7 @@ impl MissionState {
 
     /// The same after the robot was switched off and on again.
     #[must_use]
-    pub(crate) fn woken(mut self) -> Self {
+    pub(crate) fn after_restart(mut self) -> Self {
         self.ended.iter_mut().for_each(|record| record.before_restart = true);
         self
     }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use trundle_core::{PoseEstimate, Stamp, Twist2};
 use trundle_slam::TrackReport;
 
-/// What one step of the robot tells the outside.
+/// Report of one step of the robot.
 #[derive(Debug, Clone, Default)]
 #[non_exhaustive]
 pub struct StepReport {
@@ -13,15 +13,15 @@ pub struct StepReport {
     pub twist: Option<Twist2>,
     /// The pose estimate after the step.
     pub estimate: Option<PoseEstimate>,
-    /// Stamp of the image that was looked at, here or, when what it showed is taken up, in the background.
+    /// Stamp of the image that was processed in this step, or whose result was applied.
     pub image: Option<Stamp>,
-    /// Why an image that was looked at was none.
+    /// Why the image cannot be decoded.
     pub broken_image: Option<String>,
-    /// What the visual tracker said, on images.
+    /// Report of the visual tracker, on images.
     pub track: Option<TrackReport>,
-    /// What the robot would take along through a restart, now and then, where it remembers ([`crate::Robot::remembering`]).
-    pub memory: Option<Arc<Checkpoint>>,
-    /// What the robot is doing.
+    /// A checkpoint, every 3 to 10 s, after [`crate::Robot::with_checkpoints`].
+    pub checkpoint: Option<Arc<Checkpoint>>,
+    /// State of the robot.
     pub state: DriveState,
     /// Whether the step made a new plan.
     pub replanned: bool,

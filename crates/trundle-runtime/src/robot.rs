@@ -43,30 +43,31 @@ use trundle_slam::{RgbdSlam, TrackReport, Tracking};
 /// It reads no clock and no file, and draws no chance but from the seeds of its configuration: the same events give the
 /// same reports. (Wall-clock times are noted beside it in [`StageTimes`], which only reports read.)
 ///
-/// As it comes it does everything within the step. After [`Robot::deferring`] it gives long work out as [`crate::Job`]s and takes
-/// up their answers when they are there, between two events: the same events and answers in the same order give the same reports.
+/// By default the robot does everything within the step. After [`Robot::with_background_jobs`] long work leaves as
+/// [`crate::Job`]s, and [`Robot::apply_answer`] applies each result between two events. The same events and results in the same
+/// order give the same reports.
 #[derive(Debug)]
 pub struct Robot {
-    sight: RangeSource,
+    range_source: RangeSource,
     base_from_camera: Pose3,
-    /// A position less sure than this is none, m.
+    /// Standard deviation of the position above which the pose is lost \[m\].
     lost_sigma: f64,
-    /// Of the disc that the robot stands on for certain, m.
+    /// Radius of the largest disc inside the footprint \[m\].
     inscribed_radius: f64,
-    /// Where something stands that presses the bumper, base frame, m.
+    /// Points at which an obstacle presses the bumper, base frame \[m\].
     bumper: Vec<Vector2>,
     odometry: WheelOdometry,
-    /// None while it looks in the background.
+    /// None while a perception job runs.
     perception: Option<Box<PerceptionWorker>>,
     matcher: ScanMatcher,
     traffic: MovingObstacleTracker,
     localizer: Localizer,
     mapper: LiveMapper,
     scan_poses: ScanPoseLog,
-    /// What is bent is to be redrawn within so many commands.
+    /// Commands within which a corrected grid is redrawn.
     redrawn_within: usize,
     map_due: Ticker,
-    /// None while it thinks in the background.
+    /// None while a decision job runs.
     decision_worker: Option<Box<DecisionWorker>>,
     background: Background,
     latest: Latest,
@@ -82,22 +83,22 @@ struct Latest {
     /// `odom_from_base` when it was taken.
     scan_odometry: Option<Pose2>,
     camera_health: CameraHealth,
-    /// Since when images that show enough have not been located.
+    /// Start of the time in which images show enough and are not located.
     unplaced: Option<Stamp>,
     /// Stamp of the newest image that was located.
     located: Option<Stamp>,
     scan_map_consistency: ScanMapConsistency,
     /// Images that were left out because the camera was frozen.
     frozen: usize,
-    /// What the captain said last of what the robot does, and whether the mission is over.
+    /// The newest state, and whether the mission is over.
     state: (DriveState, bool),
-    /// How far the mission had come when it said so last.
+    /// The newest state of the mission.
     mission: MissionState,
-    /// What moved near by when the last scan was taken.
+    /// Dynamic obstacles at the newest scan.
     movers: Vec<MovingObstacle>,
-    /// The map without it; none where nothing moves.
-    still: Option<OccupancyGrid>,
-    /// Hits of what came near by lately and has not been seen to go, map frame, m.
+    /// The grid without dynamic obstacles; none where there are none.
+    static_grid: Option<OccupancyGrid>,
+    /// Hits of unconfirmed obstacles, map frame \[m\].
     unconfirmed: Vec<Vector2>,
 }
 
@@ -131,7 +132,7 @@ impl Robot {
         let blind_range = perception.blind_range();
         let mapper = LiveMapper::new(MapperConfig { blind_range, ..config.mapping.clone() })?;
         Ok(Self {
-            sight: config.sight,
+            range_source: config.sight,
             base_from_camera,
             lost_sigma: config.supervisor.lost_sigma,
             inscribed_radius: inscribed_radius(&footprint),
@@ -182,19 +183,19 @@ impl Robot {
         match event {
             SensorEvent::Gyro(gyro) => self.on_gyro(gyro),
             SensorEvent::Wheels(wheels) => self.on_wheels(wheels, &mut report),
-            SensorEvent::Rgbd(image) => self.look(image, &mut report),
-            SensorEvent::Touch(touch) => self.touch(touch.pressed),
-            SensorEvent::Cliff(cliff) => self.cliff(cliff.over_edge),
-            SensorEvent::Scan(scan) if self.sight == RangeSource::Laser => self.on_laser(scan),
+            SensorEvent::Rgbd(image) => self.on_image(image, &mut report),
+            SensorEvent::Touch(touch) => self.on_touch(touch.pressed),
+            SensorEvent::Cliff(cliff) => self.on_cliff(cliff.over_edge),
+            SensorEvent::Scan(scan) if self.range_source == RangeSource::Laser => self.on_laser(scan),
             // The grid of a robot with a depth camera ignores lasers; truth is for evaluation alone.
             _ => {}
         }
-        self.close(&mut report);
+        self.complete(&mut report);
         report
     }
 
-    /// Every report ends with what holds after the step.
-    fn close(&mut self, report: &mut StepReport) {
+    /// Completes a report with estimate and state after the step.
+    fn complete(&mut self, report: &mut StepReport) {
         report.estimate = Some(self.localizer.estimate());
         if let Some(decision_worker) = &self.decision_worker {
             let state = decision_worker.state();
@@ -214,19 +215,19 @@ impl Robot {
         let odometry = self.times.measure(Stage::Odometry, || self.odometry.step_wheels(wheels));
         self.times.measure(Stage::Localization, || self.localizer.predict(&odometry));
         self.latest.odometry = Some(odometry);
-        self.latest.movers_go_on(&self.traffic, wheels.stamp);
+        self.latest.forecast_movers(&self.traffic, wheels.stamp);
         let surroundings = WorldState {
             now: wheels.stamp,
             estimate: self.localizer.estimate(),
             grid: self.mapper.grid(),
-            scan: self.latest.carried_scan(),
+            scan: self.latest.scan_with_odometry(),
             seen: self.latest.camera_health.seen(),
             unplaced: self.latest.unplaced.map_or(0.0, |since| wheels.stamp - since),
             motion: self.motion_sense(wheels.stamp),
-            traffic: DynamicObstacles {
+            dynamic_obstacles: DynamicObstacles {
                 movers: &self.latest.movers,
                 unconfirmed: &self.latest.unconfirmed,
-                still: self.latest.still.as_ref(),
+                static_grid: self.latest.static_grid.as_ref(),
             },
         };
         match self.decision_worker.take() {
@@ -247,17 +248,17 @@ impl Robot {
         self.redraw();
     }
 
-    /// What tells how the robot moves.
+    /// The source that shows how the robot moves.
     fn motion_sense(&self, now: Stamp) -> MotionSense {
         let is_seen = || self.latest.located.is_some_and(|located| now - located <= MAX_VISUAL_MOTION_AGE_S);
-        match self.sight {
+        match self.range_source {
             _ if !self.odometry.wheels_are_unresponsive() => MotionSense::Wheels,
             RangeSource::DepthCamera if !is_seen() => MotionSense::Nothing,
             RangeSource::DepthCamera | RangeSource::Laser => MotionSense::Sight,
         }
     }
 
-    /// A slice of redrawing what a loop bent.
+    /// Redraws a slice of a corrected grid.
     fn redraw(&mut self) {
         if self.mapper.is_redrawing() {
             let (cells, within) = (MIN_REDRAWN_CELLS, self.redrawn_within);
@@ -267,43 +268,43 @@ impl Robot {
     }
 
     /// The bumper: what presses it enters the map, which the camera may be blind for.
-    fn touch(&mut self, pressed: bool) {
+    fn on_touch(&mut self, pressed: bool) {
         let estimate = self.localizer.estimate();
-        if pressed && self.latest.odometry.is_some() && self.knows_its_place(estimate.stamp) {
+        if pressed && self.latest.odometry.is_some() && self.is_pose_known(estimate.stamp) {
             self.mapper.mark_occupied(estimate.pose, &self.bumper);
         }
-        self.tell_touch(pressed);
+        self.forward_touch(pressed);
     }
 
-    /// An image, looked at here or in the background.
-    fn look(&mut self, image: &RgbdImage, report: &mut StepReport) {
+    /// An image: processed here or queued for a job.
+    fn on_image(&mut self, image: &RgbdImage, report: &mut StepReport) {
         if self.background.is_used() {
-            return self.background.leave(image.clone().into());
+            return self.background.queue_image(image.clone().into());
         }
         let Some(odometer) = self.odometry_at(image.stamp()) else { return };
         let Some(perception) = &mut self.perception else { return };
         report.image = Some(image.stamp());
-        match perception.look(image, odometer, &mut self.times) {
-            Some(sighting) => self.apply_perception(sighting, report),
+        match perception.process(image, odometer, &mut self.times) {
+            Some(result) => self.apply_perception(result, report),
             None => self.drop_frozen(image.stamp()),
         }
     }
 
-    /// What an image showed: the visual pose corrects the estimate; at the map's rate the scan does too, and enters the map.
-    fn apply_perception(&mut self, sighting: PerceptionResult, report: &mut StepReport) {
+    /// Applies the result of an image: the visual pose corrects the estimate; at the grid's rate the scan does too, and enters the grid.
+    fn apply_perception(&mut self, result: PerceptionResult, report: &mut StepReport) {
         let PerceptionResult { odom_from_base, track, scan, place, unplaced, is_carried_away, bent, saved } =
-            sighting;
+            result;
         self.latest.unplaced = unplaced;
         if track.tracking.is_located() {
             self.latest.located = self.latest.located.max(Some(track.stamp));
         }
         if is_carried_away {
-            self.lose_place();
+            self.lose_pose();
         }
         let (times, localizer) = (&mut self.times, &mut self.localizer);
         let before = localizer.estimate().pose;
         let correction =
-            times.measure(Stage::Localization, || correct_by_sight(localizer, &track, bent.is_some()));
+            times.measure(Stage::Localization, || correct_by_visual_pose(localizer, &track, bent.is_some()));
         event_log::correction(track.stamp, "the visual pose", before, self.localizer.estimate().pose);
         if correction == Some(Correction::Reanchored) {
             // Scans drawn so far stay where they are: their visual poses are in a frame that has moved.
@@ -318,16 +319,16 @@ impl Robot {
             self.odometry.break_visual_track(track.stamp);
         }
         if let Some(trajectory) = bent {
-            self.follow_the_visual_map(&trajectory);
+            self.redraw_from_visual_map(&trajectory);
         }
-        self.note_place(place);
+        self.apply_global_localization(place);
         let jump = before.inverse() * self.localizer.estimate().pose;
         if jump.position().norm() > JUMP_M || jump.theta.abs() > JUMP_RAD {
-            self.forget_traffic();
+            self.clear_dynamic_obstacles();
         }
         if let Some(scan) = scan {
             let stamp = scan.stamp();
-            let is_drawn = self.see(scan);
+            let is_drawn = self.on_scan(scan);
             if is_drawn
                 && track.tracking.is_located()
                 && self.scan_poses.note(stamp, track.visual_from_camera, || self.mapper.logged_stamps())
@@ -336,9 +337,9 @@ impl Robot {
             }
         }
         // A grid that has not yet followed the visual map does not fit it.
-        let fits = self.knows_its_place(track.stamp) && !self.mapper.is_redrawing();
+        let fits = self.is_pose_known(track.stamp) && !self.mapper.is_redrawing();
         let saved = saved.filter(|_| fits);
-        report.memory = saved.map(|visual| Arc::new(self.remember(visual)));
+        report.checkpoint = saved.map(|visual| Arc::new(self.checkpoint_with(visual)));
         report.track = Some(track);
     }
 
@@ -348,22 +349,22 @@ impl Robot {
         event_log::dropped_image(stamp, DroppedImage::Frozen);
     }
 
-    /// What stands seems to have moved.
-    fn forget_traffic(&mut self) {
+    /// Drops the dynamic obstacles: after a jump of the pose static things seem to move.
+    fn clear_dynamic_obstacles(&mut self) {
         self.traffic.clear();
         self.latest.unconfirmed.clear();
-        self.latest.forget_movers();
+        self.latest.clear_movers();
     }
 
     /// A scan: at the map's rate it corrects the estimate and enters the map; safety watches each. Whether it was drawn.
-    fn see(&mut self, scan: Scan) -> bool {
-        let is_due = self.map_due.due(scan.stamp()) && self.knows_its_place(scan.stamp());
-        let is_due = is_due && self.is_of_this_place(&scan);
+    fn on_scan(&mut self, scan: Scan) -> bool {
+        let is_due = self.map_due.due(scan.stamp()) && self.is_pose_known(scan.stamp());
+        let is_due = is_due && self.is_consistent_with_map(&scan);
         if is_due {
-            self.fit(&scan);
-            self.draw(&scan);
+            self.correct_by_scan(&scan);
+            self.integrate_scan(&scan);
         }
-        self.watch_traffic(&scan);
+        self.track_dynamic_obstacles(&scan);
         // One that shows nothing does not make safety forget what the last one showed.
         if self.latest.camera_health.note(&scan) || self.latest.camera_health.seen().is_none() {
             self.latest.scan_odometry = self.odometry_at(scan.stamp()).map(|odometer| odometer.pose);
@@ -372,14 +373,14 @@ impl Robot {
         is_due
     }
 
-    /// What moves near by, by the newest scan.
-    fn watch_traffic(&mut self, scan: &Scan) {
+    /// Tracks dynamic obstacles with the newest scan.
+    fn track_dynamic_obstacles(&mut self, scan: &Scan) {
         let now = scan.stamp();
-        if !self.knows_its_place(now) {
+        if !self.is_pose_known(now) {
             // What came lately is where the map is, and expires.
             let here = self.localizer.estimate().pose.position();
             self.latest.unconfirmed = self.traffic.unconfirmed_hits(now, here, NEARBY_OBSTACLE_M);
-            return self.latest.forget_movers();
+            return self.latest.clear_movers();
         }
         let Ok(pose) = self.localizer.pose_at(now) else { return };
         let (times, traffic, latest) = (&mut self.times, &mut self.traffic, &mut self.latest);
@@ -387,18 +388,18 @@ impl Robot {
             traffic.add_scan(pose, scan);
             latest.movers = traffic.moving_obstacles(now);
             latest.unconfirmed = traffic.unconfirmed_hits(now, pose.position(), NEARBY_OBSTACLE_M);
-            latest.still = (!latest.movers.is_empty()).then(|| traffic.static_grid(self.mapper.grid()));
+            latest.static_grid = (!latest.movers.is_empty()).then(|| traffic.static_grid(self.mapper.grid()));
         });
     }
 
-    /// Whether a scan can be laid on the map.
-    fn knows_its_place(&self, now: Stamp) -> bool {
+    /// Whether the pose is known well enough for scans to enter the grid.
+    fn is_pose_known(&self, now: Stamp) -> bool {
         let is_unplaced = self.latest.unplaced.is_some_and(|since| now - since > UNLOCATED_WITH_FEATURES_S);
         !is_unplaced && position_sigma(&self.localizer.estimate()) < self.lost_sigma
     }
 
     /// Corrects the estimate by where the scan fits the map.
-    fn fit(&mut self, scan: &Scan) {
+    fn correct_by_scan(&mut self, scan: &Scan) {
         let Ok(guess) = self.localizer.pose_at(scan.stamp()) else { return };
         let found =
             self.times.measure(Stage::ScanMatch, || self.matcher.refine(self.mapper.mapper(), scan, guess));
@@ -410,7 +411,7 @@ impl Robot {
     }
 
     /// Draws the scan, and the floor that the robot stands on, into the map; not when no pose is known for its time.
-    fn draw(&mut self, scan: &Scan) {
+    fn integrate_scan(&mut self, scan: &Scan) {
         let Ok(pose) = self.localizer.pose_at(scan.stamp()) else { return };
         let (mapper, radius) = (&mut self.mapper, self.inscribed_radius);
         self.times.measure(Stage::Mapping, || {
@@ -425,8 +426,8 @@ impl Robot {
         Some((self.localizer.map_from_visual()? * *visual_from_camera * camera_from_base).to_pose2())
     }
 
-    /// The visual map was bent: the grid is redrawn from where its scans were taken by now.
-    fn follow_the_visual_map(&mut self, trajectory: &[(Stamp, Pose3)]) {
+    /// Applies a correction of the visual map: the grid is redrawn from the corrected poses of its scans.
+    fn redraw_from_visual_map(&mut self, trajectory: &[(Stamp, Pose3)]) {
         let mut scan_poses = std::mem::take(&mut self.scan_poses);
         let moved = scan_poses.follow(trajectory, |pose| self.visual_base(pose));
         self.scan_poses = scan_poses;
@@ -509,8 +510,8 @@ impl Robot {
 }
 
 impl Latest {
-    /// What moves is where it will have come to by `now`; without scans nobody knows.
-    fn movers_go_on(&mut self, traffic: &MovingObstacleTracker, now: Stamp) {
+    /// Forecasts the dynamic obstacles to `now`; without recent scans they are dropped.
+    fn forecast_movers(&mut self, traffic: &MovingObstacleTracker, now: Stamp) {
         if self.movers.is_empty() {
             return;
         }
@@ -518,17 +519,17 @@ impl Latest {
         if self.movers.is_empty()
             || self.scan.as_ref().is_none_or(|scan| now - scan.stamp() > MAX_TRACK_AGE_S)
         {
-            self.forget_movers();
+            self.clear_movers();
         }
     }
 
-    fn forget_movers(&mut self) {
+    fn clear_movers(&mut self) {
         self.movers.clear();
-        self.still = None;
+        self.static_grid = None;
     }
 
-    /// The last scan with the odometry that carries it to now.
-    fn carried_scan(&self) -> Option<SafetyScan<'_>> {
+    /// The newest scan with the odometry that carries it to now.
+    fn scan_with_odometry(&self) -> Option<SafetyScan<'_>> {
         Some(SafetyScan {
             scan: self.scan.as_ref()?,
             odom_at_scan: self.scan_odometry?,
@@ -550,7 +551,11 @@ fn inscribed_radius(footprint: &Footprint) -> f64 {
 }
 
 /// The visual pose, where there is one, to the localizer; one of a map that was just bent is believed.
-fn correct_by_sight(localizer: &mut Localizer, track: &TrackReport, is_bent: bool) -> Option<Correction> {
+fn correct_by_visual_pose(
+    localizer: &mut Localizer,
+    track: &TrackReport,
+    is_bent: bool,
+) -> Option<Correction> {
     let quality = match track.tracking {
         Tracking::Ok => VisualQuality::Ok,
         Tracking::Weak => VisualQuality::Weak,

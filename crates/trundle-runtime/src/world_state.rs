@@ -18,7 +18,7 @@ pub(crate) struct WorldState<'a> {
     pub(crate) unplaced: f64,
     /// What tells how the robot moves.
     pub(crate) motion: MotionSense,
-    pub(crate) traffic: DynamicObstacles<'a>,
+    pub(crate) dynamic_obstacles: DynamicObstacles<'a>,
 }
 
 /// What moves near by.
@@ -28,13 +28,13 @@ pub(crate) struct DynamicObstacles<'a> {
     /// Hits of what came near by lately and has not been seen to go, map frame, m.
     pub(crate) unconfirmed: &'a [Vector2],
     /// The map without them; none where nothing moves.
-    pub(crate) still: Option<&'a OccupancyGrid>,
+    pub(crate) static_grid: Option<&'a OccupancyGrid>,
 }
 
 impl<'a> WorldState<'a> {
     /// The map that plans are made on: what moves is not part of it.
     pub(crate) fn floor(&self) -> &'a OccupancyGrid {
-        self.traffic.still.unwrap_or(self.grid)
+        self.dynamic_obstacles.static_grid.unwrap_or(self.grid)
     }
 }
 
@@ -51,7 +51,7 @@ pub(crate) struct OwnedWorldState {
     motion: MotionSense,
     movers: Vec<MovingObstacle>,
     unconfirmed: Vec<Vector2>,
-    still: Option<OccupancyGrid>,
+    static_grid: Option<OccupancyGrid>,
 }
 
 impl From<&WorldState<'_>> for OwnedWorldState {
@@ -64,9 +64,9 @@ impl From<&WorldState<'_>> for OwnedWorldState {
             seen: s.seen,
             unplaced: s.unplaced,
             motion: s.motion,
-            movers: s.traffic.movers.to_vec(),
-            unconfirmed: s.traffic.unconfirmed.to_vec(),
-            still: s.traffic.still.cloned(),
+            movers: s.dynamic_obstacles.movers.to_vec(),
+            unconfirmed: s.dynamic_obstacles.unconfirmed.to_vec(),
+            static_grid: s.dynamic_obstacles.static_grid.cloned(),
         }
     }
 }
@@ -76,7 +76,7 @@ impl OwnedWorldState {
         self.now
     }
 
-    pub(crate) fn surroundings(&self) -> WorldState<'_> {
+    pub(crate) fn as_world_state(&self) -> WorldState<'_> {
         let scan = self.scan.as_ref();
         WorldState {
             now: self.now,
@@ -90,10 +90,10 @@ impl OwnedWorldState {
             seen: self.seen,
             unplaced: self.unplaced,
             motion: self.motion,
-            traffic: DynamicObstacles {
+            dynamic_obstacles: DynamicObstacles {
                 movers: &self.movers,
                 unconfirmed: &self.unconfirmed,
-                still: self.still.as_ref(),
+                static_grid: self.static_grid.as_ref(),
             },
         }
     }
@@ -129,10 +129,14 @@ mod tests {
             seen: Some(Stamp::from_nanos(4)),
             unplaced: 0.4,
             motion: MotionSense::Sight,
-            traffic: DynamicObstacles { movers: &[], unconfirmed: &hits, still: Some(&still) },
+            dynamic_obstacles: DynamicObstacles {
+                movers: &[],
+                unconfirmed: &hits,
+                static_grid: Some(&still),
+            },
         };
         let owned = OwnedWorldState::from(&original);
-        let copy = owned.surroundings();
+        let copy = owned.as_world_state();
         assert_eq!((copy.now, copy.estimate, copy.grid), (original.now, original.estimate, original.grid));
         assert_eq!(
             (copy.seen, copy.unplaced, copy.motion),
@@ -141,10 +145,13 @@ mod tests {
         let (carried, kept) = (copy.scan.unwrap(), original.scan.unwrap());
         assert_eq!(carried.scan, kept.scan);
         assert_eq!((carried.odom_at_scan, carried.odom_now), (kept.odom_at_scan, kept.odom_now));
-        assert_eq!((copy.traffic.unconfirmed, copy.traffic.still), (&hits[..], Some(&still)));
+        assert_eq!(
+            (copy.dynamic_obstacles.unconfirmed, copy.dynamic_obstacles.static_grid),
+            (&hits[..], Some(&still))
+        );
         assert_eq!(owned.now(), original.now);
         assert_eq!(copy.floor(), &still, "plans are made without what moves");
-        let alone = WorldState { traffic: DynamicObstacles::default(), ..copy };
+        let alone = WorldState { dynamic_obstacles: DynamicObstacles::default(), ..copy };
         assert_eq!(alone.floor(), &grid);
     }
 }

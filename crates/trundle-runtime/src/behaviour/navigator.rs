@@ -71,7 +71,7 @@ pub(crate) struct Navigator {
     config: MissionExecutorConfig,
     planner: Planner,
     /// What a camera sees; none where a laser sees all.
-    view: Option<CameraFov>,
+    camera_fov: Option<CameraFov>,
     follower: Follower,
     goal_approach: GoalApproach,
     safety: SafetyMonitor,
@@ -86,12 +86,12 @@ pub(crate) struct Navigator {
     over_edge: bool,
     started: Option<Stamp>,
     held_since: Option<Stamp>,
-    look: Spin,
+    spin: Spin,
     sight_recovery: SightRecovery,
     /// Where the way to the goal ends, when there is none.
     blocked_at: Option<Vector2>,
     viewpoint: Viewpoint,
-    unseen: VisibilityConstraint,
+    visibility: VisibilityConstraint,
     /// A disc can always turn away.
     is_polygon: bool,
     /// The outline stands too near to something to turn: it backs out, as far as safety lets it.
@@ -119,7 +119,7 @@ impl Navigator {
         Ok(Self {
             config: config.supervisor.validated()?,
             planner: Planner::new(config.planning, footprint, config.limits, config.drive)?,
-            view: CameraFov::of(config)?,
+            camera_fov: CameraFov::of(config)?,
             follower: Follower::new(config.control.clone(), config.drive, config.limits)?,
             goal_approach: GoalApproach::new(&config.docking, footprint)?,
             safety: SafetyMonitor::new(config.safety.clone(), footprint)?,
@@ -133,11 +133,11 @@ impl Navigator {
             over_edge: false,
             started: None,
             held_since: None,
-            look: Spin::default(),
+            spin: Spin::default(),
             sight_recovery: SightRecovery::default(),
             blocked_at: None,
             viewpoint: Viewpoint::Unknown,
-            unseen: VisibilityConstraint::default(),
+            visibility: VisibilityConstraint::default(),
             is_polygon: matches!(footprint, Footprint::Polygon { .. }),
             is_wedged: false,
             is_off_track: false,
@@ -149,18 +149,18 @@ impl Navigator {
     }
 
     /// Takes up a goal. From a trajectory that is being driven it goes over to the next one without a stop.
-    pub(crate) fn apply_answer(&mut self, goal: Goal) {
+    pub(crate) fn set_goal(&mut self, goal: Goal) {
         let rolls_on = self.state == DriveState::Driving && goal.pose().is_some();
         self.goal = goal;
         self.plan = None;
         self.held_since = None;
         self.blocked_at = None;
         self.viewpoint = Viewpoint::Unknown;
-        self.unseen.restart();
+        self.visibility.restart();
         self.is_off_track = false;
         self.touches = 0;
         self.sight_recovery = SightRecovery::default();
-        self.look = Spin::default();
+        self.spin = Spin::default();
         self.goal_approach.reset();
         self.progress.restart();
         self.check_due.hurry();
@@ -206,9 +206,9 @@ impl Navigator {
 
     /// One control step: maybe a new plan, then a command, then safety's word on it.
     pub(crate) fn step(&mut self, s: &WorldState<'_>, times: &mut StageTimes) -> Decision {
-        self.open(s);
-        self.watch(s);
-        self.watch_sight(s);
+        self.initialize(s);
+        self.monitor(s);
+        self.monitor_sight(s);
         let goal = self.goal.pose().filter(|_| self.wants_plan(s));
         let replanned = goal.is_some_and(|goal| times.measure(Stage::Planning, || self.replan(goal, s)));
         let replanned = replanned || self.improved(s, times);
@@ -221,26 +221,26 @@ impl Navigator {
     }
 
     /// The opening: nothing moves before there is a first view.
-    fn open(&mut self, s: &WorldState<'_>) {
+    fn initialize(&mut self, s: &WorldState<'_>) {
         self.started.get_or_insert(s.now);
-        if self.state == DriveState::Initializing && self.is_open(s) && self.goal.pose().is_some() {
-            self.unseen.home.get_or_insert(s.estimate.pose.position());
+        if self.state == DriveState::Initializing && self.is_initialized(s) && self.goal.pose().is_some() {
+            self.visibility.home.get_or_insert(s.estimate.pose.position());
             self.state = DriveState::Planning;
         }
     }
 
     /// Whether the opening is over: the robot has stood for long enough, and there is a view.
-    fn is_open(&self, s: &WorldState<'_>) -> bool {
+    fn is_initialized(&self, s: &WorldState<'_>) -> bool {
         s.scan.is_some() && self.started.is_some_and(|started| s.now - started >= self.config.opening)
     }
 
     /// Whether the robot knows where it is, and whether it gets on.
-    fn watch(&mut self, s: &WorldState<'_>) {
+    fn monitor(&mut self, s: &WorldState<'_>) {
         if self.state.is_over() {
             return;
         }
         let is_lost = matches!(self.state, DriveState::Lost { .. });
-        match self.why_lost(s) {
+        match self.lost_reason(s) {
             Some(reason) if !is_lost => {
                 self.follower.halt();
                 self.goal_approach.reset();
@@ -248,9 +248,9 @@ impl Navigator {
                 self.state = DriveState::Lost { reason };
             }
             None if is_lost && position_sigma(&s.estimate) < 0.5 * self.config.lost_sigma => {
-                self.look = Spin::default();
+                self.spin = Spin::default();
                 // It may have been carried here.
-                self.unseen.home = None;
+                self.visibility.home = None;
                 self.state = DriveState::Initializing;
             }
             _ => {}
@@ -260,13 +260,13 @@ impl Navigator {
             || self.goal == Goal::Spin && self.state == DriveState::Initializing;
         let stood = self.progress.standing_for(s.now, s.estimate.pose, turns_count);
         if stood > self.config.patience {
-            self.give_up(stood);
+            self.stop_without_progress(stood);
         }
     }
 
     /// Whether the robot sees again, which saw nothing. Where a turn on the spot brings its sight back twice at one place on the way to a
     /// viewpoint, the way leads so near to something that the camera is blind there: no place to look from.
-    fn watch_sight(&mut self, s: &WorldState<'_>) {
+    fn monitor_sight(&mut self, s: &WorldState<'_>) {
         if self.is_blind(s) {
             return;
         }
@@ -279,7 +279,7 @@ impl Navigator {
     }
 
     /// Why the robot does not know where it is, when it does not.
-    fn why_lost(&self, s: &WorldState<'_>) -> Option<Reason> {
+    fn lost_reason(&self, s: &WorldState<'_>) -> Option<Reason> {
         let sigma = position_sigma(&s.estimate);
         if sigma > UNKNOWN_POSITION_SIGMA_M {
             return Some(Reason::PoseUnknown);
@@ -295,7 +295,7 @@ impl Navigator {
         (s.unplaced > POSE_UNKNOWN_AFTER_S).then_some(Reason::ViewContradictsMap)
     }
 
-    fn give_up(&mut self, stood: f64) {
+    fn stop_without_progress(&mut self, stood: f64) {
         let (state, cause) = (self.state.name(), self.state.reason().cloned().map(Box::new));
         self.follower.halt();
         self.goal_approach.reset();
@@ -303,7 +303,7 @@ impl Navigator {
     }
 
     /// At the end of the trajectory: an arc, or turns and straight moves; or it is near enough.
-    fn begin_to_settle(&mut self, s: &WorldState<'_>) {
+    fn begin_final_approach(&mut self, s: &WorldState<'_>) {
         self.state = DriveState::FinalApproach;
         let Goal::Exact(goal) = self.goal else {
             self.follower.halt();
@@ -311,13 +311,13 @@ impl Navigator {
         };
         let preview = self.follower.preview_stabilization(s.estimate.pose, goal);
         self.goal_approach.consider(s, goal, preview);
-        self.choose(s);
+        self.select_approach(s);
     }
 
     /// A part of choosing how to settle.
-    fn choose(&mut self, s: &WorldState<'_>) {
+    fn select_approach(&mut self, s: &WorldState<'_>) {
         if self.goal_approach.takes_over(s) {
-            self.start_docking();
+            self.start_maneuver();
         }
     }
 
@@ -329,11 +329,11 @@ impl Navigator {
             _ if !moving => {}
             FollowPhase::Settled => self.state = DriveState::Arrived,
             FollowPhase::Approaching | FollowPhase::Turning if self.state == DriveState::Driving => {
-                times.measure(Stage::Planning, || self.begin_to_settle(s));
+                times.measure(Stage::Planning, || self.begin_final_approach(s));
             }
             FollowPhase::Approaching | FollowPhase::Turning => {
                 self.state = DriveState::FinalApproach;
-                times.measure(Stage::Planning, || self.choose(s));
+                times.measure(Stage::Planning, || self.select_approach(s));
             }
             FollowPhase::Tracking if follow.off_track => {
                 self.is_off_track = true;

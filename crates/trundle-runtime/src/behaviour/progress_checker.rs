@@ -90,7 +90,7 @@ mod tests {
                 checker.standing_for(Stamp::default().after(time), Pose2::new(speed * time, 0.0, 0.0), false)
             });
             let longest = stood.fold(0.0, f64::max);
-            assert!(longest <= STEP / speed + 0.2, "{speed} m/s: {longest} s");
+            assert!(longest <= PROGRESS_DISTANCE_M / speed + 0.2, "{speed} m/s: {longest} s");
         }
     }
 }

@@ -26,7 +26,7 @@ fn surroundings(grid: &OccupancyGrid, pose: Pose2, time: f64) -> WorldState<'_> 
         seen: None,
         unplaced: 0.0,
         motion: trundle_control::MotionSense::Wheels,
-        traffic: crate::world_state::DynamicObstacles::default(),
+        dynamic_obstacles: crate::world_state::DynamicObstacles::default(),
     }
 }
 

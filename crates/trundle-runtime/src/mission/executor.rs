@@ -26,7 +26,7 @@ pub(crate) struct MissionExecutor {
     queue: VecDeque<Entry>,
     current: Option<Current>,
     records: Vec<TaskRecord>,
-    look_due: Ticker,
+    frontier_check_due: Ticker,
 }
 
 /// A task that waits.
@@ -66,7 +66,7 @@ enum Work {
 const FRONTIER_CHECK_RATE_HZ: f64 = 1.0;
 
 impl MissionExecutor {
-    /// A supervisor without a mission; the robot explores keeping `radius` m from things.
+    /// An executor without a mission; exploration keeps `radius` m from obstacles.
     pub(crate) fn new(config: &MissionExecutorConfig, radius: f64) -> Result<Self, Invalid> {
         // Its settings are checked here, once.
         Explorer::new(config.explore, radius)?;
@@ -76,7 +76,7 @@ impl MissionExecutor {
             queue: VecDeque::new(),
             current: None,
             records: Vec::new(),
-            look_due: Ticker::new(FRONTIER_CHECK_RATE_HZ),
+            frontier_check_due: Ticker::new(FRONTIER_CHECK_RATE_HZ),
         })
     }
 
@@ -124,31 +124,32 @@ impl MissionExecutor {
     pub(crate) fn may_take_long(&self, s: &WorldState<'_>, state: &DriveState) -> bool {
         let explores = matches!(&self.current, Some(Current { work: Work::Exploring { .. }, .. }));
         let driving = matches!(state, DriveState::Driving | DriveState::Waiting { .. });
-        state.is_over() && !self.is_idle() || explores && driving && self.look_due.will_be_due(s.now)
+        state.is_over() && !self.is_idle()
+            || explores && driving && self.frontier_check_due.will_be_due(s.now)
     }
 
     /// What the navigator, which is in `state`, shall do next; `None` to go on.
     pub(crate) fn step(&mut self, s: &WorldState<'_>, state: &DriveState) -> Option<Goal> {
         match state {
-            DriveState::Arrived => self.reached(s),
-            DriveState::Stopped { reason } => self.failed(reason, s),
+            DriveState::Arrived => self.on_arrived(s),
+            DriveState::Stopped { reason } => self.on_stopped(reason, s),
             _ => {}
         }
         if self.current.is_none() {
-            return self.apply_answer(s);
+            return self.start_next_task(s);
         }
-        self.look_on(s, state)
+        self.explore_further(s, state)
     }
 
     /// Begins the next task.
-    fn apply_answer(&mut self, s: &WorldState<'_>) -> Option<Goal> {
+    fn start_next_task(&mut self, s: &WorldState<'_>) -> Option<Goal> {
         let entry = self.queue.pop_front()?;
         let (work, goal) = match entry.task {
             Task::Go(pose) => (Work::Going, Goal::Exact(pose)),
             Task::Return => (Work::Going, Goal::Exact(Pose2::IDENTITY)),
             Task::Explore => {
                 let explorer = Explorer::new(self.explore, self.radius)
-                    .expect("invariant: the same settings were checked when the supervisor was made");
+                    .expect("invariant: the same settings were checked when the executor was made");
                 let explorer = Box::new(explorer);
                 (Work::Exploring { explorer, frontier: None, views: 0, failure: None }, Goal::Spin)
             }
@@ -158,7 +159,7 @@ impl MissionExecutor {
     }
 
     /// While it explores: where to look next, when what it drives to has been seen or has come to an end.
-    fn look_on(&mut self, s: &WorldState<'_>, state: &DriveState) -> Option<Goal> {
+    fn explore_further(&mut self, s: &WorldState<'_>, state: &DriveState) -> Option<Goal> {
         let over = matches!(state, DriveState::Arrived | DriveState::Stopped { .. });
         let driving = matches!(state, DriveState::Driving | DriveState::Waiting { .. });
         let Some(Current { work: Work::Exploring { explorer, frontier, views, failure }, .. }) =
@@ -166,7 +167,7 @@ impl MissionExecutor {
         else {
             return None;
         };
-        if !(over || driving && self.look_due.due(s.now)) {
+        if !(over || driving && self.frontier_check_due.due(s.now)) {
             return None;
         }
         match explorer.next(s.grid, s.estimate.pose) {
@@ -182,13 +183,13 @@ impl MissionExecutor {
                 // Where nothing could be driven to, nothing was explored.
                 let reason = failure.take().filter(|_| *views == 0);
                 self.end(reason.map_or(TaskEnd::Done, |reason| TaskEnd::GivenUp { reason }), s);
-                self.apply_answer(s).or(Some(Goal::Stay))
+                self.start_next_task(s).or(Some(Goal::Stay))
             }
         }
     }
 
     /// The navigator has arrived.
-    fn reached(&mut self, s: &WorldState<'_>) {
+    fn on_arrived(&mut self, s: &WorldState<'_>) {
         match &mut self.current {
             Some(Current { work: Work::Exploring { explorer, frontier, views, .. }, .. }) => {
                 if let Some(frontier) = frontier.take() {
@@ -202,7 +203,7 @@ impl MissionExecutor {
     }
 
     /// The navigator has given up.
-    fn failed(&mut self, reason: &Reason, s: &WorldState<'_>) {
+    fn on_stopped(&mut self, reason: &Reason, s: &WorldState<'_>) {
         let Some(current) = &mut self.current else { return };
         if let Work::Exploring { explorer, frontier, failure, .. } = &mut current.work {
             *failure = Some(reason.clone());
@@ -259,7 +260,7 @@ mod tests {
             seen: None,
             unplaced: 0.0,
             motion: trundle_control::MotionSense::Wheels,
-            traffic: crate::world_state::DynamicObstacles::default(),
+            dynamic_obstacles: crate::world_state::DynamicObstacles::default(),
         }
     }
 
@@ -307,7 +308,7 @@ mod tests {
         first.step(&s, &DriveState::Idle);
         assert_eq!(first.step(&s, &DriveState::Arrived), Some(Goal::Exact(b)));
         let mut second = executor(&[]);
-        second.begin(&first.mission().woken());
+        second.begin(&first.mission().after_restart());
         assert_eq!(second.step(&s, &DriveState::Idle), Some(Goal::Exact(b)));
         assert_eq!(second.step(&s, &DriveState::Arrived), Some(Goal::Exact(Pose2::IDENTITY)));
         let ended: Vec<_> = second.records().iter().map(|r| (r.index, r.before_restart)).collect();

@@ -68,7 +68,7 @@ impl Background {
     }
 
     /// Queues an image. The newest replaces the one that waits, which is dropped.
-    pub(super) fn leave(&mut self, image: LazyImage) {
+    pub(super) fn queue_image(&mut self, image: LazyImage) {
         if let Some(old) = self.waiting.replace(image) {
             self.drop_image(old.stamp(), DroppedImage::Replaced);
         }

@@ -11,8 +11,8 @@ use crate::{
 use trundle_core::{Stamp, Twist2};
 
 impl Robot {
-    /// The robot with its long work given out: fetch it with [`Robot::next_job`], run it anywhere, give the answers to
-    /// [`Robot::take_up`].
+    /// The robot with its long work as jobs: fetch each with [`Robot::next_job`], run it anywhere, give the result to
+    /// [`Robot::apply_answer`].
     #[must_use]
     pub fn with_background_jobs(mut self) -> Self {
         self.background.is_used = true;
@@ -24,14 +24,14 @@ impl Robot {
     pub fn queue_image(&mut self, image: LazyImage) -> StepReport {
         let mut report = StepReport::default();
         if self.background.is_used() {
-            self.background.leave(image);
+            self.background.queue_image(image);
         } else {
             match self.times.measure(Stage::Decoding, || image.load()) {
-                Ok(image) => self.look(&image, &mut report),
+                Ok(image) => self.on_image(&image, &mut report),
                 Err(problem) => report.broken_image = Some(problem),
             }
         }
-        self.close(&mut report);
+        self.complete(&mut report);
         report
     }
 
@@ -49,10 +49,10 @@ impl Robot {
         };
         let perception = self.perception.take()?;
         let odometer = Box::new(odometer);
-        Some(Job(Work::Look { perception, image, odometer }))
+        Some(Job(Work::Perceive { perception, image, odometer }))
     }
 
-    /// Takes up what a job came to, between two events.
+    /// Applies the result of a job, between two events.
     ///
     /// The report has a twist where the decision is for the newest reading of the wheels; a later one has been overtaken, and
     /// the next control step acts by it.
@@ -60,11 +60,11 @@ impl Robot {
         let mut report = StepReport::default();
         self.times.add(&answer.times);
         match answer.result {
-            Outcome::Looked { perception, stamp, sighting } => {
+            Outcome::Perceived { perception, stamp, perceived } => {
                 self.perception = Some(perception);
                 report.image = Some(stamp);
-                match sighting {
-                    Ok(Some(sighting)) => self.apply_perception(*sighting, &mut report),
+                match perceived {
+                    Ok(Some(result)) => self.apply_perception(*result, &mut report),
                     Ok(None) => self.drop_frozen(stamp),
                     Err(problem) => report.broken_image = Some(problem),
                 }
@@ -73,11 +73,11 @@ impl Robot {
                 let is_newest = self.latest.odometry.is_some_and(|odometry| odometry.stamp == asked);
                 report.twist = (is_newest && self.background.felt.is_empty()).then_some(decision.twist);
                 report.twist.into_iter().for_each(|twist| self.odometry.set_command(twist));
-                self.take_back(decision_worker, report.twist);
+                self.return_decision_worker(decision_worker, report.twist);
                 report.replanned = decision.replanned;
             }
         }
-        self.close(&mut report);
+        self.complete(&mut report);
         report
     }
 
@@ -94,7 +94,7 @@ impl Robot {
     }
 
     /// The decision worker is back: it receives the readings and the mission that came meanwhile, and the last command.
-    fn take_back(&mut self, mut decision_worker: Box<DecisionWorker>, sent: Option<Twist2>) {
+    fn return_decision_worker(&mut self, mut decision_worker: Box<DecisionWorker>, sent: Option<Twist2>) {
         let fallback = self.background.fallback.take();
         if let Some(sent) = sent.or(fallback.map(|fallback| fallback.sent)) {
             decision_worker.navigator.sent(sent);
@@ -113,7 +113,7 @@ impl Robot {
     }
 
     /// A reading of the bumper.
-    pub(super) fn tell_touch(&mut self, pressed: bool) {
+    pub(super) fn forward_touch(&mut self, pressed: bool) {
         match &mut self.decision_worker {
             Some(decision_worker) => decision_worker.navigator.touch(pressed),
             None => self.background.felt.push(Felt::Touched(pressed)),
@@ -124,7 +124,7 @@ impl Robot {
     }
 
     /// A reading of the cliff sensors.
-    pub(super) fn cliff(&mut self, over_edge: bool) {
+    pub(super) fn on_cliff(&mut self, over_edge: bool) {
         match &mut self.decision_worker {
             Some(decision_worker) => decision_worker.navigator.cliff(over_edge),
             None => self.background.felt.push(Felt::OverEdge(over_edge)),

@@ -14,13 +14,13 @@ impl Robot {
         let odometer = self.odometry_at(scan.stamp());
         if let (Some(perception), Some(odometer)) = (&mut self.perception, odometer) {
             let place = perception.search_pose(odometer.pose, scan, true, &mut self.times);
-            self.note_place(place);
+            self.apply_global_localization(place);
         }
-        self.see(scan.clone());
+        self.on_scan(scan.clone());
     }
 
     /// A robot that does not know its place is where its scans fit the map alone; where that is still to be found, it is looked for.
-    pub(super) fn note_place(&mut self, place: Option<LocalizedPose>) {
+    pub(super) fn apply_global_localization(&mut self, place: Option<LocalizedPose>) {
         let is_lost = |localizer: &Localizer| position_sigma(&localizer.estimate()) >= self.lost_sigma;
         if let Some(LocalizedPose { stamp, map_from_base, covariance }) = place
             && is_lost(&self.localizer)
@@ -49,9 +49,9 @@ impl Robot {
 
     /// Whether a scan may be of the place where the robot believes to be. Where images tell, they are believed; where none has for a
     /// while, a robot whose scans contradict the map must have been carried away.
-    pub(super) fn is_of_this_place(&mut self, scan: &Scan) -> bool {
+    pub(super) fn is_consistent_with_map(&mut self, scan: &Scan) -> bool {
         let (now, watch) = (scan.stamp(), &mut self.latest.scan_map_consistency);
-        if self.sight == RangeSource::Laser {
+        if self.range_source == RangeSource::Laser {
             return true;
         }
         if self.latest.located.is_some_and(|located| now - located <= MAX_VISUAL_MOTION_AGE_S) {
@@ -61,16 +61,16 @@ impl Robot {
         let Ok(pose) = self.localizer.pose_at(now) else { return true };
         let fit = watch.judge(self.mapper.grid(), pose, scan);
         if fit == Fit::Elsewhere {
-            self.lose_place();
+            self.lose_pose();
             self.perception.iter_mut().for_each(|perception| perception.kidnapped());
         }
         fit == Fit::Fits
     }
 
     /// It was carried away.
-    pub(super) fn lose_place(&mut self) {
+    pub(super) fn lose_pose(&mut self) {
         self.localizer.set_pose_unknown();
         self.latest.scan_map_consistency.forget();
-        self.forget_traffic();
+        self.clear_dynamic_obstacles();
     }
 }

@@ -36,7 +36,7 @@ impl DecisionWorker {
     pub(crate) fn begin(&mut self, mission: &MissionState) {
         self.executor.begin(mission);
         if mission.left.tasks().is_empty() {
-            self.navigator.apply_answer(Goal::Stay);
+            self.navigator.set_goal(Goal::Stay);
         }
     }
 
@@ -44,7 +44,7 @@ impl DecisionWorker {
     pub(crate) fn step(&mut self, s: &WorldState<'_>, times: &mut StageTimes) -> Decision {
         let (executor, navigator) = (&mut self.executor, &mut self.navigator);
         if let Some(goal) = times.measure(Stage::Supervision, || executor.step(s, navigator.state())) {
-            navigator.apply_answer(goal);
+            navigator.set_goal(goal);
         }
         navigator.step(s, times)
     }

@@ -5,7 +5,7 @@ use crate::world_state::WorldState;
 use trundle_control::{Follower, SafetyMonitor};
 use trundle_core::Twist2;
 
-/// Goes on as was decided last, control step by control step, while the captain thinks: along the trajectory, or with the
+/// Goes on as was decided last, control step by control step, while the decision worker is away: along the trajectory, or with the
 /// last twist; safety has the last word as ever.
 #[derive(Debug)]
 pub(crate) struct FallbackController {

@@ -30,13 +30,13 @@ impl Worker {
 }
 
 /// Work that takes longer than a control step has time. It bears all that it needs: run it where you like, then give the
-/// answer to [`crate::Robot::take_up`].
+/// answer to [`crate::Robot::apply_answer`].
 #[derive(Debug)]
 pub struct Job(pub(crate) Work);
 
 #[derive(Debug)]
 pub(crate) enum Work {
-    Look { perception: Box<PerceptionWorker>, image: LazyImage, odometer: Box<OdometryState> },
+    Perceive { perception: Box<PerceptionWorker>, image: LazyImage, odometer: Box<OdometryState> },
     Decide { decision_worker: Box<DecisionWorker>, around: Box<OwnedWorldState> },
 }
 
@@ -49,12 +49,12 @@ pub struct Answer {
 
 #[derive(Debug)]
 pub(crate) enum Outcome {
-    Looked {
+    Perceived {
         perception: Box<PerceptionWorker>,
         /// Of the image.
         stamp: Stamp,
         /// None: a frozen camera's; an error: no image.
-        sighting: Result<Option<Box<PerceptionResult>>, String>,
+        perceived: Result<Option<Box<PerceptionResult>>, String>,
     },
     Decided {
         decision_worker: Box<DecisionWorker>,
@@ -67,7 +67,7 @@ impl Job {
     /// Whose it is.
     pub fn worker(&self) -> Worker {
         match &self.0 {
-            Work::Look { .. } => Worker::Perception,
+            Work::Perceive { .. } => Worker::Perception,
             Work::Decide { .. } => Worker::Decision,
         }
     }
@@ -76,15 +76,15 @@ impl Job {
     pub fn run(self) -> Answer {
         let mut times = Box::<StageTimes>::default();
         let result = match self.0 {
-            Work::Look { mut perception, image, odometer } => {
+            Work::Perceive { mut perception, image, odometer } => {
                 let stamp = image.stamp();
                 let image = times.measure(Stage::Decoding, || image.load());
-                let sighting =
-                    image.map(|image| perception.look(&image, *odometer, &mut times).map(Box::new));
-                Outcome::Looked { perception, stamp, sighting }
+                let perceived =
+                    image.map(|image| perception.process(&image, *odometer, &mut times).map(Box::new));
+                Outcome::Perceived { perception, stamp, perceived }
             }
             Work::Decide { mut decision_worker, around } => {
-                let decision = decision_worker.step(&around.surroundings(), &mut times);
+                let decision = decision_worker.step(&around.as_world_state(), &mut times);
                 Outcome::Decided { decision_worker, decision, asked: around.now() }
             }
         };
@@ -96,7 +96,7 @@ impl Answer {
     /// Whose it is.
     pub fn worker(&self) -> Worker {
         match &self.result {
-            Outcome::Looked { .. } => Worker::Perception,
+            Outcome::Perceived { .. } => Worker::Perception,
             Outcome::Decided { .. } => Worker::Decision,
         }
     }

@@ -20,11 +20,11 @@ use trundle_slam::{MapFileError, RgbdSlam, TrackReport};
 /// beside the control loop.
 #[derive(Debug)]
 pub(crate) struct PerceptionWorker {
-    sight: RangeSource,
+    range_source: RangeSource,
     base_from_camera: Pose3,
     slam: RgbdSlam,
     scanner: DepthScanner,
-    watch: CameraHealth,
+    camera_health: CameraHealth,
     /// The place by scans, while it is not known.
     pub(crate) global_localization: GlobalLocalization,
     /// Whether the place was last told by scans.
@@ -73,12 +73,12 @@ impl PerceptionWorker {
         let scanner = DepthScanner::new(config.camera, base_from_camera, config.scan.clone())?;
         let blind_range = blind_range(config.sight, &scanner);
         Ok(Self {
-            sight: config.sight,
+            range_source: config.sight,
             base_from_camera,
             slam: RgbdSlam::new(config.camera, config.slam.clone())?,
             scanner,
             global_localization: GlobalLocalization::new(config, blind_range)?,
-            watch: CameraHealth::default(),
+            camera_health: CameraHealth::default(),
             is_placed_by_scans: false,
             last: None,
             unplaced: None,
@@ -88,7 +88,7 @@ impl PerceptionWorker {
     }
 
     /// Goes on with saved visual maps; where in them the camera is it has to recognise.
-    pub(crate) fn recall(&mut self, config: &RobotConfig, visual: &[u8]) -> Result<(), MapFileError> {
+    pub(crate) fn load_maps(&mut self, config: &RobotConfig, visual: &[u8]) -> Result<(), MapFileError> {
         self.slam = RgbdSlam::load(visual, config.camera, config.slam.clone())?;
         Ok(())
     }
@@ -99,18 +99,18 @@ impl PerceptionWorker {
 
     /// Nearer than this its scans show nothing, m.
     pub(crate) fn blind_range(&self) -> f64 {
-        blind_range(self.sight, &self.scanner)
+        blind_range(self.range_source, &self.scanner)
     }
 
     /// Looks at an image taken when the odometry said this; none when it is the last one again though the robot has moved.
-    pub(crate) fn look(
+    pub(crate) fn process(
         &mut self,
         image: &RgbdImage,
         odometer: OdometryState,
         times: &mut StageTimes,
     ) -> Option<PerceptionResult> {
         let odom_from_base = odometer.pose;
-        if self.watch.is_frozen(image, odom_from_base) {
+        if self.camera_health.is_frozen(image, odom_from_base) {
             return None;
         }
         let prior = self.camera_motion_since_last_image(odometer);
@@ -120,7 +120,7 @@ impl PerceptionWorker {
             self.slam.kidnapped();
         }
         let bent = is_bent(&track).then(|| self.slam.trajectory());
-        let scan = match self.sight {
+        let scan = match self.range_source {
             RangeSource::DepthCamera => Some(times.measure(Stage::Scan, || self.scanner.scan(image))),
             RangeSource::Laser => None,
         };
@@ -182,7 +182,7 @@ impl PerceptionWorker {
         if self.is_placed_by_scans {
             return false;
         }
-        if track.tracking.is_located() || !shows_enough && !self.has_been_unplaced(track.stamp) {
+        if track.tracking.is_located() || !shows_enough && !self.is_unplaced_for_long(track.stamp) {
             (self.unplaced, self.searched) = (None, None);
         }
         if track.tracking.is_located() || !shows_enough {
@@ -197,7 +197,7 @@ impl PerceptionWorker {
     }
 
     /// A robot that does not know its place does not know it before a bare wall either.
-    fn has_been_unplaced(&self, now: Stamp) -> bool {
+    fn is_unplaced_for_long(&self, now: Stamp) -> bool {
         self.unplaced.is_some_and(|since| now - since > POSE_UNKNOWN_AFTER_S)
     }
 }

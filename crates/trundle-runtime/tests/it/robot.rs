@@ -222,7 +222,7 @@ fn a_robot_that_wakes_up_knows_the_rooms_and_not_its_place_and_draws_nothing_mea
         .filter_map(|i| {
             let stamp = Stamp::from_nanos(i * 50_000_000);
             first.step(&SensorEvent::Wheels(WheelTicks { stamp, left: 0, right: 0 }));
-            first.step(&wall(stamp, 3.0)).memory
+            first.step(&wall(stamp, 3.0)).checkpoint
         })
         .last()
         .unwrap();

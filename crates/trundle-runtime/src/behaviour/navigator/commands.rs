@@ -33,15 +33,15 @@ impl Navigator {
     ) -> Twist2 {
         let pose = s.estimate.pose;
         match &self.state {
-            DriveState::Initializing if self.goal == Goal::Spin => self.look_once(s),
+            DriveState::Initializing if self.goal == Goal::Spin => self.spin_once(s),
             DriveState::Recovering { .. } if self.is_wedged => Twist2::new(-REVERSE_SPEED_M_S, 0.0),
             DriveState::Recovering { .. } if matches!(self.viewpoint, Viewpoint::Going(..)) => follow.twist,
-            DriveState::Recovering { .. } if self.looks_still() => Twist2::ZERO,
+            DriveState::Recovering { .. } if self.observes_at_rest() => Twist2::ZERO,
             // The gyro's bias is measured at rest.
-            DriveState::Lost { .. } if !self.is_open(s) => Twist2::ZERO,
-            DriveState::Recovering { .. } | DriveState::Lost { .. } => self.look.twist(pose),
+            DriveState::Lost { .. } if !self.is_initialized(s) => Twist2::ZERO,
+            DriveState::Recovering { .. } | DriveState::Lost { .. } => self.spin.twist(pose),
             DriveState::Waiting { .. } if self.backs_out(s) => Twist2::new(-BACK_OUT_SPEED_M_S, 0.0),
-            DriveState::Waiting { .. } if self.is_blind(s) => self.look_for_sight(s),
+            DriveState::Waiting { .. } if self.is_blind(s) => self.recover_sight(s),
             DriveState::Waiting { .. } => match self.blocked_at.filter(|_| self.plan.is_none()) {
                 Some(at) => face(pose, at),
                 None => follow.twist,
@@ -49,7 +49,7 @@ impl Navigator {
             DriveState::FinalApproach if matches!(self.goal, Goal::Viewpoint(_)) => self.turn_to_view(s),
             DriveState::FinalApproach if self.goal_approach.holds() => Twist2::ZERO,
             DriveState::Maneuvering if self.is_blind(s) => Twist2::ZERO,
-            DriveState::Maneuvering => times.measure(Stage::Control, || self.dock(s)),
+            DriveState::Maneuvering => times.measure(Stage::Control, || self.maneuver(s)),
             _ => follow.twist,
         }
     }
@@ -77,7 +77,7 @@ impl Navigator {
     }
 
     /// A camera too near to a wall sees nothing: after a while one turn on the spot shows whether that is it.
-    fn look_for_sight(&mut self, s: &WorldState<'_>) -> Twist2 {
+    fn recover_sight(&mut self, s: &WorldState<'_>) -> Twist2 {
         // Images that show something, but not how it moves, are no sight.
         let seen = s.seen.filter(|_| s.motion != MotionSense::Nothing);
         let since = self.held_since.max(seen);
@@ -86,19 +86,19 @@ impl Navigator {
     }
 
     /// A turn on the spot, and what is around has been seen.
-    fn look_once(&mut self, s: &WorldState<'_>) -> Twist2 {
-        if !self.is_open(s) {
+    fn spin_once(&mut self, s: &WorldState<'_>) -> Twist2 {
+        if !self.is_initialized(s) {
             return Twist2::ZERO;
         }
-        if self.look.has_turned(SPIN_TURNS) {
+        if self.spin.has_turned(SPIN_TURNS) {
             self.state = DriveState::Arrived;
             return Twist2::ZERO;
         }
-        self.look.twist(s.estimate.pose)
+        self.spin.twist(s.estimate.pose)
     }
 
     /// One step of turns and straight moves.
-    fn dock(&mut self, s: &WorldState<'_>) -> Twist2 {
+    fn maneuver(&mut self, s: &WorldState<'_>) -> Twist2 {
         match self.goal_approach.step(s) {
             Progress::Moving(twist) => return twist,
             Progress::Settled => self.state = DriveState::Arrived,
@@ -161,7 +161,7 @@ pub(crate) fn safety_input<'a>(
         scan: s.scan,
         memory: Some(SafetyMemory {
             grid: s.grid,
-            unconfirmed: s.traffic.unconfirmed,
+            unconfirmed: s.dynamic_obstacles.unconfirmed,
             map_from_base: s.estimate.pose,
         }),
         touched,
@@ -224,7 +224,7 @@ mod tests {
     #[test]
     fn it_turns_only_after_it_has_seen_nothing_for_a_while_however_long_it_was_held() {
         let (grid, mut navigator, pose) = (floor(|_| false), navigator(), Pose2::new(3.0, 2.0, 0.0));
-        navigator.apply_answer(Goal::Viewpoint(Pose2::new(4.0, 2.0, 0.0)));
+        navigator.set_goal(Goal::Viewpoint(Pose2::new(4.0, 2.0, 0.0)));
         let (held, mut times) = (Stamp::default().after(10.0), StageTimes::default());
         let seen = held.after(20.0);
         for (blind, turns) in [(1.0, false), (2.9, false), (3.1, true)] {
@@ -241,13 +241,13 @@ mod tests {
         let (grid, ahead) = (floor(|_| false), Pose2::new(4.0, 2.0, 0.0));
         for (goal, given_up) in [(Goal::Viewpoint(ahead), true), (Goal::Exact(ahead), false)] {
             let mut navigator = navigator();
-            navigator.apply_answer(goal);
+            navigator.set_goal(goal);
             let once = lose_sight_and_find_it(&mut navigator, &grid, Stamp::default().after(10.0));
             assert!(!navigator.state().is_over(), "the camera may have failed: {:?}", navigator.state());
             let twice = lose_sight_and_find_it(&mut navigator, &grid, once);
             assert_eq!(navigator.state().is_over(), given_up, "{goal:?}: {:?}", navigator.state());
             // For the next goal it counts anew.
-            navigator.apply_answer(goal);
+            navigator.set_goal(goal);
             lose_sight_and_find_it(&mut navigator, &grid, twice);
             assert!(!navigator.state().is_over(), "{:?}", navigator.state());
         }

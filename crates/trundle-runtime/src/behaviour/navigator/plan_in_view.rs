@@ -31,33 +31,34 @@ impl Navigator {
         (from, twist): (Pose2, Twist2),
         goal: Pose2,
     ) -> InView {
-        self.unseen.note_seen(s.floor());
-        self.unseen.forget(s.now);
+        self.visibility.note_seen(s.floor());
+        self.visibility.forget(s.now);
         let ends = [from, goal].map(|pose| pose.position());
-        let bars = self.unseen.bars();
+        let bars = self.visibility.bars();
         let best = {
             let floor = self.walled(s.floor(), &bars, ends);
             let floor = floor.as_ref().unwrap_or(s.floor());
-            self.planner.plan_among_moving(floor, s.traffic.movers, from, twist, goal)
+            self.planner.plan_among_moving(floor, s.dynamic_obstacles.movers, from, twist, goal)
         };
         let Plan::Found(best) = best else { return self.found(InView::Plan(best)) };
         let Some(unseen) = self.first_unseen(best.trajectory.points(), s.floor()) else {
             return self.found(InView::Plan(Plan::Found(best)));
         };
-        if self.unseen.walls.is_empty() {
-            self.unseen.walls.push(unseen);
+        if self.visibility.walls.is_empty() {
+            self.visibility.walls.push(unseen);
         }
-        let walls = [bars, self.unseen.walls.clone()].concat();
+        let walls = [bars, self.visibility.walls.clone()].concat();
         let Some(floor) = self.walled(s.floor(), &walls, ends) else {
             return self.found(InView::Unseen(unseen, None));
         };
-        let Plan::Found(plan) = self.planner.plan_among_moving(&floor, s.traffic.movers, from, twist, goal)
+        let Plan::Found(plan) =
+            self.planner.plan_among_moving(&floor, s.dynamic_obstacles.movers, from, twist, goal)
         else {
             return self.found(InView::Unseen(unseen, None));
         };
         match self.first_unseen(plan.trajectory.points(), s.floor()) {
-            Some(next) if self.unseen.walls.len() < MAX_VIRTUAL_OBSTACLES => {
-                self.unseen.walls.push(next);
+            Some(next) if self.visibility.walls.len() < MAX_VIRTUAL_OBSTACLES => {
+                self.visibility.walls.push(next);
                 InView::Asking
             }
             Some(_) => self.found(InView::Unseen(unseen, None)),
@@ -69,13 +70,13 @@ impl Navigator {
 
     /// The end of a search.
     fn found(&mut self, found: InView) -> InView {
-        self.unseen.walls.clear();
+        self.visibility.walls.clear();
         found
     }
 
     /// Where a way first leads onto what the camera will not have seen.
     pub(super) fn first_unseen(&self, way: &[TrajectoryPoint], floor: &OccupancyGrid) -> Option<Vector2> {
-        self.view?.first_unseen(way, floor, self.radius, &self.unseen)
+        self.camera_fov?.first_unseen(way, floor, self.radius, &self.visibility)
     }
 
     /// Whether the rest of a way, from `time` on (s of the way), is free on the newest map, and what it leads onto was seen or will be.
@@ -89,7 +90,7 @@ impl Navigator {
     fn walled(&self, floor: &OccupancyGrid, places: &[Vector2], ends: [Vector2; 2]) -> Option<OccupancyGrid> {
         let mut walled = (!places.is_empty()).then(|| floor.clone())?;
         for at in places {
-            wall_off(&mut walled, *at, ends, self.radius, self.unseen.home);
+            wall_off(&mut walled, *at, ends, self.radius, self.visibility.home);
         }
         Some(walled)
     }
@@ -173,7 +174,7 @@ mod tests {
         let shown = found(shown);
         assert_eq!(navigator.first_unseen(shown.points(), &grid), None);
         assert!(shown.duration() < MAX_SEEN_PATH_RATIO * best.duration() + MAX_SEEN_PATH_EXTRA_S);
-        navigator.view = None;
+        navigator.camera_fov = None;
         let InView::Plan(any) = asked(&mut navigator, &s, goal) else { panic!("a laser sees all") };
         assert_eq!(found(any), best);
     }
@@ -202,7 +203,7 @@ mod tests {
         let InView::Unseen(at, _) = asked(&mut navigator, &s, goal) else { panic!("the bend hides it") };
         assert_eq!(grid.at(at), Cell::Unknown);
         // It stays unseen: every look is in vain, and then there is no way, and the reason is told.
-        navigator.apply_answer(super::super::Goal::Exact(goal));
+        navigator.set_goal(super::super::Goal::Exact(goal));
         navigator.state = crate::behaviour::drive_state::DriveState::Planning;
         let mut looks = 0;
         for i in 1..600 {
@@ -215,7 +216,7 @@ mod tests {
                 navigator.follower.halt();
                 navigator.viewpoint = super::super::viewpoint::Viewpoint::Settled;
                 looks += 1;
-                assert!(navigator.view.unwrap().shows(&grid, pose, navigator.blocked_at.unwrap()));
+                assert!(navigator.camera_fov.unwrap().shows(&grid, pose, navigator.blocked_at.unwrap()));
             }
         }
         assert!((1..=MAX_VAIN_VIEWS).contains(&looks), "{looks} looks");

@@ -29,7 +29,7 @@ impl Navigator {
             | DriveState::FinalApproach
             | DriveState::Maneuvering
             | DriveState::Lost { .. } => false,
-            DriveState::Recovering { .. } if !self.looks_for_news(s) => {
+            DriveState::Recovering { .. } if !self.needs_new_plan(s) => {
                 if self.check_due.due(s.now) {
                     self.watch_path_to_viewpoint(s);
                 }
@@ -51,8 +51,9 @@ impl Navigator {
     fn plan_holds(&self, s: &WorldState<'_>) -> bool {
         match (&self.plan, self.follower.reference()) {
             (Some(plan), Some(reference)) => {
-                let meets =
-                    || self.planner.first_encounter(&plan.trajectory, reference.time, s.traffic.movers);
+                let meets = || {
+                    self.planner.first_encounter(&plan.trajectory, reference.time, s.dynamic_obstacles.movers)
+                };
                 self.is_still_good(&plan.trajectory, reference.time, s) && meets().is_none()
             }
             (Some(_), None) => true,
@@ -62,7 +63,7 @@ impl Navigator {
 
     /// Plans from the reference where the robot is on it, else from where it stands; true when there is a new plan.
     pub(super) fn replan(&mut self, goal: Pose2, s: &WorldState<'_>) -> bool {
-        if matches!(self.state, DriveState::Waiting { .. }) && self.turned_to_docking(goal, s) {
+        if matches!(self.state, DriveState::Waiting { .. }) && self.starts_maneuver_if_possible(goal, s) {
             return false;
         }
         let from = match (&self.state, self.follower.reference()) {
@@ -78,8 +79,8 @@ impl Navigator {
         };
         let plan = match self.plan_in_view(s, from, goal) {
             InView::Plan(plan) => plan,
-            InView::Asking => return self.stands_to_look(s),
-            InView::Unseen(at, long) => match self.first_looks_at(at, long, s) {
+            InView::Asking => return self.stop_for_path_in_view(s),
+            InView::Unseen(at, long) => match self.observe_first(at, long, s) {
                 Some(long) => Plan::Found(long),
                 None => return false,
             },
@@ -93,7 +94,7 @@ impl Navigator {
                 self.blocked_at = None;
                 self.viewpoint = Viewpoint::Unknown;
                 self.is_off_track = false;
-                self.look = Spin::default();
+                self.spin = Spin::default();
                 true
             }
             Plan::Found(_) => {
@@ -105,7 +106,7 @@ impl Navigator {
                 false
             }
             refused => {
-                if !self.turned_to_docking(goal, s)
+                if !self.starts_maneuver_if_possible(goal, s)
                     && let Some(cause) = NoPath::of(&refused)
                 {
                     self.no_way(cause, s);
@@ -117,17 +118,17 @@ impl Navigator {
 
     /// Before a way that leads onto floor at `at` that no image has shown it goes to where that is seen; where that cannot be, the
     /// `long` way is taken.
-    fn first_looks_at(
+    fn observe_first(
         &mut self,
         at: Vector2,
         long: Option<Box<PlanResult>>,
         s: &WorldState<'_>,
     ) -> Option<Box<PlanResult>> {
         if self.state == DriveState::Driving {
-            self.stands_to_look(s);
+            self.stop_for_path_in_view(s);
             return None;
         }
-        if self.seeks_sight_of(at, s) {
+        if self.seeks_view_of(at, s) {
             if !matches!(self.viewpoint, Viewpoint::Going(..)) {
                 self.follower.halt();
                 self.plan = None;
@@ -137,9 +138,9 @@ impl Navigator {
             return None;
         }
         self.viewpoint = Viewpoint::Unknown;
-        if long.is_none() && self.unseen.bar(at, s.now) {
+        if long.is_none() && self.visibility.bar(at, s.now) {
             // The next plan keeps off it.
-            self.stands_to_look(s);
+            self.stop_for_path_in_view(s);
         } else if long.is_none() {
             self.no_way(NoPath::Blocked { nearest: at }, s);
         }
@@ -147,7 +148,7 @@ impl Navigator {
     }
 
     /// What it drives on does not show where it leads: it stops until there is a plan that does. Never a new plan.
-    fn stands_to_look(&mut self, s: &WorldState<'_>) -> bool {
+    fn stop_for_path_in_view(&mut self, s: &WorldState<'_>) -> bool {
         if self.state == DriveState::Driving {
             self.hold(Reason::PathOutOfView, s.now);
         }
@@ -156,7 +157,7 @@ impl Navigator {
 
     /// Whether what moves alone bars the way.
     fn is_free_but_for_movers(&mut self, s: &WorldState<'_>, from: (Pose2, Twist2), goal: Pose2) -> bool {
-        !s.traffic.movers.is_empty()
+        !s.dynamic_obstacles.movers.is_empty()
             && matches!(self.planner.plan(s.floor(), from.0, from.1, goal), Plan::Found(_))
     }
 
@@ -170,7 +171,13 @@ impl Navigator {
         }
         let planner = &mut self.planner;
         let plan = times.measure(Stage::Planning, || {
-            planner.plan_among_moving(s.floor(), s.traffic.movers, reference.pose, reference.twist, goal)
+            planner.plan_among_moving(
+                s.floor(),
+                s.dynamic_obstacles.movers,
+                reference.pose,
+                reference.twist,
+                goal,
+            )
         });
         match plan {
             // What the way of now keeps off because it was not seen, a quicker one must keep off too.
@@ -202,7 +209,7 @@ impl Navigator {
             _ => self.goal.pose().map(|goal| goal.position()),
         };
         let reason = self.no_path(cause);
-        let has_looked = self.look.has_turned(MAX_SPINS) && !self.is_wedged;
+        let has_looked = self.spin.has_turned(MAX_SPINS) && !self.is_wedged;
         self.state = if matches!(self.goal, Goal::Viewpoint(_)) {
             DriveState::Stopped { reason }
         } else if has_looked && !self.seeks_viewpoint(s) {
@@ -213,17 +220,17 @@ impl Navigator {
     }
 
     /// Near the goal, where no path is found or safety holds the robot: by turns and straight moves, if there are such.
-    fn turned_to_docking(&mut self, goal: Pose2, s: &WorldState<'_>) -> bool {
+    fn starts_maneuver_if_possible(&mut self, goal: Pose2, s: &WorldState<'_>) -> bool {
         let stands = s.estimate.twist.v.abs() < STANDING_SPEED_M_S;
         let is_exact = matches!(self.goal, Goal::Exact(_));
         let turned = is_exact && stands && !self.is_blind(s) && self.goal_approach.begin_if_possible(s, goal);
         if turned {
-            self.start_docking();
+            self.start_maneuver();
         }
         turned
     }
 
-    pub(super) fn start_docking(&mut self) {
+    pub(super) fn start_maneuver(&mut self) {
         self.follower.halt();
         self.held_since = None;
         self.state = DriveState::Maneuvering;
@@ -231,7 +238,7 @@ impl Navigator {
 
     /// The reason for a missing path, with the floor that was kept out of the search.
     fn no_path(&self, cause: NoPath) -> Reason {
-        Reason::NoPath { cause, unseen: self.unseen.barred() }
+        Reason::NoPath { cause, unseen: self.visibility.barred() }
     }
 
     fn hold(&mut self, reason: Reason, now: Stamp) {

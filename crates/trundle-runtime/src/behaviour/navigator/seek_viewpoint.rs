@@ -28,23 +28,24 @@ impl Navigator {
             let own_size = if s.grid.at(at) == Cell::Free { 0.0 } else { BLOCKAGE_DEPTH_M };
             let stands_well = VIEWING_RANGE_M.contains(&(at - here.position()).norm())
                 && is_in_sight(s.grid, here.position(), at, own_size);
-            let places = if stands_well { Vec::new() } else { places(s.grid, here, at, own_size, self.view) };
+            let places =
+                if stands_well { Vec::new() } else { places(s.grid, here, at, own_size, self.camera_fov) };
             self.viewpoint = Viewpoint::Choosing(ViewTarget::Blockage, best_last(places));
         }
-        self.sets_out(s)
+        self.plan_to_viewpoint(s)
     }
 
     /// The way leads onto floor at `at` that no image has shown: first it is looked at, from where it can be seen. Whether that is
     /// so; not when there is no such place, or it was looked at in vain.
-    pub(super) fn seeks_sight_of(&mut self, at: Vector2, s: &WorldState<'_>) -> bool {
+    pub(super) fn seeks_view_of(&mut self, at: Vector2, s: &WorldState<'_>) -> bool {
         match &self.viewpoint {
             Viewpoint::Going(..) => return true,
             Viewpoint::Looking(until) if s.now < *until => return true,
             Viewpoint::Choosing(ViewTarget::UnknownFloor, _) => {}
             _ => {
-                let worth = self.unseen.is_worth_a_look(at);
+                let worth = self.visibility.is_worth_a_look(at);
                 let places = if worth {
-                    sights(s.floor(), s.estimate.pose, at, self.view, &self.unseen)
+                    sights(s.floor(), s.estimate.pose, at, self.camera_fov, &self.visibility)
                 } else {
                     Vec::new()
                 };
@@ -52,11 +53,11 @@ impl Navigator {
                 self.viewpoint = Viewpoint::Choosing(ViewTarget::UnknownFloor, best_last(places));
             }
         }
-        self.sets_out(s)
+        self.plan_to_viewpoint(s)
     }
 
     /// Asks for the way to one of the places to choose from; whether there is one, or another to be asked for.
-    fn sets_out(&mut self, s: &WorldState<'_>) -> bool {
+    fn plan_to_viewpoint(&mut self, s: &WorldState<'_>) -> bool {
         let Viewpoint::Choosing(aim, places) = &mut self.viewpoint else {
             return self.is_at_viewpoint_or_going();
         };
@@ -69,7 +70,7 @@ impl Navigator {
             && self.first_unseen(plan.trajectory.points(), s.floor()).is_none()
         {
             if let (ViewTarget::UnknownFloor, Some(at)) = (aim, self.blocked_at) {
-                self.unseen.note_look(at, place.position(), s.now);
+                self.visibility.note_look(at, place.position(), s.now);
             }
             self.follower.follow(plan.trajectory.clone(), place);
             self.viewpoint = Viewpoint::Going(aim, plan.trajectory);
@@ -83,7 +84,7 @@ impl Navigator {
     }
 
     /// Whether a plan is to be asked for while it goes to look: what bars a way may go away, what was not seen may be seen.
-    pub(super) fn looks_for_news(&self, s: &WorldState<'_>) -> bool {
+    pub(super) fn needs_new_plan(&self, s: &WorldState<'_>) -> bool {
         match &self.viewpoint {
             Viewpoint::Going(ViewTarget::UnknownFloor, _) => {
                 self.blocked_at.is_none_or(|at| s.floor().at(at) != Cell::Unknown)
@@ -98,7 +99,7 @@ impl Navigator {
         let is_going = matches!(self.viewpoint, Viewpoint::Going(..));
         let is_over = matches!(follow.phase, FollowPhase::Settled | FollowPhase::Idle);
         if is_going && (is_over || follow.off_track) {
-            self.look_from_here(now);
+            self.observe_from_here(now);
         }
     }
 
@@ -108,16 +109,16 @@ impl Navigator {
             return;
         };
         if !self.is_still_good(way, reference.time, s) {
-            self.look_from_here(s.now);
+            self.observe_from_here(s.now);
         }
     }
 
     /// The way to a place is over.
-    fn look_from_here(&mut self, now: Stamp) {
+    fn observe_from_here(&mut self, now: Stamp) {
         self.follower.halt();
         self.viewpoint = match self.viewpoint {
             Viewpoint::Going(ViewTarget::UnknownFloor, _) => {
-                self.unseen.note_arrival(now);
+                self.visibility.note_arrival(now);
                 Viewpoint::Looking(now.after(VIEWING_DURATION_S))
             }
             _ => Viewpoint::Settled,
@@ -125,7 +126,7 @@ impl Navigator {
     }
 
     /// Whether it stands still while it recovers: choosing where to look from, or looking.
-    pub(super) fn looks_still(&self) -> bool {
+    pub(super) fn observes_at_rest(&self) -> bool {
         let recovers = matches!(self.state, DriveState::Recovering { .. });
         recovers && matches!(self.viewpoint, Viewpoint::Looking(_) | Viewpoint::Choosing(..))
     }

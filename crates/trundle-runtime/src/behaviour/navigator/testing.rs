@@ -35,6 +35,6 @@ pub(super) fn at_rest(grid: &OccupancyGrid, now: Stamp, pose: Pose2) -> WorldSta
         seen: None,
         unplaced: 0.0,
         motion: MotionSense::Wheels,
-        traffic: DynamicObstacles::default(),
+        dynamic_obstacles: DynamicObstacles::default(),
     }
 }
