@@ -40,7 +40,8 @@ fn a_writer_without_checkpoints_leaves_the_file_as_it_was() {
 #[test]
 fn a_place_that_cannot_be_written_does_not_stop_the_robot() {
     let scratch = tempfile::tempdir().unwrap();
-    let file = scratch.path().join("no-such-folder").join("robot.checkpoint");
+    std::fs::write(scratch.path().join("blocked"), "a file, no folder").unwrap();
+    let file = scratch.path().join("blocked").join("robot.checkpoint");
     let writer = CheckpointWriter::new(&file).unwrap();
     (0..3).for_each(|number| writer.write(Arc::new(checkpoint(number))));
     writer.finish(Some(checkpoint(9)));
