@@ -114,7 +114,7 @@ impl DepthModel {
         let strength = truth.luminance * truth.cosine;
         let enough = self.weakest_return * z * z;
         if (grazing_loss > 0.0 || strength < enough)
-            && chance(mix(bits), 2) < grazing_loss.max(1.0 - strength / enough)
+            && uniform(mix(bits), 2) < grazing_loss.max(1.0 - strength / enough)
         {
             return 0.0;
         }
@@ -132,12 +132,12 @@ impl DepthModel {
     /// Which depth a pixel at an edge sees, m; 0 when it is lost.
     #[cold]
     fn at_edge(&self, z: f32, beyond: f32, bits: u64, normals: &NormalTable) -> f32 {
-        let fate = chance(bits, 0);
+        let fate = uniform(bits, 0);
         if fate < self.edge_loss {
             return 0.0;
         }
         if fate < self.edge_loss + self.flying {
-            return z + chance(bits, 1) * (beyond - z);
+            return z + uniform(bits, 1) * (beyond - z);
         }
         // The edge runs half a pixel away; a shift by more than that puts the pixel on the other side.
         let shift = self.lateral_px * normals.pick(mix(bits), 0);
@@ -146,7 +146,7 @@ impl DepthModel {
 }
 
 /// A number in 0 to 1 from the `nth` group of 20 bits; n is 0 to 2.
-fn chance(bits: u64, nth: u32) -> f32 {
+fn uniform(bits: u64, nth: u32) -> f32 {
     (bits >> (nth * 20) & 0xF_FFFF) as i32 as f32 * (1.0 / (1 << 20) as f32)
 }
 
