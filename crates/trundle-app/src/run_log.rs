@@ -1,10 +1,10 @@
-//! The log of a run for judges and pictures: poses, truth, commands, states.
+//! The log of a run for evaluation and pictures: poses, truth, commands, states.
 
 use trundle_core::{Pose2, SensorEvent, Stamp, Twist2};
 use trundle_runtime::{DriveState, StepReport};
 use trundle_slam::Tracking;
 
-/// The log of a run for judges and pictures. All of it comes from the data: no wall clock.
+/// The log of a run for evaluation and pictures. All of it comes from the data: no wall clock.
 #[derive(Debug, Default)]
 pub struct RunLog {
     /// First stamp of the run.
@@ -154,7 +154,7 @@ impl RunLog {
         self.true_contacts.map_or(self.presses, |count| count as usize)
     }
 
-    /// Logs truth (moved into the map frame) and bumper presses, which only judges may read.
+    /// Logs truth (moved into the map frame) and bumper presses, for evaluation only.
     pub fn on_event(&mut self, event: &SensorEvent, map_from_world: Pose2) {
         match event {
             SensorEvent::Truth { stamp, pose } => self.truths.push((*stamp, map_from_world * *pose)),

@@ -17,7 +17,7 @@ pub struct RunSetup {
     pub seed: u64,
     /// The robot's mission, map frame.
     pub mission: Mission,
-    /// Moves truth into the map frame; for judges only.
+    /// Moves truth into the map frame; for evaluation only.
     pub map_from_world: Pose2,
     /// Time of the robot after which the run is given up \[s\].
     pub time_limit: f64,

@@ -37,7 +37,7 @@ pub enum SensorEvent {
     Cliff(Cliff),
     /// A 2-D laser's sweep.
     Scan(Scan),
-    /// Ground truth, `world_from_base`, for judges only: the robot's loop must not look at it.
+    /// Ground truth, `world_from_base`, for evaluation only; the robot must not use it.
     Truth {
         /// When it held.
         stamp: Stamp,
@@ -61,12 +61,12 @@ impl SensorEvent {
     }
 }
 
-/// A body to live in: a simulator, a recording, or hardware.
+/// The interface to a robot's sensors and base: a simulator, a recording, or hardware.
 pub trait RobotBody {
     /// What can go wrong with it.
     type Error: std::error::Error;
 
-    /// The next thing that its sensors say; `None` when there will be nothing more.
+    /// The next sensor event; `None` at the end.
     ///
     /// # Errors
     /// When a sensor or the connection to it failed for good.
@@ -78,7 +78,7 @@ pub trait RobotBody {
     /// When the base cannot be reached.
     fn command(&mut self, twist: Twist2) -> Result<(), Self::Error>;
 
-    /// Separate contacts of the body with an obstacle so far, in truth, for judges only. `None` (the default) where only the bumper
+    /// Separate contacts of the body with an obstacle so far, in truth, for evaluation only. `None` (the default) where only the bumper
     /// reports contacts.
     fn contact_count(&self) -> Option<u32> {
         None

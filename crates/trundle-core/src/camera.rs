@@ -46,7 +46,7 @@ fn is_zero(value: &f64) -> bool {
     *value == 0.0
 }
 
-/// A camera as a file has it.
+/// Camera fields as read from a file, not yet checked.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Unchecked {
@@ -119,7 +119,7 @@ impl PinholeCamera {
     /// When a side is zero or a field of view is outside (0, pi).
     pub fn from_field_of_view(
         (width, height): (usize, usize),
-        (across, down): (f64, f64),
+        (horizontal, vertical): (f64, f64),
     ) -> Result<Self, Invalid> {
         let focal = |name: &str, size: usize, fov: f64| {
             if fov > 0.0 && fov < std::f64::consts::PI {

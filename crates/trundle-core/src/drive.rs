@@ -25,7 +25,7 @@ impl DifferentialDrive {
     /// The Kobuki of \[Li18\]: wheel radius 0.035 m, wheelbase 0.230 m, 2578.33 ticks a turn.
     pub const KOBUKI: Self = Self { wheel_radius: 0.035, wheelbase: 0.230, ticks_per_turn: 2578.33 };
 
-    /// Passes a valid drive through.
+    /// Checks the values and returns them.
     ///
     /// # Errors
     /// When a number is not finite and positive.
@@ -36,7 +36,7 @@ impl DifferentialDrive {
         Ok(self)
     }
 
-    /// Way of the wheel's rim a tick, m.
+    /// Distance that the rim travels per tick, m.
     pub fn metres_per_tick(&self) -> f64 {
         std::f64::consts::TAU * self.wheel_radius / self.ticks_per_turn
     }
@@ -53,7 +53,7 @@ impl DifferentialDrive {
     }
 }
 
-/// What the base may be asked for.
+/// Limits of speed and acceleration of the base.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct DriveLimits {

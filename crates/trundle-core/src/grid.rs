@@ -3,7 +3,7 @@
 use crate::{Invalid, Vector2, require_finite, require_positive};
 use serde::{Deserialize, Serialize};
 
-/// What a cell of the map says.
+/// Occupancy of a cell.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Cell {
@@ -85,7 +85,7 @@ impl GridGeometry {
         self.origin + Vector2::new(cell.col as f64 + 0.5, cell.row as f64 + 0.5) * self.resolution
     }
 
-    /// The place of a cell in row-major storage.
+    /// Row-major index of a cell.
     pub fn linear(&self, cell: CellIndex) -> usize {
         debug_assert!(cell.col < self.width && cell.row < self.height, "cell {cell:?} outside");
         cell.row * self.width + cell.col
@@ -97,7 +97,7 @@ impl GridGeometry {
     }
 }
 
-/// A 2-D occupancy grid in THE map frame, row-major from the lowest y.
+/// A 2-D occupancy grid in the map frame, row-major from the lowest y.
 #[derive(Debug, Clone, PartialEq)]
 pub struct OccupancyGrid {
     geometry: GridGeometry,

@@ -1,7 +1,7 @@
-//! The vocabulary of trundle: what the rooms say to each other.
+//! The data types that the crates of trundle exchange.
 //!
 //! Plain data only: no algorithm, no IO, no clock, no global random generator. Units are SI and radians; a suffix
-//! (`_px`, `_cells`, `_deg`, `_ms`) stands where they are not. Axes follow REP 103 (x forward, y left, z up) for the
+//! (`_px`, `_cells`, `_deg`, `_ms`) marks other units. Axes follow REP 103 (x forward, y left, z up) for the
 //! base and the map, and the optical convention (x right, y down, z forward) for cameras. See `docs/conventions.md`.
 
 mod angle;

@@ -148,29 +148,31 @@ impl fmt::Display for Reason {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Safety(stop) => stop.fmt(f),
-            Self::StoppingToReplan => f.write_str("stopping to plan anew"),
-            Self::MovingObstacle => f.write_str("somebody is on the move in the way"),
-            Self::PathOutOfView => f.write_str("looking for a way that shows where it leads"),
+            Self::StoppingToReplan => f.write_str("stopping to plan again"),
+            Self::MovingObstacle => f.write_str("a moving obstacle blocks the path"),
+            Self::PathOutOfView => f.write_str("the path leaves the camera's view; searching another path"),
             Self::UnseenFloor { at } => {
-                write!(f, "first to see what the way leads onto at ({:.2}, {:.2}) m", at.x, at.y)
+                write!(f, "the path crosses unseen floor at ({:.2}, {:.2}) m; observing it first", at.x, at.y)
             }
             Self::NoPath { cause, unseen: None } => cause.fmt(f),
             Self::NoPath { cause, unseen: Some(at) } => {
-                write!(f, "{cause}; what is at ({:.2}, {:.2}) m could not be seen", at.x, at.y)
+                write!(f, "{cause}; the floor at ({:.2}, {:.2}) m could not be observed", at.x, at.y)
             }
-            Self::PoseUnknown => f.write_str(
-                "nothing tells where the robot is: it was carried away, or the map is of another place",
-            ),
-            Self::PoseUncertain { sigma } => write!(f, "the position is only known to {sigma:.2} m"),
+            Self::PoseUnknown => {
+                f.write_str("the pose is unknown: the robot was moved, or the map shows another place")
+            }
+            Self::PoseUncertain { sigma } => write!(f, "position uncertain: standard deviation {sigma:.2} m"),
             Self::WheelsUnresponsive { sigma } => write!(
                 f,
-                "the position is only known to {sigma:.2} m: the wheels are commanded and count nothing"
+                "position uncertain, standard deviation {sigma:.2} m: the encoders do not count although the wheels are commanded"
             ),
-            Self::ViewContradictsMap => f.write_str("what the camera sees is not what is there on the map"),
+            Self::ViewContradictsMap => f.write_str("camera images contradict the map"),
             Self::RepeatedContact { contacts } => {
-                write!(f, "touched something {contacts} times on the way")
+                write!(f, "{contacts} bumper contacts on the path")
             }
-            Self::NoSightOnPath => f.write_str("the camera sees nothing on the way there"),
+            Self::NoSightOnPath => {
+                f.write_str("the camera view is lost repeatedly on the path to the viewpoint")
+            }
             Self::NoProgress { time, cause: Some(cause), .. } => {
                 write!(f, "no progress for {time:.0} s: {cause}")
             }

@@ -26,10 +26,19 @@
 //! # Ok(()) }
 //! ```
 //!
-//! Every room can be used alone: [`vision`] finds and matches features, [`slam`] tracks a camera, [`mapping`] turns
-//! depth into scans and scans into a grid, [`localization`] fuses, [`planning`] plans, [`control`] drives, [`docking`] settles in
-//! tight places, [`sim`]
-//! plays the world, [`eval`] judges, [`io`] reads and writes, [`viz`] draws.
+//! | to | use |
+//! |---|---|
+//! | run a robot with recording and report | [`app`], [`runtime`] |
+//! | track a camera | [`slam`], features by [`vision`] |
+//! | turn depth into scans and scans into a map | [`mapping`], cells by [`grid`] |
+//! | fuse wheels, gyro and camera | [`localization`] |
+//! | plan a path | [`planning`] |
+//! | follow it | [`control`] |
+//! | settle in tight places | [`docking`] |
+//! | simulate, evaluate, draw | [`sim`], [`eval`], [`viz`] |
+//! | read and write files | [`io`] |
+//!
+//! Eight numbered examples stand in `crates/trundle/examples`.
 
 pub use trundle_app as app;
 pub use trundle_collision as collision;

@@ -120,7 +120,7 @@ impl RunNumbers {
             faults.push(format!("at {} goals it stood too far off", self.goals_missed()));
         }
         if self.contacts > 0 {
-            faults.push(format!("it touched something {} times", self.contacts));
+            faults.push(format!("{} contacts with obstacles", self.contacts));
         }
         format!("Failed: {}.", faults.join("; "))
     }

@@ -59,13 +59,10 @@ fn a_run_is_a_success_when_the_goal_is_reached_in_truth_and_nothing_is_touched()
 fn each_fault_is_named_in_the_verdict() {
     let stopped = DriveState::Stopped { reason: Reason::PoseUnknown };
     let cases = [
-        (RunNumbers { contacts: 2, ..good() }, "it touched something 2 times"),
+        (RunNumbers { contacts: 2, ..good() }, "2 contacts with obstacles"),
         (RunNumbers { goal_error: off(0.06, 0.0), ..good() }, "6.0 cm and 0.0 deg off the goal"),
         (RunNumbers { goal_error: off(0.0, 4.0), ..good() }, "0.0 cm and 4.0 deg off the goal"),
-        (
-            RunNumbers { state: stopped, ..good() },
-            "did not arrive (stopped: nothing tells where the robot is",
-        ),
+        (RunNumbers { state: stopped, ..good() }, "did not arrive (stopped: the pose is unknown"),
         (RunNumbers { goals: vec![goal(TaskEnd::Done, off(0.2, 0.0))], ..good() }, "at 1 goals"),
     ];
     for (numbers, fault) in cases {
@@ -91,7 +88,7 @@ fn a_goal_is_reached_within_distance_and_turn_and_when_the_task_is_done() {
 fn the_rows_of_a_goal_say_where_when_and_how() {
     let row = goal(TaskEnd::PutOff { reason: Reason::MovingObstacle }, off(0.5, 0.0)).row();
     assert_eq!(row[0], "goal 1 at (1.00 m, 0.00 m, 0 deg)");
-    assert_eq!(row[1], "12.3 s: put off: somebody is on the move in the way, 50.0 cm, 0.00 deg");
+    assert_eq!(row[1], "12.3 s: put off: a moving obstacle blocks the path, 50.0 cm, 0.00 deg");
     let earlier = GoalOutcome { before_restart: true, ..goal(TaskEnd::Done, None) };
     assert_eq!(earlier.row()[1], "done, before it was switched off; believed 1.0 cm, 0.00 deg");
 }
@@ -138,7 +135,7 @@ fn the_folder_of_a_run_is_whole_and_names_the_kinds_of_its_reason() {
     assert_eq!(summary["success"], false);
     assert_eq!(summary["reason_kinds"], serde_json::json!(["tasks_failed", "repeated_contact"]));
     let end = &summary["goals"][0]["end"]["given_up"];
-    assert_eq!(end["reason"], "touched something 3 times on the way");
+    assert_eq!(end["reason"], "3 bumper contacts on the path");
     assert_eq!(end["kinds"][0], "repeated_contact");
     assert!(summary["state"].as_str().unwrap().starts_with("stopped: task 1 (go to"));
 }

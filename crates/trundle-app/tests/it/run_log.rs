@@ -1,4 +1,4 @@
-//! The run log: what judges and pictures read.
+//! The run log: for evaluation and pictures.
 
 use trundle_app::{RunLog, TrackCounts};
 use trundle_core::{Pose2, PoseEstimate, SensorEvent, Stamp, Touch, Twist2};
@@ -41,7 +41,7 @@ fn a_change_of_state_is_logged_once_with_its_first_reason() {
         log.on_report(at(now), &report(now, 0.1 * i as f64, state));
     }
     let changes: Vec<_> = log.changes.iter().map(|change| (change.at, change.state.to_string())).collect();
-    let expected = [(0.0, "driving"), (2.0, "waiting: somebody is on the move in the way"), (4.0, "driving")];
+    let expected = [(0.0, "driving"), (2.0, "waiting: a moving obstacle blocks the path"), (4.0, "driving")];
     assert_eq!(changes, expected.map(|(at, text)| (at, text.to_owned())));
     assert_eq!(log.changes[1].pose.x, 0.2);
     assert_eq!((log.elapsed(), log.state.clone()), (4.0, DriveState::Driving));

@@ -101,7 +101,9 @@ impl fmt::Display for SlowReason {
             }
             Self::NarrowGap { at } => write!(f, "a narrow gap, {side}", side = side(*at)),
             Self::OldImage { age } => write!(f, "the newest image that shows something is {age:.2} s old"),
-            Self::WheelsCountNothing => f.write_str("the wheels are commanded and count nothing"),
+            Self::WheelsCountNothing => {
+                f.write_str("the encoders do not count although the wheels are commanded")
+            }
             Self::Reversing => f.write_str("backward without a view"),
             Self::BackingOut => f.write_str("backing out of a contact or off an edge"),
         }
@@ -123,7 +125,7 @@ impl fmt::Display for StopReason {
                 write!(f, "the newest image or scan that shows something is {age:.2} s old")
             }
             Self::NothingTellsMotion => {
-                f.write_str("the wheels are commanded and count nothing, and no image measures the motion")
+                f.write_str("the encoders do not count although the wheels are commanded, and no image measures the motion")
             }
             Self::NoWheels => f.write_str("no wheel reading yet"),
             Self::StaleWheels { age } => write!(f, "the newest wheel reading is {age:.2} s old"),

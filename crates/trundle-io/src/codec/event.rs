@@ -53,7 +53,7 @@ pub enum EncodedEvent {
     Cliff(Cliff),
     /// A 2-D laser's sweep.
     Scan(Scan),
-    /// Ground truth, `world_from_base`, for judges only.
+    /// Ground truth, `world_from_base`, for evaluation only.
     Truth {
         /// When it held.
         stamp: Stamp,

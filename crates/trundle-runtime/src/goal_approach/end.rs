@@ -70,7 +70,7 @@ fn write_positioner_reason(reason: &PositionerReason, f: &mut fmt::Formatter<'_>
             f.write_str("the search for turns and straight moves did not come to an end")
         }
         PositionerReason::Measuring | PositionerReason::Moving(_) | PositionerReason::Settled => {
-            f.write_str("stopped again and again")
+            f.write_str("stopped too often")
         }
     }
 }
@@ -102,7 +102,7 @@ mod tests {
         assert_eq!(text(PositionerReason::NoWay(None)), "no turns and straight moves to the goal were found");
         let standing = [PositionerReason::Measuring, PositionerReason::Settled];
         for reason in standing.into_iter().chain([PositionerReason::Moving(Motion::Drive(0.1))]) {
-            assert_eq!(text(reason), "stopped again and again");
+            assert_eq!(text(reason), "stopped too often");
         }
     }
 }

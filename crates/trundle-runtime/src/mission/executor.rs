@@ -296,7 +296,7 @@ mod tests {
         assert_eq!(executor.records().len(), 4);
         assert!(
             executor.failure().unwrap().to_string()
-                == "task 1 (go to (1.00 m, 0.00 m, 0 deg)): somebody is on the move in the way"
+                == "task 1 (go to (1.00 m, 0.00 m, 0 deg)): a moving obstacle blocks the path"
         );
     }
 

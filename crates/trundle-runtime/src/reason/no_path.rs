@@ -51,11 +51,15 @@ impl fmt::Display for NoPath {
         match self {
             Self::Blocked { nearest } => write!(
                 f,
-                "no way to the goal is free; the nearest point is ({:.2}, {:.2}) m",
+                "no free path to the goal; the nearest reachable point is ({:.2}, {:.2}) m",
                 nearest.x, nearest.y
             ),
-            Self::StartInObstacle { missing } => write!(f, "{missing:.3} m too little room here"),
-            Self::GoalInObstacle { missing } => write!(f, "{missing:.3} m too little room at the goal"),
+            Self::StartInObstacle { missing } => {
+                write!(f, "the footprint overlaps an obstacle by {missing:.3} m at the start")
+            }
+            Self::GoalInObstacle { missing } => {
+                write!(f, "the footprint overlaps an obstacle by {missing:.3} m at the goal")
+            }
             Self::StartOutside => f.write_str("the robot is off the map"),
             Self::GoalOutside => f.write_str("the goal is off the map"),
             Self::Refused(invalid) => invalid.fmt(f),

@@ -26,39 +26,39 @@ fn samples() -> Vec<(Reason, ReasonKind, &'static str)> {
         (Reason::Safety(StopReason::NoImage), ReasonKind::ImageMissing, "no image"),
         (Reason::Safety(StopReason::NothingSeen), ReasonKind::ImageMissing, "no image"),
         (Reason::Safety(StopReason::StaleImage { age: 1.5 }), ReasonKind::ImageMissing, "1.50 s old"),
-        (Reason::Safety(StopReason::NothingTellsMotion), ReasonKind::MotionUnknown, "count nothing"),
+        (Reason::Safety(StopReason::NothingTellsMotion), ReasonKind::MotionUnknown, "do not count"),
         (Reason::Safety(StopReason::NoWheels), ReasonKind::WheelsMissing, "no wheel reading"),
         (Reason::Safety(StopReason::StaleWheels { age: 0.5 }), ReasonKind::WheelsMissing, "0.50 s old"),
         (Reason::Safety(StopReason::NotFinite), ReasonKind::CommandInvalid, "not a number"),
-        (Reason::StoppingToReplan, ReasonKind::StoppingToReplan, "plan anew"),
-        (Reason::MovingObstacle, ReasonKind::MovingObstacle, "on the move"),
-        (Reason::PathOutOfView, ReasonKind::PathOutOfView, "shows where it leads"),
+        (Reason::StoppingToReplan, ReasonKind::StoppingToReplan, "plan again"),
+        (Reason::MovingObstacle, ReasonKind::MovingObstacle, "moving obstacle blocks"),
+        (Reason::PathOutOfView, ReasonKind::PathOutOfView, "leaves the camera's view"),
         (Reason::UnseenFloor { at }, ReasonKind::UnseenFloor, "(1.00, -2.00) m"),
         (
             no_path(NoPath::Blocked { nearest: at }),
             ReasonKind::PathBlocked,
-            "nearest point is (1.00, -2.00) m",
+            "nearest reachable point is (1.00, -2.00) m",
         ),
         (
             Reason::NoPath { cause: NoPath::Blocked { nearest: at }, unseen: Some(at) },
             ReasonKind::PathBlocked,
-            "; what is at (1.00, -2.00) m could not be seen",
+            "; the floor at (1.00, -2.00) m could not be observed",
         ),
         (
             no_path(NoPath::StartInObstacle { missing: 0.02 }),
             ReasonKind::TooLittleRoom,
-            "0.020 m too little room here",
+            "the footprint overlaps an obstacle by 0.020 m at the start",
         ),
         (no_path(NoPath::GoalInObstacle { missing: 0.02 }), ReasonKind::TooLittleRoom, "at the goal"),
         (no_path(NoPath::StartOutside), ReasonKind::OffTheMap, "the robot is off the map"),
         (no_path(NoPath::GoalOutside), ReasonKind::OffTheMap, "the goal is off the map"),
         (no_path(NoPath::Refused(invalid)), ReasonKind::PlanRefused, "goal.x"),
-        (Reason::PoseUnknown, ReasonKind::PoseUnknown, "where the robot is"),
-        (Reason::PoseUncertain { sigma: 0.75 }, ReasonKind::PoseUncertain, "only known to 0.75 m"),
-        (Reason::WheelsUnresponsive { sigma: 0.75 }, ReasonKind::WheelsUnresponsive, "0.75 m: the wheels"),
-        (Reason::ViewContradictsMap, ReasonKind::ViewContradictsMap, "on the map"),
-        (Reason::RepeatedContact { contacts: 3 }, ReasonKind::RepeatedContact, "3 times"),
-        (Reason::NoSightOnPath, ReasonKind::NoSightOnPath, "sees nothing"),
+        (Reason::PoseUnknown, ReasonKind::PoseUnknown, "pose is unknown"),
+        (Reason::PoseUncertain { sigma: 0.75 }, ReasonKind::PoseUncertain, "standard deviation 0.75 m"),
+        (Reason::WheelsUnresponsive { sigma: 0.75 }, ReasonKind::WheelsUnresponsive, "0.75 m: the encoders"),
+        (Reason::ViewContradictsMap, ReasonKind::ViewContradictsMap, "contradict the map"),
+        (Reason::RepeatedContact { contacts: 3 }, ReasonKind::RepeatedContact, "3 bumper contacts"),
+        (Reason::NoSightOnPath, ReasonKind::NoSightOnPath, "view is lost"),
         (
             Reason::NoProgress { time: 30.4, state: "planning", cause: None },
             ReasonKind::NoProgress,
@@ -109,7 +109,7 @@ fn reasons_behind_a_reason_are_found_outermost_first() {
     assert_eq!(
         nested().to_string(),
         "task 1 (go to (1.00 m, 0.00 m, 0 deg)): no progress for 60 s: the newest image or scan that shows something is \
-         2.00 s old; task 3 (return to the start): nothing tells where the robot is: it was carried away, or the map is of \
+         2.00 s old; task 3 (return to the start): the pose is unknown: the robot was moved, or the map shows \
          another place"
     );
 }
@@ -133,7 +133,7 @@ fn a_file_names_the_text_first_and_the_kinds_beside_it() {
     let end = TaskEnd::PutOff { reason: Reason::MovingObstacle };
     assert_eq!(
         serde_json::to_string(&end).unwrap(),
-        r#"{"put_off":{"reason":"somebody is on the move in the way","kinds":["moving_obstacle"]}}"#
+        r#"{"put_off":{"reason":"a moving obstacle blocks the path","kinds":["moving_obstacle"]}}"#
     );
 }
 

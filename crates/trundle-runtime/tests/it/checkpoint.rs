@@ -42,7 +42,7 @@ fn checkpoint() -> Checkpoint {
 fn reasons_survive_with_text_and_kinds() {
     let read = Checkpoint::from_bytes(&checkpoint().to_bytes()).unwrap();
     let TaskEnd::PutOff { reason } = &read.mission.ended[1].end else { panic!("{:?}", read.mission.ended) };
-    assert_eq!(reason.to_string(), "no progress for 75 s: somebody is on the move in the way");
+    assert_eq!(reason.to_string(), "no progress for 75 s: a moving obstacle blocks the path");
     assert_eq!(reason.kinds(), [ReasonKind::NoProgress, ReasonKind::MovingObstacle]);
     let TaskEnd::GivenUp { reason } = &read.mission.ended[2].end else { panic!("{:?}", read.mission.ended) };
     assert!(reason.is_due_to(ReasonKind::PoseUnknown));

@@ -100,7 +100,7 @@ fn a_stop_for_good_is_logged_with_its_reason() {
             robot.step(&SensorEvent::Touch(Touch { stamp, pressed }));
         }
     });
-    assert!(lines.iter().any(|line| line.contains("-> stopped: touched something 3 times")), "{lines:?}");
+    assert!(lines.iter().any(|line| line.contains("-> stopped: 3 bumper contacts")), "{lines:?}");
 }
 
 #[test]

@@ -121,7 +121,7 @@ fn wheels_that_count_nothing_stop_it_where_no_image_tells_how_it_moves() {
     let last = reports.last().unwrap();
     assert_eq!(last.twist.unwrap().v, 0.0);
     assert!(
-        last.state.reason().is_some_and(|reason| reason.to_string().contains("count nothing")),
+        last.state.reason().is_some_and(|reason| reason.to_string().contains("do not count")),
         "{:?}",
         last.state
     );

@@ -22,12 +22,12 @@ pub(super) struct WorldView<'w> {
     pub(super) apex: [f64; 3],
     /// Axes of the camera: right, down, forward.
     axes: [[f64; 3]; 3],
-    /// How the world is turned in the scene: sine and cosine.
+    /// Heading of the world in the scene: (sine, cosine).
     pub(super) heading: (f32, f32),
     pub(super) first_id: u32,
-    /// No coordinate is larger, m.
+    /// Largest absolute coordinate, m.
     extent: f32,
-    /// Least and greatest column and row that it may be seen in.
+    /// Bounds of the world's image: columns, then rows, px.
     window: [[f64; 2]; 2],
 }
 
@@ -56,7 +56,7 @@ impl<'w> WorldView<'w> {
         }
     }
 
-    /// The first number that is not its own.
+    /// One past the last surface id.
     pub(super) fn end_id(&self) -> u32 {
         self.first_id + 4 * self.world.solids().len() as u32 + self.world.triangles().len() as u32
     }
@@ -75,7 +75,7 @@ impl<'w> WorldView<'w> {
         }
     }
 
-    /// Keeps in the tile what of the world is nearest.
+    /// Draws the nearest surfaces into the tile.
     #[inline(always)]
     pub(super) fn draw(&self, camera: &PinholeCamera, (left, top): (usize, usize), tile: &mut Tile) {
         if !self.may_be_in(left, top) {

@@ -41,7 +41,7 @@ fn generator(seed: u64, stream: Stream) -> ChaCha8Rng {
     rng
 }
 
-/// The true geometry of a base, which a calibration looks for: only judges know it.
+/// The true geometry of a base, which a calibration looks for: for evaluation only.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TrueWheels {
     /// Radius of the left wheel, m.

@@ -7,7 +7,7 @@ use crate::world_state::WorldState;
 use trundle_core::{Cell, CellIndex, OccupancyGrid, Pose2, Trajectory, TrajectoryPoint, Twist2, Vector2};
 use trundle_planning::{Plan, PlanResult};
 
-/// What looking for a way that shows where it leads came to.
+/// What the path leaves the camera's view; searching another path came to.
 #[derive(Debug)]
 pub(super) enum InView {
     /// A way to drive, or none.
@@ -221,7 +221,7 @@ mod tests {
         }
         assert!((1..=MAX_VAIN_VIEWS).contains(&looks), "{looks} looks");
         let reason = navigator.state.reason().unwrap().to_string();
-        assert!(reason.contains("no way") && reason.contains("could not be seen"), "{reason}");
+        assert!(reason.contains("no free path") && reason.contains("could not be observed"), "{reason}");
     }
 
     #[test]
