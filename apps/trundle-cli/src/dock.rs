@@ -5,6 +5,7 @@ mod args;
 pub use args::DockArgs;
 
 use crate::console;
+use crate::logging;
 use crate::outcome::Outcome;
 use std::path::Path;
 use std::time::Instant;
@@ -84,6 +85,7 @@ pub fn run(args: &DockArgs) -> Result<Outcome, AppError> {
         .map_err(|refusal| named(args, &refusal))?;
     let seconds = clock.elapsed().as_secs_f64();
     let folder = OutputFolder::create(&args.out)?.instead_of(&STEP_FILES);
+    logging::write(&folder)?;
     let place = write_docking(&task, &plan, seconds, folder)?;
     if !args.common.quiet {
         print_plan(&plan, seconds);

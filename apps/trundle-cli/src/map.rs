@@ -2,6 +2,7 @@
 
 use crate::common_args::Common;
 use crate::console;
+use crate::logging;
 use crate::outcome::Outcome;
 use clap::Args;
 use std::path::PathBuf;
@@ -69,6 +70,7 @@ pub fn run(args: &MapArgs) -> Result<Outcome, AppError> {
     let log = read_log(&request, &display)?;
     let folder = OutputFolder::create(&args.out)?;
     let run = map_log(&request, args.localise, &log, &folder, &display)?;
+    logging::write(&folder)?;
     let place = folder.commit()?;
     warn_of_log(args, &log);
     if !args.common.quiet {

@@ -5,6 +5,7 @@ mod args;
 pub use args::PlanArgs;
 
 use crate::console;
+use crate::logging;
 use crate::outcome::Outcome;
 use args::PlaceArg;
 use std::collections::BTreeMap;
@@ -30,6 +31,7 @@ pub fn run(args: &PlanArgs) -> Result<Outcome, AppError> {
     let plan = request.plan();
     let times = PlanTimes { all: seconds() - start, stages: request.planner.stage_times() };
     let folder = OutputFolder::create(&args.out)?.instead_of(&PLAN_FILES);
+    logging::write(&folder)?;
     match plan {
         Ok(plan) => report_plan(args, &mut request, &plan, robot.limits, times, folder),
         Err(refusal) => report_refusal(args, &mut request, &refusal, folder),

@@ -7,6 +7,7 @@ mod teleop;
 pub use args::SimArgs;
 
 use crate::console;
+use crate::logging;
 use crate::outcome::Outcome;
 use std::path::Path;
 use teleop::{TeleopDriver, require_terminal};
@@ -44,6 +45,7 @@ pub fn run(args: &SimArgs) -> Result<Outcome, AppError> {
     let mut robot = Simulator::new(scene, config, args.seed)
         .map_err(|error| AppError::Input(format!("{name}: {error}")))?;
     let drive = drive(args, &mut robot, driver, grid.as_ref(), folder.as_ref())?;
+    folder.as_ref().map_or(Ok(()), logging::write)?;
     let place = folder.map(OutputFolder::commit).transpose()?;
     if !args.common.quiet {
         print(&drive, place.as_deref(), &robot);

@@ -5,6 +5,7 @@ mod args;
 pub use args::SlamArgs;
 
 use crate::console;
+use crate::logging;
 use crate::outcome::Outcome;
 use trundle::app::AppError;
 use trundle::app::report::stage_rows;
@@ -19,6 +20,7 @@ pub fn run(args: &SlamArgs) -> Result<Outcome, AppError> {
     let folder = OutputFolder::create(&args.out)?;
     let display = console::StepDisplay::new(args.common.quiet);
     let run = track_sequence(&request, &camera, &sequence, &folder, &display)?;
+    logging::write(&folder)?;
     let output = write_sequence(&request, &sequence, &run, folder)?;
     if !args.common.quiet {
         console::print_table(&output.rows);

@@ -128,8 +128,8 @@ impl PinholeCamera {
                 Err(Invalid::new(name, fov, "rad", "0 to pi, exclusive"))
             }
         };
-        let fx = focal("field of view across", width, across)?;
-        let fy = focal("field of view down", height, down)?;
+        let fx = focal("horizontal field of view", width, horizontal)?;
+        let fy = focal("vertical field of view", height, vertical)?;
         let centre = ((width as f64 - 1.0) / 2.0, (height as f64 - 1.0) / 2.0);
         Self::new((width, height), (fx, fy), centre, Distortion::default())
     }

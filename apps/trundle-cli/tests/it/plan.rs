@@ -177,14 +177,14 @@ fn no_plan_leaves_its_reason_and_nothing_of_an_earlier_plan() {
         names
     };
     assert_eq!(ask(&["--goal=5,1,0"]).0, 0);
-    assert_eq!(names().len(), 11);
+    assert_eq!(names().len(), 12);
     // Bad input: nothing is written, nothing removed.
     assert_eq!(ask(&["--goal=5,1,0", "--keepout=nowhere.yaml"]).0, 2);
-    assert_eq!(names().len(), 11);
+    assert_eq!(names().len(), 12);
     let mask = write_mask(room.scratch.path(), "keepout", (254, 0), TRINARY);
     let (code, why) = ask(&["--goal=5,1,0", "--keepout", text(&mask)]);
     assert!(code == 1 && why.contains("; without the keep-out mask there is one"), "{code} {why}");
-    assert_eq!(names(), ["mine.txt", "plan.png", "summary.json"]);
+    assert_eq!(names(), ["log.txt", "mine.txt", "plan.png", "summary.json"]);
     let summary = room.summary();
     assert_eq!(summary["success"], false);
     assert!(

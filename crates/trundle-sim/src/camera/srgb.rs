@@ -30,6 +30,6 @@ mod tests {
             let back = srgb(f64::from(linear_from_srgb(level)));
             assert!((back - f64::from(level)).abs() < 1e-3, "{level}: {back}");
         }
-        assert_eq!((srgb(-1.0), srgb(2.0)), (0.0, 255.0));
+        assert!(srgb(-1.0) == 0.0 && (srgb(2.0) - 255.0).abs() < 1e-9, "clipped");
     }
 }
