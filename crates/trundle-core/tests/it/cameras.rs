@@ -113,7 +113,7 @@ fn fields_of_view_of_nothing_or_half_a_turn_are_refused() {
         let down = PinholeCamera::from_field_of_view((64, 48), (1.0, bad)).unwrap_err();
         assert_eq!(
             (across.field.as_str(), down.field.as_str()),
-            ("field of view across", "field of view down")
+            ("horizontal field of view", "vertical field of view")
         );
         assert_eq!((across.unit, across.expected.as_str()), ("rad", "0 to pi, exclusive"));
     }
