@@ -28,15 +28,16 @@ use trundle_docking::{
 pub struct GoalApproachConfig {
     /// Whether turns and straight moves may take over near the goal. Default true.
     pub enabled: bool,
-    /// Nearer to the goal than this they may take over where no path is found or the safety monitor holds the robot, m, 0.05
+    /// Distance from the goal within which turns and straight moves may take over where no path is found or the safety monitor
+    /// holds the robot, m, 0.05
     /// to 5. Default 0.6 (ours).
     pub near: f64,
-    /// What an arc must keep from obstacles of the map, m, 0 to 0.5. Default 0.02 (ours).
+    /// Clearance of an arc from obstacles of the map, m, 0 to 0.5. Default 0.02 (ours).
     pub arc_margin: f64,
-    /// Turns and straight moves end, with a reason, when they have taken this, s, 1 to 3600. Default 120 (ours: the longest of
+    /// Longest duration of turns and straight moves, s, 1 to 3600. Default 120 (ours: the longest of
     /// 500 corridor problems took half of it).
     pub time_limit: f64,
-    /// They end after so many stops and waits for a way without a motion between that came to its end, 1 to 1000. Default 10
+    /// Number of stops or waits without a completed motion in between after which docking is given up, 1 to 1000. Default 10
     /// (ours: at a second each, somebody who passes by has passed).
     pub most_stops: u32,
     /// Planning of turns and straight moves. Default: as it comes, but a margin of 0.05, so that the safety monitor, which
@@ -151,7 +152,8 @@ impl GoalApproach {
         self.choice.as_ref().is_some_and(ApproachSelection::is_arc_lost)
     }
 
-    /// A part of what [`GoalApproach::consider`] began: whether turns and straight moves take over now. A robot that still rolls is
+    /// A part of what [`GoalApproach::consider`] began: whether turns and straight moves take over now. A robot that still
+    /// rolls is
     /// brought to a stand first, by [`GoalApproach::step`], and measured there.
     pub(crate) fn takes_over(&mut self, s: &WorldState<'_>) -> bool {
         self.verdict(s) == Verdict::Manoeuvre && self.begin()

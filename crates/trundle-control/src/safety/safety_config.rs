@@ -7,7 +7,8 @@ use trundle_core::{Invalid, require_in};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct SafetyConfig {
-    /// Deceleration to count on, m/s^2, 0.05 to 20. Default 0.5: [`DriveLimits::KOBUKI`](trundle_core::DriveLimits::KOBUKI); the base can do more.
+    /// Deceleration to count on, m/s^2, 0.05 to 20. Default 0.5: [`DriveLimits::KOBUKI`](trundle_core::DriveLimits::KOBUKI);
+    /// the base can do more.
     pub deceleration: f64,
     /// Angular deceleration to count on when a polygon turns on the spot, rad/s^2, 0.1 to 100. Default 3, as above.
     pub angular_deceleration: f64,
@@ -27,22 +28,25 @@ pub struct SafetyConfig {
     pub reverse_speed: f64,
     /// Speed of backing out while the bumper is pressed, m/s, 0.01 to 0.5. Default 0.05 (ours).
     pub back_out_speed: f64,
-    /// Highest speed while the wheels are commanded and the encoders count nothing, m/s, 0.02 to 2. Default 0.15 (ours): 1 cm from image to
+    /// Highest speed while the wheels are commanded and the encoders count nothing, m/s, 0.02 to 2. Default 0.15 (ours): 1 cm
+    /// from image to
     /// image.
     pub uncounted_speed: f64,
-    /// A slower command than this is no motion but a stop, m/s, 0.001 to 0.1. Default 0.01 (ours).
+    /// Speed below which a command is replaced by a stop, m/s, 0.001 to 0.1. Default 0.01 (ours).
     pub least_speed: f64,
-    /// How far around the robot the map is looked at, m from its edge, 0 to 5. Default 0.8: the camera's blind zone, and what
+    /// Range about the robot in which safety reads the map, m from the footprint, 0 to 5. Default 0.8: the camera's blind
+    /// zone, and what
     /// lies beside its view.
     pub memory_reach: f64,
-    /// An older image stops the robot, s, 0.05 to 60. Default 0.8: twelve images missing (ours). Until then the older it is
-    /// the slower the robot goes.
+    /// Age of the newest image above which the robot stops, s, 0.05 to 60. Default 0.8: twelve images missing (ours). Below it
+    /// the speed falls with the age.
     pub image_timeout: f64,
-    /// An older wheel reading stops the robot, s, 0.02 to 60. Default 0.2: ten readings missing (ours).
+    /// Age of the newest wheel reading above which the robot stops, s, 0.02 to 60. Default 0.2: ten readings missing (ours).
     pub wheels_timeout: f64,
 }
 
-/// Time from a command to the response of the wheels, s. Larger: slower by late images. Source: delay and lag of the Kobuki, and a control period.
+/// Time from a command to the response of the wheels, s. Larger: slower by late images. Source: delay and lag of the Kobuki,
+/// and a control period.
 const COMMAND_RESPONSE_S: f64 = 0.12;
 /// Highest speed by images older than the latency, m/s. Larger: less slowing. Source: the top speed of the Kobuki.
 const LATE_IMAGE_SPEED_M_PER_S: f64 = 0.7;
@@ -101,7 +105,8 @@ impl SafetyConfig {
         self.latency.max(age + COMMAND_RESPONSE_S)
     }
 
-    /// Highest speed with an image of `age` s, m/s: unlimited up to the latency, then from [`LATE_IMAGE_SPEED_M_PER_S`] down to zero at the
+    /// Highest speed with an image of `age` s, m/s: unlimited up to the latency, then from [`LATE_IMAGE_SPEED_M_PER_S`] down
+    /// to zero at the
     /// time-out. It is a limit and not a factor on the command, because a factor would compound from command to command.
     pub(super) fn speed_at_age(&self, age: f64) -> f64 {
         let span = (self.image_timeout - self.latency).max(1e-3);

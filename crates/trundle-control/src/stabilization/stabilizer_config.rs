@@ -16,9 +16,10 @@ pub struct StabilizerConfig {
     pub k_alpha: f64,
     /// Turn rate by approach angle, 1/s, -20 to -0.001. Default -1 (ours).
     pub k_beta: f64,
-    /// Nearer than this the approach angle is left to the turn on the spot, fading, m, 0.001 to 10. Default 0.15 (ours).
+    /// Distance from the goal below which the approach angle fades and the turn on the spot corrects the heading, m, 0.001 to
+    /// 10. Default 0.15 (ours).
     pub shaping_distance: f64,
-    /// Most approach angle that is acted on, rad, 0 to 1.5: it bounds the detour. Default 0.8 (ours).
+    /// Largest approach angle that the law uses, rad, 0 to 1.5: it bounds the detour. Default 0.8 (ours).
     pub max_approach: f64,
     /// Highest speed, m/s, 0.01 to 10. Default 0.25 (ours).
     pub speed: f64,
@@ -29,14 +30,15 @@ pub struct StabilizerConfig {
     pub turn_rate: f64,
     /// Turn rate by heading error when turning on the spot, 1/s, 0.1 to 10. Default 2.5 (ours).
     pub k_turn: f64,
-    /// Allowed distance from the goal, m, 0.001 to 1. Default 0.01. The robot goes for 0.4 of it, and goes again when it
-    /// ends up beyond the whole.
+    /// Allowed distance from the goal, m, 0.001 to 1. Default 0.01. The approach ends at 0.4 of it and is repeated when the
+    /// error exceeds it.
     pub position_tolerance: f64,
-    /// Allowed heading error, rad, 0.001 to 1. Default 0.5 deg. The robot goes for half of it.
+    /// Allowed heading error, rad, 0.001 to 1. Default 0.5 deg. The turn ends at half of it.
     pub heading_tolerance: f64,
     /// A settled robot moves again when an error grows beyond this many tolerances, 1 to 100. Default 2.5 (ours).
     pub release: f64,
-    /// How often the robot goes again for one goal before it accepts `release` tolerances, 0 to 100. Default 4 (ours).
+    /// Number of repeated approaches to one goal before an error of `release` times the tolerance is accepted, 0 to 100.
+    /// Default 4 (ours).
     pub attempts: u32,
 }
 

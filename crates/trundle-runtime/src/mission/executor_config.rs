@@ -9,13 +9,13 @@ use trundle_planning::ExploreConfig;
 #[serde(default, deny_unknown_fields)]
 #[non_exhaustive]
 pub struct MissionExecutorConfig {
-    /// The robot stands so long before its first plan, s, 0 to 60: the gyro's bias is measured and the first map drawn.
+    /// Time at rest before the first plan, s, 0 to 60: the gyro's bias is measured and the first map drawn.
     /// Default 1.5 (ours).
     pub opening: f64,
-    /// Without getting on for so long a goal is given up, s, 1 to 3600. Default 75: longer than a person stands in a door.
-    /// What counts is way, and turns while it drives or settles, at one place up to one whole turn.
+    /// Time without progress after which a goal is given up, s, 1 to 3600. Default 75: longer than a person stands in a door.
+    /// Progress is 15 cm of travel, or turns while the robot drives or approaches, up to one revolution at one place.
     pub patience: f64,
-    /// A position less sure than this (one sigma) is no position: the robot is lost, m, 0.1 to 10. Default 0.7 (ours).
+    /// Standard deviation of the position above which the robot counts as lost, m, 0.1 to 10. Default 0.7 (ours).
     pub lost_sigma: f64,
     /// Exploration.
     pub explore: ExploreConfig,
