@@ -179,8 +179,10 @@ mod tests {
     fn ends_say_what_became_of_a_task() {
         let reason = || Reason::PoseUnknown;
         assert_eq!(TaskEnd::Done.to_string(), "done");
-        assert!(TaskEnd::PutOff { reason: reason() }.to_string().starts_with("put off: nothing tells"));
-        assert!(TaskEnd::GivenUp { reason: reason() }.to_string().starts_with("given up: nothing tells"));
+        assert!(TaskEnd::PutOff { reason: reason() }.to_string().starts_with("put off: the pose is unknown"));
+        assert!(
+            TaskEnd::GivenUp { reason: reason() }.to_string().starts_with("given up: the pose is unknown")
+        );
         assert_eq!(serde_json::to_string(&TaskEnd::Done).unwrap(), r#""done""#);
     }
 }
