@@ -5,10 +5,10 @@ use crate::scan_match::likelihood::Likelihood;
 use trundle_core::{Cell, Invalid, OccupancyGrid};
 use trundle_grid::tiles::{NearestField, RayUpdate, TileMap};
 
-/// Reach of the field of nearest obstacles [m]: eight sigmas of a laser's hits, four of a depth camera's at 4 m. Source:
+/// Reach of the field of nearest obstacles \[m\]: eight sigmas of a laser's hits, four of a depth camera's at 4 m. Source:
 /// ours.
 const FIELD_REACH_M: f64 = 0.2;
-/// Sigma of the coarse likelihood [cells]: one step of the coarse search. Source: ours.
+/// Sigma of the coarse likelihood \[cells\]: one step of the coarse search. Source: ours.
 const COARSE_SIGMA_CELLS: f64 = 2.0;
 
 /// Settings of a filter with the models that follow from them.

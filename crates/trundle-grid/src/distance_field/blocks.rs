@@ -3,7 +3,7 @@
 use super::window::Window;
 use trundle_core::GridGeometry;
 
-/// Side of a block [cells]. Source: ours.
+/// Side of a block \[cells\]. Source: ours.
 pub const BLOCK_SIDE_CELLS: usize = 4;
 
 /// Maximum distances of blocks of cells.

@@ -42,9 +42,9 @@ impl Surface {
     const EMPTY: Self = Self { sum: 0.0, count: 0, lowest: f32::INFINITY };
 }
 
-/// Minimum clearance under an overhang above the highest floor point [m]. A lower surface counts as standing. Source: ours.
+/// Minimum clearance under an overhang above the highest floor point \[m\]. A lower surface counts as standing. Source: ours.
 const MIN_CLEARANCE_M: f32 = 0.05;
-/// Maximum gap between seen floor and the foot of an obstacle [bins]. A gap up to this size counts as free. Source: ours.
+/// Maximum gap between seen floor and the foot of an obstacle \[bins\]. A gap up to this size counts as free. Source: ours.
 const FOOT_GAP_BINS: usize = 2;
 
 impl Bearings {

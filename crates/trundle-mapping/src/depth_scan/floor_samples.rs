@@ -42,22 +42,22 @@ struct Limits {
 
 /// Maximum number of sampled pixels of an image. More pixels are thinned evenly. Source: ours.
 const MAX_SAMPLES: usize = 800;
-/// Maximum range of a sampled pixel over the floor [m]. A farther pixel is not sampled: its height is mostly noise. Source:
+/// Maximum range of a sampled pixel over the floor \[m\]. A farther pixel is not sampled: its height is mostly noise. Source:
 /// ours.
 const MAX_SAMPLE_RANGE_M: f64 = 5.0;
-/// Sigma of the camera's height above the floor [m]. A floor beyond three sigmas is refused. Source: ours.
+/// Sigma of the camera's height above the floor \[m\]. A floor beyond three sigmas is refused. Source: ours.
 const CAMERA_HEIGHT_SIGMA_M: f64 = 0.012;
 /// Number of planes tried through three points each. Source: ours.
 const RANSAC_TRIALS: u64 = 24;
 /// Minimum number of points near the expected floor. Fewer points give no fit. Source: ours.
 const MIN_POINTS: usize = 60;
-/// Minimum fraction of those points on the plane [1]. A lower fraction gives no fit. Source: ours.
+/// Minimum fraction of those points on the plane \[1\]. A lower fraction gives no fit. Source: ours.
 const MIN_INLIER_FRACTION: f64 = 0.5;
-/// Maximum distance of a point from the plane [sigmas]. A farther point is an outlier. Source: ours.
+/// Maximum distance of a point from the plane \[sigmas\]. A farther point is an outlier. Source: ours.
 const MAX_RESIDUAL_SIGMAS: f64 = 4.0;
-/// Sigma of a height beside the depth noise [m]: unevenness of the floor. Source: ours.
+/// Sigma of a height beside the depth noise \[m\]: unevenness of the floor. Source: ours.
 const HEIGHT_SIGMA_M: f64 = 0.002;
-/// Unevenness of floors and lens distortion that the fit does not see [m/m]; added to the bound of the rise. Source: ours.
+/// Unevenness of floors and lens distortion that the fit does not see \[m/m\]; added to the bound of the rise. Source: ours.
 const FLOOR_UNEVENNESS: f64 = 0.007;
 
 impl FloorSamples {

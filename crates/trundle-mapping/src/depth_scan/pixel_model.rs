@@ -52,7 +52,7 @@ pub(super) struct NeighbourSupport {
 
 /// Maximum difference of depth on one surface [sigmas of the depth noise]. Deeper points are another surface. Source: ours.
 pub(super) const SURFACE_SIGMAS: f32 = 4.0;
-/// Minimum of that difference [m]: sensors quantise depths. Source: ours.
+/// Minimum of that difference \[m\]: sensors quantise depths. Source: ours.
 pub(super) const MIN_SURFACE_DEPTH_M: f32 = 0.03;
 
 impl PixelModel {

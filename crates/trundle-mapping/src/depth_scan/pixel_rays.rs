@@ -57,9 +57,9 @@ pub(super) struct Fan {
     pub(super) angle_increment: f64,
 }
 
-/// Maximum angle between neighbouring beams [rad]. It is reached by a camera that looks straight down. Source: ours.
+/// Maximum angle between neighbouring beams \[rad\]. It is reached by a camera that looks straight down. Source: ours.
 const MAX_BEAM_INCREMENT_RAD: f64 = 0.035;
-/// Minimum angle between neighbouring beams [rad]. A full circle of beams is counted in 16 bits. Source: ours.
+/// Minimum angle between neighbouring beams \[rad\]. A full circle of beams is counted in 16 bits. Source: ours.
 const MIN_BEAM_INCREMENT_RAD: f64 = 1e-4;
 
 impl Fan {

@@ -18,11 +18,11 @@ pub(crate) struct Candidate {
     pub(crate) reached: RelativeUncertainty,
 }
 
-/// Minimum path length of a loop [m]. Shorter loops lie within the map of one particle. Source: ours.
+/// Minimum path length of a loop \[m\]. Shorter loops lie within the map of one particle. Source: ours.
 const MIN_LOOP_LENGTH_M: f64 = 20.0;
-/// Distance between two poses that observe the same place [m]. Source: ours.
+/// Distance between two poses that observe the same place \[m\]. Source: ours.
 const VIEW_RADIUS_M: f64 = 4.0;
-/// Maximum radius of a loop search [m]: the drift of one minute of failing odometry. Source: ours.
+/// Maximum radius of a loop search \[m\]: the drift of one minute of failing odometry. Source: ours.
 pub(crate) const MAX_SEARCH_RADIUS_M: f64 = 40.0;
 
 /// The stretches that the last pose may be near, the likeliest first. `ways` is the way up to each pose, m.

@@ -33,11 +33,11 @@ pub(crate) struct LoopCorrection {
     pub(crate) farthest: f64,
 }
 
-/// Path length of the newest scans that are matched together [m]. Source: ours.
+/// Path length of the newest scans that are matched together \[m\]. Source: ours.
 const SUBMAP_LENGTH_M: f64 = 8.0;
 /// Maximum number of scans of the newest submap. Source: ours.
 const MAX_SUBMAP_SCANS: usize = 24;
-/// Radius about a candidate of the scans that form the reference map [m], plus twice the drift. Source: ours.
+/// Radius about a candidate of the scans that form the reference map \[m\], plus twice the drift. Source: ours.
 const REFERENCE_RADIUS_M: f64 = 10.0;
 /// Maximum number of scans of the reference map. Source: ours.
 const MAX_REFERENCE_SCANS: usize = 48;

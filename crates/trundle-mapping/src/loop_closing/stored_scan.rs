@@ -54,7 +54,7 @@ const WHOLE_BIT: u8 = 4;
 const SKIPPED_SHIFT: u32 = 3;
 /// Maximum number of skipped beams that five bits hold. Larger gaps are stored as this number.
 const MAX_SKIPPED_BEAMS: usize = 31;
-/// Unit of a stored sigma [m].
+/// Unit of a stored sigma \[m\].
 const SIGMA_UNIT_M: f32 = 0.001;
 
 impl StoredScan {

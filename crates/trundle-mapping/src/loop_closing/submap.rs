@@ -16,7 +16,7 @@ pub(crate) struct Submaps {
     taken: BTreeSet<(i32, i32)>,
 }
 
-/// Minimum distance of two points of a cloud [cells]. A nearer point is dropped. Source: ours.
+/// Minimum distance of two points of a cloud \[cells\]. A nearer point is dropped. Source: ours.
 const POINT_SPACING_CELLS: f64 = 3.0;
 
 impl Submaps {

@@ -32,7 +32,7 @@ pub(crate) fn solve(mut poses: Vec<Pose2>, constraints: &[Constraint]) -> Option
 
 /// Maximum number of Gauss-Newton steps. The last poses are returned beyond it. Source: ours.
 const MAX_ITERATIONS: usize = 12;
-/// Step length at which the iteration ends [m, rad]. Source: ours.
+/// Step length at which the iteration ends \[m, rad\]. Source: ours.
 const MIN_STEP: f64 = 1e-3;
 /// Information that fixes the first pose [1/m^2, 1/rad^2]. Source: ours.
 const FIRST_POSE_INFORMATION: f64 = 1e9;

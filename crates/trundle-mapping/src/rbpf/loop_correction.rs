@@ -11,9 +11,9 @@ use trundle_core::Pose2;
 /// Cells redrawn with one scan: about ten times the cells that thirty particles update. A smaller number leaves the robot
 /// longer in the uncorrected map. Source: ours.
 const CELLS_PER_SCAN: usize = 4_000_000;
-/// Minimum cost of a redrawn scan [cells]. Source: ours.
+/// Minimum cost of a redrawn scan \[cells\]. Source: ours.
 const MIN_SCAN_COST_CELLS: usize = 500;
-/// Path length between two loop searches [m]. Source: ours.
+/// Path length between two loop searches \[m\]. Source: ours.
 const LOOP_SEARCH_INTERVAL_M: f64 = 2.0;
 
 /// Stored scans of the run, the search for loops in them, and the redraw of a corrected map.

@@ -60,10 +60,10 @@ struct Scratch {
 
 /// Initial mean log-likelihood of a point [nats]: half of the points at obstacles, half on unknown ground. Source: ours.
 pub(crate) const EXPECTED_LOG_LIKELIHOOD: f64 = -1.0;
-/// Weight of a new scan in the running mean log-likelihood [1]. The mean covers about the last twenty scans. Source:
+/// Weight of a new scan in the running mean log-likelihood \[1\]. The mean covers about the last twenty scans. Source:
 /// ours.
 pub(crate) const EXPECTED_LOG_LIKELIHOOD_RATE: f64 = 0.05;
-/// Variance of the constraint between the last pose of a loaded run and the first of the next, along x and y [m^2]. Source: ours.
+/// Variance of the constraint between the last pose of a loaded run and the first of the next, along x and y \[m^2\]. Source: ours.
 const NEXT_RUN_VARIANCE_M2: f64 = 0.01;
 /// Variance of the heading of that constraint [rad^2]. Source: ours.
 const NEXT_RUN_VARIANCE_RAD2: f64 = 4e-4;

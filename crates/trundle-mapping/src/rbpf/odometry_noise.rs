@@ -38,10 +38,10 @@ const MAX_ERROR_SIGMAS: f64 = 3.0;
 const MEMORY_STEPS: f64 = 60.0;
 /// Number of steps with the configured errors that the sums begin with. Source: ours.
 const PRIOR_STEPS: f64 = 4.0;
-/// Factor on the learnt scale of the errors [1]: errors of successive steps are correlated. Source:
+/// Factor on the learnt scale of the errors \[1\]: errors of successive steps are correlated. Source:
 /// docs/experiments/mapping-odometry.md.
 const ERROR_SCALE_FACTOR: f64 = 3.0;
-/// Minimum scale of the errors relative to the configured ones [1]. Source: ours.
+/// Minimum scale of the errors relative to the configured ones \[1\]. Source: ours.
 const MIN_ERROR_SCALE: f64 = 0.15;
 
 impl Default for OdometryNoise {

@@ -56,17 +56,17 @@ pub(crate) struct Proposal {
     pub(crate) innovation: Option<Innovation>,
 }
 
-/// Minimum distance of two starts of the optimisation [cells]. Nearer starts count as one. Source: ours.
+/// Minimum distance of two starts of the optimisation \[cells\]. Nearer starts count as one. Source: ours.
 const MIN_START_DISTANCE_CELLS: f64 = 5.0;
 /// Maximum score deficit of a second start against the best [nats]. A worse start is not optimised. Source: ours.
 const MAX_START_DEFICIT_NATS: f64 = 2.0;
-/// Radius of the ellipsoid of samples [sigmas]. Source: ours.
+/// Radius of the ellipsoid of samples \[sigmas\]. Source: ours.
 const SAMPLE_RADIUS_SIGMAS: f64 = 2.5;
 /// Maximum number of points of a wide search. Larger scans are subsampled. Source: ours.
 const MAX_SEARCH_POINTS: usize = 80;
-/// Reach of a wide search [sigmas]. Source: ours.
+/// Reach of a wide search \[sigmas\]. Source: ours.
 const WIDE_SEARCH_SIGMAS: f64 = 3.0;
-/// Minimum fraction of points at known obstacles [1]. Below it the pose follows the odometry alone. Source: ours.
+/// Minimum fraction of points at known obstacles \[1\]. Below it the pose follows the odometry alone. Source: ours.
 const MIN_EXPLAINED: f64 = 0.1;
 
 /// An optimum with the tiles in which it was looked for.
@@ -361,6 +361,6 @@ impl Proposer<'_> {
 
 /// Maximum number of samples. Source: range of `samples`.
 const MAX_SAMPLES: usize = 500;
-/// Minimum covariance of the drawn Gaussian, as a fraction of the Laplace covariance [1]. A covariance from few samples
+/// Minimum covariance of the drawn Gaussian, as a fraction of the Laplace covariance \[1\]. A covariance from few samples
 /// may be singular. Source: ours.
 const MIN_COVARIANCE_FRACTION: f64 = 0.05;

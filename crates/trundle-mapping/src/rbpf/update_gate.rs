@@ -6,7 +6,7 @@ use crate::rbpf::scan_update::Refusal;
 use nalgebra::Matrix3;
 use trundle_core::{Pose2, Scan, Stamp};
 
-/// Maximum distance of the odometry from its origin [m]. A farther pose is refused. Source: ours.
+/// Maximum distance of the odometry from its origin \[m\]. A farther pose is refused. Source: ours.
 const MAX_ODOMETRY_DISTANCE_M: f64 = 1e6;
 
 /// Which scans are looked at: those after some motion or time.

@@ -40,19 +40,19 @@ impl EntryData {
     }
 }
 
-/// Minimum distance from the last entry of its kind at which an entry is logged [m]. A nearer one adds to the map only. Source: ours.
+/// Minimum distance from the last entry of its kind at which an entry is logged \[m\]. A nearer one adds to the map only. Source: ours.
 const MIN_ENTRY_DISTANCE_M: f64 = 0.1;
-/// Minimum turn from the last entry of its kind at which an entry is logged [rad]. Source: ours.
+/// Minimum turn from the last entry of its kind at which an entry is logged \[rad\]. Source: ours.
 const MIN_ENTRY_TURN_RAD: f64 = 0.1;
-/// Side of the squares by which scans are thinned [m]. Source: ours.
+/// Side of the squares by which scans are thinned \[m\]. Source: ours.
 const SCAN_SQUARE_M: f64 = 0.5;
-/// Side of the squares by which discs and contacts are thinned [m]. Source: ours.
+/// Side of the squares by which discs and contacts are thinned \[m\]. Source: ours.
 const SMALL_SQUARE_M: f64 = 0.1;
-/// Width of the sectors of heading by which entries are thinned [rad]. Source: ours.
+/// Width of the sectors of heading by which entries are thinned \[rad\]. Source: ours.
 const HEADING_SECTOR_RAD: f64 = std::f64::consts::FRAC_PI_6;
 /// Maximum number of scans of one square and sector: as many as one pass through it takes. Older scans are dropped. Source: ours.
 const MAX_SCANS_PER_SQUARE: u32 = 5;
-/// Minimum cost of redrawing an entry [cells]. Source: ours.
+/// Minimum cost of redrawing an entry \[cells\]. Source: ours.
 const MIN_ENTRY_COST_CELLS: usize = 200;
 
 impl LogEntry {

@@ -267,5 +267,5 @@ impl LiveMapper {
     }
 }
 
-/// Smallest correction of a pose that is applied [m, rad]. Source: ours.
+/// Smallest correction of a pose that is applied \[m, rad\]. Source: ours.
 const MIN_CORRECTION: f64 = 1e-4;

@@ -27,9 +27,9 @@ pub(crate) struct CloudMatch {
 
 /// Maximum number of points of the search. Larger clouds are subsampled. Source: ours.
 const MAX_SEARCH_POINTS: usize = 120;
-/// Minimum distance of two places [cells]. Nearer places of similar heading count as one. Source: ours.
+/// Minimum distance of two places \[cells\]. Nearer places of similar heading count as one. Source: ours.
 const MIN_PLACE_DISTANCE_CELLS: f64 = 12.0;
-/// Minimum difference of heading of two places [rad]. Source: ours.
+/// Minimum difference of heading of two places \[rad\]. Source: ours.
 const MIN_PLACE_TURN_RAD: f64 = 0.12;
 
 /// Minimum log-likelihood ratio of a place to the second-best place and to unknown ground [nats]. A lower ratio proves no

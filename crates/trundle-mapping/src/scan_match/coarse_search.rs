@@ -9,7 +9,7 @@ use trundle_grid::tiles::{Tile, TileWindow};
 /// Side of the coarse field of a tile [cells of two].
 const SAMPLES_PER_TILE_SIDE: usize = Tile::COARSE_SIDE;
 
-/// Distance of the samples of the coarse likelihood [cells]. Source: ours.
+/// Distance of the samples of the coarse likelihood \[cells\]. Source: ours.
 const SAMPLE_STEP_CELLS: f64 = 2.0;
 /// Maximum reach of the search to each side [samples]. A wider prior is searched up to this reach. Source: ours.
 const MAX_REACH_SAMPLES: usize = 7;

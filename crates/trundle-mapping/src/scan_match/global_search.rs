@@ -30,16 +30,16 @@ pub(crate) struct GlobalSearch {
 
 /// Maximum number of scans that are matched together. The oldest scan is dropped beyond it. Source: ours.
 const MAX_SCANS: usize = 20;
-/// Minimum distance of two points of the cloud [cells]. A nearer point is dropped. Source: ours.
+/// Minimum distance of two points of the cloud \[cells\]. A nearer point is dropped. Source: ours.
 const POINT_SPACING_CELLS: f64 = 2.0;
 /// Minimum number of points of the cloud. Fewer points are not matched. Source: ours.
 const MIN_POINTS: usize = 30;
-/// Minimum fraction of points that the map explains [1]. A lower fraction is another or a changed building: some place of
+/// Minimum fraction of points that the map explains \[1\]. A lower fraction is another or a changed building: some place of
 /// a large map always explains half of the points. Source: ours.
 const MIN_EXPLAINED: f64 = 0.75;
-/// Sigma of the position of a robot that may be anywhere [cells]. Source: ours.
+/// Sigma of the position of a robot that may be anywhere \[cells\]. Source: ours.
 const UNKNOWN_POSITION_SIGMA_CELLS: f64 = 1e5;
-/// Sigma of the heading of a robot that may be anywhere [rad]. Source: ours.
+/// Sigma of the heading of a robot that may be anywhere \[rad\]. Source: ours.
 const UNKNOWN_HEADING_SIGMA_RAD: f64 = 100.0;
 
 impl GlobalSearch {

@@ -32,7 +32,7 @@ pub(crate) struct Optimum {
 
 /// Maximum number of Gauss-Newton steps. The last pose is used beyond it. Source: ours.
 const MAX_ITERATIONS: usize = 10;
-/// Step length at which the iteration ends [cells]. Source: ours.
+/// Step length at which the iteration ends \[cells\]. Source: ours.
 const MIN_STEP_CELLS: f64 = 0.01;
 
 impl PoseOptimizer<'_> {

@@ -70,14 +70,14 @@ impl PointGroup {
     }
 }
 
-/// Distance to each side over which a surface normal is fitted [m]. A shorter baseline gives the normal of the noise.
+/// Distance to each side over which a surface normal is fitted \[m\]. A shorter baseline gives the normal of the noise.
 /// Source: ours.
 const NORMAL_BASELINE_M: f64 = 0.2;
-/// Minimum distance of two points of a scan [cells]. A nearer point is dropped. Source: ours.
+/// Minimum distance of two points of a scan \[cells\]. A nearer point is dropped. Source: ours.
 const POINT_SPACING_CELLS: f64 = 1.5;
-/// Minimum lever of the points [cells]. Points nearer to each other tell no heading. Source: ours.
+/// Minimum lever of the points \[cells\]. Points nearer to each other tell no heading. Source: ours.
 const MIN_LEVER_CELLS: f64 = 2.0;
-/// Maximum RMS distance from a fitted line [sigmas]. Points beyond it have no normal. Source: ours.
+/// Maximum RMS distance from a fitted line \[sigmas\]. Points beyond it have no normal. Source: ours.
 const MAX_LINE_RESIDUAL_SIGMAS: f64 = 3.0;
 
 impl ScanPoints {

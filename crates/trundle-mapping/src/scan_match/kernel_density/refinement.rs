@@ -7,18 +7,18 @@ use nalgebra::{Matrix2, Matrix2x3};
 use trundle_core::{Pose2, Vector2};
 use trundle_grid::SurfacePoints;
 
-/// Kernel density of an outlier [1]. A hit with this density is explained with probability 0.5; a hit on a wall has a
+/// Kernel density of an outlier \[1\]. A hit with this density is explained with probability 0.5; a hit on a wall has a
 /// density of about 3. Source: ours.
 const OUTLIER_DENSITY: f64 = 0.3;
-/// Curvature along a wall relative to that across it [1]. A smaller curvature is the unevenness of the wall's cells and
+/// Curvature along a wall relative to that across it \[1\]. A smaller curvature is the unevenness of the wall's cells and
 /// counts as zero. Source: ours.
 const MIN_RELATIVE_CURVATURE: f64 = 0.15;
 /// Maximum number of Gauss-Newton steps. The last pose is returned beyond it. Source: ours.
 const MAX_ITERATIONS: usize = 12;
-/// Step length at which the iteration ends [m, rad]. Source: ours.
+/// Step length at which the iteration ends \[m, rad\]. Source: ours.
 const MIN_STEP: f64 = 1e-5;
 
-/// Minimum lever of the hits [m]. Hits nearer to each other tell no heading. Source: ours.
+/// Minimum lever of the hits \[m\]. Hits nearer to each other tell no heading. Source: ours.
 pub(crate) const MIN_LEVER_M: f64 = 0.1;
 
 /// Gauss-Newton on the kernel density of the sites: every hit is pulled to the kernel-weighted mean of the sites about it

@@ -4,7 +4,7 @@ use super::ScanMatchConfig;
 use trundle_core::{Pose2, Vector2};
 use trundle_grid::LikelihoodField;
 
-/// Score that a pose at the edge of the window loses against the guess [1]. It decides between poses of equal likelihood.
+/// Score that a pose at the edge of the window loses against the guess \[1\]. It decides between poses of equal likelihood.
 /// Source: ours.
 const MAX_PRIOR_PENALTY: f64 = 0.02;
 
