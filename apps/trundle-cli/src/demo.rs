@@ -5,7 +5,7 @@ mod args;
 pub use args::DemoArgs;
 
 use crate::outcome::Outcome;
-use crate::{console, run_output};
+use crate::{console, logging, run_output};
 use std::fmt::Display;
 use std::path::Path;
 use trundle::app::real_time::run_in_real_time;
@@ -16,7 +16,6 @@ use trundle::experiments::simulated::{
     SceneOptions, SimulatedRealTimeBody, load_scene, read_faults, require_free, simulated_body,
     simulated_real_time_body, time_limit,
 };
-use trundle::io::OutputFolder;
 use trundle::runtime::{Checkpoint, Mission, Task};
 use trundle::sim::{Scene, Simulator};
 
@@ -52,7 +51,7 @@ pub fn run(args: &DemoArgs) -> Result<Outcome, AppError> {
 
 /// Runs the robot in its simulated body and writes the folder.
 fn drive(args: &DemoArgs, setup: &RunSetup, mut body: Simulator) -> Result<Outcome, AppError> {
-    let folder = OutputFolder::create(&args.out)?;
+    let folder = logging::output_folder(&args.out)?;
     if !args.common.quiet {
         let (scene, seed, mission) = (&setup.scene, setup.seed, mission_text(&setup.mission));
         console::print(&format!("Room '{scene}', seed {seed}, on camera, wheels and gyro alone: {mission}."));

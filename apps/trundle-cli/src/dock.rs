@@ -17,7 +17,6 @@ use trundle::app::dock::{
 use trundle::core::Footprint;
 use trundle::docking::corridor::Problem;
 use trundle::docking::{DockingConfig, DockingPlan, DockingPlanner};
-use trundle::io::OutputFolder;
 
 /// Where the obstacles come from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -84,8 +83,7 @@ pub fn run(args: &DockArgs) -> Result<Outcome, AppError> {
         .plan(&task.footprint, &task.scene, task.start, task.goal)
         .map_err(|refusal| named(args, &refusal))?;
     let seconds = clock.elapsed().as_secs_f64();
-    let folder = OutputFolder::create(&args.out)?.instead_of(&STEP_FILES);
-    logging::write(&folder)?;
+    let folder = logging::output_folder(&args.out)?.instead_of(&STEP_FILES);
     let place = write_docking(&task, &plan, seconds, folder)?;
     if !args.common.quiet {
         print_plan(&plan, seconds);

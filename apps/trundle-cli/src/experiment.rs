@@ -264,13 +264,12 @@ fn in_folder<R: ExperimentReport>(
     common: &Common,
     experiment: impl FnOnce(&OutputFolder, &Progress) -> Result<R, AppError>,
 ) -> Result<Outcome, AppError> {
-    let folder = OutputFolder::create(out)?;
+    let folder = logging::output_folder(out)?;
     let (line, progress) = console::progress(common.quiet);
     let report = experiment(&folder, &progress);
     line.finish_and_clear();
     let report = report?;
     report.write(&folder)?;
-    logging::write(&folder)?;
     let place = folder.commit()?.join("report.html");
     if !common.quiet {
         let table = report.table();

@@ -2,6 +2,7 @@
 
 use std::fmt;
 use std::io::{self, Write};
+use std::path::Path;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use tracing::{Event, Level, Subscriber};
 use tracing_subscriber::EnvFilter;
@@ -50,13 +51,16 @@ pub fn start(verbosity: u8) -> Result<(), AppError> {
     Ok(())
 }
 
-/// Writes `log.txt`: the lines of this program's run so far, with the data's time and no wall clock.
+/// An output folder whose commit writes `log.txt`: the lines of this program's run, with the data's time and no wall clock.
 ///
 /// # Errors
-/// When the file cannot be written.
-pub fn write(folder: &OutputFolder) -> Result<(), AppError> {
-    let lines = LINES.get_or_init(Arc::default).lock().unwrap_or_else(PoisonError::into_inner);
-    Ok(folder.write("log.txt", &lines)?)
+/// Those of [`OutputFolder::create`].
+pub fn output_folder(target: &Path) -> Result<OutputFolder, AppError> {
+    Ok(OutputFolder::create(target)?.closing_with("log.txt", lines))
+}
+
+fn lines() -> Vec<u8> {
+    LINES.get_or_init(Arc::default).lock().unwrap_or_else(PoisonError::into_inner).clone()
 }
 
 /// Appends lines to a buffer in memory.

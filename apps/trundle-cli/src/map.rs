@@ -8,7 +8,7 @@ use clap::Args;
 use std::path::PathBuf;
 use trundle::app::AppError;
 use trundle::app::laser_map::{LaserMapRequest, is_depth_folder, map_log, map_rows, read_log};
-use trundle::io::{LaserLog, LaserLogOptions, OutputFolder};
+use trundle::io::{LaserLog, LaserLogOptions};
 
 /// `trundle map`
 #[derive(Debug, Args)]
@@ -68,9 +68,8 @@ pub fn run(args: &MapArgs) -> Result<Outcome, AppError> {
     let request = args.request();
     let display = console::StepDisplay::new(args.common.quiet);
     let log = read_log(&request, &display)?;
-    let folder = OutputFolder::create(&args.out)?;
+    let folder = logging::output_folder(&args.out)?;
     let run = map_log(&request, args.localise, &log, &folder, &display)?;
-    logging::write(&folder)?;
     let place = folder.commit()?;
     warn_of_log(args, &log);
     if !args.common.quiet {

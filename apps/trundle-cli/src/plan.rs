@@ -30,8 +30,7 @@ pub fn run(args: &PlanArgs) -> Result<Outcome, AppError> {
     let start = seconds();
     let plan = request.plan();
     let times = PlanTimes { all: seconds() - start, stages: request.planner.stage_times() };
-    let folder = OutputFolder::create(&args.out)?.instead_of(&PLAN_FILES);
-    logging::write(&folder)?;
+    let folder = logging::output_folder(&args.out)?.instead_of(&PLAN_FILES);
     match plan {
         Ok(plan) => report_plan(args, &mut request, &plan, robot.limits, times, folder),
         Err(refusal) => report_refusal(args, &mut request, &refusal, folder),

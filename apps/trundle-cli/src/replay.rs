@@ -2,11 +2,10 @@
 
 use crate::common_args::Common;
 use crate::outcome::Outcome;
-use crate::{console, run_output};
+use crate::{console, logging, run_output};
 use clap::Args;
 use std::path::PathBuf;
 use trundle::app::{AppError, RunLog, RunRecorder, RunReplayer, run_on_body};
-use trundle::io::OutputFolder;
 
 /// `trundle replay`
 #[derive(Debug, Args)]
@@ -26,7 +25,7 @@ pub struct ReplayArgs {
 pub fn run(args: &ReplayArgs) -> Result<Outcome, AppError> {
     let name = args.recording.display();
     let (mut body, setup) = RunReplayer::open(&args.recording)?;
-    let folder = OutputFolder::create(&args.out)?;
+    let folder = logging::output_folder(&args.out)?;
     let recorder = RunRecorder::to_folder(&folder)?;
     let (line, progress) = console::progress(args.common.quiet);
     let run = run_on_body(&setup, &mut body, recorder, RunLog::default(), progress);

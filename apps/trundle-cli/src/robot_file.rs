@@ -1,11 +1,11 @@
 //! `trundle config`: prints the whole robot file.
 
-use crate::console;
 use crate::outcome::Outcome;
+use crate::{console, logging};
 use clap::Args;
 use std::path::PathBuf;
 use trundle::app::{AppError, load_robot};
-use trundle::io::{OutputFolder, Summary};
+use trundle::io::Summary;
 use trundle::runtime::settings::{json_schema, to_commented_toml};
 
 /// `trundle config`
@@ -37,7 +37,7 @@ pub fn print(args: &ConfigArgs) -> Result<Outcome, AppError> {
     let config = load_robot(args.file.as_deref(), &args.set)?;
     let text = to_commented_toml(&config);
     if let Some(out) = &args.out {
-        let folder = OutputFolder::create(out)?;
+        let folder = logging::output_folder(out)?;
         folder.write("robot.toml", text.as_bytes())?;
         folder.write("robot.schema.json", schema_text().as_bytes())?;
         folder.write("summary.json", Summary::new("config").set("robot", &config).to_json().as_bytes())?;

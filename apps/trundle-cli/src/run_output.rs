@@ -1,7 +1,7 @@
 //! The end of a run: its folder is written, its table printed.
 
+use crate::console;
 use crate::outcome::Outcome;
-use crate::{console, logging};
 use trundle::app::real_time::RealTimeReport;
 use trundle::app::report::write_run;
 use trundle::app::{AppError, FinishedRun, RunSetup};
@@ -16,7 +16,6 @@ pub fn write(
     folder: OutputFolder,
     quiet: bool,
 ) -> Result<Outcome, AppError> {
-    logging::write(&folder)?;
     let output = write_run(setup, &mut run, timing, folder)?;
     let numbers = &output.numbers;
     if !quiet {

@@ -45,7 +45,6 @@ pub fn run(args: &SimArgs) -> Result<Outcome, AppError> {
     let mut robot = Simulator::new(scene, config, args.seed)
         .map_err(|error| AppError::Input(format!("{name}: {error}")))?;
     let drive = drive(args, &mut robot, driver, grid.as_ref(), folder.as_ref())?;
-    folder.as_ref().map_or(Ok(()), logging::write)?;
     let place = folder.map(OutputFolder::commit).transpose()?;
     if !args.common.quiet {
         print(&drive, place.as_deref(), &robot);
@@ -109,5 +108,5 @@ fn new_recording(place: &Path) -> Result<OutputFolder, AppError> {
         let problem = "a recording is there already (rgb.txt), choose another folder or remove it";
         return Err(AppError::Input(format!("{}: {problem}", place.display())));
     }
-    Ok(OutputFolder::create(place)?)
+    logging::output_folder(place)
 }

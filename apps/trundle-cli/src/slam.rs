@@ -10,17 +10,15 @@ use crate::outcome::Outcome;
 use trundle::app::AppError;
 use trundle::app::report::stage_rows;
 use trundle::app::sequence::{SequenceRequest, track_sequence, write_sequence};
-use trundle::io::OutputFolder;
 
 /// `trundle slam DIR`.
 pub fn run(args: &SlamArgs) -> Result<Outcome, AppError> {
     let request = args.request();
     let camera = request.camera_model()?;
     let sequence = request.open(&camera)?;
-    let folder = OutputFolder::create(&args.out)?;
+    let folder = logging::output_folder(&args.out)?;
     let display = console::StepDisplay::new(args.common.quiet);
     let run = track_sequence(&request, &camera, &sequence, &folder, &display)?;
-    logging::write(&folder)?;
     let output = write_sequence(&request, &sequence, &run, folder)?;
     if !args.common.quiet {
         console::print_table(&output.rows);

@@ -19,6 +19,8 @@ pub struct OutputFolder {
     made: Vec<PathBuf>,
     /// Files that do not survive the commit unless they are written anew.
     outdated: Vec<String>,
+    /// Name and content of the file that the commit writes.
+    last: Option<(&'static str, fn() -> Vec<u8>)>,
 }
 
 /// The folder in the temporary one that becomes the target.
@@ -48,12 +50,18 @@ impl OutputFolder {
             remove_empty(&mut made);
             IoError::system(target, "create")(error)
         })?;
-        Ok(Self { target: target.to_owned(), scratch, made, outdated: vec![] })
+        Ok(Self { target: target.to_owned(), scratch, made, outdated: vec![], last: None })
     }
 
     /// The same; the commit removes files of these names of an earlier run, unless they are written anew.
     pub fn instead_of(mut self, names: &[&str]) -> Self {
         self.outdated = names.iter().map(|name| (*name).to_owned()).collect();
+        self
+    }
+
+    /// The same; the commit writes the file `name`, whose content is that of the moment of the commit.
+    pub fn closing_with(mut self, name: &'static str, content: fn() -> Vec<u8>) -> Self {
+        self.last = Some((name, content));
         self
     }
 
@@ -91,8 +99,11 @@ impl OutputFolder {
     /// those of the same name and leaving others alone. Returns the folder.
     ///
     /// # Errors
-    /// When a file cannot be moved.
+    /// When the closing file cannot be written, or a file cannot be moved.
     pub fn commit(mut self) -> Result<PathBuf, IoError> {
+        if let Some((name, content)) = self.last {
+            self.write(name, &content())?;
+        }
         self.made.clear();
         if self.target.is_dir() {
             for name in self.outdated.iter().filter(|name| !self.staged(name).exists()) {

@@ -2,12 +2,12 @@
 
 use super::args::MapsArgs;
 use super::named_error::named_error;
-use crate::console;
 use crate::outcome::Outcome;
+use crate::{console, logging};
 use trundle::app::AppError;
 use trundle::core::Pose2;
 use trundle::eval::{EvalError, MapAgreement, MapAgreementConfig, align_maps, map_agreement};
-use trundle::io::{OutputFolder, Summary, read_map};
+use trundle::io::{Summary, read_map};
 
 /// `trundle eval map`.
 pub fn run(args: &MapsArgs) -> Result<Outcome, AppError> {
@@ -18,7 +18,7 @@ pub fn run(args: &MapsArgs) -> Result<Outcome, AppError> {
     let pose = if args.exact { args.at.0 } else { align_maps(&truth, &map, args.at.0).map_err(wrong)? };
     let found = map_agreement(&truth, &map, pose, &config).map_err(wrong)?;
     if let Some(out) = &args.out {
-        let folder = OutputFolder::create(out)?;
+        let folder = logging::output_folder(out)?;
         folder.write("summary.json", summary(&found, pose, args.within).to_json().as_bytes())?;
         folder.commit()?;
     }

@@ -2,8 +2,8 @@
 
 use super::args::RelationsArgs;
 use super::named_error::named_error;
-use crate::console;
 use crate::outcome::Outcome;
+use crate::{console, logging};
 use std::path::Path;
 use trundle::app::AppError;
 use trundle::core::{Pose3, Stamp};
@@ -11,7 +11,7 @@ use trundle::eval::{
     EvalError, Relation, RelationConfig, RelationError, RelationSets, RelationSetsConfig, relation_error,
     relations_from_text,
 };
-use trundle::io::{OutputFolder, Summary, read_odometry, read_trajectory};
+use trundle::io::{Summary, read_odometry, read_trajectory};
 
 /// `trundle eval relations`.
 pub fn run(args: &RelationsArgs) -> Result<Outcome, AppError> {
@@ -30,7 +30,7 @@ pub fn run(args: &RelationsArgs) -> Result<Outcome, AppError> {
         return Err(AppError::Input(problem));
     }
     if let Some(out) = &args.out {
-        let folder = OutputFolder::create(out)?;
+        let folder = logging::output_folder(out)?;
         folder.write("summary.json", summary(&judged).to_json().as_bytes())?;
         folder.commit()?;
     }
