@@ -11,7 +11,7 @@ pub use no_path::NoPath;
 use recorded::RecordedReason;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::fmt;
-use trundle_control::StopReason;
+use trundle_control::{SlowReason, StopReason};
 use trundle_core::Vector2;
 
 /// Why the robot does not move on, or why a task ended undone. `Display` gives the reason in words.
@@ -164,7 +164,8 @@ impl fmt::Display for Reason {
             Self::PoseUncertain { sigma } => write!(f, "position uncertain: standard deviation {sigma:.2} m"),
             Self::WheelsUnresponsive { sigma } => write!(
                 f,
-                "position uncertain, standard deviation {sigma:.2} m: the encoders do not count although the wheels are commanded"
+                "position uncertain, standard deviation {sigma:.2} m: {}",
+                SlowReason::WheelsCountNothing
             ),
             Self::ViewContradictsMap => f.write_str("camera images contradict the map"),
             Self::RepeatedContact { contacts } => {

@@ -154,7 +154,7 @@ fn beside(trail: &[Vector2], by: f64) -> Vector2 {
     trail[trail.len() / 2] + across * outward
 }
 
-/// Poses close together over so many seconds.
+/// Poses close together over a duration, s.
 fn between(seconds: f64, at: impl Fn(f64) -> Pose2) -> Vec<Pose2> {
     let count = (seconds / OUTLINE_PERIOD_S).clamp(1.0, MAX_OUTLINES).round();
     (0..=count as usize).map(|i| at(seconds * i as f64 / count)).collect()

@@ -29,10 +29,10 @@ pub fn set_keep_out(
         Cell::Occupied => 1.0,
         _ => f32::from(*cost) / 100.0,
     };
-    let shares = mask.forbidden.cells().iter().zip(&mask.dear).map(share).collect();
+    let shares = mask.forbidden.cells().iter().zip(&mask.costs).map(share).collect();
     planner.set_keep_out(Some(mask.forbidden));
-    if mask.dear.iter().any(|value| *value > 0) {
-        planner.set_cost_mask(Some(CostMask::new(geometry, mask.dear)?));
+    if mask.costs.iter().any(|value| *value > 0) {
+        planner.set_cost_mask(Some(CostMask::new(geometry, mask.costs)?));
     }
     Ok(MaskShares { geometry, shares })
 }

@@ -44,7 +44,7 @@ pub fn at_rest(from: i64, to: i64) -> impl Iterator<Item = SensorEvent> {
 }
 
 impl StillBody {
-    /// A body with events of so many steps at 50 Hz.
+    /// A body with events of a number of steps at 50 Hz.
     pub fn new(steps: i64) -> Self {
         Self { events: at_rest(0, steps).collect(), ..Self::default() }
     }
@@ -80,7 +80,7 @@ impl RobotBody for StillBody {
     }
 }
 
-/// A still body whose user ends the run after so many inputs.
+/// A still body whose user ends the run after a number of inputs.
 pub struct InterruptedBody {
     /// The body.
     pub body: StillBody,

@@ -125,7 +125,7 @@ impl fmt::Display for StopReason {
                 write!(f, "the newest image or scan that shows something is {age:.2} s old")
             }
             Self::NothingTellsMotion => {
-                f.write_str("the encoders do not count although the wheels are commanded, and no image measures the motion")
+                write!(f, "{}, and no image measures the motion", SlowReason::WheelsCountNothing)
             }
             Self::NoWheels => f.write_str("no wheel reading yet"),
             Self::StaleWheels { age } => write!(f, "the newest wheel reading is {age:.2} s old"),

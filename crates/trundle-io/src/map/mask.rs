@@ -59,8 +59,8 @@ impl FilterInfo {
 pub struct KeepOutFile {
     /// Occupied where the robot must not be, else free.
     pub forbidden: OccupancyGrid,
-    /// How dear each of its cells is, 0 to 100; 0 where it is forbidden or unknown.
-    pub dear: Vec<u8>,
+    /// Cost of each of its cells, 0 to 100; 0 where it is forbidden or unknown.
+    pub costs: Vec<u8>,
 }
 
 /// A speed mask of a file.
@@ -77,7 +77,7 @@ pub struct SpeedFile {
 /// A keep-out mask from its YAML file and the PGM picture that it names: where the robot must not be, and where it should not.
 ///
 /// As Nav2's keep-out filter has it: a value of 100 forbids (in mode `trinary` and `scale` what is darker than
-/// `occupied_thresh`, in mode `raw` a pixel of 100), values of 1 to 99 (modes `scale` and `raw`) make a place dear; what is unknown
+/// `occupied_thresh`, in mode `raw` a pixel of 100), values of 1 to 99 (modes `scale` and `raw`) make a cell costly; what is unknown
 /// is free.
 ///
 /// # Errors
@@ -85,9 +85,9 @@ pub struct SpeedFile {
 pub fn read_keep_out_mask(yaml_path: &Path) -> Result<KeepOutFile, IoError> {
     let (geometry, values) = values(yaml_path)?;
     let cell = |value: &Option<u8>| if *value == Some(LETHAL_VALUE) { Cell::Occupied } else { Cell::Free };
-    let dear = values.iter().map(|value| value.filter(|value| *value < LETHAL_VALUE).unwrap_or(0)).collect();
+    let costs = values.iter().map(|value| value.filter(|value| *value < LETHAL_VALUE).unwrap_or(0)).collect();
     let forbidden = OccupancyGrid::new(geometry, values.iter().map(cell).collect());
-    Ok(KeepOutFile { forbidden: forbidden.map_err(IoError::field(yaml_path))?, dear })
+    Ok(KeepOutFile { forbidden: forbidden.map_err(IoError::field(yaml_path))?, costs })
 }
 
 /// A speed mask from its YAML file and the PGM picture that it names.
@@ -144,21 +144,21 @@ mod tests {
     const TRINARY: &str = "occupied_thresh: 0.65\nfree_thresh: 0.196\n";
 
     #[test]
-    fn what_is_black_is_kept_out_and_what_is_grey_is_dear() {
+    fn what_is_black_is_kept_out_and_what_is_grey_is_costly() {
         let scratch = tempfile::tempdir().unwrap();
         let mask = read_keep_out_mask(&write(scratch.path(), &[0, 80, 128, 205, 254], TRINARY)).unwrap();
         use Cell::{Free, Occupied};
         assert_eq!(mask.forbidden.cells(), [Occupied, Occupied, Free, Free, Free]);
-        assert_eq!(mask.dear, [0; 5]);
+        assert_eq!(mask.costs, [0; 5]);
         assert_eq!(mask.forbidden.geometry().origin, trundle_core::Vector2::new(1.0, 2.0));
         let graded = read_keep_out_mask(&write(scratch.path(), &[0, 1, 128, 255], SCALE)).unwrap();
         assert_eq!(graded.forbidden.cells(), [Occupied, Occupied, Free, Free]);
-        assert_eq!(graded.dear, [0, 0, 50, 0]);
+        assert_eq!(graded.costs, [0, 0, 50, 0]);
         let raw =
             read_keep_out_mask(&write(scratch.path(), &[0, 99, 100, 101], &format!("mode: raw\n{TRINARY}")));
         let raw = raw.unwrap();
         assert_eq!(raw.forbidden.cells(), [Free, Free, Occupied, Free]);
-        assert_eq!(raw.dear, [0, 99, 0, 0]);
+        assert_eq!(raw.costs, [0, 99, 0, 0]);
     }
 
     #[test]
