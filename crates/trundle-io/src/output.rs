@@ -6,6 +6,9 @@ use std::io::BufWriter;
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;
 
+/// Makes the content of a file.
+type Content = fn() -> Vec<u8>;
+
 /// A folder of results that appears whole or not at all.
 ///
 /// Files are written into a hidden temporary folder beside it (inside it, where it exists already), and moved to their
@@ -20,7 +23,7 @@ pub struct OutputFolder {
     /// Files that do not survive the commit unless they are written anew.
     outdated: Vec<String>,
     /// Name and content of the file that the commit writes.
-    last: Option<(&'static str, fn() -> Vec<u8>)>,
+    last: Option<(&'static str, Content)>,
 }
 
 /// The folder in the temporary one that becomes the target.
@@ -60,7 +63,7 @@ impl OutputFolder {
     }
 
     /// The same; the commit writes the file `name`, whose content is that of the moment of the commit.
-    pub fn closing_with(mut self, name: &'static str, content: fn() -> Vec<u8>) -> Self {
+    pub fn closing_with(mut self, name: &'static str, content: Content) -> Self {
         self.last = Some((name, content));
         self
     }

@@ -1,14 +1,12 @@
 //! Names: the glossary's second table lists those that modules, types, functions and constants must not have.
 
 use super::finding::{Finding, Rule};
+use super::source::definitions;
 use super::tree::Tree;
 use std::collections::BTreeMap;
 
 const GLOSSARY: &str = "docs/glossary.md";
 const TABLE: &str = "## Names that are not used";
-/// Keywords after which a name is defined.
-const KEYWORDS: [&str; 8] = ["mod", "struct", "enum", "trait", "type", "fn", "const", "static"];
-
 /// Checks the definitions of every package.
 pub fn check(tree: &Tree) -> Vec<Finding> {
     let Some(glossary) = tree.file(GLOSSARY) else { return Vec::new() };
@@ -16,7 +14,7 @@ pub fn check(tree: &Tree) -> Vec<Finding> {
     let mut findings = Vec::new();
     for source in tree.packages.iter().flat_map(|package| tree.sources(package)) {
         for (line, code) in source.code.lines() {
-            for name in defined(code) {
+            for (_, name) in definitions(code) {
                 if let Some(instead) = refused.get(name) {
                     let message = format!("the name {name} is not used: write {instead} ({GLOSSARY})");
                     findings.push(Finding::ruled(Rule::Glossary, &source.file.path, line, message));
@@ -35,15 +33,6 @@ fn refused(glossary: &str) -> BTreeMap<&str, &str> {
     let names = rows
         .flat_map(|(left, right)| left.split('`').skip(1).step_by(2).map(move |name| (name, right.trim())));
     names.collect()
-}
-
-/// The names that a line of code defines.
-fn defined(code: &str) -> impl Iterator<Item = &str> {
-    let words: Vec<&str> =
-        code.split(|c: char| !c.is_alphanumeric() && c != '_').filter(|word| !word.is_empty()).collect();
-    let pairs: Vec<&str> =
-        words.windows(2).filter(|pair| KEYWORDS.contains(&pair[0])).map(|pair| pair[1]).collect();
-    pairs.into_iter()
 }
 
 #[cfg(test)]

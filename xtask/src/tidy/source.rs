@@ -60,6 +60,16 @@ impl Code {
     }
 }
 
+/// Keywords after which a name is defined.
+const KEYWORDS: [&str; 8] = ["mod", "struct", "enum", "trait", "type", "fn", "const", "static"];
+
+/// What a line of code defines: the keyword and the name.
+pub fn definitions(code: &str) -> Vec<(&str, &str)> {
+    let words = code.split(|c: char| !c.is_alphanumeric() && c != '_').filter(|word| !word.is_empty());
+    let words: Vec<&str> = words.collect();
+    words.windows(2).filter(|pair| KEYWORDS.contains(&pair[0])).map(|pair| (pair[0], pair[1])).collect()
+}
+
 /// Whether `word` stands in `line`, bounded on the sides where it begins or ends with a letter.
 fn has_word(line: &str, word: &str) -> bool {
     let part = |c: Option<char>| c.is_some_and(|c| c.is_alphanumeric() || c == '_');

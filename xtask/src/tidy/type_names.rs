@@ -1,6 +1,7 @@
 //! One name, one type: no two crates of the facade define a public type of the same name.
 
 use super::finding::{Finding, Rule};
+use super::source::definitions;
 use super::tree::Tree;
 use std::collections::BTreeMap;
 
@@ -32,9 +33,8 @@ fn public_types(code: &str) -> Vec<(usize, String)> {
 
 fn public_type(line: &str) -> Option<String> {
     let item = line.trim_start().strip_prefix("pub ")?;
-    let rest = ["struct ", "enum ", "trait ", "union "].iter().find_map(|kind| item.strip_prefix(kind))?;
-    let end = rest.find(|c: char| !c.is_alphanumeric() && c != '_').unwrap_or(rest.len());
-    (end > 0).then(|| rest[..end].to_owned())
+    let (keyword, name) = *definitions(item).first()?;
+    ["struct", "enum", "trait"].contains(&keyword).then(|| name.to_owned())
 }
 
 #[cfg(test)]
