@@ -1,7 +1,7 @@
 //! Everything that must hold before a change is merged.
 
 use crate::workspace::Verdict;
-use crate::{fault_scenarios, golden, program, replay_check, tidy};
+use crate::{fault_scenarios, fuzz, golden, program, replay_check, tidy};
 use std::path::Path;
 use std::time::Instant;
 
@@ -16,7 +16,7 @@ const TEST: Step = Step {
     check: |root| program::cargo(root, &["test", "--workspace"], &[]),
 };
 
-const REST: [Step; 9] = [
+const REST: [Step; 10] = [
     Step {
         name: "cargo fmt --all --check",
         check: |root| program::cargo(root, &["fmt", "--all", "--check"], &[]),
@@ -34,6 +34,7 @@ const REST: [Step; 9] = [
             program::cargo(root, &["doc", "--workspace", "--no-deps"], &[("RUSTDOCFLAGS", "-Dwarnings")])
         },
     },
+    Step { name: "cargo xtask fuzz --seconds 5", check: fuzz::run_in_ci },
     Step { name: "cargo build --release", check: |root| program::cargo(root, &["build", "--release"], &[]) },
     Step { name: "cargo xtask golden", check: golden_net },
     Step { name: "trundle demo", check: demo },

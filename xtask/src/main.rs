@@ -1,9 +1,10 @@
-//! Chores of the workspace: `cargo xtask ci | tidy | golden | results | replay-check | fault-scenarios | demo-seeds`.
+//! Chores of the workspace: `cargo xtask ci | tidy | golden | results | replay-check | fuzz | fault-scenarios | demo-seeds`.
 #![expect(clippy::print_stdout, clippy::print_stderr, reason = "this is a program that talks")]
 
 mod ci;
 mod compare;
 mod fault_scenarios;
+mod fuzz;
 mod golden;
 mod program;
 mod replay_check;
@@ -67,6 +68,8 @@ enum Chore {
         #[arg(long, default_value_t = 1)]
         seed: u64,
     },
+    /// Feed broken files to every reader: none may panic, hang or take unbounded memory.
+    Fuzz(fuzz::Options),
     /// Failing sensors, slipping wheels, people in the way: each run must end as its scenario expects.
     FaultScenarios,
     /// Run the demo on many seeds and print a table of their summaries.
@@ -95,6 +98,7 @@ fn main() -> ExitCode {
         Chore::Results { measure } => results::run(&root, &measure),
         Chore::Settings => settings::run(&root, false),
         Chore::ReplayCheck { seed } => replay_check::run(&root, seed),
+        Chore::Fuzz(options) => fuzz::run(&root, &options),
         Chore::FaultScenarios => fault_scenarios::run(&root),
         Chore::DemoSeeds { seeds, first, explore } => {
             seeds::run(&root, first..first.saturating_add(seeds), explore)

@@ -13,8 +13,8 @@ pub fn run(root: &Path, seed: u64) -> Verdict {
     let (one, two, replayed) = (path("one-thread"), path("two-threads"), path("replayed"));
     let recording = scratch.join("one-thread").join("recording.mcap").display().to_string();
     let runs: [&[&str]; 3] = [
-        &["demo", "--direct", "--seed", &seed, "--threads", "1", "--quiet", "--out", &one],
-        &["demo", "--direct", "--seed", &seed, "--threads", "2", "--quiet", "--out", &two],
+        &["demo", "--direct", "--seed", &seed, "--threads", "1", "--quiet", "--record", "all", "--out", &one],
+        &["demo", "--direct", "--seed", &seed, "--threads", "2", "--quiet", "--record", "all", "--out", &two],
         &["replay", &recording, "--quiet", "--out", &replayed],
     ];
     for args in runs {

@@ -1,21 +1,27 @@
 //! The commands of `trundle`.
 
+use crate::data::DataArgs;
 use crate::demo::DemoArgs;
 use crate::dock::DockArgs;
 use crate::eval::EvalArgs;
 use crate::experiment::ExperimentArgs;
 use crate::map::MapArgs;
+use crate::outcome::EXIT_CODES;
 use crate::plan::PlanArgs;
 use crate::replay::ReplayArgs;
 use crate::robot_file::ConfigArgs;
+use crate::shell_files::{CompletionsArgs, ManArgs};
 use crate::sim::SimArgs;
 use crate::slam::SlamArgs;
 use crate::vocabulary::VocabularyArgs;
 use clap::{Parser, Subcommand};
 
+/// Version of the package, and the commit where it was built from a checkout.
+const LONG_VERSION: &str = env!("TRUNDLE_LONG_VERSION");
+
 /// Autonomy for a two-wheeled indoor robot with one RGB-D camera.
 #[derive(Debug, Parser)]
-#[command(name = "trundle", version, about, arg_required_else_help = true)]
+#[command(name = "trundle", version, long_version = LONG_VERSION, about, arg_required_else_help = true, after_help = EXIT_CODES)]
 pub struct Cli {
     /// Log state changes and pose corrections; twice (-vv): everything. TRUNDLE_LOG=trundle_runtime=debug filters by crate.
     #[arg(long, short, global = true, action = clap::ArgAction::Count)]
@@ -50,6 +56,12 @@ pub enum Command {
     Vocabulary(VocabularyArgs),
     /// Print the whole robot file with its defaults, or check one.
     Config(ConfigArgs),
+    /// The data sets of the experiments: what each is, where it comes from, its licence.
+    Data(DataArgs),
+    /// Print the completions of a shell: bash, zsh, fish, elvish, powershell.
+    Completions(CompletionsArgs),
+    /// Write a man page for each command.
+    Man(ManArgs),
 }
 
 #[cfg(test)]

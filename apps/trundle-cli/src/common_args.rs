@@ -5,6 +5,8 @@ use std::path::PathBuf;
 use std::str::FromStr;
 use trundle::app::{AppError, load_robot};
 use trundle::core::Pose2;
+use trundle::experiments::simulated::MeshOptions;
+use trundle::io::MapImage;
 use trundle::runtime::RobotConfig;
 use trundle::sim::import::UpAxis;
 
@@ -67,6 +69,27 @@ impl FromStr for PoseArg {
     }
 }
 
+/// How a .glb or .gltf becomes a scene.
+#[derive(Debug, Clone, Copy, Args)]
+pub struct MeshArgs {
+    /// The axis that points up in a .glb or .gltf.
+    #[arg(long, value_enum, value_name = "AXIS", default_value_t = UpArg::Y)]
+    pub up: UpArg,
+    /// Metres a unit of a .glb or .gltf, as 0.01 for centimetres [default: 1]
+    #[arg(long, value_name = "M", allow_negative_numbers = true)]
+    pub scale: Option<f64>,
+    /// Height of the floor in a .glb or .gltf, m: it comes to lie at z = 0 [default: the lowest large level]
+    #[arg(long, value_name = "Z", allow_negative_numbers = true)]
+    pub floor: Option<f64>,
+}
+
+impl MeshArgs {
+    /// The options of the scene.
+    pub fn options(self) -> MeshOptions {
+        MeshOptions { up: self.up.axis(), scale: self.scale, floor: self.floor }
+    }
+}
+
 /// The axis of a file that points up.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum UpArg {
@@ -82,6 +105,25 @@ impl UpArg {
         match self {
             Self::Y => UpAxis::Y,
             Self::Z => UpAxis::Z,
+        }
+    }
+}
+
+/// The format of a map's picture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum MapImageArg {
+    /// As map_saver writes it.
+    Pgm,
+    /// Compressed, without loss.
+    Png,
+}
+
+impl MapImageArg {
+    /// The format.
+    pub fn format(self) -> MapImage {
+        match self {
+            Self::Pgm => MapImage::Pgm,
+            Self::Png => MapImage::Png,
         }
     }
 }

@@ -1,14 +1,18 @@
 //! Output on the terminal: results, tables, errors, progress. The only module of the program that prints.
 #![expect(clippy::print_stderr, reason = "errors go to standard error")]
 
-use std::io::Write;
-use trundle::app::{AppError, Progress, StepProgress};
-
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::io::{IsTerminal, Write};
+use trundle::app::{AppError, Progress, StepProgress};
 
 /// Prints the reason of a failure on standard error.
 pub fn print_error(error: &AppError) {
     eprintln!("trundle: {error}");
+}
+
+/// Prints on standard error that a signal has ended the command, and what is written.
+pub fn print_stopped(signal: &str, what: &str) {
+    eprintln!("trundle: stopped by {signal}{what}");
 }
 
 /// Logs a warning, which the terminal shows; the run goes on.
@@ -70,7 +74,7 @@ impl StepProgress for StepDisplay {
         let template = match steps {
             Some(steps) => {
                 self.bar.set_length(steps as u64);
-                "{bar:30} {pos}/{len} frames  {per_sec}  ETA {eta}  {msg}"
+                STEPS
             }
             None => SPINNER,
         };
@@ -94,8 +98,10 @@ impl StepProgress for StepDisplay {
     }
 }
 
-/// The template of a spinner with a message.
-const SPINNER: &str = "{spinner} {msg}";
+/// The template of a spinner with a message, cut to the width of the terminal.
+const SPINNER: &str = "{spinner} {wide_msg}";
+/// The template of work whose end is known, its message cut as well.
+const STEPS: &str = "{percent:>3} %  {pos}/{len}  ETA {eta}  {wide_msg}";
 
 fn style(template: &str) -> ProgressStyle {
     ProgressStyle::with_template(template).expect("invariant: the template is valid")
@@ -107,8 +113,91 @@ fn live_line(quiet: bool) -> ProgressBar {
 }
 
 fn hidden_if(quiet: bool, bar: ProgressBar) -> ProgressBar {
-    if quiet {
+    let term = std::env::var("TERM").unwrap_or_default();
+    if quiet || !can_replace_a_line(std::io::stderr().is_terminal(), &term) {
         bar.set_draw_target(ProgressDrawTarget::hidden());
     }
     bar
+}
+
+/// Whether a line can be shown and replaced: on a terminal, and not on one that only appends (`TERM=dumb`).
+fn can_replace_a_line(is_terminal: bool, term: &str) -> bool {
+    is_terminal && term != "dumb"
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use indicatif::TermLike;
+    use std::io;
+    use std::sync::{Arc, Mutex};
+
+    /// A terminal of some width that keeps the lines drawn.
+    #[derive(Debug, Clone)]
+    struct Screen {
+        width: u16,
+        drawn: Arc<Mutex<Vec<String>>>,
+    }
+
+    impl TermLike for Screen {
+        fn width(&self) -> u16 {
+            self.width
+        }
+        fn move_cursor_up(&self, _: usize) -> io::Result<()> {
+            Ok(())
+        }
+        fn move_cursor_down(&self, _: usize) -> io::Result<()> {
+            Ok(())
+        }
+        fn move_cursor_right(&self, _: usize) -> io::Result<()> {
+            Ok(())
+        }
+        fn move_cursor_left(&self, _: usize) -> io::Result<()> {
+            Ok(())
+        }
+        fn write_line(&self, line: &str) -> io::Result<()> {
+            self.write_str(line)
+        }
+        fn write_str(&self, text: &str) -> io::Result<()> {
+            self.drawn.lock().unwrap().push(text.to_owned());
+            Ok(())
+        }
+        fn clear_line(&self) -> io::Result<()> {
+            Ok(())
+        }
+        fn flush(&self) -> io::Result<()> {
+            Ok(())
+        }
+    }
+
+    fn lines(width: u16, template: &str) -> Vec<String> {
+        let screen = Screen { width, drawn: Arc::default() };
+        let target = ProgressDrawTarget::term_like(Box::new(screen.clone()));
+        let bar = ProgressBar::with_draw_target(Some(400), target).with_style(style(template));
+        bar.set_message(
+            "driving to (5.03 m, 2.24 m, 90 deg), 34.2 s of 120 s, 3 images a second, no contact, ".repeat(3),
+        );
+        bar.set_position(100);
+        bar.tick();
+        let drawn = screen.drawn.lock().unwrap().clone();
+        drawn.into_iter().filter(|text| !text.trim().is_empty()).collect()
+    }
+
+    #[test]
+    fn the_line_is_one_at_any_width() {
+        for width in [40, 60, 80, 200] {
+            for template in [SPINNER, STEPS] {
+                for line in lines(width, template) {
+                    assert!(line.trim_end().chars().count() <= usize::from(width), "{width}: {line:?}");
+                }
+            }
+        }
+        assert!(lines(80, STEPS).iter().any(|line| line.contains("25 %")), "{:?}", lines(80, STEPS));
+    }
+
+    #[test]
+    fn a_line_is_replaced_only_where_the_terminal_can() {
+        assert!(can_replace_a_line(true, "xterm-256color") && can_replace_a_line(true, ""));
+        assert!(!can_replace_a_line(true, "dumb") && !can_replace_a_line(false, "xterm"));
+    }
 }

@@ -10,23 +10,25 @@ use std::fmt::Display;
 use std::path::Path;
 use trundle::app::real_time::run_in_real_time;
 use trundle::app::report::mission_text;
+use trundle::app::vocabulary_file::read_vocabulary;
 use trundle::app::{AppError, RunLog, RunRecorder, RunSetup, run_on_body};
 use trundle::core::Invalid;
 use trundle::experiments::simulated::{
     SceneOptions, SimulatedRealTimeBody, load_scene, read_faults, require_free, simulated_body,
     simulated_real_time_body, time_limit,
 };
+use trundle::io::{Expected, keep_aside};
 use trundle::runtime::{Checkpoint, Mission, Task};
 use trundle::sim::{Scene, Simulator};
 
 /// `trundle demo`.
 pub fn run(args: &DemoArgs) -> Result<Outcome, AppError> {
     let options =
-        SceneOptions { seed: args.seed, up: args.up.axis(), start: args.start.map(|start| start.0) };
+        SceneOptions { seed: args.seed, mesh: args.mesh.options(), start: args.start.map(|start| start.0) };
     let robot = args.robot.robot()?;
     let mut scene = load_scene(&args.scene, options)?;
     let faults = args.faults.as_deref().map(read_faults).transpose()?.unwrap_or_default();
-    let resumed = args.resume.and(args.checkpoint.as_deref()).map(read_checkpoint).transpose()?;
+    let resumed = args.state.resume.and(args.state.checkpoint.as_deref()).map(read_checkpoint).transpose()?;
     let mission = match &resumed {
         Some((checkpoint, _)) => checkpoint.mission.left.clone(),
         None => mission(args, &scene)?,
@@ -36,6 +38,10 @@ pub fn run(args: &DemoArgs) -> Result<Outcome, AppError> {
     setup.map_from_world = scene.start.inverse();
     setup.time_limit = args.time_limit.unwrap_or_else(|| time_limit(&setup.mission));
     setup.real_time = args.real_time;
+    setup.recording = args.record.content();
+    if let Some(file) = &args.vocabulary {
+        setup = setup.with_vocabulary(&read_vocabulary(file)?);
+    }
     if let Some((_, bytes)) = &resumed {
         setup = setup.resumed_from(bytes);
     }
@@ -43,7 +49,7 @@ pub fn run(args: &DemoArgs) -> Result<Outcome, AppError> {
     for goal in setup.mission.tasks().iter().filter_map(RunSetup::goal_of) {
         require_free("goal", &scene, scene.start * goal, &setup.robot)?;
     }
-    scene.start = args.resume.map_or(scene.start, |pose| pose.0);
+    scene.start = args.state.resume.map_or(scene.start, |pose| pose.0);
     let body = if args.real_time { simulated_real_time_body } else { simulated_body };
     let body = Simulator::new(scene, body(&setup.robot, faults)?, args.seed).map_err(AppError::input)?;
     drive(args, &setup, body)
@@ -55,9 +61,17 @@ fn drive(args: &DemoArgs, setup: &RunSetup, mut body: Simulator) -> Result<Outco
     if !args.common.quiet {
         let (scene, seed, mission) = (&setup.scene, setup.seed, mission_text(&setup.mission));
         console::print(&format!("Room '{scene}', seed {seed}, on camera, wheels and gyro alone: {mission}."));
+        console::print(&setup.recording.announcement(
+            &setup.robot.camera,
+            body.config().camera_rate_hz,
+            setup.time_limit,
+        ));
     }
     let (line, progress) = console::progress(args.common.quiet);
-    let checkpoint = args.checkpoint.as_deref();
+    let checkpoint = args.state.checkpoint.as_deref();
+    if args.state.resume.is_none() {
+        checkpoint.map_or(Ok(()), keep_aside)?;
+    }
     if args.real_time {
         let start = |events, place| SimulatedRealTimeBody::start(body, events, place);
         let run = run_in_real_time(setup, start, &folder, checkpoint, RunLog::default(), progress);
@@ -65,7 +79,7 @@ fn drive(args: &DemoArgs, setup: &RunSetup, mut body: Simulator) -> Result<Outco
         let (run, timing) = run?;
         return run_output::write(setup, run, Some(&timing), folder, args.common.quiet);
     }
-    let recorder = RunRecorder::to_folder(&folder)?.with_checkpoint_file(checkpoint)?;
+    let recorder = RunRecorder::of_content(setup.recording, &folder)?.with_checkpoint_file(checkpoint)?;
     let run = run_on_body(setup, &mut body, recorder, RunLog::default(), progress);
     line.finish_and_clear();
     run_output::write(setup, run?, None, folder, args.common.quiet)
@@ -74,6 +88,7 @@ fn drive(args: &DemoArgs, setup: &RunSetup, mut body: Simulator) -> Result<Outco
 /// The checkpoint in this file, and its bytes.
 fn read_checkpoint(file: &Path) -> Result<(Checkpoint, Vec<u8>), AppError> {
     let refused = |error: &dyn Display| AppError::Input(format!("{}: {error}", file.display()));
+    Expected::Checkpoint.check(file)?;
     let bytes = std::fs::read(file).map_err(|error| refused(&error))?;
     let checkpoint = Checkpoint::from_bytes(&bytes).map_err(|error| refused(&error))?;
     if checkpoint.mission.left.tasks().is_empty() {

@@ -7,16 +7,17 @@ pub use args::DockArgs;
 use crate::console;
 use crate::logging;
 use crate::outcome::Outcome;
+use crate::output_args;
 use std::path::Path;
 use std::time::Instant;
 use trundle::app::AppError;
 use trundle::app::dock::{
-    DockingTask, STEP_FILES, built_in_problem, file_problem, impossible_text, rows, scan_problem, verdict,
-    write_docking,
+    DockingTask, built_in_problem, file_problem, impossible_text, rows, scan_problem, verdict, write_docking,
 };
 use trundle::core::Footprint;
 use trundle::docking::corridor::Problem;
 use trundle::docking::{DockingConfig, DockingPlan, DockingPlanner};
+use trundle::io::{Expected, FileKind};
 
 /// Where the obstacles come from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -28,18 +29,15 @@ enum Source {
 }
 
 impl Source {
-    fn of(args: &DockArgs) -> Self {
-        let ending = args.place.extension().unwrap_or_default();
-        let is_a = |endings: &[&str]| endings.iter().any(|known| ending.eq_ignore_ascii_case(known));
-        if is_a(&["yaml", "yml"]) {
-            Self::Map
-        } else if is_a(&["log"]) {
-            Self::Log
-        } else if !args.place.exists() && built_in_problem(&args.place).is_some() {
-            Self::BuiltIn
-        } else {
-            Self::File
+    fn of(args: &DockArgs) -> Result<Self, AppError> {
+        if !args.place.exists() && built_in_problem(&args.place).is_some() {
+            return Ok(Self::BuiltIn);
         }
+        Ok(match Expected::Docking.check(&args.place)? {
+            FileKind::MapYaml => Self::Map,
+            FileKind::CarmenLog | FileKind::Gzip => Self::Log,
+            _ => Self::File,
+        })
     }
 
     fn name(self) -> &'static str {
@@ -69,9 +67,12 @@ impl Source {
 
 /// `trundle dock MAP.yaml --from --to`, `trundle dock SCANS.log --to`, `trundle dock PROBLEM.txt`, or a built-in problem by name.
 pub fn run(args: &DockArgs) -> Result<Outcome, AppError> {
-    let task = match Source::of(args).checked(args)? {
+    let task = match Source::of(args)?.checked(args)? {
         Source::Map => on_map(args)?,
-        Source::Log => of_problem(args, in_scan(args)?)?,
+        Source::Log => match of_problem(args, in_scan(args)?)? {
+            task if task.is_without_obstacles() => return Ok(blind_scan(args)),
+            task => task,
+        },
         Source::BuiltIn | Source::File => of_problem(args, listed(args)?)?,
     };
     if let Some(file) = &args.write_problem {
@@ -83,13 +84,20 @@ pub fn run(args: &DockArgs) -> Result<Outcome, AppError> {
         .plan(&task.footprint, &task.scene, task.start, task.goal)
         .map_err(|refusal| named(args, &refusal))?;
     let seconds = clock.elapsed().as_secs_f64();
-    let folder = logging::output_folder(&args.out)?.instead_of(&STEP_FILES);
+    let folder = logging::output_folder(&args.out)?;
     let place = write_docking(&task, &plan, seconds, folder)?;
     if !args.common.quiet {
         print_plan(&plan, seconds);
         console::print(&format!("See {}", place.join("dock.png").display()));
     }
     Ok(if matches!(plan, DockingPlan::Found(_)) { Outcome::Reached } else { Outcome::Missed })
+}
+
+/// A scan in which no beam met anything: what was not seen is not free.
+fn blind_scan(args: &DockArgs) -> Outcome {
+    let problem =
+        "no beam of the scan met anything, and what was not seen is not free: no manoeuvre is planned";
+    Outcome::unless(Some(format!("{}: {problem}", args.place.display())))
 }
 
 /// The robot file's `[docking.planner]`, where one is given, else the planner's own defaults; method and margin as asked for.
@@ -102,8 +110,7 @@ fn planner_config(args: &DockArgs) -> Result<DockingConfig, AppError> {
 
 /// Writes the task to a file of problems.
 fn write_problem(args: &DockArgs, task: &DockingTask, file: &Path) -> Result<Outcome, AppError> {
-    std::fs::write(file, task.to_text())
-        .map_err(|error| AppError::Input(format!("{}: cannot write it: {error}", file.display())))?;
+    output_args::write_file(file, task.to_text().as_bytes())?;
     if !args.common.quiet {
         console::print(&format!("See {}", file.display()));
     }
@@ -121,7 +128,7 @@ fn on_map(args: &DockArgs) -> Result<DockingTask, AppError> {
 /// The outline that was asked for, else the robot file's.
 fn footprint(args: &DockArgs) -> Result<Footprint, AppError> {
     match &args.footprint {
-        Some(footprint) => Ok(footprint.0.clone()),
+        Some(footprint) => Ok(footprint.clone()),
         None => Ok(args.robot.robot()?.footprint()?),
     }
 }
@@ -148,7 +155,7 @@ fn listed(args: &DockArgs) -> Result<Problem, AppError> {
 fn of_problem(args: &DockArgs, problem: Problem) -> Result<DockingTask, AppError> {
     let task = DockingTask::of_problem(problem).map_err(|invalid| named(args, &invalid))?;
     Ok(DockingTask {
-        footprint: args.footprint.as_ref().map_or(task.footprint, |asked| asked.0.clone()),
+        footprint: args.footprint.as_ref().map_or(task.footprint, |asked| asked.clone()),
         start: args.from.map_or(task.start, |from| from.0),
         goal: args.to.map_or(task.goal, |to| to.0),
         ..task

@@ -4,6 +4,7 @@ mod args;
 mod maps;
 mod named_error;
 mod relations;
+mod trajectory;
 
 pub use args::EvalArgs;
 
@@ -14,6 +15,7 @@ use trundle::app::AppError;
 /// `trundle eval ...`.
 pub fn run(args: &EvalArgs) -> Result<Outcome, AppError> {
     match &args.which {
+        Which::Trajectory(args) => trajectory::run(args),
         Which::Relations(args) => relations::run(args),
         Which::Map(args) => maps::run(args),
     }

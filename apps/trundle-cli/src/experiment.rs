@@ -2,11 +2,12 @@
 
 use crate::common_args::{Common, RobotArgs};
 use crate::outcome::Outcome;
+use crate::output_args::OutputDirArg;
 use crate::{console, logging};
 use clap::{Args, Subcommand};
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
-use trundle::app::{AppError, Progress};
+use trundle::app::{AppError, Progress, stop};
 use trundle::experiments::{
     ExperimentReport, RunsRequest, barn, corridor, fault_scenarios, missions, mrpb, people, poses, real_time,
 };
@@ -56,9 +57,9 @@ pub struct RunsArgs {
     /// The robot's settings.
     #[command(flatten)]
     pub robot: RobotArgs,
-    /// Folder for the results.
+    /// Folder for the results; the last run in it is kept as DIR.1
     #[arg(long, value_name = "DIR", default_value = "out/experiment")]
-    pub out: PathBuf,
+    pub out: OutputDirArg,
     /// What every command takes.
     #[command(flatten)]
     pub common: Common,
@@ -93,9 +94,9 @@ pub struct BarnArgs {
     /// The robot's settings.
     #[command(flatten)]
     pub robot: RobotArgs,
-    /// Folder for the results.
+    /// Folder for the results; the last run in it is kept as DIR.1
     #[arg(long, value_name = "DIR", default_value = "out/barn")]
-    pub out: PathBuf,
+    pub out: OutputDirArg,
     /// What every command takes.
     #[command(flatten)]
     pub common: Common,
@@ -119,9 +120,9 @@ pub struct MrpbArgs {
     /// The robot's settings.
     #[command(flatten)]
     pub robot: RobotArgs,
-    /// Folder for the results.
+    /// Folder for the results; the last run in it is kept as DIR.1
     #[arg(long, value_name = "DIR", default_value = "out/mrpb")]
-    pub out: PathBuf,
+    pub out: OutputDirArg,
     /// What every command takes.
     #[command(flatten)]
     pub common: Common,
@@ -130,7 +131,7 @@ pub struct MrpbArgs {
 /// `trundle experiment real-time`
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Writes a recording, some 600 MB a minute.\n\nExit code: 0 jitter at most 5 ms (p99.9), load at most 60 %, memory \
+    after_help = "Writes a recording, some 450 MB a minute.\n\nExit code: 0 jitter at most 5 ms (p99.9), load at most 60 %, memory \
                   growing by at most 10 MB/h, nothing touched; 1 otherwise, 2 bad input."
 )]
 pub struct RealTimeArgs {
@@ -143,9 +144,9 @@ pub struct RealTimeArgs {
     /// The robot's settings.
     #[command(flatten)]
     pub robot: RobotArgs,
-    /// Folder for the results.
+    /// Folder for the results; the last run in it is kept as DIR.1
     #[arg(long, value_name = "DIR", default_value = "out/real-time")]
-    pub out: PathBuf,
+    pub out: OutputDirArg,
     /// What every command takes.
     #[command(flatten)]
     pub common: Common,
@@ -181,9 +182,9 @@ impl FromStr for WorldRange {
     after_help = "Exit code: 0 every scenario solved, the paper's method with the motions it reports, 1 otherwise, 2 bad input."
 )]
 pub struct CorridorArgs {
-    /// Folder for the results.
+    /// Folder for the results; the last run in it is kept as DIR.1
     #[arg(long, value_name = "DIR", default_value = "out/corridor")]
-    pub out: PathBuf,
+    pub out: OutputDirArg,
     /// What every command takes.
     #[command(flatten)]
     pub common: Common,
@@ -270,6 +271,7 @@ fn in_folder<R: ExperimentReport>(
     line.finish_and_clear();
     let report = report?;
     report.write(&folder)?;
+    stop::note_in(&folder)?;
     let place = folder.commit()?.join("report.html");
     if !common.quiet {
         let table = report.table();

@@ -1,5 +1,6 @@
 //! The log: on standard error as far as `-v`, `-vv` or `TRUNDLE_LOG` ask for, and as `log.txt` in an output folder.
 
+use crate::output_args;
 use std::fmt;
 use std::io::{self, Write};
 use std::path::Path;
@@ -56,7 +57,11 @@ pub fn start(verbosity: u8) -> Result<(), AppError> {
 /// # Errors
 /// Those of [`OutputFolder::create`].
 pub fn output_folder(target: &Path) -> Result<OutputFolder, AppError> {
-    Ok(OutputFolder::create(target)?.closing_with("log.txt", lines))
+    let folder = OutputFolder::create_apart_from(output_args::inputs(), target)?;
+    for swept in folder.swept() {
+        tracing::warn!("{} was left by a run that was killed; it is removed", swept.display());
+    }
+    Ok(folder.closing_with("log.txt", lines))
 }
 
 fn lines() -> Vec<u8> {

@@ -1,8 +1,9 @@
-//! The program `trundle`: command line of the crates. Exit codes: 0 done, 1 the run missed its aim, 2 bad input.
+//! The program `trundle`: command line of the crates.
 
 mod command_line;
 mod common_args;
 mod console;
+mod data;
 mod demo;
 mod dock;
 mod eval;
@@ -10,10 +11,12 @@ mod experiment;
 mod logging;
 mod map;
 mod outcome;
+mod output_args;
 mod plan;
 mod replay;
 mod robot_file;
 mod run_output;
+mod shell_files;
 mod sim;
 mod slam;
 mod vocabulary;
@@ -23,29 +26,28 @@ use command_line::{Cli, Command};
 use common_args::Common;
 use outcome::Outcome;
 use std::process::ExitCode;
-use trundle::app::AppError;
-
-/// Exit code of every error: the input or the place to write to has to change first.
-const BAD_INPUT: u8 = 2;
+use trundle::app::{AppError, stop};
 
 fn main() -> ExitCode {
-    let arguments = read_arguments();
-    match logging::start(arguments.verbose).and_then(|()| run(arguments)) {
-        Ok(Outcome::Reached) => ExitCode::SUCCESS,
-        Ok(Outcome::Missed) => ExitCode::from(1),
-        Err(error) => {
-            console::print_error(&error);
-            ExitCode::from(BAD_INPUT)
-        }
+    let matches = with_negative_numbers(Cli::command()).get_matches();
+    let arguments = Cli::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
+    let folders = logging::start(arguments.verbose).and_then(|()| output_args::check(&matches));
+    ExitCode::from(match folders {
+        Ok(folders) => outcome::end(listen(&arguments.command).and_then(|()| run(arguments)), &folders),
+        Err(error) => outcome::end(Err(error), &[]),
+    })
+}
+
+/// Takes Ctrl-C as a request where the command has long loops, which read it; else it ends the program.
+fn listen(command: &Command) -> Result<(), AppError> {
+    use Command::{Demo, Experiment, Map, Replay, Sim, Slam};
+    match command {
+        Demo(_) | Replay(_) | Slam(_) | Map(_) | Sim(_) | Experiment(_) => stop::listen(),
+        _ => stop::end_at_once(|signal| console::print_stopped(signal.name(), "; nothing was written")),
     }
 }
 
-/// What the user asks for. A negative number is the value of the option before it, not an option.
-fn read_arguments() -> Cli {
-    let matches = with_negative_numbers(Cli::command()).get_matches();
-    Cli::from_arg_matches(&matches).unwrap_or_else(|error| error.exit())
-}
-
+/// A negative number is the value of the option before it, not an option.
 fn with_negative_numbers(command: clap::Command) -> clap::Command {
     let takes_numbers = |arg: clap::Arg| {
         if arg.get_action().takes_values() { arg.allow_negative_numbers(true) } else { arg }
@@ -69,6 +71,9 @@ fn run(cli: Cli) -> Result<Outcome, AppError> {
             None => vocabulary::run(&args),
         },
         Command::Config(args) => robot_file::print(&args),
+        Command::Data(args) => data::run(&args),
+        Command::Completions(args) => shell_files::print_completions(&args, Cli::command()),
+        Command::Man(args) => shell_files::write_man_pages(&args, Cli::command()),
     }
 }
 

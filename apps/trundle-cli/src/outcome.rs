@@ -1,4 +1,9 @@
-//! Whether a command reached its aim.
+//! The ending of a command: its exit code, and a sentence where it is not as asked for.
+
+use crate::console;
+use std::path::PathBuf;
+use trundle::app::{AppError, stop};
+use trundle::io::IoError;
 
 /// Whether a command that ran to its end reached its aim.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -7,4 +12,57 @@ pub enum Outcome {
     Reached,
     /// Exit code 1.
     Missed,
+}
+
+impl Outcome {
+    /// Reached, or missed for a reason that is printed.
+    pub fn unless(failure: Option<String>) -> Self {
+        match failure {
+            Some(failure) => {
+                console::print_error(&AppError::Input(failure));
+                Self::Missed
+            }
+            None => Self::Reached,
+        }
+    }
+}
+
+/// The run missed its aim.
+const CODE_MISSED: u8 = 1;
+/// The input or the place to write to has to change first; nothing was written.
+const CODE_BAD_INPUT: u8 = 2;
+/// The run worked, but its results could not all be written.
+const CODE_INCOMPLETE: u8 = 3;
+
+/// The exit codes, for the help.
+pub const EXIT_CODES: &str = "Exit codes:\n  \
+    0  done\n  \
+    1  the run missed its aim\n  \
+    2  bad input, nothing is written\n  \
+    3  the run worked, but its results could not all be written\n  \
+    130, 143  stopped by Ctrl-C or SIGTERM; what was done until then is written\n\n\
+    A folder of results is replaced only where trundle made it, and the last run is kept as NAME.1.";
+
+/// The exit code of a command that writes into `folders`; says on the terminal why it is not 0.
+pub fn end(result: Result<Outcome, AppError>, folders: &[PathBuf]) -> u8 {
+    let code = match &result {
+        Ok(Outcome::Reached) => 0,
+        Ok(Outcome::Missed) | Err(AppError::Stopped) => CODE_MISSED,
+        Err(AppError::Io(IoError::Incomplete { .. })) => CODE_INCOMPLETE,
+        Err(_) => CODE_BAD_INPUT,
+    };
+    if let Err(error) = &result
+        && !matches!(error, AppError::Stopped)
+    {
+        console::print_error(error);
+    }
+    let Some((signal, done)) = stop::stopped() else { return code };
+    let place = match folders {
+        [folder, ..] if result.is_ok() || code == CODE_INCOMPLETE => {
+            format!("the results so far are in {}", folder.display())
+        }
+        _ => "nothing was written".to_owned(),
+    };
+    console::print_stopped(signal.name(), &format!(" after {done}; {place}"));
+    if code == CODE_INCOMPLETE { code } else { signal.exit_code() }
 }

@@ -14,8 +14,8 @@ use std::sync::OnceLock;
 use std::time::Instant;
 use trundle::app::AppError;
 use trundle::app::plan::{
-    GoalRefusal, NamedPose, PLAN_FILES, PlanFiles, PlanRequest, PlanTimes, curve_lines, plan_rows,
-    write_plan, write_refusal,
+    GoalRefusal, NamedPose, PlanFiles, PlanRequest, PlanTimes, curve_lines, plan_rows, write_plan,
+    write_refusal,
 };
 use trundle::core::{DriveLimits, Pose2};
 use trundle::io::{OutputFolder, read_places};
@@ -30,7 +30,7 @@ pub fn run(args: &PlanArgs) -> Result<Outcome, AppError> {
     let start = seconds();
     let plan = request.plan();
     let times = PlanTimes { all: seconds() - start, stages: request.planner.stage_times() };
-    let folder = logging::output_folder(&args.out)?.instead_of(&PLAN_FILES);
+    let folder = logging::output_folder(&args.out)?;
     match plan {
         Ok(plan) => report_plan(args, &mut request, &plan, robot.limits, times, folder),
         Err(refusal) => report_refusal(args, &mut request, &refusal, folder),

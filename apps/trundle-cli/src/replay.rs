@@ -2,6 +2,7 @@
 
 use crate::common_args::Common;
 use crate::outcome::Outcome;
+use crate::output_args::OutputDirArg;
 use crate::{console, logging, run_output};
 use clap::Args;
 use std::path::PathBuf;
@@ -11,11 +12,14 @@ use trundle::app::{AppError, RunLog, RunRecorder, RunReplayer, run_on_body};
 #[derive(Debug, Args)]
 #[command(after_help = "Example: trundle replay out/demo/recording.mcap --out out/replay")]
 pub struct ReplayArgs {
-    /// A recording made by trundle.
+    /// A recording made by trundle, with images (`trundle demo --record all`).
     pub recording: PathBuf,
-    /// Folder for the results.
+    /// Replay a recording that is cut, as by a power failure, up to the cut.
+    #[arg(long)]
+    pub recover: bool,
+    /// Folder for the results; the last run in it is kept as DIR.1
     #[arg(long, value_name = "DIR", default_value = "out/replay")]
-    pub out: PathBuf,
+    pub out: OutputDirArg,
     /// What every command takes.
     #[command(flatten)]
     pub common: Common,
@@ -24,7 +28,8 @@ pub struct ReplayArgs {
 /// `trundle replay RECORDING`.
 pub fn run(args: &ReplayArgs) -> Result<Outcome, AppError> {
     let name = args.recording.display();
-    let (mut body, setup) = RunReplayer::open(&args.recording)?;
+    let open = if args.recover { RunReplayer::open_to_cut } else { RunReplayer::open };
+    let (mut body, setup) = open(&args.recording)?;
     let folder = logging::output_folder(&args.out)?;
     let recorder = RunRecorder::to_folder(&folder)?;
     let (line, progress) = console::progress(args.common.quiet);
@@ -33,6 +38,9 @@ pub fn run(args: &ReplayArgs) -> Result<Outcome, AppError> {
     let run = run.map_err(|error| error.in_context(&name))?;
     if let Err(problem) = body.read_to_end() {
         console::warn(&format!("the run was over before, but {}", problem.in_context(&name)));
+    }
+    if let Some(report) = body.cut_report() {
+        console::warn(&format!("{name}: {report}"));
     }
     run_output::write(&setup, run, None, folder, args.common.quiet)
 }

@@ -1,6 +1,7 @@
 //! `trundle config`: prints the whole robot file.
 
 use crate::outcome::Outcome;
+use crate::output_args::OutputDirArg;
 use crate::{console, logging};
 use clap::Args;
 use std::path::PathBuf;
@@ -22,7 +23,7 @@ pub struct ConfigArgs {
     pub schema: bool,
     /// Write robot.toml, robot.schema.json and summary.json into this folder too.
     #[arg(long, value_name = "DIR")]
-    pub out: Option<PathBuf>,
+    pub out: Option<OutputDirArg>,
     /// Print nothing.
     #[arg(long, short)]
     pub quiet: bool,

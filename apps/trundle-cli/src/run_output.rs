@@ -7,8 +7,8 @@ use trundle::app::report::write_run;
 use trundle::app::{AppError, FinishedRun, RunSetup};
 use trundle::io::OutputFolder;
 
-/// Writes the folder of a run and prints its table; whether the goal was reached. A recording that could not be written to its
-/// end is reported when everything else is done.
+/// Writes the folder of a run and prints its table; whether the goal was reached. A file that could not be written is reported
+/// when everything else is done.
 pub fn write(
     setup: &RunSetup,
     mut run: FinishedRun,
@@ -26,7 +26,7 @@ pub fn write(
         let report = output.folder.join("report.html");
         console::print(&format!("\n{}\nSee {}", numbers.verdict(), report.display()));
     }
-    match output.recording_error {
+    match output.incomplete {
         Some(error) => Err(error),
         None if numbers.is_success() => Ok(Outcome::Reached),
         None => Ok(Outcome::Missed),

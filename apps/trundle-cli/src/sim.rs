@@ -15,7 +15,7 @@ use trundle::app::AppError;
 use trundle::core::{OccupancyGrid, Vector3};
 use trundle::experiments::sim_drive::{
     DriveRecording, ScriptDriver, SimDrive, SimDriver, Standing, WaypointDriver, drive_rows, drive_simulator,
-    drive_summary, drive_verdict, true_map,
+    drive_summary, drive_verdict, recording_announcement, true_map,
 };
 use trundle::experiments::simulated::{list_scenes, load_scene};
 use trundle::io::OutputFolder;
@@ -28,16 +28,16 @@ pub fn run(args: &SimArgs) -> Result<Outcome, AppError> {
         return Ok(Outcome::Reached);
     };
     let config = args.sensors.config()?;
-    let band = match args.band.as_deref() {
+    let band = match args.true_map.band.as_deref() {
         Some(&[low, high]) => HeightBand::new(low, high)?,
         _ => HeightBand::new(config.kobuki.step_over, config.kobuki.height)?,
     };
     let driver = driver(args)?;
-    let folder = args.record.as_deref().map(new_recording).transpose()?;
+    let folder = args.record.as_deref().map(logging::output_folder).transpose()?;
     let scene = load_scene(name, args.scene_options())?;
-    let grid = args.needs_map().then(|| true_map(&scene, args.resolution, band)).transpose()?;
-    if let (Some(file), Some(grid)) = (&args.map, &grid) {
-        map::write(file, grid)?;
+    let grid = args.needs_map().then(|| true_map(&scene, args.true_map.resolution, band)).transpose()?;
+    if let (Some(file), Some(grid)) = (&args.true_map.map, &grid) {
+        map::write(file, grid, args.true_map.map_image.format())?;
     }
     if args.wants_only_map() {
         return Ok(Outcome::Reached);
@@ -76,6 +76,9 @@ fn drive(
         (None, Some(grid)) => Box::new(TeleopDriver::start(grid.clone(), args.common.quiet)?),
         (driver, _) => driver.unwrap_or_else(|| Box::new(Standing::new(args.duration))),
     };
+    if folder.is_some() && !args.common.quiet {
+        console::print(&recording_announcement(robot, args.duration.or_else(|| driver.end_s())));
+    }
     let mut recording = folder.map(|folder| DriveRecording::new(folder, robot)).transpose()?;
     let display = console::StepDisplay::new(args.common.quiet);
     let drive = drive_simulator(robot, driver.as_mut(), args.duration, recording.as_mut(), &display)?;
@@ -100,13 +103,4 @@ fn print(drive: &SimDrive, place: Option<&Path>, robot: &Simulator) {
             place.display()
         ));
     }
-}
-
-/// The folder of a recording. A folder that holds a recording is refused: two in one folder could not be kept apart.
-fn new_recording(place: &Path) -> Result<OutputFolder, AppError> {
-    if place.join("rgb.txt").exists() {
-        let problem = "a recording is there already (rgb.txt), choose another folder or remove it";
-        return Err(AppError::Input(format!("{}: {problem}", place.display())));
-    }
-    logging::output_folder(place)
 }

@@ -14,26 +14,26 @@ use trundle::app::sequence::{SequenceRequest, track_sequence, write_sequence};
 /// `trundle slam DIR`.
 pub fn run(args: &SlamArgs) -> Result<Outcome, AppError> {
     let request = args.request();
-    let camera = request.camera_model()?;
-    let sequence = request.open(&camera)?;
+    let camera = request.camera()?;
+    let sequence = request.open(&camera.model)?;
     let folder = logging::output_folder(&args.out)?;
     let display = console::StepDisplay::new(args.common.quiet);
     let run = track_sequence(&request, &camera, &sequence, &folder, &display)?;
-    let output = write_sequence(&request, &sequence, &run, folder)?;
+    let output = write_sequence(&request, &camera, &sequence, &run, folder)?;
     if !args.common.quiet {
         console::print_table(&output.rows);
         console::print_table(&[vec!["wall clock".to_owned(), format!("{:.1} s", run.seconds)]]);
         console::print_table(&stage_rows(&run.times));
         console::print(&format!("See {}", output.folder.join("report.html").display()));
     }
-    Ok(if run.is_located() { Outcome::Reached } else { Outcome::Missed })
+    Ok(Outcome::unless(run.failure().map(|failure| format!("{}: {failure}", args.dir.display()))))
 }
 
 impl SlamArgs {
     fn request(&self) -> SequenceRequest {
         SequenceRequest {
             dir: self.dir.clone(),
-            camera: self.camera(),
+            camera: self.camera.clone(),
             depth_scale: self.depth_scale,
             frames: self.frames.map(|frames| frames as usize),
             height: self.height,
@@ -41,7 +41,9 @@ impl SlamArgs {
             roll_deg: self.roll,
             map: self.map.clone(),
             localize_only: self.localise,
+            vocabulary: self.vocabulary.clone(),
             seed: self.seed,
+            map_image: self.map_image.format(),
         }
     }
 }

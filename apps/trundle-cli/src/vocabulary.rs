@@ -4,6 +4,7 @@ mod args;
 
 use crate::console;
 use crate::outcome::Outcome;
+use crate::output_args::write_file;
 use args::{ExportArgs, ImportArgs, InfoArgs, RecallArgs, TrainArgs};
 pub use args::{VocabularyArgs, VocabularyCommand};
 use std::path::Path;
@@ -11,7 +12,7 @@ use std::sync::Arc;
 use std::time::Instant;
 use trundle::app::AppError;
 use trundle::app::vocabulary_file::{
-    read_dbow2_vocabulary, read_descriptors, read_vocabulary, vocabulary_or_builtin, write_file,
+    read_dbow2_vocabulary, read_descriptors, read_vocabulary, vocabulary_or_builtin,
 };
 use trundle::experiments::vocabulary::{PlaceRecall, described_views, recall_table};
 use trundle::vision::{Descriptor, Vocabulary, VocabularyConfig};

@@ -5,7 +5,7 @@ mod picture;
 mod table;
 mod task;
 
-pub use output::{STEP_FILES, impossible_text, write_docking};
+pub use output::{impossible_text, write_docking};
 pub use picture::{DockingObstacles, manoeuvre_picture, step_pictures, view};
 pub use table::{motions, rows, steps_csv, verdict};
 pub use task::{DockingTask, built_in_problem, file_problem, scan_problem};

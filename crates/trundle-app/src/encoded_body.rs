@@ -38,6 +38,11 @@ pub trait EncodedBody {
 
     /// Separate contacts so far, in truth; `None` where only the bumper reports contacts.
     fn true_contacts(&self) -> Option<u32>;
+
+    /// How much of its events has been read, 0 to 1; `None` where their end is not known.
+    fn fraction_read(&self) -> Option<f64> {
+        None
+    }
 }
 
 /// Every body that works in the data's time: the robot's long work is done within its steps.

@@ -17,6 +17,9 @@ pub enum AppError {
     /// An argument, a file's content or a body's event cannot be accepted.
     #[error("{0}")]
     Input(String),
+    /// The user asked to stop, and there is nothing to write yet.
+    #[error("nothing was done yet, so nothing was written")]
+    Stopped,
     /// The machine refused a thread, a device or a signal.
     #[error("{0}")]
     Environment(String),

@@ -1,7 +1,8 @@
 //! A run that has ended, and the cost of its recording.
 
-use crate::{AppError, BestView, RunLog};
+use crate::{BestView, RunLog};
 use std::time::Duration;
+use trundle_io::IoError;
 use trundle_runtime::{Histogram, Robot};
 
 /// A run that has ended.
@@ -28,5 +29,5 @@ pub struct RecordingCost {
     /// Processor time of the recorder's thread, where there is one.
     pub cpu_time: Duration,
     /// Why the recording is not whole, if it is not.
-    pub error: Option<AppError>,
+    pub error: Option<IoError>,
 }

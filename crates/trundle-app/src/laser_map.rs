@@ -4,6 +4,7 @@ mod counts;
 mod depth_folder;
 mod depth_scanner;
 mod input;
+mod mount_check;
 mod numbers;
 mod request;
 mod run;

@@ -11,5 +11,5 @@ mod request;
 pub use goal_refusal::{GoalRefusal, MovedGoal};
 pub use masks::SpeedMaskLimits;
 pub use numbers::{PlanTimes, curve_lines, plan_rows};
-pub use output::{PLAN_FILES, write_plan, write_refusal};
+pub use output::{write_plan, write_refusal};
 pub use request::{NamedPose, PlanFiles, PlanRequest};

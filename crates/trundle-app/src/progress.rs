@@ -29,6 +29,11 @@ impl Progress {
         self.0.is_none()
     }
 
+    /// Shows how many of a known number are done: `3 of 12 runs, 25 %`.
+    pub fn show_count(&self, done: usize, total: usize, what: &str) {
+        self.show(&format!("{done} of {total} {what}, {} %", 100 * done / total.max(1)));
+    }
+
     /// Shows a line.
     pub fn show(&self, line: &str) {
         if let Some(show) = &self.0 {
@@ -55,7 +60,8 @@ mod tests {
         let progress = Progress::new(move |line| sink.lock().unwrap().push(line.to_owned()));
         progress.show("1 of 2");
         progress.clone().show("2 of 2");
-        assert_eq!(*lines.lock().unwrap(), ["1 of 2", "2 of 2"]);
+        progress.show_count(1, 3, "runs");
+        assert_eq!(*lines.lock().unwrap(), ["1 of 2", "2 of 2", "1 of 3 runs, 33 %"]);
     }
 
     #[test]

@@ -8,7 +8,6 @@
 //! | recorder | last | the recording |
 
 mod background_body;
-mod interrupt;
 mod memory_usage;
 mod pacer;
 mod report;
@@ -48,12 +47,11 @@ pub fn run_in_real_time<B: BackgroundBody>(
     log: RunLog,
     progress: Progress,
 ) -> Result<(FinishedRun, RealTimeReport), AppError> {
-    let stop = interrupt::flag()?;
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let (outside, inside) = if cores > 1 { (Some(0), Some(cores - 1)) } else { (None, None) };
     let at = move |nice| ThreadPlacement { core: inside, nice, is_first: false };
-    let recorder =
-        RunRecorder::threaded(folder, at(RECORDER_NICENESS))?.with_checkpoint_file(checkpoint_file)?;
+    let recorder = RunRecorder::threaded(setup.recording, folder, at(RECORDER_NICENESS))?
+        .with_checkpoint_file(checkpoint_file)?;
     let pool = ThreadPoolBuilder::new()
         .num_threads(1)
         .thread_name(|_| "control".to_owned())
@@ -61,7 +59,7 @@ pub fn run_in_real_time<B: BackgroundBody>(
         .build()
         .map_err(|error| AppError::Environment(format!("cannot start a thread: {error}")))?;
     pool.install(|| {
-        let mut live = ThreadedBody::start(LoopTimerConfig::default(), at(WORKER_NICENESS), stop)?;
+        let mut live = ThreadedBody::start(LoopTimerConfig::default(), at(WORKER_NICENESS))?;
         let body =
             start_body(live.event_sender(), ThreadPlacement { core: outside, ..ThreadPlacement::default() })?;
         live.connect(body.commands(), body.contacts());

@@ -1,6 +1,6 @@
 //! The recording of a run: written within the run's own loop, or by a thread of its own.
 
-use crate::{AppError, checkpoint_writer::CheckpointWriter};
+use crate::{AppError, FreeSpace, RecordingContent, checkpoint_writer::CheckpointWriter};
 use std::fs::File;
 use std::io::BufWriter;
 use std::path::Path;
@@ -16,7 +16,7 @@ use trundle_runtime::{Checkpoint, Histogram};
 /// A recording into a file.
 pub type FileRecorder = Recorder<BufWriter<File>>;
 
-type Line = Box<dyn FnOnce(&mut FileRecorder) -> Result<(), IoError> + Send>;
+type Line = Box<dyn FnOnce(&mut RecordingFile) + Send>;
 
 /// Records a run into `recording.mcap`: within the run's own loop, or by a thread of its own, so that a slow disk does not delay
 /// control. Writes checkpoints as well, where a file for them is given.
@@ -30,13 +30,8 @@ pub struct RunRecorder {
 }
 
 enum Sink {
-    /// With what ended the recording, if something did.
-    Inline(Box<FileRecorder>, Option<IoError>),
-    Threaded {
-        lines: SyncSender<Line>,
-        waiting: Arc<AtomicUsize>,
-        thread: Writer,
-    },
+    Inline(Box<RecordingFile>),
+    Threaded { lines: SyncSender<Line>, waiting: Arc<AtomicUsize>, thread: Writer },
 }
 
 type Writer = JoinHandle<(Result<(), IoError>, Duration)>;
@@ -50,13 +45,28 @@ impl RunRecorder {
     /// # Errors
     /// When the file cannot be created.
     pub fn to_folder(folder: &OutputFolder) -> Result<Self, AppError> {
-        let recorder = Box::new(folder.recorder("recording.mcap")?);
-        Ok(Self {
-            sink: Sink::Inline(recorder, None),
-            queue_lengths: Histogram::default(),
-            lines_lost: 0,
-            checkpoints: None,
-        })
+        Self::of_content(RecordingContent::All, folder)
+    }
+
+    /// The same, or no recording where `content` is none.
+    ///
+    /// # Errors
+    /// When the file cannot be created.
+    pub fn of_content(content: RecordingContent, folder: &OutputFolder) -> Result<Self, AppError> {
+        Ok(Self::of(Sink::Inline(Box::new(RecordingFile::new(content, folder)?))))
+    }
+
+    /// The same recorder, whose recording ends where `space` is short; not for one with a thread of its own.
+    #[must_use]
+    pub fn watching(mut self, space: FreeSpace) -> Self {
+        if let Sink::Inline(file) = &mut self.sink {
+            file.space = Some(space);
+        }
+        self
+    }
+
+    fn of(sink: Sink) -> Self {
+        Self { sink, queue_lengths: Histogram::default(), lines_lost: 0, checkpoints: None }
     }
 
     /// A recording onto a device that is full, for fault scenarios.
@@ -67,45 +77,36 @@ impl RunRecorder {
         let path = Path::new("/dev/full");
         let file = File::options().write(true).open(path);
         let file = file.map_err(|error| AppError::Environment(format!("{}: {error}", path.display())))?;
-        let recorder = Box::new(Recorder::new(BufWriter::with_capacity(1 << 20, file), path)?);
-        Ok(Self {
-            sink: Sink::Inline(recorder, None),
-            queue_lengths: Histogram::default(),
-            lines_lost: 0,
-            checkpoints: None,
-        })
+        let recorder = Recorder::new(BufWriter::with_capacity(1 << 20, file), path)?;
+        let file = RecordingFile { recorder: Some(recorder), space: None, failure: None };
+        Ok(Self::of(Sink::Inline(Box::new(file))))
     }
 
-    /// A recording into `folder`, written by a thread of its own at `place`.
+    /// A recording into `folder`, written by a thread of its own at `place`; none where `content` is none.
     ///
     /// # Errors
     /// When the file cannot be created or the thread cannot be started.
-    pub fn threaded(folder: &OutputFolder, place: ThreadPlacement) -> Result<Self, AppError> {
-        let mut recorder = folder.recorder("recording.mcap")?;
+    pub fn threaded(
+        content: RecordingContent,
+        folder: &OutputFolder,
+        place: ThreadPlacement,
+    ) -> Result<Self, AppError> {
+        let mut file = RecordingFile::new(content, folder)?;
         let (lines, inbox) = sync_channel::<Line>(MAX_WAITING_LINES);
         let waiting = Arc::<AtomicUsize>::default();
         let left = Arc::clone(&waiting);
         let write = move || {
             place.take();
-            let mut result = Ok(());
             for line in inbox {
                 left.fetch_sub(1, Ordering::Relaxed);
-                // After a failure the rest is taken and let go, so that the run goes on.
-                if result.is_ok() {
-                    result = line(&mut recorder);
-                }
+                line(&mut file);
             }
-            (result.and_then(|()| recorder.finish().map(drop)), thread_time().unwrap_or_default())
+            (file.finish(), thread_time().unwrap_or_default())
         };
         let thread = std::thread::Builder::new().name("recorder".to_owned()).spawn(write);
         let thread = thread
             .map_err(|error| AppError::Environment(format!("cannot start a thread to record: {error}")))?;
-        Ok(Self {
-            sink: Sink::Threaded { lines, waiting, thread },
-            queue_lengths: Histogram::default(),
-            lines_lost: 0,
-            checkpoints: None,
-        })
+        Ok(Self::of(Sink::Threaded { lines, waiting, thread }))
     }
 
     /// The same recorder, which also writes the robot's checkpoints into `file`, where a file is given.
@@ -131,23 +132,30 @@ impl RunRecorder {
     /// Writes a line. A full disk ends the recording, not the run.
     pub fn write(&mut self, line: impl FnOnce(&mut FileRecorder) -> Result<(), IoError> + Send + 'static) {
         match &mut self.sink {
-            // A robot on its way does not stop because a disk is full.
-            Sink::Inline(_, Some(_)) => {}
-            Sink::Inline(recorder, failure) => {
-                *failure = line(recorder).err();
-                if let Some(failure) = failure {
-                    tracing::warn!("{failure}; the recording ends here, the robot goes on");
-                }
-            }
+            Sink::Inline(file) => file.write(line),
             Sink::Threaded { .. } if self.lines_lost > 0 => {
                 self.lines_lost += 1;
             }
             Sink::Threaded { lines, waiting, .. } => {
                 let length = waiting.fetch_add(1, Ordering::Relaxed);
                 self.queue_lengths.note(length as f64);
-                if let Err(TrySendError::Full(_)) = lines.try_send(Box::new(line)) {
+                if let Err(TrySendError::Full(_)) = lines.try_send(Box::new(move |file| file.write(line))) {
                     waiting.fetch_sub(1, Ordering::Relaxed);
                     self.lines_lost += 1;
+                }
+            }
+        }
+    }
+
+    /// Does `work` in the recorder's thread, so that it does not delay control; at once where there is no such thread, or where
+    /// it has much to do not at all.
+    pub fn beside(&self, work: impl FnOnce() + Send + 'static) {
+        match &self.sink {
+            Sink::Inline(_) => work(),
+            Sink::Threaded { lines, waiting, .. } => {
+                waiting.fetch_add(1, Ordering::Relaxed);
+                if lines.try_send(Box::new(move |_| work())).is_err() {
+                    waiting.fetch_sub(1, Ordering::Relaxed);
                 }
             }
         }
@@ -157,24 +165,59 @@ impl RunRecorder {
     ///
     /// # Errors
     /// When the recording could not be written to its end.
-    pub fn finish(self, last: Option<Checkpoint>) -> Result<Duration, AppError> {
+    pub fn finish(self, last: Option<Checkpoint>) -> Result<Duration, IoError> {
         if let Some(writer) = self.checkpoints {
             writer.finish(last);
         }
         match self.sink {
-            Sink::Inline(_, Some(failure)) => Err(failure.into()),
-            Sink::Inline(recorder, None) => {
-                recorder.finish()?;
-                Ok(Duration::ZERO)
-            }
+            Sink::Inline(file) => file.finish().map(|()| Duration::ZERO),
             Sink::Threaded { lines, thread, .. } => {
                 drop(lines);
-                let (result, spent) = thread
-                    .join()
-                    .map_err(|_| AppError::Environment("the thread that records has died".to_owned()))?;
+                let died = |_| IoError::Malformed {
+                    path: "recording.mcap".into(),
+                    problem: "the thread that records has died".to_owned(),
+                };
+                let (result, spent) = thread.join().map_err(died)?;
                 result?;
                 Ok(spent)
             }
+        }
+    }
+}
+
+/// The file of a recording, until it ends: with the run, or where the disk is full or short of space.
+struct RecordingFile {
+    /// `None` where nothing is recorded, or no longer.
+    recorder: Option<FileRecorder>,
+    space: Option<FreeSpace>,
+    failure: Option<IoError>,
+}
+
+impl RecordingFile {
+    fn new(content: RecordingContent, folder: &OutputFolder) -> Result<Self, AppError> {
+        if content == RecordingContent::None {
+            return Ok(Self { recorder: None, space: None, failure: None });
+        }
+        let recorder = Some(folder.recorder("recording.mcap")?);
+        Ok(Self { recorder, space: Some(FreeSpace::of(&folder.staged(""))), failure: None })
+    }
+
+    /// Writes a line, or lets it go when the recording has ended: a robot on its way does not stop because a disk is full.
+    fn write(&mut self, line: impl FnOnce(&mut FileRecorder) -> Result<(), IoError>) {
+        let Some(recorder) = &mut self.recorder else { return };
+        let shortage = self.space.as_mut().and_then(FreeSpace::shortage_at_message);
+        let failure = if shortage.is_none() { line(recorder).err() } else { None };
+        if let Some(why) = shortage.or_else(|| failure.as_ref().map(ToString::to_string)) {
+            tracing::warn!("{why}; the recording ends here, the robot goes on");
+            let finished = self.recorder.take().map_or(Ok(()), |recorder| recorder.finish().map(drop));
+            self.failure = failure.or(finished.err());
+        }
+    }
+
+    fn finish(self) -> Result<(), IoError> {
+        match (self.failure, self.recorder) {
+            (Some(failure), _) => Err(failure),
+            (None, recorder) => recorder.map_or(Ok(()), |recorder| recorder.finish().map(drop)),
         }
     }
 }

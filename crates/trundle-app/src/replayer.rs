@@ -5,7 +5,7 @@ use crate::run_mark::{RunMark, RunMarkMessage};
 use crate::{AppError, RunSetup};
 use std::collections::BTreeMap;
 use std::path::Path;
-use trundle_core::Twist2;
+use trundle_core::{Stamp, Twist2};
 use trundle_io::{RecordedMessage, RecordingReader};
 use trundle_runtime::{Answer, Job, Worker};
 
@@ -14,6 +14,8 @@ pub struct RunReplayer {
     reader: RecordingReader,
     jobs: BTreeMap<Worker, Job>,
     contacts: Option<u32>,
+    /// Stamps of the first and the newest event.
+    span: Option<(Stamp, Stamp)>,
 }
 
 impl RunReplayer {
@@ -22,8 +24,19 @@ impl RunReplayer {
     /// # Errors
     /// When the file is no recording of a run, or its robot cannot be accepted. Names the file.
     pub fn open(file: &Path) -> Result<(Self, RunSetup), AppError> {
+        Self::of(file, RecordingReader::open(file)?)
+    }
+
+    /// The same of a recording that may be cut at any byte: it is fed to there.
+    ///
+    /// # Errors
+    /// As [`RunReplayer::open`], and when nothing can be read before the cut.
+    pub fn open_to_cut(file: &Path) -> Result<(Self, RunSetup), AppError> {
+        Self::of(file, RecordingReader::open_to_cut(file)?)
+    }
+
+    fn of(file: &Path, reader: RecordingReader) -> Result<(Self, RunSetup), AppError> {
         let name = file.display();
-        let reader = RecordingReader::open(file)?;
         let config = reader.config().ok_or_else(|| {
             AppError::Input(format!(
                 "{name}: no trundle.Config message comes first, so this is no recording of a trundle run"
@@ -31,8 +44,22 @@ impl RunReplayer {
         })?;
         let setup: RunSetup = serde_json::from_value(config.clone())
             .map_err(|error| AppError::Input(format!("{name}: the configuration cannot be used: {error}")))?;
+        if !setup.recording.is_all() {
+            return Err(AppError::Input(format!(
+                "{name}: the recording holds no images (demo --record events), without which the robot cannot run again; \
+                 a run with --record all can be replayed"
+            )));
+        }
         setup.robot.clone().validated().map_err(|error| AppError::Input(format!("{name}: {error}")))?;
-        Ok((Self { reader, jobs: BTreeMap::new(), contacts: None }, setup))
+        Ok((Self { reader, jobs: BTreeMap::new(), contacts: None, span: None }, setup))
+    }
+
+    /// Where the recording was cut and how much of it was fed so far, in a sentence; `None` for a whole one.
+    #[must_use]
+    pub fn cut_report(&self) -> Option<String> {
+        let cut = self.reader.cut()?;
+        let seconds = self.span.map_or(0.0, |(first, last)| last - first);
+        Some(format!("the recording was cut at byte {}; {seconds:.2} s of it were replayed", cut.byte))
     }
 
     /// Reads the rest of the recording, which the run did not need.
@@ -61,7 +88,11 @@ impl RunReplayer {
     fn read_input(&mut self) -> Result<Option<RunInput>, AppError> {
         loop {
             match self.reader.next_message()? {
-                Some(RecordedMessage::Event(event)) => return Ok(Some(RunInput::Event(event))),
+                Some(RecordedMessage::Event(event)) => {
+                    let first = self.span.map_or(event.stamp(), |(first, _)| first);
+                    self.span = Some((first, event.stamp()));
+                    return Ok(Some(RunInput::Event(event)));
+                }
                 Some(RecordedMessage::Json { schema, value, .. }) if schema == RunMark::SCHEMA => {
                     match Self::read_mark(value)? {
                         RunMark::Contacts(count) => self.contacts = Some(count),
@@ -97,5 +128,9 @@ impl EncodedBody for RunReplayer {
 
     fn true_contacts(&self) -> Option<u32> {
         self.contacts
+    }
+
+    fn fraction_read(&self) -> Option<f64> {
+        Some(self.reader.progress())
     }
 }

@@ -1,7 +1,7 @@
 //! A run from its setup to its end.
 
-use crate::encoded_body::EncodedBody;
-use crate::{AppError, FinishedRun, Progress, RunLog, RunRecorder, RunSession, RunSetup};
+use crate::encoded_body::{EncodedBody, RunInput};
+use crate::{AppError, FinishedRun, Progress, RunLog, RunRecorder, RunSession, RunSetup, stop};
 
 /// Time that a run goes on after the robot has arrived \[s\]. A longer roll is not seen. Source: ours.
 pub const AFTER_ARRIVAL_S: f64 = 0.5;
@@ -19,7 +19,7 @@ pub fn run_on_body(
 ) -> Result<FinishedRun, AppError> {
     let mut session = RunSession::new(setup, recorder, log, progress)?;
     let mut finished = None;
-    while let Some(input) = body.next_input()? {
+    while let Some(input) = next_input(body, session.log())? {
         let is_finished = session.step(input, body)?;
         let now = session.log().now;
         let is_over = is_finished && now - *finished.get_or_insert(now) >= AFTER_ARRIVAL_S;
@@ -28,4 +28,12 @@ pub fn run_on_body(
         }
     }
     session.finish(body)
+}
+
+/// The body's next input, or the user's request to stop.
+fn next_input(body: &mut dyn EncodedBody, log: &RunLog) -> Result<Option<RunInput>, AppError> {
+    if stop::is_requested(|| format!("{:.1} s of the robot's time", log.elapsed())) {
+        return Ok(Some(RunInput::Interrupted));
+    }
+    body.next_input()
 }

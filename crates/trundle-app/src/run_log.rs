@@ -1,7 +1,7 @@
 //! The log of a run for evaluation and pictures: poses, truth, commands, states.
 
 use trundle_core::{Pose2, SensorEvent, Stamp, Twist2};
-use trundle_runtime::{DriveState, StepReport};
+use trundle_runtime::{DriveState, Reason, StepReport};
 use trundle_slam::Tracking;
 
 /// The log of a run for evaluation and pictures. All of it comes from the data: no wall clock.
@@ -75,6 +75,11 @@ impl TrackCounts {
 }
 
 impl RunLog {
+    /// Whether the user ended the run.
+    pub fn is_interrupted(&self) -> bool {
+        self.state == DriveState::Stopped { reason: Reason::Interrupted }
+    }
+
     /// A log that keeps the last minute of poses, commands and states only: it does not grow in a run of hours.
     pub fn brief() -> Self {
         Self { is_brief: true, ..Self::default() }

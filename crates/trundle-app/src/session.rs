@@ -84,7 +84,7 @@ impl<'s> RunSession<'s> {
             self.recorder.write_checkpoint(Arc::clone(checkpoint));
         }
         if let Some(image) = report.image {
-            self.show_status();
+            self.show_status(body.fraction_read());
             self.view.on_tracked(image, &self.robot, &report);
         }
         while let Some(job) = self.robot.next_job() {
@@ -144,8 +144,11 @@ impl<'s> RunSession<'s> {
     }
 
     fn on_event(&mut self, event: EncodedEvent) -> Result<StepReport, AppError> {
-        let recorded = event.clone();
-        self.recorder.write(move |file| file.record_event(&recorded));
+        let is_recorded = self.setup.recording.is_all() || !matches!(event, EncodedEvent::Rgbd(_));
+        if is_recorded {
+            let recorded = event.clone();
+            self.recorder.write(move |file| file.record_event(&recorded));
+        }
         if let EncodedEvent::Rgbd(image) = event {
             self.view.on_image(&image);
             let stamp = image.stamp;
@@ -187,25 +190,23 @@ impl<'s> RunSession<'s> {
         }
     }
 
-    fn show_status(&mut self) {
+    fn show_status(&mut self, fraction_read: Option<f64>) {
         if self.progress.is_hidden() {
             return;
         }
-        let (line, progress) = (self.status_line(), self.progress.clone());
+        let (line, progress) = (self.status_line(fraction_read), self.progress.clone());
         // A slow terminal delays the recorder, not control.
-        self.recorder.write(move |_| {
-            progress.show(&line);
-            Ok(())
-        });
+        self.recorder.beside(move || progress.show(&line));
     }
 
-    fn status_line(&self) -> String {
+    fn status_line(&self, fraction_read: Option<f64>) -> String {
         let (log, robot) = (&self.log, &self.robot);
         let pose = robot.estimate().pose;
         let wall = self.start.elapsed().as_secs_f64();
         let rate = |stage: Stage| robot.times().runs(stage) as f64 / log.elapsed().max(0.1);
         format!(
-            "{:5.1} s ({:.1}x)  pose {:6.2} {:6.2} m {:6.1} deg  {:<10}  slam {:4.1} Hz  map {:3.1} Hz  control {:4.1} Hz",
+            "{}{:5.1} s ({:.1}x)  pose {:6.2} {:6.2} m {:6.1} deg  {:<10}  slam {:4.1} Hz  map {:3.1} Hz  control {:4.1} Hz",
+            fraction_read.map_or(String::new(), |fraction| format!("{:3.0} %  ", fraction * 100.0)),
             log.elapsed(),
             log.elapsed() / wall.max(1e-3),
             pose.x,

@@ -3,7 +3,7 @@
 use crate::AppError;
 use serde::de::DeserializeOwned;
 use std::path::Path;
-use trundle_io::IoError;
+use trundle_io::Expected;
 
 /// Reads a TOML file.
 ///
@@ -17,11 +17,11 @@ pub fn read_toml<T: DeserializeOwned>(file: &Path) -> Result<T, AppError> {
     })
 }
 
-/// The text of a file.
+/// The text of a TOML file.
 ///
 /// # Errors
 /// Names the file and why it cannot be read.
 pub fn read_text(file: &Path) -> Result<String, AppError> {
-    std::fs::read_to_string(file)
-        .map_err(|source| AppError::Io(IoError::System { path: file.to_owned(), action: "read", source }))
+    Expected::Toml.check(file)?;
+    Ok(trundle_io::read_text(file)?)
 }

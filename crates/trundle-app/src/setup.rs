@@ -1,10 +1,17 @@
 //! The setup of a run: all that a replay needs besides the events.
 
-use crate::AppError;
+use crate::{AppError, RecordingContent};
 use base64::prelude::{BASE64_STANDARD, Engine};
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 use trundle_core::Pose2;
 use trundle_runtime::{Checkpoint, Mission, Robot, RobotConfig, Task};
+use trundle_vision::Vocabulary;
+
+/// Distance of a goal from the start that still is the start \[m\]. Source: default of `docking.tolerance_m`.
+const SAME_PLACE_M: f64 = 0.01;
+/// The same for the heading \[rad\]: 1 deg. Source: ours.
+const SAME_HEADING_RAD: f64 = 0.0175;
 
 /// The setup of a run: recorded first, and all that a replay needs besides the events.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -26,9 +33,15 @@ pub struct RunSetup {
     /// Whether the robot's long work runs in threads beside the control loop.
     #[serde(default)]
     pub real_time: bool,
+    /// What is recorded of the run.
+    #[serde(default, skip_serializing_if = "RecordingContent::is_all")]
+    pub recording: RecordingContent,
     /// The checkpoint that the robot resumes from, as base64 of its bytes. None: the robot starts with an empty map.
     #[serde(default, rename = "woken", alias = "checkpoint", skip_serializing_if = "Option::is_none")]
     pub checkpoint: Option<String>,
+    /// The vocabulary by which places are recognised, as base64 of its bytes. None: the built-in one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub vocabulary: Option<String>,
 }
 
 impl RunSetup {
@@ -43,7 +56,9 @@ impl RunSetup {
             time_limit: f64::MAX,
             robot,
             real_time: false,
+            recording: RecordingContent::All,
             checkpoint: None,
+            vocabulary: None,
         }
     }
 
@@ -59,11 +74,26 @@ impl RunSetup {
         Self { checkpoint: Some(BASE64_STANDARD.encode(checkpoint)), ..self }
     }
 
+    /// The same run, with places recognised by this vocabulary.
+    #[must_use]
+    pub fn with_vocabulary(self, vocabulary: &Vocabulary) -> Self {
+        Self { vocabulary: Some(BASE64_STANDARD.encode(vocabulary.to_bytes())), ..self }
+    }
+
     /// The robot, its mission started.
     ///
     /// # Errors
     /// When a number of the robot is outside its range, or the checkpoint cannot be used.
     pub fn start_robot(&self) -> Result<Robot, AppError> {
+        let robot = self.robot_at_start()?;
+        let Some(vocabulary) = &self.vocabulary else { return Ok(robot) };
+        let unusable = |error: String| AppError::Input(format!("the vocabulary cannot be used: {error}"));
+        let bytes = BASE64_STANDARD.decode(vocabulary).map_err(|error| unusable(error.to_string()))?;
+        let vocabulary = Vocabulary::from_bytes(&bytes).map_err(|error| unusable(error.to_string()))?;
+        Ok(robot.with_vocabulary(&Arc::new(vocabulary)))
+    }
+
+    fn robot_at_start(&self) -> Result<Robot, AppError> {
         let Some(checkpoint) = &self.checkpoint else {
             let mut robot = Robot::new(self.robot.clone())?;
             robot.begin(&self.mission);
@@ -83,6 +113,18 @@ impl RunSetup {
             Task::Return => Some(Pose2::IDENTITY),
             _ => None,
         }
+    }
+
+    /// Whether the mission asks for nothing but to stand at the start.
+    #[must_use]
+    pub fn is_without_motion(&self) -> bool {
+        let is_start = |goal: Pose2| {
+            goal.distance(&Pose2::IDENTITY) < SAME_PLACE_M && goal.theta.abs() < SAME_HEADING_RAD
+        };
+        let stays = |task: &Task| {
+            matches!(task, Task::Go(_) | Task::Return) && Self::goal_of(task).is_some_and(is_start)
+        };
+        self.checkpoint.is_none() && self.mission.tasks().iter().all(stays)
     }
 
     /// The last goal of the mission.
@@ -117,6 +159,18 @@ mod tests {
     }
 
     #[test]
+    fn a_mission_to_the_start_alone_is_without_motion() {
+        let direct = |goals: &[Pose2]| {
+            let mission = Mission::new(goals.iter().map(|goal| Task::Go(*goal)).collect()).unwrap();
+            RunSetup::new("demo", mission, RobotConfig::default()).is_without_motion()
+        };
+        assert!(direct(&[Pose2::IDENTITY]));
+        assert!(!direct(&[Pose2::new(0.0, 0.0, 0.5)]) && !direct(&[Pose2::new(0.1, 0.0, 0.0)]));
+        assert!(!direct(&[Pose2::new(1.0, 0.0, 0.0), Pose2::IDENTITY]));
+        assert!(!setup().is_without_motion(), "it explores");
+    }
+
+    #[test]
     fn a_setup_survives_its_recording() {
         let resumed = setup().with_time_limit(12.0).resumed_from(b"abc");
         let text = serde_json::to_string(&resumed).unwrap();
@@ -124,6 +178,17 @@ mod tests {
         assert_eq!((read.checkpoint.as_deref(), read.time_limit), (Some("YWJj"), 12.0));
         let renamed: RunSetup = serde_json::from_str(&text.replace("\"woken\"", "\"checkpoint\"")).unwrap();
         assert_eq!(renamed.checkpoint, read.checkpoint);
+    }
+
+    #[test]
+    fn a_vocabulary_is_part_of_the_recording() {
+        let own = setup().with_vocabulary(&Vocabulary::builtin());
+        let read: RunSetup = serde_json::from_str(&serde_json::to_string(&own).unwrap()).unwrap();
+        assert!(read.vocabulary.is_some() && read.start_robot().is_ok());
+        assert!(!serde_json::to_string(&setup()).unwrap().contains("vocabulary"));
+        let broken = RunSetup { vocabulary: Some("YWJj".to_owned()), ..setup() };
+        let refusal = broken.start_robot().err().unwrap().to_string();
+        assert!(refusal.starts_with("the vocabulary cannot be used"), "{refusal}");
     }
 
     #[test]

@@ -3,7 +3,6 @@
 use crate::AppError;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use trundle_io::OutputFolder;
 use trundle_vision::{Descriptor, Vocabulary};
 
 /// The vocabulary of a file, else the program's own.
@@ -53,23 +52,6 @@ fn of_image(path: &Path) -> Result<Vec<Descriptor>, AppError> {
     let word = |eight: &[u8]| eight.iter().rev().fold(0, |word, byte| word << 8 | u64::from(*byte));
     let descriptor = |bytes: &[u8]| Descriptor(std::array::from_fn(|i| word(&bytes[8 * i..8 * i + 8])));
     Ok(bytes.chunks_exact(32).map(descriptor).collect())
-}
-
-/// Writes a file whole or not at all.
-///
-/// # Errors
-/// When the path names no file or the file cannot be written.
-pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), AppError> {
-    let name = path.file_name().and_then(|name| name.to_str());
-    let name = name.ok_or_else(|| AppError::Input(format!("{} names no file to write", path.display())))?;
-    if path.is_dir() {
-        return Err(AppError::Input(format!("{} is a folder, expected the name of a file", path.display())));
-    }
-    let parent = path.parent().filter(|parent| !parent.as_os_str().is_empty());
-    let folder = OutputFolder::create(parent.unwrap_or(Path::new(".")))?;
-    folder.write(name, bytes)?;
-    folder.commit()?;
-    Ok(())
 }
 
 fn unreadable(path: &Path, error: &std::io::Error) -> AppError {

@@ -37,7 +37,7 @@ mod turn_contact;
 pub use arc_contact::arc_contact;
 pub use hull_profile::{HullProfile, wrap_positive};
 pub use oriented_box::OrientedBox;
-pub use rounded_hull::{MIN_CORNER_RADIUS_M, RoundedHull};
+pub use rounded_hull::{CONTACT_TOLERANCE_M, MIN_CORNER_RADIUS_M, RoundedHull};
 pub use segment::Segment;
 pub use straight_contact::{StraightContact, straight_contact};
 pub use turn_contact::{HeadingArc, blocked_headings};

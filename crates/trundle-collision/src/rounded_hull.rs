@@ -3,8 +3,12 @@
 use crate::segment::Segment;
 use trundle_core::{Footprint, Pose2, Vector2};
 
-/// Smallest radius of the corners, m: the closed forms need corners with a radius. Smaller margins are raised to it. Source: ours.
-pub const MIN_CORNER_RADIUS_M: f64 = 1e-4;
+/// Smallest radius of the corners, m: the closed forms need corners with a radius. Smaller margins are none. Source: ours.
+pub const MIN_CORNER_RADIUS_M: f64 = 1e-6;
+
+/// Overlap that counts as contact, which is free, m: rounding of poses and corners. Planner and docking share it, so that both
+/// pass the same gaps. Source: ours.
+pub const CONTACT_TOLERANCE_M: f64 = 1e-6;
 
 /// A footprint with a margin: a convex core and every point within `radius` of it, base frame, m.
 ///
@@ -51,20 +55,16 @@ impl Edge {
 }
 
 impl RoundedHull {
-    /// A footprint grown by `margin` (m, at least 0.1 mm), or shrunk when the margin is negative. A footprint that shrinks to nothing
-    /// becomes a point at the axle.
+    /// A footprint grown by `margin` (m), or shrunk when the margin is negative. A footprint that shrinks to nothing becomes a point
+    /// at the axle. A margin below [`MIN_CORNER_RADIUS_M`] is none: contact is free, up to [`CONTACT_TOLERANCE_M`].
     pub fn new(footprint: &Footprint, margin: f64) -> Self {
-        if margin < 0.0 {
-            let whole = Self::new(footprint, 0.0);
-            return whole
-                .shrunk(-margin)
-                .unwrap_or_else(|| Self::from_core(&[Vector2::zeros()], MIN_CORNER_RADIUS_M));
+        let exact = Self::exact(footprint);
+        if margin >= MIN_CORNER_RADIUS_M {
+            return exact.grown(margin);
         }
-        let margin = margin.max(MIN_CORNER_RADIUS_M);
-        match footprint {
-            Footprint::Disc { radius } => Self::from_core(&[Vector2::zeros()], radius + margin),
-            Footprint::Polygon { corners } => Self::from_core(&without_duplicates(corners), margin),
-        }
+        exact
+            .shrunk(CONTACT_TOLERANCE_M - margin.min(0.0))
+            .unwrap_or_else(|| Self::from_core(&[Vector2::zeros()], MIN_CORNER_RADIUS_M))
     }
 
     /// The footprint itself: the corners of a polygon are sharp. For [`RoundedHull::signed_distance`] and
@@ -108,7 +108,7 @@ impl RoundedHull {
 
     /// The part of this hull with no point nearer than `depth` (m) to the outside; `None` when nothing is left.
     ///
-    /// The part is exact along the sides and 0.1 mm too small at the corners: it never contains a point too many.
+    /// The part is exact along the sides and too small at the corners, by [`MIN_CORNER_RADIUS_M`]: it never contains a point too many.
     pub fn shrunk(&self, depth: f64) -> Option<Self> {
         let core: Vec<Vector2> = self.core.iter().map(|c| c.at).collect();
         if self.radius - depth >= MIN_CORNER_RADIUS_M {

@@ -35,7 +35,7 @@ const HEADINGS_COST: u64 = 40;
 const STRAIGHT_COST: u64 = 5;
 
 impl<'a> ContactSpace<'a> {
-    /// A footprint with a `margin` (m, at least 0.1 mm) among obstacles.
+    /// A footprint with a `margin` (m) among obstacles; without one it may touch them.
     pub fn new(footprint: &Footprint, margin: f64, scene: &'a ObstacleScene) -> Self {
         Self::metered(RoundedHull::new(footprint, margin), scene, WorkBudget::endless(u64::MAX))
     }

@@ -15,7 +15,7 @@ use crate::search::min_time;
 use crate::search::min_time::Effort;
 use crate::work_budget::{PlanningJob, WorkBudget, run_to_end};
 use std::sync::Arc;
-use trundle_collision::RoundedHull;
+use trundle_collision::{CONTACT_TOLERANCE_M, RoundedHull};
 use trundle_core::{Footprint, Invalid, Pose2};
 
 /// Number of segments of a scene above which fewer boxes are used for the lower bound. Source: ours.
@@ -276,7 +276,7 @@ impl DockingPlanner {
                 if clearance <= 1e-9 {
                     return Err(refusal(scene.named(by)));
                 }
-                margin = margin.min(clearance - overlap);
+                margin = margin.min(clearance - overlap - CONTACT_TOLERANCE_M);
             }
         }
         Ok(margin)

@@ -42,6 +42,10 @@ pub struct RelativeError {
     pub translation: ErrorStatistics,
     /// Angle of the motion error's rotation, rad.
     pub rotation: ErrorStatistics,
+    /// The compared motions: (index of the first pose in the estimate, index of the second).
+    pub pairs: Vec<(usize, usize)>,
+    /// Length and angle of each motion error, m and rad.
+    pub errors: Vec<(f64, f64)>,
 }
 
 /// The relative pose error of `estimate` against `reference`: for poses Q (true) and P (estimated) at i and j, the
@@ -67,7 +71,12 @@ pub fn relative_pose_error(
         pairs.iter().map(|&(i, j)| motion(&truth, i, j).inverse() * motion(&found, i, j)).collect();
     let lengths: Vec<f64> = gaps.iter().map(|gap| gap.translation.norm()).collect();
     let angles: Vec<f64> = gaps.iter().map(Pose3::angle).collect();
-    Ok(RelativeError { translation: of_finite(&lengths), rotation: of_finite(&angles) })
+    Ok(RelativeError {
+        translation: of_finite(&lengths),
+        rotation: of_finite(&angles),
+        pairs: pairs.iter().map(|&(i, j)| (indices[i].1, indices[j].1)).collect(),
+        errors: lengths.into_iter().zip(angles).collect(),
+    })
 }
 
 #[cfg(test)]
@@ -98,6 +107,7 @@ mod tests {
             let error = relative_pose_error(&truth, &estimate, &config).unwrap();
             assert!((error.translation.rmse - drift).abs() < 1e-9, "{delta}: {error:?}");
             assert_eq!(error.translation.count, count, "{delta}");
+            assert_eq!((error.pairs.len(), error.errors.len()), (count, count), "{delta}");
         }
         let turning = relative_pose_error(&truth, &drive(1.0, 0.01), &RelativeConfig::default()).unwrap();
         assert!((turning.rotation.mean - 0.001).abs() < 1e-9);

@@ -9,9 +9,8 @@ pub use trial::BarnTrial;
 
 use crate::ExperimentReport;
 use crate::laser_run::{LaserPlan, drive};
-use rayon::prelude::*;
+use crate::run_each::run_each;
 use std::path::PathBuf;
-use std::sync::atomic::{AtomicUsize, Ordering};
 use trial::{TIME_LIMIT_S, is_at_goal};
 use trundle_app::{AppError, Progress};
 use trundle_io::{OutputFolder, write_map};
@@ -52,14 +51,8 @@ pub fn run(request: &BarnRequest, progress: &Progress) -> Result<BarnOutcome, Ap
         .flat_map(|(_, world)| (1..=u64::from(request.seeds)).map(move |seed| (world.clone(), seed)))
         .collect();
     let robot = request.robot.clone().unwrap_or_else(jackal::robot);
-    let (done, total) = (AtomicUsize::new(0), plans.len());
-    let trials = plans.into_par_iter().map(|(world, seed)| {
-        let trial = one(&robot, world, seed)?;
-        let done = 1 + done.fetch_add(1, Ordering::Relaxed);
-        progress.show(&format!("{done} of {total} worlds"));
-        Ok(trial)
-    });
-    Ok(BarnOutcome { trials: trials.collect::<Result<_, AppError>>()? })
+    let trials = run_each(plans, "worlds", progress, |(world, seed)| one(&robot, world, seed))?;
+    Ok(BarnOutcome { trials })
 }
 
 impl ExperimentReport for BarnOutcome {

@@ -1,5 +1,6 @@
 //! Rows of comma-separated values, with file, line and column in each message.
 
+use crate::data_sets::DataSet;
 use std::fs;
 use std::io::ErrorKind;
 use std::path::Path;
@@ -30,16 +31,15 @@ impl Row {
     }
 }
 
-/// The lines after the first of a file of comma-separated values, each with `columns` or more.
+/// The lines after the first of a file of comma-separated values, each with `columns` or more. The file is part of `set`.
 ///
 /// # Errors
 /// When it cannot be read, or a line is too short.
-pub fn rows(file: &Path, columns: usize) -> Result<Vec<Row>, AppError> {
+pub fn rows(file: &Path, columns: usize, set: &DataSet) -> Result<Vec<Row>, AppError> {
     let name = file.display();
     let refused = |error: std::io::Error| match error {
         error if error.kind() == ErrorKind::NotFound => {
-            let problem = "is not there: the data set does not come with trundle, --data names its folder";
-            AppError::Input(format!("{name} {problem}"))
+            AppError::Input(format!("{name} is not there, --data names its folder: {}", set.how_to_get()))
         }
         error => AppError::Input(format!("{name}: {error}")),
     };
@@ -59,11 +59,12 @@ pub fn rows(file: &Path, columns: usize) -> Result<Vec<Row>, AppError> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::data_sets::BARN;
 
     fn read(text: &str, columns: usize) -> Result<Vec<Row>, AppError> {
         let file = tempfile::NamedTempFile::new().unwrap();
         fs::write(file.path(), text).unwrap();
-        rows(file.path(), columns)
+        rows(file.path(), columns, &BARN)
     }
 
     #[test]
@@ -81,10 +82,10 @@ mod tests {
         let short = read("a,b\n1\n", 2).err().unwrap().to_string();
         assert!(short.ends_with("line 2: 1 columns, expected 2 or more"), "{short}");
         let gone = rows_of_missing();
-        assert!(gone.starts_with("no/file.csv is not there"), "{gone}");
+        assert!(gone.starts_with("no/file.csv is not there") && gone.contains(BARN.command), "{gone}");
     }
 
     fn rows_of_missing() -> String {
-        rows(Path::new("no/file.csv"), 1).err().unwrap().to_string()
+        rows(Path::new("no/file.csv"), 1, &BARN).err().unwrap().to_string()
     }
 }

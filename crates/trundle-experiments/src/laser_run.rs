@@ -1,7 +1,7 @@
 //! A run of a robot with a laser and without a camera.
 
 use crate::cpu_clock;
-use trundle_app::AppError;
+use trundle_app::{AppError, stop};
 use trundle_core::{OccupancyGrid, Pose2, RobotBody, SensorEvent, Twist2};
 use trundle_runtime::{DriveState, Mission, Robot, RobotConfig};
 use trundle_sim::{LaserConfig, Scene, SimConfig, Simulator};
@@ -99,7 +99,8 @@ pub fn drive(plan: LaserPlan, is_over: impl Fn(&Moment) -> bool) -> Result<Laser
         let estimate_error = robot.estimate().pose.distance(&(map_from_world * pose));
         let moment = Moment { time, pose, estimate_error, twist, clearance, contacts };
         moments.push(moment);
-        if report.finished || is_over(&moment) || time > plan.time_limit {
+        let is_stopped = || stop::is_requested(|| format!("{time:.1} s of a run"));
+        if report.finished || is_over(&moment) || time > plan.time_limit || is_stopped() {
             break;
         }
     }

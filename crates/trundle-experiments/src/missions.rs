@@ -1,6 +1,7 @@
 //! Missions through unknown places: a room with obstacles crossed while it is mapped, and a house with ten goals.
 
-use crate::simulated::{SceneOptions, load_scene, require_free};
+use crate::data_sets::SMALL_HOUSE;
+use crate::simulated::{MeshOptions, SceneOptions, load_scene, require_free};
 use crate::trial::{self, Trial, TrialPlan};
 use crate::{ExperimentReport, RunsRequest};
 use std::path::Path;
@@ -82,13 +83,17 @@ pub fn run_house(
     progress: &Progress,
 ) -> Result<MissionsOutcome, AppError> {
     if !mesh.exists() {
-        let problem = "is not there: the house does not come with trundle, --mesh names its file";
+        let problem = format!("is not there, --mesh names its file: {}", SMALL_HOUSE.how_to_get());
         return Err(AppError::Input(format!("{} {problem}", mesh.display())));
     }
     let pose = |(x, y, degrees): (f64, f64, f64)| Pose2::new(x, y, degrees.to_radians());
     let start = pose(HOUSE_START_XY_DEG);
     run_story(&HOUSE, request, progress, |seed| {
-        let options = SceneOptions { seed, up: UpAxis::Z, start: Some(start) };
+        let options = SceneOptions {
+            seed,
+            mesh: MeshOptions { up: UpAxis::Z, ..MeshOptions::default() },
+            start: Some(start),
+        };
         let scene = load_scene(&mesh.display().to_string(), options)?;
         for goal in HOUSE_GOALS {
             require_free("goal", &scene, pose(goal), &request.robot)?;
@@ -171,7 +176,7 @@ const HEADER: [&str; 7] =
 /// The goals that the robot came to, of all.
 fn reached(trial: &Trial) -> (usize, usize) {
     let there = trial.numbers.goals.iter().filter(|goal| goal.is_reached(0.05, 3_f64.to_radians()));
-    (there.count(), trial.numbers.goals_asked)
+    (there.count(), trial.numbers.goals_asked.unwrap_or(0))
 }
 
 fn worst(trial: &Trial) -> f64 {

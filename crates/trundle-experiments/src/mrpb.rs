@@ -10,11 +10,10 @@ pub use trial::MrpbTrial;
 
 use crate::ExperimentReport;
 use crate::laser_run::{LaserPlan, drive, hokuyo};
+use crate::run_each::run_each;
 use crate::simulated::simulated_body;
 use course::Course;
-use rayon::prelude::*;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicUsize, Ordering};
 use trial::{GOAL_TOLERANCE_M, GOAL_TOLERANCE_RAD};
 use trundle_app::{AppError, Progress};
 use trundle_control::{FollowerConfig, StabilizerConfig};
@@ -73,14 +72,8 @@ pub fn run(request: &MrpbRequest, progress: &Progress) -> Result<MrpbOutcome, Ap
         .into_iter()
         .flat_map(|course| (1..=u64::from(request.seeds)).map(move |seed| (course.clone(), seed)))
         .collect();
-    let (done, total) = (AtomicUsize::new(0), plans.len());
-    let trials = plans.into_par_iter().map(|(course, seed)| {
-        let trial = one(&request.data, &robot, course, seed)?;
-        let done = 1 + done.fetch_add(1, Ordering::Relaxed);
-        progress.show(&format!("{done} of {total} runs"));
-        Ok(trial)
-    });
-    Ok(MrpbOutcome { trials: trials.collect::<Result<_, AppError>>()? })
+    let one = |(course, seed)| one(&request.data, &robot, course, seed);
+    Ok(MrpbOutcome { trials: run_each(plans, "runs", progress, one)? })
 }
 
 impl ExperimentReport for MrpbOutcome {

@@ -2,7 +2,7 @@
 
 use crate::trial::{self, Trial, TrialPlan};
 use crate::{ExperimentReport, RunsRequest};
-use trundle_app::{AppError, Progress};
+use trundle_app::{AppError, Progress, stop};
 use trundle_core::{Pose2, Vector2};
 use trundle_io::{OutputFolder, Summary, table_csv};
 use trundle_runtime::{Mission, RobotConfig, Task};
@@ -78,6 +78,9 @@ pub fn run(request: &RunsRequest, progress: &Progress) -> Result<PeopleOutcome, 
     let robot = &request.robot;
     let radius = robot.footprint()?.circumscribed_radius();
     let alone = trial::run_one(plan("alone", 1, robot)?)?;
+    if stop::stopped().is_some() {
+        return Err(AppError::Stopped);
+    }
     let timetable: Vec<(f64, Vector2)> = alone.times.iter().copied().zip(alone.driven).collect();
     let mut plans = Vec::new();
     for seed in 1..=u64::from(request.seeds) {

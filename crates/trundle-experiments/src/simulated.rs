@@ -10,4 +10,5 @@ mod scene_files;
 pub use body::{require_free, simulated_body, simulated_real_time_body, time_limit};
 pub use fault_file::read_faults;
 pub use real_time_body::SimulatedRealTimeBody;
-pub use scene::{SceneOptions, list_scenes, load_scene};
+pub use scene::{MeshOptions, SceneOptions, list_scenes, load_scene};
+pub(crate) use scene_files::import_mesh;

@@ -1,15 +1,14 @@
 //! Closed-loop runs of robot and simulator, many at once.
 
 use crate::RunsRequest;
+use crate::run_each::run_each;
 use crate::simulated::{simulated_body, time_limit};
-use rayon::prelude::*;
 use std::collections::BTreeSet;
-use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 use trundle_app::report::RunNumbers;
 use trundle_app::{
     AFTER_ARRIVAL_S, AppError, BestView, FinishedRun, Progress, RecordingCost, RunLog, RunRecorder, RunSetup,
-    StateChange, run_on_body,
+    StateChange, run_on_body, stop,
 };
 use trundle_core::{OccupancyGrid, Pose2, RobotBody, Vector2};
 use trundle_runtime::{Checkpoint, Mission, Robot, RobotConfig};
@@ -104,14 +103,7 @@ pub fn run_all(
         let problem = format!("--only {word}: no run has a name that holds this; there are '{first}'{more}");
         return Err(AppError::Input(problem));
     }
-    let (done, total) = (AtomicUsize::new(0), plans.len());
-    let trials = plans.into_par_iter().map(|plan| {
-        let trial = run_one(plan)?;
-        let done = 1 + done.fetch_add(1, Ordering::Relaxed);
-        progress.show(&format!("{done} of {total} runs"));
-        Ok(trial)
-    });
-    trials.collect()
+    run_each(plans, "runs", progress, run_one)
 }
 
 /// Makes one run.
@@ -159,6 +151,10 @@ fn planned(run: &FinishedRun) -> Vec<Vector2> {
     points.unwrap_or_default().iter().map(|point| point.pose.position()).collect()
 }
 
+fn is_stopped(log: &RunLog) -> bool {
+    stop::is_requested(|| format!("{:.1} s of a run", log.elapsed()))
+}
+
 /// Runs the robot of `setup` in the simulator without recording and without encoding of images. After `restart` s the robot is
 /// switched off and on again where it stands, with nothing but its last checkpoint.
 ///
@@ -186,7 +182,7 @@ fn run_unrecorded(
         }
         log.on_report(event.stamp(), &report);
         let is_over = report.finished && log.now - *finished.get_or_insert(log.now) >= AFTER_ARRIVAL_S;
-        if is_over || log.elapsed() > setup.time_limit {
+        if is_over || log.elapsed() > setup.time_limit || is_stopped(&log) {
             break;
         }
         checkpoint = report.checkpoint.or(checkpoint);
@@ -229,7 +225,7 @@ pub(crate) mod fixtures {
         let error = goal_error(Pose2::IDENTITY, Pose2::new(dx, dy, dtheta)).unwrap();
         let numbers = RunNumbers {
             goals: Vec::new(),
-            goals_asked: 1,
+            goals_asked: Some(1),
             goal_error: Some(error),
             believed_error: Some(error),
             estimate_rmse: Some(0.01),

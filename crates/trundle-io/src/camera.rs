@@ -1,16 +1,22 @@
 //! Camera files and presets: intrinsics and the unit of the depth images.
 
-use crate::IoError;
+mod depth_scale;
+mod fields;
+mod image_side;
+mod open3d;
+mod ros_yaml;
+mod slam_yaml;
+mod toml_file;
+
+pub(crate) use depth_scale::checked_depth_scale;
+pub use depth_scale::{KINECT_V2_DEPTH_SCALE, TUM_DEPTH_SCALE};
+
 use crate::files::read_text;
-use serde::{Deserialize, Serialize};
+use crate::{Expected, FileKind, IoError};
+use fields::CameraFields;
 use std::path::Path;
-use trundle_core::{Distortion, Invalid, PinholeCamera, require_positive};
-
-/// What 1 m is in TUM's depth images.
-pub const TUM_DEPTH_SCALE: f64 = 5000.0;
-
-/// What 1 m is in the depth images of a Kinect V2, and of trundle's recordings: millimetres.
-pub const KINECT_V2_DEPTH_SCALE: f64 = 1000.0;
+use toml_file::CameraFile;
+use trundle_core::{Distortion, PinholeCamera};
 
 const PRESETS: &str = "freiburg1, freiburg2, freiburg3, kinect_v2";
 
@@ -27,7 +33,7 @@ pub struct CameraModel {
 const KINECT_V1_READOUT_S: f64 = 0.026;
 
 impl CameraModel {
-    /// The camera of a preset (`freiburg1`, `freiburg2`, `freiburg3`, `kinect_v2`) or else of a TOML file.
+    /// The camera of a preset (`freiburg1`, `freiburg2`, `freiburg3`, `kinect_v2`) or else of a file.
     ///
     /// # Errors
     /// When `name` is neither, or as [`CameraModel::read`].
@@ -72,87 +78,50 @@ impl CameraModel {
         })
     }
 
-    /// The camera of a TOML file: `width`, `height`, `fx`, `fy`, `cx`, `cy` (px) and `depth_scale` (units a metre),
-    /// and, 0 where left out, the lens `k1`, `k2`, `p1`, `p2`, `k3` in the order of OpenCV, and `readout` (s).
+    /// The camera of a file: trundle's TOML, the YAML of ORB-SLAM2 and 3, of stella_vslam or of ROS's camera_info, or Open3D's
+    /// JSON. The content decides which format it is.
+    ///
+    /// The TOML has `width`, `height`, `fx`, `fy`, `cx`, `cy` (px) and `depth_scale` (units a metre), and, 0 where left out, the
+    /// lens `k1`, `k2`, `p1`, `p2`, `k3` in the order of OpenCV, and `readout` (s). A file that holds no depth scale is taken to
+    /// mean millimetres, as ROS does.
     ///
     /// # Errors
-    /// With the line and key, when the file is no TOML, a key is wrong or missing, or a value is not accepted.
+    /// With the line and key, when the file is none of these, a key is wrong or missing, or a value is not accepted.
     pub fn read(path: &Path) -> Result<Self, IoError> {
-        Self::parse(path, &read_text(path)?)
+        let kind = Expected::Camera.check(path)?;
+        let text = read_text(path)?;
+        Self::of_fields(path, &parse(path, kind, &text)?)
     }
 
-    /// The text of [`CameraModel::read`]; every number reads back as the same f64.
+    /// Whether the file holds the depth scale.
+    ///
+    /// # Errors
+    /// As [`CameraModel::read`].
+    pub fn holds_depth_scale(path: &Path) -> Result<bool, IoError> {
+        let kind = Expected::Camera.check(path)?;
+        Ok(parse(path, kind, &read_text(path)?)?.depth_scale.is_some())
+    }
+
+    fn of_fields(path: &Path, fields: &CameraFields) -> Result<Self, IoError> {
+        let camera = fields.camera().map_err(IoError::field(path))?;
+        Ok(Self { camera, depth_scale: fields.depth_scale.unwrap_or(KINECT_V2_DEPTH_SCALE) })
+    }
+
+    /// The text of a TOML file for [`CameraModel::read`]; every number reads back as the same f64.
     pub fn to_toml(&self) -> String {
-        let camera = &self.camera;
-        let Distortion { k1, k2, p1, p2, k3 } = camera.distortion();
-        let (width, height) = (camera.width(), camera.height());
-        let (fx, fy, cx, cy) = (camera.fx(), camera.fy(), camera.cx(), camera.cy());
-        let (depth_scale, readout) = (self.depth_scale, camera.readout());
-        let file = CameraFile { width, height, fx, fy, cx, cy, depth_scale, k1, k2, p1, p2, k3, readout };
+        let file = CameraFile::of(&self.camera, self.depth_scale);
         toml::to_string(&file).expect("invariant: a camera is plain data")
     }
+}
 
-    fn parse(path: &Path, text: &str) -> Result<Self, IoError> {
-        let file: CameraFile = toml::from_str(text).map_err(|error| located(path, text, &error))?;
-        file.model().map_err(|invalid| match line_of_key(text, &invalid.field) {
-            Some(line) => IoError::line(path, line, invalid.to_string()),
-            None => IoError::field(path)(invalid),
-        })
+/// The numbers of a file of this kind.
+fn parse(path: &Path, kind: FileKind, text: &str) -> Result<CameraFields, IoError> {
+    match kind {
+        FileKind::OrbSlamYaml | FileKind::StellaVslamYaml => slam_yaml::parse(path, text),
+        FileKind::RosCameraYaml | FileKind::Yaml => ros_yaml::parse(path, text),
+        FileKind::Open3dCamera | FileKind::Json => open3d::parse(path, text),
+        _ => toml_file::parse(path, text),
     }
-}
-
-#[derive(Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct CameraFile {
-    width: usize,
-    height: usize,
-    fx: f64,
-    fy: f64,
-    cx: f64,
-    cy: f64,
-    depth_scale: f64,
-    #[serde(default)]
-    k1: f64,
-    #[serde(default)]
-    k2: f64,
-    #[serde(default)]
-    p1: f64,
-    #[serde(default)]
-    p2: f64,
-    #[serde(default)]
-    k3: f64,
-    #[serde(default)]
-    readout: f64,
-}
-
-impl CameraFile {
-    fn model(self) -> Result<CameraModel, Invalid> {
-        let Self { width, height, fx, fy, cx, cy, depth_scale, k1, k2, p1, p2, k3, readout } = self;
-        let lens = Distortion { k1, k2, p1, p2, k3 };
-        let camera = PinholeCamera::new((width, height), (fx, fy), (cx, cy), lens)?;
-        require_positive("depth_scale", depth_scale, "units a metre")?;
-        Ok(CameraModel { camera: camera.with_readout(readout)?, depth_scale })
-    }
-}
-
-/// The parser's complaint with its line and, where a value is at fault, its key.
-fn located(path: &Path, text: &str, error: &toml::de::Error) -> IoError {
-    let message = error.message().replace('\n', ", ");
-    let Some(span) = error.span().filter(|_| !message.starts_with("missing field")) else {
-        return IoError::malformed(path, message);
-    };
-    let before = text.get(..span.start).unwrap_or(text);
-    let line = before.bytes().filter(|&byte| byte == b'\n').count() + 1;
-    let content = text.lines().nth(line - 1).unwrap_or_default();
-    let key = content.split_once('=').map_or("", |(key, _)| key.trim());
-    let names_it = key.is_empty() || message.contains(&format!("`{key}`"));
-    let problem = if names_it { message } else { format!("{}: {message}", crate::excerpt::excerpt(key)) };
-    IoError::line(path, line, problem)
-}
-
-fn line_of_key(text: &str, key: &str) -> Option<usize> {
-    let is_key = |line: &str| line.split_once('=').is_some_and(|(name, _)| name.trim() == key);
-    text.lines().position(is_key).map(|i| i + 1)
 }
 
 #[cfg(test)]
@@ -164,16 +133,20 @@ mod tests {
                         depth_scale = 5000.0\nk1 = 0.2624\nk2 = -0.9531\np1 = -0.0054\np2 = 0.0026\nk3 = 1.1633\nreadout = 0.026\n";
 
     fn problem(text: &str) -> String {
-        CameraModel::parse(Path::new("cam.toml"), text).unwrap_err().to_string()
+        toml_file::parse(Path::new("cam.toml"), text).unwrap_err().to_string()
     }
 
     #[test]
     fn a_file_says_what_a_preset_says() {
-        let file = CameraModel::parse(Path::new("cam.toml"), GOOD).unwrap();
+        let parse = |text: &str| {
+            let fields = toml_file::parse(Path::new("cam.toml"), text).unwrap();
+            CameraModel::of_fields(Path::new("cam.toml"), &fields).unwrap()
+        };
+        let file = parse(GOOD);
         assert_eq!(Some(file), CameraModel::preset("freiburg1"));
         for name in PRESETS.split(", ") {
             let model = CameraModel::named(name).unwrap();
-            assert_eq!(CameraModel::parse(Path::new("cam.toml"), &model.to_toml()).unwrap(), model);
+            assert_eq!(parse(&model.to_toml()), model);
         }
         assert_eq!(CameraModel::named("kinect_v2").unwrap().camera.width(), 512);
     }
@@ -205,7 +178,7 @@ mod tests {
     proptest! {
         #[test]
         fn any_text_is_no_panic(cut in 0..GOOD.len(), text in "[a-z0-9 =.'\"\\[\\]\n]{0,30}") {
-            let _ = CameraModel::parse(Path::new("a"), &format!("{}{text}", &GOOD[..cut]));
+            let _ = toml_file::parse(Path::new("a"), &format!("{}{text}", &GOOD[..cut]));
         }
     }
 }

@@ -1,10 +1,13 @@
 //! Writer and reader of laser logs in the CARMEN format.
 
 mod line;
+mod lines;
 mod log;
+mod mount;
+mod ranges;
+mod text;
 
-pub(crate) use log::validated;
-pub use log::{LaserLog, LaserLogOptions, LaserLogScan, LaserLogSkip, read_carmen};
+pub use log::read_carmen;
 
 use std::fmt::Write;
 use trundle_core::{Beam, Pose2, Scan, Stamp, Twist2};

@@ -1,14 +1,23 @@
 //! Encoding and decoding of colour and depth images: JPEG and PNG.
 
+mod claim;
+mod depth_file;
 mod event;
+mod exr_depth;
 mod png_color;
 mod png_depth;
+mod png_grey;
 mod png_writer;
+mod raw_depth;
+mod tiff_depth;
 
+pub(crate) use claim::can_hold;
+pub(crate) use depth_file::{decode_depth_file, is_depth_image};
 pub use event::{EncodedEvent, EncodedRgbd};
 pub use png_color::encode_color_png;
 pub(crate) use png_depth::encode_grey16;
 pub use png_depth::{decode_depth, decode_raw_depth, encode_depth};
+pub(crate) use png_grey::encode_grey8;
 
 use image::{ImageFormat, ImageReader, Limits};
 use jpeg_encoder::{ColorType, Encoder, SamplingFactor};
@@ -44,7 +53,9 @@ pub enum CodecError {
         problem: String,
     },
     /// A depth image in another pixel format.
-    #[error("depth image has {found} pixels, expected 16-bit grey ones")]
+    #[error(
+        "depth image has {found} pixels, expected 16-bit grey ones (PNG, TIFF, PGM) or 32-bit floats in metres (TIFF, OpenEXR): 8 bits are too coarse for a depth"
+    )]
     DepthFormat {
         /// For example `8-bit RGB`.
         found: String,

@@ -45,6 +45,14 @@ pub enum IoError {
         /// What is wrong with it.
         problem: Box<CodecError>,
     },
+    /// The work is done, but its results could not all be written.
+    #[error("{}", incomplete_text(folder.as_deref(), problems))]
+    Incomplete {
+        /// Where those are that could be written.
+        folder: Option<PathBuf>,
+        /// Why the others are not there, one or more.
+        problems: Vec<IoError>,
+    },
     /// The file as a whole is not what it should be.
     #[error("{path}: {problem}", path = path.display())]
     Malformed {
@@ -52,6 +60,18 @@ pub enum IoError {
         path: PathBuf,
         /// What is wrong.
         problem: String,
+    },
+    /// A file or folder of another kind.
+    #[error("{path}: this is {found}, expected {expected}{remedy}", path = path.display(), remedy = clause(remedy))]
+    WrongKind {
+        /// The file or folder.
+        path: PathBuf,
+        /// Its kind.
+        found: &'static str,
+        /// What would be accepted.
+        expected: &'static str,
+        /// What to do, where that is known.
+        remedy: &'static str,
     },
 }
 
@@ -63,8 +83,30 @@ impl IoError {
             | Self::Line { path, .. }
             | Self::Field { path, .. }
             | Self::Image { path, .. }
-            | Self::Malformed { path, .. } => path,
+            | Self::Malformed { path, .. }
+            | Self::WrongKind { path, .. } => path,
+            Self::Incomplete { folder: Some(folder), .. } => folder,
+            Self::Incomplete { problems, .. } => problems.first().map_or(Path::new(""), Self::path),
         }
+    }
+
+    /// The same sentence without the file.
+    pub fn problem(&self) -> String {
+        let whole = self.to_string();
+        let named = self.path().display().to_string();
+        match whole.split_once(&named) {
+            Some(("", after)) => after.trim_start_matches([':', ',', ' ']).to_owned(),
+            Some((before, after)) => format!("{}{after}", before.trim_end()),
+            None => whole,
+        }
+    }
+
+    /// An error where there are `problems`; the results that could be written are in `folder`.
+    pub(crate) fn incomplete(folder: &Path, problems: Vec<Self>) -> Result<(), Self> {
+        if problems.is_empty() {
+            return Ok(());
+        }
+        Err(Self::Incomplete { folder: Some(folder.to_owned()), problems })
     }
 
     pub(crate) fn system(path: &Path, action: &'static str) -> impl FnOnce(std::io::Error) -> Self {
@@ -88,12 +130,30 @@ impl IoError {
     }
 }
 
+/// A further clause of a sentence, where there is one.
+fn clause(text: &str) -> String {
+    if text.is_empty() { String::new() } else { format!("; {text}") }
+}
+
+fn incomplete_text(folder: Option<&Path>, problems: &[IoError]) -> String {
+    let first = problems.first().map(ToString::to_string).unwrap_or_default();
+    let more = match problems.len().saturating_sub(1) {
+        0 => String::new(),
+        1 => ", nor one other file".to_owned(),
+        count => format!(", nor {count} other files"),
+    };
+    let rest =
+        folder.map_or_else(String::new, |folder| format!("; the other results are in {}", folder.display()));
+    format!("{first}{more}{rest}")
+}
+
 /// The operating system's answer in a person's words.
 fn reason(error: &std::io::Error) -> String {
     let plain = match error.kind() {
         ErrorKind::NotFound => "it does not exist",
         ErrorKind::PermissionDenied => "no permission",
         ErrorKind::StorageFull => "the disk is full",
+        ErrorKind::FileTooLarge => "the file would be larger than the system allows",
         ErrorKind::QuotaExceeded => "the disk quota is used up",
         ErrorKind::ReadOnlyFilesystem => "the file system is read-only",
         ErrorKind::IsADirectory => "it is a folder",

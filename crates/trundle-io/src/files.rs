@@ -1,22 +1,30 @@
 //! Reading of whole files, and splitting of text files into lines and fields.
 
 use crate::IoError;
-use crate::excerpt::excerpt;
 use std::path::Path;
+
+/// What some editors put in front of UTF-8 text.
+const BYTE_ORDER_MARK: char = '\u{feff}';
 
 /// The whole file.
 pub(crate) fn read_bytes(path: &Path) -> Result<Vec<u8>, IoError> {
     std::fs::read(path).map_err(IoError::system(path, "read"))
 }
 
-/// The whole file as text.
-pub(crate) fn read_text(path: &Path) -> Result<String, IoError> {
-    let text = String::from_utf8(read_bytes(path)?);
-    text.map_err(|error| {
+/// The whole file as text, without a byte order mark.
+///
+/// # Errors
+/// When it cannot be read, or with the line where it is not UTF-8.
+pub fn read_text(path: &Path) -> Result<String, IoError> {
+    let mut text = String::from_utf8(read_bytes(path)?).map_err(|error| {
         let before = &error.as_bytes()[..error.utf8_error().valid_up_to()];
         let line = 1 + before.iter().filter(|&&byte| byte == b'\n').count();
-        IoError::line(path, line, "is not UTF-8 text")
-    })
+        IoError::line(path, line, "is not UTF-8 text, expected text saved as UTF-8")
+    })?;
+    if text.starts_with(BYTE_ORDER_MARK) {
+        text.drain(..BYTE_ORDER_MARK.len_utf8());
+    }
+    Ok(text)
 }
 
 /// The lines that say something, with their numbers from 1: no blank ones, no comments (`#`).
@@ -30,26 +38,19 @@ pub(crate) fn fields(line: &str) -> impl Iterator<Item = &str> {
     line.split(|c: char| c.is_whitespace() || c == ',').filter(|field| !field.is_empty())
 }
 
-/// The line's numbers, each named and finite, after the stamp: `(stamp, numbers)`.
-pub(crate) fn stamped_numbers<const N: usize>(
-    path: &Path,
-    (number, line): (usize, &str),
-    names: [&str; N],
-) -> Result<(trundle_core::Stamp, [f64; N]), IoError> {
-    let parts: Vec<&str> = fields(line).collect();
-    if parts.len() != N + 1 {
-        let problem = format!("{} fields, expected {}: timestamp {}", parts.len(), N + 1, names.join(" "));
-        return Err(IoError::line(path, number, problem));
+/// The lines of a table that say something, without a first one of nothing but words, and without a closing comma.
+pub(crate) fn table_rows(text: &str) -> Vec<(usize, &str)> {
+    let mut rows: Vec<(usize, &str)> = content_lines(text).collect();
+    if rows.first().is_some_and(|(_, line)| is_header(line)) {
+        rows.remove(0);
     }
-    let stamp =
-        crate::parse_stamp(parts[0]).map_err(|invalid| IoError::line(path, number, invalid.to_string()))?;
-    let mut numbers = [0.0; N];
-    for ((slot, text), name) in numbers.iter_mut().zip(&parts[1..]).zip(names) {
-        let value = text.parse::<f64>().ok().filter(|value| value.is_finite());
-        let problem = || format!("{name} is '{}', expected a finite number", excerpt(text));
-        *slot = value.ok_or_else(|| IoError::line(path, number, problem()))?;
-    }
-    Ok((stamp, numbers))
+    rows
+}
+
+/// Whether a line is the names of columns: words only, and no name of a file.
+fn is_header(line: &str) -> bool {
+    let is_name = |field: &str| field.parse::<f64>().is_err() && !field.contains(['.', '/']);
+    line.starts_with(|c: char| c.is_alphabetic() || c == '"') && fields(line).all(is_name)
 }
 
 #[cfg(test)]
@@ -64,9 +65,24 @@ mod tests {
     }
 
     #[test]
+    fn names_of_columns_are_no_row() {
+        let rows = |text| table_rows(text).len();
+        assert_eq!(rows("timestamp,tx [m],qw []\n1,2,3\n"), 1);
+        assert_eq!(rows("timestamp filename\n1 a.png\n"), 1);
+        assert_eq!([rows("one a.png\n"), rows("x 0 0\n"), rows("1 2\n"), rows("")], [1, 1, 1, 0]);
+    }
+
+    #[test]
+    fn a_byte_order_mark_is_no_text() {
+        let file = tempfile::NamedTempFile::new().unwrap();
+        std::fs::write(file.path(), "\u{feff}1.5 a.png\n").unwrap();
+        assert_eq!(read_text(file.path()).unwrap(), "1.5 a.png\n");
+    }
+
+    #[test]
     fn binary_text_is_refused_with_its_line() {
         let file = tempfile::NamedTempFile::new().unwrap();
         std::fs::write(file.path(), b"fine\n\xff\xfe").unwrap();
-        assert!(read_text(file.path()).unwrap_err().to_string().ends_with(", line 2: is not UTF-8 text"));
+        assert!(read_text(file.path()).unwrap_err().to_string().contains(", line 2: is not UTF-8 text"));
     }
 }

@@ -27,40 +27,56 @@ mod camera;
 mod carmen;
 mod codec;
 mod csv;
+mod depth_statistics;
 mod error;
 mod excerpt;
+mod file_kind;
 mod files;
+mod laser_log;
 mod map;
 mod output;
+mod pgm;
 mod recording;
 mod replace;
 mod ros;
+mod sequence_camera;
 mod stamp_text;
+mod stamp_unit;
 mod summary;
 mod tum;
+mod warnings;
+mod yaml_document;
 
 pub use camera::{CameraModel, KINECT_V2_DEPTH_SCALE, TUM_DEPTH_SCALE};
-pub use carmen::{CarmenLog, LaserLog, LaserLogOptions, LaserLogScan, LaserLogSkip, read_carmen};
+pub use carmen::{CarmenLog, read_carmen};
 pub use codec::{
     CodecError, EncodedEvent, EncodedRgbd, JPEG_QUALITY, decode_color, decode_depth, decode_raw_depth,
     encode_color, encode_color_png, encode_depth,
 };
 pub use csv::{curve_csv, table_csv, trajectory_csv, waypoints_csv};
+pub use depth_statistics::DepthStatistics;
 pub use error::{FrameError, IoError};
-pub use map::{
-    GraphFile, KeepOutFile, SpeedFile, map_pgm, map_yaml, read_graph, read_keep_out_mask, read_map,
-    read_places, read_speed_mask, write_map,
+pub use file_kind::{Expected, FileKind};
+pub use files::read_text;
+pub use laser_log::{
+    LaserLog, LaserLogOptions, LaserLogScan, LaserLogSkip, LaserLogSources, LaserMount, empty_map_cause,
 };
-pub use output::OutputFolder;
+pub use map::{
+    GraphFile, KeepOutFile, MapFile, MapImage, SpeedFile, map_pgm, map_picture, map_yaml, read_graph,
+    read_keep_out_mask, read_map, read_map_file, read_places, read_speed_mask, write_map, write_map_as,
+};
+pub use output::{InputFiles, OutputFile, OutputFolder, keep_aside};
 pub use recording::{
     FeatureMarks, KeyframeGraph, LandmarkCloud, PoseInFrame, PosesInFrame, RecordedMessage, Recorder,
-    RecordingReader,
+    RecordingCut, RecordingReader,
 };
 pub use replace::replace_file;
-pub use ros::{RosBagOptions, read_laser_log, read_ros_bag};
+pub use ros::{read_laser_log, read_ros_bag};
+pub use sequence_camera::SequenceCamera;
 pub use stamp_text::parse_stamp;
 pub use summary::Summary;
 pub use tum::{
-    TumFrame, TumSequence, TumWriter, odometry_text, read_odometry, read_trajectory, trajectory_text,
-    trajectory_text_from_planar,
+    TrajectoryFile, TumFrame, TumSequence, TumWriter, odometry_text, read_odometry, read_trajectory,
+    read_trajectory_file, trajectory_text, trajectory_text_from_planar,
 };
+pub use warnings::{Warning, Warnings};

@@ -1,9 +1,10 @@
-//! Maps in the form of the ROS `map_server`: a PGM picture and a YAML file beside it.
+//! Maps in the form of the ROS `map_server`: a picture and a YAML file beside it.
 
 mod graph;
 mod mask;
-mod pgm;
+mod picture;
 mod places;
+mod source;
 mod turned;
 mod yaml;
 
@@ -11,13 +12,12 @@ pub use graph::{GraphFile, read_graph};
 pub use mask::{KeepOutFile, SpeedFile, read_keep_out_mask, read_speed_mask};
 pub use places::read_places;
 
-use crate::files::{read_bytes, read_text};
-use crate::{IoError, OutputFolder};
-use pgm::Pgm;
+use crate::codec::encode_grey8;
+use crate::{CodecError, IoError, OutputFolder, Warnings};
+use source::MapSource;
 use std::fmt::Write;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use trundle_core::{Cell, CellIndex, GridGeometry, OccupancyGrid};
-use yaml::MapYaml;
 
 /// Grey of a free cell, as `map_saver` writes it.
 const FREE_GREY: u8 = 254;
@@ -26,41 +26,78 @@ const OCCUPIED_GREY: u8 = 0;
 /// Grey of an unknown cell: its occupancy of 0.19608 lies just above the usual `free_thresh`.
 const UNKNOWN_GREY: u8 = 205;
 
-/// A map from its YAML file and the PGM picture that it names.
+/// A map of a file.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MapFile {
+    /// The map.
+    pub grid: OccupancyGrid,
+    /// What is to be said of the file.
+    pub warnings: Warnings,
+}
+
+/// The map of [`read_map_file`].
+///
+/// # Errors
+/// As [`read_map_file`].
+pub fn read_map(yaml_path: &Path) -> Result<OccupancyGrid, IoError> {
+    Ok(read_map_file(yaml_path)?.grid)
+}
+
+/// A map from its YAML file and the picture that it names: a PGM, PNG or BMP, its colours averaged to grey.
 ///
 /// A pixel's occupancy is `(maxval - v) / maxval`, or `v / maxval` with `negate`; above `occupied_thresh` it is
-/// occupied, below `free_thresh` free, between them unknown. In mode `raw` it is `v / 100`, unknown above 100. A picture with a yaw is
-/// drawn anew along the map's axes: a cell is occupied that touches an occupied one, so walls may become a cell thicker.
+/// occupied, below `free_thresh` free, between them unknown, as is a pixel that is not opaque. In mode `raw` it is `v / 100`,
+/// unknown above 100. A picture with a yaw is drawn anew along the map's axes: a cell is occupied that touches an occupied one, so
+/// walls may become a cell thicker. A `free_thresh` that makes the pixels free that `map_saver` writes for unknown is warned of.
 ///
 /// # Errors
 /// When a file is missing or truncated, a field is missing or not accepted, thresholds are out of order, or the picture is
 /// larger than 2^28 cells.
-pub fn read_map(yaml_path: &Path) -> Result<OccupancyGrid, IoError> {
-    let yaml = MapYaml::parse(yaml_path, &read_text(yaml_path)?)?;
-    let (pgm_path, pgm) = picture_of(yaml_path, &yaml)?;
-    let geometry = GridGeometry::new(yaml.resolution, yaml.origin, pgm.width, pgm.height)
-        .map_err(IoError::field(yaml_path))?;
-    let rows = pgm.values.chunks_exact(pgm.width).rev(); // the picture's first row is the highest y
-    let cells = rows.flatten().map(|&value| yaml.cell(value, pgm.maxval)).collect();
+pub fn read_map_file(yaml_path: &Path) -> Result<MapFile, IoError> {
+    let source = MapSource::read(yaml_path)?;
+    let cells = source.picture.indices().map(|i| cell(&source, i)).collect();
     let rank = |cell| match cell {
         Cell::Occupied => 0,
         Cell::Unknown => 1,
         Cell::Free => 2,
     };
-    let (geometry, cells) = turned::straightened(geometry, cells, yaml.yaw, Cell::Unknown, rank)
-        .map_err(IoError::field(yaml_path))?;
-    OccupancyGrid::new(geometry, cells).map_err(IoError::field(&pgm_path))
+    let (geometry, cells) =
+        turned::straightened(source.geometry()?, cells, source.yaml.yaw, Cell::Unknown, rank)
+            .map_err(IoError::field(yaml_path))?;
+    let grid = OccupancyGrid::new(geometry, cells).map_err(IoError::field(&source.picture_path))?;
+    Ok(MapFile { grid, warnings: warnings(&source) })
 }
 
-/// The picture that a map's YAML names, and where it is.
-fn picture_of(yaml_path: &Path, yaml: &MapYaml) -> Result<(PathBuf, Pgm), IoError> {
-    let pgm_path = yaml_path.parent().unwrap_or(Path::new("")).join(&yaml.image);
-    if !pgm_path.exists() {
-        let problem = format!("image is '{}', but there is no such file", pgm_path.display());
-        return Err(IoError::malformed(yaml_path, problem));
+/// What pixel `i` says.
+fn cell(source: &MapSource, i: usize) -> Cell {
+    let MapSource { yaml, picture, .. } = source;
+    let is_unknown = yaml.reads_transparency() && picture.is_transparent(i);
+    if is_unknown { Cell::Unknown } else { yaml.cell(picture.values[i], picture.maxval) }
+}
+
+/// Counts the pixels that `map_saver` writes for unknown and this file makes free.
+fn warnings(source: &MapSource) -> Warnings {
+    let MapSource { yaml, picture, .. } = source;
+    let freed = picture.values.iter().filter(|&&value| yaml.frees_unknown(value, picture.maxval)).count();
+    let mut warnings = Warnings::default();
+    if freed > 0 {
+        let free = yaml.free_thresh();
+        let problem = format!(
+            "{freed} cells of pixel 205, which map_saver writes for unknown, are free by free_thresh {free}; 0.196 keeps them unknown"
+        );
+        warnings.add(&problem, &source.yaml_path.display().to_string());
     }
-    let pgm = Pgm::parse(&pgm_path, &read_bytes(&pgm_path)?)?;
-    Ok((pgm_path, pgm))
+    warnings
+}
+
+/// The format of a map's picture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum MapImage {
+    /// PGM, as `map_saver` writes it.
+    #[default]
+    Pgm,
+    /// PNG, 8-bit grey, a tenth of the size.
+    Png,
 }
 
 /// Writes `NAME.pgm` and `NAME.yaml` into the folder, as `map_saver` does: free 254, occupied 0, unknown 205.
@@ -68,22 +105,62 @@ fn picture_of(yaml_path: &Path, yaml: &MapYaml) -> Result<(PathBuf, Pgm), IoErro
 /// # Errors
 /// When a file cannot be written.
 pub fn write_map(folder: &OutputFolder, name: &str, grid: &OccupancyGrid) -> Result<(), IoError> {
-    folder.write(&format!("{name}.pgm"), &map_pgm(grid))?;
-    folder.write(&format!("{name}.yaml"), map_yaml(grid, &format!("{name}.pgm")).as_bytes())
+    write_map_as(folder, name, grid, MapImage::Pgm)
+}
+
+/// The same with the picture in this format.
+///
+/// # Errors
+/// When a file cannot be written.
+pub fn write_map_as(
+    folder: &OutputFolder,
+    name: &str,
+    grid: &OccupancyGrid,
+    image: MapImage,
+) -> Result<(), IoError> {
+    let (file, bytes) = map_picture(name, grid, image)?;
+    folder.write(&file, &bytes)?;
+    folder.write(&format!("{name}.yaml"), map_yaml(grid, &file).as_bytes())
+}
+
+/// The name and the bytes of a map's picture in this format.
+///
+/// # Errors
+/// When it cannot be encoded.
+pub fn map_picture(name: &str, grid: &OccupancyGrid, image: MapImage) -> Result<(String, Vec<u8>), IoError> {
+    match image {
+        MapImage::Pgm => Ok((format!("{name}.pgm"), map_pgm(grid))),
+        MapImage::Png => {
+            let file = format!("{name}.png");
+            let bytes = map_png(grid).map_err(IoError::image(Path::new(&file)))?;
+            Ok((file, bytes))
+        }
+    }
+}
+
+/// The greys of a map, the highest y on top.
+fn greys(grid: &OccupancyGrid) -> impl Iterator<Item = u8> + '_ {
+    let GridGeometry { width, height, .. } = *grid.geometry();
+    let cells = (0..height).rev().flat_map(move |row| (0..width).map(move |col| CellIndex { col, row }));
+    cells.map(|index| match grid.get(index) {
+        Cell::Free => FREE_GREY,
+        Cell::Occupied => OCCUPIED_GREY,
+        Cell::Unknown => UNKNOWN_GREY,
+    })
 }
 
 /// The picture of a map: a binary PGM, the highest y on top.
 pub fn map_pgm(grid: &OccupancyGrid) -> Vec<u8> {
     let GridGeometry { width, height, resolution, .. } = *grid.geometry();
     let mut bytes = format!("P5\n# trundle {resolution} m/px\n{width} {height}\n255\n").into_bytes();
-    for row in (0..height).rev() {
-        bytes.extend((0..width).map(|col| match grid.get(CellIndex { col, row }) {
-            Cell::Free => FREE_GREY,
-            Cell::Occupied => OCCUPIED_GREY,
-            Cell::Unknown => UNKNOWN_GREY,
-        }));
-    }
+    bytes.extend(greys(grid));
     bytes
+}
+
+/// The picture of a map: an 8-bit grey PNG, the highest y on top.
+fn map_png(grid: &OccupancyGrid) -> Result<Vec<u8>, CodecError> {
+    let GridGeometry { width, height, .. } = *grid.geometry();
+    encode_grey8((width, height), &greys(grid).collect::<Vec<u8>>())
 }
 
 /// The YAML beside the picture `image`; every number reads back as the same f64.
@@ -103,9 +180,15 @@ mod tests {
     use trundle_core::Vector2;
 
     fn round_trip(grid: &OccupancyGrid) -> OccupancyGrid {
+        let png = written_and_read(grid, MapImage::Png);
+        assert_eq!(png, written_and_read(grid, MapImage::Pgm));
+        png
+    }
+
+    fn written_and_read(grid: &OccupancyGrid, image: MapImage) -> OccupancyGrid {
         let dir = tempfile::tempdir().unwrap();
         let folder = OutputFolder::create(&dir.path().join("out")).unwrap();
-        write_map(&folder, "map", grid).unwrap();
+        write_map_as(&folder, "map", grid, image).unwrap();
         read_map(&folder.commit().unwrap().join("map.yaml")).unwrap()
     }
 
@@ -150,5 +233,25 @@ mod tests {
         std::fs::write(&path, map_yaml(&grid, "nowhere.pgm")).unwrap();
         let error = read_map(&path).unwrap_err().to_string();
         assert!(error.contains("m.yaml: image is '") && error.contains("nowhere.pgm'"), "{error}");
+    }
+
+    #[test]
+    fn unknown_that_becomes_free_is_counted_and_transparent_pixels_are_unknown() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("m.yaml");
+        let grid = OccupancyGrid::from_ascii(0.05, "#?.?").unwrap();
+        let yaml = map_yaml(&grid, "m.png").replace("free_thresh: 0.196", "free_thresh: 0.25");
+        std::fs::write(&path, yaml).unwrap();
+        std::fs::write(dir.path().join("m.png"), map_png(&grid).unwrap()).unwrap();
+        let file = read_map_file(&path).unwrap();
+        assert_eq!(file.grid, OccupancyGrid::from_ascii(0.05, "#...").unwrap());
+        let said: Vec<String> = file.warnings.iter().map(ToString::to_string).collect();
+        assert!(
+            said[0].starts_with("2 cells of pixel 205") && said[0].contains("free_thresh 0.25"),
+            "{said:?}"
+        );
+        let clear = image::RgbaImage::from_raw(2, 1, vec![0, 0, 0, 255, 0, 0, 0, 0]).unwrap();
+        clear.save(dir.path().join("m.png")).unwrap();
+        assert_eq!(read_map(&path).unwrap().cells(), [Cell::Occupied, Cell::Unknown]);
     }
 }

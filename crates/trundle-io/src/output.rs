@@ -1,65 +1,80 @@
-//! An output folder that appears complete or not at all.
+//! An output folder that appears complete or not at all, and takes the place of nothing but an earlier run.
+
+mod file_identity;
+mod inputs;
+mod marker;
+mod place;
+mod scratch;
+mod single_file;
+#[cfg(test)]
+mod tests;
+mod tree;
+
+pub use inputs::InputFiles;
+pub use single_file::{OutputFile, keep_aside};
 
 use crate::{IoError, Recorder};
+use file_identity::is_on_other_disk;
+use place::{OutputPlace, with_ending};
+use scratch::Scratch;
 use std::fs::{self, File};
-use std::io::BufWriter;
+use std::io::{BufWriter, ErrorKind};
 use std::path::{Path, PathBuf};
-use tempfile::TempDir;
+use std::sync::{Mutex, PoisonError};
 
 /// Makes the content of a file.
 type Content = fn() -> Vec<u8>;
 
 /// A folder of results that appears whole or not at all.
 ///
-/// Files are written into a hidden temporary folder beside it (inside it, where it exists already), and moved to their
-/// place by [`OutputFolder::commit`]. Dropped without commit, everything written is removed again.
+/// Files are written into a hidden temporary folder beside it, and moved to their place by [`OutputFolder::commit`].
+/// Dropped without commit, everything written is removed again. The folder of an earlier run is kept: its name gets `.1`
+/// behind it. A folder with files that trundle did not write is refused, and so is one that holds an input.
 #[derive(Debug)]
 pub struct OutputFolder {
-    target: PathBuf,
-    /// Holds `STAGE`, so that the results get the user's usual permissions and not those of a temporary folder.
-    scratch: TempDir,
+    place: OutputPlace,
+    scratch: Scratch,
     /// Folders above the target that did not exist before, the innermost first.
     made: Vec<PathBuf>,
-    /// Files that do not survive the commit unless they are written anew.
-    outdated: Vec<String>,
+    /// Hidden folders of killed runs into the same place, which were removed.
+    swept: Vec<PathBuf>,
+    /// Files that the disk did not take.
+    unwritten: Mutex<Vec<IoError>>,
     /// Name and content of the file that the commit writes.
     last: Option<(&'static str, Content)>,
 }
-
-/// The folder in the temporary one that becomes the target.
-const STAGE: &str = "out";
 
 impl OutputFolder {
     /// Prepares to write the results to `target`; nothing is visible there before [`OutputFolder::commit`].
     ///
     /// # Errors
-    /// When `target` is a file, or nothing can be written there.
+    /// Those of [`OutputFolder::check`], and when nothing can be written there.
     pub fn create(target: &Path) -> Result<Self, IoError> {
-        if target.as_os_str().is_empty() {
-            return Err(IoError::malformed(target, "the name of the output folder is empty"));
-        }
-        if target.exists() && !target.is_dir() {
-            return Err(IoError::malformed(
-                target,
-                "this is a file, expected a folder to write the results to",
-            ));
-        }
-        let beside = if target.is_dir() { target } else { parent(target) };
-        let mut made = missing_above(beside);
-        let scratch = fs::create_dir_all(beside)
-            .and_then(|()| tempfile::Builder::new().prefix(".trundle-").tempdir_in(beside))
-            .and_then(|scratch| fs::create_dir(scratch.path().join(STAGE)).map(|()| scratch));
-        let scratch = scratch.map_err(|error| {
-            remove_empty(&mut made);
-            IoError::system(target, "create")(error)
-        })?;
-        Ok(Self { target: target.to_owned(), scratch, made, outdated: vec![], last: None })
+        Self::create_apart_from(&InputFiles::default(), target)
     }
 
-    /// The same; the commit removes files of these names of an earlier run, unless they are written anew.
-    pub fn instead_of(mut self, names: &[&str]) -> Self {
-        self.outdated = names.iter().map(|name| (*name).to_owned()).collect();
-        self
+    /// The same, where `inputs` are files that the results must not replace.
+    ///
+    /// # Errors
+    /// Those of [`OutputFolder::check`], and when nothing can be written there.
+    pub fn create_apart_from(inputs: &InputFiles, target: &Path) -> Result<Self, IoError> {
+        let place = OutputPlace::check(target, inputs)?;
+        let beside = parent(&place.real);
+        let mut made = missing_above(beside);
+        let swept = scratch::sweep(beside, &place.real);
+        let scratch = fs::create_dir_all(beside).map_err(IoError::system(target, "create"));
+        let scratch = scratch.and_then(|()| scratch_for(&place));
+        let scratch = scratch.inspect_err(|_| remove_empty(&mut made))?;
+        Ok(Self { place, scratch, made, swept, unwritten: Mutex::default(), last: None })
+    }
+
+    /// Refuses a folder of results that cannot be replaced without a loss.
+    ///
+    /// # Errors
+    /// When `target` is a file, is or holds one of `inputs` or a file that trundle did not write, or when the folder that
+    /// keeps the last run does.
+    pub fn check(inputs: &InputFiles, target: &Path) -> Result<(), IoError> {
+        OutputPlace::check(target, inputs).map(drop)
     }
 
     /// The same; the commit writes the file `name`, whose content is that of the moment of the commit.
@@ -70,22 +85,45 @@ impl OutputFolder {
 
     /// Where the results will be.
     pub fn target(&self) -> &Path {
-        &self.target
+        &self.place.target
+    }
+
+    /// Hidden folders that killed runs into the same place had left, and that were removed.
+    pub fn swept(&self) -> &[PathBuf] {
+        &self.swept
     }
 
     /// Where the file `name` is until the commit, for writers that need a path. Subfolders must be made by the caller.
     pub fn staged(&self, name: &str) -> PathBuf {
-        self.stage().join(name)
+        self.scratch.stage().join(name)
     }
 
-    /// Writes the file `name`, a path relative to the folder; its subfolders are made.
+    /// Writes the file `name`, a path relative to the folder; its subfolders are made. A file that the disk does not take is
+    /// left out, and [`OutputFolder::commit`] names it.
     ///
     /// # Errors
-    /// When it cannot be written, by the name it would have had.
+    /// When it cannot be written for another reason, by the name it would have had.
     pub fn write(&self, name: &str, bytes: &[u8]) -> Result<(), IoError> {
         let path = self.staged(name);
         let made = path.parent().map_or(Ok(()), fs::create_dir_all);
-        made.and_then(|()| fs::write(&path, bytes)).map_err(IoError::system(&self.target.join(name), "write"))
+        match made.and_then(|()| fs::write(&path, bytes)) {
+            Err(error) if is_refusal_of_disk(&error) => {
+                let _ = fs::remove_file(&path);
+                self.leave_out(IoError::system(&self.target().join(name), "write")(error));
+                Ok(())
+            }
+            other => other.map_err(IoError::system(&self.target().join(name), "write")),
+        }
+    }
+
+    /// Notes a file that could not be written, or not to its end: [`OutputFolder::commit`] names it.
+    pub fn leave_out(&self, problem: IoError) {
+        self.unwritten.lock().unwrap_or_else(PoisonError::into_inner).push(problem);
+    }
+
+    /// Whether the disk has refused a file.
+    pub fn is_incomplete(&self) -> bool {
+        !self.unwritten.lock().unwrap_or_else(PoisonError::into_inner).is_empty()
     }
 
     /// Starts a recording as the file `name`; finish it before the commit.
@@ -93,42 +131,86 @@ impl OutputFolder {
     /// # Errors
     /// When it cannot be created.
     pub fn recorder(&self, name: &str) -> Result<Recorder<BufWriter<File>>, IoError> {
-        let target = self.target.join(name);
+        let target = self.target().join(name);
         let file = File::create(self.staged(name)).map_err(IoError::system(&target, "create"))?;
         Recorder::new(BufWriter::with_capacity(1 << 20, file), &target)
     }
 
-    /// Moves everything to its place: the whole folder at once where there was none, else file by file, replacing
-    /// those of the same name and leaving others alone. Returns the folder.
+    /// Moves everything to its place, and the files of an earlier run to the folder that keeps the last run. Returns the
+    /// folder.
     ///
     /// # Errors
-    /// When the closing file cannot be written, or a file cannot be moved.
+    /// [`IoError::Incomplete`] when a file could not be written or moved; it says where the others are.
     pub fn commit(mut self) -> Result<PathBuf, IoError> {
         if let Some((name, content)) = self.last {
             self.write(name, &content())?;
         }
         self.made.clear();
-        if self.target.is_dir() {
-            for name in self.outdated.iter().filter(|name| !self.staged(name).exists()) {
-                remove_file(&self.target.join(name))?;
-            }
-            move_files(&self.stage(), &self.target)?;
-        } else {
-            fs::rename(self.stage(), &self.target).map_err(IoError::system(&self.target, "create"))?;
-        }
-        Ok(self.target.clone())
+        let filled = self.place.fill(&self.scratch.stage());
+        filled.map_err(|problem| self.rescued(problem))?;
+        let unwritten = std::mem::take(&mut self.unwritten).into_inner();
+        IoError::incomplete(self.target(), unwritten.unwrap_or_else(PoisonError::into_inner))?;
+        Ok(self.target().to_owned())
     }
 
-    fn stage(&self) -> PathBuf {
-        self.scratch.path().join(STAGE)
+    /// The results beside their place, where they cannot be moved to it.
+    fn rescued(&self, problem: IoError) -> IoError {
+        let rescue = self.place.real.with_file_name(with_ending(&self.place.real, ".new"));
+        match fs::rename(self.scratch.stage(), &rescue) {
+            Ok(()) => IoError::Incomplete { folder: Some(rescue), problems: vec![problem] },
+            Err(_) => problem,
+        }
     }
 }
 
 impl Drop for OutputFolder {
     fn drop(&mut self) {
-        let _ = fs::remove_dir_all(self.scratch.path());
+        self.scratch.remove();
         remove_empty(&mut self.made);
     }
+}
+
+/// The hidden folder beside the place, or in it where it is a disk of its own or nothing can be written beside it.
+fn scratch_for(place: &OutputPlace) -> Result<Scratch, IoError> {
+    let beside = parent(&place.real);
+    let failed = IoError::system(&place.target, "create");
+    let problem = match is_on_other_disk(beside, &place.real) {
+        true => "it is a disk of its own".to_owned(),
+        false => match Scratch::create(beside, &place.real) {
+            Err(error) if is_protected(&error) && place.real.is_dir() => {
+                format!("{}: {error}", beside.display())
+            }
+            other => return other.map_err(failed),
+        },
+    };
+    if place.holds_run {
+        let problem =
+            format!("the last run cannot be kept beside this folder ({problem}); name a folder in it");
+        return Err(IoError::malformed(&place.target, problem));
+    }
+    Scratch::create(&place.real, &place.real).map_err(failed)
+}
+
+fn is_protected(error: &std::io::Error) -> bool {
+    matches!(error.kind(), ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem)
+}
+
+/// Whether the disk is full, used up or broken, rather than the name wrong.
+fn is_refusal_of_disk(error: &std::io::Error) -> bool {
+    use ErrorKind::{FileTooLarge, QuotaExceeded, ReadOnlyFilesystem, StorageFull, WriteZero};
+    let kinds = [StorageFull, QuotaExceeded, FileTooLarge, ReadOnlyFilesystem, WriteZero];
+    kinds.contains(&error.kind()) || is_device_error(error)
+}
+
+#[cfg(unix)]
+fn is_device_error(error: &std::io::Error) -> bool {
+    const EIO: i32 = 5;
+    error.raw_os_error() == Some(EIO)
+}
+
+#[cfg(not(unix))]
+fn is_device_error(_error: &std::io::Error) -> bool {
+    false
 }
 
 fn parent(path: &Path) -> &Path {
@@ -141,134 +223,8 @@ fn missing_above(dir: &Path) -> Vec<PathBuf> {
     missing.map(Path::to_owned).collect()
 }
 
-fn remove_file(path: &Path) -> Result<(), IoError> {
-    match fs::remove_file(path) {
-        Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
-            Err(IoError::system(path, "remove")(error))
-        }
-        _ => Ok(()),
-    }
-}
-
 fn remove_empty(made: &mut Vec<PathBuf>) {
     for dir in made.drain(..) {
         let _ = fs::remove_dir(dir); // refuses folders with something in them, and so it should
-    }
-}
-
-fn move_files(from: &Path, to: &Path) -> Result<(), IoError> {
-    let entries = fs::read_dir(from).and_then(Iterator::collect::<Result<Vec<_>, _>>);
-    let mut names: Vec<_> =
-        entries.map_err(IoError::system(from, "read"))?.into_iter().map(|entry| entry.file_name()).collect();
-    names.sort();
-    for name in names {
-        let (source, target) = (from.join(&name), to.join(&name));
-        if source.is_dir() && target.is_dir() {
-            move_files(&source, &target)?;
-        } else {
-            fs::rename(&source, &target).map_err(IoError::system(&target, "write"))?;
-        }
-    }
-    Ok(())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn names(dir: &Path) -> Vec<String> {
-        let mut names: Vec<_> =
-            fs::read_dir(dir).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
-        names.sort();
-        names
-    }
-
-    #[test]
-    fn appears_whole_at_commit() {
-        let dir = tempfile::tempdir().unwrap();
-        let target = dir.path().join("deep/er/run");
-        let out = OutputFolder::create(&target).unwrap();
-        out.write("a.txt", b"1").unwrap();
-        out.write("sub/b.txt", b"2").unwrap();
-        assert!(!target.exists());
-        assert_eq!(out.commit().unwrap(), target);
-        assert_eq!(names(&target), ["a.txt", "sub"]);
-        assert_eq!(fs::read(target.join("sub/b.txt")).unwrap(), b"2");
-        assert_eq!(names(target.parent().unwrap()), ["run"]);
-    }
-
-    #[test]
-    fn leaves_no_trace_without_commit() {
-        let dir = tempfile::tempdir().unwrap();
-        drop(OutputFolder::create(&dir.path().join("deep/er/run")).unwrap().write("a", b"1"));
-        assert_eq!(names(dir.path()), Vec::<String>::new());
-        let out = OutputFolder::create(dir.path()).unwrap();
-        out.write("a", b"1").unwrap();
-        drop(out);
-        assert_eq!(names(dir.path()), Vec::<String>::new());
-    }
-
-    #[test]
-    fn replaces_files_of_the_same_name_only() {
-        let dir = tempfile::tempdir().unwrap();
-        fs::write(dir.path().join("keep"), "old").unwrap();
-        fs::write(dir.path().join("map"), "old").unwrap();
-        fs::create_dir(dir.path().join("sub")).unwrap();
-        fs::write(dir.path().join("sub/keep"), "old").unwrap();
-        let out = OutputFolder::create(dir.path()).unwrap();
-        out.write("map", b"new").unwrap();
-        out.write("sub/map", b"new").unwrap();
-        assert_eq!(fs::read(dir.path().join("map")).unwrap(), b"old");
-        out.commit().unwrap();
-        assert_eq!(fs::read(dir.path().join("map")).unwrap(), b"new");
-        assert_eq!(names(dir.path()), ["keep", "map", "sub"]);
-        assert_eq!(names(&dir.path().join("sub")), ["keep", "map"]);
-    }
-
-    #[test]
-    fn what_is_outdated_goes_with_the_commit_and_not_before() {
-        let dir = tempfile::tempdir().unwrap();
-        ["old", "new", "mine"].iter().for_each(|name| fs::write(dir.path().join(name), "1").unwrap());
-        let begin = || OutputFolder::create(dir.path()).unwrap().instead_of(&["old", "new", "never"]);
-        drop(begin());
-        assert_eq!(names(dir.path()), ["mine", "new", "old"]);
-        let out = begin();
-        out.write("new", b"2").unwrap();
-        out.commit().unwrap();
-        assert_eq!(names(dir.path()), ["mine", "new"]);
-        assert_eq!(fs::read(dir.path().join("new")).unwrap(), b"2");
-    }
-
-    #[test]
-    fn a_file_in_the_way_is_named() {
-        let dir = tempfile::tempdir().unwrap();
-        let file = dir.path().join("run");
-        fs::write(&file, "mine").unwrap();
-        let error = OutputFolder::create(&file).unwrap_err().to_string();
-        assert_eq!(
-            error,
-            format!("{}: this is a file, expected a folder to write the results to", file.display())
-        );
-        let below = file.join("deeper");
-        let error = OutputFolder::create(&below).unwrap_err().to_string();
-        assert_eq!(error, format!("cannot create {}: a file is in the way", below.display()));
-        assert_eq!(fs::read(&file).unwrap(), b"mine");
-        assert!(OutputFolder::create(Path::new("")).is_err());
-        let out = OutputFolder::create(dir.path()).unwrap();
-        let error =
-            out.write("map.pgm/x", b"1").and_then(|()| out.write("map.pgm", b"2")).unwrap_err().to_string();
-        assert!(error.starts_with("cannot write ") && error.ends_with("map.pgm: it is a folder"), "{error}");
-    }
-
-    #[test]
-    #[cfg(unix)]
-    fn results_have_the_usual_permissions() {
-        use std::os::unix::fs::PermissionsExt;
-        let dir = tempfile::tempdir().unwrap();
-        let plain = dir.path().join("plain");
-        fs::create_dir(&plain).unwrap();
-        let ours = OutputFolder::create(&dir.path().join("ours")).unwrap().commit().unwrap();
-        let mode = |path: &Path| fs::metadata(path).unwrap().permissions().mode();
-        assert_eq!(mode(&ours), mode(&plain));
     }
 }

@@ -1,18 +1,23 @@
-//! Recordings of a run: MCAP with JSON messages, which Foxglove Studio opens as it is.
+//! Recordings of a run: MCAP with JSON messages and images as ROS 2 has them, which Foxglove Studio opens as it is.
 
 mod chunk_decoder;
+mod cut;
 mod messages;
 mod poses;
 mod reader;
+mod record_parser;
 mod recorder;
+mod ros_image;
 mod schemas;
 mod stream;
 mod time;
+mod unpacked;
 mod visual_map;
 
 pub use poses::{PoseInFrame, PosesInFrame};
 pub use reader::{RecordedMessage, RecordingReader};
 pub use recorder::Recorder;
+pub use stream::RecordingCut;
 pub(crate) use stream::{Encoding, MessageStream, RawMessage};
 pub use visual_map::{FeatureMarks, KeyframeGraph, LandmarkCloud};
 

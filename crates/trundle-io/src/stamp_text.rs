@@ -10,10 +10,15 @@ use trundle_core::{Invalid, Stamp};
 /// # Errors
 /// When the text is not a decimal number or is more than 292 years from the epoch.
 pub fn parse_stamp(text: &str) -> Result<Stamp, Invalid> {
+    parse_scaled_stamp(text, 0)
+}
+
+/// A stamp from decimal text in units of `10^-decimals` s, exact.
+pub(crate) fn parse_scaled_stamp(text: &str, decimals: i64) -> Result<Stamp, Invalid> {
     let invalid = |expected| Invalid::new("timestamp", format!("'{}'", excerpt(text)), "", expected);
     let (negative, digits, exponent) = decimal(text).ok_or_else(|| invalid("a decimal number of seconds"))?;
-    let nanos =
-        nanoseconds(&digits, exponent).ok_or_else(|| invalid("a time within 292 years of the epoch"))?;
+    let nanos = nanoseconds(&digits, exponent - decimals)
+        .ok_or_else(|| invalid("a time within 292 years of the epoch"))?;
     Ok(Stamp::from_nanos(if negative { -nanos } else { nanos }))
 }
 

@@ -26,6 +26,11 @@ impl Summary {
         self
     }
 
+    /// Notes that the user ended the work before its end; nothing where not.
+    pub fn set_interrupted(&mut self, is_interrupted: bool) -> &mut Self {
+        if is_interrupted { self.set("interrupted", true) } else { self }
+    }
+
     /// A value set before.
     pub fn get(&self, name: &str) -> Option<&Value> {
         self.values.get(name)

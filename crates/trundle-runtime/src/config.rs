@@ -4,9 +4,11 @@ use crate::{
     camera_mount::CameraMount, goal_approach::GoalApproachConfig,
     mission::executor_config::MissionExecutorConfig, range_source::RangeSource, schedule::Schedule,
 };
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize};
 use trundle_control::{FollowerConfig, SafetyConfig};
-use trundle_core::{DifferentialDrive, DriveLimits, Footprint, Invalid, PinholeCamera, Vector2};
+use trundle_core::{
+    DifferentialDrive, DriveLimits, Footprint, Invalid, PinholeCamera, Vector2, footprint_corners,
+};
 use trundle_localization::{LocalizerConfig, OdometryConfig};
 use trundle_mapping::{DepthScanConfig, MapperConfig, ScanMatchConfig};
 use trundle_planning::{ObstacleTrackerConfig, PlannerConfig};
@@ -20,6 +22,7 @@ pub struct RobotConfig {
     /// Radius of the disc about the base that the robot stays within, m, above 0. Default 0.1755: the Kobuki.
     pub footprint_radius: f64,
     /// Corners of a convex outline in place of the disc, base frame, m. Default none.
+    #[serde(deserialize_with = "corners")]
     pub footprint: Option<Vec<[f64; 2]>>,
     /// What the map is drawn from and what safety watches. Default the depth camera.
     pub sight: RangeSource,
@@ -57,6 +60,24 @@ pub struct RobotConfig {
     pub safety: SafetyConfig,
     /// Missions, exploration, patience.
     pub supervisor: MissionExecutorConfig,
+}
+
+/// Corners as a list, or as the text that Nav2's costmaps take.
+fn corners<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Vec<[f64; 2]>>, D::Error> {
+    #[derive(Deserialize)]
+    #[serde(untagged)]
+    enum Corners {
+        List(Vec<[f64; 2]>),
+        Text(String),
+    }
+    match Option::<Corners>::deserialize(deserializer)? {
+        None => Ok(None),
+        Some(Corners::List(corners)) => Ok(Some(corners)),
+        Some(Corners::Text(text)) => {
+            let corners = footprint_corners(&text).map_err(serde::de::Error::custom)?;
+            Ok(Some(corners.iter().map(|corner| [corner.x, corner.y]).collect()))
+        }
+    }
 }
 
 impl Default for RobotConfig {

@@ -44,7 +44,7 @@ fn scene(name: &str) -> Result<Scene, Box<dyn std::error::Error>> {
     if !name.ends_with(".glb") {
         return Ok(Scene::by_name(name, 1)?);
     }
-    let world = World::with_meshes(Vec::new(), vec![gltf(name.as_ref(), &GltfOptions::z_up())?], 1)?;
+    let world = World::with_meshes(Vec::new(), vec![gltf(name.as_ref(), &GltfOptions::z_up())?.mesh], 1)?;
     let obstacles = world.obstacles(HeightBand::new(0.012, 0.6)?);
     let (low, _) = world.bounds();
     let place = |i: u32| Pose2::new(low.x + f64::from(i % 100) * 0.3, low.y + f64::from(i / 100) * 0.3, 0.0);

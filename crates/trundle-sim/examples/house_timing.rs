@@ -12,7 +12,7 @@ use trundle_sim::{HeightBand, Obstacles, World};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let file = std::env::args().nth(1).unwrap_or("../shared/data/scenes/small_house.glb".into());
-    let mesh = timed("read", || gltf(file.as_ref(), &GltfOptions::z_up()))?;
+    let mesh = timed("read", || gltf(file.as_ref(), &GltfOptions::z_up()))?.mesh;
     println!("{} triangles, {} materials", mesh.triangles().len(), mesh.materials().len());
     let world = World::with_meshes(Vec::new(), vec![mesh], 1)?;
     let band = HeightBand::new(0.012, 0.6)?;

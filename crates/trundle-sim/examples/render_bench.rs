@@ -19,7 +19,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         return Err("expected SCENE.glb POSES.txt OUT_DIR FRAMES".into());
     };
     let frames: usize = frames.parse()?;
-    let mesh = gltf(Path::new(scene), &GltfOptions::z_up())?;
+    let mesh = gltf(Path::new(scene), &GltfOptions::z_up())?.mesh;
     let world = World::with_meshes(Vec::new(), vec![mesh], 1)?;
     world.paint();
     let stage = SceneSnapshot { world: &world, movers: &[], lights: &Lights::default() };

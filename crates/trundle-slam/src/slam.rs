@@ -88,8 +88,13 @@ impl RgbdSlam {
     /// The same with another vocabulary than the built-in one; call it before the first image.
     #[must_use]
     pub fn with_vocabulary(mut self, vocabulary: &Arc<Vocabulary>) -> Self {
-        self.atlas.set_vocabulary(vocabulary);
+        self.set_vocabulary(vocabulary);
         self
+    }
+
+    /// Recognizes places by this vocabulary from now on; the keyframes so far are described by it.
+    pub fn set_vocabulary(&mut self, vocabulary: &Arc<Vocabulary>) {
+        self.atlas.set_vocabulary(vocabulary);
     }
 
     /// The same with the camera at `visual_from_camera` at the start; call it before the first image. In a loaded map, the camera is
@@ -155,6 +160,7 @@ impl RgbdSlam {
             frame: &frame,
             depth,
             frame_number: self.trajectory.frame_count(),
+            are_maps_fixed: self.mode == Mode::Localisation,
         };
         match localizer.localize(&mut self.tracking, motion) {
             Some(localized) => self.on_located(frame, localized),

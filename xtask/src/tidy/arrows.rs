@@ -17,7 +17,8 @@ pub const ALGORITHM_CRATES: [&str; 7] = [
 pub const EDGES: [&str; 6] =
     ["trundle-sim", "trundle-io", "trundle-drivers", "trundle-ros2", "trundle-viz", "trundle-eval"];
 /// Crates that may read TOML or command lines.
-const SETTINGS_CRATES: [&str; 5] = ["trundle-runtime", "trundle-app", "trundle-cli", "trundle-io", "xtask"];
+const SETTINGS_CRATES: [&str; 6] =
+    ["trundle-runtime", "trundle-app", "trundle-cli", "trundle-io", "trundle-fuzz", "xtask"];
 
 /// Checks every arrow between packages.
 pub fn check(tree: &Tree) -> Vec<Finding> {
@@ -49,7 +50,7 @@ fn check_package(tree: &Tree, package: &Package) -> Vec<Finding> {
             }
             if ["toml", "clap"].contains(&dependency.as_str()) && !SETTINGS_CRATES.contains(&name.as_str()) {
                 let message = format!(
-                    "{name} must not depend on {dependency}: only runtime, app, cli, io and xtask do"
+                    "{name} must not depend on {dependency}: only runtime, app, cli, io, fuzz and xtask do"
                 );
                 findings.push(Finding::error(&path, line, message));
             }
@@ -77,6 +78,8 @@ fn is_known(name: &str) -> bool {
             "trundle-cli",
             "xtask",
             "trundle-bench",
+            "trundle-fuzz",
+            "trundle-libfuzzer",
         ]
         .contains(&name)
 }
@@ -104,7 +107,8 @@ fn may_know(from: &str, to: &str) -> bool {
                 || ["trundle-runtime", "trundle-app"].contains(&to)
         }
         "trundle" => !["trundle", "trundle-cli"].contains(&to),
-        "trundle-cli" => to == "trundle",
+        "trundle-cli" | "trundle-fuzz" => to == "trundle",
+        "trundle-libfuzzer" => to == "trundle-fuzz",
         "trundle-bench" => to != "trundle-cli",
         algorithm if ALGORITHM_CRATES.contains(&algorithm) => base,
         edge if EDGES.contains(&edge) => to == "trundle-core",

@@ -1,8 +1,10 @@
 //! The command line of `trundle demo`.
 
-use crate::common_args::{Common, PoseArg, RobotArgs, UpArg};
-use clap::Args;
+use crate::common_args::{Common, MeshArgs, PoseArg, RobotArgs};
+use crate::output_args::{OutputDirArg, OutputFileArg};
+use clap::{Args, ValueEnum};
 use std::path::PathBuf;
+use trundle::app::RecordingContent;
 
 /// `trundle demo`
 #[derive(Debug, Args)]
@@ -18,9 +20,9 @@ pub struct DemoArgs {
     /// Where the robot starts in the room: m, m, deg [default: the room's own]
     #[arg(long, value_name = "X,Y,DEG", allow_hyphen_values = true)]
     pub start: Option<PoseArg>,
-    /// The axis that points up in a .glb or .gltf.
-    #[arg(long, value_enum, value_name = "AXIS", default_value_t = UpArg::Y)]
-    pub up: UpArg,
+    /// Axis, scale and floor of a mesh.
+    #[command(flatten)]
+    pub mesh: MeshArgs,
     /// Goal in the map frame, which starts at the robot: m, m, deg; may be said again for the next one [default: the room's own]
     #[arg(long, value_name = "X,Y,DEG", allow_hyphen_values = true)]
     pub goal: Vec<PoseArg>,
@@ -30,13 +32,15 @@ pub struct DemoArgs {
     /// By the clock on the wall: simulator and robot in threads of their own, camera at 30 Hz; Ctrl-C stops the robot and ends the run.
     #[arg(long)]
     pub real_time: bool,
-    /// Write the robot's maps and the state of its mission to FILE, every 3 to 10 s: `--resume` goes on from there.
-    #[arg(long, value_name = "FILE", alias = "memory")]
-    pub checkpoint: Option<PathBuf>,
-    /// Resume from the file of --checkpoint, standing here in the room (m, m, deg): the robot localizes itself in its maps and goes on
-    /// with its mission. The map's frame stays that of --start.
-    #[arg(long, value_name = "X,Y,DEG", alias = "wake", allow_hyphen_values = true, requires = "checkpoint", conflicts_with_all = ["goal", "direct"])]
-    pub resume: Option<PoseArg>,
+    /// The file that the robot's state is kept in.
+    #[command(flatten)]
+    pub state: CheckpointArgs,
+    /// What recording.mcap holds; a replay needs all. Below 1 GB of free disk the run goes on without recording.
+    #[arg(long, value_enum, value_name = "WHAT", default_value_t = RecordArg::Events)]
+    pub record: RecordArg,
+    /// Recognise places by this vocabulary, in trundle's form [default: the built-in one]
+    #[arg(long, value_name = "FILE")]
+    pub vocabulary: Option<PathBuf>,
     /// What breaks, and when: a TOML file as for `trundle sim --faults`.
     #[arg(long, value_name = "FILE")]
     pub faults: Option<PathBuf>,
@@ -46,12 +50,46 @@ pub struct DemoArgs {
     /// The robot's settings.
     #[command(flatten)]
     pub robot: RobotArgs,
-    /// Folder for the results.
+    /// Folder for the results; the last run in it is kept as DIR.1
     #[arg(long, value_name = "DIR", default_value = "out/demo")]
-    pub out: PathBuf,
+    pub out: OutputDirArg,
     /// What every command takes.
     #[command(flatten)]
     pub common: Common,
+}
+
+/// The state of a robot, written and read.
+#[derive(Debug, Args)]
+pub struct CheckpointArgs {
+    /// Write the robot's maps and the state of its mission to FILE, every 3 to 10 s: `--resume` goes on from there.
+    #[arg(long, value_name = "FILE", alias = "memory")]
+    pub checkpoint: Option<OutputFileArg>,
+    /// Resume from the file of --checkpoint, standing here in the room (m, m, deg): the robot localizes itself in its maps and goes on
+    /// with its mission. The map's frame stays that of --start.
+    #[arg(long, value_name = "X,Y,DEG", alias = "wake", allow_hyphen_values = true, requires = "checkpoint", conflicts_with_all = ["goal", "direct"])]
+    pub resume: Option<PoseArg>,
+}
+
+/// What the recording of a run holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum RecordArg {
+    /// There is no recording.
+    None,
+    /// Everything but images: about 0.1 MB a second.
+    Events,
+    /// Everything, images too: about 4 MB a second.
+    All,
+}
+
+impl RecordArg {
+    /// The content of the recording.
+    pub fn content(self) -> RecordingContent {
+        match self {
+            Self::None => RecordingContent::None,
+            Self::Events => RecordingContent::Events,
+            Self::All => RecordingContent::All,
+        }
+    }
 }
 
 /// A time span on the command line: a finite number of seconds above 0.

@@ -1,10 +1,10 @@
 //! The command line of `trundle dock`.
 
 use crate::common_args::{Common, PoseArg, RobotArgs};
+use crate::output_args::{OutputDirArg, OutputFileArg};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
-use std::str::FromStr;
-use trundle::core::{Footprint, Vector2};
+use trundle::core::Footprint;
 use trundle::docking::Method;
 
 /// `trundle dock`
@@ -26,9 +26,9 @@ pub struct DockArgs {
     /// Goal pose in the map frame: m, m, deg [default: the problem's]
     #[arg(long, value_name = "X,Y,DEG", allow_hyphen_values = true)]
     pub to: Option<PoseArg>,
-    /// The robot's outline: a radius, or the corners of a convex polygon, base frame, m [default: the problem's or the robot file's]
+    /// The robot's outline: a radius, or the corners of a convex polygon, also as Nav2 writes them ([[X,Y],[X,Y],...]), base frame, m [default: the problem's or the robot file's]
     #[arg(long, value_name = "R|'X,Y X,Y X,Y...'", allow_hyphen_values = true)]
-    pub footprint: Option<FootprintArg>,
+    pub footprint: Option<Footprint>,
     /// Which scan of the log, from 1; poses are in the frame of the robot that made it [default: the last]. With a log only.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub scan: Option<u32>,
@@ -40,7 +40,7 @@ pub struct DockArgs {
     pub method: Option<MethodArg>,
     /// Only write the problem to a file, as text to change: with --from, --to and --footprint where they are given; a map's outlines as walls.
     #[arg(long, value_name = "FILE")]
-    pub write_problem: Option<PathBuf>,
+    pub write_problem: Option<OutputFileArg>,
     /// Take unknown cells of the map, and what is off it, for free rather than blocked. With a map only.
     #[arg(long)]
     pub through_unknown: bool,
@@ -50,9 +50,9 @@ pub struct DockArgs {
     /// The robot: its footprint, and the settings of [docking.planner], with which the robot itself plans.
     #[command(flatten)]
     pub robot: RobotArgs,
-    /// Folder for the results.
+    /// Folder for the results; the last run in it is kept as DIR.1
     #[arg(long, value_name = "DIR", default_value = "out/dock")]
-    pub out: PathBuf,
+    pub out: OutputDirArg,
     /// What every command takes.
     #[command(flatten)]
     pub common: Common,
@@ -73,46 +73,5 @@ impl From<MethodArg> for Method {
             MethodArg::Optimal => Self::Optimal,
             MethodArg::Paper => Self::Hong24,
         }
-    }
-}
-
-/// A footprint on the command line: a radius, or corners `X,Y X,Y X,Y`.
-#[derive(Debug, Clone, PartialEq)]
-pub struct FootprintArg(pub Footprint);
-
-impl FromStr for FootprintArg {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let number = |word: &str| {
-            word.trim()
-                .parse::<f64>()
-                .map_err(|_| format!("'{word}' in the footprint is no number, expected m"))
-        };
-        if !text.contains(',') {
-            return Footprint::disc(number(text)?).map(Self).map_err(|invalid| invalid.to_string());
-        }
-        let corner = |pair: &str| {
-            let (x, y) = pair.split_once(',').ok_or_else(|| format!("corner '{pair}', expected X,Y"))?;
-            Ok::<_, String>(Vector2::new(number(x)?, number(y)?))
-        };
-        let corners = text.split_whitespace().map(corner).collect::<Result<_, _>>()?;
-        Footprint::polygon(corners).map(Self).map_err(|invalid| invalid.to_string())
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn footprints_are_radii_or_convex_corners() {
-        assert_eq!("0.2".parse(), Ok(FootprintArg(Footprint::Disc { radius: 0.2 })));
-        assert!("0.3,0.2 -0.3,0.2 -0.3,-0.2 0.3,-0.2".parse::<FootprintArg>().is_ok());
-        let refused = |text: &str| text.parse::<FootprintArg>().unwrap_err();
-        assert_eq!(refused("wide"), "'wide' in the footprint is no number, expected m");
-        assert_eq!(refused("0.3,0.2 0.1"), "corner '0.1', expected X,Y");
-        assert_eq!(refused("0,0 1,0 0.2,0.2 0,1"), "footprint is turned inward at corner 1, expected convex");
-        assert!(refused("0,0 1,0 2,0").contains("footprint area is 0 m^2"));
     }
 }

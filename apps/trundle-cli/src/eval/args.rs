@@ -1,7 +1,8 @@
 //! The command line of `trundle eval`.
 
 use crate::common_args::{Common, PoseArg};
-use clap::{Args, Subcommand};
+use crate::output_args::OutputDirArg;
+use clap::{Args, Subcommand, ValueEnum};
 use std::path::PathBuf;
 
 /// `trundle eval`
@@ -15,10 +16,68 @@ pub struct EvalArgs {
 /// What can be judged.
 #[derive(Debug, Subcommand)]
 pub enum Which {
+    /// A trajectory, by its absolute and relative errors (ATE and RPE, as evo takes them).
+    Trajectory(TrajectoryArgs),
     /// A trajectory, by relations between its poses (Kuemmerle et al. 2009).
     Relations(RelationsArgs),
     /// A map, by its occupied cells against the true map's.
     Map(MapsArgs),
+}
+
+/// `trundle eval trajectory`
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Example: trundle eval trajectory groundtruth.txt out/slam/trajectory.txt --out out/eval\n\n\
+    The absolute error is taken after alignment, the relative one needs none. Defaults are evo's."
+)]
+pub struct TrajectoryArgs {
+    /// The true trajectory.
+    pub reference: PathBuf,
+    /// The trajectory to judge.
+    pub estimate: PathBuf,
+    /// How the estimate is laid over the reference for the absolute error.
+    #[arg(long, value_name = "HOW", value_enum, default_value_t = AlignArg::Se3)]
+    pub align: AlignArg,
+    /// Length of the motions of the relative error, in --unit.
+    #[arg(long, value_name = "N", default_value_t = 1.0)]
+    pub delta: f64,
+    /// Unit of --delta.
+    #[arg(long, value_enum, default_value_t = DeltaUnit::Frames)]
+    pub unit: DeltaUnit,
+    /// Take a motion from every pose on, so that motions overlap.
+    #[arg(long)]
+    pub all_pairs: bool,
+    /// Poses further apart in time than this are not compared, s.
+    #[arg(long, value_name = "S", default_value_t = 0.01)]
+    pub max_difference: f64,
+    /// Write report.html, its pictures and summary.json into this folder; the last one is kept in DIR.1
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<OutputDirArg>,
+    /// What every command takes.
+    #[command(flatten)]
+    pub common: Common,
+}
+
+/// How an estimate is laid over the reference.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum AlignArg {
+    /// Rotation and translation.
+    Se3,
+    /// Rotation, translation and scale: for one camera without depth.
+    Sim3,
+    /// Both are in one frame.
+    None,
+}
+
+/// What counts the length of a motion.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum DeltaUnit {
+    /// Poses.
+    Frames,
+    /// Seconds.
+    S,
+    /// Metres along the estimate.
+    M,
 }
 
 /// `trundle eval relations`
@@ -39,9 +98,9 @@ pub struct RelationsArgs {
     /// A pose stands for a time at most so far away, s.
     #[arg(long, value_name = "S", default_value_t = 0.01)]
     pub max_difference: f64,
-    /// Write summary.json into this folder.
+    /// Write summary.json into this folder; the last one is kept in DIR.1
     #[arg(long, value_name = "DIR")]
-    pub out: Option<PathBuf>,
+    pub out: Option<OutputDirArg>,
     /// What every command takes.
     #[command(flatten)]
     pub common: Common,
@@ -67,9 +126,9 @@ pub struct MapsArgs {
     /// Occupied cells agree when their centres are at most so far apart, m.
     #[arg(long, value_name = "M", default_value_t = 0.05)]
     pub within: f64,
-    /// Write summary.json into this folder.
+    /// Write summary.json into this folder; the last one is kept in DIR.1
     #[arg(long, value_name = "DIR")]
-    pub out: Option<PathBuf>,
+    pub out: Option<OutputDirArg>,
     /// What every command takes.
     #[command(flatten)]
     pub common: Common,
@@ -79,6 +138,7 @@ impl EvalArgs {
     /// What every command takes.
     pub fn common(&self) -> &Common {
         match &self.which {
+            Which::Trajectory(args) => &args.common,
             Which::Relations(args) => &args.common,
             Which::Map(args) => &args.common,
         }

@@ -4,10 +4,10 @@ use super::args::MapsArgs;
 use super::named_error::named_error;
 use crate::outcome::Outcome;
 use crate::{console, logging};
-use trundle::app::AppError;
+use trundle::app::{AppError, read_map};
 use trundle::core::Pose2;
 use trundle::eval::{EvalError, MapAgreement, MapAgreementConfig, align_maps, map_agreement};
-use trundle::io::{Summary, read_map};
+use trundle::io::Summary;
 
 /// `trundle eval map`.
 pub fn run(args: &MapsArgs) -> Result<Outcome, AppError> {

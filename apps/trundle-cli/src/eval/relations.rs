@@ -5,13 +5,16 @@ use super::named_error::named_error;
 use crate::outcome::Outcome;
 use crate::{console, logging};
 use std::path::Path;
-use trundle::app::AppError;
+use trundle::app::{AppError, read_trajectory};
 use trundle::core::{Pose3, Stamp};
 use trundle::eval::{
     EvalError, Relation, RelationConfig, RelationError, RelationSets, RelationSetsConfig, relation_error,
     relations_from_text,
 };
-use trundle::io::{Summary, read_odometry, read_trajectory};
+use trundle::io::{Summary, read_text};
+
+/// Share of poses that may have the stamp of the pose before. Above it the stamps are rounded, and a stamp names several poses. Source: ours.
+const MAX_REPEATED_STAMPS_SHARE: f64 = 0.1;
 
 /// `trundle eval relations`.
 pub fn run(args: &RelationsArgs) -> Result<Outcome, AppError> {
@@ -26,8 +29,7 @@ pub fn run(args: &RelationsArgs) -> Result<Outcome, AppError> {
         }
     }
     if judged.is_empty() {
-        let problem = format!("{}: no relation in it", args.reference.display());
-        return Err(AppError::Input(problem));
+        return Err(AppError::Input(format!("{}: {}", args.reference.display(), no_relation(args)?)));
     }
     if let Some(out) = &args.out {
         let folder = logging::output_folder(out)?;
@@ -40,12 +42,22 @@ pub fn run(args: &RelationsArgs) -> Result<Outcome, AppError> {
     Ok(Outcome::Reached)
 }
 
+/// Why a reference has no relation.
+fn no_relation(args: &RelationsArgs) -> Result<String, AppError> {
+    if args.file {
+        return Ok("no relation in it, expected lines of: from_time to_time x y z roll pitch yaw".to_owned());
+    }
+    let (length, near) = (path_length(&args.reference)?, RelationSetsConfig::default().near);
+    Ok(format!(
+        "its path is {length:.2} m long, expected at least {near} m: relations are between poses {near} m apart"
+    ))
+}
+
 /// The relations with their names, the last all of them.
 fn sets(args: &RelationsArgs) -> Result<Vec<(&'static str, Vec<Relation>)>, AppError> {
     let path = &args.reference;
     if args.file {
-        let text = std::fs::read_to_string(path)
-            .map_err(|error| AppError::Input(format!("{}: {error}", path.display())))?;
+        let text = read_text(path)?;
         let relations = relations_from_text(&text)
             .map_err(|error| AppError::Input(format!("{}, {error}", path.display())))?;
         return Ok(vec![("all", relations)]);
@@ -56,15 +68,24 @@ fn sets(args: &RelationsArgs) -> Result<Vec<(&'static str, Vec<Relation>)>, AppE
     Ok(vec![("1 m", sets.near), ("10 m", sets.far), ("loops", sets.loops), ("all", all)])
 }
 
-/// Lines of `t x y theta`, or a TUM trajectory.
-fn trajectory(path: &Path) -> Result<Vec<(Stamp, Pose3)>, AppError> {
-    let text = std::fs::read_to_string(path).unwrap_or_default();
-    let first = text.lines().map(str::trim).find(|line| !line.is_empty() && !line.starts_with('#'));
-    if first.is_some_and(|line| line.split_whitespace().count() == 4) {
-        let planar = read_odometry(path)?;
-        return Ok(planar.into_iter().map(|(stamp, pose)| (stamp, Pose3::from_pose2(pose))).collect());
+/// Refuses a trajectory in which many poses have one stamp: such a pose cannot be found by its time.
+pub(super) fn trajectory(path: &Path) -> Result<Vec<(Stamp, Pose3)>, AppError> {
+    let poses = read_trajectory(path)?;
+    let repeated = poses.windows(2).filter(|pair| pair[0].0 == pair[1].0).count();
+    if repeated as f64 > MAX_REPEATED_STAMPS_SHARE * poses.len() as f64 {
+        let (path, count) = (path.display(), poses.len());
+        return Err(AppError::Input(format!(
+            "{path}: {repeated} of {count} poses have the timestamp of the pose before (are the timestamps rounded?), expected at \
+             most one in ten: poses are found by their time"
+        )));
     }
-    Ok(read_trajectory(path)?)
+    Ok(poses)
+}
+
+/// The length of a reference's path, m.
+fn path_length(path: &Path) -> Result<f64, AppError> {
+    let poses = trajectory(path)?;
+    Ok(poses.windows(2).map(|pair| (pair[1].1.translation - pair[0].1.translation).norm()).sum())
 }
 
 fn rows(judged: &[(&str, RelationError)]) -> Vec<Vec<String>> {

@@ -1,6 +1,7 @@
 //! The command line of `trundle plan`.
 
 use crate::common_args::{Common, PoseArg, RobotArgs};
+use crate::output_args::OutputDirArg;
 use clap::Args;
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -48,9 +49,9 @@ pub struct PlanArgs {
     /// The robot's settings.
     #[command(flatten)]
     pub robot: RobotArgs,
-    /// Folder for the results.
+    /// Folder for the results; the last run in it is kept as DIR.1
     #[arg(long, value_name = "DIR", default_value = "out/plan")]
-    pub out: PathBuf,
+    pub out: OutputDirArg,
     /// What every command takes.
     #[command(flatten)]
     pub common: Common,

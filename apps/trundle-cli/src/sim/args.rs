@@ -1,6 +1,7 @@
 //! The command line of `trundle sim`.
 
-use crate::common_args::{Common, PoseArg, UpArg};
+use crate::common_args::{Common, MapImageArg, MeshArgs, PoseArg};
+use crate::output_args::{OutputDirArg, OutputFileArg};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 use trundle::app::AppError;
@@ -24,9 +25,9 @@ pub struct SimArgs {
     /// Where the robot starts, world frame: m, m, deg [default: the scene's, or where there is room]
     #[arg(long, value_name = "X,Y,DEG", allow_hyphen_values = true)]
     pub start: Option<PoseArg>,
-    /// The axis that points up in a .glb or .gltf.
-    #[arg(long, value_enum, value_name = "AXIS", default_value_t = UpArg::Y)]
-    pub up: UpArg,
+    /// Axis, scale and floor of a mesh.
+    #[command(flatten)]
+    pub mesh: MeshArgs,
     /// Drive by commands, a line each: t v omega (s, m/s, rad/s).
     #[arg(long, value_name = "FILE", group = "driver")]
     pub drive: Option<PathBuf>,
@@ -39,24 +40,35 @@ pub struct SimArgs {
     /// Stop after so many seconds of the robot's time, or when the drive is over [default: 5 where there is no drive]
     #[arg(long, value_name = "S", value_parser = seconds, allow_negative_numbers = true)]
     pub duration: Option<f64>,
-    /// Write a TUM RGB-D folder: images, ground truth, odometry, calibration, the true map.
+    /// Write a TUM RGB-D folder: images, ground truth, odometry, calibration, the true map; the last one is kept as DIR.1
     #[arg(long, value_name = "DIR")]
-    pub record: Option<PathBuf>,
-    /// Write the true occupancy grid; without a drive, duration or recording, do nothing else.
-    #[arg(long, value_name = "FILE.yaml")]
-    pub map: Option<PathBuf>,
-    /// Side of the map's cells, m.
-    #[arg(long, value_name = "M", default_value_t = 0.05, value_parser = positive, allow_negative_numbers = true)]
-    pub resolution: f64,
-    /// Heights between which something is in the way, m, for the map [default: the robot's]
-    #[arg(long, num_args = 2, value_names = ["LOW", "HIGH"], value_parser = number, allow_negative_numbers = true)]
-    pub band: Option<Vec<f64>>,
+    pub record: Option<OutputDirArg>,
+    /// The true map.
+    #[command(flatten)]
+    pub true_map: TrueMapArgs,
     /// Sensors, their faults and their noise.
     #[command(flatten)]
     pub sensors: SensorArgs,
     /// What every command takes.
     #[command(flatten)]
     pub common: Common,
+}
+
+/// The file of the true map.
+#[derive(Debug, Args)]
+pub struct TrueMapArgs {
+    /// Write the true occupancy grid; without a drive, duration or recording, do nothing else.
+    #[arg(long, value_name = "FILE.yaml")]
+    pub map: Option<OutputFileArg>,
+    /// Format of the picture of that map.
+    #[arg(long, value_enum, value_name = "FORMAT", default_value_t = MapImageArg::Pgm)]
+    pub map_image: MapImageArg,
+    /// Side of the map's cells, m.
+    #[arg(long, value_name = "M", default_value_t = 0.05, value_parser = positive, allow_negative_numbers = true)]
+    pub resolution: f64,
+    /// Heights between which something is in the way, m, for the map [default: the robot's]
+    #[arg(long, num_args = 2, value_names = ["LOW", "HIGH"], value_parser = number, allow_negative_numbers = true)]
+    pub band: Option<Vec<f64>>,
 }
 
 /// The sensors of the simulated robot.
@@ -146,20 +158,20 @@ impl LaserArg {
 impl SimArgs {
     /// How the scene is made.
     pub fn scene_options(&self) -> SceneOptions {
-        SceneOptions { seed: self.seed, up: self.up.axis(), start: self.start.map(|start| start.0) }
+        SceneOptions { seed: self.seed, mesh: self.mesh.options(), start: self.start.map(|start| start.0) }
     }
 }
 
 impl SimArgs {
     /// Whether the true map is written or shown.
     pub fn needs_map(&self) -> bool {
-        self.map.is_some() || self.record.is_some() || self.keys
+        self.true_map.map.is_some() || self.record.is_some() || self.keys
     }
 
     /// Whether the map is all that is asked for.
     pub fn wants_only_map(&self) -> bool {
         let drives = self.drive.is_some() || self.follow.is_some() || self.keys;
-        self.map.is_some() && !drives && self.duration.is_none() && self.record.is_none()
+        self.true_map.map.is_some() && !drives && self.duration.is_none() && self.record.is_none()
     }
 }
 

@@ -1,12 +1,13 @@
 //! The file of `trundle sim --map`.
 
+use crate::output_args::write_file;
 use std::path::Path;
 use trundle::app::AppError;
 use trundle::core::OccupancyGrid;
-use trundle::io::{OutputFolder, write_map};
+use trundle::io::{MapImage, map_picture, map_yaml};
 
-/// Writes a map as `file` (map_server's YAML) and a PGM beside it.
-pub fn write(file: &Path, grid: &OccupancyGrid) -> Result<(), AppError> {
+/// Writes a map as `file` (map_server's YAML) and a picture beside it.
+pub fn write(file: &Path, grid: &OccupancyGrid, image: MapImage) -> Result<(), AppError> {
     let is_yaml = file.extension().is_some_and(|extension| extension == "yaml");
     let Some(name) = file.file_stem().and_then(|stem| stem.to_str()).filter(|_| is_yaml) else {
         return Err(AppError::Input(format!(
@@ -14,9 +15,7 @@ pub fn write(file: &Path, grid: &OccupancyGrid) -> Result<(), AppError> {
             file.display()
         )));
     };
-    let parent = file.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let folder = OutputFolder::create(parent)?;
-    write_map(&folder, name, grid)?;
-    folder.commit()?;
-    Ok(())
+    let (picture, bytes) = map_picture(name, grid, image)?;
+    write_file(&file.with_file_name(&picture), &bytes)?;
+    write_file(file, map_yaml(grid, &picture).as_bytes())
 }

@@ -1,6 +1,7 @@
 //! The command line of `trundle slam`.
 
-use crate::common_args::Common;
+use crate::common_args::{Common, MapImageArg};
+use crate::output_args::OutputDirArg;
 use clap::Args;
 use std::path::PathBuf;
 
@@ -10,9 +11,10 @@ use std::path::PathBuf;
     after_help = "Example: trundle slam ../shared/data/tum_fr1_rpy_400 --height 1.57 --tilt 33 --roll=-37"
 )]
 pub struct SlamArgs {
-    /// A TUM RGB-D folder: rgb.txt, depth.txt, optional groundtruth.txt and odometry.txt.
+    /// A TUM RGB-D folder: rgb.txt and depth.txt, or associations.txt; optional groundtruth.txt and odometry.txt.
     pub dir: PathBuf,
-    /// Preset freiburg1, freiburg2, freiburg3, kinect_v2, or a TOML file [default: DIR/camera.toml, else freiburg1]
+    /// Preset freiburg1, freiburg2, freiburg3, kinect_v2, or a camera file of trundle, ORB-SLAM, stella_vslam, ROS or Open3D
+    /// [default: the one in DIR, camera.toml first, else freiburg1 with a warning]
     #[arg(long, value_name = "PRESET|FILE")]
     pub camera: Option<String>,
     /// Depth units a metre [default: the camera's]
@@ -36,22 +38,19 @@ pub struct SlamArgs {
     /// Only locate the camera in the map given: it stays as it is
     #[arg(long, requires = "map")]
     pub localise: bool,
+    /// Format of the map's picture.
+    #[arg(long, value_enum, value_name = "FORMAT", default_value_t = MapImageArg::Pgm)]
+    pub map_image: MapImageArg,
+    /// Recognise places by this vocabulary, in trundle's form [default: the built-in one]
+    #[arg(long, value_name = "FILE")]
+    pub vocabulary: Option<PathBuf>,
     /// Seed of the random sampling.
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,
-    /// Folder for the results.
+    /// Folder for the results; the last run in it is kept as DIR.1
     #[arg(long, value_name = "DIR", default_value = "out/slam")]
-    pub out: PathBuf,
+    pub out: OutputDirArg,
     /// What every command takes.
     #[command(flatten)]
     pub common: Common,
-}
-
-impl SlamArgs {
-    /// The camera that was asked for, else the sequence's own, else freiburg1.
-    pub fn camera(&self) -> String {
-        let own = self.dir.join("camera.toml");
-        let brought = || own.exists().then(|| own.display().to_string());
-        self.camera.clone().or_else(brought).unwrap_or_else(|| "freiburg1".to_owned())
-    }
 }

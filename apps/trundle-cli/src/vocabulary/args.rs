@@ -1,6 +1,7 @@
 //! The command line of `trundle vocabulary`.
 
 use crate::common_args::Common;
+use crate::output_args::OutputFileArg;
 use clap::{Args, Subcommand};
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -104,7 +105,7 @@ pub struct TrainArgs {
     pub seed: u64,
     /// The file to write.
     #[arg(long, value_name = "FILE")]
-    pub out: PathBuf,
+    pub out: OutputFileArg,
     /// What every command takes.
     #[command(flatten)]
     pub common: Common,
@@ -125,7 +126,7 @@ pub struct ExportArgs {
     pub file: Option<PathBuf>,
     /// The text file to write.
     #[arg(long, value_name = "FILE")]
-    pub dbow2: PathBuf,
+    pub dbow2: OutputFileArg,
 }
 
 /// `trundle vocabulary import`
@@ -136,7 +137,7 @@ pub struct ImportArgs {
     pub text: PathBuf,
     /// The file to write.
     #[arg(long, value_name = "FILE")]
-    pub out: PathBuf,
+    pub out: OutputFileArg,
 }
 
 /// `trundle vocabulary recall`

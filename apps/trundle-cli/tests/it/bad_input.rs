@@ -88,3 +88,40 @@ fn folders_and_recordings_that_are_none() {
     assert!(refusal(&["replay", text(&scratch.path().join("gone.mcap"))]).contains("gone.mcap"));
     assert!(refusal(&["demo", "--out", text(&file)]).contains("garbage.mcap"));
 }
+
+#[test]
+fn a_file_of_another_kind_is_named_whatever_its_name_by_every_command() {
+    let scratch = tempfile::tempdir().unwrap();
+    let file = |name: &str, bytes: &[u8]| {
+        let path = scratch.path().join(name);
+        fs::write(&path, bytes).unwrap();
+        path
+    };
+    let ros1 = file("run.log", b"#ROSBAG V2.0\n\x45\0\0\0");
+    assert!(refusal(&["map", text(&ros1)]).contains("run.log: "), "a ROS 1 bag without a scan");
+    let picture = file("map.yaml", b"P5\n2 2\n255\n\0\0\0\0");
+    let mesh = file("room.glb", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    let empty = file("run.mcap", b"");
+    let poses = ["--from=1,1,0", "--to=2,1,0"];
+    for (file, words) in [
+        (&ros1, ["this is a ROS 1 bag", "`rosbags-convert"]),
+        (&picture, ["this is a PGM picture", ""]),
+        (&mesh, ["this is an OBJ mesh", ".glb or .gltf"]),
+        (&empty, ["this is an empty file", ""]),
+    ] {
+        let file = text(file);
+        for arguments in [
+            &["slam", file][..],
+            &["replay", file],
+            &["plan", file, poses[0], poses[1]],
+            &["dock", file, poses[0], poses[1]],
+            &["sim", file],
+            &["demo", "--scene", file],
+            &["eval", "map", file, file],
+        ] {
+            let sentence = refusal(arguments);
+            assert!(words.iter().all(|word| sentence.contains(word)), "{arguments:?}: {sentence}");
+        }
+    }
+    assert!(refusal(&["plan", text(&picture), poses[0], poses[1]]).contains("give the map's YAML file"));
+}

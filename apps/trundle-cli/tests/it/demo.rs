@@ -1,4 +1,4 @@
-use crate::program::{summary, text, trundle};
+use crate::program::{refusal, summary, text, trundle};
 use std::fs;
 
 /// The whole robot in closed loop: there on its own senses, nothing touched, and every promised file written.
@@ -6,7 +6,8 @@ use std::fs;
 fn the_demo_reaches_its_goal_and_replays_byte_for_byte() {
     let scratch = tempfile::tempdir().unwrap();
     let (live, again) = (scratch.path().join("live"), scratch.path().join("again"));
-    let output = trundle(&["demo", "--direct", "--seed", "2", "--quiet", "--out", text(&live)]);
+    let output =
+        trundle(&["demo", "--direct", "--seed", "2", "--quiet", "--record", "all", "--out", text(&live)]);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     assert!(output.stdout.is_empty());
 
@@ -17,6 +18,14 @@ fn the_demo_reaches_its_goal_and_replays_byte_for_byte() {
     assert!(numbers["path_length_m"].as_f64().unwrap() > 5.0, "{numbers}");
 
     let recording = live.join("recording.mcap");
+    let cut = scratch.path().join("cut.mcap");
+    let bytes = fs::read(&recording).unwrap();
+    fs::write(&cut, &bytes[..bytes.len() / 3]).unwrap();
+    assert!(refusal(&["replay", text(&cut), "--out", text(&again)]).contains("--recover"));
+    let output = trundle(&["replay", text(&cut), "--recover", "--quiet", "--out", text(&again)]);
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    assert!(said.contains(&format!("cut at byte {}; ", bytes.len() / 3)), "{said}");
     let output = trundle(&["replay", text(&recording), "--threads", "1", "--quiet", "--out", text(&again)]);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     for name in ["map.pgm", "map.yaml", "trajectory.txt", "groundtruth.txt", "report.html", "recording.mcap"]
@@ -24,4 +33,23 @@ fn the_demo_reaches_its_goal_and_replays_byte_for_byte() {
         let bytes = |folder: &std::path::Path| fs::read(folder.join(name)).unwrap();
         assert!(bytes(&live) == bytes(&again), "{name} differs");
     }
+}
+
+#[test]
+fn a_recording_has_no_images_unless_it_is_asked_for_all() {
+    let scratch = tempfile::tempdir().unwrap();
+    let record = |what: &[&str]| {
+        let out = scratch.path().join(what.join("-"));
+        let args = ["demo", "--direct", "--time-limit", "4", "--out", text(&out)];
+        let output = trundle(&[&args[..], what].concat());
+        assert_eq!(output.status.code(), Some(1), "{}", String::from_utf8_lossy(&output.stderr));
+        (out.join("recording.mcap"), String::from_utf8(output.stdout).unwrap())
+    };
+    let (events, said) = record(&[]);
+    assert!(said.contains("Records events without images") && said.contains("MB in 4 s"), "{said}");
+    let bytes = fs::metadata(&events).unwrap().len();
+    assert!((50_000..2_000_000).contains(&bytes), "{bytes} bytes in 4 s");
+    assert!(refusal(&["replay", text(&events)]).contains("--record all"));
+    let (nothing, said) = record(&["--record", "none"]);
+    assert!(said.contains("Nothing is recorded.") && !nothing.exists(), "{said}");
 }

@@ -82,7 +82,7 @@ fn bad_tasks_are_refused_with_their_reason() {
     let shaped = |corners: &str| said(&[text(&file), "--footprint", corners]);
     assert!(shaped("0.3,0.2 -0.3,0.2 0,0.1 -0.3,-0.2 0.3,-0.2").contains("expected convex"));
     assert!(shaped("0,0 1,0 2,0").contains("area is 0 m^2"));
-    assert!(said(&["nowhere.txt"]).contains("nowhere.txt: cannot read it"));
+    assert!(said(&["nowhere.txt"]).contains("cannot read nowhere.txt: it does not exist"));
     fs::write(&file, PROBLEM.replace("start -0.1 0 90", "start NaN 0 90")).unwrap();
     assert!(said(&[text(&file)]).contains("line 4"));
     fs::write(&file, format!("{PROBLEM}\nwall 0 0 1 NaN\n")).unwrap();

@@ -62,13 +62,13 @@ fn a_full_disk_ends_the_recording_and_not_the_mission() {
     let scratch = tempfile::tempdir().unwrap();
     let out = scratch.path().join("out");
     let script = format!(
-        "trap '' XFSZ; ulimit -f 8000; exec {} demo --direct --seed 2 --out {}",
+        "trap '' XFSZ; ulimit -f 8000; exec {} demo --direct --seed 2 --record all --out {}",
         env!("CARGO_BIN_EXE_trundle"),
         text(&out)
     );
     let output = Command::new("sh").args(["-c", &script]).stdin(Stdio::null()).output().unwrap();
     let said = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(2), "{said}");
+    assert_eq!(output.status.code(), Some(3), "{said}");
     assert!(said.contains("recording.mcap") && said.contains("the robot goes on"), "{said}");
     assert_eq!(summary(&out)["contacts"], 0);
     assert!(summary(&out)["goal_error_m"].as_f64().unwrap() < 0.05);

@@ -3,13 +3,14 @@
 use crate::program::{refusal, trundle};
 
 /// Every command and subcommand.
-const COMMANDS: [&[&str]; 26] = [
+const COMMANDS: [&[&str]; 31] = [
     &[],
     &["demo"],
     &["replay"],
     &["slam"],
     &["map"],
     &["eval"],
+    &["eval", "trajectory"],
     &["eval", "relations"],
     &["eval", "map"],
     &["plan"],
@@ -30,6 +31,10 @@ const COMMANDS: [&[&str]; 26] = [
     &["vocabulary", "export"],
     &["vocabulary", "recall"],
     &["config"],
+    &["data"],
+    &["data", "fetch-list"],
+    &["completions"],
+    &["man"],
 ];
 
 fn help(command: &[&str]) -> String {
@@ -73,11 +78,75 @@ fn commands_that_have_a_robot_take_its_file_and_single_keys() {
 }
 
 #[test]
-fn the_version_is_the_packages() {
-    let output = trundle(&["--version"]);
-    assert_eq!(output.status.code(), Some(0));
-    let text = String::from_utf8(output.stdout).unwrap();
-    assert_eq!(text.trim(), format!("trundle {}", env!("CARGO_PKG_VERSION")));
+fn the_version_is_the_packages_and_the_long_one_names_the_commit() {
+    let package = format!("trundle {}", env!("CARGO_PKG_VERSION"));
+    assert_eq!(output_of(&["-V"]).trim(), package);
+    let long = output_of(&["--version"]);
+    let rest = long.trim().strip_prefix(&package).expect("the package's version first");
+    let commit = rest.strip_prefix(" (").and_then(|rest| rest.strip_suffix(')'));
+    let is_commit = |text: &str| text.len() >= 7 && text.chars().all(|c| c.is_ascii_hexdigit());
+    assert!(rest.is_empty() || commit.is_some_and(is_commit), "{long}");
+}
+
+fn output_of(args: &[&str]) -> String {
+    let output = trundle(args);
+    assert_eq!(output.status.code(), Some(0), "{args:?}");
+    String::from_utf8(output.stdout).unwrap()
+}
+
+#[test]
+fn completions_of_a_shell_name_every_command() {
+    for shell in ["bash", "zsh", "fish"] {
+        let script = output_of(&["completions", shell]);
+        for command in COMMANDS.iter().filter(|command| command.len() == 1) {
+            assert!(script.contains(command[0]), "{shell}: {command:?}");
+        }
+    }
+    assert!(refusal(&["completions", "tcsh"]).contains("bash"), "the known shells are listed");
+}
+
+#[test]
+fn the_fetch_list_names_origin_licence_and_command_of_each_data_set() {
+    let list = output_of(&["data", "fetch-list"]);
+    for fact in ["barn", "MIT-0", "CC0-1.0", "CC BY 4.0", "git clone https://", "trundle experiment house"] {
+        assert!(list.contains(fact), "{fact}: {list}");
+    }
+    let missing = refusal(&["experiment", "mrpb", "--data", "no/such/folder"]);
+    assert!(
+        missing.contains("start_goal.csv is not there") && missing.contains("trundle data fetch-list"),
+        "{missing}"
+    );
+}
+
+#[test]
+fn every_command_has_a_man_page() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("man1");
+    output_of(&["man", out.to_str().unwrap()]);
+    for command in COMMANDS {
+        let name = ["trundle"].iter().chain(command).copied().collect::<Vec<_>>().join("-");
+        let page = std::fs::read_to_string(out.join(format!("{name}.1"))).unwrap();
+        assert!(page.contains(".SH SYNOPSIS"), "{name}: {page}");
+    }
+}
+
+#[test]
+fn a_man_page_that_cannot_be_written_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("man1");
+    std::fs::write(&file, "").unwrap();
+    assert!(refusal(&["man", file.to_str().unwrap()]).contains("man1"));
+}
+
+#[test]
+fn there_is_no_colour_where_there_is_no_terminal() {
+    for args in
+        [&["--help"][..], &["demo", "--sed"], &["plan", "nowhere.yaml", "--from=0,0,0", "--goal=1,0,0"]]
+    {
+        let output = trundle(args);
+        let printed = [output.stdout, output.stderr].concat();
+        assert!(!printed.is_empty() && !printed.contains(&0x1b), "{args:?}");
+    }
 }
 
 #[test]

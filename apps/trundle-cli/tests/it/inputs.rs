@@ -62,6 +62,35 @@ fn a_map_is_judged_where_it_lies_and_where_it_fits() {
 }
 
 #[test]
+fn the_lines_of_a_log_are_chosen_by_name_and_named_in_the_summary() {
+    let scratch = tempfile::tempdir().unwrap();
+    let log = scratch.path().join("two.log");
+    let walls = |i: usize| format!("{:.3}", (2.0 / (0.1 * i as f64 - 1.5).cos().abs()).min(6.0));
+    let ranges: Vec<String> = (0..31).map(walls).collect();
+    let sweep =
+        |name: &str, t: usize| format!("{name} 0 -1.5 3 0.1 8 0.01 0 31 {} 0 {t}.0 h 0\n", ranges.join(" "));
+    let odometry = |t: usize| format!("ODOM 0.{t} 0 0 0 0 0 {t}.0 h 0\n");
+    let lines = (1..6).map(|t| [odometry(t), sweep("RAWLASER1", t), sweep("RAWLASER3", t)].concat());
+    fs::write(&log, format!("\u{feff}{}{}", lines.collect::<String>(), sweep("RAWLASER3", 6))).unwrap();
+    let out = scratch.path().join("out");
+    let run = |more: &[&str]| {
+        let output = trundle(&[&["map", text(&log), "--particles=2", "--out", text(&out)], more].concat());
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        (summary(&out), String::from_utf8(output.stdout).unwrap())
+    };
+    let (numbers, table) = run(&[]);
+    assert_eq!((&numbers["scan_topic"], &numbers["odometry_topic"]), (&"RAWLASER3".into(), &"ODOM".into()));
+    assert_eq!(numbers["topics_left"], serde_json::json!({ "RAWLASER1": 5 }));
+    assert!(table.contains("topics left alone") && table.contains("RAWLASER1 (5)"), "{table}");
+    assert_eq!(run(&["--scan-topic=RAWLASER1"]).0["scan_topic"], "RAWLASER1");
+    let sentence = refusal(&["map", text(&log), "--scan-topic=/scan"]);
+    assert!(
+        sentence.contains("no scan on /scan, expected one of: RAWLASER1 (5), RAWLASER3 (6)"),
+        "{sentence}"
+    );
+}
+
+#[test]
 fn inputs_without_poses_are_refused_by_name() {
     let scratch = tempfile::tempdir().unwrap();
     let dir = scratch.path().join("rgbd");
@@ -74,4 +103,42 @@ fn inputs_without_poses_are_refused_by_name() {
     fs::write(&relations, "1 2 3\n").unwrap();
     let sentence = refusal(&["eval", "relations", "--file", text(&relations), text(&relations)]);
     assert!(sentence.contains("a.relations, line 1: "), "{sentence}");
+}
+
+/// The range from a place to the walls of a room of 6 x 4 m with a box at one of them, m.
+fn room_range(x: f64, y: f64, heading: f64) -> f64 {
+    let is_free = |x: f64, y: f64| {
+        let is_in_box = (4.0..5.0).contains(&x) && y > 3.0;
+        (0.0..6.0).contains(&x) && (0.0..4.0).contains(&y) && !is_in_box
+    };
+    let along = |r: &f64| is_free(x + r * heading.cos(), y + r * heading.sin());
+    (1..800).map(|k| 0.01 * f64::from(k)).find(|r| !along(r)).unwrap_or(8.0)
+}
+
+#[test]
+fn a_laser_that_hangs_upside_down_is_named() {
+    let scratch = tempfile::tempdir().unwrap();
+    let log = scratch.path().join("mirrored.log");
+    let scan = |i: i32| {
+        let at = f64::from(i) * 0.15;
+        let (x, y) = (2.0 + at.sin(), 1.5 + 0.6 * (1.0 - at.cos()));
+        let ranges: Vec<String> = (0..72)
+            .map(|k| format!("{:.3}", room_range(x, y, at + 3.1 - f64::from(k) * 5_f64.to_radians())))
+            .collect();
+        let pose = format!("{x} {y} {at}");
+        let (ranges, step) = (ranges.join(" "), 5_f64.to_radians());
+        format!("ROBOTLASER1 0 -3.1 6.2 {step} 12 0.01 0 72 {ranges} 0 {pose} {pose} 0 0 0 0 0 {i}.0 h 0\n")
+    };
+    fs::write(&log, (0..80).map(scan).collect::<String>()).unwrap();
+    let out = scratch.path().join("out");
+    let run = |more: &[&str]| {
+        let output = trundle(&[&["map", text(&log), "--particles=5", "--out", text(&out)], more].concat());
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        String::from_utf8(output.stderr).unwrap()
+    };
+    let warned = run(&[]);
+    assert!(warned.contains("the laser seems to be mounted upside down: try --upside-down"), "{warned}");
+    assert!(summary(&out)["mount_hint"].as_str().is_some_and(|hint| hint.contains("--upside-down")));
+    let right = run(&["--upside-down"]);
+    assert!(!right.contains("contradict") && summary(&out)["mount_hint"].is_null(), "{right}");
 }

@@ -29,15 +29,19 @@ fn replay_is_the_same(scratch: &Path, live: &Path) {
     assert_eq!(without_clock(live), without_clock(&again));
 }
 
+/// The arguments of a run in real time of the robot in a file, recorded into a folder.
+fn demo<'a>(robot: &'a Path, live: &'a Path) -> [&'a str; 9] {
+    ["demo", "--real-time", "--record", "all", "--quiet", "--config", text(robot), "--out", text(live)]
+}
+
 /// Whatever the threads did on however loaded a machine: nothing was touched, and it can be done again.
 #[test]
 fn a_run_in_real_time_replays_byte_for_byte() {
     let scratch = tempfile::tempdir().unwrap();
     let (live, robot) = (scratch.path().join("live"), scratch.path().join("robot.toml"));
     fs::write(&robot, SMALL_CAMERA).unwrap();
-    let goal = ["--goal", "0.6,0,0"];
-    let args = ["demo", "--real-time", "--direct", "--quiet", "--config", text(&robot), "--out", text(&live)];
-    let output = trundle(&[&args[..], &goal].concat());
+    let direct = ["--direct", "--goal", "0.6,0,0"];
+    let output = trundle(&[&demo(&robot, &live)[..], &direct].concat());
     assert!(output.status.code() != Some(2), "{}", String::from_utf8_lossy(&output.stderr));
     let numbers = summary(&live);
     assert_eq!(numbers["contacts"], 0);
@@ -53,7 +57,7 @@ fn the_user_may_end_a_run_in_real_time() {
     let (live, robot) = (scratch.path().join("live"), scratch.path().join("robot.toml"));
     fs::write(&robot, SMALL_CAMERA).unwrap();
     let mut child = Command::new(env!("CARGO_BIN_EXE_trundle"))
-        .args(["demo", "--real-time", "--quiet", "--config", text(&robot), "--out", text(&live)])
+        .args(demo(&robot, &live))
         .stdin(Stdio::null())
         .spawn()
         .unwrap();
@@ -64,7 +68,8 @@ fn the_user_may_end_a_run_in_real_time() {
     while child.try_wait().unwrap().is_none() && asked.elapsed() < Duration::from_secs(60) {
         std::thread::sleep(Duration::from_millis(50));
     }
-    assert_eq!(child.wait().unwrap().code(), Some(1), "not arrived");
+    assert_eq!(child.wait().unwrap().code(), Some(130), "ended by Ctrl-C");
     assert_eq!(summary(&live)["state"], "stopped: the user ended the run");
+    assert_eq!(summary(&live)["interrupted"], true);
     replay_is_the_same(scratch.path(), &live);
 }

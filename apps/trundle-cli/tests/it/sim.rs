@@ -176,7 +176,8 @@ fn numbers_and_places_that_cannot_be() {
     assert_eq!(fs::read_to_string(taken).unwrap(), "mine");
     file(scratch.path(), "rgb.txt", "# timestamp filename");
     let sentence = refusal(&["sim", "demo", "--record", text(scratch.path())]);
-    assert!(sentence.contains("a recording is there already"), "{sentence}");
+    assert!(sentence.contains("files that trundle did not write there"), "{sentence}");
+    assert!(scratch.path().join("rgb.txt").exists());
     let sentence = refusal(&["sim", "room", "--start=100,0,0", "--duration", "0.1"]);
     assert!(
         sentence.contains("start at (100.000, 0.000) m is outside scene 'room', which reaches from (-3."),

@@ -79,10 +79,25 @@ fn scenes_that_are_missing_or_have_no_surface() {
         refused(folder, "empty.gltf", empty, &[]),
         "trundle: empty.gltf: has no triangles in its scene"
     );
-    let sentence = refused(folder, "bare.gltf", TRIANGLE, &[]);
-    assert!(sentence.contains("bare.gltf: ") && sentence.contains("gone.png"), "{sentence}");
     let sentence = refused(folder, "wrong.glb", "no glTF at all", &[]);
     assert!(sentence.contains("wrong.glb: "), "{sentence}");
+}
+
+#[test]
+fn a_scene_without_its_texture_is_grey_and_warned_of_once() {
+    let scratch = tempfile::tempdir().unwrap();
+    let path = file(scratch.path(), "bare.gltf", TRIANGLE);
+    let run = |more: &[&str]| {
+        let fixed = ["sim", text(&path), "--start=0.3,0.3,0", "--duration=0.1"];
+        let output = trundle(&[&fixed[..], more].concat());
+        assert!(output.status.success(), "{}", said(&output));
+        said(&output)
+    };
+    let plain = run(&[]);
+    assert_eq!(plain.matches("gone.png").count(), 1, "{plain}");
+    assert!(plain.contains("textures that cannot be read are grey: 1: image 0 ('gone.png')"), "{plain}");
+    assert!(run(&["--scale=2000"]).contains("is the scale right?"));
+    assert!(!run(&["--floor=0"]).contains("the floor lies"));
 }
 
 #[test]

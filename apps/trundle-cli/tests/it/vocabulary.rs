@@ -67,7 +67,7 @@ fn bad_input_is_named_and_leaves_no_file() {
     let trained = |more: &[&str]| refused(&[&["train", "--quiet", "--out", text(&out)], more].concat());
     assert!(trained(&[]).contains("no images: name a TUM RGB-D folder or a --scene"));
     assert!(trained(&["/nowhere"]).contains("cannot read /nowhere"));
-    assert!(trained(&[text(scratch.path())]).contains("the folder is empty"));
+    assert!(trained(&[text(scratch.path())]).contains("this is an empty folder"));
     assert!(trained(&["--scene", "moon"]).contains("scene is moon, expected one of demo, room"));
     assert!(trained(&["--scene", "room.glb"]).contains("room.glb"));
     assert!(trained(&["--scene", "room", "--branching", "1"]).contains("vocabulary.branching is 1"));
@@ -83,4 +83,17 @@ fn bad_input_is_named_and_leaves_no_file() {
     assert!(refused(&export).contains("is a folder, expected the name of a file"));
     assert!(refused(&["recall", "--quiet"]).contains("no images"));
     assert!(!out.exists());
+}
+
+#[test]
+fn commands_that_recognise_places_take_a_vocabulary() {
+    let scratch = tempfile::tempdir().unwrap();
+    let file = scratch.path().join("broken.voc");
+    fs::write(&file, "no vocabulary").unwrap();
+    fs::write(scratch.path().join("rgb.txt"), "1.0 a.png\n").unwrap();
+    fs::write(scratch.path().join("depth.txt"), "1.0 b.png\n").unwrap();
+    for command in [&["demo", "--direct"][..], &["slam", text(scratch.path())]] {
+        let sentence = refusal(&[command, &["--vocabulary", text(&file)]].concat());
+        assert!(sentence.contains("broken.voc: no trundle vocabulary"), "{command:?}: {sentence}");
+    }
 }

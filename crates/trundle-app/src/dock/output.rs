@@ -9,9 +9,6 @@ use trundle_docking::{Certificate, DockingPlan, Impossible, SearchLimit, Solutio
 use trundle_io::{OutputFolder, Summary};
 use trundle_viz::tiles;
 
-/// Files that only a plan with motions writes: those of an earlier plan are removed.
-pub const STEP_FILES: [&str; 2] = ["steps.csv", "steps.png"];
-
 /// Writes steps, pictures and summary; where the folder is. `seconds`: wall-clock time of planning.
 ///
 /// # Errors

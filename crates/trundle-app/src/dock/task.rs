@@ -1,11 +1,11 @@
 //! What is to be planned: footprint, start, goal and the obstacles of a map, a scan or a list.
 
-use crate::AppError;
+use crate::{AppError, read_map};
 use std::path::Path;
 use trundle_core::{Footprint, Invalid, OccupancyGrid, Pose2};
 use trundle_docking::corridor::{Problem, Scenario, parse, write};
 use trundle_docking::{DockingConfig, Obstacle, ObstacleScene};
-use trundle_io::{LaserLogOptions, read_carmen, read_map};
+use trundle_io::{LaserLogOptions, read_laser_log, read_text};
 
 /// A docking task.
 pub struct DockingTask {
@@ -66,6 +66,12 @@ impl DockingTask {
         })
     }
 
+    /// Whether the list of obstacles is empty; never for a map.
+    #[must_use]
+    pub fn is_without_obstacles(&self) -> bool {
+        self.problem.as_ref().is_some_and(|problem| problem.obstacles.is_empty())
+    }
+
     /// The task as the text of a file of problems; the obstacles of a map become walls.
     #[must_use]
     pub fn to_text(&self) -> String {
@@ -94,7 +100,7 @@ pub fn scan_problem(
     footprint: Footprint,
     goal: Pose2,
 ) -> Result<Problem, AppError> {
-    let log = read_carmen(file, &LaserLogOptions::default())?;
+    let log = read_laser_log(file, &LaserLogOptions::default())?;
     let count = log.scans.len();
     let number = number.unwrap_or(count);
     let scan = number.checked_sub(1).and_then(|i| log.scans.get(i));
@@ -113,8 +119,7 @@ pub fn scan_problem(
 /// # Errors
 /// When the file cannot be read or has no such problem.
 pub fn file_problem(file: &Path, name: Option<&str>) -> Result<Problem, AppError> {
-    let text =
-        std::fs::read_to_string(file).map_err(|error| in_file(file, &format!("cannot read it: {error}")))?;
+    let text = read_text(file)?;
     let mut problems = parse(&text).map_err(|invalid| in_file(file, &invalid))?.into_iter();
     let chosen = match name {
         Some(name) => problems.find(|problem| problem.name == name),

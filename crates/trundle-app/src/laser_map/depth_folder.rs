@@ -1,10 +1,10 @@
 //! The depth images of a TUM RGB-D folder as scans, with the base's poses beside them.
 
 use super::depth_scanner::depth_scanner;
-use crate::{AppError, StepProgress};
+use crate::{AppError, StepProgress, log_warnings, read_trajectory, stop};
 use std::path::Path;
 use trundle_core::{Pose2, Pose3, Stamp, Vector3};
-use trundle_io::{LaserLog, LaserLogScan, LaserLogSkip, TumSequence, read_trajectory};
+use trundle_io::{DepthStatistics, LaserLog, LaserLogScan, LaserLogSkip, TumSequence};
 use trundle_mapping::DepthScanner;
 use trundle_runtime::RobotConfig;
 
@@ -25,25 +25,31 @@ const MIN_AXIS_TILT_DEG: f64 = 20.0;
 /// robot; else `groundtruth.txt`, whose frame must be level with the floor at z = 0, and each image is cut under the tilt and
 /// height that its pose says.
 pub fn read(dir: &Path, tracked: Option<&Path>, progress: &dyn StepProgress) -> Result<LaserLog, AppError> {
-    let (mut scanner, model) = depth_scanner(dir)?;
-    let camera = model.camera;
+    let (mut scanner, camera) = depth_scanner(dir)?;
+    let model = camera.model;
     let sequence = TumSequence::open(dir, model.depth_scale, TumSequence::MAX_DIFFERENCE)?
-        .with_size(camera.width(), camera.height());
+        .with_size(model.camera.width(), model.camera.height());
+    log_warnings(&camera.warnings);
+    log_warnings(sequence.warnings());
     let tracked = tracked.map(base_poses).transpose()?;
     let poses = match &tracked {
         Some(poses) => Poses::Base(poses),
         None => Poses::of(dir, &sequence)?,
     };
     let (mut log, mut last) = (LaserLog::default(), None);
+    let mut depth = DepthStatistics::default();
     log.max_range = Some(RobotConfig::default().scan.max_range);
     progress.begin(Some(sequence.len()));
     for i in 0..sequence.len() {
+        if stop::is_requested(|| format!("{i} of {} images", sequence.len())) {
+            break;
+        }
         progress.advance();
         let stamp = sequence.stamp(i);
         if last.is_some_and(|last| stamp - last < MIN_SCAN_PERIOD_S) {
             continue;
         }
-        match scan(&sequence, i, &poses, &mut scanner) {
+        match scan(&sequence, i, &poses, (&mut scanner, &mut depth)) {
             Ok(scan) => {
                 log.odometry.push((stamp, scan.odom_from_base));
                 log.scans.push(scan);
@@ -53,6 +59,10 @@ pub fn read(dir: &Path, tracked: Option<&Path>, progress: &dyn StepProgress) -> 
         }
     }
     progress.end();
+    log.depth_problem = depth.problem(model.depth_scale);
+    if log.scans.is_empty() && stop::stopped().is_some() {
+        return Err(AppError::Stopped);
+    }
     match log.skipped.first() {
         Some(first) if log.scans.is_empty() => {
             Err(AppError::Input(format!("{}: no frame can be used; {}", dir.display(), first.problem)))
@@ -65,7 +75,7 @@ fn scan(
     sequence: &TumSequence,
     i: usize,
     poses: &Poses<'_>,
-    scanner: &mut DepthScanner,
+    (scanner, depth): (&mut DepthScanner, &mut DepthStatistics),
 ) -> Result<LaserLogScan, String> {
     let stamp = sequence.stamp(i);
     let (odom_from_base, base_from_camera) = poses
@@ -75,6 +85,7 @@ fn scan(
         scanner.remount(mount).map_err(|invalid| format!("frame {i}: {invalid}"))?;
     }
     let image = sequence.load(i).map_err(|error| error.to_string())?;
+    depth.count(image.depth());
     Ok(LaserLogScan { odom_from_base, scan: scanner.scan(&image) })
 }
 

@@ -4,9 +4,9 @@ use super::depth_folder;
 use super::request::LaserMapRequest;
 use crate::{AppError, StepProgress};
 use std::path::Path;
-use trundle_io::{LaserLog, read_laser_log};
+use trundle_io::{FileKind, LaserLog, read_laser_log};
 
-/// Reads the log: a folder with `rgb.txt` is a TUM RGB-D folder, else a ROS 2 bag or a CARMEN log.
+/// Reads the log: a folder with lists of images is a TUM RGB-D folder, else a ROS 2 bag or a CARMEN log.
 ///
 /// # Errors
 /// Names the file, and the line or frame that cannot be accepted.
@@ -21,5 +21,5 @@ pub fn read_log(request: &LaserMapRequest, progress: &dyn StepProgress) -> Resul
 /// Whether this is a TUM RGB-D folder.
 #[must_use]
 pub fn is_depth_folder(path: &Path) -> bool {
-    path.join("rgb.txt").exists()
+    matches!(FileKind::of(path), Ok(FileKind::SequenceFolder))
 }

@@ -2,9 +2,10 @@
 
 use super::request::LaserMapRequest;
 use super::run_result::LaserMapRun;
+use std::collections::BTreeMap;
 use std::fmt::Write;
 use trundle_core::{OccupancyGrid, Pose2, Stamp};
-use trundle_io::{LaserLog, Summary};
+use trundle_io::{LaserLog, LaserLogSources, Summary};
 use trundle_viz::{Color, LineStyle, MapPicture, PoseStyle};
 
 /// Share of the map's side below which start and end of a trajectory have one label in the picture. Source: ours.
@@ -40,9 +41,11 @@ pub fn trajectory_lines(trajectory: &[(Stamp, Pose2)]) -> String {
 pub fn map_rows(log: &LaserLog, run: &LaserMapRun) -> Vec<Vec<String>> {
     let row = |name: &str, value: String| vec![name.to_owned(), value];
     let counts = &run.counts;
-    vec![
+    let mut rows = source_rows(&log.sources);
+    rows.extend([
         row("scans", log.scans.len().to_string()),
-        row("ranges that are negative, zero, infinite or no number", log.bad_ranges.to_string()),
+        row("scans without a return", log.scans_without_return().to_string()),
+        row("ranges that cannot be", log.bad_ranges.to_string()),
         row("processed", counts.processed.to_string()),
         row("odometry jumps", counts.jumps.to_string()),
         row("steps where the odometry was not believed", counts.slips.to_string()),
@@ -53,7 +56,20 @@ pub fn map_rows(log: &LaserLog, run: &LaserMapRun) -> Vec<Vec<String>> {
         row("loop closures that corrected the trajectory", counts.corrections.to_string()),
         row("memory of maps, scans and trajectories", format!("{:.1} MB", run.megabytes)),
         row("time for a processed scan", format!("{:.2} ms", run.scan_ms())),
-    ]
+    ]);
+    rows
+}
+
+/// The topics that made the log, and those left alone; none where the log has no topics.
+fn source_rows(sources: &LaserLogSources) -> Vec<Vec<String>> {
+    let left: Vec<String> = sources.left.iter().map(|(topic, count)| format!("{topic} ({count})")).collect();
+    let rows = [
+        ("scans are from", sources.scans.clone()),
+        ("odometry is from", sources.odometry.clone()),
+        ("topics left alone", left.join(", ")),
+    ];
+    let rows = rows.into_iter().filter(|(_, value)| !value.is_empty());
+    rows.map(|(name, value)| vec![name.to_owned(), value]).collect()
 }
 
 /// `summary.json`.
@@ -61,11 +77,16 @@ pub fn summary(request: &LaserMapRequest, log: &LaserLog, run: &LaserMapRun) -> 
     let mut summary = Summary::new("map");
     let counts = &run.counts;
     summary
-        .set("success", counts.processed > 0)
+        .set("success", run.failure.is_none())
+        .set("failure", run.failure.clone())
         .set("log", request.log.display().to_string())
         .set("particles", request.particles)
         .set("seed", request.seed)
+        .set("scan_topic", log.sources.scans.clone())
+        .set("odometry_topic", log.sources.odometry.clone())
+        .set("topics_left", serde_json::json!(log.sources.left.iter().cloned().collect::<BTreeMap<_, _>>()))
         .set("scans", log.scans.len())
+        .set("scans_without_return", log.scans_without_return())
         .set("processed", counts.processed)
         .set("refused_scans", counts.refused)
         .set("skipped_lines", log.skipped.len())
@@ -73,12 +94,14 @@ pub fn summary(request: &LaserMapRequest, log: &LaserLog, run: &LaserMapRun) -> 
         .set("max_range_m", log.max_range)
         .set("odometry_jumps", counts.jumps)
         .set("odometry_not_believed", counts.slips)
+        .set("mount_hint", run.mount_hint.clone())
         .set("scans_without_overlap", counts.without_overlap)
         .set("degenerate_scans", counts.degenerate)
         .set("lost_scans", counts.lost)
         .set("resamplings", counts.resamplings)
         .set("bending_loops", counts.corrections)
         .set("memory_mb", run.megabytes)
-        .set("wall_clock", serde_json::json!({ "total_s": run.seconds, "processed_scan_ms": run.scan_ms() }));
+        .set("wall_clock", serde_json::json!({ "total_s": run.seconds, "processed_scan_ms": run.scan_ms() }))
+        .set_interrupted(run.is_interrupted);
     summary
 }

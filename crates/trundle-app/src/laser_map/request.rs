@@ -1,9 +1,9 @@
 //! What a log is mapped with: filter, laser, a map to begin with.
 
 use super::depth_scanner::depth_scanner;
-use crate::AppError;
+use crate::{AppError, read_map};
 use std::path::{Path, PathBuf};
-use trundle_io::{LaserLogOptions, read_map};
+use trundle_io::{Expected, FileKind, LaserLogOptions, MapImage};
 use trundle_mapping::{
     MapLocalizer, MapperConfig, MotionConfig, ParticleConfig, ParticleMapper, PosePriorConfig,
 };
@@ -28,6 +28,8 @@ pub struct LaserMapRequest {
     pub laser: LaserLogOptions,
     /// The map of an earlier run, in which the robot is localized first.
     pub map: Option<PathBuf>,
+    /// Format of the picture of the map that is written.
+    pub map_image: MapImage,
 }
 
 impl LaserMapRequest {
@@ -35,7 +37,7 @@ impl LaserMapRequest {
     pub(super) fn mapper(&self, is_depth: bool) -> Result<ParticleMapper, AppError> {
         let config = self.config(is_depth)?;
         let Some(file) = &self.map else { return Ok(ParticleMapper::new(config, self.seed)?) };
-        let bytes = std::fs::read(file).map_err(|error| refused(file, &error))?;
+        let bytes = read_filter(file)?;
         let mut mapper = ParticleMapper::load(&bytes, config).map_err(|error| refused(file, &error))?;
         mapper.kidnapped();
         Ok(mapper)
@@ -43,14 +45,14 @@ impl LaserMapRequest {
 
     /// A localizer in the map `file`: a saved filter, or a grid by its YAML.
     pub(super) fn localizer(&self, file: &Path, is_depth: bool) -> Result<MapLocalizer, AppError> {
-        if file.extension().is_some_and(|ext| ext == "yaml") {
+        if FileKind::of(file)? == FileKind::MapYaml {
             let grid = read_map(file)?;
             let resolution = grid.geometry().resolution;
             let config = self.config(is_depth)?;
             let config = ParticleConfig { map: MapperConfig { resolution, ..config.map }, ..config };
             return Ok(MapLocalizer::from_grid(&grid, config, self.seed)?);
         }
-        let bytes = std::fs::read(file).map_err(|error| refused(file, &error))?;
+        let bytes = read_filter(file)?;
         MapLocalizer::load(&bytes, self.config(is_depth)?, self.seed).map_err(|error| refused(file, &error))
     }
 
@@ -94,6 +96,12 @@ fn tracked_camera_motion() -> MotionConfig {
         least_shift: 0.005,
         least_turn: 0.003,
     }
+}
+
+/// The bytes of a saved filter.
+fn read_filter(file: &Path) -> Result<Vec<u8>, AppError> {
+    Expected::FilterMap.check(file)?;
+    std::fs::read(file).map_err(|error| refused(file, &error))
 }
 
 fn refused(file: &Path, problem: &dyn std::fmt::Display) -> AppError {

@@ -2,13 +2,14 @@
 
 use super::counts::ScanCounts;
 use super::input::is_depth_folder;
+use super::mount_check::mount_hint;
 use super::numbers::{map_picture, summary, trajectory_lines};
 use super::request::LaserMapRequest;
 use super::run_result::LaserMapRun;
-use crate::{AppError, StepProgress};
+use crate::{AppError, StepProgress, stop};
 use std::time::Instant;
 use trundle_core::{Pose2, Stamp};
-use trundle_io::{LaserLog, OutputFolder, write_map};
+use trundle_io::{LaserLog, OutputFolder, write_map_as};
 use trundle_mapping::{Localized, MapLocalizer, ParticleMapper, propagate_trajectory};
 
 /// Maps a log, or with `localize_only` follows the robot in the map asked for; writes trajectory, map, picture and summary.
@@ -26,35 +27,47 @@ pub fn map_log(
     let odometry: Vec<(Stamp, Pose2)> =
         log.scans.iter().map(|s| (s.scan.stamp(), s.odom_from_base)).collect();
     let start = Instant::now();
-    let (counts, poses, megabytes) = match &request.map {
+    let (counts, poses, megabytes, failure) = match &request.map {
         Some(file) if localize_only => {
             let mut localizer = request.localizer(file, is_depth)?;
             let (counts, poses) = localize(log, &mut localizer, progress);
             folder.write("overview.png", &map_picture(&localizer.grid(), &poses))?;
-            (counts, poses, 0.0)
+            let failure = LaserMapRun::failure_of(log, &counts, None);
+            (counts, poses, 0.0, failure)
         }
         _ => {
             let mut mapper = request.mapper(is_depth)?;
             let counts = map(log, &mut mapper, progress);
-            write_map(folder, "map", mapper.grid())?;
+            write_map_as(folder, "map", mapper.grid(), request.map_image)?;
             let poses = mapper.trajectory();
             folder.write("overview.png", &map_picture(mapper.grid(), &poses))?;
             folder.write("filter.map", &mapper.save())?;
-            (counts, poses, mapper.bytes() as f64 / 1e6)
+            let failure = LaserMapRun::failure_of(log, &counts, Some(mapper.grid()));
+            (counts, poses, mapper.bytes() as f64 / 1e6, failure)
         }
     };
     let seconds = start.elapsed().as_secs_f64();
     let trajectory = propagate_trajectory(&poses, &odometry);
     folder.write("trajectory.txt", trajectory_lines(&trajectory).as_bytes())?;
-    let run = LaserMapRun { counts, megabytes, seconds };
+    let is_interrupted = stop::stopped().is_some();
+    let mount_hint = if is_depth { None } else { mount_hint(log, &counts) };
+    let run = LaserMapRun { counts, megabytes, seconds, is_interrupted, mount_hint, failure };
     folder.write("summary.json", summary(request, log, &run).to_json().as_bytes())?;
     Ok(run)
+}
+
+/// Whether the user has asked to stop before the scan `done`.
+fn is_stopped(done: usize, log: &LaserLog) -> bool {
+    stop::is_requested(|| format!("{done} of {} scans", log.scans.len()))
 }
 
 fn map(log: &LaserLog, mapper: &mut ParticleMapper, progress: &dyn StepProgress) -> ScanCounts {
     let mut counts = ScanCounts::default();
     progress.begin(Some(log.scans.len()));
-    for entry in &log.scans {
+    for (done, entry) in log.scans.iter().enumerate() {
+        if is_stopped(done, log) {
+            break;
+        }
         counts.count(&mapper.update(entry.odom_from_base, &entry.scan));
         progress.advance();
     }
@@ -71,7 +84,10 @@ fn localize(
 ) -> (ScanCounts, Vec<(Stamp, Pose2)>) {
     let (mut counts, mut known) = (ScanCounts::default(), Vec::new());
     progress.begin(Some(log.scans.len()));
-    for entry in &log.scans {
+    for (done, entry) in log.scans.iter().enumerate() {
+        if is_stopped(done, log) {
+            break;
+        }
         let localized = localizer.update(entry.odom_from_base, &entry.scan);
         counts.count_localized(&localized);
         if let Localized::Known { map_from_base, .. } = localized {

@@ -2,8 +2,8 @@
 
 use super::goal_refusal::{GoalRefusal, MovedGoal};
 use super::request::{NamedPose, PlanRequest};
-use trundle_core::{Pose2, Twist2};
-use trundle_planning::{MultiGoalPlan, Plan};
+use trundle_core::{OccupancyGrid, Pose2, Twist2};
+use trundle_planning::{MultiGoalPlan, Plan, Planner, WaypointGraph};
 
 /// Distance below which two positions count as the same \[m\]. Beyond it a message names the position. Source: ours.
 const MAX_SAME_POSITION_M: f64 = 0.01;
@@ -19,7 +19,7 @@ impl PlanRequest {
                 refusal => refusal.to_string(),
             };
             let from = leg.trajectory.points()[0].pose;
-            let why = format!("{why}{}", self.without_the_mask(instead_of, from, goal));
+            let why = format!("{why}{}", self.what_changes(instead_of, from, goal));
             let to = leg.trajectory.end();
             found.push(MovedGoal { goal, to, off: to.distance(&self.goals[goal].pose), why });
         }
@@ -37,7 +37,7 @@ impl PlanRequest {
         if matches!(why, Plan::Blocked { .. }) && self.graph.is_some() {
             whole = format!("{whole} along the graph");
         }
-        format!("{whole}: {why}{}", self.without_the_mask(why, refusal.from, *goal))
+        format!("{whole}: {why}{}", self.what_changes(why, refusal.from, *goal))
     }
 
     /// The pose at which a leg begins: the start or the goal before, by name where the robot stands there.
@@ -53,16 +53,41 @@ impl PlanRequest {
         }
     }
 
+    /// What the keep-out mask or unknown space has to do with a refusal; empty where the answer is the same without them.
+    fn what_changes(&mut self, why: &Plan, from: Pose2, goal: usize) -> &'static str {
+        match self.without_the_mask(why, from, goal) {
+            "" => self.with_unknown_free(why, from, goal),
+            mask => mask,
+        }
+    }
+
+    /// What unknown space has to do with a refusal; empty where the answer is the same if unknown cells are free.
+    fn with_unknown_free(&mut self, why: &Plan, from: Pose2, goal: usize) -> &'static str {
+        let Some(planner) = &mut self.unknown_free else { return "" };
+        let open = plan_leg(planner, (&self.grid, self.graph.as_ref()), from, self.goals[goal].pose);
+        match (why, open) {
+            (Plan::StartInObstacle { .. }, Plan::StartInObstacle { .. })
+            | (Plan::GoalInObstacle { .. }, Plan::GoalInObstacle { .. } | Plan::StartInObstacle { .. }) => "",
+            (Plan::StartInObstacle { .. }, _) => {
+                "; the start lies in or beside unknown space, which planning.unknown = \"obstacle\" forbids"
+            }
+            (Plan::GoalInObstacle { .. }, _) => {
+                "; the goal lies in or beside unknown space, which planning.unknown = \"obstacle\" forbids"
+            }
+            (Plan::Blocked { .. }, Plan::Found(_)) => {
+                "; a path leads through unknown space, which planning.unknown = \"obstacle\" forbids"
+            }
+            _ => "",
+        }
+    }
+
     /// What the keep-out mask has to do with a refusal; empty where the answer is the same without it.
     fn without_the_mask(&mut self, why: &Plan, from: Pose2, goal: usize) -> &'static str {
         if self.keep_out.is_none() {
             return "";
         }
-        let goal = self.goals[goal].pose;
-        let bare = match &self.graph {
-            Some(graph) => self.unmasked.plan_on_graph(&self.grid, graph, from, Twist2::ZERO, goal),
-            None => self.unmasked.plan(&self.grid, from, Twist2::ZERO, goal),
-        };
+        let place = (&self.grid, self.graph.as_ref());
+        let bare = plan_leg(&mut self.unmasked, place, from, self.goals[goal].pose);
         let same = |of: fn(&Plan) -> bool| of(why) && of(&bare);
         match why {
             Plan::StartInObstacle { .. } if !same(|plan| matches!(plan, Plan::StartInObstacle { .. })) => {
@@ -76,5 +101,18 @@ impl PlanRequest {
             }
             _ => "",
         }
+    }
+}
+
+/// The plan of one leg from rest, along the graph where there is one.
+fn plan_leg(
+    planner: &mut Planner,
+    (grid, graph): (&OccupancyGrid, Option<&WaypointGraph>),
+    from: Pose2,
+    goal: Pose2,
+) -> Plan {
+    match graph {
+        Some(graph) => planner.plan_on_graph(grid, graph, from, Twist2::ZERO, goal),
+        None => planner.plan(grid, from, Twist2::ZERO, goal),
     }
 }

@@ -16,11 +16,11 @@ pub struct SpeedMaskLimits {
     pub cells: usize,
 }
 
-/// Gives the keep-out mask of a file to the planner; its shares, for pictures.
-pub fn set_keep_out(
+/// Gives the keep-out mask of a file to the planners; its shares, for pictures.
+pub fn set_keep_out<'p>(
     path: &Path,
     grid: &OccupancyGrid,
-    planner: &mut Planner,
+    planners: impl Iterator<Item = &'p mut Planner>,
 ) -> Result<MaskShares, AppError> {
     let mask = read_keep_out_mask(path)?;
     let geometry = *mask.forbidden.geometry();
@@ -30,9 +30,11 @@ pub fn set_keep_out(
         _ => f32::from(*cost) / 100.0,
     };
     let shares = mask.forbidden.cells().iter().zip(&mask.costs).map(share).collect();
-    planner.set_keep_out(Some(mask.forbidden));
-    if mask.costs.iter().any(|value| *value > 0) {
-        planner.set_cost_mask(Some(CostMask::new(geometry, mask.costs)?));
+    let has_costs = mask.costs.iter().any(|value| *value > 0);
+    let costs = has_costs.then(|| CostMask::new(geometry, mask.costs)).transpose()?;
+    for planner in planners {
+        planner.set_keep_out(Some(mask.forbidden.clone()));
+        planner.set_cost_mask(costs.clone());
     }
     Ok(MaskShares { geometry, shares })
 }
@@ -56,6 +58,11 @@ pub fn set_speed_mask(
 /// The way-point graph of a file.
 pub fn read_lanes(path: &Path) -> Result<WaypointGraph, AppError> {
     let file = read_graph(path)?;
+    if !file.left.is_empty() {
+        let kinds: Vec<String> = file.left.iter().map(|(kind, count)| format!("{kind} ({count})")).collect();
+        let (count, kinds) = (file.left.values().sum::<usize>(), kinds.join(", "));
+        tracing::warn!("{}: {count} features are no nodes or lanes and left alone: {kinds}", path.display());
+    }
     WaypointGraph::one_way(file.nodes, file.lanes)
         .map_err(|error| AppError::Input(format!("{}: {error}", path.display())))
 }

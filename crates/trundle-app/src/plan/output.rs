@@ -10,20 +10,6 @@ use trundle_core::{DriveLimits, Vector2};
 use trundle_io::{OutputFolder, trajectory_csv, waypoints_csv};
 use trundle_planning::MultiGoalPlan;
 
-/// Everything that a plan may write: files of an earlier plan are removed.
-pub const PLAN_FILES: [&str; 10] = [
-    "waypoints.csv",
-    "curve.csv",
-    "coefficients.csv",
-    "constraints.csv",
-    "trajectory.csv",
-    "plan.png",
-    "field.png",
-    "corridors.png",
-    "plan.html",
-    "summary.json",
-];
-
 /// Writes way-points, curve, trajectory, pictures, page and summary; where the folder is.
 ///
 /// # Errors

@@ -2,11 +2,10 @@
 
 use super::goal_refusal::GoalRefusal;
 use super::masks::{SpeedMaskLimits, read_lanes, set_keep_out, set_speed_mask};
-use crate::AppError;
+use crate::{AppError, read_map};
 use std::path::PathBuf;
 use trundle_core::{Footprint, OccupancyGrid, Pose2, Twist2, Vector2};
-use trundle_io::read_map;
-use trundle_planning::{MultiGoalPlan, Plan, Planner, PlannerConfig, WaypointGraph};
+use trundle_planning::{MultiGoalPlan, Plan, Planner, PlannerConfig, UnknownIs, WaypointGraph};
 use trundle_runtime::RobotConfig;
 use trundle_viz::MaskShares;
 
@@ -63,6 +62,8 @@ pub struct PlanRequest {
     pub(super) graph: Option<WaypointGraph>,
     /// Plans without the keep-out mask, to say what the mask changes.
     pub(super) unmasked: Planner,
+    /// Plans with all masks and unknown cells as free, to say what unknown space changes; `None` where they are free anyway.
+    pub(super) unknown_free: Option<Planner>,
 }
 
 impl PlanRequest {
@@ -83,8 +84,13 @@ impl PlanRequest {
         let goal_tolerance = goal_tolerance_m.unwrap_or(robot.planning.goal_tolerance);
         let config = PlannerConfig { beyond: 0.0, goal_tolerance, ..robot.planning };
         let mut planner = Planner::new(config, &footprint, robot.limits, robot.drive)?;
+        let open = PlannerConfig { unknown: UnknownIs::Free, goal_tolerance: 0.0, ..config };
+        let mut unknown_free = (config.unknown == UnknownIs::Obstacle)
+            .then(|| Planner::new(open, &footprint, robot.limits, robot.drive))
+            .transpose()?;
         let keep_out = files.keep_out.as_deref();
-        let keep_out = keep_out.map(|path| set_keep_out(path, &grid, &mut planner)).transpose()?;
+        let masked = std::iter::once(&mut planner).chain(&mut unknown_free);
+        let keep_out = keep_out.map(|path| set_keep_out(path, &grid, masked)).transpose()?;
         let slow = files.speed_mask.as_deref();
         let slow = slow.map(|path| set_speed_mask(path, robot.limits.v, &grid, &mut planner)).transpose()?;
         let (slow, speed_limits) = slow.unzip();
@@ -104,6 +110,7 @@ impl PlanRequest {
             speed_limits,
             graph,
             unmasked,
+            unknown_free,
         })
     }
 

@@ -4,7 +4,7 @@ use super::{BodyTiming, QueueLength, RealTimeReport, ThreadLoad, TimedEvent};
 use crate::{AppError, EncodedBody, FinishedRun, RunInput};
 use std::collections::BTreeMap;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
+use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::mpsc::Sender;
 use std::time::{Duration, Instant};
 use trundle_core::Twist2;
@@ -20,7 +20,6 @@ pub struct ThreadedBody {
     crew: Option<WorkerThreads>,
     pulse: LoopTimer,
     commands: Option<Sender<Twist2>>,
-    stop: Arc<AtomicBool>,
     /// Arrival of the newest reading of the wheels, until its command leaves.
     reading: Option<Instant>,
     /// Workers that have a job, and since when.
@@ -39,11 +38,7 @@ const BODY_TIMEOUT: Duration = Duration::from_secs(5);
 
 impl ThreadedBody {
     /// Starts the worker threads at `helpers`.
-    pub fn start(
-        config: LoopTimerConfig,
-        helpers: ThreadPlacement,
-        stop: Arc<AtomicBool>,
-    ) -> Result<Self, AppError> {
+    pub fn start(config: LoopTimerConfig, helpers: ThreadPlacement) -> Result<Self, AppError> {
         let inbox = Inbox::new(INBOX_CAPACITY);
         let door: InboxSender<TimedEvent> = inbox.door();
         let crew = WorkerThreads::start(helpers, move |answer| _ = door.hand_in(Post::Answer(answer)));
@@ -53,7 +48,6 @@ impl ThreadedBody {
             crew: Some(crew),
             pulse: LoopTimer::new(config.validated()?),
             commands: None,
-            stop,
             reading: None,
             busy: BTreeMap::new(),
             waits: BTreeMap::new(),
@@ -115,16 +109,13 @@ impl ThreadedBody {
             lines_lost: run.recording.lines_lost,
             memory: body.memory.clone(),
             body,
-            interrupted: self.stop.load(Ordering::Relaxed),
+            interrupted: run.log.is_interrupted(),
         }
     }
 }
 
 impl EncodedBody for ThreadedBody {
     fn next_input(&mut self) -> Result<Option<RunInput>, AppError> {
-        if self.stop.load(Ordering::Relaxed) {
-            return Ok(Some(RunInput::Interrupted));
-        }
         Ok(self.wait_for_input())
     }
 

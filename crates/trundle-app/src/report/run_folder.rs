@@ -6,7 +6,7 @@ use crate::setup::mission_text;
 use crate::{AppError, FinishedRun, RunSetup};
 use std::path::PathBuf;
 use trundle_core::{Footprint, Pose2};
-use trundle_io::{OutputFolder, trajectory_text_from_planar, write_map};
+use trundle_io::{IoError, OutputFolder, trajectory_text_from_planar, write_map};
 use trundle_viz::{Card, Chart, Color, Figure, RunMap, RunReport, Table, Verdict};
 
 /// What a run's folder holds.
@@ -15,11 +15,11 @@ pub struct RunOutput {
     pub numbers: RunNumbers,
     /// The folder.
     pub folder: PathBuf,
-    /// Why the folder holds no recording, if it holds none.
-    pub recording_error: Option<AppError>,
+    /// Why not everything could be written, if it could not.
+    pub incomplete: Option<AppError>,
 }
 
-/// Writes the folder of a run. A recording that could not be written to its end is left out.
+/// Writes the folder of a run. What the disk does not take is left out, as is a recording that could not be written to its end.
 ///
 /// # Errors
 /// When a file cannot be written.
@@ -29,9 +29,9 @@ pub fn write_run(
     timing: Option<&RealTimeReport>,
     folder: OutputFolder,
 ) -> Result<RunOutput, AppError> {
-    let recording_error = run.recording.error.take();
-    if recording_error.is_some() {
+    if let Some(error) = run.recording.error.take() {
         _ = std::fs::remove_file(folder.staged("recording.mcap"));
+        folder.leave_out(error);
     }
     let run = &*run;
     let numbers = RunNumbers::of(setup, run);
@@ -43,7 +43,14 @@ pub fn write_run(
     folder.write("report.html", report.to_html().as_bytes())?;
     folder.write("timing.html", timing_page::html(run, &numbers, timing).as_bytes())?;
     folder.write("summary.json", numbers.summary(setup, run, timing).to_json().as_bytes())?;
-    Ok(RunOutput { numbers, folder: folder.commit()?, recording_error })
+    let (target, committed) = (folder.target().to_owned(), folder.commit());
+    match committed {
+        Ok(folder) => Ok(RunOutput { numbers, folder, incomplete: None }),
+        Err(error @ IoError::Incomplete { .. }) => {
+            Ok(RunOutput { numbers, folder: target, incomplete: Some(error.into()) })
+        }
+        Err(error) => Err(error.into()),
+    }
 }
 
 fn report(setup: &RunSetup, run: &FinishedRun, numbers: &RunNumbers) -> RunReport {

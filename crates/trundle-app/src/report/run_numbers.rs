@@ -12,8 +12,8 @@ use trundle_runtime::{DriveState, GoalApproachReport, Reason, Stage, StageTimes,
 pub struct RunNumbers {
     /// The goals of the mission, as they came.
     pub goals: Vec<GoalOutcome>,
-    /// How many goals the mission has.
-    pub goals_asked: usize,
+    /// How many goals the mission has; `None` where it asks for nothing but to stand at the start.
+    pub goals_asked: Option<usize>,
     /// Where the robot stands in truth at the end, against the last goal; `None` without truth.
     pub goal_error: Option<GoalError>,
     /// Where it believes to stand, against the last goal.
@@ -60,7 +60,8 @@ impl RunNumbers {
         let against_goal = |pose| goal_error(setup.last_goal()?, pose).ok();
         Self {
             goals: GoalOutcome::all(run),
-            goals_asked: setup.mission.tasks().iter().filter_map(RunSetup::goal_of).count(),
+            goals_asked: (!setup.is_without_motion())
+                .then(|| setup.mission.tasks().iter().filter_map(RunSetup::goal_of).count()),
             goal_error: log.truths.last().and_then(|(_, truth)| against_goal(*truth)),
             believed_error: against_goal(run.robot.estimate().pose),
             estimate_rmse: log.estimate_rmse(),
@@ -89,7 +90,7 @@ impl RunNumbers {
 
     /// Arrived at every goal, in truth, without touching anything.
     pub fn is_success(&self) -> bool {
-        let all = self.goals_missed() == 0;
+        let all = self.goals_missed() == 0 && self.goals_asked.is_some();
         self.state == DriveState::Arrived && all && self.is_near() && self.is_aligned() && self.contacts == 0
     }
 
@@ -109,6 +110,9 @@ impl RunNumbers {
             };
         }
         let mut faults = Vec::new();
+        if self.goals_asked.is_none() {
+            faults.push("the goal is the start, so the robot had nothing to do".to_owned());
+        }
         if self.state != DriveState::Arrived {
             faults.push(format!("the robot did not arrive ({})", self.state));
         }
@@ -196,6 +200,7 @@ impl RunNumbers {
             .set("images_dropped", self.images_dropped.len())
             .set("images_dropped_at_s", &self.images_dropped)
             .set("wall_clock", wall_clock(run.seconds, run.robot.times(), timing));
+        summary.set_interrupted(run.log.is_interrupted());
         summary
     }
 }

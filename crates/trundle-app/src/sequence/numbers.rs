@@ -1,17 +1,17 @@
 //! The numbers of a tracked sequence: table and summary.
 
-use super::comparison::TruthComparison;
 use super::request::SequenceRequest;
 use super::run::SequenceRun;
+use crate::evaluation::TrajectoryEvaluation;
 use crate::report::wall_clock;
-use trundle_io::{Summary, TumSequence};
+use trundle_io::{SequenceCamera, Summary, TumSequence};
 
 /// The table of a tracked sequence, all but the wall clock's part.
 #[must_use]
 pub fn sequence_rows(
     sequence: &TumSequence,
     run: &SequenceRun,
-    comparison: Option<&TruthComparison>,
+    comparison: Option<&TrajectoryEvaluation>,
 ) -> Vec<Vec<String>> {
     let row = |name: &str, value: String| vec![name.to_owned(), value];
     let c = run.counts;
@@ -27,7 +27,7 @@ pub fn sequence_rows(
         row("landmarks", run.slam.landmarks().count().to_string()),
         row("loops closed", run.slam.loops().len().to_string()),
     ];
-    if let Some(TruthComparison { absolute, relative, .. }) = comparison {
+    if let Some(TrajectoryEvaluation { absolute, relative, .. }) = comparison {
         let s = &absolute.statistics;
         rows.push(row(
             "ATE rmse (median, max)",
@@ -42,15 +42,18 @@ pub fn sequence_rows(
 /// `summary.json`.
 pub fn summary(
     request: &SequenceRequest,
+    camera: &SequenceCamera,
     sequence: &TumSequence,
     run: &SequenceRun,
-    comparison: Option<&TruthComparison>,
+    comparison: Option<&TrajectoryEvaluation>,
 ) -> Summary {
     let mut summary = Summary::new("slam");
     let c = run.counts;
     summary
-        .set("success", run.is_located())
-        .set("camera", &request.camera)
+        .set("success", run.failure().is_none())
+        .set("failure", run.failure())
+        .set("camera", &camera.name)
+        .set("camera_assumed", camera.is_assumed)
         .set("seed", request.seed)
         .set("frames", c.ok + c.weak + c.dead_reckoned + c.lost)
         .set("frames_unreadable", &run.unreadable)
@@ -68,6 +71,7 @@ pub fn summary(
         .set("ate_pairs", comparison.map(|c| c.absolute.pairs.len()))
         .set("rpe_translation_rmse_m", comparison.map(|c| c.relative.translation.rmse))
         .set("rpe_rotation_rmse_rad", comparison.map(|c| c.relative.rotation.rmse))
-        .set("wall_clock", wall_clock(run.seconds, &run.times, None));
+        .set("wall_clock", wall_clock(run.seconds, &run.times, None))
+        .set_interrupted(run.is_interrupted);
     summary
 }

@@ -1,13 +1,13 @@
 //! The folder of a tracked sequence.
 
-use super::comparison::TruthComparison;
+use super::comparison::against_truth;
 use super::numbers::{sequence_rows, summary};
 use super::report::page;
 use super::request::SequenceRequest;
 use super::run::SequenceRun;
 use crate::AppError;
 use std::path::PathBuf;
-use trundle_io::{OutputFolder, TumSequence, trajectory_text, write_map};
+use trundle_io::{OutputFolder, SequenceCamera, TumSequence, trajectory_text, write_map_as};
 use trundle_runtime::RobotConfig;
 
 /// What was written, and the table for a front end.
@@ -24,24 +24,25 @@ pub struct SequenceOutput {
 /// When the map cannot be drawn or a file cannot be written.
 pub fn write_sequence(
     request: &SequenceRequest,
+    camera: &SequenceCamera,
     sequence: &TumSequence,
     run: &SequenceRun,
     folder: OutputFolder,
 ) -> Result<SequenceOutput, AppError> {
     let trajectory = run.slam.trajectory();
     let comparison =
-        sequence.ground_truth().and_then(|truth| TruthComparison::of(&request.dir, truth, &trajectory));
+        sequence.ground_truth().and_then(|truth| against_truth(&request.dir, truth, &trajectory));
     let comparison = comparison.as_ref();
     let grid = run.map.draw(&trajectory, RobotConfig::default().mapping)?;
-    write_map(&folder, "map", &grid)?;
+    write_map_as(&folder, "map", &grid, request.map_image)?;
     folder.write("trajectory.txt", trajectory_text(&trajectory).as_bytes())?;
     folder.write("visual.map", &run.slam.save())?;
     if let Some(truth) = sequence.ground_truth() {
         folder.write("groundtruth.txt", trajectory_text(truth).as_bytes())?;
     }
     let rows = sequence_rows(sequence, run, comparison);
-    let page = page(request, run, grid, &trajectory, comparison, &rows);
+    let page = page(request, camera, run, grid, &trajectory, comparison, &rows);
     folder.write("report.html", page.to_html().as_bytes())?;
-    folder.write("summary.json", summary(request, sequence, run, comparison).to_json().as_bytes())?;
+    folder.write("summary.json", summary(request, camera, sequence, run, comparison).to_json().as_bytes())?;
     Ok(SequenceOutput { folder: folder.commit()?, rows })
 }

@@ -1,12 +1,12 @@
 //! The recording of a tracked sequence, and the links between keyframes that it shows.
 
-use crate::AppError;
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::BufWriter;
 use trundle_core::{Stamp, Vector2, Vector3};
 use trundle_io::{
-    EncodedEvent, EncodedRgbd, FeatureMarks, KeyframeGraph, LandmarkCloud, PoseInFrame, Recorder,
+    EncodedEvent, EncodedRgbd, FeatureMarks, IoError, KeyframeGraph, LandmarkCloud, OutputFolder,
+    PoseInFrame, Recorder,
 };
 use trundle_slam::{KeyframeId, RgbdSlam, TrackReport};
 
@@ -18,24 +18,37 @@ const FRAME: &str = "visual";
 
 /// Records a tracked sequence: every image with its features and the camera's pose; landmarks and keyframe graph when a
 /// loop was closed, and at the end.
+///
+/// A disk that is full ends the recording.
 pub struct SequenceRecorder {
     recorder: Recorder<BufWriter<File>>,
+    failure: Option<IoError>,
     now: Stamp,
 }
 
 impl SequenceRecorder {
     /// Records into `recorder`.
     pub fn new(recorder: Recorder<BufWriter<File>>) -> Self {
-        Self { recorder, now: Stamp::default() }
+        Self { recorder, failure: None, now: Stamp::default() }
     }
 
     /// Records an image and its tracking.
-    pub fn record(
+    pub fn record(&mut self, image: EncodedRgbd, report: &TrackReport, slam: &RgbdSlam) {
+        if self.failure.is_some() {
+            return;
+        }
+        self.failure = self.record_frame(image, report, slam).err();
+        if let Some(failure) = &self.failure {
+            tracing::warn!("{failure}; the recording ends here, tracking goes on");
+        }
+    }
+
+    fn record_frame(
         &mut self,
         image: EncodedRgbd,
         report: &TrackReport,
         slam: &RgbdSlam,
-    ) -> Result<(), AppError> {
+    ) -> Result<(), IoError> {
         self.now = report.stamp;
         self.recorder.record_event(&EncodedEvent::Rgbd(image))?;
         let mark = |feature: &trundle_slam::SeenFeature| {
@@ -49,14 +62,16 @@ impl SequenceRecorder {
         if report.closed_loop.is_some() { self.record_map(slam) } else { Ok(()) }
     }
 
-    /// Records the final map and closes the recording.
-    pub fn finish(mut self, slam: &RgbdSlam) -> Result<(), AppError> {
-        self.record_map(slam)?;
-        self.recorder.finish()?;
-        Ok(())
+    /// Records the final map and closes the recording; one that could not be written is left out of `folder`.
+    pub fn finish(mut self, slam: &RgbdSlam, folder: &OutputFolder) {
+        let failure = self.failure.take().or_else(|| self.record_map(slam).err());
+        if let Some(failure) = failure.or_else(|| self.recorder.finish().err()) {
+            _ = std::fs::remove_file(folder.staged("recording.mcap"));
+            folder.leave_out(failure);
+        }
     }
 
-    fn record_map(&mut self, slam: &RgbdSlam) -> Result<(), AppError> {
+    fn record_map(&mut self, slam: &RgbdSlam) -> Result<(), IoError> {
         let cloud = LandmarkCloud::new(self.now, FRAME, slam.landmarks());
         self.recorder.record_json("/slam/landmarks", LandmarkCloud::SCHEMA, self.now, &cloud)?;
         let links = KeyframeLinks::of(slam);

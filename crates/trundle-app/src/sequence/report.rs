@@ -1,11 +1,12 @@
 //! The page of a tracked sequence.
 
-use super::comparison::TruthComparison;
 use super::recorder::KeyframeLinks;
 use super::request::SequenceRequest;
 use super::run::SequenceRun;
+use crate::evaluation::TrajectoryEvaluation;
 use crate::report::camera_view;
 use trundle_core::{OccupancyGrid, Pose3, Stamp, Vector3};
+use trundle_io::SequenceCamera;
 use trundle_viz::{
     Card, Chart, Color, Figure, RunMap, RunReport, Table, Verdict, VisualMapScene, trajectory_picture,
     visual_map_picture,
@@ -14,10 +15,11 @@ use trundle_viz::{
 /// The page: trajectory, error, maps, last image, numbers.
 pub fn page(
     request: &SequenceRequest,
+    camera: &SequenceCamera,
     run: &SequenceRun,
     grid: OccupancyGrid,
     trajectory: &[(Stamp, Pose3)],
-    comparison: Option<&TruthComparison>,
+    comparison: Option<&TrajectoryEvaluation>,
     rows: &[Vec<String>],
 ) -> RunReport {
     let c = run.counts;
@@ -25,11 +27,19 @@ pub fn page(
     let verdict = format!("{posed} of {} frames located by sight.", posed + c.dead_reckoned + c.lost);
     let mut charts =
         vec![Figure::png("Trajectory of the camera", &path_picture(trajectory, comparison)).wide()];
-    charts.extend(comparison.map(|comparison| error_chart(trajectory, comparison)));
+    charts.extend(comparison.map(error_chart));
     RunReport {
         title: "trundle slam".to_owned(),
-        subtitle: format!("{}, camera {}.", request.dir.display(), request.camera),
-        verdict: Some(if run.is_located() { Verdict::Note(verdict) } else { Verdict::Failed(verdict) }),
+        subtitle: format!(
+            "{}, camera {}{}.",
+            request.dir.display(),
+            camera.name,
+            if camera.is_assumed { " (assumed)" } else { "" }
+        ),
+        verdict: Some(match run.failure() {
+            None => Verdict::Note(verdict),
+            Some(failure) => Verdict::Failed(format!("{verdict} {failure}")),
+        }),
         cards: cards(run, comparison),
         map: RunMap {
             grid: Some(grid),
@@ -63,7 +73,7 @@ fn visual_map(run: &SequenceRun, trajectory: &[(Stamp, Pose3)]) -> Figure {
     Figure::png("The visual map", &png).legend(legend).caption(caption).wide()
 }
 
-fn cards(run: &SequenceRun, comparison: Option<&TruthComparison>) -> Vec<Card> {
+fn cards(run: &SequenceRun, comparison: Option<&TrajectoryEvaluation>) -> Vec<Card> {
     let mut cards = Vec::new();
     if let Some(comparison) = comparison {
         let rmse = comparison.absolute.statistics.rmse * 1e2;
@@ -74,21 +84,18 @@ fn cards(run: &SequenceRun, comparison: Option<&TruthComparison>) -> Vec<Card> {
     cards
 }
 
-fn path_picture(trajectory: &[(Stamp, Pose3)], comparison: Option<&TruthComparison>) -> Vec<u8> {
+fn path_picture(trajectory: &[(Stamp, Pose3)], comparison: Option<&TrajectoryEvaluation>) -> Vec<u8> {
     let own: Vec<Vector3> = trajectory.iter().map(|(_, pose)| pose.translation).collect();
     match comparison {
-        Some(comparison) => trajectory_picture(&comparison.aligned, Some(&comparison.truth)),
+        Some(comparison) => trajectory_picture(&comparison.compared(), Some(&comparison.truth)),
         None => trajectory_picture(&own, None),
     }
 }
 
-fn error_chart(trajectory: &[(Stamp, Pose3)], comparison: &TruthComparison) -> Figure {
-    let pairs = comparison.absolute.pairs.iter().zip(&comparison.absolute.errors);
-    let start = trajectory.first().map(|(stamp, _)| *stamp).unwrap_or_default();
-    let points = pairs.map(|(&(_, e), error)| (trajectory[e].0 - start, error * 1e2)).collect();
+fn error_chart(comparison: &TrajectoryEvaluation) -> Figure {
     Figure::chart(&Chart::new("Distance from ground truth", "time, s", "error, cm").line(
         "error",
         Color::BLUE,
-        points,
+        comparison.absolute_errors_cm(),
     ))
 }

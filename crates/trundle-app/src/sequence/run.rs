@@ -3,10 +3,13 @@
 use super::odometry_prior::OdometryPrior;
 use super::recorder::SequenceRecorder;
 use super::request::SequenceRequest;
-use crate::{AppError, StepProgress, TrackCounts};
+use crate::{AppError, StepProgress, TrackCounts, stop};
 use std::time::Instant;
 use trundle_core::RgbdImage;
-use trundle_io::{CameraModel, EncodedRgbd, FrameError, IoError, OutputFolder, TumSequence};
+use trundle_io::{
+    CameraModel, DepthStatistics, EncodedRgbd, FrameError, OutputFolder, SequenceCamera, TumSequence,
+    Warnings,
+};
 use trundle_runtime::{LevelMap, RobotConfig, Stage, StageTimes};
 use trundle_slam::{RgbdSlam, TrackReport};
 
@@ -28,30 +31,30 @@ pub struct SequenceRun {
     pub times: StageTimes,
     /// Wall-clock time of the whole, s.
     pub seconds: f64,
-    warnings: Warnings,
-}
-
-/// Warnings that were logged.
-#[derive(Default)]
-struct Warnings {
-    /// Calibration issues.
-    calibration_issues: usize,
-    /// Reasons for which frames could not be read, each once.
-    frame_problems: Vec<String>,
+    /// Whether the user ended it before the last frame.
+    pub is_interrupted: bool,
+    /// The depth of all images read.
+    depth: DepthStatistics,
+    /// Depth units a metre.
+    depth_scale: f64,
+    /// Calibration issues that were logged.
+    logged_issues: usize,
+    /// Why frames could not be read.
+    frame_problems: Warnings,
 }
 
 /// Tracks a sequence and records every frame into `recording.mcap` of `folder`.
 ///
 /// # Errors
-/// When a setting cannot be accepted, no frame can be read, or the recording cannot be written.
+/// When a setting cannot be accepted or no frame can be read. A recording that the disk does not take ends; tracking goes on.
 pub fn track_sequence(
     request: &SequenceRequest,
-    camera: &CameraModel,
+    camera: &SequenceCamera,
     sequence: &TumSequence,
     folder: &OutputFolder,
     progress: &dyn StepProgress,
 ) -> Result<SequenceRun, AppError> {
-    let mut run = SequenceRun::new(request, camera)?;
+    let mut run = SequenceRun::new(request, &camera.model)?;
     let mut recorder = SequenceRecorder::new(folder.recorder("recording.mcap")?);
     let odometry = OdometryPrior::new(sequence);
     let frames = request.frames.map_or(sequence.len(), |frames| sequence.len().min(frames));
@@ -62,18 +65,23 @@ pub fn track_sequence(
             Ok(image) => {
                 let encoded = EncodedRgbd::encode(&image).map_err(AppError::input)?;
                 let report = run.step(image, &odometry);
-                recorder.record(encoded, &report, &run.slam)?;
+                recorder.record(encoded, &report, &run.slam);
                 run.warn_of_calibration(progress);
             }
-            Err(error) => run.skip(progress, &error),
+            Err(error) => run.skip(&error),
         }
         progress.advance();
+        run.is_interrupted = i + 1 < frames && stop::is_requested(|| format!("{} of {frames} frames", i + 1));
+        if run.is_interrupted {
+            break;
+        }
     }
     progress.end();
+    run.frame_problems.iter().for_each(|warning| tracing::warn!("frames skipped: {warning}"));
     run.slam.finish_refining();
-    recorder.finish(&run.slam)?;
+    recorder.finish(&run.slam, folder);
     if let (None, Some(first)) = (&run.last_image, run.unreadable.first()) {
-        let (dir, camera) = (request.dir.display(), &request.camera);
+        let (dir, camera) = (request.dir.display(), &camera.name);
         let problem = format!("{dir}: no frame can be read as one of camera {camera} (--camera); {first}");
         return Err(AppError::Input(problem));
     }
@@ -96,40 +104,47 @@ impl SequenceRun {
             odometry_priors: 0,
             times: StageTimes::default(),
             seconds: 0.0,
-            warnings: Warnings::default(),
+            is_interrupted: false,
+            depth: DepthStatistics::default(),
+            depth_scale: request.depth_scale.unwrap_or(camera.depth_scale),
+            logged_issues: 0,
+            frame_problems: Warnings::default(),
         })
     }
 
-    /// Whether any frame after the first, which defines the frame, was located by its features.
+    /// Why the run missed its aim, with the likely cause; `None` where it did not.
     #[must_use]
-    pub fn is_located(&self) -> bool {
+    pub fn failure(&self) -> Option<String> {
+        let depth = self.depth.problem(self.depth_scale);
+        if !self.is_located() {
+            let cause = depth.unwrap_or_else(|| "too few features of the images match".to_owned());
+            return Some(format!("no frame after the first was located: {cause}"));
+        }
+        depth
+    }
+
+    /// Whether any frame after the first, which defines the frame, was located by its features.
+    fn is_located(&self) -> bool {
         self.counts.ok + self.counts.weak > 0 && self.slam.landmarks().next().is_some()
     }
 
-    /// Logs why a frame cannot be read; of frames with the same reason only the first.
-    fn skip(&mut self, progress: &dyn StepProgress, error: &FrameError) {
+    /// Notes why a frame cannot be read.
+    fn skip(&mut self, error: &FrameError) {
         self.unreadable.push(error.to_string());
-        let problem = match &error.source {
-            IoError::Field { problem, .. } => problem.to_string(),
-            _ => error.to_string(),
-        };
-        let problems = &mut self.warnings.frame_problems;
-        if !problems.contains(&problem) {
-            progress.pause(&|| tracing::warn!("{error}; skipped, and others like it"));
-            problems.push(problem);
-        }
+        self.frame_problems.add(&error.source.problem(), &error.source.path().display().to_string());
     }
 
     /// Logs each setting that is newly suspected.
     fn warn_of_calibration(&mut self, progress: &dyn StepProgress) {
         let issues = self.slam.calibration_issues();
-        for issue in &issues[self.warnings.calibration_issues..] {
+        for issue in &issues[self.logged_issues..] {
             progress.pause(&|| tracing::warn!("{issue}"));
         }
-        self.warnings.calibration_issues = issues.len();
+        self.logged_issues = issues.len();
     }
 
     fn step(&mut self, image: RgbdImage, odometry: &OdometryPrior<'_>) -> TrackReport {
+        self.depth.count(image.depth());
         let since = self.last_image.as_ref().map(RgbdImage::stamp);
         let prior = since.and_then(|since| odometry.motion(since, image.stamp()));
         self.odometry_priors += usize::from(prior.is_some());

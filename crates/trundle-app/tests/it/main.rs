@@ -3,6 +3,7 @@
 
 mod body;
 mod checkpoint_writer;
+mod contact;
 mod files;
 mod recording;
 mod report;

@@ -2,9 +2,12 @@
 
 use crate::body::{InterruptedBody, StillBody, run_into, setup};
 use std::path::{Path, PathBuf};
-use trundle_app::{EncodedBody, FinishedRun, Progress, RunLog, RunRecorder, RunReplayer, run_on_body};
+use trundle_app::{
+    EncodedBody, FinishedRun, FreeSpace, Progress, RecordingContent, RunLog, RunRecorder, RunReplayer,
+    run_on_body,
+};
 use trundle_core::Stamp;
-use trundle_io::OutputFolder;
+use trundle_io::{OutputFolder, RecordingReader};
 use trundle_runtime::real_time::ThreadPlacement;
 
 /// Records a run on `body`; the run and its recording.
@@ -50,7 +53,7 @@ fn a_thread_records_the_same_lines() {
     let scratch = tempfile::tempdir().unwrap();
     let (_, inline) = record(&mut StillBody::new(50), scratch.path());
     let folder = OutputFolder::create(&scratch.path().join("threaded")).unwrap();
-    let recorder = RunRecorder::threaded(&folder, ThreadPlacement::default()).unwrap();
+    let recorder = RunRecorder::threaded(RecordingContent::All, &folder, ThreadPlacement::default()).unwrap();
     let run = run_on_body(&setup(), &mut StillBody::new(50), recorder, RunLog::default(), Progress::hidden())
         .unwrap();
     assert_eq!(run.recording.lines_lost, 0);
@@ -102,4 +105,55 @@ fn files_that_are_no_recording_of_a_run_are_refused_by_name() {
     recorder.finish(None).unwrap();
     let other = folder.commit().unwrap().join("recording.mcap");
     assert!(refusal(&other).contains("no trundle.Config message comes first"), "{}", refusal(&other));
+}
+
+#[test]
+fn a_disk_short_of_space_ends_the_recording_and_not_the_run() {
+    let scratch = tempfile::tempdir().unwrap();
+    let folder = OutputFolder::create(&scratch.path().join("run")).unwrap();
+    let recorder = RunRecorder::to_folder(&folder).unwrap().watching(FreeSpace::new(|| Some(1), 2));
+    let mut body = StillBody::new(50);
+    let run = run_on_body(&setup(), &mut body, recorder, RunLog::default(), Progress::hidden()).unwrap();
+    assert_eq!(body.commands.len(), 50);
+    assert!(run.recording.error.is_none(), "what is recorded is whole");
+    let recording = folder.commit().unwrap().join("recording.mcap");
+    assert_eq!(RecordingReader::open(&recording).unwrap().count(), 0);
+}
+
+#[test]
+fn a_recording_without_images_is_no_replay_and_none_is_no_file() {
+    let scratch = tempfile::tempdir().unwrap();
+    let mut files = Vec::new();
+    for content in [RecordingContent::None, RecordingContent::Events] {
+        let folder = OutputFolder::create(&scratch.path().join(format!("{content:?}"))).unwrap();
+        let mut setup = setup();
+        setup.recording = content;
+        let recorder = RunRecorder::of_content(content, &folder).unwrap();
+        run_on_body(&setup, &mut StillBody::new(50), recorder, RunLog::default(), Progress::hidden())
+            .unwrap();
+        files.push(folder.commit().unwrap().join("recording.mcap"));
+    }
+    assert!(!files[0].exists());
+    let refusal = RunReplayer::open(&files[1]).err().unwrap().to_string();
+    assert!(refusal.contains("holds no images") && refusal.contains("--record all"), "{refusal}");
+    let events = RecordingReader::open(&files[1]).unwrap().events().map(Result::unwrap);
+    assert!(events.count() >= 50);
+}
+
+#[test]
+fn a_cut_recording_is_replayed_to_the_cut() {
+    let scratch = tempfile::tempdir().unwrap();
+    let (live, recording) = record(&mut StillBody::new(50), scratch.path());
+    let bytes = std::fs::read(&recording).unwrap();
+    let cut = scratch.path().join("cut.mcap");
+    for part in [3, 5, 8, 9] {
+        std::fs::write(&cut, &bytes[..bytes.len() * part / 10]).unwrap();
+        let (mut body, setup) = RunReplayer::open_to_cut(&cut).unwrap();
+        let folder = OutputFolder::create(&scratch.path().join("again")).unwrap();
+        let run = run_into(&setup, &mut body, &folder).unwrap();
+        assert_eq!(run.log.twists[..], live.log.twists[..run.log.twists.len()]);
+        let report = body.cut_report().unwrap();
+        let byte = bytes.len() * part / 10;
+        assert!(report.starts_with(&format!("the recording was cut at byte {byte}; ")), "{report}");
+    }
 }

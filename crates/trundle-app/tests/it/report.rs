@@ -28,7 +28,7 @@ fn goal(end: TaskEnd, error: Option<GoalError>) -> GoalOutcome {
 fn good() -> RunNumbers {
     RunNumbers {
         goals: vec![goal(TaskEnd::Done, off(0.01, 1.0))],
-        goals_asked: 1,
+        goals_asked: Some(1),
         goal_error: off(0.01, 1.0),
         believed_error: off(0.005, 0.5),
         estimate_rmse: Some(0.012),
@@ -53,6 +53,9 @@ fn a_run_is_a_success_when_the_goal_is_reached_in_truth_and_nothing_is_touched()
     assert_eq!(two.verdict(), "All 2 goals reached, nothing touched.");
     let none = RunNumbers { goals: Vec::new(), goal_error: None, ..good() };
     assert_eq!(none.verdict(), "Mission done, nothing touched.");
+    let idle = RunNumbers { goals_asked: None, ..good() };
+    assert!(!idle.is_success());
+    assert_eq!(idle.verdict(), "Failed: the goal is the start, so the robot had nothing to do.");
 }
 
 #[test]
@@ -125,7 +128,7 @@ fn the_folder_of_a_run_is_whole_and_names_the_kinds_of_its_reason() {
     let folder = OutputFolder::create(&scratch.path().join("run")).unwrap();
     let mut run = run_into(&setup(), &mut StillBody::touched(), &folder).unwrap();
     let output = write_run(&setup(), &mut run, None, folder).unwrap();
-    assert!(output.recording_error.is_none() && !output.numbers.is_success());
+    assert!(output.incomplete.is_none() && !output.numbers.is_success());
     let files = ["map.pgm", "map.yaml", "map.png", "trajectory.txt", "groundtruth.txt", "report.html"];
     for name in files.into_iter().chain(["timing.html", "summary.json", "recording.mcap"]) {
         assert!(output.folder.join(name).is_file(), "{name}");

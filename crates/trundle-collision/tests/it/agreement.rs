@@ -5,8 +5,7 @@ use proptest::prelude::*;
 use trundle_collision::convex_polygon::{depth_within, inscribed_disc, inset};
 use trundle_collision::square::{point_to_square, polygon_to_square, segment_to_square};
 use trundle_collision::{
-    MIN_CORNER_RADIUS_M, RoundedHull, Segment, StraightContact, arc_contact, blocked_headings,
-    straight_contact,
+    RoundedHull, Segment, StraightContact, arc_contact, blocked_headings, straight_contact,
 };
 use trundle_core::{Twist2, Vector2};
 
@@ -19,7 +18,7 @@ fn square_sides(centre: Vector2, half: f64) -> [Segment; 4] {
 proptest! {
     #[test]
     fn gaps_from_a_point_agree(point in any_point()) {
-        let (swept, hull) = (RoundedHull::exact(&polygon()).signed_distance(point), hull(0.0));
+        let (swept, hull) = (RoundedHull::exact(&polygon()).signed_distance(point), RoundedHull::exact(&polygon()));
         let by_hull = hull.core_distance(&Segment::point(point));
         prop_assert!((swept.max(0.0) - by_hull).abs() < 1e-12, "{swept} {by_hull}");
     }
@@ -62,12 +61,11 @@ proptest! {
     fn gaps_from_a_cell_agree(pose in any_pose(), centre in any_point(), half in 0.01..0.1_f64) {
         let placed: Vec<Vector2> = corners().iter().map(|c| pose.transform(*c)).collect();
         let to_square = polygon_to_square(&placed, centre, half, f64::INFINITY);
-        let hull = RoundedHull::new(&polygon(), 0.0);
+        let hull = RoundedHull::exact(&polygon());
         let inverse = pose.inverse();
         let side = |s: &Segment| Segment { a: inverse.transform(s.a), b: inverse.transform(s.b) };
         let by_hull = square_sides(centre, half).iter().map(|s| hull.core_distance(&side(s))).fold(f64::INFINITY, f64::min);
         prop_assert!((to_square - by_hull).abs() < 1e-9, "{to_square} {by_hull}");
-        prop_assert!(hull.outer_radius() > MIN_CORNER_RADIUS_M);
     }
 
     #[test]

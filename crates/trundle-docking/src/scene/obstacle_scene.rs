@@ -129,7 +129,7 @@ impl ObstacleScene {
     /// Distance of a footprint at a pose from the nearest obstacle, m, 0 when it overlaps one, and that obstacle; `None` when nothing
     /// is within `reach` (m).
     pub fn clearance(&self, footprint: &Footprint, pose: &Pose2, reach: f64) -> Option<(f64, Blocker)> {
-        self.clearance_of(&RoundedHull::new(footprint, 0.0), pose, reach)
+        self.clearance_of(&RoundedHull::exact(footprint), pose, reach)
     }
 
     pub(crate) fn clearance_of(

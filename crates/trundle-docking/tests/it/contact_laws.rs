@@ -67,7 +67,7 @@ fn a_contact_is_a_distance_of_no_more_than_the_margin() {
         let apart = distance(&footprint, &pose, &sides(&obstacles));
         let contact = ContactSpace::new(&footprint, margin, &scene).contact(&pose);
         touching += usize::from(contact.is_some());
-        if apart > margin.max(1e-4) + 1e-9 {
+        if apart > margin + 1e-9 {
             // Only the inside of a solid touches without a side near by.
             let inside = scene.clearance(&footprint, &pose, 1.0).is_some_and(|(distance, _)| distance == 0.0);
             assert!(contact.is_none() || inside, "{apart} m apart, margin {margin}");
@@ -189,7 +189,7 @@ fn headings_are_blocked_exactly_where_brute_force_finds_a_contact() {
         for i in 0..360 {
             let heading = f64::from(i) * TAU / 360.0;
             let pose = Pose2::new(case.pose.x, case.pose.y, heading);
-            let apart = distance(&case.footprint, &pose, &pieces) - case.margin.max(1e-4);
+            let apart = distance(&case.footprint, &pose, &pieces) - case.margin;
             let is_blocked = blocked.iter().any(|arc| (heading - arc.start).rem_euclid(TAU) <= arc.length);
             // Within a tenth of a millimetre of contact either answer is right.
             if apart.abs() > 1e-4 {

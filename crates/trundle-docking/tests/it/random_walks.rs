@@ -1,7 +1,7 @@
 //! Plans against manoeuvres that were driven at random: no proof excludes them, and no bound is above their time.
 
 use crate::common::{any_pose, at, mapped, mirrored, mirrored_footprint, robot, scene, wall};
-use crate::contact::{distance, footprint, obstacle, sides};
+use crate::contact::{CONTACT_M, distance, footprint, obstacle, sides};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use trundle_core::{Footprint, Pose2, Vector2, wrap_angle};
@@ -153,7 +153,7 @@ fn a_solution_driven_in_reverse_is_free_and_solves_the_reversed_problem() {
         let back = rebuilt(forth.end(), reversed);
         assert!(back.end().distance(&forth.start()) < 1e-9);
         assert!(wrap_angle(back.end().theta - forth.start().theta).abs() < 1e-9);
-        assert!(least_of(&footprint, &back, &sides(&obstacles)) > 0.0);
+        assert!(least_of(&footprint, &back, &sides(&obstacles)) > -CONTACT_M);
     }
 }
 
@@ -168,7 +168,7 @@ fn a_solution_in_the_mirror_is_free_and_solves_the_mirrored_problem() {
         let image = rebuilt(mirrored(one.start()), flipped);
         assert!(image.end().distance(&mirrored(one.end())) < 1e-9);
         let flipped = mapped(&obstacles, |p| at(p.x, -p.y));
-        assert!(least_of(&mirrored_footprint(&footprint), &image, &sides(&flipped)) > 0.0);
+        assert!(least_of(&mirrored_footprint(&footprint), &image, &sides(&flipped)) > -CONTACT_M);
     }
 }
 

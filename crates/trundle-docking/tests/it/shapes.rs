@@ -1,6 +1,6 @@
 //! Whole plans of any footprint among anything, against brute force.
 
-use crate::contact::{distance, footprint, obstacle, sides};
+use crate::contact::{CONTACT_M, distance, footprint, obstacle, sides};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::f64::consts::PI;
@@ -10,8 +10,6 @@ use trundle_docking::{
 };
 
 const PROBLEMS: usize = 100;
-/// What is kept where a margin of 0 is asked for, m, less what a motion may be off by.
-const TOUCH: f64 = 1e-4 - 1e-6;
 
 /// Start and goal some centimetres from everything, near each other.
 pub fn ends(rng: &mut ChaCha8Rng, free: impl Fn(&Pose2) -> bool) -> Option<(Pose2, Pose2)> {
@@ -63,8 +61,8 @@ fn any_shape_is_safe_and_nothing_possible_is_called_impossible() {
                 let manoeuvre = &solution.manoeuvre;
                 assert!(manoeuvre.end().distance(&goal) < 1e-9, "problem {count}");
                 let on_the_way = least_on_the_way(&footprint, manoeuvre, &pieces);
-                let kept = solution.margin.max(1e-4) - 1e-6;
-                assert!(on_the_way >= kept.max(TOUCH), "problem {count}: {on_the_way} of {kept}");
+                let kept = solution.margin - CONTACT_M;
+                assert!(on_the_way >= kept, "problem {count}: {on_the_way} of {kept}");
                 assert!(solution.bound <= manoeuvre.duration() + 1e-9);
                 least = least.min(on_the_way);
             }

@@ -1,6 +1,7 @@
 //! The worlds of the BARN challenge, read from its tables and built as scenes.
 
 use crate::csv_rows::rows;
+use crate::data_sets::BARN;
 use std::path::Path;
 use trundle_app::AppError;
 use trundle_core::{Invalid, Pose2, Vector2, Vector3};
@@ -62,10 +63,10 @@ impl BarnWorld {
 /// When a file is missing or a line is not what it should be; names file and line.
 pub fn read(folder: &Path) -> Result<Vec<BarnWorld>, AppError> {
     let mut worlds = Vec::new();
-    for row in rows(&folder.join("worlds.csv"), 4)? {
+    for row in rows(&folder.join("worlds.csv"), 4, &BARN)? {
         worlds.push(BarnWorld { id: row.number(0)?, optimal_time: row.number(3)?, cylinders: Vec::new() });
     }
-    for row in rows(&folder.join("obstacles.csv"), 5)? {
+    for row in rows(&folder.join("obstacles.csv"), 5, &BARN)? {
         let id: usize = row.number(0)?;
         let at = Vector2::new(row.number(3)?, row.number(4)?);
         if let Some(world) = worlds.iter_mut().find(|world| world.id == id) {

@@ -1,6 +1,7 @@
 //! The courses of the MRPB benchmark: start, goal, map and walking people, built as scenes.
 
 use crate::csv_rows::rows;
+use crate::data_sets::MRPB;
 use std::path::{Path, PathBuf};
 use trundle_app::AppError;
 use trundle_core::{Cell, GridGeometry, Invalid, OccupancyGrid, Pose2, Vector2, Vector3};
@@ -33,7 +34,7 @@ const OPEN: &str = "empty_world";
 /// When `start_goal.csv` or `actors.csv` is missing or a line is not what it should be.
 pub fn read(folder: &Path) -> Result<Vec<Course>, AppError> {
     let mut courses = Vec::new();
-    for row in rows(&folder.join("start_goal.csv"), 9)? {
+    for row in rows(&folder.join("start_goal.csv"), 9, &MRPB)? {
         let pose = |at: usize| -> Result<Pose2, AppError> {
             Ok(Pose2::new(row.number(at)?, row.number(at + 1)?, row.number(at + 2)?))
         };
@@ -138,7 +139,7 @@ fn floor() -> Solid {
 /// speed of its legs and stands as long as on average.
 fn people(file: &Path, scenario: &str) -> Result<Vec<Person>, AppError> {
     let mut ways: Vec<(String, Vec<[f64; 3]>)> = Vec::new();
-    for row in rows(file, 5)?.iter().filter(|row| row.text(0) == scenario) {
+    for row in rows(file, 5, &MRPB)?.iter().filter(|row| row.text(0) == scenario) {
         let point = [row.number(2)?, row.number(3)?, row.number(4)?];
         match ways.last_mut().filter(|(name, _)| name == row.text(1)) {
             Some((_, way)) => way.push(point),

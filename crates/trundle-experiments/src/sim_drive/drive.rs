@@ -3,7 +3,7 @@
 use super::driver::SimDriver;
 use super::recording::DriveRecording;
 use std::time::Instant;
-use trundle_app::{AppError, StepProgress};
+use trundle_app::{AppError, StepProgress, stop};
 use trundle_core::{RobotBody, SensorEvent};
 use trundle_sim::Simulator;
 
@@ -22,8 +22,10 @@ pub struct SimDrive {
     pub contacts: u32,
     /// Way-points reached, and all of them.
     pub waypoints: Option<(usize, usize)>,
-    /// Whether every way-point was reached.
+    /// Whether it came to its end, and every way-point was reached.
     pub is_complete: bool,
+    /// Whether the user ended it.
+    pub is_interrupted: bool,
     /// Wall-clock time, s.
     pub seconds: f64,
 }
@@ -44,8 +46,13 @@ pub fn drive_simulator(
     progress.begin(end_s(duration, driver).map(images_until));
     let (mut images, mut scans) = (0, 0);
     let mut now = 0.0;
+    let mut is_interrupted = false;
     while let Some(event) = robot.next_event().map_err(AppError::input)? {
         let stamp = event.stamp();
+        is_interrupted = stop::is_requested(|| format!("{now:.1} s of the robot's time"));
+        if is_interrupted {
+            break;
+        }
         if end_s(duration, driver).is_some_and(|end| end <= stamp.as_secs()) {
             break;
         }
@@ -65,7 +72,13 @@ pub fn drive_simulator(
         }
         if let Some(recording) = recording.as_deref_mut() {
             recording.on_event(event)?;
+            if recording.is_refused() {
+                break;
+            }
         }
+    }
+    if is_interrupted && images == 0 {
+        return Err(AppError::Stopped);
     }
     progress.end();
     let waypoints = driver.waypoints();
@@ -76,7 +89,8 @@ pub fn drive_simulator(
         distance: robot.path_length(),
         contacts: robot.contacts(),
         waypoints,
-        is_complete: waypoints.is_none_or(|(reached, all)| reached == all),
+        is_complete: !is_interrupted && waypoints.is_none_or(|(reached, all)| reached == all),
+        is_interrupted,
         seconds: begun.elapsed().as_secs_f64(),
     })
 }

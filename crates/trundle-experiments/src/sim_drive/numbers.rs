@@ -6,6 +6,9 @@ use trundle_io::Summary;
 /// The verdict, a sentence.
 #[must_use]
 pub fn drive_verdict(drive: &SimDrive) -> String {
+    if drive.is_interrupted {
+        return "ended by the user.".to_owned();
+    }
     match drive.waypoints {
         Some((reached, all)) if reached == all => "every way-point reached.".to_owned(),
         Some((reached, all)) => format!("way-point {} of {all} not reached.", reached + 1),
@@ -49,7 +52,8 @@ pub fn drive_summary(drive: &SimDrive, scene: &str, seed: u64) -> Summary {
         .set("images", drive.images)
         .set("scans", drive.scans)
         .set("waypoints_reached", drive.waypoints.map(|(reached, _)| reached))
-        .set("waypoints", drive.waypoints.map(|(_, all)| all));
+        .set("waypoints", drive.waypoints.map(|(_, all)| all))
+        .set_interrupted(drive.is_interrupted);
     summary
 }
 
@@ -67,6 +71,7 @@ mod tests {
             contacts: 0,
             waypoints,
             is_complete,
+            is_interrupted: false,
             seconds,
         }
     }

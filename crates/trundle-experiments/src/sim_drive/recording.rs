@@ -1,15 +1,28 @@
 //! The TUM RGB-D folder of a drive: images, ground truth, odometry, laser log, true map.
 
 use rayon::prelude::*;
-use trundle_app::AppError;
+use trundle_app::{AppError, FreeSpace};
 use trundle_core::{OccupancyGrid, Pose2, Pose3, RgbdImage, SensorEvent, Stamp, Vector2};
-use trundle_io::{CarmenLog, OutputFolder, Summary, TumFrame, TumWriter, write_map};
+use trundle_io::{CarmenLog, IoError, OutputFolder, Summary, TumFrame, TumWriter, write_map};
 use trundle_localization::{OdometryConfig, WheelOdometry};
 use trundle_sim::Simulator;
 use trundle_viz::{Color, LineStyle, MapPicture, PoseStyle};
 
 /// Images that are encoded together, on all cores. Source: ours.
 const ENCODED_BATCH: usize = 8;
+
+/// Size of a pixel of colour and depth as PNG \[bytes\]. Source: recordings of the built-in scenes.
+const BYTES_PER_PIXEL: f64 = 3.2;
+
+/// What the recording of a drive will write, in a sentence; `duration` in s, where it is known.
+#[must_use]
+pub fn recording_announcement(robot: &Simulator, duration: Option<f64>) -> String {
+    let (camera, config) = (robot.camera(), robot.config());
+    let pixels = (camera.width() * camera.height()) as f64;
+    let rate = BYTES_PER_PIXEL * pixels * config.camera_rate_hz / 1e6;
+    let total = duration.map_or_else(String::new, |s| format!(", {:.0} MB in {s:.0} s", rate * s));
+    format!("Records about {rate:.1} MB a second of the robot's time{total}.")
+}
 
 /// The TUM folder of a drive.
 pub struct DriveRecording<'f> {
@@ -19,6 +32,7 @@ pub struct DriveRecording<'f> {
     laser: Option<CarmenLog>,
     base_from_camera: Pose3,
     waiting: Vec<RgbdImage>,
+    space: FreeSpace,
     /// `world_from_base`.
     truth: Vec<(Stamp, Pose2)>,
     /// `odom_from_base`.
@@ -39,6 +53,7 @@ impl<'f> DriveRecording<'f> {
             laser: config.laser.as_ref().map(|laser| CarmenLog::new(laser.range_max)),
             base_from_camera: config.base_from_camera,
             waiting: Vec::with_capacity(ENCODED_BATCH),
+            space: FreeSpace::of(&folder.staged("")),
             truth: Vec::new(),
             odometry: Vec::new(),
         })
@@ -75,6 +90,11 @@ impl<'f> DriveRecording<'f> {
         Ok(())
     }
 
+    /// Whether the disk has refused a file: the drive ends.
+    pub fn is_refused(&self) -> bool {
+        self.folder.is_incomplete()
+    }
+
     /// Writes what is left, with the true map; the caller commits the folder.
     ///
     /// # Errors
@@ -91,6 +111,11 @@ impl<'f> DriveRecording<'f> {
     }
 
     fn flush(&mut self) -> Result<(), AppError> {
+        if let Some(problem) = self.space.shortage() {
+            self.waiting.clear();
+            self.folder.leave_out(IoError::Malformed { path: self.folder.target().join("rgb"), problem });
+            return Ok(());
+        }
         let encoded: Result<Vec<_>, _> = self.waiting.par_iter().map(TumFrame::encode).collect();
         for frame in encoded.map_err(|error| AppError::Input(error.to_string()))? {
             self.tum.frame(&frame)?;

@@ -5,6 +5,7 @@ use super::scene_files::SceneFiles;
 use std::path::{Path, PathBuf};
 use trundle_app::{AppError, read_toml};
 use trundle_core::Pose2;
+use trundle_io::{Expected, FileKind};
 use trundle_sim::import::{GltfOptions, RaisedMap, UpAxis};
 use trundle_sim::scenes::file::{BaseLoader, SceneFile};
 use trundle_sim::{Lights, Scene, World};
@@ -17,10 +18,28 @@ const HERE: SceneFiles = SceneFiles { folder: PathBuf::new() };
 pub struct SceneOptions {
     /// Of everything that is drawn by chance.
     pub seed: u64,
-    /// The axis of a mesh that points up.
-    pub up: UpAxis,
+    /// The axis, scale and floor of a mesh.
+    pub mesh: MeshOptions,
     /// Where the robot starts, world frame, if not where the scene says.
     pub start: Option<Pose2>,
+}
+
+/// How a mesh becomes a scene.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct MeshOptions {
+    /// The axis of the file that points up.
+    pub up: UpAxis,
+    /// Metres a unit of the file; `None` is 1.
+    pub scale: Option<f64>,
+    /// Height of the floor, m; `None` where it is found.
+    pub floor: Option<f64>,
+}
+
+impl MeshOptions {
+    fn import(self) -> GltfOptions {
+        let Self { up, scale, floor } = self;
+        GltfOptions { up, scale: scale.unwrap_or(1.0), floor, ..GltfOptions::default() }
+    }
 }
 
 /// The scene of a name: built in, or from a file.
@@ -29,17 +48,16 @@ pub struct SceneOptions {
 /// When there is none of that name, or a file is not what it should be; names the file and the item.
 pub fn load_scene(name: &str, args: SceneOptions) -> Result<Scene, AppError> {
     let file = Path::new(name);
-    let kind = file.extension().and_then(|extension| extension.to_str()).map(str::to_ascii_lowercase);
-    let mut scene = match kind.as_deref() {
-        Some("toml") => described(file, args.seed)?,
-        Some("glb" | "gltf") => {
-            let options = GltfOptions { up: args.up, ..GltfOptions::default() };
-            let mesh = HERE.gltf(file, &options).map_err(|error| AppError::Input(error.to_string()))?;
+    let mut scene = match file_kind(name)? {
+        Some(FileKind::Toml) => described(file, args.seed)?,
+        Some(FileKind::Glb | FileKind::Gltf) => {
+            let mesh =
+                HERE.gltf(file, &args.mesh.import()).map_err(|error| AppError::Input(error.to_string()))?;
             let world = World::with_meshes(Vec::new(), vec![mesh], args.seed)?;
             warn_of_tall_scene(file, &world);
             bare(args, file, world)?
         }
-        Some("yaml" | "yml") => {
+        Some(FileKind::MapYaml) => {
             let walls = HERE.map(file, RaisedMap::default().wall_height);
             let walls = walls.map_err(|error| AppError::Input(error.to_string()))?;
             bare(args, file, World::new(walls, args.seed)?)?
@@ -50,6 +68,12 @@ pub fn load_scene(name: &str, args: SceneOptions) -> Result<Scene, AppError> {
         scene.start = start;
     }
     Ok(scene)
+}
+
+/// The kind of the file that a scene's name stands for; `None` for a name that is no file.
+fn file_kind(name: &str) -> Result<Option<FileKind>, AppError> {
+    let is_file = !Scene::NAMES.contains(&name) && (name.contains(['.', '/']) || Path::new(name).exists());
+    Ok(if is_file { Some(Expected::Scene.check(Path::new(name))?) } else { None })
 }
 
 /// The built-in scenes, a row each: name and size.

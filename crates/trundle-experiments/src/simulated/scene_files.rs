@@ -1,10 +1,22 @@
 //! The files that a scene is made of.
 
 use std::path::{Path, PathBuf};
-use trundle_io::read_map;
-use trundle_sim::import::{GltfOptions, RaisedMap, gltf, raise_map};
+use trundle_app::read_map;
+use trundle_sim::import::{GltfOptions, ImportError, RaisedMap, gltf, raise_map};
 use trundle_sim::scenes::file::{BaseLoader, LoadError};
 use trundle_sim::{Mesh, Solid};
+
+/// The mesh of a glTF file; logs a warning for each note of the import.
+///
+/// # Errors
+/// As [`gltf`].
+pub fn import_mesh(file: &Path, options: &GltfOptions) -> Result<Mesh, ImportError> {
+    let scene = gltf(file, options)?;
+    for note in &scene.notes {
+        tracing::warn!("{}: {note}", file.display());
+    }
+    Ok(scene.mesh)
+}
 
 /// Reads the files that a scene is made of.
 pub(super) struct SceneFiles {
@@ -14,7 +26,7 @@ pub(super) struct SceneFiles {
 
 impl BaseLoader for SceneFiles {
     fn gltf(&self, path: &Path, options: &GltfOptions) -> Result<Mesh, LoadError> {
-        Ok(gltf(&self.folder.join(path), options)?)
+        Ok(import_mesh(&self.folder.join(path), options)?)
     }
 
     fn map(&self, path: &Path, wall_height: f64) -> Result<Vec<Solid>, LoadError> {

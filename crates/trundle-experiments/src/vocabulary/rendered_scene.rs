@@ -1,8 +1,10 @@
 //! A world with its lights, for rendering.
 
+use crate::simulated::import_mesh;
 use std::path::Path;
 use trundle_app::AppError;
-use trundle_sim::import::{GltfOptions, gltf};
+use trundle_io::FileKind;
+use trundle_sim::import::GltfOptions;
 use trundle_sim::{Lights, Scene, SceneSnapshot, World};
 
 /// A world and its lights.
@@ -21,10 +23,9 @@ impl RenderedScene {
     /// When there is no such scene, or the file cannot be read as glTF.
     pub fn open(name: &str, seed: u64, z_up: bool) -> Result<Self, AppError> {
         let file = Path::new(name);
-        let extension = file.extension();
-        if extension.is_some_and(|e| e.eq_ignore_ascii_case("glb") || e.eq_ignore_ascii_case("gltf")) {
+        if matches!(FileKind::of(file), Ok(FileKind::Glb | FileKind::Gltf)) {
             let options = if z_up { GltfOptions::z_up() } else { GltfOptions::default() };
-            let mesh = gltf(file, &options).map_err(|error| AppError::Input(error.to_string()))?;
+            let mesh = import_mesh(file, &options).map_err(|error| AppError::Input(error.to_string()))?;
             let world = World::with_meshes(Vec::new(), vec![mesh], seed)?;
             let name = file.file_stem().unwrap_or_default().to_string_lossy();
             return Ok(Self { name: format!("{name} {seed}"), world, lights: Lights::default() });

@@ -1,7 +1,8 @@
 //! Parser of one line of a CARMEN log.
 
+use crate::laser_log::{MAX_BEAMS, check_sweep};
 use crate::{excerpt::excerpt, parse_stamp};
-use std::f64::consts::{FRAC_PI_2, PI};
+use std::f64::consts::TAU;
 use std::str::SplitAsciiWhitespace;
 use trundle_core::{Pose2, Stamp};
 
@@ -10,10 +11,14 @@ use trundle_core::{Pose2, Stamp};
 pub(super) enum Line {
     /// `ODOM`: odom_from_base.
     Odometry(Stamp, Pose2),
-    /// `FLASER` or `ROBOTLASER1`.
+    /// A sweep of a laser.
     Laser(LaserLine),
     /// `PARAM robot_frontlaser_offset`, m.
     Offset(f64),
+    /// `PARAM laser_front_laser_fov`, rad.
+    FieldOfView(f64),
+    /// `PARAM laser_front_laser_resolution`, rad.
+    Resolution(f64),
     /// Anything else.
     Other,
 }
@@ -23,16 +28,26 @@ pub(super) enum Line {
 pub(super) struct LaserLine {
     pub stamp: Stamp,
     pub ranges: Vec<f64>,
-    pub angle_min: f64,
-    pub angle_increment: f64,
+    /// The angle of the first beam and the step between beams, rad, where the line has them.
+    pub angles: Option<[f64; 2]>,
     /// The laser's own limit, m, where the line has it.
     pub max_range: Option<f64>,
-    pub odom_from_laser: Pose2,
-    pub odom_from_base: Pose2,
+    /// `odom_from_laser` and `odom_from_base`, where the line has them.
+    pub poses: Option<[Pose2; 2]>,
 }
 
-/// Most beams of a line.
-const MOST_BEAMS: usize = 100_000;
+/// The names of lines with a sweep: of the front laser, the rear one and others.
+const LASERS: [&str; 8] =
+    ["FLASER", "RLASER", "ROBOTLASER1", "ROBOTLASER2", "RAWLASER1", "RAWLASER2", "RAWLASER3", "RAWLASER4"];
+
+/// Largest resolution that is read as radians \[rad\]: 2.9 deg. A larger one is read as degrees, as CARMEN writes it. Source: ours.
+const MAX_RESOLUTION_RAD: f64 = 0.05;
+
+/// The name of the line where it holds a sweep.
+pub(super) fn laser_name(line: &str) -> Option<&'static str> {
+    let name = line.split_ascii_whitespace().next()?;
+    LASERS.into_iter().find(|laser| *laser == name)
+}
 
 /// What a line says; a sentence on what is wrong with it.
 pub(super) fn parse(line: &str) -> Result<Line, String> {
@@ -43,56 +58,50 @@ pub(super) fn parse(line: &str) -> Result<Line, String> {
             fields.skip(3);
             Ok(Line::Odometry(fields.stamp()?, pose))
         }
-        Some("FLASER") => front_laser(fields).map(Line::Laser),
-        Some("ROBOTLASER1") => robot_laser(fields).map(Line::Laser),
-        Some("PARAM") => match fields.rest.next() {
-            Some("robot_frontlaser_offset") => Ok(Line::Offset(fields.number("robot_frontlaser_offset")?)),
-            _ => Ok(Line::Other),
-        },
+        Some("FLASER" | "RLASER") => plain_laser(fields).map(Line::Laser),
+        Some("ROBOTLASER1" | "ROBOTLASER2") => robot_laser(fields).map(Line::Laser),
+        Some("PARAM") => parameter(fields),
+        Some(name) if LASERS.contains(&name) => raw_laser(fields).map(Line::Laser),
         _ => Ok(Line::Other),
     }
 }
 
-/// `FLASER n r1..rn laser_pose base_pose time host time`: 180 degrees, from the right.
-fn front_laser(mut fields: Fields<'_>) -> Result<LaserLine, String> {
+/// `PARAM name value time host time`; newer logs name the front laser `laser1`.
+fn parameter(mut fields: Fields<'_>) -> Result<Line, String> {
+    let name = fields.rest.next();
+    match name {
+        Some(name @ "robot_frontlaser_offset") => Ok(Line::Offset(fields.number(name)?)),
+        Some(name @ ("laser_front_laser_fov" | "laser_laser1_fov")) => {
+            Ok(Line::FieldOfView(fields.angle(name, TAU + 0.01)?))
+        }
+        Some(name @ ("laser_front_laser_resolution" | "laser_laser1_resolution")) => {
+            Ok(Line::Resolution(fields.angle(name, MAX_RESOLUTION_RAD)?))
+        }
+        _ => Ok(Line::Other),
+    }
+}
+
+/// `FLASER n r1..rn laser_pose base_pose time host time`: from right to left.
+fn plain_laser(mut fields: Fields<'_>) -> Result<LaserLine, String> {
     let ranges = fields.ranges()?;
-    let steps = ranges.len() - ranges.len() % 2;
-    Ok(LaserLine {
-        angle_min: -FRAC_PI_2,
-        angle_increment: PI / steps.max(1) as f64,
-        max_range: None,
-        odom_from_laser: fields.pose()?,
-        odom_from_base: fields.pose()?,
-        stamp: fields.stamp()?,
-        ranges,
-    })
+    let poses = Some([fields.pose()?, fields.pose()?]);
+    Ok(LaserLine { stamp: fields.stamp()?, ranges, angles: None, max_range: None, poses })
 }
 
 /// `ROBOTLASER1 type start fov step max accuracy mode n r1..rn m i1..im laser_pose base_pose tv rv forward side turn time host time`.
 fn robot_laser(mut fields: Fields<'_>) -> Result<LaserLine, String> {
-    fields.skip(1);
-    let angle_min = fields.number("start angle")?;
-    fields.skip(1);
-    let angle_increment = fields.number("angle step")?;
-    if angle_increment <= 0.0 {
-        return Err(format!("angle step is {angle_increment} rad, expected more than 0"));
-    }
-    let max_range = fields.number("greatest range")?;
-    fields.skip(2);
-    let ranges = fields.ranges()?;
-    let remissions = fields.count("number of remissions", 0)?;
-    fields.skip(remissions);
-    let (odom_from_laser, odom_from_base) = (fields.pose()?, fields.pose()?);
+    let mut line = fields.sweep()?;
+    line.poses = Some([fields.pose()?, fields.pose()?]);
     fields.skip(5);
-    Ok(LaserLine {
-        stamp: fields.stamp()?,
-        ranges,
-        angle_min,
-        angle_increment,
-        max_range: (max_range > 0.0).then_some(max_range),
-        odom_from_laser,
-        odom_from_base,
-    })
+    line.stamp = fields.stamp()?;
+    Ok(line)
+}
+
+/// `RAWLASER1 type start fov step max accuracy mode n r1..rn m i1..im time host time`.
+fn raw_laser(mut fields: Fields<'_>) -> Result<LaserLine, String> {
+    let mut line = fields.sweep()?;
+    line.stamp = fields.stamp()?;
+    Ok(line)
 }
 
 struct Fields<'a> {
@@ -104,6 +113,31 @@ impl Fields<'_> {
         self.rest.by_ref().take(count).for_each(drop);
     }
 
+    /// `type start fov step max accuracy mode n r1..rn m i1..im`.
+    fn sweep(&mut self) -> Result<LaserLine, String> {
+        self.skip(1);
+        let first = self.number("start angle")?;
+        self.skip(1);
+        let step = self.number("angle step")?;
+        let max_range = self.number("greatest range")?;
+        self.skip(2);
+        let ranges = self.ranges()?;
+        check_sweep(["start angle", "angle step"], first, step, ranges.len())?;
+        let remissions = self.count("number of remissions", 0)?;
+        self.skip(remissions);
+        let max_range = (max_range > 0.0).then_some(max_range);
+        Ok(LaserLine { stamp: Stamp::default(), ranges, angles: Some([first, step]), max_range, poses: None })
+    }
+
+    /// A positive angle, rad; a value beyond `limit_rad` is one in degrees.
+    fn angle(&mut self, name: &str, limit_rad: f64) -> Result<f64, String> {
+        let value = self.number(name)?;
+        if value <= 0.0 || value > 360.0 {
+            return Err(format!("{name} is {value}, expected above 0 and at most 360 deg"));
+        }
+        Ok(if value > limit_rad { value.to_radians() } else { value })
+    }
+
     fn number(&mut self, name: &str) -> Result<f64, String> {
         let text = self.rest.next().ok_or_else(|| format!("the line ends before its {name}"))?;
         let value = text.parse::<f64>().ok().filter(|value| value.is_finite());
@@ -112,8 +146,8 @@ impl Fields<'_> {
 
     fn count(&mut self, name: &str, least: usize) -> Result<usize, String> {
         let text = self.rest.next().ok_or_else(|| format!("the line ends before its {name}"))?;
-        let count = text.parse::<usize>().ok().filter(|count| (least..=MOST_BEAMS).contains(count));
-        count.ok_or_else(|| format!("{name} is '{}', expected {least} to {MOST_BEAMS}", excerpt(text)))
+        let count = text.parse::<usize>().ok().filter(|count| (least..=MAX_BEAMS).contains(count));
+        count.ok_or_else(|| format!("{name} is '{}', expected {least} to {MAX_BEAMS}", excerpt(text)))
     }
 
     /// Ranges, m: what is no number is NaN, a beam that says nothing.

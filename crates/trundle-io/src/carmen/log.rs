@@ -1,196 +1,127 @@
-//! A laser log as read: scans with odometry, options, and skipped lines.
+//! The reader of CARMEN logs: collected lines become scans with odometry.
 
-use super::line::{LaserLine, Line, parse};
+use super::line::LaserLine;
+use super::lines::LogLines;
+use super::mount::{mount, scan_of};
+use super::ranges::{is_range, limit};
+use super::text::TextLines;
 use crate::IoError;
-use crate::files::{content_lines, read_text};
+use crate::laser_log::{LaserLog, LaserLogOptions, LaserLogScan, LaserLogSkip, LaserMount, Motion};
 use std::path::Path;
-use trundle_core::{Beam, Invalid, Pose2, Scan, Stamp, require_finite, require_in, require_positive};
 
-/// What a log does not say.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct LaserLogOptions {
-    /// How far ahead of the base the laser sits, m; by default what the log says: the poses of a CARMEN log's lines, else its
-    /// `PARAM robot_frontlaser_offset`, else 0; the transforms of a bag.
-    pub laser_x: Option<f64>,
-    /// How far the laser is turned to the left, rad; by default what the log says, else 0.
-    pub laser_turn: Option<f64>,
-    /// The laser hangs upside down: its beams run from left to right.
-    pub upside_down: bool,
-    /// Ranges from here on are no returns, m; by default what the line says, else the reading at which many end.
-    pub max_range: Option<f64>,
-}
-
-/// A scan with the odometry of its moment.
-#[derive(Debug, Clone, PartialEq)]
-pub struct LaserLogScan {
-    /// The pose by odometry.
-    pub odom_from_base: Pose2,
-    /// The scan, base frame. Beams without a return or with a bad range are unseen.
-    pub scan: Scan,
-}
-
-/// A line, or a message of a bag, that could not be used.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct LaserLogSkip {
-    /// The line, or the message's number in the bag, from 1.
-    pub line: usize,
-    /// What is wrong with it.
-    pub problem: String,
-}
-
-/// The log of a laser with odometry.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct LaserLog {
-    /// The scans, by rising stamps.
-    pub scans: Vec<LaserLogScan>,
-    /// The poses by odometry, by rising stamps.
-    pub odometry: Vec<(Stamp, Pose2)>,
-    /// Lines or messages that were skipped.
-    pub skipped: Vec<LaserLogSkip>,
-    /// Ranges that were negative, zero, infinite or no number.
-    pub bad_ranges: usize,
-    /// The first line, or message, with such a range.
-    pub first_bad_range: Option<usize>,
-    /// Ranges from here on were taken for no returns, m.
-    pub max_range: Option<f64>,
-}
-
-/// A CARMEN log: lines `FLASER`, `ROBOTLASER1`, `ODOM` and `PARAM robot_frontlaser_offset`; others are left alone.
+/// A CARMEN log, plain or compressed with gzip: lines of a laser (`FLASER`, `ROBOTLASER1`, `RAWLASER1` to `RAWLASER4` and those of
+/// the rear), `ODOM` and three of `PARAM`; others are left alone.
 ///
-/// A broken line, or one whose time goes back, is skipped and named in [`LaserLog::skipped`].
+/// The scans are those of the front laser, else the lines that are most; [`LaserLogOptions::scan_topic`] names others. A `RAWLASER`
+/// line has no pose: its odometry is interpolated between `ODOM` lines. A broken line, or one whose time goes back, is skipped and
+/// named in [`LaserLog::skipped`]; so is the rest of a compressed file that breaks off.
 ///
 /// # Errors
 /// When the file cannot be read, an option is out of range, or no line holds a scan: then the first problem is named.
 pub fn read_carmen(path: &Path, options: &LaserLogOptions) -> Result<LaserLog, IoError> {
-    validated(options).map_err(IoError::field(path))?;
-    parse_carmen(path, &read_text(path)?, options)
+    options.validate().map_err(IoError::field(path))?;
+    parse_carmen(path, TextLines::open(path)?, options)
 }
 
-pub(crate) fn validated(options: &LaserLogOptions) -> Result<(), Invalid> {
-    options.laser_x.map_or(Ok(0.0), |x| require_in("laser_x", x, "m", -20.0, 20.0))?;
-    options.laser_turn.map_or(Ok(0.0), |turn| require_finite("laser_turn", turn, "rad"))?;
-    options.max_range.map_or(Ok(()), |range| require_positive("max_range", range, "m").map(drop))
+fn parse_carmen(path: &Path, text: TextLines, options: &LaserLogOptions) -> Result<LaserLog, IoError> {
+    let lines = LogLines::read(text)?;
+    let asked = options.scan_topic.as_deref();
+    let name = lines.chosen(asked).map_err(|problem| IoError::malformed(path, problem))?;
+    let mut log = LaserLog { sources: lines.sources(&name), ..LaserLog::default() };
+    log.skipped = lines.problems(&name);
+    let chosen = in_order(lines.of(&name), &mut log.skipped);
+    log.take(path, &chosen, &lines, options)?;
+    log.odometry = lines.odometry;
+    log.skipped.sort_by_key(|skip| skip.line);
+    match log.skipped.first() {
+        Some(skip) if log.scans.is_empty() => Err(IoError::line(path, skip.line, skip.problem.clone())),
+        _ => Ok(log),
+    }
 }
 
-fn parse_carmen(path: &Path, text: &str, options: &LaserLogOptions) -> Result<LaserLog, IoError> {
-    let mut log = LaserLog::default();
-    let (mut lasers, mut offset) = (Vec::new(), 0.0);
-    for (number, line) in content_lines(text) {
-        let taken = parse(line).and_then(|line| match line {
-            Line::Odometry(stamp, pose) => log.take_odometry(stamp, pose),
-            Line::Laser(laser) => {
-                let bad = laser.ranges.iter().any(|range| !is_range(*range));
-                take_laser(&mut lasers, laser)?;
-                log.first_bad_range = log.first_bad_range.or(bad.then_some(number));
-                Ok(())
+/// The lines whose times do not go back.
+fn in_order<'a>(
+    lines: impl Iterator<Item = (usize, &'a LaserLine)>,
+    skipped: &mut Vec<LaserLogSkip>,
+) -> Vec<(usize, &'a LaserLine)> {
+    let mut taken: Vec<(usize, &LaserLine)> = Vec::new();
+    for (number, laser) in lines {
+        match taken.last().filter(|(_, before)| laser.stamp < before.stamp) {
+            Some((_, before)) => {
+                let problem = format!("time goes back from {} s to {} s", before.stamp, laser.stamp);
+                skipped.push(LaserLogSkip { line: number, problem });
             }
-            Line::Offset(metres) => {
-                offset = metres;
-                Ok(())
-            }
-            Line::Other => Ok(()),
-        });
-        if let Err(problem) = taken {
-            log.skipped.push(LaserLogSkip { line: number, problem });
+            None => taken.push((number, laser)),
         }
     }
-    if lasers.is_empty() {
-        return Err(match log.skipped.first() {
-            Some(skip) => IoError::line(path, skip.line, skip.problem.clone()),
-            None => IoError::malformed(path, "no scan in it, expected lines of FLASER or ROBOTLASER1"),
-        });
-    }
-    log.max_range = options.max_range.or_else(|| limit(&lasers));
-    let told = mount(&lasers).unwrap_or(Pose2::new(offset, 0.0, 0.0));
-    let (x, theta) = (options.laser_x.unwrap_or(told.x), options.laser_turn.unwrap_or(told.theta));
-    let mount = Pose2::new(x, told.y, theta);
-    for laser in &lasers {
-        let scan = log.scan(laser, mount, options.upside_down);
-        log.scans.push(LaserLogScan { odom_from_base: laser.odom_from_base, scan });
-    }
-    Ok(log)
-}
-
-fn take_laser(lasers: &mut Vec<LaserLine>, laser: LaserLine) -> Result<(), String> {
-    if let Some(before) = lasers.last().filter(|before| laser.stamp < before.stamp) {
-        return Err(format!("time goes back from {} s to {} s", before.stamp, laser.stamp));
-    }
-    lasers.push(laser);
-    Ok(())
+    taken
 }
 
 impl LaserLog {
-    fn take_odometry(&mut self, stamp: Stamp, pose: Pose2) -> Result<(), String> {
-        if let Some((before, _)) = self.odometry.last().filter(|(before, _)| stamp < *before) {
-            return Err(format!("time goes back from {before} s to {stamp} s"));
+    /// Takes the lines' scans, each with its odometry.
+    fn take(
+        &mut self,
+        path: &Path,
+        lasers: &[(usize, &LaserLine)],
+        lines: &LogLines,
+        options: &LaserLogOptions,
+    ) -> Result<(), IoError> {
+        self.max_range = options.max_range.or_else(|| limit(lasers));
+        let mount = mount(&self.sources.scans, lasers, lines, options);
+        self.mount = LaserMount { turn: mount.theta, upside_down: options.upside_down };
+        let mut motion = Motion::default();
+        for (stamp, pose) in &lines.odometry {
+            // Lines that go back in time are named already.
+            let _ = motion.push(*stamp, *pose);
         }
-        self.odometry.push((stamp, pose));
-        Ok(())
+        for (number, laser) in lasers {
+            self.note_bad_ranges(*number, laser);
+            let odometry = match laser.poses {
+                Some([_, odom_from_base]) => Ok(odom_from_base),
+                None => motion.at(laser.stamp),
+            };
+            let limit = self.max_range.or(laser.max_range).unwrap_or(f64::INFINITY);
+            let scan = odometry
+                .and_then(|pose| Ok((pose, scan_of(laser, mount, lines, limit, options.upside_down)?)));
+            match scan {
+                Ok((odom_from_base, scan)) => self.scans.push(LaserLogScan { odom_from_base, scan }),
+                Err(problem) => self.skipped.push(LaserLogSkip { line: *number, problem }),
+            }
+        }
+        self.refuse_other_clock(path, lasers, &motion)
     }
 
-    fn scan(&mut self, laser: &LaserLine, mount: Pose2, upside_down: bool) -> Scan {
-        let limit = self.max_range.or(laser.max_range).unwrap_or(f64::INFINITY);
-        let mut bad = 0;
-        let mut beams: Vec<Beam> = laser
-            .ranges
-            .iter()
-            .map(|&range| {
-                let good = is_range(range);
-                bad += usize::from(!good);
-                if good && range < limit { Beam::Hit { range } } else { Beam::Unseen }
-            })
-            .collect();
+    /// Refuses a log none of whose scans has odometry of its time.
+    fn refuse_other_clock(
+        &self,
+        path: &Path,
+        lasers: &[(usize, &LaserLine)],
+        motion: &Motion,
+    ) -> Result<(), IoError> {
+        let times = lasers.first().zip(lasers.last()).map(|((_, a), (_, b))| (a.stamp, b.stamp));
+        match times.and_then(|times| motion.other_clock(times)) {
+            Some(problem) if self.scans.is_empty() => Err(IoError::malformed(path, problem)),
+            _ => Ok(()),
+        }
+    }
+
+    fn note_bad_ranges(&mut self, number: usize, laser: &LaserLine) {
+        let bad = laser.ranges.iter().filter(|range| !is_range(**range)).count();
         self.bad_ranges += bad;
-        let sweep = laser.angle_increment * (beams.len() - 1) as f64;
-        let mut first = laser.angle_min;
-        if upside_down {
-            beams.reverse();
-            first = -(first + sweep);
-        }
-        Scan::new(laser.stamp, mount.position(), mount.theta + first, laser.angle_increment, beams)
-            .expect("invariant: angles and mount were checked, ranges are finite and positive")
+        self.first_bad_range = self.first_bad_range.or((bad > 0).then_some(number));
     }
-}
-
-fn is_range(range: f64) -> bool {
-    range > 0.0 && range.is_finite()
-}
-
-/// The reading at which many beams end, if there is one: a laser without a return says its limit, give or take.
-fn limit(lasers: &[LaserLine]) -> Option<f64> {
-    /// Readings so far below the greatest are the limit too, m.
-    const BAND: f64 = 0.25;
-    /// Least part of all beams.
-    const SHARE: f64 = 0.001;
-    let readings = || lasers.iter().flat_map(|l| &l.ranges).copied().filter(|r| r.is_finite());
-    let greatest = readings().fold(0.0, f64::max);
-    let (mut many, mut all) = (0_usize, 0_usize);
-    for range in readings() {
-        all += 1;
-        many += usize::from(range > greatest - BAND);
-    }
-    (many as f64 > SHARE * all as f64 && many > 20).then_some(greatest - BAND)
-}
-
-/// Where the laser sits by the poses of the lines, when all agree on it and it is no more than 2 m away.
-fn mount(lasers: &[LaserLine]) -> Option<Pose2> {
-    let place = |laser: &LaserLine| laser.odom_from_base.inverse() * laser.odom_from_laser;
-    let first = place(&lasers[0]);
-    let agree = |laser: &LaserLine| {
-        let off = first.inverse() * place(laser);
-        off.position().norm() < 0.01 && off.theta.abs() < 0.01
-    };
-    let away = first.position().norm() > 1e-6 || first.theta.abs() > 1e-6;
-    (away && first.position().norm() < 2.0 && lasers.iter().all(agree)).then_some(first)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use proptest::prelude::*;
+    use trundle_core::{Beam, Pose2, Stamp};
 
     fn read(text: &str, options: LaserLogOptions) -> Result<LaserLog, String> {
-        parse_carmen(Path::new("a.log"), text, &options).map_err(|error| error.to_string())
+        let path = Path::new("a.log");
+        let lines = TextLines::new(path, std::io::Cursor::new(text.to_owned().into_bytes()));
+        lines.and_then(|lines| parse_carmen(path, lines, &options)).map_err(|error| error.to_string())
     }
 
     const GOOD: &str = "FLASER 4 1 2 3 4 0.5 0 0 0.2 0 0 10.5 host 0.1\n";
@@ -221,7 +152,7 @@ mod tests {
         let moved = LaserLogOptions { laser_x: Some(0.1), ..Default::default() };
         assert_eq!(origin(moved), (0.1, -90.0));
         let wrong = LaserLogOptions { laser_x: Some(1e9), ..Default::default() };
-        assert_eq!(validated(&wrong).unwrap_err().field, "laser_x");
+        assert_eq!(wrong.validate().unwrap_err().field, "laser_x");
     }
 
     #[test]
@@ -276,9 +207,92 @@ mod tests {
         assert!(log.scans.iter().all(|s| s.scan.beams() == [Beam::Hit { range: 3.0 }, Beam::Unseen]));
     }
 
+    /// The angles of the first and last beam of a log's first scan, deg.
+    fn ends(text: &str) -> (f64, f64) {
+        let scan = read(text, LaserLogOptions::default()).unwrap().scans[0].scan.clone();
+        let angle = |i: usize| (scan.angle(i).to_degrees() * 1e6).round() / 1e6;
+        (angle(0), angle(scan.beams().len() - 1))
+    }
+
+    #[test]
+    fn parameters_of_the_front_laser_are_obeyed() {
+        let flaser = "FLASER 5 1 2 3 4 5 0 0 0 0 0 0 1 h 1";
+        assert_eq!(ends(flaser), (-90.0, 90.0));
+        for parameters in [
+            "PARAM laser_front_laser_fov 240 h 1",
+            "PARAM laser_front_laser_fov 4.1887902047863905 h 1\nPARAM laser_front_laser_resolution 5.0",
+            "PARAM laser_front_laser_resolution 60",
+            "PARAM laser_laser1_fov 240",
+        ] {
+            assert_eq!(ends(&format!("{parameters}\n{flaser}")), (-120.0, 120.0), "{parameters}");
+        }
+        let own = "PARAM laser_front_laser_fov 240\nROBOTLASER1 0 -1 2 1 8 0.01 0 3 1 2 3 0 0 0 0 0 0 0 0 0 0 0 0 1 h 0";
+        assert_eq!(ends(own).0, (-1.0_f64.to_degrees() * 1e6).round() / 1e6, "a line's own angles win");
+        let wrong = read(&format!("PARAM laser_front_laser_fov -3\n{flaser}"), LaserLogOptions::default());
+        assert!(wrong.unwrap().skipped[0].problem.contains("laser_front_laser_fov is -3, expected above 0"));
+    }
+
+    #[test]
+    fn clockwise_scans_are_turned_round() {
+        let line = |first: f64, step: f64, ranges: &str| {
+            format!("ROBOTLASER1 0 {first} 0 {step} 50 0.01 0 3 {ranges} 0 0 0 0 0 0 0 0 0 0 0 0 1 h 0")
+        };
+        let scan = |text: String, upside_down| {
+            let options = LaserLogOptions { upside_down, ..LaserLogOptions::default() };
+            read(&text, options).unwrap().scans[0].scan.clone()
+        };
+        let (left, right) = (line(-0.5, 0.5, "1 2 3"), line(0.5, -0.5, "3 2 1"));
+        for upside_down in [false, true] {
+            assert_eq!(scan(left.clone(), upside_down), scan(right.clone(), upside_down));
+        }
+    }
+
+    #[test]
+    fn raw_lines_take_their_odometry_from_odom_lines() {
+        let raw = |name: &str, time: f64| format!("{name} 0 -1 2 1 8 0.01 0 3 1 2 3 0 {time} h 0\n");
+        let odom = "ODOM 1 0 0 0 0 0 10 h 0\nODOM 2 0 0 0 0 0 11 h 0\n";
+        let text =
+            format!("{odom}{}{}{}", raw("RAWLASER1", 10.5), raw("RAWLASER2", 10.5), raw("RAWLASER1", 99.0));
+        let log = read(&text, LaserLogOptions::default()).unwrap();
+        assert_eq!((log.scans.len(), log.scans[0].odom_from_base.x), (1, 1.5));
+        assert_eq!((log.sources.scans.as_str(), log.sources.odometry.as_str()), ("RAWLASER1", "ODOM"));
+        assert_eq!(log.sources.left, [("RAWLASER2".to_owned(), 1)]);
+        assert!(log.skipped[0].problem.contains("no odometry about 99.000000000 s"));
+        let rear = LaserLogOptions { scan_topic: Some("RAWLASER2".to_owned()), ..LaserLogOptions::default() };
+        let rear = read(&text, rear).unwrap().scans[0].scan.clone();
+        assert!((rear.angle(1).abs() - std::f64::consts::PI).abs() < 1e-9, "it looks back");
+        let none = LaserLogOptions { scan_topic: Some("RAWLASER4".to_owned()), ..LaserLogOptions::default() };
+        assert!(read(&text, none).unwrap_err().contains("expected one of: RAWLASER1 (2), RAWLASER2 (1)"));
+        let alone = read(&raw("RAWLASER1", 1.0), LaserLogOptions::default()).unwrap_err();
+        assert!(alone.contains("but no odometry in it"), "{alone}");
+        let late =
+            read(&format!("{odom}{}", raw("RAWLASER1", 99.0)), LaserLogOptions::default()).unwrap_err();
+        assert!(
+            late.contains(
+                "scans from 99.000000000 s to 99.000000000 s, odometry from 10.000000000 s to 11.000000000 s"
+            ),
+            "{late}"
+        );
+        let both = read(&format!("{text}{GOOD}"), LaserLogOptions::default()).unwrap();
+        assert_eq!(
+            (both.sources.scans.as_str(), both.scans.len()),
+            ("FLASER", 1),
+            "lines with poses come first"
+        );
+    }
+
+    #[test]
+    fn headers_in_degrees_are_refused() {
+        let line = "ROBOTLASER1 0 -180 355 5 12 0.01 0 3 1 2 3 0 0 0 0 0 0 0 0 0 0 0 0 1 h 0";
+        assert_eq!(
+            read(line, LaserLogOptions::default()).unwrap_err(),
+            "a.log, line 1: start angle is -180 rad, expected radians within one turn (6.283); it seems to be in degrees"
+        );
+    }
+
     proptest! {
         #[test]
-        fn any_text_is_no_panic(text in "(ODOM|FLASER|ROBOTLASER1|PARAM|[0-9. naif\n-]{0,8}){0,30}") {
+        fn any_text_is_no_panic(text in "(ODOM|FLASER|ROBOTLASER1|RAWLASER2|PARAM laser_front_laser_fov|PARAM|[0-9. naif\n-]{0,8}){0,30}") {
             let _ = read(&text, LaserLogOptions::default());
         }
     }

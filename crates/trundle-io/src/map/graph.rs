@@ -1,9 +1,11 @@
 //! Way-point graphs: GeoJSON as Nav2's route server reads it.
 
-use crate::IoError;
+use crate::excerpt::excerpt;
 use crate::files::read_text;
+use crate::{Expected, IoError};
 use serde::Deserialize;
-use std::collections::HashMap;
+use serde_json::Value;
+use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
 use trundle_core::{Vector2, require_in};
 
@@ -14,6 +16,8 @@ pub struct GraphFile {
     pub nodes: Vec<Vector2>,
     /// Lanes, driven from the first node to the second: places in `nodes`.
     pub lanes: Vec<(usize, usize)>,
+    /// Features that are neither, by kind, with their number.
+    pub left: BTreeMap<String, usize>,
 }
 
 #[derive(Deserialize)]
@@ -21,75 +25,125 @@ struct Collection {
     features: Vec<Feature>,
 }
 
+/// A feature as GeoJSON (RFC 7946) has it; what is no object says nothing.
 #[derive(Deserialize)]
 struct Feature {
-    properties: Properties,
-    geometry: Geometry,
+    #[serde(default)]
+    id: Value,
+    #[serde(default)]
+    properties: Value,
+    #[serde(default)]
+    geometry: Value,
 }
 
-#[derive(Deserialize)]
-struct Properties {
-    id: u64,
-    frame: Option<String>,
-    startid: Option<u64>,
-    endid: Option<u64>,
-}
-
-#[derive(Deserialize)]
-struct Geometry {
-    #[serde(rename = "type")]
-    kind: String,
-    coordinates: serde_json::Value,
+/// What a feature is to a graph.
+enum Role {
+    Node(String),
+    Lane(String),
+    /// Left alone: its kind.
+    Other(String),
 }
 
 impl Feature {
-    fn is_node(&self) -> bool {
-        self.geometry.kind == "Point"
+    fn kind(&self) -> &str {
+        self.geometry["type"].as_str().unwrap_or("without geometry")
     }
 
-    fn is_lane(&self) -> bool {
-        matches!(self.geometry.kind.as_str(), "MultiLineString" | "LineString")
+    /// The id as text, so that 7, 7.0 and "7" are one; the feature's own where its properties have none.
+    fn id(&self) -> Option<String> {
+        id_text(&self.properties["id"]).or_else(|| id_text(&self.id))
+    }
+
+    fn role(&self) -> Role {
+        let ends = ["startid", "endid"].map(|name| !self.properties[name].is_null());
+        match (self.kind(), self.id()) {
+            ("Point", Some(id)) => Role::Node(id),
+            ("Point", None) => Role::Other("Point without id".to_owned()),
+            ("MultiLineString" | "LineString", id) if ends.contains(&true) => {
+                Role::Lane(id.unwrap_or_else(|| "without id".to_owned()))
+            }
+            (kind @ ("MultiLineString" | "LineString"), _) => {
+                Role::Other(format!("{kind} without startid and endid"))
+            }
+            (kind, _) => Role::Other(kind.chars().take(MAX_KIND_CHARS).collect()),
+        }
+    }
+}
+
+/// Number of characters of a kind's name that are kept. Source: ours.
+const MAX_KIND_CHARS: usize = 40;
+
+fn id_text(value: &Value) -> Option<String> {
+    match value {
+        Value::String(text) => Some(text.clone()),
+        Value::Number(number) => {
+            let whole =
+                number.as_f64().filter(|x| x.fract() == 0.0 && x.abs() < 1e15 && number.as_i64().is_none());
+            Some(whole.map_or_else(|| number.to_string(), |x| format!("{x:.0}")))
+        }
+        _ => None,
     }
 }
 
 /// A way-point graph from a GeoJSON file in the form of Nav2's route server.
 ///
-/// A `Point` feature with `properties.id` is a node, its coordinates `[x, y]` in m, `properties.frame`, if any, `map`. A
-/// `MultiLineString` (or `LineString`) feature with `properties.startid` and `endid` is a lane, driven that way only and
-/// straight; two lanes make both ways. Other properties (costs, operations) are left alone.
+/// A `Point` feature with an id (in `properties`, or its own) is a node, its coordinates `[x, y]` or `[x, y, height]` in m,
+/// `properties.frame`, if any, `map`. A `MultiLineString` (or `LineString`) feature with `properties.startid` and `endid` is a
+/// lane, driven that way only and straight; two lanes make both ways. Ids are numbers or texts. Other properties (costs,
+/// operations) are left alone, and so are other features: [`GraphFile::left`] counts them.
 ///
 /// # Errors
 /// When the file cannot be read or is no such JSON, has no node, an id comes twice, a lane ends at no node, coordinates are not
-/// two finite numbers, or a frame is not `map`.
+/// finite numbers, or a frame is not `map`.
 pub fn read_graph(path: &Path) -> Result<GraphFile, IoError> {
+    Expected::Graph.check(path)?;
     let text = read_text(path)?;
-    let collection: Collection =
-        serde_json::from_str(&text).map_err(|error| IoError::line(path, error.line(), error.to_string()))?;
-    let (mut nodes, mut places) = (Vec::new(), HashMap::new());
-    for feature in collection.features.iter().filter(|feature| feature.is_node()) {
-        let id = feature.properties.id;
-        if places.insert(id, nodes.len()).is_some() {
-            return Err(IoError::malformed(path, format!("node {id} comes twice")));
+    let collection: Collection = serde_json::from_str(&text).map_err(|error| refused(path, &error))?;
+    let (mut nodes, mut places, mut lanes) = (Vec::new(), HashMap::new(), Vec::new());
+    let mut left = BTreeMap::new();
+    for feature in &collection.features {
+        match feature.role() {
+            Role::Node(id) => {
+                if places.insert(id.clone(), nodes.len()).is_some() {
+                    return Err(IoError::malformed(path, format!("node {id} comes twice")));
+                }
+                nodes.push(node(path, &id, feature)?);
+            }
+            Role::Lane(id) => lanes.push((id, &feature.properties)),
+            Role::Other(kind) => *left.entry(kind).or_insert(0) += 1,
         }
-        nodes.push(node(path, feature)?);
     }
     if nodes.is_empty() {
         return Err(IoError::malformed(path, "there is no node: no feature is a Point"));
     }
-    let lanes = collection.features.iter().filter(|feature| feature.is_lane());
-    let lanes = lanes.map(|feature| lane(path, &feature.properties, &places));
-    Ok(GraphFile { nodes, lanes: lanes.collect::<Result<_, _>>()? })
+    let lanes = lanes.iter().map(|(id, properties)| lane(path, id, properties, &places));
+    Ok(GraphFile { lanes: lanes.collect::<Result<_, _>>()?, nodes, left })
 }
 
-fn node(path: &Path, feature: &Feature) -> Result<Vector2, IoError> {
-    let Properties { id, frame, .. } = &feature.properties;
-    if let Some(frame) = frame.as_deref().filter(|frame| *frame != "map") {
+fn refused(path: &Path, error: &serde_json::Error) -> IoError {
+    let (line, column) = (error.line(), error.column());
+    let problem = if error.is_eof() {
+        "the file ends in the middle, expected a whole GeoJSON FeatureCollection".to_owned()
+    } else if error.is_data() {
+        "expected a GeoJSON FeatureCollection, an object with a list `features` of objects".to_owned()
+    } else {
+        format!("is not JSON at column {column}, expected a GeoJSON FeatureCollection")
+    };
+    IoError::line(path, line.max(1), problem)
+}
+
+fn node(path: &Path, id: &str, feature: &Feature) -> Result<Vector2, IoError> {
+    let frame = feature.properties["frame"].as_str();
+    if let Some(frame) = frame.filter(|frame| !matches!(*frame, "map" | "")) {
         return Err(IoError::malformed(path, format!("node {id} is in frame '{frame}', expected 'map'")));
     }
-    let coordinates = feature.geometry.coordinates.as_array().map_or(&[][..], Vec::as_slice);
-    let [Some(x), Some(y)] = coordinates.iter().map(serde_json::Value::as_f64).collect::<Vec<_>>()[..] else {
-        let found = &feature.geometry.coordinates;
-        return Err(IoError::malformed(path, format!("node {id} is at {found}, expected [x, y] (m)")));
+    let found = &feature.geometry["coordinates"];
+    let coordinates = found.as_array().map_or(&[][..], Vec::as_slice);
+    let numbers: Vec<Option<f64>> = coordinates.iter().map(Value::as_f64).collect();
+    let ([Some(x), Some(y)] | [Some(x), Some(y), Some(_)]) = numbers[..] else {
+        let found = excerpt(&found.to_string());
+        let problem = format!("node {id} is at {found}, expected [x, y] or [x, y, height] (m)");
+        return Err(IoError::malformed(path, problem));
     };
     for (axis, value) in [("x", x), ("y", y)] {
         require_in(&format!("node {id} {axis}"), value, "m", -1e6, 1e6).map_err(IoError::field(path))?;
@@ -99,18 +153,19 @@ fn node(path: &Path, feature: &Feature) -> Result<Vector2, IoError> {
 
 fn lane(
     path: &Path,
-    properties: &Properties,
-    places: &HashMap<u64, usize>,
+    id: &str,
+    properties: &Value,
+    places: &HashMap<String, usize>,
 ) -> Result<(usize, usize), IoError> {
-    let id = properties.id;
-    let end = |name: &str, node: Option<u64>| {
+    let end = |name: &str| {
+        let node = id_text(&properties[name]);
         let node = node.ok_or_else(|| IoError::malformed(path, format!("lane {id} has no {name}")))?;
         let place = places.get(&node).copied();
         place.ok_or_else(|| {
             IoError::malformed(path, format!("{name} of lane {id} is {node}, which is no node"))
         })
     };
-    Ok((end("startid", properties.startid)?, end("endid", properties.endid)?))
+    Ok((end("startid")?, end("endid")?))
 }
 
 #[cfg(test)]
@@ -148,7 +203,11 @@ mod tests {
                 "\"frame\": \"wgs84\"",
                 "g.geojson: node 5 is in frame 'wgs84', expected 'map'",
             ),
-            ("[-3, 2]", "[-3, 2, 1]", "g.geojson: node 9 is at [-3,2,1], expected [x, y] (m)"),
+            (
+                "[-3, 2]",
+                "[-3, 2, null]",
+                "g.geojson: node 9 is at [-3,2,null], expected [x, y] or [x, y, height] (m)",
+            ),
             ("[-3, 2]", "[-3e9, 2]", "g.geojson: node 9 x is -3000000000 m, expected -1000000 to 1000000"),
         ] {
             assert_eq!(read(&GRAPH.replace(from, to)).unwrap_err(), problem);
@@ -159,5 +218,43 @@ mod tests {
         );
         assert!(read("{\n\"features\": 3}").unwrap_err().starts_with("g.geojson, line 2: "));
         assert!(read("").is_err() && read("[]").is_err());
+        let broken = read("{\n\"features\": [,]}").unwrap_err();
+        assert_eq!(
+            broken,
+            "g.geojson, line 2: is not JSON at column 14, expected a GeoJSON FeatureCollection"
+        );
+    }
+
+    #[test]
+    fn heights_and_texts_as_ids_are_taken() {
+        let graph = read(GRAPH).unwrap();
+        for (from, to) in [
+            ("[-3, 2]", "[-3, 2, 0.5]"),
+            ("\"id\": 9}", "\"id\": \"9\"}"),
+            ("\"endid\": 9", "\"endid\": \"9\""),
+            ("\"endid\": 9", "\"endid\": 9.0"),
+            ("\"properties\": {\"id\": 9}", "\"id\": 9, \"properties\": null"),
+        ] {
+            assert_eq!(read(&GRAPH.replace(from, to)).unwrap(), graph, "{to}");
+        }
+        let names =
+            GRAPH.replace("\"id\": 9}", "\"id\": \"dock\"}").replace("\"endid\": 9", "\"endid\": \"dock\"");
+        assert_eq!(read(&names).unwrap(), graph);
+    }
+
+    #[test]
+    fn other_features_are_left_alone_and_counted() {
+        let others = r#"{"type": "Feature", "properties": {"name": "hall"}, "geometry": {"type": "Polygon", "coordinates": [[]]}},
+{"type": "Feature", "properties": null, "geometry": null},
+{"type": "Feature", "properties": {}, "geometry": {"type": "Point", "coordinates": [0, 0]}},
+{"type": "Feature", "properties": {"id": 3}, "geometry": {"type": "LineString", "coordinates": [[0, 0], [1, 1]]}},
+{"type": "Feature", "properties": {"id": 5"#;
+        let graph =
+            read(&GRAPH.replacen(r#"{"type": "Feature", "properties": {"id": 5"#, others, 1)).unwrap();
+        assert_eq!((graph.nodes.len(), graph.lanes.len()), (2, 1));
+        let left: Vec<_> = graph.left.iter().map(|(kind, count)| format!("{kind}: {count}")).collect();
+        let kinds =
+            ["LineString without startid and endid", "Point without id", "Polygon", "without geometry"];
+        assert_eq!(left, kinds.map(|kind| format!("{kind}: 1")));
     }
 }

@@ -1,11 +1,11 @@
 //! Masks of Nav2's costmap filters: a map_server picture whose greys forbid, or slow down.
 
-use super::pgm::Pgm;
+use super::picture::Picture;
+use super::source::MapSource;
 use super::turned::straightened;
-use super::{picture_of, yaml::MapYaml};
+use super::yaml::MapYaml;
 use crate::IoError;
-use crate::files::read_text;
-use serde::Deserialize;
+use crate::yaml_document::YamlDocument;
 use std::path::Path;
 use trundle_core::{Cell, GridGeometry, Invalid, OccupancyGrid, require_in};
 
@@ -15,30 +15,30 @@ const LETHAL_VALUE: u8 = 100;
 /// What the values of a speed mask mean, as Nav2's filter-info server says it: limit = base + multiplier * value.
 ///
 /// Read from the mask's own YAML, whose keys `type`, `base` and `multiplier` map_server leaves alone.
-#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
-#[serde(default)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 struct FilterInfo {
     /// 1: per cent of the robot's highest speed; 2: m/s.
-    #[serde(rename = "type")]
     kind: u8,
     base: f64,
     multiplier: f64,
 }
 
-impl Default for FilterInfo {
-    fn default() -> Self {
-        Self { kind: 1, base: 100.0, multiplier: -1.0 }
-    }
-}
-
 impl FilterInfo {
-    fn checked(self) -> Result<Self, Invalid> {
-        if !(1..=2).contains(&self.kind) {
-            return Err(Invalid::new("type", self.kind, "", "1 (per cent) or 2 (m/s)"));
+    /// Of a mask's YAML; by default 1, 100 and -1.
+    fn of(document: &YamlDocument<'_>) -> Result<Self, IoError> {
+        let kind = document.number_or("type", 1.0, "1 (per cent) or 2 (m/s)")?;
+        let base = document.number_or("base", 100.0, "a number")?;
+        let multiplier = document.number_or("multiplier", -1.0, "a number")?;
+        Self::checked(kind, base, multiplier).map_err(|invalid| document.invalid(invalid))
+    }
+
+    fn checked(kind: f64, base: f64, multiplier: f64) -> Result<Self, Invalid> {
+        if kind != 1.0 && kind != 2.0 {
+            return Err(Invalid::new("type", kind, "", "1 (per cent) or 2 (m/s)"));
         }
-        require_in("base", self.base, "", -1e6, 1e6)?;
-        require_in("multiplier", self.multiplier, "", -1e6, 1e6)?;
-        Ok(self)
+        require_in("base", base, "", -1e6, 1e6)?;
+        require_in("multiplier", multiplier, "", -1e6, 1e6)?;
+        Ok(Self { kind: if kind == 1.0 { 1 } else { 2 }, base, multiplier })
     }
 
     /// The limit of a value, m/s; infinite where there is none: value 0, unknown, and what Nav2 calls out of range.
@@ -74,7 +74,7 @@ pub struct SpeedFile {
     pub out_of_range: usize,
 }
 
-/// A keep-out mask from its YAML file and the PGM picture that it names: where the robot must not be, and where it should not.
+/// A keep-out mask from its YAML file and the picture that it names: where the robot must not be, and where it should not.
 ///
 /// As Nav2's keep-out filter has it: a value of 100 forbids (in mode `trinary` and `scale` what is darker than
 /// `occupied_thresh`, in mode `raw` a pixel of 100), values of 1 to 99 (modes `scale` and `raw`) make a cell costly; what is unknown
@@ -83,14 +83,14 @@ pub struct SpeedFile {
 /// # Errors
 /// As [`read_map`](crate::read_map).
 pub fn read_keep_out_mask(yaml_path: &Path) -> Result<KeepOutFile, IoError> {
-    let (geometry, values) = values(yaml_path)?;
+    let (geometry, values) = values(&MapSource::read(yaml_path)?)?;
     let cell = |value: &Option<u8>| if *value == Some(LETHAL_VALUE) { Cell::Occupied } else { Cell::Free };
     let costs = values.iter().map(|value| value.filter(|value| *value < LETHAL_VALUE).unwrap_or(0)).collect();
     let forbidden = OccupancyGrid::new(geometry, values.iter().map(cell).collect());
     Ok(KeepOutFile { forbidden: forbidden.map_err(IoError::field(yaml_path))?, costs })
 }
 
-/// A speed mask from its YAML file and the PGM picture that it names.
+/// A speed mask from its YAML file and the picture that it names.
 ///
 /// As Nav2's speed filter has it: values are 0 to 100, limit = base + multiplier * value, value 0 and unknown set none. `type`
 /// (1: per cent of `full_speed`, m/s; 2: m/s), `base` and `multiplier` are read from the same YAML; without them 1, 100
@@ -101,11 +101,9 @@ pub fn read_keep_out_mask(yaml_path: &Path) -> Result<KeepOutFile, IoError> {
 /// As [`read_map`](crate::read_map); when `type` is neither 1 nor 2, `full_speed` is not above 0, or a number is not finite.
 pub fn read_speed_mask(yaml_path: &Path, full_speed: f64) -> Result<SpeedFile, IoError> {
     trundle_core::require_positive("full speed", full_speed, "m/s").map_err(IoError::field(yaml_path))?;
-    let text = read_text(yaml_path)?;
-    let (geometry, values) = values(yaml_path)?;
-    let info: FilterInfo = serde_saphyr::from_str(&text)
-        .map_err(|error| IoError::malformed(yaml_path, error.without_snippet().to_string()))?;
-    let info = info.checked().map_err(IoError::field(yaml_path))?;
+    let source = MapSource::read(yaml_path)?;
+    let (geometry, values) = values(&source)?;
+    let info = FilterInfo::of(&source.document()?)?;
     let limits: Vec<f32> = values.iter().map(|value| info.limit(*value, full_speed)).collect();
     let is_out =
         |value: &Option<u8>, limit: &f32| value.is_some_and(|value| value > 0) && limit.is_infinite();
@@ -114,16 +112,19 @@ pub fn read_speed_mask(yaml_path: &Path, full_speed: f64) -> Result<SpeedFile, I
 }
 
 /// The picture's values, 0 to 100, row by row from the lowest y; `None`: unknown.
-fn values(yaml_path: &Path) -> Result<(GridGeometry, Vec<Option<u8>>), IoError> {
-    let yaml = MapYaml::parse(yaml_path, &read_text(yaml_path)?)?;
-    let (_, pgm): (_, Pgm) = picture_of(yaml_path, &yaml)?;
-    let geometry = GridGeometry::new(yaml.resolution, yaml.origin, pgm.width, pgm.height)
-        .map_err(IoError::field(yaml_path))?;
-    let rows = pgm.values.chunks_exact(pgm.width).rev();
-    let values = rows.flatten().map(|&value| yaml.value(value, pgm.maxval)).collect();
+fn values(source: &MapSource) -> Result<(GridGeometry, Vec<Option<u8>>), IoError> {
+    let MapSource { yaml, picture, .. } = source;
+    let values = picture.indices().map(|i| value(yaml, picture, i)).collect();
+    let (geometry, yaml_path) = (source.geometry()?, &source.yaml_path);
     // Of a turned picture, what a cell touches that is darkest.
     let rank = |value: Option<u8>| value.map_or(u8::MAX, |value| LETHAL_VALUE - value.min(LETHAL_VALUE));
     straightened(geometry, values, yaml.yaw, None, rank).map_err(IoError::field(yaml_path))
+}
+
+/// What pixel `i` says.
+fn value(yaml: &MapYaml, picture: &Picture, i: usize) -> Option<u8> {
+    let is_unknown = yaml.reads_transparency() && picture.is_transparent(i);
+    if is_unknown { None } else { yaml.value(picture.values[i], picture.maxval) }
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! Named places: a TOML file.
 
-use crate::IoError;
 use crate::files::read_text;
+use crate::{Expected, IoError};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -32,6 +32,7 @@ struct Place {
 /// # Errors
 /// When the file cannot be read, a field is missing, unknown, or no finite number (at most 1e6), or a name is empty.
 pub fn read_places(path: &Path) -> Result<BTreeMap<String, Pose2>, IoError> {
+    Expected::Toml.check(path)?;
     let text = read_text(path)?;
     let places: BTreeMap<String, Place> = toml::from_str(&text).map_err(|error| {
         let line = error.span().map_or(1, |span| 1 + text[..span.start].matches('\n').count());

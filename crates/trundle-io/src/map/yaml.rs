@@ -1,9 +1,12 @@
 //! Parser of the YAML file of a map_server map.
 
 use crate::IoError;
-use serde::Deserialize;
+use crate::yaml_document::{YamlDocument, YamlValue};
 use std::path::Path;
 use trundle_core::{Cell, Invalid, Vector2, require_finite, require_in, require_positive};
+
+/// Grey of an unknown cell, of 255, as `map_saver` writes it.
+const UNKNOWN_GREY: u32 = 205;
 
 /// The checked content of a map's YAML file.
 #[derive(Debug, Clone, PartialEq)]
@@ -22,31 +25,9 @@ pub(super) struct MapYaml {
     mode: Mode,
 }
 
-#[derive(Deserialize)]
-struct File {
-    image: String,
-    resolution: f64,
-    origin: Vec<f64>,
-    negate: Flag,
-    occupied_thresh: f64,
-    free_thresh: f64,
-    #[serde(default)]
-    mode: Mode,
-}
-
-/// `0`, `1`, `false` or `true`.
-#[derive(Deserialize)]
-#[serde(untagged)]
-enum Flag {
-    Bool(bool),
-    Number(u8),
-}
-
 /// `scale` differs from `trinary` only in the grades between the thresholds, which a trinary grid does not hold, but a mask does.
-#[derive(Debug, Clone, Copy, Deserialize, Default, PartialEq)]
-#[serde(rename_all = "lowercase")]
+#[derive(Debug, Clone, Copy, PartialEq)]
 enum Mode {
-    #[default]
     Trinary,
     Scale,
     Raw,
@@ -54,48 +35,46 @@ enum Mode {
 
 impl MapYaml {
     pub fn parse(path: &Path, text: &str) -> Result<Self, IoError> {
-        let file: File = serde_saphyr::from_str(text).map_err(|error| located(path, &error))?;
-        Self::checked(file).map_err(IoError::field(path))
+        Self::of(&YamlDocument::parse(path, text)?)
     }
 
-    fn checked(file: File) -> Result<Self, Invalid> {
-        let negate = match file.negate {
-            Flag::Bool(negate) => negate,
-            Flag::Number(number @ (0 | 1)) => number == 1,
-            Flag::Number(number) => return Err(Invalid::new("negate", number, "", "0 or 1")),
-        };
-        let [x, y, yaw] = file.origin[..] else {
-            let found = format!("{} numbers", file.origin.len());
-            return Err(Invalid::new("origin", found, "", "[x, y, yaw] (m, m, rad)"));
-        };
-        let yaw = require_in("origin yaw", yaw, "rad", -7.0, 7.0)?;
-        let occupied = require_in("occupied_thresh", file.occupied_thresh, "", 0.0, 1.0)?;
-        let free = require_in("free_thresh", file.free_thresh, "", 0.0, 1.0)?;
-        if free >= occupied {
-            return Err(Invalid::new(
-                "free_thresh",
-                free,
-                "",
-                format!("less than occupied_thresh ({occupied})"),
-            ));
-        }
-        Ok(Self {
-            image: file.image,
-            resolution: coarse_enough(file.resolution)?,
-            origin: Vector2::new(require_finite("origin x", x, "m")?, require_finite("origin y", y, "m")?),
-            yaw,
-            negate,
-            occupied,
-            free,
-            mode: file.mode,
-        })
+    /// The checked fields of a document.
+    pub fn of(document: &YamlDocument<'_>) -> Result<Self, IoError> {
+        let image = document.text("image", "the name of the map's picture")?.to_owned();
+        let resolution = document.number("resolution", "metres a cell, as 0.05")?;
+        let origin = document.numbers("origin", ORIGIN)?;
+        let negate = negate(document)?;
+        let occupied = document.number("occupied_thresh", "0 to 1, as 0.65")?;
+        let free = document.number("free_thresh", "0 to 1, as 0.196")?;
+        let (origin, yaw) = pose(&origin).map_err(|invalid| document.invalid(invalid))?;
+        let resolution = coarse_enough(resolution).map_err(|invalid| document.invalid(invalid))?;
+        check_thresholds(occupied, free).map_err(|invalid| document.invalid(invalid))?;
+        Ok(Self { image, resolution, origin, yaw, negate, occupied, free, mode: mode(document)? })
+    }
+
+    /// Whether transparent pixels are unknown, as in every mode but raw.
+    pub fn reads_transparency(&self) -> bool {
+        self.mode != Mode::Raw
+    }
+
+    /// Whether a pixel is the 205 that `map_saver` writes for unknown, and `free_thresh` makes it free.
+    pub fn frees_unknown(&self, value: u16, maxval: u16) -> bool {
+        let is_unknown_grey = u32::from(value) * 255 == UNKNOWN_GREY * u32::from(maxval);
+        self.mode != Mode::Raw && is_unknown_grey && self.cell(value, maxval) == Cell::Free
+    }
+
+    /// The occupancy below which a pixel is free.
+    pub fn free_thresh(&self) -> f64 {
+        self.free
     }
 
     /// What a pixel says.
     pub fn cell(&self, value: u16, maxval: u16) -> Cell {
         let occupancy = match self.mode {
-            Mode::Raw if value > 100 => return Cell::Unknown,
-            Mode::Raw => f64::from(value) / 100.0,
+            Mode::Raw => match raw(value, maxval) {
+                value if value > 100 => return Cell::Unknown,
+                value => f64::from(value) / 100.0,
+            },
             _ => self.darkness(value, maxval),
         };
         if occupancy > self.occupied {
@@ -110,7 +89,7 @@ impl MapYaml {
     /// What a pixel of a mask says, 0 to 100, as map_server fills an OccupancyGrid message; `None`: unknown.
     pub fn value(&self, value: u16, maxval: u16) -> Option<u8> {
         if self.mode == Mode::Raw {
-            return u8::try_from(value).ok().filter(|value| *value <= 100);
+            return u8::try_from(raw(value, maxval)).ok().filter(|value| *value <= 100);
         }
         let darkness = self.darkness(value, maxval);
         if darkness > self.occupied {
@@ -130,17 +109,51 @@ impl MapYaml {
     }
 }
 
-/// The parser's complaint in one line, with the line it is about.
-fn located(path: &Path, error: &serde_saphyr::Error) -> IoError {
-    let error = error.without_snippet();
-    let message = error.to_string();
-    let message = message.lines().next().unwrap_or_default().to_owned();
-    match error.location() {
-        Some(location) if !message.contains("missing field") => {
-            IoError::line(path, usize::try_from(location.line()).unwrap_or(0), message)
-        }
-        _ => IoError::malformed(path, message),
+/// What `origin` holds.
+const ORIGIN: &str = "[x, y, yaw] (m, m, rad)";
+
+fn negate(document: &YamlDocument<'_>) -> Result<bool, IoError> {
+    match document.require("negate", "0 or 1")? {
+        YamlValue::Bool(negate) => Ok(*negate),
+        YamlValue::Number(0.0) => Ok(false),
+        YamlValue::Number(1.0) => Ok(true),
+        other => Err(document.wrong("negate", other, "0 or 1")),
     }
+}
+
+fn mode(document: &YamlDocument<'_>) -> Result<Mode, IoError> {
+    let expected = "trinary, scale or raw";
+    match document.get("mode") {
+        None => Ok(Mode::Trinary),
+        Some(YamlValue::Text(mode)) if mode.eq_ignore_ascii_case("trinary") => Ok(Mode::Trinary),
+        Some(YamlValue::Text(mode)) if mode.eq_ignore_ascii_case("scale") => Ok(Mode::Scale),
+        Some(YamlValue::Text(mode)) if mode.eq_ignore_ascii_case("raw") => Ok(Mode::Raw),
+        Some(other) => Err(document.wrong("mode", other, expected)),
+    }
+}
+
+/// The corner and the yaw of `origin`.
+fn pose(origin: &[f64]) -> Result<(Vector2, f64), Invalid> {
+    let &[x, y, yaw] = origin else {
+        return Err(Invalid::new("origin", format!("{} numbers", origin.len()), "", ORIGIN));
+    };
+    let yaw = require_in("origin yaw", yaw, "rad", -7.0, 7.0)?;
+    Ok((Vector2::new(require_finite("origin x", x, "m")?, require_finite("origin y", y, "m")?), yaw))
+}
+
+fn check_thresholds(occupied: f64, free: f64) -> Result<(), Invalid> {
+    require_in("occupied_thresh", occupied, "", 0.0, 1.0)?;
+    require_in("free_thresh", free, "", 0.0, 1.0)?;
+    if free >= occupied {
+        let expected = format!("less than occupied_thresh ({occupied})");
+        return Err(Invalid::new("free_thresh", free, "", expected));
+    }
+    Ok(())
+}
+
+/// The value of a pixel in mode raw, of 0 to 255: pictures of more levels are scaled to these, as Nav2 does.
+fn raw(value: u16, maxval: u16) -> u16 {
+    if maxval <= 255 { value } else { (f64::from(value) * 255.0 / f64::from(maxval)).round() as u16 }
 }
 
 /// A cell larger than a house is a wrong unit, and would make any plan endless.
@@ -194,32 +207,53 @@ mod tests {
             .zip(GOOD.lines())
         {
             let error = parse(&GOOD.replace(line, "")).unwrap_err();
-            assert!(
-                error.starts_with("m.yaml") && error.contains(&format!("missing field `{key}`")),
-                "{error}"
-            );
+            assert!(error.starts_with(&format!("m.yaml: {key} is missing, expected ")), "{error}");
         }
     }
 
     #[test]
     fn wrong_values_are_named() {
-        for (from, to, problem) in [
-            ("0.050000", "-1", "resolution is -1 m, expected a finite number above 0"),
-            ("0.050000", ".nan", "resolution is NaN m, expected a finite number above 0"),
-            ("negate: 0", "negate: 2", "negate is 2, expected 0 or 1"),
-            ("[-10.0, 2, 0.000000]", "[1, 2]", "origin is 2 numbers, expected [x, y, yaw] (m, m, rad)"),
-            ("0.000000]", "90]", "origin yaw is 90 rad, expected -7 to 7"),
-            ("0.65", "1.5", "occupied_thresh is 1.5, expected 0 to 1"),
-            ("0.65", "0.1", "free_thresh is 0.196, expected less than occupied_thresh (0.1)"),
+        for (from, to, line, problem) in [
+            ("0.050000", "-1", 2, "resolution is -1 m, expected a finite number above 0"),
+            ("0.050000", ".nan", 2, "resolution is '.nan', expected metres a cell, as 0.05"),
+            ("0.050000", "fine", 2, "resolution is 'fine', expected metres a cell, as 0.05"),
+            (
+                "0.050000",
+                "0,05",
+                2,
+                "resolution is '0,05', expected a decimal point: 0.05 (metres a cell, as 0.05)",
+            ),
+            ("negate: 0", "negate: 2", 4, "negate is 2, expected 0 or 1"),
+            ("[-10.0, 2, 0.000000]", "[1, 2]", 3, "origin is 2 numbers, expected [x, y, yaw] (m, m, rad)"),
+            ("[-10.0", "[x", 3, "origin is 'x', expected [x, y, yaw] (m, m, rad)"),
+            ("0.000000]", "90]", 3, "origin yaw is 90 rad, expected -7 to 7"),
+            ("0.65", "1.5", 5, "occupied_thresh is 1.5, expected 0 to 1"),
+            ("0.65", "[1]", 5, "occupied_thresh is a list of 1, expected 0 to 1, as 0.65"),
+            ("0.65", "0.1", 6, "free_thresh is 0.196, expected less than occupied_thresh (0.1)"),
+            ("0.196", "0.196\nmode: colour", 7, "mode is 'colour', expected trinary, scale or raw"),
+            (
+                "0.196",
+                "0.196\nnegate: 1",
+                7,
+                "negate is there a second time, the first in line 4; expected once",
+            ),
         ] {
-            assert_eq!(parse(&GOOD.replace(from, to)).unwrap_err(), format!("m.yaml: {problem}"));
+            assert_eq!(
+                parse(&GOOD.replace(from, to)).unwrap_err(),
+                format!("m.yaml, line {line}: {problem}")
+            );
         }
-        for (from, to) in [("0.050000", "fine"), ("[-10.0", "[x"), ("0.65", "[1]")] {
-            let error = parse(&GOOD.replace(from, to)).unwrap_err();
-            assert!(error.starts_with("m.yaml, line "), "{error}");
-        }
-        assert!(parse(&format!("{GOOD}mode: colour\n")).unwrap_err().starts_with("m.yaml, line 7: "));
         assert!(parse("{").is_err() && parse("").is_err() && parse("- a").is_err());
+    }
+
+    #[test]
+    fn the_grey_of_unknown_is_free_only_by_a_high_threshold() {
+        let map = parse(GOOD).unwrap();
+        assert!(!map.frees_unknown(205, 255) && !map.frees_unknown(615, 765));
+        let nav2 = parse(&GOOD.replace("0.196", "0.25")).unwrap();
+        assert!(
+            nav2.frees_unknown(205, 255) && nav2.frees_unknown(615, 765) && !nav2.frees_unknown(254, 255)
+        );
     }
 
     proptest! {

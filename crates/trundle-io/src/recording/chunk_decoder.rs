@@ -25,6 +25,18 @@ impl ChunkDecoder {
     }
 }
 
+/// What can be decoded of the beginning of a chunk; `None` where the compression is unknown.
+pub(super) fn decoded_prefix(compression: &[u8], bytes: &[u8]) -> Option<Vec<u8>> {
+    if compression.is_empty() {
+        return Some(bytes.to_vec());
+    }
+    let decoder = ChunkDecoder::all().into_iter().find(|known| known.name.as_bytes() == compression)?;
+    let mut decoded = Vec::new();
+    // The error is the cut itself; what comes before it is there.
+    let _ = (decoder.decode)(bytes, &mut decoded);
+    Some(decoded)
+}
+
 fn lz4(source: &[u8], to: &mut Vec<u8>) -> io::Result<()> {
     lz4_flex::frame::FrameDecoder::new(source).take(MAX_CHUNK).read_to_end(to).map(drop)
 }

@@ -1,12 +1,13 @@
 //! The JSON messages of a recording for wheels, gyro, bumper, cliff sensors, scans and images.
 
 use super::poses::PoseInFrame;
+use super::ros_image::ImageBytes;
 use super::time::Time;
 use crate::codec::{EncodedEvent, EncodedRgbd};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use serde::{Deserialize, Serialize};
-use trundle_core::{Beam, Cliff, GyroRate, Invalid, Scan, Stamp, Touch, Vector2, WheelTicks};
+use trundle_core::{Beam, Cliff, GyroRate, Invalid, Scan, Touch, Vector2, WheelTicks};
 
 #[derive(Serialize, Deserialize)]
 pub(super) struct WheelTicksMessage {
@@ -46,13 +47,11 @@ pub(super) struct ScanMessage {
     hits: Vec<bool>,
 }
 
-/// `foxglove.CompressedImage`.
-#[derive(Serialize, Deserialize)]
-pub(super) struct CompressedImage {
+/// `foxglove.CompressedImage` in JSON, as recordings of version 0.1.0 hold images.
+#[derive(Deserialize)]
+pub(super) struct JsonImage {
     timestamp: Time,
-    frame_id: String,
     data: String,
-    format: String,
 }
 
 /// A sensor event as the messages that stand for it.
@@ -63,13 +62,13 @@ pub(super) enum EventMessages {
     Cliff(CliffMessage),
     Scan(ScanMessage),
     Truth(PoseInFrame),
-    Rgbd { color: CompressedImage, depth: CompressedImage },
 }
 
-impl From<&EncodedEvent> for EventMessages {
-    fn from(event: &EncodedEvent) -> Self {
+impl EventMessages {
+    /// `None` for an image, which is no JSON.
+    pub fn of(event: &EncodedEvent) -> Option<Self> {
         let stamp = event.stamp().into();
-        match event {
+        Some(match event {
             EncodedEvent::Wheels(ticks) => {
                 Self::Wheels(WheelTicksMessage { stamp, left: ticks.left, right: ticks.right })
             }
@@ -78,11 +77,8 @@ impl From<&EncodedEvent> for EventMessages {
             EncodedEvent::Cliff(cliff) => Self::Cliff(CliffMessage { stamp, over_edge: cliff.over_edge }),
             EncodedEvent::Scan(scan) => Self::Scan(ScanMessage::new(stamp, scan)),
             EncodedEvent::Truth { stamp, pose } => Self::Truth(PoseInFrame::planar(*stamp, "world", *pose)),
-            EncodedEvent::Rgbd(image) => Self::Rgbd {
-                color: CompressedImage::new(stamp, &image.color_jpeg),
-                depth: CompressedImage::new(stamp, &image.depth_png),
-            },
-        }
+            EncodedEvent::Rgbd(_) => return None,
+        })
     }
 }
 
@@ -116,33 +112,21 @@ impl ScanMessage {
     }
 }
 
-impl CompressedImage {
-    fn new(timestamp: Time, bytes: &[u8]) -> Self {
-        let format = if bytes.starts_with(b"\x89PNG") { "png" } else { "jpeg" };
-        Self {
-            timestamp,
-            frame_id: "camera".to_owned(),
-            data: STANDARD.encode(bytes),
-            format: format.to_owned(),
-        }
-    }
-
-    pub fn bytes(&self) -> Result<Vec<u8>, String> {
-        STANDARD.decode(&self.data).map_err(|error| format!("data is no base64: {error}"))
-    }
-
-    pub fn stamp(&self) -> Result<Stamp, String> {
-        self.timestamp.try_into().map_err(|invalid: Invalid| invalid.to_string())
+impl JsonImage {
+    pub fn image(&self) -> Result<ImageBytes, String> {
+        let bytes = STANDARD.decode(&self.data).map_err(|error| format!("data is no base64: {error}"))?;
+        let stamp = self.timestamp.try_into().map_err(|invalid: Invalid| invalid.to_string())?;
+        Ok(ImageBytes { stamp, bytes })
     }
 }
 
 /// The image that a colour and a depth message make.
-pub(super) fn rgbd(color: &CompressedImage, depth: &CompressedImage) -> Result<EncodedEvent, String> {
-    let stamp = color.stamp()?;
-    if depth.stamp()? != stamp {
-        return Err(format!("the depth image of {} s follows the colour image of {stamp} s", depth.stamp()?));
+pub(super) fn rgbd(color: ImageBytes, depth: ImageBytes) -> Result<EncodedEvent, String> {
+    let stamp = color.stamp;
+    if depth.stamp != stamp {
+        return Err(format!("the depth image of {} s follows the colour image of {stamp} s", depth.stamp));
     }
-    Ok(EncodedEvent::Rgbd(EncodedRgbd { stamp, color_jpeg: color.bytes()?, depth_png: depth.bytes()? }))
+    Ok(EncodedEvent::Rgbd(EncodedRgbd { stamp, color_jpeg: color.bytes, depth_png: depth.bytes }))
 }
 
 impl TryFrom<WheelTicksMessage> for EncodedEvent {

@@ -1,12 +1,13 @@
 //! Reader of a recording, message by message.
 
 use super::messages::{
-    self, CliffMessage, CompressedImage, GyroRateMessage, ScanMessage, TouchMessage, WheelTicksMessage,
+    self, CliffMessage, GyroRateMessage, JsonImage, ScanMessage, TouchMessage, WheelTicksMessage,
 };
 use super::poses::PoseInFrame;
-use super::stream::{Encoding, MessageStream, RawMessage};
+use super::ros_image::{self, ImageBytes};
+use super::stream::{Encoding, MessageStream, RawMessage, RecordingCut};
 use super::topics;
-use crate::{EncodedEvent, IoError};
+use crate::{EncodedEvent, Expected, IoError};
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 use std::path::Path;
@@ -44,7 +45,27 @@ impl RecordingReader {
     /// # Errors
     /// When the file cannot be read or is no MCAP recording.
     pub fn open(path: &Path) -> Result<Self, IoError> {
-        let mut stream = MessageStream::open(path, Encoding::Json)?;
+        Expected::Recording.check(path)?;
+        Self::of(MessageStream::open(path, Encoding::Json)?)
+    }
+
+    /// The same of a recording that may be cut at any byte, as by a power failure: its messages up to there.
+    ///
+    /// # Errors
+    /// When the file cannot be read, is no MCAP recording, or is cut before its first message.
+    pub fn open_to_cut(path: &Path) -> Result<Self, IoError> {
+        Expected::Recording.check(path)?;
+        let reader = Self::of(MessageStream::open_to_cut(path, Encoding::Json)?)?;
+        match reader.cut() {
+            Some(cut) if reader.config.is_none() && reader.ahead.is_none() => {
+                let problem = format!("the recording was cut at byte {}, before its first message", cut.byte);
+                Err(IoError::malformed(path, problem))
+            }
+            _ => Ok(reader),
+        }
+    }
+
+    fn of(mut stream: MessageStream) -> Result<Self, IoError> {
         let first = stream.next_message()?;
         let (config, ahead) = match first {
             Some(raw) if raw.schema == "trundle.Config" => (Some(json(stream.path(), &raw)?), None),
@@ -56,6 +77,11 @@ impl RecordingReader {
     /// The configuration of the run, as JSON.
     pub fn config(&self) -> Option<&Value> {
         self.config.as_ref()
+    }
+
+    /// Where the recording was cut, when it is read to there.
+    pub fn cut(&self) -> Option<RecordingCut> {
+        self.stream.cut()
     }
 
     /// How much of the file has been read, 0 to 1.
@@ -78,7 +104,7 @@ impl RecordingReader {
             topics::CLIFF => sensor::<CliffMessage>(path, &raw)?,
             topics::SCAN => sensor::<ScanMessage>(path, &raw)?,
             topics::TRUTH => sensor::<PoseInFrame>(path, &raw)?,
-            topics::COLOR => return self.image(&raw).map(Some),
+            topics::COLOR => return self.image(&raw),
             topics::DEPTH => {
                 return Err(wrong(path, &raw, "a depth image without its colour image before it"));
             }
@@ -107,14 +133,19 @@ impl RecordingReader {
         }
     }
 
-    fn image(&mut self, color: &RawMessage) -> Result<RecordedMessage, IoError> {
-        let depth = self.stream.next_message()?.filter(|raw| raw.topic == topics::DEPTH);
+    /// The image of a colour message and the depth message behind it; `None` where the recording was cut between both.
+    fn image(&mut self, color: &RawMessage) -> Result<Option<RecordedMessage>, IoError> {
+        let next = self.stream.next_message()?;
+        if next.is_none() && self.cut().is_some() {
+            return Ok(None);
+        }
+        let depth = next.filter(|raw| raw.topic == topics::DEPTH);
         let path = self.stream.path();
         let depth =
             depth.ok_or_else(|| wrong(path, color, "a colour image without its depth image behind it"))?;
-        let (c, d): (CompressedImage, CompressedImage) = (json(path, color)?, json(path, &depth)?);
-        let image = messages::rgbd(&c, &d).map_err(|problem| wrong(path, color, &problem))?;
-        Ok(RecordedMessage::Event(image))
+        let (c, d) = (compressed_image(path, color)?, compressed_image(path, &depth)?);
+        let image = messages::rgbd(c, d).map_err(|problem| wrong(path, color, &problem))?;
+        Ok(Some(RecordedMessage::Event(image)))
     }
 }
 
@@ -137,6 +168,14 @@ where
     EncodedEvent: TryFrom<M, Error = Invalid>,
 {
     EncodedEvent::try_from(json::<M>(path, raw)?).map_err(|invalid| wrong(path, raw, &invalid.to_string()))
+}
+
+fn compressed_image(path: &Path, raw: &RawMessage) -> Result<ImageBytes, IoError> {
+    let image = match raw.schema.as_str() {
+        ros_image::SCHEMA => ros_image::decode(&raw.data),
+        _ => json::<JsonImage>(path, raw)?.image(),
+    };
+    image.map_err(|problem| wrong(path, raw, &problem))
 }
 
 fn json<T: DeserializeOwned>(path: &Path, raw: &RawMessage) -> Result<T, IoError> {

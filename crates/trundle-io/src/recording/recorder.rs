@@ -1,10 +1,11 @@
-//! Writer of a recording: an MCAP file with JSON messages.
+//! Writer of a recording: an MCAP file with JSON messages, and images as ROS 2 has them.
 
 use super::messages::EventMessages;
 use super::poses::PoseInFrame;
+use super::ros_image;
 use super::schemas::json_schema;
 use super::topics;
-use crate::{EncodedEvent, IoError};
+use crate::{EncodedEvent, EncodedRgbd, IoError};
 use mcap::records::MessageHeader;
 use mcap::{McapError, WriteOptions, Writer};
 use serde::Serialize;
@@ -18,7 +19,7 @@ use trundle_core::{Invalid, Stamp};
 /// and some 2 MB of index. A program that is killed loses the chunk that it was writing.
 const CHUNK_BYTES: u64 = 4 << 20;
 
-/// Writes a recording: MCAP in uncompressed chunks (images are compressed already), messages in JSON.
+/// Writes a recording: MCAP in uncompressed chunks (images are compressed already), messages in JSON, images in CDR.
 ///
 /// The bytes depend on nothing but what is recorded: no clock, no chance; log time and publish time are the stamp.
 pub struct Recorder<W: Write + Seek> {
@@ -67,17 +68,18 @@ impl<W: Write + Seek> Recorder<W> {
     pub fn record_event(&mut self, event: &EncodedEvent) -> Result<(), IoError> {
         check_finite(event).map_err(IoError::field(&self.path))?;
         let stamp = event.stamp();
-        match EventMessages::from(event) {
+        let messages = match event {
+            EncodedEvent::Rgbd(image) => return self.record_images(image),
+            other => EventMessages::of(other),
+        };
+        let Some(messages) = messages else { return Ok(()) };
+        match messages {
             EventMessages::Wheels(m) => self.record_json(topics::WHEELS, "trundle.WheelTicks", stamp, &m),
             EventMessages::Gyro(m) => self.record_json(topics::GYRO, "trundle.GyroRate", stamp, &m),
             EventMessages::Touch(m) => self.record_json(topics::TOUCH, "trundle.Touch", stamp, &m),
             EventMessages::Cliff(m) => self.record_json(topics::CLIFF, "trundle.Cliff", stamp, &m),
             EventMessages::Scan(m) => self.record_json(topics::SCAN, "trundle.Scan", stamp, &m),
             EventMessages::Truth(m) => self.record_json(topics::TRUTH, PoseInFrame::SCHEMA, stamp, &m),
-            EventMessages::Rgbd { color, depth } => {
-                self.record_json(topics::COLOR, "foxglove.CompressedImage", stamp, &color)?;
-                self.record_json(topics::DEPTH, "foxglove.CompressedImage", stamp, &depth)
-            }
         }
     }
 
@@ -95,12 +97,25 @@ impl<W: Write + Seek> Recorder<W> {
         stamp: Stamp,
         message: &impl Serialize,
     ) -> Result<(), IoError> {
-        let time = u64::try_from(stamp.nanos).map_err(|_| {
-            IoError::field(&self.path)(Invalid::new(format!("stamp on {topic}"), stamp, "s", "0 or later"))
-        })?;
         self.buffer.clear();
         serde_json::to_writer(&mut self.buffer, message)
             .map_err(|error| IoError::malformed(&self.path, format!("message on {topic}: {error}")))?;
+        self.record_buffer(topic, schema_name, stamp)
+    }
+
+    /// Records an image as two messages, colour and behind it depth.
+    fn record_images(&mut self, image: &EncodedRgbd) -> Result<(), IoError> {
+        for (topic, bytes) in [(topics::COLOR, &image.color_jpeg), (topics::DEPTH, &image.depth_png)] {
+            self.buffer = ros_image::encode(image.stamp, bytes).map_err(IoError::field(&self.path))?;
+            self.record_buffer(topic, ros_image::SCHEMA, image.stamp)?;
+        }
+        Ok(())
+    }
+
+    fn record_buffer(&mut self, topic: &str, schema_name: &str, stamp: Stamp) -> Result<(), IoError> {
+        let time = u64::try_from(stamp.nanos).map_err(|_| {
+            IoError::field(&self.path)(Invalid::new(format!("stamp on {topic}"), stamp, "s", "0 or later"))
+        })?;
         let (channel_id, sequence) = self.channel(topic, schema_name)?;
         let header = MessageHeader { channel_id, sequence, log_time: time, publish_time: time };
         self.writer.write_to_known_channel(&header, &self.buffer).map_err(|error| failed(&self.path, error))
@@ -133,6 +148,11 @@ impl<W: Write + Seek> Recorder<W> {
     }
 
     fn add_channel(&mut self, topic: &str, schema: &str) -> Result<u16, McapError> {
+        if schema == ros_image::SCHEMA {
+            let definition = ros_image::DEFINITION.as_bytes();
+            let schema = self.writer.add_schema(schema, ros_image::SCHEMA_ENCODING, definition)?;
+            return self.writer.add_channel(schema, topic, "cdr", &BTreeMap::new());
+        }
         let schema = self.writer.add_schema(schema, "jsonschema", json_schema(schema).as_bytes())?;
         self.writer.add_channel(schema, topic, "json", &BTreeMap::new())
     }

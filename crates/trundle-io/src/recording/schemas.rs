@@ -4,7 +4,6 @@
 /// The schema of that name; any object for names we do not know.
 pub(super) fn json_schema(name: &str) -> String {
     let properties = match name {
-        "foxglove.CompressedImage" => fields(&[TIMESTAMP, FRAME_ID, ("data", BYTES), ("format", STRING)]),
         "foxglove.PoseInFrame" => fields(&[TIMESTAMP, FRAME_ID, ("pose", POSE)]),
         "foxglove.PosesInFrame" => {
             fields(&[TIMESTAMP, FRAME_ID, ("poses", &format!(r#"{{"type":"array","items":{POSE}}}"#))])
@@ -66,7 +65,6 @@ mod tests {
     #[test]
     fn every_schema_is_json() {
         for name in [
-            "foxglove.CompressedImage",
             "foxglove.PoseInFrame",
             "foxglove.PosesInFrame",
             "foxglove.PointCloud",

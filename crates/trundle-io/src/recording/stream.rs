@@ -1,11 +1,15 @@
 //! Sequential reader of the messages of any MCAP file, with bounded memory.
 
 use super::chunk_decoder::ChunkDecoder;
+use super::cut::{WHOLE, records_of_cut_chunk, whole_part};
+use super::record_parser::parse_needed_record;
+use super::ros_image;
+use super::unpacked::unpacked;
 use crate::IoError;
 use mcap::McapError;
 use mcap::records::Record;
 use mcap::sans_io::linear_reader::{LinearReadEvent, LinearReader, LinearReaderOptions};
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -13,6 +17,9 @@ use trundle_core::Stamp;
 
 /// Longest record that is read, bytes: bounds what a broken length can ask for.
 const MAX_RECORD: usize = 1 << 28;
+
+/// Largest ratio of a record to the packed file it is in. It bounds what a broken length can ask for. Source: ours.
+const MAX_PACKING: u64 = 256;
 
 /// A message as it stands in the file.
 #[derive(Debug, Clone, PartialEq)]
@@ -26,7 +33,7 @@ pub(crate) struct RawMessage {
 /// How messages are written that a reader wants.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Encoding {
-    /// Trundle's own: any other message is an error.
+    /// Trundle's own, with images in CDR: any other message is an error.
     Json,
     /// Those of ROS 2; others are passed over.
     Cdr,
@@ -36,8 +43,13 @@ pub(crate) enum Encoding {
 /// (lz4, zstd) the whole.
 pub(crate) struct MessageStream {
     path: PathBuf,
-    file: File,
+    file: Box<dyn Read + Send>,
+    is_packed: bool,
     reader: LinearReader,
+    /// Where a cut file was cut, when it is read to there.
+    cut: Option<RecordingCut>,
+    /// Records of the chunk that the file was cut in.
+    last_records: VecDeque<(u8, Vec<u8>)>,
     encoding: Encoding,
     schemas: BTreeMap<u16, String>,
     channels: BTreeMap<u16, (String, u16)>,
@@ -47,25 +59,54 @@ pub(crate) struct MessageStream {
     stopped: bool,
 }
 
+/// Where a recording was cut.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct RecordingCut {
+    /// Length of the file \[bytes\].
+    pub byte: u64,
+}
+
 impl MessageStream {
+    /// The messages of a whole file; a cut one is an error where it was cut.
     pub fn open(path: &Path, encoding: Encoding) -> Result<Self, IoError> {
+        Self::open_file(path, encoding, false)
+    }
+
+    /// The messages of a file, of a cut one those before the cut.
+    pub fn open_to_cut(path: &Path, encoding: Encoding) -> Result<Self, IoError> {
+        Self::open_file(path, encoding, true)
+    }
+
+    fn open_file(path: &Path, encoding: Encoding, to_cut: bool) -> Result<Self, IoError> {
         let system = || IoError::system(path, "read");
-        let file = File::open(path).map_err(system())?;
+        let mut file = File::open(path).map_err(system())?;
         let meta = file.metadata().map_err(system())?;
         if meta.is_dir() {
             return Err(system()(std::io::ErrorKind::IsADirectory.into()));
         }
-        let limit = usize::try_from(meta.len()).unwrap_or(MAX_RECORD).clamp(1024, MAX_RECORD);
-        let options =
-            LinearReaderOptions::default().with_validate_chunk_crcs(true).with_record_length_limit(limit);
+        let part = if to_cut { whole_part(&mut file, meta.len()).map_err(system())? } else { WHOLE };
+        let last_records = match part.is_cut {
+            true => records_of_cut_chunk(&mut file, part.end).map_err(system())?,
+            false => Vec::new(),
+        };
+        let (file, is_packed) = unpacked(file).map_err(system())?;
+        let bytes = meta.len().saturating_mul(if is_packed { MAX_PACKING } else { 1 });
+        let limit = usize::try_from(bytes).unwrap_or(MAX_RECORD).clamp(1024, MAX_RECORD);
+        let options = LinearReaderOptions::default()
+            .with_validate_chunk_crcs(true)
+            .with_record_length_limit(limit)
+            .with_skip_end_magic(part.is_cut);
         let mut reader = LinearReader::new_with_options(options);
         for decoder in ChunkDecoder::all() {
             reader.add_decompressor(decoder).expect("invariant: the decoders have names");
         }
         Ok(Self {
             path: path.to_owned(),
-            file,
+            file: Box::new(file.take(part.end)),
+            is_packed,
             reader,
+            cut: part.is_cut.then_some(RecordingCut { byte: meta.len() }),
+            last_records: last_records.into(),
             encoding,
             schemas: BTreeMap::new(),
             channels: BTreeMap::new(),
@@ -78,6 +119,11 @@ impl MessageStream {
 
     pub fn path(&self) -> &Path {
         &self.path
+    }
+
+    /// Where the file was cut, when it is read to there.
+    pub fn cut(&self) -> Option<RecordingCut> {
+        self.cut
     }
 
     /// How much of the file is read, 0 to 1.
@@ -93,22 +139,44 @@ impl MessageStream {
     /// The next message; `None` at the end of a whole file.
     pub fn next_message(&mut self) -> Result<Option<RawMessage>, IoError> {
         while !self.stopped {
-            let Some(event) = self.reader.next_event() else { return Ok(None) };
-            match event.map_err(|error| broken(&self.path, self.read, &error))? {
+            let Some(event) = self.reader.next_event() else { return self.next_of_cut_chunk() };
+            match event.map_err(|error| broken((&self.path, self.encoding), self.read, &error))? {
                 LinearReadEvent::ReadRequest(need) => {
                     let buffer = self.reader.insert(need.max(1 << 16));
-                    let read = self.file.read(buffer).map_err(IoError::system(&self.path, "read"))?;
+                    let read = self.file.read(buffer).map_err(|error| self.refused(error))?;
                     self.reader.notify_read(read);
                     self.read += read as u64;
                 }
                 LinearReadEvent::Record { opcode, data } => {
-                    let record = mcap::parse_record(opcode, data)
-                        .map_err(|error| broken(&self.path, self.read, &error))?
-                        .into_owned();
-                    if let Some(message) = self.take(record)? {
+                    let record = parse_needed_record(opcode, data)
+                        .map_err(|error| broken((&self.path, self.encoding), self.read, &error))?
+                        .map(Record::into_owned);
+                    if let Some(message) = record.map(|record| self.take(record)).transpose()?.flatten() {
                         return Ok(Some(message));
                     }
                 }
+            }
+        }
+        Ok(None)
+    }
+
+    /// The error of reading on; of a packed file the data is at fault.
+    fn refused(&self, error: std::io::Error) -> IoError {
+        if !self.is_packed {
+            return IoError::system(&self.path, "read")(error);
+        }
+        let problem = format!("the zstd data is truncated or broken after {} bytes", self.read);
+        IoError::malformed(&self.path, problem)
+    }
+
+    /// The next message of the chunk that a file was cut in.
+    fn next_of_cut_chunk(&mut self) -> Result<Option<RawMessage>, IoError> {
+        while let Some((opcode, data)) = self.last_records.pop_front() {
+            let record = parse_needed_record(opcode, &data)
+                .map_err(|error| broken((&self.path, self.encoding), self.read, &error))?
+                .map(Record::into_owned);
+            if let Some(message) = record.map(|record| self.take(record)).transpose()?.flatten() {
+                return Ok(Some(message));
             }
         }
         Ok(None)
@@ -127,7 +195,9 @@ impl MessageStream {
                     self.passed_over.insert(channel.id);
                     return Ok(None);
                 }
-                if channel.message_encoding != expected {
+                let schema = self.schemas.get(&channel.schema_id).map_or("", String::as_str);
+                let is_image = schema == ros_image::SCHEMA && channel.message_encoding == "cdr";
+                if channel.message_encoding != expected && !is_image {
                     let problem = format!(
                         "messages on {} are in '{}', expected {expected}",
                         channel.topic, channel.message_encoding
@@ -158,11 +228,17 @@ impl MessageStream {
     }
 }
 
-fn broken(path: &Path, read: u64, error: &McapError) -> IoError {
+fn broken((path, encoding): (&Path, Encoding), read: u64, error: &McapError) -> IoError {
+    let hint = if encoding == Encoding::Json { "; --recover reads it to there" } else { "" };
     let problem = match error {
         McapError::BadMagic if read <= 1 << 16 => "not an MCAP recording".to_owned(),
         McapError::UnexpectedEof | McapError::UnexpectedEoc => {
-            format!("the recording is truncated: it ends after {read} bytes, in the middle of a record")
+            format!("the recording is truncated: it ends after {read} bytes, in the middle of a record{hint}")
+        }
+        McapError::RecordTooLarge { len, .. } => {
+            format!(
+                "the recording is broken before byte {read}: a length of {len} bytes is longer than its record or the file"
+            )
         }
         other => format!("the recording is broken before byte {read}: {other}"),
     };

@@ -1,11 +1,13 @@
-//! ROS 2 bags: their files, storage formats and messages.
+//! ROS bags: their files, storage formats and messages.
 
+use super::cdr::Wire;
 use super::database::BagDatabase;
-use crate::IoError;
+use super::ros1_bag::Ros1Bag;
+use crate::file_kind::is_bag_file;
 use crate::files::read_text;
 use crate::recording::{Encoding, MessageStream, RawMessage};
+use crate::{FileKind, IoError};
 use serde::Deserialize;
-use std::io::Read;
 use std::path::{Path, PathBuf};
 
 /// The messages of a ROS 2 bag, file after file.
@@ -18,28 +20,11 @@ pub(super) struct Bag {
 enum Storage {
     Mcap(Box<MessageStream>),
     Sqlite(BagDatabase),
-}
-
-/// What a file begins with.
-const MCAP_MAGIC: &[u8] = b"\x89MCAP0\r\n";
-const SQLITE_MAGIC: &[u8] = b"SQLite format 3\0";
-
-/// Whether a path is a ROS 2 bag: a folder of one, or a file in one of its two formats.
-pub(super) fn is_bag(path: &Path) -> bool {
-    if path.is_dir() {
-        return path.join("metadata.yaml").exists() || !files_beside(path).is_empty();
-    }
-    begins_with(path, MCAP_MAGIC) || begins_with(path, SQLITE_MAGIC)
-}
-
-fn begins_with(path: &Path, magic: &[u8]) -> bool {
-    let mut start = vec![0; magic.len()];
-    let read = std::fs::File::open(path).and_then(|mut file| file.read_exact(&mut start));
-    read.is_ok() && start == magic
+    Ros1(Box<Ros1Bag>),
 }
 
 impl Bag {
-    /// Opens a folder with its `metadata.yaml`, or else all `.mcap` and `.db3` files in it, or a single file.
+    /// Opens a folder with its `metadata.yaml`, or else all files of a bag in it, or a single file.
     pub(super) fn open(path: &Path) -> Result<Self, IoError> {
         let files = if path.is_dir() { files_of(path)? } else { vec![path.to_owned()] };
         let mut bag = Self { files: files.into_iter(), open: None };
@@ -54,6 +39,7 @@ impl Bag {
                 None => return Ok(None),
                 Some(Storage::Mcap(stream)) => stream.next_message()?,
                 Some(Storage::Sqlite(database)) => database.next_message()?,
+                Some(Storage::Ros1(bag)) => bag.next_message()?,
             };
             if message.is_some() {
                 return Ok(message);
@@ -62,14 +48,21 @@ impl Bag {
         }
     }
 
+    /// How the messages of the open file are written.
+    pub(super) fn wire(&self) -> Wire {
+        if matches!(self.open, Some(Storage::Ros1(_))) { Wire::Ros1 } else { Wire::Cdr }
+    }
+
     fn next_file(&mut self) -> Result<(), IoError> {
-        self.open = match self.files.next() {
-            None => None,
-            Some(path) if begins_with(&path, SQLITE_MAGIC) => {
-                Some(Storage::Sqlite(BagDatabase::open(&path)?))
-            }
-            Some(path) => Some(Storage::Mcap(Box::new(MessageStream::open(&path, Encoding::Cdr)?))),
+        let Some(path) = self.files.next() else {
+            self.open = None;
+            return Ok(());
         };
+        self.open = Some(match FileKind::of(&path)? {
+            FileKind::Ros2Sqlite => Storage::Sqlite(BagDatabase::open(&path)?),
+            FileKind::Ros1Bag => Storage::Ros1(Box::new(Ros1Bag::open(&path)?)),
+            _ => Storage::Mcap(Box::new(MessageStream::open(&path, Encoding::Cdr)?)),
+        });
         Ok(())
     }
 }
@@ -94,10 +87,15 @@ fn files_of(folder: &Path) -> Result<Vec<PathBuf>, IoError> {
             IoError::malformed(&path, error.to_string().lines().next().unwrap_or("").to_owned())
         })?;
         let Information { relative_file_paths, compression_mode } = metadata.rosbag2_bagfile_information;
-        if !compression_mode.is_empty() && !compression_mode.eq_ignore_ascii_case("none") {
+        let is_mode = |mode: &str| compression_mode.eq_ignore_ascii_case(mode);
+        let is_packed_mcap = |file: &PathBuf| file.to_string_lossy().ends_with(".mcap.zstd");
+        let is_read = is_mode("")
+            || is_mode("none")
+            || is_mode("file") && relative_file_paths.iter().all(is_packed_mcap);
+        if !is_read {
             let problem = format!(
-                "compression_mode is {compression_mode}: rosbag2's own compression is not read; `ros2 bag convert` with \
-                 storage_id mcap and no compression_mode makes a bag that is"
+                "compression_mode is {compression_mode}: of rosbag2's own compression only FILE with storage mcap is read; `ros2 bag \
+                 convert` with storage_id mcap and no compression_mode makes a bag that is"
             );
             return Err(IoError::malformed(&path, problem));
         }
@@ -106,7 +104,7 @@ fn files_of(folder: &Path) -> Result<Vec<PathBuf>, IoError> {
         files_beside(folder)
     };
     if files.is_empty() {
-        return Err(IoError::malformed(folder, "no .mcap and no .db3 file in it"));
+        return Err(IoError::malformed(folder, "no MCAP and no SQLite file of a ROS 2 bag in it"));
     }
     Ok(files)
 }
@@ -122,8 +120,7 @@ fn beside(folder: &Path, file: &Path) -> PathBuf {
 
 fn files_beside(folder: &Path) -> Vec<PathBuf> {
     let entries = std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path());
-    let is_bag = |path: &PathBuf| path.extension().is_some_and(|e| e == "mcap" || e == "db3");
-    let mut files: Vec<PathBuf> = entries.filter(is_bag).collect();
+    let mut files: Vec<PathBuf> = entries.filter(|path| is_bag_file(path)).collect();
     files.sort();
     files
 }

@@ -1,4 +1,4 @@
-//! Reader of the CDR encoding of ROS 2 messages.
+//! Reader of the CDR encoding of ROS 2 messages, and of ROS 1's, which is CDR without alignment and header.
 
 use thiserror::Error;
 
@@ -16,6 +16,15 @@ pub(super) struct CdrError {
     pub problem: String,
 }
 
+/// How messages are written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Wire {
+    /// As the middleware of ROS 2 does.
+    Cdr,
+    /// As ROS 1 does: little endian, nothing aligned.
+    Ros1,
+}
+
 /// Reads a message in the Common Data Representation of DDS: version 1, and version 2 of final types, little or big endian.
 ///
 /// Four bytes say which; what follows is aligned to its own size, counted from behind them (at most to 4 in version 2).
@@ -27,6 +36,9 @@ pub(super) struct CdrReader<'a> {
     at: usize,
     little: bool,
     most_aligned: usize,
+    /// Where what is aligned begins.
+    start: usize,
+    wire: Wire,
 }
 
 /// Bytes of the header that says how the rest is encoded.
@@ -34,8 +46,21 @@ const HEADER_BYTES: usize = 4;
 
 impl<'a> CdrReader<'a> {
     /// A reader of a message of type `message`.
-    pub(super) fn new(message: &'static str, bytes: &'a [u8]) -> Result<Self, CdrError> {
-        let mut reader = Self { message, bytes, at: 0, little: false, most_aligned: 8 };
+    pub(super) fn new(message: &'static str, bytes: &'a [u8], wire: Wire) -> Result<Self, CdrError> {
+        let mut reader = Self { message, bytes, at: 0, little: true, most_aligned: 1, start: 0, wire };
+        if wire == Wire::Cdr {
+            reader.read_encapsulation()?;
+        }
+        Ok(reader)
+    }
+
+    /// How the message is written.
+    pub(super) fn wire(&self) -> Wire {
+        self.wire
+    }
+
+    fn read_encapsulation(&mut self) -> Result<(), CdrError> {
+        let reader = self;
         let [high, kind, ..] = *reader.take("encapsulation", HEADER_BYTES)? else {
             return Err(reader.error("encapsulation", 0, "too short".to_owned()));
         };
@@ -50,7 +75,8 @@ impl<'a> CdrReader<'a> {
                 return Err(reader.error("encapsulation", 0, problem));
             }
         };
-        Ok(reader)
+        reader.start = HEADER_BYTES;
+        Ok(())
     }
 
     pub(super) fn u32(&mut self, field: &'static str) -> Result<u32, CdrError> {
@@ -82,7 +108,7 @@ impl<'a> CdrReader<'a> {
         Ok(values)
     }
 
-    /// A text: its length with the zero at its end, and its bytes.
+    /// A text: its length, in CDR with the zero at its end, and its bytes.
     pub(super) fn string(&mut self, field: &'static str) -> Result<String, CdrError> {
         let length = self.u32(field)? as usize;
         let start = self.at;
@@ -113,7 +139,7 @@ impl<'a> CdrReader<'a> {
 
     fn number<const N: usize>(&mut self, field: &'static str) -> Result<[u8; N], CdrError> {
         let align = N.min(self.most_aligned);
-        let off = (self.at - HEADER_BYTES) % align;
+        let off = (self.at - self.start) % align;
         if off != 0 {
             self.take(field, align - off)?;
         }
@@ -146,23 +172,30 @@ mod tests {
         // u32 7, then an f64 1.5 that begins at the next multiple of 8.
         let mut little = vec![0, 1, 0, 0, 7, 0, 0, 0, 9, 9, 9, 9];
         little.extend(1.5_f64.to_le_bytes());
-        let mut reader = CdrReader::new("x", &little).unwrap();
+        let mut reader = CdrReader::new("x", &little, Wire::Cdr).unwrap();
         assert_eq!((reader.u32("a"), reader.f64("b")), (Ok(7), Ok(1.5)));
         let mut big = vec![0, 0, 0, 0, 0, 0, 0, 7, 9, 9, 9, 9];
         big.extend(1.5_f64.to_be_bytes());
-        let mut reader = CdrReader::new("x", &big).unwrap();
+        let mut reader = CdrReader::new("x", &big, Wire::Cdr).unwrap();
         assert_eq!((reader.i32("a"), reader.f64("b")), (Ok(7), Ok(1.5)));
         // Version 2 aligns to 4 at most.
         let mut two = vec![0, 7, 0, 0, 7, 0, 0, 0];
         two.extend(1.5_f64.to_le_bytes());
-        let mut reader = CdrReader::new("x", &two).unwrap();
+        let mut reader = CdrReader::new("x", &two, Wire::Cdr).unwrap();
         assert_eq!((reader.u32("a"), reader.f64("b")), (Ok(7), Ok(1.5)));
+    }
+
+    #[test]
+    fn ros1_aligns_nothing_and_ends_texts_with_nothing() {
+        let bytes = [&[2, 0, 0, 0, b'a', b'b'][..], &1.5_f64.to_le_bytes()].concat();
+        let mut reader = CdrReader::new("x", &bytes, Wire::Ros1).unwrap();
+        assert_eq!((reader.string("name"), reader.f64("b")), (Ok("ab".to_owned()), Ok(1.5)));
     }
 
     #[test]
     fn texts_end_with_a_zero_and_the_next_number_is_aligned() {
         let mut reader =
-            CdrReader::new("x", &[0, 1, 0, 0, 3, 0, 0, 0, b'a', b'b', 0, 9, 5, 0, 0, 0]).unwrap();
+            CdrReader::new("x", &[0, 1, 0, 0, 3, 0, 0, 0, b'a', b'b', 0, 9, 5, 0, 0, 0], Wire::Cdr).unwrap();
         assert_eq!((reader.string("name"), reader.u32("n")), (Ok("ab".to_owned()), Ok(5)));
     }
 
@@ -170,7 +203,10 @@ mod tests {
     fn errors_name_message_field_and_offset() {
         let message = "sensor_msgs/msg/LaserScan";
         let problem = |bytes: &[u8]| {
-            CdrReader::new(message, bytes).and_then(|mut r| r.f32_list("ranges")).unwrap_err().to_string()
+            CdrReader::new(message, bytes, Wire::Cdr)
+                .and_then(|mut r| r.f32_list("ranges"))
+                .unwrap_err()
+                .to_string()
         };
         assert_eq!(
             problem(&[0, 1, 0, 0, 5, 0, 0, 0, 1, 1, 1, 1]),
@@ -187,7 +223,7 @@ mod tests {
     proptest! {
         #[test]
         fn any_bytes_are_no_panic(bytes in prop::collection::vec(any::<u8>(), 0..60)) {
-            if let Ok(mut reader) = CdrReader::new("x", &bytes) {
+            if let Ok(mut reader) = CdrReader::new("x", &bytes, Wire::Cdr) {
                 let _ = reader.string("a");
                 let _ = reader.f64("b");
                 let _ = reader.f32_list("c");

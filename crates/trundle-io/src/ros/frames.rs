@@ -1,6 +1,6 @@
 //! The tree of static transforms of a ROS 2 bag.
 
-use super::messages::Transform;
+use super::messages::{MessagePose, Transform};
 use std::collections::BTreeMap;
 use trundle_core::Pose3;
 
@@ -8,34 +8,51 @@ use trundle_core::Pose3;
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(super) struct Frames {
     /// By child: its parent, and `parent_from_child`.
-    parents: BTreeMap<String, (String, Pose3)>,
+    parents: BTreeMap<String, (String, MessagePose)>,
+}
+
+/// Why one frame's place in another is not known.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum NoTransform {
+    /// No transforms lead from one to the other.
+    Unconnected,
+    /// A transform between them is none: which, and why.
+    Broken(String),
 }
 
 /// A robot has no longer chain of frames; a longer one is a ring.
 const MAX_FRAME_CHAIN: usize = 100;
 
 impl Frames {
+    /// Adds a transform; a broken one in place of a good one is left out.
     pub(super) fn insert(&mut self, transform: Transform) {
         let Transform { parent, child, parent_from_child, .. } = transform;
-        self.parents.insert(child, (parent, parent_from_child));
+        let is_good = |known: &(String, MessagePose)| known.1.is_ok();
+        if parent_from_child.is_ok() || !self.parents.get(&child).is_some_and(is_good) {
+            self.parents.insert(child, (parent, parent_from_child));
+        }
     }
 
     /// `to_from_from`: where one frame sits in another, when transforms lead from both to one frame.
-    pub(super) fn between(&self, to: &str, from: &str) -> Option<Pose3> {
+    pub(super) fn between(&self, to: &str, from: &str) -> Result<Pose3, NoTransform> {
         let (up_to, up_from) = (self.chain(to), self.chain(from));
-        let meet = up_from.iter().find_map(|(name, meet_from_from)| {
+        let meeting = up_from.iter().find_map(|(name, meet_from_from)| {
             let (_, meet_from_to) = up_to.iter().find(|(other, _)| other == name)?;
-            Some(meet_from_to.inverse() * *meet_from_from)
-        })?;
-        meet.is_finite().then_some(meet)
+            Some((meet_from_to, meet_from_from))
+        });
+        let (meet_from_to, meet_from_from) = meeting.ok_or(NoTransform::Unconnected)?;
+        let good = |pose: &MessagePose| pose.clone().map_err(NoTransform::Broken);
+        Ok(good(meet_from_to)?.inverse() * good(meet_from_from)?)
     }
 
-    /// A frame and all above it, each with its pose `above_from_frame`.
-    fn chain(&self, frame: &str) -> Vec<(String, Pose3)> {
-        let mut chain = vec![(frame.to_owned(), Pose3::identity())];
+    /// A frame and all above it, each with its pose `above_from_frame`, or the broken transform on the path.
+    fn chain(&self, frame: &str) -> Vec<(String, MessagePose)> {
+        let mut chain = vec![(frame.to_owned(), Ok(Pose3::identity()))];
         while let Some((last, pose)) = chain.last().filter(|_| chain.len() < MAX_FRAME_CHAIN) {
             let Some((parent, parent_from_last)) = self.parents.get(last) else { break };
-            let next = (parent.clone(), *parent_from_last * *pose);
+            let named = |problem: &String| format!("the transform {parent} > {last}: {problem}");
+            let above = pose.clone().and_then(|pose| Ok(*parent_from_last.as_ref().map_err(named)? * pose));
+            let next = (parent.clone(), above);
             chain.push(next);
         }
         chain
@@ -56,7 +73,7 @@ mod tests {
 
     fn link(parent: &str, child: &str, x: f64, roll: f64) -> Transform {
         let rotation = nalgebra::UnitQuaternion::from_euler_angles(roll, 0.0, 0.0);
-        let parent_from_child = Pose3::new(rotation, Vector3::new(x, 0.0, 0.1));
+        let parent_from_child = Ok(Pose3::new(rotation, Vector3::new(x, 0.0, 0.1)));
         Transform { stamp: Stamp::default(), parent: parent.into(), child: child.into(), parent_from_child }
     }
 
@@ -71,8 +88,8 @@ mod tests {
         assert!((pose.rotate(Vector3::z()) + Vector3::z()).norm() < 1e-12, "upside down");
         assert!((frames.between("base_footprint", "laser").unwrap().translation.z - 0.3).abs() < 1e-12);
         assert!((frames.between("laser", "base_link").unwrap() * pose).log().norm() < 1e-12);
-        assert_eq!(frames.between("base_link", "camera"), None);
-        assert_eq!(frames.between("x", "x"), Some(Pose3::identity()));
+        assert_eq!(frames.between("base_link", "camera"), Err(NoTransform::Unconnected));
+        assert_eq!(frames.between("x", "x"), Ok(Pose3::identity()));
     }
 
     #[test]
@@ -80,7 +97,20 @@ mod tests {
         let mut frames = Frames::default();
         frames.insert(link("a", "b", 0.0, 0.0));
         frames.insert(link("b", "a", 0.0, 0.0));
-        assert_eq!(frames.between("c", "a"), None);
+        assert_eq!(frames.between("c", "a"), Err(NoTransform::Unconnected));
         assert_eq!(frames.names(), "b > a, a > b");
+    }
+
+    #[test]
+    fn a_broken_transform_is_named_unless_a_good_one_is_known() {
+        let broken =
+            Transform { parent_from_child: Err("no rotation".to_owned()), ..link("base", "laser", 0.0, 0.0) };
+        let mut frames = Frames::default();
+        frames.insert(broken.clone());
+        let problem = NoTransform::Broken("the transform base > laser: no rotation".to_owned());
+        assert_eq!(frames.between("base", "laser"), Err(problem));
+        frames.insert(link("base", "laser", 0.5, 0.0));
+        frames.insert(broken);
+        assert!(frames.between("base", "laser").is_ok());
     }
 }

@@ -1,6 +1,7 @@
 //! Conversion of a `LaserScan` message into a scan in the base frame.
 
 use super::messages::LaserScan;
+use crate::laser_log::check_sweep;
 use trundle_core::{Beam, Pose3, Scan, Vector3};
 
 /// A scan of ours made of a message.
@@ -13,8 +14,6 @@ pub(super) struct ConvertedScan {
 
 /// A laser whose plane is tilted by more than this does not see one plane of the room, deg.
 const MOST_TILTED_DEG: f64 = 15.0;
-/// Most beams of a message.
-const MOST_BEAMS: usize = 100_000;
 
 /// The scan of a message by a laser at `base_from_laser`: turned, to the side, upside down, its beams in either order.
 ///
@@ -62,20 +61,16 @@ pub(super) fn convert(
 }
 
 fn check(message: &LaserScan) -> Result<(), String> {
-    let beams = message.ranges.len();
-    if !(1..=MOST_BEAMS).contains(&beams) {
-        return Err(format!("{beams} ranges, expected 1 to {MOST_BEAMS}"));
-    }
-    let (min, step) = (message.angle_min, message.angle_increment);
-    if !(min.is_finite() && min.abs() < 100.0) {
-        return Err(format!("angle_min is {min} rad, expected an angle"));
-    }
-    let sweep = step.abs() * beams as f64;
-    if !(step != 0.0 && sweep < 7.0) {
-        return Err(format!("angle_increment is {step} rad for {beams} ranges, expected a circle at most"));
-    }
+    let names = ["angle_min", "angle_increment"];
+    check_sweep(names, message.angle_min, message.angle_increment, message.ranges.len())?;
     if message.range_max.is_nan() || message.range_max <= 0.0 {
         return Err(format!("range_max is {} m, expected more than 0", message.range_max));
+    }
+    if message.range_min >= message.range_max {
+        let (min, max) = (message.range_min, message.range_max);
+        return Err(format!(
+            "range_min is {min} m and range_max {max} m, expected range_min below range_max"
+        ));
     }
     Ok(())
 }
@@ -158,6 +153,13 @@ mod tests {
         assert!(refuse(&nan, &flat).starts_with("angle_min is NaN rad"));
         let none = LaserScan { range_max: f64::NAN, ..message(&[1.0]) };
         assert!(refuse(&none, &flat).starts_with("range_max is NaN m"));
+        let swapped = LaserScan { range_min: 12.0, range_max: 0.25, ..message(&[1.0]) };
+        assert_eq!(
+            refuse(&swapped, &flat),
+            "range_min is 12 m and range_max 0.25 m, expected range_min below range_max"
+        );
+        let degrees = LaserScan { angle_min: -90.0, ..message(&[1.0]) };
+        assert!(refuse(&degrees, &flat).ends_with("it seems to be in degrees"));
         assert_eq!(
             refuse(&message(&[1.0]), &mounted(0.0, 0.0, 0.5, 0.0)),
             "the laser is tilted by 28.6 deg, expected at most 15"

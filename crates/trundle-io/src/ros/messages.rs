@@ -1,6 +1,6 @@
-//! The ROS 2 message types that are read: laser scan, odometry and transforms.
+//! The ROS message types that are read: laser scan, odometry and transforms.
 
-use super::cdr::{CdrError, CdrReader};
+use super::cdr::{CdrError, CdrReader, Wire};
 use nalgebra::{Quaternion, UnitQuaternion};
 use trundle_core::{Pose3, Stamp, Vector3};
 
@@ -9,6 +9,16 @@ pub(super) mod types {
     pub const LASER_SCAN: &str = "sensor_msgs/msg/LaserScan";
     pub const ODOMETRY: &str = "nav_msgs/msg/Odometry";
     pub const TF: &str = "tf2_msgs/msg/TFMessage";
+
+    /// The name in ROS 2 of a type of either ROS.
+    pub fn canonical(name: &str) -> &str {
+        match name {
+            "sensor_msgs/LaserScan" => LASER_SCAN,
+            "nav_msgs/Odometry" => ODOMETRY,
+            "tf2_msgs/TFMessage" | "tf/tfMessage" => TF,
+            other => other,
+        }
+    }
 }
 
 /// `sensor_msgs/msg/LaserScan`, as far as it is used.
@@ -25,6 +35,9 @@ pub(super) struct LaserScan {
     pub ranges: Vec<f32>,
 }
 
+/// A pose of a message, or what is wrong with it.
+pub(super) type MessagePose = Result<Pose3, String>;
+
 /// `nav_msgs/msg/Odometry`, as far as it is used.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Odometry {
@@ -32,7 +45,7 @@ pub(super) struct Odometry {
     /// Whose pose it is.
     pub child: String,
     /// `odom_from_child`.
-    pub pose: Pose3,
+    pub pose: MessagePose,
 }
 
 /// A `geometry_msgs/msg/TransformStamped` of a `tf2_msgs/msg/TFMessage`.
@@ -41,12 +54,12 @@ pub(super) struct Transform {
     pub stamp: Stamp,
     pub parent: String,
     pub child: String,
-    pub parent_from_child: Pose3,
+    pub parent_from_child: MessagePose,
 }
 
 impl LaserScan {
-    pub(super) fn read(bytes: &[u8]) -> Result<Self, CdrError> {
-        let mut r = CdrReader::new(types::LASER_SCAN, bytes)?;
+    pub(super) fn read(bytes: &[u8], wire: Wire) -> Result<Self, CdrError> {
+        let mut r = CdrReader::new(types::LASER_SCAN, bytes, wire)?;
         let (stamp, frame) = header(&mut r)?;
         let angle_min = r.f32("angle_min")?;
         r.f32("angle_max")?;
@@ -66,8 +79,8 @@ impl LaserScan {
 }
 
 impl Odometry {
-    pub(super) fn read(bytes: &[u8]) -> Result<Self, CdrError> {
-        let mut r = CdrReader::new(types::ODOMETRY, bytes)?;
+    pub(super) fn read(bytes: &[u8], wire: Wire) -> Result<Self, CdrError> {
+        let mut r = CdrReader::new(types::ODOMETRY, bytes, wire)?;
         let (stamp, _) = header(&mut r)?;
         let child = frame(&mut r, "child_frame_id")?;
         Ok(Self { stamp, child, pose: pose(&mut r, "pose")? })
@@ -76,8 +89,8 @@ impl Odometry {
 
 impl Transform {
     /// All of a message.
-    pub(super) fn read_all(bytes: &[u8]) -> Result<Vec<Self>, CdrError> {
-        let mut r = CdrReader::new(types::TF, bytes)?;
+    pub(super) fn read_all(bytes: &[u8], wire: Wire) -> Result<Vec<Self>, CdrError> {
+        let mut r = CdrReader::new(types::TF, bytes, wire)?;
         // A transform is two times, two texts and seven numbers.
         let count = r.count("transforms", 72)?;
         (0..count).map(|_| Self::read(&mut r)).collect()
@@ -90,8 +103,11 @@ impl Transform {
     }
 }
 
-/// `std_msgs/msg/Header`: stamp and frame.
+/// `std_msgs/msg/Header`: stamp and frame; in ROS 1 a number comes first.
 fn header(r: &mut CdrReader<'_>) -> Result<(Stamp, String), CdrError> {
+    if r.wire() == Wire::Ros1 {
+        r.u32("header.seq")?;
+    }
     let (seconds, nanos) = (r.i32("header.stamp.sec")?, r.u32("header.stamp.nanosec")?);
     let stamp = Stamp::from_nanos(i64::from(seconds) * 1_000_000_000 + i64::from(nanos));
     Ok((stamp, frame(r, "header.frame_id")?))
@@ -103,14 +119,21 @@ fn frame(r: &mut CdrReader<'_>, field: &'static str) -> Result<String, CdrError>
     Ok(name.strip_prefix('/').map_or(name.clone(), str::to_owned))
 }
 
-/// Position and quaternion (x, y, z, w); what is no pose becomes one that is not finite.
-fn pose(r: &mut CdrReader<'_>, field: &'static str) -> Result<Pose3, CdrError> {
+/// Position and quaternion (x, y, z, w).
+fn pose(r: &mut CdrReader<'_>, field: &'static str) -> Result<MessagePose, CdrError> {
     let [x, y, z, qx, qy, qz, qw] = r.f64s(field)?;
-    let q = Quaternion::new(qw, qx, qy, qz);
-    let rotation = UnitQuaternion::try_new(q, 1e-6);
-    let place = Vector3::new(x, y, z);
-    Ok(match rotation {
-        Some(rotation) if q.norm() < 1e6 => Pose3::new(rotation, place),
-        _ => Pose3::new(UnitQuaternion::identity(), Vector3::repeat(f64::NAN)),
-    })
+    if [x, y, z].iter().any(|value| !value.is_finite()) {
+        return Ok(Err(format!("the position is {x} {y} {z} m, expected finite numbers")));
+    }
+    let quaternion = Quaternion::new(qw, qx, qy, qz);
+    let rotation = UnitQuaternion::try_new(quaternion, MIN_QUATERNION_NORM);
+    let rotation = rotation.filter(|_| quaternion.norm() < MAX_QUATERNION_NORM);
+    Ok(rotation.map(|rotation| Pose3::new(rotation, Vector3::new(x, y, z))).ok_or_else(|| {
+        format!("the quaternion is {qx} {qy} {qz} {qw} (x y z w), which is no rotation, expected length 1")
+    }))
 }
+
+/// Norms between which a quaternion is normalised to a rotation. Beyond them it is none: messages whose orientation was never
+/// set have 0. Source: ours.
+const MIN_QUATERNION_NORM: f64 = 1e-6;
+const MAX_QUATERNION_NORM: f64 = 1e6;

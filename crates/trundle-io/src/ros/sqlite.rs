@@ -32,19 +32,19 @@ pub(super) enum Value {
 pub(super) struct TableRows {
     path_down: Vec<(Vec<u8>, u32, usize)>,
     next_page: Option<u32>,
+    /// Pages read so far: a tree has each page once.
+    read: u32,
 }
 
 impl TableRows {
     /// Before the first row of the table whose tree begins at page `root`.
     pub(super) fn new(root: u32) -> Self {
-        Self { path_down: Vec::new(), next_page: Some(root) }
+        Self { path_down: Vec::new(), next_page: Some(root), read: 0 }
     }
 }
 
 /// No tree is deeper.
 const MAX_TREE_DEPTH: usize = 20;
-/// Longest value, bytes: bounds what a broken file can ask for.
-const MAX_VALUE_BYTES: u64 = 1 << 28;
 
 impl Sqlite {
     pub(super) fn open(path: &Path) -> Result<Self, IoError> {
@@ -93,7 +93,8 @@ impl Sqlite {
     pub(super) fn next_row(&mut self, rows: &mut TableRows) -> Result<Option<(i64, Vec<Value>)>, IoError> {
         loop {
             if let Some(page) = rows.next_page.take() {
-                if rows.path_down.len() >= MAX_TREE_DEPTH {
+                rows.read += 1;
+                if rows.path_down.len() >= MAX_TREE_DEPTH || rows.read > self.pages {
                     return Err(self.broken(page, "the tree does not end"));
                 }
                 rows.path_down.push((self.page(page)?, page, 0));
@@ -113,10 +114,9 @@ impl Sqlite {
     fn row(&mut self, page: &[u8], number: u32, offset: usize) -> Result<(i64, Vec<Value>), IoError> {
         let short = || IoError::malformed(&self.path, format!("page {number}: a row ends early"));
         let mut at = offset;
-        let length =
-            varint(page, &mut at).filter(|l| (0..MAX_VALUE_BYTES as i64).contains(l)).ok_or_else(short)?;
+        let length = varint(page, &mut at).and_then(|length| usize::try_from(length).ok());
+        let length = length.filter(|length| *length <= self.file_bytes()).ok_or_else(short)?;
         let id = varint(page, &mut at).ok_or_else(short)?;
-        let length = length as usize;
         let local = local_bytes(length, self.usable);
         let mut record = page.get(at..at + local).ok_or_else(short)?.to_vec();
         if local < length {
@@ -146,6 +146,11 @@ impl Sqlite {
         let read = self.file.seek(SeekFrom::Start(start)).and_then(|_| self.file.read_exact(&mut page));
         read.map_err(IoError::system(&self.path, "read"))?;
         Ok(page)
+    }
+
+    /// Bytes of all pages: no row is longer.
+    fn file_bytes(&self) -> usize {
+        self.page_size.saturating_mul(self.pages as usize)
     }
 
     fn broken(&self, page: u32, problem: &str) -> IoError {
@@ -269,6 +274,43 @@ mod tests {
         let expected = vec![Value::Null, Value::Integer(42), Value::Integer(1), Value::Text("ok".to_owned())];
         assert_eq!(values(&record), Some(expected));
         assert_eq!(values(&record[..7]), None);
+    }
+
+    /// The first row of the table at the second of two pages of 512 bytes, which `second` makes.
+    fn first_row(second: impl Fn(&mut [u8])) -> Result<Option<i64>, String> {
+        let mut bytes = vec![0; 1024];
+        bytes[..16].copy_from_slice(b"SQLite format 3\0");
+        bytes[16] = 2;
+        second(&mut bytes[512..]);
+        let file = tempfile::NamedTempFile::new().unwrap();
+        std::fs::write(file.path(), &bytes).unwrap();
+        let mut sqlite = Sqlite::open(file.path()).unwrap();
+        let row = sqlite.next_row(&mut TableRows::new(2)).map_err(|error| error.to_string())?;
+        Ok(row.map(|(id, _)| id))
+    }
+
+    #[test]
+    fn a_ring_of_pages_ends() {
+        // An inner page whose 100 cells all name the page itself: 100^20 pages of a tree.
+        let ring = |page: &mut [u8]| {
+            (page[0], page[4]) = (0x05, 100);
+            page[400..404].copy_from_slice(&[0, 0, 0, 2]);
+            for cell in 0..100 {
+                page[12 + 2 * cell..14 + 2 * cell].copy_from_slice(&400_u16.to_be_bytes());
+            }
+        };
+        assert!(first_row(ring).unwrap_err().contains("the tree does not end"));
+    }
+
+    #[test]
+    fn a_row_longer_than_the_file_is_refused_before_it_is_read() {
+        // A row of 2^27 bytes whose overflow page is its own next.
+        let long = |page: &mut [u8]| {
+            (page[0], page[4]) = (0x0d, 1);
+            page[8..10].copy_from_slice(&100_u16.to_be_bytes());
+            page[100..104].copy_from_slice(&[0xc0, 0x80, 0x80, 0x00]);
+        };
+        assert!(first_row(long).unwrap_err().contains("a row ends early"));
     }
 
     proptest! {

@@ -1,7 +1,9 @@
 //! Reader and writer of odometry text files beside a TUM sequence.
 
-use crate::IoError;
-use crate::files::{content_lines, read_text, stamped_numbers};
+use super::rows::{BrokenRows, Table};
+use super::trajectory_form::Form;
+use crate::files::{fields, read_text, table_rows};
+use crate::{IoError, Warnings};
 use std::fmt::Write;
 use std::path::Path;
 use trundle_core::{Pose2, Stamp};
@@ -9,34 +11,63 @@ use trundle_core::{Pose2, Stamp};
 /// Farther off no robot gets, m, and rad.
 const MAX_COORDINATE_M: f64 = 1e6;
 
-/// Odometry beside a TUM sequence: lines of `timestamp x y theta` (s, m, m, rad), the pose `odom_from_base`, `#` for
-/// comments. Stamps rise.
+/// Odometry beside a TUM sequence: lines of `timestamp x y theta` (s, m, m, rad), or of a TUM trajectory, the pose
+/// `odom_from_base`, `#` for comments.
 ///
 /// # Errors
-/// With the line, when a field is missing, too many or not a finite number, when time stands still or goes back, or when a pose
-/// is farther off than any robot gets.
+/// With the line, when a field is missing, too many or not a finite number, or when a pose is farther off than any robot gets.
 pub fn read_odometry(path: &Path) -> Result<Vec<(Stamp, Pose2)>, IoError> {
+    Ok(read_odometry_file(path)?.0)
+}
+
+/// The same, with what was mended: rows that are sorted, a second row of a stamp that is left out, stamps in ms, us or ns.
+pub(super) fn read_odometry_file(path: &Path) -> Result<(Vec<(Stamp, Pose2)>, Warnings), IoError> {
     parse_odometry(path, &read_text(path)?)
 }
 
-fn parse_odometry(path: &Path, text: &str) -> Result<Vec<(Stamp, Pose2)>, IoError> {
-    let mut poses: Vec<(Stamp, Pose2)> = Vec::new();
-    for line in content_lines(text) {
-        let (stamp, [x, y, theta]) = stamped_numbers(path, line, ["x", "y", "theta"])?;
-        if let Some((before, _)) = poses.last().filter(|(before, _)| stamp <= *before) {
-            let problem = format!("timestamp is {stamp} s, expected more than the {before} s before");
-            return Err(IoError::line(path, line.0, problem));
-        }
-        let all = [("x", x, "m"), ("y", y, "m"), ("theta", theta, "rad")];
-        if let Some((name, value, unit)) =
-            all.into_iter().find(|(_, value, _)| value.abs() > MAX_COORDINATE_M)
-        {
-            let problem = format!("{name} is {value} {unit}, expected at most {MAX_COORDINATE_M} {unit}");
-            return Err(IoError::line(path, line.0, problem));
-        }
-        poses.push((stamp, Pose2::new(x, y, theta)));
+fn parse_odometry(path: &Path, text: &str) -> Result<(Vec<(Stamp, Pose2)>, Warnings), IoError> {
+    let mut warnings = Warnings::default();
+    let form = match Form::of(text) {
+        form @ (Form::Tum | Form::Euroc) if columns(text) > Form::Planar.names().len() + 1 => form,
+        _ => Form::Planar,
+    };
+    let table = Table {
+        path,
+        text,
+        names: form.names(),
+        is_open: form == Form::Euroc,
+        broken_rows: BrokenRows::Refused,
+    };
+    let mut poses = table.read(|numbers| pose(form, numbers), &mut warnings)?;
+    let rows = poses.len();
+    poses.dedup_by_key(|(stamp, _)| *stamp);
+    if poses.len() < rows {
+        let problem =
+            format!("{} rows repeat the timestamp of the row before and are left out", rows - poses.len());
+        warnings.add(&problem, &path.display().to_string());
     }
-    Ok(poses)
+    Ok((poses, warnings))
+}
+
+/// The number of fields of the first row.
+fn columns(text: &str) -> usize {
+    table_rows(text).first().map_or(0, |(_, line)| fields(line).count())
+}
+
+/// The planar pose of a row.
+fn pose(form: Form, numbers: &[f64]) -> Result<Pose2, String> {
+    let pose = match (form, numbers) {
+        // Not by way of a quaternion: every bit of the file is kept.
+        (Form::Planar, &[x, y, theta]) => Pose2 { x, y, theta },
+        _ => form.pose(numbers)?.to_pose2(),
+    };
+    let all = [("x", pose.x, "m"), ("y", pose.y, "m"), ("theta", pose.theta, "rad")];
+    match all.into_iter().find(|(_, value, _)| value.abs() > MAX_COORDINATE_M) {
+        Some((name, value, unit)) => {
+            Err(format!("{name} is {value} {unit}, expected at most {MAX_COORDINATE_M} {unit}"))
+        }
+        None => Ok(Pose2::new(pose.x, pose.y, pose.theta)),
+    }
 }
 
 /// The text of [`read_odometry`], exact.
@@ -57,13 +88,9 @@ mod tests {
     fn reads_what_it_writes_and_names_lines() {
         let poses: Vec<_> =
             (0..9).map(|i| (Stamp::from_nanos(i), Pose2::new(0.1 * i as f64, -0.3, 1.0 / 3.0))).collect();
-        let parse = |text: &str| parse_odometry(Path::new("odometry.txt"), text);
+        let parse = |text: &str| parse_odometry(Path::new("odometry.txt"), text).map(|(poses, _)| poses);
         assert_eq!(parse(&odometry_text(&poses)).unwrap(), poses);
         assert_eq!(parse("").unwrap(), []);
-        assert_eq!(
-            parse("1 0 0 0\n1 0 0 0").unwrap_err().to_string(),
-            "odometry.txt, line 2: timestamp is 1.000000000 s, expected more than the 1.000000000 s before"
-        );
         assert_eq!(
             parse("1 0 0 0\n2 0 -1e7 0").unwrap_err().to_string(),
             "odometry.txt, line 2: y is -10000000 m, expected at most 1000000 m"
@@ -71,5 +98,16 @@ mod tests {
         assert!(
             parse("1 0 0").unwrap_err().to_string().contains("3 fields, expected 4: timestamp x y theta")
         );
+    }
+
+    #[test]
+    fn tum_poses_and_repeated_stamps_are_read() {
+        let parse = |text: &str| parse_odometry(Path::new("odometry.txt"), text).unwrap();
+        let (poses, warnings) = parse("2.0 1 2 0 0 0 0.6 0.8\n3.0 1 2 0 0 0 0 1\n");
+        assert!(warnings.is_empty());
+        assert!((poses[0].1.theta - 2.0 * 0.6_f64.atan2(0.8)).abs() < 1e-12, "{poses:?}");
+        let (poses, warnings) = parse("2 5 0 0\n1 4 0 0\n1 3 0 0\n");
+        assert_eq!(poses.iter().map(|(_, pose)| pose.x).collect::<Vec<_>>(), [4.0, 5.0]);
+        assert_eq!(warnings.iter().count(), 2);
     }
 }

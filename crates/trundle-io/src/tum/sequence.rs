@@ -1,19 +1,21 @@
 //! Reader of an RGB-D sequence in the TUM format.
 
-use super::association::pair_nearest;
-use super::list::{ListedImage, parse_list};
-use super::{read_odometry, read_trajectory};
-use crate::codec::{decode_color, decode_raw_depth};
-use crate::files::{read_bytes, read_text};
-use crate::{FrameError, IoError};
+use super::list::ListedImage;
+use super::members::Members;
+use super::odometry::read_odometry_file;
+use super::trajectory::read_optional_trajectory;
+use crate::camera::checked_depth_scale;
+use crate::codec::{decode_color, decode_depth_file};
+use crate::files::read_bytes;
+use crate::{FrameError, IoError, Warnings};
 use std::path::{Path, PathBuf};
-use trundle_core::{DepthImage, Invalid, Pose2, Pose3, RgbdImage, Stamp, require_finite, require_positive};
+use trundle_core::{Invalid, Pose2, Pose3, RgbdImage, Stamp, require_finite};
 
 /// A recorded RGB-D sequence in TUM's form, its images still on disk.
 ///
-/// The folder holds `rgb.txt` and `depth.txt` (lines of `timestamp filename`), the images they name (PNG or JPEG
-/// colour, 16-bit PNG depth registered to it), and may hold `groundtruth.txt` (a TUM trajectory) and `odometry.txt`
-/// (lines of `timestamp x y theta`).
+/// The folder holds `rgb.txt` and `depth.txt` (lines of `timestamp filename`), or `associations.txt` alone, the images they
+/// name (PNG or JPEG colour; depth registered to it of 16 bits, or of 32-bit floats in metres), and may hold
+/// `groundtruth.txt` (a trajectory) and `odometry.txt` (lines of `timestamp x y theta`, or of a TUM trajectory).
 #[derive(Debug, Clone)]
 pub struct TumSequence {
     dir: PathBuf,
@@ -23,6 +25,7 @@ pub struct TumSequence {
     unpaired: usize,
     ground_truth: Option<Vec<(Stamp, Pose3)>>,
     odometry: Option<Vec<(Stamp, Pose2)>>,
+    warnings: Warnings,
 }
 
 impl TumSequence {
@@ -33,27 +36,29 @@ impl TumSequence {
     /// `max_difference` s apart. `depth_scale` is what a depth of 1 m is in the depth images (5000 for TUM).
     ///
     /// # Errors
-    /// When the folder or a list is missing, a line is wrong, stamps do not rise, or no images can be paired.
+    /// When the folder or a list is missing, a line is wrong, no images can be paired, or the depth scale is none.
     pub fn open(dir: &Path, depth_scale: f64, max_difference: f64) -> Result<Self, IoError> {
-        let checked = require_positive("depth_scale", depth_scale, "units a metre")
+        let checked = checked_depth_scale(depth_scale)
             .and_then(|_| require_finite("max_difference", max_difference, "s"));
         checked.map_err(IoError::field(dir))?;
-        check_folder(dir)?;
-        let (color, depth) = (list(dir, "rgb.txt")?, list(dir, "depth.txt")?);
-        let stamps = |list: &[ListedImage]| list.iter().map(|image| image.stamp).collect::<Vec<_>>();
-        let pairs = pair_nearest(&stamps(&color), &stamps(&depth), max_difference);
-        if pairs.is_empty() {
-            return Err(IoError::malformed(dir, no_pair(&color, &depth, max_difference)));
-        }
+        let Members { frames, unpaired, mut warnings } = Members::read(dir, max_difference)?;
+        let ground_truth = ground_truth(dir, &frames, &mut warnings);
+        let odometry = odometry(dir, &mut warnings)?;
         Ok(Self {
             dir: dir.to_owned(),
             depth_scale,
             size: None,
-            unpaired: color.len() - pairs.len(),
-            frames: pairs.into_iter().map(|(i, j)| (color[i].clone(), depth[j].clone())).collect(),
-            ground_truth: optional(&dir.join("groundtruth.txt"), read_trajectory)?,
-            odometry: optional(&dir.join("odometry.txt"), read_odometry)?,
+            frames,
+            unpaired,
+            ground_truth,
+            odometry,
+            warnings,
         })
+    }
+
+    /// What was mended or left out on opening, one warning a kind.
+    pub fn warnings(&self) -> &Warnings {
+        &self.warnings
     }
 
     /// Accepts from now on only images of `width` x `height` px, the camera's.
@@ -111,11 +116,9 @@ impl TumSequence {
         let pixels = decode_color(&read_bytes(&color_path)?).map_err(IoError::image(&color_path))?;
         self.check_size("colour image size", (pixels.width(), pixels.height()))
             .map_err(IoError::field(&color_path))?;
-        let raw = decode_raw_depth(&read_bytes(&depth_path)?).map_err(IoError::image(&depth_path))?;
-        let metres = raw.data().iter().map(|&value| (f64::from(value) / self.depth_scale) as f32).collect();
-        DepthImage::new(raw.width(), raw.height(), metres)
-            .and_then(|metres| RgbdImage::new(color.stamp, pixels, metres))
-            .map_err(IoError::field(&depth_path))
+        let metres = decode_depth_file(&read_bytes(&depth_path)?, self.depth_scale)
+            .map_err(IoError::image(&depth_path))?;
+        RgbdImage::new(color.stamp, pixels, metres).map_err(IoError::field(&depth_path))
     }
 
     fn check_size(&self, name: &str, found: (usize, usize)) -> Result<(), Invalid> {
@@ -129,38 +132,32 @@ impl TumSequence {
     }
 }
 
-fn check_folder(dir: &Path) -> Result<(), IoError> {
-    let mut entries = std::fs::read_dir(dir).map_err(IoError::system(dir, "read"))?;
-    if entries.next().is_none() {
-        return Err(IoError::malformed(dir, "the folder is empty, expected rgb.txt and depth.txt"));
+/// The ground truth, where there is one. Poses without times are those of the images, where they are as many.
+fn ground_truth(
+    dir: &Path,
+    frames: &[(ListedImage, ListedImage)],
+    warnings: &mut Warnings,
+) -> Option<Vec<(Stamp, Pose3)>> {
+    let path = dir.join("groundtruth.txt");
+    if !path.exists() {
+        return None;
     }
-    for name in ["rgb.txt", "depth.txt"] {
-        if !dir.join(name).exists() {
-            let problem = format!("{name} is missing, expected rgb.txt and depth.txt in a TUM RGB-D folder");
-            return Err(IoError::malformed(dir, problem));
-        }
+    let mut file = read_optional_trajectory(&path);
+    if file.is_indexed && file.poses.len() == frames.len() {
+        file.poses.iter_mut().zip(frames).for_each(|((stamp, _), (color, _))| *stamp = color.stamp);
+        file.warnings = Warnings::default();
     }
-    Ok(())
+    warnings.extend(file.warnings);
+    (!file.poses.is_empty()).then_some(file.poses)
 }
 
-fn list(dir: &Path, name: &str) -> Result<Vec<ListedImage>, IoError> {
-    let path = dir.join(name);
-    parse_list(&path, &read_text(&path)?)
-}
-
-fn optional<T>(path: &Path, read: impl Fn(&Path) -> Result<T, IoError>) -> Result<Option<T>, IoError> {
-    if path.exists() { read(path).map(Some) } else { Ok(None) }
-}
-
-fn no_pair(color: &[ListedImage], depth: &[ListedImage], max_difference: f64) -> String {
-    let span = |list: &[ListedImage]| match list {
-        [first, .., last] => format!("{} s to {} s", first.stamp, last.stamp),
-        [only] => format!("{} s", only.stamp),
-        [] => "none".to_owned(),
-    };
-    format!(
-        "no colour image of rgb.txt ({}) is within {max_difference} s of a depth image of depth.txt ({})",
-        span(color),
-        span(depth)
-    )
+/// The odometry, where there is one.
+fn odometry(dir: &Path, warnings: &mut Warnings) -> Result<Option<Vec<(Stamp, Pose2)>>, IoError> {
+    let path = dir.join("odometry.txt");
+    if !path.exists() {
+        return Ok(None);
+    }
+    let (poses, mended) = read_odometry_file(&path)?;
+    warnings.extend(mended);
+    Ok(Some(poses))
 }

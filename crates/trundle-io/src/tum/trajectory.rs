@@ -1,50 +1,78 @@
-//! Reader and writer of trajectories in the TUM format.
+//! Reader and writer of trajectories.
 
-use crate::IoError;
-use crate::files::{content_lines, read_text, stamped_numbers};
-use nalgebra::Quaternion;
+use super::kitti;
+use super::rows::{BrokenRows, Table, sort};
+use super::trajectory_form::Form;
+use crate::files::read_text;
+use crate::{Expected, IoError, Warnings};
 use std::fmt::Write;
 use std::path::Path;
 use trundle_core::{Pose2, Pose3, Stamp};
 
-/// How far the norm of a quaternion may be from 1: files with two decimals or more pass, and are normalised.
-const NORM_TOLERANCE: f64 = 0.02;
-
-const FIELDS: [&str; 7] = ["tx", "ty", "tz", "qx", "qy", "qz", "qw"];
-
-/// A trajectory in TUM's form: lines of `timestamp tx ty tz qx qy qz qw` (s, m, unit quaternion), `#` for comments.
-///
-/// Stamps are exact to the nanosecond and may repeat, as TUM's ground truth does, but not go back.
-///
-/// # Errors
-/// With the line, when a field is missing, too many, not a finite number, when a quaternion is not of unit length
-/// within 0.02, or when time goes back; and when there is no pose at all.
-pub fn read_trajectory(path: &Path) -> Result<Vec<(Stamp, Pose3)>, IoError> {
-    parse_trajectory(path, &read_text(path)?)
+/// A trajectory of a file, by rising stamps.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct TrajectoryFile {
+    /// Stamps and poses.
+    pub poses: Vec<(Stamp, Pose3)>,
+    /// Whether the file has no times: then the stamps are the numbers of its rows, in seconds.
+    pub is_indexed: bool,
+    /// What was mended or left out.
+    pub warnings: Warnings,
 }
 
-fn parse_trajectory(path: &Path, text: &str) -> Result<Vec<(Stamp, Pose3)>, IoError> {
-    let mut poses: Vec<(Stamp, Pose3)> = Vec::new();
-    for line in content_lines(text) {
-        let (stamp, values) = stamped_numbers(path, line, FIELDS)?;
-        if let Some((before, _)) = poses.last().filter(|(before, _)| stamp < *before) {
-            let problem = format!("timestamp goes back from {before} s to {stamp} s");
-            return Err(IoError::line(path, line.0, problem));
-        }
-        let norm = Quaternion::new(values[6], values[3], values[4], values[5]).norm();
-        if (norm - 1.0).abs() > NORM_TOLERANCE {
-            let problem = format!("length of the quaternion is {norm}, expected 1 within {NORM_TOLERANCE}");
-            return Err(IoError::line(path, line.0, problem));
-        }
-        poses.push((stamp, Pose3::from(values)));
+/// The poses of [`read_trajectory_file`].
+///
+/// # Errors
+/// As [`read_trajectory_file`].
+pub fn read_trajectory(path: &Path) -> Result<Vec<(Stamp, Pose3)>, IoError> {
+    Ok(read_trajectory_file(path)?.poses)
+}
+
+/// A trajectory in one of these forms, told apart by its columns; `#` for comments, a first line of words is skipped.
+///
+/// TUM: `timestamp tx ty tz qx qy qz qw` (s, m, unit quaternion). EuRoC: `timestamp px py pz qw qx qy qz ...`. Planar:
+/// `timestamp x y theta`. KITTI: the twelve numbers of a matrix, times in `times.txt` beside it. Stamps are exact to the
+/// nanosecond and may repeat, as TUM's ground truth does. Rows out of order are sorted, and stamps in ms, us or ns
+/// recognised by their magnitude, each with a warning.
+///
+/// # Errors
+/// With the line, when a field is missing, too many, not a finite number, or when a quaternion is not of unit length
+/// within 0.02; and when there is no pose at all.
+pub fn read_trajectory_file(path: &Path) -> Result<TrajectoryFile, IoError> {
+    Expected::Trajectory.check(path)?;
+    parse_trajectory(path, &read_text(path)?, BrokenRows::Refused)
+}
+
+/// The same of a file that a run can do without: rows that cannot be read are left out with a warning.
+pub(super) fn read_optional_trajectory(path: &Path) -> TrajectoryFile {
+    let text = Expected::Trajectory.check(path).and_then(|_| read_text(path));
+    let read = text.and_then(|text| parse_trajectory(path, &text, BrokenRows::LeftOut));
+    read.unwrap_or_else(|error| {
+        let mut file = TrajectoryFile::default();
+        file.warnings.add(&format!("not used, {}", error.problem()), &error.path().display().to_string());
+        file
+    })
+}
+
+fn parse_trajectory(path: &Path, text: &str, broken_rows: BrokenRows) -> Result<TrajectoryFile, IoError> {
+    let mut file = TrajectoryFile::default();
+    let form = Form::of(text);
+    if form == Form::Kitti {
+        let poses = kitti::read_poses(path, text, broken_rows, &mut file.warnings)?;
+        let times = kitti::times(path, poses.len())?;
+        file.warnings.extend(times.warnings);
+        file.is_indexed = times.is_indexed;
+        file.poses = times.stamps.into_iter().zip(poses).collect();
+        sort(&mut file.poses, path, &mut file.warnings);
+    } else {
+        let table = Table { path, text, names: form.names(), is_open: form == Form::Euroc, broken_rows };
+        file.poses = table.read(|numbers| form.pose(numbers), &mut file.warnings)?;
     }
-    if poses.is_empty() {
-        return Err(IoError::malformed(
-            path,
-            "no pose in it, expected lines of: timestamp tx ty tz qx qy qz qw",
-        ));
+    if file.poses.is_empty() && broken_rows == BrokenRows::Refused {
+        let expected = "no pose in it, expected lines of: timestamp tx ty tz qx qy qz qw";
+        return Err(IoError::malformed(path, expected));
     }
-    Ok(poses)
+    Ok(file)
 }
 
 /// The text of a trajectory in TUM's form: stamps with all nine digits, metres and quaternion to 1e-9, always the
@@ -75,14 +103,22 @@ mod tests {
     use nalgebra::Vector6;
     use proptest::prelude::*;
 
+    fn parse(text: &str) -> Result<TrajectoryFile, IoError> {
+        parse_trajectory(Path::new("a.txt"), text, BrokenRows::Refused)
+    }
+
     fn problem(text: &str) -> String {
-        parse_trajectory(Path::new("a.txt"), text).unwrap_err().to_string()
+        parse(text).unwrap_err().to_string()
+    }
+
+    fn lines(warnings: &Warnings) -> String {
+        warnings.iter().map(|warning| format!("{warning}\n")).collect()
     }
 
     #[test]
     fn errors_name_file_and_line() {
         let good = "# head\n1.5 0 0 0 0 0 0 1\n";
-        assert_eq!(parse_trajectory(Path::new("a.txt"), good).unwrap().len(), 1);
+        assert_eq!(parse(good).unwrap().poses.len(), 1);
         assert_eq!(
             problem(&format!("{good}2 0 0 0 0 0 1")),
             "a.txt, line 3: 7 fields, expected 8: timestamp tx ty tz qx qy qz qw"
@@ -90,10 +126,6 @@ mod tests {
         assert_eq!(
             problem(&format!("{good}\n2 0 NaN 0 0 0 0 1")),
             "a.txt, line 4: ty is 'NaN', expected a finite number"
-        );
-        assert_eq!(
-            problem(&format!("{good}1.4 0 0 0 0 0 0 1")),
-            "a.txt, line 3: timestamp goes back from 1.500000000 s to 1.400000000 s"
         );
         assert_eq!(
             problem("1 0 0 0 0 0 0 1.1"),
@@ -105,8 +137,72 @@ mod tests {
 
     #[test]
     fn a_nearly_unit_quaternion_is_normalised() {
-        let poses = parse_trajectory(Path::new("a"), "1 0 0 0 -0.6606 -0.5119 -0.0688 0.5449").unwrap();
+        let poses = parse("1 0 0 0 -0.6606 -0.5119 -0.0688 0.5449").unwrap().poses;
         assert!((poses[0].1.rotation.norm() - 1.0).abs() < 1e-15);
+    }
+
+    #[test]
+    fn one_drive_is_the_same_in_every_form() {
+        let tum = parse("1.5 1 2 0 0 0 0.6 0.8\n1.7 3 4 0 0 0 0 1\n").unwrap();
+        assert!(tum.warnings.is_empty());
+        let theta = 2.0 * 0.6_f64.atan2(0.8);
+        for text in [
+            "timestamp,tx,ty,tz,qx,qy,qz,qw\n1.5,1,2,0,0,0,0.6,0.8\n1.7,3,4,0,0,0,0,1\n",
+            "#timestamp, p_x [m], p_y [m], p_z [m], q_w [], q_x [], q_y [], q_z [], v_x, v_y, v_z\n\
+             1500000000,1,2,0,0.8,0,0,0.6,0,0,0\n1700000000,3,4,0,1,0,0,0,0,0,0\n",
+            "# timestamp x y z qw qx qy qz\n1.5 1 2 0 0.8 0 0 0.6\n1.7 3 4 0 1 0 0 0\n",
+            &format!("1.5 1 2 {theta}\n1.7 3 4 0\n"),
+            "1700 3 4 0 0 0 0 1\n1500 1 2 0 0 0 0.6 0.8\n",
+        ] {
+            let read = parse(text).unwrap().poses;
+            for ((at, pose), (expected_at, expected)) in read.iter().zip(&tum.poses) {
+                let ratio = at.as_secs() / expected_at.as_secs();
+                assert!((ratio - 1.0).abs() < 1e-9 || (ratio - 1000.0).abs() < 1e-6, "{text}");
+                assert!((expected.inverse() * *pose).log().norm() < 1e-8, "{text}");
+            }
+        }
+    }
+
+    #[test]
+    fn rows_out_of_order_are_sorted_and_units_are_named() {
+        let read = parse("1700000000200 2 0 0 0 0 0 1\n1700000000100 1 0 0 0 0 0 1\n").unwrap();
+        assert_eq!(read.poses.iter().map(|(_, pose)| pose.translation.x).collect::<Vec<_>>(), [1.0, 2.0]);
+        assert_eq!(read.poses[1].0.to_string(), "1700000000.200000000");
+        let said = lines(&read.warnings);
+        assert!(said.contains("are taken as milliseconds, expected seconds: a.txt"), "{said}");
+        assert!(said.contains("timestamps go back 1 times in 2 rows, which are sorted: a.txt"), "{said}");
+    }
+
+    #[test]
+    fn broken_rows_of_a_file_that_is_not_needed_are_counted() {
+        let text = "1 0 0 0 0 0 0 1\n2 0 0 0\n3 0 0 x 0 0 0 1\n4 0 0 y 0 0 0 1\n";
+        let read = parse_trajectory(Path::new("a.txt"), text, BrokenRows::LeftOut).unwrap();
+        assert_eq!((read.poses.len(), read.warnings.count()), (1, 3));
+        assert!(
+            lines(&read.warnings).contains("row left out, 4 fields, expected 8"),
+            "{}",
+            lines(&read.warnings)
+        );
+    }
+
+    #[test]
+    fn kitti_rows_have_the_times_beside_them_or_their_numbers() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("00.txt");
+        std::fs::write(&path, "1 0 0 5 0 1 0 0 0 0 1 0\n0 -1 0 6 1 0 0 0 0 0 1 0\n").unwrap();
+        let read = read_trajectory_file(&path).unwrap();
+        assert_eq!(read.poses.iter().map(|(_, pose)| pose.translation.x).collect::<Vec<_>>(), [5.0, 6.0]);
+        assert!((read.poses[1].1.rotation.angle() - std::f64::consts::FRAC_PI_2).abs() < 1e-9);
+        assert!(
+            read.is_indexed && lines(&read.warnings).contains("number of a row"),
+            "{}",
+            lines(&read.warnings)
+        );
+        std::fs::write(dir.path().join("times.txt"), "0.0\n0.25\n").unwrap();
+        let read = read_trajectory_file(&path).unwrap();
+        assert!(!read.is_indexed && read.warnings.is_empty());
+        assert_eq!(read.poses[1].0.as_secs(), 0.25);
+        assert!(problem("2 0 0 5 0 1 0 0 0 0 1 0\n").contains("no rotation matrix"));
     }
 
     proptest! {
@@ -115,7 +211,7 @@ mod tests {
             let poses: Vec<_> = tangents.into_iter().enumerate()
                 .map(|(i, t)| (Stamp::from_nanos(i as i64 * 33_333_333), Pose3::exp(Vector6::from(t)))).collect();
             let text = trajectory_text(&poses);
-            let back = parse_trajectory(Path::new("a"), &text).unwrap();
+            let back = parse(&text).unwrap().poses;
             for ((s, p), (t, q)) in poses.iter().zip(&back) {
                 prop_assert_eq!(s, t);
                 prop_assert!((p.inverse() * *q).log().norm() < 1e-8);
@@ -124,7 +220,8 @@ mod tests {
 
         #[test]
         fn any_text_is_no_panic(text in "[0-9 .eE#,\\-+naif\n]{0,200}") {
-            let _ = parse_trajectory(Path::new("a"), &text);
+            let _ = parse(&text);
+            let _ = parse_trajectory(Path::new("a"), &text, BrokenRows::LeftOut);
         }
     }
 }

@@ -45,7 +45,8 @@ impl<'f> TumWriter<'f> {
         }
         self.folder.write(&name, &frame.color_png)?;
         self.folder.write(&file_name("depth", frame.stamp), &frame.depth_png)?;
-        self.frames.push(frame.stamp);
+        // A frame that the disk did not take is in no list.
+        self.frames.extend((!self.folder.is_incomplete()).then_some(frame.stamp));
         Ok(())
     }
 

@@ -83,23 +83,90 @@ fn the_mcap_library_s_own_index_finds_all() {
     assert_eq!((stats.message_count, stats.channel_count), (16, 10));
     assert_eq!(stats.message_start_time, stamp(0).nanos as u64);
     let schemas: Vec<_> = summary.schemas.values().map(|s| (s.name.clone(), s.encoding.clone())).collect();
-    assert!(schemas.contains(&("foxglove.CompressedImage".to_owned(), "jsonschema".to_owned())));
+    assert!(schemas.contains(&("sensor_msgs/msg/CompressedImage".to_owned(), "ros2msg".to_owned())));
     assert_eq!(mcap::MessageStream::new(&bytes).unwrap().count(), 16);
 }
 
 #[test]
 fn broken_files_are_named_and_told_apart() {
     let bytes = recording();
-    assert_eq!(read(b"hello, this is not it").unwrap_err(), "FILE: not an MCAP recording");
+    assert_eq!(
+        read(b"hello, this is not it").unwrap_err(),
+        "FILE: this is a text file of no known kind, expected a trundle recording (recording.mcap)"
+    );
     let half = read(&bytes[..bytes.len() / 2]).unwrap_err();
     assert!(half.starts_with("FILE: the recording is truncated: it ends after "), "{half}");
-    assert!(read(&[]).unwrap_err().contains("truncated: it ends after 0 bytes"));
+    assert!(read(&[]).unwrap_err().starts_with("FILE: this is an empty file, expected a trundle recording"));
     let missing = RecordingReader::open(Path::new("no.mcap")).err().unwrap().to_string();
     assert_eq!(missing, "cannot read no.mcap: it does not exist");
-    assert!(RecordingReader::open(Path::new("/")).err().unwrap().to_string().ends_with("it is a folder"));
+    assert!(RecordingReader::open(Path::new("/")).err().unwrap().to_string().contains("this is a folder"));
     for len in (0..bytes.len()).step_by(97) {
         assert!(read(&bytes[..len]).is_err(), "cut at {len} of {}", bytes.len());
     }
+}
+
+/// Recordings of version 0.1.0 hold images as base64 in JSON.
+#[test]
+fn images_in_json_are_read_too() {
+    use base64::Engine;
+    let EncodedEvent::Rgbd(image) = &events()[2] else { unreachable!("the third event is the image") };
+    let mut recorder = Recorder::new(Cursor::new(Vec::new()), Path::new("a.mcap")).unwrap();
+    for (topic, bytes) in [("/camera/color", &image.color_jpeg), ("/camera/depth", &image.depth_png)] {
+        let (sec, nsec) = (image.stamp.nanos / 1_000_000_000, image.stamp.nanos % 1_000_000_000);
+        let data = base64::engine::general_purpose::STANDARD.encode(bytes);
+        let message = json!({"timestamp": {"sec": sec, "nsec": nsec}, "frame_id": "camera", "data": data, "format": "png"});
+        recorder.record_json(topic, "foxglove.CompressedImage", image.stamp, &message).unwrap();
+    }
+    let messages = read(recorder.finish().unwrap().get_ref()).unwrap();
+    assert_eq!(messages, [RecordedMessage::Event(events()[2].clone())]);
+}
+
+/// Reads a recording to where it is cut: its messages, and the byte.
+fn read_to_cut(bytes: &[u8]) -> Result<(Vec<RecordedMessage>, Option<u64>), String> {
+    let file = on_disk(bytes);
+    let reader = RecordingReader::open_to_cut(file.path()).map_err(|error| error.to_string())?;
+    let cut = reader.cut().map(|cut| cut.byte);
+    let all = reader.collect::<Result<Vec<_>, IoError>>().map_err(|error| error.to_string())?;
+    Ok((all, cut))
+}
+
+#[test]
+fn a_recording_cut_at_any_byte_is_read_to_the_cut() {
+    let bytes = recording();
+    let all = read(&bytes).unwrap();
+    assert_eq!(read_to_cut(&bytes).unwrap(), (all.clone(), None));
+    let (mut last, mut refused) = (0, 0);
+    let ends = (0..bytes.len()).filter(|len| *len > bytes.len() - 400 || len % 7 == 0);
+    for len in ends {
+        match read_to_cut(&bytes[..len]) {
+            Ok((messages, cut)) => {
+                assert_eq!(cut, Some(len as u64));
+                assert!(messages[..] == all[..messages.len()], "cut at {len}");
+                assert!(messages.len() >= last, "cut at {len}: fewer messages than of a shorter file");
+                last = messages.len();
+            }
+            Err(error) => {
+                assert!(last == 0, "cut at {len}: {error}");
+                refused += 1;
+            }
+        }
+    }
+    assert_eq!(last, all.len(), "a file that lacks only its index holds every message");
+    assert!(refused > 1);
+    assert!(read_to_cut(&bytes[..60]).unwrap_err().contains("before its first message"));
+    assert!(read_to_cut(b"hello, this is not it").is_err());
+}
+
+#[test]
+fn a_recording_whose_writer_was_killed_is_read_to_its_last_whole_message() {
+    let all = read(&recording()).unwrap();
+    let mut bytes = recording();
+    let chunk = bytes.windows(2).position(|pair| pair[0] == 0x06 && pair[1] != 0).unwrap();
+    bytes[chunk + 1..chunk + 9].fill(0xff);
+    bytes[chunk + 9 + 32..chunk + 9 + 40].fill(0xff);
+    let (messages, cut) = read_to_cut(&bytes).unwrap();
+    assert!(cut.is_some());
+    assert_eq!(messages[..all.len()], all[..]);
 }
 
 #[test]

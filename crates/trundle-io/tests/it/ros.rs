@@ -2,7 +2,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 use trundle_core::{Beam, Pose2};
-use trundle_io::{LaserLog, LaserLogOptions, RosBagOptions, read_laser_log, read_ros_bag};
+use trundle_io::{LaserLog, LaserLogOptions, read_laser_log, read_ros_bag};
 
 fn bag(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data/ros2").join(name)
@@ -57,12 +57,121 @@ fn a_folder_with_mcap_files() {
     };
     yaml("", "old_name/x_0.mcap");
     is_the_room(&read(scratch.path()));
-    yaml("FILE", "x_0.mcap.zstd");
-    let problem = refusal(scratch.path());
+    for (mode, file) in [("FILE", "x_0.db3.zstd"), ("MESSAGE", "x_0.mcap")] {
+        yaml(mode, file);
+        let problem = refusal(scratch.path());
+        let expected = format!("compression_mode is {mode}");
+        assert!(problem.contains(&expected) && problem.contains("ros2 bag convert"), "{problem}");
+    }
+}
+
+#[test]
+fn an_mcap_file_packed_with_zstd() {
+    let scratch = tempfile::tempdir().unwrap();
+    let plain = fs::read(bag("lz4.mcap")).unwrap();
+    let packed =
+        |bytes: &[u8]| ruzstd::encoding::compress_to_vec(bytes, ruzstd::encoding::CompressionLevel::Fastest);
+    let (first, second) = plain.split_at(plain.len() / 3);
+    for (name, bytes) in
+        [("a.mcap.zst", packed(&plain)), ("b.mcap.zstd", [packed(first), packed(second)].concat())]
+    {
+        let file = scratch.path().join(name);
+        fs::write(&file, bytes).unwrap();
+        is_the_room(&read(&file));
+    }
+    fs::remove_file(scratch.path().join("a.mcap.zst")).unwrap();
+    is_the_room(&read(scratch.path()));
+    let text =
+        "rosbag2_bagfile_information:\n  relative_file_paths:\n    - b.mcap.zstd\n  compression_mode: FILE\n";
+    fs::write(scratch.path().join("metadata.yaml"), text).unwrap();
+    is_the_room(&read(scratch.path()));
+    let whole = packed(&plain);
+    let problem = read_bytes(&whole[..whole.len() / 9]).unwrap_err();
+    assert!(problem.contains("the zstd data is truncated or broken"), "{problem}");
+    let problem = read_bytes(&packed(b"SQLite format 3")).unwrap_err();
+    assert!(problem.contains("not an MCAP recording"), "{problem}");
+}
+
+#[test]
+fn topics_are_named_and_can_be_chosen() {
+    let on = |topic: &'static str, (of, data): ((&'static str, &'static str), Vec<u8>)| ((topic, of.1), data);
+    let mut messages = vec![odometry(1.0, 0.0), on("/odom_fused", odometry(1.0, 7.0)), scan(1.0, &[1.0; 4])];
+    messages.extend([on("/scan_rear", scan(1.0, &[2.0; 4])), scan(1.0, &[3.0; 4])]);
+    let log = log_of(&messages, "cdr").unwrap();
+    let left = |log: &LaserLog| log.sources.left.clone();
+    assert_eq!((log.sources.scans.as_str(), log.sources.odometry.as_str()), ("/scan", "/odom"));
+    assert_eq!(left(&log), [("/scan_rear".to_owned(), 1), ("/odom_fused".to_owned(), 1)]);
+    let asked = |scans: &str, odometry: &str| LaserLogOptions {
+        scan_topic: Some(scans.to_owned()),
+        odometry_topic: Some(odometry.to_owned()),
+        ..LaserLogOptions::default()
+    };
+    let log = log_with(&messages, "cdr", &asked("scan_rear", "/odom_fused")).unwrap();
+    assert_eq!((log.scans.len(), log.scans[0].odom_from_base.x), (1, 7.0));
+    assert_eq!(left(&log), [("/scan".to_owned(), 2), ("/odom".to_owned(), 1)]);
+    assert_eq!(
+        log_with(&messages, "cdr", &asked("/laser", "/odom")).unwrap_err(),
+        "BAG: no sensor_msgs/msg/LaserScan on /laser, expected one of: /scan (2), /scan_rear (1)"
+    );
     assert!(
-        problem.contains("compression_mode is FILE") && problem.contains("ros2 bag convert"),
+        log_with(&messages, "cdr", &asked("/scan", "/x")).unwrap_err().contains("/odom (1), /odom_fused (1)")
+    );
+}
+
+#[test]
+fn a_quaternion_that_is_none_is_named() {
+    let pose = |quaternion: [f64; 4]| [&[0.5, 0.0, 0.0][..], &quaternion].concat();
+    let odometry = |base: &str, quaternion: [f64; 4]| {
+        (ODOM, Cdr::default().header(1.0, "odom").text(base).f64s(&pose(quaternion)).bytes())
+    };
+    let transform = |quaternion: [f64; 4]| {
+        let cdr = Cdr::default().put(1_u32.to_le_bytes()).header(0.0, "base").text("laser");
+        (("/tf_static", "tf2_msgs/msg/TFMessage"), cdr.f64s(&pose(quaternion)).bytes())
+    };
+    let good = [0.0, 0.0, 0.0, 1.0];
+    assert_eq!(
+        log_of(&[odometry("laser", [0.0; 4]), scan(1.0, &[1.0])], "cdr").unwrap_err(),
+        "BAG: none of the 1 poses on /odom can be used: the quaternion is 0 0 0 0 (x y z w), which is no rotation, \
+         expected length 1"
+    );
+    let problem =
+        log_of(&[odometry("base", good), scan(1.0, &[1.0]), transform([0.0; 4])], "cdr").unwrap_err();
+    assert!(
+        problem.contains(
+            "the transform base > laser: the quaternion is 0 0 0 0 (x y z w), which is no rotation"
+        ),
         "{problem}"
     );
+    assert!(log_of(&[odometry("base", good), scan(1.0, &[1.0]), transform(good)], "cdr").is_ok());
+}
+
+#[test]
+fn a_laser_is_upside_down_where_that_is_given() {
+    let ranges: Vec<f32> = (1..6_u8).map(f32::from).collect();
+    let messages = [odometry(1.0, 0.0), scan(1.0, &ranges)];
+    let read = |upside_down| {
+        let options = LaserLogOptions { upside_down, ..LaserLogOptions::default() };
+        log_with(&messages, "cdr", &options).unwrap()
+    };
+    let (plain, turned) = (read(false), read(true));
+    assert_eq!((plain.mount.upside_down, turned.mount.upside_down), (false, true));
+    let points = |log: &LaserLog| log.scans[0].scan.hits().collect::<Vec<_>>();
+    let (plain, mut turned) = (points(&plain), points(&turned));
+    turned.reverse();
+    for (a, b) in plain.iter().zip(&turned) {
+        assert!((a.x - b.x).abs() < 1e-9 && (a.y + b.y).abs() < 1e-9, "{a} {b}");
+    }
+}
+
+#[test]
+fn scans_that_met_nothing_are_counted_and_limits_in_the_wrong_order_refused() {
+    let infinite = scan(1.0, &[f32::INFINITY; 5]);
+    let log = log_of(&[odometry(1.0, 0.0), infinite, scan(1.0, &[1.0; 5])], "cdr").unwrap();
+    assert_eq!((log.scans.len(), log.scans_without_return(), log.bad_ranges), (2, 1, 0));
+    let head = Cdr::default().header(1.0, "laser").f32s(&[-1.0, 1.0, 0.1, 0.0, 0.1, 8.0, 0.05]);
+    let swapped = head.put(1_u32.to_le_bytes()).f32s(&[1.0]).put(0_u32.to_le_bytes()).bytes();
+    let problem = log_of(&[odometry(1.0, 0.0), (SCAN, swapped)], "cdr").unwrap_err();
+    assert!(problem.contains("range_min is 8 m and range_max 0.05"), "{problem}");
 }
 
 fn refusal(path: &Path) -> String {
@@ -119,9 +228,17 @@ fn odometry(seconds: f64, x: f64) -> ((&'static str, &'static str), Vec<u8>) {
 
 /// The log of an MCAP file with these messages; the laser's frame is the base's.
 fn log_of(messages: &[((&str, &str), Vec<u8>)], encoding: &str) -> Result<LaserLog, String> {
+    log_with(messages, encoding, &LaserLogOptions::default())
+}
+
+fn log_with(
+    messages: &[((&str, &str), Vec<u8>)],
+    encoding: &str,
+    options: &LaserLogOptions,
+) -> Result<LaserLog, String> {
     let mut bytes = Vec::new();
-    let options = mcap::WriteOptions::new().compression(None);
-    let mut writer = options.create(std::io::Cursor::new(&mut bytes)).unwrap();
+    let written = mcap::WriteOptions::new().compression(None);
+    let mut writer = written.create(std::io::Cursor::new(&mut bytes)).unwrap();
     let mut channels = BTreeMap::new();
     for ((topic, kind), data) in messages {
         let channel = *channels.entry(topic).or_insert_with(|| {
@@ -134,14 +251,18 @@ fn log_of(messages: &[((&str, &str), Vec<u8>)], encoding: &str) -> Result<LaserL
     }
     writer.finish().unwrap();
     drop(writer);
-    read_bytes(&bytes)
+    read_with(&bytes, options)
 }
 
 fn read_bytes(bytes: &[u8]) -> Result<LaserLog, String> {
+    read_with(bytes, &LaserLogOptions::default())
+}
+
+fn read_with(bytes: &[u8], options: &LaserLogOptions) -> Result<LaserLog, String> {
     let file = tempfile::NamedTempFile::new().unwrap();
     fs::write(file.path(), bytes).unwrap();
     let name = file.path().display().to_string();
-    read_ros_bag(file.path(), &RosBagOptions::default()).map_err(|e| e.to_string().replace(&name, "BAG"))
+    read_ros_bag(file.path(), options).map_err(|e| e.to_string().replace(&name, "BAG"))
 }
 
 #[test]
@@ -169,7 +290,7 @@ fn bad_messages_are_named_and_left_out() {
         [
             "message 3 on /scan: time goes back from 1.000000000 s to 0.500000000 s",
             "message 4 on /scan: sensor_msgs/msg/LaserScan: ranges at byte 52: 9 elements announced, 14 bytes left",
-            "message 5 on /odom: the pose is not finite, or its quaternion is none",
+            "message 5 on /odom: the position is NaN 0 0 m, expected finite numbers",
             "message 7 on /odom: time goes back from 1.500000000 s to 1.400000000 s",
             "message 9 on /scan: no odometry about 9.000000000 s",
             "message 10 on /scan: 0 ranges, expected 1 to 100000",
@@ -208,7 +329,8 @@ fn bags_without_what_it_takes_are_refused_by_name() {
     let late = scan(100.0, &[1.0]);
     assert_eq!(
         log_of(&[late, one_pose], "cdr").unwrap_err(),
-        "BAG: no scan can be used: message 1 on /scan: no odometry about 100.000000000 s"
+        "BAG: no scan can be used: scans from 100.000000000 s to 100.000000000 s, odometry from 1.000000000 s to \
+         1.000000000 s: their clocks differ, expected one clock for both"
     );
     assert!(refusal(Path::new("/nowhere/at.mcap")).contains("it does not exist"));
 }
@@ -216,7 +338,7 @@ fn bags_without_what_it_takes_are_refused_by_name() {
 #[test]
 fn where_the_laser_sits_can_be_given() {
     let laser =
-        LaserLogOptions { laser_x: Some(0.5), laser_turn: None, upside_down: true, max_range: Some(3.0) };
+        LaserLogOptions { laser_x: Some(0.5), upside_down: true, max_range: Some(3.0), ..Default::default() };
     let log = read_laser_log(&bag("zstd.mcap"), &laser).unwrap();
     let scan = &log.scans[0].scan;
     assert_eq!((scan.origin().x, log.max_range), (0.5, Some(3.0)));
@@ -255,4 +377,122 @@ fn a_database_with_an_unfinished_log_says_so() {
     fs::copy(bag("sqlite/bag_0.db3"), &file).unwrap();
     fs::write(scratch.path().join("a.db3-wal"), "x").unwrap();
     assert!(refusal(&file).contains("its last messages are in a -wal file"), "{}", refusal(&file));
+}
+
+/// A message as ROS 1 writes it: a number before the header, nothing aligned, no zero behind texts.
+mod ros1 {
+    pub fn header(seconds: u32, nanos: u32, frame: &str) -> Vec<u8> {
+        let numbers = [7, seconds, nanos, frame.len() as u32];
+        [&numbers.map(u32::to_le_bytes).concat(), frame.as_bytes()].concat()
+    }
+
+    pub fn text(text: &str) -> Vec<u8> {
+        [&(text.len() as u32).to_le_bytes(), text.as_bytes()].concat()
+    }
+
+    pub fn f64s(values: &[f64]) -> Vec<u8> {
+        values.iter().flat_map(|value| value.to_le_bytes()).collect()
+    }
+
+    pub fn f32s(values: &[f32]) -> Vec<u8> {
+        values.iter().flat_map(|value| value.to_le_bytes()).collect()
+    }
+
+    /// A record: its fields and its data, each with its length.
+    pub fn record(fields: &[(&str, &[u8])], data: &[u8]) -> Vec<u8> {
+        let field = |(name, value): &(&str, &[u8])| part(&[name.as_bytes(), b"=", value].concat());
+        let header: Vec<u8> = fields.iter().flat_map(field).collect();
+        [part(&header), part(data)].concat()
+    }
+
+    fn part(bytes: &[u8]) -> Vec<u8> {
+        [&(bytes.len() as u32).to_le_bytes(), bytes].concat()
+    }
+
+    pub fn connection(id: u32, topic: &str, kind: &str) -> Vec<u8> {
+        let about = part(&[b"type=", kind.as_bytes()].concat());
+        record(&[("op", &[7]), ("conn", &id.to_le_bytes()), ("topic", topic.as_bytes())], &about)
+    }
+
+    pub fn message(id: u32, data: &[u8]) -> Vec<u8> {
+        record(&[("op", &[2]), ("conn", &id.to_le_bytes()), ("time", &[0; 8])], data)
+    }
+
+    /// A bag with one chunk, packed as `compression` says.
+    pub fn bag(records: &[Vec<u8>], compression: &str) -> Vec<u8> {
+        let chunk = records.concat();
+        let packed = if compression == "lz4" { lz4(&chunk) } else { chunk.clone() };
+        let size = (chunk.len() as u32).to_le_bytes();
+        let fields: [(&str, &[u8]); 3] =
+            [("op", &[5]), ("compression", compression.as_bytes()), ("size", &size)];
+        let head = record(&[("op", &[3]), ("index_pos", &[0; 8])], &[b' '; 64]);
+        let index = record(&[("op", &[4]), ("conn", &[0; 4])], &[0; 12]);
+        [b"#ROSBAG V2.0\n", &head[..], &record(&fields, &packed), &index].concat()
+    }
+
+    fn lz4(bytes: &[u8]) -> Vec<u8> {
+        use std::io::Write;
+        let mut encoder = lz4_flex::frame::FrameEncoder::new(Vec::new());
+        encoder.write_all(bytes).unwrap();
+        encoder.finish().unwrap()
+    }
+}
+
+/// A laser half a metre ahead and upside down that drives along x, in a ROS 1 bag.
+fn ros1_bag(compression: &str) -> Vec<u8> {
+    let upside_down = [0.5, 0.0, 0.25, 1.0, 0.0, 0.0, 0.0];
+    let transform = [
+        1_u32.to_le_bytes().to_vec(),
+        ros1::header(0, 0, "/base"),
+        ros1::text("/laser"),
+        ros1::f64s(&upside_down),
+    ]
+    .concat();
+    let odometry = |seconds: u32, x: f64| {
+        let pose = ros1::f64s(&[x, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0]);
+        [ros1::header(seconds, 0, "odom"), ros1::text("base"), pose, ros1::f64s(&[0.0; 78])].concat()
+    };
+    let head = ros1::f32s(&[-1.0, 1.0, 1.0, 0.0, 0.1, 0.05, 8.0]);
+    let ranges = [3_u32.to_le_bytes().to_vec(), ros1::f32s(&[1.0, 2.0, 3.0]), vec![0; 4]].concat();
+    let scan = [ros1::header(10, 500_000_000, "laser"), head, ranges].concat();
+    let records = [
+        ros1::connection(0, "/tf_static", "tf/tfMessage"),
+        ros1::message(0, &transform),
+        ros1::connection(1, "/odom", "nav_msgs/Odometry"),
+        ros1::connection(2, "/scan", "sensor_msgs/LaserScan"),
+        ros1::message(1, &odometry(10, 0.0)),
+        ros1::message(2, &scan),
+        ros1::message(1, &odometry(11, 1.0)),
+    ];
+    ros1::bag(&records, compression)
+}
+
+#[test]
+fn the_laser_of_a_ros1_bag_is_read() {
+    for compression in ["none", "lz4"] {
+        let log = read_bytes(&ros1_bag(compression)).unwrap();
+        assert_eq!((log.scans.len(), log.skipped.len()), (1, 0), "{:?}", log.skipped);
+        let LaserLog { scans, sources, mount, .. } = &log;
+        assert_eq!((scans[0].odom_from_base.x, scans[0].scan.origin().x), (0.5, 0.5));
+        assert_eq!(scans[0].scan.stamp().nanos, 10_500_000_000);
+        let first = scans[0].scan.hits().next().unwrap() - scans[0].scan.origin();
+        assert!((first.norm() - 3.0).abs() < 1e-6 && first.y < 0.0, "beams run clockwise: {first}");
+        assert!(mount.upside_down && sources.scans == "/scan" && sources.odometry == "/odom");
+    }
+    let packed = read_bytes(&ros1_bag("bz2")).unwrap_err();
+    assert!(packed.contains("packed with bz2") && packed.contains("`rosbags-convert"), "{packed}");
+}
+
+#[test]
+fn a_broken_ros1_bag_is_an_error_or_worth_what_it_holds() {
+    let whole = ros1_bag("none");
+    for cut in 13..whole.len() {
+        let _ = read_bytes(&whole[..cut]);
+        let mut flipped = whole.clone();
+        flipped[cut] ^= 0x41;
+        let _ = read_bytes(&flipped);
+    }
+    let cut = read_bytes(&whole[..200]).unwrap_err();
+    assert!(cut.contains("the bag is truncated: ") && cut.contains("`rosbag reindex`"), "{cut}");
+    assert!(read_bytes(b"#ROSBAG V1.2\n").unwrap_err().contains("format '#ROSBAG V1.2', expected"));
 }

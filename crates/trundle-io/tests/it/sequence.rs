@@ -59,11 +59,14 @@ fn reads_what_was_written() {
 #[test]
 fn wrong_folders_are_one_clear_sentence() {
     let dir = tempfile::tempdir().unwrap();
-    assert_eq!(problem(&dir), "DIR: the folder is empty, expected rgb.txt and depth.txt");
+    assert_eq!(
+        problem(&dir),
+        "DIR: this is an empty folder, expected a TUM RGB-D folder (rgb.txt and depth.txt, or associations.txt)"
+    );
     fs::write(dir.path().join("rgb.txt"), "1.0 a.png").unwrap();
     assert_eq!(
         problem(&dir),
-        "DIR: depth.txt is missing, expected rgb.txt and depth.txt in a TUM RGB-D folder"
+        "DIR: depth.txt is missing, expected rgb.txt and depth.txt, or associations.txt"
     );
     fs::write(dir.path().join("depth.txt"), "7.5 a.png\n8 b.png").unwrap();
     assert_eq!(
@@ -71,28 +74,35 @@ fn wrong_folders_are_one_clear_sentence() {
         "DIR: no colour image of rgb.txt (1.000000000 s) is within 0.02 s of a depth image of depth.txt \
          (7.500000000 s to 8.000000000 s)"
     );
-    fs::write(dir.path().join("depth.txt"), "1 a.png\n0.5 b.png").unwrap();
+    fs::write(dir.path().join("depth.txt"), "1 a.png\n0.5 b.png\nhalf c.png").unwrap();
     assert_eq!(
         problem(&dir),
-        "DIR/depth.txt, line 2: timestamp goes back: 0.500000000 s after 1.000000000 s of line 1"
+        "DIR/depth.txt, line 3: timestamp is 'half', expected a decimal number of seconds"
     );
+    fs::write(dir.path().join("depth.txt"), "1 a.png\n0.5 b.png").unwrap();
+    let said: Vec<String> = open(dir.path()).unwrap().warnings().iter().map(ToString::to_string).collect();
+    assert!(said.len() == 1 && said[0].starts_with("timestamps go back 1 times in 2 rows"), "{said:?}");
     let error = open(&dir.path().join("nowhere")).unwrap_err().to_string();
     assert!(error.starts_with("cannot read ") && error.ends_with("nowhere: it does not exist"), "{error}");
-    assert!(
-        open(&dir.path().join("rgb.txt"))
-            .unwrap_err()
-            .to_string()
-            .ends_with("a part of its path is not a folder")
-    );
+    let error = open(&dir.path().join("rgb.txt")).unwrap_err().to_string();
+    assert!(error.contains("rgb.txt: this is a list of images, expected a TUM RGB-D folder"), "{error}");
     let scale = TumSequence::open(dir.path(), 0.0, 0.02).unwrap_err().to_string();
     assert!(scale.contains("depth_scale is 0 units a metre"), "{scale}");
+    let scale = TumSequence::open(dir.path(), 0.001, 0.02).unwrap_err().to_string();
+    assert!(
+        scale.contains("depth_scale is 0.001, expected units a metre; 0.001 m a unit are 1000"),
+        "{scale}"
+    );
 }
 
 #[test]
-fn a_wrong_ground_truth_or_odometry_is_not_ignored() {
+fn a_wrong_ground_truth_is_warned_of_and_a_wrong_odometry_refused() {
     let dir = folder();
     fs::write(dir.path().join("groundtruth.txt"), "# t\n1 2 3\n").unwrap();
-    assert!(problem(&dir).starts_with("DIR/groundtruth.txt, line 2: 3 fields, expected 8"));
+    let sequence = open(dir.path()).unwrap();
+    let said: Vec<String> = sequence.warnings().iter().map(ToString::to_string).collect();
+    assert!(said.len() == 1 && said[0].starts_with("row left out, 3 fields, expected 8"), "{said:?}");
+    assert!(said[0].ends_with("groundtruth.txt, line 2") && sequence.ground_truth().is_none(), "{said:?}");
     fs::remove_file(dir.path().join("groundtruth.txt")).unwrap();
     fs::write(dir.path().join("odometry.txt"), "1 2 3 x\n").unwrap();
     assert_eq!(problem(&dir), "DIR/odometry.txt, line 1: theta is 'x', expected a finite number");
@@ -128,7 +138,7 @@ fn wrong_depth_images_are_named() {
     image::save_buffer(dir.path().join("1.png"), &gray, 40, 30, image::ColorType::L8).unwrap();
     assert!(
         load_problem(&dir, &sequence, 1)
-            .ends_with("DIR/1.png: depth image has 8-bit grey pixels, expected 16-bit grey ones")
+            .contains("DIR/1.png: depth image has 8-bit grey pixels, expected 16-bit grey ones")
     );
     let small = EncodedRgbd::encode(&frame(Stamp::default(), 20, 10)).unwrap();
     fs::write(dir.path().join("2.png"), &small.depth_png).unwrap();
@@ -141,6 +151,43 @@ fn wrong_depth_images_are_named() {
         load_problem(&dir, &sized, 2)
             .ends_with("DIR/2.jpg: colour image size is 40 x 30 px, expected 640 x 480 as the camera")
     );
+}
+
+#[test]
+fn associations_alone_pair_the_images_whichever_column_is_depth() {
+    let dir = folder();
+    let listed = open(dir.path()).unwrap();
+    let lines = |swap: bool| -> String {
+        let line = |i: usize| {
+            let stamp = listed.stamp(i);
+            let (color, depth) = (format!("{stamp} {i}.jpg"), format!("{} {i}.png", stamp.after(0.003)));
+            if swap { format!("{depth} {color}\n") } else { format!("{color} {depth}\n") }
+        };
+        (0..3).rev().map(line).collect()
+    };
+    ["rgb.txt", "depth.txt"].iter().for_each(|name| fs::remove_file(dir.path().join(name)).unwrap());
+    for swap in [false, true] {
+        fs::write(dir.path().join("associations.txt"), lines(swap)).unwrap();
+        let sequence = open(dir.path()).unwrap();
+        assert_eq!(sequence.len(), 3);
+        for i in 0..3 {
+            assert_eq!(sequence.stamp(i), listed.stamp(i));
+            assert_eq!(sequence.load(i).unwrap(), listed.load(i).unwrap(), "{swap}");
+        }
+    }
+    fs::write(dir.path().join("associations.txt"), "1 0.jpg 1\n").unwrap();
+    assert!(problem(&dir).contains("associations.txt, line 1: 3 fields, expected 4"), "{}", problem(&dir));
+}
+
+#[test]
+fn kitti_poses_without_times_are_those_of_the_images() {
+    let dir = folder();
+    let rows: String = (0..3).map(|i| format!("1 0 0 {i} 0 1 0 0 0 0 1 0\n")).collect();
+    fs::write(dir.path().join("groundtruth.txt"), rows).unwrap();
+    let sequence = open(dir.path()).unwrap();
+    let truth = sequence.ground_truth().unwrap();
+    assert!((0..3).all(|i| truth[i].0 == sequence.stamp(i) && truth[i].1.translation.x == i as f64));
+    assert!(sequence.warnings().is_empty());
 }
 
 fn shared(name: &str) -> Option<PathBuf> {

@@ -14,7 +14,7 @@ use crate::query::stage_timer::{PlanningTimes, StageTimer};
 use crate::search::potential::PotentialKind;
 use crate::search::waypoint_graph::WaypointGraph;
 use crate::timing::speeds::DriveModel;
-use trundle_core::{GridGeometry, Invalid, OccupancyGrid, Pose2, Twist2};
+use trundle_core::{GridGeometry, Invalid, OccupancyGrid, Pose2, Twist2, Vector2};
 use trundle_grid::{DistanceField, UnknownIs};
 
 /// A planning request.
@@ -83,6 +83,9 @@ impl PlannerCore {
     fn plan_within(&mut self, grid: &OccupancyGrid, q: Request<'_>, beyond: f64) -> Plan {
         let geometry = match self.area_for(grid.geometry(), q, beyond) {
             Ok(geometry) => geometry,
+            Err(Plan::GoalOutside) if self.config.goal_tolerance > 0.0 => {
+                return self.plan_to_the_edge(grid, q, beyond);
+            }
             Err(plan) => return plan,
         };
         let timer = StageTimer::new(self.clock);
@@ -101,7 +104,23 @@ impl PlannerCore {
         plan
     }
 
-    /// A plan on a grid with cells of half the side; `None` where that grid would have too many cells.
+    /// For a goal off the map: to the reachable point on the map that is nearest to the goal's nearest cell, where the tolerance allows it.
+    fn plan_to_the_edge(&mut self, grid: &OccupancyGrid, q: Request<'_>, beyond: f64) -> Plan {
+        let edge = nearest_centre(grid.geometry(), q.goal.position());
+        let goal = Pose2::new(edge.x, edge.y, q.goal.theta);
+        match self.plan_within(grid, Request { goal, ..q }, beyond) {
+            Plan::Found(mut plan)
+                if plan.trajectory.end().distance(&q.goal) <= self.config.goal_tolerance =>
+            {
+                plan.instead_of = Some(Plan::GoalOutside);
+                Plan::Found(plan)
+            }
+            Plan::StartInObstacle { clearance } => Plan::StartInObstacle { clearance },
+            _ => Plan::GoalOutside,
+        }
+    }
+
+    /// A plan by other points of cells than their centres: of cells of half the side, where these are not too many.
     fn plan_finely(
         &mut self,
         grid: &OccupancyGrid,
@@ -110,11 +129,12 @@ impl PlannerCore {
         timer: &StageTimer,
         beyond: f64,
     ) -> Option<Plan> {
-        let fine = refined(grid)?;
-        let geometry = self.area_for(fine.geometry(), q, beyond).ok()?;
+        let fine = refined(grid);
+        let grid = fine.as_ref().unwrap_or(grid);
+        let geometry = self.area_for(grid.geometry(), q, beyond).ok()?;
         let last = self.fine.take();
-        let field = timer.time(|times| &mut times.field, || self.updated_field(last, geometry, &fine));
-        let query = self.query(&fine, &field, q.graph, timer);
+        let field = timer.time(|times| &mut times.field, || self.updated_field(last, geometry, grid));
+        let query = PlanQuery { is_fine: true, ..self.query(grid, &field, q.graph, timer) };
         let plan = plan(&query, memory, q.start, q.twist, q.goal);
         self.fine = Some(field);
         Some(plan)
@@ -142,6 +162,7 @@ impl PlannerCore {
             cost_mask: self.cost_mask.as_ref(),
             graph,
             timer,
+            is_fine: false,
         }
     }
 
@@ -180,6 +201,13 @@ impl PlannerCore {
         }
         area(grid, start, goal, beyond).map_err(Plan::Refused)
     }
+}
+
+/// The centre of the cell that is nearest to a point off the grid.
+fn nearest_centre(grid: &GridGeometry, point: Vector2) -> Vector2 {
+    let half = Vector2::repeat(grid.resolution / 2.0);
+    let size = Vector2::new(grid.width as f64, grid.height as f64) * grid.resolution;
+    point.sup(&(grid.origin + half)).inf(&(grid.origin + size - half))
 }
 
 fn finite(start: Pose2, twist: Twist2, goal: Pose2) -> Result<(), Invalid> {

@@ -97,7 +97,8 @@ impl LatticePlanner {
         for heading in 0..HEADING_COUNT {
             let state = cell * HEADING_COUNT + heading;
             if link(space, shape, start, pose_of(space, state)).is_some() {
-                let path = (space.center(cell) - start.position()).norm() / space.field.geometry().resolution;
+                let path =
+                    (space.point_of(cell) - start.position()).norm() / space.field.geometry().resolution;
                 self.reach(space, state, (path * f64::from(SIDE)) as u32, SEED_MARK);
             }
         }
@@ -117,7 +118,7 @@ impl LatticePlanner {
             let price = u32::from(space.cell_price(cell)) + u32::from(space.cell_price(to));
             let cost = so_far.saturating_add((length(step) * price) >> 9);
             let target = to * HEADING_COUNT + heading;
-            let by = space.center(to) - space.center(cell);
+            let by = space.point_of(to) - space.point_of(cell);
             if cost < self.cost[target] && shape.may_move(space.field, pose, by, 0.0) {
                 self.reach(space, target, cost, 0);
             }
@@ -271,7 +272,7 @@ fn angle(heading: usize) -> f64 {
 }
 
 fn pose_of(space: &ConfigurationSpace<'_>, state: usize) -> Pose2 {
-    let at = space.center(state / HEADING_COUNT);
+    let at = space.point_of(state / HEADING_COUNT);
     Pose2::new(at.x, at.y, angle(state % HEADING_COUNT))
 }
 

@@ -5,6 +5,7 @@
 //! overlap deeper than half of it is never missed. Cost: O(cells near the footprint) per check.
 
 use crate::search::escape::Escape;
+use trundle_collision::CONTACT_TOLERANCE_M;
 use trundle_collision::convex_polygon::{centre_of, depth_within, inscribed_disc, inset};
 use trundle_collision::square::{point_to_square, polygon_to_square};
 use trundle_core::{Footprint, Pose2, Vector2};
@@ -12,9 +13,6 @@ use trundle_grid::DistanceField;
 
 /// Shortest advance between two checks, m. An overlap of less than half of it may be missed. Source: ours.
 const MIN_ADVANCE_M: f64 = 4e-4;
-
-/// Overlap of a polygon that still counts as contact without collision, m: rounding of a pose. Source: ours.
-const CONTACT_TOLERANCE_M: f64 = 1e-4;
 
 /// Largest overlap that is measured for a polygon, m; or to the axle. A deeper one is not planned out of. Source: ours.
 pub(crate) const MAX_OVERLAP_M: f64 = 0.2;

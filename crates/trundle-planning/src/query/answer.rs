@@ -4,7 +4,7 @@ use crate::plan::Plan;
 use crate::polygon::robot_shape::MAX_OVERLAP_M;
 use crate::query::disc_planner::{plan_disc, start_refusal, turn_only};
 use crate::query::plan_query::{MIN_SEARCH_RADIUS_M, PlanQuery, SAME_PLACE_M, SearchBuffers};
-use crate::query::polygon_planner::plan_polygon;
+use crate::query::polygon_planner::{may_pass, plan_polygon};
 use crate::search::configuration_space::ConfigurationSpace;
 use crate::search::geodesic_search::SearchOutcome;
 use trundle_core::{Pose2, Twist2};
@@ -76,7 +76,7 @@ fn plan_disc_or_polygon(
 }
 
 /// Whether a path between the cell centres may lead to the goal, or near enough to a blocked one. Every point of such a path
-/// lies within half a cell's diagonal of a centre, whose clearance is at most that much smaller. For discs only; graphs too.
+/// lies within half a cell's diagonal of a centre, whose clearance is at most that much smaller. With graphs too.
 pub(crate) fn may_be_tight(
     query: &PlanQuery<'_>,
     memory: &mut SearchBuffers,
@@ -84,8 +84,11 @@ pub(crate) fn may_be_tight(
     start: Pose2,
     goal: Pose2,
 ) -> bool {
-    if !query.shape.is_disc() || !plan.is_short_of_goal() {
+    if !plan.is_short_of_goal() {
         return false;
+    }
+    if !query.shape.is_disc() {
+        return may_pass(query, memory, start, goal);
     }
     let off = query.field.geometry().resolution * std::f64::consts::FRAC_1_SQRT_2;
     let less = (query.shape.radius - off).max(MIN_SEARCH_RADIUS_M);

@@ -11,7 +11,9 @@ use crate::plan::{MAX_CLEARANCE_M, Plan, PlanResult};
 use crate::polygon::lattice_planner::LatticePlanner;
 use crate::polygon::robot_shape::RobotShape;
 use crate::query::stage_timer::StageTimer;
+use crate::search::cell_points::CellPoints;
 use crate::search::configuration_space::ConfigurationSpace;
+use crate::search::free_points::free_points;
 use crate::search::geodesic_search::GeodesicSearch;
 use crate::search::grid_path::GridPath;
 use crate::search::waypoint_graph::WaypointGraph;
@@ -38,6 +40,8 @@ pub(crate) struct PlanQuery<'a> {
     pub(crate) cost_mask: Option<&'a CostMask>,
     pub(crate) graph: Option<&'a WaypointGraph>,
     pub(crate) timer: &'a StageTimer,
+    /// Whether cells have other points than their centres: on the second attempt, for gaps that the robot just fits.
+    pub(crate) is_fine: bool,
 }
 
 /// The searches' buffers, reused from plan to plan.
@@ -48,10 +52,27 @@ pub(crate) struct SearchBuffers {
 }
 
 impl PlanQuery<'_> {
+    /// The configuration space of a disc.
     pub(crate) fn space(&self, radius: f64, start: Vector2) -> ConfigurationSpace<'_> {
-        let space = ConfigurationSpace::new(self.field, self.grid, self.config.room, radius, start)
-            .with_cost_mask(self.cost_mask);
-        if self.shape.is_disc() { space.with_clearance_from_others(start) } else { space }
+        let space = self.space_of_centres(radius, start);
+        let space = if self.shape.is_disc() { space.with_clearance_from_others(start) } else { space };
+        if !self.is_fine {
+            return space;
+        }
+        let points = free_points(&space);
+        space.with_points(points)
+    }
+
+    /// The configuration space for the search over the headings of a polygon.
+    pub(crate) fn polygon_space(&self, radius: f64, start: Vector2) -> ConfigurationSpace<'_> {
+        let space = self.space_of_centres(radius, start);
+        // On cells of half the side the upper right corners are the centres, corners and middles of edges of the original cells.
+        if self.is_fine { space.with_points(CellPoints::UpperCorners) } else { space }
+    }
+
+    fn space_of_centres(&self, radius: f64, start: Vector2) -> ConfigurationSpace<'_> {
+        ConfigurationSpace::new(self.field, self.grid, self.config.room, radius, start)
+            .with_cost_mask(self.cost_mask)
     }
 
     pub(crate) fn context<'b>(&'b self, space: &'b ConfigurationSpace<'b>) -> RouteContext<'b> {

@@ -46,7 +46,7 @@ pub(crate) fn plan_polygon(
             _ => Plan::Blocked { nearest: nearest_reachable(query, &mut memory.search, start, goal) },
         };
     }
-    let space = query.space(inner, start.position());
+    let space = query.polygon_space(inner, start.position());
     let context = query.context(&space);
     let lattice_planner = &mut memory.lattice_planner;
     let polygon_path = match polygon_path(query, lattice_planner, &context, start, goal) {
@@ -82,6 +82,18 @@ fn is_disconnected(query: &PlanQuery<'_>, search: &mut GeodesicSearch, start: Po
     }
     let space = ConfigurationSpace::new(query.field, query.grid, query.config.room, less, from);
     matches!(search.run(&space, from, to), SearchOutcome::Unreachable(_))
+}
+
+/// Whether a path between cell centres may lead to the goal: the polygon passes where its boundary is half a cell's diagonal
+/// further in.
+pub(crate) fn may_pass(query: &PlanQuery<'_>, memory: &mut SearchBuffers, start: Pose2, goal: Pose2) -> bool {
+    if !(query.fits(start) && query.fits(goal)) || is_disconnected(query, &mut memory.search, start, goal) {
+        return false;
+    }
+    let off = query.field.geometry().resolution * std::f64::consts::FRAC_1_SQRT_2;
+    let Some(slim) = query.shape.shrunk(off) else { return true };
+    let space = query.polygon_space(slim.inner.max(MIN_SEARCH_RADIUS_M), start.position());
+    memory.lattice_planner.run(&space, &slim, start, goal).is_ok()
 }
 
 /// The point nearest to the goal that the circumscribed disc reaches.

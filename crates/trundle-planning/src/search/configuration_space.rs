@@ -1,6 +1,7 @@
 //! The configuration space: free positions of the robot, and their costs. Search, potential and curve share it.
 
 use crate::masks::cost_mask::CostMask;
+use crate::search::cell_points::CellPoints;
 use crate::search::clearance_cost::ClearanceCostConfig;
 use crate::search::escape::Escape;
 use trundle_collision::square::point_to_square;
@@ -38,6 +39,8 @@ pub(crate) struct ConfigurationSpace<'a> {
     check_step: f64,
     /// Whole cells from the grid's origin to the field's; `None` where the two are equal.
     shift: Option<(i64, i64)>,
+    /// The point that stands for each cell.
+    points: CellPoints,
 }
 
 impl<'a> ConfigurationSpace<'a> {
@@ -77,6 +80,7 @@ impl<'a> ConfigurationSpace<'a> {
             cost_mask: None,
             check_step,
             shift,
+            points: CellPoints::Centres,
         }
     }
 
@@ -91,6 +95,11 @@ impl<'a> ConfigurationSpace<'a> {
         let gap = |centre| (point_to_square(start, centre, half).norm() - radius).max(0.0);
         let escape = self.escape.map(|escape| escape.with_clearance_from_others(self.field, radius, gap));
         Self { escape, ..self }
+    }
+
+    /// The same space with other points for its cells than their centres.
+    pub(crate) fn with_points(self, points: CellPoints) -> Self {
+        Self { points, ..self }
     }
 
     /// Cost of a metre at a point by the mask alone.
@@ -111,11 +120,20 @@ impl<'a> ConfigurationSpace<'a> {
             && escape.others().is_none_or(|others| others.keeps(point, self.radius - short))
     }
 
-    /// Whether the robot may be at the centre of a cell.
+    /// Whether the robot may be at the point that stands for a cell.
     pub(crate) fn is_free_cell(&self, linear: usize) -> bool {
+        match &self.points {
+            CellPoints::Centres => self.is_free_centre(linear),
+            CellPoints::UpperCorners => self.is_free(self.point_of(linear)),
+            CellPoints::Free(choice) => choice.is_free(linear),
+        }
+    }
+
+    /// Whether the robot may be at the centre of a cell.
+    pub(crate) fn is_free_centre(&self, linear: usize) -> bool {
         let distance = self.field.at_linear(linear);
         distance >= self.radius - CLEARANCE_TOLERANCE_M
-            || (self.escape.is_some() && distance > 0.0 && self.is_free(self.center(linear)))
+            || (self.escape.is_some() && distance > 0.0 && self.is_free(self.centre(linear)))
     }
 
     /// Whether the straight move between neighbouring free cells `length` m apart stays free.
@@ -124,7 +142,7 @@ impl<'a> ConfigurationSpace<'a> {
         if least * least >= self.radius * self.radius + length * length / 4.0 {
             return true;
         }
-        self.connects(self.center(from), self.center(to))
+        self.connects(self.point_of(from), self.point_of(to))
     }
 
     /// Whether the robot may drive straight from `a` to `b`.
@@ -166,12 +184,13 @@ impl<'a> ConfigurationSpace<'a> {
         if self.cost_mask.is_none() {
             return price;
         }
-        price + (self.mask_density(self.center(linear)) * 256.0) as u16
+        price + (self.mask_density(self.point_of(linear)) * 256.0) as u16
     }
 
-    /// The cost at a distance from obstacles in known space; 0 where the robot does not fit.
+    /// The cost in known space where no cell centre is farther than `distance` from obstacles; 0 where the robot does not fit.
     pub(crate) fn price_of_room(&self, distance: f32) -> u16 {
-        if f64::from(distance) < self.radius - CLEARANCE_TOLERANCE_M {
+        let more = if matches!(self.points, CellPoints::Centres) { 0.0 } else { self.half_diagonal() };
+        if f64::from(distance) + more < self.radius - CLEARANCE_TOLERANCE_M {
             0
         } else {
             self.price_at(f64::from(distance))
@@ -181,6 +200,11 @@ impl<'a> ConfigurationSpace<'a> {
     fn price_at(&self, distance: f64) -> u16 {
         let place = ((distance - self.radius) * self.per_price).max(0.0) as usize;
         self.prices[place.min(self.prices.len() - 1)]
+    }
+
+    /// The largest distance of a cell's points from its centre, m.
+    pub(crate) fn half_diagonal(&self) -> f64 {
+        self.field.geometry().resolution * std::f64::consts::FRAC_1_SQRT_2
     }
 
     /// Column and row of a cell.
@@ -203,7 +227,16 @@ impl<'a> ConfigurationSpace<'a> {
         sum / steps * length
     }
 
-    pub(crate) fn center(&self, linear: usize) -> Vector2 {
+    /// The point that stands for a cell, map frame, m.
+    pub(crate) fn point_of(&self, linear: usize) -> Vector2 {
+        match &self.points {
+            CellPoints::Centres => self.centre(linear),
+            points => self.centre(linear) + points.offset(linear) * (self.field.geometry().resolution / 2.0),
+        }
+    }
+
+    /// The centre of a cell, map frame, m.
+    pub(crate) fn centre(&self, linear: usize) -> Vector2 {
         self.field.geometry().center(self.field.geometry().cell(linear))
     }
 

@@ -137,7 +137,7 @@ impl GeodesicSearch {
         let mut points = vec![goal];
         let mut cell = last;
         loop {
-            points.push(space.center(cell));
+            points.push(space.point_of(cell));
             let step = self.step[cell] & !CLOSED_MARK;
             if step == SEED_MARK {
                 break;
@@ -152,8 +152,9 @@ impl GeodesicSearch {
 
     /// Of all reached cells the one nearest to the goal.
     fn nearest(&self, space: &ConfigurationSpace<'_>, start: Vector2, goal: Vector2) -> Vector2 {
-        let reached =
-            (0..self.cost.len()).filter(|cell| self.cost[*cell] != UNREACHED).map(|cell| space.center(cell));
+        let reached = (0..self.cost.len())
+            .filter(|cell| self.cost[*cell] != UNREACHED)
+            .map(|cell| space.point_of(cell));
         let nearer =
             |a: &Vector2, b: &Vector2| (a - goal).norm_squared().total_cmp(&(b - goal).norm_squared());
         reached.min_by(nearer).unwrap_or(start)
@@ -168,7 +169,7 @@ fn cell_of(space: &ConfigurationSpace<'_>, point: Vector2) -> Option<(u32, u32)>
 /// The cost of a straight move between a point and the centre of a cell.
 fn entry_cost(space: &ConfigurationSpace<'_>, point: Vector2, cell: usize) -> u32 {
     let resolution = space.field.geometry().resolution;
-    (space.cost(point, space.center(cell)) / resolution * f64::from(SIDE)) as u32
+    (space.cost(point, space.point_of(cell)) / resolution * f64::from(SIDE)) as u32
 }
 
 /// The free cells around a point that it reaches straight.
@@ -183,7 +184,7 @@ fn entry_cells(space: &ConfigurationSpace<'_>, point: Vector2) -> Vec<usize> {
                 continue;
             }
             let cell = r as usize * geometry.width + c as usize;
-            if space.is_free_cell(cell) && space.connects(point, space.center(cell)) {
+            if space.is_free_cell(cell) && space.connects(point, space.point_of(cell)) {
                 cells.push(cell);
             }
         }

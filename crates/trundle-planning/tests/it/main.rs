@@ -11,6 +11,7 @@ mod errands;
 mod escape;
 mod fields;
 mod footprints;
+mod gaps;
 mod laws;
 mod maps;
 mod masks;

@@ -6,9 +6,11 @@ use crate::{
     checkpoint::{Checkpoint, CheckpointError},
     config::RobotConfig,
 };
+use std::sync::Arc;
 use trundle_core::{Invalid, OccupancyGrid};
 use trundle_localization::Localizer;
 use trundle_mapping::{LiveMapper, MapperConfig};
+use trundle_vision::Vocabulary;
 
 impl Robot {
     /// A robot that resumes from a checkpoint: it has the maps, and its pose is unknown. It turns on the spot until an image or
@@ -36,6 +38,15 @@ impl Robot {
         let mut robot = Self::new(config.clone())?;
         robot.set_map(&config, grid)?;
         Ok(robot)
+    }
+
+    /// The same robot, which recognises places by this vocabulary instead of the built-in one; call it before the first event.
+    #[must_use]
+    pub fn with_vocabulary(mut self, vocabulary: &Arc<Vocabulary>) -> Self {
+        if let Some(perception) = &mut self.perception {
+            perception.set_vocabulary(vocabulary);
+        }
+        self
     }
 
     /// Replaces the empty grid by a given one.

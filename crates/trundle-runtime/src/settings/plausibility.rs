@@ -23,6 +23,10 @@ const MAX_FOOTPRINT_RADIUS_M: f64 = 3.0;
 const MAX_SPEED_M_S: f64 = 5.0;
 /// Largest turn rate \[rad/s\]; ours: two turns a second.
 const MAX_TURN_RATE_RAD_S: f64 = 15.0;
+/// Largest acceleration \[m/s^2\]; ours: twice that of gravity, which no wheel on a floor has.
+const MAX_ACCELERATION_M_S2: f64 = 20.0;
+/// Largest angular acceleration \[rad/s^2\]; ours.
+const MAX_ANGULAR_ACCELERATION_RAD_S2: f64 = 100.0;
 /// Range of focal lengths, as a multiple of the image's width: views of 160 and of 3 degrees; ours.
 const FOCAL_LENGTH_PER_WIDTH: (f64, f64) = (0.09, 20.0);
 
@@ -43,19 +47,34 @@ pub fn require_plausible(config: &RobotConfig) -> Result<(), Invalid> {
     Ok(())
 }
 
-fn lengths_and_speeds(config: &RobotConfig) -> [Plausible; 6] {
+fn lengths_and_speeds(config: &RobotConfig) -> [Plausible; 9] {
     // Numbers below 0 are left to the ranges of `Robot::new`: they are no matter of units.
     let low = f64::NEG_INFINITY;
     let below = |path, value, unit, high, meant| Plausible { path, value, unit, low, high, meant };
     let (drive, limits) = (&config.drive, &config.limits);
     [
         below("footprint_radius", config.footprint_radius, "m", MAX_FOOTPRINT_RADIUS_M, "millimetres"),
+        below("footprint", farthest_corner(config), "m", MAX_FOOTPRINT_RADIUS_M, "millimetres"),
         below("drive.wheel_radius", drive.wheel_radius, "m", MAX_WHEEL_RADIUS_M, "millimetres"),
         below("drive.wheelbase", drive.wheelbase, "m", MAX_WHEELBASE_M, "millimetres"),
         below("limits.wheel_speed", limits.wheel_speed, "m/s", MAX_SPEED_M_S, "mm/s"),
         below("limits.v", limits.v, "m/s", MAX_SPEED_M_S, "mm/s"),
         below("limits.omega", limits.omega, "rad/s", MAX_TURN_RATE_RAD_S, "degrees per second"),
+        below("limits.acceleration", limits.acceleration, "m/s^2", MAX_ACCELERATION_M_S2, "mm/s^2"),
+        below(
+            "limits.angular_acceleration",
+            limits.angular_acceleration,
+            "rad/s^2",
+            MAX_ANGULAR_ACCELERATION_RAD_S2,
+            "degrees per second squared",
+        ),
     ]
+}
+
+/// The distance of the farthest corner of the outline from the base, m; 0 without corners.
+fn farthest_corner(config: &RobotConfig) -> f64 {
+    let distances = config.footprint.iter().flatten().map(|[x, y]| x.hypot(*y));
+    distances.fold(0.0, f64::max)
 }
 
 fn camera(config: &RobotConfig) -> [Plausible; 4] {
@@ -84,6 +103,16 @@ fn camera(config: &RobotConfig) -> [Plausible; 4] {
 mod tests {
     use crate::settings::RobotFile;
 
+    #[test]
+    fn an_outline_may_be_the_text_that_nav2_takes() {
+        let corners = |value: &str| {
+            RobotFile::parse(&format!("footprint_m = {value}\n"), &[]).map(|file| file.config.footprint)
+        };
+        let list = "[[0.3, 0.2], [-0.3, 0.2], [-0.3, -0.2], [0.3, -0.2]]";
+        assert_eq!(corners(&format!("\"{list}\"")), corners(list));
+        assert!(corners("\"[[0.3, 0.2]\"").unwrap_err().to_string().contains("expected [[X, Y], [X, Y]"));
+    }
+
     fn refused(pair: &str) -> String {
         RobotFile::parse("", &[pair.to_owned()]).unwrap_err().to_string()
     }
@@ -97,6 +126,9 @@ mod tests {
         );
         assert!(refused("drive.wheel_radius_m=35").contains("millimetres?"));
         assert!(refused("drive.wheelbase_m=230").contains("millimetres?"));
+        assert!(refused("footprint_m=[[300,200],[-300,200],[-300,-200]]").contains("footprint_m is 360"));
+        assert!(refused("limits.acceleration_m_s2=500").contains("mm/s^2?"));
+        assert!(refused("limits.angular_acceleration_rad_s2=180").contains("degrees per second squared?"));
         assert!(refused("limits.v_m_s=700").contains("mm/s?"));
         assert!(refused("limits.omega_rad_s=180").contains("degrees per second?"));
         assert!(refused("camera.fx_px=36100").contains("camera.fx_px is 36100 px"));

@@ -9,10 +9,12 @@ use crate::{
     scan_pose_log::ScanPoseLog,
     stage::{Stage, StageTimes},
 };
+use std::sync::Arc;
 use trundle_core::{CameraMotion, Invalid, Pose2, Pose3, RgbdImage, Scan, Stamp};
 use trundle_localization::OdometryState;
 use trundle_mapping::DepthScanner;
 use trundle_slam::{MapFileError, RgbdSlam, TrackReport};
+use trundle_vision::Vocabulary;
 
 /// All that is done with an image alone: the camera's pose by SLAM, and the scan.
 ///
@@ -91,6 +93,11 @@ impl PerceptionWorker {
     pub(crate) fn load_maps(&mut self, config: &RobotConfig, visual: &[u8]) -> Result<(), MapFileError> {
         self.slam = RgbdSlam::load(visual, config.camera, config.slam.clone())?;
         Ok(())
+    }
+
+    /// Recognises places by this vocabulary.
+    pub(crate) fn set_vocabulary(&mut self, vocabulary: &Arc<Vocabulary>) {
+        self.slam.set_vocabulary(vocabulary);
     }
 
     pub(crate) fn slam(&self) -> &RgbdSlam {

@@ -43,7 +43,7 @@ pub enum ImportFault {
         /// Its name.
         name: String,
     },
-    /// A buffer or an image outside the file is missing, or an image cannot be decoded.
+    /// A buffer outside the file is missing.
     #[error("{item}: {reason}")]
     Part {
         /// Which one, with its file name where it has one.

@@ -50,6 +50,27 @@ impl Mesh {
         Ok(mesh)
     }
 
+    /// The mesh lowered by `height_m`.
+    ///
+    /// # Errors
+    /// When a coordinate is then not finite.
+    pub(crate) fn lowered(mut self, height_m: f64) -> Result<Self, Invalid> {
+        for position in &mut self.positions {
+            position[2] = (f64::from(position[2]) - height_m) as f32;
+        }
+        self.check()?;
+        Ok(self)
+    }
+
+    /// The size along x, y and z, to a millimetre, m.
+    pub(crate) fn size(&self) -> [f64; 3] {
+        std::array::from_fn(|k| {
+            let along = || self.positions.iter().map(|position| f64::from(position[k]));
+            let size = along().fold(f64::NEG_INFINITY, f64::max) - along().fold(f64::INFINITY, f64::min);
+            (size * 1000.0).round() / 1000.0
+        })
+    }
+
     /// Corners, world frame, m.
     pub fn positions(&self) -> &[[f32; 3]] {
         &self.positions

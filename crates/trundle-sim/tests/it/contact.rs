@@ -107,7 +107,7 @@ proptest! {
 }
 
 fn small_house() -> Option<World> {
-    let mesh = gltf(&shared_data("scenes/small_house.glb")?, &GltfOptions::z_up()).unwrap();
+    let mesh = gltf(&shared_data("scenes/small_house.glb")?, &GltfOptions::z_up()).unwrap().mesh;
     Some(world(vec![], vec![mesh]))
 }
 

@@ -255,7 +255,7 @@ fn a_follower_says_that_it_is_blocked() {
 
 /// A scene from the shared house, the robot in the first free place of a coarse grid; `None` where the file is absent.
 fn small_house() -> Option<Scene> {
-    let mesh = gltf(&shared_data("scenes/small_house.glb")?, &GltfOptions::z_up()).unwrap();
+    let mesh = gltf(&shared_data("scenes/small_house.glb")?, &GltfOptions::z_up()).unwrap().mesh;
     let world = World::with_meshes(Vec::new(), vec![mesh], 1).unwrap();
     let obstacles = world.obstacles(HeightBand::new(0.012, 0.6).unwrap());
     let places =

@@ -2,7 +2,9 @@ use proptest::prelude::*;
 use std::io;
 use std::path::Path;
 use trundle_sim::Mesh;
-use trundle_sim::import::{GltfOptions, ImportError, ImportFault, UpAxis, gltf, gltf_from_bytes};
+use trundle_sim::import::{
+    GltfOptions, ImportError, ImportFault, ImportNote, ImportedScene, UpAxis, gltf, gltf_from_bytes,
+};
 
 /// A GLB of a JSON text and a buffer.
 fn glb(json: &str, binary: &[u8]) -> Vec<u8> {
@@ -63,6 +65,10 @@ fn nowhere(_: &str) -> io::Result<Vec<u8>> {
 }
 
 fn read(json: &str, options: &GltfOptions) -> Result<Mesh, ImportError> {
+    scene(json, options).map(|scene| scene.mesh)
+}
+
+fn scene(json: &str, options: &GltfOptions) -> Result<ImportedScene, ImportError> {
     gltf_from_bytes("rug.glb", &glb(json, &square()), options, &nowhere)
 }
 
@@ -103,15 +109,20 @@ fn strips_fans_and_plain_corners_make_the_same_square() {
 #[test]
 fn transforms_of_nodes_multiply() {
     let node = r#","translation":[1,2,3],"rotation":[0,0,0.70710678,0.70710678],"scale":[2,1,1]"#;
-    let mesh = read(&description(INDEXED, node, ""), &GltfOptions::z_up()).unwrap();
+    let mesh = read(&description(INDEXED, node, ""), &as_it_lies()).unwrap();
     assert_eq!(corner(&mesh, 1), [1.0, 4.0, 3.0]);
     let tree = description(INDEXED, "", "").replace(
         r#""nodes":[{"mesh":0}]"#,
         r#""nodes":[{"translation":[5,0,0],"children":[1]},{"matrix":[1,0,0,0,0,1,0,0,0,0,1,0,0,0,7,1],"mesh":0}]"#,
     );
-    assert_eq!(corner(&read(&tree, &GltfOptions::z_up()).unwrap(), 1), [6.0, 0.0, 7.0]);
+    assert_eq!(corner(&read(&tree, &as_it_lies()).unwrap(), 1), [6.0, 0.0, 7.0]);
     let ring = tree.replace(r#","mesh":0}]"#, r#","mesh":0,"children":[0]}]"#);
     assert!(message(&ring).contains("node 0 is reached twice"), "{}", message(&ring));
+}
+
+/// z up, the floor's height given: nothing is moved.
+fn as_it_lies() -> GltfOptions {
+    GltfOptions { floor: Some(0.0), ..GltfOptions::z_up() }
 }
 
 /// Materials with a red factor and the image that `image` describes.
@@ -134,7 +145,7 @@ fn checker() -> Vec<u8> {
 fn textures_come_from_files_and_from_within() {
     let resolve = |name: &str| if name == "a b.png" { Ok(checker()) } else { nowhere(name) };
     let bytes = glb(&textured(r#"{"uri":"a%20b.png"}"#), &square());
-    let mesh = gltf_from_bytes("rug.glb", &bytes, &GltfOptions::default(), &resolve).unwrap();
+    let mesh = gltf_from_bytes("rug.glb", &bytes, &GltfOptions::default(), &resolve).unwrap().mesh;
     let material = &mesh.materials()[0];
     assert_eq!((material.name.as_str(), material.color), ("wool", [255, 188, 0]));
     assert_eq!(material.texture.as_ref().unwrap()[(3, 1)], [180, 200, 7]);
@@ -146,10 +157,6 @@ fn textures_come_from_files_and_from_within() {
 
 #[test]
 fn errors_name_the_file_and_the_item() {
-    let missing = message(&textured(r#"{"uri":"wool.png"}"#));
-    assert!(missing.starts_with("rug.glb: image 0 ('wool.png'): "), "{missing}");
-    let broken = message(&textured(r#"{"uri":"data:image/png;base64,AAAA","name":"wool"}"#));
-    assert!(broken.starts_with("rug.glb: image 0 ('wool'): cannot be decoded"), "{broken}");
     let points = message(&description(r#","mode":0"#, "", ""));
     assert_eq!(points, "rug.glb: has no triangles in its scene");
     let draco = message(&description(INDEXED, "", r#","extensionsRequired":["KHR_draco_mesh_compression"]"#));
@@ -170,6 +177,86 @@ fn errors_name_the_file_and_the_item() {
 }
 
 #[test]
+fn textures_that_cannot_be_read_are_grey_and_noted_once() {
+    let lost = |json: &str| {
+        let ImportedScene { mesh, notes } = scene(json, &GltfOptions::default()).unwrap();
+        let material = &mesh.materials()[0];
+        assert_eq!((material.color, material.texture.is_some()), ([150, 110, 0], false));
+        assert_eq!(notes.len(), 1, "{notes:?}");
+        notes[0].to_string()
+    };
+    let begin = "textures that cannot be read are grey: 1: ";
+    let missing = lost(&textured(r#"{"uri":"wool.png"}"#));
+    assert_eq!(missing, format!("{begin}image 0 ('wool.png'): it does not exist"));
+    let broken = lost(&textured(r#"{"uri":"data:image/png;base64,AAAA","name":"wool"}"#));
+    assert!(broken.starts_with(&format!("{begin}image 0 ('wool'): cannot be decoded")), "{broken}");
+    let webp = lost(&textured(r#"{"uri":"data:image/webp;base64,UklGRhIAAABXRUJQVlA4TAYAAAAvQWxvAGs="}"#));
+    assert_eq!(webp, format!("{begin}image 0: is WebP, expected PNG or JPEG"));
+    let sourceless = textured(r#"{"uri":"wool.png"}"#).replace(
+        r#""textures":[{"source":0}]"#,
+        r#""textures":[{"extensions":{"EXT_texture_webp":{"source":0}}}],"extensionsUsed":["EXT_texture_webp"]"#,
+    );
+    assert_eq!(lost(&sourceless), format!("{begin}a texture names no PNG or JPEG image"));
+    let many = ImportNote::LostTextures { reasons: vec!["a".into(), "b".into(), "c".into(), "d".into()] };
+    assert_eq!(many.to_string(), "textures that cannot be read are grey: 4: a; b; c; ...");
+}
+
+/// The square with a colour at each corner, in the place of its texture coordinates: `kind` of the accessor and its bytes.
+fn colored(kind: &str, bytes: &[u8], rest: &str) -> ImportedScene {
+    let mut buffer = square();
+    buffer[48..48 + bytes.len()].copy_from_slice(bytes);
+    let json = description(INDEXED, "", rest)
+        .replace("TEXCOORD_0", "COLOR_0")
+        .replace(r#"{"bufferView":1,"componentType":5126,"count":4,"type":"VEC2"}"#, kind);
+    gltf_from_bytes("rug.glb", &glb(&json, &buffer), &GltfOptions::default(), &nowhere).unwrap()
+}
+
+#[test]
+fn colours_of_vertices_are_drawn() {
+    let kind = r#"{"bufferView":1,"componentType":5121,"normalized":true,"count":4,"type":"VEC4"}"#;
+    let corners = [[255, 0, 0, 255], [0, 255, 0, 255], [0, 0, 255, 255], [255, 255, 255, 255]];
+    let ImportedScene { mesh, notes } = colored(kind, corners.as_flattened(), "");
+    assert!(notes.is_empty(), "{notes:?}");
+    let picture = mesh.materials()[0].texture.as_ref().unwrap();
+    let seen = |corner: u32| {
+        let [u, v] = mesh.uvs()[corner as usize];
+        picture[((u * picture.width() as f32) as usize, (v * picture.height() as f32) as usize)]
+    };
+    let of_triangle = |i: usize| mesh.triangles()[i].corners.map(seen);
+    assert_eq!(of_triangle(0), [[255, 0, 0], [0, 255, 0], [0, 0, 255]]);
+    assert_eq!(of_triangle(1), [[255, 0, 0], [0, 0, 255], [255; 3]]);
+    let white = colored(kind, &[255; 16], "").mesh;
+    assert_eq!((white.materials()[0].texture.is_none(), white.positions().len()), (true, 4));
+}
+
+#[test]
+fn a_floor_elsewhere_comes_to_lie_at_zero() {
+    let flat = |node: &str, options: GltfOptions| scene(&description(INDEXED, node, ""), &options).unwrap();
+    let below = r#","translation":[0,0,-10]"#;
+    let ImportedScene { mesh, notes } = flat(below, GltfOptions::z_up());
+    assert_eq!(corner(&mesh, 2), [1.0, 1.0, 0.0]);
+    assert_eq!(notes, [ImportNote::FloorMoved { height_m: -10.0 }]);
+    let named = flat(below, GltfOptions { floor: Some(-12.0), ..GltfOptions::z_up() });
+    assert_eq!((corner(&named.mesh, 2), named.notes.len()), ([1.0, 1.0, 2.0], 0));
+    let near = flat(r#","translation":[0,0,0.1]"#, GltfOptions::z_up());
+    assert_eq!((corner(&near.mesh, 2), near.notes.len()), ([1.0, 1.0, 0.1], 0), "left where it is");
+    let wall =
+        scene(&description(INDEXED, r#","translation":[0,5,0]"#, ""), &GltfOptions::default()).unwrap();
+    assert_eq!(corner(&wall.mesh, 0), [0.0, 0.0, 5.0], "a wall is no floor");
+}
+
+#[test]
+fn a_scene_of_another_unit_is_noted() {
+    let notes = |scale: f64| {
+        let options = GltfOptions { scale, ..GltfOptions::default() };
+        scene(&description(INDEXED, "", ""), &options).unwrap().notes
+    };
+    assert_eq!(notes(2.0), []);
+    assert!(notes(250.0)[0].to_string().contains("--scale 0.01"), "{:?}", notes(250.0));
+    assert!(notes(0.01)[0].to_string().contains("is the scale right?"));
+}
+
+#[test]
 fn bad_numbers_are_named() {
     let with = |at: usize, bytes: &[u8]| {
         let mut buffer = square();
@@ -185,6 +272,16 @@ fn bad_numbers_are_named() {
     assert!(message(&claim).contains("accessor 2 is 4000000000 elements long"), "{}", message(&claim));
     let short = description(INDEXED, "", "").replace(r#""count":6"#, r#""count":7"#);
     assert!(message(&short).contains("cut short"), "{}", message(&short));
+}
+
+#[test]
+fn a_view_that_says_too_much_is_read_as_far_as_its_accessor_goes() {
+    let whole = description(INDEXED, "", "");
+    let json = whole.replace(r#""byteOffset":80,"byteLength":12"#, r#""byteOffset":80,"byteLength":24"#);
+    let options = GltfOptions::default();
+    assert_eq!(read(&json, &options).unwrap(), read(&whole, &options).unwrap());
+    let beyond = whole.replace(r#""byteOffset":80,"#, r#""byteOffset":96,"#);
+    assert!(message(&beyond).contains("cut short"), "{}", message(&beyond));
 }
 
 #[test]
@@ -230,7 +327,7 @@ proptest! {
 
 #[test]
 fn the_rich_file_is_whole() {
-    let mesh = gltf_from_bytes("rich.glb", &rich_file(), &GltfOptions::z_up(), &nowhere).unwrap();
+    let mesh = gltf_from_bytes("rich.glb", &rich_file(), &GltfOptions::z_up(), &nowhere).unwrap().mesh;
     assert_eq!(mesh.triangles().len(), 2);
     assert_eq!(mesh.materials()[0].texture.as_ref().unwrap()[(1, 0)], [60, 0, 7]);
 }
@@ -238,7 +335,8 @@ fn the_rich_file_is_whole() {
 #[test]
 fn small_house_is_19_by_11_metres_and_stands_on_its_floor() {
     let Some(path) = crate::shared_data("scenes/small_house.glb") else { return };
-    let mesh = gltf(&path, &GltfOptions::z_up()).unwrap();
+    let ImportedScene { mesh, notes } = gltf(&path, &GltfOptions::z_up()).unwrap();
+    assert_eq!(notes, []);
     assert!((145_000..=145_844).contains(&mesh.triangles().len()), "{}", mesh.triangles().len());
     assert_eq!(mesh.materials().iter().filter(|m| m.texture.is_some()).count(), 64);
     let extent = |k: usize| {

@@ -163,7 +163,7 @@ fn small_house() -> Option<World> {
         eprintln!("skipped: {} is not there", path.display());
         return None;
     }
-    let mesh = gltf(path, &GltfOptions::z_up()).unwrap();
+    let mesh = gltf(path, &GltfOptions::z_up()).unwrap().mesh;
     Some(World::with_meshes(Vec::new(), vec![mesh], 1).unwrap())
 }
 

@@ -48,7 +48,7 @@ impl RgbdSlam {
         record_features(&mut self.features, &frame, &landmarks);
         let mut pose = localized.pose.visual_from_camera();
         let mut reference = reference_keyframe(&self.atlas.active.map, &self.tracking, &landmarks);
-        let mut covariance = pose_covariance(&self.atlas.active.map, &localized, reference);
+        let mut covariance = self.pose_covariance(&localized, reference);
         let inserted = self.update_map(&frame, &localized, &landmarks, covariance);
         if let Some(inserted) = &inserted {
             reference = inserted.id;
@@ -131,6 +131,21 @@ impl RgbdSlam {
         self.loops.drop_searches();
         self.odometry.interrupt();
         self.tracking.odometry_conflict = Default::default();
+    }
+
+    /// Covariance of a found pose: of the pose against the points, and of the points. The points of the map have that of the
+    /// reference keyframe. Where the last frame alone gives the pose, its points have that of the last pose, which thus grows from frame to frame.
+    fn pose_covariance(&self, localized: &LocalizedFrame, reference: KeyframeId) -> Matrix6<f64> {
+        let pose = localized.pose.visual_from_camera();
+        let local = localized.pose.solution.covariance.unwrap_or_else(Matrix6::identity);
+        let belief = &self.tracking.belief;
+        let (anchor, covariance) = if localized.by_map {
+            let keyframe = self.atlas.active.map.keyframe(reference);
+            (keyframe.visual_from_camera, &keyframe.map_covariance)
+        } else {
+            (belief.visual_from_camera, &belief.covariance)
+        };
+        carried(covariance, anchor.inverse() * pose) + local
     }
 
     /// Updates the map by a located frame, unless the map is to stay as it is.
@@ -256,14 +271,6 @@ impl RgbdSlam {
             landmarks: self.atlas.active.map.landmark_count(),
         }
     }
-}
-
-/// Covariance of a found pose: of the pose against the points, and of the points around the reference keyframe.
-fn pose_covariance(map: &LandmarkMap, localized: &LocalizedFrame, reference: KeyframeId) -> Matrix6<f64> {
-    let keyframe = map.keyframe(reference);
-    let offset = keyframe.visual_from_camera.inverse() * localized.pose.visual_from_camera();
-    let local = localized.pose.solution.covariance.unwrap_or_else(Matrix6::identity);
-    carried(&keyframe.map_covariance, offset) + local
 }
 
 /// The keyframe that shares most landmarks with the frame; the last frame's reference where no keyframe does.

@@ -17,6 +17,7 @@ use crate::tracking::pose_gate::PoseGate;
 use crate::tracking::relocalisation::relocalize;
 use crate::tracking::tracker::Tracker;
 use crate::tracking::tracking_state::TrackingState;
+use crate::tracking::tracking_status::Tracking;
 use std::cell::OnceCell;
 use trundle_core::{DepthImage, Pose3};
 
@@ -42,6 +43,8 @@ pub(super) struct Localizer<'a> {
     pub frame: &'a Frame,
     pub depth: &'a DepthImage,
     pub frame_number: u64,
+    /// Whether the maps stay as they are, so that nothing but they can correct a pose.
+    pub are_maps_fixed: bool,
 }
 
 /// Where the camera should be, and how far off it can be.
@@ -61,8 +64,8 @@ impl Localizer<'_> {
         let expected = Expectation { predicted, gate: state.gate(stamp, prior.is_some()) };
         let (bow, active) = (OnceCell::new(), &self.atlas.active);
         let tracker = self.tracker(active, &bow);
-        if let Some(localized) = track(&tracker, state, expected) {
-            state.pending_relocalisations = Default::default();
+        if let Some(tracked) = track(&tracker, state, expected) {
+            let localized = self.checked_by_map(state, &tracker, tracked, expected);
             let is_believed = state.odometry_conflict.believes(stamp, localized.points_against_odometry());
             return is_believed.then_some(Localization { map: active.id, localized });
         }
@@ -73,6 +76,28 @@ impl Localizer<'_> {
             return Some(Localization { map: active.id, localized });
         }
         self.relocalize_elsewhere(state, &bow, expected)
+    }
+
+    /// A tracked frame; or its relocalisation, where a fixed map hardly shows in the tracked one. Frames tracked from the last frame
+    /// alone drift, and a map that is not extended never meets them again.
+    fn checked_by_map(
+        &self,
+        state: &mut TrackingState,
+        tracker: &Tracker,
+        tracked: LocalizedFrame,
+        expected: Expectation,
+    ) -> LocalizedFrame {
+        if !self.are_maps_fixed || tracked.tracking(&self.config.tracking) == Tracking::Ok {
+            state.pending_relocalisations = Default::default();
+            return tracked;
+        }
+        let here = Expectation { predicted: tracked.pose(), ..expected };
+        match self.confirmed(state, self.atlas.active.id, relocalize(tracker), here) {
+            Some(found) if !tracked.by_map || found.points > tracked.points => {
+                found.aligned(tracker, PosePriorKind::Unknown)
+            }
+            _ => tracked,
+        }
     }
 
     /// The pose in one of the inactive maps, which take turns.

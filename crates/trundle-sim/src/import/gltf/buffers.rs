@@ -41,15 +41,15 @@ impl<'a> Buffers<'a> {
         self.root
     }
 
-    /// The bytes of a view.
+    /// The bytes of a view; where it says more than its buffer holds, those that are there.
     pub(super) fn view(&self, index: Index<buffer::View>) -> Result<&[u8], ImportFault> {
         let view = at(&self.root.buffer_views, index, "bufferViews")?;
         at(&self.root.buffers, view.buffer, "buffers")?;
         let data = &self.data[view.buffer.value()];
         let start = view.byte_offset.unwrap_or_default().0;
-        let end = start.saturating_add(view.byte_length.0);
+        let end = start.saturating_add(view.byte_length.0).min(data.len() as u64);
         let item = || format!("buffer {} under bufferView {index}", view.buffer);
-        require_length(&item(), data.len(), end)?;
+        require_length(&item(), data.len(), start)?;
         Ok(&data[start as usize..end as usize])
     }
 
@@ -74,7 +74,15 @@ fn fetch(item: &str, uri: &str, resolve: Resolve<'_>) -> Result<Vec<u8>, ImportF
         return engine.decode(coded).map_err(|e| ImportFault::part(item, format!("its data URI: {e}")));
     }
     let name = percent_decoded(uri);
-    resolve(&name).map_err(|e| ImportFault::part(format!("{item} ('{name}')"), e))
+    resolve(&name).map_err(|error| ImportFault::part(format!("{item} ('{name}')"), reason(&error)))
+}
+
+fn reason(error: &std::io::Error) -> String {
+    match error.kind() {
+        std::io::ErrorKind::NotFound => "it does not exist".to_owned(),
+        std::io::ErrorKind::PermissionDenied => "no permission".to_owned(),
+        _ => error.to_string(),
+    }
 }
 
 /// `%20` and the like as the bytes they stand for.

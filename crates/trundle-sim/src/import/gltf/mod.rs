@@ -4,13 +4,18 @@ mod accessor;
 mod buffers;
 mod builder;
 mod container;
+mod floor;
+mod looks;
 mod nodes;
 mod options;
 mod primitive;
 mod schema;
+mod size;
+mod srgb;
 mod textures;
+mod vertex_colors;
 
-use super::{ImportError, ImportFault};
+use super::{ImportError, ImportFault, ImportNote};
 use crate::world::Mesh;
 use buffers::{Buffers, Resolve};
 use builder::Builder;
@@ -18,19 +23,31 @@ use container::Container;
 pub use options::{GltfOptions, UpAxis};
 use std::path::Path;
 
+/// A scene as imported.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ImportedScene {
+    /// Its surfaces, world frame.
+    pub mesh: Mesh,
+    /// What the user should know of it.
+    pub notes: Vec<ImportNote>,
+}
+
 /// Reads a glTF 2.0 file, `.gltf` or `.glb`, as one mesh in the world frame, m, z up.
 ///
 /// What it reads: the default scene with its nodes' transforms; triangle lists, strips and fans, indexed or not, sparse or
 /// quantised; of materials the base colour and its texture (PNG or JPEG; alpha is ignored, everything is opaque and seen
-/// from both sides); KHR_texture_transform. Textures repeat. Triangles without area are left out. What it ignores: skins,
-/// morph targets, animations, vertex colours, other maps of the material, cameras and lights.
+/// from both sides); KHR_texture_transform; the colours of vertices where there is no texture. Textures repeat. A texture that
+/// is missing or in another form is grey, and noted. Triangles without area are left out. What it ignores: skins, morph targets,
+/// animations, other maps of the material, cameras and lights.
+///
+/// The floor, the lowest large level, is moved to z = 0 where it is elsewhere.
 ///
 /// The up axis is the standard's, +y, unless `options` says otherwise: a z-up file that claims nothing lies on its side.
 ///
 /// # Errors
-/// When a file or a texture is missing, cut short or broken, a number is not finite, an index is out of range, the file
+/// When a file or a buffer is missing, cut short or broken, a number is not finite, an index is out of range, the file
 /// needs an extension such as Draco compression, or there is no triangle. The error names the file and the item.
-pub fn gltf(path: &Path, options: &GltfOptions) -> Result<Mesh, ImportError> {
+pub fn gltf(path: &Path, options: &GltfOptions) -> Result<ImportedScene, ImportError> {
     let file = path.display().to_string();
     let bytes =
         std::fs::read(path).map_err(|e| ImportFault::Unreadable { reason: e.to_string() }.of(&file))?;
@@ -47,11 +64,11 @@ pub fn gltf_from_bytes(
     bytes: &[u8],
     options: &GltfOptions,
     resolve: &(dyn Fn(&str) -> std::io::Result<Vec<u8>> + Sync),
-) -> Result<Mesh, ImportError> {
+) -> Result<ImportedScene, ImportError> {
     read(bytes, options, resolve).map_err(|fault| fault.of(file))
 }
 
-fn read(bytes: &[u8], options: &GltfOptions, resolve: Resolve<'_>) -> Result<Mesh, ImportFault> {
+fn read(bytes: &[u8], options: &GltfOptions, resolve: Resolve<'_>) -> Result<ImportedScene, ImportFault> {
     let options = options.clone().validated()?;
     let container = Container::open(bytes)?;
     let root = schema::parse(container.json)?;
@@ -61,5 +78,13 @@ fn read(bytes: &[u8], options: &GltfOptions, resolve: Resolve<'_>) -> Result<Mes
     for instance in nodes::instances(&root)? {
         builder.add(instance.mesh, &(world_from_file * instance.transform))?;
     }
-    builder.build()
+    let (mut mesh, mut notes) = builder.build()?;
+    if options.finds_floor()
+        && let Some(height_m) = floor::floor_elsewhere(mesh.positions(), mesh.triangles())
+    {
+        mesh = mesh.lowered(height_m)?;
+        notes.push(ImportNote::FloorMoved { height_m });
+    }
+    notes.extend(size::odd_size(mesh.size()));
+    Ok(ImportedScene { mesh, notes })
 }

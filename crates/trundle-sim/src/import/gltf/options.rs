@@ -23,13 +23,15 @@ pub struct GltfOptions {
     pub up: UpAxis,
     /// Metres a unit of the file, 1e-6 to 1e6. Default 1, as the standard says.
     pub scale: f64,
-    /// `world_from_model`, applied after the two above. Default identity.
+    /// Height of the model's floor, m, which comes to lie at z = 0. Default: where it is found, if `pose` is the identity.
+    pub floor: Option<f64>,
+    /// `world_from_model`, applied after the three above. Default identity.
     pub pose: Pose3,
 }
 
 impl Default for GltfOptions {
     fn default() -> Self {
-        Self { up: UpAxis::Y, scale: 1.0, pose: Pose3::identity() }
+        Self { up: UpAxis::Y, scale: 1.0, floor: None, pose: Pose3::identity() }
     }
 }
 
@@ -45,10 +47,16 @@ impl GltfOptions {
     /// When the scale is outside its range or the pose is not finite.
     pub fn validated(self) -> Result<Self, Invalid> {
         require_in("scale", self.scale, "m a unit", 1e-6, 1e6)?;
+        self.floor.map_or(Ok(0.0), |floor| require_in("floor", floor, "m", -1e5, 1e5))?;
         if !self.pose.is_finite() {
             return Err(Invalid::new("pose", "not finite", "", "finite numbers"));
         }
         Ok(self)
+    }
+
+    /// Whether the floor is looked for.
+    pub(super) fn finds_floor(&self) -> bool {
+        self.floor.is_none() && self.pose == Pose3::identity()
     }
 
     pub(super) fn world_from_file(&self) -> Matrix4<f64> {
@@ -57,6 +65,7 @@ impl GltfOptions {
             UpAxis::Z => Rotation3::identity(),
         };
         let pose: nalgebra::Isometry3<f64> = self.pose.into();
-        pose.to_homogeneous() * turn.to_homogeneous() * Matrix4::new_scaling(self.scale)
+        let lift = Matrix4::new_translation(&Vector3::new(0.0, 0.0, -self.floor.unwrap_or(0.0)));
+        pose.to_homogeneous() * lift * turn.to_homogeneous() * Matrix4::new_scaling(self.scale)
     }
 }

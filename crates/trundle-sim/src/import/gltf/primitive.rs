@@ -4,7 +4,7 @@ use super::accessor;
 use super::buffers::Buffers;
 use super::schema::at;
 use crate::import::ImportFault;
-use gltf::json::accessor::Accessor;
+use gltf::json::accessor::{Accessor, Type};
 use gltf::json::extensions::texture::TextureTransform;
 use gltf::json::mesh::{Mode, Primitive, Semantic};
 use gltf::json::validation::Checked;
@@ -17,13 +17,15 @@ pub(super) struct Surface {
     /// One a position; zero where the primitive has none.
     pub(super) uvs: Vec<[f32; 2]>,
     pub(super) triangles: Vec<[u32; 3]>,
+    /// Linear shares of red, green and blue, one a position, where the primitive has them.
+    pub(super) colors: Option<Vec<[f32; 3]>>,
 }
 
 impl Surface {
     /// Points and lines have no triangles.
     pub(super) fn read(buffers: &Buffers<'_>, primitive: &Primitive) -> Result<Self, ImportFault> {
         let Some(positions) = attribute(primitive, Semantic::Positions) else {
-            return Ok(Self { positions: Vec::new(), uvs: Vec::new(), triangles: Vec::new() });
+            return Ok(Self { positions: Vec::new(), uvs: Vec::new(), triangles: Vec::new(), colors: None });
         };
         let positions = accessor::vectors::<3>(buffers, positions)?;
         let uvs = read_uvs(buffers, primitive, positions.len())?;
@@ -36,7 +38,8 @@ impl Surface {
             let expected = format!("below {}, the number of positions", positions.len());
             return Err(Invalid::new(format!("index {i}{accessor}"), corners[i], "", expected).into());
         }
-        Ok(Self { positions, uvs, triangles: assemble(&primitive.mode, &corners) })
+        let colors = read_colors(buffers, primitive, positions.len())?;
+        Ok(Self { positions, uvs, triangles: assemble(&primitive.mode, &corners), colors })
     }
 }
 
@@ -71,22 +74,38 @@ fn read_uvs(
         return Ok(vec![[0.0; 2]; count]);
     };
     let mut uvs = accessor::vectors::<2>(buffers, index)?;
-    if uvs.len() != count {
-        let expected = format!("{count} as positions");
-        return Err(Invalid::new(
-            format!("accessor {index} of texture coordinates"),
-            uvs.len(),
-            "",
-            expected,
-        )
-        .into());
-    }
+    require_count(&format!("accessor {index} of texture coordinates"), uvs.len(), count)?;
     if let Some(transform) = transform {
         for uv in &mut uvs {
             *uv = transformed(*uv, transform);
         }
     }
     Ok(uvs)
+}
+
+/// The colours of the corners, alpha left out; `None` where there are none, or all are white.
+fn read_colors(
+    buffers: &Buffers<'_>,
+    primitive: &Primitive,
+    count: usize,
+) -> Result<Option<Vec<[f32; 3]>>, ImportFault> {
+    let Some(index) = attribute(primitive, Semantic::Colors(0)) else { return Ok(None) };
+    let accessor = at(&buffers.root().accessors, index, "accessors")?;
+    let colors = match accessor.type_ {
+        Checked::Valid(Type::Vec4) => {
+            accessor::vectors::<4>(buffers, index)?.into_iter().map(|[r, g, b, _]| [r, g, b]).collect()
+        }
+        _ => accessor::vectors::<3>(buffers, index)?,
+    };
+    require_count(&format!("accessor {index} of colours"), colors.len(), count)?;
+    Ok(colors.iter().any(|color| *color != [1.0; 3]).then_some(colors))
+}
+
+fn require_count(item: &str, found: usize, expected: usize) -> Result<(), ImportFault> {
+    if found != expected {
+        return Err(Invalid::new(item, found, "", format!("{expected} as positions")).into());
+    }
+    Ok(())
 }
 
 fn base_color_texture<'a>(

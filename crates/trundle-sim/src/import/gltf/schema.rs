@@ -4,8 +4,12 @@ use crate::import::ImportFault;
 use gltf::json::validation::Validate;
 use gltf::json::{Index, Root};
 
-/// Extensions that may be required: read, or of no matter to a camera that sees matt surfaces.
-const UNDERSTOOD: [&str; 13] = [
+/// Extensions that may be required: read, or of no matter to a camera that sees matt surfaces, or of textures that are then grey.
+const UNDERSTOOD: [&str; 17] = [
+    "EXT_texture_webp",
+    "EXT_texture_avif",
+    "KHR_texture_basisu",
+    "MSFT_texture_dds",
     "KHR_texture_transform",
     "KHR_mesh_quantization",
     "KHR_lights_punctual",

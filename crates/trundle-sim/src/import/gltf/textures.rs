@@ -5,6 +5,7 @@ use super::schema::at;
 use crate::import::ImportFault;
 use gltf::json::{Index, image as file};
 use image::ImageReader;
+use std::borrow::Cow;
 use std::io::Cursor;
 use trundle_core::ColorImage;
 
@@ -18,12 +19,12 @@ const MOST_MEMORY: u64 = 1 << 30;
 pub(super) fn decode(buffers: &Buffers<'_>, index: Index<file::Image>) -> Result<ColorImage, ImportFault> {
     let image = at(&buffers.root().images, index, "images")?;
     let item = name_of(image, index);
-    let rgb = match (image.buffer_view, &image.uri) {
-        (Some(view), _) => decode_bytes(buffers.view(view)?),
-        (None, Some(uri)) => decode_bytes(&buffers.fetch(&format!("image {index}"), uri)?),
+    let bytes = match (image.buffer_view, &image.uri) {
+        (Some(view), _) => Cow::Borrowed(buffers.view(view)?),
+        (None, Some(uri)) => Cow::Owned(buffers.fetch(&format!("image {index}"), uri)?),
         (None, None) => return Err(ImportFault::part(item, "has neither a file nor a bufferView")),
     };
-    let rgb = rgb.map_err(|e| ImportFault::part(item, format!("cannot be decoded: {e}")))?;
+    let rgb = decode_bytes(&bytes).map_err(|error| ImportFault::part(item, problem(&bytes, &error)))?;
     let (width, height) = (rgb.width() as usize, rgb.height() as usize);
     Ok(ColorImage::new(width, height, rgb.pixels().map(|pixel| pixel.0).collect())?)
 }
@@ -36,6 +37,19 @@ fn decode_bytes(bytes: &[u8]) -> image::ImageResult<image::RgbImage> {
     limits.max_alloc = Some(MOST_MEMORY);
     reader.limits(limits);
     Ok(reader.decode()?.into_rgb8())
+}
+
+/// What is wrong with an image.
+fn problem(bytes: &[u8], error: &image::ImageError) -> String {
+    let known: [(&[u8], &str); 3] = [(b"RIFF", "WebP"), (b"\xabKTX", "KTX2"), (b"DDS ", "DDS")];
+    let found = known.iter().find(|(magic, _)| bytes.starts_with(magic)).map(|(_, name)| *name);
+    match (found, error) {
+        (Some(name), _) => format!("is {name}, expected PNG or JPEG"),
+        (None, image::ImageError::Limits(_)) => {
+            format!("is too large, expected at most {MOST_PIXELS} px a side")
+        }
+        _ => "cannot be decoded, expected a whole PNG or JPEG".to_owned(),
+    }
 }
 
 fn name_of(image: &file::Image, index: Index<file::Image>) -> String {

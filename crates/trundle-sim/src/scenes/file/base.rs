@@ -1,5 +1,6 @@
 //! The base of a scene file: a built-in scene, a glTF file or a map.
 
+use super::MAX_COORDINATE_M;
 use super::error::{LoadError, SceneError};
 use crate::import::{GltfOptions, UpAxis};
 use crate::people::Person;
@@ -23,6 +24,8 @@ pub struct Base {
     pub up: Option<UpAxis>,
     /// Metres a unit of the glTF, 0.0001 to 1000. Default 1.
     pub scale: Option<f64>,
+    /// Height of the glTF's floor, m, -1000 to 1000, which comes to lie at z = 0. Default: where it is found.
+    pub floor: Option<f64>,
     /// A map's YAML file, relative to the scene file.
     pub map: Option<PathBuf>,
     /// Height that occupied cells of the map are raised to, m, 0.1 to 20. Default 2.5.
@@ -62,8 +65,11 @@ impl Base {
             (Some(name), None, None) => built_in(name, seed),
             (None, Some(path), None) => {
                 let scale = require_in("base.scale", self.scale.unwrap_or(1.0), "m a unit", 1e-4, 1e3)?;
-                let options =
-                    GltfOptions { up: self.up.unwrap_or_default(), scale, ..GltfOptions::default() };
+                self.floor.map_or(Ok(0.0), |z| {
+                    require_in("base.floor", z, "m", -MAX_COORDINATE_M, MAX_COORDINATE_M)
+                })?;
+                let up = self.up.unwrap_or_default();
+                let options = GltfOptions { up, scale, floor: self.floor, ..GltfOptions::default() };
                 let mesh = loader.gltf(path, &options).map_err(|e| SceneError::load("base.gltf", path, e))?;
                 Ok(from_file(path, Vec::new(), vec![mesh]))
             }
@@ -85,6 +91,7 @@ impl Base {
         let strays = [
             ("base.up", self.up.is_some(), self.gltf.is_some(), "only beside base.gltf"),
             ("base.scale", self.scale.is_some(), self.gltf.is_some(), "only beside base.gltf"),
+            ("base.floor", self.floor.is_some(), self.gltf.is_some(), "only beside base.gltf"),
             ("base.wall_height", self.wall_height.is_some(), self.map.is_some(), "only beside base.map"),
         ];
         match strays.into_iter().find(|(_, given, fits, _)| *given && !fits) {

@@ -1,10 +1,10 @@
-//! Interpolation of the odometry of a ROS 2 bag over time.
+//! Interpolation of the odometry of a log over time.
 
 use trundle_core::{Pose2, Stamp};
 
 /// Where the base was by odometry, over time.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub(super) struct Motion {
+pub(crate) struct Motion {
     poses: Vec<(Stamp, Pose2)>,
 }
 
@@ -18,7 +18,7 @@ impl Motion {
     ///
     /// # Errors
     /// When it is not finite or its time goes back.
-    pub(super) fn push(&mut self, stamp: Stamp, pose: Pose2) -> Result<(), String> {
+    pub(crate) fn push(&mut self, stamp: Stamp, pose: Pose2) -> Result<(), String> {
         if !pose.is_finite() {
             return Err("the pose is not finite, or its quaternion is none".to_owned());
         }
@@ -35,19 +35,33 @@ impl Motion {
     }
 
     /// The poses, by rising stamps.
-    pub(super) fn into_poses(self) -> Vec<(Stamp, Pose2)> {
+    pub(crate) fn into_poses(self) -> Vec<(Stamp, Pose2)> {
         self.poses
     }
 
-    pub(super) fn is_empty(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool {
         self.poses.is_empty()
+    }
+
+    /// What is wrong where the odometry holds no time of the scans, which are between `first` and `last`.
+    pub(crate) fn other_clock(&self, (first, last): (Stamp, Stamp)) -> Option<String> {
+        let scans = format!("scans from {first} s to {last} s");
+        let (Some((from, _)), Some((to, _))) = (self.poses.first(), self.poses.last()) else {
+            return Some(format!("{scans}, but no odometry in it"));
+        };
+        let overlaps = *from - last <= POSE_HOLD_S && first - *to <= POSE_HOLD_S;
+        (!overlaps).then(|| {
+            format!(
+                "{scans}, odometry from {from} s to {to} s: their clocks differ, expected one clock for both"
+            )
+        })
     }
 
     /// The pose at a time, between the poses about it.
     ///
     /// # Errors
     /// When there is none near.
-    pub(super) fn at(&self, stamp: Stamp) -> Result<Pose2, String> {
+    pub(crate) fn at(&self, stamp: Stamp) -> Result<Pose2, String> {
         let after = self.poses.partition_point(|(at, _)| *at < stamp);
         let (before, next) = (after.checked_sub(1).and_then(|i| self.poses.get(i)), self.poses.get(after));
         let near = |pose: &&(Stamp, Pose2)| (pose.0 - stamp).abs() <= POSE_HOLD_S;

@@ -1,15 +1,13 @@
 //! Parser of PGM pictures, the cells of a map_server map.
 
-use crate::IoError;
 use crate::excerpt::excerpt;
-use std::path::Path;
 
 /// Most pixels of a map: 2^28, 819 m a side at 5 cm.
-const MAX_PIXELS: usize = 1 << 28;
+pub(crate) const MAX_PIXELS: usize = 1 << 28;
 
 /// A grey picture, row by row from the top.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Pgm {
+pub(crate) struct Pgm {
     pub width: usize,
     pub height: usize,
     /// White, 1 to 65,535.
@@ -19,27 +17,24 @@ pub(super) struct Pgm {
 
 impl Pgm {
     /// A PGM of Netpbm: `P5` (binary, 8 or 16 bits) or `P2` (text), comments from `#` to the end of their line.
-    pub fn parse(path: &Path, bytes: &[u8]) -> Result<Self, IoError> {
+    pub fn parse(bytes: &[u8]) -> Result<Self, String> {
         let mut scan = Scanner { bytes, at: 2 };
         let binary = match bytes.get(..2) {
             Some(b"P5") => true,
             Some(b"P2") => false,
-            _ => return Err(IoError::malformed(path, "not a PGM picture: it starts with neither P5 nor P2")),
+            _ => return Err("not a PGM picture: it starts with neither P5 nor P2".to_owned()),
         };
-        let malformed = |problem: String| IoError::malformed(path, problem);
-        let width = scan.number("width").map_err(malformed)?;
-        let height = scan.number("height").map_err(malformed)?;
-        let maxval = scan.number("maxval").map_err(malformed)?;
+        let width = scan.number("width")?;
+        let height = scan.number("height")?;
+        let maxval = scan.number("maxval")?;
         let pixels = width.checked_mul(height).filter(|pixels| (1..=MAX_PIXELS).contains(pixels));
-        let pixels = pixels.ok_or_else(|| {
-            malformed(format!("size is {width} x {height} px, expected 1 to {MAX_PIXELS} px in all"))
-        })?;
+        let pixels = pixels
+            .ok_or_else(|| format!("size is {width} x {height} px, expected 1 to {MAX_PIXELS} px in all"))?;
         let maxval = u16::try_from(maxval).ok().filter(|&maxval| maxval > 0);
-        let maxval = maxval.ok_or_else(|| malformed("maxval is not in 1 to 65535".to_owned()))?;
-        let values =
-            if binary { scan.binary(pixels, maxval) } else { scan.text(pixels) }.map_err(malformed)?;
+        let maxval = maxval.ok_or_else(|| "maxval is not in 1 to 65535".to_owned())?;
+        let values = if binary { scan.binary(pixels, maxval) } else { scan.text(pixels) }?;
         match values.iter().position(|&value| value > maxval) {
-            Some(i) => Err(malformed(format!("pixel {i} is {}, expected 0 to maxval {maxval}", values[i]))),
+            Some(i) => Err(format!("pixel {i} is {}, expected 0 to maxval {maxval}", values[i])),
             None => Ok(Self { width, height, maxval, values }),
         }
     }
@@ -112,7 +107,7 @@ mod tests {
     use proptest::prelude::*;
 
     fn parse(bytes: &[u8]) -> Result<Pgm, String> {
-        Pgm::parse(Path::new("m.pgm"), bytes).map_err(|error| error.to_string())
+        Pgm::parse(bytes)
     }
 
     #[test]
@@ -141,7 +136,7 @@ mod tests {
             (b"P2 2 1 9\n1 10", "pixel 1 is 10, expected 0 to maxval 9"),
             (b"P2 2 1 9\n1 -1", "pixel 1 is '-1', expected a number"),
         ] {
-            assert_eq!(parse(bytes).unwrap_err(), format!("m.pgm: {problem}"));
+            assert_eq!(parse(bytes).unwrap_err(), problem);
         }
     }
 

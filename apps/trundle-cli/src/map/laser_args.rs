@@ -1,0 +1,54 @@
+//! The options of `trundle map` that are about a laser log.
+
+use clap::Args;
+use trundle::io::LaserLogOptions;
+
+/// The laser of a log, and the topics of a bag.
+#[derive(Debug, Args)]
+pub struct LaserArgs {
+    /// How far ahead of the base the laser sits, m [default: what the log says]
+    #[arg(long, value_name = "M", allow_hyphen_values = true)]
+    pub laser_x: Option<f64>,
+    /// How far the laser is turned to the left, deg [default: what the log says]
+    #[arg(long, value_name = "DEG", allow_hyphen_values = true)]
+    pub laser_turn: Option<f64>,
+    /// The laser hangs upside down.
+    #[arg(long)]
+    pub upside_down: bool,
+    /// Ranges from here on are no returns, m [default: the reading at which many end]
+    #[arg(long, value_name = "M")]
+    pub max_range: Option<f64>,
+    /// The topic of the scans, in a CARMEN log the name of the lines, as RAWLASER2 [default: that with the most scans]
+    #[arg(long, value_name = "TOPIC")]
+    pub scan_topic: Option<String>,
+    /// The topic of a bag's odometry, or of its transforms [default: that with the most odometry]
+    #[arg(long, value_name = "TOPIC")]
+    pub odom_topic: Option<String>,
+}
+
+impl LaserArgs {
+    /// How the log is read.
+    pub fn options(&self) -> LaserLogOptions {
+        LaserLogOptions {
+            laser_x: self.laser_x,
+            laser_turn: self.laser_turn.map(f64::to_radians),
+            upside_down: self.upside_down,
+            max_range: self.max_range,
+            scan_topic: self.scan_topic.clone(),
+            odometry_topic: self.odom_topic.clone(),
+        }
+    }
+
+    /// The first option that is given.
+    pub fn first_given(&self) -> Option<&'static str> {
+        let options = [
+            ("--laser-x", self.laser_x.is_some()),
+            ("--laser-turn", self.laser_turn.is_some()),
+            ("--upside-down", self.upside_down),
+            ("--max-range", self.max_range.is_some()),
+            ("--scan-topic", self.scan_topic.is_some()),
+            ("--odom-topic", self.odom_topic.is_some()),
+        ];
+        options.into_iter().find(|(_, is_given)| *is_given).map(|(name, _)| name)
+    }
+}

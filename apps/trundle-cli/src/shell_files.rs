@@ -1,0 +1,61 @@
+//! `trundle completions` and `trundle man`: what a shell and a manual need of the command line.
+
+use crate::console;
+use crate::outcome::Outcome;
+use clap::Args;
+use clap_complete::Shell;
+use clap_mangen::Man;
+use std::path::{Path, PathBuf};
+use trundle::app::AppError;
+
+/// `trundle completions`
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Examples: trundle completions bash > ~/.local/share/bash-completion/completions/trundle\n          \
+    trundle completions zsh > ~/.zfunc/_trundle\n          \
+    trundle completions fish > ~/.config/fish/completions/trundle.fish"
+)]
+pub struct CompletionsArgs {
+    /// The shell.
+    pub shell: Shell,
+}
+
+/// `trundle man`
+#[derive(Debug, Args)]
+#[command(after_help = "Example: trundle man ~/.local/share/man/man1 && man trundle-slam")]
+pub struct ManArgs {
+    /// Folder for the pages: trundle.1, trundle-slam.1 and so on.
+    pub dir: PathBuf,
+}
+
+/// `trundle completions SHELL`, of the program's command line.
+pub fn print_completions(args: &CompletionsArgs, mut program: clap::Command) -> Result<Outcome, AppError> {
+    let mut script = Vec::new();
+    clap_complete::generate(args.shell, &mut program, "trundle", &mut script);
+    console::print(String::from_utf8_lossy(&script).trim_end());
+    Ok(Outcome::Reached)
+}
+
+/// `trundle man DIR`, of the program's command line.
+pub fn write_man_pages(args: &ManArgs, program: clap::Command) -> Result<Outcome, AppError> {
+    std::fs::create_dir_all(&args.dir).map_err(|error| unwritable(&args.dir, &error))?;
+    let mut command = program.disable_help_subcommand(true);
+    command.build();
+    write_pages(&command, &args.dir)?;
+    Ok(Outcome::Reached)
+}
+
+/// The page of a command, and those of its subcommands.
+fn write_pages(command: &clap::Command, dir: &Path) -> Result<(), AppError> {
+    let man = Man::new(command.clone());
+    let path = dir.join(man.get_filename());
+    let mut page = Vec::new();
+    man.render(&mut page)
+        .and_then(|()| std::fs::write(&path, page))
+        .map_err(|error| unwritable(&path, &error))?;
+    command.get_subcommands().try_for_each(|part| write_pages(part, dir))
+}
+
+fn unwritable(path: &Path, error: &std::io::Error) -> AppError {
+    AppError::Environment(format!("cannot write {}: {error}", path.display()))
+}

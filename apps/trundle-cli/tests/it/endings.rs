@@ -1,0 +1,168 @@
+//! Every ending keeps what there is: Ctrl-C, SIGTERM, kill -9, a full disk.
+#![cfg(unix)]
+
+use crate::program::{summary, text, trundle};
+use std::fs;
+use std::path::Path;
+use std::process::{Child, Command, Output, Stdio};
+use std::time::{Duration, Instant};
+
+/// A program is given up after this time \[s\].
+const PATIENCE_S: u64 = 120;
+
+fn start(args: &[&str]) -> Child {
+    Command::new(env!("CARGO_BIN_EXE_trundle"))
+        .args(args)
+        .stdin(Stdio::null())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap()
+}
+
+/// Whether a hidden folder of results is in `folder`.
+fn writes_in(folder: &Path) -> bool {
+    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
+    entries.map(|entry| entry.file_name()).any(|name| name.to_string_lossy().starts_with(".trundle-"))
+}
+
+fn wait_until(what: &str, is_so: impl Fn() -> bool) {
+    let begun = Instant::now();
+    while !is_so() {
+        assert!(begun.elapsed() < Duration::from_secs(PATIENCE_S), "{what}");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+}
+
+/// Runs `trundle args --out OUT`, where OUT is in `folder`, and sends `signal` when it writes.
+fn signalled(args: &[&str], out: &Path, signal: &str) -> Output {
+    let child = start(args);
+    wait_until("the program writes nothing", || writes_in(out.parent().unwrap()));
+    let kill = Command::new("kill").args([signal, &child.id().to_string()]).status();
+    assert!(kill.unwrap().success());
+    child.wait_with_output().unwrap()
+}
+
+/// The program was stopped by Ctrl-C or SIGTERM, said so, and its results are there.
+fn assert_stopped(output: &Output, out: &Path, (code, signal): (i32, &str)) {
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(code), "{said}");
+    let place = format!("; the results so far are in {}", out.display());
+    assert!(said.contains(&format!("stopped by {signal} after ")) && said.contains(&place), "{said}");
+    assert_eq!(summary(out)["interrupted"], true);
+    assert!(!writes_in(out.parent().unwrap()));
+}
+
+const CTRL_C: (i32, &str) = (130, "Ctrl-C");
+const TERMINATED: (i32, &str) = (143, "SIGTERM");
+
+#[test]
+fn a_stopped_drive_is_a_recording_and_stopped_slam_and_map_write_what_they_know() {
+    let scratch = tempfile::tempdir().unwrap();
+    let [data, slam, map] = ["data", "slam", "map"].map(|name| scratch.path().join(name));
+    let sim = [
+        "sim",
+        "office",
+        "--laser",
+        "urg-04lx",
+        "--duration",
+        "100000",
+        "--rate",
+        "10",
+        "--quiet",
+        "--record",
+    ];
+    let child = start(&[&sim[..], &[text(&data)]].concat());
+    wait_until("nothing is recorded", || {
+        let hidden =
+            fs::read_dir(scratch.path()).unwrap().flatten().map(|entry| entry.path().join("out/rgb"));
+        hidden.into_iter().any(|images| fs::read_dir(images).is_ok_and(|images| images.count() >= 16))
+    });
+    assert!(Command::new("kill").args(["-TERM", &child.id().to_string()]).status().unwrap().success());
+    assert_stopped(&child.wait_with_output().unwrap(), &data, TERMINATED);
+    assert!(summary(&data)["images"].as_u64().unwrap() >= 16);
+
+    let args = ["slam", text(&data), "--height=0.45", "--tilt=8", "--out", text(&slam)];
+    let output = signalled(&args, &slam, "-INT");
+    assert_stopped(&output, &slam, CTRL_C);
+    assert!(String::from_utf8_lossy(&output.stderr).contains(" frames;"), "N of M frames");
+
+    let log = data.join("laser.log");
+    let output = signalled(&["map", text(&log), "--particles=900", "--out", text(&map)], &map, "-INT");
+    assert_stopped(&output, &map, CTRL_C);
+    assert!(map.join("map.yaml").exists() && map.join("trajectory.txt").exists());
+}
+
+#[test]
+fn a_stopped_run_and_its_stopped_replay_have_their_results() {
+    let scratch = tempfile::tempdir().unwrap();
+    let [live, again, trials] = ["live", "again", "trials"].map(|name| scratch.path().join(name));
+    let demo = ["demo", "--direct", "--seed", "2", "--record", "all", "--out", text(&live)];
+    let child = start(&demo);
+    std::thread::sleep(Duration::from_secs(4));
+    assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
+    assert_stopped(&child.wait_with_output().unwrap(), &live, CTRL_C);
+    let recording = live.join("recording.mcap");
+    let output = trundle(&["replay", text(&recording), "--quiet", "--out", text(&again)]);
+    assert_eq!(output.status.code(), Some(1), "{}", String::from_utf8_lossy(&output.stderr));
+    assert_eq!(fs::read(live.join("map.pgm")).unwrap(), fs::read(again.join("map.pgm")).unwrap());
+    assert_eq!(summary(&again)["interrupted"], true);
+
+    let output = signalled(&["replay", text(&recording), "--out", text(&trials)], &trials, "-TERM");
+    assert_stopped(&output, &trials, TERMINATED);
+}
+
+#[test]
+fn a_command_that_has_nothing_yet_ends_at_once() {
+    let scratch = tempfile::tempdir().unwrap();
+    let voc = scratch.path().join("own.voc");
+    let child = start(&[
+        "vocabulary",
+        "train",
+        "--scene",
+        "house",
+        "--views",
+        "5000",
+        "--quiet",
+        "--out",
+        text(&voc),
+    ]);
+    std::thread::sleep(Duration::from_secs(2));
+    let asked = Instant::now();
+    assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(130));
+    assert!(asked.elapsed() < Duration::from_secs(5));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("stopped by Ctrl-C; nothing was written"));
+    assert_eq!(fs::read_dir(scratch.path()).unwrap().count(), 0);
+}
+
+#[test]
+fn what_a_killed_run_left_is_named_and_swept() {
+    let scratch = tempfile::tempdir().unwrap();
+    let out = scratch.path().join("out");
+    let output = signalled(&["demo", "--direct", "--out", text(&out)], &out, "-KILL");
+    assert_eq!(output.status.code(), None);
+    assert!(writes_in(scratch.path()) && !out.exists());
+    let output = trundle(&["dock", "hong24-b", "--out", text(&out)]);
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success() && said.contains("left by a run that was killed"), "{said}");
+    assert!(!writes_in(scratch.path()) && out.exists());
+}
+
+/// A file that may not grow is as a disk that is full.
+#[test]
+fn what_a_full_disk_does_not_take_is_named_and_the_rest_is_there() {
+    let scratch = tempfile::tempdir().unwrap();
+    let out = scratch.path().join("out");
+    let program = env!("CARGO_BIN_EXE_trundle");
+    let script = format!("trap '' XFSZ; ulimit -f 8; exec {program} dock hong24-b --out {}", text(&out));
+    let output = Command::new("sh").args(["-c", &script]).stdin(Stdio::null()).output().unwrap();
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(3), "{said}");
+    assert!(said.contains("the other results are in"), "{said}");
+    assert_eq!(summary(&out)["command"], "dock");
+    assert!(!out.join("dock.png").exists());
+    let output = trundle(&["dock", "hong24-a", "--write-problem", "/dev/full"]);
+    assert_eq!(output.status.code(), Some(3), "{}", String::from_utf8_lossy(&output.stderr));
+}

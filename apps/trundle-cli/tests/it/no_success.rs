@@ -1,0 +1,43 @@
+//! Runs that end without having done what they are for: exit code 1, and the likely cause.
+
+use crate::program::trundle;
+use std::fmt::Write as _;
+use std::path::Path;
+
+/// A CARMEN log of ten scans of 181 beams, all of one range.
+fn log_of(dir: &Path, range: f64) -> String {
+    let file = dir.join("robot.log");
+    let mut text = String::new();
+    for i in 0..10 {
+        let (x, stamp) = (f64::from(i) * 0.5, f64::from(i));
+        write!(text, "FLASER 181").unwrap();
+        (0..181).for_each(|beam| write!(text, " {:.2}", range * (1.0 + f64::from(beam) * 1e-3)).unwrap());
+        writeln!(text, " {x} 0 0 {x} 0 0 {stamp} robot {stamp}").unwrap();
+    }
+    std::fs::write(&file, text).unwrap();
+    file.to_str().unwrap().to_owned()
+}
+
+#[test]
+fn a_map_of_ranges_that_are_zero_or_in_millimetres_is_no_success() {
+    for (range, cause) in [(0.0, "no beam of any scan met anything"), (4000.0, "are they in millimetres?")] {
+        let scratch = tempfile::tempdir().unwrap();
+        let log = log_of(scratch.path(), range);
+        let out = scratch.path().join("out");
+        let run = trundle(&["map", &log, "--quiet", "--out", out.to_str().unwrap()]);
+        assert_eq!(run.status.code(), Some(1), "{range}");
+        let said = String::from_utf8(run.stderr).unwrap();
+        assert!(said.contains(cause), "{range}: {said}");
+        let summary = std::fs::read_to_string(out.join("summary.json")).unwrap();
+        assert!(summary.contains("\"success\": false"), "{summary}");
+    }
+}
+
+#[test]
+fn docking_in_a_scan_that_met_nothing_is_no_success() {
+    let scratch = tempfile::tempdir().unwrap();
+    let log = log_of(scratch.path(), 0.0);
+    let run = trundle(&["dock", &log, "--to=0.3,0,0", "--out", scratch.path().join("out").to_str().unwrap()]);
+    assert_eq!(run.status.code(), Some(1));
+    assert!(String::from_utf8(run.stderr).unwrap().contains("no beam of the scan met anything"));
+}

@@ -1,0 +1,31 @@
+//! Reading of inputs whose warnings are logged.
+
+use crate::AppError;
+use std::path::Path;
+use trundle_core::{OccupancyGrid, Pose3, Stamp};
+use trundle_io::{TrajectoryFile, Warnings, read_map_file, read_trajectory_file};
+
+/// Logs the warnings of an input, one line a kind.
+pub fn log_warnings(warnings: &Warnings) {
+    warnings.iter().for_each(|warning| tracing::warn!("{warning}"));
+}
+
+/// A map of a file; its warnings are logged.
+///
+/// # Errors
+/// Those of [`read_map_file`].
+pub fn read_map(file: &Path) -> Result<OccupancyGrid, AppError> {
+    let map = read_map_file(file)?;
+    log_warnings(&map.warnings);
+    Ok(map.grid)
+}
+
+/// A trajectory of a file in any of its forms; its warnings are logged.
+///
+/// # Errors
+/// Those of [`read_trajectory_file`].
+pub fn read_trajectory(file: &Path) -> Result<Vec<(Stamp, Pose3)>, AppError> {
+    let TrajectoryFile { poses, warnings, .. } = read_trajectory_file(file)?;
+    log_warnings(&warnings);
+    Ok(poses)
+}

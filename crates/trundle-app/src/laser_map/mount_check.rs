@@ -1,0 +1,245 @@
+//! The search for the mount of a laser that the odometry does not contradict: mirrored, and turned by quarters.
+
+use super::counts::ScanCounts;
+use std::f64::consts::FRAC_PI_2;
+use trundle_core::{Pose2, Vector2, wrap_angle};
+use trundle_io::{LaserLog, LaserLogScan, LaserMount};
+
+/// Largest number of steps of each kind that are compared. Source: ours.
+const MAX_STEPS: usize = 24;
+/// Number of steps below which they say nothing of the mount. Source: ours.
+const MIN_STEPS: usize = 8;
+/// Largest number of points of a scan that are compared. Source: ours.
+const MAX_POINTS: usize = 180;
+/// Least turn of a step that tells a mirrored laser \[rad\]. Source: ours.
+const MIN_STEP_TURN_RAD: f64 = 0.15;
+/// Largest turn of a step \[rad\]. Beyond it two scans share too little. Source: ours.
+const MAX_STEP_TURN_RAD: f64 = 0.8;
+/// Least length of a step that tells a turned laser \[m\]. Source: ours.
+const MIN_STEP_LENGTH_M: f64 = 0.2;
+/// Largest length of a step \[m\]. Beyond it two scans share too little. Source: ours.
+const MAX_STEP_LENGTH_M: f64 = 1.0;
+/// Number of scans after the first among which a step ends. Source: ours.
+const MAX_STEP_SCANS: usize = 40;
+/// Distance from which a point has no match \[m\]. Source: ours.
+const MAX_MATCH_DISTANCE_M: f64 = 0.3;
+/// Error of the better mount as a share of that of the mount taken. Above it none is named. Source: ours.
+const MAX_ERROR_SHARE: f64 = 0.6;
+
+/// Share of the steps whose odometry is not believed \[1\]. From it on there is a warning whatever the mount. Source: ours.
+const MIN_SHARE_NOT_BELIEVED: f64 = 0.3;
+/// Number of scans below which that share says nothing. Source: ours.
+const MIN_SCANS: usize = 10;
+
+/// A sentence for a log whose laser is probably mounted in another way, or whose odometry the scans contradict at many steps.
+pub(super) fn mount_hint(log: &LaserLog, counts: &ScanCounts) -> Option<String> {
+    let (doubted, all) = (counts.slips + counts.jumps, counts.processed);
+    let is_doubted = all >= MIN_SCANS && doubted as f64 >= MIN_SHARE_NOT_BELIEVED * all as f64;
+    let contradiction = format!("the scans contradict the odometry at {doubted} of {all} steps");
+    match better_mount(log).map(|mount| described(mount, log.mount)) {
+        Some(mount) if is_doubted => Some(format!("{contradiction}: {mount}")),
+        Some(mount) => Some(format!("the scans fit the odometry better in another way: {mount}")),
+        None if is_doubted => Some(format!(
+            "{contradiction}, and no other mount of the laser fits better; are the poses those of this robot, in m and rad?"
+        )),
+        None => None,
+    }
+}
+
+/// What a mount is called, and the options for it.
+fn described(mount: LaserMount, taken: LaserMount) -> String {
+    let degrees = mount.turn.to_degrees().round();
+    let mut options = String::new();
+    if mount.upside_down {
+        options.push_str(" --upside-down");
+    }
+    if wrap_angle(mount.turn - taken.turn).abs() > 1e-6 {
+        options.push_str(&format!(" --laser-turn={degrees}"));
+    }
+    let side = match (mount.upside_down, taken.upside_down) {
+        (true, false) => "upside down",
+        (false, true) => "the right way up",
+        _ => "",
+    };
+    let turn = if options.contains("turn") { format!("turned by {degrees} deg") } else { String::new() };
+    let how =
+        if side.is_empty() || turn.is_empty() { format!("{side}{turn}") } else { format!("{side}, {turn}") };
+    let options =
+        if options.is_empty() { "leave out --upside-down".to_owned() } else { format!("try{options}") };
+    format!("the laser seems to be mounted {how}: {options}")
+}
+
+/// The mount that fits the odometry of the log's steps clearly better than the one taken, if there is one.
+pub(super) fn better_mount(log: &LaserLog) -> Option<LaserMount> {
+    let steps = steps(&log.scans);
+    if steps.len() < MIN_STEPS {
+        return None;
+    }
+    let taken = mean_error(&steps, Reading { is_mirrored: false, turn: 0.0 })?;
+    let quarters = (0..4).map(|quarter| f64::from(quarter) * FRAC_PI_2);
+    let readings = quarters.flat_map(|turn| [false, true].map(|is_mirrored| Reading { is_mirrored, turn }));
+    let errors = readings.filter_map(|reading| Some((mean_error(&steps, reading)?, reading)));
+    let (error, best) = errors.min_by(|(a, _), (b, _)| a.total_cmp(b))?;
+    (error < MAX_ERROR_SHARE * taken).then(|| best.applied_to(log.mount))
+}
+
+/// Another reading of a scan's angles: about the laser, mirrored at the base's x axis first, then turned to the left.
+#[derive(Debug, Clone, Copy)]
+struct Reading {
+    is_mirrored: bool,
+    /// rad.
+    turn: f64,
+}
+
+impl Reading {
+    /// The mount that gives this reading of scans that were read with `mount`.
+    fn applied_to(self, mount: LaserMount) -> LaserMount {
+        let turn = if self.is_mirrored { self.turn - mount.turn } else { self.turn + mount.turn };
+        LaserMount { turn: wrap_angle(turn), upside_down: mount.upside_down != self.is_mirrored }
+    }
+
+    fn point(self, origin: Vector2, point: Vector2) -> Vector2 {
+        let from_laser = point - origin;
+        let side = if self.is_mirrored { -from_laser.y } else { from_laser.y };
+        let (sin, cos) = self.turn.sin_cos();
+        origin + Vector2::new(cos * from_laser.x - sin * side, sin * from_laser.x + cos * side)
+    }
+}
+
+/// Two scans, and the later base seen from the earlier by odometry.
+struct Step<'a> {
+    first: &'a LaserLogScan,
+    second: &'a LaserLogScan,
+    first_from_second: Pose2,
+}
+
+/// Steps that turn and steps that lead on, spread over the log.
+fn steps(scans: &[LaserLogScan]) -> Vec<Step<'_>> {
+    let is_near =
+        |step: &Pose2| step.theta.abs() < MAX_STEP_TURN_RAD && step.position().norm() < MAX_STEP_LENGTH_M;
+    let turns = |step: &Pose2| is_near(step) && step.theta.abs() >= MIN_STEP_TURN_RAD;
+    let leads_on = |step: &Pose2| is_near(step) && step.position().norm() >= MIN_STEP_LENGTH_M;
+    let mut found = spread(steps_of(scans, &turns));
+    found.extend(spread(steps_of(scans, &leads_on)));
+    found
+}
+
+/// From each scan the first step that is wanted.
+fn steps_of<'a>(scans: &'a [LaserLogScan], is_wanted: &dyn Fn(&Pose2) -> bool) -> Vec<Step<'a>> {
+    let step_from = |(i, first): (usize, &'a LaserLogScan)| {
+        let later = scans[i + 1..].iter().take(MAX_STEP_SCANS);
+        let mut steps = later.map(|second| (second, first.odom_from_base.inverse() * second.odom_from_base));
+        let (second, first_from_second) = steps.find(|(_, step)| is_wanted(step))?;
+        Some(Step { first, second, first_from_second })
+    };
+    scans.iter().enumerate().filter_map(step_from).collect()
+}
+
+fn spread(steps: Vec<Step<'_>>) -> Vec<Step<'_>> {
+    let stride = steps.len().div_ceil(MAX_STEPS).max(1);
+    steps.into_iter().step_by(stride).collect()
+}
+
+/// The mean distance of the points of the later scans from those of the earlier ones, m; `None` without points.
+fn mean_error(steps: &[Step<'_>], reading: Reading) -> Option<f64> {
+    let (mut sum, mut count) = (0.0, 0);
+    for step in steps {
+        let first = points(step.first, reading);
+        for point in points(step.second, reading) {
+            let point = step.first_from_second.transform(point);
+            let distances = first.iter().map(|other| (other - point).norm_squared());
+            sum += distances.fold(MAX_MATCH_DISTANCE_M.powi(2), f64::min).sqrt();
+            count += 1;
+        }
+    }
+    (count > 0).then(|| sum / f64::from(count))
+}
+
+fn points(scan: &LaserLogScan, reading: Reading) -> Vec<Vector2> {
+    let hits: Vec<Vector2> = scan.scan.hits().collect();
+    let stride = hits.len().div_ceil(MAX_POINTS).max(1);
+    hits.into_iter().step_by(stride).map(|point| reading.point(scan.scan.origin(), point)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::TAU;
+    use trundle_core::{Beam, Scan, Stamp};
+
+    /// A drive on a curve in a room of 6 x 4 m with a box, seen by a laser that is mounted as `truth` and read as upright ahead.
+    fn drive(truth: LaserMount) -> LaserLog {
+        let scans = (0..36).map(|i| {
+            let at = f64::from(i) * 0.17;
+            let odom_from_base = Pose2::new(2.0 + at.sin(), 1.5 + 0.6 * (1.0 - at.cos()), at);
+            let hand = if truth.upside_down { -1.0 } else { 1.0 };
+            let beam = |k: i32| {
+                let angle = f64::from(k) * TAU / 90.0 - 2.0;
+                let heading = odom_from_base.theta + truth.turn + hand * angle;
+                Beam::Hit { range: range(odom_from_base.position(), heading) }
+            };
+            let beams: Vec<Beam> = (0..60).map(beam).collect();
+            let stamp = Stamp::from_nanos(i64::from(i) * 100_000_000);
+            let scan = Scan::new(stamp, Vector2::zeros(), -2.0, TAU / 90.0, beams).unwrap();
+            LaserLogScan { odom_from_base, scan }
+        });
+        LaserLog { scans: scans.collect(), ..LaserLog::default() }
+    }
+
+    /// The range to the walls and to a box at one of them, m.
+    fn range(from: Vector2, heading: f64) -> f64 {
+        let along = Vector2::new(heading.cos(), heading.sin());
+        (1..300)
+            .map(|k| 0.02 * f64::from(k))
+            .find(|r| {
+                let p = from + along * *r;
+                let is_in_box = (4.0..5.0).contains(&p.x) && p.y > 3.0;
+                !(0.0..6.0).contains(&p.x) || !(0.0..4.0).contains(&p.y) || is_in_box
+            })
+            .unwrap_or(6.0)
+    }
+
+    #[test]
+    fn a_laser_as_it_is_read_has_no_better_mount() {
+        assert_eq!(better_mount(&drive(LaserMount::default())), None);
+        assert_eq!(better_mount(&LaserLog::default()), None);
+    }
+
+    #[test]
+    fn mirrored_and_turned_lasers_are_named() {
+        for (quarters, upside_down) in [(-1.0, false), (2.0, false), (0.0, true), (1.0, true)] {
+            let truth = LaserMount { turn: quarters * FRAC_PI_2, upside_down };
+            let found = better_mount(&drive(truth)).unwrap();
+            assert_eq!(found.upside_down, upside_down, "{truth:?}: {found:?}");
+            assert!(wrap_angle(found.turn - truth.turn).abs() < 1e-9, "{truth:?}: {found:?}");
+        }
+    }
+
+    #[test]
+    fn a_hint_names_the_options() {
+        let hint = |truth| {
+            let counts = ScanCounts { processed: 60, slips: 40, ..ScanCounts::default() };
+            mount_hint(&drive(truth), &counts).unwrap()
+        };
+        let upside_down = hint(LaserMount { turn: 0.0, upside_down: true });
+        assert_eq!(
+            upside_down,
+            "the scans contradict the odometry at 40 of 60 steps: the laser seems to be mounted upside down: try --upside-down"
+        );
+        let turned = hint(LaserMount { turn: FRAC_PI_2, upside_down: false });
+        assert!(turned.ends_with("mounted turned by 90 deg: try --laser-turn=90"), "{turned}");
+        assert!(hint(LaserMount::default()).contains("no other mount"));
+        let few = ScanCounts { processed: 60, slips: 10, ..ScanCounts::default() };
+        assert_eq!(mount_hint(&drive(LaserMount::default()), &few), None);
+        let behind = LaserMount { turn: std::f64::consts::PI, upside_down: false };
+        let found = mount_hint(&drive(behind), &few).unwrap();
+        assert!(found.starts_with("the scans fit the odometry better in another way: the laser"), "{found}");
+    }
+
+    #[test]
+    fn readings_change_a_mount_that_was_given() {
+        let given = LaserMount { turn: 0.5, upside_down: true };
+        let mirrored = Reading { is_mirrored: true, turn: FRAC_PI_2 }.applied_to(given);
+        assert_eq!(mirrored, LaserMount { turn: FRAC_PI_2 - 0.5, upside_down: false });
+    }
+}

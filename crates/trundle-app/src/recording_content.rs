@@ -1,0 +1,74 @@
+//! What a recording of a run holds, and how large it becomes.
+
+use serde::{Deserialize, Serialize};
+use trundle_core::PinholeCamera;
+
+/// What a recording of a run holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+#[non_exhaustive]
+pub enum RecordingContent {
+    /// Nothing is recorded.
+    None,
+    /// Everything but images: wheels, gyro, bumper, scans, truth, twists, poses and trajectories. It cannot be replayed.
+    Events,
+    /// Everything: a replay gives the same bytes.
+    #[default]
+    All,
+}
+
+/// Size of the events without images in a second of a run \[bytes\]. Source: recordings of the demo.
+const EVENT_BYTES_PER_S: f64 = 80e3;
+/// Size of a pixel of colour and depth, as JPEG and PNG \[bytes\]. Source: recordings of the demo.
+const BYTES_PER_PIXEL: f64 = 1.15;
+/// Number of bytes in a megabyte.
+const BYTES_PER_MB: f64 = 1e6;
+
+impl RecordingContent {
+    /// Whether this is all, which setups of recordings do not name.
+    pub(crate) fn is_all(&self) -> bool {
+        *self == Self::All
+    }
+
+    /// Size of a second of a recording \[bytes\] with images of `camera` at `rate_hz`.
+    #[must_use]
+    pub fn bytes_per_second(self, camera: &PinholeCamera, rate_hz: f64) -> f64 {
+        let pixels = (camera.width() * camera.height()) as f64;
+        match self {
+            Self::None => 0.0,
+            Self::Events => EVENT_BYTES_PER_S,
+            Self::All => EVENT_BYTES_PER_S + BYTES_PER_PIXEL * pixels * rate_hz,
+        }
+    }
+
+    /// What a run of at most `limit` s will write, in a sentence, with images of `camera` at `rate_hz`.
+    #[must_use]
+    pub fn announcement(self, camera: &PinholeCamera, rate_hz: f64, limit: f64) -> String {
+        let rate = self.bytes_per_second(camera, rate_hz) / BYTES_PER_MB;
+        let most = rate * limit;
+        match self {
+            Self::None => "Nothing is recorded.".to_owned(),
+            Self::Events => format!(
+                "Records events without images, about {rate:.2} MB a second of the robot's time, at most {most:.0} MB in {limit:.0} s."
+            ),
+            Self::All => format!(
+                "Records events and images, about {rate:.1} MB a second of the robot's time, at most {most:.0} MB in {limit:.0} s."
+            ),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use trundle_runtime::RobotConfig;
+
+    #[test]
+    fn the_announcement_names_rate_and_total() {
+        let camera = RobotConfig::default().camera;
+        let text = |content: RecordingContent| content.announcement(&camera, 15.0, 100.0);
+        assert_eq!(text(RecordingContent::None), "Nothing is recorded.");
+        assert!(text(RecordingContent::Events).contains("at most 8 MB in 100 s"));
+        assert!(text(RecordingContent::All).contains("MB a second"));
+    }
+}

@@ -1,0 +1,151 @@
+//! The user's request to stop, by Ctrl-C or SIGTERM: one for the whole process, which every long loop reads.
+
+use crate::AppError;
+use std::path::Path;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
+use trundle_io::OutputFolder;
+
+/// The number of the first signal; 0 without one.
+static SIGNAL: AtomicUsize = AtomicUsize::new(0);
+/// What was done when a loop ended because of the signal; `None` while none has.
+static STOPPED_AFTER: Mutex<Option<String>> = Mutex::new(None);
+
+/// A signal that asks the program to end.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct StopSignal(usize);
+
+/// Number of the signal of Ctrl-C.
+const SIGINT_NUMBER: usize = 2;
+/// Exit code of a program that a signal has ended, less the signal's number. Source: POSIX shells.
+const SIGNAL_EXIT_CODE: u8 = 128;
+
+impl StopSignal {
+    /// The exit code: 130 for Ctrl-C, 143 for SIGTERM.
+    #[must_use]
+    pub fn exit_code(self) -> u8 {
+        SIGNAL_EXIT_CODE + u8::try_from(self.0).unwrap_or_default()
+    }
+
+    /// Its name for a person.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        if self.0 == SIGINT_NUMBER { "Ctrl-C" } else { "SIGTERM" }
+    }
+}
+
+/// Whether the user has asked to stop: the loop that asks ends now. `done`: what it has done, as "3 of 7 frames".
+pub fn is_requested(done: impl FnOnce() -> String) -> bool {
+    if SIGNAL.load(Ordering::Relaxed) == 0 {
+        return false;
+    }
+    STOPPED_AFTER.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert_with(done);
+    true
+}
+
+/// The signal and what was done until then, where it has ended a loop.
+#[must_use]
+pub fn stopped() -> Option<(StopSignal, String)> {
+    let done = STOPPED_AFTER.lock().unwrap_or_else(PoisonError::into_inner).clone()?;
+    Some((StopSignal(SIGNAL.load(Ordering::Relaxed)), done))
+}
+
+/// Notes in the summary of `folder` that the user ended the work, where a signal has.
+///
+/// # Errors
+/// When the summary cannot be read or written.
+pub fn note_in(folder: &OutputFolder) -> Result<(), AppError> {
+    let file = folder.staged("summary.json");
+    if stopped().is_none() || !file.exists() {
+        return Ok(());
+    }
+    let mut summary = read_json(&file)?;
+    summary["interrupted"] = true.into();
+    summary["success"] = false.into();
+    Ok(folder.write("summary.json", format!("{summary:#}\n").as_bytes())?)
+}
+
+fn read_json(file: &Path) -> Result<serde_json::Value, AppError> {
+    let bytes = std::fs::read(file).map_err(AppError::input)?;
+    serde_json::from_slice(&bytes).map_err(AppError::input)
+}
+
+/// Takes Ctrl-C and SIGTERM as requests, which the loops of the command under way read. The second signal ends the program
+/// at once.
+///
+/// # Errors
+/// When the system refuses.
+#[cfg(unix)]
+pub fn listen() -> Result<(), AppError> {
+    use signal_hook::consts::{SIGINT, SIGTERM};
+    use signal_hook::flag;
+    use std::sync::Arc;
+    use std::sync::atomic::AtomicBool;
+    let is_second = Arc::<AtomicBool>::default();
+    for signal in [SIGINT, SIGTERM] {
+        let number = usize::try_from(signal).unwrap_or_default();
+        let code = i32::from(StopSignal(number).exit_code());
+        // In this order: the second signal finds the flag set.
+        flag::register_conditional_shutdown(signal, code, Arc::clone(&is_second)).map_err(refused)?;
+        flag::register(signal, Arc::clone(&is_second)).map_err(refused)?;
+    }
+    on_signal(|signal| _ = SIGNAL.compare_exchange(0, signal.0, Ordering::Relaxed, Ordering::Relaxed))
+}
+
+/// Ends the program at the first Ctrl-C or SIGTERM, after `say`: for commands that have written nothing until their end.
+///
+/// # Errors
+/// When the system refuses.
+#[cfg(unix)]
+pub fn end_at_once(say: impl Fn(StopSignal) + Send + 'static) -> Result<(), AppError> {
+    on_signal(move |signal| {
+        say(signal);
+        std::process::exit(i32::from(signal.exit_code()));
+    })
+}
+
+#[cfg(unix)]
+fn on_signal(act: impl Fn(StopSignal) + Send + 'static) -> Result<(), AppError> {
+    use signal_hook::consts::{SIGINT, SIGTERM};
+    let mut signals = signal_hook::iterator::Signals::new([SIGINT, SIGTERM]).map_err(refused)?;
+    let wait = move || {
+        signals.forever().for_each(|signal| act(StopSignal(usize::try_from(signal).unwrap_or_default())));
+    };
+    std::thread::Builder::new().name("signals".to_owned()).spawn(wait).map_err(refused)?;
+    Ok(())
+}
+
+#[cfg(unix)]
+fn refused(error: std::io::Error) -> AppError {
+    AppError::Environment(format!("cannot listen for Ctrl-C: {error}"))
+}
+
+/// Elsewhere Ctrl-C ends the program at once.
+#[cfg(not(unix))]
+pub fn listen() -> Result<(), AppError> {
+    Ok(())
+}
+
+/// Elsewhere Ctrl-C ends the program at once.
+#[cfg(not(unix))]
+pub fn end_at_once(_say: impl Fn(StopSignal) + Send + 'static) -> Result<(), AppError> {
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn exit_codes_and_names_are_those_of_shells() {
+        let [interrupt, terminate] = [2, 15].map(StopSignal);
+        assert_eq!((interrupt.exit_code(), interrupt.name()), (130, "Ctrl-C"));
+        assert_eq!((terminate.exit_code(), terminate.name()), (143, "SIGTERM"));
+    }
+
+    #[test]
+    fn without_a_signal_nothing_stops() {
+        assert!(!is_requested(|| unreachable!("nobody asked")));
+        assert_eq!(stopped(), None);
+    }
+}

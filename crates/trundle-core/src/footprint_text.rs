@@ -1,0 +1,77 @@
+//! Footprints as text: a radius, corners, or the form of Nav2's costmaps.
+
+use crate::{Footprint, Vector2};
+use std::str::FromStr;
+
+impl FromStr for Footprint {
+    type Err = String;
+
+    /// A radius (`0.2`), corners (`0.3,0.2 -0.3,0.2 ...`), or corners as Nav2 writes them (`[[0.3, 0.2], [-0.3, 0.2], ...]`), m.
+    fn from_str(text: &str) -> Result<Self, String> {
+        if !text.contains([',', '[']) {
+            return Self::disc(number(text)?).map_err(|invalid| invalid.to_string());
+        }
+        Self::polygon(footprint_corners(text)?).map_err(|invalid| invalid.to_string())
+    }
+}
+
+/// The corners of a footprint as text, in either form, base frame, m.
+///
+/// # Errors
+/// Names the corner that is none.
+pub fn footprint_corners(text: &str) -> Result<Vec<Vector2>, String> {
+    let text = text.trim();
+    let Some(list) = text.strip_prefix('[') else {
+        return text.split_whitespace().map(corner).collect();
+    };
+    let unfinished = || format!("footprint is {text}, expected [[X, Y], [X, Y], [X, Y], ...] in m");
+    let list = list.trim_end().strip_suffix(']').ok_or_else(unfinished)?;
+    let (pairs, rest) = list.rsplit_once(']').ok_or_else(unfinished)?;
+    if !rest.trim().trim_end_matches(',').is_empty() {
+        return Err(unfinished());
+    }
+    let pair =
+        |pair: &str| pair.trim_start_matches([',', ' ', '\t', '\n', '\r']).strip_prefix('[').map(corner);
+    pairs.split(']').map(|text| pair(text).unwrap_or_else(|| Err(unfinished()))).collect()
+}
+
+fn corner(pair: &str) -> Result<Vector2, String> {
+    let (x, y) = pair.split_once(',').ok_or_else(|| format!("corner '{pair}', expected X,Y"))?;
+    Ok(Vector2::new(number(x)?, number(y)?))
+}
+
+fn number(word: &str) -> Result<f64, String> {
+    word.trim().parse::<f64>().map_err(|_| format!("'{word}' in the footprint is no number, expected m"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn footprints_are_radii_or_convex_corners() {
+        assert_eq!("0.2".parse(), Ok(Footprint::Disc { radius: 0.2 }));
+        let ours: Footprint = "0.3,0.2 -0.3,0.2 -0.3,-0.2 0.3,-0.2".parse().unwrap();
+        for nav2 in [
+            "[[0.3,0.2],[-0.3,0.2],[-0.3,-0.2],[0.3,-0.2]]",
+            "[ [0.3, 0.2], [-0.3, 0.2], [-0.3, -0.2], [0.3, -0.2] ]",
+            " [[0.3,0.2] , [-0.3,0.2],\n[-0.3,-0.2],[0.3,-0.2],] ",
+        ] {
+            assert_eq!(nav2.parse(), Ok(ours.clone()), "{nav2}");
+        }
+    }
+
+    #[test]
+    fn what_is_no_footprint_is_named() {
+        let refused = |text: &str| text.parse::<Footprint>().unwrap_err();
+        assert_eq!(refused("wide"), "'wide' in the footprint is no number, expected m");
+        assert_eq!(refused("0.3,0.2 0.1"), "corner '0.1', expected X,Y");
+        assert_eq!(refused("0,0 1,0 0.2,0.2 0,1"), "footprint is turned inward at corner 1, expected convex");
+        assert!(refused("0,0 1,0 2,0").contains("footprint area is 0 m^2"));
+        assert_eq!(refused("[[0.3,0.2],[a,1]]"), "'a' in the footprint is no number, expected m");
+        for broken in ["[[0.3,0.2],[0.1,0.2]", "[", "[]", "[[0.3,0.2],3]", "[[0.3,0.2] 3]", "[0.3,0.2]"] {
+            assert!(refused(broken).contains("expected [[X, Y], [X, Y]"), "{broken}: {}", refused(broken));
+        }
+        assert!(refused("[[0.3],[1,2]]").contains("corner '0.3', expected X,Y"));
+    }
+}

@@ -1,0 +1,47 @@
+//! Runs of an experiment side by side, until all are done or the user asks to stop.
+
+use rayon::prelude::*;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use trundle_app::{AppError, Progress, stop};
+
+/// Makes the runs, as many at once as there are threads; the results are in the order of the plans. Where the user asks to
+/// stop, those of the runs that are done. `unit`: what a run is called, as "worlds".
+///
+/// # Errors
+/// The first plan that cannot be carried out; [`AppError::Stopped`] where no run is done.
+pub fn run_each<P: Send, T: Send>(
+    plans: Vec<P>,
+    unit: &str,
+    progress: &Progress,
+    run: impl Fn(P) -> Result<T, AppError> + Sync,
+) -> Result<Vec<T>, AppError> {
+    let (done, total) = (AtomicUsize::new(0), plans.len());
+    let count = || format!("{} of {total} {unit}", done.load(Ordering::Relaxed));
+    let results = plans.into_par_iter().map(|plan| {
+        if stop::is_requested(count) {
+            return Ok(None);
+        }
+        let result = run(plan);
+        if stop::is_requested(count) {
+            return Ok(None); // the run may have been broken off
+        }
+        done.fetch_add(1, Ordering::Relaxed);
+        progress.show_count(done.load(Ordering::Relaxed), total, unit);
+        result.map(Some)
+    });
+    let results: Vec<T> = results.collect::<Result<Vec<_>, AppError>>()?.into_iter().flatten().collect();
+    if results.is_empty() && total > 0 { Err(AppError::Stopped) } else { Ok(results) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn results_are_in_the_order_of_the_plans_and_the_first_refusal_is_told() {
+        let double = |n: u32| if n < 9 { Ok(2 * n) } else { Err(AppError::Input(n.to_string())) };
+        let run = |plans| run_each(plans, "runs", &Progress::hidden(), double);
+        assert_eq!(run(vec![3, 1, 2]).unwrap(), [6, 2, 4]);
+        assert_eq!(run(vec![1, 9]).unwrap_err().to_string(), "9");
+    }
+}

@@ -1,0 +1,90 @@
+//! The scan of a CARMEN line in the base frame: mount, angles, direction.
+
+use super::line::LaserLine;
+use super::lines::LogLines;
+use super::ranges::is_range;
+use crate::laser_log::{LaserLogOptions, check_sweep};
+use std::f64::consts::PI;
+use trundle_core::{Beam, Pose2, Scan};
+
+/// Where the laser of the lines `name` sits: as the options say, else the poses of the lines, else by the name.
+pub(super) fn mount(
+    name: &str,
+    lasers: &[(usize, &LaserLine)],
+    lines: &LogLines,
+    options: &LaserLogOptions,
+) -> Pose2 {
+    let known = mount_by_poses(lasers).unwrap_or_else(|| mount_by_name(name, lines.offset));
+    let (x, theta) = (options.laser_x.unwrap_or(known.x), options.laser_turn.unwrap_or(known.theta));
+    Pose2::new(x, known.y, theta)
+}
+
+/// The front laser looks ahead from its offset, the rear one back from the base; others sit on the base.
+fn mount_by_name(name: &str, front_offset: f64) -> Pose2 {
+    match name {
+        "RLASER" | "ROBOTLASER2" | "RAWLASER2" => Pose2::new(0.0, 0.0, PI),
+        "RAWLASER3" | "RAWLASER4" => Pose2::IDENTITY,
+        _ => Pose2::new(front_offset, 0.0, 0.0),
+    }
+}
+
+/// Where the laser sits by the poses of the lines, when all agree on it and it is no more than 2 m away.
+fn mount_by_poses(lasers: &[(usize, &LaserLine)]) -> Option<Pose2> {
+    let place = |laser: &LaserLine| {
+        laser.poses.map(|[odom_from_laser, odom_from_base]| odom_from_base.inverse() * odom_from_laser)
+    };
+    let first = place(lasers.first()?.1)?;
+    let agree = |laser: &LaserLine| {
+        place(laser).is_some_and(|place| {
+            let off = first.inverse() * place;
+            off.position().norm() < 0.01 && off.theta.abs() < 0.01
+        })
+    };
+    let away = first.position().norm() > 1e-6 || first.theta.abs() > 1e-6;
+    (away && first.position().norm() < 2.0 && lasers.iter().all(|(_, laser)| agree(laser))).then_some(first)
+}
+
+/// The scan of a line, its beams from right to left; a range from `limit` m on, or a bad one, saw nothing.
+///
+/// # Errors
+/// When the log's parameters give more than a turn for this number of beams.
+pub(super) fn scan_of(
+    laser: &LaserLine,
+    mount: Pose2,
+    lines: &LogLines,
+    limit: f64,
+    upside_down: bool,
+) -> Result<Scan, String> {
+    let [first, step] = angles(laser, lines)?;
+    let beam = |&range: &f64| match is_range(range) && range < limit {
+        true => Beam::Hit { range },
+        false => Beam::Unseen,
+    };
+    let mut beams: Vec<Beam> = laser.ranges.iter().map(beam).collect();
+    let hand = if upside_down { -1.0 } else { 1.0 };
+    let is_clockwise = hand * step < 0.0;
+    let mut bearing = hand * first;
+    if is_clockwise {
+        beams.reverse();
+        bearing = hand * (first + step * (beams.len() - 1) as f64);
+    }
+    Scan::new(laser.stamp, mount.position(), mount.theta + bearing, step.abs(), beams)
+        .map_err(|invalid| invalid.to_string())
+}
+
+/// The angle of the first beam and the step: the line's own, else by the log's parameters, else 180 degrees.
+fn angles(laser: &LaserLine, lines: &LogLines) -> Result<[f64; 2], String> {
+    if let Some(angles) = laser.angles {
+        return Ok(angles);
+    }
+    let count = laser.ranges.len();
+    let steps = (count - count % 2).max(1) as f64;
+    let field_of_view = match (lines.field_of_view, lines.resolution) {
+        (Some(field_of_view), _) => field_of_view,
+        (None, Some(resolution)) => resolution * steps,
+        (None, None) => PI,
+    };
+    let (first, step) = (-field_of_view / 2.0, field_of_view / steps);
+    check_sweep(["the start angle by PARAM", "the angle step by PARAM"], first, step, count)?;
+    Ok([first, step])
+}

@@ -1,0 +1,138 @@
+//! The lines of a text file, plain or compressed with gzip, one at a time.
+
+use crate::IoError;
+use flate2::bufread::MultiGzDecoder;
+use std::fs::File;
+use std::io::{BufRead, BufReader, Read};
+use std::path::{Path, PathBuf};
+
+/// Longest line \[bytes\]. A longer one is refused: it bounds the memory that a compressed file can ask for. A scan of the largest
+/// number of beams is shorter. Source: ours.
+const MAX_LINE_BYTES: u64 = 1 << 23;
+/// The first bytes of a gzip file (RFC 1952).
+const GZIP_MAGIC: [u8; 2] = [0x1f, 0x8b];
+/// The mark of UTF-8 that some editors put at the beginning of a file.
+const BYTE_ORDER_MARK: &str = "\u{feff}";
+
+/// Reads a text file line by line.
+pub(super) struct TextLines {
+    path: PathBuf,
+    reader: Box<dyn BufRead>,
+    is_compressed: bool,
+    number: usize,
+    buffer: Vec<u8>,
+}
+
+impl TextLines {
+    pub(super) fn open(path: &Path) -> Result<Self, IoError> {
+        let file = File::open(path).map_err(IoError::system(path, "read"))?;
+        Self::new(path, BufReader::new(file))
+    }
+
+    pub(super) fn new(path: &Path, mut file: impl BufRead + 'static) -> Result<Self, IoError> {
+        let start = file.fill_buf().map_err(IoError::system(path, "read"))?;
+        let is_compressed = start.starts_with(&GZIP_MAGIC);
+        let reader: Box<dyn BufRead> =
+            if is_compressed { Box::new(BufReader::new(MultiGzDecoder::new(file))) } else { Box::new(file) };
+        Ok(Self { path: path.to_owned(), reader, is_compressed, number: 0, buffer: Vec::new() })
+    }
+
+    /// The next line that says something, with its number from 1: not blank, no comment (`#`).
+    pub(super) fn next_content(&mut self) -> Result<Option<(usize, &str)>, IoError> {
+        while self.read_line()? {
+            let (start, end) = content(self.text()?);
+            if start < end {
+                return Ok(Some((self.number, &self.text()?[start..end])));
+            }
+        }
+        Ok(None)
+    }
+
+    /// Reads the next line into the buffer; whether there was one.
+    fn read_line(&mut self) -> Result<bool, IoError> {
+        self.buffer.clear();
+        let mut limited = self.reader.by_ref().take(MAX_LINE_BYTES);
+        match limited.read_until(b'\n', &mut self.buffer) {
+            Ok(0) => return Ok(false),
+            Ok(_) => self.number += 1,
+            Err(error) if self.is_compressed => {
+                let problem = format!("the gzip data is broken after line {}: {error}", self.number);
+                return Err(IoError::malformed(&self.path, problem));
+            }
+            Err(error) => return Err(IoError::system(&self.path, "read")(error)),
+        }
+        if self.buffer.len() as u64 == MAX_LINE_BYTES && !self.buffer.ends_with(b"\n") {
+            let problem = format!("is longer than {MAX_LINE_BYTES} bytes, expected lines of a CARMEN log");
+            return Err(IoError::line(&self.path, self.number, problem));
+        }
+        Ok(true)
+    }
+
+    fn text(&self) -> Result<&str, IoError> {
+        std::str::from_utf8(&self.buffer)
+            .map_err(|_| IoError::line(&self.path, self.number, "is not UTF-8 text"))
+    }
+}
+
+/// The first byte of a line that says something and the one past the last; equal where the line says nothing.
+fn content(line: &str) -> (usize, usize) {
+    let rest = line.trim_start_matches(BYTE_ORDER_MARK).trim_start();
+    let text = rest.trim_end();
+    let start = line.len() - rest.len();
+    if text.starts_with('#') { (start, start) } else { (start, start + text.len()) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use flate2::{Compression, write::GzEncoder};
+    use std::io::{Cursor, Write};
+
+    fn lines(bytes: Vec<u8>) -> Result<Vec<(usize, String)>, String> {
+        let name = |error: IoError| error.to_string();
+        let mut reader = TextLines::new(Path::new("a.log"), Cursor::new(bytes)).map_err(name)?;
+        let mut all = Vec::new();
+        while let Some((number, line)) = reader.next_content().map_err(name)? {
+            all.push((number, line.to_owned()));
+        }
+        Ok(all)
+    }
+
+    fn zipped(bytes: &[u8]) -> Vec<u8> {
+        let mut encoder = GzEncoder::new(Vec::new(), Compression::fast());
+        encoder.write_all(bytes).unwrap();
+        encoder.finish().unwrap()
+    }
+
+    #[test]
+    fn marks_ends_of_lines_and_comments_say_nothing() {
+        let found = lines("\u{feff}# x\r\n a b \r\n\r\nc".into()).unwrap();
+        assert_eq!(found, [(2, "a b".to_owned()), (4, "c".to_owned())]);
+        assert_eq!(lines("\u{feff}a".into()).unwrap(), [(1, "a".to_owned())]);
+        assert_eq!(lines(Vec::new()).unwrap(), []);
+    }
+
+    #[test]
+    fn a_compressed_file_has_the_same_lines() {
+        let text = "a\nb\n";
+        assert_eq!(lines(zipped(text.as_bytes())).unwrap(), lines(text.into()).unwrap());
+        let two = [zipped(b"a\n"), zipped(b"b\n")].concat();
+        assert_eq!(lines(two).unwrap(), lines(text.into()).unwrap());
+    }
+
+    #[test]
+    fn what_is_no_text_is_refused_by_line() {
+        assert_eq!(lines(b"a\n\xff".to_vec()).unwrap_err(), "a.log, line 2: is not UTF-8 text");
+        let many: Vec<u8> =
+            (0..9000_u32).flat_map(|i| format!("{}\n", i.wrapping_mul(2_654_435_761)).into_bytes()).collect();
+        let whole = zipped(&many);
+        let cut = lines(whole[..whole.len() / 2].to_vec()).unwrap_err();
+        assert!(cut.starts_with("a.log: the gzip data is broken after line "), "{cut}");
+    }
+
+    #[test]
+    fn a_compressed_file_cannot_ask_for_much_memory() {
+        let bomb = zipped(&vec![b'7'; 1 << 25]);
+        assert!(lines(bomb).unwrap_err().starts_with("a.log, line 1: is longer than 8388608 bytes"));
+    }
+}

@@ -1,0 +1,99 @@
+//! How far the depth images of an input reach, and the likely cause where no depth can be used.
+
+use trundle_core::DepthImage;
+
+/// Depth below which a depth camera measures nothing, m. Source: Kinect v1 and V2, RealSense D435.
+const MIN_USABLE_M: f32 = 0.3;
+/// Depth above which indoor depth is not used, m. Source: \[Li18\], Kinect V2.
+const MAX_USABLE_M: f32 = 8.0;
+/// Rows and columns from one pixel that counts to the next. Source: ours, 1,200 pixels of a 640 x 480 image.
+const PIXEL_STEP: usize = 16;
+/// Typical depth of a room's walls, m: a depth scale is judged by how near the mean depth comes to it. Source: ours.
+const TYPICAL_DEPTH_M: f64 = 2.0;
+/// Depth scales in use, units a metre: metres, 0.1 mm, mm, and TUM's 0.2 mm. Source: docs/formats.md.
+const KNOWN_SCALES: [f64; 4] = [1.0, 1000.0, 5000.0, 10_000.0];
+
+/// Counts of sampled depth pixels.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct DepthStatistics {
+    pixels: usize,
+    without_depth: usize,
+    too_near: usize,
+    too_far: usize,
+    /// Sum of the logarithms of all depths above 0.
+    log_sum: f64,
+}
+
+impl DepthStatistics {
+    /// Counts every 16th pixel of every 16th row.
+    pub fn count(&mut self, depth: &DepthImage) {
+        let (width, height) = (depth.width(), depth.height());
+        for row in (PIXEL_STEP / 2..height).step_by(PIXEL_STEP) {
+            for col in (PIXEL_STEP / 2..width).step_by(PIXEL_STEP) {
+                self.count_pixel(depth.row(row)[col]);
+            }
+        }
+    }
+
+    fn count_pixel(&mut self, metres: f32) {
+        self.pixels += 1;
+        if metres > 0.0 && metres.is_finite() {
+            self.log_sum += f64::from(metres).ln();
+            self.too_near += usize::from(metres < MIN_USABLE_M);
+            self.too_far += usize::from(metres > MAX_USABLE_M);
+        } else {
+            self.without_depth += 1;
+        }
+    }
+
+    /// Why no depth can be used, and the likely cause; `None` where some can, or no image was counted. `scale`: depth units a metre.
+    #[must_use]
+    pub fn problem(&self, scale: f64) -> Option<String> {
+        let with_depth = self.pixels - self.without_depth;
+        if self.pixels == 0 || with_depth > self.too_near + self.too_far {
+            return None;
+        }
+        let problem = format!("no depth image has a pixel between {MIN_USABLE_M} and {MAX_USABLE_M} m");
+        if with_depth == 0 {
+            return Some(format!("{problem}: all are 0 (no depth)"));
+        }
+        let mean = (self.log_sum / with_depth as f64).exp();
+        let off = |other: f64| (mean * scale / other / TYPICAL_DEPTH_M).ln().abs();
+        let best = KNOWN_SCALES.into_iter().min_by(|a, b| off(*a).total_cmp(&off(*b))).unwrap_or(scale);
+        Some(format!(
+            "{problem}: the typical depth is {mean:.3} m at depth_scale = {scale}; with {best} it would be {:.2} m",
+            mean * scale / best
+        ))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(metres: f32) -> DepthStatistics {
+        let mut statistics = DepthStatistics::default();
+        statistics.count(&DepthImage::filled(64, 48, metres));
+        statistics
+    }
+
+    #[test]
+    fn usable_depth_has_no_problem() {
+        assert_eq!(of(2.0).problem(1000.0), None);
+        assert_eq!(DepthStatistics::default().problem(1000.0), None);
+        let mut mixed = of(0.0);
+        mixed.count(&DepthImage::filled(64, 48, 1.0));
+        assert_eq!(mixed.problem(1000.0), None);
+    }
+
+    #[test]
+    fn the_cause_is_named() {
+        assert!(of(0.0).problem(1000.0).unwrap().ends_with("all are 0 (no depth)"));
+        let metres_as_mm = of(2e-3).problem(1000.0).unwrap();
+        assert!(metres_as_mm.contains("with 1 it would be 2.00 m"), "{metres_as_mm}");
+        let mm_as_metres = of(2000.0).problem(1.0).unwrap();
+        assert!(mm_as_metres.contains("with 1000 it would be 2.00 m"), "{mm_as_metres}");
+        let tum_as_mm = of(10.0).problem(1000.0).unwrap();
+        assert!(tum_as_mm.contains("with 5000 it would be 2.00 m"), "{tum_as_mm}");
+    }
+}

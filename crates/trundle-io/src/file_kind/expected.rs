@@ -1,0 +1,121 @@
+//! What a command takes, and the refusal of files of another kind.
+
+use super::{FileKind, words};
+use crate::IoError;
+use FileKind as K;
+use std::path::Path;
+
+/// What an argument stands for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Expected {
+    /// A map, or a mask, by its YAML file.
+    Map,
+    /// The room of a simulation.
+    Scene,
+    /// Laser scans with odometry.
+    LaserLog,
+    /// Obstacles about a goal.
+    Docking,
+    /// RGB-D images.
+    Sequence,
+    /// A recorded run.
+    Recording,
+    /// The intrinsics of a camera.
+    Camera,
+    /// Poses with stamps.
+    Trajectory,
+    /// Settings of a robot, faults, places or a scene.
+    Toml,
+    /// Way-points and lanes.
+    Graph,
+    /// A saved particle filter.
+    FilterMap,
+    /// A saved landmark map.
+    VisualMap,
+    /// The memory of a run.
+    Checkpoint,
+}
+
+impl Expected {
+    /// Refuses a file or folder that is surely of another kind; the kind of the others. A file that no mark gives away passes:
+    /// its reader knows more.
+    ///
+    /// # Errors
+    /// When the file cannot be read, or is of another kind: then it says which, and what to do.
+    pub fn check(self, path: &Path) -> Result<FileKind, IoError> {
+        let found = FileKind::of(path)?;
+        if self.takes(found) {
+            return Ok(found);
+        }
+        let wants_map = self.kinds().contains(&K::MapYaml);
+        Err(IoError::WrongKind {
+            path: path.to_owned(),
+            found: words::name(found),
+            expected: self.name(),
+            remedy: words::remedy(found, wants_map),
+        })
+    }
+
+    fn takes(self, found: FileKind) -> bool {
+        found == K::Stream || self.kinds().contains(&found)
+    }
+
+    /// The kinds that are taken. Text of no known kind is taken by readers of text, who name its line.
+    fn kinds(self) -> &'static [FileKind] {
+        match self {
+            Self::Map => &[K::MapYaml, K::Yaml, K::Json, K::Text],
+            Self::Scene => &[K::Toml, K::Glb, K::Gltf, K::MapYaml],
+            Self::LaserLog => &[
+                K::CarmenLog,
+                K::Text,
+                K::Gzip,
+                K::Ros2Mcap,
+                K::OtherMcap,
+                K::Zstd,
+                K::Ros1Bag,
+                K::Ros2Sqlite,
+                K::Ros2BagFolder,
+            ],
+            Self::Docking => &[K::MapYaml, K::CarmenLog, K::Gzip, K::CorridorProblems, K::Text],
+            Self::Sequence => &[K::SequenceFolder],
+            Self::Recording => &[K::TrundleRecording, K::OtherMcap],
+            Self::Camera => &[
+                K::CameraToml,
+                K::OrbSlamYaml,
+                K::StellaVslamYaml,
+                K::RosCameraYaml,
+                K::Open3dCamera,
+                K::Toml,
+                K::Yaml,
+                K::Json,
+                K::Text,
+            ],
+            Self::Trajectory => {
+                &[K::TumTrajectory, K::PlanarTrajectory, K::KittiTrajectory, K::EurocTrajectory, K::Text]
+            }
+            Self::Toml => &[K::Toml, K::CameraToml, K::Text, K::Empty],
+            Self::Graph => &[K::GeoJson, K::Json, K::Text],
+            Self::FilterMap => &[K::FilterMap],
+            Self::VisualMap => &[K::VisualMap],
+            Self::Checkpoint => &[K::Checkpoint],
+        }
+    }
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Map => "a map's YAML file",
+            Self::Scene => "a built-in scene, a scene file (.toml), a glTF scene or a map's YAML file",
+            Self::LaserLog => "a CARMEN log, a ROS bag or a TUM RGB-D folder",
+            Self::Docking => "a map's YAML file, a CARMEN log or a file of docking problems",
+            Self::Sequence => "a TUM RGB-D folder (rgb.txt and depth.txt, or associations.txt)",
+            Self::Recording => "a trundle recording (recording.mcap)",
+            Self::Camera => "a camera file (TOML, ORB-SLAM's, stella_vslam's or ROS's YAML, Open3D's JSON)",
+            Self::Trajectory => "a trajectory (TUM, KITTI or EuRoC form)",
+            Self::Toml => "a TOML file",
+            Self::Graph => "a GeoJSON file of way-points",
+            Self::FilterMap => "a saved filter (filter.map of `trundle map`)",
+            Self::VisualMap => "a visual map (visual.map of `trundle slam`)",
+            Self::Checkpoint => "a checkpoint of `trundle demo`",
+        }
+    }
+}

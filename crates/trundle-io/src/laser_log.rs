@@ -1,0 +1,94 @@
+//! The log of a laser with odometry, as the readers of CARMEN logs and of bags return it.
+
+mod empty_map;
+mod motion;
+mod options;
+mod sources;
+mod sweep;
+
+pub use empty_map::empty_map_cause;
+pub(crate) use motion::Motion;
+pub use options::LaserLogOptions;
+pub use sources::LaserLogSources;
+pub(crate) use sources::{chosen, is_named};
+pub(crate) use sweep::{MAX_BEAMS, check_sweep};
+
+use crate::Warnings;
+use trundle_core::{Beam, Pose2, Scan, Stamp};
+
+/// A scan with the odometry of its moment.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LaserLogScan {
+    /// The pose by odometry.
+    pub odom_from_base: Pose2,
+    /// The scan, base frame. Beams without a return or with a bad range are unseen.
+    pub scan: Scan,
+}
+
+/// How a laser is turned on the base.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct LaserMount {
+    /// To the left, rad.
+    pub turn: f64,
+    /// Whether its beams run from left to right.
+    pub upside_down: bool,
+}
+
+/// A line, or a message of a bag, that could not be used.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct LaserLogSkip {
+    /// The line, or the message's number in the bag, from 1.
+    pub line: usize,
+    /// What is wrong with it.
+    pub problem: String,
+}
+
+/// The log of a laser with odometry.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct LaserLog {
+    /// The scans, by rising stamps.
+    pub scans: Vec<LaserLogScan>,
+    /// The poses by odometry, by rising stamps.
+    pub odometry: Vec<(Stamp, Pose2)>,
+    /// Lines or messages that were skipped.
+    pub skipped: Vec<LaserLogSkip>,
+    /// Ranges that were negative, zero, no number, in a CARMEN log infinite, in a bag below `range_min`.
+    pub bad_ranges: usize,
+    /// The first line, or message, with such a range.
+    pub first_bad_range: Option<usize>,
+    /// Ranges from here on were taken for no returns, m.
+    pub max_range: Option<f64>,
+    /// Why the depth images that the scans were made of have no usable depth; `None` where they have, or the log is a laser's.
+    pub depth_problem: Option<String>,
+    /// The topics of a bag, or the lines of a CARMEN log, that made the log, and those left alone.
+    pub sources: LaserLogSources,
+    /// How the laser was taken to be mounted.
+    pub mount: LaserMount,
+}
+
+impl LaserLog {
+    /// The scans without one beam that met anything.
+    #[must_use]
+    pub fn scans_without_return(&self) -> usize {
+        let is_blind =
+            |scan: &&LaserLogScan| !scan.scan.beams().iter().any(|beam| matches!(beam, Beam::Hit { .. }));
+        self.scans.iter().filter(is_blind).count()
+    }
+
+    /// What was skipped and which ranges are bad, one warning a kind.
+    #[must_use]
+    pub fn warnings(&self) -> Warnings {
+        let mut warnings = Warnings::default();
+        for skip in &self.skipped {
+            warnings.add(&format!("skipped, {}", skip.problem), &format!("entry {}", skip.line));
+        }
+        if let Some(first) = self.first_bad_range {
+            let problem = format!(
+                "{} ranges are negative, zero, infinite, no number or below the laser's least range and taken as unseen, the first in",
+                self.bad_ranges
+            );
+            warnings.add(&problem, &format!("entry {first}"));
+        }
+        warnings
+    }
+}

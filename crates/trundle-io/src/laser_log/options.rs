@@ -1,0 +1,30 @@
+//! The settings of reading a laser log: the laser's mount, its maximum range, the topics.
+
+use trundle_core::{Invalid, require_finite, require_in, require_positive};
+
+/// What a log does not say, and which of its topics are taken.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct LaserLogOptions {
+    /// How far ahead of the base the laser sits, m; by default what the log says: the poses of a CARMEN log's lines, else its
+    /// `PARAM robot_frontlaser_offset`, else 0; the transforms of a bag.
+    pub laser_x: Option<f64>,
+    /// How far the laser is turned to the left, rad; by default what the log says, else 0.
+    pub laser_turn: Option<f64>,
+    /// The laser hangs upside down: its beams run from left to right.
+    pub upside_down: bool,
+    /// Ranges from here on are no returns, m; by default what the line says, else the reading at which many end.
+    pub max_range: Option<f64>,
+    /// The topic of the scans, in a CARMEN log the name of the lines; by default that with the most scans.
+    pub scan_topic: Option<String>,
+    /// The topic of the odometry of a bag; by default that with the most `Odometry`, else the transforms below `odom`.
+    pub odometry_topic: Option<String>,
+}
+
+impl LaserLogOptions {
+    /// Refuses what no laser can have.
+    pub(crate) fn validate(&self) -> Result<(), Invalid> {
+        self.laser_x.map_or(Ok(0.0), |x| require_in("laser_x", x, "m", -20.0, 20.0))?;
+        self.laser_turn.map_or(Ok(0.0), |turn| require_finite("laser_turn", turn, "rad"))?;
+        self.max_range.map_or(Ok(()), |range| require_positive("max_range", range, "m").map(drop))
+    }
+}

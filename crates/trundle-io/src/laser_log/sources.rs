@@ -1,0 +1,56 @@
+//! The topics that a log was made of, and the choice among them.
+
+use std::collections::BTreeMap;
+
+/// The topics of a bag, or the lines of a CARMEN log, that made a laser log.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct LaserLogSources {
+    /// Of the scans; empty where the log has no topics.
+    pub scans: String,
+    /// Of the odometry.
+    pub odometry: String,
+    /// Topics of scans or odometry that were left alone, with the number of their messages.
+    pub left: Vec<(String, usize)>,
+}
+
+/// The topic asked for, or else the one with the most messages, the first of equals.
+///
+/// # Errors
+/// Names the topics that there are when the one asked for is none of them.
+pub(crate) fn chosen(
+    counts: &BTreeMap<String, usize>,
+    asked: Option<&str>,
+    kind: &str,
+) -> Result<String, String> {
+    let most = counts.values().max().ok_or_else(|| format!("no {kind} in it"))?;
+    let found = match asked {
+        Some(asked) => counts.keys().find(|topic| is_named(topic, asked)),
+        None => counts.iter().find(|(_, count)| *count == most).map(|(topic, _)| topic),
+    };
+    found.cloned().ok_or_else(|| {
+        let all: Vec<String> = counts.iter().map(|(topic, count)| format!("{topic} ({count})")).collect();
+        format!("no {kind} on {}, expected one of: {}", asked.unwrap_or_default(), all.join(", "))
+    })
+}
+
+/// Whether a topic is the one asked for; a slash before the name says nothing.
+pub(crate) fn is_named(topic: &str, asked: &str) -> bool {
+    topic.trim_start_matches('/') == asked.trim_start_matches('/')
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_topic_asked_for_or_the_largest_is_chosen() {
+        let counts = BTreeMap::from([("/a".to_owned(), 3), ("/b".to_owned(), 7), ("/c".to_owned(), 7)]);
+        assert_eq!(chosen(&counts, None, "scan").unwrap(), "/b");
+        assert_eq!(chosen(&counts, Some("a"), "scan").unwrap(), "/a");
+        assert_eq!(
+            chosen(&counts, Some("/d"), "scan").unwrap_err(),
+            "no scan on /d, expected one of: /a (3), /b (7), /c (7)"
+        );
+        assert_eq!(chosen(&BTreeMap::new(), Some("/d"), "scan").unwrap_err(), "no scan in it");
+    }
+}

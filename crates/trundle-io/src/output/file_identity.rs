@@ -1,0 +1,63 @@
+//! Whether two paths lead to the same file or folder.
+
+use std::path::{Path, PathBuf};
+
+/// The file or folder that a path leads to, links followed: device and inode, elsewhere the canonical path.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+pub(super) struct FileIdentity(Inner);
+
+#[cfg(unix)]
+type Inner = (u64, u64);
+#[cfg(not(unix))]
+type Inner = PathBuf;
+
+impl FileIdentity {
+    /// `None` where nothing is.
+    #[cfg(unix)]
+    pub(super) fn of(path: &Path) -> Option<Self> {
+        use std::os::unix::fs::MetadataExt;
+        std::fs::metadata(path).ok().map(|meta| Self((meta.dev(), meta.ino())))
+    }
+
+    /// `None` where nothing is.
+    #[cfg(not(unix))]
+    pub(super) fn of(path: &Path) -> Option<Self> {
+        std::fs::canonicalize(path).ok().map(Self)
+    }
+}
+
+/// The path from the root, links followed as far as there is something.
+pub(super) fn resolved(path: &Path) -> PathBuf {
+    let absolute = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+    let found = absolute.ancestors().find_map(|part| Some((part, std::fs::canonicalize(part).ok()?)));
+    match found {
+        Some((part, real)) => match absolute.strip_prefix(part) {
+            Ok(rest) if rest.as_os_str().is_empty() => real,
+            Ok(rest) => real.join(rest),
+            Err(_) => absolute,
+        },
+        None => absolute,
+    }
+}
+
+/// Whether both paths lead to the same place, or would when it is made.
+pub(super) fn is_same(a: &Path, b: &Path) -> bool {
+    match (FileIdentity::of(a), FileIdentity::of(b)) {
+        (Some(a), Some(b)) => a == b,
+        (None, None) => resolved(a) == resolved(b),
+        _ => false,
+    }
+}
+
+/// Whether the two folders lie on different disks, so that nothing can be renamed from one to the other.
+#[cfg(unix)]
+pub(super) fn is_on_other_disk(a: &Path, b: &Path) -> bool {
+    let disk = |path| FileIdentity::of(path).map(|identity| identity.0.0);
+    matches!((disk(a), disk(b)), (Some(a), Some(b)) if a != b)
+}
+
+/// Whether the two folders lie on different disks, where the system tells.
+#[cfg(not(unix))]
+pub(super) fn is_on_other_disk(_a: &Path, _b: &Path) -> bool {
+    false
+}

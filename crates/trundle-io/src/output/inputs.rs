@@ -1,0 +1,177 @@
+//! The files that a command reads: no output may take their place.
+
+use super::file_identity::{FileIdentity, is_same, resolved};
+use super::tree::files_below;
+use crate::IoError;
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+
+/// The files and folders that a command reads, with the files that these name: no output may take their place.
+#[derive(Debug, Clone, Default)]
+pub struct InputFiles {
+    paths: Vec<PathBuf>,
+}
+
+/// Endings of text files that name other files, as a map names its picture.
+const NAMING: [&str; 5] = ["yaml", "yml", "toml", "txt", "gltf"];
+/// Size of a text file that is searched for names of other files \[bytes\]. A larger one is not searched. Source: ours.
+const MAX_NAMING_BYTES: u64 = 1 << 20;
+
+impl InputFiles {
+    /// These inputs, and the files that they name.
+    pub fn new(paths: impl IntoIterator<Item = PathBuf>) -> Self {
+        let mut files = Self::default();
+        for path in paths {
+            files.paths.extend(named_in(&path));
+            files.paths.push(path);
+        }
+        files
+    }
+
+    /// The same, and these files.
+    #[must_use]
+    pub fn and(mut self, files: impl IntoIterator<Item = PathBuf>) -> Self {
+        self.paths.extend(files);
+        self
+    }
+
+    /// Refuses `place`, a folder whose files will be moved or replaced, where it is or holds an input.
+    pub(super) fn require_apart(&self, place: &Path) -> Result<(), IoError> {
+        if let Some(input) = self.paths.iter().find(|input| is_within(input, place)) {
+            return Err(holds(place, input));
+        }
+        let Ok(theirs) = files_below(place) else { return Ok(()) };
+        if theirs.is_empty() || self.paths.is_empty() {
+            return Ok(());
+        }
+        let inputs = self.identities(place);
+        let shared = theirs.iter().find_map(|path| inputs.get(&FileIdentity::of(path)?));
+        shared.map_or(Ok(()), |input| Err(holds(place, input)))
+    }
+
+    /// Refuses `path`, a file that will be replaced, where it is an input or lies where one does.
+    pub(super) fn require_other_than(&self, path: &Path) -> Result<(), IoError> {
+        match self.paths.iter().find(|input| is_same(input, path)) {
+            Some(input) => {
+                let problem = format!(
+                    "this file would be replaced, but it is the input {}; name another file",
+                    input.display()
+                );
+                Err(IoError::malformed(path, problem))
+            }
+            None => Ok(()),
+        }
+    }
+
+    /// Every input, and every file below one that is a folder, but for those in `place`.
+    fn identities(&self, place: &Path) -> HashMap<FileIdentity, PathBuf> {
+        let place = resolved(place);
+        let below = |path: &PathBuf| {
+            let files = if path.is_dir() { files_below(path).unwrap_or_default() } else { Vec::new() };
+            files.into_iter().filter(|file| !resolved(file).starts_with(&place)).collect::<Vec<_>>()
+        };
+        let all = self.paths.iter().flat_map(|path| std::iter::once(path.clone()).chain(below(path)));
+        all.filter_map(|path| Some((FileIdentity::of(&path)?, path))).collect()
+    }
+}
+
+/// Whether `path` is `place` or lies in it, by its name or by where its links lead.
+fn is_within(path: &Path, place: &Path) -> bool {
+    let absolute = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+    let real = resolved(path);
+    absolute.ancestors().chain(real.ancestors()).any(|part| is_same(part, place))
+}
+
+fn holds(place: &Path, input: &Path) -> IoError {
+    let what = if is_same(place, input) { "is" } else { "holds" };
+    let problem = format!(
+        "the results would replace this folder, but it {what} the input {}; name another folder",
+        input.display()
+    );
+    IoError::malformed(place, problem)
+}
+
+/// The files that a text file names, or the text files of a folder name, wherever they lie.
+fn named_in(path: &Path) -> Vec<PathBuf> {
+    let texts: Vec<PathBuf> = if path.is_dir() {
+        let entries = std::fs::read_dir(path).into_iter().flatten().flatten();
+        entries.map(|entry| entry.path()).filter(|path| path.is_file()).collect()
+    } else {
+        vec![path.to_owned()]
+    };
+    texts.iter().flat_map(|text| named_in_text(text)).collect()
+}
+
+fn named_in_text(path: &Path) -> Vec<PathBuf> {
+    let is_naming = path.extension().is_some_and(|ending| NAMING.iter().any(|known| ending == *known));
+    let is_small = std::fs::metadata(path).is_ok_and(|meta| meta.len() <= MAX_NAMING_BYTES);
+    let (true, true, Some(folder)) = (is_naming, is_small, path.parent()) else { return Vec::new() };
+    let text = std::fs::read(path).map(|bytes| String::from_utf8_lossy(&bytes).into_owned());
+    let text = text.unwrap_or_default();
+    let words = text.split(|c: char| c.is_whitespace() || "\"'=,[]{}".contains(c));
+    let files = words.filter(|word| !word.is_empty()).map(|word| folder.join(word));
+    files.filter(|file| file.is_file()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::fs;
+
+    fn refusal(inputs: &[&Path], place: &Path) -> Option<String> {
+        let inputs = InputFiles::new(inputs.iter().map(|path| (*path).to_owned()));
+        inputs.require_apart(place).err().map(|error| error.to_string())
+    }
+
+    #[test]
+    fn a_folder_that_is_or_holds_an_input_is_refused_by_any_name() {
+        let scratch = tempfile::tempdir().unwrap();
+        let (data, other) = (scratch.path().join("data"), scratch.path().join("other"));
+        fs::create_dir_all(data.join("rgb")).unwrap();
+        fs::create_dir(&other).unwrap();
+        fs::write(data.join("rgb/1.png"), "1").unwrap();
+        let dotted = other.join("../data/.");
+        for (input, place) in [
+            (&data, &data),
+            (&data, &dotted),
+            (&dotted, &data),
+            (&data.join("rgb/1.png"), &data),
+            (&data, &scratch.path().to_owned()),
+            (&data.join("not-yet"), &data),
+        ] {
+            let sentence = refusal(&[input], place).unwrap();
+            assert!(sentence.contains("the input") && sentence.contains("data"), "{sentence}");
+        }
+        assert_eq!(refusal(&[&data], &other), None);
+        assert_eq!(refusal(&[&data], &data.join("slam")), None, "a new folder in an input replaces nothing");
+    }
+
+    #[test]
+    #[cfg(unix)]
+    fn links_to_and_from_an_input_are_followed() {
+        let scratch = tempfile::tempdir().unwrap();
+        let [data, hard, soft, alias] =
+            ["data", "hard", "soft", "alias"].map(|name| scratch.path().join(name));
+        [&data, &hard, &soft].iter().for_each(|folder| fs::create_dir(folder).unwrap());
+        fs::write(data.join("map.pgm"), "1").unwrap();
+        fs::hard_link(data.join("map.pgm"), hard.join("copy.pgm")).unwrap();
+        std::os::unix::fs::symlink(data.join("map.pgm"), soft.join("link.pgm")).unwrap();
+        std::os::unix::fs::symlink(&data, &alias).unwrap();
+        for place in [&hard, &soft, &alias] {
+            assert!(refusal(&[&data], place).is_some(), "{}", place.display());
+            assert!(refusal(&[&data.join("map.pgm")], place).is_some(), "{}", place.display());
+        }
+        assert!(refusal(&[&soft.join("link.pgm")], &data).is_some());
+    }
+
+    #[test]
+    fn a_file_that_an_input_names_is_an_input() {
+        let scratch = tempfile::tempdir().unwrap();
+        let (maps, pictures) = (scratch.path().join("maps"), scratch.path().join("pictures"));
+        [&maps, &pictures].iter().for_each(|folder| fs::create_dir(folder).unwrap());
+        fs::write(pictures.join("a.pgm"), "P5").unwrap();
+        fs::write(maps.join("a.yaml"), "image: \"../pictures/a.pgm\"\nresolution: 0.05\n").unwrap();
+        assert!(refusal(&[&maps.join("a.yaml")], &pictures).unwrap().contains("a.pgm"));
+        assert!(refusal(&[&maps], &pictures).is_some());
+    }
+}

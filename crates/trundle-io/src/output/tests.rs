@@ -1,0 +1,169 @@
+//! Tests of an output folder: it appears whole, and nothing is lost.
+
+use super::*;
+
+fn names(dir: &Path) -> Vec<String> {
+    let mut names: Vec<_> =
+        fs::read_dir(dir).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
+    names.sort();
+    names
+}
+
+/// A run that writes one file.
+fn run(target: &Path, name: &str, content: &str) {
+    let out = OutputFolder::create(target).unwrap();
+    out.write(name, content.as_bytes()).unwrap();
+    out.commit().unwrap();
+}
+
+#[test]
+fn appears_whole_at_commit() {
+    let dir = tempfile::tempdir().unwrap();
+    let target = dir.path().join("deep/er/run");
+    let out = OutputFolder::create(&target).unwrap();
+    out.write("a.txt", b"1").unwrap();
+    out.write("sub/b.txt", b"2").unwrap();
+    assert!(!target.exists());
+    assert_eq!(out.commit().unwrap(), target);
+    assert_eq!(names(&target), [".trundle-run", "a.txt", "sub"]);
+    assert_eq!(fs::read(target.join("sub/b.txt")).unwrap(), b"2");
+    assert_eq!(names(target.parent().unwrap()), ["run"]);
+}
+
+#[test]
+fn leaves_no_trace_without_commit() {
+    let dir = tempfile::tempdir().unwrap();
+    drop(OutputFolder::create(&dir.path().join("deep/er/run")).unwrap().write("a", b"1"));
+    assert_eq!(names(dir.path()), Vec::<String>::new());
+    let empty = dir.path().join("empty");
+    fs::create_dir(&empty).unwrap();
+    let out = OutputFolder::create(&empty).unwrap();
+    out.write("a", b"1").unwrap();
+    drop(out);
+    assert_eq!(names(dir.path()), ["empty"]);
+    assert_eq!(names(&empty), Vec::<String>::new());
+}
+
+#[test]
+fn the_last_run_is_kept_and_no_file_of_it_stays() {
+    let dir = tempfile::tempdir().unwrap();
+    let target = dir.path().join("run");
+    run(&target, "old/map", "1");
+    run(&target, "map", "2");
+    assert_eq!(names(&target), [".trundle-run", "map"]);
+    let last = dir.path().join("run.1");
+    assert_eq!(fs::read(last.join("old/map")).unwrap(), b"1");
+    run(&target, "plan", "3");
+    assert_eq!(names(&last), [".trundle-run", "map"]);
+    assert_eq!(names(dir.path()), ["run", "run.1"]);
+    drop(OutputFolder::create(&target).unwrap());
+    assert_eq!(names(&target), [".trundle-run", "plan"]);
+}
+
+#[test]
+fn foreign_files_are_never_replaced_nor_removed() {
+    let dir = tempfile::tempdir().unwrap();
+    let refusal = |target: &Path| OutputFolder::create(target).unwrap_err().to_string();
+    fs::write(dir.path().join("mine"), "1").unwrap();
+    let sentence = refusal(dir.path());
+    assert!(sentence.contains("files that trundle did not write there (mine)"), "{sentence}");
+    let target = dir.path().join("run");
+    run(&target, "map", "1");
+    fs::create_dir(target.join("sub")).unwrap();
+    fs::write(target.join("sub/notes"), "mine").unwrap();
+    assert!(refusal(&target).contains("sub/notes"));
+    fs::remove_file(target.join("sub/notes")).unwrap();
+    fs::create_dir(dir.path().join("run.1")).unwrap();
+    fs::write(dir.path().join("run.1/thesis"), "mine").unwrap();
+    let sentence = refusal(&target);
+    assert!(sentence.contains("run.1: here, where the last run is kept,"), "{sentence}");
+    assert_eq!(names(dir.path()), ["mine", "run", "run.1"]);
+}
+
+#[test]
+fn a_folder_that_gets_foreign_files_during_the_run_keeps_them_and_the_results_lie_beside() {
+    let dir = tempfile::tempdir().unwrap();
+    let target = dir.path().join("run");
+    let out = OutputFolder::create(&target).unwrap();
+    out.write("map", b"1").unwrap();
+    fs::create_dir(&target).unwrap();
+    fs::write(target.join("map"), "mine").unwrap();
+    let error = out.commit().unwrap_err();
+    assert!(error.to_string().ends_with("run.new"), "{error}");
+    assert_eq!(fs::read(target.join("map")).unwrap(), b"mine");
+    assert_eq!(fs::read(dir.path().join("run.new/map")).unwrap(), b"1");
+}
+
+#[test]
+fn an_input_in_the_folder_of_the_last_run_is_not_lost() {
+    let dir = tempfile::tempdir().unwrap();
+    let target = dir.path().join("run");
+    run(&target, "map", "1");
+    run(&target, "map", "2");
+    let inputs = InputFiles::new([dir.path().join("run.1/map")]);
+    let error = OutputFolder::create_apart_from(&inputs, &target).unwrap_err().to_string();
+    assert!(error.contains("run.1") && error.contains("the input"), "{error}");
+    assert!(OutputFolder::create_apart_from(&inputs, &dir.path().join("other")).is_ok());
+}
+
+#[test]
+fn a_file_in_the_way_is_named() {
+    let dir = tempfile::tempdir().unwrap();
+    let file = dir.path().join("run");
+    fs::write(&file, "mine").unwrap();
+    let error = OutputFolder::create(&file).unwrap_err().to_string();
+    assert_eq!(
+        error,
+        format!("{}: this is a file, expected a folder to write the results to", file.display())
+    );
+    let below = file.join("deeper");
+    let error = OutputFolder::create(&below).unwrap_err().to_string();
+    assert_eq!(error, format!("cannot create {}: a file is in the way", below.display()));
+    assert_eq!(fs::read(&file).unwrap(), b"mine");
+    assert!(OutputFolder::create(Path::new("")).is_err());
+    let out = OutputFolder::create(&dir.path().join("new")).unwrap();
+    let error =
+        out.write("map.pgm/x", b"1").and_then(|()| out.write("map.pgm", b"2")).unwrap_err().to_string();
+    assert!(error.starts_with("cannot write ") && error.ends_with("map.pgm: it is a folder"), "{error}");
+}
+
+#[test]
+fn what_the_disk_does_not_take_is_named_and_the_rest_is_written() {
+    let dir = tempfile::tempdir().unwrap();
+    let target = dir.path().join("run");
+    let out = OutputFolder::create(&target).unwrap();
+    out.write("map", b"1").unwrap();
+    for name in ["recording", "report"] {
+        let full = std::io::Error::from(ErrorKind::StorageFull);
+        assert!(is_refusal_of_disk(&full));
+        out.leave_out(IoError::system(&target.join(name), "write")(full));
+    }
+    assert!(out.is_incomplete());
+    let error = out.commit().unwrap_err();
+    let (recording, folder) = (target.join("recording"), target.display());
+    let expected = format!(
+        "cannot write {}: the disk is full, nor one other file; the other results are in {folder}",
+        recording.display()
+    );
+    assert_eq!(error.to_string(), expected);
+    assert_eq!(names(&target), [".trundle-run", "map"]);
+}
+
+#[test]
+#[cfg(unix)]
+fn results_have_the_usual_permissions_and_links_to_folders_stay() {
+    use std::os::unix::fs::PermissionsExt;
+    let dir = tempfile::tempdir().unwrap();
+    let plain = dir.path().join("plain");
+    fs::create_dir(&plain).unwrap();
+    let ours = OutputFolder::create(&dir.path().join("ours")).unwrap().commit().unwrap();
+    let mode = |path: &Path| fs::metadata(path).unwrap().permissions().mode();
+    assert_eq!(mode(&ours), mode(&plain));
+    let link = dir.path().join("link");
+    std::os::unix::fs::symlink(&plain, &link).unwrap();
+    run(&link, "map", "1");
+    run(&link, "map", "2");
+    assert!(link.is_symlink());
+    assert_eq!(fs::read(plain.join("map")).unwrap(), b"2");
+    assert_eq!(fs::read(dir.path().join("plain.1/map")).unwrap(), b"1");
+}

@@ -1,0 +1,92 @@
+//! Lists of a TUM folder: `rgb.txt` with `depth.txt`, else `associations.txt`.
+
+use super::association::pair_nearest;
+use super::list::{ListedImage, parse_list, parse_pairs};
+use crate::codec::is_depth_image;
+use crate::files::read_text;
+use crate::{Expected, IoError, Warnings};
+use std::io::Read;
+use std::path::Path;
+use trundle_core::Stamp;
+
+/// The paired images of a folder.
+pub(super) struct Members {
+    /// Colour and depth images.
+    pub frames: Vec<(ListedImage, ListedImage)>,
+    /// How many colour images have no depth image near enough.
+    pub unpaired: usize,
+    pub warnings: Warnings,
+}
+
+impl Members {
+    /// The images of the folder's lists, paired within `max_difference` s, or as `associations.txt` pairs them.
+    pub(super) fn read(dir: &Path, max_difference: f64) -> Result<Self, IoError> {
+        Expected::Sequence.check(dir)?;
+        let there = |name: &str| dir.join(name).exists();
+        if there("associations.txt") && !(there("rgb.txt") && there("depth.txt")) {
+            return Self::of_associations(dir);
+        }
+        for name in ["rgb.txt", "depth.txt"] {
+            if !there(name) {
+                let problem =
+                    format!("{name} is missing, expected rgb.txt and depth.txt, or associations.txt");
+                return Err(IoError::malformed(dir, problem));
+            }
+        }
+        Self::of_lists(dir, max_difference)
+    }
+
+    fn of_lists(dir: &Path, max_difference: f64) -> Result<Self, IoError> {
+        let mut warnings = Warnings::default();
+        let mut list = |name: &str| {
+            let path = dir.join(name);
+            parse_list(&path, &read_text(&path)?, &mut warnings)
+        };
+        let (color, depth) = (list("rgb.txt")?, list("depth.txt")?);
+        let stamps = |list: &[ListedImage]| list.iter().map(|image| image.stamp).collect::<Vec<Stamp>>();
+        let pairs = pair_nearest(&stamps(&color), &stamps(&depth), max_difference);
+        if pairs.is_empty() {
+            return Err(IoError::malformed(dir, no_pair(&color, &depth, max_difference)));
+        }
+        let unpaired = color.len() - pairs.len();
+        let frames = pairs.into_iter().map(|(i, j)| (color[i].clone(), depth[j].clone())).collect();
+        Ok(Self { frames, unpaired, warnings })
+    }
+
+    /// The pairs as they are listed; which column holds depth is seen in the first images.
+    fn of_associations(dir: &Path) -> Result<Self, IoError> {
+        let mut warnings = Warnings::default();
+        let path = dir.join("associations.txt");
+        let mut frames = parse_pairs(&path, &read_text(&path)?, &mut warnings)?;
+        let is_depth_first = frames.iter().find_map(|(first, second)| {
+            let is_depth = |image: &ListedImage| Some(is_depth_image(&head(&dir.join(&image.file))?));
+            Some(is_depth(first)? && !is_depth(second)?)
+        });
+        if is_depth_first == Some(true) {
+            frames = frames.into_iter().map(|(depth, color)| (color, depth)).collect();
+            frames.sort_by_key(|(color, _)| color.stamp);
+        }
+        frames.dedup_by_key(|(color, _)| color.stamp);
+        Ok(Self { frames, unpaired: 0, warnings })
+    }
+}
+
+/// The first bytes of an image.
+fn head(path: &Path) -> Option<Vec<u8>> {
+    let mut head = Vec::new();
+    std::fs::File::open(path).ok()?.take(64).read_to_end(&mut head).ok()?;
+    Some(head)
+}
+
+fn no_pair(color: &[ListedImage], depth: &[ListedImage], max_difference: f64) -> String {
+    let span = |list: &[ListedImage]| match list {
+        [first, .., last] => format!("{} s to {} s", first.stamp, last.stamp),
+        [only] => format!("{} s", only.stamp),
+        [] => "none".to_owned(),
+    };
+    format!(
+        "no colour image of rgb.txt ({}) is within {max_difference} s of a depth image of depth.txt ({})",
+        span(color),
+        span(depth)
+    )
+}

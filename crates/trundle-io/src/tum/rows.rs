@@ -1,0 +1,97 @@
+//! Rows of numbers with a stamp: the text tables of trajectories and odometry.
+
+use crate::excerpt::excerpt;
+use crate::files::{fields, table_rows};
+use crate::stamp_unit::StampUnit;
+use crate::{IoError, Warnings};
+use std::path::Path;
+use trundle_core::Stamp;
+
+/// What becomes of a row that cannot be read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum BrokenRows {
+    /// The file is refused.
+    Refused,
+    /// The row is left out with a warning.
+    LeftOut,
+}
+
+/// A text table and how it is read.
+#[derive(Clone, Copy)]
+pub(super) struct Table<'a> {
+    pub path: &'a Path,
+    pub text: &'a str,
+    /// Names of the numbers after the stamp.
+    pub names: &'a [&'a str],
+    /// Whether further columns may follow, which are left alone.
+    pub is_open: bool,
+    pub broken_rows: BrokenRows,
+}
+
+impl Table<'_> {
+    /// The rows by rising stamp, each made of its numbers. Stamps in ms, us or ns and rows out of order are warned of.
+    pub(super) fn read<T>(
+        &self,
+        row: impl Fn(&[f64]) -> Result<T, String>,
+        warnings: &mut Warnings,
+    ) -> Result<Vec<(Stamp, T)>, IoError> {
+        let lines = table_rows(self.text);
+        let stamps: Vec<&str> = lines.iter().filter_map(|(_, line)| fields(line).next()).collect();
+        let unit = StampUnit::of(&stamps);
+        if let Some(problem) = unit.warning(stamps.first().unwrap_or(&"")) {
+            warnings.add(&problem, &self.path.display().to_string());
+        }
+        let mut rows = Vec::with_capacity(lines.len());
+        for (number, line) in lines {
+            match self.row(unit, line).and_then(|(stamp, numbers)| Ok((stamp, row(&numbers)?))) {
+                Ok(read) => rows.push(read),
+                Err(problem) if self.broken_rows == BrokenRows::Refused => {
+                    return Err(IoError::line(self.path, number, problem));
+                }
+                Err(problem) => self.warn(warnings, &format!("row left out, {problem}"), number),
+            }
+        }
+        sort(&mut rows, self.path, warnings);
+        Ok(rows)
+    }
+
+    /// The stamp and the numbers of a line.
+    fn row(&self, unit: StampUnit, line: &str) -> Result<(Stamp, Vec<f64>), String> {
+        let parts: Vec<&str> = fields(line).collect();
+        let expected = self.names.len() + 1;
+        if parts.len() < expected || (parts.len() > expected && !self.is_open) {
+            return Err(format!(
+                "{} fields, expected {expected}: timestamp {}",
+                parts.len(),
+                self.names.join(" ")
+            ));
+        }
+        let stamp = unit.parse(parts[0]).map_err(|invalid| invalid.to_string())?;
+        let named = parts[1..].iter().zip(self.names);
+        let numbers = named.map(|(text, name)| number(name, text)).collect::<Result<_, _>>()?;
+        Ok((stamp, numbers))
+    }
+
+    fn warn(&self, warnings: &mut Warnings, problem: &str, line: usize) {
+        warnings.add(problem, &format!("{}, line {line}", self.path.display()));
+    }
+}
+
+/// A finite number of a name.
+pub(super) fn number(name: &str, text: &str) -> Result<f64, String> {
+    let value = text.parse::<f64>().ok().filter(|value| value.is_finite());
+    value.ok_or_else(|| format!("{name} is '{}', expected a finite number", excerpt(text)))
+}
+
+/// Sorts rows by stamp; rows of one stamp keep their order.
+pub(super) fn sort<T>(rows: &mut [(Stamp, T)], path: &Path, warnings: &mut Warnings) {
+    let out_of_order = rows.windows(2).filter(|pair| pair[1].0 < pair[0].0).count();
+    if out_of_order > 0 {
+        let rows = rows.len();
+        warnings.add(
+            &format!("timestamps go back {out_of_order} times in {rows} rows, which are sorted"),
+            &path.display().to_string(),
+        );
+    }
+    rows.sort_by_key(|(stamp, _)| *stamp);
+}

@@ -1,0 +1,60 @@
+//! What is noted of an imported file, beside errors.
+
+use std::fmt;
+
+/// Number of examples in a note.
+const MAX_EXAMPLES: usize = 3;
+
+/// What a user should know of an imported file.
+#[derive(Debug, Clone, PartialEq)]
+pub enum ImportNote {
+    /// Textures that cannot be read; their surfaces are grey.
+    LostTextures {
+        /// Why, of each.
+        reasons: Vec<String>,
+    },
+    /// Surfaces with a texture and with colours of their corners; the colours are left out.
+    HiddenColors {
+        /// How many.
+        surfaces: usize,
+    },
+    /// The floor was not at z = 0, and the scene was moved.
+    FloorMoved {
+        /// Its height in the file, m.
+        height_m: f64,
+    },
+    /// The size is not that of a room.
+    OddSize {
+        /// Along x, y and z, m.
+        size_m: [f64; 3],
+        /// What the unit of the file may be, and its metres.
+        unit: Option<(&'static str, f64)>,
+    },
+}
+
+impl fmt::Display for ImportNote {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::LostTextures { reasons } => {
+                let (count, shown) = (reasons.len(), reasons.len().min(MAX_EXAMPLES));
+                let more = if shown < count { "; ..." } else { "" };
+                let examples = reasons[..shown].join("; ");
+                write!(f, "textures that cannot be read are grey: {count}: {examples}{more}")
+            }
+            Self::HiddenColors { surfaces } => {
+                write!(f, "colours of vertices are not drawn over a texture: {surfaces} surfaces")
+            }
+            Self::FloorMoved { height_m } => write!(
+                f,
+                "the floor lies at z = {height_m} m: the scene is moved so that it lies at 0; --floor Z names another height"
+            ),
+            Self::OddSize { size_m: [x, y, z], unit } => {
+                write!(f, "the scene is {x} x {y} m and {z} m high: is the scale right?")?;
+                match unit {
+                    Some((name, metres)) => write!(f, " If the file is in {name}, say --scale {metres}"),
+                    None => Ok(()),
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,4 @@
+//! The target `corridor_problem` under libFuzzer.
+#![no_main]
+
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| trundle_fuzz::targets::corridor_problem(bytes));

@@ -1,0 +1,4 @@
+//! The target `drive_script` under libFuzzer.
+#![no_main]
+
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| trundle_fuzz::targets::drive_script(bytes));
