@@ -1,6 +1,6 @@
 //! Bad input, hard input, and verdicts.
 
-use crate::clock::timed;
+use crate::clock::{slowness, timed};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use trundle_core::{Cell, Footprint, GridGeometry, OccupancyGrid, Pose2, Vector2};
@@ -243,5 +243,5 @@ fn a_hundred_thousand_points_are_planned() {
     }
     let least = (0..6).map(|_| timed(plan).1).fold(ms, f64::min);
     eprintln!("100,000 points: {least:.0} ms of one core");
-    assert!(least < 100.0, "{least:.0} ms");
+    assert!(least < 100.0 * slowness(), "{least:.0} ms");
 }

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::world_state::WorldState;
-use clock::timed;
+use clock::{slowness, timed};
 use trundle_core::{OccupancyGrid, PoseEstimate};
 use trundle_docking::Method;
 
@@ -235,6 +235,6 @@ fn no_step_takes_longer_than_two_milliseconds() {
         eprintln!("{method:?}: {} steps, the longest {worst:.2} ms", runs[0].len());
         assert!(runs.iter().all(|run| run.len() == runs[0].len()), "as many steps every time");
         assert!(runs[0].len() > 405, "{method:?}: {} steps, a search in parts", runs[0].len());
-        assert!(worst <= 2.0, "{method:?}: {worst:.2} ms");
+        assert!(worst <= 2.0 * slowness(), "{method:?}: {worst:.2} ms");
     }
 }
