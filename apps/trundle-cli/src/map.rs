@@ -1,4 +1,4 @@
-//! `trundle map`: the map of a laser log, a ROS 2 bag or an RGB-D folder.
+//! `trundle map`: the map of a laser log, a ROS 2 bag, a recording or an RGB-D folder.
 
 mod laser_args;
 
@@ -11,7 +11,8 @@ use clap::Args;
 use laser_args::LaserArgs;
 use std::path::PathBuf;
 use trundle::app::AppError;
-use trundle::app::laser_map::{LaserMapRequest, is_depth_folder, map_log, map_rows, read_log};
+use trundle::app::laser_map::{LaserMapRequest, map_log, map_rows, read_log};
+use trundle::app::sequence_input::SequenceInput;
 use trundle::io::LaserLog;
 
 /// `trundle map`
@@ -22,9 +23,13 @@ use trundle::io::LaserLog;
     summary.json."
 )]
 pub struct MapArgs {
-    /// A CARMEN log (or .log.gz), a ROS 2 bag (folder, .mcap, .mcap.zst, .db3) or a TUM RGB-D folder, whose odometry is the motion.
+    /// A CARMEN log (or .log.gz), a ROS 2 bag (folder, .mcap, .mcap.zst, .db3), a recording of trundle or a TUM RGB-D folder,
+    /// whose odometry is the motion.
     pub log: PathBuf,
-    /// The motion of an RGB-D folder: the camera's trajectory that `trundle slam` wrote, or another in TUM format. Each pose is
+    /// Read a recording of trundle that is cut, as by a power failure, up to the cut. A bag is always read up to its cut.
+    #[arg(long)]
+    pub recover: bool,
+    /// The motion of RGB-D images: the camera's trajectory that `trundle slam` wrote, or another in TUM format. Each pose is
     /// believed to 1 cm and 0.003 rad (in a new map), and no loops are looked for.
     #[arg(long, value_name = "FILE")]
     pub poses: Option<PathBuf>,
@@ -65,16 +70,16 @@ pub fn run(args: &MapArgs) -> Result<Outcome, AppError> {
     args.refuse_wrong_options()?;
     let request = args.request();
     let display = console::StepDisplay::new(args.common.quiet);
-    let log = read_log(&request, &display)?;
+    let input = read_log(&request, &display)?;
     let folder = logging::output_folder(&args.out)?;
-    let run = map_log(&request, args.localise, &log, &folder, &display)?;
+    let run = map_log(&request, args.localise, &input, &folder, &display)?;
     let place = folder.commit()?;
-    warn_of_log(args, &log);
+    warn_of_log(args, &input.log);
     if let Some(hint) = &run.mount_hint {
         console::warn(&format!("{}: {hint}", args.log.display()));
     }
     if !args.common.quiet {
-        console::print_table(&map_rows(&log, &run));
+        console::print_table(&map_rows(&input.log, &run));
         console::print(&format!("See {}", place.join("overview.png").display()));
     }
     Ok(Outcome::unless(run.failure.map(|failure| format!("{}: {failure}", args.log.display()))))
@@ -91,6 +96,7 @@ impl MapArgs {
     fn request(&self) -> LaserMapRequest {
         LaserMapRequest {
             log: self.log.clone(),
+            recover: self.recover,
             poses: self.poses.clone(),
             poses_drift: self.poses_drift,
             particles: usize::from(self.particles),
@@ -102,21 +108,21 @@ impl MapArgs {
         }
     }
 
-    /// Refuses options of a laser beside an RGB-D folder, and options of a camera beside a laser log.
+    /// Refuses options of a laser beside RGB-D images, and options of a camera beside a laser log.
     fn refuse_wrong_options(&self) -> Result<(), AppError> {
         let log = self.log.display();
-        if !is_depth_folder(&self.log) {
+        if !SequenceInput::is_one(&self.log) {
             return match self.poses {
                 Some(_) => Err(AppError::Input(format!(
-                    "--poses is about the camera of an RGB-D folder, and {log} is none"
+                    "--poses is about the camera of RGB-D images, and {log} holds none"
                 ))),
                 None => Ok(()),
             };
         }
         match self.laser.first_given() {
             Some(option) => Err(AppError::Input(format!(
-                "{option} is about a laser, but {log} is an RGB-D folder: its camera.toml says what the camera is, and the camera \
-                 sits as on the default robot, or where groundtruth.txt says"
+                "{option} is about a laser, but {log} holds RGB-D images: their camera is that of camera.toml or of the recording, and \
+                 it sits as on the default robot, or where groundtruth.txt or the recording says"
             ))),
             None => Ok(()),
         }

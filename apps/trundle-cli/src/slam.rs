@@ -14,27 +14,27 @@ use trundle::app::sequence::{SequenceRequest, track_sequence, write_sequence};
 /// `trundle slam DIR`.
 pub fn run(args: &SlamArgs) -> Result<Outcome, AppError> {
     let request = args.request();
-    let camera = request.camera()?;
-    let sequence = request.open(&camera.model)?;
+    let input = request.open()?;
     let folder = logging::output_folder(&args.out)?;
     let display = console::StepDisplay::new(args.common.quiet);
-    let run = track_sequence(&request, &camera, &sequence, &folder, &display)?;
-    let output = write_sequence(&request, &camera, &sequence, &run, folder)?;
+    let run = track_sequence(&request, &input, &folder, &display)?;
+    let output = write_sequence(&request, &input, &run, folder)?;
     if !args.common.quiet {
         console::print_table(&output.rows);
         console::print_table(&[vec!["wall clock".to_owned(), format!("{:.1} s", run.seconds)]]);
         console::print_table(&stage_rows(&run.times));
         console::print(&format!("See {}", output.folder.join("report.html").display()));
     }
-    Ok(Outcome::unless(run.failure().map(|failure| format!("{}: {failure}", args.dir.display()))))
+    Ok(Outcome::unless(run.failure().map(|failure| format!("{}: {failure}", args.input.display()))))
 }
 
 impl SlamArgs {
     fn request(&self) -> SequenceRequest {
         SequenceRequest {
-            dir: self.dir.clone(),
+            path: self.input.clone(),
             camera: self.camera.clone(),
             depth_scale: self.depth_scale,
+            recover: self.recover,
             frames: self.frames.map(|frames| frames as usize),
             height: self.height,
             tilt_deg: self.tilt,

@@ -1,8 +1,7 @@
-//! The map of a laser log, a ROS 2 bag or an RGB-D folder by the particle filter, or the robot's trajectory in a given map.
+//! The map of a laser log, a bag, a recording or an RGB-D folder by the particle filter, or the robot's trajectory in a given map.
 
 mod counts;
-mod depth_folder;
-mod depth_scanner;
+mod depth_scans;
 mod input;
 mod mount_check;
 mod numbers;
@@ -11,7 +10,7 @@ mod run;
 mod run_result;
 
 pub use counts::ScanCounts;
-pub use input::{is_depth_folder, read_log};
+pub use input::{DepthLog, LogInput, read_log};
 pub use numbers::{map_rows, trajectory_lines};
 pub use request::LaserMapRequest;
 pub use run::map_log;

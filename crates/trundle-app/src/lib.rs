@@ -46,6 +46,7 @@ mod run;
 mod run_log;
 mod run_mark;
 pub mod sequence;
+pub mod sequence_input;
 mod session;
 mod settings;
 mod setup;

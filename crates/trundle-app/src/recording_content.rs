@@ -25,6 +25,10 @@ const BYTES_PER_PIXEL: f64 = 1.15;
 const BYTES_PER_MB: f64 = 1e6;
 
 impl RecordingContent {
+    /// The refusal of a recording without images.
+    pub(crate) const NO_IMAGES: &str =
+        "the recording holds no images (demo --record events), expected one of a run with --record all";
+
     /// Whether this is all, which setups of recordings do not name.
     pub(crate) fn is_all(&self) -> bool {
         *self == Self::All

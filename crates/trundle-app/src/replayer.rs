@@ -2,7 +2,7 @@
 
 use crate::encoded_body::{EncodedBody, RunInput};
 use crate::run_mark::{RunMark, RunMarkMessage};
-use crate::{AppError, RunSetup};
+use crate::{AppError, RecordingContent, RunSetup};
 use std::collections::BTreeMap;
 use std::path::Path;
 use trundle_core::{Stamp, Twist2};
@@ -42,15 +42,10 @@ impl RunReplayer {
                 "{name}: no trundle.Config message comes first, so this is no recording of a trundle run"
             ))
         })?;
-        let setup: RunSetup = serde_json::from_value(config.clone())
-            .map_err(|error| AppError::Input(format!("{name}: the configuration cannot be used: {error}")))?;
+        let setup = RunSetup::of_recording(file, config.clone())?;
         if !setup.recording.is_all() {
-            return Err(AppError::Input(format!(
-                "{name}: the recording holds no images (demo --record events), without which the robot cannot run again; \
-                 a run with --record all can be replayed"
-            )));
+            return Err(AppError::Input(format!("{name}: {}", RecordingContent::NO_IMAGES)));
         }
-        setup.robot.clone().validated().map_err(|error| AppError::Input(format!("{name}: {error}")))?;
         Ok((Self { reader, jobs: BTreeMap::new(), contacts: None, span: None }, setup))
     }
 
@@ -58,8 +53,7 @@ impl RunReplayer {
     #[must_use]
     pub fn cut_report(&self) -> Option<String> {
         let cut = self.reader.cut()?;
-        let seconds = self.span.map_or(0.0, |(first, last)| last - first);
-        Some(format!("the recording was cut at byte {}; {seconds:.2} s of it were replayed", cut.byte))
+        Some(cut.report(self.span.map_or(0.0, |(first, last)| last - first)))
     }
 
     /// Reads the rest of the recording, which the run did not need.

@@ -3,6 +3,7 @@
 use crate::{AppError, RecordingContent};
 use base64::prelude::{BASE64_STANDARD, Engine};
 use serde::{Deserialize, Serialize};
+use std::path::Path;
 use std::sync::Arc;
 use trundle_core::Pose2;
 use trundle_runtime::{Checkpoint, Mission, Robot, RobotConfig, Task};
@@ -60,6 +61,18 @@ impl RunSetup {
             checkpoint: None,
             vocabulary: None,
         }
+    }
+
+    /// The setup that a recording begins with, its robot checked.
+    ///
+    /// # Errors
+    /// When it is no setup, or its robot cannot be accepted. Names the file.
+    pub(crate) fn of_recording(file: &Path, config: serde_json::Value) -> Result<Self, AppError> {
+        let name = file.display();
+        let setup: Self = serde_json::from_value(config)
+            .map_err(|error| AppError::Input(format!("{name}: the configuration cannot be used: {error}")))?;
+        setup.robot.clone().validated().map_err(|error| AppError::Input(format!("{name}: {error}")))?;
+        Ok(setup)
     }
 
     /// The same run, given up after `time_limit` of the robot's time \[s\].

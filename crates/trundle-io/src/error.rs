@@ -125,6 +125,20 @@ impl IoError {
         move |problem| Self::Image { path: path.to_owned(), problem: Box::new(problem) }
     }
 
+    /// An image of the file at `path` that cannot be decoded.
+    #[must_use]
+    pub fn bad_image(path: &Path, problem: CodecError) -> Self {
+        Self::image(path)(problem)
+    }
+
+    /// A colour image of `found` px, width and height, where the camera's are of `expected`.
+    #[must_use]
+    pub fn wrong_image_size(path: &Path, found: (usize, usize), expected: (usize, usize)) -> Self {
+        let expected = format!("{} x {} as the camera", expected.0, expected.1);
+        let size = format!("{} x {}", found.0, found.1);
+        Self::field(path)(Invalid::new("colour image size", size, "px", expected))
+    }
+
     pub(crate) fn malformed(path: &Path, problem: impl Into<String>) -> Self {
         Self::Malformed { path: path.to_owned(), problem: problem.into() }
     }

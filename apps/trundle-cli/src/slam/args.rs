@@ -11,10 +11,14 @@ use std::path::PathBuf;
     after_help = "Example: trundle slam ../shared/data/tum_fr1_rpy_400 --height 1.57 --tilt 33 --roll=-37"
 )]
 pub struct SlamArgs {
-    /// A TUM RGB-D folder: rgb.txt and depth.txt, or associations.txt; optional groundtruth.txt and odometry.txt.
-    pub dir: PathBuf,
+    /// A TUM RGB-D folder (rgb.txt and depth.txt, or associations.txt; optional groundtruth.txt and odometry.txt), or a
+    /// recording of trundle with images.
+    pub input: PathBuf,
+    /// Read a recording of trundle that is cut, as by a power failure, up to the cut.
+    #[arg(long)]
+    pub recover: bool,
     /// Preset freiburg1, freiburg2, freiburg3, kinect_v2, or a camera file of trundle, ORB-SLAM, stella_vslam, ROS or Open3D
-    /// [default: the one in DIR, camera.toml first, else freiburg1 with a warning]
+    /// [default: the recording's, or the one in the folder, camera.toml first, else freiburg1 with a warning]
     #[arg(long, value_name = "PRESET|FILE")]
     pub camera: Option<String>,
     /// Depth units a metre [default: the camera's]
@@ -23,15 +27,15 @@ pub struct SlamArgs {
     /// Stop after this many frames.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub frames: Option<u32>,
-    /// Height of the first camera above the floor, m, for the map.
-    #[arg(long, value_name = "M", default_value_t = 1.0)]
-    pub height: f64,
-    /// Downward tilt of the first camera, deg, for the map.
-    #[arg(long, value_name = "DEG", default_value_t = 0.0, allow_hyphen_values = true)]
-    pub tilt: f64,
-    /// Roll of the first camera to its right, deg, for the map.
-    #[arg(long, value_name = "DEG", default_value_t = 0.0, allow_hyphen_values = true)]
-    pub roll: f64,
+    /// Height of the first camera above the floor, m, for the map [default: the recorded robot's, else 1]
+    #[arg(long, value_name = "M")]
+    pub height: Option<f64>,
+    /// Downward tilt of the first camera, deg, for the map [default: the recorded robot's, else 0]
+    #[arg(long, value_name = "DEG", allow_hyphen_values = true)]
+    pub tilt: Option<f64>,
+    /// Roll of the first camera to its right, deg, for the map [default: the recorded robot's, else 0]
+    #[arg(long, value_name = "DEG", allow_hyphen_values = true)]
+    pub roll: Option<f64>,
     /// Begin with the visual map of an earlier run (its visual.map): the camera is localized in it
     #[arg(long, value_name = "FILE")]
     pub map: Option<PathBuf>,

@@ -1,25 +1,54 @@
-//! The scans of a CARMEN log, a ROS 2 bag, or an RGB-D folder whose depth images become scans.
+//! The scans of a CARMEN log, a bag, a recording of trundle, or an RGB-D folder whose depth images become scans.
 
-use super::depth_folder;
+use super::depth_scans;
 use super::request::LaserMapRequest;
+use crate::sequence_input::{RecordedRun, SequenceInput, SequenceOptions};
 use crate::{AppError, StepProgress};
-use std::path::Path;
 use trundle_io::{FileKind, LaserLog, read_laser_log};
+use trundle_mapping::DepthScanConfig;
 
-/// Reads the log: a folder with lists of images is a TUM RGB-D folder, else a ROS 2 bag or a CARMEN log.
+/// A log, and what is known of the camera where its scans were made of depth images.
+#[derive(Debug, Clone)]
+pub struct LogInput {
+    /// The scans with odometry.
+    pub log: LaserLog,
+    /// Of depth images; `None` for scans of a laser.
+    pub depth: Option<DepthLog>,
+    /// Where the recording was cut, in a sentence; `None` for a whole one and for another file.
+    pub cut_report: Option<String>,
+}
+
+/// How scans were made of depth images.
+#[derive(Debug, Clone)]
+pub struct DepthLog {
+    /// The settings of the scans.
+    pub scan: DepthScanConfig,
+    /// Distance up to which the camera does not see the floor \[m\].
+    pub blind_range: f64,
+    /// Whether the motion is that of wheels; else of a tracked camera.
+    pub by_wheels: bool,
+}
+
+/// Reads the log: RGB-D images of a folder or a recording, the scans of a recording's laser, a bag or a CARMEN log.
 ///
 /// # Errors
 /// Names the file, and the line or frame that cannot be accepted.
-pub fn read_log(request: &LaserMapRequest, progress: &dyn StepProgress) -> Result<LaserLog, AppError> {
-    if is_depth_folder(&request.log) {
-        depth_folder::read(&request.log, request.poses.as_deref(), progress)
-    } else {
-        Ok(read_laser_log(&request.log, &request.laser)?)
-    }
-}
-
-/// Whether this is a TUM RGB-D folder.
-#[must_use]
-pub fn is_depth_folder(path: &Path) -> bool {
-    matches!(FileKind::of(path), Ok(FileKind::SequenceFolder))
+pub fn read_log(request: &LaserMapRequest, progress: &dyn StepProgress) -> Result<LogInput, AppError> {
+    let options =
+        SequenceOptions { path: &request.log, camera: None, depth_scale: None, recover: request.recover };
+    let input = match FileKind::of(&request.log)? {
+        FileKind::SequenceFolder => SequenceInput::open(&options)?,
+        FileKind::TrundleRecording => {
+            let run = RecordedRun::read(&request.log, request.recover)?;
+            if run.image_count() == 0 && !run.scans().is_empty() {
+                return depth_scans::of_laser(&run, &request.log);
+            }
+            SequenceInput::of_recording(&options, run)?
+        }
+        _ => {
+            let log = read_laser_log(&request.log, &request.laser)?;
+            return Ok(LogInput { log, depth: None, cut_report: None });
+        }
+    };
+    depth_scans::read(&input, request.poses.as_deref(), progress)
 }

@@ -1,5 +1,6 @@
 //! The numbers and the picture of a mapped log.
 
+use super::input::LogInput;
 use super::request::LaserMapRequest;
 use super::run_result::LaserMapRun;
 use std::collections::BTreeMap;
@@ -73,13 +74,15 @@ fn source_rows(sources: &LaserLogSources) -> Vec<Vec<String>> {
 }
 
 /// `summary.json`.
-pub fn summary(request: &LaserMapRequest, log: &LaserLog, run: &LaserMapRun) -> Summary {
+pub fn summary(request: &LaserMapRequest, input: &LogInput, run: &LaserMapRun) -> Summary {
+    let log = &input.log;
     let mut summary = Summary::new("map");
     let counts = &run.counts;
     summary
         .set("success", run.failure.is_none())
         .set("failure", run.failure.clone())
         .set("log", request.log.display().to_string())
+        .set("cut", input.cut_report.clone())
         .set("particles", request.particles)
         .set("seed", request.seed)
         .set("scan_topic", log.sources.scans.clone())

@@ -1,19 +1,20 @@
 //! What a log is mapped with: filter, laser, a map to begin with.
 
-use super::depth_scanner::depth_scanner;
+use super::input::DepthLog;
 use crate::{AppError, read_map};
 use std::path::{Path, PathBuf};
 use trundle_io::{Expected, FileKind, LaserLogOptions, MapImage};
 use trundle_mapping::{
     MapLocalizer, MapperConfig, MotionConfig, ParticleConfig, ParticleMapper, PosePriorConfig,
 };
-use trundle_runtime::RobotConfig;
 
 /// A log and how to map it.
 #[derive(Debug, Clone)]
 pub struct LaserMapRequest {
-    /// A CARMEN log, a ROS 2 bag or a TUM RGB-D folder.
+    /// A CARMEN log, a bag, a recording of trundle or a TUM RGB-D folder.
     pub log: PathBuf,
+    /// Whether a recording of trundle may be cut: it is read up to the cut.
+    pub recover: bool,
     /// The motion of an RGB-D folder: a TUM trajectory of the camera; `None` for the folder's own.
     pub poses: Option<PathBuf>,
     /// Whether these poses drift: only their steps are believed, and loops are closed.
@@ -34,8 +35,8 @@ pub struct LaserMapRequest {
 
 impl LaserMapRequest {
     /// A new filter, or one that goes on with the saved map.
-    pub(super) fn mapper(&self, is_depth: bool) -> Result<ParticleMapper, AppError> {
-        let config = self.config(is_depth)?;
+    pub(super) fn mapper(&self, depth: Option<&DepthLog>) -> Result<ParticleMapper, AppError> {
+        let config = self.config(depth);
         let Some(file) = &self.map else { return Ok(ParticleMapper::new(config, self.seed)?) };
         let bytes = read_filter(file)?;
         let mut mapper = ParticleMapper::load(&bytes, config).map_err(|error| refused(file, &error))?;
@@ -44,41 +45,42 @@ impl LaserMapRequest {
     }
 
     /// A localizer in the map `file`: a saved filter, or a grid by its YAML.
-    pub(super) fn localizer(&self, file: &Path, is_depth: bool) -> Result<MapLocalizer, AppError> {
+    pub(super) fn localizer(&self, file: &Path, depth: Option<&DepthLog>) -> Result<MapLocalizer, AppError> {
         if FileKind::of(file)? == FileKind::MapYaml {
             let grid = read_map(file)?;
             let resolution = grid.geometry().resolution;
-            let config = self.config(is_depth)?;
+            let config = self.config(depth);
             let config = ParticleConfig { map: MapperConfig { resolution, ..config.map }, ..config };
             return Ok(MapLocalizer::from_grid(&grid, config, self.seed)?);
         }
         let bytes = read_filter(file)?;
-        MapLocalizer::load(&bytes, self.config(is_depth)?, self.seed).map_err(|error| refused(file, &error))
+        MapLocalizer::load(&bytes, self.config(depth), self.seed).map_err(|error| refused(file, &error))
     }
 
-    fn config(&self, is_depth: bool) -> Result<ParticleConfig, AppError> {
+    fn config(&self, depth: Option<&DepthLog>) -> ParticleConfig {
         let default = ParticleConfig::default();
         let config = ParticleConfig {
             particles: self.particles,
             map: MapperConfig { resolution: self.resolution, ..default.map },
             ..default
         };
-        if is_depth { self.depth_config(config) } else { Ok(config) }
+        match depth {
+            Some(depth) => self.depth_config(depth, config),
+            None => config,
+        }
     }
 
     /// The filter's settings for a depth camera: its range, noise and blind range, and the errors of its motion.
-    fn depth_config(&self, config: ParticleConfig) -> Result<ParticleConfig, AppError> {
-        let by_wheels = self.poses.is_none() && self.log.join("odometry.txt").exists();
-        let scan = RobotConfig::default().scan;
-        let blind_range = depth_scanner(&self.log)?.0.blind_range();
-        Ok(ParticleConfig {
-            map: MapperConfig { max_range: scan.max_range, blind_range, ..config.map },
-            motion: if by_wheels { MotionConfig::default() } else { tracked_camera_motion() },
-            pose_prior: (!by_wheels && !self.poses_drift).then(PosePriorConfig::default),
+    fn depth_config(&self, depth: &DepthLog, config: ParticleConfig) -> ParticleConfig {
+        let DepthLog { scan, blind_range, by_wheels } = depth;
+        ParticleConfig {
+            map: MapperConfig { max_range: scan.max_range, blind_range: *blind_range, ..config.map },
+            motion: if *by_wheels { MotionConfig::default() } else { tracked_camera_motion() },
+            pose_prior: (!*by_wheels && !self.poses_drift).then(PosePriorConfig::default),
             range_noise: DEPTH_RANGE_NOISE_M,
             range_noise_growth: scan.noise_growth,
             ..config
-        })
+        }
     }
 }
 

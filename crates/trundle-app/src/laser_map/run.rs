@@ -1,7 +1,7 @@
 //! Mapping of a log, or localization of it in a map that does not change.
 
 use super::counts::ScanCounts;
-use super::input::is_depth_folder;
+use super::input::LogInput;
 use super::mount_check::mount_hint;
 use super::numbers::{map_picture, summary, trajectory_lines};
 use super::request::LaserMapRequest;
@@ -19,24 +19,24 @@ use trundle_mapping::{Localized, MapLocalizer, ParticleMapper, propagate_traject
 pub fn map_log(
     request: &LaserMapRequest,
     localize_only: bool,
-    log: &LaserLog,
+    input: &LogInput,
     folder: &OutputFolder,
     progress: &dyn StepProgress,
 ) -> Result<LaserMapRun, AppError> {
-    let is_depth = is_depth_folder(&request.log);
+    let LogInput { log, depth, .. } = input;
     let odometry: Vec<(Stamp, Pose2)> =
         log.scans.iter().map(|s| (s.scan.stamp(), s.odom_from_base)).collect();
     let start = Instant::now();
     let (counts, poses, megabytes, failure) = match &request.map {
         Some(file) if localize_only => {
-            let mut localizer = request.localizer(file, is_depth)?;
+            let mut localizer = request.localizer(file, depth.as_ref())?;
             let (counts, poses) = localize(log, &mut localizer, progress);
             folder.write("overview.png", &map_picture(&localizer.grid(), &poses))?;
             let failure = LaserMapRun::failure_of(log, &counts, None);
             (counts, poses, 0.0, failure)
         }
         _ => {
-            let mut mapper = request.mapper(is_depth)?;
+            let mut mapper = request.mapper(depth.as_ref())?;
             let counts = map(log, &mut mapper, progress);
             write_map_as(folder, "map", mapper.grid(), request.map_image)?;
             let poses = mapper.trajectory();
@@ -50,9 +50,9 @@ pub fn map_log(
     let trajectory = propagate_trajectory(&poses, &odometry);
     folder.write("trajectory.txt", trajectory_lines(&trajectory).as_bytes())?;
     let is_interrupted = stop::stopped().is_some();
-    let mount_hint = if is_depth { None } else { mount_hint(log, &counts) };
+    let mount_hint = if depth.is_some() { None } else { mount_hint(log, &counts) };
     let run = LaserMapRun { counts, megabytes, seconds, is_interrupted, mount_hint, failure };
-    folder.write("summary.json", summary(request, log, &run).to_json().as_bytes())?;
+    folder.write("summary.json", summary(request, input, &run).to_json().as_bytes())?;
     Ok(run)
 }
 

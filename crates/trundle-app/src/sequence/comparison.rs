@@ -7,14 +7,14 @@ use trundle_eval::{AbsoluteConfig, RelativeConfig};
 
 /// ATE and RPE; where they cannot be taken (no overlap in time), a warning says why.
 pub fn against_truth(
-    dir: &Path,
+    path: &Path,
     truth: &[(Stamp, Pose3)],
     trajectory: &[(Stamp, Pose3)],
 ) -> Option<TrajectoryEvaluation> {
     let (absolute, relative) = (AbsoluteConfig::default(), RelativeConfig::default());
     TrajectoryEvaluation::of(truth, trajectory, &absolute, &relative)
         .inspect_err(|error| {
-            tracing::warn!("{}: not compared: {error}", dir.join("groundtruth.txt").display());
+            tracing::warn!("{}: not compared with its ground truth: {error}", path.display());
         })
         .ok()
 }

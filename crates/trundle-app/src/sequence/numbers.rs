@@ -4,12 +4,13 @@ use super::request::SequenceRequest;
 use super::run::SequenceRun;
 use crate::evaluation::TrajectoryEvaluation;
 use crate::report::wall_clock;
-use trundle_io::{SequenceCamera, Summary, TumSequence};
+use crate::sequence_input::SequenceInput;
+use trundle_io::Summary;
 
 /// The table of a tracked sequence, all but the wall clock's part.
 #[must_use]
 pub fn sequence_rows(
-    sequence: &TumSequence,
+    input: &SequenceInput,
     run: &SequenceRun,
     comparison: Option<&TrajectoryEvaluation>,
 ) -> Vec<Vec<String>> {
@@ -17,12 +18,12 @@ pub fn sequence_rows(
     let c = run.counts;
     let mut rows = vec![
         row("frames read", (c.ok + c.weak + c.dead_reckoned + c.lost).to_string()),
-        row("frames unreadable, without depth", format!("{}, {}", run.unreadable.len(), sequence.unpaired())),
+        row("frames unreadable, without depth", format!("{}, {}", run.unreadable.len(), input.unpaired())),
         row(
             "ok / weak / dead reckoned / lost",
             format!("{} / {} / {} / {}", c.ok, c.weak, c.dead_reckoned, c.lost),
         ),
-        row("motions by odometry.txt", run.odometry_priors.to_string()),
+        row("motions by odometry", run.odometry_priors.to_string()),
         row("keyframes", run.slam.keyframes().count().to_string()),
         row("landmarks", run.slam.landmarks().count().to_string()),
         row("loops closed", run.slam.loops().len().to_string()),
@@ -42,8 +43,7 @@ pub fn sequence_rows(
 /// `summary.json`.
 pub fn summary(
     request: &SequenceRequest,
-    camera: &SequenceCamera,
-    sequence: &TumSequence,
+    input: &SequenceInput,
     run: &SequenceRun,
     comparison: Option<&TrajectoryEvaluation>,
 ) -> Summary {
@@ -52,12 +52,14 @@ pub fn summary(
     summary
         .set("success", run.failure().is_none())
         .set("failure", run.failure())
-        .set("camera", &camera.name)
-        .set("camera_assumed", camera.is_assumed)
+        .set("input", input.path.display().to_string())
+        .set("cut", input.cut_report())
+        .set("camera", &input.camera.name)
+        .set("camera_assumed", input.camera.is_assumed)
         .set("seed", request.seed)
         .set("frames", c.ok + c.weak + c.dead_reckoned + c.lost)
         .set("frames_unreadable", &run.unreadable)
-        .set("frames_without_depth", sequence.unpaired())
+        .set("frames_without_depth", input.unpaired())
         .set("frames_ok", c.ok)
         .set("frames_weak", c.weak)
         .set("frames_dead_reckoned", c.dead_reckoned)

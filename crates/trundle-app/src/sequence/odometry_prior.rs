@@ -1,11 +1,10 @@
 //! The camera's motion between two images by the odometry of a sequence.
 
+use crate::sequence_input::SequenceInput;
 use trundle_core::{CameraMotion, Pose2, Pose3, Stamp};
-use trundle_io::TumSequence;
 use trundle_localization::OdometryConfig;
-use trundle_runtime::RobotConfig;
 
-/// The camera's motion by the odometry of a sequence, where it has one; the camera is mounted as on the default robot.
+/// The camera's motion by the odometry of a sequence, where it has one; the camera is mounted as on the sequence's robot.
 pub struct OdometryPrior<'a> {
     poses: &'a [(Stamp, Pose2)],
     base_from_camera: Pose3,
@@ -13,11 +12,11 @@ pub struct OdometryPrior<'a> {
 }
 
 impl<'a> OdometryPrior<'a> {
-    /// The odometry of `sequence`.
-    pub fn new(sequence: &'a TumSequence) -> Self {
-        let robot = RobotConfig::default();
+    /// The odometry of `input`.
+    pub fn new(input: &'a SequenceInput) -> Self {
+        let robot = &input.robot;
         let base_from_camera = robot.mount.base_from_camera();
-        Self { poses: sequence.odometry().unwrap_or(&[]), base_from_camera, noise: robot.odometry }
+        Self { poses: input.odometry().unwrap_or(&[]), base_from_camera, noise: robot.odometry.clone() }
     }
 
     /// `earlier_camera_from_later_camera`; `None` in a gap of the odometry, and where it jumps.

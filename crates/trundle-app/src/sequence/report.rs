@@ -1,12 +1,11 @@
 //! The page of a tracked sequence.
 
 use super::recorder::KeyframeLinks;
-use super::request::SequenceRequest;
 use super::run::SequenceRun;
 use crate::evaluation::TrajectoryEvaluation;
 use crate::report::camera_view;
+use crate::sequence_input::SequenceInput;
 use trundle_core::{OccupancyGrid, Pose3, Stamp, Vector3};
-use trundle_io::SequenceCamera;
 use trundle_viz::{
     Card, Chart, Color, Figure, RunMap, RunReport, Table, Verdict, VisualMapScene, trajectory_picture,
     visual_map_picture,
@@ -14,8 +13,7 @@ use trundle_viz::{
 
 /// The page: trajectory, error, maps, last image, numbers.
 pub fn page(
-    request: &SequenceRequest,
-    camera: &SequenceCamera,
+    input: &SequenceInput,
     run: &SequenceRun,
     grid: OccupancyGrid,
     trajectory: &[(Stamp, Pose3)],
@@ -32,9 +30,9 @@ pub fn page(
         title: "trundle slam".to_owned(),
         subtitle: format!(
             "{}, camera {}{}.",
-            request.dir.display(),
-            camera.name,
-            if camera.is_assumed { " (assumed)" } else { "" }
+            input.path.display(),
+            input.camera.name,
+            if input.camera.is_assumed { " (assumed)" } else { "" }
         ),
         verdict: Some(match run.failure() {
             None => Verdict::Note(verdict),

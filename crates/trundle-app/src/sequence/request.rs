@@ -1,29 +1,33 @@
 //! What a sequence is tracked with: camera, first pose, map, seed.
 
+use crate::AppError;
+use crate::sequence_input::{SequenceInput, SequenceOptions};
 use crate::vocabulary_file::vocabulary_or_builtin;
-use crate::{AppError, log_warnings};
 use std::path::PathBuf;
-use trundle_io::{CameraModel, Expected, MapImage, SequenceCamera, TumSequence};
+use trundle_core::{Invalid, Pose3};
+use trundle_io::{Expected, MapImage};
 use trundle_runtime::level_from_first_camera;
 use trundle_slam::{Mode, RgbdSlam, SlamConfig};
 
 /// A recorded sequence and how to track it.
 #[derive(Debug, Clone)]
 pub struct SequenceRequest {
-    /// A TUM RGB-D folder.
-    pub dir: PathBuf,
-    /// A camera preset or a file of one; `None` for the folder's own.
+    /// A TUM RGB-D folder or a recording of a run.
+    pub path: PathBuf,
+    /// A camera preset or a file of one; `None` for the input's own.
     pub camera: Option<String>,
     /// Depth units a metre; `None` for the camera's own.
     pub depth_scale: Option<f64>,
     /// Frames to track; `None` for all.
     pub frames: Option<usize>,
-    /// Height of the first camera above the floor, m.
-    pub height: f64,
-    /// Downward tilt of the first camera, deg.
-    pub tilt_deg: f64,
-    /// Roll of the first camera to its right, deg.
-    pub roll_deg: f64,
+    /// Whether a recording may be cut: it is tracked up to the cut.
+    pub recover: bool,
+    /// Height of the first camera above the floor, m; `None` for the input's own, else 1 m.
+    pub height: Option<f64>,
+    /// Downward tilt of the first camera, deg; `None` for the input's own, else 0.
+    pub tilt_deg: Option<f64>,
+    /// Roll of the first camera to its right, deg; `None` for the input's own, else 0.
+    pub roll_deg: Option<f64>,
     /// The visual map of an earlier run, in which the camera is localized first.
     pub map: Option<PathBuf>,
     /// Whether that map stays as it is.
@@ -36,36 +40,44 @@ pub struct SequenceRequest {
     pub map_image: MapImage,
 }
 
+/// Height of a first camera of which nothing is known \[m\]. Source: ours, a hand-held camera.
+const DEFAULT_CAMERA_HEIGHT_M: f64 = 1.0;
+
 impl SequenceRequest {
-    /// The camera: the one asked for, else the folder's own, else one that is assumed. Its warnings are logged.
+    /// The images. Warnings are logged.
     ///
     /// # Errors
-    /// When there is no such preset or file.
-    pub fn camera(&self) -> Result<SequenceCamera, AppError> {
-        let camera = SequenceCamera::choose(self.camera.as_deref(), &self.dir)?;
-        log_warnings(&camera.warnings);
-        Ok(camera)
+    /// When they cannot be read, or there is no such camera.
+    pub fn open(&self) -> Result<SequenceInput, AppError> {
+        SequenceInput::open(&SequenceOptions {
+            path: &self.path,
+            camera: self.camera.as_deref(),
+            depth_scale: self.depth_scale,
+            recover: self.recover,
+        })
     }
 
-    /// The sequence, its images of the camera's size. Its warnings are logged.
-    ///
-    /// # Errors
-    /// When the folder cannot be read as a TUM RGB-D folder.
-    pub fn open(&self, model: &CameraModel) -> Result<TumSequence, AppError> {
-        let scale = self.depth_scale.unwrap_or(model.depth_scale);
-        let sequence = TumSequence::open(&self.dir, scale, TumSequence::MAX_DIFFERENCE)?;
-        log_warnings(sequence.warnings());
-        Ok(sequence.with_size(model.camera.width(), model.camera.height()))
+    /// The pose of the first camera above the floor: as asked for, else as the robot of a recording carries it.
+    fn level_from_first_camera(&self, input: &SequenceInput) -> Result<Pose3, Invalid> {
+        let is_asked = self.height.or(self.tilt_deg).or(self.roll_deg).is_some();
+        match input.level_from_first_camera().filter(|_| !is_asked) {
+            Some(mount) => Ok(mount),
+            None => level_from_first_camera(
+                self.height.unwrap_or(DEFAULT_CAMERA_HEIGHT_M),
+                self.tilt_deg.unwrap_or_default(),
+                self.roll_deg.unwrap_or_default(),
+            ),
+        }
     }
 
     /// A tracker with an empty map, or with the map asked for.
-    pub(super) fn slam(&self, model: &CameraModel) -> Result<RgbdSlam, AppError> {
+    pub(super) fn slam(&self, input: &SequenceInput) -> Result<RgbdSlam, AppError> {
         // The error of a recording is taken over all of its frames.
         let config = SlamConfig { seed: self.seed, kept_frames: usize::MAX, ..SlamConfig::default() };
-        let camera = model.camera;
+        let camera = input.camera.model.camera;
         let vocabulary = vocabulary_or_builtin(self.vocabulary.as_deref())?;
         let Some(file) = &self.map else {
-            let level_from_camera = level_from_first_camera(self.height, self.tilt_deg, self.roll_deg)?;
+            let level_from_camera = self.level_from_first_camera(input)?;
             let slam = RgbdSlam::new(camera, config)?.with_vocabulary(&vocabulary);
             return Ok(slam.starting_at(level_from_camera));
         };

@@ -3,14 +3,12 @@
 use super::odometry_prior::OdometryPrior;
 use super::recorder::SequenceRecorder;
 use super::request::SequenceRequest;
+use crate::sequence_input::SequenceInput;
 use crate::{AppError, StepProgress, TrackCounts, stop};
 use std::time::Instant;
 use trundle_core::RgbdImage;
-use trundle_io::{
-    CameraModel, DepthStatistics, EncodedRgbd, FrameError, OutputFolder, SequenceCamera, TumSequence,
-    Warnings,
-};
-use trundle_runtime::{LevelMap, RobotConfig, Stage, StageTimes};
+use trundle_io::{DepthStatistics, FrameError, OutputFolder, Warnings};
+use trundle_runtime::{LevelMap, Stage, StageTimes};
 use trundle_slam::{RgbdSlam, TrackReport};
 
 /// The result of tracking a sequence.
@@ -49,21 +47,21 @@ pub struct SequenceRun {
 /// When a setting cannot be accepted or no frame can be read. A recording that the disk does not take ends; tracking goes on.
 pub fn track_sequence(
     request: &SequenceRequest,
-    camera: &SequenceCamera,
-    sequence: &TumSequence,
+    input: &SequenceInput,
     folder: &OutputFolder,
     progress: &dyn StepProgress,
 ) -> Result<SequenceRun, AppError> {
-    let mut run = SequenceRun::new(request, &camera.model)?;
+    let mut run = SequenceRun::new(request, input)?;
     let mut recorder = SequenceRecorder::new(folder.recorder("recording.mcap")?);
-    let odometry = OdometryPrior::new(sequence);
-    let frames = request.frames.map_or(sequence.len(), |frames| sequence.len().min(frames));
+    let odometry = OdometryPrior::new(input);
+    let frames = request.frames.map_or(input.len(), |frames| input.len().min(frames));
     progress.begin(Some(frames));
     let start = Instant::now();
-    for i in 0..frames {
-        match sequence.load(i) {
+    for (i, frame) in input.frames()?.take(frames).enumerate() {
+        let frame = frame?;
+        match frame.decode() {
             Ok(image) => {
-                let encoded = EncodedRgbd::encode(&image).map_err(AppError::input)?;
+                let encoded = frame.encoded(&image).map_err(AppError::input)?;
                 let report = run.step(image, &odometry);
                 recorder.record(encoded, &report, &run.slam);
                 run.warn_of_calibration(progress);
@@ -81,23 +79,24 @@ pub fn track_sequence(
     run.slam.finish_refining();
     recorder.finish(&run.slam, folder);
     if let (None, Some(first)) = (&run.last_image, run.unreadable.first()) {
-        let (dir, camera) = (request.dir.display(), &camera.name);
-        let problem = format!("{dir}: no frame can be read as one of camera {camera} (--camera); {first}");
+        let (path, camera) = (input.path.display(), &input.camera.name);
+        let problem = format!("{path}: no frame can be read as one of camera {camera} (--camera); {first}");
         return Err(AppError::Input(problem));
     }
-    if sequence.odometry().is_some() && run.odometry_priors == 0 && frames > 1 {
-        tracing::warn!("odometry.txt holds no motion between images: is it empty, or of another clock?");
+    if input.odometry().is_some() && run.odometry_priors == 0 && frames > 1 {
+        let [odometry, _] = input.pose_sources();
+        tracing::warn!("{odometry}: no motion between images; is it empty, or of another clock?");
     }
     run.seconds = start.elapsed().as_secs_f64();
     Ok(run)
 }
 
 impl SequenceRun {
-    fn new(request: &SequenceRequest, camera: &CameraModel) -> Result<Self, AppError> {
-        let robot = RobotConfig::default();
+    fn new(request: &SequenceRequest, input: &SequenceInput) -> Result<Self, AppError> {
+        let robot = &input.robot;
         Ok(Self {
-            slam: request.slam(camera)?,
-            map: LevelMap::new(camera.camera, robot.scan, robot.schedule.map_hz)?,
+            slam: request.slam(input)?,
+            map: LevelMap::new(input.camera.model.camera, robot.scan.clone(), robot.schedule.map_hz)?,
             counts: TrackCounts::default(),
             last_image: None,
             unreadable: Vec::new(),
@@ -106,7 +105,7 @@ impl SequenceRun {
             seconds: 0.0,
             is_interrupted: false,
             depth: DepthStatistics::default(),
-            depth_scale: request.depth_scale.unwrap_or(camera.depth_scale),
+            depth_scale: input.depth_scale(request.depth_scale),
             logged_issues: 0,
             frame_problems: Warnings::default(),
         })

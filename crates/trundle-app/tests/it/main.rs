@@ -5,6 +5,7 @@ mod body;
 mod checkpoint_writer;
 mod contact;
 mod files;
+mod recorded_sequence;
 mod recording;
 mod report;
 mod run_log;

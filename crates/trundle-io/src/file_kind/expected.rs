@@ -105,9 +105,11 @@ impl Expected {
         match self {
             Self::Map => "a map's YAML file",
             Self::Scene => "a built-in scene, a scene file (.toml), a glTF scene or a map's YAML file",
-            Self::LaserLog => "a CARMEN log, a ROS bag or a TUM RGB-D folder",
+            Self::LaserLog => "a CARMEN log, a ROS bag, a trundle recording or a TUM RGB-D folder",
             Self::Docking => "a map's YAML file, a CARMEN log or a file of docking problems",
-            Self::Sequence => "a TUM RGB-D folder (rgb.txt and depth.txt, or associations.txt)",
+            Self::Sequence => {
+                "a TUM RGB-D folder (rgb.txt and depth.txt, or associations.txt) or a trundle recording"
+            }
             Self::Recording => "a trundle recording (recording.mcap)",
             Self::Camera => "a camera file (TOML, ORB-SLAM's, stella_vslam's or ROS's YAML, Open3D's JSON)",
             Self::Trajectory => "a trajectory (TUM, KITTI or EuRoC form)",

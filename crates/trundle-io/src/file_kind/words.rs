@@ -14,7 +14,11 @@ const WORDS: &[(FileKind, &str, &str)] = &[
     (K::Ros2Sqlite, "a ROS 2 bag (SQLite)", "`trundle map` reads its laser scans"),
     (K::Ros2BagFolder, "the folder of a ROS 2 bag", "`trundle map` reads its laser scans"),
     (K::RosBagMetadata, "the metadata of a ROS 2 bag", "give the bag's folder to `trundle map`"),
-    (K::TrundleRecording, "a trundle recording", "use `trundle replay`"),
+    (
+        K::TrundleRecording,
+        "a trundle recording",
+        "use `trundle replay`, or `slam` or `map` where it holds images",
+    ),
     (
         K::OtherMcap,
         "an MCAP file",

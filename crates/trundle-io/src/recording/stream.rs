@@ -66,6 +66,14 @@ pub struct RecordingCut {
     pub byte: u64,
 }
 
+impl RecordingCut {
+    /// The cut in a sentence; `seconds`: how much was read before it.
+    #[must_use]
+    pub fn report(&self, seconds: f64) -> String {
+        format!("the recording was cut at byte {}; {seconds:.2} s of it were read", self.byte)
+    }
+}
+
 impl MessageStream {
     /// The messages of a whole file; a cut one is an error where it was cut.
     pub fn open(path: &Path, encoding: Encoding) -> Result<Self, IoError> {

@@ -9,7 +9,7 @@ use crate::codec::{decode_color, decode_depth_file};
 use crate::files::read_bytes;
 use crate::{FrameError, IoError, Warnings};
 use std::path::{Path, PathBuf};
-use trundle_core::{Invalid, Pose2, Pose3, RgbdImage, Stamp, require_finite};
+use trundle_core::{Pose2, Pose3, RgbdImage, Stamp, require_finite};
 
 /// A recorded RGB-D sequence in TUM's form, its images still on disk.
 ///
@@ -114,21 +114,13 @@ impl TumSequence {
     fn image(&self, color: &ListedImage, depth: &ListedImage) -> Result<RgbdImage, IoError> {
         let (color_path, depth_path) = (self.dir.join(&color.file), self.dir.join(&depth.file));
         let pixels = decode_color(&read_bytes(&color_path)?).map_err(IoError::image(&color_path))?;
-        self.check_size("colour image size", (pixels.width(), pixels.height()))
-            .map_err(IoError::field(&color_path))?;
+        let found = (pixels.width(), pixels.height());
+        if let Some(size) = self.size.filter(|size| *size != found) {
+            return Err(IoError::wrong_image_size(&color_path, found, size));
+        }
         let metres = decode_depth_file(&read_bytes(&depth_path)?, self.depth_scale)
             .map_err(IoError::image(&depth_path))?;
         RgbdImage::new(color.stamp, pixels, metres).map_err(IoError::field(&depth_path))
-    }
-
-    fn check_size(&self, name: &str, found: (usize, usize)) -> Result<(), Invalid> {
-        match self.size {
-            Some(size) if size != found => {
-                let expected = format!("{} x {} as the camera", size.0, size.1);
-                Err(Invalid::new(name, format!("{} x {}", found.0, found.1), "px", expected))
-            }
-            _ => Ok(()),
-        }
     }
 }
 

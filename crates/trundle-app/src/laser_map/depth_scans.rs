@@ -1,10 +1,11 @@
-//! The depth images of a TUM RGB-D folder as scans, with the base's poses beside them.
+//! Depth images as scans, with the base's poses beside them.
 
-use super::depth_scanner::depth_scanner;
-use crate::{AppError, StepProgress, log_warnings, read_trajectory, stop};
+use super::input::{DepthLog, LogInput};
+use crate::sequence_input::{PendingFrame, RecordedRun, SequenceInput};
+use crate::{AppError, StepProgress, read_trajectory, stop};
 use std::path::Path;
 use trundle_core::{Pose2, Pose3, Stamp, Vector3};
-use trundle_io::{DepthStatistics, LaserLog, LaserLogScan, LaserLogSkip, TumSequence};
+use trundle_io::{DepthStatistics, LaserLog, LaserLogScan, LaserLogSkip};
 use trundle_mapping::DepthScanner;
 use trundle_runtime::RobotConfig;
 
@@ -19,37 +20,39 @@ const MAX_POSE_DISTANCE_M: f64 = 1e6;
 /// Angle between the optical axis and the vertical \[deg\]. Below it the camera has no heading. Source: ours.
 const MIN_AXIS_TILT_DEG: f64 = 20.0;
 
-/// The scans of a TUM RGB-D folder at 5 Hz.
+/// The scans of RGB-D images at 5 Hz.
 ///
-/// The motion is `tracked`, a TUM trajectory of the camera, or `odometry.txt`, both with the camera mounted as on the default
-/// robot; else `groundtruth.txt`, whose frame must be level with the floor at z = 0, and each image is cut under the tilt and
+/// The motion is `tracked`, a TUM trajectory of the camera, or the input's odometry, both with the camera mounted as on the input's
+/// robot; else its ground truth, whose frame must be level with the floor at z = 0, and each image is cut under the tilt and
 /// height that its pose says.
-pub fn read(dir: &Path, tracked: Option<&Path>, progress: &dyn StepProgress) -> Result<LaserLog, AppError> {
-    let (mut scanner, camera) = depth_scanner(dir)?;
-    let model = camera.model;
-    let sequence = TumSequence::open(dir, model.depth_scale, TumSequence::MAX_DIFFERENCE)?
-        .with_size(model.camera.width(), model.camera.height());
-    log_warnings(&camera.warnings);
-    log_warnings(sequence.warnings());
-    let tracked = tracked.map(base_poses).transpose()?;
+pub fn read(
+    input: &SequenceInput,
+    tracked: Option<&Path>,
+    progress: &dyn StepProgress,
+) -> Result<LogInput, AppError> {
+    let robot = &input.robot;
+    let mut scanner =
+        DepthScanner::new(input.camera.model.camera, robot.mount.base_from_camera(), robot.scan.clone())?;
+    let tracked = tracked.map(|file| base_poses(file, robot)).transpose()?;
     let poses = match &tracked {
         Some(poses) => Poses::Base(poses),
-        None => Poses::of(dir, &sequence)?,
+        None => Poses::of(input)?,
     };
     let (mut log, mut last) = (LaserLog::default(), None);
     let mut depth = DepthStatistics::default();
-    log.max_range = Some(RobotConfig::default().scan.max_range);
-    progress.begin(Some(sequence.len()));
-    for i in 0..sequence.len() {
-        if stop::is_requested(|| format!("{i} of {} images", sequence.len())) {
+    log.max_range = Some(robot.scan.max_range);
+    progress.begin(Some(input.len()));
+    for (i, frame) in input.frames()?.enumerate() {
+        if stop::is_requested(|| format!("{i} of {} images", input.len())) {
             break;
         }
         progress.advance();
-        let stamp = sequence.stamp(i);
+        let frame = frame?;
+        let stamp = frame.stamp();
         if last.is_some_and(|last| stamp - last < MIN_SCAN_PERIOD_S) {
             continue;
         }
-        match scan(&sequence, i, &poses, (&mut scanner, &mut depth)) {
+        match scan(i, &frame, &poses, (&mut scanner, &mut depth)) {
             Ok(scan) => {
                 log.odometry.push((stamp, scan.odom_from_base));
                 log.scans.push(scan);
@@ -59,34 +62,70 @@ pub fn read(dir: &Path, tracked: Option<&Path>, progress: &dyn StepProgress) -> 
         }
     }
     progress.end();
-    log.depth_problem = depth.problem(model.depth_scale);
+    log.depth_problem = depth.problem(input.depth_scale(None));
     if log.scans.is_empty() && stop::stopped().is_some() {
         return Err(AppError::Stopped);
     }
     match log.skipped.first() {
         Some(first) if log.scans.is_empty() => {
-            Err(AppError::Input(format!("{}: no frame can be used; {}", dir.display(), first.problem)))
+            Err(AppError::Input(format!("{}: no frame can be used; {}", input.path.display(), first.problem)))
         }
-        _ => Ok(log),
+        _ => {
+            let by_wheels = tracked.is_none() && input.odometry().is_some();
+            let depth = DepthLog { scan: robot.scan.clone(), blind_range: scanner.blind_range(), by_wheels };
+            Ok(LogInput { log, depth: Some(depth), cut_report: input.cut_report().map(str::to_owned) })
+        }
     }
 }
 
 fn scan(
-    sequence: &TumSequence,
-    i: usize,
+    index: usize,
+    frame: &PendingFrame<'_>,
     poses: &Poses<'_>,
     (scanner, depth): (&mut DepthScanner, &mut DepthStatistics),
 ) -> Result<LaserLogScan, String> {
-    let stamp = sequence.stamp(i);
+    let stamp = frame.stamp();
     let (odom_from_base, base_from_camera) = poses
         .at(stamp)
-        .ok_or_else(|| format!("frame {i}: no pose about {stamp} s, or one that looks up or down"))?;
+        .ok_or_else(|| format!("frame {index}: no pose about {stamp} s, or one that looks up or down"))?;
     if let Some(mount) = base_from_camera {
-        scanner.remount(mount).map_err(|invalid| format!("frame {i}: {invalid}"))?;
+        scanner.remount(mount).map_err(|invalid| format!("frame {index}: {invalid}"))?;
     }
-    let image = sequence.load(i).map_err(|error| error.to_string())?;
+    let image = frame.decode().map_err(|error| error.to_string())?;
     depth.count(image.depth());
     Ok(LaserLogScan { odom_from_base, scan: scanner.scan(&image) })
+}
+
+/// The scans of a recording's 2-D laser, each at the odometry of its moment.
+///
+/// # Errors
+/// When no scan can be used.
+pub fn of_laser(run: &RecordedRun, file: &Path) -> Result<LogInput, AppError> {
+    let refused = |problem: &str| AppError::Input(format!("{}: {problem}", file.display()));
+    let odometry =
+        run.odometry().ok_or_else(|| refused("no wheels in the recording, expected odometry for a map"))?;
+    let mut log = LaserLog { odometry: odometry.to_vec(), ..LaserLog::default() };
+    for (i, scan) in run.scans().iter().enumerate() {
+        let stamp = scan.stamp();
+        match about(odometry, stamp) {
+            Some((a, b, part)) => {
+                let odom_from_base = a.interpolate(&b, part);
+                log.scans.push(LaserLogScan { odom_from_base, scan: scan.clone() });
+            }
+            None => {
+                let problem = format!("no odometry about {stamp} s");
+                log.skipped.push(LaserLogSkip { line: i + 1, problem });
+            }
+        }
+    }
+    if log.scans.is_empty() {
+        return Err(refused("no scan can be used: none has odometry about its time"));
+    }
+    let cut_report = run.cut_report().map(str::to_owned);
+    if let Some(report) = &cut_report {
+        tracing::warn!("{}: {report}", file.display());
+    }
+    Ok(LogInput { log, depth: None, cut_report })
 }
 
 /// The source of the base's poses.
@@ -98,14 +137,15 @@ enum Poses<'a> {
 }
 
 impl<'a> Poses<'a> {
-    fn of(dir: &Path, sequence: &'a TumSequence) -> Result<Self, AppError> {
-        match (sequence.odometry(), sequence.ground_truth()) {
+    fn of(input: &'a SequenceInput) -> Result<Self, AppError> {
+        match (input.odometry(), input.ground_truth()) {
             (Some(odometry), _) => Ok(Self::Base(odometry)),
             (None, Some(camera)) => Ok(Self::Camera(camera)),
-            (None, None) => Err(AppError::Input(format!(
-                "{}: neither odometry.txt nor groundtruth.txt, expected poses for a map",
-                dir.display()
-            ))),
+            (None, None) => {
+                let ([odometry, truth], path) = (input.pose_sources(), input.path.display());
+                let problem = format!("{path}: neither {odometry} nor {truth}, expected poses for a map");
+                Err(AppError::Input(problem))
+            }
         }
     }
 
@@ -127,7 +167,7 @@ impl<'a> Poses<'a> {
 }
 
 /// The base's trajectory from a TUM trajectory of the camera in any frame, relative to the first pose, projected onto the floor.
-fn base_poses(file: &Path) -> Result<Vec<(Stamp, Pose2)>, AppError> {
+fn base_poses(file: &Path, robot: &RobotConfig) -> Result<Vec<(Stamp, Pose2)>, AppError> {
     let camera = read_trajectory(file)?;
     let Some((_, first)) = camera.first() else {
         return Err(AppError::Input(format!("{}: no pose, expected those of the camera", file.display())));
@@ -139,7 +179,7 @@ fn base_poses(file: &Path) -> Result<Vec<(Stamp, Pose2)>, AppError> {
             format!("{file}: the pose at {stamp} s is {off} m off, expected at most {MAX_POSE_DISTANCE_M} m");
         return Err(AppError::Input(problem));
     }
-    let base_from_camera = RobotConfig::default().mount.base_from_camera();
+    let base_from_camera = robot.mount.base_from_camera();
     let (first_from_frame, camera_from_base) = (first.inverse(), base_from_camera.inverse());
     let base = |pose: &Pose3| (base_from_camera * first_from_frame * *pose * camera_from_base).to_pose2();
     Ok(camera.iter().map(|(stamp, pose)| (*stamp, base(pose))).collect())

@@ -1,0 +1,206 @@
+//! RGB-D images with odometry and truth, as `slam` and `map` read them: a TUM RGB-D folder, or the recording of a run.
+
+mod frames;
+mod recorded_run;
+
+pub use frames::PendingFrame;
+pub use recorded_run::RecordedRun;
+
+use crate::{AppError, log_warnings};
+use frames::SequenceFrames;
+use std::path::{Path, PathBuf};
+use trundle_core::{Pose2, Pose3, Stamp};
+use trundle_io::{CameraModel, FileKind, KINECT_V2_DEPTH_SCALE, SequenceCamera, TumSequence, Warnings};
+use trundle_runtime::RobotConfig;
+
+/// What to read, and how.
+#[derive(Debug, Clone, Copy)]
+pub struct SequenceOptions<'a> {
+    /// A TUM RGB-D folder or a recording of a run.
+    pub path: &'a Path,
+    /// A camera preset or a file of one; `None` for the input's own.
+    pub camera: Option<&'a str>,
+    /// Depth units a metre of a folder's images; `None` for the camera's own.
+    pub depth_scale: Option<f64>,
+    /// Whether a recording may be cut: it is read up to the cut.
+    pub recover: bool,
+}
+
+/// RGB-D images in the order of their stamps, with what is known beside them.
+pub struct SequenceInput {
+    /// The folder or file.
+    pub path: PathBuf,
+    /// The camera.
+    pub camera: SequenceCamera,
+    /// The robot that carries the camera: the recording's own; the default one where the input names none.
+    pub robot: RobotConfig,
+    source: Source,
+}
+
+enum Source {
+    Folder(TumSequence),
+    Recording(RecordedRun),
+}
+
+impl SequenceInput {
+    /// Whether `path` is read as RGB-D images: a TUM RGB-D folder or a recording of trundle.
+    #[must_use]
+    pub fn is_one(path: &Path) -> bool {
+        matches!(FileKind::of(path), Ok(FileKind::SequenceFolder | FileKind::TrundleRecording))
+    }
+
+    /// Opens a folder or a recording. Warnings are logged.
+    ///
+    /// # Errors
+    /// When it is neither, cannot be read, holds no images, or nothing says which camera made them.
+    pub fn open(options: &SequenceOptions<'_>) -> Result<Self, AppError> {
+        match FileKind::of(options.path)? {
+            FileKind::TrundleRecording => {
+                Self::of_recording(options, RecordedRun::read(options.path, options.recover)?)
+            }
+            _ => Self::of_folder(options),
+        }
+    }
+
+    fn of_folder(options: &SequenceOptions<'_>) -> Result<Self, AppError> {
+        let camera = SequenceCamera::choose(options.camera, options.path)?;
+        log_warnings(&camera.warnings);
+        let CameraModel { camera: lens, depth_scale } = camera.model;
+        let scale = options.depth_scale.unwrap_or(depth_scale);
+        let sequence = TumSequence::open(options.path, scale, TumSequence::MAX_DIFFERENCE)?;
+        log_warnings(sequence.warnings());
+        let source = Source::Folder(sequence.with_size(lens.width(), lens.height()));
+        Ok(Self { path: options.path.to_owned(), camera, robot: RobotConfig::default(), source })
+    }
+
+    /// The images of a recording that was read before.
+    ///
+    /// # Errors
+    /// As [`SequenceInput::open`].
+    pub fn of_recording(options: &SequenceOptions<'_>, run: RecordedRun) -> Result<Self, AppError> {
+        let name = options.path.display();
+        if options.depth_scale.is_some() {
+            let problem = format!("--depth-scale is about a TUM folder; {name} is a recording, in metres");
+            return Err(AppError::Input(problem));
+        }
+        run.require_images()?;
+        let camera = match (options.camera, run.robot()) {
+            (Some(_), _) => SequenceCamera::choose(options.camera, options.path)?,
+            (None, Some(robot)) => camera_of(robot, options.path),
+            (None, None) => {
+                let problem = format!(
+                    "{name}: no robot is named in the recording, so its camera is unknown, expected --camera"
+                );
+                return Err(AppError::Input(problem));
+            }
+        };
+        log_warnings(&camera.warnings);
+        if let Some(report) = run.cut_report() {
+            tracing::warn!("{name}: {report}");
+        }
+        let robot = run.robot().cloned().unwrap_or_default();
+        Ok(Self { path: options.path.to_owned(), camera, robot, source: Source::Recording(run) })
+    }
+
+    /// Depth units a metre in the images.
+    #[must_use]
+    pub fn depth_scale(&self, asked: Option<f64>) -> f64 {
+        asked.unwrap_or(self.camera.model.depth_scale)
+    }
+
+    /// Number of images.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        match &self.source {
+            Source::Folder(sequence) => sequence.len(),
+            Source::Recording(run) => run.image_count(),
+        }
+    }
+
+    /// Whether there is no image; never so.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Colour images without a depth image near enough in time.
+    #[must_use]
+    pub fn unpaired(&self) -> usize {
+        match &self.source {
+            Source::Folder(sequence) => sequence.unpaired(),
+            Source::Recording(_) => 0,
+        }
+    }
+
+    /// `world_from_camera`, for evaluation, where it is known.
+    #[must_use]
+    pub fn ground_truth(&self) -> Option<&[(Stamp, Pose3)]> {
+        match &self.source {
+            Source::Folder(sequence) => sequence.ground_truth(),
+            Source::Recording(run) => run.ground_truth(),
+        }
+    }
+
+    /// `odom_from_base`, where it is known.
+    #[must_use]
+    pub fn odometry(&self) -> Option<&[(Stamp, Pose2)]> {
+        match &self.source {
+            Source::Folder(sequence) => sequence.odometry(),
+            Source::Recording(run) => run.odometry(),
+        }
+    }
+
+    /// What odometry and ground truth are called in the input, for messages.
+    #[must_use]
+    pub fn pose_sources(&self) -> [&'static str; 2] {
+        match self.source {
+            Source::Folder(_) => ["odometry.txt", "groundtruth.txt"],
+            Source::Recording(_) => ["wheels", "truth"],
+        }
+    }
+
+    /// Where a recording was cut, in a sentence; `None` for a whole one and for a folder.
+    #[must_use]
+    pub fn cut_report(&self) -> Option<&str> {
+        match &self.source {
+            Source::Folder(_) => None,
+            Source::Recording(run) => run.cut_report(),
+        }
+    }
+
+    /// Where the camera sits on the robot, where the input says so: the pose of a level first camera.
+    #[must_use]
+    pub fn level_from_first_camera(&self) -> Option<Pose3> {
+        match &self.source {
+            Source::Folder(_) => None,
+            Source::Recording(run) => run.robot().map(|robot| robot.mount.base_from_camera()),
+        }
+    }
+
+    /// The images in order, not yet decoded.
+    ///
+    /// # Errors
+    /// When the recording cannot be opened again.
+    pub fn frames(&self) -> Result<impl Iterator<Item = Result<PendingFrame<'_>, AppError>>, AppError> {
+        match &self.source {
+            Source::Folder(sequence) => Ok(SequenceFrames::of_folder(sequence)),
+            Source::Recording(run) => Ok(SequenceFrames::of_recording(&self.path, run.open()?, self.size())),
+        }
+    }
+
+    /// Width and height of the camera's images, px.
+    fn size(&self) -> (usize, usize) {
+        let camera = &self.camera.model.camera;
+        (camera.width(), camera.height())
+    }
+}
+
+/// The camera of the robot that a recording names.
+fn camera_of(robot: &RobotConfig, recording: &Path) -> SequenceCamera {
+    SequenceCamera {
+        model: CameraModel { camera: robot.camera, depth_scale: KINECT_V2_DEPTH_SCALE },
+        name: recording.display().to_string(),
+        is_assumed: false,
+        warnings: Warnings::default(),
+    }
+}

@@ -1,0 +1,112 @@
+//! The images of a sequence, one after the other, decoded only when they are asked for.
+
+use crate::AppError;
+use std::path::Path;
+use trundle_core::{RgbdImage, Stamp};
+use trundle_io::{
+    CodecError, EncodedEvent, EncodedRgbd, FrameError, IoError, RecordedMessage, RecordingReader, TumSequence,
+};
+
+/// An image that is not decoded yet.
+pub struct PendingFrame<'a> {
+    index: usize,
+    content: Content<'a>,
+}
+
+enum Content<'a> {
+    /// Listed in a folder.
+    Listed(&'a TumSequence),
+    /// Read from the recording at this path, whose camera has this size, px.
+    Recorded { path: &'a Path, image: EncodedRgbd, size: (usize, usize) },
+}
+
+impl PendingFrame<'_> {
+    /// When it was taken.
+    #[must_use]
+    pub fn stamp(&self) -> Stamp {
+        match &self.content {
+            Content::Listed(sequence) => sequence.stamp(self.index),
+            Content::Recorded { image, .. } => image.stamp,
+        }
+    }
+
+    /// The image.
+    ///
+    /// # Errors
+    /// When it is damaged or not of the camera's size: the caller may go on with the next.
+    pub fn decode(&self) -> Result<RgbdImage, FrameError> {
+        match &self.content {
+            Content::Listed(sequence) => sequence.load(self.index),
+            Content::Recorded { path, image, size } => {
+                let refused = |source| FrameError { index: self.index, stamp: image.stamp, source };
+                let decoded = image.decode().map_err(|problem| refused(IoError::bad_image(path, problem)))?;
+                let found = (decoded.color().width(), decoded.color().height());
+                if found != *size {
+                    return Err(refused(IoError::wrong_image_size(path, found, *size)));
+                }
+                Ok(decoded)
+            }
+        }
+    }
+
+    /// The bytes to record for the decoded `image`: those that were read, where they are of the recordings' form.
+    ///
+    /// # Errors
+    /// When the image cannot be encoded.
+    pub fn encoded(self, image: &RgbdImage) -> Result<EncodedRgbd, CodecError> {
+        match self.content {
+            Content::Listed(_) => EncodedRgbd::encode(image),
+            Content::Recorded { image, .. } => Ok(image),
+        }
+    }
+}
+
+/// The images of a folder or a recording.
+pub(super) enum SequenceFrames<'a> {
+    Folder { sequence: &'a TumSequence, next: usize },
+    Recording { path: &'a Path, reader: Box<RecordingReader>, size: (usize, usize), next: usize },
+}
+
+impl<'a> SequenceFrames<'a> {
+    pub(super) fn of_folder(sequence: &'a TumSequence) -> Self {
+        Self::Folder { sequence, next: 0 }
+    }
+
+    pub(super) fn of_recording(path: &'a Path, reader: RecordingReader, size: (usize, usize)) -> Self {
+        Self::Recording { path, reader: Box::new(reader), size, next: 0 }
+    }
+}
+
+impl<'a> Iterator for SequenceFrames<'a> {
+    type Item = Result<PendingFrame<'a>, AppError>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        match self {
+            Self::Folder { sequence, next } => {
+                let index = (*next < sequence.len()).then_some(*next)?;
+                *next += 1;
+                Some(Ok(PendingFrame { index, content: Content::Listed(sequence) }))
+            }
+            Self::Recording { path, reader, size, next } => {
+                let image = match next_image(reader) {
+                    Ok(image) => image?,
+                    Err(error) => return Some(Err(error)),
+                };
+                let frame =
+                    PendingFrame { index: *next, content: Content::Recorded { path, image, size: *size } };
+                *next += 1;
+                Some(Ok(frame))
+            }
+        }
+    }
+}
+
+/// The next image of a recording; `None` at its end.
+fn next_image(reader: &mut RecordingReader) -> Result<Option<EncodedRgbd>, AppError> {
+    while let Some(message) = reader.next_message()? {
+        if let RecordedMessage::Event(EncodedEvent::Rgbd(image)) = message {
+            return Ok(Some(image));
+        }
+    }
+    Ok(None)
+}
