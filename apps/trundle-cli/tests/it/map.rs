@@ -198,7 +198,7 @@ fn options_of_a_laser_are_refused_for_an_rgbd_folder() {
     for option in ["--laser-x=0.1", "--laser-turn=5", "--upside-down", "--max-range=4"] {
         let sentence = refusal(&["map", text(scratch.path()), option]);
         let name = option.split('=').next().unwrap();
-        assert!(sentence.contains(name) && sentence.contains("is an RGB-D folder"), "{sentence}");
+        assert!(sentence.contains(name) && sentence.contains("holds RGB-D images"), "{sentence}");
     }
 }
 
