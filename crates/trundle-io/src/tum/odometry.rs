@@ -36,6 +36,7 @@ fn parse_odometry(path: &Path, text: &str) -> Result<(Vec<(Stamp, Pose2)>, Warni
         text,
         names: form.names(),
         is_open: form == Form::Euroc,
+        unit: form.stamp_unit(),
         broken_rows: BrokenRows::Refused,
     };
     let mut poses = table.read(|numbers| pose(form, numbers), &mut warnings)?;

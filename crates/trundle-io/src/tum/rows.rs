@@ -25,11 +25,13 @@ pub(super) struct Table<'a> {
     pub names: &'a [&'a str],
     /// Whether further columns may follow, which are left alone.
     pub is_open: bool,
+    /// Unit of the stamps by the file's form; another one than this or seconds is warned of.
+    pub unit: StampUnit,
     pub broken_rows: BrokenRows,
 }
 
 impl Table<'_> {
-    /// The rows by rising stamp, each made of its numbers. Stamps in ms, us or ns and rows out of order are warned of.
+    /// The rows by rising stamp, each made of its numbers. Stamps in another unit and rows out of order are warned of.
     pub(super) fn read<T>(
         &self,
         row: impl Fn(&[f64]) -> Result<T, String>,
@@ -38,7 +40,8 @@ impl Table<'_> {
         let lines = table_rows(self.text);
         let stamps: Vec<&str> = lines.iter().filter_map(|(_, line)| fields(line).next()).collect();
         let unit = StampUnit::of(&stamps);
-        if let Some(problem) = unit.warning(stamps.first().unwrap_or(&"")) {
+        let warning = unit.warning(stamps.first().unwrap_or(&"")).filter(|_| unit != self.unit);
+        if let Some(problem) = warning {
             warnings.add(&problem, &self.path.display().to_string());
         }
         let mut rows = Vec::with_capacity(lines.len());

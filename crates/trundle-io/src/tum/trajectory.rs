@@ -65,7 +65,8 @@ fn parse_trajectory(path: &Path, text: &str, broken_rows: BrokenRows) -> Result<
         file.poses = times.stamps.into_iter().zip(poses).collect();
         sort(&mut file.poses, path, &mut file.warnings);
     } else {
-        let table = Table { path, text, names: form.names(), is_open: form == Form::Euroc, broken_rows };
+        let (names, unit) = (form.names(), form.stamp_unit());
+        let table = Table { path, text, names, is_open: form == Form::Euroc, unit, broken_rows };
         file.poses = table.read(|numbers| form.pose(numbers), &mut file.warnings)?;
     }
     if file.poses.is_empty() && broken_rows == BrokenRows::Refused {
@@ -171,6 +172,17 @@ mod tests {
         let said = lines(&read.warnings);
         assert!(said.contains("are taken as milliseconds, expected seconds: a.txt"), "{said}");
         assert!(said.contains("timestamps go back 1 times in 2 rows, which are sorted: a.txt"), "{said}");
+    }
+
+    #[test]
+    fn nanoseconds_are_the_unit_of_euroc_and_no_warning() {
+        let euroc = "#timestamp, p_x, p_y, p_z, q_w, q_x, q_y, q_z, v_x, v_y, v_z\n\
+                     1403636580838555648,1,2,0,1,0,0,0,0,0,0\n1403636580843555648,1,2,0,1,0,0,0,0,0,0\n";
+        let read = parse(euroc).unwrap();
+        assert!(read.warnings.is_empty(), "{}", lines(&read.warnings));
+        assert_eq!(read.poses[1].0.to_string(), "1403636580.843555648");
+        let tum = parse("1403636580838555648 1 2 0 0 0 0 1\n").unwrap();
+        assert!(lines(&tum.warnings).contains("are taken as nanoseconds, expected seconds"));
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! Forms of trajectory files: TUM, EuRoC and planar rows, told apart by their columns and header.
 
 use crate::files::{fields, table_rows};
+use crate::stamp_unit::StampUnit;
 use nalgebra::Quaternion;
 use trundle_core::{Pose2, Pose3};
 
@@ -46,6 +47,11 @@ impl Form {
             Self::Euroc => &["px", "py", "pz", "qw", "qx", "qy", "qz"],
             Self::Planar => &["x", "y", "theta"],
         }
+    }
+
+    /// Unit of the stamps.
+    pub(super) fn stamp_unit(self) -> StampUnit {
+        if self == Self::Euroc { StampUnit::Nanoseconds } else { StampUnit::Seconds }
     }
 
     /// The pose of a row's numbers.
