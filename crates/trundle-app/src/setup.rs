@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 use std::path::Path;
 use std::sync::Arc;
 use trundle_core::Pose2;
+use trundle_runtime::settings::with_present_names;
 use trundle_runtime::{Checkpoint, Mission, Robot, RobotConfig, Task};
 use trundle_vision::Vocabulary;
 
@@ -69,7 +70,7 @@ impl RunSetup {
     /// When it is no setup, or its robot cannot be accepted. Names the file.
     pub(crate) fn of_recording(file: &Path, config: serde_json::Value) -> Result<Self, AppError> {
         let name = file.display();
-        let setup: Self = serde_json::from_value(config)
+        let setup: Self = serde_json::from_value(with_present_names(config))
             .map_err(|error| AppError::Input(format!("{name}: the configuration cannot be used: {error}")))?;
         setup.robot.clone().validated().map_err(|error| AppError::Input(format!("{name}: {error}")))?;
         Ok(setup)

@@ -15,8 +15,8 @@ pub enum Certificate {
 pub enum SearchLimit {
     /// `search_nodes`: the number of expanded nodes.
     SearchNodes,
-    /// `most_work`: the cost of the search for many motions.
-    MostWork,
+    /// `max_work`: the cost of the search for many motions.
+    MaxWork,
     /// `plan_work`: the cost of the whole plan.
     PlanWork,
     /// `points_work`: the cost of the whole plan among many points.
@@ -28,7 +28,7 @@ impl SearchLimit {
     pub fn setting(self) -> &'static str {
         match self {
             Self::SearchNodes => "search_nodes",
-            Self::MostWork => "most_work",
+            Self::MaxWork => "max_work",
             Self::PlanWork => "plan_work",
             Self::PointsWork => "points_work",
         }

@@ -46,7 +46,7 @@ pub struct DockingConfig {
     pub search_nodes: usize,
     /// Cost limit of the search for many motions per margin, in counted steps of some 10 ns ([`crate::ContactSpace::work`]), 10^5 to
     /// 10^11. Default 5 * 10^7 (ours: half a second; the hardest of 5,000 corridor problems takes a third of it).
-    pub most_work: u64,
+    pub max_work: u64,
     /// Cost limit of a whole plan, in the same steps, 10^5 to 10^11: the plan then reports what it has. Default 2 * 10^8 (ours: two
     /// seconds; the hardest of 5,000 corridor problems takes half of it).
     pub plan_work: u64,
@@ -75,7 +75,7 @@ impl Default for DockingConfig {
             position_tolerance: 0.01,
             heading_tolerance: 1_f64.to_radians(),
             search_nodes: 2500,
-            most_work: 50_000_000,
+            max_work: 50_000_000,
             plan_work: 200_000_000,
             points_work: 6_000_000,
             bound_boxes: 400,
@@ -116,7 +116,7 @@ impl DockingConfig {
             ("position_tolerance", self.position_tolerance, "m", 0.001, 0.1),
             ("heading_tolerance", self.heading_tolerance, "rad", 0.001, 0.2),
             ("search_nodes", self.search_nodes as f64, "", 0.0, 1e7),
-            ("most_work", self.most_work as f64, "", 1e5, 1e11),
+            ("max_work", self.max_work as f64, "", 1e5, 1e11),
             ("plan_work", self.plan_work as f64, "", 1e5, 1e11),
             ("points_work", self.points_work as f64, "", 1e5, 1e11),
             ("bound_boxes", self.bound_boxes as f64, "", 0.0, 1e8),

@@ -83,7 +83,7 @@ impl DockingPlanner {
         goal: Pose2,
     ) -> Result<DockingPlan, DockingRefusal> {
         let most = self.checked(margin, footprint, scene, &start, &goal)?;
-        let budget = &WorkBudget::endless(self.most_of(scene));
+        let budget = &WorkBudget::endless(self.max_of(scene));
         let query = self.query(start, goal);
         Ok(run_to_end(self.search(SearchRequest { most, footprint, scene, query, budget })))
     }
@@ -103,7 +103,7 @@ impl DockingPlanner {
         let most = self.checked(margin, footprint, scene, &start, &goal)?;
         let (planner, footprint, query) = (self.clone(), footprint.clone(), self.query(start, goal));
         let scene = around(&footprint, scene, &wider(query));
-        let budget = WorkBudget::rationed(self.most_of(&scene));
+        let budget = WorkBudget::rationed(self.max_of(&scene));
         let counted = Arc::clone(&budget);
         let search = async move {
             let (footprint, scene, budget) = (&footprint, &scene, &counted);
@@ -128,7 +128,7 @@ impl DockingPlanner {
         let scene = around(footprint, scene, &self.query(pose, goal));
         let (hull, limits, config) =
             (RoundedHull::new(footprint, margin), self.config.limits, self.config.paper.clone());
-        let budget = WorkBudget::rationed(self.most_of(&scene));
+        let budget = WorkBudget::rationed(self.max_of(&scene));
         let counted = Arc::clone(&budget);
         Ok(PlanningJob::new(budget, async move {
             let space = ContactSpace::metered(hull, &scene, counted);
@@ -175,7 +175,7 @@ impl DockingPlanner {
     }
 
     /// Cost limit of a whole plan.
-    fn most_of(&self, scene: &ObstacleScene) -> u64 {
+    fn max_of(&self, scene: &ObstacleScene) -> u64 {
         self.limit_of(scene).0
     }
 
@@ -197,7 +197,7 @@ impl DockingPlanner {
             boxes: config.bound_boxes.min(config.bound_boxes * MANY_SEGMENTS / scene.pieces().len().max(1)),
             gap: config.gap,
             cell: config.position_tolerance,
-            work: config.most_work,
+            work: config.max_work,
         }
     }
 

@@ -115,8 +115,8 @@ fn robot() -> RobotConfig {
     robot.mapping = MapperConfig { max_range: LASER_RANGE_M, ..MapperConfig::default() };
     // Errors of laser scans are less correlated than those of images: each scan corrects less of the heading.
     robot.localization = LocalizerConfig {
-        least_position_sigma: 0.005,
-        least_heading_sigma_deg: 0.1,
+        min_position_sigma: 0.005,
+        min_heading_sigma_deg: 0.1,
         scan_heading_sigma_deg: 0.3,
         ..LocalizerConfig::default()
     };

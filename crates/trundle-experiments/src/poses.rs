@@ -215,7 +215,7 @@ fn summary(trials: &[Trial], whole: &Means) -> Summary {
         .set("failed", whole.failed)
         .set("mean_abs_dx_m", whole.dx)
         .set("mean_abs_dy_m", whole.dy)
-        .set("most_distance_m", whole.most)
+        .set("max_distance_m", whole.most)
         .set("mean_abs_dtheta_rad", whole.dtheta);
     summary
 }

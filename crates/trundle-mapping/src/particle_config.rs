@@ -38,7 +38,7 @@ pub struct ParticleConfig {
     pub weight_correlation: f64,
     /// Most scans that are kept for redrawing after a loop, 100 to 1,000,000: beyond, every second one of the older half is let
     /// go, with its pose. Default 20,000: 10 km of way, 20 MB at 180 beams.
-    pub most_scans: usize,
+    pub max_scans: usize,
     /// Poses sampled about the match, 8 to 500. Default 30.
     pub samples: usize,
     /// Resample when the effective number of particles falls below this part of their number, 0 to 1. Default 0.5
@@ -70,7 +70,7 @@ impl Default for ParticleConfig {
             outliers: 0.05,
             correlation: 4.0,
             weight_correlation: 9.0,
-            most_scans: 20_000,
+            max_scans: 20_000,
             samples: 30,
             resample_below: 0.5,
             slip_rate: 0.01,
@@ -97,7 +97,7 @@ impl ParticleConfig {
         require_in("outliers", self.outliers, "", 0.001, 0.5)?;
         require_in("correlation", self.correlation, "", 1.0, 100.0)?;
         require_in("weight_correlation", self.weight_correlation, "", 1.0, 100.0)?;
-        require_in("most_scans", self.most_scans as f64, "", 100.0, 1e6)?;
+        require_in("max_scans", self.max_scans as f64, "", 100.0, 1e6)?;
         require_in("samples", self.samples as f64, "", 8.0, 500.0)?;
         require_in("resample_below", self.resample_below, "", 0.0, 1.0)?;
         require_in("slip_rate", self.slip_rate, "", 1e-6, 0.5)?;
@@ -147,9 +147,9 @@ pub struct MotionConfig {
     /// Heading, rad for each rad turned, 0 to 2. Default 0.2.
     pub turn_per_radian: f64,
     /// Way even when nothing moved, m, 0.0001 to 1. Default 0.02.
-    pub least_shift: f64,
+    pub min_shift: f64,
     /// Heading even when nothing moved, rad, 0.0001 to 1. Default 0.01.
-    pub least_turn: f64,
+    pub min_turn: f64,
 }
 
 impl Default for MotionConfig {
@@ -159,8 +159,8 @@ impl Default for MotionConfig {
             shift_per_radian: 0.1,
             turn_per_metre: 0.1,
             turn_per_radian: 0.2,
-            least_shift: 0.02,
-            least_turn: 0.01,
+            min_shift: 0.02,
+            min_turn: 0.01,
         }
     }
 }
@@ -171,8 +171,8 @@ impl MotionConfig {
         require_in("shift_per_radian", self.shift_per_radian, "m/rad", 0.0, 2.0)?;
         require_in("turn_per_metre", self.turn_per_metre, "rad/m", 0.0, 2.0)?;
         require_in("turn_per_radian", self.turn_per_radian, "rad/rad", 0.0, 2.0)?;
-        require_in("least_shift", self.least_shift, "m", 0.0001, 1.0)?;
-        require_in("least_turn", self.least_turn, "rad", 0.0001, 1.0)?;
+        require_in("min_shift", self.min_shift, "m", 0.0001, 1.0)?;
+        require_in("min_turn", self.min_turn, "rad", 0.0001, 1.0)?;
         Ok(self)
     }
 }

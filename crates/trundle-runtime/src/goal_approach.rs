@@ -39,7 +39,7 @@ pub struct GoalApproachConfig {
     pub time_limit: f64,
     /// Number of stops or waits without a completed motion in between after which docking is given up, 1 to 1000. Default 10
     /// (ours: at a second each, somebody who passes by has passed).
-    pub most_stops: u32,
+    pub max_stops: u32,
     /// Planning of turns and straight moves. Default: as it comes, but a margin of 0.05, so that the safety monitor, which
     /// stops 0.04 m before an obstacle, does not hold what was planned; and a tenth of the work, because the robot stands
     /// meanwhile: a whole plan takes 2 * 10^7 counted steps at most, 7 s at 50 Hz.
@@ -55,10 +55,10 @@ impl Default for GoalApproachConfig {
             near: 0.6,
             arc_margin: 0.02,
             time_limit: 120.0,
-            most_stops: 10,
+            max_stops: 10,
             planner: DockingConfig {
                 margin: 0.05,
-                most_work: 5_000_000,
+                max_work: 5_000_000,
                 plan_work: 20_000_000,
                 ..DockingConfig::default()
             },
@@ -103,7 +103,7 @@ impl GoalApproach {
         require_in("docking.near", config.near, "m", 0.05, 5.0)?;
         require_in("docking.arc_margin", config.arc_margin, "m", 0.0, 0.5)?;
         require_in("docking.time_limit", config.time_limit, "s", 1.0, 3600.0)?;
-        require_in("docking.most_stops", f64::from(config.most_stops), "", 1.0, 1000.0)?;
+        require_in("docking.max_stops", f64::from(config.max_stops), "", 1.0, 1000.0)?;
         // Its settings are checked here, once; later positioners are of the same.
         Positioner::new(config.planner.clone(), config.positioner, footprint.clone(), Pose2::IDENTITY)?;
         Ok(Self {
@@ -237,7 +237,7 @@ impl GoalApproach {
             self.notes.report.ended = Some(ApproachEnd::Settled);
             return Progress::Settled;
         }
-        if self.notes.stops > self.config.most_stops {
+        if self.notes.stops > self.config.max_stops {
             return self.given_up(ApproachFailure::Positioner(report.reason));
         }
         Progress::Moving(report.twist)

@@ -99,7 +99,7 @@ pub struct StageCost {
     /// Milliseconds.
     pub p999_ms: f64,
     /// Milliseconds.
-    pub most_ms: f64,
+    pub max_ms: f64,
     /// All runs together, s.
     pub total_s: f64,
 }
@@ -135,7 +135,7 @@ impl StageTimes {
             median_ms: spent.quantile(0.5)?,
             p99_ms: spent.quantile(0.99)?,
             p999_ms: spent.quantile(0.999)?,
-            most_ms: spent.most()?,
+            max_ms: spent.most()?,
             total_s: spent.sum() * 1e-3,
         })
     }
@@ -153,7 +153,7 @@ mod tests {
         }
         let cost = times.cost(Stage::Slam).unwrap();
         assert!((cost.median_ms / 51.0 - 1.0).abs() < 0.01 && (cost.p99_ms / 100.0 - 1.0).abs() < 0.01);
-        assert_eq!((cost.runs, cost.most_ms.round(), cost.total_s), (101, 101.0, 5.151));
+        assert_eq!((cost.runs, cost.max_ms.round(), cost.total_s), (101, 101.0, 5.151));
         assert_eq!(times.cost(Stage::Scan), None);
     }
 
@@ -173,7 +173,7 @@ mod tests {
         all.add(&worker);
         assert_eq!((all.runs(Stage::Control), all.runs(Stage::Slam), all.runs(Stage::Safety)), (1, 2, 0));
         let cost = all.cost(Stage::Slam).unwrap();
-        assert!((cost.total_s - 0.05).abs() < 1e-9 && (cost.most_ms - 30.0).abs() < 1e-9);
+        assert!((cost.total_s - 0.05).abs() < 1e-9 && (cost.max_ms - 30.0).abs() < 1e-9);
     }
 
     #[test]

@@ -3,7 +3,7 @@
 //! `cargo run --release -p trundle-slam --example drive -- FOLDER [FRAMES] [--motion_unknown] [--seed=N] [--least-texture=X]` prints the frames located, loops, keyframes,
 //! the ATE after a rigid alignment, how much of it is up and down, and median, 99th percentile and most of the processor
 //! time, in ms, of the features alone, of a whole step, and of those that made keyframes. Wheels are used where the folder
-//! has them, unless `--motion_unknown`; N is the seed of what is drawn at random, X `orb.least_texture`. Loading images is not timed. Without `camera.toml` the camera is that of freiburg1.
+//! has them, unless `--motion_unknown`; N is the seed of what is drawn at random, X `orb.min_texture`. Loading images is not timed. Without `camera.toml` the camera is that of freiburg1.
 //! `TRUNDLE_FRAMES=FILE` writes of each frame: time, state, whether it is a keyframe, inliers, how far off it
 //! was told at once (m, rad, the first one being right), how uncertain that was told to be (m, rad, one standard deviation), the
 //! normalised squared error of this (6 is true), the error after all corrections (mm, aligned), and what it took (ms).
@@ -34,7 +34,7 @@ fn main() {
         config.seed = seed.parse().unwrap();
     }
     if let Some(least) = value("--least-texture=") {
-        config.orb.least_texture = least.parse().unwrap();
+        config.orb.min_texture = least.parse().unwrap();
     }
     let is_blind = flags.iter().any(|flag| flag == "--blind");
     let mut extractor = OrbExtractor::new(config.orb.clone()).unwrap();

@@ -95,8 +95,8 @@ fn tracked_camera_motion() -> MotionConfig {
         shift_per_radian: 0.02,
         turn_per_metre: 0.02,
         turn_per_radian: 0.04,
-        least_shift: 0.005,
-        least_turn: 0.003,
+        min_shift: 0.005,
+        min_turn: 0.003,
     }
 }
 

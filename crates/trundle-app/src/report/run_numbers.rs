@@ -226,7 +226,7 @@ pub fn stage_rows(times: &StageTimes) -> Vec<Vec<String>> {
     costs
         .map(|(stage, cost)| {
             let numbers =
-                [cost.median_ms, cost.p99_ms, cost.p999_ms, cost.most_ms].map(|ms| format!("{ms:.3}"));
+                [cost.median_ms, cost.p99_ms, cost.p999_ms, cost.max_ms].map(|ms| format!("{ms:.3}"));
             let runs = cost.runs.to_string();
             std::iter::once(stage.name().to_owned()).chain(numbers).chain([runs]).collect()
         })

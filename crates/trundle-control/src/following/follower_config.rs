@@ -20,7 +20,7 @@ pub struct FollowerConfig {
     pub wait_at: f64,
     /// The reference's speed never falls below this part for an error beside the path, 0.05 to 1: that error only shrinks in
     /// motion. Default 0.4 (ours).
-    pub least_rate: f64,
+    pub min_rate: f64,
     /// The reference waits in the same way for a heading error, from a half of this to the whole, rad, 0.05 to 3.
     /// Default 0.5 (ours).
     pub wait_heading: f64,
@@ -37,7 +37,7 @@ impl Default for FollowerConfig {
             settling: StabilizerConfig::default(),
             wait_from: 0.04,
             wait_at: 0.12,
-            least_rate: 0.4,
+            min_rate: 0.4,
             wait_heading: 0.5,
             lead: 0.06,
             stray_distance: 0.25,
@@ -56,7 +56,7 @@ impl FollowerConfig {
         let ranges = [
             ("wait_from", self.wait_from, "m", 0.0, 1.0),
             ("wait_at", self.wait_at, "m", self.wait_from + 0.001, 2.0),
-            ("least_rate", self.least_rate, "", 0.05, 1.0),
+            ("min_rate", self.min_rate, "", 0.05, 1.0),
             ("wait_heading", self.wait_heading, "rad", 0.05, 3.0),
             ("lead", self.lead, "s", 0.0, 0.5),
             ("stray_distance", self.stray_distance, "m", 0.02, 5.0),

@@ -77,7 +77,7 @@ fn clock_rate(error: TrackingError, reference: Twist2, config: &FollowerConfig) 
     let remaining = |error: f64, from: f64, to: f64| ((to - error) / (to - from)).clamp(0.0, 1.0);
     let behind = if reference.v < 0.0 { -error.along } else { error.along };
     let along = remaining(behind, config.wait_from, config.wait_at);
-    let cross = remaining(error.cross.abs(), config.wait_from, config.wait_at).max(config.least_rate);
+    let cross = remaining(error.cross.abs(), config.wait_from, config.wait_at).max(config.min_rate);
     let heading = remaining(error.heading.abs(), 0.5 * config.wait_heading, config.wait_heading);
     along.min(cross).min(heading)
 }

@@ -33,7 +33,7 @@ pub struct SafetyConfig {
     /// image.
     pub uncounted_speed: f64,
     /// Speed below which a command is replaced by a stop, m/s, 0.001 to 0.1. Default 0.01 (ours).
-    pub least_speed: f64,
+    pub min_speed: f64,
     /// Range about the robot in which safety reads the map, m from the footprint, 0 to 5. Default 0.8: the camera's blind
     /// zone, and what
     /// lies beside its view.
@@ -64,7 +64,7 @@ impl Default for SafetyConfig {
             reverse_speed: 0.2,
             back_out_speed: 0.05,
             uncounted_speed: 0.15,
-            least_speed: 0.01,
+            min_speed: 0.01,
             memory_reach: 0.8,
             image_timeout: 0.8,
             wheels_timeout: 0.2,
@@ -89,7 +89,7 @@ impl SafetyConfig {
             ("reverse_speed", self.reverse_speed, "m/s", 0.02, 2.0),
             ("back_out_speed", self.back_out_speed, "m/s", 0.01, 0.5),
             ("uncounted_speed", self.uncounted_speed, "m/s", 0.02, 2.0),
-            ("least_speed", self.least_speed, "m/s", 0.001, 0.1),
+            ("min_speed", self.min_speed, "m/s", 0.001, 0.1),
             ("memory_reach", self.memory_reach, "m", 0.0, 5.0),
             ("image_timeout", self.image_timeout, "s", 0.05, 60.0),
             ("wheels_timeout", self.wheels_timeout, "s", 0.02, 60.0),

@@ -235,7 +235,7 @@ impl SafetyMonitor {
         }
         if let Some((distance, at)) = free.contact {
             let speed = self.config.speed_for(distance - self.config.stop_margin, self.latency);
-            if speed < self.config.least_speed.min(twist.v.abs()) {
+            if speed < self.config.min_speed.min(twist.v.abs()) {
                 let turn = self.limited_by_free_turn(Twist2::new(0.0, twist.omega)).twist;
                 let action = SafetyAction::Stop(StopReason::ObstacleAhead { distance, at });
                 return SafetyReport { twist: turn, action };

@@ -68,7 +68,7 @@ fn empty() -> World {
 
 struct Drive {
     plant: Plant,
-    least_clearance: f64,
+    min_clearance: f64,
     last: SafetyReport,
     slowest: f64,
 }
@@ -78,7 +78,7 @@ fn drive(world: &World, mut plant: Plant, command: Twist2, seconds: f64, with_ma
     let (mut monitor, grid) = (monitor(), world.grid());
     let mut last = SafetyReport { twist: Twist2::ZERO, action: SafetyAction::Pass };
     let mut images = vec![(world.scan(plant.pose, plant.now), plant.pose)];
-    let (mut least_clearance, mut slowest) = (f64::INFINITY, f64::INFINITY);
+    let (mut min_clearance, mut slowest) = (f64::INFINITY, f64::INFINITY);
     for i in 0..(seconds / DT) as usize {
         if i % 4 == 0 {
             images.push((world.scan(plant.pose, plant.now), plant.pose));
@@ -97,10 +97,10 @@ fn drive(world: &World, mut plant: Plant, command: Twist2, seconds: f64, with_ma
             motion: MotionSense::Wheels,
         });
         plant.drive(last.twist);
-        least_clearance = least_clearance.min(world.clearance(plant.pose));
+        min_clearance = min_clearance.min(world.clearance(plant.pose));
         slowest = slowest.min(last.twist.v.abs());
     }
-    Drive { plant, least_clearance, last, slowest }
+    Drive { plant, min_clearance, last, slowest }
 }
 
 proptest! {
@@ -121,7 +121,7 @@ proptest! {
         let mut plant = Plant::at(Pose2::IDENTITY).moving(command);
         plant.delay = delay;
         let drive = drive(&wall, plant, command, 3.0 + 2.0 / v, true);
-        prop_assert!(drive.least_clearance > 0.0, "{} m", drive.least_clearance);
+        prop_assert!(drive.min_clearance > 0.0, "{} m", drive.min_clearance);
         // One that bends away from the wall may go on along it.
         prop_assert!(drive.last.twist.v < if share.abs() < 0.2 { 0.02 } else { 0.15 }, "{:?}", drive.last);
     }
@@ -156,9 +156,9 @@ fn the_map_covers_the_blind_zone_of_the_camera() {
     let command = Twist2::new(0.3, 0.0);
     let start = || Plant::at(Pose2::IDENTITY);
     let without = drive(&box_ahead, start(), command, 3.0, false);
-    assert!(without.least_clearance < 0.0, "the camera does not see it: the test tests nothing");
+    assert!(without.min_clearance < 0.0, "the camera does not see it: the test tests nothing");
     let with = drive(&box_ahead, start(), command, 3.0, true);
-    assert!(with.least_clearance > 0.0, "{}", with.least_clearance);
+    assert!(with.min_clearance > 0.0, "{}", with.min_clearance);
     assert!(matches!(with.last.action, SafetyAction::Stop(_)), "{}", with.last.action);
 }
 
@@ -166,7 +166,7 @@ fn the_map_covers_the_blind_zone_of_the_camera() {
 fn the_map_stops_driving_backward_into_a_wall() {
     let wall = empty().segment((-0.8, -1.0), (-0.8, 1.0));
     let drive = drive(&wall, Plant::at(Pose2::IDENTITY), Twist2::new(-0.4, 0.2), 8.0, true);
-    assert!(drive.least_clearance > 0.0 && drive.last.twist.v > -0.02, "{}", drive.last.action);
+    assert!(drive.min_clearance > 0.0 && drive.last.twist.v > -0.02, "{}", drive.last.action);
 }
 
 #[test]

@@ -26,7 +26,7 @@ pub struct Hong24Config {
     /// Distance of a recovery move, m, 0.01 to 1. Default 0.1.
     pub recovery: f64,
     /// Largest number of motions, 1 to 1000. Default 40.
-    pub most_motions: usize,
+    pub max_motions: usize,
 }
 
 impl Default for Hong24Config {
@@ -41,7 +41,7 @@ impl Default for Hong24Config {
             longitudinal_threshold: 0.01,
             angle_threshold: 1_f64.to_radians(),
             recovery: 0.1,
-            most_motions: 40,
+            max_motions: 40,
         }
     }
 }
@@ -62,7 +62,7 @@ impl Hong24Config {
             ("longitudinal_threshold", self.longitudinal_threshold, "m", 0.001, 0.1),
             ("angle_threshold", self.angle_threshold, "rad", 0.001, 0.2),
             ("recovery", self.recovery, "m", 0.01, 1.0),
-            ("most_motions", self.most_motions as f64, "", 1.0, 1000.0),
+            ("max_motions", self.max_motions as f64, "", 1.0, 1000.0),
         ];
         for (name, value, unit, low, high) in ranges {
             require_in(&format!("docking.paper.{name}"), value, unit, low, high)?;

@@ -61,7 +61,7 @@ impl Hong24Method<'_> {
         for turn in self.turns(pose).await {
             let turned = Pose2::new(pose.x, pose.y, pose.theta + turn);
             for sign in [1.0, -1.0] {
-                let (way, left) = self.least_lateral(&turned, goal, sign).await;
+                let (way, left) = self.min_lateral(&turned, goal, sign).await;
                 if left >= deviation - self.config.lateral_threshold / 2.0 {
                     continue;
                 }
@@ -89,7 +89,7 @@ impl Hong24Method<'_> {
     }
 
     /// Point D of the straight AC: its distance (negative backward, m) and the lateral deviation left there, m.
-    async fn least_lateral(&self, from: &Pose2, goal: &Pose2, sign: f64) -> (f64, f64) {
+    async fn min_lateral(&self, from: &Pose2, goal: &Pose2, sign: f64) -> (f64, f64) {
         let samples = (self.config.reach / self.config.distance_step).floor() as usize;
         let mut best = (0.0, f64::INFINITY);
         for i in 1..=samples {

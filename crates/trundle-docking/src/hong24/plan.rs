@@ -28,7 +28,7 @@ pub async fn plan(
 ) -> Option<Manoeuvre> {
     let method = Hong24Method { space, limits: *limits, config };
     let (mut pose, mut motions, mut recoveries) = (start, Vec::new(), 0);
-    while motions.len() < config.most_motions {
+    while motions.len() < config.max_motions {
         let next: Vec<Motion> = match method.decide(&pose, &goal, recoveries).await {
             Decision::Settled => return Some(Manoeuvre::new(start, &motions, *limits)),
             Decision::Move(next) => next,

@@ -203,8 +203,8 @@ fn a_plan_ends_within_the_thresholds_or_after_the_largest_number_of_motions() {
         &scene,
         Arc::clone(&WorkBudget::endless(u64::MAX)),
     );
-    let planned = |most_motions: usize| {
-        let config = Hong24Config { most_motions, ..Hong24Config::default() };
+    let planned = |max_motions: usize| {
+        let config = Hong24Config { max_motions, ..Hong24Config::default() };
         run_to_end(plan(&space, Pose2::new(0.4, 0.3, 2.0), Pose2::IDENTITY, &limits, &config))
     };
     let end = planned(40).expect("a plan").end();

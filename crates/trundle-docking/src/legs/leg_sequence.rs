@@ -13,7 +13,7 @@ pub struct Legs(pub Vec<(f64, f64)>);
 
 impl Legs {
     /// Lower bound of the time of these legs, s: every shorter turn counts as free.
-    pub fn least_time(&self, query: &DockingQuery) -> f64 {
+    pub fn min_time(&self, query: &DockingQuery) -> f64 {
         let (mut time, mut heading) = (-query.limits.switch_time, query.start.theta);
         for &(next, way) in &self.0 {
             time += query.turn_cost(wrap_angle(next - heading)) + query.drive_cost(way);

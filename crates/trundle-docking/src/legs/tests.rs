@@ -51,7 +51,7 @@ proptest! {
         let corners = [(0.3, 0.05), (-0.1, 0.05), (-0.1, -0.05), (0.3, -0.05)].map(|(x, y)| Vector2::new(x, y));
         let mut space = ContactSpace::new(&Footprint::polygon(corners.to_vec()).unwrap(), 0.0, &scene);
         if let Some((time, _)) = closed.motions(&query, &mut space) {
-            prop_assert!(closed.least_time(&query) <= time + 1e-9);
+            prop_assert!(closed.min_time(&query) <= time + 1e-9);
         }
     }
 
@@ -90,7 +90,7 @@ fn no_motion_costs_nothing_and_every_other_one_its_pause() {
     assert_eq!((query.turn_cost(0.0), query.drive_cost(0.0)), (0.0, 0.0));
     assert_eq!(query.turn_cost(-0.5), query.limits.turn_time(0.5) + query.limits.switch_time);
     assert_eq!(query.drive_cost(-0.5), query.limits.drive_time(0.5) + query.limits.switch_time);
-    assert_eq!(Legs::default().least_time(&query), 0.0);
+    assert_eq!(Legs::default().min_time(&query), 0.0);
 }
 
 #[test]

@@ -71,7 +71,7 @@ pub async fn improve(
     (most, limit): (usize, u64),
 ) -> Bounded {
     let free = Bounding { query, region: region(query), start: FULL_TURN, goal: FULL_TURN, shrunk: None };
-    let (spare, used) = free.least_free_time(most / 4);
+    let (spare, used) = free.min_free_time(most / 4);
     let shrunk = ShrunkHulls::new(space);
     let (start, goal) = (space.turn(&query.start), space.turn(&query.goal));
     let mut bounding = Bounding { query, region: region(query), start, goal, shrunk: Some(shrunk) };
@@ -151,7 +151,7 @@ impl Bounding<'_, '_> {
 
     /// Lower bound of the motions' time alone (no pauses) over all manoeuvres of up to two legs without obstacles, and the number
     /// of boxes expanded.
-    fn least_free_time(&self, most: usize) -> (f64, usize) {
+    fn min_free_time(&self, most: usize) -> (f64, usize) {
         let calm = DockingQuery {
             limits: crate::motion::limits::MotionLimits { switch_time: 0.0, ..self.query.limits },
             ..*self.query
@@ -160,7 +160,7 @@ impl Bounding<'_, '_> {
             Bounding { query: &calm, region: self.region, start: self.start, goal: self.goal, shrunk: None };
         let rest = calm.query.goal.position() - calm.query.start.position();
         let toward = if rest.norm() > 1e-9 { rest.y.atan2(rest.x) } else { calm.query.start.theta };
-        let legs = |heading, way| Legs(vec![(heading, way)]).least_time(calm.query);
+        let legs = |heading, way| Legs(vec![(heading, way)]).min_time(calm.query);
         let mut time =
             legs(toward, rest.norm()).min(legs(wrap_angle(toward + std::f64::consts::PI), -rest.norm()));
         let mut queue = BinaryHeap::new();
@@ -193,7 +193,7 @@ impl Bounding<'_, '_> {
         self.legs_of_middles(family, 0b00)
             .into_iter()
             .chain([0b01, 0b10, 0b11].into_iter().flat_map(|gears| self.legs_of_middles(family, gears)))
-            .map(|legs| legs.least_time(self.query))
+            .map(|legs| legs.min_time(self.query))
             .fold(f64::INFINITY, f64::min)
     }
 
@@ -216,7 +216,7 @@ impl Bounding<'_, '_> {
             legs: family.turns + 1,
             free: [[true; 2]; MAX_SPLIT_LEGS],
         };
-        chain.least_time(&ends, [open; MAX_SPLIT_LEGS - 1]).unwrap_or(f64::INFINITY)
+        chain.min_time(&ends, [open; MAX_SPLIT_LEGS - 1]).unwrap_or(f64::INFINITY)
     }
 
     /// The same bound with contacts; `None` when every manoeuvre of the family touches something.
@@ -237,7 +237,7 @@ impl Bounding<'_, '_> {
             *gaps = shrunk.gaps(*square);
         }
         let ends = Ends { query: self.query, start: &self.start, goal: &self.goal };
-        Chain { places: &places[..], legs: family.turns + 1, free }.least_time(&ends, gaps)
+        Chain { places: &places[..], legs: family.turns + 1, free }.min_time(&ends, gaps)
     }
 
     /// Tries the centres of small squares as a manoeuvre.
@@ -248,7 +248,7 @@ impl Bounding<'_, '_> {
         for gears in 0..1_u32 << (family.turns + 1) {
             let Some(legs) = self.legs_of_middles(family, gears) else { continue };
             let time = known.best.as_ref().map_or(f64::INFINITY, |(time, _)| *time);
-            if legs.least_time(self.query) >= time {
+            if legs.min_time(self.query) >= time {
                 continue;
             }
             if let Some((found, _)) = legs.motions(self.query, space)

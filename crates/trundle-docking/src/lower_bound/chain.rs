@@ -48,7 +48,7 @@ impl Chain<'_> {
     ///
     /// Each leg's headings are cut into sectors, and the minimum runs over one sector per leg. A leg that could point anywhere must
     /// still point somewhere, so that the turns before and after it add up.
-    pub fn least_time(&self, ends: &Ends<'_>, gaps: [&[HeadingArc]; MAX_SPLIT_LEGS - 1]) -> Option<f64> {
+    pub fn min_time(&self, ends: &Ends<'_>, gaps: [&[HeadingArc]; MAX_SPLIT_LEGS - 1]) -> Option<f64> {
         let (limits, pause) = (&ends.query.limits, ends.query.limits.switch_time);
         let mut before = Sectors::default();
         for i in 0..self.legs {
@@ -58,14 +58,14 @@ impl Chain<'_> {
             for sector in now.used_mut() {
                 let arrived = if i == 0 {
                     let (left, right) = (ends.start.left + BACK_OFF, ends.start.right + BACK_OFF);
-                    let turn = sector.heading.least_turn_from(ends.query.start.theta, left, right);
+                    let turn = sector.heading.min_turn_from(ends.query.start.theta, left, right);
                     turn.map_or(
                         f64::INFINITY,
                         |turn| if turn > 0.0 { limits.turn_time(turn) + pause } else { 0.0 },
                     )
                 } else {
                     let from = |last: &Sector| {
-                        let turn = last.heading.least_turn_to(&sector.heading, gaps[i - 1]);
+                        let turn = last.heading.min_turn_to(&sector.heading, gaps[i - 1]);
                         turn.map_or(f64::INFINITY, |turn| last.sum + limits.turn_time(turn) + pause)
                     };
                     before
@@ -82,7 +82,7 @@ impl Chain<'_> {
         let (left, right) = (ends.goal.left + BACK_OFF, ends.goal.right + BACK_OFF);
         let end = |last: &Sector| {
             // The turn at the goal is counted in reverse, from this heading to the goal's.
-            let turn = last.heading.least_turn_from(ends.query.goal.theta, left, right);
+            let turn = last.heading.min_turn_from(ends.query.goal.theta, left, right);
             turn.map_or(f64::INFINITY, |turn| {
                 last.sum + if turn > 0.0 { limits.turn_time(turn) } else { -pause }
             })

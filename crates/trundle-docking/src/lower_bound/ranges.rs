@@ -51,7 +51,7 @@ pub struct Heading {
 
 impl Heading {
     /// Minimum turn from `heading` into the range, no farther than `left` or `right`; `None` when out of reach.
-    pub fn least_turn_from(&self, heading: f64, left: f64, right: f64) -> Option<f64> {
+    pub fn min_turn_from(&self, heading: f64, left: f64, right: f64) -> Option<f64> {
         let to = wrap_angle(self.middle - heading);
         let amounts = [to, to - TAU, to + TAU].into_iter().filter_map(|to| {
             let (low, high) = ((to - self.spread).max(-right), (to + self.spread).min(left));
@@ -62,7 +62,7 @@ impl Heading {
 
     /// Minimum turn from this range into another without contact, with `gaps` the free headings; `None` when no gap contains a
     /// heading of both.
-    pub fn least_turn_to(&self, other: &Self, gaps: &[HeadingArc]) -> Option<f64> {
+    pub fn min_turn_to(&self, other: &Self, gaps: &[HeadingArc]) -> Option<f64> {
         let direct = (wrap_angle(other.middle - self.middle).abs() - self.spread - other.spread).max(0.0);
         let within = |gap: &HeadingArc| {
             if gap.length >= TAU {
@@ -97,11 +97,11 @@ mod tests {
     fn turns_stay_inside_the_gaps() {
         let range = |middle, spread| Heading { middle, spread };
         let gap = HeadingArc { start: 0.0, length: 4.0 };
-        let turn = range(0.1, 0.1).least_turn_to(&range(wrap_angle(3.8), 0.1), &[gap]).unwrap();
+        let turn = range(0.1, 0.1).min_turn_to(&range(wrap_angle(3.8), 0.1), &[gap]).unwrap();
         assert!((turn - 3.5).abs() < 1e-12, "the shorter way round is blocked: {turn}");
-        assert!(range(5.0, 0.1).least_turn_to(&range(1.0, 0.1), &[gap]).is_none());
-        assert!((range(0.5, 0.1).least_turn_from(0.0, 1.0, 1.0).unwrap() - 0.4).abs() < 1e-12);
-        assert!(range(0.5, 0.1).least_turn_from(0.0, 0.3, 1.0).is_none());
+        assert!(range(5.0, 0.1).min_turn_to(&range(1.0, 0.1), &[gap]).is_none());
+        assert!((range(0.5, 0.1).min_turn_from(0.0, 1.0, 1.0).unwrap() - 0.4).abs() < 1e-12);
+        assert!(range(0.5, 0.1).min_turn_from(0.0, 0.3, 1.0).is_none());
     }
 
     #[test]

@@ -66,7 +66,7 @@ proptest! {
         middle in -3.1..3.1_f64, spread in 0.0..1.5_f64, part in -1.0..1.0_f64, from in -3.1..3.1_f64,
     ) {
         let range = Heading { middle, spread };
-        let least = range.least_turn_from(from, f64::INFINITY, f64::INFINITY).unwrap();
+        let least = range.min_turn_from(from, f64::INFINITY, f64::INFINITY).unwrap();
         prop_assert!(wrap_angle(middle + part * spread - from).abs() >= least - 1e-9);
         prop_assert!((0.0..=PI + 1e-9).contains(&least));
     }
@@ -76,8 +76,8 @@ proptest! {
         middle in -3.1..3.1_f64, spread in 0.0..1.0_f64, from in -3.1..3.1_f64, left in 0.0..7.0_f64, right in 0.0..7.0_f64,
     ) {
         let range = Heading { middle, spread };
-        let free = range.least_turn_from(from, f64::INFINITY, f64::INFINITY).unwrap();
-        let limited = range.least_turn_from(from, left, right);
+        let free = range.min_turn_from(from, f64::INFINITY, f64::INFINITY).unwrap();
+        let limited = range.min_turn_from(from, left, right);
         prop_assert!(limited.is_none_or(|turn| turn >= free - 1e-12 && turn <= left.max(right) + 1e-12));
     }
 
@@ -86,11 +86,11 @@ proptest! {
         a in -3.1..3.1_f64, b in -3.1..3.1_f64, spread in 0.0..0.5_f64, start in 0.0..TAU, length in 0.1..6.0_f64,
     ) {
         let (one, other) = (Heading { middle: a, spread }, Heading { middle: b, spread });
-        let free = one.least_turn_to(&other, &[HeadingArc::FULL]).unwrap();
-        if let Some(turn) = one.least_turn_to(&other, &[HeadingArc { start, length }]) {
+        let free = one.min_turn_to(&other, &[HeadingArc::FULL]).unwrap();
+        if let Some(turn) = one.min_turn_to(&other, &[HeadingArc { start, length }]) {
             prop_assert!(turn >= free - 1e-9 && turn <= length + 1e-9);
         }
-        prop_assert!((free - other.least_turn_to(&one, &[HeadingArc::FULL]).unwrap()).abs() < 1e-9);
+        prop_assert!((free - other.min_turn_to(&one, &[HeadingArc::FULL]).unwrap()).abs() < 1e-9);
     }
 
     #[test]
@@ -107,7 +107,7 @@ proptest! {
         let chain = Chain { places: &places, legs, free: [[true; 2]; MAX_SPLIT_LEGS] };
         let free = FreeTurn::ALL_ROUND;
         let full: &[HeadingArc] = &[HeadingArc::FULL];
-        let bound = chain.least_time(&Ends { query: &query, start: &free, goal: &free }, [full; MAX_SPLIT_LEGS - 1]).unwrap();
+        let bound = chain.min_time(&Ends { query: &query, start: &free, goal: &free }, [full; MAX_SPLIT_LEGS - 1]).unwrap();
         // Legs through one point of each box.
         let mut points = vec![query.start.position()];
         points.extend(boxes.iter().zip(&parts).map(|(place, part)| inside(place, *part)));
@@ -121,7 +121,7 @@ proptest! {
         // Between two legs there is a pause also where no turn is needed.
         let turns = |(a, b): (&(f64, f64), &(f64, f64))| if wrap_angle(a.0 - b.0).abs() < 1e-9 { query.limits.switch_time } else { 0.0 };
         let pauses: f64 = driven.0.iter().zip(&driven.0[1..]).map(turns).sum();
-        prop_assert!(bound <= driven.least_time(&query) + pauses + 1e-9, "{bound} above {}", driven.least_time(&query));
+        prop_assert!(bound <= driven.min_time(&query) + pauses + 1e-9, "{bound} above {}", driven.min_time(&query));
     }
 }
 

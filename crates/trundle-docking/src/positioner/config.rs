@@ -31,10 +31,10 @@ pub struct PositionerConfig {
     /// localisation of 2 mm.
     pub overlap: f64,
     /// Standard deviations of the pose that the margin covers, 0 to 10: the margin is [`crate::margin_of`], at least the planner's
-    /// own, at most `most_margin`. Default 3.
+    /// own, at most `max_margin`. Default 3.
     pub sigmas: f64,
     /// Largest margin for an uncertain pose, m, 0 to 0.5. Default 0.05 (ours).
-    pub most_margin: f64,
+    pub max_margin: f64,
     /// Wait before the next plan when there is no manoeuvre, s, 0.1 to 100. Default 1.
     pub patience: f64,
     /// Work of planning per step, in counted steps of some 10 ns ([`crate::ContactSpace::work`]), 10^4 to 10^11: the robot is at rest until
@@ -56,7 +56,7 @@ impl Default for PositionerConfig {
             heading_gain: 1.5,
             overlap: 0.005,
             sigmas: 3.0,
-            most_margin: 0.05,
+            max_margin: 0.05,
             patience: 1.0,
             step_work: 2_000_000,
         }
@@ -87,7 +87,7 @@ impl PositionerConfig {
             ("heading_gain", self.heading_gain, "1/s", 0.0, 10.0),
             ("overlap", self.overlap, "m", 0.0, 0.02),
             ("sigmas", self.sigmas, "", 0.0, 10.0),
-            ("most_margin", self.most_margin, "m", 0.0, 0.5),
+            ("max_margin", self.max_margin, "m", 0.0, 0.5),
             ("patience", self.patience, "s", 0.1, 100.0),
             ("step_work", self.step_work as f64, "", 1e4, 1e11),
         ];

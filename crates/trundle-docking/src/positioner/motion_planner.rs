@@ -88,7 +88,7 @@ impl MotionPlanner {
     /// The margin for a pose of this uncertainty, m.
     fn margin(&self, input: &PositionerInput<'_>) -> f64 {
         let asked = margin_of(&input.covariance, &self.footprint, self.config.sigmas);
-        asked.min(self.config.most_margin).max(self.planner.config().margin)
+        asked.min(self.config.max_margin).max(self.planner.config().margin)
     }
 
     /// The first motion of an accepted manoeuvre. An empty manoeuvre gives an empty motion: it ends at once, and the pose is measured

@@ -57,19 +57,19 @@ pub async fn guided_beam(
 async fn layers(
     search: &mut LegSearch<'_, '_>,
     width: usize,
-    most_legs: usize,
-    (most_nodes, mut layers_more): (usize, usize),
+    max_legs: usize,
+    (max_nodes, mut layers_more): (usize, usize),
     mut estimate: impl FnMut(&LegSearch<'_, '_>, &Pose2) -> f64,
 ) {
     let start = search.query.start;
     let mut nodes = vec![Node { pose: start, spent: 0.0, total: 0.0, parent: 0, leg: (0.0, 0.0) }];
     let mut seen: BTreeMap<(i32, i32, i32), f64> = BTreeMap::new();
     let (mut layer, mut fan, mut expanded) = (vec![0], Vec::new(), 0);
-    for _ in 1..most_legs {
+    for _ in 1..max_legs {
         let mut children: Vec<Node> = Vec::new();
         for &index in &layer {
             let node = nodes[index];
-            if node.total >= search.time_to_beat() || expanded >= most_nodes || search.is_spent() {
+            if node.total >= search.time_to_beat() || expanded >= max_nodes || search.is_spent() {
                 continue;
             }
             expanded += 1;

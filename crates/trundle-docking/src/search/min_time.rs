@@ -135,7 +135,7 @@ const MIN_WORTHWHILE_GAP: f64 = 0.05;
 pub async fn many(query: DockingQuery, space: &mut ContactSpace<'_>, effort: Effort) -> LegOutcome {
     let limit = space.until(effort.work);
     if space.work() >= limit {
-        return LegOutcome::Nothing(SearchLimit::MostWork);
+        return LegOutcome::Nothing(SearchLimit::MaxWork);
     }
     let mut second = space.clone();
     let mut search = LegSearch::new(query, space, (END_HEADINGS, MIN_HEADING_STEP_RAD), limit).await;
@@ -162,7 +162,7 @@ pub async fn many(query: DockingQuery, space: &mut ContactSpace<'_>, effort: Eff
             break;
         }
     }
-    let ended_by = if search.is_spent() { SearchLimit::MostWork } else { SearchLimit::SearchNodes };
+    let ended_by = if search.is_spent() { SearchLimit::MaxWork } else { SearchLimit::SearchNodes };
     search.best.map_or(LegOutcome::Nothing(ended_by), LegOutcome::Found)
 }
 

@@ -74,7 +74,7 @@ fn try_change(
         let mut legs = best.1.clone();
         change(&mut legs, sign);
         let Some(legs) = legs.closed(query) else { continue };
-        if legs.least_time(query) >= best.0 - 1e-9 {
+        if legs.min_time(query) >= best.0 - 1e-9 {
             continue;
         }
         if let Some((time, _)) = legs.motions(query, space)

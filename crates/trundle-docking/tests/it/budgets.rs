@@ -104,12 +104,12 @@ fn a_job_keeps_its_own_scene() {
 
 #[test]
 fn the_least_work_ends_a_hard_search_and_is_named() {
-    let config = DockingConfig { most_work: 100_000, ..DockingConfig::default() };
+    let config = DockingConfig { max_work: 100_000, ..DockingConfig::default() };
     for problem in hard().iter().take(2) {
         let DockingPlan::Impossible(none) = plan(&planner(config.clone()), problem) else {
             panic!("{} is found with no work", problem.name)
         };
-        assert_eq!((none.certificate, none.limit), (Certificate::None, Some(SearchLimit::MostWork)));
+        assert_eq!((none.certificate, none.limit), (Certificate::None, Some(SearchLimit::MaxWork)));
         assert_eq!(none.by, None);
     }
 }
@@ -128,8 +128,8 @@ fn a_search_without_nodes_is_ended_by_them_and_names_them() {
 #[test]
 fn what_is_found_with_less_effort_is_found_with_more_and_no_slower() {
     let efforts = [(0, 100_000), (500, 2_000_000), (2500, 50_000_000)];
-    let planners = efforts.map(|(search_nodes, most_work)| {
-        planner(DockingConfig { search_nodes, most_work, bound_boxes: 0, ..DockingConfig::default() })
+    let planners = efforts.map(|(search_nodes, max_work)| {
+        planner(DockingConfig { search_nodes, max_work, bound_boxes: 0, ..DockingConfig::default() })
     });
     for problem in problems(96, 20) {
         let times = planners.each_ref().map(|planner| match plan(planner, &problem) {
@@ -149,11 +149,11 @@ fn a_proof_stays_a_proof_with_more_work() {
         ((1.0, -0.5), (-1.0, -0.5)),
     ];
     let scene = scene(&closed.map(|(a, b)| wall(a, b)));
-    for most_work in [1_000_000, 10_000_000, 50_000_000] {
-        let planner = planner(DockingConfig { most_work, ..DockingConfig::default() });
+    for max_work in [1_000_000, 10_000_000, 50_000_000] {
+        let planner = planner(DockingConfig { max_work, ..DockingConfig::default() });
         let plan = planner.plan(&robot(), &scene, Pose2::IDENTITY, Pose2::new(0.0, 1.5, 0.0)).unwrap();
         let DockingPlan::Impossible(none) = plan else { panic!("{plan:?}") };
-        assert_eq!(none.certificate, Certificate::Never, "{most_work}");
+        assert_eq!(none.certificate, Certificate::Never, "{max_work}");
     }
 }
 

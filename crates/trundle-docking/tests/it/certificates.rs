@@ -74,7 +74,7 @@ impl Lattice<'_> {
 fn what_is_proven_impossible_is_not_reached_by_brute_force() {
     let mut rng = ChaCha8Rng::seed_from_u64(33);
     let config =
-        DockingConfig { reach: 0.2, most_work: 2_000_000, bound_boxes: 0, ..DockingConfig::default() };
+        DockingConfig { reach: 0.2, max_work: 2_000_000, bound_boxes: 0, ..DockingConfig::default() };
     let planner = DockingPlanner::new(config).unwrap();
     let (mut proofs, mut found, mut reached) = (0, 0, 0);
     while proofs < PROOFS {

@@ -26,7 +26,7 @@ struct Walk {
 type Sides = [(Vector2, Vector2)];
 
 /// The least distance from every obstacle during a motion, no point of the robot moving by more than 2 mm between two samples.
-fn least_distance(footprint: &Footprint, from: Pose2, motion: Motion, pieces: &Sides) -> f64 {
+fn min_distance(footprint: &Footprint, from: Pose2, motion: Motion, pieces: &Sides) -> f64 {
     let arm = if matches!(motion, Motion::Turn(_)) { footprint.circumscribed_radius() } else { 1.0 };
     let samples = (motion.amount().abs() * arm / 0.002).ceil().max(1.0) as u32;
     let pose = |i: u32| motion.after(from, motion.amount() * f64::from(i) / f64::from(samples));
@@ -34,9 +34,9 @@ fn least_distance(footprint: &Footprint, from: Pose2, motion: Motion, pieces: &S
 }
 
 /// The least distance from every obstacle during a manoeuvre, m.
-fn least_of(footprint: &Footprint, manoeuvre: &Manoeuvre, pieces: &Sides) -> f64 {
+fn min_of(footprint: &Footprint, manoeuvre: &Manoeuvre, pieces: &Sides) -> f64 {
     let steps = manoeuvre.steps().iter();
-    steps.map(|step| least_distance(footprint, step.from, step.motion, pieces)).fold(f64::INFINITY, f64::min)
+    steps.map(|step| min_distance(footprint, step.from, step.motion, pieces)).fold(f64::INFINITY, f64::min)
 }
 
 fn walks(seed: u64, lengths: std::ops::Range<usize>) -> impl Iterator<Item = Walk> {
@@ -57,7 +57,7 @@ fn walks(seed: u64, lengths: std::ops::Range<usize>) -> impl Iterator<Item = Wal
                 } else {
                     Motion::Drive(rng.random_range(-0.4..0.4))
                 };
-                if motions.len() < length && least_distance(&footprint, pose, motion, &pieces) > 2.0 * KEPT {
+                if motions.len() < length && min_distance(&footprint, pose, motion, &pieces) > 2.0 * KEPT {
                     pose = motion.after(pose, motion.amount());
                     motions.push(motion);
                 }
@@ -72,7 +72,7 @@ fn walks(seed: u64, lengths: std::ops::Range<usize>) -> impl Iterator<Item = Wal
 }
 
 fn planner(bound_boxes: usize) -> DockingPlanner {
-    let config = DockingConfig { margin: 0.0, most_work: 2_000_000, bound_boxes, ..DockingConfig::default() };
+    let config = DockingConfig { margin: 0.0, max_work: 2_000_000, bound_boxes, ..DockingConfig::default() };
     DockingPlanner::new(config).unwrap()
 }
 
@@ -153,7 +153,7 @@ fn a_solution_driven_in_reverse_is_free_and_solves_the_reversed_problem() {
         let back = rebuilt(forth.end(), reversed);
         assert!(back.end().distance(&forth.start()) < 1e-9);
         assert!(wrap_angle(back.end().theta - forth.start().theta).abs() < 1e-9);
-        assert!(least_of(&footprint, &back, &sides(&obstacles)) > -CONTACT_M);
+        assert!(min_of(&footprint, &back, &sides(&obstacles)) > -CONTACT_M);
     }
 }
 
@@ -168,7 +168,7 @@ fn a_solution_in_the_mirror_is_free_and_solves_the_mirrored_problem() {
         let image = rebuilt(mirrored(one.start()), flipped);
         assert!(image.end().distance(&mirrored(one.end())) < 1e-9);
         let flipped = mapped(&obstacles, |p| at(p.x, -p.y));
-        assert!(least_of(&mirrored_footprint(&footprint), &image, &sides(&flipped)) > -CONTACT_M);
+        assert!(min_of(&mirrored_footprint(&footprint), &image, &sides(&flipped)) > -CONTACT_M);
     }
 }
 
@@ -182,7 +182,7 @@ fn every_pose_of_a_solution_keeps_the_margin_that_it_states() {
         let scene = problem.scene().unwrap();
         let plan = planner.plan(&problem.footprint, &scene, problem.start, problem.goal).unwrap();
         let DockingPlan::Found(solution) = plan else { continue };
-        let least = least_of(&problem.footprint, &solution.manoeuvre, &sides(&problem.obstacles));
+        let least = min_of(&problem.footprint, &solution.manoeuvre, &sides(&problem.obstacles));
         assert!(least >= solution.margin - 1e-6, "problem {i}: {least} m instead of {}", solution.margin);
         assert!(solution.margin <= planner.config().margin);
         kept_all += usize::from(solution.margin == planner.config().margin);

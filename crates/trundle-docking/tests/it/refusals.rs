@@ -69,7 +69,7 @@ fn every_count_of_the_planner_is_checked() {
     let boxes = refused(|c| c.bound_boxes = 100_000_001);
     assert_eq!(boxes, "docking.bound_boxes is 100000001, expected 0 to 100000000");
     for (key, error) in [
-        ("most_work", refused(|c| c.most_work = 0)),
+        ("max_work", refused(|c| c.max_work = 0)),
         ("plan_work", refused(|c| c.plan_work = 0)),
         ("points_work", refused(|c| c.points_work = 0)),
     ] {
@@ -104,9 +104,9 @@ fn every_number_of_hong24_is_checked() {
         ("recovery", "m", 0.01, 1.0, |c, x| c.paper.recovery = x),
     ];
     refuses("docking.paper.", &DockingConfig::default(), &settings, planner);
-    for (most_motions, good) in [(0, false), (1, true), (1000, true), (1001, false)] {
-        let config = Hong24Config { most_motions, ..Hong24Config::default() };
-        assert_eq!(config.validated().is_ok(), good, "{most_motions}");
+    for (max_motions, good) in [(0, false), (1, true), (1000, true), (1001, false)] {
+        let config = Hong24Config { max_motions, ..Hong24Config::default() };
+        assert_eq!(config.validated().is_ok(), good, "{max_motions}");
     }
 }
 
@@ -123,7 +123,7 @@ fn every_number_of_the_positioner_is_checked() {
         ("heading_gain", "1/s", 0.0, 10.0, |c, x| c.heading_gain = x),
         ("overlap", "m", 0.0, 0.02, |c, x| c.overlap = x),
         ("sigmas", "", 0.0, 10.0, |c, x| c.sigmas = x),
-        ("most_margin", "m", 0.0, 0.5, |c, x| c.most_margin = x),
+        ("max_margin", "m", 0.0, 0.5, |c, x| c.max_margin = x),
         ("patience", "s", 0.1, 100.0, |c, x| c.patience = x),
     ];
     refuses("positioner.", &PositionerConfig::default(), &settings, positioner);
@@ -144,7 +144,7 @@ fn a_positioner_refuses_the_settings_of_its_planner_too() {
 fn every_search_limit_names_a_setting_that_the_configuration_has() {
     let written = serde_json::to_value(DockingConfig::default()).unwrap();
     let limits =
-        [SearchLimit::SearchNodes, SearchLimit::MostWork, SearchLimit::PlanWork, SearchLimit::PointsWork];
+        [SearchLimit::SearchNodes, SearchLimit::MaxWork, SearchLimit::PlanWork, SearchLimit::PointsWork];
     for limit in limits {
         assert!(written.get(limit.setting()).is_some(), "{limit:?}");
     }

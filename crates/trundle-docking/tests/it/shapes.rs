@@ -23,7 +23,7 @@ pub fn ends(rng: &mut ChaCha8Rng, free: impl Fn(&Pose2) -> bool) -> Option<(Pose
 }
 
 /// The least distance on the way, no point of the robot moving by more than 2 mm between two looks.
-fn least_on_the_way(footprint: &Footprint, manoeuvre: &Manoeuvre, pieces: &[(Vector2, Vector2)]) -> f64 {
+fn min_along_path(footprint: &Footprint, manoeuvre: &Manoeuvre, pieces: &[(Vector2, Vector2)]) -> f64 {
     let arm = footprint.circumscribed_radius().max(1.0);
     let mut least = f64::INFINITY;
     for step in manoeuvre.steps() {
@@ -42,7 +42,7 @@ fn least_on_the_way(footprint: &Footprint, manoeuvre: &Manoeuvre, pieces: &[(Vec
 #[test]
 fn any_shape_is_safe_and_nothing_possible_is_called_impossible() {
     let mut rng = ChaCha8Rng::seed_from_u64(21);
-    let config = DockingConfig { most_work: 4_000_000, bound_boxes: 100, ..DockingConfig::default() };
+    let config = DockingConfig { max_work: 4_000_000, bound_boxes: 100, ..DockingConfig::default() };
     let dockers =
         [0.0, 0.01].map(|margin| DockingPlanner::new(DockingConfig { margin, ..config.clone() }).unwrap());
     let by_paper = DockingConfig { method: Method::Hong24, margin: 0.0, ..config };
@@ -60,7 +60,7 @@ fn any_shape_is_safe_and_nothing_possible_is_called_impossible() {
                 found += 1;
                 let manoeuvre = &solution.manoeuvre;
                 assert!(manoeuvre.end().distance(&goal) < 1e-9, "problem {count}");
-                let on_the_way = least_on_the_way(&footprint, manoeuvre, &pieces);
+                let on_the_way = min_along_path(&footprint, manoeuvre, &pieces);
                 let kept = solution.margin - CONTACT_M;
                 assert!(on_the_way >= kept, "problem {count}: {on_the_way} of {kept}");
                 assert!(solution.bound <= manoeuvre.duration() + 1e-9);
@@ -72,7 +72,7 @@ fn any_shape_is_safe_and_nothing_possible_is_called_impossible() {
                     continue;
                 };
                 // It looks at samples only, and ends near the goal: free by a centimetre is free.
-                let is_free = least_on_the_way(&footprint, &other.manoeuvre, &pieces) > 0.005;
+                let is_free = min_along_path(&footprint, &other.manoeuvre, &pieces) > 0.005;
                 let is_there = other.manoeuvre.end().distance(&goal) < 1e-3;
                 assert!(
                     !(is_free && is_there),

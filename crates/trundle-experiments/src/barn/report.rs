@@ -193,7 +193,7 @@ pub(super) fn csv(trials: &[BarnTrial]) -> String {
         "optimal_time_s",
         "score",
         "way_m",
-        "least_clearance_m",
+        "min_clearance_m",
         "worst_estimate_m",
         "plans",
     ];

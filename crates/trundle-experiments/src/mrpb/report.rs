@@ -114,7 +114,7 @@ pub(super) fn csv(trials: &[MrpbTrial]) -> String {
         "people",
         "reached",
         "contacts",
-        "least_room_m",
+        "min_clearance_m",
         "time_near",
         "time_s",
         "way_m",
@@ -150,7 +150,7 @@ pub(super) fn summary(trials: &[MrpbTrial], success: bool) -> Summary {
     let cycle = |trial: &MrpbTrial| {
         let [mean, median, p99, most] = trial.metrics.cycle_ms;
         let times =
-            serde_json::json!({ "mean_ms": mean, "median_ms": median, "p99_ms": p99, "most_ms": most });
+            serde_json::json!({ "mean_ms": mean, "median_ms": median, "p99_ms": p99, "max_ms": most });
         (file_name(trial), times)
     };
     let cycles: serde_json::Map<String, serde_json::Value> = trials.iter().map(cycle).collect();

@@ -35,7 +35,7 @@ pub(super) struct CdrReader<'a> {
     bytes: &'a [u8],
     at: usize,
     little: bool,
-    most_aligned: usize,
+    max_aligned: usize,
     /// Where what is aligned begins.
     start: usize,
     wire: Wire,
@@ -47,7 +47,7 @@ const HEADER_BYTES: usize = 4;
 impl<'a> CdrReader<'a> {
     /// A reader of a message of type `message`.
     pub(super) fn new(message: &'static str, bytes: &'a [u8], wire: Wire) -> Result<Self, CdrError> {
-        let mut reader = Self { message, bytes, at: 0, little: true, most_aligned: 1, start: 0, wire };
+        let mut reader = Self { message, bytes, at: 0, little: true, max_aligned: 1, start: 0, wire };
         if wire == Wire::Cdr {
             reader.read_encapsulation()?;
         }
@@ -65,7 +65,7 @@ impl<'a> CdrReader<'a> {
             return Err(reader.error("encapsulation", 0, "too short".to_owned()));
         };
         // CDR 0 and 1, CDR2 6 and 7: even is big endian.
-        (reader.little, reader.most_aligned) = match (high, kind) {
+        (reader.little, reader.max_aligned) = match (high, kind) {
             (0, 0) => (false, 8),
             (0, 1) => (true, 8),
             (0, 6) => (false, 4),
@@ -138,7 +138,7 @@ impl<'a> CdrReader<'a> {
     }
 
     fn number<const N: usize>(&mut self, field: &'static str) -> Result<[u8; N], CdrError> {
-        let align = N.min(self.most_aligned);
+        let align = N.min(self.max_aligned);
         let off = (self.at - self.start) % align;
         if off != 0 {
             self.take(field, align - off)?;

@@ -225,7 +225,7 @@ fn a_recording_in_an_output_folder_appears_at_commit() {
 }
 
 /// The least of many times, ms: what the work costs when nobody disturbs.
-fn least_ms(mut work: impl FnMut()) -> f64 {
+fn min_ms(mut work: impl FnMut()) -> f64 {
     let times = (0..15).map(|_| {
         let start = Instant::now();
         work();
@@ -238,10 +238,10 @@ fn least_ms(mut work: impl FnMut()) -> f64 {
 fn the_wire_costs_milliseconds() {
     let image = frame(stamp(0), 512, 424);
     let encoded = EncodedRgbd::encode(&image).unwrap();
-    let color_in = least_ms(|| drop(encode_color(image.color(), JPEG_QUALITY).unwrap()));
-    let depth_in = least_ms(|| drop(encode_depth(image.depth()).unwrap()));
-    let color_out = least_ms(|| drop(decode_color(&encoded.color_jpeg).unwrap()));
-    let depth_out = least_ms(|| drop(decode_depth(&encoded.depth_png).unwrap()));
+    let color_in = min_ms(|| drop(encode_color(image.color(), JPEG_QUALITY).unwrap()));
+    let depth_in = min_ms(|| drop(encode_depth(image.depth()).unwrap()));
+    let color_out = min_ms(|| drop(decode_color(&encoded.color_jpeg).unwrap()));
+    let depth_out = min_ms(|| drop(decode_depth(&encoded.depth_png).unwrap()));
     let (jpeg, png) = (encoded.color_jpeg.len() / 1024, encoded.depth_png.len() / 1024);
     eprintln!(
         "512 x 424: colour encode {color_in:.2} ms, decode {color_out:.2} ms, {jpeg} KiB; \
@@ -256,12 +256,12 @@ fn recording_costs_less_than_encoding() {
     let dir = tempfile::tempdir().unwrap();
     let path = dir.path().join("a.mcap");
     let frames = 20;
-    let write = least_ms(|| {
+    let write = min_ms(|| {
         let mut recorder = Recorder::create(&path).unwrap();
         (0..frames).for_each(|_| recorder.record_event(&image).unwrap());
         recorder.finish().unwrap();
     });
-    let read = least_ms(|| assert_eq!(RecordingReader::open(&path).unwrap().events().count(), frames));
+    let read = min_ms(|| assert_eq!(RecordingReader::open(&path).unwrap().events().count(), frames));
     let (write, read) = (write / frames as f64, read / frames as f64);
     eprintln!("an image of 512 x 424: record {write:.2} ms, read {read:.2} ms");
     assert!(write < 60.0 && read < 60.0, "an order of magnitude too slow");

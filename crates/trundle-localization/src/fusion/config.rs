@@ -20,9 +20,9 @@ pub struct LocalizerConfig {
     pub scan_heading_sigma_deg: f64,
     /// Smallest sigma of the position after any number of corrections, m, 0 to 1. Default 0.015: errors of neighbouring images
     /// are correlated, and averaging them gains little.
-    pub least_position_sigma: f64,
+    pub min_position_sigma: f64,
     /// Smallest sigma of the heading after any number of corrections, deg, 0 to 30. Default 0.45.
-    pub least_heading_sigma_deg: f64,
+    pub min_heading_sigma_deg: f64,
     /// Largest sigma of the position that still anchors a visual map, m, 0.01 to 10. Default 0.5.
     pub anchor_sigma: f64,
     /// Gate of the Mahalanobis distance, sigmas, 1 to 100. Measurements farther off are rejected. Default 4: one correct
@@ -38,7 +38,7 @@ pub struct LocalizerConfig {
     /// Largest delay of a measurement, s, 0.1 to 60. Default 2.
     pub history: f64,
     /// Largest lead of a measurement over the newest odometry, s, 0 to 1. Default 0.1.
-    pub most_ahead: f64,
+    pub max_lead: f64,
 }
 
 impl Default for LocalizerConfig {
@@ -49,15 +49,15 @@ impl Default for LocalizerConfig {
             weak_factor: 3.0,
             scan_position_sigma: 0.02,
             scan_heading_sigma_deg: 0.5,
-            least_position_sigma: 0.015,
-            least_heading_sigma_deg: 0.45,
+            min_position_sigma: 0.015,
+            min_heading_sigma_deg: 0.45,
             anchor_sigma: 0.5,
             gate: 4.0,
             recover_after: 8,
             jump_distance: 0.1,
             jump_turn_deg: 6.0,
             history: 2.0,
-            most_ahead: 0.1,
+            max_lead: 0.1,
         }
     }
 }
@@ -73,15 +73,15 @@ impl LocalizerConfig {
         require_in("weak_factor", self.weak_factor, "", 1.0, 100.0)?;
         require_in("scan_position_sigma", self.scan_position_sigma, "m", 0.001, 1.0)?;
         require_in("scan_heading_sigma_deg", self.scan_heading_sigma_deg, "deg", 0.01, 30.0)?;
-        require_in("least_position_sigma", self.least_position_sigma, "m", 0.0, 1.0)?;
-        require_in("least_heading_sigma_deg", self.least_heading_sigma_deg, "deg", 0.0, 30.0)?;
+        require_in("min_position_sigma", self.min_position_sigma, "m", 0.0, 1.0)?;
+        require_in("min_heading_sigma_deg", self.min_heading_sigma_deg, "deg", 0.0, 30.0)?;
         require_in("anchor_sigma", self.anchor_sigma, "m", 0.01, 10.0)?;
         require_in("gate", self.gate, "", 1.0, 100.0)?;
         require_in("recover_after", self.recover_after as f64, "", 2.0, 1000.0)?;
         require_in("jump_distance", self.jump_distance, "m", 0.01, 10.0)?;
         require_in("jump_turn_deg", self.jump_turn_deg, "deg", 0.1, 180.0)?;
         require_in("history", self.history, "s", 0.1, 60.0)?;
-        require_in("most_ahead", self.most_ahead, "s", 0.0, 1.0)?;
+        require_in("max_lead", self.max_lead, "s", 0.0, 1.0)?;
         Ok(self)
     }
 
@@ -94,7 +94,7 @@ impl LocalizerConfig {
     }
 
     pub(crate) fn min_variances(&self) -> Vector3<f64> {
-        variances(self.least_position_sigma, self.least_heading_sigma_deg).diagonal()
+        variances(self.min_position_sigma, self.min_heading_sigma_deg).diagonal()
     }
 }
 

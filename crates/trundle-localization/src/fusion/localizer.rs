@@ -205,7 +205,7 @@ impl Localizer {
 
     fn find(&self, stamp: Stamp) -> Result<Moment, Correction> {
         let buffer = self.buffer.as_ref().ok_or(Correction::NoOdometry)?;
-        buffer.find(stamp, self.config.most_ahead)
+        buffer.find(stamp, self.config.max_lead)
     }
 
     fn apply(&mut self, moment: &Moment, measurement: Measurement) -> Correction {

@@ -70,8 +70,8 @@ fn white_errors_match_the_covariance() {
     let config = LocalizerConfig {
         scan_position_sigma: MEASURED[0],
         scan_heading_sigma_deg: MEASURED[2].to_degrees(),
-        least_position_sigma: 0.0,
-        least_heading_sigma_deg: 0.0,
+        min_position_sigma: 0.0,
+        min_heading_sigma_deg: 0.0,
         gate: 10.0,
         ..LocalizerConfig::default()
     };
@@ -85,6 +85,6 @@ fn correlated_errors_do_not_make_the_filter_overconfident() {
     // Errors are correlated over 0.6 s: ten measurements.
     let error = mean_squared_error(&usual, 0.9, 20);
     assert!(error < 6.0, "{error}");
-    let trusting = LocalizerConfig { least_position_sigma: 0.0, least_heading_sigma_deg: 0.0, ..usual };
+    let trusting = LocalizerConfig { min_position_sigma: 0.0, min_heading_sigma_deg: 0.0, ..usual };
     assert!(mean_squared_error(&trusting, 0.9, 20) > 1.5 * error, "without the sigma floor");
 }

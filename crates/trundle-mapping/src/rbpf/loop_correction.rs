@@ -80,11 +80,11 @@ impl LoopCorrector {
 
     /// Bounds the number of stored scans.
     pub(crate) fn thin_history(&mut self, models: &FilterModels, set: &mut ParticleSet) {
-        let most_scans = models.config.most_scans;
-        if self.history.scans.len() > most_scans {
+        let max_scans = models.config.max_scans;
+        if self.history.scans.len() > max_scans {
             // A redraw refers to scans by number.
             self.finish(models, set);
-            let (count, before) = (most_scans / 2, self.history.scans.len());
+            let (count, before) = (max_scans / 2, self.history.scans.len());
             let mut trajectory = set.trajectory();
             self.history.thin(&mut trajectory, count);
             set.ancestry.thin(count);

@@ -30,7 +30,7 @@ use trundle_grid::tiles::{RayUpdateScratch, TileMap, tile_bytes};
 /// Loops longer than the particles can span are searched for, verified, and corrected in trajectory and map.
 ///
 /// Cost: for each scan and particle one match (linear in the beams) and one ray update (linear in the cells that the beams cross);
-/// for each 2 m of path one loop search, n log n in the stored scans (at most `most_scans`). After a loop closure the map is redrawn,
+/// for each 2 m of path one loop search, n log n in the stored scans (at most `max_scans`). After a loop closure the map is redrawn,
 /// four million cells with each scan. Nothing else grows with the length of the run.
 #[derive(Debug)]
 pub struct ParticleMapper {

@@ -9,8 +9,8 @@ use trundle_core::Pose2;
 /// Along x the way's error; along y too, as a turn on the way moves the end aside by half of it.
 pub(crate) fn motion_covariance(config: &MotionConfig, motion: Pose2) -> Matrix3<f64> {
     let (way, turn) = (motion.position().norm(), motion.theta.abs());
-    let shift = config.least_shift + config.shift_per_metre * way + config.shift_per_radian * turn;
-    let heading = config.least_turn + config.turn_per_metre * way + config.turn_per_radian * turn;
+    let shift = config.min_shift + config.shift_per_metre * way + config.shift_per_radian * turn;
+    let heading = config.min_turn + config.turn_per_metre * way + config.turn_per_radian * turn;
     let aside = 0.5 * shift + 0.5 * way * heading;
     Matrix3::from_diagonal(&nalgebra::Vector3::new(shift * shift, aside * aside, heading * heading))
 }

@@ -178,14 +178,14 @@ impl CoarseSearch {
     fn sum_rows_each<const ROWS: usize>(&mut self, window: &TileWindow<'_>, pose: Pose2, all: &mut Sums) {
         let reach = (ROWS / 2) as i32;
         let (place, tile_cols) = (RotatedPose::new(pose), window.size().0 + 2);
-        let (most_col, most_row) = (self.stride as i32 - LANES as i32, self.rows as i32 - ROWS as i32);
+        let (max_col, max_row) = (self.stride as i32 - LANES as i32, self.rows as i32 - ROWS as i32);
         // Samples are at the middles of even cells: 0.5, 2.5 and so on.
         let sample = |v: f32| floor((v + 0.5) * 0.5) + SAMPLES_PER_TILE_SIDE as i32 - reach;
         let mut sums = [[0_u16; LANES]; ROWS];
         for i in 0..self.points.len() {
             let (rx, ry) = place.rotate(self.points[i].0, self.points[i].1);
             let (col, row) = (sample(rx + place.x), sample(ry + place.y));
-            if col < 0 || row < 0 || col > most_col || row > most_row {
+            if col < 0 || row < 0 || col > max_col || row > max_row {
                 continue;
             }
             let (col, row) = (col as usize, row as usize);

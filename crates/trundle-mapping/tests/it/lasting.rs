@@ -216,7 +216,7 @@ fn another_run_goes_on_with_an_old_map() {
 fn the_store_of_scans_stays_within_its_bounds() {
     let (room, poses) = (ring(), lap());
     let odom = odometry(&poses);
-    let small = ParticleConfig { most_scans: 100, ..config(4) };
+    let small = ParticleConfig { max_scans: 100, ..config(4) };
     let mut mapper = ParticleMapper::new(small, 1).unwrap();
     for i in 0..poses.len() {
         mapper.update(odom[i], &laser(&room, poses[i], i));

@@ -8,7 +8,7 @@ use trundle_core::{Invalid, require_in};
 #[serde(default, deny_unknown_fields)]
 pub struct ExploreConfig {
     /// Smallest length of a frontier, m, 0.05 to 5. Shorter ones are ignored. Default 0.4: the Kobuki fits through wider gaps only.
-    pub least_frontier: f64,
+    pub min_frontier: f64,
     /// Largest distance from which a frontier is viewed, m, 0.5 to 10. Default 2 (ours): near enough to see behind it.
     pub view_distance: f64,
     /// Number of views after which a frontier that remains is ignored, 1 to 10. Default 2.
@@ -22,7 +22,7 @@ pub struct ExploreConfig {
 
 impl Default for ExploreConfig {
     fn default() -> Self {
-        Self { least_frontier: 0.4, view_distance: 2.0, looks: 2, gain: 0.5, reach: 50.0 }
+        Self { min_frontier: 0.4, view_distance: 2.0, looks: 2, gain: 0.5, reach: 50.0 }
     }
 }
 
@@ -32,7 +32,7 @@ impl ExploreConfig {
     /// # Errors
     /// When a number is outside its range.
     pub fn validated(self) -> Result<Self, Invalid> {
-        require_in("explore.least_frontier", self.least_frontier, "m", 0.05, 5.0)?;
+        require_in("explore.min_frontier", self.min_frontier, "m", 0.05, 5.0)?;
         require_in("explore.view_distance", self.view_distance, "m", 0.5, 10.0)?;
         require_in("explore.looks", f64::from(self.looks), "", 1.0, 10.0)?;
         require_in("explore.gain", self.gain, "", 0.0, 10.0)?;

@@ -63,7 +63,7 @@ impl Explorer {
 
     /// The next viewpoint from `pose`, on the newest grid. The map's origin is the robot's start.
     pub fn next(&mut self, grid: &OccupancyGrid, pose: Pose2) -> Exploration {
-        let all = frontiers(grid, self.config.least_frontier);
+        let all = frontiers(grid, self.config.min_frontier);
         let total = all.len();
         let field = DistanceField::up_to(2.0 * self.radius, grid, UnknownIs::Free);
         let travel = TravelDistances::from(grid, &field, pose.position(), self.radius);
@@ -132,7 +132,7 @@ mod tests {
     use super::*;
 
     fn explorer() -> Explorer {
-        let config = ExploreConfig { least_frontier: 0.3, ..ExploreConfig::default() };
+        let config = ExploreConfig { min_frontier: 0.3, ..ExploreConfig::default() };
         Explorer::new(config, 0.17).unwrap()
     }
 

@@ -14,7 +14,7 @@ pub struct ObstacleTrackerConfig {
     /// there may walk on for 10 s.
     pub memory: f64,
     /// Smallest number of hits of a cluster, 1 to 10000. Fewer are noise. Default 3 (ours).
-    pub least_hits: usize,
+    pub min_hits: usize,
     /// Largest gap between hits of one object, m, 0.01 to 2. Default 0.2 (ours): the legs of a person.
     pub gap: f64,
     /// Smallest radius of an obstacle, m, 0 to 5: only a leg may be visible. Default 0.2 (ours).
@@ -26,9 +26,9 @@ pub struct ObstacleTrackerConfig {
     /// Time over which a velocity is fitted, and for which an unobserved track is kept, s, 0.1 to 10. Default 1 (ours).
     pub window: f64,
     /// Speed below which an object counts as at rest, m/s, 0.01 to 10. Default 0.1 (ours).
-    pub least_speed: f64,
+    pub min_speed: f64,
     /// Distance from the first observation after which an object counts as moving, m, 0.01 to 10. Default 0.2 (ours).
-    pub least_way: f64,
+    pub min_distance: f64,
     /// Number of observations that confirms a track, 2 to 1000. Default 4 (ours).
     pub sightings: usize,
 }
@@ -38,14 +38,14 @@ impl Default for ObstacleTrackerConfig {
         Self {
             reach: 6.0,
             memory: 3.0,
-            least_hits: 3,
+            min_hits: 3,
             gap: 0.2,
             smallest: 0.2,
             largest: 1.0,
             gate: 0.5,
             window: 1.0,
-            least_speed: 0.1,
-            least_way: 0.2,
+            min_speed: 0.1,
+            min_distance: 0.2,
             sightings: 4,
         }
     }
@@ -59,14 +59,14 @@ impl ObstacleTrackerConfig {
     pub fn validated(self) -> Result<Self, Invalid> {
         require_in("tracker.reach", self.reach, "m", 1.0, 20.0)?;
         require_in("tracker.memory", self.memory, "s", 0.1, 60.0)?;
-        require_in("tracker.least_hits", self.least_hits as f64, "", 1.0, 1e4)?;
+        require_in("tracker.min_hits", self.min_hits as f64, "", 1.0, 1e4)?;
         require_in("tracker.gap", self.gap, "m", 0.01, 2.0)?;
         require_in("tracker.smallest", self.smallest, "m", 0.0, 5.0)?;
         require_in("tracker.largest", self.largest, "m", 0.05, 10.0)?;
         require_in("tracker.gate", self.gate, "m", 0.05, 10.0)?;
         require_in("tracker.window", self.window, "s", 0.1, 10.0)?;
-        require_in("tracker.least_speed", self.least_speed, "m/s", 0.01, 10.0)?;
-        require_in("tracker.least_way", self.least_way, "m", 0.01, 10.0)?;
+        require_in("tracker.min_speed", self.min_speed, "m/s", 0.01, 10.0)?;
+        require_in("tracker.min_distance", self.min_distance, "m", 0.01, 10.0)?;
         require_in("tracker.sightings", self.sightings as f64, "", 2.0, 1e3)?;
         Ok(self)
     }

@@ -235,8 +235,8 @@ impl Track {
     pub(super) fn moves(&self, cells: &CellHistory, config: &ObstacleTrackerConfig) -> bool {
         let left = self.first.iter().filter(|hit| !cells.is_hit(**hit, self.last_seen())).count();
         self.sightings >= config.sightings
-            && self.velocity.norm() >= config.least_speed
-            && (self.last().at - self.from).norm() >= config.least_way.max(self.radius(config))
+            && self.velocity.norm() >= config.min_speed
+            && (self.last().at - self.from).norm() >= config.min_distance.max(self.radius(config))
             && 2 * left >= self.first.len()
     }
 

@@ -133,7 +133,7 @@ impl MovingObstacleTracker {
     }
 
     fn may_move(&self, cluster: &Cluster) -> bool {
-        cluster.hits.len() >= self.config.least_hits
+        cluster.hits.len() >= self.config.min_hits
             && cluster.radius <= self.config.largest
             && !cluster.hits.iter().any(|hit| self.cells.is_part_of_static(*hit, self.time))
     }

@@ -1,6 +1,6 @@
 //! Masks, several goals, lanes, goals nearby.
 
-use crate::support::{at_home, found, judge, least_room, planner};
+use crate::support::{at_home, found, judge, min_clearance, planner};
 use trundle_core::{Cell, GridGeometry, OccupancyGrid, Pose2, Twist2, Vector2};
 use trundle_planning::{CostMask, Plan, PlanResult, PlannerConfig, Replan, SpeedMask, WaypointGraph};
 
@@ -192,7 +192,7 @@ fn a_blocked_goal_is_approached_as_far_as_allowed() {
     let result = found(planner(near(1.0), RADIUS).plan(&grid, start, Twist2::ZERO, goal));
     let end = result.trajectory.end();
     assert!(end.distance(&goal) < 0.8 && (end.theta - 0.5).abs() < 1e-9, "{end:?}");
-    assert!(least_room(&grid, &result) >= RADIUS - 2e-4);
+    assert!(min_clearance(&grid, &result) >= RADIUS - 2e-4);
 }
 
 #[test]

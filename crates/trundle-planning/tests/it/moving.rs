@@ -13,14 +13,14 @@ fn hall(height: usize) -> OccupancyGrid {
     OccupancyGrid::from_ascii(0.1, &format!("{wall}\n{floor}\n{wall}")).unwrap()
 }
 
-fn least_gap(trajectory: &Trajectory, from: Vector2, velocity: Vector2) -> f64 {
+fn min_gap(trajectory: &Trajectory, from: Vector2, velocity: Vector2) -> f64 {
     let gap =
         |time: f64| (trajectory.at(time).pose.position() - from - velocity * time).norm() - PERSON - RADIUS;
     (0..=2000).map(|k| gap(f64::from(k) * 1e-3)).fold(9.0, f64::min)
 }
 
 /// The same while the steady motion is believed, 2 s.
-fn least_gap_within(trajectory: &Trajectory, from: Vector2, velocity: Vector2) -> f64 {
+fn min_gap_within(trajectory: &Trajectory, from: Vector2, velocity: Vector2) -> f64 {
     let gap =
         |time: f64| (trajectory.at(time).pose.position() - from - velocity * time).norm() - PERSON - RADIUS;
     (0..=2000).map(|k| gap(f64::from(k) * 1e-3)).fold(9.0, f64::min)
@@ -39,9 +39,9 @@ fn someone_who_crosses_is_let_pass_or_gone_around() {
         let obstacle = MovingObstacle::new(from, velocity, PERSON).unwrap();
         let mut planner = planner(at_home(), RADIUS);
         let alone = found(planner.plan(&grid, start, Twist2::ZERO, goal));
-        assert!(least_gap(&alone.trajectory, from, velocity) < 0.0, "no encounter: {from} {velocity}");
+        assert!(min_gap(&alone.trajectory, from, velocity) < 0.0, "no encounter: {from} {velocity}");
         let plan = found(planner.plan_among_moving(&grid, &[obstacle], start, Twist2::ZERO, goal));
-        assert!(least_gap(&plan.trajectory, from, velocity) >= -2e-3, "{} s of wait", plan.wait);
+        assert!(min_gap(&plan.trajectory, from, velocity) >= -2e-3, "{} s of wait", plan.wait);
         judge(&grid, &plan, start, goal, RADIUS);
         eprintln!("{:?}: {:.1} s of wait, {:.2} m", from.as_slice(), plan.wait, plan.length);
     }
@@ -63,10 +63,10 @@ fn a_robot_that_moves_stops_for_someone_who_crosses_and_goes_on() {
         let twist = Twist2::new(0.5, 0.0);
         let mut planner = planner(at_home(), RADIUS);
         let alone = found(planner.plan(&grid, start, twist, goal));
-        assert!(least_gap_within(&alone.trajectory, from, velocity) < 0.0, "no encounter at {y}");
+        assert!(min_gap_within(&alone.trajectory, from, velocity) < 0.0, "no encounter at {y}");
         let plan = found(planner.plan_among_moving(&grid, &[obstacle], start, twist, goal));
         assert!(plan.is_continuous && plan.trajectory.points()[0].twist.v == 0.5);
-        assert!(least_gap_within(&plan.trajectory, from, velocity) >= -2e-3, "{y}: {} s of wait", plan.wait);
+        assert!(min_gap_within(&plan.trajectory, from, velocity) >= -2e-3, "{y}: {} s of wait", plan.wait);
         judge(&grid, &plan, start, goal, RADIUS);
         waits += usize::from(
             plan.trajectory.points().iter().any(|p| p.time > 0.1 && p.twist.v == 0.0 && p.pose.x < 3.0),
@@ -93,7 +93,7 @@ fn a_plan_is_kept_while_it_holds() {
     assert!(second.is_continuous);
     let begin = second.trajectory.points()[0];
     assert!((begin.twist.v - now.twist.v).abs() < 1e-9 && (begin.twist.omega - now.twist.omega).abs() < 1e-4);
-    assert!(least_gap(&second.trajectory, ahead, Vector2::zeros()) >= -1e-3);
+    assert!(min_gap(&second.trajectory, ahead, Vector2::zeros()) >= -1e-3);
     let other = Pose2::new(8.0, 1.0, -0.5);
     assert!(matches!(planner.replan(&grid, &[], &first, 3.0, other), Replan::New(Plan::Found(_))));
 }

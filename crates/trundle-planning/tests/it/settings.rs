@@ -50,7 +50,7 @@ fn every_number_of_the_curve_is_checked() {
     let settings: [Setting<CurveConfig>; 7] = [
         ("piece", "m", 0.1, 100.0, |c, x| c.piece = x),
         ("reach", "m", 0.1, 10.0, |c, x| c.reach = x),
-        ("least_tangent", "", 0.01, 1.0, |c, x| c.least_tangent = x),
+        ("min_tangent", "", 0.01, 1.0, |c, x| c.min_tangent = x),
         ("max_curvature", "1/m", 0.1, 1000.0, |c, x| c.max_curvature = x),
         ("detour", "", 1.0, 10.0, |c, x| c.detour = x),
         ("turn_first", "rad", 0.0, std::f64::consts::PI, |c, x| c.turn_first = x),
@@ -88,20 +88,20 @@ fn every_number_of_the_tracker_of_moving_obstacles_is_checked() {
         ("largest", "m", 0.05, 10.0, |c, x| c.largest = x),
         ("gate", "m", 0.05, 10.0, |c, x| c.gate = x),
         ("window", "s", 0.1, 10.0, |c, x| c.window = x),
-        ("least_speed", "m/s", 0.01, 10.0, |c, x| c.least_speed = x),
-        ("least_way", "m", 0.01, 10.0, |c, x| c.least_way = x),
+        ("min_speed", "m/s", 0.01, 10.0, |c, x| c.min_speed = x),
+        ("min_distance", "m", 0.01, 10.0, |c, x| c.min_distance = x),
     ];
     refuses("tracker.", &ObstacleTrackerConfig::default(), &settings, ObstacleTrackerConfig::validated);
     let one = ObstacleTrackerConfig { sightings: 1, ..ObstacleTrackerConfig::default() };
     assert_eq!(one.validated().unwrap_err().to_string(), "tracker.sightings is 1, expected 2 to 1000");
-    let none = ObstacleTrackerConfig { least_hits: 0, ..ObstacleTrackerConfig::default() };
-    assert_eq!(none.validated().unwrap_err().to_string(), "tracker.least_hits is 0, expected 1 to 10000");
+    let none = ObstacleTrackerConfig { min_hits: 0, ..ObstacleTrackerConfig::default() };
+    assert_eq!(none.validated().unwrap_err().to_string(), "tracker.min_hits is 0, expected 1 to 10000");
 }
 
 #[test]
 fn every_number_of_the_exploration_is_checked() {
     let settings: [Setting<ExploreConfig>; 4] = [
-        ("least_frontier", "m", 0.05, 5.0, |c, x| c.least_frontier = x),
+        ("min_frontier", "m", 0.05, 5.0, |c, x| c.min_frontier = x),
         ("view_distance", "m", 0.5, 10.0, |c, x| c.view_distance = x),
         ("gain", "", 0.0, 10.0, |c, x| c.gain = x),
         ("reach", "m", 1.0, 1000.0, |c, x| c.reach = x),

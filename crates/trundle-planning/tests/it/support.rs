@@ -45,7 +45,7 @@ pub fn room(grid: &OccupancyGrid, point: Vector2) -> f64 {
 }
 
 /// Least distance of a trajectory's centre from obstacles, m.
-pub fn least_room(grid: &OccupancyGrid, result: &PlanResult) -> f64 {
+pub fn min_clearance(grid: &OccupancyGrid, result: &PlanResult) -> f64 {
     let mut at = Vector2::repeat(f64::INFINITY);
     let mut least = f64::INFINITY;
     for point in result.trajectory.points() {
@@ -66,7 +66,7 @@ pub fn judge(grid: &OccupancyGrid, result: &PlanResult, start: Pose2, goal: Pose
     assert!(last.pose.distance(&goal) < 1.1e-3, "{last:?} {goal:?}");
     assert!(wrap_angle(last.pose.theta - goal.theta).abs() < 1e-5, "{last:?} {goal:?}");
     assert_eq!(last.twist, Twist2::ZERO);
-    assert!(least_room(grid, result) >= radius - 2e-4, "{} m of {radius}", least_room(grid, result));
+    assert!(min_clearance(grid, result) >= radius - 2e-4, "{} m of {radius}", min_clearance(grid, result));
     for point in points {
         let Twist2 { v, omega } = point.twist;
         assert!((0.0..=LIMITS.v + 1e-9).contains(&v), "{point:?}");

@@ -1,5 +1,6 @@
 //! Reads a robot file: translates keys, names unknown ones, applies overrides, and validates.
 
+use super::former_names::present_key;
 use super::plausibility::require_plausible;
 use super::reference::{Setting, reference};
 use crate::RobotConfig;
@@ -121,8 +122,11 @@ enum Found {
 fn find(full: &str) -> Option<Found> {
     let inside = |setting: &Setting| setting.key.strip_prefix(full).is_some_and(|rest| rest.starts_with('.'));
     let settings = reference();
-    let key = settings.iter().find(|setting| setting.key == full).map(Found::Key);
-    let old = || settings.iter().find(|setting| setting.path == full).map(Found::OldKey);
+    let named = |key: &str| settings.iter().find(|setting| setting.key == key);
+    let of_path = |path: &str| settings.iter().find(|setting| setting.path == path);
+    let former = || present_key(full).and_then(|present| named(&present).or_else(|| of_path(&present)));
+    let key = named(full).map(Found::Key);
+    let old = || of_path(full).or_else(former).map(Found::OldKey);
     key.or_else(old).or_else(|| settings.iter().any(inside).then_some(Found::Table))
 }
 
@@ -214,6 +218,16 @@ mod tests {
         assert!(new.warnings.is_empty());
         assert_eq!(old.warnings[0], "drive.wheel_radius is deprecated: write drive.wheel_radius_m");
         assert_eq!(parse("").unwrap().config, RobotConfig::default());
+    }
+
+    #[test]
+    fn former_names_are_read_with_a_warning() {
+        let old = parse("[movers]\nleast_way_m = 0.3\nleast_hits = 4\n").unwrap();
+        assert_eq!(old.config, parse("[movers]\nmin_distance_m = 0.3\nmin_hits = 4\n").unwrap().config);
+        assert_eq!(old.warnings[0], "movers.least_hits is deprecated: write movers.min_hits");
+        let set = RobotFile::parse("", &["movers.least_way=0.3".to_owned()]).unwrap();
+        assert_eq!(set.warnings, ["movers.least_way is deprecated: write movers.min_distance_m"]);
+        assert!(parse("[movers]\nleast_foot_m = 0.3\n").unwrap_err().message.contains("least_foot_m"));
     }
 
     #[test]

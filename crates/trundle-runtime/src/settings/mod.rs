@@ -1,12 +1,14 @@
 //! The robot file: reads `robot.toml` with units in its keys, prints it with its meaning, and checks what is plausible.
 
 mod file;
+mod former_names;
 mod plausibility;
 mod print;
 mod reference;
 mod schema;
 
 pub use file::{RobotFile, SettingsError};
+pub use former_names::with_present_names;
 pub use print::to_commented_toml;
 pub use reference::{Setting, reference};
 pub use schema::json_schema;

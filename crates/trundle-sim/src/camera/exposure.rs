@@ -22,14 +22,14 @@ pub struct Exposure {
     /// Auto exposure closes 63 % of a gap in this time, s, 0 to 60. Default 0.3.
     pub time_constant: f64,
     /// Lowest gain of auto exposure, 0.01 to 1. Default 0.25.
-    pub least_gain: f64,
+    pub min_gain: f64,
     /// Highest gain of auto exposure, 1 to 100. Default 8.
-    pub most_gain: f64,
+    pub max_gain: f64,
 }
 
 impl Default for Exposure {
     fn default() -> Self {
-        Self { auto: true, gain: 1.0, target: 0.18, time_constant: 0.3, least_gain: 0.25, most_gain: 8.0 }
+        Self { auto: true, gain: 1.0, target: 0.18, time_constant: 0.3, min_gain: 0.25, max_gain: 8.0 }
     }
 }
 
@@ -50,8 +50,8 @@ impl Exposure {
         check("gain", self.gain, "", 0.01, 100.0)?;
         check("target", self.target, "", 0.01, 0.9)?;
         check("time_constant", self.time_constant, "s", 0.0, 60.0)?;
-        check("least_gain", self.least_gain, "", 0.01, 1.0)?;
-        check("most_gain", self.most_gain, "", 1.0, 100.0)?;
+        check("min_gain", self.min_gain, "", 0.01, 1.0)?;
+        check("max_gain", self.max_gain, "", 1.0, 100.0)?;
         Ok(self)
     }
 }
@@ -79,7 +79,7 @@ impl Meter {
             return;
         }
         let wanted = self.exposure.target / mean_light(view).max(1e-4);
-        let wanted = wanted.clamp(self.exposure.least_gain, self.exposure.most_gain);
+        let wanted = wanted.clamp(self.exposure.min_gain, self.exposure.max_gain);
         let elapsed = self.last.map_or(f64::INFINITY, |last| (stamp - last).max(0.0));
         let kept = (-elapsed / self.exposure.time_constant.max(1e-9)).exp();
         // In stops, as brightening and darkening take the same time.

@@ -39,7 +39,7 @@ fn meet_one(a: Linear, b: Linear, c: Linear, inverse_depth: Linear, id: u32, til
     let mut is_empty = [0; ROWS];
     for row in 0..ROWS {
         is_empty[row] =
-            mask(a.most_in_row(row) < 0.0) | mask(b.most_in_row(row) < 0.0) | mask(c.most_in_row(row) < 0.0);
+            mask(a.max_in_row(row) < 0.0) | mask(b.max_in_row(row) < 0.0) | mask(c.max_in_row(row) < 0.0);
     }
     for row in 0..ROWS {
         if is_empty[row] != 0 {

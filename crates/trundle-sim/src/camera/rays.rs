@@ -68,7 +68,7 @@ impl Linear {
 
     /// The most in a row.
     #[inline(always)]
-    pub(super) fn most_in_row(&self, row: usize) -> f32 {
+    pub(super) fn max_in_row(&self, row: usize) -> f32 {
         let (left, right) = (self.left(row), self.left(row) + (TILE_COLUMNS - 1) as f32 * self.right);
         if left > right { left } else { right }
     }
@@ -76,7 +76,7 @@ impl Linear {
     /// The most in the tile: exactly the value of one of its corners.
     #[inline(always)]
     pub(super) fn most(&self) -> f32 {
-        let (upper, lower) = (self.most_in_row(0), self.most_in_row(ROWS - 1));
+        let (upper, lower) = (self.max_in_row(0), self.max_in_row(ROWS - 1));
         if upper > lower { upper } else { lower }
     }
 }

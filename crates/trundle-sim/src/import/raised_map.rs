@@ -45,12 +45,12 @@ pub struct RaisedMap {
     /// Whether there is a ceiling. Default true.
     pub ceiling: bool,
     /// Most memory that the world's textures may take, GB, 0.01 to 1000. Default 4.
-    pub most_memory_gb: f64,
+    pub max_memory_gb: f64,
 }
 
 impl Default for RaisedMap {
     fn default() -> Self {
-        Self { wall_height: 2.5, ceiling: true, most_memory_gb: 4.0 }
+        Self { wall_height: 2.5, ceiling: true, max_memory_gb: 4.0 }
     }
 }
 
@@ -61,7 +61,7 @@ impl RaisedMap {
     /// When a number is outside its range.
     pub fn validated(self) -> Result<Self, Invalid> {
         require_in("wall_height", self.wall_height, "m", 0.1, 20.0)?;
-        require_in("most_memory_gb", self.most_memory_gb, "GB", 0.01, 1000.0)?;
+        require_in("max_memory_gb", self.max_memory_gb, "GB", 0.01, 1000.0)?;
         Ok(self)
     }
 }
@@ -93,10 +93,10 @@ fn raise(grid: &OccupancyGrid, options: &RaisedMap) -> Result<Vec<Solid>, Invali
     }
     let blocks = blocks(grid);
     let bytes = memory(grid, &blocks, slabs.len(), &options);
-    if bytes > options.most_memory_gb * 1e9 {
+    if bytes > options.max_memory_gb * 1e9 {
         let GridGeometry { width, height, .. } = *grid.geometry();
         let value = format!("{:.3} GB ({width} x {height} cells, {} walls)", bytes / 1e9, blocks.len());
-        let expected = format!("at most {} GB", options.most_memory_gb);
+        let expected = format!("at most {} GB", options.max_memory_gb);
         return Err(Invalid::new("memory for the textures of the map", value, "", expected));
     }
     let mut solids: Vec<Solid> = blocks.iter().enumerate().map(|(i, b)| wall(grid, b, i, &options)).collect();

@@ -38,7 +38,7 @@ pub struct LaserConfig {
     pub drop_out: f64,
     /// Surfaces that the beam meets at more than this from their normal send nothing back, rad, 0 to pi/2. Default pi/2: all
     /// are seen.
-    pub most_incidence: f64,
+    pub max_incidence: f64,
     /// Whether a beam that brings nothing back is reported as free up to `range_max`, as drivers do that publish +Inf
     /// (ROS REP 117); else as unseen. Default true.
     pub silence_is_free: bool,
@@ -63,7 +63,7 @@ impl Default for LaserConfig {
             noise_part: 0.0,
             quantum: 0.0,
             drop_out: 0.0,
-            most_incidence: FRAC_PI_2,
+            max_incidence: FRAC_PI_2,
             silence_is_free: true,
             sweeps: false,
         }
@@ -78,7 +78,7 @@ impl LaserConfig {
             noise_part: 0.0,
             quantum: 0.0,
             drop_out: 0.0,
-            most_incidence: FRAC_PI_2,
+            max_incidence: FRAC_PI_2,
             sweeps: false,
             ..self
         }
@@ -102,7 +102,7 @@ impl LaserConfig {
             ("noise_part", self.noise_part, "", 0.0, 0.5),
             ("quantum", self.quantum, "m", 0.0, 1.0),
             ("drop_out", self.drop_out, "", 0.0, 1.0),
-            ("most_incidence", self.most_incidence, "rad", 0.0, FRAC_PI_2),
+            ("max_incidence", self.max_incidence, "rad", 0.0, FRAC_PI_2),
         ];
         for (name, value, unit, low, high) in ranges {
             require_in(&format!("laser.{name}"), value, unit, low, high)?;

@@ -19,7 +19,7 @@ impl LaserConfig {
             noise_part: 0.0033,
             quantum: 0.0005,
             drop_out: 0.005,
-            most_incidence: 80_f64.to_radians(),
+            max_incidence: 80_f64.to_radians(),
             sweeps: true,
             ..Self::default()
         }
@@ -38,7 +38,7 @@ impl LaserConfig {
             noise_part: 0.0033,
             quantum: 0.001,
             drop_out: 0.002,
-            most_incidence: 80_f64.to_radians(),
+            max_incidence: 80_f64.to_radians(),
             sweeps: true,
             ..Self::default()
         }
@@ -56,7 +56,7 @@ impl LaserConfig {
             noise: 0.013,
             quantum: 0.001,
             drop_out: 0.001,
-            most_incidence: 85_f64.to_radians(),
+            max_incidence: 85_f64.to_radians(),
             sweeps: true,
             ..Self::default()
         }
@@ -73,7 +73,7 @@ impl LaserConfig {
             noise_part: 0.0117,
             quantum: 0.001,
             drop_out: 0.01,
-            most_incidence: 80_f64.to_radians(),
+            max_incidence: 80_f64.to_radians(),
             sweeps: true,
             ..Self::default()
         }

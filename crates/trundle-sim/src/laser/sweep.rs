@@ -57,7 +57,7 @@ impl Laser {
         let direction = world_from_base.rotate(Vector2::new(angle.cos(), angle.sin()));
         let direction = Vector3::new(direction.x, direction.y, 0.0);
         let hit = snapshot.cast(Vector3::new(origin.x, origin.y, c.z), direction, c.range_max);
-        let seen = hit.filter(|hit| hit.normal.dot(&direction).abs() >= c.most_incidence.cos());
+        let seen = hit.filter(|hit| hit.normal.dot(&direction).abs() >= c.max_incidence.cos());
         self.reading(seen.map(|hit| hit.distance), bits)
     }
 

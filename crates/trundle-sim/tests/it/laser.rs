@@ -63,7 +63,7 @@ fn noise_drop_outs_and_grazing_losses_are_as_configured() {
         noise_part: 0.005,
         quantum: 0.001,
         drop_out: 0.1,
-        most_incidence: 40_f64.to_radians(),
+        max_incidence: 40_f64.to_radians(),
         silence_is_free: true,
         ..LaserConfig::default()
     };

@@ -39,7 +39,7 @@ impl SubmapLink {
         let is_small = error.translation.norm() <= config.surprise && error.angle() <= config.surprise_turn;
         let (tangent, information) = (error.log(), self.before_from_map.covariance.try_inverse());
         let is_likely = |information: Matrix6<f64>| {
-            tangent.dot(&(information * tangent)) <= config.most_sigmas * config.most_sigmas
+            tangent.dot(&(information * tangent)) <= config.max_sigmas * config.max_sigmas
         };
         is_small || information.is_some_and(is_likely)
     }

@@ -34,9 +34,9 @@ pub(crate) fn cull_keyframes(map: &mut LandmarkMap, new: KeyframeId, config: &Ke
 fn is_redundant(map: &LandmarkMap, id: KeyframeId) -> bool {
     let keyframe = map.keyframe(id);
     let seen = || keyframe.landmarks.iter().enumerate().filter_map(|(f, l)| Some((f, map.landmark((*l)?)?)));
-    let most_needed = ((1.0 - MIN_REDUNDANT_RATIO) * seen().count() as f64).floor() as usize;
+    let max_needed = ((1.0 - MIN_REDUNDANT_RATIO) * seen().count() as f64).floor() as usize;
     let needed = seen().filter(|(feature, l)| is_needed(map, id, keyframe.frame.octave(*feature), l));
-    needed.take(most_needed + 1).count() <= most_needed
+    needed.take(max_needed + 1).count() <= max_needed
 }
 
 /// Whether fewer than three others see a landmark as finely.

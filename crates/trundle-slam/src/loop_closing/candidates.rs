@@ -20,7 +20,7 @@ pub(crate) fn loop_candidates(
     config: &LoopConfig,
 ) -> Vec<KeyframeId> {
     let connected = connected(map, keyframe);
-    let oldest_kept_out = map.keyframe_ids().rev().nth(config.least_age).or(map.first_keyframe());
+    let oldest_kept_out = map.keyframe_ids().rev().nth(config.min_age).or(map.first_keyframe());
     let here = map.keyframe(keyframe).visual_from_camera.inverse();
     let paths = UncertaintyPaths::from(map, keyframe, config);
     let is_near = |id: KeyframeId| {
@@ -64,7 +64,7 @@ impl<'a> DriftBound<'a> {
     /// Whether a keyframe at this offset may see the same as the other one.
     fn reaches(&self, offset: Pose3) -> bool {
         let Self { covariance, config } = self;
-        let off = |from: usize| config.most_sigmas * covariance.fixed_view::<3, 3>(from, from).trace().sqrt();
+        let off = |from: usize| config.max_sigmas * covariance.fixed_view::<3, 3>(from, from).trace().sqrt();
         offset.translation.norm() <= config.reach + off(0).max(config.surprise)
             && offset.angle() <= config.turn + off(3).max(config.surprise_turn)
     }
@@ -74,7 +74,7 @@ impl<'a> DriftBound<'a> {
     pub fn allows(&self, correction: Pose3, seen: &Matrix6<f64>) -> bool {
         let tangent = correction.log();
         let Some(information) = (self.covariance + seen).try_inverse() else { return false };
-        tangent.dot(&(information * tangent)) <= self.config.most_sigmas.powi(2) + CHI2_MARGIN
+        tangent.dot(&(information * tangent)) <= self.config.max_sigmas.powi(2) + CHI2_MARGIN
     }
 
     /// Whether a correction that the drift does not explain is small enough to be none of a look-alike.

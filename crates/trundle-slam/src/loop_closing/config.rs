@@ -11,7 +11,7 @@ pub struct LoopConfig {
     /// Old keyframes that a new one is compared with, 0 (no loop is closed) or more. Default 3 \[MurArtal17\].
     pub candidates: usize,
     /// Keyframes newer than this many before are no loop, 1 or more. Default 10: as many as a local bundle moves.
-    pub least_age: usize,
+    pub min_age: usize,
     /// Largest distance between two keyframes that see the same, m, above 0. Default 1.5: half a room.
     pub reach: f64,
     /// How much they may be turned, rad, above 0. Default 0.9 (50 deg): a quarter of a Kinect's picture is then common.
@@ -30,7 +30,7 @@ pub struct LoopConfig {
     pub min_agreement: f64,
     /// Largest correction in standard deviations of the drift, above 0. Default 5: covariances along a chain are somewhat
     /// small. A larger correction is a look-alike.
-    pub most_sigmas: f64,
+    pub max_sigmas: f64,
     /// Standard deviation of the drift, besides the covariance, as a fraction of the length of each constraint by common
     /// landmarks or a loop, along the least uncertain path, 0 to 1. Default 0.01, the drift of RGB-D odometry.
     pub drift_part: f64,
@@ -47,7 +47,7 @@ impl Default for LoopConfig {
     fn default() -> Self {
         Self {
             candidates: 3,
-            least_age: 10,
+            min_age: 10,
             reach: 1.5,
             turn: 0.9,
             min_points: 40,
@@ -55,7 +55,7 @@ impl Default for LoopConfig {
             surprise: 1.0,
             surprise_turn: 0.5,
             min_agreement: 0.5,
-            most_sigmas: 5.0,
+            max_sigmas: 5.0,
             drift_part: 0.01,
             drift_part_on_wheels: 0.003,
             tied_by: 100,
@@ -71,7 +71,7 @@ impl LoopConfig {
     /// When a number is out of the range that its field names.
     pub fn validated(mut self) -> Result<Self, Invalid> {
         let counts = [
-            ("loops.least_age", self.least_age, 1),
+            ("loops.min_age", self.min_age, 1),
             ("loops.min_points", self.min_points, 10),
             ("loops.consistency", self.consistency, 1),
             ("loops.tied_by", self.tied_by, 1),
@@ -86,7 +86,7 @@ impl LoopConfig {
             ("loops.turn", self.turn, "rad"),
             ("loops.surprise", self.surprise, "m"),
             ("loops.surprise_turn", self.surprise_turn, "rad"),
-            ("loops.most_sigmas", self.most_sigmas, ""),
+            ("loops.max_sigmas", self.max_sigmas, ""),
         ] {
             require_positive(name, value, unit)?;
         }

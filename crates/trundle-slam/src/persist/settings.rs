@@ -26,7 +26,7 @@ fn settings(camera: &PinholeCamera, orb: &OrbConfig) -> [(&'static str, f64); 18
         ("orb.fast_threshold (grey values)", f64::from(orb.fast_threshold)),
         ("orb.fast_min_threshold (grey values)", f64::from(orb.fast_min_threshold)),
         ("orb.cell_px", orb.cell_px as f64),
-        ("orb.least_texture", orb.least_texture),
+        ("orb.min_texture", orb.min_texture),
     ]
 }
 

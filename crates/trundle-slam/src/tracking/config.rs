@@ -26,7 +26,7 @@ pub struct TrackingConfig {
     /// Highest quotient of the best and the next best distance without a window, above 0 to 1. Default 0.8.
     pub free_ratio: f32,
     /// Landmarks of the map that are searched in one frame. Default 4000.
-    pub most_landmarks: usize,
+    pub max_landmarks: usize,
     /// Fewer inliers than this and the frame is not located, 6 or more. Default 20.
     pub min_inliers: usize,
     /// Fewer inliers than this and it is located weakly; a relocalisation needs as many. Default 40.
@@ -59,7 +59,7 @@ impl Default for TrackingConfig {
             window_ratio: 0.9,
             free_distance: 64,
             free_ratio: 0.8,
-            most_landmarks: 4000,
+            max_landmarks: 4000,
             min_inliers: 20,
             weak_inliers: 40,
             relocalisation_keyframes: 5,
@@ -87,7 +87,7 @@ impl TrackingConfig {
         let counts = [
             ("tracking.min_inliers", self.min_inliers, 6),
             ("tracking.weak_inliers", self.weak_inliers, self.min_inliers),
-            ("tracking.most_landmarks", self.most_landmarks, self.weak_inliers),
+            ("tracking.max_landmarks", self.max_landmarks, self.weak_inliers),
             ("tracking.relocalisation_keyframes", self.relocalisation_keyframes, 1),
         ];
         for (name, value, least) in counts {

@@ -39,7 +39,7 @@ impl<'a> LocalMapQuery<'a> {
         depth: (&'a DepthImage, &'a DepthConfig),
         config: &TrackingConfig,
     ) -> Self {
-        let TrackingConfig { map_window_px: window_px, most_landmarks: max_landmarks, .. } = *config;
+        let TrackingConfig { map_window_px: window_px, max_landmarks, .. } = *config;
         Self { model, depth, window_px, max_landmarks }
     }
 

@@ -109,7 +109,7 @@ fn noise(number: usize) -> RgbdImage {
 fn noise_on_a_bare_wall_makes_no_map() {
     assert_eq!(slam().step(&noise(0), None).keyframes, 0, "noise has no corners");
     let mut config = SlamConfig::default();
-    config.orb.least_texture = 0.0;
+    config.orb.min_texture = 0.0;
     let mut slam = RgbdSlam::new(camera(), config).unwrap();
     assert_eq!(slam.step(&shoot(0, Pose3::identity()), None).tracking, Tracking::Ok);
     let told = || Some(forward(0.0).into());

@@ -23,7 +23,7 @@ pub struct OrbConfig {
     /// A corner is one of something where the smoothed image around it (15 x 15 px of its level) has at least this gradient in every
     /// direction, root mean square, in standard deviations of the image's own noise a px, 0 to 100; 0 takes corners of noise and steps
     /// along edges too. Default 0.5: swept in docs/results.md.
-    pub least_texture: f64,
+    pub min_texture: f64,
 }
 
 impl Default for OrbConfig {
@@ -35,7 +35,7 @@ impl Default for OrbConfig {
             fast_threshold: 20,
             fast_min_threshold: 7,
             cell_px: 32,
-            least_texture: 0.5,
+            min_texture: 0.5,
         }
     }
 }
@@ -59,7 +59,7 @@ impl OrbConfig {
         let low = f64::from(self.fast_min_threshold);
         require_in("orb.fast_min_threshold", low, "grey values", 1.0, threshold)?;
         require_in("orb.cell_px", self.cell_px as f64, "px", 8.0, 65535.0)?;
-        require_in("orb.least_texture", self.least_texture, "sigmas a px", 0.0, 100.0)?;
+        require_in("orb.min_texture", self.min_texture, "sigmas a px", 0.0, 100.0)?;
         Ok(self)
     }
 
@@ -101,7 +101,7 @@ mod tests {
         assert_eq!(refused(OrbConfig { fast_threshold: 0, ..good() }), "orb.fast_threshold");
         assert_eq!(refused(OrbConfig { fast_min_threshold: 21, ..good() }), "orb.fast_min_threshold");
         assert_eq!(refused(OrbConfig { cell_px: 2, ..good() }), "orb.cell_px");
-        assert_eq!(refused(OrbConfig { least_texture: -0.1, ..good() }), "orb.least_texture");
+        assert_eq!(refused(OrbConfig { min_texture: -0.1, ..good() }), "orb.min_texture");
         assert!(good().validated().is_ok());
     }
 }

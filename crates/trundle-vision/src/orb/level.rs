@@ -60,7 +60,7 @@ impl Level {
         if self.width().min(self.height()) > 2 * patch::BORDER_PX && self.width().max(self.height()) <= 65536
         {
             self.blur.run(&self.image, &mut self.blurred);
-            let has_texture = |corner: Corner| texture::least_gradient(&self.blurred, corner) >= least;
+            let has_texture = |corner: Corner| texture::min_gradient(&self.blurred, corner) >= least;
             self.detector.detect(&self.image, config, has_texture, &mut self.corners);
         }
     }

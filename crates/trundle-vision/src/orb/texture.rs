@@ -18,7 +18,7 @@ const COUNT_WEIGHTS: [i16; TEXTURE_STRIDE] = {
 /// eigenvalue of the structure tensor \[Shi94\]. An edge has none along itself, however strong it is.
 ///
 /// `image` is smoothed, so that its noise counts little; the corner is far enough from its border to be described.
-pub(crate) fn least_gradient(image: &GrayImage, corner: Corner) -> f32 {
+pub(crate) fn min_gradient(image: &GrayImage, corner: Corner) -> f32 {
     let [across, down, both] = tensor(image, corner).map(f64::from);
     let middle = (across + down) / 2.0;
     let least = (middle - ((across - down) / 2.0).hypot(both)).max(0.0);
@@ -71,7 +71,7 @@ mod tests {
 
     fn least(value: impl Fn(f64, f64) -> f64) -> f32 {
         let pixel = |x: usize, y: usize| value(x as f64 - 16.0, y as f64 - 16.0).round() as u8;
-        least_gradient(&GrayImage::from_fn(33, 33, pixel), MIDDLE)
+        min_gradient(&GrayImage::from_fn(33, 33, pixel), MIDDLE)
     }
 
     #[test]

@@ -130,8 +130,7 @@ mod tests {
         let images: Vec<Vec<Descriptor>> = (0..6_u64)
             .map(|n| (0..50).map(|i| Descriptor([n * 7919 + i * i, i << 40, !n, i * 31])).collect())
             .collect();
-        Vocabulary::train(&images, &VocabularyConfig { branching: 3, depth: 4, least_to_divide: 4 }, 2)
-            .unwrap()
+        Vocabulary::train(&images, &VocabularyConfig { branching: 3, depth: 4, min_to_divide: 4 }, 2).unwrap()
     }
 
     fn refused(bytes: &[u8]) -> String {

@@ -76,12 +76,12 @@ impl PlaceIndex {
         self.query_sharing(bag, 0.0, is_asked_for)
     }
 
-    /// [`PlaceIndex::query`] without the places that share fewer than `least_share` (0 to 1) of the words that the one
+    /// [`PlaceIndex::query`] without the places that share fewer than `min_share` (0 to 1) of the words that the one
     /// with the most has in common with `bag`; 0.8 in \[MurArtal17\].
     pub fn query_sharing(
         &self,
         bag: &BagOfWords,
-        least_share: f32,
+        min_share: f32,
         is_asked_for: impl Fn(u32) -> bool,
     ) -> Vec<(u32, f32)> {
         let common = self.common(bag);
@@ -91,7 +91,7 @@ impl PlaceIndex {
             .filter(|(place, _)| is_asked_for(*place))
             .collect();
         let most = asked.iter().map(|(_, common)| common.words).max().unwrap_or(0);
-        let enough = asked.iter().filter(|(_, common)| common.words as f32 >= least_share * most as f32);
+        let enough = asked.iter().filter(|(_, common)| common.words as f32 >= min_share * most as f32);
         let mut found: Vec<(u32, f32)> = enough.map(|(place, common)| (*place, common.similarity)).collect();
         found.sort_unstable_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
         found

@@ -21,12 +21,12 @@ pub struct VocabularyConfig {
     pub depth: usize,
     /// A node of fewer descriptors than this is not divided, 2 or more. Default 10: a word that a few features made is
     /// noise.
-    pub least_to_divide: usize,
+    pub min_to_divide: usize,
 }
 
 impl Default for VocabularyConfig {
     fn default() -> Self {
-        Self { branching: 10, depth: 5, least_to_divide: 10 }
+        Self { branching: 10, depth: 5, min_to_divide: 10 }
     }
 }
 
@@ -38,7 +38,7 @@ impl VocabularyConfig {
     pub fn validated(self) -> Result<Self, Invalid> {
         require_in("vocabulary.branching", self.branching as f64, "", 2.0, MAX_BRANCHING as f64)?;
         require_in("vocabulary.depth", self.depth as f64, "", 1.0, MAX_DEPTH as f64)?;
-        require_in("vocabulary.least_to_divide", self.least_to_divide as f64, "", 2.0, 1e9)?;
+        require_in("vocabulary.min_to_divide", self.min_to_divide as f64, "", 2.0, 1e9)?;
         Ok(self)
     }
 }
@@ -90,7 +90,7 @@ struct Branch {
 
 /// The children of a node at `level` that has these members; each child draws from a seed of its own.
 fn divide(descriptors: &[Descriptor], config: &VocabularyConfig, level: usize, seed: u64) -> Vec<Branch> {
-    let is_done = level == config.depth || (level > 0 && descriptors.len() < config.least_to_divide);
+    let is_done = level == config.depth || (level > 0 && descriptors.len() < config.min_to_divide);
     if is_done {
         return Vec::new();
     }

@@ -17,7 +17,7 @@ pub struct CurveConfig {
     pub reach: f64,
     /// Smallest tangent at the ends, as a share of unit speed (eps of \[Li18\]), 0.01 to 1. Default 0.7 (ours): a slower
     /// parameter bends sharply.
-    pub least_tangent: f64,
+    pub min_tangent: f64,
     /// Largest curvature, 1/m, 0.1 to 1000: a bound of the program. Where no curve keeps it, the robot turns in place or the path
     /// is split. Default 8 (ours): a Kobuki still drives 0.36 m/s there.
     pub max_curvature: f64,
@@ -38,7 +38,7 @@ impl Default for CurveConfig {
             smoothing: 0.5,
             piece: 1.0,
             reach: 0.8,
-            least_tangent: 0.7,
+            min_tangent: 0.7,
             max_curvature: 8.0,
             detour: 1.03,
             turn_first: 60f64.to_radians(),
@@ -58,7 +58,7 @@ impl CurveConfig {
         require_in("curve.smoothing", self.smoothing, "m", 0.0, 10.0)?;
         require_in("curve.piece", self.piece, "m", 0.1, 100.0)?;
         require_in("curve.reach", self.reach, "m", 0.1, 10.0)?;
-        require_in("curve.least_tangent", self.least_tangent, "", 0.01, 1.0)?;
+        require_in("curve.min_tangent", self.min_tangent, "", 0.01, 1.0)?;
         require_in("curve.max_curvature", self.max_curvature, "1/m", 0.1, 1000.0)?;
         require_in("curve.detour", self.detour, "", 1.0, 10.0)?;
         require_in("curve.turn_first", self.turn_first, "rad", 0.0, std::f64::consts::PI)?;

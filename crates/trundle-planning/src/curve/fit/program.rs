@@ -10,7 +10,7 @@
 //! | a_i, b_i | [`BezierPiece::control`], [`BezierPiece::monomials`] | m |
 //! | s | chord length along the waypoints | m |
 //! | theta_0, theta_f | [`Tangent::Heading`] | rad |
-//! | eps of x' cos theta + y' sin theta >= eps | `least_tangent` | 1 |
+//! | eps of x' cos theta + y' sin theta >= eps | `min_tangent` | 1 |
 
 use crate::curve::analytic_curve::{ActiveRow, Curve};
 use crate::curve::bezier::BezierPiece;
@@ -44,7 +44,7 @@ pub(crate) fn fit(
         let mut rows = Rows::new(layout, segments);
         rows.ends(tangents.0, tangents.1);
         let equalities = rows.count();
-        rows.forward(tangents.0, tangents.1, config.least_tangent);
+        rows.forward(tangents.0, tangents.1, config.min_tangent);
         let before = rows.count();
         rows.sides(&sides);
         if let Some(over_bound) = &over_bound {
