@@ -103,6 +103,7 @@ impl RgbdSlam {
             let landmarks = self.atlas.active.map.keyframe(id).landmarks.clone();
             self.set_last(LastFrame { frame, landmarks, anchored });
             self.tracking.end_lost_run();
+            self.tracking.pending_relocalisations = Default::default();
         } else {
             self.tracking.lost_frame = Some(frame);
         }

@@ -79,7 +79,7 @@ impl Localizer<'_> {
     }
 
     /// A tracked frame; or its relocalisation, where a fixed map hardly shows in the tracked one. Frames tracked from the last frame
-    /// alone drift, and a map that is not extended never meets them again.
+    /// alone drift, and a map that is not extended never meets them again. Relocalisations are counted on while frames are weak.
     fn checked_by_map(
         &self,
         state: &mut TrackingState,
@@ -156,7 +156,9 @@ impl Localizer<'_> {
         };
         let found = without_rival(found)?;
         let count = state.pending_relocalisations.record(map, (found.pose(), predicted));
-        (count >= needed).then_some(found)
+        (count >= needed).then_some(())?;
+        state.pending_relocalisations = Default::default();
+        Some(found)
     }
 }
 

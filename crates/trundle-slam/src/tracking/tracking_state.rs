@@ -93,10 +93,9 @@ impl TrackingState {
         }
     }
 
-    /// Ends a run of frames that were not located.
+    /// Ends a run of frames that were not located. Pending relocalisations stay: a weak frame may be tracked at a wrong place.
     pub fn end_lost_run(&mut self) {
         (self.lost_frames, self.lost_frame) = (0, None);
         (self.motion_unknown, self.view_discontinuity) = (false, false);
-        self.pending_relocalisations = PendingRelocalisations::default();
     }
 }

@@ -8,6 +8,7 @@ mod determinism;
 mod drive;
 mod freiburg;
 mod honesty;
+mod localise;
 mod maps;
 mod memory;
 mod points;
