@@ -10,6 +10,23 @@ pub(crate) const MIN_SHARED_LANDMARKS: usize = 15;
 /// The keyframes that a camera at a pose may share landmarks with: those near by with a similar direction, the nearest
 /// first, and the keyframes covisible with the first of them.
 pub(crate) fn keyframes_around(map: &LandmarkMap, visual_from_camera: Pose3) -> Vec<KeyframeId> {
+    let nearest = nearest_keyframes(map, visual_from_camera, MAX_NEAR_KEYFRAMES);
+    let mut around = nearest.clone();
+    for id in nearest.into_iter().take(EXPANDED_KEYFRAMES) {
+        let neighbours = map.covisible(id, MIN_SHARED_LANDMARKS).into_iter().map(|(id, _)| id);
+        around.extend(neighbours.take(MAX_NEIGHBOURS));
+    }
+    around.sort_unstable();
+    around.dedup();
+    around
+}
+
+/// The keyframes near by a camera at a pose with a similar direction, the nearest first.
+pub(crate) fn nearest_keyframes(
+    map: &LandmarkMap,
+    visual_from_camera: Pose3,
+    max_count: usize,
+) -> Vec<KeyframeId> {
     let inverse = visual_from_camera.inverse();
     let rank = |id: KeyframeId| {
         let offset = inverse * map.keyframe(id).visual_from_camera;
@@ -18,15 +35,7 @@ pub(crate) fn keyframes_around(map: &LandmarkMap, visual_from_camera: Pose3) -> 
     let near = map.keyframes_near(visual_from_camera.translation, NEAR_KEYFRAME_M);
     let mut ranked: Vec<(f64, KeyframeId)> = near.into_iter().map(rank).filter(|(r, _)| *r <= 2.0).collect();
     ranked.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-    let nearest = |most: usize| ranked.iter().take(most).map(|(_, id)| *id);
-    let mut around: Vec<KeyframeId> = nearest(MAX_NEAR_KEYFRAMES).collect();
-    for id in nearest(EXPANDED_KEYFRAMES) {
-        let neighbours = map.covisible(id, MIN_SHARED_LANDMARKS).into_iter().map(|(id, _)| id);
-        around.extend(neighbours.take(MAX_NEIGHBOURS));
-    }
-    around.sort_unstable();
-    around.dedup();
-    around
+    ranked.into_iter().take(max_count).map(|(_, id)| id).collect()
 }
 
 /// Largest distance of a keyframe that may show the same landmarks: 3 m, most of a room. A keyframe that is nearer may be turned by

@@ -132,6 +132,7 @@ impl Localizer<'_> {
             odometry_prior: self.odometry.filter(|_| is_active).and_then(prior),
             bow,
             seed: self.config.seed.wrapping_add(self.frame_number),
+            is_map_fixed: self.are_maps_fixed,
         }
     }
 

@@ -46,7 +46,8 @@ pub(crate) struct LocalizedFrame {
 
 impl LocalizedFrame {
     /// Tracks from the last frame, whose reference keyframe is `reference`, to the map. Where the map has too few landmarks, in a
-    /// blurred or quite new view, the last frame alone gives the pose: drift is better than a lost camera.
+    /// blurred or quite new view, the points of a fixed map's keyframes help. Where these do not suffice, the last frame alone gives the
+    /// pose: drift is better than a lost camera.
     pub fn from_last(
         tracker: &Tracker,
         last: ReferenceFrame,
@@ -55,6 +56,9 @@ impl LocalizedFrame {
     ) -> Option<Self> {
         let rough = tracker.by_last(last, reference, predicted)?;
         let (pose, visible) = tracker.by_map(&rough, tracker.tracked_prior());
+        if let Some(pose) = Self::by_keyframe_points(tracker, [&pose, &rough]) {
+            return Some(Self::by_matches(pose, visible));
+        }
         let by_map = pose.is_sound(tracker.config.min_inliers);
         let pose = if by_map { pose } else { rough };
         let localized = Self::by_matches(pose, visible);
@@ -63,6 +67,18 @@ impl LocalizedFrame {
         } else {
             Self { by_map, ..localized }
         })
+    }
+
+    /// The pose by points of keyframes as well, where a fixed map shows few landmarks. `candidates` are poses by the landmarks and by the
+    /// last frame: the search starts at the first one that is sound. The features stay as they are, since these points have no
+    /// reference patches.
+    fn by_keyframe_points(tracker: &Tracker, candidates: [&MatchedPose; 2]) -> Option<MatchedPose> {
+        let TrackingConfig { min_inliers, weak_inliers, .. } = *tracker.config;
+        let is_due = tracker.is_map_fixed && !candidates[0].is_sound(weak_inliers);
+        let start = candidates.into_iter().find(|pose| is_due && pose.is_sound(min_inliers))?;
+        let nearly = tracker.by_keyframe_points(start, tracker.tracked_prior());
+        let pose = tracker.by_keyframe_points(&nearly, tracker.tracked_prior());
+        pose.is_sound(weak_inliers).then_some(pose)
     }
 
     /// Relocalizes from a keyframe to the map. A certain relocalisation needs more landmarks that agree, and some in a good part of the
@@ -189,6 +205,7 @@ mod tests {
     use crate::frame::rgbd_frame::Frame;
     use crate::ids::MapId;
     use crate::local_mapping::reference_patch_storage::store_reference_patches;
+    use crate::map::landmark_map::LandmarkMap;
     use crate::testing::{model, painted_frame, painted_map, painted_points};
     use crate::tracking::config::TrackingConfig;
     use crate::tracking::local_map::LocalMapQuery;
@@ -200,18 +217,28 @@ mod tests {
 
     /// What a frame of the painted wall is found to be in its map by matches that are all right, for a camera of which so much is known.
     fn with_found(frame: &Frame, prior: PosePriorKind, check: impl FnOnce(LocalizedFrame, &Tracker)) {
-        let (model, config, (mut map, keyframe)) = (model(), TrackingConfig::default(), painted_map());
+        let (model, (mut map, keyframe)) = (model(), painted_map());
         store_reference_patches(&mut map, keyframe, &model);
+        with_tracker(map, frame, |tracker| {
+            let Tracker { map, model, config, .. } = *tracker;
+            let ids = map.landmarks().enumerate();
+            let matches = ids.map(|(i, (id, _))| PointMatch::of_landmark(i, id, map).unwrap()).collect();
+            let pose = MatchedPose::by(matches, (Pose3::identity(), prior), frame, model, &config.pose);
+            check(LocalizedFrame::by_matches(pose, vec![]), tracker);
+        });
+    }
+
+    /// The tracker of a frame in a map.
+    fn with_tracker(map: LandmarkMap, frame: &Frame, check: impl FnOnce(&Tracker)) {
+        let (model, config) = (model(), TrackingConfig::default());
         let SubMap { map, place_index, .. } = SubMap::new(MapId(0), map, &Vocabulary::builtin());
-        let ids = map.landmarks().enumerate();
-        let matches = ids.map(|(i, (id, _))| PointMatch::of_landmark(i, id, &map).unwrap()).collect();
-        let pose = MatchedPose::by(matches, (Pose3::identity(), prior), frame, &model, &config.pose);
         let image = DepthImage::filled(320, 240, 0.0);
         let depth = Default::default();
         let local_map = LocalMapQuery::new(&model, (&image, &depth), &config);
         let bow = OnceCell::new();
         let (map, place_index, model, config) = (&map, &place_index, &model, &config);
         let tracker = Tracker {
+            is_map_fixed: false,
             map,
             place_index,
             model,
@@ -222,7 +249,7 @@ mod tests {
             bow: &bow,
             seed: 0,
         };
-        check(LocalizedFrame::by_matches(pose, vec![]), &tracker);
+        check(&tracker);
     }
 
     fn frame_of_the_wall() -> Frame {
@@ -250,6 +277,33 @@ mod tests {
                 Some(plain * CORRELATED_POINTS),
                 "nothing could be aligned"
             );
+        });
+    }
+
+    /// Landmarks that one keyframe alone saw are gone, and the last frame has drifted.
+    #[test]
+    fn points_of_keyframes_locate_a_frame_in_a_fixed_map_without_landmarks() {
+        let (mut map, _) = painted_map();
+        let landmarks: Vec<LandmarkId> = map.landmarks().map(|(id, _)| id).collect();
+        landmarks.into_iter().for_each(|id| map.forget(id));
+        let drifted = Pose3::exp(Vector6::new(0.02, -0.01, 0.0, 0.0, 0.0, 0.0));
+        let last = painted_frame(Pose3::identity(), &painted_points(), Vector2::zeros());
+        let unknown = vec![None; last.len()];
+        let last = ReferenceFrame { frame: &last, landmarks: &unknown, visual_from_camera: drifted };
+        let truth = Pose3::exp(Vector6::new(0.004, 0.0, 0.003, 0.0, 0.002, 0.0));
+        let frame = painted_frame(truth, &painted_points(), Vector2::zeros());
+        with_tracker(map, &frame, |tracker| {
+            let off = |found: &LocalizedFrame| (truth.inverse() * found.pose()).translation.norm();
+            let drifting = LocalizedFrame::from_last(tracker, last, None, drifted).unwrap();
+            assert!(
+                !drifting.by_map && off(&drifting) > 0.015,
+                "by the last frame alone: {}",
+                off(&drifting)
+            );
+            let fixed = Tracker { is_map_fixed: true, ..*tracker };
+            let found = LocalizedFrame::from_last(&fixed, last, None, drifted).unwrap();
+            assert!(found.by_map && off(&found) < 0.002, "by the keyframe: {}", off(&found));
+            assert_eq!(found.tracking(tracker.config), Tracking::Ok);
         });
     }
 

@@ -3,6 +3,7 @@
 use crate::frame::observation_model::ObservationModel;
 use crate::frame::rgbd_frame::Frame;
 use crate::ids::{KeyframeId, LandmarkId};
+use crate::map::covisibility::nearest_keyframes;
 use crate::map::landmark_map::LandmarkMap;
 use crate::matching::alignment::{aligned, inflate_sigmas};
 use crate::matching::matched_pose::{MatchedPose, PosePriorKind};
@@ -18,6 +19,10 @@ use trundle_core::Pose3;
 use trundle_optim::PosePrior;
 use trundle_vision::{Match, RansacConfig, match_mutual};
 
+/// Nearest keyframes whose points are matched where landmarks are few: 2. Source: docs/experiments/localise-only.md; with 1 and 4 the
+/// error was within 0.5 mm of that.
+const POINT_KEYFRAMES: usize = 2;
+
 /// Finds the pose of one frame in the map.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Tracker<'a> {
@@ -32,6 +37,8 @@ pub(crate) struct Tracker<'a> {
     /// The frame's bag of words, once it was needed.
     pub bow: &'a OnceCell<Bow>,
     pub seed: u64,
+    /// Whether the map stays as it is, so that a view with few landmarks gets no new ones.
+    pub is_map_fixed: bool,
 }
 
 impl Tracker<'_> {
@@ -125,6 +132,29 @@ impl Tracker<'_> {
         matches.extend(found.into_iter().filter_map(taken));
         let pose = MatchedPose::by(matches, (pose, prior), self.frame, self.model, &self.config.pose);
         (pose, visible)
+    }
+
+    /// The pose by the landmarks that agree with `found`, and by points that the nearest keyframes measured and that are no landmarks.
+    /// Landmarks that one keyframe alone saw are removed from the map, but that keyframe still holds their features and depths.
+    pub fn by_keyframe_points(&self, found: &MatchedPose, prior: PosePriorKind) -> MatchedPose {
+        let pose = found.visual_from_camera();
+        let mut matches: Vec<PointMatch> =
+            found.inliers().filter(|m| m.landmark.is_some()).copied().collect();
+        let mut free = vec![true; self.frame.len()];
+        matches.iter().for_each(|m| free[m.feature] = false);
+        for id in nearest_keyframes(self.map, pose, POINT_KEYFRAMES) {
+            let is_new =
+                |m: &PointMatch| m.landmark.is_none() && std::mem::replace(&mut free[m.feature], false);
+            matches.extend(self.matches_of_keyframe(id, pose).into_iter().filter(is_new));
+        }
+        MatchedPose::by(matches, (pose, prior), self.frame, self.model, &self.config.pose)
+    }
+
+    /// The features that show points of a keyframe, for a camera near `pose`.
+    fn matches_of_keyframe(&self, keyframe: KeyframeId, pose: Pose3) -> Vec<PointMatch> {
+        let keyframe = ReferenceFrame::from(self.map.keyframe(keyframe));
+        let (window, thresholds) = (self.config.map_window_px, self.config.windowed_thresholds());
+        keyframe.match_by_motion(self.frame, pose, window, thresholds, (self.map, self.model))
     }
 
     /// The pose of `found` refined with its features aligned to reference patches; `None` where too few can be.
