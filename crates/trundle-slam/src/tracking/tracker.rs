@@ -19,8 +19,8 @@ use trundle_core::Pose3;
 use trundle_optim::PosePrior;
 use trundle_vision::{Match, RansacConfig, match_mutual};
 
-/// Nearest keyframes whose points are matched where landmarks are few: 2. Source: docs/experiments/localise-only.md; with 1 and 4 the
-/// error was within 0.5 mm of that.
+/// Nearest keyframes whose points are matched where landmarks are few: 2. Others show less of the view. Source:
+/// docs/experiments/localise-only.md.
 const POINT_KEYFRAMES: usize = 2;
 
 /// Finds the pose of one frame in the map.
