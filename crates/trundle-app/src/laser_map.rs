@@ -3,6 +3,7 @@
 mod counts;
 mod depth_scans;
 mod input;
+mod log_input;
 mod mount_check;
 mod numbers;
 mod request;
@@ -10,7 +11,8 @@ mod run;
 mod run_result;
 
 pub use counts::ScanCounts;
-pub use input::{DepthLog, LogInput, read_log};
+pub use input::read_log;
+pub use log_input::{DepthLog, LogInput};
 pub use numbers::{map_rows, trajectory_lines};
 pub use request::LaserMapRequest;
 pub use run::map_log;

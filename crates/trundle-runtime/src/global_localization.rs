@@ -23,7 +23,7 @@ enum Search {
     /// The place is known.
     None,
     /// It is to be looked for in this map.
-    Begun(OccupancyGrid),
+    Prepared(OccupancyGrid),
     UnderWay {
         localizer: Box<MapLocalizer>,
         /// Scans in a row that the place found explains.
@@ -77,7 +77,7 @@ impl GlobalLocalization {
 
     /// Begins to look in a map.
     pub(crate) fn search_pose(&mut self, grid: OccupancyGrid) {
-        self.search = Search::Begun(grid);
+        self.search = Search::Prepared(grid);
     }
 
     /// The place is known.
@@ -118,7 +118,7 @@ impl GlobalLocalization {
 
     /// Makes of a map what can be searched.
     fn get_ready(&mut self) {
-        let Search::Begun(grid) = &self.search else { return };
+        let Search::Prepared(grid) = &self.search else { return };
         self.searches += 1;
         let localizer = MapLocalizer::from_grid(grid, self.config.clone(), self.searches);
         self.search = match localizer {

@@ -446,8 +446,11 @@ impl Robot {
     fn odometry_at(&self, stamp: Stamp) -> Option<OdometryState> {
         let newest = || {
             let odometry = self.latest.odometry.as_ref()?;
-            let untold = self.odometry.unobserved_motion((stamp - odometry.stamp).max(0.0));
-            Some(OdometryState { covariance: odometry.covariance + untold, ..OdometryState::from(odometry) })
+            let unobserved = self.odometry.unobserved_motion((stamp - odometry.stamp).max(0.0));
+            Some(OdometryState {
+                covariance: odometry.covariance + unobserved,
+                ..OdometryState::from(odometry)
+            })
         };
         self.localizer.odometry_at(stamp).ok().or_else(newest)
     }

@@ -73,9 +73,9 @@ fn cast_all(world: &World, camera: &PinholeCamera, pose: &Pose3) {
 fn best(runs: usize, mut run: impl FnMut()) -> (f64, f64) {
     let mut best = (f64::INFINITY, f64::INFINITY);
     for _ in 0..runs.max(1) {
-        let (begun, worked) = (Instant::now(), cpu_seconds());
+        let (started, worked) = (Instant::now(), cpu_seconds());
         run();
-        let wall = begun.elapsed().as_secs_f64();
+        let wall = started.elapsed().as_secs_f64();
         let cpu = cpu_seconds().zip(worked).map_or(wall, |(now, then)| now - then);
         best = (best.0.min(wall), best.1.min(cpu));
     }

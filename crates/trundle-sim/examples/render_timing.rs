@@ -22,12 +22,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         for i in 0..frames {
             let along = if i % 2 == 0 { scene.start } else { scene.goal };
             let pose = Pose2::new(along.x, along.y, i as f64 * 0.11);
-            let begun = Instant::now();
+            let started = Instant::now();
             renderer.render(&scene.snapshot(), &(Pose3::from_pose2(pose) * mount), &mut view);
-            draw.push(begun.elapsed().as_secs_f64() * 1e3);
-            let begun = Instant::now();
+            draw.push(started.elapsed().as_secs_f64() * 1e3);
+            let started = Instant::now();
             sensor.expose(&view, Stamp::default(), i as u64)?;
-            expose.push(begun.elapsed().as_secs_f64() * 1e3);
+            expose.push(started.elapsed().as_secs_f64() * 1e3);
         }
         println!(
             "{name}: {} solids, painting {painting:.0} ms; 512 x 424 frame: drawing {:.1} ms, noise {:.1} ms (medians of {frames})",

@@ -196,7 +196,7 @@ impl RgbdSlam {
     fn detect_loops(&mut self) -> bool {
         let seed = self.trajectory.seed(self.config.seed);
         let active = &mut self.atlas.active;
-        let closer = LoopCloser {
+        let loop_closer = LoopCloser {
             place_index: &active.place_index,
             model: &self.front_end.model,
             config: &self.config.loops,
@@ -204,7 +204,7 @@ impl RgbdSlam {
             mapping: &self.config.mapping,
             seed,
         };
-        match self.loops.advance(&closer, &mut active.map, &mut active.optimisation) {
+        match self.loops.advance(&loop_closer, &mut active.map, &mut active.optimisation) {
             LoopStep::Idle => return false,
             LoopStep::Searched => {}
             LoopStep::Closed(closure) => {

@@ -1,21 +1,21 @@
-//! Names: the glossary's second table lists those that modules, types, functions and constants must not have.
+//! Names: the glossary's second table lists those that modules, types, functions, fields and variables must not have.
 
 use super::finding::{Finding, Rule};
-use super::source::definitions;
+use super::source::identifiers;
 use super::tree::Tree;
 use std::collections::BTreeMap;
 
 const GLOSSARY: &str = "docs/glossary.md";
 const TABLE: &str = "## Names that are not used";
-/// Checks the definitions of every package.
+/// Checks all identifiers of every package.
 pub fn check(tree: &Tree) -> Vec<Finding> {
     let Some(glossary) = tree.file(GLOSSARY) else { return Vec::new() };
     let refused = refused(&glossary.text);
     let mut findings = Vec::new();
     for source in tree.packages.iter().flat_map(|package| tree.sources(package)) {
         for (line, code) in source.code.lines() {
-            for (_, name) in definitions(code) {
-                if let Some(instead) = refused.get(name) {
+            for name in identifiers(code) {
+                if let Some(instead) = instead_of(&refused, name) {
                     let message = format!("the name {name} is not used: write {instead} ({GLOSSARY})");
                     findings.push(Finding::ruled(Rule::Glossary, &source.file.path, line, message));
                 }
@@ -23,6 +23,16 @@ pub fn check(tree: &Tree) -> Vec<Finding> {
         }
     }
     findings
+}
+
+/// What to write instead of a name: by the name itself, or by its beginning, which ends with `*` in the table.
+fn instead_of<'a>(refused: &BTreeMap<&str, &'a str>, name: &str) -> Option<&'a str> {
+    let by_beginning = || {
+        let beginning =
+            |refused: &str| refused.strip_suffix('*').is_some_and(|start| name.starts_with(start));
+        refused.iter().find(|(refused, _)| beginning(refused)).map(|(_, instead)| *instead)
+    };
+    refused.get(name).copied().or_else(by_beginning)
 }
 
 /// The refused names, each with what to write instead.
@@ -41,14 +51,16 @@ mod tests {
     use crate::tidy::tree::tests::tree;
 
     #[test]
-    fn refused_names_are_found_where_they_are_defined() {
+    fn refused_names_are_found_wherever_they_stand() {
         let glossary = format!(
-            "| `Used` | x |\n\n{TABLE}\n\n| instead of | write |\n|---|---|\n| `Helm`, `helm` | `Controller` |\n"
+            "| `Used` | x |\n\n{TABLE}\n\n| instead of | write |\n|---|---|\n| `Helm`, `helm` | `Controller` |\n\
+             | `least_*` | `min_*` |\n"
         );
-        let code = "mod helm;\npub struct Helm;\nfn f(x: Helm) { helm::g() }\nconst Used: u8 = 1;\n";
+        let code = "mod helm;\npub struct Helm;\n// helm\nfn f() { g::helmet(\"helm\") }\nconst Used: u8 = 1;\n\
+                    let least_cost = atleast_cost;\n";
         let files =
             [("x/Cargo.toml", "[package]\nname = \"x\""), ("x/src/lib.rs", code), (GLOSSARY, &glossary)];
         let found: Vec<usize> = check(&tree(&files)).iter().map(|f| f.line).collect();
-        assert_eq!(found, [1, 2]);
+        assert_eq!(found, [1, 2, 6]);
     }
 }

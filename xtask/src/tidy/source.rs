@@ -63,10 +63,14 @@ impl Code {
 /// Keywords after which a name is defined.
 const KEYWORDS: [&str; 8] = ["mod", "struct", "enum", "trait", "type", "fn", "const", "static"];
 
+/// The words of a line of code: keywords, names and numbers.
+pub fn identifiers(code: &str) -> impl Iterator<Item = &str> {
+    code.split(|c: char| !c.is_alphanumeric() && c != '_').filter(|word| !word.is_empty())
+}
+
 /// What a line of code defines: the keyword and the name.
 pub fn definitions(code: &str) -> Vec<(&str, &str)> {
-    let words = code.split(|c: char| !c.is_alphanumeric() && c != '_').filter(|word| !word.is_empty());
-    let words: Vec<&str> = words.collect();
+    let words: Vec<&str> = identifiers(code).collect();
     words.windows(2).filter(|pair| KEYWORDS.contains(&pair[0])).map(|pair| (pair[0], pair[1])).collect()
 }
 

@@ -27,9 +27,9 @@ fn writes_in(folder: &Path) -> bool {
 }
 
 fn wait_until(what: &str, is_so: impl Fn() -> bool) {
-    let begun = Instant::now();
+    let started = Instant::now();
     while !is_so() {
-        assert!(begun.elapsed() < Duration::from_secs(PATIENCE_S), "{what}");
+        assert!(started.elapsed() < Duration::from_secs(PATIENCE_S), "{what}");
         std::thread::sleep(Duration::from_millis(5));
     }
 }

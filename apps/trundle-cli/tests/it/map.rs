@@ -140,8 +140,9 @@ fn the_old_map_survives_a_death_at_any_moment_of_saving() {
             .stderr(Stdio::null())
             .spawn()
             .unwrap();
-        let begun = Instant::now();
-        while !staging() && child.try_wait().unwrap().is_none() && begun.elapsed() < Duration::from_secs(60) {
+        let started = Instant::now();
+        while !staging() && child.try_wait().unwrap().is_none() && started.elapsed() < Duration::from_secs(60)
+        {
             std::thread::sleep(Duration::from_micros(50));
         }
         std::thread::sleep(Duration::from_micros(150 * k));

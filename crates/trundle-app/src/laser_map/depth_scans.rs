@@ -1,6 +1,6 @@
 //! Depth images as scans, with the base's poses beside them.
 
-use super::input::{DepthLog, LogInput};
+use super::log_input::{DepthLog, LogInput};
 use crate::sequence_input::{PendingFrame, RecordedRun, SequenceInput};
 use crate::{AppError, StepProgress, read_trajectory, stop};
 use std::path::Path;

@@ -1,33 +1,11 @@
 //! The scans of a CARMEN log, a bag, a recording of trundle, or an RGB-D folder whose depth images become scans.
 
 use super::depth_scans;
+use super::log_input::LogInput;
 use super::request::LaserMapRequest;
 use crate::sequence_input::{RecordedRun, SequenceInput, SequenceOptions};
 use crate::{AppError, StepProgress};
-use trundle_io::{FileKind, LaserLog, read_laser_log};
-use trundle_mapping::DepthScanConfig;
-
-/// A log, and what is known of the camera where its scans were made of depth images.
-#[derive(Debug, Clone)]
-pub struct LogInput {
-    /// The scans with odometry.
-    pub log: LaserLog,
-    /// Of depth images; `None` for scans of a laser.
-    pub depth: Option<DepthLog>,
-    /// Where the recording was cut, in a sentence; `None` for a whole one and for another file.
-    pub cut_report: Option<String>,
-}
-
-/// How scans were made of depth images.
-#[derive(Debug, Clone)]
-pub struct DepthLog {
-    /// The settings of the scans.
-    pub scan: DepthScanConfig,
-    /// Distance up to which the camera does not see the floor \[m\].
-    pub blind_range: f64,
-    /// Whether the motion is that of wheels; else of a tracked camera.
-    pub by_wheels: bool,
-}
+use trundle_io::{FileKind, read_laser_log};
 
 /// Reads the log: RGB-D images of a folder or a recording, the scans of a recording's laser, a bag or a CARMEN log.
 ///

@@ -1,6 +1,6 @@
 //! The numbers and the picture of a mapped log.
 
-use super::input::LogInput;
+use super::log_input::LogInput;
 use super::request::LaserMapRequest;
 use super::run_result::LaserMapRun;
 use std::collections::BTreeMap;

@@ -1,6 +1,6 @@
 //! What a log is mapped with: filter, laser, a map to begin with.
 
-use super::input::DepthLog;
+use super::log_input::DepthLog;
 use crate::{AppError, read_map};
 use std::path::{Path, PathBuf};
 use trundle_io::{Expected, FileKind, LaserLogOptions, MapImage};

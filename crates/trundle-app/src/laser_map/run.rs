@@ -1,7 +1,7 @@
 //! Mapping of a log, or localization of it in a map that does not change.
 
 use super::counts::ScanCounts;
-use super::input::LogInput;
+use super::log_input::LogInput;
 use super::mount_check::mount_hint;
 use super::numbers::{map_picture, summary, trajectory_lines};
 use super::request::LaserMapRequest;

@@ -18,7 +18,7 @@ use trundle_runtime::{Answer, Histogram, Job, Worker};
 pub struct ThreadedBody {
     inbox: Inbox<TimedEvent>,
     crew: Option<WorkerThreads>,
-    pulse: LoopTimer,
+    loop_timer: LoopTimer,
     commands: Option<Sender<Twist2>>,
     /// Arrival of the newest reading of the wheels, until its command leaves.
     reading: Option<Instant>,
@@ -46,7 +46,7 @@ impl ThreadedBody {
         Ok(Self {
             inbox,
             crew: Some(crew),
-            pulse: LoopTimer::new(config.validated()?),
+            loop_timer: LoopTimer::new(config.validated()?),
             commands: None,
             reading: None,
             busy: BTreeMap::new(),
@@ -68,10 +68,10 @@ impl ThreadedBody {
     }
 
     fn wait_for_input(&mut self) -> Option<RunInput> {
-        match self.inbox.next(&self.pulse, BODY_TIMEOUT)? {
+        match self.inbox.next(&self.loop_timer, BODY_TIMEOUT)? {
             Got::Event(TimedEvent { event, at }) => {
                 if matches!(event, EncodedEvent::Wheels(_)) {
-                    self.pulse.begin();
+                    self.loop_timer.begin();
                     self.reading = Some(at);
                 }
                 Some(RunInput::Event(event))
@@ -101,7 +101,7 @@ impl ThreadedBody {
         load.append(&mut self.costs);
         let queues = [("control", self.inbox.lengths()), ("recorder", &run.recording.queue_lengths)];
         RealTimeReport {
-            control: self.pulse.report(),
+            control: self.loop_timer.report(),
             load_total: load.iter().map(|load| load.part).sum(),
             load,
             queues: queues.iter().filter_map(|(name, lengths)| QueueLength::of(name, lengths)).collect(),
@@ -123,7 +123,7 @@ impl EncodedBody for ThreadedBody {
         // A base that is gone takes no commands; the missing readings tell.
         let _ = self.commands.as_ref().map(|commands| commands.send(twist));
         if let Some(arrival) = self.reading.take() {
-            self.pulse.end(arrival);
+            self.loop_timer.end(arrival);
         }
         Ok(())
     }

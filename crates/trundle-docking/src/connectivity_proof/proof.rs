@@ -63,8 +63,8 @@ pub async fn test_connectivity(
     loop {
         let side = usize::from(floods[1].visited.len() < floods[0].visited.len());
         let Some(node) = floods[side].next() else {
-            let (flood, to) = (&floods[side], if side == 0 { goal } else { start });
-            return Connectivity::Disconnected { by: nearest_blocker(&mut headings, &flood.visited, to) };
+            let (reached, to) = (&floods[side], if side == 0 { goal } else { start });
+            return Connectivity::Disconnected { by: nearest_blocker(&mut headings, &reached.visited, to) };
         };
         if headings.space().work() >= grid.limit {
             return Connectivity::Connected;

@@ -42,8 +42,8 @@ fn bad_input_is_refused_with_a_reason() {
         for (start, goal, expected) in cases {
             let said = planner.plan(&robot(), &wall, start, goal).unwrap_err().to_string();
             assert!(said.contains(expected), "{said}");
-            let begun = planner.begin(0.01, &robot(), &wall, start, goal).unwrap_err().to_string();
-            assert_eq!(said, begun);
+            let started = planner.begin(0.01, &robot(), &wall, start, goal).unwrap_err().to_string();
+            assert_eq!(said, started);
         }
     }
     let shape = |corners: &[(f64, f64)]| {

@@ -41,7 +41,7 @@ pub fn drive_simulator(
     mut recording: Option<&mut DriveRecording<'_>>,
     progress: &dyn StepProgress,
 ) -> Result<SimDrive, AppError> {
-    let begun = Instant::now();
+    let started = Instant::now();
     let images_until = |end: f64| (end * robot.config().camera_rate_hz).ceil() as usize;
     progress.begin(end_s(duration, driver).map(images_until));
     let (mut images, mut scans) = (0, 0);
@@ -65,7 +65,7 @@ pub fn drive_simulator(
             SensorEvent::Rgbd(image) => {
                 images += 1;
                 driver.show(image, robot);
-                show(progress, robot, now, begun);
+                show(progress, robot, now, started);
             }
             SensorEvent::Scan(_) => scans += 1,
             _ => {}
@@ -91,7 +91,7 @@ pub fn drive_simulator(
         waypoints,
         is_complete: !is_interrupted && waypoints.is_none_or(|(reached, all)| reached == all),
         is_interrupted,
-        seconds: begun.elapsed().as_secs_f64(),
+        seconds: started.elapsed().as_secs_f64(),
     })
 }
 
@@ -100,12 +100,12 @@ fn end_s(duration: Option<f64>, driver: &dyn SimDriver) -> Option<f64> {
     duration.into_iter().chain(driver.end_s()).reduce(f64::min)
 }
 
-fn show(progress: &dyn StepProgress, robot: &Simulator, now: f64, begun: Instant) {
+fn show(progress: &dyn StepProgress, robot: &Simulator, now: f64, started: Instant) {
     let pose = robot.true_pose();
     progress.advance();
     progress.message(&format!(
         "{now:6.1} s ({:.1}x)  at {:6.2} {:6.2} m {:6.1} deg  {:6.2} m driven",
-        now / begun.elapsed().as_secs_f64().max(1e-3),
+        now / started.elapsed().as_secs_f64().max(1e-3),
         pose.x,
         pose.y,
         pose.theta.to_degrees(),

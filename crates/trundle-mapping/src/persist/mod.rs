@@ -65,7 +65,7 @@ impl ParticleMapper {
             .into_iter()
             .chain(self.odometry.bias.numbers())
             .for_each(|v| out.f64(v));
-        out.f64(self.loops.closer.driven);
+        out.f64(self.loops.loop_closer.driven);
         out.count(self.set.first_pose_of_run);
         let last = self.gate.last.unwrap_or_default();
         out.u8(u8::from(self.gate.last.is_some()));
@@ -79,10 +79,10 @@ impl ParticleMapper {
             out.f64(particle.log_weight);
             out.u16(*parent);
         }
-        let bending = self.loops.redraw.iter().map(|bending| &bending.map);
-        tiles::write(&mut out, &TilePools::new(self.set.particles.iter().map(|p| &p.map).chain(bending)));
+        let redraw = self.loops.redraw.iter().map(|redraw| &redraw.map);
+        tiles::write(&mut out, &TilePools::new(self.set.particles.iter().map(|p| &p.map).chain(redraw)));
         write_ancestry(&mut out, &self.set.ancestry);
-        write_history(&mut out, &self.loops.history, &self.loops.closer.pending);
+        write_history(&mut out, &self.loops.history, &self.loops.loop_closer.pending);
         write_redraw(&mut out, self.loops.redraw.as_ref());
         let mut bytes = out.0;
         let sum = checksum(&bytes[HEADER_BYTES..]);
@@ -115,7 +115,7 @@ impl ParticleMapper {
         let bias = [(); 7].map(|()| body.f64("what the odometry has wrong"));
         let [a, b, c, d, e, f, g] = bias;
         mapper.odometry.bias = OdometryBias::from_numbers([a?, b?, c?, d?, e?, f?, g?]);
-        mapper.loops.closer.driven = body.f64("the way since the last look")?;
+        mapper.loops.loop_closer.driven = body.f64("the way since the last look")?;
         mapper.set.first_pose_of_run = body.u32()? as usize;
         let known = body.u8()? == 1;
         let last = LastScan {
@@ -143,7 +143,7 @@ impl ParticleMapper {
         let column = mapper.set.ancestry.columns.last().map_or(usize::MAX, |column| column.poses.len());
         body.require(states.iter().all(|s| usize::from(s.2) < column), "the parent of a particle")?;
         let length = mapper.set.ancestry.len();
-        (mapper.loops.history, mapper.loops.closer.pending) = read_history(&mut body, length)?;
+        (mapper.loops.history, mapper.loops.loop_closer.pending) = read_history(&mut body, length)?;
         body.require(mapper.set.first_pose_of_run <= length, "the beginning of the run")?;
         if let Some(map) = bent_map {
             mapper.loops.redraw = Some(read_redraw(&mut body, length, map)?);
@@ -273,12 +273,12 @@ fn read_history(
     Ok((history, read_ties(bytes, poses)?))
 }
 
-fn write_redraw(out: &mut Writer, bending: Option<&MapRedraw>) {
-    let Some(bending) = bending else { return };
-    out.f64(bending.farthest);
-    out.count(bending.drawn);
-    out.count(bending.poses.len());
-    bending.poses.iter().for_each(|pose| out.pose(*pose));
+fn write_redraw(out: &mut Writer, redraw: Option<&MapRedraw>) {
+    let Some(redraw) = redraw else { return };
+    out.f64(redraw.farthest);
+    out.count(redraw.drawn);
+    out.count(redraw.poses.len());
+    redraw.poses.iter().for_each(|pose| out.pose(*pose));
 }
 
 fn read_redraw(bytes: &mut Reader<'_>, poses: usize, map: TileMap) -> Result<MapRedraw, FilterFileError> {
@@ -287,12 +287,12 @@ fn read_redraw(bytes: &mut Reader<'_>, poses: usize, map: TileMap) -> Result<Map
     let drawn = bytes.u32()? as usize;
     let count = bytes.count(24)?;
     bytes.require((1..=poses).contains(&count) && drawn <= count, "the length of the bent way")?;
-    let mut bending = MapRedraw::default();
-    (bending.farthest, bending.drawn, bending.map) = (farthest, drawn, map);
+    let mut redraw = MapRedraw::default();
+    (redraw.farthest, redraw.drawn, redraw.map) = (farthest, drawn, map);
     for _ in 0..count {
-        bending.poses.push(bytes.pose("a pose of the bent way")?);
+        redraw.poses.push(bytes.pose("a pose of the bent way")?);
     }
-    Ok(bending)
+    Ok(redraw)
 }
 
 fn read_ties(bytes: &mut Reader<'_>, poses: usize) -> Result<Vec<Constraint>, FilterFileError> {

@@ -20,7 +20,7 @@ const LOOP_SEARCH_INTERVAL_M: f64 = 2.0;
 #[derive(Debug, Default)]
 pub(crate) struct LoopCorrector {
     pub(crate) history: ScanHistory,
-    pub(crate) closer: LoopCloser,
+    pub(crate) loop_closer: LoopCloser,
     /// Map along a corrected trajectory, in progress.
     pub(crate) redraw: Option<MapRedraw>,
 }
@@ -35,16 +35,16 @@ impl LoopCorrector {
         set: &mut ParticleSet,
         driven: f64,
     ) -> Option<f64> {
-        self.closer.driven += driven;
+        self.loop_closer.driven += driven;
         if self.redraw.is_some() {
             return self.advance_redraw(models, set, CELLS_PER_SCAN).1;
         }
-        if self.closer.driven < LOOP_SEARCH_INTERVAL_M {
+        if self.loop_closer.driven < LOOP_SEARCH_INTERVAL_M {
             return None;
         }
-        self.closer.driven = 0.0;
+        self.loop_closer.driven = 0.0;
         let poses: Vec<Pose2> = set.trajectory().into_iter().map(|(_, pose)| pose).collect();
-        let closing = self.closer.search(models, &mut self.history, &poses)?;
+        let closing = self.loop_closer.search(models, &mut self.history, &poses)?;
         if closing.farthest >= models.config.map.resolution {
             self.redraw =
                 Some(MapRedraw { poses: closing.poses, farthest: closing.farthest, ..MapRedraw::default() });
@@ -94,7 +94,7 @@ impl LoopCorrector {
             } else {
                 set.first_pose_of_run - removed
             };
-            self.closer.pending.clear();
+            self.loop_closer.pending.clear();
         }
     }
 

@@ -96,14 +96,14 @@ impl<E> Inbox<E> {
     }
 
     /// The next thing; none when nothing has come for `patience`. Things of a kind come in the order in which they were put in.
-    pub fn next(&mut self, pulse: &LoopTimer, patience: Duration) -> Option<Input<E>> {
+    pub fn next(&mut self, loop_timer: &LoopTimer, patience: Duration) -> Option<Input<E>> {
         let start = Instant::now();
         loop {
             self.empty();
             if let Some(event) = self.urgent.pop_front() {
                 return Some(Input::Event(event));
             }
-            let wait = match (self.patient.is_empty(), pulse.time_for_others()) {
+            let wait = match (self.patient.is_empty(), loop_timer.time_for_others()) {
                 (false, None) => return self.patient.pop_front(),
                 (false, Some(hold)) => hold,
                 (true, _) => patience.saturating_sub(start.elapsed()),
@@ -164,9 +164,9 @@ mod tests {
     use super::super::LoopTimerConfig;
     use super::*;
 
-    fn events(inbox: &mut Inbox<u32>, pulse: &LoopTimer) -> Vec<u32> {
+    fn events(inbox: &mut Inbox<u32>, loop_timer: &LoopTimer) -> Vec<u32> {
         let mut events = Vec::new();
-        while let Some(Input::Event(event)) = inbox.next(pulse, Duration::ZERO) {
+        while let Some(Input::Event(event)) = inbox.next(loop_timer, Duration::ZERO) {
             events.push(event);
         }
         events

@@ -139,22 +139,22 @@ mod tests {
 
     #[test]
     fn before_the_first_reading_there_is_time() {
-        let mut pulse = LoopTimer::new(LoopTimerConfig::default().validated().unwrap());
-        assert!(pulse.time_for_others().is_none() && pulse.report().is_none());
+        let mut loop_timer = LoopTimer::new(LoopTimerConfig::default().validated().unwrap());
+        assert!(loop_timer.time_for_others().is_none() && loop_timer.report().is_none());
         let always = LoopTimerConfig { reserve: 0.02, ..LoopTimerConfig::default() };
-        pulse.config = always;
-        pulse.begin();
-        assert!(pulse.time_for_others().is_some_and(|wait| wait <= Duration::from_millis(40)));
+        loop_timer.config = always;
+        loop_timer.begin();
+        assert!(loop_timer.time_for_others().is_some_and(|wait| wait <= Duration::from_millis(40)));
     }
 
     #[test]
     fn a_late_command_is_a_missed_deadline() {
         let config = LoopTimerConfig { period: 0.001, reserve: 0.0, deadline: 0.001 };
-        let mut pulse = LoopTimer::new(config);
-        pulse.end(Instant::now());
+        let mut loop_timer = LoopTimer::new(config);
+        loop_timer.end(Instant::now());
         std::thread::sleep(Duration::from_millis(5));
-        pulse.end(Instant::now());
-        let report = pulse.report().unwrap();
+        loop_timer.end(Instant::now());
+        let report = loop_timer.report().unwrap();
         assert_eq!((report.steps, report.missed_deadlines), (2, 1));
         assert!(report.jitter_most_ms > 2.0);
     }

@@ -3,10 +3,11 @@
 use serde_json::Value;
 
 /// Beginnings of former names and of the present ones, the longer first.
-const FORMER_NAMES: [(&str, &str); 5] = [
+const FORMER_NAMES: [(&str, &str); 6] = [
     ("least_way", "min_distance"),
     ("least_room", "min_clearance"),
     ("most_ahead", "max_lead"),
+    ("surprise", "max_correction"),
     ("least_", "min_"),
     ("most_", "max_"),
 ];

@@ -37,9 +37,9 @@ fn live(robot: &mut Robot) -> (Vec<Fed>, Vec<Twist2>) {
         let is_image = matches!(event, SensorEvent::Rgbd(_));
         inbox.door().put(if is_image { Post::Patient(event) } else { Post::Urgent(event) });
     }
-    let pulse = LoopTimer::new(LoopTimerConfig::default());
+    let loop_timer = LoopTimer::new(LoopTimerConfig::default());
     let (mut fed, mut twists) = (Vec::new(), Vec::new());
-    while let Some(input) = inbox.next(&pulse, Duration::from_secs(1)) {
+    while let Some(input) = inbox.next(&loop_timer, Duration::from_secs(1)) {
         let report = match input {
             Input::Event(SensorEvent::Rgbd(image)) => {
                 fed.push(Fed::Image(image.clone()));

@@ -63,8 +63,8 @@ impl CommandScript {
 
     /// What to drive `time` seconds after the start.
     pub fn at(&self, time: f64) -> Twist2 {
-        let begun = self.commands.partition_point(|command| command.time <= time);
-        begun.checked_sub(1).map_or(Twist2::ZERO, |i| self.commands[i].twist)
+        let begun_count = self.commands.partition_point(|command| command.time <= time);
+        begun_count.checked_sub(1).map_or(Twist2::ZERO, |i| self.commands[i].twist)
     }
 }
 

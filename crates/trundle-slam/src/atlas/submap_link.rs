@@ -36,7 +36,8 @@ impl SubmapLink {
                 _ => return true,
             };
         let error = self.before_from_map.pose.inverse() * measured;
-        let is_small = error.translation.norm() <= config.surprise && error.angle() <= config.surprise_turn;
+        let is_small =
+            error.translation.norm() <= config.max_correction && error.angle() <= config.max_correction_turn;
         let (tangent, information) = (error.log(), self.before_from_map.covariance.try_inverse());
         let is_likely = |information: Matrix6<f64>| {
             tangent.dot(&(information * tangent)) <= config.max_sigmas * config.max_sigmas

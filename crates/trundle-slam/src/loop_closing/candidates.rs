@@ -65,8 +65,8 @@ impl<'a> DriftBound<'a> {
     fn reaches(&self, offset: Pose3) -> bool {
         let Self { covariance, config } = self;
         let off = |from: usize| config.max_sigmas * covariance.fixed_view::<3, 3>(from, from).trace().sqrt();
-        offset.translation.norm() <= config.reach + off(0).max(config.surprise)
-            && offset.angle() <= config.turn + off(3).max(config.surprise_turn)
+        offset.translation.norm() <= config.reach + off(0).max(config.max_correction)
+            && offset.angle() <= config.turn + off(3).max(config.max_correction_turn)
     }
 
     /// Whether the drift may have been this correction (a right perturbation), itself as uncertain as `seen`, by its chi-square
@@ -79,8 +79,8 @@ impl<'a> DriftBound<'a> {
 
     /// Whether a correction that the drift does not explain is small enough to be none of a look-alike.
     pub fn allows_unexpected(&self, correction: Pose3) -> bool {
-        correction.translation.norm() <= self.config.surprise
-            && correction.angle() <= self.config.surprise_turn
+        correction.translation.norm() <= self.config.max_correction
+            && correction.angle() <= self.config.max_correction_turn
     }
 }
 

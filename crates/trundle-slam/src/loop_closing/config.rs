@@ -23,9 +23,9 @@ pub struct LoopConfig {
     pub consistency: usize,
     /// Largest correction that the drift does not explain, m, above 0. Default 1: wheels may slip by as much, and look-alike
     /// rooms are farther apart.
-    pub surprise: f64,
+    pub max_correction: f64,
     /// Largest such rotation, rad, above 0. Default 0.5.
-    pub surprise_turn: f64,
+    pub max_correction_turn: f64,
     /// Part of the matches that must agree, 0 to 1. Default 0.5: chance does not reach it.
     pub min_agreement: f64,
     /// Largest correction in standard deviations of the drift, above 0. Default 5: covariances along a chain are somewhat
@@ -52,8 +52,8 @@ impl Default for LoopConfig {
             turn: 0.9,
             min_points: 40,
             consistency: 3,
-            surprise: 1.0,
-            surprise_turn: 0.5,
+            max_correction: 1.0,
+            max_correction_turn: 0.5,
             min_agreement: 0.5,
             max_sigmas: 5.0,
             drift_part: 0.01,
@@ -84,8 +84,8 @@ impl LoopConfig {
         for (name, value, unit) in [
             ("loops.reach", self.reach, "m"),
             ("loops.turn", self.turn, "rad"),
-            ("loops.surprise", self.surprise, "m"),
-            ("loops.surprise_turn", self.surprise_turn, "rad"),
+            ("loops.max_correction", self.max_correction, "m"),
+            ("loops.max_correction_turn", self.max_correction_turn, "rad"),
             ("loops.max_sigmas", self.max_sigmas, ""),
         ] {
             require_positive(name, value, unit)?;

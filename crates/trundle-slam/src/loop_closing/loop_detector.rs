@@ -48,16 +48,16 @@ impl LoopDetector {
     /// Goes on with the oldest search.
     pub fn advance(
         &mut self,
-        closer: &LoopCloser,
+        loop_closer: &LoopCloser,
         map: &mut LandmarkMap,
         optimisation: &mut MapOptimisation,
     ) -> LoopStep {
         let Some(mut search) = self.searches.pop_front() else { return LoopStep::Idle };
-        if !closer.advance(map, &mut search) {
+        if !loop_closer.advance(map, &mut search) {
             self.searches.push_front(search);
             return LoopStep::Searched;
         }
-        let closed = closer.close((map, optimisation), search, &mut self.pending_loop);
+        let closed = loop_closer.close((map, optimisation), search, &mut self.pending_loop);
         closed.map_or(LoopStep::Searched, LoopStep::Closed)
     }
 }

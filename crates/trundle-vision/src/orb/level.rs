@@ -40,10 +40,10 @@ impl Level {
         self.image.data_mut().copy_from_slice(image.data());
     }
 
-    /// Becomes `finer` at another size.
-    pub fn shrink(&mut self, finer: &Self, width: usize, height: usize) {
+    /// Becomes `finer_level` at another size.
+    pub fn shrink(&mut self, finer_level: &Self, width: usize, height: usize) {
         self.fit(width, height);
-        self.resize.run(&finer.image, &mut self.image);
+        self.resize.run(&finer_level.image, &mut self.image);
     }
 
     fn fit(&mut self, width: usize, height: usize) {

@@ -93,7 +93,7 @@ impl OrbExtractor {
             let (below, rest) = self.levels.split_at_mut(index);
             match below.last() {
                 None => rest[0].load(image),
-                Some(finer) => rest[0].shrink(finer, size(image.width()), size(image.height())),
+                Some(finer_level) => rest[0].shrink(finer_level, size(image.width()), size(image.height())),
             }
         }
     }

@@ -33,12 +33,12 @@ proptest! {
     /// Whatever the matches say, the learnt errors lie between the minimum and the configured ones.
     #[test]
     fn learnt_errors_stay_within_the_configured_ones(
-        innovations in prop::collection::vec(any_innovation(), 0..80), doubts in 0..5_usize,
+        innovations in prop::collection::vec(any_innovation(), 0..80), doubt_count in 0..5_usize,
     ) {
         let configured = Matrix3::from_diagonal(&Vector3::new(2.0, 1.0, 0.01));
         let mut noise = OdometryNoise::default();
         innovations.iter().for_each(|innovation| noise.learn(innovation, &configured));
-        (0..doubts).for_each(|_| noise.doubt());
+        (0..doubt_count).for_each(|_| noise.doubt());
         let scaled = noise.scaled(&configured);
         for k in 0..3 {
             let ratio = scaled[(k, k)] / configured[(k, k)];

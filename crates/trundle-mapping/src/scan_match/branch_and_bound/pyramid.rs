@@ -71,8 +71,8 @@ impl Pyramid {
 }
 
 /// The greatest of four samples `step` apart.
-fn coarser(finer: &[u8], width: usize, height: usize, step: usize) -> Vec<u8> {
-    let mut rows = finer.to_vec();
+fn coarser(finer_cells: &[u8], width: usize, height: usize, step: usize) -> Vec<u8> {
+    let mut rows = finer_cells.to_vec();
     for row in rows.chunks_exact_mut(width) {
         for x in 0..width - step {
             row[x] = row[x].max(row[x + step]);

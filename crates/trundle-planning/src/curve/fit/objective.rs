@@ -77,9 +77,9 @@ impl Grams {
 
     /// For a piece of `span` m: d/ds = d/du / span.
     fn hessian(&self, span: f64, smoothing: f64) -> DMatrix<f64> {
-        let bending = (BENDING_SHARE * smoothing).powi(4) / span.powi(3);
+        let curvature_weight = (BENDING_SHARE * smoothing).powi(4) / span.powi(3);
         let change = smoothing.powi(6) / span.powi(5);
-        &self.position * span + &self.second * bending + &self.third * change
+        &self.position * span + &self.second * curvature_weight + &self.third * change
     }
 }
 
