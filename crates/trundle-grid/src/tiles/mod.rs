@@ -5,9 +5,9 @@ mod free_update;
 mod nearest_field;
 mod ray_update;
 mod scan_rays;
+mod stepped_ray;
 mod tile;
 mod tile_pools;
-mod tile_ray;
 mod tile_window;
 
 pub use crate::tile_grid::tile_bytes;

@@ -5,8 +5,8 @@ use super::{
     free_update::FreeUpdate,
     nearest_field::NearestField,
     scan_rays::{RaySpan, ScanRays},
+    stepped_ray::SteppedRay,
     tile::{NearestObstacle, Tile, TileMap},
-    tile_ray::TileRay,
 };
 use crate::MapperConfig;
 use trundle_core::{Cell, Pose2};
@@ -210,7 +210,7 @@ impl RayUpdateScratch {
     /// Marks the cells between two neighbouring hits of one surface. Grazing rays do not clear these cells.
     fn mark_surfaces(&mut self) {
         for pair in self.ends.windows(2).filter(|pair| pair[1].joined) {
-            let mut ray = TileRay::new((pair[0].x, pair[0].y), (pair[1].x, pair[1].y));
+            let mut ray = SteppedRay::new((pair[0].x, pair[0].y), (pair[1].x, pair[1].y));
             while ray.left > 0 {
                 let (x, y) = ray.cell();
                 self.surface.set(x, y);
@@ -249,14 +249,14 @@ impl RayUpdateScratch {
     }
 }
 
-fn part((origin, end, from, to): Stretch) -> TileRay {
+fn part((origin, end, from, to): Stretch) -> SteppedRay {
     let at = |fraction: f64| match fraction {
         // The ends are returned unchanged, to the bit.
         0.0 => origin,
         1.0 => end,
         _ => (origin.0 + fraction * (end.0 - origin.0), origin.1 + fraction * (end.1 - origin.1)),
     };
-    TileRay::new(at(from), at(to))
+    SteppedRay::new(at(from), at(to))
 }
 
 fn cell_of((x, y): (f64, f64)) -> (i32, i32) {

@@ -4,9 +4,10 @@ use super::{cell_mask::CellMask, tile::Tile};
 
 /// Cells from a start point up to, but without, the cell of the end point.
 ///
-/// Each step along the longer axis gives one cell: the one that the line passes at the centre of that column or row.
+/// Each step along the longer axis gives one cell: the one that the line passes at the centre of that column or row. A line that
+/// cuts off the corner of a cell does not clear that cell; [`crate::ray_cells`] gives those cells too.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct TileRay {
+pub(super) struct SteppedRay {
     /// Cell along the longer axis.
     major: i32,
     /// Coordinate along the shorter axis, 32.32 fixed point.
@@ -18,7 +19,7 @@ pub(super) struct TileRay {
     pub(super) left: i64,
 }
 
-impl TileRay {
+impl SteppedRay {
     pub(super) fn new(from: (f64, f64), to: (f64, f64)) -> Self {
         const ONE: f64 = 4_294_967_296.0;
         let steep = (to.1 - from.1).abs() > (to.0 - from.0).abs();
@@ -66,7 +67,7 @@ impl TileRay {
     }
 }
 
-impl TileRay {
+impl SteppedRay {
     /// Sets the bits of the ray's cells. The mask must cover them.
     pub(super) fn mark(self, mask: &mut CellMask) {
         if self.steep { self.mark_along::<true>(mask) } else { self.mark_along::<false>(mask) }
@@ -121,8 +122,8 @@ mod tests {
         ) {
             let mut mask = CellMask::default();
             mask.cover((-100, -100), (100, 100));
-            TileRay::new((x, y), (u, v)).mark(&mut mask);
-            let mut ray = TileRay::new((x, y), (u, v));
+            SteppedRay::new((x, y), (u, v)).mark(&mut mask);
+            let mut ray = SteppedRay::new((x, y), (u, v));
             let mut steps = BTreeSet::new();
             while ray.left > 0 {
                 steps.insert(ray.cell());
