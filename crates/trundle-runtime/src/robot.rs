@@ -5,6 +5,8 @@ mod deferred_work;
 mod event_log;
 mod pose_monitor;
 mod restore;
+#[cfg(test)]
+mod tests;
 mod validation;
 
 use crate::world_state::{DynamicObstacles, WorldState};
@@ -153,8 +155,8 @@ impl Robot {
         })
     }
 
-    /// Gives the robot a mission in place of what is left of its old one. It begins with the next reading of the wheels; an
-    /// empty one lets the robot stand.
+    /// Gives the robot a mission in place of what is left of its old one. It begins with the next reading of the wheels. From an
+    /// empty mission on the robot brakes to rest, within the limits of its base.
     pub fn begin(&mut self, mission: &Mission) {
         self.restore_mission(MissionState::new(mission.clone()));
     }

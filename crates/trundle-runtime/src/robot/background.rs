@@ -59,12 +59,17 @@ impl Background {
         self.fallback.as_mut().map(|fallback| fallback.step(s))
     }
 
-    /// Keeps a mission for the decision worker until it is back. An empty mission stops the robot at once.
+    /// Keeps a mission for the decision worker until it is back. From an empty mission on the robot brakes to rest.
     pub(super) fn set_mission(&mut self, mission: &MissionState) {
         if let (true, Some(fallback)) = (mission.left.tasks().is_empty(), &mut self.fallback) {
-            fallback.wanted = Some(Twist2::ZERO);
+            fallback.halt();
         }
         self.orders = Some(mission.clone());
+    }
+
+    /// Whether readings or a mission came that the decision worker, while it is away, does not know of.
+    pub(super) fn knows_more(&self) -> bool {
+        !self.felt.is_empty() || self.orders.is_some()
     }
 
     /// Queues an image. The newest replaces the one that waits, which is dropped.

@@ -54,8 +54,8 @@ impl Robot {
 
     /// Applies the result of a job, between two events.
     ///
-    /// The report has a twist where the decision is for the newest reading of the wheels; a later one has been overtaken, and
-    /// the next control step acts by it.
+    /// The report has a twist where the decision is for the newest reading of the wheels, and neither bumper, cliff sensors nor a
+    /// mission came after it. Any other decision has been overtaken, and the next control step acts by it.
     pub fn apply_answer(&mut self, answer: Answer) -> StepReport {
         let mut report = StepReport::default();
         self.times.add(&answer.times);
@@ -71,7 +71,8 @@ impl Robot {
             }
             Outcome::Decided { decision_worker, decision, asked } => {
                 let is_newest = self.latest.odometry.is_some_and(|odometry| odometry.stamp == asked);
-                report.twist = (is_newest && self.background.felt.is_empty()).then_some(decision.twist);
+                let is_current = is_newest && !self.background.knows_more();
+                report.twist = is_current.then_some(decision.twist);
                 report.twist.into_iter().for_each(|twist| self.odometry.set_command(twist));
                 self.return_decision_worker(decision_worker, report.twist);
                 report.replanned = decision.replanned;

@@ -20,6 +20,12 @@ pub(crate) struct FallbackController {
 }
 
 impl FallbackController {
+    /// Takes the trajectory or the last twist away: the robot brakes to rest within its limits.
+    pub(crate) fn halt(&mut self) {
+        self.follower.halt();
+        self.wanted = None;
+    }
+
     /// One control step.
     pub(crate) fn step(&mut self, s: &WorldState<'_>) -> Twist2 {
         let follow = self.follower.step(&s.estimate, s.now);

@@ -43,6 +43,8 @@ impl Subscriber for Lines {
 
 /// The events of `work`, at `level` alone.
 fn events_of(level: Level, work: impl FnOnce()) -> Vec<String> {
+    // Beside a single subscriber a thread that has none may switch an event off for all threads.
+    let _ = tracing::subscriber::set_global_default(Lines::default());
     let lines = Lines::default();
     tracing::subscriber::with_default(lines.clone(), work);
     let lines = lines.0.lock().unwrap().clone();

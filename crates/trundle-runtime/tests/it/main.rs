@@ -5,6 +5,7 @@ mod background;
 mod checkpoint;
 mod config;
 mod crew;
+mod laws;
 mod logs;
 mod robot;
 mod states;
