@@ -209,4 +209,74 @@ mod tests {
             prop_assert!(Checkpoint::from_bytes(&whole[..at]).is_err());
         }
     }
+
+    /// The checkpoint of `memory` with other bytes, its checksum made to fit.
+    fn resigned(change: impl FnOnce(&mut Vec<u8>)) -> Result<Checkpoint, CheckpointError> {
+        let mut rest = memory().to_bytes().split_off(16);
+        change(&mut rest);
+        let checksum = crc32fast::hash(&rest).to_le_bytes();
+        Checkpoint::from_bytes(&[MAGIC.as_slice(), &FORMAT_VERSION.to_le_bytes(), &checksum, &rest].concat())
+    }
+
+    /// The same with `old` in the notes replaced by `new`.
+    fn with_notes(old: &str, new: &str) -> CheckpointError {
+        let change = |rest: &mut Vec<u8>| {
+            let length = u32::from_le_bytes(*rest.first_chunk().unwrap()) as usize;
+            let notes = String::from_utf8(rest[4..4 + length].to_vec()).unwrap();
+            assert!(notes.contains(old), "{notes}");
+            let notes = notes.replacen(old, new, 1).into_bytes();
+            let cells = rest.split_off(4 + length);
+            *rest = [(notes.len() as u32).to_le_bytes().to_vec(), notes, cells].concat();
+        };
+        resigned(change).unwrap_err()
+    }
+
+    #[test]
+    fn notes_that_contradict_themselves_are_refused_by_name() {
+        let text = |old, new| with_notes(old, new).to_string();
+        assert!(text("\"mission\"", "\"mishap\"").contains("unknown field `mishap`"));
+        assert!(text("\"resolution\":0.05", "\"resolution\":0.0").contains("resolution"));
+        assert!(text("\"resolution\":0.05", "\"resolution\":-1.0").contains("resolution"));
+        assert_eq!(text("\"cells\":[3,2]", "\"cells\":[3,2000]"), "memory is damaged: it is cut off");
+        assert_eq!(
+            text("\"places\":[0,2,3]", "\"places\":[0,2]"),
+            "places of tasks is 2, expected 3, one for each task"
+        );
+        assert!(matches!(with_notes("\"cells\":[3,2]", "\"cells\":[0,2]"), CheckpointError::Invalid(_)));
+        assert!(matches!(with_notes("{", "["), CheckpointError::Notes(_)));
+        let negative = with_notes("\"covariance\":[[0.0001,", "\"covariance\":[[-0.5,");
+        assert_eq!(negative.to_string(), "memory is damaged: a visual map lies nowhere");
+    }
+
+    #[test]
+    fn a_cell_that_is_none_of_the_three_is_refused() {
+        let length = memory().to_bytes().len() - 16;
+        let error = resigned(|rest| rest[length - 101] = 3).unwrap_err();
+        assert_eq!(error.to_string(), "memory is damaged: a cell is none");
+    }
+
+    #[test]
+    fn a_length_beyond_the_end_is_refused() {
+        for length in [u32::MAX, 100_000] {
+            let error = resigned(|rest| rest[..4].copy_from_slice(&length.to_le_bytes())).unwrap_err();
+            assert_eq!(error, CheckpointError::Damaged { what: "it is cut off" });
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn bytes_with_a_fitting_checksum_are_read_as_they_are_written_or_refused_in_words(
+            changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..4),
+            cut in prop::option::of(any::<prop::sample::Index>()),
+        ) {
+            let read = resigned(|rest| {
+                changes.iter().for_each(|(at, byte)| *at.get_mut(rest) = *byte);
+                cut.into_iter().for_each(|cut| rest.truncate(cut.index(rest.len())));
+            });
+            match read {
+                Ok(read) => prop_assert_eq!(Checkpoint::from_bytes(&read.to_bytes()), Ok(read)),
+                Err(error) => prop_assert!(error.to_string().len() > 10, "{}", error),
+            }
+        }
+    }
 }

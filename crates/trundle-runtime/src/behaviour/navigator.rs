@@ -9,6 +9,8 @@ mod plans;
 mod seek_viewpoint;
 #[cfg(test)]
 mod testing;
+#[cfg(test)]
+mod tests;
 mod viewpoint;
 mod visibility_constraint;
 

@@ -66,6 +66,7 @@ pub(crate) fn turn_to(pose: Pose2, heading: f64) -> Twist2 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use proptest::prelude::*;
 
     #[test]
     fn two_turns_are_two_turns() {
@@ -92,5 +93,38 @@ mod tests {
         let right = Vector2::new(0.0, -1.0);
         assert!(face(Pose2::IDENTITY, right).omega < 0.0);
         assert_eq!(face(Pose2::new(0.0, 0.0, -std::f64::consts::FRAC_PI_2), right), Twist2::ZERO);
+    }
+
+    #[test]
+    fn a_spin_to_either_side_has_the_same_rate() {
+        for side in [-3.0, -0.1, 0.1, 3.0] {
+            let twist = Spin::default().twist_towards(side, Pose2::IDENTITY);
+            assert_eq!((twist.v, twist.omega), (0.0, SPIN_RATE_RAD_S.copysign(side)));
+        }
+    }
+
+    #[test]
+    fn what_the_robot_stands_on_needs_no_turn() {
+        assert_eq!(face(Pose2::new(1.0, 2.0, 0.5), Vector2::new(1.0, 2.0)), Twist2::ZERO);
+    }
+
+    proptest! {
+        #[test]
+        fn a_turn_reaches_any_heading_the_shorter_way_without_overshoot(
+            start in -9.0..9.0_f64, heading in -9.0..9.0_f64,
+        ) {
+            let (mut pose, mut off) = (Pose2::new(1.0, 2.0, start), wrap_angle(heading - start));
+            let steps = (off.abs() / SPIN_RATE_RAD_S + 3.0) / COMMAND_PERIOD_S;
+            for _ in 0..steps as usize {
+                let twist = turn_to(pose, heading);
+                prop_assert!(twist.v == 0.0 && twist.omega.abs() <= SPIN_RATE_RAD_S);
+                pose = pose.advance(twist, COMMAND_PERIOD_S);
+                let left = wrap_angle(heading - pose.theta);
+                prop_assert!(left.abs() <= off.abs() && left * off >= 0.0, "{off} rad became {left} rad");
+                off = left;
+            }
+            prop_assert!(off.abs() <= FACING_TOLERANCE_RAD);
+            prop_assert_eq!(turn_to(pose, heading), Twist2::ZERO);
+        }
     }
 }

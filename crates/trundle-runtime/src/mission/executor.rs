@@ -246,6 +246,7 @@ fn failure_of(record: &TaskRecord) -> Option<TaskFailure> {
 mod tests {
     use super::*;
     use crate::reason::ReasonKind;
+    use proptest::prelude::*;
     use trundle_core::{OccupancyGrid, PoseEstimate, Twist2};
 
     fn surroundings(grid: &OccupancyGrid) -> WorldState<'_> {
@@ -342,5 +343,107 @@ mod tests {
         assert_eq!(executor.step(&s, &DriveState::Initializing), None);
         assert_eq!(executor.step(&s, &DriveState::Arrived), Some(Goal::Stay));
         assert!(executor.is_idle() && executor.failure().is_none());
+    }
+
+    /// A task for each letter: `g` to a place of its own, `r` back to the start.
+    fn tasks(letters: &str) -> Vec<Task> {
+        let task = |(i, letter)| match letter {
+            'r' => Task::Return,
+            _ => Task::Go(Pose2::new(1.0 + i as f64, 0.0, 0.0)),
+        };
+        letters.chars().enumerate().map(task).collect()
+    }
+
+    /// Lets `executor` go on until nothing is left, each goal ending as `fails` says in turn; the goals.
+    fn work_off(executor: &mut MissionExecutor, fails: &[bool]) -> Vec<Goal> {
+        let (grid, mut fails) = (room(), fails.iter().copied().cycle());
+        let (s, mut goals, mut state) = (surroundings(&grid), Vec::new(), DriveState::Idle);
+        while let Some(goal) = executor.step(&s, &state) {
+            goals.push(goal);
+            let is_failure = fails.next().unwrap_or_default();
+            state = if is_failure {
+                DriveState::Stopped { reason: Reason::PoseUnknown }
+            } else {
+                DriveState::Arrived
+            };
+        }
+        goals
+    }
+
+    proptest! {
+        #[test]
+        fn each_task_ends_once_for_good_and_is_put_off_at_most_once(
+            letters in "[gr]{1,7}", fails in prop::collection::vec(any::<bool>(), 1..12),
+        ) {
+            let tasks = tasks(&letters);
+            let is_put_off = |record: &TaskRecord| matches!(record.end, TaskEnd::PutOff { .. });
+            let mut executor = executor(&tasks);
+            let goals = work_off(&mut executor, &fails);
+            prop_assert!(executor.is_idle() && executor.mission().left.tasks().is_empty());
+            prop_assert_eq!(goals.len(), executor.records().len(), "each goal ends with a record");
+            for (index, task) in tasks.iter().enumerate() {
+                let ends: Vec<_> = executor.records().iter().filter(|record| record.index == index).collect();
+                let (last, before) = ends.split_last().unwrap();
+                prop_assert!(before.len() <= 1 && before.iter().all(|record| is_put_off(record)));
+                prop_assert!(!is_put_off(last), "{}", last.end);
+                prop_assert!(ends.iter().all(|record| record.task == *task));
+            }
+            let undone = executor.records().iter().filter(|r| matches!(r.end, TaskEnd::GivenUp { .. })).count();
+            prop_assert_eq!(executor.failure().is_some(), undone > 0);
+        }
+
+        #[test]
+        fn a_return_at_the_end_stays_at_the_end(
+            letters in "g{1,5}r", fails in prop::collection::vec(any::<bool>(), 1..12),
+        ) {
+            let mut executor = executor(&tasks(&letters));
+            let goals = work_off(&mut executor, &fails);
+            let returns = goals.iter().position(|goal| *goal == Goal::Exact(Pose2::IDENTITY));
+            prop_assert_eq!(returns, Some(goals.len() - 1));
+        }
+
+        #[test]
+        fn a_mission_that_is_restored_at_any_moment_gives_the_same_goals(
+            letters in "[gr]{1,6}", fails in prop::collection::vec(any::<bool>(), 1..9), moment in 0..9_usize,
+        ) {
+            let (grid, tasks) = (room(), tasks(&letters));
+            let s = surroundings(&grid);
+            let expected = work_off(&mut executor(&tasks), &fails);
+            let mut first = executor(&tasks);
+            let (mut state, moment) = (DriveState::Idle, moment % expected.len());
+            for k in 0..=moment {
+                prop_assert_eq!(first.step(&s, &state), Some(expected[k]));
+                let reason = Reason::PoseUnknown;
+                state = if fails[k % fails.len()] { DriveState::Stopped { reason } } else { DriveState::Arrived };
+            }
+            let mut second = executor(&[]);
+            second.begin(&first.mission().after_restart());
+            let rest: Vec<bool> = fails.iter().copied().cycle().skip(moment).take(20).collect();
+            prop_assert_eq!(work_off(&mut second, &rest), &expected[moment..]);
+            let is_old = |record: &&TaskRecord| record.before_restart;
+            prop_assert_eq!(second.records().iter().filter(is_old).count(), moment);
+        }
+    }
+
+    #[test]
+    fn a_goal_that_fails_alone_is_given_up_without_a_second_try() {
+        let mut executor = executor(&tasks("g"));
+        assert_eq!(work_off(&mut executor, &[true]).len(), 1);
+        assert!(matches!(executor.records()[0].end, TaskEnd::GivenUp { .. }));
+    }
+
+    #[test]
+    fn a_new_mission_forgets_the_old_one_and_an_empty_one_leaves_nothing_to_do() {
+        let (grid, mut executor) = (room(), executor(&tasks("gg")));
+        let s = surroundings(&grid);
+        executor.step(&s, &DriveState::Idle);
+        executor.step(&s, &DriveState::Arrived);
+        assert_eq!((executor.records().len(), executor.task()), (1, Some(tasks("gg")[1])));
+        executor.begin(&MissionState::new(Mission::new(vec![Task::Return]).unwrap()));
+        assert!(executor.records().is_empty() && executor.task().is_none() && !executor.is_idle());
+        executor.begin(&MissionState::default());
+        assert!(executor.is_idle() && executor.failure().is_none());
+        assert_eq!(executor.step(&s, &DriveState::Arrived), None);
+        assert!(!executor.may_take_long(&s, &DriveState::Arrived));
     }
 }

@@ -265,4 +265,76 @@ mod tests {
         let error = parse("[odometry]\nmax_speed_m_s = 0.3\n").unwrap_err().to_string();
         assert!(error.contains("odometry.max_speed_m_s is 0.3 m/s"), "{error}");
     }
+
+    /// The value of a setting in a configuration, as text for an override; none where it is not set.
+    fn value_of(config: &RobotConfig, setting: &Setting) -> Option<toml::Value> {
+        let root = toml::Value::try_from(config).unwrap();
+        setting.path.split('.').try_fold(root, |value, field| value.get(field).cloned())
+    }
+
+    #[test]
+    fn every_setting_put_to_its_default_by_its_key_changes_nothing() {
+        for setting in reference() {
+            let Some(value) = value_of(&RobotConfig::default(), setting) else { continue };
+            let file = RobotFile::parse("", &[format!("{}={value}", setting.key)]).unwrap();
+            assert_eq!(file.config, RobotConfig::default(), "{}", setting.key);
+            assert!(file.warnings.is_empty(), "{}: {:?}", setting.key, file.warnings);
+        }
+    }
+
+    #[test]
+    fn every_old_name_is_read_with_a_warning_that_gives_the_name_to_write() {
+        let old = || reference().iter().filter(|setting| setting.path != setting.key);
+        assert!(old().count() > 50, "most settings have a unit");
+        for setting in old() {
+            let Some(value) = value_of(&RobotConfig::default(), setting) else { continue };
+            let expected = format!("{} is deprecated: write {}", setting.path, setting.key);
+            let file = RobotFile::parse("", &[format!("{}={value}", setting.path)]).unwrap();
+            assert_eq!((&file.config, &file.warnings), (&RobotConfig::default(), &vec![expected.clone()]));
+            // A camera in a file is given whole.
+            if setting.table() != "camera" {
+                let line = format!("{} = {value}\n", setting.path);
+                assert_eq!(parse(&line).unwrap().warnings, [expected], "{line}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_key_beside_the_settings_of_any_table_is_refused_with_the_keys_of_that_table() {
+        for setting in reference() {
+            let table = setting.table();
+            let key = if table.is_empty() { "speeed".to_owned() } else { format!("{table}.speeed") };
+            let error = parse(&format!("\n{key} = 1\n")).unwrap_err();
+            assert!(error.message.starts_with(&format!("unknown key {key}; ")), "{error}");
+            let beside = setting.name().split('.').next().unwrap_or_default();
+            assert!(error.message.contains(beside), "{error} does not name {beside}");
+        }
+    }
+
+    #[test]
+    fn a_value_of_another_kind_is_refused_for_every_setting() {
+        for setting in reference() {
+            let error = RobotFile::parse("", &[format!("{}={{ a = 1 }}", setting.key)]).unwrap_err();
+            assert!(error.message.starts_with(&format!("--set {}=", setting.key)), "{error}");
+        }
+    }
+
+    #[test]
+    fn of_two_overrides_of_one_key_the_later_one_holds() {
+        let pairs = ["limits.v_m_s=0.3", "limits.v_m_s = 0.4"].map(str::to_owned);
+        assert_eq!(RobotFile::parse("[limits]\nv_m_s = 0.2\n", &pairs).unwrap().config.limits.v, 0.4);
+        for pair in ["=1", "limits=0.3", "limits.=1", ".v=1"] {
+            let error = RobotFile::parse("", &[pair.to_owned()]).unwrap_err();
+            assert!(error.line.is_none() && error.message.starts_with(&format!("--set {pair}: ")), "{error}");
+        }
+    }
+
+    #[test]
+    fn whole_numbers_are_numbers_and_points_are_no_counts() {
+        assert_eq!(parse("[schedule]\nmap_hz = 4\n").unwrap().config.schedule.map_hz, 4.0);
+        let file = RobotFile::parse("", &["schedule.map_hz=4".to_owned()]).unwrap();
+        assert_eq!(file.config.schedule.map_hz, 4.0);
+        let count = reference().iter().find(|setting| setting.kind == "integer").unwrap();
+        assert!(RobotFile::parse("", &[format!("{}=2.5", count.key)]).is_err(), "{}", count.key);
+    }
 }

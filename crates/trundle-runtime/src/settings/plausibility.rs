@@ -101,6 +101,7 @@ fn camera(config: &RobotConfig) -> [Plausible; 4] {
 
 #[cfg(test)]
 mod tests {
+    use super::*;
     use crate::settings::RobotFile;
 
     #[test]
@@ -134,5 +135,36 @@ mod tests {
         assert!(refused("camera.fx_px=36100").contains("camera.fx_px is 36100 px"));
         assert!(refused("camera.cx_px=600").contains("the image of another size?"));
         assert!(refused("camera.cy_px=-3").contains("camera.cy_px is -3 px"));
+    }
+
+    #[test]
+    fn each_limit_of_what_is_plausible_is_still_plausible() {
+        let config = RobotConfig::default();
+        assert_eq!(require_plausible(&config), Ok(()));
+        let root = toml::Value::try_from(&config).unwrap();
+        let limits = lengths_and_speeds(&config).into_iter().chain(camera(&config));
+        for Plausible { path, high, .. } in limits.filter(|limit| limit.path != "footprint") {
+            let with = |value: f64| {
+                let mut root = root.clone();
+                let (table, field) = path.split_once('.').unwrap_or(("", path));
+                let at = if table.is_empty() { Some(&mut root) } else { root.get_mut(table) };
+                at.and_then(|at| at.get_mut(field)).map(|at| *at = toml::Value::Float(value)).unwrap();
+                require_plausible(&root.try_into::<RobotConfig>().unwrap())
+            };
+            assert_eq!(with(high), Ok(()), "{path}");
+            let error = with(high * 1.001).unwrap_err();
+            assert_eq!(error.field, path);
+            assert!(error.to_string().contains("is it in"), "{error}");
+        }
+    }
+
+    #[test]
+    fn the_farthest_corner_of_an_outline_counts() {
+        let with = |x: f64| {
+            let footprint = Some(vec![[0.2, 0.2], [-x, 0.0], [0.2, -0.2]]);
+            require_plausible(&RobotConfig { footprint, ..RobotConfig::default() })
+        };
+        assert_eq!(with(MAX_FOOTPRINT_RADIUS_M), Ok(()));
+        assert_eq!(with(3.1).unwrap_err().field, "footprint");
     }
 }

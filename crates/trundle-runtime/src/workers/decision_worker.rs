@@ -71,3 +71,57 @@ impl DecisionWorker {
         (state, finished)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mission::{Mission, Task, TaskEnd, TaskRecord};
+    use crate::reason::{Reason, ReasonKind};
+    use trundle_core::{Pose2, Stamp};
+
+    fn worker() -> DecisionWorker {
+        let config = RobotConfig::default();
+        DecisionWorker::new(&config, &config.footprint().unwrap()).unwrap()
+    }
+
+    /// A mission that is over, its one task ended so.
+    fn over(end: TaskEnd) -> MissionState {
+        let (from, to) = (Stamp::default(), Stamp::default());
+        let (task, pose) = (Task::Return, Pose2::IDENTITY);
+        let ended = vec![TaskRecord { index: 0, task, end, from, to, pose, before_restart: true }];
+        MissionState { ended, ..MissionState::default() }
+    }
+
+    #[test]
+    fn the_state_of_a_mission_that_is_over_is_that_of_all_its_tasks() {
+        let mut worker = worker();
+        assert_eq!(worker.state(), (DriveState::Idle, false), "no mission is not a mission that is over");
+        worker.begin(&over(TaskEnd::Done));
+        assert_eq!(worker.state(), (DriveState::Arrived, true));
+        worker.begin(&over(TaskEnd::GivenUp { reason: Reason::PoseUnknown }));
+        let (DriveState::Stopped { reason }, true) = worker.state() else { panic!("{:?}", worker.state()) };
+        assert_eq!(reason.kinds(), [ReasonKind::TasksFailed, ReasonKind::PoseUnknown]);
+    }
+
+    #[test]
+    fn a_task_that_is_left_keeps_the_mission_going_whatever_ended_before() {
+        let mut worker = worker();
+        let left = MissionState::new(Mission::new(vec![Task::Return]).unwrap());
+        worker.begin(&MissionState { left: left.left, places: vec![1], ..over(TaskEnd::Done) });
+        assert_eq!(worker.state(), (DriveState::Idle, false));
+    }
+
+    #[test]
+    fn an_empty_mission_takes_the_goal_away_and_another_one_does_not() {
+        let mut worker = worker();
+        worker.navigator.set_goal(Goal::Exact(Pose2::new(1.0, 0.0, 0.0)));
+        worker.begin(&MissionState::new(Mission::new(vec![Task::Return]).unwrap()));
+        assert_eq!(
+            worker.navigator.state(),
+            &DriveState::Initializing,
+            "the robot may roll on to the next goal"
+        );
+        worker.begin(&MissionState::default());
+        assert_eq!(worker.navigator.state(), &DriveState::Idle);
+    }
+}

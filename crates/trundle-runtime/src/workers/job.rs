@@ -101,3 +101,21 @@ impl Answer {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_worker_has_a_name_in_files_and_old_names_are_read() {
+        let read = |text: &str| serde_json::from_str::<Worker>(text).unwrap();
+        for (worker, name, old) in [
+            (Worker::Perception, r#""perception""#, r#""lookout""#),
+            (Worker::Decision, r#""decision""#, r#""captain""#),
+        ] {
+            assert_eq!(serde_json::to_string(&worker).unwrap(), name);
+            assert_eq!((read(name), read(old)), (worker, worker));
+        }
+        assert!(serde_json::from_str::<Worker>(r#""cook""#).is_err());
+    }
+}
