@@ -77,6 +77,7 @@ fn base_below(level_from_camera: &Pose3) -> Option<Pose2> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use trundle_core::{Cell, DepthImage, Image, Vector2};
 
     #[test]
     fn the_base_stands_under_the_camera() {
@@ -84,5 +85,47 @@ mod tests {
         assert_eq!(base_below(&pose), Some(Pose2::IDENTITY));
         assert_eq!(base_below(&level_from_first_camera(1.2, 75.0, 0.0).unwrap()), None);
         assert!(level_from_first_camera(f64::NAN, 0.0, 0.0).is_err());
+    }
+
+    /// A wall 2.02 m ahead of a level camera, 0.4 m above the floor.
+    fn wall(time: f64) -> RgbdImage {
+        let camera = PinholeCamera::kinect_v2();
+        let (width, height) = (camera.width(), camera.height());
+        let depth = DepthImage::from_fn(width, height, |_, row| {
+            let below = (row as f64 - camera.cy()) / camera.fy();
+            if below > 0.0 { (0.4 / below).min(2.02) as f32 } else { 2.02 }
+        });
+        RgbdImage::new(Stamp::default().after(time), Image::filled(width, height, [90; 3]), depth).unwrap()
+    }
+
+    fn level_map() -> LevelMap {
+        LevelMap::new(PinholeCamera::kinect_v2(), DepthScanConfig::default(), 5.0).unwrap()
+    }
+
+    #[test]
+    fn a_scan_is_drawn_where_the_final_trajectory_has_its_image() {
+        let (mut map, at_first) = (level_map(), level_from_first_camera(0.4, 0.0, 0.0).unwrap());
+        // One hit is no obstacle yet.
+        let times = [0.0, 0.25, 0.5, 0.75];
+        times.iter().for_each(|time| map.note(&wall(*time), at_first));
+        for pose in [Pose2::IDENTITY, Pose2::new(1.0, -0.5, 0.0), Pose2::new(0.5, 1.0, 2.0)] {
+            let at = |time: f64, pose| (Stamp::default().after(time), Pose3::from_pose2(pose) * at_first);
+            let mut trajectory: Vec<_> = times.iter().map(|time| at(*time, pose)).collect();
+            trajectory.push(at(9.0, Pose2::new(50.0, 0.0, 0.0)));
+            let grid = map.draw(&trajectory, MapperConfig::default()).unwrap();
+            assert_eq!(grid.at(pose.transform(Vector2::new(2.02, 0.0))), Cell::Occupied, "{pose:?}");
+            assert_eq!(grid.at(pose.transform(Vector2::new(1.2, 0.0))), Cell::Free, "{pose:?}");
+            assert!(grid.geometry().cell_at(Vector2::new(52.0, 0.0)).is_none(), "an image without a scan");
+        }
+    }
+
+    #[test]
+    fn images_in_quick_succession_and_of_a_steep_camera_are_left_out() {
+        let (mut map, level) = (level_map(), level_from_first_camera(0.4, 0.0, 0.0).unwrap());
+        (0..30).for_each(|i| map.note(&wall(f64::from(i) / 30.0), level));
+        assert_eq!(map.scans.len(), 5);
+        let mut steep = level_map();
+        steep.note(&wall(0.0), level_from_first_camera(1.2, 75.0, 0.0).unwrap());
+        assert!(steep.scans.is_empty());
     }
 }

@@ -238,3 +238,30 @@ fn no_step_takes_longer_than_two_milliseconds() {
         assert!(worst <= 2.0 * slowness(), "{method:?}: {worst:.2} ms");
     }
 }
+
+#[test]
+fn a_manoeuvre_that_another_decision_replaces_is_broken_off_and_an_end_stays_the_end() {
+    let (grid, mut stage) = (corridor(), stage());
+    let (start, goal) = (Pose2::new(1.2, 0.32, 0.0), Pose2::new(1.5, 0.38, 0.0));
+    stage.reset();
+    assert_eq!(stage.report().ended, None, "nothing was begun");
+    begin(&mut stage, goal);
+    stage.step(&surroundings(&grid, start, 0.02));
+    stage.reset();
+    assert_eq!(stage.report().ended, Some(ApproachEnd::BrokenOff));
+    assert_eq!(stage.step(&surroundings(&grid, start, 0.04)), Progress::GivenUp(ApproachFailure::NoGoal));
+    assert!(settles_in(&mut stage, &grid, start, goal).is_finite());
+    stage.reset();
+    assert_eq!(stage.report().ended, Some(ApproachEnd::Settled));
+}
+
+#[test]
+fn each_number_of_the_goal_approach_is_checked_by_name() {
+    let field =
+        |config: GoalApproachConfig| GoalApproach::new(&config, &Footprint::KOBUKI).unwrap_err().field;
+    let good = GoalApproachConfig::default;
+    assert_eq!(field(GoalApproachConfig { near: 6.0, ..good() }), "docking.near");
+    assert_eq!(field(GoalApproachConfig { arc_margin: -0.1, ..good() }), "docking.arc_margin");
+    assert_eq!(field(GoalApproachConfig { time_limit: f64::NAN, ..good() }), "docking.time_limit");
+    assert_eq!(field(GoalApproachConfig { most_stops: 0, ..good() }), "docking.most_stops");
+}

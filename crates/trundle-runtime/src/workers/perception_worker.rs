@@ -225,3 +225,87 @@ fn is_bent(track: &TrackReport) -> bool {
     };
     track.closed_loop.is_some() || track.merged.is_some() || track.refined.as_ref().is_some_and(is_large)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use trundle_core::{DepthImage, Image};
+    use trundle_slam::Tracking;
+
+    fn worker() -> PerceptionWorker {
+        let config = RobotConfig::default();
+        PerceptionWorker::new(&config, config.mount.base_from_camera()).unwrap()
+    }
+
+    /// The report on a grey image, which shows nothing to locate it by.
+    fn blank() -> TrackReport {
+        let config = RobotConfig::default();
+        let (width, height) = (config.camera.width(), config.camera.height());
+        let grey = Image::filled(width, height, [90; 3]);
+        let image = RgbdImage::new(Stamp::default(), grey, DepthImage::filled(width, height, 2.0)).unwrap();
+        let slam = RgbdSlam::new(config.camera, config.slam);
+        slam.unwrap().step(&image, None)
+    }
+
+    /// The seconds at which the robot counts as carried away, by images every 0.1 s that show `features` and are located where
+    /// `is_located` says so.
+    fn carried_away(
+        worker: &mut PerceptionWorker,
+        features: impl Fn(u32) -> usize,
+        is_located: impl Fn(u32) -> bool,
+    ) -> Vec<f64> {
+        let blank = blank();
+        let is_carried_away = |i: &u32| {
+            let tracking = if is_located(*i) { Tracking::Ok } else { Tracking::Lost };
+            let stamp = Stamp::default().after(0.1 * f64::from(*i));
+            worker.is_carried_away(&TrackReport { stamp, tracking, features: features(*i), ..blank.clone() })
+        };
+        (0..60).filter(is_carried_away).map(|i| 0.1 * f64::from(i)).collect()
+    }
+
+    #[test]
+    fn images_that_show_enough_and_are_not_located_show_another_place_after_a_while_and_again() {
+        let seconds = carried_away(&mut worker(), |_| MIN_FEATURES_TO_LOCATE, |_| false);
+        assert_eq!(seconds.len(), 3, "{seconds:?}");
+        assert!((seconds[0] - KIDNAPPED_AFTER_S).abs() < 0.11, "{seconds:?}");
+        let pauses = seconds.windows(2).map(|pair| pair[1] - pair[0]);
+        assert!(pauses.into_iter().all(|pause| (pause - KIDNAPPED_AFTER_S).abs() < 0.11), "{seconds:?}");
+    }
+
+    #[test]
+    fn a_located_image_now_and_then_is_enough_and_a_bare_wall_proves_nothing() {
+        assert!(carried_away(&mut worker(), |_| 1000, |i| i % 14 == 0).is_empty());
+        assert!(carried_away(&mut worker(), |_| MIN_FEATURES_TO_LOCATE - 1, |_| false).is_empty());
+    }
+
+    #[test]
+    fn before_a_bare_wall_an_unknown_place_stays_unknown_and_a_brief_doubt_ends() {
+        let unplaced_after = |doubt: u32| {
+            let mut worker = worker();
+            carried_away(&mut worker, |i| if i < doubt { 1000 } else { 0 }, |_| false);
+            worker.unplaced
+        };
+        assert_eq!(unplaced_after(5), None);
+        assert_eq!(unplaced_after(12), Some(Stamp::default()));
+    }
+
+    #[test]
+    fn a_place_found_by_scans_holds_until_an_image_is_located_again() {
+        let mut worker = worker();
+        worker.localized_by_scans();
+        assert!(carried_away(&mut worker, |_| 1000, |_| false).is_empty());
+        assert_eq!(worker.unplaced, None);
+        let seconds = carried_away(&mut worker, |_| 1000, |i| i == 0);
+        assert!(!seconds.is_empty(), "images count again");
+    }
+
+    #[test]
+    fn only_a_correction_that_tracking_does_not_go_along_with_bends_the_map() {
+        let refined = |metres: f64| {
+            let moved = Pose3::from_pose2(Pose2::new(0.0, metres, 0.0));
+            is_bent(&TrackReport { refined: Some(moved), ..blank() })
+        };
+        assert!(!is_bent(&blank()));
+        assert!(!refined(0.9 * GRID_CORRECTION_THRESHOLD) && refined(1.1 * GRID_CORRECTION_THRESHOLD));
+    }
+}

@@ -105,4 +105,35 @@ mod tests {
         }
         assert!(places[0].distance(&here) <= places[places.len() - 1].distance(&here));
     }
+
+    #[test]
+    fn the_nearest_places_are_kept_and_the_nearest_of_all_is_asked_for_first() {
+        let all: Vec<Pose2> = (0..9).map(|i| Pose2::new(f64::from(i), 0.0, 0.0)).collect();
+        let mut kept = best_last(all.clone());
+        let asked: Vec<Pose2> = std::iter::from_fn(|| kept.pop()).collect();
+        assert_eq!(asked, all[..MAX_VIEWPOINT_PLANS]);
+    }
+
+    #[test]
+    fn a_sight_shows_the_floor_to_the_camera_wherever_it_looks_and_is_none_of_the_old_ones() {
+        use super::super::testing::floor;
+        let (grid, here) = (floor(|at| at.x > 4.0), Pose2::new(3.0, 2.0, 0.0));
+        let at = Vector2::new(4.5, 2.0);
+        for aside in [0.0, 1.0, -2.5] {
+            let base_from_sector = Pose2::new(0.05, 0.0, aside);
+            let view = CameraFov { base_from_sector, half_angle: 0.5, nearest: 0.6 };
+            let mut unseen = VisibilityConstraint::default();
+            let first = sights(&grid, here, at, Some(view), &unseen);
+            assert!(first.len() > 2 && first.iter().all(|place| view.shows(&grid, *place, at)), "{first:?}");
+            assert_eq!(first[0].position(), here.position(), "a turn is enough");
+            unseen.note_look(at, here.position(), Stamp::default());
+            let second = sights(&grid, here, at, Some(view), &unseen);
+            assert!(!second.is_empty() && second.len() < first.len());
+            assert!(second.iter().all(|place| place.distance(&here) > 0.4), "{second:?}");
+        }
+        assert!(
+            sights(&grid, here, at, None, &VisibilityConstraint::default()).is_empty(),
+            "a laser sees all"
+        );
+    }
 }
