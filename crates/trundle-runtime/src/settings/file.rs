@@ -72,8 +72,24 @@ fn read(text: &str, warnings: &mut Vec<String>) -> Result<RobotConfig, SettingsE
     match problem {
         Some(problem) => Err(problem),
         None => {
-            let deserializer = toml::Deserializer::from(Spanned::new(span, translated));
-            RobotConfig::deserialize(deserializer).map_err(failed)
+            let given = || toml::Deserializer::from(Spanned::new(span.clone(), translated.clone()));
+            // Errors of this one name their line.
+            RobotConfig::deserialize(given()).map_err(failed)?;
+            let mut table = toml::Table::try_from(RobotConfig::default())
+                .expect("invariant: the configuration is plain data");
+            overlay(&mut table, toml::Table::deserialize(given()).map_err(failed)?);
+            RobotConfig::deserialize(toml::Value::Table(table)).map_err(failed)
+        }
+    }
+}
+
+/// Puts the values of `given` in place of those of `table`. What a table within does not give keeps the robot's default, which may
+/// differ from the default of that table's type.
+fn overlay(table: &mut toml::Table, given: toml::Table) {
+    for (key, value) in given {
+        match (table.get_mut(&key), value) {
+            (Some(toml::Value::Table(inner)), toml::Value::Table(given)) => overlay(inner, given),
+            (_, value) => _ = table.insert(key, value),
         }
     }
 }
@@ -272,31 +288,33 @@ mod tests {
         setting.path.split('.').try_fold(root, |value, field| value.get(field).cloned())
     }
 
+    /// Every setting that has a default, with that default.
+    fn defaults() -> impl Iterator<Item = (&'static Setting, toml::Value)> {
+        reference().iter().filter_map(|s| Some((s, value_of(&RobotConfig::default(), s)?)))
+    }
+
     #[test]
     fn every_setting_put_to_its_default_by_its_key_changes_nothing() {
-        for setting in reference() {
-            let Some(value) = value_of(&RobotConfig::default(), setting) else { continue };
-            let file = RobotFile::parse("", &[format!("{}={value}", setting.key)]).unwrap();
-            assert_eq!(file.config, RobotConfig::default(), "{}", setting.key);
-            assert!(file.warnings.is_empty(), "{}: {:?}", setting.key, file.warnings);
-        }
+        let pairs: Vec<String> = defaults().map(|(s, value)| format!("{}={value}", s.key)).collect();
+        let file = RobotFile::parse("", &pairs).unwrap();
+        assert_eq!(file.config, RobotConfig::default());
+        assert!(file.warnings.is_empty(), "{:?}", file.warnings);
     }
 
     #[test]
     fn every_old_name_is_read_with_a_warning_that_gives_the_name_to_write() {
-        let old = || reference().iter().filter(|setting| setting.path != setting.key);
-        assert!(old().count() > 50, "most settings have a unit");
-        for setting in old() {
-            let Some(value) = value_of(&RobotConfig::default(), setting) else { continue };
-            let expected = format!("{} is deprecated: write {}", setting.path, setting.key);
-            let file = RobotFile::parse("", &[format!("{}={value}", setting.path)]).unwrap();
-            assert_eq!((&file.config, &file.warnings), (&RobotConfig::default(), &vec![expected.clone()]));
-            // A camera in a file is given whole.
-            if setting.table() != "camera" {
-                let line = format!("{} = {value}\n", setting.path);
-                assert_eq!(parse(&line).unwrap().warnings, [expected], "{line}");
-            }
-        }
+        let old: Vec<_> = defaults().filter(|(s, _)| s.path != s.key).collect();
+        assert!(old.len() > 50, "most settings have a unit");
+        let warning = |s: &Setting| format!("{} is deprecated: write {}", s.path, s.key);
+        let expected: Vec<String> = old.iter().map(|(s, _)| warning(s)).collect();
+        let pairs: Vec<String> = old.iter().map(|(s, value)| format!("{}={value}", s.path)).collect();
+        let file = RobotFile::parse("", &pairs).unwrap();
+        assert_eq!((&file.config, &file.warnings), (&RobotConfig::default(), &expected));
+        let mut file = parse(&pairs.join("\n")).unwrap();
+        file.warnings.sort_unstable();
+        let mut sorted = expected;
+        sorted.sort_unstable();
+        assert_eq!((file.config, file.warnings), (RobotConfig::default(), sorted));
     }
 
     #[test]
@@ -336,5 +354,13 @@ mod tests {
         assert_eq!(file.config.schedule.map_hz, 4.0);
         let count = reference().iter().find(|setting| setting.kind == "integer").unwrap();
         assert!(RobotFile::parse("", &[format!("{}=2.5", count.key)]).is_err(), "{}", count.key);
+    }
+
+    #[test]
+    fn one_key_of_a_table_leaves_the_rest_of_the_robot_as_it_is() {
+        let file = parse("[docking.planner]\nreach_m = 1.25\n").unwrap();
+        let mut expected = RobotConfig::default();
+        expected.docking.planner.reach = 1.25;
+        assert_eq!(file.config, expected);
     }
 }
