@@ -263,5 +263,5 @@ fn each_number_of_the_goal_approach_is_checked_by_name() {
     assert_eq!(field(GoalApproachConfig { near: 6.0, ..good() }), "docking.near");
     assert_eq!(field(GoalApproachConfig { arc_margin: -0.1, ..good() }), "docking.arc_margin");
     assert_eq!(field(GoalApproachConfig { time_limit: f64::NAN, ..good() }), "docking.time_limit");
-    assert_eq!(field(GoalApproachConfig { most_stops: 0, ..good() }), "docking.most_stops");
+    assert_eq!(field(GoalApproachConfig { max_stops: 0, ..good() }), "docking.max_stops");
 }
