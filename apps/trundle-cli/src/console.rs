@@ -2,8 +2,12 @@
 #![expect(clippy::print_stderr, reason = "errors go to standard error")]
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use std::io::{IsTerminal, Write};
+use std::io::{ErrorKind, IsTerminal, Write};
+use std::sync::OnceLock;
 use trundle::app::{AppError, Progress, StepProgress};
+
+/// The first refusal of standard output.
+static PRINT_FAILURE: OnceLock<std::io::Error> = OnceLock::new();
 
 /// Prints the reason of a failure on standard error.
 pub fn print_error(error: &AppError) {
@@ -22,8 +26,19 @@ pub fn warn(message: &str) {
 
 /// Prints a result on standard output.
 pub fn print(text: &str) {
-    // A reader that has gone away is no failure of the run.
-    let _ = writeln!(std::io::stdout(), "{text}");
+    let mut out = std::io::stdout();
+    match writeln!(out, "{text}").and_then(|()| out.flush()) {
+        // A reader that has gone away is no failure of the run.
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
+            PRINT_FAILURE.get_or_init(|| error);
+        }
+        _ => {}
+    }
+}
+
+/// Why standard output did not take a result; `None` where it took all.
+pub fn print_failure() -> Option<&'static std::io::Error> {
+    PRINT_FAILURE.get()
 }
 
 /// Prints a table of two columns or more on standard output, columns aligned.

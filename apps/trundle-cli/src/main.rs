@@ -27,6 +27,7 @@ use common_args::Common;
 use outcome::Outcome;
 use std::process::ExitCode;
 use trundle::app::{AppError, stop};
+use trundle::io::abandon_outputs;
 
 fn main() -> ExitCode {
     let matches = with_negative_numbers(Cli::command()).get_matches();
@@ -43,7 +44,13 @@ fn listen(command: &Command) -> Result<(), AppError> {
     use Command::{Demo, Experiment, Map, Replay, Sim, Slam};
     match command {
         Demo(_) | Replay(_) | Slam(_) | Map(_) | Sim(_) | Experiment(_) => stop::listen(),
-        _ => stop::end_at_once(|signal| console::print_stopped(signal.name(), "; nothing was written")),
+        _ => stop::end_at_once(|signal| {
+            let is_ending = abandon_outputs();
+            if is_ending {
+                console::print_stopped(signal.name(), "; nothing was written");
+            }
+            is_ending
+        }),
     }
 }
 

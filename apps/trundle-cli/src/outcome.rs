@@ -45,6 +45,10 @@ pub const EXIT_CODES: &str = "Exit codes:\n  \
 
 /// The exit code of a command that writes into `folders`; says on the terminal why it is not 0.
 pub fn end(result: Result<Outcome, AppError>, folders: &[PathBuf]) -> u8 {
+    let result = match console::print_failure() {
+        Some(error) if result.is_ok() => Err(AppError::Io(IoError::unprinted(error))),
+        _ => result,
+    };
     let code = match &result {
         Ok(Outcome::Reached) => 0,
         Ok(Outcome::Missed) | Err(AppError::Stopped) => CODE_MISSED,

@@ -2,6 +2,7 @@
 
 use crate::console;
 use crate::outcome::Outcome;
+use crate::output_args::write_file;
 use clap::Args;
 use clap_complete::Shell;
 use clap_mangen::Man;
@@ -24,7 +25,7 @@ pub struct CompletionsArgs {
 #[derive(Debug, Args)]
 #[command(after_help = "Example: trundle man ~/.local/share/man/man1 && man trundle-slam")]
 pub struct ManArgs {
-    /// Folder for the pages: trundle.1, trundle-slam.1 and so on.
+    /// Folder for the pages: trundle.1, trundle-slam.1 and so on. A page of other content that is there is kept as trundle.1.1.
     pub dir: PathBuf,
 }
 
@@ -38,7 +39,6 @@ pub fn print_completions(args: &CompletionsArgs, mut program: clap::Command) -> 
 
 /// `trundle man DIR`, of the program's command line.
 pub fn write_man_pages(args: &ManArgs, program: clap::Command) -> Result<Outcome, AppError> {
-    std::fs::create_dir_all(&args.dir).map_err(|error| unwritable(&args.dir, &error))?;
     let mut command = program.disable_help_subcommand(true);
     command.build();
     write_pages(&command, &args.dir)?;
@@ -50,12 +50,7 @@ fn write_pages(command: &clap::Command, dir: &Path) -> Result<(), AppError> {
     let man = Man::new(command.clone());
     let path = dir.join(man.get_filename());
     let mut page = Vec::new();
-    man.render(&mut page)
-        .and_then(|()| std::fs::write(&path, page))
-        .map_err(|error| unwritable(&path, &error))?;
+    man.render(&mut page).map_err(|error| AppError::Environment(format!("{}: {error}", path.display())))?;
+    write_file(&path, &page)?;
     command.get_subcommands().try_for_each(|part| write_pages(part, dir))
-}
-
-fn unwritable(path: &Path, error: &std::io::Error) -> AppError {
-    AppError::Environment(format!("cannot write {}: {error}", path.display()))
 }

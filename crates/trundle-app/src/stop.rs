@@ -92,15 +92,17 @@ pub fn listen() -> Result<(), AppError> {
     on_signal(|signal| _ = SIGNAL.compare_exchange(0, signal.0, Ordering::Relaxed, Ordering::Relaxed))
 }
 
-/// Ends the program at the first Ctrl-C or SIGTERM, after `say`: for commands that have written nothing until their end.
+/// Ends the program at Ctrl-C or SIGTERM where `prepare` returns true: for commands that have written nothing until their end. Where it
+/// returns false the program is at its end, and goes on.
 ///
 /// # Errors
 /// When the system refuses.
 #[cfg(unix)]
-pub fn end_at_once(say: impl Fn(StopSignal) + Send + 'static) -> Result<(), AppError> {
+pub fn end_at_once(prepare: impl Fn(StopSignal) -> bool + Send + 'static) -> Result<(), AppError> {
     on_signal(move |signal| {
-        say(signal);
-        std::process::exit(i32::from(signal.exit_code()));
+        if prepare(signal) {
+            std::process::exit(i32::from(signal.exit_code()));
+        }
     })
 }
 
@@ -128,7 +130,7 @@ pub fn listen() -> Result<(), AppError> {
 
 /// Elsewhere Ctrl-C ends the program at once.
 #[cfg(not(unix))]
-pub fn end_at_once(_say: impl Fn(StopSignal) + Send + 'static) -> Result<(), AppError> {
+pub fn end_at_once(_prepare: impl Fn(StopSignal) -> bool + Send + 'static) -> Result<(), AppError> {
     Ok(())
 }
 

@@ -1,8 +1,8 @@
 //! The four corridor scenarios of Hong (2024), by the paper's method and by the optimal one.
 
 use crate::ExperimentReport;
-use trundle_app::AppError;
 use trundle_app::dock::{DockingObstacles, manoeuvre_picture, motions, step_pictures, steps_csv, view};
+use trundle_app::{AppError, stop};
 use trundle_core::{Pose2, Vector2, difference_of_angles};
 use trundle_docking::corridor::{Problem, Scenario};
 use trundle_docking::{DockingConfig, DockingPlan, DockingPlanner, Method, Solution};
@@ -33,7 +33,7 @@ pub fn run() -> Result<CorridorOutcome, AppError> {
 
 impl ExperimentReport for CorridorOutcome {
     fn is_success(&self) -> bool {
-        self.trials.iter().all(CorridorTrial::is_good)
+        self.trials.len() == 2 * Scenario::ALL.len() && self.trials.iter().all(CorridorTrial::is_good)
     }
 
     fn table(&self) -> Vec<Vec<String>> {
@@ -75,6 +75,9 @@ fn trials() -> Result<Vec<CorridorTrial>, AppError> {
     let mut trials = Vec::new();
     for scenario in Scenario::ALL {
         for (method, name) in [(Method::Hong24, "paper"), (Method::Optimal, "optimal")] {
+            if stop::is_requested(|| format!("{} of 8 plans", trials.len())) {
+                return if trials.is_empty() { Err(AppError::Stopped) } else { Ok(trials) };
+            }
             let docker = DockingPlanner::new(DockingConfig { method, ..DockingConfig::default() })?;
             let problem = scenario.problem();
             let plan = docker

@@ -109,6 +109,15 @@ impl IoError {
         Err(Self::Incomplete { folder: Some(folder.to_owned()), problems })
     }
 
+    /// Results that standard output did not take.
+    #[must_use]
+    pub fn unprinted(error: &std::io::Error) -> Self {
+        let source =
+            error.raw_os_error().map_or_else(|| error.kind().into(), std::io::Error::from_raw_os_error);
+        let problem = Self::System { path: "standard output".into(), action: "write to", source };
+        Self::Incomplete { folder: None, problems: vec![problem] }
+    }
+
     pub(crate) fn system(path: &Path, action: &'static str) -> impl FnOnce(std::io::Error) -> Self {
         move |source| Self::System { path: path.to_owned(), action, source }
     }

@@ -65,7 +65,7 @@ pub use map::{
     GraphFile, KeepOutFile, MapFile, MapImage, SpeedFile, map_pgm, map_picture, map_yaml, read_graph,
     read_keep_out_mask, read_map, read_map_file, read_places, read_speed_mask, write_map, write_map_as,
 };
-pub use output::{InputFiles, OutputFile, OutputFolder, keep_aside};
+pub use output::{InputFiles, OutputFile, OutputFolder, abandon_outputs, keep_aside};
 pub use recording::{
     FeatureMarks, KeyframeGraph, LandmarkCloud, PoseInFrame, PosesInFrame, RecordedMessage, Recorder,
     RecordingCut, RecordingReader,

@@ -1,6 +1,7 @@
 //! An output folder that appears complete or not at all, and takes the place of nothing but an earlier run.
 
 mod file_identity;
+mod fingerprint;
 mod inputs;
 mod marker;
 mod place;
@@ -9,13 +10,16 @@ mod single_file;
 #[cfg(test)]
 mod tests;
 mod tree;
+mod unfinished;
 
 pub use inputs::InputFiles;
 pub use single_file::{OutputFile, keep_aside};
+pub use unfinished::abandon_outputs;
 
 use crate::{IoError, Recorder};
 use file_identity::is_on_other_disk;
-use place::{OutputPlace, with_ending};
+use marker::{MARKER_FILE, RunMarker};
+use place::{OutputPlace, free_name, with_ending};
 use scratch::Scratch;
 use std::fs::{self, File};
 use std::io::{BufWriter, ErrorKind};
@@ -146,16 +150,27 @@ impl OutputFolder {
             self.write(name, &content())?;
         }
         self.made.clear();
-        let filled = self.place.fill(&self.scratch.stage());
+        self.write_marker();
+        let filled = unfinished::complete(|| self.place.fill(&self.scratch.stage()));
         filled.map_err(|problem| self.rescued(problem))?;
         let unwritten = std::mem::take(&mut self.unwritten).into_inner();
         IoError::incomplete(self.target(), unwritten.unwrap_or_else(PoisonError::into_inner))?;
         Ok(self.target().to_owned())
     }
 
+    /// Lists the results in the stage. Where the disk does not take the list, the next run finds a folder that it does not know.
+    fn write_marker(&self) {
+        let stage = self.scratch.stage();
+        if let Err(error) = RunMarker::of(&stage).and_then(|marker| marker.write(&stage)) {
+            let _ = fs::remove_file(stage.join(MARKER_FILE));
+            self.leave_out(IoError::system(&self.target().join(MARKER_FILE), "write")(error));
+        }
+    }
+
     /// The results beside their place, where they cannot be moved to it.
     fn rescued(&self, problem: IoError) -> IoError {
-        let rescue = self.place.real.with_file_name(with_ending(&self.place.real, ".new"));
+        let beside = self.place.real.with_file_name(with_ending(&self.place.real, ".new"));
+        let rescue = if beside.exists() { free_name(&beside) } else { beside };
         match fs::rename(self.scratch.stage(), &rescue) {
             Ok(()) => IoError::Incomplete { folder: Some(rescue), problems: vec![problem] },
             Err(_) => problem,

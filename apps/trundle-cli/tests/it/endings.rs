@@ -166,3 +166,71 @@ fn what_a_full_disk_does_not_take_is_named_and_the_rest_is_there() {
     let output = trundle(&["dock", "hong24-a", "--write-problem", "/dev/full"]);
     assert_eq!(output.status.code(), Some(3), "{}", String::from_utf8_lossy(&output.stderr));
 }
+
+/// At whatever moment a short command is stopped: all of its results are there, or no trace of them.
+#[test]
+fn a_stopped_short_command_leaves_all_or_nothing() {
+    let scratch = tempfile::tempdir().unwrap();
+    for delay_ms in (0..120).step_by(8) {
+        let out = scratch.path().join(format!("out{delay_ms}"));
+        let child = start(&["dock", "hong24-d", "--out", text(&out)]);
+        std::thread::sleep(Duration::from_millis(delay_ms));
+        let _ = Command::new("kill").args(["-TERM", &child.id().to_string()]).stderr(Stdio::null()).status();
+        let output = child.wait_with_output().unwrap();
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert!(!writes_in(scratch.path()), "{delay_ms} ms: a hidden folder is left: {said}");
+        match output.status.code() {
+            Some(0) => assert!(out.join("summary.json").exists(), "{delay_ms} ms"),
+            Some(143) => {
+                assert!(!out.exists() && said.contains("nothing was written"), "{delay_ms} ms: {said}")
+            }
+            other => assert!(other.is_none(), "{delay_ms} ms: {other:?} {said}"), // before it listens
+        }
+    }
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn a_standard_output_that_is_full_is_an_incomplete_result() {
+    let full = || fs::File::options().write(true).open("/dev/full").unwrap();
+    for args in [&["config"][..], &["completions", "bash"], &["data", "fetch-list"], &["sim", "--list"]] {
+        let program = || Command::new(env!("CARGO_BIN_EXE_trundle"));
+        let output = program().args(args).stdin(Stdio::null()).stdout(full()).output().unwrap();
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(3), "{args:?}: {said}");
+        assert!(said.contains("cannot write to standard output: the disk is full"), "{args:?}: {said}");
+    }
+}
+
+#[test]
+fn man_pages_take_the_place_of_no_other_file() {
+    let scratch = tempfile::tempdir().unwrap();
+    let (pages, important) = (scratch.path().join("man1"), scratch.path().join("important"));
+    fs::create_dir(&pages).unwrap();
+    fs::write(&important, "IMPORTANT").unwrap();
+    std::os::unix::fs::symlink(&important, pages.join("trundle.1")).unwrap();
+    fs::write(pages.join("trundle-map.1"), "MINE").unwrap();
+    assert!(trundle(&["man", text(&pages)]).status.success());
+    assert_eq!(fs::read_to_string(&important).unwrap(), "IMPORTANT");
+    assert_eq!(fs::read_to_string(pages.join("trundle-map.1.1")).unwrap(), "MINE");
+    assert!(fs::read_to_string(pages.join("trundle-map.1")).unwrap().contains("trundle"));
+    let count = || fs::read_dir(&pages).unwrap().count();
+    let before = count();
+    assert!(trundle(&["man", text(&pages)]).status.success());
+    assert_eq!(count(), before, "the same pages again are no new files");
+}
+
+#[test]
+fn a_disk_that_takes_no_image_is_named() {
+    let scratch = tempfile::tempdir().unwrap();
+    let out = scratch.path().join("out");
+    let program = env!("CARGO_BIN_EXE_trundle");
+    let script = format!(
+        "trap '' XFSZ; ulimit -f 8; exec {program} sim office --duration 0.3 --record {}",
+        text(&out)
+    );
+    let output = Command::new("sh").args(["-c", &script]).stdin(Stdio::null()).output().unwrap();
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(3), "{said}");
+    assert!(said.contains("cannot write") && !said.contains("no image to write"), "{said}");
+}

@@ -59,7 +59,11 @@ impl RecordedRun {
         if self.images > 0 {
             return Ok(());
         }
-        Err(AppError::Input(format!("{}: {}", self.file.display(), RecordingContent::NO_IMAGES)))
+        let name = self.file.display();
+        Err(AppError::Input(match &self.cut_report {
+            Some(report) => format!("{name}: no image before the cut: {report}"),
+            None => format!("{name}: {}", RecordingContent::NO_IMAGES),
+        }))
     }
 
     /// The robot that made it; `None` where the recording names none.

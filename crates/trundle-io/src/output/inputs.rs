@@ -4,7 +4,7 @@ use super::file_identity::{FileIdentity, is_same, resolved};
 use super::tree::files_below;
 use crate::IoError;
 use std::collections::HashMap;
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 
 /// The files and folders that a command reads, with the files that these name: no output may take their place.
 #[derive(Debug, Clone, Default)]
@@ -77,9 +77,17 @@ impl InputFiles {
 
 /// Whether `path` is `place` or lies in it, by its name or by where its links lead.
 fn is_within(path: &Path, place: &Path) -> bool {
-    let absolute = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
-    let real = resolved(path);
+    let (absolute, real) = (without_parent_parts(path), resolved(path));
     absolute.ancestors().chain(real.ancestors()).any(|part| is_same(part, place))
+}
+
+/// The path from the root; each `..` is the folder above that where the path before it leads, other links are not followed.
+fn without_parent_parts(path: &Path) -> PathBuf {
+    let absolute = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+    absolute.components().fold(PathBuf::new(), |before, part| match part {
+        Component::ParentDir => resolved(&before).parent().map_or(before, Path::to_owned),
+        part => before.join(part),
+    })
 }
 
 fn holds(place: &Path, input: &Path) -> IoError {
@@ -108,10 +116,25 @@ fn named_in_text(path: &Path) -> Vec<PathBuf> {
     let (true, true, Some(folder)) = (is_naming, is_small, path.parent()) else { return Vec::new() };
     let text = std::fs::read(path).map(|bytes| String::from_utf8_lossy(&bytes).into_owned());
     let text = text.unwrap_or_default();
-    let words = text.split(|c: char| c.is_whitespace() || "\"'=,[]{}".contains(c));
-    let files = words.filter(|word| !word.is_empty()).map(|word| folder.join(word));
+    let names = text.lines().flat_map(names_in_line).filter(|name| !name.is_empty());
+    let files = names.map(|name| folder.join(name));
     files.filter(|file| file.is_file()).collect()
 }
+
+/// What may be the name of a file in a line: each word, and, since names may hold blanks, what is between quotes or marks, and the
+/// rest of the line from a word on.
+fn names_in_line(line: &str) -> impl Iterator<Item = &str> {
+    let words = line.split(|c: char| c.is_whitespace() || MARKS.contains(c));
+    let pieces = line.split(|c: char| MARKS.contains(c)).map(str::trim);
+    let starts = line.match_indices(char::is_whitespace).map(|(at, _)| at).take(MAX_WORDS);
+    let rests = starts.filter_map(|at| line.get(at..)).map(str::trim);
+    words.chain(pieces).chain(rests)
+}
+
+/// Characters around the name of a file in a text.
+const MARKS: &str = "\"'=,[]{}";
+/// Number of words of a line at which a name with blanks may begin. A later name is not found. Source: ours.
+const MAX_WORDS: usize = 12;
 
 #[cfg(test)]
 mod tests {
@@ -147,6 +170,18 @@ mod tests {
     }
 
     #[test]
+    fn a_folder_that_a_path_leaves_again_holds_no_input() {
+        let scratch = tempfile::tempdir().unwrap();
+        let (a, b) = (scratch.path().join("a"), scratch.path().join("b"));
+        [&a, &b].iter().for_each(|folder| fs::create_dir(folder).unwrap());
+        fs::write(scratch.path().join("log"), "1").unwrap();
+        fs::write(a.join("map"), "1").unwrap();
+        assert_eq!(refusal(&[&a.join("../log")], &a), None);
+        assert_eq!(refusal(&[&b.join("../a/../log")], &a), None);
+        assert!(refusal(&[&b.join("../a/map")], &a).is_some());
+    }
+
+    #[test]
     #[cfg(unix)]
     fn links_to_and_from_an_input_are_followed() {
         let scratch = tempfile::tempdir().unwrap();
@@ -173,5 +208,14 @@ mod tests {
         fs::write(maps.join("a.yaml"), "image: \"../pictures/a.pgm\"\nresolution: 0.05\n").unwrap();
         assert!(refusal(&[&maps.join("a.yaml")], &pictures).unwrap().contains("a.pgm"));
         assert!(refusal(&[&maps], &pictures).is_some());
+        let blank = scratch.path().join("two words");
+        fs::create_dir(&blank).unwrap();
+        fs::write(blank.join("a b.pgm"), "P5").unwrap();
+        for text in
+            ["image: \"../two words/a b.pgm\"", "image: ../two words/a b.pgm", "1.5 ../two words/a b.pgm"]
+        {
+            fs::write(maps.join("b.yaml"), text).unwrap();
+            assert!(refusal(&[&maps.join("b.yaml")], &blank).is_some(), "{text}");
+        }
     }
 }

@@ -1,7 +1,8 @@
 //! The file by which trundle knows a folder that it wrote, and what it wrote there.
 
+use super::fingerprint::Fingerprint;
 use super::tree::files_below;
-use std::collections::BTreeSet;
+use std::collections::BTreeMap;
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -10,6 +11,8 @@ pub(super) const MARKER_FILE: &str = ".trundle-run";
 
 /// The first line of the marker file.
 const TITLE: &str = "# A folder of results of trundle.";
+/// Between the path of a file and its content in the marker.
+const SEPARATOR: char = '\t';
 /// The rest of its head.
 const HEAD: &str =
     "# The next run into this folder keeps these files in a folder beside it, whose name ends in .1.\n";
@@ -17,7 +20,8 @@ const HEAD: &str =
 /// The files that a run wrote into its folder, by their paths in it.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub(super) struct RunMarker {
-    files: BTreeSet<PathBuf>,
+    /// `None` where the content is not known.
+    files: BTreeMap<PathBuf, Option<Fingerprint>>,
 }
 
 impl RunMarker {
@@ -26,8 +30,9 @@ impl RunMarker {
     /// # Errors
     /// When the folder cannot be read.
     pub(super) fn of(folder: &Path) -> io::Result<Self> {
-        let inside = |path: PathBuf| path.strip_prefix(folder).map(Path::to_owned).ok();
-        Ok(Self { files: files_below(folder)?.into_iter().filter_map(inside).collect() })
+        let entry =
+            |path: PathBuf| Some((path.strip_prefix(folder).ok()?.to_owned(), Fingerprint::of(&path).ok()));
+        Ok(Self { files: files_below(folder)?.into_iter().filter_map(entry).collect() })
     }
 
     /// The marker in `folder`; `None` where there is none of trundle's.
@@ -35,7 +40,7 @@ impl RunMarker {
         let text = std::fs::read_to_string(folder.join(MARKER_FILE)).ok()?;
         let mut lines = text.lines();
         (lines.next() == Some(TITLE)).then_some(())?;
-        Some(Self { files: lines.filter(|line| !line.starts_with('#')).map(PathBuf::from).collect() })
+        Some(Self { files: lines.filter(|line| !line.starts_with('#')).map(entry).collect() })
     }
 
     /// Writes the marker into `folder`.
@@ -43,11 +48,24 @@ impl RunMarker {
     /// # Errors
     /// When it cannot be written.
     pub(super) fn write(&self, folder: &Path) -> io::Result<()> {
-        let lines = self.files.iter().map(|path| {
+        let lines = self.files.iter().map(|(path, content)| {
             let parts: Vec<_> = path.iter().map(|part| part.to_string_lossy()).collect();
-            parts.join("/") + "\n"
+            let content = content.map_or_else(String::new, |content| format!("{SEPARATOR}{content}"));
+            parts.join("/") + &content + "\n"
         });
         std::fs::write(folder.join(MARKER_FILE), format!("{TITLE}\n{HEAD}{}", lines.collect::<String>()))
+    }
+
+    /// The files of `folder` that are other than the run wrote them. Files of unknown content are taken as unchanged.
+    pub(super) fn changed_files(&self, folder: &Path) -> Vec<PathBuf> {
+        let is_changed = |path: &PathBuf, content: &Fingerprint| {
+            Fingerprint::of(&folder.join(path)).is_ok_and(|found| found != *content)
+        };
+        let changed = self
+            .files
+            .iter()
+            .filter(|(path, content)| content.as_ref().is_some_and(|content| is_changed(path, content)));
+        changed.map(|(path, _)| path.clone()).collect()
     }
 
     /// The files of `folder` that the run did not write.
@@ -55,9 +73,18 @@ impl RunMarker {
     /// # Errors
     /// When the folder cannot be read.
     pub(super) fn foreign_files(&self, folder: &Path) -> io::Result<Vec<PathBuf>> {
-        let found = Self::of(folder)?.files.into_iter();
-        Ok(found.filter(|path| path != Path::new(MARKER_FILE) && !self.files.contains(path)).collect())
+        let found = files_below(folder)?
+            .into_iter()
+            .filter_map(|path| Some(path.strip_prefix(folder).ok()?.to_owned()));
+        Ok(found.filter(|path| path != Path::new(MARKER_FILE) && !self.files.contains_key(path)).collect())
     }
+}
+
+/// A line of the marker: the path, and behind a separator the content. Lines without one are of trundle 0.1.0.
+fn entry(line: &str) -> (PathBuf, Option<Fingerprint>) {
+    let parts = line.rsplit_once(SEPARATOR);
+    let known = parts.and_then(|(path, content)| Some((path.into(), Some(content.parse().ok()?))));
+    known.unwrap_or_else(|| (line.into(), None))
 }
 
 #[cfg(test)]
@@ -76,8 +103,15 @@ mod tests {
         marker.write(folder).unwrap();
         assert_eq!(RunMarker::read(folder), Some(marker.clone()));
         assert!(marker.foreign_files(folder).unwrap().is_empty());
+        assert!(marker.changed_files(folder).is_empty());
+        fs::write(folder.join("a.txt"), "2").unwrap();
+        assert_eq!(marker.changed_files(folder), [Path::new("a.txt")]);
         fs::write(folder.join("rgb/notes"), "mine").unwrap();
         assert_eq!(marker.foreign_files(folder).unwrap(), [Path::new("rgb/notes")]);
+        fs::write(folder.join(MARKER_FILE), format!("{TITLE}\na.txt\nrgb/1.png\n")).unwrap();
+        let former = RunMarker::read(folder).unwrap();
+        assert!(former.changed_files(folder).is_empty(), "of an unknown content");
+        assert_eq!(former.foreign_files(folder).unwrap(), [Path::new("rgb/notes")]);
         fs::write(folder.join(MARKER_FILE), "something else").unwrap();
         assert_eq!(RunMarker::read(folder), None);
     }

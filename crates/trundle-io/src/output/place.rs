@@ -37,6 +37,7 @@ impl OutputPlace {
             let last = place.last_run();
             inputs.require_apart(&last)?;
             place.require_own(&last)?;
+            place.require_unchanged(&last)?;
         }
         Ok(place)
     }
@@ -66,6 +67,18 @@ impl OutputPlace {
         foreign.first().map_or(Ok(true), |first| Err(self.foreign(folder, first, foreign.len())))
     }
 
+    /// Refuses the kept run, which the next one deletes, where a file of it was edited since trundle wrote it.
+    fn require_unchanged(&self, last: &Path) -> Result<(), IoError> {
+        let changed = RunMarker::read(last).map(|marker| marker.changed_files(last)).unwrap_or_default();
+        let Some(first) = changed.first() else { return Ok(()) };
+        let more = if changed.len() > 1 { format!(" and {} more", changed.len() - 1) } else { String::new() };
+        let problem = format!(
+            "this run would be deleted, but a file of it was changed after the run ({}{more}); move the folder away",
+            first.display()
+        );
+        Err(IoError::malformed(last, problem))
+    }
+
     fn foreign(&self, folder: &Path, first: &Path, count: usize) -> IoError {
         let name = first.strip_prefix(folder).unwrap_or(first).display();
         let more = if count > 1 { format!(" and {} more", count - 1) } else { String::new() };
@@ -76,18 +89,16 @@ impl OutputPlace {
         IoError::malformed(if folder == self.real { &self.target } else { folder }, problem)
     }
 
-    /// Moves everything in `stage` to the place; what a run left there goes to [`OutputPlace::last_run`].
+    /// Moves everything in `stage`, which has its marker, to the place; what a run left there goes to [`OutputPlace::last_run`].
     ///
     /// # Errors
     /// When the folder has got foreign files meanwhile, or something cannot be moved.
     pub fn fill(&self, stage: &Path) -> Result<(), IoError> {
-        RunMarker::of(stage)
-            .and_then(|marker| marker.write(stage))
-            .map_err(IoError::system(&self.target, "write"))?;
         if !self.real.exists() {
             return fs::rename(stage, &self.real).map_err(IoError::system(&self.target, "write"));
         }
         if self.require_own(&self.real)? {
+            self.require_unchanged(&self.last_run())?;
             self.keep_last_run().map_err(IoError::system(&self.last_run(), "write"))?;
         }
         move_entries(stage, &self.real, |_| true).map_err(IoError::system(&self.target, "write"))
@@ -104,6 +115,13 @@ impl OutputPlace {
         fs::copy(self.real.join(MARKER_FILE), last.join(MARKER_FILE))?;
         move_entries(&self.real, &last, |name| name != MARKER_FILE)
     }
+}
+
+/// The first of the names of `path` with `.1`, `.2`, ... behind it at which nothing is.
+pub(super) fn free_name(path: &Path) -> PathBuf {
+    let is_free = |name: &PathBuf| !name.exists() && !name.is_symlink();
+    let names = (1..).map(|n: u64| path.with_file_name(with_ending(path, &format!(".{n}"))));
+    names.into_iter().find(is_free).unwrap_or_else(|| path.to_owned())
 }
 
 /// The name of `path` with `ending` behind it.

@@ -1,6 +1,7 @@
 //! The hidden folder that results are written to before they appear, and the sweeping of one that a killed run left.
 
 use super::file_identity::resolved;
+use super::unfinished;
 use std::fs::{self, File};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -28,6 +29,7 @@ impl Scratch {
     /// When it cannot be made.
     pub(super) fn create(beside: &Path, target: &Path) -> io::Result<Self> {
         let dir = tempfile::Builder::new().prefix(PREFIX).tempdir_in(beside)?;
+        unfinished::add(dir.path());
         let mut owner = File::create(dir.path().join(OWNER_FILE))?;
         // On a file system without locks nothing is swept either.
         let _ = owner.try_lock();
@@ -44,6 +46,7 @@ impl Scratch {
     /// Removes it with all that is in it.
     pub(super) fn remove(&self) {
         let _ = fs::remove_dir_all(self.dir.path());
+        unfinished::forget(self.dir.path());
     }
 }
 

@@ -1,8 +1,9 @@
 //! A single file of results, which appears whole or not at all and takes the place of no other.
 
 use super::inputs::InputFiles;
-use super::place::with_ending;
+use super::place::free_name;
 use super::scratch::Scratch;
+use super::unfinished;
 use super::{missing_above, parent, remove_empty};
 use crate::IoError;
 use std::fs::{self, File};
@@ -74,8 +75,10 @@ impl OutputFile {
             return Ok(());
         }
         fs::write(staged, bytes)?;
-        keep(&self.path)?;
-        fs::rename(staged, &self.path)
+        unfinished::complete(|| {
+            keep(&self.path)?;
+            fs::rename(staged, &self.path)
+        })
     }
 }
 
@@ -98,9 +101,7 @@ fn keep(path: &Path) -> io::Result<()> {
     if !path.is_file() {
         return Ok(());
     }
-    let names = (1..).map(|n: u64| path.with_file_name(with_ending(path, &format!(".{n}"))));
-    let free = names.into_iter().find(|name| !name.exists() && !name.is_symlink());
-    free.map_or(Ok(()), |name| fs::rename(path, name))
+    fs::rename(path, free_name(path))
 }
 
 #[cfg(test)]

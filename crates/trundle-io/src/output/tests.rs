@@ -95,6 +95,36 @@ fn a_folder_that_gets_foreign_files_during_the_run_keeps_them_and_the_results_li
 }
 
 #[test]
+fn results_that_cannot_be_moved_get_a_name_that_is_free() {
+    let dir = tempfile::tempdir().unwrap();
+    let target = dir.path().join("run");
+    for (number, name) in ["run.new", "run.new.1", "run.new.2"].into_iter().enumerate() {
+        let out = OutputFolder::create(&target).unwrap();
+        out.write("map", number.to_string().as_bytes()).unwrap();
+        fs::create_dir(&target).unwrap();
+        fs::write(target.join("notes"), "mine").unwrap();
+        assert!(out.commit().unwrap_err().to_string().ends_with(name));
+        assert_eq!(fs::read(dir.path().join(name).join("map")).unwrap(), number.to_string().as_bytes());
+        fs::remove_dir_all(&target).unwrap();
+    }
+}
+
+#[test]
+fn an_edited_file_of_a_kept_run_is_not_deleted() {
+    let dir = tempfile::tempdir().unwrap();
+    let target = dir.path().join("run");
+    run(&target, "map", "1");
+    fs::write(target.join("map"), "cleaned by hand").unwrap();
+    run(&target, "map", "2");
+    let sentence = OutputFolder::create(&target).unwrap_err().to_string();
+    assert!(
+        sentence.contains("run.1: this run would be deleted") && sentence.contains("(map)"),
+        "{sentence}"
+    );
+    assert_eq!(fs::read(dir.path().join("run.1/map")).unwrap(), b"cleaned by hand");
+}
+
+#[test]
 fn an_input_in_the_folder_of_the_last_run_is_not_lost() {
     let dir = tempfile::tempdir().unwrap();
     let target = dir.path().join("run");

@@ -245,7 +245,7 @@ fn broken((path, encoding): (&Path, Encoding), read: u64, error: &McapError) -> 
         }
         McapError::RecordTooLarge { len, .. } => {
             format!(
-                "the recording is broken before byte {read}: a length of {len} bytes is longer than its record or the file"
+                "the recording is broken or cut before byte {read}: a length of {len} bytes is longer than its record or the file{hint}"
             )
         }
         other => format!("the recording is broken before byte {read}: {other}"),
