@@ -39,7 +39,7 @@ pub struct SequenceInput {
 
 enum Source {
     Folder(TumSequence),
-    Recording(RecordedRun),
+    Recording(Box<RecordedRun>),
 }
 
 impl SequenceInput {
@@ -99,7 +99,7 @@ impl SequenceInput {
             tracing::warn!("{name}: {report}");
         }
         let robot = run.robot().cloned().unwrap_or_default();
-        Ok(Self { path: options.path.to_owned(), camera, robot, source: Source::Recording(run) })
+        Ok(Self { path: options.path.to_owned(), camera, robot, source: Source::Recording(Box::new(run)) })
     }
 
     /// Depth units a metre in the images.
