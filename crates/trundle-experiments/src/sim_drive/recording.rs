@@ -43,9 +43,13 @@ impl<'f> DriveRecording<'f> {
     /// An empty folder for the events of `robot`.
     ///
     /// # Errors
-    /// When the base cannot be accepted.
+    /// When the base cannot be accepted, or the disk is short of space.
     pub fn new(folder: &'f OutputFolder, robot: &Simulator) -> Result<Self, AppError> {
         let config = robot.config();
+        let space = FreeSpace::of(&folder.staged(""));
+        if let Some(problem) = space.shortage() {
+            return Err(AppError::Environment(format!("{}: {problem}", folder.target().display())));
+        }
         Ok(Self {
             folder,
             tum: TumWriter::new(folder, *robot.camera(), config.camera_rate_hz),
@@ -53,7 +57,7 @@ impl<'f> DriveRecording<'f> {
             laser: config.laser.as_ref().map(|laser| CarmenLog::new(laser.range_max)),
             base_from_camera: config.base_from_camera,
             waiting: Vec::with_capacity(ENCODED_BATCH),
-            space: FreeSpace::of(&folder.staged("")),
+            space,
             truth: Vec::new(),
             odometry: Vec::new(),
         })
