@@ -16,7 +16,8 @@ pub(crate) struct Pgm {
 }
 
 impl Pgm {
-    /// A PGM of Netpbm: `P5` (binary, 8 or 16 bits) or `P2` (text), comments from `#` to the end of their line.
+    /// A PGM of Netpbm: `P5` (binary, 8 or 16 bits) or `P2` (text), comments from `#` to the end of their line. Behind the pixels
+    /// only blanks may stand.
     pub fn parse(bytes: &[u8]) -> Result<Self, String> {
         let mut scan = Scanner { bytes, at: 2 };
         let binary = match bytes.get(..2) {
@@ -70,18 +71,27 @@ impl<'a> Scanner<'a> {
         word.parse().map_err(|_| format!("{name} is '{}', expected a whole number", excerpt(&word)))
     }
 
-    /// Pixels behind the one blank that ends the header; two bytes each, high first, when `maxval` is above 255.
+    /// Pixels behind the header; two bytes each, high first, when `maxval` is above 255.
     fn binary(&self, pixels: usize, maxval: u16) -> Result<Vec<u16>, String> {
-        let data = self.bytes.get(self.at + 1..).unwrap_or_default();
         let size = if maxval > 255 { 2 } else { 1 };
-        if data.len() < pixels * size {
+        let data = self.behind_header(pixels * size);
+        let Some((data, rest)) = data.split_at_checked(pixels * size) else {
             return Err(format!("truncated: {} of {} bytes of pixels", data.len(), pixels * size));
-        }
-        let data = &data[..pixels * size];
+        };
+        require_blank(rest)?;
         Ok(match size {
             1 => data.iter().map(|&byte| u16::from(byte)).collect(),
             _ => data.as_chunks::<2>().0.iter().map(|&pair| u16::from_be_bytes(pair)).collect(),
         })
+    }
+
+    /// The bytes behind the blank that ends the header. `\r\n` is one blank where the `needed` bytes of pixels come behind both.
+    fn behind_header(&self, needed: usize) -> &'a [u8] {
+        let rest = self.bytes.get(self.at..).unwrap_or_default();
+        match rest.strip_prefix(b"\r\n") {
+            Some(behind) if behind.len() >= needed => behind,
+            _ => rest.get(1..).unwrap_or_default(),
+        }
     }
 
     fn text(&mut self, pixels: usize) -> Result<Vec<u16>, String> {
@@ -97,8 +107,18 @@ impl<'a> Scanner<'a> {
             values
                 .push(value.ok_or_else(|| format!("pixel {i} is '{}', expected a number", excerpt(&word)))?);
         }
+        require_blank(if self.word().is_empty() { &[] } else { &self.bytes[self.at - 1..] })?;
         Ok(values)
     }
+}
+
+/// Refuses what stands behind the last pixel.
+fn require_blank(rest: &[u8]) -> Result<(), String> {
+    if rest.iter().all(u8::is_ascii_whitespace) {
+        return Ok(());
+    }
+    let problem = "more bytes follow the last pixel, expected the end of the file: the size in its header is wrong, or it holds several pictures; save one";
+    Err(problem.to_owned())
 }
 
 #[cfg(test)]
@@ -138,6 +158,22 @@ mod tests {
         ] {
             assert_eq!(parse(bytes).unwrap_err(), problem);
         }
+    }
+
+    #[test]
+    fn lines_of_a_header_may_end_in_two_bytes() {
+        assert_eq!(parse(b"P5\r\n2 1\r\n255\r\n\x07\x08").unwrap().values, [7, 8]);
+        assert_eq!(parse(b"P5\r\n2 1\r\n255\r\n\x07\x08\n").unwrap().values, [7, 8]);
+        assert_eq!(parse(b"P5\r\n1 1\r\n1000\r\n\x03\xe8").unwrap().values, [1000]);
+        assert_eq!(parse(b"P5 2 1 255\r\n\x08").unwrap().values, [10, 8], "the first pixel is 10");
+    }
+
+    #[test]
+    fn pixels_beyond_the_size_are_refused() {
+        for bytes in [&b"P5 1 1 255\n\x07\x08"[..], b"P2 1 1 255\n7 8", b"P5 1 1 9\n\x07P5 1 1 9\n\x07"] {
+            assert!(parse(bytes).unwrap_err().contains("or it holds several pictures"));
+        }
+        assert!(parse(b"P5 1 1 255\n\x07\n").is_ok() && parse(b"P2 1 1 255\n7 # end\n").is_ok());
     }
 
     proptest! {
