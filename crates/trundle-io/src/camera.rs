@@ -3,6 +3,7 @@
 mod depth_scale;
 mod fields;
 mod image_side;
+mod matrix;
 mod open3d;
 mod ros_yaml;
 mod slam_yaml;
@@ -167,6 +168,8 @@ mod tests {
             "cam.toml, line 7: depth_scale is NaN units a metre, expected a finite number above 0"
         );
         assert!(problem(&GOOD.replace("0.026", "2.6")).starts_with("cam.toml, line 13: readout is 2.6 s"));
+        let beside = problem(&GOOD.replace("318.6", "3186"));
+        assert!(beside.contains("line 5: cx is 3186 px, expected 0 to 639 px, inside the image"), "{beside}");
         assert!(problem("width = = 3").starts_with("cam.toml, line 1: "));
         assert!(problem(&GOOD.replace("640", "-640")).starts_with("cam.toml, line 1: "));
         assert_eq!(

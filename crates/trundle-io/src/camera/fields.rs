@@ -20,6 +20,19 @@ impl CameraFields {
     /// The camera, where the numbers make one.
     pub(super) fn camera(&self) -> Result<PinholeCamera, Invalid> {
         self.depth_scale.map_or(Ok(1.0), checked_depth_scale)?;
-        PinholeCamera::new(self.size, self.focal, self.centre, self.lens)?.with_readout(self.readout)
+        let camera = PinholeCamera::new(self.size, self.focal, self.centre, self.lens)?;
+        require_inside("cx", self.centre.0, self.size.0)?;
+        require_inside("cy", self.centre.1, self.size.1)?;
+        camera.with_readout(self.readout)
     }
+}
+
+/// Refuses a principal point beside the image.
+fn require_inside(name: &str, value: f64, side: usize) -> Result<(), Invalid> {
+    let last = side as f64 - 1.0;
+    if (0.0..=last).contains(&value) {
+        return Ok(());
+    }
+    let expected = format!("0 to {last} px, inside the image: is it of an image of another size?");
+    Err(Invalid::new(name, value, "px", expected))
 }

@@ -1,11 +1,12 @@
 //! Open3D's camera intrinsics: JSON.
 
 use super::fields::CameraFields;
+use super::matrix::{CameraMatrix, MatrixOrder};
 use crate::IoError;
 use serde::Deserialize;
 use serde_json::Value;
 use std::path::Path;
-use trundle_core::{Distortion, Invalid};
+use trundle_core::Distortion;
 
 /// The keys of the file, at its top or in a table `intrinsic`.
 #[derive(Deserialize)]
@@ -32,14 +33,12 @@ pub(super) fn parse(path: &Path, text: &str) -> Result<CameraFields, IoError> {
             "expected width, height (px) and intrinsic_matrix, 9 numbers, as Open3D writes them",
         )
     })?;
-    let &[fx, _, _, _, fy, _, cx, cy, _] = &file.intrinsic_matrix[..] else {
-        let found = format!("{} numbers", file.intrinsic_matrix.len());
-        return Err(IoError::field(path)(Invalid::new("intrinsic_matrix", found, "", "9, column by column")));
-    };
+    let matrix = CameraMatrix::parse("intrinsic_matrix", &file.intrinsic_matrix, MatrixOrder::ColumnByColumn)
+        .map_err(IoError::field(path))?;
     let fields = CameraFields {
         size: (file.width, file.height),
-        focal: (fx, fy),
-        centre: (cx, cy),
+        focal: matrix.focal,
+        centre: matrix.centre,
         lens: Distortion::default(),
         depth_scale: file.depth_scale,
         readout: 0.0,
