@@ -19,6 +19,7 @@ pub(crate) use png_depth::encode_grey16;
 pub use png_depth::{decode_depth, decode_raw_depth, encode_depth};
 pub(crate) use png_grey::encode_grey8;
 
+use crate::FileKind;
 use image::{ImageFormat, ImageReader, Limits};
 use jpeg_encoder::{ColorType, Encoder, SamplingFactor};
 use std::io::Cursor;
@@ -54,7 +55,8 @@ pub enum CodecError {
     },
     /// A depth image in another pixel format.
     #[error(
-        "depth image has {found} pixels, expected 16-bit grey ones (PNG, TIFF, PGM) or 32-bit floats in metres (TIFF, OpenEXR): 8 bits are too coarse for a depth"
+        "depth image has {found} pixels, expected 16-bit grey ones (PNG, TIFF, PGM) or 32-bit floats in metres (TIFF, OpenEXR){}",
+        coarse(found)
     )]
     DepthFormat {
         /// For example `8-bit RGB`.
@@ -69,6 +71,11 @@ pub enum CodecError {
     /// Colour and depth do not fit together, or a size is not accepted.
     #[error(transparent)]
     Invalid(#[from] Invalid),
+}
+
+/// Why a format of few bits is refused.
+fn coarse(found: &str) -> &'static str {
+    if found.starts_with("8-bit ") { ": 8 bits are too coarse for a depth" } else { "" }
 }
 
 impl CodecError {
@@ -108,7 +115,10 @@ pub fn decode_color(bytes: &[u8]) -> Result<ColorImage, CodecError> {
     match format {
         ImageFormat::Jpeg if !jpeg_is_whole(bytes) => return Err(failed("the JPEG is truncated")),
         ImageFormat::Jpeg | ImageFormat::Png => {}
-        other => return Err(failed(&format!("{other:?}, expected JPEG or PNG"))),
+        _ => {
+            let found = FileKind::of_bytes(bytes, bytes.len() as u64);
+            return Err(failed(&format!("this is {found}, expected JPEG or PNG; save it as PNG")));
+        }
     }
     let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
     let mut limits = Limits::default();
@@ -173,7 +183,8 @@ pub(crate) mod tests {
         for len in 0..bytes.len() {
             assert!(decode_color(&bytes[..len]).is_err(), "{len} of {}", bytes.len());
         }
-        assert!(decode_color(b"GIF89a...").unwrap_err().to_string().contains("expected JPEG or PNG"));
+        let gif = decode_color(b"GIF89a...").unwrap_err().to_string();
+        assert!(gif.contains("this is a GIF picture, expected JPEG or PNG"), "{gif}");
         assert!(decode_color(b"hello").unwrap_err().to_string().ends_with("neither JPEG nor PNG"));
     }
 

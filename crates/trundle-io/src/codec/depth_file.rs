@@ -3,6 +3,7 @@
 use super::claim::check_size;
 use super::raw_depth::RawDepth;
 use super::{CodecError, decode_raw_depth, exr_depth, tiff_depth};
+use crate::FileKind;
 use crate::pgm::Pgm;
 use image::ImageFormat;
 use trundle_core::{DepthImage, Image};
@@ -17,7 +18,11 @@ pub(crate) fn decode_depth_file(bytes: &[u8], depth_scale: f64) -> Result<DepthI
         Ok(ImageFormat::Tiff) => tiff_depth::decode(bytes)?,
         Ok(ImageFormat::OpenExr) => RawDepth::Metres(exr_depth::decode(bytes)?),
         Ok(ImageFormat::Pnm) => RawDepth::Units(of_pgm(bytes)?),
-        Ok(other) => return Err(CodecError::DepthFormat { found: format!("8-bit {other:?}") }),
+        Ok(_) => {
+            let found = FileKind::of_bytes(bytes, bytes.len() as u64);
+            let problem = format!("this is {found}, expected a PNG, TIFF, PGM or OpenEXR of depths");
+            return Err(CodecError::decode("depth", problem));
+        }
         Err(_) => {
             return Err(CodecError::decode("depth", "no picture, expected a PNG, TIFF, PGM or OpenEXR"));
         }
@@ -134,7 +139,16 @@ mod tests {
                 .contains("8-bit grey pixels, expected 16-bit grey ones")
         );
         assert!(problem(b"P5 1 1 255\n#").contains("8-bit grey pixels"));
-        assert!(problem(b"\xff\xd8\xff\xe0").contains("8-bit Jpeg pixels"));
+        assert!(problem(b"\xff\xd8\xff\xe0").contains("this is a JPEG picture, expected a PNG, TIFF"));
+        for (bytes, found) in [
+            (tiff::<colortype::Gray64Float>(&[2.0; 15]), "64-bit float"),
+            (tiff::<colortype::Gray32>(&[2000; 15]), "32-bit whole-numbered"),
+            (tiff::<colortype::GrayI16>(&[2000; 15]), "16-bit signed whole-numbered"),
+        ] {
+            let said = problem(&bytes);
+            assert!(said.contains(&format!("has {found} pixels, expected 16-bit grey")), "{said}");
+            assert!(!said.contains("too coarse"), "{said}");
+        }
         assert!(problem(b"no image").contains("no picture, expected a PNG, TIFF, PGM or OpenEXR"));
     }
 

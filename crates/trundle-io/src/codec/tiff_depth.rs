@@ -5,6 +5,7 @@ use super::claim::check_size;
 use super::raw_depth::RawDepth;
 use std::io::Cursor;
 use tiff::decoder::{Decoder, DecodingResult, Limits};
+use tiff::tags::Tag;
 use tiff::{ColorType, TiffError};
 use trundle_core::Image;
 
@@ -16,9 +17,13 @@ pub(super) fn decode(bytes: &[u8]) -> Result<RawDepth, CodecError> {
     let (width, height) = (width as usize, height as usize);
     let color = decoder.colortype().map_err(failed)?;
     let bits = match color {
-        ColorType::Gray(bits @ (16 | 32)) => bits,
+        ColorType::Gray(bits @ (16 | 32 | 64)) => bits,
         other => return Err(CodecError::DepthFormat { found: name(other) }),
     };
+    match (bits, sample_format(&mut decoder)) {
+        (16, UNSIGNED) | (32, FLOAT) => {}
+        (bits, format) => return Err(CodecError::DepthFormat { found: grey_name(bits, format) }),
+    }
     let bytes_per_pixel = usize::from(bits) / 8;
     check_size("depth", (width, height), usize::from(bits), bytes.len())?;
     let mut limits = Limits::default();
@@ -28,7 +33,32 @@ pub(super) fn decode(bytes: &[u8]) -> Result<RawDepth, CodecError> {
     match decoder.with_limits(limits).read_image().map_err(failed)? {
         DecodingResult::U16(values) => Ok(RawDepth::Units(Image::new(width, height, values)?)),
         DecodingResult::F32(values) => Ok(RawDepth::Metres(Image::new(width, height, values)?)),
-        _ => Err(CodecError::DepthFormat { found: format!("{bits}-bit whole-numbered") }),
+        _ => Err(CodecError::decode(
+            "depth",
+            "the TIFF is damaged: its pixels are not of the kind that it names",
+        )),
+    }
+}
+
+/// How numbers of pixels are written where the TIFF does not say it, and whole numbers from 0 (TIFF 6.0, `SampleFormat`).
+const UNSIGNED: u16 = 1;
+/// Whole numbers with a sign (TIFF 6.0, `SampleFormat`).
+const SIGNED: u16 = 2;
+/// Floating-point numbers (TIFF 6.0, `SampleFormat`).
+const FLOAT: u16 = 3;
+
+/// How the numbers of the pixels are written.
+fn sample_format(decoder: &mut Decoder<Cursor<&[u8]>>) -> u16 {
+    let formats = decoder.find_tag_unsigned_vec::<u16>(Tag::SampleFormat).ok().flatten();
+    formats.and_then(|formats| formats.first().copied()).unwrap_or(UNSIGNED)
+}
+
+/// The name of grey pixels of a sample format.
+fn grey_name(bits: u8, format: u16) -> String {
+    match format {
+        FLOAT => format!("{bits}-bit float"),
+        SIGNED => format!("{bits}-bit signed whole-numbered"),
+        _ => format!("{bits}-bit whole-numbered"),
     }
 }
 

@@ -1,8 +1,8 @@
 //! Pictures of maps and masks: PGM, PNG or BMP as levels of grey.
 
-use crate::IoError;
 use crate::codec::can_hold;
 use crate::pgm::{MAX_PIXELS, Pgm};
+use crate::{FileKind, IoError};
 use image::{ImageFormat, ImageReader, Limits};
 use png::{BitDepth, ColorType, Decoder, Transformations};
 use std::io::Cursor;
@@ -26,8 +26,10 @@ impl Picture {
         let picture = match image::guess_format(bytes) {
             Ok(ImageFormat::Png) => of_png(bytes),
             Ok(ImageFormat::Bmp) => of_bmp(bytes),
-            Ok(ImageFormat::Pnm) => of_pgm(bytes),
-            Ok(other) => Err(format!("a {other:?} picture, expected PGM, PNG or BMP")),
+            Ok(ImageFormat::Pnm) if FileKind::of_bytes(bytes, bytes.len() as u64) != FileKind::Netpbm => {
+                of_pgm(bytes)
+            }
+            Ok(_) => Err(other_picture(bytes)),
             Err(_) => Err("no picture, expected a PGM, PNG or BMP".to_owned()),
         };
         picture.map_err(|problem| IoError::malformed(path, problem))
@@ -42,6 +44,12 @@ impl Picture {
     pub(super) fn indices(&self) -> impl Iterator<Item = usize> + '_ {
         (0..self.height).rev().flat_map(|row| row * self.width..(row + 1) * self.width)
     }
+}
+
+/// What is wrong with a picture of another format.
+fn other_picture(bytes: &[u8]) -> String {
+    let found = FileKind::of_bytes(bytes, bytes.len() as u64);
+    format!("this is {found}, expected a PGM, PNG or BMP; save it as PNG or PGM")
 }
 
 fn of_pgm(bytes: &[u8]) -> Result<Picture, String> {
@@ -209,8 +217,13 @@ mod tests {
     fn what_is_no_such_picture_is_named() {
         let problem = |bytes: &[u8]| Picture::parse(Path::new("m.png"), bytes).unwrap_err().to_string();
         assert_eq!(problem(b"hello"), "m.png: no picture, expected a PGM, PNG or BMP");
-        assert_eq!(problem(b"\xff\xd8\xff\xe0"), "m.png: a Jpeg picture, expected PGM, PNG or BMP");
-        assert!(problem(b"P6 1 1 255\n...").contains("it starts with neither P5 nor P2"));
+        assert_eq!(
+            problem(b"\xff\xd8\xff\xe0"),
+            "m.png: this is a JPEG picture, expected a PGM, PNG or BMP; save it as PNG or PGM"
+        );
+        assert!(problem(b"GIF89a......").contains("this is a GIF picture, expected"));
+        assert!(problem(b"P6 1 1 255\n...").contains("this is a PBM or PPM picture, expected"));
+        assert!(problem(b"P4 1 1\n.").contains("this is a PBM or PPM picture, expected"));
         let whole = png(ColorType::Grayscale, BitDepth::Eight, &[1, 2, 3, 4], None);
         assert_eq!(problem(&whole[..whole.len() - 20]), "m.png: the PNG is damaged or cut off");
         let mut huge = whole.clone();
