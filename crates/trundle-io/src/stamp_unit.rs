@@ -11,7 +11,10 @@ const MIN_MILLISECONDS: f64 = 1e11;
 const MIN_MICROSECONDS: f64 = 1e14;
 /// Stamp from which on microseconds are none \[us\]: the year 5138. Larger numbers are read as nanoseconds. Source: ours.
 const MIN_NANOSECONDS: f64 = 1e17;
-/// Median step between whole-numbered stamps from which on they are no seconds \[s\]; microseconds are read. Source: ours.
+/// Median step between whole-numbered stamps from which on they are no seconds \[s\]; milliseconds are read. Images and poses 5 s
+/// apart are no sequence. Source: ours.
+const MIN_STEP_MILLISECONDS: f64 = 5.0;
+/// Median step between whole-numbered stamps from which on they are no milliseconds \[ms\]; microseconds are read. Source: ours.
 const MIN_STEP_MICROSECONDS: f64 = 1e3;
 /// Median step between whole-numbered stamps from which on they are no microseconds \[us\]; nanoseconds are read. Source: ours.
 const MIN_STEP_NANOSECONDS: f64 = 1e6;
@@ -71,14 +74,15 @@ impl fmt::Display for StampUnit {
     }
 }
 
-/// The unit of whole-numbered stamps by their median step: sensors do not pause a quarter of an hour between readings.
+/// The unit of whole-numbered stamps by their median step: sensors do not pause for seconds between readings.
 fn by_step(stamps: &[f64]) -> StampUnit {
     let mut steps: Vec<f64> =
         stamps.windows(2).map(|pair| (pair[1] - pair[0]).abs()).filter(|step| *step > 0.0).collect();
     steps.sort_by(f64::total_cmp);
     match steps.get(steps.len() / 2) {
         Some(step) if *step >= MIN_STEP_NANOSECONDS => StampUnit::Nanoseconds,
-        Some(step) if *step >= MIN_STEP_MICROSECONDS => StampUnit::Microseconds,
+        Some(step) if *step > MIN_STEP_MICROSECONDS => StampUnit::Microseconds,
+        Some(step) if *step >= MIN_STEP_MILLISECONDS => StampUnit::Milliseconds,
         _ => StampUnit::Seconds,
     }
 }
@@ -107,7 +111,12 @@ mod tests {
     fn whole_numbers_from_zero_are_judged_by_their_step() {
         assert_eq!(StampUnit::of(&["0", "33333333", "66666666"]), StampUnit::Nanoseconds);
         assert_eq!(StampUnit::of(&["0", "20000", "40000"]), StampUnit::Microseconds);
+        assert_eq!(StampUnit::of(&["0", "33", "67"]), StampUnit::Milliseconds);
+        assert_eq!(StampUnit::of(&["0", "1000", "2000"]), StampUnit::Milliseconds);
+        assert_eq!(StampUnit::of(&["0", "5", "10"]), StampUnit::Milliseconds);
         assert_eq!(StampUnit::of(&["0", "1", "2"]), StampUnit::Seconds);
+        assert_eq!(StampUnit::of(&["0", "4", "8"]), StampUnit::Seconds);
+        assert_eq!(StampUnit::of(&["0.0", "33.0"]), StampUnit::Seconds);
         assert_eq!(StampUnit::of(&["0.0", "20000.0"]), StampUnit::Seconds);
         assert_eq!(StampUnit::of(&["x"]), StampUnit::Seconds);
         assert_eq!(StampUnit::of(&[]), StampUnit::Seconds);
