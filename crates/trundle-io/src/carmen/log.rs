@@ -3,7 +3,7 @@
 use super::line::LaserLine;
 use super::lines::LogLines;
 use super::mount::{mount, scan_of};
-use super::ranges::{is_range, limit};
+use super::ranges::{is_range, limit, no_return_from};
 use super::text::TextLines;
 use crate::IoError;
 use crate::laser_log::{LaserLog, LaserLogOptions, LaserLogScan, LaserLogSkip, LaserMount, Motion};
@@ -66,7 +66,9 @@ impl LaserLog {
         lines: &LogLines,
         options: &LaserLogOptions,
     ) -> Result<(), IoError> {
-        self.max_range = options.max_range.or_else(|| limit(lasers));
+        let found = limit(lasers);
+        self.max_range = options.max_range.or(found);
+        let beyond = options.max_range.or(found.map(no_return_from));
         let mount = mount(&self.sources.scans, lasers, lines, options);
         self.mount = LaserMount { turn: mount.theta, upside_down: options.upside_down };
         let mut motion = Motion::default();
@@ -80,7 +82,7 @@ impl LaserLog {
                 Some([_, odom_from_base]) => Ok(odom_from_base),
                 None => motion.at(laser.stamp),
             };
-            let limit = self.max_range.or(laser.max_range).unwrap_or(f64::INFINITY);
+            let limit = beyond.or(laser.max_range).unwrap_or(f64::INFINITY);
             let scan = odometry
                 .and_then(|pose| Ok((pose, scan_of(laser, mount, lines, limit, options.upside_down)?)));
             match scan {
@@ -205,6 +207,16 @@ mod tests {
         let text: String = (0..30).map(|i| line(81.83 + 0.005 * f64::from(i % 3))).collect();
         let log = read(&text, LaserLogOptions::default()).unwrap();
         assert!(log.scans.iter().all(|s| s.scan.beams() == [Beam::Hit { range: 3.0 }, Beam::Unseen]));
+        assert_eq!(log.max_range, Some(81.84), "the greatest reading itself");
+    }
+
+    #[test]
+    fn tiny_readings_are_no_limit_of_a_laser() {
+        let text = "FLASER 2 0.02 0.02 0 0 0 0 0 0 1 h 1\n".repeat(30);
+        let log = read(&text, LaserLogOptions::default()).unwrap();
+        assert_eq!(log.max_range, None);
+        let cause = crate::empty_map_cause(&log);
+        assert!(cause.contains("half of the ranges are 0.02 m or less"), "{cause}");
     }
 
     /// The angles of the first and last beam of a log's first scan, deg.

@@ -7,10 +7,18 @@ pub(super) fn is_range(range: f64) -> bool {
     range > 0.0 && range.is_finite()
 }
 
-/// The reading at which many beams end, if there is one: a laser without a return says its limit, give or take.
+/// Readings so far below the greatest are the limit too, m. Source: ours.
+const LIMIT_BAND_M: f64 = 0.25;
+/// Greatest reading below which it is no laser's limit, m. Source: ours, a quarter of the URG-04LX's 4 m.
+const MIN_LIMIT_M: f64 = 1.0;
+
+/// The range from which on a beam of a laser with this limit met nothing, m.
+pub(super) fn no_return_from(limit: f64) -> f64 {
+    limit - LIMIT_BAND_M
+}
+
+/// The greatest reading, m, where many beams end about it: a laser without a return says its limit, give or take.
 pub(super) fn limit(lasers: &[(usize, &LaserLine)]) -> Option<f64> {
-    /// Readings so far below the greatest are the limit too, m.
-    const BAND: f64 = 0.25;
     /// Least part of all beams.
     const SHARE: f64 = 0.001;
     let readings = || lasers.iter().flat_map(|(_, l)| &l.ranges).copied().filter(|r| r.is_finite());
@@ -18,7 +26,7 @@ pub(super) fn limit(lasers: &[(usize, &LaserLine)]) -> Option<f64> {
     let (mut many, mut all) = (0_usize, 0_usize);
     for range in readings() {
         all += 1;
-        many += usize::from(range > greatest - BAND);
+        many += usize::from(range > no_return_from(greatest));
     }
-    (many as f64 > SHARE * all as f64 && many > 20).then_some(greatest - BAND)
+    (many as f64 > SHARE * all as f64 && many > 20).then_some(greatest).filter(|limit| *limit >= MIN_LIMIT_M)
 }

@@ -6,6 +6,9 @@ use trundle_core::Beam;
 /// Range that no indoor laser measures, m; larger ranges are in another unit. Source: SICK LMS200, 80 m.
 const MAX_LASER_RANGE_M: f64 = 100.0;
 
+/// Range below which a laser sees its own cover, m; smaller ranges are in another unit. Source: ours.
+const MIN_LASER_RANGE_M: f64 = 0.05;
+
 /// Why nothing is in a map of a log, judged by its ranges.
 #[must_use]
 pub fn empty_map_cause(log: &LaserLog) -> String {
@@ -18,6 +21,11 @@ pub fn empty_map_cause(log: &LaserLog) -> String {
     if median > MAX_LASER_RANGE_M {
         return format!(
             "half of the ranges are {median:.0} m or more, expected at most {MAX_LASER_RANGE_M} m: are they in millimetres?"
+        );
+    }
+    if median < MIN_LASER_RANGE_M {
+        return format!(
+            "half of the ranges are {median} m or less, expected at least {MIN_LASER_RANGE_M} m: is the laser covered, or are they in another unit?"
         );
     }
     format!("{} of {} scans met nothing", log.scans_without_return(), log.scans.len())
