@@ -53,13 +53,15 @@ pub(super) fn times(path: &Path, rows: usize) -> Result<Times, IoError> {
         if stamps.len() == rows {
             return Ok(Times { stamps, is_indexed: false, warnings });
         }
-        warnings.add(
-            &format!("{} times for {rows} poses, not used", stamps.len()),
-            &beside.display().to_string(),
+        let problem = format!(
+            "{} times for {rows} poses, not used: the number of a row is taken as its time in seconds",
+            stamps.len()
         );
+        warnings.add(&problem, &beside.display().to_string());
+    } else {
+        let problem = "KITTI poses have no times and times.txt is not beside them: the number of a row is taken as its time in seconds";
+        warnings.add(problem, &path.display().to_string());
     }
-    let problem = "KITTI poses have no times and times.txt is not beside them: the number of a row is taken as its time in seconds";
-    warnings.add(problem, &path.display().to_string());
     let stamps = (0..rows).map(|row| Stamp::from_nanos(row as i64 * 1_000_000_000)).collect();
     Ok(Times { stamps, is_indexed: true, warnings })
 }

@@ -9,6 +9,9 @@ use std::fmt::Write;
 use std::path::Path;
 use trundle_core::{Pose2, Pose3, Stamp};
 
+/// What is wrong with a file without poses.
+const NO_POSE: &str = "no pose in it, expected lines of: timestamp tx ty tz qx qy qz qw";
+
 /// A trajectory of a file, by rising stamps.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct TrajectoryFile {
@@ -70,8 +73,10 @@ fn parse_trajectory(path: &Path, text: &str, broken_rows: BrokenRows) -> Result<
         file.poses = table.read(|numbers| form.pose(numbers), &mut file.warnings)?;
     }
     if file.poses.is_empty() && broken_rows == BrokenRows::Refused {
-        let expected = "no pose in it, expected lines of: timestamp tx ty tz qx qy qz qw";
-        return Err(IoError::malformed(path, expected));
+        return Err(IoError::malformed(path, NO_POSE));
+    }
+    if file.poses.is_empty() && file.warnings.is_empty() {
+        file.warnings.add(&format!("not used, {NO_POSE}"), &path.display().to_string());
     }
     Ok(file)
 }
@@ -198,6 +203,13 @@ mod tests {
     }
 
     #[test]
+    fn a_file_of_names_alone_that_is_not_needed_is_warned_of() {
+        let text = "# timestamp tx ty tz qx qy qz qw\n";
+        let read = parse_trajectory(Path::new("a.txt"), text, BrokenRows::LeftOut).unwrap();
+        assert!(lines(&read.warnings).starts_with("not used, no pose in it"), "{}", lines(&read.warnings));
+    }
+
+    #[test]
     fn kitti_rows_have_the_times_beside_them_or_their_numbers() {
         let dir = tempfile::tempdir().unwrap();
         let path = dir.path().join("00.txt");
@@ -209,6 +221,13 @@ mod tests {
             read.is_indexed && lines(&read.warnings).contains("number of a row"),
             "{}",
             lines(&read.warnings)
+        );
+        std::fs::write(dir.path().join("times.txt"), "0.0\n").unwrap();
+        let short = read_trajectory_file(&path).unwrap();
+        let said = lines(&short.warnings);
+        assert!(
+            short.is_indexed && said.lines().count() == 1 && said.contains("1 times for 2 poses"),
+            "{said}"
         );
         std::fs::write(dir.path().join("times.txt"), "0.0\n0.25\n").unwrap();
         let read = read_trajectory_file(&path).unwrap();

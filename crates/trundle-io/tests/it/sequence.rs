@@ -61,7 +61,8 @@ fn wrong_folders_are_one_clear_sentence() {
     let dir = tempfile::tempdir().unwrap();
     assert_eq!(
         problem(&dir),
-        "DIR: this is an empty folder, expected a TUM RGB-D folder (rgb.txt and depth.txt, or associations.txt)"
+        "DIR: this is an empty folder, expected a TUM RGB-D folder (rgb.txt and depth.txt, or associations.txt) \
+         or a trundle recording"
     );
     fs::write(dir.path().join("rgb.txt"), "1.0 a.png").unwrap();
     assert_eq!(
