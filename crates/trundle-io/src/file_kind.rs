@@ -5,6 +5,7 @@ mod expected;
 mod folder;
 mod head;
 mod kind;
+mod packed;
 mod text;
 mod words;
 

@@ -1,6 +1,6 @@
 //! What a command takes, and the refusal of files of another kind.
 
-use super::{FileKind, words};
+use super::{FileKind, packed, words};
 use crate::IoError;
 use FileKind as K;
 use std::path::Path;
@@ -45,6 +45,7 @@ impl Expected {
     pub fn check(self, path: &Path) -> Result<FileKind, IoError> {
         let found = FileKind::of(path)?;
         if self.takes(found) {
+            packed::check(path, found, self.name())?;
             return Ok(found);
         }
         let wants_map = self.kinds().contains(&K::MapYaml);

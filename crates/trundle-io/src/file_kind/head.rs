@@ -6,7 +6,7 @@ use std::io::Read;
 use std::path::Path;
 
 /// Number of bytes at the start of a file that are inspected \[B\]. A kind whose marks come later is not recognised. Source: ours.
-const HEAD_BYTES: u64 = 64 << 10;
+pub(super) const HEAD_BYTES: u64 = 64 << 10;
 
 /// The first 64 KiB of a file, or all of a shorter one.
 pub(super) fn head(path: &Path) -> Result<Vec<u8>, IoError> {

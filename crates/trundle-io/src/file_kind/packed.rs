@@ -1,0 +1,87 @@
+//! What is inside a file that is packed with gzip or zstd.
+
+use super::head::HEAD_BYTES;
+use super::{FileKind, words};
+use crate::IoError;
+use flate2::bufread::MultiGzDecoder;
+use ruzstd::decoding::{FrameDecoder, StreamingDecoder};
+use std::fs::File;
+use std::io::{BufReader, Read};
+use std::path::Path;
+
+/// Refuses a packed file with anything inside that a command reads only unpacked. A file that cannot be unpacked passes: its reader
+/// knows more.
+pub(super) fn check(path: &Path, found: FileKind, expected: &str) -> Result<(), IoError> {
+    let (packing, unpack, read) = match found {
+        FileKind::Gzip => ("gzip", "gunzip", &[FileKind::CarmenLog, FileKind::Text, FileKind::Empty][..]),
+        FileKind::Zstd => ("zstd", "unzstd", &[FileKind::Ros2Mcap, FileKind::OtherMcap, FileKind::Empty][..]),
+        _ => return Ok(()),
+    };
+    let inside = FileKind::of_bytes(&unpacked_head(path, found), u64::MAX);
+    if read.contains(&inside) {
+        return Ok(());
+    }
+    let problem = format!(
+        "this is {} packed with {packing}, expected {expected}; unpack it with `{unpack}`",
+        words::name(inside)
+    );
+    Err(IoError::malformed(path, problem))
+}
+
+/// The first bytes inside a packed file, as far as it can be unpacked.
+fn unpacked_head(path: &Path, found: FileKind) -> Vec<u8> {
+    let mut head = Vec::new();
+    let Ok(file) = File::open(path).map(BufReader::new) else { return head };
+    // What was unpacked ahead of a break stays in `head`.
+    let _ = match found {
+        FileKind::Gzip => MultiGzDecoder::new(file).take(HEAD_BYTES).read_to_end(&mut head),
+        _ => match StreamingDecoder::<_, FrameDecoder>::new(file) {
+            Ok(decoder) => decoder.take(HEAD_BYTES).read_to_end(&mut head),
+            Err(_) => Ok(0),
+        },
+    };
+    head
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::{Expected, FileKind};
+    use flate2::{Compression, write::GzEncoder};
+    use std::io::Write;
+
+    fn gzip(bytes: &[u8]) -> Vec<u8> {
+        let mut encoder = GzEncoder::new(Vec::new(), Compression::fast());
+        encoder.write_all(bytes).unwrap();
+        encoder.finish().unwrap()
+    }
+
+    fn zstd(bytes: &[u8]) -> Vec<u8> {
+        ruzstd::encoding::compress_to_vec(bytes, ruzstd::encoding::CompressionLevel::Fastest)
+    }
+
+    fn checked(bytes: &[u8]) -> Result<FileKind, String> {
+        let file = tempfile::NamedTempFile::new().unwrap();
+        std::fs::write(file.path(), bytes).unwrap();
+        Expected::LaserLog.check(file.path()).map_err(|error| error.problem())
+    }
+
+    #[test]
+    fn what_is_read_packed_passes() {
+        assert_eq!(checked(&gzip(b"FLASER 1 2 0 0 0 0 0 0 1 h 1\n")), Ok(FileKind::Gzip));
+        assert_eq!(checked(&zstd(b"\x89MCAP0\r\n\x01")), Ok(FileKind::Zstd));
+        assert_eq!(checked(b"\x1f\x8b\x08\0broken"), Ok(FileKind::Gzip));
+        assert_eq!(checked(b"\x28\xb5\x2f\xfdbroken"), Ok(FileKind::Zstd));
+    }
+
+    #[test]
+    fn what_is_read_only_unpacked_is_named() {
+        let mcap = checked(&gzip(b"\x89MCAP0\r\n\x01")).unwrap_err();
+        assert!(mcap.contains("packed with gzip") && mcap.ends_with("; unpack it with `gunzip`"), "{mcap}");
+        let database = checked(&zstd(b"SQLite format 3\0....")).unwrap_err();
+        assert!(
+            database.starts_with("this is a ROS 2 bag (SQLite) packed with zstd, expected"),
+            "{database}"
+        );
+        assert!(database.ends_with("; unpack it with `unzstd`"), "{database}");
+    }
+}
