@@ -6,6 +6,7 @@ mod kitti;
 mod list;
 mod members;
 mod odometry;
+mod odometry_units;
 mod orb_slam;
 mod rows;
 mod sequence;

@@ -1,5 +1,6 @@
 //! Reader and writer of odometry text files beside a TUM sequence.
 
+use super::odometry_units::{OdometryRow, unit_problems};
 use super::rows::{BrokenRows, Table};
 use super::trajectory_form::Form;
 use crate::files::{fields, read_text, table_rows};
@@ -20,7 +21,8 @@ pub fn read_odometry(path: &Path) -> Result<Vec<(Stamp, Pose2)>, IoError> {
     Ok(read_odometry_file(path)?.0)
 }
 
-/// The same, with what was mended: rows that are sorted, a second row of a stamp that is left out, stamps in ms, us or ns.
+/// The same, with what was mended: rows that are sorted, a second row of a stamp that is left out, stamps in ms, us or ns; and what
+/// seems to be in another unit.
 pub(super) fn read_odometry_file(path: &Path) -> Result<(Vec<(Stamp, Pose2)>, Warnings), IoError> {
     parse_odometry(path, &read_text(path)?)
 }
@@ -39,7 +41,7 @@ fn parse_odometry(path: &Path, text: &str) -> Result<(Vec<(Stamp, Pose2)>, Warni
         unit: form.stamp_unit(),
         broken_rows: BrokenRows::Refused,
     };
-    let mut poses = table.read(|numbers| pose(form, numbers), &mut warnings)?;
+    let mut poses = table.read(|numbers| row(form, numbers), &mut warnings)?;
     let rows = poses.len();
     poses.dedup_by_key(|(stamp, _)| *stamp);
     if poses.len() < rows {
@@ -47,7 +49,10 @@ fn parse_odometry(path: &Path, text: &str) -> Result<(Vec<(Stamp, Pose2)>, Warni
             format!("{} rows repeat the timestamp of the row before and are left out", rows - poses.len());
         warnings.add(&problem, &path.display().to_string());
     }
-    Ok((poses, warnings))
+    for problem in unit_problems(&poses) {
+        warnings.add(&problem, &path.display().to_string());
+    }
+    Ok((poses.into_iter().map(|(stamp, row)| (stamp, row.pose)).collect(), warnings))
 }
 
 /// The number of fields of the first row.
@@ -55,8 +60,8 @@ fn columns(text: &str) -> usize {
     table_rows(text).first().map_or(0, |(_, line)| fields(line).count())
 }
 
-/// The planar pose of a row.
-fn pose(form: Form, numbers: &[f64]) -> Result<Pose2, String> {
+/// The planar pose of a row, and its heading as it stands there.
+fn row(form: Form, numbers: &[f64]) -> Result<OdometryRow, String> {
     let pose = match (form, numbers) {
         // Not by way of a quaternion: every bit of the file is kept.
         (Form::Planar, &[x, y, theta]) => Pose2 { x, y, theta },
@@ -67,7 +72,7 @@ fn pose(form: Form, numbers: &[f64]) -> Result<Pose2, String> {
         Some((name, value, unit)) => {
             Err(format!("{name} is {value} {unit}, expected at most {MAX_COORDINATE_M} {unit}"))
         }
-        None => Ok(Pose2::new(pose.x, pose.y, pose.theta)),
+        None => Ok(OdometryRow { pose: Pose2::new(pose.x, pose.y, pose.theta), heading: pose.theta }),
     }
 }
 

@@ -71,7 +71,9 @@ fn wrong_headings(rows: &[(Stamp, OdometryRow)], steps: &[Step]) -> Option<Strin
     let is_fast = || fast(steps.iter().map(|step| step.turn / step.duration), MAX_TURN_RATE_RAD_S).is_some();
     let is_degrees = largest > TAU && (follows_way_in_degrees(steps) || is_fast());
     is_degrees.then(|| {
-        format!("theta goes up to {largest:.0} rad and turns as degrees do, expected radians: is it in degrees?")
+        format!(
+            "theta goes up to {largest:.0} rad and turns as degrees do, expected radians: is it in degrees?"
+        )
     })
 }
 
