@@ -12,6 +12,9 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use trundle_core::{Pose3, Stamp};
 
+/// Number of topics that a message names; further ones are counted. Source: ours.
+const MAX_TOPICS_NAMED: usize = 20;
+
 /// All messages of a bag that say something to us, with their numbers in it, by topic.
 #[derive(Default)]
 pub(super) struct Contents {
@@ -21,6 +24,8 @@ pub(super) struct Contents {
     fixed: Frames,
     all: Frames,
     pub(super) skipped: Vec<LaserLogSkip>,
+    /// All topics with the type and the number of their messages.
+    topics: BTreeMap<String, (String, usize)>,
 }
 
 /// A pose of the base by odometry, with its message's number.
@@ -64,6 +69,7 @@ impl Contents {
 
     fn take(&mut self, number: usize, message: &RawMessage, wire: Wire) -> Result<(), String> {
         let RawMessage { topic, schema, data, .. } = message;
+        self.topics.entry(topic.clone()).or_insert_with(|| (schema.clone(), 0)).1 += 1;
         match types::canonical(schema) {
             types::LASER_SCAN => {
                 let scan = LaserScan::read(data, wire).map_err(|error| error.to_string())?;
@@ -97,6 +103,9 @@ impl Contents {
         let topic = chosen(&counts(&self.scans), asked, types::LASER_SCAN);
         let topic = topic.map_err(|problem| match self.skipped.first() {
             Some(skip) if self.scans.is_empty() => format!("no scan can be used: {}", skip.problem),
+            _ if self.scans.is_empty() => {
+                format!("{problem}, expected one; its topics: {}", self.topic_names())
+            }
             _ => problem,
         })?;
         let scans = self.scans.remove(&topic).unwrap_or_default();
@@ -120,9 +129,11 @@ impl Contents {
             Some(problem) if motion.is_empty() => {
                 Err(format!("none of the {count} poses on {topic} can be used: {problem}"))
             }
-            _ if motion.is_empty() => {
-                Err(format!("no {} and no transform below odom in it", types::ODOMETRY))
-            }
+            _ if motion.is_empty() => Err(format!(
+                "no {} and no transform below odom in it, expected one of both; its topics: {}",
+                types::ODOMETRY,
+                self.topic_names()
+            )),
             _ => Ok(BagMotion { topic, base, motion }),
         }
     }
@@ -185,6 +196,18 @@ impl Contents {
     /// The names of all transforms, for messages.
     pub(super) fn transform_names(&self) -> String {
         self.all.names()
+    }
+
+    /// All topics with the type and the number of their messages, for messages.
+    fn topic_names(&self) -> String {
+        let name = |(topic, (kind, count)): (&String, &(String, usize))| {
+            format!("{topic} ({kind}, {count} messages)")
+        };
+        let mut names: Vec<String> = self.topics.iter().map(name).take(MAX_TOPICS_NAMED).collect();
+        if self.topics.len() > MAX_TOPICS_NAMED {
+            names.push(format!("{} more", self.topics.len() - MAX_TOPICS_NAMED));
+        }
+        if names.is_empty() { "none with messages in CDR".to_owned() } else { names.join(", ") }
     }
 
     /// The topics of scans and odometry that are still here, with the number of their messages.

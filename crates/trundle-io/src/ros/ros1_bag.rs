@@ -30,6 +30,8 @@ pub(super) struct Ros1Bag {
     chunk: Vec<u8>,
     /// Where the next record of the chunk begins.
     at: usize,
+    /// What is to be said behind the last whole record, where the file breaks off in the chunk.
+    cut: Option<IoError>,
 }
 
 impl Ros1Bag {
@@ -48,14 +50,22 @@ impl Ros1Bag {
             return Err(IoError::malformed(path, problem));
         }
         let left = len - version.len() as u64;
-        Ok(Self { path: path.to_owned(), file, left, connections: BTreeMap::new(), chunk: Vec::new(), at: 0 })
+        let (connections, chunk) = (BTreeMap::new(), Vec::new());
+        Ok(Self { path: path.to_owned(), file, left, connections, chunk, at: 0, cut: None })
     }
 
+    /// The next message; of a bag that is cut, those that are whole come ahead of the error.
     pub(super) fn next_message(&mut self) -> Result<Option<RawMessage>, IoError> {
         loop {
             if self.at < self.chunk.len() {
-                let (record, at) = Ros1Record::parse(&self.chunk, self.at)
-                    .map_err(|problem| IoError::malformed(&self.path, problem))?;
+                let parsed = Ros1Record::parse(&self.chunk, self.at);
+                if parsed.is_err()
+                    && let Some(cut) = self.cut.take()
+                {
+                    self.chunk.clear();
+                    return Err(cut);
+                }
+                let (record, at) = parsed.map_err(|problem| IoError::malformed(&self.path, problem))?;
                 let taken = take(&record, &mut self.connections);
                 self.at = at;
                 if let Some(message) = taken.map_err(|problem| IoError::malformed(&self.path, problem))? {
@@ -69,13 +79,17 @@ impl Ros1Bag {
 
     /// Reads records of the file up to the next chunk; whether there is one.
     fn next_chunk(&mut self) -> Result<bool, IoError> {
+        if let Some(cut) = self.cut.take() {
+            return Err(cut);
+        }
         while self.left > 0 {
             let header = self.part()?;
-            let data = self.part()?;
+            let data = self.data_to_cut(&header)?;
             let record = Ros1Record::of_parts(&header, &data);
             let record = record.map_err(|problem| IoError::malformed(&self.path, problem))?;
             if record.kind() == Some(CHUNK_OP) {
-                self.chunk = unpacked(&record).map_err(|problem| IoError::malformed(&self.path, problem))?;
+                self.chunk = unpacked(&record, self.cut.is_some())
+                    .map_err(|problem| IoError::malformed(&self.path, problem))?;
                 self.at = 0;
                 return Ok(true);
             }
@@ -85,21 +99,42 @@ impl Ros1Bag {
         Ok(false)
     }
 
+    /// The data behind a header. Of a chunk that the file breaks off in, what is there; then `cut` says so.
+    fn data_to_cut(&mut self, header: &[u8]) -> Result<Vec<u8>, IoError> {
+        let length = self.length()?;
+        let is_chunk = Ros1Record::of_parts(header, &[]).is_ok_and(|record| record.kind() == Some(CHUNK_OP));
+        if length > self.left && is_chunk {
+            self.cut = Some(self.truncated(length));
+            return self.read(self.left);
+        }
+        self.read(length)
+    }
+
     /// A length and as many bytes.
     fn part(&mut self) -> Result<Vec<u8>, IoError> {
+        let length = self.length()?;
+        self.read(length)
+    }
+
+    /// A length in bytes.
+    fn length(&mut self) -> Result<u64, IoError> {
         let length = self.read(4)?;
         let length = u32::from_le_bytes(length.try_into().expect("invariant: four bytes were read"));
-        self.read(u64::from(length))
+        Ok(u64::from(length))
+    }
+
+    fn truncated(&self, count: u64) -> IoError {
+        let problem = format!(
+            "the bag is truncated: {} bytes are left of {count}; `rosbag reindex` mends it",
+            self.left
+        );
+        IoError::malformed(&self.path, problem)
     }
 
     /// The next `count` bytes: no more are asked for than the file has.
     fn read(&mut self, count: u64) -> Result<Vec<u8>, IoError> {
         if count > self.left {
-            let problem = format!(
-                "the bag is truncated: {} bytes are left of {count}; `rosbag reindex` mends it",
-                self.left
-            );
-            return Err(IoError::malformed(&self.path, problem));
+            return Err(self.truncated(count));
         }
         self.left -= count;
         let mut bytes = Vec::new();
@@ -131,16 +166,18 @@ fn take(
     }
 }
 
-/// The records of a chunk.
-fn unpacked(record: &Ros1Record<'_>) -> Result<Vec<u8>, String> {
+/// The records of a chunk; of one that is cut, as far as it can be unpacked.
+fn unpacked(record: &Ros1Record<'_>, is_cut: bool) -> Result<Vec<u8>, String> {
     match record.text("compression")?.as_str() {
         "none" => Ok(record.data.to_vec()),
         "lz4" => {
             let mut bytes = Vec::new();
             let decoder = lz4_flex::frame::FrameDecoder::new(record.data);
             let read = decoder.take(MAX_CHUNK_BYTES).read_to_end(&mut bytes);
-            read.map_err(|_| "a chunk is broken: its lz4 data cannot be unpacked".to_owned())?;
-            Ok(bytes)
+            match read {
+                Err(_) if !is_cut => Err("a chunk is broken: its lz4 data cannot be unpacked".to_owned()),
+                _ => Ok(bytes),
+            }
         }
         other => Err(format!(
             "a ROS 1 bag packed with {other}, expected none or lz4; `rosbags-convert --src FILE --dst FOLDER` makes a ROS 2 bag of it"

@@ -307,15 +307,16 @@ fn bags_without_what_it_takes_are_refused_by_name() {
     let (one_scan, one_pose) = (scan(1.0, &[1.0]), odometry(1.0, 0.0));
     assert_eq!(
         log_of(std::slice::from_ref(&one_pose), "cdr").unwrap_err(),
-        "BAG: no sensor_msgs/msg/LaserScan in it"
+        "BAG: no sensor_msgs/msg/LaserScan in it, expected one; its topics: /odom (nav_msgs/msg/Odometry, 1 messages)"
     );
     assert_eq!(
         log_of(std::slice::from_ref(&one_scan), "cdr").unwrap_err(),
-        "BAG: no nav_msgs/msg/Odometry and no transform below odom in it"
+        "BAG: no nav_msgs/msg/Odometry and no transform below odom in it, expected one of both; \
+         its topics: /scan (sensor_msgs/msg/LaserScan, 1 messages)"
     );
     assert_eq!(
         log_of(std::slice::from_ref(&one_scan), "json").unwrap_err(),
-        "BAG: no sensor_msgs/msg/LaserScan in it"
+        "BAG: no sensor_msgs/msg/LaserScan in it, expected one; its topics: none with messages in CDR"
     );
     let elsewhere = (
         ODOM,
@@ -491,6 +492,14 @@ fn a_broken_ros1_bag_is_an_error_or_worth_what_it_holds() {
         let mut flipped = whole.clone();
         flipped[cut] ^= 0x41;
         let _ = read_bytes(&flipped);
+    }
+    for compression in ["none", "lz4"] {
+        let whole = ros1_bag(compression);
+        let log = (1..whole.len()).rev().find_map(|len| {
+            let log = read_bytes(&whole[..len]).ok()?;
+            log.skipped.last()?.problem.contains("the bag is truncated: ").then_some(log)
+        });
+        assert_eq!(log.map(|log| log.scans.len()), Some(1), "{compression}: up to the cut");
     }
     let cut = read_bytes(&whole[..200]).unwrap_err();
     assert!(cut.contains("the bag is truncated: ") && cut.contains("`rosbag reindex`"), "{cut}");
