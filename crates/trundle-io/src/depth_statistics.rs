@@ -13,6 +13,11 @@ const TYPICAL_DEPTH_M: f64 = 2.0;
 /// Depth scales in use, units a metre: metres, 0.1 mm, mm, and TUM's 0.2 mm. Source: docs/formats.md.
 const KNOWN_SCALES: [f64; 4] = [1.0, 1000.0, 5000.0, 10_000.0];
 
+/// Largest number of a 16-bit depth image: what some cameras write for no reading, and more than which floats alone can hold.
+const MAX_UNITS: f64 = 65_535.0;
+/// Depth above which floats are in millimetres, m: no room is as large. Source: ours.
+const MIN_MILLIMETRES_AS_METRES: f64 = 100.0;
+
 /// Counts of sampled depth pixels.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct DepthStatistics {
@@ -22,6 +27,12 @@ pub struct DepthStatistics {
     too_far: usize,
     /// Sum of the logarithms of all depths above 0.
     log_sum: f64,
+    /// Largest depth, m; 0 without one.
+    largest: f64,
+    /// Depths that are no whole number of metres.
+    fractional: usize,
+    /// Depths that differ from the largest.
+    below_largest: usize,
 }
 
 impl DepthStatistics {
@@ -39,11 +50,27 @@ impl DepthStatistics {
         self.pixels += 1;
         if metres > 0.0 && metres.is_finite() {
             self.log_sum += f64::from(metres).ln();
+            self.fractional += usize::from(metres.fract() != 0.0);
+            self.note_largest(f64::from(metres));
             self.too_near += usize::from(metres < MIN_USABLE_M);
             self.too_far += usize::from(metres > MAX_USABLE_M);
         } else {
             self.without_depth += 1;
         }
+    }
+
+    fn note_largest(&mut self, metres: f64) {
+        if metres > self.largest {
+            self.below_largest = self.pixels - self.without_depth - 1;
+            self.largest = metres;
+        } else if metres < self.largest {
+            self.below_largest += 1;
+        }
+    }
+
+    /// Whether the images hold floats in metres, which no depth scale divides: no 16-bit number is as large or has a fraction.
+    fn is_of_floats(&self, scale: f64) -> bool {
+        self.largest * scale > MAX_UNITS + 0.5 || (scale == 1.0 && self.fractional > 0)
     }
 
     /// Why no depth can be used, and the likely cause; `None` where some can, or no image was counted. `scale`: depth units a metre.
@@ -57,7 +84,17 @@ impl DepthStatistics {
         if with_depth == 0 {
             return Some(format!("{problem}: all are 0 (no depth)"));
         }
+        let is_maximum = (self.largest * scale - MAX_UNITS).abs() < 0.5;
+        if is_maximum && self.below_largest == 0 {
+            return Some(format!("{problem}: all are {MAX_UNITS}, the maximum of 16 bits (no reading)"));
+        }
         let mean = (self.log_sum / with_depth as f64).exp();
+        if self.is_of_floats(scale) {
+            let hint = if mean > MIN_MILLIMETRES_AS_METRES { ": are the floats in millimetres?" } else { "" };
+            return Some(format!(
+                "{problem}: the typical depth is {mean:.3} m, expected floats in metres, to which depth_scale does not apply{hint}"
+            ));
+        }
         let off = |other: f64| (mean * scale / other / TYPICAL_DEPTH_M).ln().abs();
         let best = KNOWN_SCALES.into_iter().min_by(|a, b| off(*a).total_cmp(&off(*b))).unwrap_or(scale);
         Some(format!(
@@ -84,6 +121,19 @@ mod tests {
         let mut mixed = of(0.0);
         mixed.count(&DepthImage::filled(64, 48, 1.0));
         assert_eq!(mixed.problem(1000.0), None);
+    }
+
+    #[test]
+    fn floats_have_no_scale_and_the_maximum_is_no_reading() {
+        for scale in [1.0, 1000.0, 5000.0] {
+            let floats = of(1538.986).problem(scale).unwrap();
+            assert!(floats.ends_with("are the floats in millimetres?"), "{floats}");
+            assert!(!floats.contains("it would be"), "{floats}");
+            let full = of((65_535.0 / scale) as f32).problem(scale).unwrap();
+            assert!(full.ends_with("all are 65535, the maximum of 16 bits (no reading)"), "{full}");
+        }
+        let far = of(20.0).problem(5000.0).unwrap();
+        assert!(far.ends_with("to which depth_scale does not apply"), "{far}");
     }
 
     #[test]
