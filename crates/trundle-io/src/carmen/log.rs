@@ -211,12 +211,12 @@ mod tests {
     }
 
     #[test]
-    fn tiny_readings_are_no_limit_of_a_laser() {
+    fn the_largest_range_is_named_as_it_was_read() {
         let text = "FLASER 2 0.02 0.02 0 0 0 0 0 0 1 h 1\n".repeat(30);
         let log = read(&text, LaserLogOptions::default()).unwrap();
-        assert_eq!(log.max_range, None);
+        assert_eq!(log.max_range, Some(0.02));
         let cause = crate::empty_map_cause(&log);
-        assert!(cause.contains("half of the ranges are 0.02 m or less"), "{cause}");
+        assert!(cause.contains("about the laser's largest range of 0.02 m"), "{cause}");
     }
 
     /// The angles of the first and last beam of a log's first scan, deg.

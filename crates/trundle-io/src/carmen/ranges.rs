@@ -9,12 +9,10 @@ pub(super) fn is_range(range: f64) -> bool {
 
 /// Readings so far below the greatest are the limit too, m. Source: ours.
 const LIMIT_BAND_M: f64 = 0.25;
-/// Greatest reading below which it is no laser's limit, m. Source: ours, a quarter of the URG-04LX's 4 m.
-const MIN_LIMIT_M: f64 = 1.0;
 
-/// The range from which on a beam of a laser with this limit met nothing, m.
+/// The range from which on a beam of a laser with this limit met nothing, m, at least 0.
 pub(super) fn no_return_from(limit: f64) -> f64 {
-    limit - LIMIT_BAND_M
+    (limit - LIMIT_BAND_M).max(0.0)
 }
 
 /// The greatest reading, m, where many beams end about it: a laser without a return says its limit, give or take.
@@ -28,5 +26,5 @@ pub(super) fn limit(lasers: &[(usize, &LaserLine)]) -> Option<f64> {
         all += 1;
         many += usize::from(range > no_return_from(greatest));
     }
-    (many as f64 > SHARE * all as f64 && many > 20).then_some(greatest).filter(|limit| *limit >= MIN_LIMIT_M)
+    (many as f64 > SHARE * all as f64 && many > 20).then_some(greatest)
 }

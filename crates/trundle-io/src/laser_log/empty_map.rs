@@ -6,9 +6,6 @@ use trundle_core::Beam;
 /// Range that no indoor laser measures, m; larger ranges are in another unit. Source: SICK LMS200, 80 m.
 const MAX_LASER_RANGE_M: f64 = 100.0;
 
-/// Range below which a laser sees its own cover, m; smaller ranges are in another unit. Source: ours.
-const MIN_LASER_RANGE_M: f64 = 0.05;
-
 /// Why nothing is in a map of a log, judged by its ranges.
 #[must_use]
 pub fn empty_map_cause(log: &LaserLog) -> String {
@@ -21,11 +18,6 @@ pub fn empty_map_cause(log: &LaserLog) -> String {
     if median > MAX_LASER_RANGE_M {
         return format!(
             "half of the ranges are {median:.0} m or more, expected at most {MAX_LASER_RANGE_M} m: are they in millimetres?"
-        );
-    }
-    if median < MIN_LASER_RANGE_M {
-        return format!(
-            "half of the ranges are {median} m or less, expected at least {MIN_LASER_RANGE_M} m: is the laser covered, or are they in another unit?"
         );
     }
     format!("{} of {} scans met nothing", log.scans_without_return(), log.scans.len())
@@ -43,7 +35,7 @@ fn no_return_cause(log: &LaserLog) -> String {
     }
     match log.max_range {
         Some(max) => format!(
-            "no beam of any scan met anything: every range is at or beyond the laser's largest range of {max} m, or is none"
+            "no beam of any scan met anything: every range is about the laser's largest range of {max} m or beyond it, or is none"
         ),
         None => "no beam of any scan met anything".to_owned(),
     }
