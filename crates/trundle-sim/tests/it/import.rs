@@ -76,6 +76,43 @@ fn message(json: &str) -> String {
     read(json, &GltfOptions::default()).unwrap_err().to_string()
 }
 
+#[test]
+fn extras_of_any_kind_are_left_alone() {
+    for extras in ["[1]", "\"x\"", "3", "{\"a\":[1]}", "null"] {
+        let json = description(INDEXED, &format!(r#","extras":{extras}"#), &format!(r#","extras":{extras}"#));
+        let mesh = read(&json, &GltfOptions::default());
+        assert_eq!(mesh.map(|mesh| mesh.triangles().len()), Ok(2), "{extras}");
+    }
+}
+
+#[test]
+fn a_texture_of_an_image_that_is_not_there_is_grey() {
+    let material = r#","indices":2,"material":0"#;
+    for images in [
+        r#""images":[{"bufferView":99,"mimeType":"image/png"}],"textures":[{"source":0}]"#,
+        r#""textures":[{"source":7}]"#,
+    ] {
+        let rest = format!(
+            r#","materials":[{{"pbrMetallicRoughness":{{"baseColorTexture":{{"index":0}}}}}}],{images}"#
+        );
+        let scene = scene(&description(material, "", &rest), &GltfOptions::default()).unwrap();
+        let lost = |note: &ImportNote| matches!(note, ImportNote::LostTextures { .. });
+        assert!(scene.notes.iter().any(lost), "{images}: {:?}", scene.notes);
+    }
+}
+
+#[test]
+fn broken_json_is_named_in_plain_words() {
+    let whole = description(INDEXED, "", "");
+    let cut = gltf_from_bytes("rug.gltf", &whole.as_bytes()[..300], &GltfOptions::default(), &nowhere);
+    let cut = cut.unwrap_err().to_string();
+    assert!(cut.contains("in the middle: the file is cut short"), "{cut}");
+    let broken = message(&whole.replace("\"scene\":0", "\"scene\"=0"));
+    assert!(broken.contains("its JSON is broken at line 1"), "{broken}");
+    let nameless = message(&whole.replace("\"asset\"", "\"assets\""));
+    assert!(nameless.contains("`asset` is missing"), "{nameless}");
+}
+
 fn corner(mesh: &Mesh, i: usize) -> [f32; 3] {
     mesh.positions()[i].map(|x| (x * 1e4).round() / 1e4)
 }

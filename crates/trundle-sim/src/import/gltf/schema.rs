@@ -2,7 +2,7 @@
 
 use crate::import::ImportFault;
 use gltf::json::validation::Validate;
-use gltf::json::{Index, Root};
+use gltf::json::{Index, Root, Value, deserialize};
 
 /// Extensions that may be required: read, or of no matter to a camera that sees matt surfaces, or of textures that are then grey.
 const UNDERSTOOD: [&str; 17] = [
@@ -36,7 +36,9 @@ pub(super) fn at<'a, T>(list: &'a [T], index: Index<T>, kind: &str) -> Result<&'
 /// The description in a glTF file.
 pub(super) fn parse(json: &[u8]) -> Result<Root, ImportFault> {
     let not_gltf = |reason: String| ImportFault::NotGltf { reason };
-    let mut root = Root::from_slice(json).map_err(|e| not_gltf(e.to_string()))?;
+    let mut value: Value = deserialize::from_slice(json).map_err(|error| not_gltf(broken_json(&error)))?;
+    remove_extras(&mut value);
+    let mut root: Root = deserialize::from_value(value).map_err(|error| not_gltf(wrong_value(&error)))?;
     if !root.asset.version.starts_with("2.") {
         return Err(not_gltf(format!("asset.version is '{}', expected 2.x", root.asset.version)));
     }
@@ -45,11 +47,55 @@ pub(super) fn parse(json: &[u8]) -> Result<Root, ImportFault> {
     }
     root.extensions_required.clear();
     check_attributes(&root)?;
+    leave_out_lost_images(&mut root);
     let mut first = None;
     root.validate(&root, gltf::json::Path::new, &mut |path, error| {
         first.get_or_insert_with(|| format!("{}: {error}", path()));
     });
     first.map_or(Ok(root), |reason| Err(not_gltf(reason)))
+}
+
+/// Where and how a file is no JSON.
+fn broken_json(error: &gltf::json::Error) -> String {
+    let (line, column) = (error.line(), error.column());
+    if error.is_eof() {
+        return format!(
+            "its JSON ends at line {line}, column {column}, in the middle: the file is cut short"
+        );
+    }
+    format!("its JSON is broken at line {line}, column {column}")
+}
+
+/// What of the JSON is not as glTF has it.
+fn wrong_value(error: &gltf::json::Error) -> String {
+    let problem = error.to_string();
+    match problem.split_once("missing field ") {
+        Some((_, name)) => format!("{name} is missing"),
+        None => format!("a value is not as glTF 2.0 has it: {problem}"),
+    }
+}
+
+/// Takes out all `extras`: the standard lets programs put any value there, the schema crate takes objects alone.
+fn remove_extras(value: &mut Value) {
+    match value {
+        Value::Object(members) => {
+            members.remove("extras");
+            members.values_mut().for_each(remove_extras);
+        }
+        Value::Array(items) => items.iter_mut().for_each(remove_extras),
+        _ => {}
+    }
+}
+
+/// Takes out indices of image data that is not there. Such a texture is grey; without this, the whole scene is refused.
+fn leave_out_lost_images(root: &mut Root) {
+    let (views, images) = (root.buffer_views.len(), root.images.len());
+    for image in &mut root.images {
+        image.buffer_view = image.buffer_view.filter(|view| view.value() < views);
+    }
+    for texture in root.textures.iter_mut().filter(|texture| texture.source.value() >= images) {
+        texture.source = Index::new(u32::MAX); // as the schema crate has a texture without an image
+    }
 }
 
 /// The schema crate's own validation takes these indices for good and panics where they are not.
