@@ -21,7 +21,7 @@ pub(super) fn decode(bytes: &[u8]) -> Result<RawDepth, CodecError> {
         other => return Err(CodecError::DepthFormat { found: name(other) }),
     };
     match (bits, sample_format(&mut decoder)) {
-        (16, UNSIGNED) | (32, FLOAT) => {}
+        (16, UNSIGNED_FORMAT) | (32, FLOAT_FORMAT) => {}
         (bits, format) => return Err(CodecError::DepthFormat { found: grey_name(bits, format) }),
     }
     let bytes_per_pixel = usize::from(bits) / 8;
@@ -41,23 +41,23 @@ pub(super) fn decode(bytes: &[u8]) -> Result<RawDepth, CodecError> {
 }
 
 /// How numbers of pixels are written where the TIFF does not say it, and whole numbers from 0 (TIFF 6.0, `SampleFormat`).
-const UNSIGNED: u16 = 1;
+const UNSIGNED_FORMAT: u16 = 1;
 /// Whole numbers with a sign (TIFF 6.0, `SampleFormat`).
-const SIGNED: u16 = 2;
+const SIGNED_FORMAT: u16 = 2;
 /// Floating-point numbers (TIFF 6.0, `SampleFormat`).
-const FLOAT: u16 = 3;
+const FLOAT_FORMAT: u16 = 3;
 
 /// How the numbers of the pixels are written.
 fn sample_format(decoder: &mut Decoder<Cursor<&[u8]>>) -> u16 {
     let formats = decoder.find_tag_unsigned_vec::<u16>(Tag::SampleFormat).ok().flatten();
-    formats.and_then(|formats| formats.first().copied()).unwrap_or(UNSIGNED)
+    formats.and_then(|formats| formats.first().copied()).unwrap_or(UNSIGNED_FORMAT)
 }
 
 /// The name of grey pixels of a sample format.
 fn grey_name(bits: u8, format: u16) -> String {
     match format {
-        FLOAT => format!("{bits}-bit float"),
-        SIGNED => format!("{bits}-bit signed whole-numbered"),
+        FLOAT_FORMAT => format!("{bits}-bit float"),
+        SIGNED_FORMAT => format!("{bits}-bit signed whole-numbered"),
         _ => format!("{bits}-bit whole-numbered"),
     }
 }
