@@ -6,7 +6,7 @@ use super::request::SequenceRequest;
 use crate::sequence_input::SequenceInput;
 use crate::{AppError, StepProgress, TrackCounts, stop};
 use std::time::Instant;
-use trundle_core::RgbdImage;
+use trundle_core::{RgbdImage, Stamp};
 use trundle_io::{DepthStatistics, FrameError, OutputFolder, Warnings};
 use trundle_runtime::{LevelMap, Stage, StageTimes};
 use trundle_slam::{RgbdSlam, TrackReport};
@@ -21,6 +21,8 @@ pub struct SequenceRun {
     pub counts: TrackCounts,
     /// The last frame that could be read.
     pub last_image: Option<RgbdImage>,
+    /// The stamps of the first and the last frame that could be read.
+    stamps: Option<(Stamp, Stamp)>,
     /// Frames that could not be read, in words.
     pub unreadable: Vec<String>,
     /// Images for which the odometry gave the motion since the image before.
@@ -83,9 +85,11 @@ pub fn track_sequence(
         let problem = format!("{path}: no frame can be read as one of camera {camera} (--camera); {first}");
         return Err(AppError::Input(problem));
     }
-    if input.odometry().is_some() && run.odometry_priors == 0 && frames > 1 {
-        let [odometry, _] = input.pose_sources();
-        tracing::warn!("{odometry}: no motion between images; is it empty, or of another clock?");
+    if let (true, 0, Some(images)) =
+        (input.odometry().is_some() && frames > 1, run.odometry_priors, run.stamps)
+    {
+        let [source, _] = input.pose_sources();
+        tracing::warn!("{source}: {}", odometry.why_no_motion(images));
     }
     run.seconds = start.elapsed().as_secs_f64();
     Ok(run)
@@ -99,6 +103,7 @@ impl SequenceRun {
             map: LevelMap::new(input.camera.model.camera, robot.scan.clone(), robot.schedule.map_hz)?,
             counts: TrackCounts::default(),
             last_image: None,
+            stamps: None,
             unreadable: Vec::new(),
             odometry_priors: 0,
             times: StageTimes::default(),
@@ -144,6 +149,7 @@ impl SequenceRun {
 
     fn step(&mut self, image: RgbdImage, odometry: &OdometryPrior<'_>) -> TrackReport {
         self.depth.count(image.depth());
+        self.stamps = Some((self.stamps.map_or(image.stamp(), |(first, _)| first), image.stamp()));
         let since = self.last_image.as_ref().map(RgbdImage::stamp);
         let prior = since.and_then(|since| odometry.motion(since, image.stamp()));
         self.odometry_priors += usize::from(prior.is_some());
