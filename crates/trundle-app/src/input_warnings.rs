@@ -20,6 +20,18 @@ pub fn read_map(file: &Path) -> Result<OccupancyGrid, AppError> {
     Ok(map.grid)
 }
 
+/// Two maps of files; warnings of one kind are logged once for both.
+///
+/// # Errors
+/// Those of [`read_map_file`].
+pub fn read_two_maps(files: [&Path; 2]) -> Result<[OccupancyGrid; 2], AppError> {
+    let [first, second] = files;
+    let (mut first, second) = (read_map_file(first)?, read_map_file(second)?);
+    first.warnings.extend(second.warnings);
+    log_warnings(&first.warnings);
+    Ok([first.grid, second.grid])
+}
+
 /// A trajectory of a file in any of its forms; its warnings are logged.
 ///
 /// # Errors

@@ -60,7 +60,7 @@ pub use encoded_body::{EncodedBody, RunInput};
 pub use error::AppError;
 pub use finished_run::{FinishedRun, RecordingCost};
 pub use free_space::{FreeSpace, MIN_FREE_BYTES};
-pub use input_warnings::{log_warnings, read_map, read_trajectory};
+pub use input_warnings::{log_warnings, read_map, read_trajectory, read_two_maps};
 pub use progress::Progress;
 pub use recorder::{FileRecorder, RunRecorder};
 pub use recording_content::RecordingContent;

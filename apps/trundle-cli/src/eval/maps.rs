@@ -4,14 +4,14 @@ use super::args::MapsArgs;
 use super::named_error::named_error;
 use crate::outcome::Outcome;
 use crate::{console, logging};
-use trundle::app::{AppError, read_map};
+use trundle::app::{AppError, read_two_maps};
 use trundle::core::Pose2;
 use trundle::eval::{EvalError, MapAgreement, MapAgreementConfig, align_maps, map_agreement};
 use trundle::io::Summary;
 
 /// `trundle eval map`.
 pub fn run(args: &MapsArgs) -> Result<Outcome, AppError> {
-    let (truth, map) = (read_map(&args.truth)?, read_map(&args.map)?);
+    let [truth, map] = read_two_maps([&args.truth, &args.map])?;
     let config = MapAgreementConfig { within: args.within, ..MapAgreementConfig::default() };
     let config = config.validated()?;
     let wrong = |error: EvalError| named_error(&error, &args.truth, &args.map);
