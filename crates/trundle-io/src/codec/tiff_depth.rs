@@ -12,6 +12,9 @@ use trundle_core::Image;
 /// The pixels of a grey TIFF.
 pub(super) fn decode(bytes: &[u8]) -> Result<RawDepth, CodecError> {
     let failed = |error: TiffError| CodecError::decode("depth", problem(&error));
+    if !are_counts_possible(bytes) {
+        return Err(CodecError::decode("depth", "the TIFF claims more values than its bytes can hold"));
+    }
     let mut decoder = Decoder::new(Cursor::new(bytes)).map_err(failed)?;
     let (width, height) = decoder.dimensions().map_err(failed)?;
     let (width, height) = (width as usize, height as usize);
@@ -39,6 +42,28 @@ pub(super) fn decode(bytes: &[u8]) -> Result<RawDepth, CodecError> {
         )),
     }
 }
+
+/// Whether each field of the first directory holds at most as many values as the file has bytes: the decoder takes memory for all of
+/// them. A file without a directory passes: the decoder refuses it.
+fn are_counts_possible(bytes: &[u8]) -> bool {
+    let is_little = bytes.starts_with(b"II");
+    let number = |at: usize, length: usize| -> Option<usize> {
+        let digits = bytes.get(at..at.checked_add(length)?)?;
+        let add = |sum: usize, digit: &u8| sum << 8 | usize::from(*digit);
+        Some(if is_little { digits.iter().rev().fold(0, add) } else { digits.iter().fold(0, add) })
+    };
+    let Some(directory) = number(DIRECTORY_OFFSET_AT, 4) else { return true };
+    let fields = number(directory, 2).unwrap_or(0);
+    let mut counts = (0..fields).map_while(|i| number(directory + 2 + i * FIELD_BYTES + COUNT_AT, 4));
+    counts.all(|count| count <= bytes.len())
+}
+
+/// Where the header has the offset of the first directory \[bytes\]. Source: TIFF 6.0.
+const DIRECTORY_OFFSET_AT: usize = 4;
+/// Length of a field of a directory \[bytes\]. Source: TIFF 6.0.
+const FIELD_BYTES: usize = 12;
+/// Where a field has the number of its values \[bytes\]. Source: TIFF 6.0.
+const COUNT_AT: usize = 4;
 
 /// How numbers of pixels are written where the TIFF does not say it, and whole numbers from 0 (TIFF 6.0, `SampleFormat`).
 const UNSIGNED_FORMAT: u16 = 1;

@@ -1,40 +1,97 @@
-//! Decompression of MCAP chunks: lz4 and zstd.
+//! The records in an MCAP chunk, which may be compressed with lz4 (frames) or zstd.
 
-use mcap::sans_io::decompressor::{DecompressResult, Decompressor};
-use mcap::{McapError, McapResult};
+use mcap::records::{Record, op};
+use mcap::{McapError, McapResult, parse_record};
 use std::io::{self, Read};
 
-/// Decodes the compressed chunks of MCAP files, in Rust alone: `lz4` (frames) and `zstd`.
+/// A record: its opcode and its content.
+pub(super) type OwnedRecord = (u8, Vec<u8>);
+
+/// Length of a decoded chunk \[bytes\]. A longer one is refused: it bounds what a broken chunk can ask for. Source: ours, chunks are some MB.
+const MAX_CHUNK: u64 = 1 << 28;
+/// Bytes of a record before its content: opcode and length.
+pub(super) const HEAD_BYTES: usize = 1 + 8;
+/// Bytes of a chunk before the name of its compression: times, size, checksum.
+pub(super) const CHUNK_HEAD_BYTES: usize = 8 + 8 + 8 + 4;
+
+/// The records of a whole chunk.
 ///
-/// A chunk is decoded once all of it is there: chunks are some MB, and written whole.
-pub(super) struct ChunkDecoder {
-    name: &'static str,
-    decode: fn(&[u8], &mut Vec<u8>) -> io::Result<()>,
-    decoded: Vec<u8>,
-    told: usize,
+/// # Errors
+/// When it cannot be decoded, has another checksum or length than it says, or its last record is not whole.
+pub(super) fn records_of_chunk(chunk: &[u8]) -> McapResult<Vec<OwnedRecord>> {
+    let (head, packed) = match parse_record(op::CHUNK, require_compression(chunk)?)? {
+        Record::Chunk { header, data } => (header, data),
+        _ => return Err(McapError::UnexpectedEoc),
+    };
+    let decoded = decoded(&head.compression, &packed)?;
+    if decoded.len() as u64 != head.uncompressed_size {
+        return Err(McapError::UnexpectedEoc);
+    }
+    let (saved, calculated) = (head.uncompressed_crc, crc32fast::hash(&decoded));
+    if saved != 0 && saved != calculated {
+        return Err(McapError::BadChunkCrc { saved, calculated });
+    }
+    let (records, rest) = split_records(&decoded);
+    if rest.is_empty() { Ok(records) } else { Err(McapError::UnexpectedEoc) }
 }
 
-/// Longest decoded chunk, bytes: bounds what a broken one can ask for.
-const MAX_CHUNK: u64 = 1 << 28;
+/// The chunk, where the name of its compression lies within it.
+fn require_compression(chunk: &[u8]) -> McapResult<&[u8]> {
+    let length =
+        chunk.get(CHUNK_HEAD_BYTES..).and_then(<[u8]>::first_chunk).ok_or(McapError::UnexpectedEof)?;
+    let length = u32::from_le_bytes(*length) as usize;
+    chunk.get(CHUNK_HEAD_BYTES + 4 + length..).ok_or(McapError::UnexpectedEof)?;
+    Ok(chunk)
+}
 
-impl ChunkDecoder {
-    /// One for each of the compressions that MCAP names.
-    pub(super) fn all() -> [Self; 2] {
-        let of = |name, decode| Self { name, decode, decoded: Vec::new(), told: 0 };
-        [of("lz4", lz4), of("zstd", zstd)]
+/// The whole records at the beginning of the bytes, and what is left.
+pub(super) fn split_records(mut bytes: &[u8]) -> (Vec<OwnedRecord>, &[u8]) {
+    let mut records = Vec::new();
+    while let Some((head, rest)) = bytes.split_at_checked(HEAD_BYTES) {
+        let length = u64::from_le_bytes(head[1..].try_into().unwrap_or_default());
+        let content = usize::try_from(length).ok().and_then(|length| rest.split_at_checked(length));
+        let Some((content, rest)) = content else { break };
+        records.push((head[0], content.to_vec()));
+        bytes = rest;
     }
+    (records, bytes)
+}
+
+fn decoded(compression: &str, packed: &[u8]) -> McapResult<Vec<u8>> {
+    let decode = decoder(compression.as_bytes())
+        .ok_or_else(|| McapError::UnsupportedCompression(compression.to_owned()))?;
+    let mut decoded = Vec::new();
+    decode(packed, &mut decoded).map_err(|error| McapError::DecompressionError(error.to_string()))?;
+    if decoded.len() as u64 >= MAX_CHUNK {
+        return Err(McapError::DecompressionError(format!("a chunk of more than {MAX_CHUNK} bytes")));
+    }
+    Ok(decoded)
 }
 
 /// What can be decoded of the beginning of a chunk; `None` where the compression is unknown.
 pub(super) fn decoded_prefix(compression: &[u8], bytes: &[u8]) -> Option<Vec<u8>> {
-    if compression.is_empty() {
-        return Some(bytes.to_vec());
-    }
-    let decoder = ChunkDecoder::all().into_iter().find(|known| known.name.as_bytes() == compression)?;
     let mut decoded = Vec::new();
     // The error is the cut itself; what comes before it is there.
-    let _ = (decoder.decode)(bytes, &mut decoded);
+    let _ = decoder(compression)?(bytes, &mut decoded);
     Some(decoded)
+}
+
+/// Decodes bytes into a buffer.
+type Decode = fn(&[u8], &mut Vec<u8>) -> io::Result<()>;
+
+/// The decoder of a compression that MCAP names.
+fn decoder(compression: &[u8]) -> Option<Decode> {
+    match compression {
+        b"" => Some(plain),
+        b"lz4" => Some(lz4),
+        b"zstd" => Some(zstd),
+        _ => None,
+    }
+}
+
+fn plain(source: &[u8], to: &mut Vec<u8>) -> io::Result<()> {
+    to.extend_from_slice(source);
+    Ok(())
 }
 
 fn lz4(source: &[u8], to: &mut Vec<u8>) -> io::Result<()> {
@@ -46,37 +103,33 @@ fn zstd(source: &[u8], to: &mut Vec<u8>) -> io::Result<()> {
     decoder.take(MAX_CHUNK).read_to_end(to).map(drop)
 }
 
-impl Decompressor for ChunkDecoder {
-    fn next_read_size(&self) -> usize {
-        0
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A chunk with these records and this length of the first one.
+    fn chunk(first_length: u64) -> Vec<u8> {
+        let records = [&[op::SCHEMA][..], &first_length.to_le_bytes(), b"abc"].concat();
+        let crc = crc32fast::hash(&records);
+        let head =
+            [[0; 16].to_vec(), (records.len() as u64).to_le_bytes().to_vec(), crc.to_le_bytes().to_vec()];
+        let compression = 0_u32.to_le_bytes();
+        let length = (records.len() as u64).to_le_bytes();
+        [&head.concat()[..], &compression, &length, &records].concat()
     }
 
-    /// Nothing until the input is whole: the reader then asks again with more of it, and gives up at its end.
-    fn decompress(&mut self, source: &[u8], to: &mut [u8]) -> McapResult<DecompressResult> {
-        let mut consumed = 0;
-        if self.told == self.decoded.len() && !source.is_empty() {
-            (self.told, consumed) = (0, source.len());
-            self.decoded.clear();
-            if (self.decode)(source, &mut self.decoded).is_err() {
-                (self.decoded, consumed) = (Vec::new(), 0);
-            }
-            if self.decoded.len() as u64 >= MAX_CHUNK {
-                return Err(McapError::DecompressionError(format!("a chunk of more than {MAX_CHUNK} bytes")));
-            }
+    #[test]
+    fn a_record_that_is_longer_than_its_chunk_is_refused() {
+        assert_eq!(records_of_chunk(&chunk(3)).unwrap(), [(op::SCHEMA, b"abc".to_vec())]);
+        for length in [4, 0, u64::MAX] {
+            assert!(matches!(records_of_chunk(&chunk(length)), Err(McapError::UnexpectedEoc)), "{length}");
         }
-        let rest = &self.decoded[self.told..];
-        let wrote = rest.len().min(to.len());
-        to[..wrote].copy_from_slice(&rest[..wrote]);
-        self.told += wrote;
-        Ok(DecompressResult { consumed, wrote })
-    }
-
-    fn reset(&mut self) -> McapResult<()> {
-        (self.told, self.decoded) = (0, Vec::new());
-        Ok(())
-    }
-
-    fn name(&self) -> &'static str {
-        self.name
+        let whole = chunk(3);
+        for end in 0..whole.len() {
+            assert!(records_of_chunk(&whole[..end]).is_err(), "{end}");
+        }
+        let mut broken = whole.clone();
+        *broken.last_mut().unwrap() = b'x';
+        assert!(matches!(records_of_chunk(&broken), Err(McapError::BadChunkCrc { .. })));
     }
 }

@@ -1,16 +1,12 @@
 //! Where an MCAP file was cut, and the whole records of the chunk that it was cut in.
 
-use super::chunk_decoder::decoded_prefix;
+use super::chunk_decoder::{CHUNK_HEAD_BYTES, HEAD_BYTES, OwnedRecord, decoded_prefix, split_records};
 use mcap::records::op;
 use std::fs::File;
 use std::io::{self, BufReader, Read, Seek, SeekFrom};
 
 /// Length of what an MCAP file begins and ends with \[bytes\].
 const MAGIC_BYTES: u64 = mcap::MAGIC.len() as u64;
-/// Bytes of a record before its content: opcode and length.
-const HEAD_BYTES: u64 = 1 + 8;
-/// Bytes of a chunk before the name of its compression: times, size, checksum.
-const CHUNK_HEAD_BYTES: usize = 8 + 8 + 8 + 4;
 
 /// The part of a file that is whole.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -38,11 +34,11 @@ pub(super) fn whole_part(file: &mut File, len: u64) -> io::Result<WholePart> {
     }
     let mut end = MAGIC_BYTES;
     let mut opcode = 0;
-    while opcode != op::FOOTER && len - end >= HEAD_BYTES {
-        let mut head = [0; HEAD_BYTES as usize];
+    while opcode != op::FOOTER && len - end >= HEAD_BYTES as u64 {
+        let mut head = [0; HEAD_BYTES];
         reader.read_exact(&mut head)?;
         let content = u64::from_le_bytes(head[1..].try_into().unwrap_or_default());
-        let next = end.checked_add(HEAD_BYTES).and_then(|start| start.checked_add(content));
+        let next = end.checked_add(HEAD_BYTES as u64).and_then(|start| start.checked_add(content));
         let Some(next) = next.filter(|next| *next <= len) else { break };
         (opcode, end) = (head[0], next);
         reader.seek(SeekFrom::Start(end))?;
@@ -57,16 +53,16 @@ pub(super) fn whole_part(file: &mut File, len: u64) -> io::Result<WholePart> {
 ///
 /// # Errors
 /// When the file cannot be read.
-pub(super) fn records_of_cut_chunk(file: &mut File, start: u64) -> io::Result<Vec<(u8, Vec<u8>)>> {
+pub(super) fn records_of_cut_chunk(file: &mut File, start: u64) -> io::Result<Vec<OwnedRecord>> {
     file.seek(SeekFrom::Start(start))?;
     let mut bytes = Vec::new();
     file.read_to_end(&mut bytes)?;
     file.rewind()?;
     let content = match bytes.first() {
-        Some(&op::CHUNK) => bytes.get(HEAD_BYTES as usize..).and_then(chunk_content),
+        Some(&op::CHUNK) => bytes.get(HEAD_BYTES..).and_then(chunk_content),
         _ => None,
     };
-    Ok(content.map(|content| records(&content)).unwrap_or_default())
+    Ok(content.map(|content| split_records(&content).0).unwrap_or_default())
 }
 
 /// What there is of the records in a chunk.
@@ -77,18 +73,4 @@ fn chunk_content(chunk: &[u8]) -> Option<Vec<u8>> {
     let (compression, rest) = rest.split_at_checked(length as usize)?;
     // Eight bytes of length: a writer that was killed has not filled them in.
     decoded_prefix(compression, rest.get(8..)?)
-}
-
-fn records(mut bytes: &[u8]) -> Vec<(u8, Vec<u8>)> {
-    let mut found = Vec::new();
-    while let Some((head, rest)) = bytes.split_at_checked(HEAD_BYTES as usize) {
-        let length = u64::from_le_bytes(head[1..].try_into().unwrap_or_default());
-        let Some((content, rest)) = usize::try_from(length).ok().and_then(|n| rest.split_at_checked(n))
-        else {
-            break;
-        };
-        found.push((head[0], content.to_vec()));
-        bytes = rest;
-    }
-    found
 }

@@ -1,13 +1,13 @@
 //! Sequential reader of the messages of any MCAP file, with bounded memory.
 
-use super::chunk_decoder::ChunkDecoder;
+use super::chunk_decoder::{OwnedRecord, records_of_chunk};
 use super::cut::{WHOLE, records_of_cut_chunk, whole_part};
 use super::record_parser::parse_needed_record;
 use super::ros_image;
 use super::unpacked::unpacked;
 use crate::IoError;
 use mcap::McapError;
-use mcap::records::Record;
+use mcap::records::{Record, op};
 use mcap::sans_io::linear_reader::{LinearReadEvent, LinearReader, LinearReaderOptions};
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::fs::File;
@@ -39,8 +39,7 @@ pub(crate) enum Encoding {
     Cdr,
 }
 
-/// The messages of an MCAP file in the order of the file; of its chunks a piece is in memory at a time, of compressed ones
-/// (lz4, zstd) the whole.
+/// The messages of an MCAP file in the order of the file; one chunk is in memory at a time.
 pub(crate) struct MessageStream {
     path: PathBuf,
     file: Box<dyn Read + Send>,
@@ -48,8 +47,10 @@ pub(crate) struct MessageStream {
     reader: LinearReader,
     /// Where a cut file was cut, when it is read to there.
     cut: Option<RecordingCut>,
+    /// Records that are read and not taken yet, of one chunk.
+    records: VecDeque<OwnedRecord>,
     /// Records of the chunk that the file was cut in.
-    last_records: VecDeque<(u8, Vec<u8>)>,
+    last_records: VecDeque<OwnedRecord>,
     encoding: Encoding,
     schemas: BTreeMap<u16, String>,
     channels: BTreeMap<u16, (String, u16)>,
@@ -101,19 +102,17 @@ impl MessageStream {
         let bytes = meta.len().saturating_mul(if is_packed { MAX_PACKING } else { 1 });
         let limit = usize::try_from(bytes).unwrap_or(MAX_RECORD).clamp(1024, MAX_RECORD);
         let options = LinearReaderOptions::default()
-            .with_validate_chunk_crcs(true)
+            .with_emit_chunks(true)
             .with_record_length_limit(limit)
             .with_skip_end_magic(part.is_cut);
-        let mut reader = LinearReader::new_with_options(options);
-        for decoder in ChunkDecoder::all() {
-            reader.add_decompressor(decoder).expect("invariant: the decoders have names");
-        }
+        let reader = LinearReader::new_with_options(options);
         Ok(Self {
             path: path.to_owned(),
             file: Box::new(file.take(part.end)),
             is_packed,
             reader,
             cut: part.is_cut.then_some(RecordingCut { byte: meta.len() }),
+            records: VecDeque::new(),
             last_records: last_records.into(),
             encoding,
             schemas: BTreeMap::new(),
@@ -147,25 +146,53 @@ impl MessageStream {
     /// The next message; `None` at the end of a whole file.
     pub fn next_message(&mut self) -> Result<Option<RawMessage>, IoError> {
         while !self.stopped {
-            let Some(event) = self.reader.next_event() else { return self.next_of_cut_chunk() };
-            match event.map_err(|error| broken((&self.path, self.encoding), self.read, &error))? {
+            while let Some((opcode, data)) = self.records.pop_front() {
+                if let Some(message) = self.parse(opcode, &data)? {
+                    return Ok(Some(message));
+                }
+            }
+            if !self.read_records()? {
+                return Ok(None);
+            }
+        }
+        Ok(None)
+    }
+
+    /// Reads the next record, of a chunk all of its records; whether there was one.
+    fn read_records(&mut self) -> Result<bool, IoError> {
+        loop {
+            let Some(event) = self.reader.next_event() else {
+                std::mem::swap(&mut self.records, &mut self.last_records);
+                return Ok(!self.records.is_empty());
+            };
+            let event = event.map_err(|error| broken((&self.path, self.encoding), self.read, &error))?;
+            match event {
                 LinearReadEvent::ReadRequest(need) => {
                     let buffer = self.reader.insert(need.max(1 << 16));
                     let read = self.file.read(buffer).map_err(|error| self.refused(error))?;
                     self.reader.notify_read(read);
                     self.read += read as u64;
                 }
+                LinearReadEvent::Record { opcode: op::CHUNK, data } => {
+                    let records = records_of_chunk(data)
+                        .map_err(|error| broken((&self.path, self.encoding), self.read, &error))?;
+                    self.records.extend(records);
+                    return Ok(true);
+                }
                 LinearReadEvent::Record { opcode, data } => {
-                    let record = parse_needed_record(opcode, data)
-                        .map_err(|error| broken((&self.path, self.encoding), self.read, &error))?
-                        .map(Record::into_owned);
-                    if let Some(message) = record.map(|record| self.take(record)).transpose()?.flatten() {
-                        return Ok(Some(message));
-                    }
+                    self.records.push_back((opcode, data.to_vec()));
+                    return Ok(true);
                 }
             }
         }
-        Ok(None)
+    }
+
+    /// The message of a record; `None` of another record.
+    fn parse(&mut self, opcode: u8, data: &[u8]) -> Result<Option<RawMessage>, IoError> {
+        let record = parse_needed_record(opcode, data)
+            .map_err(|error| broken((&self.path, self.encoding), self.read, &error))?
+            .map(Record::into_owned);
+        record.map_or(Ok(None), |record| self.take(record))
     }
 
     /// The error of reading on; of a packed file the data is at fault.
@@ -175,19 +202,6 @@ impl MessageStream {
         }
         let problem = format!("the zstd data is truncated or broken after {} bytes", self.read);
         IoError::malformed(&self.path, problem)
-    }
-
-    /// The next message of the chunk that a file was cut in.
-    fn next_of_cut_chunk(&mut self) -> Result<Option<RawMessage>, IoError> {
-        while let Some((opcode, data)) = self.last_records.pop_front() {
-            let record = parse_needed_record(opcode, &data)
-                .map_err(|error| broken((&self.path, self.encoding), self.read, &error))?
-                .map(Record::into_owned);
-            if let Some(message) = record.map(|record| self.take(record)).transpose()?.flatten() {
-                return Ok(Some(message));
-            }
-        }
-        Ok(None)
     }
 
     /// Remembers schemas and channels, gives messages their names.
@@ -240,12 +254,16 @@ fn broken((path, encoding): (&Path, Encoding), read: u64, error: &McapError) -> 
     let hint = if encoding == Encoding::Json { "; --recover reads it to there" } else { "" };
     let problem = match error {
         McapError::BadMagic if read <= 1 << 16 => "not an MCAP recording".to_owned(),
+        // A chunk that is longer than the file, within what chunks have.
+        McapError::RecordTooLarge { opcode: op::CHUNK, len } if *len <= MAX_RECORD as u64 => {
+            format!("the recording is truncated: it ends in the middle of a chunk of {len} bytes{hint}")
+        }
         McapError::UnexpectedEof | McapError::UnexpectedEoc => {
             format!("the recording is truncated: it ends after {read} bytes, in the middle of a record{hint}")
         }
         McapError::RecordTooLarge { len, .. } => {
             format!(
-                "the recording is broken or cut before byte {read}: a length of {len} bytes is longer than its record or the file{hint}"
+                "the recording is broken before byte {read}: a length of {len} bytes is longer than its record or the file"
             )
         }
         other => format!("the recording is broken before byte {read}: {other}"),

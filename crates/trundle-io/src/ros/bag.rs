@@ -14,6 +14,8 @@ use std::path::{Path, PathBuf};
 pub(super) struct Bag {
     files: std::vec::IntoIter<PathBuf>,
     open: Option<Storage>,
+    /// Where files were cut, in sentences.
+    pub(super) cuts: Vec<String>,
 }
 
 /// One file of a bag.
@@ -27,7 +29,7 @@ impl Bag {
     /// Opens a folder with its `metadata.yaml`, or else all files of a bag in it, or a single file.
     pub(super) fn open(path: &Path) -> Result<Self, IoError> {
         let files = if path.is_dir() { files_of(path)? } else { vec![path.to_owned()] };
-        let mut bag = Self { files: files.into_iter(), open: None };
+        let mut bag = Self { files: files.into_iter(), open: None, cuts: Vec::new() };
         bag.next_file()?;
         Ok(bag)
     }
@@ -54,6 +56,11 @@ impl Bag {
     }
 
     fn next_file(&mut self) -> Result<(), IoError> {
+        if let Some(Storage::Mcap(stream)) = &self.open
+            && let Some(cut) = stream.cut()
+        {
+            self.cuts.push(format!("the bag was cut at byte {}", cut.byte));
+        }
         let Some(path) = self.files.next() else {
             self.open = None;
             return Ok(());
@@ -61,7 +68,7 @@ impl Bag {
         self.open = Some(match FileKind::of(&path)? {
             FileKind::Ros2Sqlite => Storage::Sqlite(BagDatabase::open(&path)?),
             FileKind::Ros1Bag => Storage::Ros1(Box::new(Ros1Bag::open(&path)?)),
-            _ => Storage::Mcap(Box::new(MessageStream::open(&path, Encoding::Cdr)?)),
+            _ => Storage::Mcap(Box::new(MessageStream::open_to_cut(&path, Encoding::Cdr)?)),
         });
         Ok(())
     }

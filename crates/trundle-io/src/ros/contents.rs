@@ -64,7 +64,17 @@ impl Contents {
                 Err(error) => return Err(error),
             }
         }
+        if let (true, Some(cut)) = (contents.scans.is_empty(), bag.cuts.first()) {
+            return Err(IoError::malformed(path, format!("{cut}, before its first scan")));
+        }
+        let line = contents.message_count();
+        contents.skipped.extend(bag.cuts.into_iter().map(|problem| LaserLogSkip { line, problem }));
         Ok(contents)
+    }
+
+    /// Number of messages read.
+    fn message_count(&self) -> usize {
+        self.topics.values().map(|(_, count)| count).sum()
     }
 
     fn take(&mut self, number: usize, message: &RawMessage, wire: Wire) -> Result<(), String> {
