@@ -3,6 +3,7 @@
 use crate::AppError;
 use serde::de::DeserializeOwned;
 use std::path::Path;
+use trundle_core::toml_problem;
 use trundle_io::Expected;
 
 /// Reads a TOML file.
@@ -12,8 +13,8 @@ use trundle_io::Expected;
 pub fn read_toml<T: DeserializeOwned>(file: &Path) -> Result<T, AppError> {
     let text = read_text(file)?;
     toml::from_str(&text).map_err(|error| {
-        let line = error.span().map_or(1, |span| 1 + text[..span.start].matches('\n').count());
-        AppError::Input(format!("{}, line {line}: {}", file.display(), error.message().replace('\n', " ")))
+        let problem = toml_problem(&text, error.span().map(|span| span.start), error.message());
+        AppError::Input(format!("{}, line {}: {}", file.display(), problem.line, problem.message))
     })
 }
 

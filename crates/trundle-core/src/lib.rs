@@ -23,6 +23,7 @@ mod pose3;
 mod rgbd;
 mod scan;
 mod stamp;
+mod toml_words;
 mod trajectory;
 mod twist;
 
@@ -45,6 +46,7 @@ pub use pose3::Pose3;
 pub use rgbd::RgbdImage;
 pub use scan::{Beam, FreeSpan, ObstacleKind, Scan, ScanParts};
 pub use stamp::Stamp;
+pub use toml_words::{TomlProblem, toml_problem};
 pub use trajectory::{Trajectory, TrajectoryPoint};
 pub use twist::Twist2;
 

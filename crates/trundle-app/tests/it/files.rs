@@ -20,6 +20,7 @@ fn a_toml_file_is_read_and_a_wrong_one_named_with_its_line() {
         let error = read_toml::<Schedule>(&path).unwrap_err().to_string();
         assert!(error.starts_with(&format!("{}, line {line}: ", path.display())), "{error}");
         assert!(!error.contains('\n'), "one sentence: {error}");
+        assert!(!error.contains("f64") && !error.contains("field"), "words of Rust: {error}");
     }
 }
 

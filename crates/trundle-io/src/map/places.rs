@@ -5,7 +5,7 @@ use crate::{Expected, IoError};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::path::Path;
-use trundle_core::{Pose2, require_in};
+use trundle_core::{Pose2, require_in, toml_problem};
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -35,8 +35,8 @@ pub fn read_places(path: &Path) -> Result<BTreeMap<String, Pose2>, IoError> {
     Expected::Toml.check(path)?;
     let text = read_text(path)?;
     let places: BTreeMap<String, Place> = toml::from_str(&text).map_err(|error| {
-        let line = error.span().map_or(1, |span| 1 + text[..span.start].matches('\n').count());
-        IoError::line(path, line, error.message().replace('\n', " "))
+        let problem = toml_problem(&text, error.span().map(|span| span.start), error.message());
+        IoError::line(path, problem.line, problem.message)
     })?;
     places.into_iter().map(|(name, place)| checked(path, name, &place)).collect()
 }

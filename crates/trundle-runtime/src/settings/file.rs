@@ -3,12 +3,14 @@
 use super::former_names::present_key;
 use super::plausibility::require_plausible;
 use super::reference::{Setting, reference};
+use super::value_kind::{kind_problem, wanted};
 use crate::RobotConfig;
 use serde::Deserialize;
 use std::borrow::Cow;
 use thiserror::Error;
 use toml::Spanned;
-use toml::de::{DeTable, DeValue};
+use toml::de::{DeTable, DeValue, ValueDeserializer};
+use trundle_core::toml_problem;
 
 /// A robot file that was read.
 #[derive(Debug, Clone, PartialEq)]
@@ -61,7 +63,9 @@ impl RobotFile {
 fn read(text: &str, warnings: &mut Vec<String>) -> Result<RobotConfig, SettingsError> {
     let line = |at: usize| 1 + text[..at.min(text.len())].matches('\n').count();
     let failed = |error: toml::de::Error| {
-        SettingsError::new(error.span().map(|span| line(span.start)), error.message().replace('\n', " "))
+        let at = error.span().map(|span| span.start);
+        let problem = toml_problem(text, at, error.message());
+        SettingsError::new(at.map(|_| problem.line), problem.message)
     };
     let table = DeTable::parse(text).map_err(failed)?;
     let span = table.span();
@@ -74,13 +78,49 @@ fn read(text: &str, warnings: &mut Vec<String>) -> Result<RobotConfig, SettingsE
         None => {
             let given = || toml::Deserializer::from(Spanned::new(span.clone(), translated.clone()));
             // Errors of this one name their line.
-            RobotConfig::deserialize(given()).map_err(failed)?;
+            RobotConfig::deserialize(given()).map_err(|error| {
+                missing_keys(&translated, &error).map_or_else(
+                    || failed(error),
+                    |(at, message)| SettingsError::new(Some(line(at)), message),
+                )
+            })?;
             let mut table = toml::Table::try_from(RobotConfig::default())
                 .expect("invariant: the configuration is plain data");
             overlay(&mut table, toml::Table::deserialize(given()).map_err(failed)?);
             RobotConfig::deserialize(toml::Value::Table(table)).map_err(failed)
         }
     }
+}
+
+/// Where serde misses a field: the table's place in the text, and the keys that the table of the file lacks.
+fn missing_keys(given: &DeTable<'_>, error: &toml::de::Error) -> Option<(usize, String)> {
+    let field = error.message().strip_prefix("missing field `")?.strip_suffix('`')?;
+    let lacks = |setting: &&Setting| setting.field() == field && table_of(given, setting.path).is_some();
+    let first = reference().iter().find(lacks)?;
+    let (at, table) = table_of(given, first.path)?;
+    let siblings = reference().iter().filter(|setting| setting.table() == first.table());
+    let is_missed = |setting: &&Setting| setting.field() == field || is_required(setting);
+    let missing = siblings.filter(|setting| !table.contains_key(setting.field())).filter(is_missed);
+    let missing: Vec<String> =
+        missing.map(|setting| format!("{} ({})", setting.name(), wanted(setting))).collect();
+    let table = first.table();
+    Some((at, format!("[{table}] lacks {}; it goes whole or not at all", missing.join(", "))))
+}
+
+/// The table of the file that should hold the field at `path` and does not, with its place in the text.
+fn table_of<'a, 'i>(given: &'a DeTable<'i>, path: &str) -> Option<(usize, &'a DeTable<'i>)> {
+    let (head, rest) = path.split_once('.')?;
+    let value = given.get(head)?;
+    let DeValue::Table(table) = value.get_ref() else { return None };
+    if rest.contains('.') {
+        return table_of(table, rest);
+    }
+    (!table.contains_key(rest)).then(|| (value.span().start, table))
+}
+
+/// Whether a table without this setting cannot be read.
+fn is_required(setting: &Setting) -> bool {
+    !setting.doc.contains("Default")
 }
 
 /// Puts the values of `given` in place of those of `table`. What a table within does not give keeps the robot's default, which may
@@ -105,7 +145,12 @@ fn translate<'i>(
     for (key, value) in table {
         let full = if prefix.is_empty() { key.to_string() } else { format!("{prefix}.{}", key.get_ref()) };
         let (span, value_span) = (key.span(), value.span());
-        let field: Cow<'i, str> = match find(&full) {
+        let found = find(&full);
+        if let Some(problem) = found.as_ref().and_then(|found| kind_problem_of(&full, found, &value)) {
+            refuse(value_span.start, problem);
+            continue;
+        }
+        let field: Cow<'i, str> = match found {
             Some(Found::Key(setting)) => setting.field().into(),
             Some(Found::OldKey(setting)) => {
                 warnings.push(format!("{full} is deprecated: write {}", setting.key));
@@ -126,6 +171,24 @@ fn translate<'i>(
         }
     }
     translated
+}
+
+/// What is wrong with the kind of a value in the file.
+fn kind_problem_of(key: &str, found: &Found, value: &Spanned<DeValue<'_>>) -> Option<String> {
+    match found {
+        Found::Key(setting) | Found::OldKey(setting) => {
+            let plain = toml::Value::deserialize(ValueDeserializer::from(value.clone()));
+            plain.map_or_else(
+                |_| Some(format!("{key} is beyond what can be read, expected {}", wanted(setting))),
+                |value| kind_problem(setting, &value),
+            )
+        }
+        Found::Table => (!matches!(value.get_ref(), DeValue::Table(_))).then(|| {
+            format!(
+                "{key} is a table of settings, expected [{key}] on a line of its own, or {key}.NAME = VALUE"
+            )
+        }),
+    }
 }
 
 /// What a dotted key is.
@@ -159,8 +222,21 @@ fn unknown(full: &str, prefix: &str) -> String {
         })
         .collect();
     names.dedup();
+    if names.is_empty() {
+        return format!("unknown key {full}; {}", nearest(prefix));
+    }
     let place = if prefix.is_empty() { "the robot file".to_owned() } else { format!("[{prefix}]") };
     format!("unknown key {full}; {place} has {}", names.join(", "))
+}
+
+/// What the name before the last point of an unknown key is, where it is no table.
+fn nearest(prefix: &str) -> String {
+    match find(prefix) {
+        Some(Found::Key(setting) | Found::OldKey(setting)) => {
+            format!("{} is itself a value, expected {}", setting.key, wanted(setting))
+        }
+        _ => unknown(prefix, prefix.rsplit_once('.').map_or("", |(table, _)| table)),
+    }
 }
 
 /// The same robot with `key=value` pairs on top.
@@ -186,9 +262,13 @@ fn overridden(
         let parsed =
             format!("value = {value}").parse::<toml::Table>().ok().and_then(|mut t| t.remove("value"));
         let parsed = parsed.unwrap_or_else(|| toml::Value::String(value.to_owned()));
+        if let Some(problem) = kind_problem(setting, &parsed) {
+            return Err(refused(problem));
+        }
         set(&mut table, setting.path, as_kind(parsed, setting.kind));
-        RobotConfig::deserialize(toml::Value::Table(table.clone()))
-            .map_err(|error| refused(error.message().replace('\n', " ")))?;
+        RobotConfig::deserialize(toml::Value::Table(table.clone())).map_err(|error| {
+            refused(toml_problem(&format!("{} =", setting.key), Some(0), error.message()).message)
+        })?;
     }
     Ok(RobotConfig::deserialize(toml::Value::Table(table)).expect("invariant: read after every override"))
 }
@@ -274,6 +354,45 @@ mod tests {
         assert!(set(&["control=1"]).unwrap_err().message.contains("is a table"));
         assert!(set(&["control.speed=1"]).unwrap_err().message.contains("unknown key control.speed"));
         assert!(set(&["control.lead_s=fast"]).unwrap_err().message.starts_with("--set control.lead_s=fast"));
+    }
+
+    #[test]
+    fn no_word_of_serde_is_in_a_message() {
+        for (text, line, words) in [
+            ("footprint_m = 0.15", 1, "footprint_m is 0.15, expected a list of corners [["),
+            ("footprint_m = [[0, 1], [2, \"a\"]]", 1, "expected a list of corners [["),
+            (
+                "[drive]\nwheel_radius_m = \"big\"",
+                2,
+                "drive.wheel_radius_m is \"big\", expected a number in m",
+            ),
+            ("[slam]\nseed = -1", 2, "slam.seed is -1, expected a whole number, 0 or more"),
+            ("[slam]\nseed = 99999999999999999999999", 2, "slam.seed is beyond what can be read"),
+            ("drive = 3", 1, "drive is a table of settings, expected [drive]"),
+            ("sight = 3", 1, "sight is 3, expected one of depth_camera, laser"),
+            (
+                "[camera]\nwidth_px = 640",
+                1,
+                "[camera] lacks height_px (a whole number, 0 or more in px), fx_px",
+            ),
+            ("[drive.wheel_radius_m]\nx = 1", 1, "drive.wheel_radius_m is a table, expected a number in m"),
+            ("x", 1, "'x': there is no value, expected KEY = VALUE"),
+        ] {
+            let error = parse(text).unwrap_err();
+            assert_eq!(error.line, Some(line), "{text}: {error}");
+            assert!(error.message.contains(words), "{text}: {error}");
+        }
+        let set = |pair: &str| RobotFile::parse("", &[pair.to_owned()]).unwrap_err().message;
+        let disc = set("footprint=0.15");
+        assert!(
+            disc.starts_with("--set footprint=0.15: footprint_m is 0.15, expected a list of corners"),
+            "{disc}"
+        );
+        let inside = set("footprint.radius_m=0.15");
+        assert!(inside.contains("footprint_m is itself a value, expected a list of corners"), "{inside}");
+        let nowhere = set("foo.bar=1");
+        assert!(nowhere.contains("the robot file has footprint_radius_m"), "{nowhere}");
+        assert!(set("camera.width_px=2.5").contains("camera.width_px is 2.5, expected a whole number"));
     }
 
     #[test]

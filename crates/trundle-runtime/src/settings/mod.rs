@@ -6,6 +6,7 @@ mod plausibility;
 mod print;
 mod reference;
 mod schema;
+mod value_kind;
 
 pub use file::{RobotFile, SettingsError};
 pub use former_names::with_present_names;
