@@ -132,6 +132,15 @@ impl SequenceInput {
         }
     }
 
+    /// Number of colour images that the input names, those left out among them.
+    #[must_use]
+    pub fn listed(&self) -> usize {
+        match &self.source {
+            Source::Folder(sequence) => sequence.listed(),
+            Source::Recording(run) => run.image_count(),
+        }
+    }
+
     /// `world_from_camera`, for evaluation, where it is known.
     #[must_use]
     pub fn ground_truth(&self) -> Option<&[(Stamp, Pose3)]> {

@@ -41,3 +41,43 @@ fn docking_in_a_scan_that_met_nothing_is_no_success() {
     assert_eq!(run.status.code(), Some(1));
     assert!(String::from_utf8(run.stderr).unwrap().contains("no beam of the scan met anything"));
 }
+
+#[test]
+fn docking_in_a_scan_in_millimetres_is_no_success() {
+    let scratch = tempfile::tempdir().unwrap();
+    let log = log_of(scratch.path(), 3000.0);
+    let run = trundle(&["dock", &log, "--to=0.3,0,0", "--out", scratch.path().join("out").to_str().unwrap()]);
+    let said = String::from_utf8(run.stderr).unwrap();
+    assert_eq!(run.status.code(), Some(1), "{said}");
+    assert!(said.contains("are they in millimetres?"), "{said}");
+}
+
+#[test]
+fn a_topic_of_the_odometry_goes_with_a_bag() {
+    let scratch = tempfile::tempdir().unwrap();
+    let log = log_of(scratch.path(), 3.0);
+    let run =
+        trundle(&["map", &log, "--odom-topic=/odom", "--out", scratch.path().join("out").to_str().unwrap()]);
+    let said = String::from_utf8(run.stderr).unwrap();
+    assert_eq!(run.status.code(), Some(2), "{said}");
+    assert!(said.contains("--odom-topic is /odom") && said.contains("expected a bag"), "{said}");
+}
+
+#[test]
+fn images_of_one_timestamp_are_no_success() {
+    let scratch = tempfile::tempdir().unwrap();
+    let data = scratch.path().join("data");
+    let place = data.to_str().unwrap();
+    let record = trundle(&["sim", "room", "--quiet", "--duration=1", "--rate=5", "--record", place]);
+    assert!(record.status.success());
+    for list in ["rgb.txt", "depth.txt"] {
+        let text = std::fs::read_to_string(data.join(list)).unwrap();
+        let rows = text.lines().filter(|line| !line.starts_with('#')).filter_map(|line| line.split_once(' '));
+        let same: Vec<String> = rows.map(|(_, file)| format!("5.0 {file}\n")).collect();
+        std::fs::write(data.join(list), same.concat()).unwrap();
+    }
+    let run = trundle(&["slam", place, "--quiet", "--out", scratch.path().join("out").to_str().unwrap()]);
+    let said = String::from_utf8(run.stderr).unwrap();
+    assert_eq!(run.status.code(), Some(1), "{said}");
+    assert!(said.contains("images only 1 could be used: the others have the same timestamp"), "{said}");
+}

@@ -41,6 +41,36 @@ pub struct SequenceRun {
     logged_issues: usize,
     /// Why frames could not be read.
     frame_problems: Warnings,
+    /// The images asked for that no pass of tracking saw.
+    left_out: LeftOut,
+}
+
+/// Images of an input, and why some are left out before tracking.
+#[derive(Debug, Clone, Copy)]
+struct LeftOut {
+    /// All that were asked for.
+    asked: usize,
+    /// Without a depth image of their time.
+    unpaired: usize,
+}
+
+impl LeftOut {
+    fn of(request: &SequenceRequest, input: &SequenceInput) -> Self {
+        let listed = input.listed();
+        let asked = request.frames.map_or(listed, |frames| listed.min(frames));
+        Self { asked, unpaired: input.unpaired() }
+    }
+
+    /// Why one image alone was used, with the first of those that could not be read.
+    fn failure(self, unreadable: Option<&String>) -> String {
+        let Self { asked, unpaired } = self;
+        let cause = match unreadable {
+            Some(first) => format!("the others cannot be read, first {first}"),
+            None if unpaired > 0 => format!("{unpaired} have no depth image of their time"),
+            None => "the others have the same timestamp, expected one timestamp an image".to_owned(),
+        };
+        format!("of {asked} images only 1 could be used: {cause}")
+    }
 }
 
 /// Tracks a sequence and records every frame into `recording.mcap` of `folder`.
@@ -113,6 +143,7 @@ impl SequenceRun {
             depth_scale: input.depth_scale(request.depth_scale),
             logged_issues: 0,
             frame_problems: Warnings::default(),
+            left_out: LeftOut::of(request, input),
         })
     }
 
@@ -124,7 +155,16 @@ impl SequenceRun {
             let cause = depth.unwrap_or_else(|| "too few features of the images match".to_owned());
             return Some(format!("no frame after the first was located: {cause}"));
         }
+        if self.tracked() == 1 && self.left_out.asked > 1 && !self.is_interrupted {
+            return Some(self.left_out.failure(self.unreadable.first()));
+        }
         depth
+    }
+
+    /// Number of images that were tracked.
+    fn tracked(&self) -> usize {
+        let TrackCounts { ok, weak, dead_reckoned, lost } = self.counts;
+        ok + weak + dead_reckoned + lost
     }
 
     /// Whether any frame after the first, which defines the frame, was located by its features.

@@ -3,7 +3,7 @@
 use super::association::pair_nearest;
 use super::list::{ListedImage, parse_list, parse_pairs};
 use crate::codec::is_depth_image;
-use crate::files::read_text;
+use crate::files::{read_text, table_rows};
 use crate::{Expected, IoError, Warnings};
 use std::io::Read;
 use std::path::Path;
@@ -15,6 +15,8 @@ pub(super) struct Members {
     pub frames: Vec<(ListedImage, ListedImage)>,
     /// How many colour images have no depth image near enough.
     pub unpaired: usize,
+    /// How many colour images the list names, those left out among them.
+    pub listed: usize,
     pub warnings: Warnings,
 }
 
@@ -38,11 +40,12 @@ impl Members {
 
     fn of_lists(dir: &Path, max_difference: f64) -> Result<Self, IoError> {
         let mut warnings = Warnings::default();
-        let mut list = |name: &str| {
+        let mut list = |name: &str| -> Result<_, IoError> {
             let path = dir.join(name);
-            parse_list(&path, &read_text(&path)?, &mut warnings)
+            let text = read_text(&path)?;
+            Ok((parse_list(&path, &text, &mut warnings)?, table_rows(&text).len()))
         };
-        let (color, depth) = (list("rgb.txt")?, list("depth.txt")?);
+        let ((color, listed), (depth, _)) = (list("rgb.txt")?, list("depth.txt")?);
         let stamps = |list: &[ListedImage]| list.iter().map(|image| image.stamp).collect::<Vec<Stamp>>();
         let pairs = pair_nearest(&stamps(&color), &stamps(&depth), max_difference);
         if pairs.is_empty() {
@@ -50,7 +53,7 @@ impl Members {
         }
         let unpaired = color.len() - pairs.len();
         let frames = pairs.into_iter().map(|(i, j)| (color[i].clone(), depth[j].clone())).collect();
-        Ok(Self { frames, unpaired, warnings })
+        Ok(Self { frames, unpaired, listed, warnings })
     }
 
     /// The pairs as they are listed; which column holds depth is seen in the first images.
@@ -66,8 +69,9 @@ impl Members {
             frames = frames.into_iter().map(|(depth, color)| (color, depth)).collect();
             frames.sort_by_key(|(color, _)| color.stamp);
         }
+        let listed = frames.len();
         frames.dedup_by_key(|(color, _)| color.stamp);
-        Ok(Self { frames, unpaired: 0, warnings })
+        Ok(Self { frames, unpaired: 0, listed, warnings })
     }
 }
 

@@ -23,6 +23,7 @@ pub struct TumSequence {
     size: Option<(usize, usize)>,
     frames: Vec<(ListedImage, ListedImage)>,
     unpaired: usize,
+    listed: usize,
     ground_truth: Option<Vec<(Stamp, Pose3)>>,
     odometry: Option<Vec<(Stamp, Pose2)>>,
     warnings: Warnings,
@@ -41,7 +42,7 @@ impl TumSequence {
         let checked = checked_depth_scale(depth_scale)
             .and_then(|_| require_finite("max_difference", max_difference, "s"));
         checked.map_err(IoError::field(dir))?;
-        let Members { frames, unpaired, mut warnings } = Members::read(dir, max_difference)?;
+        let Members { frames, unpaired, listed, mut warnings } = Members::read(dir, max_difference)?;
         let ground_truth = ground_truth(dir, &frames, &mut warnings);
         let odometry = odometry(dir, &mut warnings)?;
         Ok(Self {
@@ -50,6 +51,7 @@ impl TumSequence {
             size: None,
             frames,
             unpaired,
+            listed,
             ground_truth,
             odometry,
             warnings,
@@ -80,6 +82,11 @@ impl TumSequence {
     /// How many colour images have no depth image near enough and are left out.
     pub fn unpaired(&self) -> usize {
         self.unpaired
+    }
+
+    /// How many colour images are listed, those left out among them.
+    pub fn listed(&self) -> usize {
+        self.listed
     }
 
     /// The stamp of frame `i`, that of its colour image. Panics beyond the last.
