@@ -14,7 +14,7 @@ use std::sync::OnceLock;
 use std::time::Instant;
 use trundle::app::AppError;
 use trundle::app::plan::{
-    GoalRefusal, NamedPose, PlanFiles, PlanRequest, PlanTimes, curve_lines, plan_rows, write_plan,
+    GoalRefusal, NamedPose, OffMap, PlanFiles, PlanRequest, PlanTimes, curve_lines, plan_rows, write_plan,
     write_refusal,
 };
 use trundle::core::{DriveLimits, Pose2};
@@ -47,6 +47,9 @@ fn report_plan(
 ) -> Result<Outcome, AppError> {
     let moved = request.goals_moved(plan);
     let place = write_plan(request, plan, limits, &moved, times, folder)?;
+    if let Some(off) = OffMap::of(request, plan) {
+        console::warn(&format!("{}: {}", args.map.display(), off.warning()));
+    }
     if args.coefficients {
         curve_lines(plan).iter().for_each(|line| console::print(line));
     }
