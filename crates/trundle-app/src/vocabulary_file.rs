@@ -3,6 +3,7 @@
 use crate::AppError;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use trundle_io::{Expected, FileKind, read_text};
 use trundle_vision::{Descriptor, Vocabulary};
 
 /// The vocabulary of a file, else the program's own.
@@ -18,6 +19,7 @@ pub fn vocabulary_or_builtin(path: Option<&Path>) -> Result<Arc<Vocabulary>, App
 /// # Errors
 /// Names the file and why it cannot be read.
 pub fn read_vocabulary(path: &Path) -> Result<Vocabulary, AppError> {
+    Expected::Vocabulary.check(path)?;
     let bytes = std::fs::read(path).map_err(|error| unreadable(path, &error))?;
     Vocabulary::from_bytes(&bytes).map_err(|error| about(path, &error))
 }
@@ -27,7 +29,8 @@ pub fn read_vocabulary(path: &Path) -> Result<Vocabulary, AppError> {
 /// # Errors
 /// Names the file and why it cannot be read.
 pub fn read_dbow2_vocabulary(path: &Path) -> Result<Vocabulary, AppError> {
-    let text = std::fs::read_to_string(path).map_err(|error| unreadable(path, &error))?;
+    Expected::Dbow2Vocabulary.check(path)?;
+    let text = read_text(path)?;
     Vocabulary::from_dbow2_text(&text).map_err(|error| about(path, &error))
 }
 
@@ -36,6 +39,13 @@ pub fn read_dbow2_vocabulary(path: &Path) -> Result<Vocabulary, AppError> {
 /// # Errors
 /// Names the file and why it cannot be read.
 pub fn read_descriptors(folder: &Path) -> Result<Vec<Vec<Descriptor>>, AppError> {
+    let kind = FileKind::of(folder)?;
+    if !folder.is_dir() {
+        let problem = format!(
+            "this is {kind}, expected a folder of descriptors: a file an image, 32 bytes a descriptor"
+        );
+        return Err(about(folder, &problem));
+    }
     let entries = std::fs::read_dir(folder).and_then(Iterator::collect::<Result<Vec<_>, _>>);
     let mut paths: Vec<PathBuf> =
         entries.map_err(|error| unreadable(folder, &error))?.iter().map(std::fs::DirEntry::path).collect();

@@ -75,7 +75,10 @@ fn bad_input_is_named_and_leaves_no_file() {
     assert!(trained(&few).contains("expected 128 or more"), "{}", trained(&few));
     assert!(!out.exists());
     fs::write(&broken, "trundle").unwrap();
-    assert!(refused(&["info", text(&broken)]).contains("broken.voc: no trundle vocabulary"));
+    assert!(
+        refused(&["info", text(&broken)])
+            .contains("broken.voc: this is a text file of no known kind, expected a visual vocabulary")
+    );
     assert!(refused(&["info", "/nowhere"]).contains("cannot read /nowhere"));
     let import = ["import", text(&broken), "--out", text(&out)];
     assert!(refused(&import).contains("broken.voc: line 1: 'trundle' is no number of its kind"));
@@ -94,6 +97,29 @@ fn commands_that_recognise_places_take_a_vocabulary() {
     fs::write(scratch.path().join("depth.txt"), "1.0 b.png\n").unwrap();
     for command in [&["demo", "--direct"][..], &["slam", text(scratch.path())]] {
         let sentence = refusal(&[command, &["--vocabulary", text(&file)]].concat());
-        assert!(sentence.contains("broken.voc: no trundle vocabulary"), "{command:?}: {sentence}");
+        assert!(
+            sentence
+                .contains("broken.voc: this is a text file of no known kind, expected a visual vocabulary"),
+            "{command:?}: {sentence}"
+        );
     }
+}
+
+#[test]
+fn vocabularies_of_another_kind_are_refused_with_what_to_do() {
+    let scratch = tempfile::tempdir().unwrap();
+    let path = scratch.path().join("ORBvoc.txt");
+    let out = scratch.path().join("o.voc");
+    let asked = ["vocabulary", "info", text(&path)];
+    assert!(!refusal(&asked).contains("os error"), "{}", refusal(&asked));
+    fs::write(&path, format!("10 6 0 0\n0 0{} 0.5\n", " 7".repeat(32))).unwrap();
+    let dbow2 = refusal(&asked);
+    assert!(dbow2.contains("DBoW2") && dbow2.contains("trundle vocabulary import"), "{dbow2}");
+    let recall = refusal(&["vocabulary", "recall", "--scene", "room", "--vocabulary", text(&path)]);
+    assert!(recall.contains("trundle vocabulary import"), "{recall}");
+    fs::write(&path, b"\x89PNG\r\n\x1a\n\0\xff").unwrap();
+    let import = ["vocabulary", "import", text(&path), "--out", text(&out)];
+    assert!(refusal(&import).contains("a PNG picture"), "{}", refusal(&import));
+    let train = ["vocabulary", "train", "--descriptors", text(&path), "--out", text(&out)];
+    assert!(refusal(&train).contains("expected a folder of descriptors"), "{}", refusal(&train));
 }

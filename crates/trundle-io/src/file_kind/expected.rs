@@ -30,10 +30,16 @@ pub enum Expected {
     Graph,
     /// A saved particle filter.
     FilterMap,
+    /// A map to be found in: a saved particle filter, or a map by its YAML file.
+    LocalizationMap,
     /// A saved landmark map.
     VisualMap,
     /// The memory of a run.
     Checkpoint,
+    /// Visual words in trundle's own form.
+    Vocabulary,
+    /// Visual words in the text form of DBoW2.
+    Dbow2Vocabulary,
 }
 
 impl Expected {
@@ -53,8 +59,19 @@ impl Expected {
             path: path.to_owned(),
             found: words::name(found),
             expected: self.name(),
-            remedy: words::remedy(found, wants_map),
+            remedy: self.remedy(found, wants_map),
         })
+    }
+
+    /// What to do with a file of the kind `found`; a vocabulary of the other form is exchanged.
+    fn remedy(self, found: FileKind, wants_map: bool) -> &'static str {
+        match (self, found) {
+            (Self::Vocabulary, K::Dbow2Vocabulary) => {
+                "`trundle vocabulary import FILE --out OWN.voc` makes one of it"
+            }
+            (Self::Dbow2Vocabulary, K::Vocabulary) => "it needs no import: it goes with --vocabulary",
+            _ => words::remedy(found, wants_map),
+        }
     }
 
     fn takes(self, found: FileKind) -> bool {
@@ -97,8 +114,11 @@ impl Expected {
             Self::Toml => &[K::Toml, K::CameraToml, K::Text, K::Empty],
             Self::Graph => &[K::GeoJson, K::Json, K::Text],
             Self::FilterMap => &[K::FilterMap],
+            Self::LocalizationMap => &[K::FilterMap, K::MapYaml],
             Self::VisualMap => &[K::VisualMap],
             Self::Checkpoint => &[K::Checkpoint],
+            Self::Vocabulary => &[K::Vocabulary],
+            Self::Dbow2Vocabulary => &[K::Dbow2Vocabulary, K::Text],
         }
     }
 
@@ -117,8 +137,11 @@ impl Expected {
             Self::Toml => "a TOML file",
             Self::Graph => "a GeoJSON file of way-points",
             Self::FilterMap => "a saved filter (filter.map of `trundle map`)",
+            Self::LocalizationMap => "a saved filter (filter.map of `trundle map`) or a map's YAML file",
             Self::VisualMap => "a visual map (visual.map of `trundle slam`)",
             Self::Checkpoint => "a checkpoint of `trundle demo`",
+            Self::Vocabulary => "a visual vocabulary (of `trundle vocabulary train` or `import`)",
+            Self::Dbow2Vocabulary => "a vocabulary in the text form of DBoW2",
         }
     }
 }

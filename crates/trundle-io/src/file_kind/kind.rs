@@ -53,6 +53,7 @@ pub enum FileKind {
     FilterMap,
     VisualMap,
     Vocabulary,
+    Dbow2Vocabulary,
     Checkpoint,
     Executable,
     Document,

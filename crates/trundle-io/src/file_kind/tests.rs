@@ -45,6 +45,25 @@ fn binary_files_by_their_first_bytes() {
 }
 
 #[test]
+fn vocabularies_of_either_form_are_recognised_and_pointed_to_the_other_command() {
+    let text = format!("10 6 0 0\n0 0{} 0.5\n", " 7".repeat(32));
+    assert_eq!(of(text.as_bytes()), K::Dbow2Vocabulary);
+    assert_eq!(of(b"trundlV1..."), K::Vocabulary);
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("v");
+    let refused = |bytes: &[u8], expected: Expected| {
+        fs::write(&path, bytes).unwrap();
+        expected.check(&path).unwrap_err().to_string()
+    };
+    let dbow2 = refused(text.as_bytes(), Expected::Vocabulary);
+    assert!(dbow2.contains("DBoW2, expected a visual vocabulary"), "{dbow2}");
+    assert!(dbow2.contains("trundle vocabulary import"), "{dbow2}");
+    let own = refused(b"trundlV1...", Expected::Dbow2Vocabulary);
+    assert!(own.contains("--vocabulary"), "{own}");
+    assert!(refused(b"\x89PNG\r\n\x1a\n\0", Expected::Vocabulary).contains("a PNG picture"));
+}
+
+#[test]
 fn text_files_by_their_first_lines() {
     for (text, kind) in [
         ("image: m.pgm\nresolution: 0.05\norigin: [0, 0, 0]\n", K::MapYaml),

@@ -152,6 +152,9 @@ fn is_bare_key(key: &str) -> bool {
 
 /// Tables of numbers by the number of their columns; the first line may be a header.
 fn of_numbers(text: &str, content: &[&str]) -> Option<FileKind> {
+    if is_dbow2(content) {
+        return Some(FileKind::Dbow2Vocabulary);
+    }
     let rows = || content.iter().take(2);
     let columns = rows().find_map(|line| numbers(line));
     let is_image = |line: &&&str| {
@@ -174,6 +177,12 @@ fn of_numbers(text: &str, content: &[&str]) -> Option<FileKind> {
         12 => Some(FileKind::KittiTrajectory),
         _ => None,
     }
+}
+
+/// The text form of DBoW2: four numbers of the whole tree, then a line a node: parent, whether it is a leaf, 32 bytes, weight.
+fn is_dbow2(content: &[&str]) -> bool {
+    let [head, node, ..] = content else { return false };
+    numbers(head) == Some(4) && numbers(node) == Some(35)
 }
 
 /// How many numbers a line holds, where it holds nothing else.
