@@ -1,5 +1,9 @@
 //! Arguments that several commands take: quiet, threads, robot file, poses, up axis.
 
+mod number;
+
+pub use number::NumberArg;
+
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -76,10 +80,10 @@ pub struct MeshArgs {
     #[arg(long, value_enum, value_name = "AXIS", default_value_t = UpArg::Y)]
     pub up: UpArg,
     /// Metres a unit of a .glb or .gltf, as 0.01 for centimetres [default: 1]
-    #[arg(long, value_name = "M", allow_negative_numbers = true)]
+    #[arg(long, value_name = "M", value_parser = NumberArg::above_zero("m"), allow_negative_numbers = true)]
     pub scale: Option<f64>,
     /// Height of the floor in a .glb or .gltf, m: it comes to lie at z = 0 [default: the lowest large level]
-    #[arg(long, value_name = "Z", allow_negative_numbers = true)]
+    #[arg(long, value_name = "Z", value_parser = NumberArg::any("m"), allow_negative_numbers = true)]
     pub floor: Option<f64>,
 }
 

@@ -2,7 +2,7 @@
 
 mod laser_args;
 
-use crate::common_args::{Common, MapImageArg};
+use crate::common_args::{Common, MapImageArg, NumberArg};
 use crate::console;
 use crate::logging;
 use crate::outcome::Outcome;
@@ -13,7 +13,7 @@ use std::path::PathBuf;
 use trundle::app::AppError;
 use trundle::app::laser_map::{LaserMapRequest, map_log, map_rows, read_log};
 use trundle::app::sequence_input::SequenceInput;
-use trundle::io::LaserLog;
+use trundle::io::{FileKind, LaserLog};
 
 /// `trundle map`
 #[derive(Debug, Args)]
@@ -46,7 +46,7 @@ pub struct MapArgs {
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,
     /// Side of a cell, m.
-    #[arg(long, value_name = "M", default_value_t = 0.05)]
+    #[arg(long, value_name = "M", default_value_t = 0.05, value_parser = NumberArg::above_zero("m"), allow_negative_numbers = true)]
     pub resolution: f64,
     /// The laser of a log, and the topics of a bag.
     #[command(flatten)]
@@ -108,6 +108,19 @@ impl MapArgs {
         }
     }
 
+    /// Refuses the topic of the odometry of a log that has no topics.
+    fn refuse_topic_of_odometry(&self) -> Result<(), AppError> {
+        let has_no_topics =
+            matches!(FileKind::of(&self.log)?, FileKind::CarmenLog | FileKind::Text | FileKind::Gzip);
+        match &self.laser.odom_topic {
+            Some(topic) if has_no_topics => Err(AppError::Input(format!(
+                "--odom-topic is {topic}, but {} is a CARMEN log, whose odometry is in its own lines, expected a bag with it",
+                self.log.display()
+            ))),
+            _ => Ok(()),
+        }
+    }
+
     /// Refuses options of a laser beside RGB-D images, and options of a camera beside a laser log.
     fn refuse_wrong_options(&self) -> Result<(), AppError> {
         let log = self.log.display();
@@ -116,7 +129,7 @@ impl MapArgs {
                 Some(_) => Err(AppError::Input(format!(
                     "--poses is about the camera of RGB-D images, and {log} holds none"
                 ))),
-                None => Ok(()),
+                None => self.refuse_topic_of_odometry(),
             };
         }
         match self.laser.first_given() {

@@ -1,6 +1,6 @@
 //! The command line of `trundle demo`.
 
-use crate::common_args::{Common, MeshArgs, PoseArg, RobotArgs};
+use crate::common_args::{Common, MeshArgs, NumberArg, PoseArg, RobotArgs};
 use crate::output_args::{OutputDirArg, OutputFileArg};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
@@ -45,7 +45,7 @@ pub struct DemoArgs {
     #[arg(long, value_name = "FILE")]
     pub faults: Option<PathBuf>,
     /// Give the run up after this much of the robot's time, s [default: 600 a goal, 1800 for exploring]
-    #[arg(long, value_name = "S", value_parser = positive_seconds)]
+    #[arg(long, value_name = "S", value_parser = NumberArg::above_zero("s"), allow_negative_numbers = true)]
     pub time_limit: Option<f64>,
     /// The robot's settings.
     #[command(flatten)]
@@ -88,27 +88,6 @@ impl RecordArg {
             Self::None => RecordingContent::None,
             Self::Events => RecordingContent::Events,
             Self::All => RecordingContent::All,
-        }
-    }
-}
-
-/// A time span on the command line: a finite number of seconds above 0.
-fn positive_seconds(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(seconds) if seconds > 0.0 && seconds.is_finite() => Ok(seconds),
-        _ => Err("expected a finite number of seconds above 0".to_owned()),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_time_limit_is_a_finite_number_above_zero() {
-        assert_eq!(positive_seconds("2.5"), Ok(2.5));
-        for wrong in ["0", "-1", "inf", "NaN", "soon"] {
-            assert!(positive_seconds(wrong).is_err(), "{wrong}");
         }
     }
 }

@@ -1,6 +1,6 @@
 //! The command line of `trundle dock`.
 
-use crate::common_args::{Common, PoseArg, RobotArgs};
+use crate::common_args::{Common, NumberArg, PoseArg, RobotArgs};
 use crate::output_args::{OutputDirArg, OutputFileArg};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
@@ -45,7 +45,7 @@ pub struct DockArgs {
     #[arg(long)]
     pub through_unknown: bool,
     /// Kept from every obstacle, m [default: the robot file's docking.planner.margin, which is 0.05; without a robot file 0.01]
-    #[arg(long, value_name = "M")]
+    #[arg(long, value_name = "M", value_parser = NumberArg::from_zero("m"), allow_negative_numbers = true)]
     pub margin: Option<f64>,
     /// The robot: its footprint, and the settings of [docking.planner], with which the robot itself plans.
     #[command(flatten)]

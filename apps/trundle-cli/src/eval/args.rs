@@ -1,6 +1,6 @@
 //! The command line of `trundle eval`.
 
-use crate::common_args::{Common, PoseArg};
+use crate::common_args::{Common, NumberArg, PoseArg};
 use crate::output_args::OutputDirArg;
 use clap::{Args, Subcommand, ValueEnum};
 use std::path::PathBuf;
@@ -39,7 +39,7 @@ pub struct TrajectoryArgs {
     #[arg(long, value_name = "HOW", value_enum, default_value_t = AlignArg::Se3)]
     pub align: AlignArg,
     /// Length of the motions of the relative error, in --unit.
-    #[arg(long, value_name = "N", default_value_t = 1.0)]
+    #[arg(long, value_name = "N", default_value_t = 1.0, value_parser = NumberArg::above_zero(""), allow_negative_numbers = true)]
     pub delta: f64,
     /// Unit of --delta.
     #[arg(long, value_enum, default_value_t = DeltaUnit::Frames)]
@@ -48,7 +48,7 @@ pub struct TrajectoryArgs {
     #[arg(long)]
     pub all_pairs: bool,
     /// Poses further apart in time than this are not compared, s.
-    #[arg(long, value_name = "S", default_value_t = 0.01)]
+    #[arg(long, value_name = "S", default_value_t = 0.01, value_parser = NumberArg::from_zero("s"), allow_negative_numbers = true)]
     pub max_difference: f64,
     /// Write report.html, its pictures and summary.json into this folder; the last one is kept in DIR.1
     #[arg(long, value_name = "DIR")]
@@ -96,7 +96,7 @@ pub struct RelationsArgs {
     #[arg(long)]
     pub file: bool,
     /// A pose stands for a time at most so far away, s.
-    #[arg(long, value_name = "S", default_value_t = 0.01)]
+    #[arg(long, value_name = "S", default_value_t = 0.01, value_parser = NumberArg::from_zero("s"), allow_negative_numbers = true)]
     pub max_difference: f64,
     /// Write summary.json into this folder; the last one is kept in DIR.1
     #[arg(long, value_name = "DIR")]
@@ -124,7 +124,7 @@ pub struct MapsArgs {
     #[arg(long)]
     pub exact: bool,
     /// Occupied cells agree when their centres are at most so far apart, m.
-    #[arg(long, value_name = "M", default_value_t = 0.05)]
+    #[arg(long, value_name = "M", default_value_t = 0.05, value_parser = NumberArg::above_zero("m"), allow_negative_numbers = true)]
     pub within: f64,
     /// Write summary.json into this folder; the last one is kept in DIR.1
     #[arg(long, value_name = "DIR")]

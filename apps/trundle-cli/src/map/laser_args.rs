@@ -1,5 +1,6 @@
 //! The options of `trundle map` that are about a laser log.
 
+use crate::common_args::NumberArg;
 use clap::Args;
 use trundle::io::LaserLogOptions;
 
@@ -7,16 +8,16 @@ use trundle::io::LaserLogOptions;
 #[derive(Debug, Args)]
 pub struct LaserArgs {
     /// How far ahead of the base the laser sits, m [default: what the log says]
-    #[arg(long, value_name = "M", allow_hyphen_values = true)]
+    #[arg(long, value_name = "M", value_parser = NumberArg::any("m"), allow_negative_numbers = true)]
     pub laser_x: Option<f64>,
     /// How far the laser is turned to the left, deg [default: what the log says]
-    #[arg(long, value_name = "DEG", allow_hyphen_values = true)]
+    #[arg(long, value_name = "DEG", value_parser = NumberArg::any("deg"), allow_negative_numbers = true)]
     pub laser_turn: Option<f64>,
     /// The laser hangs upside down.
     #[arg(long)]
     pub upside_down: bool,
     /// Ranges from here on are no returns, m [default: the reading at which many end]
-    #[arg(long, value_name = "M")]
+    #[arg(long, value_name = "M", value_parser = NumberArg::above_zero("m"), allow_negative_numbers = true)]
     pub max_range: Option<f64>,
     /// The topic of the scans, in a CARMEN log the name of the lines, as RAWLASER2 [default: that with the most scans]
     #[arg(long, value_name = "TOPIC")]

@@ -1,6 +1,6 @@
 //! The command line of `trundle plan`.
 
-use crate::common_args::{Common, PoseArg, RobotArgs};
+use crate::common_args::{Common, NumberArg, PoseArg, RobotArgs};
 use crate::output_args::OutputDirArg;
 use clap::Args;
 use std::path::PathBuf;
@@ -41,7 +41,7 @@ pub struct PlanArgs {
     #[arg(long, value_name = "FILE")]
     pub graph: Option<PathBuf>,
     /// Where a goal is blocked, stop as near to it as can be reached, at most so far off, m [default when given: 1]
-    #[arg(long, value_name = "M", num_args = 0..=1, require_equals = true, default_missing_value = "1")]
+    #[arg(long, value_name = "M", num_args = 0..=1, require_equals = true, default_missing_value = "1", value_parser = NumberArg::from_zero("m"), allow_negative_numbers = true)]
     pub near: Option<f64>,
     /// Print the curve's polynomials and the constraints that shape it.
     #[arg(long)]

@@ -1,6 +1,6 @@
 //! The command line of `trundle sim`.
 
-use crate::common_args::{Common, MapImageArg, MeshArgs, PoseArg};
+use crate::common_args::{Common, MapImageArg, MeshArgs, NumberArg, PoseArg};
 use crate::output_args::{OutputDirArg, OutputFileArg};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
@@ -38,7 +38,7 @@ pub struct SimArgs {
     #[arg(long, group = "driver")]
     pub keys: bool,
     /// Stop after so many seconds of the robot's time, or when the drive is over [default: 5 where there is no drive]
-    #[arg(long, value_name = "S", value_parser = seconds, allow_negative_numbers = true)]
+    #[arg(long, value_name = "S", value_parser = NumberArg::up_to(1e6, "s"), allow_negative_numbers = true)]
     pub duration: Option<f64>,
     /// Write a TUM RGB-D folder: images, ground truth, odometry, calibration, the true map; the last one is kept as DIR.1
     #[arg(long, value_name = "DIR")]
@@ -64,10 +64,10 @@ pub struct TrueMapArgs {
     #[arg(long, value_enum, value_name = "FORMAT", default_value_t = MapImageArg::Pgm)]
     pub map_image: MapImageArg,
     /// Side of the map's cells, m.
-    #[arg(long, value_name = "M", default_value_t = 0.05, value_parser = positive, allow_negative_numbers = true)]
+    #[arg(long, value_name = "M", default_value_t = 0.05, value_parser = NumberArg::above_zero("m"), allow_negative_numbers = true)]
     pub resolution: f64,
     /// Heights between which something is in the way, m, for the map [default: the robot's]
-    #[arg(long, num_args = 2, value_names = ["LOW", "HIGH"], value_parser = number, allow_negative_numbers = true)]
+    #[arg(long, num_args = 2, value_names = ["LOW", "HIGH"], value_parser = NumberArg::any("m"), allow_negative_numbers = true)]
     pub band: Option<Vec<f64>>,
 }
 
@@ -78,7 +78,7 @@ pub struct SensorArgs {
     #[arg(long, value_enum, default_value_t = CameraArg::KinectV2)]
     pub camera: CameraArg,
     /// Images a second.
-    #[arg(long, value_name = "HZ", value_parser = positive, allow_negative_numbers = true)]
+    #[arg(long, value_name = "HZ", value_parser = NumberArg::above_zero("Hz"), allow_negative_numbers = true)]
     pub rate: Option<f64>,
     /// A 2-D laser on the robot.
     #[arg(long, value_enum, value_name = "PRESET")]
@@ -173,23 +173,4 @@ impl SimArgs {
         let drives = self.drive.is_some() || self.follow.is_some() || self.keys;
         self.true_map.map.is_some() && !drives && self.duration.is_none() && self.record.is_none()
     }
-}
-
-fn seconds(text: &str) -> Result<f64, String> {
-    let seconds = number(text)?;
-    if seconds > 0.0 && seconds <= 1e6 {
-        Ok(seconds)
-    } else {
-        Err(format!("{seconds} s, expected more than 0 and at most 1e6"))
-    }
-}
-
-fn positive(text: &str) -> Result<f64, String> {
-    let value = number(text)?;
-    if value > 0.0 { Ok(value) } else { Err(format!("{value}, expected a number above 0")) }
-}
-
-fn number(text: &str) -> Result<f64, String> {
-    let value = text.trim().parse::<f64>().ok().filter(|value| value.is_finite());
-    value.ok_or_else(|| format!("'{text}', expected a finite number"))
 }

@@ -1,6 +1,6 @@
 //! The command line of `trundle slam`.
 
-use crate::common_args::{Common, MapImageArg};
+use crate::common_args::{Common, MapImageArg, NumberArg};
 use crate::output_args::OutputDirArg;
 use clap::Args;
 use std::path::PathBuf;
@@ -22,19 +22,19 @@ pub struct SlamArgs {
     #[arg(long, value_name = "PRESET|FILE")]
     pub camera: Option<String>,
     /// Depth units a metre [default: the camera's]
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = NumberArg::above_zero("units a metre"), allow_negative_numbers = true)]
     pub depth_scale: Option<f64>,
     /// Stop after this many frames.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub frames: Option<u32>,
     /// Height of the first camera above the floor, m, for the map [default: the recorded robot's, else 1]
-    #[arg(long, value_name = "M")]
+    #[arg(long, value_name = "M", value_parser = NumberArg::any("m"), allow_negative_numbers = true)]
     pub height: Option<f64>,
     /// Downward tilt of the first camera, deg, for the map [default: the recorded robot's, else 0]
-    #[arg(long, value_name = "DEG", allow_hyphen_values = true)]
+    #[arg(long, value_name = "DEG", value_parser = NumberArg::any("deg"), allow_negative_numbers = true)]
     pub tilt: Option<f64>,
     /// Roll of the first camera to its right, deg, for the map [default: the recorded robot's, else 0]
-    #[arg(long, value_name = "DEG", allow_hyphen_values = true)]
+    #[arg(long, value_name = "DEG", value_parser = NumberArg::any("deg"), allow_negative_numbers = true)]
     pub roll: Option<f64>,
     /// Begin with the visual map of an earlier run (its visual.map): the camera is localized in it
     #[arg(long, value_name = "FILE")]

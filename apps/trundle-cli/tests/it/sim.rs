@@ -156,9 +156,9 @@ fn drives_that_are_none() {
 fn numbers_and_places_that_cannot_be() {
     let scratch = tempfile::tempdir().unwrap();
     for (args, words) in [
-        (["--duration", "-3"], "-3 s, expected more than 0"),
-        (["--duration", "NaN"], "'NaN', expected a finite number"),
-        (["--rate", "0"], "0, expected a number above 0"),
+        (["--duration", "-3"], "--duration is -3 s, expected a number in s, above 0 and at most 1000000"),
+        (["--duration", "NaN"], "--duration is 'NaN', expected a number in s"),
+        (["--rate", "0"], "--rate is 0 Hz, expected a number in Hz, above 0"),
         (["--rate", "1000"], "camera_rate_hz is 1000 Hz"),
         (["--map", "picture.png"], "--map is 'picture.png', expected a name ending in .yaml"),
     ] {
