@@ -12,7 +12,8 @@ use std::path::Path;
 use std::time::Instant;
 use trundle::app::AppError;
 use trundle::app::dock::{
-    DockingTask, built_in_problem, file_problem, impossible_text, rows, scan_problem, verdict, write_docking,
+    DockingTask, ScanProblem, built_in_problem, file_problem, impossible_text, rows, scan_problem, verdict,
+    write_docking,
 };
 use trundle::core::Footprint;
 use trundle::docking::corridor::Problem;
@@ -69,9 +70,11 @@ impl Source {
 pub fn run(args: &DockArgs) -> Result<Outcome, AppError> {
     let task = match Source::of(args)?.checked(args)? {
         Source::Map => on_map(args)?,
-        Source::Log => match of_problem(args, in_scan(args)?)? {
-            task if task.is_without_obstacles() => return Ok(blind_scan(args)),
-            task => task,
+        Source::Log => match in_scan(args)? {
+            ScanProblem { refusal: Some(refusal), .. } => {
+                return Ok(Outcome::unless(Some(format!("{}: {refusal}", args.place.display()))));
+            }
+            scan => of_problem(args, scan.problem)?,
         },
         Source::BuiltIn | Source::File => of_problem(args, listed(args)?)?,
     };
@@ -91,13 +94,6 @@ pub fn run(args: &DockArgs) -> Result<Outcome, AppError> {
         console::print(&format!("See {}", place.join("dock.png").display()));
     }
     Ok(if matches!(plan, DockingPlan::Found(_)) { Outcome::Reached } else { Outcome::Missed })
-}
-
-/// A scan in which no beam met anything: what was not seen is not free.
-fn blind_scan(args: &DockArgs) -> Outcome {
-    let problem =
-        "no beam of the scan met anything, and what was not seen is not free: no manoeuvre is planned";
-    Outcome::unless(Some(format!("{}: {problem}", args.place.display())))
 }
 
 /// The robot file's `[docking.planner]`, where one is given, else the planner's own defaults; method and margin as asked for.
@@ -138,7 +134,7 @@ fn named(args: &DockArgs, problem: &dyn std::fmt::Display) -> AppError {
 }
 
 /// Among the points of a scan, in the frame of the robot that made it.
-fn in_scan(args: &DockArgs) -> Result<Problem, AppError> {
+fn in_scan(args: &DockArgs) -> Result<ScanProblem, AppError> {
     let goal = args.to.ok_or_else(|| named(args, &"a scan needs --to"))?.0;
     scan_problem(&args.place, args.scan.map(|number| number as usize), footprint(args)?, goal)
 }

@@ -6,7 +6,7 @@ mod options;
 mod sources;
 mod sweep;
 
-pub use empty_map::empty_map_cause;
+pub use empty_map::{empty_map_cause, no_overlap_cause, no_return_cause, range_unit_hint};
 pub(crate) use motion::Motion;
 pub use options::LaserLogOptions;
 pub use sources::LaserLogSources;

@@ -60,6 +60,7 @@ pub use file_kind::{Expected, FileKind};
 pub use files::read_text;
 pub use laser_log::{
     LaserLog, LaserLogOptions, LaserLogScan, LaserLogSkip, LaserLogSources, LaserMount, empty_map_cause,
+    no_overlap_cause, no_return_cause, range_unit_hint,
 };
 pub use map::{
     GraphFile, KeepOutFile, MapFile, MapImage, SpeedFile, map_pgm, map_picture, map_yaml, read_graph,

@@ -5,7 +5,7 @@ use std::path::Path;
 use trundle_core::{Footprint, Invalid, OccupancyGrid, Pose2};
 use trundle_docking::corridor::{Problem, Scenario, parse, write};
 use trundle_docking::{DockingConfig, Obstacle, ObstacleScene};
-use trundle_io::{LaserLogOptions, read_laser_log, read_text};
+use trundle_io::{LaserLog, LaserLogOptions, no_return_cause, range_unit_hint, read_laser_log, read_text};
 
 /// A docking task.
 pub struct DockingTask {
@@ -66,12 +66,6 @@ impl DockingTask {
         })
     }
 
-    /// Whether the list of obstacles is empty; never for a map.
-    #[must_use]
-    pub fn is_without_obstacles(&self) -> bool {
-        self.problem.as_ref().is_some_and(|problem| problem.obstacles.is_empty())
-    }
-
     /// The task as the text of a file of problems; the obstacles of a map become walls.
     #[must_use]
     pub fn to_text(&self) -> String {
@@ -89,6 +83,15 @@ pub fn built_in_problem(name: &Path) -> Option<Problem> {
     Scenario::ALL.map(Scenario::problem).into_iter().find(|problem| name == Path::new(&problem.name))
 }
 
+/// A problem among the points of a scan.
+#[derive(Debug, Clone)]
+pub struct ScanProblem {
+    /// The problem.
+    pub problem: Problem,
+    /// Why nothing can be planned among these points; `None` where it can.
+    pub refusal: Option<String>,
+}
+
 /// The problem among the points of one scan of a CARMEN log, in the frame of the robot that made it. `number` counts from 1; `None`
 /// for the last scan.
 ///
@@ -99,18 +102,31 @@ pub fn scan_problem(
     number: Option<usize>,
     footprint: Footprint,
     goal: Pose2,
-) -> Result<Problem, AppError> {
+) -> Result<ScanProblem, AppError> {
     let log = read_laser_log(file, &LaserLogOptions::default())?;
     let count = log.scans.len();
     let number = number.unwrap_or(count);
     let scan = number.checked_sub(1).and_then(|i| log.scans.get(i));
     let scan = scan.ok_or_else(|| in_file(file, &format!("it has no scan {number}, only 1 to {count}")))?;
-    Ok(Problem {
-        name: format!("scan-{number}"),
-        footprint,
-        start: Pose2::default(),
-        goal,
-        obstacles: scan.scan.hits().map(Obstacle::Point).collect(),
+    let obstacles: Vec<Obstacle> = scan.scan.hits().map(Obstacle::Point).collect();
+    let refusal = scan_refusal(&log, obstacles.is_empty());
+    let problem =
+        Problem { name: format!("scan-{number}"), footprint, start: Pose2::default(), goal, obstacles };
+    Ok(ScanProblem { problem, refusal })
+}
+
+/// Why nothing can be planned in a scan of the log: it saw nothing, or ranges are in another unit.
+fn scan_refusal(log: &LaserLog, is_blind: bool) -> Option<String> {
+    if let Some(hint) = range_unit_hint(log) {
+        return Some(format!("{hint} No manoeuvre is planned"));
+    }
+    let cause = if log.scans_without_return() == log.scans.len() {
+        format!("; {}", no_return_cause(log))
+    } else {
+        String::new()
+    };
+    is_blind.then(|| {
+        format!("no beam of the scan met anything, and what was not seen is not free: no manoeuvre is planned{cause}")
     })
 }
 

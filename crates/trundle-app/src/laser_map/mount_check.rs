@@ -23,6 +23,9 @@ const MAX_STEP_LENGTH_M: f64 = 1.0;
 const MAX_STEP_SCANS: usize = 40;
 /// Distance from which a point has no match \[m\]. Source: ours.
 const MAX_MATCH_DISTANCE_M: f64 = 0.3;
+/// Difference of two turns of a laser below which they are the same \[rad\]. Half a degree, as turns are named in whole ones.
+/// Source: ours.
+const MIN_TURN_DIFFERENCE_RAD: f64 = 0.0087;
 /// Error of the better mount as a share of that of the mount taken. Above it none is named. Source: ours.
 const MAX_ERROR_SHARE: f64 = 0.6;
 
@@ -36,7 +39,7 @@ pub(super) fn mount_hint(log: &LaserLog, counts: &ScanCounts) -> Option<String> 
     let (doubted, all) = (counts.slips + counts.jumps, counts.processed);
     let is_doubted = all >= MIN_SCANS && doubted as f64 >= MIN_SHARE_NOT_BELIEVED * all as f64;
     let contradiction = format!("the scans contradict the odometry at {doubted} of {all} steps");
-    match better_mount(log).map(|mount| described(mount, log.mount)) {
+    match better_mount(log).and_then(|mount| described(mount, log.mount)) {
         Some(mount) if is_doubted => Some(format!("{contradiction}: {mount}")),
         Some(mount) => Some(format!("the scans fit the odometry better in another way: {mount}")),
         None if is_doubted => Some(format!(
@@ -46,14 +49,16 @@ pub(super) fn mount_hint(log: &LaserLog, counts: &ScanCounts) -> Option<String> 
     }
 }
 
-/// What a mount is called, and the options for it.
-fn described(mount: LaserMount, taken: LaserMount) -> String {
-    let degrees = mount.turn.to_degrees().round();
+/// What a mount is called, and the options that are not given for it; `None` where it is the mount taken.
+fn described(mount: LaserMount, taken: LaserMount) -> Option<String> {
+    // Without the sign of a negative zero.
+    let degrees = mount.turn.to_degrees().round() + 0.0;
+    let is_turned_otherwise = wrap_angle(mount.turn - taken.turn).abs() >= MIN_TURN_DIFFERENCE_RAD;
     let mut options = String::new();
-    if mount.upside_down {
+    if mount.upside_down && !taken.upside_down {
         options.push_str(" --upside-down");
     }
-    if wrap_angle(mount.turn - taken.turn).abs() > 1e-6 {
+    if is_turned_otherwise {
         options.push_str(&format!(" --laser-turn={degrees}"));
     }
     let side = match (mount.upside_down, taken.upside_down) {
@@ -61,12 +66,19 @@ fn described(mount: LaserMount, taken: LaserMount) -> String {
         (false, true) => "the right way up",
         _ => "",
     };
-    let turn = if options.contains("turn") { format!("turned by {degrees} deg") } else { String::new() };
+    let turn = match degrees {
+        _ if !is_turned_otherwise => String::new(),
+        0.0 => "straight ahead".to_owned(),
+        degrees => format!("turned by {degrees} deg"),
+    };
+    if side.is_empty() && turn.is_empty() {
+        return None;
+    }
     let how =
         if side.is_empty() || turn.is_empty() { format!("{side}{turn}") } else { format!("{side}, {turn}") };
     let options =
         if options.is_empty() { "leave out --upside-down".to_owned() } else { format!("try{options}") };
-    format!("the laser seems to be mounted {how}: {options}")
+    Some(format!("the laser seems to be mounted {how}: {options}"))
 }
 
 /// The mount that fits the odometry of the log's steps clearly better than the one taken, if there is one.
@@ -234,6 +246,17 @@ mod tests {
         let behind = LaserMount { turn: std::f64::consts::PI, upside_down: false };
         let found = mount_hint(&drive(behind), &few).unwrap();
         assert!(found.starts_with("the scans fit the odometry better in another way: the laser"), "{found}");
+    }
+
+    #[test]
+    fn a_hint_names_nothing_that_is_so_already() {
+        let mount = |degrees: f64, upside_down| LaserMount { turn: degrees.to_radians(), upside_down };
+        assert_eq!(described(mount(0.3, false), mount(0.0, false)), None);
+        assert_eq!(described(mount(90.0, true), mount(90.2, true)), None);
+        let ahead = described(mount(-0.1, false), mount(90.0, false)).unwrap();
+        assert!(ahead.ends_with("mounted straight ahead: try --laser-turn=0"), "{ahead}");
+        let turned = described(mount(90.0, true), mount(0.0, true)).unwrap();
+        assert!(turned.ends_with("mounted turned by 90 deg: try --laser-turn=90"), "{turned}");
     }
 
     #[test]

@@ -53,6 +53,7 @@ impl LaserMapRequest {
             let config = ParticleConfig { map: MapperConfig { resolution, ..config.map }, ..config };
             return Ok(MapLocalizer::from_grid(&grid, config, self.seed)?);
         }
+        Expected::LocalizationMap.check(file)?;
         let bytes = read_filter(file)?;
         MapLocalizer::load(&bytes, self.config(depth), self.seed).map_err(|error| refused(file, &error))
     }

@@ -32,7 +32,7 @@ pub fn map_log(
             let mut localizer = request.localizer(file, depth.as_ref())?;
             let (counts, poses) = localize(log, &mut localizer, progress);
             folder.write("overview.png", &map_picture(&localizer.grid(), &poses))?;
-            let failure = LaserMapRun::failure_of(log, &counts, None);
+            let failure = LaserMapRun::failure_of(log, &counts, None, stop::stopped().is_some());
             (counts, poses, 0.0, failure)
         }
         _ => {
@@ -42,7 +42,8 @@ pub fn map_log(
             let poses = mapper.trajectory();
             folder.write("overview.png", &map_picture(mapper.grid(), &poses))?;
             folder.write("filter.map", &mapper.save())?;
-            let failure = LaserMapRun::failure_of(log, &counts, Some(mapper.grid()));
+            let failure =
+                LaserMapRun::failure_of(log, &counts, Some(mapper.grid()), stop::stopped().is_some());
             (counts, poses, mapper.bytes() as f64 / 1e6, failure)
         }
     };

@@ -2,7 +2,11 @@
 
 use super::counts::ScanCounts;
 use trundle_core::{Cell, OccupancyGrid};
-use trundle_io::{LaserLog, empty_map_cause};
+use trundle_io::{LaserLog, empty_map_cause, no_overlap_cause, range_unit_hint};
+
+/// Share of the scans without overlap with the map \[1\]. Above it the map shows no place. Source: ours; of the shared logs none has a
+/// share above 0.01.
+const MAX_SHARE_WITHOUT_OVERLAP: f64 = 0.5;
 
 /// The result of a log.
 #[derive(Debug)]
@@ -22,16 +26,24 @@ pub struct LaserMapRun {
 }
 
 impl LaserMapRun {
-    /// Why a log that gave these counts and this map, where one was made, missed the aim, with the likely cause.
+    /// Why a log that gave these counts and this map, where one was made, missed the aim, with the likely cause. `is_stopped`: whether
+    /// the user ended the run.
     pub(super) fn failure_of(
         log: &LaserLog,
         counts: &ScanCounts,
         grid: Option<&OccupancyGrid>,
+        is_stopped: bool,
     ) -> Option<String> {
         let is_in = |cell: Cell| grid.is_none_or(|grid| grid.cells().contains(&cell));
-        let failure = if counts.processed == 0 {
-            "no scan was put into the map or found in it"
-        } else if !is_in(Cell::Free) && !is_in(Cell::Occupied) {
+        if counts.processed == 0 {
+            return Some(nothing_processed(log, counts, is_stopped));
+        }
+        if counts.without_overlap as f64 > MAX_SHARE_WITHOUT_OVERLAP * counts.processed as f64 {
+            let (without, all) = (counts.without_overlap, counts.processed);
+            let cause = no_overlap_cause(log);
+            return Some(format!("{without} of {all} scans do not overlap with the map: {cause}"));
+        }
+        let failure = if !is_in(Cell::Free) && !is_in(Cell::Occupied) {
             "the map has no known cell"
         } else if !is_in(Cell::Occupied) {
             "the map has no occupied cell"
@@ -45,5 +57,60 @@ impl LaserMapRun {
     #[must_use]
     pub fn scan_ms(&self) -> f64 {
         self.seconds * 1e3 / (self.counts.processed + self.counts.lost).max(1) as f64
+    }
+}
+
+/// Why no scan was put into the map or found in it.
+fn nothing_processed(log: &LaserLog, counts: &ScanCounts, is_stopped: bool) -> String {
+    let all = log.scans.len();
+    if counts.lost > 0 {
+        let cause = range_unit_hint(log).unwrap_or_else(|| {
+            "is it the map of this place, with the laser mounted as the log says?".to_owned()
+        });
+        let end = if is_stopped { ", then the run was stopped" } else { "" };
+        return format!(
+            "no scan was found in the map: {} of {all} scans do not fit it{end}: {cause}",
+            counts.lost
+        );
+    }
+    if is_stopped {
+        return format!(
+            "no scan was put into the map or found in it: the run was stopped before the first of {all} scans"
+        );
+    }
+    if counts.refused > 0 {
+        return format!(
+            "no scan was put into the map or found in it: {} of {all} scans were refused",
+            counts.refused
+        );
+    }
+    format!("no scan was put into the map or found in it: {}", empty_map_cause(log))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn failure(counts: &ScanCounts, is_stopped: bool) -> Option<String> {
+        LaserMapRun::failure_of(&LaserLog::default(), counts, None, is_stopped)
+    }
+
+    #[test]
+    fn a_map_that_most_scans_do_not_overlap_with_is_a_missed_aim() {
+        let counts = |without_overlap| ScanCounts { processed: 28, without_overlap, ..ScanCounts::default() };
+        assert_eq!(failure(&counts(14), false), None);
+        let missed = failure(&counts(27), false).unwrap();
+        assert!(missed.starts_with("27 of 28 scans do not overlap with the map: "), "{missed}");
+    }
+
+    #[test]
+    fn scans_that_do_not_fit_a_map_and_a_stop_are_named() {
+        let lost = ScanCounts { lost: 60, ..ScanCounts::default() };
+        let foreign = failure(&lost, false).unwrap();
+        assert!(foreign.contains("60 of 0 scans do not fit it: is it the map of this place"), "{foreign}");
+        let stopped = failure(&ScanCounts::default(), true).unwrap();
+        assert!(stopped.contains("the run was stopped before the first"), "{stopped}");
+        let refused = ScanCounts { refused: 3, ..ScanCounts::default() };
+        assert!(failure(&refused, false).unwrap().contains("3 of 0 scans were refused"));
     }
 }

@@ -1,29 +1,65 @@
-//! The likely cause where the scans of a log leave a map empty.
+//! The likely cause where a log gives no map: its ranges, its odometry, their units.
 
 use super::LaserLog;
 use trundle_core::Beam;
 
-/// Range that no indoor laser measures, m; larger ranges are in another unit. Source: SICK LMS200, 80 m.
-const MAX_LASER_RANGE_M: f64 = 100.0;
+/// Median of the ranges of a log \[m\]. Beyond it they are in another unit. Source: ours; the medians of the shared logs are below
+/// 10 m, and no indoor laser reaches far beyond 80 m (SICK LMS200).
+const MAX_MEDIAN_RANGE_M: f64 = 50.0;
+/// Median of the ranges \[m\] from which on centimetres are ruled out: a room would be 10 m and more about the robot. Source: ours.
+const MAX_CENTIMETRE_MEDIAN: f64 = 1000.0;
+/// Median way by odometry between two scans \[m\]. Beyond it the odometry is in another unit. Source: ours.
+const MAX_MEDIAN_STEP_M: f64 = 3.0;
+
+/// What is wrong with the unit of a log's ranges, where they show it.
+#[must_use]
+pub fn range_unit_hint(log: &LaserLog) -> Option<String> {
+    let median = median(hit_ranges(log))?;
+    let unit = if median > MAX_CENTIMETRE_MEDIAN { "millimetres" } else { "centimetres or millimetres" };
+    (median > MAX_MEDIAN_RANGE_M).then(|| {
+        format!(
+            "half of the ranges are {median:.0} m or more, expected {MAX_MEDIAN_RANGE_M} m or less: are they in {unit}?"
+        )
+    })
+}
 
 /// Why nothing is in a map of a log, judged by its ranges.
 #[must_use]
 pub fn empty_map_cause(log: &LaserLog) -> String {
-    let mut ranges = hit_ranges(log);
-    if ranges.is_empty() {
+    if log.scans_without_return() == log.scans.len() {
         return no_return_cause(log);
     }
-    let middle = ranges.len() / 2;
-    let median = *ranges.select_nth_unstable_by(middle, f64::total_cmp).1;
-    if median > MAX_LASER_RANGE_M {
-        return format!(
-            "half of the ranges are {median:.0} m or more, expected at most {MAX_LASER_RANGE_M} m: are they in millimetres?"
-        );
-    }
-    format!("{} of {} scans met nothing", log.scans_without_return(), log.scans.len())
+    range_unit_hint(log)
+        .unwrap_or_else(|| format!("{} of {} scans met nothing", log.scans_without_return(), log.scans.len()))
 }
 
-fn no_return_cause(log: &LaserLog) -> String {
+/// Why the scans of a log do not overlap with the map of it, judged by ranges and odometry.
+#[must_use]
+pub fn no_overlap_cause(log: &LaserLog) -> String {
+    if log.scans_without_return() == log.scans.len() && !log.scans.is_empty() {
+        return no_return_cause(log);
+    }
+    range_unit_hint(log).or_else(|| odometry_unit_hint(log)).unwrap_or_else(|| {
+        "are ranges and odometry of one robot, both in metres, and is the laser mounted as the log says?"
+            .to_owned()
+    })
+}
+
+/// What is wrong with the unit of a log's odometry, where its steps show it.
+fn odometry_unit_hint(log: &LaserLog) -> Option<String> {
+    let steps = log.scans.windows(2).map(|pair| pair[0].odom_from_base.distance(&pair[1].odom_from_base));
+    let median = median(steps.collect())?;
+    (median > MAX_MEDIAN_STEP_M).then(|| {
+        format!(
+            "between two scans the odometry moves {median:.0} m or more at half of the steps, expected {MAX_MEDIAN_STEP_M} m or less: \
+             is it in centimetres or millimetres?"
+        )
+    })
+}
+
+/// Why a log whose beams all met nothing gives no map.
+#[must_use]
+pub fn no_return_cause(log: &LaserLog) -> String {
     if let Some(problem) = &log.depth_problem {
         return problem.clone();
     }
@@ -35,7 +71,8 @@ fn no_return_cause(log: &LaserLog) -> String {
     }
     match log.max_range {
         Some(max) => format!(
-            "no beam of any scan met anything: every range is about the laser's largest range of {max} m or beyond it, or is none"
+            "no beam of any scan met anything: every range is about the laser's largest range of {max} m or beyond it, or is none: are they \
+             in centimetres or millimetres?"
         ),
         None => "no beam of any scan met anything".to_owned(),
     }
@@ -44,4 +81,56 @@ fn no_return_cause(log: &LaserLog) -> String {
 fn hit_ranges(log: &LaserLog) -> Vec<f64> {
     let beams = log.scans.iter().flat_map(|scan| scan.scan.beams());
     beams.filter_map(|beam| if let Beam::Hit { range } = beam { Some(*range) } else { None }).collect()
+}
+
+/// The upper median; `None` of nothing.
+fn median(mut values: Vec<f64>) -> Option<f64> {
+    let middle = values.len() / 2;
+    (!values.is_empty()).then(|| *values.select_nth_unstable_by(middle, f64::total_cmp).1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::laser_log::LaserLogScan;
+    use trundle_core::{Pose2, Scan, Stamp, Vector2};
+
+    /// Scans whose beams all have this range, m, `step` m apart by odometry.
+    fn log(range: f64, step: f64) -> LaserLog {
+        let scan = |i: u32| LaserLogScan {
+            odom_from_base: Pose2::new(step * f64::from(i), 0.0, 0.0),
+            scan: Scan::new(
+                Stamp::from_nanos(i64::from(i)),
+                Vector2::zeros(),
+                0.0,
+                0.1,
+                vec![Beam::Hit { range }; 5],
+            )
+            .unwrap(),
+        };
+        LaserLog { scans: (0..6).map(scan).collect(), ..LaserLog::default() }
+    }
+
+    #[test]
+    fn ranges_and_odometry_in_another_unit_are_named() {
+        assert_eq!(range_unit_hint(&log(4.0, 0.1)), None);
+        let centimetres = range_unit_hint(&log(400.0, 0.1)).unwrap();
+        assert!(centimetres.contains("half of the ranges are 400 m or more"), "{centimetres}");
+        assert!(centimetres.ends_with("are they in centimetres or millimetres?"), "{centimetres}");
+        assert!(range_unit_hint(&log(4000.0, 0.1)).unwrap().ends_with("are they in millimetres?"));
+        assert_eq!(no_overlap_cause(&log(400.0, 0.1)), centimetres);
+        assert!(no_overlap_cause(&log(4.0, 10.0)).contains("the odometry moves 10 m or more"));
+        assert!(no_overlap_cause(&log(4.0, 0.1)).contains("both in metres"));
+    }
+
+    #[test]
+    fn ranges_beyond_the_largest_one_may_be_in_another_unit() {
+        let mut log = log(4.0, 0.1);
+        let blind =
+            |i: i64| Scan::new(Stamp::from_nanos(i), Vector2::zeros(), 0.0, 0.1, vec![Beam::Unseen; 5]);
+        log.scans.iter_mut().zip(0..).for_each(|(entry, i)| entry.scan = blind(i).unwrap());
+        log.max_range = Some(8.0);
+        let cause = empty_map_cause(&log);
+        assert!(cause.contains("largest range of 8 m") && cause.ends_with("millimetres?"), "{cause}");
+    }
 }
