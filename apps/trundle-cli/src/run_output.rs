@@ -29,6 +29,8 @@ pub fn write(
     match output.incomplete {
         Some(error) => Err(error),
         None if numbers.is_success() => Ok(Outcome::Reached),
+        // The table holds the verdict where it is printed.
+        None if quiet => Ok(Outcome::unless(Some(numbers.verdict()))),
         None => Ok(Outcome::Missed),
     }
 }

@@ -49,14 +49,15 @@ impl RecordingContent {
     #[must_use]
     pub fn announcement(self, camera: &PinholeCamera, rate_hz: f64, limit: f64) -> String {
         let rate = self.bytes_per_second(camera, rate_hz) / BYTES_PER_MB;
-        let most = rate * limit;
+        let total = rate * limit;
+        let total = if total < 1.0 { "less than 1 MB".to_owned() } else { format!("at most {total:.0} MB") };
         match self {
             Self::None => "Nothing is recorded.".to_owned(),
             Self::Events => format!(
-                "Records events without images, about {rate:.2} MB a second of the robot's time, at most {most:.0} MB in {limit:.0} s."
+                "Records events without images, about {rate:.2} MB a second of the robot's time, {total} in {limit:.0} s."
             ),
             Self::All => format!(
-                "Records events and images, about {rate:.1} MB a second of the robot's time, at most {most:.0} MB in {limit:.0} s."
+                "Records events and images, about {rate:.1} MB a second of the robot's time, {total} in {limit:.0} s."
             ),
         }
     }
@@ -74,5 +75,7 @@ mod tests {
         assert_eq!(text(RecordingContent::None), "Nothing is recorded.");
         assert!(text(RecordingContent::Events).contains("at most 8 MB in 100 s"));
         assert!(text(RecordingContent::All).contains("MB a second"));
+        let short = RecordingContent::Events.announcement(&camera, 15.0, 6.0);
+        assert!(short.contains("less than 1 MB in 6 s"), "{short}");
     }
 }

@@ -79,7 +79,7 @@ pub enum EvalError {
     },
     /// Positions in one point or on one line leave the rotation open.
     #[error(
-        "{poses} associated positions lie on a line or in a point (spread across it {spread} of that along), \
+        "{poses} associated positions lie on a line or in a point (spread across it {spread:.1e} of that along), \
          so that no rotation aligns them better than others"
     )]
     Degenerate {

@@ -3,7 +3,7 @@
 use crate::IoError;
 use flate2::bufread::MultiGzDecoder;
 use std::fs::File;
-use std::io::{BufRead, BufReader, Read};
+use std::io::{BufRead, BufReader, ErrorKind, Read};
 use std::path::{Path, PathBuf};
 
 /// Longest line \[bytes\]. A longer one is refused: it bounds the memory that a compressed file can ask for. A scan of the largest
@@ -56,7 +56,7 @@ impl TextLines {
             Ok(0) => return Ok(false),
             Ok(_) => self.number += 1,
             Err(error) if self.is_compressed => {
-                let problem = format!("the gzip data is broken after line {}: {error}", self.number);
+                let problem = broken_gzip(self.number, &error);
                 return Err(IoError::malformed(&self.path, problem));
             }
             Err(error) => return Err(IoError::system(&self.path, "read")(error)),
@@ -71,6 +71,18 @@ impl TextLines {
     fn text(&self) -> Result<&str, IoError> {
         std::str::from_utf8(&self.buffer)
             .map_err(|_| IoError::line(&self.path, self.number, "is not UTF-8 text"))
+    }
+}
+
+/// What is wrong with compressed data that end, or cannot be unpacked, after a line.
+fn broken_gzip(line: usize, error: &std::io::Error) -> String {
+    match error.kind() {
+        ErrorKind::UnexpectedEof => format!("the gzip file is cut off after line {line}"),
+        // flate2 names a stream that ends too early by this text only.
+        _ if error.to_string().contains("incomplete") => {
+            format!("the gzip file is cut off after line {line}")
+        }
+        _ => format!("the gzip data is broken after line {line}: {error}"),
     }
 }
 
@@ -127,7 +139,7 @@ mod tests {
             (0..9000_u32).flat_map(|i| format!("{}\n", i.wrapping_mul(2_654_435_761)).into_bytes()).collect();
         let whole = zipped(&many);
         let cut = lines(whole[..whole.len() / 2].to_vec()).unwrap_err();
-        assert!(cut.starts_with("a.log: the gzip data is broken after line "), "{cut}");
+        assert!(cut.starts_with("a.log: the gzip file is cut off after line "), "{cut}");
     }
 
     #[test]
