@@ -38,7 +38,7 @@ pub struct SequenceInput {
 }
 
 enum Source {
-    Folder(TumSequence),
+    Folder(Box<TumSequence>),
     Recording(Box<RecordedRun>),
 }
 
@@ -69,7 +69,7 @@ impl SequenceInput {
         let scale = options.depth_scale.unwrap_or(depth_scale);
         let sequence = TumSequence::open(options.path, scale, TumSequence::MAX_DIFFERENCE)?;
         log_warnings(sequence.warnings());
-        let source = Source::Folder(sequence.with_size(lens.width(), lens.height()));
+        let source = Source::Folder(Box::new(sequence.with_size(lens.width(), lens.height())));
         Ok(Self { path: options.path.to_owned(), camera, robot: RobotConfig::default(), source })
     }
 

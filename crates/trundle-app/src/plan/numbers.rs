@@ -3,7 +3,7 @@
 use super::goal_refusal::{GoalRefusal, MovedGoal};
 use super::off_map::OffMap;
 use super::request::PlanRequest;
-use trundle_core::{Pose2, Vector2};
+use trundle_core::Vector2;
 use trundle_io::{Summary, table_csv};
 use trundle_planning::{Curve, MAX_CLEARANCE_M, MultiGoalPlan, Plan, PlanningTimes, clearance_text};
 
@@ -30,13 +30,6 @@ pub fn points(plan: &MultiGoalPlan) -> Vec<Vector2> {
         .flat_map(|curve| curve.samples(CURVE_SAMPLE_SPACING_M))
         .map(|sample| sample.pose.position())
         .collect()
-}
-
-/// Poses along all curves, close together, and both ends.
-pub fn poses(request: &PlanRequest, plan: &MultiGoalPlan) -> Vec<Pose2> {
-    let along = curves(plan).flat_map(|curve| curve.samples(CURVE_SAMPLE_SPACING_M));
-    let ends = [request.start.pose, plan.trajectory.end()];
-    along.map(|sample| sample.pose).chain(ends).collect()
 }
 
 /// Points along the curves: curve, arc length, pose, curvature.

@@ -1,12 +1,14 @@
 //! How far the robot's outline leaves the map along a plan: what is off the map is unknown.
 
-use super::numbers::poses;
 use super::request::PlanRequest;
 use trundle_core::{Footprint, GridGeometry, Pose2, Vector2};
 use trundle_planning::MultiGoalPlan;
 
 /// Distance beyond the map's edge \[m\]. Up to it the outline counts as on the map. Source: ours.
 const MAX_IGNORED_DISTANCE_M: f64 = 0.005;
+
+/// Distance of two poses of the curve that are checked \[m\]. Source: ours.
+const POSE_SPACING_M: f64 = 0.02;
 
 /// The place of a plan where the robot's outline is farthest off the map.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -37,6 +39,13 @@ impl OffMap {
             at.x, at.y
         )
     }
+}
+
+/// Poses along all curves, close together, and both ends.
+fn poses(request: &PlanRequest, plan: &MultiGoalPlan) -> Vec<Pose2> {
+    let curves = plan.legs.iter().flat_map(|leg| leg.curves());
+    let along = curves.flat_map(|curve| curve.samples(POSE_SPACING_M)).map(|sample| sample.pose);
+    along.chain([request.start.pose, plan.trajectory.end()]).collect()
 }
 
 /// Distance by which the outline at a pose reaches beyond the map, m; below 0 inside.

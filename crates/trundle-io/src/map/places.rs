@@ -77,11 +77,8 @@ mod tests {
     #[test]
     fn errors_name_the_line_or_the_place() {
         for (text, problem) in [
-            ("[a]\nx = 1\ny = 2\n", "p.toml, line 1: missing field `heading_deg`"),
-            (
-                "[a]\nx = 1\ny = 'two'\nheading_deg = 0",
-                "p.toml, line 3: invalid type: string \"two\", expected f64",
-            ),
+            ("[a]\nx = 1\ny = 2\n", "p.toml, line 1: the key heading_deg is missing"),
+            ("[a]\nx = 1\ny = 'two'\nheading_deg = 0", "p.toml, line 3: y is \"two\", expected a number"),
             ("[a]\nx = 1\ny = nan\nheading_deg = 0", "p.toml: a.y is NaN m, expected -1000000 to 1000000"),
             ("[\"\"]\nx = 1\ny = 1\nheading_deg = 0", "p.toml: a place has no name"),
         ] {
