@@ -1,4 +1,4 @@
-//! What the bumper says about the map.
+//! Points of the map that a pressed bumper marks as occupied.
 
 use trundle_core::{Footprint, Vector2};
 

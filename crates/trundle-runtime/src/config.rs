@@ -108,7 +108,7 @@ impl Default for RobotConfig {
 }
 
 impl RobotConfig {
-    /// Refuses a base that may be faster than its odometry believes: it would lose its way at full speed.
+    /// Refuses a base whose top speed is above the speed that the odometry accepts: at full speed the pose would be lost.
     pub(crate) fn require_believable_speeds(&self) -> Result<(), Invalid> {
         let least = self.limits.wheel_speed;
         if self.odometry.max_speed < least {

@@ -5,10 +5,10 @@ use nalgebra::Matrix3;
 use trundle_core::{Invalid, OccupancyGrid, Pose2, Scan, Stamp};
 use trundle_mapping::{Localized, MapLocalizer, MapperConfig, ParticleConfig};
 
-/// Where a robot is that does not know its place and whose camera recognises none: looked for in the map by its scans.
+/// Global localization by scans, for a robot with unknown pose whose camera recognises no place.
 ///
-/// Scans taken on the way are laid together by the odometry and looked for in the whole map ([`MapLocalizer`]); a place that is proved
-/// better than every other must then explain some more scans before it is told.
+/// The odometry combines scans along the path, and [`MapLocalizer`] searches the combined scan in the whole map. A pose that is proved
+/// better than every other must explain some more scans before it is reported.
 #[derive(Debug)]
 pub(crate) struct GlobalLocalization {
     config: ParticleConfig,
@@ -22,7 +22,7 @@ pub(crate) struct GlobalLocalization {
 enum Search {
     /// The place is known.
     None,
-    /// It is to be looked for in this map.
+    /// A search in this map begins with the next scan.
     Prepared(OccupancyGrid),
     UnderWay {
         localizer: Box<MapLocalizer>,
@@ -55,7 +55,7 @@ const MIN_EXPLAINED_SHARE: f64 = 0.75;
 const MIN_RANGE_SIGMA_M: f64 = 0.01;
 
 impl GlobalLocalization {
-    /// Nothing is looked for yet.
+    /// A localization without a search.
     pub(crate) fn new(config: &RobotConfig, blind_range: f64) -> Result<Self, Invalid> {
         let map = MapperConfig { blind_range, ..config.mapping.clone() };
         let laser = ParticleConfig { map, wait_gate: MAX_STANDING_GAP_S, ..ParticleConfig::default() };
@@ -70,12 +70,12 @@ impl GlobalLocalization {
         Ok(Self { config: config.validated()?, searches: 0, search: Search::None })
     }
 
-    /// Whether a place is looked for.
+    /// Whether a search is under way.
     pub(crate) fn is_sought(&self) -> bool {
         !matches!(self.search, Search::None)
     }
 
-    /// Begins to look in a map.
+    /// Begins a search in a map.
     pub(crate) fn search_pose(&mut self, grid: OccupancyGrid) {
         self.search = Search::Prepared(grid);
     }
@@ -99,7 +99,7 @@ impl GlobalLocalization {
         match localizer.update(odom_from_base, scan) {
             Localized::Known { map_from_base, covariance, explained, degenerate } => {
                 let fits = explained >= MIN_EXPLAINED_SHARE;
-                // One that shows a bare wall alone says little either way.
+                // A scan of a single wall is no evidence for or against the pose.
                 *times = if fits { *times + usize::from(degenerate == 0) } else { 0 };
                 let place = || LocalizedPose {
                     stamp: scan.stamp(),
@@ -140,7 +140,7 @@ mod tests {
     use super::*;
     use trundle_core::{Beam, Cell, CellIndex, GridGeometry, Vector2};
 
-    /// A room of so many cells of 5 cm, with boxes (first and last column, first and last row) in it; its corner at the origin.
+    /// A room of `width` x `height` cells of 5 cm, with boxes (first and last column, first and last row); its corner at the origin.
     fn room(width: usize, height: usize, boxes: &[[usize; 4]]) -> OccupancyGrid {
         let geometry = GridGeometry::new(0.05, Vector2::zeros(), width, height).unwrap();
         let mut grid = OccupancyGrid::filled(geometry, Cell::Free);
@@ -169,7 +169,7 @@ mod tests {
         Scan::new(stamp, Vector2::zeros(), first, step, (-35..=35).map(beam).collect()).unwrap()
     }
 
-    /// Where a robot that turns three times at `at` is believed to be in `map`, by the scans of `truth`, and after how many.
+    /// The pose in `map` that is found by the scans of `truth`, for a robot that turns three times at `at`, and the number of scans.
     fn found(
         map: &OccupancyGrid,
         truth: &OccupancyGrid,

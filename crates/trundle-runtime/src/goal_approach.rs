@@ -1,8 +1,8 @@
-//! The last stage of a mission: which way the robot settles on its goal.
+//! The final approach: an arc, or turns and straight moves.
 //!
-//! Where there is room, an arc is faster; where it is tight, turns on the spot and straight moves get there, footprint-exact.
-//! The rule: an arc, when the law's own run from here is free and takes no longer than the manoeuvre that was found. Both are
-//! known to the end before one is taken: neither looking nor planning takes more than a part of a control step.
+//! In free space an arc is faster. In narrow space turns on the spot and straight moves reach the goal, exact for the footprint. The
+//! rule: the arc, where the simulated arc is free and no slower than the manoeuvre. Both are computed to the end before one is
+//! chosen; neither computation takes more than a part of a control step.
 
 mod end;
 mod report;
@@ -74,8 +74,8 @@ const STANDING_SPEED_M_S: f64 = 0.02;
 /// Turn rate below which the robot counts as standing \[rad/s\]. Source: ours.
 const STANDING_TURN_RATE_RAD_S: f64 = 0.05;
 
-/// Chooses between an arc and a manoeuvre, and carries the manoeuvre out. A step plans for about
-/// [`PositionerConfig::step_work`]: no more than as much again beyond it.
+/// Chooses between an arc and a manoeuvre, and executes the manoeuvre. The work of a step is about
+/// [`PositionerConfig::step_work`], and at most twice that.
 #[derive(Debug)]
 pub(crate) struct GoalApproach {
     config: GoalApproachConfig,
@@ -120,12 +120,12 @@ impl GoalApproach {
         })
     }
 
-    /// What turns and straight moves have done for the goal of now, or the last one they were asked about.
+    /// Report of turns and straight moves for the present goal, or for the last goal with such a request.
     pub(crate) fn report(&self) -> &GoalApproachReport {
         &self.notes.report
     }
 
-    /// Forgets the goal; what was done for it can still be told.
+    /// Drops the goal; the report stays available.
     pub(crate) fn reset(&mut self) {
         if self.positioner.take().is_some() {
             self.notes.report.ended.get_or_insert(ApproachEnd::BrokenOff);
@@ -138,8 +138,8 @@ impl GoalApproach {
         self.config.enabled && pose.distance(goal) <= self.config.near
     }
 
-    /// At the end of the trajectory: begins to look whether turns and straight moves take over from the arc that `preview`
-    /// shows. [`GoalApproach::takes_over`] tells.
+    /// At the end of the trajectory: begins to compare turns and straight moves with the arc of `preview`. The result is in
+    /// [`GoalApproach::takes_over`].
     pub(crate) fn consider(&mut self, s: &WorldState<'_>, goal: Pose2, preview: StabilizerPreview) {
         self.choice = None;
         if self.config.enabled {
@@ -159,7 +159,7 @@ impl GoalApproach {
         self.verdict(s) == Verdict::Manoeuvre && self.begin()
     }
 
-    /// Turns and straight moves, if there are such: no path was found. It may take some calls to know.
+    /// Begins turns and straight moves where no path was found, if a manoeuvre exists. The search may take several calls.
     pub(crate) fn begin_if_possible(&mut self, s: &WorldState<'_>, goal: Pose2) -> bool {
         let pose = s.estimate.pose;
         if !self.is_near(&pose, &goal) {
@@ -205,7 +205,7 @@ impl GoalApproach {
         self.positioner.is_some()
     }
 
-    /// What stands around, and what is unknown: no camera looks where a manoeuvre backs up.
+    /// Obstacles and unknown floor around the robot. Unknown floor counts because no camera covers the area behind the robot.
     fn scene_around(&self, s: &WorldState<'_>, goal: &Pose2) -> ObstacleScene {
         let (center, half) = self.config.planner.view(&self.footprint, &s.estimate.pose, goal);
         ObstacleScene::from_grid(s.grid, center, half, true)

@@ -3,7 +3,7 @@
 use std::fmt;
 use trundle_core::{RgbdImage, Stamp};
 
-/// An image that is decoded where it is looked at, so that one that nobody looks at costs nothing.
+/// An image that is decoded at its first use: a dropped image costs nothing.
 pub struct LazyImage {
     stamp: Stamp,
     load: Box<dyn FnOnce() -> Result<RgbdImage, String> + Send>,

@@ -7,8 +7,8 @@ use trundle_mapping::{DepthScanConfig, DepthScanner, GridMapper, MapperConfig};
 
 /// A floor map of a camera that moves freely, hand-held or on a robot.
 ///
-/// The visual frame must be level: z up, z = 0 the floor. Each image is cut to the height band under the tilt and height
-/// that its pose says; the scans are kept, and drawn when the poses are final.
+/// The visual frame must be level: z up, the floor at z = 0. Each image is cut to the height band by tilt and height of its pose.
+/// The scans are kept and drawn when the poses are final.
 #[derive(Debug)]
 pub struct LevelMap {
     scanner: DepthScanner,
@@ -27,8 +27,8 @@ impl LevelMap {
         Ok(Self { scanner, due: Ticker::new(map_hz), scans: BTreeMap::new() })
     }
 
-    /// Keeps the scan of an image taken at `level_from_camera`, unless the last one was a moment ago, or no scan can be
-    /// made of it: the camera looks too steeply up or down, or is not above the floor.
+    /// Keeps the scan of an image taken at `level_from_camera`. An image too soon after the last kept one is left out, and one without a
+    /// scan: a camera that points too steeply up or down, or is below the floor.
     pub fn note(&mut self, image: &RgbdImage, level_from_camera: Pose3) {
         let Some(base) = base_below(&level_from_camera) else { return };
         let base_from_camera = Pose3::from_pose2(base).inverse() * level_from_camera;
@@ -66,7 +66,7 @@ pub fn level_from_first_camera(height: f64, tilt_deg: f64, roll_deg: f64) -> Res
     Ok(mount.validated()?.base_from_camera())
 }
 
-/// A base under the camera, heading where the camera looks; none when it looks within 20 degrees of straight up or down.
+/// A base under the camera with the heading of the optical axis; none within 20 degrees of vertical.
 fn base_below(level_from_camera: &Pose3) -> Option<Pose2> {
     let axis = level_from_camera.rotate(Vector3::z());
     let flat = axis.x.hypot(axis.y);

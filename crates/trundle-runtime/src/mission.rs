@@ -124,7 +124,7 @@ pub struct TaskRecord {
     pub from: Stamp,
     /// When it ended.
     pub to: Stamp,
-    /// Where the robot believed to stand then, map frame.
+    /// Estimated pose of the robot at that time, map frame.
     pub pose: Pose2,
     /// Whether the robot was switched off since: the stamps are of another clock.
     pub before_restart: bool,

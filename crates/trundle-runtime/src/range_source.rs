@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// What the robot sees its surroundings with: what its map is drawn from and what its safety monitor watches.
+/// Sensor whose scans the map is drawn from and the safety monitor uses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum RangeSource {

@@ -4,7 +4,7 @@
 //! order the threads come to is the order in which the robot was fed, so who writes down events and answers in that order can
 //! feed them again and gets the same reports.
 //!
-//! The loop of a robot's driver, whose own threads put what sensors say into the inbox's door:
+//! The loop of a robot's driver, whose own threads put sensor events into the inbox:
 //!
 //! ```no_run
 //! use std::time::Duration;

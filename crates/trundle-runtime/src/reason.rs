@@ -55,12 +55,12 @@ pub enum Reason {
     },
     /// Images with enough features do not match the visual map at the estimated pose.
     ViewContradictsMap,
-    /// The bumper was pressed too often on the way to one goal.
+    /// The bumper was pressed too often on the path to one goal.
     RepeatedContact {
         /// Contacts since the goal was given.
         contacts: u32,
     },
-    /// The camera becomes blind again and again on the path to a viewpoint.
+    /// The camera repeatedly loses its view on the path to a viewpoint.
     NoSightOnPath,
     /// The robot makes no progress.
     NoProgress {

@@ -25,6 +25,6 @@ pub struct StepReport {
     pub state: DriveState,
     /// Whether the step made a new plan.
     pub replanned: bool,
-    /// Whether the mission is over: then `state` says how it ended.
+    /// Whether the mission is over; `state` then holds its outcome.
     pub finished: bool,
 }

@@ -104,7 +104,7 @@ struct Latest {
     unconfirmed: Vec<Vector2>,
 }
 
-/// Time without a located image \[s\] after which images with enough features count as images of another place than odometry says. Source: ours.
+/// Time without a located image \[s\] after which images with enough features count as images of another place than the estimate. Source: ours.
 const UNLOCATED_WITH_FEATURES_S: f64 = 0.3;
 /// Largest age of a located image \[s\] that still measures the robot's motion. Source: ours.
 const MAX_VISUAL_MOTION_AGE_S: f64 = 0.8;
@@ -161,7 +161,7 @@ impl Robot {
         self.restore_mission(MissionState::new(mission.clone()));
     }
 
-    /// Takes up a mission where it was left.
+    /// Resumes a mission at its recorded task.
     fn restore_mission(&mut self, mission: MissionState) {
         match &mut self.decision_worker {
             Some(decision_worker) => decision_worker.begin(&mission),
@@ -379,7 +379,7 @@ impl Robot {
     fn track_dynamic_obstacles(&mut self, scan: &Scan) {
         let now = scan.stamp();
         if !self.is_pose_known(now) {
-            // What came lately is where the map is, and expires.
+            // Hits of unconfirmed obstacles are in the map frame; they expire.
             let here = self.localizer.estimate().pose.position();
             self.latest.unconfirmed = self.traffic.unconfirmed_hits(now, here, NEARBY_OBSTACLE_M);
             return self.latest.clear_movers();
@@ -438,13 +438,13 @@ impl Robot {
         });
         if bent > 0 {
             self.redrawn_within = REDRAW_COMMANDS;
-            // What was looked for in the old one is looked for anew.
+            // A search in the old grid is void; it begins again in the new one.
             self.perception.iter_mut().for_each(|perception| perception.global_localization.end());
         }
     }
 
-    /// What the odometry said when an image was taken, which may be a while ago; long after its newest reading it is that, and as
-    /// uncertain as the base may have moved since.
+    /// Odometry at the stamp of an image, which may be older than the newest reading. Long after the newest reading it is that reading,
+    /// with the uncertainty of the motion that the base may have made since.
     fn odometry_at(&self, stamp: Stamp) -> Option<OdometryState> {
         let newest = || {
             let odometry = self.latest.odometry.as_ref()?;
@@ -467,7 +467,7 @@ impl Robot {
         self.mapper.grid()
     }
 
-    /// The visual tracker with its landmark map; none while it looks in the background.
+    /// The visual tracker with its landmark map; none while a perception job runs.
     pub fn slam(&self) -> Option<&RgbdSlam> {
         self.perception.as_ref().map(|perception| perception.slam())
     }
@@ -477,13 +477,13 @@ impl Robot {
         self.localizer.map_from_visual()
     }
 
-    /// The tasks of the mission that have ended; nothing is told while a decision is made in the background.
+    /// The tasks of the mission that have ended; empty while a decision job runs.
     pub fn tasks_ended(&self) -> &[TaskRecord] {
         self.decision_worker.as_ref().map_or(&[], |decision_worker| decision_worker.executor.records())
     }
 
-    /// What turns and straight moves did for the goal of now, or the last one they were asked about; none while a decision is
-    /// made in the background.
+    /// Report of turns and straight moves for the present goal, or for the last goal with such a request; none while a decision job
+    /// runs.
     pub fn docking(&self) -> Option<&GoalApproachReport> {
         Some(self.decision_worker.as_ref()?.navigator.docking())
     }
@@ -555,7 +555,7 @@ fn inscribed_radius(footprint: &Footprint) -> f64 {
     }
 }
 
-/// The visual pose, where there is one, to the localizer; one of a map that was just bent is believed.
+/// Gives the visual pose, where there is one, to the localizer. A pose in a map that was just corrected counts as recognised.
 fn correct_by_visual_pose(
     localizer: &mut Localizer,
     track: &TrackReport,

@@ -3,11 +3,11 @@
 use std::collections::{BTreeMap, BTreeSet};
 use trundle_core::{Pose2, Pose3, Stamp};
 
-/// Where the visual map said that the camera was when each scan was drawn, so that the grid can follow when it says otherwise.
+/// The camera pose in the visual map at each drawn scan. The grid follows a correction of these poses.
 #[derive(Debug, Default)]
 pub(crate) struct ScanPoseLog {
     visual: BTreeMap<Stamp, Pose3>,
-    /// So many are looked over for what is not kept any more; 0: the first number.
+    /// Number of poses at which the log is thinned; 0: [`MIN_KEPT_POSES`].
     most: usize,
 }
 
@@ -15,8 +15,8 @@ pub(crate) struct ScanPoseLog {
 const MIN_KEPT_POSES: usize = 2048;
 
 impl ScanPoseLog {
-    /// Notes a scan that was drawn while the visual map had the camera at `visual_from_camera`. Those that the map has not `kept` are let
-    /// go from time to time, and then it says so: what is noted grows with what is kept.
+    /// Records a scan that was drawn with the camera at `visual_from_camera`; from time to time drops those that are not `kept`, and
+    /// returns true then. The log therefore grows with the kept scans.
     pub(crate) fn note<I: Iterator<Item = Stamp>>(
         &mut self,
         stamp: Stamp,
@@ -38,8 +38,8 @@ impl ScanPoseLog {
         self.visual.contains_key(&stamp)
     }
 
-    /// Takes over where the visual map has the camera by now: `new_from_old` (map frame) of every scan drawn that it still knows;
-    /// `base` says where a camera pose has the base, map frame.
+    /// Applies the corrected poses of the visual map: `new_from_old` (map frame) of every drawn scan whose pose it has. `base` gives the
+    /// base in the map frame for a camera pose.
     pub(crate) fn follow(
         &mut self,
         now: &[(Stamp, Pose3)],

@@ -36,7 +36,7 @@ impl Schedule {
     }
 }
 
-/// Says when a stage is due, by the data's time.
+/// Decides by the data's time when a stage is due.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Ticker {
     period: f64,
@@ -63,7 +63,7 @@ impl Ticker {
         due
     }
 
-    /// What [`Ticker::due`] would say.
+    /// Result that [`Ticker::due`] would have.
     pub(crate) fn will_be_due(&self, now: Stamp) -> bool {
         self.period.is_finite() && self.last.is_none_or(|last| now - last >= self.period - 1e-3)
     }

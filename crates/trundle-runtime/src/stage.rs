@@ -21,7 +21,7 @@ pub enum Stage {
     Checkpoint,
     /// Scan against map.
     ScanMatch,
-    /// A robot that does not know its place: its scans against the whole map.
+    /// Global localization: scans against the whole map, while the pose is unknown.
     Search,
     /// Fusion to one pose estimate.
     Localization,
@@ -29,7 +29,7 @@ pub enum Stage {
     Mapping,
     /// Who moves near by.
     DynamicObstacles,
-    /// Mission to goal: where to go or to look next.
+    /// Mission to goal: the choice of the next goal or viewpoint.
     Supervision,
     /// Grid to path, curve and trajectory.
     Planning,

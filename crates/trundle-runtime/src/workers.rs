@@ -1,4 +1,4 @@
-//! The robot's long work as jobs that run beside the control loop, and what steers while a decision is under way.
+//! Long work of the robot as jobs beside the control loop, and the controller while a decision job runs.
 
 pub(crate) mod decision_worker;
 pub(crate) mod fallback_controller;

@@ -4,7 +4,7 @@ use trundle_control::{MotionSense, SafetyScan};
 use trundle_core::{OccupancyGrid, Pose2, PoseEstimate, Scan, Stamp, Vector2};
 use trundle_planning::MovingObstacle;
 
-/// What the robot knows of its surroundings when it decides.
+/// State of robot and surroundings at a decision.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct WorldState<'a> {
     pub(crate) now: Stamp,
@@ -16,7 +16,7 @@ pub(crate) struct WorldState<'a> {
     pub(crate) seen: Option<Stamp>,
     /// For how long images that show enough have not been located, s.
     pub(crate) unplaced: f64,
-    /// What tells how the robot moves.
+    /// The source that measures the robot's motion.
     pub(crate) motion: MotionSense,
     pub(crate) dynamic_obstacles: DynamicObstacles<'a>,
 }
@@ -25,7 +25,7 @@ pub(crate) struct WorldState<'a> {
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct DynamicObstacles<'a> {
     pub(crate) movers: &'a [MovingObstacle],
-    /// Hits of what came near by lately and has not been seen to go, map frame, m.
+    /// Hits of new obstacles near by that no scan has shown gone, map frame, m.
     pub(crate) unconfirmed: &'a [Vector2],
     /// The map without them; none where nothing moves.
     pub(crate) static_grid: Option<&'a OccupancyGrid>,

@@ -66,13 +66,13 @@ impl Goal {
     }
 }
 
-/// From a goal and the surroundings to a safe twist: plans when it must, follows, settles, looks around when no way is
-/// known, waits, and asks the safety monitor last. Where it is tight, turns and straight moves settle instead.
+/// From a goal and the world state to a safe twist: plans, follows the trajectory, approaches the goal, and waits. Without a path the
+/// robot turns on the spot and observes. The safety monitor checks each twist last. In narrow space docking makes the approach.
 #[derive(Debug)]
 pub(crate) struct Navigator {
     config: MissionExecutorConfig,
     planner: Planner,
-    /// What a camera sees; none where a laser sees all.
+    /// The camera's field of view on the floor; none with a laser as range source.
     camera_fov: Option<CameraFov>,
     follower: Follower,
     goal_approach: GoalApproach,
@@ -83,14 +83,14 @@ pub(crate) struct Navigator {
     plan: Option<Box<PlanResult>>,
     state: DriveState,
     touched: bool,
-    /// Since the goal was taken up.
+    /// Bumper contacts since the goal was given.
     touches: u32,
     over_edge: bool,
     started: Option<Stamp>,
     held_since: Option<Stamp>,
     spin: Spin,
     sight_recovery: SightRecovery,
-    /// Where the way to the goal ends, when there is none.
+    /// Place where the path to the goal is blocked, where there is no path.
     blocked_at: Option<Vector2>,
     viewpoint: Viewpoint,
     visibility: VisibilityConstraint,
@@ -150,7 +150,7 @@ impl Navigator {
         })
     }
 
-    /// Takes up a goal. From a trajectory that is being driven it goes over to the next one without a stop.
+    /// Sets the goal. A robot that follows a trajectory continues to the new goal without a stop.
     pub(crate) fn set_goal(&mut self, goal: Goal) {
         let rolls_on = self.state == DriveState::Driving && goal.pose().is_some();
         self.goal = goal;
@@ -176,19 +176,19 @@ impl Navigator {
         };
     }
 
-    /// What the bumper says.
+    /// A change of the bumper.
     pub(crate) fn touch(&mut self, pressed: bool) {
         self.touches += u32::from(pressed && !self.touched);
         self.touched = pressed;
         if self.touches >= MAX_BUMPER_CONTACTS && !self.state.is_over() {
-            // What is touched again and again the map does not show, or not where it is.
+            // Repeated contacts show that the map lacks the obstacle, or has it at a wrong place.
             self.follower.halt();
             self.goal_approach.reset();
             self.state = DriveState::Stopped { reason: Reason::RepeatedContact { contacts: self.touches } };
         }
     }
 
-    /// What the cliff sensors say.
+    /// A change of the cliff sensors.
     pub(crate) fn cliff(&mut self, over_edge: bool) {
         self.over_edge = over_edge;
     }
@@ -236,7 +236,7 @@ impl Navigator {
         s.scan.is_some() && self.started.is_some_and(|started| s.now - started >= self.config.opening)
     }
 
-    /// Whether the robot knows where it is, and whether it gets on.
+    /// Checks that the pose is known and that the robot makes progress.
     fn monitor(&mut self, s: &WorldState<'_>) {
         if self.state.is_over() {
             return;
@@ -266,8 +266,8 @@ impl Navigator {
         }
     }
 
-    /// Whether the robot sees again, which saw nothing. Where a turn on the spot brings its sight back twice at one place on the way to a
-    /// viewpoint, the way leads so near to something that the camera is blind there: no place to look from.
+    /// Checks whether a usable scan came back after a time without one. Where a turn restored the view twice at one place, the path to the
+    /// viewpoint leads into the blind range of the camera: the viewpoint is given up.
     fn monitor_sight(&mut self, s: &WorldState<'_>) {
         if self.is_blind(s) {
             return;
@@ -280,7 +280,7 @@ impl Navigator {
         }
     }
 
-    /// Why the robot does not know where it is, when it does not.
+    /// The reason for which the pose counts as unknown; none while it is known.
     fn lost_reason(&self, s: &WorldState<'_>) -> Option<Reason> {
         let sigma = position_sigma(&s.estimate);
         if sigma > UNKNOWN_POSITION_SIGMA_M {

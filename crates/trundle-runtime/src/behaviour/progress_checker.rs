@@ -18,7 +18,7 @@ const PROGRESS_TURN_RAD: f64 = 0.2;
 const MAX_TURNS_AT_ONE_PLACE: u32 = 32;
 
 impl ProgressChecker {
-    /// Begins anew.
+    /// Restarts the check.
     pub(crate) fn restart(&mut self) {
         *self = Self::default();
     }

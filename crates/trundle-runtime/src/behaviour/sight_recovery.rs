@@ -3,7 +3,7 @@
 use crate::behaviour::spin::{SPIN_TURNS, Spin};
 use trundle_core::{Pose2, Twist2, Vector2};
 
-/// The turns on the spot of a robot that sees nothing, and whether they bring its sight back.
+/// Turns on the spot of a robot without a usable scan, and whether they restore the view.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct SightRecovery {
     look: Spin,
@@ -21,7 +21,7 @@ const MAX_RECOVERIES_AT_ONE_PLACE: u32 = 2;
 const ONE_PLACE_M: f64 = 0.5;
 
 impl SightRecovery {
-    /// Sight may be lost from now on: the robot wants this.
+    /// Records the twist that the robot would make, before the view may be lost.
     pub(crate) fn held(&mut self, wanted: Twist2) {
         self.wanted = wanted.omega;
     }
@@ -35,8 +35,8 @@ impl SightRecovery {
         }
     }
 
-    /// The robot sees, at this place (map frame, m); whether a turn has brought its sight back there, and not for the first time. A whole
-    /// turn in vain shows that it is the camera: when that sees again, turning had nothing to do with it.
+    /// Records a usable scan at a place (map frame, m); whether a turn restored the view there for the second time. Where a whole turn
+    /// was without result, the camera was broken, and the turn did not restore the view.
     pub(crate) fn sees(&mut self, at: Vector2) -> bool {
         let look = std::mem::take(&mut self.look);
         if !look.has_turned(MIN_RECOVERY_TURN) || look.has_turned(SPIN_TURNS) {
@@ -55,7 +55,7 @@ mod tests {
 
     const STEP: f64 = 0.02;
 
-    /// Turns blindly for so long, s, and then sees; what it makes of that, and how far it had turned.
+    /// Turns without a usable scan for `seconds`, then gets one; the result of the check, and the turned angle.
     fn blind_for(watch: &mut SightRecovery, seconds: f64, at: Vector2) -> (bool, f64) {
         let mut pose = Pose2::new(at.x, at.y, 0.0);
         let mut turned = 0.0;

@@ -37,7 +37,7 @@ impl Spin {
         Twist2::new(0.0, SPIN_RATE_RAD_S.copysign(side))
     }
 
-    /// Whether it has turned so many times.
+    /// Whether at least `turns` revolutions are made.
     pub(crate) fn has_turned(&self, turns: f64) -> bool {
         self.turned.max(f64::from(self.told) * COMMAND_PERIOD_S * SPIN_RATE_RAD_S / UNMEASURED_SPIN_FACTOR)
             > turns * TAU

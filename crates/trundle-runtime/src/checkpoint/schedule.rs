@@ -21,7 +21,7 @@ impl CheckpointSchedule {
         self.due.is_none_or(|due| now >= due)
     }
 
-    /// So many bytes were saved.
+    /// Records the size of a checkpoint.
     pub(crate) fn saved(&mut self, now: Stamp, bytes: usize) {
         self.due = Some(now.after((bytes as f64 / WRITE_RATE_BYTES_PER_S).clamp(MIN_PERIOD_S, MAX_PERIOD_S)));
     }

@@ -9,17 +9,17 @@ use trundle_docking::{PositionerReason, PositionerReport};
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 #[non_exhaustive]
 pub struct GoalApproachReport {
-    /// How often a manoeuvre was planned, the looks beforehand included.
+    /// Number of planned manoeuvres, including those for comparison with the arc.
     pub plans: u32,
     /// Motions begun.
     pub motions: u32,
     /// Motions broken off: by an obstacle, or by the safety monitor.
     pub restarts: u32,
-    /// Waits because no way was known, or the pose was no number.
+    /// Number of waits without a manoeuvre, or with a pose that is not finite.
     pub waits: u32,
     /// Since they took over, s.
     pub time: f64,
-    /// `goal_from_base` when last looked at: longitudinal and lateral deviation (m), and of heading (rad).
+    /// `goal_from_base` at the last check: longitudinal and lateral deviation \[m\], heading deviation \[rad\].
     pub deviation: Option<Pose2>,
     /// How it ended; `None` while it goes on.
     pub ended: Option<ApproachEnd>,

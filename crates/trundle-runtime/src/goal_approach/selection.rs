@@ -1,4 +1,4 @@
-//! An arc, or turns and straight moves: looked into a part a control step, while the robot is on the arc already.
+//! The choice between an arc and a manoeuvre, a part in each control step, while the robot follows the arc.
 
 use crate::world_state::WorldState;
 use trundle_control::StabilizerPreview;
@@ -8,12 +8,12 @@ use trundle_docking::{DockingJob, DockingPlan, DockingPlanner, ObstacleScene};
 /// Number of poses of an arc that are checked in one step. Source: ours.
 const POSES_PER_STEP: usize = 100;
 
-/// What is known of the two ways of settling on a goal.
+/// State of the comparison of the two approaches.
 #[derive(Debug)]
 pub(super) struct ApproachSelection {
     goal: Pose2,
     from: Pose2,
-    /// The arc, and how far it is looked at; none where there is no arc to go on with.
+    /// The arc, and the number of its poses that are checked; none where the arc cannot be continued.
     arc: Option<(StabilizerPreview, usize)>,
     /// What stands about the arc.
     scene: Option<ObstacleScene>,
@@ -31,7 +31,7 @@ pub(super) enum Verdict {
     Manoeuvre,
 }
 
-/// With what both are looked at.
+/// Inputs of both checks.
 pub(super) struct ApproachContext<'a> {
     pub docker: &'a DockingPlanner,
     pub footprint: &'a Footprint,
@@ -90,7 +90,7 @@ impl ApproachSelection {
         if arc_wins(arc, manoeuvre) { Verdict::Arc } else { Verdict::Manoeuvre }
     }
 
-    /// Looks at a part of the arc; whether all of it has been looked at. An arc that is not free has no time.
+    /// Checks a part of the arc; whether all of it is checked. An arc that is not free has no time.
     fn is_arc_looked_at(&mut self, s: &WorldState<'_>, means: &ApproachContext<'_>) -> bool {
         let Some((arc, looked)) = &mut self.arc else { return true };
         if arc.time.is_none() || *looked == arc.poses.len() {

@@ -36,7 +36,7 @@ fn chosen(stage: &mut GoalApproach, s: &WorldState<'_>, goal: Pose2, preview: St
     (0..1000).any(|_| stage.takes_over(s))
 }
 
-/// Takes up a goal without asking.
+/// Sets a goal without a comparison.
 fn begin(stage: &mut GoalApproach, goal: Pose2) {
     stage.look_into(ApproachSelection::new(goal, goal, None), goal);
     assert!(stage.begin());
@@ -99,7 +99,7 @@ fn what_never_moves_ends_with_a_reason() {
     begin(&mut held, goal);
     let (time, reason) = until_given_up(&mut held, &grid, start, true);
     assert!(time < 30.0 && !reason.is_empty(), "{time} {reason}");
-    // No way: the goal is in the wall.
+    // No path: the goal is in the wall.
     let mut walled = stage();
     begin(&mut walled, Pose2::new(1.5, 0.1, 0.0));
     let (time, reason) = until_given_up(&mut walled, &grid, start, false);
@@ -220,7 +220,7 @@ fn no_step_takes_longer_than_two_milliseconds() {
     // Too narrow to turn in: all that may be searched is searched.
     let narrow = OccupancyGrid::from_ascii(0.05, &(wall.clone() + &free.repeat(9) + &wall)).unwrap();
     let turned = (Pose2::new(1.9, 0.27, 0.0), Pose2::new(2.0, 0.28, 3.1));
-    // Open about the robot, posts farther off: every turn and straight of the paper's is looked at, sample by sample.
+    // Free floor about the robot, posts farther away: every turn and straight move of the paper's method is checked by samples.
     let posts = "#.".repeat(40) + "\n";
     let open = [posts.repeat(20), free.repeat(40), posts.repeat(20)].concat();
     let open = OccupancyGrid::from_ascii(0.05, &open).unwrap();

@@ -18,7 +18,7 @@ use trundle_planning::{Exploration, Explorer, Frontier};
 /// | task | what it gives the navigator | ends when |
 /// |---|---|---|
 /// | go, return | the goal | it has arrived, or given up |
-/// | explore | a turn on the spot, then viewpoint after viewpoint | no frontier is left to look at |
+/// | explore | a turn on the spot, then viewpoint after viewpoint | no frontier is left |
 #[derive(Debug)]
 pub(crate) struct MissionExecutor {
     explore: trundle_planning::ExploreConfig,
@@ -50,10 +50,10 @@ struct Current {
 enum Work {
     /// Driving to its goal.
     Going,
-    /// Looking around, or on the way to a viewpoint.
+    /// Turns on the spot, or drives to a viewpoint.
     Exploring {
         explorer: Box<Explorer>,
-        /// What it is on the way to look at.
+        /// The frontier of the present viewpoint.
         frontier: Option<Frontier>,
         /// Viewpoints that it came to.
         views: usize,
@@ -80,7 +80,7 @@ impl MissionExecutor {
         })
     }
 
-    /// Takes up a mission, as far as it has come, in place of what is left of the old one.
+    /// Begins a mission at its recorded task, in place of the present one.
     pub(crate) fn begin(&mut self, mission: &MissionState) {
         let was_put_off = |index: usize| {
             mission.ended.iter().any(|r| r.index == index && matches!(r.end, TaskEnd::PutOff { .. }))
@@ -120,7 +120,7 @@ impl MissionExecutor {
         (!failures.is_empty()).then_some(Reason::TasksFailed(failures))
     }
 
-    /// Whether the next step may look for frontiers, or give a goal that is planned for at once.
+    /// Whether the next step may search frontiers, or give a goal that is planned for at once.
     pub(crate) fn may_take_long(&self, s: &WorldState<'_>, state: &DriveState) -> bool {
         let explores = matches!(&self.current, Some(Current { work: Work::Exploring { .. }, .. }));
         let driving = matches!(state, DriveState::Driving | DriveState::Waiting { .. });
@@ -158,7 +158,7 @@ impl MissionExecutor {
         Some(goal)
     }
 
-    /// While it explores: where to look next, when what it drives to has been seen or has come to an end.
+    /// The next viewpoint of the exploration, where the present one has been observed or given up.
     fn explore_further(&mut self, s: &WorldState<'_>, state: &DriveState) -> Option<Goal> {
         let over = matches!(state, DriveState::Arrived | DriveState::Stopped { .. });
         let driving = matches!(state, DriveState::Driving | DriveState::Waiting { .. });
@@ -354,7 +354,7 @@ mod tests {
         letters.chars().enumerate().map(task).collect()
     }
 
-    /// Lets `executor` go on until nothing is left, each goal ending as `fails` says in turn; the goals.
+    /// Runs `executor` until no task is left; `fails` holds the outcome of each goal. The goals.
     fn work_off(executor: &mut MissionExecutor, fails: &[bool]) -> Vec<Goal> {
         let (grid, mut fails) = (room(), fails.iter().copied().cycle());
         let (s, mut goals, mut state) = (surroundings(&grid), Vec::new(), DriveState::Idle);

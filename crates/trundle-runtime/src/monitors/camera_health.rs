@@ -2,7 +2,7 @@
 
 use trundle_core::{Beam, Pose2, RgbdImage, Scan, Stamp};
 
-/// Tells images that show something from those of a camera that is covered, frozen or has lost its depth.
+/// Separates images with content from those of a camera that is covered, frozen or without depth.
 #[derive(Debug, Default)]
 pub(crate) struct CameraHealth {
     last: Option<Look>,
@@ -26,8 +26,8 @@ const MOTION_THRESHOLD: f64 = 0.01;
 const MIN_SEEN_SHARE: f64 = 0.05;
 
 impl CameraHealth {
-    /// Whether this image, taken at `odom_from_base`, is bit for bit the last one though the robot has moved, or again and again:
-    /// the camera says what it said before. Noise alone makes any two true images differ.
+    /// Whether this image, taken at `odom_from_base`, is the same bit for bit as the last one, although the robot has moved or several
+    /// equal ones came. The noise of a real camera makes any two images differ.
     pub(crate) fn is_frozen(&mut self, image: &RgbdImage, odom_from_base: Pose2) -> bool {
         let now = Look { print: fingerprint(image), stamp: image.stamp(), odom_from_base };
         let Some(first) = self.last.filter(|first| first.print == now.print) else {

@@ -1,4 +1,4 @@
-//! Whether scans and map are of one place: where no image says so, a robot that was carried away finds out by what does not fit.
+//! Consistency of scans with the map: detects a robot that was carried away while no image is located.
 
 use trundle_core::{Beam, Cell, CellIndex, OccupancyGrid, Pose2, Scan, Stamp, Vector2};
 
@@ -11,7 +11,7 @@ pub(crate) struct ScanMapConsistency {
     last: Option<(Stamp, f64)>,
 }
 
-/// What the map says of a scan.
+/// Result of the comparison of a scan with the map.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Fit {
     /// It may be of this place.
@@ -38,13 +38,13 @@ const MIN_KNOWN_SHARE: f64 = 0.15;
 const CONTRADICTION_DURATION_S: f64 = 1.5;
 
 impl ScanMapConsistency {
-    /// Judges a scan taken at `map_from_base`, as believed.
+    /// Compares a scan with the map at the estimated pose `map_from_base`.
     pub(crate) fn judge(&mut self, grid: &OccupancyGrid, map_from_base: Pose2, scan: &Scan) -> Fit {
         let part = contradicted(grid, map_from_base, scan);
         let before = self.last.replace((scan.stamp(), part));
         let before = before.filter(|(at, _)| scan.stamp() - *at <= MAX_PREVIOUS_SCAN_AGE_S);
         if before.is_none() {
-            // What was before a gap says nothing of what lasts.
+            // Evidence from before a gap of time does not count.
             self.since = None;
         }
         let fitted = before.is_some_and(|(_, part)| part <= AGREEING_SHARE);
@@ -62,13 +62,13 @@ impl ScanMapConsistency {
         Fit::Elsewhere
     }
 
-    /// Something else tells the place.
+    /// Another source measures the pose.
     pub(crate) fn forget(&mut self) {
         *self = Self::default();
     }
 }
 
-/// The part of the hits that the map knows of which are where it has nothing, or behind what it has; 0 where it knows too few.
+/// Fraction of the hits in known cells that lie in free cells or behind occupied cells; 0 with too few such hits.
 fn contradicted(grid: &OccupancyGrid, map_from_base: Pose2, scan: &Scan) -> f64 {
     let origin = map_from_base.transform(scan.origin());
     let ends = scan.beams().iter().enumerate().filter_map(|(i, beam)| match beam {
@@ -88,7 +88,7 @@ fn contradicted(grid: &OccupancyGrid, map_from_base: Pose2, scan: &Scan) -> f64 
     if is_enough { contradict as f64 / known as f64 } else { 0.0 }
 }
 
-/// Whether the map has something where a beam ends; `None` where it does not know.
+/// Whether the map has an occupied cell where a beam ends; `None` where the cell is unknown.
 fn judged(grid: &OccupancyGrid, origin: Vector2, end: Vector2) -> Option<bool> {
     let about = |at| around(grid, at);
     if about(end).any(|cell| cell == Cell::Occupied) {
@@ -98,7 +98,7 @@ fn judged(grid: &OccupancyGrid, origin: Vector2, end: Vector2) -> Option<bool> {
     let count = ((way.norm() - HIT_TOLERANCE_M).max(0.0) / step) as usize;
     let mut on_the_way = (0..count).map(|i| origin + way * (i as f64 * step / way.norm()));
     let is_behind = on_the_way.any(|point| grid.at(point) == Cell::Occupied);
-    // Beside what nobody has seen a wall may begin.
+    // A wall may begin beside unknown cells.
     let is_clear = || grid.at(end) == Cell::Free && about(end).all(|cell| cell == Cell::Free);
     (is_behind || is_clear()).then_some(false)
 }
@@ -123,7 +123,7 @@ mod tests {
     use super::*;
     use trundle_core::GridGeometry;
 
-    /// A room of 6 x 4 m with a box in it, as far as `known` says (m along x); its corner at the origin.
+    /// A room of 6 x 4 m with a box in it, known up to x = `known` \[m\]; its corner at the origin.
     fn room(known: f64) -> OccupancyGrid {
         let geometry = GridGeometry::new(0.05, Vector2::zeros(), 120, 80).unwrap();
         let mut grid = OccupancyGrid::filled(geometry, Cell::Free);
@@ -140,7 +140,7 @@ mod tests {
         grid
     }
 
-    /// What a camera sees of the room from a pose; `before`: nothing farther than this, as behind somebody, in part of the view.
+    /// The camera's scan of the room from a pose. `before`: nothing beyond this range in a part of the view, as behind a person.
     fn scan(at: Pose2, time: f64, before: Option<f64>) -> Scan {
         let grid = room(f64::INFINITY);
         let beam = |i: i32| {
@@ -158,7 +158,7 @@ mod tests {
         Scan::new(Stamp::default().after(time), Vector2::zeros(), -35.0 * step, step, beams).unwrap()
     }
 
-    /// What becomes of scans taken at `truth` every 0.2 s by a robot that believes to stand elsewhere.
+    /// Results for scans taken at `truth` every 0.2 s by a robot with a wrong pose estimate.
     fn told(grid: &OccupancyGrid, truth: Pose2, believed: Pose2, before: Option<f64>) -> Vec<Fit> {
         let mut watch = ScanMapConsistency::default();
         (0..9).map(|i| watch.judge(grid, believed, &scan(truth, 0.2 * f64::from(i), before))).collect()

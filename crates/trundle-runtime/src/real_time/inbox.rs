@@ -43,7 +43,7 @@ pub enum Post<E> {
 /// What the control thread gets.
 #[derive(Debug)]
 pub enum Input<E> {
-    /// What a sensor says.
+    /// A sensor event.
     Event(E),
     /// What a helper came to.
     Answer(Answer),
@@ -56,8 +56,8 @@ impl<E> Clone for InboxSender<E> {
 }
 
 impl<E> InboxSender<E> {
-    /// Puts something in, without waiting: when the queue is full, because nobody has emptied it for seconds, it is refused and
-    /// counted; false then, or when nobody is there any more.
+    /// Puts an item in without waiting. A full queue, which was not emptied for seconds, refuses and counts it: false. False also when the
+    /// inbox is dropped.
     pub fn put(&self, post: Post<E>) -> bool {
         match self.sender.try_send(post) {
             Ok(()) => true,
@@ -90,7 +90,7 @@ impl<E> Inbox<E> {
         }
     }
 
-    /// A way in.
+    /// A sender into this inbox.
     pub fn door(&self) -> InboxSender<E> {
         self.door.clone()
     }

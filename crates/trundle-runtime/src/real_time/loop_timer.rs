@@ -38,11 +38,11 @@ impl LoopTimerConfig {
     }
 }
 
-/// The beat of the control loop: notes when commands leave, and says when there is time for other things.
+/// Timing of the control loop: records when commands leave, and whether there is time for other work.
 #[derive(Debug)]
 pub struct LoopTimer {
     config: LoopTimerConfig,
-    /// When the last reading was taken up.
+    /// When processing of the last wheel reading began.
     beat: Option<Instant>,
     /// When the last command left.
     command: Option<Instant>,
@@ -91,7 +91,7 @@ impl LoopTimer {
         }
     }
 
-    /// A reading of the wheels, which arrived a moment ago, is taken up.
+    /// Processing of a wheel reading, which has just arrived, begins.
     pub fn begin(&mut self) {
         self.beat = Some(Instant::now());
     }

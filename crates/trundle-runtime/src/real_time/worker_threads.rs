@@ -46,7 +46,7 @@ impl WorkerThreads {
     /// Gives a job to its helper, who is free: a robot gives no job to one who has one.
     pub fn give(&self, job: Job) {
         let post = self.posts.iter().find(|post| post.helper == job.worker());
-        // A helper whose thread is gone gives no answer, and the robot goes on without: safety sees that.
+        // A worker whose thread has ended gives no result. The robot continues without, and the safety monitor stops it on old data.
         let _ = post.map(|post| post.jobs.try_send(job));
     }
 

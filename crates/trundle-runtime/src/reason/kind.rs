@@ -59,7 +59,7 @@ pub enum ReasonKind {
     TasksFailed,
     /// The user ended the run.
     Interrupted,
-    /// A file that names no kind, or a kind that this version does not know.
+    /// A file without a kind, or with a kind that this version does not have.
     #[serde(other)]
     Unknown,
 }

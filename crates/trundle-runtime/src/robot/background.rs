@@ -67,7 +67,7 @@ impl Background {
         self.orders = Some(mission.clone());
     }
 
-    /// Whether readings or a mission came that the decision worker, while it is away, does not know of.
+    /// Whether wheel readings or a mission came that a running decision job does not include.
     pub(super) fn knows_more(&self) -> bool {
         !self.felt.is_empty() || self.orders.is_some()
     }

@@ -19,8 +19,8 @@ impl Robot {
         self
     }
 
-    /// An image to be looked at in the background. Of those that arrive while one is looked at only the newest is kept: the
-    /// others are dropped, see [`Robot::dropped_images`]. A robot that does not defer looks at it at once.
+    /// Queues an image for a perception job. Of those that arrive while a job runs only the newest is kept; the others are dropped, see
+    /// [`Robot::dropped_images`]. A robot without background jobs processes the image at once.
     pub fn queue_image(&mut self, image: LazyImage) -> StepReport {
         let mut report = StepReport::default();
         if self.background.is_used() {
@@ -82,12 +82,12 @@ impl Robot {
         report
     }
 
-    /// Stamps of the images that were dropped because newer ones came before anybody had looked at them.
+    /// Stamps of the images that a newer one replaced before they were processed.
     pub fn dropped_images(&self) -> &[Stamp] {
         &self.background.dropped
     }
 
-    /// Drops the image that waits to be looked at, if there is one: the run is over.
+    /// Drops the queued image, if there is one: the run is over.
     pub fn drop_queued_image(&mut self) {
         if let Some(image) = self.background.waiting.take() {
             self.background.drop_image(image.stamp(), DroppedImage::RunOver);

@@ -1,4 +1,4 @@
-//! A robot that does not know its place, and where its scans put it.
+//! Detection of an unknown pose, and global localization by scans.
 
 use super::{MAX_VISUAL_MOTION_AGE_S, Robot, event_log};
 use crate::{
@@ -9,7 +9,7 @@ use trundle_core::Scan;
 use trundle_localization::{Correction, Localizer};
 
 impl Robot {
-    /// A scan of a laser that the robot sees by.
+    /// A scan of a laser that is the range source.
     pub(super) fn on_laser(&mut self, scan: &Scan) {
         let odometer = self.odometry_at(scan.stamp());
         if let (Some(perception), Some(odometer)) = (&mut self.perception, odometer) {
@@ -19,7 +19,7 @@ impl Robot {
         self.on_scan(scan.clone());
     }
 
-    /// A robot that does not know its place is where its scans fit the map alone; where that is still to be found, it is looked for.
+    /// While the pose is unknown, applies the pose that global localization found, or begins the search.
     pub(super) fn apply_global_localization(&mut self, place: Option<LocalizedPose>) {
         let is_lost = |localizer: &Localizer| position_sigma(&localizer.estimate()) >= self.lost_sigma;
         if let Some(LocalizedPose { stamp, map_from_base, covariance }) = place
@@ -33,7 +33,7 @@ impl Robot {
                     self.latest.unplaced = None;
                     self.perception.iter_mut().for_each(|perception| perception.localized_by_scans());
                 }
-                // It is elsewhere than it was believed to be, however unsurely: the next scan tells where.
+                // The found pose contradicts the estimate, whatever its uncertainty: the next scan gives the pose.
                 _ => self.localizer.set_pose_unknown(),
             }
         }
@@ -47,8 +47,8 @@ impl Robot {
         }
     }
 
-    /// Whether a scan may be of the place where the robot believes to be. Where images tell, they are believed; where none has for a
-    /// while, a robot whose scans contradict the map must have been carried away.
+    /// Whether a scan is consistent with the map at the estimated pose. While images are located, it counts as consistent. Without a
+    /// located image for 0.8 s, a contradiction means that the robot was carried away.
     pub(super) fn is_consistent_with_map(&mut self, scan: &Scan) -> bool {
         let (now, watch) = (scan.stamp(), &mut self.latest.scan_map_consistency);
         if self.range_source == RangeSource::Laser {

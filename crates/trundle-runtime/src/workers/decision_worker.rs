@@ -12,7 +12,7 @@ use crate::{
 };
 use trundle_core::{Footprint, Invalid};
 
-/// Whoever decides: the mission's goals, plans, and the twist towards them.
+/// Decides the goals of the mission, the plans, and the twist towards the goal.
 #[derive(Debug)]
 pub(crate) struct DecisionWorker {
     pub(crate) navigator: Navigator,
@@ -49,8 +49,8 @@ impl DecisionWorker {
         navigator.step(s, times)
     }
 
-    /// Whether the next decision may take longer than a control step has time: a plan, a look for frontiers, a search for turns
-    /// and straight moves. One that is believed long and is short costs little.
+    /// Whether the next decision may take longer than a control step: a plan, a search for frontiers, a search for turns and straight
+    /// moves. A short decision that counts as long costs little.
     pub(crate) fn may_take_long(&self, s: &WorldState<'_>) -> bool {
         self.executor.may_take_long(s, self.navigator.state()) || self.navigator.may_take_long(s)
     }

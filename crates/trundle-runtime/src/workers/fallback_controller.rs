@@ -1,4 +1,4 @@
-//! The fallback controller: steers while a decision is under way.
+//! The fallback controller: controls the robot while a decision job runs.
 
 use crate::behaviour::navigator::safety_input;
 use crate::world_state::WorldState;
@@ -11,7 +11,7 @@ use trundle_core::Twist2;
 pub(crate) struct FallbackController {
     pub(crate) follower: Follower,
     pub(crate) safety: SafetyMonitor,
-    /// What was wanted last; `None`: what the follower says.
+    /// Twist of the last decision; `None`: the path follower's twist.
     pub(crate) wanted: Option<Twist2>,
     pub(crate) touched: bool,
     pub(crate) over_edge: bool,

@@ -29,13 +29,13 @@ pub(crate) struct PerceptionWorker {
     camera_health: CameraHealth,
     /// The place by scans, while it is not known.
     pub(crate) global_localization: GlobalLocalization,
-    /// Whether the place was last told by scans.
+    /// Whether scans gave the last pose.
     is_placed_by_scans: bool,
-    /// What the odometry said at the last image.
+    /// Odometry at the last image.
     last: Option<OdometryState>,
     /// Since when images that show enough have not been located.
     unplaced: Option<Stamp>,
-    /// When the place was last looked for everywhere, since then.
+    /// Stamp at which global localization last began in that time.
     searched: Option<Stamp>,
     /// When the visual maps are to be saved; none: never.
     pub(crate) saving: Option<CheckpointSchedule>,
@@ -47,15 +47,15 @@ pub(crate) struct PerceptionResult {
     /// When the image was taken.
     pub(crate) odom_from_base: Pose2,
     pub(crate) track: TrackReport,
-    /// Where the robot sees by its camera.
+    /// Scan of the image, with the depth camera as range source.
     pub(crate) scan: Option<Scan>,
-    /// Where its scans fit the map alone, while it does not know its place.
+    /// Pose that global localization found, while the pose is unknown.
     pub(crate) place: Option<LocalizedPose>,
     /// Since when images that show enough have not been located.
     pub(crate) unplaced: Option<Stamp>,
     /// All poses of the visual map, when it was corrected by more than tracking goes along with.
     pub(crate) bent: Option<Vec<(Stamp, Pose3)>>,
-    /// The robot must have been carried away: its place is looked for everywhere.
+    /// Whether the robot was carried away: global localization begins.
     pub(crate) is_carried_away: bool,
     /// The visual maps, when it was time to save them.
     pub(crate) saved: Option<Vec<u8>>,
@@ -65,7 +65,7 @@ pub(crate) struct PerceptionResult {
 const GRID_CORRECTION_THRESHOLD: f64 = 0.02;
 /// Number of features of an image that suffices to locate it. Source: ours.
 const MIN_FEATURES_TO_LOCATE: usize = 200;
-/// Time without a located image \[s\] after which images with enough features show another place than odometry says. Source: ours.
+/// Time without a located image \[s\] after which images with enough features show another place than the estimate. Source: ours.
 const KIDNAPPED_AFTER_S: f64 = 1.5;
 /// Time without a located image \[s\] after which the pose is unknown; images with few features do not change that. Source: ours.
 pub(crate) const POSE_UNKNOWN_AFTER_S: f64 = 0.7;
@@ -109,7 +109,7 @@ impl PerceptionWorker {
         blind_range(self.range_source, &self.scanner)
     }
 
-    /// Looks at an image taken when the odometry said this; none when it is the last one again though the robot has moved.
+    /// Processes an image that was taken at this odometry; none for an image of a frozen camera.
     pub(crate) fn process(
         &mut self,
         image: &RgbdImage,
@@ -151,7 +151,7 @@ impl PerceptionWorker {
         Some(saved)
     }
 
-    /// Looks for the place by a scan, while it is not known.
+    /// Searches the pose by a scan, while it is unknown.
     pub(crate) fn search_pose(
         &mut self,
         odom_from_base: Pose2,
@@ -170,7 +170,7 @@ impl PerceptionWorker {
         self.slam.kidnapped();
     }
 
-    /// Its scans tell the place: images that are not recognised do not take it back, until one is located again.
+    /// Scans gave the pose. Images that are not recognised do not make it unknown again until one is located.
     pub(crate) fn localized_by_scans(&mut self) {
         self.is_placed_by_scans = true;
         (self.unplaced, self.searched) = (None, None);
@@ -182,7 +182,7 @@ impl PerceptionWorker {
         Some(CameraMotion::of_base(odometer.since(&previous), self.base_from_camera))
     }
 
-    /// Whether it is time to look for the place everywhere: the odometry's has not been recognised for a while.
+    /// Whether global localization is due: no image was located for a while.
     fn is_carried_away(&mut self, track: &TrackReport) -> bool {
         let shows_enough = track.features >= MIN_FEATURES_TO_LOCATE;
         self.is_placed_by_scans &= !track.tracking.is_located();
@@ -203,7 +203,7 @@ impl PerceptionWorker {
         is_time
     }
 
-    /// A robot that does not know its place does not know it before a bare wall either.
+    /// With an unknown pose, a view without features does not restart the time.
     fn is_unplaced_for_long(&self, now: Stamp) -> bool {
         self.unplaced.is_some_and(|since| now - since > POSE_UNKNOWN_AFTER_S)
     }
@@ -247,8 +247,8 @@ mod tests {
         slam.unwrap().step(&image, None)
     }
 
-    /// The seconds at which the robot counts as carried away, by images every 0.1 s that show `features` and are located where
-    /// `is_located` says so.
+    /// The seconds at which the robot counts as carried away. Images come every 0.1 s, show `features`, and are located where
+    /// `is_located` is true.
     fn carried_away(
         worker: &mut PerceptionWorker,
         features: impl Fn(u32) -> usize,

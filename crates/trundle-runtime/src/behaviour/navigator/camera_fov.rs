@@ -1,4 +1,4 @@
-//! What a camera sees of the floor, and what it will not have seen before a way leads onto it.
+//! The camera's field of view on the floor, and the part of a path that the camera does not observe in time.
 
 use super::known_floor::{cells_about, is_in_sight};
 use super::visibility_constraint::VisibilityConstraint;
@@ -7,10 +7,10 @@ use std::collections::HashSet;
 use trundle_core::{Cell, CellIndex, Invalid, OccupancyGrid, Pose2, TrajectoryPoint, Vector2, Vector3};
 use trundle_mapping::DepthScanner;
 
-/// What a camera sees of the floor: a sector.
+/// The camera's field of view on the floor: a sector.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct CameraFov {
-    /// Where it stands on the base and looks to.
+    /// Position and direction of the sector in the base frame.
     pub(super) base_from_sector: Pose2,
     /// Half its angle, rad.
     pub(super) half_angle: f64,
@@ -34,7 +34,7 @@ const MAX_UNSEEN_AREA_M2: f64 = 0.02;
 const START_RADIUS_M: f64 = 0.8;
 
 impl CameraFov {
-    /// That of the robot's camera; none for a laser, which has no blind zone to speak of, and for a lens too narrow to look by.
+    /// The field of view of the robot's camera. None for a laser, whose blind range is negligible, and for a lens that is too narrow.
     pub(super) fn of(config: &RobotConfig) -> Result<Option<Self>, Invalid> {
         let base_from_camera = config.mount.validated()?.base_from_camera();
         let scanner = DepthScanner::new(config.camera, base_from_camera, config.scan.clone())?;
@@ -45,8 +45,8 @@ impl CameraFov {
         Ok((config.sight == RangeSource::DepthCamera && half_angle > 0.0).then_some(view))
     }
 
-    /// A place where the way first leads the disc of `radius` onto floor that was never seen and is not seen on the way either, or was
-    /// looked at in vain.
+    /// The first place where the disc of `radius` on the path covers floor that is unknown and that the camera does not observe from an
+    /// earlier pose, or floor that was observed without result.
     pub(super) fn first_unseen(
         self,
         way: &[TrajectoryPoint],
@@ -76,7 +76,7 @@ impl CameraFov {
         None
     }
 
-    /// Whether the camera, the base at `from`, looks at a point, and nothing on the map stands between.
+    /// Whether a point is in the camera's view with the base at `from`, and no occupied cell lies between.
     pub(super) fn shows(self, grid: &OccupancyGrid, from: Pose2, at: Vector2) -> bool {
         let sector = from * self.base_from_sector;
         let to = sector.inverse().transform(at);

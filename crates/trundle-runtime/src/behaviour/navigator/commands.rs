@@ -54,7 +54,7 @@ impl Navigator {
         }
     }
 
-    /// At a viewpoint only the heading is taken up, and roughly: the view is wide.
+    /// Turns roughly to the heading of a viewpoint; the field of view is wide.
     fn turn_to_view(&mut self, s: &WorldState<'_>) -> Twist2 {
         let Goal::Viewpoint(view) = self.goal else { return Twist2::ZERO };
         let twist = turn_to(s.estimate.pose, view.theta);
@@ -71,12 +71,12 @@ impl Navigator {
         (self.touched || self.over_edge) && waited && is_free_behind(s, self.radius)
     }
 
-    /// Whether no image has shown anything for a while, or none how the robot moves, which nothing else tells.
+    /// Whether no image has shown anything for a while, or neither wheels nor images measure the motion.
     pub(super) fn is_blind(&self, s: &WorldState<'_>) -> bool {
         s.motion == MotionSense::Nothing || s.seen.is_none_or(|seen| s.now - seen > self.image_timeout)
     }
 
-    /// A camera too near to a wall sees nothing: after a while one turn on the spot shows whether that is it.
+    /// A camera too near to a wall gives no depth. After a pause, one turn on the spot separates this from a broken camera.
     fn recover_sight(&mut self, s: &WorldState<'_>) -> Twist2 {
         // Images that show something, but not how it moves, are no sight.
         let seen = s.seen.filter(|_| s.motion != MotionSense::Nothing);
@@ -197,7 +197,7 @@ mod tests {
     const BLIND: f64 = 5.0;
     const STEP: f64 = 0.02;
 
-    /// It waits without sight, as it turns in vain, and then sees again; when that is.
+    /// Lets the robot wait without a usable scan, turn, and get a scan again; the stamp of that scan.
     fn lose_sight_and_find_it(navigator: &mut Navigator, grid: &OccupancyGrid, from: Stamp) -> Stamp {
         let mut times = StageTimes::default();
         let mut pose = Pose2::new(3.0, 2.0, 0.0);
@@ -246,7 +246,7 @@ mod tests {
             assert!(!navigator.state().is_over(), "the camera may have failed: {:?}", navigator.state());
             let twice = lose_sight_and_find_it(&mut navigator, &grid, once);
             assert_eq!(navigator.state().is_over(), given_up, "{goal:?}: {:?}", navigator.state());
-            // For the next goal it counts anew.
+            // A new goal restarts the count.
             navigator.set_goal(goal);
             lose_sight_and_find_it(&mut navigator, &grid, twice);
             assert!(!navigator.state().is_over(), "{:?}", navigator.state());

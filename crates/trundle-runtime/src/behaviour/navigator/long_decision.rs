@@ -9,7 +9,7 @@ use trundle_core::{Stamp, Twist2};
 const APPROACH_LEAD_S: f64 = 0.1;
 
 impl Navigator {
-    /// Whether the next step may plan, look for turns and straight moves, or check what is left of a way.
+    /// Whether the next step may plan, search turns and straight moves, or check the rest of a path.
     pub(crate) fn may_take_long(&self, s: &WorldState<'_>) -> bool {
         if self.goal.pose().is_none() {
             return false;

@@ -10,9 +10,9 @@ use trundle_planning::{Plan, PlanResult};
 /// What the path leaves the camera's view; searching another path came to.
 #[derive(Debug)]
 pub(super) enum InView {
-    /// A way to drive, or none.
+    /// A path to drive, or none.
     Plan(Plan),
-    /// Where the best way leads onto what was never seen; and a way that shows all and is long, where there is one.
+    /// Place where the best path enters unseen floor, and a longer path without unseen floor where there is one.
     Unseen(Vector2, Option<Box<PlanResult>>),
     /// There is more to be asked, in the next step.
     Asking,
@@ -74,19 +74,19 @@ impl Navigator {
         found
     }
 
-    /// Where a way first leads onto what the camera will not have seen.
+    /// First place where a path enters floor that the camera does not observe in time.
     pub(super) fn first_unseen(&self, way: &[TrajectoryPoint], floor: &OccupancyGrid) -> Option<Vector2> {
         self.camera_fov?.first_unseen(way, floor, self.radius, &self.visibility)
     }
 
-    /// Whether the rest of a way, from `time` on (s of the way), is free on the newest map, and what it leads onto was seen or will be.
+    /// Whether the rest of a path, from `time` \[s\] on, is free on the newest map, and its floor was seen or will be seen.
     pub(super) fn is_still_good(&self, way: &Trajectory, time: f64, s: &WorldState<'_>) -> bool {
         let rest = &way.points()[way.points().partition_point(|point| point.time < time)..];
         self.planner.validate_trajectory(s.floor(), way, time).is_ok()
             && self.first_unseen(rest, s.floor()).is_none()
     }
 
-    /// The floor with no way over what is unknown about these places, but for what is under the ends of the way; none without places.
+    /// The floor with the unknown cells about these places blocked, except under the ends of the path; none without places.
     fn walled(&self, floor: &OccupancyGrid, places: &[Vector2], ends: [Vector2; 2]) -> Option<OccupancyGrid> {
         let mut walled = (!places.is_empty()).then(|| floor.clone())?;
         for at in places {
@@ -96,14 +96,14 @@ impl Navigator {
     }
 }
 
-/// Whether a way goes on from where the robot is as smoothly as the best, and stays on the map.
+/// Whether a path continues the present motion as smoothly as the best one, and stays on the map.
 fn goes_on(plan: &PlanResult, best: &PlanResult, floor: &OccupancyGrid) -> bool {
     let stays =
         plan.trajectory.points().iter().all(|p| floor.geometry().cell_at(p.pose.position()).is_some());
     stays && (plan.is_continuous || !best.is_continuous)
 }
 
-/// Whether a way takes hardly longer than the best.
+/// Whether a path takes little longer than the best one.
 fn is_worth(plan: &PlanResult, best: &PlanResult) -> bool {
     plan.trajectory.duration() < MAX_SEEN_PATH_RATIO * best.trajectory.duration() + MAX_SEEN_PATH_EXTRA_S
 }
@@ -202,7 +202,7 @@ mod tests {
         let s = at_rest(&grid, Stamp::default(), pose);
         let InView::Unseen(at, _) = asked(&mut navigator, &s, goal) else { panic!("the bend hides it") };
         assert_eq!(grid.at(at), Cell::Unknown);
-        // It stays unseen: every look is in vain, and then there is no way, and the reason is told.
+        // The floor stays unseen: every observation is without result, no path is left, and the reason is reported.
         navigator.set_goal(super::super::Goal::Exact(goal));
         navigator.state = crate::behaviour::drive_state::DriveState::Planning;
         let mut looks = 0;
@@ -244,7 +244,7 @@ mod tests {
         };
         assert!(!ends_on(&floor(|_| false)), "all is as it was");
         assert!(!ends_on(&floor(|at| at.x > 5.0)), "unseen beyond the place");
-        // A chair that hides its own side: what is beside the robot it will not see on the way.
+        // A chair that hides its own side: the camera does not observe what is beside the robot.
         assert!(ends_on(&floor(|at| at.x < 1.6 && at.y > 2.05)));
         let mut barred = floor(|_| false);
         (0..80).for_each(|row| barred.set(CellIndex { col: 50, row }, Cell::Occupied));

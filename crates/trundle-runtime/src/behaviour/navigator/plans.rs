@@ -1,4 +1,4 @@
-//! When to plan, from where, and what to do when there is no way.
+//! When the navigator plans, from which pose, and what it does without a path.
 
 use super::{Goal, Navigator, SAFETY_HOLD_BEFORE_REPLAN_S, plan_in_view::InView, viewpoint::Viewpoint};
 use crate::world_state::WorldState;
@@ -69,7 +69,7 @@ impl Navigator {
         let from = match (&self.state, self.follower.reference()) {
             (DriveState::Driving, Some(_)) if self.is_off_track => (s.estimate.pose, s.estimate.twist),
             (DriveState::Driving, Some(reference)) => (reference.pose, reference.twist),
-            // On the way to a vantage it rolls as well.
+            // On the path to a viewpoint the plan starts from the reference too.
             (DriveState::Recovering { .. }, Some(reference))
                 if matches!(self.viewpoint, Viewpoint::Going(..)) =>
             {
@@ -116,8 +116,8 @@ impl Navigator {
         }
     }
 
-    /// Before a way that leads onto floor at `at` that no image has shown it goes to where that is seen; where that cannot be, the
-    /// `long` way is taken.
+    /// Handles a path that enters unseen floor at `at`: the robot drives to a viewpoint of that floor. Without a viewpoint it takes the
+    /// `long` path.
     fn observe_first(
         &mut self,
         at: Vector2,
@@ -155,7 +155,7 @@ impl Navigator {
         false
     }
 
-    /// Whether what moves alone bars the way.
+    /// Whether only moving obstacles block the path.
     fn is_free_but_for_movers(&mut self, s: &WorldState<'_>, from: (Pose2, Twist2), goal: Pose2) -> bool {
         !s.dynamic_obstacles.movers.is_empty()
             && matches!(self.planner.plan(s.floor(), from.0, from.1, goal), Plan::Found(_))
@@ -180,7 +180,7 @@ impl Navigator {
             )
         });
         match plan {
-            // What the way of now keeps off because it was not seen, a quicker one must keep off too.
+            // A faster path must also avoid the unseen floor that the present path avoids.
             Plan::Found(plan)
                 if plan.is_continuous
                     && plan.trajectory.duration() < left - MIN_TIME_GAIN_S
@@ -194,8 +194,8 @@ impl Navigator {
         }
     }
 
-    /// No way is known: stop, turn on the spot until everything around has been seen, then go where what bars the way is seen, and
-    /// wait there, looking at it.
+    /// Without a path: stops, turns on the spot until the surroundings are observed, drives to a viewpoint of the blocked place, and
+    /// waits there with the camera on that place.
     fn no_way(&mut self, cause: NoPath, s: &WorldState<'_>) {
         if matches!(self.viewpoint, Viewpoint::Going(..)) {
             self.state = DriveState::Recovering { reason: self.no_path(cause) };

@@ -17,7 +17,7 @@ const BLOCKAGE_DEPTH_M: f64 = 0.35;
 const VIEWING_DURATION_S: f64 = 1.0;
 
 impl Navigator {
-    /// Whether it is about to go to a place from where it sees what bars the way; not when it stands at such a place.
+    /// Whether the robot starts for a viewpoint of the blocked place; false where it stands at such a viewpoint.
     pub(super) fn seeks_viewpoint(&mut self, s: &WorldState<'_>) -> bool {
         let Some(at) = self.blocked_at else { return false };
         if !matches!(
@@ -35,8 +35,8 @@ impl Navigator {
         self.plan_to_viewpoint(s)
     }
 
-    /// The way leads onto floor at `at` that no image has shown: first it is looked at, from where it can be seen. Whether that is
-    /// so; not when there is no such place, or it was looked at in vain.
+    /// Whether the robot starts for a viewpoint of the unseen floor at `at`, on the path to the goal. False without a viewpoint, and where
+    /// observations of this floor were without result.
     pub(super) fn seeks_view_of(&mut self, at: Vector2, s: &WorldState<'_>) -> bool {
         match &self.viewpoint {
             Viewpoint::Going(..) => return true,
@@ -56,7 +56,7 @@ impl Navigator {
         self.plan_to_viewpoint(s)
     }
 
-    /// Asks for the way to one of the places to choose from; whether there is one, or another to be asked for.
+    /// Plans to one of the candidate viewpoints; whether there is a path, or another candidate.
     fn plan_to_viewpoint(&mut self, s: &WorldState<'_>) -> bool {
         let Viewpoint::Choosing(aim, places) = &mut self.viewpoint else {
             return self.is_at_viewpoint_or_going();
@@ -78,12 +78,12 @@ impl Navigator {
         true
     }
 
-    /// While it is on its way to look, or looks.
+    /// Whether the robot drives to a viewpoint or observes there.
     fn is_at_viewpoint_or_going(&self) -> bool {
         matches!(self.viewpoint, Viewpoint::Going(..) | Viewpoint::Looking(_))
     }
 
-    /// Whether a plan is to be asked for while it goes to look: what bars a way may go away, what was not seen may be seen.
+    /// Whether a plan to the goal is due on the path to a viewpoint: an obstacle may go away, and unseen floor may be seen.
     pub(super) fn needs_new_plan(&self, s: &WorldState<'_>) -> bool {
         match &self.viewpoint {
             Viewpoint::Going(ViewTarget::UnknownFloor, _) => {
@@ -94,7 +94,7 @@ impl Navigator {
         }
     }
 
-    /// At the end of the way to a place, or off it: it looks.
+    /// At the end of the path to a viewpoint, or off this path, the robot observes.
     pub(super) fn note_viewpoint(&mut self, follow: &FollowReport, now: Stamp) {
         let is_going = matches!(self.viewpoint, Viewpoint::Going(..));
         let is_over = matches!(follow.phase, FollowPhase::Settled | FollowPhase::Idle);
@@ -103,7 +103,8 @@ impl Navigator {
         }
     }
 
-    /// Ends the way to a place where what it was to show by now is not seen, or something stands on it: the robot looks from where it is.
+    /// Ends the drive to a viewpoint that does not show its target on the newest map, or that is occupied. The robot observes from its
+    /// present place.
     pub(super) fn watch_path_to_viewpoint(&mut self, s: &WorldState<'_>) {
         let (Viewpoint::Going(_, way), Some(reference)) = (&self.viewpoint, self.follower.reference()) else {
             return;
@@ -113,7 +114,7 @@ impl Navigator {
         }
     }
 
-    /// The way to a place is over.
+    /// Ends the drive to a viewpoint.
     fn observe_from_here(&mut self, now: Stamp) {
         self.follower.halt();
         self.viewpoint = match self.viewpoint {
@@ -125,7 +126,7 @@ impl Navigator {
         };
     }
 
-    /// Whether it stands still while it recovers: choosing where to look from, or looking.
+    /// Whether the robot stands while it recovers: to choose a viewpoint, or to observe.
     pub(super) fn observes_at_rest(&self) -> bool {
         let recovers = matches!(self.state, DriveState::Recovering { .. });
         recovers && matches!(self.viewpoint, Viewpoint::Looking(_) | Viewpoint::Choosing(..))

@@ -4,15 +4,15 @@ use super::{camera_fov::CameraFov, known_floor::is_in_sight, visibility_constrai
 use std::f64::consts::TAU;
 use trundle_core::{Cell, OccupancyGrid, Pose2, Stamp, Trajectory, Vector2, difference_of_angles};
 
-/// The way to a place from where the robot sees what it wants to see.
+/// The path to a viewpoint.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) enum Viewpoint {
-    /// None was looked for since the last plan.
+    /// No viewpoint was searched since the last plan.
     #[default]
     Unknown,
-    /// Places that a way is still to be asked for, the best last.
+    /// Candidate viewpoints that are not planned for yet, the best one last.
     Choosing(ViewTarget, Vec<Pose2>),
-    /// On the way there.
+    /// The robot drives to the viewpoint.
     Going(ViewTarget, Trajectory),
     /// There, looking until then.
     Looking(Stamp),
@@ -61,8 +61,8 @@ pub(super) fn places(
     places
 }
 
-/// Places that show the camera the floor at `at`, other than those from where it was looked at before: here, when turning is enough,
-/// then the nearest.
+/// Viewpoints from which the camera observes the floor at `at`, without those of earlier observations. The present place comes first,
+/// where a turn is enough; then the nearest.
 pub(super) fn sights(
     grid: &OccupancyGrid,
     here: Pose2,
@@ -90,7 +90,7 @@ mod tests {
 
     #[test]
     fn places_see_what_bars_the_way_and_are_off_it() {
-        // A wall with a door that somebody stands in.
+        // A wall with a door in which a person stands.
         let rows = [".".repeat(40), "#".repeat(18) + "####" + &"#".repeat(18), ".".repeat(40)];
         let text =
             [vec![rows[0].clone(); 10], vec![rows[1].clone()], vec![rows[2].clone(); 30]].concat().join("\n");

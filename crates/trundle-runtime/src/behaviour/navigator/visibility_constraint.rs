@@ -1,23 +1,23 @@
-//! Floor that was never observed, and what the robot did about it on the way to one goal.
+//! Unseen floor, and its observations on the path to one goal.
 
 use trundle_core::{Cell, OccupancyGrid, Stamp, Vector2};
 
-/// What the robot did about floor that was never seen, on the way to the goal of now.
+/// Unseen floor on the path to the present goal, and its observations.
 #[derive(Debug, Clone, Default)]
 pub(super) struct VisibilityConstraint {
     /// Where it was set down, map frame.
     pub(super) home: Option<Vector2>,
-    /// Where the ways looked over so far led onto what was never seen.
+    /// Places where the candidate paths entered unseen floor.
     pub(super) walls: Vec<Vector2>,
-    /// What it set out to look at of late.
+    /// Observations of the last 20 s.
     looks: Vec<Look>,
-    /// How often it set out to look and has not seen, since the goal was given.
+    /// Number of observations without result since the goal was given.
     in_vain: usize,
-    /// What it looked at in vain, and when it knew: no way leads there.
+    /// Keep-out zones: floor that observations did not show, and when each zone began.
     barred: Vec<(Vector2, Stamp)>,
 }
 
-/// What the robot set out to look at, from where, and when it set out or, once there, came there.
+/// An observation: the floor, the viewpoint, and the time of its start or, after the arrival, of the arrival.
 #[derive(Debug, Clone, Copy)]
 struct Look {
     at: Vector2,
@@ -45,7 +45,7 @@ impl VisibilityConstraint {
         *self = Self { home: self.home, ..Self::default() };
     }
 
-    /// Notes that it sets out to look at `at` from `from`.
+    /// Records an observation of `at` from `from`.
     pub(super) fn note_look(&mut self, at: Vector2, from: Vector2, now: Stamp) {
         self.looks.push(Look { at, from, since: now, is_in_vain: true });
         self.in_vain += 1;
@@ -56,7 +56,7 @@ impl VisibilityConstraint {
         self.looks.last_mut().into_iter().for_each(|look| look.since = now);
     }
 
-    /// Notes what the newest map knows of what it looked at.
+    /// Marks the observations whose floor the newest map shows: they had a result.
     pub(super) fn note_seen(&mut self, floor: &OccupancyGrid) {
         for look in &mut self.looks {
             let is_seen = look.is_in_vain && floor.at(look.at) != Cell::Unknown;
@@ -65,13 +65,13 @@ impl VisibilityConstraint {
         }
     }
 
-    /// Looks that were long ago tell nothing of what may be seen now.
+    /// Drops old observations: floor that was hidden then may be in view.
     pub(super) fn forget(&mut self, now: Stamp) {
         self.looks.retain(|look| now - look.since < VAIN_VIEW_RETRY_S);
         self.barred.retain(|(_, since)| now - *since < VAIN_VIEW_RETRY_S);
     }
 
-    /// From where it has looked at this.
+    /// Positions of the observations of this floor.
     fn looks_at(&self, at: Vector2) -> impl Iterator<Item = Vector2> + '_ {
         self.looks
             .iter()
@@ -79,7 +79,7 @@ impl VisibilityConstraint {
             .map(|look| look.from)
     }
 
-    /// Whether it has looked at this: if nothing is known of it still, driving will not show it either.
+    /// Whether this floor was observed. Floor that is unknown after that stays unknown on the path too.
     pub(super) fn was_looked_at(&self, at: Vector2) -> bool {
         self.looks_at(at).next().is_some()
     }
@@ -89,12 +89,12 @@ impl VisibilityConstraint {
         self.looks_at(at).count() < MAX_VIEWS_PER_PLACE && self.in_vain < MAX_VAIN_VIEWS
     }
 
-    /// Whether `from` is another place to look at `at` from than it was before.
+    /// Whether `from` is far enough from the earlier observations of `at`.
     pub(super) fn is_elsewhere(&self, at: Vector2, from: Vector2) -> bool {
         self.looks_at(at).all(|old| (old - from).norm() > MIN_VIEWPOINT_SPACING_M)
     }
 
-    /// No way is to lead there for a while. Whether that is new.
+    /// Adds a keep-out zone; whether it is new.
     pub(super) fn bar(&mut self, at: Vector2, now: Stamp) -> bool {
         let is_new = self.barred.iter().all(|(old, _)| (old - at).norm() > VIRTUAL_OBSTACLE_RADIUS_M / 2.0);
         if is_new {
@@ -103,12 +103,12 @@ impl VisibilityConstraint {
         is_new
     }
 
-    /// Where no way is to lead.
+    /// Centres of the keep-out zones.
     pub(super) fn bars(&self) -> Vec<Vector2> {
         self.barred.iter().map(|(at, _)| *at).collect()
     }
 
-    /// The place that it looked at last in vain.
+    /// Centre of the newest keep-out zone.
     pub(super) fn barred(&self) -> Option<Vector2> {
         self.barred.last().map(|(at, _)| *at)
     }
@@ -124,7 +124,7 @@ mod tests {
         let (mut unseen, at) = (VisibilityConstraint::default(), Vector2::new(1.0, 2.0));
         let time = |s: f64| Stamp::default().after(s);
         unseen.note_look(at, Vector2::zeros(), time(-15.0));
-        // The way was long.
+        // The path was long.
         unseen.note_arrival(time(5.5));
         assert!(unseen.bar(at, time(7.0)) && !unseen.bar(at, time(8.0)));
         unseen.forget(time(24.0));
