@@ -2,10 +2,10 @@
 //!
 //! - [`DepthScanner`]: one depth image in, one laser-like [`trundle_core::Scan`] out (the robot's height band, docs/methods.md A2).
 //! - [`GridMapper`]: scans at known poses in, a log-odds occupancy grid out (docs/methods.md A3 with one particle).
-//! - [`ScanMatcher`]: where a scan fits the grid best, how well, and in which directions nobody can tell.
+//! - [`ScanMatcher`]: the pose at which a scan fits the grid best, its covariance, and the directions that the scan does not determine.
 //!
-//! The parts a particle filter needs are parts of their own: the map of one particle is a [`LogOddsGrid`] (tiles shared
-//! until written, so a clone is cheap), and what a scan says about cells does not depend on who keeps them.
+//! The parts of a particle filter are types of their own. The map of one particle is a [`LogOddsGrid`]: its tiles are shared until
+//! written, so a clone is cheap. The evidence of a scan does not depend on the owner of the map.
 //!
 //! ```
 //! use trundle_core::{Beam, Cell, Pose2, Scan, Stamp, Vector2};

@@ -10,13 +10,13 @@ use trundle_grid::MapperConfig;
 pub struct ParticleConfig {
     /// Particles, 1 to 1000. Default 30 (\[Grisetti07\] closes its loops with 15 to 80).
     pub particles: usize,
-    /// The maps. Default: that of a laser, which sees to 80 m and has no blind range.
+    /// The maps. Default: that of a laser with a range of 80 m and no blind range.
     pub map: MapperConfig,
     /// The odometry's errors.
     pub motion: MotionConfig,
-    /// Odometry that does not drift, as the poses of a SLAM that has closed its loops: each of them is believed, not its steps alone, and
-    /// loops are not looked for. Default: none, dead reckoning. After [`crate::ParticleMapper::kidnapped`] the steps alone are taken: where
-    /// that odometry begins in the map is not known as well.
+    /// Odometry without drift, as the poses of a SLAM with loop closure. Each pose counts as a measurement, not its steps alone, and no
+    /// loops are searched. Default: none, dead reckoning. After [`crate::ParticleMapper::kidnapped`] only the steps are used, since
+    /// the start of that odometry in the map is unknown then.
     pub pose_prior: Option<PosePriorConfig>,
     /// A scan is processed when the robot moved this far since the last one, m, 0 to 5. Default 0.3.
     pub move_gate: f64,
@@ -36,17 +36,17 @@ pub struct ParticleConfig {
     pub correlation: f64,
     /// The same for the weights of the particles, on top, 1 to 100. Default 9.
     pub weight_correlation: f64,
-    /// Most scans that are kept for redrawing after a loop, 100 to 1,000,000: beyond, every second one of the older half is let
-    /// go, with its pose. Default 20,000: 10 km of way, 20 MB at 180 beams.
+    /// Largest number of scans kept for redrawing after a loop, 100 to 1,000,000. Beyond it every second scan of the older half is
+    /// dropped, with its pose. Default 20,000: 10 km of travel, 20 MB at 180 beams.
     pub max_scans: usize,
     /// Poses sampled about the match, 8 to 500. Default 30.
     pub samples: usize,
     /// Resample when the effective number of particles falls below this part of their number, 0 to 1. Default 0.5
     /// \[Grisetti07\].
     pub resample_below: f64,
-    /// Part of the steps of which the odometry tells nothing true: wheels slip, messages are lost; 1e-6 to 0.5. Default 0.01.
+    /// Fraction of the steps with wrong odometry: wheels slip, messages are lost; 1e-6 to 0.5. Default 0.01.
     pub slip_rate: f64,
-    /// There the robot is somewhere about the way told of, within this (one sigma), m, 0.01 to 2. Default 0.3.
+    /// In such a step the robot is near the odometry's path, within this (one sigma), m, 0.01 to 2. Default 0.3.
     pub slip_shift: f64,
     /// And this, rad, 0.01 to 1. Default 0.5.
     pub slip_turn: f64,
@@ -113,7 +113,7 @@ impl ParticleConfig {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct PosePriorConfig {
-    /// Each way, m, 0.001 to 1. Default 0.01: our own SLAM is 0.2 to 1.2 cm off (docs/results.md).
+    /// Sigma in each direction, m, 0.001 to 1. Default 0.01: our own SLAM is 0.2 to 1.2 cm off (docs/results.md).
     pub shift: f64,
     /// Heading, rad, 0.0001 to 1. Default 0.003.
     pub turn: f64,
@@ -138,15 +138,15 @@ impl PosePriorConfig {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct MotionConfig {
-    /// Way, m for each m driven, 0 to 2. Default 0.2.
+    /// Position, m for each m driven, 0 to 2. Default 0.2.
     pub shift_per_metre: f64,
-    /// Way, m for each rad turned, 0 to 2. Default 0.1.
+    /// Position, m for each rad turned, 0 to 2. Default 0.1.
     pub shift_per_radian: f64,
     /// Heading, rad for each m driven, 0 to 2. Default 0.1.
     pub turn_per_metre: f64,
     /// Heading, rad for each rad turned, 0 to 2. Default 0.2.
     pub turn_per_radian: f64,
-    /// Way even when nothing moved, m, 0.0001 to 1. Default 0.02.
+    /// Position even when nothing moved, m, 0.0001 to 1. Default 0.02.
     pub min_shift: f64,
     /// Heading even when nothing moved, rad, 0.0001 to 1. Default 0.01.
     pub min_turn: f64,

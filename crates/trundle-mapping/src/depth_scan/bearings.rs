@@ -165,7 +165,7 @@ impl Bearings {
     fn cleared(&self, i: usize, view: &BeamView, model: &PixelModel, hit: Option<f64>) -> SpanBits {
         let before_hit = hit.map(|range| ((range as f32 * model.bins_per_metre) as usize + 1).min(BIN_COUNT));
         let below_band = model.camera_height < model.high;
-        // On its way to what it hit, a ray passed through the band.
+        // A ray passed through the band before its hit.
         let passed = self.passed[i] | before_hit.filter(|_| below_band).map_or(0, |to| BELOW[to]);
         let mut bits = bridged(self.floor[i] | passed & !view.floor & !BELOW[view.begin.min(BIN_COUNT)]);
         if view.floor == 0 {

@@ -18,18 +18,18 @@ pub(super) struct Mount {
     pub(super) views: Vec<BeamView>,
     pub(super) samples: FloorSamples,
     pub(super) blind_range: f64,
-    /// Whether some beam looks into the band where it does not look at the floor.
+    /// Whether some beam covers the band where it does not cover the floor.
     pub(super) passes_matter: bool,
 }
 
-/// Where a beam looks, as far as the mount says.
+/// View of a beam, by the mount.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct BeamView {
     /// Where its pixels would see the floor.
     pub(super) floor: SpanBits,
     /// The first bin in which they do.
     pub(super) begin: usize,
-    /// Mean way over the floor of its rays, m for each m of depth.
+    /// Mean distance over the floor of its rays, m for each m of depth.
     pub(super) run: f32,
 }
 
@@ -68,11 +68,11 @@ struct Survey {
 struct SurveyedBeam {
     /// Of the floor.
     floor: SpanBits,
-    /// Of the band, on their way through it.
+    /// Range bins in which rays pass through the band.
     band: SpanBits,
     /// Where the band's lower edge is seen first, m.
     first: f64,
-    /// Sum and number of the rays' ways over the floor for each m of depth.
+    /// Sum and number of the rays' distances over the floor for each m of depth.
     runs: f64,
     count: usize,
 }
@@ -126,7 +126,7 @@ impl Survey {
         gaps.count() * 50 > self.beams.len()
     }
 
-    /// The range from which on every bearing that sees the band's lower edge at all sees it.
+    /// Range beyond which every bearing with the band's lower edge in view has it in view.
     fn blind_range(&self, max_range: f64) -> f64 {
         let seen = self.beams.iter().map(|beam| beam.first).filter(|range| range.is_finite());
         seen.reduce(f64::max).unwrap_or(max_range).min(max_range)

@@ -57,7 +57,7 @@ pub(super) struct Fan {
     pub(super) angle_increment: f64,
 }
 
-/// Maximum angle between neighbouring beams \[rad\]. It is reached by a camera that looks straight down. Source: ours.
+/// Maximum angle between neighbouring beams \[rad\]. It is reached by a camera that points straight down. Source: ours.
 const MAX_BEAM_INCREMENT_RAD: f64 = 0.035;
 /// Minimum angle between neighbouring beams \[rad\]. A full circle of beams is counted in 16 bits. Source: ours.
 const MIN_BEAM_INCREMENT_RAD: f64 = 1e-4;
@@ -98,7 +98,7 @@ fn widest_pixel(camera: &PinholeCamera, bearing: impl Fn(f64, f64) -> f64) -> f6
     [(cx, cy), (cx, 0.0), (cx, bottom), (0.0, cy), (right, cy)].into_iter().map(width_at).fold(0.0, f64::max)
 }
 
-/// The bearing in which the camera looks, base frame, rad; when it looks straight up or down, that of the image's top.
+/// Bearing of the optical axis, base frame, rad; of the image's top where the camera points straight up or down.
 fn forward_bearing(base_from_camera: &Pose3) -> f64 {
     let axis = base_from_camera.rotate(Vector3::z());
     let top = base_from_camera.rotate(-Vector3::y());

@@ -71,8 +71,8 @@ impl ScanFusion {
         Ok(Self { config: config.validated()?, nearest: Vec::new(), free: Vec::new() })
     }
 
-    /// One scan of several, with the newest one's stamp. Each comes with where the base was when it was taken, seen from
-    /// where it was at that stamp: the identity for sensors that look at once. A pose that is not finite leaves its scan out.
+    /// One scan of several, with the newest one's stamp. Each has the pose of the base at its own stamp relative to the base at that stamp:
+    /// the identity for sensors that measure at once. A scan whose pose is not finite is left out.
     pub fn fuse<'a>(&mut self, scans: impl IntoIterator<Item = (Pose2, &'a Scan)>) -> Scan {
         let beams = self.config.beams;
         self.nearest.clear();

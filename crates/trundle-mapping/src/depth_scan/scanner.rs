@@ -10,13 +10,13 @@ use super::{
 };
 use trundle_core::{DepthImage, Invalid, PinholeCamera, Pose3, RgbdImage, Scan, ScanParts, Stamp, Vector2};
 
-/// Makes scans of depth images: of each bearing the nearest obstacle in the robot's height band (docs/methods.md A2), and where the
-/// way to it and beyond was seen to be free.
+/// Makes scans of depth images: for each bearing the nearest obstacle in the robot's height band (docs/methods.md A2), and the free
+/// spans up to it and beyond.
 ///
-/// A pixel's bearing is fixed by the camera and its mount, and its height and way over the floor are products of its depth
-/// with numbers that are. Heights are along the base's z axis (gravity), above the floor that is fitted to the image where
-/// enough of it is seen; camera height, tilt and roll may be any. Cost: one pass over the image, in vectors where the
-/// processor has AVX2; no allocation after the first image.
+/// A pixel's bearing is fixed by the camera and its mount. Its height and its distance over the floor are products of its depth with
+/// fixed factors. Heights are along the base's z axis (gravity), above the floor that is fitted to the image where enough of it is in
+/// view. Camera height, tilt and roll may be any. Cost: one pass over the image, in vectors where the processor has AVX2. After the
+/// first image there is no allocation.
 ///
 /// | symbol | here | unit |
 /// |---|---|---|
@@ -53,7 +53,7 @@ impl DepthScanner {
         Ok(Self { row, bearings, config, lens, mount, floor: None })
     }
 
-    /// Moves the camera to `base_from_camera`: for a hand-held one, or a mount that was measured anew.
+    /// Moves the camera to `base_from_camera`: for a hand-held camera, or a mount with a new calibration.
     ///
     /// # Errors
     /// When the mount is not finite or the camera is not above the floor; then it stays where it was.
@@ -65,10 +65,10 @@ impl DepthScanner {
     /// The scan of an image: base frame, from the camera's place on the floor, beams at equal angles across the field
     /// of view, about as many as columns.
     ///
-    /// A beam is a hit at the nearest surface in the height band, or at the nearest edge of a hole; else free as far as the
-    /// floor was seen, or, where the camera does not look at the floor, as far as rays passed through the band; else unseen.
-    /// Its free spans have a gap wherever neither was seen: a missing depth is never free space. Its sigma grows with the
-    /// square of the depth. An image of another size than the camera's is unseen altogether.
+    /// A beam is a hit at the nearest surface in the height band, or at the nearest edge of a hole. Else it is free as far as the floor was
+    /// in view or, where the camera does not cover the floor, as far as rays passed through the band. Else it is unseen. Its free spans
+    /// have a gap where neither was in view: a missing depth is never free space. Its sigma grows with the square of the depth. An image of
+    /// another size than the camera's is unseen altogether.
     pub fn scan(&mut self, image: &RgbdImage) -> Scan {
         let mut scan = nothing(image.stamp());
         self.scan_into(image, &mut scan);
@@ -104,7 +104,7 @@ impl DepthScanner {
         self.mount.blind_range
     }
 
-    /// Where the floor lies by the last image; `None` where it could not be told, and the mount was believed.
+    /// The floor fitted to the last image; `None` where no floor was found and the mount's floor was used.
     pub fn floor(&self) -> Option<FloorFit> {
         self.floor
     }

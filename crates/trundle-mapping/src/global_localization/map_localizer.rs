@@ -54,11 +54,11 @@ enum State {
 /// What is known after a scan.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Localized {
-    /// The robot has hardly moved: the scan was not looked at.
+    /// The robot has hardly moved: the scan was not used.
     Still,
     /// The scan was refused.
     Refused(Refusal),
-    /// Nobody knows where the robot is.
+    /// The pose is unknown.
     Lost(Lost),
     /// The robot is here.
     Known {
@@ -133,13 +133,13 @@ impl MapLocalizer {
         publisher.grid().clone()
     }
 
-    /// Tells where the base is: no search.
+    /// Sets the pose of the base: no search.
     pub fn start_at(&mut self, map_from_base: Pose2) {
         let pose = in_cells(&self.config, map_from_base);
         self.state = State::Known { particles: vec![(pose, 0.0); self.config.particles], strange: 0 };
     }
 
-    /// Tells that the robot was carried away: it is looked for anew.
+    /// Declares that the robot was carried away: a new search begins.
     pub fn kidnapped(&mut self) {
         self.state = State::Lost(GlobalSearch::default());
     }

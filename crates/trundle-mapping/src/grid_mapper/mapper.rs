@@ -10,7 +10,7 @@ use trundle_grid::{
 /// Problem: which cells of the floor are occupied, given noisy scans and known poses? Each cell is an independent binary variable,
 /// and every scan adds its log-odds (Moravec and Elfes 1985; Thrun, Probabilistic Robotics, ch. 9). A hit raises its cell, a free
 /// ray lowers the cells that it passes, and each cell changes at most once a scan. Cost: one step for each cell that a ray passes.
-/// The cost of a scan does not grow with the run, except that the published grid is laid out anew when its bounding box grows.
+/// The cost of a scan does not grow with the run, except that a larger bounding box needs a new layout of the published grid.
 ///
 /// | symbol | here | unit |
 /// |---|---|---|
@@ -356,7 +356,7 @@ mod tests {
 
     #[test]
     fn a_ray_over_an_obstacle_in_the_blind_range_clears_nothing_behind_it() {
-        // The seat of a chair: its near edge is in the blind range, and the camera sees the floor below it.
+        // The seat of a chair: its near edge is in the blind range, and the floor below it is in the camera's view.
         let mut mapper = mapper();
         let at = |x: f64| Vector2::new(x, 0.01);
         for edge in [1.01, 1.41] {

@@ -5,7 +5,7 @@ use nalgebra::Matrix2;
 use std::ops::Range;
 use trundle_core::Pose2;
 
-/// An earlier stretch of the way that the robot may be near now.
+/// An earlier part of the trajectory that the robot may be near.
 #[derive(Debug, Clone)]
 pub(crate) struct Candidate {
     /// Poses of the stretch.
@@ -25,7 +25,7 @@ const VIEW_RADIUS_M: f64 = 4.0;
 /// Maximum radius of a loop search \[m\]: the drift of one minute of failing odometry. Source: ours.
 pub(crate) const MAX_SEARCH_RADIUS_M: f64 = 40.0;
 
-/// The stretches that the last pose may be near, the likeliest first. `ways` is the way up to each pose, m.
+/// The parts of the trajectory that the last pose may be near, the likeliest first. `ways` is the distance travelled at each pose, m.
 pub(crate) fn candidates(
     poses: &[Pose2],
     ways: &[f64],

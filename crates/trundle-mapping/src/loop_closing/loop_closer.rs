@@ -121,7 +121,7 @@ impl LoopCloser {
         proved.then(|| constraint(config, poses, &which, &best))
     }
 
-    /// Takes a tie in when another one, some way before, says the same; bends the way where it must.
+    /// Accepts a tie that another tie, some distance before, confirms; corrects the trajectory where necessary.
     fn accept(
         &mut self,
         history: &mut ScanHistory,

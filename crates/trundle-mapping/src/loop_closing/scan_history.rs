@@ -43,8 +43,8 @@ impl ScanHistory {
         (1..poses.len()).map(step).chain(self.loops.iter().copied()).collect()
     }
 
-    /// Lets every second of the first `count` scans go (not the first), with the poses of the trajectory that belong to them.
-    /// Their steps are composed; loops that end at one end at the one before, at the same place as well as the trajectory tells.
+    /// Drops every second of the first `count` scans (not the first), with the poses of the trajectory that belong to them. Their steps
+    /// are composed. A loop that ends at a dropped scan then ends at the scan before, moved by the trajectory's step.
     pub(crate) fn thin(&mut self, trajectory: &mut Vec<(Stamp, Pose2)>, count: usize) {
         let poses: Vec<Pose2> = trajectory.iter().map(|(_, pose)| *pose).collect();
         self.measure(&poses);
@@ -84,7 +84,7 @@ impl ScanHistory {
     }
 }
 
-/// Keeps the elements whose number says so.
+/// Keeps the elements for whose index `stays` is true.
 fn keep<T>(all: &mut Vec<T>, stays: impl Fn(usize) -> bool) {
     let mut k = 0;
     all.retain(|_| {

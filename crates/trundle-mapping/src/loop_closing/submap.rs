@@ -8,7 +8,7 @@ use std::collections::BTreeSet;
 use trundle_core::Pose2;
 use trundle_grid::tiles::{RayUpdateScratch, TileMap};
 
-/// Parts of the way as small maps and as clouds of hits.
+/// Parts of the trajectory as small maps and as clouds of hits.
 #[derive(Debug, Default)]
 pub(crate) struct Submaps {
     points: ScanPoints,

@@ -45,7 +45,7 @@ impl Writer {
     }
 }
 
-/// Bytes to be read: nothing is believed.
+/// Reader of untrusted bytes: every length and value is checked.
 #[derive(Debug)]
 pub(crate) struct Reader<'a> {
     rest: &'a [u8],

@@ -16,7 +16,7 @@ pub enum FilterFileError {
         /// Of this program.
         expected: u8,
     },
-    /// A bit was lost or turned on the way.
+    /// The checksum does not match: the file is damaged.
     #[error("the map is damaged: its checksum is wrong")]
     Checksum,
     /// The bytes end too early.

@@ -90,8 +90,8 @@ impl ParticleMapper {
         bytes
     }
 
-    /// Goes on with a saved filter: the next scans are taken in as if it had never stopped. For another run, with odometry of
-    /// its own, tell it so by [`ParticleMapper::kidnapped`].
+    /// Restores a saved filter, which continues with the next scan. For another run, whose odometry has another origin, call
+    /// [`ParticleMapper::kidnapped`] after it.
     ///
     /// # Errors
     /// When the configuration is out of range, or the bytes are no filter, of another version, damaged, cut off, made with

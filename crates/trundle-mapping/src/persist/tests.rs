@@ -6,7 +6,7 @@ use nalgebra::Matrix3;
 use proptest::prelude::*;
 use trundle_core::{Beam, FreeSpan, Pose2, Scan, ScanParts, Vector2};
 
-/// Scan of a bend of walls, some beams seen in part.
+/// Scan of a corner of walls, some beams with gaps.
 fn scan(k: usize) -> Scan {
     let beam = |i: usize| match i % 5 {
         0 => Beam::Unseen,

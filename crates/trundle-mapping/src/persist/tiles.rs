@@ -66,7 +66,7 @@ pub(crate) fn read(bytes: &mut Reader<'_>) -> Result<ReadPools, FilterFileError>
     Ok(ReadPools { tiles, chunks, maps })
 }
 
-/// Runs of equal bytes as one: below 128 so many and one bytes follow, from 128 on the next one stands so many times less 125.
+/// Run-length code. A count c below 128 precedes c + 1 single bytes; from 128 on it precedes one byte that stands c - 125 times.
 fn pack(out: &mut Writer, bytes: impl Iterator<Item = u8>) {
     let mut literals: Vec<u8> = Vec::new();
     let flush = |out: &mut Writer, literals: &mut Vec<u8>| {

@@ -11,12 +11,12 @@ use trundle_core::Pose2;
 pub(crate) struct RelativeUncertainty {
     /// Covariance (m, m, rad) in the map's axes.
     pub(crate) covariance: Matrix3<f64>,
-    /// Length of the way along the ties, m.
+    /// Length of the path along the ties, m.
     pub(crate) way: f64,
 }
 
-/// The covariance of every pose relative to pose `from`, composed along the surest way through the ties (\[Olson09b\]): an upper
-/// bound of the true one. `None` where nothing leads there. Cost: n log n.
+/// Covariance of every pose relative to pose `from`, composed along the path of ties with the smallest covariance (\[Olson09b\]): an
+/// upper bound of the true one. `None` for a pose without such a path. Cost: n log n.
 pub(crate) fn reach(
     poses: &[Pose2],
     constraints: &[Constraint],

@@ -5,7 +5,7 @@ use crate::units::{in_cells, scaled};
 use nalgebra::{Matrix3, Vector3};
 use trundle_core::Pose2;
 
-/// What odometry that does not drift says of where the robot is.
+/// The robot's pose by odometry without drift.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct AbsolutePose {
     /// map_from_base, cells and rad.
@@ -15,7 +15,7 @@ pub(crate) struct AbsolutePose {
 }
 
 impl AbsolutePose {
-    /// With the base at `map_from_base` by the odometry, m and rad; none where the odometry is not told to be of this kind.
+    /// With the base at `map_from_base` by the odometry, m and rad; none where the configuration has no `pose_prior`.
     pub(crate) fn new(config: &ParticleConfig, map_from_base: Pose2) -> Option<Self> {
         let prior = config.pose_prior.as_ref()?;
         let sigma = Vector3::new(prior.shift, prior.shift, prior.turn);

@@ -130,7 +130,7 @@ mod tests {
         for k in 0..5 {
             ancestry.shared.push((Stamp::from_nanos(k as i64), at(k, 0)));
         }
-        // Three particles whose ways cross at every step.
+        // Three particles whose trajectories cross at every step.
         for k in 5..20_usize {
             let parents = if k == 5 { vec![0; 3] } else { vec![1, 2, (k % 3) as u16] };
             ancestry.push_column(Stamp::from_nanos(k as i64), (0..3).map(|i| at(k, i)).collect(), parents);

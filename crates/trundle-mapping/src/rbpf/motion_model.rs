@@ -6,7 +6,7 @@ use trundle_core::Pose2;
 
 /// The covariance of an odometry's motion in its own frame (x, y in m, heading in rad).
 ///
-/// Along x the way's error; along y too, as a turn on the way moves the end aside by half of it.
+/// Along x the error of the distance; along y too, since a turn during the step moves the end sideways by half of it.
 pub(crate) fn motion_covariance(config: &MotionConfig, motion: Pose2) -> Matrix3<f64> {
     let (way, turn) = (motion.position().norm(), motion.theta.abs());
     let shift = config.min_shift + config.shift_per_metre * way + config.shift_per_radian * turn;
@@ -15,7 +15,7 @@ pub(crate) fn motion_covariance(config: &MotionConfig, motion: Pose2) -> Matrix3
     Matrix3::from_diagonal(&nalgebra::Vector3::new(shift * shift, aside * aside, heading * heading))
 }
 
-/// The covariance of a motion of which the odometry says nothing, as when it jumped: m, rad.
+/// Covariance of a step without odometry, as after a jump: m, rad.
 pub(crate) fn unknown_motion_covariance() -> Matrix3<f64> {
     Matrix3::from_diagonal(&nalgebra::Vector3::new(0.16, 0.16, 0.04))
 }

@@ -6,10 +6,10 @@ use trundle_core::Pose2;
 
 /// What the odometry has wrong on every metre and every turn, learnt from what the matches make of it.
 ///
-/// Wheels of unequal size, a base that is not as wide as believed, a gyro's drift: such errors are the same at every step, add up with
-/// the way where noise adds up with its root, and are the larger part on smooth floors \[Borenstein96\]. The heading's error
-/// is taken for a |way| + b turn, the way's for c way; a, b and c are the least squares of the last steps under a prior that they are
-/// 0, as the means of \[Eliazar04\]'s motion model are.
+/// Wheels of unequal size, a wrong wheelbase, a gyro's drift: such errors are the same at every step. They add up with the distance,
+/// where noise adds up with its root, and are the larger part on smooth floors \[Borenstein96\]. The model of the heading's error
+/// is a |distance| + b turn, that of the distance's error c distance. The least squares of the last steps give a, b and c, under a prior
+/// that they are 0, as for the means of \[Eliazar04\]'s motion model.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct OdometryBias {
     /// Normal equations of (a, b): upper triangle, right side.
@@ -35,8 +35,8 @@ impl OdometryBias {
         Pose2::new(motion.x * stretch, motion.y * stretch, motion.theta + turn)
     }
 
-    /// Takes in what a match says of a step; `motion`: what the odometry said (m, rad); `innovation` is against the corrected motion,
-    /// `noise` the variances of a step's errors, both in units of `unit` m.
+    /// Adds the innovation of a step. `motion` is the odometry's step (m, rad); `innovation` is against the corrected motion, `noise` holds
+    /// the variances of a step's errors, both in units of `unit` m.
     pub(crate) fn learn(&mut self, motion: Pose2, innovation: &Innovation, noise: Vector3<f64>, unit: f64) {
         let (way, forward) = (motion.position().norm(), motion.x);
         let applied = self.error(motion);
@@ -84,7 +84,7 @@ impl OdometryBias {
         [a, b, c, d, e, f, g]
     }
 
-    /// From its numbers; those that cannot be begin anew.
+    /// From its numbers; impossible ones restart the estimate.
     pub(crate) fn from_numbers([a, b, c, d, e, f, g]: [f64; 7]) -> Self {
         let fair = [a, b, c, d, e, f, g].iter().all(|v| v.is_finite()) && a >= 0.0 && c >= 0.0 && f >= 0.0;
         if fair { Self { turn: [a, b, c, d, e], way: [f, g] } } else { Self::default() }

@@ -4,10 +4,10 @@ use nalgebra::{Matrix3, Vector3};
 
 /// How good the odometry is, learnt from what the matches make of it.
 ///
-/// The configuration says what the errors of the worst odometry are that is in use; a robot with a gyro may be ten times better, and
-/// a filter that does not know it lets its particles walk at random where a scan holds little. Of each step that a match holds in
-/// all directions, e = (match - odometry)^2 / (configured variance) should be the squared scale of the errors plus what the match
-/// itself leaves open; the ratio of the two sums, each forgetting, is the scale (a moment estimate of the motion model's
+/// The configuration holds the errors of the worst usable odometry; a robot with a gyro may be ten times better. With errors that are
+/// too large, particles spread where a scan determines little. For each step that a match determines in
+/// all directions, e = (match - odometry)^2 / (configured variance) estimates the squared scale of the errors plus the variance
+/// of the match. The ratio of the two sums, each with exponential forgetting, is the scale (a moment estimate of the motion model's
 /// parameters, after \[Eliazar04\]).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct OdometryNoise {
@@ -23,7 +23,7 @@ struct Moments {
     steps: f64,
 }
 
-/// What a match says of a step, base frame: cells, cells, rad.
+/// Difference between match and odometry in a step, base frame: cells, cells, rad.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Innovation {
     /// From where the odometry led to where the hits alone would have it.
@@ -59,14 +59,14 @@ impl OdometryNoise {
             let open = step.open[k] / variance;
             let most = MAX_ERROR_SIGMAS * MAX_ERROR_SIGMAS * (1.0 + open);
             let error = (step.off[k] * step.off[k] / variance).min(most) - open;
-            // A match that leaves more open than the odometry says next to nothing.
+            // A match with a larger variance than the odometry's has little weight.
             let weight = (1.0 + open).powi(-2);
             let moments = if k < 2 { &mut self.shift } else { &mut self.turn };
             moments.add(error, weight * if k < 2 { 0.5 } else { 1.0 });
         }
     }
 
-    /// Takes in a step of which the odometry told nothing true.
+    /// Adds a step with wrong odometry.
     pub(crate) fn doubt(&mut self) {
         self.shift.add(MAX_ERROR_SIGMAS * MAX_ERROR_SIGMAS, 1.0);
         self.turn.add(MAX_ERROR_SIGMAS * MAX_ERROR_SIGMAS, 1.0);
@@ -85,7 +85,7 @@ impl OdometryNoise {
         [shift.errors, shift.weights, shift.steps, turn.errors, turn.weights, turn.steps]
     }
 
-    /// From its numbers; those that cannot be begin anew.
+    /// From its numbers; impossible ones restart the estimate.
     pub(crate) fn from_numbers([a, b, c, d, e, f]: [f64; 6]) -> Self {
         let new = Self {
             shift: Moments { errors: a, weights: b, steps: c },

@@ -4,8 +4,8 @@ use trundle_core::{Pose2, Stamp};
 
 /// The poses at all stamps of `odometry` (odom_from_base, by rising stamps), from those of some of them.
 ///
-/// Between two processed scans the odometry's way is followed, and what it misses the second by is spread over
-/// the way in between, by time; after the last the odometry leads on. Stamps before the first processed one are left out.
+/// Between two processed scans the trajectory follows the odometry, and its error at the second scan is distributed over the time in
+/// between. After the last scan the odometry continues the trajectory. Stamps before the first processed scan are left out.
 pub fn propagate_trajectory(
     processed: &[(Stamp, Pose2)],
     odometry: &[(Stamp, Pose2)],

@@ -16,10 +16,10 @@ use trundle_grid::tiles::{Tile, TileMap, TileWindow};
 
 /// The improved proposal of \[Grisetti07\] for one particle.
 ///
-/// The pose is looked for by correlation, coarse to fine, then by Gauss-Newton on the field of nearest obstacles with
-/// the odometry as prior; about the optimum poses are sampled in an ellipsoid as wide as the two together allow;
-/// weighted by p(z | m, x) p(x | x', u) they give mean, covariance and, summed up, the particle's new weight. The pose is drawn
-/// from that Gaussian. Directions that the scan does not hold stay with the odometry's Gaussian.
+/// A correlative search, coarse to fine, finds the pose; then Gauss-Newton on the field of nearest obstacles refines it with the
+/// odometry as prior. Poses are sampled about the optimum in an ellipsoid as wide as scan and odometry together allow. Weighted by
+/// p(z | m, x) p(x | x', u) they give mean, covariance and, as their sum, the particle's new weight. The pose is drawn from that
+/// Gaussian. Directions that the scan does not determine keep the odometry's Gaussian.
 #[derive(Debug)]
 pub(crate) struct Proposer<'a> {
     pub(crate) config: &'a ParticleConfig,
@@ -46,13 +46,13 @@ pub(crate) struct Proposal {
     pub(crate) contradicted: f64,
     /// Mean ln p(z | m, x) of the points at the optimum.
     pub(crate) per_point: f64,
-    /// Whether the odometry was not believed.
+    /// Whether the step's odometry counted as wrong.
     pub(crate) slipped: bool,
     /// Directions left to the odometry, 0 to 3.
     pub(crate) degenerate: usize,
     /// Covariance of the drawn Gaussian (cells, cells, rad), map frame.
     pub(crate) covariance: Matrix3<f64>,
-    /// What the match says of the odometry, where it holds all directions.
+    /// Difference between match and odometry, where the match determines all directions.
     pub(crate) innovation: Option<Innovation>,
 }
 
@@ -69,7 +69,7 @@ const WIDE_SEARCH_SIGMAS: f64 = 3.0;
 /// Minimum fraction of points at known obstacles \[1\]. Below it the pose follows the odometry alone. Source: ours.
 const MIN_EXPLAINED: f64 = 0.1;
 
-/// An optimum with the tiles in which it was looked for.
+/// An optimum with the tiles of its search.
 struct Attempt<'m> {
     window: TileWindow<'m>,
     /// The window's corner, cells of the map.
@@ -87,10 +87,9 @@ impl Proposer<'_> {
 
     /// Draws the pose of a particle that stood at `before` and should have come to `guess` (cells, rad, of the map).
     ///
-    /// Two things may have happened: the odometry erred as its covariance says, or its wheels slipped or its words were
-    /// lost (`slip_rate`), and the robot is somewhere about the way that it tells of. The second is looked into where it
-    /// would be the likelier one if the scan fitted there as scans usually do: at `far`, what [`Proposer::far`] found for one
-    /// particle of those that share most of their past.
+    /// There are two hypotheses: the odometry erred within its covariance; or its wheels slipped or its messages were lost (`slip_rate`),
+    /// and the robot is near the odometry's path. The second is tested where it would be the likelier one if the scan fitted there as
+    /// scans usually do: at `far`, the result of [`Proposer::far`] for one particle of those that share most of their past.
     pub(crate) fn propose(
         &self,
         (map, far): (&TileMap, &[Pose2]),
@@ -342,8 +341,8 @@ impl Proposer<'_> {
         }
     }
 
-    /// What the hits alone say of the odometry's step. At the optimum x of hits (information H) and odometry (P, at g) the pulls are
-    /// even: H (m - x) = P (x - g) gives the hits' own optimum m.
+    /// Estimate of the odometry's step by the hits alone. At the optimum x of hits (information H) and odometry (P, at g) the gradients
+    /// cancel: H (m - x) = P (x - g) gives the hits' own optimum m.
     fn innovation(&self, attempt: &Attempt<'_>) -> Option<Innovation> {
         let Attempt { prior, optimum, .. } = attempt;
         if optimum.directions.degenerate > 0 {

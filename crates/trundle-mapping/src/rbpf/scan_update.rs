@@ -7,7 +7,7 @@ use trundle_core::Pose2;
 /// What became of a scan.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum ScanUpdate {
-    /// The robot has hardly moved: the scan was not looked at.
+    /// The robot has hardly moved: the scan was not used.
     Still,
     /// Refused: what is wrong with it.
     Refused(Refusal),
@@ -26,8 +26,8 @@ pub enum Refusal {
     NotFinite,
     /// The scan is older than the last one.
     TimeGoesBack,
-    /// The odometry's pose is more than 1000 km from its origin; or, of odometry that does not drift (`pose_prior`), farther from the
-    /// last one than it can have got: `jump` a second. Five such poses in a row that agree with each other are believed.
+    /// The odometry's pose is more than 1000 km from its origin; or, for odometry without drift (`pose_prior`), farther from the last one
+    /// than `jump` a second allows. Five such poses in a row that agree with each other are accepted.
     OutOfReach,
 }
 
@@ -46,11 +46,10 @@ pub struct Processed {
     pub effective: f64,
     /// Whether particles were resampled.
     pub resampled: bool,
-    /// Whether the odometry jumped farther than `jump`: the pose is then held where it was, or, while a `pose_prior` holds, where it says.
+    /// Whether the odometry jumped farther than `jump`: the pose then stays, or, with a `pose_prior`, follows the odometry.
     pub jumped: bool,
-    /// Whether the scan said that the odometry told nothing true: slipping wheels, lost messages.
+    /// Whether the scan showed that the odometry was wrong: slipping wheels, lost messages.
     pub slipped: bool,
-    /// When the way and the map were bent by a loop that was closed some scans before: how far the pose went that went
-    /// farthest, m.
+    /// Largest shift of a pose, m, where a loop that was closed some scans before corrected trajectory and map.
     pub bent: Option<f64>,
 }

@@ -9,12 +9,12 @@ use trundle_core::{Pose2, Scan, Stamp};
 /// Maximum distance of the odometry from its origin \[m\]. A farther pose is refused. Source: ours.
 const MAX_ODOMETRY_DISTANCE_M: f64 = 1e6;
 
-/// Which scans are looked at: those after some motion or time.
+/// Selects the scans to process: those after some motion or time.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct UpdateGate {
     /// The last scan that was processed.
     pub(crate) last: Option<LastScan>,
-    /// A wild pose that was refused, and how many in a row have said the same.
+    /// A refused pose that was too far off, and the number of poses in a row that agree with it.
     doubted: Option<(LastScan, usize)>,
 }
 
@@ -37,14 +37,14 @@ impl LastScan {
     }
 }
 
-/// What the odometry says since the last processed scan.
+/// Step of the odometry since the last processed scan.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct OdometryStep {
     pub(crate) first: bool,
     pub(crate) motion: Pose2,
     /// m, m, rad, in the base's frame.
     pub(crate) covariance: Matrix3<f64>,
-    /// It jumped: its step says nothing.
+    /// Whether the odometry jumped: its step is then unknown.
     pub(crate) jumped: bool,
 }
 
@@ -96,7 +96,7 @@ impl UpdateGate {
         Ok(Some(OdometryStep { first: false, motion, covariance, jumped }))
     }
 
-    /// Whether a pose is farther off than the robot can have got, and not yet said by enough others in a row.
+    /// Whether a pose is farther off than the robot can have moved, and too few others in a row agree with it.
     fn is_wild(&mut self, last: &LastScan, now: LastScan, jump: f64) -> bool {
         let doubted = self.doubted.take();
         if !last.is_out_of_reach(&now, jump) {

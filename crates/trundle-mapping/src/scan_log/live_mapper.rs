@@ -6,13 +6,13 @@ use std::sync::Arc;
 use trundle_core::{CellIndex, Invalid, OccupancyGrid, Pose2, Scan, Stamp, Vector2};
 use trundle_grid::{LogOddsGrid, MapperConfig};
 
-/// A live map that follows corrections of the way it was drawn along.
+/// A live map that follows corrections of its trajectory.
 ///
-/// Problem: a loop closure moves poses at which scans were drawn minutes ago. The scans are kept; [`LiveMapper::correct`] tells
-/// where they were taken by now, and [`LiveMapper::work`] draws what was bent anew, beside the map in use, in slices as large
-/// as the caller likes, counted in cells. Drawing begins at the last snapshot before the first scan that moved (snapshots
-/// share their tiles, so they cost what changed since), not at the beginning. When it has caught up, the new map takes the
-/// place of the old one. Cost of a call: its budget, and two passes over the grid for a whole redrawing.
+/// Problem: a loop closure moves poses of scans that were drawn minutes ago. The scans are kept. [`LiveMapper::correct`] sets their
+/// corrected poses, and [`LiveMapper::work`] redraws them beside the map in use, in slices of a budget in cells. Drawing begins at
+/// the last snapshot before the first scan that moved, not at the first scan. Snapshots share their tiles, so a snapshot costs what
+/// changed since the one before. At the end the new map takes the place of the old one. Cost of a call: its budget, and two passes over
+/// the grid for a whole redrawing.
 #[derive(Debug, Clone)]
 pub struct LiveMapper {
     front: GridMapper,
@@ -22,12 +22,12 @@ pub struct LiveMapper {
     snapshots: Vec<Snapshot>,
     /// Kept things between snapshots.
     every: usize,
-    /// So many kept things are thinned.
+    /// Number of kept entries at which they are thinned.
     thin_at: usize,
     redrawing: Option<Redrawing>,
 }
 
-/// The evidence when so many kept things were drawn.
+/// The evidence after a number of drawn entries.
 #[derive(Debug, Clone)]
 struct Snapshot {
     drawn: usize,
@@ -43,7 +43,7 @@ struct Redrawing {
 /// What a slice of work did.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Redrawn {
-    /// Cells told.
+    /// Cells drawn.
     pub cells: usize,
     /// Scans that are still to be drawn; 0: the map is that of the corrected poses.
     pub left: usize,
@@ -134,7 +134,7 @@ impl LiveMapper {
         self.work_within(budget, usize::MAX)
     }
 
-    /// Redraws for about `budget` cells, and at least so much of what is left that it is done in `calls` such calls.
+    /// Redraws about `budget` cells, and at least the share of the rest with which `calls` calls finish.
     pub fn work_within(&mut self, budget: usize, calls: usize) -> Redrawn {
         let mut cells = 0;
         let Some(mut redrawing) = self.redrawing.take() else { return Redrawn { cells, left: 0 } };

@@ -36,7 +36,7 @@ const MIN_PLACE_TURN_RAD: f64 = 0.12;
 /// place. Source: ours.
 pub(crate) const MIN_PROOF_NATS: f64 = 16.0;
 
-/// Looks for a cloud in a map.
+/// Searches a cloud in a map.
 pub(crate) struct CloudMatcher<'a> {
     pub(crate) config: &'a ParticleConfig,
     pub(crate) likelihood: &'a Likelihood,

@@ -30,7 +30,7 @@ pub(crate) struct CoarseSearch {
     firsts: Vec<usize>,
     /// Which tiles are laid out with those right of them, above and both.
     blocks: Vec<bool>,
-    /// The points looked at, base frame, cells.
+    /// The points of the search, base frame, cells.
     points: Vec<(f32, f32)>,
     best: Vec<(f64, Pose2)>,
 }
@@ -47,7 +47,7 @@ pub(crate) struct SearchPrior {
     pub(crate) gain: f64,
 }
 
-/// Sums of likelihoods: row by row, 16 columns each, of which those beyond the reach say nothing.
+/// Sums of likelihoods: row by row, 16 columns each; columns beyond the reach are not used.
 type Sums = [[u16; LANES]; 2 * MAX_REACH_SAMPLES + 1];
 const NO_SUMS: Sums = [[0; LANES]; 2 * MAX_REACH_SAMPLES + 1];
 
@@ -91,7 +91,7 @@ impl CoarseSearch {
         &self.best
     }
 
-    /// Begins anew for a window: nothing is laid out.
+    /// Clears the field for a new window.
     fn cover(&mut self, window: &TileWindow<'_>) {
         for first in self.firsts.drain(..) {
             for k in 0..SAMPLES_PER_TILE_SIDE {

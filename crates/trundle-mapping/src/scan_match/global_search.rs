@@ -10,7 +10,7 @@ use std::collections::BTreeSet;
 use trundle_core::Pose2;
 use trundle_grid::tiles::TileMap;
 
-/// Why nobody knows where the robot is.
+/// Why the pose is unknown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Lost {
     /// The map is empty, or the scans hold next to nothing.
@@ -21,10 +21,10 @@ pub enum Lost {
     SeveralPlaces,
 }
 
-/// The last scans together, looked for in the whole map.
+/// Search of the combined last scans in the whole map.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct GlobalSearch {
-    /// Scans and where the odometry says they were taken (cells).
+    /// Scans with their poses by the odometry (cells).
     scans: Vec<(ScanPoints, Pose2)>,
 }
 

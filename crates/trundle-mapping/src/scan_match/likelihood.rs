@@ -74,7 +74,7 @@ impl Likelihood {
         f64::from(sum)
     }
 
-    /// What the points say about where to go from a pose.
+    /// Normal equations of the points for a step from a pose.
     pub(crate) fn equations(
         &self,
         window: &TileWindow<'_>,
@@ -86,7 +86,7 @@ impl Likelihood {
         sums.equations()
     }
 
-    /// Tells a listener of all points, eight by eight.
+    /// Gives all points to a sink, eight at a time.
     fn tell<L: PointSink>(&self, to: &mut L, window: &TileWindow<'_>, shape: &ScanPoints, pose: Pose2) {
         #[cfg(target_arch = "x86_64")]
         if std::arch::is_x86_feature_detected!("avx2") {
@@ -127,7 +127,7 @@ impl Likelihood {
         }
     }
 
-    /// Looks eight hits up: arithmetic lane by lane, which the compiler makes vector code, and one load for each.
+    /// Evaluates eight hits: arithmetic lane by lane, which the compiler turns into vector code, and one load for each.
     #[inline(always)]
     fn look(&self, window: &TileWindow<'_>, group: &PointGroup, place: &RotatedPose) -> Residuals {
         let mut r = Residuals {
@@ -179,7 +179,7 @@ impl Likelihood {
 /// The last entry of the tables.
 const LAST_TABLE_STEP: f32 = (TABLE_STEPS - 1) as f32;
 
-/// What becomes of the hits that were looked up.
+/// Receiver of the evaluated hits.
 trait PointSink {
     fn take(&mut self, likelihood: &Likelihood, group: &PointGroup, found: &Residuals);
 }

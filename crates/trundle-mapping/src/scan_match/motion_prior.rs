@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3, Vector3};
 use trundle_core::{Pose2, wrap_angle};
 
-/// What the odometry says of where the particle is: cells, rad, map frame.
+/// Pose of the particle by the odometry: cells, rad, map frame.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct MotionPrior {
     pub(crate) guess: Pose2,
@@ -37,8 +37,7 @@ impl MotionPrior {
         Self::with(Pose2::new(guess.x + step.x, guess.y + step.y, guess.theta + step.z), both)
     }
 
-    /// Of a robot whose odometry failed: it is somewhere about the way from `before` to `guess`, one sigma `shift` (cells)
-    /// and `turn` (rad) off it.
+    /// For a robot whose odometry failed: it is near the line from `before` to `guess`, one sigma `shift` (cells) and `turn` (rad) off it.
     pub(crate) fn slipped(before: Pose2, guess: Pose2, shift: f64, turn: f64) -> Self {
         let way = (guess.position() - before.position()).norm();
         let turned = wrap_angle(guess.theta - before.theta).abs();

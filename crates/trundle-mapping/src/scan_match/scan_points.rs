@@ -17,11 +17,11 @@ pub(crate) struct ScanPoints {
     pub(crate) groups: Vec<PointGroup>,
     /// Spread of the points, cells.
     pub(crate) spread: PointSpread,
-    /// Number of the beam, end, and one sigma of the range where the sensor says it (else 0).
+    /// Number of the beam, end, and one sigma of the range, 0 where the sensor gives none.
     hits: Vec<(usize, Vector2, f64)>,
     /// The numbers of the rays' beams.
     pub(crate) beams: Vec<usize>,
-    /// One sigma of each ray's range, m; empty where the sensor does not say.
+    /// One sigma of each ray's range, m; empty where the sensor gives none.
     pub(crate) sigmas: Vec<f32>,
 }
 
@@ -75,7 +75,7 @@ impl PointGroup {
 const NORMAL_BASELINE_M: f64 = 0.2;
 /// Minimum distance of two points of a scan \[cells\]. A nearer point is dropped. Source: ours.
 const POINT_SPACING_CELLS: f64 = 1.5;
-/// Minimum lever of the points \[cells\]. Points nearer to each other tell no heading. Source: ours.
+/// Minimum lever of the points \[cells\]. Points nearer to each other do not determine the heading. Source: ours.
 const MIN_LEVER_CELLS: f64 = 2.0;
 /// Maximum RMS distance from a fitted line \[sigmas\]. Points beyond it have no normal. Source: ours.
 const MAX_LINE_RESIDUAL_SIGMAS: f64 = 3.0;
@@ -235,7 +235,7 @@ impl ScanPoints {
                 }
             }
         };
-        // At the end of a surface its one side says how it lies.
+        // At the end of a surface its one side determines the direction.
         let (first, last) = match (reach(-1), reach(1)) {
             (None, None) => return None,
             (first, last) => (first.unwrap_or(k), last.unwrap_or(k)),
@@ -258,8 +258,8 @@ impl ScanPoints {
     }
 }
 
-/// The part of a Gaussian of `sigma` cells that lies within half a cell of its middle, against that of half a cell's sigma: a
-/// hit that is as likely to lie in the cells beside its own says less of it.
+/// The part of a Gaussian of `sigma` cells that lies within half a cell of its middle, relative to that of half a cell's sigma. A hit
+/// that may as well lie in a neighbouring cell has less weight.
 fn hit_weight(sigma: f32) -> f32 {
     // Within h sigmas: tanh(0.8 h) to 0.02.
     let within = |sigma: f32| (0.4 / sigma).tanh();

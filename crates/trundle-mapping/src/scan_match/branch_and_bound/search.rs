@@ -3,7 +3,7 @@
 use super::pyramid::{PYRAMID_LEVELS, Pyramid};
 use trundle_core::{Pose2, wrap_angle};
 
-/// What is looked for, and where.
+/// Points and search area.
 #[derive(Debug, Clone)]
 pub(crate) struct Query<'a> {
     /// Hits, base frame, cells.

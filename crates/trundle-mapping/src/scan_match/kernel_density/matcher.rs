@@ -14,12 +14,11 @@ use trundle_grid::{LikelihoodField, SurfacePoints};
 
 /// Lays scans onto the map.
 ///
-/// Problem: the pose near a guess at which a scan agrees best with the map, and how sure that is. First all poses of a
-/// small window are tried on a likelihood field, coarse to fine; then Gauss-Newton on the kernel density of the map's
-/// obstacles (of each occupied cell the mean of its hits, so that the cell size does not matter much) finds the optimum
-/// between the cells. The information matrix at the optimum gives the covariance; directions that hardly any hit holds,
-/// as along a bare corridor, are left at the guess and get a covariance that says so. Cost: window poses x hits look-ups,
-/// then about 80 cells a hit and step.
+/// Problem: the pose near a guess at which a scan agrees best with the map, and its covariance. First all poses of a
+/// small window are tried on a likelihood field, coarse to fine. Then Gauss-Newton on the kernel density of the map's
+/// obstacles finds the optimum between the cells. An obstacle is the mean of the hits of an occupied cell, so that the cell size has
+/// little effect. The information matrix at the optimum gives the covariance. Directions that the hits hardly determine, as along a bare
+/// corridor, keep the guess and get its large covariance. Cost: window poses x hits look-ups, then about 80 cells a hit and step.
 ///
 /// | symbol | here | unit |
 /// |---|---|---|
@@ -40,7 +39,7 @@ pub struct ScanMatch {
     pub covariance: Matrix3<f64>,
     /// Part of the hits on known ground that the map explains, 0 to 1.
     pub score: f64,
-    /// Whether some direction could not be told; the pose is the guess's in it.
+    /// Whether some direction was not determined; the pose keeps the guess in it.
     pub degenerate: bool,
 }
 

@@ -18,12 +18,11 @@ const MAX_ITERATIONS: usize = 12;
 /// Step length at which the iteration ends \[m, rad\]. Source: ours.
 const MIN_STEP: f64 = 1e-5;
 
-/// Minimum lever of the hits \[m\]. Hits nearer to each other tell no heading. Source: ours.
+/// Minimum lever of the hits \[m\]. Hits nearer to each other do not determine the heading. Source: ours.
 pub(crate) const MIN_LEVER_M: f64 = 0.1;
 
-/// Gauss-Newton on the kernel density of the sites: every hit is pulled to the kernel-weighted mean of the sites about it
-/// (mean shift), across walls but not along them, as the spread of those sites tells. Directions that no hit holds are
-/// not moved in.
+/// Gauss-Newton on the kernel density of the sites: each hit is pulled to the kernel-weighted mean of the sites about it
+/// (mean shift). The spread of those sites limits the pull to the normal of a wall. Directions without information do not change.
 pub(crate) fn refine(
     config: &ScanMatchConfig,
     sites: &SurfacePoints,
