@@ -2,8 +2,8 @@
 //!
 //! The problem: where was the camera when it took each image? The idea is that of ORB-SLAM2 \[MurArtal17\] on RGB-D. Each frame is
 //! located against landmarks by reprojection. A frame with a new view becomes a keyframe, whose depths make new landmarks, and local
-//! bundle adjustment refines poses and landmarks around it. A place seen again is matched with the landmarks it already has, so that a
-//! camera that looks around a room, or stands still, does not drift. Cost: a few ms a frame on one core besides the features, and some
+//! bundle adjustment refines poses and landmarks around it. A place seen again is matched with its existing landmarks, so that a
+//! camera that turns in a room, or stands still, does not drift. Cost: a few ms a frame on one core besides the features, and some
 //! tens of ms a keyframe. See `docs/algorithms/slam.md`.
 //!
 //! ```

@@ -22,7 +22,7 @@ pub enum Mode {
 /// Two maps that became one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MapMerge {
-    /// The newer map, which is no more.
+    /// The newer map, which is merged into the older one.
     pub from: MapId,
     /// The older one, whose frame counts from now on.
     pub into: MapId,

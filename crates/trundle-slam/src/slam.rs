@@ -105,7 +105,7 @@ impl RgbdSlam {
         self
     }
 
-    /// Forgets where the camera is: the robot was carried away. The camera counts as lost, whatever the wheels say, until a place is
+    /// Declares the pose unknown: the robot was carried away. The camera counts as lost, whatever the odometry, until a place is
     /// recognized.
     pub fn kidnapped(&mut self) {
         self.tracking.forget_pose();
@@ -124,7 +124,7 @@ impl RgbdSlam {
 
     /// Localizes one image. `prior` is the motion since the last image given, `previous_camera_from_camera`, by wheels and gyro.
     /// Without a prior, or with one that no robot can make in that time, the camera is predicted at constant velocity. An image of
-    /// another size than the camera's, or with nothing in it, is an image without features: the report says that it was not located.
+    /// another size than the camera's, or with nothing in it, counts as an image without features: it is reported as not located.
     pub fn step(&mut self, image: &RgbdImage, prior: Option<CameraMotion>) -> TrackReport {
         let gray = gray_from_color(image.color());
         let features = self.front_end.extract(&gray);
@@ -132,7 +132,7 @@ impl RgbdSlam {
         self.step_with_features(image.stamp(), features, image.depth(), prior)
     }
 
-    /// The same with features found elsewhere, by an extractor of the same configuration: in another thread, say.
+    /// The same with features from elsewhere, by an extractor of the same configuration: in another thread, for example.
     pub fn step_with_features(
         &mut self,
         stamp: Stamp,
@@ -168,8 +168,8 @@ impl RgbdSlam {
         }
     }
 
-    /// Does all that is left of refining the map, which `step` does in slices between frames: before the map is saved, say, or
-    /// when the camera stands still for long.
+    /// Completes the refinement of the map, which `step` does in slices between frames. For use before the map is saved, or while the
+    /// camera stands still.
     pub fn finish_refining(&mut self) {
         let is_due = |slam: &Self| {
             !slam.loops.is_idle() || slam.atlas.active.optimisation.is_pending(&slam.atlas.active.map)
@@ -288,8 +288,8 @@ impl RgbdSlam {
         map_file::save(&self.front_end.model.camera, &self.config, maps)
     }
 
-    /// Goes on with saved maps. The camera's pose in them is unknown until a place is recognized, or [`RgbdSlam::starting_at`] gives
-    /// it; until then the camera counts as lost, whatever the wheels say.
+    /// Continues with saved maps. The camera's pose in them is unknown until a place is recognized, or [`RgbdSlam::starting_at`] gives
+    /// it; until then the camera counts as lost, whatever the odometry.
     ///
     /// # Errors
     /// When the configuration is invalid, or the bytes are no map, of another version, damaged, cut off, made with another

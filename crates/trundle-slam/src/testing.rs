@@ -42,7 +42,7 @@ pub(crate) fn frame_with_depth(features: usize) -> Frame {
     frame_over(2.0, features)
 }
 
-/// A keyframe at the origin that sees a wall of landmarks.
+/// A keyframe at the origin that observes a wall of landmarks.
 pub(crate) fn map_of_one_view(features: usize) -> (LandmarkMap, KeyframeId) {
     let (mut map, model) = (LandmarkMap::default(), model());
     let frame = frame_with_depth(features);
@@ -137,7 +137,7 @@ pub(crate) fn camera_on_floor() -> Pose3 {
     Pose3::exp(Vector6::new(0.1, 0.02, 0.4, -1.4, 1.1, -1.2))
 }
 
-/// The pose of that camera after `i` steps of 0.2 m along a bend.
+/// The pose of that camera after `i` steps of 0.2 m along a curve.
 pub(crate) fn camera_along_floor(i: usize) -> Pose3 {
     let along = 0.2 * i as f64;
     Pose3::from_pose2(Pose2::new(along.sin(), 0.5 * along, 0.3 * along)) * camera_on_floor()

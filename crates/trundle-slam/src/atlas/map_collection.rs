@@ -91,7 +91,7 @@ impl Atlas {
         self.submap_link = if is_kept { link } else { joined() };
     }
 
-    /// An id that no map had: callers know the pose of a map by its id.
+    /// An id that no map had: a caller identifies a map's poses by its id.
     fn next_id(&mut self) -> MapId {
         let newest = self.inactive.iter().map(|map| map.id.0).fold(self.active.id.0, u32::max);
         self.newest_map_id = self.newest_map_id.max(newest).saturating_add(1);

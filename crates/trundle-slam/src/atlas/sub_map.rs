@@ -19,7 +19,7 @@ pub(crate) struct SubMap {
     pub id: MapId,
     pub map: LandmarkMap,
     pub place_index: KeyframeIndex,
-    /// The bundle adjustments that are under way.
+    /// The running bundle adjustments.
     pub optimisation: MapOptimisation,
 }
 

@@ -1,4 +1,4 @@
-//! Where a map lies in the one before it, as wheels and gyro know it.
+//! Pose of a map in the map before it, by wheels and gyro.
 
 use crate::ids::MapId;
 use crate::loop_closing::config::LoopConfig;

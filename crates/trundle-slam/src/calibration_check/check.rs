@@ -29,7 +29,7 @@ const LOOSE_DEPTH_SIGMA_M: f64 = 0.03;
 /// Fewest matches that the motion of a pair must explain: 40. Source: ours.
 const MIN_MATCHES: usize = 40;
 
-/// Looks at the first images of a run for traces of wrong settings. Says each suspicion once.
+/// Checks the first images of a run for traces of wrong settings. Each suspicion is reported once.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct CalibrationCheck {
     frames: usize,
@@ -54,14 +54,14 @@ impl CalibrationCheck {
         &self.calibration_issues
     }
 
-    /// Looks at picture and depth.
+    /// Adds the evidence of picture and depth.
     pub fn record_image(&mut self, gray: &GrayImage, depth: &DepthImage) {
         if self.frames.is_multiple_of(FRAME_STRIDE) {
             self.calibration_issues.extend(self.registration.record(gray, depth));
         }
     }
 
-    /// Looks at a frame's features, the depth image they come from, and the prior of the motion since the last frame.
+    /// Adds the evidence of a frame's features, its depth image, and the prior of the motion since the last frame.
     pub fn record_frame(
         &mut self,
         frame: &Frame,

@@ -1,4 +1,4 @@
-//! What the images say is wrong about the settings.
+//! Issues of the settings that the images show.
 
 use std::fmt;
 
@@ -35,7 +35,7 @@ pub enum CalibrationIssue {
         /// How far from the one that is set, px.
         offset: (f64, f64),
     },
-    /// Matched points are bent towards the rim of the picture.
+    /// Matched points are displaced towards the image border.
     Distortion {
         /// Error at three quarters of the half diagonal, px.
         at_the_rim: f64,

@@ -40,7 +40,7 @@ pub(crate) struct Registration {
 }
 
 impl Registration {
-    /// Whether it still wants images.
+    /// Whether more images are needed.
     fn is_open(&self) -> bool {
         self.images < CHECKED_IMAGES
     }

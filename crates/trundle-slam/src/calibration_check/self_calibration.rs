@@ -56,7 +56,7 @@ pub(crate) struct CalibrationFit {
     motions: Vec<Pose3>,
     rounds: usize,
     cost: f64,
-    /// What each pair says of the offsets, with its weights of the last round.
+    /// Equations of the offsets from each pair, with its weights of the last round.
     parts: Vec<PairEquations>,
 }
 

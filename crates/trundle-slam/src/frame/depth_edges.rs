@@ -69,7 +69,7 @@ mod tests {
 
     #[test]
     fn a_slanted_floor_is_no_depth_edge_and_a_chair_before_it_is() {
-        // A floor 0.45 m below a camera that looks level; a chair leg, 2 px wide, 1.5 m away.
+        // A floor 0.45 m below a level camera; a chair leg, 2 px wide, 1.5 m away.
         let image = DepthImage::from_fn(80, 80, |x, y| {
             let floor = 0.45 * 365.0 / (y as f32 + 25.0);
             if (40..42).contains(&x) { 1.5 } else { floor }

@@ -1,4 +1,4 @@
-//! How a camera sees points: projection into the rectified image, and standard deviations of keypoints.
+//! Observation model of a camera: projection into the rectified image, and standard deviations of keypoints.
 
 use trundle_core::{PinholeCamera, Vector2, Vector3};
 use trundle_vision::OrbConfig;

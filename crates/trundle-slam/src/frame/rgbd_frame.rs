@@ -20,7 +20,7 @@ pub(crate) struct Frame {
     pub features: Features,
     /// Rectified position of each feature, px.
     pub pixels: Vec<Vector2>,
-    /// Inverse depth of each feature, looked up at its raw pixel.
+    /// Inverse depth of each feature, read at its raw pixel.
     pub depths: Vec<Option<InverseDepth>>,
     /// Standard deviation of either coordinate of each feature's place, px.
     pub pixel_sigmas: Vec<f32>,

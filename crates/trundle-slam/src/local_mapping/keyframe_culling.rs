@@ -57,7 +57,7 @@ mod tests {
     use nalgebra::Vector6;
     use trundle_core::{Pose3, Vector3};
 
-    /// Keyframes a few cm apart that all see the same, except for what `own` says.
+    /// Keyframes a few cm apart with the same observations, except those of `own`.
     fn crowd(own: &[(usize, usize)]) -> (LandmarkMap, Vec<KeyframeId>) {
         let mut map = LandmarkMap::default();
         let ids: Vec<KeyframeId> = (0..12)
@@ -83,7 +83,7 @@ mod tests {
     #[test]
     fn redundant_keyframes_are_removed() {
         let config = KeyframeConfig::default();
-        // Keyframe 3 alone sees 5 of its 40: more than a tenth. Keyframe 4 sees two.
+        // Keyframe 3 alone observes 5 of its 40: more than a tenth. Keyframe 4 observes two alone.
         let own = [(3, 30), (3, 31), (3, 32), (3, 33), (3, 34), (4, 35), (4, 36)];
         let (mut map, ids) = crowd(&own);
         map.add_loop_edge(ids[2], ids[11]);

@@ -36,8 +36,8 @@ impl<'a> LocalMapper<'a> {
         Self { model, config, thresholds, window_px }
     }
 
-    /// Makes `frame` a keyframe that sees the landmarks it was tracked by. Its other features with a good depth, or seen from
-    /// two sides, become new landmarks, which are then searched in the keyframes around. `odometry` is the motion from the
+    /// Makes `frame` a keyframe that observes the landmarks it was tracked by. Its other features with a good depth, or seen from
+    /// two sides, become new landmarks. The new landmarks are then searched in the neighbouring keyframes. `odometry` is the motion from the
     /// keyframe before.
     pub fn insert(
         &self,
@@ -104,7 +104,7 @@ impl<'a> LocalMapper<'a> {
         }
     }
 
-    /// Looks for landmarks in a keyframe: where one is there already, the older of the two stays.
+    /// Searches landmarks in a keyframe. Where the keyframe has one already, the older of the two stays.
     fn fuse_into(&self, map: &mut LandmarkMap, keyframe: KeyframeId, landmarks: &[LandmarkId]) {
         for (feature, landmark) in self.find(map, keyframe, landmarks) {
             match map.keyframe(keyframe).landmarks[feature] {

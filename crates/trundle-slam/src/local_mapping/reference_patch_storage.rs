@@ -1,4 +1,4 @@
-//! Keeps how the landmarks of a new keyframe look.
+//! Stores the image patches of a new keyframe's landmarks.
 
 use crate::frame::observation_model::ObservationModel;
 use crate::ids::{KeyframeId, LandmarkId};

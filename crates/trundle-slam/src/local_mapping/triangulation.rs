@@ -108,7 +108,7 @@ impl Pair<'_> {
         let (mut best, mut next) = ((u32::MAX, usize::MAX), u32::MAX);
         for other in theirs {
             let off = line.x * other.x + line.y * other.y + line.z;
-            // Without a way between the cameras there is no line: `off` is no number, and not near.
+            // Without a baseline there is no epipolar line: `off` is not finite, and not near.
             let is_near = off.abs() <= other.reach;
             if !is_near {
                 continue;
@@ -179,7 +179,7 @@ mod tests {
             .collect()
     }
 
-    /// What a camera sees of far points, without depth; `shift` moves every third in the image, px.
+    /// View of far points without depth; `shift` moves every third point in the image, px.
     fn view(pose: Pose3, shift: f32) -> Frame {
         let (model, mut features) = (model(), Features::default());
         for (i, point) in points().iter().enumerate() {

@@ -77,7 +77,7 @@ impl<'a> DriftBound<'a> {
         tangent.dot(&(information * tangent)) <= self.config.max_sigmas.powi(2) + CHI2_MARGIN
     }
 
-    /// Whether a correction that the drift does not explain is small enough to be none of a look-alike.
+    /// Whether a correction that the drift does not explain is too small for a look-alike place.
     pub fn allows_unexpected(&self, correction: Pose3) -> bool {
         correction.translation.norm() <= self.config.max_correction
             && correction.angle() <= self.config.max_correction_turn

@@ -60,8 +60,8 @@ impl LoopCloser<'_> {
         is_last
     }
 
-    /// Corrects the map by the place that a finished search found, if that can be believed. `pending` is the unexpected correction that
-    /// earlier searches found.
+    /// Corrects the map by the place that a finished search found, if the correction is accepted. `pending` is the unexpected correction
+    /// that earlier searches found.
     pub fn close(
         &self,
         (map, optimisation): (&mut LandmarkMap, &mut MapOptimisation),

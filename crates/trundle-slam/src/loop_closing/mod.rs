@@ -1,9 +1,9 @@
 //! Loop closing: a place seen again removes the drift of everything since.
 //!
 //! Problem: along a corridor the map drifts, and a place reached again stands beside its first image. Idea: a new keyframe is compared
-//! with old ones that are similar by their bags of words, that share no landmarks with it, and that its drift lets be near. Where enough
-//! of the old points are found in it under one pose, and under no other nearly as many, a pose graph moves the keyframes in between, and
-//! landmarks that are there twice are fused \[MurArtal17\]. A correction larger than the drift explains must be found by several
+//! with old ones that have similar bags of words, share no landmarks with it, and are within its drift. Where enough of the old points
+//! are found in it under one pose, and under no other pose nearly as many, a pose graph moves the keyframes in between. Landmarks
+//! that are there twice are fused \[MurArtal17\]. A correction larger than the drift explains must be found by several
 //! keyframes in a row, and be smaller than the distance of look-alike rooms. Cost: a query of the index, and for each of at most three
 //! candidates a matching under the vocabulary, about 1 ms each.
 

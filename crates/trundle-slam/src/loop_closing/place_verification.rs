@@ -71,7 +71,7 @@ impl PlaceVerifier<'_> {
 
     /// The place of one keyframe, if the frame shows it.
     pub fn verify(&self, own: FrameBow, candidate: KeyframeId) -> Option<RecognizedPlace> {
-        // It was aligned to the landmarks of the way here, and says nothing yet of the old ones.
+        // The frame was aligned to the landmarks of its own track; these matches are no evidence for the old ones.
         let frame = own.frame.clone().unaligned(self.model);
         let own = FrameBow { frame: &frame, ..own };
         let rough = self.by_bow(own, candidate)?;

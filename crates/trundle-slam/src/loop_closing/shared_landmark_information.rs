@@ -11,10 +11,9 @@ use trundle_core::Vector3;
 /// Information of the relative pose of each pair of keyframes from the landmarks that both see, as a right perturbation. Pairs
 /// are indices into `ids` (by rising id), the lower first.
 ///
-/// Each keyframe sees a common landmark X with an information A and B (visual frame, with the Huber weight of its residual).
+/// Each keyframe observes a common landmark X with an information A and B (visual frame, with the Huber weight of its residual).
 /// With X itself unknown, the relative pose has the information (A^-1 + B^-1)^-1 of X, and a rotation about the origin moves X
-/// by -X^. A landmark that n keyframes see counts in n (n - 1) / 2 pairs but gives n - 1 constraints: its weight is 2 / n in
-/// each pair.
+/// by -X^. A landmark of n keyframes counts in n (n - 1) / 2 pairs but gives n - 1 constraints: its weight is 2 / n in each pair.
 pub(crate) fn shared_landmark_information(
     map: &LandmarkMap,
     model: &ObservationModel,

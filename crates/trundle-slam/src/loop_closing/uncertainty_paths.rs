@@ -96,7 +96,7 @@ mod tests {
     use crate::testing::blank_frame;
     use trundle_core::{Pose3, Vector3};
 
-    /// Keyframes along a line, each of which sees what the one before did.
+    /// Keyframes along a line, each of which observes the landmarks of the one before.
     fn line(xs: &[f64]) -> (LandmarkMap, Vec<KeyframeId>) {
         let mut map = LandmarkMap::default();
         let along = |x: f64| Pose3::new(nalgebra::UnitQuaternion::identity(), Vector3::x() * x);

@@ -38,8 +38,8 @@ pub(crate) fn nearest_keyframes(
     ranked.into_iter().take(max_count).map(|(_, id)| id).collect()
 }
 
-/// Largest distance of a keyframe that may show the same landmarks: 3 m, most of a room. A keyframe that is nearer may be turned by
-/// more, and the other way round. Source: ours.
+/// Largest distance of a keyframe that may show the same landmarks: 3 m, most of a room. The nearer a keyframe, the larger may be its
+/// turn. Source: ours.
 const NEAR_KEYFRAME_M: f64 = 3.0;
 /// Largest rotation of a keyframe that may show the same landmarks: 1.2 rad, the field of view of a Kinect. See
 /// [`NEAR_KEYFRAME_M`].

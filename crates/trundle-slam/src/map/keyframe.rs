@@ -14,7 +14,7 @@ pub(crate) struct Keyframe {
     pub visual_from_camera: Pose3,
     /// Of that pose as a right perturbation, against the first keyframe.
     pub covariance: Matrix6<f64>,
-    /// The part of the covariance that the points it sees share, as of one body: a frame located by these points inherits it.
+    /// The part of the covariance that its points share, as of one rigid body: a frame located by these points inherits it.
     pub map_covariance: Matrix6<f64>,
     /// Which landmark each feature is of.
     pub landmarks: Vec<Option<LandmarkId>>,

@@ -24,7 +24,7 @@ pub(crate) struct Landmark {
     pub distance_at_octave_0: f64,
     /// Keyframe and feature, in the order of observing.
     pub observations: Vec<(KeyframeId, usize)>,
-    /// How it looks from several directions, the oldest first.
+    /// Its image patches from several directions, the oldest first.
     pub reference_patches: Vec<ReferencePatch>,
     /// In how many frames it should have been seen.
     pub visible: u32,

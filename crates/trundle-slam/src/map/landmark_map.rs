@@ -1,4 +1,4 @@
-//! Keyframes and landmarks, and which keyframe sees which landmark.
+//! Keyframes, landmarks, and the observations between them.
 
 use crate::frame::observation_model::ObservationModel;
 use crate::frame::rgbd_frame::Frame;
@@ -94,7 +94,7 @@ impl LandmarkMap {
         self.grid.near(position, reach)
     }
 
-    /// A new keyframe that sees nothing yet.
+    /// A new keyframe without observations.
     pub fn add_keyframe(&mut self, frame: Frame, visual_from_camera: Pose3) -> KeyframeId {
         let landmarks = vec![None; frame.len()];
         let (covariance, map_covariance, tree) = (Matrix6::zeros(), Matrix6::zeros(), TreeNode::default());
@@ -106,7 +106,7 @@ impl LandmarkMap {
         id
     }
 
-    /// Moves a keyframe, not what it sees.
+    /// Moves a keyframe, but not its landmarks.
     pub fn move_keyframe(&mut self, id: KeyframeId, visual_from_camera: Pose3) {
         let before = self.keyframe(id).visual_from_camera.translation;
         self.grid.remove(id, before);
@@ -114,12 +114,12 @@ impl LandmarkMap {
         self.keyframe_mut(id).visual_from_camera = visual_from_camera;
     }
 
-    /// Sets the covariance of a keyframe's pose and of the points it sees alike.
+    /// Sets the covariance of a keyframe's pose, and the same for its landmarks.
     pub fn set_covariance(&mut self, id: KeyframeId, covariance: Matrix6<f64>) {
         self.set_covariances(id, covariance, covariance);
     }
 
-    /// Sets the covariance of a keyframe's pose, and of the points it sees.
+    /// Sets the covariance of a keyframe's pose, and that of its landmarks.
     pub fn set_covariances(
         &mut self,
         id: KeyframeId,

@@ -41,7 +41,7 @@ impl OdometryTrack {
         map.floor = self.floor.axis_after(map.floor);
     }
 
-    /// Starts anew at a keyframe.
+    /// Restarts at a keyframe.
     pub fn start_at(&mut self, keyframe: KeyframeId) {
         self.since_keyframe = Some(OdometryFactor::at(keyframe));
     }

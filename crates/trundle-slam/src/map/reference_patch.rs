@@ -1,4 +1,4 @@
-//! How a landmark looks from somewhere.
+//! Image patch of a landmark from one viewpoint.
 
 use crate::frame::aligned_feature::raw;
 use crate::frame::observation_model::ObservationModel;

@@ -34,8 +34,8 @@ enum PatchComparison {
     NoReference,
 }
 
-/// The matches with their features aligned, for a camera near `visual_from_camera`, without those that look different from their
-/// landmarks. `None` where too few can be aligned.
+/// The matches with their features aligned, for a camera near `visual_from_camera`, without those whose patch differs from their
+/// landmark's. `None` where too few can be aligned.
 pub(crate) fn aligned(
     matches: &[PointMatch],
     visual_from_camera: Pose3,
@@ -81,7 +81,7 @@ pub(crate) fn inflate_sigmas(
     true
 }
 
-/// Matches that agreed before or after features were aligned. Those that no longer fit stay where they were found, with a small weight:
+/// Matches that agreed before or after features were aligned. Those that agreed before only keep their position, with a small weight:
 /// without them, their features would become second landmarks in the next keyframe.
 pub(crate) fn agreeing_matches(before: &MatchedPose, since: &MatchedPose, frame: &Frame) -> Vec<PointMatch> {
     let fits: BTreeSet<usize> = since.inliers().map(|m| m.feature).collect();

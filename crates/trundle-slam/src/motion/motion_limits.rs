@@ -21,7 +21,7 @@ pub(crate) struct MotionLimits {
 }
 
 impl MotionLimits {
-    /// Of a camera whose motion nobody measured.
+    /// For a camera without a measured motion.
     pub const CAMERA: Self = Self { speed: MAX_CAMERA_SPEED_M_S, turn_rate: MAX_CAMERA_TURN_RATE_RAD_S };
     /// Of a motion prior by wheels and gyro.
     pub const PRIOR: Self = Self { speed: MAX_PRIOR_SPEED_M_S, turn_rate: MAX_PRIOR_TURN_RATE_RAD_S };

@@ -1,11 +1,11 @@
-//! Where the camera is believed to be between located frames.
+//! Predicted pose of the camera between located frames.
 
 use crate::motion::motion_model::MotionModelConfig;
 use crate::motion::uncertain_pose::{UncertainPose, of_sigmas};
 use nalgebra::{Matrix6, Vector6};
 use trundle_core::{CameraMotion, Pose3, Stamp, Vector3};
 
-/// Where the camera is believed to be, and how it moves.
+/// Predicted pose and motion of the camera.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct PoseBelief {
     pub stamp: Option<Stamp>,

@@ -17,10 +17,9 @@ const WORK_PER_OBSERVATION: usize = 5;
 
 /// Bundle adjustment of the whole map, in slices between frames \[MurArtal17, sec. III-D\].
 ///
-/// Landmarks are taken up slice by slice, then the solver runs slice by slice, then all is moved at once; keyframes and
-/// landmarks that came meanwhile go along with their parent in the spanning tree, and with the keyframe that saw them
-/// first. At the end the covariances of all keyframes are worked out: with all that ties them together, each landmark
-/// counted once.
+/// Landmarks are added in slices, then the solver runs in slices, then all poses and landmarks are moved at once. A keyframe that came
+/// meanwhile moves with its parent in the spanning tree, a landmark with the first keyframe that observes it. At the end the
+/// covariances of all keyframes are computed from all constraints, each landmark counted once.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct GlobalBundle {
     bundle: MapBundle,
@@ -155,7 +154,7 @@ impl GlobalBundle {
         moved
     }
 
-    /// How the landmarks move that are not in the bundle: as the first keyframe that sees each.
+    /// Motion of the landmarks outside the bundle: that of the first keyframe that observes each.
     fn other_landmarks(
         &self,
         map: &LandmarkMap,
@@ -178,7 +177,7 @@ impl GlobalBundle {
             let Some(holding) = map.live_keyframe(keyframes[self.anchors[place]]) else { continue };
             let Some(keyframe) = map.live_keyframe(*id) else { continue };
             let Some((whole, map_covariance)) = self.bundle.covariances(place) else { continue };
-            // What hardly another keyframe sees is where the keyframe saw it.
+            // With few shared landmarks all landmarks of the keyframe have its whole uncertainty.
             let map_covariance =
                 if seen[place] < usize::from(MIN_SHARED_LANDMARKS) { whole } else { map_covariance };
             let offset = holding.visual_from_camera.inverse() * keyframe.visual_from_camera;
@@ -225,7 +224,7 @@ mod tests {
             .collect()
     }
 
-    /// What a camera sees of the points, exactly.
+    /// The exact view of the points.
     fn view(pose: Pose3) -> Frame {
         let (model, mut features, mut depths) = (model(), Features::default(), Vec::new());
         for point in points() {
@@ -266,7 +265,7 @@ mod tests {
             map.set_covariance(ids[5], nalgebra::Matrix6::identity() * 0.04);
             let mut global = GlobalBundle::of(&map);
             global.advance(&map, &model, (&config, &mut BundleSolver::default()), 1);
-            // A keyframe that saw its place by the bent one, and a point that only it sees.
+            // A keyframe that was located by the corrected one, and a landmark that no other keyframe observes.
             let child =
                 map.add_keyframe(view(along(0.25)), along(0.2) * off * along(0.2).inverse() * along(0.25));
             let own = map.add_landmark(

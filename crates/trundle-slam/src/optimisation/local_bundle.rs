@@ -43,7 +43,7 @@ pub(crate) fn bundle_around(map: &LandmarkMap, centre: KeyframeId, size: BundleS
     bundle
 }
 
-/// Takes a bundle's result over, as far as it has come. A landmark that only one keyframe sees moves along with it.
+/// Applies a bundle's present result. A landmark that only one keyframe observes moves along with it.
 pub(crate) fn apply(map: &mut LandmarkMap, bundle: &MapBundle, model: &ObservationModel) {
     // One that others saw when the bundle began is in it, too, and goes where that puts it.
     map.transform_landmarks(single_view_landmark_moves(map, bundle));
@@ -53,7 +53,7 @@ pub(crate) fn apply(map: &mut LandmarkMap, bundle: &MapBundle, model: &Observati
     bundle.landmarks().for_each(|id| map.refresh(id, model));
 }
 
-/// How the landmarks move that only one of the moved keyframes sees.
+/// Motion of the landmarks that only one of the moved keyframes observes.
 fn single_view_landmark_moves(map: &LandmarkMap, bundle: &MapBundle) -> Vec<(LandmarkId, Pose3)> {
     let mut carried = Vec::new();
     for (id, pose) in bundle.keyframes() {
@@ -118,8 +118,8 @@ mod tests {
     use trundle_core::{Vector2, Vector3};
     use trundle_vision::ImagePatch;
 
-    /// Keyframes in a row, each reached by wheels from the one before; the last two see forty points together, of which one other
-    /// keyframe, the first, sees one.
+    /// Keyframes in a row, each with odometry from the one before. The last two observe forty points together; the first keyframe observes
+    /// one of these.
     fn row(count: usize) -> (LandmarkMap, Vec<KeyframeId>) {
         let mut map = LandmarkMap::default();
         let at = |i: usize| Pose3::new(nalgebra::UnitQuaternion::identity(), Vector3::x() * 0.1 * i as f64);
@@ -167,7 +167,7 @@ mod tests {
         let mut bundle = bundle_around(&map, second, BundleSize { local: 10, fixed: 10 });
         bundle.begin(&map, &model, &BundleConfig::default(), BundleSolver::default());
         while !bundle.advance(usize::MAX) {}
-        // As culling does while a bundle is under way.
+        // As culling does while a bundle runs.
         map.unobserve(ids[2], first);
         apply(&mut map, &bundle, &model);
         for (id, truth) in [(own, points[0]), (ids[2], points[2])] {

@@ -1,4 +1,4 @@
-//! A bundle adjustment that is under way while the map goes on changing.
+//! A bundle adjustment that runs while the map goes on changing.
 
 use crate::frame::observation_model::ObservationModel;
 use crate::ids::{KeyframeId, LandmarkId};
@@ -14,7 +14,7 @@ use trundle_optim::{BundleConfig, BundleObservation, BundlePose, BundleProblem, 
 /// have is moved by corrections, from where a keyframe is now to where the bundle puts it.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct MapBundle {
-    /// By rising id, where they were when they were taken up, and whether they hold still.
+    /// By rising id: the pose at the time of adding, and whether it is fixed.
     keyframes: Vec<(KeyframeId, BundlePose)>,
     /// By rising id, and where they were.
     landmarks: Vec<(LandmarkId, Vector3)>,
@@ -28,7 +28,7 @@ pub(crate) struct MapBundle {
 }
 
 impl MapBundle {
-    /// Takes up keyframes; each with whether it holds still.
+    /// A bundle of keyframes, each with whether it is fixed.
     pub fn of(map: &LandmarkMap, keyframes: impl Iterator<Item = (KeyframeId, bool)>) -> Self {
         let pose = |(id, fixed): (KeyframeId, bool)| {
             let world_from_camera = map.keyframe(id).visual_from_camera;
@@ -39,8 +39,8 @@ impl MapBundle {
         Self { keyframes, ..Self::default() }
     }
 
-    /// Takes up a landmark, which must be newer than all before it, and what these keyframes see of it if that are two or
-    /// more; how many see it.
+    /// Adds a landmark, which must be newer than all before it, with its observations in these keyframes if there are two or more; the
+    /// number of observations.
     pub fn add(&mut self, map: &LandmarkMap, id: LandmarkId) -> usize {
         let Some(landmark) = map.landmark(id) else { return 0 };
         let start = self.observations.len();
@@ -66,17 +66,17 @@ impl MapBundle {
         self.observations.iter().rev().take_while(move |o| o.point == newest).map(|o| o.pose)
     }
 
-    /// The place of a keyframe among those taken up.
+    /// Index of a keyframe among those of the bundle.
     pub fn place_of(&self, id: KeyframeId) -> Option<usize> {
         self.keyframes.binary_search_by_key(&id, |(own, _)| *own).ok()
     }
 
-    /// The keyframes taken up, by rising id.
+    /// The keyframes of the bundle, by rising id.
     pub fn keyframes(&self) -> impl Iterator<Item = (KeyframeId, BundlePose)> + '_ {
         self.keyframes.iter().copied()
     }
 
-    /// Says which keyframes hold still.
+    /// Sets which keyframes are fixed.
     pub fn fix(&mut self, is_fixed: impl Fn(usize) -> bool) {
         self.keyframes.iter_mut().enumerate().for_each(|(i, (_, pose))| pose.fixed = is_fixed(i));
     }
@@ -164,7 +164,7 @@ impl MapBundle {
         }
     }
 
-    /// The landmarks taken up.
+    /// The landmarks of the bundle.
     pub fn landmarks(&self) -> impl Iterator<Item = LandmarkId> + '_ {
         self.landmarks.iter().map(|(id, _)| *id)
     }
@@ -182,7 +182,7 @@ impl MapBundle {
         if freedoms > 0.0 { sum / freedoms } else { 1.0 }
     }
 
-    /// How many of the landmarks taken up each keyframe sees, by place.
+    /// Number of the bundle's landmarks in each keyframe, by index.
     pub fn seen(&self) -> Vec<usize> {
         let mut seen = vec![0; self.keyframes.len()];
         for place in self.sources.iter().filter_map(|(_, keyframe, _)| self.place_of(*keyframe)) {
@@ -191,8 +191,8 @@ impl MapBundle {
         seen
     }
 
-    /// Covariance of a free keyframe against the fixed ones, and its part that is not the keyframe's own: that of the
-    /// points it sees, as of one body. `None` where the bundle did not work them out.
+    /// Covariance of a free keyframe relative to the fixed ones, and the part of it that its landmarks share, as of one rigid body.
+    /// `None` where the bundle did not compute them.
     pub fn covariances(&self, place: usize) -> Option<(Matrix6<f64>, Matrix6<f64>)> {
         let whole = self.solver.covariance(place)?;
         let own = self.solver.information(place)?.cholesky()?.inverse();

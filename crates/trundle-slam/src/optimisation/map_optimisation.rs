@@ -1,4 +1,4 @@
-//! The bundle adjustments of a map that are under way, done in slices.
+//! The running bundle adjustments of a map, in slices.
 
 use crate::frame::observation_model::ObservationModel;
 use crate::ids::KeyframeId;
@@ -12,8 +12,7 @@ use trundle_optim::{BundleConfig, BundleSolver};
 /// Largest number of steps of a bundle adjustment of the whole map: 10. It then ends as far as it has come. Source: \[MurArtal17\].
 const MAX_GLOBAL_STEPS: usize = 10;
 
-/// The bundle adjustments of a map that are under way: the one around the newest keyframe first, that of the whole map in the time
-/// that is left.
+/// The running bundle adjustments of a map: the one around the newest keyframe first, that of the whole map in the remaining time.
 ///
 /// The work is measured in operations, not in time: the same images give the same bits on any computer, however busy.
 #[derive(Debug, Clone, Default)]
@@ -33,7 +32,7 @@ struct SpareSolvers {
 }
 
 impl MapOptimisation {
-    /// Begins the local bundle adjustment around a new keyframe. The one under way is applied as far as it has come.
+    /// Begins the local bundle adjustment around a new keyframe. The present result of the running one is applied.
     pub fn begin_around(
         &mut self,
         map: &mut LandmarkMap,
@@ -52,7 +51,7 @@ impl MapOptimisation {
         self.is_global_due = true;
     }
 
-    /// Drops what is under way and begins with the whole map: after a loop closure, all earlier results are out of date.
+    /// Drops the running adjustments and begins with the whole map: after a loop closure, all earlier results are out of date.
     pub fn begin_all(&mut self, map: &LandmarkMap) {
         let Self { local, global, spare, .. } = std::mem::take(self);
         self.spare = SpareSolvers {

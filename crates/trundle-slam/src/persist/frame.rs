@@ -52,7 +52,7 @@ pub(crate) fn read(bytes: &mut Reader, model: &ObservationModel) -> Result<Frame
 fn read_keypoint(bytes: &mut Reader, model: &ObservationModel) -> Result<Keypoint, MapFileError> {
     let [x, y, angle, response] = [bytes.f32()?, bytes.f32()?, bytes.f32()?, bytes.f32()?];
     let octave = bytes.u8()?;
-    // What a rolling shutter saw at the rim may be kept beyond it.
+    // With a rolling shutter a pixel may lie beyond the image border.
     let (width, height) = (model.camera.width() as f32, model.camera.height() as f32);
     let is_near = (-width..=2.0 * width).contains(&x) && (-height..=2.0 * height).contains(&y);
     bytes.require(is_near, "place of a keypoint", format!("({x}, {y})"), || {

@@ -1,4 +1,4 @@
-//! One landmark map as bytes. Keyframes and landmarks are numbered anew, without gaps, in the order of their making.
+//! One landmark map as bytes. Keyframes and landmarks are renumbered without gaps, in the order of their creation.
 
 use crate::frame::observation_model::ObservationModel;
 use crate::ids::{KeyframeId, LandmarkId};

@@ -1,4 +1,4 @@
-//! What a landmark looks like, as bytes.
+//! Image patches of a landmark as bytes.
 
 use crate::map::reference_patch::{MAX_REFERENCE_PATCHES, ReferencePatch};
 use crate::persist::bytes::{Reader, Writer};

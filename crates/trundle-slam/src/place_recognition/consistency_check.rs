@@ -12,16 +12,16 @@ const MAX_DIFFERENCE: f64 = 0.3;
 pub(crate) struct ConsistencyCheck<T> {
     /// What the correction is about.
     subject: T,
-    /// Motion that takes believed poses to found ones, multiplied on the left.
+    /// Motion that takes predicted poses to found ones, multiplied on the left.
     found_from_believed: Pose3,
     /// How many times in a row it was found.
     count: usize,
 }
 
 impl<T: PartialEq> ConsistencyCheck<T> {
-    /// Records a camera that was found at one pose and believed at another; how many times in a row the same correction was found.
-    /// `unobserved_s` is the time since the last record during which nothing measured the motion, s: for so long the camera may have
-    /// moved as fast as it can.
+    /// Records a camera that was found at one pose and predicted at another; how many times in a row the same correction was found.
+    /// `unobserved_s` is the time since the last record without a measurement of the motion, s: for that time the camera may have
+    /// moved at its top speed.
     pub fn record(
         pending: &mut Option<Self>,
         subject: T,

@@ -1,4 +1,4 @@
-//! Keyframes that look like an image, by bags of words \[GalvezLopez12\].
+//! Keyframes similar to an image, by bags of words \[GalvezLopez12\].
 
 use crate::ids::KeyframeId;
 use crate::map::covisibility::MIN_SHARED_LANDMARKS;
@@ -28,7 +28,7 @@ impl KeyframeIndex {
         &self.vocabulary
     }
 
-    /// Adds the keyframes that are new in `map`, and removes those that `map` no longer has.
+    /// Adds the new keyframes of `map`, and drops those that were removed from it.
     pub fn update(&mut self, map: &LandmarkMap) {
         let number = |id: KeyframeId| id.index() as u32;
         let index = &mut self.index;

@@ -1,4 +1,4 @@
-//! Keyframes that look like an image, by a visual vocabulary.
+//! Keyframes similar to an image, by a visual vocabulary.
 
 pub(crate) mod bow;
 pub(crate) mod consistency_check;

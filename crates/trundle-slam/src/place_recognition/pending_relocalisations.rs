@@ -9,7 +9,7 @@ use trundle_core::{Pose3, Stamp};
 /// be anywhere. Source: ours; other maps take turns, so that two frames of one map are some frames apart.
 const MAX_UNOBSERVED_S: f64 = 2.0;
 
-/// Relocalisations that are not yet believed, the last one of each map. Maps that show one place do not contradict each other.
+/// Relocalisations that are not confirmed, the last one of each map. Maps that show one place do not contradict each other.
 #[derive(Debug, Default)]
 pub(crate) struct PendingRelocalisations {
     /// Time without odometry when it was found, s, and the relocalisation.

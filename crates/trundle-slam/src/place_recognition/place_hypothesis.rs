@@ -1,4 +1,4 @@
-//! Hypotheses of where a camera is, and which of them to believe.
+//! Hypotheses of the camera's pose, and the selection among them.
 
 use trundle_core::Pose3;
 
@@ -16,7 +16,7 @@ pub(crate) trait PlaceHypothesis {
     fn points(&self) -> usize;
     /// Whether enough of what should be seen there is seen.
     fn is_plausible(&self) -> bool;
-    /// Whether the hypothesis can be believed, if it has no rival.
+    /// Whether the hypothesis is accepted, if it has no rival.
     fn is_certain(&self) -> bool;
 }
 
@@ -25,8 +25,8 @@ pub(crate) fn best_hypothesis<T: PlaceHypothesis>(found: &[T]) -> Option<usize> 
     (0..found.len()).rev().filter(|i| found[*i].is_certain()).max_by_key(|i| found[*i].points())
 }
 
-/// The certain hypothesis with the most points; `None` when there is none, when a plausible one elsewhere has nearly as many, as
-/// look-alike rooms do, or when an implausible one elsewhere has more.
+/// The certain hypothesis with the most points. `None` without one, when a plausible one elsewhere has nearly as many, as in look-alike
+/// rooms, or when an implausible one elsewhere has more.
 pub(crate) fn without_rival<T: PlaceHypothesis>(mut found: Vec<T>) -> Option<T> {
     let i = best_hypothesis(&found)?;
     let best = &found[i];

@@ -74,7 +74,7 @@ impl RgbdSlam {
         report
     }
 
-    /// Goes on without a found pose; begins a map at the believed pose where there is none to be found again.
+    /// Continues without a located frame; begins a map at the predicted pose where no map exists for a relocalisation.
     pub(super) fn on_lost(
         &mut self,
         frame: Frame,

@@ -55,8 +55,8 @@ struct Expectation {
 }
 
 impl Localizer<'_> {
-    /// The pose of the frame: by the last frame and the map; else by keyframes of that map which look alike; else by those of
-    /// one of the other maps, which take turns.
+    /// The pose of the frame: by the last frame and the map; else by similar keyframes of that map; else by those of one of the other
+    /// maps, which take turns.
     pub fn localize(&self, state: &mut TrackingState, prior: Option<Pose3>) -> Option<Localization> {
         let stamp = self.frame.stamp;
         state.pending_relocalisations.record_frame(stamp, prior.is_some());
@@ -136,7 +136,7 @@ impl Localizer<'_> {
         }
     }
 
-    /// The relocalisation to believe: one within the gate, if a second frame gives it too where odometry does not confirm it; or one
+    /// The confirmed relocalisation: one within the gate, if a second frame gives it too where odometry does not confirm it; or one
     /// that as many frames give as it takes to be lost. Odometry outweighs a look-alike room, but not a robot that was carried. Frames
     /// without a relocalisation do not count.
     fn confirmed(

@@ -38,7 +38,7 @@ pub(crate) struct LocalizedFrame {
     pub by_map: bool,
     /// The similar keyframe, of a relocalisation.
     pub recognized: Option<KeyframeId>,
-    /// Whether enough of the view shows that place, if no other place looks like it.
+    /// Whether enough of the view shows that place, if no other place is similar.
     pub is_plausible: bool,
     /// Whether the pose there is certain, too.
     pub is_certain: bool,
@@ -215,7 +215,7 @@ mod tests {
     use trundle_optim::PosePrior;
     use trundle_vision::Vocabulary;
 
-    /// What a frame of the painted wall is found to be in its map by matches that are all right, for a camera of which so much is known.
+    /// Checks the localization of a frame of the painted wall by correct matches, for a camera with this prior.
     fn with_found(frame: &Frame, prior: PosePriorKind, check: impl FnOnce(LocalizedFrame, &Tracker)) {
         let (model, (mut map, keyframe)) = (model(), painted_map());
         store_reference_patches(&mut map, keyframe, &model);

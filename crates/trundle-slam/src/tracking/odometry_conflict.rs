@@ -2,10 +2,10 @@
 
 use trundle_core::Stamp;
 
-/// Points that agree on one pose and are believed against the wheels at once: 100. Fewer have to persist for
+/// Points that agree on one pose and outweigh the wheels at once: 100. Fewer have to persist for
 /// [`MIN_CONFLICT_S`]. Source: ours.
 const MIN_CONVINCING_POINTS: usize = 100;
-/// Time for which fewer points must contradict the wheels before they are believed: 0.3 s. Source: ours.
+/// Time for which fewer points must contradict the wheels before they outweigh them: 0.3 s. Source: ours.
 const MIN_CONFLICT_S: f64 = 0.3;
 
 /// Since when tracked poses have contradicted the wheels.
@@ -17,7 +17,7 @@ pub(crate) struct OdometryConflict {
 }
 
 impl OdometryConflict {
-    /// Whether to believe the tracked pose of a frame at `now`; `points_against_odometry` is how many points contradict the wheels,
+    /// Whether to accept the tracked pose of a frame at `now`; `points_against_odometry` is the number of points that contradict the wheels,
     /// `None` where they agree.
     pub fn believes(&mut self, now: Stamp, points_against_odometry: Option<usize>) -> bool {
         let Some(points) = points_against_odometry else {

@@ -1,4 +1,4 @@
-//! Where a camera is that was not tracked: keyframes that look like the image, each tried in full.
+//! Pose of a camera that was not tracked: similar keyframes, each tried in full.
 
 use crate::ids::KeyframeId;
 use crate::place_recognition::keyframe_index::KeyframeGroup;
@@ -24,7 +24,7 @@ pub(crate) fn relocalize(tracker: &Tracker) -> Vec<LocalizedFrame> {
     found
 }
 
-/// Groups that look like a keyframe, elsewhere. An image can be more similar to the wrong one of two look-alike rooms, but the rooms are
+/// Groups similar to a keyframe, elsewhere. An image can be more similar to the wrong one of two look-alike rooms, but the rooms are
 /// similar to each other.
 fn look_alikes(tracker: &Tracker, keyframe: KeyframeId, max_groups: usize) -> Vec<KeyframeGroup> {
     let Some(own) = tracker.place_index.frame_bow(tracker.map, keyframe) else { return vec![] };

@@ -14,11 +14,11 @@ const MAX_CONTINUATION_SIGMA_M: f64 = 0.2;
 /// Standard deviation of a dead-reckoned rotation, 0.2 rad. See [`MAX_CONTINUATION_SIGMA_M`].
 const MAX_CONTINUATION_SIGMA_RAD: f64 = 0.2;
 
-/// Where the camera is believed to be in the active map, and what the last frames showed.
+/// Predicted pose of the camera in the active map, and results of the last frames.
 #[derive(Debug)]
 pub(crate) struct TrackingState {
     pub belief: PoseBelief,
-    /// Whether the belief says where in the active map the camera is.
+    /// Whether the camera's pose in the active map is known.
     pub pose_known: bool,
     /// Whether part of the motion since the last located frame was not measured.
     pub motion_unknown: bool,
@@ -69,7 +69,7 @@ impl TrackingState {
         self.pending_relocalisations = PendingRelocalisations::default();
     }
 
-    /// Whether odometry says nothing of where in the active map the camera is.
+    /// Whether odometry cannot give the camera's pose in the active map.
     pub fn is_lost(&self) -> bool {
         self.motion_unknown || !self.pose_known || self.view_discontinuity
     }

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 pub enum Tracking {
     /// Located against the landmark map.
     Ok,
-    /// Located, but by few landmarks: the covariance says how well.
+    /// Located, but by few landmarks: the covariance is large.
     Weak,
     /// Not located: the pose is the last one moved by the given prior.
     DeadReckoning,
