@@ -3,7 +3,7 @@
 use crate::{GyroRate, Pose2, RgbdImage, Scan, Stamp, Twist2, WheelTicks};
 use serde::{Deserialize, Serialize};
 
-/// The bumper, by which the robot knows that it touched something.
+/// State of the bumper: pressed by an obstacle, or free.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Touch {
     /// When the state changed.
@@ -12,7 +12,7 @@ pub struct Touch {
     pub pressed: bool,
 }
 
-/// The cliff sensors, by which the robot knows that it is about to drive over an edge.
+/// State of the cliff sensors: an edge ahead, or floor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Cliff {
     /// When the state changed.

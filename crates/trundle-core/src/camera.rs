@@ -70,7 +70,7 @@ impl TryFrom<Unchecked> for PinholeCamera {
     }
 }
 
-/// An image has no more columns or rows than this: a number that was mistyped would not fit into memory.
+/// Largest number of columns or rows. It refuses a mistyped number, for which memory would not suffice.
 const MOST_PIXELS: usize = 16_384;
 
 /// Longest readout time of a camera: 0.05 s. A longer one is refused, since no colour camera of a robot takes longer. Source: ours.

@@ -12,12 +12,12 @@ const HALF_WHEELBASE_M: f64 = 0.115;
 /// Rows of x, y and yaw.
 const IN_PLANE: [usize; 3] = [0, 1, 5];
 
-/// What a camera did between two images, as other sensors know it: wheels and gyro, say.
+/// Motion of a camera between two images, measured by other sensors such as wheels and gyro.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CameraMotion {
     /// `previous_camera_from_camera`.
     pub motion: Pose3,
-    /// Of `motion` as a right perturbation (m, m, m, rad, rad, rad); none where nobody says it.
+    /// Of `motion` as a right perturbation (m, m, m, rad, rad, rad); none where it is unknown.
     pub covariance: Option<Matrix6<f64>>,
 }
 
@@ -39,7 +39,7 @@ impl CameraMotion {
     }
 }
 
-/// A motion of which nobody says how exact it is.
+/// A motion with unknown covariance.
 impl From<Pose3> for CameraMotion {
     fn from(motion: Pose3) -> Self {
         Self { motion, covariance: None }

@@ -10,7 +10,7 @@ use std::fmt;
 pub enum FrameId {
     /// THE map frame: the occupancy grid's. x and y in the floor plane, z up.
     Map,
-    /// Where the wheels and the gyro believe the robot started: continuous, drifting.
+    /// Start pose by wheels and gyro: continuous, drifting.
     Odom,
     /// The robot's base: between the driven wheels on the floor, x forward, y left, z up (REP 105 `base_link`).
     Base,

@@ -24,7 +24,7 @@ pub struct GyroRate {
     pub omega: f64,
 }
 
-/// Where wheels and gyro believe the robot is.
+/// Pose of the robot by wheels and gyro.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Odometry {
     /// Of the newest wheel reading in it.

@@ -2,10 +2,10 @@
 
 use crate::{Invalid, Stamp, Vector2};
 
-/// What one bearing of a scan says.
+/// Measurement of one bearing of a scan.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Beam {
-    /// An obstacle at this range, m; what is nearer is free, unless the scan's free spans say otherwise.
+    /// An obstacle at this range, m. Nearer floor is free, except in gaps between the scan's free spans.
     Hit {
         /// Metres.
         range: f64,
@@ -42,14 +42,14 @@ pub enum ObstacleKind {
     Drop,
 }
 
-/// All that a scan says of its beams.
+/// Measurements of all beams of a scan.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ScanParts {
     /// The beams, by rising angle.
     pub beams: Vec<Beam>,
     /// What was seen to be free, by rising beam and range; `None`: all beams up to their ranges.
     pub free: Option<Vec<FreeSpan>>,
-    /// One sigma of the range of each beam, m; empty where the sensor does not say.
+    /// One sigma of the range of each beam, m; empty where the sensor gives none.
     pub sigmas: Vec<f32>,
     /// The kind of each beam's obstacle; empty where all stand.
     pub obstacles: Vec<ObstacleKind>,
@@ -58,7 +58,7 @@ pub struct ScanParts {
 /// No sensor of a robot is farther from its base, m.
 const MAX_SENSOR_OFFSET_M: f64 = 20.0;
 
-/// A laser-like scan in a horizontal plane: beam i looks along `angle_min + i * angle_increment` from the sensor.
+/// A laser-like scan in a horizontal plane: beam i points along `angle_min + i * angle_increment` from the sensor.
 ///
 /// Its frame is the base frame's plane with the origin at `origin`: bearings are about `origin`, angles from x.
 #[derive(Debug, Clone, PartialEq)]
@@ -91,7 +91,7 @@ impl Scan {
         )
     }
 
-    /// A scan that says more of its beams, which start at `origin` (base frame, m); `angles`: of the first beam, and between
+    /// A scan with all measurements of its beams, which start at `origin` (base frame, m). `angles`: of the first beam, and between
     /// neighbouring beams, rad.
     ///
     /// # Errors
@@ -111,7 +111,7 @@ impl Scan {
         Ok(Self { stamp, origin, angle_min, angle_increment, parts })
     }
 
-    /// What it says of its beams, to be filled anew without allocating.
+    /// The measurements of its beams, for a new scan without an allocation.
     pub fn into_parts(self) -> ScanParts {
         self.parts
     }
@@ -152,13 +152,12 @@ impl Scan {
         self.origin + Vector2::new(angle.cos(), angle.sin()) * range
     }
 
-    /// All stretches that were seen to be free, by rising beam and range; `None` of a scan that does not say.
+    /// All free spans, by rising beam and range; `None` for a scan without free spans.
     pub fn all_free_spans(&self) -> Option<&[FreeSpan]> {
         self.parts.free.as_deref()
     }
 
-    /// The stretches of beam `i` that were seen to be free, m from the sensor, by rising range. Of a scan that does not say:
-    /// all up to the beam's range.
+    /// Free spans of beam `i`, m from the sensor, by rising range. For a scan without free spans: the whole beam up to its range.
     pub fn free_spans(&self, i: usize) -> impl Iterator<Item = (f64, f64)> + '_ {
         let whole = match (&self.parts.free, self.parts.beams.get(i)) {
             (None, Some(Beam::Hit { range } | Beam::Free { range })) => Some((0.0, *range)),
@@ -170,7 +169,7 @@ impl Scan {
         whole.into_iter().chain(own.map(|span| (span.from, span.to)))
     }
 
-    /// One sigma of the range of beam `i`, m, where the sensor says it.
+    /// One sigma of the range of beam `i`, m, where the sensor gives one.
     pub fn sigma(&self, i: usize) -> Option<f64> {
         self.parts.sigmas.get(i).map(|sigma| f64::from(*sigma))
     }

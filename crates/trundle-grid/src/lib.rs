@@ -8,7 +8,7 @@
 //! - [`ray_cells`]: exact traversal of the cells along a line.
 //! - [`tiles`]: compact maps in bytes that share tiles between clones, for the many maps of a particle filter.
 //!
-//! Lines are traversed in two ways, with two contracts. [`ray_cells`] gives every cell that a line crosses: a beam does not pass
+//! Lines are traversed by two methods, with two contracts. [`ray_cells`] gives every cell that a line crosses: a beam does not pass
 //! between two obstacle cells that touch at a corner. The maps in [`tiles`] mark one cell for each step along the longer axis.
 //! With every crossed cell these maps take 26 to 37 % more time a scan and fit no better.
 //!

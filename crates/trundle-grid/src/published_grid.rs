@@ -27,7 +27,7 @@ impl<T: PartialOrd> Thresholds<T> {
 
 /// Occupancy grid of whole tiles. A revision number is stored for each tile, so that readers fetch only what changed.
 ///
-/// Writing a cell is O(1). The grid is laid out anew only when its bounding box grows.
+/// Writing a cell is O(1). The grid gets a new layout only when its bounding box grows.
 #[derive(Debug, Clone)]
 pub struct PublishedGrid {
     grid: OccupancyGrid,
@@ -175,7 +175,7 @@ mod tests {
                 prop_assert!(changes.len() <= 1);
                 let grid = published.grid();
                 if before.1 != *grid.geometry() {
-                    // The reader lays its copy out anew; the old cells keep their places in the map.
+                    // The reader gives its copy a new layout; the old cells keep their places in the map.
                     let centres = |i: usize| grid.geometry().center(grid.geometry().cell(i));
                     let moved: Vec<Cell> = (0..grid.geometry().len()).map(|i| copy.at(centres(i))).collect();
                     copy = OccupancyGrid::new(*grid.geometry(), moved).unwrap();

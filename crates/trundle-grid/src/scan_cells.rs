@@ -1,4 +1,4 @@
-//! Cells that one scan hits, and cells that it sees free.
+//! Cells that one scan hits, and cells that it observes as free.
 
 use crate::{GridCell, MapperConfig, ray_cells};
 use trundle_core::{Beam, Pose2, Scan, Vector2};
@@ -59,7 +59,7 @@ const SURFACE_MARK: u32 = 2;
 const FIRST_HIT_MARK: u32 = 3;
 
 impl ScanCells {
-    /// Finds the cells of `scan`, taken at `map_from_base`. `is_obstacle` tells whether a cell of the blind range may hide the cells
+    /// Finds the cells of `scan`, taken at `map_from_base`. `is_obstacle`: whether a cell of the blind range may hide the cells
     /// behind it.
     pub fn rasterise(
         &mut self,

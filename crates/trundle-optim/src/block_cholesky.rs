@@ -42,7 +42,7 @@ pub struct BlockMatrix<const N: usize = 6> {
     column: InverseColumn<N>,
 }
 
-/// A column of the inverse on the way.
+/// A column of the inverse during its computation.
 #[derive(Debug, Clone)]
 struct InverseColumn<const N: usize> {
     /// How many columns are left, this one included.

@@ -110,8 +110,8 @@ impl BundleProblem {
         Ok(Self { camera, poses, points, observations, constraints: Vec::new(), parts: Vec::new() })
     }
 
-    /// The same with what else was measured between poses, by wheels or of the floor, say. Each counts under the Huber loss as
-    /// a whole, bent at 95 %: one that is wrong, as by slip, pulls no harder than one that is just believed.
+    /// The same with further measurements between poses, for example by wheels or of the floor. Each counts under the Huber loss as a
+    /// whole, with the bound at 95 %: a wrong one, as by slip, pulls no harder than one at the bound.
     ///
     /// # Errors
     /// When one names a pose that is not there, constrains one to itself, or has a number that is not finite.
@@ -122,8 +122,8 @@ impl BundleProblem {
         Ok(Self { constraints, ..self })
     }
 
-    /// The same where poses are of several parts, told by a number for each, that have so few points in common that these may be
-    /// taken for each other by chance: what links two parts counts while they are refined, but makes no covariance smaller.
+    /// The same for poses in several parts, numbered by `parts`, whose common points may be wrong matches. Links between two parts count in
+    /// the refinement, but reduce no covariance.
     ///
     /// # Errors
     /// When there are not as many numbers as poses.

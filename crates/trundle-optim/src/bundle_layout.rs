@@ -61,7 +61,7 @@ impl Layout {
         }
     }
 
-    /// What a pose sees of a point that one of another part saw first is not certain.
+    /// An observation of a point that a pose of another part observed first is uncertain.
     fn doubt_links(&mut self, parts: &[usize]) {
         for bounds in self.starts.windows(2) {
             let of_point = &mut self.seen[bounds[0] as usize..bounds[1] as usize];

@@ -18,7 +18,7 @@ const WORK_PER_PRODUCT: usize = 3;
 /// Units of work for a constraint: 60. See [`WORK_PER_OBSERVATION`].
 const WORK_PER_CONSTRAINT: usize = 60;
 
-/// Bundle adjustment by the Schur complement (Triggs et al. 2000), under way.
+/// A running bundle adjustment by the Schur complement (Triggs et al. 2000).
 ///
 /// Levenberg-Marquardt on the Huber loss. The points are eliminated, 3 x 3 each; the reduced system of the poses is solved by
 /// a block Cholesky factor. A step costs O(sum over points of (poses that see it)^2 + poses x profile^2). Buffers are kept
@@ -56,7 +56,7 @@ pub struct BundleSolver {
     partial_cost: f64,
     steps: usize,
     chi2: Vec<f64>,
-    /// Where the poses' covariances are on the way, or there.
+    /// State of the poses' covariances: in computation, or done.
     ending: Ending,
 }
 
@@ -97,7 +97,7 @@ enum Phase {
 }
 
 impl BundleSolver {
-    /// Takes a problem up; what was under way is dropped.
+    /// Begins a problem; a running one is dropped.
     pub fn begin(&mut self, problem: &BundleProblem, config: &BundleConfig) {
         self.config = config.clone();
         self.lens = Lens::of(&problem.camera);

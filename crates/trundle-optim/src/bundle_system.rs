@@ -47,7 +47,7 @@ impl Lens {
         Self { fx: camera.fx(), fy: camera.fy() }
     }
 
-    /// The squared residual of a point as a camera sees it; infinite behind the lens.
+    /// Squared residual of a point in a camera; infinite behind the lens.
     #[inline(always)]
     pub fn chi2(&self, view: &View, seen: &Measurement, point: &[f64; 3]) -> f64 {
         let p = view.see(point);
@@ -146,7 +146,7 @@ impl Normal {
         self.step.resize(free, Vector6::zeros());
     }
 
-    /// Starts anew at other poses and points.
+    /// Restarts at other poses and points.
     pub fn clear(&mut self) {
         self.poses.fill(([[0.0; 6]; 6], [0.0; 6]));
         self.crossed.clear();
@@ -340,7 +340,7 @@ impl Normal {
                     let block = self.reduced.block_mut(row as usize, *other as usize);
                     subtract_outer(block, &eliminated, wide);
                     if *other == row && i < last {
-                        // A pose that sees a point twice.
+                        // A pose that observes a point twice.
                         subtract_outer(block, other_eliminated, &self.wide[last].1);
                     }
                 }

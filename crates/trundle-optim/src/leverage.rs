@@ -45,7 +45,7 @@ fn sum(rows: &[Matrix3x6<f64>], weights: &[f64]) -> Matrix6<f64> {
 mod tests {
     use super::*;
 
-    /// Rows that tell each part of a pose `times` times.
+    /// Rows that measure each part of a pose `times` times.
     fn rows(times: usize) -> Vec<Matrix3x6<f64>> {
         let row = |i: usize| Matrix3x6::from_fn(|r, c| f64::from(u8::from((2 * i + r) % 6 == c)));
         (0..times * 3).map(row).collect()

@@ -25,14 +25,14 @@ pub struct InverseDepth {
     pub sigma: f64,
 }
 
-/// What one image says of one point.
+/// Measurement of one point in one image.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PointObservation {
     /// Where it was seen, rectified px.
     pub pixel: Vector2,
     /// Standard deviation of either pixel coordinate, px.
     pub pixel_sigma: f64,
-    /// How far along the optical axis, where the sensor said so.
+    /// Inverse depth along the optical axis, where the sensor measured one.
     pub depth: Option<InverseDepth>,
 }
 

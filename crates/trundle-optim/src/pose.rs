@@ -47,15 +47,15 @@ pub const CORRELATED_POINTS: f64 = 8.0;
 
 /// One camera pose against points that are taken as known: motion-only bundle adjustment \[MurArtal17\].
 ///
-/// Levenberg-Marquardt on the Huber loss; after each round every observation is classed anew by its chi-square, and the
+/// Levenberg-Marquardt on the Huber loss. After each round every observation is classified by its chi-square, and the
 /// next round runs over the inliers. Cost: linear in the observations, some microseconds each.
 #[derive(Debug, Clone, Copy)]
 pub struct PoseProblem<'a> {
     /// The camera; its distortion is not used, pixels are rectified.
     pub camera: &'a PinholeCamera,
-    /// Points (world, m) and what the image says of each.
+    /// Points (world, m) with their measurements in the image.
     pub observations: &'a [(Vector3, PointObservation)],
-    /// What is known of the pose besides, by wheels, say: fused with what the points say, where that agrees with it.
+    /// A prior of the pose, by wheels for example: fused with the solution of the points, where both agree.
     pub prior: Option<PosePrior>,
     /// Whether no point may decide by itself, for matches that nothing predicted: see [`PoseProblem::solve`].
     pub bounded: bool,
@@ -80,10 +80,10 @@ pub struct PoseSolution {
 impl PoseProblem<'_> {
     /// Refines `world_from_camera`. With nothing to go by the pose comes back as it was.
     ///
-    /// When it is `bounded`, a point makes up a quarter of a part of the pose at most (three times the mean where points are few).
-    /// The loss of Huber holds down what disagrees, not what nobody can contradict: a wrong point 0.1 m before the camera
-    /// outweighs hundreds at 8 m. Where the matches were looked for around a prediction, that has contradicted such a point
-    /// already, and right ones are better counted in full.
+    /// With `bounded`, a point determines at most a quarter of a part of the pose (three times the mean where points are few). The Huber
+    /// loss bounds points that disagree with others, but not a point that no other contradicts: a wrong point 0.1 m before the camera
+    /// outweighs hundreds at 8 m. Where the matches were searched around a prediction, the prediction has excluded such a point, and right
+    /// points are better counted in full.
     pub fn solve(&self, world_from_camera: Pose3, config: &PoseConfig) -> PoseSolution {
         let by_image = self.by_image(world_from_camera, config);
         let (Some(prior), Some(covariance)) = (self.prior, by_image.covariance) else { return by_image };
@@ -156,7 +156,7 @@ impl PoseProblem<'_> {
         pose
     }
 
-    /// Classes every observation anew; whether any changed sides.
+    /// Classifies every observation; whether any class changed.
     fn classify(&self, pose: Pose3, inliers: &mut [bool]) -> bool {
         let camera_from_world = pose.inverse();
         let mut changed = false;
@@ -239,7 +239,7 @@ mod tests {
         (0..12).map(|_| rng.random::<f64>()).sum::<f64>() - 6.0
     }
 
-    /// Points as a camera at `truth` sees them, with `sigma` standard deviations of noise.
+    /// Points in a camera at `truth`, with `sigma` standard deviations of noise.
     fn scene(truth: Pose3, count: usize, sigma: f64, seed: u64) -> Vec<(Vector3, PointObservation)> {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         let camera = camera();

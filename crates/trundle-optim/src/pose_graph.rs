@@ -240,7 +240,7 @@ mod tests {
         PoseConstraint { from, to, from_to, information: Matrix6::identity() }
     }
 
-    /// A ring of `count` poses, 4 m across, and what odometry with `noise` says from each to the next.
+    /// A ring of `count` poses, 4 m across, with odometry of `noise` from each to the next.
     fn ring(count: usize, noise: f64) -> (Vec<Pose3>, Vec<PoseConstraint>) {
         let mut rng = ChaCha8Rng::seed_from_u64(9);
         let at = |i: usize| {

@@ -4,7 +4,7 @@ use crate::observation::{CHI2_95_6, CHI2_999_6};
 use nalgebra::Matrix6;
 use trundle_core::Pose3;
 
-/// A pose that is known besides what the image says: where wheels have brought the camera, say.
+/// A prior of the pose from another source than the image, such as the wheels.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PosePrior {
     /// The pose.
@@ -14,10 +14,10 @@ pub struct PosePrior {
 }
 
 impl PosePrior {
-    /// The most probable pose between this and `pose`, found without it: an update of a Kalman filter. The covariance of `pose` is
-    /// `covariance` (right perturbation; m, rad) and counts as `alike` times as much, for what it says may be too sure of itself.
-    /// With it what is uncertain of the result: all that was of `pose`, and what this brings in; what this one knows better is not
-    /// counted, since who asks for the result may know it, too. `None` where the two contradict each other at 99.9 %.
+    /// The most probable pose between this prior and `pose`, which was found without it: a Kalman update. `covariance` (right perturbation;
+    /// m, rad) is that of `pose`. The update multiplies it by `alike`, since it may be too small. With it the covariance of the result:
+    /// `covariance`, and the share of the prior. It is never below `covariance`, because the caller may use the prior too. `None` where the
+    /// two contradict each other at 99.9 %.
     pub fn fused_with(
         &self,
         pose: Pose3,

@@ -36,7 +36,7 @@ pub struct Features {
     pub keypoints: Vec<Keypoint>,
     /// Their descriptors.
     pub descriptors: Vec<Descriptor>,
-    /// What is around them, or nothing at all where nobody cut it out.
+    /// Image patches around them; empty where none were cut out.
     pub patches: Vec<ImagePatch>,
 }
 

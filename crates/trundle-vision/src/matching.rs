@@ -15,9 +15,9 @@ pub struct Match {
 
 /// Pairs of descriptors each of which is the other's nearest, by rising `a`.
 ///
-/// A pair differs in `max_distance` bits at most, and both ways in fewer than `ratio` times as many as the next best
-/// \[Lowe04, sec. 7.1\]; a `ratio` of 1 or more asks nothing. Of equally near ones the lowest index counts. The same pairs
-/// come out with `a` and `b` exchanged. Cost: one distance for each of a x b.
+/// A pair differs in `max_distance` bits at most, and in both directions in fewer than `ratio` times as many as the next best
+/// \[Lowe04, sec. 7.1\]; a `ratio` of 1 or more disables this test. Of equally near ones the lowest index counts. With `a` and `b`
+/// exchanged the pairs are the same. Cost: one distance for each of a x b.
 pub fn match_mutual(a: &[Descriptor], b: &[Descriptor], max_distance: u32, ratio: f32) -> Vec<Match> {
     let (from_a, from_b) = nearest_both_ways(a, b);
     let is_clear =

@@ -1,16 +1,16 @@
 //! Of one row, the squared distances: the lowest of the parabolas that stand on the vertical edges of its cells.
 //!
-//! The nearest point of a square seen from another column's centre lies on its near edge, so width + 1 parabolas, each as high
-//! as the nearer of the two columns beside it, give distances to squares instead of centres. A cell looks at the edges 1/2, 3/2,
-//! ... cells off, to either side, until the parabola's foot alone is further than what it has: whole blocks of cells at once,
-//! without a branch \[Huang94\] (the lower envelope of \[Felzenszwalb12\] has fewer looks in the open, but a branch at each). Lengths are in half cells, so squares are whole numbers: exact in f32 up to 2048
-//! cells.
+//! The nearest point of a square seen from another column's centre lies on its near edge. Therefore width + 1 parabolas, each as high
+//! as the nearer of the two columns beside it, give distances to squares instead of centres. A cell tries the edges 1/2, 3/2,
+//! ... cells off, to either side, until the parabola's foot alone is farther than the best distance. Whole blocks of cells are processed
+//! at once, without a branch \[Huang94\]. The lower envelope of \[Felzenszwalb12\] tries fewer edges on free floor, but has a branch at
+//! each. Lengths are in half cells, so squares are whole numbers: exact in f32 up to 2048 cells.
 
 use std::ops::Range;
 
-/// Cells that are looked at together.
+/// Cells that are processed together.
 const CELLS_PER_BLOCK: usize = 32;
-/// Edges looked at before the next look whether that was enough.
+/// Edges between two checks for the end of the search.
 const EDGES_PER_CHECK: usize = 4;
 
 /// The memory of a row.
@@ -84,7 +84,7 @@ impl Erosion {
     }
 }
 
-/// Edges to look at on either side before the foot of a parabola, 2k + 1, is as far as `squared`.
+/// Number of edges on either side before the foot of a parabola, 2k + 1, is as far as `squared`.
 fn looks(squared: f32, at_most: usize) -> usize {
     let looks = (squared.sqrt() / 2.0).ceil();
     ((looks as usize).min(at_most) + 1).next_multiple_of(EDGES_PER_CHECK)

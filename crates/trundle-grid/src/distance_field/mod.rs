@@ -44,9 +44,9 @@ impl UnknownIs {
     }
 }
 
-/// From the first to the last of a row's cells that are obstacles where there were none, or the other way round.
+/// From the first to the last cell of a row that changed between obstacle and no obstacle.
 fn differing(was: &[bool], cells: &[Cell], unknown: UnknownIs) -> Option<Range<usize>> {
-    /// So many cells are compared at once, without a branch.
+    /// Number of cells that are compared at once, without a branch.
     const CHUNK: usize = 256;
     let unknown_blocks = unknown == UnknownIs::Obstacle;
     let differ = |(was, cell): (&bool, &Cell)| {
@@ -78,7 +78,7 @@ pub struct DistanceField {
     /// Rows to the nearest obstacle of the same column, at most `none`.
     gap: Vec<u16>,
     none: u16,
-    /// The longest distance told apart, m.
+    /// Largest stored distance, m.
     reach: f64,
     blocks: BlockMaxima,
 }
@@ -89,8 +89,8 @@ impl DistanceField {
         Self::over(*grid.geometry(), grid, unknown, NO_OBSTACLE_DISTANCE_M)
     }
 
-    /// [`DistanceField::from_grid`] that tells distances apart up to `reach` m only, a few cells at least: what is further away
-    /// than that has this distance. It is made, and brought up to date, the faster for it.
+    /// [`DistanceField::from_grid`] with distances up to `reach` m only, a few cells at least: farther cells have this distance. It is
+    /// made and updated the faster for it.
     pub fn up_to(reach: f64, grid: &OccupancyGrid, unknown: UnknownIs) -> Self {
         Self::over(*grid.geometry(), grid, unknown, reach)
     }
@@ -103,7 +103,7 @@ impl DistanceField {
         let (distance, gap) = (vec![0.0; geometry.len()], vec![0; geometry.len()]);
         let per_metre = geometry.resolution.recip();
         let reach = reach.max(MIN_REACH_CELLS * geometry.resolution).min(NO_OBSTACLE_DISTANCE_M);
-        // Saturates where columns are longer than anything that is told apart.
+        // Saturates where columns are longer than the reach.
         let none = ((reach * per_metre).ceil() as u16).saturating_add(2);
         let blocks = BlockMaxima::default();
         let is_obstacle = vec![false; geometry.len()];
@@ -122,7 +122,7 @@ impl DistanceField {
         dirty.cols.len() * dirty.rows.len()
     }
 
-    /// The longest distance that is told apart, m.
+    /// Largest stored distance, m.
     #[inline]
     pub fn reach(&self) -> f64 {
         self.reach

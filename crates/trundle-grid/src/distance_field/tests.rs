@@ -125,7 +125,7 @@ fn nowhere_and_outside_follow_the_policy() {
 }
 
 proptest! {
-    /// A distance changes by no more than the way between two cells.
+    /// Distances of two cells differ at most by the distance between the cells.
     #[test]
     fn distances_of_cells_differ_by_no_more_than_the_cells_are_apart(
         grid in any_grid(), obstacle in any::<bool>(), a: prop::sample::Index, b: prop::sample::Index,
@@ -208,7 +208,7 @@ proptest! {
         prop_assert!(distance.iter().zip(&expected).all(|(found, expected)| f64::from(*found) == *expected));
     }
 
-    /// Rims are the obstacle cells of the box that have a free neighbour.
+    /// Boundary cells are the obstacle cells of the box that have a free neighbour.
     #[test]
     fn rims_are_obstacles_with_a_free_neighbour(grid in any_grid()) {
         let field = DistanceField::from_grid(&grid, UnknownIs::Free);

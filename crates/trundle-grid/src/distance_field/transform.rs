@@ -3,9 +3,9 @@
 //! Two sweeps over the columns count the rows to the nearest obstacle, then each row is eroded by parabolas
 //! ([`super::erosion`]).
 //!
-//! After a change inside a box, only cells can change that are no nearer to their old obstacle than to the box. Seen
-//! from the box these lie in the shape of a star: the way from such a cell to the box leads through such cells only. So
-//! rows are looked at from the box outward until one has none (a cell of slack covers the way between two centres).
+//! After a change inside a box, only cells can change that are no nearer to their old obstacle than to the box. These cells form a star
+//! around the box: the line from such a cell to the box crosses such cells only. Rows are therefore processed from the box outward until
+//! one has none. A cell of slack covers the distance between two centres.
 
 use super::erosion::{Erosion, Gaps};
 use super::window::Window;
@@ -25,7 +25,7 @@ pub(super) struct Transform<'a> {
     pub(super) distance: &'a mut [f32],
     /// The count of rows that stands for "none in this column".
     pub(super) none: u16,
-    /// The longest distance told apart, m.
+    /// Largest stored distance, m.
     pub(super) reach: f64,
 }
 
@@ -109,7 +109,7 @@ impl Transform<'_> {
             let reach = line[*col] * per_cell + 1.01;
             reach * reach >= along * along + across * across
         };
-        // No distance is longer than what is told apart.
+        // No distance is above the reach.
         let most = (self.reach / resolution).min(width as f64) as usize + 3;
         let cols = dirty.cols.start.saturating_sub(most)..(dirty.cols.end + most).min(width);
         let first = cols.clone().find(may_change)?;

@@ -14,7 +14,7 @@ impl NearestObstacle {
     pub const NONE: Self = Self::new(i8::MIN, i8::MIN);
     /// Units per cell.
     pub const PER_CELL: i32 = 16;
-    /// Maximum offset of an obstacle point from the centre of its own cell, in 1/16 cells. A larger offset could not be told from
+    /// Maximum offset of an obstacle point from the centre of its own cell, in 1/16 cells. A larger offset would stand for
     /// a point of the neighbouring cell. Source: ours.
     pub const MAX_OWN_OFFSET: i32 = 7;
 

@@ -1,8 +1,8 @@
 //! Where exactly in an image something is that another image showed: a small patch of the one, warped as the other should show
 //! it, is moved until it fits \[Baker04\], brightness and contrast left free.
 //!
-//! The idea: a corner is placed by the noise of the image it was found in, half a pixel and more; what is around it, laid on what was
-//! around it before, is placed by all of its pixels, a tenth of a pixel and less. And it tells whether it is the same thing at all.
+//! The idea: a corner is located with the noise of its image, half a pixel and more. Its surroundings, aligned with the earlier ones, are
+//! located by all of their pixels, a tenth of a pixel and less. The alignment also shows whether it is the same corner.
 //! Cost: about 1 us a patch. See `docs/algorithms/alignment.md`.
 //!
 //! | \[Baker04\] | here | unit |

@@ -19,8 +19,8 @@ impl ImagePatch {
     /// Bytes of a patch.
     pub const BYTES: usize = PATCH_SIDE_PX * PATCH_SIDE_PX;
 
-    /// Of these pixels, row by row, with the feature so many px right and down of the middle one; `None` where that is more than
-    /// half a pixel off.
+    /// A patch of these pixels, row by row. `feature` is the offset of the feature to the right and down from the middle pixel, px; `None`
+    /// where it is more than half a pixel.
     pub fn new(pixels: [u8; Self::BYTES], feature: [f32; 2]) -> Option<Self> {
         feature.iter().all(|v| v.abs() <= 0.5).then_some(Self { pixels, feature })
     }

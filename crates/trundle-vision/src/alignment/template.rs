@@ -93,8 +93,8 @@ impl Template {
         template
     }
 
-    /// Where in `patch` it is, looked for from `start` on, px of the patch's level right and down of the patch's own feature;
-    /// `None` where nothing within it is like it.
+    /// Position in `patch`, searched from `start` on, px of the patch's level right and down of the patch's own feature;
+    /// `None` where no similar position is found.
     pub fn find(&self, patch: &ImagePatch, start: Vector2<f32>) -> Option<PatchAlignment> {
         #[cfg(target_arch = "x86_64")]
         if std::arch::is_x86_feature_detected!("avx2") {

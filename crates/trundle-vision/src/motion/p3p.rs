@@ -227,8 +227,8 @@ mod tests {
             let truth = Pose3::exp(tangent);
             let seen = [0, 1, 2].map(|i| bearings[i] * depths[i]);
             let points = seen.map(|p| truth.inverse().transform(p));
-            // Where two solutions are about to become one, or the plane through the points passes by the camera, the
-            // directions hardly tell the pose.
+            // Where two solutions are nearly one, or the plane through the points passes near the camera, the
+            // directions hardly determine the pose.
             let triangle = Triangle::new(points, bearings);
             let depths = Vector3::from(depths);
             let jacobian = Matrix3::from_fn(|side, k| (triangle.quadric(side) * depths)[k]);

@@ -57,7 +57,7 @@ mod tests {
     use rand_chacha::ChaCha8Rng;
     use trundle_core::Pose3;
 
-    /// Points of frame a with the pixels of camera b, these off by at most `noise` px either way; every `nth` pixel is wrong.
+    /// Points of frame a with the pixels of camera b, with an error of at most `noise` px in each direction; every `nth` pixel is wrong.
     fn scene(truth: Pose3, count: usize, noise: f64, nth: usize, seed: u64) -> (Vec<Vector3>, Vec<Vector2>) {
         let camera = PinholeCamera::kinect_v2();
         let mut rng = ChaCha8Rng::seed_from_u64(seed);

@@ -51,7 +51,7 @@ pub fn estimate_rigid_motion(
     Some(RansacResult { b_from_a, inliers: inliers.into_iter().map(|i| pairs[i].index).collect() })
 }
 
-/// A pair of points, as the search sees it.
+/// A pair of points in the form of the search.
 #[derive(Debug, Clone, Copy)]
 struct Pair {
     index: usize,

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use trundle_core::{Invalid, require_in, require_positive};
 
-/// How [`estimate_rigid_motion`](crate::estimate_rigid_motion) tells right pairs from wrong ones.
+/// How [`estimate_rigid_motion`](crate::estimate_rigid_motion) separates right pairs from wrong ones.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct RansacConfig {

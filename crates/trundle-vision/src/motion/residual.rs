@@ -3,7 +3,7 @@
 use nalgebra::{Matrix2x3, Matrix3, Matrix3x6, RowVector3};
 use trundle_core::{PinholeCamera, Pose3, Vector2, Vector3};
 
-/// A point known in camera frame a, and what image b says of it.
+/// A point known in camera frame a, and its measurement in image b.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Observation {
     /// Camera frame a, m.

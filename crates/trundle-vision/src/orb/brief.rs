@@ -7,7 +7,7 @@ use crate::Descriptor;
 /// Brightness comparisons, a bit each.
 const BRIGHTNESS_TESTS: usize = 256;
 
-/// Rotated BRIEF: bit i says whether the first point of test i is darker than the second, the tests being turned by the
+/// Rotated BRIEF: bit i is set where the first point of test i is darker than the second. The tests are turned by the
 /// patch's direction \[Rublee11, sec. 4.1\]. The patch is smoothed already.
 pub(crate) fn describe(patch: &Patch, direction: Direction) -> Descriptor {
     let [first, second] = turned(direction);

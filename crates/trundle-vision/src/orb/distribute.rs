@@ -5,8 +5,8 @@ use std::cmp::Reverse;
 
 /// Appends to `chosen` `quota` of the `corners`, or all if there are fewer, spread evenly over an image of this size.
 ///
-/// The image is halved again and again across its longer side, and the quota with it; what one half cannot use, the
-/// other may. Where the quota has come down to [`MAX_LEAF_CORNERS`], the strongest corners are taken. Cost: n log n. The order of the
+/// The image is halved repeatedly across its longer side, and the quota with it. Quota that one half cannot use goes to the other.
+/// Where the quota has come down to [`MAX_LEAF_CORNERS`], the strongest corners are taken. Cost: n log n. The order of the
 /// `corners` is lost; that of `chosen` is fixed.
 pub(crate) fn choose(
     corners: &mut [Corner],

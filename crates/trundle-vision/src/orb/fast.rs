@@ -155,8 +155,8 @@ fn score_row_plainly(rows: [&[u8]; 2 * CIRCLE_RADIUS_PX + 1], threshold: u8, sco
 
 /// [`score_row_plainly`] of [`BLOCK_PX`] pixels or more, a block at a time.
 ///
-/// An arc of nine holds one of the topmost and the lowest pixel of the circle, and one of the leftmost and the rightmost. Where
-/// these four alone show that a block has no corner, as in most of an image, that is all that is looked at.
+/// An arc of nine holds one of the topmost and the lowest pixel of the circle, and one of the leftmost and the rightmost. These four
+/// alone show for most of an image that a block has no corner; then no other pixel is read.
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2")]
 fn score_row_by_avx2(rows: [&[u8]; 2 * CIRCLE_RADIUS_PX + 1], threshold: u8, scores: &mut [u8]) {

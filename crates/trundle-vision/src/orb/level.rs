@@ -53,8 +53,8 @@ impl Level {
         }
     }
 
-    /// Finds the corners that are far enough from the border to be described, with gradients of `least` grey values a px
-    /// around them whichever way.
+    /// Finds the corners that are far enough from the border for a descriptor, with gradients of at least `least` grey values a px
+    /// around them in every direction.
     pub fn detect(&mut self, config: &OrbConfig, least: f32) {
         self.corners.clear();
         if self.width().min(self.height()) > 2 * patch::BORDER_PX && self.width().max(self.height()) <= 65536

@@ -1,7 +1,7 @@
 //! ORB: corners of FAST on an image pyramid, oriented by the intensity centroid, described by rotated BRIEF \[Rublee11\].
 //!
-//! The idea: a cheap corner test finds the same points in every image, their surroundings' centre of mass tells how the
-//! camera is rolled, and 256 brightness comparisons turned by that angle make a fingerprint compared by counting bits.
+//! The idea: a cheap corner test finds the same points in every image. The centre of mass of their surroundings gives the roll of the
+//! camera, and 256 brightness comparisons turned by that angle give a descriptor, compared by counting bits.
 //! Cost: linear in the pixels of the pyramid (3.3 images) plus about 1 us a feature.
 //!
 //! | paper | here | unit |
@@ -46,7 +46,7 @@ pub struct OrbExtractor {
 }
 
 impl OrbExtractor {
-    /// An extractor that works as `config` says.
+    /// An extractor with this configuration.
     ///
     /// # Errors
     /// When the configuration is not valid.

@@ -3,7 +3,7 @@
 use super::patch::{DISC_RADIUS_PX, PATCH_STRIDE, Patch};
 use std::num::Wrapping;
 
-/// Which way a patch points: from its middle to its centre of mass \[Rosin99\].
+/// Direction of a patch: from its middle to its centre of mass \[Rosin99\].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Direction {
     /// Rad, x right, y down.
@@ -40,8 +40,8 @@ fn moments_by_avx2(patch: &Patch) -> (i32, i32) {
 }
 
 /// m_10 and m_01: sums of x I(x, y) and y I(x, y) over the disc, from its middle \[Rublee11, eq. 1\]. Column by column, in
-/// 16 bits: a column's sum is at most 31 * 255, and its sum of y I is at most (1 + ... + 15) * 255 either way. No
-/// sum can overflow: it says so (`Wrapping`) because checks would keep the compiler from doing many at once.
+/// 16 bits: a column's sum is at most 31 * 255, and its sum of y I is at most (1 + ... + 15) * 255 in magnitude. No
+/// sum can overflow. `Wrapping` is used because checks would keep the compiler from vector code.
 #[inline(always)]
 fn moments_plainly(patch: &Patch) -> (i32, i32) {
     let (mut sums, mut downs) = ([Wrapping(0i16); PATCH_STRIDE], [Wrapping(0i16); PATCH_STRIDE]);

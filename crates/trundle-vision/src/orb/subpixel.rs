@@ -2,9 +2,9 @@
 
 use super::corner::Corner;
 
-/// Where the score is highest, px from the `corner`, at most half a pixel either way: the tops of parabolas through the three
-/// columns and the three rows around it, their scores weighted 1, 2, 1. Weighted so they place a corner twice as exactly as
-/// whole pixels do, and better than its own row and column alone (docs/algorithms/orb.md).
+/// Where the score is highest, px from the `corner`, at most half a pixel in each direction: the tops of parabolas through the three
+/// columns and the three rows around it, their scores weighted 1, 2, 1. With these weights a corner is placed twice as exactly as by
+/// whole pixels, and better than by its own row and column alone (docs/algorithms/orb.md).
 ///
 /// `scores` are those of the corner's level, `width` px a row; the corner is not at the border.
 pub(crate) fn offset(scores: &[u8], width: usize, corner: Corner) -> (f32, f32) {
@@ -16,7 +16,7 @@ pub(crate) fn offset(scores: &[u8], width: usize, corner: Corner) -> (f32, f32) 
     (top([0, 1, 2].map(column)), top([0, 1, 2].map(row)))
 }
 
-/// Where the parabola through the values at -1, 0 and 1 is highest, at most 0.5 either way; 0 where it has no top.
+/// Where the parabola through the values at -1, 0 and 1 is highest, at most 0.5 from the middle; 0 where it has no top.
 fn top([before, middle, after]: [i32; 3]) -> f32 {
     let bend = 2 * middle - before - after;
     if bend <= 0 {
