@@ -51,7 +51,7 @@ pub struct Solution {
 /// Reason for the absence of a manoeuvre.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Impossible {
-    /// The obstacle in the way.
+    /// The obstacle that blocks it.
     pub by: Option<Blocker>,
     /// What was proven; always [`Certificate::None`] by the method of \[Hong24\].
     pub certificate: Certificate,

@@ -59,7 +59,7 @@ impl FreeTurn {
         angle <= self.left + ROUNDING_SLACK && -angle <= self.right + ROUNDING_SLACK
     }
 
-    /// The turn that changes the heading by `angle` (in (-pi, pi], rad): the shorter way round where it is free, else the longer.
+    /// The turn that changes the heading by `angle` (in (-pi, pi], rad): the shorter turn where it is free, else the longer.
     pub fn way(&self, angle: f64) -> Option<f64> {
         let longer = -(TAU - angle.abs()).copysign(angle);
         [angle, longer].into_iter().find(|&turn| self.allows(turn))
@@ -97,7 +97,7 @@ impl FreeDrive {
         }
     }
 
-    /// Whether a straight move of `way` (m, backward negative) is free.
+    /// Whether a straight move over the distance `way` (m, backward negative) is free.
     pub fn allows(&self, way: f64) -> bool {
         way <= self.ahead + ROUNDING_SLACK && -way <= self.behind + ROUNDING_SLACK
     }

@@ -66,7 +66,7 @@ pub(crate) struct UnobservedMotion {
 
 /// Correlation time of an unobserved motion, s. A longer time makes its variance grow faster. Source: ours.
 const UNOBSERVED_CORRELATION_S: f64 = 2.0;
-/// Sideways part of an unobserved distance, ratio: the path may bend. Source: ours.
+/// Sideways part of an unobserved distance, ratio: the path may curve. Source: ours.
 const UNOBSERVED_SIDEWAYS_RATIO: f64 = 0.2;
 
 impl UnobservedMotion {

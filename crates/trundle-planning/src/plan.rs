@@ -130,7 +130,7 @@ impl PlanResult {
     }
 }
 
-/// Decision about a plan under way.
+/// Decision about a running plan.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Replan {
     /// The rest of the plan still holds.

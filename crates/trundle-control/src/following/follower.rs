@@ -70,7 +70,7 @@ pub struct FollowReport {
     pub error: TrackingError,
     /// Whether a limit of the base changed what the law wanted.
     pub saturated: bool,
-    /// Whether the robot is so far from its reference that the clearance of the trajectory no longer holds: plan again.
+    /// Whether the robot is so far from its reference that the clearance of the trajectory is not guaranteed: plan again.
     pub off_track: bool,
     /// Whether the robot stands at the goal, within the tolerances.
     pub done: bool,
@@ -121,7 +121,7 @@ impl Follower {
         self.limiter.sent(twist);
     }
 
-    /// The reference of now: a new trajectory that begins here causes no jump. `None` when idle or settling.
+    /// The present reference: a new trajectory that begins here causes no jump. `None` when idle or settling.
     pub fn reference(&self) -> Option<TrajectoryPoint> {
         self.task.as_ref().filter(|task| !task.settling).map(|task| task.clock.reference())
     }

@@ -45,7 +45,7 @@ impl ReferenceClock {
         TrajectoryPoint { twist: scaled(point.twist, self.rate), ..point }
     }
 
-    /// The reference for the tracking law: the pose of now with the twist of `lead` seconds later, when the command takes effect.
+    /// The reference for the tracking law: the present pose with the twist `lead` s later, when the command takes effect.
     pub(super) fn reference_ahead(&self, lead: f64) -> TrajectoryPoint {
         let point = self.trajectory.at(self.time);
         let then = self.trajectory.at(self.time + lead * self.rate);

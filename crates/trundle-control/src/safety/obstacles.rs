@@ -33,7 +33,7 @@ pub(super) struct Obstacle {
     pub(super) extent: f64,
 }
 
-/// Appends the scan's hits within `reach` of the base, base frame of now, m.
+/// Appends the scan's hits within `reach` of the base, in the present base frame, m.
 pub(super) fn collect_scan(view: &SafetyScan<'_>, reach: f64, found: &mut Vec<Obstacle>) {
     let now_from_scan = view.odom_now.inverse() * view.odom_at_scan;
     let hits = view.scan.hits().map(|hit| now_from_scan.transform(hit));

@@ -72,7 +72,7 @@ const MIN_TURN_RATE_RAD_PER_S: f64 = 0.02;
 struct FreePath {
     /// Distance to contact, m, and the obstacle.
     contact: Option<(f64, Vector2)>,
-    /// The first obstacle close beside the distance: way until abreast, m, and what.
+    /// The first obstacle close beside the arc: distance until abreast, m, and position.
     beside: Option<(f64, Vector2)>,
 }
 
@@ -91,7 +91,7 @@ impl SafetyMonitor {
         if let Some(reason) = self.missing_input(input) {
             return stop(reason);
         }
-        // No camera looks backward, so an old image does not forbid to back out of a contact.
+        // The camera does not cover the area behind, so an old image does not forbid to back out of a contact.
         if self.must_back_out(input) && input.image.is_some() {
             return self.back_out(input);
         }

@@ -80,7 +80,7 @@ impl Stabilizer {
         self.limiter.sent(twist);
     }
 
-    /// Forgets the approach so far: the next step begins anew, even for the same goal.
+    /// Drops the approach so far: the next step restarts it, even for the same goal.
     pub fn restart(&mut self) {
         self.goal = None;
     }

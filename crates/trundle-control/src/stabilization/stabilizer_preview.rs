@@ -20,7 +20,7 @@ impl StabilizerPreview {
 }
 
 impl Stabilizer {
-    /// Runs the law from `from` to `goal`, both in one frame, beginning anew; the stabilizer itself stays as it is.
+    /// Runs the law from `from` to `goal`, both in one frame, from a restart; the stabilizer itself stays as it is.
     pub fn preview(&self, from: Pose2, goal: Pose2) -> StabilizerPreview {
         let mut law = self.clone();
         law.restart();

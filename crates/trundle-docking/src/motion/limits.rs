@@ -39,7 +39,7 @@ impl MotionLimits {
         Ok(self)
     }
 
-    /// Time of a straight move of `way` (m, either sign) from rest to rest, s.
+    /// Time of a straight move over the distance `way` (m, either sign) from rest to rest, s.
     pub fn drive_time(&self, way: f64) -> f64 {
         rest_to_rest(way.abs(), self.speed, self.acceleration)
     }
@@ -49,7 +49,7 @@ impl MotionLimits {
         rest_to_rest(angle.abs(), self.turn_rate, self.angular_acceleration)
     }
 
-    /// Signed distance and speed `time` seconds after the start of a straight move of `way`, m and m/s.
+    /// Signed distance and speed `time` seconds after the start of a straight move over `way`, m and m/s.
     pub fn drive_at(&self, way: f64, time: f64) -> (f64, f64) {
         at_time(way, time, self.speed, self.acceleration)
     }
@@ -60,7 +60,7 @@ impl MotionLimits {
     }
 }
 
-/// Minimum time over `way` with bounded speed and acceleration: a trapezoidal speed profile, triangular when it is short.
+/// Minimum time over the distance `way` with bounded speed and acceleration: a trapezoidal speed profile, triangular when it is short.
 fn rest_to_rest(way: f64, speed: f64, acceleration: f64) -> f64 {
     if way * acceleration >= speed * speed {
         way / speed + speed / acceleration

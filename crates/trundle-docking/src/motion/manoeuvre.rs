@@ -8,7 +8,7 @@ use trundle_core::{Pose2, Twist2};
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Motion {
-    /// A turn in place, rad, counter-clockwise positive; more than half a turn where only the longer way round is free.
+    /// A turn in place, rad, counter-clockwise positive; more than half a turn where only the longer turn is free.
     Turn(f64),
     /// A straight move, m, backward negative.
     Drive(f64),

@@ -24,7 +24,7 @@ pub enum Command {
     Go(Twist2),
     /// The motion is complete.
     Done,
-    /// An obstacle is in the way.
+    /// An obstacle blocks the motion.
     Blocked(Blocker),
 }
 

@@ -31,7 +31,7 @@ pub enum PositionerReason {
     Moving(Motion),
     /// At the goal, within tolerance.
     Settled,
-    /// An obstacle is in the way of the motion, or of a new plan: stopped, and planning again from here.
+    /// An obstacle blocks the motion, or a new plan: stopped, and planning again from here.
     Obstacle(Blocker),
     /// There is no manoeuvre; planned again after a wait.
     NoWay(Option<Blocker>),

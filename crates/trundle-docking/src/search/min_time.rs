@@ -23,7 +23,7 @@ pub type Timed = (f64, Legs);
 pub enum LegOutcome {
     /// Legs, and their time, s.
     Found(Timed),
-    /// No motion of any kind exists, or none at the resolution asked for; with the obstacle in the way.
+    /// No motion of any kind exists, or none at the requested resolution; with the blocking obstacle.
     Disconnected(Certificate, Option<Blocker>),
     /// Nothing was found before this limit, though start and goal are connected as far as the cells show.
     Nothing(SearchLimit),
@@ -60,7 +60,7 @@ fn has_small_budget(space: &ContactSpace<'_>) -> bool {
     space.most() < 5 * SHORT_SEARCH_WORK
 }
 
-/// Cost limit of a short search; smaller where the whole plan allows no more than a few times that.
+/// Cost limit of a short search; smaller where the limit of the whole plan is less than a few times that.
 fn short_search_work(space: &ContactSpace<'_>) -> u64 {
     SHORT_SEARCH_WORK.min(space.most() / 8)
 }

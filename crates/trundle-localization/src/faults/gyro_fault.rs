@@ -2,7 +2,7 @@
 
 use trundle_core::GyroRate;
 
-/// Tells a gyro with a frozen output from one at rest.
+/// Separates a gyro with a frozen output from one at rest.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct GyroFault {
     last: Option<GyroRate>,

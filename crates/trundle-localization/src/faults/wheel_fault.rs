@@ -3,7 +3,7 @@
 use crate::odometry_noise::UnobservedMotion;
 use trundle_core::Twist2;
 
-/// Compares commanded motion with encoder counts. It tells wheels that do not respond (stuck encoders, blocked wheels, motors
+/// Compares commanded motion with encoder counts. It separates wheels that do not respond (stuck encoders, blocked wheels, motors
 /// without power) from a robot at rest.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct WheelFault {

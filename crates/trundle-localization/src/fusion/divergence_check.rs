@@ -3,7 +3,7 @@
 use crate::fusion::config::LocalizerConfig;
 use trundle_core::{Pose2, Stamp};
 
-/// Tells the two causes of rejected visual poses apart: a visual frame that jumped, or wheels that slipped.
+/// Separates the two causes of rejected visual poses: a visual frame that jumped, or wheels that slipped.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct DivergenceCheck {
     rejected_in_row: usize,

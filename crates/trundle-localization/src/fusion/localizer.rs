@@ -187,7 +187,7 @@ impl Localizer {
         self.visual.map_from_visual()
     }
 
-    /// Declares the pose unknown, as after a kidnapping. Earlier measurements no longer count.
+    /// Declares the pose unknown, as after a kidnapping. Earlier measurements are discarded.
     pub fn set_pose_unknown(&mut self) {
         if let Some(buffer) = &mut self.buffer {
             let odometry = *buffer.newest_odometry();

@@ -14,7 +14,7 @@ use trundle_core::{Pose2, Pose3};
 /// The estimated `map_from_visual` of each visual map.
 ///
 /// The first pose of a visual map anchors its frame, with the uncertainty of the base's pose at that stamp. Later visual poses
-/// refine the anchor where other sources know the base's pose better. The anchor of the first visual map is certain: it
+/// refine the anchor where the base's pose has a smaller uncertainty by other sources. The anchor of the first visual map is certain: it
 /// defines the map's frame.
 #[derive(Debug, Clone)]
 pub(crate) struct VisualFrame {
@@ -121,8 +121,8 @@ impl VisualFrame {
         Some(Measurement { pose, noise: symmetric(noise), prior_inflation, variance_floor })
     }
 
-    /// Refines the anchor by a measurement that was just accepted, where other sources know the base's pose better than the
-    /// anchor: a Kalman update of `e` by the part of the innovation that the anchor's uncertainty explains. Elsewhere base and
+    /// Refines the anchor by a measurement that was just accepted, where the base's pose has a smaller uncertainty by other sources: a
+    /// Kalman update of `e` by the part of the innovation that the anchor's uncertainty explains. Elsewhere base and
     /// anchor share their error, and the anchor stays.
     pub(crate) fn refine(&mut self, before: &Belief, measurement: &Measurement) {
         let Some(anchor) = self.anchors.get_mut(&self.current) else { return };

@@ -113,7 +113,7 @@ impl WheelOdometry {
         self.wheel_fault.is_unresponsive()
     }
 
-    /// Adds a reading of the wheels and returns the odometry after it; [`WheelOdometry::report`] says how the reading was used. A
+    /// Adds a reading of the wheels and returns the odometry after it; [`WheelOdometry::report`] holds how the reading was used. A
     /// rejected reading leaves the pose unchanged.
     pub fn step_wheels(&mut self, ticks: &WheelTicks) -> Odometry {
         let report = match self.last_ticks {

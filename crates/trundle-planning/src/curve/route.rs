@@ -80,7 +80,7 @@ pub(crate) fn route(
     with_turns(context, split(context, path)?, start.theta, goal)
 }
 
-/// A curve no longer than `longest` m that was checked and found free: smoother where the first one bends too much, nearer to the
+/// A curve no longer than `longest` m that was checked and found free: smoother where the first one exceeds the curvature, nearer to the
 /// path where it is too long.
 fn verified_curve(
     context: &RouteContext<'_>,

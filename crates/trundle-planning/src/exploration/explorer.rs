@@ -91,7 +91,7 @@ impl Explorer {
     }
 
     /// The nearest cell by path length from which the frontier's middle is visible, with a cost for missing clearance: an obstacle
-    /// of which only one side was seen may extend into a cell that looks free. `clearance` is the distance to occupied or unknown cells.
+    /// of which only one side was observed may extend into a free cell. `clearance` is the distance to occupied or unknown cells.
     fn view(
         &self,
         grid: &OccupancyGrid,

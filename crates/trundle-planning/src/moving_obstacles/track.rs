@@ -29,7 +29,7 @@ pub(super) struct Track {
 pub(super) const MAX_HIDDEN_S: f64 = 10.0;
 /// Time for which scans may miss a visible person, s. Source: ours.
 const MAX_MISSED_S: f64 = 0.2;
-/// Distance from the sensor below which nobody fits, m. Source: ours.
+/// Distance from the sensor below which a person does not fit, m. Source: ours.
 const MIN_HIDDEN_RANGE_M: f64 = 0.35;
 /// Distance from the sensor above which it is not blind, m. Source: ours.
 const MAX_HIDDEN_RANGE_M: f64 = 0.8;
@@ -68,8 +68,8 @@ impl Track {
         }
     }
 
-    /// Whether the track is kept at `time`: it was observed a moment ago, or it went or stood where the sensor is blind now, and was
-    /// not seen to leave. In the blind zone an arrival is enough: nobody can see whether it moves on.
+    /// Whether the track is kept at `time`. It is kept while it was observed a moment ago, or moved or stood in the present blind range
+    /// without a sighting outside. After an arrival in the blind range it is kept too: its motion there is not observable.
     pub(super) fn is_kept(
         &mut self,
         time: f64,

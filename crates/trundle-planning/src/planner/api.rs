@@ -101,7 +101,7 @@ impl Planner {
     /// Plans from `start`, moving with `start_twist`, to rest at `goal` (map frame).
     ///
     /// A robot that moves forward gets a trajectory that continues its motion. Where no curve does, it brakes on its arc first.
-    /// Where even that has no clearance, the plan starts from rest and says so ([`PlanResult::is_continuous`]).
+    /// Where even that has no clearance, the plan starts from rest and is marked so ([`PlanResult::is_continuous`]).
     pub fn plan(&mut self, grid: &OccupancyGrid, start: Pose2, start_twist: Twist2, goal: Pose2) -> Plan {
         self.core.plan_on(grid, None, start, start_twist, goal)
     }
@@ -210,8 +210,8 @@ impl Planner {
         }
     }
 
-    /// The grid closed at the resting obstacles, and a plan on it: continuous, to the goal itself, and not so much longer than the
-    /// `direct` one (s) that waiting for the obstacles to become static is faster.
+    /// The grid closed at the resting obstacles, and a plan on it: continuous, to the goal itself, and short enough compared with the
+    /// `direct` one (s) that waiting until the obstacles are static is not faster.
     fn clear_of_standing(
         &mut self,
         grid: &OccupancyGrid,

@@ -10,8 +10,8 @@ use trundle_grid::DistanceField;
 
 /// Difference of two clearances that counts as rounding, m. Source: ours.
 const CLEARANCE_TOLERANCE_M: f64 = 1e-6;
-/// Dip of the clearance between two checks along a straight line, m: step^2 / 8 radius, for the distance to a convex obstacle
-/// bends by at most 1 / distance. Source: ours.
+/// Dip of the clearance between two checks along a straight line, m: step^2 / 8 radius, because the second derivative of the distance
+/// to a convex obstacle is at most 1 / distance. Source: ours.
 const MAX_DIP_M: f64 = 1e-4;
 /// Number of cost steps per cell of clearance. Source: ours.
 const COSTS_PER_CELL: f64 = 8.0;

@@ -2,7 +2,7 @@
 //!
 //! Problem: |p' x p''| <= k |p'|^3 is not linear. Idea: where the last curve exceeds the bound, the bound is linearised about that
 //! curve, and the program is solved again, until the curve keeps it (sequential linear constraints, \[Nocedal06\] ch. 18).
-//! The rows act on p' and p'' alike, so the curve may bend less or swing wider. Cost: one row of two knots per point.
+//! The rows act on p' and p'' alike, so the curve may get a smaller curvature or a wider swing. Cost: one row of two knots per point.
 
 use crate::curve::analytic_curve::Curve;
 use crate::curve::fit::rows::Rows;
