@@ -14,7 +14,7 @@ pub enum Alignment {
     /// By the rotation and translation that leave the least square error (evo's `-a`).
     #[default]
     Rigid,
-    /// By rotation, translation and scale (evo's `-as`): for methods that cannot know the scale.
+    /// By rotation, translation and scale (evo's `-as`): for methods without a known scale.
     Similarity,
 }
 

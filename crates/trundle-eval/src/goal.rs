@@ -12,7 +12,7 @@ pub struct GoalError {
     pub dy: f64,
     /// Between the two positions, m.
     pub distance: f64,
-    /// Reached minus goal heading by the shorter way, rad, in (-pi, pi].
+    /// Reached minus goal heading by the shorter turn, rad, in (-pi, pi].
     pub dtheta: f64,
 }
 

@@ -54,7 +54,7 @@ pub struct MapAgreement {
 
 /// Compares the occupied cells of `estimate` with those of `truth`, whose frame `truth_from_estimate` leads to.
 ///
-/// A surface cell is a truly occupied one that has a free neighbour among its eight: insides of walls are nobody's fault.
+/// A surface cell is a truly occupied one that has a free neighbour among its eight. Insides of walls do not count.
 ///
 /// # Errors
 /// When a map has no occupied cell (of the truth: no surface that was there to be seen), the pose is not finite, or the
@@ -106,7 +106,7 @@ fn surface(grid: &OccupancyGrid) -> impl Iterator<Item = Vector2> + '_ {
     open.map(move |cell| geometry.center(cell))
 }
 
-/// What the eight neighbours of a cell say, those that there are.
+/// The eight neighbours of a cell, without those off the grid.
 fn neighbours(grid: &OccupancyGrid, cell: CellIndex) -> impl Iterator<Item = Cell> + '_ {
     let (width, height) = (grid.geometry().width, grid.geometry().height);
     let cols = cell.col.saturating_sub(1)..(cell.col + 2).min(width);
@@ -115,7 +115,7 @@ fn neighbours(grid: &OccupancyGrid, cell: CellIndex) -> impl Iterator<Item = Cel
     all.filter(move |other| *other != cell).map(|other| grid.get(other))
 }
 
-/// Whether the map knows anything of a cell whose centre is within `reach` m of a point.
+/// Whether the map has a known cell whose centre is within `reach` m of a point.
 fn is_known(grid: &OccupancyGrid, point: Vector2, reach: f64) -> bool {
     let step = grid.geometry().resolution;
     let cells = (reach / step).ceil() as i64;

@@ -55,7 +55,7 @@ impl Delta {
     }
 }
 
-/// Pairs by the way along the poses.
+/// Pairs by the distance travelled.
 fn metres(poses: &[(Stamp, Pose3)], delta: f64, all: bool) -> Vec<(usize, usize)> {
     let mut way = Vec::with_capacity(poses.len());
     let mut sum = 0.0;

@@ -8,9 +8,9 @@ use trundle_core::{Invalid, Pose3, Stamp, require_in};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct RelationSetsConfig {
-    /// Way between the poses of a near relation, m, 0.01 to 1000. Default 1.
+    /// Distance travelled between the poses of a near relation, m, 0.01 to 1000. Default 1.
     pub near: f64,
-    /// Way between the poses of a far relation, m, 0.01 to 10000. Default 10.
+    /// Distance travelled between the poses of a far relation, m, 0.01 to 10000. Default 10.
     pub far: f64,
     /// Path length between two visits of one place, m, 0.1 to 100000. Default 40.
     pub loop_way: f64,
@@ -41,7 +41,7 @@ impl RelationSetsConfig {
 /// Relations by what they show.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct RelationSets {
-    /// How even the way is: a metre apart.
+    /// Local accuracy of the trajectory: poses a metre apart.
     pub near: Vec<Relation>,
     /// How straight corridors are: ten metres apart.
     pub far: Vec<Relation>,
@@ -50,8 +50,8 @@ pub struct RelationSets {
 }
 
 impl RelationSets {
-    /// The relations of a reference trajectory (`world_from_body`): from each pose the first that is the way `near` and
-    /// the way `far` later, and of each later visit to its place the pose that comes nearest. Cost: poses squared.
+    /// The relations of a reference trajectory (`world_from_body`): from each pose the first one after the distance `near` and
+    /// after the distance `far`, and of each later visit to its place the nearest pose. Cost: poses squared.
     ///
     /// # Errors
     /// When the configuration is out of range.
@@ -80,7 +80,7 @@ impl RelationSets {
     }
 }
 
-/// The way up to each pose, m.
+/// Distance travelled at each pose, m.
 fn ways(reference: &[(Stamp, Pose3)]) -> Vec<f64> {
     let steps = reference.windows(2).map(|pair| (pair[1].1.translation - pair[0].1.translation).norm());
     let mut way = 0.0;

@@ -135,7 +135,7 @@ mod tests {
 
     #[test]
     fn two_relations_by_hand() {
-        // 1 m ahead is said, 1.3 m ahead and 0.4 m to the left is found: 0.5 m. Turned by 0.1: no shift, 0.1 rad.
+        // The relation is 1 m ahead, the estimate 1.3 m ahead and 0.4 m to the left: 0.5 m. Turned by 0.1: no shift, 0.1 rad.
         let estimate = [planar(0, 2.0, 1.0, 0.0), planar(1, 3.3, 1.4, 0.0), planar(2, 3.3, 1.4, 0.4)];
         let relations = [relation(0, 1, 1.0, 0.0, 0.0), relation(1, 2, 0.0, 0.0, 0.3)];
         let error = relation_error(&relations, &estimate, &RelationConfig::default()).unwrap();
@@ -148,7 +148,7 @@ mod tests {
 
     #[test]
     fn an_error_counts_once_wherever_it_happened() {
-        // A straight way of ten metres with one wrong turn of 90 degrees in its middle.
+        // A straight line of ten metres with one wrong turn of 90 degrees in its middle.
         let truth: Vec<_> = (0..11).map(|i| planar(i, i as f64, 0.0, 0.0)).collect();
         let bent: Vec<_> = (0..11)
             .map(|i| {

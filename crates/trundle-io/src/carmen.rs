@@ -15,7 +15,7 @@ use trundle_core::{Beam, Pose2, Scan, Stamp, Twist2};
 /// The log of a laser and odometry in CARMEN's form, which most 2-D mapping programs read.
 ///
 /// A sweep is a line `ROBOTLASER1`, a pose by the wheels a line `ODOM`; both stand in the odometry's frame. A beam without a
-/// return has the maximum range, whether it met nothing or failed: the format knows no difference.
+/// return has the maximum range, whether it met nothing or failed: the format does not separate the two.
 #[derive(Debug, Clone)]
 pub struct CarmenLog {
     text: String,
@@ -32,14 +32,14 @@ impl CarmenLog {
         Self { text, max_range, pose: Pose2::IDENTITY, twist: Twist2::ZERO }
     }
 
-    /// Adds where the wheels believe the base to be, `odom_from_base`, and how fast.
+    /// Adds the pose of the base by the wheels, `odom_from_base`, and its twist.
     pub fn odometry(&mut self, stamp: Stamp, pose: Pose2, twist: Twist2) {
         (self.pose, self.twist) = (pose, twist);
         let Pose2 { x, y, theta } = pose;
         self.line(&format!("ODOM {x:.6} {y:.6} {theta:.6} {:.6} {:.6} 0", twist.v, twist.omega), stamp);
     }
 
-    /// Adds a sweep, taken where the newest odometry says.
+    /// Adds a sweep, taken at the newest odometry pose.
     pub fn scan(&mut self, scan: &Scan) {
         let count = scan.beams().len();
         let mut text = format!(

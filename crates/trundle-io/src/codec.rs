@@ -42,7 +42,7 @@ pub enum CodecError {
     Decode {
         /// `colour` or `depth`.
         kind: &'static str,
-        /// What the decoder says.
+        /// The decoder's message.
         problem: String,
     },
     /// The image cannot be encoded.
@@ -50,7 +50,7 @@ pub enum CodecError {
     Encode {
         /// `colour` or `depth`.
         kind: &'static str,
-        /// What the encoder says.
+        /// The encoder's message.
         problem: String,
     },
     /// A depth image in another pixel format.

@@ -23,7 +23,7 @@ pub fn waypoints_csv(points: &[Vector2]) -> String {
     table_csv(["x_m", "y_m"], points.iter().map(|p| [p.x, p.y]))
 }
 
-/// A path as `s_m,x_m,y_m`: the way along it and the point.
+/// A path as `s_m,x_m,y_m`: the distance along it and the point.
 pub fn curve_csv(path: &Path) -> String {
     let mut way = 0.0;
     let points = path.points();

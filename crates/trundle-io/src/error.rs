@@ -16,7 +16,7 @@ pub enum IoError {
         path: PathBuf,
         /// `read`, `write`, ...
         action: &'static str,
-        /// What it said.
+        /// The system's error.
         source: std::io::Error,
     },
     /// A line of a text file is wrong.

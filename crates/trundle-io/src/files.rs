@@ -27,7 +27,7 @@ pub fn read_text(path: &Path) -> Result<String, IoError> {
     Ok(text)
 }
 
-/// The lines that say something, with their numbers from 1: no blank ones, no comments (`#`).
+/// The lines with content, with their numbers from 1: no blank ones, no comments (`#`).
 pub(crate) fn content_lines(text: &str) -> impl Iterator<Item = (usize, &str)> {
     let numbered = text.lines().enumerate().map(|(i, line)| (i + 1, line.trim()));
     numbered.filter(|(_, line)| !line.is_empty() && !line.starts_with('#'))
@@ -38,7 +38,7 @@ pub(crate) fn fields(line: &str) -> impl Iterator<Item = &str> {
     line.split(|c: char| c.is_whitespace() || c == ',').filter(|field| !field.is_empty())
 }
 
-/// The lines of a table that say something, without a first one of nothing but words, and without a closing comma.
+/// The lines of a table with content, without a header line, and without a closing comma.
 pub(crate) fn table_rows(text: &str) -> Vec<(usize, &str)> {
     let mut rows: Vec<(usize, &str)> = content_lines(text).collect();
     if rows.first().is_some_and(|(_, line)| is_header(line)) {

@@ -3,9 +3,9 @@
 //! What comes in: TUM RGB-D folders ([`TumSequence`]), CARMEN logs ([`read_carmen`]), ROS 2 bags
 //! ([`read_ros_bag`]), TUM trajectories ([`read_trajectory`]), cameras
 //! ([`CameraModel`]), ROS maps ([`read_map`]) and recordings ([`RecordingReader`]). What goes out is collected in an
-//! [`OutputFolder`], which shows nothing half-written: maps, trajectories, tables, TUM folders ([`TumWriter`]), laser logs ([`CarmenLog`]), recordings ([`Recorder`]) and the
-//! numbers of a run ([`Summary`]). [`EncodedEvent`] is the wire between body and robot: a robot that is fed through
-//! it sees live exactly what a replay of its recording will show it.
+//! [`OutputFolder`], which shows nothing half-written: maps, trajectories, tables, TUM folders ([`TumWriter`]), laser logs
+//! ([`CarmenLog`]), recordings ([`Recorder`]) and the numbers of a run ([`Summary`]). [`EncodedEvent`] is the interface between body and
+//! robot: a robot that receives its events receives live exactly what a replay of its recording gives.
 //!
 //! Every error is an [`IoError`], one sentence that names the file and the line or field. No input panics.
 //!

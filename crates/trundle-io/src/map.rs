@@ -31,7 +31,7 @@ const UNKNOWN_GREY: u8 = 205;
 pub struct MapFile {
     /// The map.
     pub grid: OccupancyGrid,
-    /// What is to be said of the file.
+    /// Warnings about the file.
     pub warnings: Warnings,
 }
 
@@ -45,10 +45,10 @@ pub fn read_map(yaml_path: &Path) -> Result<OccupancyGrid, IoError> {
 
 /// A map from its YAML file and the picture that it names: a PGM, PNG or BMP, its colours averaged to grey.
 ///
-/// A pixel's occupancy is `(maxval - v) / maxval`, or `v / maxval` with `negate`; above `occupied_thresh` it is
-/// occupied, below `free_thresh` free, between them unknown, as is a pixel that is not opaque. In mode `raw` it is `v / 100`,
-/// unknown above 100. A picture with a yaw is drawn anew along the map's axes: a cell is occupied that touches an occupied one, so
-/// walls may become a cell thicker. A `free_thresh` that makes the pixels free that `map_saver` writes for unknown is warned of.
+/// A pixel's occupancy is `(maxval - v) / maxval`, or `v / maxval` with `negate`. Above `occupied_thresh` it is
+/// occupied, below `free_thresh` free, between them unknown. A pixel that is not opaque is unknown. In mode `raw` it is `v / 100`,
+/// unknown above 100. A picture with a yaw is resampled along the map's axes: a cell is occupied that touches an occupied one, so
+/// walls may become a cell thicker. A `free_thresh` that makes those pixels free that `map_saver` writes for unknown gives a warning.
 ///
 /// # Errors
 /// When a file is missing or truncated, a field is missing or not accepted, thresholds are out of order, or the picture is
@@ -68,7 +68,7 @@ pub fn read_map_file(yaml_path: &Path) -> Result<MapFile, IoError> {
     Ok(MapFile { grid, warnings: warnings(&source) })
 }
 
-/// What pixel `i` says.
+/// Cell of pixel `i`.
 fn cell(source: &MapSource, i: usize) -> Cell {
     let MapSource { yaml, picture, .. } = source;
     let is_unknown = yaml.reads_transparency() && picture.is_transparent(i);
@@ -199,7 +199,7 @@ mod tests {
             width in 1usize..20, height in 1usize..20, resolution in 1e-9..10f64,
             x in prop::num::f64::NORMAL, y in -1e3..1e3f64, seed in any::<u64>(),
         ) {
-            // Of any origin: where the grid cannot hold it, the constructor says so.
+            // Any origin; the constructor refuses one that the grid cannot hold.
             let Ok(geometry) = GridGeometry::new(resolution, Vector2::new(x, y), width, height) else {
                 prop_assert!(x.abs() > 1e12 * resolution);
                 let near = GridGeometry::new(resolution, Vector2::new(y, y), width, height).unwrap();

@@ -144,7 +144,7 @@ impl OutputFolder {
     /// folder.
     ///
     /// # Errors
-    /// [`IoError::Incomplete`] when a file could not be written or moved; it says where the others are.
+    /// [`IoError::Incomplete`] when a file could not be written or moved; it holds the folder of the others.
     pub fn commit(mut self) -> Result<PathBuf, IoError> {
         if let Some((name, content)) = self.last {
             self.write(name, &content())?;
@@ -158,7 +158,7 @@ impl OutputFolder {
         Ok(self.target().to_owned())
     }
 
-    /// Lists the results in the stage. Where the disk does not take the list, the next run finds a folder that it does not know.
+    /// Lists the results in the stage. Where the disk refuses the list, the next run treats the folder as foreign.
     fn write_marker(&self) {
         let stage = self.scratch.stage();
         if let Err(error) = RunMarker::of(&stage).and_then(|marker| marker.write(&stage)) {

@@ -14,9 +14,9 @@ pub struct SequenceCamera {
     pub model: CameraModel,
     /// The preset or the file.
     pub name: String,
-    /// Whether nothing says that it is this camera.
+    /// Whether the camera is a guess: neither options nor files name one.
     pub is_assumed: bool,
-    /// What is to be said of the choice.
+    /// Warnings about the choice.
     pub warnings: Warnings,
 }
 

@@ -47,7 +47,7 @@ impl StampUnit {
         parse_scaled_stamp(text, self.decimals())
     }
 
-    /// What is to be said where the stamps are no seconds.
+    /// The warning for stamps in another unit than seconds.
     pub(crate) fn warning(self, first: &str) -> Option<String> {
         let problem = || format!("timestamps as {} are taken as {self}, expected seconds", excerpt(first));
         (self != Self::Seconds).then(problem)

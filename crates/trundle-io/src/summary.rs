@@ -4,8 +4,8 @@ use serde::Serialize;
 use serde_json::Value;
 use std::collections::BTreeMap;
 
-/// The numbers of a run for scripts: `summary.json`. Names carry their unit (`goal_error_m`, `slam_p99_ms`), values
-/// are SI unless the name says otherwise, keys are sorted, so that the same numbers are the same bytes.
+/// The numbers of a run for scripts: `summary.json`. Names carry their unit (`goal_error_m`, `slam_p99_ms`). Values
+/// are SI where the name has no other unit. Keys are sorted, so that the same numbers are the same bytes.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Summary {
     values: BTreeMap<String, Value>,

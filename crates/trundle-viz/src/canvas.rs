@@ -127,7 +127,7 @@ impl Canvas {
         });
     }
 
-    /// Lays a colour over each pixel near `center` as far as `coverage` of its distance says.
+    /// Lays a colour over each pixel near `center` with the opacity that `coverage` gives for its distance.
     fn round(&mut self, center: Px, radius: f64, color: Color, coverage: impl Fn(f64) -> f64) {
         let size = self.width().max(self.height()) as f64;
         let near = |v: f64| v.is_finite() && v > -size && v < 2.0 * size;

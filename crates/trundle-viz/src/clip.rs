@@ -1,4 +1,4 @@
-//! Cutting polylines at a rectangle, so that the rasteriser only ever sees tame numbers.
+//! Cutting polylines at a rectangle, so that the rasteriser gets finite, moderate numbers only.
 
 /// A place in a picture: pixels from the left, pixels from the top.
 pub(crate) type Px = (f64, f64);

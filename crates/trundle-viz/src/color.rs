@@ -13,7 +13,7 @@ pub struct Color {
     pub a: u8,
 }
 
-/// The palette that readers with any kind of colour vision can tell apart (Okabe and Ito, 2008), and a few greys.
+/// The palette of Okabe and Ito (2008), which readers with any kind of colour vision can distinguish, and a few greys.
 impl Color {
     /// Black.
     pub const BLACK: Self = Self::rgb(0x00_00_00);

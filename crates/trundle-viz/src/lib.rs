@@ -1,14 +1,14 @@
-//! Pictures and the report: what a run looks like to a person.
+//! Pictures and the report of a run.
 //!
 //! A [`MapPicture`] is a map from above with paths, poses, landmarks and scans laid over it; [`plan_picture`] and
 //! [`trajectory_picture`] are the ready-made ones of `trundle plan` and `trundle slam`. [`feature_picture`] and
 //! [`depth_picture`] show what the camera saw. A [`Chart`] shows numbers over time. A [`Report`] puts all of it on one HTML
 //! page that needs nothing but a browser, and [`RunReport`] fills that page from the data of a run.
 //!
-//! Pictures are 8-bit RGB PNGs; colours are those of Okabe and Ito (2008), which readers with any colour vision can tell
-//! apart, and one colour keeps its meaning in every picture. The typeface is our own. There is no clock and no chance in
-//! here: same content, same bytes. Nothing here fails: numbers that are not finite are left out, an empty grid or image
-//! gives an empty picture, and what is too large is shrunk.
+//! Pictures are 8-bit RGB PNGs. Colours are those of Okabe and Ito (2008), which readers with any colour vision can distinguish, and
+//! one colour keeps its meaning in every picture. The typeface is our own. No clock and no random number is used: same content, same
+//! bytes. Nothing fails: numbers that are not finite are left out, an empty grid or image gives an empty picture, and a picture
+//! that is too large is shrunk.
 
 mod camera;
 mod canvas;

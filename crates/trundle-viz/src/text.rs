@@ -10,7 +10,7 @@ pub(crate) struct TextStyle {
     /// Pixels a dot of the typeface.
     pub scale: i64,
     pub color: Color,
-    /// Colour of a rim around the letters, for text on a busy ground.
+    /// Colour of a border around the letters, for text on a busy ground.
     pub halo: Option<Color>,
 }
 

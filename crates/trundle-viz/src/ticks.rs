@@ -23,7 +23,7 @@ impl Ticks {
         Self { values: (0..count).map(|i| (first + i as f64) * step).collect(), step }
     }
 
-    /// A tick as text, with as many digits as tell it from the next.
+    /// A tick as text, with as many digits as distinguish it from the next.
     pub(crate) fn label(&self, value: f64) -> String {
         number(value, self.step)
     }

@@ -6,7 +6,7 @@ use std::f64::consts::TAU;
 use std::str::SplitAsciiWhitespace;
 use trundle_core::{Pose2, Stamp};
 
-/// A line that says something to us.
+/// A line of a kind that is read.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Line {
     /// `ODOM`: odom_from_base.
@@ -49,7 +49,7 @@ pub(super) fn laser_name(line: &str) -> Option<&'static str> {
     LASERS.into_iter().find(|laser| *laser == name)
 }
 
-/// What a line says; a sentence on what is wrong with it.
+/// Content of a line, or a sentence on what is wrong with it.
 pub(super) fn parse(line: &str) -> Result<Line, String> {
     let mut fields = Fields { rest: line.split_ascii_whitespace() };
     match fields.rest.next() {
@@ -150,7 +150,7 @@ impl Fields<'_> {
         count.ok_or_else(|| format!("{name} is '{}', expected {least} to {MAX_BEAMS}", excerpt(text)))
     }
 
-    /// Ranges, m: what is no number is NaN, a beam that says nothing.
+    /// Ranges, m. A text that is no number is NaN: an unseen beam.
     fn ranges(&mut self) -> Result<Vec<f64>, String> {
         let count = self.count("number of beams", 1)?;
         let ranges: Vec<f64> =

@@ -10,13 +10,13 @@ use trundle_core::{Pose2, Stamp};
 /// The lines of the front laser, all of them one source.
 const FRONT: [&str; 2] = ["FLASER", "ROBOTLASER1"];
 
-/// All lines of a log that say something to us.
+/// All lines of a log that are read.
 #[derive(Debug, Default)]
 pub(super) struct LogLines {
     pub odometry: Vec<(Stamp, Pose2)>,
     /// How far ahead of the base the front laser sits, m.
     pub offset: f64,
-    /// The front laser's field of view, rad, for lines that do not say it.
+    /// The front laser's field of view, rad, for lines without one.
     pub field_of_view: Option<f64>,
     /// The angle between its beams, rad, likewise.
     pub resolution: Option<f64>,

@@ -7,7 +7,7 @@ use crate::laser_log::{LaserLogOptions, check_sweep};
 use std::f64::consts::PI;
 use trundle_core::{Beam, Pose2, Scan};
 
-/// Where the laser of the lines `name` sits: as the options say, else the poses of the lines, else by the name.
+/// Mount of the laser of the lines `name`: by the options, else the poses of the lines, else the name.
 pub(super) fn mount(
     name: &str,
     lasers: &[(usize, &LaserLine)],
@@ -28,7 +28,7 @@ fn mount_by_name(name: &str, front_offset: f64) -> Pose2 {
     }
 }
 
-/// Where the laser sits by the poses of the lines, when all agree on it and it is no more than 2 m away.
+/// Mount of the laser by the poses of the lines, when all agree and it is at most 2 m from the base.
 fn mount_by_poses(lasers: &[(usize, &LaserLine)]) -> Option<Pose2> {
     let place = |laser: &LaserLine| {
         laser.poses.map(|[odom_from_laser, odom_from_base]| odom_from_base.inverse() * odom_from_laser)

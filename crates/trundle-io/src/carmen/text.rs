@@ -37,7 +37,7 @@ impl TextLines {
         Ok(Self { path: path.to_owned(), reader, is_compressed, number: 0, buffer: Vec::new() })
     }
 
-    /// The next line that says something, with its number from 1: not blank, no comment (`#`).
+    /// The next line with content, with its number from 1: not blank, no comment (`#`).
     pub(super) fn next_content(&mut self) -> Result<Option<(usize, &str)>, IoError> {
         while self.read_line()? {
             let (start, end) = content(self.text()?);

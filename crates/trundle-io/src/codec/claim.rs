@@ -5,7 +5,7 @@ use super::{CodecError, MAX_PIXELS};
 /// Greatest factor by which the compressions of images shrink: deflate's 1032. A larger claim is false. Source: \[RFC 1951\].
 const MAX_COMPRESSION: usize = 1100;
 
-/// Whether a file of so many bytes can hold so many pixels.
+/// Whether a file of `file_bytes` bytes can hold `pixels` pixels.
 pub(crate) fn can_hold(file_bytes: usize, pixels: usize, bits_per_pixel: usize) -> bool {
     pixels / 8 <= file_bytes.saturating_mul(MAX_COMPRESSION) / bits_per_pixel.max(1)
 }

@@ -27,7 +27,7 @@ impl EncodedRgbd {
         })
     }
 
-    /// The image that everyone behind the wire sees.
+    /// The decoded image: the one that the robot and a replay receive.
     ///
     /// # Errors
     /// When the bytes are no images or their sizes differ.

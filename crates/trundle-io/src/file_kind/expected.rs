@@ -43,11 +43,11 @@ pub enum Expected {
 }
 
 impl Expected {
-    /// Refuses a file or folder that is surely of another kind; the kind of the others. A file that no mark gives away passes:
-    /// its reader knows more.
+    /// Refuses a file or folder that is surely of another kind; the kind of the others. A file without a mark of its kind passes: its reader
+    /// decides.
     ///
     /// # Errors
-    /// When the file cannot be read, or is of another kind: then it says which, and what to do.
+    /// When the file cannot be read, or is of another kind: the message names the kind and what to do.
     pub fn check(self, path: &Path) -> Result<FileKind, IoError> {
         let found = FileKind::of(path)?;
         if self.takes(found) {

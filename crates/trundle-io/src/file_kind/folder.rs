@@ -35,7 +35,7 @@ fn of_files(members: &[PathBuf]) -> FileKind {
     }
 }
 
-/// Whether a path is a file of a ROS 2 bag. What a zstd file packs is said by its name alone.
+/// Whether a path is a file of a ROS 2 bag. For a zstd file only the name shows its content.
 pub(crate) fn is_bag_file(path: &Path) -> bool {
     match kind_of_file(path) {
         Some(FileKind::Ros2Mcap | FileKind::Ros2Sqlite | FileKind::OtherMcap) => true,

@@ -2,17 +2,17 @@
 
 use trundle_core::{Invalid, require_finite, require_in, require_positive};
 
-/// What a log does not say, and which of its topics are taken.
+/// Data that a log lacks, and the topics that are read.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct LaserLogOptions {
-    /// How far ahead of the base the laser sits, m; by default what the log says: the poses of a CARMEN log's lines, else its
-    /// `PARAM robot_frontlaser_offset`, else 0; the transforms of a bag.
+    /// Distance of the laser ahead of the base, m. Default: the log's, from the poses of a CARMEN log's lines, else its
+    /// `PARAM robot_frontlaser_offset`, else 0; from the transforms of a bag.
     pub laser_x: Option<f64>,
-    /// How far the laser is turned to the left, rad; by default what the log says, else 0.
+    /// Turn of the laser to the left, rad. Default: the log's, else 0.
     pub laser_turn: Option<f64>,
     /// The laser hangs upside down: its beams run from left to right.
     pub upside_down: bool,
-    /// Ranges from here on are no returns, m; by default what the line says, else the reading at which many end.
+    /// Range from which on a reading counts as no return, m. Default: the line's, else the range at which many beams end.
     pub max_range: Option<f64>,
     /// The topic of the scans, in a CARMEN log the name of the lines; by default that with the most scans.
     pub scan_topic: Option<String>,

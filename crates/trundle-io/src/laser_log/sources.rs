@@ -33,7 +33,7 @@ pub(crate) fn chosen(
     })
 }
 
-/// Whether a topic is the one asked for; a slash before the name says nothing.
+/// Whether a topic has the requested name; a slash before the name is ignored.
 pub(crate) fn is_named(topic: &str, asked: &str) -> bool {
     topic.trim_start_matches('/') == asked.trim_start_matches('/')
 }

@@ -25,7 +25,7 @@ struct Collection {
     features: Vec<Feature>,
 }
 
-/// A feature as GeoJSON (RFC 7946) has it; what is no object says nothing.
+/// A feature of GeoJSON (RFC 7946); a value that is no object is skipped.
 #[derive(Deserialize)]
 struct Feature {
     #[serde(default)]
@@ -89,8 +89,8 @@ fn id_text(value: &Value) -> Option<String> {
 ///
 /// A `Point` feature with an id (in `properties`, or its own) is a node, its coordinates `[x, y]` or `[x, y, height]` in m,
 /// `properties.frame`, if any, `map`. A `MultiLineString` (or `LineString`) feature with `properties.startid` and `endid` is a
-/// lane, driven that way only and straight; two lanes make both ways. Ids are numbers or texts. Other properties (costs,
-/// operations) are left alone, and so are other features: [`GraphFile::left`] counts them.
+/// lane: straight, and in this direction only; two lanes give both directions. Ids are numbers or texts. Other properties (costs,
+/// operations) are ignored, and so are other features: [`GraphFile::left`] counts them.
 ///
 /// # Errors
 /// When the file cannot be read or is no such JSON, has no node, an id comes twice, a lane ends at no node, coordinates are not

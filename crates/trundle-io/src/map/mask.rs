@@ -12,7 +12,7 @@ use trundle_core::{Cell, GridGeometry, Invalid, OccupancyGrid, require_in};
 /// A mask's value that forbids.
 const LETHAL_VALUE: u8 = 100;
 
-/// What the values of a speed mask mean, as Nav2's filter-info server says it: limit = base + multiplier * value.
+/// Meaning of the values of a speed mask, by Nav2's filter-info server: limit = base + multiplier * value.
 ///
 /// Read from the mask's own YAML, whose keys `type`, `base` and `multiplier` map_server leaves alone.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -121,7 +121,7 @@ fn values(source: &MapSource) -> Result<(GridGeometry, Vec<Option<u8>>), IoError
     straightened(geometry, values, yaml.yaw, None, rank).map_err(IoError::field(yaml_path))
 }
 
-/// What pixel `i` says.
+/// Value of pixel `i`.
 fn value(yaml: &MapYaml, picture: &Picture, i: usize) -> Option<u8> {
     let is_unknown = yaml.reads_transparency() && picture.is_transparent(i);
     if is_unknown { None } else { yaml.value(picture.values[i], picture.maxval) }

@@ -21,7 +21,7 @@ pub(super) struct Picture {
 }
 
 impl Picture {
-    /// A picture of one of the formats, told apart by its first bytes.
+    /// A picture of one of the formats, recognised by its first bytes.
     pub(super) fn parse(path: &Path, bytes: &[u8]) -> Result<Self, IoError> {
         let picture = match image::guess_format(bytes) {
             Ok(ImageFormat::Png) => of_png(bytes),

@@ -1,4 +1,4 @@
-//! Pictures that are turned about their lower-left corner: drawn anew on a lattice along the map's axes.
+//! Pictures that are turned about their lower-left corner: resampled on a lattice along the map's axes.
 
 use trundle_core::{GridGeometry, Invalid, Vector2};
 

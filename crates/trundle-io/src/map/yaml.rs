@@ -68,7 +68,7 @@ impl MapYaml {
         self.free
     }
 
-    /// What a pixel says.
+    /// Cell of a pixel value.
     pub fn cell(&self, value: u16, maxval: u16) -> Cell {
         let occupancy = match self.mode {
             Mode::Raw => match raw(value, maxval) {
@@ -86,7 +86,7 @@ impl MapYaml {
         }
     }
 
-    /// What a pixel of a mask says, 0 to 100, as map_server fills an OccupancyGrid message; `None`: unknown.
+    /// Value of a pixel of a mask, 0 to 100, as map_server fills an OccupancyGrid message; `None`: unknown.
     pub fn value(&self, value: u16, maxval: u16) -> Option<u8> {
         if self.mode == Mode::Raw {
             return u8::try_from(raw(value, maxval)).ok().filter(|value| *value <= 100);
@@ -189,7 +189,7 @@ mod tests {
             [Free, Unknown, Occupied, Unknown, Unknown]
         );
         assert_eq!(map.cell(65_535, 65_535), Free);
-        // `scale` keeps the grades between the thresholds, for masks; a three-valued map does not know them.
+        // `scale` keeps the grades between the thresholds, for masks; a three-valued map drops them.
         let scale = parse(&format!("{GOOD}mode: scale\n")).unwrap();
         assert_eq!(cells(&scale), cells(&map));
         assert_eq!(

@@ -1,4 +1,4 @@
-//! The file by which trundle knows a folder that it wrote, and what it wrote there.
+//! The file that marks a folder as written by trundle, with the list of what it wrote there.
 
 use super::fingerprint::Fingerprint;
 use super::tree::files_below;
@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// The file by which trundle knows a folder that it wrote: a list of what it wrote there.
+/// Name of the file that marks a folder as written by trundle: a list of what it wrote there.
 pub(super) const MARKER_FILE: &str = ".trundle-run";
 
 /// The first line of the marker file.

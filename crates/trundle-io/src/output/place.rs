@@ -111,7 +111,7 @@ impl OutputPlace {
             fs::remove_dir_all(&last)?;
         }
         fs::create_dir(&last)?;
-        // Written anew, so that at no time a folder is without its marker.
+        // A copy, so that at no time a folder is without its marker.
         fs::copy(self.real.join(MARKER_FILE), last.join(MARKER_FILE))?;
         move_entries(&self.real, &last, |name| name != MARKER_FILE)
     }

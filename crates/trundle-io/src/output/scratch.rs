@@ -9,7 +9,7 @@ use tempfile::TempDir;
 
 /// The name of every hidden folder begins so.
 const PREFIX: &str = ".trundle-";
-/// A file that the run keeps locked: where nobody holds the lock, the run is gone. It holds the results' place.
+/// A file that a run keeps locked: without the lock, the run has ended. It holds the results' place.
 const OWNER_FILE: &str = "owner";
 /// The folder in the hidden one that holds the results, so that they get the user's usual permissions.
 const STAGE: &str = "out";

@@ -4,7 +4,7 @@ use super::scratch::is_scratch;
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// The files and links below `folder` in the order of their names; folders by a link, and the hidden ones of runs under way,
+/// The files and links below `folder` in the order of their names. Folders behind a link, and the hidden ones of running runs,
 /// are not entered.
 ///
 /// # Errors

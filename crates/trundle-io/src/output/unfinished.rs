@@ -1,10 +1,10 @@
-//! The hidden folders of results under way in this process, for an ending from outside of the run.
+//! The hidden folders of unfinished results in this process, for an ending from outside of the run.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// The results under way.
+/// The unfinished results.
 #[derive(Debug, Default)]
 struct Unfinished {
     folders: Vec<PathBuf>,
@@ -36,7 +36,7 @@ pub(super) fn complete<T, E>(complete: impl FnOnce() -> Result<T, E>) -> Result<
     result
 }
 
-/// Removes all results under way, for a process that ends: nothing is moved to its place after this. Returns false, and removes
+/// Removes all unfinished results, for a process that ends: nothing is moved to its place after this. Returns false, and removes
 /// nothing, where results are complete: such a process ends by itself.
 pub fn abandon_outputs() -> bool {
     let unfinished = unfinished();

@@ -16,7 +16,7 @@ use trundle_core::{Invalid, Stamp};
 /// A message of a recording.
 #[derive(Debug, Clone, PartialEq)]
 pub enum RecordedMessage {
-    /// What a sensor said.
+    /// A sensor event.
     Event(EncodedEvent),
     /// Anything else.
     Json {

@@ -15,7 +15,7 @@ use std::io::{BufWriter, Seek, Write};
 use std::path::{Path, PathBuf};
 use trundle_core::{Invalid, Stamp};
 
-/// So many bytes make a chunk, which the recorder remembers for the index at the end: an hour of 30 images a second is 9,000 chunks
+/// Size of a chunk, bytes. The recorder keeps the chunks for the index at the end: an hour of 30 images a second is 9,000 chunks
 /// and some 2 MB of index. A program that is killed loses the chunk that it was writing.
 const CHUNK_BYTES: u64 = 4 << 20;
 

@@ -1,7 +1,7 @@
 //! JSON Schemas of what trundle records. Those named `foxglove.*` are the well-known ones of Foxglove, in their
 //! required parts; those named `trundle.*` are ours.
 
-/// The schema of that name; any object for names we do not know.
+/// The schema of that name; any object for unknown names.
 pub(super) fn json_schema(name: &str) -> String {
     let properties = match name {
         "foxglove.PoseInFrame" => fields(&[TIMESTAMP, FRAME_ID, ("pose", POSE)]),

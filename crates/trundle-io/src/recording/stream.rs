@@ -30,7 +30,7 @@ pub(crate) struct RawMessage {
     pub data: Vec<u8>,
 }
 
-/// How messages are written that a reader wants.
+/// Encoding of the messages that a reader accepts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Encoding {
     /// Trundle's own, with images in CDR: any other message is an error.
@@ -138,7 +138,7 @@ impl MessageStream {
         if self.len == 0 { 1.0 } else { (self.read as f64 / self.len as f64).min(1.0) }
     }
 
-    /// Gives no more messages from now on.
+    /// Ends the stream: there are no further messages.
     pub fn stop(&mut self) {
         self.stopped = true;
     }

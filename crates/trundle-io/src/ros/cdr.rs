@@ -41,7 +41,7 @@ pub(super) struct CdrReader<'a> {
     wire: Wire,
 }
 
-/// Bytes of the header that says how the rest is encoded.
+/// Bytes of the header that holds the encoding of the rest.
 const HEADER_BYTES: usize = 4;
 
 impl<'a> CdrReader<'a> {

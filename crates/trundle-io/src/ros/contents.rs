@@ -180,7 +180,7 @@ impl Contents {
         poses.into_iter().filter(|pose| Some(&pose.child) == base.as_ref()).collect()
     }
 
-    /// Where the laser sits: what was given, the rest as transforms say.
+    /// Mount of the laser: the options, and the transforms for the rest.
     pub(super) fn base_from_laser(
         &self,
         base: &str,
@@ -193,7 +193,7 @@ impl Contents {
         if laser_x.is_none() && laser_turn.is_none() {
             return told;
         }
-        // Where no transform says anything, what was not given is zero.
+        // Without a transform, values that were not given are zero.
         let roll = if upside_down { std::f64::consts::PI } else { 0.0 };
         let own = |_| Pose3::new(UnitQuaternion::from_euler_angles(roll, 0.0, 0.0), Default::default());
         let Pose3 { rotation, mut translation } = told.unwrap_or_else(own);

@@ -20,7 +20,7 @@ pub(super) enum NoTransform {
     Broken(String),
 }
 
-/// A robot has no longer chain of frames; a longer one is a ring.
+/// Longest chain of frames; a longer one is a cycle.
 const MAX_FRAME_CHAIN: usize = 100;
 
 impl Frames {

@@ -26,15 +26,15 @@ pub fn read_laser_log(path: &Path, options: &LaserLogOptions) -> Result<LaserLog
     }
 }
 
-/// The scans of a ROS 2 bag (MCAP or SQLite) or a ROS 1 bag, each with the odometry of its moment, interpolated, the laser mounted as the
-/// static transforms say. Times are those in the messages' headers.
+/// The scans of a ROS 2 bag (MCAP or SQLite) or a ROS 1 bag, each with the odometry at its stamp, interpolated. The static transforms
+/// give the mount of the laser. Times are those in the messages' headers.
 ///
 /// A message that is broken, whose time goes back, or that no odometry is known for is skipped and named in
 /// [`LaserLog::skipped`], by its number in the bag.
 ///
 /// # Errors
-/// When the bag cannot be read or breaks off before its first scan, there is no scan or no odometry, no transform says where
-/// the laser sits, or no scan can be used: then the first problem is named.
+/// When the bag cannot be read or breaks off before its first scan, there is no scan or no odometry, no transform gives the mount of
+/// the laser, or no scan can be used: then the first problem is named.
 pub fn read_ros_bag(path: &Path, options: &LaserLogOptions) -> Result<LaserLog, IoError> {
     options.validate().map_err(IoError::field(path))?;
     let mut contents = Contents::read(path)?;

@@ -131,7 +131,7 @@ impl Ros1Bag {
         IoError::malformed(&self.path, problem)
     }
 
-    /// The next `count` bytes: no more are asked for than the file has.
+    /// The next `count` bytes; a count beyond the file's rest is refused.
     fn read(&mut self, count: u64) -> Result<Vec<u8>, IoError> {
         if count > self.left {
             return Err(self.truncated(count));

@@ -63,7 +63,7 @@ fn columns(text: &str) -> usize {
 /// The planar pose of a row, and its heading as it stands there.
 fn row(form: Form, numbers: &[f64]) -> Result<OdometryRow, String> {
     let pose = match (form, numbers) {
-        // Not by way of a quaternion: every bit of the file is kept.
+        // Without a quaternion in between: every bit of the file is kept.
         (Form::Planar, &[x, y, theta]) => Pose2 { x, y, theta },
         _ => form.pose(numbers)?.to_pose2(),
     };

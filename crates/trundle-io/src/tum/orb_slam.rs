@@ -30,7 +30,7 @@ Viewer.ViewpointF: 500.0
 "#;
 
 /// The settings file with which ORB-SLAM2 and ORB-SLAM3 run on a folder of this camera at `rate_hz`, in OpenCV's YAML
-/// with the keys of both programs. Numbers that they want real have a decimal point.
+/// with the keys of both programs. Real numbers have a decimal point, which both programs require.
 pub(super) fn orb_slam_yaml(model: &CameraModel, rate_hz: f64) -> String {
     let mut text = String::from("%YAML:1.0\n---\nFile.version: \"1.0\"\n\nCamera.type: \"PinHole\"\n");
     let mut set = |key: &str, value: String| text.push_str(&format!("{key}: {value}\n"));

@@ -31,7 +31,7 @@ pub fn read_trajectory(path: &Path) -> Result<Vec<(Stamp, Pose3)>, IoError> {
     Ok(read_trajectory_file(path)?.poses)
 }
 
-/// A trajectory in one of these forms, told apart by its columns; `#` for comments, a first line of words is skipped.
+/// A trajectory in one of these forms, recognised by its columns; `#` for comments, a first line of words is skipped.
 ///
 /// TUM: `timestamp tx ty tz qx qy qz qw` (s, m, unit quaternion). EuRoC: `timestamp px py pz qw qx qy qz ...`. Planar:
 /// `timestamp x y theta`. KITTI: the twelve numbers of a matrix, times in `times.txt` beside it. Stamps are exact to the

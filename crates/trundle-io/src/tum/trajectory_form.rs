@@ -1,4 +1,4 @@
-//! Forms of trajectory files: TUM, EuRoC and planar rows, told apart by their columns and header.
+//! Forms of trajectory files: TUM, EuRoC and planar rows, recognised by their columns and header.
 
 use crate::files::{fields, table_rows};
 use crate::stamp_unit::StampUnit;

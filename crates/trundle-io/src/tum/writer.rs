@@ -20,7 +20,7 @@ pub struct TumWriter<'f> {
 }
 
 impl<'f> TumWriter<'f> {
-    /// Writes into `folder` what `camera` sees, nominally at `rate_hz`, which ORB-SLAM wants to know.
+    /// Writes the images of `camera` into `folder`, nominally at `rate_hz`, which ORB-SLAM requires.
     pub fn new(folder: &'f OutputFolder, camera: PinholeCamera, rate_hz: f64) -> Self {
         let (frames, ground_truth, odometry) = Default::default();
         Self { folder, camera, rate_hz, frames, ground_truth, odometry }
@@ -55,7 +55,7 @@ impl<'f> TumWriter<'f> {
         self.ground_truth.push((stamp, world_from_camera));
     }
 
-    /// Notes where the wheels believe the base to be, `odom_from_base`.
+    /// Adds the pose of the base by the wheels, `odom_from_base`.
     pub fn odometry(&mut self, stamp: Stamp, odom_from_base: Pose2) {
         self.odometry.push((stamp, odom_from_base));
     }

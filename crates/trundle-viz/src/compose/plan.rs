@@ -5,12 +5,12 @@ use crate::color::Color;
 use crate::map::{DotStyle, LineStyle, MapPicture, PoseStyle};
 use trundle_core::{Footprint, GridGeometry, OccupancyGrid, Pose2, Vector2};
 
-/// What a mask says of its cells, row by row from the lowest y, in shares from 0 (nothing) to 1.
+/// Values of a mask in its cells, row by row from the lowest y, in shares from 0 (nothing) to 1.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MaskShares {
     /// Where its cells lie.
     pub geometry: GridGeometry,
-    /// How much each says.
+    /// Value of each cell.
     pub shares: Vec<f32>,
 }
 
@@ -42,7 +42,7 @@ pub struct PlanScene<'a> {
 }
 
 impl<'a> PlanScene<'a> {
-    /// The map with what the masks say of it.
+    /// The map with the values of the masks.
     pub(super) fn ground(&self) -> MapPicture<'a> {
         let mut picture = MapPicture::over(self.grid);
         for lane in self.lanes {

@@ -20,10 +20,10 @@ pub struct PlanParts<'a> {
     pub active: &'a [Vector2],
 }
 
-/// Distances are told apart up to this, m.
+/// Largest distance with a colour of its own, m.
 const MAX_SHOWN_DISTANCE_M: f32 = 1.0;
 
-/// The pictures of how a plan was made: the distance field with the way that the search found, and the corridors with the
+/// The pictures of how a plan was made: the distance field with the path that the search found, and the corridors with the
 /// curve that was fitted into them. 8-bit RGB PNGs.
 pub fn plan_part_pictures(scene: &PlanScene, parts: &PlanParts) -> [Vec<u8>; 2] {
     let free = |distance: &f32| if *distance > 0.0 { *distance } else { f32::NAN };

@@ -18,7 +18,7 @@ pub struct RunMap {
     pub way_points: Vec<Vector2>,
     /// Points along the fitted curve, close together.
     pub curve: Vec<Vector2>,
-    /// Where the robot believed to be.
+    /// The estimated poses of the robot.
     pub estimated_path: Vec<Pose2>,
     /// Where it was.
     pub true_path: Vec<Pose2>,

@@ -12,7 +12,7 @@ use trundle_core::{Vector2, Vector3};
 pub struct VisualMapScene<'a> {
     /// The landmarks.
     pub landmarks: &'a [Vector3],
-    /// The camera's way.
+    /// The camera's trajectory.
     pub way: &'a [Vector3],
     /// Where the keyframes are.
     pub keyframes: &'a [Vector3],
@@ -46,7 +46,7 @@ pub fn visual_map_picture(scene: &VisualMapScene) -> (Vec<u8>, Vec<LegendItem>) 
     (picture.clone().without_legend().to_png(), picture.legend())
 }
 
-/// Whether a camera went far enough, 1 m, to tell which way is up.
+/// Whether a camera travelled far enough, 1 m, to determine which direction is up.
 fn is_way(way: &[Vector3]) -> bool {
     let from = |a: &Vector3| way.iter().any(|b| (b - a).amax() > 1.0);
     way.iter().find(|a| a.iter().all(|v| v.is_finite())).is_some_and(from)

@@ -47,7 +47,7 @@ pub(crate) fn radius_of(text: &str, scale: i64) -> f64 {
     (text_width(text, scale) as f64).hypot(cap_height(scale) as f64) / 2.0 + PADDING_DOTS * scale as f64 / 2.0
 }
 
-/// Where circles are drawn that belong at `places`: there, or as near as no other is in the way, within a picture of `size`.
+/// Centres of the circles for `places`: there, or as near as no other circle overlaps, within a picture of `size`.
 fn spread(places: &[Px], radius: f64, size: Px) -> Vec<Px> {
     let mut placed: Vec<Px> = Vec::with_capacity(places.len());
     for &place in places {

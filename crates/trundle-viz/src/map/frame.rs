@@ -95,7 +95,7 @@ fn paint_scale_bar(canvas: &mut Canvas, view: &View, right: i64, top: i64, taken
     canvas.text(x - text - 4 * unit, top, &label, TextStyle::new(unit, Color::INK));
 }
 
-/// A round length in the unit that a person would say it in.
+/// A round length in its usual unit.
 fn length_label(metres: f64) -> String {
     match metres {
         m if m >= 0.9e6 => format!("{m:.0e} m"),

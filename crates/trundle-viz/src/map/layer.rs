@@ -56,7 +56,7 @@ impl Shape {
 }
 
 impl Layer {
-    /// The points that the picture has to hold. Landmarks and scans reach beyond what anybody wants to see.
+    /// The points that the picture has to hold. Landmarks and scans, which reach far, are not among them.
     pub(crate) fn anchors(&self) -> Vec<Vector2> {
         match &self.shape {
             Shape::Line { points, .. } | Shape::Arrow { points, .. } => points.clone(),

@@ -29,11 +29,11 @@ use shade::{Paint, Shade};
 use trundle_core::{Cell, Footprint, GridGeometry, OccupancyGrid, Pose2, Scan, Vector2};
 use view::View;
 
-/// A picture of a map from above, with what the robot thinks and does laid over it.
+/// A picture of a map from above, with the robot's estimates, plans and paths over it.
 ///
 /// Everything is given in the map frame, m: x to the right, y up. Layers are drawn in the order they are added. A number
-/// that is not finite leaves out the point, never the picture. The picture shows what the grid knows and what lines and
-/// poses touch; dots and scans never widen it. Each cell is a whole number of pixels; a map of more than 3000 cells a side
+/// that is not finite leaves out the point, never the picture. The picture holds the known cells, the lines and the
+/// poses; dots and scans never widen it. Each cell is a whole number of pixels; a map of more than 3000 cells a side
 /// is shrunk, walls kept. Ticks, a scale bar and a legend are drawn with a typeface of our own: no font file is needed.
 ///
 /// ```
@@ -80,7 +80,7 @@ impl<'a> MapPicture<'a> {
         self.layer(label, Shape::Arrow { points: points.to_vec(), style })
     }
 
-    /// Adds short texts, numbers say, in circles: each at its place, or beside it with a line to it where it would cover another.
+    /// Adds short texts, for example numbers, in circles: each at its place, or beside it with a line to it where it would cover another.
     pub fn badges(self, label: &str, badges: &[(String, Vector2)], color: Color) -> Self {
         self.layer(label, Shape::Badges { badges: badges.to_vec(), color })
     }

@@ -15,7 +15,7 @@ pub(crate) struct Shade {
     pub paint: Paint,
 }
 
-/// What a value looks like.
+/// Paint of a value.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Paint {
     /// From light, 0, to dark, this value.

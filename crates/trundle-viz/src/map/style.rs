@@ -3,7 +3,7 @@
 use crate::color::Color;
 use trundle_core::Footprint;
 
-/// How a polyline looks.
+/// Style of a polyline.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LineStyle {
     /// Its colour.
@@ -12,7 +12,7 @@ pub struct LineStyle {
     pub width: f64,
     /// Dashes instead of a solid line.
     pub dashed: bool,
-    /// A white rim, so that the line stays visible over walls.
+    /// A white border, so that the line stays visible over walls.
     pub rimmed: bool,
 }
 
@@ -32,13 +32,13 @@ impl LineStyle {
         Self { width, ..self }
     }
 
-    /// The same line without its rim.
+    /// The same line without its border.
     pub fn plain(self) -> Self {
         Self { rimmed: false, ..self }
     }
 }
 
-/// How dots look.
+/// Style of dots.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DotStyle {
     /// Their colour; its alpha makes crowds readable.
@@ -66,7 +66,7 @@ impl DotStyle {
     }
 }
 
-/// How a pose looks: a wedge along its heading, with the robot's outline around it where given.
+/// Style of a pose: a wedge along its heading, with the robot's outline around it where given.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PoseStyle {
     /// Its colour.

@@ -5,7 +5,7 @@ use super::cell_box::CellBox;
 use crate::clip::Px;
 use trundle_core::{GridGeometry, Vector2};
 
-/// The longer side of a plot is at least this, px, unless the grid says otherwise.
+/// Minimum length of the longer side of a plot, px; the cells of a grid may make it larger.
 const TARGET_PX: f64 = 1100.0;
 /// The longer side of a plot is at most this, px.
 const MAX_PX: i64 = 3000;
@@ -35,7 +35,7 @@ pub(crate) struct View {
 }
 
 impl View {
-    /// A view of a block of cells, each a whole number of pixels (or the other way round for huge blocks).
+    /// A view of a block of cells, each a whole number of pixels (or a pixel a whole number of cells, for huge blocks).
     pub(crate) fn of_cells(geometry: &GridGeometry, block: CellBox) -> Self {
         let long = block.cols().max(block.rows()).max(1);
         let zoom = match long {

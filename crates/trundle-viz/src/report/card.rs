@@ -9,7 +9,7 @@ pub enum Verdict {
     Ok(String),
     /// The aim was missed.
     Failed(String),
-    /// There was no aim to reach: what to know at first sight.
+    /// A run without an aim: the main fact.
     Note(String),
 }
 

@@ -48,7 +48,7 @@ impl Report {
         Self { subtitle: subtitle.to_owned(), ..self }
     }
 
-    /// The banner that says how it went.
+    /// The banner with the outcome.
     pub fn verdict(self, verdict: Verdict) -> Self {
         Self { verdict: Some(verdict), ..self }
     }
