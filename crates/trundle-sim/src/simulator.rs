@@ -163,7 +163,7 @@ impl Simulator {
         self.body.wheels()
     }
 
-    /// Where everybody is, in the order of the scene: `world_from_person`, x forward; for evaluation.
+    /// Poses of all persons, in the order of the scene: `world_from_person`, x forward; for evaluation.
     pub fn people(&self) -> Vec<Pose2> {
         self.crowd.poses()
     }

@@ -8,7 +8,7 @@ use super::tile::{NO_SURFACE_ID, Row, TILE_COLUMNS, Tile};
 use super::world_view::WorldView;
 use trundle_core::PinholeCamera;
 
-/// Cosines of incidence are not said to be less than this.
+/// Lower bound of the cosines of incidence.
 const LEAST_COSINE: f32 = 1e-3;
 
 /// Everything that is drawn in one image.

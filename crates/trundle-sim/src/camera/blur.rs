@@ -11,7 +11,7 @@ const LINEAR_STEPS: usize = 1 << 13;
 /// What a camera collects that moves while its shutter is open: the mean of `views` in linear light.
 ///
 /// The views are at evenly spaced moments of the exposure. Depth and cosine are those of the middle one (the depth camera
-/// has a shutter of its own). Cost: a table look-up a channel and view. `out` is filled anew.
+/// has a shutter of its own). Cost: a table look-up a channel and view. `out` is overwritten.
 ///
 /// # Errors
 /// When there is no view or they differ in size.

@@ -21,7 +21,7 @@ pub(super) struct DepthTruth {
     pub(super) luminance: f32,
 }
 
-/// [`DepthNoise`] made ready for millions of pixels: f32, powers and angles looked up.
+/// [`DepthNoise`] prepared for millions of pixels: f32, with tables of powers and angles.
 #[derive(Debug, Clone)]
 pub(super) struct DepthModel {
     nearest: f32,
@@ -97,7 +97,7 @@ impl DepthModel {
         self.shadow_px_m
     }
 
-    /// What the camera says for a pixel, m, 0 for nothing; `bits` is the pixel's hash.
+    /// Measured depth of a pixel, m, 0 for none; `bits` is the pixel's hash.
     #[inline]
     pub(super) fn measure(&self, truth: DepthTruth, bits: u64, normals: &NormalTable) -> f32 {
         let mut z = truth.depth;
@@ -129,7 +129,7 @@ impl DepthModel {
         if z >= self.nearest && z <= self.farthest { z } else { 0.0 }
     }
 
-    /// Which depth a pixel at an edge sees, m; 0 when it is lost.
+    /// Measured depth of a pixel at an edge, m; 0 when it is lost.
     #[cold]
     fn at_edge(&self, z: f32, beyond: f32, bits: u64, normals: &NormalTable) -> f32 {
         let fate = uniform(bits, 0);

@@ -3,7 +3,7 @@
 use super::patch::Patch;
 use super::tile::{Row, TILE_COLUMNS};
 
-/// Where the footprint of a pixel is longer than this many times its width, it is looked at in two places along it.
+/// Ratio of length to width of a pixel's footprint above which two samples are taken along it.
 const MAX_ANISOTROPY: f32 = 2.0;
 
 /// What the pixels of a row cover of a patch.
@@ -14,7 +14,7 @@ pub(super) struct Footprints {
     /// From the middle to each of the two places to look at, texels; zero where one is enough.
     pub(super) shift_x: Row<f32>,
     pub(super) shift_y: Row<f32>,
-    /// log2 of the width of what is looked at, texels.
+    /// log2 of the width of a sample, texels.
     pub(super) level: Row<f32>,
     /// Cosine between ray and normal.
     pub(super) cosine: Row<f32>,

@@ -8,8 +8,8 @@ const REACH_PX: usize = 24;
 /// Neighbours whose depth differs by more than this share belong to another surface.
 const OTHER_SURFACE: f32 = 0.2;
 
-/// The depths of row `y` as multi-path makes them: in concave corners the light that comes by way of the other wall makes
-/// the measured way longer.
+/// The depths of row `y` with multi-path: in concave corners the light that travels over the other wall makes
+/// the measured distance longer.
 ///
 /// The corner's sagitta over [`REACH_PX`] px to either side, times `strength`, is added; planes and convex edges stay. The shape
 /// (rounded corners, centimetres deep) is that of measured corners \[Sarbolandi15, Wasenmueller16\]; the model is ours.

@@ -8,7 +8,7 @@ use super::world_view::{WorldView, single};
 use crate::world::{Form, Kind};
 
 impl<'w> WorldView<'w> {
-    /// What is painted where the tile's pixel (row, column) sees the surface `id` at `depth` m.
+    /// Colour of the surface `id` at `depth` m in the tile's pixel (row, column).
     #[inline(always)]
     pub(super) fn patch(
         &self,

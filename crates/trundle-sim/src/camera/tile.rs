@@ -38,7 +38,7 @@ impl Tile {
         tile
     }
 
-    /// Depth of the farthest pixel, m; infinite while one sees nothing.
+    /// Depth of the farthest pixel, m; infinite while a pixel is empty.
     #[inline(always)]
     pub(super) fn reach(&self) -> f32 {
         let mut least = self.inverse_depth[0];

@@ -5,7 +5,7 @@ use super::round::nearest;
 use super::srgb::{linear_from_srgb, srgb};
 use crate::rng::NormalTable;
 
-/// From the level of a channel (sRGB) to the mean and the standard deviation of what the camera says: a table an image.
+/// From the level of a channel (sRGB) to mean and standard deviation of the measured level: a table an image.
 #[derive(Debug, Clone)]
 pub(super) struct Tone(Box<[(f32, f32); 256]>);
 
@@ -21,7 +21,7 @@ impl Tone {
         })))
     }
 
-    /// What the camera says for a colour; `bits` is the pixel's hash, of which depth takes the first deviate.
+    /// Measured level of a colour; `bits` is the pixel's hash, of which depth takes the first deviate.
     #[inline]
     pub(super) fn measure(&self, color: [u8; 3], bits: u64, normals: &NormalTable) -> [u8; 3] {
         let channel = |i: usize| {

@@ -10,7 +10,7 @@ use crate::materials::{Paintings, Texture};
 use crate::world::{Kind, World};
 use trundle_core::{PinholeCamera, Pose2, Pose3, Vector3};
 
-/// A world as the camera sees it in one image: everything in the frame of that world.
+/// A world in one image of the camera: everything in the frame of that world.
 ///
 /// What it draws has numbers: from `first_id` on, four a solid (the axis of a box's face, or a part of a cylinder), then one a
 /// triangle.

@@ -8,7 +8,7 @@ use trundle_core::{Invalid, Pose2, Stamp, Twist2, Vector2, difference_of_angles}
 const POSITION_TOLERANCE_M: f64 = 0.004;
 const HEADING_TOLERANCE_RAD: f64 = 0.004;
 
-/// Nearer than this, m, a way-point behind the robot is backed up to.
+/// Distance, m, below which the robot backs up to a way-point behind it.
 const BACK_UP_M: f64 = 0.1;
 
 /// Speed over distance left, 1/s: slow enough for motors that lag by a tenth of a second.
@@ -21,7 +21,7 @@ const LINE_RETURN_GAIN_RAD_PER_M: f64 = 4.0;
 /// What counts as getting somewhere, m and rad.
 const MIN_PROGRESS: f64 = 0.02;
 
-/// How often a way-point is gone for again when turning at it led away from it.
+/// Number of attempts at a way-point when the turn towards it led away from it.
 const MAX_WAYPOINT_ATTEMPTS: u32 = 5;
 
 /// How a [`WaypointFollower`] is doing.
@@ -34,7 +34,7 @@ pub enum Following {
     },
     /// At the last way-point, within 1 cm and 1 deg.
     Arrived,
-    /// Something is in the way to this way-point, from 0; it drives no more.
+    /// An obstacle blocks the path to this way-point, from 0; the drive ends.
     Blocked {
         /// Index of the way-point.
         waypoint: usize,
@@ -43,8 +43,8 @@ pub enum Following {
 
 /// Drives from way-point to way-point by the true pose: turns to it on the spot, goes straight, turns to its heading.
 ///
-/// For making data: it looks at the truth and avoids nothing. Straight legs follow the line to the way-point
-/// (heading error steers, distance from the line bends the heading); speeds ramp up, and fall with the distance left.
+/// For making data: it uses the true pose and avoids nothing. Straight legs follow the line to the way-point: heading error and
+/// distance from the line control the turn rate. Speeds ramp up, and fall with the remaining distance.
 #[derive(Debug, Clone)]
 pub struct WaypointFollower {
     config: WaypointFollowerConfig,
@@ -52,7 +52,7 @@ pub struct WaypointFollower {
     state: Following,
     phase: Phase,
     attempts: u32,
-    /// The last step: when, and what it said.
+    /// The last step: its stamp and its twist.
     last: Option<(Stamp, Twist2)>,
     /// When and where it last got somewhere.
     anchor: Option<(Stamp, Pose2)>,

@@ -1,4 +1,4 @@
-//! Ways to drive a simulated robot without autonomy: commands by the clock, and way-points by the true pose.
+//! Drives of a simulated robot without autonomy: commands by the clock, and way-points by the true pose.
 
 mod follower;
 mod follower_config;

@@ -25,16 +25,16 @@ pub enum FaultKind {
     },
     /// Images come without depth.
     DepthGone,
-    /// A wheel turns, is counted, and drives the body by only a part of its way.
+    /// A wheel turns and is counted, but drives the body by only a fraction of its distance.
     WheelSlips {
         /// Which.
         side: WheelSide,
-        /// The part of its way, 0 (it spins) to 2.
+        /// The fraction of its distance, 0 (it spins) to 2.
         factor: f64,
     },
-    /// The encoders say again and again what they said last, while the wheels turn.
+    /// The encoders repeat their last counts while the wheels turn.
     EncodersStuck,
-    /// The gyro says again and again what it said last.
+    /// The gyro repeats its last rate.
     GyroStuck,
     /// At `from_s` the encoders' counters jump, for good; `to_s` does not matter.
     OdometryJumps {
@@ -43,8 +43,8 @@ pub enum FaultKind {
         /// Ticks of the right wheel.
         right_ticks: i32,
     },
-    /// At `from_s` the robot is put somewhere else, as soon as nobody stands there; no sensor of the base notices, and `to_s`
-    /// does not matter.
+    /// At `from_s` the robot is put somewhere else, as soon as no person stands there. No sensor of the base measures it, and `to_s`
+    /// has no effect.
     Kidnapped {
         /// World frame, m.
         x: f64,
@@ -53,9 +53,9 @@ pub enum FaultKind {
         /// World frame, deg.
         heading_deg: f64,
     },
-    /// The bumper says the same whatever is touched.
+    /// The bumper is stuck in one state.
     BumperStuck {
-        /// What it says.
+        /// The state.
         pressed: bool,
     },
     /// Scans do not come.

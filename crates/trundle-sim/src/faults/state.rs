@@ -57,7 +57,7 @@ impl Faults {
         fault
     }
 
-    /// The part of its way by which each wheel drives, left and right.
+    /// The fraction of its distance by which each wheel drives, left and right.
     pub(crate) fn grip(&self) -> (f64, f64) {
         let mut grip = (1.0, 1.0);
         for (_, kind) in self.holding() {
@@ -82,7 +82,7 @@ impl Faults {
         self.holding().any(|(_, kind)| kind == FaultKind::LaserGone)
     }
 
-    /// What the bumper says whatever is touched.
+    /// State of a stuck bumper.
     pub(crate) fn bumper(&self) -> Option<bool> {
         let said = |(_, kind)| match kind {
             FaultKind::BumperStuck { pressed } => Some(pressed),
@@ -91,7 +91,7 @@ impl Faults {
         self.holding().filter_map(said).last()
     }
 
-    /// By how many ticks the encoders jump now, left and right; says so once.
+    /// Ticks by which the encoders jump now, left and right; each jump is returned once.
     pub(crate) fn jump(&mut self) -> Option<(i32, i32)> {
         let jumped = |kind| match kind {
             FaultKind::OdometryJumps { left_ticks, right_ticks } => Some((left_ticks, right_ticks)),
@@ -100,7 +100,7 @@ impl Faults {
         self.once(jumped, |_| true)
     }
 
-    /// Where the robot is put now, `world_from_base`, if `is_free` there; says so once.
+    /// Pose to which the robot is carried now, `world_from_base`, if `is_free` there; returned once.
     pub(crate) fn kidnapping(&mut self, is_free: impl Fn(Pose2) -> bool) -> Option<Pose2> {
         let put = |kind| match kind {
             FaultKind::Kidnapped { x, y, heading_deg } => Some(Pose2::new(x, y, heading_deg.to_radians())),

@@ -18,10 +18,10 @@ pub enum ImportFault {
     /// The file system refuses.
     #[error("cannot be read: {reason}")]
     Unreadable {
-        /// What it says.
+        /// The message of the reader.
         reason: String,
     },
-    /// There is less of it than it says.
+    /// The file is shorter than its header declares.
     #[error("{item} has {found} bytes, expected {expected}: the file is cut short")]
     Truncated {
         /// Which part.

@@ -5,7 +5,7 @@ use std::fmt;
 /// Number of examples in a note.
 const MAX_EXAMPLES: usize = 3;
 
-/// What a user should know of an imported file.
+/// A note for the user about an imported file.
 #[derive(Debug, Clone, PartialEq)]
 pub enum ImportNote {
     /// Textures that cannot be read; their surfaces are grey.

@@ -17,7 +17,7 @@ const SLAB_THICKNESS_M: f64 = 0.1;
 const TEXEL_BYTES: f64 = 16.0 / 3.0;
 const TEXELS_A_METRE: f64 = 250.0;
 
-/// What nobody sees.
+/// Paint of hidden faces.
 const HIDDEN: Paint = Paint::Flat { color: [150; 3] };
 
 /// What walls look like: all with texture, for cameras that navigate by it.
@@ -66,18 +66,18 @@ impl RaisedMap {
     }
 }
 
-/// The solids of a map: occupied cells as walls, floor (and ceiling) where the map knows anything, frame that of the map.
+/// The solids of a map: occupied cells as walls, floor (and ceiling) at known cells, in the frame of the map.
 ///
 /// Cells are merged into few boxes. The true grid of the result is the map. `file` is for messages.
 ///
 /// # Errors
-/// When an option is outside its range, the map knows no cell, or its textures would not fit in the memory allowed; the
-/// message says how large the map is.
+/// When an option is outside its range, the map has no known cell, or its textures would not fit in the memory allowed; the
+/// message holds the size of the map.
 pub fn raise_map(file: &str, grid: &OccupancyGrid, options: &RaisedMap) -> Result<Vec<Solid>, ImportError> {
     raise(grid, options).map_err(|fault| ImportFault::Invalid(fault).of(file))
 }
 
-/// Farther from the world's origin nothing is told apart to the tenth of a millimetre, m.
+/// Distance from the world's origin beyond which f32 does not resolve a tenth of a millimetre, m.
 const MAX_COORDINATE_M: f64 = 1e5;
 
 fn raise(grid: &OccupancyGrid, options: &RaisedMap) -> Result<Vec<Solid>, Invalid> {

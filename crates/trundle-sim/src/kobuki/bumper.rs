@@ -24,7 +24,7 @@ impl Bumper {
         Self { footprint, reach, free_way: 0.0, is_pressed: false, contacts: 0 }
     }
 
-    /// Where the body ends that wants to go from `from` to `to`, and the bumper's state when it changed.
+    /// End of a motion of the body from `from` to `to` at the first contact, and the bumper's state when it changed.
     ///
     /// A move into something does not happen (the wheels slip); the turn in it does when there is room for it.
     pub(super) fn resolve(

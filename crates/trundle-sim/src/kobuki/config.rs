@@ -3,15 +3,15 @@
 use serde::{Deserialize, Serialize};
 use trundle_core::{DifferentialDrive, DriveLimits, Footprint, Invalid, Vector2, require_in};
 
-/// The true robot: what its data sheet says, and how this one differs from it.
+/// The true robot: its data sheet, and how this one differs from it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct KobukiConfig {
-    /// Nominal geometry: what the motor controller and the odometry believe. Default the Kobuki of \[Li18\].
+    /// Nominal geometry: that of the motor controller and the odometry. Default the Kobuki of \[Li18\].
     pub drive: DifferentialDrive,
-    /// Highest speed of a wheel's rim, m/s, 0.01 to 10; faster commands are slowed along the same curve. Default 0.70 \[Li18\].
+    /// Highest speed of a wheel's circumference, m/s, 0.01 to 10; faster commands are slowed along the same curve. Default 0.70 \[Li18\].
     pub wheel_speed: f64,
-    /// Highest acceleration of a wheel's rim, m/s^2, 0.01 to 100. Default 1.2: above what trundle asks for, below slipping.
+    /// Highest acceleration of a wheel's circumference, m/s^2, 0.01 to 100. Default 1.2: above what trundle commands, below slipping.
     pub wheel_acceleration: f64,
     /// Time constant of the speed loop, a first-order lag, s, 0 to 2. Default 0.05, typical of small geared motors.
     pub motor_lag: f64,
@@ -25,7 +25,7 @@ pub struct KobukiConfig {
     pub wheel_radius_error: f64,
     /// Standard deviation of the wheelbase over the nominal one, 0 to 0.1. Default 0.003 \[Borenstein96\].
     pub wheelbase_error: f64,
-    /// Standard deviation of each wheel's slip, part of its way, 0 to 0.5. Default 0.005: with `slip_time` about 2 mm a wheel after
+    /// Standard deviation of each wheel's slip, fraction of its distance, 0 to 0.5. Default 0.005: with `slip_time` about 2 mm a wheel after
     /// 1 m at 0.3 m/s, as of a robot on a hard floor \[Chong97\].
     pub slip: f64,
     /// Correlation time of slip, s, 0.001 to 10. Default 0.3: a tenth of a metre of floor.
@@ -87,7 +87,7 @@ impl Default for KobukiConfig {
 }
 
 impl KobukiConfig {
-    /// The same body, exactly as its data sheet says and without noise; dynamics stay.
+    /// The same body with the numbers of its data sheet and without noise; dynamics stay.
     pub fn without_noise(self) -> Self {
         Self {
             wheel_radius_error: 0.0,

@@ -5,12 +5,12 @@ use super::dynamics_step::{STEP_S, STEPS_PER_SECOND};
 use std::collections::VecDeque;
 use trundle_core::{DifferentialDrive, Twist2};
 
-/// From commanded twists to speeds of the wheels' rims: delay, saturation, ramp, lag.
+/// From commanded twists to speeds of the wheels' circumferences: delay, saturation, ramp, lag.
 #[derive(Debug)]
 pub(super) struct Drivetrain {
     drive: DifferentialDrive,
     wheel_speed: f64,
-    /// Most change of a rim's set speed in a step, m/s.
+    /// Largest change of a wheel's set speed in a step, m/s.
     ramp: f64,
     /// Part of the gap to the set speed that the motor closes in a step.
     closing: f64,
@@ -20,7 +20,7 @@ pub(super) struct Drivetrain {
     /// When the last command took effect.
     heard: u64,
     now: u64,
-    /// Commands on their way: (step at which they take effect, rim speeds).
+    /// Commands within the delay: (step at which they take effect, wheel speeds).
     pending: VecDeque<(u64, [f64; 2])>,
     target: [f64; 2],
     set: [f64; 2],
@@ -52,7 +52,7 @@ impl Drivetrain {
         self.pending.push_back((self.now + self.delay_steps, [left / excess, right / excess]));
     }
 
-    /// Goes on by a step; rim speeds (left, right), m/s, of wheels of nominal radius.
+    /// Advances by a step; wheel speeds (left, right), m/s, of wheels of nominal radius.
     pub(super) fn step(&mut self) -> (f64, f64) {
         while self.pending.front().is_some_and(|(due, _)| *due <= self.now) {
             if let Some((due, target)) = self.pending.pop_front() {

@@ -7,7 +7,7 @@ use trundle_core::DifferentialDrive;
 pub(super) struct Encoders {
     drive: DifferentialDrive,
     start: (u16, u16),
-    /// Way of each rim since the start, m, of wheels of nominal radius.
+    /// Distance of each wheel since the start, m, of wheels of nominal radius.
     way: (f64, f64),
 }
 
@@ -28,7 +28,7 @@ impl Encoders {
         self.start = (jumped(self.start.0, left), jumped(self.start.1, right));
     }
 
-    /// What the counters say: whole ticks, the fraction not yet counted.
+    /// The counters: whole ticks, without the fraction.
     pub(super) fn read(&self) -> (u16, u16) {
         let count = |start: u16, way: f64| {
             let ticks = (way / self.drive.metres_per_tick()).floor() as i64;

@@ -64,7 +64,7 @@ pub(crate) struct Kobuki {
     wheels: TrueWheels,
     /// True over nominal radius, left and right.
     radius_ratio: (f64, f64),
-    /// Part of its way that a wheel drives the body, left and right: 1 unless something is broken.
+    /// Fraction of its distance by which a wheel drives the body, left and right: 1 without a fault.
     grip: (f64, f64),
     pose: Pose2,
     /// Turned so far, rad, not wrapped.
@@ -136,7 +136,7 @@ impl Kobuki {
         self.cliff.look(self.pose, world)
     }
 
-    /// From now on the wheels drive the body by this part of their way, left and right.
+    /// Sets the fraction of their distance by which the wheels drive the body, left and right.
     pub(crate) fn set_grip(&mut self, grip: (f64, f64)) {
         self.grip = grip;
     }

@@ -6,10 +6,10 @@ use crate::rng::normal;
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 
-/// Slip of both wheels, part of their way: two independent Ornstein-Uhlenbeck processes.
+/// Slip of both wheels, fraction of their distance: two independent Ornstein-Uhlenbeck processes.
 ///
-/// White noise a step would shake the body; slip has a memory of `slip_time`, the time that the same bit of floor lasts.
-/// At speed v the way's variance grows by 2 slip^2 slip_time v a metre \[Chong97\].
+/// White noise in each step would shake the body. Slip has the correlation time `slip_time`, the time on one piece of floor.
+/// At speed v the distance's variance grows by 2 slip^2 slip_time v a metre \[Chong97\].
 #[derive(Debug)]
 pub(super) struct Slip {
     rng: ChaCha8Rng,

@@ -67,7 +67,7 @@ pub(super) fn fabric(seed: u32, color: [u8; 3], x: f32, y: f32, grain: f32) -> R
     lifted(scaled(base, 0.8 + 0.4 * patch), weave + 13.0 * grain)
 }
 
-/// Veneered furniture: timber with a dark rim and a drawer's joint or two.
+/// Veneered furniture: timber with a dark border and one or two joints of drawers.
 pub(super) fn veneer(seed: u32, color: [u8; 3], size: (f32, f32), x: f32, y: f32, grain: f32) -> Rgb {
     let rim = x.min(y).min(size.0 - x).min(size.1 - y);
     let joint = (y - size.1 * (0.3 + 0.1 * lattice(seed, 1, 1))).abs() < 0.004 && size.1 > 0.3;

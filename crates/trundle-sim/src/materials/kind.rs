@@ -3,7 +3,7 @@
 /// A kind of surface. Colours are sRGB.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Paint {
-    /// One colour: faces that nobody sees, and tests.
+    /// One colour: hidden faces, and tests.
     Flat {
         /// The colour.
         color: [u8; 3],

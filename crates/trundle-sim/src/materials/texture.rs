@@ -11,7 +11,7 @@ use trundle_core::ColorImage;
 /// A rectangle of colours with its mip levels: what the camera looks at.
 ///
 /// Texels are `0x00BBGGRR`, row by row from the top left. Each level halves both sides of the one before by averaging
-/// (Williams 1983, "Pyramidal parametrics"), so that a pixel sees the mean of what it covers.
+/// (Williams 1983, "Pyramidal parametrics"), so that a pixel gets the mean of its area.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Texture {
     levels: Vec<Level>,
@@ -98,10 +98,10 @@ impl Texture {
         self.scale
     }
 
-    /// The colour at (x, y) texels of level 0 from the upper left corner, averaged over 2^`level` of them each way.
+    /// The colour at (x, y) texels of level 0 from the upper left corner, averaged over 2^`level` of them in each direction.
     ///
-    /// Between two levels one goes over into the other in the middle half of the way: continuous as the usual blend
-    /// over the whole way is, at three quarters of its price.
+    /// Between two levels the blend runs over the middle half of the interval. It is continuous, as the usual blend
+    /// over the whole interval is, and costs three quarters of it.
     #[inline(always)]
     pub(crate) fn sample(&self, [x, y]: [f32; 2], level: f32) -> Light {
         let [x, y] = if self.repeats { self.wrapped([x, y]) } else { [x, y] };

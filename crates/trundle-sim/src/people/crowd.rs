@@ -12,7 +12,7 @@ use trundle_core::{Footprint, Invalid, Pose2};
 const YIELD_DISTANCE_M: f64 = 0.5;
 const ELBOW_ROOM: f64 = 0.3;
 
-/// Nobody sets a foot nearer to the robot than this, m.
+/// Smallest distance of a foot from the robot, m.
 const KEEP_OFF: f64 = 0.03;
 
 /// Farther from a person's middle than this, m, nothing of the person can be.
@@ -21,7 +21,7 @@ const MAX_PERSON_EXTENT_M: f64 = 0.85;
 /// How much room a person needs to walk, radius, m.
 const SHOULDER_RADIUS_M: f64 = 0.2;
 
-/// Everybody who walks about.
+/// All persons who walk.
 #[derive(Debug)]
 pub(crate) struct Crowd {
     people: Vec<Person>,
@@ -29,7 +29,7 @@ pub(crate) struct Crowd {
     bodies: Arc<[Body]>,
 }
 
-/// Everybody at one moment, for whoever looks at them elsewhere.
+/// All persons at one moment, for use in another thread.
 #[derive(Debug, Clone)]
 pub(crate) struct CrowdView {
     walkers: Vec<Walker>,
@@ -37,14 +37,14 @@ pub(crate) struct CrowdView {
 }
 
 impl CrowdView {
-    /// Everybody's parts where they were.
+    /// All persons' parts at that moment.
     pub(crate) fn movers(&self) -> Vec<Mover<'_>> {
         movers(&self.walkers, &self.bodies)
     }
 }
 
 impl Crowd {
-    /// People at the start of their ways; `band` is what a robot of this height meets of them.
+    /// People at the start of their paths; `band` is the robot's height band.
     ///
     /// # Errors
     /// When a number of a person is outside its range; names the person.
@@ -58,7 +58,7 @@ impl Crowd {
         Ok(Self { people, walkers, bodies })
     }
 
-    /// Refuses ways that lead through what stands, looked at every 5 cm.
+    /// Refuses paths through fixed obstacles, checked every 5 cm.
     ///
     /// # Errors
     /// Names the person and the leg.
@@ -85,7 +85,7 @@ impl Crowd {
 
     /// Goes on by `elapsed` s while the robot stands at `robot`.
     ///
-    /// Nobody moves into the robot: a step that would bring a leg too near is not made.
+    /// Advances all persons. A step that would bring a leg too near to the robot is not made.
     pub(crate) fn step(&mut self, elapsed: f64, footprint: &Footprint, robot: Pose2) {
         let reach = footprint.circumscribed_radius();
         for ((person, walker), body) in self.people.iter().zip(&mut self.walkers).zip(self.bodies.iter()) {
@@ -111,22 +111,22 @@ impl Crowd {
         near.map(|(walker, body)| clearance(body, walker, footprint, pose)).fold(f64::INFINITY, f64::min)
     }
 
-    /// Where everybody is, `world_from_body`.
+    /// Poses of all persons, `world_from_body`.
     pub(crate) fn poses(&self) -> Vec<Pose2> {
         self.walkers.iter().map(|walker| walker.pose).collect()
     }
 
-    /// Everybody's parts where they are now.
+    /// All persons' parts at present.
     pub(crate) fn movers(&self) -> Vec<Mover<'_>> {
         movers(&self.walkers, &self.bodies)
     }
 
-    /// Everybody as they are now.
+    /// All persons at present.
     pub(crate) fn view(&self) -> CrowdView {
         CrowdView { walkers: self.walkers.clone(), bodies: Arc::clone(&self.bodies) }
     }
 
-    /// Draws how everybody looks.
+    /// Draws the textures of all persons.
     pub(crate) fn paint(&self) {
         self.bodies.iter().for_each(Body::paint);
     }

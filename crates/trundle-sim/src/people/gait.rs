@@ -27,7 +27,7 @@ pub(super) struct Gait {
 }
 
 impl Gait {
-    /// Of somebody who walks at `speed` m/s.
+    /// Gait of a person who walks at `speed` m/s.
     pub(super) fn new(speed: f64) -> Self {
         Self { step: (WALK_RATIO * speed).sqrt(), phase: 0.0, swing: 0.0 }
     }
@@ -37,7 +37,7 @@ impl Gait {
         self.swing
     }
 
-    /// A moment later: `elapsed` s in which `way` m were walked, wanting to walk on or not.
+    /// The gait after `elapsed` s and a walked distance of `way` m; `is_walking`: whether the person goes on.
     pub(super) fn after(self, elapsed: f64, way: f64, is_walking: bool) -> Self {
         let change = if is_walking { elapsed / EASE_DURATION_S } else { -elapsed / EASE_DURATION_S };
         Self {

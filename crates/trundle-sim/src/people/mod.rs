@@ -1,4 +1,4 @@
-//! People who walk given way-points, two legs each, and wait while the robot is in the way.
+//! People who walk along given way-points, two legs each, and wait while the robot blocks them.
 
 mod body;
 mod crowd;

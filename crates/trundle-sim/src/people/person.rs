@@ -3,11 +3,11 @@
 use serde::{Deserialize, Serialize};
 use trundle_core::{Invalid, require_finite, require_in};
 
-/// A person who walks from way-point to way-point, turning into each leg, and waits while the robot is in the way.
+/// A person who walks from way-point to way-point, turns into each leg, and waits while the robot blocks it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Person {
-    /// The way, world frame, m; one point is a person who stands.
+    /// The path, world frame, m; one point is a person who stands.
     pub waypoints: Vec<[f64; 2]>,
     /// Walking speed, m/s, 0.05 to 3. Default 1.2, a calm walk.
     pub speed: f64,
@@ -15,7 +15,7 @@ pub struct Person {
     pub pause: f64,
     /// Waits before the first step for, s, 0 to 3600. Default 0.
     pub delay: f64,
-    /// Whether the way goes on from its last point to its first, rather than back the same way. Default false.
+    /// Whether the path goes on from its last point to its first, rather than back along itself. Default false.
     pub around: bool,
     /// Whether the person stays at the last way-point. Default false.
     pub once: bool,
@@ -28,7 +28,7 @@ impl Default for Person {
 }
 
 impl Person {
-    /// The legs of the way, as indices of way-points.
+    /// The legs of the path, as indices of way-points.
     pub(crate) fn legs(&self) -> Vec<(usize, usize)> {
         let n = self.waypoints.len();
         let mut legs: Vec<_> = (1..n).map(|i| (i - 1, i)).collect();

@@ -10,13 +10,13 @@ const TURN_RATE: f64 = 2.5;
 /// Where they are and where they look, m and rad, to be there.
 const ARRIVAL_TOLERANCE: f64 = 1e-6;
 
-/// One person on the way.
+/// One person on the path.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Walker {
     /// `world_from_body`.
     pub(super) pose: Pose2,
     pub(super) gait: Gait,
-    /// The way-point that is walked to.
+    /// Index of the next way-point.
     target: usize,
     /// Whether way-points are taken backward.
     is_returning: bool,
@@ -26,7 +26,7 @@ pub(super) struct Walker {
 }
 
 impl Walker {
-    /// Standing at the first way-point, looking to the second.
+    /// Standing at the first way-point, facing the second.
     pub(super) fn new(person: &Person) -> Self {
         let first = point(person, 0);
         let way = person.waypoints.get(1).map_or(Vector2::x(), |_| point(person, 1) - first);

@@ -32,8 +32,8 @@ pub enum Corridor {
 
 /// A corridor 1.0 m wide and 6 m long to settle in, closed at both ends (world frame: origin in its middle, y along it).
 ///
-/// The goal looks up the corridor; the robot stands beside it, 0.38 m to the left, with the same heading; what blocks its
-/// way is a crate 1.1 m high. Both poses are free for a Kobuki and for a robot of 0.6 x 0.4 m. `seed` varies textures and,
+/// The goal faces along the corridor. The robot stands beside it, 0.38 m to the left, with the same heading; a crate 1.1 m high
+/// blocks the straight path. Both poses are free for a Kobuki and for a robot of 0.6 x 0.4 m. `seed` varies textures and,
 /// by 2 cm, the crate.
 ///
 /// # Errors

@@ -26,9 +26,9 @@ const HIGH_TABLE: f64 = 0.72;
 
 /// Two furnished rooms, 8 x 6 m together, and a door between them (world frame: x 0 to 8, y 0 to 6).
 ///
-/// The robot starts in the west room; its goal is in the east one, 6 m away, beyond the wall: the way leads round a low
+/// The robot starts in the west room; its goal is in the east one, 6 m away, beyond the wall. The path leads round a low
 /// table (0.45 m), through a door 1.0 m wide whose leaf stands open, and round a second low table. `seed` varies the
-/// textures, the door's place by 0.12 m, and the furniture by some centimetres and degrees; the way stays 0.8 m wide.
+/// textures, the door's place by 0.12 m, and the furniture by some centimetres and degrees; the path stays 0.8 m wide.
 ///
 /// # Errors
 /// Never for any seed; the type is that of every scene.

@@ -45,7 +45,7 @@ impl Builder {
         self.block(place, (0.0, 0.0), 0.0, [0.62, 0.6, 1.78], finish);
     }
 
-    /// A bath tub of `size` (x, y, height, m) with its rim.
+    /// A bath tub of `size` (x, y, height, m) with its upper edge.
     pub(super) fn tub(&mut self, place: Pose2, [x, y, height]: [f64; 3]) {
         self.block(place, (0.0, 0.0), 0.0, [x, y, height - 0.12], Finish::all(CERAMIC));
         for side in [-1.0, 1.0] {

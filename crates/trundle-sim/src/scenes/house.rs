@@ -34,7 +34,7 @@ struct Look {
 ///
 /// West: a hall 1.2 m wide between the bedroom (south) and bath and study (north). East: the living room, and through it
 /// the kitchen. Doors are 1.0 m wide. The robot starts in the hall; its goal is in the kitchen. `seed` varies textures and
-/// colours, and furniture by some centimetres and degrees; every room can be reached on ways 0.8 m wide.
+/// colours, and furniture by some centimetres and degrees; every room can be reached on paths 0.8 m wide.
 ///
 /// # Errors
 /// Never for any seed; the type is that of every scene.

@@ -8,7 +8,7 @@ use trundle_core::Pose2;
 pub(super) const DOOR_WIDTH: f64 = 1.0;
 pub(super) const DOOR_HEIGHT: f64 = 2.02;
 
-/// Which way a wall runs.
+/// Direction of a wall.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Along {
     X,
@@ -19,9 +19,9 @@ pub(super) enum Along {
 #[derive(Debug, Clone)]
 pub(super) struct Partition {
     pub(super) along: Along,
-    /// Where it begins and ends the way it runs, m.
+    /// Its ends along its direction, m.
     pub(super) span: [f64; 2],
-    /// Its faces across the way it runs, m.
+    /// Its faces across its direction, m.
     pub(super) faces: [f64; 2],
     /// What is painted on them, the one toward lower coordinates first.
     pub(super) paints: [Paint; 2],
@@ -30,7 +30,7 @@ pub(super) struct Partition {
 }
 
 impl Builder {
-    /// Places `wall` with a door opening about each of `doors` (m the way it runs, rising).
+    /// Places `wall` with a door opening about each of `doors` (m along the wall, rising).
     pub(super) fn partition(&mut self, wall: &Partition, doors: &[f64]) {
         let half = DOOR_WIDTH / 2.0;
         let ends = doors.iter().map(|door| door - half).chain([wall.span[1]]);

@@ -22,7 +22,7 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// What a camera sees of it while nothing moves.
+    /// The scene for a camera while nothing moves.
     pub fn snapshot(&self) -> SceneSnapshot<'_> {
         SceneSnapshot { world: &self.world, movers: &[], lights: &self.lights }
     }

@@ -43,7 +43,7 @@ impl Shot {
         self.stamp
     }
 
-    /// So much later than it should a fault lets it arrive, s.
+    /// Delay of the image by a fault, s.
     pub fn delay(&self) -> f64 {
         self.fault.delay
     }
@@ -61,7 +61,7 @@ impl Simulator {
         Some(CameraAside { rig: self.rig.take()?, scene: Arc::clone(&self.scene) })
     }
 
-    /// Goes on by a millisecond: what the sensors say meanwhile, in order.
+    /// Advances by a millisecond: the sensor events of that time, in order.
     ///
     /// # Errors
     /// As [`trundle_core::RobotBody::next_event`].

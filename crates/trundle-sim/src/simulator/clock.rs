@@ -19,7 +19,7 @@ impl Clock {
         Self { steps: None, ticks: 0 }
     }
 
-    /// The number of the reading that is due at step `now`, from 0; asked at every step, says each once.
+    /// The number of the reading that is due at step `now`, from 0. It is called at every step and returns each number once.
     pub(super) fn due(&mut self, now: u64) -> Option<u64> {
         let tick = self.ticks;
         let is_due = self.steps.is_some_and(|steps| now >= (tick as f64 * steps).round() as u64);

@@ -4,7 +4,7 @@ use crate::kobuki::STEPS_PER_SECOND;
 use std::collections::VecDeque;
 use trundle_core::SensorEvent;
 
-/// Events that are under way longer than they should be.
+/// Events with an additional delay.
 #[derive(Debug, Default)]
 pub(super) struct LatencyQueue {
     /// The step at which each arrives, in the order of sending.

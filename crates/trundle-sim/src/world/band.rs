@@ -9,7 +9,7 @@ use trundle_core::{Invalid, Vector2, Vector3, require_finite};
 /// Triangles that a thread clips at a time.
 const TRIANGLES_PER_CHUNK: usize = 4096;
 
-/// The heights between which something is in the way.
+/// The heights between which a solid is an obstacle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HeightBand {
     low: f64,

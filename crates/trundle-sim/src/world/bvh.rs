@@ -26,7 +26,7 @@ pub(crate) struct Bvh {
     leaves: Vec<(u32, u32)>,
 }
 
-/// What is looked for among the boxes.
+/// A query of the boxes.
 pub(crate) trait Probe {
     /// A lower bound of the distance of whatever is in each box; infinite for boxes that are not met.
     fn distances(&self, node: &Node) -> [f32; WIDTH];

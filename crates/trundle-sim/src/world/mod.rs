@@ -41,7 +41,7 @@ use trundle_core::{Invalid, Vector3};
 
 /// A static scene: frame `world`, z up, the floor's top at z = 0, metres.
 ///
-/// Textures are drawn from `seed` when first looked at; geometry alone costs nothing of them.
+/// Textures are drawn from `seed` at their first use; use of the geometry alone draws none.
 #[derive(Debug)]
 pub struct World {
     seed: u64,

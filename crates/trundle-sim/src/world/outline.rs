@@ -33,7 +33,7 @@ impl Outline {
 }
 
 /// The convex hull of a few points, counter-clockwise and without corners on its sides: one point, two, or a polygon
-/// (Andrew's monotone chain). `hull` is filled anew.
+/// (Andrew's monotone chain). `hull` is overwritten.
 pub(super) fn fill_hull(points: &mut [Vector2], hull: &mut Vec<Vector2>) {
     points.sort_unstable_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
     hull.clear();

@@ -19,7 +19,7 @@ struct Elements<'a> {
     stride: usize,
 }
 
-/// The `N`-vectors of an accessor, normalised where it says so; all finite.
+/// The `N`-vectors of an accessor, normalised where it is marked so; all finite.
 pub(super) fn vectors<const N: usize>(
     buffers: &Buffers<'_>,
     index: Index<Accessor>,

@@ -41,7 +41,7 @@ impl<'a> Buffers<'a> {
         self.root
     }
 
-    /// The bytes of a view; where it says more than its buffer holds, those that are there.
+    /// The bytes of a view; a view beyond the end of its buffer gives the bytes that exist.
     pub(super) fn view(&self, index: Index<buffer::View>) -> Result<&[u8], ImportFault> {
         let view = at(&self.root.buffer_views, index, "bufferViews")?;
         at(&self.root.buffers, view.buffer, "buffers")?;

@@ -105,7 +105,7 @@ impl<'a> Builder<'a> {
         Ok(())
     }
 
-    /// Adds triangles with corners of their own, for colours are looked up by corner.
+    /// Adds triangles with corners of their own, because colours are stored by corner.
     fn paint(&mut self, triangles: &[Triangle], first: usize, colors: &[[f32; 3]]) {
         for Triangle { corners, material } in triangles {
             let place = self.positions.len();

@@ -28,7 +28,7 @@ use std::path::Path;
 pub struct ImportedScene {
     /// Its surfaces, world frame.
     pub mesh: Mesh,
-    /// What the user should know of it.
+    /// Notes for the user.
     pub notes: Vec<ImportNote>,
 }
 
@@ -42,7 +42,7 @@ pub struct ImportedScene {
 ///
 /// The floor, the lowest large level, is moved to z = 0 where it is elsewhere.
 ///
-/// The up axis is the standard's, +y, unless `options` says otherwise: a z-up file that claims nothing lies on its side.
+/// The up axis is the standard's, +y, unless `options` sets another: a z-up file without a declaration lies on its side.
 ///
 /// # Errors
 /// When a file or a buffer is missing, cut short or broken, a number is not finite, an index is out of range, the file

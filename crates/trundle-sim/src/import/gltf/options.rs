@@ -19,9 +19,9 @@ pub enum UpAxis {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct GltfOptions {
-    /// The file's up axis. Default +y, as the standard says.
+    /// The file's up axis. Default +y, by the standard.
     pub up: UpAxis,
-    /// Metres a unit of the file, 1e-6 to 1e6. Default 1, as the standard says.
+    /// Metres a unit of the file, 1e-6 to 1e6. Default 1, by the standard.
     pub scale: f64,
     /// Height of the model's floor, m, which comes to lie at z = 0. Default: where it is found, if `pose` is the identity.
     pub floor: Option<f64>,
@@ -54,7 +54,7 @@ impl GltfOptions {
         Ok(self)
     }
 
-    /// Whether the floor is looked for.
+    /// Whether the floor is searched.
     pub(super) fn finds_floor(&self) -> bool {
         self.floor.is_none() && self.pose == Pose3::identity()
     }

@@ -117,7 +117,7 @@ fn base_color_texture<'a>(
     Ok(material.pbr_metallic_roughness.base_color_texture.as_ref())
 }
 
-/// Scaled, turned, shifted, as in the extension's example: its matrix in print turns the other way.
+/// Scaled, turned, shifted, as in the extension's example; the printed matrix of the extension turns the other way.
 fn transformed([u, v]: [f32; 2], transform: &TextureTransform) -> [f32; 2] {
     let (s, c) = transform.rotation.0.sin_cos();
     let (u, v) = (u * transform.scale.0[0], v * transform.scale.0[1]);

@@ -4,7 +4,7 @@ use crate::import::ImportFault;
 use gltf::json::validation::Validate;
 use gltf::json::{Index, Root, Value, deserialize};
 
-/// Extensions that may be required: read, or of no matter to a camera that sees matt surfaces, or of textures that are then grey.
+/// Extensions that may be required: read, without effect on matt surfaces, or of textures that are then grey.
 const UNDERSTOOD: [&str; 17] = [
     "EXT_texture_webp",
     "EXT_texture_avif",

@@ -2,7 +2,7 @@
 
 use super::light::spread;
 
-/// Half as many texels each way (rounded down, at least one), each the mean of what it covers: of 2 x 2 texels when both
+/// Half as many texels in each direction (rounded down, at least one), each the mean of its area: of 2 x 2 texels when both
 /// numbers are even.
 pub(super) fn halved(texels: &[u32], (width, height): (usize, usize)) -> (Vec<u32>, usize, usize) {
     let (w, h) = ((width / 2).max(1), (height / 2).max(1));

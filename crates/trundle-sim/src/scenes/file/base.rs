@@ -32,18 +32,18 @@ pub struct Base {
     pub wall_height: Option<f64>,
 }
 
-/// Reads the files that a scene file names, relative to it: where that lies is the caller's to know.
+/// Reads the files that a scene file names; paths are relative to the scene file, which the caller opens.
 pub trait BaseLoader {
     /// A glTF or GLB file ([`crate::import::gltf()`]).
     ///
     /// # Errors
-    /// What the reader says.
+    /// The reader's error.
     fn gltf(&self, path: &Path, options: &GltfOptions) -> Result<Mesh, LoadError>;
 
     /// A map (YAML and PGM), its occupied cells raised to `wall_height` m, and its floor.
     ///
     /// # Errors
-    /// What the reader says.
+    /// The reader's error.
     fn map(&self, path: &Path, wall_height: f64) -> Result<Vec<Solid>, LoadError>;
 }
 

@@ -19,7 +19,7 @@ pub enum SceneError {
         field: &'static str,
         /// The file, as the item names it.
         path: String,
-        /// What its reader says.
+        /// The reader's error.
         source: LoadError,
     },
 }

@@ -69,7 +69,7 @@ impl SceneFile {
     /// looks of props.
     ///
     /// # Errors
-    /// Names the item that is wrong (`props[3].size`), or the file and what its reader says.
+    /// Names the item that is wrong (`props[3].size`), or the file and its reader's error.
     pub fn build(&self, loader: &dyn BaseLoader, seed: u64) -> Result<Scene, SceneError> {
         let seed = self.base.seed.unwrap_or(seed);
         let mut base = self.base.load(loader, seed)?;

@@ -18,8 +18,8 @@ use trundle_core::{Invalid, Pose2};
 /// Six rooms, 5 x 4.5 m each, outside a ring corridor 1.56 m wide that runs 41.8 m around a closed core (world frame: x 0 to
 /// 15, y 0 to 18.25).
 ///
-/// South, from the west: an office, a pantry, the same office again; north: two equal meeting rooms and a store. Rooms
-/// that are equal are so to the last texel: what one looks like says nothing about which it is. The doors (1.0 m) stand
+/// South, from the west: an office, a pantry, the same office again; north: two equal meeting rooms and a store. Equal rooms
+/// are equal to the last texel: an image cannot separate them. The doors (1.0 m) stand
 /// open. The corridor is poor in texture between its posters, signs and closed doors. `seed` varies textures, colours,
 /// furniture and what hangs on the walls.
 ///
