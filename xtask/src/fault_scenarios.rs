@@ -1,4 +1,4 @@
-//! Runs with failing sensors, slipping wheels and people in the way: each must end as its scenario expects, without a contact.
+//! Runs with failing sensors, slipping wheels and people in the path: each must end as its scenario expects, without a contact.
 
 use crate::program;
 use crate::workspace::Verdict;

@@ -59,7 +59,7 @@ pub fn run(root: &Path, options: &Options) -> Verdict {
     program::cargo(root, &cargo, if options.guided { &environment } else { &[] })
 }
 
-/// Five seconds a target, with the runner that the workspace's tests have built: nothing is compiled anew.
+/// Five seconds a target, with the runner that the workspace's tests have built: nothing is compiled.
 pub fn run_in_ci(root: &Path) -> Verdict {
     if !program::cargo(root, &["test", "--workspace", "--no-run", "--quiet"], &[])? {
         return Ok(false);

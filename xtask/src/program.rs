@@ -11,7 +11,7 @@ pub fn cargo(root: &Path, args: &[&str], env: &[(&str, &str)]) -> Result<bool, S
     Ok(status.success())
 }
 
-/// Builds the program in a profile (`release`, `dev`) and says where it is.
+/// Builds the program in a profile (`release`, `dev`); its path.
 pub fn trundle(root: &Path, profile: &str) -> Result<PathBuf, String> {
     if !cargo(root, &["build", "--profile", profile, "--package", "trundle-cli"], &[])? {
         return Err(format!("the program does not build in profile {profile}"));
@@ -20,7 +20,7 @@ pub fn trundle(root: &Path, profile: &str) -> Result<PathBuf, String> {
     Ok(target(root)?.join(folder).join(format!("trundle{}", std::env::consts::EXE_SUFFIX)))
 }
 
-/// Builds the release program and says where it is.
+/// Builds the release program; its path.
 pub fn release_trundle(root: &Path) -> Result<PathBuf, String> {
     trundle(root, "release")
 }
@@ -32,7 +32,7 @@ pub fn run(program: &Path, args: &[&str]) -> Result<Option<i32>, String> {
     Ok(status.map_err(|e| format!("cannot start {}: {e}", program.display()))?.code())
 }
 
-/// Runs the program, and says so where it does not end with exit code 0; whether it does.
+/// Runs the program, and prints an exit code other than 0; whether it is 0.
 pub fn ends_well(program: &Path, args: &[&str]) -> Result<bool, String> {
     let code = run(program, args)?;
     if code != Some(0) {

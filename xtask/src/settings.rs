@@ -44,7 +44,7 @@ const UNITS: [(&str, &str); 27] = [
     ("rad/s/sqrt(s)", "_rad_s_per_sqrt_s"),
     ("ticks", "_ticks"),
 ];
-/// Words that say that a number has no unit.
+/// Words of a doc comment that stand for a number without unit.
 const UNITLESS: [&str; 30] = [
     "ratio",
     "count",
@@ -91,7 +91,7 @@ struct Setting {
     doc: String,
 }
 
-/// Writes the list and the page; with `check_only`, only says whether they are up to date.
+/// Writes the list and the page; with `check_only`, only reports whether they are up to date.
 pub fn run(root: &Path, check_only: bool) -> Verdict {
     let settings = read(root)?;
     let problems: Vec<&Setting> = settings.iter().filter(|s| s.unit == "?").collect();
@@ -307,7 +307,7 @@ fn snake(name: &str) -> String {
     snake
 }
 
-/// The unit that a doc comment names between commas; `?` when it names none and no word says that there is none.
+/// The unit that a doc comment names between commas; `?` when it names none and has no word for a number without unit.
 fn unit_of(doc: &str) -> String {
     let found = unit_or_none(doc);
     let lower = doc.to_lowercase();

@@ -33,7 +33,7 @@ pub trait EncodedBody {
     /// Starts a background job of the robot.
     fn start_job(&mut self, job: Job);
 
-    /// The result of the job that is still under way at the end of a run; `None` where there is none.
+    /// The result of a job that is running at the end of a run; `None` without one.
     fn finish_job(&mut self, helper: Worker) -> Option<Answer>;
 
     /// Separate contacts so far, in truth; `None` where only the bumper reports contacts.

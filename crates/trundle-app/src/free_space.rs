@@ -9,7 +9,7 @@ const MESSAGES_BETWEEN_CHECKS: u32 = 500;
 
 /// Watches the free space of a disk.
 pub struct FreeSpace {
-    /// The free space \[bytes\]; `None` where the system does not tell.
+    /// The free space \[bytes\]; `None` where the system does not report it.
     read: Box<dyn Fn() -> Option<u64> + Send>,
     min_free_bytes: u64,
     messages: u32,
@@ -23,7 +23,7 @@ impl FreeSpace {
         Self::new(move || free_bytes(&folder), MIN_FREE_BYTES)
     }
 
-    /// A disk whose free space `read` tells, of which `min_free_bytes` stay free.
+    /// A disk whose free space `read` reports, of which `min_free_bytes` stay free.
     #[must_use]
     pub fn new(read: impl Fn() -> Option<u64> + Send + 'static, min_free_bytes: u64) -> Self {
         Self { read: Box::new(read), min_free_bytes, messages: 0 }

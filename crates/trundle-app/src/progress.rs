@@ -23,7 +23,7 @@ impl Progress {
         Self(Some(Arc::new(show)))
     }
 
-    /// Whether nobody looks: the line need not be made.
+    /// Whether the display is off: the line need not be made.
     #[must_use]
     pub fn is_hidden(&self) -> bool {
         self.0.is_none()

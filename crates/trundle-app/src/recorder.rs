@@ -187,7 +187,7 @@ impl RunRecorder {
 
 /// The file of a recording, until it ends: with the run, or where the disk is full or short of space.
 struct RecordingFile {
-    /// `None` where nothing is recorded, or no longer.
+    /// `None` without a recording, and after its end.
     recorder: Option<FileRecorder>,
     space: Option<FreeSpace>,
     failure: Option<IoError>,
@@ -202,7 +202,7 @@ impl RecordingFile {
         Ok(Self { recorder, space: Some(FreeSpace::of(&folder.staged(""))), failure: None })
     }
 
-    /// Writes a line, or lets it go when the recording has ended: a robot on its way does not stop because a disk is full.
+    /// Writes a line, or drops it after the recording has ended: a full disk does not stop a robot.
     fn write(&mut self, line: impl FnOnce(&mut FileRecorder) -> Result<(), IoError>) {
         let Some(recorder) = &mut self.recorder else { return };
         let shortage = self.space.as_mut().and_then(FreeSpace::shortage_at_message);

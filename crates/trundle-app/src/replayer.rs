@@ -9,7 +9,7 @@ use trundle_core::{Stamp, Twist2};
 use trundle_io::{RecordedMessage, RecordingReader};
 use trundle_runtime::{Answer, Job, Worker};
 
-/// A recording fed again. Each job runs where the recording says that its result was applied.
+/// A recording as a body. Each job runs at the mark at which its result was applied.
 pub struct RunReplayer {
     reader: RecordingReader,
     jobs: BTreeMap<Worker, Job>,

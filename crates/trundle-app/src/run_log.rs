@@ -17,7 +17,7 @@ pub struct RunLog {
     pub truths: Vec<(Stamp, Pose2)>,
     /// Commands by time.
     pub twists: Vec<(Stamp, Twist2)>,
-    /// Times that the bumper says it was pressed.
+    /// Number of bumper presses.
     pub presses: usize,
     /// Times that the body touched something in truth, where that is known.
     pub true_contacts: Option<u32>,

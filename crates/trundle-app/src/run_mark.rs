@@ -15,7 +15,7 @@ pub enum RunMark {
     Contacts(u32),
     /// The user ended the run.
     Interrupted,
-    /// The run was over; what follows was still under way.
+    /// The run was over; the following jobs were still running.
     End,
 }
 

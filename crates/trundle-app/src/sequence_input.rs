@@ -52,7 +52,7 @@ impl SequenceInput {
     /// Opens a folder or a recording. Warnings are logged.
     ///
     /// # Errors
-    /// When it is neither, cannot be read, holds no images, or nothing says which camera made them.
+    /// When it is neither, cannot be read, holds no images, or has no known camera.
     pub fn open(options: &SequenceOptions<'_>) -> Result<Self, AppError> {
         match FileKind::of(options.path)? {
             FileKind::TrundleRecording => {
@@ -177,7 +177,7 @@ impl SequenceInput {
         }
     }
 
-    /// Where the camera sits on the robot, where the input says so: the pose of a level first camera.
+    /// Mount of the camera on the robot, where the input holds it: the pose of a level first camera.
     #[must_use]
     pub fn level_from_first_camera(&self) -> Option<Pose3> {
         match &self.source {

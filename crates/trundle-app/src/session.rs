@@ -1,4 +1,4 @@
-//! A run under way: feeds the robot and records each input and output.
+//! A run in progress: feeds the robot and records each input and output.
 
 use crate::encoded_body::{EncodedBody, RunInput};
 use crate::run_mark::{RunMark, RunMarkMessage};
@@ -10,7 +10,7 @@ use trundle_core::{FrameId, Pose2, Stamp, Twist2};
 use trundle_io::{EncodedEvent, PoseInFrame, PosesInFrame};
 use trundle_runtime::{Answer, DriveState, LazyImage, Reason, Robot, Stage, StepReport, Worker};
 
-/// A run under way: feeds the robot and records each input and output.
+/// A run in progress: feeds the robot and records each input and output.
 pub struct RunSession<'s> {
     setup: &'s RunSetup,
     robot: Robot,
@@ -111,7 +111,7 @@ impl<'s> RunSession<'s> {
         Ok(true)
     }
 
-    /// Applies the results of jobs that are still under way, in a fixed order, and closes the recording.
+    /// Applies the results of running jobs in a fixed order, and closes the recording.
     ///
     /// # Errors
     /// None today; a body that fails at the end may be reported here.

@@ -70,7 +70,7 @@ fn read_json(file: &Path) -> Result<serde_json::Value, AppError> {
     serde_json::from_slice(&bytes).map_err(AppError::input)
 }
 
-/// Takes Ctrl-C and SIGTERM as requests, which the loops of the command under way read. The second signal ends the program
+/// Takes Ctrl-C and SIGTERM as requests, which the loops of the running command read. The second signal ends the program
 /// at once.
 ///
 /// # Errors

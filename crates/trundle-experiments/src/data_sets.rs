@@ -89,7 +89,7 @@ const SENA: DataSet = DataSet {
 pub const DATA_SETS: [DataSet; 6] = [SMALL_HOUSE, BARN, MRPB, FREIBURG1_RPY, KILLIAN, SENA];
 
 impl DataSet {
-    /// What to say where the data set is missing: its name, licence, the command, and where the rest stands.
+    /// The message where the data set is missing: its name, licence, the command, and where the rest stands.
     #[must_use]
     pub fn how_to_get(&self) -> String {
         format!(

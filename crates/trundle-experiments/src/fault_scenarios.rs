@@ -1,5 +1,5 @@
-//! Fault scenarios: sensors that break, wheels that slip, people in the way. Nothing may be touched; the robot stops where it
-//! cannot see, says why, and goes on when it can.
+//! Fault scenarios: sensors that fail, wheels that slip, people in the path. There must be no contact. A robot without a usable view
+//! stops, reports why, and goes on when the view is back.
 
 use crate::trial::{self, ComputerFault, Trial, TrialPlan};
 use crate::{ExperimentReport, RunsRequest, missions};
@@ -29,7 +29,7 @@ struct FaultScenario {
     /// What breaks, from when to when, s.
     faults: Vec<(f64, f64, FaultKind)>,
     person: Option<Person>,
-    /// Whether the person is told in the frame of the goal, not of the start.
+    /// Whether the person is given in the frame of the goal, not of the start.
     at_goal: bool,
     computer_fault: Option<ComputerFault>,
     end: End,
@@ -124,13 +124,12 @@ fn scenarios() -> Vec<FaultScenario> {
     ]
 }
 
-/// Somebody who stands in the door of the house's bedroom for so long, s, and goes inside, out of the way; frame of the
-/// robot's start.
+/// A person who stands in the door of the house's bedroom for `delay` s and then goes inside; frame of the robot's start.
 fn in_the_door(delay: f64) -> Person {
     Person { waypoints: vec![[6.67, 0.6], [6.67, 1.3], [5.9, 2.0]], delay, once: true, ..Person::default() }
 }
 
-/// Somebody who steps onto the goal while the robot is on its way, and stays; frame of the goal.
+/// A person who steps onto the goal while the robot drives, and stays; frame of the goal.
 fn onto_the_goal() -> Person {
     Person { waypoints: vec![[0.6, 0.0], [0.0, 0.0]], delay: 10.0, once: true, ..Person::default() }
 }
@@ -195,7 +194,7 @@ fn placed(person: Person, world_from_frame: Pose2) -> Person {
     Person { waypoints: person.waypoints.iter().map(world).collect(), ..person }
 }
 
-/// Kidnappings are written in the frame of the robot's start; the simulator wants them in the world's.
+/// Kidnappings are written in the frame of the robot's start; the simulator needs them in the world's.
 fn in_world(kind: FaultKind, scene: &Scene) -> FaultKind {
     match kind {
         FaultKind::Kidnapped { x, y, heading_deg } => {

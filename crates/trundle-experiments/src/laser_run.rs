@@ -24,7 +24,7 @@ pub struct LaserPlan {
     pub time_limit: f64,
 }
 
-/// What a judge sees of it, 50 times a second.
+/// State for a judge, 50 times a second.
 #[derive(Debug, Clone, Copy)]
 pub struct Moment {
     /// Since the start, s.
@@ -70,7 +70,7 @@ pub fn hokuyo(forward: f64) -> LaserConfig {
     }
 }
 
-/// Lets the robot live until `is_over` says so, its mission is over, or its time is.
+/// Runs the robot until `is_over` is true, its mission is over, or its time is.
 ///
 /// # Errors
 /// When a number of the plan is outside its range, or the start is not free.
@@ -118,7 +118,7 @@ impl LaserRun {
         self.moments.iter().map(|moment| moment.estimate_error).fold(0.0, f64::max)
     }
 
-    /// The way driven in truth, m.
+    /// True distance driven, m.
     pub fn path_length(&self) -> f64 {
         self.moments.windows(2).map(|pair| pair[1].pose.distance(&pair[0].pose)).sum()
     }

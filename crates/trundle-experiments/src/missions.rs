@@ -24,7 +24,7 @@ struct Story {
     subtitle: &'static str,
 }
 
-/// The room of [Li18] with obstacles: to the other end of it, mapping on the way.
+/// The room of [Li18] with obstacles: to its other end, mapping during the drive.
 const OBSTACLES: Story = Story {
     name: "obstacles",
     title: "An unknown room with obstacles",
@@ -209,7 +209,7 @@ fn verdict(trials: &[Trial]) -> String {
     std::iter::once(head).chain(failed).collect::<Vec<_>>().join("\n")
 }
 
-/// The map with the way driven and the goals.
+/// The map with the driven path and the goals.
 pub(super) fn picture(trial: &Trial) -> Vec<u8> {
     let map_from_world = trial.world_from_map.inverse();
     let line = |points: &[Vector2]| points.iter().map(|&p| map_from_world.transform(p)).collect::<Vec<_>>();

@@ -1,5 +1,5 @@
 //! The local-planning benchmark MRPB 1.0 in trundle's simulator: every pair of start and goal, with and without people. As there,
-//! the robot has the map, and knows where on it it starts.
+//! the robot has the map and its start pose.
 
 mod course;
 mod metrics;

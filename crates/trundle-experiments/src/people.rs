@@ -1,4 +1,4 @@
-//! People who step into the robot's way a metre before it: it stops, waits or goes around, and touches nobody.
+//! People who step into the robot's path a metre before it: it stops, waits or goes around, without a contact.
 
 use crate::trial::{self, Trial, TrialPlan};
 use crate::{ExperimentReport, RunsRequest};
@@ -24,7 +24,7 @@ const WALKING_SPEED_RANGE_M_S: (f64, f64) = (0.7, 1.6);
 /// Range of the time that the person stands on the path, s.
 const STAY_RANGE_S: (f64, f64) = (0.0, 4.0);
 
-/// Somebody who steps out: where on the way, from how far beside it (left is positive), m; m/s; s.
+/// A person who steps out: distance along the path and beside it (left is positive), m; walking speed, m/s; time on the path, s.
 #[derive(Debug, Clone, Copy)]
 struct StepOut {
     x: f64,
@@ -49,7 +49,7 @@ impl StepOut {
         }
     }
 
-    /// The person who is on the way when the robot, by `timetable`, is [`ENCOUNTER_DISTANCE_M`] of them.
+    /// The person who is on the path when the robot, by `timetable`, is [`ENCOUNTER_DISTANCE_M`] away.
     fn person(&self, timetable: &[(f64, Vector2)], radius: f64) -> Person {
         let robot_at = self.x - ENCOUNTER_DISTANCE_M - radius;
         let on_the_way = timetable.iter().find(|(_, at)| at.x >= robot_at).map_or(0.0, |(time, _)| *time);
@@ -64,7 +64,7 @@ impl StepOut {
     }
 }
 
-/// The runs in which somebody steps into the robot's path.
+/// The runs in which a person steps into the robot's path.
 pub struct PeopleOutcome {
     /// A run for each person.
     pub trials: Vec<Trial>,
@@ -113,7 +113,7 @@ impl ExperimentReport for PeopleOutcome {
     }
 }
 
-/// Across the room, with nobody in it yet.
+/// Across the room, without people.
 fn plan(name: &str, seed: u64, robot: &RobotConfig) -> Result<TrialPlan, AppError> {
     let mut scene = Scene::by_name("room", seed)?;
     scene.start = Pose2::new(START_XY_M.0, START_XY_M.1, 0.0);

@@ -147,7 +147,7 @@ fn rows(trials: &[Trial]) -> Vec<Vec<String>> {
     rows
 }
 
-/// As their figure 5: the ways driven against the ones planned, of the first seed.
+/// As their figure 5: the driven paths against the planned ones, of the first seed.
 fn paths(trials: &[Trial]) -> Vec<u8> {
     let mut picture = MapPicture::blank().axes("x, m", "y, m").window(Vector2::zeros(), 3.1);
     for trial in trials.iter().filter(|trial| trial.seed == 1) {

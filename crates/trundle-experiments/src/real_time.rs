@@ -19,7 +19,7 @@ const MAX_MEMORY_GROWTH_MB_PER_H: f64 = 10.0;
 const MEMORY_SETTLING_S: f64 = 600.0;
 /// Shortest run whose growth is judged, s.
 const MIN_JUDGED_RUN_S: f64 = 2.0 * MEMORY_SETTLING_S;
-/// A goal and the way back take at least so long, s.
+/// Shortest time of a goal and the return, s.
 const SHORTEST_TASK: f64 = 10.0;
 
 /// A figure and its limit.
@@ -77,8 +77,8 @@ pub struct RealTimeOutcome {
     pub seconds: f64,
 }
 
-/// Drives to and fro in the demo's scene, and records into `folder`. A run in which memory is judged explores the scene first: two
-/// equally long paths lead past its obstacles, and a robot that knows only one maps the other when it first takes it.
+/// Drives to and fro in the demo's scene, and records into `folder`. A run that judges memory explores the scene first: two
+/// equally long paths lead past its obstacles, and the map would grow at the first drive along the second.
 ///
 /// # Errors
 /// When the system refuses a thread, or the robot cannot be accepted.

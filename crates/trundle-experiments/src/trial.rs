@@ -39,9 +39,9 @@ pub struct TrialPlan {
 /// What happens to the robot's computer.
 #[derive(Debug, Clone, Copy)]
 pub enum ComputerFault {
-    /// Killed after so many seconds, and switched on again with what it kept last, which may be seconds old.
+    /// Killed after this time, s, and restarted from its last checkpoint, which may be seconds old.
     Restart(f64),
-    /// Its disk takes no more.
+    /// Its disk is full.
     FullDisk,
 }
 
@@ -55,11 +55,11 @@ pub struct Trial {
     pub world_from_map: Pose2,
     /// The numbers.
     pub numbers: RunNumbers,
-    /// The way driven in truth, world frame.
+    /// True path, world frame.
     pub driven: Vec<Vector2>,
     /// When it was at each of these points, s since the beginning.
     pub times: Vec<f64>,
-    /// At every image: s since the beginning, where the robot believed to be, and where it was, map frame.
+    /// At every image: s since the beginning, the estimated pose and the true one, map frame.
     pub pose_pairs: Vec<(f64, Pose2, Pose2)>,
     /// The trajectory planned last, world frame.
     pub planned: Vec<Vector2>,

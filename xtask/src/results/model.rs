@@ -112,8 +112,7 @@ impl Goal {
 }
 
 impl Figure {
-    /// How many times better than the peer's; above 1 is better. `None` without a peer, or where nothing says which way is
-    /// better.
+    /// How many times better than the peer's; above 1 is better. `None` without a peer, or without a better direction.
     pub fn ratio(&self) -> Option<f64> {
         let peer = self.peer.as_ref()?.value;
         let better = self.better.or(self.goal.map(|goal| match goal {

@@ -1,4 +1,4 @@
-//! The allow-list: how many findings of a rule a file may have until somebody mends it. It may only shrink.
+//! The allow-list: how many findings of a rule a file may have. It may only shrink.
 
 use super::finding::{Finding, Rule};
 use std::collections::BTreeMap;

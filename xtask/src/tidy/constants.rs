@@ -1,4 +1,4 @@
-//! Names of constants: the name of a number says its quantity, so one word is not enough; a tuple has no one unit.
+//! Names of constants: the name of a number holds its quantity, so one word is not enough; a tuple has no one unit.
 
 use super::finding::{Finding, Rule};
 use super::tree::Tree;

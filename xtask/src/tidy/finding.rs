@@ -29,7 +29,7 @@ pub enum Severity {
 /// Rules with an allow-list (`xtask/tidy-allowed.txt`) that may only shrink.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Rule {
-    /// A module depends on itself by way of others.
+    /// A module depends on itself through others.
     ModuleCycle,
     /// A struct has too many fields.
     StructFields,
@@ -37,7 +37,7 @@ pub enum Rule {
     ImplMethods,
     /// A type's methods are in too many files.
     ImplFiles,
-    /// A file does not say what it holds.
+    /// A file without a sentence on its content.
     FileDoc,
     /// A sentence is too long.
     LongSentence,
@@ -49,7 +49,7 @@ pub enum Rule {
     MissingFile,
     /// Two crates have a public type of one name.
     TypeName,
-    /// A constant's name does not say its quantity.
+    /// A constant's name without its quantity.
     ConstantName,
 }
 

@@ -40,7 +40,7 @@ pub fn run(root: &Path) -> Verdict {
     Ok(errors == 0)
 }
 
-/// Lowers the allow-list to what is found; with `grows` it takes up all that is found (for a new rule).
+/// Lowers the allow-list to what is found; with `grows` it accepts all that is found (for a new rule).
 pub fn shrink(root: &Path, grows: bool) -> Verdict {
     let text = allowed(root)?.shrunk(&all_findings(root)?, grows);
     std::fs::write(root.join(allowed::FILE), text)

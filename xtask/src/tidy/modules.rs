@@ -1,7 +1,7 @@
-//! The graph of each crate's modules: no module depends on itself by way of others.
+//! The graph of each crate's modules: no module depends on itself through others.
 //!
-//! A module is a file. It depends on another one when its code, re-exports left out, names an item that is defined there;
-//! an item that is re-exported on the way counts for the module that defines it.
+//! A module is a file. It depends on another one when its code, re-exports left out, names an item that is defined there.
+//! For an item that is re-exported in between, the defining module counts.
 
 use super::finding::{Finding, Rule};
 use super::tree::{Package, Tree};

@@ -1,4 +1,4 @@
-//! Prose that can be read once: every file says what it holds, sentences are short, and words are about the product.
+//! Prose that can be read once: every file states its content, sentences are short, and words are about the product.
 
 use super::finding::{Finding, Rule};
 use super::tree::{File, Tree};

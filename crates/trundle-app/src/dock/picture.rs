@@ -130,7 +130,7 @@ fn with_numbers<'a>(picture: MapPicture<'a>, manoeuvre: &Manoeuvre, footprint: &
     )
 }
 
-/// The axle's way; of a turn, the way of a point ahead of the axle, half as far out as the robot reaches.
+/// The axle's path; for a turn, the path of a point ahead of the axle, half as far out as the robot reaches.
 fn trail(step: &Step, footprint: &Footprint) -> Vec<Vector2> {
     const PIECES: u32 = 24;
     match step.motion {
@@ -145,7 +145,7 @@ fn trail(step: &Step, footprint: &Footprint) -> Vec<Vector2> {
     }
 }
 
-/// A place beside the middle of a trail, by so much (m).
+/// A place beside the middle of a trail, at the distance `by` \[m\].
 fn beside(trail: &[Vector2], by: f64) -> Vector2 {
     let (first, last) = (trail[0], trail[trail.len() - 1]);
     let across = Vector2::new(first.y - last.y, last.x - first.x).try_normalize(1e-9).unwrap_or_default();

@@ -6,7 +6,7 @@ use crate::AppError;
 use std::path::PathBuf;
 use trundle_io::{OutputFolder, trajectory_text};
 
-/// Writes the page, its pictures, the aligned trajectory and the summary; the folder. `subtitle` says what was judged.
+/// Writes the page, its pictures, the aligned trajectory and the summary; the folder. `subtitle` names the evaluated trajectory.
 ///
 /// # Errors
 /// When a file cannot be written.

@@ -11,7 +11,7 @@ pub struct ScanCounts {
     pub refused: usize,
     /// Jumps of the odometry.
     pub jumps: usize,
-    /// Steps where the odometry was not believed.
+    /// Steps with wrong odometry.
     pub slips: usize,
     /// Resamplings.
     pub resamplings: usize,

@@ -23,8 +23,8 @@ const MIN_AXIS_TILT_DEG: f64 = 20.0;
 /// The scans of RGB-D images at 5 Hz.
 ///
 /// The motion is `tracked`, a TUM trajectory of the camera, or the input's odometry, both with the camera mounted as on the input's
-/// robot; else its ground truth, whose frame must be level with the floor at z = 0, and each image is cut under the tilt and
-/// height that its pose says.
+/// robot. Else it is the input's ground truth, whose frame must be level with the floor at z = 0. Each image is then cut under the tilt
+/// and height of its pose.
 pub fn read(
     input: &SequenceInput,
     tracked: Option<&Path>,

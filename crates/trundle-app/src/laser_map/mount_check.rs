@@ -7,15 +7,15 @@ use trundle_io::{LaserLog, LaserLogScan, LaserMount};
 
 /// Largest number of steps of each kind that are compared. Source: ours.
 const MAX_STEPS: usize = 24;
-/// Number of steps below which they say nothing of the mount. Source: ours.
+/// Number of steps below which the mount is not judged. Source: ours.
 const MIN_STEPS: usize = 8;
 /// Largest number of points of a scan that are compared. Source: ours.
 const MAX_POINTS: usize = 180;
-/// Least turn of a step that tells a mirrored laser \[rad\]. Source: ours.
+/// Minimum turn of a step that reveals a mirrored laser \[rad\]. Source: ours.
 const MIN_STEP_TURN_RAD: f64 = 0.15;
 /// Largest turn of a step \[rad\]. Beyond it two scans share too little. Source: ours.
 const MAX_STEP_TURN_RAD: f64 = 0.8;
-/// Least length of a step that tells a turned laser \[m\]. Source: ours.
+/// Minimum length of a step that reveals a turned laser \[m\]. Source: ours.
 const MIN_STEP_LENGTH_M: f64 = 0.2;
 /// Largest length of a step \[m\]. Beyond it two scans share too little. Source: ours.
 const MAX_STEP_LENGTH_M: f64 = 1.0;
@@ -29,12 +29,12 @@ const MIN_TURN_DIFFERENCE_RAD: f64 = 0.0087;
 /// Error of the better mount as a share of that of the mount taken. Above it none is named. Source: ours.
 const MAX_ERROR_SHARE: f64 = 0.6;
 
-/// Share of the steps whose odometry is not believed \[1\]. From it on there is a warning whatever the mount. Source: ours.
+/// Share of the steps with wrong odometry \[1\] from which on a warning is given, whatever the mount. Source: ours.
 const MIN_SHARE_NOT_BELIEVED: f64 = 0.3;
-/// Number of scans below which that share says nothing. Source: ours.
+/// Number of scans below which that share is not judged. Source: ours.
 const MIN_SCANS: usize = 10;
 
-/// A sentence for a log whose laser is probably mounted in another way, or whose odometry the scans contradict at many steps.
+/// A sentence for a log whose laser is probably mounted differently, or whose scans contradict the odometry at many steps.
 pub(super) fn mount_hint(log: &LaserLog, counts: &ScanCounts) -> Option<String> {
     let (doubted, all) = (counts.slips + counts.jumps, counts.processed);
     let is_doubted = all >= MIN_SCANS && doubted as f64 >= MIN_SHARE_NOT_BELIEVED * all as f64;

@@ -17,7 +17,7 @@ pub struct LaserMapRequest {
     pub recover: bool,
     /// The motion of an RGB-D folder: a TUM trajectory of the camera; `None` for the folder's own.
     pub poses: Option<PathBuf>,
-    /// Whether these poses drift: only their steps are believed, and loops are closed.
+    /// Whether these poses drift: only their steps are used, and loops are closed.
     pub poses_drift: bool,
     /// Particles of the filter.
     pub particles: usize,

@@ -1,4 +1,4 @@
-//! Sentences that say why a goal has no plan or was moved.
+//! Sentences on why a goal has no plan or was moved.
 
 use super::goal_refusal::{GoalRefusal, MovedGoal};
 use super::request::{NamedPose, PlanRequest};

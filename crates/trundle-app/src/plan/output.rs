@@ -38,7 +38,7 @@ pub fn write_plan(
     Ok(folder.commit()?)
 }
 
-/// Writes a picture of the leg without a plan and the summary that says why.
+/// Writes a picture of the leg without a plan, and the summary with the reason.
 ///
 /// # Errors
 /// When a file cannot be written.

@@ -60,9 +60,9 @@ pub struct PlanRequest {
     /// How many cells of the speed mask set a limit.
     pub speed_limits: Option<SpeedMaskLimits>,
     pub(super) graph: Option<WaypointGraph>,
-    /// Plans without the keep-out mask, to say what the mask changes.
+    /// Plans without the keep-out mask, to report the effect of the mask.
     pub(super) unmasked: Planner,
-    /// Plans with all masks and unknown cells as free, to say what unknown space changes; `None` where they are free anyway.
+    /// Plans with all masks and unknown cells as free, to report the effect of unknown space; `None` where they are free anyway.
     pub(super) unknown_free: Option<Planner>,
 }
 

@@ -32,7 +32,7 @@ impl MemoryUsage {
     }
 }
 
-/// Linux tells it in `/proc/self/status`; elsewhere nothing is known.
+/// Resident memory from `/proc/self/status`, MB; `None` on systems other than Linux.
 fn resident_mb() -> Option<f64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"))?;

@@ -19,7 +19,7 @@ pub struct GoalOutcome {
     pub at_s: f64,
     /// Where the robot stood in truth then, against the goal; `None` without truth.
     pub error: Option<GoalError>,
-    /// Where it believed to stand.
+    /// Error of the estimated pose at the end.
     pub believed: Option<GoalError>,
     /// Whether the robot was switched off and on again since: the time is of the run before.
     pub before_restart: bool,

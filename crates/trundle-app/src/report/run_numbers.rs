@@ -16,25 +16,25 @@ pub struct RunNumbers {
     pub goals_asked: Option<usize>,
     /// Where the robot stands in truth at the end, against the last goal; `None` without truth.
     pub goal_error: Option<GoalError>,
-    /// Where it believes to stand, against the last goal.
+    /// Error of the estimated pose against the last goal.
     pub believed_error: Option<GoalError>,
     /// The estimate's distance from truth over the run: root of the mean square, m.
     pub estimate_rmse: Option<f64>,
     /// Times that something was touched: in truth, where that is known.
     pub contacts: usize,
-    /// The way driven, m.
+    /// Distance driven, m.
     pub path_length: f64,
     /// Time of the robot, s.
     pub duration: f64,
     /// Plans made.
     pub plans: usize,
-    /// Images by what tracking said.
+    /// Images by tracking state.
     pub tracked: TrackCounts,
     /// Landmarks and keyframes in the visual map.
     pub landmarks: usize,
     /// Keyframes in the visual map.
     pub keyframes: usize,
-    /// When images were taken that were dropped because newer ones came before they were looked at, s since the start.
+    /// Stamps of the images that a newer one replaced before they were processed, s since the start.
     pub images_dropped: Vec<f64>,
     /// What turns and straight moves did for the last goal that they were asked about; `None` where they never were.
     pub docking: Option<GoalApproachReport>,
@@ -94,7 +94,7 @@ impl RunNumbers {
         self.state == DriveState::Arrived && all && self.is_near() && self.is_aligned() && self.contacts == 0
     }
 
-    /// Goals that were not reached in truth, though the robot believes so.
+    /// Goals that the robot reported as reached and missed in truth.
     fn goals_missed(&self) -> usize {
         let believed = self.goals.iter().filter(|goal| goal.end == TaskEnd::Done);
         believed.filter(|goal| !goal.is_reached(GOAL_TOLERANCE_M, ALIGNED_DEG.to_radians())).count()
@@ -205,7 +205,7 @@ impl RunNumbers {
     }
 }
 
-/// What the clock on the wall said: the only part of any output that differs between two equal runs.
+/// Times of the wall clock: the only part of any output that differs between two equal runs.
 pub fn wall_clock(seconds: f64, times: &StageTimes, timing: Option<&RealTimeReport>) -> Value {
     let mut stages = Map::new();
     for stage in Stage::ALL {

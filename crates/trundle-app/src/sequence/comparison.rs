@@ -5,7 +5,7 @@ use std::path::Path;
 use trundle_core::{Pose3, Stamp};
 use trundle_eval::{AbsoluteConfig, RelativeConfig};
 
-/// ATE and RPE; where they cannot be taken (no overlap in time), a warning says why.
+/// ATE and RPE. Where they are undefined (no overlap in time), a warning gives the cause.
 pub fn against_truth(
     path: &Path,
     truth: &[(Stamp, Pose3)],

@@ -15,7 +15,7 @@ const HALF_SIZE_M: (f64, f64) = (0.254, 0.215);
 /// What it is asked to accelerate by, m/s^2; its own controller allows 20.
 const ACCELERATION_M_S2: f64 = 3.0;
 
-/// The challenge's robot, a Clearpath Jackal, as the autonomy knows it: two-wheeled, 2 m/s, 0.508 x 0.430 m, a laser.
+/// The challenge's robot, a Clearpath Jackal, as configured for the autonomy: two-wheeled, 2 m/s, 0.508 x 0.430 m, a laser.
 pub fn robot() -> RobotConfig {
     let (x, y) = HALF_SIZE_M;
     let mut robot = RobotConfig::default();
@@ -36,7 +36,7 @@ pub fn robot() -> RobotConfig {
     robot.odometry = OdometryConfig { max_speed: 5.0, ..OdometryConfig::default() };
     robot.mapping = MapperConfig { max_range: 10.0, ..MapperConfig::default() };
     robot.planning = PlannerConfig {
-        // A laser sees what it comes to: it stops from this within 0.2 m.
+        // A laser covers the floor ahead: the robot stops from this speed within 0.2 m.
         timing: TimingConfig { slow_speed: 0.5, unknown_speed: 1.0, ..TimingConfig::default() },
         room: ClearanceCostConfig::default(),
         ..PlannerConfig::default()

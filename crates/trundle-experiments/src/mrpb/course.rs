@@ -135,7 +135,7 @@ fn floor() -> Solid {
     Solid { shape, finish: Finish::all(Paint::Flat { color: [150, 150, 150] }) }
 }
 
-/// The people of a scenario. The benchmark gives each way-point a time; here each walks the same way around at the mean
+/// The people of a scenario. The benchmark gives each way-point a time; here each walks the same path around at the mean
 /// speed of its legs and stands as long as on average.
 fn people(file: &Path, scenario: &str) -> Result<Vec<Person>, AppError> {
     let mut ways: Vec<(String, Vec<[f64; 3]>)> = Vec::new();

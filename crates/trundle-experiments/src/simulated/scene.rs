@@ -20,7 +20,7 @@ pub struct SceneOptions {
     pub seed: u64,
     /// The axis, scale and floor of a mesh.
     pub mesh: MeshOptions,
-    /// Where the robot starts, world frame, if not where the scene says.
+    /// Start of the robot, world frame, in place of the scene's.
     pub start: Option<Pose2>,
 }
 
@@ -106,7 +106,7 @@ fn warn_of_tall_scene(file: &Path, world: &World) {
     }
 }
 
-/// The scene of a file that says nothing of the robot: where the arguments say no start, it starts where there is room.
+/// The scene of a file without a start: without one in the arguments, the robot starts where there is room.
 fn bare(args: SceneOptions, file: &Path, world: World) -> Result<Scene, AppError> {
     let start = match args.start {
         Some(start) => start,

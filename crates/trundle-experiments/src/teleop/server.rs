@@ -17,7 +17,7 @@ const CONNECTION_TIMEOUT: Duration = Duration::from_secs(2);
 /// Size of a request \[bytes\]; the rest is not read. Source: ours.
 const MAX_REQUEST_BYTES: usize = 8192;
 
-/// Serves a [`TeleopPage`] to browsers on this machine, and to nobody else, until the program ends.
+/// Serves a [`TeleopPage`] to browsers on this machine only, until the program ends.
 #[derive(Debug)]
 pub struct TeleopServer {
     address: SocketAddr,

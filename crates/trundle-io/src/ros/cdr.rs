@@ -27,8 +27,8 @@ pub(super) enum Wire {
 
 /// Reads a message in the Common Data Representation of DDS: version 1, and version 2 of final types, little or big endian.
 ///
-/// Four bytes say which; what follows is aligned to its own size, counted from behind them (at most to 4 in version 2).
-/// Source: OMG DDS-XTypes 1.3, section 7.4.
+/// The first four bytes hold version and byte order. The rest is aligned to its own size, counted from their end (at most to 4 in
+/// version 2). Source: OMG DDS-XTypes 1.3, section 7.4.
 #[derive(Debug, Clone)]
 pub(super) struct CdrReader<'a> {
     message: &'static str,
