@@ -21,7 +21,7 @@ pub struct Cliff {
     pub over_edge: bool,
 }
 
-/// What comes out of a robot's body, in the order of its stamps.
+/// An event of a robot's body. A body yields events in the order of their stamps.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum SensorEvent {
@@ -39,7 +39,7 @@ pub enum SensorEvent {
     Scan(Scan),
     /// Ground truth, `world_from_base`, for evaluation only; the robot must not use it.
     Truth {
-        /// When it held.
+        /// Time of the pose.
         stamp: Stamp,
         /// `world_from_base`.
         pose: Pose2,
@@ -63,7 +63,7 @@ impl SensorEvent {
 
 /// The interface to a robot's sensors and base: a simulator, a recording, or hardware.
 pub trait RobotBody {
-    /// What can go wrong with it.
+    /// Error of the sensors or of the connection.
     type Error: std::error::Error;
 
     /// The next sensor event; `None` at the end.

@@ -22,9 +22,9 @@ pub struct CameraMotion {
 }
 
 impl CameraMotion {
-    /// What the camera at `base_from_camera` did while the base moved: camera_from_base * previous_base_from_base *
-    /// base_from_camera. `planar` is the covariance of the base's motion as a right perturbation (x m, y m, theta rad); out of the
-    /// floor's plane the camera moves as far as floors are uneven.
+    /// Motion of the camera at `base_from_camera` for a motion of the base: camera_from_base * previous_base_from_base *
+    /// base_from_camera. `planar` is the covariance of the base's motion as a right perturbation (x m, y m, theta rad). Out of the
+    /// floor's plane the covariance is that of uneven floors.
     pub fn of_base((base_motion, planar): (Pose2, Matrix3<f64>), base_from_camera: Pose3) -> Self {
         let camera_from_base = base_from_camera.inverse();
         let motion = camera_from_base * Pose3::from_pose2(base_motion) * base_from_camera;

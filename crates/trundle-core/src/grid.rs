@@ -11,7 +11,7 @@ pub enum Cell {
     Unknown,
     /// Nothing stands there.
     Free,
-    /// Something stands there.
+    /// An obstacle.
     Occupied,
 }
 

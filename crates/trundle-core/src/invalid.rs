@@ -12,7 +12,7 @@ pub struct Invalid {
     pub value: String,
     /// Its unit; empty when it has none.
     pub unit: &'static str,
-    /// What would have been accepted.
+    /// The accepted values.
     pub expected: String,
 }
 

@@ -30,7 +30,7 @@ pub struct FreeSpan {
     pub to: f64,
 }
 
-/// What kind of obstacle a hit is.
+/// Kind of the obstacle at a hit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum ObstacleKind {
     /// It stands on the floor, or nothing is known of that.
@@ -47,7 +47,7 @@ pub enum ObstacleKind {
 pub struct ScanParts {
     /// The beams, by rising angle.
     pub beams: Vec<Beam>,
-    /// What was seen to be free, by rising beam and range; `None`: all beams up to their ranges.
+    /// Free spans by rising beam and range; `None`: all beams up to their ranges.
     pub free: Option<Vec<FreeSpan>>,
     /// One sigma of the range of each beam, m; empty where the sensor gives none.
     pub sigmas: Vec<f32>,

@@ -71,7 +71,7 @@ impl<'a> ContactSpace<'a> {
         &self.hull
     }
 
-    /// What stands around.
+    /// The obstacles.
     pub fn scene(&self) -> &'a ObstacleScene {
         self.scene
     }

@@ -53,7 +53,7 @@ pub struct Solution {
 pub struct Impossible {
     /// The obstacle that blocks it.
     pub by: Option<Blocker>,
-    /// What was proven; always [`Certificate::None`] by the method of \[Hong24\].
+    /// The proof; always [`Certificate::None`] by the method of \[Hong24\].
     pub certificate: Certificate,
     /// The limit that ended a search without result; with a certificate, the limit of the search beyond `within`. `None` when the
     /// search was complete.

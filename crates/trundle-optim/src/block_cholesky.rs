@@ -36,9 +36,9 @@ pub struct BlockMatrix<const N: usize = 6> {
     blocks: Vec<Block<N>>,
     /// The unknowns while solving, by row.
     unknowns: Vec<Column<N>>,
-    /// The inverse within the profile, as far as it was asked for.
+    /// The inverse within the profile, as far as it was requested.
     inverse: Vec<Block<N>>,
-    /// The column of the inverse that is being worked out.
+    /// The column of the inverse in computation.
     column: InverseColumn<N>,
 }
 

@@ -56,7 +56,7 @@ pub struct BundleObservation {
     pub pose: usize,
     /// Index of the point.
     pub point: usize,
-    /// What it saw.
+    /// The measurement.
     pub seen: PointObservation,
 }
 
@@ -72,7 +72,7 @@ pub struct BundleProblem {
     pub(crate) parts: Vec<usize>,
 }
 
-/// What [`BundleProblem::solve`] finds.
+/// Result of [`BundleProblem::solve`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct BundleSolution {
     /// `world_from_camera` of every pose, fixed ones as they were.
@@ -228,7 +228,7 @@ mod tests {
         let whole = problem.solve(&config);
         let mut solver = BundleSolver::default();
         for work in [1, 700, 7, usize::MAX >> 1] {
-            // Something else in between, of another size.
+            // Another problem in between, of another size.
             solver.begin(&perturbed(&scene, 5), &config);
             solver.advance(2 * work);
             solver.begin(&problem, &config);
@@ -238,7 +238,7 @@ mod tests {
         }
     }
 
-    /// What is measured between the poses of a scene, exactly.
+    /// Exact measurements between the poses of a scene.
     fn measured(scene: &Scene, from: usize, to: usize, sigma: f64) -> PoseConstraint {
         let information = nalgebra::Matrix6::identity() * sigma.powi(-2);
         PoseConstraint { from, to, from_to: scene.poses[from].inverse() * scene.poses[to], information }

@@ -41,7 +41,7 @@ pub struct BundleSolver {
     layout: Layout,
     normal: Normal,
     here: State,
-    /// Where the step at hand leads.
+    /// Poses and points after the present step.
     there: State,
     rows: Vec<u32>,
     constraints: Vec<PoseConstraint>,
@@ -52,7 +52,7 @@ pub struct BundleSolver {
     damping: f64,
     cost: f64,
     initial_cost: f64,
-    /// Of the points so far, in the phase at hand.
+    /// Sum over the points so far, in the present phase.
     partial_cost: f64,
     steps: usize,
     chi2: Vec<f64>,
@@ -88,7 +88,7 @@ enum Phase {
     Factorise,
     /// The points moved after the poses, and the cost there.
     Move,
-    /// What is left of every residual.
+    /// The remaining residual of every observation.
     Judge,
     /// The inverse of the factor, block by block.
     Invert,

@@ -129,7 +129,7 @@ pub(crate) struct Normal {
     pub step: Vec<Vector6<f64>>,
     /// Node of each row.
     node_of: Vec<usize>,
-    /// Blocks of the point at hand between pose and point, and these times the inverse of the point's own.
+    /// Blocks of the present point between pose and point, and these times the inverse of the point's own.
     wide: Vec<(u32, [Column; 3], [Column; 3])>,
 }
 
@@ -245,7 +245,7 @@ impl Normal {
         self.reduced.inverse_of(self.node_of[row as usize])
     }
 
-    /// What is known of the pose of a row if every point is taken as known.
+    /// Information on the pose of a row with every point fixed.
     pub fn information_of(&self, row: u32) -> Matrix6<f64> {
         Matrix6::from_data(nalgebra::ArrayStorage(self.poses[row as usize].0))
     }

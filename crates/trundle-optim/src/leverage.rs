@@ -8,7 +8,7 @@ use nalgebra::{Matrix3x6, Matrix6};
 const MAX_LEVERAGE: f64 = 0.25;
 /// Largest share in multiples of the mean share, where points are few: 3. Source: ours.
 const MAX_LEVERAGE_OF_MEAN: f64 = 3.0;
-/// Most passes over the points: 20. Three wrong points that agree are held down after some ten. Source: ours.
+/// Largest number of passes over the points: 20. Three wrong points that agree are bounded after some ten. Source: ours.
 const MAX_PASSES: usize = 20;
 /// Ratio of a share to its limit that ends the passes: 1.1. Source: ours.
 const LEVERAGE_TOLERANCE: f64 = 1.1;

@@ -1,4 +1,4 @@
-//! What an RGB-D camera measures of a point, and its residual.
+//! Measurement of a point by an RGB-D camera, and its residual.
 
 use crate::Huber;
 use nalgebra::{Matrix3, Matrix3x6};

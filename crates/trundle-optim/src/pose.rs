@@ -61,7 +61,7 @@ pub struct PoseProblem<'a> {
     pub bounded: bool,
 }
 
-/// What [`PoseProblem::solve`] finds.
+/// Result of [`PoseProblem::solve`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct PoseSolution {
     /// The refined pose.
@@ -109,7 +109,7 @@ impl PoseProblem<'_> {
         self.summarise(pose, inliers)
     }
 
-    /// What each observation counts: nothing for an outlier.
+    /// Weight of each observation: 0 for an outlier.
     fn weights(&self, pose: Pose3, inliers: &[bool]) -> Vec<f64> {
         let mut weights: Vec<f64> = inliers.iter().map(|inlier| f64::from(u8::from(*inlier))).collect();
         if self.bounded {

@@ -38,7 +38,7 @@ impl PoseGraphConfig {
     }
 }
 
-/// What was measured between two poses.
+/// Measurement between two poses.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PoseConstraint {
     /// Index of the first pose.
@@ -64,7 +64,7 @@ pub struct PoseGraph {
     constraints: Vec<PoseConstraint>,
 }
 
-/// What [`PoseGraph::solve`] finds.
+/// Result of [`PoseGraph::solve`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct PoseGraphSolution {
     /// Every pose, fixed ones as they were.

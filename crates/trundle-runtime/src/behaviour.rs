@@ -1,4 +1,4 @@
-//! What the robot does next: the state machine from a goal and the world state to a twist.
+//! The state machine from a goal and the world state to a twist.
 
 pub(crate) mod drive_state;
 pub(crate) mod navigator;

@@ -9,7 +9,7 @@ const CONTACT_POINT_STEP_DEG: i32 = 6;
 /// Distance of a contact point from the footprint's outline \[m\]: it falls into the next cell. Source: ours.
 const CONTACT_POINT_OFFSET_M: f64 = 0.03;
 
-/// Where something that presses the bumper of a robot of this outline may stand: points ahead of it, base frame, m.
+/// Possible positions of an obstacle that presses the bumper of a robot of this outline: points ahead of it, base frame, m.
 pub(crate) fn ahead_of(footprint: &Footprint) -> Vec<Vector2> {
     let bearings = (-BUMPER_HALF_ANGLE_DEG..=BUMPER_HALF_ANGLE_DEG)
         .step_by(CONTACT_POINT_STEP_DEG as usize)

@@ -9,7 +9,7 @@ use trundle_core::{Cell, GridGeometry, Invalid, OccupancyGrid, Vector2};
 use trundle_localization::VisualAnchor;
 use trundle_slam::MapFileError;
 
-/// What a robot keeps through a restart: its maps, their poses, and the state of its mission.
+/// State of a robot across a restart: its maps, their poses, and the state of its mission.
 ///
 /// As bytes: `TRUNDLEM`, version (u32), checksum (CRC-32 of the rest), length of the notes (u32), the notes as JSON, a byte for
 /// each cell of the floor map (0 unknown, 1 free, 2 occupied), and the visual maps; numbers little endian.
@@ -21,7 +21,7 @@ pub struct Checkpoint {
     pub visual_maps: BTreeMap<u32, VisualAnchor>,
     /// The floor map.
     pub grid: OccupancyGrid,
-    /// What was done, and what is left to be done.
+    /// Finished tasks, and remaining tasks.
     pub mission: MissionState,
 }
 
@@ -29,7 +29,7 @@ pub struct Checkpoint {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum CheckpointError {
-    /// The bytes are something else.
+    /// The file is no checkpoint.
     #[error("no memory of trundle")]
     Foreign,
     /// Made by a version that this one does not read.
@@ -41,7 +41,7 @@ pub enum CheckpointError {
     /// Cut off, or changed since it was written.
     #[error("memory is damaged: {what}")]
     Damaged {
-        /// What does not fit.
+        /// The part that does not match.
         what: &'static str,
     },
     /// The notes are none.

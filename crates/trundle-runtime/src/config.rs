@@ -14,7 +14,7 @@ use trundle_mapping::{DepthScanConfig, MapperConfig, ScanMatchConfig};
 use trundle_planning::{ObstacleTrackerConfig, PlannerConfig};
 use trundle_slam::SlamConfig;
 
-/// Everything that can be set about the robot: one `robot.toml`. Unknown keys are errors.
+/// All settings of the robot: one `robot.toml`. Unknown keys are errors.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 #[non_exhaustive]

@@ -154,7 +154,7 @@ mod tests {
         grid
     }
 
-    /// What a depth camera's scan shows of a room from a pose.
+    /// Scan of a depth camera in a room from a pose.
     fn scan(grid: &OccupancyGrid, at: Pose2, stamp: Stamp) -> Scan {
         let beam = |i: i32| {
             let bearing = at.theta + f64::from(i).to_radians();

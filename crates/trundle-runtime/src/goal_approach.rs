@@ -90,7 +90,7 @@ pub(crate) struct GoalApproach {
     notes: Notes,
 }
 
-/// What a step of the manoeuvre came to.
+/// Result of a step of the manoeuvre.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Progress {
     Moving(Twist2),

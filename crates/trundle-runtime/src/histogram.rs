@@ -6,7 +6,7 @@
 /// those above a million as a million.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Histogram {
-    /// Empty until there is something to count.
+    /// Empty until the first value.
     bins: Vec<u32>,
     count: u64,
     sum: f64,

@@ -45,7 +45,7 @@ impl Mission {
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MissionState {
-    /// What is left to be done, the task at hand first.
+    /// The remaining tasks, the present one first.
     pub left: Mission,
     /// The places of these tasks in the mission.
     pub places: Vec<usize>,
@@ -116,7 +116,7 @@ impl fmt::Display for TaskEnd {
 pub struct TaskRecord {
     /// Its place in the mission.
     pub index: usize,
-    /// What was to be done.
+    /// The task.
     pub task: Task,
     /// How it ended.
     pub end: TaskEnd,

@@ -1,8 +1,8 @@
 //! The robot beside the clock on the wall: threads, queues, cores.
 //!
-//! The control thread feeds a deferring [`crate::Robot`] from an [`Inbox`]; a [`WorkerThreads`] does its long work, a thread a helper. Whatever
-//! order the threads come to is the order in which the robot was fed, so who writes down events and answers in that order can
-//! feed them again and gets the same reports.
+//! The control thread feeds a [`crate::Robot`] with background jobs from an [`Inbox`]. [`WorkerThreads`] runs the jobs, one thread for
+//! each worker. The order in which events and results reach the robot is the order of the run: fed again in this order, they give the
+//! same reports.
 //!
 //! The loop of a robot's driver, whose own threads put sensor events into the inbox:
 //!

@@ -36,7 +36,7 @@ pub enum Reason {
     },
     /// The planner finds no path.
     NoPath {
-        /// What the planner reports.
+        /// The planner's result.
         cause: NoPath,
         /// Floor that was kept out of the search because it could not be observed, map frame \[m\].
         unseen: Option<Vector2>,

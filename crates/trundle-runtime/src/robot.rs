@@ -76,7 +76,7 @@ pub struct Robot {
     times: StageTimes,
 }
 
-/// What later steps need of earlier ones.
+/// State that later steps take from earlier ones.
 #[derive(Debug, Default)]
 struct Latest {
     odometry: Option<Odometry>,
@@ -367,7 +367,7 @@ impl Robot {
             self.integrate_scan(&scan);
         }
         self.track_dynamic_obstacles(&scan);
-        // One that shows nothing does not make safety forget what the last one showed.
+        // A scan without content does not replace the last one for the safety monitor.
         if self.latest.camera_health.note(&scan) || self.latest.camera_health.seen().is_none() {
             self.latest.scan_odometry = self.odometry_at(scan.stamp()).map(|odometer| odometer.pose);
             self.latest.scan = Some(scan);
@@ -488,7 +488,7 @@ impl Robot {
         Some(self.decision_worker.as_ref()?.navigator.docking())
     }
 
-    /// The task at hand; none while a decision is made in the background.
+    /// The present task; none while a decision job runs.
     pub fn task(&self) -> Option<Task> {
         self.decision_worker.as_ref()?.executor.task()
     }
@@ -508,7 +508,7 @@ impl Robot {
         self.latest.frozen
     }
 
-    /// What the stages cost.
+    /// Cost of the stages.
     pub fn times(&self) -> &StageTimes {
         &self.times
     }

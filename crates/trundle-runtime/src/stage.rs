@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 pub enum Stage {
     /// Wheels and gyro to odometry.
     Odometry,
-    /// What came over the wire to an image, where that is done in the background.
+    /// Decoding of an image, in a perception job.
     Decoding,
     /// RGB-D image to camera pose.
     Slam,
@@ -27,7 +27,7 @@ pub enum Stage {
     Localization,
     /// Scan into the grid.
     Mapping,
-    /// Who moves near by.
+    /// Tracking of dynamic obstacles.
     DynamicObstacles,
     /// Mission to goal: the choice of the next goal or viewpoint.
     Supervision,
@@ -79,7 +79,7 @@ impl Stage {
     }
 }
 
-/// What the stages cost: wall-clock time, for reports only. No decision of the robot reads it.
+/// Cost of the stages: wall-clock time, for reports only. No decision of the robot uses it.
 #[derive(Debug, Clone, Default)]
 pub struct StageTimes {
     /// Milliseconds.

@@ -12,7 +12,7 @@ pub(crate) struct WorldState<'a> {
     pub(crate) grid: &'a OccupancyGrid,
     /// The newest scan, carried by odometry.
     pub(crate) scan: Option<SafetyScan<'a>>,
-    /// Stamp of the newest scan that shows something.
+    /// Stamp of the newest scan with content.
     pub(crate) seen: Option<Stamp>,
     /// For how long images that show enough have not been located, s.
     pub(crate) unplaced: f64,
@@ -21,7 +21,7 @@ pub(crate) struct WorldState<'a> {
     pub(crate) dynamic_obstacles: DynamicObstacles<'a>,
 }
 
-/// What moves near by.
+/// Moving and new obstacles near by.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct DynamicObstacles<'a> {
     pub(crate) movers: &'a [MovingObstacle],

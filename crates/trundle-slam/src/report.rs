@@ -1,4 +1,4 @@
-//! What became of one frame.
+//! Report of one frame.
 
 use crate::ids::{KeyframeId, MapId};
 use crate::loop_closing::loop_closure::LoopClosure;
@@ -34,7 +34,7 @@ pub struct MapMerge {
     pub correction: Pose3,
 }
 
-/// What became of one frame.
+/// Report of one frame.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TrackReport {
     /// Of the image.

@@ -44,7 +44,7 @@ pub struct RgbdSlam {
     odometry: OdometryTrack,
     loops: LoopDetector,
     trajectory: Trajectory,
-    /// How the map moved the camera between the last frame and the frame at hand.
+    /// Motion of the camera by corrections of the map between the last frame and the present one.
     corrections: MapCorrections,
     /// The features of the last image.
     features: Vec<SeenFeature>,
@@ -192,7 +192,7 @@ impl RgbdSlam {
         }
     }
 
-    /// Goes on with the search for loops; whether there was anything to do. A closed loop moves the camera along with the map.
+    /// Continues the search for loops; whether there was work. A closed loop moves the camera along with the map.
     fn detect_loops(&mut self) -> bool {
         let seed = self.trajectory.seed(self.config.seed);
         let active = &mut self.atlas.active;
@@ -227,7 +227,7 @@ impl RgbdSlam {
     }
 
     /// Pose of every frame that was not lost, of the newest [`SlamConfig::kept_frames`] that were not dropped, in the order of
-    /// `step`: `visual_from_camera` by the map as it is now. Only frames of the active map; other maps have frames of their own.
+    /// `step`: `visual_from_camera` by the present map. Only frames of the active map; other maps have frames of their own.
     pub fn trajectory(&self) -> Vec<(Stamp, Pose3)> {
         self.trajectory.poses(&self.atlas.active)
     }

@@ -87,7 +87,7 @@ pub(crate) fn painted_frame(visual_from_camera: Pose3, points: &[Vector3], off: 
     Frame::new(Stamp::default(), features, &image, Vector3::zeros(), (&model, &DepthConfig::default()))
 }
 
-/// The grey value of a point of the wall: something everywhere, the same nowhere near.
+/// The grey value of a point of the wall: textured everywhere, nowhere repeated.
 fn paint(point: Vector3) -> u8 {
     let (x, y) = (point.x * 110.0, point.y * 110.0);
     (120.0 + 50.0 * (0.5 * x + 0.2 * y).sin() + 40.0 * (0.15 * x - 0.6 * y + 1.0).sin()).round() as u8

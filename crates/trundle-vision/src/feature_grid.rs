@@ -6,9 +6,9 @@ use std::ops::{Range, RangeInclusive};
 /// Side of a cell: 16 px. Source: ours.
 const CELL_PX: f32 = 16.0;
 
-/// The features of an image sorted into square cells: where to look for a projected point.
+/// The features of an image sorted into square cells, for the search of projected points.
 ///
-/// Building is linear in the features; a query looks at the cells that its window touches.
+/// Building is linear in the features; a query reads the cells that its window touches.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FeatureGrid {
     columns: usize,

@@ -29,7 +29,7 @@ impl Descriptor {
     }
 }
 
-/// What ORB finds in one image: keypoint i has descriptor i.
+/// ORB features of one image: keypoint i has descriptor i.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Features {
     /// The corners, in a fixed order.

@@ -2,7 +2,7 @@
 
 use crate::Descriptor;
 
-/// A pair of features that look alike.
+/// A pair of similar features.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Match {
     /// Index in the first set.

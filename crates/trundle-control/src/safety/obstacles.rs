@@ -1,4 +1,4 @@
-//! What stands near the robot: hits of the scan and cells of the map.
+//! Obstacles near the robot: hits of the scan and cells of the map.
 
 use trundle_core::{Cell, OccupancyGrid, Pose2, Scan, Vector2};
 

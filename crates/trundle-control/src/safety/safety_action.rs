@@ -1,9 +1,9 @@
-//! What the monitor did to a command, and why.
+//! Decision of the safety monitor about a command, and its reason.
 
 use std::fmt;
 use trundle_core::Vector2;
 
-/// What the monitor did to a command.
+/// Decision of the safety monitor about a command.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum SafetyAction {
     /// Let it pass.
@@ -36,7 +36,7 @@ pub enum SlowReason {
         /// The obstacle, base frame, m.
         at: Vector2,
     },
-    /// The newest image that shows something is older than usual.
+    /// The newest image with content is older than usual.
     OldImage {
         /// Its age, s.
         age: f64,
@@ -72,9 +72,9 @@ pub enum StopReason {
     Cliff,
     /// No image, or scan of a laser, has come yet.
     NoImage,
-    /// Images or scans come, but none has shown anything yet.
+    /// Images or scans come, but none has had content yet.
     NothingSeen,
-    /// The newest image, or scan of a laser, that shows something is too old.
+    /// The newest image with content, or scan of a laser, is too old.
     StaleImage {
         /// Its age, s.
         age: f64,

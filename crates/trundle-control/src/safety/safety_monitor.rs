@@ -17,7 +17,7 @@ pub struct SafetyMonitor {
     obstacles: Vec<Obstacle>,
 }
 
-/// What the monitor decides by.
+/// Input of the monitor's decision.
 #[derive(Debug, Clone, Copy)]
 pub struct SafetyInput<'a> {
     /// The moment of the command.
@@ -32,7 +32,7 @@ pub struct SafetyInput<'a> {
     pub touched: bool,
     /// Whether a cliff sensor has no floor below it.
     pub over_edge: bool,
-    /// Stamp of the newest image that shows something.
+    /// Stamp of the newest image with content.
     pub image: Option<Stamp>,
     /// Stamp of the newest wheel reading.
     pub wheels: Option<Stamp>,
@@ -52,12 +52,12 @@ pub enum MotionSense {
     Nothing,
 }
 
-/// What the monitor decided.
+/// Decision of the monitor.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SafetyReport {
     /// The twist to send: always safe, always finite.
     pub twist: Twist2,
-    /// What was done to the command, and why.
+    /// What was changed in the command, and the reason.
     pub action: SafetyAction,
 }
 
@@ -96,7 +96,7 @@ impl SafetyMonitor {
             return self.back_out(input);
         }
         if let Some(reason) = self.lost_perception(input) {
-            // A disc may always turn on the spot if that was commanded: so it finds something in view again.
+            // A disc may always turn on the spot if that was commanded: a turn may restore the view.
             let turns = input.twist.v == 0.0 && reason != StopReason::NoImage;
             let omega = if turns { input.twist.omega } else { 0.0 };
             return SafetyReport { twist: Twist2::new(0.0, omega), action: SafetyAction::Stop(reason) };

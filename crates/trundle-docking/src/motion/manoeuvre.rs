@@ -147,7 +147,7 @@ fn joined(motions: &[Motion]) -> Vec<Motion> {
             | (Some(Motion::Drive(sum)), Motion::Drive(more)) => *sum += more,
             _ => list.push(motion),
         }
-        // What is left of motions that cancel; the neighbours before and after it are then joined too.
+        // The remainder of motions that cancel; the neighbours before and after it are then joined too.
         list.pop_if(|m| m.amount().abs() <= MIN_AMOUNT);
     }
     list

@@ -19,7 +19,7 @@ pub(super) struct Erosion {
     /// Heights of columns, and of the edges between them.
     column: Vec<f32>,
     edge: Vec<f32>,
-    /// Squared distances of the columns asked for, and some to fill the last block.
+    /// Squared distances of the requested columns, and padding of the last block.
     squared: Vec<f32>,
 }
 

@@ -28,7 +28,7 @@ impl DistanceField {
         self.nearest_square(point, best).min(self.border_gap(point))
     }
 
-    /// Whether a disc of `radius` about `point` touches no obstacle: interpolation where it is sure, squares else.
+    /// Whether a disc of `radius` about `point` touches no obstacle: by interpolation where that is certain, else by cell squares.
     #[inline]
     pub fn keeps(&self, point: Vector2, radius: f64) -> bool {
         let quick = self.distance(point);

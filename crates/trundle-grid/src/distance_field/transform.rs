@@ -1,4 +1,4 @@
-//! The exact distance transform over cell squares, as a whole or where something changed.
+//! The exact distance transform over cell squares, as a whole or of a changed part.
 //!
 //! Two sweeps over the columns count the rows to the nearest obstacle, then each row is eroded by parabolas
 //! ([`super::erosion`]).
@@ -12,7 +12,7 @@ use super::window::Window;
 use std::ops::Range;
 use trundle_core::GridGeometry;
 
-/// What the transform keeps from one change to the next.
+/// Memory of the transform between two changes.
 #[derive(Debug)]
 pub(super) struct Transform<'a> {
     pub(super) geometry: &'a GridGeometry,

@@ -9,7 +9,7 @@ use super::{
 };
 use trundle_core::{Invalid, Pose3, Vector2, Vector3};
 
-/// What follows from where the camera sits.
+/// Tables that follow from the mount of the camera.
 #[derive(Debug, Clone)]
 pub(super) struct Mount {
     pub(super) origin: Vector2,
@@ -58,12 +58,12 @@ impl Mount {
     }
 }
 
-/// What the rays of each beam would see on an empty floor.
+/// The rays of each beam on an empty floor.
 struct Survey {
     beams: Vec<SurveyedBeam>,
 }
 
-/// What the rays of a beam would see.
+/// The rays of a beam.
 #[derive(Debug, Clone, Copy)]
 struct SurveyedBeam {
     /// Of the floor.

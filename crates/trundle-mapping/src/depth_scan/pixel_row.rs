@@ -175,7 +175,7 @@ mod tests {
         )
     }
 
-    /// What a pixel is whose neighbours are like it, its range, and the bins that it clears.
+    /// Class of a pixel among equal neighbours, its range, and the bins that it clears.
     fn classified(height: f64, rise: f32, z: f32) -> (u32, f32, (u32, u32)) {
         let mut row = ClassifiedRow::default();
         row.resize(3);

@@ -51,7 +51,7 @@ enum State {
     },
 }
 
-/// What is known after a scan.
+/// Result of a scan.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Localized {
     /// The robot has hardly moved: the scan was not used.
@@ -86,7 +86,7 @@ impl MapLocalizer {
         Ok(Self::of(&mapper, seed))
     }
 
-    /// In the best particle's map of a filter as it is now.
+    /// A localizer in the present map of a filter's best particle.
     pub fn of(mapper: &ParticleMapper, seed: u64) -> Self {
         Self::new(mapper.models.config.clone(), mapper.best_map().clone(), seed)
     }

@@ -5,7 +5,7 @@ use crate::pose_graph::Constraint;
 use nalgebra::Matrix3;
 use trundle_core::{Pose2, Stamp};
 
-/// What is kept of the run: every processed scan, how surely each step was measured, and the loops that were closed.
+/// History of a run: every processed scan, the covariance of each step, and the closed loops.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct ScanHistory {
     pub(crate) scans: Vec<StoredScan>,

@@ -114,7 +114,7 @@ impl StoredScan {
         })
     }
 
-    /// What was seen to be free of the rays that were not seen whole.
+    /// Free spans of the rays that have gaps.
     pub(crate) fn spans(&self) -> impl Iterator<Item = RaySpan> {
         let part = |v: u16| f32::from(v) / f32::from(u16::MAX);
         self.spans.iter().map(move |span| RaySpan { ray: span.ray, from: part(span.from), to: part(span.to) })

@@ -49,7 +49,7 @@ impl Writer {
 #[derive(Debug)]
 pub(crate) struct Reader<'a> {
     rest: &'a [u8],
-    /// What is being read, for errors.
+    /// The part that is being read, for errors.
     pub(crate) within: &'static str,
 }
 
@@ -81,7 +81,7 @@ impl<'a> Reader<'a> {
         self.take().map(u64::from_le_bytes)
     }
 
-    /// A finite number no larger than anything on Earth.
+    /// A finite number within a plausible range.
     pub(crate) fn f64(&mut self, what: &'static str) -> Read<f64> {
         let value = f64::from_bits(self.u64()?);
         self.require(value.abs() <= 1e9, what)?;

@@ -5,7 +5,7 @@ use trundle_core::Invalid;
 /// Why a saved filter was not loaded.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum FilterFileError {
-    /// The bytes are something else.
+    /// The file is no filter of this program.
     #[error("no map of trundle-mapping")]
     Foreign,
     /// Made by a version that this one does not read.
@@ -22,7 +22,7 @@ pub enum FilterFileError {
     /// The bytes end too early.
     #[error("the map is cut off in its {within}")]
     Cut {
-        /// What was being read.
+        /// The part that was being read.
         within: &'static str,
     },
     /// The map was made with another cell size or sensor model.
@@ -30,9 +30,9 @@ pub enum FilterFileError {
     Mismatch {
         /// Which setting.
         name: &'static str,
-        /// What the map was made with.
+        /// Value in the file.
         saved: f64,
-        /// What it was asked for with.
+        /// Value in the configuration.
         given: f64,
     },
     /// The checksum is right, and yet a number cannot be.

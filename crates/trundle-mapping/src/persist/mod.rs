@@ -35,7 +35,7 @@ const FORMAT_VERSION: u8 = 4;
 /// Bytes before those that the checksum covers.
 const HEADER_BYTES: usize = 16;
 
-/// What a map must have been made with to be gone on with.
+/// Settings that must be equal in file and configuration.
 fn settings(config: &ParticleConfig) -> [(&'static str, f64); 5] {
     let map = &config.map;
     [

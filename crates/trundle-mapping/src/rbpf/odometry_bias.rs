@@ -4,7 +4,7 @@ use crate::rbpf::odometry_noise::Innovation;
 use nalgebra::{Matrix2, Vector2, Vector3};
 use trundle_core::Pose2;
 
-/// What the odometry has wrong on every metre and every turn, learnt from what the matches make of it.
+/// Systematic error of the odometry for each metre and each turn, estimated from the matches.
 ///
 /// Wheels of unequal size, a wrong wheelbase, a gyro's drift: such errors are the same at every step. They add up with the distance,
 /// where noise adds up with its root, and are the larger part on smooth floors \[Borenstein96\]. The model of the heading's error
@@ -42,7 +42,7 @@ impl OdometryBias {
         let applied = self.error(motion);
         let keep = 1.0 - 1.0 / MEMORY_STEPS;
         self.turn.iter_mut().chain(&mut self.way).for_each(|sum| *sum *= keep);
-        // An error beyond three sigmas is no matter of every step.
+        // An error beyond three sigmas is an outlier.
         let told = |k: usize| {
             let variance = noise[k] + innovation.open[k];
             let most = 3.0 * variance.sqrt();

@@ -28,7 +28,7 @@ struct Moments {
 pub(crate) struct Innovation {
     /// From where the odometry led to where the hits alone would have it.
     pub(crate) off: Vector3<f64>,
-    /// What the hits leave open: variances.
+    /// Variances that remain after the match.
     pub(crate) open: Vector3<f64>,
 }
 

@@ -80,12 +80,12 @@ struct Attempt<'m> {
 }
 
 impl Proposer<'_> {
-    /// What of a log-weight counts for the particle.
+    /// Fraction of a log-weight that counts for the particle.
     pub(crate) fn weight_scale(&self) -> f64 {
         1.0 / self.config.weight_correlation
     }
 
-    /// Draws the pose of a particle that stood at `before` and should have come to `guess` (cells, rad, of the map).
+    /// Draws the pose of a particle that moved from `before` to `guess` by the odometry (cells, rad, of the map).
     ///
     /// There are two hypotheses: the odometry erred within its covariance; or its wheels slipped or its messages were lost (`slip_rate`),
     /// and the robot is near the odometry's path. The second is tested where it would be the likelier one if the scan fitted there as
@@ -109,7 +109,7 @@ impl Proposer<'_> {
         self.sample(&near, 0.0, rng)
     }
 
-    /// Places far from where the odometry leads that a particle at `before` may have come to, in the frame of `before`; none
+    /// Poses of a particle from `before` that lie far from the odometry's pose and fit the scan, in the frame of `before`; none
     /// where the scan fits near the odometry, or nowhere.
     pub(crate) fn far(
         &self,
@@ -255,7 +255,7 @@ impl Proposer<'_> {
         };
         let starts = search.search(window, self.points, prior.guess, (&about, MAX_START_DEFICIT_NATS));
         let (first, top) = starts[0];
-        // Another start is worth climbing from when it is nearly as good and somewhere else.
+        // Another start is used when its likelihood is nearly as high and its pose is different.
         let elsewhere = |p: &Pose2| {
             let off = difference(*p, top);
             off.xy().amax() > MIN_START_DISTANCE_CELLS
@@ -316,7 +316,7 @@ impl Proposer<'_> {
             let off = y - mean;
             covariance += off * off.transpose() * ((log - greatest).exp() / sum);
         }
-        // What is not held stays with the odometry, whatever the samples feign.
+        // Directions without information keep the odometry, whatever the samples give.
         let free = Matrix3::identity() - held;
         let mean = held * mean;
         let odometry_covariance =

@@ -4,7 +4,7 @@ use crate::scan_match::global_search::Lost;
 use nalgebra::Matrix3;
 use trundle_core::Pose2;
 
-/// What became of a scan.
+/// Result of a scan.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum ScanUpdate {
     /// The robot has hardly moved: the scan was not used.

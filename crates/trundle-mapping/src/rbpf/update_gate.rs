@@ -50,7 +50,7 @@ pub(crate) struct OdometryStep {
 
 impl UpdateGate {
     /// The step to a scan that is to be processed; `None` when the robot has hardly moved. Where each pose counts, not the steps
-    /// alone, wild ones are refused.
+    /// alone, poses that are too far off are refused.
     pub(crate) fn pass(
         &mut self,
         config: &ParticleConfig,

@@ -5,7 +5,7 @@ use crate::scan_log::packed_scan::PackedScan;
 use std::{collections::HashMap, sync::Arc};
 use trundle_core::{Pose2, Stamp, Vector2};
 
-/// Something drawn that can be drawn again.
+/// A drawn entry that can be redrawn.
 #[derive(Debug, Clone)]
 pub(crate) struct LogEntry {
     pub(crate) stamp: Stamp,
@@ -22,7 +22,7 @@ pub(crate) enum EntryData {
     Contact { points: Arc<[Vector2]> },
 }
 
-/// What something drawn is, without what it bears.
+/// Kind of an entry, without its data.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum EntryKind {
     Scan,
@@ -98,8 +98,8 @@ impl LogEntry {
 /// Kind, column, row and direction.
 type Place = (u8, i64, i64, i64);
 
-/// Lets go what was drawn again often enough since, in the same place and direction: what is left grows with the floor, not with the
-/// time.
+/// Drops entries that newer ones repeat often enough, in the same place and direction. The log then grows with the floor, not with
+/// the time.
 pub(crate) fn thin(kept: &mut Vec<LogEntry>) {
     let mut newer: HashMap<Place, u32> = HashMap::new();
     let mut stays: Vec<bool> = kept

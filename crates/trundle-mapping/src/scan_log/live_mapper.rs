@@ -16,7 +16,7 @@ use trundle_grid::{LogOddsGrid, MapperConfig};
 #[derive(Debug, Clone)]
 pub struct LiveMapper {
     front: GridMapper,
-    /// What was known before the first scan.
+    /// Evidence from before the first scan.
     known: LogOddsGrid,
     kept: Vec<LogEntry>,
     snapshots: Vec<Snapshot>,
@@ -40,7 +40,7 @@ struct Redrawing {
     drawn: usize,
 }
 
-/// What a slice of work did.
+/// Result of a slice of work.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Redrawn {
     /// Cells drawn.
@@ -88,7 +88,7 @@ impl LiveMapper {
         }
     }
 
-    /// Draws `scan`, taken with the base at `map_from_base`, and keeps it when it is from somewhere else than the last one.
+    /// Draws `scan`, taken with the base at `map_from_base`, and keeps it when its pose differs enough from the last kept one.
     pub fn insert(&mut self, map_from_base: Pose2, scan: &Scan) -> Insertion {
         let insertion = self.front.insert(map_from_base, scan);
         self.keep(scan.stamp(), map_from_base, EntryKind::Scan, || EntryData::Scan(Arc::new(scan.into())));
@@ -244,7 +244,7 @@ impl LiveMapper {
     }
 
     fn redraw_from(&mut self, first: usize) {
-        // A redrawing that had not come so far goes on as it is.
+        // A redrawing that has not come as far as the correction continues.
         if let Some(redrawing) = self.redrawing.as_mut().filter(|redrawing| redrawing.drawn <= first) {
             debug_assert!(redrawing.drawn <= self.kept.len(), "what was drawn was kept");
             return;
@@ -257,7 +257,7 @@ impl LiveMapper {
         self.redrawing = Some(Redrawing { back: self.front.with_evidence(evidence), drawn });
     }
 
-    /// Lets go what newer things of the same place show too. Snapshots, which count the things before them, go with it.
+    /// Drops entries that newer ones of the same place repeat, with the snapshots that count them.
     fn thin(&mut self) {
         thin(&mut self.kept);
         while self.kept.len() > MAX_LOG_ENTRIES / 2 && halve_the_older_half(&mut self.kept) {}

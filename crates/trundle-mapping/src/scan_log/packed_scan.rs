@@ -2,7 +2,7 @@
 
 use trundle_core::{Beam, FreeSpan, Scan, ScanParts, Stamp, Vector2};
 
-/// What a map needs of a scan to draw it again, in a third of its room: ranges to seven digits, neither sigmas nor kinds.
+/// A scan packed for redrawing, in a third of its size: ranges to seven digits, neither sigmas nor kinds.
 ///
 /// The scan of a depth camera takes 20 KB, and a robot that drives for an hour keeps thousands.
 #[derive(Debug, Clone, PartialEq)]

@@ -19,7 +19,7 @@ pub(crate) struct CloudMatch {
     pub(crate) information: Matrix3<f64>,
     /// Part of the hits at obstacles.
     pub(crate) explained: f64,
-    /// Directions that are not held.
+    /// Number of directions without information.
     pub(crate) degenerate: usize,
     /// ln p(z | m, x), tempered, nats.
     pub(crate) log_likelihood: f64,

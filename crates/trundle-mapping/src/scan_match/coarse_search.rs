@@ -43,7 +43,7 @@ pub(crate) struct SearchPrior {
     pub(crate) sigma: f64,
     /// One sigma of its heading, rad.
     pub(crate) sigma_turn: f64,
-    /// What a point that fits is worth against one that does not, nats.
+    /// Gain of a point that fits over one that does not, nats.
     pub(crate) gain: f64,
 }
 
@@ -207,7 +207,7 @@ impl CoarseSearch {
     }
 }
 
-/// What speaks against a shift at a heading.
+/// Penalty of a shift at a heading.
 struct Turned<'a> {
     prior: &'a Matrix3<f64>,
     theta: f64,

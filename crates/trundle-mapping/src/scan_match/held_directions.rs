@@ -12,7 +12,7 @@ use trundle_core::{Pose2, Vector2};
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct HeldDirections {
     pub(crate) pose_from_y: Matrix3<f64>,
-    /// Onto the directions that are held.
+    /// Projection onto the directions with information.
     pub(crate) held: Matrix3<f64>,
     /// How many are not.
     pub(crate) degenerate: usize,

@@ -55,7 +55,7 @@ pub(crate) struct PointGroup {
 
 impl PointGroup {
     fn new(points: &[ScanPoint]) -> Self {
-        // What fills up repeats the last point.
+        // Padding repeats the last point.
         let at = |k: usize| points[k.min(points.len() - 1)];
         let lanes = |f: fn(ScanPoint) -> f32| std::array::from_fn(|k| f(at(k)));
         Self {
@@ -175,7 +175,7 @@ impl ScanPoints {
         }
     }
 
-    /// Forgets everything.
+    /// Removes all points.
     pub(crate) fn clear(&mut self) {
         self.rays.clear();
         self.beams.clear();

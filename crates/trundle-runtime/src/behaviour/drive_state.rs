@@ -35,19 +35,19 @@ pub enum DriveState {
     FinalApproach,
     /// Near the goal in a narrow space: turns on the spot and straight moves onto the exact pose.
     Maneuvering,
-    /// Held by the safety monitor, or until a path is free.
+    /// The safety monitor stops the robot, or no path is free.
     Waiting {
-        /// What the robot waits for.
+        /// Why the robot waits.
         reason: Reason,
     },
     /// No free path is known: observing more of the surroundings.
     Recovering {
-        /// What the planner reports.
+        /// The planner's result.
         reason: Reason,
     },
     /// Pose unknown or too uncertain: at rest, then turning on the spot to relocalise.
     Lost {
-        /// What is known of the pose.
+        /// State of the pose estimate.
         reason: Reason,
     },
     /// At rest at the goal.

@@ -37,19 +37,19 @@ use trundle_planning::{PlanResult, Planner};
 use viewpoint::Viewpoint;
 use visibility_constraint::VisibilityConstraint;
 
-/// What it decides.
+/// Decision of a control step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Decision {
     pub(crate) twist: Twist2,
     pub(crate) replanned: bool,
 }
 
-/// What the robot is asked for, map frame.
+/// Goal of the robot, map frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Goal {
     /// Stand exactly here.
     Exact(Pose2),
-    /// Come here to see something: a hand's breadth off is as good, and what is blocked is not waited for.
+    /// A viewpoint: it need not be reached exactly, and is given up where it is blocked.
     Viewpoint(Pose2),
     /// Turn on the spot once.
     Spin,
@@ -96,7 +96,7 @@ pub(crate) struct Navigator {
     visibility: VisibilityConstraint,
     /// A disc can always turn away.
     is_polygon: bool,
-    /// The outline stands too near to something to turn: it backs out, as far as safety lets it.
+    /// Whether the outline is too near to an obstacle for a turn: the robot backs out, as far as safety permits.
     is_wedged: bool,
     /// Whether the robot is too far from its reference to go on from it.
     is_off_track: bool,
@@ -105,7 +105,7 @@ pub(crate) struct Navigator {
     image_timeout: f64,
     /// Of the disc about the robot, m.
     radius: f64,
-    /// What was wanted in the last step, before safety's word on it.
+    /// Twist of the last step before the safety monitor.
     wanted: Twist2,
 }
 
@@ -197,7 +197,7 @@ impl Navigator {
         &self.state
     }
 
-    /// What turns and straight moves did for the goal.
+    /// Report of turns and straight moves for the goal.
     pub(crate) fn docking(&self) -> &GoalApproachReport {
         self.goal_approach.report()
     }
@@ -231,7 +231,7 @@ impl Navigator {
         }
     }
 
-    /// Whether the opening is over: the robot has stood for long enough, and there is a view.
+    /// Whether the initialization is over: the robot has stood for long enough, and there is a scan.
     fn is_initialized(&self, s: &WorldState<'_>) -> bool {
         s.scan.is_some() && self.started.is_some_and(|started| s.now - started >= self.config.opening)
     }
@@ -323,7 +323,7 @@ impl Navigator {
         }
     }
 
-    /// What the follower's phase means for the state.
+    /// Sets the state by the follower's phase.
     fn note_progress(&mut self, follow: &FollowReport, s: &WorldState<'_>, times: &mut StageTimes) {
         self.note_viewpoint(follow, s.now);
         let moving = matches!(self.state, DriveState::Driving | DriveState::FinalApproach);

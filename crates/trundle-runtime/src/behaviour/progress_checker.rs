@@ -6,7 +6,7 @@ use trundle_core::{Pose2, Stamp, difference_of_angles};
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct ProgressChecker {
     last: Option<(Stamp, Pose2)>,
-    /// Turns that counted, since it last came to another place.
+    /// Turns that counted at this place.
     turns: u32,
 }
 
@@ -31,7 +31,7 @@ impl ProgressChecker {
             (self.last, self.turns) = (Some((now, pose)), 0);
             0.0
         } else if turns_count && has_turned && self.turns < MAX_TURNS_AT_ONE_PLACE {
-            // Where it stands is where it came to.
+            // A turn at one place keeps the place.
             (self.last, self.turns) = (Some((now, Pose2 { theta: pose.theta, ..at })), self.turns + 1);
             0.0
         } else {

@@ -13,7 +13,7 @@ pub(crate) struct SightRecovery {
     found: Option<(Vector2, u32)>,
 }
 
-/// Smallest share of a turn after which regained sight is credited to the turn. Source: ours.
+/// Smallest fraction of a turn after which a restored view counts as an effect of the turn. Source: ours.
 const MIN_RECOVERY_TURN: f64 = 0.02;
 /// Number of times that sight may return by turning at one place. Beyond it the path leads out of sight, and the goal is given up. Source: ours.
 const MAX_RECOVERIES_AT_ONE_PLACE: u32 = 2;
@@ -26,7 +26,7 @@ impl SightRecovery {
         self.wanted = wanted.omega;
     }
 
-    /// The command of a robot that has been blind for long enough: one turn, on to where it wanted to turn, then rest.
+    /// The command after a while without a usable scan: one turn in the direction of the last wanted turn, then rest.
     pub(crate) fn turn(&mut self, pose: Pose2) -> Twist2 {
         if self.look.has_turned(SPIN_TURNS) {
             Twist2::ZERO

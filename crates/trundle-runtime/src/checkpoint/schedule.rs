@@ -2,7 +2,7 @@
 
 use trundle_core::Stamp;
 
-/// When the visual maps are saved: the less there is to be saved, the more often. By the data's time.
+/// Schedule of the checkpoints, by the data's time: the smaller the maps, the more often.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct CheckpointSchedule {
     due: Option<Stamp>,

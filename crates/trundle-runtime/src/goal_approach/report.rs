@@ -5,13 +5,13 @@ use serde::Serialize;
 use trundle_core::Pose2;
 use trundle_docking::{PositionerReason, PositionerReport};
 
-/// What turns and straight moves came to at the end of a mission.
+/// Report of turns and straight moves in the final approach.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 #[non_exhaustive]
 pub struct GoalApproachReport {
     /// Number of planned manoeuvres, including those for comparison with the arc.
     pub plans: u32,
-    /// Motions begun.
+    /// Number of begun motions.
     pub motions: u32,
     /// Motions broken off: by an obstacle, or by the safety monitor.
     pub restarts: u32,
@@ -25,7 +25,7 @@ pub struct GoalApproachReport {
     pub ended: Option<ApproachEnd>,
 }
 
-/// What the positioner did in the last step.
+/// Activity of the positioner in the last step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 enum Doing {
     #[default]
@@ -39,7 +39,7 @@ enum Doing {
 #[derive(Debug, Default)]
 pub(super) struct Notes {
     pub report: GoalApproachReport,
-    /// In a row: none of these motions came to its end.
+    /// Stops in a row without a completed motion.
     pub stops: u32,
     last: Doing,
 }
@@ -85,7 +85,7 @@ impl Notes {
                 self.report.restarts += 1;
                 self.stops += 1;
             }
-            // It came to its end.
+            // The motion is completed.
             (PositionerReason::Measuring, Doing::Moving) => self.stops = 0,
             _ => {}
         }

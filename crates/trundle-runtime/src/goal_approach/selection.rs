@@ -15,12 +15,12 @@ pub(super) struct ApproachSelection {
     from: Pose2,
     /// The arc, and the number of its poses that are checked; none where the arc cannot be continued.
     arc: Option<(StabilizerPreview, usize)>,
-    /// What stands about the arc.
+    /// Obstacles around the arc.
     scene: Option<ObstacleScene>,
     planning: Option<DockingJob>,
 }
 
-/// What came of a part of it.
+/// Result of a part of the comparison.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Verdict {
     /// Not known yet.
@@ -35,7 +35,7 @@ pub(super) enum Verdict {
 pub(super) struct ApproachContext<'a> {
     pub docker: &'a DockingPlanner,
     pub footprint: &'a Footprint,
-    /// What an arc must keep from obstacles, m.
+    /// Clearance of an arc from obstacles, m.
     pub arc_margin: f64,
     /// Standing before the first motion and after the last, s.
     pub standing: f64,
@@ -55,12 +55,12 @@ impl ApproachSelection {
         self.goal == *goal && self.from.distance(pose) < HERE
     }
 
-    /// Whether the arc is known to touch something, or to take for ever.
+    /// Whether the arc is in contact, or does not end.
     pub(super) fn is_arc_lost(&self) -> bool {
         self.arc.as_ref().is_none_or(|(arc, _)| arc.time.is_none())
     }
 
-    /// A part of it. `drawn` is what stands about the manoeuvre, asked for once.
+    /// A part of the comparison. `drawn` gives the obstacles around the manoeuvre and is called once.
     pub(super) fn step(
         &mut self,
         s: &WorldState<'_>,
@@ -107,7 +107,7 @@ impl ApproachSelection {
     }
 }
 
-/// What the map holds about an arc.
+/// Obstacles of the map around an arc.
 fn about(s: &WorldState<'_>, arc: &StabilizerPreview, means: &ApproachContext<'_>) -> ObstacleScene {
     let here = s.estimate.pose;
     let reach = arc.poses.iter().map(|p| p.distance(&here)).fold(0.0, f64::max);

@@ -37,7 +37,7 @@ struct Entry {
     is_second_try: bool,
 }
 
-/// The task at hand.
+/// The present task.
 #[derive(Debug)]
 struct Current {
     entry: Entry,
@@ -45,7 +45,7 @@ struct Current {
     work: Work,
 }
 
-/// What is being done for it.
+/// Progress of the task.
 #[derive(Debug)]
 enum Work {
     /// Driving to its goal.
@@ -55,9 +55,9 @@ enum Work {
         explorer: Box<Explorer>,
         /// The frontier of the present viewpoint.
         frontier: Option<Frontier>,
-        /// Viewpoints that it came to.
+        /// Number of reached viewpoints.
         views: usize,
-        /// Why it did not come to the last one that it did not come to.
+        /// Why the last missed viewpoint was missed.
         failure: Option<Reason>,
     },
 }
@@ -96,7 +96,7 @@ impl MissionExecutor {
         &self.records
     }
 
-    /// The task at hand.
+    /// The present task.
     pub(crate) fn task(&self) -> Option<Task> {
         self.current.as_ref().map(|current| current.entry.task)
     }
@@ -128,7 +128,7 @@ impl MissionExecutor {
             || explores && driving && self.frontier_check_due.will_be_due(s.now)
     }
 
-    /// What the navigator, which is in `state`, shall do next; `None` to go on.
+    /// The next goal of the navigator, which is in `state`; `None` while the present one is kept.
     pub(crate) fn step(&mut self, s: &WorldState<'_>, state: &DriveState) -> Option<Goal> {
         match state {
             DriveState::Arrived => self.on_arrived(s),
@@ -207,7 +207,7 @@ impl MissionExecutor {
         let Some(current) = &mut self.current else { return };
         if let Work::Exploring { explorer, frontier, failure, .. } = &mut current.work {
             *failure = Some(reason.clone());
-            // What cannot be driven to now may be later, but not without end.
+            // An unreachable viewpoint may be reachable later; the number of attempts is limited.
             if let Some(frontier) = frontier.take() {
                 explorer.mark_viewed(&frontier);
             }

@@ -1,4 +1,4 @@
-//! Camera health: a frozen camera, and when images last showed something.
+//! Camera health: a frozen camera, and the stamp of the last scan with content.
 
 use trundle_core::{Beam, Pose2, RgbdImage, Scan, Stamp};
 
@@ -6,7 +6,7 @@ use trundle_core::{Beam, Pose2, RgbdImage, Scan, Stamp};
 #[derive(Debug, Default)]
 pub(crate) struct CameraHealth {
     last: Option<Look>,
-    /// Stamp of the newest scan that shows something.
+    /// Stamp of the newest scan with content.
     seen: Option<Stamp>,
 }
 
@@ -39,7 +39,7 @@ impl CameraHealth {
         has_moved || now.stamp - first.stamp > MAX_IDENTICAL_IMAGES_S
     }
 
-    /// Notes a scan of an image that is not frozen; whether it shows something.
+    /// Records a scan of an image that is not frozen; whether it has content.
     pub(crate) fn note(&mut self, scan: &Scan) -> bool {
         let seen = scan.beams().iter().filter(|beam| **beam != Beam::Unseen).count();
         let shows = seen as f64 >= MIN_SEEN_SHARE * scan.beams().len() as f64 && seen > 0;
@@ -49,7 +49,7 @@ impl CameraHealth {
         shows
     }
 
-    /// Stamp of the newest scan that shows something.
+    /// Stamp of the newest scan with content.
     pub(crate) fn seen(&self) -> Option<Stamp> {
         self.seen
     }

@@ -11,8 +11,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, TrySendError, sync_channel};
 use std::time::{Duration, Instant};
 
-/// What the control thread is fed, in one queue of bounded length. Urgent events, which control waits for, overtake images and
-/// answers, and these are only handed out while there is time before the next reading of the wheels.
+/// The input of the control thread, in one queue of bounded length. Urgent events overtake images and results. Images and results
+/// are only handed out while there is time before the next wheel reading.
 #[derive(Debug)]
 pub struct Inbox<E> {
     receiver: Receiver<Post<E>>,
@@ -29,23 +29,23 @@ pub struct InboxSender<E> {
     refused: Arc<AtomicU64>,
 }
 
-/// Something put in.
+/// An item for the inbox.
 #[derive(Debug)]
 pub enum Post<E> {
     /// An event that control waits for: wheels, gyro, bumper.
     Urgent(E),
     /// An event that has time: an image.
     Patient(E),
-    /// What a helper came to.
+    /// The result of a job.
     Answer(Answer),
 }
 
-/// What the control thread gets.
+/// Input of the control thread.
 #[derive(Debug)]
 pub enum Input<E> {
     /// A sensor event.
     Event(E),
-    /// What a helper came to.
+    /// The result of a job.
     Answer(Answer),
 }
 
@@ -70,7 +70,7 @@ impl<E> InboxSender<E> {
         }
     }
 
-    /// Puts something in that must not be lost, waiting where the queue is full.
+    /// Puts in an item that must not be lost; waits where the queue is full.
     pub fn hand_in(&self, post: Post<E>) -> bool {
         self.sender.send(post).is_ok()
     }
@@ -116,7 +116,7 @@ impl<E> Inbox<E> {
         }
     }
 
-    /// The next answer of a helper, whatever else is there: that is let go. None when it does not come within `patience`.
+    /// The next result of a worker, ahead of all other items; urgent events are dropped. None when it does not come within `patience`.
     pub fn next_answer(&mut self, helper: Worker, patience: Duration) -> Option<Answer> {
         let start = Instant::now();
         loop {
@@ -138,7 +138,7 @@ impl<E> Inbox<E> {
         self.door.refused.load(Ordering::Relaxed)
     }
 
-    /// How many things were waiting, each time something was taken.
+    /// Length of the queue at each item taken.
     pub fn lengths(&self) -> &Histogram {
         &self.lengths
     }

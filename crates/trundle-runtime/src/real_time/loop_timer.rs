@@ -78,7 +78,7 @@ pub struct LoopTimerReport {
 }
 
 impl LoopTimer {
-    /// A loop that has not begun.
+    /// A loop before its first step.
     pub fn new(config: LoopTimerConfig) -> Self {
         Self {
             config,

@@ -49,7 +49,7 @@ const THREAD_PRIORITY: i32 = 10;
 #[cfg(target_os = "linux")]
 fn go_first() -> bool {
     let rank = libc::sched_param { sched_priority: THREAD_PRIORITY };
-    // What such a thread starts is not first itself.
+    // Threads started by such a thread do not inherit its priority.
     let policy = libc::SCHED_FIFO | libc::SCHED_RESET_ON_FORK;
     // SAFETY: the call reads one valid structure and changes nothing but how the calling thread (0) is scheduled.
     unsafe { libc::sched_setscheduler(0, policy, &rank) == 0 }
@@ -70,14 +70,14 @@ fn rank(_nice: i32) -> bool {
     false
 }
 
-/// What the calling thread has computed so far; none where threads have no clock of their own.
+/// Processor time of the calling thread; none where threads have no clock of their own.
 #[cfg(unix)]
 pub fn thread_time() -> Option<Duration> {
     let time = rustix::time::clock_gettime(rustix::time::ClockId::ThreadCPUTime);
     Some(Duration::new(time.tv_sec.unsigned_abs(), u32::try_from(time.tv_nsec).ok()?))
 }
 
-/// What the calling thread has computed so far; none where threads have no clock of their own.
+/// Processor time of the calling thread; none where threads have no clock of their own.
 #[cfg(not(unix))]
 pub fn thread_time() -> Option<Duration> {
     None

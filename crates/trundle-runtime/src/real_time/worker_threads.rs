@@ -16,15 +16,15 @@ pub struct WorkerThreads {
 struct HelperPost {
     helper: Worker,
     jobs: SyncSender<Job>,
-    /// What the thread has computed, when it ends.
+    /// Processor time of the thread, sent at its end.
     spent: Receiver<Duration>,
     _pool: ThreadPool,
 }
 
-/// What a helper's thread has computed.
+/// Processor time of a worker's thread.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct WorkerCost {
-    /// Who.
+    /// The worker.
     pub helper: Worker,
     /// Processor time.
     pub spent: Duration,

@@ -27,7 +27,7 @@ pub struct RobotFile {
 pub struct SettingsError {
     /// The line in the file, from 1, where it is known.
     pub line: Option<usize>,
-    /// What is wrong, and what is expected.
+    /// The error, and the accepted values.
     pub message: String,
 }
 

@@ -48,7 +48,7 @@ pub fn require_plausible(config: &RobotConfig) -> Result<(), Invalid> {
 }
 
 fn lengths_and_speeds(config: &RobotConfig) -> [Plausible; 9] {
-    // Numbers below 0 are left to the ranges of `Robot::new`: they are no matter of units.
+    // Numbers below 0 are left to the ranges of `Robot::new`: a wrong unit does not change the sign.
     let low = f64::NEG_INFINITY;
     let below = |path, value, unit, high, meant| Plausible { path, value, unit, low, high, meant };
     let (drive, limits) = (&config.drive, &config.limits);

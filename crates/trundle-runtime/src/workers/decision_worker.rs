@@ -55,12 +55,12 @@ impl DecisionWorker {
         self.executor.may_take_long(s, self.navigator.state()) || self.navigator.may_take_long(s)
     }
 
-    /// What goes on as was decided last.
+    /// The controller that continues the last decision.
     pub(crate) fn fallback(&self) -> FallbackController {
         self.navigator.fallback()
     }
 
-    /// What the robot is doing, and whether its mission is over: then the state is that of the whole mission.
+    /// State of the drive, and whether the mission is over; then the state is that of the whole mission.
     pub(crate) fn state(&self) -> (DriveState, bool) {
         let finished = self.executor.is_idle() && !self.executor.records().is_empty();
         let state = match self.executor.failure() {

@@ -5,8 +5,8 @@ use crate::world_state::WorldState;
 use trundle_control::{Follower, SafetyMonitor};
 use trundle_core::Twist2;
 
-/// Goes on as was decided last, control step by control step, while the decision worker is away: along the trajectory, or with the
-/// last twist; safety has the last word as ever.
+/// Continues the last decision in each control step while a decision job runs: along the trajectory, or with the last twist. The safety
+/// monitor checks each twist.
 #[derive(Debug)]
 pub(crate) struct FallbackController {
     pub(crate) follower: Follower,
@@ -15,7 +15,7 @@ pub(crate) struct FallbackController {
     pub(crate) wanted: Option<Twist2>,
     pub(crate) touched: bool,
     pub(crate) over_edge: bool,
-    /// What the base was asked for last.
+    /// The last twist that left.
     pub(crate) sent: Twist2,
 }
 

@@ -40,7 +40,7 @@ pub(crate) enum Work {
     Decide { decision_worker: Box<DecisionWorker>, around: Box<OwnedWorldState> },
 }
 
-/// What a job came to.
+/// The result of a job.
 #[derive(Debug)]
 pub struct Answer {
     pub(crate) result: Outcome,
@@ -64,7 +64,7 @@ pub(crate) enum Outcome {
 }
 
 impl Job {
-    /// Whose it is.
+    /// Worker of the job.
     pub fn worker(&self) -> Worker {
         match &self.0 {
             Work::Perceive { .. } => Worker::Perception,
@@ -93,7 +93,7 @@ impl Job {
 }
 
 impl Answer {
-    /// Whose it is.
+    /// Worker of the result.
     pub fn worker(&self) -> Worker {
         match &self.result {
             Outcome::Perceived { .. } => Worker::Perception,

@@ -18,8 +18,7 @@ use trundle_vision::Vocabulary;
 
 /// All that is done with an image alone: the camera's pose by SLAM, and the scan.
 ///
-/// What it finds depends on the images and the odometry that it was given, in their order, and on nothing else: it may work
-/// beside the control loop.
+/// Its results depend only on its images and odometry, in their order. It may therefore run beside the control loop.
 #[derive(Debug)]
 pub(crate) struct PerceptionWorker {
     range_source: RangeSource,
@@ -37,11 +36,11 @@ pub(crate) struct PerceptionWorker {
     unplaced: Option<Stamp>,
     /// Stamp at which global localization last began in that time.
     searched: Option<Stamp>,
-    /// When the visual maps are to be saved; none: never.
+    /// Schedule of the checkpoints; none: never.
     pub(crate) saving: Option<CheckpointSchedule>,
 }
 
-/// What an image showed.
+/// Result of an image.
 #[derive(Debug)]
 pub(crate) struct PerceptionResult {
     /// When the image was taken.
@@ -53,7 +52,7 @@ pub(crate) struct PerceptionResult {
     pub(crate) place: Option<LocalizedPose>,
     /// Since when images that show enough have not been located.
     pub(crate) unplaced: Option<Stamp>,
-    /// All poses of the visual map, when it was corrected by more than tracking goes along with.
+    /// All poses of the visual map, after a correction that tracking does not follow.
     pub(crate) bent: Option<Vec<(Stamp, Pose3)>>,
     /// Whether the robot was carried away: global localization begins.
     pub(crate) is_carried_away: bool,
@@ -217,7 +216,7 @@ fn blind_range(sight: RangeSource, scanner: &DepthScanner) -> f64 {
     }
 }
 
-/// Whether the visual map was corrected by more than tracking goes along with.
+/// Whether the visual map had a correction that tracking does not follow.
 fn is_bent(track: &TrackReport) -> bool {
     let is_large = |correction: &Pose3| {
         correction.translation.norm() > GRID_CORRECTION_THRESHOLD

@@ -26,7 +26,7 @@ impl AnchoredPose {
         Self { stamp, reference, reference_from_camera }
     }
 
-    /// The pose by the map as it is now. A removed reference counts as its successor has it.
+    /// The pose by the present map. A removed reference is replaced by its successor.
     pub fn visual_from_camera(&self, map: &LandmarkMap) -> Pose3 {
         let visual_from_reference = self.reference.map(|id| map.visual_from_keyframe(id));
         (visual_from_reference.unwrap_or_default() * self.reference_from_camera).renormalized()

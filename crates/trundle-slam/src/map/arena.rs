@@ -51,7 +51,7 @@ impl<T> Arena<T> {
         self.things.get_mut(*self.places.get(number)? as usize)?.as_mut()
     }
 
-    /// What is there, by rising number.
+    /// All entries, by rising number.
     pub fn iter(&self) -> impl DoubleEndedIterator<Item = (usize, &T)> {
         let thing = |place: u32| self.things.get(place as usize)?.as_ref();
         self.places.iter().enumerate().filter_map(move |(number, place)| Some((number, thing(*place)?)))

@@ -37,7 +37,7 @@ impl LandmarkMap {
         self.keyframes.get(id.index())
     }
 
-    /// What is left of the keyframes, by rising id, which is the order of their making.
+    /// The live keyframes, by rising id, which is the order of their creation.
     pub fn keyframes(&self) -> impl DoubleEndedIterator<Item = (KeyframeId, &Keyframe)> {
         self.keyframes.iter().map(|(i, k)| (KeyframeId::from_index(i), k))
     }
@@ -140,7 +140,7 @@ impl LandmarkMap {
     }
 
     /// Records that feature `feature` of `keyframe` is of `landmark`. A feature or a landmark that is already taken in
-    /// this keyframe stays as it is; whether anything was recorded.
+    /// this keyframe stays as it is; whether the observation was recorded.
     pub fn observe(&mut self, landmark: LandmarkId, keyframe: KeyframeId, feature: usize) -> bool {
         let Some(observer) = self.keyframes.get_mut(keyframe.index()) else { return false };
         let Some(seen) = self.landmarks.get_mut(landmark.index()) else { return false };

@@ -56,7 +56,7 @@ impl ReferencePatch {
         })
     }
 
-    /// What a camera should see of it on an octave, for the landmark at `position`; `None` from too different a direction or
+    /// The patch warped to a camera on an octave, for the landmark at `position`; `None` from too different a direction or
     /// distance.
     pub fn seen_from(
         &self,
@@ -87,7 +87,7 @@ impl ReferencePatch {
     }
 }
 
-/// What the depth camera saw around a feature: on a plane, the inverse depth is affine in the pixel.
+/// Depth around a feature: on a plane, the inverse depth is affine in the pixel.
 struct Plane {
     /// Raw px.
     middle: Vector2,

@@ -11,7 +11,7 @@ use std::collections::BTreeSet;
 use trundle_core::{Pose3, Vector2};
 use trundle_vision::Template;
 
-/// Largest displacement of a feature by alignment: 2 px of its octave. Beyond it the patch is of something else. Source: ours.
+/// Largest displacement of a feature by alignment: 2 px of its octave. Beyond it the patch is a different point. Source: ours.
 const MAX_DISPLACEMENT_PX: f32 = 2.0;
 /// Largest distance from a feature to the projection of its landmark at which the alignment starts from the projection: 4 px of the
 /// octave. Beyond it the pose is wrong, and the alignment starts from the feature. Source: ours.

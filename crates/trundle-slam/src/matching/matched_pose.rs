@@ -7,7 +7,7 @@ use crate::median::median;
 use trundle_core::{Pose3, Vector3};
 use trundle_optim::{InverseDepth, PointObservation, PoseConfig, PosePrior, PoseProblem, PoseSolution};
 
-/// What is known of a camera's pose besides the image.
+/// Prior of a camera's pose besides the image.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum PosePriorKind<'a> {
     /// The camera was tracked to here, with the pose by odometry, if there is one.

@@ -138,7 +138,7 @@ impl GlobalBundle {
     fn corrections(&self, map: &LandmarkMap) -> BTreeMap<KeyframeId, Pose3> {
         let mut moved: BTreeMap<KeyframeId, Pose3> = BTreeMap::new();
         for (id, keyframe) in map.keyframes() {
-            // Parents are older than their children, except where a forgotten one was between.
+            // Parents are older than their children, except where a removed one was between.
             let by_parent = || {
                 let mut parent = keyframe.tree.parent;
                 while let Some(id) = parent {

@@ -16,8 +16,8 @@ pub(crate) struct BundleSize {
     pub fixed: usize,
 }
 
-/// Refines the keyframes covisible with `centre` and the landmarks that two or more keyframes see; the other keyframes
-/// that see those hold still, or the oldest where there is none. Observations that then disagree at 95 % are taken back.
+/// Refines the keyframes covisible with `centre` and the landmarks that two or more keyframes observe. The other keyframes
+/// that observe those are fixed, or the oldest one where there is none. Observations that then disagree at 95 % are removed.
 pub(crate) fn refine_around(
     map: &mut LandmarkMap,
     centre: KeyframeId,

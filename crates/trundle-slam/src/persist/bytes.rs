@@ -55,7 +55,7 @@ impl Writer {
 #[derive(Debug)]
 pub(crate) struct Reader<'a> {
     rest: &'a [u8],
-    /// What is being read, for errors.
+    /// The part that is being read, for errors.
     pub within: &'static str,
 }
 
@@ -134,7 +134,7 @@ impl<'a> Reader<'a> {
         Ok(Vector3::new(self.length(name)?, self.length(name)?, self.length(name)?))
     }
 
-    /// Whether something follows.
+    /// A flag: whether a value follows.
     pub fn mark(&mut self, name: &str) -> Read<bool> {
         let mark = self.u8()?;
         self.require(mark < 2, name, mark, || "0 or 1".to_owned())?;

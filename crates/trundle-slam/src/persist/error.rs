@@ -5,7 +5,7 @@ use trundle_core::Invalid;
 /// Why a saved map was not loaded.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum MapFileError {
-    /// The bytes are something else.
+    /// The file is no visual map of this program.
     #[error("no map of trundle-slam")]
     Foreign,
     /// Made by a version that this one does not read.
@@ -22,7 +22,7 @@ pub enum MapFileError {
     /// The bytes end too early.
     #[error("the map is cut off in its {within}")]
     Cut {
-        /// What was being read.
+        /// The part that was being read.
         within: &'static str,
     },
     /// Features of another camera, or of other settings, are not those of this map.
@@ -30,9 +30,9 @@ pub enum MapFileError {
     Mismatch {
         /// Which setting.
         name: &'static str,
-        /// What the map was made with.
+        /// Value in the file.
         saved: String,
-        /// What it was asked for with.
+        /// Value in the configuration.
         given: String,
     },
     /// The checksum is right, and yet a number cannot be.

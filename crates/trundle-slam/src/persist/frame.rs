@@ -1,4 +1,4 @@
-//! What a map keeps of an image, as bytes.
+//! The stored part of a frame as bytes.
 
 use crate::frame::observation_model::ObservationModel;
 use crate::frame::rgbd_frame::Frame;

@@ -1,4 +1,4 @@
-//! What a map's features depend on: camera and extractor. They are saved with it, and must be the same to use it.
+//! Settings on which a map's features depend: camera and extractor. They are saved with it, and must be the same to use it.
 
 use crate::persist::bytes::{Reader, Writer};
 use crate::persist::error::MapFileError;

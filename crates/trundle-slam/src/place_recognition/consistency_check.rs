@@ -10,7 +10,7 @@ const MAX_DIFFERENCE: f64 = 0.3;
 /// A correction that must be found several times in a row before it is applied \[MurArtal17\].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct ConsistencyCheck<T> {
-    /// What the correction is about.
+    /// Subject of the correction.
     subject: T,
     /// Motion that takes predicted poses to found ones, multiplied on the left.
     found_from_believed: Pose3,

@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use trundle_vision::{PlaceIndex, Vocabulary};
 
-/// Results of the index that are grouped, for each group asked for: 4. More are less similar than the groups found. Source: ours.
+/// Results of the index that are grouped, for each requested group: 4. More are less similar than the groups found. Source: ours.
 const RESULTS_PER_GROUP: usize = 4;
 
 /// The bags of words of all keyframes of a map, and an index over them.

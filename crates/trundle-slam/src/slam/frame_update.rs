@@ -1,4 +1,4 @@
-//! What a frame changes, once it is known whether it was located.
+//! Updates of state and map by a frame, located or not.
 
 use super::RgbdSlam;
 use super::localizer::Localization;
@@ -149,7 +149,7 @@ impl RgbdSlam {
         carried(covariance, anchor.inverse() * pose) + local
     }
 
-    /// Updates the map by a located frame, unless the map is to stay as it is.
+    /// Updates the map by a located frame, unless the map is fixed.
     fn update_map(
         &mut self,
         frame: &Frame,

@@ -15,7 +15,7 @@ const MIN_DISCONTINUITY_FEATURES: usize = 200;
 /// changed by motion. Source: ours.
 const MAX_DISCONTINUITY_GAP_S: f64 = 0.5;
 
-/// What a frame that was not located begins.
+/// Action for a frame that was not located.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum MapStart {
     /// Nothing: a known landmark may be seen again.
@@ -28,7 +28,7 @@ pub(super) enum MapStart {
     NewMap,
 }
 
-/// What a frame shows, and how many landmarks it should show.
+/// Features of a frame, and the number of landmarks that are expected in it.
 #[derive(Clone, Copy)]
 pub(super) struct Visibility<'a> {
     pub frame: &'a Frame,
@@ -59,7 +59,7 @@ pub(super) struct MapStartQuery<'a> {
 }
 
 impl MapStartQuery<'_> {
-    /// What the frame begins.
+    /// The action for the frame.
     pub fn decide(&self) -> MapStart {
         let (config, state) = (self.config, self.tracking);
         if with_depth(self.visibility.frame).count() < config.mapping.min_points {

@@ -16,7 +16,7 @@ pub(crate) struct LastFrame {
 }
 
 impl LastFrame {
-    /// The frame with its pose by the map as it is now.
+    /// The frame with its pose by the present map.
     pub fn as_reference(&self, map: &LandmarkMap) -> ReferenceFrame<'_> {
         let visual_from_camera = self.anchored.visual_from_camera(map);
         ReferenceFrame { frame: &self.frame, landmarks: &self.landmarks, visual_from_camera }

@@ -93,7 +93,7 @@ impl<'a> LocalMapQuery<'a> {
     }
 }
 
-/// What the keyframes around a pose see, by rising id.
+/// Landmarks of the keyframes around a pose, by rising id.
 fn landmarks_around(map: &LandmarkMap, visual_from_camera: Pose3) -> Vec<LandmarkId> {
     let mut is_seen = vec![0_u64; map.landmark_bound() / 64 + 1];
     for keyframe in keyframes_around(map, visual_from_camera) {

@@ -10,7 +10,7 @@ const MIN_CONFLICT_S: f64 = 0.3;
 
 /// Since when tracked poses have contradicted the wheels.
 ///
-/// Few points can agree by chance, all in one corner of a bare wall, but not for long.
+/// Few points, all in one corner of a bare wall, can agree by chance, but only for a short time.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct OdometryConflict {
     since: Option<Stamp>,

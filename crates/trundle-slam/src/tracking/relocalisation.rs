@@ -33,7 +33,7 @@ fn look_alikes(tracker: &Tracker, keyframe: KeyframeId, max_groups: usize) -> Ve
     tracker.place_index.similar_groups(tracker.map, own.bow, |id| !here.contains(&id), max_groups)
 }
 
-/// The hypotheses of a number of tries. A group in which nothing certain was found is tried again by its next keyframe, before others that are
+/// The hypotheses of a number of tries. A group without a certain result is tried again by its next keyframe, before others that are
 /// as much less similar: at the edge of the map few of its keyframes show enough, and a look-alike would have no rival. Tries are
 /// distributed as seats are by D'Hondt's method.
 fn try_groups<T: PlaceHypothesis>(

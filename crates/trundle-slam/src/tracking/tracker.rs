@@ -37,7 +37,7 @@ pub(crate) struct Tracker<'a> {
     /// The frame's bag of words, once it was needed.
     pub bow: &'a OnceCell<Bow>,
     pub seed: u64,
-    /// Whether the map stays as it is, so that a view with few landmarks gets no new ones.
+    /// Whether the map is fixed, so that a view with few landmarks gets no new ones.
     pub is_map_fixed: bool,
 }
 

@@ -1,4 +1,4 @@
-//! What tracking remembers from one frame to the next.
+//! State of tracking between two frames.
 
 use crate::frame::rgbd_frame::Frame;
 use crate::motion::pose_belief::PoseBelief;
@@ -22,7 +22,7 @@ pub(crate) struct TrackingState {
     pub pose_known: bool,
     /// Whether part of the motion since the last located frame was not measured.
     pub motion_unknown: bool,
-    /// Whether the view changed at once: the camera was carried, or something stands before the lens.
+    /// Whether the view changed at once: the camera was carried, or the lens is covered.
     pub view_discontinuity: bool,
     /// The last frame that was located.
     pub last: Option<LastFrame>,
@@ -62,7 +62,7 @@ impl TrackingState {
         (self.pose_known, self.last) = (true, None);
     }
 
-    /// Forgets where the camera is.
+    /// Declares the camera's pose unknown.
     pub fn forget_pose(&mut self) {
         self.belief = PoseBelief { stamp: self.belief.stamp, ..PoseBelief::anywhere() };
         (self.pose_known, self.last, self.lost_frames) = (false, None, 0);

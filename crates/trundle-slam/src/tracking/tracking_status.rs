@@ -12,7 +12,7 @@ pub enum Tracking {
     Weak,
     /// Not located: the pose is the last one moved by the given prior.
     DeadReckoning,
-    /// Not located and no prior: the pose is held.
+    /// Not located and no prior: the pose stays.
     Lost,
 }
 

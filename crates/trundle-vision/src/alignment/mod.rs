@@ -1,5 +1,5 @@
-//! Where exactly in an image something is that another image showed: a small patch of the one, warped as the other should show
-//! it, is moved until it fits \[Baker04\], brightness and contrast left free.
+//! Exact position in an image of a point that another image showed. A small patch of the other image is warped to this view and
+//! moved until it fits \[Baker04\]; brightness and contrast are free.
 //!
 //! The idea: a corner is located with the noise of its image, half a pixel and more. Its surroundings, aligned with the earlier ones, are
 //! located by all of their pixels, a tenth of a pixel and less. The alignment also shows whether it is the same corner.

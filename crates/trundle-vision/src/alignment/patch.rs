@@ -7,7 +7,7 @@ pub(super) const PATCH_RADIUS_PX: usize = 10;
 /// Side of a patch, px.
 pub(super) const PATCH_SIDE_PX: usize = 2 * PATCH_RADIUS_PX + 1;
 
-/// What an image shows around a feature: 21 x 21 px of the feature's level of the pyramid.
+/// Image patch around a feature: 21 x 21 px of the feature's level of the pyramid.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ImagePatch {
     pixels: [u8; PATCH_SIDE_PX * PATCH_SIDE_PX],

@@ -26,7 +26,7 @@ const FITTED_PARAMETERS: usize = 4;
 
 type Pixels = [f32; PADDED_LENGTH];
 
-/// A patch as it should look in another image.
+/// A patch warped to the view of another image.
 #[derive(Debug, Clone)]
 pub struct Template {
     /// Grey values less their mean.
@@ -50,8 +50,8 @@ pub struct PatchAlignment {
 }
 
 impl Template {
-    /// What `patch` shows, seen from where an offset of a px is one of `there_from_here`, px. `None` where the patch is too small for
-    /// that, or looks the same a bit aside.
+    /// The template of `patch` for a view in which an offset of a px is one of `there_from_here`, px. `None` where the patch is too
+    /// small for that, or similar to itself at a small offset.
     pub fn new(patch: &ImagePatch, there_from_here: Matrix2<f32>) -> Option<Self> {
         let warped = warp(patch, there_from_here.try_inverse()?)?;
         let mut template = Self::gradients(&warped);
@@ -129,7 +129,7 @@ impl Template {
         None
     }
 
-    /// The place, unless what is `seen` there is something else.
+    /// The position, unless the pixels `seen` there differ too much.
     #[inline(always)]
     fn judged(&self, seen: &Pixels, gain: f32, offset: Vector2<f32>) -> Option<PatchAlignment> {
         let count = (TEMPLATE_SIDE_PX * TEMPLATE_SIDE_PX) as f32;
@@ -165,7 +165,7 @@ fn warp(
     Some(warped)
 }
 
-/// What `patch` shows in the square around `at`, px from its middle; `None` where the patch is too small.
+/// Pixels of `patch` in the square around `at`, px from its middle; `None` where the patch is too small.
 #[inline(always)]
 fn sample(patch: &ImagePatch, at: Vector2<f32>, seen: &mut Pixels) -> Option<()> {
     let corner = at.add_scalar((PATCH_RADIUS_PX - TEMPLATE_RADIUS_PX) as f32);
@@ -214,12 +214,12 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// A smooth surface with something everywhere, at (x, y) px.
+    /// A smooth surface with texture everywhere, at (x, y) px.
     fn surface(x: f32, y: f32) -> f32 {
         120.0 + 50.0 * (0.5 * x + 0.2 * y).sin() + 40.0 * (0.15 * x - 0.6 * y + 1.0).sin()
     }
 
-    /// What a camera shows of it that has its feature so far from the middle, and the surface moved.
+    /// A patch of this surface with the feature at an offset from the middle, px, and the surface moved.
     fn patch(feature: [f32; 2], value: impl Fn(f32, f32) -> f32) -> ImagePatch {
         let side = 2 * PATCH_RADIUS_PX + 1;
         let pixels = std::array::from_fn(|i| {

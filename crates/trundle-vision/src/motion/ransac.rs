@@ -9,7 +9,7 @@ use trundle_core::{PinholeCamera, Pose3, Vector3};
 /// Chi-square with three degrees of freedom at 95 %.
 const CHI2_95_3: f64 = 7.815;
 
-/// What [`estimate_rigid_motion`] and [`estimate_pose_pnp`](crate::estimate_pose_pnp) find.
+/// Result of [`estimate_rigid_motion`] and [`estimate_pose_pnp`](crate::estimate_pose_pnp).
 #[derive(Debug, Clone, PartialEq)]
 pub struct RansacResult {
     /// The motion: maps points of frame a into camera frame b.

@@ -29,7 +29,7 @@ impl Level {
         self.image.height()
     }
 
-    /// What was found, in the order of the distribution.
+    /// The corners found, in the order of the distribution.
     pub fn features(&self) -> &[DescribedCorner] {
         &self.features
     }

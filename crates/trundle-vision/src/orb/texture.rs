@@ -1,4 +1,4 @@
-//! Whether there is anything around a corner that holds it in place.
+//! Texture around a corner: whether it fixes the corner's position.
 
 use super::corner::Corner;
 use trundle_core::GrayImage;

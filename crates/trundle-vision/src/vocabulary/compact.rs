@@ -6,7 +6,7 @@ use super::tree::Tree;
 use crate::Descriptor;
 use trundle_core::Invalid;
 
-/// What a vocabulary's file begins with; the last byte is the version.
+/// First bytes of a vocabulary's file; the last byte is the version.
 const MAGIC: &[u8; 8] = b"trundlV\x02";
 
 /// Bytes of the head: magic, branching, depth, nodes, words, checksum of all but magic and checksum.
@@ -20,7 +20,7 @@ pub enum VocabularyError {
     Line {
         /// From 1.
         number: usize,
-        /// What is wrong.
+        /// The problem.
         problem: String,
     },
     /// The bytes are no vocabulary of this version, or damaged.

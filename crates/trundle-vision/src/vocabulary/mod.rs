@@ -1,9 +1,9 @@
 //! Bags of binary words \[GalvezLopez12\]: what an image shows, as weighted words of a visual vocabulary.
 //!
 //! Problem: which of thousands of images shows this place? Idea: a tree of cluster centres cuts the space of
-//! descriptors into words; an image is the set of its words, each weighted by how seldom it is; images of one place
-//! share seldom words, and an inverted index finds them without looking at the others. Cost: branching x depth
-//! distances a feature, and for a question the entries of the words asked for.
+//! descriptors into words. An image is the set of its words, each weighted by its rarity. Images of one place
+//! share rare words, and an inverted index finds them without a search of the others. Cost: branching x depth
+//! distances a feature, and for a query the entries of its words.
 //!
 //! | \[GalvezLopez12\] | here | unit |
 //! |---|---|---|

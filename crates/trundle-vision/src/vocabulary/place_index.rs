@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 /// The inverse index of \[GalvezLopez12\]: for each word the places that show it.
 ///
-/// A question costs the entries of the words asked for, and memory for a number a place.
+/// A query costs the entries of its words, and memory for a number a place.
 #[derive(Debug, Clone, Default)]
 pub struct PlaceIndex {
     /// By word, as far as any place has shown one.
@@ -24,7 +24,7 @@ struct Entry {
     weight: f32,
 }
 
-/// What a place has in common with what is asked for.
+/// Words that a place shares with the query.
 #[derive(Debug, Clone, Copy, Default)]
 struct Common {
     words: u32,
@@ -59,7 +59,7 @@ impl PlaceIndex {
         }
     }
 
-    /// Forgets `place`, which showed `bag`; nothing happens when it is unknown.
+    /// Removes `place`, which showed `bag`; no effect when it is unknown.
     pub fn remove(&mut self, place: u32, bag: &BagOfWords) {
         let Some(slot) = self.slots.remove(&place) else { return };
         for (word, _) in bag.entries() {

@@ -17,7 +17,7 @@ pub(crate) struct Query<'a> {
     pub(crate) turn_step: f64,
     /// One sigma of the guess: cells, cells, rad; infinite where nothing is known.
     pub(crate) sigma: (f64, f64, f64),
-    /// What a point that fits is worth, nats.
+    /// Gain of a point that fits, nats.
     pub(crate) gain: f64,
 }
 

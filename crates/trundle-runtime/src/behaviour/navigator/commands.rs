@@ -16,7 +16,7 @@ use trundle_core::{Cell, Twist2, Vector2};
 const BACK_OUT_SPEED_M_S: f64 = 0.05;
 /// Free distance behind the robot that backing out needs \[m\]. Source: ours.
 const BACK_OUT_CLEARANCE_M: f64 = 0.15;
-/// Longest time of backing out \[s\]: twice the clearance. A bumper still pressed then is broken, or something pushes. Source: ours.
+/// Longest time of backing out \[s\]: twice the clearance. A bumper still pressed then is broken, or pushed. Source: ours.
 const BACK_OUT_DURATION_S: f64 = 6.0;
 /// Time without sight \[s\] after which the robot turns to regain it. Source: ours.
 const BLIND_PAUSE_S: f64 = 3.0;
@@ -71,14 +71,14 @@ impl Navigator {
         (self.touched || self.over_edge) && waited && is_free_behind(s, self.radius)
     }
 
-    /// Whether no image has shown anything for a while, or neither wheels nor images measure the motion.
+    /// Whether no image has had content within the safety monitor's timeout, or neither wheels nor images measure the motion.
     pub(super) fn is_blind(&self, s: &WorldState<'_>) -> bool {
         s.motion == MotionSense::Nothing || s.seen.is_none_or(|seen| s.now - seen > self.image_timeout)
     }
 
     /// A camera too near to a wall gives no depth. After a pause, one turn on the spot separates this from a broken camera.
     fn recover_sight(&mut self, s: &WorldState<'_>) -> Twist2 {
-        // Images that show something, but not how it moves, are no sight.
+        // Images with content that do not measure the motion do not count.
         let seen = s.seen.filter(|_| s.motion != MotionSense::Nothing);
         let since = self.held_since.max(seen);
         let is_long = since.is_some_and(|since| s.now - since >= BLIND_PAUSE_S);
@@ -148,7 +148,7 @@ impl Navigator {
     }
 }
 
-/// What safety judges a twist by.
+/// Input of the safety monitor for a twist.
 pub(crate) fn safety_input<'a>(
     s: &WorldState<'a>,
     twist: Twist2,
@@ -178,7 +178,7 @@ fn is_free_behind(s: &WorldState<'_>, radius: f64) -> bool {
     let (here, ahead) = (s.estimate.pose.position(), s.estimate.pose.inverse());
     let is_in_the_way = |at: Vector2| {
         let at = ahead.transform(at);
-        // What is beside or before the robot it has come past, or touches.
+        // Obstacles beside or ahead of the robot do not block backing out.
         at.x < -0.5 * radius && (at - Vector2::new(at.x.max(-BACK_OUT_CLEARANCE_M), 0.0)).norm() < radius
     };
     let mut cells = cells_about(s.grid, here, radius + BACK_OUT_CLEARANCE_M);

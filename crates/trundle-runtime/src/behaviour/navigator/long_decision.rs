@@ -1,4 +1,4 @@
-//! What is asked of the navigator when it may be away for a while.
+//! Requests to the navigator around a decision job.
 
 use super::{Goal, Navigator, viewpoint::Viewpoint};
 use crate::world_state::WorldState;
@@ -33,7 +33,7 @@ impl Navigator {
         left.is_none_or(|(plan, reference)| plan.trajectory.duration() - reference.time < APPROACH_LEAD_S)
     }
 
-    /// What goes on as was decided last.
+    /// The controller that continues the last decision.
     pub(crate) fn fallback(&self) -> FallbackController {
         let follows = match &self.state {
             DriveState::Driving => true,
@@ -51,7 +51,7 @@ impl Navigator {
         }
     }
 
-    /// What the base was asked for while the navigator was away.
+    /// Records the twist that left during a decision job.
     pub(crate) fn sent(&mut self, twist: Twist2) {
         self.follower.sent(twist);
     }

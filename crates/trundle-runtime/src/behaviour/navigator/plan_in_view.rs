@@ -7,7 +7,7 @@ use crate::world_state::WorldState;
 use trundle_core::{Cell, CellIndex, OccupancyGrid, Pose2, Trajectory, TrajectoryPoint, Twist2, Vector2};
 use trundle_planning::{Plan, PlanResult};
 
-/// What the path leaves the camera's view; searching another path came to.
+/// Result of the search for a path within the camera's view.
 #[derive(Debug)]
 pub(super) enum InView {
     /// A path to drive, or none.

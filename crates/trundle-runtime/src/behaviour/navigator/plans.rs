@@ -147,7 +147,7 @@ impl Navigator {
         long
     }
 
-    /// What it drives on does not show where it leads: it stops until there is a plan that does. Never a new plan.
+    /// Stops a drive whose path is not observed in time, until there is another plan. Never a new plan: false.
     fn stop_for_path_in_view(&mut self, s: &WorldState<'_>) -> bool {
         if self.state == DriveState::Driving {
             self.hold(Reason::PathOutOfView, s.now);

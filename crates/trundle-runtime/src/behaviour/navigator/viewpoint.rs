@@ -20,10 +20,10 @@ pub(super) enum Viewpoint {
     Settled,
 }
 
-/// What is to be seen.
+/// Target of an observation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum ViewTarget {
-    /// What blocks the path.
+    /// The obstacle that blocks the path.
     Blockage,
     /// Floor that has not been observed.
     UnknownFloor,
@@ -35,7 +35,7 @@ const VIEWPOINT_DISTANCES_M: [f64; 2] = [1.2, 0.9];
 const VIEWPOINT_BEARINGS: usize = 16;
 /// Number of viewpoints, the nearest first, to which a path is planned, one a step. Source: ours.
 const MAX_VIEWPOINT_PLANS: usize = 4;
-/// The nearest of these, the first to be asked for last.
+/// These poses by falling distance: the nearest is last and tried first.
 pub(super) fn best_last(mut places: Vec<Pose2>) -> Vec<Pose2> {
     places.truncate(MAX_VIEWPOINT_PLANS);
     places.reverse();

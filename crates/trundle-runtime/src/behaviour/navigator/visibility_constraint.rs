@@ -34,9 +34,9 @@ pub(super) const MAX_VIRTUAL_OBSTACLES: usize = 3;
 const MAX_VIEWS_PER_PLACE: usize = 2;
 /// Smallest distance between two viewpoints of one place \[m\]. Source: ours.
 const MIN_VIEWPOINT_SPACING_M: f64 = 0.4;
-/// Number of views per goal that show nothing new. Views that show something explore, which has a limit of its own. Source: ours.
+/// Number of observations per goal without result. Observations with a result explore, which has a limit of its own. Source: ours.
 pub(super) const MAX_VAIN_VIEWS: usize = 12;
-/// Time after which a place viewed in vain may be viewed again \[s\]: a person in front of it may have left. Source: ours.
+/// Time after which an observation without result may be repeated \[s\]: a person in front of the place may have left. Source: ours.
 const VAIN_VIEW_RETRY_S: f64 = 20.0;
 
 impl VisibilityConstraint {
@@ -51,7 +51,7 @@ impl VisibilityConstraint {
         self.in_vain += 1;
     }
 
-    /// Notes that it has come to where it set out to last.
+    /// Records the arrival at the last viewpoint.
     pub(super) fn note_arrival(&mut self, now: Stamp) {
         self.looks.last_mut().into_iter().for_each(|look| look.since = now);
     }
