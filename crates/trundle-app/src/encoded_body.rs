@@ -5,10 +5,10 @@ use trundle_core::{RobotBody, Twist2};
 use trundle_io::EncodedEvent;
 use trundle_runtime::{Answer, Job, Worker};
 
-/// What a run is fed.
+/// Input of a run.
 #[non_exhaustive]
 pub enum RunInput {
-    /// A sensor's event, encoded as it is recorded.
+    /// A sensor event, encoded as it is recorded.
     Event(EncodedEvent),
     /// The result of a background job.
     Answer(Answer),

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 /// Free space below which a run goes on without recording \[bytes\]. Source: ours.
 pub const MIN_FREE_BYTES: u64 = 1_000_000_000;
-/// Messages of a recording between two looks at the free space: some seconds. Source: ours.
+/// Messages of a recording between two checks of the free space: some seconds. Source: ours.
 const MESSAGES_BETWEEN_CHECKS: u32 = 500;
 
 /// Watches the free space of a disk.
@@ -29,7 +29,7 @@ impl FreeSpace {
         Self { read: Box::new(read), min_free_bytes, messages: 0 }
     }
 
-    /// Counts a message; looks at the disk from time to time. Why nothing more may be written, in words, where too little is free.
+    /// Counts a message, and checks the disk from time to time. Where too little is free, the reason for ending the recording, in words.
     pub fn shortage_at_message(&mut self) -> Option<String> {
         let is_due = self.messages.is_multiple_of(MESSAGES_BETWEEN_CHECKS);
         self.messages = self.messages.wrapping_add(1);

@@ -1,9 +1,9 @@
-//! What a recording of a run holds, and how large it becomes.
+//! Content of a run's recording, and its size.
 
 use serde::{Deserialize, Serialize};
 use trundle_core::PinholeCamera;
 
-/// What a recording of a run holds.
+/// Content of a run's recording.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
@@ -45,7 +45,7 @@ impl RecordingContent {
         }
     }
 
-    /// What a run of at most `limit` s will write, in a sentence, with images of `camera` at `rate_hz`.
+    /// Size of the recording of a run of at most `limit` s with images of `camera` at `rate_hz`, in a sentence.
     #[must_use]
     pub fn announcement(self, camera: &PinholeCamera, rate_hz: f64, limit: f64) -> String {
         let rate = self.bytes_per_second(camera, rate_hz) / BYTES_PER_MB;

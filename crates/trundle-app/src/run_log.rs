@@ -19,7 +19,7 @@ pub struct RunLog {
     pub twists: Vec<(Stamp, Twist2)>,
     /// Number of bumper presses.
     pub presses: usize,
-    /// Times that the body touched something in truth, where that is known.
+    /// Number of true contacts, where that is known.
     pub true_contacts: Option<u32>,
     /// Plans made.
     pub plans: usize,

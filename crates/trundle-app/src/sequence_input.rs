@@ -13,7 +13,7 @@ use trundle_core::{Pose2, Pose3, Stamp};
 use trundle_io::{CameraModel, FileKind, KINECT_V2_DEPTH_SCALE, SequenceCamera, TumSequence, Warnings};
 use trundle_runtime::RobotConfig;
 
-/// What to read, and how.
+/// Input of a sequence.
 #[derive(Debug, Clone, Copy)]
 pub struct SequenceOptions<'a> {
     /// A TUM RGB-D folder or a recording of a run.
@@ -159,7 +159,7 @@ impl SequenceInput {
         }
     }
 
-    /// What odometry and ground truth are called in the input, for messages.
+    /// Names of odometry and ground truth in the input, for messages.
     #[must_use]
     pub fn pose_sources(&self) -> [&'static str; 2] {
         match self.source {

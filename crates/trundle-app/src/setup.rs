@@ -35,7 +35,7 @@ pub struct RunSetup {
     /// Whether the robot's long work runs in threads beside the control loop.
     #[serde(default)]
     pub real_time: bool,
-    /// What is recorded of the run.
+    /// Content of the recording.
     #[serde(default, skip_serializing_if = "RecordingContent::is_all")]
     pub recording: RecordingContent,
     /// The checkpoint that the robot resumes from, as base64 of its bytes. None: the robot starts with an empty map.

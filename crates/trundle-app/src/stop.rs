@@ -8,7 +8,7 @@ use trundle_io::OutputFolder;
 
 /// The number of the first signal; 0 without one.
 static SIGNAL: AtomicUsize = AtomicUsize::new(0);
-/// What was done when a loop ended because of the signal; `None` while none has.
+/// Progress at the end of a loop that the signal ended; `None` without one.
 static STOPPED_AFTER: Mutex<Option<String>> = Mutex::new(None);
 
 /// A signal that asks the program to end.

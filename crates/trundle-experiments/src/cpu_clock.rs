@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-/// What this thread has computed so far: time during which others had the processor does not count.
+/// Processor time of this thread: time during which other threads ran does not count.
 #[cfg(unix)]
 pub fn now() -> Duration {
     let time = rustix::time::clock_gettime(rustix::time::ClockId::ThreadCPUTime);

@@ -5,15 +5,15 @@
 pub struct DataSet {
     /// Its short name.
     pub name: &'static str,
-    /// What it is.
+    /// Description.
     pub what: &'static str,
-    /// Who made it, and the address.
+    /// Authors and address.
     pub origin: &'static str,
     /// Licence of the data.
     pub licence: &'static str,
     /// The command that fetches the original.
     pub command: &'static str,
-    /// What has to be made of the original, and where it has to lie.
+    /// Conversion of the original, and its place on disk.
     pub place: &'static str,
     /// The commands of trundle that read it.
     pub used_by: &'static str,

@@ -1,4 +1,4 @@
-//! What experiments have in common: the request of closed-loop runs, and the report of an outcome.
+//! Common parts of experiments: the request of closed-loop runs, and the report of an outcome.
 
 use trundle_app::AppError;
 use trundle_io::OutputFolder;

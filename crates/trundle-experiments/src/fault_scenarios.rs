@@ -26,7 +26,7 @@ enum End {
 struct FaultScenario {
     name: &'static str,
     scene: &'static str,
-    /// What breaks, from when to when, s.
+    /// Faults with start and end, s.
     faults: Vec<(f64, f64, FaultKind)>,
     person: Option<Person>,
     /// Whether the person is given in the frame of the goal, not of the start.

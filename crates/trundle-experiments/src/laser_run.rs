@@ -14,7 +14,7 @@ pub struct LaserPlan {
     pub body: SimConfig,
     /// The place, with the robot's start.
     pub scene: Scene,
-    /// What it shall do, map frame.
+    /// The mission, map frame.
     pub mission: Mission,
     /// The map that it brings along; none: it begins with an empty one.
     pub known: Option<OccupancyGrid>,
@@ -41,17 +41,17 @@ pub struct Moment {
     pub contacts: u32,
 }
 
-/// What it came to.
+/// Result of a run.
 pub struct LaserRun {
     /// From start to end.
     pub moments: Vec<Moment>,
     /// The robot, with its map.
     pub robot: Robot,
-    /// What it was doing at the end.
+    /// State at the end.
     pub state: DriveState,
     /// Plans made.
     pub plans: usize,
-    /// What each control cycle took (odometry, supervision, planning, control and safety), processor time, ms.
+    /// Processor time of each control cycle (odometry, supervision, planning, control and safety), ms.
     pub cycles_ms: Vec<f64>,
 }
 

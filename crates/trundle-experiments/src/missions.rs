@@ -18,9 +18,9 @@ use trundle_viz::{Color, Figure, LineStyle, MapPicture, PoseStyle, Report, Table
 struct Story {
     /// Its name on the command line.
     name: &'static str,
-    /// What the report is called.
+    /// Title of the report.
     title: &'static str,
-    /// What is asked for, in a sentence.
+    /// The requirement, in a sentence.
     subtitle: &'static str,
 }
 
@@ -173,7 +173,7 @@ fn poses_csv(trial: &Trial) -> String {
 const HEADER: [&str; 7] =
     ["run", "goals reached", "worst goal, cm", "contacts", "driven, m", "time, s", "estimate rmse, cm"];
 
-/// The goals that the robot came to, of all.
+/// The number of reached goals, and of all.
 fn reached(trial: &Trial) -> (usize, usize) {
     let there = trial.numbers.goals.iter().filter(|goal| goal.is_reached(0.05, 3_f64.to_radians()));
     (there.count(), trial.numbers.goals_asked.unwrap_or(0))

@@ -13,14 +13,14 @@ use trundle_viz::{BarChart, Color, Figure, LineStyle, MapPicture, PoseStyle, Rep
 const STARTS: [(f64, f64); 8] =
     [(0.0, 2.4), (2.4, 2.4), (2.4, 0.0), (2.4, -2.4), (0.0, -2.4), (-2.4, -2.4), (-2.4, 0.0), (-2.4, 2.4)];
 
-/// What is asked for: the mean of |dx| and of |dy|, m.
+/// Goal for the mean of |dx| and of |dy|, m.
 const MEAN_OFFSET: f64 = 0.004;
 /// Largest distance from the goal in any run, m.
 const MAX_GOAL_DISTANCE_M: f64 = 0.015;
 /// The mean of |dtheta|, rad.
 const MEAN_TURN: f64 = 0.8 * std::f64::consts::PI / 180.0;
 
-/// Means of a set of runs: |dx|, |dy|, the largest distance, |dtheta| (m, rad); runs that did not arrive or touched something.
+/// Means of a set of runs: |dx|, |dy|, the largest distance, |dtheta| (m, rad); number of runs without arrival or with a contact.
 struct Means {
     dx: f64,
     dy: f64,

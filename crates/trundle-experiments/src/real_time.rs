@@ -104,7 +104,7 @@ pub fn run(
     Ok(RealTimeOutcome::of(&run, timing))
 }
 
-/// What is judged; the growth of memory only where the run goes on for long enough after the rooms are known.
+/// Limits of the judgement; the growth of memory only in runs that go on long enough after the rooms are mapped.
 fn limits(timing: &RealTimeReport) -> Vec<Limit> {
     let end = timing.memory.samples.last().map_or(0.0, |(time, _)| *time);
     let growth = Limit {

@@ -20,23 +20,23 @@ const MAX_LISTED_NAMES: usize = 30;
 
 /// A closed-loop run to be made: robot and simulator, with noise, and no truth in the loop.
 pub struct TrialPlan {
-    /// What it is called in tables.
+    /// Name in tables.
     pub name: String,
     /// The seed of all noise and of the scene.
     pub seed: u64,
     /// The room, with the robot's start.
     pub scene: Scene,
-    /// What the robot shall do, in its map frame.
+    /// The mission, in the robot's map frame.
     pub mission: Mission,
     /// The robot.
     pub robot: RobotConfig,
-    /// What breaks.
+    /// Faults of the simulated robot.
     pub faults: FaultSchedule,
-    /// What happens to the computer.
+    /// Fault of the computer.
     pub computer_fault: Option<ComputerFault>,
 }
 
-/// What happens to the robot's computer.
+/// A fault of the robot's computer.
 #[derive(Debug, Clone, Copy)]
 pub enum ComputerFault {
     /// Killed after this time, s, and restarted from its last checkpoint, which may be seconds old.
@@ -45,9 +45,9 @@ pub enum ComputerFault {
     FullDisk,
 }
 
-/// What it came to.
+/// Result of a trial.
 pub struct Trial {
-    /// What it is called in tables.
+    /// Name in tables.
     pub name: String,
     /// The seed.
     pub seed: u64,
@@ -65,12 +65,12 @@ pub struct Trial {
     pub planned: Vec<Vector2>,
     /// The map, map frame.
     pub grid: OccupancyGrid,
-    /// What the robot did, one after the other.
+    /// Changes of state, in order.
     pub changes: Vec<StateChange>,
 }
 
 impl Trial {
-    /// What the robot did, one after the other.
+    /// Changes of state, in order.
     pub fn state_table(&self) -> Table {
         let row = |change: &StateChange| {
             let Pose2 { x, y, theta } = change.pose;

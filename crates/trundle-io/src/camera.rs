@@ -26,7 +26,7 @@ const PRESETS: &str = "freiburg1, freiburg2, freiburg3, kinect_v2";
 pub struct CameraModel {
     /// Intrinsics, lens and readout time.
     pub camera: PinholeCamera,
-    /// What 1 m is in its depth images.
+    /// Depth units per metre in its depth images.
     pub depth_scale: f64,
 }
 

@@ -26,7 +26,7 @@ pub enum IoError {
         path: PathBuf,
         /// The line, from 1.
         line: usize,
-        /// What is wrong, with the value and its unit.
+        /// The problem, with the value and its unit.
         problem: String,
     },
     /// A value of a file cannot be accepted.
@@ -42,7 +42,7 @@ pub enum IoError {
     Image {
         /// The file.
         path: PathBuf,
-        /// What is wrong with it.
+        /// The problem.
         problem: Box<CodecError>,
     },
     /// The work is done, but its results could not all be written.
@@ -58,7 +58,7 @@ pub enum IoError {
     Malformed {
         /// The file or folder.
         path: PathBuf,
-        /// What is wrong.
+        /// The problem.
         problem: String,
     },
     /// A file or folder of another kind.
@@ -68,9 +68,9 @@ pub enum IoError {
         path: PathBuf,
         /// Its kind.
         found: &'static str,
-        /// What would be accepted.
+        /// The accepted content.
         expected: &'static str,
-        /// What to do, where that is known.
+        /// The remedy, where one is known.
         remedy: &'static str,
     },
 }
@@ -195,7 +195,7 @@ pub struct FrameError {
     pub index: usize,
     /// Its stamp.
     pub stamp: Stamp,
-    /// What is wrong with it.
+    /// The problem.
     pub source: IoError,
 }
 

@@ -3,7 +3,7 @@
 use crate::IoError;
 use std::path::Path;
 
-/// What some editors put in front of UTF-8 text.
+/// Mark that some editors put in front of UTF-8 text.
 const BYTE_ORDER_MARK: char = '\u{feff}';
 
 /// The whole file.

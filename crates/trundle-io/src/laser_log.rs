@@ -39,7 +39,7 @@ pub struct LaserMount {
 pub struct LaserLogSkip {
     /// The line, or the message's number in the bag, from 1.
     pub line: usize,
-    /// What is wrong with it.
+    /// The problem.
     pub problem: String,
 }
 
@@ -56,18 +56,18 @@ pub struct LaserLog {
     pub bad_ranges: usize,
     /// The first line, or message, with such a range.
     pub first_bad_range: Option<usize>,
-    /// Ranges from here on were taken for no returns, m.
+    /// Range from which on readings counted as no returns, m.
     pub max_range: Option<f64>,
     /// Why the depth images that the scans were made of have no usable depth; `None` where they have, or the log is a laser's.
     pub depth_problem: Option<String>,
-    /// The topics of a bag, or the lines of a CARMEN log, that made the log, and those left alone.
+    /// The topics of a bag, or the lines of a CARMEN log, that made the log, and the unused ones.
     pub sources: LaserLogSources,
     /// How the laser was taken to be mounted.
     pub mount: LaserMount,
 }
 
 impl LaserLog {
-    /// The scans without one beam that met anything.
+    /// Number of scans without a return in any beam.
     #[must_use]
     pub fn scans_without_return(&self) -> usize {
         let is_blind =
@@ -75,7 +75,7 @@ impl LaserLog {
         self.scans.iter().filter(is_blind).count()
     }
 
-    /// What was skipped and which ranges are bad, one warning a kind.
+    /// Warnings about skipped messages and bad ranges, one a kind.
     #[must_use]
     pub fn warnings(&self) -> Warnings {
         let mut warnings = Warnings::default();

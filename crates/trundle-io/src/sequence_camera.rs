@@ -1,4 +1,4 @@
-//! The camera of a sequence: the one asked for, the folder's own, or one that is assumed.
+//! The camera of a sequence: the requested one, the folder's own, or an assumed one.
 
 use crate::camera::{CameraModel, KINECT_V2_DEPTH_SCALE};
 use crate::{Expected, FileKind, IoError, Warnings};
@@ -21,11 +21,11 @@ pub struct SequenceCamera {
 }
 
 impl SequenceCamera {
-    /// The preset or file that was asked for, else `camera.toml` of the folder, else another camera file in it, recognised by its
-    /// content, else freiburg1, which is assumed and warned of.
+    /// The requested preset or file, else `camera.toml` of the folder, else another camera file in it, recognised by its
+    /// content, else freiburg1 with a warning.
     ///
     /// # Errors
-    /// When what was asked for, or the folder's file, cannot be accepted.
+    /// When the requested camera, or the folder's file, cannot be accepted.
     pub fn choose(asked: Option<&str>, dir: &Path) -> Result<Self, IoError> {
         if let Some(name) = asked {
             return Self::named(name);

@@ -33,7 +33,7 @@ pub struct SimConfig {
     pub color_noise: ColorNoise,
     /// A 2-D laser. Default none.
     pub laser: Option<LaserConfig>,
-    /// What breaks, and when. Default nothing.
+    /// Faults and their times. Default none.
     pub faults: FaultSchedule,
 }
 

@@ -148,7 +148,7 @@ impl Simulator {
         Stamp::from_nanos(self.now as i64 * 1_000_000)
     }
 
-    /// How often the robot touched something: separate touches.
+    /// Number of separate contacts.
     pub fn contacts(&self) -> u32 {
         self.body.contacts()
     }
@@ -324,7 +324,7 @@ fn require_free(
     Ok(())
 }
 
-/// Refuses a pose beyond everything that the scene has.
+/// Refuses a pose outside of the scene.
 fn require_inside(scene: &Scene, what: &str, Pose2 { x, y, .. }: Pose2) -> Result<(), SimError> {
     let (low, high) = scene.world.bounds();
     if (low.x..=high.x).contains(&x) && (low.y..=high.y).contains(&y) {

@@ -3,11 +3,11 @@
 use crate::materials::Finish;
 use crate::world::shape::Shape;
 
-/// A shape and how its faces look.
+/// A shape with the paint of its faces.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Solid {
     /// Where it is.
     pub shape: Shape,
-    /// What is painted on it.
+    /// The paint.
     pub finish: Finish,
 }

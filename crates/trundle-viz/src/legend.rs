@@ -6,7 +6,7 @@ use crate::map::{draw_badge, radius_of};
 use crate::text::{TextStyle, cap_height, line_height, text_width};
 use crate::wedge::wedge;
 
-/// The sign that stands for something in a legend.
+/// The sign of an entry in a legend.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Mark {
     /// A solid line.
@@ -34,7 +34,7 @@ pub enum Mark {
 /// One line of a legend: what the colour and the mark mean.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LegendItem {
-    /// What it is.
+    /// The text.
     pub label: String,
     /// Its colour in the picture.
     pub color: Color,

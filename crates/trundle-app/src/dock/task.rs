@@ -1,4 +1,4 @@
-//! What is to be planned: footprint, start, goal and the obstacles of a map, a scan or a list.
+//! The docking task: footprint, start, goal and the obstacles of a map, a scan or a list.
 
 use crate::{AppError, read_map};
 use std::path::Path;

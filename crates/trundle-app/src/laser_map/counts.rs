@@ -1,4 +1,4 @@
-//! What became of the scans of a log.
+//! Counts of a log's scans by their result.
 
 use trundle_mapping::{Localized, Processed, ScanUpdate};
 

@@ -1,4 +1,4 @@
-//! What a log is mapped with: filter, laser, a map to begin with.
+//! Request to map a log: filter, laser, initial map.
 
 use super::log_input::DepthLog;
 use crate::{AppError, read_map};
@@ -89,7 +89,7 @@ impl LaserMapRequest {
 const DEPTH_RANGE_NOISE_M: f64 = 0.01;
 
 /// The motion of a tracked camera: ten times as exact as that of wheels alone. The wheels' own values cannot be that small: the
-/// drift of their heading is the same on every metre, and a filter that trusts them bends its map.
+/// drift of their heading is the same on every metre, and a filter with such values distorts its map.
 fn tracked_camera_motion() -> MotionConfig {
     MotionConfig {
         shift_per_metre: 0.05,

@@ -11,7 +11,7 @@ const MAX_SHARE_WITHOUT_OVERLAP: f64 = 0.5;
 /// The result of a log.
 #[derive(Debug)]
 pub struct LaserMapRun {
-    /// What became of the scans.
+    /// Counts of the scans by their result.
     pub counts: ScanCounts,
     /// Memory of maps, scans and trajectories, MB.
     pub megabytes: f64,
@@ -19,7 +19,7 @@ pub struct LaserMapRun {
     pub seconds: f64,
     /// Whether the user ended it before the last scan.
     pub is_interrupted: bool,
-    /// What is probably wrong with the laser's mount, where the scans contradict the odometry at many steps.
+    /// Probable error of the laser's mount, where the scans contradict the odometry at many steps.
     pub mount_hint: Option<String>,
     /// Why the run missed its aim; `None` where it did not.
     pub failure: Option<String>,

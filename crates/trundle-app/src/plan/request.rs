@@ -1,4 +1,4 @@
-//! What is to be planned: a map, a start, goals, and a planner with the masks and lanes of their files.
+//! The planning task: a map, a start, goals, and a planner with the masks and lanes of their files.
 
 use super::goal_refusal::GoalRefusal;
 use super::masks::{SpeedMaskLimits, read_lanes, set_keep_out, set_speed_mask};

@@ -6,7 +6,7 @@ use trundle_core::Pose2;
 use trundle_eval::{GoalError, goal_error};
 use trundle_runtime::{TaskEnd, TaskRecord};
 
-/// What became of a task that has a goal.
+/// Outcome of a task with a goal.
 #[derive(Debug, Clone, Serialize)]
 pub struct GoalOutcome {
     /// Its place in the mission, from 0.
@@ -47,7 +47,7 @@ impl GoalOutcome {
         })
     }
 
-    /// Whether the robot came to the goal, in truth, within these of it: m and rad. Of one before a restart nothing but its word is known.
+    /// Whether the robot truly came within these distances of the goal, m and rad. Before a restart only the estimate is recorded.
     pub fn is_reached(&self, distance: f64, turn: f64) -> bool {
         let near = |error: GoalError| error.distance < distance && error.dtheta.abs() < turn;
         let error = if self.before_restart { self.believed } else { self.error };

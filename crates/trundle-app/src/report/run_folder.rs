@@ -9,13 +9,13 @@ use trundle_core::{Footprint, Pose2};
 use trundle_io::{IoError, OutputFolder, trajectory_text_from_planar, write_map};
 use trundle_viz::{Card, Chart, Color, Figure, RunMap, RunReport, Table, Verdict};
 
-/// What a run's folder holds.
+/// The written folder of a run.
 pub struct RunOutput {
     /// The figures of the run.
     pub numbers: RunNumbers,
     /// The folder.
     pub folder: PathBuf,
-    /// Why not everything could be written, if it could not.
+    /// The reason where some results could not be written.
     pub incomplete: Option<AppError>,
 }
 

@@ -20,7 +20,7 @@ pub struct RunNumbers {
     pub believed_error: Option<GoalError>,
     /// The estimate's distance from truth over the run: root of the mean square, m.
     pub estimate_rmse: Option<f64>,
-    /// Times that something was touched: in truth, where that is known.
+    /// Number of contacts: true ones, where those are known.
     pub contacts: usize,
     /// Distance driven, m.
     pub path_length: f64,
@@ -36,7 +36,7 @@ pub struct RunNumbers {
     pub keyframes: usize,
     /// Stamps of the images that a newer one replaced before they were processed, s since the start.
     pub images_dropped: Vec<f64>,
-    /// What turns and straight moves did for the last goal that they were asked about; `None` where they never were.
+    /// Report of turns and straight moves for the last goal with such a request; `None` without a request.
     pub docking: Option<GoalApproachReport>,
     /// How it ended.
     pub state: DriveState,
@@ -88,7 +88,7 @@ impl RunNumbers {
         self.goal_error.is_none_or(|error| error.dtheta.abs().to_degrees() < ALIGNED_DEG)
     }
 
-    /// Arrived at every goal, in truth, without touching anything.
+    /// Whether every goal was truly reached without a contact.
     pub fn is_success(&self) -> bool {
         let all = self.goals_missed() == 0 && self.goals_asked.is_some();
         self.state == DriveState::Arrived && all && self.is_near() && self.is_aligned() && self.contacts == 0

@@ -10,7 +10,7 @@ use crate::sequence_input::SequenceInput;
 use std::path::PathBuf;
 use trundle_io::{OutputFolder, trajectory_text, write_map_as};
 
-/// What was written, and the table for a front end.
+/// The written folder, and the table for a front end.
 pub struct SequenceOutput {
     /// The folder.
     pub folder: PathBuf,

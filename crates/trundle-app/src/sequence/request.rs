@@ -1,4 +1,4 @@
-//! What a sequence is tracked with: camera, first pose, map, seed.
+//! Request to track a sequence: camera, first pose, map, seed.
 
 use crate::AppError;
 use crate::sequence_input::{SequenceInput, SequenceOptions};
@@ -30,7 +30,7 @@ pub struct SequenceRequest {
     pub roll_deg: Option<f64>,
     /// The visual map of an earlier run, in which the camera is localized first.
     pub map: Option<PathBuf>,
-    /// Whether that map stays as it is.
+    /// Whether that map is fixed.
     pub localize_only: bool,
     /// The vocabulary by which places are recognised; `None` for the built-in one.
     pub vocabulary: Option<PathBuf>,
@@ -40,7 +40,7 @@ pub struct SequenceRequest {
     pub map_image: MapImage,
 }
 
-/// Height of a first camera of which nothing is known \[m\]. Source: ours, a hand-held camera.
+/// Default height of a first camera \[m\]. Source: ours, a hand-held camera.
 const DEFAULT_CAMERA_HEIGHT_M: f64 = 1.0;
 
 impl SequenceRequest {
@@ -57,7 +57,7 @@ impl SequenceRequest {
         })
     }
 
-    /// The pose of the first camera above the floor: as asked for, else as the robot of a recording carries it.
+    /// The pose of the first camera above the floor: by the request, else by the robot of a recording.
     fn level_from_first_camera(&self, input: &SequenceInput) -> Result<Pose3, Invalid> {
         let is_asked = self.height.or(self.tilt_deg).or(self.roll_deg).is_some();
         match input.level_from_first_camera().filter(|_| !is_asked) {
@@ -70,7 +70,7 @@ impl SequenceRequest {
         }
     }
 
-    /// A tracker with an empty map, or with the map asked for.
+    /// A tracker with an empty map, or with the requested one.
     pub(super) fn slam(&self, input: &SequenceInput) -> Result<RgbdSlam, AppError> {
         // The error of a recording is taken over all of its frames.
         let config = SlamConfig { seed: self.seed, kept_frames: usize::MAX, ..SlamConfig::default() };

@@ -1,4 +1,4 @@
-//! What a recording of a run holds beside its images: the robot, odometry, truth, scans of a laser.
+//! Data of a run's recording beside its images: the robot, odometry, truth, scans of a laser.
 
 use crate::setup::RunSetup;
 use crate::{AppError, RecordingContent};

@@ -21,7 +21,7 @@ pub struct Course {
     pub start: Pose2,
     /// World frame.
     pub goal: Pose2,
-    /// Who walks there.
+    /// People on the course.
     pub people: Vec<Person>,
 }
 
@@ -128,7 +128,7 @@ fn laid_anew(map: &OccupancyGrid, world_from_map: Pose2, resolution: f64) -> Res
     Ok(grid)
 }
 
-/// A floor under everything that the maps reach.
+/// A floor under the whole area of the maps.
 fn floor() -> Solid {
     let (center, size) = (Vector3::new(0.0, 0.0, -0.05), Vector3::new(40.0, 40.0, 0.1));
     let shape = Shape::Cuboid(Cuboid { center, size, yaw: 0.0 });

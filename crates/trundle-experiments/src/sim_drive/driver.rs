@@ -1,4 +1,4 @@
-//! Who drives the simulated robot.
+//! Drivers of the simulated robot.
 
 use std::path::Path;
 use trundle_app::{AppError, read_text};

@@ -22,13 +22,13 @@ pub struct SimulatedRealTimeBody {
     _pools: [ThreadPool; 2],
 }
 
-/// What the two threads share.
+/// State shared by the two threads.
 #[derive(Clone)]
 struct Shared {
     events: InboxSender<TimedEvent>,
     stop: Arc<AtomicBool>,
     not_taken: Arc<AtomicU64>,
-    /// What the body has touched by now.
+    /// Number of contacts so far.
     contacts: Arc<AtomicU32>,
     /// The moment of simulated time 0.
     origin: Instant,

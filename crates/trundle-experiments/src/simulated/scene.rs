@@ -16,7 +16,7 @@ const HERE: SceneFiles = SceneFiles { folder: PathBuf::new() };
 /// How a scene is made of its name.
 #[derive(Debug, Clone, Copy)]
 pub struct SceneOptions {
-    /// Of everything that is drawn by chance.
+    /// Seed of all random numbers.
     pub seed: u64,
     /// The axis, scale and floor of a mesh.
     pub mesh: MeshOptions,

@@ -2,10 +2,10 @@
 
 use trundle_core::{Invalid, require_in, require_positive};
 
-/// What 1 m is in TUM's depth images.
+/// Depth units per metre in TUM's depth images.
 pub const TUM_DEPTH_SCALE: f64 = 5000.0;
 
-/// What 1 m is in the depth images of a Kinect V2, of ROS (REP 118) and of trundle's recordings: millimetres.
+/// Depth units per metre in the depth images of a Kinect V2, of ROS (REP 118) and of trundle's recordings: millimetres.
 pub const KINECT_V2_DEPTH_SCALE: f64 = 1000.0;
 
 /// Depth scale below which a file holds its inverse \[units a metre\]: RealSense's 0.001 is metres a unit. Source: ours.

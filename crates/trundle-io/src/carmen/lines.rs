@@ -81,7 +81,7 @@ impl LogLines {
         }
     }
 
-    /// The name of the lines that make the log: those asked for, else the front laser's, else those that are most.
+    /// The name of the lines that make the log: the requested one, else the front laser's, else the most frequent one.
     pub(super) fn chosen(&self, asked: Option<&str>) -> Result<String, String> {
         const KIND: &str = "scan";
         let mut counts = BTreeMap::new();
@@ -107,7 +107,7 @@ impl LogLines {
         self.lasers.iter().filter(move |(_, name, _)| is_wanted(name)).map(|(line, _, laser)| (*line, laser))
     }
 
-    /// What is wrong with the lines of this name, of the odometry and of parameters.
+    /// Problems of the lines of this name, of the odometry and of parameters.
     pub(super) fn problems(&self, name: &str) -> Vec<LaserLogSkip> {
         let is_wanted = is_one_source(name.to_owned());
         let about = self.broken.iter().filter(|(name, _)| name.is_none_or(&is_wanted));

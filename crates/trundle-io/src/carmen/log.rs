@@ -10,7 +10,7 @@ use crate::laser_log::{LaserLog, LaserLogOptions, LaserLogScan, LaserLogSkip, La
 use std::path::Path;
 
 /// A CARMEN log, plain or compressed with gzip: lines of a laser (`FLASER`, `ROBOTLASER1`, `RAWLASER1` to `RAWLASER4` and those of
-/// the rear), `ODOM` and three of `PARAM`; others are left alone.
+/// the rear), `ODOM` and three of `PARAM`; others are ignored.
 ///
 /// The scans are those of the front laser, else the lines that are most; [`LaserLogOptions::scan_topic`] names others. A `RAWLASER`
 /// line has no pose: its odometry is interpolated between `ODOM` lines. A broken line, or one whose time goes back, is skipped and

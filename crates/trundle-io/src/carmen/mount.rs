@@ -19,7 +19,7 @@ pub(super) fn mount(
     Pose2::new(x, known.y, theta)
 }
 
-/// The front laser looks ahead from its offset, the rear one back from the base; others sit on the base.
+/// The front laser points ahead from its offset, the rear one back from the base; others sit on the base.
 fn mount_by_name(name: &str, front_offset: f64) -> Pose2 {
     match name {
         "RLASER" | "ROBOTLASER2" | "RAWLASER2" => Pose2::new(0.0, 0.0, PI),

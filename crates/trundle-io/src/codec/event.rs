@@ -55,7 +55,7 @@ pub enum EncodedEvent {
     Scan(Scan),
     /// Ground truth, `world_from_base`, for evaluation only.
     Truth {
-        /// When it held.
+        /// Time of the pose.
         stamp: Stamp,
         /// `world_from_base`.
         pose: Pose2,

@@ -41,7 +41,7 @@ const MAGICS: &[(&[u8], FileKind)] = &[
     (b"\xfe\xff", FileKind::Utf16Text),
 ];
 
-/// What an MCAP file begins with.
+/// First bytes of an MCAP file.
 pub(super) const MCAP_MAGIC: &[u8] = b"\x89MCAP0\r\n";
 
 /// The kind of a binary file, or of a text file with a mark of its own in its first bytes.

@@ -1,11 +1,11 @@
-//! What a command takes, and the refusal of files of another kind.
+//! Kinds of files that a command takes, and the refusal of others.
 
 use super::{FileKind, packed, words};
 use crate::IoError;
 use FileKind as K;
 use std::path::Path;
 
-/// What an argument stands for.
+/// Kind of file that an argument expects.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Expected {
     /// A map, or a mask, by its YAML file.

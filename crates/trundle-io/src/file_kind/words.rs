@@ -91,7 +91,7 @@ pub(super) fn name(kind: FileKind) -> &'static str {
     words(kind).0
 }
 
-/// What to do with a file of this kind where another was expected; `wants_map`: whether a map would have been taken.
+/// Remedy for a file of this kind where another was expected; `wants_map`: whether a map was expected.
 pub(super) fn remedy(kind: FileKind, wants_map: bool) -> &'static str {
     match words(kind).1 {
         "" if wants_map && is_picture(kind) => "give the map's YAML file, which names the picture",

@@ -43,7 +43,7 @@ impl Motion {
         self.poses.is_empty()
     }
 
-    /// What is wrong where the odometry holds no time of the scans, which are between `first` and `last`.
+    /// The problem where the odometry has no stamp within the scans, which are between `first` and `last`.
     pub(crate) fn other_clock(&self, (first, last): (Stamp, Stamp)) -> Option<String> {
         let scans = format!("scans from {first} s to {last} s");
         let (Some((from, _)), Some((to, _))) = (self.poses.first(), self.poses.last()) else {

@@ -9,14 +9,14 @@ pub struct LaserLogSources {
     pub scans: String,
     /// Of the odometry.
     pub odometry: String,
-    /// Topics of scans or odometry that were left alone, with the number of their messages.
+    /// Unused topics of scans or odometry, with the number of their messages.
     pub left: Vec<(String, usize)>,
 }
 
-/// The topic asked for, or else the one with the most messages, the first of equals.
+/// The requested topic, or else the one with the most messages, the first of equals.
 ///
 /// # Errors
-/// Names the topics that there are when the one asked for is none of them.
+/// Names the topics of the file when the requested one is none of them.
 pub(crate) fn chosen(
     counts: &BTreeMap<String, usize>,
     asked: Option<&str>,

@@ -36,11 +36,11 @@ struct Feature {
     geometry: Value,
 }
 
-/// What a feature is to a graph.
+/// Role of a feature in a graph.
 enum Role {
     Node(String),
     Lane(String),
-    /// Left alone: its kind.
+    /// Ignored: its kind.
     Other(String),
 }
 

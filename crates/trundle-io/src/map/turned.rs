@@ -2,7 +2,7 @@
 
 use trundle_core::{GridGeometry, Invalid, Vector2};
 
-/// Looks along a cell's side.
+/// Samples along a cell's side.
 const SAMPLES_PER_SIDE: usize = 3;
 /// Turns below this are none, rad: 1 um at 10 km.
 const MAX_STRAIGHT_TURN_RAD: f64 = 1e-10;
@@ -81,7 +81,7 @@ mod tests {
         for k in 1..30 {
             let yaw = f64::from(k) * 0.21 - 3.0;
             let (new, values) = straightened(geometry, wall.clone(), yaw, 9, |value| value).unwrap();
-            // Across the wall in the picture's frame, on a line that no look lies on.
+            // Across the wall in the picture's frame, on a line between the samples.
             let (sin, cos) = yaw.sin_cos();
             let meets = (0..=4000).any(|i| {
                 let (x, y) = (f64::from(i) * 1e-3 + 0.05, 2.03);

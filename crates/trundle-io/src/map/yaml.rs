@@ -109,7 +109,7 @@ impl MapYaml {
     }
 }
 
-/// What `origin` holds.
+/// Form of `origin`.
 const ORIGIN: &str = "[x, y, yaw] (m, m, rad)";
 
 fn negate(document: &YamlDocument<'_>) -> Result<bool, IoError> {

@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 #[derive(Debug)]
 pub struct OutputFile {
     path: PathBuf,
-    /// `None` for a device, which is written as it is.
+    /// `None` for a device, which is written directly.
     scratch: Option<Scratch>,
     /// Folders above the file that did not exist before, the innermost first.
     made: Vec<PathBuf>,

@@ -23,7 +23,7 @@ pub(super) fn add(folder: &Path) {
     unfinished().folders.push(folder.to_owned());
 }
 
-/// Forgets a hidden folder.
+/// Removes a hidden folder from the list.
 pub(super) fn forget(folder: &Path) {
     unfinished().folders.retain(|known| known != folder);
 }

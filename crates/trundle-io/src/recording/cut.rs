@@ -65,7 +65,7 @@ pub(super) fn records_of_cut_chunk(file: &mut File, start: u64) -> io::Result<Ve
     Ok(content.map(|content| split_records(&content).0).unwrap_or_default())
 }
 
-/// What there is of the records in a chunk.
+/// The readable records of a chunk.
 fn chunk_content(chunk: &[u8]) -> Option<Vec<u8>> {
     let rest = chunk.get(CHUNK_HEAD_BYTES..)?;
     let (length, rest) = rest.split_at_checked(4)?;

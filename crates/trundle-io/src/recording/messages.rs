@@ -34,7 +34,7 @@ pub(super) struct CliffMessage {
     over_edge: bool,
 }
 
-/// A 2-D laser's sweep: beam i looks along `angle_min_rad + i * angle_increment_rad` from `origin_m`, base frame.
+/// A 2-D laser's sweep: beam i points along `angle_min_rad + i * angle_increment_rad` from `origin_m`, base frame.
 #[derive(Serialize, Deserialize)]
 pub(super) struct ScanMessage {
     stamp: Time,
@@ -43,7 +43,7 @@ pub(super) struct ScanMessage {
     angle_increment_rad: f64,
     /// `null` where nothing is known.
     ranges_m: Vec<Option<f64>>,
-    /// Whether something stands at the range, rather than all being free up to it.
+    /// Whether an obstacle is at the range; else the beam is free up to it.
     hits: Vec<bool>,
 }
 

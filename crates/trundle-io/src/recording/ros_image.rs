@@ -13,7 +13,7 @@ pub(super) const DEFINITION: &str = "std_msgs/Header header\nstring format\nuint
     ================================================================================\n\
     MSG: builtin_interfaces/Time\nint32 sec\nuint32 nanosec\n";
 
-/// What a message begins with: plain CDR, little endian.
+/// First bytes of a message: plain CDR, little endian.
 const ENCAPSULATION: [u8; 4] = [0, 1, 0, 0];
 /// The frame of the camera.
 const FRAME: &str = "camera";

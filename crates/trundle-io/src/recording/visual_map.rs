@@ -74,7 +74,7 @@ impl LandmarkCloud {
 /// `PackedElementField.NumericType.FLOAT32_TYPE`.
 const FLOAT32_TYPE: u8 = 7;
 
-/// What ties keyframes together: a message of the schema `foxglove.SceneUpdate` with the covisibility graph and the closed
+/// Links between keyframes: a message of the schema `foxglove.SceneUpdate` with the covisibility graph and the closed
 /// loops as lines.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct KeyframeGraph {

@@ -12,7 +12,7 @@ pub(super) struct CdrError {
     pub field: &'static str,
     /// Where it begins in the message.
     pub offset: usize,
-    /// What is wrong.
+    /// The problem.
     pub problem: String,
 }
 

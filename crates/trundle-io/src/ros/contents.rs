@@ -108,7 +108,7 @@ impl Contents {
         }
     }
 
-    /// The scans of the topic asked for, or of the one with the most, and the topic.
+    /// The scans of the requested topic, or of the one with the most, and the topic.
     pub(super) fn scans(&mut self, asked: Option<&str>) -> Result<(String, Vec<(usize, LaserScan)>), String> {
         let topic = chosen(&counts(&self.scans), asked, types::LASER_SCAN);
         let topic = topic.map_err(|problem| match self.skipped.first() {
@@ -122,7 +122,7 @@ impl Contents {
         Ok((topic, scans))
     }
 
-    /// The base's motion by the topic asked for, or by the one with the most odometry, or by transforms.
+    /// The base's motion by the requested topic, or by the one with the most odometry, or by transforms.
     pub(super) fn motion(&mut self, asked: Option<&str>) -> Result<BagMotion, String> {
         let (topic, poses) = self.odometry_poses(asked)?;
         let base = poses.iter().map(|pose| pose.child.clone()).find(|base| !base.is_empty());

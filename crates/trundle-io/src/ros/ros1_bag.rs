@@ -144,7 +144,7 @@ impl Ros1Bag {
     }
 }
 
-/// Remembers a connection, gives a message its topic and type.
+/// Stores a connection, gives a message its topic and type.
 fn take(
     record: &Ros1Record<'_>,
     connections: &mut BTreeMap<u32, (String, String)>,

@@ -27,7 +27,7 @@ pub(super) enum Value {
     Blob(Vec<u8>),
 }
 
-/// Where the reading of a table has come to: the pages down to here, each with the number of its next cell.
+/// Position of the reading in a table: the pages down to here, each with the number of its next cell.
 #[derive(Debug, Clone)]
 pub(super) struct TableRows {
     path_down: Vec<(Vec<u8>, u32, usize)>,
@@ -158,7 +158,7 @@ impl Sqlite {
     }
 }
 
-/// What a page of a tree holds at a place.
+/// Content of a page of a tree at a place.
 enum Node {
     /// A row, at this byte.
     Row(usize),

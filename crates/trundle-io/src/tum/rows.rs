@@ -7,7 +7,7 @@ use crate::{IoError, Warnings};
 use std::path::Path;
 use trundle_core::Stamp;
 
-/// What becomes of a row that cannot be read.
+/// Treatment of a row that cannot be read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum BrokenRows {
     /// The file is refused.
@@ -23,7 +23,7 @@ pub(super) struct Table<'a> {
     pub text: &'a str,
     /// Names of the numbers after the stamp.
     pub names: &'a [&'a str],
-    /// Whether further columns may follow, which are left alone.
+    /// Whether further columns may follow, which are ignored.
     pub is_open: bool,
     /// Unit of the stamps by the file's form; another one than this or seconds is warned of.
     pub unit: StampUnit,

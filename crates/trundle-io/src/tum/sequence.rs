@@ -58,7 +58,7 @@ impl TumSequence {
         })
     }
 
-    /// What was mended or left out on opening, one warning a kind.
+    /// Corrections and omissions on opening, one warning a kind.
     pub fn warnings(&self) -> &Warnings {
         &self.warnings
     }

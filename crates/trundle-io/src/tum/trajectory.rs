@@ -19,7 +19,7 @@ pub struct TrajectoryFile {
     pub poses: Vec<(Stamp, Pose3)>,
     /// Whether the file has no times: then the stamps are the numbers of its rows, in seconds.
     pub is_indexed: bool,
-    /// What was mended or left out.
+    /// Corrections and omissions.
     pub warnings: Warnings,
 }
 

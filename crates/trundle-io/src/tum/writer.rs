@@ -5,7 +5,7 @@ use crate::{CameraModel, IoError, OutputFolder, TUM_DEPTH_SCALE};
 use std::fmt::Write;
 use trundle_core::{PinholeCamera, Pose2, Pose3, Stamp};
 
-/// Writes a TUM RGB-D folder that [`crate::TumSequence`], evo and ORB-SLAM programs read as it is.
+/// Writes a TUM RGB-D folder that [`crate::TumSequence`], evo and ORB-SLAM programs read directly.
 ///
 /// Images go to disk as they come; the lists, ground truth, odometry and calibration at [`TumWriter::finish`], each by
 /// rising stamp in whatever order it came. Names of images sort as their stamps do.

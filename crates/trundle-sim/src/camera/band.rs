@@ -11,10 +11,10 @@ use trundle_core::PinholeCamera;
 /// Lower bound of the cosines of incidence.
 const LEAST_COSINE: f32 = 1e-3;
 
-/// Everything that is drawn in one image.
+/// All surfaces in one image.
 pub(super) struct Picture<'a> {
     pub(super) camera: &'a PinholeCamera,
-    /// What stands still, then what moves.
+    /// The fixed world, then the moving ones.
     pub(super) views: &'a [WorldView<'a>],
     pub(super) lamps: &'a Lamps,
 }

@@ -8,7 +8,7 @@ use trundle_core::Invalid;
 /// Steps of linear light between black and white when it is turned back into levels: less than half a level each.
 const LINEAR_STEPS: usize = 1 << 13;
 
-/// What a camera collects that moves while its shutter is open: the mean of `views` in linear light.
+/// Image of a camera that moves while its shutter is open: the mean of `views` in linear light.
 ///
 /// The views are at evenly spaced moments of the exposure. Depth and cosine are those of the middle one (the depth camera
 /// has a shutter of its own). Cost: a table look-up a channel and view. `out` is overwritten.

@@ -8,7 +8,7 @@ use std::f64::consts::FRAC_PI_2;
 /// Entries of the tables over depth, a power of two.
 const TABLE_STEPS: usize = 1024;
 
-/// What a pixel's depth is measured from.
+/// Inputs of a pixel's depth measurement.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct DepthTruth {
     /// Depth, m; 0 where nothing is.

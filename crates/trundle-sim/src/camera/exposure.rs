@@ -5,7 +5,7 @@ use super::srgb::linear_from_srgb;
 use serde::{Deserialize, Serialize};
 use trundle_core::{Invalid, Stamp, require_in};
 
-/// Columns and rows between the pixels that auto exposure looks at.
+/// Columns and rows between the pixels that auto exposure uses.
 const METERING_STRIDE_PX: usize = 7;
 
 /// How bright images become: a gain on linear light, fixed or following the scene.
@@ -73,7 +73,7 @@ impl Meter {
         self.gain
     }
 
-    /// Looks at what is before the camera at `stamp`; the first look sets the gain at once.
+    /// Adapts to the view at `stamp`; the first call sets the gain at once.
     pub(super) fn look(&mut self, view: &View, stamp: Stamp) {
         if !self.exposure.auto {
             return;

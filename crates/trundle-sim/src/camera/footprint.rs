@@ -6,12 +6,12 @@ use super::tile::{Row, TILE_COLUMNS};
 /// Ratio of length to width of a pixel's footprint above which two samples are taken along it.
 const MAX_ANISOTROPY: f32 = 2.0;
 
-/// What the pixels of a row cover of a patch.
+/// Footprints of the pixels of a row on a patch.
 pub(super) struct Footprints {
     /// The middle, texels.
     pub(super) x: Row<f32>,
     pub(super) y: Row<f32>,
-    /// From the middle to each of the two places to look at, texels; zero where one is enough.
+    /// From the middle to each of the two samples, texels; zero where one sample is enough.
     pub(super) shift_x: Row<f32>,
     pub(super) shift_y: Row<f32>,
     /// log2 of the width of a sample, texels.

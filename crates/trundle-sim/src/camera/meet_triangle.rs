@@ -6,8 +6,8 @@ use super::rays::{Linear, Rays};
 use super::tile::{ROWS, TILE_COLUMNS, Tile, mask, smaller};
 use crate::world::{BLOCK, Block};
 
-/// Keeps the triangles of a block where they are nearest; `apex` is the camera's centre in their frame, ids are `id` and what
-/// follows. `floor` is the least inverse depth in the tile. Whether anything may have changed.
+/// Keeps the triangles of a block where they are nearest; `apex` is the camera's centre in their frame, ids are `id` and the following
+/// numbers. `floor` is the least inverse depth in the tile. Whether any pixel may have changed.
 ///
 /// Triangle scan conversion in homogeneous coordinates (Olano and Greer 1997): with corners a, b, c seen from the camera, the ray
 /// d is on the inner side of edge ab where d . (a x b) has the sign of the volume a . (b x c), and the inverse depth is d . n / volume,

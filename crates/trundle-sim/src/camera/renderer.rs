@@ -26,7 +26,7 @@ pub struct View {
 /// Draws a [`SceneSnapshot`] in a rectified pinhole camera: exact perspective depth, filtered textures, Lambert's law.
 ///
 /// The image is cut into tiles of 16 x 8 pixels. For each, the hierarchies are walked with the tile's pyramid, the nearest
-/// boxes first, until all pixels see something nearer than the next box begins. The pixels do not depend on the number
+/// boxes first, until every pixel has a surface nearer than the next box. The pixels do not depend on the number
 /// of threads.
 #[derive(Debug, Clone)]
 pub struct Renderer {

@@ -19,7 +19,7 @@ pub struct RgbdSensor {
     seed: u64,
 }
 
-/// What a thread needs for a row.
+/// Buffers of a thread for a row.
 #[derive(Debug, Default)]
 struct Scratch {
     /// Depths beyond edges.
@@ -40,8 +40,8 @@ impl RgbdSensor {
         Ok(Self { depth: DepthModel::new(&depth.validated()?), color, meter, tone, seed })
     }
 
-    /// Lets auto exposure look at what is before the camera at `stamp`; the images after it have its gain. With a fixed
-    /// gain it does nothing.
+    /// Adapts auto exposure to the view at `stamp`; the images after it have its gain. No effect with a fixed
+    /// gain.
     pub fn adapt(&mut self, view: &View, stamp: Stamp) {
         let before = self.meter.gain();
         self.meter.look(view, stamp);
@@ -55,7 +55,7 @@ impl RgbdSensor {
         self.meter.gain()
     }
 
-    /// What the camera delivers at `stamp` as its image number `frame` when `view` is before it.
+    /// Image number `frame` of the camera at `stamp` for a view.
     ///
     /// # Errors
     /// When the view's planes differ in size.

@@ -19,7 +19,7 @@ pub(super) type Row<T> = [T; TILE_COLUMNS];
 #[derive(Debug, Clone)]
 pub(super) struct Tile {
     pub(super) inverse_depth: [Row<f32>; ROWS],
-    /// What is there: see [`super::world_view::WorldView`]; or [`NO_SURFACE_ID`].
+    /// Ids of the surfaces: see [`super::world_view::WorldView`]; or [`NO_SURFACE_ID`].
     pub(super) ids: [Row<u32>; ROWS],
 }
 

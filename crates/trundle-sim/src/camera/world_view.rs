@@ -12,7 +12,7 @@ use trundle_core::{PinholeCamera, Pose2, Pose3, Vector3};
 
 /// A world in one image of the camera: everything in the frame of that world.
 ///
-/// What it draws has numbers: from `first_id` on, four a solid (the axis of a box's face, or a part of a cylinder), then one a
+/// Surfaces are numbered: from `first_id` on, four a solid (the axis of a box's face, or a part of a cylinder), then one a
 /// triangle.
 pub(super) struct WorldView<'w> {
     pub(super) world: &'w World,

@@ -18,7 +18,7 @@ const APPROACH_GAIN_PER_S: f64 = 2.5;
 const STEERING_GAIN_PER_S: f64 = 3.0;
 const LINE_RETURN_GAIN_RAD_PER_M: f64 = 4.0;
 
-/// What counts as getting somewhere, m and rad.
+/// Minimum motion that counts as progress, m and rad.
 const MIN_PROGRESS: f64 = 0.02;
 
 /// Number of attempts at a way-point when the turn towards it led away from it.
@@ -54,7 +54,7 @@ pub struct WaypointFollower {
     attempts: u32,
     /// The last step: its stamp and its twist.
     last: Option<(Stamp, Twist2)>,
-    /// When and where it last got somewhere.
+    /// Stamp and pose of the last progress.
     anchor: Option<(Stamp, Pose2)>,
 }
 
@@ -119,7 +119,7 @@ impl WaypointFollower {
         self.state
     }
 
-    /// What to drive now that the robot truly stands at `pose`, `world_from_base`. To be asked at 20 Hz or more.
+    /// Twist for the true pose `world_from_base`. It is to be called at 20 Hz or more.
     pub fn step(&mut self, stamp: Stamp, pose: Pose2) -> Twist2 {
         let Following::Driving { waypoint } = self.state else { return Twist2::ZERO };
         let wish = self.wish(pose, self.waypoints[waypoint]);

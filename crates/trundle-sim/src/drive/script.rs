@@ -8,7 +8,7 @@ use trundle_core::{Invalid, Twist2};
 pub struct TimedCommand {
     /// Seconds since the start, 0 or more.
     pub time: f64,
-    /// What to drive from then on.
+    /// The twist from then on.
     pub twist: Twist2,
 }
 
@@ -61,7 +61,7 @@ impl CommandScript {
         self.commands.last().map_or(0.0, |command| command.time)
     }
 
-    /// What to drive `time` seconds after the start.
+    /// The twist `time` seconds after the start.
     pub fn at(&self, time: f64) -> Twist2 {
         let begun_count = self.commands.partition_point(|command| command.time <= time);
         begun_count.checked_sub(1).map_or(Twist2::ZERO, |i| self.commands[i].twist)

@@ -1,4 +1,4 @@
-//! What breaks, and when.
+//! Faults and their times.
 
 mod schedule;
 mod state;

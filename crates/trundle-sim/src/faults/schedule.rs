@@ -81,7 +81,7 @@ pub struct Fault {
     /// Seconds since the start, more than `from_s`. Default infinite: it stays broken.
     #[serde(default = "forever")]
     pub to_s: f64,
-    /// What breaks.
+    /// The fault.
     pub kind: FaultKind,
 }
 
@@ -96,7 +96,7 @@ impl Fault {
     }
 }
 
-/// Everything that breaks in a run, in any order; where two faults set the same thing, the later one in the list counts.
+/// All faults of a run, in any order; where two faults set the same state, the later one in the list counts.
 ///
 /// In TOML a list of `{ from_s, to_s, kind }`, where `kind` is a name (`"camera-black"`) or a table
 /// (`{ camera-late = { delay_s = 0.3 } }`).

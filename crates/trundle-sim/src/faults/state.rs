@@ -4,7 +4,7 @@ use super::{FaultKind, FaultSchedule, WheelSide};
 use crate::rng::{hash, unit};
 use trundle_core::Pose2;
 
-/// What is broken now.
+/// The active faults.
 #[derive(Debug)]
 pub(crate) struct Faults {
     schedule: FaultSchedule,
@@ -14,7 +14,7 @@ pub(crate) struct Faults {
     is_done: Vec<bool>,
 }
 
-/// What the camera does.
+/// State of the camera under faults.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct CameraFault {
     pub(crate) is_black: bool,
@@ -38,7 +38,7 @@ impl Faults {
         self.now = time;
     }
 
-    /// What is wrong with image number `frame`.
+    /// Faults of image number `frame`.
     pub(crate) fn camera(&self, frame: u64) -> CameraFault {
         let mut fault = CameraFault::default();
         for (i, kind) in self.holding() {

@@ -8,11 +8,11 @@ use trundle_core::Invalid;
 pub struct ImportError {
     /// The file, as the user named it.
     pub file: String,
-    /// What is wrong with it.
+    /// The fault of the file.
     pub fault: ImportFault,
 }
 
-/// What is wrong with a file.
+/// A fault of a file.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ImportFault {
     /// The file system refuses.

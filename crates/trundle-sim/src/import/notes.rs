@@ -1,4 +1,4 @@
-//! What is noted of an imported file, beside errors.
+//! Notes about an imported file, beside errors.
 
 use std::fmt;
 
@@ -27,7 +27,7 @@ pub enum ImportNote {
     OddSize {
         /// Along x, y and z, m.
         size_m: [f64; 3],
-        /// What the unit of the file may be, and its metres.
+        /// Probable unit of the file, and its metres.
         unit: Option<(&'static str, f64)>,
     },
 }

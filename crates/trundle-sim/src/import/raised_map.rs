@@ -20,7 +20,7 @@ const TEXELS_A_METRE: f64 = 250.0;
 /// Paint of hidden faces.
 const HIDDEN: Paint = Paint::Flat { color: [150; 3] };
 
-/// What walls look like: all with texture, for cameras that navigate by it.
+/// Paints of walls: all with texture, for visual navigation.
 const WALLS: [Paint; 4] = [
     Paint::Plaster { color: [214, 208, 190], prints: 0.5 },
     Paint::Wallpaper { color: [188, 204, 190] },
@@ -28,7 +28,7 @@ const WALLS: [Paint; 4] = [
     Paint::Plaster { color: [190, 200, 214], prints: 0.7 },
 ];
 
-/// What shorter things look like.
+/// Paints of lower obstacles.
 const THINGS: [Paint; 4] = [
     Paint::Veneer { color: [150, 112, 74] },
     Paint::Fabric { color: [120, 70, 66] },
@@ -165,7 +165,7 @@ fn visible_sides(grid: &OccupancyGrid, block: &Block) -> [bool; 4] {
     ]
 }
 
-/// What the textures will take, bytes.
+/// Memory of the textures, bytes.
 fn memory(grid: &OccupancyGrid, blocks: &[Block], slabs: usize, options: &RaisedMap) -> f64 {
     let texels = |length: f64| (length * TEXELS_A_METRE / 16.0).ceil() * 16.0;
     let side = |cells: (usize, usize)| texels((cells.1 - cells.0) as f64 * grid.geometry().resolution);

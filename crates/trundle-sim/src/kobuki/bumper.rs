@@ -6,13 +6,13 @@ use trundle_core::{Footprint, Pose2};
 /// A touch ends when the gap is wider than this, m.
 const RELEASE_GAP_M: f64 = 2e-3;
 
-/// Keeps the body out of what stands and walks around it, and notes when it touches something.
+/// Keeps the body out of fixed obstacles and people, and records contacts.
 #[derive(Debug)]
 pub(super) struct Bumper {
     footprint: Footprint,
     /// Metres from the origin to the farthest point of the body.
     reach: f64,
-    /// The body can move this far, m, before anything that stands can be touched: saves measuring at every step.
+    /// Distance that the body can move without a contact with a fixed obstacle, m: saves the test in each step.
     free_way: f64,
     is_pressed: bool,
     contacts: u32,
@@ -26,7 +26,7 @@ impl Bumper {
 
     /// End of a motion of the body from `from` to `to` at the first contact, and the bumper's state when it changed.
     ///
-    /// A move into something does not happen (the wheels slip); the turn in it does when there is room for it.
+    /// A move into an obstacle does not happen (the wheels slip); its turn does when there is room for it.
     pub(super) fn resolve(
         &mut self,
         from: Pose2,
@@ -51,7 +51,7 @@ impl Bumper {
         (stays, is_new.then_some(true))
     }
 
-    /// Forgets what it knew of the place: the body was put somewhere else.
+    /// Discards the stored distance: the body was put somewhere else.
     pub(super) fn lift(&mut self) {
         self.free_way = 0.0;
     }

@@ -3,11 +3,11 @@
 use crate::world::World;
 use trundle_core::{Pose2, Vector2, Vector3};
 
-/// Sensors under the base that look down for the floor.
+/// Sensors under the base that measure the floor below.
 #[derive(Debug)]
 pub(super) struct CliffSensors {
     places: Vec<Vector2>,
-    /// Where they look from, m above the floor: above what the base rolls over.
+    /// Height of the sensors above the floor, m: above the obstacles that the base can cross.
     height: f64,
     /// A floor lower than this is a cliff, m.
     depth: f64,

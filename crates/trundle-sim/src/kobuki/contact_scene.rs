@@ -1,9 +1,9 @@
-//! What the base can touch.
+//! Obstacles that the base can touch.
 
 use crate::people::Crowd;
 use crate::world::Obstacles;
 
-/// What the base can touch.
+/// Obstacles that the base can touch.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ContactScene<'a> {
     /// Solids.

@@ -159,7 +159,7 @@ mod tests {
     fn without_commands_it_stops_when_it_shall() {
         let config = KobukiConfig { command_timeout: 0.6, motor_lag: 0.0, ..KobukiConfig::default() };
         let speeds = run_as(&config, Twist2::new(0.3, 0.0), 2000);
-        // Heard at 20 ms, times out at 620 ms, ramps down within 250 ms.
+        // The command takes effect at 20 ms, times out at 620 ms, and ramps down within 250 ms.
         assert_eq!((speeds[619].0, speeds[870].0), (0.3, 0.0));
         assert!(speeds[620].0 < 0.3);
         assert!(run(Twist2::new(0.3, 0.0), 3000)[2999].0 > 0.299, "by default it never does");

@@ -41,7 +41,7 @@ fn generator(seed: u64, stream: Stream) -> ChaCha8Rng {
     rng
 }
 
-/// The true geometry of a base, which a calibration looks for: for evaluation only.
+/// The true geometry of a base, which a calibration estimates: for evaluation only.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TrueWheels {
     /// Radius of the left wheel, m.
@@ -146,7 +146,7 @@ impl Kobuki {
         self.encoders.jump(left, right);
     }
 
-    /// Puts the body at `pose`, `world_from_base`, which must be free; no sensor of the body notices.
+    /// Puts the body at `pose`, `world_from_base`, which must be free; no sensor of the body measures it.
     pub(crate) fn put(&mut self, pose: Pose2) {
         self.pose = pose;
         self.bumper.lift();

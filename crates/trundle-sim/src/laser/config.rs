@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 use std::f64::consts::{FRAC_PI_2, TAU};
 use trundle_core::{Invalid, require_in};
 
-/// A 2-D laser range finder: where it sits, where it looks, and what it gets wrong.
+/// A 2-D laser range finder: its mount, its field of view, and its errors.
 ///
 /// Presets: [`LaserConfig::rplidar_a1`], [`LaserConfig::urg_04lx`], [`LaserConfig::ust_10lx`], [`LaserConfig::lds_01`].
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -16,7 +16,7 @@ pub struct LaserConfig {
     pub y: f64,
     /// Above the floor, m, 0.01 to 5. Default 0.2: on top of a Kobuki.
     pub z: f64,
-    /// Where the middle of the field of view looks, from the base's x, rad, -2 pi to 2 pi. Default 0.
+    /// Direction of the middle of the field of view, from the base's x, rad, -2 pi to 2 pi. Default 0.
     pub yaw: f64,
     /// Angle between first and last beam, rad, 0.001 to 2 pi; a full turn counts its first beam once. Default 2 pi.
     pub field_of_view: f64,

@@ -1,4 +1,4 @@
-//! A laser that looks around in a horizontal plane.
+//! A laser that scans a horizontal plane.
 
 mod config;
 mod presets;

@@ -61,7 +61,7 @@ impl Laser {
         self.reading(seen.map(|hit| hit.distance), bits)
     }
 
-    /// What the device makes of a return from `range` m, or of none.
+    /// Reading of the device for a return from `range` m, or for none.
     fn reading(&self, range: Option<f64>, bits: u64) -> Beam {
         let c = &self.config;
         if unit(bits) < c.drop_out {

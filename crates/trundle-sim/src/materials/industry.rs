@@ -4,7 +4,7 @@
 use super::color::{Rgb, lifted, mixed, rgb, scaled};
 use super::noise::{lattice, value};
 
-/// A wall painted evenly: hardly anything to hold on to.
+/// A wall painted evenly, with almost no features.
 pub(super) fn plain(color: [u8; 3], grain: f32) -> Rgb {
     lifted(rgb(color), 2.5 * grain)
 }

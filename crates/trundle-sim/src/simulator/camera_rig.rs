@@ -13,7 +13,7 @@ pub(super) struct CameraRig {
     renderer: Renderer,
     sensor: RgbdSensor,
     view: View,
-    /// What is seen at the moments of an exposure, where that takes time.
+    /// Views at the moments of an exposure, where that takes time.
     moments: Vec<View>,
     /// Seconds.
     shutter: f64,

@@ -2,13 +2,13 @@
 
 use trundle_core::{Invalid, Stamp};
 
-/// What can go wrong with a simulated robot.
+/// Errors of a simulated robot.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum SimError {
     /// A number of the configuration or the scene.
     #[error(transparent)]
     Invalid(#[from] Invalid),
-    /// The robot would stand in something.
+    /// The start is inside an obstacle.
     #[error(
         "start of scene '{scene}' at ({x:.3}, {y:.3}) m is {penetration:.3} m inside an obstacle, expected a free place"
     )]
@@ -41,7 +41,7 @@ pub enum SimError {
         /// The scene's highest x and y, m.
         high: [f64; 2],
     },
-    /// A fault would put the robot into something.
+    /// A fault would put the robot into an obstacle.
     #[error(
         "kidnapping at {time} s to ({x:.3}, {y:.3}) m of scene '{scene}' is {penetration:.3} m inside an obstacle, expected a free place"
     )]
@@ -64,9 +64,9 @@ pub enum SimError {
     CommandNotFinite {
         /// When it came.
         stamp: Stamp,
-        /// Forward speed asked for, m/s.
+        /// Commanded forward speed, m/s.
         v: f64,
-        /// Turn rate asked for, rad/s.
+        /// Commanded turn rate, rad/s.
         omega: f64,
     },
 }

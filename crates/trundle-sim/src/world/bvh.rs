@@ -55,7 +55,7 @@ impl Bvh {
         &self.items
     }
 
-    /// Begins to look for leaves.
+    /// Begins a search for leaves.
     #[inline(always)]
     pub(crate) fn walk(&self) -> Walk<'_> {
         let mut stack = Stack::new();

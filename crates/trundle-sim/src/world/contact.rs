@@ -6,7 +6,7 @@ use super::region::Region;
 use super::{HeightBand, SceneSnapshot, World};
 use trundle_core::{Footprint, Invalid, Pose2, require_finite, require_in};
 
-/// What of a world a robot of some height can touch, seen from above: made once, asked often.
+/// Parts of a world that a robot of some height can touch, seen from above: built once, queried often.
 ///
 /// Of solids the whole outline counts, of meshes the surface: a robot may stand in a ring of walls, and a closed shell
 /// touches it from within as from without. A query is exact and costs some ten microseconds in a house of
@@ -44,7 +44,7 @@ impl Obstacles {
 }
 
 impl World {
-    /// Everything that reaches into a height band.
+    /// All parts that reach into a height band.
     pub fn obstacles(&self, band: HeightBand) -> Obstacles {
         let lists = self.outlines_in(band);
         let outlines: Vec<Region<'_>> = lists.iter().flat_map(|list| list.iter()).collect();

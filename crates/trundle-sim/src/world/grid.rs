@@ -11,10 +11,10 @@ const CELL_SHRINK_RATIO: f64 = 1e-6;
 const MOST_CELLS: f64 = (1_u64 << 31) as f64;
 
 impl World {
-    /// The true map: every cell that something in the height band reaches into is occupied, all others are free.
+    /// The true map: every cell with a part of a solid in the height band is occupied, all others are free.
     ///
     /// Of meshes their surfaces count: within a closed shell the cells are free. The grid lies in the world frame and
-    /// covers everything; cells are `resolution` m wide, lines at its multiples. Cost: the cells, and the triangles of
+    /// covers the whole world; cells are `resolution` m wide, lines at its multiples. Cost: the cells, and the triangles of
     /// the band.
     ///
     /// # Errors

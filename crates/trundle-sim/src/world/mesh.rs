@@ -23,7 +23,7 @@ pub struct Triangle {
     pub material: u32,
 }
 
-/// What a triangle looks like.
+/// Appearance of a triangle.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Material {
     /// For messages.

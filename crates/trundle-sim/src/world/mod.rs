@@ -86,12 +86,12 @@ impl World {
         Ok(Self { seed, solids, meshes, outlines, bounds, bvh, forms, triangles, paintings, pictures })
     }
 
-    /// What stands in it.
+    /// The solids.
     pub fn solids(&self) -> &[Solid] {
         &self.solids
     }
 
-    /// What stands in it made of triangles.
+    /// The triangle meshes.
     pub fn meshes(&self) -> &[Mesh] {
         &self.meshes
     }
@@ -116,7 +116,7 @@ impl World {
         &self.triangles
     }
 
-    /// Draws the textures now rather than at the first look: some tenths of a second.
+    /// Draws the textures at once and not at their first use: some tenths of a second.
     pub fn paint(&self) {
         self.paintings();
         self.pictures();

@@ -5,13 +5,13 @@ use super::probe::RayProbe;
 use super::{Mover, SceneSnapshot, World};
 use trundle_core::Vector3;
 
-/// What a ray meets first.
+/// The first hit of a ray.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hit {
     /// How far, in lengths of the ray's direction: metres when that is a unit vector, depth when its part along the
     /// optical axis is 1.
     pub distance: f64,
-    /// What.
+    /// The target.
     pub target: Target,
     /// Which of a snapshot's movers; `None` of what stands still.
     pub mover: Option<usize>,
@@ -59,8 +59,8 @@ impl Mover<'_> {
 impl World {
     /// The first thing along a ray from `origin` (world frame, m), nearer than `limit` lengths of `direction`.
     ///
-    /// Solids that hold the origin are not seen; triangles are seen from both sides, and no ray passes between two that
-    /// share an edge. f64 throughout: this is the reference the renderer is tested against, and what lasers look along.
+    /// Solids that hold the origin are left out; triangles have two sides, and no ray passes between two that
+    /// share an edge. f64 throughout: lasers use it, and it is the reference of the renderer's tests.
     pub fn cast(&self, origin: Vector3, direction: Vector3, limit: f64) -> Option<Hit> {
         #[cfg(target_arch = "x86_64")]
         if std::arch::is_x86_feature_detected!("avx2") {

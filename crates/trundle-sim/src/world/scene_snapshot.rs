@@ -5,9 +5,9 @@ use super::{Lights, Mover, World};
 /// All that a camera or a laser may see at one moment.
 #[derive(Debug, Clone, Copy)]
 pub struct SceneSnapshot<'w> {
-    /// What stands still.
+    /// The fixed world.
     pub world: &'w World,
-    /// What moves, where it is now.
+    /// Moving bodies at their present poses.
     pub movers: &'w [Mover<'w>],
     /// How it is lit.
     pub lights: &'w Lights,

@@ -26,7 +26,7 @@ pub struct Cylinder {
     pub height: f64,
 }
 
-/// What a solid looks like in space.
+/// Geometry of a solid.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Shape {
     /// A box: walls, floors, furniture.

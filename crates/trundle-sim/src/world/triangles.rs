@@ -27,7 +27,7 @@ pub(crate) struct Block {
     pub(crate) first: u32,
 }
 
-/// How a triangle looks: texture coordinates are affine functions of the place.
+/// Appearance of a triangle: texture coordinates are affine functions of the position.
 #[derive(Debug, Clone)]
 pub(crate) struct Surface {
     /// Unit length; which side is undefined.

@@ -51,7 +51,7 @@ impl Trajectory {
         seed.wrapping_add(self.frame_count)
     }
 
-    /// `visual_from_camera` of every frame of the active map that was not lost, by the map as it is now.
+    /// `visual_from_camera` of every frame of the active map that was not lost, by the present map.
     pub fn poses(&self, active: &SubMap) -> Vec<(Stamp, Pose3)> {
         let is_in_map = |record: &&FrameRecord| record.map == active.id && record.tracking != Tracking::Lost;
         let pose =

@@ -37,7 +37,7 @@ pub(crate) struct CalibrationCheck {
     /// Camera motion since the anchor by the prior, as long as there is one.
     moved: Option<Pose3>,
     pairs: Vec<Pair>,
-    /// The camera as the first of these pairs see it, while that is being worked out.
+    /// The camera by the first of these pairs, during its computation.
     judgement: Option<ModelSelection>,
     /// How many pairs the last judgement had.
     judged: usize,

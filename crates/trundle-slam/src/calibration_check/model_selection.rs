@@ -6,7 +6,7 @@ use crate::calibration_check::self_calibration::{
 };
 use trundle_core::{PinholeCamera, Vector2};
 
-/// What may be free together: nothing, focal lengths, principal point, lens.
+/// Parameters that may be free together: none, focal lengths, principal point, lens.
 const MODELS: [[bool; 6]; 4] = [
     [false; 6],
     [true, true, false, false, false, false],
@@ -32,7 +32,7 @@ const MIN_ERROR_PX: f64 = 4.0;
 #[derive(Debug, Clone)]
 pub(crate) struct ModelSelection {
     fit: CalibrationFit,
-    /// What the models before came to.
+    /// Results of the models before.
     fitted: Vec<Option<FittedOffset>>,
 }
 
@@ -57,7 +57,7 @@ impl ModelSelection {
         None
     }
 
-    /// What is to be fitted next: every model, then the exchanged focal lengths with nothing free, if those are suspected.
+    /// The next fit: every model, then the exchanged focal lengths with no free parameter, if those are suspected.
     fn next(&self, camera: &PinholeCamera) -> Option<(CalibrationOffset, [bool; 6])> {
         let done = self.fitted.len();
         if let Some(model) = MODELS.get(done) {

@@ -132,7 +132,7 @@ impl Blocks {
     }
 }
 
-/// The blocks in which something ends before what is behind it; on the side of what is near, which has no shadow.
+/// The blocks with a depth edge, on the near side, which has no shadow.
 fn edges_of(depth: &DepthImage, like: &Blocks) -> Vec<(i64, i64)> {
     let mut marked = vec![false; like.values.len()];
     for y in 0..depth.height() / BLOCK_PX * BLOCK_PX {

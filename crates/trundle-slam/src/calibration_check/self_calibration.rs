@@ -3,7 +3,7 @@
 use nalgebra::{Matrix2, Matrix2x3, Matrix6, RowVector6, SMatrix, SVector, Vector6};
 use trundle_core::{Pose3, Vector2, Vector3};
 
-/// What the settings may be off by, to first order: true normalised coordinates from the assumed ones n are
+/// Errors of the settings to first order: true normalised coordinates from the assumed ones n are
 /// n (1 + scale) + shift + n (k1 |n|^2 + k2 |n|^4), the numbers in the order scale x, y, shift x, y, k1, k2.
 pub(crate) type CalibrationOffset = Vector6<f64>;
 
@@ -27,7 +27,7 @@ pub(crate) struct Pair {
     pub matches: Vec<FeaturePair>,
 }
 
-/// What a fit found.
+/// Result of a fit.
 #[derive(Debug, Clone)]
 pub(crate) struct FittedOffset {
     pub offset: CalibrationOffset,
@@ -87,7 +87,7 @@ impl CalibrationFit {
         is_lost || self.rounds >= MAX_ITERATIONS || gain.abs() <= MIN_COST_DECREASE * cost
     }
 
-    /// What was found, once the last round is done; `None` where it came to nothing.
+    /// The result, once the last round is done; `None` where the fit failed.
     pub fn result(&self) -> Option<FittedOffset> {
         let offset = self.offset;
         let sigmas = self.spread()?;
@@ -136,7 +136,7 @@ fn uncorrected(m: Vector2, offset: &CalibrationOffset) -> Vector2 {
     (0..5).fold(m, |n, _| shifted.component_div(&stretch(n, offset)))
 }
 
-/// What coordinates n are multiplied by in x and y.
+/// Factors of the coordinates n in x and y.
 fn stretch(n: Vector2, offset: &CalibrationOffset) -> Vector2 {
     let r2 = n.norm_squared();
     let radial = r2 * (offset[4] + r2 * offset[5]);

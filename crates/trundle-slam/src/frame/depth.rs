@@ -1,4 +1,4 @@
-//! What the depth camera measures, and how exactly.
+//! Measurement of the depth camera, and its standard deviation.
 
 use nalgebra::Matrix2;
 use serde::{Deserialize, Serialize};
@@ -59,8 +59,8 @@ impl DepthConfig {
 
     /// The inverse depth at a raw `pixel`, if the image has one in range.
     ///
-    /// A keypoint is often a corner of something, where the depth jumps: half the spread within the 3 x 3 neighbourhood
-    /// is added to the noise, so that such a depth weighs next to nothing.
+    /// A keypoint is often a corner of an object, where the depth jumps. Half the spread within the 3 x 3 neighbourhood
+    /// is added to the noise, so that such a depth has almost no weight.
     pub fn measure(&self, image: &DepthImage, pixel: Vector2) -> Option<InverseDepth> {
         let depth = self.at(image, pixel)?;
         let (x, y) = (pixel.x.round() as usize, pixel.y.round() as usize);

@@ -1,4 +1,4 @@
-//! Corners on the outline of something, which are no point of anything.
+//! Corners on the outline of an object, which are no fixed points of a surface.
 
 use crate::frame::aligned_feature::raw;
 use crate::frame::depth::DepthConfig;

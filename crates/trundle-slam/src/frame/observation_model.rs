@@ -3,7 +3,7 @@
 use trundle_core::{PinholeCamera, Vector2, Vector3};
 use trundle_vision::OrbConfig;
 
-/// The camera as the tracker uses it: projection into the rectified image, and how sure a keypoint is.
+/// The camera of the tracker: projection into the rectified image, and standard deviations of keypoints.
 #[derive(Debug, Clone)]
 pub(crate) struct ObservationModel {
     pub camera: PinholeCamera,
@@ -48,8 +48,8 @@ impl ObservationModel {
 
     /// Whether a feature of an octave can be found at a raw `pixel`, and about it as far as a keypoint is off.
     ///
-    /// Of a point in the margin only something inward can be taken for it, wrongly: while the camera turns, what leaves the view
-    /// would hold it back.
+    /// In the margin a landmark can only be matched, wrongly, with a feature farther inward. While the camera turns, such matches at the
+    /// border would bias its motion.
     pub fn can_find_at(&self, pixel: Vector2, octave: u8) -> bool {
         let margin = (OrbConfig::MARGIN as f64 + KEYPOINT_SIGMAS * self.pixel_sigma) * self.scale(octave);
         let [right, bottom] =

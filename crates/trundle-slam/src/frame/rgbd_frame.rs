@@ -1,4 +1,4 @@
-//! What is kept of one image: features, their rectified positions and their depths.
+//! The stored part of one image: features, their rectified positions and their depths.
 
 use crate::frame::aligned_feature::{Aligned, raw};
 use crate::frame::depth::{DepthConfig, MAX_RELATIVE_SIGMA};
@@ -13,7 +13,7 @@ use trundle_vision::{Descriptor, FeatureGrid, Features, Keypoint};
 /// Standard deviation of a feature, as a fraction of that of a plain one, below which it counts as aligned: 0.99. Source: ours.
 const ALIGNED_SIGMA_RATIO: f64 = 0.99;
 
-/// What is kept of one image: features, where they are in the rectified image, and how far.
+/// The stored part of one image: features, their positions in the rectified image, and their depths.
 #[derive(Debug, Clone)]
 pub(crate) struct Frame {
     pub stamp: Stamp,

@@ -148,7 +148,7 @@ impl Pair<'_> {
         self.model.camera.unproject(keyframe.frame.pixels[feature], 1.0)
     }
 
-    /// Only where it is in the image: what depth there is, is of something else.
+    /// The image position alone: a depth there belongs to another surface.
     fn seen(&self, keyframe: &Keyframe, feature: usize) -> PointObservation {
         PointObservation { depth: None, ..keyframe.frame.unaligned_observation(feature, self.model) }
     }

@@ -1,4 +1,4 @@
-//! What closing a loop did.
+//! Result of a loop closure.
 
 use crate::ids::KeyframeId;
 use trundle_core::Pose3;

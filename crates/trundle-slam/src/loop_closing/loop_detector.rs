@@ -16,7 +16,7 @@ pub(crate) struct LoopDetector {
     pending_loop: Option<ConsistencyCheck<()>>,
 }
 
-/// What a step of the detector did.
+/// Result of a step of the detector.
 #[derive(Debug)]
 pub(crate) enum LoopStep {
     /// Nothing: no keyframe waits.

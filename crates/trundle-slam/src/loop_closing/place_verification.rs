@@ -128,7 +128,7 @@ impl PlaceVerifier<'_> {
         MatchedPose::by(matches, (pose, PosePriorKind::Unknown), frame, self.model, &self.tracking.pose)
     }
 
-    /// What the candidate and those around it see, by rising id.
+    /// Landmarks of the candidate and of the keyframes around it, by rising id.
     fn landmarks_around(&self, candidate: KeyframeId) -> Vec<LandmarkId> {
         let around = self.map.covisible(candidate, MIN_SHARED_LANDMARKS).into_iter().map(|(id, _)| id);
         let around = around.take(COVISIBLE_KEYFRAMES).chain([candidate]);

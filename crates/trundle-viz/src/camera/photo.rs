@@ -71,7 +71,7 @@ fn between(at: impl Fn(usize, usize) -> [f64; 3], x: usize, y: usize, enlarge: u
     mix(row(y0), row(y0 + 1), fy)
 }
 
-/// What stands where a picture would be that has no pixel.
+/// Placeholder for a picture without a pixel.
 pub(crate) fn no_image() -> Vec<u8> {
     let (scale, text) = (2, "no image");
     let mut canvas = Canvas::new(320, 120, Color::HAIRLINE);

@@ -23,7 +23,7 @@ pub struct PlanScene<'a> {
     pub start: Pose2,
     /// Where it is to stand, one after the other.
     pub goals: &'a [Pose2],
-    /// Goals asked for in whose place others were taken.
+    /// Requested goals that were replaced by others.
     pub replaced: &'a [Pose2],
     /// The lanes of a way-point graph, end to end.
     pub lanes: &'a [[Vector2; 2]],

@@ -7,7 +7,7 @@ use crate::color::Color;
 use crate::map::{DotStyle, LineStyle, MapPicture};
 use trundle_core::{GridGeometry, Trajectory, Vector2};
 
-/// What a plan was made of, beside [`PlanScene`]; map frame, m. What is empty is left out.
+/// Parts of a plan beside [`PlanScene`]; map frame, m. Empty parts are left out.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PlanParts<'a> {
     /// Where the distance field's cells lie.

@@ -2,7 +2,7 @@
 
 use trundle_core::Vector2;
 
-/// Beyond this, a coordinate is taken for an accident and not drawn, m.
+/// Largest coordinate that is drawn, m: a larger one is an error of the data.
 const MAX_COORDINATE_M: f64 = 1e9;
 
 /// An upright rectangle of the map frame, m.

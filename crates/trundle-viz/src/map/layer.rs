@@ -12,7 +12,7 @@ use crate::color::Color;
 use crate::legend::{LegendItem, Mark};
 use trundle_core::{Beam, Footprint, Pose2, Scan, Vector2};
 
-/// Something laid over the map.
+/// A layer over the map.
 #[derive(Debug, Clone)]
 pub(crate) struct Layer {
     pub label: String,

@@ -150,7 +150,7 @@ impl<'a> MapPicture<'a> {
         Self { legend: false, ..self }
     }
 
-    /// What the colours mean: every visible layer once, then the kinds of cells.
+    /// Meanings of the colours: every visible layer once, then the kinds of cells.
     pub fn legend(&self) -> Vec<LegendItem> {
         let mut items: Vec<LegendItem> = Vec::new();
         for item in self.layers.iter().filter_map(Layer::legend) {

@@ -45,7 +45,7 @@ impl Shade {
         }
     }
 
-    /// Whether there is anything to see.
+    /// Whether any cell is visible.
     pub(crate) fn is_visible(&self) -> bool {
         match self.paint {
             Paint::Scale(_) => !self.values.is_empty(),

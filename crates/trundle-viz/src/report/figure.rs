@@ -42,12 +42,12 @@ impl Figure {
         Self { title: title.to_owned(), body, caption: String::new(), legend: Vec::new(), wide: false }
     }
 
-    /// What there is to see in it.
+    /// Text below the figure.
     pub fn caption(self, caption: &str) -> Self {
         Self { caption: caption.to_owned(), ..self }
     }
 
-    /// What its colours mean, for a picture without a legend of its own.
+    /// Meanings of its colours, for a picture without a legend of its own.
     pub fn legend(self, items: Vec<LegendItem>) -> Self {
         Self { legend: items, ..self }
     }

@@ -23,7 +23,7 @@ pub(super) struct Builder<'a> {
     positions: Vec<[f32; 3]>,
     uvs: Vec<[f32; 2]>,
     triangles: Vec<Triangle>,
-    /// The looks in use, by their place in the mesh.
+    /// The looks in use, by their index in the mesh.
     looks: Vec<Look>,
     painting: Painting,
     /// Surfaces whose colours lie over a texture and are left out.
@@ -129,7 +129,7 @@ impl<'a> Builder<'a> {
         place as u32
     }
 
-    /// The mesh, its textures decoded on all threads, and what is to be noted of it.
+    /// The mesh, its textures decoded on all threads, and the notes about it.
     pub(super) fn build(mut self) -> Result<(Mesh, Vec<ImportNote>), ImportFault> {
         if self.triangles.is_empty() {
             return Err(ImportFault::NoTriangles);

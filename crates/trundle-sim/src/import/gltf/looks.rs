@@ -17,7 +17,7 @@ const GREY_LEVEL: u8 = 150;
 /// Place of the image of a texture without one, as `gltf-json` has it.
 const NO_IMAGE: usize = u32::MAX as usize;
 
-/// How surfaces look: a material of the file, with the colours of its corners where they have some.
+/// Appearance of surfaces: a material of the file, with the colours of its corners where they have some.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Look {
     /// `None` is the default material.
@@ -26,10 +26,10 @@ pub(super) struct Look {
     pub(super) is_painted: bool,
 }
 
-/// The images that are drawn, and the reasons of those that are not.
+/// The decoded images, and for each other image the reason.
 type Images = BTreeMap<usize, Result<ColorImage, String>>;
 
-/// The materials of a mesh, in the order of `looks`, and what is to be noted of them.
+/// The materials of a mesh, in the order of `looks`, and notes about them.
 pub(super) fn materials(
     buffers: &Buffers<'_>,
     looks: &[Look],

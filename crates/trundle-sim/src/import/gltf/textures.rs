@@ -39,7 +39,7 @@ fn decode_bytes(bytes: &[u8]) -> image::ImageResult<image::RgbImage> {
     Ok(reader.decode()?.into_rgb8())
 }
 
-/// What is wrong with an image.
+/// The fault of an image.
 fn problem(bytes: &[u8], error: &image::ImageError) -> String {
     let known: [(&[u8], &str); 3] = [(b"RIFF", "WebP"), (b"\xabKTX", "KTX2"), (b"DDS ", "DDS")];
     let found = known.iter().find(|(magic, _)| bytes.starts_with(magic)).map(|(_, name)| *name);
