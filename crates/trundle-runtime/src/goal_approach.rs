@@ -38,7 +38,7 @@ pub struct GoalApproachConfig {
     /// 500 corridor problems took half of it).
     pub time_limit: f64,
     /// Number of stops or waits without a completed motion in between after which docking is given up, 1 to 1000. Default 10
-    /// (ours: at a second each, somebody who passes by has passed).
+    /// (ours: at a second each, a person who passes by has passed).
     pub max_stops: u32,
     /// Planning of turns and straight moves. Default: as it comes, but a margin of 0.05, so that the safety monitor, which
     /// stops 0.04 m before an obstacle, does not hold what was planned; and a tenth of the work, because the robot stands

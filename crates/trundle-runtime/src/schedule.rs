@@ -12,8 +12,8 @@ pub struct Schedule {
     pub map_hz: f64,
     /// Checks of the remaining trajectory against the map, 1/s, 0.5 to 30. Default 5: with every new map.
     pub check_hz: f64,
-    /// Looks for a way that arrives sooner while one is driven, 1/s, 0 (never) to 30. Default 0: what was unknown when the way
-    /// was planned is driven slowly to its end.
+    /// Searches for a faster path during a drive, 1/s, 0 (never) to 30. Default 0: floor that was unknown at planning time is
+    /// then driven slowly to the end.
     pub improve_hz: f64,
 }
 

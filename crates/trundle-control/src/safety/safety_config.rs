@@ -24,7 +24,7 @@ pub struct SafetyConfig {
     pub slow_margin: f64,
     /// Speed past obstacles within `slow_margin`, m/s, 0.02 to 1. Default 0.12 (ours).
     pub creep_speed: f64,
-    /// Highest speed backward, where no camera looks, m/s, 0.02 to 2. Default 0.2 (ours).
+    /// Highest speed backward, out of the camera's view, m/s, 0.02 to 2. Default 0.2 (ours).
     pub reverse_speed: f64,
     /// Speed of backing out while the bumper is pressed, m/s, 0.01 to 0.5. Default 0.05 (ours).
     pub back_out_speed: f64,

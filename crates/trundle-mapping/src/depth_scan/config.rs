@@ -12,9 +12,9 @@ pub struct DepthScanConfig {
     /// Upper edge of the height band, m above the floor, above `band_low`, to 5. What is higher can be driven under.
     /// Default 0.65: a Kobuki with its camera is 0.6 m high.
     pub band_high: f64,
-    /// Least depth believed, m, 0.05 to 5. Default 0.3; the Kinect V2 itself says nothing below 0.5.
+    /// Least depth used, m, 0.05 to 5. Default 0.3; the Kinect V2 itself measures nothing below 0.5.
     pub min_depth: f64,
-    /// Greatest depth believed, m, above `min_depth`, to 100. Default 8: the Kinect V2's \[Li18\].
+    /// Greatest depth used, m, above `min_depth`, to 100. Default 8: the Kinect V2's \[Li18\].
     pub max_depth: f64,
     /// Greatest range of a beam over the floor, m, 0.5 to 100. Default 6: beyond it a pixel is wider than a chair leg.
     pub max_range: f64,

@@ -18,8 +18,8 @@ pub struct LoopConfig {
     pub turn: f64,
     /// Points of the old place that must be found under one pose, 10 or more. Default 40 \[MurArtal17\].
     pub min_points: usize,
-    /// Keyframes in a row that must show the same before a correction is believed that the drift does not explain, or another
-    /// map is taken for this place, 1 or more. Default 3 \[MurArtal17\].
+    /// Keyframes in a row that must give the same correction before one is accepted that the drift does not explain, or before
+    /// another map is taken for this place, 1 or more. Default 3 \[MurArtal17\].
     pub consistency: usize,
     /// Largest correction that the drift does not explain, m, above 0. Default 1: wheels may slip by as much, and look-alike
     /// rooms are farther apart.

@@ -17,8 +17,8 @@ pub struct OrbConfig {
     pub fast_threshold: u8,
     /// The same where a cell would stay empty, grey values, 1 to `fast_threshold`. Default 7 \[MurArtal17\].
     pub fast_min_threshold: u8,
-    /// Side of the cells in which the lower threshold is resorted to, px of the level, 8 to 65535. Default 32: about
-    /// the size of what a descriptor sees.
+    /// Side of the cells in which the lower threshold is resorted to, px of the level, 8 to 65535. Default 32: about the size
+    /// of a descriptor's patch.
     pub cell_px: usize,
     /// A corner is one of something where the smoothed image around it (15 x 15 px of its level) has at least this gradient in every
     /// direction, root mean square, in standard deviations of the image's own noise a px, 0 to 100; 0 takes corners of noise and steps
