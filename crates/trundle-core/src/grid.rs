@@ -44,8 +44,8 @@ impl GridGeometry {
     /// Checked geometry: resolution in m, origin in m, size in cells.
     ///
     /// # Errors
-    /// When the resolution is not positive, the origin is not finite or more than 2^40 cells from zero (so far off, f64 no longer
-    /// tells points of a cell apart), a side is zero, or there are more than 2^31 cells.
+    /// When the resolution is not positive, the origin is not finite or more than 2^40 cells from zero (beyond it f64 does not
+    /// separate points of a cell), a side is zero, or there are more than 2^31 cells.
     pub fn new(resolution: f64, origin: Vector2, width: usize, height: usize) -> Result<Self, Invalid> {
         require_positive("resolution", resolution, "m")?;
         for (name, value) in [("origin x", origin.x), ("origin y", origin.y)] {

@@ -53,7 +53,7 @@ struct InverseColumn<const N: usize> {
     factors: Vec<Block<N>>,
     /// How many of these rows are done.
     done: usize,
-    /// The block on the diagonal as far as they say.
+    /// The block on the diagonal as far as these blocks determine it.
     diagonal: Block<N>,
 }
 

@@ -14,8 +14,8 @@ pub struct LoopTimerConfig {
     /// So long before the next reading is due nothing else is begun, s, 0 to `period`. Default 0.006: taking up an image takes
     /// 1 to 5 ms.
     pub reserve: f64,
-    /// A command that comes so much later than it should is a missed deadline, s, above 0 to 10. Default 0.1: at 0.7 m/s the robot is
-    /// 7 cm on.
+    /// Delay of a command above which it is a missed deadline, s, above 0 to 10. Default 0.1: at 0.7 m/s the robot moves 7 cm in this
+    /// time.
     pub deadline: f64,
 }
 

@@ -7,7 +7,7 @@ use std::time::Duration;
 pub struct ThreadPlacement {
     /// The processor core, from 0; none: any.
     pub core: Option<usize>,
-    /// So much nicer to others than the thread that starts it, 0 to 39. Default 0.
+    /// Niceness above that of the starting thread, 0 to 39. Default 0.
     pub nice: i32,
     /// Whether it runs before every thread that is not, whatever their niceness, where the system allows it (Linux: `SCHED_FIFO`).
     /// For threads that compute little. Default false.

@@ -31,7 +31,7 @@ pub struct DepthNoise {
     pub slant_power: f64,
     /// Angle of incidence below which the slanted term is left out, deg, 0 to 90.
     pub slant_from_deg: f64,
-    /// Angle of incidence beyond which sigma grows no more, deg, 0 to 89. Default 80: the models' pole at 90 deg is not
+    /// Angle of incidence beyond which sigma is constant, deg, 0 to 89. Default 80: the models' pole at 90 deg is not
     /// physical.
     pub steepest_deg: f64,
     /// Angle of incidence from which returns are lost, all of them at 90, deg, 0 to 90. Default 80; 90 turns it off.

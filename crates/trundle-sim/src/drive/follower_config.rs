@@ -15,7 +15,7 @@ pub struct WaypointFollowerConfig {
     pub acceleration: f64,
     /// Change of turn rate, rad/s^2, 0.1 to 20. Default 1.5.
     pub angular_acceleration: f64,
-    /// Says that it is blocked when it got nowhere for this long, s, 0.5 to 3600. Default 10: people pass by in less.
+    /// Time without progress after which the path counts as blocked, s, 0.5 to 3600. Default 10: people pass by in less.
     pub patience: f64,
 }
 

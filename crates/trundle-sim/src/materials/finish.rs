@@ -8,8 +8,8 @@ pub struct Finish {
     /// Of a box: its faces +x, -x, +y, -y, top, bottom in its own frame. Of a cylinder: its side is the first, top and
     /// bottom the last two.
     pub faces: [Paint; 6],
-    /// What the paintings are drawn from. `None`: from the solid's place in the world's list, so that no two solids look
-    /// alike. Solids of one world with the same seed, size and paints look exactly the same.
+    /// Seed of the paintings. `None`: from the solid's index in the world's list, so that no two solids are equal. Solids of one world with
+    /// the same seed, size and paints are exactly equal.
     pub seed: Option<u64>,
 }
 

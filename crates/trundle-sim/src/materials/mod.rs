@@ -1,8 +1,8 @@
-//! How things look: procedural paints, baked once a face into mip-mapped textures.
+//! Appearance of surfaces: procedural paints, baked once a face into mip-mapped textures.
 //!
-//! Every face gets a painting of its own, drawn from (world seed, solid, face), so that no two places look alike and the
-//! result does not depend on the order or the number of threads; where a finish brings a seed, from that, so that places
-//! can look alike. Colour is a pure function of metres on the face.
+//! Every face gets a painting of its own, drawn from (world seed, solid, face). No two places are then equal, and the
+//! result does not depend on the order or the number of threads. A finish with a seed replaces the solid's, so that places
+//! can be equal. Colour is a pure function of metres on the face.
 
 mod bake;
 mod color;

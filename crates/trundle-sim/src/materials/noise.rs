@@ -13,7 +13,7 @@ pub(super) fn lattice(seed: u32, x: i32, y: i32) -> f32 {
 /// Side of the table of lattice values: value noise repeats after that number of wavelengths.
 const LATTICE_PERIOD: usize = 256;
 
-/// Lattice values -128 to 127, drawn once: a look-up costs a third of a hash.
+/// Lattice values -128 to 127, drawn once: reading one costs a third of a hash.
 static VALUES: LazyLock<Box<[i8; LATTICE_PERIOD * LATTICE_PERIOD]>> = LazyLock::new(|| {
     let mut values = Box::new([0; LATTICE_PERIOD * LATTICE_PERIOD]);
     for (i, value) in values.iter_mut().enumerate() {

@@ -12,7 +12,7 @@ use std::ops::Index;
 /// Texels of a world, about 5.4 bytes each with their mip levels; beyond, all texels get coarser.
 const MOST_TEXELS: usize = 40_000_000;
 
-/// The painted faces of every solid of a world. Solids that must look the same (equal sizes, equal finishes with a seed)
+/// The painted faces of every solid of a world. Solids that must be equal (equal sizes, equal finishes with a seed)
 /// share one set, so that repeated furniture costs nothing.
 #[derive(Debug)]
 pub(crate) struct Paintings {
@@ -51,10 +51,10 @@ fn coarseness(texels: usize) -> f64 {
     (texels as f64 / MOST_TEXELS as f64).sqrt().max(1.0)
 }
 
-/// Seed and size, exactly: what looks have in common that are compared.
+/// Exact seed and size: the key by which appearances are compared.
 type LookKey = (u64, [u64; 3]);
 
-/// The first solid of every look, and which look each solid has.
+/// The first solid of every appearance, and the appearance of each solid.
 fn share(solids: &[Solid]) -> (Vec<usize>, Vec<u32>) {
     let mut firsts = Vec::new();
     let mut of_solid = Vec::with_capacity(solids.len());

@@ -8,7 +8,7 @@ use light::spread;
 use shrink::halved;
 use trundle_core::ColorImage;
 
-/// A rectangle of colours with its mip levels: what the camera looks at.
+/// A rectangle of colours with its mip levels, for the camera.
 ///
 /// Texels are `0x00BBGGRR`, row by row from the top left. Each level halves both sides of the one before by averaging
 /// (Williams 1983, "Pyramidal parametrics"), so that a pixel gets the mean of its area.
@@ -43,7 +43,7 @@ impl Texture {
         Self::with_levels(texels, (width, height), scale, false)
     }
 
-    /// What a material looks like: a colour, times a picture where there is one; (u, v) are in widths and heights of the
+    /// Texture of a material: a colour, times a picture where there is one. (u, v) are in widths and heights of the
     /// picture, which repeats.
     pub(crate) fn of_picture(color: [u8; 3], picture: Option<&ColorImage>) -> Self {
         let tinted = |texel: [u8; 3]| {

@@ -72,7 +72,7 @@ impl Body {
         })
     }
 
-    /// Draws how it looks.
+    /// Draws its textures.
     pub(super) fn paint(&self) {
         for part in [&self.shin, &self.knee, &self.thigh, &self.trunk] {
             part.world.paint();

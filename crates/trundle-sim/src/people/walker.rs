@@ -7,7 +7,7 @@ use trundle_core::{Pose2, Vector2, difference_of_angles};
 /// How fast people turn on the spot, rad/s.
 const TURN_RATE: f64 = 2.5;
 
-/// Where they are and where they look, m and rad, to be there.
+/// Tolerance of position and heading at a way-point, m and rad.
 const ARRIVAL_TOLERANCE: f64 = 1e-6;
 
 /// One person on the path.

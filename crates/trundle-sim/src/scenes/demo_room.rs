@@ -18,7 +18,7 @@ const PARTITION_X_M: f64 = 4.35;
 const DOOR_WIDTH: f64 = 1.0;
 const DOOR_HEIGHT: f64 = 2.02;
 
-/// Low tables: too low for the robot (0.6 m) to pass under, and only their legs stand where a flat laser near the floor looks.
+/// Height of low tables: too low for the robot (0.6 m) to pass under; a flat laser near the floor hits only their legs.
 const LOW_TABLE: f64 = 0.45;
 
 /// High tables: the robot passes under.

@@ -52,7 +52,7 @@ impl Builder {
         self.block(place, (0.0, 0.0), 0.0, size, Finish::all(paint));
     }
 
-    /// A sofa of `size` (depth, width, height, m) that looks along its own x.
+    /// A sofa of `size` (depth, width, height, m) that faces along its own x.
     pub(super) fn sofa(&mut self, place: Pose2, [depth, width, height]: [f64; 3]) {
         let cloth = Finish::all(Paint::Fabric { color: self.cloth() });
         let (seat, arms) = (height * 21.0 / 41.0, height * 9.0 / 41.0);
@@ -64,7 +64,7 @@ impl Builder {
         }
     }
 
-    /// A chair of `size` (depth, width, height of the back, m) that looks along its own x.
+    /// A chair of `size` (depth, width, height of the back, m) that faces along its own x.
     pub(super) fn chair(&mut self, place: Pose2, [depth, width, height]: [f64; 3]) {
         let wood = Paint::Veneer { color: self.wood() };
         let seat = height / 2.0;

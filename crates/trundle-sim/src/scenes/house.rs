@@ -20,7 +20,7 @@ const LIVING_ROOM_WALL_X_M: f64 = 5.5;
 /// West face of the wall between bath and study, m.
 const BATH_WALL_X_M: f64 = 2.6;
 
-/// What rooms look like.
+/// Appearance of rooms.
 struct Look {
     bedroom: Paint,
     bath: Paint,

@@ -30,7 +30,7 @@ impl Builder {
         }
     }
 
-    /// A stack of goods, `offset` from `place`, `size` m; one of a few looks.
+    /// A stack of goods, `offset` from `place`, `size` m, in one of a few textures.
     pub(super) fn goods(&mut self, place: Pose2, offset: (f64, f64), bottom: f64, size: [f64; 3]) {
         let look = self.choose(&[0, 1, 2, 3, 4, 5]);
         let color = self.tint.unwrap_or(GOODS[look]);

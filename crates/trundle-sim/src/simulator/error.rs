@@ -57,7 +57,7 @@ pub enum SimError {
         /// Metres.
         penetration: f64,
     },
-    /// A command that is not a number; the robot was told to stop instead.
+    /// A command that is not a number; the robot stops instead.
     #[error(
         "command at {stamp} s is v = {v} m/s, omega = {omega} rad/s, expected finite numbers; the robot stops"
     )]

@@ -23,7 +23,7 @@ pub(super) struct Builder<'a> {
     positions: Vec<[f32; 3]>,
     uvs: Vec<[f32; 2]>,
     triangles: Vec<Triangle>,
-    /// The looks in use, by their index in the mesh.
+    /// The appearances in use, by their index in the mesh.
     looks: Vec<Look>,
     painting: Painting,
     /// Surfaces whose colours lie over a texture and are left out.

@@ -16,7 +16,7 @@ use trundle_core::{Invalid, Pose2, require_in};
 pub struct Base {
     /// A built-in scene, one of [`Scene::NAMES`].
     pub scene: Option<String>,
-    /// What varies it, and draws the looks of all solids. Default: the seed of the run.
+    /// Seed of its variation, and of the textures of all solids. Default: the seed of the run.
     pub seed: Option<u64>,
     /// A glTF or GLB file, relative to the scene file.
     pub gltf: Option<PathBuf>,

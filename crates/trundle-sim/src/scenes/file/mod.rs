@@ -65,8 +65,8 @@ pub struct ScenePose {
 }
 
 impl SceneFile {
-    /// The scene. `loader` reads the files that the base names; `seed` is for a base that brings none, and for the
-    /// looks of props.
+    /// The scene. `loader` reads the files that the base names; `seed` is for a base without one, and for the
+    /// textures of props.
     ///
     /// # Errors
     /// Names the item that is wrong (`props[3].size`), or the file and its reader's error.

@@ -34,7 +34,7 @@ pub struct Prop {
     pub color: Option<[u8; 3]>,
     /// Of a box or cylinder. Default veneer.
     pub paint: Option<PaintName>,
-    /// Props of one kind, size and seed look exactly alike. Default: no two do.
+    /// Props of one kind, size and seed are exactly equal. Default: no two are.
     pub seed: Option<u64>,
 }
 

@@ -13,11 +13,11 @@ pub enum PropKind {
     Cylinder,
     /// A table on four legs.
     Table,
-    /// A chair that looks along its x.
+    /// A chair that faces along its x.
     Chair,
     /// A round stool.
     Stool,
-    /// A sofa that looks along its x.
+    /// A sofa that faces along its x.
     Sofa,
     /// A bed, its head at its -x.
     Bed,
