@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 /// The one object of `summary.json` that may differ: it holds times of the wall clock.
 const WALL_CLOCK: &str = "wall_clock";
 
-/// The one file that may differ, for the same reason.
-const TIMING: &str = "timing.html";
+/// The files that may differ, for the same reason: the page of times, and the list of results with their checksums.
+const MAY_DIFFER: [&str; 2] = ["timing.html", ".trundle-run"];
 
 /// How the folders differ, one sentence a file; empty when they do not. Of `summary.json` the object `wall_clock` is left out.
 pub fn compare_folders(a: &Path, b: &Path) -> Result<Vec<String>, String> {
@@ -19,7 +19,7 @@ pub fn compare_folders(a: &Path, b: &Path) -> Result<Vec<String>, String> {
     let mut differences = Vec::new();
     for name in in_a.union(&in_b) {
         match (in_a.contains(name), in_b.contains(name)) {
-            (true, true) if name == Path::new(TIMING) => {}
+            (true, true) if MAY_DIFFER.iter().any(|free| name == Path::new(free)) => {}
             (true, true) => differences.extend(compare_files(name, &a.join(name), &b.join(name))?),
             (true, false) => differences.push(format!("{} is only in {}", name.display(), a.display())),
             _ => differences.push(format!("{} is only in {}", name.display(), b.display())),
@@ -116,6 +116,10 @@ mod tests {
         };
         let (a, b, c) = (summary("1.5", "0.01"), summary("2.5", "0.01"), summary("1.5", "0.02"));
         assert!(differences("clock", &[("summary.json", &a)], &[("summary.json", &b)]).is_empty());
+        for name in MAY_DIFFER {
+            assert!(differences(name, &[(name, "1"), ("map", "")], &[(name, "2"), ("map", "")]).is_empty());
+            assert_eq!(differences(name, &[(name, "1")], &[("map", "")]).len(), 2);
+        }
         let found = differences("goal", &[("summary.json", &a)], &[("summary.json", &c)]);
         assert_eq!(found, ["summary.json, .goal.error_m is 0.01 and 0.02"]);
     }
