@@ -63,11 +63,11 @@ impl SequenceInput {
     }
 
     fn of_folder(options: &SequenceOptions<'_>) -> Result<Self, AppError> {
-        let camera = SequenceCamera::choose(options.camera, options.path)?;
+        let mut camera = SequenceCamera::choose(options.camera, options.path)?;
         log_warnings(&camera.warnings);
-        let CameraModel { camera: lens, depth_scale } = camera.model;
-        let scale = options.depth_scale.unwrap_or(depth_scale);
-        let sequence = TumSequence::open(options.path, scale, TumSequence::MAX_DIFFERENCE)?;
+        let CameraModel { camera: lens, depth_scale } = &mut camera.model;
+        *depth_scale = options.depth_scale.unwrap_or(*depth_scale);
+        let sequence = TumSequence::open(options.path, *depth_scale, TumSequence::MAX_DIFFERENCE)?;
         log_warnings(sequence.warnings());
         let source = Source::Folder(Box::new(sequence.with_size(lens.width(), lens.height())));
         Ok(Self { path: options.path.to_owned(), camera, robot: RobotConfig::default(), source })
@@ -95,17 +95,15 @@ impl SequenceInput {
             }
         };
         log_warnings(&camera.warnings);
-        if let Some(report) = run.cut_report() {
-            tracing::warn!("{name}: {report}");
-        }
+        run.warn_of_cut();
         let robot = run.robot().cloned().unwrap_or_default();
         Ok(Self { path: options.path.to_owned(), camera, robot, source: Source::Recording(Box::new(run)) })
     }
 
     /// Depth units a metre in the images.
     #[must_use]
-    pub fn depth_scale(&self, asked: Option<f64>) -> f64 {
-        asked.unwrap_or(self.camera.model.depth_scale)
+    pub fn depth_scale(&self) -> f64 {
+        self.camera.model.depth_scale
     }
 
     /// Number of images.

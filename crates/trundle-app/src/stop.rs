@@ -147,7 +147,7 @@ mod tests {
 
     #[test]
     fn without_a_signal_nothing_stops() {
-        assert!(!is_requested(|| unreachable!("nobody asked")));
+        assert!(!is_requested(|| unreachable!("no signal has come")));
         assert_eq!(stopped(), None);
     }
 }

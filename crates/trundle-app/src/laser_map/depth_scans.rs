@@ -62,7 +62,7 @@ pub fn read(
         }
     }
     progress.end();
-    log.depth_problem = depth.problem(input.depth_scale(None));
+    log.depth_problem = depth.problem(input.depth_scale());
     if log.scans.is_empty() && stop::stopped().is_some() {
         return Err(AppError::Stopped);
     }
@@ -121,11 +121,8 @@ pub fn of_laser(run: &RecordedRun, file: &Path) -> Result<LogInput, AppError> {
     if log.scans.is_empty() {
         return Err(refused("no scan can be used: none has odometry about its time"));
     }
-    let cut_report = run.cut_report().map(str::to_owned);
-    if let Some(report) = &cut_report {
-        tracing::warn!("{}: {report}", file.display());
-    }
-    Ok(LogInput { log, depth: None, cut_report })
+    run.warn_of_cut();
+    Ok(LogInput { log, depth: None, cut_report: run.cut_report().map(str::to_owned) })
 }
 
 /// The source of the base's poses.

@@ -140,7 +140,7 @@ impl SequenceRun {
             seconds: 0.0,
             is_interrupted: false,
             depth: DepthStatistics::default(),
-            depth_scale: input.depth_scale(request.depth_scale),
+            depth_scale: input.depth_scale(),
             logged_issues: 0,
             frame_problems: Warnings::default(),
             left_out: LeftOut::of(request, input),

@@ -96,6 +96,13 @@ impl RecordedRun {
         &self.scans
     }
 
+    /// Logs a warning where the recording was cut.
+    pub fn warn_of_cut(&self) {
+        if let Some(report) = &self.cut_report {
+            tracing::warn!("{}: {report}", self.file.display());
+        }
+    }
+
     /// Where the recording was cut, in a sentence; `None` for a whole one.
     #[must_use]
     pub fn cut_report(&self) -> Option<&str> {

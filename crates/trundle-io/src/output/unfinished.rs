@@ -46,6 +46,6 @@ pub fn abandon_outputs() -> bool {
     for folder in &unfinished.folders {
         let _ = fs::remove_dir_all(folder);
     }
-    std::mem::forget(unfinished); // whoever wants to complete results waits for the end of the process
+    std::mem::forget(unfinished); // the lock is held until the process ends, so that no result is completed
     true
 }

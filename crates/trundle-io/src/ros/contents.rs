@@ -188,15 +188,15 @@ impl Contents {
         options: &LaserLogOptions,
     ) -> Result<Pose3, NoTransform> {
         let LaserLogOptions { laser_x, laser_turn, upside_down, .. } = *options;
-        let told = self.fixed.between(base, laser).or_else(|_| self.all.between(base, laser));
-        let told = told.map(|pose| if upside_down { upside_down_at(pose) } else { pose });
+        let recorded = self.fixed.between(base, laser).or_else(|_| self.all.between(base, laser));
+        let recorded = recorded.map(|pose| if upside_down { upside_down_at(pose) } else { pose });
         if laser_x.is_none() && laser_turn.is_none() {
-            return told;
+            return recorded;
         }
         // Without a transform, values that were not given are zero.
         let roll = if upside_down { std::f64::consts::PI } else { 0.0 };
         let own = |_| Pose3::new(UnitQuaternion::from_euler_angles(roll, 0.0, 0.0), Default::default());
-        let Pose3 { rotation, mut translation } = told.unwrap_or_else(own);
+        let Pose3 { rotation, mut translation } = recorded.unwrap_or_else(own);
         translation.x = laser_x.unwrap_or(translation.x);
         let ahead = rotation * nalgebra::Vector3::x();
         let turn = laser_turn.map_or(0.0, |turn| turn - ahead.y.atan2(ahead.x));
